@@ -1,0 +1,26 @@
+# Every outside library in one place, so that the install rules and the package config name the same ones.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(Threads REQUIRED)
+
+# Debian's SUNDIALS config drags in targets of optional packages; the few libraries needed are found by name.
+find_path(SUNDIALS_INCLUDE_DIR cvode/cvode.h REQUIRED)
+foreach(lib cvode arkode nvecserial)
+  find_library(SUNDIALS_${lib}_LIBRARY sundials_${lib} REQUIRED)
+endforeach()
+add_library(bough_sundials INTERFACE)
+target_include_directories(bough_sundials SYSTEM INTERFACE $<BUILD_INTERFACE:${SUNDIALS_INCLUDE_DIR}>)
+target_link_libraries(bough_sundials INTERFACE
+  ${SUNDIALS_cvode_LIBRARY} ${SUNDIALS_arkode_LIBRARY} ${SUNDIALS_nvecserial_LIBRARY})
+
+if(NOT BOUGH_SOLVER_ONLY)
+  find_package(PkgConfig REQUIRED)
+  pkg_check_modules(PETSC REQUIRED IMPORTED_TARGET GLOBAL PETSc)
+  pkg_check_modules(SLEPC REQUIRED IMPORTED_TARGET GLOBAL SLEPc)
+  # The openmpi flavour is the one PETSc links; the serial one in the same process would clash with it.
+  pkg_check_modules(MPI REQUIRED IMPORTED_TARGET GLOBAL ompi-c)   # PETSc.pc names it for static links only
+  pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET GLOBAL hdf5-openmpi)
+  find_package(CLI11 REQUIRED)
+  find_package(nlohmann_json 3 REQUIRED)
+  find_package(fmt REQUIRED)
+  find_package(tomlplusplus REQUIRED)
+endif()

@@ -1,0 +1,37 @@
+#pragma once
+/// \file Sparse matrices of a model in PETSc, assembled element by element by each rank; nothing dense of size ndof².
+#include "bough/fe/model/model.hpp"
+#include "bough/fe/petsc.hpp"
+
+namespace bough::fe {
+
+enum class DofSet { Free, Global };            ///< f-set (TᵀKT) or g-set
+
+/// K, or M when mass is true (times WTMASS), on PETSC_COMM_WORLD; exactly preallocated; MATAIJ. O(elements).
+PetscMat assemble_stiffness(const Model& model, DofSet set);
+PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind);
+/// K_G of the displacement field u (num_gdofs), f-set or g-set.
+PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const VectorXd& u_g);
+
+/// Products with the g-set mass matrix without forming it: M X, num_gdofs x k, replicated on every rank. O(elements k).
+MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g);
+/// The same with K.
+MatrixXd calc_stiffness_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g);
+
+/// Elements [first, last) of this rank; the union over ranks is every element.
+std::pair<int, int> calc_element_range(const Model& model);
+/// Sums a replicated matrix over ranks in place.
+void sum_over_ranks(Eigen::Ref<MatrixXd> values);
+
+/// Gathers a distributed f-set vector onto every rank / spreads a replicated one.
+VectorXd gather(Vec v);
+void scatter(const Eigen::Ref<const VectorXd>& values, Vec v);
+
+/// Mass properties about `reference` (basic), with the model's own mass kind.
+records::MassProperties calc_mass_properties(const Model& model, MassKind kind, const Vector3d& reference);
+
+/// Nastran's GROUNDCHECK on the g-set: strain energy of the six rigid motions, each divided by the largest that the
+/// diagonal of K would allow; about 1e-16 for a model with no hidden ground.
+Eigen::Matrix<double, 6, 1> calc_ground_check(const Model& model);
+
+}  // namespace bough::fe

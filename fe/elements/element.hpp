@@ -1,0 +1,97 @@
+#pragma once
+/// \file What every element owes: stiffness, mass, internal forces, geometric stiffness. One pair of files per element.
+///
+/// All matrices are in basic axes at the element's grid points (offsets and pin releases are already inside), in the
+/// order of get_gdofs(). Functions add into the caller's storage and keep no scratch of their own: an element is const.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "bough/base/diagnostic.hpp"
+#include "bough/formats/records/deck.hpp"
+
+namespace bough::fe {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+enum class MassKind { Lumped, Consistent };
+
+/// A grid (six dofs: translations and rotations in basic) or a scalar point (one dof).
+struct Node {
+  int id = 0;
+  Vector3d x = Vector3d::Zero();               ///< in basic
+  Matrix3d R_basic_cd = Matrix3d::Identity();  ///< columns: the displacement (CD) axes in basic
+  int first_gdof = 0;                          ///< row of its first dof in the g-set
+  int num_dofs = 6;
+};
+
+/// How an element is drawn and written to VTU.
+struct ElementShape {
+  std::string type;                            ///< "line2", "tri3", "quad4", "vertex"; empty = not drawn
+  std::vector<int> nodes;                      ///< indices into Model::nodes()
+};
+
+class Element {
+ public:
+  Element(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs)
+      : id_(id), card_(std::move(card)), nodes_(std::move(nodes)), gdofs_(std::move(gdofs)) {}
+  virtual ~Element() = default;
+  Element(const Element&) = delete;
+  Element& operator=(const Element&) = delete;
+
+  int id() const { return id_; }
+  const std::string& card() const { return card_; }          ///< "CBAR", ...
+  const std::vector<int>& nodes() const { return nodes_; }   ///< indices into Model::nodes()
+  const std::vector<int>& gdofs() const { return gdofs_; }   ///< rows of the g-set; size() = N below
+  int num_dofs() const { return static_cast<int>(gdofs_.size()); }
+  virtual ElementShape shape() const { return {}; }
+
+  /// K += scale K_e, N x N. Symmetric; K_e times any rigid motion is zero for an ungrounded element.
+  virtual void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const;
+  /// M += scale M_e, N x N, in deck units (PARAM,WTMASS is applied by assembly).
+  virtual void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const;
+
+  /// Number s of internal force components (stress resultants) on which K_G depends; 0: no geometric stiffness.
+  virtual int num_internal_forces() const { return 0; }
+  /// Internal forces (s) of the element for its nodal displacements u (N), linear in u. Names: internal_force_names().
+  virtual void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const;
+  virtual std::vector<std::string> internal_force_names() const { return {}; }
+  /// K_G += scale K_G(force), N x N, symmetric and linear in force.
+  virtual void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
+                                       Eigen::Ref<MatrixXd> K_G) const;
+
+ private:
+  int id_;
+  std::string card_;
+  std::vector<int> nodes_;
+  std::vector<int> gdofs_;
+};
+
+/// Looks up nodes by deck id while elements are made.
+class NodeTable {
+ public:
+  virtual ~NodeTable() = default;
+  virtual int find_node(int id) const = 0;                   ///< index, -1 when absent
+  virtual const Node& node(int index) const = 0;
+  /// R_basic_cid at point x (the axes of a cylindrical or spherical system depend on it); nullptr-safe: reports and
+  /// returns identity when cid does not exist.
+  virtual Matrix3d calc_axes(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const = 0;
+  /// Position in basic of coordinates given in system cid.
+  virtual Vector3d calc_point(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const = 0;
+};
+
+struct ElementList {
+  std::vector<std::unique_ptr<const Element>> elements;
+};
+
+/// Every element of the deck (bars, beams, rods, tubes, springs, bushes, masses); missing properties, materials, grids,
+/// zero lengths and bad orientations are reported with file and line, all of them.
+/// The only list of element types (fe/elements/catalog.cpp).
+ElementList make_elements(const records::Deck& deck, const NodeTable& nodes, Diagnostics& diagnostics);
+
+}  // namespace bough::fe

@@ -1,0 +1,88 @@
+#pragma once
+/// \file The finite-element model: nodes, elements, dofs and constraints, made once from a deck and const after.
+///
+/// g-set: every dof of every node, translations and rotations in **basic** axes (one row for a scalar point).
+/// f-set: the free dofs left after SPC, permanent SPC, AUTOSPC, MPC and rigid elements, in the displacement (CD) axes.
+/// u_g = T q_f, with the CD rotation, the constraint elimination and the zeros all inside the sparse T.
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Sparse>
+
+#include "bough/fe/elements/element.hpp"
+#include "bough/formats/records/flex_body.hpp"
+#include "bough/formats/records/modes.hpp"
+
+namespace bough::fe {
+
+using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
+
+struct ModelOptions {
+  int subcase = 0;                            ///< id; 0 = the first: its SPC and MPC sets are used
+  bool ignore_spc = false;                    ///< free-free: SPC sets and permanent SPC of translational kind are not applied
+  std::optional<bool> autospc;                ///< overrides PARAM,AUTOSPC
+  std::optional<MassKind> mass_kind;          ///< overrides PARAM,COUPMASS
+  std::optional<Vector3d> origin;             ///< Bo in basic: node positions become relative to it
+  std::vector<std::string> ignore_cards;      ///< --ignore CARD
+};
+
+/// One dof removed by AUTOSPC: node id, component 1..6 in CD axes, stiffness ratio that condemned it.
+struct AutospcEntry {
+  int node = 0, component = 0;
+  double ratio = 0;
+};
+
+class Model final : public NodeTable {
+ public:
+  /// Builds everything; throws InputError with every error of the deck that concerns fe.
+  static Model build(const records::Deck& deck, const ModelOptions& options, Diagnostics& diagnostics);
+
+  const std::vector<Node>& nodes() const { return nodes_; }
+  const std::vector<std::unique_ptr<const Element>>& elements() const { return elements_; }
+  int num_gdofs() const { return num_gdofs_; }
+  int num_fdofs() const { return static_cast<int>(T_.cols()); }
+  const SparseRows& T() const { return T_; }                   ///< num_gdofs x num_fdofs
+  MassKind mass_kind() const { return mass_kind_; }
+  double wtmass() const { return wtmass_; }
+  const std::vector<AutospcEntry>& autospc() const { return autospc_; }
+  const records::Subcase& subcase() const { return subcase_; }
+  /// ndof_g x 2: node id, code 1..6 (0 for a scalar point).
+  Eigen::MatrixXi calc_dof_map() const;
+  records::BodyMesh calc_mesh() const;
+
+  /// The f-dof that alone carries g-dof (node, component in CD axes), or -1 (constrained, dependent).
+  int find_fdof(int node_index, int component) const;
+  /// Node id and CD component of an f-dof, for messages.
+  std::pair<int, int> describe_fdof(int fdof) const;
+
+  /// Φ_R: num_gdofs x 6 geometric rigid-body modes about `point` (default: Bo), theory.md §2. Scalar points: zero.
+  MatrixXd calc_rigid_modes(const Vector3d& point = Vector3d::Zero()) const;
+
+  int find_node(int id) const override;
+  const Node& node(int index) const override { return nodes_[index]; }
+  Matrix3d calc_axes(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const override;
+  Vector3d calc_point(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const override;
+
+  /// Load vector (num_gdofs) of a LOAD/FORCE/MOMENT/GRAV set, in basic; GRAV uses this model's mass.
+  VectorXd calc_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const;
+
+ private:
+  friend class ModelBuilder;
+  struct Systems;                              ///< coordinate systems, resolved to basic
+  std::shared_ptr<const Systems> systems_;
+  std::vector<Node> nodes_;
+  std::map<int, int> node_index_;
+  std::vector<std::unique_ptr<const Element>> elements_;
+  int num_gdofs_ = 0;
+  SparseRows T_;
+  std::vector<int> fdof_node_, fdof_component_;
+  std::vector<std::array<int, 6>> node_fdof_;
+  MassKind mass_kind_ = MassKind::Lumped;
+  double wtmass_ = 1;
+  std::vector<AutospcEntry> autospc_;
+  records::Subcase subcase_;
+};
+
+}  // namespace bough::fe

@@ -1,0 +1,44 @@
+#include "bough/fe/petsc.hpp"
+
+#include <cstdlib>
+#include <string>
+
+#include "bough/base/diagnostic.hpp"
+
+namespace bough::fe {
+
+void check_petsc(PetscErrorCode code) {
+  if (code == 0) return;
+  const char* text = nullptr;
+  char* specific = nullptr;
+  PetscErrorMessage(code, &text, &specific);
+  throw ComputationError("fe.petsc", {}, std::string("PETSc failed: ") + (text ? text : "unknown error"),
+                         "run with a smaller model or report the deck");
+}
+
+MpiWorld initialize_petsc() {
+  PetscBool initialized = PETSC_FALSE;
+  PetscInitialized(&initialized);
+  if (!initialized) {
+    // A single process needs no network transports; looking for them costs most of MPI's start-up time.
+    if (!std::getenv("OMPI_COMM_WORLD_SIZE")) {
+      setenv("OMPI_MCA_btl", "self", 0);
+      setenv("OMPI_MCA_pml", "ob1", 0);
+    }
+    int argc = 0;
+    char** argv = nullptr;
+    check_petsc(PetscInitialize(&argc, &argv, nullptr, nullptr));
+    PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+    std::atexit([] {
+      PetscBool finalized = PETSC_FALSE;
+      PetscFinalized(&finalized);
+      if (!finalized) PetscFinalize();
+    });
+  }
+  MpiWorld world;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &world.rank);
+  MPI_Comm_size(PETSC_COMM_WORLD, &world.size);
+  return world;
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,46 @@
+#pragma once
+/// \file Owning handles for PETSc objects, initialization on demand, and error translation.
+#include <petscksp.h>
+
+#include <utility>
+
+#include <Eigen/Dense>
+
+namespace bough::fe {
+
+/// Throws ComputationError("fe.petsc") with PETSc's text when code is not zero.
+void check_petsc(PetscErrorCode code);
+
+/// Initializes MPI, PETSc and SLEPc once per process; finalized at exit. Verbs that need no FE never call it.
+/// Returns the rank and size of PETSC_COMM_WORLD.
+struct MpiWorld {
+  int rank = 0, size = 1;
+};
+MpiWorld initialize_petsc();
+
+/// Owning handle; Destroy is PETSc's MatDestroy and so on.
+template <class T, PetscErrorCode (*Destroy)(T*)>
+class PetscHandle {
+ public:
+  PetscHandle() = default;
+  explicit PetscHandle(T object) : object_(object) {}
+  PetscHandle(PetscHandle&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
+  PetscHandle& operator=(PetscHandle&& other) noexcept {
+    std::swap(object_, other.object_);
+    return *this;
+  }
+  ~PetscHandle() {
+    if (object_) Destroy(&object_);
+  }
+  T get() const { return object_; }
+  T* out() { return &object_; }
+  explicit operator bool() const { return object_ != nullptr; }
+
+ private:
+  T object_ = nullptr;
+};
+using PetscMat = PetscHandle<Mat, MatDestroy>;
+using PetscVec = PetscHandle<Vec, VecDestroy>;
+using PetscKsp = PetscHandle<KSP, KSPDestroy>;
+
+}  // namespace bough::fe

@@ -1,0 +1,28 @@
+#pragma once
+/// \file Static solutions: one factorization, many loads.
+#include <vector>
+
+#include "bough/fe/assembly.hpp"
+
+namespace bough::fe {
+
+class StaticSolver {
+ public:
+  /// Factors K on the f-set with `held_fdofs` fixed as well (a support for a free-free model; empty for a fixed one).
+  /// A singular K throws ComputationError("fe.mechanism") naming the nodes and dofs of the mechanism.
+  StaticSolver(const Model& model, const PetscMat& K_f, std::vector<int> held_fdofs = {});
+  ~StaticSolver();
+
+  /// u_g (num_gdofs x m) for loads F_g (num_gdofs x m) in basic on the g-set; both replicated on every rank.
+  MatrixXd solve(const Eigen::Ref<const MatrixXd>& F_g) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Six f-dofs that hold a free-free model in a statically determinate way: all six dofs of `node_id`, or, when 0, a
+/// 3-2-1 support on three well-spread nodes. Throws InputError when there is none.
+std::vector<int> choose_determinate_support(const Model& model, int node_id);
+
+}  // namespace bough::fe

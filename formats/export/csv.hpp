@@ -1,0 +1,17 @@
+#pragma once
+/// \file Comma-separated values of a results file: one header row of channel names, one row per sample, 17 digits.
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+namespace bough::exports {
+
+struct CsvColumn {
+  std::string name;
+  Eigen::VectorXd values;
+};
+void write_csv(std::ostream& out, const std::vector<CsvColumn>& columns);
+
+}  // namespace bough::exports

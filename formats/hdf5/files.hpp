@@ -1,0 +1,54 @@
+#pragma once
+/// \file Bough's HDF5 files (contract.md): flexible body, modes, results. Written beside and renamed: whole or not at all
+/// (results: readable while they grow, finished or not).
+#include <map>
+#include <memory>
+#include <string>
+
+#include "bough/formats/records/flex_body.hpp"
+#include "bough/formats/records/modes.hpp"
+#include "bough/formats/records/results.hpp"
+
+namespace bough::hdf5 {
+
+/// Throw InputError: "hdf5.cannot-open", "hdf5.truncated", "hdf5.wrong-format", "hdf5.missing", "hdf5.shape";
+/// ComputationError "hdf5.write" (disk full, no permission).
+void write_flex_body(const records::FlexBody& body, const std::string& path);
+records::FlexBody read_flex_body(const std::string& path);
+
+void write_modes(const records::ModesResult& modes, const std::string& path);
+records::ModesResult read_modes(const std::string& path);
+
+/// A sink that writes path as it goes. `flush_every` samples between flushes. When appending (resume) the file must
+/// exist and end at or after `resume_time`; samples after it are cut.
+std::unique_ptr<records::ResultSink> make_results_writer(const std::string& path, int flush_every = 100);
+std::unique_ptr<records::ResultSink> make_results_appender(const std::string& path, double resume_time,
+                                                           int flush_every = 100);
+
+/// A results file read back.
+struct ResultsFile {
+  Eigen::VectorXd time;
+  std::map<std::string, Eigen::MatrixXd> channels;   ///< path -> nt x size
+  std::map<std::string, std::string> descriptions;
+  std::vector<records::EventRecord> events;
+  std::string system_text;
+  bool completed = false;
+  std::string reason;
+};
+ResultsFile read_results(const std::string& path);
+records::Checkpoint read_checkpoint(const std::string& path);
+
+/// One line per object: path, shape, type, description; for `info`.
+struct ObjectInfo {
+  std::string path, shape, type, description, dims;
+};
+struct FileInfo {
+  std::map<std::string, std::string> attributes;     ///< of the root
+  std::vector<ObjectInfo> objects;
+};
+FileInfo read_info(const std::string& path);
+
+/// SHA-256 of a file's bytes, hex.
+std::string calc_sha256(const std::string& path);
+
+}  // namespace bough::hdf5

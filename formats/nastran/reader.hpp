@@ -1,0 +1,21 @@
+#pragma once
+/// \file Nastran decks: bytes to records::Deck.
+#include <string>
+#include <string_view>
+
+#include "bough/formats/records/deck.hpp"
+
+namespace bough::nastran {
+
+struct ReadOptions {
+  std::vector<std::string> ignore_cards;   ///< --ignore CARD: not an error though it carries stiffness, mass, constraint
+};
+
+/// Reads a deck or fragment with its INCLUDE files. Every error of the deck is added to `diagnostics` (none is thrown);
+/// the record holds what could be read.
+records::Deck read_deck(const std::string& path, const ReadOptions& options, Diagnostics& diagnostics);
+/// The same from memory; `name` stands for the file in messages, INCLUDE is relative to the working directory.
+records::Deck read_deck_text(std::string_view text, const std::string& name, const ReadOptions& options,
+                             Diagnostics& diagnostics);
+
+}  // namespace bough::nastran

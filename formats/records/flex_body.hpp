@@ -1,0 +1,97 @@
+#pragma once
+/// \file A reduced flexible body: everything the solver, the .FLX writer and the exports know of it (contract.md).
+///
+/// Every vector is in the body frame B with origin Bo. n = num_modes, p = num_nodes. Units are the user's.
+#include <array>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+namespace bough::records {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+/// The twelve inertial loads in the order of A_I (theory.md §2; 0-based here).
+enum class InertialLoad { ax, ay, az, alx, aly, alz, wx2, wy2, wz2, wxwy, wxwz, wywz };
+inline constexpr int kNumInertialLoads = 12;
+
+enum class ModeKind { Normal, Constraint, Attachment };
+
+/// The five mass integrals (theory.md §4). Column j belongs to mode j.
+struct MassIntegrals {
+  MatrixXd gamma0;                             ///< 3 x n, Σ A^T_j
+  MatrixXd gamma1;                             ///< 3 x n, Σ (A^A_j + p × A^T_j)
+  std::vector<MatrixXd> gamma2;                ///< [j] 3 x n: column k is Γ2_jk = Σ A^T_j × φ_k
+  std::vector<Matrix3d> gamma3;                ///< [j] 3 x 3
+  std::vector<std::vector<Matrix3d>> gamma4;   ///< [j][k] 3 x 3
+  bool empty() const { return gamma0.size() == 0; }
+};
+
+/// A unit load at one (node, direction), or a load pattern, whose geometric stiffness K_G2 is stored.
+struct Locator {
+  std::string name;
+  int node = 0;        ///< node id; 0 for a pattern
+  int direction = 0;   ///< 1..6; 0 for a pattern
+};
+
+/// Enough to draw the body: lines and faces by node index into grid_id.
+struct BodyMesh {
+  struct Block {
+    std::string type;                          ///< "line2", "tri3", "quad4", ...
+    Eigen::MatrixXi connectivity;              ///< elements x nodes per element, indices into grid_id
+    std::vector<int> element_id;
+  };
+  std::vector<int> grid_id;
+  MatrixXd grid_xyz;                           ///< g x 3
+  std::vector<Block> blocks;
+};
+
+struct FlexBody {
+  std::string name;
+  std::vector<std::pair<std::string, std::string>> source;  ///< (file name, SHA-256)
+
+  double mass = 0;
+  Vector3d cg = Vector3d::Zero();
+  Matrix3d inertia = Matrix3d::Zero();         ///< about Bo
+
+  std::vector<int> node_id;                    ///< p output nodes
+  MatrixXd node_xyz;                           ///< p x 3
+  std::vector<int> interface_nodes;            ///< ids among node_id that have three translational locators
+  bool is_free_free = false;                   ///< rigid modes were removed: the frame is carried by no node
+
+  VectorXd frequency_hz, eigenvalue;           ///< n
+  std::vector<ModeKind> kind;                  ///< n
+  std::vector<MatrixXd> phi;                   ///< [k] 6 x n: nodal translations (rows 0..2) and rotations (3..5)
+  MatrixXd modal_mass, modal_stiffness, modal_damping;  ///< n x n
+  MatrixXd effective_mass;                     ///< n x 6
+
+  MassIntegrals lumped, consistent, exact;     ///< those the model has; the others are empty
+  std::string integrals_method;                ///< "lumped", "consistent" or "exact": the one the solver uses
+
+  MatrixXd F_I;                                ///< ndof x 12; may be empty
+  Eigen::MatrixXi dof_map;                     ///< ndof x 2: node id, code 1..6 (scalar point: 0)
+
+  std::array<MatrixXd, kNumInertialLoads> kg_inertial;      ///< K_G1, n x n each; zero where not computed
+  std::array<bool, kNumInertialLoads> kg_inertial_computed{};
+  std::vector<Locator> locators;
+  std::vector<MatrixXd> kg_external;           ///< K_G2, one per locator
+  MatrixXd external_load;                      ///< n x ne: ΦᵀF_ext of each locator
+
+  MatrixXd full_phi;                           ///< ndof x n, only with --full
+  BodyMesh mesh;
+
+  int num_modes() const { return static_cast<int>(eigenvalue.size()); }
+  int num_nodes() const { return static_cast<int>(node_id.size()); }
+  /// Index into node_id, -1 when absent.
+  int find_node(int id) const;
+  /// Index of the locator at (node, direction), -1 when absent.
+  int find_locator(int node, int direction) const;
+  /// The set named by integrals_method.
+  const MassIntegrals& integrals() const;
+};
+
+}  // namespace bough::records

@@ -1,0 +1,22 @@
+#pragma once
+/// \file A line plot as a self-contained SVG: titles, axes with round ticks, grid, legend, optional reference markers.
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+namespace bough::report {
+
+struct Curve {
+  std::string label;
+  Eigen::VectorXd x, y;
+  bool markers_only = false;      ///< reference points rather than a line
+};
+struct Plot {
+  std::string title, x_label, y_label;
+  std::vector<Curve> curves;
+  double y_min = 0, y_max = 0;    ///< equal: automatic; curves are clipped to the frame
+};
+std::string draw_svg(const Plot& plot);
+
+}  // namespace bough::report

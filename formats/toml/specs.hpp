@@ -1,0 +1,13 @@
+#pragma once
+/// \file Body and system files in TOML: text to records, every error with file and line, unknown keys with the nearest match.
+#include "bough/formats/records/body_spec.hpp"
+#include "bough/formats/records/system_spec.hpp"
+
+namespace bough::toml_files {
+
+records::BodySpec read_body_spec(const std::string& path, Diagnostics& diagnostics);
+records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagnostics);
+/// What the file is by its tables: "body", "system", or empty.
+std::string detect_kind(const std::string& path);
+
+}  // namespace bough::toml_files

@@ -1,0 +1,40 @@
+#pragma once
+/// \file Normal modes and buckling factors by SLEPc (Krylov-Schur, shift-invert, MUMPS).
+#include <functional>
+#include <optional>
+
+#include "bough/fe/assembly.hpp"
+
+namespace bough::modal {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+struct EigenOptions {
+  int num_modes = 10;                        ///< wanted, rigid ones included; 0: all in the range below
+  std::optional<double> min_hz, max_hz;
+  double tolerance = 1e-12;
+  bool check_inertia = true;                 ///< Sylvester count: no mode missed below the highest
+  std::function<void(int converged, int wanted)> progress;
+};
+
+/// K φ = λ M φ, φᵀMφ = 1, ascending λ. Sign rule: the component of largest magnitude (first by g-dof among those
+/// within 1e-6 of it) is positive, so it does not depend on the rank count.
+struct EigenPairs {
+  VectorXd lambda;                           ///< n; rigid modes are exactly 0
+  MatrixXd Phi;                              ///< num_gdofs x n in basic, constrained rows zero, dependent rows recovered
+  VectorXd residual;                         ///< |Kφ - λMφ| / |Kφ|; for rigid modes over the K-norm scale
+  int num_rigid = 0;                         ///< zero eigenvalues, first
+  int inertia_count = -1;                    ///< eigenvalues below the highest returned; -1 not checked
+};
+
+EigenPairs calc_normal_modes(const fe::Model& model, const EigenOptions& options, Diagnostics& diagnostics);
+
+/// (K + λ K_G(u)) φ = 0 for the static displacement u_g: load factors λ nearest zero, by magnitude; φᵀKφ = 1.
+EigenPairs calc_buckling_modes(const fe::Model& model, const VectorXd& u_g, const EigenOptions& options,
+                               Diagnostics& diagnostics);
+
+/// m_eff,j,r = (Φ_Rᵀ M φ_j)_r² / (φ_jᵀ M φ_j), n x 6, about Bo.
+MatrixXd calc_effective_mass(const fe::Model& model, const MatrixXd& Phi);
+
+}  // namespace bough::modal

@@ -1,0 +1,29 @@
+#pragma once
+/// \file Functions of time: [[function]] of a system file.
+#include <memory>
+
+#include "bough/base/diagnostic.hpp"
+#include "bough/formats/records/system_spec.hpp"
+
+namespace bough::solver {
+
+/// A scalar function of time with its first two derivatives (prescribed hinges need them).
+class TimeFunction {
+ public:
+  virtual ~TimeFunction() = default;
+  struct Value {
+    double f = 0, f_dot = 0, f_ddot = 0;
+  };
+  virtual Value calc(double t) const = 0;
+  /// Times at which f or a derivative jumps: the integrator stops and restarts there. Ascending.
+  virtual std::vector<double> breakpoints() const { return {}; }
+};
+
+/// Types: constant(value) | step(value, at, before) | ramp(value, from, to): 0 before, linear, value after |
+/// pulse(value, at, width) | sine(amplitude, frequency_hz or omega, phase, offset) | table(x, y, interpolation) |
+/// spinup(rate, duration): θ(t) of the report, theory.md §8.
+/// Reports unknown types, missing or unknown parameters (with the nearest match), NaN or unsorted tables.
+/// Returns nullptr when it reported an error.
+std::unique_ptr<const TimeFunction> make_time_function(const records::FunctionRecord& record, Diagnostics& diagnostics);
+
+}  // namespace bough::solver

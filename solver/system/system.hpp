@@ -1,0 +1,117 @@
+#pragma once
+/// \file A multibody tree ready for numerics: const System, separate SystemData (every result and scratch array).
+///
+/// Generalized positions q (num_q): per body in tree order, hinge coordinates (an orientation as quaternion x,y,z,w for
+/// spherical and free) then η. Generalized speeds u (num_u): hinge rates (spherical, free: angular velocity of Hc in
+/// Hp, expressed in Hc for w; translations rates) then η̇. Prescribed hinges keep their rows in q and have no rows in u.
+/// Frames: W inertial; B body, origin Bo; Hp, Hc hinge frames on parent and child. Linear before angular everywhere.
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "bough/base/rotation.hpp"
+#include "bough/formats/records/system_spec.hpp"
+
+namespace bough::solver {
+
+using records::FlexBody;
+
+struct BodyState {                ///< results of calc_positions / calc_velocities / calc_accelerations for one body
+  Vector3d p_WBo = Vector3d::Zero();
+  Matrix3d R_WB = Matrix3d::Identity();
+  Vector3d v_B = Vector3d::Zero();     ///< velocity of Bo, in B
+  Vector3d w_B = Vector3d::Zero();     ///< angular velocity of B, in B
+  Vector3d a_B = Vector3d::Zero();     ///< inertial acceleration of Bo, in B
+  Vector3d alpha_B = Vector3d::Zero(); ///< angular acceleration of B, in B
+};
+
+struct NodeMotion {               ///< of a material node K, in the inertial frame
+  Vector3d p_WK = Vector3d::Zero();
+  Matrix3d R_WK = Matrix3d::Identity();
+  Vector3d v_WK = Vector3d::Zero(), w_WK = Vector3d::Zero();
+  Vector3d a_WK = Vector3d::Zero(), alpha_WK = Vector3d::Zero();
+};
+
+struct Energies {
+  double kinetic = 0, strain = 0, potential = 0;   ///< strain: modal ½ηᵀKη plus hinge springs; potential: gravity
+};
+
+class SystemData;                 ///< made by System::make_data; one per thread
+
+class System {
+ public:
+  /// Checks everything that concerns the solver (names, nodes, tree without loops, locators of stiffened attachments)
+  /// and reports all errors with their place in the TOML file. `flex` maps a body's file (as written) to its record.
+  static System build(const records::SystemSpec& spec, const std::map<std::string, FlexBody>& flex,
+                      Diagnostics& diagnostics);
+  ~System();
+  System(System&&) noexcept;
+
+  int num_bodies() const;
+  int num_q() const;
+  int num_u() const;
+  int find_body(const std::string& name) const;    ///< -1 when absent
+  int find_hinge(const std::string& name) const;   ///< hinge h is the inboard hinge of body h
+  const std::string& body_name(int body) const;
+  const std::string& hinge_name(int body) const;
+  int num_modes(int body) const;
+  int q_offset(int body) const;                    ///< hinge coordinates start here; η follows
+  int u_offset(int body) const;
+  int num_hinge_q(int body) const;
+  int num_hinge_u(int body) const;                 ///< degrees of freedom; 0 when prescribed
+  int eta_offset(int body) const;                  ///< in q
+  int eta_dot_offset(int body) const;              ///< in u
+  /// Index of node `id` for calc_node_motion (0: Bo), -1 when the body has none such.
+  int find_node(int body, int id) const;
+
+  std::unique_ptr<SystemData> make_data() const;
+  /// Initial state as the records say; q (num_q), u (num_u).
+  void calc_initial_state(Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) const;
+
+  struct Impl;
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  System();
+  std::unique_ptr<Impl> impl_;
+};
+
+/// q̇ = N(q) u (prescribed coordinates: their given rates). O(num_bodies).
+void calc_q_dot(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
+                const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> q_dot);
+/// Positions and velocities of every body; clears the applied forces. Must precede the calls below. O(num_bodies).
+void calc_kinematics(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
+                     const Eigen::Ref<const VectorXd>& u);
+/// Adds every [[force]] of the spec at time t, hinge springs and dampers, gravity. After calc_kinematics.
+void add_forces(const System& system, SystemData& data, double t);
+/// Adds a force and moment (components in W) at a node, through its Jacobian φ - K_G2 η. After calc_kinematics.
+void add_node_wrench(const System& system, SystemData& data, int body, int node_index, const Vector3d& f_W,
+                     const Vector3d& t_W);
+/// u̇ by the order-n recursion with what was added; body accelerations and hinge forces become available. O(num_bodies).
+/// No allocation. Throws ComputationError when a body's articulated inertia is not positive definite.
+void calc_accelerations(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> u_dot);
+/// The same by assembling the dense M(q) and solving: the second route for tests. O(num_u³).
+void calc_accelerations_dense(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> u_dot);
+
+const BodyState& get_body_state(const SystemData& data, int body);
+/// Motion of a node; accelerations are valid after calc_accelerations. For a flexible body the second-order term of
+/// position, velocity and acceleration is in where the node has its three locators and stiffening is on.
+NodeMotion calc_node_motion(const System& system, const SystemData& data, int body, int node_index);
+/// Deflection φ_k η + ½ ηᵀ g_k η and rotation ψ_k η of a node from its undeformed place, in B.
+void calc_node_deflection(const System& system, const SystemData& data, int body, int node_index,
+                          Vector3d& deflection_B, Vector3d& rotation_B);
+/// Hinge coordinates and rates as the user knows them (prescribed ones too) and the generalized hinge force
+/// (spring + damper, or the force that enforces a prescribed motion).
+void get_hinge(const System& system, const SystemData& data, int body, Eigen::Ref<VectorXd> q,
+               Eigen::Ref<VectorXd> q_dot, Eigen::Ref<VectorXd> force);
+
+Energies calc_energies(const System& system, const SystemData& data);
+/// Power of applied forces, dampers and prescribed motions: d/dt(kinetic + strain + potential). After calc_accelerations.
+double calc_power(const System& system, const SystemData& data);
+/// Linear momentum and angular momentum about the inertial origin, in W.
+void calc_momentum(const System& system, const SystemData& data, Vector3d& linear, Vector3d& angular);
+
+}  // namespace bough::solver

@@ -1,0 +1,28 @@
+#pragma once
+/// \file F_I, K_G1, K_G2 and the whole reduction of a deck to a flexible body.
+#include <functional>
+
+#include "bough/fe/statics.hpp"
+#include "bough/formats/records/body_spec.hpp"
+#include "bough/modal/eigen.hpp"
+
+namespace bough::stiffening {
+
+/// F_I, num_gdofs x 12, columns in the order of records::InertialLoad (theory.md §2, report eqs. 3-12).
+MatrixXd calc_inertial_loads(const fe::Model& model, fe::MassKind kind);
+
+/// K_G(u_c) projected on Phi for every column c of U (num_gdofs x m): m matrices n x n, accumulated element by element,
+/// O(elements (m s + m n)) with s the element size; summed over ranks.
+std::vector<MatrixXd> calc_generalized_geometric_stiffness(const fe::Model& model, const MatrixXd& U,
+                                                           const MatrixXd& Phi);
+
+struct ReduceOptions {
+  std::function<void(const std::string& stage)> progress;
+};
+
+/// The whole preprocessing: model, modes, integrals, F_I, K_G1, K_G2 -> FlexBody. Runs on every rank; the record is
+/// complete on each.
+records::FlexBody reduce(const records::Deck& deck, const records::BodySpec& spec, const ReduceOptions& options,
+                         Diagnostics& diagnostics);
+
+}  // namespace bough::stiffening

@@ -1,0 +1,34 @@
+#include "bough/base/diagnostic.hpp"
+
+#include <gtest/gtest.h>
+
+namespace bough {
+namespace {
+
+TEST(Diagnostic, FormatIsFileLineKindWhatAdviceId) {
+  const Diagnostic d{Severity::Error, "deck.missing-grid", {"a.bdf", 12, 0}, "grid 7 does not exist", "add it"};
+  EXPECT_EQ(format(d), "a.bdf:12: error: grid 7 does not exist; add it [deck.missing-grid]");
+}
+
+TEST(Diagnostic, AllErrorsAreThrownTogether) {
+  Diagnostics diagnostics;
+  diagnostics.warning("w", {}, "odd");
+  diagnostics.throw_if_errors();
+  diagnostics.error("x.one", {"f", 1, 0}, "first");
+  diagnostics.error("x.two", {"f", 2, 0}, "second");
+  try {
+    diagnostics.throw_if_errors();
+    FAIL() << "nothing was thrown";
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.exit_code(), 1);
+    EXPECT_EQ(std::string(e.what()), "warning: odd [w]\nf:1: error: first [x.one]\nf:2: error: second [x.two]");
+  }
+}
+
+TEST(Diagnostic, NearestWordIsFoundOnlyWhenNear) {
+  EXPECT_EQ(find_nearest("integartor", {"duration", "integrator", "gravity"}), "integrator");
+  EXPECT_EQ(find_nearest("zzz", {"duration", "integrator"}), "");
+}
+
+}  // namespace
+}  // namespace bough

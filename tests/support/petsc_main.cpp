@@ -1,0 +1,9 @@
+#include <gtest/gtest.h>
+
+#include "bough/fe/petsc.hpp"
+
+int main(int argc, char** argv) {
+  ::testing::InitGoogleTest(&argc, argv);
+  bough::fe::initialize_petsc();
+  return RUN_ALL_TESTS();
+}
