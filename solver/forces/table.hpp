@@ -1,0 +1,35 @@
+#pragma once
+/// \file Tabulated functions of time. Outside the table the end values hold.
+#include <vector>
+
+#include "bough/solver/forces/function.hpp"
+
+namespace bough::solver {
+
+/// Straight lines between the points. x ascending strictly, as many y; checked by make_time_function.
+class LinearTable final : public TimeFunction {
+ public:
+  LinearTable(std::vector<double> x, std::vector<double> y) : x_(std::move(x)), y_(std::move(y)) {}
+  Value calc(double t) const override;
+  /// Every point: the slope jumps there.
+  std::vector<double> breakpoints() const override { return x_; }
+
+ private:
+  std::vector<double> x_, y_;
+};
+
+/// Cubic spline with not-a-knot ends (de Boor, "A practical guide to splines", ch. IV): C² inside, exact for cubics, no
+/// invented end slopes. Three points give the parabola through them, two a line.
+class CubicTable final : public TimeFunction {
+ public:
+  CubicTable(std::vector<double> x, std::vector<double> y);
+  Value calc(double t) const override;
+  /// The two ends: the slope jumps there. Inside only the third derivative does, which a restart would not help.
+  std::vector<double> breakpoints() const override { return {x_.front(), x_.back()}; }
+
+ private:
+  std::vector<double> x_, y_;
+  std::vector<double> second_;   ///< f'' at the points
+};
+
+}  // namespace bough::solver
