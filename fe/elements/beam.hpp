@@ -1,0 +1,54 @@
+#pragma once
+/// \file CBAR and CBEAM: one three-dimensional beam core.
+///
+/// Stiffness from the exact flexibility (shape/beam_field.hpp): Timoshenko with shear factors, Euler-Bernoulli without,
+/// unsymmetric and tapered sections, neutral axis off the shear centre. Offsets are rigid arms, pin flags are condensed.
+/// Geometric stiffness: docs/elements/beam.md. Forces: see internal_force_names().
+#include <memory>
+
+#include "bough/fe/elements/beam_property.hpp"
+#include "bough/fe/elements/element.hpp"
+#include "bough/fe/shape/beam_field.hpp"
+
+namespace bough::fe {
+
+struct BeamGeometry {
+  Matrix3d R_basic_element = Matrix3d::Identity();  ///< columns: element axes in basic, x along the shear centres
+  double length = 0;                                ///< between the offset ends
+  Vector3d wa = Vector3d::Zero(), wb = Vector3d::Zero();  ///< offsets of the ends from the grids, in basic
+  unsigned pin_a = 0, pin_b = 0;                    ///< released element dofs (masks), element axes
+};
+
+class Beam final : public Element {
+ public:
+  /// nodes: two; gdofs: twelve. The property must give E > 0 and a positive length is the caller's check.
+  Beam(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs,
+       std::shared_ptr<const BeamProperty> property, const BeamGeometry& geometry);
+
+  ElementShape shape() const override { return {"line2", nodes()}; }
+  void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
+  /// Lumped: half the line's mass at each end (tapered: its first moment is kept), translations only for CBAR, with the
+  /// torsional inertia of the section for CBEAM. Consistent: ∫ Dᵀ m D with the static field D; CBAR has no section
+  /// inertia and Nastran's axial terms (5/12, 1/12); CBEAM has rotary and torsional inertia.
+  void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+
+  int num_internal_forces() const override { return 8; }
+  void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
+  std::vector<std::string> internal_force_names() const override;
+  void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
+                               Eigen::Ref<MatrixXd> K_G) const override;
+
+  const BeamGeometry& geometry() const { return geometry_; }
+  const BeamProperty& property() const { return *property_; }
+
+ private:
+  Matrix12d calc_end_map() const;                   ///< element end dofs (local) per grid dofs (basic), pins included
+  Matrix12d calc_release() const;
+  void add_lumped_mass(double scale, Eigen::Ref<MatrixXd> M) const;
+  void add_consistent_mass(double scale, Eigen::Ref<MatrixXd> M) const;
+
+  std::shared_ptr<const BeamProperty> property_;
+  BeamGeometry geometry_;
+};
+
+}  // namespace bough::fe

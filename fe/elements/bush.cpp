@@ -1,0 +1,41 @@
+#include "bough/fe/elements/bush.hpp"
+
+#include "bough/base/rotation.hpp"
+
+namespace bough::fe {
+
+Bush::Bush(int id, std::vector<int> nodes, std::vector<int> gdofs, const BushData& data)
+    : Element(id, "CBUSH", std::move(nodes), std::move(gdofs)), data_(data) {
+  BOUGH_DEMAND(num_dofs() == 6 || num_dofs() == 12);
+}
+
+Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 12> Bush::calc_stretch() const {
+  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 12> B(6, num_dofs());
+  const Matrix3d R = data_.R_basic_element.transpose();
+  B.setZero();
+  B.block<3, 3>(0, 0) = B.block<3, 3>(3, 3) = -R;
+  B.block<3, 3>(0, 3) = R * skew(data_.arm_a);
+  if (num_dofs() == 12) {
+    B.block<3, 3>(0, 6) = B.block<3, 3>(3, 9) = R;
+    B.block<3, 3>(0, 9) = -R * skew(data_.arm_b);
+  }
+  return B;
+}
+
+void Bush::add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const {
+  const auto B = calc_stretch();
+  const Eigen::Map<const Eigen::Matrix<double, 6, 1>> k(data_.k.data());
+  K += scale * (B.transpose() * (k.asDiagonal() * B));
+}
+
+void Bush::add_mass(MassKind, double scale, Eigen::Ref<MatrixXd> M) const {
+  for (int first = 0; first < num_dofs(); first += 6)
+    M.block<3, 3>(first, first) += 0.5 * scale * data_.mass * Matrix3d::Identity();
+}
+
+Eigen::Matrix<double, 6, 1> Bush::calc_spring_forces(const Eigen::Ref<const VectorXd>& u) const {
+  const Eigen::Map<const Eigen::Matrix<double, 6, 1>> k(data_.k.data());
+  return k.asDiagonal() * (calc_stretch() * u);
+}
+
+}  // namespace bough::fe

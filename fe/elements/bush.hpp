@@ -1,0 +1,33 @@
+#pragma once
+/// \file CBUSH: six springs in element axes at one point, carried to the grids by rigid arms.
+#include "bough/fe/elements/element.hpp"
+
+namespace bough::fe {
+
+struct BushData {
+  Matrix3d R_basic_element = Matrix3d::Identity();
+  std::array<double, 6> k{};                        ///< along and about the element axes
+  Vector3d arm_a = Vector3d::Zero();                ///< spring point from grid A, basic
+  Vector3d arm_b = Vector3d::Zero();                ///< and from grid B
+  double mass = 0;
+};
+
+/// One node (grounded) or two. Half the mass at each end, translations only; the half of a grounded end is on the
+/// ground. No geometric stiffness: the element has no length over which it could turn.
+class Bush final : public Element {
+ public:
+  Bush(int id, std::vector<int> nodes, std::vector<int> gdofs, const BushData& data);
+
+  ElementShape shape() const override { return nodes().size() == 2 ? ElementShape{"line2", nodes()} : ElementShape{}; }
+  void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
+  void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  /// Six spring forces in element axes, of B on the spring's B side. (K_G does not depend on them.)
+  Eigen::Matrix<double, 6, 1> calc_spring_forces(const Eigen::Ref<const VectorXd>& u) const;
+
+ private:
+  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 12> calc_stretch() const;
+
+  BushData data_;
+};
+
+}  // namespace bough::fe

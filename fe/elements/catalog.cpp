@@ -1,0 +1,19 @@
+#include "bough/fe/elements/element.hpp"
+#include "bough/fe/elements/maker.hpp"
+
+namespace bough::fe {
+
+ElementList make_elements(const records::Deck& deck, const NodeTable& nodes, Diagnostics& diagnostics) {
+  ElementList list;
+  list.elements.reserve(deck.beams.size() + deck.crod.size() + deck.conrod.size() + deck.ctube.size() +
+                        deck.springs.size() + deck.cbush.size() + deck.scalar_masses.size() + deck.conm1.size() +
+                        deck.conm2.size());
+  Maker maker(deck, nodes, diagnostics, list);
+  make_beams(maker);
+  make_rods(maker);
+  make_springs(maker);
+  make_masses(maker);
+  return list;
+}
+
+}  // namespace bough::fe

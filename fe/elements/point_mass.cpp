@@ -1,0 +1,19 @@
+#include "bough/fe/elements/point_mass.hpp"
+
+#include "bough/base/rotation.hpp"
+
+namespace bough::fe {
+
+void PointMass::add_mass(MassKind, double scale, Eigen::Ref<MatrixXd> M) const { M += scale * M_; }
+
+Eigen::Matrix<double, 6, 6> calc_rigid_mass(double m, const Vector3d& s, const Matrix3d& I) {
+  const Matrix3d S = skew(s);
+  Eigen::Matrix<double, 6, 6> M;
+  M.topLeftCorner<3, 3>() = m * Matrix3d::Identity();
+  M.topRightCorner<3, 3>() = -m * S;
+  M.bottomLeftCorner<3, 3>() = m * S;
+  M.bottomRightCorner<3, 3>() = I - m * S * S;
+  return M;
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,34 @@
+#pragma once
+/// \file CROD, CONROD, CTUBE: axial force and torque only.
+#include "bough/fe/elements/element.hpp"
+
+namespace bough::fe {
+
+struct RodProperty {
+  double EA = 0, GJ = 0;                            ///< for a taper: the length over the integrated compliance
+  double mass_a = 0, mass_b = 0;                    ///< mass per length at the ends, linear between (nsm included)
+};
+
+/// Rod between two grids. Mass: translations only. Geometric stiffness: N/L across the axis (taut string), and the torque
+/// that turns with the axis (semitangential moments).
+class Rod final : public Element {
+ public:
+  Rod(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, const RodProperty& property,
+      const Vector3d& a, const Vector3d& b);
+
+  ElementShape shape() const override { return {"line2", nodes()}; }
+  void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
+  void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  int num_internal_forces() const override { return 2; }
+  void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
+  std::vector<std::string> internal_force_names() const override { return {"axial", "torque"}; }
+  void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
+                               Eigen::Ref<MatrixXd> K_G) const override;
+
+ private:
+  RodProperty property_;
+  Vector3d axis_;
+  double length_;
+};
+
+}  // namespace bough::fe

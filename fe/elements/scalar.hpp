@@ -1,0 +1,38 @@
+#pragma once
+/// \file CELAS1/2 and CMASS1/2: a spring or a mass between two degrees of freedom (in the displacement axes of their
+/// grids), or from one to ground.
+#include "bough/fe/elements/element.hpp"
+
+namespace bough::fe {
+
+/// K = k b bᵀ; b holds the unit direction at the first end minus that at the second.
+class ScalarSpring final : public Element {
+ public:
+  ScalarSpring(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, double k, VectorXd b)
+      : Element(id, std::move(card), std::move(nodes), std::move(gdofs)), k_(k), b_(std::move(b)) {}
+
+  ElementShape shape() const override { return nodes().size() == 2 ? ElementShape{"line2", nodes()} : ElementShape{}; }
+  void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
+  /// One force: tension k (u1 - u2). It has no geometric stiffness (the spring has no direction of its own), so it is
+  /// not among the internal forces that K_G asks for.
+  double calc_force(const Eigen::Ref<const VectorXd>& u) const { return k_ * b_.dot(u); }
+
+ private:
+  double k_;
+  VectorXd b_;
+};
+
+/// M = m b bᵀ, lumped and consistent alike.
+class ScalarMass final : public Element {
+ public:
+  ScalarMass(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, double m, VectorXd b)
+      : Element(id, std::move(card), std::move(nodes), std::move(gdofs)), m_(m), b_(std::move(b)) {}
+
+  void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+
+ private:
+  double m_;
+  VectorXd b_;
+};
+
+}  // namespace bough::fe

@@ -1,0 +1,11 @@
+#pragma once
+/// \file Linear isotropic elasticity of a bar's material.
+
+namespace bough::fe {
+
+/// E, G in stress, density in mass per volume (deck units). G is independent of E and ν, as MAT1 allows.
+struct Isotropic {
+  double E = 0, G = 0, rho = 0;
+};
+
+}  // namespace bough::fe
