@@ -4,9 +4,12 @@
 /// g-set: every dof of every node, translations and rotations in **basic** axes (one row for a scalar point).
 /// f-set: the free dofs left after SPC, permanent SPC, AUTOSPC, MPC and rigid elements, in the displacement (CD) axes.
 /// u_g = T q_f, with the CD rotation, the constraint elimination and the zeros all inside the sparse T.
-#include <map>
+#include <array>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include <Eigen/Sparse>
@@ -34,10 +37,18 @@ struct AutospcEntry {
   double ratio = 0;
 };
 
+class CoordinateSystems;
+
+/// Makes the elements of a deck; make_elements unless a caller brings its own.
+using ElementFactory = std::function<ElementList(const records::Deck&, const NodeTable&, Diagnostics&)>;
+
 class Model final : public NodeTable {
  public:
   /// Builds everything; throws InputError with every error of the deck that concerns fe.
   static Model build(const records::Deck& deck, const ModelOptions& options, Diagnostics& diagnostics);
+  /// The same with elements from `factory`.
+  static Model build(const records::Deck& deck, const ModelOptions& options, const ElementFactory& factory,
+                     Diagnostics& diagnostics);
 
   const std::vector<Node>& nodes() const { return nodes_; }
   const std::vector<std::unique_ptr<const Element>>& elements() const { return elements_; }
@@ -70,10 +81,9 @@ class Model final : public NodeTable {
 
  private:
   friend class ModelBuilder;
-  struct Systems;                              ///< coordinate systems, resolved to basic
-  std::shared_ptr<const Systems> systems_;
+  std::shared_ptr<const CoordinateSystems> systems_;
   std::vector<Node> nodes_;
-  std::map<int, int> node_index_;
+  std::unordered_map<int, int> node_index_;
   std::vector<std::unique_ptr<const Element>> elements_;
   int num_gdofs_ = 0;
   SparseRows T_;

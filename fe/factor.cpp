@@ -1,0 +1,112 @@
+#include "bough/fe/factor.hpp"
+
+#include "bough/base/diagnostic.hpp"
+#include "bough/fe/assembly.hpp"
+
+namespace bough::fe {
+namespace {
+
+using Eigen::MatrixXd;
+
+/// A dense matrix distributed as A's rows, holding this rank's rows of `values`.
+PetscMat make_dense(Mat A, const Eigen::Ref<const MatrixXd>& values) {
+  PetscInt local = 0, size = 0, first = 0;
+  check_petsc(MatGetLocalSize(A, &local, nullptr));
+  check_petsc(MatGetSize(A, &size, nullptr));
+  check_petsc(MatGetOwnershipRange(A, &first, nullptr));
+  BOUGH_DEMAND(values.rows() == size);
+  PetscMat dense;
+  const auto m = static_cast<PetscInt>(values.cols());
+  check_petsc(MatCreateDense(PETSC_COMM_WORLD, local, PETSC_DECIDE, size, m, nullptr, dense.out()));
+  PetscScalar* data = nullptr;
+  PetscInt lda = 0;
+  check_petsc(MatDenseGetLDA(dense.get(), &lda));
+  check_petsc(MatDenseGetArrayWrite(dense.get(), &data));
+  Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>>(data, local, m, Eigen::OuterStride<>(lda)) =
+      values.middleRows(first, local);
+  check_petsc(MatDenseRestoreArrayWrite(dense.get(), &data));
+  check_petsc(MatAssemblyBegin(dense.get(), MAT_FINAL_ASSEMBLY));
+  check_petsc(MatAssemblyEnd(dense.get(), MAT_FINAL_ASSEMBLY));
+  return dense;
+}
+
+MatrixXd replicate(Mat dense) {
+  PetscInt local = 0, size = 0, m = 0, first = 0, lda = 0;
+  check_petsc(MatGetLocalSize(dense, &local, nullptr));
+  check_petsc(MatGetSize(dense, &size, &m));
+  check_petsc(MatGetOwnershipRange(dense, &first, nullptr));
+  MatrixXd values = MatrixXd::Zero(size, m);
+  const PetscScalar* data = nullptr;
+  check_petsc(MatDenseGetLDA(dense, &lda));
+  check_petsc(MatDenseGetArrayRead(dense, &data));
+  values.middleRows(first, local) =
+      Eigen::Map<const MatrixXd, 0, Eigen::OuterStride<>>(data, local, m, Eigen::OuterStride<>(lda));
+  check_petsc(MatDenseRestoreArrayRead(dense, &data));
+  sum_over_ranks(values);
+  return values;
+}
+
+}  // namespace
+
+SymmetricFactor::SymmetricFactor(Mat A, bool find_null_pivots) {
+  // MUMPS estimates its workspace; where pivoting needs more it says so and is given more.
+  for (PetscInt extra_percent : {50, 200, 1000}) {
+    factor_ = PetscMat();
+    check_petsc(MatGetFactor(A, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, factor_.out()));
+    Mat F = factor_.get();
+    check_petsc(MatMumpsSetIcntl(F, 14, extra_percent));
+    if (find_null_pivots) {
+      check_petsc(MatMumpsSetIcntl(F, 24, 1));
+      check_petsc(MatMumpsSetCntl(F, 3, 1e-15));
+    }
+    MatFactorInfo info;
+    check_petsc(MatFactorInfoInitialize(&info));
+    check_petsc(MatCholeskyFactorSymbolic(F, A, nullptr, &info));
+    check_petsc(MatCholeskyFactorNumeric(F, A, &info));
+    MatFactorError error = MAT_FACTOR_NOERROR;
+    check_petsc(MatFactorGetError(F, &error));
+    PetscInt status = 0, detail = 0;
+    check_petsc(MatMumpsGetInfog(F, 1, &status));
+    check_petsc(MatMumpsGetInfog(F, 2, &detail));
+    if (status == -8 || status == -9) continue;
+    if (status == -10) {
+      is_singular_ = true;
+      return;
+    }
+    if (status < 0 || error != MAT_FACTOR_NOERROR)
+      throw ComputationError("fe.factorization", {},
+                             "MUMPS could not factor the stiffness matrix, code " + std::to_string(status) + " (" +
+                                 std::to_string(detail) + ")",
+                             status == -13 ? "give the process more memory" : "report the deck");
+    PetscInt num = 0;
+    check_petsc(MatMumpsGetInfog(F, 28, &num));
+    num_null_pivots_ = find_null_pivots ? static_cast<int>(num) : 0;
+    return;
+  }
+  throw ComputationError("fe.factorization", {}, "MUMPS ran out of workspace with 1000 % to spare", "report the deck");
+}
+
+MatrixXd SymmetricFactor::solve(const Eigen::Ref<const MatrixXd>& B) const {
+  if (B.cols() == 0) return B;
+  const PetscMat rhs = make_dense(factor_.get(), B);
+  PetscMat x;
+  check_petsc(MatDuplicate(rhs.get(), MAT_DO_NOT_COPY_VALUES, x.out()));
+  check_petsc(MatMatSolve(factor_.get(), rhs.get(), x.get()));
+  return replicate(x.get());
+}
+
+MatrixXd multiply(Mat A, const Eigen::Ref<const MatrixXd>& X) {
+  const PetscMat dense = make_dense(A, X);
+  PetscMat product;
+  check_petsc(MatMatMult(A, dense.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, product.out()));
+  return replicate(product.get());
+}
+
+Eigen::VectorXd get_diagonal(Mat A) {
+  PetscVec v;
+  check_petsc(MatCreateVecs(A, v.out(), nullptr));
+  check_petsc(MatGetDiagonal(A, v.get()));
+  return gather(v.get());
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,29 @@
+#pragma once
+/// \file LDLᵀ of a sparse symmetric PETSc matrix by MUMPS, with many dense right-hand sides at once.
+#include "bough/fe/petsc.hpp"
+
+namespace bough::fe {
+
+class SymmetricFactor {
+ public:
+  /// Factors A (MATAIJ, symmetric; lower and upper part both stored). With `find_null_pivots`, pivots below 1e-15 of the
+  /// scaled matrix are set aside and counted instead of failing (MUMPS ICNTL(24)).
+  SymmetricFactor(Mat A, bool find_null_pivots);
+
+  bool is_singular() const { return is_singular_; }        ///< an exact zero pivot ended the factorization
+  int num_null_pivots() const { return num_null_pivots_; }
+  /// X with A X = B; B num_rows x m, replicated on every rank, and so is X.
+  Eigen::MatrixXd solve(const Eigen::Ref<const Eigen::MatrixXd>& B) const;
+
+ private:
+  PetscMat factor_;
+  bool is_singular_ = false;
+  int num_null_pivots_ = 0;
+};
+
+/// A X of a distributed A and a replicated X, replicated.
+Eigen::MatrixXd multiply(Mat A, const Eigen::Ref<const Eigen::MatrixXd>& X);
+/// The diagonal of A, replicated.
+Eigen::VectorXd get_diagonal(Mat A);
+
+}  // namespace bough::fe

@@ -1,0 +1,93 @@
+#include "bough/fe/model/autospc.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+#include "bough/fe/model/element_transform.hpp"
+
+namespace bough::fe {
+namespace {
+
+constexpr double kNothing = 1e-14;   ///< below this share of the model's largest term a block is round-off
+
+/// Adds the diagonal 3 x 3 blocks of all nodes; blocks 2k and 2k+1 are node k's translations and rotations.
+std::vector<Matrix3d> calc_node_blocks(const std::vector<std::unique_ptr<const Element>>& elements, const SparseRows& T0,
+                                       const std::vector<int>& fdof_block, const std::vector<int>& fdof_slot,
+                                       int num_blocks) {
+  std::vector<Matrix3d> blocks(num_blocks, Matrix3d::Zero());
+  ElementTransform transform;
+  MatrixXd K_e;
+  for (const auto& element : elements) {
+    const int n = element->num_dofs();
+    K_e.setZero(n, n);
+    element->add_stiffness(1, K_e);
+    transform.set(T0, element->gdofs());
+    const MatrixXd& K_f = transform.project(K_e);
+    const auto& columns = transform.columns();
+    for (size_t i = 0; i < columns.size(); ++i)
+      for (size_t j = i; j < columns.size() && j < i + 6; ++j) {
+        if (fdof_block[columns[i]] != fdof_block[columns[j]]) continue;
+        Matrix3d& block = blocks[fdof_block[columns[i]]];
+        const int a = fdof_slot[columns[i]], b = fdof_slot[columns[j]];
+        block(a, b) += K_f(i, j);
+        if (a != b) block(b, a) += K_f(i, j);
+      }
+  }
+  return blocks;
+}
+
+}  // namespace
+
+std::vector<AutospcEntry> find_singular_dofs(const std::vector<Node>& nodes,
+                                             const std::vector<std::unique_ptr<const Element>>& elements,
+                                             const SparseRows& T0, const std::vector<int>& fdof_ldof,
+                                             double epsilon) {
+  // A scalar point is a block of one translation.
+  std::vector<int> ldof_node;
+  for (size_t k = 0; k < nodes.size(); ++k) ldof_node.insert(ldof_node.end(), nodes[k].num_dofs, static_cast<int>(k));
+  const int num_blocks = 2 * static_cast<int>(nodes.size());
+  std::vector<int> fdof_block(fdof_ldof.size()), fdof_slot(fdof_ldof.size());
+  std::vector<std::array<char, 3>> is_free(num_blocks, {0, 0, 0});
+  for (size_t f = 0; f < fdof_ldof.size(); ++f) {
+    const int k = ldof_node[fdof_ldof[f]], component = fdof_ldof[f] - nodes[k].first_gdof;
+    fdof_block[f] = 2 * k + component / 3;
+    fdof_slot[f] = component % 3;
+    is_free[fdof_block[f]][fdof_slot[f]] = 1;
+  }
+  const auto blocks = calc_node_blocks(elements, T0, fdof_block, fdof_slot, num_blocks);
+  double largest[2] = {0, 0};
+  for (int b = 0; b < num_blocks; ++b) largest[b % 2] = std::max(largest[b % 2], blocks[b].diagonal().maxCoeff());
+
+  std::vector<AutospcEntry> entries;
+  for (int b = 0; b < num_blocks; ++b) {
+    const Node& node = nodes[b / 2];
+    std::vector<int> slots;
+    for (int s = 0; s < 3; ++s)
+      if (is_free[b][s]) slots.push_back(s);
+    const double scale = blocks[b].diagonal().maxCoeff();
+    const size_t first = entries.size();
+    while (!slots.empty()) {
+      int singular = 0;
+      double ratio = 0;
+      if (scale > kNothing * largest[b % 2]) {
+        const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(MatrixXd(blocks[b](slots, slots)));
+        ratio = std::max(0.0, solver.eigenvalues()[0] / scale);
+        if (ratio > epsilon) break;
+        // Of equal shares the last: a rod along a diagonal keeps its first component.
+        const Eigen::VectorXd share = solver.eigenvectors().col(0).cwiseAbs();
+        for (int i = 0; i < share.size(); ++i)
+          if (share[i] >= share.maxCoeff() - 1e-9) singular = i;
+      }
+      const int component = node.num_dofs == 1 ? 0 : 3 * (b % 2) + slots[singular] + 1;
+      entries.push_back({node.id, component, ratio});
+      slots.erase(slots.begin() + singular);
+    }
+    std::sort(entries.begin() + static_cast<std::ptrdiff_t>(first), entries.end(),
+              [](const AutospcEntry& x, const AutospcEntry& y) { return x.component < y.component; });
+  }
+  return entries;
+}
+
+}  // namespace bough::fe

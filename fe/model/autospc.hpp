@@ -1,0 +1,21 @@
+#pragma once
+/// \file AUTOSPC: dofs without stiffness of their own are held.
+#include <array>
+
+#include "bough/fe/model/constraints.hpp"
+#include "bough/fe/model/model.hpp"
+
+namespace bough::fe {
+
+/// The singular directions of the 3 x 3 translational and rotational stiffness of each node, after constraints.
+///
+/// A direction is singular when its principal stiffness is at most `epsilon` times the largest diagonal term of its
+/// block, or the whole block at most 1e-14 of the largest of its type in the model. The component (CD) with the largest
+/// share in it is held and the block looked at again, so that a rigid-body motion of the whole model, to which every
+/// node has stiffness, is never touched (MSC Nastran's grid point singularity processing, PARAM,EPZERO).
+/// T0 = constraints before AUTOSPC; fdof_ldof as in Elimination.
+std::vector<AutospcEntry> find_singular_dofs(const std::vector<Node>& nodes,
+                                             const std::vector<std::unique_ptr<const Element>>& elements,
+                                             const SparseRows& T0, const std::vector<int>& fdof_ldof, double epsilon);
+
+}  // namespace bough::fe

@@ -1,0 +1,252 @@
+#include "bough/fe/model/builder.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include "bough/fe/model/autospc.hpp"
+#include "bough/fe/model/coordinates.hpp"
+#include "bough/fe/model/rigid.hpp"
+#include "bough/fe/model/sets.hpp"
+
+namespace bough::fe {
+namespace {
+
+constexpr unsigned kTranslations = 7u;   ///< mask of components 1, 2, 3
+
+/// T = R C: rotates the rows of C from the displacement axes of each node to basic.
+SparseRows rotate_rows(const std::vector<Node>& nodes, const SparseRows& C) {
+  const bool is_plain = std::all_of(nodes.begin(), nodes.end(), [](const Node& n) {
+    return n.num_dofs != 6 || n.R_basic_cd.isIdentity(0);
+  });
+  if (is_plain) return C;
+  SparseRows R(C.rows(), C.rows());
+  R.reserve(Eigen::VectorXi::Constant(C.rows(), 3));
+  for (const Node& node : nodes) {
+    if (node.num_dofs != 6) {
+      for (int i = 0; i < node.num_dofs; ++i) R.insert(node.first_gdof + i, node.first_gdof + i) = 1;
+      continue;
+    }
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 3; ++j)
+        if (const double v = node.R_basic_cd(i % 3, j); v != 0)
+          R.insert(node.first_gdof + i, node.first_gdof + 3 * (i / 3) + j) = v;
+  }
+  R.makeCompressed();
+  SparseRows T = (R * C).pruned();
+  T.makeCompressed();
+  return T;
+}
+
+}  // namespace
+
+Model ModelBuilder::build(const ElementFactory& factory) {
+  model_.subcase_ = select_subcase(deck_, options_.subcase, diagnostics_);
+  set_params();
+  add_nodes();
+  model_.elements_ = factory(deck_, model_, diagnostics_).elements;
+  is_fixed_.assign(model_.num_gdofs_, 0);
+  collect_fixed();
+  collect_equations();
+  check_dependent_not_fixed();
+  equations_ = resolve_chains(model_.num_gdofs_, std::move(equations_), [this](int l) { return name_dof(l); },
+                              diagnostics_);
+  diagnostics_.throw_if_errors();
+  apply_autospc(set_transform());
+  return std::move(model_);
+}
+
+void ModelBuilder::set_params() {
+  model_.wtmass_ = get_real_param(deck_, "WTMASS", 1, diagnostics_);
+  const bool is_coupled = get_real_param(deck_, "COUPMASS", -1, diagnostics_) > 0;
+  model_.mass_kind_ = options_.mass_kind.value_or(is_coupled ? MassKind::Consistent : MassKind::Lumped);
+}
+
+void ModelBuilder::add_nodes() {
+  const Vector3d origin = options_.origin.value_or(Vector3d::Zero());
+  model_.systems_ = std::make_shared<const CoordinateSystems>(deck_, origin, diagnostics_);
+  if (deck_.grids.empty())
+    diagnostics_.error("fe.no-grids", deck_.locate({}), "the deck has no GRID", "give the bulk data of a model");
+  std::vector<int> order(deck_.grids.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [this](int a, int b) { return deck_.grids[a].id < deck_.grids[b].id; });
+  for (int i : order) {
+    const records::Grid& grid = deck_.grids[i];
+    if (!model_.node_index_.emplace(grid.id, static_cast<int>(model_.nodes_.size())).second) continue;
+    Node node;
+    node.id = grid.id;
+    node.x = model_.systems_->get_grid_position(i);
+    node.R_basic_cd = model_.systems_->calc_axes(grid.cd, node.x, deck_.locate(grid.at), diagnostics_);
+    node.first_gdof = model_.num_gdofs_;
+    model_.num_gdofs_ += node.num_dofs;
+    model_.nodes_.push_back(node);
+  }
+}
+
+int ModelBuilder::find_ldof(int grid, int component, const std::string& card, const SourceLocation& at) {
+  const int index = model_.find_node(grid);
+  if (index < 0) {
+    diagnostics_.error("fe.missing-grid", at,
+                       card + " names grid " + std::to_string(grid) + ", which the deck does not define",
+                       "add the GRID or correct the id");
+    return -1;
+  }
+  const Node& node = model_.nodes_[index];
+  const bool is_scalar = node.num_dofs == 1;
+  if (is_scalar ? component > 1 : component < 1 || component > 6) {
+    diagnostics_.error("fe.bad-component", at,
+                       card + " names component " + std::to_string(component) + " of grid " + std::to_string(grid) +
+                           ", expected " + (is_scalar ? "0" : "1 to 6"),
+                       "correct the component");
+    return -1;
+  }
+  return node.first_gdof + (is_scalar ? 0 : component - 1);
+}
+
+std::string ModelBuilder::name_dof(int ldof) const {
+  const auto after = std::upper_bound(model_.nodes_.begin(), model_.nodes_.end(), ldof,
+                                      [](int l, const Node& node) { return l < node.first_gdof; });
+  const Node& node = *(after - 1);
+  return "grid " + std::to_string(node.id) + " component " +
+         std::to_string(node.num_dofs == 1 ? 0 : ldof - node.first_gdof + 1);
+}
+
+void ModelBuilder::fix(const records::Spc& spc) {
+  const SourceLocation at = deck_.locate(spc.at);
+  const int index = model_.find_node(spc.g);
+  if (index < 0) {
+    if (!spc.skip_if_missing) find_ldof(spc.g, 0, "SPC set " + std::to_string(spc.sid), at);
+    return;
+  }
+  const Node& node = model_.nodes_[index];
+  for (int c = 0; c < node.num_dofs; ++c)
+    if (node.num_dofs == 1 || (spc.c >> c & 1u)) {
+      is_fixed_[node.first_gdof + c] = 1;
+      fixed_by_.emplace_back(node.first_gdof + c, at);
+    }
+  if (spc.d != 0)
+    diagnostics_.warning("fe.enforced-ignored", at,
+                         "SPC set " + std::to_string(spc.sid) + " enforces a displacement at grid " +
+                             std::to_string(spc.g) + "; it is taken as zero",
+                         "model the enforced displacement as a load");
+}
+
+void ModelBuilder::collect_fixed() {
+  for (const auto& grid : deck_.grids) {
+    const int index = model_.find_node(grid.id);
+    // A free-free body keeps only a PS of rotations alone: decks use it against rotations without stiffness.
+    if (index < 0 || (options_.ignore_spc && (grid.ps & kTranslations))) continue;
+    for (int c = 0; c < 6; ++c)
+      if (grid.ps >> c & 1u) {
+        is_fixed_[model_.nodes_[index].first_gdof + c] = 1;
+        fixed_by_.emplace_back(model_.nodes_[index].first_gdof + c, deck_.locate(grid.at));
+      }
+  }
+  if (options_.ignore_spc) return;
+  std::set<int> plain;
+  for (const auto& spc : deck_.spc) plain.insert(spc.sid);
+  int sid = model_.subcase_.spc;
+  const bool has_case_control = !deck_.sol.empty() || deck_.subcases.size() > 1 || model_.subcase_.id > 0 ||
+                                model_.subcase_.mpc || model_.subcase_.load || model_.subcase_.method;
+  if (sid == 0 && !has_case_control && plain.size() == 1) {
+    sid = *plain.begin();
+    diagnostics_.note("fe.only-spc-set", deck_.locate({}),
+                      "the deck has no case control; its only SPC set " + std::to_string(sid) + " is used",
+                      "select the set with SPC = in case control");
+  }
+  if (sid == 0) return;
+  const auto sets = expand_set(sid, deck_.spcadd, {plain.begin(), plain.end()}, "SPC", deck_, diagnostics_);
+  for (const auto& spc : deck_.spc)
+    if (std::binary_search(sets.begin(), sets.end(), spc.sid)) fix(spc);
+}
+
+void ModelBuilder::add_mpc(const records::Mpc& mpc) {
+  const SourceLocation at = deck_.locate(mpc.at);
+  ConstraintEquation equation;
+  equation.card = "MPC set " + std::to_string(mpc.sid);
+  equation.at = at;
+  if (mpc.terms.empty() || mpc.terms.front().a == 0) {
+    diagnostics_.error("fe.zero-mpc", at, equation.card + " has no coefficient on its first term, expected one that is not zero",
+                       "put a term with a coefficient first");
+    return;
+  }
+  bool is_good = true;
+  for (const auto& term : mpc.terms) {
+    const int ldof = find_ldof(term.g, term.c, equation.card, at);
+    is_good = is_good && ldof >= 0;
+    if (&term == &mpc.terms.front())
+      equation.dependent = ldof;
+    else if (term.a != 0)
+      equation.terms.emplace_back(ldof, -term.a / mpc.terms.front().a);
+  }
+  if (is_good) equations_.push_back(std::move(equation));
+}
+
+void ModelBuilder::collect_equations() {
+  for (const auto& card : deck_.rbe2) add_rbe2(card, model_, deck_.locate(card.at), diagnostics_, equations_);
+  for (const auto& card : deck_.rbar) add_rbar(card, model_, deck_.locate(card.at), diagnostics_, equations_);
+  if (model_.subcase_.mpc == 0) return;
+  std::set<int> plain;
+  for (const auto& mpc : deck_.mpc) plain.insert(mpc.sid);
+  const auto sets =
+      expand_set(model_.subcase_.mpc, deck_.mpcadd, {plain.begin(), plain.end()}, "MPC", deck_, diagnostics_);
+  for (const auto& mpc : deck_.mpc)
+    if (std::binary_search(sets.begin(), sets.end(), mpc.sid)) add_mpc(mpc);
+}
+
+void ModelBuilder::check_dependent_not_fixed() {
+  std::unordered_map<int, const ConstraintEquation*> dependent;
+  for (const auto& equation : equations_) dependent.emplace(equation.dependent, &equation);
+  std::set<int> reported;
+  for (const auto& [ldof, at] : fixed_by_) {
+    const auto found = dependent.find(ldof);
+    if (found == dependent.end() || !reported.insert(ldof).second) continue;
+    diagnostics_.error("fe.dependent-fixed", at,
+                       name_dof(ldof) + " is fixed here and made dependent by " + found->second->card,
+                       "fix an independent dof instead, or free this one");
+  }
+}
+
+Elimination ModelBuilder::set_transform() {
+  Elimination elimination = eliminate(model_.num_gdofs_, equations_, is_fixed_);
+  model_.T_ = rotate_rows(model_.nodes_, elimination.C);
+  model_.node_fdof_.assign(model_.nodes_.size(), {-1, -1, -1, -1, -1, -1});
+  model_.fdof_node_.clear();
+  model_.fdof_component_.clear();
+  int k = 0;
+  for (size_t f = 0; f < elimination.fdof_ldof.size(); ++f) {
+    const int ldof = elimination.fdof_ldof[f];
+    while (ldof >= model_.nodes_[k].first_gdof + model_.nodes_[k].num_dofs) ++k;
+    const int slot = ldof - model_.nodes_[k].first_gdof;
+    model_.node_fdof_[k][slot] = static_cast<int>(f);
+    model_.fdof_node_.push_back(k);
+    model_.fdof_component_.push_back(model_.nodes_[k].num_dofs == 1 ? 0 : slot + 1);
+  }
+  return elimination;
+}
+
+void ModelBuilder::apply_autospc(const Elimination& first) {
+  const records::Param* param = deck_.find_param("AUTOSPC");
+  const bool is_on = options_.autospc.value_or(!param || param->value != "NO");
+  const double epsilon = get_real_param(deck_, "EPZERO", 1e-8, diagnostics_);
+  diagnostics_.throw_if_errors();
+  if (!is_on) return;
+  model_.autospc_ = find_singular_dofs(model_.nodes_, model_.elements_, model_.T_, first.fdof_ldof, epsilon);
+  if (model_.autospc_.empty()) return;
+  for (const auto& entry : model_.autospc_) {
+    const Node& node = model_.nodes_[model_.find_node(entry.node)];
+    is_fixed_[node.first_gdof + std::max(entry.component - 1, 0)] = 1;
+  }
+  set_transform();
+  diagnostics_.note("fe.autospc", deck_.locate({}),
+                    "AUTOSPC holds " + std::to_string(model_.autospc_.size()) +
+                        " dofs without stiffness, the first at grid " + std::to_string(model_.autospc_[0].node),
+                    "PARAM,AUTOSPC,NO keeps them");
+}
+
+Model Model::build(const records::Deck& deck, const ModelOptions& options, const ElementFactory& factory,
+                   Diagnostics& diagnostics) {
+  return ModelBuilder(deck, options, diagnostics).build(factory);
+}
+
+}  // namespace bough::fe

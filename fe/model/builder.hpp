@@ -1,0 +1,42 @@
+#pragma once
+/// \file Builds a Model from a deck: systems, nodes, elements, constraints, AUTOSPC, in this order.
+#include "bough/fe/model/constraints.hpp"
+#include "bough/fe/model/model.hpp"
+
+namespace bough::fe {
+
+class ModelBuilder {
+ public:
+  ModelBuilder(const records::Deck& deck, const ModelOptions& options, Diagnostics& diagnostics)
+      : deck_(deck), options_(options), diagnostics_(diagnostics) {}
+
+  /// Throws InputError with every error found.
+  Model build(const ElementFactory& factory);
+
+ private:
+  void add_nodes();
+  void set_params();
+  /// Masks of permanent and set SPC over the l-set.
+  void collect_fixed();
+  void fix(const records::Spc& spc);
+  /// MPC, RBE2, RBAR.
+  void collect_equations();
+  void add_mpc(const records::Mpc& mpc);
+  void check_dependent_not_fixed();
+  /// T from the equations and the fixed dofs; again after AUTOSPC has fixed more.
+  Elimination set_transform();
+  void apply_autospc(const Elimination& first);
+  /// l-dof of component 1..6 (0: scalar point) of a grid; -1 and a report when there is none.
+  int find_ldof(int grid, int component, const std::string& card, const SourceLocation& at);
+  std::string name_dof(int ldof) const;
+
+  const records::Deck& deck_;
+  const ModelOptions& options_;
+  Diagnostics& diagnostics_;
+  Model model_;
+  std::vector<ConstraintEquation> equations_;
+  std::vector<char> is_fixed_;
+  std::vector<std::pair<int, SourceLocation>> fixed_by_;   ///< (l-dof, card) in the order of the cards
+};
+
+}  // namespace bough::fe

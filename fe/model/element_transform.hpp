@@ -1,0 +1,33 @@
+#pragma once
+/// \file One element's part of u_g = T q_f, for element-wise TᵀKT.
+#include <vector>
+
+#include <Eigen/Sparse>
+
+#include "bough/fe/elements/element.hpp"
+
+namespace bough::fe {
+
+using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
+
+/// Sorted unique columns of the rows `gdofs` of T, into `columns`.
+void calc_element_columns(const SparseRows& T, const std::vector<int>& gdofs, std::vector<int>& columns);
+
+/// Reusable storage of one element's projection.
+class ElementTransform {
+ public:
+  /// Reads the rows of T of an element.
+  void set(const SparseRows& T, const std::vector<int>& gdofs);
+  /// The f-dofs the element touches, ascending.
+  const std::vector<int>& columns() const { return columns_; }
+  /// T_eᵀ K_e T_e, columns().size() square; valid until the next call.
+  const MatrixXd& project(const Eigen::Ref<const MatrixXd>& K_e);
+
+ private:
+  std::vector<int> columns_;
+  std::vector<int> selected_;    ///< per element dof: position in columns_, -1 for a zero row
+  bool is_selection_ = false;    ///< every row of T_e is zero or one unit entry
+  MatrixXd T_e_, K_T_, K_f_;
+};
+
+}  // namespace bough::fe

@@ -1,0 +1,83 @@
+#include "bough/fe/model/model.hpp"
+
+#include <map>
+
+#include "bough/base/rotation.hpp"
+#include "bough/fe/model/coordinates.hpp"
+
+namespace bough::fe {
+
+Eigen::MatrixXi Model::calc_dof_map() const {
+  Eigen::MatrixXi map(num_gdofs_, 2);
+  for (const Node& node : nodes_)
+    for (int i = 0; i < node.num_dofs; ++i) map.row(node.first_gdof + i) << node.id, (node.num_dofs == 1 ? 0 : i + 1);
+  return map;
+}
+
+records::BodyMesh Model::calc_mesh() const {
+  records::BodyMesh mesh;
+  std::vector<int> row(nodes_.size(), -1);
+  for (size_t k = 0; k < nodes_.size(); ++k) {
+    if (nodes_[k].num_dofs != 6) continue;
+    row[k] = static_cast<int>(mesh.grid_id.size());
+    mesh.grid_id.push_back(nodes_[k].id);
+  }
+  mesh.grid_xyz.resize(static_cast<int>(mesh.grid_id.size()), 3);
+  for (size_t k = 0; k < nodes_.size(); ++k)
+    if (row[k] >= 0) mesh.grid_xyz.row(row[k]) = nodes_[k].x.transpose();
+
+  std::map<std::string, std::vector<std::pair<int, std::vector<int>>>> by_type;
+  for (const auto& element : elements_) {
+    ElementShape shape = element->shape();
+    if (!shape.type.empty()) by_type[shape.type].emplace_back(element->id(), std::move(shape.nodes));
+  }
+  for (const auto& [type, members] : by_type) {
+    records::BodyMesh::Block block;
+    block.type = type;
+    block.connectivity.resize(static_cast<int>(members.size()), static_cast<int>(members[0].second.size()));
+    for (size_t e = 0; e < members.size(); ++e) {
+      block.element_id.push_back(members[e].first);
+      for (size_t i = 0; i < members[e].second.size(); ++i)
+        block.connectivity(static_cast<int>(e), static_cast<int>(i)) = row[members[e].second[i]];
+    }
+    mesh.blocks.push_back(std::move(block));
+  }
+  return mesh;
+}
+
+int Model::find_fdof(int node_index, int component) const {
+  BOUGH_DEMAND(node_index >= 0 && node_index < static_cast<int>(nodes_.size()));
+  BOUGH_DEMAND(component >= 0 && component <= 6);
+  return node_fdof_[node_index][component == 0 ? 0 : component - 1];
+}
+
+std::pair<int, int> Model::describe_fdof(int fdof) const {
+  BOUGH_DEMAND(fdof >= 0 && fdof < num_fdofs());
+  return {nodes_[fdof_node_[fdof]].id, fdof_component_[fdof]};
+}
+
+MatrixXd Model::calc_rigid_modes(const Vector3d& point) const {
+  MatrixXd Phi_R = MatrixXd::Zero(num_gdofs_, 6);
+  for (const Node& node : nodes_) {
+    if (node.num_dofs != 6) continue;
+    Phi_R.block<3, 3>(node.first_gdof, 0).setIdentity();
+    Phi_R.block<3, 3>(node.first_gdof, 3) = -skew(node.x - point);
+    Phi_R.block<3, 3>(node.first_gdof + 3, 3).setIdentity();
+  }
+  return Phi_R;
+}
+
+int Model::find_node(int id) const {
+  const auto it = node_index_.find(id);
+  return it == node_index_.end() ? -1 : it->second;
+}
+
+Matrix3d Model::calc_axes(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const {
+  return systems_->calc_axes(cid, x, at, diagnostics);
+}
+
+Vector3d Model::calc_point(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const {
+  return systems_->calc_point(cid, x, at, diagnostics);
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,70 @@
+#include "bough/fe/model/sets.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+
+namespace bough::fe {
+
+records::Subcase select_subcase(const records::Deck& deck, int id, Diagnostics& diagnostics) {
+  const auto& all = deck.subcases;
+  const auto found = std::find_if(all.begin(), all.end(), [id](const auto& s) { return id ? s.id == id : s.id > 0; });
+  if (found != all.end()) return *found;
+  if (id == 0) return all.empty() ? records::Subcase{} : all.front();
+  std::string known;
+  for (const auto& s : all)
+    if (s.id > 0) known += (known.empty() ? "" : " ") + std::to_string(s.id);
+  diagnostics.error("fe.unknown-subcase", deck.locate({}),
+                    "subcase " + std::to_string(id) + " is not in the deck, expected one of: " +
+                        (known.empty() ? "none, the deck has no SUBCASE" : known),
+                    "correct the subcase id");
+  return {};
+}
+
+std::vector<int> expand_set(int sid, const std::vector<records::SetUnion>& unions, const std::vector<int>& plain,
+                            const std::string& what, const records::Deck& deck, Diagnostics& diagnostics) {
+  std::vector<int> result, open{sid}, seen;
+  while (!open.empty()) {
+    const int id = open.back();
+    open.pop_back();
+    if (std::find(seen.begin(), seen.end(), id) != seen.end()) continue;
+    seen.push_back(id);
+    bool exists = false;
+    if (std::binary_search(plain.begin(), plain.end(), id)) {
+      result.push_back(id);
+      exists = true;
+    }
+    for (const auto& u : unions)
+      if (u.sid == id) {
+        open.insert(open.end(), u.sets.begin(), u.sets.end());
+        exists = true;
+      }
+    if (!exists)
+      diagnostics.error("fe.missing-set", deck.locate({}),
+                        what + " set " + std::to_string(id) + " is selected but has no cards", "correct the set id");
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+double get_real_param(const records::Deck& deck, const std::string& name, double fallback, Diagnostics& diagnostics) {
+  const records::Param* param = deck.find_param(name);
+  if (!param) return fallback;
+  std::string text;
+  for (char c : param->value) {
+    if (c == 'D' || c == 'd') c = 'E';
+    // "2.59-3": an exponent without its letter.
+    if ((c == '+' || c == '-') && !text.empty() && text.back() != 'E' && text.back() != 'e') text += 'E';
+    if (!std::isspace(static_cast<unsigned char>(c))) text += c;
+  }
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0') {
+    diagnostics.error("fe.bad-param", deck.locate(param->at),
+                      "PARAM," + name + " is \"" + param->value + "\", expected a number", "correct the value");
+    return fallback;
+  }
+  return value;
+}
+
+}  // namespace bough::fe
