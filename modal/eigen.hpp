@@ -26,11 +26,20 @@ struct EigenPairs {
   VectorXd residual;                         ///< |Kφ - λMφ| / |Kφ|; for rigid modes over the K-norm scale
   int num_rigid = 0;                         ///< zero eigenvalues, first
   int inertia_count = -1;                    ///< eigenvalues below the highest returned; -1 not checked
+  int num_massless = 0;                      ///< rigid motions without mass (a straight line of bars with lumped mass
+                                             ///< turns about itself freely): no eigenvalue belongs to them
 };
 
+/// The first num_modes of the range, or all of it. A root repeated at the cut is completed before it is cut, so the
+/// basis of what is returned does not depend on num_modes; inertia_count then counts the copies left out too.
+/// Repeated roots get a basis fixed by the model alone (canonical.hpp). Warnings: modal.fewer-modes, modal.cut-root,
+/// modal.massless-motion, modal.empty-range. Throws ComputationError modal.no-dofs, modal.no-mass,
+/// modal.singular-shift, modal.no-convergence, modal.missed-modes.
 EigenPairs calc_normal_modes(const fe::Model& model, const EigenOptions& options, Diagnostics& diagnostics);
 
-/// (K + λ K_G(u)) φ = 0 for the static displacement u_g: load factors λ nearest zero, by magnitude; φᵀKφ = 1.
+/// (K + λ K_G(u)) φ = 0 for the static displacement u_g: load factors λ nearest zero, by magnitude; φᵀKφ = 1. Solved as
+/// -K_G φ = θ K φ, λ = 1/θ, with K's factor as inner product. min_hz, max_hz bound the (signed) load factor here;
+/// residual is |Kφ + λK_Gφ| / |Kφ|. Throws ComputationError modal.buckling-free when K is singular in a rigid motion.
 EigenPairs calc_buckling_modes(const fe::Model& model, const VectorXd& u_g, const EigenOptions& options,
                                Diagnostics& diagnostics);
 

@@ -5,6 +5,9 @@
 
 namespace bough::modal {
 
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
 using records::MassIntegrals;
 
 /// Momentum formulas with M of the given kind (exact for a lumped M, O(h²) for Γ2..Γ4 of a consistent one).

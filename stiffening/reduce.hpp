@@ -8,6 +8,9 @@
 
 namespace bough::stiffening {
 
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
 /// F_I, num_gdofs x 12, columns in the order of records::InertialLoad (theory.md §2, report eqs. 3-12).
 MatrixXd calc_inertial_loads(const fe::Model& model, fe::MassKind kind);
 
@@ -21,7 +24,10 @@ struct ReduceOptions {
 };
 
 /// The whole preprocessing: model, modes, integrals, F_I, K_G1, K_G2 -> FlexBody. Runs on every rank; the record is
-/// complete on each.
+/// complete on each. Every locator is in body axes; K_G is solved on the SPC set of a fixed body, on a determinate
+/// support of a free one. Throws InputError with all of reduce.no-modes, reduce.bad-select, reduce.bad-mass,
+/// reduce.bad-integrals, reduce.bad-support, reduce.bad-damping, reduce.unknown-node, reduce.bad-direction; or
+/// reduce.grounded, reduce.mechanism; and what fe and modal throw.
 records::FlexBody reduce(const records::Deck& deck, const records::BodySpec& spec, const ReduceOptions& options,
                          Diagnostics& diagnostics);
 

@@ -1,0 +1,25 @@
+#pragma once
+/// \file What makes eigenvectors the same on any number of ranks: a canonical basis of each repeated root, and signs.
+#include "bough/fe/model/model.hpp"
+
+namespace bough::modal::detail {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Fixed positive weights of the g-dofs: x, y, z translations 1, 2, 3 and rotations 4, 5, 6 times the square of the
+/// model's size, each node by its own factor between 1 and 1.5. Pure y and z copies of a bending pair stay pure.
+VectorXd calc_basis_weights(const fe::Model& model);
+
+/// The rotation Q that takes the columns of Phi (orthonormal in some inner product) to the eigenvectors of the weights
+/// projected on their span, ascending: Phi Q depends on the span alone.
+MatrixXd calc_cluster_rotation(const VectorXd& weights, const Eigen::Ref<const MatrixXd>& Phi);
+
+/// Makes the component of largest magnitude of each column positive, the first among those within 1e-6 of it.
+void fix_signs(MatrixXd& Phi);
+
+/// End of the cluster that starts at `first`: values that differ from their neighbour by no more than
+/// tolerance (|value| + floor) belong together.
+int find_cluster_end(const VectorXd& values, int first, double tolerance, double floor);
+
+}  // namespace bough::modal::detail

@@ -1,0 +1,182 @@
+#include "bough/modal/krylov.hpp"
+
+#include <slepceps.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <vector>
+
+#include "bough/base/diagnostic.hpp"
+#include "bough/fe/assembly.hpp"
+
+namespace bough::modal::detail {
+
+using fe::check_petsc;
+
+namespace {
+
+using SlepcEps = fe::PetscHandle<EPS, EPSDestroy>;
+
+/// Direct solution by MUMPS' LDLᵀ.
+void set_direct_solver(KSP ksp) {
+  PC pc = nullptr;
+  check_petsc(KSPSetType(ksp, KSPPREONLY));
+  check_petsc(KSPGetPC(ksp, &pc));
+  check_petsc(PCSetType(pc, PCCHOLESKY));
+  check_petsc(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+}
+
+fe::PetscVec make_vector(Mat A, const Eigen::Ref<const VectorXd>& values) {
+  fe::PetscVec v;
+  check_petsc(MatCreateVecs(A, v.out(), nullptr));
+  fe::scatter(values, v.get());
+  return v;
+}
+
+struct Watch {
+  std::function<void(int, int)> progress;
+  int wanted = 0;
+};
+
+PetscErrorCode report_progress(EPS, PetscInt, PetscInt converged, PetscScalar*, PetscScalar*, PetscReal*, PetscInt,
+                               void* context) {
+  const auto* watch = static_cast<const Watch*>(context);
+  watch->progress(std::min(static_cast<int>(converged), watch->wanted), watch->wanted);
+  return 0;
+}
+
+}  // namespace
+
+void initialize_slepc() {
+  fe::initialize_petsc();
+  PetscBool initialized = PETSC_FALSE;
+  SlepcInitialized(&initialized);
+  if (initialized) return;
+  int argc = 0;
+  char** argv = nullptr;
+  check_petsc(SlepcInitialize(&argc, &argv, nullptr, nullptr));
+  // MUMPS estimates its workspace for a definite matrix; an indefinite one needs more for delayed pivots.
+  check_petsc(PetscOptionsInsertString(nullptr, "-st_mat_mumps_icntl_14 60"));
+  std::atexit([] {
+    PetscBool finalized = PETSC_FALSE;
+    PetscFinalized(&finalized);
+    if (!finalized) SlepcFinalize();
+  });
+}
+
+double calc_fixed_number(int index, int start) {
+  // splitmix64, a public-domain mixer by S. Vigna.
+  std::uint64_t z = (static_cast<std::uint64_t>(index) + 1) * 0x9E3779B97F4A7C15ULL +
+                    static_cast<std::uint64_t>(start) * 0xD1B54A32D192ED03ULL;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+  z ^= z >> 31;
+  return 2.0 * (static_cast<double>(z >> 11) * 0x1p-53) - 1.0;
+}
+
+KrylovResult solve_krylov_schur(const KrylovProblem& problem) {
+  initialize_slepc();
+  PetscInt n = 0;
+  check_petsc(MatGetSize(problem.A, &n, nullptr));
+  const int room = (problem.max_subspace > 0 ? std::min<int>(problem.max_subspace, n) : static_cast<int>(n));
+  const int wanted = std::clamp(problem.num_wanted, 1, std::max(1, room));
+  const int subspace = std::min(std::max(2 * wanted, wanted + 20), std::max(room, 1));
+
+  SlepcEps eps;
+  ST st = nullptr;
+  KSP ksp = nullptr;
+  check_petsc(EPSCreate(PETSC_COMM_WORLD, eps.out()));
+  check_petsc(EPSSetOperators(eps.get(), problem.A, problem.B));
+  check_petsc(EPSSetProblemType(eps.get(), EPS_GHEP));
+  check_petsc(EPSSetType(eps.get(), EPSKRYLOVSCHUR));
+  check_petsc(EPSSetDimensions(eps.get(), wanted, subspace, PETSC_DEFAULT));
+  check_petsc(EPSSetTolerances(eps.get(), problem.tolerance, 1000));
+  check_petsc(EPSGetST(eps.get(), &st));
+  if (problem.spectrum == Spectrum::NearShift) {
+    check_petsc(STSetType(st, STSINVERT));
+    check_petsc(EPSSetWhichEigenpairs(eps.get(), EPS_TARGET_MAGNITUDE));
+    check_petsc(EPSSetTarget(eps.get(), problem.shift));
+    check_petsc(EPSSetPurify(eps.get(), PETSC_TRUE));
+  } else {
+    check_petsc(STSetType(st, STSHIFT));
+    check_petsc(EPSSetWhichEigenpairs(eps.get(), EPS_LARGEST_MAGNITUDE));
+  }
+  check_petsc(STGetKSP(st, &ksp));
+  set_direct_solver(ksp);
+
+  std::vector<fe::PetscVec> known;
+  std::vector<Vec> known_raw;
+  for (Eigen::Index c = 0; c < problem.deflate.cols(); ++c) {
+    known.push_back(make_vector(problem.A, problem.deflate.col(c)));
+    known_raw.push_back(known.back().get());
+  }
+  if (!known_raw.empty())
+    check_petsc(EPSSetDeflationSpace(eps.get(), static_cast<PetscInt>(known_raw.size()), known_raw.data()));
+
+  VectorXd first(n);
+  for (int i = 0; i < n; ++i) first(i) = calc_fixed_number(i, problem.start);
+  fe::PetscVec first_vector = make_vector(problem.A, first);
+  Vec first_raw = first_vector.get();
+  check_petsc(EPSSetInitialSpace(eps.get(), 1, &first_raw));
+
+  Watch watch{problem.progress, wanted};
+  if (watch.progress) check_petsc(EPSMonitorSet(eps.get(), report_progress, &watch, nullptr));
+
+  check_petsc(EPSSetUp(eps.get()));
+  PC pc = nullptr;
+  PCFailedReason failed = PC_NOERROR;
+  check_petsc(KSPGetPC(ksp, &pc));
+  check_petsc(KSPSetUp(ksp));
+  check_petsc(PCGetFailedReason(pc, &failed));
+  KrylovResult result;
+  if (failed != PC_NOERROR) {
+    result.is_singular = true;
+    return result;
+  }
+  check_petsc(EPSSolve(eps.get()));
+
+  PetscInt converged = 0;
+  check_petsc(EPSGetConverged(eps.get(), &converged));
+  result.values.resize(converged);
+  result.vectors.resize(n, converged);
+  fe::PetscVec x;
+  check_petsc(MatCreateVecs(problem.A, x.out(), nullptr));
+  for (PetscInt i = 0; i < converged; ++i) {
+    PetscScalar value = 0;
+    check_petsc(EPSGetEigenpair(eps.get(), i, &value, nullptr, x.get(), nullptr));
+    result.values(i) = value;
+    result.vectors.col(i) = fe::gather(x.get());
+  }
+  return result;
+}
+
+int count_negative(Mat A, double factor, Mat B) {
+  initialize_slepc();
+  fe::PetscMat C;
+  check_petsc(MatDuplicate(A, MAT_COPY_VALUES, C.out()));
+  check_petsc(MatAXPY(C.get(), factor, B, DIFFERENT_NONZERO_PATTERN));
+  check_petsc(MatSetOption(C.get(), MAT_SYMMETRIC, PETSC_TRUE));
+  fe::PetscKsp ksp;
+  PC pc = nullptr;
+  Mat F = nullptr;
+  check_petsc(KSPCreate(PETSC_COMM_WORLD, ksp.out()));
+  check_petsc(KSPSetOperators(ksp.get(), C.get(), C.get()));
+  set_direct_solver(ksp.get());
+  check_petsc(KSPGetPC(ksp.get(), &pc));
+  check_petsc(PCFactorSetUpMatSolverType(pc));
+  check_petsc(PCFactorGetMatrix(pc, &F));
+  // The inertia leaves out the root front when ScaLAPACK factors it: keep it sequential.
+  check_petsc(MatMumpsSetIcntl(F, 13, 1));
+  check_petsc(MatMumpsSetIcntl(F, 14, 60));
+  check_petsc(KSPSetUp(ksp.get()));
+  PCFailedReason failed = PC_NOERROR;
+  check_petsc(PCGetFailedReason(pc, &failed));
+  if (failed != PC_NOERROR) return -1;
+  PetscInt negative = 0;
+  check_petsc(MatGetInertia(F, &negative, nullptr, nullptr));
+  return static_cast<int>(negative);
+}
+
+}  // namespace bough::modal::detail

@@ -1,0 +1,53 @@
+#pragma once
+/// \file SLEPc behind two calls: some eigenpairs of a symmetric pencil, and the inertia of a shifted pencil.
+///
+/// Internal to modal. Vectors go in and out replicated on every rank; the matrices are distributed.
+#include <functional>
+
+#include <Eigen/Dense>
+
+#include "bough/fe/petsc.hpp"
+
+namespace bough::modal::detail {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Initializes PETSc and SLEPc once per process; SLEPc is finalized at exit before PETSc.
+void initialize_slepc();
+
+enum class Spectrum {
+  NearShift,         ///< A x = λ B x nearest `shift` by shift-invert; A - shift B is factored
+  LargestMagnitude   ///< A x = θ B x of largest |θ|; B, positive definite, is factored
+};
+
+struct KrylovProblem {
+  Mat A = nullptr, B = nullptr;
+  Spectrum spectrum = Spectrum::NearShift;
+  double shift = 0;
+  int num_wanted = 1;
+  int max_subspace = 0;                      ///< rank of the operator, 0: the size of A
+  MatrixXd deflate;                          ///< n x k known eigenvectors, kept out; k may be 0
+  double tolerance = 1e-12;
+  int start = 0;                             ///< picks one of the fixed start vectors
+  std::function<void(int converged, int wanted)> progress;
+};
+
+struct KrylovResult {
+  VectorXd values;                           ///< converged ones, in SLEPc's order; may be fewer or more than wanted
+  MatrixXd vectors;                          ///< n x values.size(), replicated
+  bool is_singular = false;                  ///< the matrix to factor is singular: nothing was solved
+};
+
+/// Krylov-Schur with a B inner product (Stewart, SIAM J. Matrix Anal. Appl. 23 (2001) 601; SLEPc), purified for a
+/// semi-definite B.
+KrylovResult solve_krylov_schur(const KrylovProblem& problem);
+
+/// Negative eigenvalues of A + factor B by an LDLᵀ factorization (Sylvester): for a positive semi-definite B and
+/// factor = -μ the number of eigenvalues of A x = λ B x below μ. -1 when the factorization met a zero pivot.
+int count_negative(Mat A, double factor, Mat B);
+
+/// A number in (-1, 1) that depends on index and start only: start vectors and weights free of any rank layout.
+double calc_fixed_number(int index, int start);
+
+}  // namespace bough::modal::detail

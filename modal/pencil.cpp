@@ -1,0 +1,193 @@
+#include "bough/modal/pencil.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bough/fe/mechanism.hpp"
+
+namespace bough::modal::detail {
+
+using Eigen::Vector3d;
+
+namespace {
+
+/// Rows of the f-dofs of a g-set field: the displacement component along the f-dof's CD axis.
+MatrixXd restrict_to_fdofs(const fe::Model& model, const MatrixXd& U) {
+  MatrixXd X = MatrixXd::Zero(model.num_fdofs(), U.cols());
+  for (int f = 0; f < model.num_fdofs(); ++f) {
+    const auto [id, component] = model.describe_fdof(f);
+    const auto& node = model.node(model.find_node(id));
+    if (node.num_dofs != 6) continue;
+    const int c = component - 1;
+    X.row(f) = node.R_basic_cd.col(c % 3).transpose() * U.middleRows(node.first_gdof + 3 * (c / 3), 3);
+  }
+  return X;
+}
+
+/// Eigenvectors of the symmetric A whose eigenvalue is above (or not above) threshold times the largest.
+MatrixXd calc_range(const MatrixXd& A, double threshold, bool above, VectorXd* values = nullptr) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (A + A.transpose()));
+  const VectorXd& w = solver.eigenvalues();
+  const double limit = threshold * std::max(w.size() ? w.maxCoeff() : 0.0, 0.0);
+  const auto low = (w.array() <= limit).count();
+  const auto first = above ? low : 0;
+  const auto count = above ? w.size() - low : low;
+  if (values) *values = w.segment(first, count);
+  return solver.eigenvectors().middleCols(first, count);
+}
+
+Vector3d calc_mean_position(const fe::Model& model) {
+  Vector3d sum = Vector3d::Zero();
+  int count = 0;
+  for (const auto& node : model.nodes()) {
+    if (node.num_dofs != 6) continue;
+    sum += node.x;
+    ++count;
+  }
+  return count ? (sum / count).eval() : sum;
+}
+
+/// The 30 displacement fields x^a e_k of degree 0..2 about the mean position, rotations half their curl.
+MatrixXd calc_polynomials(const fe::Model& model) {
+  const Vector3d centre = calc_mean_position(model);
+  double size = 0;
+  for (const auto& node : model.nodes())
+    if (node.num_dofs == 6) size = std::max(size, (node.x - centre).norm());
+  if (size == 0) size = 1;
+  MatrixXd U = MatrixXd::Zero(model.num_gdofs(), 30);
+  for (const auto& node : model.nodes()) {
+    if (node.num_dofs != 6) continue;
+    const Vector3d x = (node.x - centre) / size;
+    int column = 0;
+    const auto add = [&](double value, const Vector3d& gradient) {
+      for (int k = 0; k < 3; ++k, ++column) {
+        U(node.first_gdof + k, column) = value;
+        U.block<3, 1>(node.first_gdof + 3, column) = 0.5 * gradient.cross(Vector3d::Unit(k)) / size;
+      }
+    };
+    add(1, Vector3d::Zero());
+    for (int i = 0; i < 3; ++i) add(x(i), Vector3d::Unit(i));
+    for (int i = 0; i < 3; ++i)
+      for (int j = i; j < 3; ++j) add(x(i) * x(j), x(j) * Vector3d::Unit(i) + x(i) * Vector3d::Unit(j));
+  }
+  return U;
+}
+
+}  // namespace
+
+Pencil::Pencil(const fe::Model& model_in)
+    : model(model_in),
+      K(fe::assemble_stiffness(model, fe::DofSet::Free)),
+      M(fe::assemble_mass(model, fe::DofSet::Free, model.mass_kind())),
+      K_diagonal(fe::get_diagonal(K.get())),
+      M_diagonal(fe::get_diagonal(M.get())) {}
+
+MatrixXd Pencil::calc_K_times(const MatrixXd& X) const {
+  return model.T().transpose() * fe::calc_stiffness_times(model, MatrixXd(model.T() * X));
+}
+
+MatrixXd Pencil::calc_M_times(const MatrixXd& X) const {
+  return model.T().transpose() * fe::calc_mass_times(model, model.mass_kind(), MatrixXd(model.T() * X));
+}
+
+double Pencil::calc_relative_energy(const VectorXd& x, double energy) const {
+  const double scale = x.cwiseAbs2().dot(K_diagonal);
+  return scale > 0 ? std::abs(energy) / scale : 0;
+}
+
+RigidMotions find_rigid_motions(const Pencil& pencil) {
+  const auto& model = pencil.model;
+  const auto properties = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
+  const Vector3d centre = properties.mass > 0 ? properties.cg : calc_mean_position(model);
+  const MatrixXd B = restrict_to_fdofs(model, model.calc_rigid_modes(centre));
+  const MatrixXd S = B.transpose() * pencil.calc_K_times(B);
+  const MatrixXd D = B.transpose() * pencil.K_diagonal.asDiagonal() * B;
+  const MatrixXd Mr = B.transpose() * pencil.calc_M_times(B);
+
+  RigidMotions result;
+  result.modes.resize(model.num_fdofs(), 0);
+  result.massless.resize(model.num_fdofs(), 0);
+  const VectorXd scale = D.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  VectorXd d;
+  const MatrixXd V = calc_range(scale.asDiagonal() * D * scale.asDiagonal(), 1e-10, true, &d);
+  if (V.cols() == 0) return result;
+  const MatrixXd W = scale.asDiagonal() * V * d.cwiseSqrt().cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> energy(W.transpose() * S * W);
+  const auto num_free = (energy.eigenvalues().array() < 1e-13).count();
+  if (num_free == 0) return result;
+  const MatrixXd C = W * energy.eigenvectors().leftCols(num_free);   // orthonormal under D
+
+  const MatrixXd G = C.transpose() * Mr * C;
+  const MatrixXd C_mass = C * calc_range(G, 1e-13, true);
+  const MatrixXd C_none = C * calc_range(G, 1e-13, false);
+
+  // The projections of the six motions on the free ones, in order: a basis that no roundoff can turn.
+  MatrixXd basis(6, 0);
+  for (int i = 0; i < 6 && basis.cols() < C_mass.cols(); ++i) {
+    VectorXd c = C_mass * (C_mass.transpose() * D.col(i));
+    const double before = c.dot(Mr * c);
+    for (int pass = 0; pass < 2; ++pass) c -= basis * (basis.transpose() * (Mr * c));
+    const double after = c.dot(Mr * c);
+    if (!(after > 1e-8 * before) || before <= 0) continue;
+    basis.conservativeResize(6, basis.cols() + 1);
+    basis.rightCols(1) = c / std::sqrt(after);
+  }
+  result.modes = B * basis;
+
+  result.massless = B * C_none;
+  if (C_none.cols() > 0) {
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(result.massless.transpose());
+    for (Eigen::Index i = 0; i < C_none.cols(); ++i)
+      result.held.push_back(static_cast<int>(qr.colsPermutation().indices()(i)));
+  }
+  return result;
+}
+
+double estimate_first_eigenvalue(const Pencil& pencil) {
+  const MatrixXd X = restrict_to_fdofs(pencil.model, calc_polynomials(pencil.model));
+  const MatrixXd K = X.transpose() * pencil.calc_K_times(X);
+  const MatrixXd M = X.transpose() * pencil.calc_M_times(X);
+  const VectorXd scale = M.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  VectorXd m;
+  const MatrixXd V = calc_range(scale.asDiagonal() * M * scale.asDiagonal(), 1e-9, true, &m);
+  const MatrixXd W = scale.asDiagonal() * V * m.cwiseSqrt().cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(W.transpose() * K * W);
+  const MatrixXd Y = X * (W * ritz.eigenvectors());
+  for (Eigen::Index i = 0; i < Y.cols(); ++i) {
+    const double lambda = ritz.eigenvalues()(i);
+    if (lambda > 0 && pencil.calc_relative_energy(Y.col(i), lambda) > 1e-12) return lambda;
+  }
+  // No polynomial strains the model: fall back on the softest single dof.
+  double lowest = 0;
+  for (int f = 0; f < pencil.size(); ++f) {
+    if (pencil.M_diagonal(f) <= 0 || pencil.K_diagonal(f) <= 0) continue;
+    const double ratio = pencil.K_diagonal(f) / pencil.M_diagonal(f);
+    if (lowest == 0 || ratio < lowest) lowest = ratio;
+  }
+  return lowest > 0 ? lowest : 1;
+}
+
+std::string describe(const fe::Model& model, int fdof) {
+  const auto [id, component] = model.describe_fdof(fdof);
+  if (component == 0) return "scalar point " + std::to_string(id);
+  return "grid " + std::to_string(id) + " component " + std::to_string(component);
+}
+
+void throw_singular(const Pencil& pencil, double shift) {
+  fe::PetscMat A;
+  fe::check_petsc(MatDuplicate(pencil.K.get(), MAT_COPY_VALUES, A.out()));
+  fe::check_petsc(MatAXPY(A.get(), shift, pencil.M.get(), DIFFERENT_NONZERO_PATTERN));
+  const MatrixXd motions = fe::find_mechanisms(A.get(), 1);
+  std::string where;
+  for (Eigen::Index c = 0; c < motions.cols(); ++c) {
+    Eigen::Index largest = 0;
+    motions.col(c).cwiseAbs().maxCoeff(&largest);
+    where += (c ? ", " : " at ") + describe(pencil.model, static_cast<int>(largest));
+  }
+  throw ComputationError("modal.singular-shift", {},
+                         "the shifted stiffness matrix is singular: a part of the model can move without strain and "
+                         "without mass" + where,
+                         "give that part mass, constrain it, or switch PARAM,AUTOSPC on");
+}
+
+}  // namespace bough::modal::detail

@@ -1,0 +1,49 @@
+#pragma once
+/// \file K and M of a model on the f-set, their products with replicated vectors, and the motions without strain.
+#include <string>
+#include <vector>
+
+#include "bough/fe/assembly.hpp"
+
+namespace bough::modal::detail {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// The f-set pencil. Products run element by element on the g-set, so no rank needs another's rows.
+struct Pencil {
+  explicit Pencil(const fe::Model& model_in);
+
+  const fe::Model& model;
+  fe::PetscMat K, M;
+  VectorXd K_diagonal, M_diagonal;           ///< num_fdofs, replicated
+
+  int size() const { return model.num_fdofs(); }
+  MatrixXd calc_K_times(const MatrixXd& X) const;
+  MatrixXd calc_M_times(const MatrixXd& X) const;
+  /// φᵀKφ / Σ K_ii φ_i²: about 1e-16 for a motion without strain, whatever the units and the mesh.
+  double calc_relative_energy(const VectorXd& x, double energy) const;
+};
+
+/// The rigid motions of the model that its constraints and springs leave free.
+struct RigidMotions {
+  MatrixXd modes;            ///< num_fdofs x k, orthonormal under M, in order: translations of the cg, rotations
+  MatrixXd massless;         ///< num_fdofs x l: no strain and no mass; K - σM is singular along them for every σ
+  std::vector<int> held;     ///< l f-dofs whose holding removes the massless motions and changes nothing else
+};
+
+/// Combinations c of Φ_R (about the cg) with (Φ_R c)ᵀ K (Φ_R c) zero in roundoff on the f-set. A motion that a support
+/// prevents shows as strain where it was cut off.
+RigidMotions find_rigid_motions(const Pencil& pencil);
+
+/// An estimate from above of the lowest eigenvalue with strain: Rayleigh-Ritz on the polynomials of degree 0..2 (the
+/// rotations are half the curl). A positive number always.
+double estimate_first_eigenvalue(const Pencil& pencil);
+
+/// "grid 12 component 4" for messages.
+std::string describe(const fe::Model& model, int fdof);
+
+/// The error of a singular K + shift M, naming where the parts without strain and mass move most.
+[[noreturn]] void throw_singular(const Pencil& pencil, double shift);
+
+}  // namespace bough::modal::detail
