@@ -44,7 +44,8 @@ class SystemData;                 ///< made by System::make_data; one per thread
 class System {
  public:
   /// Checks everything that concerns the solver (names, nodes, tree without loops, locators of stiffened attachments)
-  /// and reports all errors with their place in the TOML file. `flex` maps a body's file (as written) to its record.
+  /// and reports all errors with their place in the TOML file; throws InputError when there are any. `flex` maps a
+  /// body's file (as written) to its record. A body without an inboard hinge gets a free one (a note says so).
   static System build(const records::SystemSpec& spec, const std::map<std::string, FlexBody>& flex,
                       Diagnostics& diagnostics);
   ~System();
@@ -62,10 +63,15 @@ class System {
   int u_offset(int body) const;
   int num_hinge_q(int body) const;
   int num_hinge_u(int body) const;                 ///< degrees of freedom; 0 when prescribed
+  int num_hinge_rates(int body) const;             ///< rates and forces of get_hinge; = num_hinge_u unless prescribed
   int eta_offset(int body) const;                  ///< in q
   int eta_dot_offset(int body) const;              ///< in u
   /// Index of node `id` for calc_node_motion (0: Bo), -1 when the body has none such.
   int find_node(int body, int id) const;
+  /// Whether the node carries the second-order (foreshortening) term.
+  bool has_node_second_order(int body, int node_index) const;
+  /// Times at which a function that drives a hinge or a force jumps, ascending.
+  const std::vector<double>& breakpoints() const;
 
   std::unique_ptr<SystemData> make_data() const;
   /// Initial state as the records say; q (num_q), u (num_u).
@@ -103,8 +109,9 @@ NodeMotion calc_node_motion(const System& system, const SystemData& data, int bo
 /// Deflection φ_k η + ½ ηᵀ g_k η and rotation ψ_k η of a node from its undeformed place, in B.
 void calc_node_deflection(const System& system, const SystemData& data, int body, int node_index,
                           Vector3d& deflection_B, Vector3d& rotation_B);
-/// Hinge coordinates and rates as the user knows them (prescribed ones too) and the generalized hinge force
-/// (spring + damper, or the force that enforces a prescribed motion).
+/// Hinge coordinates (num_hinge_q; a quaternion as w, x, y, z) and rates (num_hinge_rates) as the user knows them,
+/// prescribed ones too, and the generalized hinge force (num_hinge_rates): spring + damper after add_forces, or the
+/// force that enforces a prescribed motion after calc_accelerations.
 void get_hinge(const System& system, const SystemData& data, int body, Eigen::Ref<VectorXd> q,
                Eigen::Ref<VectorXd> q_dot, Eigen::Ref<VectorXd> force);
 

@@ -1,0 +1,52 @@
+#include <cmath>
+
+#include "bough/solver/hinges/cylindrical.hpp"
+#include "bough/solver/hinges/fixed.hpp"
+#include "bough/solver/hinges/free.hpp"
+#include "bough/solver/hinges/planar.hpp"
+#include "bough/solver/hinges/prismatic.hpp"
+#include "bough/solver/hinges/revolute.hpp"
+#include "bough/solver/hinges/universal.hpp"
+
+namespace bough::solver {
+
+namespace {
+bool check_axis(const Vector3d& axis, const char* key, const records::HingeRecord& record, Diagnostics& diagnostics) {
+  if (axis.allFinite() && axis.norm() > 0) return true;
+  diagnostics.error("system.zero-axis", record.at,
+                    "hinge '" + record.name + "' has no direction in " + key + ": expected a vector of nonzero length");
+  return false;
+}
+}  // namespace
+
+std::unique_ptr<const Hinge> make_hinge(const records::HingeRecord& record, Diagnostics& diagnostics) {
+  using records::HingeType;
+  const bool needs_axis =
+      record.type != HingeType::Fixed && record.type != HingeType::Spherical && record.type != HingeType::Free;
+  if (needs_axis && !check_axis(record.axis, "axis", record, diagnostics)) return nullptr;
+  const Vector3d axis = needs_axis ? record.axis.normalized() : Vector3d::UnitZ();
+  switch (record.type) {
+    case HingeType::Fixed: return std::make_unique<FixedHinge>();
+    case HingeType::Revolute: return std::make_unique<RevoluteHinge>(axis);
+    case HingeType::Prismatic: return std::make_unique<PrismaticHinge>(axis);
+    case HingeType::Cylindrical: return std::make_unique<CylindricalHinge>(axis);
+    case HingeType::Planar: return std::make_unique<PlanarHinge>(axis);
+    case HingeType::Spherical: return std::make_unique<SphericalHinge>();
+    case HingeType::Free: return std::make_unique<FreeHinge>();
+    case HingeType::Universal: {
+      if (!check_axis(record.axis2, "axis2", record, diagnostics)) return nullptr;
+      const Vector3d axis2 = record.axis2.normalized();
+      if (axis.cross(axis2).norm() < 1e-6) {
+        diagnostics.error("system.parallel-axes", record.at,
+                          "hinge '" + record.name + "': axis and axis2 of a universal hinge are parallel",
+                          "give two different directions, or use a revolute hinge");
+        return nullptr;
+      }
+      return std::make_unique<UniversalHinge>(axis, axis2);
+    }
+  }
+  BOUGH_DEMAND(false);
+  return nullptr;
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,17 @@
+#pragma once
+/// \file Cylindrical hinge. q: angle about, then travel along `axis` (unit, the same in Hp and Hc); u = q̇.
+/// H = [0 axis; axis 0], bias 0.
+#include "bough/solver/hinges/hinge.hpp"
+
+namespace bough::solver {
+
+class CylindricalHinge final : public Hinge {
+ public:
+  explicit CylindricalHinge(const Vector3d& unit_axis) : Hinge(2, 2), axis_(unit_axis) {}
+  void calc_motion(const double* q, const double* u, HingeMotion& motion) const override;
+
+ private:
+  Vector3d axis_;
+};
+
+}  // namespace bough::solver

@@ -1,0 +1,16 @@
+#pragma once
+/// \file Prismatic hinge. q: travel along `axis` (unit, in Hp); u = q̇. H = [axis; 0], bias 0.
+#include "bough/solver/hinges/hinge.hpp"
+
+namespace bough::solver {
+
+class PrismaticHinge final : public Hinge {
+ public:
+  explicit PrismaticHinge(const Vector3d& unit_axis) : Hinge(1, 1), axis_(unit_axis) {}
+  void calc_motion(const double* q, const double* u, HingeMotion& motion) const override;
+
+ private:
+  Vector3d axis_;
+};
+
+}  // namespace bough::solver

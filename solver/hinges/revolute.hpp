@@ -1,0 +1,16 @@
+#pragma once
+/// \file Revolute hinge. q: angle about `axis` (unit, the same in Hp and Hc); u = q̇. H = [0; axis], bias 0.
+#include "bough/solver/hinges/hinge.hpp"
+
+namespace bough::solver {
+
+class RevoluteHinge final : public Hinge {
+ public:
+  explicit RevoluteHinge(const Vector3d& unit_axis) : Hinge(1, 1), axis_(unit_axis) {}
+  void calc_motion(const double* q, const double* u, HingeMotion& motion) const override;
+
+ private:
+  Vector3d axis_;
+};
+
+}  // namespace bough::solver

@@ -1,0 +1,178 @@
+#include "bough/solver/system/build.hpp"
+
+#include <algorithm>
+
+namespace bough::solver {
+
+namespace {
+
+std::string quote(const std::string& s) { return "'" + s + "'"; }
+
+FunctionMap build_functions(const records::SystemSpec& spec, System::Impl& impl, Diagnostics& diagnostics) {
+  FunctionMap functions;
+  for (const auto& record : spec.functions) {
+    impl.functions.push_back(make_time_function(record, diagnostics));
+    functions.emplace(record.name, impl.functions.back().get());
+  }
+  return functions;
+}
+
+records::HingeRecord make_free_hinge(const records::SystemSpec& spec, const records::BodyRecord& body,
+                                     Diagnostics& diagnostics) {
+  records::HingeRecord hinge;
+  hinge.name = body.name;
+  const auto is_taken = [&](const records::HingeRecord& h) { return h.name == hinge.name; };
+  while (std::any_of(spec.hinges.begin(), spec.hinges.end(), is_taken)) hinge.name += "_free";
+  hinge.type = records::HingeType::Free;
+  hinge.child = body.name;
+  hinge.at = body.at;
+  diagnostics.note("system.free-body", body.at, "body " + quote(body.name) + " has no hinge: it moves freely");
+  return hinge;
+}
+
+VectorXd make_modal_state(const std::vector<double>& values, int n) {
+  if (values.empty()) return VectorXd::Zero(n);
+  return Eigen::Map<const VectorXd>(values.data(), n);
+}
+
+Attachment build_attachment(const std::string& body_name, const Body& body, int node_id, const Vector3d& p,
+                            const Matrix3d& R, const records::HingeRecord& hinge, Diagnostics& diagnostics) {
+  Attachment a;
+  a.p_KH = p;
+  a.R_KH = R;
+  a.node = std::max(0, find_loaded_node(body_name, body, node_id, true, hinge.at, "hinge " + quote(hinge.name), diagnostics));
+  a.moves = body.nodes()[static_cast<size_t>(a.node)].moves;
+  return a;
+}
+
+bool check_rotations(const records::HingeRecord& h, Diagnostics& diagnostics) {
+  bool good = true;
+  for (const Matrix3d* R : {&h.parent_rotation, &h.child_rotation}) {
+    if ((*R * R->transpose() - Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-6 && R->determinant() > 0) continue;
+    diagnostics.error("system.bad-rotation", h.at, "hinge " + quote(h.name) + ": the rotation of its frame on the " +
+                      (R == &h.parent_rotation ? "parent" : "child") + " is not a proper rotation matrix");
+    good = false;
+  }
+  return good;
+}
+
+// A hinge freedom that moves no mass at all.
+void check_masses(const Tree& tree, const records::SystemSpec& spec, const TreeOrder& order, Diagnostics& diagnostics) {
+  std::vector<double> carried(tree.bodies.size());
+  for (size_t b = tree.bodies.size(); b-- > 0;) {
+    const TreeBody& tb = tree.bodies[b];
+    carried[b] += tb.body.mass() + tb.body.M6().bottomRightCorner<3, 3>().trace();
+    if (tb.parent >= 0) carried[static_cast<size_t>(tb.parent)] += carried[b];
+    if (tb.num_hinge_u > 0 && carried[b] <= 0) {
+      diagnostics.error("system.massless", spec.bodies[static_cast<size_t>(order.body[b])].at,
+                        "body " + quote(tb.name) + " and what it carries have no mass, yet its hinge " +
+                            quote(tb.hinge_name) + " is free to move",
+                        "give it mass and inertia, or fix or prescribe the hinge");
+    }
+  }
+}
+
+void collect_breakpoints(System::Impl& impl) {
+  std::vector<const TimeFunction*> used;
+  for (const TreeBody& tb : impl.tree.bodies) used.insert(used.end(), tb.motion.begin(), tb.motion.end());
+  for (const AppliedForce& force : impl.forces) {
+    if (force.function != nullptr) used.push_back(force.function);
+  }
+  for (const TimeFunction* f : used) {
+    const auto times = f->breakpoints();
+    impl.breakpoints.insert(impl.breakpoints.end(), times.begin(), times.end());
+  }
+  std::sort(impl.breakpoints.begin(), impl.breakpoints.end());
+  impl.breakpoints.erase(std::unique(impl.breakpoints.begin(), impl.breakpoints.end()), impl.breakpoints.end());
+}
+
+}  // namespace
+
+System System::build(const records::SystemSpec& spec, const std::map<std::string, FlexBody>& flex,
+                     Diagnostics& diagnostics) {
+  System system;
+  Impl& impl = *system.impl_;
+  Tree& tree = impl.tree;
+  impl.gravity = spec.simulation.gravity;
+  impl.start = spec.simulation.start;
+  const FunctionMap functions = build_functions(spec, impl, diagnostics);
+  const TreeOrder order = order_tree(spec, diagnostics);
+  bool complete = true;
+  for (const auto& record : spec.bodies) {
+    if (!order.tree_index.count(record.name)) build_body(record, flex, diagnostics);   // for its own errors
+  }
+  for (size_t b = 0; b < order.body.size(); ++b) {
+    const auto& record = spec.bodies[static_cast<size_t>(order.body[b])];
+    const records::HingeRecord hinge = order.hinge[b] < 0 ? make_free_hinge(spec, record, diagnostics)
+                                                          : spec.hinges[static_cast<size_t>(order.hinge[b])];
+    TreeBody tb;
+    tb.name = record.name;
+    tb.hinge_name = hinge.name;
+    tb.parent = hinge.parent == "ground" ? -1 : order.tree_index.at(hinge.parent);
+    tb.hinge = make_hinge(hinge, diagnostics);
+    auto body = build_body(record, flex, diagnostics);
+    const bool rotations_good = check_rotations(hinge, diagnostics);
+    if (tb.hinge) build_hinge_coordinates(hinge, functions, tb, diagnostics);
+    if (!body || !tb.hinge || !rotations_good) {
+      complete = false;
+      body = body ? std::move(body) : Body::make_rigid(1, Vector3d::Zero(), Matrix3d::Identity());
+    } else {
+      const int n = body->num_modes();
+      tb.initial_eta = make_modal_state(record.eta, n);
+      tb.initial_eta_dot = make_modal_state(record.eta_dot, n);
+      tb.on_child = build_attachment(tb.name, *body, hinge.child_node, hinge.child_position, hinge.child_rotation,
+                                     hinge, diagnostics);
+    }
+    tb.body = std::move(*body);
+    // A parent whose record failed has no nodes to look up.
+    if (tb.parent < 0) {
+      tb.on_parent.p_KH = hinge.parent_position;
+      tb.on_parent.R_KH = hinge.parent_rotation;
+      if (hinge.parent_node != 0) {
+        diagnostics.error("system.unknown-node", hinge.at,
+                          "hinge " + quote(hinge.name) + " names node " + std::to_string(hinge.parent_node) +
+                              " of ground, which has only node 0",
+                          "give parent_position instead");
+      }
+    } else if (complete) {
+      const TreeBody& parent = tree.bodies[static_cast<size_t>(tb.parent)];
+      tb.on_parent = build_attachment(parent.name, parent.body, hinge.parent_node, hinge.parent_position,
+                                      hinge.parent_rotation, hinge, diagnostics);
+    }
+    tb.q_offset = tree.num_q;
+    tb.u_offset = tree.num_u;
+    if (tb.hinge) {
+      tree.num_q += tb.num_hinge_q() + tb.body.num_modes();
+      tree.num_u += tb.num_hinge_u + tb.body.num_modes();
+    }
+    tree.bodies.push_back(std::move(tb));
+  }
+  std::vector<std::string> body_names;
+  for (const auto& record : spec.bodies) body_names.push_back(record.name);
+  for (const auto& record : spec.forces) {
+    const auto found = order.tree_index.find(record.body);
+    if (found == order.tree_index.end()) {
+      if (std::find(body_names.begin(), body_names.end(), record.body) != body_names.end()) continue;   // in a loop
+      const std::string near = find_nearest(record.body, body_names);
+      diagnostics.error("system.unknown-body", record.at,
+                        "force " + quote(record.name) + " names body " + quote(record.body) + ", which does not exist",
+                        near.empty() ? "" : "did you mean " + quote(near) + "?");
+      continue;
+    }
+    if (!complete) continue;
+    const auto& file = spec.bodies[static_cast<size_t>(order.body[static_cast<size_t>(found->second)])].file;
+    const auto flex_record = flex.find(file);
+    auto force = build_force(record, tree, found->second, flex_record == flex.end() ? nullptr : &flex_record->second,
+                             functions, diagnostics);
+    if (force) impl.forces.push_back(std::move(*force));
+  }
+  if (!impl.gravity.allFinite()) {
+    diagnostics.error("system.bad-gravity", spec.simulation.at, "gravity is not three finite numbers");
+  }
+  if (complete) check_masses(tree, spec, order, diagnostics);
+  diagnostics.throw_if_errors();
+  collect_breakpoints(impl);
+  return system;
+}
+
+}  // namespace bough::solver

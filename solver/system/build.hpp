@@ -1,0 +1,45 @@
+#pragma once
+/// \file Steps of System::build, each reporting every error it finds.
+#include <map>
+#include <optional>
+#include <string>
+
+#include "bough/solver/system/impl.hpp"
+
+namespace bough::solver {
+
+using FlexMap = std::map<std::string, records::FlexBody>;
+
+/// A body of the system, or nothing when its record has errors.
+std::optional<Body> build_body(const records::BodyRecord& record, const FlexMap& flex, Diagnostics& diagnostics);
+
+/// Which hinge carries which body, parents first; errors for loops and unknown names.
+struct TreeOrder {
+  std::vector<int> body;            ///< spec index by tree index
+  std::vector<int> hinge;           ///< inboard hinge by tree index, -1: none given (a free hinge is made)
+  std::map<std::string, int> tree_index;
+};
+TreeOrder order_tree(const records::SystemSpec& spec, Diagnostics& diagnostics);
+
+/// The functions of the spec by name; one that failed maps to nullptr.
+using FunctionMap = std::map<std::string, const TimeFunction*>;
+
+/// Springs, dampers, motion and initial coordinates of one hinge into `tb` (tb.hinge is set).
+void build_hinge_coordinates(const records::HingeRecord& record, const FunctionMap& functions, TreeBody& tb,
+                             Diagnostics& diagnostics);
+
+/// The function of that name; reports "system.unknown-function" when there is none.
+const TimeFunction* find_function(const FunctionMap& functions, const std::string& name, const SourceLocation& where,
+                                  const std::string& user, Diagnostics& diagnostics);
+
+/// One [[force]]; `flex` is the record of its body or nullptr. Reports and returns nothing on errors.
+std::optional<AppliedForce> build_force(const records::ForceRecord& record, const Tree& tree, int body,
+                                        const records::FlexBody* flex, const FunctionMap& functions,
+                                        Diagnostics& diagnostics);
+
+/// Index of node `id`; -1 with "system.unknown-node" or "system.missing-locators" reported. `takes_force`: a force acts
+/// there, so a stiffened body needs the node's three locators.
+int find_loaded_node(const std::string& body_name, const Body& body, int id, bool takes_force,
+                     const SourceLocation& where, const std::string& user, Diagnostics& diagnostics);
+
+}  // namespace bough::solver

@@ -1,0 +1,103 @@
+#include "bough/solver/system/build.hpp"
+
+namespace bough::solver {
+
+namespace {
+std::string quote(const std::string& s) { return "'" + s + "'"; }
+
+bool check_count(const records::HingeRecord& r, const std::vector<double>& values, int expected, const char* key,
+                 Diagnostics& diagnostics) {
+  if (values.empty() || static_cast<int>(values.size()) == expected) return true;
+  diagnostics.error("system.bad-count", r.at, "hinge " + quote(r.name) + ": " + key + " has " +
+                    std::to_string(values.size()) + " values, expected " + std::to_string(expected));
+  return false;
+}
+
+// Coordinates as the files have them (a quaternion as w, x, y, z); neutral when none are given.
+VectorXd make_coordinates(const records::HingeRecord& r, const std::vector<double>& values, const Hinge& hinge,
+                          const char* key, Diagnostics& diagnostics) {
+  VectorXd q(hinge.num_q());
+  hinge.set_neutral(q.data());
+  if (values.empty() || !check_count(r, values, hinge.num_q(), key, diagnostics)) return q;
+  hinge.set_from_file(values.data(), q.data());
+  if (!hinge.has_plain_coordinates()) {
+    const double norm = q.head<4>().norm();
+    if (!(norm > 1e-6)) {
+      diagnostics.error("system.zero-quaternion", r.at,
+                        "hinge " + quote(r.name) + ": the quaternion in " + key + " has no length");
+      hinge.set_neutral(q.data());
+      return q;
+    }
+    q.head<4>() /= norm;
+  }
+  return q;
+}
+
+VectorXd as_vector(const std::vector<double>& values) {
+  return Eigen::Map<const VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+void build_motion(const records::HingeRecord& r, const FunctionMap& functions, TreeBody& tb, Diagnostics& diagnostics) {
+  const int nu = tb.hinge->num_u();
+  int given = 0;
+  for (const auto& name : r.motion) given += name.empty() ? 0 : 1;
+  if (given == 0) return;
+  if (!tb.hinge->has_plain_coordinates()) {
+    diagnostics.error("system.prescribed-rotation", r.at,
+                      "hinge " + quote(r.name) + ": the motion of a spherical or free hinge cannot be prescribed",
+                      "use fixed, revolute, universal, prismatic, cylindrical or planar hinges");
+    return;
+  }
+  if (given != nu || static_cast<int>(r.motion.size()) != nu) {
+    diagnostics.error("system.bad-count", r.at, "hinge " + quote(r.name) + ": motion names " + std::to_string(given) +
+                      " functions, expected " + std::to_string(nu) + ", one per coordinate, or none");
+    return;
+  }
+  for (const auto& name : r.motion) {
+    const TimeFunction* f = find_function(functions, name, r.at, "hinge " + quote(r.name), diagnostics);
+    if (f != nullptr) tb.motion.push_back(f);
+  }
+  if (!r.stiffness.empty() || !r.damping.empty()) {
+    diagnostics.warning("system.ignored-spring", r.at,
+                        "hinge " + quote(r.name) + " has a prescribed motion: its stiffness and damping have no effect",
+                        "remove them");
+  }
+  if (!r.position.empty() || !r.rate.empty()) {
+    diagnostics.warning("system.ignored-position", r.at,
+                        "hinge " + quote(r.name) + " has a prescribed motion: its initial position and rate are those "
+                        "of the function",
+                        "remove position and rate");
+  }
+}
+}  // namespace
+
+const TimeFunction* find_function(const FunctionMap& functions, const std::string& name, const SourceLocation& where,
+                                  const std::string& user, Diagnostics& diagnostics) {
+  const auto found = functions.find(name);
+  if (found != functions.end()) return found->second;
+  std::vector<std::string> names;
+  for (const auto& [known, f] : functions) names.push_back(known);
+  const std::string near = find_nearest(name, names);
+  diagnostics.error("system.unknown-function", where, user + " names function " + quote(name) + ", which does not exist",
+                    near.empty() ? "" : "did you mean " + quote(near) + "?");
+  return nullptr;
+}
+
+void build_hinge_coordinates(const records::HingeRecord& r, const FunctionMap& functions, TreeBody& tb,
+                             Diagnostics& diagnostics) {
+  const int nu = tb.hinge->num_u();
+  check_count(r, r.stiffness, nu, "stiffness", diagnostics);
+  check_count(r, r.damping, nu, "damping", diagnostics);
+  tb.initial_q = make_coordinates(r, r.position, *tb.hinge, "position", diagnostics);
+  tb.null_position = make_coordinates(r, r.null_position, *tb.hinge, "null_position", diagnostics);
+  tb.initial_u = VectorXd::Zero(nu);
+  if (!r.rate.empty() && check_count(r, r.rate, nu, "rate", diagnostics)) tb.initial_u = as_vector(r.rate);
+  build_motion(r, functions, tb, diagnostics);
+  if (r.motion.empty() || !tb.is_prescribed()) {
+    tb.stiffness = as_vector(r.stiffness);
+    tb.damping = as_vector(r.damping);
+  }
+  tb.num_hinge_u = tb.is_prescribed() ? 0 : nu;
+}
+
+}  // namespace bough::solver

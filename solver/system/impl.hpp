@@ -1,0 +1,22 @@
+#pragma once
+/// \file What stands behind System and SystemData.
+#include "bough/solver/forces/applied.hpp"
+#include "bough/solver/tree/tree.hpp"
+
+namespace bough::solver {
+
+struct System::Impl {
+  Tree tree;
+  std::vector<std::unique_ptr<const TimeFunction>> functions;
+  std::vector<AppliedForce> forces;
+  Vector3d gravity = Vector3d::Zero();
+  std::vector<double> breakpoints;
+  double start = 0;
+};
+
+class SystemData {
+ public:
+  TreeData tree;
+};
+
+}  // namespace bough::solver
