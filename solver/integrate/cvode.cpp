@@ -1,0 +1,114 @@
+#include <cvode/cvode.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include "bough/solver/integrate/sundials.hpp"
+
+namespace bough::solver {
+namespace {
+
+class CvodeStepper final : public Stepper {
+ public:
+  CvodeStepper(Ode& ode, const StepperOptions& options, bool stiff)
+      : ode_(ode), y_(ode.size(), context_), tolerance_(ode.size(), context_), interpolated_(ode.size(), context_),
+        options_(options), stiff_(stiff) {
+    BOUGH_DEMAND(options.absolute_tolerance.size() == ode.size());
+    tolerance_.values() = options.absolute_tolerance;
+  }
+  ~CvodeStepper() override {
+    CVodeFree(&cvode_);
+    if (nonlinear_) SUNNonlinSolFree(nonlinear_);
+    if (linear_) SUNLinSolFree(linear_);
+    if (matrix_) SUNMatDestroy(matrix_);
+  }
+
+  void restart(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double latest) override {
+    y_.values() = y;
+    t_ = t;
+    t_stop_ = t_stop;
+    ode_.set_latest(latest);
+    if (!cvode_) {
+      create(t);
+    } else {
+      before_ = statistics();   // CVodeReInit sets the counters to zero
+      BOUGH_DEMAND(CVodeReInit(cvode_, t, y_) == CV_SUCCESS);
+    }
+    BOUGH_DEMAND(CVodeSetStopTime(cvode_, t_stop) == CV_SUCCESS);
+  }
+
+  void step(double) override {
+    ode_.clear();
+    const int flag = CVode(cvode_, t_stop_, y_, &t_, CV_ONE_STEP);
+    if (flag >= 0) return;
+    detail::throw_failure(ode_, t_, "CVODE", CVodeGetReturnFlagName(flag));
+  }
+
+  double time() const override { return t_; }
+  Eigen::Map<const VectorXd> state() const override {
+    const auto y = y_.values();
+    return {y.data(), y.size()};
+  }
+  void calc_state(double t, Eigen::Ref<VectorXd> y) override {
+    if (t == t_) {
+      y = y_.values();
+      return;
+    }
+    BOUGH_DEMAND(CVodeGetDky(cvode_, t, 0, interpolated_) == CV_SUCCESS);
+    y = interpolated_.values();
+  }
+  StepStatistics statistics() const override {
+    StepStatistics s = before_;
+    if (!cvode_) return s;
+    long steps = 0, rejected = 0, failed = 0;
+    CVodeGetNumSteps(cvode_, &steps);
+    CVodeGetNumErrTestFails(cvode_, &rejected);
+    CVodeGetNumNonlinSolvConvFails(cvode_, &failed);
+    CVodeGetLastOrder(cvode_, &s.order);
+    CVodeGetLastStep(cvode_, &s.step);
+    s.num_steps += steps;
+    s.num_rejected += rejected + failed;
+    s.num_evaluations = ode_.num_evaluations();
+    return s;
+  }
+
+ private:
+  void create(double t) {
+    cvode_ = CVodeCreate(stiff_ ? CV_BDF : CV_ADAMS, context_);
+    BOUGH_DEMAND(cvode_ != nullptr);
+    const auto check = [](int flag) { BOUGH_DEMAND(flag == 0); };
+    check(CVodeInit(cvode_, detail::call_ode, t, y_));
+    check(CVodeSetUserData(cvode_, &ode_));
+    check(CVodeSetErrHandlerFn(cvode_, detail::ignore_message, nullptr));
+    check(CVodeSVtolerances(cvode_, options_.relative_tolerance, tolerance_));
+    if (options_.step > 0) check(CVodeSetMaxStep(cvode_, options_.step));
+    if (stiff_) {
+      matrix_ = SUNDenseMatrix(ode_.size(), ode_.size(), context_);
+      linear_ = SUNLinSol_Dense(y_, matrix_, context_);
+      check(CVodeSetLinearSolver(cvode_, linear_, matrix_));
+    } else {
+      nonlinear_ = SUNNonlinSol_FixedPoint(y_, 0, context_);
+      check(CVodeSetNonlinearSolver(cvode_, nonlinear_));
+    }
+  }
+
+  detail::Context context_;
+  GuardedOde ode_;
+  detail::Vector y_, tolerance_, interpolated_;
+  StepperOptions options_;
+  bool stiff_;
+  void* cvode_ = nullptr;
+  SUNNonlinearSolver nonlinear_ = nullptr;
+  SUNLinearSolver linear_ = nullptr;
+  SUNMatrix matrix_ = nullptr;
+  double t_ = 0, t_stop_ = 0;
+  StepStatistics before_;
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_cvode_stepper(Ode& ode, const StepperOptions& options, bool stiff) {
+  return std::make_unique<CvodeStepper>(ode, options, stiff);
+}
+
+}  // namespace bough::solver

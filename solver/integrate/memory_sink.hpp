@@ -1,0 +1,39 @@
+#pragma once
+/// \file A ResultSink that keeps everything in memory: for tests, and for programs that want the numbers and no file.
+#include <string>
+#include <vector>
+
+#include "bough/formats/records/results.hpp"
+
+namespace bough::solver {
+
+class MemorySink final : public records::ResultSink {
+ public:
+  void begin(const records::ResultsHeader& header) override;
+  void write_sample(const Eigen::Ref<const Eigen::VectorXd>& sample) override;
+  void write_event(const records::EventRecord& event) override { events_.push_back(event); }
+  void write_checkpoint(const records::Checkpoint& checkpoint) override { checkpoints_.push_back(checkpoint); }
+  void end(bool completed, const std::string& reason) override;
+
+  const records::ResultsHeader& header() const { return header_; }
+  int num_samples() const { return static_cast<int>(samples_.size()); }
+  bool has(const std::string& path) const;
+  /// num_samples x size of the channel; BOUGH_DEMAND that it exists.
+  Eigen::MatrixXd get(const std::string& path) const;
+  Eigen::VectorXd time() const { return get("/time").col(0); }
+  const std::vector<records::EventRecord>& events() const { return events_; }
+  const std::vector<records::Checkpoint>& checkpoints() const { return checkpoints_; }
+  bool ended() const { return ended_; }
+  bool completed() const { return completed_; }
+  const std::string& reason() const { return reason_; }
+
+ private:
+  records::ResultsHeader header_;
+  std::vector<Eigen::VectorXd> samples_;
+  std::vector<records::EventRecord> events_;
+  std::vector<records::Checkpoint> checkpoints_;
+  bool ended_ = false, completed_ = false;
+  std::string reason_;
+};
+
+}  // namespace bough::solver

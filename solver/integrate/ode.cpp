@@ -1,0 +1,20 @@
+#include "bough/solver/integrate/ode.hpp"
+
+#include <algorithm>
+
+namespace bough::solver {
+
+int GuardedOde::calc(double t, const double* y, double* y_dot) noexcept {
+  ++num_evaluations_;
+  try {
+    Eigen::Map<VectorXd> result(y_dot, ode_.size());
+    ode_.calc_derivative(std::min(t, latest_), Eigen::Map<const VectorXd>(y, ode_.size()), result);
+    if (result.allFinite()) return 0;
+    non_finite_ = true;
+  } catch (...) {
+    pending_ = std::current_exception();
+  }
+  return 1;
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,50 @@
+#pragma once
+/// \file An ordinary differential equation ẏ = f(t, y) and a guard that keeps exceptions out of C frames.
+#include <exception>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Dense>
+
+namespace bough::solver {
+
+using Eigen::VectorXd;
+
+class Ode {
+ public:
+  virtual ~Ode() = default;
+  virtual int size() const = 0;
+  /// y, y_dot: size(). May throw; may leave values that are not finite where y has left its domain.
+  virtual void calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) = 0;
+};
+
+/// What the steppers call. Times are clamped to `latest`, the last moment before the next jump of a function of time, so
+/// that a step that ends at the jump sees the values before it.
+class GuardedOde {
+ public:
+  explicit GuardedOde(Ode& ode) : ode_(ode) {}
+
+  int size() const { return ode_.size(); }
+  void set_latest(double latest) { latest_ = latest; }
+  /// 0: fine; 1: the derivative is not finite or the equations threw (kept for throw_pending).
+  int calc(double t, const double* y, double* y_dot) noexcept;
+  void clear() {
+    pending_ = nullptr;
+    non_finite_ = false;
+  }
+  /// Rethrows what the equations threw since clear(), if anything.
+  void throw_pending() {
+    if (pending_) std::rethrow_exception(std::exchange(pending_, nullptr));
+  }
+  bool was_non_finite() const { return non_finite_; }
+  long num_evaluations() const { return num_evaluations_; }
+
+ private:
+  Ode& ode_;
+  double latest_ = std::numeric_limits<double>::infinity();
+  std::exception_ptr pending_;
+  bool non_finite_ = false;
+  long num_evaluations_ = 0;
+};
+
+}  // namespace bough::solver

@@ -1,0 +1,32 @@
+#pragma once
+/// \file What a run records: the channels of the results file (contract.md) and one sample of them.
+#include "bough/formats/records/results.hpp"
+#include "bough/solver/sensors/sensor.hpp"
+#include "bough/solver/system/system.hpp"
+
+namespace bough::solver {
+
+class Recorder {
+ public:
+  /// Channels, their order fixed here once: /time; per body position, quaternion, velocity, angular_velocity, and eta,
+  /// eta_dot when it has modes; per hinge with coordinates q, qdot, force; sensors; energy; momentum.
+  Recorder(const System& system, Sensors sensors);
+
+  const std::vector<records::Channel>& channels() const { return channels_; }
+  /// The sample at t from `data` after calc_accelerations; q, u as given to calc_kinematics. No allocation.
+  const VectorXd& calc_sample(double t, const SystemData& data, const Eigen::Ref<const VectorXd>& q,
+                              const Eigen::Ref<const VectorXd>& u, double work);
+  /// Of the last sample.
+  const Energies& energies() const { return energies_; }
+
+ private:
+  void add_channel(std::string path, int size, std::string description, std::string dims);
+
+  const System& system_;
+  Sensors sensors_;
+  std::vector<records::Channel> channels_;
+  VectorXd sample_;
+  Energies energies_;
+};
+
+}  // namespace bough::solver

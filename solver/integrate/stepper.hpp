@@ -1,0 +1,60 @@
+#pragma once
+/// \file Steppers: one interface over the integrators of [simulation] (docs/theory/integrators.md).
+#include <memory>
+#include <string>
+
+#include "bough/solver/integrate/ode.hpp"
+
+namespace bough::solver {
+
+struct StepperOptions {
+  double relative_tolerance = 1e-8;
+  VectorXd absolute_tolerance;     ///< size(); ignored by rk4
+  double step = 0;                 ///< rk4: the step; others: the largest step when > 0
+  int rk_order = 8;                ///< of the adaptive Runge-Kutta pair: 5 or 8
+};
+
+struct StepStatistics {
+  double step = 0;                 ///< the last one
+  int order = 0;                   ///< of the last one
+  long num_steps = 0, num_rejected = 0, num_evaluations = 0;
+};
+
+/// A step could not be taken.
+struct StepFailure {
+  enum class Kind { NonFinite, Stalled };
+  Kind kind = Kind::Stalled;
+  double time = 0;
+  std::string detail;
+};
+
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  /// Starts afresh from (t, y): the history is dropped. No step passes t_stop, and no derivative is asked for at a time
+  /// past `latest` (<= t_stop). y: size().
+  virtual void restart(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double latest) = 0;
+  /// One step from time(). Multistep methods may pass t_target (not t_stop); the others end on it when it is in reach.
+  /// Throws StepFailure, or what the equations threw; the state is then that before the step.
+  virtual void step(double t_target) = 0;
+  virtual double time() const = 0;
+  /// At time().
+  virtual Eigen::Map<const VectorXd> state() const = 0;
+  /// At t within the last step, by the method's own interpolant.
+  virtual void calc_state(double t, Eigen::Ref<VectorXd> y) = 0;
+  virtual StepStatistics statistics() const = 0;
+};
+
+/// integrator: "adams", "bdf", "rk", "rk4". BOUGH_DEMAND on another name. The Ode must outlive the stepper.
+std::unique_ptr<Stepper> make_stepper(const std::string& integrator, Ode& ode, const StepperOptions& options);
+
+/// SUNDIALS CVODE: variable order and step; Adams-Moulton (to order 12) by fixed-point iteration, or BDF (to order 5) by
+/// Newton with a dense difference-quotient Jacobian (Hindmarsh et al., ACM TOMS 31 (2005) 363).
+std::unique_ptr<Stepper> make_cvode_stepper(Ode& ode, const StepperOptions& options, bool stiff);
+/// SUNDIALS ARKODE, explicit embedded pair: Dormand-Prince 5(4) or Fehlberg 8(7).
+std::unique_ptr<Stepper> make_erk_stepper(Ode& ode, const StepperOptions& options);
+/// The classical Runge-Kutta method of order 4, each interval to the next target cut into equal steps no longer than
+/// options.step: results depend on the targets only, not on where a run was interrupted.
+std::unique_ptr<Stepper> make_rk4_stepper(Ode& ode, const StepperOptions& options);
+
+}  // namespace bough::solver

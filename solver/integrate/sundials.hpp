@@ -1,0 +1,55 @@
+#pragma once
+/// \file Owners of SUNDIALS handles; included by .cpp files of this folder only.
+#include <cstdlib>
+
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+
+#include "bough/base/diagnostic.hpp"
+#include "bough/solver/integrate/stepper.hpp"
+
+namespace bough::solver::detail {
+
+class Context {
+ public:
+  Context() { BOUGH_DEMAND(SUNContext_Create(nullptr, &context_) == 0); }
+  ~Context() { SUNContext_Free(&context_); }
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+  operator SUNContext() const { return context_; }
+
+ private:
+  SUNContext context_ = nullptr;
+};
+
+class Vector {
+ public:
+  Vector(int size, SUNContext context) : v_(N_VNew_Serial(size, context)) { BOUGH_DEMAND(v_ != nullptr); }
+  ~Vector() { N_VDestroy(v_); }
+  Vector(const Vector&) = delete;
+  Vector& operator=(const Vector&) = delete;
+  operator N_Vector() const { return v_; }
+  Eigen::Map<VectorXd> values() const { return {N_VGetArrayPointer(v_), N_VGetLength(v_)}; }
+
+ private:
+  N_Vector v_;
+};
+
+/// The right-hand side in SUNDIALS' form. A failure is "recoverable": the method first tries a smaller step.
+inline int call_ode(sunrealtype t, N_Vector y, N_Vector y_dot, void* user) {
+  return static_cast<GuardedOde*>(user)->calc(t, N_VGetArrayPointer(y), N_VGetArrayPointer(y_dot));
+}
+
+/// Messages go into the exception, not to the terminal.
+inline void ignore_message(int, const char*, const char*, char*, void*) {}
+
+/// After a failed step: what the equations threw, or a StepFailure.
+[[noreturn]] inline void throw_failure(GuardedOde& ode, double t, const char* method, char* flag_name) {
+  std::string detail = std::string(method) + " returned " + flag_name;
+  std::free(flag_name);
+  ode.throw_pending();
+  throw StepFailure{ode.was_non_finite() ? StepFailure::Kind::NonFinite : StepFailure::Kind::Stalled, t,
+                    std::move(detail)};
+}
+
+}  // namespace bough::solver::detail

@@ -1,0 +1,44 @@
+#include "bough/solver/integrate/system_ode.hpp"
+
+#include "bough/solver/system/impl.hpp"
+
+namespace bough::solver {
+
+SystemOde::SystemOde(const System& system)
+    : system_(system), data_(system.make_data()), num_q_(system.num_q()), num_u_(system.num_u()) {}
+
+SystemOde::~SystemOde() = default;
+
+void SystemOde::calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) {
+  const auto q = y.head(num_q_);
+  const auto u = y.segment(num_q_, num_u_);
+  calc_kinematics(system_, *data_, t, q, u);
+  add_forces(system_, *data_, t);
+  calc_accelerations(system_, *data_, t, y_dot.segment(num_q_, num_u_));
+  calc_q_dot(system_, *data_, t, q, u, y_dot.head(num_q_));
+  y_dot[num_q_ + num_u_] = calc_power(system_, *data_);
+}
+
+VectorXd SystemOde::make_initial_state() const {
+  VectorXd y = VectorXd::Zero(size());
+  system_.calc_initial_state(y.head(num_q_), y.segment(num_q_, num_u_));
+  return y;
+}
+
+std::string SystemOde::name_row(int row) const {
+  const bool is_rate = row >= num_q_;
+  const int i = is_rate ? row - num_q_ : row;
+  for (int b = 0; b < system_.num_bodies(); ++b) {
+    const int hinge = is_rate ? system_.u_offset(b) : system_.q_offset(b);
+    const int hinge_size = is_rate ? system_.num_hinge_u(b) : system_.num_hinge_q(b);
+    const int eta = is_rate ? system_.eta_dot_offset(b) : system_.eta_offset(b);
+    const std::string body = "body '" + system_.body_name(b) + "'";
+    if (i >= hinge && i < hinge + hinge_size)
+      return body + (is_rate ? " (hinge rate " : " (hinge coordinate ") + std::to_string(i - hinge + 1) + ")";
+    if (i >= eta && i < eta + system_.num_modes(b))
+      return body + (is_rate ? " (modal rate " : " (modal coordinate ") + std::to_string(i - eta + 1) + ")";
+  }
+  return "the work done";
+}
+
+}  // namespace bough::solver

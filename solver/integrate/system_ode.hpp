@@ -1,0 +1,34 @@
+#pragma once
+/// \file A System as ẏ = f(t, y), y = [q; u; work]: work integrates calc_power, so that kinetic + strain + potential -
+/// work is constant whatever is applied, damped or prescribed.
+#include <string>
+
+#include "bough/solver/integrate/ode.hpp"
+#include "bough/solver/system/system.hpp"
+
+namespace bough::solver {
+
+class SystemOde final : public Ode {
+ public:
+  explicit SystemOde(const System& system);
+  ~SystemOde() override;
+
+  int size() const override { return num_q_ + num_u_ + 1; }
+  const System& system() const { return system_; }
+  int num_q() const { return num_q_; }
+  /// Rows of y that are q and u.
+  int num_coordinates() const { return num_q_ + num_u_; }
+  /// Also leaves data() at (t, y): kinematics, forces, accelerations. No allocation.
+  void calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) override;
+  const SystemData& data() const { return *data_; }
+  VectorXd make_initial_state() const;
+  /// "body 'boom' (modal rate 2)" for a row of y.
+  std::string name_row(int row) const;
+
+ private:
+  const System& system_;
+  std::unique_ptr<SystemData> data_;
+  int num_q_, num_u_;
+};
+
+}  // namespace bough::solver
