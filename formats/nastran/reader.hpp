@@ -8,7 +8,7 @@
 namespace bough::nastran {
 
 struct ReadOptions {
-  std::vector<std::string> ignore_cards;   ///< --ignore CARD: not an error though it carries stiffness, mass, constraint
+  std::vector<std::string> ignore_cards;  ///< --ignore CARD: not an error though it carries stiffness, mass, constraint
 };
 
 /// Reads a deck or fragment with its INCLUDE files. Every error of the deck is added to `diagnostics` (none is thrown);

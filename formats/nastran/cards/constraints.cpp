@@ -1,0 +1,123 @@
+#include <bit>
+
+#include "bough/formats/nastran/detail/parsers.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+/// EID GN CM GM..., the last field may be ALPHA (thermal expansion), a real.
+void parse_rbe2(Card& card, Reading& r) {
+  records::Rbe2 e;
+  e.id = card.read_id(0, "EID");
+  e.gn = card.read_id(1, "GN");
+  e.cm = card.read_components(2, "CM");
+  int last = card.get_size();
+  if (last > 4 && !card.is_integer(last - 1) && card.get(last - 1).find('.') != std::string_view::npos) {
+    card.read_real(last - 1, "ALPHA");
+    --last;
+  }
+  e.gm = read_ids(card, 3, last, "GM");
+  if (e.gm.empty() && card.is_ok())
+    card.fail("deck.missing-field", 3, "GM is blank, expected a dependent grid at least");
+  e.at = card.get_location();
+  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe2.push_back(std::move(e));
+}
+
+/// Blank CMA and CMB: every component that is not independent depends.
+void parse_rbar(Card& card, Reading& r) {
+  constexpr unsigned all = 63;
+  records::Rbar e;
+  e.id = card.read_id(0, "EID");
+  e.ga = card.read_id(1, "GA");
+  e.gb = card.read_id(2, "GB");
+  e.cna = card.read_components(3, "CNA", 0);
+  e.cnb = card.read_components(4, "CNB", 0);
+  e.cma = card.read_components(5, "CMA", 0);
+  e.cmb = card.read_components(6, "CMB", 0);
+  if (card.is_ok() && std::popcount(e.cna) + std::popcount(e.cnb) != 6)
+    card.fail("deck.field-range", 3,
+              "CNA and CNB have " + std::to_string(std::popcount(e.cna) + std::popcount(e.cnb)) +
+                  " components, expected six in all",
+              "for a rigid bar write CNA = 123456");
+  if (e.cma == 0 && e.cmb == 0) {
+    e.cma = all & ~e.cna;
+    e.cmb = all & ~e.cnb;
+  }
+  if (card.is_ok() && ((e.cna & e.cma) != 0 || (e.cnb & e.cmb) != 0))
+    card.fail("deck.field-range", 5, "a component is both independent and dependent", "leave CMA and CMB blank");
+  e.at = card.get_location();
+  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbar.push_back(e);
+}
+
+void parse_spc(Card& card, Reading& r) {
+  const int sid = card.read_id(0, "SID");
+  for (const int i : {1, 4}) {
+    if (i > 1 && card.is_blank(i, i + 3)) break;
+    records::Spc spc;
+    spc.sid = sid;
+    spc.g = card.read_id(i, "G");
+    spc.c = card.read_components(i + 1, "C", 0);
+    spc.d = card.read_real(i + 2, "D", 0.0);
+    spc.at = card.get_location();
+    if (card.is_ok()) r.deck.spc.push_back(spc);
+  }
+}
+
+void parse_spc1(Card& card, Reading& r) {
+  const int sid = card.read_id(0, "SID");
+  const unsigned c = card.read_components(1, "C", 0);
+  const auto list = read_id_list(card, 2, card.get_size(), "G");
+  if (list.empty() && card.is_ok()) card.fail("deck.missing-field", 2, "G is blank, expected a grid at least");
+  if (!card.is_ok()) return;
+  for (const auto& range : list) {
+    if (range.is_thru)
+      r.spc_ranges.push_back({sid, c, range, card.get_location()});
+    else
+      r.deck.spc.push_back({sid, range.first, c, 0.0, false, card.get_location()});
+  }
+}
+
+void parse_union(Card& card, Reading& r, IdSpace space, std::vector<records::SetUnion>& unions) {
+  records::SetUnion u;
+  u.sid = card.read_id(0, "SID");
+  u.sets = read_ids(card, 1, card.get_size(), "S");
+  if (u.sets.empty() && card.is_ok()) card.fail("deck.missing-field", 1, "S1 is blank, expected a set at least");
+  for (const int set : u.sets)
+    if (set == u.sid) card.fail("deck.field-range", 1, "set " + std::to_string(set) + " contains itself");
+  u.at = card.get_location();
+  if (r.claim(space, u.sid, card)) unions.push_back(std::move(u));
+}
+void parse_spcadd(Card& card, Reading& r) { parse_union(card, r, IdSpace::SpcAdd, r.deck.spcadd); }
+void parse_mpcadd(Card& card, Reading& r) { parse_union(card, r, IdSpace::MpcAdd, r.deck.mpcadd); }
+
+/// Terms G C A, two per line; the first line begins with SID, the others with a blank, all end with a blank.
+void parse_mpc(Card& card, Reading& r) {
+  records::Mpc mpc;
+  mpc.sid = card.read_id(0, "SID");
+  for (int line = 0; line < card.get_size(); line += 8)
+    for (const int i : {line + 1, line + 4}) {
+      if (card.is_blank(i, i + 3)) continue;
+      mpc.terms.push_back({card.read_id(i, "G"), card.read_component(i + 1, "C"), card.read_real(i + 2, "A", 0.0)});
+    }
+  if (mpc.terms.empty())
+    card.fail("deck.missing-field", 1, "the equation has no term");
+  else if (card.is_ok() && mpc.terms.front().a == 0)
+    card.fail("deck.field-range", 3, "the coefficient of the dependent component is zero",
+              "give the first term a coefficient");
+  mpc.at = card.get_location();
+  if (card.is_ok()) r.deck.mpc.push_back(std::move(mpc));
+}
+
+}  // namespace
+
+void add_constraint_parsers(ParserTable& table) {
+  table["RBE2"] = parse_rbe2;
+  table["RBAR"] = parse_rbar;
+  table["SPC"] = parse_spc;
+  table["SPC1"] = parse_spc1;
+  table["SPCADD"] = parse_spcadd;
+  table["MPC"] = parse_mpc;
+  table["MPCADD"] = parse_mpcadd;
+}
+
+}  // namespace bough::nastran::detail

@@ -1,0 +1,141 @@
+#include "bough/formats/nastran/detail/parsers.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+struct Orientation {
+  int g0 = 0;
+  std::optional<Eigen::Vector3d> v;
+};
+
+/// Fields i..i+2: an integer alone is the grid G0, otherwise X1 X2 X3. `flag` is the old integer in the OFFT field: 1
+/// says vector, 2 says grid. Nothing when all three are blank.
+Orientation read_orientation(Card& card, int i, int flag = 0) {
+  Orientation orientation;
+  if (card.is_blank(i, i + 3)) return orientation;
+  if (card.is_integer(i) && card.is_blank(i + 1, i + 3) && flag != 1) {
+    orientation.g0 = card.read_id(i, "G0");
+  } else {
+    orientation.v = card.read_vector(i, "X1 X2 X3");
+    if (orientation.v->isZero(0.0) && card.is_ok())
+      card.fail("deck.field-range", i, "the orientation vector is zero", "give a vector that is not along the element");
+  }
+  return orientation;
+}
+
+/// Field 9: offset frames such as GGO, or the flag 1 or 2 of older decks. O and E both mean the element's frame.
+std::string read_offt(Card& card, int i, const std::string& fallback, int& flag) {
+  flag = 0;
+  if (card.is_blank(i)) return fallback;
+  auto offt = card.get_upper(i);
+  if (offt == "1" || offt == "2") {
+    flag = offt[0] - '0';
+    return fallback;
+  }
+  const auto is_one_of = [&](std::size_t k, std::string_view letters) {
+    return letters.find(offt[k]) != std::string_view::npos;
+  };
+  if (offt.size() != 3 || !is_one_of(0, "GB") || !is_one_of(1, "GOE") || !is_one_of(2, "GOE")) {
+    card.fail("deck.bad-word", i,
+              "OFFT is '" + std::string(card.get(i)) + "', expected three letters such as GGG, BGG or GOO");
+    return fallback;
+  }
+  for (char& c : offt)
+    if (c == 'E') c = 'O';
+  return offt;
+}
+
+unsigned read_pins(Card& card, int i, const char* what) {
+  const unsigned pins = card.read_components(i, what, 0);
+  if (pins == 63u) card.fail("deck.field-range", i, std::string(what) + " releases all six components of one end");
+  return pins;
+}
+
+void parse_beam(Card& card, Reading& r, bool is_cbeam) {
+  const auto& defaults = is_cbeam ? r.beam_defaults : r.bar_defaults;
+  records::BeamElement e;
+  e.is_cbeam = is_cbeam;
+  e.id = card.read_id(0, "EID");
+  e.pid = card.read_id(1, "PID", defaults.pid > 0 ? defaults.pid : e.id);
+  e.ga = card.read_id(2, "GA");
+  e.gb = card.read_id(3, "GB");
+  int flag = 0;
+  e.offt = read_offt(card, 7, defaults.offt, flag);
+  auto orientation = read_orientation(card, 4, flag);
+  if (orientation.g0 == 0 && !orientation.v) orientation = {defaults.g0, defaults.v};
+  e.g0 = orientation.g0;
+  if (orientation.v) e.v = *orientation.v;
+  if (e.g0 == 0 && !orientation.v && card.is_ok())
+    card.fail("deck.missing-field", 4, "the orientation is blank, expected G0 or X1 X2 X3",
+              is_cbeam ? "give it on the card or on BEAMOR" : "give it on the card or on BAROR");
+  e.pin_a = read_pins(card, 8, "PA");
+  e.pin_b = read_pins(card, 9, "PB");
+  e.wa = card.read_vector(10, "W1A W2A W3A");
+  e.wb = card.read_vector(13, "W1B W2B W3B");
+  if (is_cbeam) {
+    e.sa = card.read_reference(16, "SA");
+    e.sb = card.read_reference(17, "SB");
+  }
+  e.at = card.get_location();
+  if (r.claim(IdSpace::Beam, e.id, card)) r.deck.beams.push_back(std::move(e));
+}
+
+void parse_cbar(Card& card, Reading& r) { parse_beam(card, r, false); }
+void parse_cbeam(Card& card, Reading& r) { parse_beam(card, r, true); }
+
+void parse_defaults(Card& card, BeamDefaults& defaults) {
+  defaults.pid = card.read_id(1, "PID", 0);
+  int flag = 0;
+  defaults.offt = read_offt(card, 7, "GGG", flag);
+  const auto orientation = read_orientation(card, 4, flag);
+  defaults.g0 = orientation.g0;
+  defaults.v = orientation.v;
+}
+
+void parse_baror(Card& card, Reading& r) { parse_defaults(card, r.bar_defaults); }
+void parse_beamor(Card& card, Reading& r) { parse_defaults(card, r.beam_defaults); }
+
+/// EID PID G1 G2: CROD and CTUBE.
+template <class Element, IdSpace space>
+void parse_two_grids(Card& card, Reading& r, std::vector<Element>& elements) {
+  Element e;
+  e.id = card.read_id(0, "EID");
+  e.pid = card.read_id(1, "PID", e.id);
+  e.ga = card.read_id(2, "G1");
+  e.gb = card.read_id(3, "G2");
+  e.at = card.get_location();
+  if (r.claim(space, e.id, card)) elements.push_back(e);
+}
+
+void parse_crod(Card& card, Reading& r) { parse_two_grids<records::Crod, IdSpace::Rod>(card, r, r.deck.crod); }
+void parse_ctube(Card& card, Reading& r) { parse_two_grids<records::Ctube, IdSpace::Tube>(card, r, r.deck.ctube); }
+
+void parse_conrod(Card& card, Reading& r) {
+  records::Conrod e;
+  e.id = card.read_id(0, "EID");
+  e.ga = card.read_id(1, "G1");
+  e.gb = card.read_id(2, "G2");
+  e.mid = card.read_id(3, "MID");
+  e.A = card.read_real(4, "A", 0.0);
+  e.J = card.read_real(5, "J", 0.0);
+  e.c = card.read_real(6, "C", 0.0);
+  e.nsm = card.read_real(7, "NSM", 0.0);
+  e.at = card.get_location();
+  card.demand(e.A >= 0, 4, "A", "an area that is not negative");
+  card.demand(e.J >= 0, 5, "J", "a value that is not negative");
+  if (r.claim(IdSpace::Conrod, e.id, card)) r.deck.conrod.push_back(e);
+}
+
+}  // namespace
+
+void add_line_element_parsers(ParserTable& table) {
+  table["CBAR"] = parse_cbar;
+  table["CBEAM"] = parse_cbeam;
+  table["BAROR"] = parse_baror;
+  table["BEAMOR"] = parse_beamor;
+  table["CROD"] = parse_crod;
+  table["CTUBE"] = parse_ctube;
+  table["CONROD"] = parse_conrod;
+}
+
+}  // namespace bough::nastran::detail

@@ -1,0 +1,273 @@
+#include <algorithm>
+#include <limits>
+
+#include "bough/formats/nastran/detail/parsers.hpp"
+#include "bough/formats/nastran/detail/sections.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+using records::PbeamlStation;
+using records::PbeamStation;
+
+void read_recovery(Card& card, int first, std::array<Eigen::Vector2d, 4>& points) {
+  for (int i = 0; i < 4; ++i) points[static_cast<std::size_t>(i)] = card.read_point(first + 2 * i, "C1 to F2");
+}
+
+/// Blank and 0.0 both mean that the section has no shear flexibility.
+std::optional<double> read_shear_factor(Card& card, int i, const char* what) {
+  const auto k = card.read_optional_real(i, what);
+  return k && *k != 0.0 ? k : std::nullopt;
+}
+
+void parse_pbar(Card& card, Reading& r) {
+  records::Pbar p;
+  p.id = card.read_id(0, "PID");
+  p.mid = card.read_id(1, "MID");
+  p.A = card.read_real(2, "A", 0.0);
+  p.I1 = card.read_real(3, "I1", 0.0);
+  p.I2 = card.read_real(4, "I2", 0.0);
+  p.J = card.read_real(5, "J", 0.0);
+  p.nsm = card.read_real(6, "NSM", 0.0);
+  for (auto& point : p.recovery) point.setZero();
+  read_recovery(card, 8, p.recovery);
+  p.k1 = read_shear_factor(card, 16, "K1");
+  p.k2 = read_shear_factor(card, 17, "K2");
+  p.I12 = card.read_real(18, "I12", 0.0);
+  p.at = card.get_location();
+  card.demand(p.A >= 0, 2, "A", "an area that is not negative");
+  card.demand(p.I1 >= 0, 3, "I1", "a value that is not negative");
+  card.demand(p.I2 >= 0, 4, "I2", "a value that is not negative");
+  if (p.I12 != 0 && p.I1 * p.I2 <= p.I12 * p.I12)
+    card.fail("deck.field-range", 18, "I12 is " + std::string(card.get(18)) + ", expected I12^2 < I1 I2");
+  if (r.claim(IdSpace::BarProperty, p.id, card)) r.deck.pbar.push_back(p);
+}
+
+/// Group and shape; 0 dimensions when the shape is not known (reported).
+int read_shape(Card& card, std::string& shape) {
+  if (!card.is_blank(2) && !card.is_word(2, "MSCBML0"))
+    card.fail("deck.bad-word", 2, "section group is '" + std::string(card.get(2)) + "', expected MSCBML0",
+              "other groups of sections are not read; give the dimensions of an MSCBML0 shape");
+  shape = card.get_upper(3);
+  const int count = get_num_dimensions(shape);
+  if (count == 0) {
+    const auto nearest = find_nearest(shape, get_shapes());
+    card.fail("deck.unknown-shape", 3, "section shape '" + std::string(card.get(3)) + "' is not known",
+              nearest.empty() ? "write one of the shapes of PBARL and PBEAML" : "did you mean " + nearest);
+  }
+  return count;
+}
+
+void read_dimensions(Card& card, int first, int count, std::vector<double>& dims) {
+  for (int i = first; i < first + count; ++i) {
+    dims.push_back(card.read_real(i, "DIM"));
+    card.demand(card.is_blank(i) || dims.back() >= 0, i, "DIM", "a dimension that is not negative");
+  }
+}
+
+void parse_pbarl(Card& card, Reading& r) {
+  records::Pbarl p;
+  p.id = card.read_id(0, "PID");
+  p.mid = card.read_id(1, "MID");
+  const int count = read_shape(card, p.shape);
+  read_dimensions(card, 8, count, p.dims);
+  if (count > 0) {
+    p.nsm = card.read_real(8 + count, "NSM", 0.0);
+    if (card.get_size() > 9 + count)
+      card.fail("deck.too-many-fields", 9 + count,
+                "shape " + p.shape + " has " + std::to_string(count) + " dimensions and NSM, found more fields",
+                "remove them or correct the shape");
+  }
+  p.at = card.get_location();
+  if (r.claim(IdSpace::BarProperty, p.id, card)) r.deck.pbarl.push_back(std::move(p));
+}
+
+/// X/XB of a station: blank is end B.
+double read_station_position(Card& card, int i) {
+  const double x = card.read_real(i, "X/XB", 1.0);
+  card.demand(x > 0 && x <= 1, i, "X/XB", "a position above 0 and up to 1");
+  return x;
+}
+
+/// Puts stations in order from end A to end B and reports two at one place.
+template <class Station>
+void sort_stations(Card& card, std::vector<Station>& stations) {
+  std::stable_sort(stations.begin(), stations.end(),
+                   [](const Station& a, const Station& b) { return a.x_over_L < b.x_over_L; });
+  for (std::size_t i = 1; i < stations.size(); ++i)
+    if (stations[i].x_over_L == stations[i - 1].x_over_L)
+      card.fail("deck.field-range", 8, "two stations at X/XB = " + std::to_string(stations[i].x_over_L),
+                "give every station another position");
+}
+
+/// A beam section as read: NaN where a field was blank, to be filled from both ends.
+constexpr double blank = std::numeric_limits<double>::quiet_NaN();
+
+double fill(double value, double a, double b, double x) { return value == value ? value : a + x * (b - a); }
+
+constexpr std::array<double PbeamStation::*, 6> station_values{
+    &PbeamStation::A, &PbeamStation::I1, &PbeamStation::I2, &PbeamStation::I12, &PbeamStation::J, &PbeamStation::nsm};
+
+void read_station_values(Card& card, int first, double fallback, PbeamStation& station) {
+  constexpr std::array<const char*, 6> names{"A", "I1", "I2", "I12", "J", "NSM"};
+  for (std::size_t i = 0; i < names.size(); ++i)
+    station.*station_values[i] = card.read_real(first + static_cast<int>(i), names[i], fallback);
+}
+
+bool is_station(const Card& card, int i) {
+  return card.is_word(i, "YES") || card.is_word(i, "YESA") || card.is_word(i, "NO");
+}
+
+/// Blank values: end B takes those of end A, stations between are interpolated.
+void fill_stations(std::vector<PbeamStation>& stations) {
+  const PbeamStation a = stations.front();
+  if (stations.back().x_over_L < 1) {
+    stations.push_back(a);
+    stations.back().x_over_L = 1;
+  }
+  for (const auto value : station_values) {
+    double& b = stations.back().*value;
+    b = fill(b, a.*value, a.*value, 1);
+    for (auto& station : stations) station.*value = fill(station.*value, a.*value, b, station.x_over_L);
+  }
+}
+
+void parse_pbeam(Card& card, Reading& r) {
+  records::Pbeam p;
+  p.id = card.read_id(0, "PID");
+  p.mid = card.read_id(1, "MID");
+  p.at = card.get_location();
+  PbeamStation a;
+  for (auto& point : a.recovery) point.setZero();
+  read_station_values(card, 2, 0.0, a);
+  card.demand(a.A > 0, 2, "A", "a positive area");
+  card.demand(a.I1 >= 0, 3, "I1", "a value that is not negative");
+  card.demand(a.I2 >= 0, 4, "I2", "a value that is not negative");
+  int i = 8;
+  if (!is_station(card, i)) {
+    read_recovery(card, i, a.recovery);
+    i += 8;
+  }
+  p.stations.push_back(a);
+  while (is_station(card, i)) {
+    PbeamStation station;
+    for (auto& point : station.recovery) point.setZero();
+    station.x_over_L = read_station_position(card, i + 1);
+    read_station_values(card, i + 2, blank, station);
+    if (card.is_word(i, "YESA")) station.recovery = a.recovery;
+    const bool has_points = card.is_word(i, "YES") && !is_station(card, i + 8);
+    i += 8;
+    if (has_points) {
+      read_recovery(card, i, station.recovery);
+      i += 8;
+    }
+    p.stations.push_back(station);
+  }
+  sort_stations(card, p.stations);
+  fill_stations(p.stations);
+  p.k1 = card.read_optional_real(i, "K1");
+  p.k2 = card.read_optional_real(i + 1, "K2");
+  p.s1 = card.read_real(i + 2, "S1", 0.0);
+  p.s2 = card.read_real(i + 3, "S2", 0.0);
+  p.nsi_a = card.read_real(i + 4, "NSI(A)", 0.0);
+  p.nsi_b = card.read_real(i + 5, "NSI(B)", p.nsi_a);
+  p.cw_a = card.read_real(i + 6, "CW(A)", 0.0);
+  p.cw_b = card.read_real(i + 7, "CW(B)", p.cw_a);
+  i += 8;
+  p.m1_a = card.read_real(i, "M1(A)", 0.0);
+  p.m2_a = card.read_real(i + 1, "M2(A)", 0.0);
+  p.m1_b = card.read_real(i + 2, "M1(B)", p.m1_a);
+  p.m2_b = card.read_real(i + 3, "M2(B)", p.m2_a);
+  p.n1_a = card.read_real(i + 4, "N1(A)", 0.0);
+  p.n2_a = card.read_real(i + 5, "N2(A)", 0.0);
+  p.n1_b = card.read_real(i + 6, "N1(B)", p.n1_a);
+  p.n2_b = card.read_real(i + 7, "N2(B)", p.n2_a);
+  if (card.get_size() > i + 8)
+    card.fail("deck.too-many-fields", i + 8, "more lines than the stations and the last two lines of the card",
+              "a station begins with YES, YESA or NO");
+  if (r.claim(IdSpace::BeamProperty, p.id, card)) r.deck.pbeam.push_back(std::move(p));
+}
+
+void parse_pbeaml(Card& card, Reading& r) {
+  records::Pbeaml p;
+  p.id = card.read_id(0, "PID");
+  p.mid = card.read_id(1, "MID");
+  p.at = card.get_location();
+  const int count = read_shape(card, p.shape);
+  if (count == 0) return;
+  PbeamlStation a;
+  read_dimensions(card, 8, count, a.dims);
+  a.nsm = card.read_real(8 + count, "NSM(A)", 0.0);
+  p.stations.push_back(a);
+  // The stations follow without gaps: SO, X, dimensions, NSM.
+  for (int i = 9 + count; i < card.get_size(); i += count + 3) {
+    card.read_word(i, "SO", "YES", {"YES", "YESA", "NO"});
+    PbeamlStation station;
+    station.x_over_L = read_station_position(card, i + 1);
+    for (int j = 0; j < count; ++j) {
+      station.dims.push_back(card.read_real(i + 2 + j, "DIM", blank));
+      card.demand(card.is_blank(i + 2 + j) || station.dims.back() >= 0, i + 2 + j, "DIM",
+                  "a dimension that is not negative");
+    }
+    station.nsm = card.read_real(i + 2 + count, "NSM", blank);
+    p.stations.push_back(std::move(station));
+  }
+  sort_stations(card, p.stations);
+  if (p.stations.back().x_over_L < 1) {
+    p.stations.push_back(a);
+    p.stations.back().x_over_L = 1;
+  }
+  auto& b = p.stations.back();
+  b.nsm = fill(b.nsm, a.nsm, a.nsm, 1);
+  for (std::size_t j = 0; j < a.dims.size(); ++j) b.dims[j] = fill(b.dims[j], a.dims[j], a.dims[j], 1);
+  for (auto& station : p.stations) {
+    station.nsm = fill(station.nsm, a.nsm, b.nsm, station.x_over_L);
+    for (std::size_t j = 0; j < a.dims.size(); ++j)
+      station.dims[j] = fill(station.dims[j], a.dims[j], b.dims[j], station.x_over_L);
+  }
+  if (r.claim(IdSpace::BeamProperty, p.id, card)) r.deck.pbeaml.push_back(std::move(p));
+}
+
+void parse_prod(Card& card, Reading& r) {
+  records::Prod p;
+  p.id = card.read_id(0, "PID");
+  p.mid = card.read_id(1, "MID");
+  p.A = card.read_real(2, "A", 0.0);
+  p.J = card.read_real(3, "J", 0.0);
+  p.c = card.read_real(4, "C", 0.0);
+  p.nsm = card.read_real(5, "NSM", 0.0);
+  p.at = card.get_location();
+  card.demand(p.A >= 0, 2, "A", "an area that is not negative");
+  card.demand(p.J >= 0, 3, "J", "a value that is not negative");
+  if (r.claim(IdSpace::RodProperty, p.id, card)) r.deck.prod.push_back(p);
+}
+
+/// A wall thickness that is blank or zero means a solid circle.
+void parse_ptube(Card& card, Reading& r) {
+  records::Ptube p;
+  p.id = card.read_id(0, "PID");
+  p.mid = card.read_id(1, "MID");
+  p.od = card.read_real(2, "OD");
+  p.t = card.read_real(3, "T", 0.0);
+  p.nsm = card.read_real(4, "NSM", 0.0);
+  p.od2 = card.read_optional_real(5, "OD2");
+  p.at = card.get_location();
+  card.demand(card.is_blank(2) || p.od > 0, 2, "OD", "a positive diameter");
+  card.demand(p.t >= 0 && 2 * p.t <= p.od * (1 + 1e-6), 3, "T", "a thickness between 0 and OD/2");
+  card.demand(!p.od2 || *p.od2 > 0, 5, "OD2", "a positive diameter");
+  if (p.t == 0) p.t = p.od / 2;
+  if (r.claim(IdSpace::TubeProperty, p.id, card)) r.deck.ptube.push_back(p);
+}
+
+}  // namespace
+
+void add_line_property_parsers(ParserTable& table) {
+  table["PBAR"] = parse_pbar;
+  table["PBARL"] = parse_pbarl;
+  table["PBEAM"] = parse_pbeam;
+  table["PBEAML"] = parse_pbeaml;
+  table["PROD"] = parse_prod;
+  table["PTUBE"] = parse_ptube;
+}
+
+}  // namespace bough::nastran::detail

@@ -1,0 +1,63 @@
+#include "bough/formats/nastran/detail/parsers.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+void demand_direction(Card& card, double size, const Eigen::Vector3d& n, int i) {
+  if (card.is_ok() && size != 0 && n.isZero(0.0))
+    card.fail("deck.field-range", i, "N1 N2 N3 are all zero", "give the direction");
+}
+
+void parse_point_load(Card& card, Reading& r, bool is_moment) {
+  records::PointLoad load;
+  load.is_moment = is_moment;
+  load.sid = card.read_id(0, "SID");
+  load.g = card.read_id(1, "G");
+  load.cid = card.read_reference(2, "CID");
+  load.f = card.read_real(3, is_moment ? "M" : "F", 0.0);
+  load.n = card.read_vector(4, "N1 N2 N3");
+  load.at = card.get_location();
+  demand_direction(card, load.f, load.n, 4);
+  if (card.is_ok()) r.deck.point_loads.push_back(load);
+}
+void parse_force(Card& card, Reading& r) { parse_point_load(card, r, false); }
+void parse_moment(Card& card, Reading& r) { parse_point_load(card, r, true); }
+
+void parse_grav(Card& card, Reading& r) {
+  records::Gravity g;
+  g.sid = card.read_id(0, "SID");
+  g.cid = card.read_reference(1, "CID");
+  g.a = card.read_real(2, "A", 0.0);
+  g.n = card.read_vector(3, "N1 N2 N3");
+  g.at = card.get_location();
+  demand_direction(card, g.a, g.n, 3);
+  if (card.is_ok()) r.deck.gravity.push_back(g);
+}
+
+void parse_load(Card& card, Reading& r) {
+  records::LoadCombination load;
+  load.sid = card.read_id(0, "SID");
+  load.s = card.read_real(1, "S");
+  for (int i = 2; i < card.get_size(); i += 2) {
+    if (card.is_blank(i, i + 2)) continue;
+    const double scale = card.read_real(i, "Si");
+    load.terms.emplace_back(scale, card.read_id(i + 1, "Li"));
+    if (load.terms.back().second == load.sid && card.is_ok())
+      card.fail("deck.field-range", i + 1, "set " + std::to_string(load.sid) + " contains itself");
+  }
+  if (load.terms.empty() && card.is_ok())
+    card.fail("deck.missing-field", 2, "S1 L1 are blank, expected a set at least");
+  load.at = card.get_location();
+  if (r.claim(IdSpace::Load, load.sid, card)) r.deck.loads.push_back(std::move(load));
+}
+
+}  // namespace
+
+void add_load_parsers(ParserTable& table) {
+  table["FORCE"] = parse_force;
+  table["MOMENT"] = parse_moment;
+  table["GRAV"] = parse_grav;
+  table["LOAD"] = parse_load;
+}
+
+}  // namespace bough::nastran::detail

@@ -1,0 +1,22 @@
+#include "bough/formats/nastran/detail/parsers.hpp"
+
+namespace bough::nastran::detail {
+
+const ParserTable& get_card_parsers() {
+  static const ParserTable table = [] {
+    ParserTable t;
+    add_grid_parsers(t);
+    add_material_parsers(t);
+    add_line_property_parsers(t);
+    add_point_property_parsers(t);
+    add_line_element_parsers(t);
+    add_point_element_parsers(t);
+    add_constraint_parsers(t);
+    add_load_parsers(t);
+    add_solution_parsers(t);
+    return t;
+  }();
+  return table;
+}
+
+}  // namespace bough::nastran::detail

@@ -1,0 +1,114 @@
+#include <algorithm>
+
+#include "bough/formats/nastran/detail/parsers.hpp"
+#include "bough/formats/nastran/detail/text.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+using records::EigenMethod;
+
+const std::vector<std::string>& get_norms() {
+  static const std::vector<std::string> norms{"MASS", "MAX", "POINT", "AF"};
+  return norms;
+}
+
+/// KEYWORD=value pairs on the continuation lines of EIGRL; they do not respect fields, so the bare line is read.
+void read_keywords(Card& card, EigenMethod& m) {
+  const auto& lines = card.get_text().lines;
+  for (std::size_t k = 1; k < lines.size(); ++k) {
+    const int first_field = lines[k].first_field;
+    std::string text(lines[k].text);
+    if (text.find('=') == std::string::npos) continue;
+    if (text.front() == '+' || text.front() == '*') text.erase(0, std::min(text.find_first_of(" ,"), text.size()));
+    std::replace(text.begin(), text.end(), ',', ' ');
+    for (std::size_t at = text.find('='); at != std::string::npos; at = text.find('=', at + 1)) {
+      const auto before = trim(std::string_view(text).substr(0, at));
+      const auto start = before.find_last_of(" =");
+      const auto key = make_upper(start == std::string_view::npos ? before : before.substr(start + 1));
+      const auto after = trim(std::string_view(text).substr(at + 1));
+      const auto value = after.substr(0, after.find(' '));
+      const auto number = parse_real(value);
+      const auto bad = [&](const char* expected) {
+        card.fail("deck.bad-keyword", first_field, key + " is '" + std::string(value) + "', expected " + expected);
+      };
+      if (key == "V1" || key == "V2") {
+        if (!number) bad("a real number");
+        (key == "V1" ? m.f1 : m.f2) = number;
+      } else if (key == "ND") {
+        const auto count = parse_int(value);
+        if (!count || *count < 1) bad("a positive integer");
+        m.num_modes = count.value_or(0);
+      } else if (key == "NORM") {
+        m.norm = make_upper(value);
+        if (std::find(get_norms().begin(), get_norms().end(), m.norm) == get_norms().end()) bad("MASS or MAX");
+      } else if (key != "MSGLVL" && key != "MAXSET" && key != "SHFSCL" && key != "ALPH" && key != "NUMS" &&
+                 key.substr(0, 1) != "F") {
+        card.fail("deck.bad-keyword", first_field, "keyword '" + key + "' is not known",
+                  "expected V1, V2, ND, MSGLVL, MAXSET, SHFSCL, NORM, ALPH, NUMS or Fi");
+      }
+    }
+  }
+}
+
+/// Without ND and V2 Nastran looks for the lowest root only.
+void parse_eigrl(Card& card, Reading& r) {
+  EigenMethod m;
+  m.sid = card.read_id(0, "SID");
+  m.f1 = card.read_optional_real(1, "V1");
+  m.f2 = card.read_optional_real(2, "V2");
+  m.num_modes = card.read_int(3, "ND", 0);
+  m.norm = card.read_word(7, "NORM", "MASS", get_norms());
+  m.at = card.get_location();
+  card.demand(card.is_blank(3) || m.num_modes > 0, 3, "ND", "a positive integer");
+  read_keywords(card, m);
+  if (m.f1 && m.f2 && *m.f2 <= *m.f1)
+    card.fail("deck.field-range", 2, "V2 is '" + std::string(card.get(2)) + "', expected a value above V1");
+  if (m.num_modes == 0 && !m.f2) m.num_modes = 1;
+  if (r.claim(IdSpace::EigenMethod, m.sid, card)) r.deck.eigen_methods.push_back(std::move(m));
+}
+
+void parse_eigr(Card& card, Reading& r) {
+  EigenMethod m;
+  m.is_eigrl = false;
+  m.sid = card.read_id(0, "SID");
+  m.method = card.get_upper(1);
+  if (m.method.empty()) m.method = "LAN";
+  m.f1 = card.read_optional_real(2, "F1");
+  m.f2 = card.read_optional_real(3, "F2");
+  const int estimate = card.read_int(4, "NE", 0);
+  m.num_modes = card.read_int(5, "ND", 0);
+  if (m.num_modes == 0 && (m.method == "INV" || m.method == "SINV")) m.num_modes = 3 * estimate;
+  m.norm = card.read_word(8, "NORM", "MASS", get_norms());
+  m.norm_grid = card.read_reference(9, "G");
+  m.norm_component = card.read_component(10, "C");
+  m.at = card.get_location();
+  card.demand(m.num_modes >= 0, 5, "ND", "zero or a positive integer");
+  if (m.norm == "POINT" && m.norm_grid == 0 && card.is_ok())
+    card.fail("deck.missing-field", 9, "G is blank, expected the grid of NORM = POINT");
+  if (r.claim(IdSpace::EigenMethod, m.sid, card)) r.deck.eigen_methods.push_back(std::move(m));
+}
+
+/// The last value of a name counts.
+void parse_param(Card& card, Reading& r) {
+  records::Param p{card.get_upper(0), card.get_upper(1), card.get_location()};
+  if (p.name.empty()) {
+    card.fail("deck.missing-field", 0, "the name is blank, expected the name of a parameter");
+    return;
+  }
+  const auto* earlier = r.deck.find_param(p.name);
+  if (earlier != nullptr && earlier->value != p.value)
+    card.warn("deck.repeated-param", 1, p.name + " is '" + p.value + "' here and '" + earlier->value + "' before",
+              "the last one is used; remove one of them");
+  r.deck.params.push_back(std::move(p));
+}
+
+}  // namespace
+
+void add_solution_parsers(ParserTable& table) {
+  table["EIGRL"] = parse_eigrl;
+  table["EIGR"] = parse_eigr;
+  table["PARAM"] = parse_param;
+}
+
+}  // namespace bough::nastran::detail

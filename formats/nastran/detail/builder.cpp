@@ -1,0 +1,283 @@
+#include "bough/formats/nastran/detail/builder.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <tuple>
+#include <unordered_set>
+
+#include "bough/formats/nastran/detail/known_cards.hpp"
+#include "bough/formats/nastran/detail/replication.hpp"
+#include "bough/formats/nastran/detail/text.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+/// Beyond this many lines that are no cards the file is not a deck.
+constexpr int max_unreadable = 20;
+constexpr int max_repeats = 1'000'000;
+
+/// How one card name is treated, and how often it came.
+struct NameEntry {
+  CardParser parser = nullptr;  ///< nullptr: counted only
+  int count = 0;
+  records::CardLocation first;
+};
+
+bool is_card_name(std::string_view name) {
+  if (name.empty() || name.size() > 8 || !std::isalpha(static_cast<unsigned char>(name.front()))) return false;
+  return std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c); });
+}
+
+class Builder {
+ public:
+  Builder(const Source& source, std::size_t first_line, const ReadOptions& options, records::Deck& deck,
+          Diagnostics& diagnostics)
+      : source_(source),
+        deck_(deck),
+        diagnostics_(diagnostics),
+        images_(make_card_images(source, first_line, diagnostics)),
+        reading_(deck, diagnostics) {
+    for (const auto& name : options.ignore_cards) ignored_.insert(make_upper(trim(name)));
+    reading_.reread = [this](int card, CardText& text) { join(card, text); };
+  }
+
+  void read() {
+    const int num_cards = static_cast<int>(images_.cards.size());
+    for (int card = 0; card < num_cards; ++card) read_defaults(card);
+    for (int card = 0; card < num_cards && !stopped_; ++card) read_card(card);
+    if (num_unreadable_ > max_unreadable)
+      diagnostics_.error("deck.unreadable-line", {deck_.files.front(), 0, 0},
+                         "and " + std::to_string(num_unreadable_ - max_unreadable) + " more lines that are no cards",
+                         "check that the file is a Nastran deck");
+    expand_ranges();
+    report_names();
+  }
+
+ private:
+  const Line& line(int i) const { return source_.lines[static_cast<std::size_t>(i)]; }
+  const CardImage& image(int card) const {
+    return images_.images[static_cast<std::size_t>(images_.cards[static_cast<std::size_t>(card)])];
+  }
+
+  /// The text of a card; returns the line with too many fields, or nullptr.
+  const Line* join(int card, CardText& text) {
+    text.clear();
+    const Line* excess = nullptr;
+    const CardImage* part = &image(card);
+    while (true) {
+      for (int i = part->first_line; i < part->first_line + part->num_lines; ++i) {
+        split_line(line(i).text, split_);
+        if (text.lines.empty()) {
+          text.name.assign(split_.name);
+          for (char& c : text.name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        }
+        // Large lines come in pairs; an odd one is followed by blanks.
+        if (!split_.is_large) pad(text);
+        text.lines.push_back({static_cast<int>(text.fields.size()), line(i).at, line(i).text});
+        text.fields.insert(text.fields.end(), split_.data.begin(), split_.data.end());
+        if (split_.num_excess > 0) excess = &line(i);
+      }
+      if (part->next < 0) break;
+      part = &images_.images[static_cast<std::size_t>(part->next)];
+    }
+    pad(text);
+    return excess;
+  }
+
+  static void pad(CardText& text) { text.fields.resize((text.fields.size() + 7) / 8 * 8); }
+
+  void read_defaults(int card) {
+    const auto first = get_first_field(line(image(card).first_line).text);
+    if (first.size() < 5 || first.size() > 7 ||
+        (first.front() != 'G' && first.front() != 'g' && first.front() != 'B' && first.front() != 'b'))
+      return;
+    auto name = make_upper(first);
+    if (name.back() == '*') name = trim(std::string_view(name).substr(0, name.size() - 1));
+    if (!is_default_card(name) || ignored_.count(name) > 0) return;
+    join(card, text_);
+    Card parsed(text_, deck_.files, diagnostics_);
+    if (const auto [at, is_new] = defaults_seen_.emplace(name, parsed.get_location()); !is_new) {
+      parsed.fail("deck.duplicate-id", 0, "the card is given twice, first at " + at_text(at->second),
+                  "keep one of them");
+      return;
+    }
+    get_card_parsers().at(name)(parsed, reading_);
+  }
+
+  std::string at_text(const records::CardLocation& at) const {
+    const auto where = deck_.locate(at);
+    return where.file + ":" + std::to_string(where.line);
+  }
+
+  void read_card(int card) {
+    if (const Line* excess = join(card, text_))
+      diagnostics_.error("deck.too-many-fields", deck_.locate(excess->at),
+                         text_.name + ": the free-field line has data after field 9",
+                         "continue on another line that begins with a comma");
+    reading_.card = card;
+    if (!Replicator::is_relative(text_)) {
+      last_is_plain_ = true;
+      last_card_ = card;
+      dispatch();
+      return;
+    }
+    if (last_is_plain_) {
+      join(last_card_, relative_);
+      replicator_.remember(relative_);
+      replicator_.clear_increments();
+      last_is_plain_ = false;
+    }
+    reading_.card = -1;
+    if (const auto repeats = Replicator::find_repeats(text_)) {
+      if (*repeats < 1 || *repeats > max_repeats)
+        fail_replication("the repeat count is " + std::to_string(*repeats) + ", expected 1 to 1000000");
+      for (int i = 0; i < *repeats && *repeats <= max_repeats; ++i)
+        if (!finish_relative(replicator_.make_copy(text_))) return;
+      return;
+    }
+    finish_relative(replicator_.resolve(text_));
+  }
+
+  bool finish_relative(const std::string& wrong) {
+    if (!wrong.empty()) {
+      fail_replication(wrong);
+      return false;
+    }
+    for (std::size_t i = 1; i < text_.lines.size(); ++i) text_.lines[i].first_field = static_cast<int>(8 * i);
+    pad(text_);
+    replicator_.remember(text_);
+    dispatch();
+    return true;
+  }
+
+  void fail_replication(const std::string& wrong) {
+    diagnostics_.error("deck.bad-replication", deck_.locate(text_.lines.front().at), wrong,
+                       "see the rules of replication, or write the card out");
+  }
+
+  void dispatch() {
+    NameEntry* entry = last_entry_;
+    if (entry == nullptr || text_.name != last_name_) {
+      if (!is_card_name(text_.name)) {
+        refuse_line();
+        return;
+      }
+      entry = &find_entry();
+      last_entry_ = entry;
+      last_name_ = text_.name;
+    }
+    if (entry->count++ == 0) entry->first = text_.lines.front().at;
+    if (entry->parser == nullptr || is_default_card(text_.name)) return;
+    Card card(text_, deck_.files, diagnostics_);
+    entry->parser(card, reading_);
+  }
+
+  NameEntry& find_entry() {
+    const auto [found, is_new] = names_.try_emplace(text_.name);
+    if (is_new && ignored_.count(text_.name) == 0) {
+      const auto& parsers = get_card_parsers();
+      if (const auto parser = parsers.find(text_.name); parser != parsers.end()) found->second.parser = parser->second;
+    }
+    return found->second;
+  }
+
+  void refuse_line() {
+    const auto where = deck_.locate(text_.lines.front().at);
+    const auto first = text_.lines.front().text;
+    if (is_word(find_first_word(first), "BEGIN")) {
+      diagnostics_.error("deck.unsupported-section", where,
+                         "'" + std::string(trim(first)) + "' begins another bulk section",
+                         "superelement and other sections are not read; give the structure as one bulk data section");
+      stopped_ = true;
+      return;
+    }
+    if (++num_unreadable_ > max_unreadable) return;
+    diagnostics_.error("deck.unreadable-line", where,
+                       "'" + text_.name + "' is no card name, expected a letter and up to seven letters or digits",
+                       "fixed fields are eight columns wide and begin with the name; comments begin with $");
+  }
+
+  /// SPC1 lists with THRU mean the grids that exist.
+  void expand_ranges() {
+    if (reading_.spc_ranges.empty()) return;
+    std::vector<int> ids;
+    ids.reserve(deck_.grids.size());
+    for (const auto& grid : deck_.grids) ids.push_back(grid.id);
+    std::sort(ids.begin(), ids.end());
+    for (const auto& spc : reading_.spc_ranges)
+      for (auto id = std::lower_bound(ids.begin(), ids.end(), spc.range.first);
+           id != ids.end() && *id <= spc.range.last; ++id)
+        if (spc.range.contains(*id)) deck_.spc.push_back({spc.sid, *id, spc.c, 0.0, true, spc.at});
+  }
+
+  /// Counts of all names; one message for each name that is not read, in the order of the deck.
+  void report_names() {
+    std::vector<const std::pair<const std::string, NameEntry>*> unread;
+    for (const auto& entry : names_) {
+      deck_.card_counts[entry.first] = entry.second.count;
+      if (entry.second.parser == nullptr) unread.push_back(&entry);
+    }
+    std::sort(unread.begin(), unread.end(), [](const auto* a, const auto* b) {
+      const auto &x = a->second.first, &y = b->second.first;
+      return std::tie(x.file, x.line, a->first) < std::tie(y.file, y.line, b->first);
+    });
+    for (const auto* entry : unread) report_unread(entry->first, entry->second);
+  }
+
+  void report_unread(const std::string& name, const NameEntry& entry) {
+    const auto effect = find_effect(name);
+    const auto where = deck_.locate(entry.first);
+    deck_.unused.push_back({name, effect.value_or(records::CardEffect::None), entry.count, entry.first});
+    const std::string times = entry.count == 1 ? "1 card" : std::to_string(entry.count) + " cards, the first here";
+    const bool is_ignored = ignored_.count(name) > 0;
+    if (!effect) {
+      const auto nearest = find_nearest_card(name);
+      const std::string what = name + " is not the name of a Nastran card (" + times + ")";
+      if (is_ignored)
+        diagnostics_.warning("deck.ignored-card", where, what, "ignored as asked");
+      else
+        diagnostics_.error("deck.unknown-card", where, what,
+                           (nearest.empty() ? std::string{} : "did you mean " + nearest + "; ") + "--ignore " + name +
+                               " reads the deck without it");
+      return;
+    }
+    const bool has_effect = *effect != records::CardEffect::None && *effect != records::CardEffect::Load;
+    if (is_ignored)
+      diagnostics_.warning("deck.ignored-card", where, name + " is ignored (" + times + ")",
+                           std::string("it would carry ") + get_effect_name(*effect));
+    else if (has_effect)
+      diagnostics_.error("deck.unsupported-card", where,
+                         name + " is not supported and carries " + get_effect_name(*effect) + " (" + times + ")",
+                         "replace it, or --ignore " + name + " to compute without it");
+    else
+      diagnostics_.warning("deck.unused-card", where, name + " is not used (" + times + ")",
+                           std::string("it carries ") + get_effect_name(*effect));
+  }
+
+  const Source& source_;
+  records::Deck& deck_;
+  Diagnostics& diagnostics_;
+  CardImages images_;
+  Reading reading_;
+  Replicator replicator_;
+  std::unordered_set<std::string> ignored_;
+  std::unordered_map<std::string, NameEntry> names_;
+  std::unordered_map<std::string, records::CardLocation> defaults_seen_;
+  SplitLine split_;
+  CardText text_, relative_;
+  NameEntry* last_entry_ = nullptr;
+  std::string last_name_;
+  bool last_is_plain_ = false;
+  int last_card_ = -1;
+  int num_unreadable_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+void read_bulk(const Source& source, std::size_t first_line, const ReadOptions& options, records::Deck& deck,
+               Diagnostics& diagnostics) {
+  Builder(source, first_line, options, deck, diagnostics).read();
+}
+
+}  // namespace bough::nastran::detail

@@ -1,0 +1,101 @@
+#pragma once
+/// \file One card with typed access to its fields. Field i = 0 is the first data field (field 2 of the line, in the
+/// counting of the manuals); every line of a card has eight of them whatever its format.
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bough/formats/records/deck.hpp"
+
+namespace bough::nastran::detail {
+
+/// The bare text of a card.
+struct CardText {
+  std::string name;                      ///< upper case
+  std::vector<std::string_view> fields;  ///< trimmed; a multiple of eight
+  struct LineStart {
+    int first_field = 0;
+    records::CardLocation at;
+    std::string_view text;
+  };
+  std::vector<LineStart> lines;
+
+  void clear() {
+    name.clear();
+    fields.clear();
+    lines.clear();
+  }
+};
+
+/// Typed reading. A field that cannot be read adds an error (deck.bad-integer, deck.bad-real, deck.bad-components,
+/// deck.bad-word, deck.missing-field, deck.field-range) and gives the default, so that one card reports all its errors;
+/// is_ok() tells whether the card had any.
+class Card {
+ public:
+  Card(const CardText& text, const std::vector<std::string>& files, Diagnostics& diagnostics)
+      : text_(text), files_(files), diagnostics_(diagnostics), size_(static_cast<int>(text.fields.size())) {
+    while (size_ > 0 && text.fields[static_cast<std::size_t>(size_ - 1)].empty()) --size_;
+  }
+
+  const std::string& get_name() const { return text_.name; }
+  const CardText& get_text() const { return text_; }
+  records::CardLocation get_location() const { return text_.lines.front().at; }
+  bool is_ok() const { return ok_; }
+  /// Index after the last field that is not blank.
+  int get_size() const { return size_; }
+  std::string_view get(int i) const {
+    return i >= 0 && i < size_ ? text_.fields[static_cast<std::size_t>(i)] : std::string_view{};
+  }
+  bool is_blank(int i) const { return get(i).empty(); }
+  bool is_blank(int first, int last) const;  ///< fields first .. last-1
+  bool is_integer(int i) const;
+  bool is_word(int i, std::string_view upper_case_word) const;
+
+  int read_int(int i, const char* what);  ///< required
+  int read_int(int i, const char* what, int fallback);
+  int read_id(int i, const char* what);                           ///< required, > 0
+  int read_id(int i, const char* what, int fallback);             ///< > 0 or blank
+  int read_reference(int i, const char* what, int fallback = 0);  ///< >= 0 or blank: coordinate systems, open ends
+  double read_real(int i, const char* what);                      ///< required
+  double read_real(int i, const char* what, double fallback);
+  std::optional<double> read_optional_real(int i, const char* what);
+  Eigen::Vector3d read_vector(int i, const char* what);  ///< fields i..i+2, blank = 0
+  Eigen::Vector2d read_point(int i, const char* what);   ///< fields i, i+1, blank = 0
+  unsigned read_components(int i, const char* what);     ///< required
+  unsigned read_components(int i, const char* what, unsigned fallback);
+  int read_component(int i, const char* what);  ///< one component 0..6, blank = 0
+  /// A word of `choices` (upper case), `fallback` when blank.
+  std::string read_word(int i, const char* what, std::string_view fallback, const std::vector<std::string>& choices);
+  std::string get_upper(int i) const;
+
+  /// An error of this card at field i (its line), or at the card's first line.
+  void fail(std::string_view id, int i, std::string what, std::string advice = {});
+  void warn(std::string_view id, int i, std::string what, std::string advice = {});
+  /// deck.field-range unless `condition`.
+  void demand(bool condition, int i, const char* what, const char* expected);
+
+ private:
+  SourceLocation locate(int i) const;
+  void fail_field(std::string_view id, int i, const char* what, const char* expected);
+
+  const CardText& text_;
+  const std::vector<std::string>& files_;
+  Diagnostics& diagnostics_;
+  int size_;
+  bool ok_ = true;
+};
+
+/// A list of ids with THRU, BY, EXCEPT.
+struct IdRange {
+  int first = 0, last = 0, step = 1;  ///< a single id: first = last
+  bool is_thru = false;
+  std::vector<int> except;
+  bool contains(int id) const;
+};
+/// Reads fields first .. last-1, skipping blanks. Adds deck.bad-list.
+std::vector<IdRange> read_id_list(Card& card, int first, int last, const char* what);
+/// Every id of the list in order. Adds deck.bad-list for a range beyond a million ids.
+std::vector<int> read_ids(Card& card, int first, int last, const char* what);
+
+}  // namespace bough::nastran::detail

@@ -1,0 +1,223 @@
+#include "bough/formats/nastran/detail/control.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "bough/formats/nastran/detail/text.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+using records::Subcase;
+
+/// Output requests and solver settings without influence on what Bough computes; Nastran reads the first four letters.
+constexpr std::array ignored_commands{
+    "ACCE", "ADAC", "AECO", "ANAL", "AUTO", "BCRE", "BOUT", "DATA", "DISP", "DSAP", "DSYM", "ECHO", "EDE",
+    "EKE",  "ELFO", "ELST", "ENTH", "EQUI", "ESE",  "EXTS", "FLUX", "FORC", "GPFO", "GPKE", "GPST", "GPRS",
+    "GROU", "HDOT", "HOUT", "INTE", "LINE", "MAXL", "MAXM", "MEFF", "MODA", "MODE", "MPCF", "MPRE", "NLOU",
+    "NLPR", "NLST", "NOUT", "OFRE", "OLOA", "OMOD", "OTIM", "OUTP", "OUTR", "PAGE", "POST", "PRES", "RCRO",
+    "RESV", "SACC", "SDIS", "SEAL", "SEDR", "SEEX", "SEFI", "SET",  "SEUP", "SETS", "SKIP", "SORT", "SPCF",
+    "STRA", "STRE", "STRF", "SURF", "SVEC", "SVEL", "THER", "VECT", "VELO", "VOLU", "WEIG"};
+
+/// Exact word, or an abbreviation of at least `shortest` letters.
+bool is_command(std::string_view word, std::string_view command, std::size_t shortest) {
+  return word.size() >= shortest && word.size() <= command.size() && word == command.substr(0, word.size());
+}
+
+struct Command {
+  std::string word;        ///< upper case
+  std::string options;     ///< what stands in parentheses, upper case
+  std::string_view value;  ///< after "=" or, without one, after the word
+};
+
+Command split_command(std::string_view text) {
+  Command command;
+  text = trim(text);
+  const auto word = find_first_word(text);
+  command.word = make_upper(word);
+  auto rest = trim(text.substr(word.size()));
+  if (!rest.empty() && rest.front() == '(') {
+    const auto close = rest.find(')');
+    command.options = make_upper(rest.substr(1, close == std::string_view::npos ? close : close - 1));
+    rest = close == std::string_view::npos ? std::string_view{} : trim(rest.substr(close + 1));
+  }
+  if (!rest.empty() && rest.front() == '=') rest = trim(rest.substr(1));
+  command.value = rest;
+  return command;
+}
+
+class CaseControl {
+ public:
+  CaseControl(const Source& source, records::Deck& deck, Diagnostics& diagnostics)
+      : source_(source), deck_(deck), diagnostics_(diagnostics) {}
+
+  void read(std::size_t first, std::size_t last, bool with_executive) {
+    for (std::size_t i = first; i < last; ++i) {
+      at_ = source_.lines[i].at;
+      const auto command = split_command(source_.lines[i].text);
+      read_command(command, with_executive);
+      // A list such as SET goes on while lines end with a comma; a title may end with one.
+      if (is_title(command.word)) continue;
+      while (i + 1 < last && source_.lines[i].text.back() == ',') ++i;
+    }
+    finish();
+  }
+
+ private:
+  static bool is_title(std::string_view word) {
+    return is_command(word, "TITLE", 4) || is_command(word, "SUBTITLE", 4) || is_command(word, "LABEL", 4);
+  }
+
+  Subcase& current() { return in_subcase_ ? deck_.subcases.back() : above_; }
+
+  void read_command(const Command& c, bool with_executive) {
+    if (c.word.empty()) return;
+    if (is_command(c.word, "OUTPUT", 4)) {
+      in_plot_section_ = !c.options.empty();
+      return;
+    }
+    if (is_command(c.word, "SUBCASE", 5) || c.word == "SUBC") {
+      begin_subcase(c);
+      return;
+    }
+    if (in_plot_section_) return;
+    if (c.word == "SUBCOM" || c.word == "SYMCOM" || c.word == "REPCASE") {
+      // Combinations of results: what follows belongs to them, not to the subcase before.
+      skipping_ = true;
+      note(c.word);
+      return;
+    }
+    if (skipping_) return;
+    if (is_command(c.word, "TITLE", 4))
+      current().title = c.value;
+    else if (is_command(c.word, "SUBTITLE", 4))
+      current().subtitle = c.value;
+    else if (is_command(c.word, "LABEL", 4))
+      current().label = c.value;
+    else if (c.word == "SPC")
+      read_set(c, current().spc);
+    else if (c.word == "MPC")
+      read_set(c, current().mpc);
+    else if (c.word == "LOAD")
+      read_set(c, current().load);
+    else if (is_command(c.word, "METHOD", 4)) {
+      if (c.options != "FLUID") read_set(c, current().method);
+    } else if (is_command(c.word, "STATSUB", 4)) {
+      if (c.options != "PRELOAD") read_set(c, current().statsub);
+    } else if (c.word == "PARAM")
+      read_param(c);
+    else if (with_executive && is_command(c.word, "SOL", 3))
+      deck_.sol = make_upper(c.value.substr(0, c.value.find_first_of(" ,")));
+    else if (!is_ignored(c.word))
+      note(c.word);
+  }
+
+  static bool is_ignored(std::string_view word) {
+    if (word.substr(0, 2) == "XY" || word.substr(0, 4) == "PLOT") return true;
+    return std::any_of(ignored_commands.begin(), ignored_commands.end(),
+                       [&](std::string_view c) { return c.size() < 4 ? word == c : word.substr(0, 4) == c; });
+  }
+
+  void begin_subcase(const Command& c) {
+    in_plot_section_ = skipping_ = false;
+    const auto id = parse_int(c.value.substr(0, c.value.find_first_of(" ,")));
+    if (!id || *id <= 0) {
+      bad_value(c);
+      return;
+    }
+    for (const auto& other : deck_.subcases)
+      if (other.id == *id)
+        diagnostics_.error("deck.case-control-value", deck_.locate(at_),
+                           "subcase " + std::to_string(*id) + " is defined twice", "number the subcases differently");
+    deck_.subcases.push_back(above_);
+    deck_.subcases.back().id = *id;
+    in_subcase_ = true;
+  }
+
+  void read_set(const Command& c, int& set) {
+    const auto id = parse_int(c.value);
+    if (id && *id >= 0)
+      set = *id;
+    else
+      bad_value(c);
+  }
+
+  void read_param(const Command& c) {
+    auto rest = c.value;
+    if (!rest.empty() && rest.front() == ',') rest = trim(rest.substr(1));
+    const auto comma = rest.find(',');
+    if (comma == std::string_view::npos) return;
+    const auto value = rest.substr(comma + 1);
+    deck_.params.push_back(
+        {make_upper(trim(rest.substr(0, comma))), make_upper(trim(value.substr(0, value.find(',')))), at_});
+  }
+
+  void bad_value(const Command& c) {
+    diagnostics_.error("deck.case-control-value", deck_.locate(at_),
+                       c.word + " selects '" + std::string(c.value) + "', expected the number of a set",
+                       "write " + c.word + " = n");
+  }
+
+  void note(const std::string& word) {
+    if (ignored_.empty()) first_ignored_ = at_;
+    if (std::find(ignored_.begin(), ignored_.end(), word) == ignored_.end()) ignored_.push_back(word);
+  }
+
+  void finish() {
+    if (deck_.subcases.empty()) deck_.subcases.push_back(above_);
+    if (ignored_.empty()) return;
+    std::string words;
+    for (const auto& word : ignored_) words += (words.empty() ? "" : ", ") + word;
+    diagnostics_.note("deck.case-control-ignored", deck_.locate(first_ignored_), "case control not used: " + words);
+  }
+
+  const Source& source_;
+  records::Deck& deck_;
+  Diagnostics& diagnostics_;
+  Subcase above_;
+  bool in_subcase_ = false, in_plot_section_ = false, skipping_ = false;
+  records::CardLocation at_, first_ignored_;
+  std::vector<std::string> ignored_;
+};
+
+void read_executive(const Source& source, std::size_t last, records::Deck& deck) {
+  for (std::size_t i = 0; i < last; ++i) {
+    const auto command = split_command(source.lines[i].text);
+    // "SOL 3,0" of the COSMIC programs names the solution and a subset of it.
+    if (command.word == "SOL") deck.sol = make_upper(command.value.substr(0, command.value.find_first_of(" ,")));
+  }
+}
+
+}  // namespace
+
+std::size_t read_control(const Source& source, records::Deck& deck, Diagnostics& diagnostics) {
+  constexpr std::size_t none = static_cast<std::size_t>(-1);
+  std::size_t cend = none, begin = none;
+  for (std::size_t i = 0; i < source.lines.size() && begin == none; ++i) {
+    const auto text = trim(source.lines[i].text);
+    if (text.empty() || (text.front() != 'C' && text.front() != 'c' && text.front() != 'B' && text.front() != 'b'))
+      continue;
+    const auto word = find_first_word(text);
+    if (is_word(word, "CEND") && word.size() == text.size() && cend == none) cend = i;
+    if (!is_word(word, "BEGIN")) continue;
+    const auto section = find_first_word(text.substr(word.size()));
+    if (section.empty() || is_word(section, "BULK")) begin = i;
+  }
+  if (begin == none && cend == none) {
+    deck.subcases.emplace_back();
+    return 0;
+  }
+  if (begin == none) {
+    diagnostics.error("deck.no-begin-bulk", deck.locate(source.lines[cend].at), "CEND is not followed by BEGIN BULK",
+                      "write BEGIN BULK before the bulk data");
+    begin = source.lines.size();
+    read_executive(source, cend, deck);
+    CaseControl(source, deck, diagnostics).read(cend + 1, begin, false);
+    return begin;
+  }
+  if (cend != none) read_executive(source, cend, deck);
+  CaseControl(source, deck, diagnostics).read(cend == none ? 0 : cend + 1, begin, cend == none);
+  return begin + 1;
+}
+
+}  // namespace bough::nastran::detail

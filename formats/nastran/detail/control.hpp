@@ -1,0 +1,14 @@
+#pragma once
+/// \file Executive and case control: which solution, which sets.
+#include <cstddef>
+
+#include "bough/formats/nastran/detail/lines.hpp"
+
+namespace bough::nastran::detail {
+
+/// Reads what stands before the bulk data into deck.sol, deck.subcases and (PARAM in case control) deck.params.
+/// Returns the index of the first bulk data line. A text without CEND and BEGIN BULK is bulk data from its first line.
+/// Adds deck.no-begin-bulk, deck.unsupported-section, deck.case-control-value, deck.case-control-ignored.
+std::size_t read_control(const Source& source, records::Deck& deck, Diagnostics& diagnostics);
+
+}  // namespace bough::nastran::detail

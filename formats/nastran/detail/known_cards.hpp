@@ -1,0 +1,17 @@
+#pragma once
+/// \file Bulk data names of the Nastran family and what each would carry.
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "bough/formats/records/deck.hpp"
+
+namespace bough::nastran::detail {
+
+/// Effect of a card (upper case); nothing when no Nastran has such a card.
+std::optional<records::CardEffect> find_effect(std::string_view name);
+/// The known or read name nearest to `name`, or empty.
+std::string find_nearest_card(std::string_view name);
+const char* get_effect_name(records::CardEffect effect);
+
+}  // namespace bough::nastran::detail

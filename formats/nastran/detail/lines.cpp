@@ -1,0 +1,226 @@
+#include "bough/formats/nastran/detail/lines.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "bough/formats/nastran/detail/text.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<std::string> read_file(const fs::path& path) {
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed)) return std::nullopt;
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) return std::nullopt;
+  std::string bytes(static_cast<std::size_t>(in.tellg()), '\0');
+  in.seekg(0);
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!in) return std::nullopt;
+  return bytes;
+}
+
+std::string expand_tabs(std::string_view text) {
+  std::string wide;
+  for (const char c : text) {
+    if (c == '\t')
+      wide.append(8 - wide.size() % 8, ' ');
+    else
+      wide += c;
+  }
+  return wide;
+}
+
+bool contains(std::string_view text, char c) { return std::memchr(text.data(), c, text.size()) != nullptr; }
+
+/// Lines of one text, by number.
+class Cursor {
+ public:
+  explicit Cursor(std::string_view text) : rest_(text) {}
+  bool read_next(std::string_view& line) {
+    if (rest_.empty()) return false;
+    const auto end = rest_.find('\n');
+    line = rest_.substr(0, end);
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    ++number_;
+    return true;
+  }
+  int get_number() const { return number_; }
+
+ private:
+  std::string_view rest_;
+  int number_ = 0;
+};
+
+class Loader {
+ public:
+  Loader(Source& source, Diagnostics& diagnostics) : source_(source), diagnostics_(diagnostics) {}
+
+  void load(std::string_view text, int file, const fs::path& folder) {
+    if (depth() == 1) root_ = folder;
+    Cursor cursor(text);
+    std::string_view raw;
+    while (!done_ && cursor.read_next(raw)) {
+      const auto line = cut(raw);
+      if (line.empty()) continue;
+      const char c = *std::find_if_not(line.begin(), line.end(), [](char x) { return x == ' ' || x == '\t'; });
+      if ((c == 'I' || c == 'i') && is_include(line)) {
+        read_include(raw, cursor, file, folder);
+        continue;
+      }
+      if ((c == 'E' || c == 'e') && is_word(find_first_word(line), "ENDDATA")) {
+        done_ = true;
+        return;
+      }
+      source_.lines.push_back({line, {file, cursor.get_number()}});
+    }
+  }
+
+  void push(const std::string& name) { chain_.push_back(name); }
+  void pop() { chain_.pop_back(); }
+
+ private:
+  std::size_t depth() const { return chain_.size(); }
+
+  std::string_view cut(std::string_view line) {
+    if (const void* dollar = std::memchr(line.data(), '$', line.size()))
+      line = line.substr(0, static_cast<std::size_t>(static_cast<const char*>(dollar) - line.data()));
+    while (!line.empty() && (line.back() == ' ' || line.back() == '\t' || line.back() == '\r')) line.remove_suffix(1);
+    if (!line.empty() && contains(line, '\t') && !contains(line, ',')) {
+      source_.storage.push_back(expand_tabs(line));
+      line = source_.storage.back();
+    }
+    return line;
+  }
+
+  static bool is_include(std::string_view line) {
+    const auto word = find_first_word(line);
+    if (!is_word(word, "INCLUDE")) return false;
+    const auto rest = trim(std::string_view(word.data() + word.size(), line.data() + line.size()));
+    // INCLUDE followed by data that is no file name cannot be a bulk card either.
+    return rest.empty() || rest.front() != ',';
+  }
+
+  /// The name may be quoted, and a quoted name may go on over several lines until its quote closes.
+  void read_include(std::string_view raw, Cursor& cursor, int file, const fs::path& folder) {
+    const SourceLocation where{source_.files[static_cast<std::size_t>(file)], cursor.get_number(), 0};
+    const auto word = find_first_word(raw);
+    auto rest = trim(std::string_view(word.data() + word.size(), raw.data() + raw.size()));
+    if (!rest.empty() && rest.front() == '=') rest = trim(rest.substr(1));
+    std::string name;
+    if (!rest.empty() && (rest.front() == '\'' || rest.front() == '"')) {
+      const char quote = rest.front();
+      rest.remove_prefix(1);
+      std::size_t end;
+      while ((end = rest.find(quote)) == std::string_view::npos) {
+        name += rest;
+        if (!cursor.read_next(rest)) {
+          diagnostics_.error("deck.include-syntax", where, "the file name of INCLUDE has no closing quote",
+                             "close it with the quote it opened with");
+          return;
+        }
+        rest = trim(rest);
+      }
+      name += rest.substr(0, end);
+    } else {
+      name = trim(cut(rest));
+    }
+    name = trim(name);
+    if (name.empty()) {
+      diagnostics_.error("deck.include-syntax", where, "INCLUDE names no file", "write INCLUDE 'file'");
+      return;
+    }
+    include(name, folder, where);
+  }
+
+  std::optional<fs::path> find_file(const std::string& name, const fs::path& folder) const {
+    std::string with_slashes = name;
+    std::replace(with_slashes.begin(), with_slashes.end(), '\\', '/');
+    for (const fs::path& from : {folder, root_})
+      for (const std::string& spelling : {name, with_slashes}) {
+        std::error_code failed;
+        if (auto path = from / spelling; fs::is_regular_file(path, failed)) return path;
+      }
+    return std::nullopt;
+  }
+
+  void include(const std::string& name, const fs::path& folder, const SourceLocation& where) {
+    const auto path = find_file(name, folder);
+    if (!path) {
+      diagnostics_.error("deck.include-missing", where, "included file '" + name + "' does not exist",
+                         "it is looked for in the folder of the including file and of the deck");
+      return;
+    }
+    std::error_code failed;
+    const std::string canonical = fs::weakly_canonical(*path, failed).string();
+    if (std::find(chain_.begin(), chain_.end(), canonical) != chain_.end()) {
+      std::string chain;
+      for (auto c = std::find(chain_.begin(), chain_.end(), canonical); c != chain_.end(); ++c)
+        chain += fs::path(*c).filename().string() + " -> ";
+      diagnostics_.error("deck.include-cycle", where,
+                         "INCLUDE goes in a circle: " + chain + fs::path(canonical).filename().string(),
+                         "remove one of these INCLUDE lines");
+      return;
+    }
+    auto bytes = read_file(*path);
+    if (!bytes) {
+      diagnostics_.error("deck.include-missing", where, "included file '" + name + "' cannot be read",
+                         "check its permissions");
+      return;
+    }
+    source_.storage.push_back(std::move(*bytes));
+    const std::string_view text = source_.storage.back();
+    const std::string shown = path->lexically_normal().string();
+    auto known = std::find(source_.files.begin(), source_.files.end(), shown);
+    if (known == source_.files.end()) known = source_.files.insert(known, shown);
+    push(canonical);
+    load(text, static_cast<int>(known - source_.files.begin()), path->parent_path());
+    pop();
+  }
+
+  Source& source_;
+  Diagnostics& diagnostics_;
+  std::vector<std::string> chain_;  ///< canonical paths of the files open now
+  fs::path root_;
+  bool done_ = false;
+};
+
+void load_root(Source& source, std::string bytes, const std::string& name, const std::string& canonical,
+               const fs::path& folder, Diagnostics& diagnostics) {
+  source.files.push_back(name);
+  source.storage.push_back(std::move(bytes));
+  source.lines.reserve(source.storage.back().size() / 60);
+  Loader loader(source, diagnostics);
+  loader.push(canonical);
+  loader.load(source.storage.back(), 0, folder);
+  loader.pop();
+}
+
+}  // namespace
+
+Source read_source(const std::string& path, Diagnostics& diagnostics) {
+  Source source;
+  auto bytes = read_file(path);
+  if (!bytes) {
+    diagnostics.error("deck.cannot-open", {path, 0, 0}, "the deck cannot be read", "check that the file exists");
+    source.files.push_back(path);
+    return source;
+  }
+  std::error_code failed;
+  load_root(source, std::move(*bytes), path, fs::weakly_canonical(path, failed).string(), fs::path(path).parent_path(),
+            diagnostics);
+  return source;
+}
+
+Source read_source_text(std::string_view text, const std::string& name, Diagnostics& diagnostics) {
+  Source source;
+  load_root(source, std::string(text), name, name, {}, diagnostics);
+  return source;
+}
+
+}  // namespace bough::nastran::detail

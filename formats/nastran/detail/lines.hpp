@@ -1,0 +1,32 @@
+#pragma once
+/// \file Physical lines of a deck with its INCLUDE files in their place.
+#include <deque>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bough/formats/records/deck.hpp"
+
+namespace bough::nastran::detail {
+
+/// One line without its comment and trailing blanks; never empty. Tabs of fixed-field lines are expanded to 8-column
+/// stops.
+struct Line {
+  std::string_view text;
+  records::CardLocation at;
+};
+
+/// The text of all files and the lines in reading order, up to ENDDATA.
+struct Source {
+  std::vector<std::string> files;
+  std::vector<Line> lines;
+  std::deque<std::string> storage;  ///< what the lines point into; never moved
+};
+
+/// Reads a file and what it includes. Adds deck.cannot-open, deck.include-missing, deck.include-cycle,
+/// deck.include-syntax.
+Source read_source(const std::string& path, Diagnostics& diagnostics);
+/// The same for text in memory.
+Source read_source_text(std::string_view text, const std::string& name, Diagnostics& diagnostics);
+
+}  // namespace bough::nastran::detail

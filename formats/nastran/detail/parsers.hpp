@@ -1,0 +1,22 @@
+#pragma once
+/// \file The groups of card parsers; a new card is one function and one line in the table of its group.
+#include <string_view>
+#include <unordered_map>
+
+#include "bough/formats/nastran/detail/reading.hpp"
+
+namespace bough::nastran::detail {
+
+using ParserTable = std::unordered_map<std::string_view, CardParser>;
+
+void add_grid_parsers(ParserTable& table);            ///< GRID, GRDSET, CORD1x, CORD2x
+void add_material_parsers(ParserTable& table);        ///< MAT1
+void add_line_property_parsers(ParserTable& table);   ///< PBAR, PBARL, PBEAM, PBEAML, PROD, PTUBE
+void add_point_property_parsers(ParserTable& table);  ///< PELAS, PBUSH, PMASS
+void add_line_element_parsers(ParserTable& table);    ///< CBAR, CBEAM, BAROR, BEAMOR, CROD, CONROD, CTUBE
+void add_point_element_parsers(ParserTable& table);   ///< CELASx, CBUSH, CMASSx, CONMx
+void add_constraint_parsers(ParserTable& table);      ///< RBE2, RBAR, SPC, SPC1, SPCADD, MPC, MPCADD
+void add_load_parsers(ParserTable& table);            ///< FORCE, MOMENT, GRAV, LOAD
+void add_solution_parsers(ParserTable& table);        ///< EIGRL, EIGR, PARAM
+
+}  // namespace bough::nastran::detail

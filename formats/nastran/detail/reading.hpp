@@ -1,0 +1,102 @@
+#pragma once
+/// \file What the card parsers share while a deck is read, and the table of parsers.
+#include <functional>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "bough/formats/nastran/detail/card.hpp"
+
+namespace bough::nastran::detail {
+
+/// Ids that must differ from each other.
+enum class IdSpace {
+  Grid,
+  CoordSystem,
+  Material,
+  BarProperty,
+  BeamProperty,
+  RodProperty,
+  TubeProperty,
+  ElasProperty,
+  BushProperty,
+  MassProperty,
+  Beam,
+  Rod,
+  Conrod,
+  Tube,
+  Spring,
+  Bush,
+  ScalarMass,
+  ConcentratedMass,
+  Rigid,
+  SpcAdd,
+  MpcAdd,
+  Load,
+  EigenMethod,
+  Count
+};
+
+/// Which card first used an id; fast for ids in ascending order, which is how decks are written.
+class IdTable {
+ public:
+  struct Entry {
+    int id = 0;
+    int card = -1;  ///< index of the card, or -1 for a card made by replication
+    int first_field = 0, num_fields = 0;
+  };
+  /// Adds an entry; if the id is there already returns that one instead.
+  const Entry* insert(const Entry& entry);
+
+ private:
+  std::vector<Entry> ascending_;
+  std::unordered_map<int, Entry> others_;
+};
+
+/// SPC1 with THRU: expanded once all grids are known.
+struct SpcRange {
+  int sid = 0;
+  unsigned c = 0;
+  IdRange range;
+  records::CardLocation at;
+};
+
+/// GRDSET, BAROR, BEAMOR: blank fields of later cards.
+struct GridDefaults {
+  int cp = 0, cd = 0;
+  unsigned ps = 0;
+};
+struct BeamDefaults {
+  int pid = 0;
+  int g0 = 0;
+  std::optional<Eigen::Vector3d> v;
+  std::string offt = "GGG";
+};
+
+struct Reading {
+  Reading(records::Deck& deck_read, Diagnostics& diagnostics_of_deck)
+      : deck(deck_read), diagnostics(diagnostics_of_deck) {}
+
+  records::Deck& deck;
+  Diagnostics& diagnostics;
+  /// Makes the text of an earlier card again, to compare duplicates.
+  std::function<void(int card, CardText& text)> reread;
+  int card = -1;  ///< index of the card being parsed
+  std::vector<IdTable> ids = std::vector<IdTable>(static_cast<std::size_t>(IdSpace::Count));
+  GridDefaults grid_defaults;
+  BeamDefaults bar_defaults, beam_defaults;
+  std::vector<SpcRange> spc_ranges;
+
+  /// True if `id` is new in its space. A second card with the same content adds deck.repeated-card, with another
+  /// content deck.duplicate-id. The content is num_fields fields from first_field on (all of them by default).
+  bool claim(IdSpace space, int id, Card& card_, int first_field = 0, int num_fields = 1 << 20);
+};
+
+using CardParser = void (*)(Card&, Reading&);
+
+/// Name -> parser of every card Bough reads.
+const std::unordered_map<std::string_view, CardParser>& get_card_parsers();
+/// The three that give defaults are parsed before all others.
+bool is_default_card(std::string_view upper_case_name);
+
+}  // namespace bough::nastran::detail

@@ -1,0 +1,29 @@
+#include "bough/formats/nastran/reader.hpp"
+
+#include "bough/formats/nastran/detail/builder.hpp"
+#include "bough/formats/nastran/detail/control.hpp"
+#include "bough/formats/nastran/detail/lines.hpp"
+
+namespace bough::nastran {
+namespace {
+
+records::Deck make_deck(const detail::Source& source, const ReadOptions& options, Diagnostics& diagnostics) {
+  records::Deck deck;
+  deck.files = source.files;
+  const auto first_line = detail::read_control(source, deck, diagnostics);
+  detail::read_bulk(source, first_line, options, deck, diagnostics);
+  return deck;
+}
+
+}  // namespace
+
+records::Deck read_deck(const std::string& path, const ReadOptions& options, Diagnostics& diagnostics) {
+  return make_deck(detail::read_source(path, diagnostics), options, diagnostics);
+}
+
+records::Deck read_deck_text(std::string_view text, const std::string& name, const ReadOptions& options,
+                             Diagnostics& diagnostics) {
+  return make_deck(detail::read_source_text(text, name, diagnostics), options, diagnostics);
+}
+
+}  // namespace bough::nastran
