@@ -1,0 +1,252 @@
+// One flexible body on simple supports: stiffening, gravity, loads against closed forms; conservation when it flies.
+#include <gtest/gtest.h>
+
+#include "tests/solver/support/models.hpp"
+
+namespace bough::solver::testing {
+namespace {
+
+using records::HingeType;
+
+struct Model {
+  PointBody points;
+  records::FlexBody flex;
+  records::SystemSpec spec;
+  System make() const { return build(spec, {{"f.h5", flex}}); }
+};
+
+Model make_model(int n, bool hinge_fixed) {
+  Model m;
+  m.points = make_point_body(n, 77);
+  m.flex = m.points.make_record("f");
+  records::BodyRecord body;
+  body.name = "f";
+  body.file = "f.h5";
+  m.spec.bodies = {body};
+  if (hinge_fixed) m.spec.hinges = {make_hinge_record("root", HingeType::Fixed, "ground", "f")};
+  return m;
+}
+
+TEST(FlexibleSystem, PrescribedSpinStiffensAndSoftensAsInTheLinearTheory) {
+  // M η̈ + (K + Ω² (K_G1(wz²) - Σ m φxyᵀ φxy)) η = Ω² Σ m φxyᵀ p_xy + ...: the slope of η̈ at η = η̇ = 0.
+  const int n = 3;
+  const double rate = 1.7;
+  for (const bool stiffening : {true, false}) {
+    Model m = make_model(n, false);
+    m.flex.modal_damping.setZero();
+    m.spec.bodies[0].stiffening = stiffening;
+    records::FunctionRecord angle;
+    angle.name = "angle";
+    angle.type = "table";
+    angle.x = {0, 10};
+    angle.y = {0, 10 * rate};
+    m.spec.functions = {angle};
+    m.spec.hinges = {make_hinge_record("spin", HingeType::Revolute, "ground", "f")};
+    m.spec.hinges[0].motion = {"angle"};
+    const System system = m.make();
+    auto data = system.make_data();
+    MatrixXd M_xy = MatrixXd::Zero(n, n);
+    VectorXd pull = VectorXd::Zero(n);
+    for (size_t k = 0; k < m.points.p.size(); ++k) {
+      const MatrixXd phi_xy = m.points.phi[k].topRows<2>();
+      M_xy += m.points.mass[k] * phi_xy.transpose() * phi_xy;
+      pull += m.points.mass[k] * phi_xy.transpose() * m.points.p[k].head<2>();
+    }
+    const MatrixXd G = stiffening ? m.flex.kg_inertial[8] : MatrixXd::Zero(n, n);
+    const MatrixXd K = m.flex.modal_stiffness + rate * rate * (G - M_xy);
+    VectorXd q = VectorXd::Zero(1 + n);
+    auto eta_ddot = [&](const VectorXd& eta) {
+      q.tail(n) = eta;
+      return calc_u_dot(system, *data, 1, q, VectorXd::Zero(n));
+    };
+    const VectorXd at_rest = m.flex.modal_mass * eta_ddot(VectorXd::Zero(n));
+    EXPECT_LT((at_rest - rate * rate * pull).norm(), 1e-12);
+    for (int j = 0; j < n; ++j) {
+      const VectorXd step = 1e-3 * VectorXd::Unit(n, j);
+      const VectorXd slope = m.flex.modal_mass * (eta_ddot(step) - eta_ddot(-step)) / 2e-3;
+      EXPECT_LT((slope + K.col(j)).norm(), 1e-9) << "stiffening " << stiffening;
+    }
+  }
+}
+
+TEST(FlexibleSystem, GravityLoadsAndStiffensAFixedBody) {
+  Model m = make_model(3, true);
+  m.spec.simulation.gravity = {2, -9, 4};
+  const System system = m.make();
+  auto data = system.make_data();
+  Random random(2);
+  const VectorXd eta = random.vector_n(3, 0.2);
+  const VectorXd actual = m.flex.modal_mass * calc_u_dot(system, *data, 0, eta, VectorXd::Zero(3));
+  VectorXd expected = m.flex.lumped.gamma0.transpose() * m.spec.simulation.gravity - m.flex.modal_stiffness * eta;
+  for (int a = 0; a < 3; ++a) {
+    expected += m.spec.simulation.gravity[a] * m.flex.kg_inertial[static_cast<size_t>(a)] * eta;
+  }
+  EXPECT_LT((actual - expected).norm(), 1e-12);
+  // Its potential is that of the points, second-order places included.
+  double potential = 0;
+  for (int k = 0; k < m.flex.num_nodes(); ++k) {
+    const auto motion = calc_node_motion(system, *data, 0, system.find_node(0, 101 + k));
+    potential -= m.points.mass[static_cast<size_t>(k)] * m.spec.simulation.gravity.dot(motion.p_WK);
+  }
+  EXPECT_NEAR(calc_energies(system, *data).potential, potential, 1e-12);
+}
+
+TEST(FlexibleSystem, NodeForceStiffensThroughItsLocators) {
+  Model m = make_model(3, true);
+  records::ForceRecord force;
+  force.name = "push";
+  force.body = "f";
+  force.node = 104;
+  force.direction = {3, -2, 5};
+  m.spec.forces = {force};
+  const System system = m.make();
+  auto data = system.make_data();
+  Random random(2);
+  const VectorXd eta = random.vector_n(3, 0.2);
+  const VectorXd actual = m.flex.modal_mass * calc_u_dot(system, *data, 0, eta, VectorXd::Zero(3));
+  VectorXd expected = m.points.phi[3].transpose() * force.direction - m.flex.modal_stiffness * eta;
+  for (int a = 0; a < 3; ++a) expected -= force.direction[a] * m.flex.kg_external[static_cast<size_t>(9 + a)] * eta;
+  EXPECT_LT((actual - expected).norm(), 1e-12);
+  // The same by the locators' names, and by a wrench added from outside.
+  Model named = m;
+  named.spec.forces.clear();
+  for (int a = 0; a < 3; ++a) {
+    records::ForceRecord one;
+    one.name = std::string("push") + "xyz"[a];
+    one.body = "f";
+    one.locator = std::string("f104") + "xyz"[a];
+    one.function = one.name;
+    records::FunctionRecord value;
+    value.name = one.name;
+    value.type = "constant";
+    value.values = {{"value", force.direction[a]}};
+    named.spec.functions.push_back(value);
+    named.spec.forces.push_back(one);
+  }
+  const System by_name = named.make();
+  auto other = by_name.make_data();
+  EXPECT_LT((m.flex.modal_mass * calc_u_dot(by_name, *other, 0, eta, VectorXd::Zero(3)) - actual).norm(), 1e-12);
+  m.spec.forces.clear();
+  const System bare = m.make();
+  other = bare.make_data();
+  VectorXd u_dot(3);
+  calc_kinematics(bare, *other, 0, eta, VectorXd::Zero(3));
+  add_node_wrench(bare, *other, 0, bare.find_node(0, 104), force.direction, Vector3d::Zero());
+  calc_accelerations(bare, *other, 0, u_dot);
+  EXPECT_LT((m.flex.modal_mass * u_dot - actual).norm(), 1e-12);
+}
+
+TEST(FlexibleSystem, LoadPatternActsOnTheModes) {
+  Model m = make_model(2, true);
+  Random random(4);
+  m.flex.locators.push_back({"running", 0, 0});
+  m.flex.kg_external.push_back(random.symmetric(2));
+  m.flex.external_load.conservativeResize(2, m.flex.external_load.cols() + 1);
+  m.flex.external_load.rightCols<1>() = random.vector_n(2);
+  records::ForceRecord force;
+  force.name = "load";
+  force.body = "f";
+  force.locator = "running";
+  force.function = "level";
+  records::FunctionRecord level;
+  level.name = "level";
+  level.type = "constant";
+  level.values = {{"value", 2.5}};
+  m.spec.functions = {level};
+  m.spec.forces = {force};
+  const System system = m.make();
+  auto data = system.make_data();
+  const VectorXd eta = random.vector_n(2, 0.2);
+  const VectorXd expected = 2.5 * (m.flex.external_load.rightCols<1>() - m.flex.kg_external.back() * eta) -
+                            m.flex.modal_stiffness * eta;
+  EXPECT_LT((m.flex.modal_mass * calc_u_dot(system, *data, 0, eta, VectorXd::Zero(2)) - expected).norm(), 1e-12);
+}
+
+TEST(FlexibleSystem, FreeFallDoesNotDeform) {
+  Model m = make_model(4, false);
+  const System still = m.make();
+  m.spec.simulation.gravity = {1, 2, -9};
+  const System falling = m.make();
+  auto a = still.make_data(), b = falling.make_data();
+  VectorXd q, u;
+  make_random_state(still, 3, q, u);
+  const VectorXd u_still = calc_u_dot(still, *a, 0, q, u), u_falling = calc_u_dot(falling, *b, 0, q, u);
+  VectorXd expected = u_still;
+  expected.segment<3>(3) += m.spec.simulation.gravity;      // the translations of the free hinge are in W
+  EXPECT_LT((u_falling - expected).norm(), 1e-12 * expected.norm());
+}
+
+TEST(FlexibleSystem, DeflectionIsThatOfThePoint) {
+  const Model m = make_model(3, true);
+  const System system = m.make();
+  auto data = system.make_data();
+  Random random(2);
+  const VectorXd eta = random.vector_n(3, 0.3);
+  calc_kinematics(system, *data, 0, eta, VectorXd::Zero(3));
+  Vector3d deflection, rotation, expected = m.points.phi[1] * eta;
+  for (int a = 0; a < 3; ++a) expected[a] += 0.5 * eta.dot(m.points.g[1][static_cast<size_t>(a)] * eta);
+  calc_node_deflection(system, *data, 0, system.find_node(0, 102), deflection, rotation);
+  EXPECT_LT((deflection - expected).norm(), 1e-14);
+  EXPECT_LT((rotation - m.points.psi[1] * eta).norm(), 1e-14);
+  EXPECT_TRUE(system.has_node_second_order(0, system.find_node(0, 102)));
+}
+
+struct Drift {
+  double energy, linear, angular;
+};
+Drift calc_drift(const System& system, double duration, int steps) {
+  auto data = system.make_data();
+  VectorXd q, u;
+  make_random_state(system, 8, q, u);
+  auto measure = [&](Vector3d& p, Vector3d& h) {
+    calc_kinematics(system, *data, 0, q, u);
+    add_forces(system, *data, 0);
+    calc_momentum(system, *data, p, h);
+    const Energies e = calc_energies(system, *data);
+    return e.kinetic + e.strain;
+  };
+  Vector3d p0, h0, p, h;
+  const double e0 = measure(p0, h0);
+  for (int k = 0; k < steps; ++k) step_rk4(system, *data, 0, duration / steps, q, u);
+  const double e = measure(p, h);
+  return {std::abs(e - e0) / e0, (p - p0).norm() / p0.norm(), (h - h0).norm() / h0.norm()};
+}
+
+TEST(FlexibleSystem, FlyingBodyKeepsEnergyAndMomenta) {
+  Model m = make_model(4, false);
+  m.flex.modal_damping.setZero();
+  const Drift drift = calc_drift(m.make(), 5, 10000);
+  EXPECT_LT(drift.energy, 1e-9);
+  EXPECT_LT(drift.linear, 1e-9);
+  EXPECT_LT(drift.angular, 1e-9);
+}
+
+TEST(FlexibleSystem, FlyingTreeKeepsEnergyAndMomenta) {
+  RandomTreeOptions options;
+  options.num_bodies = 5;
+  options.forces = options.dissipation = options.prescribed = options.to_ground = false;
+  const RandomTree tree = make_random_tree(4, options);
+  const Drift drift = calc_drift(build(tree.spec, tree.flex), 1, 4000);
+  EXPECT_LT(drift.energy, 1e-9);
+  EXPECT_LT(drift.linear, 1e-9);
+  EXPECT_LT(drift.angular, 1e-9);
+}
+
+TEST(FlexibleSystem, DeflectionBeyondTheExpansionIsNamed) {
+  Model m = make_model(2, false);
+  const System system = m.make();
+  auto data = system.make_data();
+  VectorXd q, u;
+  make_random_state(system, 3, q, u);
+  q.tail(2).setConstant(1e3);
+  try {
+    calc_u_dot(system, *data, 0, q, u);
+    FAIL() << "accepted";
+  } catch (const ComputationError& error) {
+    EXPECT_EQ(error.items().at(0).id, "solver.indefinite-mass");
+    EXPECT_NE(std::string(error.what()).find("'f'"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace bough::solver::testing
