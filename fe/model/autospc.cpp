@@ -12,17 +12,29 @@ namespace {
 
 constexpr double kNothing = 1e-14;   ///< below this share of the model's largest term a block is round-off
 
-/// Adds the diagonal 3 x 3 blocks of all nodes; blocks 2k and 2k+1 are node k's translations and rotations.
-std::vector<Matrix3d> calc_node_blocks(const std::vector<std::unique_ptr<const Element>>& elements, const SparseRows& T0,
-                                       const std::vector<int>& fdof_block, const std::vector<int>& fdof_slot,
-                                       int num_blocks) {
-  std::vector<Matrix3d> blocks(num_blocks, Matrix3d::Zero());
+struct NodeBlocks {
+  std::vector<Matrix3d> K;       ///< 2k and 2k+1: node k's translations and rotations
+  std::vector<double> noise;     ///< what round-off of the elements at the node can leave in the block
+};
+
+NodeBlocks calc_node_blocks(const std::vector<Node>& nodes, const std::vector<std::unique_ptr<const Element>>& elements,
+                            const SparseRows& T0, const std::vector<int>& gdof_node,
+                            const std::vector<int>& fdof_block, const std::vector<int>& fdof_slot) {
+  const size_t num_blocks = 2 * nodes.size();
+  NodeBlocks result{std::vector<Matrix3d>(num_blocks, Matrix3d::Zero()), std::vector<double>(num_blocks, 0)};
+  auto& blocks = result.K;
   ElementTransform transform;
   MatrixXd K_e;
   for (const auto& element : elements) {
     const int n = element->num_dofs();
     K_e.setZero(n, n);
     element->add_stiffness(1, K_e);
+    // A translational stiffness k on an arm r leaves round-off of k r² in the rotations.
+    double arm = 0, largest = 0;
+    for (int k : element->nodes()) arm = std::max(arm, (nodes[k].x - nodes[element->nodes()[0]].x).norm());
+    for (int i = 0; i < n; ++i)
+      if (element->gdofs()[i] - nodes[gdof_node[element->gdofs()[i]]].first_gdof < 3) largest = std::max(largest, K_e(i, i));
+    for (int k : element->nodes()) result.noise[2 * k + 1] += kNothing * largest * arm * arm;
     transform.set(T0, element->gdofs());
     const MatrixXd& K_f = transform.project(K_e);
     const auto& columns = transform.columns();
@@ -35,7 +47,7 @@ std::vector<Matrix3d> calc_node_blocks(const std::vector<std::unique_ptr<const E
         if (a != b) block(b, a) += K_f(i, j);
       }
   }
-  return blocks;
+  return result;
 }
 
 }  // namespace
@@ -56,7 +68,7 @@ std::vector<AutospcEntry> find_singular_dofs(const std::vector<Node>& nodes,
     fdof_slot[f] = component % 3;
     is_free[fdof_block[f]][fdof_slot[f]] = 1;
   }
-  const auto blocks = calc_node_blocks(elements, T0, fdof_block, fdof_slot, num_blocks);
+  const auto [blocks, noise] = calc_node_blocks(nodes, elements, T0, ldof_node, fdof_block, fdof_slot);
   double largest[2] = {0, 0};
   for (int b = 0; b < num_blocks; ++b) largest[b % 2] = std::max(largest[b % 2], blocks[b].diagonal().maxCoeff());
 
@@ -71,7 +83,7 @@ std::vector<AutospcEntry> find_singular_dofs(const std::vector<Node>& nodes,
     while (!slots.empty()) {
       int singular = 0;
       double ratio = 0;
-      if (scale > kNothing * largest[b % 2]) {
+      if (scale > std::max(kNothing * largest[b % 2], noise[b])) {
         const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(MatrixXd(blocks[b](slots, slots)));
         ratio = std::max(0.0, solver.eigenvalues()[0] / scale);
         if (ratio > epsilon) break;

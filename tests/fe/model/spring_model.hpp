@@ -81,10 +81,13 @@ inline records::Deck make_deck(const std::vector<Vector3d>& points) {
 inline ElementFactory make_links(std::vector<std::pair<int, int>> pairs) {
   return [pairs](const records::Deck&, const NodeTable& nodes, Diagnostics&) {
     ElementList list;
-    for (size_t e = 0; e < pairs.size(); ++e)
-      list.elements.push_back(std::make_unique<LinkElement>(
-          static_cast<int>(e) + 1, nodes.find_node(pairs[e].first), nodes.find_node(pairs[e].second), nodes,
-          make_spd(static_cast<unsigned>(e) + 1), 2.0 + static_cast<double>(e)));
+    for (size_t e = 0; e < pairs.size(); ++e) {
+      const int a = nodes.find_node(pairs[e].first), b = nodes.find_node(pairs[e].second);
+      if (a < 0 || b < 0) continue;
+      list.elements.push_back(std::make_unique<LinkElement>(static_cast<int>(e) + 1, a, b, nodes,
+                                                            make_spd(static_cast<unsigned>(e) + 1),
+                                                            2.0 + static_cast<double>(e)));
+    }
     return list;
   };
 }
