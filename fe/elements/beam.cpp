@@ -63,14 +63,18 @@ Matrix12d Beam::calc_release() const {
   return C;
 }
 
-Matrix12d Beam::calc_end_map() const {
+Matrix12d Beam::calc_arm_map() const {
   const Matrix3d R = geometry_.R_basic_element.transpose();
   Matrix12d T = Matrix12d::Zero();
   T.block<3, 3>(0, 0) = T.block<3, 3>(3, 3) = T.block<3, 3>(6, 6) = T.block<3, 3>(9, 9) = R;
   T.block<3, 3>(0, 3) = -R * skew(geometry_.wa);
   T.block<3, 3>(6, 9) = -R * skew(geometry_.wb);
-  if (geometry_.pin_a || geometry_.pin_b) T = (calc_release() * T).eval();
   return T;
+}
+
+Matrix12d Beam::calc_end_map() const {
+  if (!(geometry_.pin_a || geometry_.pin_b)) return calc_arm_map();
+  return calc_release() * calc_arm_map();
 }
 
 void Beam::add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const {
@@ -171,15 +175,33 @@ void Beam::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, doub
   }
   const Matrix12d map = calc_end_map();
   K_G += scale * (map.transpose() * (local * map));
-  // Second-order motion of the arm tips, ½ θ×(θ×w), under the end forces -f at A and f at B.
-  const Vector3d f = geometry_.R_basic_element * Vector3d(N, Vy, Vz);
-  const auto add_arm = [&](int first, const Vector3d& w, const Vector3d& tip_force) {
-    const Matrix3d fw = tip_force * w.transpose();
-    K_G.block<3, 3>(first, first) +=
-        scale * (0.5 * (fw + fw.transpose()) - tip_force.dot(w) * Matrix3d::Identity());
-  };
-  if (!geometry_.wa.isZero(0)) add_arm(3, geometry_.wa, -f);
-  if (!geometry_.wb.isZero(0)) add_arm(9, geometry_.wb, f);
+  if (!geometry_.wa.isZero(0) || !geometry_.wb.isZero(0)) add_arm_stiffness(force, scale, K_G);
+  if (geometry_.pin_a || geometry_.pin_b) add_pin_stiffness(force, scale, K_G);
+}
+
+/// Second-order motion of the arm tips, ½ θ×(θ×w), under the end forces.
+void Beam::add_arm_stiffness(const Eigen::Ref<const VectorXd>& force, double scale, Eigen::Ref<MatrixXd> K_G) const {
+  const Vector3d f_b = geometry_.R_basic_element * force.head<3>();
+  for (int k = 0; k < 2; ++k) {
+    const Vector3d w = k == 0 ? geometry_.wa : geometry_.wb, f = k == 0 ? Vector3d(-f_b) : f_b;
+    const Matrix3d fw = f * w.transpose();
+    K_G.block<3, 3>(6 * k + 3, 6 * k + 3) += scale * (0.5 * (fw + fw.transpose()) - f.dot(w) * Matrix3d::Identity());
+  }
+}
+
+/// The axes of a release turn with the arm tip (u, θ): the end is at u + d + θ×d, turned by θ + h + ½ θ×h, where d and h
+/// are the released motions.
+void Beam::add_pin_stiffness(const Eigen::Ref<const VectorXd>& force, double scale, Eigen::Ref<MatrixXd> K_G) const {
+  const Matrix12d tip = calc_arm_map();
+  const Matrix12d released = (calc_release() - Matrix12d::Identity()) * tip;
+  for (int k = 0; k < 2; ++k) {
+    const double sign = k == 0 ? -1 : 1;
+    const Vector3d f = sign * force.head<3>(), m = sign * Vector3d(force[3], force[4 + 2 * k], force[5 + 2 * k]);
+    const Eigen::Matrix<double, 3, 12> theta = tip.middleRows<3>(6 * k + 3), d = released.middleRows<3>(6 * k),
+                                       h = released.middleRows<3>(6 * k + 3);
+    const Matrix12d half = -theta.transpose() * (skew(f) * d + 0.5 * skew(m) * h);
+    K_G += scale * (half + half.transpose());
+  }
 }
 
 }  // namespace bough::fe

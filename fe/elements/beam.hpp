@@ -42,8 +42,11 @@ class Beam final : public Element {
   const BeamProperty& property() const { return *property_; }
 
  private:
-  Matrix12d calc_end_map() const;                   ///< element end dofs (local) per grid dofs (basic), pins included
-  Matrix12d calc_release() const;
+  Matrix12d calc_arm_map() const;                   ///< arm tip dofs (element axes) per grid dofs (basic)
+  Matrix12d calc_release() const;                   ///< element end dofs per arm tip dofs: pins condensed
+  Matrix12d calc_end_map() const;                   ///< element end dofs per grid dofs
+  void add_arm_stiffness(const Eigen::Ref<const VectorXd>& force, double scale, Eigen::Ref<MatrixXd> K_G) const;
+  void add_pin_stiffness(const Eigen::Ref<const VectorXd>& force, double scale, Eigen::Ref<MatrixXd> K_G) const;
   void add_lumped_mass(double scale, Eigen::Ref<MatrixXd> M) const;
   void add_consistent_mass(double scale, Eigen::Ref<MatrixXd> M) const;
 

@@ -1,6 +1,7 @@
 #include "bough/fe/shape/beam_field.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "bough/fe/shape/gauss.hpp"
 
@@ -27,10 +28,26 @@ ActiveForces find_active(const BeamProperty& p) {
   return active;
 }
 
+/// Ends of quadrature panels: short enough that 8 Gauss points integrate 1 / (linear stiffness) to rounding.
+std::vector<double> calc_breaks(const BeamProperty& p, double length) {
+  std::vector<double> breaks{0};
+  for (std::size_t k = 1; k < p.stations.size(); ++k) {
+    const BeamSection &a = p.stations[k - 1], &b = p.stations[k];
+    double ratio = 1;
+    for (const auto& [u, v] : {std::pair{a.A, b.A}, {a.I1, b.I1}, {a.I2, b.I2}, {a.J, b.J}})
+      if (u > 0 && v > 0) ratio = std::max({ratio, u / v, v / u});
+    const int num_panels = std::clamp(static_cast<int>(std::ceil((ratio - 1) / 0.5)), 1, 16);
+    for (int i = 1; i <= num_panels; ++i)
+      breaks.push_back(length * (a.x_over_L + (b.x_over_L - a.x_over_L) * i / num_panels));
+  }
+  return breaks;
+}
+
 }  // namespace
 
 BeamField::BeamField(const BeamProperty& property, double length)
     : property_(property), length_(length), uniform_(property.is_uniform()), active_(find_active(property)) {
+  if (!uniform_) breaks_ = calc_breaks(property, length);
   const Matrix6d f = calc_flexibility(length);
   // Scaled to lengths of order one before inversion, so that thin and thick beams are inverted alike.
   Eigen::Matrix<double, 6, 1> d;
@@ -76,11 +93,8 @@ Matrix6d BeamField::calc_flexibility(double x) const {
     add_interval(0, x, 2);  // integrand quadratic: exact
     return F;
   }
-  const auto& stations = property_.stations;
-  for (std::size_t k = 1; k < stations.size(); ++k) {
-    const double from = stations[k - 1].x_over_L * length_, to = std::min(x, stations[k].x_over_L * length_);
-    if (to > from) add_interval(from, to, 8);
-  }
+  for (std::size_t k = 1; k < breaks_.size() && breaks_[k - 1] < x; ++k)
+    add_interval(breaks_[k - 1], std::min(x, breaks_[k]), 8);
   return F;
 }
 
@@ -122,9 +136,7 @@ std::vector<BeamField::Point> BeamField::calc_points(int num_uniform, int num_ta
     add_interval(0, length_, num_uniform);
     return points;
   }
-  const auto& stations = property_.stations;
-  for (std::size_t k = 1; k < stations.size(); ++k)
-    add_interval(stations[k - 1].x_over_L * length_, stations[k].x_over_L * length_, num_tapered);
+  for (std::size_t k = 1; k < breaks_.size(); ++k) add_interval(breaks_[k - 1], breaks_[k], num_tapered);
   return points;
 }
 

@@ -126,9 +126,10 @@ MatrixXd pick(const MatrixXd& A, const std::vector<int>& rows) { return A(rows, 
 VectorXd solve_static(const MatrixXd& K, const VectorXd& f, const std::vector<int>& fixed) {
   const auto free = list_free(static_cast<int>(K.rows()), fixed);
   VectorXd u = VectorXd::Zero(K.rows());
-  const VectorXd rhs = f(free);
-  const VectorXd solution = pick(K, free).ldlt().solve(rhs);
-  u(free) = solution;
+  VectorXd rhs(static_cast<Eigen::Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i) rhs[static_cast<Eigen::Index>(i)] = f[free[i]];
+  rhs = pick(K, free).ldlt().solve(rhs).eval();
+  for (std::size_t i = 0; i < free.size(); ++i) u[free[i]] = rhs[static_cast<Eigen::Index>(i)];
   return u;
 }
 
