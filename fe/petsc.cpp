@@ -20,11 +20,16 @@ MpiWorld initialize_petsc() {
   PetscBool initialized = PETSC_FALSE;
   PetscInitialized(&initialized);
   if (!initialized) {
-    // A single process needs no network transports; looking for them costs most of MPI's start-up time.
-    if (!std::getenv("OMPI_COMM_WORLD_SIZE")) {
+    // A process that no launcher started needs no daemon and no network transport; making them ready takes ten times as
+    // long as the rest of MPI's start (360 ms against 30 ms).
+    const bool is_launched = std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMIX_RANK") || std::getenv("PMI_RANK");
+    if (!is_launched) {
+      setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
       setenv("OMPI_MCA_btl", "self", 0);
       setenv("OMPI_MCA_pml", "ob1", 0);
     }
+    // A crash is Bough's to report, not PETSc's.
+    PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
     int argc = 0;
     char** argv = nullptr;
     check_petsc(PetscInitialize(&argc, &argv, nullptr, nullptr));

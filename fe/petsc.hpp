@@ -11,7 +11,7 @@ namespace bough::fe {
 /// Throws ComputationError("fe.petsc") with PETSc's text when code is not zero.
 void check_petsc(PetscErrorCode code);
 
-/// Initializes MPI, PETSc and SLEPc once per process; finalized at exit. Verbs that need no FE never call it.
+/// Initializes MPI and PETSc once per process; finalized at exit. Verbs that need no FE never call it.
 /// Returns the rank and size of PETSC_COMM_WORLD.
 struct MpiWorld {
   int rank = 0, size = 1;
