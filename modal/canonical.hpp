@@ -7,8 +7,9 @@ namespace bough::modal::detail {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Fixed positive weights of the g-dofs: x, y, z translations 1, 2, 3 and rotations 4, 5, 6 times the square of the
-/// model's size, each node by its own factor between 1 and 1.5. Pure y and z copies of a bending pair stay pure.
+/// Fixed positive weights of the g-dofs: x, y, z translations 1, 2, 3 and rotations 4, 5, 6 times a hundredth of the
+/// square of the model's size, each node by its own factor between 1 and 1.5. Pure y and z copies of a bending pair
+/// stay pure, y first.
 VectorXd calc_basis_weights(const fe::Model& model);
 
 /// The rotation Q that takes the columns of Phi (orthonormal in some inner product) to the eigenvectors of the weights

@@ -237,7 +237,15 @@ EigenPairs NormalModes::make_pairs(int cut, int count) {
   X << rigid_.modes.leftCols(std::min(k, cut)), found_.X.leftCols(std::max(0, cut - k));
 
   const VectorXd weights = detail::calc_basis_weights(model);
-  const MatrixXd MX = pencil_.calc_M_times(X);
+  if (cut > k) {
+    // Purification and separate Krylov runs leave the vectors orthogonal to nine digits or so: once more, symmetrically.
+    const MatrixXd& R = rigid_.modes;
+    MatrixXd Y = X.rightCols(cut - k);
+    Y -= R * (pencil_.calc_M_times(R).transpose() * Y).eval();
+    const MatrixXd G = Y.transpose() * pencil_.calc_M_times(Y);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(0.5 * (G + G.transpose()));
+    X.rightCols(cut - k) = Y * gram.operatorInverseSqrt();
+  }
   for (int a = std::min(k, cut), b = a; a < cut; a = b) {
     if (a < num_zero) {
       b = std::min(num_zero, cut);
@@ -245,10 +253,7 @@ EigenPairs NormalModes::make_pairs(int cut, int count) {
       const double energy = pencil_.calc_relative_energy(X.col(a), lambda(a));
       b = detail::find_cluster_end(lambda, a, calc_cluster_tolerance(energy), 0);
     }
-    // Orthonormal once more: copies of a root may come from different Krylov runs.
-    const MatrixXd G = X.middleCols(a, b - a).transpose() * MX.middleCols(a, b - a);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(0.5 * (G + G.transpose()));
-    const MatrixXd Y = X.middleCols(a, b - a) * gram.operatorInverseSqrt();
+    const MatrixXd Y = X.middleCols(a, b - a);
     X.middleCols(a, b - a) = Y * detail::calc_cluster_rotation(weights, MatrixXd(model.T() * Y));
     lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
   }

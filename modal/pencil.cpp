@@ -100,44 +100,59 @@ RigidMotions find_rigid_motions(const Pencil& pencil) {
   const auto properties = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
   const Vector3d centre = properties.mass > 0 ? properties.cg : calc_mean_position(model);
   const MatrixXd B = restrict_to_fdofs(model, model.calc_rigid_modes(centre));
-  const MatrixXd S = B.transpose() * pencil.calc_K_times(B);
-  const MatrixXd D = B.transpose() * pencil.K_diagonal.asDiagonal() * B;
-  const MatrixXd Mr = B.transpose() * pencil.calc_M_times(B);
-
   RigidMotions result;
   result.modes.resize(model.num_fdofs(), 0);
   result.massless.resize(model.num_fdofs(), 0);
+  const MatrixXd DB = pencil.K_diagonal.asDiagonal() * B;
+  const MatrixXd D = B.transpose() * DB;
   const VectorXd scale = D.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
   VectorXd d;
   const MatrixXd V = calc_range(scale.asDiagonal() * D * scale.asDiagonal(), 1e-10, true, &d);
   if (V.cols() == 0) return result;
-  const MatrixXd W = scale.asDiagonal() * V * d.cwiseSqrt().cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> energy(W.transpose() * S * W);
-  const auto num_free = (energy.eigenvalues().array() < 1e-13).count();
-  if (num_free == 0) return result;
-  const MatrixXd C = W * energy.eigenvectors().leftCols(num_free);   // orthonormal under D
 
-  const MatrixXd G = C.transpose() * Mr * C;
-  const MatrixXd C_mass = C * calc_range(G, 1e-13, true);
-  const MatrixXd C_none = C * calc_range(G, 1e-13, false);
+  // Y: orthonormal under D. A second pass on the vectors themselves: products of the six basic motions cancel where one
+  // motion is much softer than its parts (a turn about a skew axis), those of the motion itself do not.
+  MatrixXd Y = B * (scale.asDiagonal() * V * d.cwiseSqrt().cwiseInverse().asDiagonal());
+  VectorXd energy;
+  for (int pass = 0; pass < 2; ++pass) {
+    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(
+        Y.transpose() * pencil.calc_K_times(Y), Y.transpose() * pencil.K_diagonal.asDiagonal() * Y);
+    Y = (Y * solver.eigenvectors()).eval();
+    energy = solver.eigenvalues();
+  }
+  const auto num_free = (energy.array() < 1e-13).count();
+  if (num_free == 0) return result;
+  Y = Y.leftCols(num_free).eval();
+
+  VectorXd mass;
+  for (int pass = 0; pass < 2; ++pass) {
+    const MatrixXd G = Y.transpose() * pencil.calc_M_times(Y);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (G + G.transpose()));
+    Y = (Y * solver.eigenvectors()).eval();
+    mass = solver.eigenvalues();
+  }
+  const auto num_massless = (mass.array() <= 1e-13 * std::max(mass.maxCoeff(), 0.0)).count();
+  const MatrixXd Y_mass = Y.rightCols(num_free - num_massless);
 
   // The projections of the six motions on the free ones, in order: a basis that no roundoff can turn.
-  MatrixXd basis(6, 0);
-  for (int i = 0; i < 6 && basis.cols() < C_mass.cols(); ++i) {
-    VectorXd c = C_mass * (C_mass.transpose() * D.col(i));
-    const double before = c.dot(Mr * c);
-    for (int pass = 0; pass < 2; ++pass) c -= basis * (basis.transpose() * (Mr * c));
+  const MatrixXd P = Y_mass * (Y_mass.transpose() * DB);
+  const MatrixXd MP = pencil.calc_M_times(P);
+  MatrixXd coefficients(6, 0);
+  const MatrixXd Mr = P.transpose() * MP;
+  for (int i = 0; i < 6 && coefficients.cols() < Y_mass.cols(); ++i) {
+    VectorXd c = VectorXd::Unit(6, i);
+    for (int pass = 0; pass < 2; ++pass) c -= coefficients * (coefficients.transpose() * (Mr * c));
     const double after = c.dot(Mr * c);
-    if (!(after > 1e-8 * before) || before <= 0) continue;
-    basis.conservativeResize(6, basis.cols() + 1);
-    basis.rightCols(1) = c / std::sqrt(after);
+    if (!(after > 1e-8 * Mr(i, i))) continue;
+    coefficients.conservativeResize(6, coefficients.cols() + 1);
+    coefficients.rightCols(1) = c / std::sqrt(after);
   }
-  result.modes = B * basis;
+  result.modes = P * coefficients;
 
-  result.massless = B * C_none;
-  if (C_none.cols() > 0) {
+  result.massless = Y.leftCols(num_massless);
+  if (num_massless > 0) {
     const Eigen::ColPivHouseholderQR<MatrixXd> qr(result.massless.transpose());
-    for (Eigen::Index i = 0; i < C_none.cols(); ++i)
+    for (Eigen::Index i = 0; i < num_massless; ++i)
       result.held.push_back(static_cast<int>(qr.colsPermutation().indices()(i)));
   }
   return result;

@@ -12,6 +12,7 @@ using Eigen::Vector3d;
 
 struct Section {
   double E = 1, G = 1, rho = 1, A = 1, I1 = 1, I2 = 1, J = 1;
+  double shear_factor = 0;                   ///< of both planes; 0: Euler-Bernoulli
 };
 
 /// The beam of NASA-CR-202063, 4.1.4.1: L = 8 m, mass 1.6154 kg.
@@ -44,7 +45,7 @@ class DeckMaker {
     if (is_cbeam) {
       records::Pbeam p;
       p.id = p.mid = pid;
-      p.k1 = p.k2 = 0.0;
+      p.k1 = p.k2 = s.shear_factor;
       for (const double x : {0.0, 1.0}) {
         records::PbeamStation station;
         station.x_over_L = x;
@@ -63,6 +64,7 @@ class DeckMaker {
       p.I1 = s.I1;
       p.I2 = s.I2;
       p.J = s.J;
+      if (s.shear_factor > 0) p.k1 = p.k2 = s.shear_factor;
       deck.pbar.push_back(p);
     }
     beam_of_[pid] = is_cbeam;

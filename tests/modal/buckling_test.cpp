@@ -1,0 +1,138 @@
+/// Load factors of columns and of lateral-torsional buckling against the classical results.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "bough/fe/statics.hpp"
+#include "bough/modal/eigen.hpp"
+#include "tests/support/beam_decks.hpp"
+
+namespace bough {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using modal::EigenOptions;
+using modal::EigenPairs;
+using test::DeckMaker;
+using test::Section;
+constexpr double kPi = std::numbers::pi;
+
+EigenPairs solve(const records::Deck& deck, int num_modes, Diagnostics& diagnostics) {
+  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
+  const fe::StaticSolver solver(model, K);
+  const MatrixXd u = solver.solve(model.calc_load(deck, 10, diagnostics));
+  EigenOptions options;
+  options.num_modes = num_modes;
+  return calc_buckling_modes(model, u.col(0), options, diagnostics);
+}
+
+EigenPairs solve(const records::Deck& deck, int num_modes) {
+  Diagnostics diagnostics;
+  return solve(deck, num_modes, diagnostics);
+}
+
+// Bending in z is softer; y is held so that each column has simple roots.
+const Section kSection = {70e9, 27e9, 2700, 1e-4, 4e-9, 1e-9, 2e-9};
+
+DeckMaker make_column(int start, int end) {
+  DeckMaker maker;
+  maker.add_section(1, kSection);
+  maker.add_line(1, 1, Vector3d::Zero(), 2 * Vector3d::UnitX(), 20, Vector3d::UnitY());
+  maker.fix_all(246);
+  maker.fix(1, start);
+  if (end) maker.fix(21, end);
+  maker.add_load(10, 21, {-1, 0, 0});
+  return maker;
+}
+
+TEST(Buckling, EulerColumns) {
+  const double euler = kPi * kPi * kSection.E * kSection.I2 / 4;
+  struct Case {
+    int start, end;
+    double factor, second;
+  };
+  for (const auto& c : {Case{13, 3, 1, 4}, Case{135, 0, 0.25, 2.25}, Case{135, 35, 4, 8.18293}, Case{135, 3, 2.045752, 6.046838}}) {
+    const auto pairs = solve(make_column(c.start, c.end).deck, 2);
+    ASSERT_EQ(pairs.lambda.size(), 2);
+    EXPECT_NEAR(pairs.lambda(0) / (c.factor * euler), 1, 1e-4) << c.factor;
+    EXPECT_NEAR(pairs.lambda(1) / (c.second * euler), 1, 1e-3) << c.factor;
+    EXPECT_EQ(pairs.inertia_count, 2);
+    EXPECT_LT(pairs.residual.maxCoeff(), 1e-8);
+  }
+}
+
+// Both planes alike: every load factor twice, both copies found, and φᵀKφ = 1.
+TEST(Buckling, RoundColumnHasPairs) {
+  DeckMaker maker;
+  maker.add_section(1, {70e9, 27e9, 2700, 1e-4, 1e-9, 1e-9, 2e-9});
+  maker.add_line(1, 1, Vector3d::Zero(), 2 * Vector3d::UnitX(), 30, Vector3d::UnitY());
+  maker.fix(1, 123456);
+  maker.add_load(10, 31, {-1, 0, 0});
+  Diagnostics diagnostics;
+  const auto pairs = solve(maker.deck, 6, diagnostics);
+  const double base = kPi * kPi * 70 / 4 / 4;
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(pairs.lambda(i) / (base * (i / 2 * 2 + 1) * (i / 2 * 2 + 1)), 1, 1e-3) << i;
+  EXPECT_EQ(pairs.inertia_count, 6);
+  const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+  const MatrixXd gram = pairs.Phi.transpose() * fe::calc_stiffness_times(model, pairs.Phi);
+  EXPECT_LT((gram - MatrixXd::Identity(6, 6)).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+// A pull never buckles: its load factors are negative, and found.
+TEST(Buckling, SignTellsPushFromPull) {
+  auto maker = make_column(13, 3);
+  maker.deck.point_loads.front().n *= -1;
+  const auto pairs = solve(maker.deck, 1);
+  EXPECT_NEAR(pairs.lambda(0) / (-kPi * kPi * kSection.E * kSection.I2 / 4), 1, 1e-4);
+}
+
+// Timoshenko & Gere, Theory of Elastic Stability, 6.3: narrow strip, cantilever under an end load.
+TEST(Buckling, LateralTorsionalCantilever) {
+  const Section strip = {70e9, 27e9, 2700, 1e-4, 1e-6, 1e-10, 4e-10};
+  DeckMaker maker;
+  maker.add_section(1, strip);
+  maker.add_line(1, 1, Vector3d::Zero(), Vector3d::UnitX(), 40, Vector3d::UnitY());
+  maker.fix(1, 123456);
+  maker.add_load(10, 41, {0, -1, 0});
+  const auto pairs = solve(maker.deck, 2);
+  const double expected = 4.0126 * std::sqrt(strip.E * strip.I2 * strip.G * strip.J);
+  EXPECT_NEAR(std::abs(pairs.lambda(0)) / expected, 1, 2e-3);
+  EXPECT_NEAR(pairs.lambda(0) / pairs.lambda(1), -1, 1e-6);   // up or down alike
+  EXPECT_EQ(pairs.inertia_count, 2);
+}
+
+// Equal end moments on simply supported ends that cannot twist: π √(EI GJ) / L. The moment is bending of the strong axis;
+// the end moments keep their directions.
+TEST(Buckling, LateralTorsionalPureBending) {
+  const Section strip = {70e9, 27e9, 2700, 1e-4, 1e-6, 1e-10, 4e-10};
+  DeckMaker maker;
+  maker.add_section(1, strip);
+  maker.add_line(1, 1, Vector3d::Zero(), Vector3d::UnitX(), 40, Vector3d::UnitY());
+  maker.fix(1, 1234);
+  maker.fix(41, 234);
+  maker.add_load(10, 1, {0, 0, 1}, true);
+  maker.add_load(10, 41, {0, 0, -1}, true);
+  const auto pairs = solve(maker.deck, 2);
+  const double expected = kPi * std::sqrt(strip.E * strip.I2 * strip.G * strip.J);
+  EXPECT_NEAR(std::abs(pairs.lambda(0)) / expected, 1, 2e-3);
+}
+
+TEST(Buckling, FreeModelIsAnError) {
+  DeckMaker maker;
+  maker.add_section(1, kSection);
+  maker.add_line(1, 1, Vector3d::Zero(), Vector3d::UnitX(), 4, Vector3d::UnitY());
+  Diagnostics diagnostics;
+  const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+  try {
+    modal::calc_buckling_modes(model, Eigen::VectorXd::Zero(model.num_gdofs()), {}, diagnostics);
+    FAIL() << "no error";
+  } catch (const ComputationError& error) {
+    EXPECT_EQ(error.items().front().id, "modal.buckling-free");
+  }
+}
+
+}  // namespace
+}  // namespace bough

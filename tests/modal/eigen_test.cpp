@@ -1,0 +1,202 @@
+/// The eigenvalue solver itself: repeated roots, ranges, small and singular problems, messages.
+#include "bough/modal/eigen.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/beam_decks.hpp"
+
+namespace bough {
+namespace {
+
+using modal::EigenOptions;
+using modal::EigenPairs;
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using test::DeckMaker;
+using test::Section;
+
+const Section kSection = {70e9, 27e9, 2700, 1e-4, 1e-11, 1e-11, 2e-11};
+
+/// Identical separate cantilevers of 12 elements: every root has twice as many copies.
+DeckMaker make_cantilevers(int count, bool lumped = false) {
+  DeckMaker maker(lumped);
+  maker.add_section(1, kSection);
+  for (int i = 0; i < count; ++i) {
+    maker.add_line(1, 100 * i + 1, {0, 1.0 * i, 0}, {1, 1.0 * i, 0}, 12, Vector3d::UnitY());
+    maker.fix(100 * i + 1, 123456);
+  }
+  return maker;
+}
+
+EigenPairs solve(const records::Deck& deck, const EigenOptions& options, Diagnostics& diagnostics) {
+  const auto model = fe::Model::build(deck, {}, diagnostics);
+  return calc_normal_modes(model, options, diagnostics);
+}
+
+EigenOptions make_options(int num_modes) {
+  EigenOptions options;
+  options.num_modes = num_modes;
+  return options;
+}
+
+double to_hz(double lambda) { return std::sqrt(lambda) / (2 * std::numbers::pi); }
+
+TEST(Eigen, FindsEveryCopyOfARepeatedRoot) {
+  Diagnostics diagnostics;
+  const auto maker = make_cantilevers(7);
+  const auto pairs = solve(maker.deck, make_options(28), diagnostics);
+  ASSERT_EQ(pairs.lambda.size(), 28);
+  EXPECT_EQ(pairs.inertia_count, 28);
+  for (int j = 0; j < 28; ++j) EXPECT_NEAR(pairs.lambda(j) / pairs.lambda(j / 14 * 14), 1, 1e-9) << j;
+  EXPECT_NEAR(std::sqrt(pairs.lambda(14) / pairs.lambda(0)), 22.0344916 / 3.5160153, 1e-3);
+  EXPECT_FALSE(diagnostics.has("modal.cut-root"));
+}
+
+TEST(Eigen, CutThroughARootWarnsAndKeepsItsBasis) {
+  Diagnostics few, many;
+  const auto maker = make_cantilevers(3);
+  const auto cut = solve(maker.deck, make_options(4), few);
+  const auto whole = solve(maker.deck, make_options(6), many);
+  EXPECT_TRUE(few.has("modal.cut-root"));
+  EXPECT_FALSE(many.has("modal.cut-root"));
+  EXPECT_EQ(cut.inertia_count, 6);
+  EXPECT_LT((cut.Phi - whole.Phi.leftCols(4)).cwiseAbs().maxCoeff(), 1e-6 * whole.Phi.cwiseAbs().maxCoeff());
+}
+
+// The basis of a repeated root is the model's: bending in y and in z stay apart, and the largest entry is positive.
+TEST(Eigen, BasisOfAPairIsPureAndPositive) {
+  Diagnostics diagnostics;
+  const auto maker = test::make_cantilever(kSection, 1, 30);
+  const auto pairs = solve(maker.deck, make_options(4), diagnostics);
+  for (int j = 0; j < 4; ++j) {
+    const int own = j % 2 == 0 ? 1 : 2, other = 3 - own;
+    double largest = 0;
+    for (int k = 0; k < 31; ++k) {
+      EXPECT_LT(std::abs(pairs.Phi(6 * k + other, j)), 1e-8) << j;
+      largest = std::max(largest, std::abs(pairs.Phi(6 * k + own, j)));
+    }
+    EXPECT_GT(largest, 1);
+    EXPECT_GT(pairs.Phi.col(j).maxCoeff(), -pairs.Phi.col(j).minCoeff());
+  }
+}
+
+// The dense path (many modes wanted) and Krylov-Schur agree.
+TEST(Eigen, DenseAndKrylovAgree) {
+  Diagnostics diagnostics;
+  const auto maker = test::make_cantilever({70e9, 27e9, 2700, 1e-4, 1e-9, 3e-9, 2e-9}, 1, 20);
+  const auto krylov = solve(maker.deck, make_options(8), diagnostics);
+  const auto dense = solve(maker.deck, make_options(60), diagnostics);
+  ASSERT_EQ(dense.lambda.size(), 60);
+  EXPECT_EQ(dense.inertia_count, 60);
+  for (int j = 0; j < 8; ++j) {
+    EXPECT_NEAR(krylov.lambda(j) / dense.lambda(j), 1, 1e-8);
+    EXPECT_LT((krylov.Phi.col(j) - dense.Phi.col(j)).norm(), 1e-6 * dense.Phi.col(j).norm());
+  }
+}
+
+// Lumped bars: three modes per free grid and no more.
+TEST(Eigen, FewerModesThanAskedFor) {
+  Diagnostics diagnostics;
+  const auto maker = test::make_cantilever(kSection, 1, 3, true);
+  const auto pairs = solve(maker.deck, make_options(20), diagnostics);
+  EXPECT_EQ(pairs.lambda.size(), 9);
+  EXPECT_EQ(pairs.inertia_count, 9);
+  EXPECT_TRUE(diagnostics.has("modal.fewer-modes"));
+  Diagnostics quiet;
+  const auto long_beam = test::make_cantilever(kSection, 1, 40, true);
+  EXPECT_EQ(solve(long_beam.deck, make_options(500), quiet).lambda.size(), 120);
+  EXPECT_TRUE(quiet.has("modal.fewer-modes"));
+}
+
+TEST(Eigen, RangeOfFrequencies) {
+  Diagnostics diagnostics;
+  const auto maker = test::make_cantilever(kSection, 1, 30);
+  const auto all = solve(maker.deck, make_options(8), diagnostics);
+  EigenOptions options;
+  options.num_modes = 0;
+  options.min_hz = 0.5 * (to_hz(all.lambda(1)) + to_hz(all.lambda(2)));
+  options.max_hz = 0.5 * (to_hz(all.lambda(5)) + to_hz(all.lambda(6)));
+  const auto some = solve(maker.deck, options, diagnostics);
+  ASSERT_EQ(some.lambda.size(), 4);
+  EXPECT_NEAR(some.lambda(0) / all.lambda(2), 1, 1e-9);
+  EXPECT_EQ(some.inertia_count, 6);
+
+  options.min_hz = to_hz(all.lambda(1)) * 1.01;
+  options.max_hz = to_hz(all.lambda(1)) * 1.02;
+  EXPECT_EQ(solve(maker.deck, options, diagnostics).lambda.size(), 0);
+  EXPECT_TRUE(diagnostics.has("modal.empty-range"));
+}
+
+// A pinned strut turns freely about its end: not one of the six motions of the whole, found as a zero all the same.
+TEST(Eigen, MechanismBeyondTheRigidMotionsIsAZero) {
+  DeckMaker maker(true);
+  maker.add_section(1, kSection);
+  maker.add_line(1, 1, Vector3d::Zero(), Vector3d::UnitX(), 10, Vector3d::UnitY());
+  maker.fix(1, 123456);
+  maker.add_line(1, 101, Vector3d::UnitX(), {1, 1, 0}, 10, Vector3d::UnitX(), 11);
+  for (auto& beam : maker.deck.beams)
+    if (beam.id == 101) beam.pin_a = 0b110000;   // bending moments released at the joint
+  Diagnostics diagnostics;
+  const auto pairs = solve(maker.deck, make_options(8), diagnostics);
+  EXPECT_EQ(pairs.num_rigid, 2);
+  EXPECT_EQ(pairs.lambda(1), 0);
+  EXPECT_GT(pairs.lambda(2), 1);
+  EXPECT_EQ(pairs.inertia_count, 8);
+}
+
+// Simply supported about the axis only: fewer than six.
+TEST(Eigen, PartlySupportedModelKeepsTheRestOfItsRigidMotions) {
+  DeckMaker maker;
+  maker.add_section(1, kSection, true);
+  maker.add_line(1, 1, {5, 0, 0}, {6, 0, 0}, 30, Vector3d::UnitY());
+  maker.fix(1, 123);
+  Diagnostics diagnostics;
+  const auto pairs = solve(maker.deck, make_options(7), diagnostics);
+  EXPECT_EQ(pairs.num_rigid, 3);
+  EXPECT_EQ(pairs.inertia_count, 7);
+  // Pinned-free: βL = 3.926602.
+  const double w = 3.92660231 * 3.92660231 * std::sqrt(kSection.E * kSection.I1 / (kSection.rho * kSection.A));
+  EXPECT_NEAR(std::sqrt(pairs.lambda(3)) / w, 1, 1e-4);
+}
+
+// A finer mesh and a heavy far tip: stiffness over many orders of magnitude, still complete.
+TEST(Eigen, FineMeshWithHeavyTip) {
+  auto maker = test::make_cantilever(kSection, 1, 400);
+  maker.add_mass(5000, 401, 100);
+  Diagnostics diagnostics;
+  const auto pairs = solve(maker.deck, make_options(4), diagnostics);
+  EXPECT_EQ(pairs.inertia_count, 4);
+  // Massless cantilever with the tip mass plus 33/140 of its own.
+  const double w2 = 3 * kSection.E * kSection.I1 / (100 + 33.0 / 140 * kSection.rho * kSection.A);
+  EXPECT_NEAR(pairs.lambda(0) / w2, 1, 1e-5);
+  EXPECT_NEAR(pairs.lambda(1) / w2, 1, 1e-5);
+}
+
+template <class Function>
+std::string get_error(Function function) {
+  try {
+    function();
+  } catch (const Failure& failure) {
+    return failure.what();
+  }
+  return "";
+}
+
+TEST(Eigen, ErrorsNameTheCause) {
+  Diagnostics diagnostics;
+  auto fixed = test::make_cantilever(kSection, 1, 2);
+  fixed.fix_all(123456);
+  EXPECT_NE(get_error([&] { solve(fixed.deck, make_options(2), diagnostics); }).find("modal.no-dofs"),
+            std::string::npos);
+  auto massless = test::make_cantilever({70e9, 27e9, 0, 1e-4, 1e-9, 1e-9, 2e-9}, 1, 2);
+  EXPECT_NE(get_error([&] { solve(massless.deck, make_options(2), diagnostics); }).find("modal.no-mass"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace bough
