@@ -119,6 +119,9 @@ class Grouper {
   SplitLine scratch_;
 };
 
+/// KEYWORD=value of a continuation of EIGRL, which may have commas between its pairs; "=" alone is replication.
+bool is_keyword(std::string_view field) { return field.find('=') != std::string_view::npos && field.front() != '='; }
+
 bool is_number_like(std::string_view field) {
   return parse_real(field).has_value() && field.find_first_of("0123456789") != std::string_view::npos;
 }
@@ -130,6 +133,7 @@ void split_free(std::string_view text, SplitLine& line) {
     end = text.find(',', from);
     auto field = trim(text.substr(from, end == std::string_view::npos ? end : end - from));
     if (index == 0) {
+      if (is_keyword(field)) field = {};
       const bool star = !field.empty() && (field.front() == '*' || field.back() == '*');
       line.is_large = star;
       per_line = star ? 4 : 8;
@@ -163,8 +167,9 @@ bool is_free_field(std::string_view text) {
 }
 
 std::string_view get_first_field(std::string_view text) {
-  if (is_free_field(text)) return trim(text.substr(0, text.find(',')));
-  return slice(text, 0, 8);
+  if (!is_free_field(text)) return slice(text, 0, 8);
+  const auto first = trim(text.substr(0, text.find(',')));
+  return is_keyword(first) ? std::string_view{} : first;
 }
 
 void split_line(std::string_view text, SplitLine& line) {

@@ -1,0 +1,165 @@
+/// \file Executive and case control, bulk-only fragments, ENDDATA, INCLUDE.
+#include <filesystem>
+#include <fstream>
+
+#include "tests/formats/nastran/deck_text.hpp"
+
+namespace bough::nastran {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Control, ExecutiveJunkAndSolution) {
+  const auto solution = [](const std::string& head) { return read_clean(head + "CEND\nBEGIN BULK\nENDDATA\n").sol; };
+  EXPECT_EQ(solution("INIT MASTER(S)\nNASTRAN SYSTEM(442)=-1,SYSTEM(319)=1\nID a,b\nSOL 103\nTIME 10\n"), "103");
+  EXPECT_EQ(solution("ASSIGN OUTPUT2='x.op2',UNIT=12\nsol semodes $ modes\n"), "SEMODES");
+  EXPECT_EQ(solution("APP DISP\nSOL 3,0\n"), "3");
+  EXPECT_EQ(solution("DIAG 8\n"), "");
+}
+
+TEST(Control, ValuesAboveTheFirstSubcaseAreInherited) {
+  const auto deck = read_clean(
+      "SOL 105\nCEND\nTITLE = Column, pinned\nSUBT = base\nSPC = 3\nMPC=7\nECHO = NONE\nDISP(PLOT,PUNCH) = ALL\n"
+      "SUBCASE 1\n  LABEL = push\n  LOAD = 4\n"
+      "SUBCASE=2\n  METHOD(STRUCTURE) = 5\n  STATSUB(BUCKLING) = 1\n  SPC = 9\n  SUBTITLE = buckling\n"
+      "BEGIN BULK\nENDDATA\n");
+  ASSERT_EQ(deck.subcases.size(), 2u);
+  const auto &a = deck.subcases[0], &b = deck.subcases[1];
+  EXPECT_EQ(a.id, 1);
+  EXPECT_EQ(a.title, "Column, pinned");
+  EXPECT_EQ(a.subtitle, "base");
+  EXPECT_EQ(a.label, "push");
+  EXPECT_EQ(a.spc, 3);
+  EXPECT_EQ(a.mpc, 7);
+  EXPECT_EQ(a.load, 4);
+  EXPECT_EQ(a.method, 0);
+  EXPECT_EQ(b.id, 2);
+  EXPECT_EQ(b.spc, 9);
+  EXPECT_EQ(b.load, 0);
+  EXPECT_EQ(b.method, 5);
+  EXPECT_EQ(b.statsub, 1);
+  EXPECT_EQ(b.subtitle, "buckling");
+  EXPECT_EQ(b.title, "Column, pinned");
+}
+
+TEST(Control, WithoutSubcaseThereIsOne) {
+  const auto deck = read_clean("SOL 101\nCEND\nLOAD 12\nSPC=2\nBEGIN BULK\n");
+  ASSERT_EQ(deck.subcases.size(), 1u);
+  EXPECT_EQ(deck.subcases[0].id, 0);
+  EXPECT_EQ(deck.subcases[0].load, 12);
+}
+
+TEST(Control, SetsWrapAndPlotSectionsAreIgnored) {
+  const auto deck = read_clean(
+      "CEND\nSET 80 = 1 THRU 5,\n 7, 9,\n LOAD, 12\nLOAD = 3\nPARAM,WTMASS,.00259\n"
+      "OUTPUT(PLOT)\nSET 1 = ALL\nLABEL = no\nMAXIMUM DEFORMATION 3.\nOUTPUT (XYOUT)\nXYPLOT VG / 1(G,F)\nTCURVE = x\n"
+      "BEGIN BULK\n");
+  EXPECT_EQ(deck.subcases[0].load, 3);
+  EXPECT_EQ(deck.subcases[0].label, "");
+  ASSERT_NE(deck.find_param("WTMASS"), nullptr);
+  EXPECT_EQ(deck.find_param("WTMASS")->value, ".00259");
+}
+
+TEST(Control, WhatIsNotRecognizedIsOneNote) {
+  const auto r = read("CEND\nFMETHOD = 3\nSPC = 1\nDSAPRT = 4\nFMETHOD = 5\nBEGIN BULK\n");
+  ASSERT_EQ(r.count("deck.case-control-ignored"), 1);
+  EXPECT_EQ(r.find("deck.case-control-ignored")->severity, Severity::Note);
+  EXPECT_EQ(r.find("deck.case-control-ignored")->where.line, 2);
+  EXPECT_NE(r.find("deck.case-control-ignored")->what.find("FMETHOD"), std::string::npos);
+}
+
+TEST(Control, BadValues) {
+  const auto r = read("CEND\nSPC = all\nSUBCASE x\nSUBCASE 1\nSUBCASE 1\nBEGIN BULK\n");
+  EXPECT_EQ(r.count("deck.case-control-value"), 3);
+  EXPECT_EQ(r.find("deck.case-control-value")->where.line, 2);
+}
+
+TEST(Control, FragmentsAndDecksWithoutExecutive) {
+  EXPECT_EQ(read_clean("GRID,1\nGRID,2\n").grids.size(), 2u);
+  const auto deck = read_clean("SOL 103\nSPC = 4\nBEGIN BULK\nGRID,1\n");
+  EXPECT_EQ(deck.sol, "103");
+  EXPECT_EQ(deck.subcases[0].spc, 4);
+  EXPECT_EQ(read_clean("").grids.size(), 0u);
+}
+
+TEST(Control, TextAfterEnddataIsIgnored) {
+  EXPECT_EQ(read_clean("GRID,1\nENDDATA 2cb29386\nGRID,2\nnonsense\nINCLUDE 'nowhere'\n").grids.size(), 1u);
+}
+
+TEST(Control, MissingBeginBulkAndSuperelements) {
+  EXPECT_NE(read("SOL 101\nCEND\nSPC=1\nGRID,1\n").find("deck.no-begin-bulk"), nullptr);
+  const auto r = read("CEND\nBEGIN BULK\nGRID,1\nBEGIN SUPER=1\nGRID,1,,5.\n");
+  ASSERT_NE(r.find("deck.unsupported-section"), nullptr);
+  EXPECT_EQ(r.find("deck.unsupported-section")->where.line, 4);
+  EXPECT_EQ(r.diagnostics.num_errors(), 1) << r.get_messages();
+}
+
+/// A folder of its own for each test, removed with it.
+class Include : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) /
+              ("bough_include_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "parts" / "deep");
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+  Read read_file(const std::string& name) const {
+    Read r;
+    r.deck = read_deck((folder_ / name).string(), {}, r.diagnostics);
+    return r;
+  }
+  fs::path folder_;
+};
+
+TEST_F(Include, NestedRelativeSplitOverLines) {
+  write("main.bdf",
+        "CEND\nINCLUDE 'case.inc'\nBEGIN BULK\nGRID,1\nInclude 'parts/\n   a.bdf' $ the rest\nGRID,4\nENDDATA\n");
+  write("case.inc", "SPC = 8\n");
+  write("parts/a.bdf", "GRID,2\nINCLUDE \"deep\\b.bdf\"\n");
+  write("parts/deep/b.bdf", "GRID,3,,1.\nGRID,x\n");
+  const auto r = read_file("main.bdf");
+  ASSERT_EQ(r.deck.grids.size(), 4u) << r.get_messages();
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(r.deck.grids[static_cast<std::size_t>(i)].id, i + 1);
+  EXPECT_EQ(r.deck.subcases[0].spc, 8);
+  ASSERT_EQ(r.deck.files.size(), 4u);
+  ASSERT_EQ(r.diagnostics.num_errors(), 1);
+  EXPECT_EQ(fs::path(r.diagnostics.items()[0].where.file).filename(), "b.bdf");
+  EXPECT_EQ(r.diagnostics.items()[0].where.line, 2);
+  EXPECT_EQ(r.deck.locate(r.deck.grids[3].at).line, 7);
+}
+
+TEST_F(Include, CircleIsAnErrorThatNamesTheChain) {
+  write("main.bdf", "GRID,1\nINCLUDE 'a.bdf'\nGRID,9\n");
+  write("a.bdf", "GRID,2\nINCLUDE 'b.bdf'\n");
+  write("b.bdf", "GRID,3\nINCLUDE 'a.bdf'\n");
+  const auto r = read_file("main.bdf");
+  ASSERT_EQ(r.diagnostics.num_errors(), 1) << r.get_messages();
+  const auto* d = r.find("deck.include-cycle");
+  ASSERT_NE(d, nullptr);
+  EXPECT_NE(d->what.find("a.bdf -> b.bdf -> a.bdf"), std::string::npos) << d->what;
+  EXPECT_EQ(fs::path(d->where.file).filename(), "b.bdf");
+  EXPECT_EQ(d->where.line, 2);
+  EXPECT_EQ(r.deck.grids.size(), 4u);
+}
+
+TEST_F(Include, MissingFilesAreAllReported) {
+  write("main.bdf", "INCLUDE 'x.bdf'\nGRID,1\nINCLUDE y.bdf\nINCLUDE\n");
+  const auto r = read_file("main.bdf");
+  EXPECT_EQ(r.count("deck.include-missing"), 2) << r.get_messages();
+  EXPECT_EQ(r.count("deck.include-syntax"), 1);
+  EXPECT_EQ(r.deck.grids.size(), 1u);
+  write("open.bdf", "INCLUDE 'x.bdf\nGRID,1\n");
+  EXPECT_EQ(read_file("open.bdf").count("deck.include-syntax"), 1);
+}
+
+TEST_F(Include, DeckThatCannotBeRead) {
+  const auto r = read_file("nowhere.bdf");
+  ASSERT_NE(r.find("deck.cannot-open"), nullptr);
+  EXPECT_EQ(r.diagnostics.num_errors(), 1);
+  EXPECT_GE(r.deck.subcases.size(), 1u);
+}
+
+}  // namespace
+}  // namespace bough::nastran

@@ -1,0 +1,48 @@
+#pragma once
+/// \file Decks written in the tests themselves.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+
+#include "bough/formats/nastran/reader.hpp"
+
+namespace bough::nastran {
+
+/// A deck read from text with what was said about it.
+struct Read {
+  Diagnostics diagnostics;
+  records::Deck deck;
+
+  std::string get_messages() const {
+    std::string text;
+    for (const auto& d : diagnostics.items()) text += format(d) + "\n";
+    return text;
+  }
+  /// The first diagnostic with this id, or nullptr.
+  const Diagnostic* find(std::string_view id) const {
+    for (const auto& d : diagnostics.items())
+      if (d.id == id) return &d;
+    return nullptr;
+  }
+  int count(std::string_view id) const {
+    int n = 0;
+    for (const auto& d : diagnostics.items()) n += d.id == id ? 1 : 0;
+    return n;
+  }
+};
+
+inline Read read(std::string_view text, const ReadOptions& options = {}) {
+  Read r;
+  r.deck = read_deck_text(text, "deck.bdf", options, r.diagnostics);
+  return r;
+}
+
+/// The same, where the deck must be without fault.
+inline records::Deck read_clean(std::string_view text) {
+  const auto r = read(text);
+  EXPECT_EQ(r.diagnostics.items().size(), 0u) << r.get_messages();
+  return r.deck;
+}
+
+}  // namespace bough::nastran
