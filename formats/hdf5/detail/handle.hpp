@@ -1,0 +1,89 @@
+#pragma once
+/// \file HDF5 identifiers that close themselves, and the error stack kept silent.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hdf5.h>
+
+namespace bough::hdf5 {
+
+using Dims = std::vector<hsize_t>;
+
+/// Owns one identifier; closes it with the function that belongs to its kind.
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Handle() = default;
+  Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle& operator=(Handle&& other) noexcept {
+    if (this != &other) {
+      reset();
+      id_ = std::exchange(other.id_, -1);
+      close_ = other.close_;
+    }
+    return *this;
+  }
+  ~Handle() { reset(); }
+
+  hid_t get() const { return id_; }
+  bool is_valid() const { return id_ >= 0; }
+  /// Closes now; false when closing failed (a full disk shows here).
+  bool reset() {
+    const hid_t id = std::exchange(id_, -1);
+    return id < 0 || close_(id) >= 0;
+  }
+
+ private:
+  hid_t id_ = -1;
+  Close close_ = nullptr;
+};
+
+/// While it lives, HDF5 prints nothing: every failure is reported as a Diagnostic instead.
+class QuietErrors {
+ public:
+  QuietErrors() {
+    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+
+ private:
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
+};
+
+/// Variable-length UTF-8 string, the one string type of the files.
+Handle make_string_type();
+
+/// Property list for opening files: no file locks, so that a file can be read while it is written, also on network
+/// file systems.
+Handle make_file_access();
+
+/// Makes an empty file that takes a few bytes; false, with errno, where that fails. HDF5 itself does not survive a
+/// file that cannot take its first block.
+bool make_empty_file(const std::string& path);
+
+/// Flushes, after reserving the space that it takes; false, with errno, when there is not enough. HDF5 does not survive
+/// a flush that fails half-way: neither closing the file nor the end of the program.
+bool flush_file(hid_t file);
+
+/// Gives up on a file whose device refuses writes: what is still to be written goes to memory, so that it can be closed.
+void abandon_writes(hid_t file);
+
+/// "/a/b/c" -> every proper parent and then whether the object itself is there.
+bool exists(hid_t file, const std::string& path);
+
+/// "3 x 4"; "scalar" for no dimension.
+std::string describe_shape(const Dims& dims);
+
+/// A string attribute as text; empty when absent or of another kind.
+std::string read_text_attribute(hid_t object, const std::string& name);
+
+/// Replaces a scalar string attribute of an open object; false on failure.
+bool write_text_attribute(hid_t object, const std::string& name, const std::string& text);
+
+}  // namespace bough::hdf5

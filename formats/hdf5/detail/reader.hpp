@@ -1,0 +1,69 @@
+#pragma once
+/// \file Reads one HDF5 file of Bough: every departure from the expected is collected, then reported together.
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "bough/base/diagnostic.hpp"
+#include "bough/formats/hdf5/detail/handle.hpp"
+#include "bough/formats/records/flex_body.hpp"
+
+namespace bough::hdf5 {
+
+/// Opens an existing file. Throws InputError "hdf5.cannot-open", "hdf5.not-hdf5" or "hdf5.truncated".
+Handle open_file(const std::string& path, bool to_write = false);
+
+/// Throws InputError "hdf5.wrong-format" unless the root says this format, in a major version that is known.
+void check_format(hid_t file, const std::string& path, const std::string& format, const std::string& version);
+
+/// A shape with -1 for "any".
+using Shape = std::vector<long>;
+
+/// An array as it is in the file, C order.
+struct NumberArray {
+  Dims shape;
+  std::vector<double> data;
+};
+
+class FileReader {
+ public:
+  FileReader(const std::string& path, const std::string& format, const std::string& version);
+
+  hid_t get() const { return file_.get(); }
+  bool has(const std::string& path) const { return exists(file_.get(), path); }
+
+  /// These report "hdf5.missing", "hdf5.shape" (found against expected), "hdf5.type", "hdf5.damaged" and, unless
+  /// told, "hdf5.nan", and then return zeros of the expected shape (0 where it is open).
+  NumberArray read_array(const std::string& path, const Shape& shape, bool may_be_nan = false);
+  Eigen::VectorXd read_vector(const std::string& path, long size, bool may_be_nan = false);
+  Eigen::MatrixXd read_matrix(const std::string& path, long rows, long cols);
+  double read_number(const std::string& path);
+  std::vector<int> read_integers(const std::string& path, long size);
+  Eigen::MatrixXi read_integer_matrix(const std::string& path, long rows, long cols);
+  std::vector<std::string> read_strings(const std::string& path, long size);
+
+  std::string read_attribute(const std::string& object, const std::string& name);
+  int read_integer_attribute(const std::string& object, const std::string& name, int otherwise);
+  std::vector<std::pair<std::string, std::string>> read_source();
+  std::vector<std::string> get_children(const std::string& group);
+
+  void error(const char* id, const std::string& what, const std::string& advice = {});
+  /// Throws InputError with everything reported.
+  void throw_if_errors() const { diagnostics_.throw_if_errors(); }
+
+ private:
+  /// The dataset if it is there with this shape and class; fills found.
+  Handle open_dataset(const std::string& path, const Shape& shape, H5T_class_t type, Dims& found);
+
+  QuietErrors quiet_;
+  std::string path_;
+  Handle file_;
+  Diagnostics diagnostics_;
+};
+
+records::BodyMesh read_mesh(FileReader& file);
+std::vector<Eigen::MatrixXd> read_mode_shapes(FileReader& file, long num_nodes, long num_modes);
+std::vector<records::ModeKind> read_mode_kinds(FileReader& file, long num_modes);
+
+}  // namespace bough::hdf5

@@ -1,0 +1,254 @@
+#include "bough/formats/hdf5/detail/writer.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "bough/base/diagnostic.hpp"
+#include "bough/base/version.hpp"
+
+namespace bough::hdf5 {
+
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+Handle make_space(const Dims& shape) {
+  if (shape.empty()) return {H5Screate(H5S_SCALAR), H5Sclose};
+  return {H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose};
+}
+
+bool has_elements(const Dims& shape) {
+  for (const auto d : shape) {
+    if (d == 0) return false;
+  }
+  return true;
+}
+
+bool sync_to_disk(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY);
+  if (descriptor < 0) return false;
+  const bool ok = ::fsync(descriptor) == 0;
+  return ::close(descriptor) == 0 && ok;
+}
+
+}  // namespace
+
+FileWriter::FileWriter(const std::string& path, const std::string& format, const std::string& version)
+    : path_(path), temporary_(path + ".part-" + std::to_string(::getpid())) {
+  // Creation times are left out, so that the same content gives the same bytes.
+  Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation.get(), false);
+  const Handle access = make_file_access();
+  link_creation_ = Handle(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(link_creation_.get(), 1);
+  errno = 0;
+  check(make_empty_file(temporary_), "the file cannot be created");
+  file_ = Handle(H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
+  check(file_.is_valid(), "the file cannot be created");
+  write_attribute("/", "format", format);
+  write_attribute("/", "format_version", version);
+  write_attribute("/", "bough_version", std::string(get_version()));
+}
+
+FileWriter::~FileWriter() {
+  if (temporary_.empty()) return;
+  file_.reset();
+  std::error_code ignored;
+  std::filesystem::remove(temporary_, ignored);
+}
+
+void FileWriter::check(bool ok, const std::string& what) {
+  if (ok) return;
+  if (file_.is_valid()) {
+    const int cause = errno;
+    abandon_writes(file_.get());
+    errno = cause;
+  }
+  const std::string reason = errno != 0 ? std::string(": ") + std::strerror(errno) : std::string();
+  throw ComputationError("hdf5.write", {path_}, what + reason, "check the folder, its permissions and the free space");
+}
+
+void FileWriter::make_group(const std::string& path) {
+  if (exists(file_.get(), path)) return;
+  Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation.get(), false);
+  const Handle group(H5Gcreate2(file_.get(), path.c_str(), link_creation_.get(), creation.get(), H5P_DEFAULT),
+                     H5Gclose);
+  check(group.is_valid(), "group " + path + " cannot be written");
+}
+
+void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_type, hid_t memory_type,
+                       const void* data, const Meaning& meaning) {
+  errno = 0;
+  // Parents are made here and not by the library, which would stamp them with the time.
+  for (std::size_t end = path.find('/', 1); end != std::string::npos; end = path.find('/', end + 1)) {
+    make_group(path.substr(0, end));
+  }
+  const Handle space = make_space(shape);
+  Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation.get(), false);
+  {
+    Handle dataset(H5Dcreate2(file_.get(), path.c_str(), file_type, space.get(), H5P_DEFAULT, creation.get(),
+                              H5P_DEFAULT),
+                   H5Dclose);
+    check(dataset.is_valid(), "dataset " + path + " cannot be written");
+    if (has_elements(shape)) {
+      check(H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0,
+            "dataset " + path + " cannot be written");
+    }
+    check(dataset.reset(), "dataset " + path + " cannot be written");
+  }
+  write_attribute(path, "description", meaning.description);
+  write_attribute(path, "dims", meaning.dims);
+}
+
+void FileWriter::write_attribute(const std::string& object, const std::string& name, const Dims& shape,
+                                 hid_t file_type, hid_t memory_type, const void* data) {
+  const Handle space = make_space(shape);
+  const Handle attribute(H5Acreate_by_name(file_.get(), object.c_str(), name.c_str(), file_type, space.get(),
+                                           H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose);
+  check(attribute.is_valid(), "attribute " + object + "@" + name + " cannot be written");
+  if (!has_elements(shape)) return;
+  check(H5Awrite(attribute.get(), memory_type, data) >= 0, "attribute " + object + "@" + name + " cannot be written");
+}
+
+void FileWriter::write_attribute(const std::string& object, const std::string& name, const std::string& text) {
+  const Handle type = make_string_type();
+  const char* data = text.c_str();
+  write_attribute(object, name, Dims{}, type.get(), type.get(), &data);
+}
+
+void FileWriter::write_attribute(const std::string& object, const std::string& name, int value) {
+  write_attribute(object, name, Dims{}, H5T_STD_I32LE, H5T_NATIVE_INT, &value);
+}
+
+void FileWriter::write_attribute(const std::string& object, const std::string& name, const std::vector<int>& values) {
+  write_attribute(object, name, Dims{values.size()}, H5T_STD_I32LE, H5T_NATIVE_INT, values.data());
+}
+
+void FileWriter::write_attribute(const std::string& object, const std::string& name,
+                                 const std::vector<std::string>& words) {
+  const Handle type = make_string_type();
+  std::vector<const char*> data;
+  for (const auto& w : words) data.push_back(w.c_str());
+  write_attribute(object, name, Dims{words.size()}, type.get(), type.get(), data.data());
+}
+
+void FileWriter::write_source(const std::vector<std::pair<std::string, std::string>>& source) {
+  const Handle type = make_string_type();
+  std::vector<const char*> data;
+  for (const auto& [name, hash] : source) {
+    data.push_back(name.c_str());
+    data.push_back(hash.c_str());
+  }
+  write_attribute("/", "source", Dims{source.size(), 2}, type.get(), type.get(), data.data());
+}
+
+void FileWriter::write_numbers(const std::string& path, const Dims& shape, const double* data,
+                               const Meaning& meaning) {
+  write(path, shape, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, data, meaning);
+}
+
+void FileWriter::write_integers(const std::string& path, const Dims& shape, const int* data, const Meaning& meaning) {
+  write(path, shape, H5T_STD_I32LE, H5T_NATIVE_INT, data, meaning);
+}
+
+void FileWriter::write_strings(const std::string& path, const std::vector<std::string>& words,
+                               const Meaning& meaning) {
+  const Handle type = make_string_type();
+  std::vector<const char*> data;
+  for (const auto& w : words) data.push_back(w.c_str());
+  write(path, {words.size()}, type.get(), type.get(), data.data(), meaning);
+}
+
+void FileWriter::write_number(const std::string& path, double value, const Meaning& meaning) {
+  write_numbers(path, {1}, &value, meaning);
+}
+
+void FileWriter::write_vector(const std::string& path, const Eigen::VectorXd& v, const Meaning& meaning) {
+  write_numbers(path, {static_cast<hsize_t>(v.size())}, v.data(), meaning);
+}
+
+void FileWriter::write_matrix(const std::string& path, const Eigen::MatrixXd& m, const Meaning& meaning) {
+  const RowMajor rows = m;
+  write_numbers(path, {static_cast<hsize_t>(m.rows()), static_cast<hsize_t>(m.cols())}, rows.data(), meaning);
+}
+
+void FileWriter::write_integers(const std::string& path, const std::vector<int>& data, const Meaning& meaning) {
+  write_integers(path, {data.size()}, data.data(), meaning);
+}
+
+void FileWriter::write_integers(const std::string& path, const Eigen::MatrixXi& m, const Meaning& meaning) {
+  const Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = m;
+  write_integers(path, {static_cast<hsize_t>(m.rows()), static_cast<hsize_t>(m.cols())}, rows.data(), meaning);
+}
+
+void FileWriter::commit() {
+  errno = 0;
+  check(flush_file(file_.get()), "the file cannot be written");
+  check(file_.reset(), "the file cannot be written");
+  check(sync_to_disk(temporary_), "the file cannot be written");
+  check(::rename(temporary_.c_str(), path_.c_str()) == 0, "the file cannot be put in its place");
+  temporary_.clear();
+}
+
+void FileWriter::link(const std::string& path, const std::string& existing) {
+  make_group(path.substr(0, path.rfind('/')));
+  check(H5Lcreate_hard(file_.get(), existing.c_str(), file_.get(), path.c_str(), H5P_DEFAULT, H5P_DEFAULT) >= 0,
+        "link " + path + " cannot be written");
+}
+
+void write_mesh(FileWriter& file, const records::BodyMesh& mesh) {
+  if (mesh.grid_id.empty()) return;
+  file.write_integers("/grids/id", mesh.grid_id, {"ids of all grids", "1"});
+  file.write_matrix("/grids/xyz", mesh.grid_xyz, {"their positions in the body frame", "L"});
+  file.link("/mesh/grid_id", "/grids/id");
+  file.link("/mesh/grid_xyz", "/grids/xyz");
+  std::vector<std::string> names;
+  for (const auto& block : mesh.blocks) {
+    std::string name = block.type;
+    for (int k = 2; std::find(names.begin(), names.end(), name) != names.end(); ++k) {
+      name = block.type + "-" + std::to_string(k);
+    }
+    const std::string path = "/mesh/elements/" + name;
+    file.write_integers(path + "/connectivity", block.connectivity,
+                        {"a row per element: its grids as 0-based indices into /grids/id", "1"});
+    file.write_integers(path + "/id", block.element_id, {"element ids", "1"});
+    file.write_attribute(path, "type", block.type);
+    file.write_attribute(path, "order", static_cast<int>(names.size()));
+    names.push_back(name);
+  }
+}
+
+void write_mode_shapes(FileWriter& file, const std::vector<Eigen::MatrixXd>& phi, int num_modes) {
+  std::vector<double> data;
+  data.reserve(phi.size() * 6 * static_cast<std::size_t>(num_modes));
+  for (const auto& node : phi) {
+    BOUGH_DEMAND(node.rows() == 6 && node.cols() == num_modes);
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j < num_modes; ++j) data.push_back(node(i, j));
+    }
+  }
+  file.write_numbers("/modes/phi", {phi.size(), 6, static_cast<hsize_t>(num_modes)}, data.data(),
+                     {"mode shapes at the output nodes: node, then translations x y z and rotations x y z, then mode; "
+                      "body axes",
+                      "L/E, 1/E"});
+}
+
+void write_mode_kinds(FileWriter& file, const std::vector<records::ModeKind>& kinds) {
+  std::vector<std::string> words;
+  for (const auto kind : kinds) {
+    words.push_back(kind == records::ModeKind::Normal       ? "normal"
+                    : kind == records::ModeKind::Constraint ? "constraint"
+                                                            : "attachment");
+  }
+  file.write_strings("/modes/kind", words, {"normal, constraint or attachment mode", "1"});
+}
+
+}  // namespace bough::hdf5

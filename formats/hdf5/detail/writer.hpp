@@ -1,0 +1,67 @@
+#pragma once
+/// \file Writes one HDF5 file: beside its place first, renamed when whole.
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "bough/formats/hdf5/detail/handle.hpp"
+#include "bough/formats/records/flex_body.hpp"
+
+namespace bough::hdf5 {
+
+/// What an array is: text for its `description` attribute, and its dimensions in M L T F for `dims`.
+struct Meaning {
+  std::string description, dims;
+};
+
+/// Every function throws ComputationError "hdf5.write". Without commit() nothing is left behind.
+class FileWriter {
+ public:
+  FileWriter(const std::string& path, const std::string& format, const std::string& version);
+  ~FileWriter();
+  FileWriter(const FileWriter&) = delete;
+  FileWriter& operator=(const FileWriter&) = delete;
+
+  void write_numbers(const std::string& path, const Dims& shape, const double* data, const Meaning& meaning);
+  void write_integers(const std::string& path, const Dims& shape, const int* data, const Meaning& meaning);
+  void write_strings(const std::string& path, const std::vector<std::string>& data, const Meaning& meaning);
+
+  void write_number(const std::string& path, double value, const Meaning& meaning);
+  void write_vector(const std::string& path, const Eigen::VectorXd& v, const Meaning& meaning);
+  void write_matrix(const std::string& path, const Eigen::MatrixXd& m, const Meaning& meaning);
+  void write_integers(const std::string& path, const std::vector<int>& data, const Meaning& meaning);
+  void write_integers(const std::string& path, const Eigen::MatrixXi& m, const Meaning& meaning);
+
+  /// `object` "/" is the root.
+  void write_attribute(const std::string& object, const std::string& name, const std::string& text);
+  void write_attribute(const std::string& object, const std::string& name, int value);
+  void write_attribute(const std::string& object, const std::string& name, const std::vector<int>& values);
+  void write_attribute(const std::string& object, const std::string& name, const std::vector<std::string>& words);
+  /// Root attribute `source`: rows of (file name, SHA-256).
+  void write_source(const std::vector<std::pair<std::string, std::string>>& source);
+  void make_group(const std::string& path);
+  /// A second name of an existing dataset.
+  void link(const std::string& path, const std::string& existing);
+
+  /// Closes, forces the bytes to disk and renames. The file appears now.
+  void commit();
+
+ private:
+  void check(bool ok, const std::string& what);
+  void write(const std::string& path, const Dims& shape, hid_t file_type, hid_t memory_type, const void* data,
+             const Meaning& meaning);
+  void write_attribute(const std::string& object, const std::string& name, const Dims& shape, hid_t file_type,
+                       hid_t memory_type, const void* data);
+
+  QuietErrors quiet_;
+  std::string path_, temporary_;
+  Handle file_, link_creation_;
+};
+
+/// The blocks that flexible-body and modes files share.
+void write_mesh(FileWriter& file, const records::BodyMesh& mesh);
+void write_mode_shapes(FileWriter& file, const std::vector<Eigen::MatrixXd>& phi, int num_modes);
+void write_mode_kinds(FileWriter& file, const std::vector<records::ModeKind>& kinds);
+
+}  // namespace bough::hdf5

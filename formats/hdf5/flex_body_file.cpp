@@ -1,0 +1,255 @@
+#include <algorithm>
+
+#include "bough/base/version.hpp"
+#include "bough/formats/hdf5/detail/reader.hpp"
+#include "bough/formats/hdf5/detail/writer.hpp"
+#include "bough/formats/hdf5/files.hpp"
+
+namespace bough::hdf5 {
+
+namespace {
+
+using Eigen::MatrixXd;
+using records::FlexBody;
+using records::MassIntegrals;
+
+constexpr const char* kFormat = "bough-flexbody";
+constexpr const char* kMethods[] = {"lumped", "consistent", "exact"};
+const std::vector<std::string>& get_load_names() {
+  static const std::vector<std::string> names{"ax",  "ay",  "az",  "alx",  "aly",  "alz",
+                                              "wx2", "wy2", "wz2", "wxwy", "wxwz", "wywz"};
+  return names;
+}
+
+hsize_t to_dim(std::size_t n) { return static_cast<hsize_t>(n); }
+
+/// Blocks of equal shape one after another, each in C order.
+template <class Matrix>
+void append(std::vector<double>& data, const Matrix& m) {
+  for (Eigen::Index i = 0; i < m.rows(); ++i) {
+    for (Eigen::Index j = 0; j < m.cols(); ++j) data.push_back(m(i, j));
+  }
+}
+
+void write_integrals(FileWriter& file, const std::string& method, const MassIntegrals& g) {
+  if (g.empty()) return;
+  const std::string path = "/integrals/" + method + "/";
+  const auto n = to_dim(static_cast<std::size_t>(g.gamma0.cols()));
+  BOUGH_DEMAND(g.gamma2.size() == n && g.gamma3.size() == n && g.gamma4.size() == n);
+  file.write_matrix(path + "gamma0", g.gamma0.transpose(), {"sum of m phi_j: row j", "M L/E"});
+  file.write_matrix(path + "gamma1", g.gamma1.transpose(), {"sum of J psi_j + p x m phi_j: row j", "M L^2/E"});
+  std::vector<double> gamma2, gamma3, gamma4;
+  for (std::size_t j = 0; j < n; ++j) {
+    append(gamma2, g.gamma2[j].transpose());
+    append(gamma3, g.gamma3[j]);
+    BOUGH_DEMAND(g.gamma4[j].size() == n);
+    for (const auto& block : g.gamma4[j]) append(gamma4, block);
+  }
+  file.write_numbers(path + "gamma2", {n, n, 3}, gamma2.data(), {"sum of m phi_j x phi_k: j, k, axis", "M L^2/E^2"});
+  file.write_numbers(path + "gamma3", {n, 3, 3}, gamma3.data(), {"linear change of inertia: j, 3 x 3", "M L^2/E"});
+  file.write_numbers(path + "gamma4", {n, n, 3, 3}, gamma4.data(),
+                     {"quadratic change of inertia: j, k, 3 x 3", "M L^2/E^2"});
+}
+
+MassIntegrals read_integrals(FileReader& file, const std::string& method, long n) {
+  MassIntegrals g;
+  const std::string path = "/integrals/" + method;
+  if (!file.has(path)) return g;
+  g.gamma0 = file.read_matrix(path + "/gamma0", n, 3).transpose();
+  g.gamma1 = file.read_matrix(path + "/gamma1", n, 3).transpose();
+  const NumberArray gamma2 = file.read_array(path + "/gamma2", {n, n, 3});
+  const NumberArray gamma3 = file.read_array(path + "/gamma3", {n, 3, 3});
+  const NumberArray gamma4 = file.read_array(path + "/gamma4", {n, n, 3, 3});
+  using Row3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  for (long j = 0; j < n; ++j) {
+    g.gamma2.emplace_back(Eigen::Map<const MatrixXd>(gamma2.data.data() + j * n * 3, 3, n));
+    g.gamma3.emplace_back(Eigen::Map<const Row3>(gamma3.data.data() + j * 9));
+    g.gamma4.emplace_back();
+    for (long k = 0; k < n; ++k) {
+      g.gamma4.back().emplace_back(Eigen::Map<const Row3>(gamma4.data.data() + (j * n + k) * 9));
+    }
+  }
+  return g;
+}
+
+void write_stiffening(FileWriter& file, const FlexBody& body) {
+  const auto n = to_dim(static_cast<std::size_t>(body.num_modes()));
+  std::vector<double> inertial;
+  std::vector<int> computed;
+  for (int i = 0; i < records::kNumInertialLoads; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    computed.push_back(body.kg_inertial_computed[k] ? 1 : 0);
+    const MatrixXd& kg = body.kg_inertial[k];
+    BOUGH_DEMAND(kg.size() == 0 || (kg.rows() == body.num_modes() && kg.cols() == body.num_modes()));
+    append(inertial, kg.size() == 0 ? MatrixXd::Zero(body.num_modes(), body.num_modes()) : kg);
+  }
+  const std::string path = "/stiffening/kg_inertial";
+  file.write_numbers(path, {records::kNumInertialLoads, n, n}, inertial.data(),
+                     {"K_G1: modal geometric stiffness per unit of each inertial load, in the order of `loads`; zero "
+                      "where not computed",
+                      "M L/E^2 per L/T^2, M L^2/E^2 per 1/T^2"});
+  file.write_attribute(path, "loads", get_load_names());
+  file.write_attribute(path, "computed", computed);
+  file.write_integers("/stiffening/computed", computed, {"1 where kg_inertial was computed", "1"});
+
+  std::vector<double> external;
+  BOUGH_DEMAND(body.kg_external.size() == body.locators.size());
+  for (const auto& kg : body.kg_external) append(external, kg);
+  BOUGH_DEMAND(external.size() == body.locators.size() * n * n);
+  file.write_numbers("/stiffening/kg_external", {to_dim(body.locators.size()), n, n}, external.data(),
+                     {"K_G2: modal geometric stiffness per unit of each locator's load", "M L^2/(T^2 E^2) per load"});
+  std::vector<std::string> names;
+  std::vector<int> nodes, directions;
+  for (const auto& locator : body.locators) {
+    names.push_back(locator.name);
+    nodes.push_back(locator.node);
+    directions.push_back(locator.direction);
+  }
+  file.write_strings("/stiffening/locator/name", names, {"name of the locator", "1"});
+  file.write_integers("/stiffening/locator/node", nodes, {"node id; 0 for a load pattern", "1"});
+  file.write_integers("/stiffening/locator/direction", directions, {"1..6 in body axes; 0 for a load pattern", "1"});
+  file.write_matrix("/stiffening/external_load",
+                    body.locators.empty() ? MatrixXd::Zero(body.num_modes(), 0) : body.external_load,
+                    {"generalized force of each locator's load: mode, locator", "M L^2/(T^2 E) per load"});
+}
+
+void read_stiffening(FileReader& file, FlexBody& body) {
+  const long n = body.num_modes();
+  const NumberArray inertial = file.read_array("/stiffening/kg_inertial", {records::kNumInertialLoads, n, n});
+  const std::vector<int> computed = file.read_integers("/stiffening/computed", records::kNumInertialLoads);
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  for (std::size_t i = 0; i < records::kNumInertialLoads; ++i) {
+    body.kg_inertial[i] = Eigen::Map<const RowMajor>(inertial.data.data() + static_cast<long>(i) * n * n, n, n);
+    body.kg_inertial_computed[i] = computed[i] != 0;
+  }
+  const std::vector<std::string> names = file.read_strings("/stiffening/locator/name", -1);
+  const auto ne = static_cast<long>(names.size());
+  const std::vector<int> nodes = file.read_integers("/stiffening/locator/node", ne);
+  const std::vector<int> directions = file.read_integers("/stiffening/locator/direction", ne);
+  const NumberArray external = file.read_array("/stiffening/kg_external", {ne, n, n});
+  for (long e = 0; e < ne; ++e) {
+    const auto k = static_cast<std::size_t>(e);
+    body.locators.push_back({names[k], nodes[k], directions[k]});
+    body.kg_external.emplace_back(Eigen::Map<const RowMajor>(external.data.data() + e * n * n, n, n));
+    if (nodes[k] != 0 && (body.find_node(nodes[k]) < 0 || directions[k] < 1 || directions[k] > 6)) {
+      file.error("hdf5.value", "locator '" + names[k] + "' is at node " + std::to_string(nodes[k]) + ", direction " +
+                                   std::to_string(directions[k]) + ", expected an output node and 1 to 6",
+                 "write the file again");
+    }
+  }
+  body.external_load = file.read_matrix("/stiffening/external_load", n, ne);
+}
+
+void read_method(FileReader& file, FlexBody& body) {
+  body.integrals_method = file.read_attribute("/integrals", "method");
+  const bool is_known = std::find(std::begin(kMethods), std::end(kMethods), body.integrals_method) != std::end(kMethods);
+  if (!is_known) {
+    file.error("hdf5.value", "/integrals has the method '" + body.integrals_method +
+                                 "', expected lumped, consistent or exact",
+               "write the file again");
+  } else if (body.num_modes() > 0 && !file.has("/integrals/" + body.integrals_method)) {
+    file.error("hdf5.missing", "/integrals/" + body.integrals_method + " is missing, the set that the solver uses",
+               "write the file again");
+  }
+}
+
+}  // namespace
+
+void write_flex_body(const FlexBody& body, const std::string& path) {
+  FileWriter file(path, kFormat, kFlexBodyFormatVersion);
+  file.write_source(body.source);
+  file.write_attribute("/", "name", body.name);
+  file.write_attribute("/", "frame", std::string(body.is_free_free ? "free" : "fixed"));
+  file.write_attribute("/", "dims", std::string("M mass, L length, T time, E modal coordinate (M^1/2 L when the modes "
+                                                "are mass-normalized); units are those of the model"));
+
+  file.write_number("/rigid/mass", body.mass, {"mass", "M"});
+  file.write_vector("/rigid/cg", body.cg, {"mass centre from the body origin, body axes", "L"});
+  file.write_matrix("/rigid/inertia", body.inertia, {"inertia tensor about the body origin, body axes", "M L^2"});
+  file.write_integers("/nodes/id", body.node_id, {"ids of the output nodes", "1"});
+  file.write_matrix("/nodes/xyz", body.node_id.empty() ? MatrixXd::Zero(0, 3) : body.node_xyz,
+                    {"their positions, undeformed, in the body frame", "L"});
+  file.write_integers("/nodes/interface", body.interface_nodes,
+                      {"ids of the nodes with geometric stiffness for loads along x y z", "1"});
+
+  file.write_vector("/modes/frequency_hz", body.frequency_hz, {"natural frequency, cycles per unit of time", "1/T"});
+  file.write_vector("/modes/eigenvalue", body.eigenvalue, {"eigenvalue of K phi = lambda M phi", "1/T^2"});
+  write_mode_kinds(file, body.kind);
+  write_mode_shapes(file, body.phi, body.num_modes());
+  file.write_matrix("/modal/mass", body.modal_mass, {"modal mass", "M L^2/E^2"});
+  file.write_matrix("/modal/stiffness", body.modal_stiffness, {"modal stiffness", "M L^2/(T^2 E^2)"});
+  file.write_matrix("/modal/damping", body.modal_damping, {"modal damping", "M L^2/(T E^2)"});
+  file.write_matrix("/effective_mass", body.effective_mass,
+                    {"modal effective mass: mode, translations x y z and rotations x y z about the body origin",
+                     "M, M L^2"});
+
+  file.make_group("/integrals");
+  file.write_attribute("/integrals", "method", body.integrals_method);
+  write_integrals(file, "lumped", body.lumped);
+  write_integrals(file, "consistent", body.consistent);
+  write_integrals(file, "exact", body.exact);
+
+  if (body.F_I.size() > 0) {
+    file.write_matrix("/inertial_loads/f", body.F_I,
+                      {"F_I: nodal loads per unit of each of the twelve inertial loads; rows as /dof_map, columns as "
+                       "`loads`",
+                       "M, M L per unit of translations and rotations"});
+    file.write_attribute("/inertial_loads/f", "loads", get_load_names());
+  }
+  if (body.dof_map.size() > 0) {
+    file.write_integers("/dof_map", body.dof_map, {"a row per degree of freedom: node id, code 1..6 (0: scalar point)", "1"});
+  }
+  write_stiffening(file, body);
+  if (body.full_phi.size() > 0) {
+    file.write_matrix("/full/phi", body.full_phi, {"mode shapes at every degree of freedom: rows as /dof_map", "L/E, 1/E"});
+  }
+  write_mesh(file, body.mesh);
+  file.commit();
+}
+
+FlexBody read_flex_body(const std::string& path) {
+  FileReader file(path, kFormat, kFlexBodyFormatVersion);
+  FlexBody body;
+  body.source = file.read_source();
+  body.name = file.read_attribute("/", "name");
+  body.is_free_free = file.read_attribute("/", "frame") == "free";
+  body.mass = file.read_number("/rigid/mass");
+  body.cg = file.read_vector("/rigid/cg", 3);
+  body.inertia = file.read_matrix("/rigid/inertia", 3, 3);
+  body.node_id = file.read_integers("/nodes/id", -1);
+  const long p = body.num_nodes();
+  body.node_xyz = file.read_matrix("/nodes/xyz", p, 3);
+  body.interface_nodes = file.read_integers("/nodes/interface", -1);
+  for (const int id : body.interface_nodes) {
+    if (body.find_node(id) < 0) {
+      file.error("hdf5.value", "/nodes/interface names node " + std::to_string(id) + ", which /nodes/id does not have",
+                 "write the file again");
+    }
+  }
+
+  body.eigenvalue = file.read_vector("/modes/eigenvalue", -1);
+  const long n = body.num_modes();
+  body.frequency_hz = file.read_vector("/modes/frequency_hz", n);
+  body.kind = read_mode_kinds(file, n);
+  body.phi = read_mode_shapes(file, p, n);
+  body.modal_mass = file.read_matrix("/modal/mass", n, n);
+  body.modal_stiffness = file.read_matrix("/modal/stiffness", n, n);
+  body.modal_damping = file.read_matrix("/modal/damping", n, n);
+  body.effective_mass = file.read_matrix("/effective_mass", n, 6);
+
+  read_method(file, body);
+  body.lumped = read_integrals(file, "lumped", n);
+  body.consistent = read_integrals(file, "consistent", n);
+  body.exact = read_integrals(file, "exact", n);
+
+  const bool has_loads = file.has("/inertial_loads/f"), has_full = file.has("/full/phi");
+  if (has_loads || has_full || file.has("/dof_map")) body.dof_map = file.read_integer_matrix("/dof_map", -1, 2);
+  if (has_loads) body.F_I = file.read_matrix("/inertial_loads/f", body.dof_map.rows(), records::kNumInertialLoads);
+  if (has_full) body.full_phi = file.read_matrix("/full/phi", body.dof_map.rows(), n);
+  read_stiffening(file, body);
+  body.mesh = read_mesh(file);
+  file.throw_if_errors();
+  return body;
+}
+
+}  // namespace bough::hdf5

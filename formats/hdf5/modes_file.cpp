@@ -1,0 +1,77 @@
+#include "bough/base/version.hpp"
+#include "bough/formats/hdf5/detail/reader.hpp"
+#include "bough/formats/hdf5/detail/writer.hpp"
+#include "bough/formats/hdf5/files.hpp"
+
+namespace bough::hdf5 {
+
+namespace {
+constexpr const char* kFormat = "bough-modes";
+using records::ModesResult;
+}  // namespace
+
+void write_modes(const ModesResult& modes, const std::string& path) {
+  const auto n = static_cast<int>(modes.eigenvalue.size());
+  FileWriter file(path, kFormat, kModesFormatVersion);
+  file.write_source(modes.source);
+  file.write_attribute("/", "subcase", modes.subcase);
+  const auto& rigid = modes.mass_properties;
+  file.write_number("/rigid/mass", rigid.mass, {"mass, mean of the three directions", "M"});
+  file.write_vector("/rigid/cg", rigid.cg, {"mass centre, basic system", "L"});
+  file.write_matrix("/rigid/inertia", rigid.inertia, {"inertia tensor about the reference point, basic axes", "M L^2"});
+  file.write_vector("/rigid/reference", rigid.reference, {"reference point, basic system", "L"});
+  file.write_matrix("/rigid/mass_matrix", rigid.rigid_mass,
+                    {"rigid-body mass matrix about the reference point, translations first", "M, M L, M L^2"});
+  file.write_integers("/nodes/id", modes.node_id, {"ids of the nodes", "1"});
+  file.write_matrix("/nodes/xyz", modes.node_id.empty() ? Eigen::MatrixXd::Zero(0, 3) : modes.node_xyz,
+                    {"their positions, basic system", "L"});
+  file.write_vector("/modes/frequency_hz", modes.frequency_hz, {"natural frequency, cycles per unit of time", "1/T"});
+  file.write_vector("/modes/eigenvalue", modes.eigenvalue, {"eigenvalue", "1/T^2"});
+  write_mode_kinds(file, modes.kind);
+  write_mode_shapes(file, modes.phi, n);
+  file.write_vector("/modes/residual", modes.residual,
+                    {"|K phi - lambda M phi| / |K phi|; absolute for rigid modes", "1"});
+  file.write_vector("/modes/mass", modes.modal_mass, {"modal mass", "M L^2/E^2"});
+  file.write_attribute("/modes", "num_rigid", modes.num_rigid_modes);
+  file.write_attribute("/modes", "inertia_count", modes.inertia_count);
+  file.write_matrix("/effective_mass", modes.effective_mass.size() == 0 ? Eigen::MatrixXd::Zero(0, 6) : modes.effective_mass,
+                    {"modal effective mass: mode, translations x y z and rotations x y z about the origin", "M, M L^2"});
+  if (modes.load_factor.size() > 0) {
+    file.write_vector("/buckling/load_factor", modes.load_factor, {"factor on the load set at which K + factor K_G is "
+                                                                   "singular", "1"});
+  }
+  write_mesh(file, modes.mesh);
+  file.commit();
+}
+
+ModesResult read_modes(const std::string& path) {
+  FileReader file(path, kFormat, kModesFormatVersion);
+  ModesResult modes;
+  modes.source = file.read_source();
+  modes.subcase = file.read_integer_attribute("/", "subcase", 0);
+  auto& rigid = modes.mass_properties;
+  rigid.mass = file.read_number("/rigid/mass");
+  rigid.cg = file.read_vector("/rigid/cg", 3);
+  rigid.inertia = file.read_matrix("/rigid/inertia", 3, 3);
+  rigid.reference = file.read_vector("/rigid/reference", 3);
+  rigid.rigid_mass = file.read_matrix("/rigid/mass_matrix", 6, 6);
+  modes.node_id = file.read_integers("/nodes/id", -1);
+  const auto p = static_cast<long>(modes.node_id.size());
+  modes.node_xyz = file.read_matrix("/nodes/xyz", p, 3);
+  modes.eigenvalue = file.read_vector("/modes/eigenvalue", -1);
+  const auto n = static_cast<long>(modes.eigenvalue.size());
+  modes.frequency_hz = file.read_vector("/modes/frequency_hz", n);
+  modes.kind = read_mode_kinds(file, n);
+  modes.phi = read_mode_shapes(file, p, n);
+  modes.residual = file.read_vector("/modes/residual", -1, true);
+  modes.modal_mass = file.read_vector("/modes/mass", -1);
+  modes.num_rigid_modes = file.read_integer_attribute("/modes", "num_rigid", 0);
+  modes.inertia_count = file.read_integer_attribute("/modes", "inertia_count", -1);
+  modes.effective_mass = file.read_matrix("/effective_mass", -1, 6);
+  if (file.has("/buckling/load_factor")) modes.load_factor = file.read_vector("/buckling/load_factor", -1);
+  modes.mesh = read_mesh(file);
+  file.throw_if_errors();
+  return modes;
+}
+
+}  // namespace bough::hdf5

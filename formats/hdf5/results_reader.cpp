@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "bough/base/version.hpp"
+#include "bough/formats/hdf5/detail/reader.hpp"
+#include "bough/formats/hdf5/detail/results_layout.hpp"
+#include "bough/formats/hdf5/files.hpp"
+
+namespace bough::hdf5 {
+
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Paths of all datasets below `group` ("" is the root).
+void collect_datasets(FileReader& file, const std::string& group, std::vector<std::string>& paths) {
+  for (const auto& name : file.get_children(group.empty() ? "/" : group)) {
+    const std::string path = group + "/" + name;
+    if (path == "/checkpoint" || path == "/events" || path == "/system" || path == "/settings") continue;
+    const Handle object(H5Oopen(file.get(), path.c_str(), H5P_DEFAULT), H5Oclose);
+    const H5I_type_t type = object.is_valid() ? H5Iget_type(object.get()) : H5I_BADID;
+    if (type == H5I_GROUP) collect_datasets(file, path, paths);
+    if (type == H5I_DATASET) paths.push_back(path);
+  }
+}
+
+int get_rank(const FileReader& file, const std::string& path) {
+  const Handle dataset(H5Dopen2(file.get(), path.c_str(), H5P_DEFAULT), H5Dclose);
+  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
+  return H5Sget_simple_extent_ndims(space.get());
+}
+
+std::string read_system_text(FileReader& file) {
+  if (!file.has("/system")) return {};
+  const Handle dataset(H5Dopen2(file.get(), "/system", H5P_DEFAULT), H5Dclose);
+  const Handle type = make_string_type();
+  char* text = nullptr;
+  if (H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &text) < 0 || !text) return {};
+  std::string result(text);
+  H5free_memory(text);
+  return result;
+}
+
+ResultsFile read_once(const std::string& path) {
+  FileReader file(path, kResultsFormat, kResultsFormatVersion);
+  ResultsFile results;
+  results.completed = file.read_integer_attribute("/", "completed", 0) != 0;
+  results.reason = file.read_attribute("/", "reason");
+  results.system_text = read_system_text(file);
+  results.time = file.read_vector("/time", -1, true);
+  std::vector<std::string> paths;
+  collect_datasets(file, "", paths);
+  Eigen::Index rows = results.time.size();
+  for (const auto& name : paths) {
+    const bool is_vector = get_rank(file, name) == 1;
+    const NumberArray array = file.read_array(name, is_vector ? Shape{-1} : Shape{-1, -1}, true);
+    const auto nt = static_cast<Eigen::Index>(array.shape[0]);
+    const auto size = is_vector ? 1 : static_cast<Eigen::Index>(array.shape[1]);
+    results.descriptions[name] = file.read_attribute(name, "description");
+    if (name != "/time") results.channels[name] = Eigen::Map<const RowMajor>(array.data.data(), nt, size);
+    rows = std::min(rows, nt);
+  }
+  // A run killed within a flush may have given some channels more samples than others.
+  results.time.conservativeResize(rows);
+  for (auto& [unused, values] : results.channels) values.conservativeResize(rows, Eigen::NoChange);
+  if (file.has("/events/time") && file.has("/events/what")) {
+    const Eigen::VectorXd times = file.read_vector("/events/time", -1, true);
+    const std::vector<std::string> what = file.read_strings("/events/what", -1);
+    const auto count = std::min(static_cast<std::size_t>(times.size()), what.size());
+    for (std::size_t i = 0; i < count; ++i) results.events.push_back({times[static_cast<Eigen::Index>(i)], what[i]});
+  }
+  file.throw_if_errors();
+  return results;
+}
+
+bool is_being_written(const std::string& path) {
+  std::error_code error;
+  const auto written = std::filesystem::last_write_time(path, error);
+  return !error && std::filesystem::file_time_type::clock::now() - written < std::chrono::seconds(2);
+}
+
+bool read_checkpoint_from(FileReader& file, const std::string& group, records::Checkpoint& checkpoint) {
+  const std::string state = group + "/state";
+  if (!file.has(group + "/time") || !file.has(state)) return false;
+  checkpoint.time = file.read_number(group + "/time");
+  checkpoint.state = file.read_vector(state, -1);
+  const Handle dataset(H5Dopen2(file.get(), state.c_str(), H5P_DEFAULT), H5Dclose);
+  const Handle attribute(H5Aopen(dataset.get(), kChecksum, H5P_DEFAULT), H5Aclose);
+  std::int64_t checksum = 0;
+  return attribute.is_valid() && H5Aread(attribute.get(), H5T_NATIVE_INT64, &checksum) >= 0 &&
+         checksum == calc_checksum(checkpoint.time, checkpoint.state);
+}
+
+}  // namespace
+
+ResultsFile read_results(const std::string& path) {
+  // A flush of the running program can fall into the reading: look again a moment later.
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    try {
+      return read_once(path);
+    } catch (const InputError&) {
+      if (!is_being_written(path)) throw;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+  return read_once(path);
+}
+
+records::Checkpoint read_checkpoint(const std::string& path) {
+  FileReader file(path, kResultsFormat, kResultsFormatVersion);
+  records::Checkpoint checkpoint;
+  if (read_checkpoint_from(file, "/checkpoint", checkpoint)) return checkpoint;
+  if (read_checkpoint_from(file, "/checkpoint/previous", checkpoint)) return checkpoint;
+  if (!file.has("/checkpoint/state")) {
+    throw InputError("hdf5.missing", {path}, "/checkpoint is empty", "start the run again");
+  }
+  throw InputError("hdf5.damaged", {path}, "/checkpoint was cut while it was written", "start the run again");
+}
+
+}  // namespace bough::hdf5

@@ -1,0 +1,53 @@
+#include "bough/formats/report/axis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace bough::report {
+
+namespace {
+
+double get_round_step(double rough) {
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  for (const double factor : {1.0, 2.0, 2.5, 5.0}) {
+    if (rough <= factor * power * (1 + 1e-9)) return factor * power;
+  }
+  return 10 * power;
+}
+
+}  // namespace
+
+Axis make_axis(double min, double max, int wanted, bool widen) {
+  Axis axis;
+  if (!(max > min)) {
+    const double half = min == 0 ? 1 : 0.5 * std::abs(min);
+    min -= half;
+    max += half;
+  } else if (widen) {
+    const double margin = 0.04 * (max - min);
+    // Data that start at zero keep zero as the end of the axis.
+    if (min != 0) min -= margin;
+    if (max != 0) max += margin;
+  }
+  axis.min = min;
+  axis.max = max;
+  const double step = get_round_step((max - min) / std::max(1, wanted));
+  const double largest = std::max(std::abs(min), std::abs(max));
+  const int magnitude = static_cast<int>(std::floor(std::log10(largest)));
+  if (magnitude >= 4 || magnitude < -2) axis.exponent = 3 * static_cast<int>(std::floor(magnitude / 3.0));
+  const double scale = std::pow(10.0, axis.exponent);
+  int decimals = 0;
+  for (double s = step / scale; decimals < 9 && std::abs(s - std::round(s)) > 1e-6 * s; s *= 10) ++decimals;
+  for (double k = std::ceil(min / step - 1e-9); k * step <= max + 1e-9 * step; k += 1) {
+    axis.ticks.push_back(k * step);
+    char buffer[40];
+    std::snprintf(buffer, sizeof buffer, "%.*f", decimals, std::abs(k) < 0.5 ? 0.0 : k * step / scale);
+    std::string label(buffer);
+    if (label[0] == '-') label.replace(0, 1, "\u2212");
+    axis.labels.push_back(label);
+  }
+  return axis;
+}
+
+}  // namespace bough::report

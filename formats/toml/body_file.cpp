@@ -1,0 +1,166 @@
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "bough/formats/toml/detail/fields.hpp"
+#include "bough/formats/toml/detail/schema.hpp"
+#include "bough/formats/toml/specs.hpp"
+
+namespace bough::toml_files {
+
+namespace {
+
+constexpr std::array<const char*, records::kNumInertialLoads> kInertialNames{
+    "ax", "ay", "az", "alx", "aly", "alz", "wx2", "wy2", "wz2", "wxwy", "wxwz", "wywz"};
+
+std::vector<records::InertialLoad> read_inertial(const Fields& table, Diagnostics& diagnostics) {
+  std::vector<records::InertialLoad> loads;
+  const Value* v = table.find("inertial");
+  if (!v) return loads;
+  if (v->is_string()) {
+    if (v->text != "all") {
+      diagnostics.error("toml.bad-value", table.locate("inertial"),
+                        "inertial is '" + v->text + "', expected \"all\" or a list of names",
+                        "write inertial = [\"" + v->text + "\"] for one of them");
+    }
+    return loads;
+  }
+  for (const std::string& word : table.get_strings("inertial")) {
+    const auto it = std::find(kInertialNames.begin(), kInertialNames.end(), word);
+    if (it == kInertialNames.end()) continue;
+    const auto load = static_cast<records::InertialLoad>(it - kInertialNames.begin());
+    if (std::find(loads.begin(), loads.end(), load) == loads.end()) loads.push_back(load);
+  }
+  return loads;
+}
+
+std::vector<int> read_directions(const Fields& load, Diagnostics& diagnostics) {
+  static const std::vector<std::string> names{"x", "y", "z", "rx", "ry", "rz"};
+  const Value* v = load.find("direction");
+  if (!v) return load.has("node") ? std::vector<int>{1, 2, 3} : std::vector<int>{};
+  std::vector<int> directions;
+  auto add = [&](const Value& item) {
+    int direction = 0;
+    if (item.is_string()) {
+      const auto it = std::find(names.begin(), names.end(), item.text);
+      if (it != names.end()) direction = static_cast<int>(it - names.begin()) + 1;
+    } else if (item.kind == Value::Kind::Integer && item.integer >= 1 && item.integer <= 6) {
+      direction = static_cast<int>(item.integer);
+    }
+    if (direction > 0) {
+      directions.push_back(direction);
+    } else if (!v->is_array()) {   // items of a list were checked by the schema
+      diagnostics.error("toml.bad-value", load.locate("direction"),
+                        "direction is " + (item.is_string() ? "'" + item.text + "'" : std::to_string(item.integer)) +
+                            ", expected 1 to 6 or one of x, y, z, rx, ry, rz");
+    }
+  };
+  if (v->is_array()) {
+    for (const Value& item : v->items) add(item);
+  } else if (v->is_string() || v->kind == Value::Kind::Integer) {
+    add(*v);
+  }
+  return directions;
+}
+
+void read_loads(const Fields& body, records::BodySpec& spec, Diagnostics& diagnostics) {
+  std::map<std::string, int> lines;
+  for (const Fields& table : body.get_tables("load")) {
+    records::ExternalLoadSpec load;
+    load.at = table.locate();
+    load.name = table.get_string("name");
+    load.node = table.get_int("node", 0);
+    load.load_set = table.get_int("load_set", 0);
+    load.directions = read_directions(table, diagnostics);
+    if (table.has("load_set") && table.has("direction")) {
+      diagnostics.error("toml.conflicting-keys", table.locate("direction"),
+                        "'load_set' and 'direction' stand together in load '" + load.name + "'", "keep one of them");
+    }
+    const auto [it, is_new] = lines.emplace(load.name, load.at.line);
+    if (!is_new && !load.name.empty()) {
+      diagnostics.error("toml.duplicate-name", table.locate("name"),
+                        "load '" + load.name + "' was already given in line " + std::to_string(it->second),
+                        "rename one of them");
+    }
+    spec.loads.push_back(std::move(load));
+  }
+}
+
+}  // namespace
+
+records::BodySpec read_body_spec(const std::string& path, Diagnostics& diagnostics) {
+  records::BodySpec spec;
+  spec.file = path;
+  std::string text;
+  Value root;
+  if (!read_text(path, text, diagnostics) || !parse_toml(text, path, root, diagnostics)) return spec;
+  check_schema(root, get_body_schema(), path, diagnostics);
+
+  const Fields body = Fields(root, path).get_table("body");
+  spec.name = body.get_string("name", get_stem(path));
+  spec.deck = resolve_path(path, body.get_string("deck"));
+  spec.subcase = body.get_int("subcase", 0);
+  spec.frame = body.get_string("frame") == "free" ? records::BodyFrame::Free : records::BodyFrame::Fixed;
+  spec.support = body.get_ints("support");
+  spec.interface_nodes = body.get_ints("interface");
+  if (body.has("origin")) spec.origin = body.get_vector("origin", Eigen::Vector3d::Zero());
+  spec.mass = body.get_string("mass", spec.mass);
+  spec.integrals = body.get_string("integrals", spec.integrals);
+  spec.ignore_cards = body.get_strings("ignore");
+  if (spec.frame == records::BodyFrame::Fixed && !spec.support.empty()) {
+    diagnostics.error("toml.conflicting-keys", body.locate("support"),
+                      "'support' stands with frame = \"fixed\", where the deck's constraints are the support",
+                      "remove it, or set frame = \"free\"");
+  }
+
+  const Fields modes = body.get_table("modes");
+  spec.num_modes = modes.get_int("number", 0);
+  spec.max_frequency_hz = modes.get_number("max_frequency");
+  spec.select = modes.get_ints("select");
+  if (modes.has("number")) {
+    for (const int mode : spec.select) {
+      if (mode <= spec.num_modes) continue;
+      diagnostics.error("toml.out-of-range", modes.locate("select"),
+                        "select names mode " + std::to_string(mode) + ", expected at most number = " +
+                            std::to_string(spec.num_modes),
+                        "raise number or leave the mode out");
+    }
+  }
+
+  spec.inertial_loads = read_inertial(body.get_table("stiffening"), diagnostics);
+  read_loads(body, spec, diagnostics);
+
+  const Fields damping = body.get_table("damping");
+  spec.damping_ratio = damping.get_number("ratio", 0);
+  spec.damping_ratios = damping.get_numbers("ratios");
+
+  const Fields output = body.get_table("output");
+  spec.output_file = resolve_path(path, output.get_string("file"));
+  spec.output_nodes = output.get_ints("nodes");
+  spec.full = output.get_bool("full", false);
+  if (const Value* nodes = output.find("nodes"); nodes && nodes->is_string() && nodes->text != "all") {
+    diagnostics.error("toml.bad-value", output.locate("nodes"),
+                      "nodes is '" + nodes->text + "', expected \"all\" or a list of node ids");
+  }
+  return spec;
+}
+
+std::string detect_kind(const std::string& path) {
+  Diagnostics ignored;
+  std::string text;
+  if (!read_text(path, text, ignored)) return {};
+  Value root;
+  if (parse_toml(text, path, root, ignored)) {
+    const Value* body = root.find("body");
+    if (body && body->is_table()) return "body";
+    if ((body && body->is_array()) || root.find("simulation") || root.find("hinge")) return "system";
+    return {};
+  }
+  // Text with a syntax error still has its table headings: whoever reads it next reports the error.
+  for (const char* heading : {"\n[[body]]", "\n[[hinge]]", "\n[simulation]"}) {
+    if (("\n" + text).find(heading) != std::string::npos) return "system";
+  }
+  return ("\n" + text).find("\n[body]") != std::string::npos ? "body" : "";
+}
+
+}  // namespace bough::toml_files

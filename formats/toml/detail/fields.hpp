@@ -1,0 +1,57 @@
+#pragma once
+/// \file Reading typed fields from a table. Types were checked against the schema before, and reported there: a field
+/// that is absent or of another type gives the default here, without a second message.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "bough/formats/toml/detail/value.hpp"
+
+namespace bough::toml_files {
+
+/// A table with the file it came from.
+class Fields {
+ public:
+  Fields(const Value& table, const std::string& file) : table_(table), file_(file) {}
+
+  bool has(const std::string& key) const { return table_.find(key) != nullptr; }
+  const Value* find(const std::string& key) const { return table_.find(key); }
+  SourceLocation locate() const { return {file_, table_.line}; }
+  /// Of the key; of the table when the key is absent.
+  SourceLocation locate(const std::string& key) const;
+
+  std::string get_string(const std::string& key, const std::string& otherwise = {}) const;
+  int get_int(const std::string& key, int otherwise) const;
+  double get_number(const std::string& key, double otherwise) const;
+  std::optional<double> get_number(const std::string& key) const;
+  bool get_bool(const std::string& key, bool otherwise) const;
+  Eigen::Vector3d get_vector(const std::string& key, const Eigen::Vector3d& otherwise) const;
+  /// One number or a list of them; empty when absent.
+  std::vector<double> get_numbers(const std::string& key) const;
+  std::vector<int> get_ints(const std::string& key) const;
+  /// One string or a list of them; empty when absent.
+  std::vector<std::string> get_strings(const std::string& key) const;
+  /// The tables of an array of tables.
+  std::vector<Fields> get_tables(const std::string& key) const;
+  /// A sub-table; an empty one when absent.
+  Fields get_table(const std::string& key) const;
+
+ private:
+  const Value& table_;
+  const std::string& file_;
+};
+
+/// `path` of a file named in `file`, absolute and normalised: names in a file are relative to its folder.
+std::string resolve_path(const std::string& file, const std::string& path);
+
+/// File name without folder and extension.
+std::string get_stem(const std::string& file);
+
+/// Text of two columns (comma, semicolon, tab or spaces between; # comments; one heading line allowed) into x and y.
+/// Reports "toml.table-file" (cannot be read, not two numbers) and "toml.nan" with the line of that file.
+void read_two_columns(const std::string& path, const SourceLocation& asked_at, std::vector<double>& x,
+                      std::vector<double>& y, Diagnostics& diagnostics);
+
+}  // namespace bough::toml_files

@@ -1,0 +1,128 @@
+#include "bough/formats/toml/detail/hinge_table.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+
+namespace bough::toml_files {
+
+namespace {
+
+using records::HingeType;
+constexpr double kRadPerDegree = std::numbers::pi / 180;
+
+/// Which coordinates (q) and rates (u) of a hinge are angles, in the order of the file: 'a' angle, 'l' length,
+/// 'q' quaternion component.
+struct Coordinates {
+  HingeType type;
+  std::string q, u;
+};
+
+const Coordinates& get_coordinates(const std::string& type) {
+  static const std::map<std::string, Coordinates> all{
+      {"fixed", {HingeType::Fixed, "", ""}},
+      {"revolute", {HingeType::Revolute, "a", "a"}},
+      {"prismatic", {HingeType::Prismatic, "l", "l"}},
+      {"universal", {HingeType::Universal, "aa", "aa"}},
+      {"cylindrical", {HingeType::Cylindrical, "al", "al"}},
+      {"planar", {HingeType::Planar, "lla", "lla"}},
+      {"spherical", {HingeType::Spherical, "qqqq", "aaa"}},
+      {"free", {HingeType::Free, "qqqqlll", "aaalll"}}};
+  const auto it = all.find(type);
+  return it == all.end() ? all.at("fixed") : it->second;
+}
+
+class HingeReader {
+ public:
+  HingeReader(const Fields& table, Diagnostics& diagnostics)
+      : table_(table),
+        type_(table.get_string("type")),
+        coordinates_(get_coordinates(type_)),
+        // With an unknown type (reported by the schema) nothing is known of the lengths.
+        is_known_(type_ == "fixed" || coordinates_.type != HingeType::Fixed),
+        diagnostics_(diagnostics) {}
+
+  HingeType get_type() const { return coordinates_.type; }
+
+  std::vector<double> read_list(const std::string& key, bool of_positions, bool one_for_all) {
+    const std::string& kinds = of_positions ? coordinates_.q : coordinates_.u;
+    const std::string degrees_key = key + "_deg";
+    const bool in_degrees = !table_.has(key) && table_.has(degrees_key);
+    const std::string& used = in_degrees ? degrees_key : key;
+    std::vector<double> list = table_.get_numbers(used);
+    if (!table_.has(used) || !is_known_) return list;
+    if (one_for_all && list.size() == 1 && table_.find(used)->is_number()) list.assign(kinds.size(), list[0]);
+    if (in_degrees && kinds.find('a') == std::string::npos) {
+      diagnostics_.error("toml.no-angle", table_.locate(used),
+                         "hinge '" + table_.get_string("name") + "' of type " + type_ + " has no angle in " + key,
+                         "write " + key + " instead of " + degrees_key);
+      return {};
+    }
+    check_length(used, list.size(), kinds.size());
+    for (std::size_t i = 0; in_degrees && i < std::min(list.size(), kinds.size()); ++i) {
+      if (kinds[i] == 'a') list[i] *= kRadPerDegree;
+    }
+    return list;
+  }
+
+  std::vector<std::string> read_motion() {
+    const std::vector<std::string> names = table_.get_strings("motion");
+    if (table_.has("motion") && is_known_) check_length("motion", names.size(), coordinates_.u.size());
+    return names;
+  }
+
+  /// R = Rx(a) Ry(b) Rz(c).
+  Eigen::Matrix3d read_rotation(const std::string& key) const {
+    using Eigen::AngleAxisd, Eigen::Vector3d;
+    const bool in_degrees = !table_.has(key) && table_.has(key + "_deg");
+    Vector3d angles = table_.get_vector(in_degrees ? key + "_deg" : key, Vector3d::Zero());
+    if (in_degrees) angles *= kRadPerDegree;
+    return (AngleAxisd(angles.x(), Vector3d::UnitX()) * AngleAxisd(angles.y(), Vector3d::UnitY()) *
+            AngleAxisd(angles.z(), Vector3d::UnitZ()))
+        .toRotationMatrix();
+  }
+
+ private:
+  void check_length(const std::string& key, std::size_t found, std::size_t expected) {
+    if (found == expected) return;
+    diagnostics_.error("toml.wrong-length", table_.locate(key),
+                       "hinge '" + table_.get_string("name") + "': " + key + " has " + std::to_string(found) +
+                           " entries, expected " + std::to_string(expected) + " for a " + type_ + " hinge",
+                       "give one entry per coordinate");
+  }
+
+  const Fields& table_;
+  std::string type_;
+  const Coordinates& coordinates_;
+  bool is_known_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+records::HingeRecord read_hinge(const Fields& table, Diagnostics& diagnostics) {
+  records::HingeRecord hinge;
+  HingeReader reader(table, diagnostics);
+  hinge.at = table.locate();
+  hinge.name = table.get_string("name");
+  hinge.type = reader.get_type();
+  hinge.parent = table.get_string("parent", "ground");
+  hinge.child = table.get_string("child");
+  hinge.parent_node = table.get_int("parent_node", 0);
+  hinge.child_node = table.get_int("child_node", 0);
+  hinge.parent_position = table.get_vector("parent_position", hinge.parent_position);
+  hinge.child_position = table.get_vector("child_position", hinge.child_position);
+  hinge.parent_rotation = reader.read_rotation("parent_rotation");
+  hinge.child_rotation = reader.read_rotation("child_rotation");
+  hinge.axis = table.get_vector("axis", hinge.axis);
+  hinge.axis2 = table.get_vector("axis2", hinge.axis2);
+  hinge.stiffness = reader.read_list("stiffness", false, true);
+  hinge.damping = reader.read_list("damping", false, true);
+  hinge.null_position = reader.read_list("null_position", true, false);
+  hinge.position = reader.read_list("position", true, false);
+  hinge.rate = reader.read_list("rate", false, false);
+  hinge.motion = reader.read_motion();
+  return hinge;
+}
+
+}  // namespace bough::toml_files

@@ -1,0 +1,238 @@
+#include <algorithm>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "bough/formats/toml/detail/fields.hpp"
+#include "bough/formats/toml/detail/hinge_table.hpp"
+#include "bough/formats/toml/detail/references.hpp"
+#include "bough/formats/toml/detail/schema.hpp"
+#include "bough/formats/toml/specs.hpp"
+
+namespace bough::toml_files {
+
+namespace {
+
+/// Reports "toml.conflicting-keys" for each key of the list that stands where it has no meaning.
+void refuse_keys(const Fields& table, std::initializer_list<const char*> keys, const std::string& because,
+                 Diagnostics& diagnostics) {
+  for (const char* key : keys) {
+    if (!table.has(key)) continue;
+    diagnostics.error("toml.conflicting-keys", table.locate(key), "'" + std::string(key) + "' has no meaning " + because,
+                      "remove it");
+  }
+}
+
+Eigen::Matrix3d read_inertia(const Fields& table, Diagnostics& diagnostics) {
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  const Value* v = table.find("inertia");
+  if (!v || !v->is_array()) return inertia;
+  const std::vector<double> c = table.get_numbers("inertia");
+  if (c.size() == 6 && v->items.size() == 6) {
+    inertia << c[0], c[3], c[4], c[3], c[1], c[5], c[4], c[5], c[2];
+  } else if (c.empty() && v->items.size() == 3) {
+    for (int i = 0; i < 3; ++i) {
+      const auto& row = v->items[static_cast<std::size_t>(i)].items;
+      for (int j = 0; j < 3 && row.size() == 3; ++j) inertia(i, j) = row[static_cast<std::size_t>(j)].number;
+    }
+    if (!inertia.isApprox(inertia.transpose(), 1e-10)) {
+      diagnostics.error("toml.bad-value", table.locate("inertia"), "inertia is not symmetric",
+                        "give three rows of a symmetric tensor, or six components");
+    }
+  } else {
+    diagnostics.error("toml.wrong-length", table.locate("inertia"),
+                      "inertia is neither three rows of three nor six components",
+                      "give [Ixx, Iyy, Izz, Ixy, Ixz, Iyz] or [[..], [..], [..]]");
+  }
+  return inertia;
+}
+
+records::BodyRecord read_body(const Fields& table, const std::string& path, Diagnostics& diagnostics) {
+  records::BodyRecord body;
+  body.at = table.locate();
+  body.name = table.get_string("name");
+  body.file = resolve_path(path, table.get_string("file"));
+  body.mass = table.get_number("mass", 0);
+  body.cg = table.get_vector("cg", body.cg);
+  body.inertia = read_inertia(table, diagnostics);
+  std::set<int> ids;
+  for (const Fields& node : table.get_tables("nodes")) {
+    body.nodes.push_back({node.get_int("id", 0), node.get_vector("position", Eigen::Vector3d::Zero())});
+    if (!ids.insert(body.nodes.back().id).second) {
+      diagnostics.error("toml.duplicate-name", node.locate("id"),
+                        "node " + std::to_string(body.nodes.back().id) + " of body '" + body.name + "' is given twice",
+                        "renumber one of them");
+    }
+  }
+  body.stiffening = table.get_bool("stiffening", true);
+  body.eta = table.get_numbers("eta");
+  body.eta_dot = table.get_numbers("eta_dot");
+  body.damping_ratios = table.get_numbers("damping");
+  body.num_modes = table.get_int("modes", -1);
+  if (table.has("file")) {
+    refuse_keys(table, {"cg", "inertia", "nodes"}, "in body '" + body.name + "', which comes from a file", diagnostics);
+  } else {
+    refuse_keys(table, {"stiffening", "eta", "eta_dot", "damping", "modes"},
+                "in body '" + body.name + "', which is rigid", diagnostics);
+  }
+  return body;
+}
+
+records::FunctionRecord read_function(const Fields& fields, const Value& table, const std::string& path,
+                                      Diagnostics& diagnostics) {
+  records::FunctionRecord function;
+  function.at = fields.locate();
+  function.name = fields.get_string("name");
+  function.type = fields.get_string("type");
+  function.interpolation = fields.get_string("interpolation", "linear");
+  function.x = fields.get_numbers("x");
+  function.y = fields.get_numbers("y");
+  for (const auto& entry : table.entries) {
+    if (!entry.value.is_number()) continue;
+    const std::string suffix = "_deg";
+    const bool in_degrees = entry.key.size() > suffix.size() && entry.key.ends_with(suffix);
+    const std::string key = in_degrees ? entry.key.substr(0, entry.key.size() - suffix.size()) : entry.key;
+    const bool is_new =
+        function.values.emplace(key, entry.value.number * (in_degrees ? std::numbers::pi / 180 : 1)).second;
+    if (!is_new) {
+      diagnostics.error("toml.conflicting-keys", {path, entry.line},
+                        "'" + key + "' and '" + key + "_deg' stand together in function '" + function.name + "'",
+                        "keep one of them");
+    }
+  }
+  if (function.type != "table") {
+    refuse_keys(fields, {"x", "y", "file", "interpolation"},
+                "in function '" + function.name + "', which is not a table", diagnostics);
+    return function;
+  }
+  if (fields.has("file")) {
+    refuse_keys(fields, {"x", "y"}, "in function '" + function.name + "', which is read from a file", diagnostics);
+    if (!fields.get_string("file").empty()) {
+      function.x.clear();
+      function.y.clear();
+      read_two_columns(resolve_path(path, fields.get_string("file")), fields.locate("file"), function.x, function.y,
+                       diagnostics);
+    }
+    return function;
+  }
+  for (const char* key : {"x", "y"}) {
+    if (fields.has(key)) continue;
+    diagnostics.error("toml.missing-key", function.at,
+                      "missing key '" + std::string(key) + "' in function '" + function.name + "'",
+                      "give x and y, or file");
+  }
+  if (fields.has("x") && fields.has("y") && function.x.size() != function.y.size()) {
+    diagnostics.error("toml.wrong-length", fields.locate("y"),
+                      "function '" + function.name + "': y has " + std::to_string(function.y.size()) +
+                          " entries, expected " + std::to_string(function.x.size()) + " as x");
+  }
+  return function;
+}
+
+records::ForceRecord read_force(const Fields& table, Diagnostics& diagnostics) {
+  records::ForceRecord force;
+  force.at = table.locate();
+  force.name = table.get_string("name");
+  force.kind = table.has("moment") ? records::ForceKind::Moment : records::ForceKind::Force;
+  force.body = table.get_string("body");
+  force.node = table.get_int("node", 0);
+  force.direction = table.get_vector(table.has("moment") ? "moment" : "force", force.direction);
+  const std::string frame = table.get_string("frame", "body");
+  force.frame = frame == "inertial" ? records::VectorFrame::Inertial
+                : frame == "node"   ? records::VectorFrame::Node
+                                    : records::VectorFrame::Body;
+  force.function = table.get_string("function");
+  force.locator = table.get_string("locator");
+  if (table.has("locator")) {
+    refuse_keys(table, {"node", "frame"}, "in force '" + force.name + "', which is a load pattern", diagnostics);
+  }
+  return force;
+}
+
+records::SensorRecord read_sensor(const Fields& table, Diagnostics& diagnostics) {
+  using records::SensorType;
+  static const std::map<std::string, SensorType> types{{"position", SensorType::Position},
+                                                       {"velocity", SensorType::Velocity},
+                                                       {"acceleration", SensorType::Acceleration},
+                                                       {"deflection", SensorType::Deflection},
+                                                       {"rotation", SensorType::Rotation},
+                                                       {"angular_velocity", SensorType::AngularVelocity},
+                                                       {"angular_acceleration", SensorType::AngularAcceleration},
+                                                       {"hinge_angle", SensorType::HingeAngle},
+                                                       {"hinge_rate", SensorType::HingeRate}};
+  records::SensorRecord sensor;
+  sensor.at = table.locate();
+  sensor.name = table.get_string("name");
+  sensor.body = table.get_string("body");
+  sensor.node = table.get_int("node", 0);
+  sensor.relative_to = table.get_string("relative_to");
+  sensor.hinge = table.get_string("hinge");
+  sensor.coordinate = table.get_int("coordinate", 0);
+  const auto it = types.find(table.get_string("type"));
+  if (it == types.end()) return sensor;   // reported by the schema
+  sensor.type = it->second;
+  const bool is_elastic = sensor.type == SensorType::Deflection || sensor.type == SensorType::Rotation;
+  sensor.frame = table.get_string("frame", is_elastic ? "body" : "inertial");
+
+  const bool is_hinge_sensor = sensor.type == SensorType::HingeAngle || sensor.type == SensorType::HingeRate;
+  const std::string because = "in sensor '" + sensor.name + "' of type " + it->first;
+  const char* needed = is_hinge_sensor ? "hinge" : "body";
+  if (!table.has(needed)) {
+    diagnostics.error("toml.missing-key", sensor.at, "missing key '" + std::string(needed) + "' " + because, "add it");
+  }
+  if (is_hinge_sensor) {
+    refuse_keys(table, {"body", "node", "frame", "relative_to"}, because, diagnostics);
+  } else {
+    refuse_keys(table, {"hinge", "coordinate"}, because, diagnostics);
+    if (sensor.type != SensorType::Position && sensor.type != SensorType::Velocity) {
+      refuse_keys(table, {"relative_to"}, because, diagnostics);
+    }
+  }
+  return sensor;
+}
+
+records::SimulationRecord read_simulation(const Fields& table, Diagnostics& diagnostics) {
+  records::SimulationRecord simulation;
+  simulation.at = table.locate();
+  simulation.start = table.get_number("start", simulation.start);
+  simulation.duration = table.get_number("duration", simulation.duration);
+  simulation.output_step = table.get_number("output_step", simulation.output_step);
+  simulation.integrator = table.get_string("integrator", simulation.integrator);
+  simulation.step = table.get_number("step", simulation.step);
+  simulation.relative_tolerance = table.get_number("relative_tolerance", simulation.relative_tolerance);
+  simulation.absolute_tolerance = table.get_number("absolute_tolerance", simulation.absolute_tolerance);
+  simulation.gravity = table.get_vector("gravity", simulation.gravity);
+  simulation.divergence_limit = table.get_number("divergence_limit", simulation.divergence_limit);
+  if (simulation.integrator == "rk4" && !table.has("step")) {
+    diagnostics.error("toml.missing-key", table.locate("integrator"),
+                      "missing key 'step' in simulation: the integrator rk4 has a fixed step", "add it");
+  }
+  return simulation;
+}
+
+}  // namespace
+
+records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagnostics) {
+  records::SystemSpec spec;
+  spec.file = path;
+  Value root;
+  if (!read_text(path, spec.text, diagnostics) || !parse_toml(spec.text, path, root, diagnostics)) return spec;
+  check_schema(root, get_system_schema(), path, diagnostics);
+
+  const Fields fields(root, path);
+  spec.name = fields.get_string("name", get_stem(path));
+  for (const Fields& table : fields.get_tables("body")) spec.bodies.push_back(read_body(table, path, diagnostics));
+  for (const Fields& table : fields.get_tables("hinge")) spec.hinges.push_back(read_hinge(table, diagnostics));
+  if (const Value* functions = fields.find("function")) {
+    for (const Value& table : functions->items) {
+      if (table.is_table()) spec.functions.push_back(read_function(Fields(table, path), table, path, diagnostics));
+    }
+  }
+  for (const Fields& table : fields.get_tables("force")) spec.forces.push_back(read_force(table, diagnostics));
+  for (const Fields& table : fields.get_tables("sensor")) spec.sensors.push_back(read_sensor(table, diagnostics));
+  spec.simulation = read_simulation(fields.get_table("simulation"), diagnostics);
+  check_names(spec, diagnostics);
+  return spec;
+}
+
+}  // namespace bough::toml_files
