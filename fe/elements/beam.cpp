@@ -189,8 +189,8 @@ void Beam::add_arm_stiffness(const Eigen::Ref<const VectorXd>& force, double sca
   }
 }
 
-/// The axes of a release turn with the arm tip (u, θ): the end is at u + d + θ×d, turned by θ + h + ½ θ×h, where d and h
-/// are the released motions.
+/// The axes of a release turn with the arm tip (u, θ): the end is at u + d + θ×d, turned by θ + h + ½ θ×h, where d and
+/// h are the released motions.
 void Beam::add_pin_stiffness(const Eigen::Ref<const VectorXd>& force, double scale, Eigen::Ref<MatrixXd> K_G) const {
   const Matrix12d tip = calc_arm_map();
   const Matrix12d released = (calc_release() - Matrix12d::Identity()) * tip;

@@ -2,8 +2,8 @@
 /// \file CBAR and CBEAM: one three-dimensional beam core.
 ///
 /// Stiffness from the exact flexibility (shape/beam_field.hpp): Timoshenko with shear factors, Euler-Bernoulli without,
-/// unsymmetric and tapered sections, neutral axis off the shear centre. Offsets are rigid arms, pin flags are condensed.
-/// Geometric stiffness: docs/elements/beam.md. Forces: see internal_force_names().
+/// unsymmetric and tapered sections, neutral axis off the shear centre. Offsets are rigid arms, pin flags are
+/// condensed. Geometric stiffness: docs/elements/beam.md. Forces: see internal_force_names().
 #include <memory>
 
 #include "bough/fe/elements/beam_property.hpp"
@@ -13,10 +13,10 @@
 namespace bough::fe {
 
 struct BeamGeometry {
-  Matrix3d R_basic_element = Matrix3d::Identity();  ///< columns: element axes in basic, x along the shear centres
-  double length = 0;                                ///< between the offset ends
+  Matrix3d R_basic_element = Matrix3d::Identity();        ///< columns: element axes in basic, x along the shear centres
+  double length = 0;                                      ///< between the offset ends
   Vector3d wa = Vector3d::Zero(), wb = Vector3d::Zero();  ///< offsets of the ends from the grids, in basic
-  unsigned pin_a = 0, pin_b = 0;                    ///< released element dofs (masks), element axes
+  unsigned pin_a = 0, pin_b = 0;                          ///< released element dofs (masks), element axes
 };
 
 class Beam final : public Element {
@@ -42,9 +42,9 @@ class Beam final : public Element {
   const BeamProperty& property() const { return *property_; }
 
  private:
-  Matrix12d calc_arm_map() const;                   ///< arm tip dofs (element axes) per grid dofs (basic)
-  Matrix12d calc_release() const;                   ///< element end dofs per arm tip dofs: pins condensed
-  Matrix12d calc_end_map() const;                   ///< element end dofs per grid dofs
+  Matrix12d calc_arm_map() const;  ///< arm tip dofs (element axes) per grid dofs (basic)
+  Matrix12d calc_release() const;  ///< element end dofs per arm tip dofs: pins condensed
+  Matrix12d calc_end_map() const;  ///< element end dofs per grid dofs
   void add_arm_stiffness(const Eigen::Ref<const VectorXd>& force, double scale, Eigen::Ref<MatrixXd> K_G) const;
   void add_pin_stiffness(const Eigen::Ref<const VectorXd>& force, double scale, Eigen::Ref<MatrixXd> K_G) const;
   void add_lumped_mass(double scale, Eigen::Ref<MatrixXd> M) const;

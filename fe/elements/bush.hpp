@@ -6,9 +6,9 @@ namespace bough::fe {
 
 struct BushData {
   Matrix3d R_basic_element = Matrix3d::Identity();
-  std::array<double, 6> k{};                        ///< along and about the element axes
-  Vector3d arm_a = Vector3d::Zero();                ///< spring point from grid A, basic
-  Vector3d arm_b = Vector3d::Zero();                ///< and from grid B
+  std::array<double, 6> k{};          ///< along and about the element axes
+  Vector3d arm_a = Vector3d::Zero();  ///< spring point from grid A, basic
+  Vector3d arm_b = Vector3d::Zero();  ///< and from grid B
   double mass = 0;
 };
 

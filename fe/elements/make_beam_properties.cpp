@@ -71,9 +71,10 @@ std::shared_ptr<BeamProperty> BeamProperties::make(const records::Pbar& card) {
   property->k1 = card.k1.value_or(0);
   property->k2 = card.k2.value_or(0);
   if (card.I12 != 0 && (property->k1 != 0 || property->k2 != 0)) {
-    maker_.diagnostics().warning("fe.shear-ignored", maker_.deck().locate(card.at),
-                                 who + " has I12, with which Nastran ignores the shear factors K1 and K2; so does Bough",
-                                 "use a PBEAM if the bar is short enough for shear to matter");
+    maker_.diagnostics().warning(
+        "fe.shear-ignored", maker_.deck().locate(card.at),
+        who + " has I12, with which Nastran ignores the shear factors K1 and K2; so does Bough",
+        "use a PBEAM if the bar is short enough for shear to matter");
     property->k1 = property->k2 = 0;
   }
   const bool ok = check(*property, who, card.at);
@@ -122,7 +123,8 @@ std::shared_ptr<BeamProperty> BeamProperties::make(const records::Pbeam& card) {
   const auto warn = [&](const char* id, const std::string& what) {
     maker_.diagnostics().warning(id, maker_.deck().locate(card.at), who + what, {});
   };
-  if (card.s1 != 0 || card.s2 != 0) warn("fe.shear-relief-ignored", " has shear relief factors S1, S2, which are not used");
+  if (card.s1 != 0 || card.s2 != 0)
+    warn("fe.shear-relief-ignored", " has shear relief factors S1, S2, which are not used");
   if (card.cw_a != 0 || card.cw_b != 0) warn("fe.warping-ignored", " has warping coefficients, which are not used");
   const bool ok = check(*property, who, card.at);
   if (!material || !ok) return nullptr;
@@ -174,12 +176,14 @@ bool BeamProperties::check(const BeamProperty& property, const std::string& who,
       fail(" has two stations at x/L = " + show(s.x_over_L), "give each station its own x/L");
     const std::pair<const char*, double> values[] = {{"A", s.A}, {"I1", s.I1}, {"I2", s.I2}, {"J", s.J}};
     for (const auto& [name, value] : values)
-      if (!(value >= 0)) fail(std::string(" has ") + name + " = " + show(value) + where + ", expected zero or more",
-                              "correct the property");
+      if (!(value >= 0))
+        fail(std::string(" has ") + name + " = " + show(value) + where + ", expected zero or more",
+             "correct the property");
     if (!(s.A + s.I1 + s.I2 + s.J > 0))
       fail(" has no area and no inertia" + where, "give A and the moments of inertia");
     if (s.I12 != 0 && !(s.I1 * s.I2 > s.I12 * s.I12))
-      fail(" has I12 = " + show(s.I12) + where + ", but I1 I2 - I12^2 must be positive", "correct the moments of inertia");
+      fail(" has I12 = " + show(s.I12) + where + ", but I1 I2 - I12^2 must be positive",
+           "correct the moments of inertia");
     if (!(s.nsm >= 0 && s.nsi >= 0)) fail(" has a negative nonstructural mass" + where, "correct the property");
   }
   if (!(property.k1 >= 0 && property.k2 >= 0)) {

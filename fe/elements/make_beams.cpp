@@ -38,8 +38,11 @@ void make_beam(Maker& maker, BeamProperties& properties, const records::BeamElem
   const auto is_frame = [](char c, const char* allowed) { return std::string(allowed).find(c) != std::string::npos; };
   if (card.offt.size() != 3 || !is_frame(card.offt[0], "GB") || !is_frame(card.offt[1], "GOE") ||
       !is_frame(card.offt[2], "GOE")) {
-    maker.error("fe.bad-offt", card.at, who + " has OFFT '" + card.offt + "', expected GGG, BGG, GGO, BGO, GOG, BOG, "
-                "GOO or BOO", "correct the field");
+    maker.error("fe.bad-offt", card.at,
+                who + " has OFFT '" + card.offt +
+                    "', expected GGG, BGG, GGO, BGO, GOG, BOG, "
+                    "GOO or BOO",
+                "correct the field");
     return;
   }
   if ((card.pin_a | card.pin_b) >> 6) {
@@ -49,8 +52,9 @@ void make_beam(Maker& maker, BeamProperties& properties, const records::BeamElem
   const auto orientation = calc_orientation(maker, card, who, node_a);
   if (!orientation) return;
   const auto bad_orientation = [&] {
-    maker.error("fe.bad-orientation", card.at, who + " has its orientation vector (" + show((*orientation)[0]) + ", " +
-                    show((*orientation)[1]) + ", " + show((*orientation)[2]) + " in basic) " +
+    maker.error("fe.bad-orientation", card.at,
+                who + " has its orientation vector (" + show((*orientation)[0]) + ", " + show((*orientation)[1]) +
+                    ", " + show((*orientation)[2]) + " in basic) " +
                     (orientation->isZero(0) ? "zero" : "along its axis"),
                 "give a vector or G0 that is not on the line of the element");
   };

@@ -11,8 +11,8 @@ void make_conm1(Maker& maker, const Conm1& card) {
   const std::string who = "CONM1 " + std::to_string(card.id);
   const int node = maker.find_grid(card.g, who, card.at);
   if (node < 0) return;
-  const Matrix3d R = maker.nodes().calc_axes(card.cid, maker.nodes().node(node).x, maker.deck().locate(card.at),
-                                             maker.diagnostics());
+  const Matrix3d R =
+      maker.nodes().calc_axes(card.cid, maker.nodes().node(node).x, maker.deck().locate(card.at), maker.diagnostics());
   Eigen::Matrix<double, 6, 6> T = Eigen::Matrix<double, 6, 6>::Zero();
   T.topLeftCorner<3, 3>() = T.bottomRightCorner<3, 3>() = R;
   maker.add(std::make_unique<PointMass>(card.id, "CONM1", std::vector{node}, maker.list_gdofs({node}),

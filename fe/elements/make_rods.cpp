@@ -16,7 +16,8 @@ void make_rod(Maker& maker, const char* card_name, int id, int ga, int gb, const
   if (a < 0 || b < 0) return;
   const Vector3d xa = maker.nodes().node(a).x, xb = maker.nodes().node(b).x;
   if (!((xb - xa).norm() > 0)) {
-    maker.error("fe.zero-length", at, who + " has zero length", "its two grids coincide: move one or delete the element");
+    maker.error("fe.zero-length", at, who + " has zero length",
+                "its two grids coincide: move one or delete the element");
     return;
   }
   if (!property) return;
@@ -104,8 +105,8 @@ void make_rods(Maker& maker) {
         const bool ok = smallest > 0 && p->t >= 0 && 2 * p->t <= smallest && p->nsm >= 0;
         if (!ok)
           maker.error("fe.bad-property", p->at,
-                      name + " has diameters " + show(p->od) + ", " + show(p->od2.value_or(p->od)) +
-                          " and wall " + show(p->t) + ", expected 0 <= 2 t <= diameter",
+                      name + " has diameters " + show(p->od) + ", " + show(p->od2.value_or(p->od)) + " and wall " +
+                          show(p->t) + ", expected 0 <= 2 t <= diameter",
                       "correct the tube");
         made[card.pid] = material && ok ? std::optional(make_tube(*material, *p)) : std::nullopt;
       }

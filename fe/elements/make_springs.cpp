@@ -72,8 +72,8 @@ struct BushAxes {
   bool ok = true;
 };
 
-BushAxes calc_bush_axes(Maker& maker, const records::Cbush& card, const std::string& who, const Node& a,
-                        const Node* b, const std::array<double, 6>& k) {
+BushAxes calc_bush_axes(Maker& maker, const records::Cbush& card, const std::string& who, const Node& a, const Node* b,
+                        const std::array<double, 6>& k) {
   BushAxes axes;
   if (card.cid) {
     axes.R = maker.nodes().calc_axes(*card.cid, a.x, maker.deck().locate(card.at), maker.diagnostics());
@@ -128,8 +128,8 @@ void make_bush(Maker& maker, const Index<records::Pbush>& properties, const reco
   data.mass = property->mass;
   Vector3d point = node_a.x;
   if (card.ocid >= 0) {
-    point += maker.nodes().calc_axes(card.ocid, node_a.x, maker.deck().locate(card.at), maker.diagnostics()) *
-             card.s_offset;
+    point +=
+        maker.nodes().calc_axes(card.ocid, node_a.x, maker.deck().locate(card.at), maker.diagnostics()) * card.s_offset;
   } else if (node_b) {
     point += card.s * (node_b->x - node_a.x);
   }

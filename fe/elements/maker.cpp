@@ -21,8 +21,9 @@ int Maker::find_point(int grid, const std::string& who, const records::CardLocat
 int Maker::find_grid(int grid, const std::string& who, const records::CardLocation& at) {
   const int index = find_point(grid, who, at);
   if (index >= 0 && nodes_.node(index).num_dofs != 6) {
-    error("fe.missing-grid", at, who + " needs a grid with six components, but " + std::to_string(grid) +
-                                     " is a scalar point", "refer to a GRID");
+    error("fe.missing-grid", at,
+          who + " needs a grid with six components, but " + std::to_string(grid) + " is a scalar point",
+          "refer to a GRID");
     return -1;
   }
   return index;
@@ -31,7 +32,8 @@ int Maker::find_grid(int grid, const std::string& who, const records::CardLocati
 const records::Mat1* Maker::find_material(int mid, const std::string& who, const records::CardLocation& at) {
   const records::Mat1* material = mat1_.find(mid);
   if (!material) {
-    error("fe.missing-material", at, who + " refers to MAT1 " + std::to_string(mid) + ", which the deck does not define",
+    error("fe.missing-material", at,
+          who + " refers to MAT1 " + std::to_string(mid) + ", which the deck does not define",
           "add the MAT1 or correct the id");
     return nullptr;
   }
@@ -40,9 +42,8 @@ const records::Mat1* Maker::find_material(int mid, const std::string& who, const
   material_ok_[mid] = ok;
   if (ok) return material;
   error("fe.bad-material", material->at,
-        "MAT1 " + std::to_string(mid) + " has E = " + show(material->E) + ", G = " +
-            show(material->G) + ", density = " + show(material->rho) +
-            ", expected E > 0, G >= 0 and density >= 0",
+        "MAT1 " + std::to_string(mid) + " has E = " + show(material->E) + ", G = " + show(material->G) +
+            ", density = " + show(material->rho) + ", expected E > 0, G >= 0 and density >= 0",
         "correct the material");
   return nullptr;
 }

@@ -5,12 +5,12 @@
 namespace bough::fe {
 
 struct RodProperty {
-  double EA = 0, GJ = 0;                            ///< for a taper: the length over the integrated compliance
-  double mass_a = 0, mass_b = 0;                    ///< mass per length at the ends, linear between (nsm included)
+  double EA = 0, GJ = 0;          ///< for a taper: the length over the integrated compliance
+  double mass_a = 0, mass_b = 0;  ///< mass per length at the ends, linear between (nsm included)
 };
 
-/// Rod between two grids. Mass: translations only. Geometric stiffness: N/L across the axis (taut string), and the torque
-/// that turns with the axis (semitangential moments).
+/// Rod between two grids. Mass: translations only. Geometric stiffness: N/L across the axis (taut string), and the
+/// torque that turns with the axis (semitangential moments).
 class Rod final : public Element {
  public:
   Rod(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, const RodProperty& property,

@@ -4,6 +4,7 @@
 #include <map>
 #include <numbers>
 
+#include "bough/base/diagnostic.hpp"
 #include "bough/fe/elements/thin_wall.hpp"
 
 namespace bough::fe {
@@ -21,14 +22,14 @@ struct Rectangle {
 /// Built from rectangles that do not overlap (exact A and I) and walls on midlines (shear and torsion).
 struct Outline {
   std::vector<Rectangle> rectangles;
-  std::vector<Wall> walls;                          ///< figure axes (x, y) until calc_from_outline turns them
+  std::vector<Wall> walls;  ///< figure axes (x, y) until calc_from_outline turns them
 
   void add_wall(double xa, double ya, double xb, double yb, double t) { walls.push_back({{xa, ya}, {xb, yb}, t}); }
 };
 
 struct Shape {
   int num_dims;
-  bool (*fits)(const Dims& d);                      ///< beyond every dimension being positive
+  bool (*fits)(const Dims& d);  ///< beyond every dimension being positive
   LibrarySection (*calc)(const Dims& d);
 };
 
@@ -335,18 +336,12 @@ const std::map<std::string, Shape>& get_shapes() {
         },
         calc_dbox}},
       {"HAT", {4, [](const Dims& d) { return 2 * d[1] < d[0] && 2 * d[1] < d[2]; }, calc_hat}},
-      {"HAT1",
-       {5, [](const Dims& d) { return 2 * d[3] + d[4] < d[1] && d[2] < d[0] && 2 * d[3] < d[2]; }, calc_hat1}},
+      {"HAT1", {5, [](const Dims& d) { return 2 * d[3] + d[4] < d[1] && d[2] < d[0] && 2 * d[3] < d[2]; }, calc_hat1}},
   };
   return shapes;
 }
 
 }  // namespace
-
-int get_num_dimensions(const std::string& shape) {
-  const auto it = get_shapes().find(shape);
-  return it == get_shapes().end() ? 0 : it->second.num_dims;
-}
 
 std::vector<std::string> list_section_shapes() {
   std::vector<std::string> names;
@@ -358,7 +353,8 @@ std::optional<LibrarySection> calc_library_section(const std::string& shape, con
                                                    std::string* problem) {
   const auto it = get_shapes().find(shape);
   if (it == get_shapes().end()) {
-    *problem = "has the unknown section shape " + shape;
+    const std::string nearest = find_nearest(shape, list_section_shapes());
+    *problem = "has the unknown section shape " + shape + (nearest.empty() ? "" : ", did you mean " + nearest);
     return std::nullopt;
   }
   if (static_cast<int>(dims.size()) != it->second.num_dims) {

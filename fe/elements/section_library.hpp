@@ -1,5 +1,6 @@
 #pragma once
-/// \file Section properties of the shapes of PBARL and PBEAML from their dimensions. Sources: docs/elements/sections.md.
+/// \file Section properties of the shapes of PBARL and PBEAML from their dimensions. Sources:
+/// docs/elements/sections.md.
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,11 +17,10 @@ struct LibrarySection {
   Eigen::Vector2d n = Eigen::Vector2d::Zero();
 };
 
-/// Number of dimensions of a shape (nonstructural mass not counted), 0 when the shape is unknown.
-int get_num_dimensions(const std::string& shape);
 /// Every shape name known, sorted.
 std::vector<std::string> list_section_shapes();
-/// Properties, or an empty optional with the reason in *problem (unknown shape, wrong count, dimensions that do not fit).
+/// Properties, or an empty optional with the reason in *problem (unknown shape, wrong count, dimensions that do not
+/// fit).
 std::optional<LibrarySection> calc_library_section(const std::string& shape, const std::vector<double>& dims,
                                                    std::string* problem);
 

@@ -19,7 +19,8 @@ MatrixXd calc_incidence(const std::vector<Wall>& walls) {
   double size = 0;
   for (const Wall& w : walls) size = std::max({size, w.a.norm(), w.b.norm()});
   const auto find = [&](const Vector2d& p) {
-    const auto it = std::find_if(nodes.begin(), nodes.end(), [&](const Vector2d& q) { return (p - q).norm() < 1e-9 * size; });
+    const auto it =
+        std::find_if(nodes.begin(), nodes.end(), [&](const Vector2d& q) { return (p - q).norm() < 1e-9 * size; });
     if (it != nodes.end()) return static_cast<int>(it - nodes.begin());
     nodes.push_back(p);
     return static_cast<int>(nodes.size()) - 1;
@@ -87,8 +88,7 @@ ThinWallResult calc_thin_wall(const std::vector<Wall>& walls) {
     }
     // What leaves each node must enter it: B q0 + (end part of B) g_end = 0.
     VectorXd q0 = lu.solve(-B.cwiseMax(0) * g_end);
-    if (has_cells)
-      q0 -= Z * cells.ldlt().solve(Z.transpose() * (length_over_t.cwiseProduct(q0) + g_energy));
+    if (has_cells) q0 -= Z * cells.ldlt().solve(Z.transpose() * (length_over_t.cwiseProduct(q0) + g_energy));
     double torque = 0;
     *energy = 0;
     for (int i = 0; i < n; ++i) {
@@ -109,7 +109,8 @@ ThinWallResult calc_thin_wall(const std::vector<Wall>& walls) {
   result.shear_area_2 = 1 / energy_2;
   if (has_cells) {
     VectorXd swept(n);
-    for (int i = 0; i < n; ++i) swept[i] = cross(walls[static_cast<std::size_t>(i)].a, walls[static_cast<std::size_t>(i)].b);
+    for (int i = 0; i < n; ++i)
+      swept[i] = cross(walls[static_cast<std::size_t>(i)].a, walls[static_cast<std::size_t>(i)].b);
     const VectorXd h = Z.transpose() * swept;
     result.J = h.dot(cells.ldlt().solve(h));
   }

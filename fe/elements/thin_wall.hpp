@@ -8,13 +8,13 @@ namespace bough::fe {
 
 /// A wall along its midline; walls that share an end point are joined there.
 struct Wall {
-  Eigen::Vector2d a, b;                             ///< (y, z)
+  Eigen::Vector2d a, b;  ///< (y, z)
   double t;
 };
 
 struct ThinWallResult {
-  Eigen::Vector2d shear_center;                     ///< (y, z), in the axes of the walls
-  double shear_area_1 = 0, shear_area_2 = 0;        ///< V² / ∫ q²/t ds for V along y, z
+  Eigen::Vector2d shear_center;               ///< (y, z), in the axes of the walls
+  double shear_area_1 = 0, shear_area_2 = 0;  ///< V² / ∫ q²/t ds for V along y, z
   double J = 0;
 };
 

@@ -130,7 +130,8 @@ void BeamField::calc_shape(double x, Matrix6x12d* D, Matrix6x12d* e) const {
 std::vector<BeamField::Point> BeamField::calc_points(int num_uniform, int num_tapered) const {
   std::vector<Point> points;
   const auto add_interval = [&](double from, double to, int n) {
-    for (const GaussPoint& g : get_gauss_points(n)) points.push_back({from + (to - from) * g.x, (to - from) * g.weight});
+    for (const GaussPoint& g : get_gauss_points(n))
+      points.push_back({from + (to - from) * g.x, (to - from) * g.weight});
   };
   if (uniform_) {
     add_interval(0, length_, num_uniform);

@@ -54,7 +54,7 @@ class BeamField {
   bool uniform_;
   ActiveForces active_;
   Matrix6d G_;
-  std::vector<double> breaks_;                      ///< tapered: ends of the panels of the quadrature, 0 to length
+  std::vector<double> breaks_;  ///< tapered: ends of the panels of the quadrature, 0 to length
 };
 
 }  // namespace bough::fe

@@ -12,7 +12,7 @@ using records::BeamElement;
 
 struct Case {
   std::string name;
-  int rank;                                         ///< of K
+  int rank;  ///< of K
   bool has_mass;
   std::function<void(SmallModel&)> fill;
 };
@@ -101,7 +101,10 @@ std::vector<Case> make_cases() {
          m.deck.prod.push_back({9, 1, 0.4, 0.02, 0, 0.1, {}});
          m.deck.crod.push_back({5, 9, 1, 2, {}});
        }},
-      {"conrod", 2, true, [](SmallModel& m) { m.deck.conrod.push_back({5, 1, 2, 1, 0.4, 0.02, 0, 0.1, {}}); }},
+      {"conrod", 2, true,
+       [](SmallModel& m) {
+         m.deck.conrod.push_back({5, 1, 2, 1, 0.4, 0.02, 0, 0.1, {}});
+       }},
       {"tube_tapered", 2, true,
        [](SmallModel& m) {
          m.deck.ptube.push_back({9, 1, 0.5, 0.1, 0.2, 0.3, {}});
@@ -222,7 +225,8 @@ TEST(BeamMass, RigidBodyIsExact) {
     if (c.name != "beam_tapered_offset" && c.name != "bar_shear_offset" && c.name != "bar_pinned") continue;
     const SmallModel m = make_model(c);
     const bool is_cbeam = c.name == "beam_tapered_offset";
-    const Vector3d a = kA + make_rotation(11) * Vector3d(0.2, 0.3, -0.1), b = kB + make_rotation(12) * Vector3d(-0.3, 0.1, 0.25);
+    const Vector3d a = kA + make_rotation(11) * Vector3d(0.2, 0.3, -0.1),
+                   b = kB + make_rotation(12) * Vector3d(-0.3, 0.1, 0.25);
     const Vector3d ex = (b - a).normalized(), ez = ex.cross(make_rotation(11) * Vector3d(0.2, 1, -0.3)).normalized();
     Matrix3d R;
     R << ex, ez.cross(ex), ez;

@@ -1,4 +1,5 @@
-/// Bad input to the catalogue: every id once, all of a deck reported together; and the frames of orientation and offsets.
+/// Bad input to the catalogue: every id once, all of a deck reported together; and the frames of orientation and
+/// offsets.
 #include "small_model.hpp"
 
 #include "bough/fe/elements/beam.hpp"
@@ -287,7 +288,8 @@ TEST(Catalog, PointMasses) {
   const auto energy = [&](const Vector3d& s, const Matrix3d& J) {
     return (v + w.cross(s)).squaredNorm() + 0.5 * w.dot(J * w);
   };
-  EXPECT_NEAR(0.5 * motion.dot(m.calc_mass(MassKind::Lumped) * motion), energy(R * offset, R * I * R.transpose()), 1e-13);
+  EXPECT_NEAR(0.5 * motion.dot(m.calc_mass(MassKind::Lumped) * motion), energy(R * offset, R * I * R.transpose()),
+              1e-13);
   m.deck.conm2[0].cid = -1;
   m.deck.conm2[0].x = x + offset;
   m.make();
