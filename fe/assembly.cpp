@@ -82,7 +82,7 @@ PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add) {
   check_petsc(MatSeqAIJSetPreallocationCSR(A, pattern.start.data(), pattern.columns.data(), nullptr));
   check_petsc(MatMPIAIJSetPreallocationCSR(A, pattern.start.data(), pattern.columns.data(), nullptr));
   check_petsc(MatSetOption(A, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_TRUE));
-  check_petsc(MatSetOption(A, MAT_ROW_ORIENTED, PETSC_FALSE));   // Eigen's order
+  check_petsc(MatSetOption(A, MAT_ROW_ORIENTED, PETSC_FALSE));  // Eigen's order
 
   ElementTransform transform;
   MatrixXd K_e;
@@ -155,11 +155,13 @@ PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const Vect
 
 MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g) {
   const double scale = model.wtmass();
-  return calc_times(model, [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); }, X_g);
+  return calc_times(
+      model, [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); }, X_g);
 }
 
 MatrixXd calc_stiffness_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g) {
-  return calc_times(model, [](const Element& e, Eigen::Ref<MatrixXd> K) { e.add_stiffness(1, K); }, X_g);
+  return calc_times(
+      model, [](const Element& e, Eigen::Ref<MatrixXd> K) { e.add_stiffness(1, K); }, X_g);
 }
 
 std::pair<int, int> calc_element_range(const Model& model) {

@@ -48,6 +48,16 @@ MatrixXd replicate(Mat dense) {
 
 }  // namespace
 
+FactorState judge_factorization(int status, int detail) {
+  if (status >= 0) return FactorState::Done;
+  if (status == -8 || status == -9) return FactorState::NeedsWorkspace;
+  if (status == -10) return FactorState::Singular;
+  throw ComputationError("fe.factorization", {},
+                         "MUMPS could not factor the stiffness matrix, code " + std::to_string(status) + " (" +
+                             std::to_string(detail) + ")",
+                         status == -13 ? "give the process more memory" : "report the deck");
+}
+
 SymmetricFactor::SymmetricFactor(Mat A, bool find_null_pivots) {
   // MUMPS estimates its workspace; where pivoting needs more it says so and is given more.
   for (PetscInt extra_percent : {50, 200, 1000}) {
@@ -68,16 +78,10 @@ SymmetricFactor::SymmetricFactor(Mat A, bool find_null_pivots) {
     PetscInt status = 0, detail = 0;
     check_petsc(MatMumpsGetInfog(F, 1, &status));
     check_petsc(MatMumpsGetInfog(F, 2, &detail));
-    if (status == -8 || status == -9) continue;
-    if (status == -10) {
-      is_singular_ = true;
-      return;
-    }
-    if (status < 0 || error != MAT_FACTOR_NOERROR)
-      throw ComputationError("fe.factorization", {},
-                             "MUMPS could not factor the stiffness matrix, code " + std::to_string(status) + " (" +
-                                 std::to_string(detail) + ")",
-                             status == -13 ? "give the process more memory" : "report the deck");
+    const FactorState state = judge_factorization(status, detail);
+    if (state == FactorState::NeedsWorkspace) continue;
+    is_singular_ = state == FactorState::Singular || error != MAT_FACTOR_NOERROR;
+    if (is_singular_) return;
     PetscInt num = 0;
     check_petsc(MatMumpsGetInfog(F, 28, &num));
     num_null_pivots_ = find_null_pivots ? static_cast<int>(num) : 0;

@@ -4,13 +4,18 @@
 
 namespace bough::fe {
 
+/// What a MUMPS factorization ended with (INFOG(1), INFOG(2)).
+enum class FactorState { Done, Singular, NeedsWorkspace };
+/// Throws ComputationError("fe.factorization") for an error that more workspace does not cure.
+FactorState judge_factorization(int status, int detail);
+
 class SymmetricFactor {
  public:
-  /// Factors A (MATAIJ, symmetric; lower and upper part both stored). With `find_null_pivots`, pivots below 1e-15 of the
-  /// scaled matrix are set aside and counted instead of failing (MUMPS ICNTL(24)).
+  /// Factors A (MATAIJ, symmetric; lower and upper part both stored). With `find_null_pivots`, pivots below 1e-15 of
+  /// the scaled matrix are set aside and counted instead of failing (MUMPS ICNTL(24)).
   SymmetricFactor(Mat A, bool find_null_pivots);
 
-  bool is_singular() const { return is_singular_; }        ///< an exact zero pivot ended the factorization
+  bool is_singular() const { return is_singular_; }  ///< an exact zero pivot ended the factorization
   int num_null_pivots() const { return num_null_pivots_; }
   /// X with A X = B; B num_rows x m, replicated on every rank, and so is X.
   Eigen::MatrixXd solve(const Eigen::Ref<const Eigen::MatrixXd>& B) const;

@@ -19,8 +19,8 @@ PetscMat take_kept(Mat K, const std::vector<int>& kept) {
   const auto end = std::lower_bound(kept.begin(), kept.end(), last);
   const std::vector<PetscInt> own(begin, end);
   PetscIs rows;
-  check_petsc(ISCreateGeneral(PETSC_COMM_WORLD, static_cast<PetscInt>(own.size()), own.data(), PETSC_COPY_VALUES,
-                              rows.out()));
+  check_petsc(
+      ISCreateGeneral(PETSC_COMM_WORLD, static_cast<PetscInt>(own.size()), own.data(), PETSC_COPY_VALUES, rows.out()));
   PetscMat result;
   check_petsc(MatCreateSubMatrix(K, rows.get(), rows.get(), MAT_INITIAL_MATRIX, result.out()));
   check_petsc(MatSetOption(result.get(), MAT_SYMMETRIC, PETSC_TRUE));
@@ -74,7 +74,7 @@ double calc_model_size(const Model& model) {
 
 struct StaticSolver::Impl {
   const Model* model = nullptr;
-  std::vector<int> kept;                       ///< f-dofs that are not held, ascending
+  std::vector<int> kept;  ///< f-dofs that are not held, ascending
   std::optional<SymmetricFactor> factor;
 };
 
@@ -95,14 +95,16 @@ StaticSolver::StaticSolver(const Model& model, const PetscMat& K_f, std::vector<
   // Null pivots are a suspicion; the energy of the motion decides. A singular matrix may also factor without one.
   impl_->factor.emplace(K, true);
   const int suspects = impl_->factor->is_singular() ? 1 : impl_->factor->num_null_pivots();
-  if (suspects == 0 && calc_softest_energy(K, *impl_->factor) >= kMechanismEnergy) return;
+  const auto is_sound = [&] {
+    return !impl_->factor->is_singular() && calc_softest_energy(K, *impl_->factor) >= kMechanismEnergy;
+  };
+  if (suspects == 0 && is_sound()) return;
   const MatrixXd motions = find_mechanisms(K, suspects);
   if (motions.cols() > 0) throw_mechanisms(model, kept, motions);
-  if (suspects == 0) return;
   impl_->factor.emplace(K, false);
-  if (impl_->factor->is_singular() || calc_softest_energy(K, *impl_->factor) < kMechanismEnergy)
+  if (!is_sound())
     throw ComputationError("fe.mechanism", {}, "the stiffness matrix is singular to working precision",
-                           "look for very soft and very stiff parts side by side");
+                           "look for very soft and very stiff parts side by side, or for values that are not numbers");
 }
 
 StaticSolver::~StaticSolver() = default;

@@ -42,7 +42,7 @@ std::vector<int> take_six(const Model& model, int node) {
 
 /// Three dofs of the first node, two of the second, one of the third: at each the most independent ones.
 std::vector<int> take_321(const Model& model, const std::array<int, 3>& nodes, const Vector3d& centre, double size) {
-  Eigen::Matrix<double, 6, 6> chosen;   // orthonormal rows
+  Eigen::Matrix<double, 6, 6> chosen;  // orthonormal rows
   std::vector<int> fdofs;
   for (int i = 0; i < 3; ++i) {
     std::vector<int> open{1, 2, 3};
@@ -79,8 +79,9 @@ std::vector<int> choose_determinate_support(const Model& model, int node_id) {
                        "name a grid of the deck");
     if (!has_free(model, node, 1, 6))
       throw InputError("fe.no-support", {},
-                       "grid " + std::to_string(node_id) + " has not all six dofs free with stiffness,"
-                       " so it cannot hold the body",
+                       "grid " + std::to_string(node_id) +
+                           " has not all six dofs free with stiffness,"
+                           " so it cannot hold the body",
                        "name a grid that is neither constrained nor dependent and has rotational stiffness");
     return take_six(model, node);
   }

@@ -10,16 +10,16 @@
 namespace bough::fe {
 namespace {
 
-constexpr double kNothing = 1e-14;   ///< below this share of the model's largest term a block is round-off
+constexpr double kNothing = 1e-14;  ///< below this share of the model's largest term a block is round-off
 
 struct NodeBlocks {
-  std::vector<Matrix3d> K;       ///< 2k and 2k+1: node k's translations and rotations
-  std::vector<double> noise;     ///< what round-off of the elements at the node can leave in the block
+  std::vector<Matrix3d> K;    ///< 2k and 2k+1: node k's translations and rotations
+  std::vector<double> noise;  ///< what round-off of the elements at the node can leave in the block
 };
 
 NodeBlocks calc_node_blocks(const std::vector<Node>& nodes, const std::vector<std::unique_ptr<const Element>>& elements,
-                            const SparseRows& T0, const std::vector<int>& gdof_node,
-                            const std::vector<int>& fdof_block, const std::vector<int>& fdof_slot) {
+                            const SparseRows& T0, const std::vector<int>& gdof_node, const std::vector<int>& fdof_block,
+                            const std::vector<int>& fdof_slot) {
   const size_t num_blocks = 2 * nodes.size();
   NodeBlocks result{std::vector<Matrix3d>(num_blocks, Matrix3d::Zero()), std::vector<double>(num_blocks, 0)};
   auto& blocks = result.K;
@@ -33,7 +33,8 @@ NodeBlocks calc_node_blocks(const std::vector<Node>& nodes, const std::vector<st
     double arm = 0, largest = 0;
     for (int k : element->nodes()) arm = std::max(arm, (nodes[k].x - nodes[element->nodes()[0]].x).norm());
     for (int i = 0; i < n; ++i)
-      if (element->gdofs()[i] - nodes[gdof_node[element->gdofs()[i]]].first_gdof < 3) largest = std::max(largest, K_e(i, i));
+      if (element->gdofs()[i] - nodes[gdof_node[element->gdofs()[i]]].first_gdof < 3)
+        largest = std::max(largest, K_e(i, i));
     for (int k : element->nodes()) result.noise[2 * k + 1] += kNothing * largest * arm * arm;
     transform.set(T0, element->gdofs());
     const MatrixXd& K_f = transform.project(K_e);
@@ -54,8 +55,7 @@ NodeBlocks calc_node_blocks(const std::vector<Node>& nodes, const std::vector<st
 
 std::vector<AutospcEntry> find_singular_dofs(const std::vector<Node>& nodes,
                                              const std::vector<std::unique_ptr<const Element>>& elements,
-                                             const SparseRows& T0, const std::vector<int>& fdof_ldof,
-                                             double epsilon) {
+                                             const SparseRows& T0, const std::vector<int>& fdof_ldof, double epsilon) {
   // A scalar point is a block of one translation.
   std::vector<int> ldof_node;
   for (size_t k = 0; k < nodes.size(); ++k) ldof_node.insert(ldof_node.end(), nodes[k].num_dofs, static_cast<int>(k));

@@ -12,13 +12,12 @@
 namespace bough::fe {
 namespace {
 
-constexpr unsigned kTranslations = 7u;   ///< mask of components 1, 2, 3
+constexpr unsigned kTranslations = 7u;  ///< mask of components 1, 2, 3
 
 /// T = R C: rotates the rows of C from the displacement axes of each node to basic.
 SparseRows rotate_rows(const std::vector<Node>& nodes, const SparseRows& C) {
-  const bool is_plain = std::all_of(nodes.begin(), nodes.end(), [](const Node& n) {
-    return n.num_dofs != 6 || n.R_basic_cd.isIdentity(0);
-  });
+  const bool is_plain = std::all_of(nodes.begin(), nodes.end(),
+                                    [](const Node& n) { return n.num_dofs != 6 || n.R_basic_cd.isIdentity(0); });
   if (is_plain) return C;
   SparseRows R(C.rows(), C.rows());
   R.reserve(Eigen::VectorXi::Constant(C.rows(), 3));
@@ -49,8 +48,8 @@ Model ModelBuilder::build(const ElementFactory& factory) {
   collect_fixed();
   collect_equations();
   check_dependent_not_fixed();
-  equations_ = resolve_chains(model_.num_gdofs_, std::move(equations_), [this](int l) { return name_dof(l); },
-                              diagnostics_);
+  equations_ = resolve_chains(
+      model_.num_gdofs_, std::move(equations_), [this](int l) { return name_dof(l); }, diagnostics_);
   diagnostics_.throw_if_errors();
   apply_autospc(set_transform());
   return std::move(model_);
@@ -166,7 +165,8 @@ void ModelBuilder::add_mpc(const records::Mpc& mpc) {
   equation.card = "MPC set " + std::to_string(mpc.sid);
   equation.at = at;
   if (mpc.terms.empty() || mpc.terms.front().a == 0) {
-    diagnostics_.error("fe.zero-mpc", at, equation.card + " has no coefficient on its first term, expected one that is not zero",
+    diagnostics_.error("fe.zero-mpc", at,
+                       equation.card + " has no coefficient on its first term, expected one that is not zero",
                        "put a term with a coefficient first");
     return;
   }

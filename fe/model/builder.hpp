@@ -36,7 +36,7 @@ class ModelBuilder {
   Model model_;
   std::vector<ConstraintEquation> equations_;
   std::vector<char> is_fixed_;
-  std::vector<std::pair<int, SourceLocation>> fixed_by_;   ///< (l-dof, card) in the order of the cards
+  std::vector<std::pair<int, SourceLocation>> fixed_by_;  ///< (l-dof, card) in the order of the cards
 };
 
 }  // namespace bough::fe

@@ -10,7 +10,7 @@ namespace {
 struct Term {
   int ldof;
   double value;
-  double size;   ///< sum of the magnitudes that were added: what is left of a cancellation is judged against it
+  double size;  ///< sum of the magnitudes that were added: what is left of a cancellation is judged against it
 };
 
 /// Sums equal dofs and drops what only round-off left of a cancellation.
@@ -114,7 +114,8 @@ Elimination eliminate(int num_ldofs, const std::vector<ConstraintEquation>& reso
   result.C.resize(num_ldofs, static_cast<int>(result.fdof_ldof.size()));
   Eigen::VectorXi sizes = Eigen::VectorXi::Zero(num_ldofs);
   for (int l = 0; l < num_ldofs; ++l)
-    sizes[l] = equation_of[l] >= 0 ? static_cast<int>(resolved[equation_of[l]].terms.size()) : (fdof_of[l] >= 0 ? 1 : 0);
+    sizes[l] =
+        equation_of[l] >= 0 ? static_cast<int>(resolved[equation_of[l]].terms.size()) : (fdof_of[l] >= 0 ? 1 : 0);
   result.C.reserve(sizes);
   for (int l = 0; l < num_ldofs; ++l) {
     if (fdof_of[l] >= 0) result.C.insert(l, fdof_of[l]) = 1;

@@ -17,26 +17,27 @@ using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
 /// u_dependent = Σ coefficient · u_ldof.
 struct ConstraintEquation {
-  int dependent = 0;                            ///< l-dof
-  std::vector<std::pair<int, double>> terms;    ///< (l-dof, coefficient)
-  std::string card;                             ///< "RBE2 12", for messages
+  int dependent = 0;                          ///< l-dof
+  std::vector<std::pair<int, double>> terms;  ///< (l-dof, coefficient)
+  std::string card;                           ///< "RBE2 12", for messages
   SourceLocation at;
 };
 
 /// u_l = C u_f.
 struct Elimination {
-  SparseRows C;                                 ///< num_ldofs x num_fdofs
-  std::vector<int> fdof_ldof;                   ///< the l-dof of each f-dof, ascending
+  SparseRows C;                ///< num_ldofs x num_fdofs
+  std::vector<int> fdof_ldof;  ///< the l-dof of each f-dof, ascending
 };
 
-
 /// Substitutes chains of equations until every dependent dof is expressed in independent ones. Reports
-/// fe.dependent-twice (two equations for one dof) and fe.cyclic-constraints. The result has one row of independent terms
-/// per equation, in the equations' order; empty when an error was reported. O(terms of the result).
+/// fe.dependent-twice (two equations for one dof) and fe.cyclic-constraints. The result has one row of independent
+/// terms per equation, in the equations' order; empty when an error was reported. O(terms of the result).
 std::vector<ConstraintEquation> resolve_chains(int num_ldofs, std::vector<ConstraintEquation> equations,
-                                               const std::function<std::string(int)>& name_dof, Diagnostics& diagnostics);
+                                               const std::function<std::string(int)>& name_dof,
+                                               Diagnostics& diagnostics);
 
 /// Free dofs are those neither fixed nor dependent; fixed independents are substituted as zero.
-Elimination eliminate(int num_ldofs, const std::vector<ConstraintEquation>& resolved, const std::vector<char>& is_fixed);
+Elimination eliminate(int num_ldofs, const std::vector<ConstraintEquation>& resolved,
+                      const std::vector<char>& is_fixed);
 
 }  // namespace bough::fe

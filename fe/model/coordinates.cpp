@@ -89,8 +89,9 @@ class Resolver {
   bool require_system(int id, const std::string& who, const SourceLocation& at) {
     if (id == 0) return true;
     if (!records_.count(id)) {
-      diagnostics_.error("fe.missing-coordinates", at, who + " names coordinate system " + std::to_string(id) +
-                         ", which the deck does not define", "add a CORD card or correct the field");
+      diagnostics_.error("fe.missing-coordinates", at,
+                         who + " names coordinate system " + std::to_string(id) + ", which the deck does not define",
+                         "add a CORD card or correct the field");
       return false;
     }
     resolve_system(id);
@@ -131,8 +132,10 @@ class Resolver {
     for (int i = 0; i < 3; ++i) {
       const auto it = grid_index_.find(card.grids[i]);
       if (it == grid_index_.end()) {
-        diagnostics_.error("fe.missing-grid", at, "coordinate system " + std::to_string(card.id) + " names grid " +
-                           std::to_string(card.grids[i]) + ", which the deck does not define", "add the GRID or correct the id");
+        diagnostics_.error("fe.missing-grid", at,
+                           "coordinate system " + std::to_string(card.id) + " names grid " +
+                               std::to_string(card.grids[i]) + ", which the deck does not define",
+                           "add the GRID or correct the id");
         found = false;
         continue;
       }
@@ -153,8 +156,9 @@ class Resolver {
     const Vector3d z = p[1] - p[0], xz = p[2] - p[0];
     const Vector3d y = z.cross(xz);
     if (!(y.norm() > 1e-10 * z.norm() * xz.norm())) {
-      diagnostics_.error("fe.degenerate-coordinates", at, "the three points of coordinate system " + std::to_string(id) +
-                         " lie on one line or coincide, expected a triangle",
+      diagnostics_.error("fe.degenerate-coordinates", at,
+                         "the three points of coordinate system " + std::to_string(id) +
+                             " lie on one line or coincide, expected a triangle",
                          "move the third point off the z axis");
       return false;
     }
@@ -171,8 +175,10 @@ class Resolver {
     std::string chain;
     const auto begin = std::find(chain_.begin(), chain_.end(), id);
     for (auto it = begin; it != chain_.end(); ++it) chain += std::to_string(*it) + " -> ";
-    diagnostics_.error("fe.cyclic-coordinates", at, "coordinate system " + std::to_string(id) +
-                       " is defined by itself: " + chain + std::to_string(id), "define one of them in basic");
+    diagnostics_.error(
+        "fe.cyclic-coordinates", at,
+        "coordinate system " + std::to_string(id) + " is defined by itself: " + chain + std::to_string(id),
+        "define one of them in basic");
   }
 
   const records::Deck& deck_;

@@ -25,8 +25,8 @@ class ElementTransform {
 
  private:
   std::vector<int> columns_;
-  std::vector<int> selected_;    ///< per element dof: position in columns_, -1 for a zero row
-  bool is_selection_ = false;    ///< every row of T_e is zero or one unit entry
+  std::vector<int> selected_;  ///< per element dof: position in columns_, -1 for a zero row
+  bool is_selection_ = false;  ///< every row of T_e is zero or one unit entry
   MatrixXd T_e_, K_T_, K_f_;
 };
 

@@ -47,7 +47,8 @@ VectorXd Model::calc_load(const records::Deck& deck, int set, Diagnostics& diagn
                       "load set " + std::to_string(sid) + " has no FORCE, MOMENT, GRAV or LOAD card",
                       "correct the set id or add its cards");
   };
-  const auto combination = std::find_if(deck.loads.begin(), deck.loads.end(), [&](const auto& l) { return l.sid == set; });
+  const auto combination =
+      std::find_if(deck.loads.begin(), deck.loads.end(), [&](const auto& l) { return l.sid == set; });
   if (combination == deck.loads.end()) {
     if (!add_plain_set(*this, deck, set, 1, F, diagnostics)) report_missing(set, deck.locate({}));
     return F;

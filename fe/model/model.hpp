@@ -23,12 +23,12 @@ namespace bough::fe {
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
 struct ModelOptions {
-  int subcase = 0;                            ///< id; 0 = the first: its SPC and MPC sets are used
-  bool ignore_spc = false;                    ///< free-free: SPC sets and permanent SPC of translational kind are not applied
-  std::optional<bool> autospc;                ///< overrides PARAM,AUTOSPC
-  std::optional<MassKind> mass_kind;          ///< overrides PARAM,COUPMASS
-  std::optional<Vector3d> origin;             ///< Bo in basic: node positions become relative to it
-  std::vector<std::string> ignore_cards;      ///< --ignore CARD
+  int subcase = 0;                    ///< id; 0 = the first: its SPC and MPC sets are used
+  bool ignore_spc = false;            ///< free-free: SPC sets and permanent SPC of translational kind are not applied
+  std::optional<bool> autospc;        ///< overrides PARAM,AUTOSPC
+  std::optional<MassKind> mass_kind;  ///< overrides PARAM,COUPMASS
+  std::optional<Vector3d> origin;     ///< Bo in basic: node positions become relative to it
+  std::vector<std::string> ignore_cards;  ///< --ignore CARD
 };
 
 /// One dof removed by AUTOSPC: node id, component 1..6 in CD axes, stiffness ratio that condemned it.
@@ -54,7 +54,7 @@ class Model final : public NodeTable {
   const std::vector<std::unique_ptr<const Element>>& elements() const { return elements_; }
   int num_gdofs() const { return num_gdofs_; }
   int num_fdofs() const { return static_cast<int>(T_.cols()); }
-  const SparseRows& T() const { return T_; }                   ///< num_gdofs x num_fdofs
+  const SparseRows& T() const { return T_; }  ///< num_gdofs x num_fdofs
   MassKind mass_kind() const { return mass_kind_; }
   double wtmass() const { return wtmass_; }
   const std::vector<AutospcEntry>& autospc() const { return autospc_; }

@@ -15,7 +15,8 @@ const Node* find_grid(int id, const std::string& card, const NodeTable& nodes, c
                       Diagnostics& diagnostics) {
   const int index = nodes.find_node(id);
   if (index >= 0 && nodes.node(index).num_dofs == 6) return &nodes.node(index);
-  diagnostics.error("fe.missing-grid", at, card + " names grid " + std::to_string(id) + ", which the deck does not define",
+  diagnostics.error("fe.missing-grid", at,
+                    card + " names grid " + std::to_string(id) + ", which the deck does not define",
                     "add the GRID or correct the id");
   return nullptr;
 }

@@ -41,8 +41,7 @@ MatrixXd reduce(const Model& model) {
 TEST(Autospc, tetrahedron_of_rods_keeps_its_six_rigid_modes) {
   const auto deck = make_deck({{0, 0, 0}, {1, 0, 0}, {0.2, 1, 0}, {0.3, 0.4, 1}});
   Diagnostics d;
-  const Model model =
-      Model::build(deck, {}, make_rods({{1, 2}, {1, 3}, {1, 4}, {2, 3}, {2, 4}, {3, 4}}), d);
+  const Model model = Model::build(deck, {}, make_rods({{1, 2}, {1, 3}, {1, 4}, {2, 3}, {2, 4}, {3, 4}}), d);
   EXPECT_EQ(model.autospc().size(), 12u);
   for (const auto& entry : model.autospc()) EXPECT_GT(entry.component, 3);
   EXPECT_EQ(model.num_fdofs(), 12);
@@ -78,7 +77,7 @@ TEST(Autospc, skew_rod_leaves_one_component_per_end) {
   Diagnostics d;
   const Model model = Model::build(deck, {}, make_rods({{1, 2}}), d);
   EXPECT_EQ(model.num_fdofs(), 1);
-  EXPECT_EQ(model.find_fdof(1, 2), 0);   // nearest to the rod
+  EXPECT_EQ(model.find_fdof(1, 2), 0);  // nearest to the rod
   EXPECT_EQ(count_zero(reduce(model)), 0);
 }
 

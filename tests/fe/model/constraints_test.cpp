@@ -63,7 +63,7 @@ TEST(Constraints, transform_spans_the_dense_null_space) {
   // 6 follows 5 in part; 5.1 follows 4.2 (fixed) and 2.6; a chain over two cards.
   deck.rbe2.push_back(make_rbe2(1, 5, 0b011101, {6}));
   deck.mpc.push_back(make_mpc(6, {{5, 1, 2.0}, {4, 2, -1.0}, {2, 6, 0.5}}));
-  deck.mpc.push_back(make_mpc(9, {{3, 3, 1.0}, {2, 3, 1.0}}));   // another set
+  deck.mpc.push_back(make_mpc(9, {{3, 3, 1.0}, {2, 3, 1.0}}));  // another set
   ModelOptions options;
   options.autospc = false;
   Diagnostics d;
@@ -87,7 +87,7 @@ TEST(Constraints, transform_spans_the_dense_null_space) {
     VectorXd row = local(5, c);
     if (c <= 3) {
       row.segment<3>(n5.first_gdof) -= axis;
-      row.segment<3>(n5.first_gdof + 3) -= (n6.x - n5.x).cross(axis);   // a·(θ×r) = θ·(r×a)
+      row.segment<3>(n5.first_gdof + 3) -= (n6.x - n5.x).cross(axis);  // a·(θ×r) = θ·(r×a)
     } else {
       row.segment<3>(n5.first_gdof + 3) -= axis;
     }
@@ -121,7 +121,7 @@ TEST(Constraints, rigid_elements_carry_rigid_motion_exactly) {
   rbar.id = 3;
   rbar.ga = 5;
   rbar.gb = 6;
-  rbar.cna = 0b101111;    // 5 components here, 1 there
+  rbar.cna = 0b101111;  // 5 components here, 1 there
   rbar.cnb = 0b000100;
   rbar.cma = 0b010000;
   rbar.cmb = 0b111011;
@@ -136,7 +136,8 @@ TEST(Constraints, rigid_elements_carry_rigid_motion_exactly) {
   const MatrixXd q = T.householderQr().solve(Phi_R);
   EXPECT_LT((T * q - Phi_R).norm(), 1e-12);
   for (const auto& [first, last] : {std::pair{0, 4}, std::pair{4, 6}}) {
-    const MatrixXd part = Phi_R.middleRows(6 * first, 6 * (last - first)), moved = T.middleRows(6 * first, 6 * (last - first));
+    const MatrixXd part = Phi_R.middleRows(6 * first, 6 * (last - first)),
+                   moved = T.middleRows(6 * first, 6 * (last - first));
     EXPECT_LT((part * part.colPivHouseholderQr().solve(moved) - moved).norm(), 1e-12);
   }
 }
@@ -215,7 +216,7 @@ TEST(Constraints, permanent_and_set_spc_and_free_free) {
   Diagnostics d;
   EXPECT_EQ(Model::build(deck, {}, make_links(kLinks), d).num_fdofs(), 36 - 8);
   ModelOptions free;
-  free.ignore_spc = true;   // keeps the PS of rotations alone
+  free.ignore_spc = true;  // keeps the PS of rotations alone
   EXPECT_EQ(Model::build(deck, free, make_links(kLinks), d).num_fdofs(), 36 - 3);
 }
 
@@ -273,7 +274,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"fe.dependent-twice", [](records::Deck& k) { k.rbe2.push_back(make_rbe2(9, 4, 63, {2})); }},
         BadCase{"fe.dependent-fixed", [](records::Deck& k) { k.rbe2.push_back(make_rbe2(9, 4, 63, {1})); }},
         BadCase{"fe.cyclic-constraints",
-                [](records::Deck& k) { k.mpc.push_back(make_mpc(2, {{3, 1, 1.0}, {2, 1, 1.0}})); }},
+                [](records::Deck& k) {
+                  k.mpc.push_back(make_mpc(2, {{3, 1, 1.0}, {2, 1, 1.0}}));
+                }},
         BadCase{"fe.missing-set", [](records::Deck& k) { k.subcases[0].spc = 44; }},
         BadCase{"fe.missing-grid", [](records::Deck& k) { k.spc.push_back(make_spc(1, 77, 1)); }},
         BadCase{"fe.missing-grid", [](records::Deck& k) { k.rbe2.push_back(make_rbe2(9, 4, 63, {78})); }},
@@ -286,10 +289,13 @@ INSTANTIATE_TEST_SUITE_P(
                   r.ga = 4;
                   r.gb = 5;
                   r.cna = 0b111;
-                  r.cnb = 0b111;   // the rotation about the line through both is not held
+                  r.cnb = 0b111;  // the rotation about the line through both is not held
                   k.rbar.push_back(r);
                 }},
-        BadCase{"fe.bad-param", [](records::Deck& k) { k.params.push_back({"WTMASS", "ABC", {}}); }},
+        BadCase{"fe.bad-param",
+                [](records::Deck& k) {
+                  k.params.push_back({"WTMASS", "ABC", {}});
+                }},
         BadCase{"fe.no-grids", [](records::Deck& k) { k.grids.clear(); }}));
 
 TEST(Constraints, enforced_displacement_is_zero_with_a_warning_and_thru_ids_may_be_missing) {

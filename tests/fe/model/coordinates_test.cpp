@@ -73,7 +73,7 @@ TEST(Coordinates, cylindrical_and_spherical_points_and_axes) {
 
 TEST(Coordinates, chain_through_systems_and_grids_in_any_order) {
   auto deck = make_deck({{2, 90, 0}, {0, 0, 0}, {0, 1, 0}, {1, 0, 0}});
-  deck.grids[0].cp = 10;                                             // in a system by grids 2, 3, 4
+  deck.grids[0].cp = 10;  // in a system by grids 2, 3, 4
   deck.coord_systems.push_back(make_by_grids(10, CoordKind::Cylindrical, 2, 3, 4));
   deck.coord_systems.push_back(make_system(9, CoordKind::Rectangular, 8, {1, 0, 0}, {1, 0, 1}, {2, 0, 0}));
   deck.coord_systems.push_back(make_system(8, CoordKind::Cylindrical, 0, {0, 0, 5}, {0, 0, 6}, {0, 1, 5}));

@@ -33,7 +33,7 @@ records::Deck make_loaded() {
   gravity.a = 9.81;
   gravity.n = {0, 0, -1};
   deck.gravity.push_back(gravity);
-  deck.point_loads.push_back(make_load(1, 1, 5, 10, {0, 2, 0}, false));   // tangential at (0,2): -x
+  deck.point_loads.push_back(make_load(1, 1, 5, 10, {0, 2, 0}, false));  // tangential at (0,2): -x
   deck.point_loads.push_back(make_load(1, 2, 0, 4, {0, 0, 1}, true));
   deck.point_loads.push_back(make_load(2, 2, 0, 1, {1, 2, 3}, false));
   records::LoadCombination combination;
@@ -114,11 +114,14 @@ TEST(MassPropertiesMpi, ground_check_sees_a_spring_to_ground) {
     Ground() : Element(1, "GROUND", {2}, {12 + 1}) {}
     void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override { K(0, 0) += scale * 500; }
   };
-  const Model grounded = Model::build(deck, {}, [&](const records::Deck& k, const NodeTable& n, Diagnostics& e) {
-    ElementList list = make_links(links)(k, n, e);
-    list.elements.push_back(std::make_unique<Ground>());
-    return list;
-  }, d);
+  const Model grounded = Model::build(
+      deck, {},
+      [&](const records::Deck& k, const NodeTable& n, Diagnostics& e) {
+        ElementList list = make_links(links)(k, n, e);
+        list.elements.push_back(std::make_unique<Ground>());
+        return list;
+      },
+      d);
   const auto check = calc_ground_check(grounded);
   EXPECT_GT(check[1], 1e-3);
   EXPECT_LT(check[0], 1e-14);
@@ -126,7 +129,7 @@ TEST(MassPropertiesMpi, ground_check_sees_a_spring_to_ground) {
 
 TEST(ModelMap, names_dofs_and_draws_links) {
   auto deck = make_deck({{0, 0, 0}, {1, 0, 0}, {2, 1, 0}});
-  deck.grids[0].id = 30;   // sorted by id: 2, 3, 30
+  deck.grids[0].id = 30;  // sorted by id: 2, 3, 30
   Diagnostics d;
   const Model model = Model::build(deck, {}, make_links({{30, 2}, {2, 3}}), d);
   const Eigen::MatrixXi map = model.calc_dof_map();

@@ -50,8 +50,7 @@ class LinkElement final : public Element {
 inline Eigen::Matrix<double, 6, 6> make_spd(unsigned seed) {
   std::mt19937 generator(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const Eigen::Matrix<double, 6, 6> A =
-      Eigen::Matrix<double, 6, 6>::NullaryExpr([&] { return uniform(generator); });
+  const Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::NullaryExpr([&] { return uniform(generator); });
   return 1000 * (A * A.transpose() + Eigen::Matrix<double, 6, 6>::Identity());
 }
 
@@ -84,9 +83,8 @@ inline ElementFactory make_links(std::vector<std::pair<int, int>> pairs) {
     for (size_t e = 0; e < pairs.size(); ++e) {
       const int a = nodes.find_node(pairs[e].first), b = nodes.find_node(pairs[e].second);
       if (a < 0 || b < 0) continue;
-      list.elements.push_back(std::make_unique<LinkElement>(static_cast<int>(e) + 1, a, b, nodes,
-                                                            make_spd(static_cast<unsigned>(e) + 1),
-                                                            2.0 + static_cast<double>(e)));
+      list.elements.push_back(std::make_unique<LinkElement>(
+          static_cast<int>(e) + 1, a, b, nodes, make_spd(static_cast<unsigned>(e) + 1), 2.0 + static_cast<double>(e)));
     }
     return list;
   };

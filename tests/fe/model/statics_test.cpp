@@ -1,5 +1,8 @@
 #include "bough/fe/statics.hpp"
 
+#include <cmath>
+#include <functional>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -86,7 +89,7 @@ TEST(StaticsMpi, hinge_is_named_by_grid_and_component) {
   deck.spc.push_back(make_spc(1, 1, 63));
   deck.params.push_back({"AUTOSPC", "NO", {}});
   Eigen::Matrix<double, 6, 6> pinned = make_beam(1);
-  pinned.row(3).setZero();   // the last link does not carry torque: grid 6 spins
+  pinned.row(3).setZero();  // the last link does not carry torque: grid 6 spins
   pinned.col(3).setZero();
   Diagnostics d;
   const std::string text = catch_mechanism(Model::build(deck, {}, make_chain(1, pinned), d));
@@ -130,6 +133,37 @@ TEST(StaticsMpi, no_free_dof_is_an_error) {
   }
 }
 
+std::string catch_id(const std::function<void()>& run) {
+  try {
+    run();
+  } catch (const ComputationError& error) {
+    return error.items().front().id;
+  }
+  return "no error";
+}
+
+TEST(StaticsMpi, stiffness_that_is_not_a_number_does_not_pass) {
+  auto deck = make_deck({{0, 0, 0}, {1, 0, 0}});
+  deck.grids[0].ps = 63;
+  Diagnostics d;
+  const Model model = Model::build(deck, {}, make_links({{1, 2}}), d);
+  const PetscMat K = assemble_stiffness(model, DofSet::Free);
+  check_petsc(MatScale(K.get(), std::nan("")));
+  EXPECT_EQ(catch_id([&] { StaticSolver(model, K); }), "fe.mechanism");
+}
+
+TEST(Factor, states_of_mumps) {
+  EXPECT_EQ(judge_factorization(0, 0), FactorState::Done);
+  EXPECT_EQ(judge_factorization(-10, 3), FactorState::Singular);
+  EXPECT_EQ(judge_factorization(-9, 100), FactorState::NeedsWorkspace);
+  EXPECT_EQ(catch_id([] { judge_factorization(-13, 100); }), "fe.factorization");
+}
+
+TEST(Petsc, error_codes_become_failures) {
+  EXPECT_EQ(catch_id([] { check_petsc(PETSC_ERR_ARG_WRONG); }), "fe.petsc");
+  check_petsc(0);
+}
+
 TEST(StaticsMpi, determinate_supports_give_the_same_strain_for_a_balanced_load) {
   auto deck = make_deck(make_points());
   deck.grids[3].cd = 1;
@@ -151,10 +185,10 @@ TEST(StaticsMpi, determinate_supports_give_the_same_strain_for_a_balanced_load) 
     const std::vector<int> held = choose_determinate_support(model, node);
     ASSERT_EQ(held.size(), 6u);
     u.push_back(StaticSolver(model, K, held).solve(F));
-    EXPECT_LT((sum_stiffness(model) * u.back() - F).norm(), 1e-11 * F.norm());   // no reaction at the support
+    EXPECT_LT((sum_stiffness(model) * u.back() - F).norm(), 1e-11 * F.norm());  // no reaction at the support
     EXPECT_LT((calc_stiffness_times(model, u.back() - u.front())).norm(), 1e-10 * F.norm());
   }
-  EXPECT_GT((u[1] - u[2]).norm(), 1e-3 * u[1].norm());   // yet the displacements differ by a rigid motion
+  EXPECT_GT((u[1] - u[2]).norm(), 1e-3 * u[1].norm());  // yet the displacements differ by a rigid motion
 }
 
 TEST(StaticsMpi, support_of_a_straight_chain_is_one_grid_and_of_none_an_error) {
