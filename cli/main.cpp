@@ -1,5 +1,89 @@
-#include <cstdio>
+#include <CLI/CLI.hpp>
 
-#include "bough/base/version.hpp"
+#include "bough/base/diagnostic.hpp"
+#include "console.hpp"
+#include "verbs.hpp"
+#include "versions.hpp"
 
-int main() { std::printf("bough %s\n", bough::get_version()); }
+namespace {
+
+using namespace bough;
+
+std::vector<std::string> list_verbs(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const auto* verb : app.get_subcommands(nullptr)) names.push_back(verb->get_name());
+  return names;
+}
+
+/// The first argument that is no option must be a verb; anything else is answered with the nearest one.
+bool check_verb(const CLI::App& app, int argc, char** argv, const cli::Console& console) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (!word.empty() && word[0] == '-') continue;
+    const auto verbs = list_verbs(app);
+    if (std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return true;
+    const auto nearest = find_nearest(word, verbs);
+    console.print_error("cli.unknown-verb", "unknown verb \"" + word + "\"",
+                        nearest.empty() ? "bough --help lists the verbs" : "did you mean \"" + nearest + "\"");
+    return false;
+  }
+  return true;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Bough: from a finite-element model to a flexible multibody simulation", "bough");
+  app.set_help_flag("-h,--help", "Print this help and exit");
+  app.footer(
+      "bough VERB --help explains a verb. Exit codes: 0 success, 1 the input is wrong, 2 usage, 3 the computation "
+      "failed.\n"
+      "Example:\n  bough init spinup && cd spinup && bough reduce boom.toml && bough run spinup.toml -o spinup.h5");
+  bool show_version = false;
+  app.add_flag("--version", show_version, "Print the versions of Bough and of its libraries");
+  app.require_subcommand(0, 1);
+
+  cli::Action action;
+  cli::add_check(app, action);
+  cli::add_modes(app, action);
+  cli::add_reduce(app, action);
+  cli::add_run(app, action);
+  cli::add_export(app, action);
+  cli::add_plot(app, action);
+  cli::add_info(app, action);
+  cli::add_init(app, action);
+
+  const cli::Console console(false, 0);
+  if (!check_verb(app, argc, argv, console)) return cli::kUsageError;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return console.is_root() ? app.exit(help) : cli::kSuccess;
+  } catch (const CLI::ParseError& error) {
+    const auto chosen = app.get_subcommands();
+    const std::string verb = chosen.empty() ? "bough" : "bough " + chosen.front()->get_name();
+    console.print_error("cli.usage", error.what(), "see " + verb + " --help");
+    return cli::kUsageError;
+  }
+  if (show_version) {
+    console.print_data(cli::describe_versions());
+    return cli::kSuccess;
+  }
+  if (!action) {
+    console.print_error("cli.usage", "no verb given", "see bough --help");
+    return cli::kUsageError;
+  }
+  try {
+    return action();
+  } catch (const Failure& failure) {
+    return cli::report_failure(failure, console);
+  } catch (const std::bad_alloc&) {
+    console.print_error("cli.out-of-memory", "not enough memory", "use a smaller model or fewer modes");
+    return cli::kComputationFailed;
+  } catch (const std::exception& error) {
+    console.print_error("cli.internal", error.what(), "this is a fault in Bough; please report it");
+    return cli::kComputationFailed;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return run(argc, argv); }

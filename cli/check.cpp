@@ -1,0 +1,244 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "bough/fe/assembly.hpp"
+#include "bough/formats/hdf5/files.hpp"
+#include "bough/formats/nastran/reader.hpp"
+#include "bough/formats/toml/specs.hpp"
+#include "console.hpp"
+#include "deck_tables.hpp"
+#include "model_options.hpp"
+#include "options.hpp"
+#include "system_files.hpp"
+
+namespace bough::cli {
+
+namespace {
+
+struct CheckOptions : CommonOptions {
+  std::string file;
+  DeckModelOptions model;
+};
+
+/// Prints the summary and what was found, as text or JSON, and throws when an error is among it.
+int finish(const CheckOptions& options, const Console& console, const std::string& text, nlohmann::json json,
+           const Diagnostics& diagnostics) {
+  if (options.json) {
+    auto messages = nlohmann::json::array();
+    for (const auto& item : diagnostics.items()) messages.push_back(format(item));
+    json["messages"] = messages;
+    json["errors"] = diagnostics.num_errors();
+    json["warnings"] = diagnostics.num_warnings();
+    console.print_data(json.dump(2) + "\n");
+  } else {
+    console.print(text);
+  }
+  console.print(diagnostics);
+  if (!options.json) {
+    console.print(fmt::format("{} errors, {} warnings\n", diagnostics.num_errors(), diagnostics.num_warnings()));
+  }
+  return diagnostics.num_errors() > 0 ? kInputError : kSuccess;
+}
+
+void check_model(const records::Deck& deck, const fe::ModelOptions& model_options, std::string& text,
+                 nlohmann::json& json, Diagnostics& diagnostics) {
+  const auto model = fe::Model::build(deck, model_options, diagnostics);
+  if (diagnostics.num_errors() > 0) return;
+  const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
+  const auto ground = fe::calc_ground_check(model);
+  text += fmt::format("\n{} nodes, {} elements, {} dofs, {} free after constraints; {} mass\n\n", model.nodes().size(),
+                      model.elements().size(), model.num_gdofs(), model.num_fdofs(),
+                      model.mass_kind() == fe::MassKind::Lumped ? "lumped" : "consistent");
+  text += format_mass_properties(mass) + "\n" + format_ground_check(ground) + "\n" + format_autospc(model);
+  json["num_nodes"] = model.nodes().size();
+  json["num_elements"] = model.elements().size();
+  json["num_dofs"] = model.num_gdofs();
+  json["num_free_dofs"] = model.num_fdofs();
+  json["mass_properties"] = to_json(mass);
+  json["ground_check"] = to_json_list(ground);
+  json["autospc"] = nlohmann::json::array();
+  for (const auto& entry : model.autospc()) {
+    json["autospc"].push_back({{"grid", entry.node}, {"component", entry.component}, {"ratio", entry.ratio}});
+  }
+}
+
+void describe_deck(const records::Deck& deck, std::string& text, nlohmann::json& json) {
+  text += fmt::format("Nastran deck, SOL {}, {} subcases, {} files\n", deck.sol.empty() ? "-" : deck.sol,
+                      deck.subcases.size(), deck.files.size());
+  text += format_card_counts(deck);
+  json["kind"] = "deck";
+  json["sol"] = deck.sol;
+  json["cards"] = deck.card_counts;
+  json["skipped"] = nlohmann::json::object();
+  for (const auto& card : deck.unused) json["skipped"][card.name] = card.count;
+}
+
+int check_deck(const CheckOptions& options, Console& console) {
+  console.set_rank(fe::initialize_petsc().rank);
+  Diagnostics diagnostics;
+  const auto deck = nastran::read_deck(options.file, {options.model.ignore_cards}, diagnostics);
+  std::string text;
+  nlohmann::json json;
+  describe_deck(deck, text, json);
+  // A deck with errors is still taken as far as it goes, so that one pass shows all of them.
+  check_model(deck, make_model_options(options.model), text, json, diagnostics);
+  return finish(options, console, text, json, diagnostics);
+}
+
+int check_body(const CheckOptions& options, Console& console) {
+  console.set_rank(fe::initialize_petsc().rank);
+  Diagnostics diagnostics;
+  const auto spec = toml_files::read_body_spec(options.file, diagnostics);
+  nlohmann::json json{{"kind", "body"}, {"name", spec.name}, {"deck", spec.deck}};
+  std::string text = fmt::format("body file: \"{}\" from {}, {} frame, {} modes, {} interface nodes, {} loads\n",
+                                 spec.name, spec.deck, spec.frame == records::BodyFrame::Free ? "free" : "fixed",
+                                 spec.num_modes, spec.interface_nodes.size(), spec.loads.size());
+  const auto deck_path = resolve_beside(options.file, spec.deck);
+  if (!spec.deck.empty()) {
+    demand_file(deck_path);
+    const auto deck = nastran::read_deck(deck_path, {spec.ignore_cards}, diagnostics);
+    describe_deck(deck, text, json);
+    json["kind"] = "body";
+    auto model_options = make_model_options(options.model);
+    model_options.subcase = spec.subcase;
+    model_options.ignore_spc = spec.frame == records::BodyFrame::Free;
+    model_options.origin = spec.origin;
+    model_options.ignore_cards = spec.ignore_cards;
+    check_model(deck, model_options, text, json, diagnostics);
+    for (int id : spec.interface_nodes) {
+      const bool found = std::any_of(deck.grids.begin(), deck.grids.end(), [&](const auto& g) { return g.id == id; });
+      if (!found && diagnostics.num_errors() == 0) {
+        diagnostics.error("cli.unknown-interface", {options.file},
+                          fmt::format("interface node {} is not a grid of {}", id, spec.deck),
+                          "name a GRID of the deck");
+      }
+    }
+  }
+  return finish(options, console, text, json, diagnostics);
+}
+
+int check_system(const CheckOptions& options, const Console& console) {
+  Diagnostics diagnostics;
+  const auto loaded = load_system(options.file, diagnostics);
+  const auto& system = loaded.system;
+  Table table{{"body", "hinge", "free coordinates", "modes"}, {}};
+  auto bodies = nlohmann::json::array();
+  for (int b = 0; b < system.num_bodies(); ++b) {
+    table.rows.push_back({system.body_name(b), system.hinge_name(b), std::to_string(system.num_hinge_u(b)),
+                          std::to_string(system.num_modes(b))});
+    bodies.push_back({{"name", system.body_name(b)},
+                      {"hinge", system.hinge_name(b)},
+                      {"num_hinge_dofs", system.num_hinge_u(b)},
+                      {"num_modes", system.num_modes(b)}});
+  }
+  const auto& spec = loaded.spec;
+  const auto text = fmt::format(
+      "system file: {} bodies, {} hinges, {} forces, {} sensors, {} functions; {} generalized speeds\n{}integrator {}, "
+      "duration {:g}\n",
+      spec.bodies.size(), spec.hinges.size(), spec.forces.size(), spec.sensors.size(), spec.functions.size(),
+      system.num_u(), table.to_text(), spec.simulation.integrator, spec.simulation.duration);
+  return finish(options, console, text, {{"kind", "system"}, {"bodies", bodies}, {"num_speeds", system.num_u()}},
+                diagnostics);
+}
+
+void check_flex_body(const std::string& path, std::string& text, nlohmann::json& json, Diagnostics& diagnostics) {
+  const auto body = hdf5::read_flex_body(path);
+  int computed = 0;
+  for (bool flag : body.kg_inertial_computed) computed += flag ? 1 : 0;
+  double worst = 0;
+  for (const auto& list : {std::vector<MatrixXd>(body.kg_inertial.begin(), body.kg_inertial.end()), body.kg_external}) {
+    for (const auto& kg : list) {
+      if (kg.size() > 0) worst = std::max(worst, (kg - kg.transpose()).norm() / std::max(kg.norm(), 1e-300));
+    }
+  }
+  text += fmt::format(
+      "flexible body \"{}\": mass {:.6g}, {} modes ({:.6g} to {:.6g} Hz), {} nodes, {} interface nodes\n", body.name,
+      body.mass, body.num_modes(), body.num_modes() ? body.frequency_hz[0] : 0.0,
+      body.num_modes() ? body.frequency_hz[body.num_modes() - 1] : 0.0, body.num_nodes(), body.interface_nodes.size());
+  text += fmt::format("geometric stiffness: {} of 12 inertial loads, {} locators; asymmetry {:.1e}\n", computed,
+                      body.locators.size(), worst);
+  json["kind"] = "bough-flexbody";
+  json["num_modes"] = body.num_modes();
+  json["mass"] = body.mass;
+  json["kg_asymmetry"] = worst;
+  if (worst > 1e-6) {
+    diagnostics.error("cli.bad-body", {path}, fmt::format("geometric stiffness is not symmetric, {:.1e}", worst),
+                      "reduce the body again");
+  }
+}
+
+void check_results(const std::string& path, std::string& text, nlohmann::json& json, Diagnostics& diagnostics) {
+  const auto results = hdf5::read_results(path);
+  const auto nt = results.time.size();
+  text += fmt::format("results: {} samples from {:g} to {:g}, {} channels, {}{}\n", nt, nt ? results.time[0] : 0.0,
+                      nt ? results.time[nt - 1] : 0.0, results.channels.size(),
+                      results.completed ? "completed" : "not completed",
+                      results.reason.empty() ? "" : " (" + results.reason + ")");
+  for (const auto& [name, values] : results.channels) {
+    if (!values.allFinite()) {
+      diagnostics.error("cli.not-finite", {path}, "channel " + name + " holds values that are not finite",
+                        "look at the sample before the first of them");
+    }
+  }
+  if (!results.completed) {
+    diagnostics.warning("cli.incomplete-run", {path}, "the run did not complete",
+                        "continue it with bough run --resume");
+  }
+  json["kind"] = "bough-results";
+  json["num_samples"] = nt;
+  json["completed"] = results.completed;
+}
+
+int check_hdf5(const CheckOptions& options, const Console& console) {
+  Diagnostics diagnostics;
+  const auto info = hdf5::read_info(options.file);
+  const auto format = info.attributes.find("format");
+  std::string text;
+  nlohmann::json json;
+  if (format != info.attributes.end() && format->second == "bough-flexbody") {
+    check_flex_body(options.file, text, json, diagnostics);
+  } else if (format != info.attributes.end() && format->second == "bough-results") {
+    check_results(options.file, text, json, diagnostics);
+  } else if (format != info.attributes.end() && format->second == "bough-modes") {
+    const auto modes = hdf5::read_modes(options.file);
+    text += fmt::format("modes: {} of {} grids, {} rigid\n", modes.residual.size(), modes.node_id.size(),
+                        modes.num_rigid_modes);
+    json["kind"] = "bough-modes";
+    json["num_modes"] = modes.residual.size();
+  } else {
+    diagnostics.error("cli.unknown-format", {options.file},
+                      "an HDF5 file without a format that Bough knows" +
+                          (format == info.attributes.end() ? std::string() : ", found \"" + format->second + "\""),
+                      "expected bough-flexbody, bough-modes or bough-results");
+  }
+  return finish(options, console, text, json, diagnostics);
+}
+
+int run_check(const CheckOptions& options) {
+  Console console(options.quiet, options.verbosity);
+  demand_file(options.file);
+  if (has_suffix(options.file, ".h5") || has_suffix(options.file, ".hdf5")) return check_hdf5(options, console);
+  if (has_suffix(options.file, ".toml")) {
+    return toml_files::detect_kind(options.file) == "body" ? check_body(options, console)
+                                                           : check_system(options, console);
+  }
+  return check_deck(options, console);
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Action& action) {
+  auto o = std::make_shared<CheckOptions>();
+  auto* verb =
+      app.add_subcommand("check", "Read a deck, body, system or HDF5 file; print what it holds and every error");
+  verb->add_option("file", o->file, "Nastran deck, body.toml, system.toml or .h5")->required();
+  add_model_options(*verb, o->model);
+  add_common_options(*verb, *o, kJson);
+  verb->footer("Example:\n  bough check boom.bdf\n  bough check spinup.toml --json");
+  verb->callback([&action, o] { action = [o] { return run_check(*o); }; });
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,117 @@
+#include "console.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+namespace bough::cli {
+
+namespace {
+std::size_t display_width(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+}  // namespace
+
+std::string Table::to_text() const {
+  std::vector<std::size_t> width(headings.size());
+  for (std::size_t c = 0; c < headings.size(); ++c) {
+    width[c] = display_width(headings[c]);
+    for (const auto& row : rows)
+      if (c < row.size()) width[c] = std::max(width[c], display_width(row[c]));
+  }
+  std::string text;
+  auto add_row = [&](const std::vector<std::string>& row) {
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      text += std::string(width[c] - display_width(row[c]) + (c == 0 ? 0 : 2), ' ') + row[c];
+    }
+    text += '\n';
+  };
+  add_row(headings);
+  for (const auto& row : rows) add_row(row);
+  return text;
+}
+
+Console::Console(bool quiet, int verbosity)
+    : quiet_(quiet),
+      verbosity_(verbosity),
+      is_root_(get_launch_rank() == 0),
+      stderr_is_terminal_(isatty(STDERR_FILENO) != 0) {
+  const char* no_color = std::getenv("NO_COLOR");
+  colors_ = stderr_is_terminal_ && (no_color == nullptr || *no_color == '\0');
+}
+
+int Console::get_launch_rank() {
+  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}) {
+    if (const char* value = std::getenv(name)) return std::atoi(value);
+  }
+  return 0;
+}
+
+void Console::print_data(const std::string& text) const {
+  if (is_root_) std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+void Console::print(const std::string& text) const {
+  if (!quiet_) print_data(text);
+}
+
+void Console::print_detail(const std::string& text) const {
+  if (is_root_ && verbosity_ > 0) std::fprintf(stderr, "%s\n", text.c_str());
+}
+
+void Console::print(const Diagnostic& diagnostic) const {
+  if (!is_root_) return;
+  std::string text = format(diagnostic);
+  if (colors_) {
+    const bool is_error = diagnostic.severity == Severity::Error;
+    const std::string word = is_error ? "error:" : diagnostic.severity == Severity::Warning ? "warning:" : "note:";
+    if (const auto at = text.find(word); at != std::string::npos) {
+      text.replace(at, word.size(), (is_error ? "\033[1;31m" : "\033[1;33m") + word + "\033[0m");
+    }
+  }
+  std::fprintf(stderr, "%s\n", text.c_str());
+}
+
+void Console::print_error(const std::string& id, const std::string& what, const std::string& advice) const {
+  Diagnostics one;
+  one.error(id, {}, what, advice);
+  print(one.items().front());
+}
+
+void Console::print_unless_quiet(const Diagnostic& diagnostic) const {
+  if (diagnostic.severity == Severity::Error || !quiet_) print(diagnostic);
+}
+
+void Console::print(const Diagnostics& diagnostics) const {
+  for (const auto& item : diagnostics.items()) print_unless_quiet(item);
+}
+
+void Console::show_progress(const std::string& text) {
+  if (!shows_progress()) return;
+  if (stderr_is_terminal_) {
+    std::fprintf(stderr, "\r\033[K%s", text.c_str());
+    std::fflush(stderr);
+    progress_open_ = true;
+  } else {
+    std::fprintf(stderr, "%s\n", text.c_str());
+  }
+}
+
+void Console::end_progress() {
+  if (progress_open_) std::fputc('\n', stderr);
+  progress_open_ = false;
+}
+
+int report_failure(const Failure& failure, const Console& console) {
+  bool is_mechanism = false;
+  for (const auto& item : failure.items()) {
+    console.print(item);
+    is_mechanism |= item.id == "fe.mechanism";
+  }
+  return is_mechanism ? kInputError : failure.exit_code();
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,62 @@
+#pragma once
+/// \file What a verb prints: messages on stderr, tables and JSON on stdout; silent on every rank but the first.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bough/base/diagnostic.hpp"
+
+namespace bough::cli {
+
+/// Exit codes of the contract.
+enum ExitCode { kSuccess = 0, kInputError = 1, kUsageError = 2, kComputationFailed = 3 };
+
+/// A table of text cells with right-aligned columns; the first row of each column is its heading.
+struct Table {
+  std::vector<std::string> headings;
+  std::vector<std::vector<std::string>> rows;
+  std::string to_text() const;
+};
+
+class Console {
+ public:
+  Console(bool quiet, int verbosity);
+
+  /// Rank of this process as mpirun's environment tells it; 0 outside mpirun.
+  static int get_launch_rank();
+
+  bool is_root() const { return is_root_; }
+  void set_rank(int rank) { is_root_ = rank == 0; }
+
+  /// To stdout, also when quiet: the result that was asked for.
+  void print_data(const std::string& text) const;
+  /// To stdout unless quiet: tables and summaries for a reader.
+  void print(const std::string& text) const;
+  /// To stderr, only with -v.
+  void print_detail(const std::string& text) const;
+  /// One message in the common format, coloured when stderr is a terminal and NO_COLOR is not set.
+  void print(const Diagnostic& diagnostic) const;
+  /// An error that concerns the command line or the program, not a file.
+  void print_error(const std::string& id, const std::string& what, const std::string& advice) const;
+  /// The same, but warnings and notes are left out when quiet.
+  void print_unless_quiet(const Diagnostic& diagnostic) const;
+  /// All of them; warnings and notes are left out when quiet.
+  void print(const Diagnostics& diagnostics) const;
+  /// Overwrites the progress line on a terminal; elsewhere, with -v, prints lines.
+  void show_progress(const std::string& text);
+  void end_progress();
+  bool shows_progress() const { return is_root_ && !quiet_ && (stderr_is_terminal_ || verbosity_ > 0); }
+
+ private:
+  bool quiet_;
+  int verbosity_;
+  bool is_root_;
+  bool stderr_is_terminal_;
+  bool colors_;
+  bool progress_open_ = false;
+};
+
+/// Prints every diagnostic of a Failure and gives the exit code. A mechanism counts as wrong input (docs/adr/0006).
+int report_failure(const Failure& failure, const Console& console);
+
+}  // namespace bough::cli

@@ -1,0 +1,96 @@
+#include "deck_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "bough/base/rotation.hpp"
+#include "console.hpp"
+
+namespace bough::cli {
+
+namespace {
+std::string format_rows(const Eigen::Ref<const Eigen::MatrixXd>& m) {
+  std::string text;
+  for (int i = 0; i < m.rows(); ++i) {
+    text += "  ";
+    for (int j = 0; j < m.cols(); ++j) text += fmt::format(" {:14.6e}", m(i, j) + 0.0);
+    text += '\n';
+  }
+  return text;
+}
+
+/// Inertia about the centre of mass: I_ref - m (|c|² 1 - c cᵀ), c from the reference.
+Matrix3d calc_central_inertia(const records::MassProperties& p) {
+  const Vector3d c = p.cg - p.reference;
+  return p.inertia - p.mass * (c.squaredNorm() * Matrix3d::Identity() - c * c.transpose());
+}
+}  // namespace
+
+std::string format_mass_properties(const records::MassProperties& p) {
+  const Matrix3d central = calc_central_inertia(p);
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> principal(central);
+  std::string text = fmt::format("mass properties about ({:g}, {:g}, {:g}), basic axes\n", p.reference.x(),
+                                 p.reference.y(), p.reference.z());
+  text += "  rigid mass matrix (x y z, rotations x y z)\n" + format_rows(p.rigid_mass);
+  text += fmt::format("  mass {:.8g}\n  centre of mass {:.8g} {:.8g} {:.8g}\n", p.mass, p.cg.x() + 0.0, p.cg.y() + 0.0,
+                      p.cg.z() + 0.0);
+  text += "  inertia about the reference\n" + format_rows(p.inertia);
+  text += "  inertia about the centre of mass\n" + format_rows(central);
+  text += "  principal inertias\n" + format_rows(principal.eigenvalues().transpose());
+  return text;
+}
+
+std::string format_ground_check(const Eigen::Matrix<double, 6, 1>& ground) {
+  static const char* const kNames[] = {"x", "y", "z", "rx", "ry", "rz"};
+  Table table{{"ground check", "strain energy ratio", ""}, {}};
+  for (int i = 0; i < 6; ++i) {
+    table.rows.push_back({kNames[i], fmt::format("{:.3e}", ground[i]), std::abs(ground[i]) < 1e-9 ? "pass" : "FAIL"});
+  }
+  return table.to_text();
+}
+
+std::string format_autospc(const fe::Model& model) {
+  if (model.autospc().empty()) return "AUTOSPC: none\n";
+  Table table{{"AUTOSPC grid", "component", "stiffness ratio"}, {}};
+  for (const auto& entry : model.autospc()) {
+    table.rows.push_back(
+        {std::to_string(entry.node), std::to_string(entry.component), fmt::format("{:.2e}", entry.ratio)});
+  }
+  return table.to_text();
+}
+
+std::string format_card_counts(const records::Deck& deck) {
+  Table table{{"card", "count", ""}, {}};
+  for (const auto& [name, count] : deck.card_counts) {
+    std::string remark;
+    for (const auto& card : deck.unused) {
+      if (card.name != name) continue;
+      const auto at = deck.locate(card.first);
+      remark = fmt::format("skipped, first at {}:{}", at.file, at.line);
+    }
+    table.rows.push_back({name, std::to_string(count), remark});
+  }
+  return table.to_text();
+}
+
+nlohmann::json to_json_list(const Eigen::Ref<const Eigen::VectorXd>& vector) {
+  return std::vector<double>(vector.data(), vector.data() + vector.size());
+}
+
+nlohmann::json to_json(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  auto rows = nlohmann::json::array();
+  for (int i = 0; i < matrix.rows(); ++i) rows.push_back(to_json_list(matrix.row(i).transpose().eval()));
+  return rows;
+}
+
+nlohmann::json to_json(const records::MassProperties& p) {
+  return {{"reference", to_json_list(p.reference)},
+          {"mass", p.mass},
+          {"cg", to_json_list(p.cg)},
+          {"inertia", to_json(Eigen::MatrixXd(p.inertia))},
+          {"inertia_cg", to_json(Eigen::MatrixXd(calc_central_inertia(p)))},
+          {"rigid_mass", to_json(Eigen::MatrixXd(p.rigid_mass))}};
+}
+
+}  // namespace bough::cli

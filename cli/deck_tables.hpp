@@ -1,0 +1,22 @@
+#pragma once
+/// \file The tables that a Nastran user looks for: mass properties, ground check, AUTOSPC, cards.
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "bough/fe/model/model.hpp"
+#include "bough/formats/records/deck.hpp"
+
+namespace bough::cli {
+
+/// Φ_RᵀMΦ_R about the reference, centre of mass, inertia about the reference, about the centre of mass, principal.
+std::string format_mass_properties(const records::MassProperties& properties);
+std::string format_ground_check(const Eigen::Matrix<double, 6, 1>& ground);
+std::string format_autospc(const fe::Model& model);
+std::string format_card_counts(const records::Deck& deck);
+
+nlohmann::json to_json(const records::MassProperties& properties);
+/// Rows of any matrix or the entries of any vector as nested JSON arrays.
+nlohmann::json to_json(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
+nlohmann::json to_json_list(const Eigen::Ref<const Eigen::VectorXd>& vector);
+
+}  // namespace bough::cli

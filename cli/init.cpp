@@ -1,0 +1,75 @@
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "console.hpp"
+#include "options.hpp"
+#include "templates.hpp"
+#include "text_file.hpp"
+
+namespace bough::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct InitOptions {
+  std::string name, output;
+  bool quiet = false, force = false;
+};
+
+const Template& find_template(const std::string& name) {
+  std::vector<std::string> names;
+  std::string list;
+  for (const auto& t : get_templates()) {
+    if (name == t.name || name == t.folder) return t;
+    names.push_back(t.name);
+    list += (list.empty() ? "" : ", ") + std::string(t.name);
+  }
+  const auto nearest = find_nearest(name, names);
+  throw InputError("cli.unknown-template", {}, "no template \"" + name + "\"",
+                   nearest.empty() ? "the templates are " + list : "did you mean \"" + nearest + "\"");
+}
+
+int run_init(const InitOptions& o) {
+  const Console console(o.quiet, 0);
+  if (!console.is_root()) return kSuccess;
+  const auto& chosen = find_template(o.name);
+  const fs::path folder = o.output.empty() ? fs::path(chosen.name) : fs::path(o.output);
+  Diagnostics diagnostics;
+  for (const auto& file : chosen.files) {
+    const auto path = (folder / file.name).string();
+    if (!o.force && fs::exists(path)) {
+      diagnostics.error("cli.output-exists", {path}, "the file exists", "choose another folder with -o, or --force");
+    }
+  }
+  diagnostics.throw_if_errors();
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) {
+    throw ComputationError("cli.write", {folder.string()}, "the folder could not be made: " + failed.message(),
+                           "choose another with -o");
+  }
+  for (const auto& file : chosen.files) {
+    write_text_file((folder / file.name).string(), file.text);
+    console.print((folder / file.name).string() + "\n");
+  }
+  console.print("README.md there tells what it is and how to run it\n");
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_init(CLI::App& app, Action& action) {
+  auto o = std::make_shared<InitOptions>();
+  auto* verb = app.add_subcommand("init", "A ready example to start from: spinup, hub, two-link, free-flyer");
+  verb->add_option("template", o->name, "spinup, hub, two-link or free-flyer")->required();
+  verb->add_option("-o,--output", o->output, "Folder to write into (default: the template's name, here)");
+  verb->add_flag("--force", o->force, "Overwrite files that are there already");
+  verb->add_flag("-q,--quiet", o->quiet, "Print errors only");
+  verb->add_flag("-v,--verbose")->description("Accepted as by every verb; init has nothing more to tell");
+  verb->footer("Example:\n  bough init spinup\n  bough init hub -o my-hub");
+  verb->callback([&action, o] { action = [o] { return run_init(*o); }; });
+}
+
+}  // namespace bough::cli

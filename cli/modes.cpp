@@ -1,0 +1,231 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "bough/fe/assembly.hpp"
+#include "bough/fe/statics.hpp"
+#include "bough/formats/hdf5/files.hpp"
+#include "bough/modal/eigen.hpp"
+#include "console.hpp"
+#include "deck_tables.hpp"
+#include "model_options.hpp"
+#include "options.hpp"
+
+namespace bough::cli {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+struct ModesOptions : CommonOptions {
+  std::string deck;
+  DeckModelOptions model;
+  int number = 0;
+  std::optional<double> max_hz;
+  bool buckling = false;
+};
+
+/// The deck's EIGRL/EIGR of the subcase, overruled by the command line; 10 modes when neither says.
+modal::EigenOptions choose_eigen_options(const ModesOptions& options, const records::Deck& deck, int method) {
+  modal::EigenOptions eigen;
+  eigen.num_modes = 0;
+  for (const auto& card : deck.eigen_methods) {
+    if (method != 0 && card.sid != method) continue;
+    eigen.num_modes = card.num_modes;
+    if (!options.buckling) {
+      eigen.min_hz = card.f1;
+      eigen.max_hz = card.f2;
+    }
+    break;
+  }
+  if (options.max_hz) eigen.max_hz = options.max_hz;
+  if (options.number > 0) eigen.num_modes = options.number;
+  if (eigen.num_modes == 0 && !eigen.max_hz) eigen.num_modes = 10;
+  return eigen;
+}
+
+records::ModesResult make_result(const fe::Model& model, const modal::EigenPairs& pairs, bool buckling) {
+  records::ModesResult result;
+  result.subcase = model.subcase().id;
+  result.mass_properties = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
+  const int n = static_cast<int>(pairs.lambda.size());
+  std::vector<const fe::Node*> grids;
+  for (const auto& node : model.nodes())
+    if (node.num_dofs == 6) grids.push_back(&node);
+  result.node_xyz.resize(static_cast<Eigen::Index>(grids.size()), 3);
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    result.node_id.push_back(grids[k]->id);
+    result.node_xyz.row(static_cast<Eigen::Index>(k)) = grids[k]->x.transpose();
+    result.phi.push_back(pairs.Phi.middleRows(grids[k]->first_gdof, 6));
+  }
+  result.residual = pairs.residual;
+  result.num_rigid_modes = pairs.num_rigid;
+  result.inertia_count = pairs.inertia_count;
+  result.mesh = model.calc_mesh();
+  if (buckling) {
+    result.load_factor = pairs.lambda;
+    return result;
+  }
+  result.eigenvalue = pairs.lambda;
+  result.frequency_hz = pairs.lambda.cwiseMax(0.0).cwiseSqrt() / (2 * M_PI);
+  result.kind.assign(n, records::ModeKind::Normal);
+  result.modal_mass = pairs.Phi.cwiseProduct(fe::calc_mass_times(model, model.mass_kind(), pairs.Phi)).colwise().sum();
+  result.effective_mass = modal::calc_effective_mass(model, pairs.Phi);
+  return result;
+}
+
+std::string format_modes(const records::ModesResult& r) {
+  Table table{{"mode", "eigenvalue", "rad/s", "Hz", "modal mass", "mx %", "my %", "mz %", "sum mx", "sum my", "sum mz",
+               "residual"},
+              {}};
+  Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+  for (int j = 0; j < r.eigenvalue.size(); ++j) {
+    Eigen::RowVector3d share = Eigen::RowVector3d::Zero();
+    for (int a = 0; a < 3; ++a) {
+      const double total = r.mass_properties.rigid_mass(a, a);
+      if (total > 0) share[a] = 100 * r.effective_mass(j, a) / total;
+    }
+    sum += share;
+    const double omega = 2 * M_PI * r.frequency_hz[j];
+    table.rows.push_back({std::to_string(j + 1), fmt::format("{:.8g}", r.eigenvalue[j]), fmt::format("{:.7g}", omega),
+                          fmt::format("{:.7g}", r.frequency_hz[j]), fmt::format("{:.6g}", r.modal_mass[j]),
+                          fmt::format("{:.2f}", share[0]), fmt::format("{:.2f}", share[1]),
+                          fmt::format("{:.2f}", share[2]), fmt::format("{:.2f}", sum[0]), fmt::format("{:.2f}", sum[1]),
+                          fmt::format("{:.2f}", sum[2]), fmt::format("{:.1e}", r.residual[j])});
+  }
+  return table.to_text();
+}
+
+std::string format_buckling(const records::ModesResult& r) {
+  Table table{{"mode", "load factor", "residual"}, {}};
+  for (int j = 0; j < r.load_factor.size(); ++j) {
+    table.rows.push_back(
+        {std::to_string(j + 1), fmt::format("{:.8g}", r.load_factor[j]), fmt::format("{:.1e}", r.residual[j])});
+  }
+  return table.to_text();
+}
+
+std::string format_health(const records::ModesResult& r) {
+  const auto n = r.residual.size();
+  std::string text = fmt::format("rigid-body modes: {}\n", r.num_rigid_modes);
+  // A missed mode is an error of modal (modal.missed-modes); what the count has more is below the range or a copy.
+  if (r.inertia_count >= 0) {
+    text += fmt::format("Sturm count: {} eigenvalues up to the highest, {} in the table: none missed{}\n",
+                        r.inertia_count, n,
+                        r.inertia_count > n ? " (the others are below the range or copies of the last root)" : "");
+  }
+  if (n > 0) text += fmt::format("largest residual: {:.1e}\n", r.residual.maxCoeff());
+  return text;
+}
+
+nlohmann::json make_json(const records::ModesResult& r) {
+  nlohmann::json json{{"subcase", r.subcase},
+                      {"mass_properties", to_json(r.mass_properties)},
+                      {"num_rigid_modes", r.num_rigid_modes},
+                      {"inertia_count", r.inertia_count},
+                      {"residual", to_json_list(r.residual)}};
+  if (r.load_factor.size() > 0) {
+    json["load_factor"] = to_json_list(r.load_factor);
+    return json;
+  }
+  json["eigenvalue"] = to_json_list(r.eigenvalue);
+  json["frequency_hz"] = to_json_list(r.frequency_hz);
+  json["modal_mass"] = to_json_list(r.modal_mass);
+  json["effective_mass"] = to_json(r.effective_mass);
+  return json;
+}
+
+/// SOL 105: the static subcase carries LOAD, the buckling one METHOD and perhaps STATSUB.
+struct BucklingCases {
+  records::Subcase statics, buckling;
+};
+BucklingCases choose_buckling_cases(const records::Deck& deck) {
+  BucklingCases cases;
+  bool found = false;
+  for (const auto& subcase : deck.subcases) {
+    if (subcase.method != 0 || subcase.statsub != 0) cases.buckling = subcase;
+  }
+  for (const auto& subcase : deck.subcases) {
+    const bool is_asked = cases.buckling.statsub != 0 && subcase.id == cases.buckling.statsub;
+    if (subcase.load != 0 && (is_asked || (cases.buckling.statsub == 0 && !found))) {
+      cases.statics = subcase;
+      found = true;
+    }
+  }
+  if (!found) {
+    throw InputError("cli.no-static-load", {deck.files.empty() ? std::string{} : deck.files[0]},
+                     "buckling needs a subcase with LOAD, found none",
+                     "put SUBCASE 1 with LOAD before SUBCASE 2 with METHOD, as in SOL 105");
+  }
+  return cases;
+}
+
+modal::EigenPairs solve(const ModesOptions& options, const records::Deck& deck, fe::Model& model, Console& console,
+                        Diagnostics& diagnostics) {
+  if (!options.buckling) {
+    auto eigen = choose_eigen_options(options, deck, model.subcase().method);
+    eigen.progress = [&](int converged, int wanted) {
+      console.show_progress(fmt::format("modes: {} of {} converged", converged, wanted));
+    };
+    return modal::calc_normal_modes(model, eigen, diagnostics);
+  }
+  const auto cases = choose_buckling_cases(deck);
+  const auto load = model.calc_load(deck, cases.statics.load, diagnostics);
+  diagnostics.throw_if_errors();
+  const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
+  const fe::StaticSolver statics(model, K);
+  const VectorXd u = statics.solve(load);
+  auto eigen = choose_eigen_options(options, deck, cases.buckling.method);
+  return modal::calc_buckling_modes(model, u, eigen, diagnostics);
+}
+
+int run_modes(const ModesOptions& options) {
+  Console console(options.quiet, options.verbosity);
+  demand_file(options.deck);
+  console.set_rank(fe::initialize_petsc().rank);
+  if (!options.output.empty()) check_output(options, options.output);
+
+  Diagnostics diagnostics;
+  const auto deck = read_deck_or_throw(options.deck, options.model.ignore_cards, diagnostics);
+  auto model_options = make_model_options(options.model);
+  if (options.buckling && model_options.subcase == 0) model_options.subcase = choose_buckling_cases(deck).statics.id;
+  auto model = fe::Model::build(deck, model_options, diagnostics);
+  diagnostics.throw_if_errors();
+  const auto pairs = solve(options, deck, model, console, diagnostics);
+  console.end_progress();
+  auto result = make_result(model, pairs, options.buckling);
+  result.source = calc_sources(deck.files);
+  console.print(diagnostics);
+
+  if (options.json) {
+    console.print_data(make_json(result).dump(2) + "\n");
+  } else {
+    console.print((options.buckling ? format_buckling(result) : format_modes(result)) + "\n" + format_health(result));
+  }
+  if (!options.output.empty() && console.is_root()) hdf5::write_modes(result, options.output);
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_modes(CLI::App& app, Action& action) {
+  auto o = std::make_shared<ModesOptions>();
+  auto* verb = app.add_subcommand("modes", "Normal modes (SOL 103) or buckling load factors (SOL 105) of a deck");
+  verb->add_option("deck", o->deck, "Nastran deck")->required();
+  verb->add_option("-n,--number", o->number, "Number of modes (default: the deck's EIGRL, else 10)")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted");
+  verb->add_flag("--buckling", o->buckling, "Load factors of the static subcase instead of normal modes");
+  add_model_options(*verb, o->model);
+  add_common_options(*verb, *o, kOutput | kJson, "Write the modes to this HDF5 file");
+  verb->footer(
+      "Example:\n  bough modes boom.bdf --number 6 -o boom-modes.h5\n  bough modes column.bdf --buckling\n"
+      "  mpirun -n 2 bough modes boom.bdf");
+  verb->callback([&action, o] { action = [o] { return run_modes(*o); }; });
+}
+
+}  // namespace bough::cli

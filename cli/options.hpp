@@ -1,0 +1,43 @@
+#pragma once
+/// \file Options that several verbs share, declared once.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "bough/formats/records/body_spec.hpp"
+#include "bough/formats/records/deck.hpp"
+#include "verbs.hpp"
+
+namespace bough::cli {
+
+struct CommonOptions {
+  std::string output;
+  bool quiet = false;
+  int verbosity = 0;
+  bool json = false;
+  bool no_clobber = false;
+};
+
+enum Offers : unsigned { kOutput = 1, kJson = 2 };
+
+/// Adds -q, -v and, as `offers` says, -o/--output with --no-clobber and --force, and --json.
+void add_common_options(CLI::App& verb, CommonOptions& options, unsigned offers, const std::string& output_help = {});
+
+/// Throws InputError("cli.output-exists") when the file is there and --no-clobber was given.
+void check_output(const CommonOptions& options, const std::string& path);
+
+/// "fixed" when the text ends so, case aside: ".h5", ".toml".
+bool has_suffix(const std::string& path, const std::string& suffix);
+
+/// Reads a deck, throws InputError with all its errors; warnings stay in `diagnostics`.
+records::Deck read_deck_or_throw(const std::string& path, const std::vector<std::string>& ignore_cards,
+                                 Diagnostics& diagnostics);
+/// (file name, SHA-256) of each.
+std::vector<std::pair<std::string, std::string>> calc_sources(const std::vector<std::string>& files);
+
+/// Throws InputError("cli.no-file") when the path is no readable file.
+void demand_file(const std::string& path);
+
+}  // namespace bough::cli

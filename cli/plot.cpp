@@ -1,0 +1,119 @@
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+
+#include "bough/formats/report/svg_plot.hpp"
+#include "channels.hpp"
+#include "console.hpp"
+#include "options.hpp"
+#include "text_file.hpp"
+
+namespace bough::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct PlotOptions : CommonOptions {
+  std::vector<std::string> files;
+  std::vector<std::string> sensors;
+  std::vector<std::string> labels;
+  std::vector<std::string> points;
+  std::string title, x_label = "time", y_label;
+  double y_min = 0, y_max = 0;
+};
+
+/// Two numeric columns of a CSV file; lines that start with # or a letter are skipped.
+report::Curve read_points(const std::string& path) {
+  demand_file(path);
+  std::ifstream in(path);
+  std::vector<double> x, y;
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    if (line.empty() || line[0] == '#' || std::isalpha(static_cast<unsigned char>(line[0]))) continue;
+    char* end = nullptr;
+    const double a = std::strtod(line.c_str(), &end);
+    char* last = nullptr;
+    const double b = *end == ',' ? std::strtod(end + 1, &last) : 0;
+    if (end == line.c_str() || *end != ',' || last == end + 1) {
+      throw InputError("cli.bad-points", {path, number}, "expected two numbers separated by a comma",
+                       "write x,y on each line");
+    }
+    x.push_back(a);
+    y.push_back(b);
+  }
+  const auto n = static_cast<Eigen::Index>(x.size());
+  return {fs::path(path).stem().string(), Eigen::Map<Eigen::VectorXd>(x.data(), n),
+          Eigen::Map<Eigen::VectorXd>(y.data(), n), true};
+}
+
+int run_plot(const PlotOptions& o) {
+  Console console(o.quiet, o.verbosity);
+  if (!console.is_root()) return kSuccess;
+  report::Plot plot;
+  plot.title = o.title.empty() ? o.sensors.front() : o.title;
+  plot.x_label = o.x_label;
+  plot.y_label = o.y_label.empty() ? o.sensors.front() : o.y_label;
+  plot.y_min = o.y_min;
+  plot.y_max = o.y_max;
+  for (const auto& file : o.files) {
+    demand_file(file);
+    const auto results = hdf5::read_results(file);
+    for (const auto& sensor : o.sensors) {
+      for (auto& column : choose_columns(results, file, sensor)) {
+        const bool one_curve_a_file = o.sensors.size() == 1 && sensor.find(':') != std::string::npos;
+        std::string label = o.files.size() > 1 ? fs::path(file).stem().string() : "";
+        if (o.files.size() == 1 || !one_curve_a_file) label += (label.empty() ? "" : " ") + column.name;
+        if (plot.curves.size() < o.labels.size()) label = o.labels[plot.curves.size()];
+        plot.curves.push_back({label, results.time, std::move(column.values), false});
+      }
+    }
+  }
+  for (const auto& path : o.points) {
+    plot.curves.push_back(read_points(path));
+    if (plot.curves.size() <= o.labels.size()) plot.curves.back().label = o.labels[plot.curves.size() - 1];
+  }
+  std::string output = o.output;
+  if (output.empty()) {
+    output = o.sensors.front() + ".svg";
+    for (char& c : output)
+      if (c == '/' || c == ':') c = '_';
+  }
+  check_output(o, output);
+  write_text_file(output, report::draw_svg(plot));
+  console.print("written: " + output + "\n");
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_plot(CLI::App& app, Action& action) {
+  auto o = std::make_shared<PlotOptions>();
+  auto* verb = app.add_subcommand("plot", "Curves of one or several results files against time, as an SVG picture");
+  verb->add_option("files", o->files, "Results HDF5 files")->required();
+  verb->add_option("--sensor", o->sensors,
+                   "Sensor NAME or NAME:component, or a path such as /energy/strain; may be repeated")
+      ->required()
+      ->allow_extra_args(false);
+  verb->add_option("--points", o->points, "CSV file of x,y drawn as markers: reference points; may be repeated")
+      ->allow_extra_args(false);
+  verb->add_option("--label", o->labels, "Label of each curve in turn, then of each --points; may be repeated")
+      ->allow_extra_args(false);
+  verb->add_option("--title", o->title, "Title");
+  verb->add_option("--x-label", o->x_label, "Label of the time axis")->capture_default_str();
+  verb->add_option("--y-label", o->y_label, "Label of the other axis");
+  auto* low = verb->add_option("--y-min", o->y_min, "Lower end of the y axis; curves are clipped");
+  auto* high = verb->add_option("--y-max", o->y_max, "Upper end of the y axis");
+  low->needs(high);
+  high->needs(low);
+  add_common_options(*verb, *o, kOutput, "SVG file (default: the sensor's name with .svg, here)");
+  verb->footer(
+      "Example:\n  bough plot spinup.h5 --sensor tip_deflection:y -o tip.svg\n"
+      "  bough plot spinup.h5 spinup-no-kg.h5 --sensor tip_deflection:y --y-min -1.2 --y-max 0.2 -o tip.svg");
+  verb->callback([&action, o] { action = [o] { return run_plot(*o); }; });
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,31 @@
+#pragma once
+/// \file A sink that stands before the writer and adds what the solver cannot know: the input files with their SHA-256.
+#include <string>
+#include <vector>
+
+#include "bough/formats/records/results.hpp"
+
+namespace bough::cli {
+
+class ProvenanceSink final : public records::ResultSink {
+ public:
+  /// `inner` must outlive the sink. `source`: (file name, SHA-256).
+  ProvenanceSink(records::ResultSink& inner, std::vector<std::pair<std::string, std::string>> source)
+      : inner_(inner), source_(std::move(source)) {}
+
+  void begin(const records::ResultsHeader& header) override {
+    auto with_source = header;
+    with_source.source = source_;
+    inner_.begin(with_source);
+  }
+  void write_sample(const Eigen::Ref<const Eigen::VectorXd>& sample) override { inner_.write_sample(sample); }
+  void write_event(const records::EventRecord& event) override { inner_.write_event(event); }
+  void write_checkpoint(const records::Checkpoint& checkpoint) override { inner_.write_checkpoint(checkpoint); }
+  void end(bool completed, const std::string& reason) override { inner_.end(completed, reason); }
+
+ private:
+  records::ResultSink& inner_;
+  std::vector<std::pair<std::string, std::string>> source_;
+};
+
+}  // namespace bough::cli

@@ -1,0 +1,43 @@
+#include "system_files.hpp"
+
+#include <filesystem>
+
+#include "bough/formats/hdf5/files.hpp"
+#include "bough/formats/toml/specs.hpp"
+#include "options.hpp"
+
+namespace bough::cli {
+
+namespace fs = std::filesystem;
+
+std::string resolve_beside(const std::string& from_file, const std::string& path) {
+  if (from_file.empty() || fs::path(path).is_absolute()) return path;
+  return (fs::path(from_file).parent_path() / path).string();
+}
+
+LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics) {
+  demand_file(path);
+  auto spec = toml_files::read_system_spec(path, diagnostics);
+  std::map<std::string, records::FlexBody> flex;
+  std::map<std::string, std::string> flex_path;
+  for (const auto& body : spec.bodies) {
+    if (body.file.empty() || flex.count(body.file)) continue;
+    const auto file = resolve_beside(path, body.file);
+    try {
+      flex[body.file] = hdf5::read_flex_body(file);
+      flex_path[body.file] = file;
+    } catch (const InputError& error) {
+      for (auto item : error.items()) {
+        item.advice += (item.advice.empty() ? "" : "; ") + std::string("named by body \"") + body.name + "\" at " +
+                       path + (body.at.line > 0 ? ":" + std::to_string(body.at.line) : "");
+        diagnostics.add(std::move(item));
+      }
+    }
+  }
+  diagnostics.throw_if_errors();
+  auto system = solver::System::build(spec, flex, diagnostics);
+  diagnostics.throw_if_errors();
+  return {std::move(spec), std::move(flex), std::move(flex_path), std::move(system)};
+}
+
+}  // namespace bough::cli

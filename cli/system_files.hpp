@@ -1,0 +1,24 @@
+#pragma once
+/// \file A system file with the bodies it names, ready to run; shared by check and run.
+#include <map>
+#include <string>
+
+#include "bough/formats/records/system_spec.hpp"
+#include "bough/solver/system/system.hpp"
+
+namespace bough::cli {
+
+struct LoadedSystem {
+  records::SystemSpec spec;
+  std::map<std::string, records::FlexBody> flex;  ///< by the file name as written in the system file
+  std::map<std::string, std::string> flex_path;   ///< the same names with the path they were read from
+  solver::System system;
+};
+
+/// Reads and builds; throws InputError with every error found. Body files are relative to the system file's folder.
+LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics);
+
+/// path itself when absolute or when `from_file` is empty, else relative to the folder of from_file.
+std::string resolve_beside(const std::string& from_file, const std::string& path);
+
+}  // namespace bough::cli

@@ -1,0 +1,30 @@
+#include "text_file.hpp"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "bough/base/diagnostic.hpp"
+
+namespace bough::cli {
+
+void write_text_file(const std::string& path, const std::string& text) {
+  const std::string beside = path + ".part" + std::to_string(getpid());
+  std::error_code failed;
+  {
+    std::ofstream out(beside, std::ios::binary);
+    out << text;
+    out.flush();
+    if (!out) failed = std::make_error_code(std::errc::io_error);
+  }
+  if (!failed) std::filesystem::rename(beside, path, failed);
+  if (failed) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    throw ComputationError("cli.write", {path}, "the file could not be written: " + failed.message(),
+                           "check the folder, its permissions and the space left");
+  }
+}
+
+}  // namespace bough::cli

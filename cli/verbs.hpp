@@ -1,0 +1,22 @@
+#pragma once
+/// \file The list of verbs. Each adds its subcommand and sets `action` when the command line names it.
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace bough::cli {
+
+using Action = std::function<int()>;
+
+void add_check(CLI::App& app, Action& action);
+void add_modes(CLI::App& app, Action& action);
+void add_reduce(CLI::App& app, Action& action);
+void add_run(CLI::App& app, Action& action);
+void add_export(CLI::App& app, Action& action);
+void add_plot(CLI::App& app, Action& action);
+void add_info(CLI::App& app, Action& action);
+void add_init(CLI::App& app, Action& action);
+
+}  // namespace bough::cli

@@ -1,0 +1,175 @@
+"""Bad input: a clear error with its place, exit code 1, and every error of the file at once."""
+import os
+import unittest
+
+from support import BEAM, ProgramTest
+
+SYSTEM = """[[body]]
+name = "a"
+mass = 1.0
+inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+
+[[body]]
+name = "b"
+mass = 1.0
+inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+
+[[hinge]]
+name = "ha"
+type = "revolute"
+parent = "ground"
+child = "a"
+axis = [0.0, 0.0, 1.0]
+
+[[hinge]]
+name = "hb"
+type = "revolute"
+parent = "a"
+child = "b"
+axis = [0.0, 0.0, 1.0]
+
+[simulation]
+duration = 0.1
+output_step = 0.01
+"""
+
+
+class BadDeck(ProgramTest):
+    def fails_with(self, text, *says):
+        self.write("deck.bdf", text)
+        for call in [["check", "deck.bdf"], ["modes", "deck.bdf"], ["reduce", "deck.bdf", "--modes", "2", "-o", "b.h5"]]:
+            with self.subTest(call[0]):
+                result = self.fails(1, *call, says=says)
+                self.assertRegex(result.stderr, r"(?m)^deck.bdf:\d+: error: ")
+        return result
+
+    def test_missing_grid(self):
+        self.fails_with(BEAM.replace("CBAR,2,1,2,3", "CBAR,2,1,2,99"), "99")
+
+    def test_undefined_property(self):
+        self.fails_with(BEAM.replace("CBAR,2,1,2,3", "CBAR,2,77,2,3"), "77")
+
+    def test_undefined_material(self):
+        self.fails_with(BEAM.replace("PBAR,1,1,", "PBAR,1,88,"), "88")
+
+    def test_zero_length_beam(self):
+        self.fails_with(BEAM.replace("GRID,3,,2.,0.,0.", "GRID,3,,1.,0.,0."), "length")
+
+    def test_cyclic_coordinate_systems(self):
+        self.fails_with(BEAM.replace("GRID,3,,2.", "CORD2R,5,6,0.,0.,0.,0.,0.,1.,+\n+,1.,0.,0.\n"
+                                     "CORD2R,6,5,0.,0.,0.,0.,0.,1.,+\n+,1.,0.,0.\nGRID,3,5,2."), "cycl")
+
+    def test_cyclic_include(self):
+        self.write("part.bdf", "INCLUDE 'deck.bdf'\n")
+        self.write("deck.bdf", BEAM.replace("ENDDATA", "INCLUDE 'part.bdf'\nENDDATA"))
+        result = self.fails(1, "check", "deck.bdf", says=["INCLUDE"])
+        self.assertRegex(result.stderr, r"(deck|part)\.bdf:\d+: error: ")
+
+    def test_all_errors_at_once(self):
+        result = self.fails_with(BEAM.replace("CBAR,2,1,2,3", "CBAR,2,77,2,99").replace("CBAR,1,1,1,2", "CBAR,1,66,1,2"),
+                                 "66", "77", "99")
+        self.assertGreaterEqual(result.stderr.count("error:"), 3)
+
+    def test_a_mechanism_names_its_dofs(self):
+        # Held at grid 1 in translation only: three rotations about it are free.
+        self.write("deck.bdf", BEAM.replace("SPC1,1,123456,1", "SPC1,1,123,1"))
+        self.fails(1, "reduce", "deck.bdf", "--modes", "2", "-o", "b.h5", error="fe.mechanism")
+        self.assertFalse(os.path.exists(self.path("b.h5")))
+
+    def test_options_of_reduce(self):
+        self.write("deck.bdf", BEAM)
+        self.fails(1, "reduce", "deck.bdf", error="cli.no-modes")
+        self.fails(1, "reduce", "deck.bdf", "--modes", "2", "--load", "3", error="cli.bad-load")
+        self.fails(1, "modes", "deck.bdf", "--buckling", error="cli.no-static-load")
+        self.write("body.toml", '[body]\nname = "b"\ndeck = "deck.bdf"\ninterface = [99]\n[body.modes]\nnumber = 2\n')
+        self.fails(1, "check", "body.toml", says=["99"], error="cli.unknown-interface")
+
+
+class BadSystem(ProgramTest):
+    def fails_with(self, text, *says):
+        self.write("system.toml", text)
+        for call in [["check", "system.toml"], ["run", "system.toml", "-o", "out.h5"]]:
+            with self.subTest(call[0]):
+                result = self.fails(1, *call, says=says)
+        self.assertFalse(os.path.exists(self.path("out.h5")))
+        return result
+
+    def test_the_system_itself_is_good(self):
+        self.write("system.toml", SYSTEM)
+        self.bough("check", "system.toml")
+        self.bough("run", "system.toml", "-o", "out.h5")
+
+    def test_hinge_on_an_unknown_node(self):
+        result = self.fails_with(SYSTEM.replace('parent = "a"', 'parent = "a"\nparent_node = 17'), "17", "hb")
+        self.assertRegex(result.stderr, r"(?m)^system.toml:\d+(:\d+)?: error: ")
+
+    def test_loop_in_the_tree(self):
+        self.fails_with(SYSTEM.replace('parent = "ground"', 'parent = "b"'), "loop")
+
+    def test_nan_in_a_table(self):
+        table = '[[function]]\nname = "f"\ntype = "table"\nx = [0.0, 1.0]\ny = [0.0, nan]\n[simulation]'
+        self.fails_with(SYSTEM.replace("[simulation]", table), "nan")
+
+    def test_unknown_key_with_the_nearest_match(self):
+        self.fails_with(SYSTEM.replace("duration =", "durration ="), "durration", "duration")
+
+    def test_unknown_body(self):
+        self.fails_with(SYSTEM.replace('child = "b"', 'child = "bb"'), "bb")
+
+    def test_missing_body_file(self):
+        self.fails_with(SYSTEM.replace('mass = 1.0\n', 'file = "none.h5"\n', 1), "none.h5")
+
+    def test_truncated_body_file(self):
+        self.write("deck.bdf", BEAM)
+        self.bough("reduce", "deck.bdf", "--modes", "2", "-o", "whole.h5")
+        with open(self.path("whole.h5"), "rb") as f:
+            whole = f.read()
+        with open(self.path("cut.h5"), "wb") as f:
+            f.write(whole[:len(whole) // 2])
+        self.write("system.toml", '[[body]]\nname = "a"\nfile = "cut.h5"\n[[hinge]]\nname = "h"\ntype = "fixed"\nchild = "a"\n'
+                   '[simulation]\nduration = 0.1\n')
+        for call in [["check", "cut.h5"], ["check", "system.toml"], ["run", "system.toml"], ["info", "cut.h5"]]:
+            with self.subTest(" ".join(call)):
+                self.fails(1, *call, says=["cut.h5"])
+
+    def test_wrong_kind_of_hdf5_file(self):
+        self.write("system.toml", SYSTEM)
+        self.bough("run", "system.toml", "-o", "out.h5")
+        self.write("other.toml", '[[body]]\nname = "a"\nfile = "out.h5"\n[[hinge]]\nname = "h"\ntype = "fixed"\nchild = "a"\n'
+                   '[simulation]\nduration = 0.1\n')
+        self.fails(1, "run", "other.toml", says=["out.h5"])
+
+    def test_results_over_the_input(self):
+        self.write("system.toml", SYSTEM)
+        self.fails(1, "run", "system.toml", "-o", "system.toml", error="cli.output-is-input")
+
+    def test_channels(self):
+        self.write("system.toml", SYSTEM)
+        self.bough("run", "system.toml", "-o", "out.h5")
+        self.fails(1, "plot", "out.h5", "--sensor", "nothing", error="cli.unknown-channel")
+        self.fails(1, "export", "out.h5", "--to", "csv", "--channel", "/hinges/ha/q:x", error="cli.unknown-channel")
+        self.write("points.csv", "1;2\n")
+        self.fails(1, "plot", "out.h5", "--sensor", "/hinges/ha/q", "--points", "points.csv", error="cli.bad-points")
+
+
+class BadHdf5(ProgramTest):
+    def test_foreign_and_damaged_files(self):
+        import h5py
+        import numpy as np
+        with h5py.File(self.path("foreign.h5"), "w") as f:
+            f["/x"] = np.arange(3.0)
+        self.fails(1, "check", "foreign.h5", error="cli.unknown-format")
+        self.write("deck.bdf", BEAM)
+        self.bough("reduce", "deck.bdf", "--modes", "2", "-o", "body.h5")
+        with h5py.File(self.path("body.h5"), "a") as f:
+            f["/stiffening/kg_inertial"][0, 0, 1] = 1e9
+        self.fails(1, "check", "body.h5", error="cli.bad-body")
+        self.write("system.toml", SYSTEM)
+        self.bough("run", "system.toml", "-o", "out.h5")
+        with h5py.File(self.path("out.h5"), "a") as f:
+            f["/hinges/ha/q"][3] = np.nan
+        self.fails(1, "check", "out.h5", error="cli.not-finite")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,98 @@
+"""Exit codes, help, versions, messages: what every verb owes."""
+import json
+import os
+import subprocess
+import time
+import unittest
+
+from support import BEAM, PROGRAM, VERBS, ProgramTest
+
+
+class Usage(ProgramTest):
+    def test_help_of_the_program_lists_the_verbs_that_exist_and_no_other(self):
+        text = self.bough("--help").stdout
+        for verb in VERBS:
+            self.assertRegex(text, rf"(?m)^  {verb}\b")
+        for verb in ["static", "matrices", "batch", "linearize", "edit", "compare"]:
+            self.assertNotRegex(text, rf"(?m)^  {verb}\b")
+
+    def test_each_verb_explains_itself_with_an_example(self):
+        for verb in VERBS:
+            with self.subTest(verb):
+                text = self.bough(verb, "--help").stdout
+                self.assertIn("Example:", text)
+                self.assertIn(f"bough {verb} ", text)
+                self.assertIn("--quiet", text)
+
+    def test_unknown_verb_is_a_usage_error_with_the_nearest_match(self):
+        self.fails(2, "reduse", "x.toml", says=['did you mean "reduce"'], error="cli.unknown-verb")
+        self.fails(2, "linearize", "x.toml", error="cli.unknown-verb")
+
+    def test_usage_errors(self):
+        self.fails(2, error="cli.usage")
+        self.fails(2, "run", error="cli.usage")
+        self.fails(2, "run", "x.toml", "--nonsense", says=["--nonsense", "bough run --help"], error="cli.usage")
+        self.fails(2, "export", "x.h5", "--to", "nonsense", error="cli.usage")
+        self.fails(2, "modes", "x.bdf", "--number", "minus", error="cli.usage")
+
+    def test_version_names_the_libraries(self):
+        text = self.bough("--version").stdout
+        for library in ["bough", "PETSc", "SLEPc", "HDF5", "SUNDIALS", "Eigen"]:
+            self.assertRegex(text, rf"(?m)^{library} \d+\.\d+")
+
+    def test_missing_file_is_wrong_input(self):
+        for call in [["check", "no.bdf"], ["modes", "no.bdf"], ["reduce", "no.toml"], ["run", "no.toml"],
+                     ["export", "no.h5", "--to", "csv"], ["plot", "no.h5", "--sensor", "x"], ["info", "no.h5"]]:
+            with self.subTest(call[0]):
+                self.fails(1, *call, says=[call[1]], error="cli.no-file")
+
+    def test_data_on_stdout_and_messages_on_stderr(self):
+        self.write("beam.bdf", BEAM)
+        result = self.bough("modes", "beam.bdf", "--json")
+        self.assertEqual(len(json.loads(result.stdout)["frequency_hz"]), 3)
+        quiet = self.bough("modes", "beam.bdf", "-q")
+        self.assertEqual(quiet.stdout + quiet.stderr, "")
+
+    def test_no_color_codes_when_not_a_terminal(self):
+        self.assertNotIn("\033", self.bough("run", "no.toml", code=1).stderr)
+
+    def test_verbs_without_finite_elements_answer_at_once(self):
+        self.bough("--help")
+        best = min(self.clock("--help") for _ in range(5))
+        # Not a benchmark: it fails when a verb starts PETSc and MPI for nothing, which takes several times as long.
+        self.assertLess(best, 0.5)
+
+    def clock(self, *arguments):
+        start = time.perf_counter()
+        subprocess.run([PROGRAM, *arguments], stdout=subprocess.DEVNULL, check=True)
+        return time.perf_counter() - start
+
+
+class Output(ProgramTest):
+    def test_output_is_overwritten_unless_told_otherwise(self):
+        self.write("beam.bdf", BEAM)
+        self.bough("modes", "beam.bdf", "-o", "m.h5")
+        self.bough("modes", "beam.bdf", "-o", "m.h5")
+        self.fails(1, "modes", "beam.bdf", "-o", "m.h5", "--no-clobber", error="cli.output-exists")
+        self.bough("modes", "beam.bdf", "-o", "m.h5", "--force")
+
+    def test_a_failed_verb_leaves_no_output_file(self):
+        self.write("beam.bdf", BEAM.replace("CBAR,2,1,2,3", "CBAR,2,1,2,99"))
+        self.bough("reduce", "beam.bdf", "--modes", "2", "-o", "b.h5", code=1)
+        self.assertEqual(os.listdir(self.folder), ["beam.bdf"])
+
+    def test_a_folder_that_cannot_be_written_is_reported(self):
+        self.bough("init", "spinup")
+        self.fails(3, "init", "hub", "-o", "spinup/README.md/x", error="cli.write")
+
+    def test_init_copies_each_template_and_refuses_to_overwrite(self):
+        for name in ["spinup", "hub", "two-link", "free-flyer"]:
+            self.bough("init", name)
+            self.assertIn("README.md", os.listdir(self.path(name)))
+        self.fails(1, "init", "spinup", error="cli.output-exists")
+        self.bough("init", "spinup", "--force")
+        self.fails(1, "init", "spinnup", says=['did you mean "spinup"'], error="cli.unknown-template")
+
+
+if __name__ == "__main__":
+    unittest.main()

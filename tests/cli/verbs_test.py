@@ -1,0 +1,179 @@
+"""Each verb does its work on a small model."""
+import csv
+import io
+import json
+import math
+import os
+import signal
+import subprocess
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+from support import BEAM, PROGRAM, ProgramTest
+
+# EI = 700 both ways, 40 bars of a pinned column, 10 m, compressed by 1 N: the load factor is Euler's load in N.
+def make_column():
+    lines = ["SOL 105", "CEND", "SPC = 1", "SUBCASE 1", "LOAD = 4", "SUBCASE 2", "METHOD = 5", "STATSUB = 1", "BEGIN BULK",
+             "EIGRL,5,,,1", "GRDSET,,,,,,,345", "SPC1,1,12,1", "SPC1,1,2,41", "FORCE,4,41,,1.,-1.,0.,0.",
+             "PBAR,1,1,1.-3,1.-8,1.-8,1.-8", "MAT1,1,7.+10,,.3,2700."]
+    lines += [f"GRID,{i + 1},,{0.25 * i},0.,0." for i in range(41)]
+    lines += [f"CBAR,{i + 1},1,{i + 1},{i + 2},0.,1.,0." for i in range(40)]
+    return "\n".join(lines + ["ENDDATA", ""])
+
+
+SPRING = """[[body]]
+name = "bob"
+mass = 2.0
+inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+
+[[hinge]]
+name = "slide"
+type = "prismatic"
+child = "bob"
+axis = [1.0, 0.0, 0.0]
+stiffness = [8.0]
+position = [0.5]
+
+[[sensor]]
+name = "where"
+type = "position"
+body = "bob"
+
+[simulation]
+duration = DURATION
+output_step = 0.01
+relative_tolerance = 1e-10
+absolute_tolerance = 1e-12
+"""
+
+
+# The bars alone have no inertia about their own line.
+BULKY = BEAM.replace("ENDDATA", "CONM2,9,3,,0.1,,,,,+\n+,0.01,,0.01,,,0.01\nENDDATA")
+
+
+class Check(ProgramTest):
+    def test_deck_summary(self):
+        self.write("beam.bdf", BEAM.replace("ENDDATA", "DMIG,X,0,6,1,0\nENDDATA").replace("DMIG,X,0,6,1,0", "PLOTEL,9,1,3"))
+        text = self.bough("check", "beam.bdf").stdout
+        for words in ["CBAR", "PLOTEL", "skipped", "mass properties", "centre of mass", "ground check", "AUTOSPC"]:
+            self.assertIn(words, text)
+        self.assertNotIn("FAIL", text)
+        data = json.loads(self.bough("check", "beam.bdf", "--json").stdout)
+        self.assertAlmostEqual(data["mass_properties"]["mass"], 2 * 1e-4 * 2700, places=12)
+        self.assertAlmostEqual(data["mass_properties"]["cg"][0], 1.0, places=12)
+        self.assertEqual(data["cards"]["GRID"], 3)
+        self.assertLess(max(map(abs, data["ground_check"])), 1e-10)
+
+    def test_body_system_and_hdf5(self):
+        self.write("beam.bdf", BEAM)
+        self.write("body.toml", '[body]\nname = "b"\ndeck = "beam.bdf"\n[body.modes]\nnumber = 2\n[body.output]\nfile = "b.h5"\n')
+        self.assertEqual(json.loads(self.bough("check", "body.toml", "--json").stdout)["kind"], "body")
+        self.bough("reduce", "body.toml")
+        self.assertEqual(json.loads(self.bough("check", "b.h5", "--json").stdout)["num_modes"], 2)
+        self.bough("modes", "beam.bdf", "-o", "m.h5")
+        self.assertEqual(json.loads(self.bough("check", "m.h5", "--json").stdout)["kind"], "bough-modes")
+        self.write("system.toml", SPRING.replace("DURATION", "0.1"))
+        self.assertEqual(json.loads(self.bough("check", "system.toml", "--json").stdout)["num_speeds"], 1)
+        self.bough("run", "system.toml", "-o", "r.h5")
+        self.assertTrue(json.loads(self.bough("check", "r.h5", "--json").stdout)["completed"])
+
+
+class Modes(ProgramTest):
+    def test_table_and_file(self):
+        self.write("beam.bdf", BEAM)
+        text = self.bough("modes", "beam.bdf", "--mass", "consistent", "-o", "m.h5").stdout
+        for words in ["eigenvalue", "modal mass", "sum mz", "residual", "rigid-body modes: 0", "none missed"]:
+            self.assertIn(words, text)
+        data = json.loads(self.bough("modes", "beam.bdf", "--mass", "consistent", "--json").stdout)
+        with h5py.File(self.path("m.h5")) as f:
+            np.testing.assert_allclose(f["/modes/frequency_hz"][:], data["frequency_hz"], rtol=1e-12)
+            self.assertEqual(f["/modes/phi"].shape, (3, 6, 3))
+            self.assertEqual(f["/effective_mass"].shape, (3, 6))
+
+    def test_number_overrules_the_deck(self):
+        self.write("beam.bdf", BEAM)
+        self.assertEqual(len(json.loads(self.bough("modes", "beam.bdf", "-n", 5, "--json").stdout)["eigenvalue"]), 5)
+
+    def test_free_free_finds_six_rigid_modes(self):
+        self.write("beam.bdf", BULKY)
+        data = json.loads(self.bough("modes", "beam.bdf", "--free", "-n", 8, "--json", "--mass", "consistent").stdout)
+        self.assertEqual(data["num_rigid_modes"], 6)
+
+    def test_buckling_load_of_a_column(self):
+        self.write("column.bdf", make_column())
+        data = json.loads(self.bough("modes", "column.bdf", "--buckling", "--json").stdout)
+        euler = math.pi**2 * 700 / 10**2
+        self.assertAlmostEqual(data["load_factor"][0] / euler, 1, delta=1e-5)
+
+
+class Reduce(ProgramTest):
+    def test_a_deck_and_the_same_body_file_give_the_same_body(self):
+        self.write("beam.bdf", BEAM)
+        self.write("body.toml", '[body]\nname = "beam"\ndeck = "beam.bdf"\ninterface = [3]\n[body.modes]\nnumber = 2\n')
+        self.bough("reduce", "body.toml", "-o", "a.h5")
+        self.bough("reduce", "beam.bdf", "--modes", 2, "--interface", 3, "-o", "b.h5")
+        with h5py.File(self.path("a.h5")) as a, h5py.File(self.path("b.h5")) as b:
+            for path in ["/modes/eigenvalue", "/modes/phi", "/stiffening/kg_inertial", "/stiffening/kg_external", "/rigid/inertia"]:
+                np.testing.assert_array_equal(a[path][:], b[path][:])
+            self.assertEqual(a.attrs["format"], "bough-flexbody")
+
+    def test_free_body_with_loads_and_full(self):
+        self.write("beam.bdf", BULKY)
+        self.bough("reduce", "beam.bdf", "--free", "--modes", 3, "--load", "tip=3:13", "--full", "--mass", "consistent",
+                   "--origin", "1", "0", "0", "-o", "b.h5")
+        with h5py.File(self.path("b.h5")) as f:
+            self.assertEqual(f["/full/phi"].shape, (18, 3))
+            self.assertEqual(f["/stiffening/kg_external"].shape[1:], (3, 3))
+            # 0.54 kg of bars about x = 1, where the origin is now, and 0.1 kg at x = 2
+            np.testing.assert_allclose(f["/rigid/cg"][:], [0.1 / 0.64, 0, 0], atol=1e-12)
+
+
+class Run(ProgramTest):
+    def test_oscillator_and_its_exports(self):
+        self.write("spring.toml", SPRING.replace("DURATION", "3.0"))
+        self.bough("run", "spring.toml")
+        with h5py.File(self.path("spring.h5")) as f:
+            t, x = f["/time"][:], f["/sensors/where"][:, 0]
+            self.assertEqual(f.attrs["format"], "bough-results")
+        np.testing.assert_allclose(x, 0.5 * np.cos(2 * t), atol=1e-7)
+        rows = list(csv.reader(io.StringIO(self.bough("export", "spring.h5", "--to", "csv", "--channel", "where:x").stdout)))
+        self.assertEqual(rows[0], ["time", "sensors/where:x"])
+        np.testing.assert_array_equal(np.array(rows[1:], dtype=float)[:, 1], x)
+        everything = self.bough("export", "spring.h5", "--to", "csv").stdout.splitlines()[0]
+        self.assertIn("bodies/bob/quaternion:w", everything)
+        self.bough("plot", "spring.h5", "--sensor", "where:x", "-o", "where.svg")
+        with open(self.path("where.svg")) as f:
+            self.assertIn("<svg", f.read())
+        self.assertIn("/sensors/where", self.bough("info", "spring.h5").stdout)
+        self.assertTrue(json.loads(self.bough("info", "spring.h5", "--json").stdout)["objects"])
+
+    def test_a_signal_leaves_a_file_from_which_the_run_resumes_to_the_same_end(self):
+        self.write("spring.toml", SPRING.replace("DURATION", "400.0"))
+        self.bough("run", "spring.toml", "-o", "whole.h5")
+        process = subprocess.Popen([PROGRAM, "run", "spring.toml", "-o", "parts.h5"], cwd=self.folder,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        while not os.path.exists(self.path("parts.h5")) or os.path.getsize(self.path("parts.h5")) < 100000:
+            if process.poll() is not None:
+                break
+            time.sleep(0.002)
+        process.send_signal(signal.SIGTERM)
+        _, stderr = process.communicate(timeout=60)
+        if process.returncode == 0:
+            self.skipTest("the run was over before the signal came")
+        self.assertEqual(process.returncode, 3)
+        self.assertIn("cli.interrupted", stderr)
+        with h5py.File(self.path("parts.h5")) as f:
+            self.assertLess(f["/time"][-1], 400)
+        self.assertIn("cli.incomplete-run", self.bough("check", "parts.h5").stderr)
+        self.bough("run", "spring.toml", "-o", "parts.h5", "--resume")
+        with h5py.File(self.path("parts.h5")) as a, h5py.File(self.path("whole.h5")) as b:
+            self.assertEqual(a["/time"].shape, b["/time"].shape)
+            np.testing.assert_allclose(a["/sensors/where"][:], b["/sensors/where"][:], atol=1e-6)
+        self.assertIn("complete already", self.bough("run", "spring.toml", "-o", "parts.h5", "--resume").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
