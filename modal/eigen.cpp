@@ -326,13 +326,12 @@ EigenPairs NormalModes::solve() {
     run_krylov(missing + 2);
     if (num_found() == before) break;
   }
-  if (num_found() == num_rigid())
-    throw ComputationError("modal.no-convergence", {}, "the eigenvalue solver converged on no mode",
-                           "ask for more modes or a looser tolerance, and check units of mass and stiffness");
   throw ComputationError("modal.missed-modes", {},
                          "found " + std::to_string(cut < 0 ? num_found() : cut) +
-                             " modes, the inertia of the factor counts " + std::to_string(count),
-                         "ask for more modes; if the model has stiffness over many orders of magnitude, soften the "
+                             " modes" +
+                             (count < 0 ? " and converged on no more"
+                                        : ", the inertia of the factor counts " + std::to_string(count)),
+                         "ask for more modes; look for negative springs; if stiffness spans many orders, soften the "
                          "stiffest parts or use rigid elements");
 }
 

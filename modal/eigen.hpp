@@ -34,7 +34,7 @@ struct EigenPairs {
 /// basis of what is returned does not depend on num_modes; inertia_count then counts the copies left out too.
 /// Repeated roots get a basis fixed by the model alone (canonical.hpp). Warnings: modal.fewer-modes, modal.cut-root,
 /// modal.massless-motion, modal.empty-range. Throws ComputationError modal.no-dofs, modal.no-mass,
-/// modal.singular-shift, modal.no-convergence, modal.missed-modes.
+/// modal.singular-shift, modal.missed-modes.
 EigenPairs calc_normal_modes(const fe::Model& model, const EigenOptions& options, Diagnostics& diagnostics);
 
 /// (K + λ K_G(u)) φ = 0 for the static displacement u_g: load factors λ nearest zero, by magnitude; φᵀKφ = 1. Solved as

@@ -79,7 +79,7 @@ Pencil::Pencil(const fe::Model& model_in)
     : model(model_in),
       K(fe::assemble_stiffness(model, fe::DofSet::Free)),
       M(fe::assemble_mass(model, fe::DofSet::Free, model.mass_kind())),
-      K_diagonal(fe::get_diagonal(K.get())),
+      K_diagonal(fe::get_diagonal(K.get()).cwiseAbs()),
       M_diagonal(fe::get_diagonal(M.get())) {}
 
 MatrixXd Pencil::calc_K_times(const MatrixXd& X) const {
@@ -120,9 +120,11 @@ RigidMotions find_rigid_motions(const Pencil& pencil) {
     Y = (Y * solver.eigenvectors()).eval();
     energy = solver.eigenvalues();
   }
-  const auto num_free = (energy.array() < 1e-13).count();
-  if (num_free == 0) return result;
-  Y = Y.leftCols(num_free).eval();
+  std::vector<int> strainless;
+  for (int i = 0; i < energy.size(); ++i)
+    if (std::abs(energy(i)) < 1e-13) strainless.push_back(i);
+  if (strainless.empty()) return result;
+  Y = Y(Eigen::all, strainless).eval();
 
   VectorXd mass;
   for (int pass = 0; pass < 2; ++pass) {
@@ -132,7 +134,7 @@ RigidMotions find_rigid_motions(const Pencil& pencil) {
     mass = solver.eigenvalues();
   }
   const auto num_massless = (mass.array() <= 1e-13 * std::max(mass.maxCoeff(), 0.0)).count();
-  const MatrixXd Y_mass = Y.rightCols(num_free - num_massless);
+  const MatrixXd Y_mass = Y.rightCols(Y.cols() - num_massless);
 
   // The projections of the six motions on the free ones, in order: a basis that no roundoff can turn.
   const MatrixXd P = Y_mass * (Y_mass.transpose() * DB);

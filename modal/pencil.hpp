@@ -16,7 +16,7 @@ struct Pencil {
 
   const fe::Model& model;
   fe::PetscMat K, M;
-  VectorXd K_diagonal, M_diagonal;           ///< num_fdofs, replicated
+  VectorXd K_diagonal, M_diagonal;           ///< |K_ii| and M_ii, num_fdofs, replicated
 
   int size() const { return model.num_fdofs(); }
   MatrixXd calc_K_times(const MatrixXd& X) const;

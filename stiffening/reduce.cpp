@@ -48,6 +48,8 @@ class Reduction {
   void set_stiffening(const fe::Model& model, const fe::StaticSolver& solver);
   MatrixXd make_external_loads(const fe::Model& model);
   std::vector<int> choose_support(const fe::Model& model);
+  fe::StaticSolver make_solver(const fe::Model& model, const fe::PetscMat& K);
+  void add_mechanism_error(const std::string& what);
 
   bool is_free() const { return spec_.frame == BodyFrame::Free; }
 
@@ -147,13 +149,7 @@ void Reduction::set_modes(const fe::Model& model) {
                        "a free body must have 6 rigid motions, this model has " + std::to_string(found_rigid),
                        "remove springs and bushes to ground, or use frame = \"fixed\"");
   if (found_rigid > num_rigid)
-    diagnostics_.error("reduce.mechanism", where(),
-                       is_free() ? "the model has " + std::to_string(found_rigid - 6) +
-                                       " motion(s) without strain besides the six of a rigid body"
-                                 : "the deck's constraints leave " + std::to_string(found_rigid) +
-                                       " motion(s) without strain",
-                       is_free() ? "tie the loose parts or constrain the free dofs"
-                                 : "complete the SPC set or use frame = \"free\"");
+    add_mechanism_error(std::to_string(found_rigid - num_rigid) + " motion(s) have no strain");
   diagnostics_.throw_if_errors();
 
   const auto available = static_cast<int>(pairs.lambda.size()) - pairs.num_rigid;
@@ -268,6 +264,28 @@ std::vector<int> Reduction::choose_support(const fe::Model& model) {
   return fe::choose_determinate_support(model, spec_.support.empty() ? 0 : spec_.support.front());
 }
 
+void Reduction::add_mechanism_error(const std::string& what) {
+  if (is_free())
+    diagnostics_.error("reduce.mechanism", where(), "besides the six rigid motions of a free body, " + what,
+                       "tie the loose parts or constrain the free dofs");
+  else
+    diagnostics_.error("reduce.mechanism", where(), "the constraints do not hold the fixed body: " + what,
+                       "complete the SPC set and select it in the case control, or use frame = \"free\"");
+}
+
+/// A deck that leaves a mechanism is wrong input here: what the factorization says, with what a body needs.
+fe::StaticSolver Reduction::make_solver(const fe::Model& model, const fe::PetscMat& K) {
+  const auto support = choose_support(model);
+  try {
+    return fe::StaticSolver(model, K, support);
+  } catch (const ComputationError& error) {
+    for (const auto& item : error.items()) diagnostics_.add(item);
+    if (error.items().front().id != "fe.mechanism") throw;
+    add_mechanism_error("the stiffness matrix is singular");
+    throw InputError(diagnostics_.items());
+  }
+}
+
 void Reduction::set_stiffening(const fe::Model& model, const fe::StaticSolver& solver) {
   const auto n = Phi_.cols();
   body_.F_I = calc_inertial_loads(model, model.mass_kind());
@@ -308,7 +326,7 @@ FlexBody Reduction::run() {
   // The factor first: of a mechanism it names the dofs, which the modes could not.
   report("static factorization");
   const fe::PetscMat K = fe::assemble_stiffness(model, fe::DofSet::Free);
-  const fe::StaticSolver solver(model, K, choose_support(model));
+  const auto solver = make_solver(model, K);
   report("modes");
   set_modes(model);
   set_nodes(model);

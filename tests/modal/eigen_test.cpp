@@ -1,6 +1,7 @@
 /// The eigenvalue solver itself: repeated roots, ranges, small and singular problems, messages.
 #include "bough/modal/eigen.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,6 +20,8 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using test::DeckMaker;
 using test::Section;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 const Section kSection = {70e9, 27e9, 2700, 1e-4, 1e-11, 1e-11, 2e-11};
 
@@ -191,11 +194,35 @@ TEST(Eigen, ErrorsNameTheCause) {
   Diagnostics diagnostics;
   auto fixed = test::make_cantilever(kSection, 1, 2);
   fixed.fix_all(123456);
-  EXPECT_NE(get_error([&] { solve(fixed.deck, make_options(2), diagnostics); }).find("modal.no-dofs"),
-            std::string::npos);
+  EXPECT_THAT(get_error([&] { solve(fixed.deck, make_options(2), diagnostics); }), HasSubstr("modal.no-dofs"));
   auto massless = test::make_cantilever({70e9, 27e9, 0, 1e-4, 1e-9, 1e-9, 2e-9}, 1, 2);
-  EXPECT_NE(get_error([&] { solve(massless.deck, make_options(2), diagnostics); }).find("modal.no-mass"),
-            std::string::npos);
+  EXPECT_THAT(get_error([&] { solve(massless.deck, make_options(2), diagnostics); }), HasSubstr("modal.no-mass"));
+}
+
+// A grid that nothing holds and nothing weighs, AUTOSPC off; on the dense path and on the sparse one.
+TEST(Eigen, SingularShiftNamesTheGrid) {
+  for (const int count : {3, 40}) {
+    auto maker = test::make_cantilever(kSection, 1, count);
+    maker.add_grid(777, {5, 5, 5});
+    maker.deck.params.push_back({"AUTOSPC", "NO", {}});
+    Diagnostics diagnostics;
+    EXPECT_THAT(get_error([&] { solve(maker.deck, make_options(2), diagnostics); }),
+                AllOf(HasSubstr("modal.singular-shift"), HasSubstr("grid 777")));
+  }
+}
+
+// An absurd negative spring puts an eigenvalue out of the solver's reach: the count tells that the list is not complete.
+TEST(Eigen, MissedModesAreNotPassedOver) {
+  auto maker = test::make_cantilever(kSection, 1, 60);
+  records::ScalarSpring spring;
+  spring.id = 900;
+  spring.k = -1e30;
+  spring.g1 = 61;
+  spring.c1 = 1;
+  maker.deck.springs.push_back(spring);
+  maker.deck.params.push_back({"AUTOSPC", "NO", {}});
+  Diagnostics diagnostics;
+  EXPECT_THAT(get_error([&] { solve(maker.deck, make_options(2), diagnostics); }), HasSubstr("modal.missed-modes"));
 }
 
 }  // namespace

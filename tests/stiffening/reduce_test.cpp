@@ -1,6 +1,7 @@
 /// The whole way from a deck to a flexible body: what the record holds, and its errors.
 #include "bough/stiffening/reduce.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -175,6 +176,25 @@ TEST(Reduce, FreeBodyThatIsHeldIsAnError) {
   auto spec = make_spec(2);
   spec.frame = BodyFrame::Free;
   EXPECT_EQ(get_errors(maker.deck, spec), std::vector<std::string>{"reduce.grounded"});
+}
+
+// A beam held by its axis only, and a free one with a pinned strut: the dofs are named, and the input is to blame.
+TEST(Reduce, MechanismIsAnInputError) {
+  test::DeckMaker held;
+  held.add_section(1, kSection);
+  held.add_line(1, 1, Vector3d::Zero(), Vector3d::UnitX(), 4, Vector3d::UnitY());
+  held.fix(1, 123);
+  EXPECT_THAT(get_errors(held.deck, make_spec(2)), ::testing::IsSupersetOf({"fe.mechanism", "reduce.mechanism"}));
+
+  test::DeckMaker strut;
+  strut.add_section(1, kSection);
+  strut.add_line(1, 1, Vector3d::Zero(), Vector3d::UnitX(), 4, Vector3d::UnitY());
+  strut.add_line(1, 101, Vector3d::UnitX(), {1, 1, 0}, 4, Vector3d::UnitX(), 5);
+  for (auto& beam : strut.deck.beams)
+    if (beam.id == 101) beam.pin_a = 0b110000;
+  auto spec = make_spec(2);
+  spec.frame = BodyFrame::Free;
+  EXPECT_THAT(get_errors(strut.deck, spec), ::testing::IsSupersetOf({"fe.mechanism", "reduce.mechanism"}));
 }
 
 TEST(Reduce, WarnsOfWhatIsNotUsed) {
