@@ -101,7 +101,7 @@ void Body::add_second_order(const records::FlexBody& flex) {
     }
   }
   for (int c = 0; c < 6; ++c) {
-    const MatrixXd g = (c < 3 ? 1.0 : 0.5) * G(6 + c);   // a product ωaωb meets both J_ab and J_ba
+    const MatrixXd g = (c < 3 ? 1.0 : 0.5) * G(6 + c);  // a product ωaωb meets both J_ab and J_ba
     for (int j = 0; j < n; ++j) Q_.row(c + 6 * j) -= g.row(j);
   }
 }
@@ -156,7 +156,8 @@ BodyInertia Body::make_inertia() const {
   inertia.M = MatrixXd::Zero(6 + n_, 6 + n_);
   inertia.M.topLeftCorner<6, 6>() = M6_;
   inertia.M.bottomRightCorner(n_, n_) = M_;
-  for (VectorXd* x : {&inertia.GS, &inertia.GS_dot, &inertia.C2, &inertia.C2_dot, &inertia.A2}) *x = VectorXd::Zero(3 * n_);
+  for (VectorXd* x : {&inertia.GS, &inertia.GS_dot, &inertia.C2, &inertia.C2_dot, &inertia.A2})
+    *x = VectorXd::Zero(3 * n_);
   inertia.Q = VectorXd::Zero(6 * n_);
   return inertia;
 }
@@ -185,9 +186,11 @@ void Body::calc_inertia(const Vector3d& w, const ConstVectorRef& eta, const Cons
   x.M.block(6, 0, n, 6) = x.M.block(0, 6, 6, n).transpose();
 
   x.S = S0_;
-  Vector3d S_dot = Vector3d::Zero(), S_ddot_0 = Vector3d::Zero(), C_eta_dot = Vector3d::Zero(), C_dot_eta_dot = C_eta_dot;
+  Vector3d S_dot = Vector3d::Zero(), S_ddot_0 = Vector3d::Zero(), C_eta_dot = Vector3d::Zero(),
+           C_dot_eta_dot = C_eta_dot;
   Vector6d J6 = J0_, J6_dot = Vector6d::Zero();
-  const Vector6d ww(w.x() * w.x(), w.y() * w.y(), w.z() * w.z(), 2 * w.x() * w.y(), 2 * w.x() * w.z(), 2 * w.y() * w.z());
+  const Vector6d ww(w.x() * w.x(), w.y() * w.y(), w.z() * w.z(), 2 * w.x() * w.y(), 2 * w.x() * w.z(),
+                    2 * w.y() * w.z());
   for (int j = 0; j < n; ++j) {
     x.S += (gamma0_.col(j) + 0.5 * as_3xn(x.GS).col(j)) * eta[j];
     S_dot += Gamma0.col(j) * eta_dot[j];

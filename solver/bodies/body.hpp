@@ -25,11 +25,11 @@ namespace bough::solver {
 
 /// M(η), h and scratch for one body; every array is sized once.
 struct BodyInertia {
-  MatrixXd M;                      ///< (6+n)², flexible bodies only (a rigid one has Body::M6)
-  VectorXd h;                      ///< 6+n
-  Vector3d S = Vector3d::Zero();   ///< first moment of mass about Bo
+  MatrixXd M;                           ///< (6+n)², flexible bodies only (a rigid one has Body::M6)
+  VectorXd h;                           ///< 6+n
+  Vector3d S = Vector3d::Zero();        ///< first moment of mass about Bo
   VectorXd GS, GS_dot, C2, C2_dot, A2;  ///< 3n
-  VectorXd Q;                      ///< 6n
+  VectorXd Q;                           ///< 6n
 };
 
 class Body {
@@ -43,12 +43,12 @@ class Body {
   int num_modes() const { return n_; }
   double mass() const { return mass_; }
   bool stiffened() const { return stiffened_; }
-  const Matrix6d& M6() const { return M6_; }             ///< the mass matrix of the undeformed body
+  const Matrix6d& M6() const { return M6_; }  ///< the mass matrix of the undeformed body
   const MatrixXd& K() const { return K_; }
   const MatrixXd& D() const { return D_; }
 
-  const std::vector<Node>& nodes() const { return nodes_; }   ///< [0] is Bo
-  int find_node(int id) const;                                ///< index into nodes(), -1 when absent
+  const std::vector<Node>& nodes() const { return nodes_; }  ///< [0] is Bo
+  int find_node(int id) const;                               ///< index into nodes(), -1 when absent
   void add_rigid_node(int id, const Vector3d& p);
 
   BodyInertia make_inertia() const;
@@ -64,14 +64,14 @@ class Body {
   bool stiffened_ = false;
   double mass_ = 0;
   Vector3d S0_ = Vector3d::Zero();
-  Vector6d J0_ = Vector6d::Zero();     ///< xx yy zz xy xz yz (tensor components) about Bo
+  Vector6d J0_ = Vector6d::Zero();  ///< xx yy zz xy xz yz (tensor components) about Bo
   Matrix6d M6_ = Matrix6d::Zero();
-  Matrix3Xd gamma0_, gamma1_;          ///< 3 x n
-  MatrixXd GS_;                        ///< 3n x n, row a + 3j: row j of G_a
-  MatrixXd C2_;                        ///< 3n x n, row a + 3k, column j: ∂C(a,k)/∂η_j = Γ2_j(a,k) + G_{3+a}(k,j)
-  MatrixXd A2_;                        ///< 3n x n, row a + 3j, column k: Γ2_k(a,j) - Γ2_j(a,k)
-  Matrix6Xd J1_;                       ///< 6 x n: linear part of J
-  MatrixXd Q_;                         ///< 6n x n, row c + 6j: row j of the quadratic form of J's component c
+  Matrix3Xd gamma0_, gamma1_;  ///< 3 x n
+  MatrixXd GS_;                ///< 3n x n, row a + 3j: row j of G_a
+  MatrixXd C2_;                ///< 3n x n, row a + 3k, column j: ∂C(a,k)/∂η_j = Γ2_j(a,k) + G_{3+a}(k,j)
+  MatrixXd A2_;                ///< 3n x n, row a + 3j, column k: Γ2_k(a,j) - Γ2_j(a,k)
+  Matrix6Xd J1_;               ///< 6 x n: linear part of J
+  MatrixXd Q_;                 ///< 6n x n, row c + 6j: row j of the quadratic form of J's component c
   MatrixXd M_, K_, D_;
   std::vector<Node> nodes_;
 };

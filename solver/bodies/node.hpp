@@ -9,24 +9,24 @@
 namespace bough::solver {
 
 struct Node {
-  int id = 0;                      ///< 0: the body origin Bo
-  Vector3d p = Vector3d::Zero();   ///< undeformed place
-  Matrix3Xd phi, psi;              ///< 3 x n; translations and rotations
-  RowMatrixXd K2;                  ///< 3n x n, row a + 3j: row j of K_G2(node, a); empty without second-order term
-  bool moves = false;              ///< φ or ψ is not zero
-  bool has_locators = false;       ///< the body file holds all three translational locators of this node
+  int id = 0;                     ///< 0: the body origin Bo
+  Vector3d p = Vector3d::Zero();  ///< undeformed place
+  Matrix3Xd phi, psi;             ///< 3 x n; translations and rotations
+  RowMatrixXd K2;                 ///< 3n x n, row a + 3j: row j of K_G2(node, a); empty without second-order term
+  bool moves = false;             ///< φ or ψ is not zero
+  bool has_locators = false;      ///< the body file holds all three translational locators of this node
 };
 
 /// Where a node is in B and how it moves there when the body's frame is held still.
 struct NodeInBody {
   Vector3d r = Vector3d::Zero();
   Matrix3d R_BK = Matrix3d::Identity();
-  Matrix3d T = Matrix3d::Identity();       ///< left tangent of R_BK
+  Matrix3d T = Matrix3d::Identity();  ///< left tangent of R_BK
   Vector3d theta = Vector3d::Zero();
-  Vector3d v = Vector3d::Zero();           ///< Jt η̇
-  Vector3d w = Vector3d::Zero();           ///< T ψ η̇
-  Vector3d gamma_t = Vector3d::Zero();     ///< r̈ at η̈ = 0
-  Vector3d gamma_r = Vector3d::Zero();     ///< ẇ at η̈ = 0
+  Vector3d v = Vector3d::Zero();        ///< Jt η̇
+  Vector3d w = Vector3d::Zero();        ///< T ψ η̇
+  Vector3d gamma_t = Vector3d::Zero();  ///< r̈ at η̈ = 0
+  Vector3d gamma_r = Vector3d::Zero();  ///< ẇ at η̈ = 0
 };
 
 /// Position and velocity-level terms. eta, eta_dot: n. Cost 6n² with locators. No allocation.

@@ -10,9 +10,9 @@ struct AppliedForce {
   records::VectorFrame frame = records::VectorFrame::Body;
   int body = 0, node = 0;
   Vector3d direction = Vector3d::Zero();
-  const TimeFunction* function = nullptr;    ///< nullptr: constant 1
-  VectorXd pattern;                          ///< n, ΦᵀF_ext; empty: a node force
-  MatrixXd pattern_K2;                       ///< n x n, K_G2 of the pattern (zero without stiffening)
+  const TimeFunction* function = nullptr;  ///< nullptr: constant 1
+  VectorXd pattern;                        ///< n, ΦᵀF_ext; empty: a node force
+  MatrixXd pattern_K2;                     ///< n x n, K_G2 of the pattern (zero without stiffening)
 };
 
 /// Adds the wrench [f; r×f + t; Jtᵀf + (Tψ)ᵀt] of a force and moment (components in B) at a node. No allocation.

@@ -26,13 +26,20 @@ std::unique_ptr<const Hinge> make_hinge(const records::HingeRecord& record, Diag
   if (needs_axis && !check_axis(record.axis, "axis", record, diagnostics)) return nullptr;
   const Vector3d axis = needs_axis ? record.axis.normalized() : Vector3d::UnitZ();
   switch (record.type) {
-    case HingeType::Fixed: return std::make_unique<FixedHinge>();
-    case HingeType::Revolute: return std::make_unique<RevoluteHinge>(axis);
-    case HingeType::Prismatic: return std::make_unique<PrismaticHinge>(axis);
-    case HingeType::Cylindrical: return std::make_unique<CylindricalHinge>(axis);
-    case HingeType::Planar: return std::make_unique<PlanarHinge>(axis);
-    case HingeType::Spherical: return std::make_unique<SphericalHinge>();
-    case HingeType::Free: return std::make_unique<FreeHinge>();
+    case HingeType::Fixed:
+      return std::make_unique<FixedHinge>();
+    case HingeType::Revolute:
+      return std::make_unique<RevoluteHinge>(axis);
+    case HingeType::Prismatic:
+      return std::make_unique<PrismaticHinge>(axis);
+    case HingeType::Cylindrical:
+      return std::make_unique<CylindricalHinge>(axis);
+    case HingeType::Planar:
+      return std::make_unique<PlanarHinge>(axis);
+    case HingeType::Spherical:
+      return std::make_unique<SphericalHinge>();
+    case HingeType::Free:
+      return std::make_unique<FreeHinge>();
     case HingeType::Universal: {
       if (!check_axis(record.axis2, "axis2", record, diagnostics)) return nullptr;
       const Vector3d axis2 = record.axis2.normalized();

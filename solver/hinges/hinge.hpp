@@ -16,8 +16,8 @@ namespace bough::solver {
 
 struct HingeMotion {
   Matrix3d R_HpHc = Matrix3d::Identity();
-  Vector3d p_HpHc = Vector3d::Zero();     ///< in Hp
-  Matrix6d H = Matrix6d::Zero();          ///< the first num_u columns
+  Vector3d p_HpHc = Vector3d::Zero();  ///< in Hp
+  Matrix6d H = Matrix6d::Zero();       ///< the first num_u columns
   Vector6d bias = Vector6d::Zero();
 };
 

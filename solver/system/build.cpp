@@ -40,7 +40,8 @@ Attachment build_attachment(const std::string& body_name, const Body& body, int 
   Attachment a;
   a.p_KH = p;
   a.R_KH = R;
-  a.node = std::max(0, find_loaded_node(body_name, body, node_id, true, hinge.at, "hinge " + quote(hinge.name), diagnostics));
+  a.node = std::max(
+      0, find_loaded_node(body_name, body, node_id, true, hinge.at, "hinge " + quote(hinge.name), diagnostics));
   a.moves = body.nodes()[static_cast<size_t>(a.node)].moves;
   return a;
 }
@@ -49,8 +50,9 @@ bool check_rotations(const records::HingeRecord& h, Diagnostics& diagnostics) {
   bool good = true;
   for (const Matrix3d* R : {&h.parent_rotation, &h.child_rotation}) {
     if ((*R * R->transpose() - Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-6 && R->determinant() > 0) continue;
-    diagnostics.error("system.bad-rotation", h.at, "hinge " + quote(h.name) + ": the rotation of its frame on the " +
-                      (R == &h.parent_rotation ? "parent" : "child") + " is not a proper rotation matrix");
+    diagnostics.error("system.bad-rotation", h.at,
+                      "hinge " + quote(h.name) + ": the rotation of its frame on the " +
+                          (R == &h.parent_rotation ? "parent" : "child") + " is not a proper rotation matrix");
     good = false;
   }
   return good;
@@ -99,7 +101,7 @@ System System::build(const records::SystemSpec& spec, const std::map<std::string
   const TreeOrder order = order_tree(spec, diagnostics);
   bool complete = true;
   for (const auto& record : spec.bodies) {
-    if (!order.tree_index.count(record.name)) build_body(record, flex, diagnostics);   // for its own errors
+    if (!order.tree_index.count(record.name)) build_body(record, flex, diagnostics);  // for its own errors
   }
   for (size_t b = 0; b < order.body.size(); ++b) {
     const auto& record = spec.bodies[static_cast<size_t>(order.body[b])];
@@ -152,7 +154,7 @@ System System::build(const records::SystemSpec& spec, const std::map<std::string
   for (const auto& record : spec.forces) {
     const auto found = order.tree_index.find(record.body);
     if (found == order.tree_index.end()) {
-      if (std::find(body_names.begin(), body_names.end(), record.body) != body_names.end()) continue;   // in a loop
+      if (std::find(body_names.begin(), body_names.end(), record.body) != body_names.end()) continue;  // in a loop
       const std::string near = find_nearest(record.body, body_names);
       diagnostics.error("system.unknown-body", record.at,
                         "force " + quote(record.name) + " names body " + quote(record.body) + ", which does not exist",

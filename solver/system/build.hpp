@@ -15,8 +15,8 @@ std::optional<Body> build_body(const records::BodyRecord& record, const FlexMap&
 
 /// Which hinge carries which body, parents first; errors for loops and unknown names.
 struct TreeOrder {
-  std::vector<int> body;            ///< spec index by tree index
-  std::vector<int> hinge;           ///< inboard hinge by tree index, -1: none given (a free hinge is made)
+  std::vector<int> body;   ///< spec index by tree index
+  std::vector<int> hinge;  ///< inboard hinge by tree index, -1: none given (a free hinge is made)
   std::map<std::string, int> tree_index;
 };
 TreeOrder order_tree(const records::SystemSpec& spec, Diagnostics& diagnostics);

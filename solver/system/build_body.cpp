@@ -12,14 +12,16 @@ std::string quote(const std::string& s) { return "'" + s + "'"; }
 bool check_rigid(const records::BodyRecord& r, Diagnostics& diagnostics) {
   bool good = true;
   if (!std::isfinite(r.mass) || r.mass < 0) {
-    diagnostics.error("system.bad-mass", r.at, "body " + quote(r.name) + " has mass " + std::to_string(r.mass) +
-                      ", expected a number of at least zero");
+    diagnostics.error(
+        "system.bad-mass", r.at,
+        "body " + quote(r.name) + " has mass " + std::to_string(r.mass) + ", expected a number of at least zero");
     good = false;
   }
   const Matrix3d& J = r.inertia;
   const double scale = J.cwiseAbs().maxCoeff();
   if (!J.allFinite() || !r.cg.allFinite()) {
-    diagnostics.error("system.bad-inertia", r.at, "body " + quote(r.name) + " has a cg or inertia that is not a number");
+    diagnostics.error("system.bad-inertia", r.at,
+                      "body " + quote(r.name) + " has a cg or inertia that is not a number");
     return false;
   }
   if ((J - J.transpose()).cwiseAbs().maxCoeff() > 1e-9 * scale) {
@@ -29,10 +31,10 @@ bool check_rigid(const records::BodyRecord& r, Diagnostics& diagnostics) {
   }
   const Vector3d principal = Eigen::SelfAdjointEigenSolver<Matrix3d>(J, Eigen::EigenvaluesOnly).eigenvalues();
   if (principal[0] < -1e-9 * scale) {
-    diagnostics.error("system.bad-inertia", r.at,
-                      "the inertia of body " + quote(r.name) + " has a negative principal value " +
-                          std::to_string(principal[0]),
-                      "check the signs of the products of inertia and that it is about the centre of mass");
+    diagnostics.error(
+        "system.bad-inertia", r.at,
+        "the inertia of body " + quote(r.name) + " has a negative principal value " + std::to_string(principal[0]),
+        "check the signs of the products of inertia and that it is about the centre of mass");
     good = false;
   } else if (principal[0] + principal[1] < principal[2] * (1 - 1e-6)) {
     diagnostics.warning("system.inertia-triangle", r.at,
@@ -47,21 +49,23 @@ bool check_flexible(const records::BodyRecord& r, const records::FlexBody& flex,
   const int errors = diagnostics.num_errors();
   const int n = r.num_modes < 0 ? flex.num_modes() : r.num_modes;
   if (n > flex.num_modes()) {
-    diagnostics.error("system.too-many-modes", r.at, "body " + quote(r.name) + " asks for " + std::to_string(n) +
-                      " modes, its file '" + r.file + "' has " + std::to_string(flex.num_modes()));
+    diagnostics.error("system.too-many-modes", r.at,
+                      "body " + quote(r.name) + " asks for " + std::to_string(n) + " modes, its file '" + r.file +
+                          "' has " + std::to_string(flex.num_modes()));
     return false;
   }
   if (flex.integrals().empty()) {
-    diagnostics.error("system.missing-integrals", r.at,
-                      "the file '" + r.file + "' of body " + quote(r.name) + " has no '" + flex.integrals_method +
-                          "' mass integrals",
-                      "write it anew with reduce");
+    diagnostics.error(
+        "system.missing-integrals", r.at,
+        "the file '" + r.file + "' of body " + quote(r.name) + " has no '" + flex.integrals_method + "' mass integrals",
+        "write it anew with reduce");
   }
   auto check_count = [&](const std::vector<double>& values, const char* key, bool one_is_enough) {
     const int count = static_cast<int>(values.size());
     if (count == 0 || count == n || (one_is_enough && count == 1)) return;
-    diagnostics.error("system.bad-count", r.at, "body " + quote(r.name) + ": " + key + " has " + std::to_string(count) +
-                      " values, expected " + std::to_string(n) + ", one per mode");
+    diagnostics.error("system.bad-count", r.at,
+                      "body " + quote(r.name) + ": " + key + " has " + std::to_string(count) + " values, expected " +
+                          std::to_string(n) + ", one per mode");
   };
   check_count(r.eta, "eta", false);
   check_count(r.eta_dot, "eta_dot", false);
@@ -74,8 +78,9 @@ bool check_flexible(const records::BodyRecord& r, const records::FlexBody& flex,
   if (r.stiffening && std::none_of(flex.kg_inertial_computed.begin(), flex.kg_inertial_computed.end(),
                                    [](bool computed) { return computed; })) {
     diagnostics.warning("system.no-stiffening", r.at,
-                        "the file '" + r.file + "' of body " + quote(r.name) + " holds no K_G1: inertial loads do not "
-                        "stiffen it",
+                        "the file '" + r.file + "' of body " + quote(r.name) +
+                            " holds no K_G1: inertial loads do not "
+                            "stiffen it",
                         "write it anew with reduce, or set stiffening = false");
   }
   return diagnostics.num_errors() == errors;
@@ -125,10 +130,10 @@ int find_loaded_node(const std::string& body_name, const Body& body, int id, boo
       }
       known += " " + std::to_string(node.id);
     }
-    diagnostics.error("system.unknown-node", where,
-                      user + " names node " + std::to_string(id) + " of body " + quote(body_name) + ", which has nodes" +
-                          known,
-                      "name one of them (0 is the body's origin), or add the node to the body");
+    diagnostics.error(
+        "system.unknown-node", where,
+        user + " names node " + std::to_string(id) + " of body " + quote(body_name) + ", which has nodes" + known,
+        "name one of them (0 is the body's origin), or add the node to the body");
     return -1;
   }
   const Node& node = body.nodes()[static_cast<size_t>(index)];

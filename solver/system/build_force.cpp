@@ -13,7 +13,7 @@ bool set_locator(const records::ForceRecord& r, const Body& body, const records:
     const auto& locator = flex->locators[e];
     names.push_back(locator.name);
     if (locator.name != r.locator) continue;
-    if (locator.node != 0) {                                // a unit load: the same as a force at the node
+    if (locator.node != 0) {  // a unit load: the same as a force at the node
       const bool is_force = locator.direction <= 3;
       force.kind = is_force ? records::ForceKind::Force : records::ForceKind::Moment;
       force.frame = records::VectorFrame::Body;
@@ -28,11 +28,11 @@ bool set_locator(const records::ForceRecord& r, const Body& body, const records:
     return true;
   }
   const std::string near = find_nearest(r.locator, names);
-  diagnostics.error("system.unknown-locator", r.at,
-                    "force " + quote(r.name) + " names load pattern " + quote(r.locator) + ", which body " +
-                        quote(r.body) + " does not have",
-                    near.empty() ? "add a [[body.load]] to the body file and reduce again"
-                                 : "did you mean " + quote(near) + "?");
+  diagnostics.error(
+      "system.unknown-locator", r.at,
+      "force " + quote(r.name) + " names load pattern " + quote(r.locator) + ", which body " + quote(r.body) +
+          " does not have",
+      near.empty() ? "add a [[body.load]] to the body file and reduce again" : "did you mean " + quote(near) + "?");
   return false;
 }
 }  // namespace

@@ -8,8 +8,9 @@ std::string quote(const std::string& s) { return "'" + s + "'"; }
 bool check_count(const records::HingeRecord& r, const std::vector<double>& values, int expected, const char* key,
                  Diagnostics& diagnostics) {
   if (values.empty() || static_cast<int>(values.size()) == expected) return true;
-  diagnostics.error("system.bad-count", r.at, "hinge " + quote(r.name) + ": " + key + " has " +
-                    std::to_string(values.size()) + " values, expected " + std::to_string(expected));
+  diagnostics.error("system.bad-count", r.at,
+                    "hinge " + quote(r.name) + ": " + key + " has " + std::to_string(values.size()) +
+                        " values, expected " + std::to_string(expected));
   return false;
 }
 
@@ -49,8 +50,9 @@ void build_motion(const records::HingeRecord& r, const FunctionMap& functions, T
     return;
   }
   if (given != nu || static_cast<int>(r.motion.size()) != nu) {
-    diagnostics.error("system.bad-count", r.at, "hinge " + quote(r.name) + ": motion names " + std::to_string(given) +
-                      " functions, expected " + std::to_string(nu) + ", one per coordinate, or none");
+    diagnostics.error("system.bad-count", r.at,
+                      "hinge " + quote(r.name) + ": motion names " + std::to_string(given) + " functions, expected " +
+                          std::to_string(nu) + ", one per coordinate, or none");
     return;
   }
   for (const auto& name : r.motion) {
@@ -64,8 +66,9 @@ void build_motion(const records::HingeRecord& r, const FunctionMap& functions, T
   }
   if (!r.position.empty() || !r.rate.empty()) {
     diagnostics.warning("system.ignored-position", r.at,
-                        "hinge " + quote(r.name) + " has a prescribed motion: its initial position and rate are those "
-                        "of the function",
+                        "hinge " + quote(r.name) +
+                            " has a prescribed motion: its initial position and rate are those "
+                            "of the function",
                         "remove position and rate");
   }
 }
@@ -78,7 +81,8 @@ const TimeFunction* find_function(const FunctionMap& functions, const std::strin
   std::vector<std::string> names;
   for (const auto& [known, f] : functions) names.push_back(known);
   const std::string near = find_nearest(name, names);
-  diagnostics.error("system.unknown-function", where, user + " names function " + quote(name) + ", which does not exist",
+  diagnostics.error("system.unknown-function", where,
+                    user + " names function " + quote(name) + ", which does not exist",
                     near.empty() ? "" : "did you mean " + quote(near) + "?");
   return nullptr;
 }

@@ -47,7 +47,7 @@ TreeOrder order_tree(const records::SystemSpec& spec, Diagnostics& diagnostics) 
   check_names(spec.functions, "functions", diagnostics);
   check_names(spec.forces, "forces", diagnostics);
 
-  std::map<std::string, int> inboard;                       // body name -> hinge
+  std::map<std::string, int> inboard;  // body name -> hinge
   for (int h = 0; h < static_cast<int>(spec.hinges.size()); ++h) {
     const auto& hinge = spec.hinges[static_cast<size_t>(h)];
     bool known = true;
@@ -70,8 +70,8 @@ TreeOrder order_tree(const records::SystemSpec& spec, Diagnostics& diagnostics) 
       const auto& first = spec.hinges[static_cast<size_t>(found->second)];
       diagnostics.error("system.loop", hinge.at,
                         "hinge " + quote(hinge.name) + " closes a loop: body " + quote(hinge.child) +
-                            " already hangs on hinge " + quote(first.name) + " (" + first.parent + " - " +
-                            hinge.child + " - " + hinge.parent + ")",
+                            " already hangs on hinge " + quote(first.name) + " (" + first.parent + " - " + hinge.child +
+                            " - " + hinge.parent + ")",
                         "a tree has one inboard hinge per body");
     }
   }

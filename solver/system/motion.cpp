@@ -19,7 +19,7 @@ NodeMotion calc_node_motion(const System& system, const SystemData& data, int bo
   const Node& node = tb.body.nodes()[static_cast<size_t>(node_index)];
   const BodyState& s = d.state;
   const NodeInBody k = calc_node(tb, data.tree, node_index);
-  Vector3d a_rel = k.gamma_t, alpha_rel = k.gamma_r;      // + J η̈
+  Vector3d a_rel = k.gamma_t, alpha_rel = k.gamma_r;  // + J η̈
   if (node.moves) {
     const auto eta = data.tree.q.segment(tb.eta_offset(), tb.body.num_modes());
     for (int j = 0; j < tb.body.num_modes(); ++j) {

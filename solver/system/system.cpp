@@ -60,7 +60,8 @@ void System::calc_initial_state(Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) 
   for (const TreeBody& tb : impl_->tree.bodies) {
     const int n = tb.body.num_modes(), nq = tb.num_hinge_q();
     q.segment(tb.q_offset, nq) = tb.initial_q;
-    for (size_t i = 0; i < tb.motion.size(); ++i) q[tb.q_offset + static_cast<int>(i)] = tb.motion[i]->calc(impl_->start).f;
+    for (size_t i = 0; i < tb.motion.size(); ++i)
+      q[tb.q_offset + static_cast<int>(i)] = tb.motion[i]->calc(impl_->start).f;
     u.segment(tb.u_offset, tb.num_hinge_u) = tb.initial_u.head(tb.num_hinge_u);
     q.segment(tb.eta_offset(), n) = tb.initial_eta;
     u.segment(tb.eta_dot_offset(), n) = tb.initial_eta_dot;
@@ -73,7 +74,8 @@ void calc_q_dot(const System& system, SystemData&, double t, const Eigen::Ref<co
   for (const TreeBody& tb : system.impl().tree.bodies) {
     const int n = tb.body.num_modes();
     if (tb.is_prescribed()) {
-      for (size_t i = 0; i < tb.motion.size(); ++i) q_dot[tb.q_offset + static_cast<int>(i)] = tb.motion[i]->calc(t).f_dot;
+      for (size_t i = 0; i < tb.motion.size(); ++i)
+        q_dot[tb.q_offset + static_cast<int>(i)] = tb.motion[i]->calc(t).f_dot;
     } else {
       tb.hinge->calc_q_dot(q.data() + tb.q_offset, u.data() + tb.u_offset, q_dot.data() + tb.q_offset);
     }

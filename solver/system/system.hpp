@@ -19,16 +19,16 @@ namespace bough::solver {
 
 using records::FlexBody;
 
-struct BodyState {                ///< results of calc_positions / calc_velocities / calc_accelerations for one body
+struct BodyState {  ///< results of calc_positions / calc_velocities / calc_accelerations for one body
   Vector3d p_WBo = Vector3d::Zero();
   Matrix3d R_WB = Matrix3d::Identity();
-  Vector3d v_B = Vector3d::Zero();     ///< velocity of Bo, in B
-  Vector3d w_B = Vector3d::Zero();     ///< angular velocity of B, in B
-  Vector3d a_B = Vector3d::Zero();     ///< inertial acceleration of Bo, in B
-  Vector3d alpha_B = Vector3d::Zero(); ///< angular acceleration of B, in B
+  Vector3d v_B = Vector3d::Zero();      ///< velocity of Bo, in B
+  Vector3d w_B = Vector3d::Zero();      ///< angular velocity of B, in B
+  Vector3d a_B = Vector3d::Zero();      ///< inertial acceleration of Bo, in B
+  Vector3d alpha_B = Vector3d::Zero();  ///< angular acceleration of B, in B
 };
 
-struct NodeMotion {               ///< of a material node K, in the inertial frame
+struct NodeMotion {  ///< of a material node K, in the inertial frame
   Vector3d p_WK = Vector3d::Zero();
   Matrix3d R_WK = Matrix3d::Identity();
   Vector3d v_WK = Vector3d::Zero(), w_WK = Vector3d::Zero();
@@ -36,10 +36,10 @@ struct NodeMotion {               ///< of a material node K, in the inertial fra
 };
 
 struct Energies {
-  double kinetic = 0, strain = 0, potential = 0;   ///< strain: modal ½ηᵀKη plus hinge springs; potential: gravity
+  double kinetic = 0, strain = 0, potential = 0;  ///< strain: modal ½ηᵀKη plus hinge springs; potential: gravity
 };
 
-class SystemData;                 ///< made by System::make_data; one per thread
+class SystemData;  ///< made by System::make_data; one per thread
 
 class System {
  public:
@@ -54,18 +54,18 @@ class System {
   int num_bodies() const;
   int num_q() const;
   int num_u() const;
-  int find_body(const std::string& name) const;    ///< -1 when absent
-  int find_hinge(const std::string& name) const;   ///< hinge h is the inboard hinge of body h
+  int find_body(const std::string& name) const;   ///< -1 when absent
+  int find_hinge(const std::string& name) const;  ///< hinge h is the inboard hinge of body h
   const std::string& body_name(int body) const;
   const std::string& hinge_name(int body) const;
   int num_modes(int body) const;
-  int q_offset(int body) const;                    ///< hinge coordinates start here; η follows
+  int q_offset(int body) const;  ///< hinge coordinates start here; η follows
   int u_offset(int body) const;
   int num_hinge_q(int body) const;
-  int num_hinge_u(int body) const;                 ///< degrees of freedom; 0 when prescribed
-  int num_hinge_rates(int body) const;             ///< rates and forces of get_hinge; = num_hinge_u unless prescribed
-  int eta_offset(int body) const;                  ///< in q
-  int eta_dot_offset(int body) const;              ///< in u
+  int num_hinge_u(int body) const;      ///< degrees of freedom; 0 when prescribed
+  int num_hinge_rates(int body) const;  ///< rates and forces of get_hinge; = num_hinge_u unless prescribed
+  int eta_offset(int body) const;       ///< in q
+  int eta_dot_offset(int body) const;   ///< in u
   /// Index of node `id` for calc_node_motion (0: Bo), -1 when the body has none such.
   int find_node(int body, int id) const;
   /// Whether the node carries the second-order (foreshortening) term.
@@ -116,7 +116,8 @@ void get_hinge(const System& system, const SystemData& data, int body, Eigen::Re
                Eigen::Ref<VectorXd> q_dot, Eigen::Ref<VectorXd> force);
 
 Energies calc_energies(const System& system, const SystemData& data);
-/// Power of applied forces, dampers and prescribed motions: d/dt(kinetic + strain + potential). After calc_accelerations.
+/// Power of applied forces, dampers and prescribed motions: d/dt(kinetic + strain + potential). After
+/// calc_accelerations.
 double calc_power(const System& system, const SystemData& data);
 /// Linear momentum and angular momentum about the inertial origin, in W.
 void calc_momentum(const System& system, const SystemData& data, Vector3d& linear, Vector3d& angular);

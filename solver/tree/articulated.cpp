@@ -8,18 +8,18 @@ namespace bough::solver {
 
 namespace {
 
-struct Reduced {                 // what a body passes on to its parent, at Bo, in B
+struct Reduced {  // what a body passes on to its parent, at Bo, in B
   Matrix6d P;
   Vector6d beta;
 };
 
 [[noreturn]] void fail_indefinite(const TreeBody& tb) {
-  throw ComputationError("solver.indefinite-mass", {},
-                         "the articulated mass matrix of body '" + tb.name + "' is not positive definite",
-                         tb.body.num_modes() > 0
-                             ? "its deflection has left the range of the second-order expansion: reduce the load or the "
-                               "step, or split the body"
-                             : "give the body, or one that it carries, mass and inertia along its hinge freedoms");
+  throw ComputationError(
+      "solver.indefinite-mass", {}, "the articulated mass matrix of body '" + tb.name + "' is not positive definite",
+      tb.body.num_modes() > 0
+          ? "its deflection has left the range of the second-order expansion: reduce the load or the "
+            "step, or split the body"
+          : "give the body, or one that it carries, mass and inertia along its hinge freedoms");
 }
 
 template <int NH>
@@ -54,19 +54,25 @@ void eliminate_rigid(const TreeBody& tb, BodyData& d, Reduced& out) {
 
 void eliminate_rigid(const TreeBody& tb, BodyData& d, Reduced& out) {
   switch (tb.num_hinge_u) {
-    case 0: return eliminate_rigid<0>(tb, d, out);
-    case 1: return eliminate_rigid<1>(tb, d, out);
-    case 2: return eliminate_rigid<2>(tb, d, out);
-    case 3: return eliminate_rigid<3>(tb, d, out);
-    case 6: return eliminate_rigid<6>(tb, d, out);
-    default: BOUGH_DEMAND(false);
+    case 0:
+      return eliminate_rigid<0>(tb, d, out);
+    case 1:
+      return eliminate_rigid<1>(tb, d, out);
+    case 2:
+      return eliminate_rigid<2>(tb, d, out);
+    case 3:
+      return eliminate_rigid<3>(tb, d, out);
+    case 6:
+      return eliminate_rigid<6>(tb, d, out);
+    default:
+      BOUGH_DEMAND(false);
   }
 }
 
 void eliminate_flexible(const TreeBody& tb, BodyData& d, Reduced& out) {
   const int n = tb.body.num_modes(), nh = tb.num_hinge_u;
   const auto H = d.H.leftCols(nh);
-  d.beta.noalias() += d.P.leftCols<6>() * d.b;            // β + 𝒫b
+  d.beta.noalias() += d.P.leftCols<6>() * d.b;  // β + 𝒫b
   d.W.rightCols(n) = d.P.rightCols(n);
   for (int i = 0; i < nh; ++i) d.W.col(i).noalias() = d.P.leftCols<6>() * H.col(i);
   d.z.tail(n) = -d.beta.tail(n);
@@ -155,7 +161,7 @@ void calc_body_acceleration(const Tree& tree, int b, TreeData& data, Eigen::Ref<
   d.a_less_g = A.head<3>();
   d.state.alpha_B = A.tail<3>();
   d.state.a_B = d.a_less_g + d.state.R_WB.transpose() * data.gravity;
-  if (tb.is_prescribed()) {                               // the wrench at Bo that makes the body move so, on H
+  if (tb.is_prescribed()) {  // the wrench at Bo that makes the body move so, on H
     Vector6d wrench;
     if (n == 0) {
       wrench = d.beta.head<6>() + d.P6 * A;

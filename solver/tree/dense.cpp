@@ -5,8 +5,8 @@ namespace bough::solver {
 
 void calc_dense_equations(const Tree& tree, const TreeData& data, MatrixXd& mass, VectorXd& force) {
   const int num = static_cast<int>(tree.bodies.size());
-  std::vector<MatrixXd> J(static_cast<size_t>(num));           // (6+n) x num_u
-  std::vector<VectorXd> bias(static_cast<size_t>(num));        // [A'; η̈] at u̇ = 0
+  std::vector<MatrixXd> J(static_cast<size_t>(num));     // (6+n) x num_u
+  std::vector<VectorXd> bias(static_cast<size_t>(num));  // [A'; η̈] at u̇ = 0
   mass = MatrixXd::Zero(tree.num_u, tree.num_u);
   force = VectorXd::Zero(tree.num_u);
   for (int b = 0; b < num; ++b) {

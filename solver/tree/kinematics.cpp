@@ -6,14 +6,14 @@ namespace {
 
 // A hinge frame F fixed in a node K of body B: pose, velocity and bias acceleration against the frame of B.
 struct FrameInBody {
-  Vector3d r;                                   ///< p_BoF
-  Matrix3d R;                                   ///< R_BF
+  Vector3d r;  ///< p_BoF
+  Matrix3d R;  ///< R_BF
   Vector3d v = Vector3d::Zero(), w = Vector3d::Zero();
   Vector3d gamma_t = Vector3d::Zero(), gamma_r = Vector3d::Zero();
 };
 
-FrameInBody calc_frame(const Body& body, const Attachment& at, const ConstVectorRef& eta,
-                       const ConstVectorRef& eta_dot, Eigen::Ref<Matrix6Xd> J) {
+FrameInBody calc_frame(const Body& body, const Attachment& at, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
+                       Eigen::Ref<Matrix6Xd> J) {
   const Node& node = body.nodes()[static_cast<size_t>(at.node)];
   FrameInBody f;
   if (!at.moves) {
@@ -91,7 +91,7 @@ void calc_body(const Tree& tree, int b, TreeData& data) {
   const auto eta_dot = data.u.segment(tb.eta_dot_offset(), n);
   const FrameInBody fc = calc_frame(tb.body, tb.on_child, eta, eta_dot, d.Jc);
 
-  const Vector3d d_P = fp.R * d.hinge.p_HpHc;             // Hp to Hc
+  const Vector3d d_P = fp.R * d.hinge.p_HpHc;  // Hp to Hc
   d.R_PB = fp.R * d.hinge.R_HpHc * fc.R.transpose();
   const Matrix3d R_BP = d.R_PB.transpose();
   const Matrix3d R_BHp = R_BP * fp.R;
@@ -104,7 +104,7 @@ void calc_body(const Tree& tree, int b, TreeData& data) {
     d.H.col(i).head<3>() = R_BHp * d.hinge.H.col(i).head<3>() + fc.r.cross(angular);
     d.H.col(i).tail<3>() = angular;
   }
-  if (tb.on_child.moves) {                                // S(r_c)⁻¹ J
+  if (tb.on_child.moves) {  // S(r_c)⁻¹ J
     for (int j = 0; j < n; ++j) d.Jc.col(j).head<3>() += fc.r.cross(Vector3d(d.Jc.col(j).tail<3>()));
   }
   if (tb.on_parent.moves) {

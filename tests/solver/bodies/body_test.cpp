@@ -77,9 +77,7 @@ TEST_P(BodyTest, EquationsOfMotionFollowFromTheKineticEnergy) {
       return VectorXd(x.M * V);
     };
     const VectorXd eta_dot = V_.tail(n), eta_ddot = V_dot.tail(n);
-    auto at = [&](double t) {
-      return calc_momentum(V_ + t * V_dot, eta_ + t * eta_dot + 0.5 * t * t * eta_ddot);
-    };
+    auto at = [&](double t) { return calc_momentum(V_ + t * V_dot, eta_ + t * eta_dot + 0.5 * t * t * eta_ddot); };
     VectorXd expected = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
     const VectorXd p = at(0);
     const Vector3d v = V_.head<3>(), w = V_.segment<3>(3);
@@ -94,7 +92,7 @@ TEST_P(BodyTest, EquationsOfMotionFollowFromTheKineticEnergy) {
     BodyInertia x = body.make_inertia();
     body.calc_inertia(w, eta_, eta_dot, x);
     VectorXd acceleration = V_dot;
-    acceleration.head<3>() += w.cross(v);                   // inertial acceleration of Bo
+    acceleration.head<3>() += w.cross(v);  // inertial acceleration of Bo
     const VectorXd actual = x.M * acceleration + x.h;
     EXPECT_LT((actual - expected).norm(), 1e-8 * expected.norm()) << "stiffening " << stiffening;
   }
@@ -115,7 +113,8 @@ TEST_P(BodyTest, NodeVelocityAndBiasAreTheRatesOfItsPlace) {
   const NodeInBody k = at(0), plus = at(h), minus = at(-h);
   Matrix6Xd J(6, n);
   calc_node_jacobian(node, eta_, k.T, J);
-  const Vector3d v = (plus.r - minus.r) / (2 * h), a = (plus.v - minus.v) / (2 * h), alpha = (plus.w - minus.w) / (2 * h);
+  const Vector3d v = (plus.r - minus.r) / (2 * h), a = (plus.v - minus.v) / (2 * h),
+                 alpha = (plus.w - minus.w) / (2 * h);
   const Matrix3d w_skew = (plus.R_BK - minus.R_BK) / (2 * h) * k.R_BK.transpose();
   EXPECT_LT((k.v - v).norm(), 1e-7);
   EXPECT_LT((J.topRows<3>() * eta_dot - v).norm(), 1e-7);

@@ -83,11 +83,12 @@ TEST_P(HingeTest, SpringForceIsTheGradientOfItsEnergy) {
   VectorXd null = random.vector_n(hinge_->num_q());
   if (!hinge_->has_plain_coordinates()) null.head<4>().normalize();
   VectorXd force(nu), unused(nu);
-  const VectorXd k = VectorXd::LinSpaced(nu, 1, 3);         // anisotropic
+  const VectorXd k = VectorXd::LinSpaced(nu, 1, 3);  // anisotropic
   const double energy = hinge_->calc_spring(q_.data(), null.data(), k.data(), force.data());
   const VectorXd plus = advance(kStep), minus = advance(-kStep);
   const double rate = (hinge_->calc_spring(plus.data(), null.data(), k.data(), unused.data()) -
-                       hinge_->calc_spring(minus.data(), null.data(), k.data(), unused.data())) / (2 * kStep);
+                       hinge_->calc_spring(minus.data(), null.data(), k.data(), unused.data())) /
+                      (2 * kStep);
   EXPECT_NEAR(force.dot(u_), -rate, 1e-7);
   EXPECT_GE(energy, 0);
   EXPECT_NEAR(hinge_->calc_spring(null.data(), null.data(), k.data(), force.data()), 0, 1e-15);
@@ -100,7 +101,7 @@ TEST_P(HingeTest, FileOrderRoundTrips) {
   hinge_->set_from_file(file.data(), back.data());
   EXPECT_EQ(back, q_);
   if (!hinge_->has_plain_coordinates()) {
-    EXPECT_EQ(file[0], q_[3]);                             // w first in files
+    EXPECT_EQ(file[0], q_[3]);  // w first in files
     EXPECT_EQ(file[1], q_[0]);
   }
 }

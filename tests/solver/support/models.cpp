@@ -92,10 +92,10 @@ records::FlexBody PointBody::make_record(const std::string& name) const {
     G[0] += m * gx;
     G[1] += m * gy;
     G[2] += m * gz;
-    G[3] += m * (x.y() * gz - x.z() * gy);          // (e_a × p)·g
+    G[3] += m * (x.y() * gz - x.z() * gy);  // (e_a × p)·g
     G[4] += m * (x.z() * gx - x.x() * gz);
     G[5] += m * (x.x() * gy - x.y() * gx);
-    G[6] -= m * (x.y() * gy + x.z() * gz);          // ½ωᵀJω gets Σ m (ω×p)·(ω×½ηᵀgη)
+    G[6] -= m * (x.y() * gy + x.z() * gz);  // ½ωᵀJω gets Σ m (ω×p)·(ω×½ηᵀgη)
     G[7] -= m * (x.x() * gx + x.z() * gz);
     G[8] -= m * (x.x() * gx + x.y() * gy);
     G[9] += m * (x.x() * gy + x.y() * gx);
@@ -139,14 +139,19 @@ namespace {
 int count_speeds(records::HingeType type) {
   using records::HingeType;
   switch (type) {
-    case HingeType::Fixed: return 0;
+    case HingeType::Fixed:
+      return 0;
     case HingeType::Revolute:
-    case HingeType::Prismatic: return 1;
+    case HingeType::Prismatic:
+      return 1;
     case HingeType::Universal:
-    case HingeType::Cylindrical: return 2;
+    case HingeType::Cylindrical:
+      return 2;
     case HingeType::Planar:
-    case HingeType::Spherical: return 3;
-    case HingeType::Free: return 6;
+    case HingeType::Spherical:
+      return 3;
+    case HingeType::Free:
+      return 6;
   }
   return 0;
 }

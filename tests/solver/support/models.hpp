@@ -2,8 +2,8 @@
 /// \file Hand-made bodies and systems for the solver's tests.
 ///
 /// PointBody is a cloud of point masses that deforms as r_k = p_k + φ_k η + ½ ηᵀ g_k η with a random second-order field
-/// g_k: its mass integrals, the twelve K_G1 and every K_G2 follow by plain sums (theory.md §4, §5), so the flexible-body
-/// record made from it is exact by construction.
+/// g_k: its mass integrals, the twelve K_G1 and every K_G2 follow by plain sums (theory.md §4, §5), so the
+/// flexible-body record made from it is exact by construction.
 #include <map>
 #include <memory>
 #include <random>
@@ -18,7 +18,9 @@ class Random {
   double operator()(double scale = 1) { return scale * std::uniform_real_distribution<double>(-1, 1)(engine_); }
   int integer(int low, int high) { return std::uniform_int_distribution<int>(low, high)(engine_); }
   Vector3d vector(double scale = 1) { return {(*this)(scale), (*this)(scale), (*this)(scale)}; }
-  VectorXd vector_n(int n, double scale = 1) { return VectorXd::NullaryExpr(n, [&] { return (*this)(scale); }); }
+  VectorXd vector_n(int n, double scale = 1) {
+    return VectorXd::NullaryExpr(n, [&] { return (*this)(scale); });
+  }
   MatrixXd symmetric(int n, double scale = 1);
   Matrix3d rotation();
 
@@ -30,8 +32,8 @@ struct PointBody {
   int num_modes = 0;
   std::vector<double> mass;
   std::vector<Vector3d> p;
-  std::vector<MatrixXd> phi, psi;                     ///< [k] 3 x n
-  std::vector<std::array<MatrixXd, 3>> g;             ///< [k][a] n x n, symmetric
+  std::vector<MatrixXd> phi, psi;          ///< [k] 3 x n
+  std::vector<std::array<MatrixXd, 3>> g;  ///< [k][a] n x n, symmetric
   MatrixXd K, D;
 
   /// Kinetic energy of the points themselves (to all orders in η).
@@ -45,18 +47,18 @@ PointBody make_point_body(int num_modes, unsigned seed, double second_order_scal
 records::BodyRecord make_rigid_record(const std::string& name, Random& random);
 records::HingeRecord make_hinge_record(const std::string& name, records::HingeType type, const std::string& parent,
                                        const std::string& child);
-inline constexpr records::HingeType kAllHinges[] = {
-    records::HingeType::Fixed,       records::HingeType::Revolute, records::HingeType::Prismatic,
-    records::HingeType::Universal,   records::HingeType::Cylindrical, records::HingeType::Planar,
-    records::HingeType::Spherical,   records::HingeType::Free};
+inline constexpr records::HingeType kAllHinges[] = {records::HingeType::Fixed,       records::HingeType::Revolute,
+                                                    records::HingeType::Prismatic,   records::HingeType::Universal,
+                                                    records::HingeType::Cylindrical, records::HingeType::Planar,
+                                                    records::HingeType::Spherical,   records::HingeType::Free};
 
 struct RandomTreeOptions {
   int num_bodies = 8;
-  bool forces = true;          ///< node forces and moments in all frames, gravity
-  bool dissipation = true;     ///< hinge and modal dampers
+  bool forces = true;       ///< node forces and moments in all frames, gravity
+  bool dissipation = true;  ///< hinge and modal dampers
   bool springs = true;
-  bool prescribed = true;      ///< some hinges follow a sine
-  bool to_ground = true;       ///< roots hang on ground by random hinges; else one free root
+  bool prescribed = true;  ///< some hinges follow a sine
+  bool to_ground = true;   ///< roots hang on ground by random hinges; else one free root
 };
 struct RandomTree {
   records::SystemSpec spec;

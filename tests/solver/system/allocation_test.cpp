@@ -30,7 +30,7 @@ TEST(Allocation, NoneInAnEvaluation) {
   RandomTreeOptions options;
   options.num_bodies = 16;
   RandomTree tree = make_random_tree(3, options);
-  records::BodyRecord large;                                // enough modes for blocked factorizations
+  records::BodyRecord large;  // enough modes for blocked factorizations
   large.name = "large";
   large.file = "large.h5";
   tree.spec.bodies.push_back(large);
@@ -60,7 +60,7 @@ TEST(Allocation, NoneInAnEvaluation) {
   const long after = num_mallocs;
   EXPECT_EQ(after - before, 0);
   EXPECT_TRUE(std::isfinite(sum));
-  const VectorXd proof = u_dot * 2;                         // the counter does count
+  const VectorXd proof = u_dot * 2;  // the counter does count
   EXPECT_GT(num_mallocs, after) << proof.size();
 #endif
 }

@@ -112,7 +112,7 @@ TEST_F(BuildTest, InitialStateFollowsTheRecords) {
 
 TEST_F(BuildTest, QuaternionsOfTheFileAreScalarFirst) {
   spec_.hinges[0].type = HingeType::Spherical;
-  spec_.hinges[0].position = {2, 0, 0, 2};                  // w, x, y, z; a quarter turn about z
+  spec_.hinges[0].position = {2, 0, 0, 2};  // w, x, y, z; a quarter turn about z
   const System system = build(spec_, flex_);
   VectorXd q(system.num_q()), u(system.num_u());
   system.calc_initial_state(q, u);
@@ -142,7 +142,8 @@ TEST_F(BuildTest, BodyWithoutHingeMovesFreely) {
 
 TEST_F(BuildTest, UnknownBody) {
   spec_.hinges[1].parent = "hup";
-  expect_error("system.unknown-body", "sys.toml:12: error: hinge 'root' names body 'hup', which does not exist; did you mean 'hub'?");
+  expect_error("system.unknown-body",
+               "sys.toml:12: error: hinge 'root' names body 'hup', which does not exist; did you mean 'hub'?");
 }
 
 TEST_F(BuildTest, UnknownBodyOfAForce) {
@@ -196,7 +197,7 @@ TEST_F(BuildTest, DuplicateBodyNames) {
 TEST_F(BuildTest, MissingLocators) {
   auto& locators = flex_["arm.h5"].locators;
   auto& kg = flex_["arm.h5"].kg_external;
-  locators.erase(locators.begin() + 3, locators.begin() + 6);   // those of node 102
+  locators.erase(locators.begin() + 3, locators.begin() + 6);  // those of node 102
   kg.erase(kg.begin() + 3, kg.begin() + 6);
   expect_error("system.missing-locators", "node 102 of body 'arm'");
   spec_.forces[0].kind = records::ForceKind::Moment;
@@ -211,7 +212,7 @@ TEST_F(BuildTest, MissingLocatorsAtAnAttachment) {
   locators.erase(locators.begin());
   flex_["arm.h5"].kg_external.erase(flex_["arm.h5"].kg_external.begin());
   expect_error("system.missing-locators", "hinge 'root' loads node 101");
-  flex_["arm.h5"].phi[0].setZero();                         // a clamped node needs none
+  flex_["arm.h5"].phi[0].setZero();  // a clamped node needs none
   EXPECT_EQ(try_build(), "");
 }
 
@@ -303,7 +304,7 @@ TEST_F(BuildTest, FreedomWithoutInertiaIsFoundWhenItMoves) {
   spec_.hinges.resize(1);
   spec_.forces.clear();
   spec_.bodies[0].cg.setZero();
-  spec_.bodies[0].inertia.setZero();                        // a point mass on the axis
+  spec_.bodies[0].inertia.setZero();  // a point mass on the axis
   const System system = build(spec_);
   auto data = system.make_data();
   EXPECT_THROW(calc_u_dot(system, *data, 0, VectorXd::Zero(1), VectorXd::Zero(1)), ComputationError);
@@ -370,7 +371,8 @@ TEST_F(BuildTest, AllErrorsAreReported) {
   spec_.forces[0].body = "nobody";
   spec_.hinges.push_back(make_hinge_record("strut", HingeType::Revolute, "ground", "arm"));
   try_build();
-  for (const char* id : {"system.bad-mass", "system.too-many-modes", "system.zero-axis", "system.unknown-body", "system.loop"}) {
+  for (const char* id :
+       {"system.bad-mass", "system.too-many-modes", "system.zero-axis", "system.unknown-body", "system.loop"}) {
     EXPECT_TRUE(diagnostics_.has(id)) << id;
   }
   EXPECT_EQ(diagnostics_.num_errors(), 5);

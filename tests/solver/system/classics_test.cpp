@@ -36,7 +36,7 @@ TEST(Classics, Pendulum) {
   auto data = system.make_data();
   const double angle = 0.4;
   const VectorXd u_dot = calc_u_dot(system, *data, 0, VectorXd::Constant(1, angle), VectorXd::Constant(1, 5.0));
-  EXPECT_NEAR(u_dot[0], -1.5 * 9.81 / 2 * std::cos(angle), 1e-13);   // -m g L/2 cos θ / (m L²/3)
+  EXPECT_NEAR(u_dot[0], -1.5 * 9.81 / 2 * std::cos(angle), 1e-13);  // -m g L/2 cos θ / (m L²/3)
 }
 
 TEST(Classics, DoublePendulumOfPointMasses) {
@@ -78,7 +78,7 @@ TEST(Classics, TorqueFreeSymmetricTopPrecesses) {
   auto data = system.make_data();
   VectorXd q(7), u(6);
   system.calc_initial_state(q, u);
-  u << 0.3, 0, 2, 0.1, 0.2, 0.3;                            // w in the body, then the velocity
+  u << 0.3, 0, 2, 0.1, 0.2, 0.3;  // w in the body, then the velocity
   const double rate = (3.0 - 2.0) / 2.0 * 2.0, duration = 3;
   const int steps = 3000;
   for (int k = 0; k < steps; ++k) step_rk4(system, *data, 0, duration / steps, q, u);
@@ -107,12 +107,12 @@ TEST(Classics, PrescribedSpinNeedsTheTorqueOfInverseDynamics) {
   EXPECT_EQ(system.num_hinge_rates(0), 1);
   auto data = system.make_data();
   const double t = 0.35, angle = 0.6 * std::sin(2 * t), acceleration = -2.4 * std::sin(2 * t);
-  calc_u_dot(system, *data, t, VectorXd::Constant(1, 99.0), VectorXd());   // the row in q is not read
+  calc_u_dot(system, *data, t, VectorXd::Constant(1, 99.0), VectorXd());  // the row in q is not read
   VectorXd q(1), rate(1), torque(1);
   get_hinge(system, *data, 0, q, rate, torque);
   EXPECT_NEAR(q[0], angle, 1e-15);
   EXPECT_NEAR(rate[0], 1.2 * std::cos(2 * t), 1e-15);
-  EXPECT_NEAR(torque[0], 4 * acceleration + 3 * 9.81 * std::cos(angle), 1e-12);   // J = m L²/3 = 4
+  EXPECT_NEAR(torque[0], 4 * acceleration + 3 * 9.81 * std::cos(angle), 1e-12);  // J = m L²/3 = 4
   VectorXd q_dot(1);
   calc_q_dot(system, *data, t, q, VectorXd(), q_dot);
   EXPECT_EQ(q_dot[0], rate[0]);

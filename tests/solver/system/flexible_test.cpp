@@ -157,8 +157,8 @@ TEST(FlexibleSystem, LoadPatternActsOnTheModes) {
   const System system = m.make();
   auto data = system.make_data();
   const VectorXd eta = random.vector_n(2, 0.2);
-  const VectorXd expected = 2.5 * (m.flex.external_load.rightCols<1>() - m.flex.kg_external.back() * eta) -
-                            m.flex.modal_stiffness * eta;
+  const VectorXd expected =
+      2.5 * (m.flex.external_load.rightCols<1>() - m.flex.kg_external.back() * eta) - m.flex.modal_stiffness * eta;
   EXPECT_LT((m.flex.modal_mass * calc_u_dot(system, *data, 0, eta, VectorXd::Zero(2)) - expected).norm(), 1e-12);
 }
 
@@ -172,7 +172,7 @@ TEST(FlexibleSystem, FreeFallDoesNotDeform) {
   make_random_state(still, 3, q, u);
   const VectorXd u_still = calc_u_dot(still, *a, 0, q, u), u_falling = calc_u_dot(falling, *b, 0, q, u);
   VectorXd expected = u_still;
-  expected.segment<3>(3) += m.spec.simulation.gravity;      // the translations of the free hinge are in W
+  expected.segment<3>(3) += m.spec.simulation.gravity;  // the translations of the free hinge are in W
   EXPECT_LT((u_falling - expected).norm(), 1e-12 * expected.norm());
 }
 

@@ -77,7 +77,7 @@ TEST_P(RandomTreeTest, EnergyChangesByThePowerOfWhatActs) {
 TEST_P(RandomTreeTest, NewtonAndEulerHoldForAFreeTree) {
   RandomTreeOptions options;
   options.forces = false;
-  options.to_ground = false;                                // internal springs, dampers, motions only
+  options.to_ground = false;  // internal springs, dampers, motions only
   const System system = make(options);
   auto data = system.make_data();
   const double t = 0.3, h = 1e-4;
