@@ -217,8 +217,7 @@ int check_hdf5(const CheckOptions& options, const Console& console) {
   return finish(options, console, text, json, diagnostics);
 }
 
-int run_check(const CheckOptions& options) {
-  Console console(options.quiet, options.verbosity);
+int check_file(const CheckOptions& options, Console& console) {
   demand_file(options.file);
   if (has_suffix(options.file, ".h5") || has_suffix(options.file, ".hdf5")) return check_hdf5(options, console);
   if (has_suffix(options.file, ".toml")) {
@@ -226,6 +225,18 @@ int run_check(const CheckOptions& options) {
                                                            : check_system(options, console);
   }
   return check_deck(options, console);
+}
+
+int run_check(const CheckOptions& options) {
+  Console console(options.quiet, options.verbosity);
+  try {
+    return check_file(options, console);
+  } catch (const InputError& failure) {
+    if (!options.json) throw;
+    Diagnostics diagnostics;
+    for (const auto& item : failure.items()) diagnostics.add(item);
+    return finish(options, console, {}, {{"kind", nullptr}}, diagnostics);
+  }
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 """Bad input: a clear error with its place, exit code 1, and every error of the file at once."""
+import json
 import os
 import unittest
 
@@ -73,7 +74,7 @@ class BadDeck(ProgramTest):
     def test_a_mechanism_names_its_dofs(self):
         # Held at grid 1 in translation only: three rotations about it are free.
         self.write("deck.bdf", BEAM.replace("SPC1,1,123456,1", "SPC1,1,123,1"))
-        self.fails(1, "reduce", "deck.bdf", "--modes", "2", "-o", "b.h5", error="fe.mechanism")
+        self.fails(1, "reduce", "deck.bdf", "--modes", "2", "-o", "b.h5", says=["grid", "component"], error="fe.mechanism")
         self.assertFalse(os.path.exists(self.path("b.h5")))
 
     def test_options_of_reduce(self):
@@ -150,6 +151,17 @@ class BadSystem(ProgramTest):
         self.fails(1, "export", "out.h5", "--to", "csv", "--channel", "/hinges/ha/q:x", error="cli.unknown-channel")
         self.write("points.csv", "1;2\n")
         self.fails(1, "plot", "out.h5", "--sensor", "/hinges/ha/q", "--points", "points.csv", error="cli.bad-points")
+
+
+class Json(ProgramTest):
+    def test_check_tells_its_errors_as_json_too(self):
+        self.write("system.toml", SYSTEM.replace('child = "b"', 'child = "bb"'))
+        data = json.loads(self.bough("check", "system.toml", "--json", code=1).stdout)
+        self.assertGreater(data["errors"], 0)
+        self.assertIn("bb", " ".join(data["messages"]))
+        self.write("deck.bdf", BEAM.replace("CBAR,2,1,2,3", "CBAR,2,77,2,99"))
+        data = json.loads(self.bough("check", "deck.bdf", "--json", code=1).stdout)
+        self.assertEqual(data["errors"], len([m for m in data["messages"] if ": error: " in m]))
 
 
 class BadHdf5(ProgramTest):

@@ -1,0 +1,35 @@
+"""cmake --install into a fresh folder, then a find_package(Bough) project is configured, built and run against it."""
+import os
+import subprocess
+import sys
+import tempfile
+
+ROOT, BUILD = sys.argv[1:3]
+
+
+def run(*command, **options):
+    print("$", " ".join(command), flush=True)
+    return subprocess.run(command, check=True, text=True, **options)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    prefix, build = os.path.join(folder, "prefix"), os.path.join(folder, "build")
+    run("cmake", "--install", BUILD, "--prefix", prefix, stdout=subprocess.DEVNULL)
+    run("cmake", "-G", "Ninja", "-S", os.path.join(ROOT, "tests/install/consumer"), "-B", build,
+        f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release")
+    run("cmake", "--build", build)
+    printed = run(os.path.join(build, "consumer"), os.path.join(ROOT, "tests/install/consumer/pendulum.toml"),
+                  stdout=subprocess.PIPE).stdout
+    print(printed)
+    time, angle = (float(word) for word in printed.split())
+    # A rigid pendulum of 1 m and 1 kg released from 0.1 rad; one small-swing period is 2 pi sqrt(1/9.81) = 2.00607 s,
+    # longer by the factor 1 + angle^2/16, and it comes back to where it started.
+    assert abs(time - 2.00732) < 1e-9, time
+    assert abs(angle - 0.1) < 1e-4, angle
+    bough = os.path.join(prefix, "bin", "bough")
+    assert "bough" in run(bough, "--version", stdout=subprocess.PIPE).stdout
+    share = os.path.join(prefix, "share", "bough")
+    assert os.path.exists(os.path.join(share, "examples/ex01-spinup/boom.bdf")), share
+    headers = [os.path.join(base, name) for base, _, names in os.walk(os.path.join(prefix, "include")) for name in names]
+    assert headers and not [h for h in headers if "/detail/" in h], "detail headers are installed"
+print("ok")
