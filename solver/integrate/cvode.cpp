@@ -35,6 +35,7 @@ class CvodeStepper final : public Stepper {
       BOUGH_DEMAND(CVodeReInit(cvode_, t, y_) == CV_SUCCESS);
     }
     BOUGH_DEMAND(CVodeSetStopTime(cvode_, t_stop) == CV_SUCCESS);
+    BOUGH_DEMAND(CVodeSetMinStep(cvode_, detail::kSmallestStep * (t_stop - t)) == CV_SUCCESS);
   }
 
   void step(double) override {

@@ -15,7 +15,7 @@ class ErkStepper final : public Stepper {
   }
   ~ErkStepper() override { ERKStepFree(&arkode_); }
 
-  void restart(double t, const Eigen::Ref<const VectorXd>& y, double, double latest) override {
+  void restart(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double latest) override {
     y_.values() = y;
     t_ = t;
     ode_.set_latest(latest);
@@ -25,14 +25,20 @@ class ErkStepper final : public Stepper {
       before_ = statistics();   // ERKStepReInit sets the counters to zero
       BOUGH_DEMAND(ERKStepReInit(arkode_, detail::call_ode, t, y_) == ARK_SUCCESS);
     }
+    BOUGH_DEMAND(ERKStepSetMinStep(arkode_, detail::kSmallestStep * (t_stop - t)) == ARK_SUCCESS);
   }
 
   void step(double t_target) override {
     ode_.clear();
     // Steps end on the targets: the interpolant is of lower order than the method.
     BOUGH_DEMAND(ERKStepSetStopTime(arkode_, t_target) == ARK_SUCCESS);
-    const int flag = ERKStepEvolve(arkode_, t_target, y_, &t_, ARK_ONE_STEP);
-    if (flag >= 0) return;
+    double t = t_;
+    const int flag = ERKStepEvolve(arkode_, t_target, y_, &t, ARK_ONE_STEP);
+    if (flag >= 0) {
+      t_ = t;
+      return;
+    }
+    // A failed step leaves the time of the stage it failed at.
     detail::throw_failure(ode_, t_, "ARKODE", ERKStepGetReturnFlagName(flag));
   }
 

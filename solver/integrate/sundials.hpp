@@ -10,6 +10,9 @@
 
 namespace bough::solver::detail {
 
+/// Share of a stretch between jumps: without a bound SUNDIALS creeps up to a singularity in steps that no longer change t.
+inline constexpr double kSmallestStep = 1e-13;
+
 class Context {
  public:
   Context() { BOUGH_DEMAND(SUNContext_Create(nullptr, &context_) == 0); }

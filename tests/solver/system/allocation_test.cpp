@@ -1,32 +1,16 @@
-// No heap allocation in an evaluation: every call of malloc in this program is counted (glibc, no sanitizer).
-#include <atomic>
+// No heap allocation in an evaluation: every call of malloc in this program is counted.
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "tests/solver/support/malloc_count.hpp"
 #include "tests/solver/support/models.hpp"
-
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define BOUGH_COUNTS_MALLOC
-extern "C" void* __libc_malloc(size_t size);
-
-namespace {
-std::atomic<long> num_mallocs{0};
-}
-
-extern "C" void* malloc(size_t size) {
-  num_mallocs.fetch_add(1, std::memory_order_relaxed);
-  return __libc_malloc(size);
-}
-#endif
 
 namespace bough::solver::testing {
 namespace {
 
 TEST(Allocation, NoneInAnEvaluation) {
-#ifndef BOUGH_COUNTS_MALLOC
-  GTEST_SKIP() << "malloc cannot be counted in this build";
-#else
+  if (get_malloc_count() < 0) GTEST_SKIP() << "malloc cannot be counted in this build";
   RandomTreeOptions options;
   options.num_bodies = 16;
   RandomTree tree = make_random_tree(3, options);
@@ -46,7 +30,7 @@ TEST(Allocation, NoneInAnEvaluation) {
   VectorXd q_dot(q.size()), u_dot(u.size());
   auto data = system.make_data();
   double sum = 0;
-  const long before = num_mallocs;
+  const long before = get_malloc_count();
   for (int k = 0; k < 100; ++k) {
     const double t = 0.01 * k;
     calc_q_dot(system, *data, t, q, u, q_dot);
@@ -57,12 +41,11 @@ TEST(Allocation, NoneInAnEvaluation) {
     sum += calc_node_motion(system, *data, 0, 1).a_WK.norm() + calc_energies(system, *data).kinetic;
     sum += calc_power(system, *data);
   }
-  const long after = num_mallocs;
+  const long after = get_malloc_count();
   EXPECT_EQ(after - before, 0);
   EXPECT_TRUE(std::isfinite(sum));
   const VectorXd proof = u_dot * 2;  // the counter does count
-  EXPECT_GT(num_mallocs, after) << proof.size();
-#endif
+  EXPECT_GT(get_malloc_count(), after) << proof.size();
 }
 
 }  // namespace

@@ -1,0 +1,185 @@
+// Steppers on equations with closed solutions: order, tolerance, jumps, failures.
+#include "bough/solver/integrate/stepper.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+
+namespace bough::solver {
+namespace {
+
+using Eigen::Vector2d;
+
+class TestOde final : public Ode {
+ public:
+  using Function = std::function<void(double, const Eigen::Ref<const VectorXd>&, Eigen::Ref<VectorXd>)>;
+  TestOde(int size, Function f) : size_(size), f_(std::move(f)) {}
+  int size() const override { return size_; }
+  void calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) override {
+    latest = std::max(latest, t);
+    f_(t, y, y_dot);
+  }
+  double latest = -1e300;
+
+ private:
+  int size_;
+  Function f_;
+};
+
+/// ÿ = -4 y: y = cos 2t.
+TestOde make_oscillator() {
+  return TestOde(2, [](double, const auto& y, auto y_dot) {
+    y_dot[0] = y[1];
+    y_dot[1] = -4 * y[0];
+  });
+}
+
+StepperOptions make_options(int size, double tolerance, double step = 0) {
+  StepperOptions o;
+  o.relative_tolerance = tolerance;
+  o.absolute_tolerance = VectorXd::Constant(size, tolerance);
+  o.step = step;
+  return o;
+}
+
+/// Integrates from y0 at 0 to t and returns the state there.
+VectorXd integrate(Stepper& stepper, const VectorXd& y0, double t) {
+  stepper.restart(0, y0, t, t);
+  while (stepper.time() < t) stepper.step(t);
+  VectorXd y(y0.size());
+  stepper.calc_state(t, y);
+  return y;
+}
+
+double calc_oscillator_error(const std::string& integrator, double tolerance, double step, int rk_order = 8) {
+  TestOde ode = make_oscillator();
+  auto options = make_options(2, tolerance, step);
+  options.rk_order = rk_order;
+  const auto stepper = make_stepper(integrator, ode, options);
+  const VectorXd y = integrate(*stepper, Vector2d(1, 0), 10);
+  return (y - Vector2d(std::cos(20.0), -2 * std::sin(20.0))).norm();
+}
+
+/// A method that keeps its tolerance errs by (|y| + 1) tolerance in each component of a step at most, |y| <= 2; an
+/// undamped oscillator carries every error on, amplified by 2 at most.
+double calc_error_bound(const std::string& integrator, double tolerance) {
+  TestOde ode = make_oscillator();
+  const auto stepper = make_stepper(integrator, ode, make_options(2, tolerance));
+  integrate(*stepper, Vector2d(1, 0), 10);
+  return 2 * 3 * std::sqrt(2.0) * tolerance * static_cast<double>(stepper->statistics().num_steps);
+}
+
+TEST(Stepper, Rk4HasOrderFour) {
+  const double coarse = calc_oscillator_error("rk4", 0, 0.02), fine = calc_oscillator_error("rk4", 0, 0.01);
+  EXPECT_NEAR(std::log2(coarse / fine), 4, 0.05);
+}
+
+TEST(Stepper, ErrorFollowsTheTolerance) {
+  for (const std::string integrator : {"adams", "bdf", "rk"}) {
+    double last = 1;
+    for (double tolerance : {1e-5, 1e-7, 1e-9}) {
+      const double error = calc_oscillator_error(integrator, tolerance, 0);
+      EXPECT_LT(error, calc_error_bound(integrator, tolerance)) << integrator;
+      EXPECT_LT(error, last / 10) << integrator;
+      last = error;
+    }
+  }
+  EXPECT_LT(calc_oscillator_error("rk", 1e-9, 0, 5), 3e-7);
+}
+
+TEST(Stepper, BdfTakesLongStepsOnAStiffEquation) {
+  // ẏ = -1e6 (y - cos t) - sin t: y = cos t.
+  const auto f = [](double t, const auto& y, auto y_dot) { y_dot[0] = -1e6 * (y[0] - std::cos(t)) - std::sin(t); };
+  TestOde ode(1, f);
+  const auto stepper = make_stepper("bdf", ode, make_options(1, 1e-6));
+  const VectorXd y = integrate(*stepper, VectorXd::Ones(1), 5);
+  EXPECT_NEAR(y[0], std::cos(5.0), 1e-5);
+  EXPECT_LT(stepper->statistics().num_steps, 1000);        // an explicit method needs 5e6 / 3
+  EXPECT_GE(stepper->statistics().order, 2);
+}
+
+TEST(Stepper, InterpolatesAsWellAsItSteps) {
+  TestOde ode = make_oscillator();
+  const auto stepper = make_stepper("adams", ode, make_options(2, 1e-10));
+  stepper->restart(0, Vector2d(1, 0), 10, 10);
+  double at_steps = 0, between = 0;
+  VectorXd y(2);
+  for (int i = 1; i < 1000; ++i) {
+    const double t = 0.01 * i;
+    while (stepper->time() < t) {
+      stepper->step(t);
+      at_steps = std::max(at_steps, std::abs(stepper->state()[0] - std::cos(2 * stepper->time())));
+    }
+    stepper->calc_state(t, y);
+    between = std::max(between, std::abs(y[0] - std::cos(2 * t)));
+  }
+  EXPECT_GT(at_steps, 0);
+  EXPECT_LT(between, 1.5 * at_steps);
+}
+
+// ẏ = 0 before t = 1, 1 after: with the right-hand side held at its left limit the last step before the jump is exact.
+TEST(Stepper, StepsSeeOneSideOfAJump) {
+  for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
+    TestOde ode(1, [](double t, const auto&, auto y_dot) { y_dot[0] = t < 1 ? 0 : 1; });
+    const auto stepper = make_stepper(integrator, ode, make_options(1, 1e-6, 0.3));
+    const double latest = std::nextafter(1.0, 0.0);
+    stepper->restart(0, VectorXd::Zero(1), 1, latest);
+    while (stepper->time() < 1) stepper->step(1);
+    EXPECT_EQ(stepper->time(), 1) << integrator;
+    EXPECT_LE(ode.latest, latest) << integrator;
+    VectorXd y(1);
+    stepper->calc_state(1, y);
+    EXPECT_EQ(y[0], 0) << integrator;
+    stepper->restart(1, y, 2, 2);
+    while (stepper->time() < 2) stepper->step(2);
+    stepper->calc_state(2, y);
+    EXPECT_NEAR(y[0], 1, 1e-12) << integrator;
+  }
+}
+
+TEST(Stepper, CountsSurviveARestart) {
+  for (const std::string integrator : {"adams", "rk", "rk4"}) {
+    TestOde ode = make_oscillator();
+    const auto stepper = make_stepper(integrator, ode, make_options(2, 1e-6, 0.1));
+    const VectorXd y = integrate(*stepper, Vector2d(1, 0), 1);
+    const long before = stepper->statistics().num_steps;
+    EXPECT_GT(before, 0);
+    stepper->restart(1, y, 2, 2);
+    while (stepper->time() < 2) stepper->step(2);
+    EXPECT_GT(stepper->statistics().num_steps, before) << integrator;
+    EXPECT_GT(stepper->statistics().num_evaluations, stepper->statistics().num_steps) << integrator;
+  }
+}
+
+TEST(Stepper, ExceptionsOfTheEquationsArrive) {
+  for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
+    TestOde ode(1, [](double t, const auto& y, auto y_dot) {
+      if (t > 0.5) throw std::domain_error("no further");
+      y_dot[0] = -y[0];
+    });
+    const auto stepper = make_stepper(integrator, ode, make_options(1, 1e-8, 0.01));
+    EXPECT_THROW(integrate(*stepper, VectorXd::Ones(1), 1), std::domain_error) << integrator;
+    EXPECT_LE(stepper->time(), 0.5) << integrator;
+    EXPECT_GT(stepper->time(), 0.4) << integrator;
+  }
+}
+
+// ẏ = y² from 1: infinite at t = 1.
+TEST(Stepper, BlowUpIsAFailureNotASilence) {
+  for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
+    TestOde ode(1, [](double, const auto& y, auto y_dot) { y_dot[0] = y[0] < 1e6 ? y[0] * y[0] : std::nan(""); });
+    const auto stepper = make_stepper(integrator, ode, make_options(1, 1e-8, 0.001));
+    try {
+      integrate(*stepper, VectorXd::Ones(1), 2);
+      ADD_FAILURE() << integrator;
+    } catch (const StepFailure& failure) {
+      EXPECT_EQ(failure.kind, StepFailure::Kind::NonFinite) << integrator;
+      EXPECT_NEAR(failure.time, 1, 0.01) << integrator;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bough::solver
