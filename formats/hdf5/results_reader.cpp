@@ -49,20 +49,22 @@ ResultsFile read_once(const std::string& path) {
   results.completed = file.read_integer_attribute("/", "completed", 0) != 0;
   results.reason = file.read_attribute("/", "reason");
   results.system_text = read_system_text(file);
-  results.time = file.read_vector("/time", -1, true);
+  // A run killed within a flush may have left a part of its last samples behind the ones that count.
+  const long committed = file.read_integer_attribute("/", kNumSamples, -1);
+  const NumberArray time = file.read_array("/time", {-1}, true, committed);
+  results.time = Eigen::Map<const Eigen::VectorXd>(time.data.data(), static_cast<Eigen::Index>(time.data.size()));
   std::vector<std::string> paths;
   collect_datasets(file, "", paths);
   Eigen::Index rows = results.time.size();
   for (const auto& name : paths) {
     const bool is_vector = get_rank(file, name) == 1;
-    const NumberArray array = file.read_array(name, is_vector ? Shape{-1} : Shape{-1, -1}, true);
+    const NumberArray array = file.read_array(name, is_vector ? Shape{-1} : Shape{-1, -1}, true, committed);
     const auto nt = static_cast<Eigen::Index>(array.shape[0]);
     const auto size = is_vector ? 1 : static_cast<Eigen::Index>(array.shape[1]);
     results.descriptions[name] = file.read_attribute(name, "description");
     if (name != "/time") results.channels[name] = Eigen::Map<const RowMajor>(array.data.data(), nt, size);
     rows = std::min(rows, nt);
   }
-  // A run killed within a flush may have given some channels more samples than others.
   results.time.conservativeResize(rows);
   for (auto& [unused, values] : results.channels) values.conservativeResize(rows, Eigen::NoChange);
   if (file.has("/events/time") && file.has("/events/what")) {

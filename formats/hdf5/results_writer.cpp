@@ -250,9 +250,9 @@ class ResultsWriter final : public records::ResultSink {
   void flush() {
     errno = 0;
     const auto rows = static_cast<hsize_t>(num_buffered_);
+    check(reserve_space(file_.get(), calc_growth(rows)), "samples cannot be written");
     if (rows > 0) {
       for (auto& column : columns_) {
-        if (column.channel.size == 0) continue;
         append(column.dataset, num_written_, rows, column.channel.size, H5T_NATIVE_DOUBLE,
                buffer_.data() + static_cast<std::size_t>(column.offset * flush_every_));
       }
@@ -270,13 +270,42 @@ class ResultsWriter final : public records::ResultSink {
       events_.clear();
     }
     check(flush_file(file_.get()), "the file cannot be written");
+    // Told only when all of it is in the file: a kill within the flush above leaves the number of before.
+    if (rows > 0 || !has_count_) {
+      write_count();
+      check(flush_file(file_.get()), "the file cannot be written");
+    }
+  }
+
+  void write_count() {
+    if (!has_count_ && H5Aexists(file_.get(), kNumSamples) <= 0) {
+      const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+      const Handle made(H5Acreate2(file_.get(), kNumSamples, H5T_STD_I64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                        H5Aclose);
+      check(made.is_valid(), "attribute num_samples cannot be written");
+    }
+    has_count_ = true;
+    const auto count = static_cast<std::int64_t>(num_written_);
+    const Handle attribute(H5Aopen(file_.get(), kNumSamples, H5P_DEFAULT), H5Aclose);
+    check(H5Awrite(attribute.get(), H5T_NATIVE_INT64, &count) >= 0, "attribute num_samples cannot be written");
+  }
+
+  /// At most what `rows` more samples and the waiting events take: whole chunks, and some for the indices.
+  hsize_t calc_growth(hsize_t rows) const {
+    hsize_t bytes = 64 * 1024 + 1024 * events_.size();
+    for (const auto& column : columns_) {
+      const hsize_t chunk = get_chunk_rows(column.channel.size);
+      bytes += (rows / chunk + 2) * chunk * static_cast<hsize_t>(column.channel.size) * sizeof(double);
+    }
+    for (const auto& event : events_) bytes += event.what.size();
+    return bytes;
   }
 
   std::string path_;
   std::optional<double> resume_time_, skip_until_;
   int flush_every_ = 1, sample_size_ = 0, num_buffered_ = 0;
   hsize_t num_written_ = 0, num_events_ = 0;
-  bool failed_ = false;
+  bool failed_ = false, has_count_ = false;
   std::vector<Column> columns_;
   std::vector<double> buffer_;             ///< a block of flush_every rows per channel
   std::vector<records::EventRecord> events_;
@@ -289,6 +318,7 @@ void ResultsWriter::append(Handle& dataset, hsize_t first, hsize_t rows, int siz
   const hsize_t shape[2] = {first + rows, static_cast<hsize_t>(size)};
   const hsize_t start[2] = {first, 0}, block[2] = {rows, static_cast<hsize_t>(size)};
   bool ok = H5Dset_extent(dataset.get(), shape) >= 0;
+  if (ok && size == 0) return;   // a rigid body's eta: rows without entries
   const Handle file_space(H5Dget_space(dataset.get()), H5Sclose);
   const Handle memory_space(H5Screate_simple(rank, block, nullptr), H5Sclose);
   ok = ok && H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start, nullptr, block, nullptr) >= 0;

@@ -42,8 +42,8 @@ Axis make_axis(double min, double max, int wanted, bool widen) {
   for (double k = std::ceil(min / step - 1e-9); k * step <= max + 1e-9 * step; k += 1) {
     axis.ticks.push_back(k * step);
     char buffer[40];
-    std::snprintf(buffer, sizeof buffer, "%.*f", decimals, std::abs(k) < 0.5 ? 0.0 : k * step / scale);
-    std::string label(buffer);
+    std::snprintf(buffer, sizeof buffer, "%.*f", decimals, k * step / scale);
+    std::string label(std::abs(k) < 0.5 ? "0" : buffer);
     if (label[0] == '-') label.replace(0, 1, "\u2212");
     axis.labels.push_back(label);
   }

@@ -107,7 +107,7 @@ records::BodySpec read_body_spec(const std::string& path, Diagnostics& diagnosti
   spec.mass = body.get_string("mass", spec.mass);
   spec.integrals = body.get_string("integrals", spec.integrals);
   spec.ignore_cards = body.get_strings("ignore");
-  if (spec.frame == records::BodyFrame::Fixed && !spec.support.empty()) {
+  if (body.get_string("frame", "fixed") == "fixed" && !spec.support.empty()) {
     diagnostics.error("toml.conflicting-keys", body.locate("support"),
                       "'support' stands with frame = \"fixed\", where the deck's constraints are the support",
                       "remove it, or set frame = \"free\"");

@@ -42,17 +42,18 @@ int get_descriptor(hid_t file) {
 }
 }  // namespace
 
-bool flush_file(hid_t file) {
+bool reserve_space(hid_t file, hsize_t more) {
   hsize_t size = 0;
   const int descriptor = get_descriptor(file);
-  if (descriptor >= 0 && H5Fget_filesize(file, &size) >= 0 && size > 0) {
-    const bool ok = ::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(size)) == 0;
-    // Some file systems cannot reserve; then the flush itself has to show.
-    if (!ok && (errno == ENOSPC || errno == EFBIG || errno == EDQUOT || errno == EIO)) return false;
-    errno = 0;
-  }
-  return H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
+  if (descriptor < 0 || H5Fget_filesize(file, &size) < 0 || size + more == 0) return true;
+  if (::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(size + more)) == 0) return true;
+  // Some file systems cannot reserve; there the write itself has to show.
+  if (errno == ENOSPC || errno == EFBIG || errno == EDQUOT || errno == EIO) return false;
+  errno = 0;
+  return true;
 }
+
+bool flush_file(hid_t file) { return reserve_space(file, 0) && H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0; }
 
 void abandon_writes(hid_t file) {
   const int descriptor = get_descriptor(file);

@@ -67,8 +67,12 @@ Handle make_file_access();
 /// file that cannot take its first block.
 bool make_empty_file(const std::string& path);
 
-/// Flushes, after reserving the space that it takes; false, with errno, when there is not enough. HDF5 does not survive
-/// a flush that fails half-way: neither closing the file nor the end of the program.
+/// Reserves disk space for all of the file as it is now in memory, and `more` bytes; false, with errno, when there is
+/// not enough. HDF5 does not survive a write or flush that fails half-way: neither closing the file nor the end of the
+/// program, so a full disk has to show before.
+bool reserve_space(hid_t file, hsize_t more);
+
+/// Reserves and flushes.
 bool flush_file(hid_t file);
 
 /// Gives up on a file whose device refuses writes: what is still to be written goes to memory, so that it can be closed.

@@ -138,12 +138,18 @@ Handle FileReader::open_dataset(const std::string& path, const Shape& shape, H5T
   return dataset;
 }
 
-NumberArray FileReader::read_array(const std::string& path, const Shape& shape, bool may_be_nan) {
+NumberArray FileReader::read_array(const std::string& path, const Shape& shape, bool may_be_nan, long most_rows) {
   NumberArray array;
   const Handle dataset = open_dataset(path, shape, H5T_FLOAT, array.shape);
+  const bool is_part = most_rows >= 0 && !array.shape.empty() && array.shape[0] > static_cast<hsize_t>(most_rows);
+  if (is_part) array.shape[0] = static_cast<hsize_t>(most_rows);
   array.data.assign(count(array.shape), 0.0);
   if (!dataset.is_valid() || array.data.empty()) return array;
-  if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.data.data()) < 0) {
+  const Handle memory(H5Screate_simple(static_cast<int>(array.shape.size()), array.shape.data(), nullptr), H5Sclose);
+  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
+  const Dims start(array.shape.size(), 0);
+  if (is_part) H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, array.shape.data(), nullptr);
+  if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, array.data.data()) < 0) {
     error("hdf5.damaged", path + " cannot be read", "write the file again");
     return array;
   }

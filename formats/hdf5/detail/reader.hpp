@@ -35,7 +35,8 @@ class FileReader {
 
   /// These report "hdf5.missing", "hdf5.shape" (found against expected), "hdf5.type", "hdf5.damaged" and, unless
   /// told, "hdf5.nan", and then return zeros of the expected shape (0 where it is open).
-  NumberArray read_array(const std::string& path, const Shape& shape, bool may_be_nan = false);
+  /// Of a longer array only the first `most_rows` are touched, when given.
+  NumberArray read_array(const std::string& path, const Shape& shape, bool may_be_nan = false, long most_rows = -1);
   Eigen::VectorXd read_vector(const std::string& path, long size, bool may_be_nan = false);
   Eigen::MatrixXd read_matrix(const std::string& path, long rows, long cols);
   double read_number(const std::string& path);

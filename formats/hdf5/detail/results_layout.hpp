@@ -9,6 +9,8 @@ namespace bough::hdf5 {
 
 inline constexpr const char* kResultsFormat = "bough-results";
 inline constexpr const char* kChecksum = "checksum";
+/// Root attribute: samples that every channel has for certain.
+inline constexpr const char* kNumSamples = "num_samples";
 
 /// FNV-1a over the bytes of a checkpoint: tells a whole one from one that a kill cut in the middle.
 inline std::int64_t calc_checksum(double time, const Eigen::VectorXd& state) {

@@ -51,14 +51,16 @@ class HingeReader {
     const std::string& used = in_degrees ? degrees_key : key;
     std::vector<double> list = table_.get_numbers(used);
     if (!table_.has(used) || !is_known_) return list;
-    if (one_for_all && list.size() == 1 && table_.find(used)->is_number()) list.assign(kinds.size(), list[0]);
+    if (one_for_all && table_.find(used)->is_number()) return std::vector<double>(kinds.size(), list[0]);
     if (in_degrees && kinds.find('a') == std::string::npos) {
       diagnostics_.error("toml.no-angle", table_.locate(used),
                          "hinge '" + table_.get_string("name") + "' of type " + type_ + " has no angle in " + key,
                          "write " + key + " instead of " + degrees_key);
       return {};
     }
-    check_length(used, list.size(), kinds.size());
+    // Entries of another type were reported; they count.
+    const Value& given = *table_.find(used);
+    check_length(used, given.is_array() ? given.items.size() : list.size(), kinds.size());
     for (std::size_t i = 0; in_degrees && i < std::min(list.size(), kinds.size()); ++i) {
       if (kinds[i] == 'a') list[i] *= kRadPerDegree;
     }
@@ -67,7 +69,10 @@ class HingeReader {
 
   std::vector<std::string> read_motion() {
     const std::vector<std::string> names = table_.get_strings("motion");
-    if (table_.has("motion") && is_known_) check_length("motion", names.size(), coordinates_.u.size());
+    if (table_.has("motion") && is_known_) {
+      const Value& given = *table_.find("motion");
+      check_length("motion", given.is_array() ? given.items.size() : names.size(), coordinates_.u.size());
+    }
     return names;
   }
 

@@ -1,0 +1,79 @@
+"""Checks TOML files against data/schema with python3-jsonschema.
+
+check_schema.py SCHEMAS --examples FOLDER   every TOML below FOLDER has to be valid
+check_schema.py SCHEMAS --cases FOLDER      FOLDER/{system,body}/{good,bad}/*.toml have to be accepted and refused
+check_schema.py SCHEMAS --keywords          the schemas use only the keywords that Bough's own checker knows
+"""
+import json
+import pathlib
+import sys
+import tomllib
+
+import jsonschema
+
+KEYWORDS = {"$schema", "$id", "$ref", "$defs", "title", "description", "default", "type", "enum", "pattern", "properties",
+            "required", "additionalProperties", "items", "minItems", "maxItems", "minimum", "exclusiveMinimum", "oneOf",
+            "anyOf", "allOf", "not"}
+
+
+def load(folder, kind):
+    schema = json.loads((folder / f"{kind}.schema.json").read_text())
+    jsonschema.Draft202012Validator.check_schema(schema)
+    return jsonschema.Draft202012Validator(schema)
+
+
+def find_kind(document):
+    return "body" if isinstance(document.get("body"), dict) else "system"
+
+
+def check_examples(validators, folder):
+    files = sorted(folder.rglob("*.toml"))
+    faults = []
+    for path in files:
+        document = tomllib.loads(path.read_text())
+        faults += [f"{path}: {e.json_path}: {e.message}" for e in validators[find_kind(document)].iter_errors(document)]
+    print(f"{len(files)} files below {folder}")
+    return faults if files else [f"no TOML file below {folder}"]
+
+
+def check_cases(validators, folder):
+    faults = []
+    for path in sorted(folder.rglob("*.toml")):
+        kind, verdict = path.parts[-3], path.parts[-2]
+        errors = list(validators[kind].iter_errors(tomllib.loads(path.read_text())))
+        if bool(errors) != (verdict == "bad"):
+            faults.append(f"{path} should be {verdict}: {[e.message for e in errors]}\n{path.read_text()}")
+    return faults
+
+
+def check_keywords(node, inside_properties=False):
+    faults = []
+    if isinstance(node, dict):
+        for key, value in node.items():
+            if not inside_properties and key not in KEYWORDS:
+                faults.append(f"keyword {key} is not known to Bough")
+            if key not in ("default", "enum"):
+                faults += check_keywords(value, not inside_properties and key in ("properties", "$defs"))
+            if inside_properties and "description" not in value and "$ref" not in value and not key.endswith("_deg"):
+                if key not in ("vector", "number_or_list", "node_id", "node"):
+                    faults.append(f"{key} has no description")
+    elif isinstance(node, list):
+        for value in node:
+            faults += check_keywords(value)
+    return faults
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    validators = {kind: load(folder, kind) for kind in ("system", "body")}
+    if sys.argv[2] == "--examples":
+        faults = check_examples(validators, pathlib.Path(sys.argv[3]))
+    elif sys.argv[2] == "--cases":
+        faults = check_cases(validators, pathlib.Path(sys.argv[3]))
+    else:
+        faults = sum((check_keywords(v.schema) for v in validators.values()), [])
+    print("\n".join(faults))
+    sys.exit(1 if faults else 0)
+
+
+main()
