@@ -159,10 +159,10 @@ EigenPairs BucklingModes::solve() {
       if (size() >= wanted && cut >= 0) break;
       // The solver has nothing more to give: K_G has no more rank.
       if (size() < asked && options_.num_modes > 0)
-        diagnostics_.warning("modal.fewer-modes", {},
-                             "the load has " + std::to_string(size()) + " buckling modes, " + std::to_string(asked) +
-                                 " were asked for",
-                             "ask for fewer");
+        diagnostics_.warning(
+            "modal.fewer-modes", {},
+            "the load has " + std::to_string(size()) + " buckling modes, " + std::to_string(asked) + " were asked for",
+            "ask for fewer");
       return make_pairs(size(), std::min(wanted, size()), -1);
     }
   }

@@ -86,6 +86,8 @@ class NormalModes {
   void find_all();
   int find_cut() const;
   EigenPairs make_pairs(int cut, int count);
+  double calc_roundoff(int i) const;
+  void warn_of_roundoff(const EigenPairs& pairs, const MatrixXd& X) const;
 
   const EigenOptions& options_;
   Diagnostics& diagnostics_;
@@ -122,10 +124,10 @@ void NormalModes::hold_massless() {
   }
   fe::check_petsc(MatAssemblyBegin(pencil_.K.get(), MAT_FINAL_ASSEMBLY));
   fe::check_petsc(MatAssemblyEnd(pencil_.K.get(), MAT_FINAL_ASSEMBLY));
-  diagnostics_.warning("modal.massless-motion", {},
-                       std::to_string(rigid_.held.size()) + " rigid motion(s) have neither strain nor mass; held at " +
-                           where,
-                       "use a consistent mass or give the model inertia about that axis");
+  diagnostics_.warning(
+      "modal.massless-motion", {},
+      std::to_string(rigid_.held.size()) + " rigid motion(s) have neither strain nor mass; held at " + where,
+      "use a consistent mass or give the model inertia about that axis");
 }
 
 void NormalModes::choose_range() {
@@ -238,7 +240,8 @@ EigenPairs NormalModes::make_pairs(int cut, int count) {
 
   const VectorXd weights = detail::calc_basis_weights(model);
   if (cut > k) {
-    // Purification and separate Krylov runs leave the vectors orthogonal to nine digits or so: once more, symmetrically.
+    // Purification and separate Krylov runs leave the vectors orthogonal to nine digits or so: once more,
+    // symmetrically.
     const MatrixXd& R = rigid_.modes;
     MatrixXd Y = X.rightCols(cut - k);
     Y -= R * (pencil_.calc_M_times(R).transpose() * Y).eval();
@@ -265,17 +268,40 @@ EigenPairs NormalModes::make_pairs(int cut, int count) {
   pairs.num_rigid = std::clamp(num_zero - first, 0, size);
   pairs.inertia_count = count;
   pairs.num_massless = static_cast<int>(rigid_.held.size());
+  warn_of_roundoff(pairs, X);
   const MatrixXd KX = pencil_.calc_K_times(X);
   const MatrixXd R = KX - pencil_.calc_M_times(X) * pairs.lambda.asDiagonal();
   pairs.residual.resize(size);
   for (int j = 0; j < size; ++j) {
-    const double scale =
-        j < pairs.num_rigid ? pencil_.K_diagonal.cwiseProduct(X.col(j)).norm() : KX.col(j).norm();
+    const double scale = j < pairs.num_rigid ? pencil_.K_diagonal.cwiseProduct(X.col(j)).norm() : KX.col(j).norm();
     pairs.residual(j) = scale > 0 ? R.col(j).norm() / scale : 0;
   }
   pairs.Phi = model.T() * X;
   detail::fix_signs(pairs.Phi);
   return pairs;
+}
+
+/// Relative error of an eigenvalue by roundoff: the strain energy of a soft mode on a fine mesh is a small difference
+/// of large numbers. Measured on beams of 100 to 2000 elements it is about 0.02 ε over the share of the energy that is
+/// left.
+double calc_roundoff_of(const Pencil& pencil, const VectorXd& x, double lambda) {
+  return 0.02 * 2.2e-16 / std::max(pencil.calc_relative_energy(x, lambda), 1e-300);
+}
+
+double NormalModes::calc_roundoff(int i) const {
+  const int j = i - num_rigid();
+  return j < found_.num_zero ? 0 : calc_roundoff_of(pencil_, found_.X.col(j), found_.lambda(j));
+}
+
+void NormalModes::warn_of_roundoff(const EigenPairs& pairs, const MatrixXd& X) const {
+  for (int j = pairs.num_rigid; j < pairs.lambda.size(); ++j) {
+    const double error = calc_roundoff_of(pencil_, X.col(j), pairs.lambda(j));
+    if (error < 1e-4) return;
+    diagnostics_.warning("modal.roundoff", {},
+                         "mode " + std::to_string(j + 1) + " is so soft on its mesh that roundoff may change its " +
+                             "eigenvalue by a part in " + std::to_string(static_cast<long>(std::max(1.0, 1 / error))),
+                         "use a coarser mesh: elements far shorter than the waves of the modes only add roundoff");
+  }
 }
 
 EigenPairs NormalModes::solve() {
@@ -309,16 +335,19 @@ EigenPairs NormalModes::solve() {
       missing = cut < 0 ? 4 : 0;
     }
     if (missing == 0 && options_.check_inertia) {
-      const double top = cut > 0 ? value(cut - 1) : -shift_, step = top + shift_;
-      const double mu = top + (cut < num_found() ? std::min(0.5 * (value(cut) - top), 1e-3 * step) : 1e-3 * step);
+      // Above the last one, but not in the next gap's upper half; roundoff differs between this factor and the
+      // solver's.
+      const double top = cut > 0 ? value(cut - 1) : -shift_;
+      const double step = (top + shift_) * std::clamp(100 * calc_roundoff(cut - 1), 1e-3, 0.5);
+      const double mu = top + (cut < num_found() ? std::min(0.5 * (value(cut) - top), step) : step);
       count = count_below(mu);
       missing = count - cut;
     }
     if (missing == 0) {
       if (cut > last_ && value(cut - 1) > 0)
         diagnostics_.warning("modal.cut-root", {},
-                             "the last mode belongs to a repeated root: " +
-                                 std::to_string(cut - last_) + " more mode(s) have the same frequency",
+                             "the last mode belongs to a repeated root: " + std::to_string(cut - last_) +
+                                 " more mode(s) have the same frequency",
                              "ask for " + std::to_string(cut - first_) + " modes");
       return make_pairs(cut, count);
     }
@@ -326,13 +355,12 @@ EigenPairs NormalModes::solve() {
     run_krylov(missing + 2);
     if (num_found() == before) break;
   }
-  throw ComputationError("modal.missed-modes", {},
-                         "found " + std::to_string(cut < 0 ? num_found() : cut) +
-                             " modes" +
-                             (count < 0 ? " and converged on no more"
-                                        : ", the inertia of the factor counts " + std::to_string(count)),
-                         "ask for more modes; look for negative springs; if stiffness spans many orders, soften the "
-                         "stiffest parts or use rigid elements");
+  throw ComputationError(
+      "modal.missed-modes", {},
+      "found " + std::to_string(cut < 0 ? num_found() : cut) + " modes" +
+          (count < 0 ? " and converged on no more" : ", the inertia of the factor counts " + std::to_string(count)),
+      "ask for more modes; look for negative springs; if stiffness spans many orders, soften the "
+      "stiffest parts or use rigid elements");
 }
 
 }  // namespace

@@ -11,29 +11,29 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 struct EigenOptions {
-  int num_modes = 10;                        ///< wanted, rigid ones included; 0: all in the range below
+  int num_modes = 10;  ///< wanted, rigid ones included; 0: all in the range below
   std::optional<double> min_hz, max_hz;
   double tolerance = 1e-12;
-  bool check_inertia = true;                 ///< Sylvester count: no mode missed below the highest
+  bool check_inertia = true;  ///< Sylvester count: no mode missed below the highest
   std::function<void(int converged, int wanted)> progress;
 };
 
 /// K φ = λ M φ, φᵀMφ = 1, ascending λ. Sign rule: the component of largest magnitude (first by g-dof among those
 /// within 1e-6 of it) is positive, so it does not depend on the rank count.
 struct EigenPairs {
-  VectorXd lambda;                           ///< n; rigid modes are exactly 0
-  MatrixXd Phi;                              ///< num_gdofs x n in basic, constrained rows zero, dependent rows recovered
-  VectorXd residual;                         ///< |Kφ - λMφ| / |Kφ|; for rigid modes over the K-norm scale
-  int num_rigid = 0;                         ///< zero eigenvalues, first
-  int inertia_count = -1;                    ///< eigenvalues below the highest returned; -1 not checked
-  int num_massless = 0;                      ///< rigid motions without mass (a straight line of bars with lumped mass
-                                             ///< turns about itself freely): no eigenvalue belongs to them
+  VectorXd lambda;         ///< n; rigid modes are exactly 0
+  MatrixXd Phi;            ///< num_gdofs x n in basic, constrained rows zero, dependent rows recovered
+  VectorXd residual;       ///< |Kφ - λMφ| / |Kφ|; for rigid modes over the K-norm scale
+  int num_rigid = 0;       ///< zero eigenvalues, first
+  int inertia_count = -1;  ///< eigenvalues below the highest returned; -1 not checked
+  int num_massless = 0;    ///< rigid motions without mass (a straight line of bars with lumped mass
+                           ///< turns about itself freely): no eigenvalue belongs to them
 };
 
 /// The first num_modes of the range, or all of it. A root repeated at the cut is completed before it is cut, so the
 /// basis of what is returned does not depend on num_modes; inertia_count then counts the copies left out too.
 /// Repeated roots get a basis fixed by the model alone (canonical.hpp). Warnings: modal.fewer-modes, modal.cut-root,
-/// modal.massless-motion, modal.empty-range. Throws ComputationError modal.no-dofs, modal.no-mass,
+/// modal.massless-motion, modal.empty-range, modal.roundoff. Throws ComputationError modal.no-dofs, modal.no-mass,
 /// modal.singular-shift, modal.missed-modes.
 EigenPairs calc_normal_modes(const fe::Model& model, const EigenOptions& options, Diagnostics& diagnostics);
 

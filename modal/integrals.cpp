@@ -65,11 +65,10 @@ MassIntegrals calc_exact_integrals(const fe::Model& model, fe::MassKind kind, co
   for (const auto& node : model.nodes()) {
     if (node.num_dofs != 6) continue;
     for (int a = 0; a < 3; ++a)
-      B.block(node.first_gdof, 6 + a * n, 3, n) =
-          skew(Vector3d::Unit(a)) * Phi.middleRows(node.first_gdof, 3);
+      B.block(node.first_gdof, 6 + a * n, 3, n) = skew(Vector3d::Unit(a)) * Phi.middleRows(node.first_gdof, 3);
   }
   const MatrixXd M_turned = fe::calc_mass_times(model, kind, B.rightCols(4 * n));
-  const MatrixXd gram = B.transpose() * M_turned;   // (6 + 4n) x 4n
+  const MatrixXd gram = B.transpose() * M_turned;  // (6 + 4n) x 4n
   const auto turned = [n](int a, int j) { return a * n + j; };
   const auto plain = [n](int j) { return 3 * n + j; };
 

@@ -126,7 +126,7 @@ KrylovResult solve_krylov_schur(const KrylovProblem& problem) {
 
   KrylovResult result;
   const PetscErrorCode code = EPSSetUp(eps.get());
-  if (code == PETSC_ERR_LIB) {   // MUMPS met a zero pivot: SLEPc makes that an error of the library
+  if (code == PETSC_ERR_LIB) {  // MUMPS met a zero pivot: SLEPc makes that an error of the library
     result.is_singular = true;
     return result;
   }

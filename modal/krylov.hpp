@@ -17,8 +17,8 @@ using Eigen::VectorXd;
 void initialize_slepc();
 
 enum class Spectrum {
-  NearShift,         ///< A x = λ B x nearest `shift` by shift-invert; A - shift B is factored
-  LargestMagnitude   ///< A x = θ B x of largest |θ|; B, positive definite, is factored
+  NearShift,        ///< A x = λ B x nearest `shift` by shift-invert; A - shift B is factored
+  LargestMagnitude  ///< A x = θ B x of largest |θ|; B, positive definite, is factored
 };
 
 struct KrylovProblem {
@@ -26,17 +26,17 @@ struct KrylovProblem {
   Spectrum spectrum = Spectrum::NearShift;
   double shift = 0;
   int num_wanted = 1;
-  int max_subspace = 0;                      ///< rank of the operator, 0: the size of A
-  MatrixXd deflate;                          ///< n x k known eigenvectors, kept out; k may be 0
+  int max_subspace = 0;  ///< rank of the operator, 0: the size of A
+  MatrixXd deflate;      ///< n x k known eigenvectors, kept out; k may be 0
   double tolerance = 1e-12;
-  int start = 0;                             ///< picks one of the fixed start vectors
+  int start = 0;  ///< picks one of the fixed start vectors
   std::function<void(int converged, int wanted)> progress;
 };
 
 struct KrylovResult {
-  VectorXd values;                           ///< converged ones, in SLEPc's order; may be fewer or more than wanted
-  MatrixXd vectors;                          ///< n x values.size(), replicated
-  bool is_singular = false;                  ///< the matrix to factor is singular: nothing was solved
+  VectorXd values;           ///< converged ones, in SLEPc's order; may be fewer or more than wanted
+  MatrixXd vectors;          ///< n x values.size(), replicated
+  bool is_singular = false;  ///< the matrix to factor is singular: nothing was solved
 };
 
 /// Krylov-Schur with a B inner product (Stewart, SIAM J. Matrix Anal. Appl. 23 (2001) 601; SLEPc), purified for a

@@ -115,8 +115,8 @@ RigidMotions find_rigid_motions(const Pencil& pencil) {
   MatrixXd Y = B * (scale.asDiagonal() * V * d.cwiseSqrt().cwiseInverse().asDiagonal());
   VectorXd energy;
   for (int pass = 0; pass < 2; ++pass) {
-    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(
-        Y.transpose() * pencil.calc_K_times(Y), Y.transpose() * pencil.K_diagonal.asDiagonal() * Y);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(Y.transpose() * pencil.calc_K_times(Y),
+                                                                    Y.transpose() * pencil.K_diagonal.asDiagonal() * Y);
     Y = (Y * solver.eigenvectors()).eval();
     energy = solver.eigenvalues();
   }
@@ -203,7 +203,8 @@ void throw_singular(const Pencil& pencil, double shift) {
   }
   throw ComputationError("modal.singular-shift", {},
                          "the shifted stiffness matrix is singular: a part of the model can move without strain and "
-                         "without mass" + where,
+                         "without mass" +
+                             where,
                          "give that part mass, constrain it, or switch PARAM,AUTOSPC on");
 }
 

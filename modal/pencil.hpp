@@ -16,7 +16,7 @@ struct Pencil {
 
   const fe::Model& model;
   fe::PetscMat K, M;
-  VectorXd K_diagonal, M_diagonal;           ///< |K_ii| and M_ii, num_fdofs, replicated
+  VectorXd K_diagonal, M_diagonal;  ///< |K_ii| and M_ii, num_fdofs, replicated
 
   int size() const { return model.num_fdofs(); }
   MatrixXd calc_K_times(const MatrixXd& X) const;
@@ -27,9 +27,9 @@ struct Pencil {
 
 /// The rigid motions of the model that its constraints and springs leave free.
 struct RigidMotions {
-  MatrixXd modes;            ///< num_fdofs x k, orthonormal under M, in order: translations of the cg, rotations
-  MatrixXd massless;         ///< num_fdofs x l: no strain and no mass; K - σM is singular along them for every σ
-  std::vector<int> held;     ///< l f-dofs whose holding removes the massless motions and changes nothing else
+  MatrixXd modes;         ///< num_fdofs x k, orthonormal under M, in order: translations of the cg, rotations
+  MatrixXd massless;      ///< num_fdofs x l: no strain and no mass; K - σM is singular along them for every σ
+  std::vector<int> held;  ///< l f-dofs whose holding removes the massless motions and changes nothing else
 };
 
 /// Combinations c of Φ_R (about the cg) with (Φ_R c)ᵀ K (Φ_R c) zero in roundoff on the f-set. A motion that a support

@@ -66,7 +66,8 @@ void Reduction::check_spec() {
     diagnostics_.error("reduce.no-modes", where(), "the body asks for no modes",
                        "give [body.modes] number, max_frequency or select");
   for (const int s : spec_.select)
-    if (s < 1) diagnostics_.error("reduce.bad-select", where(), "mode " + std::to_string(s) + " in select, modes count from 1");
+    if (s < 1)
+      diagnostics_.error("reduce.bad-select", where(), "mode " + std::to_string(s) + " in select, modes count from 1");
   if (std::set<int>(spec_.select.begin(), spec_.select.end()).size() != spec_.select.size())
     diagnostics_.error("reduce.bad-select", where(), "a mode stands twice in select", "name each mode once");
   const std::vector<std::string> masses = {"deck", "lumped", "consistent"};
@@ -85,8 +86,8 @@ void Reduction::check_spec() {
   if (!spec_.support.empty() && !is_free())
     diagnostics_.warning("reduce.support-unused", where(), "support is given but the frame is fixed",
                          "the deck's SPC set supports a fixed body");
-  if (spec_.damping_ratio < 0 || std::any_of(spec_.damping_ratios.begin(), spec_.damping_ratios.end(),
-                                             [](double z) { return z < 0; }))
+  if (spec_.damping_ratio < 0 ||
+      std::any_of(spec_.damping_ratios.begin(), spec_.damping_ratios.end(), [](double z) { return z < 0; }))
     diagnostics_.error("reduce.bad-damping", where(), "a damping ratio is negative", "give ratios of 0 or more");
   diagnostics_.throw_if_errors();
 }
@@ -118,10 +119,10 @@ void Reduction::check_nodes(const fe::Model& model) {
   for (const auto& load : spec_.loads) {
     if (load.load_set > 0) continue;
     check_node(model, load.node, "load \"" + load.name + "\"", load.at);
-    if (load.directions.empty() || std::any_of(load.directions.begin(), load.directions.end(),
-                                               [](int d) { return d < 1 || d > 6; }))
-      diagnostics_.error("reduce.bad-direction", load.at,
-                         "load \"" + load.name + "\" needs directions from 1 to 6", "1..3 are forces, 4..6 moments");
+    if (load.directions.empty() ||
+        std::any_of(load.directions.begin(), load.directions.end(), [](int d) { return d < 1 || d > 6; }))
+      diagnostics_.error("reduce.bad-direction", load.at, "load \"" + load.name + "\" needs directions from 1 to 6",
+                         "1..3 are forces, 4..6 moments");
   }
   diagnostics_.throw_if_errors();
 }
@@ -187,10 +188,10 @@ void Reduction::set_damping() {
   VectorXd zeta = VectorXd::Constant(n, spec_.damping_ratio);
   if (!spec_.damping_ratios.empty()) {
     if (static_cast<Eigen::Index>(spec_.damping_ratios.size()) != n)
-      diagnostics_.error("reduce.bad-damping", where(),
-                         std::to_string(spec_.damping_ratios.size()) + " damping ratios for " + std::to_string(n) +
-                             " modes",
-                         "give one per kept mode, or one for all");
+      diagnostics_.error(
+          "reduce.bad-damping", where(),
+          std::to_string(spec_.damping_ratios.size()) + " damping ratios for " + std::to_string(n) + " modes",
+          "give one per kept mode, or one for all");
     diagnostics_.throw_if_errors();
     zeta = VectorXd::Map(spec_.damping_ratios.data(), n);
   }

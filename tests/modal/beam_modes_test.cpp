@@ -10,12 +10,12 @@
 namespace bough {
 namespace {
 
-using modal::EigenOptions;
-using modal::EigenPairs;
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using modal::EigenOptions;
+using modal::EigenPairs;
 using test::DeckMaker;
 using test::Section;
 constexpr double kPi = std::numbers::pi;
@@ -73,8 +73,9 @@ TEST(BeamModes, LumpedMassConvergesAsHSquared) {
   EXPECT_NEAR(std::log2(error[0] / error[1]), 2, 0.05);
 }
 
-// NAFEMS FV2, pin-ended double cross. Modes 2, 3 and 10, 11 move the centre, so they feel the axial flexibility that the
-// table's 17.709 and 57.390 Hz leave out: roots of 4 EA k cot kL + 4 EI w'''(0) = 0 (fixed-turn, pinned arm) instead.
+// NAFEMS FV2, pin-ended double cross. Modes 2, 3 and 10, 11 move the centre, so they feel the axial flexibility that
+// the table's 17.709 and 57.390 Hz leave out: roots of 4 EA k cot kL + 4 EI w'''(0) = 0 (fixed-turn, pinned arm)
+// instead.
 TEST(BeamModes, NafemsFv2DoubleCross) {
   DeckMaker maker;
   maker.add_section(1, make_square(0.125));
@@ -144,8 +145,7 @@ TEST(BeamModes, FreeFreeBeamHasSixZerosAndThePairs) {
   }
   const double scale = std::sqrt(section.E * section.I1 / (section.rho * section.A)) / 4;
   const double beta_L_squared[] = {22.3732854, 61.6728229, 120.9033916};
-  for (int i = 0; i < 6; ++i)
-    EXPECT_NEAR(get_rate(pairs, 6 + i) / (beta_L_squared[i / 2] * scale), 1, 1e-4) << i;
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(get_rate(pairs, 6 + i) / (beta_L_squared[i / 2] * scale), 1, 1e-4) << i;
   EXPECT_EQ(pairs.inertia_count, 12);
   const MatrixXd gram = pairs.Phi.transpose() * fe::calc_mass_times(model, model.mass_kind(), pairs.Phi);
   EXPECT_LT((gram - MatrixXd::Identity(12, 12)).cwiseAbs().maxCoeff(), 1e-9);

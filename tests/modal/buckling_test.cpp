@@ -54,7 +54,8 @@ TEST(Buckling, EulerColumns) {
     int start, end;
     double factor, second;
   };
-  for (const auto& c : {Case{13, 3, 1, 4}, Case{135, 0, 0.25, 2.25}, Case{135, 35, 4, 8.18293}, Case{135, 3, 2.045752, 6.046838}}) {
+  for (const auto& c :
+       {Case{13, 3, 1, 4}, Case{135, 0, 0.25, 2.25}, Case{135, 35, 4, 8.18293}, Case{135, 3, 2.045752, 6.046838}}) {
     const auto pairs = solve(make_column(c.start, c.end).deck, 2);
     ASSERT_EQ(pairs.lambda.size(), 2);
     EXPECT_NEAR(pairs.lambda(0) / (c.factor * euler), 1, 1e-4) << c.factor;
@@ -100,12 +101,12 @@ TEST(Buckling, LateralTorsionalCantilever) {
   const auto pairs = solve(maker.deck, 2);
   const double expected = 4.0126 * std::sqrt(strip.E * strip.I2 * strip.G * strip.J);
   EXPECT_NEAR(std::abs(pairs.lambda(0)) / expected, 1, 2e-3);
-  EXPECT_NEAR(pairs.lambda(0) / pairs.lambda(1), -1, 1e-6);   // up or down alike
+  EXPECT_NEAR(pairs.lambda(0) / pairs.lambda(1), -1, 1e-6);  // up or down alike
   EXPECT_EQ(pairs.inertia_count, 2);
 }
 
-// Equal end moments on simply supported ends that cannot twist: π √(EI GJ) / L. The moment is bending of the strong axis;
-// the end moments keep their directions.
+// Equal end moments on simply supported ends that cannot twist: π √(EI GJ) / L. The moment is bending of the strong
+// axis; the end moments keep their directions.
 TEST(Buckling, LateralTorsionalPureBending) {
   const Section strip = {70e9, 27e9, 2700, 1e-4, 1e-6, 1e-10, 4e-10};
   DeckMaker maker;

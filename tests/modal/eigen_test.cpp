@@ -12,12 +12,12 @@
 namespace bough {
 namespace {
 
-using modal::EigenOptions;
-using modal::EigenPairs;
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using modal::EigenOptions;
+using modal::EigenPairs;
 using test::DeckMaker;
 using test::Section;
 using ::testing::AllOf;
@@ -143,7 +143,7 @@ TEST(Eigen, MechanismBeyondTheRigidMotionsIsAZero) {
   maker.fix(1, 123456);
   maker.add_line(1, 101, Vector3d::UnitX(), {1, 1, 0}, 10, Vector3d::UnitX(), 11);
   for (auto& beam : maker.deck.beams)
-    if (beam.id == 101) beam.pin_a = 0b110000;   // bending moments released at the joint
+    if (beam.id == 101) beam.pin_a = 0b110000;  // bending moments released at the joint
   Diagnostics diagnostics;
   const auto pairs = solve(maker.deck, make_options(8), diagnostics);
   EXPECT_EQ(pairs.num_rigid, 2);
@@ -180,6 +180,15 @@ TEST(Eigen, FineMeshWithHeavyTip) {
   EXPECT_NEAR(pairs.lambda(1) / w2, 1, 1e-5);
 }
 
+// 2500 elements where 25 would do: the first root is lost in roundoff by a visible part, and the user is told.
+TEST(Eigen, WarnsOfRoundoffOnAMeshTooFine) {
+  Diagnostics fine, normal;
+  EXPECT_EQ(solve(test::make_cantilever(kSection, 1, 2500).deck, make_options(2), fine).inertia_count, 2);
+  EXPECT_TRUE(fine.has("modal.roundoff"));
+  solve(test::make_cantilever(kSection, 1, 100).deck, make_options(2), normal);
+  EXPECT_FALSE(normal.has("modal.roundoff"));
+}
+
 template <class Function>
 std::string get_error(Function function) {
   try {
@@ -211,7 +220,8 @@ TEST(Eigen, SingularShiftNamesTheGrid) {
   }
 }
 
-// An absurd negative spring puts an eigenvalue out of the solver's reach: the count tells that the list is not complete.
+// An absurd negative spring puts an eigenvalue out of the solver's reach: the count tells that the list is not
+// complete.
 TEST(Eigen, MissedModesAreNotPassedOver) {
   auto maker = test::make_cantilever(kSection, 1, 60);
   records::ScalarSpring spring;

@@ -12,14 +12,14 @@
 namespace bough {
 namespace {
 
-using fe::MassKind;
-using modal::calc_exact_integrals;
-using modal::calc_momentum_integrals;
-using records::MassIntegrals;
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using fe::MassKind;
+using modal::calc_exact_integrals;
+using modal::calc_momentum_integrals;
+using records::MassIntegrals;
 using test::DeckMaker;
 using test::Section;
 
@@ -106,8 +106,7 @@ TEST(Integrals, ExactSetGivesTheKineticEnergy) {
   // Nodal velocities: ω × (p + φη) + φη̇, ω + ψη̇.
   MatrixXd velocity = Phi * eta_dot;
   for (const auto& node : model.nodes()) {
-    velocity.block<3, 1>(node.first_gdof, 0) +=
-        w.cross(node.x + Vector3d(Phi.middleRows(node.first_gdof, 3) * eta));
+    velocity.block<3, 1>(node.first_gdof, 0) += w.cross(node.x + Vector3d(Phi.middleRows(node.first_gdof, 3) * eta));
     velocity.block<3, 1>(node.first_gdof + 3, 0) += w;
   }
   const double direct = velocity.cwiseProduct(fe::calc_mass_times(model, kind, velocity)).sum();
@@ -130,8 +129,8 @@ TEST(Integrals, ExactSetGivesTheKineticEnergy) {
   EXPECT_NEAR(energy / direct, 1, 1e-12);
 }
 
-// Moving the reference: Γ1(S) = Γ1 - S × Γ0 and Γ3(S) = Γ3 - ((SᵀΓ0) 1 - Γ0 Sᵀ); in the exact set the Γ0 of Γ3 is of the
-// translation rows alone, which for a prismatic bar is the lumped one.
+// Moving the reference: Γ1(S) = Γ1 - S × Γ0 and Γ3(S) = Γ3 - ((SᵀΓ0) 1 - Γ0 Sᵀ); in the exact set the Γ0 of Γ3 is of
+// the translation rows alone, which for a prismatic bar is the lumped one.
 TEST(Integrals, ReferencePointShift) {
   Diagnostics diagnostics;
   const auto model = fe::Model::build(make_frame().deck, {}, diagnostics);

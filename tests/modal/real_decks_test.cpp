@@ -1,5 +1,5 @@
-/// Decks that nobody here wrote, against the frequencies that came with them (first ten, 1e-4), and a column of 420 beams
-/// against Engesser's formula and MYSTRAN's load factors.
+/// Decks that nobody here wrote, against the frequencies that came with them (first ten, 1e-4), and a column of 420
+/// beams against Engesser's formula and MYSTRAN's load factors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,16 +42,17 @@ TEST_P(RealDecks, FrequenciesOfTheVendor) {
 INSTANTIATE_TEST_SUITE_P(
     Shipped, RealDecks,
     ::testing::Values(
-        RealDeck{"beam_modes/beam_modes.dat", {456.6603, 456.6603, 2674.588, 2674.588, 3554.923, 4507.487, 6626.104,
-                                               6626.104, 11111.59, 11111.59}},
-        RealDeck{"svanberg_beam/modes.dat", {46.4644, 146.9333, 279.0229, 752.9903, 815.3514, 882.3479, 1405.45,
-                                             1507.328, 2059.242, 2366.242}},
-        RealDeck{"three_element_types/noReduction-000.dat", {0.1987976, 0.3974492, 0.7054771, 0.8603456, 1.717969,
-                                                             1.98085, 2.199863, 3.712462, 4.380781, 4.407542}},
-        RealDeck{"truss72/modes.dat", {25.4557, 25.4557, 38.94089, 68.55535, 73.7052, 73.7052, 111.0227, 127.6247,
-                                       136.6591, 136.6591}},
-        RealDeck{"pt145/pt145.bdf", {39.96147, 236.4137, 250.4423, 701.4011, 703.4198, 1153.105, 1375.426, 1574.398,
-                                     1956.923, 2277.239}}),
+        RealDeck{"beam_modes/beam_modes.dat",
+                 {456.6603, 456.6603, 2674.588, 2674.588, 3554.923, 4507.487, 6626.104, 6626.104, 11111.59, 11111.59}},
+        RealDeck{"svanberg_beam/modes.dat",
+                 {46.4644, 146.9333, 279.0229, 752.9903, 815.3514, 882.3479, 1405.45, 1507.328, 2059.242, 2366.242}},
+        RealDeck{
+            "three_element_types/noReduction-000.dat",
+            {0.1987976, 0.3974492, 0.7054771, 0.8603456, 1.717969, 1.98085, 2.199863, 3.712462, 4.380781, 4.407542}},
+        RealDeck{"truss72/modes.dat",
+                 {25.4557, 25.4557, 38.94089, 68.55535, 73.7052, 73.7052, 111.0227, 127.6247, 136.6591, 136.6591}},
+        RealDeck{"pt145/pt145.bdf",
+                 {39.96147, 236.4137, 250.4423, 701.4011, 703.4198, 1153.105, 1375.426, 1574.398, 1956.923, 2277.239}}),
     [](const auto& param) {
       const std::string path = param.param.path;
       return path.substr(0, path.find('/'));

@@ -125,7 +125,7 @@ TEST(GeometricStiffness, SouthwellCoefficients) {
     const auto body = stiffening::reduce(maker.deck, spec, {}, diagnostics);
     int found = 0;
     for (int j = 0; j < 9 && found < 4; ++j) {
-      if (body.effective_mass(j, 2) < 1e-3 * body.mass) continue;   // bending in z: out of the plane of ωz
+      if (body.effective_mass(j, 2) < 1e-3 * body.mass) continue;  // bending in z: out of the plane of ωz
       const double k0 = body.kg_inertial[static_cast<int>(InertialLoad::wz2)](j, j);
       const double k1 = -3 * body.kg_inertial[static_cast<int>(InertialLoad::ax)](j, j);
       EXPECT_NEAR(k0 / K0[found], 1, i ? 1e-3 : 4e-3) << found;

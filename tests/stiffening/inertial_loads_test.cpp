@@ -42,7 +42,7 @@ TEST(InertialLoads, LumpedFormulaNodeByNode) {
   mass.m = 0.2;
   mass.inertia = {0.011, 0.002, 0.013, -0.001, 0.003, 0.017};
   maker.deck.conm2.push_back(mass);
-  Matrix3d I_mass;   // the deck's products of inertia are positive integrals
+  Matrix3d I_mass;  // the deck's products of inertia are positive integrals
   I_mass << 0.011, -0.002, 0.001, -0.002, 0.013, -0.003, 0.001, -0.003, 0.017;
   Diagnostics diagnostics;
   const auto model = fe::Model::build(maker.deck, {}, diagnostics);

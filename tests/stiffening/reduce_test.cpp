@@ -151,9 +151,8 @@ TEST(Reduce, ReportsEveryErrorOfTheSpec) {
   nodes.loads.resize(2);
   nodes.loads[0] = {"a", 97, {1}, 0, {"beam.toml", 12, 0}};
   nodes.loads[1] = {"b", 1, {7}, 0, {"beam.toml", 16, 0}};
-  EXPECT_EQ(get_errors(maker.deck, nodes),
-            (std::vector<std::string>{"reduce.unknown-node", "reduce.unknown-node", "reduce.unknown-node",
-                                      "reduce.bad-direction"}));
+  EXPECT_EQ(get_errors(maker.deck, nodes), (std::vector<std::string>{"reduce.unknown-node", "reduce.unknown-node",
+                                                                     "reduce.unknown-node", "reduce.bad-direction"}));
 
   auto select = make_spec(2);
   select.select = {3, 3, 0};

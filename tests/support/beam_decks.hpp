@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 struct Section {
   double E = 1, G = 1, rho = 1, A = 1, I1 = 1, I2 = 1, J = 1;
-  double shear_factor = 0;                   ///< of both planes; 0: Euler-Bernoulli
+  double shear_factor = 0;  ///< of both planes; 0: Euler-Bernoulli
 };
 
 /// The beam of NASA-CR-202063, 4.1.4.1: L = 8 m, mass 1.6154 kg.
@@ -99,8 +99,7 @@ class DeckMaker {
     };
     for (int i = 0; i <= count; ++i)
       if (id_of(i) == first_id + i) add_grid(first_id + i, a + (b - a) * (static_cast<double>(i) / count));
-    for (int i = 0; i < count; ++i)
-      add_beam(first_id + i, pid, id_of(i), id_of(i + 1), v);
+    for (int i = 0; i < count; ++i) add_beam(first_id + i, pid, id_of(i), id_of(i + 1), v);
   }
 
   /// Components like 1235 as decimal digits.
