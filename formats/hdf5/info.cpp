@@ -77,7 +77,11 @@ herr_t add_child_name(hid_t, const char* name, const H5L_info_t*, void* names) {
   return 0;
 }
 
-void add_object(hid_t parent, const std::string& path, FileInfo& info) {
+/// Deeper than any file of Bough: a group that contains itself ends here.
+constexpr int kMostLevels = 16;
+
+void add_object(hid_t parent, const std::string& path, int level, FileInfo& info) {
+  if (level > kMostLevels) return;
   const Handle object(H5Oopen(parent, path.c_str(), H5P_DEFAULT), H5Oclose);
   if (!object.is_valid()) {
     info.objects.push_back({path, "", "unreadable", "", ""});
@@ -98,7 +102,7 @@ void add_object(hid_t parent, const std::string& path, FileInfo& info) {
   }
   std::vector<std::string> names;
   H5Literate(object.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add_child_name, &names);
-  for (const auto& name : names) add_object(parent, (path == "/" ? "" : path) + "/" + name, info);
+  for (const auto& name : names) add_object(parent, (path == "/" ? "" : path) + "/" + name, level + 1, info);
 }
 
 }  // namespace
@@ -111,7 +115,7 @@ FileInfo read_info(const std::string& path) {
   for (const auto& name : get_attribute_names(root.get())) {
     info.attributes[name] = read_any_attribute(root.get(), name.c_str());
   }
-  add_object(file.get(), "/", info);
+  add_object(file.get(), "/", 0, info);
   return info;
 }
 

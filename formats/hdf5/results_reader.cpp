@@ -15,13 +15,14 @@ namespace {
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Paths of all datasets below `group` ("" is the root).
-void collect_datasets(FileReader& file, const std::string& group, std::vector<std::string>& paths) {
+void collect_datasets(FileReader& file, const std::string& group, int level, std::vector<std::string>& paths) {
+  if (level > 16) return;   // a group that contains itself
   for (const auto& name : file.get_children(group.empty() ? "/" : group)) {
     const std::string path = group + "/" + name;
     if (path == "/checkpoint" || path == "/events" || path == "/system" || path == "/settings") continue;
     const Handle object(H5Oopen(file.get(), path.c_str(), H5P_DEFAULT), H5Oclose);
     const H5I_type_t type = object.is_valid() ? H5Iget_type(object.get()) : H5I_BADID;
-    if (type == H5I_GROUP) collect_datasets(file, path, paths);
+    if (type == H5I_GROUP) collect_datasets(file, path, level + 1, paths);
     if (type == H5I_DATASET) paths.push_back(path);
   }
 }
@@ -54,7 +55,7 @@ ResultsFile read_once(const std::string& path) {
   const NumberArray time = file.read_array("/time", {-1}, true, committed);
   results.time = Eigen::Map<const Eigen::VectorXd>(time.data.data(), static_cast<Eigen::Index>(time.data.size()));
   std::vector<std::string> paths;
-  collect_datasets(file, "", paths);
+  collect_datasets(file, "", 0, paths);
   Eigen::Index rows = results.time.size();
   for (const auto& name : paths) {
     const bool is_vector = get_rank(file, name) == 1;

@@ -125,6 +125,12 @@ Handle FileReader::open_dataset(const std::string& path, const Shape& shape, H5T
           "write the file again");
     return {};
   }
+  double elements = 1;
+  for (const auto d : dims) elements *= static_cast<double>(d);
+  if (elements > 1e11) {
+    error("hdf5.damaged", path + " claims the shape " + describe_shape(dims), "write the file again");
+    return {};
+  }
   const Handle found_type(H5Dget_type(dataset.get()), H5Tclose);
   const H5T_class_t found_class = H5Tget_class(found_type.get());
   const bool fits = found_class == type || (type == H5T_FLOAT && found_class == H5T_INTEGER);

@@ -2,7 +2,8 @@
 
 check_schema.py SCHEMAS --examples FOLDER   every TOML below FOLDER has to be valid
 check_schema.py SCHEMAS --cases FOLDER      FOLDER/{system,body}/{good,bad}/*.toml have to be accepted and refused
-check_schema.py SCHEMAS --keywords          the schemas use only the keywords that Bough's own checker knows
+check_schema.py SCHEMAS --keywords DOCS     the schemas use only the keywords that Bough's own checker knows, and every
+                                            key is in DOCS/{system,body}-toml.md
 """
 import json
 import pathlib
@@ -63,6 +64,25 @@ def check_keywords(node, inside_properties=False):
     return faults
 
 
+def collect_keys(node):
+    keys = []
+    if isinstance(node, dict):
+        for key, value in node.items():
+            if key == "properties":
+                keys += list(value)
+            keys += collect_keys(value)
+    return keys
+
+
+def check_docs(validators, folder):
+    faults = []
+    for kind, validator in validators.items():
+        text = (folder / f"{kind}-toml.md").read_text()
+        faults += [f"{kind}-toml.md does not have the key {k}" for k in collect_keys(validator.schema)
+                   if f"`{k}`" not in text and f"{k} =" not in text and f"[{k}]" not in text and f".{k}]" not in text]
+    return faults
+
+
 def main():
     folder = pathlib.Path(sys.argv[1])
     validators = {kind: load(folder, kind) for kind in ("system", "body")}
@@ -72,6 +92,7 @@ def main():
         faults = check_cases(validators, pathlib.Path(sys.argv[3]))
     else:
         faults = sum((check_keywords(v.schema) for v in validators.values()), [])
+        faults += check_docs(validators, pathlib.Path(sys.argv[3]))
     print("\n".join(faults))
     sys.exit(1 if faults else 0)
 
