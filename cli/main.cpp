@@ -76,10 +76,10 @@ int run(int argc, char** argv) {
   } catch (const Failure& failure) {
     return cli::report_failure(failure, console);
   } catch (const std::bad_alloc&) {
-    console.print_error("cli.out-of-memory", "not enough memory", "use a smaller model or fewer modes");
+    console.print_error({}, "not enough memory", "use a smaller model or fewer modes");
     return cli::kComputationFailed;
   } catch (const std::exception& error) {
-    console.print_error("cli.internal", error.what(), "this is a fault in Bough; please report it");
+    console.print_error({}, error.what(), "this is a fault in Bough; please report it");
     return cli::kComputationFailed;
   }
 }

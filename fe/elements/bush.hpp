@@ -1,5 +1,6 @@
 #pragma once
 /// \file CBUSH: six springs in element axes at one point, carried to the grids by rigid arms.
+/// Source: Nastran Quick Reference Guide, CBUSH and PBUSH.
 #include "bough/fe/elements/element.hpp"
 
 namespace bough::fe {

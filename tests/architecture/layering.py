@@ -1,0 +1,70 @@
+"""Who may include whom (docs/adr/0007): rooms, sub-rooms and outside libraries, by the include lines."""
+import os
+import re
+
+from common import ROOT, finish, line_of, list_sources, read, strip_comments
+
+RECORDS = ["base", "formats/records"]
+# First match wins; a folder may always include itself and what lies below it.
+MAY_INCLUDE = [
+    ("base", []),
+    ("formats/records", ["base"]),
+    ("formats/nastran", RECORDS),
+    ("formats/hdf5", RECORDS),
+    ("formats/toml", RECORDS),
+    ("formats/export", RECORDS),
+    ("formats/report", RECORDS),
+    ("fe/shape", RECORDS + ["fe/elements/beam_property.hpp"]),
+    ("fe/materials", RECORDS),
+    ("fe/elements", RECORDS + ["fe/shape", "fe/materials"]),
+    ("fe", RECORDS),
+    ("modal", RECORDS + ["fe"]),
+    ("stiffening", RECORDS + ["fe", "modal"]),
+    ("solver/hinges", RECORDS + ["solver/bodies"]),
+    ("solver/integrate", RECORDS + ["solver"]),
+    ("solver", RECORDS),
+]
+# Outside headers and the only folders that may see them.
+OUTSIDE = [
+    (r"^petsc", ["fe", "modal", "stiffening", "cli/versions.cpp"]),
+    (r"^slepc", ["fe/petsc.cpp", "modal", "cli/versions.cpp"]),
+    (r"^mpi\.h", ["fe"]),
+    (r"^(hdf5|H5)", ["formats/hdf5", "cli/versions.cpp"]),
+    (r"^toml\+\+", ["formats/toml"]),
+    (r"^nlohmann", ["formats/toml", "cli"]),
+    (r"^CLI/", ["cli"]),
+    (r"^fmt/", ["cli", "formats"]),
+    (r"^(sundials|cvode|arkode|nvector|sunlinsol|sunmatrix|sunnonlinsol)", ["solver/integrate", "cli/versions.cpp"]),
+]
+
+
+def lies_in(path, folders):
+    return any(path == f or path.startswith(f + "/") for f in folders)
+
+
+# Seen by nobody outside: the integrators stand above the rest of the solver.
+TOP = ["solver/integrate", "cli"]
+
+findings = []
+for source in list_sources():
+    text = strip_comments(read(source))
+    rule = next((r for r in MAY_INCLUDE if source.startswith(r[0] + "/")), None)
+    for match in re.finditer(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', text, re.M):
+        kind, target = match.groups()
+        where = f"{source}:{line_of(text, match.start())}"
+        if target.startswith("bough/"):
+            header = target[len("bough/"):]
+            if not os.path.exists(os.path.join(ROOT, header)):
+                if header != "base/version.hpp":
+                    findings.append(f"{where}: includes {target}, which does not exist")
+            elif rule and not lies_in(header, [rule[0]] + rule[1]):
+                findings.append(f"{where}: {rule[0]} may include {', '.join(rule[1]) or 'nothing'}, found {target}")
+            elif rule and any(lies_in(header, [top]) and not lies_in(source, [top]) for top in TOP):
+                findings.append(f"{where}: no library room below includes {target}")
+            continue
+        if kind == '"' and rule:
+            findings.append(f'{where}: spell it "bough/...", found "{target}"')
+        for pattern, folders in OUTSIDE:
+            if re.match(pattern, target) and not lies_in(source, folders):
+                findings.append(f"{where}: only {', '.join(folders)} may see <{target}>")
+finish(findings, "layering")

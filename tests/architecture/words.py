@@ -1,0 +1,26 @@
+"""Words that must not stand where they stand: hinge types in the tree, mutable, switched-off tests, silent skips."""
+import re
+
+from common import finish, line_of, list_files, list_sources, read, strip_comments
+
+findings = []
+
+
+def forbid(paths, pattern, why, keep_comments=False):
+    for path in paths:
+        text = read(path) if keep_comments else strip_comments(read(path))
+        for match in re.finditer(pattern, text):
+            findings.append(f"{path}:{line_of(text, match.start())}: {why}: {match.group(0)}")
+
+
+tests = [t for t in list_files(["tests"], (".cpp", ".hpp", ".py", ".txt")) if not t.startswith("tests/architecture/")]
+forbid(list_files(["solver/tree"], (".hpp", ".cpp")),
+       r"(?i)\b\w*(revolute|prismatic|universal|cylindrical|planar|spherical|hingetype)\w*",
+       "the tree must not name a hinge type", keep_comments=True)
+forbid(list_sources(), r"\bmutable\b", "const means const")
+forbid(list_sources(), r"\b(TODO|FIXME|XXX|HACK)\b", "finish it or write an issue", keep_comments=True)
+forbid(tests, r"\bDISABLED_\w*", "no switched-off tests", keep_comments=True)
+forbid(tests, r"GTEST_SKIP\(\)\s*;", "say why it is skipped")
+forbid(list_files(["solver"], (".hpp", ".cpp")), r"(?m)^(?:static|thread_local)\s+(?!const\b|constexpr\b)[\w:<>]+\s+\w+\s*(?:=|;|\{)",
+       "no globals")
+finish(findings, "words")
