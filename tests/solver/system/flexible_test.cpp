@@ -162,6 +162,38 @@ TEST(FlexibleSystem, LoadPatternActsOnTheModes) {
   EXPECT_LT((m.flex.modal_mass * calc_u_dot(system, *data, 0, eta, VectorXd::Zero(2)) - expected).norm(), 1e-12);
 }
 
+TEST(FlexibleSystem, ForcesFollowTheFrameTheyAreGivenIn) {
+  for (const auto frame : {records::VectorFrame::Inertial, records::VectorFrame::Body, records::VectorFrame::Node}) {
+    for (const auto kind : {records::ForceKind::Force, records::ForceKind::Moment}) {
+      Model m = make_model(3, false);
+      const System bare = m.make();
+      records::ForceRecord force;
+      force.name = "push";
+      force.kind = kind;
+      force.frame = frame;
+      force.body = "f";
+      force.node = 104;
+      force.direction = {3, -2, 5};
+      m.spec.forces = {force};
+      const System system = m.make();
+      VectorXd q, u, u_dot(9);
+      make_random_state(system, 6, q, u);
+      auto data = system.make_data(), other = bare.make_data();
+      const VectorXd actual = calc_u_dot(system, *data, 0, q, u);
+      calc_kinematics(bare, *other, 0, q, u);
+      const int node = bare.find_node(0, 104);
+      const Matrix3d R = frame == records::VectorFrame::Inertial ? Matrix3d::Identity()
+                         : frame == records::VectorFrame::Body   ? get_body_state(*other, 0).R_WB
+                                                                 : calc_node_motion(bare, *other, 0, node).R_WK;
+      const Vector3d load = R * force.direction, none = Vector3d::Zero();
+      const bool is_force = kind == records::ForceKind::Force;
+      add_node_wrench(bare, *other, 0, node, is_force ? load : none, is_force ? none : load);
+      calc_accelerations(bare, *other, 0, u_dot);
+      EXPECT_LT((actual - u_dot).norm(), 1e-12 * u_dot.norm());
+    }
+  }
+}
+
 TEST(FlexibleSystem, FreeFallDoesNotDeform) {
   Model m = make_model(4, false);
   const System still = m.make();
