@@ -84,11 +84,11 @@ void eliminate_flexible(const TreeBody& tb, BodyData& d, Reduced& out) {
   d.D.bottomRows(n) = d.W.bottomRows(n);
   for (int i = 0; i < nh; ++i) d.D.row(i).noalias() = H.col(i).transpose() * d.W.topRows<6>();
   if (tb.on_child.moves) d.D.bottomRows(n).noalias() -= d.Jc.transpose() * d.W.topRows<6>();
-  d.D_llt.compute(d.D);
-  if (d.D_llt.info() != Eigen::Success) fail_indefinite(tb);
+  const Eigen::LLT<Eigen::Ref<MatrixXd>> D_factor(d.D);  // in place
+  if (D_factor.info() != Eigen::Success) fail_indefinite(tb);
   d.G = d.W.topRows<6>().transpose();
-  d.D_llt.solveInPlace(d.G);
-  d.D_llt.solveInPlace(d.z);
+  D_factor.solveInPlace(d.G);
+  D_factor.solveInPlace(d.z);
   out.P = d.P.topLeftCorner<6, 6>();
   out.P.noalias() -= d.W.topRows<6>() * d.G;
   out.beta = d.beta.head<6>();

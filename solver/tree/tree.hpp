@@ -69,12 +69,11 @@ struct BodyData {
   Vector6d hinge_force = Vector6d::Zero();  ///< generalized: springs and dampers, or what enforces the motion
   double spring_energy = 0;
   // Articulated-body recursion
-  Matrix6d P6;       ///< rigid: articulated inertia
-  MatrixXd P;        ///< flexible: (6+n)²
-  VectorXd beta;     ///< 6+n
-  Matrix6d G6;       ///< rigid: D⁻¹ Uᵀ, nh x 6
-  MatrixXd W, D, G;  ///< flexible: P ℋ (6+n)x(nh+n), ℋᵀPℋ, D⁻¹ W_topᵀ (nh+n) x 6
-  Eigen::LLT<MatrixXd> D_llt;
+  Matrix6d P6;        ///< rigid: articulated inertia
+  MatrixXd P;         ///< flexible: (6+n)²
+  VectorXd beta;      ///< 6+n
+  Matrix6d G6;        ///< rigid: D⁻¹ Uᵀ, nh x 6
+  MatrixXd W, D, G;   ///< flexible: P ℋ (6+n)x(nh+n), ℋᵀPℋ (then its factor), D⁻¹ W_topᵀ (nh+n) x 6
   VectorXd z;         ///< nh+n
   VectorXd eta_ddot;  ///< n, after calc_tree_accelerations
   Matrix6Xd PX;       ///< 6 x (6+m)
