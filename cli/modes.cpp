@@ -190,8 +190,8 @@ int run_modes(const ModesOptions& options) {
   if (!options.output.empty()) check_output(options, options.output);
 
   Diagnostics diagnostics;
-  const auto deck = read_deck_or_throw(options.deck, options.model.ignore_cards, diagnostics);
   auto model_options = make_model_options(options.model);
+  const auto deck = read_deck_or_throw(options.deck, model_options, diagnostics);
   if (options.buckling && model_options.subcase == 0) model_options.subcase = choose_buckling_cases(deck).statics.id;
   auto model = fe::Model::build(deck, model_options, diagnostics);
   diagnostics.throw_if_errors();

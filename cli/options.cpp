@@ -46,10 +46,11 @@ void demand_file(const std::string& path) {
   }
 }
 
-records::Deck read_deck_or_throw(const std::string& path, const std::vector<std::string>& ignore_cards,
-                                 Diagnostics& diagnostics) {
+records::Deck read_deck_or_throw(const std::string& path, const fe::ModelOptions& options, Diagnostics& diagnostics) {
   demand_file(path);
-  auto deck = nastran::read_deck(path, {ignore_cards}, diagnostics);
+  auto deck = nastran::read_deck(path, {options.ignore_cards}, diagnostics);
+  // A deck with errors is still taken as far as it goes, so that one pass shows all of them.
+  if (diagnostics.num_errors() > 0) fe::Model::build(deck, options, diagnostics);
   diagnostics.throw_if_errors();
   return deck;
 }

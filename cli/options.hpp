@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 
+#include "bough/fe/model/model.hpp"
 #include "bough/formats/records/body_spec.hpp"
 #include "bough/formats/records/deck.hpp"
 #include "verbs.hpp"
@@ -32,8 +33,7 @@ void check_output(const CommonOptions& options, const std::string& path);
 bool has_suffix(const std::string& path, const std::string& suffix);
 
 /// Reads a deck, throws InputError with all its errors; warnings stay in `diagnostics`.
-records::Deck read_deck_or_throw(const std::string& path, const std::vector<std::string>& ignore_cards,
-                                 Diagnostics& diagnostics);
+records::Deck read_deck_or_throw(const std::string& path, const fe::ModelOptions& options, Diagnostics& diagnostics);
 /// (file name, SHA-256) of each.
 std::vector<std::pair<std::string, std::string>> calc_sources(const std::vector<std::string>& files);
 

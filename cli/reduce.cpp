@@ -139,7 +139,10 @@ int run_reduce(const ReduceVerbOptions& o) {
   const auto output = choose_output(o, spec);
   check_output(o, output);
   console.set_rank(fe::initialize_petsc().rank);
-  const auto deck = read_deck_or_throw(spec.deck, spec.ignore_cards, diagnostics);
+  fe::ModelOptions model_options;
+  model_options.subcase = spec.subcase;
+  model_options.ignore_cards = spec.ignore_cards;
+  const auto deck = read_deck_or_throw(spec.deck, model_options, diagnostics);
   stiffening::ReduceOptions options;
   options.progress = [&](const std::string& stage) { console.show_progress("reduce: " + stage); };
   auto body = stiffening::reduce(deck, spec, options, diagnostics);

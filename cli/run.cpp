@@ -53,8 +53,10 @@ void demand_other_file(const std::string& output, const LoadedSystem& loaded, co
 class MessageFeed {
  public:
   MessageFeed(Console& console, const Diagnostics& diagnostics) : console_(console), diagnostics_(diagnostics) {}
+  /// Errors are left to the failure that carries them.
   void print_new() {
     for (; printed_ < diagnostics_.items().size(); ++printed_) {
+      if (diagnostics_.items()[printed_].severity == Severity::Error) continue;
       console_.end_progress();
       console_.print_unless_quiet(diagnostics_.items()[printed_]);
     }

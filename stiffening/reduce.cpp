@@ -156,7 +156,9 @@ void Reduction::set_modes(const fe::Model& model) {
   const auto available = static_cast<int>(pairs.lambda.size()) - pairs.num_rigid;
   std::vector<int> columns;
   if (spec_.select.empty()) {
-    for (int j = 0; j < available; ++j) columns.push_back(pairs.num_rigid + j);
+    // A massless rigid motion takes none of the modes asked for: what came in its place is cut again.
+    const int kept = spec_.num_modes > 0 ? std::min(available, spec_.num_modes) : available;
+    for (int j = 0; j < kept; ++j) columns.push_back(pairs.num_rigid + j);
   } else {
     for (const int s : spec_.select) {
       if (s > available)

@@ -71,6 +71,11 @@ class BadDeck(ProgramTest):
                                  "66", "77", "99")
         self.assertGreaterEqual(result.stderr.count("error:"), 3)
 
+    def test_errors_of_reading_and_of_the_model_at_once(self):
+        text = BEAM.replace("CBAR,2,1,2,3", "CBAR,2,77,2,3").replace("ENDDATA", "GRID,9,,abc,0.,0.\nENDDATA")
+        result = self.fails_with(text, "77", "abc")
+        self.assertNotIn("fe.missing-grid", result.stderr)
+
     def test_a_mechanism_names_its_dofs(self):
         # Held at grid 1 in translation only: three rotations about it are free.
         self.write("deck.bdf", BEAM.replace("SPC1,1,123456,1", "SPC1,1,123,1"))
@@ -99,6 +104,12 @@ class BadSystem(ProgramTest):
         self.write("system.toml", SYSTEM)
         self.bough("check", "system.toml")
         self.bough("run", "system.toml", "-o", "out.h5")
+
+    def test_each_error_is_told_once(self):
+        sensor = '[[sensor]]\nname = "s"\ntype = "position"\nbody = "a"\nnode = 7\n\n'
+        self.write("bad.toml", SYSTEM.replace("[simulation]", sensor + "[simulation]"))
+        result = self.fails(1, "run", "bad.toml", "-o", "bad.h5", says=["sensor.unknown-node"])
+        self.assertEqual(result.stderr.count("sensor.unknown-node"), 1)
 
     def test_hinge_on_an_unknown_node(self):
         result = self.fails_with(SYSTEM.replace('parent = "a"', 'parent = "a"\nparent_node = 17'), "17", "hb")

@@ -18,6 +18,8 @@ struct RealDeck {
   std::vector<double> hz;
 };
 
+void PrintTo(const RealDeck& deck, std::ostream* out) { *out << deck.path; }
+
 std::string find_deck(const std::string& path) { return std::string(BOUGH_SHARED_DIR) + "/models/" + path; }
 
 class RealDecks : public ::testing::TestWithParam<RealDeck> {};

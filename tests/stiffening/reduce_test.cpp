@@ -164,6 +164,16 @@ TEST(Reduce, ReportsEveryErrorOfTheSpec) {
   EXPECT_EQ(get_errors(maker.deck, damping), std::vector<std::string>{"reduce.bad-damping"});
 }
 
+TEST(Reduce, MasslessRigidMotionTakesNoneOfTheModesAskedFor) {
+  // A straight CBAR line has no inertia about its own axis: five rigid modes have mass, the roll has none.
+  auto maker = test::DeckMaker();
+  maker.add_section(1, kSection);
+  maker.add_line(1, 1, {0, 0, 0}, {4, 0, 0}, 20, {0, 1, 0});
+  auto spec = make_spec(3);
+  spec.frame = BodyFrame::Free;
+  EXPECT_EQ(reduce(maker.deck, spec).num_modes(), 3);
+}
+
 TEST(Reduce, FreeBodyThatIsHeldIsAnError) {
   auto maker = test::make_cantilever(kSection, 1, 4);
   records::ScalarSpring spring;

@@ -18,6 +18,8 @@ struct RealDeck {
   int num_fdofs;  ///< counted by hand from the deck: 0 = not checked
 };
 
+void PrintTo(const RealDeck& deck, std::ostream* out) { *out << deck.file; }
+
 class RealDecks : public ::testing::TestWithParam<RealDeck> {};
 
 TEST_P(RealDecks, mass_and_centre) {
