@@ -32,7 +32,8 @@ class Reduction {
   FlexBody run();
 
  private:
-  SourceLocation where() const { return {spec_.file, 0, 0}; }
+  /// The body file, or the deck when there is none.
+  SourceLocation where() const { return spec_.file.empty() ? deck_.locate({0, 0}) : SourceLocation{spec_.file, 0, 0}; }
   void report(const std::string& stage) const {
     if (options_.progress) options_.progress(stage);
   }
@@ -282,7 +283,10 @@ fe::StaticSolver Reduction::make_solver(const fe::Model& model, const fe::PetscM
   try {
     return fe::StaticSolver(model, K, support);
   } catch (const ComputationError& error) {
-    for (const auto& item : error.items()) diagnostics_.add(item);
+    for (auto item : error.items()) {
+      if (item.where.file.empty()) item.where = deck_.locate({0, 0});
+      diagnostics_.add(std::move(item));
+    }
     if (error.items().front().id != "fe.mechanism") throw;
     add_mechanism_error("the stiffness matrix is singular");
     throw InputError(diagnostics_.items());
