@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "bough/base/version.hpp"
 #include "bough/formats/hdf5/detail/reader.hpp"
 #include "bough/formats/hdf5/detail/writer.hpp"
@@ -11,7 +13,8 @@ using records::ModesResult;
 }  // namespace
 
 void write_modes(const ModesResult& modes, const std::string& path) {
-  const auto n = static_cast<int>(modes.eigenvalue.size());
+  // Buckling has shapes without eigenvalues.
+  const auto n = static_cast<int>(std::max(modes.eigenvalue.size(), modes.load_factor.size()));
   FileWriter file(path, kFormat, kModesFormatVersion);
   file.write_source(modes.source);
   file.write_attribute("/", "subcase", modes.subcase);
@@ -62,13 +65,13 @@ ModesResult read_modes(const std::string& path) {
   const auto n = static_cast<long>(modes.eigenvalue.size());
   modes.frequency_hz = file.read_vector("/modes/frequency_hz", n);
   modes.kind = read_mode_kinds(file, n);
-  modes.phi = read_mode_shapes(file, p, n);
   modes.residual = file.read_vector("/modes/residual", -1, true);
   modes.modal_mass = file.read_vector("/modes/mass", -1);
   modes.num_rigid_modes = file.read_integer_attribute("/modes", "num_rigid", 0);
   modes.inertia_count = file.read_integer_attribute("/modes", "inertia_count", -1);
   modes.effective_mass = file.read_matrix("/effective_mass", -1, 6);
   if (file.has("/buckling/load_factor")) modes.load_factor = file.read_vector("/buckling/load_factor", -1);
+  modes.phi = read_mode_shapes(file, p, std::max(n, static_cast<long>(modes.load_factor.size())));
   modes.mesh = read_mesh(file);
   file.throw_if_errors();
   return modes;

@@ -1,0 +1,149 @@
+#include <cstdio>
+#include <unordered_map>
+
+#include "bough/base/diagnostic.hpp"
+#include "bough/formats/export/vtu.hpp"
+
+namespace bough::exports {
+
+namespace {
+
+using Eigen::MatrixXd;
+using records::BodyMesh;
+
+/// printf of three numbers at most, with a point whatever the locale.
+std::string format_name(const char* stem, int number, const char* middle, double value, const char* unit) {
+  char buffer[80];
+  std::snprintf(buffer, sizeof buffer, "%s_%03d_%s%.4g%s", stem, number, middle, value, unit);
+  std::string name(buffer);
+  for (char& c : name)
+    if (c == ',') c = '.';
+  return name;
+}
+
+/// The part of the mesh whose grids have a shape: `kept` are rows of the mesh. Nodes without a cell get a vertex.
+BodyMesh cut_mesh(const BodyMesh& mesh, const std::vector<int>& kept) {
+  BodyMesh part;
+  std::vector<int> row(mesh.grid_id.size(), -1);
+  part.grid_xyz.resize(static_cast<Eigen::Index>(kept.size()), 3);
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    row[static_cast<std::size_t>(kept[k])] = static_cast<int>(k);
+    part.grid_id.push_back(mesh.grid_id[static_cast<std::size_t>(kept[k])]);
+    part.grid_xyz.row(static_cast<Eigen::Index>(k)) = mesh.grid_xyz.row(kept[k]);
+  }
+  std::vector<bool> has_cell(kept.size(), false);
+  for (const auto& block : mesh.blocks) {
+    BodyMesh::Block cut;
+    cut.type = block.type;
+    cut.connectivity.resize(block.connectivity.rows(), block.connectivity.cols());
+    for (Eigen::Index e = 0; e < block.connectivity.rows(); ++e) {
+      const auto target = static_cast<Eigen::Index>(cut.element_id.size());
+      bool is_whole = true;
+      for (Eigen::Index i = 0; i < block.connectivity.cols(); ++i) {
+        const int node = block.connectivity(e, i);
+        const int r = node < 0 ? -1 : row[static_cast<std::size_t>(node)];
+        cut.connectivity(target, i) = r;
+        is_whole = is_whole && r >= 0;
+      }
+      if (!is_whole) continue;
+      for (Eigen::Index i = 0; i < block.connectivity.cols(); ++i)
+        has_cell[static_cast<std::size_t>(cut.connectivity(target, i))] = true;
+      cut.element_id.push_back(block.element_id[static_cast<std::size_t>(e)]);
+    }
+    if (cut.element_id.empty()) continue;
+    cut.connectivity.conservativeResize(static_cast<Eigen::Index>(cut.element_id.size()), Eigen::NoChange);
+    part.blocks.push_back(std::move(cut));
+  }
+  BodyMesh::Block points;
+  points.type = "vertex";
+  std::vector<int> alone;
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    if (!has_cell[k]) alone.push_back(static_cast<int>(k));
+  points.connectivity.resize(static_cast<Eigen::Index>(alone.size()), 1);
+  for (std::size_t k = 0; k < alone.size(); ++k) points.connectivity(static_cast<Eigen::Index>(k), 0) = alone[k];
+  points.element_id.assign(alone.size(), 0);
+  if (!alone.empty()) part.blocks.push_back(std::move(points));
+  return part;
+}
+
+/// `phi` holds 6 x n of each id.
+Picture make_picture(const BodyMesh& mesh, const std::unordered_map<int, MatrixXd>& phi,
+                     const std::vector<std::string>& names) {
+  Picture picture;
+  std::vector<int> kept;
+  for (std::size_t k = 0; k < mesh.grid_id.size(); ++k)
+    if (phi.count(mesh.grid_id[k]) > 0) kept.push_back(static_cast<int>(k));
+  picture.num_missing = static_cast<int>(mesh.grid_id.size() - kept.size());
+  picture.mesh = picture.num_missing == 0 ? mesh : cut_mesh(mesh, kept);
+  const auto num_points = static_cast<Eigen::Index>(kept.size());
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    PointArray translation{names[j], MatrixXd(num_points, 3)},
+        rotation{names[j] + "_rotation", MatrixXd(num_points, 3)};
+    for (Eigen::Index k = 0; k < num_points; ++k) {
+      const auto& shape = phi.at(picture.mesh.grid_id[static_cast<std::size_t>(k)]);
+      BOUGH_DEMAND(shape.rows() == 6 && shape.cols() == static_cast<Eigen::Index>(names.size()));
+      translation.values.row(k) = shape.col(static_cast<Eigen::Index>(j)).head<3>().transpose();
+      rotation.values.row(k) = shape.col(static_cast<Eigen::Index>(j)).tail<3>().transpose();
+    }
+    picture.arrays.push_back(std::move(translation));
+    picture.arrays.push_back(std::move(rotation));
+  }
+  return picture;
+}
+
+std::unordered_map<int, MatrixXd> map_shapes(const std::vector<int>& ids, const std::vector<MatrixXd>& phi) {
+  BOUGH_DEMAND(ids.size() == phi.size());
+  std::unordered_map<int, MatrixXd> shapes;
+  for (std::size_t k = 0; k < ids.size(); ++k) shapes[ids[k]] = phi[k];
+  return shapes;
+}
+
+std::vector<std::string> make_names(const Eigen::VectorXd& frequency_hz) {
+  std::vector<std::string> names;
+  for (int j = 0; j < frequency_hz.size(); ++j) names.push_back(format_name("mode", j + 1, "", frequency_hz[j], "Hz"));
+  return names;
+}
+
+/// A file without a mesh: its nodes alone.
+BodyMesh choose_mesh(const BodyMesh& mesh, const std::vector<int>& ids, const MatrixXd& xyz) {
+  if (!mesh.grid_id.empty()) return mesh;
+  BodyMesh nodes;
+  nodes.grid_id = ids;
+  nodes.grid_xyz = xyz;
+  std::vector<int> all;
+  for (int k = 0; k < static_cast<int>(ids.size()); ++k) all.push_back(k);
+  return cut_mesh(nodes, all);
+}
+
+}  // namespace
+
+Picture make_picture(const records::ModesResult& modes) {
+  std::vector<std::string> names;
+  if (modes.load_factor.size() > 0) {
+    for (int j = 0; j < modes.load_factor.size(); ++j)
+      names.push_back(format_name("buckling", j + 1, "factor_", modes.load_factor[j], ""));
+  } else {
+    names = make_names(modes.frequency_hz);
+  }
+  return make_picture(choose_mesh(modes.mesh, modes.node_id, modes.node_xyz), map_shapes(modes.node_id, modes.phi),
+                      names);
+}
+
+Picture make_picture(const records::FlexBody& body) {
+  std::unordered_map<int, MatrixXd> shapes;
+  const int n = body.num_modes();
+  if (body.full_phi.size() > 0) {
+    BOUGH_DEMAND(body.full_phi.rows() == body.dof_map.rows());
+    for (Eigen::Index i = 0; i < body.dof_map.rows(); ++i) {
+      const int code = body.dof_map(i, 1);
+      if (code < 1 || code > 6) continue;
+      auto& shape = shapes.try_emplace(body.dof_map(i, 0), MatrixXd::Zero(6, n)).first->second;
+      shape.row(code - 1) = body.full_phi.row(i);
+    }
+  } else {
+    shapes = map_shapes(body.node_id, body.phi);
+  }
+  return make_picture(choose_mesh(body.mesh, body.node_id, body.node_xyz), shapes, make_names(body.frequency_hz));
+}
+
+}  // namespace bough::exports

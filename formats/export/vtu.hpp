@@ -1,0 +1,41 @@
+#pragma once
+/// \file VTK's XML file of an unstructured grid (.vtu): a mesh with values at its points, for ParaView and meshio.
+#include <string>
+#include <vector>
+
+#include "bough/formats/records/flex_body.hpp"
+#include "bough/formats/records/modes.hpp"
+
+namespace bough::exports {
+
+/// Values at the points: one row for each of the mesh's grids, 1 or 3 columns.
+struct PointArray {
+  std::string name;
+  Eigen::MatrixXd values;
+};
+
+enum class VtuEncoding {
+  Base64,  ///< inline binary, 8 bytes a number
+  Ascii    ///< text that reads back bit for bit
+};
+
+/// A mesh and what is drawn on it; num_missing grids of the body had no shape and are left out with their cells.
+struct Picture {
+  records::BodyMesh mesh;
+  std::vector<PointArray> arrays;
+  int num_missing = 0;
+};
+
+/// The file's text: points in the mesh's frame, point data grid_id and the arrays, cell data element_id. Block types
+/// line2, tri3, quad4, tetra4, penta6, hexa8, vertex, and line3, tri6, quad8, tetra10, penta15, hexa20 with the midside
+/// nodes in Nastran's order. A cell with a node that is no grid (index -1) is left out. Throws InputError
+/// "vtu.unknown-cell" for another type of block. Layout: VTK User's Guide, "XML File Formats".
+std::string make_vtu(const records::BodyMesh& mesh, const std::vector<PointArray>& arrays, VtuEncoding encoding);
+
+/// Mode shapes as arrays mode_001_0.463Hz (translations) and mode_001_0.463Hz_rotation, basic frame; for buckling
+/// buckling_001_factor_4.32 and its _rotation.
+Picture make_picture(const records::ModesResult& modes);
+/// The same of a body, in its frame B: of all grids when full_phi is there, else of the output nodes only.
+Picture make_picture(const records::FlexBody& body);
+
+}  // namespace bough::exports
