@@ -9,5 +9,6 @@ inline constexpr const char* kFlexBodyFormatVersion = "1.0";
 inline constexpr const char* kResultsFormatVersion = "1.0";
 inline constexpr const char* kModesFormatVersion = "1.0";
 inline constexpr const char* kMatricesFormatVersion = "1.0";
+inline constexpr const char* kStaticFormatVersion = "1.0";
 
 }  // namespace bough

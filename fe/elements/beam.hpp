@@ -21,6 +21,13 @@ struct BeamGeometry {
   unsigned pin_a = 0, pin_b = 0;                          ///< released element dofs (masks), element axes
 };
 
+/// Force and moment along a beam, in element axes: p1 at x1 to p2 at x2 (per length), or p1 at the point x1.
+struct BeamLineLoad {
+  double x1 = 0, x2 = 0;  ///< from end A
+  bool is_point = false;
+  Eigen::Matrix<double, 6, 1> p1 = Eigen::Matrix<double, 6, 1>::Zero(), p2 = p1;
+};
+
 class Beam final : public Element {
  public:
   /// nodes: two; gdofs: twelve. The property must give E > 0 and a positive length is the caller's check.
@@ -39,6 +46,15 @@ class Beam final : public Element {
   std::vector<std::string> internal_force_names() const override;
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
+
+  /// Equivalent loads at the ends (12, element axes) before pins: ∫ Dᵀ p dx with the element's own field D. The nodal
+  /// displacements under them are those of the loaded beam.
+  Eigen::Matrix<double, 12, 1> calc_end_load(const BeamLineLoad& load) const;
+  /// The same at the grids in basic axes, pins and offsets applied.
+  Eigen::Matrix<double, 12, 1> calc_grid_load(const Eigen::Matrix<double, 12, 1>& end_load) const;
+  /// Corrects internal forces that calc_internal_forces gave for loads along the beam: moments at both ends, axial and
+  /// shear forces and torque at end A.
+  void add_load_forces(const Eigen::Matrix<double, 12, 1>& end_load, Eigen::Ref<VectorXd> force) const;
 
   const BeamGeometry& geometry() const { return geometry_; }
   const BeamProperty& property() const { return *property_; }

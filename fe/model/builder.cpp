@@ -123,7 +123,9 @@ void ModelBuilder::fix(const records::Spc& spc) {
       is_fixed_[node.first_gdof + c] = 1;
       fixed_by_.emplace_back(node.first_gdof + c, at);
     }
-  if (spc.d != 0)
+  for (int c = 0; c < node.num_dofs && spc.d != 0; ++c)
+    if (node.num_dofs == 1 || (spc.c >> c & 1u)) model_.enforced_[node.first_gdof + c] = spc.d;
+  if (spc.d != 0 && !options_.uses_enforced)
     diagnostics_.warning("fe.enforced-ignored", at,
                          "SPC set " + std::to_string(spc.sid) + " enforces a displacement at grid " +
                              std::to_string(spc.g) + "; it is taken as zero",
@@ -210,6 +212,9 @@ void ModelBuilder::check_dependent_not_fixed() {
 Elimination ModelBuilder::set_transform() {
   Elimination elimination = eliminate(model_.num_gdofs_, equations_, is_fixed_);
   model_.T_ = rotate_rows(model_.nodes_, elimination.C);
+  const FixedPart fixed = collect_fixed_part(model_.num_gdofs_, equations_, is_fixed_);
+  model_.T_fixed_ = rotate_rows(model_.nodes_, fixed.C);
+  model_.fixed_dofs_ = fixed.ldofs;
   model_.node_fdof_.assign(model_.nodes_.size(), {-1, -1, -1, -1, -1, -1});
   model_.fdof_node_.clear();
   model_.fdof_component_.clear();

@@ -29,6 +29,7 @@ struct ModelOptions {
   std::optional<MassKind> mass_kind;  ///< overrides PARAM,COUPMASS
   std::optional<Vector3d> origin;     ///< Bo in basic: node positions become relative to it
   std::vector<std::string> ignore_cards;  ///< --ignore CARD
+  bool uses_enforced = false;         ///< the caller applies calc_enforced(): no warning that an SPC's value is dropped
 };
 
 /// One dof removed by AUTOSPC: node id, component 1..6 in CD axes, stiffness ratio that condemned it.
@@ -55,6 +56,10 @@ class Model final : public NodeTable {
   int num_gdofs() const { return num_gdofs_; }
   int num_fdofs() const { return static_cast<int>(T_.cols()); }
   const SparseRows& T() const { return T_; }  ///< num_gdofs x num_fdofs
+  /// The fixed dofs' part: u_g = T q_f + T_fixed d, d the displacements of the fixed dofs in their CD axes, in the order
+  /// of fixed_dofs() (SPC, permanent SPC, AUTOSPC). num_gdofs x num_fixed.
+  const SparseRows& T_fixed() const { return T_fixed_; }
+  const std::vector<int>& fixed_dofs() const { return fixed_dofs_; }  ///< rows in the numbering of the g-set, ascending
   MassKind mass_kind() const { return mass_kind_; }
   double wtmass() const { return wtmass_; }
   const std::vector<AutospcEntry>& autospc() const { return autospc_; }
@@ -76,7 +81,12 @@ class Model final : public NodeTable {
   Matrix3d calc_axes(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const override;
   Vector3d calc_point(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const override;
 
-  /// Load vector (num_gdofs) of a LOAD/FORCE/MOMENT/GRAV set, in basic; GRAV uses this model's mass.
+  /// Displacements d of the fixed dofs: those of the SPC set, overruled by the SPCD cards of load set `set` (0: none).
+  /// Reports fe.spcd-not-fixed.
+  VectorXd calc_enforced(const records::Deck& deck, int set, Diagnostics& diagnostics) const;
+
+  /// Load vector (num_gdofs) of a set, in basic: FORCEx, MOMENTx, SLOAD, PLOADx, GRAV and RFORCE (with this model's mass),
+  /// LOAD. Reports fe.missing-load and what is wrong with its cards.
   VectorXd calc_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const;
 
  private:
@@ -86,7 +96,9 @@ class Model final : public NodeTable {
   std::unordered_map<int, int> node_index_;
   std::vector<std::unique_ptr<const Element>> elements_;
   int num_gdofs_ = 0;
-  SparseRows T_;
+  SparseRows T_, T_fixed_;
+  std::vector<int> fixed_dofs_;
+  std::unordered_map<int, double> enforced_;  ///< by dof: the values of the SPC set that are not zero
   std::vector<int> fdof_node_, fdof_component_;
   std::vector<std::array<int, 6>> node_fdof_;
   MassKind mass_kind_ = MassKind::Lumped;

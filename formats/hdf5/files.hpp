@@ -8,6 +8,7 @@
 #include "bough/formats/records/flex_body.hpp"
 #include "bough/formats/records/modes.hpp"
 #include "bough/formats/records/results.hpp"
+#include "bough/formats/records/static_result.hpp"
 
 namespace bough::hdf5 {
 
@@ -18,6 +19,9 @@ records::FlexBody read_flex_body(const std::string& path);
 
 void write_modes(const records::ModesResult& modes, const std::string& path);
 records::ModesResult read_modes(const std::string& path);
+
+void write_static(const records::StaticResult& result, const std::string& path);
+void write_matrices(const records::MatricesResult& result, const std::string& path);
 
 /// A sink that writes path as it goes. `flush_every` samples between flushes. When appending (resume) the file must
 /// exist and end at or after `resume_time`; samples after it are cut.

@@ -13,16 +13,12 @@
 #include <Eigen/Dense>
 
 #include "bough/base/diagnostic.hpp"
+#include "bough/formats/records/card_location.hpp"
+#include "bough/formats/records/deck_loads.hpp"
 
 namespace bough::records {
 
 using Eigen::Vector3d;
-
-/// Where a card starts: index into Deck::files, 1-based line.
-struct CardLocation {
-  int file = 0;
-  int line = 0;
-};
 
 struct Grid {
   int id = 0;
@@ -313,6 +309,7 @@ struct Deck {
   std::vector<PointLoad> point_loads;
   std::vector<Gravity> gravity;
   std::vector<LoadCombination> loads;
+  LoadCards load_cards;                   ///< PLOADx, RFORCE, SPCD, SLOAD, FORCE1 ...
   std::vector<EigenMethod> eigen_methods;
   std::vector<Param> params;
   std::vector<UnusedCard> unused;

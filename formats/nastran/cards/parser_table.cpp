@@ -13,6 +13,7 @@ const ParserTable& get_card_parsers() {
     add_point_element_parsers(t);
     add_constraint_parsers(t);
     add_load_parsers(t);
+    add_pressure_parsers(t);
     add_solution_parsers(t);
     return t;
   }();

@@ -17,6 +17,7 @@ void add_line_element_parsers(ParserTable& table);    ///< CBAR, CBEAM, BAROR, B
 void add_point_element_parsers(ParserTable& table);   ///< CELASx, CBUSH, CMASSx, CONMx
 void add_constraint_parsers(ParserTable& table);      ///< RBE2, RBAR, SPC, SPC1, SPCADD, MPC, MPCADD
 void add_load_parsers(ParserTable& table);            ///< FORCE, MOMENT, GRAV, LOAD
+void add_pressure_parsers(ParserTable& table);        ///< FORCE1/2, MOMENT1/2, PLOAD, 1, 2, 4, RFORCE, SPCD, SLOAD
 void add_solution_parsers(ParserTable& table);        ///< EIGRL, EIGR, PARAM
 
 }  // namespace bough::nastran::detail

@@ -123,7 +123,7 @@ TEST(UnusedCards, WhatCarriesStiffnessMassConstraintIsAnError) {
 }
 
 TEST(UnusedCards, WhatCarriesALoadOrNothingIsAWarning) {
-  const auto r = read("PLOAD4,1,2,3.\nPLOAD4,1,3,3.\nMAT8,1,2.,3.\nAERO,,1.\n");
+  const auto r = read("PLOADX1,1,2,3.\nPLOADX1,1,3,3.\nMAT8,1,2.,3.\nAERO,,1.\n");
   EXPECT_EQ(r.diagnostics.num_errors(), 0) << r.get_messages();
   EXPECT_EQ(r.count("deck.unused-card"), 3);
   EXPECT_EQ(r.deck.unused[0].effect, records::CardEffect::Load);

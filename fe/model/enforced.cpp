@@ -1,0 +1,72 @@
+#include "bough/fe/model/load_sets.hpp"
+#include "bough/fe/model/constraints.hpp"
+
+#include <algorithm>
+
+namespace bough::fe {
+
+FixedPart collect_fixed_part(int num_ldofs, const std::vector<ConstraintEquation>& resolved,
+                             const std::vector<char>& is_fixed) {
+  FixedPart part;
+  std::vector<char> is_dependent(static_cast<std::size_t>(num_ldofs), 0);
+  std::vector<int> column(static_cast<std::size_t>(num_ldofs), -1);
+  for (const auto& equation : resolved) is_dependent[static_cast<std::size_t>(equation.dependent)] = 1;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int l = 0; l < num_ldofs; ++l)
+    if (is_fixed[static_cast<std::size_t>(l)] && !is_dependent[static_cast<std::size_t>(l)]) {
+      column[static_cast<std::size_t>(l)] = static_cast<int>(part.ldofs.size());
+      entries.emplace_back(l, static_cast<int>(part.ldofs.size()), 1.0);
+      part.ldofs.push_back(l);
+    }
+  for (const auto& equation : resolved)
+    for (const auto& [ldof, c] : equation.terms)
+      if (const int j = column[static_cast<std::size_t>(ldof)]; j >= 0) entries.emplace_back(equation.dependent, j, c);
+  part.C.resize(num_ldofs, static_cast<int>(part.ldofs.size()));
+  part.C.setFromTriplets(entries.begin(), entries.end());
+  return part;
+}
+
+VectorXd Model::calc_enforced(const records::Deck& deck, int set, Diagnostics& diagnostics) const {
+  VectorXd d = VectorXd::Zero(static_cast<Eigen::Index>(fixed_dofs_.size()));
+  const auto find = [&](int dof) {
+    const auto at = std::lower_bound(fixed_dofs_.begin(), fixed_dofs_.end(), dof);
+    return at != fixed_dofs_.end() && *at == dof ? static_cast<int>(at - fixed_dofs_.begin()) : -1;
+  };
+  for (const auto& [dof, value] : enforced_)
+    if (const int i = find(dof); i >= 0) d[i] = value;
+  if (set == 0) return d;
+  VectorXd by_load = VectorXd::Zero(d.size());
+  std::vector<char> is_given(static_cast<std::size_t>(d.size()), 0);
+  for_each_plain_set(deck, set, [&](int sid, double scale, const records::CardLocation&) {
+    for (const auto& card : deck.load_cards.spcd) {
+      if (card.sid != sid) continue;
+      const SourceLocation at = deck.locate(card.at);
+      const int index = find_node(card.g);
+      if (index < 0) {
+        diagnostics.error("fe.missing-grid", at,
+                          "SPCD names grid " + std::to_string(card.g) + ", which the deck does not define",
+                          "add the GRID or correct the id");
+        continue;
+      }
+      const Node& where = nodes_[static_cast<std::size_t>(index)];
+      for (int c = 0; c < where.num_dofs; ++c) {
+        if (where.num_dofs == 6 && !(card.c >> c & 1u)) continue;
+        const int i = find(where.first_gdof + c);
+        if (i < 0) {
+          diagnostics.error("fe.spcd-not-fixed", at,
+                            "SPCD moves grid " + std::to_string(card.g) + " component " +
+                                std::to_string(where.num_dofs == 1 ? 0 : c + 1) + ", which no SPC of the subcase fixes",
+                            "fix it with the SPC set of the subcase");
+          continue;
+        }
+        by_load[i] += scale * card.d;
+        is_given[static_cast<std::size_t>(i)] = 1;
+      }
+    }
+  });
+  for (Eigen::Index i = 0; i < d.size(); ++i)
+    if (is_given[static_cast<std::size_t>(i)]) d[i] = by_load[i];
+  return d;
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,44 @@
+#pragma once
+/// \file The families of load cards, each adding the cards of one set to a load vector. Internal to fe.
+#include <unordered_map>
+
+#include "bough/fe/model/model.hpp"
+
+namespace bough::fe {
+
+/// Where the cards of one load set go: F += scale times them.
+struct LoadTarget {
+  const Model& model;
+  const records::Deck& deck;
+  int set;
+  double scale;
+  VectorXd& F;
+  Diagnostics& diagnostics;
+
+  /// Index of a grid with six dofs, or -1 after reporting fe.missing-grid.
+  int find_grid(int id, const std::string& card, const records::CardLocation& at) const;
+};
+
+/// All return whether the set has such cards.
+bool add_point_loads(const LoadTarget& target);     ///< FORCE, FORCE1, FORCE2, MOMENT, MOMENT1, MOMENT2, SLOAD
+bool add_body_loads(const LoadTarget& target);      ///< GRAV, RFORCE
+bool add_surface_loads(const LoadTarget& target);   ///< PLOAD, PLOAD2, PLOAD4
+bool add_beam_loads(const LoadTarget& target);      ///< PLOAD1
+
+/// Calls visit(set, scale, card) for each plain set that `set` stands for: itself, or the terms of its LOAD card.
+template <class Visit>
+void for_each_plain_set(const records::Deck& deck, int set, const Visit& visit) {
+  for (const auto& combination : deck.loads)
+    if (combination.sid == set) {
+      for (const auto& [scale, sid] : combination.terms) visit(sid, combination.s * scale, combination.at);
+      return;
+    }
+  visit(set, 1.0, records::CardLocation{});
+}
+
+/// Loads along beams as they act on the element alone: equivalent forces at its ends (12, element axes), by index into
+/// Model::elements(). What the beam's own section forces need besides its displacements.
+std::unordered_map<int, VectorXd> calc_beam_end_loads(const Model& model, const records::Deck& deck, int set,
+                                                      Diagnostics& diagnostics);
+
+}  // namespace bough::fe

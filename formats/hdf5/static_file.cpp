@@ -1,0 +1,73 @@
+#include "bough/base/version.hpp"
+#include "bough/formats/hdf5/detail/writer.hpp"
+#include "bough/formats/hdf5/files.hpp"
+
+namespace bough::hdf5 {
+namespace {
+
+void write_subcase(FileWriter& file, const records::StaticSubcase& subcase) {
+  const std::string path = "/subcases/" + std::to_string(subcase.id);
+  file.make_group("/subcases");
+  file.make_group(path);
+  file.write_attribute(path, "label", subcase.label);
+  file.write_attribute(path, "load_set", subcase.load_set);
+  file.write_attribute(path, "spc_set", subcase.spc_set);
+  file.write_attribute(path, "mpc_set", subcase.mpc_set);
+  file.write_vector(path + "/displacement", subcase.displacement, {"displacements in the order of /dof_map", "L, 1"});
+  file.write_vector(path + "/load", subcase.load, {"loads on the grids, in the order of /dof_map", "F, F L"});
+  file.write_vector(path + "/reaction", subcase.reaction,
+                    {"forces of the single-point constraints on the structure, in the order of /dof_map", "F, F L"});
+  file.write_vector(path + "/mpc_force", subcase.mpc_force,
+                    {"forces of multipoint constraints and rigid elements, in the order of /dof_map", "F, F L"});
+  file.write_number(path + "/strain_energy", subcase.strain_energy, {"strain energy", "F L"});
+  file.write_number(path + "/epsilon", subcase.epsilon, {"work of the residual over the work of the loads", "1"});
+  Eigen::Matrix<double, 3, 6> resultants;
+  resultants << subcase.load_resultant.transpose(), subcase.reaction_resultant.transpose(),
+      subcase.mpc_resultant.transpose();
+  file.write_matrix(path + "/resultants", resultants,
+                    {"of loads, reactions, multipoint forces: forces x y z and moments x y z about the origin", "F, F L"});
+  for (const auto& block : subcase.elements) {
+    const std::string group = path + "/elements/" + block.card;
+    file.write_integers(group + "/id", block.id, {"element ids", "1"});
+    file.write_matrix(group + "/force", block.force, {"a row per element: the forces that `components` names", "F, F L"});
+    file.write_vector(group + "/strain_energy", block.strain_energy, {"strain energy of each element", "F L"});
+    file.write_attribute(group, "components", block.components);
+  }
+}
+
+void write_sparse(FileWriter& file, const std::string& path, const records::SparseMatrix& matrix,
+                  const std::string& what, const std::string& dims) {
+  file.write_vector(path + "/data", Eigen::Map<const Eigen::VectorXd>(matrix.data.data(),
+                                                                      static_cast<Eigen::Index>(matrix.data.size())),
+                    {what + ": the values of compressed rows", dims});
+  file.write_integers(path + "/indices", matrix.indices, {"their columns, 0-based", "1"});
+  file.write_integers(path + "/indptr", matrix.indptr, {"where each row begins in data and indices", "1"});
+  file.write_integers(path + "/shape", std::vector<int>{matrix.num_rows, matrix.num_cols}, {"rows and columns", "1"});
+}
+
+constexpr const char* kDofMap = "a row per dof: node id and code 1..6 (0 for a scalar point), basic axes";
+
+}  // namespace
+
+void write_static(const records::StaticResult& result, const std::string& path) {
+  FileWriter file(path, "bough-static", kStaticFormatVersion);
+  file.write_source(result.source);
+  file.write_integers("/dof_map", result.dof_map, {kDofMap, "1"});
+  write_mesh(file, result.mesh);
+  for (const auto& subcase : result.subcases) write_subcase(file, subcase);
+  file.commit();
+}
+
+void write_matrices(const records::MatricesResult& result, const std::string& path) {
+  FileWriter file(path, "bough-matrices", kMatricesFormatVersion);
+  file.write_source(result.source);
+  file.write_integers("/dof_map", result.dof_map, {kDofMap, "1"});
+  write_mesh(file, result.mesh);
+  write_sparse(file, "/K", result.K, "stiffness before constraints", "F/L, F, F L");
+  write_sparse(file, "/M", result.M, "mass before constraints", "M, M L, M L^2");
+  for (const auto& [name, matrix] : result.K_G)
+    write_sparse(file, "/KG/" + name, matrix, "geometric stiffness of the static solution", "F/L, F, F L");
+  file.commit();
+}
+
+}  // namespace bough::hdf5

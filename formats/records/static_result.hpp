@@ -1,0 +1,54 @@
+#pragma once
+/// \file What `static` and `matrices` write.
+#include "bough/formats/records/flex_body.hpp"
+
+namespace bough::records {
+
+/// Forces of the elements of one card, in the element's own names.
+struct ElementForces {
+  std::string card;
+  std::vector<std::string> components;
+  std::vector<int> id;
+  MatrixXd force;          ///< elements x components
+  VectorXd strain_energy;  ///< elements
+};
+
+/// One subcase: vectors on the g-set in basic axes.
+struct StaticSubcase {
+  int id = 0;
+  std::string label;
+  int load_set = 0, spc_set = 0, mpc_set = 0;
+  VectorXd displacement;
+  VectorXd load;
+  VectorXd reaction;   ///< forces of the single-point constraints on the structure
+  VectorXd mpc_force;  ///< forces of MPC and rigid elements: K u - F less the reactions
+  double strain_energy = 0;
+  double epsilon = 0;  ///< work of the residual over the work of the loads
+  /// About the origin: forces x y z, moments x y z.
+  Eigen::Matrix<double, 6, 1> load_resultant, reaction_resultant, mpc_resultant;
+  std::vector<ElementForces> elements;
+};
+
+struct StaticResult {
+  std::vector<std::pair<std::string, std::string>> source;
+  Eigen::MatrixXi dof_map;  ///< ndof x 2: node id, code 1..6 (0 for a scalar point)
+  BodyMesh mesh;
+  std::vector<StaticSubcase> subcases;
+};
+
+/// Compressed rows, as SciPy's csr_matrix.
+struct SparseMatrix {
+  std::vector<double> data;
+  std::vector<int> indices, indptr;
+  int num_rows = 0, num_cols = 0;
+};
+
+struct MatricesResult {
+  std::vector<std::pair<std::string, std::string>> source;
+  Eigen::MatrixXi dof_map;
+  BodyMesh mesh;
+  SparseMatrix K, M;
+  std::vector<std::pair<std::string, SparseMatrix>> K_G;  ///< by name: LOAD_n
+};
+
+}  // namespace bough::records
