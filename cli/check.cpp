@@ -48,17 +48,23 @@ void check_model(const records::Deck& deck, const fe::ModelOptions& model_option
   const auto model = fe::Model::build(deck, model_options, diagnostics);
   if (diagnostics.num_errors() > 0) return;
   const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
-  const auto ground = fe::calc_ground_check(model);
+  const GroundChecks ground{fe::calc_ground_check(model, fe::GroundSet::Global),
+                            fe::calc_ground_check(model, fe::GroundSet::Independent),
+                            fe::calc_ground_check(model, fe::GroundSet::Free)};
   text += fmt::format("\n{} nodes, {} elements, {} dofs, {} free after constraints; {} mass\n\n", model.nodes().size(),
                       model.elements().size(), model.num_gdofs(), model.num_fdofs(),
                       model.mass_kind() == fe::MassKind::Lumped ? "lumped" : "consistent");
-  text += format_mass_properties(mass) + "\n" + format_ground_check(ground) + "\n" + format_autospc(model);
+  text += format_mass_properties(mass) + "\n" + format_ground_check(ground) + "\n" + format_autospc(model) +
+          "\n" + format_geometry(model, deck);
   json["num_nodes"] = model.nodes().size();
   json["num_elements"] = model.elements().size();
   json["num_dofs"] = model.num_gdofs();
   json["num_free_dofs"] = model.num_fdofs();
   json["mass_properties"] = to_json(mass);
-  json["ground_check"] = to_json_list(ground);
+  json["ground_check"] = to_json_list(ground.g);
+  json["ground_check_n"] = to_json_list(ground.n);
+  json["ground_check_f"] = to_json_list(ground.f);
+  json["geometry"] = make_geometry_json(model, deck);
   json["autospc"] = nlohmann::json::array();
   for (const auto& entry : model.autospc()) {
     json["autospc"].push_back({{"grid", entry.node}, {"component", entry.component}, {"ratio", entry.ratio}});

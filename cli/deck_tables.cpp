@@ -41,13 +41,54 @@ std::string format_mass_properties(const records::MassProperties& p) {
   return text;
 }
 
-std::string format_ground_check(const Eigen::Matrix<double, 6, 1>& ground) {
+std::string format_ground_check(const GroundChecks& ground) {
   static const char* const kNames[] = {"x", "y", "z", "rx", "ry", "rz"};
-  Table table{{"ground check", "strain energy ratio", ""}, {}};
+  Table table{{"ground check", "g-set", "", "n-set", "", "f-set"}, {}};
+  const auto judge = [](double value) { return std::abs(value) < 1e-9 ? "pass" : "FAIL"; };
   for (int i = 0; i < 6; ++i) {
-    table.rows.push_back({kNames[i], fmt::format("{:.3e}", ground[i]), std::abs(ground[i]) < 1e-9 ? "pass" : "FAIL"});
+    table.rows.push_back({kNames[i], fmt::format("{:.3e}", ground.g[i]), judge(ground.g[i]),
+                          fmt::format("{:.3e}", ground.n[i]), judge(ground.n[i]),
+                          fmt::format("{:.3e}{}", ground.f[i], std::abs(ground.f[i]) < 1e-9 ? "" : " held")});
   }
   return table.to_text();
+}
+
+std::string format_geometry(const fe::Model& model, const records::Deck& deck) {
+  const auto list = [](const std::string& what, const std::vector<std::string>& names) {
+    constexpr std::size_t kShown = 10;
+    std::string text = what + ": " + (names.empty() ? "none" : std::to_string(names.size()));
+    for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i) text += (i ? ", " : " (") + names[i];
+    return text + (names.empty() ? "\n" : names.size() > kShown ? ", ...)\n" : ")\n");
+  };
+  std::vector<std::string> pairs, unused;
+  for (const auto& [a, b] : fe::find_coincident_grids(model, fe::choose_coincidence(model)))
+    pairs.push_back(fmt::format("{} and {}", a, b));
+  for (int id : fe::find_unused_grids(model, deck)) unused.push_back(std::to_string(id));
+  std::string text = list("coincident grids", pairs) + list("grids not used", unused);
+  const auto quality = fe::find_worst_quality(model);
+  if (quality.empty()) return text;
+  Table table{{"shape", "count", "worst aspect", "element", "worst warp", "element", "least Jacobian", "element"}, {}};
+  for (const auto& q : quality)
+    table.rows.push_back({q.card, std::to_string(q.count), fmt::format("{:.3g}", q.worst.aspect),
+                          std::to_string(q.aspect_id), fmt::format("{:.3g} deg", q.worst.warp_deg),
+                          std::to_string(q.warp_id), fmt::format("{:.3g}", q.worst.jacobian),
+                          std::to_string(q.jacobian_id)});
+  return text + "\n" + table.to_text();
+}
+
+nlohmann::json make_geometry_json(const fe::Model& model, const records::Deck& deck) {
+  nlohmann::json json{{"coincident_grids", fe::find_coincident_grids(model, fe::choose_coincidence(model))},
+                      {"unused_grids", fe::find_unused_grids(model, deck)},
+                      {"quality", nlohmann::json::object()}};
+  for (const auto& q : fe::find_worst_quality(model))
+    json["quality"][q.card] = {{"count", q.count},
+                               {"aspect", q.worst.aspect},
+                               {"aspect_element", q.aspect_id},
+                               {"warp_deg", q.worst.warp_deg},
+                               {"warp_element", q.warp_id},
+                               {"jacobian", q.worst.jacobian},
+                               {"jacobian_element", q.jacobian_id}};
+  return json;
 }
 
 std::string format_autospc(const fe::Model& model) {

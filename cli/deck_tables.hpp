@@ -3,14 +3,21 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "bough/fe/model/model.hpp"
+#include "bough/fe/checks.hpp"
 #include "bough/formats/records/deck.hpp"
 
 namespace bough::cli {
 
 /// Φ_RᵀMΦ_R about the reference, centre of mass, inertia about the reference, about the centre of mass, principal.
 std::string format_mass_properties(const records::MassProperties& properties);
-std::string format_ground_check(const Eigen::Matrix<double, 6, 1>& ground);
+/// Energies of the rigid motions on the three sets; a support strains the f-set, which is no fault.
+struct GroundChecks {
+  Eigen::Matrix<double, 6, 1> g, n, f;
+};
+std::string format_ground_check(const GroundChecks& ground);
+/// Coincident and unused grids, and the worst shapes of plane and solid elements.
+std::string format_geometry(const fe::Model& model, const records::Deck& deck);
+nlohmann::json make_geometry_json(const fe::Model& model, const records::Deck& deck);
 std::string format_autospc(const fe::Model& model);
 std::string format_card_counts(const records::Deck& deck);
 

@@ -44,6 +44,8 @@ int run(int argc, char** argv) {
   cli::Action action;
   cli::add_check(app, action);
   cli::add_modes(app, action);
+  cli::add_static(app, action);
+  cli::add_matrices(app, action);
   cli::add_reduce(app, action);
   cli::add_run(app, action);
   cli::add_export(app, action);

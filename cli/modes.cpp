@@ -2,11 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "bough/fe/assembly.hpp"
-#include "bough/fe/statics.hpp"
+#include "bough/fe/static_case.hpp"
 #include "bough/formats/hdf5/files.hpp"
 #include "bough/modal/eigen.hpp"
 #include "console.hpp"
@@ -39,6 +41,10 @@ modal::EigenOptions choose_eigen_options(const ModesOptions& options, const reco
     if (!options.buckling) {
       eigen.min_hz = card.f1;
       eigen.max_hz = card.f2;
+      // The methods by transformation compute every root; ND then asks for the lowest whatever F1 and F2 say.
+      static const std::set<std::string> by_transformation{"GIV", "MGIV", "HOU", "MHOU", "AGIV", "AHOU"};
+      if (!card.is_eigrl && card.num_modes > 0 && by_transformation.count(card.method) > 0)
+        eigen.min_hz = eigen.max_hz = std::nullopt;
     }
     break;
   }
@@ -174,13 +180,42 @@ modal::EigenPairs solve(const ModesOptions& options, const records::Deck& deck, 
     return modal::calc_normal_modes(model, eigen, diagnostics);
   }
   const auto cases = choose_buckling_cases(deck);
-  const auto load = model.calc_load(deck, cases.statics.load, diagnostics);
+  const auto load = fe::calc_static_load(model, deck, cases.statics.load, diagnostics);
   diagnostics.throw_if_errors();
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
   const fe::StaticSolver statics(model, K);
-  const VectorXd u = statics.solve(load);
+  const VectorXd u = fe::solve_static_case(model, statics, load).displacement;
   auto eigen = choose_eigen_options(options, deck, cases.buckling.method);
   return modal::calc_buckling_modes(model, u, eigen, diagnostics);
+}
+
+/// The subcases that SOL 103 solves one after the other, each with its METHOD, SPC and MPC; those that select the same as
+/// an earlier one are left out. One id (0: the first subcase) otherwise.
+std::vector<int> choose_subcases(const ModesOptions& options, const records::Deck& deck) {
+  if (options.model.subcase != 0) return {options.model.subcase};
+  if (options.buckling) return {choose_buckling_cases(deck).statics.id};
+  if (!deck.sol.empty() && deck.sol != "103" && deck.sol != "SEMODES") return {0};
+  std::vector<int> chosen;
+  std::set<std::array<int, 3>> seen;
+  for (const auto& subcase : deck.subcases)
+    if (subcase.id > 0 && subcase.method > 0 && seen.insert({subcase.method, subcase.spc, subcase.mpc}).second)
+      chosen.push_back(subcase.id);
+  return chosen.empty() ? std::vector<int>{0} : chosen;
+}
+
+/// "boom.h5" is "boom-subcase-2.h5" for a subcase after the first.
+std::string name_output(const std::string& path, int subcase, bool is_first) {
+  if (path.empty() || is_first) return path;
+  const std::filesystem::path p(path);
+  return (p.parent_path() / (p.stem().string() + fmt::format("-subcase-{}", subcase) + p.extension().string())).string();
+}
+
+/// Adds what is new: each subcase's model says again what the deck made the first one say.
+void add_new(const Diagnostics& from, Diagnostics& to) {
+  std::set<std::string> known;
+  for (const auto& item : to.items()) known.insert(format(item));
+  for (const auto& item : from.items())
+    if (known.insert(format(item)).second) to.add(item);
 }
 
 int run_modes(const ModesOptions& options) {
@@ -191,22 +226,38 @@ int run_modes(const ModesOptions& options) {
 
   Diagnostics diagnostics;
   auto model_options = make_model_options(options.model);
+  model_options.uses_enforced = options.buckling;
   const auto deck = read_deck_or_throw(options.deck, model_options, diagnostics);
-  if (options.buckling && model_options.subcase == 0) model_options.subcase = choose_buckling_cases(deck).statics.id;
-  auto model = fe::Model::build(deck, model_options, diagnostics);
-  diagnostics.throw_if_errors();
-  const auto pairs = solve(options, deck, model, console, diagnostics);
-  console.end_progress();
-  auto result = make_result(model, pairs, options.buckling);
-  result.source = calc_sources(deck.files);
-  console.print(diagnostics);
-
-  if (options.json) {
-    console.print_data(make_json(result).dump(2) + "\n");
-  } else {
-    console.print((options.buckling ? format_buckling(result) : format_modes(result)) + "\n" + format_health(result));
+  const auto sources = calc_sources(deck.files);
+  const auto subcases = choose_subcases(options, deck);
+  nlohmann::json json;
+  std::string text;
+  for (const int id : subcases) {
+    const bool is_first = id == subcases.front();
+    Diagnostics own;
+    model_options.subcase = id;
+    auto model = fe::Model::build(deck, model_options, own);
+    own.throw_if_errors();
+    const auto pairs = solve(options, deck, model, console, own);
+    console.end_progress();
+    auto result = make_result(model, pairs, options.buckling);
+    result.source = sources;
+    add_new(own, diagnostics);
+    if (subcases.size() > 1) text += fmt::format("{}subcase {}\n\n", is_first ? "" : "\n", result.subcase);
+    text += (options.buckling ? format_buckling(result) : format_modes(result)) + "\n" + format_health(result);
+    if (is_first) json = make_json(result);
+    if (subcases.size() > 1) json["subcases"].push_back(make_json(result));
+    const auto output = name_output(options.output, result.subcase, is_first);
+    if (!output.empty() && console.is_root()) {
+      check_output(options, output);
+      hdf5::write_modes(result, output);
+    }
   }
-  if (!options.output.empty() && console.is_root()) hdf5::write_modes(result, options.output);
+  console.print(diagnostics);
+  if (options.json)
+    console.print_data(json.dump(2) + "\n");
+  else
+    console.print(text);
   return kSuccess;
 }
 

@@ -12,6 +12,8 @@ using Action = std::function<int()>;
 
 void add_check(CLI::App& app, Action& action);
 void add_modes(CLI::App& app, Action& action);
+void add_static(CLI::App& app, Action& action);
+void add_matrices(CLI::App& app, Action& action);
 void add_reduce(CLI::App& app, Action& action);
 void add_run(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);

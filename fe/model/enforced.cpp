@@ -1,5 +1,5 @@
-#include "bough/fe/model/load_sets.hpp"
 #include "bough/fe/model/constraints.hpp"
+#include "bough/fe/model/load_sets.hpp"
 
 #include <algorithm>
 

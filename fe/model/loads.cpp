@@ -1,61 +1,104 @@
 #include <algorithm>
 
-#include "bough/fe/assembly.hpp"
+#include "bough/fe/model/load_sets.hpp"
 
 namespace bough::fe {
+
+int LoadTarget::find_grid(int id, const std::string& card, const records::CardLocation& at) const {
+  const int index = model.find_node(id);
+  if (index >= 0 && model.node(index).num_dofs == 6) return index;
+  diagnostics.error("fe.missing-grid", deck.locate(at),
+                    card + " names grid " + std::to_string(id) + ", which the deck does not define",
+                    "add the GRID or correct the id");
+  return -1;
+}
+
 namespace {
 
-/// Adds `scale` times the plain cards of one set; false when there are none.
-bool add_plain_set(const Model& model, const records::Deck& deck, int set, double scale, VectorXd& F,
-                   Diagnostics& diagnostics) {
+bool add_directed_loads(const LoadTarget& t) {
   bool is_found = false;
-  for (const auto& load : deck.point_loads) {
-    if (load.sid != set) continue;
+  for (const auto& load : t.deck.load_cards.directed) {
+    if (load.sid != t.set) continue;
     is_found = true;
-    const SourceLocation at = deck.locate(load.at);
-    const int index = model.find_node(load.g);
-    if (index < 0 || model.node(index).num_dofs != 6) {
-      diagnostics.error("fe.missing-grid", at,
-                        std::string(load.is_moment ? "MOMENT" : "FORCE") + " names grid " + std::to_string(load.g) +
-                            ", which the deck does not define",
-                        "add the GRID or correct the id");
+    const std::string card = std::string(load.is_moment ? "MOMENT" : "FORCE") + (load.is_cross ? "2" : "1");
+    const int index = t.find_grid(load.g, card, load.at);
+    std::array<Vector3d, 4> x;
+    bool is_good = index >= 0;
+    for (std::size_t i = 0; i < (load.is_cross ? 4u : 2u); ++i) {
+      const int k = t.find_grid(load.grids[i], card, load.at);
+      is_good = is_good && k >= 0;
+      if (k >= 0) x[i] = t.model.node(k).x;
+    }
+    if (!is_good) continue;
+    Vector3d direction = x[1] - x[0];
+    double size = direction.norm();
+    if (load.is_cross) {
+      size *= (x[3] - x[2]).norm();
+      direction = direction.cross(x[3] - x[2]).eval();
+    }
+    if (!(direction.norm() > 1e-12 * size)) {
+      t.diagnostics.error("fe.no-direction", t.deck.locate(load.at),
+                          card + " at grid " + std::to_string(load.g) + " has no direction: its grids " +
+                              (load.is_cross ? "give two parallel vectors" : "coincide"),
+                          "name other grids");
       continue;
     }
-    const Node& node = model.node(index);
-    const Matrix3d R = model.calc_axes(load.cid, node.x, at, diagnostics);
-    F.segment<3>(node.first_gdof + (load.is_moment ? 3 : 0)) += scale * load.f * (R * load.n);
+    t.F.segment<3>(t.model.node(index).first_gdof + (load.is_moment ? 3 : 0)) +=
+        t.scale * load.f * direction.normalized();
   }
-  Vector3d acceleration = Vector3d::Zero();
-  for (const auto& gravity : deck.gravity) {
-    if (gravity.sid != set) continue;
-    is_found = true;
-    const SourceLocation at = deck.locate(gravity.at);
-    const Vector3d origin = model.calc_point(0, Vector3d::Zero(), at, diagnostics);
-    acceleration += scale * gravity.a * (model.calc_axes(gravity.cid, origin, at, diagnostics) * gravity.n);
-  }
-  if (!acceleration.isZero(0))
-    F += calc_mass_times(model, model.mass_kind(), model.calc_rigid_modes().leftCols<3>() * acceleration);
   return is_found;
+}
+
+bool add_scalar_loads(const LoadTarget& t) {
+  bool is_found = false;
+  for (const auto& load : t.deck.load_cards.scalar) {
+    if (load.sid != t.set) continue;
+    is_found = true;
+    const int index = t.model.find_node(load.point);
+    if (index >= 0 && t.model.node(index).num_dofs == 1) {
+      t.F[t.model.node(index).first_gdof] += t.scale * load.f;
+      continue;
+    }
+    t.diagnostics.error("fe.missing-grid", t.deck.locate(load.at),
+                        "SLOAD names scalar point " + std::to_string(load.point) + ", which the deck does not define",
+                        "add the SPOINT or correct the id");
+  }
+  return is_found;
+}
+
+bool has_enforced(const records::Deck& deck, int set) {
+  const auto& spcd = deck.load_cards.spcd;
+  return std::any_of(spcd.begin(), spcd.end(), [set](const auto& s) { return s.sid == set; });
 }
 
 }  // namespace
 
+bool add_point_loads(const LoadTarget& t) {
+  bool is_found = false;
+  for (const auto& load : t.deck.point_loads) {
+    if (load.sid != t.set) continue;
+    is_found = true;
+    const int index = t.find_grid(load.g, load.is_moment ? "MOMENT" : "FORCE", load.at);
+    if (index < 0) continue;
+    const Node& node = t.model.node(index);
+    const Matrix3d R = t.model.calc_axes(load.cid, node.x, t.deck.locate(load.at), t.diagnostics);
+    t.F.segment<3>(node.first_gdof + (load.is_moment ? 3 : 0)) += t.scale * load.f * (R * load.n);
+  }
+  const bool has_directed = add_directed_loads(t), has_scalar = add_scalar_loads(t);
+  return is_found || has_directed || has_scalar;
+}
+
 VectorXd Model::calc_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const {
   VectorXd F = VectorXd::Zero(num_gdofs_);
-  const auto report_missing = [&](int sid, const SourceLocation& at) {
-    diagnostics.error("fe.missing-load", at,
-                      "load set " + std::to_string(sid) + " has no FORCE, MOMENT, GRAV or LOAD card",
-                      "correct the set id or add its cards");
-  };
-  const auto combination =
-      std::find_if(deck.loads.begin(), deck.loads.end(), [&](const auto& l) { return l.sid == set; });
-  if (combination == deck.loads.end()) {
-    if (!add_plain_set(*this, deck, set, 1, F, diagnostics)) report_missing(set, deck.locate({}));
-    return F;
-  }
-  for (const auto& [scale, sid] : combination->terms)
-    if (!add_plain_set(*this, deck, sid, combination->s * scale, F, diagnostics))
-      report_missing(sid, deck.locate(combination->at));
+  for_each_plain_set(deck, set, [&](int sid, double scale, const records::CardLocation& at) {
+    const LoadTarget target{*this, deck, sid, scale, F, diagnostics};
+    const bool found[] = {add_point_loads(target), add_body_loads(target), 
+                          add_beam_loads(target), has_enforced(deck, sid)};
+    if (std::find(std::begin(found), std::end(found), true) == std::end(found))
+      diagnostics.error("fe.missing-load", deck.locate(at),
+                        "load set " + std::to_string(sid) + " has no FORCE, MOMENT, GRAV, PLOAD or LOAD card",
+                        "correct the set id or add its cards");
+  });
   return F;
 }
 

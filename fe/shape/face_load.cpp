@@ -70,9 +70,9 @@ Shapes calc_shapes(int n, const std::vector<char>& has_midside, double r, double
 
 }  // namespace
 
-Eigen::Matrix3Xd calc_face_load(const std::vector<Eigen::Vector3d>& corners, const std::vector<Eigen::Vector3d>& midside,
-                                const std::vector<char>& has_midside, const std::vector<double>& p,
-                                const Traction& traction) {
+Eigen::Matrix3Xd calc_face_load(const std::vector<Eigen::Vector3d>& corners,
+                                const std::vector<Eigen::Vector3d>& midside, const std::vector<char>& has_midside,
+                                const std::vector<double>& p, const Traction& traction) {
   const int n = static_cast<int>(corners.size());
   BOUGH_DEMAND((n == 3 || n == 4) && p.size() == corners.size() && midside.size() == has_midside.size());
   std::vector<Eigen::Vector3d> x = corners;

@@ -9,7 +9,8 @@ namespace bough::exports {
 void write_matrix_market(std::ostream& out, const records::SparseMatrix& matrix, const std::string& comment) {
   const auto visit = [&](const auto& use) {
     for (int row = 0; row < matrix.num_rows; ++row)
-      for (int k = matrix.indptr[static_cast<std::size_t>(row)]; k < matrix.indptr[static_cast<std::size_t>(row) + 1]; ++k)
+      for (int k = matrix.indptr[static_cast<std::size_t>(row)]; k < matrix.indptr[static_cast<std::size_t>(row) + 1];
+           ++k)
         if (const int column = matrix.indices[static_cast<std::size_t>(k)]; column <= row)
           use(row, column, matrix.data[static_cast<std::size_t>(k)]);
   };
@@ -32,10 +33,12 @@ void write_output4(std::ostream& out, const records::SparseMatrix& matrix, const
   out << line;
   // A symmetric matrix: its rows are its columns.
   for (int column = 0; column < matrix.num_cols; ++column) {
-    const int begin = matrix.indptr[static_cast<std::size_t>(column)], end = matrix.indptr[static_cast<std::size_t>(column) + 1];
+    const int begin = matrix.indptr[static_cast<std::size_t>(column)],
+              end = matrix.indptr[static_cast<std::size_t>(column) + 1];
     if (begin == end) continue;
     const int first = matrix.indices[static_cast<std::size_t>(begin)];
-    std::vector<double> values(static_cast<std::size_t>(matrix.indices[static_cast<std::size_t>(end - 1)] - first + 1), 0.0);
+    std::vector<double> values(static_cast<std::size_t>(matrix.indices[static_cast<std::size_t>(end - 1)] - first + 1),
+                               0.0);
     for (int k = begin; k < end; ++k)
       values[static_cast<std::size_t>(matrix.indices[static_cast<std::size_t>(k)] - first)] =
           matrix.data[static_cast<std::size_t>(k)];

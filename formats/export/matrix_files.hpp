@@ -7,8 +7,8 @@
 
 namespace bough::exports {
 
-/// Matrix Market, coordinate real symmetric: the lower triangle (Boisvert, Pozo & Remington, NISTIR 5935). `comment`: one
-/// line behind '%'.
+/// Matrix Market, coordinate real symmetric: the lower triangle (Boisvert, Pozo & Remington, NISTIR 5935). `comment`:
+/// one line behind '%'.
 void write_matrix_market(std::ostream& out, const records::SparseMatrix& matrix, const std::string& comment);
 
 /// Nastran OUTPUT4, formatted, one matrix (form 6, type 2): each column from its first to its last entry. Name of up to

@@ -24,12 +24,14 @@ void write_subcase(FileWriter& file, const records::StaticSubcase& subcase) {
   Eigen::Matrix<double, 3, 6> resultants;
   resultants << subcase.load_resultant.transpose(), subcase.reaction_resultant.transpose(),
       subcase.mpc_resultant.transpose();
-  file.write_matrix(path + "/resultants", resultants,
-                    {"of loads, reactions, multipoint forces: forces x y z and moments x y z about the origin", "F, F L"});
+  file.write_matrix(
+      path + "/resultants", resultants,
+      {"of loads, reactions, multipoint forces: forces x y z and moments x y z about the origin", "F, F L"});
   for (const auto& block : subcase.elements) {
     const std::string group = path + "/elements/" + block.card;
     file.write_integers(group + "/id", block.id, {"element ids", "1"});
-    file.write_matrix(group + "/force", block.force, {"a row per element: the forces that `components` names", "F, F L"});
+    file.write_matrix(group + "/force", block.force,
+                      {"a row per element: the forces that `components` names", "F, F L"});
     file.write_vector(group + "/strain_energy", block.strain_energy, {"strain energy of each element", "F L"});
     file.write_attribute(group, "components", block.components);
   }
@@ -37,9 +39,10 @@ void write_subcase(FileWriter& file, const records::StaticSubcase& subcase) {
 
 void write_sparse(FileWriter& file, const std::string& path, const records::SparseMatrix& matrix,
                   const std::string& what, const std::string& dims) {
-  file.write_vector(path + "/data", Eigen::Map<const Eigen::VectorXd>(matrix.data.data(),
-                                                                      static_cast<Eigen::Index>(matrix.data.size())),
-                    {what + ": the values of compressed rows", dims});
+  file.write_vector(
+      path + "/data",
+      Eigen::Map<const Eigen::VectorXd>(matrix.data.data(), static_cast<Eigen::Index>(matrix.data.size())),
+      {what + ": the values of compressed rows", dims});
   file.write_integers(path + "/indices", matrix.indices, {"their columns, 0-based", "1"});
   file.write_integers(path + "/indptr", matrix.indptr, {"where each row begins in data and indices", "1"});
   file.write_integers(path + "/shape", std::vector<int>{matrix.num_rows, matrix.num_cols}, {"rows and columns", "1"});

@@ -7,8 +7,9 @@ namespace {
 using Eigen::Vector3d;
 
 TEST(LoadCards, DirectedAndScalar) {
-  const auto r = read("FORCE1,1,2,3.,4,5\nMOMENT1,1,2,3.,4,5\nFORCE2,1,2,3.,4,5,6,7\nMOMENT2,1,2,,4,5,6,7\n"
-                      "SLOAD,3,11,1.5,12,-2.\nSPCD,4,1,12,.1,2,3,.2\n");
+  const auto r = read(
+      "FORCE1,1,2,3.,4,5\nMOMENT1,1,2,3.,4,5\nFORCE2,1,2,3.,4,5,6,7\nMOMENT2,1,2,,4,5,6,7\n"
+      "SLOAD,3,11,1.5,12,-2.\nSPCD,4,1,12,.1,2,3,.2\n");
   ASSERT_EQ(r.diagnostics.num_errors(), 0) << r.get_messages();
   const auto& c = r.deck.load_cards;
   ASSERT_EQ(c.directed.size(), 4u);
@@ -38,8 +39,9 @@ TEST(LoadCards, LinesAlongBeams) {
 }
 
 TEST(LoadCards, Pressures) {
-  const auto r = read("PLOAD,1,2.,1,2,3\nPLOAD2,1,2.,5,6\nPLOAD2,1,2.,11,THRU,13\nPLOAD4,2,7,3.,,5.\n"
-                      "PLOAD4,3,8,1.,2.,3.,4.,31,33\n,9,0.,0.,2.\nPLOAD4,4,1,1.,,,,THRU,3\n");
+  const auto r = read(
+      "PLOAD,1,2.,1,2,3\nPLOAD2,1,2.,5,6\nPLOAD2,1,2.,11,THRU,13\nPLOAD4,2,7,3.,,5.\n"
+      "PLOAD4,3,8,1.,2.,3.,4.,31,33\n,9,0.,0.,2.\nPLOAD4,4,1,1.,,,,THRU,3\n");
   ASSERT_EQ(r.diagnostics.num_errors(), 0) << r.get_messages();
   EXPECT_EQ(r.deck.load_cards.grid_pressures[0].grids, (std::vector<int>{1, 2, 3}));
   const auto& p = r.deck.load_cards.pressures;

@@ -1,0 +1,14 @@
+#pragma once
+/// \file Tables and JSON of a static subcase.
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "bough/formats/records/static_result.hpp"
+
+namespace bough::cli {
+
+/// Maxima, balance and element forces; `full`: every grid and element.
+std::string format_static(const records::StaticResult& result, const records::StaticSubcase& subcase, bool full);
+nlohmann::json to_json(const records::StaticResult& result, const records::StaticSubcase& subcase, bool full);
+
+}  // namespace bough::cli

@@ -1,0 +1,69 @@
+#include <cmath>
+
+#include "bough/base/rotation.hpp"
+#include "bough/fe/assembly.hpp"
+#include "bough/fe/model/load_sets.hpp"
+
+namespace bough::fe {
+namespace {
+
+/// What the acceleration of the grids misses: the mass of a CONM off its grid is elsewhere, and its own inertia turns.
+void add_offset_terms(const LoadTarget& t, const Vector3d& omega) {
+  for (const auto& element : t.model.elements()) {
+    if (element->nodes().size() != 1 || element->num_dofs() != 6) continue;
+    MatrixXd M = MatrixXd::Zero(6, 6);
+    element->add_mass(t.model.mass_kind(), t.scale * t.model.wtmass(), M);
+    const Vector3d moment(M(1, 5), M(2, 3), M(0, 4));  // m s, from -m s̃
+    const Matrix3d inertia = M.bottomRightCorner<3, 3>();
+    const int first = element->gdofs().front();
+    t.F.segment<3>(first) -= omega.cross(omega.cross(moment));
+    t.F.segment<3>(first + 3) -= omega.cross(Vector3d(inertia * omega));
+  }
+}
+
+/// Centrifugal force outward and force along an angular acceleration: M (-ω×(ω×r) + α×r) at the grids (Nastran Quick
+/// Reference Guide, RFORCE; OptiStruct Reference Guide, RFORCE, for the sign of RACC).
+void add_rotation(const LoadTarget& t, const records::Rotation& load) {
+  const SourceLocation at = t.deck.locate(load.at);
+  Vector3d centre = t.model.calc_point(0, Vector3d::Zero(), at, t.diagnostics);
+  if (load.g > 0) {
+    const int index = t.find_grid(load.g, "RFORCE", load.at);
+    if (index < 0) return;
+    centre = t.model.node(index).x;
+  }
+  const Vector3d axis = 2 * M_PI * (t.model.calc_axes(load.cid, centre, at, t.diagnostics) * load.r);
+  const Vector3d omega = load.a * axis, alpha = load.racc * axis;
+  VectorXd field = VectorXd::Zero(t.model.num_gdofs());
+  for (const Node& node : t.model.nodes()) {
+    if (node.num_dofs != 6) continue;
+    const Vector3d r = node.x - centre;
+    field.segment<3>(node.first_gdof) = -omega.cross(omega.cross(r)) + alpha.cross(r);
+    field.segment<3>(node.first_gdof + 3) = alpha;
+  }
+  t.F += t.scale * calc_mass_times(t.model, t.model.mass_kind(), field);
+  add_offset_terms(t, omega);
+}
+
+}  // namespace
+
+bool add_body_loads(const LoadTarget& t) {
+  bool is_found = false;
+  Vector3d acceleration = Vector3d::Zero();
+  for (const auto& gravity : t.deck.gravity) {
+    if (gravity.sid != t.set) continue;
+    is_found = true;
+    const SourceLocation at = t.deck.locate(gravity.at);
+    const Vector3d origin = t.model.calc_point(0, Vector3d::Zero(), at, t.diagnostics);
+    acceleration += t.scale * gravity.a * (t.model.calc_axes(gravity.cid, origin, at, t.diagnostics) * gravity.n);
+  }
+  if (!acceleration.isZero(0))
+    t.F += calc_mass_times(t.model, t.model.mass_kind(), t.model.calc_rigid_modes().leftCols<3>() * acceleration);
+  for (const auto& load : t.deck.load_cards.rotations) {
+    if (load.sid != t.set) continue;
+    is_found = true;
+    add_rotation(t, load);
+  }
+  return is_found;
+}
+
+}  // namespace bough::fe

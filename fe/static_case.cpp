@@ -1,0 +1,167 @@
+#include "bough/fe/static_case.hpp"
+
+#include <cmath>
+#include <map>
+
+#include "bough/fe/elements/beam.hpp"
+#include "bough/fe/elements/bush.hpp"
+#include "bough/fe/elements/scalar.hpp"
+#include "bough/fe/model/load_sets.hpp"
+
+namespace bough::fe {
+namespace {
+
+/// What is printed of an element: its internal forces, or those of a spring, which no geometric stiffness asks for.
+std::vector<std::string> list_components(const Element& element) {
+  if (dynamic_cast<const ScalarSpring*>(&element)) return {"force"};
+  if (dynamic_cast<const Bush*>(&element)) return {"force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z"};
+  return element.internal_force_names();
+}
+
+VectorXd calc_forces(const Element& element, const VectorXd& u) {
+  if (const auto* spring = dynamic_cast<const ScalarSpring*>(&element))
+    return VectorXd::Constant(1, spring->calc_force(u));
+  if (const auto* bush = dynamic_cast<const Bush*>(&element)) return bush->calc_spring_forces(u);
+  VectorXd force = VectorXd::Zero(element.num_internal_forces());
+  element.calc_internal_forces(u, force);
+  return force;
+}
+
+}  // namespace
+
+StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int load, Diagnostics& diagnostics) {
+  const int set = load >= 0 ? load : model.subcase().load;
+  StaticLoad result;
+  result.F = set > 0 ? model.calc_load(deck, set, diagnostics) : VectorXd::Zero(model.num_gdofs());
+  result.d = model.calc_enforced(deck, set, diagnostics);
+  return result;
+}
+
+records::StaticSubcase solve_static_case(const Model& model, const StaticSolver& solver, const StaticLoad& load) {
+  records::StaticSubcase result;
+  const VectorXd u0 = model.T_fixed() * load.d;
+  VectorXd F = load.F;
+  if (!load.d.isZero(0)) F -= calc_stiffness_times(model, u0);
+  const VectorXd u1 = solver.solve(F);
+  result.displacement = u1 + u0;
+  result.load = load.F;
+  const VectorXd K_u = calc_stiffness_times(model, result.displacement);
+  const VectorXd residual = K_u - load.F;
+  const double work = std::abs(u1.dot(F));
+  result.epsilon = work > 0 ? std::abs(u1.dot(residual)) / work : 0;
+  result.strain_energy = 0.5 * result.displacement.dot(K_u);
+
+  const VectorXd held = model.T_fixed().transpose() * residual;
+  result.reaction = VectorXd::Zero(model.num_gdofs());
+  for (std::size_t i = 0; i < model.fixed_dofs().size(); ++i)
+    result.reaction[model.fixed_dofs()[i]] = held[static_cast<Eigen::Index>(i)];
+  for (const Node& node : model.nodes()) {
+    if (node.num_dofs != 6) continue;
+    for (const int part : {0, 3}) {
+      auto f = result.reaction.segment<3>(node.first_gdof + part);
+      f = (node.R_basic_cd * f).eval();
+    }
+  }
+  result.mpc_force = residual - result.reaction;
+  result.load_resultant = calc_resultant(model, result.load);
+  result.reaction_resultant = calc_resultant(model, result.reaction);
+  result.mpc_resultant = calc_resultant(model, result.mpc_force);
+  return result;
+}
+
+std::vector<records::ElementForces> calc_element_forces(const Model& model, const VectorXd& u_g,
+                                                        const records::Deck& deck, int load, Diagnostics& diagnostics) {
+  BOUGH_DEMAND(u_g.size() == model.num_gdofs());
+  std::unordered_map<int, VectorXd> end_loads;
+  if (load > 0) end_loads = calc_beam_end_loads(model, deck, load, diagnostics);
+  // Elements of one card may differ in their number of points: "CTETRA" and "CTETRA-24".
+  std::map<std::pair<std::string, int>, std::vector<int>> groups;
+  const auto& elements = model.elements();
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    const int count = static_cast<int>(list_components(*elements[e]).size());
+    if (count > 0) groups[{elements[e]->card(), count}].push_back(static_cast<int>(e));
+  }
+  const auto [begin, end] = calc_element_range(model);
+  std::vector<records::ElementForces> result;
+  for (const auto& [key, members] : groups) {
+    records::ElementForces block;
+    block.card =
+        !result.empty() && result.back().card == key.first ? key.first + "-" + std::to_string(key.second) : key.first;
+    block.components = list_components(*elements[static_cast<std::size_t>(members.front())]);
+    const auto rows = static_cast<Eigen::Index>(members.size());
+    block.force = MatrixXd::Zero(rows, key.second);
+    MatrixXd energy = MatrixXd::Zero(rows, 1);
+    for (Eigen::Index r = 0; r < rows; ++r) {
+      const int e = members[static_cast<std::size_t>(r)];
+      const Element& element = *elements[static_cast<std::size_t>(e)];
+      block.id.push_back(element.id());
+      if (e < begin || e >= end) continue;
+      VectorXd u(element.num_dofs());
+      for (int i = 0; i < u.size(); ++i) u[i] = u_g[element.gdofs()[static_cast<std::size_t>(i)]];
+      VectorXd force = calc_forces(element, u);
+      if (const auto own = end_loads.find(e); own != end_loads.end())
+        static_cast<const Beam&>(element).add_load_forces(own->second, force);
+      block.force.row(r) = force.transpose();
+      MatrixXd K = MatrixXd::Zero(u.size(), u.size());
+      element.add_stiffness(1, K);
+      energy(r, 0) = 0.5 * u.dot(K * u);
+    }
+    sum_over_ranks(block.force);
+    sum_over_ranks(energy);
+    block.strain_energy = energy.col(0);
+    result.push_back(std::move(block));
+  }
+  return result;
+}
+
+Eigen::Matrix<double, 6, 1> calc_resultant(const Model& model, const VectorXd& F_g, const Vector3d& point) {
+  return model.calc_rigid_modes(point).transpose() * F_g;
+}
+
+records::SparseMatrix gather_sparse(const PetscMat& A) {
+  const MpiWorld world = initialize_petsc();
+  PetscInt first = 0, last = 0, num_rows = 0, num_cols = 0;
+  check_petsc(MatGetOwnershipRange(A.get(), &first, &last));
+  check_petsc(MatGetSize(A.get(), &num_rows, &num_cols));
+  std::vector<double> data;
+  std::vector<int> indices, sizes;
+  for (PetscInt row = first; row < last; ++row) {
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    check_petsc(MatGetRow(A.get(), row, &count, &columns, &values));
+    const std::size_t before = data.size();
+    for (PetscInt i = 0; i < count; ++i)
+      if (values[i] != 0) {
+        data.push_back(values[i]);
+        indices.push_back(columns[i]);
+      }
+    sizes.push_back(static_cast<int>(data.size() - before));
+    check_petsc(MatRestoreRow(A.get(), row, &count, &columns, &values));
+  }
+  // One block after the other to the first rank.
+  records::SparseMatrix result;
+  result.num_rows = num_rows;
+  result.num_cols = num_cols;
+  const auto collect = [&](const auto& own, auto& all, MPI_Datatype type) {
+    const int own_size = static_cast<int>(own.size());
+    std::vector<int> counts(static_cast<std::size_t>(world.size)), starts(counts.size(), 0);
+    MPI_Gather(&own_size, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, PETSC_COMM_WORLD);
+    int total = 0;
+    for (std::size_t r = 0; r < counts.size(); ++r) {
+      starts[r] = total;
+      total += counts[r];
+    }
+    all.resize(world.rank == 0 ? static_cast<std::size_t>(total) : 0);
+    MPI_Gatherv(own.data(), own_size, type, all.data(), counts.data(), starts.data(), type, 0, PETSC_COMM_WORLD);
+  };
+  std::vector<int> all_sizes;
+  collect(data, result.data, MPI_DOUBLE);
+  collect(indices, result.indices, MPI_INT);
+  collect(sizes, all_sizes, MPI_INT);
+  result.indptr.assign(1, 0);
+  for (int size : all_sizes) result.indptr.push_back(result.indptr.back() + size);
+  return result;
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,31 @@
+#pragma once
+/// \file One static subcase: displacements, reactions, balance, element forces (SOL 101).
+#include "bough/fe/statics.hpp"
+#include "bough/formats/records/static_result.hpp"
+
+namespace bough::fe {
+
+/// Loads of a subcase: F on the g-set in basic, d of the fixed dofs in their CD axes (Model::calc_enforced).
+struct StaticLoad {
+  VectorXd F, d;
+};
+/// From LOAD of the model's subcase, or from set `load` when it is not negative; 0: enforced displacements alone.
+StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int load, Diagnostics& diagnostics);
+
+/// u = T q + T_fixed d with Tᵀ(K u - F) = 0. With R = K u - F: reactions of the fixed dofs T_fixedᵀ R; the rest of R is
+/// the force of MPC and rigid elements. epsilon = |qᵀTᵀR| / |qᵀTᵀ(F - K T_fixed d)| (Nastran's residual work).
+records::StaticSubcase solve_static_case(const Model& model, const StaticSolver& solver, const StaticLoad& load);
+
+/// Forces and strain energy of every element, by card in alphabetical order. Replicated. `deck`, `load`: loads along
+/// beams, which act between the ends that u knows.
+std::vector<records::ElementForces> calc_element_forces(const Model& model, const VectorXd& u_g,
+                                                        const records::Deck& deck, int load, Diagnostics& diagnostics);
+
+/// Forces and moments about `point` of a load on the g-set.
+Eigen::Matrix<double, 6, 1> calc_resultant(const Model& model, const VectorXd& F_g,
+                                           const Vector3d& point = Vector3d::Zero());
+
+/// A distributed matrix on the first rank (empty on the others), without zero entries.
+records::SparseMatrix gather_sparse(const PetscMat& A);
+
+}  // namespace bough::fe

@@ -1,0 +1,230 @@
+/// \file Load cards against closed forms: lines along beams, pressure on faces, rotation, directions by grids.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bough/base/rotation.hpp"
+#include "bough/fe/elements/beam.hpp"
+#include "bough/fe/static_case.hpp"
+#include "bough/formats/nastran/reader.hpp"
+
+namespace bough::fe {
+namespace {
+
+struct Loaded {
+  records::Deck deck;
+  Model model;
+};
+
+Loaded make_loaded(const std::string& bulk, Diagnostics& diagnostics, int subcase = 0) {
+  auto deck = nastran::read_deck_text(bulk, "deck.bdf", {}, diagnostics);
+  diagnostics.throw_if_errors();
+  ModelOptions options;
+  options.autospc = false;
+  options.subcase = subcase;
+  options.uses_enforced = true;
+  auto model = Model::build(deck, options, diagnostics);
+  return {std::move(deck), std::move(model)};
+}
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+std::string say(const Diagnostics& d) {
+  std::string text;
+  for (const auto& item : d.items()) text += item.id + " ";
+  return text;
+}
+
+records::StaticSubcase solve(const Loaded& l, int set, Diagnostics& d) {
+  const StaticSolver solver(l.model, assemble_stiffness(l.model, DofSet::Free));
+  const auto load = calc_static_load(l.model, l.deck, set, d);
+  d.throw_if_errors();
+  return solve_static_case(l.model, solver, load);
+}
+
+// One bar of length 2 along x, EI1 = 700 (plane 1: y), EI2 = 350.
+const std::string kBar =
+    "SPC = 1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\nPBAR,1,1,1.-3,1.-8,5.-9,1.-8\n"
+    "MAT1,1,7.+10,,.3,2700.\nSPC1,1,123456,1\n";
+
+TEST(BeamLoads, UniformLoadDeflectsAsTheory) {
+  Diagnostics d;
+  const auto l = make_loaded(kBar + "PLOAD1,4,1,FY,LE,0.,3.,2.,3.\nPLOAD1,5,1,FZE,FR,0.,0.,1.,3.\n", d);
+  const double L = 2, EI1 = 700, EI2 = 350, p = 3;
+  const auto uniform = solve(l, 4, d);
+  EXPECT_NEAR(uniform.displacement[7], p * std::pow(L, 4) / (8 * EI1), 1e-12);
+  EXPECT_NEAR(uniform.displacement[11], p * std::pow(L, 3) / (6 * EI1), 1e-12);
+  // Triangular, p at the tip: 11 p L^4 / (120 EI).
+  EXPECT_NEAR(solve(l, 5, d).displacement[8], 11 * p * std::pow(L, 4) / (120 * EI2), 1e-12);
+  // Section forces at A and B: V = pL, M = pL²/2 at the root, none at the tip.
+  const auto forces = calc_element_forces(l.model, uniform.displacement, l.deck, 4, d);
+  ASSERT_EQ(forces.size(), 1u);
+  const Eigen::VectorXd f = forces[0].force.row(0);
+  EXPECT_NEAR(std::abs(f[1]), p * L, 1e-10);
+  EXPECT_NEAR(std::abs(f[5]), p * L * L / 2, 1e-10);
+  EXPECT_NEAR(f[7], 0, 1e-10);
+  // The reaction carries both.
+  EXPECT_NEAR(uniform.reaction[1], -p * L, 1e-10);
+  EXPECT_NEAR(uniform.reaction[5], -p * L * L / 2, 1e-10);
+}
+
+TEST(BeamLoads, PointLoadAndMomentWithinTheSpan) {
+  Diagnostics d;
+  const auto l =
+      make_loaded(kBar + "PLOAD1,4,1,FYE,FR,.25,8.\nPLOAD1,5,1,MZ,LE,.5,6.\nPLOAD1,6,1,MXE,LE,0.,1.,2.,1.\n", d);
+  const double a = 0.5, L = 2, EI = 700;
+  EXPECT_NEAR(solve(l, 4, d).displacement[7], 8 * a * a * (3 * L - a) / (6 * EI), 1e-12);
+  const auto moment = solve(l, 5, d);
+  EXPECT_NEAR(moment.displacement[11], 6 * a / EI, 1e-12);
+  EXPECT_NEAR(moment.displacement[7], 6 * a * (L - a / 2) / EI, 1e-12);
+  const double GJ = 7e10 / 2.6 * 1e-8;
+  EXPECT_NEAR(solve(l, 6, d).displacement[9], 1 * L * L / (2 * GJ), 1e-12);
+}
+
+TEST(BeamLoads, PinnedEndPropsTheBeam) {
+  // Clamped at 1, held at 2 through a bar released in bending there: 3/8 of the load on the prop, tip moment zero.
+  Diagnostics d;
+  std::string bulk = kBar;
+  bulk.replace(bulk.find("CBAR,1,1,1,2,0.,1.,0."), 21, "CBAR,1,1,1,2,0.,1.,0.\n,,56");
+  const auto l = make_loaded(bulk + "SPC1,1,123456,2\nPLOAD1,4,1,FY,LE,0.,3.,2.,3.\n", d);
+  const auto s = [&] {
+    const auto load = calc_static_load(l.model, l.deck, 4, d);
+    VectorXd R = -load.F;  // everything is held
+    return R;
+  }();
+  EXPECT_NEAR(s[7], -3.0 / 8 * 6, 1e-10);
+  EXPECT_NEAR(s[1], -5.0 / 8 * 6, 1e-10);
+  EXPECT_NEAR(s[11], 0, 1e-10);
+  EXPECT_NEAR(s[5], -6.0 * 2 / 8, 1e-10);
+  const auto forces = calc_element_forces(l.model, VectorXd::Zero(12), l.deck, 4, d);
+  EXPECT_NEAR(forces[0].force(0, 7), 0, 1e-10);
+  EXPECT_NEAR(std::abs(forces[0].force(0, 5)), 6.0 * 2 / 8, 1e-10);
+  EXPECT_NEAR(std::abs(forces[0].force(0, 1)), 5.0 / 8 * 6, 1e-10);
+}
+
+TEST(BeamLoads, ProjectedLoadCountsTheLengthSeenAlongIt) {
+  Diagnostics d;
+  const auto l = make_loaded(
+      "GRID,1,,0.,0.,0.\nGRID,2,,3.,4.,0.\nCBAR,1,1,1,2,0.,0.,1.\nPBAR,1,1,1.-3,1.-8,1.-8,1.-8\nMAT1,1,7.+10,,.3\n"
+      "PLOAD1,4,1,FY,FRPR,0.,2.,1.,2.\nPLOAD1,5,1,FY,FR,0.,2.,1.,2.\n",
+      d);
+  const Vector6d seen = calc_resultant(l.model, l.model.calc_load(l.deck, 4, d));
+  const Vector6d along = calc_resultant(l.model, l.model.calc_load(l.deck, 5, d));
+  EXPECT_NEAR(seen[1], 2 * 3, 1e-12);
+  EXPECT_NEAR(along[1], 2 * 5, 1e-12);
+  EXPECT_NEAR(along[5], 2 * 5 * 1.5, 1e-12);
+  EXPECT_NEAR(seen.head<3>().norm(), 6, 1e-12);
+}
+
+TEST(BeamLoads, ResultantOfATrapezoidOnAnOffsetTaperedBeam) {
+  Diagnostics d;
+  const auto l = make_loaded(
+      "GRID,1,,1.,0.,0.\nGRID,2,,1.,2.,1.\nCBEAM,1,1,1,2,1.,0.,0.\n,,,.1,.2,.3,0.,-.1,.2\n"
+      "PBEAM,1,1,2.-3,2.-8,2.-8,,3.-8\n,,,,,,,,\n,NO,1.,1.-3,1.-8,1.-8,,1.-8\nMAT1,1,7.+10,,.3\n"
+      "PLOAD1,4,1,FZ,FR,.2,2.,.7,5.\nPLOAD1,4,1,MYE,LE,.3,1.,.9,4.\n",
+      d);
+  const auto& beam = static_cast<const Beam&>(*l.model.elements()[0]);
+  const double L = beam.geometry().length;
+  const Vector3d a = Vector3d(1, 0, 0) + beam.geometry().wa, axis = beam.geometry().R_basic_element.col(0);
+  const double F = 0.5 * L * 3.5, centre = L * (0.2 + 0.5 * (2 + 2 * 5) / (3 * 7.0));
+  Vector6d expected;
+  const Vector3d f(0, 0, F);
+  expected << f, (a + centre * axis).cross(f) + beam.geometry().R_basic_element.col(1) * 0.6 * 2.5;
+  EXPECT_LT((calc_resultant(l.model, l.model.calc_load(l.deck, 4, d)) - expected).norm(), 1e-11 * expected.norm());
+}
+
+TEST(Rotation, CentrifugalAndTangentialForces) {
+  Diagnostics d;
+  const auto l = make_loaded(
+      "GRID,1,,1.,0.,0.\nGRID,2,,3.,0.,1.\nCBAR,1,1,1,2,0.,1.,0.\nPBAR,1,1,1.-3,1.-8,1.-8,1.-8\nMAT1,1,7.+10,,.3,2700."
+      "\n"
+      "CONM2,9,2,,5.,0.,.5,0.\n,.4,,.6,,,.9\nGRID,3,,1.,1.,0.\nRFORCE,4,0,0,.3,0.,0.,2.\nRFORCE,5,1,0,0.,0.,0.,1.\n,."
+      "7\n",
+      d);
+  const double omega = 2 * M_PI * 0.6, m_bar = 2700 * 1e-3 * std::sqrt(5.0);
+  const VectorXd F = l.model.calc_load(l.deck, 4, d);
+  // Lumped halves at the grids, and the mass at (3, 0.5, 1).
+  EXPECT_NEAR(F[0], omega * omega * m_bar / 2 * 1, 1e-10);
+  EXPECT_NEAR(F[6], omega * omega * (m_bar / 2 * 3 + 5 * 3), 1e-9);
+  EXPECT_NEAR(F[7], omega * omega * 5 * 0.5, 1e-10);
+  EXPECT_NEAR(F[8], 0, 1e-12);
+  // Moment about the grid: arm (0, .5, 0) with the force of the mass, nothing gyroscopic about a principal axis.
+  EXPECT_NEAR(F[11], -0.5 * omega * omega * 5 * 3, 1e-9);
+  // An angular acceleration pushes along itself (OptiStruct's wording), about grid 1: the moment is I α.
+  const VectorXd T = l.model.calc_load(l.deck, 5, d);
+  const Vector6d r = calc_resultant(l.model, T, Vector3d(1, 0, 0));
+  const double inertia = m_bar / 2 * 4 + 5 * (4 + 0.25) + 0.9;
+  EXPECT_NEAR(r[5], inertia * 2 * M_PI * 0.7, 1e-9);
+}
+
+TEST(DirectedLoads, ForcesAndMomentsByGrids) {
+  Diagnostics d;
+  const auto l = make_loaded(
+      "GRID,1,,0.,0.,0.\nGRID,2,,3.,4.,0.\nGRID,3,,0.,0.,2.\nCBAR,1,1,1,2,0.,0.,1.\nPBAR,1,1,1.-3,1.-8,1.-8,1.-8\n"
+      "MAT1,1,7.+10,,.3\nCELAS2,8,2.,101\nSPOINT,101\n"
+      "FORCE1,4,3,10.,1,2\nMOMENT1,4,2,5.,2,1\nFORCE2,5,1,10.,1,2,1,3\nMOMENT2,5,3,7.,1,2,1,3\nSLOAD,4,101,2.5\n"
+      "LOAD,9,2.,1.,4,.5,5\n",
+      d);
+  const VectorXd F = l.model.calc_load(l.deck, 4, d), C = l.model.calc_load(l.deck, 5, d);
+  EXPECT_LT((F.segment<3>(12) - Vector3d(6, 8, 0)).norm(), 1e-14);
+  EXPECT_LT((F.segment<3>(9) - Vector3d(-3, -4, 0)).norm(), 1e-14);
+  EXPECT_EQ(F[18], 2.5);
+  EXPECT_LT((C.segment<3>(0) - Vector3d(8, -6, 0)).norm(), 1e-14);
+  EXPECT_LT((C.segment<3>(15) - Vector3d(5.6, -4.2, 0)).norm(), 1e-14);
+  EXPECT_LT((l.model.calc_load(l.deck, 9, d) - 2 * F - C).norm(), 1e-13);
+}
+
+TEST(Enforced, SettlementAndSpcdAgainstTheory) {
+  // Clamped at 1; grid 2 moved by SPC d, overruled by SPCD; a rigid element carries the motion to grid 3.
+  Diagnostics d;
+  const auto l =
+      make_loaded(kBar + "SPC,1,2,2,.01\nGRID,3,,2.,0.,1.\nRBE2,7,2,123456,3\nSPCD,4,2,2,.03\nSPCD,5,1,6,.2\n", d);
+  const double EI = 700, L = 2;
+  const auto by_spc = solve(l, 0, d), by_load = solve(l, 4, d), turned = solve(l, 5, d);
+  EXPECT_NEAR(by_spc.displacement[7], 0.01, 1e-15);
+  EXPECT_NEAR(by_spc.reaction[7], 3 * EI * 0.01 / std::pow(L, 3), 1e-10);
+  EXPECT_NEAR(by_load.displacement[11], 1.5 * 0.03 / L, 1e-12);
+  EXPECT_NEAR(by_load.reaction[1], -3 * EI * 0.03 / std::pow(L, 3), 1e-10);
+  EXPECT_NEAR(by_load.displacement[13], 0.03, 1e-14);
+  EXPECT_NEAR(by_load.strain_energy, 1.5 * EI * 0.03 * 0.03 / std::pow(L, 3), 1e-12);
+  // SPCD 5 turns the root and leaves the SPC's value at grid 2.
+  EXPECT_NEAR(turned.displacement[5], 0.2, 1e-15);
+  EXPECT_NEAR(turned.displacement[7], 0.01, 1e-15);
+  EXPECT_NEAR(turned.reaction[5], 3 * EI / L * (0.2 - 0.01 / L), 1e-9);
+}
+
+TEST(Enforced, ReactionsBalanceTheLoadsInTurnedAxes) {
+  Diagnostics d;
+  const auto l = make_loaded(
+      "SPC = 1\nBEGIN BULK\nCORD2R,5,,0.,0.,0.,1.,1.,1.\n,1.,0.,0.\nGRID,1,,0.,0.,0.,5\nGRID,2,,2.,0.,0.,5\n"
+      "GRID,3,,2.,2.,0.\nGRID,4,,2.,2.,1.\nCBAR,1,1,1,2,0.,1.,0.\nCBAR,2,1,2,3,0.,0.,1.\nPBAR,1,1,1.-3,1.-8,5.-9,1.-8\n"
+      "MAT1,1,7.+10,,.3,2700.\nSPC1,1,123456,1\nSPC1,1,3,3\nRBE2,7,3,123456,4\n"
+      "FORCE,4,4,,10.,1.,2.,3.\nPLOAD1,4,2,FX,FR,0.,2.,1.,6.\nGRAV,4,,9.81,0.,0.,-1.\n",
+      d);
+  const auto s = solve(l, 4, d);
+  EXPECT_GT(s.load_resultant.norm(), 10);
+  EXPECT_LT((s.load_resultant + s.reaction_resultant).norm(), 1e-9 * s.load_resultant.norm());
+  EXPECT_LT(s.mpc_resultant.norm(), 1e-9 * s.load_resultant.norm());
+  EXPECT_GT(s.mpc_force.norm(), 1);
+  EXPECT_LT(s.epsilon, 1e-10);
+  // Clapeyron: the loads did twice the strain energy (nothing is enforced).
+  EXPECT_NEAR(s.displacement.dot(s.load), 2 * s.strain_energy, 1e-9 * s.strain_energy);
+}
+
+TEST(LoadErrors, AreReportedWithTheirIds) {
+  const auto errors = [](const std::string& bulk, int set) {
+    Diagnostics d;
+    const auto l = make_loaded(kBar + bulk, d);
+    l.model.calc_load(l.deck, set, d);
+    l.model.calc_enforced(l.deck, set, d);
+    return say(d);
+  };
+  EXPECT_NE(errors("PLOAD1,4,9,FY,LE,0.,1.,1.,1.\n", 4).find("fe.missing-element"), std::string::npos);
+  EXPECT_NE(errors("PLOAD1,4,1,FY,LE,0.,1.,5.,1.\n", 4).find("fe.load-off-beam"), std::string::npos);
+  EXPECT_NE(errors("FORCE1,4,1,1.,2,2\n", 4).find("fe.no-direction"), std::string::npos);
+  EXPECT_NE(errors("SPCD,4,2,1,.5\n", 4).find("fe.spcd-not-fixed"), std::string::npos);
+  EXPECT_NE(errors("SLOAD,4,99,1.\n", 4).find("fe.missing-grid"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace bough::fe

@@ -1,0 +1,65 @@
+/// \file Coincident and unused grids, shapes of elements, grounds of the sets.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bough/fe/checks.hpp"
+#include "bough/formats/nastran/reader.hpp"
+
+namespace bough::fe {
+namespace {
+
+TEST(ElementQuality, KnownShapes) {
+  const auto square = calc_quality("quad4", {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}});
+  EXPECT_NEAR(square.aspect, 2, 1e-15);
+  EXPECT_NEAR(square.warp_deg, 0, 1e-12);
+  EXPECT_NEAR(square.jacobian, 1, 1e-15);
+  // One corner of a unit square raised by h: the corner across keeps its normal, the mean is (-h, -h, 2).
+  const double h = 0.1;
+  const auto warped = calc_quality("quad4", {{0, 0, 0}, {1, 0, 0}, {1, 1, h}, {0, 1, 0}});
+  const Vector3d mean(-h, -h, 2), flat(0, 0, 1);
+  EXPECT_NEAR(warped.warp_deg, std::acos(flat.dot(mean) / mean.norm()) * 180 / M_PI, 1e-9);
+  // A trapezoid: corner areas in the ratio of its parallel sides.
+  EXPECT_NEAR(calc_quality("quad4", {{0, 0, 0}, {2, 0, 0}, {1.5, 1, 0}, {.5, 1, 0}}).jacobian, 0.5, 1e-15);
+  EXPECT_LT(calc_quality("quad4", {{0, 0, 0}, {2, 0, 0}, {.2, .2, 0}, {0, 2, 0}}).jacobian, 0);
+  EXPECT_NEAR(calc_quality("tri3", {{0, 0, 0}, {3, 0, 0}, {0, 4, 0}}).aspect, 5.0 / 3, 1e-15);
+  const std::vector<Vector3d> cube{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                   {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  EXPECT_NEAR(calc_quality("hexa8", cube).jacobian, 1, 1e-15);
+  auto folded = cube;
+  folded[6] = {.2, .2, .2};
+  EXPECT_LT(calc_quality("hexa8", folded).jacobian, 0);
+  EXPECT_NEAR(calc_quality("penta6", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 2}, {1, 0, 2}, {0, 1, 2}}).jacobian, 1,
+              1e-15);
+  EXPECT_LT(calc_quality("tetra4", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}}).jacobian, 0);
+}
+
+TEST(Checks, GridsAndGrounds) {
+  Diagnostics d;
+  const auto deck = nastran::read_deck_text(
+      "SPC = 1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,0.,0.\nGRID,4,,1.,1.,0.\nGRID,5,,9.,1.,0.\n"
+      "GRID,6,,0.,5.,0.\nCBAR,1,1,1,2,6\nPBAR,1,1,1.-3,1.-8,1.-8,1.-8\nMAT1,1,7.+10,,.3\nRBE2,7,2,123456,4\n"
+      "CELAS2,8,1.+3,2,1,3,1\nSPC1,1,123456,1\n",
+      "deck.bdf", {}, d);
+  const Model model = Model::build(deck, {}, d);
+  EXPECT_EQ(find_coincident_grids(model, choose_coincidence(model)), (std::vector<std::array<int, 2>>{{2, 3}}));
+  EXPECT_EQ(find_unused_grids(model, deck), std::vector<int>{5});
+  EXPECT_LT(calc_ground_check(model, GroundSet::Global).maxCoeff(), 1e-12);
+  EXPECT_LT(calc_ground_check(model, GroundSet::Independent).maxCoeff(), 1e-12);
+  // Moving all but the clamp along x stretches the bar.
+  EXPECT_GT(calc_ground_check(model, GroundSet::Free)[0], 0.1);
+}
+
+TEST(Checks, AnMpcThatGroundsIsFoundOnTheNSet) {
+  Diagnostics d;
+  const auto deck = nastran::read_deck_text(
+      "MPC = 3\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,2.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\n"
+      "CBAR,2,1,2,3,0.,1.,0.\nPBAR,1,1,1.-3,1.-8,1.-8,1.-8\nMAT1,1,7.+10,,.3\nMPC,3,2,2,1.,1,2,-.5\n",
+      "deck.bdf", {}, d);
+  const Model model = Model::build(deck, {}, d);
+  EXPECT_LT(calc_ground_check(model, GroundSet::Global).maxCoeff(), 1e-12);
+  EXPECT_GT(calc_ground_check(model, GroundSet::Independent)[1], 1e-3);
+}
+
+}  // namespace
+}  // namespace bough::fe
