@@ -7,12 +7,14 @@ ElementList make_elements(const records::Deck& deck, const NodeTable& nodes, Dia
   ElementList list;
   list.elements.reserve(deck.beams.size() + deck.crod.size() + deck.conrod.size() + deck.ctube.size() +
                         deck.springs.size() + deck.cbush.size() + deck.scalar_masses.size() + deck.conm1.size() +
-                        deck.conm2.size());
+                        deck.conm2.size() + deck.shells.size() + deck.solids.size());
   Maker maker(deck, nodes, diagnostics, list);
   make_beams(maker);
   make_rods(maker);
   make_springs(maker);
   make_masses(maker);
+  make_shells(maker);
+  make_solids(maker);
   return list;
 }
 

@@ -32,8 +32,8 @@ struct Node {
 
 /// How an element is drawn and written to VTU.
 struct ElementShape {
-  std::string type;                            ///< "line2", "tri3", "quad4", "vertex"; empty = not drawn
-  std::vector<int> nodes;                      ///< indices into Model::nodes()
+  std::string type;        ///< "line2", "tri3", "quad4", "tetra4", "penta6", "hexa8", "vertex"; empty = not drawn
+  std::vector<int> nodes;  ///< indices into Model::nodes()
 };
 
 class Element {
@@ -45,9 +45,9 @@ class Element {
   Element& operator=(const Element&) = delete;
 
   int id() const { return id_; }
-  const std::string& card() const { return card_; }          ///< "CBAR", ...
-  const std::vector<int>& nodes() const { return nodes_; }   ///< indices into Model::nodes()
-  const std::vector<int>& gdofs() const { return gdofs_; }   ///< rows of the g-set; size() = N below
+  const std::string& card() const { return card_; }         ///< "CBAR", ...
+  const std::vector<int>& nodes() const { return nodes_; }  ///< indices into Model::nodes()
+  const std::vector<int>& gdofs() const { return gdofs_; }  ///< rows of the g-set; size() = N below
   int num_dofs() const { return static_cast<int>(gdofs_.size()); }
   virtual ElementShape shape() const { return {}; }
 
@@ -76,7 +76,7 @@ class Element {
 class NodeTable {
  public:
   virtual ~NodeTable() = default;
-  virtual int find_node(int id) const = 0;                   ///< index, -1 when absent
+  virtual int find_node(int id) const = 0;  ///< index, -1 when absent
   virtual const Node& node(int index) const = 0;
   /// R_basic_cid at point x (the axes of a cylindrical or spherical system depend on it); nullptr-safe: reports and
   /// returns identity when cid does not exist.
@@ -89,9 +89,9 @@ struct ElementList {
   std::vector<std::unique_ptr<const Element>> elements;
 };
 
-/// Every element of the deck (bars, beams, rods, tubes, springs, bushes, masses); missing properties, materials, grids,
-/// zero lengths and bad orientations are reported with file and line, all of them.
-/// The only list of element types (fe/elements/catalog.cpp).
+/// Every element of the deck (bars, beams, rods, tubes, springs, bushes, masses, shells, solids); missing properties,
+/// materials, grids, zero lengths and bad orientations are reported with file and line, all of them. The only list of
+/// element types (fe/elements/catalog.cpp).
 ElementList make_elements(const records::Deck& deck, const NodeTable& nodes, Diagnostics& diagnostics);
 
 }  // namespace bough::fe

@@ -67,6 +67,10 @@ std::optional<ScalarEnds> find_ends(Maker& maker, const std::string& who, std::a
   return ends;
 }
 
+std::string name_scalar(const char* family, int pid, bool by_scalar_points) {
+  return family + std::to_string((pid > 0 ? 1 : 2) + (by_scalar_points ? 2 : 0));
+}
+
 struct BushAxes {
   Matrix3d R = Matrix3d::Identity();
   bool ok = true;
@@ -149,7 +153,8 @@ void make_springs(Maker& maker) {
   const auto& deck = maker.deck();
   const Index<records::Pelas> pelas(deck.pelas);
   for (const records::ScalarSpring& card : deck.springs) {
-    const std::string name = card.pid > 0 ? "CELAS1" : "CELAS2", who = name + " " + std::to_string(card.id);
+    const std::string name = name_scalar("CELAS", card.pid, card.by_scalar_points),
+                      who = name + " " + std::to_string(card.id);
     double k = card.k;
     bool ok = true;
     if (card.pid > 0) {
@@ -165,7 +170,8 @@ void make_springs(Maker& maker) {
   }
   const Index<records::Pmass> pmass(deck.pmass);
   for (const records::ScalarMass& card : deck.scalar_masses) {
-    const std::string name = card.pid > 0 ? "CMASS1" : "CMASS2", who = name + " " + std::to_string(card.id);
+    const std::string name = name_scalar("CMASS", card.pid, card.by_scalar_points),
+                      who = name + " " + std::to_string(card.id);
     double m = card.m;
     bool ok = true;
     if (card.pid > 0) {

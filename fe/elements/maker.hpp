@@ -64,5 +64,7 @@ void make_beams(Maker& maker);
 void make_rods(Maker& maker);
 void make_springs(Maker& maker);
 void make_masses(Maker& maker);
+void make_shells(Maker& maker);
+void make_solids(Maker& maker);
 
 }  // namespace bough::fe

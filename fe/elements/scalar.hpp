@@ -1,7 +1,6 @@
 #pragma once
-/// \file CELAS1/2 and CMASS1/2: a spring or a mass between two degrees of freedom (in the displacement axes of their
-/// grids), or from one to ground.
-/// Source: Nastran Quick Reference Guide, CELAS1, CELAS2, CMASS1, CMASS2.
+/// \file CELAS1 to 4 and CMASS1 to 4: a spring or a mass between two degrees of freedom (in the displacement axes of
+/// their grids), or from one to ground. Source: Nastran Quick Reference Guide, CELAS1, CELAS2, CMASS1, CMASS2.
 #include "bough/fe/elements/element.hpp"
 
 namespace bough::fe {

@@ -64,7 +64,7 @@ void ModelBuilder::set_params() {
 void ModelBuilder::add_nodes() {
   const Vector3d origin = options_.origin.value_or(Vector3d::Zero());
   model_.systems_ = std::make_shared<const CoordinateSystems>(deck_, origin, diagnostics_);
-  if (deck_.grids.empty())
+  if (deck_.grids.empty() && deck_.scalar_points.empty())
     diagnostics_.error("fe.no-grids", deck_.locate({}), "the deck has no GRID", "give the bulk data of a model");
   std::vector<int> order(deck_.grids.size());
   std::iota(order.begin(), order.end(), 0);
@@ -78,6 +78,25 @@ void ModelBuilder::add_nodes() {
     node.R_basic_cd = model_.systems_->calc_axes(grid.cd, node.x, deck_.locate(grid.at), diagnostics_);
     node.first_gdof = model_.num_gdofs_;
     model_.num_gdofs_ += node.num_dofs;
+    model_.nodes_.push_back(node);
+  }
+  add_scalar_points();
+}
+
+void ModelBuilder::add_scalar_points() {
+  const std::set<int> points(deck_.scalar_points.begin(), deck_.scalar_points.end());
+  for (int id : points) {
+    if (!model_.node_index_.emplace(id, static_cast<int>(model_.nodes_.size())).second) {
+      diagnostics_.error("fe.grid-and-scalar", deck_.locate({}),
+                         "point " + std::to_string(id) + " is a GRID and a scalar point (SPOINT, or named by CELAS3, "
+                         "CELAS4, CMASS3 or CMASS4)",
+                         "give one of them another id");
+      continue;
+    }
+    Node node;
+    node.id = id;
+    node.num_dofs = 1;
+    node.first_gdof = model_.num_gdofs_++;
     model_.nodes_.push_back(node);
   }
 }
@@ -186,6 +205,8 @@ void ModelBuilder::add_mpc(const records::Mpc& mpc) {
 
 void ModelBuilder::collect_equations() {
   for (const auto& card : deck_.rbe2) add_rbe2(card, model_, deck_.locate(card.at), diagnostics_, equations_);
+  for (const auto& card : deck_.rbe3) add_rbe3(card, model_, deck_.locate(card.at), diagnostics_, equations_);
+  for (const auto& card : deck_.rrod) add_rrod(card, model_, deck_.locate(card.at), diagnostics_, equations_);
   for (const auto& card : deck_.rbar) add_rbar(card, model_, deck_.locate(card.at), diagnostics_, equations_);
   if (model_.subcase_.mpc == 0) return;
   std::set<int> plain;

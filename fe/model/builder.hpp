@@ -15,11 +15,12 @@ class ModelBuilder {
 
  private:
   void add_nodes();
+  void add_scalar_points();
   void set_params();
   /// Masks of permanent and set SPC over the l-set.
   void collect_fixed();
   void fix(const records::Spc& spc);
-  /// MPC, RBE2, RBAR.
+  /// RBE2, RBE3, RROD, RBAR, MPC.
   void collect_equations();
   void add_mpc(const records::Mpc& mpc);
   void check_dependent_not_fixed();

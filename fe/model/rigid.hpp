@@ -1,5 +1,5 @@
 #pragma once
-/// \file Rigid elements RBE2 and RBAR as constraint equations.
+/// \file Rigid elements RBE2, RBE3, RBAR and RROD as constraint equations.
 #include "bough/fe/elements/element.hpp"
 #include "bough/fe/model/constraints.hpp"
 
@@ -17,6 +17,17 @@ void add_rbe2(const records::Rbe2& card, const NodeTable& nodes, const SourceLoc
 /// map of the independent and dependent components. Blank CMA and CMB: everything that is not independent is dependent.
 /// Reports fe.rigid-independent when there are not six or P is singular.
 void add_rbar(const records::Rbar& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
+              std::vector<ConstraintEquation>& equations);
+
+/// The reference grid's components follow the rigid motion that fits the connected components best in the least squares
+/// of their weights (rotations scaled by the square of the mean arm, as MSC Nastran does): u_ref = R Σ A⁻¹ S_iᵀ W_i u_i,
+/// A = Σ S_iᵀ W_i S_i. UM turns the equations to other dependent components. Reports fe.rbe3-mechanism when the
+/// connected components do not hold a rigid body, fe.rigid-independent when UM cannot be solved for.
+void add_rbe3(const records::Rbe3& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
+              std::vector<ConstraintEquation>& equations);
+
+/// e·(u_b - u_a) = 0 along the rod. Reports fe.rigid-independent when the dependent component is across the rod.
+void add_rrod(const records::Rrod& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations);
 
 }  // namespace bough::fe

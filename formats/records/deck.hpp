@@ -14,6 +14,7 @@
 
 #include "bough/base/diagnostic.hpp"
 #include "bough/formats/records/card_location.hpp"
+#include "bough/formats/records/deck_continua.hpp"
 #include "bough/formats/records/deck_loads.hpp"
 
 namespace bough::records {
@@ -154,6 +155,7 @@ struct ScalarSpring {
   double k = 0, ge = 0, s = 0;
   int g1 = 0, c1 = 0, g2 = 0, c2 = 0;
   CardLocation at;
+  bool by_scalar_points = false;          ///< CELAS3 and CELAS4: g1 and g2 are scalar points
 };
 struct Cbush {
   int id = 0, pid = 0, ga = 0, gb = 0;    ///< gb = 0: grounded
@@ -171,6 +173,7 @@ struct ScalarMass {
   double m = 0;
   int g1 = 0, c1 = 0, g2 = 0, c2 = 0;
   CardLocation at;
+  bool by_scalar_points = false;          ///< CMASS3 and CMASS4
 };
 struct Conm1 {
   int id = 0, g = 0, cid = 0;
@@ -190,6 +193,30 @@ struct Rbe2 {
   int id = 0, gn = 0;
   unsigned cm = 0;
   std::vector<int> gm;
+  CardLocation at;
+};
+
+/// RBE3: the reference components follow the weighted mean motion of the connected grids.
+struct Rbe3 {
+  struct Group {
+    double weight = 1;
+    unsigned c = 0;                       ///< components of these grids that count, in their CD axes
+    std::vector<int> grids;
+  };
+  struct Dependent {
+    int g = 0;
+    unsigned c = 0;
+  };
+  int id = 0, ref_grid = 0;
+  unsigned ref_c = 0;
+  std::vector<Group> groups;
+  std::vector<Dependent> um;              ///< dependent components; empty = ref_c of ref_grid
+  CardLocation at;
+};
+/// RROD: a rod of constant length, pinned at both ends.
+struct Rrod {
+  int id = 0, ga = 0, gb = 0;
+  int cma = 0, cmb = 0;                   ///< one translation 1..3, the other 0
   CardLocation at;
 };
 struct Rbar {
@@ -266,7 +293,7 @@ struct Subcase {
 };
 
 /// A card that Bough does not use: what it would have carried, how often, and where first.
-enum class CardEffect { Stiffness, Mass, Constraint, Load, None };
+enum class CardEffect { Stiffness, Mass, Constraint, Load, Damping, None };
 struct UnusedCard {
   std::string name;
   CardEffect effect = CardEffect::None;
@@ -280,8 +307,12 @@ struct Deck {
   std::vector<Subcase> subcases;          ///< at least one
 
   std::vector<Grid> grids;
+  std::vector<int> scalar_points;         ///< SPOINT, and those that CELAS3/4, CMASS3/4 name
   std::vector<CoordSystem> coord_systems;
   std::vector<Mat1> mat1;
+  std::vector<Mat2> mat2;
+  std::vector<Mat8> mat8;
+  std::vector<Mat9> mat9;
   std::vector<Pbar> pbar;
   std::vector<Pbarl> pbarl;
   std::vector<Pbeam> pbeam;
@@ -291,17 +322,24 @@ struct Deck {
   std::vector<Pelas> pelas;
   std::vector<Pbush> pbush;
   std::vector<Pmass> pmass;
+  std::vector<Pshell> pshell;
+  std::vector<Pcomp> pcomp;
+  std::vector<Psolid> psolid;
   std::vector<BeamElement> beams;
   std::vector<Crod> crod;
   std::vector<Conrod> conrod;
   std::vector<Ctube> ctube;
   std::vector<ScalarSpring> springs;
   std::vector<Cbush> cbush;
+  std::vector<ShellElement> shells;
+  std::vector<SolidElement> solids;
   std::vector<ScalarMass> scalar_masses;
   std::vector<Conm1> conm1;
   std::vector<Conm2> conm2;
   std::vector<Rbe2> rbe2;
+  std::vector<Rbe3> rbe3;
   std::vector<Rbar> rbar;
+  std::vector<Rrod> rrod;
   std::vector<Spc> spc;
   std::vector<SetUnion> spcadd;
   std::vector<Mpc> mpc;

@@ -23,6 +23,65 @@ void parse_rbe2(Card& card, Reading& r) {
   if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe2.push_back(std::move(e));
 }
 
+/// EID, blank, REFGRID, REFC, then groups WT C G1 G2 ..., then UM with pairs G C, then ALPHA with a value.
+void parse_rbe3(Card& card, Reading& r) {
+  records::Rbe3 e;
+  e.id = card.read_id(0, "EID");
+  e.ref_grid = card.read_id(2, "REFGRID");
+  e.ref_c = card.read_components(3, "REFC");
+  const int size = card.get_size();
+  int i = 4;
+  while (i < size && !card.is_word(i, "UM") && !card.is_word(i, "ALPHA")) {
+    if (card.is_blank(i)) {
+      ++i;
+      continue;
+    }
+    records::Rbe3::Group group;
+    group.weight = card.read_real(i, "WT");
+    group.c = card.read_components(i + 1, "C");
+    const int first = i += 2;
+    // Grids up to the next weight: a real number.
+    while (i < size && !card.is_word(i, "UM") && !card.is_word(i, "ALPHA") &&
+           (card.is_blank(i) || card.is_integer(i) || card.is_word(i, "THRU") || card.is_word(i, "BY") ||
+            card.is_word(i, "EXCEPT")))
+      ++i;
+    group.grids = read_ids(card, first, i, "G");
+    if (group.grids.empty() && card.is_ok())
+      card.fail("deck.missing-field", first, "a weight without grids, expected one at least");
+    if (!card.is_ok()) return;
+    e.groups.push_back(std::move(group));
+  }
+  if (card.is_word(i, "UM"))
+    for (++i; i < size && !card.is_word(i, "ALPHA");) {
+      if (card.is_blank(i)) {
+        ++i;
+        continue;
+      }
+      const int g = card.read_id(i, "GM");
+      e.um.push_back({g, card.read_components(i + 1, "CM")});
+      i += 2;
+    }
+  if (card.is_word(i, "ALPHA")) card.read_real(i + 1, "ALPHA");
+  if (e.groups.empty() && card.is_ok()) card.fail("deck.missing-field", 4, "WT1 is blank, expected a weight and grids");
+  e.at = card.get_location();
+  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe3.push_back(std::move(e));
+}
+
+void parse_rrod(Card& card, Reading& r) {
+  records::Rrod e;
+  e.id = card.read_id(0, "EID");
+  e.ga = card.read_id(1, "GA");
+  e.gb = card.read_id(2, "GB");
+  e.cma = card.read_component(3, "CMA");
+  e.cmb = card.read_component(4, "CMB");
+  if (card.is_ok() && ((e.cma == 0) == (e.cmb == 0) || e.cma > 3 || e.cmb > 3))
+    card.fail("deck.field-range", 3,
+              "CMA and CMB name " + std::to_string(e.cma) + " and " + std::to_string(e.cmb) +
+                  ", expected one translation 1 to 3 in one of them");
+  e.at = card.get_location();
+  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rrod.push_back(e);
+}
+
 /// Blank CMA and CMB: every component that is not independent depends.
 void parse_rbar(Card& card, Reading& r) {
   constexpr unsigned all = 63;
@@ -112,6 +171,8 @@ void parse_mpc(Card& card, Reading& r) {
 
 void add_constraint_parsers(ParserTable& table) {
   table["RBE2"] = parse_rbe2;
+  table["RBE3"] = parse_rbe3;
+  table["RROD"] = parse_rrod;
   table["RBAR"] = parse_rbar;
   table["SPC"] = parse_spc;
   table["SPC1"] = parse_spc1;

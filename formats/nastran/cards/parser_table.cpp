@@ -11,6 +11,7 @@ const ParserTable& get_card_parsers() {
     add_point_property_parsers(t);
     add_line_element_parsers(t);
     add_point_element_parsers(t);
+    add_continuum_parsers(t);
     add_constraint_parsers(t);
     add_load_parsers(t);
     add_pressure_parsers(t);

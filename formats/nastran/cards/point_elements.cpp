@@ -52,6 +52,49 @@ void parse_cmass2(Card& card, Reading& r) {
   if (r.claim(IdSpace::ScalarMass, e.id, card)) r.deck.scalar_masses.push_back(e);
 }
 
+/// EID, PID or value, S1 S2 of CELAS3/4 and CMASS3/4: a point that no SPOINT names becomes one.
+template <class Element>
+Element parse_scalar_pair(Card& card, Reading& r, bool by_property, double Element::*value, const char* what) {
+  Element e;
+  e.id = card.read_id(0, "EID");
+  if (by_property)
+    e.pid = card.read_id(1, "PID", e.id);
+  else
+    e.*value = card.read_real(1, what, 0.0);
+  e.g1 = card.read_reference(2, "S1");
+  e.g2 = card.read_reference(3, "S2");
+  e.by_scalar_points = true;
+  if (e.g1 == 0 && e.g2 == 0 && card.is_ok())
+    card.fail("deck.missing-field", 2, "S1 and S2 are both blank, expected one at least");
+  e.at = card.get_location();
+  for (const int point : {e.g1, e.g2})
+    if (point > 0 && card.is_ok()) r.deck.scalar_points.push_back(point);
+  return e;
+}
+
+void parse_celas3(Card& card, Reading& r) {
+  const auto e = parse_scalar_pair(card, r, true, &records::ScalarSpring::k, "K");
+  if (r.claim(IdSpace::Spring, e.id, card)) r.deck.springs.push_back(e);
+}
+void parse_celas4(Card& card, Reading& r) {
+  const auto e = parse_scalar_pair(card, r, false, &records::ScalarSpring::k, "K");
+  if (r.claim(IdSpace::Spring, e.id, card)) r.deck.springs.push_back(e);
+}
+void parse_cmass3(Card& card, Reading& r) {
+  const auto e = parse_scalar_pair(card, r, true, &records::ScalarMass::m, "M");
+  if (r.claim(IdSpace::ScalarMass, e.id, card)) r.deck.scalar_masses.push_back(e);
+}
+void parse_cmass4(Card& card, Reading& r) {
+  const auto e = parse_scalar_pair(card, r, false, &records::ScalarMass::m, "M");
+  if (r.claim(IdSpace::ScalarMass, e.id, card)) r.deck.scalar_masses.push_back(e);
+}
+
+void parse_spoint(Card& card, Reading& r) {
+  const auto ids = read_ids(card, 0, card.get_size(), "ID");
+  if (ids.empty() && card.is_ok()) card.fail("deck.missing-field", 0, "ID is blank, expected a scalar point at least");
+  if (card.is_ok()) r.deck.scalar_points.insert(r.deck.scalar_points.end(), ids.begin(), ids.end());
+}
+
 void parse_cbush(Card& card, Reading& r) {
   records::Cbush e;
   e.id = card.read_id(0, "EID");
@@ -108,6 +151,11 @@ void add_point_element_parsers(ParserTable& table) {
   table["CELAS2"] = parse_celas2;
   table["CMASS1"] = parse_cmass1;
   table["CMASS2"] = parse_cmass2;
+  table["CELAS3"] = parse_celas3;
+  table["CELAS4"] = parse_celas4;
+  table["CMASS3"] = parse_cmass3;
+  table["CMASS4"] = parse_cmass4;
+  table["SPOINT"] = parse_spoint;
   table["CBUSH"] = parse_cbush;
   table["CONM1"] = parse_conm1;
   table["CONM2"] = parse_conm2;

@@ -197,13 +197,15 @@ class Builder {
                        "fixed fields are eight columns wide and begin with the name; comments begin with $");
   }
 
-  /// SPC1 lists with THRU mean the grids that exist.
+  /// SPC1 lists with THRU mean the grids and scalar points that exist.
   void expand_ranges() {
     if (reading_.spc_ranges.empty()) return;
     std::vector<int> ids;
-    ids.reserve(deck_.grids.size());
+    ids.reserve(deck_.grids.size() + deck_.scalar_points.size());
     for (const auto& grid : deck_.grids) ids.push_back(grid.id);
+    ids.insert(ids.end(), deck_.scalar_points.begin(), deck_.scalar_points.end());
     std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
     for (const auto& spc : reading_.spc_ranges)
       for (auto id = std::lower_bound(ids.begin(), ids.end(), spc.range.first);
            id != ids.end() && *id <= spc.range.last; ++id)
@@ -241,7 +243,8 @@ class Builder {
                                " reads the deck without it");
       return;
     }
-    const bool has_effect = *effect != records::CardEffect::None && *effect != records::CardEffect::Load;
+    const bool has_effect = *effect == records::CardEffect::Stiffness || *effect == records::CardEffect::Mass ||
+                            *effect == records::CardEffect::Constraint;
     if (is_ignored)
       diagnostics_.warning("deck.ignored-card", where, name + " is ignored (" + times + ")",
                            std::string("it would carry ") + get_effect_name(*effect));

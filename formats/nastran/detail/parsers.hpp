@@ -14,8 +14,9 @@ void add_material_parsers(ParserTable& table);        ///< MAT1
 void add_line_property_parsers(ParserTable& table);   ///< PBAR, PBARL, PBEAM, PBEAML, PROD, PTUBE
 void add_point_property_parsers(ParserTable& table);  ///< PELAS, PBUSH, PMASS
 void add_line_element_parsers(ParserTable& table);    ///< CBAR, CBEAM, BAROR, BEAMOR, CROD, CONROD, CTUBE
-void add_point_element_parsers(ParserTable& table);   ///< CELASx, CBUSH, CMASSx, CONMx
-void add_constraint_parsers(ParserTable& table);      ///< RBE2, RBAR, SPC, SPC1, SPCADD, MPC, MPCADD
+void add_point_element_parsers(ParserTable& table);   ///< CELASx, CBUSH, CMASSx, CONMx, SPOINT
+void add_continuum_parsers(ParserTable& table);       ///< MAT2, MAT8, MAT9, PSHELL, PCOMP, PSOLID, shells, solids
+void add_constraint_parsers(ParserTable& table);      ///< RBE2, RBE3, RBAR, RROD, SPC, SPC1, SPCADD, MPC, MPCADD
 void add_load_parsers(ParserTable& table);            ///< FORCE, MOMENT, GRAV, LOAD
 void add_pressure_parsers(ParserTable& table);        ///< FORCE1/2, MOMENT1/2, PLOAD, 1, 2, 4, RFORCE, SPCD, SLOAD
 void add_solution_parsers(ParserTable& table);        ///< EIGRL, EIGR, PARAM

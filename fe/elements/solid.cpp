@@ -1,0 +1,171 @@
+#include "bough/fe/elements/solid.hpp"
+
+namespace bough::fe {
+
+/// Gradients at a quadrature point: of the shapes (3 x m) and of the incompatible modes (3 x 3).
+struct Solid::Field {
+  VectorXd shape;
+  Eigen::Matrix3Xd gradient;
+  Matrix3d modes = Matrix3d::Zero();
+  double weight = 0;
+};
+
+namespace {
+
+/// Strain of a displacement column c along axis a with gradient g: rows of the strain-displacement matrix.
+Eigen::Matrix<double, 6, 3> calc_strain_block(const Vector3d& g) {
+  Eigen::Matrix<double, 6, 3> b;
+  b << g.x(), 0, 0, 0, g.y(), 0, 0, 0, g.z(), g.y(), g.x(), 0, 0, g.z(), g.y(), g.z(), 0, g.x();
+  return b;
+}
+
+Eigen::Matrix<double, 6, Eigen::Dynamic> calc_strain_disp(const Eigen::Ref<const Eigen::Matrix3Xd>& gradient) {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> b(6, 3 * gradient.cols());
+  for (int i = 0; i < gradient.cols(); ++i) b.middleCols<3>(3 * i) = calc_strain_block(gradient.col(i));
+  return b;
+}
+
+}  // namespace
+
+Solid::Solid(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, SolidGeometry geometry,
+             const Matrix6d& C_el, double density)
+    : Element(id, std::move(card), std::move(nodes), std::move(gdofs)),
+      geometry_(std::move(geometry)),
+      C_el_(C_el),
+      density_(density) {
+  const bool quadratic = static_cast<int>(geometry_.x.size()) > get_num_corners(geometry_.kind);
+  num_points_ = static_cast<int>(calc_solid_points(geometry_.kind, quadratic, false).size());
+}
+
+ElementShape Solid::shape() const {
+  std::vector<int> corners(nodes().begin(), nodes().begin() + get_num_corners(geometry_.kind));
+  const char* type = geometry_.kind == SolidKind::Hexa    ? "hexa8"
+                     : geometry_.kind == SolidKind::Penta ? "penta6"
+                                                          : "tetra4";
+  return {type, std::move(corners)};
+}
+
+std::vector<Solid::Field> Solid::calc_fields(bool mass) const {
+  const int m = static_cast<int>(geometry_.x.size());
+  const bool quadratic = m > get_num_corners(geometry_.kind);
+  Eigen::Matrix3Xd x(3, m), dshape(3, m);
+  for (int i = 0; i < m; ++i) x.col(i) = geometry_.x[i];
+  VectorXd shape(m);
+  Matrix3d J0 = Matrix3d::Identity();
+  if (has_modes()) {
+    calc_solid_shape(geometry_.kind, geometry_.midside, Vector3d::Zero(), shape, dshape);
+    J0 = dshape * x.transpose();
+  }
+  std::vector<Field> fields;
+  for (const auto& point : calc_solid_points(geometry_.kind, quadratic, mass)) {
+    calc_solid_shape(geometry_.kind, geometry_.midside, point.natural, shape, dshape);
+    const Matrix3d J = dshape * x.transpose();  // rows: dx/dξ
+    Field f;
+    f.shape = shape;
+    f.gradient = J.inverse() * dshape;
+    f.weight = point.weight * J.determinant();
+    if (has_modes()) {
+      const Matrix3d scaled = J0.determinant() / J.determinant() * J0.inverse();
+      for (int a = 0; a < 3; ++a) f.modes.col(a) = -2 * point.natural[a] * scaled.col(a);
+    }
+    fields.push_back(std::move(f));
+  }
+  return fields;
+}
+
+/// Incompatible amplitudes (9) from nodal displacements; `condensed` receives the condensed stiffness.
+MatrixXd Solid::calc_mode_map(const std::vector<Field>& fields, MatrixXd* condensed) const {
+  const int n = num_dofs();
+  MatrixXd K = MatrixXd::Zero(n, n), Kau = MatrixXd::Zero(9, n);
+  Eigen::Matrix<double, 9, 9> Kaa = Eigen::Matrix<double, 9, 9>::Zero();
+  for (const auto& f : fields) {
+    const auto B = calc_strain_disp(f.gradient);
+    const Eigen::Matrix<double, 6, Eigen::Dynamic> stress = C_el_ * B;
+    K.noalias() += f.weight * B.transpose() * stress;
+    if (!has_modes()) continue;
+    const auto Ba = calc_strain_disp(f.modes);
+    Kaa += f.weight * Ba.transpose() * C_el_ * Ba;
+    Kau.noalias() += f.weight * Ba.transpose() * stress;
+  }
+  MatrixXd map = MatrixXd::Zero(9, n);
+  if (has_modes()) {
+    map = -Kaa.ldlt().solve(Kau);
+    K.noalias() += Kau.transpose() * map;
+  }
+  if (condensed) *condensed = std::move(K);
+  return map;
+}
+
+void Solid::add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const {
+  MatrixXd condensed;
+  calc_mode_map(calc_fields(false), &condensed);
+  K += scale * condensed;
+}
+
+void Solid::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const {
+  const int m = static_cast<int>(geometry_.x.size());
+  MatrixXd scalar = MatrixXd::Zero(m, m);
+  double total = 0;
+  for (const auto& f : calc_fields(true)) {
+    scalar.noalias() += density_ * f.weight * f.shape * f.shape.transpose();
+    total += density_ * f.weight;
+  }
+  const double diagonal = scalar.diagonal().sum();
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j < m; ++j) {
+      if (kind == MassKind::Lumped && i != j) continue;
+      const double value =
+          kind == MassKind::Lumped ? (diagonal > 0 ? scalar(i, i) * total / diagonal : 0) : scalar(i, j);
+      for (int a = 0; a < 3; ++a) M(3 * i + a, 3 * j + a) += scale * value;
+    }
+}
+
+void Solid::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
+  const auto fields = calc_fields(false);
+  const VectorXd a = calc_mode_map(fields, nullptr) * u;
+  for (std::size_t q = 0; q < fields.size(); ++q) {
+    Eigen::Matrix<double, 6, 1> strain = calc_strain_disp(fields[q].gradient) * u;
+    if (has_modes()) strain += calc_strain_disp(fields[q].modes) * a;
+    force.segment<6>(6 * static_cast<int>(q)) = C_el_ * strain;
+  }
+}
+
+std::vector<std::string> Solid::internal_force_names() const {
+  std::vector<std::string> names;
+  for (int q = 1; q <= num_points_; ++q)
+    for (const char* c : {"sxx", "syy", "szz", "sxy", "syz", "szx"})
+      names.push_back(c + std::string("@") + std::to_string(q));
+  return names;
+}
+
+void Solid::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
+                                    Eigen::Ref<MatrixXd> K_G) const {
+  const auto fields = calc_fields(false);
+  const int m = static_cast<int>(geometry_.x.size());
+  MatrixXd scalar = MatrixXd::Zero(m, m);
+  for (std::size_t q = 0; q < fields.size(); ++q) {
+    const auto s = force.segment<6>(6 * static_cast<int>(q));
+    Matrix3d sigma;
+    sigma << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
+    scalar.noalias() += fields[q].weight * fields[q].gradient.transpose() * sigma * fields[q].gradient;
+  }
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j < m; ++j)
+      for (int a = 0; a < 3; ++a) K_G(3 * i + a, 3 * j + a) += scale * scalar(i, j);
+}
+
+double Solid::calc_volume(double* smallest_jacobian_ratio) const {
+  double volume = 0, smallest = 1e300, reference = 0;
+  const bool quadratic = static_cast<int>(geometry_.x.size()) > get_num_corners(geometry_.kind);
+  const auto points = calc_solid_points(geometry_.kind, quadratic, false);
+  const auto fields = calc_fields(false);
+  for (std::size_t q = 0; q < fields.size(); ++q) {
+    volume += fields[q].weight;
+    reference += points[q].weight;
+    smallest = std::min(smallest, fields[q].weight / points[q].weight);
+  }
+  if (smallest_jacobian_ratio) *smallest_jacobian_ratio = smallest * reference / volume;
+  return volume;
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,53 @@
+#pragma once
+/// \file Solid elements with 4 to 20 nodes (CTETRA, CPENTA, CHEXA): three translations per node, basic axes.
+///
+/// Isoparametric, full quadrature. The brick of eight nodes has in addition the nine incompatible modes of Wilson in
+/// the form of Taylor, Beresford & Wilson, IJNME 10 (1976) 1211-1219, so that one layer of bricks bends without locking
+/// and the patch test still holds. The wedge of six and the tetrahedron of four nodes are the plain, stiff elements.
+/// Geometric stiffness ∫ σ_ab u,a·u,b (Cook et al., "Concepts and applications of finite element analysis", 4th ed.,
+/// eq. 18.4-10). Lumped mass: the diagonal of the consistent one, scaled (Hinton, Rock & Zienkiewicz 1976).
+#include "bough/fe/elements/element.hpp"
+#include "bough/fe/shape/solid_shape.hpp"
+
+namespace bough::fe {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+struct SolidGeometry {
+  SolidKind kind = SolidKind::Hexa;
+  std::vector<int> midside;  ///< per edge: position among the nodes, -1 when absent; empty = none
+  std::vector<Vector3d> x;   ///< nodes in basic
+};
+
+class Solid final : public Element {
+ public:
+  /// C_el: 6 x 6 elasticity in basic axes, Voigt xx yy zz xy yz zx with engineering shears; density per volume.
+  Solid(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, SolidGeometry geometry,
+        const Matrix6d& C_el, double density);
+
+  ElementShape shape() const override;
+  void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
+  void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  /// The six stresses at every quadrature point, in basic axes.
+  int num_internal_forces() const override { return 6 * num_points_; }
+  void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
+  std::vector<std::string> internal_force_names() const override;
+  void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
+                               Eigen::Ref<MatrixXd> K_G) const override;
+
+  /// Volume, and the smallest Jacobian determinant over its mean at the quadrature points (<= 0: inside out).
+  double calc_volume(double* smallest_jacobian_ratio = nullptr) const;
+
+ private:
+  struct Field;
+  std::vector<Field> calc_fields(bool mass) const;
+  bool has_modes() const { return geometry_.kind == SolidKind::Hexa && geometry_.x.size() == 8; }
+  MatrixXd calc_mode_map(const std::vector<Field>& fields, MatrixXd* condensed) const;
+
+  SolidGeometry geometry_;
+  Matrix6d C_el_;
+  double density_;
+  int num_points_;
+};
+
+}  // namespace bough::fe

@@ -1,0 +1,135 @@
+#include "bough/fe/shape/solid_shape.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace bough::fe {
+
+namespace {
+
+constexpr double kHexaCorner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
+                                      {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
+
+const std::vector<std::pair<int, int>> kHexaEdges = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 5},
+                                                     {2, 6}, {3, 7}, {4, 5}, {5, 6}, {6, 7}, {7, 4}};
+const std::vector<std::pair<int, int>> kPentaEdges = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 4},
+                                                      {2, 5}, {3, 4}, {4, 5}, {5, 3}};
+const std::vector<std::pair<int, int>> kTetraEdges = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+
+/// A value with its gradient: products of these give every bump and its derivative.
+struct Term {
+  double value;
+  Eigen::Vector3d gradient;
+  friend Term operator*(const Term& a, const Term& b) {
+    return {a.value * b.value, a.value * b.gradient + b.value * a.gradient};
+  }
+  friend Term operator*(double s, const Term& a) { return {s * a.value, s * a.gradient}; }
+};
+
+Term linear(double constant, double a, double b, double c, const Eigen::Vector3d& at) {
+  const Eigen::Vector3d g(a, b, c);
+  return {constant + g.dot(at), g};
+}
+
+struct Gauss {
+  std::vector<double> x, w;
+};
+Gauss get_gauss(int n) {
+  if (n == 2) return {{-1 / std::sqrt(3.0), 1 / std::sqrt(3.0)}, {1, 1}};
+  if (n == 3) return {{-std::sqrt(0.6), 0, std::sqrt(0.6)}, {5.0 / 9, 8.0 / 9, 5.0 / 9}};
+  const double a = std::sqrt(3.0 / 7 - 2.0 / 7 * std::sqrt(1.2)), b = std::sqrt(3.0 / 7 + 2.0 / 7 * std::sqrt(1.2));
+  const double wa = (18 + std::sqrt(30.0)) / 36, wb = (18 - std::sqrt(30.0)) / 36;
+  return {{-b, -a, a, b}, {wb, wa, wa, wb}};
+}
+
+}  // namespace
+
+int get_num_corners(SolidKind kind) { return kind == SolidKind::Hexa ? 8 : kind == SolidKind::Penta ? 6 : 4; }
+
+const std::vector<std::pair<int, int>>& get_edges(SolidKind kind) {
+  return kind == SolidKind::Hexa ? kHexaEdges : kind == SolidKind::Penta ? kPentaEdges : kTetraEdges;
+}
+
+void calc_solid_shape(SolidKind kind, const std::vector<int>& midside, const Eigen::Vector3d& natural,
+                      Eigen::VectorXd& shape, Eigen::Matrix3Xd& dshape) {
+  const int corners = get_num_corners(kind);
+  const auto& edges = get_edges(kind);
+  const Term L[4] = {linear(1, -1, -1, kind == SolidKind::Tetra ? -1 : 0, natural), linear(0, 1, 0, 0, natural),
+                     linear(0, 0, 1, 0, natural), linear(0, 0, 0, 1, natural)};
+  const Term below = linear(0.5, 0, 0, -0.5, natural), above = linear(0.5, 0, 0, 0.5, natural);
+  auto factor = [&](int axis, double sign) {
+    Eigen::Vector3d g = Eigen::Vector3d::Zero();
+    g[axis] = 0.5 * sign;
+    return linear(0.5, g[0], g[1], g[2], natural);
+  };
+  auto set = [&](int node, const Term& t) {
+    shape[node] = t.value;
+    dshape.col(node) = t.gradient;
+  };
+  auto corner = [&](int i) -> Term {
+    if (kind == SolidKind::Tetra) return L[i];
+    if (kind == SolidKind::Penta) return L[i % 3] * (i < 3 ? below : above);
+    return factor(0, kHexaCorner[i][0]) * factor(1, kHexaCorner[i][1]) * factor(2, kHexaCorner[i][2]);
+  };
+  // One at the middle of edge (i, j), zero at every other node.
+  auto bump = [&](int i, int j) -> Term {
+    if (kind == SolidKind::Tetra) return 4 * (L[i] * L[j]);
+    if (kind == SolidKind::Penta) {
+      if (j == i + 3) return 4 * (L[i] * (below * above));
+      return 4 * (L[i % 3] * L[j % 3] * (i < 3 ? below : above));
+    }
+    Term t{1, Eigen::Vector3d::Zero()};
+    for (int a = 0; a < 3; ++a) {
+      const double ci = kHexaCorner[i][a], cj = kHexaCorner[j][a];
+      t = t * (ci == cj ? factor(a, ci) : 4 * (factor(a, -1) * factor(a, 1)));
+    }
+    return t;
+  };
+  for (int i = 0; i < corners; ++i) set(i, corner(i));
+  for (std::size_t e = 0; e < midside.size(); ++e) {
+    if (midside[e] < 0) continue;
+    const Term t = bump(edges[e].first, edges[e].second);
+    set(midside[e], t);
+    for (int c : {edges[e].first, edges[e].second}) {
+      shape[c] -= 0.5 * t.value;
+      dshape.col(c) -= 0.5 * t.gradient;
+    }
+  }
+}
+
+std::vector<SolidPoint> calc_solid_points(SolidKind kind, bool quadratic, bool mass) {
+  std::vector<SolidPoint> points;
+  if (kind == SolidKind::Hexa) {
+    const Gauss g = get_gauss(quadratic ? 3 : 2);
+    for (std::size_t i = 0; i < g.x.size(); ++i)
+      for (std::size_t j = 0; j < g.x.size(); ++j)
+        for (std::size_t k = 0; k < g.x.size(); ++k)
+          points.push_back({{g.x[i], g.x[j], g.x[k]}, g.w[i] * g.w[j] * g.w[k]});
+    return points;
+  }
+  if (kind == SolidKind::Tetra && !mass) {
+    if (!quadratic) return {{{0.25, 0.25, 0.25}, 1.0 / 6}};
+    const double a = (5 - std::sqrt(5.0)) / 20, b = 1 - 3 * a;
+    for (const auto& p :
+         {Eigen::Vector3d(a, a, a), Eigen::Vector3d(b, a, a), Eigen::Vector3d(a, b, a), Eigen::Vector3d(a, a, b)})
+      points.push_back({p, 1.0 / 24});
+    return points;
+  }
+  // Products of Gauss rules on the collapsed square or cube (Stroud): exact to degree 2n-3 or better.
+  const Gauss g = get_gauss(mass && quadratic ? 4 : 3);
+  auto half = [](double x) { return 0.5 * (1 + x); };
+  for (std::size_t i = 0; i < g.x.size(); ++i)
+    for (std::size_t j = 0; j < g.x.size(); ++j) {
+      const double r = half(g.x[i]), s = half(g.x[j]) * (1 - r), w = 0.25 * g.w[i] * g.w[j] * (1 - r);
+      if (kind == SolidKind::Penta) {
+        const Gauss z = get_gauss(quadratic ? 3 : 2);
+        for (std::size_t k = 0; k < z.x.size(); ++k) points.push_back({{r, s, z.x[k]}, w * z.w[k]});
+      } else {
+        for (std::size_t k = 0; k < g.x.size(); ++k)
+          points.push_back({{r, s, half(g.x[k]) * (1 - r - s)}, 0.5 * w * g.w[k] * (1 - r - s)});
+      }
+    }
+  return points;
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,31 @@
+#pragma once
+/// \file Shape functions and quadrature of bricks, wedges and tetrahedra with any of their midside nodes absent.
+///
+/// Node order is Nastran's (CHEXA, CPENTA, CTETRA). Serendipity by hierarchy: a midside node present on an edge has its
+/// bump, and takes half of it from both corners (Zienkiewicz & Taylor, "The finite element method", vol. 1, 8.5).
+#include <vector>
+
+#include <Eigen/Dense>
+
+namespace bough::fe {
+
+enum class SolidKind { Hexa, Penta, Tetra };
+
+struct SolidPoint {
+  Eigen::Vector3d natural;
+  double weight = 0;
+};
+
+int get_num_corners(SolidKind kind);
+/// Edges as corner pairs, in the order of the midside nodes.
+const std::vector<std::pair<int, int>>& get_edges(SolidKind kind);
+
+/// N (m) and dN/dξ (3 x m) at natural coordinates: m = corners plus the midside nodes present, in deck order.
+/// midside[e]: 0-based position among the m nodes of the node on edge e, or -1.
+void calc_solid_shape(SolidKind kind, const std::vector<int>& midside, const Eigen::Vector3d& natural,
+                      Eigen::VectorXd& shape, Eigen::Matrix3Xd& dshape);
+
+/// Full integration of the stiffness, or of the mass when `mass` is true.
+std::vector<SolidPoint> calc_solid_points(SolidKind kind, bool quadratic, bool mass);
+
+}  // namespace bough::fe

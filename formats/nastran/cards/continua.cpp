@@ -1,0 +1,173 @@
+#include <string>
+
+#include "bough/formats/nastran/detail/parsers.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+void parse_mat2(Card& card, Reading& r) {
+  records::Mat2 mat;
+  mat.id = card.read_id(0, "MID");
+  static constexpr int kPlace[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
+  for (int i = 0; i < 6; ++i)
+    mat.G(kPlace[i][0], kPlace[i][1]) = mat.G(kPlace[i][1], kPlace[i][0]) = card.read_real(1 + i, "Gij", 0.0);
+  mat.rho = card.read_real(7, "RHO", 0.0);
+  mat.at = card.get_location();
+  if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat2.push_back(mat);
+}
+
+void parse_mat8(Card& card, Reading& r) {
+  records::Mat8 mat;
+  mat.id = card.read_id(0, "MID");
+  mat.E1 = card.read_real(1, "E1");
+  mat.E2 = card.read_real(2, "E2");
+  mat.nu12 = card.read_real(3, "NU12", 0.0);
+  mat.G12 = card.read_real(4, "G12", 0.0);
+  mat.G1z = card.read_real(5, "G1Z", 0.0);
+  mat.G2z = card.read_real(6, "G2Z", 0.0);
+  mat.rho = card.read_real(7, "RHO", 0.0);
+  mat.at = card.get_location();
+  if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat8.push_back(mat);
+}
+
+void parse_mat9(Card& card, Reading& r) {
+  records::Mat9 mat;
+  mat.id = card.read_id(0, "MID");
+  int field = 1;
+  for (int i = 0; i < 6; ++i)
+    for (int j = i; j < 6; ++j) mat.G(i, j) = mat.G(j, i) = card.read_real(field++, "Gij", 0.0);
+  mat.rho = card.read_real(field, "RHO", 0.0);
+  mat.at = card.get_location();
+  if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat9.push_back(mat);
+}
+
+void parse_pshell(Card& card, Reading& r) {
+  records::Pshell p;
+  p.id = card.read_id(0, "PID");
+  p.mid1 = card.read_id(1, "MID1", 0);
+  p.t = card.read_optional_real(2, "T");
+  p.mid2 = card.read_int(3, "MID2", 0);
+  p.bending_ratio = card.read_real(4, "12I/T**3", 1.0);
+  p.mid3 = card.read_id(5, "MID3", 0);
+  p.shear_ratio = card.read_real(6, "TS/T", 5.0 / 6);
+  p.nsm = card.read_real(7, "NSM", 0.0);
+  p.mid4 = card.read_id(10, "MID4", 0);
+  p.at = card.get_location();
+  card.demand(p.mid2 >= -1, 3, "MID2", "a material id, blank or -1");
+  if (p.mid1 == 0 && p.mid2 <= 0)
+    card.fail("deck.missing-field", 1, "MID1 and MID2 are both blank", "give one of them");
+  if (r.claim(IdSpace::ShellProperty, p.id, card)) r.deck.pshell.push_back(p);
+}
+
+/// Fields 1..7 of PCOMP and PCOMPG, then plies; `stride` fields a ply, material first after `skip`.
+void parse_laminate(Card& card, Reading& r, int skip, int stride) {
+  records::Pcomp p;
+  p.id = card.read_id(0, "PID");
+  const auto z0 = card.read_optional_real(1, "Z0");
+  p.nsm = card.read_real(2, "NSM", 0.0);
+  const std::string lam = card.read_word(7, "LAM", "", {"", "SYM", "MEM", "BEND", "SMEAR", "SMCORE"});
+  if (lam == "SMEAR" || lam == "SMCORE")
+    card.fail("deck.bad-word", 7, "LAM is " + lam + ", expected SYM, MEM, BEND or blank", "write the plies out");
+  p.membrane = lam != "BEND";
+  p.bending = lam != "MEM";
+  p.at = card.get_location();
+  for (int i = 8; i < card.get_size(); i += stride) {
+    if (card.is_blank(i, i + stride)) continue;
+    records::Ply ply = p.plies.empty() ? records::Ply{} : p.plies.back();
+    ply.mid = p.plies.empty() ? card.read_id(i + skip, "MID1") : card.read_id(i + skip, "MIDi", ply.mid);
+    ply.t = p.plies.empty() ? card.read_real(i + skip + 1, "T1") : card.read_real(i + skip + 1, "Ti", ply.t);
+    ply.theta_deg = card.read_real(i + skip + 2, "THETAi", 0.0);
+    p.plies.push_back(ply);
+  }
+  if (p.plies.empty()) card.fail("deck.missing-field", 8, "the laminate has no ply", "give MID1, T1, THETA1");
+  if (lam == "SYM") p.plies.insert(p.plies.end(), p.plies.rbegin(), p.plies.rend());
+  double total = 0;
+  for (const auto& ply : p.plies) total += ply.t;
+  p.z0 = z0.value_or(-0.5 * total);
+  if (r.claim(IdSpace::ShellProperty, p.id, card)) r.deck.pcomp.push_back(p);
+}
+void parse_pcomp(Card& card, Reading& r) { parse_laminate(card, r, 0, 4); }
+void parse_pcompg(Card& card, Reading& r) { parse_laminate(card, r, 1, 8); }
+
+void parse_psolid(Card& card, Reading& r) {
+  records::Psolid p;
+  p.id = card.read_id(0, "PID");
+  p.mid = card.read_id(1, "MID");
+  p.cordm = card.is_integer(2) ? card.read_int(2, "CORDM", 0) : 0;
+  p.at = card.get_location();
+  const std::string fluid = card.get_upper(6);
+  if (fluid == "PFLUID" || fluid == "FFLUID")
+    card.fail("deck.bad-word", 6, "FCTN is " + fluid + ": fluids are not structure", "leave fluid elements out");
+  if (r.claim(IdSpace::SolidProperty, p.id, card)) r.deck.psolid.push_back(p);
+}
+
+void parse_shell(Card& card, Reading& r, int corners) {
+  records::ShellElement e;
+  e.id = card.read_id(0, "EID");
+  e.pid = card.read_id(1, "PID", e.id);
+  e.card = card.get_name();
+  for (int i = 0; i < corners; ++i) e.grids.push_back(card.read_id(2 + i, "G1.."));
+  const int after = 2 + corners;
+  if (card.is_integer(after)) {
+    e.mcid = card.read_int(after, "MCID");
+    card.demand(*e.mcid >= 0, after, "MCID", "a coordinate system, or a real angle THETA");
+  } else {
+    e.theta_deg = card.read_real(after, "THETA", 0.0);
+  }
+  e.z_offset = card.read_real(after + 1, "ZOFFS", 0.0);
+  // The thicknesses T1.. stand in fields 4.. of the second line, TFLAG in field 3.
+  const int first = 10;
+  e.relative_thickness = card.read_int(9, "TFLAG", 0) == 1;
+  if (!card.is_blank(first, first + corners)) {
+    for (int i = 0; i < corners; ++i) {
+      if (card.is_blank(first + i)) {
+        card.fail("deck.missing-field", first + i, "some of T1.. are blank and some are not",
+                  "give all of them or none");
+        break;
+      }
+      e.t.push_back(card.read_real(first + i, "Ti"));
+    }
+  }
+  e.at = card.get_location();
+  if (r.claim(IdSpace::Shell, e.id, card)) r.deck.shells.push_back(std::move(e));
+}
+void parse_quad(Card& card, Reading& r) { parse_shell(card, r, 4); }
+void parse_triangle(Card& card, Reading& r) { parse_shell(card, r, 3); }
+
+void parse_solid(Card& card, Reading& r, int corners, int edges) {
+  records::SolidElement e;
+  e.id = card.read_id(0, "EID");
+  e.pid = card.read_id(1, "PID", e.id);
+  e.card = card.get_name();
+  for (int i = 0; i < corners; ++i) e.corners.push_back(card.read_id(2 + i, "G1.."));
+  bool any = false;
+  for (int i = 0; i < edges; ++i) {
+    e.midsides.push_back(card.read_id(2 + corners + i, "Gi", 0));
+    any = any || e.midsides.back() > 0;
+  }
+  if (!any) e.midsides.clear();
+  e.at = card.get_location();
+  if (r.claim(IdSpace::Solid, e.id, card)) r.deck.solids.push_back(std::move(e));
+}
+void parse_hexa(Card& card, Reading& r) { parse_solid(card, r, 8, 12); }
+void parse_penta(Card& card, Reading& r) { parse_solid(card, r, 6, 9); }
+void parse_tetra(Card& card, Reading& r) { parse_solid(card, r, 4, 6); }
+
+}  // namespace
+
+void add_continuum_parsers(ParserTable& table) {
+  table["MAT2"] = parse_mat2;
+  table["MAT8"] = parse_mat8;
+  table["MAT9"] = parse_mat9;
+  table["PSHELL"] = parse_pshell;
+  table["PCOMP"] = parse_pcomp;
+  table["PCOMPG"] = parse_pcompg;
+  table["PSOLID"] = parse_psolid;
+  table["CQUAD4"] = parse_quad;
+  table["CTRIA3"] = parse_triangle;
+  table["CHEXA"] = parse_hexa;
+  table["CPENTA"] = parse_penta;
+  table["CTETRA"] = parse_tetra;
+}
+
+}  // namespace bough::nastran::detail

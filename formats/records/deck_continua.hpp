@@ -1,0 +1,83 @@
+#pragma once
+/// \file Cards of plates, shells and solids in a deck: included by deck.hpp.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "bough/formats/records/card_location.hpp"
+
+namespace bough::records {
+
+/// MAT2: anisotropic plane-stress law, 3 x 3 symmetric.
+struct Mat2 {
+  int id = 0;
+  Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
+  double rho = 0;
+  CardLocation at;
+};
+/// MAT8: orthotropic plane-stress law. G1z, G2z zero: no transverse shear flexibility from this material.
+struct Mat8 {
+  int id = 0;
+  double E1 = 0, E2 = 0, nu12 = 0, G12 = 0, G1z = 0, G2z = 0, rho = 0;
+  CardLocation at;
+};
+/// MAT9: 6 x 6 law of a solid, Voigt xx yy zz xy yz zx.
+struct Mat9 {
+  int id = 0;
+  Eigen::Matrix<double, 6, 6> G = Eigen::Matrix<double, 6, 6>::Zero();
+  double rho = 0;
+  CardLocation at;
+};
+
+struct Pshell {
+  int id = 0;
+  int mid1 = 0, mid2 = 0, mid3 = 0, mid4 = 0;   ///< membrane, bending, shear, coupling; 0 = none (mid2 -1: plane strain)
+  std::optional<double> t;                       ///< empty: from the element's corners
+  double bending_ratio = 1;                      ///< 12 I / T³
+  double shear_ratio = 5.0 / 6;                  ///< TS / T
+  double nsm = 0;
+  CardLocation at;
+};
+
+struct Ply {
+  int mid = 0;
+  double t = 0, theta_deg = 0;
+};
+/// PCOMP and PCOMPG, all plies listed (a symmetric layup is already unfolded).
+struct Pcomp {
+  int id = 0;
+  double z0 = 0;                                 ///< bottom surface from the reference surface
+  double nsm = 0;
+  std::vector<Ply> plies;                        ///< from the bottom up
+  bool bending = true, membrane = true;          ///< LAM = MEM: no bending; BEND: no membrane
+  CardLocation at;
+};
+
+struct ShellElement {
+  int id = 0, pid = 0;
+  std::string card;                              ///< CQUAD4, CTRIA3, CQUADR, CTRIAR
+  std::vector<int> grids;
+  double theta_deg = 0;                          ///< material angle from side 1-2
+  std::optional<int> mcid;                       ///< or: its x-axis projected on the element
+  double z_offset = 0;
+  bool relative_thickness = false;               ///< TFLAG 1: t multiplies the property's
+  std::vector<double> t;                         ///< corner thickness; empty = the property's
+  CardLocation at;
+};
+
+struct Psolid {
+  int id = 0, mid = 0;
+  int cordm = 0;                                 ///< material system; 0 basic, -1 element
+  CardLocation at;
+};
+struct SolidElement {
+  int id = 0, pid = 0;
+  std::string card;                              ///< CHEXA, CPENTA, CTETRA
+  std::vector<int> corners;
+  std::vector<int> midsides;                     ///< one per edge, 0 = absent; empty = none
+  CardLocation at;
+};
+
+}  // namespace bough::records

@@ -1,0 +1,429 @@
+/// What shells and solids owe, over distorted elements in random orientation: symmetry, rigid motions, rank, mass, K_G,
+/// patch tests.
+#include <functional>
+
+#include <Eigen/Eigenvalues>
+
+#include "bough/fe/elements/solid.hpp"
+#include "small_model.hpp"
+
+namespace bough::fe::test {
+namespace {
+
+const Matrix3d kR = make_rotation(31);
+const Vector3d kOrigin(3, -2, 1);
+
+void add_isotropic(SmallModel& m, double t) {
+  records::Mat1 material;
+  material.id = 1, material.E = 3, material.nu = 0.3, material.G = 3 / 2.6, material.rho = 0.8;
+  m.deck.mat1.push_back(material);
+  records::Pshell p;
+  p.id = 1, p.mid1 = p.mid2 = p.mid3 = 1, p.t = t, p.nsm = 0.1;
+  m.deck.pshell.push_back(p);
+  m.deck.psolid.push_back({1, 1, 0, {}});
+}
+
+void add_shell(SmallModel& m, std::vector<int> grids, double z_offset = 0) {
+  records::ShellElement e;
+  e.id = static_cast<int>(m.deck.shells.size()) + 1, e.pid = 1, e.z_offset = z_offset;
+  e.card = grids.size() == 4 ? "CQUAD4" : "CTRIA3";
+  e.grids = std::move(grids);
+  m.deck.shells.push_back(e);
+}
+
+/// Points in a local frame become grids 1, 2, ... in a random orientation with random displacement axes.
+void add_grids(SmallModel& m, const std::vector<Vector3d>& points) {
+  for (const auto& p : points) {
+    const int id = m.nodes.num_nodes() + 1;
+    m.nodes.add_grid(id, kOrigin + kR * p, make_rotation(static_cast<unsigned>(50 + id)));
+  }
+}
+
+struct Case {
+  std::string name;
+  int rank;
+  std::function<void(SmallModel&)> fill;
+};
+
+const std::vector<Vector3d> kFlat = {{0, 0, 0}, {1.2, 0.1, 0}, {1.1, 0.9, 0}, {-0.1, 1.1, 0}};
+const std::vector<Vector3d> kWarped = {{0, 0, 0.03}, {1.2, 0.1, -0.02}, {1.1, 0.9, 0.04}, {-0.1, 1.1, -0.03}};
+
+Case make_shell_case(const char* name, std::vector<Vector3d> x, double t, double z_offset) {
+  const int n = static_cast<int>(x.size());
+  return {name, 6 * n - 6, [=](SmallModel& m) {
+            add_isotropic(m, t);
+            add_grids(m, x);
+            std::vector<int> grids;
+            for (int i = 1; i <= n; ++i) grids.push_back(i);
+            add_shell(m, grids, z_offset);
+          }};
+}
+
+/// midsides: 0 none, 1 all, 2 some.
+void add_solid(SmallModel& m, const char* card, int midsides) {
+  const std::string name = card;
+  const SolidKind kind = name == "CHEXA" ? SolidKind::Hexa : name == "CPENTA" ? SolidKind::Penta : SolidKind::Tetra;
+  std::vector<Vector3d> x;
+  if (kind == SolidKind::Hexa)
+    x = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  else if (kind == SolidKind::Penta)
+    x = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+  else
+    x = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> jitter(-0.1, 0.1);
+  for (auto& p : x)
+    for (double& v : p) v += jitter(random);
+  records::SolidElement e;
+  e.id = 1, e.pid = 1, e.card = card;
+  const int corners = static_cast<int>(x.size());
+  for (int i = 1; i <= corners; ++i) e.corners.push_back(i);
+  int edge = 0;
+  for (const auto& [a, b] : get_edges(kind)) {
+    const bool present = midsides == 1 || (midsides == 2 && edge % 3 != 1);
+    ++edge;
+    if (midsides == 0) break;
+    e.midsides.push_back(present ? static_cast<int>(x.size()) + 1 : 0);
+    if (present) {
+      Vector3d p = (x[static_cast<std::size_t>(a)] + x[static_cast<std::size_t>(b)]) / 2;
+      for (double& v : p) v += 0.2 * jitter(random);
+      x.push_back(p);
+    }
+  }
+  add_isotropic(m, 1);
+  add_grids(m, x);
+  m.deck.solids.push_back(e);
+}
+
+std::vector<Case> make_shell_cases() {
+  const std::vector<Vector3d> tri(kFlat.begin(), kFlat.begin() + 3);
+  return {make_shell_case("quad_thick", kFlat, 0.3, 0),
+          make_shell_case("quad_thin", kFlat, 1e-3, 0),
+          make_shell_case("quad_warped", kWarped, 0.1, 0),
+          make_shell_case("quad_warped_offset", kWarped, 0.1, 0.2),
+          make_shell_case("tri_thick", tri, 0.3, 0),
+          make_shell_case("tri_thin_offset", tri, 1e-2, -0.05),
+          {"laminate", 18,
+           [](SmallModel& m) {
+             add_isotropic(m, 0.1);
+             add_grids(m, kFlat);
+             m.deck.mat8.push_back({5, 4, 0.4, 0.3, 0.2, 0.2, 0.1, 1.5, {}});
+             records::Pcomp p;
+             p.id = 2, p.z0 = -0.02, p.plies = {{5, 0.03, 0}, {5, 0.02, 35}, {1, 0.01, 0}};
+             m.deck.pcomp.push_back(p);
+             add_shell(m, {1, 2, 3, 4});
+             m.deck.shells[0].pid = 2, m.deck.shells[0].theta_deg = 20;
+           }},
+          {"folded_pair", 30, [](SmallModel& m) {
+             // Ten degrees between the two: the nodes of the fold get one normal.
+             add_isotropic(m, 0.05);
+             add_grids(m, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1.98, 0, 0.17}, {1.98, 1, 0.17}});
+             add_shell(m, {1, 2, 3, 4});
+             add_shell(m, {2, 5, 6, 3});
+           }}};
+}
+
+std::vector<Case> make_solid_cases() {
+  std::vector<Case> cases;
+  for (const char* card : {"CHEXA", "CPENTA", "CTETRA"})
+    for (int midsides : {0, 1, 2}) {
+      const int corners = card[1] == 'H' ? 8 : card[1] == 'P' ? 6 : 4, edges = corners == 8 ? 12 : corners == 6 ? 9 : 6;
+      const int absent = (edges + 1) / 3;  // edges 1, 4, 7, ...
+      const int nodes = corners + (midsides == 0 ? 0 : midsides == 1 ? edges : edges - absent);
+      cases.push_back({std::string(card) + (midsides == 0   ? "_linear"
+                                            : midsides == 1 ? "_quadratic"
+                                                            : "_mixed"),
+                       3 * nodes - 6, [=](SmallModel& m) { add_solid(m, card, midsides); }});
+    }
+  return cases;
+}
+
+SmallModel make_model(const Case& c) {
+  SmallModel m;
+  c.fill(m);
+  m.make();
+  return m;
+}
+
+VectorXd make_displacement(unsigned seed, int n) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  VectorXd u(n);
+  for (double& value : u) value = normal(random);
+  return u;
+}
+
+class Continua : public testing::TestWithParam<Case> {};
+
+TEST_P(Continua, StiffnessIsSymmetricWithSixRigidMotionsAndNoOther) {
+  const SmallModel m = make_model(GetParam());
+  const MatrixXd K = m.calc_stiffness();
+  const double scale = K.cwiseAbs().maxCoeff();
+  EXPECT_LT((K - K.transpose()).cwiseAbs().maxCoeff(), 1e-14 * scale);
+  EXPECT_LT((K * m.nodes.calc_rigid_modes()).cwiseAbs().maxCoeff(), 1e-12 * scale);
+  const VectorXd lambda = Eigen::SelfAdjointEigenSolver<MatrixXd>(K).eigenvalues();
+  EXPECT_EQ((lambda.array() > 1e-12 * scale).count(), GetParam().rank) << lambda.transpose();
+  EXPECT_GE(lambda.minCoeff(), -1e-13 * scale);
+}
+
+TEST_P(Continua, MassesAgreeInMassAndFirstMoments) {
+  const SmallModel m = make_model(GetParam());
+  const MatrixXd Phi_R = m.nodes.calc_rigid_modes();
+  MatrixXd rigid[2];
+  for (MassKind kind : {MassKind::Lumped, MassKind::Consistent}) {
+    const MatrixXd M = m.calc_mass(kind);
+    EXPECT_LT((M - M.transpose()).cwiseAbs().maxCoeff(), 1e-14 * M.cwiseAbs().maxCoeff());
+    EXPECT_GE(Eigen::SelfAdjointEigenSolver<MatrixXd>(M).eigenvalues().minCoeff(), -1e-14 * M.cwiseAbs().maxCoeff());
+    rigid[kind == MassKind::Lumped ? 0 : 1] = Phi_R.transpose() * M * Phi_R;
+  }
+  const double mass = rigid[1](0, 0);
+  EXPECT_LT((rigid[0] - rigid[1]).topLeftCorner(3, 3).cwiseAbs().maxCoeff(), 1e-13 * mass);
+  EXPECT_LT((rigid[1].topLeftCorner(3, 3) - mass * Matrix3d::Identity()).cwiseAbs().maxCoeff(), 1e-13 * mass);
+  // Scaled diagonals of distorted or quadratic solids keep the mass alone.
+  if (GetParam().name[0] != 'C') {
+    EXPECT_LT((rigid[0] - rigid[1]).topRows(3).cwiseAbs().maxCoeff(), 1e-12 * rigid[1].cwiseAbs().maxCoeff());
+  }
+}
+
+TEST_P(Continua, GeometricStiffnessIsSymmetricLinearAndBlindToTranslation) {
+  const SmallModel m = make_model(GetParam());
+  const int n = m.nodes.num_gdofs();
+  const VectorXd u1 = make_displacement(21, n), u2 = make_displacement(22, n);
+  const MatrixXd K_G = m.calc_geometric_stiffness(u1);
+  const double scale = K_G.cwiseAbs().maxCoeff();
+  ASSERT_GT(scale, 0);
+  EXPECT_LT((K_G - K_G.transpose()).cwiseAbs().maxCoeff(), 1e-13 * scale);
+  EXPECT_LT((m.calc_geometric_stiffness(2 * u1 - 3 * u2) - 2 * K_G + 3 * m.calc_geometric_stiffness(u2)).norm(),
+            1e-12 * scale * n);
+  EXPECT_LT((K_G * m.nodes.calc_rigid_modes().leftCols<3>()).norm(), 1e-12 * scale * n);
+}
+
+TEST_P(Continua, AddsScaledIntoStorage) {
+  const SmallModel m = make_model(GetParam());
+  for (const auto& element : m.elements) {
+    const int n = element->num_dofs();
+    MatrixXd once = MatrixXd::Zero(n, n), K = MatrixXd::Constant(n, n, 2.0);
+    element->add_stiffness(1, once);
+    element->add_stiffness(-3, K);
+    EXPECT_LT((K - MatrixXd::Constant(n, n, 2.0) + 3 * once).norm(), 1e-13 * (1 + once.norm()));
+    for (MassKind kind : {MassKind::Lumped, MassKind::Consistent}) {
+      MatrixXd mass = MatrixXd::Zero(n, n), M = MatrixXd::Constant(n, n, 2.0);
+      element->add_mass(kind, 1, mass);
+      element->add_mass(kind, -3, M);
+      EXPECT_LT((M - MatrixXd::Constant(n, n, 2.0) + 3 * mass).norm(), 1e-13 * (1 + mass.norm()));
+    }
+    EXPECT_EQ(element->internal_force_names().size(), static_cast<std::size_t>(element->num_internal_forces()));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shells, Continua, testing::ValuesIn(make_shell_cases()),
+                         [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(Solids, Continua, testing::ValuesIn(make_solid_cases()),
+                         [](const auto& test) { return test.param.name; });
+
+/// A displacement u = H (x - origin) of the grids, rotations those of H's antisymmetric part.
+VectorXd make_linear_field(const SmallModel& m, const Matrix3d& H) {
+  VectorXd u(m.nodes.num_gdofs());
+  const Matrix3d W = 0.5 * (H - H.transpose());
+  for (int k = 0; k < m.nodes.num_nodes(); ++k) {
+    u.segment<3>(6 * k) = H * (m.nodes.node(k).x - kOrigin);
+    u.segment<3>(6 * k + 3) = Vector3d(W(2, 1), W(0, 2), W(1, 0));
+  }
+  return u;
+}
+
+/// A constant strain gives the exact stresses, the exact energy, and nodal forces that a rigid rotation turns.
+TEST(SolidPatch, ConstantStrain) {
+  Matrix3d H;
+  H << 1, 2, 3, 4, 5, 6, 7, 8, 10;
+  for (const Case& c : make_solid_cases()) {
+    const SmallModel m = make_model(c);
+    const VectorXd u = make_linear_field(m, H);
+    const Matrix3d strain = 0.5 * (H + H.transpose());
+    const double lambda = 3 * 0.3 / 1.3 / 0.4, G = 3 / 2.6;
+    const Matrix3d stress = lambda * strain.trace() * Matrix3d::Identity() + 2 * G * strain;
+    const Element& e = *m.elements[0];
+    VectorXd u_e(e.num_dofs()), s(e.num_internal_forces());
+    for (int i = 0; i < e.num_dofs(); ++i) u_e[i] = u[e.gdofs()[static_cast<std::size_t>(i)]];
+    e.calc_internal_forces(u_e, s);
+    for (int q = 0; q < s.size(); q += 6) {
+      Eigen::Matrix<double, 6, 1> expected;
+      expected << stress(0, 0), stress(1, 1), stress(2, 2), stress(0, 1), stress(1, 2), stress(2, 0);
+      EXPECT_LT((s.segment<6>(q) - expected).norm(), 1e-12 * expected.norm()) << c.name;
+    }
+    const MatrixXd K = m.calc_stiffness();
+    const double volume = dynamic_cast<const Solid&>(e).calc_volume();
+    EXPECT_NEAR(u.dot(K * u) / (volume * (stress.cwiseProduct(strain)).sum()), 1, 1e-12) << c.name;
+    const VectorXd f = K * u;
+    const MatrixXd K_G = m.calc_geometric_stiffness(u), Phi_R = m.nodes.calc_rigid_modes();
+    for (int axis = 0; axis < 3; ++axis) {
+      VectorXd expected = VectorXd::Zero(f.size());
+      for (int i = 0; i < f.size(); i += 6) expected.segment<3>(i) = Vector3d::Unit(axis).cross(f.segment<3>(i));
+      EXPECT_LT((K_G * Phi_R.col(3 + axis) - expected).norm(), 1e-11 * expected.norm()) << c.name;
+    }
+  }
+}
+
+/// The patch of Macneal and Harder (1985): 0.24 x 0.12, five distorted quadrilaterals about four inner grids.
+SmallModel make_patch(bool triangles, double t, double shear_ratio = 5.0 / 6) {
+  SmallModel m;
+  add_isotropic(m, t);
+  m.deck.pshell[0].shear_ratio = shear_ratio;
+  add_grids(m, {{0, 0, 0},
+                {0.24, 0, 0},
+                {0.24, 0.12, 0},
+                {0, 0.12, 0},
+                {0.04, 0.02, 0},
+                {0.18, 0.03, 0},
+                {0.16, 0.08, 0},
+                {0.08, 0.08, 0}});
+  for (const auto& q :
+       std::vector<std::vector<int>>{{1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}, {5, 6, 7, 8}}) {
+    if (triangles) {
+      add_shell(m, {q[0], q[1], q[2]});
+      add_shell(m, {q[0], q[2], q[3]});
+    } else {
+      add_shell(m, q);
+    }
+  }
+  m.make();
+  return m;
+}
+
+/// The field at a local point: displacement and rotation in local axes.
+using Field = std::function<std::pair<Vector3d, Vector3d>(const Vector3d&)>;
+
+VectorXd sample(const SmallModel& m, const Field& field) {
+  VectorXd u(m.nodes.num_gdofs());
+  for (int k = 0; k < m.nodes.num_nodes(); ++k) {
+    const auto [d, r] = field(kR.transpose() * (m.nodes.node(k).x - kOrigin));
+    u.segment<3>(6 * k) = kR * d;
+    u.segment<3>(6 * k + 3) = kR * r;
+  }
+  return u;
+}
+
+/// Inner grids solve to the field given on the outer four (and on the dofs held).
+void expect_patch(const SmallModel& m, const Field& field, double tolerance, const char* what) {
+  const VectorXd exact = sample(m, field);
+  const MatrixXd K = m.calc_stiffness();
+  const MatrixXd inner = K.bottomRightCorner(24, 24);
+  const VectorXd solved = inner.ldlt().solve(-K.bottomLeftCorner(24, 24) * exact.head(24));
+  EXPECT_LT((solved - exact.tail(24)).norm(), tolerance * exact.norm()) << what;
+}
+
+TEST(ShellPatch, MembraneAndBendingOfDistortedElements) {
+  for (bool triangles : {false, true})
+    for (double t : {1e-4, 1e-3, 1e-2}) {
+      const SmallModel m = make_patch(triangles, t);
+      const double tolerance = 1e-13 * std::pow(0.24 / t, 2);  // of membrane to bending: the condition of K
+      expect_patch(
+          m,
+          [](const Vector3d& x) {
+            return std::pair(Vector3d(1e-3 * (x.x() + 0.5 * x.y()), 1e-3 * (x.y() + 0.5 * x.x()), 0),
+                             Vector3d(0, 0, 0));
+          },
+          tolerance, "membrane");
+      expect_patch(
+          m,
+          [](const Vector3d& x) {
+            const double w = 0.5e-3 * (x.x() * x.x() + x.x() * x.y() + x.y() * x.y());
+            return std::pair(Vector3d(0, 0, w),
+                             Vector3d(1e-3 * (0.5 * x.x() + x.y()), -1e-3 * (x.x() + 0.5 * x.y()), 0));
+          },
+          tolerance, "bending");
+    }
+}
+
+/// Rotations held at zero everywhere and w linear on the outside: where shear is soft (else the sides bend: Kirchhoff)
+/// a pure transverse shear, so w is linear inside.
+TEST(ShellPatch, TransverseShear) {
+  for (bool triangles : {false, true}) {
+    const SmallModel m = make_patch(triangles, 0.05, 1e-7);
+    const auto field = [](const Vector3d& x) {
+      return std::pair(Vector3d(0, 0, 1e-3 * (x.x() - 0.7 * x.y())), Vector3d(0, 0, 0));
+    };
+    const VectorXd exact = sample(m, field);
+    const MatrixXd K = m.calc_stiffness();
+    MatrixXd w = MatrixXd::Zero(m.nodes.num_gdofs(), 4);  // the inner deflections
+    VectorXd outer = exact;
+    for (int k = 4; k < 8; ++k) {
+      w.block<3, 1>(6 * k, k - 4) = kR.col(2);
+      outer.segment<6>(6 * k).setZero();
+    }
+    const VectorXd solved = (w.transpose() * K * w).ldlt().solve(-w.transpose() * K * outer);
+    EXPECT_LT((solved - w.transpose() * exact).norm(), 1e-6 * exact.norm());
+    // γ = ∇w everywhere: energy ½ S γ² A with S = 1e-7 G t.
+    const double expected = 0.24 * 0.12 * 1e-7 * (3 / 2.6) * 0.05 * 1e-6 * (1 + 0.49);
+    EXPECT_NEAR(exact.dot(K * exact) / expected, 1, 1e-6);
+  }
+}
+
+/// Under a constant membrane force N the energy of a rigid rotation θ is ∫ N_ab (θ×e_a)·(θ×e_b) dA.
+TEST(ShellGeometric, RigidRotationUnderConstantForce) {
+  for (bool triangles : {false, true}) {
+    const SmallModel m = make_patch(triangles, 0.01);
+    const VectorXd u = sample(m, [](const Vector3d& x) {
+      return std::pair(Vector3d(2 * x.x() + 0.5 * x.y(), 0.5 * x.x() - x.y(), 0), Vector3d(0, 0, 0));
+    });
+    const double c = 3 / (1 - 0.09) * 0.01;
+    Eigen::Matrix2d N;
+    N << c * (2 - 0.3), 3 / 2.6 * 0.01, 3 / 2.6 * 0.01, c * (-1 + 0.6);
+    const MatrixXd K_G = m.calc_geometric_stiffness(u), Phi_R = m.nodes.calc_rigid_modes();
+    for (int axis = 0; axis < 3; ++axis) {
+      double expected = 0;
+      for (int a = 0; a < 2; ++a)
+        for (int b = 0; b < 2; ++b)
+          expected += 0.24 * 0.12 * N(a, b) *
+                      Vector3d::Unit(axis).cross(Vector3d::Unit(a)).dot(Vector3d::Unit(axis).cross(Vector3d::Unit(b)));
+      const VectorXd turn = Phi_R.rightCols<3>() * kR.col(axis);
+      EXPECT_NEAR(turn.dot(K_G * turn), expected, 1e-12) << triangles << axis;
+    }
+  }
+}
+
+/// An offset shell is the shell at the offset, joined to its grids by rigid arms: stiffness, both masses and K_G.
+TEST(ShellOffset, IsARigidArm) {
+  for (int corners : {3, 4}) {
+    const std::vector<Vector3d> x(kFlat.begin(), kFlat.begin() + corners);
+    const double d = 0.15;
+    std::vector<Vector3d> raised = x;
+    for (auto& p : raised) p.z() += d;
+    const SmallModel offset = make_model(make_shell_case("offset", x, 0.05, d));
+    const SmallModel plain = make_model(make_shell_case("plain", raised, 0.05, 0));
+    MatrixXd T = MatrixXd::Identity(6 * corners, 6 * corners);
+    for (int k = 0; k < corners; ++k) T.block<3, 3>(6 * k, 6 * k + 3) = -skew(d * kR.col(2));
+    const auto expect_equal = [&](const MatrixXd& a, const MatrixXd& b, const char* what) {
+      EXPECT_LT((a - T.transpose() * b * T).norm(), 1e-12 * a.norm()) << what;
+    };
+    expect_equal(offset.calc_stiffness(), plain.calc_stiffness(), "stiffness");
+    expect_equal(offset.calc_mass(MassKind::Lumped), plain.calc_mass(MassKind::Lumped), "lumped");
+    expect_equal(offset.calc_mass(MassKind::Consistent), plain.calc_mass(MassKind::Consistent), "consistent");
+    const VectorXd u = make_displacement(3, 6 * corners);
+    expect_equal(offset.calc_geometric_stiffness(u), plain.calc_geometric_stiffness(T * u), "geometric");
+  }
+}
+
+/// Mass, centre and inertia of a square plate under rigid motion, exactly those of the body.
+TEST(ShellMass, RigidBodyIsExact) {
+  const SmallModel m = make_model(make_shell_case("square", {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}}, 0.2, 0));
+  const double mass = 2 * (0.8 * 0.2 + 0.1), rotary = 2 * 0.8 * 0.008 / 12;
+  MatrixXd local = MatrixXd::Zero(24, 6);  // rigid motions about the corner in local axes
+  for (int k = 0; k < 4; ++k) {
+    const Vector3d p = m.nodes.node(k).x - kOrigin;
+    local.block<3, 3>(6 * k, 0) = kR;
+    local.block<3, 3>(6 * k, 3) = -skew(p) * kR;
+    local.block<3, 3>(6 * k + 3, 3) = kR;
+  }
+  const MatrixXd rigid = local.transpose() * m.calc_mass(MassKind::Consistent) * local;
+  Eigen::Matrix<double, 6, 6> expected = Eigen::Matrix<double, 6, 6>::Zero();
+  expected.topLeftCorner<3, 3>() = mass * Matrix3d::Identity();
+  expected.bottomLeftCorner<3, 3>() = mass * skew(Vector3d(1, 0.5, 0));
+  expected.topRightCorner<3, 3>() = expected.bottomLeftCorner<3, 3>().transpose();
+  expected(3, 3) = mass / 3 + rotary, expected(4, 4) = mass * 4 / 3 + rotary, expected(5, 5) = mass * 5 / 3;
+  expected(3, 4) = expected(4, 3) = -mass / 2;
+  EXPECT_LT((rigid - expected).norm(), 1e-13 * expected.norm()) << rigid;
+}
+
+}  // namespace
+}  // namespace bough::fe::test
