@@ -89,7 +89,13 @@ std::vector<int> find_unused_grids(const Model& model, const records::Deck& deck
     used.insert(e.gn);
     used.insert(e.gm.begin(), e.gm.end());
   }
+  for (const auto& e : deck.rbe3) {
+    used.insert(e.ref_grid);
+    for (const auto& group : e.groups) used.insert(group.grids.begin(), group.grids.end());
+    for (const auto& dependent : e.um) used.insert(dependent.g);
+  }
   for (const auto& e : deck.rbar) used.insert({e.ga, e.gb});
+  for (const auto& e : deck.rrod) used.insert({e.ga, e.gb});
   for (const auto& e : deck.mpc)
     for (const auto& term : e.terms) used.insert(term.g);
   std::vector<int> unused;

@@ -92,7 +92,7 @@ VectorXd Model::calc_load(const records::Deck& deck, int set, Diagnostics& diagn
   VectorXd F = VectorXd::Zero(num_gdofs_);
   for_each_plain_set(deck, set, [&](int sid, double scale, const records::CardLocation& at) {
     const LoadTarget target{*this, deck, sid, scale, F, diagnostics};
-    const bool found[] = {add_point_loads(target), add_body_loads(target), 
+    const bool found[] = {add_point_loads(target), add_body_loads(target), add_surface_loads(target),
                           add_beam_loads(target), has_enforced(deck, sid)};
     if (std::find(std::begin(found), std::end(found), true) == std::end(found))
       diagnostics.error("fe.missing-load", deck.locate(at),

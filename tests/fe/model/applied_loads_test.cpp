@@ -133,6 +133,77 @@ TEST(BeamLoads, ResultantOfATrapezoidOnAnOffsetTaperedBeam) {
   EXPECT_LT((calc_resultant(l.model, l.model.calc_load(l.deck, 4, d)) - expected).norm(), 1e-11 * expected.norm());
 }
 
+TEST(Pressure, WarpedQuadCarriesItsVectorArea) {
+  Diagnostics d;
+  const auto l = make_loaded(
+      "GRID,1,,0.,0.,0.\nGRID,2,,2.,.1,.3\nGRID,3,,2.2,1.5,-.2\nGRID,4,,-.1,1.2,.4\nCQUAD4,1,1,1,2,3,4\n"
+      "PSHELL,1,1,.1,1,,1\nMAT1,1,7.+10,,.3\n"
+      "PLOAD2,4,3.,1\nPLOAD4,5,1,3.\nPLOAD,6,3.,1,2,3,4\nPLOAD4,7,1,1.,2.,3.,4.\n,0,0.,0.,2.\n",
+      d);
+  const Vector3d x1(0, 0, 0), x2(2, .1, .3), x3(2.2, 1.5, -.2), x4(-.1, 1.2, .4);
+  const Vector3d area = 0.5 * (x3 - x1).cross(x4 - x2);  // Stokes: whatever the surface between the edges
+  for (int set : {4, 5, 6}) {
+    const Vector6d r = calc_resultant(l.model, l.model.calc_load(l.deck, set, d));
+    EXPECT_LT((r.head<3>() - 3 * area).norm(), 1e-13) << set;
+    // ∫ x × n dA of the bilinear surface, by a fine midpoint rule.
+    Vector3d moment = Vector3d::Zero();
+    const int n = 400;
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        const double s = (i + 0.5) / n, t = (j + 0.5) / n;
+        const Vector3d x = (1 - s) * (1 - t) * x1 + s * (1 - t) * x2 + s * t * x3 + (1 - s) * t * x4;
+        const Vector3d ds = (1 - t) * (x2 - x1) + t * (x3 - x4), dt = (1 - s) * (x4 - x1) + s * (x3 - x2);
+        moment += x.cross(ds.cross(dt)) / (n * n);
+      }
+    EXPECT_LT((r.tail<3>() - 3 * moment).norm(), 1e-4) << set;
+  }
+  // With a direction: along it, by the true area.
+  const Vector6d along = calc_resultant(l.model, l.model.calc_load(l.deck, 7, d));
+  EXPECT_NEAR(along.head<2>().norm(), 0, 1e-14);
+  EXPECT_GT(along[2], 2.5 * area.norm() * 0.9);
+}
+
+TEST(Pressure, ClosedBrickIsInBalanceAndEachFacePushesInward) {
+  Diagnostics d;
+  std::string bulk =
+      "GRID,1,,0.,0.,0.\nGRID,2,,2.,.1,.1\nGRID,3,,2.1,1.5,-.2\nGRID,4,,-.1,1.2,.2\nGRID,5,,.2,0.,1.\n"
+      "GRID,6,,2.,-.1,1.3\nGRID,7,,1.8,1.4,1.\nGRID,8,,0.,1.,1.2\nCHEXA,1,1,1,2,3,4,5,6\n,7,8\nPSOLID,1,1\nMAT1,1,7.+"
+      "10,,.3\n";
+  // Every face by G1 and the corner across.
+  for (const char* face : {"1,3", "8,6", "2,5", "3,6", "7,4", "4,5"})
+    bulk += std::string("PLOAD4,4,1,3.,,,,") + face + "\n";
+  bulk += "PLOAD4,5,1,3.,,,,6,8\nPLOAD4,6,1,0.,0.,9.,0.,5,7\n";
+  const auto l = make_loaded(bulk, d);
+  // A uniform pressure on a closed surface has no resultant.
+  EXPECT_LT(calc_resultant(l.model, l.model.calc_load(l.deck, 4, d)).norm(), 1e-13);
+  const Vector6d top = calc_resultant(l.model, l.model.calc_load(l.deck, 5, d));
+  const Vector3d a = l.model.node(4).x, b = l.model.node(5).x, c = l.model.node(6).x, e = l.model.node(7).x;
+  EXPECT_LT((top.head<3>() + 1.5 * (c - a).cross(e - b)).norm(), 1e-13);
+  EXPECT_LT(top[2], 0);
+  // P3 acts at the corner across from G1: the force there is the largest.
+  const VectorXd F = l.model.calc_load(l.deck, 6, d);
+  EXPECT_GT(std::abs(F[6 * 6 + 2]), 2 * std::abs(F[6 * 4 + 2]));
+}
+
+TEST(Pressure, WedgeAndTetrahedronWithMidsideNodes) {
+  Diagnostics d;
+  std::string bulk =
+      "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,0.,2.,0.\nGRID,4,,0.,0.,2.\nGRID,5,,1.,0.,-.1\nGRID,6,,1.1,1.,0.\n"
+      "GRID,7,,0.,1.,.1\nGRID,8,,0.,0.,1.\nGRID,9,,1.,.1,1.\nGRID,10,,0.,1.,1.\nCTETRA,1,1,1,2,3,4,5,6\n,7,8,9,10\n"
+      "PSOLID,1,1\nMAT1,1,7.+10,,.3\n"
+      "GRID,11,,0.,0.,5.\nGRID,12,,1.,0.,5.\nGRID,13,,0.,1.,5.\nGRID,14,,0.,0.,6.\nGRID,15,,1.,0.,6.\nGRID,16,,0.,1.,6."
+      "\n"
+      "CPENTA,2,1,11,12,13,14,15,16\n";
+  for (const char* face : {"1,4", "1,3", "2,1", "3,2"}) bulk += std::string("PLOAD4,4,1,3.,,,,") + face + "\n";
+  for (const char* face : {"11,", "14,", "11,15", "12,16", "13,14"})
+    bulk += std::string("PLOAD4,5,2,3.,,,,") + face + "\n";
+  bulk += "PLOAD4,6,2,3.,,,,14\n";
+  const auto l = make_loaded(bulk, d);
+  for (int set : {4, 5}) EXPECT_LT(calc_resultant(l.model, l.model.calc_load(l.deck, set, d)).norm(), 1e-12) << set;
+  const VectorXd top = l.model.calc_load(l.deck, 6, d);
+  for (int grid : {14, 15, 16}) EXPECT_NEAR(top[l.model.node(l.model.find_node(grid)).first_gdof + 2], -0.5, 1e-13);
+}
+
 TEST(Rotation, CentrifugalAndTangentialForces) {
   Diagnostics d;
   const auto l = make_loaded(
@@ -220,10 +291,18 @@ TEST(LoadErrors, AreReportedWithTheirIds) {
     return say(d);
   };
   EXPECT_NE(errors("PLOAD1,4,9,FY,LE,0.,1.,1.,1.\n", 4).find("fe.missing-element"), std::string::npos);
+  EXPECT_NE(errors("PLOAD2,4,1.,9\n", 4).find("fe.missing-element"), std::string::npos);
+  EXPECT_EQ(errors("PLOAD2,4,1.,8,THRU,9\n", 4).find("fe.missing-element"), std::string::npos);
   EXPECT_NE(errors("PLOAD1,4,1,FY,LE,0.,1.,5.,1.\n", 4).find("fe.load-off-beam"), std::string::npos);
   EXPECT_NE(errors("FORCE1,4,1,1.,2,2\n", 4).find("fe.no-direction"), std::string::npos);
   EXPECT_NE(errors("SPCD,4,2,1,.5\n", 4).find("fe.spcd-not-fixed"), std::string::npos);
   EXPECT_NE(errors("SLOAD,4,99,1.\n", 4).find("fe.missing-grid"), std::string::npos);
+  EXPECT_NE(
+      errors("GRID,11,,5.,0.,0.\nGRID,12,,6.,0.,0.\nGRID,13,,5.,1.,0.\nGRID,14,,5.,0.,1.\nCTETRA,8,1,11,12,13,14\n"
+             "PSOLID,1,1\nPLOAD4,4,8,1.,,,,11,11\n",
+             4)
+          .find("fe.bad-face"),
+      std::string::npos);
 }
 
 }  // namespace
