@@ -1,13 +1,9 @@
 #include "bough/solver/integrate/system_ode.hpp"
 
-#include "bough/solver/system/impl.hpp"
-
 namespace bough::solver {
 
 SystemOde::SystemOde(const System& system)
     : system_(system), data_(system.make_data()), num_q_(system.num_q()), num_u_(system.num_u()) {}
-
-SystemOde::~SystemOde() = default;
 
 void SystemOde::calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) {
   const auto q = y.head(num_q_);

@@ -11,7 +11,6 @@ namespace bough::solver {
 class SystemOde final : public Ode {
  public:
   explicit SystemOde(const System& system);
-  ~SystemOde() override;
 
   int size() const override { return num_q_ + num_u_ + 1; }
   const System& system() const { return system_; }

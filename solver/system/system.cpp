@@ -4,6 +4,8 @@
 
 #include "bough/solver/system/impl.hpp"
 
+void std::default_delete<bough::solver::SystemData>::operator()(bough::solver::SystemData* data) const { delete data; }
+
 namespace bough::solver {
 
 namespace {

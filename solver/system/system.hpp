@@ -41,6 +41,16 @@ struct Energies {
 
 class SystemData;  ///< made by System::make_data; one per thread
 
+}  // namespace bough::solver
+
+/// So that a SystemData can be owned where only this header is known.
+template <>
+struct std::default_delete<bough::solver::SystemData> {
+  void operator()(bough::solver::SystemData* data) const;
+};
+
+namespace bough::solver {
+
 class System {
  public:
   /// Checks everything that concerns the solver (names, nodes, tree without loops, locators of stiffened attachments)
