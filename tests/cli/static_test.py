@@ -75,6 +75,25 @@ class Static(ProgramTest):
             self.assertEqual(f["/dof_map"].shape, (18, 2))
             self.assertEqual(f["/subcases/1"].attrs["label"], "TIP FORCE")
 
+    def test_plate_under_pressure(self):
+        # Simply supported square plate: w = 0.00406235 q a^4 / D (Timoshenko & Woinowsky-Krieger, table 8).
+        n, a, E, nu, t, q = 16, 2.0, 7e10, 0.3, 0.01, 100.0
+        node = lambda i, j: 1 + i + j * (n + 1)
+        lines = ["SOL 101", "CEND", "SPC = 1", "LOAD = 4", "BEGIN BULK", f"MAT1,1,{E},,{nu}", f"PSHELL,1,1,{t},1,,1",
+                 f"PLOAD2,4,{q},1,THRU,{n * n}", "SPC1,1,126,1,THRU,9999"]
+        lines += [f"GRID,{node(i, j)},,{a * i / n:.9f},{a * j / n:.9f},0." for j in range(n + 1) for i in range(n + 1)]
+        lines += [f"CQUAD4,{1 + i + j * n},1,{node(i, j)},{node(i + 1, j)},{node(i + 1, j + 1)},{node(i, j + 1)}"
+                  for j in range(n) for i in range(n)]
+        lines += [f"SPC1,1,3,{node(i, j)}" for j in range(n + 1) for i in range(n + 1) if i in (0, n) or j in (0, n)]
+        self.write("plate.bdf", "\n".join(lines + ["ENDDATA", ""]))
+        case = json.loads(self.bough("static", "plate.bdf", "--json").stdout)["subcases"][0]
+        most = case["max_displacement"][2]
+        D = E * t ** 3 / 12 / (1 - nu ** 2)
+        self.assertEqual(most["grid"], node(n // 2, n // 2))
+        self.assertAlmostEqual(most["value"] / (0.00406235 * q * a ** 4 / D), 1, delta=0.005)
+        self.assertAlmostEqual(case["resultants"]["load"][2], q * a * a, places=9)
+        self.assertAlmostEqual(case["resultants"]["reaction"][2], -q * a * a, places=6)
+
     def test_tables(self):
         self.write("frame.bdf", FRAME)
         text = self.bough("static", "frame.bdf").stdout
