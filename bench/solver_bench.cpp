@@ -71,7 +71,8 @@ records::FlexBody make_beam(int n) {
         g.gamma4[si][static_cast<size_t>(j)] += m * (fi.dot(fj) * Matrix3d::Identity() - fi * fj.transpose());
         b.modal_mass(i, j) += m * fi.dot(fj);
         // The tension of Ωz² = 1 at x is (1 - x²)/2, that of an axial acceleration -(1 - x).
-        b.kg_inertial[static_cast<size_t>(records::InertialLoad::wz2)](i, j) += m * (1 - x * x) / 2 * slope(i, x) * slope(j, x);
+        b.kg_inertial[static_cast<size_t>(records::InertialLoad::wz2)](i, j) +=
+            m * (1 - x * x) / 2 * slope(i, x) * slope(j, x);
         b.kg_inertial[static_cast<size_t>(records::InertialLoad::ax)](i, j) -= m * (1 - x) * slope(i, x) * slope(j, x);
       }
     }

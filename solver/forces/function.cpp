@@ -222,8 +222,10 @@ std::unique_ptr<const TimeFunction> make_time_function(const FunctionRecord& r, 
               near.empty() ? "use linear or cubic" : "did you mean '" + near + "'?");
     }
     if (check_table(r, p) && !p.failed()) {
-      if (r.interpolation == "linear") made = std::make_unique<LinearTable>(r.x, r.y);
-      else made = std::make_unique<CubicTable>(r.x, r.y);
+      if (r.interpolation == "linear")
+        made = std::make_unique<LinearTable>(r.x, r.y);
+      else
+        made = std::make_unique<CubicTable>(r.x, r.y);
     }
   } else {
     const std::string near = find_nearest(r.type, types);

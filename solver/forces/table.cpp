@@ -31,8 +31,8 @@ CubicTable::CubicTable(std::vector<double> x, std::vector<double> y) : x_(std::m
     std::fill(second_.begin(), second_.end(), 2 * (slope(1) - slope(0)) / (x_[2] - x_[0]));
     return;
   }
-  // h_{i-1} m_{i-1} + 2 (h_{i-1} + h_i) m_i + h_i m_{i+1} = 6 (s_i - s_{i-1}), for the second derivatives m. The ends ask
-  // for one cubic over the first (last) two intervals: m_0 = m_1 + (m_1 - m_2) h_0 / h_1, put into the first row.
+  // h_{i-1} m_{i-1} + 2 (h_{i-1} + h_i) m_i + h_i m_{i+1} = 6 (s_i - s_{i-1}), for the second derivatives m. The ends
+  // ask for one cubic over the first (last) two intervals: m_0 = m_1 + (m_1 - m_2) h_0 / h_1, put into the first row.
   const int k = n - 2;
   std::vector<double> lower(k), diagonal(k), upper(k), rhs(k);
   for (int j = 0; j < k; ++j) {

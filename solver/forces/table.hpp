@@ -29,7 +29,7 @@ class CubicTable final : public TimeFunction {
 
  private:
   std::vector<double> x_, y_;
-  std::vector<double> second_;   ///< f'' at the points
+  std::vector<double> second_;  ///< f'' at the points
 };
 
 }  // namespace bough::solver

@@ -11,8 +11,12 @@ namespace {
 class CvodeStepper final : public Stepper {
  public:
   CvodeStepper(Ode& ode, const StepperOptions& options, bool stiff)
-      : ode_(ode), y_(ode.size(), context_), tolerance_(ode.size(), context_), interpolated_(ode.size(), context_),
-        options_(options), stiff_(stiff) {
+      : ode_(ode),
+        y_(ode.size(), context_),
+        tolerance_(ode.size(), context_),
+        interpolated_(ode.size(), context_),
+        options_(options),
+        stiff_(stiff) {
     BOUGH_DEMAND(options.absolute_tolerance.size() == ode.size());
     tolerance_.values() = options.absolute_tolerance;
   }
@@ -31,7 +35,7 @@ class CvodeStepper final : public Stepper {
     if (!cvode_) {
       create(t);
     } else {
-      before_ = statistics();   // CVodeReInit sets the counters to zero
+      before_ = statistics();  // CVodeReInit sets the counters to zero
       BOUGH_DEMAND(CVodeReInit(cvode_, t, y_) == CV_SUCCESS);
     }
     BOUGH_DEMAND(CVodeSetStopTime(cvode_, t_stop) == CV_SUCCESS);

@@ -22,7 +22,7 @@ class ErkStepper final : public Stepper {
     if (!arkode_) {
       create(t);
     } else {
-      before_ = statistics();   // ERKStepReInit sets the counters to zero
+      before_ = statistics();  // ERKStepReInit sets the counters to zero
       BOUGH_DEMAND(ERKStepReInit(arkode_, detail::call_ode, t, y_) == ARK_SUCCESS);
     }
     BOUGH_DEMAND(ERKStepSetMinStep(arkode_, detail::kSmallestStep * (t_stop - t)) == ARK_SUCCESS);

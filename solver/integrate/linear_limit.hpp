@@ -17,11 +17,11 @@ class LinearLimit {
 
   struct Crossing {
     std::string body;
-    int node = 0;                   ///< id
+    int node = 0;  ///< id
     double deflection = 0, size = 0;
   };
-  /// The next body that passes the limit for the first time at q; empty when none does. Linear modes only. No allocation
-  /// while nothing crosses. O(nodes · modes).
+  /// The next body that passes the limit for the first time at q; empty when none does. Linear modes only. No
+  /// allocation while nothing crosses. O(nodes · modes).
   std::optional<Crossing> find_crossing(const Eigen::Ref<const VectorXd>& q);
 
  private:

@@ -33,7 +33,8 @@ Eigen::MatrixXd MemorySink::get(const std::string& path) const {
       continue;
     }
     Eigen::MatrixXd values(num_samples(), channel.size);
-    for (int i = 0; i < num_samples(); ++i) values.row(i) = samples_[static_cast<size_t>(i)].segment(first, channel.size);
+    for (int i = 0; i < num_samples(); ++i)
+      values.row(i) = samples_[static_cast<size_t>(i)].segment(first, channel.size);
     return values;
   }
   return {};

@@ -18,8 +18,8 @@ class Ode {
   virtual void calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) = 0;
 };
 
-/// What the steppers call. Times are clamped to `latest`, the last moment before the next jump of a function of time, so
-/// that a step that ends at the jump sees the values before it.
+/// What the steppers call. Times are clamped to `latest`, the last moment before the next jump of a function of time,
+/// so that a step that ends at the jump sees the values before it.
 class GuardedOde {
  public:
   explicit GuardedOde(Ode& ode) : ode_(ode) {}

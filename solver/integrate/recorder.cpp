@@ -18,14 +18,16 @@ Recorder::Recorder(const System& system, Sensors sensors) : system_(system), sen
   for (int b = 0; b < system.num_bodies(); ++b) {
     const std::string path = "/hinges/" + system.hinge_name(b) + "/";
     if (system.num_hinge_q(b) == 0) continue;
-    add_channel(path + "q", system.num_hinge_q(b), "hinge coordinates, child relative to parent; quaternion as w, x, y, z",
-                "1 or L");
+    add_channel(path + "q", system.num_hinge_q(b),
+                "hinge coordinates, child relative to parent; quaternion as w, x, y, z", "1 or L");
     add_channel(path + "qdot", system.num_hinge_rates(b),
-                "hinge rates; spherical and free: angular velocity of the child's hinge frame in the parent's", "1/T or L/T");
+                "hinge rates; spherical and free: angular velocity of the child's hinge frame in the parent's",
+                "1/T or L/T");
     add_channel(path + "force", system.num_hinge_rates(b),
                 "generalized hinge force: spring and damper, or what enforces a prescribed motion", "F L or F");
   }
-  for (const auto& entry : sensors_.entries()) add_channel("/sensors/" + entry.name, entry.size, entry.description, entry.dims);
+  for (const auto& entry : sensors_.entries())
+    add_channel("/sensors/" + entry.name, entry.size, entry.description, entry.dims);
   add_channel("/energy/kinetic", 1, "kinetic energy", "F L");
   add_channel("/energy/strain", 1, "strain energy of the modes and the hinge springs", "F L");
   add_channel("/energy/potential", 1, "potential energy of gravity", "F L");
@@ -63,7 +65,8 @@ const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Ei
   for (int b = 0; b < system_.num_bodies(); ++b) {
     const int nq = system_.num_hinge_q(b), nu = system_.num_hinge_rates(b);
     if (nq == 0) continue;
-    get_hinge(system_, data, b, sample_.segment(at, nq), sample_.segment(at + nq, nu), sample_.segment(at + nq + nu, nu));
+    get_hinge(system_, data, b, sample_.segment(at, nq), sample_.segment(at + nq, nu),
+              sample_.segment(at + nq + nu, nu));
     at += nq + 2 * nu;
   }
   sensors_.calc(system_, data, sample_.segment(at, sensors_.size()));

@@ -53,8 +53,14 @@ class Run {
  public:
   Run(const System& system, const records::SystemSpec& spec, RunPlan plan, Sensors sensors, records::ResultSink& sink,
       const SimulateOptions& options, Diagnostics& diagnostics)
-      : spec_(spec), sink_(sink), options_(options), diagnostics_(diagnostics), plan_(std::move(plan)), ode_(system),
-        recorder_(system, std::move(sensors)), limit_(system) {
+      : spec_(spec),
+        sink_(sink),
+        options_(options),
+        diagnostics_(diagnostics),
+        plan_(std::move(plan)),
+        ode_(system),
+        recorder_(system, std::move(sensors)),
+        limit_(system) {
     StepperOptions o;
     o.relative_tolerance = spec.simulation.relative_tolerance;
     o.absolute_tolerance = VectorXd::Constant(ode_.size(), spec.simulation.absolute_tolerance);
@@ -69,7 +75,7 @@ class Run {
 
   SimulateOutcome go() {
     y_ = ode_.make_initial_state();
-    size_t next = 0;                       // output
+    size_t next = 0;  // output
     double t = plan_.outputs.front();
     if (options_.resume) {
       next = find_resume_output();
@@ -115,7 +121,8 @@ class Run {
     const double tolerance = 1e-9 * plan_.output_step;
     const auto it = std::lower_bound(plan_.outputs.begin(), plan_.outputs.end(), c.time - tolerance);
     const bool on_grid = it != plan_.outputs.end() && std::abs(*it - c.time) <= tolerance;
-    if (on_grid && c.state.size() == ode_.size() && c.state.allFinite()) return static_cast<size_t>(it - plan_.outputs.begin());
+    if (on_grid && c.state.size() == ode_.size() && c.state.allFinite())
+      return static_cast<size_t>(it - plan_.outputs.begin());
     throw InputError("run.bad-checkpoint", spec_.simulation.at,
                      "the checkpoint at t = " + short_text(c.time) + " with " + std::to_string(c.state.size()) +
                          " states does not belong to this system, which has " + std::to_string(ode_.size()) +
@@ -172,7 +179,8 @@ class Run {
 
   void update_progress(double t, double work) {
     const Energies& e = recorder_.energies();
-    for (double part : {e.kinetic, e.strain, e.potential, work}) energy_scale_ = std::max(energy_scale_, std::abs(part));
+    for (double part : {e.kinetic, e.strain, e.potential, work})
+      energy_scale_ = std::max(energy_scale_, std::abs(part));
     const double error = e.kinetic + e.strain + e.potential - work - energy_start_;
     const StepStatistics s = stepper_->statistics();
     progress_.time = t;
@@ -223,8 +231,9 @@ class Run {
   [[noreturn]] void fail_stalled(double t, const std::string& detail) {
     const bool explicit_method = spec_.simulation.integrator != "bdf";
     finish_failed(t, "run.stalled", "the integrator makes no progress at t = " + short_text(t) + ": " + detail,
-                  explicit_method ? "loosen relative_tolerance, or use integrator = \"bdf\" when fast modes are damped out"
-                                  : "loosen relative_tolerance, or leave out the fastest modes");
+                  explicit_method
+                      ? "loosen relative_tolerance, or use integrator = \"bdf\" when fast modes are damped out"
+                      : "loosen relative_tolerance, or leave out the fastest modes");
   }
 
   [[noreturn]] void finish_failed(double t, const char* id, const std::string& what, const std::string& advice) {

@@ -13,19 +13,19 @@ struct Progress {
   double time = 0, start = 0, end = 0, step = 0;
   int order = 0;
   long num_steps = 0, num_rejected = 0, num_evaluations = 0;
-  double energy_error = 0;          ///< kinetic + strain + potential - work, relative to the largest of them so far
+  double energy_error = 0;  ///< kinetic + strain + potential - work, relative to the largest of them so far
 };
 
 struct SimulateOptions {
-  std::function<void(const Progress&)> progress;   ///< called at each output sample
-  const std::atomic<bool>* stop = nullptr;         ///< set by a signal: checkpoint and end cleanly
+  std::function<void(const Progress&)> progress;  ///< called at each output sample
+  const std::atomic<bool>* stop = nullptr;        ///< set by a signal: checkpoint and end cleanly
   std::optional<records::Checkpoint> resume;
 };
 
 struct SimulateOutcome {
   bool completed = false;
   double time = 0;
-  std::string reason;               ///< why it stopped early
+  std::string reason;  ///< why it stopped early
   Progress last;
 };
 

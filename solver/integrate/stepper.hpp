@@ -9,14 +9,14 @@ namespace bough::solver {
 
 struct StepperOptions {
   double relative_tolerance = 1e-8;
-  VectorXd absolute_tolerance;     ///< size(); ignored by rk4
-  double step = 0;                 ///< rk4: the step; others: the largest step when > 0
-  int rk_order = 8;                ///< of the adaptive Runge-Kutta pair: 5 or 8
+  VectorXd absolute_tolerance;  ///< size(); ignored by rk4
+  double step = 0;              ///< rk4: the step; others: the largest step when > 0
+  int rk_order = 8;             ///< of the adaptive Runge-Kutta pair: 5 or 8
 };
 
 struct StepStatistics {
-  double step = 0;                 ///< the last one
-  int order = 0;                   ///< of the last one
+  double step = 0;  ///< the last one
+  int order = 0;    ///< of the last one
   long num_steps = 0, num_rejected = 0, num_evaluations = 0;
 };
 
@@ -48,8 +48,8 @@ class Stepper {
 /// integrator: "adams", "bdf", "rk", "rk4". BOUGH_DEMAND on another name. The Ode must outlive the stepper.
 std::unique_ptr<Stepper> make_stepper(const std::string& integrator, Ode& ode, const StepperOptions& options);
 
-/// SUNDIALS CVODE: variable order and step; Adams-Moulton (to order 12) by fixed-point iteration, or BDF (to order 5) by
-/// Newton with a dense difference-quotient Jacobian (Hindmarsh et al., ACM TOMS 31 (2005) 363).
+/// SUNDIALS CVODE: variable order and step; Adams-Moulton (to order 12) by fixed-point iteration, or BDF (to order 5)
+/// by Newton with a dense difference-quotient Jacobian (Hindmarsh et al., ACM TOMS 31 (2005) 363).
 std::unique_ptr<Stepper> make_cvode_stepper(Ode& ode, const StepperOptions& options, bool stiff);
 /// SUNDIALS ARKODE, explicit embedded pair: Dormand-Prince 5(4) or Fehlberg 8(7).
 std::unique_ptr<Stepper> make_erk_stepper(Ode& ode, const StepperOptions& options);

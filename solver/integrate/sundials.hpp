@@ -10,7 +10,8 @@
 
 namespace bough::solver::detail {
 
-/// Share of a stretch between jumps: without a bound SUNDIALS creeps up to a singularity in steps that no longer change t.
+/// Share of a stretch between jumps: without a bound SUNDIALS creeps up to a singularity in steps that no longer change
+/// t.
 inline constexpr double kSmallestStep = 1e-13;
 
 class Context {

@@ -8,15 +8,24 @@ using records::SensorType;
 
 const char* name_of(SensorType type) {
   switch (type) {
-    case SensorType::Position: return "position";
-    case SensorType::Velocity: return "velocity";
-    case SensorType::Acceleration: return "acceleration";
-    case SensorType::Deflection: return "deflection";
-    case SensorType::Rotation: return "rotation";
-    case SensorType::AngularVelocity: return "angular velocity";
-    case SensorType::AngularAcceleration: return "angular acceleration";
-    case SensorType::HingeAngle: return "hinge coordinates";
-    case SensorType::HingeRate: break;
+    case SensorType::Position:
+      return "position";
+    case SensorType::Velocity:
+      return "velocity";
+    case SensorType::Acceleration:
+      return "acceleration";
+    case SensorType::Deflection:
+      return "deflection";
+    case SensorType::Rotation:
+      return "rotation";
+    case SensorType::AngularVelocity:
+      return "angular velocity";
+    case SensorType::AngularAcceleration:
+      return "angular acceleration";
+    case SensorType::HingeAngle:
+      return "hinge coordinates";
+    case SensorType::HingeRate:
+      break;
   }
   return "hinge rates";
 }
@@ -24,14 +33,22 @@ const char* name_of(SensorType type) {
 const char* dims_of(SensorType type) {
   switch (type) {
     case SensorType::Position:
-    case SensorType::Deflection: return "L";
-    case SensorType::Velocity: return "L/T";
-    case SensorType::Acceleration: return "L/T^2";
-    case SensorType::Rotation: return "1";
-    case SensorType::AngularVelocity: return "1/T";
-    case SensorType::AngularAcceleration: return "1/T^2";
-    case SensorType::HingeAngle: return "1 or L";
-    case SensorType::HingeRate: break;
+    case SensorType::Deflection:
+      return "L";
+    case SensorType::Velocity:
+      return "L/T";
+    case SensorType::Acceleration:
+      return "L/T^2";
+    case SensorType::Rotation:
+      return "1";
+    case SensorType::AngularVelocity:
+      return "1/T";
+    case SensorType::AngularAcceleration:
+      return "1/T^2";
+    case SensorType::HingeAngle:
+      return "1 or L";
+    case SensorType::HingeRate:
+      break;
   }
   return "1/T or L/T";
 }
@@ -61,8 +78,10 @@ class Resolver {
     e.type = r.type;
     e.coordinate = r.coordinate;
     e.dims = dims_of(r.type);
-    if (is_hinge_sensor(r.type)) resolve_hinge(r, e);
-    else resolve_node(r, e);
+    if (is_hinge_sensor(r.type))
+      resolve_hinge(r, e);
+    else
+      resolve_node(r, e);
   }
 
  private:
@@ -90,7 +109,8 @@ class Resolver {
   void resolve_node(const SensorRecord& r, Sensors::Entry& e) {
     e.body = system_.find_body(r.body);
     if (e.body < 0) {
-      error(r, "sensor.unknown-body", "is on the unknown body '" + r.body + "'", make_advice(r.body, bodies_, "bodies"));
+      error(r, "sensor.unknown-body", "is on the unknown body '" + r.body + "'",
+            make_advice(r.body, bodies_, "bodies"));
     } else {
       e.node = system_.find_node(e.body, r.node);
       if (e.node < 0)
@@ -116,8 +136,10 @@ class Resolver {
               make_advice(r.relative_to, bodies_, "bodies"));
     }
     e.description = std::string(name_of(r.type)) + " of node " + std::to_string(r.node) + " of body " + r.body;
-    if (is_deflection(r.type)) e.description += " from its undeformed place";
-    else if (e.relative_to >= 0) e.description += " as seen from body " + r.relative_to;
+    if (is_deflection(r.type))
+      e.description += " from its undeformed place";
+    else if (e.relative_to >= 0)
+      e.description += " as seen from body " + r.relative_to;
     e.description += ", components in the " + (frame == "body" ? "frame of body " + r.body
                                                : e.frame < 0   ? "inertial frame"
                                                                : "frame of body " + frame);
@@ -198,10 +220,13 @@ void Sensors::calc(const System& system, const SystemData& data, Eigen::Ref<Vect
       }
       value_W.noalias() = get_body_state(data, e.body).R_WB * value_B;
     } else {
-      value_W = calc_relative(e.type, calc_node_motion(system, data, e.body, e.node), calc_observer(data, e.relative_to));
+      value_W =
+          calc_relative(e.type, calc_node_motion(system, data, e.body, e.node), calc_observer(data, e.relative_to));
     }
-    if (e.frame < 0) out.segment<3>(e.first) = value_W;
-    else out.segment<3>(e.first).noalias() = get_body_state(data, e.frame).R_WB.transpose() * value_W;
+    if (e.frame < 0)
+      out.segment<3>(e.first) = value_W;
+    else
+      out.segment<3>(e.first).noalias() = get_body_state(data, e.frame).R_WB.transpose() * value_W;
   }
 }
 

@@ -5,11 +5,11 @@
 /// else the named body). p, v, a, ω, α are of K in W unless marked.
 ///   position              R_FW (p_WK - p_WAo)                                   without relative_to: R_FW p_WK
 ///   velocity              R_FW (v_WK - v_WAo - ω_WA × p_AoK)                    the rate of p_AoK as A sees it
-///   acceleration          R_FW (a_WK - a_WAo - α_WA × p - ω_WA × (ω_WA × p) - 2 ω_WA × v_AK)    the rate of v_AK as A sees it
-///   angular_velocity      R_FW (ω_WK - ω_WA)                                    ω_WK includes the rate of the deformation
-///   angular_acceleration  R_FW (α_WK - α_WA - ω_WA × ω_AK)                      the rate of ω_AK as A sees it
-///   deflection, rotation  R_FB (φη + ½ηᵀgη), R_FB ψη: from the undeformed place in B
-///   hinge_angle, hinge_rate  coordinates as the user knows them (quaternion w, x, y, z) and rates; one, or all for 0
+///   acceleration          R_FW (a_WK - a_WAo - α_WA × p - ω_WA × (ω_WA × p) - 2 ω_WA × v_AK)    the rate of v_AK as A
+///   sees it angular_velocity      R_FW (ω_WK - ω_WA)                                    ω_WK includes the rate of the
+///   deformation angular_acceleration  R_FW (α_WK - α_WA - ω_WA × ω_AK)                      the rate of ω_AK as A sees
+///   it deflection, rotation  R_FB (φη + ½ηᵀgη), R_FB ψη: from the undeformed place in B hinge_angle, hinge_rate
+///   coordinates as the user knows them (quaternion w, x, y, z) and rates; one, or all for 0
 /// With frame = A and relative_to = A these are what an observer riding on A writes down. An empty frame means "body"
 /// for deflection and rotation and "inertial" for the others.
 #include <string>
@@ -28,14 +28,14 @@ class Sensors {
 
   struct Entry {
     std::string name;
-    std::string description;         ///< what it is, with its frame
+    std::string description;  ///< what it is, with its frame
     std::string dims;
-    int first = 0, size = 3;         ///< place in the output of calc
+    int first = 0, size = 3;  ///< place in the output of calc
     records::SensorType type = records::SensorType::Position;
-    int body = -1, node = 0;         ///< body: index; node: index within the body. Hinge sensors: body of the hinge
-    int frame = -1;                  ///< body index, -1: W
-    int relative_to = -1;            ///< body index, -1: W
-    int coordinate = 0;              ///< 1-based, 0: all
+    int body = -1, node = 0;  ///< body: index; node: index within the body. Hinge sensors: body of the hinge
+    int frame = -1;           ///< body index, -1: W
+    int relative_to = -1;     ///< body index, -1: W
+    int coordinate = 0;       ///< 1-based, 0: all
   };
   const std::vector<Entry>& entries() const { return entries_; }
   int size() const { return size_; }

@@ -15,7 +15,8 @@ double compare_with_dense(const Example& example, const solver::MemorySink& sink
   VectorXd u_dot(system.num_u()), dense(system.num_u());
   double worst = 0;
   for (const auto& checkpoint : sink.checkpoints()) {
-    const VectorXd q = checkpoint.state.head(system.num_q()), u = checkpoint.state.segment(system.num_q(), system.num_u());
+    const VectorXd q = checkpoint.state.head(system.num_q()),
+                   u = checkpoint.state.segment(system.num_q(), system.num_u());
     calc_kinematics(system, *data, checkpoint.time, q, u);
     add_forces(system, *data, checkpoint.time);
     calc_accelerations(system, *data, checkpoint.time, u_dot);

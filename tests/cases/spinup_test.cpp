@@ -14,7 +14,7 @@ namespace bough::test {
 namespace {
 
 struct History {
-  VectorXd t, u, v;        ///< tip: along the beam, in the plane of rotation
+  VectorXd t, u, v;  ///< tip: along the beam, in the plane of rotation
 };
 
 History run_spinup(const Example& example) {
@@ -92,15 +92,16 @@ double interpolate(const VectorXd& t, const VectorXd& f, double at) {
 
 double calc_largest_difference(const History& h, const History& reference) {
   double worst = 0;
-  for (int i = 0; i < h.t.size(); ++i) worst = std::max(worst, std::abs(h.v[i] - interpolate(reference.t, reference.v, h.t[i])));
+  for (int i = 0; i < h.t.size(); ++i)
+    worst = std::max(worst, std::abs(h.v[i] - interpolate(reference.t, reference.v, h.t[i])));
   return worst;
 }
 
 // Over the whole 20 s. Linear theory with many modes differs from three modes by the truncation; the exact beam also
 // by what the second order leaves out. 0.5 % of the peak is the target for both.
 TEST(Spinup, FollowsReferenceHistories) {
-  for (const std::string name : {"linear_ref_w4.csv", "geb2d_128_0.002_w4.0.csv", "ancf_32_0.002_w4.0.csv",
-                                 "mbdyn_beam3_40_w4.csv"}) {
+  for (const std::string name :
+       {"linear_ref_w4.csv", "geb2d_128_0.002_w4.0.csv", "ancf_32_0.002_w4.0.csv", "mbdyn_beam3_40_w4.csv"}) {
     const History reference = read_reference(name);
     if (reference.t.size() == 0) GTEST_SKIP() << "no reference histories";
     const double difference = calc_largest_difference(get_stiffened(), reference);
@@ -109,7 +110,8 @@ TEST(Spinup, FollowsReferenceHistories) {
   }
 }
 
-// The beam of Kane, Ryan & Banerjee's family (J. Guidance 10 (1987) 139): L = 10, EA = 2.8e7, EI = 1.4e4, ρA = 1.2, 6 rad/s.
+// The beam of Kane, Ryan & Banerjee's family (J. Guidance 10 (1987) 139): L = 10, EA = 2.8e7, EI = 1.4e4, ρA = 1.2, 6
+// rad/s.
 TEST(Spinup, SecondBeam) {
   const double E = 1.4e10, A = 2e-3, I = 1e-6;
   DeckMaker maker = make_cantilever({E, E / 2.6, 600, A, I, I, 2 * I}, 10, 40);
@@ -130,7 +132,7 @@ TEST(Spinup, SecondBeam) {
   EXPECT_NEAR(h.v[peak], -0.5744, 0.005 * 0.5744);
   EXPECT_NEAR(h.t[peak], 6.76, 0.02);
   EXPECT_NEAR(h.u[peak], -0.0189, 0.03 * 0.0189);
-  EXPECT_NEAR(calc_amplitude(h.t, h.v, 15), 3.61e-3, 0.02 * 3.61e-3);   // three modes
+  EXPECT_NEAR(calc_amplitude(h.t, h.v, 15), 3.61e-3, 0.02 * 3.61e-3);  // three modes
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 struct Example {
   records::SystemSpec spec;
-  std::map<std::string, records::FlexBody> flex;   ///< by file name as in spec
+  std::map<std::string, records::FlexBody> flex;  ///< by file name as in spec
 
   solver::System build() const;
   /// Runs spec.simulation; throws what simulate throws.

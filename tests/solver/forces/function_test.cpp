@@ -100,8 +100,8 @@ TEST(TimeFunction, LinearTable) {
   EXPECT_EQ(f->calc(0.5).f, 3);
   EXPECT_EQ(f->calc(2).f, 2);
   EXPECT_EQ(f->calc(2).f_dot, -2);
-  EXPECT_EQ(f->calc(1).f_dot, -2);       // the slope after the point
-  EXPECT_EQ(f->calc(-5).f, 2);           // the end values hold outside
+  EXPECT_EQ(f->calc(1).f_dot, -2);  // the slope after the point
+  EXPECT_EQ(f->calc(-5).f, 2);      // the end values hold outside
   EXPECT_EQ(f->calc(5).f, 0);
   EXPECT_EQ(f->calc(5).f_dot, 0);
   EXPECT_THAT(f->breakpoints(), testing::ElementsAre(0, 1, 3));
@@ -153,7 +153,8 @@ TEST(TimeFunction, FaultsAreReported) {
       {make_record("ramp", {{"value", 1}}), "function.missing-parameter", "has no 'to'"},
       {make_record("pulse", {{"value", 1}, {"width", 1}, {"widt", 1}}), "function.unknown-parameter",
        "did you mean 'width'?"},
-      {make_record("sine", {{"amplitude", 1}, {"omega", 1}, {"frequency_hz", 1}}), "function.unknown-parameter", "both"},
+      {make_record("sine", {{"amplitude", 1}, {"omega", 1}, {"frequency_hz", 1}}), "function.unknown-parameter",
+       "both"},
       {make_record("constant", {{"value", nan}}), "function.nan", "not a finite number"},
       {make_table({0, 1, 2}, {0, nan, 1}, "linear"), "function.nan", "y entry 2"},
       {make_table({0, 2, 1}, {0, 1, 2}, "linear"), "function.unsorted", "x entry 3 (1)"},
@@ -176,7 +177,7 @@ TEST(TimeFunction, FaultsAreReported) {
 TEST(TimeFunction, AllFaultsOfARecordAreReported) {
   Diagnostics diagnostics;
   make_time_function(make_record("ramp", {{"slope", 1}}), diagnostics);
-  EXPECT_EQ(diagnostics.num_errors(), 3);   // value and to are missing, slope is unknown
+  EXPECT_EQ(diagnostics.num_errors(), 3);  // value and to are missing, slope is unknown
 }
 
 }  // namespace

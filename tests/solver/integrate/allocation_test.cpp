@@ -26,7 +26,8 @@ TEST(Allocation, NoneInARunUnderWay) {
   std::string flexible;
   for (const auto& body : tree.spec.bodies)
     if (!body.file.empty()) flexible = body.name;
-  for (auto type : {records::SensorType::Acceleration, records::SensorType::Deflection, records::SensorType::HingeAngle}) {
+  for (auto type :
+       {records::SensorType::Acceleration, records::SensorType::Deflection, records::SensorType::HingeAngle}) {
     records::SensorRecord s;
     s.name = "s" + std::to_string(static_cast<int>(type));
     s.type = type;
@@ -38,7 +39,7 @@ TEST(Allocation, NoneInARunUnderWay) {
     tree.spec.sensors.push_back(s);
   }
   tree.spec.simulation.duration = 1;
-  tree.spec.simulation.output_step = 0.004;       // 250 samples: two checkpoints on the way
+  tree.spec.simulation.output_step = 0.004;  // 250 samples: two checkpoints on the way
   const System system = build(tree.spec, tree.flex);
   for (const std::string integrator : {"rk4", "adams", "bdf", "rk"}) {
     tree.spec.simulation.integrator = integrator;
@@ -54,7 +55,7 @@ TEST(Allocation, NoneInARunUnderWay) {
     };
     simulate(system, tree.spec, sink, run_options, diagnostics);
     EXPECT_EQ(samples, 251);
-    EXPECT_TRUE(diagnostics.items().empty());     // a message would allocate
+    EXPECT_TRUE(diagnostics.items().empty());  // a message would allocate
     // CVODE's linear solver interface allocates a little when it starts, not per step.
     EXPECT_LE(last - first, integrator == "bdf" ? 6 : 0) << integrator;
     EXPECT_TRUE(std::isfinite(sink.sum));

@@ -35,7 +35,7 @@ TEST(RunPlan, SegmentsMeetAtTheJumps) {
   const RunPlan plan = make_run_plan(make_simulation(1, 0.1), {0.7, 0, a, b, 1, 5, -3}, d);
   ASSERT_EQ(plan.segments.size(), 3u);
   EXPECT_EQ(plan.segments[0].start, 0);
-  EXPECT_EQ(plan.segments[0].end, b);                       // two jumps a rounding apart are one
+  EXPECT_EQ(plan.segments[0].end, b);  // two jumps a rounding apart are one
   EXPECT_EQ(plan.segments[0].latest, std::nextafter(a, 0.0));
   EXPECT_EQ(plan.segments[1].start, b);
   EXPECT_EQ(plan.segments[1].end, 0.7);

@@ -85,7 +85,7 @@ TEST(Simulate, ErrorShrinksWithTheTolerance) {
       auto spec = make_oscillator();
       spec.simulation.integrator = integrator;
       spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = tolerance;
-      spec.simulation.output_step = 1.5;   // rk ends its steps on the outputs: close ones would hide the tolerance
+      spec.simulation.output_step = 1.5;  // rk ends its steps on the outputs: close ones would hide the tolerance
       const RunResult r = run(spec);
       const VectorXd t = r.sink.time(), x = r.sink.get("/hinges/hinge/q");
       const double error = (x.array() - 0.5 * (3 * t.array()).cos()).abs().maxCoeff();
@@ -98,7 +98,7 @@ TEST(Simulate, ErrorShrinksWithTheTolerance) {
 TEST(Simulate, Rk4HasOrderFourOnASpinningTop) {
   const auto solve = [](double step) {
     auto spec = make_one_body(HingeType::Free);
-    spec.hinges[0].rate = {0.3, 2, 0.1, 0, 0, 0};   // angular velocity first
+    spec.hinges[0].rate = {0.3, 2, 0.1, 0, 0, 0};  // angular velocity first
     spec.simulation.integrator = "rk4";
     spec.simulation.step = step;
     spec.simulation.output_step = 1;
@@ -126,7 +126,8 @@ TEST(Simulate, OrientationStaysARotation) {
 }
 
 TEST(Simulate, EnergyLessWorkIsConstant) {
-  // A damped pendulum driven by a prescribed slide and pushed by a force, with flexible bodies in random trees beside it.
+  // A damped pendulum driven by a prescribed slide and pushed by a force, with flexible bodies in random trees beside
+  // it.
   RandomTreeOptions options;
   options.num_bodies = 5;
   for (unsigned seed : {3u, 8u}) {
@@ -180,7 +181,7 @@ TEST(Simulate, PulseIsHitByEveryIntegrator) {
     EXPECT_EQ(v(10, 0), 0);
     EXPECT_NEAR(v(30, 0), 7 * 0.005 / 2, 1e-14) << integrator;
     EXPECT_NEAR(p(30, 0), 7 * 0.005 / 2 * (3 - 1.03 - 0.0025), 1e-9) << integrator;
-    EXPECT_NEAR(r.sink.get("/energy/work")(30, 0), std::pow(7 * 0.005, 2) / 4, 7 * 1e-9) << integrator;   // F × position
+    EXPECT_NEAR(r.sink.get("/energy/work")(30, 0), std::pow(7 * 0.005, 2) / 4, 7 * 1e-9) << integrator;  // F × position
   }
 }
 
@@ -189,7 +190,7 @@ TEST(Simulate, ResumedRunEqualsTheWholeOne) {
     auto spec = make_oscillator(0.3);
     spec.simulation.gravity = {0, 0, -1};
     spec.simulation.integrator = integrator;
-    spec.simulation.step = integrator == "rk4" ? 0.03 : 0;    // does not divide 0.1: adjusted
+    spec.simulation.step = integrator == "rk4" ? 0.03 : 0;  // does not divide 0.1: adjusted
     spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-10;
     const RunResult whole = run(spec);
 
@@ -214,8 +215,10 @@ TEST(Simulate, ResumedRunEqualsTheWholeOne) {
     for (const std::string channel : {"/hinges/hinge/q", "/hinges/hinge/qdot", "/energy/work"}) {
       const VectorXd a = whole.sink.get(channel).bottomRows(17), b = second.sink.get(channel);
       const double difference = (a - b).cwiseAbs().maxCoeff();
-      if (integrator == "rk4") EXPECT_EQ(difference, 0) << channel;
-      else EXPECT_LT(difference, 1e-7) << integrator << channel;
+      if (integrator == "rk4")
+        EXPECT_EQ(difference, 0) << channel;
+      else
+        EXPECT_LT(difference, 1e-7) << integrator << channel;
     }
     EXPECT_NEAR(second.outcome.last.energy_error, whole.outcome.last.energy_error, 1e-7);
   }
@@ -233,7 +236,7 @@ TEST(Simulate, ForeignCheckpointIsRefused) {
 }
 
 TEST(Simulate, DivergenceKeepsTheSamplesAndNamesTheBody) {
-  auto spec = make_oscillator(-40);      // a negative damper
+  auto spec = make_oscillator(-40);  // a negative damper
   spec.simulation.divergence_limit = 1e3;
   for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
     spec.simulation.integrator = integrator;
@@ -319,13 +322,14 @@ TEST(Simulate, HeaderListsTheChannels) {
     EXPECT_FALSE(c.description.empty());
     EXPECT_FALSE(c.dims.empty());
   }
-  EXPECT_THAT(paths, ::testing::ElementsAre("/time", "/bodies/body/position", "/bodies/body/quaternion",
-                                            "/bodies/body/velocity", "/bodies/body/angular_velocity", "/hinges/hinge/q",
-                                            "/hinges/hinge/qdot", "/hinges/hinge/force", "/energy/kinetic",
-                                            "/energy/strain", "/energy/potential", "/energy/work", "/momentum/linear",
-                                            "/momentum/angular"));
+  EXPECT_THAT(paths,
+              ::testing::ElementsAre("/time", "/bodies/body/position", "/bodies/body/quaternion",
+                                     "/bodies/body/velocity", "/bodies/body/angular_velocity", "/hinges/hinge/q",
+                                     "/hinges/hinge/qdot", "/hinges/hinge/force", "/energy/kinetic", "/energy/strain",
+                                     "/energy/potential", "/energy/work", "/momentum/linear", "/momentum/angular"));
   EXPECT_EQ(r.sink.header().system_text, "# the file");
-  EXPECT_THAT(r.sink.header().settings, ::testing::Contains(std::pair<std::string, std::string>("integrator", "adams")));
+  EXPECT_THAT(r.sink.header().settings,
+              ::testing::Contains(std::pair<std::string, std::string>("integrator", "adams")));
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ TEST(Stepper, BdfTakesLongStepsOnAStiffEquation) {
   const auto stepper = make_stepper("bdf", ode, make_options(1, 1e-6));
   const VectorXd y = integrate(*stepper, VectorXd::Ones(1), 5);
   EXPECT_NEAR(y[0], std::cos(5.0), 1e-5);
-  EXPECT_LT(stepper->statistics().num_steps, 1000);        // an explicit method needs 5e6 / 3
+  EXPECT_LT(stepper->statistics().num_steps, 1000);  // an explicit method needs 5e6 / 3
   EXPECT_GE(stepper->statistics().order, 2);
 }
 

@@ -1,4 +1,5 @@
-// Sensors against the analytic motion of a rigid body that spins and flies, in every frame, and against finite differences.
+// Sensors against the analytic motion of a rigid body that spins and flies, in every frame, and against finite
+// differences.
 #include "bough/solver/sensors/sensor.hpp"
 
 #include <gmock/gmock.h>
@@ -34,7 +35,8 @@ records::SensorRecord make_hinge_sensor(SensorType type, const std::string& hing
   return s;
 }
 
-/// A table turns about z by α(t), prescribed; on it an arm, 2 m from the axis, turns by β(t). Node 5 of the arm is 1 m out.
+/// A table turns about z by α(t), prescribed; on it an arm, 2 m from the axis, turns by β(t). Node 5 of the arm is 1 m
+/// out.
 struct Carousel {
   static constexpr double kWa = 0.7, kA = 1.3, kWb = 2.1, kB = 0.8;
   records::SystemSpec spec;
@@ -85,9 +87,12 @@ struct Carousel {
 struct Angles {
   double a, ad, add, b, bd, bdd;
   explicit Angles(double t)
-      : a(Carousel::kA * std::sin(Carousel::kWa * t)), ad(Carousel::kA * Carousel::kWa * std::cos(Carousel::kWa * t)),
-        add(-Carousel::kWa * Carousel::kWa * a), b(Carousel::kB * std::sin(Carousel::kWb * t)),
-        bd(Carousel::kB * Carousel::kWb * std::cos(Carousel::kWb * t)), bdd(-Carousel::kWb * Carousel::kWb * b) {}
+      : a(Carousel::kA * std::sin(Carousel::kWa * t)),
+        ad(Carousel::kA * Carousel::kWa * std::cos(Carousel::kWa * t)),
+        add(-Carousel::kWa * Carousel::kWa * a),
+        b(Carousel::kB * std::sin(Carousel::kWb * t)),
+        bd(Carousel::kB * Carousel::kWb * std::cos(Carousel::kWb * t)),
+        bdd(-Carousel::kWb * Carousel::kWb * b) {}
 };
 
 Vector3d radial(double angle) { return {std::cos(angle), std::sin(angle), 0}; }
@@ -133,7 +138,9 @@ TEST(Sensors, FramesOnlyTurnTheComponents) {
                                            make_sensor("b", SensorType::Velocity, "arm", 5, "body"),
                                            make_sensor("n", SensorType::Velocity, "arm", 5, "table"),
                                            make_sensor("r", SensorType::Velocity, "arm", 5, "inertial", "table")});
-  const auto turn = [](double angle) -> Matrix3d { return Eigen::AngleAxisd(-angle, Vector3d::UnitZ()).toRotationMatrix(); };
+  const auto turn = [](double angle) -> Matrix3d {
+    return Eigen::AngleAxisd(-angle, Vector3d::UnitZ()).toRotationMatrix();
+  };
   EXPECT_LT((out.segment<3>(3) - turn(x.a + x.b) * out.segment<3>(0)).norm(), 1e-14);
   EXPECT_LT((out.segment<3>(6) - turn(x.a) * out.segment<3>(0)).norm(), 1e-14);
   EXPECT_LT((out.segment<3>(9) - x.bd * tangent(x.a + x.b)).norm(), 1e-14);
@@ -142,14 +149,15 @@ TEST(Sensors, FramesOnlyTurnTheComponents) {
 TEST(Sensors, HingeCoordinates) {
   const double t = 0.4;
   const Angles x(t);
-  const VectorXd out = Carousel().calc(t, {make_hinge_sensor(SensorType::HingeAngle, "hb", 1),
-                                           make_hinge_sensor(SensorType::HingeRate, "ha", 0)});
+  const VectorXd out = Carousel().calc(
+      t, {make_hinge_sensor(SensorType::HingeAngle, "hb", 1), make_hinge_sensor(SensorType::HingeRate, "ha", 0)});
   ASSERT_EQ(out.size(), 2);
   EXPECT_NEAR(out[0], x.b, 1e-15);
   EXPECT_NEAR(out[1], x.ad, 1e-15);
 }
 
-// On flexible bodies in random trees: velocity and acceleration are the rates of position and velocity, in a moving frame.
+// On flexible bodies in random trees: velocity and acceleration are the rates of position and velocity, in a moving
+// frame.
 TEST(Sensors, RatesOnFlexibleTrees) {
   RandomTreeOptions options;
   options.num_bodies = 6;
