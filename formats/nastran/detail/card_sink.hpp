@@ -1,0 +1,27 @@
+#pragma once
+/// \file The groups of card writers, as parsers.hpp has the groups of card parsers.
+#include <string>
+
+#include "bough/formats/nastran/detail/card_text.hpp"
+
+namespace bough::nastran::detail {
+
+/// Where the cards of one deck go.
+struct CardSink {
+  FieldFormat format = FieldFormat::Large;
+  std::string out;
+  void put(const CardFields& card) { card.write(format, out); }
+};
+
+void write_points(const records::Deck& deck, CardSink& sink);          ///< GRID, SPOINT, CORD1x, CORD2x
+void write_materials(const records::Deck& deck, CardSink& sink);       ///< MATi
+void write_properties(const records::Deck& deck, CardSink& sink);      ///< Pxxx of lines and points
+void write_line_elements(const records::Deck& deck, CardSink& sink);   ///< CBAR, CBEAM, CROD, CONROD, CTUBE
+void write_point_elements(const records::Deck& deck, CardSink& sink);  ///< CELASi, CMASSi, CBUSH, CONMi
+void write_continua(const records::Deck& deck, CardSink& sink);        ///< PSHELL, PCOMP, PSOLID, shells, solids
+void write_constraints(const records::Deck& deck, CardSink& sink);     ///< RBE2, RBE3, RBAR, RROD, SPC, SPC1, MPC, xADD
+void write_loads(const records::Deck& deck,
+                 CardSink& sink);  ///< FORCEi, MOMENTi, PLOADi, GRAV, RFORCE, SPCD, SLOAD, LOAD
+void write_solution(const records::Deck& deck, CardSink& sink);  ///< EIGRL, EIGR, PARAM
+
+}  // namespace bough::nastran::detail

@@ -1,0 +1,51 @@
+#pragma once
+/// \file One card on its way to text: fields in order, then lines of 8 or 16 columns or between commas.
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "bough/formats/nastran/writer.hpp"
+
+namespace bough::nastran::detail {
+
+/// The best text of at most `width` characters (8 or more) that Nastran reads as a real: with a point, an exponent as
+/// "+5" or "-12". Exact where the width allows, else the value rounded to as many digits as fit. Independent of the
+/// locale.
+std::string format_real(double value, int width);
+/// 17 significant digits where they are needed: reads back as the same double.
+std::string format_exact_real(double value);
+
+/// Fields after the name; each `add` gives the next one.
+class CardFields {
+ public:
+  explicit CardFields(std::string name) : name_(std::move(name)) {}
+
+  CardFields& add(int value);
+  CardFields& add(double value);
+  CardFields& add(const Eigen::Vector3d& v);
+  CardFields& add_word(std::string_view word);
+  CardFields& add_blank(int count = 1);
+  CardFields& add_id(int id);                 ///< blank for 0
+  CardFields& add_components(unsigned mask);  ///< blank for 0
+  CardFields& end_line();                     ///< blanks up to the next line's first field
+
+  const std::string& get_name() const { return name_; }
+  std::size_t get_size() const { return fields_.size(); }
+  /// Appends the lines of the card.
+  void write(FieldFormat format, std::string& out) const;
+
+ private:
+  using Field = std::variant<std::monostate, int, double, std::string>;
+
+  bool fits(int width, bool exactly) const;
+  void write_fixed(int width, std::size_t count, std::string& out) const;
+  void write_free(std::size_t count, std::string& out) const;
+
+  std::string name_;
+  std::vector<Field> fields_;
+};
+
+}  // namespace bough::nastran::detail

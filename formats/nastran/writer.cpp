@@ -1,0 +1,91 @@
+#include "bough/formats/nastran/writer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "bough/formats/nastran/detail/card_sink.hpp"
+
+namespace bough::nastran {
+namespace {
+
+using records::Deck;
+
+/// What the writer carries over; GRDSET, BAROR and BEAMOR are in the cards that they give defaults to.
+constexpr std::array written_cards{
+    "BAROR",   "BEAMOR", "CBAR",   "CBEAM",  "CBUSH",  "CELAS1", "CELAS2", "CELAS3", "CELAS4", "CHEXA",  "CMASS1",
+    "CMASS2",  "CMASS3", "CMASS4", "CONM1",  "CONM2",  "CONROD", "CORD1C", "CORD1R", "CORD1S", "CORD2C", "CORD2R",
+    "CORD2S",  "CPENTA", "CQUAD4", "CROD",   "CTETRA", "CTRIA3", "CTUBE",  "EIGR",   "EIGRL",  "FORCE",  "FORCE1",
+    "FORCE2",  "GRAV",   "GRDSET", "GRID",   "LOAD",   "MAT1",   "MAT2",   "MAT8",   "MAT9",   "MOMENT", "MOMENT1",
+    "MOMENT2", "MPC",    "MPCADD", "PARAM",  "PBAR",   "PBARL",  "PBEAM",  "PBEAML", "PBUSH",  "PCOMP",  "PCOMPG",
+    "PELAS",   "PLOAD",  "PLOAD1", "PLOAD2", "PLOAD4", "PMASS",  "PROD",   "PSHELL", "PSOLID", "PTUBE",  "RBAR",
+    "RBE2",    "RBE3",   "RFORCE", "RROD",   "SLOAD",  "SPC",    "SPC1",   "SPCADD", "SPCD",   "SPOINT"};
+
+void write_selection(const records::Subcase& subcase, std::string& out) {
+  const auto add = [&](const char* word, const std::string& value) {
+    if (!value.empty()) out += std::string(word) + " = " + value + "\n";
+  };
+  const auto add_set = [&](const char* word, int set) {
+    if (set != 0) add(word, std::to_string(set));
+  };
+  add("TITLE", subcase.title);
+  add("SUBTITLE", subcase.subtitle);
+  add("LABEL", subcase.label);
+  add_set("SPC", subcase.spc);
+  add_set("MPC", subcase.mpc);
+  add_set("LOAD", subcase.load);
+  add_set("METHOD", subcase.method);
+  add_set("STATSUB", subcase.statsub);
+}
+
+void write_control(const Deck& deck, std::string& out) {
+  if (!deck.sol.empty()) out += "SOL " + deck.sol + "\n";
+  out += "CEND\n";
+  for (const auto& subcase : deck.subcases) {
+    if (subcase.id != 0) out += "SUBCASE " + std::to_string(subcase.id) + "\n";
+    write_selection(subcase, out);
+  }
+  out += "BEGIN BULK\n";
+}
+
+/// Nothing of the deck may be lost without a word.
+void report_lost(const Deck& deck, Diagnostics& diagnostics) {
+  const SourceLocation where{deck.files.empty() ? std::string{} : deck.files.front()};
+  std::string left_out;
+  for (const auto& card : deck.unused) left_out += (left_out.empty() ? "" : ", ") + card.name;
+  if (!left_out.empty())
+    diagnostics.warning("deck.left-out", where, "cards that are not in the new deck: " + left_out,
+                        "copy them from the old one if they are needed");
+  for (const auto& [name, count] : deck.card_counts) {
+    const bool is_unused = std::any_of(deck.unused.begin(), deck.unused.end(),
+                                       [&, &n = name](const auto& card) { return card.name == n; });
+    if (is_unused ||
+        std::find(written_cards.begin(), written_cards.end(), std::string_view(name)) != written_cards.end())
+      continue;
+    diagnostics.error("deck.not-written", where,
+                      name + " cannot be written (" + std::to_string(count) + " in the deck)",
+                      "--ignore " + name + " writes the deck without it");
+  }
+}
+
+}  // namespace
+
+std::string write_deck(const Deck& deck, const WriteOptions& options, Diagnostics& diagnostics) {
+  report_lost(deck, diagnostics);
+  detail::CardSink sink;
+  sink.format = options.fields;
+  write_control(deck, sink.out);
+  detail::write_solution(deck, sink);
+  detail::write_points(deck, sink);
+  detail::write_materials(deck, sink);
+  detail::write_properties(deck, sink);
+  detail::write_line_elements(deck, sink);
+  detail::write_point_elements(deck, sink);
+  detail::write_continua(deck, sink);
+  detail::write_constraints(deck, sink);
+  detail::write_loads(deck, sink);
+  sink.out += "ENDDATA\n";
+  return std::move(sink.out);
+}
+
+}  // namespace bough::nastran

@@ -1,0 +1,78 @@
+#include "bough/formats/nastran/detail/card_sink.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+void write_pshell(const records::Pshell& p, CardSink& sink) {
+  CardFields card("PSHELL");
+  card.add(p.id).add_id(p.mid1);
+  if (p.t)
+    card.add(*p.t);
+  else
+    card.add_blank();
+  card.add_id(p.mid2).add(p.bending_ratio).add_id(p.mid3);
+  // 5/6 has no end in any field; it is the default.
+  if (p.shear_ratio == 5.0 / 6)
+    card.add_blank();
+  else
+    card.add(p.shear_ratio);
+  sink.put(card.add(p.nsm).add_blank(2).add_id(p.mid4));
+}
+
+void write_pcomp(const records::Pcomp& p, CardSink& sink) {
+  double total = 0;
+  for (const auto& ply : p.plies) total += ply.t;
+  CardFields card("PCOMP");
+  card.add(p.id);
+  if (p.z0 == -0.5 * total)
+    card.add_blank();
+  else
+    card.add(p.z0);
+  card.add(p.nsm).add_blank(4);
+  if (!p.membrane || !p.bending)
+    card.add_word(p.membrane ? "MEM" : "BEND");
+  else
+    card.add_blank();
+  for (const auto& ply : p.plies) card.add(ply.mid).add(ply.t).add(ply.theta_deg).add_blank();
+  sink.put(card);
+}
+
+void write_shell(const records::ShellElement& e, CardSink& sink) {
+  CardFields card(e.card);
+  card.add(e.id).add(e.pid);
+  for (const int grid : e.grids) card.add(grid);
+  // Blank where zero: readers of meshes take every number behind PID for a grid.
+  if (e.mcid)
+    card.add(*e.mcid);
+  else if (e.theta_deg != 0)
+    card.add(e.theta_deg);
+  else
+    card.add_blank();
+  if (e.z_offset != 0)
+    card.add(e.z_offset);
+  else
+    card.add_blank();
+  if (e.relative_thickness || !e.t.empty()) {
+    card.end_line().add_blank().add(e.relative_thickness ? 1 : 0);
+    for (const double t : e.t) card.add(t);
+  }
+  sink.put(card);
+}
+
+}  // namespace
+
+void write_continua(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.pshell) write_pshell(p, sink);
+  for (const auto& p : deck.pcomp) write_pcomp(p, sink);
+  for (const auto& p : deck.psolid) sink.put(CardFields("PSOLID").add(p.id).add(p.mid).add_id(p.cordm));
+  for (const auto& e : deck.shells) write_shell(e, sink);
+  for (const auto& e : deck.solids) {
+    CardFields card(e.card);
+    card.add(e.id).add(e.pid);
+    for (const int grid : e.corners) card.add(grid);
+    for (const int grid : e.midsides) card.add_id(grid);
+    sink.put(card);
+  }
+}
+
+}  // namespace bough::nastran::detail

@@ -1,0 +1,216 @@
+#include "tests/formats/nastran/compare_decks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+namespace bough::nastran {
+namespace {
+
+using namespace records;
+
+/// Flat lists of what a record holds: numbers to compare within the tolerance, and everything else as text.
+class Content {
+ public:
+  Content& operator()(double x) {
+    numbers.push_back(x);
+    return *this;
+  }
+  Content& operator()(int i) { return (*this)(std::to_string(i)); }
+  Content& operator()(unsigned i) { return (*this)(std::to_string(i)); }
+  Content& operator()(bool b) { return (*this)(b ? 1 : 0); }
+  Content& operator()(const char* word) { return (*this)(std::string(word)); }
+  Content& operator()(const std::string& word) {
+    words += word + ' ';
+    return *this;
+  }
+  template <class Derived>
+  Content& operator()(const Eigen::MatrixBase<Derived>& m) {
+    for (Eigen::Index i = 0; i < m.rows(); ++i)
+      for (Eigen::Index j = 0; j < m.cols(); ++j) (*this)(static_cast<double>(m(i, j)));
+    return *this;
+  }
+  template <class T>
+  Content& operator()(const std::optional<T>& value) {
+    return value ? (*this)("set")(*value) : (*this)("open");
+  }
+  template <class T>
+  Content& operator()(const std::vector<T>& values) {
+    (*this)(static_cast<int>(values.size()));
+    for (const auto& value : values) (*this)(value);
+    return *this;
+  }
+  template <class T, std::size_t n>
+  Content& operator()(const std::array<T, n>& values) {
+    for (const auto& value : values) (*this)(value);
+    return *this;
+  }
+
+  Content& operator()(const Grid& r) { return (*this)(r.id)(r.cp)(r.x)(r.cd)(r.ps); }
+  Content& operator()(const CoordSystem& r) {
+    return (*this)(r.id)(static_cast<int>(r.kind))(r.by_grids)(r.grids)(r.rid)(r.a)(r.b)(r.c);
+  }
+  Content& operator()(const Mat1& r) { return (*this)(r.id)(r.E)(r.G)(r.nu)(r.rho)(r.alpha)(r.tref)(r.ge); }
+  Content& operator()(const Mat2& r) { return (*this)(r.id)(r.G)(r.rho); }
+  Content& operator()(const Mat8& r) { return (*this)(r.id)(r.E1)(r.E2)(r.nu12)(r.G12)(r.G1z)(r.G2z)(r.rho); }
+  Content& operator()(const Mat9& r) { return (*this)(r.id)(r.G)(r.rho); }
+  Content& operator()(const Pbar& r) {
+    return (*this)(r.id)(r.mid)(r.A)(r.I1)(r.I2)(r.I12)(r.J)(r.nsm)(r.k1)(r.k2)(r.recovery);
+  }
+  Content& operator()(const Pbarl& r) { return (*this)(r.id)(r.mid)(r.shape)(r.dims)(r.nsm); }
+  Content& operator()(const PbeamStation& r) {
+    return (*this)(r.x_over_L)(r.A)(r.I1)(r.I2)(r.I12)(r.J)(r.nsm)(r.recovery);
+  }
+  Content& operator()(const Pbeam& r) {
+    (*this)(r.id)(r.mid)(r.stations)(r.k1)(r.k2)(r.s1)(r.s2)(r.nsi_a)(r.nsi_b)(r.cw_a)(r.cw_b);
+    return (*this)(r.m1_a)(r.m2_a)(r.m1_b)(r.m2_b)(r.n1_a)(r.n2_a)(r.n1_b)(r.n2_b);
+  }
+  Content& operator()(const PbeamlStation& r) { return (*this)(r.x_over_L)(r.dims)(r.nsm); }
+  Content& operator()(const Pbeaml& r) { return (*this)(r.id)(r.mid)(r.shape)(r.stations); }
+  Content& operator()(const Prod& r) { return (*this)(r.id)(r.mid)(r.A)(r.J)(r.c)(r.nsm); }
+  Content& operator()(const Ptube& r) { return (*this)(r.id)(r.mid)(r.od)(r.t)(r.nsm)(r.od2); }
+  Content& operator()(const Pelas& r) { return (*this)(r.id)(r.k)(r.ge)(r.s); }
+  Content& operator()(const Pbush& r) { return (*this)(r.id)(r.k)(r.b)(r.ge)(r.mass); }
+  Content& operator()(const Pmass& r) { return (*this)(r.id)(r.m); }
+  Content& operator()(const Pshell& r) {
+    return (*this)(r.id)(r.mid1)(r.mid2)(r.mid3)(r.mid4)(r.t)(r.bending_ratio)(r.shear_ratio)(r.nsm);
+  }
+  Content& operator()(const Ply& r) { return (*this)(r.mid)(r.t)(r.theta_deg); }
+  Content& operator()(const Pcomp& r) { return (*this)(r.id)(r.z0)(r.nsm)(r.plies)(r.bending)(r.membrane); }
+  Content& operator()(const Psolid& r) { return (*this)(r.id)(r.mid)(r.cordm); }
+  Content& operator()(const BeamElement& r) {
+    (*this)(r.id)(r.pid)(r.ga)(r.gb)(r.is_cbeam)(r.g0)(r.v)(r.offt)(r.pin_a)(r.pin_b);
+    return (*this)(r.wa)(r.wb)(r.sa)(r.sb);
+  }
+  Content& operator()(const Crod& r) { return (*this)(r.id)(r.pid)(r.ga)(r.gb); }
+  Content& operator()(const Ctube& r) { return (*this)(r.id)(r.pid)(r.ga)(r.gb); }
+  Content& operator()(const Conrod& r) { return (*this)(r.id)(r.ga)(r.gb)(r.mid)(r.A)(r.J)(r.c)(r.nsm); }
+  Content& operator()(const ScalarSpring& r) {
+    return (*this)(r.id)(r.pid)(r.k)(r.ge)(r.s)(r.g1)(r.c1)(r.g2)(r.c2)(r.by_scalar_points);
+  }
+  Content& operator()(const ScalarMass& r) {
+    return (*this)(r.id)(r.pid)(r.m)(r.g1)(r.c1)(r.g2)(r.c2)(r.by_scalar_points);
+  }
+  Content& operator()(const Cbush& r) {
+    return (*this)(r.id)(r.pid)(r.ga)(r.gb)(r.g0)(r.v)(r.cid)(r.s)(r.ocid)(r.s_offset);
+  }
+  Content& operator()(const Conm1& r) { return (*this)(r.id)(r.g)(r.cid)(r.m); }
+  Content& operator()(const Conm2& r) { return (*this)(r.id)(r.g)(r.cid)(r.m)(r.x)(r.inertia); }
+  Content& operator()(const ShellElement& r) {
+    return (*this)(r.card)(r.id)(r.pid)(r.grids)(r.theta_deg)(r.mcid)(r.z_offset)(r.relative_thickness)(r.t);
+  }
+  Content& operator()(const SolidElement& r) { return (*this)(r.card)(r.id)(r.pid)(r.corners)(r.midsides); }
+  Content& operator()(const Rbe2& r) { return (*this)(r.id)(r.gn)(r.cm)(r.gm); }
+  Content& operator()(const Rbe3::Group& r) { return (*this)(r.weight)(r.c)(r.grids); }
+  Content& operator()(const Rbe3::Dependent& r) { return (*this)(r.g)(r.c); }
+  Content& operator()(const Rbe3& r) { return (*this)(r.id)(r.ref_grid)(r.ref_c)(r.groups)(r.um); }
+  Content& operator()(const Rbar& r) { return (*this)(r.id)(r.ga)(r.gb)(r.cna)(r.cnb)(r.cma)(r.cmb); }
+  Content& operator()(const Rrod& r) { return (*this)(r.id)(r.ga)(r.gb)(r.cma)(r.cmb); }
+  Content& operator()(const Spc& r) { return (*this)(r.sid)(r.g)(r.c)(r.d); }
+  Content& operator()(const SetUnion& r) { return (*this)(r.sid)(r.sets); }
+  Content& operator()(const MpcTerm& r) { return (*this)(r.g)(r.c)(r.a); }
+  Content& operator()(const Mpc& r) { return (*this)(r.sid)(r.terms); }
+  Content& operator()(const PointLoad& r) { return (*this)(r.sid)(r.g)(r.cid)(r.f)(r.n)(r.is_moment); }
+  Content& operator()(const Gravity& r) { return (*this)(r.sid)(r.cid)(r.a)(r.n); }
+  Content& operator()(const std::pair<double, int>& r) { return (*this)(r.first)(r.second); }
+  Content& operator()(const LoadCombination& r) { return (*this)(r.sid)(r.s)(r.terms); }
+  Content& operator()(const DirectedLoad& r) { return (*this)(r.sid)(r.g)(r.f)(r.grids)(r.is_cross)(r.is_moment); }
+  Content& operator()(const BeamLoad& r) {
+    (*this)(r.sid)(r.element)(r.is_moment)(r.axis)(r.in_element_axes)(r.is_fraction)(r.is_projected);
+    return (*this)(r.x1)(r.p1)(r.x2)(r.p2);
+  }
+  Content& operator()(const GridPressure& r) { return (*this)(r.sid)(r.p)(r.grids); }
+  Content& operator()(const ElementPressure& r) {
+    return (*this)(r.sid)(r.element)(r.p)(r.g1)(r.g34)(r.cid)(r.n)(r.skip_if_missing);
+  }
+  Content& operator()(const Rotation& r) { return (*this)(r.sid)(r.g)(r.cid)(r.a)(r.r)(r.racc); }
+  Content& operator()(const Spcd& r) { return (*this)(r.sid)(r.g)(r.c)(r.d); }
+  Content& operator()(const ScalarLoad& r) { return (*this)(r.sid)(r.point)(r.f); }
+  Content& operator()(const EigenMethod& r) {
+    (*this)(r.sid)(r.is_eigrl)(r.method)(r.f1)(r.f2)(r.num_modes)(r.norm);
+    return (*this)(r.norm_grid)(r.norm_component);
+  }
+  Content& operator()(const Param& r) { return (*this)(r.name)(r.value); }
+  Content& operator()(const Subcase& r) {
+    return (*this)(r.id)(r.title)(r.subtitle)(r.label)(r.spc)(r.mpc)(r.load)(r.method)(r.statsub);
+  }
+
+  std::vector<double> numbers;
+  std::string words;
+};
+
+template <class Record>
+void compare(const char* what, const std::vector<Record>& a, const std::vector<Record>& b, double tolerance) {
+  ASSERT_EQ(a.size(), b.size()) << what;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Content x = Content()(a[i]), y = Content()(b[i]);
+    ASSERT_EQ(x.words, y.words) << what << ' ' << i;
+    ASSERT_EQ(x.numbers.size(), y.numbers.size()) << what << ' ' << i;
+    for (std::size_t k = 0; k < x.numbers.size(); ++k)
+      ASSERT_LE(std::abs(x.numbers[k] - y.numbers[k]), tolerance * std::abs(x.numbers[k]))
+          << what << ' ' << x.words << "number " << k << ": " << x.numbers[k] << " and " << y.numbers[k];
+  }
+}
+
+}  // namespace
+
+void expect_equal_decks(const Deck& a, const Deck& b, double tolerance) {
+  EXPECT_EQ(a.sol, b.sol);
+#define BOUGH_COMPARE(member) compare(#member, a.member, b.member, tolerance)
+  BOUGH_COMPARE(subcases);
+  BOUGH_COMPARE(grids);
+  BOUGH_COMPARE(coord_systems);
+  BOUGH_COMPARE(mat1);
+  BOUGH_COMPARE(mat2);
+  BOUGH_COMPARE(mat8);
+  BOUGH_COMPARE(mat9);
+  BOUGH_COMPARE(pbar);
+  BOUGH_COMPARE(pbarl);
+  BOUGH_COMPARE(pbeam);
+  BOUGH_COMPARE(pbeaml);
+  BOUGH_COMPARE(prod);
+  BOUGH_COMPARE(ptube);
+  BOUGH_COMPARE(pelas);
+  BOUGH_COMPARE(pbush);
+  BOUGH_COMPARE(pmass);
+  BOUGH_COMPARE(pshell);
+  BOUGH_COMPARE(pcomp);
+  BOUGH_COMPARE(psolid);
+  BOUGH_COMPARE(beams);
+  BOUGH_COMPARE(crod);
+  BOUGH_COMPARE(conrod);
+  BOUGH_COMPARE(ctube);
+  BOUGH_COMPARE(springs);
+  BOUGH_COMPARE(cbush);
+  BOUGH_COMPARE(shells);
+  BOUGH_COMPARE(solids);
+  BOUGH_COMPARE(scalar_masses);
+  BOUGH_COMPARE(conm1);
+  BOUGH_COMPARE(conm2);
+  BOUGH_COMPARE(rbe2);
+  BOUGH_COMPARE(rbe3);
+  BOUGH_COMPARE(rbar);
+  BOUGH_COMPARE(rrod);
+  BOUGH_COMPARE(spc);
+  BOUGH_COMPARE(spcadd);
+  BOUGH_COMPARE(mpc);
+  BOUGH_COMPARE(mpcadd);
+  BOUGH_COMPARE(point_loads);
+  BOUGH_COMPARE(gravity);
+  BOUGH_COMPARE(loads);
+  BOUGH_COMPARE(load_cards.directed);
+  BOUGH_COMPARE(load_cards.beams);
+  BOUGH_COMPARE(load_cards.grid_pressures);
+  BOUGH_COMPARE(load_cards.pressures);
+  BOUGH_COMPARE(load_cards.rotations);
+  BOUGH_COMPARE(load_cards.spcd);
+  BOUGH_COMPARE(load_cards.scalar);
+  BOUGH_COMPARE(eigen_methods);
+  BOUGH_COMPARE(params);
+#undef BOUGH_COMPARE
+  EXPECT_EQ(std::set<int>(a.scalar_points.begin(), a.scalar_points.end()),
+            std::set<int>(b.scalar_points.begin(), b.scalar_points.end()));
+}
+
+}  // namespace bough::nastran
