@@ -4,10 +4,14 @@
 #include <memory>
 #include <sstream>
 
+#include "bough/formats/export/vtu.hpp"
+#include "bough/formats/nastran/reader.hpp"
+#include "bough/formats/nastran/writer.hpp"
 #include "channels.hpp"
 #include "console.hpp"
 #include "options.hpp"
 #include "text_file.hpp"
+#include "vtu_file.hpp"
 
 namespace bough::cli {
 
@@ -17,13 +21,12 @@ struct ExportOptions : CommonOptions {
   std::string file;
   std::string format;
   std::vector<std::string> channels;
+  bool ascii = false;
+  std::string fields = "large";
+  std::vector<std::string> ignore_cards;
 };
 
-int run_export(const ExportOptions& o) {
-  Console console(o.quiet, o.verbosity);
-  if (!console.is_root()) return kSuccess;
-  demand_file(o.file);
-  if (!o.output.empty()) check_output(o, o.output);
+std::string make_csv(const ExportOptions& o) {
   const auto results = hdf5::read_results(o.file);
   std::vector<exports::CsvColumn> columns{{"time", results.time}};
   if (o.channels.empty()) {
@@ -37,10 +40,48 @@ int run_export(const ExportOptions& o) {
   }
   std::ostringstream text;
   exports::write_csv(text, columns);
+  return text.str();
+}
+
+/// The mode shapes of a modes file or a flexible body.
+std::string make_shapes(const ExportOptions& o, Diagnostics& diagnostics) {
+  const auto attributes = hdf5::read_info(o.file).attributes;
+  const auto found = attributes.find("format");
+  const std::string format = found == attributes.end() ? std::string{} : found->second;
+  const auto encoding = o.ascii ? exports::VtuEncoding::Ascii : exports::VtuEncoding::Base64;
+  if (format == "bough-modes")
+    return make_vtu_text(exports::make_picture(hdf5::read_modes(o.file)), encoding, o.file, diagnostics);
+  if (format == "bough-flexbody")
+    return make_vtu_text(exports::make_picture(hdf5::read_flex_body(o.file)), encoding, o.file, diagnostics);
+  throw InputError("cli.no-shapes", {o.file}, "the file holds no mode shapes, found format \"" + format + "\"",
+                   "give a file that bough modes or bough reduce wrote");
+}
+
+std::string make_bdf(const ExportOptions& o, Diagnostics& diagnostics) {
+  const auto deck = nastran::read_deck(o.file, {o.ignore_cards}, diagnostics);
+  diagnostics.throw_if_errors();
+  nastran::WriteOptions options;
+  if (o.fields == "small") options.fields = nastran::FieldFormat::Small;
+  if (o.fields == "free") options.fields = nastran::FieldFormat::Free;
+  auto text = nastran::write_deck(deck, options, diagnostics);
+  diagnostics.throw_if_errors();
+  return text;
+}
+
+int run_export(const ExportOptions& o) {
+  Console console(o.quiet, o.verbosity);
+  if (!console.is_root()) return kSuccess;
+  demand_file(o.file);
+  if (!o.output.empty()) check_output(o, o.output);
+  Diagnostics diagnostics;
+  const auto text = o.format == "vtu"   ? make_shapes(o, diagnostics)
+                    : o.format == "bdf" ? make_bdf(o, diagnostics)
+                                        : make_csv(o);
+  console.print(diagnostics);
   if (o.output.empty()) {
-    console.print_data(text.str());
+    console.print_data(text);
   } else {
-    write_text_file(o.output, text.str());
+    write_text_file(o.output, text);
   }
   return kSuccess;
 }
@@ -49,17 +90,27 @@ int run_export(const ExportOptions& o) {
 
 void add_export(CLI::App& app, Action& action) {
   auto o = std::make_shared<ExportOptions>();
-  auto* verb = app.add_subcommand("export", "Results in another format");
-  verb->add_option("file", o->file, "Results HDF5 file")->required();
-  verb->add_option("--to", o->format, "Format: csv")->required()->check(CLI::IsMember({"csv"}));
+  auto* verb = app.add_subcommand("export", "Results, mode shapes or a deck in another format");
+  verb->add_option("file", o->file, "csv: results file; vtu: modes file or flexible body; bdf: Nastran deck")
+      ->required();
+  verb->add_option("--to", o->format, "Format: csv, vtu (mode shapes for ParaView), bdf (the deck as Bough reads it)")
+      ->required()
+      ->check(CLI::IsMember({"csv", "vtu", "bdf"}));
   verb->add_option(
           "--channel", o->channels,
-          "Only these: a path or folder of the file, or a sensor; with :component; may be repeated (default: all)")
+          "csv: only these: a path or folder of the file, or a sensor; with :component; may be repeated (default: all)")
       ->allow_extra_args(false);
+  verb->add_flag("--ascii", o->ascii, "vtu: numbers as text instead of base64");
+  verb->add_option("--fields", o->fields,
+                   "bdf: large (16 columns where 8 lose digits), small (always 8) or free (commas, every digit)")
+      ->check(CLI::IsMember({"large", "small", "free"}))
+      ->capture_default_str();
+  verb->add_option("--ignore", o->ignore_cards, "bdf: leave this card out; may be repeated")->allow_extra_args(false);
   add_common_options(*verb, *o, kOutput, "Write to this file instead of stdout");
   verb->footer(
       "Example:\n  bough export spinup.h5 --to csv -o spinup.csv\n"
-      "  bough export spinup.h5 --to csv --channel tip_deflection:y --channel /bodies/boom/eta");
+      "  bough export spinup.h5 --to csv --channel tip_deflection:y --channel /bodies/boom/eta\n"
+      "  bough export boom-modes.h5 --to vtu -o boom.vtu\n  bough export boom.bdf --to bdf -o plain.bdf");
   verb->callback([&action, o] { action = [o] { return run_export(*o); }; });
 }
 

@@ -15,6 +15,8 @@
 #include "deck_tables.hpp"
 #include "model_options.hpp"
 #include "options.hpp"
+#include "text_file.hpp"
+#include "vtu_file.hpp"
 
 namespace bough::cli {
 
@@ -29,6 +31,7 @@ struct ModesOptions : CommonOptions {
   int number = 0;
   std::optional<double> max_hz;
   bool buckling = false;
+  std::string vtu;
 };
 
 /// The deck's EIGRL/EIGR of the subcase, overruled by the command line; 10 modes when neither says.
@@ -223,6 +226,7 @@ int run_modes(const ModesOptions& options) {
   demand_file(options.deck);
   console.set_rank(fe::initialize_petsc().rank);
   if (!options.output.empty()) check_output(options, options.output);
+  if (!options.vtu.empty()) check_output(options, options.vtu);
 
   Diagnostics diagnostics;
   auto model_options = make_model_options(options.model);
@@ -232,6 +236,7 @@ int run_modes(const ModesOptions& options) {
   const auto subcases = choose_subcases(options, deck);
   nlohmann::json json;
   std::string text;
+  std::vector<std::pair<std::string, std::string>> pictures;
   for (const int id : subcases) {
     const bool is_first = id == subcases.front();
     Diagnostics own;
@@ -242,6 +247,10 @@ int run_modes(const ModesOptions& options) {
     console.end_progress();
     auto result = make_result(model, pairs, options.buckling);
     result.source = sources;
+    const auto vtu = name_output(options.vtu, result.subcase, is_first);
+    if (!vtu.empty() && console.is_root())
+      pictures.emplace_back(
+          vtu, make_vtu_text(exports::make_picture(result), exports::VtuEncoding::Base64, options.deck, own));
     add_new(own, diagnostics);
     if (subcases.size() > 1) text += fmt::format("{}subcase {}\n\n", is_first ? "" : "\n", result.subcase);
     text += (options.buckling ? format_buckling(result) : format_modes(result)) + "\n" + format_health(result);
@@ -258,6 +267,7 @@ int run_modes(const ModesOptions& options) {
     console.print_data(json.dump(2) + "\n");
   else
     console.print(text);
+  for (const auto& [path, picture] : pictures) write_text_file(path, picture);
   return kSuccess;
 }
 
@@ -271,10 +281,12 @@ void add_modes(CLI::App& app, Action& action) {
       ->check(CLI::PositiveNumber);
   verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted");
   verb->add_flag("--buckling", o->buckling, "Load factors of the static subcase instead of normal modes");
+  verb->add_option("--vtu", o->vtu, "Write the mode shapes to this file for ParaView");
   add_model_options(*verb, o->model);
   add_common_options(*verb, *o, kOutput | kJson, "Write the modes to this HDF5 file");
   verb->footer(
-      "Example:\n  bough modes boom.bdf --number 6 -o boom-modes.h5\n  bough modes column.bdf --buckling\n"
+      "Example:\n  bough modes boom.bdf --number 6 -o boom-modes.h5 --vtu boom.vtu\n"
+      "  bough modes column.bdf --buckling\n"
       "  mpirun -n 2 bough modes boom.bdf");
   verb->callback([&action, o] { action = [o] { return run_modes(*o); }; });
 }

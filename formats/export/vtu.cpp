@@ -32,15 +32,18 @@ const CellType& find_cell_type(const records::BodyMesh::Block& block) {
     BOUGH_DEMAND(block.connectivity.rows() == 0 || block.connectivity.cols() == type.num_nodes);
     return type;
   }
-  throw InputError("vtu.unknown-cell", {},
+  throw InputError("export.unknown-cell", {},
                    "the mesh holds cells of type \"" + block.type + "\", expected line2, quad4, ...",
                    "reduce or solve the deck again with this version");
 }
 
-/// Place in Nastran's order of VTK's k-th node: VTK lists the edges of the top before the upright ones.
+/// Place in Nastran's order of VTK's k-th node. VTK lists the edges of the top before the upright ones; the first
+/// triangle of its linear wedge, and of that alone, looks outward (vtkWedge.h, vtkQuadraticWedge.cxx).
 int find_place(std::string_view type, int k) {
   constexpr std::array hexa{16, 17, 18, 19, 12, 13, 14, 15};
   constexpr std::array penta{12, 13, 14, 9, 10, 11};
+  constexpr std::array linear_penta{0, 2, 1, 3, 5, 4};
+  if (type == "penta6") return linear_penta[static_cast<std::size_t>(k)];
   if (type == "hexa20" && k >= 12) return hexa[static_cast<std::size_t>(k - 12)];
   if (type == "penta15" && k >= 9) return penta[static_cast<std::size_t>(k - 9)];
   return k;

@@ -29,7 +29,7 @@ struct Picture {
 /// The file's text: points in the mesh's frame, point data grid_id and the arrays, cell data element_id. Block types
 /// line2, tri3, quad4, tetra4, penta6, hexa8, vertex, and line3, tri6, quad8, tetra10, penta15, hexa20 with the midside
 /// nodes in Nastran's order. A cell with a node that is no grid (index -1) is left out. Throws InputError
-/// "vtu.unknown-cell" for another type of block. Layout: VTK User's Guide, "XML File Formats".
+/// "export.unknown-cell" for another type of block. Layout: VTK User's Guide, "XML File Formats".
 std::string make_vtu(const records::BodyMesh& mesh, const std::vector<PointArray>& arrays, VtuEncoding encoding);
 
 /// Mode shapes as arrays mode_001_0.463Hz (translations) and mode_001_0.463Hz_rotation, basic frame; for buckling

@@ -55,6 +55,8 @@ TEST(Vtu, TypesAndOrderOfVtk) {
             "0 1 2 3 4 5 6 7 8 9 10 11 16 17 18 19 12 13 14 15");
   EXPECT_EQ(replace_breaks(find_array(make_vtu(make_mesh(15, "penta15"), {}, VtuEncoding::Ascii), "connectivity")),
             "0 1 2 3 4 5 6 7 8 12 13 14 9 10 11");
+  EXPECT_EQ(replace_breaks(find_array(make_vtu(make_mesh(6, "penta6"), {}, VtuEncoding::Ascii), "connectivity")),
+            "0 2 1 3 5 4");
 }
 
 TEST(Vtu, AsciiKeepsEveryDigitAndBase64IsRfc4648) {
@@ -80,9 +82,9 @@ TEST(Vtu, CellsWithoutAllTheirNodesAreLeftOut) {
 TEST(Vtu, UnknownTypeOfCell) {
   try {
     make_vtu(make_mesh(5, "pyra5"), {}, VtuEncoding::Ascii);
-    FAIL() << "expected vtu.unknown-cell";
+    FAIL() << "expected export.unknown-cell";
   } catch (const InputError& e) {
-    EXPECT_EQ(e.items().at(0).id, "vtu.unknown-cell");
+    EXPECT_EQ(e.items().at(0).id, "export.unknown-cell");
   }
 }
 
