@@ -1,5 +1,5 @@
 #pragma once
-/// \file The five mass integrals Γ0..Γ4 (theory.md §4): momentum formulas and the exact Gram set.
+/// \file The five mass integrals Γ0..Γ4 (docs/theory/flexible-body.md §4): momentum formulas and the exact Gram set.
 #include "bough/fe/assembly.hpp"
 #include "bough/formats/records/flex_body.hpp"
 

@@ -73,7 +73,7 @@ class Model final : public NodeTable {
   /// Node id and CD component of an f-dof, for messages.
   std::pair<int, int> describe_fdof(int fdof) const;
 
-  /// Φ_R: num_gdofs x 6 geometric rigid-body modes about `point` (default: Bo), theory.md §2. Scalar points: zero.
+  /// Φ_R: num_gdofs x 6 geometric rigid-body modes about `point` (default: Bo), docs/theory/flexible-body.md §2. Scalar points: zero.
   MatrixXd calc_rigid_modes(const Vector3d& point = Vector3d::Zero()) const;
 
   int find_node(int id) const override;

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Bough's HDF5 files (contract.md): flexible body, modes, results. Written beside and renamed: whole or not at all
+/// \file Bough's HDF5 files (docs/formats): flexible body, modes, results. Written beside and renamed: whole or not at all
 /// (results: readable while they grow, finished or not).
 #include <map>
 #include <memory>

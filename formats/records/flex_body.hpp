@@ -1,5 +1,5 @@
 #pragma once
-/// \file A reduced flexible body: everything the solver, the .FLX writer and the exports know of it (contract.md).
+/// \file A reduced flexible body: everything the solver, the .FLX writer and the exports know of it (docs/formats).
 ///
 /// Every vector is in the body frame B with origin Bo. n = num_modes, p = num_nodes. Units are the user's.
 #include <array>
@@ -15,13 +15,13 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// The twelve inertial loads in the order of A_I (theory.md §2; 0-based here).
+/// The twelve inertial loads in the order of A_I (docs/theory/flexible-body.md §2; 0-based here).
 enum class InertialLoad { ax, ay, az, alx, aly, alz, wx2, wy2, wz2, wxwy, wxwz, wywz };
 inline constexpr int kNumInertialLoads = 12;
 
 enum class ModeKind { Normal, Constraint, Attachment };
 
-/// The five mass integrals (theory.md §4). Column j belongs to mode j.
+/// The five mass integrals (docs/theory/flexible-body.md §4). Column j belongs to mode j.
 struct MassIntegrals {
   MatrixXd gamma0;                             ///< 3 x n, Σ A^T_j
   MatrixXd gamma1;                             ///< 3 x n, Σ (A^A_j + p × A^T_j)

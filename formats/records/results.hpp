@@ -1,5 +1,5 @@
 #pragma once
-/// \file The seam through which a running solver hands out its results (contract.md, "Results file").
+/// \file The seam through which a running solver hands out its results (docs/formats/results.md).
 #include <string>
 #include <vector>
 

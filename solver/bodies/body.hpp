@@ -1,5 +1,5 @@
 #pragma once
-/// \file Inertia of one body, rigid (n = 0) or flexible with energy-consistent stiffening (theory.md §5).
+/// \file Inertia of one body, rigid (n = 0) or flexible with energy-consistent stiffening (docs/theory/multibody.md).
 ///
 /// In B about Bo, in the order [v; ω; η̇], T = ½ [v;ω;η̇]ᵀ M(η) [v;ω;η̇] with
 ///

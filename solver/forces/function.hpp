@@ -23,7 +23,7 @@ class TimeFunction {
 /// Types: constant(value) | step(value, at = 0, before = 0) | ramp(value, from = 0, to): 0 before, linear, value after
 /// | pulse(value, at = 0, width) | sine(amplitude, frequency_hz or omega, phase = 0, offset = 0) | table(x, y,
 /// interpolation): linear, or a cubic spline with not-a-knot ends; the end values hold outside | spinup(rate,
-/// duration): θ(t) of the report, theory.md §8. At a jump the value after it holds (right-continuous). Reports unknown
+/// duration): θ(t) of NASA-CR-202063, 4.1.4.1. At a jump the value after it holds (right-continuous). Reports unknown
 /// types, missing or unknown parameters (with the nearest match), NaN or unsorted tables. Returns nullptr when it
 /// reported an error.
 std::unique_ptr<const TimeFunction> make_time_function(const records::FunctionRecord& record, Diagnostics& diagnostics);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a run records: the channels of the results file (contract.md) and one sample of them.
+/// \file What a run records: the channels of the results file (docs/formats) and one sample of them.
 #include "bough/formats/records/results.hpp"
 #include "bough/solver/sensors/sensor.hpp"
 #include "bough/solver/system/system.hpp"

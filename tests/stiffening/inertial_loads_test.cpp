@@ -26,7 +26,7 @@ DeckMaker make_frame() {
   return maker;
 }
 
-/// A_I of an acceleration state (theory.md §2).
+/// A_I of an acceleration state (docs/theory/flexible-body.md §2).
 Vector12d make_A_I(const Vector3d& a, const Vector3d& alpha, const Vector3d& w) {
   Vector12d A;
   A << a, alpha, w.cwiseAbs2(), w.x() * w.y(), w.x() * w.z(), w.y() * w.z();
