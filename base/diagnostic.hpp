@@ -21,10 +21,10 @@ enum class Severity { Note, Warning, Error };
 
 struct Diagnostic {
   Severity severity = Severity::Error;
-  std::string id;       ///< stable id of the catalogue, e.g. "deck.missing-grid"
+  std::string id;  ///< stable id of the catalogue, e.g. "deck.missing-grid"
   SourceLocation where;
-  std::string what;     ///< lower case, no full stop, found against expected
-  std::string advice;   ///< what to do; may be empty
+  std::string what;    ///< lower case, no full stop, found against expected
+  std::string advice;  ///< what to do; may be empty
 };
 
 /// "file:line: error: what; what to do [id]", the one format of every message.

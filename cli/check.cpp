@@ -54,8 +54,8 @@ void check_model(const records::Deck& deck, const fe::ModelOptions& model_option
   text += fmt::format("\n{} nodes, {} elements, {} dofs, {} free after constraints; {} mass\n\n", model.nodes().size(),
                       model.elements().size(), model.num_gdofs(), model.num_fdofs(),
                       model.mass_kind() == fe::MassKind::Lumped ? "lumped" : "consistent");
-  text += format_mass_properties(mass) + "\n" + format_ground_check(ground) + "\n" + format_autospc(model) +
-          "\n" + format_geometry(model, deck);
+  text += format_mass_properties(mass) + "\n" + format_ground_check(ground) + "\n" + format_autospc(model) + "\n" +
+          format_geometry(model, deck);
   json["num_nodes"] = model.nodes().size();
   json["num_elements"] = model.elements().size();
   json["num_dofs"] = model.num_gdofs();

@@ -123,9 +123,9 @@ std::string format_health(const records::ModesResult& r) {
   std::string text = fmt::format("rigid-body modes: {}\n", r.num_rigid_modes);
   // A missed mode is an error of modal (modal.missed-modes); what the count has more is below the range or a copy.
   if (r.inertia_count >= 0) {
-    text += fmt::format("Sturm count: {} eigenvalues up to the highest, {} in the table: none missed{}\n",
-                        r.inertia_count, n,
-                        r.inertia_count > n ? " (the others are below the range or copies of the last root)" : "");
+    text +=
+        fmt::format("Sturm count: {} eigenvalues up to the highest, {} in the table: none missed{}\n", r.inertia_count,
+                    n, r.inertia_count > n ? " (the others are below the range or copies of the last root)" : "");
   }
   if (n > 0) text += fmt::format("largest residual: {:.1e}\n", r.residual.maxCoeff());
   return text;
@@ -192,8 +192,8 @@ modal::EigenPairs solve(const ModesOptions& options, const records::Deck& deck, 
   return modal::calc_buckling_modes(model, u, eigen, diagnostics);
 }
 
-/// The subcases that SOL 103 solves one after the other, each with its METHOD, SPC and MPC; those that select the same as
-/// an earlier one are left out. One id (0: the first subcase) otherwise.
+/// The subcases that SOL 103 solves one after the other, each with its METHOD, SPC and MPC; those that select the same
+/// as an earlier one are left out. One id (0: the first subcase) otherwise.
 std::vector<int> choose_subcases(const ModesOptions& options, const records::Deck& deck) {
   if (options.model.subcase != 0) return {options.model.subcase};
   if (options.buckling) return {choose_buckling_cases(deck).statics.id};
@@ -210,7 +210,8 @@ std::vector<int> choose_subcases(const ModesOptions& options, const records::Dec
 std::string name_output(const std::string& path, int subcase, bool is_first) {
   if (path.empty() || is_first) return path;
   const std::filesystem::path p(path);
-  return (p.parent_path() / (p.stem().string() + fmt::format("-subcase-{}", subcase) + p.extension().string())).string();
+  return (p.parent_path() / (p.stem().string() + fmt::format("-subcase-{}", subcase) + p.extension().string()))
+      .string();
 }
 
 /// Adds what is new: each subcase's model says again what the deck made the first one say.

@@ -66,7 +66,10 @@ int run_static(const StaticOptions& options) {
   Diagnostics diagnostics;
   const auto deck = read_deck_or_throw(options.deck, make_model_options(options.model), diagnostics);
   auto subcases = choose_subcases(deck, options.model.subcase);
-  if (subcases.empty()) subcases.push_back({options.model.subcase});  // Model::build reports it
+  if (subcases.empty()) {  // Model::build reports it
+    subcases.emplace_back();
+    subcases.back().id = options.model.subcase;
+  }
   records::StaticResult result;
   std::unique_ptr<Prepared> prepared;
   for (const auto& subcase : subcases) {

@@ -5,7 +5,7 @@
 
 namespace bough::fe {
 
-enum class DofSet { Free, Global };            ///< f-set (TᵀKT) or g-set
+enum class DofSet { Free, Global };  ///< f-set (TᵀKT) or g-set
 
 /// K, or M when mass is true (times WTMASS), on PETSC_COMM_WORLD; exactly preallocated; MATAIJ. O(elements).
 PetscMat assemble_stiffness(const Model& model, DofSet set);

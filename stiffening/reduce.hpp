@@ -11,7 +11,8 @@ namespace bough::stiffening {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// F_I, num_gdofs x 12, columns in the order of records::InertialLoad (docs/theory/flexible-body.md §2, report eqs. 3-12).
+/// F_I, num_gdofs x 12, columns in the order of records::InertialLoad (docs/theory/flexible-body.md §2, report eqs.
+/// 3-12).
 MatrixXd calc_inertial_loads(const fe::Model& model, fe::MassKind kind);
 
 /// K_G(u_c) projected on Phi for every column c of U (num_gdofs x m): m matrices n x n, accumulated element by element,

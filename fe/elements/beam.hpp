@@ -4,8 +4,8 @@
 /// Stiffness from the exact flexibility (shape/beam_field.hpp): Timoshenko with shear factors, Euler-Bernoulli without,
 /// unsymmetric and tapered sections, neutral axis off the shear centre. Offsets are rigid arms, pin flags are
 /// condensed. Geometric stiffness: docs/elements/beam.md. Forces: see internal_force_names().
-/// Sources: Przemieniecki, Theory of Matrix Structural Analysis (1968), §5.6; Friedman & Kosmatka (1993); Yang & McGuire,
-/// J. Struct. Eng. 112 (1986).
+/// Sources: Przemieniecki, Theory of Matrix Structural Analysis (1968), §5.6; Friedman & Kosmatka (1993); Yang &
+/// McGuire, J. Struct. Eng. 112 (1986).
 #include <memory>
 
 #include "bough/fe/elements/beam_property.hpp"

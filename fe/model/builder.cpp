@@ -88,8 +88,9 @@ void ModelBuilder::add_scalar_points() {
   for (int id : points) {
     if (!model_.node_index_.emplace(id, static_cast<int>(model_.nodes_.size())).second) {
       diagnostics_.error("fe.grid-and-scalar", deck_.locate({}),
-                         "point " + std::to_string(id) + " is a GRID and a scalar point (SPOINT, or named by CELAS3, "
-                         "CELAS4, CMASS3 or CMASS4)",
+                         "point " + std::to_string(id) +
+                             " is a GRID and a scalar point (SPOINT, or named by CELAS3, "
+                             "CELAS4, CMASS3 or CMASS4)",
                          "give one of them another id");
       continue;
     }

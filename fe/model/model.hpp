@@ -29,7 +29,7 @@ struct ModelOptions {
   std::optional<MassKind> mass_kind;  ///< overrides PARAM,COUPMASS
   std::optional<Vector3d> origin;     ///< Bo in basic: node positions become relative to it
   std::vector<std::string> ignore_cards;  ///< --ignore CARD
-  bool uses_enforced = false;         ///< the caller applies calc_enforced(): no warning that an SPC's value is dropped
+  bool uses_enforced = false;  ///< the caller applies calc_enforced(): no warning that an SPC's value is dropped
 };
 
 /// One dof removed by AUTOSPC: node id, component 1..6 in CD axes, stiffness ratio that condemned it.
@@ -56,8 +56,8 @@ class Model final : public NodeTable {
   int num_gdofs() const { return num_gdofs_; }
   int num_fdofs() const { return static_cast<int>(T_.cols()); }
   const SparseRows& T() const { return T_; }  ///< num_gdofs x num_fdofs
-  /// The fixed dofs' part: u_g = T q_f + T_fixed d, d the displacements of the fixed dofs in their CD axes, in the order
-  /// of fixed_dofs() (SPC, permanent SPC, AUTOSPC). num_gdofs x num_fixed.
+  /// The fixed dofs' part: u_g = T q_f + T_fixed d, d the displacements of the fixed dofs in their CD axes, in the
+  /// order of fixed_dofs() (SPC, permanent SPC, AUTOSPC). num_gdofs x num_fixed.
   const SparseRows& T_fixed() const { return T_fixed_; }
   const std::vector<int>& fixed_dofs() const { return fixed_dofs_; }  ///< rows in the numbering of the g-set, ascending
   MassKind mass_kind() const { return mass_kind_; }
@@ -73,7 +73,8 @@ class Model final : public NodeTable {
   /// Node id and CD component of an f-dof, for messages.
   std::pair<int, int> describe_fdof(int fdof) const;
 
-  /// Φ_R: num_gdofs x 6 geometric rigid-body modes about `point` (default: Bo), docs/theory/flexible-body.md §2. Scalar points: zero.
+  /// Φ_R: num_gdofs x 6 geometric rigid-body modes about `point` (default: Bo), docs/theory/flexible-body.md §2. Scalar
+  /// points: zero.
   MatrixXd calc_rigid_modes(const Vector3d& point = Vector3d::Zero()) const;
 
   int find_node(int id) const override;
@@ -85,8 +86,8 @@ class Model final : public NodeTable {
   /// Reports fe.spcd-not-fixed.
   VectorXd calc_enforced(const records::Deck& deck, int set, Diagnostics& diagnostics) const;
 
-  /// Load vector (num_gdofs) of a set, in basic: FORCEx, MOMENTx, SLOAD, PLOADx, GRAV and RFORCE (with this model's mass),
-  /// LOAD. Reports fe.missing-load and what is wrong with its cards.
+  /// Load vector (num_gdofs) of a set, in basic: FORCEx, MOMENTx, SLOAD, PLOADx, GRAV and RFORCE (with this model's
+  /// mass), LOAD. Reports fe.missing-load and what is wrong with its cards.
   VectorXd calc_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const;
 
  private:

@@ -20,8 +20,8 @@ void add_rbar(const records::Rbar& card, const NodeTable& nodes, const SourceLoc
               std::vector<ConstraintEquation>& equations);
 
 /// The reference grid's components follow the rigid motion that fits the connected components best in the least squares
-/// of their weights (rotations scaled by the square of the mean arm, as MSC Nastran does): u_ref = R Σ A⁻¹ S_iᵀ W_i u_i,
-/// A = Σ S_iᵀ W_i S_i. UM turns the equations to other dependent components. Reports fe.rbe3-mechanism when the
+/// of their weights (rotations scaled by the square of the mean arm, as MSC Nastran does): u_ref = R Σ A⁻¹ S_iᵀ W_i
+/// u_i, A = Σ S_iᵀ W_i S_i. UM turns the equations to other dependent components. Reports fe.rbe3-mechanism when the
 /// connected components do not hold a rigid body, fe.rigid-independent when UM cannot be solved for.
 void add_rbe3(const records::Rbe3& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations);

@@ -31,7 +31,8 @@ void write_csv(std::ostream& out, const std::vector<CsvColumn>& columns) {
       if (i > 0) row += ',';
       char buffer[40];
       // Independent of the locale, as a data file has to be.
-      const auto end = std::to_chars(buffer, buffer + sizeof buffer, columns[i].values[r], std::chars_format::general, 17);
+      const auto end =
+          std::to_chars(buffer, buffer + sizeof buffer, columns[i].values[r], std::chars_format::general, 17);
       row.append(buffer, end.ptr);
     }
     row += '\n';

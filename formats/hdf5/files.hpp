@@ -1,6 +1,6 @@
 #pragma once
-/// \file Bough's HDF5 files (docs/formats): flexible body, modes, results. Written beside and renamed: whole or not at all
-/// (results: readable while they grow, finished or not).
+/// \file Bough's HDF5 files (docs/formats): flexible body, modes, results. Written beside and renamed: whole or not at
+/// all (results: readable while they grow, finished or not).
 #include <map>
 #include <memory>
 #include <string>
@@ -32,7 +32,7 @@ std::unique_ptr<records::ResultSink> make_results_appender(const std::string& pa
 /// A results file read back.
 struct ResultsFile {
   Eigen::VectorXd time;
-  std::map<std::string, Eigen::MatrixXd> channels;   ///< path -> nt x size
+  std::map<std::string, Eigen::MatrixXd> channels;  ///< path -> nt x size
   std::map<std::string, std::string> descriptions;
   std::vector<records::EventRecord> events;
   std::string system_text;
@@ -47,7 +47,7 @@ struct ObjectInfo {
   std::string path, shape, type, description, dims;
 };
 struct FileInfo {
-  std::map<std::string, std::string> attributes;     ///< of the root
+  std::map<std::string, std::string> attributes;  ///< of the root
   std::vector<ObjectInfo> objects;
 };
 FileInfo read_info(const std::string& path);

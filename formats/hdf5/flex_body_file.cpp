@@ -132,8 +132,9 @@ void read_stiffening(FileReader& file, FlexBody& body) {
     body.locators.push_back({names[k], nodes[k], directions[k]});
     body.kg_external.emplace_back(Eigen::Map<const RowMajor>(external.data.data() + e * n * n, n, n));
     if (nodes[k] != 0 && (body.find_node(nodes[k]) < 0 || directions[k] < 1 || directions[k] > 6)) {
-      file.error("hdf5.value", "locator '" + names[k] + "' is at node " + std::to_string(nodes[k]) + ", direction " +
-                                   std::to_string(directions[k]) + ", expected an output node and 1 to 6",
+      file.error("hdf5.value",
+                 "locator '" + names[k] + "' is at node " + std::to_string(nodes[k]) + ", direction " +
+                     std::to_string(directions[k]) + ", expected an output node and 1 to 6",
                  "write the file again");
     }
   }
@@ -142,10 +143,11 @@ void read_stiffening(FileReader& file, FlexBody& body) {
 
 void read_method(FileReader& file, FlexBody& body) {
   body.integrals_method = file.read_attribute("/integrals", "method");
-  const bool is_known = std::find(std::begin(kMethods), std::end(kMethods), body.integrals_method) != std::end(kMethods);
+  const bool is_known =
+      std::find(std::begin(kMethods), std::end(kMethods), body.integrals_method) != std::end(kMethods);
   if (!is_known) {
-    file.error("hdf5.value", "/integrals has the method '" + body.integrals_method +
-                                 "', expected lumped, consistent or exact",
+    file.error("hdf5.value",
+               "/integrals has the method '" + body.integrals_method + "', expected lumped, consistent or exact",
                "write the file again");
   } else if (body.num_modes() > 0 && !file.has("/integrals/" + body.integrals_method)) {
     file.error("hdf5.missing", "/integrals/" + body.integrals_method + " is missing, the set that the solver uses",
@@ -160,8 +162,9 @@ void write_flex_body(const FlexBody& body, const std::string& path) {
   file.write_source(body.source);
   file.write_attribute("/", "name", body.name);
   file.write_attribute("/", "frame", std::string(body.is_free_free ? "free" : "fixed"));
-  file.write_attribute("/", "dims", std::string("M mass, L length, T time, E modal coordinate (M^1/2 L when the modes "
-                                                "are mass-normalized); units are those of the model"));
+  file.write_attribute("/", "dims",
+                       std::string("M mass, L length, T time, E modal coordinate (M^1/2 L when the modes "
+                                   "are mass-normalized); units are those of the model"));
 
   file.write_number("/rigid/mass", body.mass, {"mass", "M"});
   file.write_vector("/rigid/cg", body.cg, {"mass centre from the body origin, body axes", "L"});
@@ -179,9 +182,9 @@ void write_flex_body(const FlexBody& body, const std::string& path) {
   file.write_matrix("/modal/mass", body.modal_mass, {"modal mass", "M L^2/E^2"});
   file.write_matrix("/modal/stiffness", body.modal_stiffness, {"modal stiffness", "M L^2/(T^2 E^2)"});
   file.write_matrix("/modal/damping", body.modal_damping, {"modal damping", "M L^2/(T E^2)"});
-  file.write_matrix("/effective_mass", body.effective_mass,
-                    {"modal effective mass: mode, translations x y z and rotations x y z about the body origin",
-                     "M, M L^2"});
+  file.write_matrix(
+      "/effective_mass", body.effective_mass,
+      {"modal effective mass: mode, translations x y z and rotations x y z about the body origin", "M, M L^2"});
 
   file.make_group("/integrals");
   file.write_attribute("/integrals", "method", body.integrals_method);
@@ -197,11 +200,13 @@ void write_flex_body(const FlexBody& body, const std::string& path) {
     file.write_attribute("/inertial_loads/f", "loads", get_load_names());
   }
   if (body.dof_map.size() > 0) {
-    file.write_integers("/dof_map", body.dof_map, {"a row per degree of freedom: node id, code 1..6 (0: scalar point)", "1"});
+    file.write_integers("/dof_map", body.dof_map,
+                        {"a row per degree of freedom: node id, code 1..6 (0: scalar point)", "1"});
   }
   write_stiffening(file, body);
   if (body.full_phi.size() > 0) {
-    file.write_matrix("/full/phi", body.full_phi, {"mode shapes at every degree of freedom: rows as /dof_map", "L/E, 1/E"});
+    file.write_matrix("/full/phi", body.full_phi,
+                      {"mode shapes at every degree of freedom: rows as /dof_map", "L/E, 1/E"});
   }
   write_mesh(file, body.mesh);
   file.commit();

@@ -16,12 +16,18 @@ Dims get_shape(hid_t space) {
 std::string describe_type(hid_t type) {
   const std::string bits = std::to_string(8 * H5Tget_size(type));
   switch (H5Tget_class(type)) {
-    case H5T_FLOAT: return "float" + bits;
-    case H5T_INTEGER: return (H5Tget_sign(type) == H5T_SGN_NONE ? "uint" : "int") + bits;
-    case H5T_STRING: return "string";
-    case H5T_COMPOUND: return "compound";
-    case H5T_ENUM: return "enum";
-    default: return "other";
+    case H5T_FLOAT:
+      return "float" + bits;
+    case H5T_INTEGER:
+      return (H5Tget_sign(type) == H5T_SGN_NONE ? "uint" : "int") + bits;
+    case H5T_STRING:
+      return "string";
+    case H5T_COMPOUND:
+      return "compound";
+    case H5T_ENUM:
+      return "enum";
+    default:
+      return "other";
   }
 }
 
@@ -91,7 +97,8 @@ void add_object(hid_t parent, const std::string& path, int level, FileInfo& info
     const Handle space(H5Dget_space(object.get()), H5Sclose);
     const Handle type(H5Dget_type(object.get()), H5Tclose);
     info.objects.push_back({path, describe_shape(get_shape(space.get())), describe_type(type.get()),
-                            read_text_attribute(object.get(), "description"), read_text_attribute(object.get(), "dims")});
+                            read_text_attribute(object.get(), "description"),
+                            read_text_attribute(object.get(), "dims")});
     return;
   }
   if (H5Iget_type(object.get()) != H5I_GROUP) return;

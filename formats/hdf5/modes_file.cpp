@@ -37,11 +37,14 @@ void write_modes(const ModesResult& modes, const std::string& path) {
   file.write_vector("/modes/mass", modes.modal_mass, {"modal mass", "M L^2/E^2"});
   file.write_attribute("/modes", "num_rigid", modes.num_rigid_modes);
   file.write_attribute("/modes", "inertia_count", modes.inertia_count);
-  file.write_matrix("/effective_mass", modes.effective_mass.size() == 0 ? Eigen::MatrixXd::Zero(0, 6) : modes.effective_mass,
-                    {"modal effective mass: mode, translations x y z and rotations x y z about the origin", "M, M L^2"});
+  file.write_matrix(
+      "/effective_mass", modes.effective_mass.size() == 0 ? Eigen::MatrixXd::Zero(0, 6) : modes.effective_mass,
+      {"modal effective mass: mode, translations x y z and rotations x y z about the origin", "M, M L^2"});
   if (modes.load_factor.size() > 0) {
-    file.write_vector("/buckling/load_factor", modes.load_factor, {"factor on the load set at which K + factor K_G is "
-                                                                   "singular", "1"});
+    file.write_vector("/buckling/load_factor", modes.load_factor,
+                      {"factor on the load set at which K + factor K_G is "
+                       "singular",
+                       "1"});
   }
   write_mesh(file, modes.mesh);
   file.commit();

@@ -16,7 +16,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 /// Paths of all datasets below `group` ("" is the root).
 void collect_datasets(FileReader& file, const std::string& group, int level, std::vector<std::string>& paths) {
-  if (level > 16) return;   // a group that contains itself
+  if (level > 16) return;  // a group that contains itself
   for (const auto& name : file.get_children(group.empty() ? "/" : group)) {
     const std::string path = group + "/" + name;
     if (path == "/checkpoint" || path == "/events" || path == "/system" || path == "/settings") continue;

@@ -134,7 +134,8 @@ class ResultsWriter final : public records::ResultSink {
     if (file_.is_valid()) abandon_writes(file_.get());
     errno = cause;
     const std::string reason = errno != 0 ? std::string(": ") + std::strerror(errno) : std::string();
-    throw ComputationError("hdf5.write", {path_}, what + reason, "check the folder, its permissions and the free space");
+    throw ComputationError("hdf5.write", {path_}, what + reason,
+                           "check the folder, its permissions and the free space");
   }
 
   bool close() {
@@ -182,8 +183,8 @@ class ResultsWriter final : public records::ResultSink {
     const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(links.get(), 1);
     const Handle access = make_uncached_access();
-    Handle dataset(
-        H5Dcreate2(file_.get(), path.c_str(), type, space.get(), links.get(), creation.get(), access.get()), H5Dclose);
+    Handle dataset(H5Dcreate2(file_.get(), path.c_str(), type, space.get(), links.get(), creation.get(), access.get()),
+                   H5Dclose);
     check(dataset.is_valid(), "dataset " + path + " cannot be written");
     check(write_text_attribute(dataset.get(), "description", description) &&
               write_text_attribute(dataset.get(), "dims", dims),
@@ -194,10 +195,9 @@ class ResultsWriter final : public records::ResultSink {
   void write_header(const records::ResultsHeader& header) {
     const Handle type = make_string_type();
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-    Handle system(exists(file_.get(), "/system")
-                      ? H5Dopen2(file_.get(), "/system", H5P_DEFAULT)
-                      : H5Dcreate2(file_.get(), "/system", type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT,
-                                   H5P_DEFAULT),
+    Handle system(exists(file_.get(), "/system") ? H5Dopen2(file_.get(), "/system", H5P_DEFAULT)
+                                                 : H5Dcreate2(file_.get(), "/system", type.get(), space.get(),
+                                                              H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                   H5Dclose);
     const char* text = header.system_text.c_str();
     check(system.is_valid() && H5Dwrite(system.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &text) >= 0 &&
@@ -217,8 +217,8 @@ class ResultsWriter final : public records::ResultSink {
     const Handle type = make_string_type();
     const hsize_t shape[2] = {source.size(), 2};
     const Handle space(H5Screate_simple(2, shape, nullptr), H5Sclose);
-    const Handle attribute(
-        H5Acreate2(file_.get(), "source", type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const Handle attribute(H5Acreate2(file_.get(), "source", type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                           H5Aclose);
     std::vector<const char*> data;
     for (const auto& [name, hash] : source) {
       data.push_back(name.c_str());
@@ -307,7 +307,7 @@ class ResultsWriter final : public records::ResultSink {
   hsize_t num_written_ = 0, num_events_ = 0;
   bool failed_ = false, has_count_ = false;
   std::vector<Column> columns_;
-  std::vector<double> buffer_;             ///< a block of flush_every rows per channel
+  std::vector<double> buffer_;  ///< a block of flush_every rows per channel
   std::vector<records::EventRecord> events_;
   std::optional<records::Checkpoint> last_checkpoint_;
   Handle file_, event_time_, event_what_;
@@ -318,7 +318,7 @@ void ResultsWriter::append(Handle& dataset, hsize_t first, hsize_t rows, int siz
   const hsize_t shape[2] = {first + rows, static_cast<hsize_t>(size)};
   const hsize_t start[2] = {first, 0}, block[2] = {rows, static_cast<hsize_t>(size)};
   bool ok = H5Dset_extent(dataset.get(), shape) >= 0;
-  if (ok && size == 0) return;   // a rigid body's eta: rows without entries
+  if (ok && size == 0) return;  // a rigid body's eta: rows without entries
   const Handle file_space(H5Dget_space(dataset.get()), H5Sclose);
   const Handle memory_space(H5Screate_simple(rank, block, nullptr), H5Sclose);
   ok = ok && H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start, nullptr, block, nullptr) >= 0;
@@ -340,8 +340,9 @@ void ResultsWriter::write_checkpoint_to(const std::string& group, const records:
     const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
     const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(links.get(), 1);
-    Handle made(H5Dcreate2(file_.get(), path.c_str(), H5T_IEEE_F64LE, space.get(), links.get(), H5P_DEFAULT, H5P_DEFAULT),
-                H5Dclose);
+    Handle made(
+        H5Dcreate2(file_.get(), path.c_str(), H5T_IEEE_F64LE, space.get(), links.get(), H5P_DEFAULT, H5P_DEFAULT),
+        H5Dclose);
     check(made.is_valid() && write_text_attribute(made.get(), "description", description) &&
               write_text_attribute(made.get(), "dims", "solver's own"),
           path + " cannot be written");
@@ -352,8 +353,8 @@ void ResultsWriter::write_checkpoint_to(const std::string& group, const records:
       open_or_make(state_path, static_cast<hsize_t>(checkpoint.state.size()), "state vector of the solver");
   const std::int64_t checksum = calc_checksum(checkpoint.time, checkpoint.state);
   bool ok = H5Dwrite(time.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &checkpoint.time) >= 0;
-  ok = ok && (checkpoint.state.size() == 0 || H5Dwrite(state.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                                                      checkpoint.state.data()) >= 0);
+  ok = ok && (checkpoint.state.size() == 0 ||
+              H5Dwrite(state.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, checkpoint.state.data()) >= 0);
   if (H5Aexists(state.get(), kChecksum) <= 0) {
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
     const Handle made(H5Acreate2(state.get(), kChecksum, H5T_STD_I64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT),
@@ -399,7 +400,8 @@ void ResultsWriter::open_existing(const records::ResultsHeader& header) {
   const double last_step = total > 1 ? old.time[total - 1] - old.time[total - 2] : 0;
   if (keep == 0 || (keep == total && old.time[total - 1] + 1.5 * last_step < time - tolerance)) {
     diagnostics.error("hdf5.resume", {path_},
-                      "the file ends at time " + (total > 0 ? std::to_string(old.time[total - 1]) : std::string("(none)")) +
+                      "the file ends at time " +
+                          (total > 0 ? std::to_string(old.time[total - 1]) : std::string("(none)")) +
                           ", before the time " + std::to_string(time) + " to resume from",
                       "start the run again");
   }

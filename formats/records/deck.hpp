@@ -23,10 +23,10 @@ using Eigen::Vector3d;
 
 struct Grid {
   int id = 0;
-  int cp = 0;                             ///< system of x
-  Vector3d x = Vector3d::Zero();          ///< as in the deck: cylindrical/spherical angles in degrees
-  int cd = 0;                             ///< system of displacements, constraints, scalar elements
-  unsigned ps = 0;                        ///< permanent single-point constraints, mask
+  int cp = 0;                     ///< system of x
+  Vector3d x = Vector3d::Zero();  ///< as in the deck: cylindrical/spherical angles in degrees
+  int cd = 0;                     ///< system of displacements, constraints, scalar elements
+  unsigned ps = 0;                ///< permanent single-point constraints, mask
   CardLocation at;
 };
 
@@ -45,7 +45,7 @@ struct CoordSystem {
 
 struct Mat1 {
   int id = 0;
-  double E = 0, G = 0, nu = 0;            ///< the missing one of three is already filled from E = 2(1+ν)G
+  double E = 0, G = 0, nu = 0;  ///< the missing one of three is already filled from E = 2(1+ν)G
   double rho = 0, alpha = 0, tref = 0, ge = 0;
   CardLocation at;
 };
@@ -53,7 +53,7 @@ struct Mat1 {
 struct Pbar {
   int id = 0, mid = 0;
   double A = 0, I1 = 0, I2 = 0, I12 = 0, J = 0, nsm = 0;
-  std::optional<double> k1, k2;           ///< shear factors; empty = no shear flexibility
+  std::optional<double> k1, k2;               ///< shear factors; empty = no shear flexibility
   std::array<Eigen::Vector2d, 4> recovery{};  ///< C D E F
   CardLocation at;
 };
@@ -74,11 +74,11 @@ struct PbeamStation {
 };
 struct Pbeam {
   int id = 0, mid = 0;
-  std::vector<PbeamStation> stations;     ///< sorted, first at 0, last at 1
-  std::optional<double> k1, k2;           ///< shear factors as in the deck (blank: 1.0 by Nastran; 0.0: no shear flexibility)
-  double s1 = 0, s2 = 0;                  ///< shear relief (taper)
-  double nsi_a = 0, nsi_b = 0;            ///< nonstructural mass moment of inertia per length
-  double cw_a = 0, cw_b = 0;              ///< warping coefficients
+  std::vector<PbeamStation> stations;  ///< sorted, first at 0, last at 1
+  std::optional<double> k1, k2;  ///< shear factors as in the deck (blank: 1.0 by Nastran; 0.0: no shear flexibility)
+  double s1 = 0, s2 = 0;         ///< shear relief (taper)
+  double nsi_a = 0, nsi_b = 0;   ///< nonstructural mass moment of inertia per length
+  double cw_a = 0, cw_b = 0;     ///< warping coefficients
   double m1_a = 0, m2_a = 0, m1_b = 0, m2_b = 0;  ///< (y,z) of the centre of nonstructural mass
   double n1_a = 0, n2_a = 0, n1_b = 0, n2_b = 0;  ///< (y,z) of the neutral axis from the shear centre
   CardLocation at;
@@ -104,7 +104,7 @@ struct Prod {
 struct Ptube {
   int id = 0, mid = 0;
   double od = 0, t = 0, nsm = 0;
-  std::optional<double> od2;              ///< outer diameter at end B; empty = od
+  std::optional<double> od2;  ///< outer diameter at end B; empty = od
   CardLocation at;
 };
 struct Pelas {
@@ -128,12 +128,12 @@ struct Pmass {
 struct BeamElement {
   int id = 0, pid = 0, ga = 0, gb = 0;
   bool is_cbeam = false;
-  int g0 = 0;                             ///< orientation grid, 0 = use v
-  Vector3d v = Vector3d::Zero();          ///< orientation vector from end A
-  std::string offt = "GGG";               ///< frames of v, wa, wb: G displacement system (or basic for B), O element
-  unsigned pin_a = 0, pin_b = 0;          ///< released element dofs, masks in element axes
+  int g0 = 0;                     ///< orientation grid, 0 = use v
+  Vector3d v = Vector3d::Zero();  ///< orientation vector from end A
+  std::string offt = "GGG";       ///< frames of v, wa, wb: G displacement system (or basic for B), O element
+  unsigned pin_a = 0, pin_b = 0;  ///< released element dofs, masks in element axes
   Vector3d wa = Vector3d::Zero(), wb = Vector3d::Zero();
-  int sa = 0, sb = 0;                     ///< warping scalar points (CBEAM)
+  int sa = 0, sb = 0;  ///< warping scalar points (CBEAM)
   CardLocation at;
 };
 struct Crod {
@@ -155,15 +155,15 @@ struct ScalarSpring {
   double k = 0, ge = 0, s = 0;
   int g1 = 0, c1 = 0, g2 = 0, c2 = 0;
   CardLocation at;
-  bool by_scalar_points = false;          ///< CELAS3 and CELAS4: g1 and g2 are scalar points
+  bool by_scalar_points = false;  ///< CELAS3 and CELAS4: g1 and g2 are scalar points
 };
 struct Cbush {
-  int id = 0, pid = 0, ga = 0, gb = 0;    ///< gb = 0: grounded
+  int id = 0, pid = 0, ga = 0, gb = 0;  ///< gb = 0: grounded
   int g0 = 0;
-  std::optional<Vector3d> v;              ///< orientation vector
-  std::optional<int> cid;                 ///< element system; overrides v, g0
-  double s = 0.5;                         ///< location of the spring from A to B
-  int ocid = -1;                          ///< -1: s is used; otherwise s_offset in this system
+  std::optional<Vector3d> v;  ///< orientation vector
+  std::optional<int> cid;     ///< element system; overrides v, g0
+  double s = 0.5;             ///< location of the spring from A to B
+  int ocid = -1;              ///< -1: s is used; otherwise s_offset in this system
   Vector3d s_offset = Vector3d::Zero();
   CardLocation at;
 };
@@ -173,7 +173,7 @@ struct ScalarMass {
   double m = 0;
   int g1 = 0, c1 = 0, g2 = 0, c2 = 0;
   CardLocation at;
-  bool by_scalar_points = false;          ///< CMASS3 and CMASS4
+  bool by_scalar_points = false;  ///< CMASS3 and CMASS4
 };
 struct Conm1 {
   int id = 0, g = 0, cid = 0;
@@ -182,10 +182,10 @@ struct Conm1 {
 };
 struct Conm2 {
   int id = 0, g = 0;
-  int cid = 0;                            ///< -1: x is the position of the mass in basic, not an offset
+  int cid = 0;  ///< -1: x is the position of the mass in basic, not an offset
   double m = 0;
   Vector3d x = Vector3d::Zero();
-  std::array<double, 6> inertia{};        ///< I11 I21 I22 I31 I32 I33 as in the deck (positive products of inertia)
+  std::array<double, 6> inertia{};  ///< I11 I21 I22 I31 I32 I33 as in the deck (positive products of inertia)
   CardLocation at;
 };
 
@@ -200,7 +200,7 @@ struct Rbe2 {
 struct Rbe3 {
   struct Group {
     double weight = 1;
-    unsigned c = 0;                       ///< components of these grids that count, in their CD axes
+    unsigned c = 0;  ///< components of these grids that count, in their CD axes
     std::vector<int> grids;
   };
   struct Dependent {
@@ -210,13 +210,13 @@ struct Rbe3 {
   int id = 0, ref_grid = 0;
   unsigned ref_c = 0;
   std::vector<Group> groups;
-  std::vector<Dependent> um;              ///< dependent components; empty = ref_c of ref_grid
+  std::vector<Dependent> um;  ///< dependent components; empty = ref_c of ref_grid
   CardLocation at;
 };
 /// RROD: a rod of constant length, pinned at both ends.
 struct Rrod {
   int id = 0, ga = 0, gb = 0;
-  int cma = 0, cmb = 0;                   ///< one translation 1..3, the other 0
+  int cma = 0, cmb = 0;  ///< one translation 1..3, the other 0
   CardLocation at;
 };
 struct Rbar {
@@ -230,7 +230,7 @@ struct Spc {
   int sid = 0, g = 0;
   unsigned c = 0;
   double d = 0;
-  bool skip_if_missing = false;           ///< from a THRU range: Nastran ignores ids that do not exist
+  bool skip_if_missing = false;  ///< from a THRU range: Nastran ignores ids that do not exist
   CardLocation at;
 };
 struct MpcTerm {
@@ -239,16 +239,16 @@ struct MpcTerm {
 };
 struct Mpc {
   int sid = 0;
-  std::vector<MpcTerm> terms;             ///< the first one is dependent
+  std::vector<MpcTerm> terms;  ///< the first one is dependent
   CardLocation at;
 };
-struct SetUnion {                         ///< SPCADD, MPCADD
+struct SetUnion {  ///< SPCADD, MPCADD
   int sid = 0;
   std::vector<int> sets;
   CardLocation at;
 };
 
-struct PointLoad {                        ///< FORCE or MOMENT
+struct PointLoad {  ///< FORCE or MOMENT
   int sid = 0, g = 0, cid = 0;
   double f = 0;
   Vector3d n = Vector3d::Zero();
@@ -272,22 +272,22 @@ struct LoadCombination {
 struct EigenMethod {
   int sid = 0;
   bool is_eigrl = true;
-  std::string method;                     ///< EIGR: LAN, GIV, ...
+  std::string method;  ///< EIGR: LAN, GIV, ...
   std::optional<double> f1, f2;
-  int num_modes = 0;                      ///< 0: by range
-  std::string norm = "MASS";              ///< MASS, MAX, POINT
+  int num_modes = 0;          ///< 0: by range
+  std::string norm = "MASS";  ///< MASS, MAX, POINT
   int norm_grid = 0, norm_component = 0;
   CardLocation at;
 };
 
 struct Param {
-  std::string name;                       ///< upper case
-  std::string value;                      ///< first value, as text, upper case
+  std::string name;   ///< upper case
+  std::string value;  ///< first value, as text, upper case
   CardLocation at;
 };
 
 struct Subcase {
-  int id = 0;                             ///< 0: what stands above the first SUBCASE (already merged into each subcase)
+  int id = 0;  ///< 0: what stands above the first SUBCASE (already merged into each subcase)
   std::string title, subtitle, label;
   int spc = 0, mpc = 0, load = 0, method = 0, statsub = 0;  ///< 0: none
 };
@@ -302,12 +302,12 @@ struct UnusedCard {
 };
 
 struct Deck {
-  std::vector<std::string> files;         ///< as opened; files[0] is the deck
-  std::string sol;                        ///< "103", "SEMODES", ... upper case; empty in a fragment
-  std::vector<Subcase> subcases;          ///< at least one
+  std::vector<std::string> files;  ///< as opened; files[0] is the deck
+  std::string sol;                 ///< "103", "SEMODES", ... upper case; empty in a fragment
+  std::vector<Subcase> subcases;   ///< at least one
 
   std::vector<Grid> grids;
-  std::vector<int> scalar_points;         ///< SPOINT, and those that CELAS3/4, CMASS3/4 name
+  std::vector<int> scalar_points;  ///< SPOINT, and those that CELAS3/4, CMASS3/4 name
   std::vector<CoordSystem> coord_systems;
   std::vector<Mat1> mat1;
   std::vector<Mat2> mat2;
@@ -347,11 +347,11 @@ struct Deck {
   std::vector<PointLoad> point_loads;
   std::vector<Gravity> gravity;
   std::vector<LoadCombination> loads;
-  LoadCards load_cards;                   ///< PLOADx, RFORCE, SPCD, SLOAD, FORCE1 ...
+  LoadCards load_cards;  ///< PLOADx, RFORCE, SPCD, SLOAD, FORCE1 ...
   std::vector<EigenMethod> eigen_methods;
   std::vector<Param> params;
   std::vector<UnusedCard> unused;
-  std::map<std::string, int> card_counts; ///< every card name in the bulk data
+  std::map<std::string, int> card_counts;  ///< every card name in the bulk data
 
   /// Value of a PARAM, the last one given; nullptr when absent.
   const Param* find_param(const std::string& name) const;

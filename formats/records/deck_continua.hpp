@@ -33,10 +33,10 @@ struct Mat9 {
 
 struct Pshell {
   int id = 0;
-  int mid1 = 0, mid2 = 0, mid3 = 0, mid4 = 0;   ///< membrane, bending, shear, coupling; 0 = none (mid2 -1: plane strain)
-  std::optional<double> t;                       ///< empty: from the element's corners
-  double bending_ratio = 1;                      ///< 12 I / T³
-  double shear_ratio = 5.0 / 6;                  ///< TS / T
+  int mid1 = 0, mid2 = 0, mid3 = 0, mid4 = 0;  ///< membrane, bending, shear, coupling; 0 = none (mid2 -1: plane strain)
+  std::optional<double> t;                     ///< empty: from the element's corners
+  double bending_ratio = 1;                    ///< 12 I / T³
+  double shear_ratio = 5.0 / 6;                ///< TS / T
   double nsm = 0;
   CardLocation at;
 };
@@ -48,35 +48,35 @@ struct Ply {
 /// PCOMP and PCOMPG, all plies listed (a symmetric layup is already unfolded).
 struct Pcomp {
   int id = 0;
-  double z0 = 0;                                 ///< bottom surface from the reference surface
+  double z0 = 0;  ///< bottom surface from the reference surface
   double nsm = 0;
-  std::vector<Ply> plies;                        ///< from the bottom up
-  bool bending = true, membrane = true;          ///< LAM = MEM: no bending; BEND: no membrane
+  std::vector<Ply> plies;                ///< from the bottom up
+  bool bending = true, membrane = true;  ///< LAM = MEM: no bending; BEND: no membrane
   CardLocation at;
 };
 
 struct ShellElement {
   int id = 0, pid = 0;
-  std::string card;                              ///< CQUAD4, CTRIA3, CQUADR, CTRIAR
+  std::string card;  ///< CQUAD4, CTRIA3, CQUADR, CTRIAR
   std::vector<int> grids;
-  double theta_deg = 0;                          ///< material angle from side 1-2
-  std::optional<int> mcid;                       ///< or: its x-axis projected on the element
+  double theta_deg = 0;     ///< material angle from side 1-2
+  std::optional<int> mcid;  ///< or: its x-axis projected on the element
   double z_offset = 0;
-  bool relative_thickness = false;               ///< TFLAG 1: t multiplies the property's
-  std::vector<double> t;                         ///< corner thickness; empty = the property's
+  bool relative_thickness = false;  ///< TFLAG 1: t multiplies the property's
+  std::vector<double> t;            ///< corner thickness; empty = the property's
   CardLocation at;
 };
 
 struct Psolid {
   int id = 0, mid = 0;
-  int cordm = 0;                                 ///< material system; 0 basic, -1 element
+  int cordm = 0;  ///< material system; 0 basic, -1 element
   CardLocation at;
 };
 struct SolidElement {
   int id = 0, pid = 0;
-  std::string card;                              ///< CHEXA, CPENTA, CTETRA
+  std::string card;  ///< CHEXA, CPENTA, CTETRA
   std::vector<int> corners;
-  std::vector<int> midsides;                     ///< one per edge, 0 = absent; empty = none
+  std::vector<int> midsides;  ///< one per edge, 0 = absent; empty = none
   CardLocation at;
 };
 

@@ -23,30 +23,30 @@ enum class ModeKind { Normal, Constraint, Attachment };
 
 /// The five mass integrals (docs/theory/flexible-body.md §4). Column j belongs to mode j.
 struct MassIntegrals {
-  MatrixXd gamma0;                             ///< 3 x n, Σ A^T_j
-  MatrixXd gamma1;                             ///< 3 x n, Σ (A^A_j + p × A^T_j)
-  std::vector<MatrixXd> gamma2;                ///< [j] 3 x n: column k is Γ2_jk = Σ A^T_j × φ_k
-  std::vector<Matrix3d> gamma3;                ///< [j] 3 x 3
-  std::vector<std::vector<Matrix3d>> gamma4;   ///< [j][k] 3 x 3
+  MatrixXd gamma0;                            ///< 3 x n, Σ A^T_j
+  MatrixXd gamma1;                            ///< 3 x n, Σ (A^A_j + p × A^T_j)
+  std::vector<MatrixXd> gamma2;               ///< [j] 3 x n: column k is Γ2_jk = Σ A^T_j × φ_k
+  std::vector<Matrix3d> gamma3;               ///< [j] 3 x 3
+  std::vector<std::vector<Matrix3d>> gamma4;  ///< [j][k] 3 x 3
   bool empty() const { return gamma0.size() == 0; }
 };
 
 /// A unit load at one (node, direction), or a load pattern, whose geometric stiffness K_G2 is stored.
 struct Locator {
   std::string name;
-  int node = 0;        ///< node id; 0 for a pattern
-  int direction = 0;   ///< 1..6; 0 for a pattern
+  int node = 0;       ///< node id; 0 for a pattern
+  int direction = 0;  ///< 1..6; 0 for a pattern
 };
 
 /// Enough to draw the body: lines and faces by node index into grid_id.
 struct BodyMesh {
   struct Block {
-    std::string type;                          ///< "line2", "tri3", "quad4", ...
-    Eigen::MatrixXi connectivity;              ///< elements x nodes per element, indices into grid_id
+    std::string type;              ///< "line2", "tri3", "quad4", ...
+    Eigen::MatrixXi connectivity;  ///< elements x nodes per element, indices into grid_id
     std::vector<int> element_id;
   };
   std::vector<int> grid_id;
-  MatrixXd grid_xyz;                           ///< g x 3
+  MatrixXd grid_xyz;  ///< g x 3
   std::vector<Block> blocks;
 };
 
@@ -56,32 +56,32 @@ struct FlexBody {
 
   double mass = 0;
   Vector3d cg = Vector3d::Zero();
-  Matrix3d inertia = Matrix3d::Zero();         ///< about Bo
+  Matrix3d inertia = Matrix3d::Zero();  ///< about Bo
 
-  std::vector<int> node_id;                    ///< p output nodes
-  MatrixXd node_xyz;                           ///< p x 3
-  std::vector<int> interface_nodes;            ///< ids among node_id that have three translational locators
-  bool is_free_free = false;                   ///< rigid modes were removed: the frame is carried by no node
+  std::vector<int> node_id;          ///< p output nodes
+  MatrixXd node_xyz;                 ///< p x 3
+  std::vector<int> interface_nodes;  ///< ids among node_id that have three translational locators
+  bool is_free_free = false;         ///< rigid modes were removed: the frame is carried by no node
 
-  VectorXd frequency_hz, eigenvalue;           ///< n
-  std::vector<ModeKind> kind;                  ///< n
-  std::vector<MatrixXd> phi;                   ///< [k] 6 x n: nodal translations (rows 0..2) and rotations (3..5)
+  VectorXd frequency_hz, eigenvalue;  ///< n
+  std::vector<ModeKind> kind;         ///< n
+  std::vector<MatrixXd> phi;          ///< [k] 6 x n: nodal translations (rows 0..2) and rotations (3..5)
   MatrixXd modal_mass, modal_stiffness, modal_damping;  ///< n x n
-  MatrixXd effective_mass;                     ///< n x 6
+  MatrixXd effective_mass;                              ///< n x 6
 
-  MassIntegrals lumped, consistent, exact;     ///< those the model has; the others are empty
-  std::string integrals_method;                ///< "lumped", "consistent" or "exact": the one the solver uses
+  MassIntegrals lumped, consistent, exact;  ///< those the model has; the others are empty
+  std::string integrals_method;             ///< "lumped", "consistent" or "exact": the one the solver uses
 
-  MatrixXd F_I;                                ///< ndof x 12; may be empty
-  Eigen::MatrixXi dof_map;                     ///< ndof x 2: node id, code 1..6 (scalar point: 0)
+  MatrixXd F_I;             ///< ndof x 12; may be empty
+  Eigen::MatrixXi dof_map;  ///< ndof x 2: node id, code 1..6 (scalar point: 0)
 
-  std::array<MatrixXd, kNumInertialLoads> kg_inertial;      ///< K_G1, n x n each; zero where not computed
+  std::array<MatrixXd, kNumInertialLoads> kg_inertial;  ///< K_G1, n x n each; zero where not computed
   std::array<bool, kNumInertialLoads> kg_inertial_computed{};
   std::vector<Locator> locators;
-  std::vector<MatrixXd> kg_external;           ///< K_G2, one per locator
-  MatrixXd external_load;                      ///< n x ne: ΦᵀF_ext of each locator
+  std::vector<MatrixXd> kg_external;  ///< K_G2, one per locator
+  MatrixXd external_load;             ///< n x ne: ΦᵀF_ext of each locator
 
-  MatrixXd full_phi;                           ///< ndof x n, only with --full
+  MatrixXd full_phi;  ///< ndof x n, only with --full
   BodyMesh mesh;
 
   int num_modes() const { return static_cast<int>(eigenvalue.size()); }

@@ -9,17 +9,17 @@ namespace bough::records {
 
 /// One channel: its HDF5 path, components per sample, and what it is.
 struct Channel {
-  std::string path;                         ///< "/bodies/boom/eta"
+  std::string path;  ///< "/bodies/boom/eta"
   int size = 1;
-  std::string description;                  ///< with its frame
-  std::string dims;                         ///< "L", "L/T", "1", ...
+  std::string description;  ///< with its frame
+  std::string dims;         ///< "L", "L/T", "1", ...
 };
 
 struct ResultsHeader {
-  std::string system_text;                  ///< the TOML it ran from
-  std::vector<std::pair<std::string, std::string>> source;   ///< (file name, SHA-256)
-  std::vector<std::pair<std::string, std::string>> settings; ///< effective values, as text
-  std::vector<Channel> channels;            ///< "/time" first
+  std::string system_text;                                    ///< the TOML it ran from
+  std::vector<std::pair<std::string, std::string>> source;    ///< (file name, SHA-256)
+  std::vector<std::pair<std::string, std::string>> settings;  ///< effective values, as text
+  std::vector<Channel> channels;                              ///< "/time" first
 };
 
 struct EventRecord {

@@ -16,20 +16,20 @@ namespace bough::records {
 
 struct RigidNode {
   int id = 0;
-  Vector3d p = Vector3d::Zero();            ///< in B
+  Vector3d p = Vector3d::Zero();  ///< in B
 };
 
 struct BodyRecord {
   std::string name;
-  std::string file;                         ///< flexible-body HDF5; empty = rigid
+  std::string file;  ///< flexible-body HDF5; empty = rigid
   double mass = 0;
-  Vector3d cg = Vector3d::Zero();           ///< in B
-  Matrix3d inertia = Matrix3d::Zero();      ///< about the centre of mass (rigid bodies), in B
+  Vector3d cg = Vector3d::Zero();       ///< in B
+  Matrix3d inertia = Matrix3d::Zero();  ///< about the centre of mass (rigid bodies), in B
   std::vector<RigidNode> nodes;
   bool stiffening = true;
-  std::vector<double> eta, eta_dot;         ///< initial; empty = zero
-  std::vector<double> damping_ratios;       ///< overrides the file's modal damping when not empty (one = uniform)
-  int num_modes = -1;                       ///< keep the first so many; -1 = all
+  std::vector<double> eta, eta_dot;    ///< initial; empty = zero
+  std::vector<double> damping_ratios;  ///< overrides the file's modal damping when not empty (one = uniform)
+  int num_modes = -1;                  ///< keep the first so many; -1 = all
   SourceLocation at;
 };
 
@@ -40,44 +40,52 @@ struct HingeRecord {
   HingeType type = HingeType::Fixed;
   std::string parent = "ground", child;
   int parent_node = 0, child_node = 0;
-  Vector3d parent_position = Vector3d::Zero();   ///< of Hp from the parent node, in parent B (ground: inertial)
+  Vector3d parent_position = Vector3d::Zero();      ///< of Hp from the parent node, in parent B (ground: inertial)
   Matrix3d parent_rotation = Matrix3d::Identity();  ///< R_PHp (hinge axes in the parent body)
   Vector3d child_position = Vector3d::Zero();
-  Matrix3d child_rotation = Matrix3d::Identity();   ///< R_CHc
-  Vector3d axis = Vector3d::UnitZ();             ///< revolute, prismatic, cylindrical; planar: the normal; in Hp
-  Vector3d axis2 = Vector3d::UnitY();            ///< universal: second axis, in Hp at q = 0
+  Matrix3d child_rotation = Matrix3d::Identity();  ///< R_CHc
+  Vector3d axis = Vector3d::UnitZ();               ///< revolute, prismatic, cylindrical; planar: the normal; in Hp
+  Vector3d axis2 = Vector3d::UnitY();              ///< universal: second axis, in Hp at q = 0
   std::vector<double> stiffness, damping, null_position;  ///< per hinge coordinate; empty = 0
-  std::vector<double> position, rate;            ///< initial; spherical/free orientation as quaternion w,x,y,z in position
-  std::vector<std::string> motion;               ///< prescribed: function name per coordinate ("" = free); all or none
+  std::vector<double> position, rate;  ///< initial; spherical/free orientation as quaternion w,x,y,z in position
+  std::vector<std::string> motion;     ///< prescribed: function name per coordinate ("" = free); all or none
   SourceLocation at;
 };
 
 struct FunctionRecord {
   std::string name;
-  std::string type;                         ///< constant step ramp pulse sine table spinup
-  std::map<std::string, double> values;     ///< parameters by key, after defaults
-  std::vector<double> x, y;                 ///< table
-  std::string interpolation = "linear";     ///< table: linear or cubic
+  std::string type;                      ///< constant step ramp pulse sine table spinup
+  std::map<std::string, double> values;  ///< parameters by key, after defaults
+  std::vector<double> x, y;              ///< table
+  std::string interpolation = "linear";  ///< table: linear or cubic
   SourceLocation at;
 };
 
 enum class ForceKind { Force, Moment };
-enum class VectorFrame { Inertial, Body, Node };   ///< node: follows the node's own rotation (follower load)
+enum class VectorFrame { Inertial, Body, Node };  ///< node: follows the node's own rotation (follower load)
 
 struct ForceRecord {
   std::string name;
   ForceKind kind = ForceKind::Force;
   std::string body;
   int node = 0;
-  Vector3d direction = Vector3d::Zero();    ///< times the function's value
+  Vector3d direction = Vector3d::Zero();  ///< times the function's value
   VectorFrame frame = VectorFrame::Body;
-  std::string function;                     ///< empty = constant 1
-  std::string locator;                      ///< or: a load pattern of the body file, then node and direction are unused
+  std::string function;  ///< empty = constant 1
+  std::string locator;   ///< or: a load pattern of the body file, then node and direction are unused
   SourceLocation at;
 };
 
 enum class SensorType {
-  Position, Velocity, Acceleration, Deflection, Rotation, AngularVelocity, AngularAcceleration, HingeAngle, HingeRate
+  Position,
+  Velocity,
+  Acceleration,
+  Deflection,
+  Rotation,
+  AngularVelocity,
+  AngularAcceleration,
+  HingeAngle,
+  HingeRate
 };
 
 struct SensorRecord {
@@ -85,26 +93,26 @@ struct SensorRecord {
   SensorType type = SensorType::Position;
   std::string body;
   int node = 0;
-  std::string frame = "inertial";           ///< "inertial", "body" (the node's own body) or another body's name: components
-  std::string relative_to;                  ///< position, velocity: measured from this body's origin; empty = inertial origin
-  std::string hinge;                        ///< hinge sensors
-  int coordinate = 0;                       ///< hinge sensors: 1-based; 0 = all
+  std::string frame = "inertial";  ///< "inertial", "body" (the node's own body) or another body's name: components
+  std::string relative_to;         ///< position, velocity: measured from this body's origin; empty = inertial origin
+  std::string hinge;               ///< hinge sensors
+  int coordinate = 0;              ///< hinge sensors: 1-based; 0 = all
   SourceLocation at;
 };
 
 struct SimulationRecord {
   double start = 0, duration = 0;
-  double output_step = 0;                   ///< 0: duration / 1000
-  std::string integrator = "adams";         ///< adams, bdf (CVODE), rk (adaptive, ARKODE), rk4 (fixed step)
-  double step = 0;                          ///< rk4; also the largest step of the others when > 0
+  double output_step = 0;            ///< 0: duration / 1000
+  std::string integrator = "adams";  ///< adams, bdf (CVODE), rk (adaptive, ARKODE), rk4 (fixed step)
+  double step = 0;                   ///< rk4; also the largest step of the others when > 0
   double relative_tolerance = 1e-8, absolute_tolerance = 1e-10;
-  Vector3d gravity = Vector3d::Zero();      ///< inertial
-  double divergence_limit = 1e6;            ///< stop with a clear message when |state| passes it
+  Vector3d gravity = Vector3d::Zero();  ///< inertial
+  double divergence_limit = 1e6;        ///< stop with a clear message when |state| passes it
   SourceLocation at;
 };
 
 struct SystemSpec {
-  std::string file, text;                   ///< the TOML file and its text, stored in the results
+  std::string file, text;  ///< the TOML file and its text, stored in the results
   std::string name;
   std::vector<BodyRecord> bodies;
   std::vector<HingeRecord> hinges;

@@ -7,9 +7,9 @@ namespace bough::report {
 
 struct Axis {
   double min = 0, max = 1;
-  std::vector<double> ticks;          ///< inside [min, max], ascending
-  std::vector<std::string> labels;    ///< of each tick, divided by 10^exponent
-  int exponent = 0;                   ///< a multiple of 3; 0 for numbers of everyday size
+  std::vector<double> ticks;        ///< inside [min, max], ascending
+  std::vector<std::string> labels;  ///< of each tick, divided by 10^exponent
+  int exponent = 0;                 ///< a multiple of 3; 0 for numbers of everyday size
 };
 
 /// Ticks at 1, 2, 2.5 or 5 times a power of ten, about `wanted` of them. When `widen`, the ends move out to a little

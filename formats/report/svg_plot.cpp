@@ -14,10 +14,11 @@ namespace bough::report {
 namespace {
 
 // Okabe & Ito, "Color universal design" (2008), without yellow, which is faint on white; black last.
-constexpr std::array<const char*, 7> kColors{"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"};
+constexpr std::array<const char*, 7> kColors{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                             "#56B4E9", "#E69F00", "#000000"};
 constexpr std::array<const char*, 3> kDashes{"", "8 4", "2 3"};
 constexpr double kWidth = 900, kLeft = 84, kRight = 26, kPlotHeight = 400, kBottom = 62;
-constexpr double kCharacter = 7.2;   // mean width of a character of the legend
+constexpr double kCharacter = 7.2;  // mean width of a character of the legend
 
 std::string number(double x) {
   char buffer[40];
@@ -31,11 +32,16 @@ std::string number(double x) {
 std::string escape(const std::string& text) {
   std::string safe;
   for (const char c : text) {
-    if (c == '&') safe += "&amp;";
-    else if (c == '<') safe += "&lt;";
-    else if (c == '>') safe += "&gt;";
-    else if (c == '"') safe += "&quot;";
-    else safe += c;
+    if (c == '&')
+      safe += "&amp;";
+    else if (c == '<')
+      safe += "&lt;";
+    else if (c == '>')
+      safe += "&gt;";
+    else if (c == '"')
+      safe += "&quot;";
+    else
+      safe += c;
   }
   return safe;
 }
@@ -74,8 +80,10 @@ bool clip_segment(double ax, double ay, double bx, double by, double& from, doub
       continue;
     }
     const double r = q[i] / p[i];
-    if (p[i] < 0) from = std::max(from, r);
-    else to = std::min(to, r);
+    if (p[i] < 0)
+      from = std::max(from, r);
+    else
+      to = std::min(to, r);
   }
   return from <= to;
 }
@@ -247,7 +255,8 @@ std::string draw_svg(const Plot& plot) {
       continue;
     }
     for (Eigen::Index k = 0; k < curve.x.size(); ++k) {
-      const bool is_inside = curve.x[k] >= f.x.min && curve.x[k] <= f.x.max && curve.y[k] >= f.y.min && curve.y[k] <= f.y.max;
+      const bool is_inside =
+          curve.x[k] >= f.x.min && curve.x[k] <= f.x.max && curve.y[k] >= f.y.min && curve.y[k] <= f.y.max;
       if (is_inside) svg += draw_marker(f.map_x(curve.x[k]), f.map_y(curve.y[k]), style.color);
     }
   }

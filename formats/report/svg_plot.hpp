@@ -10,12 +10,12 @@ namespace bough::report {
 struct Curve {
   std::string label;
   Eigen::VectorXd x, y;
-  bool markers_only = false;      ///< reference points rather than a line
+  bool markers_only = false;  ///< reference points rather than a line
 };
 struct Plot {
   std::string title, x_label, y_label;
   std::vector<Curve> curves;
-  double y_min = 0, y_max = 0;    ///< equal: automatic; curves are clipped to the frame
+  double y_min = 0, y_max = 0;  ///< equal: automatic; curves are clipped to the frame
 };
 std::string draw_svg(const Plot& plot);
 

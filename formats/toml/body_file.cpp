@@ -49,7 +49,7 @@ std::vector<int> read_directions(const Fields& load, Diagnostics& diagnostics) {
     }
     if (direction > 0) {
       directions.push_back(direction);
-    } else if (!v->is_array()) {   // items of a list were checked by the schema
+    } else if (!v->is_array()) {  // items of a list were checked by the schema
       diagnostics.error("toml.bad-value", load.locate("direction"),
                         "direction is " + (item.is_string() ? "'" + item.text + "'" : std::to_string(item.integer)) +
                             ", expected 1 to 6 or one of x, y, z, rx, ry, rz");
@@ -120,10 +120,10 @@ records::BodySpec read_body_spec(const std::string& path, Diagnostics& diagnosti
   if (modes.has("number")) {
     for (const int mode : spec.select) {
       if (mode <= spec.num_modes) continue;
-      diagnostics.error("toml.out-of-range", modes.locate("select"),
-                        "select names mode " + std::to_string(mode) + ", expected at most number = " +
-                            std::to_string(spec.num_modes),
-                        "raise number or leave the mode out");
+      diagnostics.error(
+          "toml.out-of-range", modes.locate("select"),
+          "select names mode " + std::to_string(mode) + ", expected at most number = " + std::to_string(spec.num_modes),
+          "raise number or leave the mode out");
     }
   }
 

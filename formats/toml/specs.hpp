@@ -1,5 +1,6 @@
 #pragma once
-/// \file Body and system files in TOML: text to records, every error with file and line, unknown keys with the nearest match.
+/// \file Body and system files in TOML: text to records, every error with file and line, unknown keys with the nearest
+/// match.
 #include "bough/formats/records/body_spec.hpp"
 #include "bough/formats/records/system_spec.hpp"
 

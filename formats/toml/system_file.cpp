@@ -18,8 +18,8 @@ void refuse_keys(const Fields& table, std::initializer_list<const char*> keys, c
                  Diagnostics& diagnostics) {
   for (const char* key : keys) {
     if (!table.has(key)) continue;
-    diagnostics.error("toml.conflicting-keys", table.locate(key), "'" + std::string(key) + "' has no meaning " + because,
-                      "remove it");
+    diagnostics.error("toml.conflicting-keys", table.locate(key),
+                      "'" + std::string(key) + "' has no meaning " + because, "remove it");
   }
 }
 
@@ -169,7 +169,7 @@ records::SensorRecord read_sensor(const Fields& table, Diagnostics& diagnostics)
   sensor.hinge = table.get_string("hinge");
   sensor.coordinate = table.get_int("coordinate", 0);
   const auto it = types.find(table.get_string("type"));
-  if (it == types.end()) return sensor;   // reported by the schema
+  if (it == types.end()) return sensor;  // reported by the schema
   sensor.type = it->second;
   const bool is_elastic = sensor.type == SensorType::Deflection || sensor.type == SensorType::Rotation;
   sensor.frame = table.get_string("frame", is_elastic ? "body" : "inertial");

@@ -1,5 +1,6 @@
 #pragma once
-/// \file A material node of a body and its motion within the body frame B, foreshortening included (docs/theory/multibody.md).
+/// \file A material node of a body and its motion within the body frame B, foreshortening included
+/// (docs/theory/multibody.md).
 ///
 ///     r = p + φη + ½[ηᵀ g_a η]_a      g_a = -K_G2(node, a), zero without locators
 ///     R_BK = exp(θ̃), θ = ψη           angular velocity in B: T(θ) ψ η̇

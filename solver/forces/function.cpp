@@ -74,9 +74,9 @@ class Sine final : public TimeFunction {
   double amplitude_, omega_, phase_, offset_;
 };
 
-/// θ(t) = (ω0/T)[t²/2 + (T/2π)²(cos(2πt/T) - 1)] up to T, ω0 (t - T/2) after (NASA-CR-202063, 4.1.4.1; Kane, Ryan & Banerjee,
-/// "Dynamics of a cantilever beam attached to a moving base", J. Guidance 10 (1987) 139). θ̈ is continuous: at T only
-/// the third derivative jumps.
+/// θ(t) = (ω0/T)[t²/2 + (T/2π)²(cos(2πt/T) - 1)] up to T, ω0 (t - T/2) after (NASA-CR-202063, 4.1.4.1; Kane, Ryan &
+/// Banerjee, "Dynamics of a cantilever beam attached to a moving base", J. Guidance 10 (1987) 139). θ̈ is continuous:
+/// only the third derivative jumps, at T.
 class Spinup final : public TimeFunction {
  public:
   Spinup(double rate, double duration) : rate_(rate), duration_(duration) {}

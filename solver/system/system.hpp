@@ -3,7 +3,7 @@
 ///
 /// Generalized positions q (num_q): per body in tree order, hinge coordinates (an orientation as quaternion x,y,z,w for
 /// spherical and free) then η. Generalized speeds u (num_u): hinge rates (spherical, free: angular velocity of Hc in
-/// Hp, expressed in Hc for w; translations rates) then η̇. Prescribed hinges keep their rows in q and have no rows in u.
+/// Hp, components in Hc) then η̇. Prescribed hinges keep their rows in q and have no rows in u.
 /// Frames: W inertial; B body, origin Bo; Hp, Hc hinge frames on parent and child. Linear before angular everywhere.
 #include <map>
 #include <memory>
@@ -106,7 +106,7 @@ void add_forces(const System& system, SystemData& data, double t);
 /// Adds a force and moment (components in W) at a node, through its Jacobian φ - K_G2 η. After calc_kinematics.
 void add_node_wrench(const System& system, SystemData& data, int body, int node_index, const Vector3d& f_W,
                      const Vector3d& t_W);
-/// u̇ by the order-n recursion with what was added; body accelerations and hinge forces become available. O(num_bodies).
+/// u̇ by the order-n recursion with what was added; body accelerations and hinge forces become available. Order n.
 /// No allocation. Throws ComputationError when a body's articulated inertia is not positive definite.
 void calc_accelerations(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> u_dot);
 /// The same by assembling the dense M(q) and solving: the second route for tests. O(num_u³).

@@ -75,7 +75,8 @@ bool reserve_space(hid_t file, hsize_t more);
 /// Reserves and flushes.
 bool flush_file(hid_t file);
 
-/// Gives up on a file whose device refuses writes: what is still to be written goes to memory, so that it can be closed.
+/// Gives up on a file whose device refuses writes: what is still to be written goes to memory, so that it can be
+/// closed.
 void abandon_writes(hid_t file);
 
 /// "/a/b/c" -> every proper parent and then whether the object itself is there.

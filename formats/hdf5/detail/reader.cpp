@@ -73,10 +73,10 @@ Handle open_file(const std::string& path, bool to_write) {
     if (to_write && H5Fis_hdf5(path.c_str()) > 0 && ::access(path.c_str(), W_OK) != 0) {
       throw InputError("hdf5.cannot-open", {path}, "the file cannot be written to", "check its permissions");
     }
-    throw InputError("hdf5.truncated", {path},
-                     "the file ends early or is damaged: " + std::to_string(std::filesystem::file_size(path, ignored)) +
-                         " bytes",
-                     "copy or write it again");
+    throw InputError(
+        "hdf5.truncated", {path},
+        "the file ends early or is damaged: " + std::to_string(std::filesystem::file_size(path, ignored)) + " bytes",
+        "copy or write it again");
   }
   return file;
 }
@@ -91,10 +91,10 @@ void check_format(hid_t file, const std::string& path, const std::string& format
   }
   const std::string found_version = read_text_attribute(file, "format_version");
   if (get_major(found_version) > get_major(version) || get_major(found_version) < 1) {
-    throw InputError("hdf5.wrong-format", {path},
-                     "the file has format version '" + found_version + "', expected " +
-                         std::to_string(get_major(version)) + ".x",
-                     "use a newer version of Bough, or write the file again");
+    throw InputError(
+        "hdf5.wrong-format", {path},
+        "the file has format version '" + found_version + "', expected " + std::to_string(get_major(version)) + ".x",
+        "use a newer version of Bough, or write the file again");
   }
 }
 
@@ -135,8 +135,11 @@ Handle FileReader::open_dataset(const std::string& path, const Shape& shape, H5T
   const H5T_class_t found_class = H5Tget_class(found_type.get());
   const bool fits = found_class == type || (type == H5T_FLOAT && found_class == H5T_INTEGER);
   if (!fits) {
-    error("hdf5.type", path + " holds values of another type, expected " +
-                           (type == H5T_STRING ? "strings" : type == H5T_INTEGER ? "integers" : "numbers"),
+    error("hdf5.type",
+          path + " holds values of another type, expected " +
+              (type == H5T_STRING    ? "strings"
+               : type == H5T_INTEGER ? "integers"
+                                     : "numbers"),
           "write the file again");
     return {};
   }
@@ -271,7 +274,8 @@ std::vector<std::pair<std::string, std::string>> FileReader::read_source() {
   const Handle memory = make_string_type();
   std::vector<char*> data(count(dims), nullptr);
   if (H5Aread(attribute.get(), memory.get(), data.data()) < 0) return source;
-  for (std::size_t i = 0; i < data.size(); i += 2) source.emplace_back(data[i] ? data[i] : "", data[i + 1] ? data[i + 1] : "");
+  for (std::size_t i = 0; i < data.size(); i += 2)
+    source.emplace_back(data[i] ? data[i] : "", data[i + 1] ? data[i + 1] : "");
   for (char* text : data) H5free_memory(text);
   return source;
 }

@@ -82,8 +82,8 @@ void FileWriter::make_group(const std::string& path) {
   check(group.is_valid(), "group " + path + " cannot be written");
 }
 
-void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_type, hid_t memory_type,
-                       const void* data, const Meaning& meaning) {
+void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_type, hid_t memory_type, const void* data,
+                       const Meaning& meaning) {
   errno = 0;
   // Parents are made here and not by the library, which would stamp them with the time.
   for (std::size_t end = path.find('/', 1); end != std::string::npos; end = path.find('/', end + 1)) {
@@ -93,9 +93,9 @@ void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_ty
   Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.get(), false);
   {
-    Handle dataset(H5Dcreate2(file_.get(), path.c_str(), file_type, space.get(), H5P_DEFAULT, creation.get(),
-                              H5P_DEFAULT),
-                   H5Dclose);
+    Handle dataset(
+        H5Dcreate2(file_.get(), path.c_str(), file_type, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+        H5Dclose);
     check(dataset.is_valid(), "dataset " + path + " cannot be written");
     if (has_elements(shape)) {
       check(H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0,
@@ -107,8 +107,8 @@ void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_ty
   write_attribute(path, "dims", meaning.dims);
 }
 
-void FileWriter::write_attribute(const std::string& object, const std::string& name, const Dims& shape,
-                                 hid_t file_type, hid_t memory_type, const void* data) {
+void FileWriter::write_attribute(const std::string& object, const std::string& name, const Dims& shape, hid_t file_type,
+                                 hid_t memory_type, const void* data) {
   const Handle space = make_space(shape);
   const Handle attribute(H5Acreate_by_name(file_.get(), object.c_str(), name.c_str(), file_type, space.get(),
                                            H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
@@ -150,8 +150,7 @@ void FileWriter::write_source(const std::vector<std::pair<std::string, std::stri
   write_attribute("/", "source", Dims{source.size(), 2}, type.get(), type.get(), data.data());
 }
 
-void FileWriter::write_numbers(const std::string& path, const Dims& shape, const double* data,
-                               const Meaning& meaning) {
+void FileWriter::write_numbers(const std::string& path, const Dims& shape, const double* data, const Meaning& meaning) {
   write(path, shape, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, data, meaning);
 }
 
@@ -159,8 +158,7 @@ void FileWriter::write_integers(const std::string& path, const Dims& shape, cons
   write(path, shape, H5T_STD_I32LE, H5T_NATIVE_INT, data, meaning);
 }
 
-void FileWriter::write_strings(const std::string& path, const std::vector<std::string>& words,
-                               const Meaning& meaning) {
+void FileWriter::write_strings(const std::string& path, const std::vector<std::string>& words, const Meaning& meaning) {
   const Handle type = make_string_type();
   std::vector<const char*> data;
   for (const auto& w : words) data.push_back(w.c_str());

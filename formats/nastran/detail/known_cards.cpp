@@ -41,8 +41,7 @@ constexpr std::string_view load_cards =
     "SLOADN1 "
     "SPCD SPCR TEMP TEMPAX TEMPB3 TEMPBC TEMPD TEMPEX TEMPF TEMPG TEMPN1 TEMPP1 TEMPP2 TEMPP3 TEMPRB TIC TICS TLOAD1 "
     "TLOAD2 TLOAD3 YLDLOAD VCEV";
-constexpr std::string_view damping_cards =
-    "CDAMP1 CDAMP1D CDAMP2 CDAMP2D CDAMP3 CDAMP4 CDAMP5 CVISC";
+constexpr std::string_view damping_cards = "CDAMP1 CDAMP1D CDAMP2 CDAMP2D CDAMP3 CDAMP4 CDAMP5 CVISC";
 constexpr std::string_view neutral_cards =
     // The reference dofs of a free body: its modes are the same whichever are chosen.
     "SUPORT SUPORT1 "

@@ -147,8 +147,7 @@ void read_two_columns(const std::string& path, const SourceLocation& asked_at, s
       continue;
     }
     if (!std::isfinite(numbers[0]) || !std::isfinite(numbers[1])) {
-      diagnostics.error("toml.nan", {path, number}, "the line has a value that is not a finite number",
-                        "give numbers");
+      diagnostics.error("toml.nan", {path, number}, "the line has a value that is not a finite number", "give numbers");
       continue;
     }
     x.push_back(numbers[0]);

@@ -19,15 +19,14 @@ struct Coordinates {
 };
 
 const Coordinates& get_coordinates(const std::string& type) {
-  static const std::map<std::string, Coordinates> all{
-      {"fixed", {HingeType::Fixed, "", ""}},
-      {"revolute", {HingeType::Revolute, "a", "a"}},
-      {"prismatic", {HingeType::Prismatic, "l", "l"}},
-      {"universal", {HingeType::Universal, "aa", "aa"}},
-      {"cylindrical", {HingeType::Cylindrical, "al", "al"}},
-      {"planar", {HingeType::Planar, "lla", "lla"}},
-      {"spherical", {HingeType::Spherical, "qqqq", "aaa"}},
-      {"free", {HingeType::Free, "qqqqlll", "aaalll"}}};
+  static const std::map<std::string, Coordinates> all{{"fixed", {HingeType::Fixed, "", ""}},
+                                                      {"revolute", {HingeType::Revolute, "a", "a"}},
+                                                      {"prismatic", {HingeType::Prismatic, "l", "l"}},
+                                                      {"universal", {HingeType::Universal, "aa", "aa"}},
+                                                      {"cylindrical", {HingeType::Cylindrical, "al", "al"}},
+                                                      {"planar", {HingeType::Planar, "lla", "lla"}},
+                                                      {"spherical", {HingeType::Spherical, "qqqq", "aaa"}},
+                                                      {"free", {HingeType::Free, "qqqqlll", "aaalll"}}};
   const auto it = all.find(type);
   return it == all.end() ? all.at("fixed") : it->second;
 }

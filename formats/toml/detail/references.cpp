@@ -13,7 +13,7 @@ std::vector<std::string> collect_names(const std::vector<Record>& records, const
   std::vector<std::string> names;
   std::map<std::string, int> lines;
   for (const auto& record : records) {
-    if (record.name.empty()) continue;   // reported by the schema
+    if (record.name.empty()) continue;  // reported by the schema
     const auto [it, is_new] = lines.emplace(record.name, record.at.line);
     if (is_new) {
       names.push_back(record.name);
@@ -35,7 +35,8 @@ class ReferenceChecker {
              const std::string& kind, const SourceLocation& at) {
     if (name.empty() || std::find(declared.begin(), declared.end(), name) != declared.end()) return;
     const std::string nearest = find_nearest(name, declared);
-    diagnostics_.error("toml.unknown-name", at, role + " refers to the " + kind + " '" + name + "', which is not declared",
+    diagnostics_.error("toml.unknown-name", at,
+                       role + " refers to the " + kind + " '" + name + "', which is not declared",
                        nearest.empty() ? "declare it" : "did you mean '" + nearest + "'?");
   }
 

@@ -43,13 +43,20 @@ std::string describe_type(const std::string& type) {
 
 bool is_of_type(const Value& v, const std::string& type) {
   switch (v.kind) {
-    case Kind::String: return type == "string";
-    case Kind::Integer: return type == "integer" || type == "number";
-    case Kind::Float: return type == "number";
-    case Kind::Boolean: return type == "boolean";
-    case Kind::Array: return type == "array";
-    case Kind::Table: return type == "object";
-    case Kind::DateTime: break;
+    case Kind::String:
+      return type == "string";
+    case Kind::Integer:
+      return type == "integer" || type == "number";
+    case Kind::Float:
+      return type == "number";
+    case Kind::Boolean:
+      return type == "boolean";
+    case Kind::Array:
+      return type == "array";
+    case Kind::Table:
+      return type == "object";
+    case Kind::DateTime:
+      break;
   }
   return false;
 }
@@ -235,7 +242,8 @@ class Checker {
         if (has_all(v, keys)) found.push_back(quote(join(keys)));
       }
       if (found.empty()) {
-        error("toml.missing-key", line, "missing key in " + where + ", expected one of " + join(all), "add one of them");
+        error("toml.missing-key", line, "missing key in " + where + ", expected one of " + join(all),
+              "add one of them");
       } else if (found.size() > 1 && keyword == std::string("oneOf")) {
         error("toml.conflicting-keys", line, join(found, " and ") + " stand together in " + where, "keep one of them");
       }

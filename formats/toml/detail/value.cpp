@@ -47,7 +47,8 @@ Value convert(const toml::node& node) {
 std::string to_message(std::string_view text) {
   std::string s(text);
   if (!s.empty() && s.back() == '.') s.pop_back();
-  if (s.size() > 1 && std::isupper(static_cast<unsigned char>(s[0])) && std::islower(static_cast<unsigned char>(s[1]))) {
+  if (s.size() > 1 && std::isupper(static_cast<unsigned char>(s[0])) &&
+      std::islower(static_cast<unsigned char>(s[1]))) {
     s[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(s[0])));
   }
   return s;
@@ -62,13 +63,20 @@ const Value* Value::find(const std::string& key) const {
 
 const char* describe_kind(Value::Kind kind) {
   switch (kind) {
-    case Value::Kind::String: return "a string";
-    case Value::Kind::Integer: return "an integer";
-    case Value::Kind::Float: return "a number";
-    case Value::Kind::Boolean: return "true or false";
-    case Value::Kind::DateTime: return "a date or time";
-    case Value::Kind::Array: return "an array";
-    case Value::Kind::Table: break;
+    case Value::Kind::String:
+      return "a string";
+    case Value::Kind::Integer:
+      return "an integer";
+    case Value::Kind::Float:
+      return "a number";
+    case Value::Kind::Boolean:
+      return "true or false";
+    case Value::Kind::DateTime:
+      return "a date or time";
+    case Value::Kind::Array:
+      return "an array";
+    case Value::Kind::Table:
+      break;
   }
   return "a table";
 }

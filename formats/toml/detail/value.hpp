@@ -13,12 +13,12 @@ struct Entry;
 struct Value {
   enum class Kind { String, Integer, Float, Boolean, DateTime, Array, Table };
   Kind kind = Kind::Table;
-  std::string text;             ///< String
-  std::int64_t integer = 0;     ///< Integer
-  double number = 0;            ///< Integer and Float
-  bool boolean = false;         ///< Boolean
-  std::vector<Value> items;     ///< Array
-  std::vector<Entry> entries;   ///< Table, in the order of the file
+  std::string text;            ///< String
+  std::int64_t integer = 0;    ///< Integer
+  double number = 0;           ///< Integer and Float
+  bool boolean = false;        ///< Boolean
+  std::vector<Value> items;    ///< Array
+  std::vector<Entry> entries;  ///< Table, in the order of the file
   int line = 0;
 
   bool is_number() const { return kind == Kind::Integer || kind == Kind::Float; }
@@ -31,7 +31,7 @@ struct Value {
 
 struct Entry {
   std::string key;
-  int line = 0;                 ///< of the key
+  int line = 0;  ///< of the key
   Value value;
 };
 

@@ -59,8 +59,7 @@ class Surgeon {
     const hid_t type = H5Tcopy(H5T_C_S1);
     H5Tset_size(type, H5T_VARIABLE);
     const hid_t space = H5Screate(H5S_SCALAR);
-    const hid_t made =
-        H5Acreate_by_name(file_, object, attribute, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t made = H5Acreate_by_name(file_, object, attribute, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     ASSERT_GE(H5Awrite(made, type, &text), 0);
     H5Aclose(made);
     H5Sclose(space);
@@ -84,7 +83,7 @@ TEST(FlexBodyFile, BodyWithoutModesOrWithoutNodesRoundTrips) {
   const TempFolder folder;
   for (const auto& [n, p] : {std::pair{0, 3}, std::pair{2, 0}}) {
     auto body = test::make_random_body(5, n, p, false);
-    if (n == 0) body.exact = {};   // there is nothing to integrate
+    if (n == 0) body.exact = {};  // there is nothing to integrate
     write_flex_body(body, folder.at("body.h5"));
     EXPECT_TRUE(test::are_identical(read_flex_body(folder.at("body.h5")), body));
   }
@@ -94,7 +93,7 @@ TEST(FlexBodyFile, SameBodyGivesSameBytes) {
   const TempFolder folder;
   const auto body = test::make_random_body(3, 4, 3, true);
   write_flex_body(body, folder.at("a.h5"));
-  ::sleep(1);   // a creation time would differ now
+  ::sleep(1);  // a creation time would differ now
   write_flex_body(body, folder.at("b.h5"));
   EXPECT_EQ(test::read_bytes(folder.at("a.h5")), test::read_bytes(folder.at("b.h5")));
 }
@@ -102,7 +101,8 @@ TEST(FlexBodyFile, SameBodyGivesSameBytes) {
 TEST(FlexBodyFile, H5pySeesTheContract) {
   const TempFolder folder;
   write_flex_body(test::make_random_body(7, 4, 3, true), folder.at("body.h5"));
-  EXPECT_EQ(test::run_python(BOUGH_SOURCE_DIR "/tests/formats/files/check_flexbody.py " + folder.at("body.h5") + " 4 3"), 0);
+  EXPECT_EQ(
+      test::run_python(BOUGH_SOURCE_DIR "/tests/formats/files/check_flexbody.py " + folder.at("body.h5") + " 4 3"), 0);
 }
 
 TEST(FlexBodyFile, TruncatedAnywhereIsAnInputError) {
@@ -190,7 +190,8 @@ TEST(FlexBodyFile, FailedWriteLeavesTheOldFileAndNothingElse) {
   std::filesystem::create_directories(folder.at("body.h5/inside"));
   EXPECT_THROW(write_flex_body(body, folder.at("body.h5")), ComputationError);
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(folder.get_path())) files += entry.is_regular_file() ? 1 : 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.get_path()))
+    files += entry.is_regular_file() ? 1 : 0;
   EXPECT_EQ(files, 0);
 }
 
@@ -252,7 +253,8 @@ TEST(Sha256, NistVectors) {
   // FIPS 180-2 appendix B and the empty message.
   const TempFolder folder;
   EXPECT_EQ(calc_sha256(folder.write("empty", "")), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  EXPECT_EQ(calc_sha256(folder.write("abc", "abc")), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(calc_sha256(folder.write("abc", "abc")),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(calc_sha256(folder.write("two", "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq")),
             "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
   EXPECT_EQ(calc_sha256(folder.write("million", std::string(1000000, 'a'))),

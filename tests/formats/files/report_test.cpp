@@ -39,8 +39,10 @@ TEST(Csv, HeaderRowsAndEveryDigit) {
 }
 
 TEST(Axis, TicksAreRound) {
-  EXPECT_THAT(make_axis(0, 20, 9, false).labels, ElementsAre("0", "2.5", "5.0", "7.5", "10.0", "12.5", "15.0", "17.5", "20.0"));
-  EXPECT_THAT(make_axis(-0.55, 0.0, 6, false).labels, ElementsAre("\u22120.5", "\u22120.4", "\u22120.3", "\u22120.2", "\u22120.1", "0"));
+  EXPECT_THAT(make_axis(0, 20, 9, false).labels,
+              ElementsAre("0", "2.5", "5.0", "7.5", "10.0", "12.5", "15.0", "17.5", "20.0"));
+  EXPECT_THAT(make_axis(-0.55, 0.0, 6, false).labels,
+              ElementsAre("\u22120.5", "\u22120.4", "\u22120.3", "\u22120.2", "\u22120.1", "0"));
   const Axis large = make_axis(0, 2.4e6, 5, false);
   EXPECT_EQ(large.exponent, 6);
   EXPECT_THAT(large.labels, ElementsAre("0", "0.5", "1.0", "1.5", "2.0"));
@@ -49,8 +51,8 @@ TEST(Axis, TicksAreRound) {
 }
 
 TEST(Axis, EveryRangeGivesTicksInsideIt) {
-  for (const auto& [min, max] : {std::pair{0.0, 0.0}, std::pair{5.0, 5.0}, std::pair{-1e-12, 1e-12}, std::pair{1.0, 1e12},
-                                 std::pair{-7.3, -7.2}, std::pair{1e6, 1e6 + 1}}) {
+  for (const auto& [min, max] : {std::pair{0.0, 0.0}, std::pair{5.0, 5.0}, std::pair{-1e-12, 1e-12},
+                                 std::pair{1.0, 1e12}, std::pair{-7.3, -7.2}, std::pair{1e6, 1e6 + 1}}) {
     for (const bool widen : {false, true}) {
       const Axis axis = make_axis(min, max, 7, widen);
       EXPECT_GE(axis.ticks.size(), 3u) << min;
@@ -106,9 +108,12 @@ std::vector<std::pair<double, double>> collect_points(const std::string& svg) {
 TEST(SvgPlot, IsWellFormedAndShowsEverything) {
   const test::TempFolder folder;
   const std::string svg = draw_svg(make_figure());
-  EXPECT_EQ(test::run_python("-c \"import sys, xml.dom.minidom as m; m.parse(sys.argv[1])\" " + folder.write("p.svg", svg)), 0);
+  EXPECT_EQ(
+      test::run_python("-c \"import sys, xml.dom.minidom as m; m.parse(sys.argv[1])\" " + folder.write("p.svg", svg)),
+      0);
   EXPECT_THAT(svg, HasSubstr("Tip deflection &lt;spin-up&gt; &amp; &quot;figure 5&quot;"));
-  for (const char* text : {"time, s", "tip deflection, m", "with geometric stiffness", "without", "report, digitized"}) {
+  for (const char* text :
+       {"time, s", "tip deflection, m", "with geometric stiffness", "without", "report, digitized"}) {
     EXPECT_THAT(svg, HasSubstr(text));
   }
   // The reference curve is 8 circles and one in the legend.
@@ -132,7 +137,7 @@ TEST(SvgPlot, ClippedLineMeetsTheFrameWhereItShould) {
   Plot plot;
   Curve line;
   line.x = VectorXd::LinSpaced(2, 0, 1);
-  line.y = VectorXd::LinSpaced(2, -2, 2);   // crosses y = -1 at x = 1/4 and y = 1 at x = 3/4
+  line.y = VectorXd::LinSpaced(2, -2, 2);  // crosses y = -1 at x = 1/4 and y = 1 at x = 3/4
   plot.curves = {line};
   plot.y_min = -1;
   plot.y_max = 1;

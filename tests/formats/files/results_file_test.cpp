@@ -108,7 +108,7 @@ TEST(ResultsFile, KilledRunKeepsWhatItHad) {
   ::waitpid(child, &status, 0);
   ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
   const ResultsFile file = read_results(path);
-  expect_samples(file, 1201);   // 1001 by the checkpoint, then whole batches of 50
+  expect_samples(file, 1201);  // 1001 by the checkpoint, then whole batches of 50
   EXPECT_FALSE(file.completed);
   EXPECT_EQ(file.reason, "running");
   EXPECT_EQ(read_checkpoint(path).time, 100.0);
@@ -169,7 +169,7 @@ TEST(ResultsFile, ResumeCutsBackToTheCheckpointAndGoesOn) {
   sink->begin(make_header());
   EXPECT_EQ(read_results(path).time.size(), 61);
   EXPECT_EQ(read_results(path).reason, "running");
-  for (int k = 60; k < 130; ++k) sink->write_sample(make_sample(k));   // the first is there already
+  for (int k = 60; k < 130; ++k) sink->write_sample(make_sample(k));  // the first is there already
   sink->write_event({12.0, "late"});
   sink->end(true, "done");
   const ResultsFile file = read_results(path);

@@ -191,25 +191,26 @@ TEST(SystemFile, LinesAreThoseOfTheKeys) {
   const std::string path = folder.write("s.toml",
                                         "[[body]]\n"
                                         "name = \"a\"\n"
-                                        "mass = \"x\"\n"                    // 3
-                                        "stifening = true\n"              // 4
+                                        "mass = \"x\"\n"      // 3
+                                        "stifening = true\n"  // 4
                                         "[[hinge]]\n"
                                         "name = \"h\"\n"
-                                        "type = \"revolut\"\n"              // 7
-                                        "child = \"b\"\n"                   // hinge of line 5
-                                        "axis = [0, 0]\n"                 // 9
-                                        "[[actuator]]\n"                  // 10
+                                        "type = \"revolut\"\n"  // 7
+                                        "child = \"b\"\n"       // hinge of line 5
+                                        "axis = [0, 0]\n"       // 9
+                                        "[[actuator]]\n"        // 10
                                         "name = \"m\"\n"
                                         "[simulation]\n"
-                                        "duration = -1\n");               // 13
+                                        "duration = -1\n");  // 13
   Diagnostics diagnostics;
   read_system_spec(path, diagnostics);
   std::vector<std::pair<std::string, int>> found;
   for (const auto& d : diagnostics.items()) found.emplace_back(d.id, d.where.line);
-  EXPECT_THAT(found, testing::UnorderedElementsAre(
-                         std::pair{"toml.wrong-type", 3}, std::pair{"toml.unknown-key", 4}, std::pair{"toml.bad-value", 7},
-                         std::pair{"toml.unknown-name", 5}, std::pair{"toml.wrong-length", 9},
-                         std::pair{"toml.unsupported-table", 10}, std::pair{"toml.out-of-range", 13}))
+  EXPECT_THAT(found,
+              testing::UnorderedElementsAre(std::pair{"toml.wrong-type", 3}, std::pair{"toml.unknown-key", 4},
+                                            std::pair{"toml.bad-value", 7}, std::pair{"toml.unknown-name", 5},
+                                            std::pair{"toml.wrong-length", 9}, std::pair{"toml.unsupported-table", 10},
+                                            std::pair{"toml.out-of-range", 13}))
       << join(diagnostics);
 }
 
@@ -270,7 +271,8 @@ TEST(BodyFile, SmallestFileHasTheDefaults) {
   const TempFolder folder;
   Diagnostics diagnostics;
   const auto spec = read_body_spec(
-      folder.write("arm.toml", "[body]\ndeck = \"a.bdf\"\n[body.modes]\nnumber = 3\n[[body.load]]\nname = \"t\"\nnode = 4\n"),
+      folder.write("arm.toml",
+                   "[body]\ndeck = \"a.bdf\"\n[body.modes]\nnumber = 3\n[[body.load]]\nname = \"t\"\nnode = 4\n"),
       diagnostics);
   ASSERT_TRUE(diagnostics.items().empty()) << join(diagnostics);
   EXPECT_EQ(spec.name, "arm");
@@ -309,7 +311,9 @@ TEST(Schema, AnotherValidatorAgrees) {
                  test::make_document(test::kGoodBody, bad));
   }
   EXPECT_EQ(test::run_python(BOUGH_SOURCE_DIR "/tests/formats/files/check_schema.py " BOUGH_SOURCE_DIR "/data/schema "
-                             "--cases " + folder.get_path()), 0);
+                                              "--cases " +
+                             folder.get_path()),
+            0);
 }
 
 }  // namespace

@@ -103,8 +103,7 @@ TEST(Errors, ContradictionsThatAreWarnings) {
 }
 
 TEST(UnusedCards, WhatCarriesStiffnessMassConstraintIsAnError) {
-  const char* text =
-      "GRID,1\nCQUAD8,1,1,1,2,3,4\nCQUAD8,2,1,1,2,3,4\nNSM,1,PBAR,1,2.\nRBE1,1,2,123456\nCSHEAR,9\n";
+  const char* text = "GRID,1\nCQUAD8,1,1,1,2,3,4\nCQUAD8,2,1,1,2,3,4\nNSM,1,PBAR,1,2.\nRBE1,1,2,123456\nCSHEAR,9\n";
   const auto r = read(text);
   EXPECT_EQ(r.count("deck.unsupported-card"), 4) << r.get_messages();
   EXPECT_EQ(r.find("deck.unsupported-card")->where.line, 2);
@@ -123,7 +122,8 @@ TEST(UnusedCards, WhatCarriesStiffnessMassConstraintIsAnError) {
 }
 
 TEST(UnusedCards, WhatCarriesALoadOrNothingIsAWarning) {
-  const auto r = read("PLOADX1,1,2,3.\nPLOADX1,1,3,3.\nMAT10,1,2.,3.\nAERO,,1.\nCDAMP2,1,3.,2,1\nCVISC,2,1,2,3\nSUPORT,1,3\n");
+  const auto r =
+      read("PLOADX1,1,2,3.\nPLOADX1,1,3,3.\nMAT10,1,2.,3.\nAERO,,1.\nCDAMP2,1,3.,2,1\nCVISC,2,1,2,3\nSUPORT,1,3\n");
   EXPECT_EQ(r.diagnostics.num_errors(), 0) << r.get_messages();
   EXPECT_EQ(r.count("deck.unused-card"), 6);
   ASSERT_EQ(r.deck.unused.size(), 6u);

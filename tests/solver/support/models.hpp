@@ -2,8 +2,8 @@
 /// \file Hand-made bodies and systems for the solver's tests.
 ///
 /// PointBody is a cloud of point masses that deforms as r_k = p_k + φ_k η + ½ ηᵀ g_k η with a random second-order field
-/// g_k: its mass integrals, the twelve K_G1 and every K_G2 follow by plain sums (docs/theory/flexible-body.md §4), so the
-/// flexible-body record made from it is exact by construction.
+/// g_k: its mass integrals, the twelve K_G1 and every K_G2 follow by plain sums (docs/theory/flexible-body.md §4), so
+/// the flexible-body record made from it is exact by construction.
 #include <map>
 #include <memory>
 #include <random>
