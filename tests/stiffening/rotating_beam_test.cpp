@@ -91,14 +91,20 @@ TEST_F(RotatingBeam, ChordHubRadiusZero) {
   }
 }
 
+/// (η, second flap frequency) at δ = 1.
+const double kSecondFlap1[][2] = {{1, 22.37501}, {2, 23.36604}, {6, 32.02724}, {12, 51.07013}};
+
 TEST_F(RotatingBeam, FlapHubRadiusOne) {
-  const double second[][2] = {{1, 22.37501}, {2, 23.36604}, {6, 32.02724}, {12, 51.07013}};
   for (int i = 0; i < 12; ++i) EXPECT_NEAR(calc_frequencies(i + 1, 1, 2)(0) / kFlap1[i], 1, 1e-3) << i + 1;
-  for (const auto& [eta, expected] : second) EXPECT_NEAR(calc_frequencies(eta, 1, 2)(1) / expected, 1, 5e-3) << eta;
+  for (const auto& [eta, expected] : kSecondFlap1)
+    EXPECT_NEAR(calc_frequencies(eta, 1, 2)(1) / expected, 1, 5e-3) << eta;
 }
 
 TEST_F(RotatingBeam, ChordHubRadiusOne) {
   for (int i = 0; i < 12; ++i) EXPECT_NEAR(calc_frequencies(i + 1, 1, 1)(0) / kChord1[i], 1, 1e-3) << i + 1;
+  // Chordwise squared is flapwise squared less η², whatever the hub radius.
+  for (const auto& [eta, flap] : kSecondFlap1)
+    EXPECT_NEAR(calc_frequencies(eta, 1, 1)(1) / std::sqrt(flap * flap - eta * eta), 1, 5e-3) << eta;
 }
 
 }  // namespace
