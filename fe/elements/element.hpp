@@ -56,6 +56,11 @@ class Element {
   /// M += scale M_e, N x N, in deck units (PARAM,WTMASS is applied by assembly).
   virtual void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const;
 
+  /// True when add_damping() adds something: dampers, bushes with B.
+  virtual bool has_damping() const { return false; }
+  /// B += scale B_e, N x N: viscous damping. Symmetric; B_e times any rigid motion is zero for an ungrounded element.
+  virtual void add_damping(double scale, Eigen::Ref<MatrixXd> B) const;
+
   /// Number s of internal force components (stress resultants) on which K_G depends; 0: no geometric stiffness.
   virtual int num_internal_forces() const { return 0; }
   /// Internal forces (s) of the element for its nodal displacements u (N), linear in u. Names: internal_force_names().

@@ -118,6 +118,22 @@ struct Pbush {
   double mass = 0;
   CardLocation at;
 };
+/// PBUSH1D: the linear part; a table or equation on it is reported.
+struct Pbush1d {
+  int id = 0;
+  double k = 0, c = 0, m = 0;  ///< stiffness, viscous damping, mass
+  CardLocation at;
+};
+struct Pdamp {
+  int id = 0;
+  double b = 0;
+  CardLocation at;
+};
+struct Pvisc {
+  int id = 0;
+  double ce = 0, cr = 0;  ///< viscous coefficients, extension and rotation
+  CardLocation at;
+};
 struct Pmass {
   int id = 0;
   double m = 0;
@@ -165,6 +181,29 @@ struct Cbush {
   double s = 0.5;             ///< location of the spring from A to B
   int ocid = -1;              ///< -1: s is used; otherwise s_offset in this system
   Vector3d s_offset = Vector3d::Zero();
+  CardLocation at;
+};
+/// CBUSH1D: spring, damper and mass along the line of two grids, or along x of cid.
+struct Cbush1d {
+  int id = 0, pid = 0, ga = 0, gb = 0;  ///< gb = 0: grounded
+  std::optional<int> cid;
+  CardLocation at;
+};
+/// CDAMP1, CDAMP3 (pid > 0) and CDAMP2, CDAMP4 (pid = 0, b given). g = 0: grounded.
+struct ScalarDamper {
+  int id = 0, pid = 0;
+  double b = 0;
+  int g1 = 0, c1 = 0, g2 = 0, c2 = 0;
+  CardLocation at;
+  bool by_scalar_points = false;  ///< CDAMP3 and CDAMP4
+};
+struct Cvisc {
+  int id = 0, pid = 0, ga = 0, gb = 0;
+  CardLocation at;
+};
+/// PLOTEL: a line that is drawn and carries nothing.
+struct Plotel {
+  int id = 0, ga = 0, gb = 0;
   CardLocation at;
 };
 /// CMASS1 (pid > 0) and CMASS2.
@@ -222,6 +261,32 @@ struct Rrod {
 struct Rbar {
   int id = 0, ga = 0, gb = 0;
   unsigned cna = 0, cnb = 0, cma = 0, cmb = 0;
+  CardLocation at;
+};
+
+/// Components of one grid: a term of RBE1, SUPORT, ASET, OMIT.
+struct GridComponents {
+  int g = 0;
+  unsigned c = 0;  ///< 0: a scalar point
+  CardLocation at;
+};
+/// RBE1: the six independent components hold the body, the dependent ones follow it.
+struct Rbe1 {
+  int id = 0;
+  std::vector<GridComponents> independent, dependent;
+  CardLocation at;
+};
+/// DMIG: a matrix given term by term on the displacement (CD) axes.
+struct DirectMatrix {
+  struct Entry {
+    int gj = 0, cj = 0, gi = 0, ci = 0;  ///< column, row; component 0 = scalar point
+    double value = 0;                    ///< real part
+    double imaginary = 0;
+  };
+  std::string name;
+  int form = 6;  ///< 1 square, 2 rectangular, 6 symmetric (a term stands for its mirror), 9 rectangular
+  bool is_complex = false;
+  std::vector<Entry> entries;
   CardLocation at;
 };
 
@@ -290,6 +355,8 @@ struct Subcase {
   int id = 0;  ///< 0: what stands above the first SUBCASE (already merged into each subcase)
   std::string title, subtitle, label;
   int spc = 0, mpc = 0, load = 0, method = 0, statsub = 0;  ///< 0: none
+  int suport1 = 0;
+  std::vector<std::pair<double, std::string>> k2gg, m2gg, b2gg;  ///< (scale, DMIG name)
 };
 
 /// A card that Bough does not use: what it would have carried, how often, and where first.
@@ -322,8 +389,12 @@ struct Deck {
   std::vector<Pelas> pelas;
   std::vector<Pbush> pbush;
   std::vector<Pmass> pmass;
+  std::vector<Pbush1d> pbush1d;
+  std::vector<Pdamp> pdamp;
+  std::vector<Pvisc> pvisc;
   std::vector<Pshell> pshell;
   std::vector<Pcomp> pcomp;
+  std::vector<Pshear> pshear;
   std::vector<Psolid> psolid;
   std::vector<BeamElement> beams;
   std::vector<Crod> crod;
@@ -331,7 +402,11 @@ struct Deck {
   std::vector<Ctube> ctube;
   std::vector<ScalarSpring> springs;
   std::vector<Cbush> cbush;
+  std::vector<Cbush1d> cbush1d;
+  std::vector<ScalarDamper> dampers;
+  std::vector<Cvisc> cvisc;
   std::vector<ShellElement> shells;
+  std::vector<ShearPanel> shear_panels;
   std::vector<SolidElement> solids;
   std::vector<ScalarMass> scalar_masses;
   std::vector<Conm1> conm1;
@@ -340,6 +415,12 @@ struct Deck {
   std::vector<Rbe3> rbe3;
   std::vector<Rbar> rbar;
   std::vector<Rrod> rrod;
+  std::vector<Rbe1> rbe1;
+  std::vector<DirectMatrix> direct_matrices;
+  std::vector<GridComponents> suport;                  ///< SUPORT
+  std::map<int, std::vector<GridComponents>> suport1;  ///< SUPORT1, by set
+  std::vector<GridComponents> aset, omit;              ///< ASETi, OMITi, flattened; empty: no reduction
+  std::vector<Plotel> plotel;
   std::vector<Spc> spc;
   std::vector<SetUnion> spcadd;
   std::vector<Mpc> mpc;

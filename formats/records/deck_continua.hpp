@@ -1,5 +1,6 @@
 #pragma once
 /// \file Cards of plates, shells and solids in a deck: included by deck.hpp.
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -57,13 +58,27 @@ struct Pcomp {
 
 struct ShellElement {
   int id = 0, pid = 0;
-  std::string card;  ///< CQUAD4, CTRIA3, CQUADR, CTRIAR
-  std::vector<int> grids;
-  double theta_deg = 0;     ///< material angle from side 1-2
-  std::optional<int> mcid;  ///< or: its x-axis projected on the element
+  std::string card;           ///< CQUAD4, CTRIA3, CQUADR, CTRIAR, CQUAD8, CTRIA6
+  std::vector<int> grids;     ///< the corners
+  std::vector<int> midsides;  ///< CQUAD8, CTRIA6: one per side from 1-2 on, 0 = absent; empty = none
+  double theta_deg = 0;       ///< material angle from side 1-2
+  std::optional<int> mcid;    ///< or: its x-axis projected on the element
   double z_offset = 0;
   bool relative_thickness = false;  ///< TFLAG 1: t multiplies the property's
   std::vector<double> t;            ///< corner thickness; empty = the property's
+  CardLocation at;
+};
+
+/// CSHEAR: carries shear, and by F1, F2 of PSHEAR rods along its sides.
+struct ShearPanel {
+  int id = 0, pid = 0;
+  std::array<int, 4> grids{};
+  CardLocation at;
+};
+struct Pshear {
+  int id = 0, mid = 0;
+  double t = 0, nsm = 0;
+  double f1 = 0, f2 = 0;  ///< effectiveness for extension along sides 1-2, 3-4 and 2-3, 4-1 (docs/elements)
   CardLocation at;
 };
 
