@@ -1,0 +1,98 @@
+#include "bough/fe/elements/shell_card.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace bough::fe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+Vector3d calc_normal(const std::vector<Vector3d>& x) {
+  return x.size() == 4 ? (x[2] - x[0]).cross(x[3] - x[1]) : (x[1] - x[0]).cross(x[2] - x[0]);
+}
+
+/// Empty when the corners make a proper convex facet, else what is wrong.
+std::string check_facet(const std::vector<Vector3d>& x) {
+  const Vector3d normal = calc_normal(x);
+  const double scale = (x[2] - x[0]).squaredNorm();
+  if (!(normal.norm() > 1e-10 * scale)) return "has no area";
+  const std::size_t n = x.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vector3d a = x[(i + 1) % n] - x[i], b = x[(i + n - 1) % n] - x[i];
+    if (!(a.cross(b).dot(normal) > 0))
+      return "has an interior angle of 180 degrees or more at corner " + std::to_string(i + 1);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<ResolvedShell> resolve_shell(Maker& maker, ShellSections& sections, const records::ShellElement& card) {
+  ResolvedShell r;
+  r.card = &card;
+  r.who = card.card + " " + std::to_string(card.id);
+  bool ok = true;
+  for (int g : card.grids) {
+    r.nodes.push_back(maker.find_grid(g, r.who, card.at));
+    ok = ok && r.nodes.back() >= 0;
+  }
+  for (int g : card.midsides) {
+    r.midsides.push_back(g == 0 ? -1 : maker.find_grid(g, r.who, card.at));
+    ok = ok && (g == 0 || r.midsides.back() >= 0);
+  }
+  std::optional<double> thickness;
+  if (!card.t.empty()) {
+    double mean = 0;
+    for (double t : card.t) mean += t / static_cast<double>(card.t.size());
+    thickness = card.relative_thickness ? mean * sections.find_thickness(card.pid).value_or(0) : mean;
+    if (std::any_of(card.t.begin(), card.t.end(), [&](double t) { return t != card.t[0]; }))
+      for (double t : card.t) r.thickness_ratio.push_back(t / mean);
+  }
+  r.section = sections.find(card.pid, r.who, card.at, thickness);
+  if (!r.section || !ok) return std::nullopt;
+  for (int n : r.nodes) r.x.push_back(maker.nodes().node(n).x);
+  if (const std::string wrong = check_facet(r.x); !wrong.empty()) {
+    maker.error("fe.bad-facet", card.at, r.who + " " + wrong, "correct the corners or their order");
+    return std::nullopt;
+  }
+  r.normal = calc_normal(r.x).normalized();
+  return r;
+}
+
+double calc_material_angle(Maker& maker, const records::ShellElement& card, const Vector3d& x, const Vector3d& normal,
+                           const Vector3d& side) {
+  if (!card.mcid) return card.theta_deg * kDegree;
+  const Vector3d axis =
+      maker.nodes().calc_axes(*card.mcid, x, maker.deck().locate(card.at), maker.diagnostics()).col(0);
+  return std::atan2(normal.dot(side.cross(axis)), side.dot(axis) - side.dot(normal) * normal.dot(axis));
+}
+
+double calc_material_angle(Maker& maker, const ResolvedShell& shell) {
+  Vector3d centre = Vector3d::Zero();
+  for (const auto& p : shell.x) centre += p / static_cast<double>(shell.x.size());
+  return calc_material_angle(maker, *shell.card, centre, shell.normal, shell.x[1] - shell.x[0]);
+}
+
+std::unordered_map<int, Vector3d> calc_surface_normals(const Maker& maker, const std::vector<ResolvedShell>& shells) {
+  const auto* param = maker.deck().find_param("SNORM");
+  const double limit = param ? std::atof(param->value.c_str()) : 20.0;
+  std::unordered_map<int, Vector3d> sum;
+  std::set<int> broken;
+  if (!(limit > 0)) return sum;
+  for (const auto& shell : shells)
+    for (int node : shell.nodes) {
+      Vector3d& total = sum.try_emplace(node, Vector3d::Zero()).first->second;
+      total += total.dot(shell.normal) < 0 ? Vector3d(-shell.normal) : shell.normal;
+    }
+  for (const auto& shell : shells)
+    for (int node : shell.nodes)
+      if (std::abs(sum[node].normalized().dot(shell.normal)) < std::cos(limit * kDegree)) broken.insert(node);
+  for (int node : broken) sum.erase(node);
+  for (auto& [node, total] : sum) total.normalize();
+  return sum;
+}
+
+}  // namespace bough::fe

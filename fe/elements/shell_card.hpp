@@ -1,0 +1,36 @@
+#pragma once
+/// \file What every shell card needs before it becomes an element: grids, property, material angle, surface normals.
+/// Internal.
+#include <unordered_map>
+
+#include "bough/fe/elements/shell_sections.hpp"
+
+namespace bough::fe {
+
+/// A shell card whose grids and property exist and whose corners make a proper convex facet.
+struct ResolvedShell {
+  const records::ShellElement* card = nullptr;
+  std::string who;                        ///< "CQUAD4 17"
+  std::vector<int> nodes;                 ///< indices of the corners
+  std::vector<int> midsides;              ///< indices, -1 = absent; as card->midsides
+  std::vector<Vector3d> x;                ///< corners in basic
+  Vector3d normal = Vector3d::UnitZ();    ///< of the mean plane of the corners
+  const ShellSection* section = nullptr;  ///< in material axes, at the mean of the corner thicknesses
+  /// T1 ... of the corners as fractions of their mean (TFLAG applied); empty = uniform.
+  std::vector<double> thickness_ratio;
+};
+
+/// Empty after reporting fe.missing-grid, fe.missing-property, fe.bad-property or fe.bad-facet.
+std::optional<ResolvedShell> resolve_shell(Maker& maker, ShellSections& sections, const records::ShellElement& card);
+
+/// Angle (radians) about `normal` from `side` to the material's x-axis: THETA, or the x-axis of MCID at x projected.
+double calc_material_angle(Maker& maker, const records::ShellElement& card, const Vector3d& x, const Vector3d& normal,
+                           const Vector3d& side);
+/// The same at the centre of the corners, from side 1-2.
+double calc_material_angle(Maker& maker, const ResolvedShell& shell);
+
+/// Normals of the surface at every node where all shells agree within PARAM,SNORM degrees (default 20): the sum of the
+/// unit normals, each turned to the side of the first.
+std::unordered_map<int, Vector3d> calc_surface_normals(const Maker& maker, const std::vector<ResolvedShell>& shells);
+
+}  // namespace bough::fe

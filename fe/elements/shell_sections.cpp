@@ -1,0 +1,150 @@
+#include "bough/fe/elements/shell_sections.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace bough::fe {
+
+namespace {
+constexpr double kDegree = std::numbers::pi / 180;
+}
+
+ShellSections::ShellSections(Maker& maker)
+    : maker_(maker),
+      pshell_(maker.deck().pshell),
+      pcomp_(maker.deck().pcomp),
+      mat1_(maker.deck().mat1),
+      mat2_(maker.deck().mat2),
+      mat8_(maker.deck().mat8) {
+  const auto* k6rot = maker.deck().find_param("K6ROT");
+  drilling_factor_ = 1e-6 * (k6rot ? std::atof(k6rot->value.c_str()) : 100.0);
+}
+
+const ShellSection* ShellSections::find(int pid, const std::string& who, const records::CardLocation& at,
+                                        std::optional<double> thickness) {
+  const auto key = std::make_pair(pid, thickness.value_or(-1));
+  if (const auto it = made_.find(key); it != made_.end()) return it->second ? &*it->second : nullptr;
+  auto& slot = made_[key];
+  if (const auto* p = pshell_.find(pid)) {
+    slot = make_pshell(*p, who, at, thickness);
+  } else if (const auto* c = pcomp_.find(pid)) {
+    slot = make_pcomp(*c);
+  } else {
+    maker_.report_missing_property(pid, "PSHELL, PCOMP or PCOMPG", who, at);
+  }
+  if (slot) slot->drilling = drilling_factor_ * slot->A(2, 2);
+  return slot ? &*slot : nullptr;
+}
+
+std::optional<double> ShellSections::find_thickness(int pid) const {
+  const auto* p = pshell_.find(pid);
+  return p ? p->t : std::nullopt;
+}
+
+std::optional<PlaneMaterial> ShellSections::find_material(int mid, const std::string& who,
+                                                          const records::CardLocation& at) {
+  const auto [slot, is_new] = materials_.try_emplace(mid);
+  if (is_new) slot->second = make_material(mid, who, at);
+  return slot->second;
+}
+
+std::optional<PlaneMaterial> ShellSections::make_material(int mid, const std::string& who,
+                                                          const records::CardLocation& at) {
+  if (const auto* m = mat8_.find(mid)) {
+    if (!(m->E1 > 0 && m->E2 > 0 && m->G12 > 0 && m->nu12 * m->nu12 * m->E2 < m->E1)) {
+      maker_.error("fe.bad-material", m->at, "MAT8 " + std::to_string(mid) + " is not positive definite",
+                   "E1, E2, G12 are positive and NU12² E2 < E1");
+      return std::nullopt;
+    }
+    return make_orthotropic_plane(m->E1, m->E2, m->nu12, m->G12, m->G1z, m->G2z, m->rho);
+  }
+  if (const auto* m = mat2_.find(mid)) {
+    PlaneMaterial p;
+    p.Q = m->G;
+    p.G << m->G(0, 0), m->G(0, 1), m->G(0, 1), m->G(1, 1);  // a MAT2 named by MID3 gives G11 G12 G22 of the shear law
+    p.rho = m->rho;
+    p.shear_rigid = true;  // and none when it stands for a ply
+    return p;
+  }
+  if (!mat1_.find(mid)) {
+    maker_.error(
+        "fe.missing-material", at,
+        who + " refers to material " + std::to_string(mid) + ", but the deck has no MAT1, MAT2 or MAT8 with that id",
+        "add the material or correct the id");
+    return std::nullopt;
+  }
+  const records::Mat1* m = maker_.find_material(mid, who, at);
+  if (!m) return std::nullopt;
+  return make_isotropic_plane(m->E, m->G, m->nu, m->rho);
+}
+
+std::optional<ShellSection> ShellSections::make_pshell(const records::Pshell& p, const std::string& who,
+                                                       const records::CardLocation& at,
+                                                       std::optional<double> thickness) {
+  const std::string name = "PSHELL " + std::to_string(p.id);
+  const std::optional<double> given = thickness ? thickness : p.t;
+  if (!given || !(*given > 0)) {
+    maker_.error("fe.bad-property", given ? p.at : at,
+                 who + " has no positive thickness: neither the element nor " + name + " gives one",
+                 "set T on the PSHELL or T1.. on the element");
+    return std::nullopt;
+  }
+  const double t = *given;
+  ShellSection s;
+  bool ok = true;
+  auto material = [&](int mid) {
+    auto m = find_material(mid, name, p.at);
+    ok = ok && m.has_value();
+    return m.value_or(PlaneMaterial{});
+  };
+  double rho = 0;
+  if (p.mid1 > 0) {
+    const auto m = material(p.mid1);
+    s.A = t * m.Q;
+    rho = m.rho;
+  }
+  const int bending = p.mid2 == -1 ? p.mid1 : p.mid2;
+  if (bending > 0) {
+    const auto m = material(bending);
+    s.D = p.bending_ratio * t * t * t / 12 * m.Q;
+    if (p.mid1 <= 0) rho = m.rho;
+  }
+  if (p.mid4 > 0) s.B = -t * t * material(p.mid4).Q;  // Nastran's curvature has the other sign
+  s.shear_flexible = p.mid3 > 0 && bending > 0 && p.shear_ratio > 0;
+  if (s.shear_flexible) s.S = p.shear_ratio * t * material(p.mid3).G;
+  // A material without transverse shear moduli leaves the plate rigid in shear, as a blank MID3 does.
+  s.shear_flexible = s.shear_flexible && s.S.determinant() > 0 && s.S(0, 0) > 0;
+  s.mass = rho * t + p.nsm;
+  s.rotary_inertia = rho * t * t * t / 12;
+  if (!ok) return std::nullopt;
+  return s;
+}
+
+std::optional<ShellSection> ShellSections::make_pcomp(const records::Pcomp& p) {
+  const std::string name = "PCOMP " + std::to_string(p.id);
+  std::vector<LaminateLayer> layers;
+  bool ok = !p.plies.empty();
+  for (const auto& ply : p.plies) {
+    const auto m = find_material(ply.mid, name, p.at);
+    ok = ok && m && ply.t > 0;
+    if (!(ply.t > 0))
+      maker_.error("fe.bad-property", p.at, name + " has a ply of thickness " + show(ply.t),
+                   "thicknesses are positive");
+    if (m) layers.push_back({rotate_material(*m, ply.theta_deg * kDegree), ply.t});
+  }
+  if (!ok) return std::nullopt;
+  ShellSection s = make_laminate_section(layers, p.z0);
+  s.mass += p.nsm;
+  if (!p.bending) {
+    s.D.setZero();
+    s.B.setZero();
+    s.shear_flexible = false;
+  }
+  if (!p.membrane) {
+    s.A.setZero();
+    s.B.setZero();
+  }
+  return s;
+}
+
+}  // namespace bough::fe
