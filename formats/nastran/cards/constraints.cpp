@@ -67,6 +67,37 @@ void parse_rbe3(Card& card, Reading& r) {
   if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe3.push_back(std::move(e));
 }
 
+/// EID, pairs GN CN (three per line), UM with pairs GM CM, then ALPHA, a real.
+void parse_rbe1(Card& card, Reading& r) {
+  records::Rbe1 e;
+  e.id = card.read_id(0, "EID");
+  e.at = card.get_location();
+  const int size = card.get_size();
+  bool has_um = false;
+  for (int i = 1; i < size;) {
+    if (card.is_blank(i)) {
+      ++i;
+    } else if (card.is_word(i, "UM") && !has_um) {
+      has_um = true;
+      ++i;
+    } else if (i == size - 1 && !card.is_integer(i)) {
+      card.read_real(i++, "ALPHA");
+    } else {
+      const int g = card.read_id(i, has_um ? "GM" : "GN");
+      (has_um ? e.dependent : e.independent).push_back({g, card.read_components(i + 1, has_um ? "CM" : "CN"), e.at});
+      i += 2;
+    }
+  }
+  int num_independent = 0;
+  for (const auto& term : e.independent) num_independent += std::popcount(term.c);
+  if (card.is_ok() && num_independent != 6)
+    card.fail("deck.field-range", 1, "CN has " + std::to_string(num_independent) + " components, expected six in all",
+              "choose six that hold a rigid body");
+  if (card.is_ok() && e.dependent.empty())
+    card.fail("deck.missing-field", 8, "UM is blank, expected a dependent grid at least");
+  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe1.push_back(std::move(e));
+}
+
 void parse_rrod(Card& card, Reading& r) {
   records::Rrod e;
   e.id = card.read_id(0, "EID");
@@ -170,6 +201,7 @@ void parse_mpc(Card& card, Reading& r) {
 }  // namespace
 
 void add_constraint_parsers(ParserTable& table) {
+  table["RBE1"] = parse_rbe1;
   table["RBE2"] = parse_rbe2;
   table["RBE3"] = parse_rbe3;
   table["RROD"] = parse_rrod;

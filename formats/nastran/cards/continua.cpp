@@ -101,39 +101,6 @@ void parse_psolid(Card& card, Reading& r) {
   if (r.claim(IdSpace::SolidProperty, p.id, card)) r.deck.psolid.push_back(p);
 }
 
-void parse_shell(Card& card, Reading& r, int corners) {
-  records::ShellElement e;
-  e.id = card.read_id(0, "EID");
-  e.pid = card.read_id(1, "PID", e.id);
-  e.card = card.get_name();
-  for (int i = 0; i < corners; ++i) e.grids.push_back(card.read_id(2 + i, "G1.."));
-  const int after = 2 + corners;
-  if (card.is_integer(after)) {
-    e.mcid = card.read_int(after, "MCID");
-    card.demand(*e.mcid >= 0, after, "MCID", "a coordinate system, or a real angle THETA");
-  } else {
-    e.theta_deg = card.read_real(after, "THETA", 0.0);
-  }
-  e.z_offset = card.read_real(after + 1, "ZOFFS", 0.0);
-  // The thicknesses T1.. stand in fields 4.. of the second line, TFLAG in field 3.
-  const int first = 10;
-  e.relative_thickness = card.read_int(9, "TFLAG", 0) == 1;
-  if (!card.is_blank(first, first + corners)) {
-    for (int i = 0; i < corners; ++i) {
-      if (card.is_blank(first + i)) {
-        card.fail("deck.missing-field", first + i, "some of T1.. are blank and some are not",
-                  "give all of them or none");
-        break;
-      }
-      e.t.push_back(card.read_real(first + i, "Ti"));
-    }
-  }
-  e.at = card.get_location();
-  if (r.claim(IdSpace::Shell, e.id, card)) r.deck.shells.push_back(std::move(e));
-}
-void parse_quad(Card& card, Reading& r) { parse_shell(card, r, 4); }
-void parse_triangle(Card& card, Reading& r) { parse_shell(card, r, 3); }
-
 void parse_solid(Card& card, Reading& r, int corners, int edges) {
   records::SolidElement e;
   e.id = card.read_id(0, "EID");
@@ -163,8 +130,6 @@ void add_continuum_parsers(ParserTable& table) {
   table["PCOMP"] = parse_pcomp;
   table["PCOMPG"] = parse_pcompg;
   table["PSOLID"] = parse_psolid;
-  table["CQUAD4"] = parse_quad;
-  table["CTRIA3"] = parse_triangle;
   table["CHEXA"] = parse_hexa;
   table["CPENTA"] = parse_penta;
   table["CTETRA"] = parse_tetra;

@@ -126,6 +126,19 @@ void parse_conrod(Card& card, Reading& r) {
   if (r.claim(IdSpace::Conrod, e.id, card)) r.deck.conrod.push_back(e);
 }
 
+/// Two per card: EID G1 G2.
+void parse_plotel(Card& card, Reading& r) {
+  for (const int first : {0, 4}) {
+    if (first > 0 && card.is_blank(first, first + 3)) break;
+    records::Plotel e;
+    e.id = card.read_id(first, "EID");
+    e.ga = card.read_id(first + 1, "G1");
+    e.gb = card.read_id(first + 2, "G2");
+    e.at = card.get_location();
+    if (r.claim(IdSpace::Plotel, e.id, card, first, 3)) r.deck.plotel.push_back(e);
+  }
+}
+
 }  // namespace
 
 void add_line_element_parsers(ParserTable& table) {
@@ -136,6 +149,7 @@ void add_line_element_parsers(ParserTable& table) {
   table["CROD"] = parse_crod;
   table["CTUBE"] = parse_ctube;
   table["CONROD"] = parse_conrod;
+  table["PLOTEL"] = parse_plotel;
 }
 
 }  // namespace bough::nastran::detail

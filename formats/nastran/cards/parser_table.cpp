@@ -11,8 +11,12 @@ const ParserTable& get_card_parsers() {
     add_point_property_parsers(t);
     add_line_element_parsers(t);
     add_point_element_parsers(t);
+    add_damper_parsers(t);
+    add_shell_parsers(t);
     add_continuum_parsers(t);
     add_constraint_parsers(t);
+    add_dof_set_parsers(t);
+    add_direct_matrix_parsers(t);
     add_load_parsers(t);
     add_pressure_parsers(t);
     add_solution_parsers(t);

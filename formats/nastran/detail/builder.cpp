@@ -6,6 +6,7 @@
 #include <unordered_set>
 
 #include "bough/formats/nastran/detail/known_cards.hpp"
+#include "bough/formats/nastran/detail/parsers.hpp"
 #include "bough/formats/nastran/detail/replication.hpp"
 #include "bough/formats/nastran/detail/text.hpp"
 
@@ -50,6 +51,7 @@ class Builder {
                          "and " + std::to_string(num_unreadable_ - max_unreadable) + " more lines that are no cards",
                          "check that the file is a Nastran deck");
     expand_ranges();
+    finish_direct_matrices(reading_);
     report_names();
   }
 
@@ -197,9 +199,9 @@ class Builder {
                        "fixed fields are eight columns wide and begin with the name; comments begin with $");
   }
 
-  /// SPC1 lists with THRU mean the grids and scalar points that exist.
+  /// Lists of SPC1, ASET1, OMIT1 with THRU mean the grids and scalar points that exist.
   void expand_ranges() {
-    if (reading_.spc_ranges.empty()) return;
+    if (reading_.spc_ranges.empty() && reading_.set_ranges.empty()) return;
     std::vector<int> ids;
     ids.reserve(deck_.grids.size() + deck_.scalar_points.size());
     for (const auto& grid : deck_.grids) ids.push_back(grid.id);
@@ -210,6 +212,17 @@ class Builder {
       for (auto id = std::lower_bound(ids.begin(), ids.end(), spc.range.first);
            id != ids.end() && *id <= spc.range.last; ++id)
         if (spc.range.contains(*id)) deck_.spc.push_back({spc.sid, *id, spc.c, 0.0, true, spc.at});
+    for (const auto& set : reading_.set_ranges) {
+      const auto before = set.terms->size();
+      for (auto id = std::lower_bound(ids.begin(), ids.end(), set.range.first);
+           id != ids.end() && *id <= set.range.last; ++id)
+        if (set.range.contains(*id)) set.terms->push_back({*id, set.c, set.at});
+      if (set.terms->size() == before)
+        diagnostics_.error("deck.bad-list", deck_.locate(set.at),
+                           std::to_string(set.range.first) + " THRU " + std::to_string(set.range.last) +
+                               " holds no grid or scalar point of the deck",
+                           "correct the ids");
+    }
   }
 
   /// Counts of all names; one message for each name that is not read, in the order of the deck.
@@ -253,8 +266,9 @@ class Builder {
                          name + " is not supported and carries " + get_effect_name(*effect) + " (" + times + ")",
                          "replace it, or --ignore " + name + " to compute without it");
     else
-      diagnostics_.warning("deck.unused-card", where, name + " is not used (" + times + ")",
-                           std::string("it carries ") + get_effect_name(*effect));
+      diagnostics_.warning(
+          "deck.unused-card", where, name + " is not used (" + times + ")",
+          find_loss(name) != nullptr ? find_loss(name) : std::string("it carries ") + get_effect_name(*effect));
   }
 
   const Source& source_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "bough/formats/nastran/detail/matrix_selection.hpp"
 #include "bough/formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
@@ -54,11 +55,15 @@ class CaseControl {
   void read(std::size_t first, std::size_t last, bool with_executive) {
     for (std::size_t i = first; i < last; ++i) {
       at_ = source_.lines[i].at;
-      const auto command = split_command(source_.lines[i].text);
-      read_command(command, with_executive);
+      std::string joined;
+      auto command = split_command(source_.lines[i].text);
       // A list such as SET goes on while lines end with a comma; a title may end with one.
-      if (is_title(command.word)) continue;
-      while (i + 1 < last && source_.lines[i].text.back() == ',') ++i;
+      if (!is_title(command.word) && source_.lines[i].text.back() == ',') {
+        joined = source_.lines[i].text;
+        while (i + 1 < last && joined.back() == ',') joined += source_.lines[++i].text;
+        command = split_command(joined);
+      }
+      read_command(command, with_executive);
     }
     finish();
   }
@@ -104,7 +109,17 @@ class CaseControl {
       if (c.options != "FLUID") read_set(c, current().method);
     } else if (is_command(c.word, "STATSUB", 4)) {
       if (c.options != "PRELOAD") read_set(c, current().statsub);
-    } else if (c.word == "PARAM")
+    } else if (is_command(c.word, "SUPORT1", 4))
+      read_set(c, current().suport1);
+    else if (c.word == "K2GG")
+      read_matrices(c, current().k2gg);
+    else if (c.word == "M2GG")
+      read_matrices(c, current().m2gg);
+    else if (c.word == "B2GG")
+      read_matrices(c, current().b2gg);
+    else if (c.word == "SET")
+      read_named_set(c);
+    else if (c.word == "PARAM")
       read_param(c);
     else if (with_executive && is_command(c.word, "SOL", 3))
       deck_.sol = make_upper(c.value.substr(0, c.value.find_first_of(" ,")));
@@ -142,6 +157,26 @@ class CaseControl {
       bad_value(c);
   }
 
+  /// Names of DMIG with or without factors: "K1, K2", "1.25*K1, 0.82*K2", or the id of a SET of such a list.
+  void read_matrices(const Command& c, MatrixList& matrices) {
+    matrices.clear();
+    if (const auto set = parse_int(c.value); set && *set > 0) {
+      matrices.emplace_back(1.0, std::string(c.value));  // replaced when all sets are known
+      return;
+    }
+    if (!read_matrix_names(c.value, matrices))
+      bad_value(c, "the name of a DMIG, or FACTOR*NAME, and more between commas");
+  }
+
+  /// Only sets of names matter here; those of ids are output requests.
+  void read_named_set(const Command& c) {
+    const auto equals = c.value.find('=');
+    const auto id = parse_int(trim(c.value.substr(0, equals)));
+    MatrixList names;
+    if (id && equals != std::string_view::npos && read_matrix_names(trim(c.value.substr(equals + 1)), names))
+      sets_[std::to_string(*id)] = std::move(names);
+  }
+
   void read_param(const Command& c) {
     auto rest = c.value;
     if (!rest.empty() && rest.front() == ',') rest = trim(rest.substr(1));
@@ -152,10 +187,10 @@ class CaseControl {
         {make_upper(trim(rest.substr(0, comma))), make_upper(trim(value.substr(0, value.find(',')))), at_});
   }
 
-  void bad_value(const Command& c) {
+  void bad_value(const Command& c, const char* expected = "the number of a set") {
     diagnostics_.error("deck.case-control-value", deck_.locate(at_),
-                       c.word + " selects '" + std::string(c.value) + "', expected the number of a set",
-                       "write " + c.word + " = n");
+                       c.word + " selects '" + std::string(c.value) + "', expected " + expected,
+                       "write " + c.word + (std::string_view(expected) == "the number of a set" ? " = n" : " = NAME"));
   }
 
   void note(const std::string& word) {
@@ -165,6 +200,7 @@ class CaseControl {
 
   void finish() {
     if (deck_.subcases.empty()) deck_.subcases.push_back(above_);
+    choose_matrices(deck_, sets_, at_, diagnostics_);
     if (ignored_.empty()) return;
     std::string words;
     for (const auto& word : ignored_) words += (words.empty() ? "" : ", ") + word;
@@ -178,6 +214,7 @@ class CaseControl {
   bool in_subcase_ = false, in_plot_section_ = false, skipping_ = false;
   records::CardLocation at_, first_ignored_;
   std::vector<std::string> ignored_;
+  NamedSets sets_;
 };
 
 void read_executive(const Source& source, std::size_t last, records::Deck& deck) {

@@ -1,6 +1,8 @@
 #pragma once
 /// \file What the card parsers share while a deck is read, and the table of parsers.
 #include <functional>
+#include <map>
+#include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
@@ -21,7 +23,11 @@ enum class IdSpace {
   ElasProperty,
   BushProperty,
   MassProperty,
+  Bush1dProperty,
+  DampProperty,
+  ViscProperty,
   ShellProperty,
+  ShearProperty,
   SolidProperty,
   Beam,
   Rod,
@@ -29,6 +35,10 @@ enum class IdSpace {
   Tube,
   Spring,
   Bush,
+  Bush1d,
+  Damper,
+  Visc,
+  Plotel,
   ScalarMass,
   ConcentratedMass,
   Shell,
@@ -65,6 +75,19 @@ struct SpcRange {
   records::CardLocation at;
 };
 
+/// ASET1, OMIT1 with THRU, likewise.
+struct SetRange {
+  std::vector<records::GridComponents>* terms = nullptr;
+  unsigned c = 0;
+  IdRange range;
+  records::CardLocation at;
+};
+/// What is known of a DMIG while its cards come in any order.
+struct DmigState {
+  std::size_t index = 0;  ///< in deck.direct_matrices
+  bool has_header = false, is_polar = false;
+};
+
 /// GRDSET, BAROR, BEAMOR: blank fields of later cards.
 struct GridDefaults {
   int cp = 0, cd = 0;
@@ -90,6 +113,8 @@ struct Reading {
   GridDefaults grid_defaults;
   BeamDefaults bar_defaults, beam_defaults;
   std::vector<SpcRange> spc_ranges;
+  std::vector<SetRange> set_ranges;
+  std::map<std::string, DmigState> direct_matrices;  ///< by name
 
   /// True if `id` is new in its space. A second card with the same content adds deck.repeated-card, with another
   /// content deck.duplicate-id. The content is num_fields fields from first_field on (all of them by default).

@@ -24,6 +24,23 @@ void write_rbe3(const records::Rbe3& e, CardSink& sink) {
   sink.put(card);
 }
 
+/// Three pairs on each line, whose first field is blank or UM.
+void add_pairs(const std::vector<records::GridComponents>& terms, CardFields& card) {
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    if (i > 0 && i % 3 == 0) card.end_line().add_blank();
+    card.add(terms[i].g).add_components(terms[i].c);
+  }
+}
+
+void write_rbe1(const records::Rbe1& e, CardSink& sink) {
+  CardFields card("RBE1");
+  card.add(e.id);
+  add_pairs(e.independent, card);
+  card.end_line().add_word("UM");
+  add_pairs(e.dependent, card);
+  sink.put(card);
+}
+
 std::vector<int> collect_ids(const records::Deck& deck) {
   std::vector<int> ids = deck.scalar_points;
   for (const auto& grid : deck.grids) ids.push_back(grid.id);
@@ -101,6 +118,7 @@ void write_constraints(const records::Deck& deck, CardSink& sink) {
     for (const int grid : e.gm) card.add(grid);
     sink.put(card);
   }
+  for (const auto& e : deck.rbe1) write_rbe1(e, sink);
   for (const auto& e : deck.rbe3) write_rbe3(e, sink);
   for (const auto& e : deck.rbar) {
     CardFields card("RBAR");

@@ -37,35 +37,12 @@ void write_pcomp(const records::Pcomp& p, CardSink& sink) {
   sink.put(card);
 }
 
-void write_shell(const records::ShellElement& e, CardSink& sink) {
-  CardFields card(e.card);
-  card.add(e.id).add(e.pid);
-  for (const int grid : e.grids) card.add(grid);
-  // Blank where zero: readers of meshes take every number behind PID for a grid.
-  if (e.mcid)
-    card.add(*e.mcid);
-  else if (e.theta_deg != 0)
-    card.add(e.theta_deg);
-  else
-    card.add_blank();
-  if (e.z_offset != 0)
-    card.add(e.z_offset);
-  else
-    card.add_blank();
-  if (e.relative_thickness || !e.t.empty()) {
-    card.end_line().add_blank().add(e.relative_thickness ? 1 : 0);
-    for (const double t : e.t) card.add(t);
-  }
-  sink.put(card);
-}
-
 }  // namespace
 
 void write_continua(const records::Deck& deck, CardSink& sink) {
   for (const auto& p : deck.pshell) write_pshell(p, sink);
   for (const auto& p : deck.pcomp) write_pcomp(p, sink);
   for (const auto& p : deck.psolid) sink.put(CardFields("PSOLID").add(p.id).add(p.mid).add_id(p.cordm));
-  for (const auto& e : deck.shells) write_shell(e, sink);
   for (const auto& e : deck.solids) {
     CardFields card(e.card);
     card.add(e.id).add(e.pid);

@@ -32,6 +32,7 @@ void write_line_elements(const records::Deck& deck, CardSink& sink) {
   for (const auto& e : deck.conrod)
     sink.put(CardFields("CONROD").add(e.id).add(e.ga).add(e.gb).add(e.mid).add(e.A).add(e.J).add(e.c).add(e.nsm));
   for (const auto& e : deck.ctube) sink.put(CardFields("CTUBE").add(e.id).add(e.pid).add(e.ga).add(e.gb));
+  for (const auto& e : deck.plotel) sink.put(CardFields("PLOTEL").add(e.id).add(e.ga).add(e.gb));
 }
 
 }  // namespace bough::nastran::detail

@@ -78,6 +78,22 @@ class Content {
   }
   Content& operator()(const Ply& r) { return (*this)(r.mid)(r.t)(r.theta_deg); }
   Content& operator()(const Pcomp& r) { return (*this)(r.id)(r.z0)(r.nsm)(r.plies)(r.bending)(r.membrane); }
+  Content& operator()(const Pshear& r) { return (*this)(r.id)(r.mid)(r.t)(r.nsm)(r.f1)(r.f2); }
+  Content& operator()(const ShearPanel& r) { return (*this)(r.id)(r.pid)(r.grids); }
+  Content& operator()(const Pbush1d& r) { return (*this)(r.id)(r.k)(r.c)(r.m); }
+  Content& operator()(const Cbush1d& r) { return (*this)(r.id)(r.pid)(r.ga)(r.gb)(r.cid); }
+  Content& operator()(const Pdamp& r) { return (*this)(r.id)(r.b); }
+  Content& operator()(const ScalarDamper& r) {
+    return (*this)(r.id)(r.pid)(r.b)(r.g1)(r.c1)(r.g2)(r.c2)(r.by_scalar_points);
+  }
+  Content& operator()(const Pvisc& r) { return (*this)(r.id)(r.ce)(r.cr); }
+  Content& operator()(const Cvisc& r) { return (*this)(r.id)(r.pid)(r.ga)(r.gb); }
+  Content& operator()(const Plotel& r) { return (*this)(r.id)(r.ga)(r.gb); }
+  Content& operator()(const GridComponents& r) { return (*this)(r.g)(r.c); }
+  Content& operator()(const Rbe1& r) { return (*this)(r.id)(r.independent)(r.dependent); }
+  Content& operator()(const DirectMatrix::Entry& r) { return (*this)(r.gj)(r.cj)(r.gi)(r.ci)(r.value)(r.imaginary); }
+  Content& operator()(const DirectMatrix& r) { return (*this)(r.name)(r.form)(r.is_complex)(r.entries); }
+  Content& operator()(const std::pair<double, std::string>& r) { return (*this)(r.first)(r.second); }
   Content& operator()(const Psolid& r) { return (*this)(r.id)(r.mid)(r.cordm); }
   Content& operator()(const BeamElement& r) {
     (*this)(r.id)(r.pid)(r.ga)(r.gb)(r.is_cbeam)(r.g0)(r.v)(r.offt)(r.pin_a)(r.pin_b);
@@ -98,7 +114,8 @@ class Content {
   Content& operator()(const Conm1& r) { return (*this)(r.id)(r.g)(r.cid)(r.m); }
   Content& operator()(const Conm2& r) { return (*this)(r.id)(r.g)(r.cid)(r.m)(r.x)(r.inertia); }
   Content& operator()(const ShellElement& r) {
-    return (*this)(r.card)(r.id)(r.pid)(r.grids)(r.theta_deg)(r.mcid)(r.z_offset)(r.relative_thickness)(r.t);
+    (*this)(r.card)(r.id)(r.pid)(r.grids)(r.midsides)(r.theta_deg)(r.mcid)(r.z_offset);
+    return (*this)(r.relative_thickness)(r.t);
   }
   Content& operator()(const SolidElement& r) { return (*this)(r.card)(r.id)(r.pid)(r.corners)(r.midsides); }
   Content& operator()(const Rbe2& r) { return (*this)(r.id)(r.gn)(r.cm)(r.gm); }
@@ -133,7 +150,8 @@ class Content {
   }
   Content& operator()(const Param& r) { return (*this)(r.name)(r.value); }
   Content& operator()(const Subcase& r) {
-    return (*this)(r.id)(r.title)(r.subtitle)(r.label)(r.spc)(r.mpc)(r.load)(r.method)(r.statsub);
+    (*this)(r.id)(r.title)(r.subtitle)(r.label)(r.spc)(r.mpc)(r.load)(r.method)(r.statsub);
+    return (*this)(r.suport1)(r.k2gg)(r.m2gg)(r.b2gg);
   }
 
   std::vector<double> numbers;
@@ -177,6 +195,15 @@ void expect_equal_decks(const Deck& a, const Deck& b, double tolerance) {
   BOUGH_COMPARE(pshell);
   BOUGH_COMPARE(pcomp);
   BOUGH_COMPARE(psolid);
+  BOUGH_COMPARE(pshear);
+  BOUGH_COMPARE(shear_panels);
+  BOUGH_COMPARE(pbush1d);
+  BOUGH_COMPARE(cbush1d);
+  BOUGH_COMPARE(pdamp);
+  BOUGH_COMPARE(dampers);
+  BOUGH_COMPARE(pvisc);
+  BOUGH_COMPARE(cvisc);
+  BOUGH_COMPARE(plotel);
   BOUGH_COMPARE(beams);
   BOUGH_COMPARE(crod);
   BOUGH_COMPARE(conrod);
@@ -192,6 +219,11 @@ void expect_equal_decks(const Deck& a, const Deck& b, double tolerance) {
   BOUGH_COMPARE(rbe3);
   BOUGH_COMPARE(rbar);
   BOUGH_COMPARE(rrod);
+  BOUGH_COMPARE(rbe1);
+  BOUGH_COMPARE(direct_matrices);
+  BOUGH_COMPARE(suport);
+  BOUGH_COMPARE(aset);
+  BOUGH_COMPARE(omit);
   BOUGH_COMPARE(spc);
   BOUGH_COMPARE(spcadd);
   BOUGH_COMPARE(mpc);
@@ -209,6 +241,11 @@ void expect_equal_decks(const Deck& a, const Deck& b, double tolerance) {
   BOUGH_COMPARE(eigen_methods);
   BOUGH_COMPARE(params);
 #undef BOUGH_COMPARE
+  ASSERT_EQ(a.suport1.size(), b.suport1.size());
+  for (const auto& [sid, terms] : a.suport1) {
+    ASSERT_EQ(b.suport1.count(sid), 1u);
+    compare("suport1", terms, b.suport1.at(sid), tolerance);
+  }
   EXPECT_EQ(std::set<int>(a.scalar_points.begin(), a.scalar_points.end()),
             std::set<int>(b.scalar_points.begin(), b.scalar_points.end()));
 }

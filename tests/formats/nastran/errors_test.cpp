@@ -103,35 +103,41 @@ TEST(Errors, ContradictionsThatAreWarnings) {
 }
 
 TEST(UnusedCards, WhatCarriesStiffnessMassConstraintIsAnError) {
-  const char* text = "GRID,1\nCQUAD8,1,1,1,2,3,4\nCQUAD8,2,1,1,2,3,4\nNSM,1,PBAR,1,2.\nRBE1,1,2,123456\nCSHEAR,9\n";
+  const char* text = "GRID,1\nCQUADX,1,1,1,2,3,4\nCQUADX,2,1,1,2,3,4\nNSM,1,PBAR,1,2.\nRSPLINE,1\nCGAP,9\n";
   const auto r = read(text);
   EXPECT_EQ(r.count("deck.unsupported-card"), 4) << r.get_messages();
   EXPECT_EQ(r.find("deck.unsupported-card")->where.line, 2);
   ASSERT_EQ(r.deck.unused.size(), 4u);
-  EXPECT_EQ(r.deck.unused[0].name, "CQUAD8");
+  EXPECT_EQ(r.deck.unused[0].name, "CQUADX");
   EXPECT_EQ(r.deck.unused[0].count, 2);
   EXPECT_EQ(r.deck.unused[0].first.line, 2);
   EXPECT_EQ(r.deck.unused[0].effect, records::CardEffect::Stiffness);
   EXPECT_EQ(r.deck.unused[1].effect, records::CardEffect::Mass);
   EXPECT_EQ(r.deck.unused[2].effect, records::CardEffect::Constraint);
   EXPECT_EQ(r.deck.unused[3].effect, records::CardEffect::Stiffness);
-  const auto ignored = read(text, {{"cquad8", "NSM", "RBE1", "CSHEAR"}});
+  const auto ignored = read(text, {{"cquadx", "NSM", "RSPLINE", "CGAP"}});
   EXPECT_EQ(ignored.diagnostics.num_errors(), 0) << ignored.get_messages();
   EXPECT_EQ(ignored.count("deck.ignored-card"), 4);
   EXPECT_EQ(ignored.deck.unused.size(), 4u);
 }
 
 TEST(UnusedCards, WhatCarriesALoadOrNothingIsAWarning) {
-  const auto r =
-      read("PLOADX1,1,2,3.\nPLOADX1,1,3,3.\nMAT10,1,2.,3.\nAERO,,1.\nCDAMP2,1,3.,2,1\nCVISC,2,1,2,3\nSUPORT,1,3\n");
+  const auto r = read("PLOADX1,1,2,3.\nPLOADX1,1,3,3.\nMAT10,1,2.,3.\nAERO,,1.\nCDAMP5,1,3,2\n");
   EXPECT_EQ(r.diagnostics.num_errors(), 0) << r.get_messages();
-  EXPECT_EQ(r.count("deck.unused-card"), 6);
-  ASSERT_EQ(r.deck.unused.size(), 6u);
+  EXPECT_EQ(r.count("deck.unused-card"), 4);
+  ASSERT_EQ(r.deck.unused.size(), 4u);
   EXPECT_EQ(r.deck.unused[0].effect, records::CardEffect::Load);
   EXPECT_EQ(r.deck.unused[1].effect, records::CardEffect::None);
   EXPECT_EQ(r.deck.unused[3].effect, records::CardEffect::Damping);
-  EXPECT_EQ(r.deck.unused[4].effect, records::CardEffect::Damping);
-  EXPECT_EQ(r.deck.unused[5].effect, records::CardEffect::None);
+}
+
+TEST(UnusedCards, SetsOfComponentModesSayWhatIsLost) {
+  const auto r = read("BSET,1,123\nBSET1,123,2\nCSET1,123,3\nQSET,51,0\nUSET1,U1,123,4\n");
+  EXPECT_EQ(r.diagnostics.num_errors(), 0) << r.get_messages();
+  ASSERT_EQ(r.count("deck.unused-card"), 5);
+  EXPECT_NE(r.diagnostics.items()[1].advice.find("hold in component modes"), std::string::npos);
+  EXPECT_NE(r.diagnostics.items()[3].advice.find("amplitudes of component modes"), std::string::npos);
+  EXPECT_NE(r.diagnostics.items()[4].advice.find("the set that it names"), std::string::npos);
 }
 
 TEST(UnusedCards, CardsThatAreReadCanBeIgnoredToo) {

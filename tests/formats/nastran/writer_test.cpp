@@ -124,7 +124,7 @@ TEST(WrittenDecks, ThruOfMissingGridsStaysHarmless) {
 }
 
 TEST(WrittenDecks, NothingIsLostSilently) {
-  auto r = read("GRID,1,,0.,0.,0.\nPLOTEL,1,1,1\n");
+  auto r = read("GRID,1,,0.,0.,0.\nTEMPD,1,20.\n");
   Diagnostics diagnostics;
   write_deck(r.deck, {}, diagnostics);
   EXPECT_TRUE(diagnostics.has("deck.left-out"));

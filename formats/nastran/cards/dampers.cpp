@@ -1,0 +1,130 @@
+#include "bough/formats/nastran/detail/parsers.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+using records::ScalarDamper;
+
+/// EID, PID or B.
+ScalarDamper read_head(Card& card, bool by_property) {
+  ScalarDamper e;
+  e.id = card.read_id(0, "EID");
+  if (by_property)
+    e.pid = card.read_id(1, "PID", e.id);
+  else
+    e.b = card.read_real(1, "B", 0.0);
+  e.at = card.get_location();
+  return e;
+}
+
+void add_damper(Card& card, Reading& r, const ScalarDamper& e) {
+  if (e.g1 == 0 && e.g2 == 0 && card.is_ok())
+    card.fail("deck.missing-field", 2, "both ends are blank, expected one at least");
+  if (r.claim(IdSpace::Damper, e.id, card)) r.deck.dampers.push_back(e);
+}
+
+/// G1 C1 G2 C2; a blank grid is ground.
+void parse_on_grids(Card& card, Reading& r, bool by_property) {
+  auto e = read_head(card, by_property);
+  e.g1 = card.read_reference(2, "G1");
+  e.c1 = card.read_component(3, "C1");
+  e.g2 = card.read_reference(4, "G2");
+  e.c2 = card.read_component(5, "C2");
+  add_damper(card, r, e);
+}
+void parse_cdamp1(Card& card, Reading& r) { parse_on_grids(card, r, true); }
+void parse_cdamp2(Card& card, Reading& r) { parse_on_grids(card, r, false); }
+
+/// S1 S2: points that no SPOINT names become ones.
+void parse_on_points(Card& card, Reading& r, bool by_property) {
+  auto e = read_head(card, by_property);
+  e.g1 = card.read_reference(2, "S1");
+  e.g2 = card.read_reference(3, "S2");
+  e.by_scalar_points = true;
+  for (const int point : {e.g1, e.g2})
+    if (point > 0 && card.is_ok()) r.deck.scalar_points.push_back(point);
+  add_damper(card, r, e);
+}
+void parse_cdamp3(Card& card, Reading& r) { parse_on_points(card, r, true); }
+void parse_cdamp4(Card& card, Reading& r) { parse_on_points(card, r, false); }
+
+void parse_pdamp(Card& card, Reading& r) {
+  for (int first = 0; first < 8; first += 2) {
+    if (first > 0 && card.is_blank(first, first + 2)) continue;
+    records::Pdamp p;
+    p.id = card.read_id(first, "PID");
+    p.b = card.read_real(first + 1, "B", 0.0);
+    p.at = card.get_location();
+    if (r.claim(IdSpace::DampProperty, p.id, card, first, 2)) r.deck.pdamp.push_back(p);
+  }
+}
+
+void parse_cvisc(Card& card, Reading& r) {
+  records::Cvisc e;
+  e.id = card.read_id(0, "EID");
+  e.pid = card.read_id(1, "PID", e.id);
+  e.ga = card.read_id(2, "G1");
+  e.gb = card.read_id(3, "G2");
+  e.at = card.get_location();
+  if (r.claim(IdSpace::Visc, e.id, card)) r.deck.cvisc.push_back(e);
+}
+
+void parse_pvisc(Card& card, Reading& r) {
+  for (const int first : {0, 4}) {
+    if (first > 0 && card.is_blank(first, first + 3)) break;
+    records::Pvisc p;
+    p.id = card.read_id(first, "PID");
+    p.ce = card.read_real(first + 1, "CE", 0.0);
+    p.cr = card.read_real(first + 2, "CR", 0.0);
+    p.at = card.get_location();
+    if (r.claim(IdSpace::ViscProperty, p.id, card, first, 3)) r.deck.pvisc.push_back(p);
+  }
+}
+
+void parse_cbush1d(Card& card, Reading& r) {
+  records::Cbush1d e;
+  e.id = card.read_id(0, "EID");
+  e.pid = card.read_id(1, "PID", e.id);
+  e.ga = card.read_id(2, "GA");
+  e.gb = card.read_reference(3, "GB");
+  if (!card.is_blank(4)) e.cid = card.read_reference(4, "CID");
+  e.at = card.get_location();
+  if (e.gb == 0 && !e.cid && card.is_ok())
+    card.fail("deck.missing-field", 4, "CID is blank, expected the system of a spring to ground",
+              "give CID, or the grid GB");
+  if (r.claim(IdSpace::Bush1d, e.id, card)) r.deck.cbush1d.push_back(e);
+}
+
+/// K C M of the linear part. Lines of SHOCKA, SPRING, DAMPER, GENER hold tables and equations of nonlinear motion.
+void parse_pbush1d(Card& card, Reading& r) {
+  records::Pbush1d p;
+  p.id = card.read_id(0, "PID");
+  p.k = card.read_real(1, "K", 0.0);
+  p.c = card.read_real(2, "C", 0.0);
+  p.m = card.read_real(3, "M", 0.0);
+  p.at = card.get_location();
+  for (int line = 8; line < card.get_size(); line += 8) {
+    if (card.is_blank(line)) continue;  // further fields of SHOCKA
+    const auto part = card.read_word(line, "the part", "", {"SHOCKA", "SPRING", "DAMPER", "GENER"});
+    if (!part.empty())
+      card.warn("deck.nonlinear-part", line, part + " of PBUSH1D " + std::to_string(p.id) + " is not used",
+                "K, C and M of the first line are what the element has");
+  }
+  if (r.claim(IdSpace::Bush1dProperty, p.id, card)) r.deck.pbush1d.push_back(p);
+}
+
+}  // namespace
+
+void add_damper_parsers(ParserTable& table) {
+  table["CDAMP1"] = parse_cdamp1;
+  table["CDAMP2"] = parse_cdamp2;
+  table["CDAMP3"] = parse_cdamp3;
+  table["CDAMP4"] = parse_cdamp4;
+  table["PDAMP"] = parse_pdamp;
+  table["CVISC"] = parse_cvisc;
+  table["PVISC"] = parse_pvisc;
+  table["CBUSH1D"] = parse_cbush1d;
+  table["PBUSH1D"] = parse_pbush1d;
+}
+
+}  // namespace bough::nastran::detail

@@ -1,0 +1,124 @@
+#include <string>
+
+#include "bough/formats/nastran/detail/parsers.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+using records::ShellElement;
+
+ShellElement read_corners(Card& card, int corners) {
+  ShellElement e;
+  e.id = card.read_id(0, "EID");
+  e.pid = card.read_id(1, "PID", e.id);
+  e.card = card.get_name();
+  e.at = card.get_location();
+  for (int i = 0; i < corners; ++i) e.grids.push_back(card.read_id(2 + i, "G1.."));
+  return e;
+}
+
+/// THETA, a real, or MCID, an integer, in field i; ZOFFS after it.
+void read_axes(Card& card, int i, ShellElement& e) {
+  if (card.is_integer(i)) {
+    e.mcid = card.read_int(i, "MCID");
+    card.demand(*e.mcid >= 0, i, "MCID", "a coordinate system, or a real angle THETA");
+  } else {
+    e.theta_deg = card.read_real(i, "THETA", 0.0);
+  }
+  e.z_offset = card.read_real(i + 1, "ZOFFS", 0.0);
+}
+
+/// T1.. of the corners from field `first` on, TFLAG in field `flag`.
+void read_thickness(Card& card, int first, int flag, ShellElement& e) {
+  const int tflag = card.read_int(flag, "TFLAG", 0);
+  card.demand(tflag == 0 || tflag == 1, flag, "TFLAG", "0, 1 or blank");
+  e.relative_thickness = tflag == 1;
+  const int corners = static_cast<int>(e.grids.size());
+  if (card.is_blank(first, first + corners)) return;
+  for (int i = first; i < first + corners; ++i) {
+    if (card.is_blank(i)) {
+      card.fail("deck.missing-field", i, "some of T1.. are blank and some are not", "give all of them or none");
+      break;
+    }
+    e.t.push_back(card.read_real(i, "Ti"));
+  }
+}
+
+void add_shell(Card& card, Reading& r, ShellElement&& e) {
+  if (r.claim(IdSpace::Shell, e.id, card)) r.deck.shells.push_back(std::move(e));
+}
+
+/// CQUAD4, CQUADR, CTRIA3, CTRIAR: the thicknesses in fields 4.. of the second line, TFLAG in field 3.
+void parse_linear(Card& card, Reading& r, int corners) {
+  auto e = read_corners(card, corners);
+  read_axes(card, 2 + corners, e);
+  read_thickness(card, 10, 9, e);
+  add_shell(card, r, std::move(e));
+}
+void parse_quad(Card& card, Reading& r) { parse_linear(card, r, 4); }
+void parse_triangle(Card& card, Reading& r) { parse_linear(card, r, 3); }
+
+/// Blank midsides stay as 0, so that the others keep their side.
+void read_midsides(Card& card, int first, ShellElement& e) {
+  bool any = false;
+  for (std::size_t i = 0; i < e.grids.size(); ++i) {
+    e.midsides.push_back(card.read_id(first + static_cast<int>(i), "G5..", 0));
+    any = any || e.midsides.back() > 0;
+  }
+  if (!any) e.midsides.clear();
+}
+
+/// G1..G6, G7 G8 T1..T4 THETA ZOFFS, TFLAG.
+void parse_quad8(Card& card, Reading& r) {
+  auto e = read_corners(card, 4);
+  read_midsides(card, 6, e);
+  read_axes(card, 14, e);
+  read_thickness(card, 10, 16, e);
+  add_shell(card, r, std::move(e));
+}
+
+/// G1..G6, THETA ZOFFS T1..T3 TFLAG.
+void parse_triangle6(Card& card, Reading& r) {
+  auto e = read_corners(card, 3);
+  read_midsides(card, 5, e);
+  read_axes(card, 8, e);
+  read_thickness(card, 10, 13, e);
+  add_shell(card, r, std::move(e));
+}
+
+void parse_cshear(Card& card, Reading& r) {
+  records::ShearPanel e;
+  e.id = card.read_id(0, "EID");
+  e.pid = card.read_id(1, "PID", e.id);
+  for (int i = 0; i < 4; ++i) e.grids[static_cast<std::size_t>(i)] = card.read_id(2 + i, "G1..");
+  e.at = card.get_location();
+  if (r.claim(IdSpace::Shell, e.id, card)) r.deck.shear_panels.push_back(e);
+}
+
+void parse_pshear(Card& card, Reading& r) {
+  records::Pshear p;
+  p.id = card.read_id(0, "PID");
+  p.mid = card.read_id(1, "MID");
+  p.t = card.read_real(2, "T");
+  p.nsm = card.read_real(3, "NSM", 0.0);
+  p.f1 = card.read_real(4, "F1", 0.0);
+  p.f2 = card.read_real(5, "F2", 0.0);
+  p.at = card.get_location();
+  if (card.is_ok()) card.demand(p.t > 0, 2, "T", "a positive thickness");
+  card.demand(p.f1 >= 0, 4, "F1", "zero or a positive effectiveness");
+  card.demand(p.f2 >= 0, 5, "F2", "zero or a positive effectiveness");
+  if (r.claim(IdSpace::ShearProperty, p.id, card)) r.deck.pshear.push_back(p);
+}
+
+}  // namespace
+
+void add_shell_parsers(ParserTable& table) {
+  table["CQUAD4"] = table["CQUADR"] = parse_quad;
+  table["CTRIA3"] = table["CTRIAR"] = parse_triangle;
+  table["CQUAD8"] = parse_quad8;
+  table["CTRIA6"] = parse_triangle6;
+  table["CSHEAR"] = parse_cshear;
+  table["PSHEAR"] = parse_pshear;
+}
+
+}  // namespace bough::nastran::detail

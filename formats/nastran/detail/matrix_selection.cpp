@@ -1,0 +1,66 @@
+#include "bough/formats/nastran/detail/matrix_selection.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+
+#include "bough/formats/nastran/detail/text.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+bool is_set(const MatrixList& matrices) {
+  return matrices.size() == 1 && std::isdigit(static_cast<unsigned char>(matrices.front().second.front()));
+}
+
+/// False when no SET of names has the id.
+bool expand_set(const NamedSets& sets, MatrixList& matrices) {
+  if (!is_set(matrices)) return true;
+  const auto set = sets.find(matrices.front().second);
+  if (set == sets.end()) return false;
+  matrices = set->second;
+  return true;
+}
+
+}  // namespace
+
+bool read_matrix_names(std::string_view text, MatrixList& matrices) {
+  while (!text.empty()) {
+    const auto term = text.substr(0, text.find_first_of(", "));
+    text = trim(text.substr(term.size()));
+    if (!text.empty() && text.front() == ',') text = trim(text.substr(1));
+    const auto star = term.find('*');
+    const auto name = make_upper(star == std::string_view::npos ? term : term.substr(star + 1));
+    const auto factor = star == std::string_view::npos ? std::optional(1.0) : parse_real(term.substr(0, star));
+    if (!factor || name.empty() || name.size() > 8 || find_first_word(name).size() != name.size() ||
+        !std::isalpha(static_cast<unsigned char>(name.front())))
+      return false;
+    matrices.emplace_back(*factor, name);
+  }
+  return !matrices.empty();
+}
+
+void choose_matrices(records::Deck& deck, const NamedSets& sets, const records::CardLocation& at,
+                     Diagnostics& diagnostics) {
+  auto& first = deck.subcases.front();
+  bool differs = false;
+  for (const auto member : {&records::Subcase::k2gg, &records::Subcase::m2gg, &records::Subcase::b2gg}) {
+    auto& chosen = first.*member;
+    if (!expand_set(sets, chosen)) {
+      diagnostics.error("deck.case-control-value", deck.locate(at),
+                        "K2GG, M2GG or B2GG selects " + chosen.front().second + ", which no SET of names defines",
+                        "write SET " + chosen.front().second + " = NAME, NAME");
+      chosen.clear();
+    }
+    for (auto& subcase : deck.subcases) {
+      auto own = subcase.*member;
+      differs = differs || !expand_set(sets, own) || (!own.empty() && own != chosen);
+      subcase.*member = chosen;
+    }
+  }
+  if (differs)
+    diagnostics.warning("deck.case-control-later", deck.locate(at), "K2GG, M2GG or B2GG of a later subcase is not used",
+                        "those above the first subcase or in it hold for all");
+}
+
+}  // namespace bough::nastran::detail

@@ -1,0 +1,194 @@
+/// \file Quadratic shells, shear panels, dampers, RBE1, direct matrices, sets of degrees of freedom: fields and errors.
+#include <cmath>
+
+#include "tests/formats/nastran/deck_text.hpp"
+
+namespace bough::nastran {
+namespace {
+
+TEST(QuadraticShells, FieldsInTheirPlaces) {
+  const auto d = read_clean(
+      "CQUAD8,1,7,11,12,13,14,15,16\n,17,18,.1,.2,.3,.4,30.,.05\n,1\n"
+      "CQUAD8,2,7,11,12,13,14,,16\n,,,,,,,5\n"
+      "CTRIA6,3,7,11,12,13,14,15,16\n,-10.,.05,.1,.2,.3,1\n"
+      "CTRIA6,4,,11,12,13\n");
+  ASSERT_EQ(d.shells.size(), 4u);
+  const auto& quad = d.shells[0];
+  EXPECT_EQ(quad.card, "CQUAD8");
+  EXPECT_EQ(quad.grids, (std::vector<int>{11, 12, 13, 14}));
+  EXPECT_EQ(quad.midsides, (std::vector<int>{15, 16, 17, 18}));
+  EXPECT_EQ(quad.t, (std::vector<double>{.1, .2, .3, .4}));
+  EXPECT_EQ(quad.theta_deg, 30);
+  EXPECT_EQ(quad.z_offset, .05);
+  EXPECT_TRUE(quad.relative_thickness);
+  EXPECT_EQ(d.shells[1].midsides, (std::vector<int>{0, 16, 0, 0}));
+  EXPECT_EQ(d.shells[1].mcid, 5);
+  EXPECT_TRUE(d.shells[1].t.empty());
+  const auto& triangle = d.shells[2];
+  EXPECT_EQ(triangle.grids, (std::vector<int>{11, 12, 13}));
+  EXPECT_EQ(triangle.midsides, (std::vector<int>{14, 15, 16}));
+  EXPECT_EQ(triangle.theta_deg, -10);
+  EXPECT_EQ(triangle.z_offset, .05);
+  EXPECT_EQ(triangle.t, (std::vector<double>{.1, .2, .3}));
+  EXPECT_TRUE(triangle.relative_thickness);
+  EXPECT_EQ(d.shells[3].pid, 4);
+  EXPECT_TRUE(d.shells[3].midsides.empty());
+}
+
+TEST(MoreElements, DampersShearPanelsLines) {
+  const auto d = read_clean(
+      "CQUADR,1,7,11,12,13,14,30.\nCTRIAR,2,7,11,12,13,5,.1\nCSHEAR,3,8,1,2,3,4\nPSHEAR,8,1,.5,.1,.2,.3\n"
+      "CBUSH1D,4,9,1,2\nCBUSH1D,5,9,1,,6\nPBUSH1D,9,10.,11.,12.\n"
+      "CDAMP1,1,3,1,2,3,4\nCDAMP2,2,5.5,,,3,4\nCDAMP3,3,3,61\nCDAMP4,4,6.5,61,62\nPDAMP,3,1.,4,2.,,,6,3.\n"
+      "CVISC,1,2,3,4\nPVISC,2,1.,2.,,3,4.\nPLOTEL,1,2,3,,2,3,4\n");
+  EXPECT_EQ(d.shells[0].card, "CQUADR");
+  EXPECT_EQ(d.shells[0].theta_deg, 30);
+  EXPECT_EQ(d.shells[1].card, "CTRIAR");
+  EXPECT_EQ(d.shells[1].mcid, 5);
+  EXPECT_EQ(d.shear_panels[0].grids, (std::array<int, 4>{1, 2, 3, 4}));
+  EXPECT_EQ(d.pshear[0].f2, .3);
+  EXPECT_EQ(d.cbush1d[0].gb, 2);
+  EXPECT_FALSE(d.cbush1d[0].cid);
+  EXPECT_EQ(d.cbush1d[1].cid, 6);
+  EXPECT_EQ(d.pbush1d[0].k, 10);
+  EXPECT_EQ(d.pbush1d[0].c, 11);
+  EXPECT_EQ(d.pbush1d[0].m, 12);
+  ASSERT_EQ(d.dampers.size(), 4u);
+  EXPECT_EQ(d.dampers[0].pid, 3);
+  EXPECT_EQ(d.dampers[0].c2, 4);
+  EXPECT_EQ(d.dampers[1].b, 5.5);
+  EXPECT_EQ(d.dampers[1].g1, 0);
+  EXPECT_EQ(d.dampers[2].g1, 61);
+  EXPECT_TRUE(d.dampers[3].by_scalar_points);
+  EXPECT_EQ(d.scalar_points.size(), 3u);
+  ASSERT_EQ(d.pdamp.size(), 3u);
+  EXPECT_EQ(d.pdamp[2].id, 6);
+  EXPECT_EQ(d.pvisc[1].ce, 4);
+  EXPECT_EQ(d.pvisc[1].cr, 0);
+  EXPECT_EQ(d.plotel[1].gb, 4);
+}
+
+TEST(MoreElements, Rbe1) {
+  const auto d = read_clean(
+      "RBE1,1,11,123,12,23,13,3\n,UM,14,123456,15,4,16,5\n,,17,6,1.-6\n"
+      "RBE1,2,11,1,12,2,13,3\n,,14,4,15,5,16,6\n,UM,17,123\n");
+  ASSERT_EQ(d.rbe1.size(), 2u);
+  const auto& e = d.rbe1[0];
+  ASSERT_EQ(e.independent.size(), 3u);
+  EXPECT_EQ(e.independent[1].g, 12);
+  EXPECT_EQ(e.independent[1].c, 0b110u);
+  ASSERT_EQ(e.dependent.size(), 4u);
+  EXPECT_EQ(e.dependent[0].c, 63u);
+  EXPECT_EQ(e.dependent[3].g, 17);
+  EXPECT_EQ(e.dependent[3].c, 32u);
+  EXPECT_EQ(d.rbe1[1].independent.size(), 6u);
+}
+
+TEST(DofSets, PairsListsAndRanges) {
+  const auto d = read_clean(
+      "GRID,1\nGRID,2\nGRID,5\nSPOINT,9\nSUPORT,1,123,2,23,5,3\nSUPORT1,4,9,0,1,123456\nSUPORT1,4,2,1\n"
+      "ASET,1,12,9\nASET1,3,2,5\nASET1,456,1,THRU,8\nOMIT,1,3\nOMIT1,4,2,THRU,9\n");
+  ASSERT_EQ(d.suport.size(), 3u);
+  EXPECT_EQ(d.suport[2].c, 4u);
+  ASSERT_EQ(d.suport1.at(4).size(), 3u);
+  EXPECT_EQ(d.suport1.at(4)[0].c, 0u);
+  ASSERT_EQ(d.aset.size(), 7u);  // 1 and 9; 2 and 5; 1, 2, 5
+  EXPECT_EQ(d.aset[1].g, 9);
+  EXPECT_EQ(d.aset[6].g, 5);
+  EXPECT_EQ(d.aset[6].c, 0b111000u);
+  ASSERT_EQ(d.omit.size(), 4u);  // 1; 2, 5, 9
+}
+
+TEST(DirectMatrices, TermsOfTheirForms) {
+  const auto d = read_clean(
+      "DMIG,K1,1,1,,2,3,4.5,9.,\n,3,0,5.5\n"  // before its header; the imaginary part means nothing
+      "DMIG,K1,0,6,1,0\nDMIG*   C1                             0               1               4\n"
+      "*                                      1\n"
+      "DMIG*   C1                             1               2\n"
+      "*                      3               4   2.00000000D+0          60.0D0\n");
+  ASSERT_EQ(d.direct_matrices.size(), 2u);
+  const auto& k = d.direct_matrices[0];
+  EXPECT_EQ(k.form, 6);
+  EXPECT_FALSE(k.is_complex);
+  ASSERT_EQ(k.entries.size(), 2u);
+  EXPECT_EQ(k.entries[0].gj, 1);
+  EXPECT_EQ(k.entries[0].cj, 1);
+  EXPECT_EQ(k.entries[0].gi, 2);
+  EXPECT_EQ(k.entries[0].ci, 3);
+  EXPECT_EQ(k.entries[0].value, 4.5);
+  EXPECT_EQ(k.entries[0].imaginary, 0);
+  EXPECT_EQ(k.entries[1].ci, 0);
+  const auto& c = d.direct_matrices[1];
+  EXPECT_TRUE(c.is_complex);
+  EXPECT_NEAR(c.entries.at(0).value, 1, 1e-15);
+  EXPECT_NEAR(c.entries.at(0).imaginary, std::sqrt(3.0), 1e-15);
+}
+
+TEST(DirectMatrices, Selected) {
+  const auto d = read_clean(
+      "CEND\nSET 5 = 2.*K1,\n  .5*K2\nK2GG = 5\nM2GG = M1, M2 M3\nB2GG = 1.25*B1, -1.0*B2,\n 0.82*B3\nSUPORT1 = 7\n"
+      "SUBCASE 1\nSUBCASE 2\nBEGIN BULK\n");
+  using List = std::vector<std::pair<double, std::string>>;
+  for (const auto& s : d.subcases) {
+    EXPECT_EQ(s.k2gg, (List{{2, "K1"}, {.5, "K2"}}));
+    EXPECT_EQ(s.m2gg, (List{{1, "M1"}, {1, "M2"}, {1, "M3"}}));
+    EXPECT_EQ(s.b2gg, (List{{1.25, "B1"}, {-1, "B2"}, {.82, "B3"}}));
+    EXPECT_EQ(s.suport1, 7);
+  }
+  // Nastran takes those of the first subcase for all.
+  const auto later = read("CEND\nSUBCASE 1\nK2GG = K1\nSUBCASE 2\nK2GG = K2\nBEGIN BULK\n");
+  EXPECT_EQ(later.count("deck.case-control-later"), 1);
+  EXPECT_EQ(later.deck.subcases[1].k2gg, (List{{1, "K1"}}));
+  EXPECT_EQ(read("CEND\nK2GG = 2..*K\nBEGIN BULK\n").count("deck.case-control-value"), 1);
+  EXPECT_EQ(read("CEND\nK2GG =\nBEGIN BULK\n").count("deck.case-control-value"), 1);
+  EXPECT_EQ(read("CEND\nK2GG = 6\nBEGIN BULK\n").count("deck.case-control-value"), 1);
+}
+
+TEST(MoreCards, WhatIsWrong) {
+  const auto count = [](const char* text, const char* id) {
+    const auto r = read(text);
+    EXPECT_EQ(r.diagnostics.num_errors(), r.count(id)) << text << r.get_messages();
+    return r.count(id);
+  };
+  EXPECT_EQ(count("CQUAD8,1,1,1,2,3\n", "deck.missing-field"), 1);
+  EXPECT_EQ(count("CTRIA6,1,1,1,2,3\n,,,.1\n", "deck.missing-field"), 1);
+  EXPECT_EQ(count("CQUAD8,1,1,1,2,3,4\n,,,,,,,,\n,2\n", "deck.field-range"), 1);
+  EXPECT_EQ(count("CQUADR,1,1,1,2,3,4\nCSHEAR,1,1,1,2,3,4\n", "deck.duplicate-id"), 1);
+  EXPECT_EQ(count("PSHEAR,1,1\n", "deck.missing-field"), 1);
+  EXPECT_EQ(count("PSHEAR,1,1,.1,,-1.\n", "deck.field-range"), 1);
+  EXPECT_EQ(count("PSHEAR,1,1,0.\n", "deck.field-range"), 1);
+  EXPECT_EQ(count("CDAMP2,1,2.\n", "deck.missing-field"), 1);
+  EXPECT_EQ(count("CDAMP2,1,2.,1,7\n", "deck.bad-components"), 1);
+  EXPECT_EQ(count("CDAMP4,1,2.\n", "deck.missing-field"), 1);
+  EXPECT_EQ(count("CDAMP2,1,2.,1\nCDAMP4,1,2.,1\n", "deck.duplicate-id"), 1);
+  EXPECT_EQ(count("PDAMP,1,2.,1,3.\n", "deck.duplicate-id"), 1);
+  EXPECT_EQ(count("CVISC,1,1,1\n", "deck.missing-field"), 1);
+  EXPECT_EQ(count("PVISC,1,x\n", "deck.bad-real"), 1);
+  EXPECT_EQ(count("CBUSH1D,1,1,1\n", "deck.missing-field"), 1);
+  EXPECT_EQ(count("PBUSH1D,1,1.\n,SPRING,TABLE,5\n", "none"), 0);
+  EXPECT_EQ(read("PBUSH1D,1,1.\n,SPRING,TABLE,5\n,DAMPER,EQUAT,6\n").count("deck.nonlinear-part"), 2);
+  EXPECT_EQ(count("PBUSH1D,1,1.\n,SPRONG,TABLE,5\n", "deck.bad-word"), 1);
+  EXPECT_EQ(count("PLOTEL,1,1\n", "deck.missing-field"), 1);
+  EXPECT_EQ(count("RBE1,1,1,12345\n,UM,2,123\n", "deck.field-range"), 1);
+  EXPECT_EQ(count("RBE1,1,1,123456\n", "deck.missing-field"), 1);
+  EXPECT_EQ(count("RBE1,1,1,123456\n,UM,2,129\n", "deck.bad-components"), 1);
+  EXPECT_EQ(count("SUPORT\n", "deck.missing-field"), 1);
+  EXPECT_EQ(count("SUPORT,1,7\n", "deck.bad-components"), 1);
+  EXPECT_EQ(count("SUPORT1,,1,1\n", "deck.missing-field"), 1);
+  EXPECT_EQ(count("SUPORT1,1,1,1,2,2,3,3,4\n", "deck.too-many-fields"), 1);
+  EXPECT_EQ(count("ASET1,123\n", "deck.missing-field"), 1);
+  EXPECT_EQ(count("GRID,1\nASET1,123,2,THRU,5\n", "deck.bad-list"), 1);
+  EXPECT_EQ(count("OMIT,1.\n", "deck.bad-integer"), 1);
+  EXPECT_EQ(count("DMIG\n", "deck.missing-field"), 1);
+  EXPECT_EQ(count("DMIG,1K,0,6,1\n", "deck.bad-word"), 1);
+  EXPECT_EQ(count("DMIG,K,0,3,1\n", "deck.field-range"), 1);
+  EXPECT_EQ(count("DMIG,K,0,6,1\nDMIG,K,0,6,1\n", "deck.duplicate-id"), 1);
+  EXPECT_EQ(count("DMIG,K,1,1,,1,1,2.\n", "deck.missing-header"), 1);
+  EXPECT_EQ(count("DMIG,K,0,6,1\nDMIG,K,1,1\n", "deck.missing-field"), 1);
+  EXPECT_EQ(count("DMIG,K,0,6,1\nDMIG,K,1,1,,2,1,2.\nDMIG,K,2,1,,1,1,2.\n", "deck.duplicate-term"), 1);
+  EXPECT_EQ(count("DMIG,K,0,1,1\nDMIG,K,1,1,,2,1,2.\nDMIG,K,2,1,,1,1,2.\n", "none"), 0);
+  EXPECT_EQ(count("DMIG,K,0,1,1\nDMIG,K,1,1,,2,1,2.\n,2,1,3.\n", "deck.duplicate-term"), 1);
+}
+
+}  // namespace
+}  // namespace bough::nastran
