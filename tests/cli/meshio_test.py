@@ -264,9 +264,9 @@ class Deck(ProgramTest):
         self.fails(2, "export", "beam.bdf", "--to", "bdf", "--fields", "wide", error="cli.usage")
 
     def test_what_is_left_out_is_said(self):
-        self.write("beam.bdf", MIXED.replace("ENDDATA", "PLOTEL,70,1,3\nENDDATA"))
+        self.write("beam.bdf", MIXED.replace("ENDDATA", "TABLED1,70\nENDDATA"))
         said = self.bough("export", "beam.bdf", "--to", "bdf", "-o", "new.bdf").stderr
-        self.assertIn("PLOTEL", said)
+        self.assertIn("TABLED1", said)
         self.assertIn("[deck.left-out]", said)
 
     def test_shared_models(self):
