@@ -45,7 +45,7 @@ TEST(Nafems, FV13SimplySupportedThinSquarePlate) {
 }
 
 TEST(Nafems, FV16CantileveredThinSquarePlate) {
-  const std::vector<double> exact = {0.41794, 1.02426, 2.56285, 3.27491, 3.72732, 6.52447};
+  const std::vector<double> exact = {0.41793, 1.02422, 2.56276, 3.27490, 3.72718, 6.52422};
   for (int n : {8, 16, 32}) {
     const auto mesh = make_square(n);
     auto text = make_plate(mesh, 0.05, "126");
@@ -66,38 +66,43 @@ VectorXd calc_rhombic(int n, double t) {
   return calc_elastic_hz(text, 6);
 }
 
-/// Modes 4 to 6 converge to values about 1.2 % below the printed ones: they are shown, not held.
+/// The oracle is a Ritz series in polynomials
+/// (tests/oracle/plate_ritz.py): 7.904, 12.823, 17.858, 18.932, 23.693, 27.632. The printed
+/// targets 7.938, 12.835, 17.941, 19.133, 24.009, 27.922 lie 0.4 to 1.3 % above it, as a coarse mesh would.
 TEST(Nafems, FV15ClampedThinRhombicPlate) {
-  const std::vector<double> target = {7.938, 12.835, 17.941, 19.133, 24.009, 27.922};
+  const std::vector<double> exact = {7.9038, 12.8227, 17.8577, 18.9320, 23.6927, 27.6322};
   std::vector<VectorXd> ladder;
   for (int n : {16, 32, 64}) {
     ladder.push_back(calc_rhombic(n, 0.05));
-    report("FV15 " + std::to_string(n), ladder.back(), target);
+    report("FV15 " + std::to_string(n), ladder.back(), exact);
   }
-  expect_close("FV15", ladder.back(), {target.begin(), target.begin() + 3}, 0.01);
+  expect_close("FV15", ladder.back(), exact, 0.005);
 }
 
-/// Modes 4 and 5 are shown: 1.1 % off at 40 x 40.
+/// The oracle is the Ritz series of the same plate theory (shear factor 5/6, rotary inertia). The printed targets
+/// 133.95, 201.41, 265.81, 283.68, 334.45, 386.62 are up to 1.0 % above and 0.5 % below it, the last one 2.2 % above;
+/// the solid of the same shape has 134.7, 204.2, 270.3, 284.4, 340.7, 383.9.
 TEST(Nafems, FV22ClampedThickRhombicPlate) {
-  const std::vector<double> target = {133.95, 201.41, 265.81, 283.68, 334.45};
+  const std::vector<double> exact = {133.403, 201.912, 266.919, 280.794, 336.118, 378.328};
   for (int n : {10, 20, 40}) {
     const VectorXd hz = calc_rhombic(n, 1.0);
-    report("FV22 " + std::to_string(n), hz, target);
-    if (n == 40) expect_close("FV22", hz, {target.begin(), target.begin() + 3}, 0.01);
+    report("FV22 " + std::to_string(n), hz, exact);
+    if (n == 40) expect_close("FV22", hz, exact, 0.01);
   }
 }
 
-/// 10 long, 5 wide at the root and 1 at the tip, in plane.
+/// 10 long, 5 wide at the root and 1 at the tip, in plane. The Ritz series agrees with the printed targets 44.623,
+/// 130.03, 162.70, 246.05, 379.90, 391.44 to 5e-4.
 TEST(Nafems, FV32CantileveredTaperedMembrane) {
-  const std::vector<double> target = {44.623, 130.03, 162.70, 246.05, 379.90, 391.44};
+  const std::vector<double> exact = {44.617, 130.011, 162.689, 245.988, 379.719, 391.406};
   for (int r : {1, 2, 4}) {
     const PlateMesh mesh{16 * r, 8 * r, false,
                          [](double a, double b) { return Vector3d(10 * a, (5 - 4 * a) * (b - 0.5), 0); }};
     auto text = make_plate(mesh, 0.05, "345");
     text.fix_edges(mesh, "W", "126");
     const VectorXd hz = calc_elastic_hz(text, 6);
-    report("FV32 x" + std::to_string(r), hz, target);
-    if (r == 4) expect_close("FV32", hz, target, 0.01);
+    report("FV32 x" + std::to_string(r), hz, exact);
+    if (r == 4) expect_close("FV32", hz, exact, 0.005);
   }
 }
 
