@@ -10,7 +10,8 @@ namespace {
 /// What the acceleration of the grids misses: the mass of a CONM off its grid is elsewhere, and its own inertia turns.
 void add_offset_terms(const LoadTarget& t, const Vector3d& omega) {
   for (const auto& element : t.model.elements()) {
-    if (element->nodes().size() != 1 || element->num_dofs() != 6) continue;
+    // The terms of a DMIG at one grid need not be those of a mass.
+    if (element->nodes().size() != 1 || element->num_dofs() != 6 || element->card() == "DMIG") continue;
     MatrixXd M = MatrixXd::Zero(6, 6);
     element->add_mass(t.model.mass_kind(), t.scale * t.model.wtmass(), M);
     const Vector3d moment(M(1, 5), M(2, 3), M(0, 4));  // m s, from -m s̃

@@ -6,6 +6,7 @@
 
 #include "bough/fe/model/autospc.hpp"
 #include "bough/fe/model/coordinates.hpp"
+#include "bough/fe/model/direct_matrices.hpp"
 #include "bough/fe/model/rigid.hpp"
 #include "bough/fe/model/sets.hpp"
 
@@ -44,6 +45,8 @@ Model ModelBuilder::build(const ElementFactory& factory) {
   set_params();
   add_nodes();
   model_.elements_ = factory(deck_, model_, diagnostics_).elements;
+  for (auto& element : make_direct(deck_, model_.subcase_, model_, diagnostics_).elements)
+    model_.elements_.push_back(std::move(element));
   is_fixed_.assign(model_.num_gdofs_, 0);
   collect_fixed();
   collect_equations();
@@ -205,6 +208,7 @@ void ModelBuilder::add_mpc(const records::Mpc& mpc) {
 }
 
 void ModelBuilder::collect_equations() {
+  for (const auto& card : deck_.rbe1) add_rbe1(card, model_, deck_.locate(card.at), diagnostics_, equations_);
   for (const auto& card : deck_.rbe2) add_rbe2(card, model_, deck_.locate(card.at), diagnostics_, equations_);
   for (const auto& card : deck_.rbe3) add_rbe3(card, model_, deck_.locate(card.at), diagnostics_, equations_);
   for (const auto& card : deck_.rrod) add_rrod(card, model_, deck_.locate(card.at), diagnostics_, equations_);

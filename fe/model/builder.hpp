@@ -20,7 +20,7 @@ class ModelBuilder {
   /// Masks of permanent and set SPC over the l-set.
   void collect_fixed();
   void fix(const records::Spc& spc);
-  /// RBE2, RBE3, RROD, RBAR, MPC.
+  /// RBE1, RBE2, RBE3, RROD, RBAR, MPC.
   void collect_equations();
   void add_mpc(const records::Mpc& mpc);
   void check_dependent_not_fixed();

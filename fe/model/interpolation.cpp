@@ -8,16 +8,6 @@ namespace {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-const Node* find_grid(int id, const std::string& card, const NodeTable& nodes, const SourceLocation& at,
-                      Diagnostics& diagnostics) {
-  const int index = nodes.find_node(id);
-  if (index >= 0 && nodes.node(index).num_dofs == 6) return &nodes.node(index);
-  diagnostics.error("fe.missing-grid", at,
-                    card + " names grid " + std::to_string(id) + ", which the deck does not define",
-                    "add the GRID or correct the id");
-  return nullptr;
-}
-
 /// One connected component: its dof, its row of the rigid map about the reference, its weight.
 struct Sample {
   int ldof;
@@ -62,14 +52,14 @@ bool solve_for(const MatrixXd& E, const std::vector<int>& ldofs, const std::vect
 void add_rbe3(const records::Rbe3& record, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations) {
   const std::string card = "RBE3 " + std::to_string(record.id);
-  const Node* reference = find_grid(record.ref_grid, card, nodes, at, diagnostics);
+  const Node* reference = find_rigid_grid(record.ref_grid, card, nodes, at, diagnostics);
   bool is_good = reference != nullptr;
   std::vector<Sample> samples;
   double arm_sum = 0;
   int num_grids = 0;
   for (const auto& group : record.groups)
     for (int id : group.grids) {
-      const Node* node = find_grid(id, card, nodes, at, diagnostics);
+      const Node* node = find_rigid_grid(id, card, nodes, at, diagnostics);
       is_good = is_good && node;
       if (!is_good) continue;
       const Matrix6d map = calc_rigid_map(*node, reference->x);
@@ -120,7 +110,7 @@ void add_rbe3(const records::Rbe3& record, const NodeTable& nodes, const SourceL
   if (!record.um.empty()) {
     dependent.clear();
     for (const auto& um : record.um) {
-      const Node* node = find_grid(um.g, card, nodes, at, diagnostics);
+      const Node* node = find_rigid_grid(um.g, card, nodes, at, diagnostics);
       if (!node) return;
       for (int c = 0; c < 6; ++c)
         if (um.c >> c & 1u) dependent.push_back(node->first_gdof + c);
@@ -137,8 +127,8 @@ void add_rbe3(const records::Rbe3& record, const NodeTable& nodes, const SourceL
 void add_rrod(const records::Rrod& record, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations) {
   const std::string card = "RROD " + std::to_string(record.id);
-  const Node* ga = find_grid(record.ga, card, nodes, at, diagnostics);
-  const Node* gb = find_grid(record.gb, card, nodes, at, diagnostics);
+  const Node* ga = find_rigid_grid(record.ga, card, nodes, at, diagnostics);
+  const Node* gb = find_rigid_grid(record.gb, card, nodes, at, diagnostics);
   if (!ga || !gb) return;
   const Vector3d along = (gb->x - ga->x).normalized();
   const Vector3d a = -(ga->R_basic_cd.transpose() * along), b = gb->R_basic_cd.transpose() * along;

@@ -1,5 +1,7 @@
 #include "bough/fe/model/rigid.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "bough/base/rotation.hpp"
@@ -9,17 +11,6 @@ namespace {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using RowVector6d = Eigen::Matrix<double, 1, 6>;
-
-/// The node of a rigid element, reported when it is missing or a scalar point.
-const Node* find_grid(int id, const std::string& card, const NodeTable& nodes, const SourceLocation& at,
-                      Diagnostics& diagnostics) {
-  const int index = nodes.find_node(id);
-  if (index >= 0 && nodes.node(index).num_dofs == 6) return &nodes.node(index);
-  diagnostics.error("fe.missing-grid", at,
-                    card + " names grid " + std::to_string(id) + ", which the deck does not define",
-                    "add the GRID or correct the id");
-  return nullptr;
-}
 
 /// u_dependent = row · u_n over the six given l-dofs; entries that are round-off of the row are left out.
 void add_equation(int dependent, const RowVector6d& row, const std::array<int, 6>& ldofs, const RowVector6d& scale,
@@ -35,6 +26,16 @@ void add_equation(int dependent, const RowVector6d& row, const std::array<int, 6
 
 }  // namespace
 
+const Node* find_rigid_grid(int id, const std::string& card, const NodeTable& nodes, const SourceLocation& at,
+                            Diagnostics& diagnostics) {
+  const int index = nodes.find_node(id);
+  if (index >= 0 && nodes.node(index).num_dofs == 6) return &nodes.node(index);
+  diagnostics.error("fe.missing-grid", at,
+                    card + " names grid " + std::to_string(id) + ", which the deck does not define",
+                    "add the GRID or correct the id");
+  return nullptr;
+}
+
 Matrix6d calc_rigid_map(const Node& node, const Vector3d& reference) {
   Matrix6d map = Matrix6d::Zero();
   const Matrix3d Rt = node.R_basic_cd.transpose();
@@ -47,9 +48,9 @@ Matrix6d calc_rigid_map(const Node& node, const Vector3d& reference) {
 void add_rbe2(const records::Rbe2& record, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations) {
   const std::string card = "RBE2 " + std::to_string(record.id);
-  const Node* gn = find_grid(record.gn, card, nodes, at, diagnostics);
+  const Node* gn = find_rigid_grid(record.gn, card, nodes, at, diagnostics);
   for (int id : record.gm) {
-    const Node* gm = find_grid(id, card, nodes, at, diagnostics);
+    const Node* gm = find_rigid_grid(id, card, nodes, at, diagnostics);
     if (!gn || !gm) continue;
     if (gm == gn) {
       diagnostics.error("fe.rigid-independent", at,
@@ -73,53 +74,108 @@ void add_rbe2(const records::Rbe2& record, const NodeTable& nodes, const SourceL
   }
 }
 
-void add_rbar(const records::Rbar& record, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
-              std::vector<ConstraintEquation>& equations) {
-  const std::string card = "RBAR " + std::to_string(record.id);
-  const Node* ga = find_grid(record.ga, card, nodes, at, diagnostics);
-  const Node* gb = find_grid(record.gb, card, nodes, at, diagnostics);
-  if (!ga || !gb) return;
-  const Matrix6d map[2] = {calc_rigid_map(*ga, ga->x), calc_rigid_map(*gb, ga->x)};
-  const Node* grid[2] = {ga, gb};
-  const unsigned independent[2] = {record.cna, record.cnb};
-  unsigned dependent[2] = {record.cma, record.cmb};
-  if (dependent[0] == 0 && dependent[1] == 0) {
-    dependent[0] = 63u & ~independent[0];
-    dependent[1] = 63u & ~independent[1];
-  }
+namespace {
+
+/// Components of one grid of a rigid body.
+struct BodyTerm {
+  const Node* node = nullptr;
+  unsigned c = 0;
+};
+
+/// u_m = D P⁻¹ u_n, P and D the rows of the rigid map of the independent and dependent components. False when P is not
+/// 6 x 6 and regular; `num` is the number of its rows. Rotations count with the size of the independent grids as arm.
+bool add_body(const std::vector<BodyTerm>& independent, const std::vector<BodyTerm>& dependent, const std::string& card,
+              const SourceLocation& at, int& num, std::vector<ConstraintEquation>& equations) {
+  const Vector3d reference = independent.front().node->x;
   Matrix6d P = Matrix6d::Zero();
   std::array<int, 6> ldofs{};
-  int num = 0;
-  for (int end = 0; end < 2; ++end)
+  double arm = 0;
+  num = 0;
+  for (const auto& term : independent) {
+    const Matrix6d map = calc_rigid_map(*term.node, reference);
+    arm = std::max(arm, (term.node->x - reference).norm());
     for (int c = 0; c < 6; ++c)
-      if (independent[end] >> c & 1u) {
+      if (term.c >> c & 1u) {
         if (num < 6) {
-          P.row(num) = map[end].row(c);
-          ldofs[num] = grid[end]->first_gdof + c;
+          P.row(num) = map.row(c);
+          ldofs[num] = term.node->first_gdof + c;
         }
         ++num;
       }
-  const double arm = (gb->x - ga->x).norm() > 0 ? (gb->x - ga->x).norm() : 1;
+  }
+  if (num != 6) return false;
   Matrix6d scaled = P;
-  scaled.rightCols<3>() /= arm;
+  scaled.rightCols<3>() /= arm > 0 ? arm : 1;
   Eigen::FullPivLU<Matrix6d> lu(scaled);
   lu.setThreshold(1e-10);
-  if (num != 6 || lu.rank() < 6 || (independent[0] & dependent[0]) || (independent[1] & dependent[1])) {
+  if (lu.rank() < 6) return false;
+  const Matrix6d inverse = P.inverse();
+  for (const auto& term : dependent) {
+    const Matrix6d map = calc_rigid_map(*term.node, reference);
+    for (int c = 0; c < 6; ++c) {
+      if (!(term.c >> c & 1u)) continue;
+      const RowVector6d row = map.row(c) * inverse;
+      // Each entry's own scale: the sum of magnitudes that made it.
+      const RowVector6d scale = map.row(c).cwiseAbs() * inverse.cwiseAbs();
+      add_equation(term.node->first_gdof + c, row, ldofs, scale, card, at, equations);
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+void add_rbar(const records::Rbar& record, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
+              std::vector<ConstraintEquation>& equations) {
+  const std::string card = "RBAR " + std::to_string(record.id);
+  const Node* ga = find_rigid_grid(record.ga, card, nodes, at, diagnostics);
+  const Node* gb = find_rigid_grid(record.gb, card, nodes, at, diagnostics);
+  if (!ga || !gb) return;
+  unsigned cma = record.cma, cmb = record.cmb;
+  if (cma == 0 && cmb == 0) {
+    cma = 63u & ~record.cna;
+    cmb = 63u & ~record.cnb;
+  }
+  int num = 0;
+  if ((record.cna & cma) == 0 && (record.cnb & cmb) == 0 &&
+      add_body({{ga, record.cna}, {gb, record.cnb}}, {{ga, cma}, {gb, cmb}}, card, at, num, equations))
+    return;
+  num = std::popcount(record.cna) + std::popcount(record.cnb);
+  diagnostics.error("fe.rigid-independent", at,
+                    card + " has " + std::to_string(num) + " independent components" +
+                        (num == 6 ? " that do not fix its rigid motion or are dependent too" : ", expected 6"),
+                    "choose CNA and CNB so that together they hold a rigid body");
+}
+
+void add_rbe1(const records::Rbe1& record, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
+              std::vector<ConstraintEquation>& equations) {
+  const std::string card = "RBE1 " + std::to_string(record.id);
+  bool is_good = !record.independent.empty();
+  const auto find = [&](const std::vector<records::GridComponents>& terms) {
+    std::vector<BodyTerm> found;
+    for (const auto& term : terms) {
+      found.push_back({find_rigid_grid(term.g, card, nodes, at, diagnostics), term.c});
+      is_good = is_good && found.back().node;
+    }
+    return found;
+  };
+  const auto independent = find(record.independent), dependent = find(record.dependent);
+  if (!is_good) return;
+  for (const auto& m : dependent)
+    for (const auto& n : independent)
+      if (m.node == n.node && (m.c & n.c) != 0) {
+        diagnostics.error(
+            "fe.rigid-independent", at,
+            card + " names components of grid " + std::to_string(m.node->id) + " as independent and as dependent",
+            "remove them from UM");
+        return;
+      }
+  int num = 0;
+  if (!add_body(independent, dependent, card, at, num, equations))
     diagnostics.error("fe.rigid-independent", at,
                       card + " has " + std::to_string(num) + " independent components" +
-                          (num == 6 ? " that do not fix its rigid motion or are dependent too" : ", expected 6"),
-                      "choose CNA and CNB so that together they hold a rigid body");
-    return;
-  }
-  const Matrix6d inverse = P.inverse();
-  for (int end = 0; end < 2; ++end)
-    for (int c = 0; c < 6; ++c) {
-      if (!(dependent[end] >> c & 1u)) continue;
-      const RowVector6d row = map[end].row(c) * inverse;
-      // Each entry's own scale: the sum of magnitudes that made it.
-      const RowVector6d scale = map[end].row(c).cwiseAbs() * inverse.cwiseAbs();
-      add_equation(grid[end]->first_gdof + c, row, ldofs, scale, card, at, equations);
-    }
+                          (num == 6 ? " that do not fix its rigid motion" : ", expected 6"),
+                      "choose GN and CN so that together they hold a rigid body");
 }
 
 }  // namespace bough::fe

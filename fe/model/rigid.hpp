@@ -1,9 +1,13 @@
 #pragma once
-/// \file Rigid elements RBE2, RBE3, RBAR and RROD as constraint equations.
+/// \file Rigid elements RBE1, RBE2, RBE3, RBAR and RROD as constraint equations.
 #include "bough/fe/elements/element.hpp"
 #include "bough/fe/model/constraints.hpp"
 
 namespace bough::fe {
+
+/// The grid `id` that `card` names; nullptr after fe.missing-grid when it is missing or a scalar point.
+const Node* find_rigid_grid(int id, const std::string& card, const NodeTable& nodes, const SourceLocation& at,
+                            Diagnostics& diagnostics);
 
 /// Rows: the six dofs of `node` in its CD axes for a rigid motion [v; w] (basic) of the point `reference`:
 /// u = v + w × (x - reference), θ = w. 6 x 6.
@@ -17,6 +21,11 @@ void add_rbe2(const records::Rbe2& card, const NodeTable& nodes, const SourceLoc
 /// map of the independent and dependent components. Blank CMA and CMB: everything that is not independent is dependent.
 /// Reports fe.rigid-independent when there are not six or P is singular.
 void add_rbar(const records::Rbar& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
+              std::vector<ConstraintEquation>& equations);
+
+/// As RBAR for any number of grids: six independent components on up to six grids hold the rigid motion, the
+/// components after UM follow it.
+void add_rbe1(const records::Rbe1& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations);
 
 /// The reference grid's components follow the rigid motion that fits the connected components best in the least squares

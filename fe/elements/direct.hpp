@@ -1,0 +1,32 @@
+#pragma once
+/// \file DMIG selected by K2GG, M2GG, B2GG: stiffness, mass or damping given term by term. Sources: Nastran Quick
+/// Reference Guide, DMIG, K2GG, M2GG, B2GG; OptiStruct Reference Guide, PARAM,CK2 and CM2.
+#include "bough/fe/elements/element.hpp"
+
+namespace bough::fe {
+
+enum class DirectKind { Stiffness, Mass, Damping };
+
+/// What a direct matrix couples of two points, or of one with itself: one element for each pair, so that the global
+/// matrices stay as sparse as the DMIG. A one-point element has a symmetric block on its own dofs (N = n_a); of two
+/// points the block is K_ab (n_a x n_b, basic axes), with its transpose below the diagonal (N = n_a + n_b). A single
+/// element need be neither semidefinite nor free of rigid motions; only the whole matrix is.
+class DirectElement final : public Element {
+ public:
+  DirectElement(DirectKind kind, std::vector<int> nodes, std::vector<int> gdofs, MatrixXd block)
+      : Element(0, "DMIG", std::move(nodes), std::move(gdofs)), kind_(kind), block_(std::move(block)) {}
+
+  void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
+  /// Consistent and lumped alike.
+  void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  bool has_damping() const override { return kind_ == DirectKind::Damping; }
+  void add_damping(double scale, Eigen::Ref<MatrixXd> B) const override;
+
+ private:
+  void add_block(double scale, Eigen::Ref<MatrixXd> A) const;
+
+  DirectKind kind_;
+  MatrixXd block_;
+};
+
+}  // namespace bough::fe
