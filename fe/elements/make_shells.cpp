@@ -19,8 +19,11 @@ void make_shells(Maker& maker) {
       const Vector3d normal = it == surface.end() ? shell.normal : it->second;
       geometry.normals.push_back(normal.dot(shell.normal) < 0 ? Vector3d(-normal) : normal);
     }
+    const bool drilling = shell.card->card == "CQUADR" || shell.card->card == "CTRIAR";
+    const auto kind = drilling ? shell::MembraneKind::Drilling : shell::MembraneKind::Plain;
     maker.add(std::make_unique<Shell>(shell.card->id, shell.card->card, shell.nodes, maker.list_gdofs(shell.nodes),
-                                      geometry, rotate_section(*shell.section, calc_material_angle(maker, shell))));
+                                      geometry, rotate_section(*shell.section, calc_material_angle(maker, shell)),
+                                      kind));
   }
 }
 

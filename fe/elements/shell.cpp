@@ -3,339 +3,284 @@
 #include <cmath>
 
 #include "bough/base/rotation.hpp"
+#include "bough/fe/elements/shell_dofs.hpp"
 
 namespace bough::fe {
 
-namespace {
-
-using Row24 = Eigen::Matrix<double, 1, 24>;
-
-// Sides in the direction of growing ξ or η (quadrilateral) or around (triangle).
-constexpr int kQuadSides[4][2] = {{0, 1}, {1, 2}, {3, 2}, {0, 3}};
-constexpr int kTriSides[3][2] = {{0, 1}, {1, 2}, {2, 0}};
-
-/// Shape functions, side bumps and their derivatives by natural coordinates at a point.
-struct Natural {
-  Eigen::Vector4d shape = Eigen::Vector4d::Zero(), bump = Eigen::Vector4d::Zero();
-  Eigen::Matrix<double, 2, 4> dshape = Eigen::Matrix<double, 2, 4>::Zero(), dbump = Eigen::Matrix<double, 2, 4>::Zero();
-};
-
-Natural calc_quad(double r, double s) {
-  Natural n;
-  n.shape << (1 - r) * (1 - s) / 4, (1 + r) * (1 - s) / 4, (1 + r) * (1 + s) / 4, (1 - r) * (1 + s) / 4;
-  n.dshape << -(1 - s) / 4, (1 - s) / 4, (1 + s) / 4, -(1 + s) / 4, -(1 - r) / 4, -(1 + r) / 4, (1 + r) / 4,
-      (1 - r) / 4;
-  n.bump << (1 - r * r) * (1 - s) / 2, (1 + r) * (1 - s * s) / 2, (1 - r * r) * (1 + s) / 2, (1 - r) * (1 - s * s) / 2;
-  n.dbump << -r * (1 - s), (1 - s * s) / 2, -r * (1 + s), -(1 - s * s) / 2, -(1 - r * r) / 2, -s * (1 + r),
-      (1 - r * r) / 2, -s * (1 - r);
-  return n;
-}
-
-Natural calc_tri(double r, double s) {
-  Natural n;
-  const double l = 1 - r - s;
-  n.shape << l, r, s, 0;
-  n.dshape << -1, 1, 0, 0, -1, 0, 1, 0;
-  n.bump << 4 * l * r, 4 * r * s, 4 * s * l, 0;
-  n.dbump << 4 * (l - r), 4 * s, -4 * s, 0, -4 * r, 4 * r, 4 * (l - s), 0;
-  return n;
-}
-
-}  // namespace
-
-/// Strain operators on the 24 (or 18) element-axes dofs, u v w θx θy θz node by node.
-struct Shell::Point {
-  Eigen::Matrix<double, 3, 24> membrane = Eigen::Matrix<double, 3, 24>::Zero();
-  Eigen::Matrix<double, 3, 4> modes = Eigen::Matrix<double, 3, 4>::Zero();  // incompatible membrane modes
-  Eigen::Matrix<double, 3, 24> bending = Eigen::Matrix<double, 3, 24>::Zero();
-  Eigen::Matrix<double, 2, 24> shear = Eigen::Matrix<double, 2, 24>::Zero();
-  Eigen::Matrix<double, 2, 24> slope = Eigen::Matrix<double, 2, 24>::Zero();     // w,x w,y
-  Eigen::Matrix<double, 4, 24> gradient = Eigen::Matrix<double, 4, 24>::Zero();  // u,x u,y v,x v,y
-  Row24 drilling = Row24::Zero();
-  Eigen::Vector4d shape = Eigen::Vector4d::Zero();
-  double weight = 0;  // dA
-};
+using namespace shell;
 
 Shell::Shell(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, const ShellGeometry& geometry,
-             const ShellSection& section)
+             const ShellSection& section, MembraneKind kind)
     : Element(id, std::move(card), std::move(nodes), std::move(gdofs)),
+      num_nodes_(static_cast<int>(geometry.x.size())),
+      kind_(kind),
       z_offset_(geometry.z_offset),
       section_(section) {
   const auto& x = geometry.x;
-  const std::size_t n = x.size();
   const Vector3d normal =
-      n == 4 ? (x[2] - x[0]).cross(x[3] - x[1]).normalized() : (x[1] - x[0]).cross(x[2] - x[0]).normalized();
+      num_nodes_ == 4 ? (x[2] - x[0]).cross(x[3] - x[1]).normalized() : (x[1] - x[0]).cross(x[2] - x[0]).normalized();
   Vector3d side = x[1] - x[0];
   side -= normal * normal.dot(side);
   side.normalize();
   R_ << side, normal.cross(side), normal;
   Vector3d centre = Vector3d::Zero();
-  for (const auto& p : x) centre += p / static_cast<double>(n);
-  for (const auto& p : x) {
-    const Vector3d local = R_.transpose() * (p - centre);
-    xy_.push_back(local.head<2>());
-    arm_.push_back(geometry.z_offset - local.z());
-    const std::size_t i = arm_.size() - 1;
-    normal_.push_back(geometry.normals.empty() ? Vector3d::UnitZ() : Vector3d(R_.transpose() * geometry.normals[i]));
+  for (const auto& p : x) centre += p / static_cast<double>(num_nodes_);
+  xy_.setZero();
+  const double size = (x[2] - x[0]).norm();
+  for (int i = 0; i < num_nodes_; ++i) {
+    const Vector3d local = R_.transpose() * (x[i] - centre);
+    xy_.col(i) = local.head<2>();
+    arm_[i] = geometry.z_offset - local.z();
+    normal_[i] = geometry.normals.empty() ? Vector3d::UnitZ() : Vector3d(R_.transpose() * geometry.normals[i]);
+    has_arms_ = has_arms_ || std::abs(arm_[i]) > 1e-14 * size;
+    has_lean_ = has_lean_ || normal_[i].head<2>().squaredNorm() > 1e-24;
   }
-  for (int q = 0; q < num_points(); ++q) area_ += calc_point(q).weight;
+  if (!has_arms_) arm_.fill(0);
+  if (num_nodes_ == 4)
+    for (const auto& p : calc_points<4>(get_corners<4>())) area_ += p.weight;
+  else
+    for (const auto& p : calc_points<3>(get_corners<3>())) area_ += p.weight;
 }
 
 ElementShape Shell::shape() const { return {num_nodes() == 4 ? "quad4" : "tri3", nodes()}; }
 
-Shell::Point Shell::calc_point(int q) const {
-  const bool quad = num_nodes() == 4;
-  const int n = num_nodes();
-  const double g = 1 / std::sqrt(3.0);
-  double r, s, quadrature;
-  if (quad) {
-    r = (q == 0 || q == 3) ? -g : g;
-    s = q < 2 ? -g : g;
-    quadrature = 1;
-  } else {
-    r = q == 1 ? 2.0 / 3 : 1.0 / 6;
-    s = q == 2 ? 2.0 / 3 : 1.0 / 6;
-    quadrature = 1.0 / 6;
-  }
-  const Natural at = quad ? calc_quad(r, s) : calc_tri(r, s);
-  Eigen::Matrix2d J = Eigen::Matrix2d::Zero();  // rows: d(x,y)/dr, d(x,y)/ds
-  for (int i = 0; i < n; ++i) J += at.dshape.col(i) * xy_[i].transpose();
-  const Eigen::Matrix2d J_inv = J.inverse();
-  const Eigen::Matrix<double, 2, 4> dshape = J_inv * at.dshape;
-  const Eigen::Matrix<double, 2, 4> dbump = J_inv * at.dbump;
-
-  Point p;
-  p.weight = quadrature * J.determinant();
-  p.shape = at.shape;
-  for (int i = 0; i < n; ++i) {
-    const int c = 6 * i;
-    const double dx = dshape(0, i), dy = dshape(1, i);
-    p.membrane(0, c) = dx;
-    p.membrane(1, c + 1) = dy;
-    p.membrane(2, c) = dy;
-    p.membrane(2, c + 1) = dx;
-    p.gradient(0, c) = dx;
-    p.gradient(1, c) = dy;
-    p.gradient(2, c + 1) = dx;
-    p.gradient(3, c + 1) = dy;
-    p.bending(0, c + 4) = dx;  // β_x = θy, β_y = -θx
-    p.bending(1, c + 3) = -dy;
-    p.bending(2, c + 4) = dy;
-    p.bending(2, c + 3) = -dx;
-    p.slope(0, c + 4) = -at.shape[i];  // -β; the shear is added below
-    p.slope(1, c + 3) = at.shape[i];
-    p.drilling[c] = 0.5 * dy;  // θz - ½(v,x - u,y)
-    p.drilling[c + 1] = -0.5 * dx;
-    p.drilling[c + 5] = at.shape[i];
-  }
-  if (quad) {
-    // J at the centre, scaled, so that the modes do no work on constant stress (Taylor et al. 1976).
-    const Natural centre = calc_quad(0, 0);
-    Eigen::Matrix2d J0 = Eigen::Matrix2d::Zero();
-    for (int i = 0; i < n; ++i) J0 += centre.dshape.col(i) * xy_[i].transpose();
-    const double ratio = J0.determinant() / J.determinant();
-    const Eigen::Vector2d a = ratio * J0.inverse() * Eigen::Vector2d(-2 * r, 0);
-    const Eigen::Vector2d b = ratio * J0.inverse() * Eigen::Vector2d(0, -2 * s);
-    p.modes << a.x(), b.x(), 0, 0, 0, 0, a.y(), b.y(), a.y(), b.y(), a.x(), b.x();
-  }
-
-  Eigen::Matrix<double, 2, 24> covariant = Eigen::Matrix<double, 2, 24>::Zero();  // γ_r, γ_s
-  Row24 side_shear[4];
-  const auto* sides = quad ? kQuadSides : nullptr;
-  for (int k = 0; k < n; ++k) {
-    const int i = quad ? sides[k][0] : kTriSides[k][0], j = quad ? sides[k][1] : kTriSides[k][1];
-    const Eigen::Vector2d d = xy_[j] - xy_[i];
-    const double L = d.norm(), cs = d.x() / L, sn = d.y() / L;
-    double phi = 0;
-    if (section_.shear_flexible) {
-      // Bending and shear stiffness along the side: 12 D_s / (S_s L²) (Katili, Part I, eq. 16 for an isotropic plate).
-      const Eigen::Vector3d e(cs * cs, sn * sn, 2 * cs * sn);
-      const Eigen::Vector2d t(cs, sn);
-      phi = 12 * e.dot(section_.D * Eigen::Vector3d(cs * cs, sn * sn, cs * sn * 2)) / (t.dot(section_.S * t) * L * L);
-    }
-    // mean of w,s + β_s over the side, before the bump
-    Row24 mean = Row24::Zero();
-    mean[6 * i + 2] = -1 / L;
-    mean[6 * j + 2] = 1 / L;
-    for (int m : {i, j}) {
-      mean[6 * m + 4] += 0.5 * cs;
-      mean[6 * m + 3] -= 0.5 * sn;
-    }
-    const Row24 bump = -1.5 / (1 + phi) * mean;
-    side_shear[k] = phi / (1 + phi) * mean;
-    p.bending.row(0) += cs * dbump(0, k) * bump;
-    p.bending.row(1) += sn * dbump(1, k) * bump;
-    p.bending.row(2) += (cs * dbump(1, k) + sn * dbump(0, k)) * bump;
-    p.slope.row(0) -= cs * at.bump[k] * bump;
-    p.slope.row(1) -= sn * at.bump[k] * bump;
-    if (quad) {
-      const double end = k == 0 ? (1 - s) / 2 : k == 1 ? (1 + r) / 2 : k == 2 ? (1 + s) / 2 : (1 - r) / 2;
-      covariant.row(k % 2) += end * 0.5 * L * side_shear[k];
-    }
-  }
-  if (quad) {
-    p.shear = J_inv * covariant;
-  } else {
-    // Each corner sees the shears of its two sides; linear in between (Katili, Part I, eqs. 21-23).
-    for (int i = 0; i < 3; ++i) {
-      const int ka = i, kb = (i + 2) % 3;
-      Eigen::Matrix2d t;
-      t << (xy_[kTriSides[ka][1]] - xy_[kTriSides[ka][0]]).normalized().transpose(),
-          (xy_[kTriSides[kb][1]] - xy_[kTriSides[kb][0]]).normalized().transpose();
-      Eigen::Matrix<double, 2, 24> both;
-      both << side_shear[ka], side_shear[kb];
-      p.shear += at.shape[i] * (t.inverse() * both);
-    }
-  }
-  p.slope += p.shear;
-  return p;
-}
-
-void Shell::calc_map(Dofs& map) const {
-  const int n = num_nodes();
-  map.setZero(6 * n, 6 * n);
-  const Matrix3d Rt = R_.transpose();
-  for (int i = 0; i < n; ++i) {
-    map.block<3, 3>(6 * i, 6 * i) = Rt;
-    map.block<3, 3>(6 * i + 3, 6 * i + 3) = Rt;
-    map.block<1, 3>(6 * i, 6 * i + 3) = arm_[i] * Rt.row(1);       // u + d θy
-    map.block<1, 3>(6 * i + 1, 6 * i + 3) = -arm_[i] * Rt.row(0);  // v - d θx
-  }
+template <int N, class Columns>
+void Shell::to_nodes(const Row<N>& spin, Columns&& local) const {
   // Where the nodal normal m leans, the part of θ along m is replaced by what the membrane turns about z (Ω, at the
   // centre): θ_t + m (Ω - θ_t·z)/(m·z) with θ_t = θ - m (m·θ). A rigid rotation is unchanged.
-  Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 24> spin;
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < N && has_lean_; ++i) {
     const Vector3d& m = normal_[i];
     if (m.head<2>().squaredNorm() < 1e-24) continue;
-    if (spin.size() == 0) spin = calc_spin() * map;  // only rows of u, v enter: unchanged by this loop
     const Matrix3d tangent = Matrix3d::Identity() - m * m.transpose();
     const Vector3d lean = m / m.z();
-    const Matrix3d turn = (tangent - lean * tangent.row(2)) * Rt;
-    for (int a = 0; a < 2; ++a) {
-      map.row(6 * i + 3 + a).setZero();
-      map.block<1, 3>(6 * i + 3 + a, 6 * i + 3) = turn.row(a);
-      map.row(6 * i + 3 + a) += lean[a] * spin;
+    const Matrix3d turn = tangent - lean * tangent.row(2);
+    const auto x = local.col(6 * i + 3).eval(), y = local.col(6 * i + 4).eval();
+    local.col(6 * i + 3) = x * turn(0, 0) + y * turn(1, 0);
+    local.col(6 * i + 4) = x * turn(0, 1) + y * turn(1, 1);
+    local.col(6 * i + 5) += x * turn(0, 2) + y * turn(1, 2);
+    const auto leaning = (x * lean.x() + y * lean.y()).eval();
+    for (int j = 0; j < N; ++j)
+      for (int a = 0; a < 2; ++a) local.col(6 * j + a) += leaning * spin[3 * j + a];
+  }
+  for (int i = 0; i < N && has_arms_; ++i) {  // u + d θy, v - d θx
+    local.col(6 * i + 4) += arm_[i] * local.col(6 * i);
+    local.col(6 * i + 3) -= arm_[i] * local.col(6 * i + 1);
+  }
+}
+
+template <int N>
+void Shell::add_turned(const Square<N>& local, double scale, Eigen::Ref<MatrixXd> out) const {
+  for (int j = 0; j < 2 * N; ++j)
+    for (int i = 0; i <= j; ++i) {
+      const Matrix3d block = scale * (R_ * local.template block<3, 3>(3 * i, 3 * j) * R_.transpose());
+      if (i == j) {
+        out.block<3, 3>(3 * i, 3 * j) += 0.5 * (block + block.transpose());
+      } else {
+        out.block<3, 3>(3 * i, 3 * j) += block;
+        out.block<3, 3>(3 * j, 3 * i) += block.transpose();
+      }
     }
-  }
 }
 
-Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 24> Shell::calc_spin() const {
-  const int n = num_nodes();
-  const Natural at = n == 4 ? calc_quad(0, 0) : calc_tri(1.0 / 3, 1.0 / 3);
-  Eigen::Matrix2d J = Eigen::Matrix2d::Zero();
-  for (int i = 0; i < n; ++i) J += at.dshape.col(i) * xy_[i].transpose();
-  const Eigen::Matrix<double, 2, 4> dshape = J.inverse() * at.dshape;
-  Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 24> row;
-  row.setZero(6 * n);
-  for (int i = 0; i < n; ++i) {
-    row[6 * i] = -0.5 * dshape(1, i);
-    row[6 * i + 1] = 0.5 * dshape(0, i);
-  }
-  return row;
-}
-
-Shell::Dofs Shell::calc_local_stiffness(Eigen::Matrix<double, 4, 24>* modes) const {
-  const int n = num_nodes();
-  Eigen::Matrix<double, 24, 24> K = Eigen::Matrix<double, 24, 24>::Zero();
-  Eigen::Matrix4d Kaa = Eigen::Matrix4d::Zero();
-  Eigen::Matrix<double, 4, 24> Kau = Eigen::Matrix<double, 4, 24>::Zero();
+template <int N>
+void Shell::add_stiffness_of(double scale, Eigen::Ref<MatrixXd> out) const {
+  using Block = Eigen::Matrix<double, 3 * N, 3 * N>;
+  const Corners<N> xy = get_corners<N>();
+  const Points<N> points = calc_points<N>(xy);
+  const Plate<N> plate = calc_plate<N>(xy, points, section_);
+  const Membrane<N> membrane = calc_membrane<N>(kind_, xy, points, section_, plate);
   const auto& c = section_;
-  const bool coupled = c.B.squaredNorm() > 0;
-  for (int q = 0; q < num_points(); ++q) {
-    const Point p = calc_point(q);
-    Eigen::Matrix<double, 3, 24> N = c.A * p.membrane, M = c.D * p.bending;
-    if (coupled) {
-      N += c.B * p.bending;
-      M += c.B.transpose() * p.membrane;
-    }
-    K.noalias() += p.weight * (p.membrane.transpose() * N + p.bending.transpose() * M);
-    if (c.shear_flexible) K.noalias() += p.weight * p.shear.transpose() * c.S * p.shear;
-    K.noalias() += p.weight * c.drilling * p.drilling.transpose() * p.drilling;
-    if (n == 4) {
-      Kaa += p.weight * p.modes.transpose() * c.A * p.modes;
-      Kau += p.weight * p.modes.transpose() * N;
-    }
+  const bool coupled = !c.B.isZero(0);
+  Block K_mm = Block::Zero(), K_pp = Block::Zero(), K_mp = Block::Zero();
+  for (int q = 0; q < N; ++q) {
+    const double w = points[q].weight;
+    const Strains<N>&e = membrane.strain[q], &k = plate.bending[q];
+    K_mm.noalias() += e.transpose() * (w * c.A * e);
+    K_pp.noalias() += k.transpose() * (w * c.D * k);
+    if (c.shear_flexible) K_pp.noalias() += plate.shear[q].transpose() * (w * plate.force[q]);
+    if (!coupled) continue;
+    K_mp.noalias() += e.transpose() * (w * c.B * k);
+    if (!membrane.coupled) continue;
+    const Strains<N>& f = membrane.strain_of_plate[q];
+    const Block cross = f.transpose() * (w * c.B * k);
+    K_mp.noalias() += e.transpose() * (w * c.A * f);
+    K_pp += cross + cross.transpose() + f.transpose() * (w * c.A * f);
   }
-  if (n == 4 && c.A.squaredNorm() > 0) {
-    const Eigen::Matrix<double, 4, 24> solved = -Kaa.ldlt().solve(Kau);
-    K += Kau.transpose() * solved;
-    if (modes) *modes = solved;
-  } else if (modes) {
-    modes->setZero();
+  for (int i = 0; i < membrane.num_springs; ++i)
+    K_mm.noalias() += membrane.spring_weight[i] * membrane.spring[i].transpose() * membrane.spring[i];
+  Square<N> K;
+  for (int j = 0; j < 3 * N; ++j)
+    for (int i = 0; i < 3 * N; ++i) {
+      K(kMembrane<N>[i], kMembrane<N>[j]) = K_mm(i, j);
+      K(kPlate<N>[i], kPlate<N>[j]) = K_pp(i, j);
+      K(kMembrane<N>[i], kPlate<N>[j]) = K(kPlate<N>[j], kMembrane<N>[i]) = K_mp(i, j);
+    }
+  if (has_arms_ || has_lean_) {
+    const Row<N> spin = has_lean_ ? calc_spin<N>(calc_centre<N>(xy)) : Row<N>::Zero();
+    to_nodes<N>(spin, K);
+    K.transposeInPlace();
+    to_nodes<N>(spin, K);
   }
-  return K.topLeftCorner(6 * n, 6 * n);
+  add_turned<N>(K, scale, out);
 }
 
-void Shell::add_mapped(const Dofs& local, double scale, Eigen::Ref<MatrixXd> out) const {
-  Dofs map;
-  calc_map(map);
-  out.noalias() += scale * (map.transpose() * local.selfadjointView<Eigen::Lower>() * map);
-}
-
-void Shell::add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const {
-  add_mapped(calc_local_stiffness(nullptr), scale, K);
-}
-
-void Shell::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const {
-  const int n = num_nodes();
+template <int N>
+void Shell::add_mass_of(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const {
   // The centre of mass of the section moves by u + θ × d z.
   const Vector3d z = R_.col(2);
   const double d = z_offset_ + section_.mass_offset;
   const Matrix3d arm = -d * skew(z), tangent = Matrix3d::Identity() - z * z.transpose();
-  const auto add = [&](int i, int j, double mass, double rotary) {
-    M.block<3, 3>(6 * i, 6 * j).diagonal().array() += mass;
-    if (d != 0) {
-      M.block<3, 3>(6 * i, 6 * j + 3) += mass * arm;
-      M.block<3, 3>(6 * i + 3, 6 * j) += mass * arm.transpose();
+  Eigen::Matrix<double, N, N> area = Eigen::Matrix<double, N, N>::Zero();
+  for (const auto& p : calc_points<N>(get_corners<N>())) {
+    if (kind == MassKind::Lumped)
+      area.diagonal() += p.weight * p.shape;
+    else
+      area.noalias() += p.weight * p.shape * p.shape.transpose();
+  }
+  const double inertia = section_.mass * d * d + (kind == MassKind::Consistent ? section_.rotary_inertia : 0);
+  for (int j = 0; j < N; ++j)
+    for (int i = 0; i < N; ++i) {
+      const double part = scale * area(i, j);
+      if (part == 0) continue;
+      M.block<3, 3>(6 * i, 6 * j).diagonal().array() += part * section_.mass;
+      if (d != 0) {
+        M.block<3, 3>(6 * i, 6 * j + 3) += part * section_.mass * arm;
+        M.block<3, 3>(6 * i + 3, 6 * j) += part * section_.mass * arm.transpose();
+      }
+      if (inertia != 0) M.block<3, 3>(6 * i + 3, 6 * j + 3) += part * inertia * tangent;
     }
-    if (d != 0 || rotary != 0) M.block<3, 3>(6 * i + 3, 6 * j + 3) += (mass * d * d + rotary) * tangent;
-  };
-  for (int q = 0; q < num_points(); ++q) {
-    const Point p = calc_point(q);
-    const double mass = scale * p.weight * section_.mass, rotary = scale * p.weight * section_.rotary_inertia;
-    for (int i = 0; i < n; ++i) {
-      if (kind == MassKind::Lumped) add(i, i, p.shape[i] * mass, 0);
-      for (int j = 0; j < n && kind == MassKind::Consistent; ++j)
-        add(i, j, p.shape[i] * p.shape[j] * mass, p.shape[i] * p.shape[j] * rotary);
-    }
+}
+
+template <int N>
+void Shell::calc_forces_of(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
+  const Corners<N> xy = get_corners<N>();
+  const Points<N> points = calc_points<N>(xy);
+  const Plate<N> plate = calc_plate<N>(xy, points, section_);
+  const Membrane<N> membrane = calc_membrane<N>(kind_, xy, points, section_, plate);
+  Square<N> map = Square<N>::Identity();
+  to_nodes<N>(has_lean_ ? calc_spin<N>(calc_centre<N>(xy)) : Row<N>::Zero(), map);
+  Eigen::Matrix<double, 6 * N, 1> turned;
+  for (int i = 0; i < 2 * N; ++i) turned.template segment<3>(3 * i) = R_.transpose() * u.segment<3>(3 * i);
+  const Eigen::Matrix<double, 6 * N, 1> local = map * turned;
+  Eigen::Matrix<double, 3 * N, 1> m, p;
+  for (int i = 0; i < 3 * N; ++i) m[i] = local[kMembrane<N>[i]], p[i] = local[kPlate<N>[i]];
+  for (int q = 0; q < N; ++q) {
+    Eigen::Vector3d strain = membrane.strain[q] * m;
+    if (membrane.coupled) strain += membrane.strain_of_plate[q] * p;
+    const Eigen::Vector3d curvature = plate.bending[q] * p;
+    auto at = force.segment<kNumForces>(kNumForces * q);
+    at.head<3>() = section_.A * strain + section_.B * curvature;
+    at.segment<3>(3) = section_.B.transpose() * strain + section_.D * curvature;
+    at.tail<2>() = plate.force[q] * p;
   }
 }
 
+void Shell::add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const {
+  num_nodes_ == 4 ? add_stiffness_of<4>(scale, K) : add_stiffness_of<3>(scale, K);
+}
+
+void Shell::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const {
+  num_nodes_ == 4 ? add_mass_of<4>(kind, scale, M) : add_mass_of<3>(kind, scale, M);
+}
+
 void Shell::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
-  Dofs map;
-  calc_map(map);
-  Eigen::Matrix<double, 24, 1> local = Eigen::Matrix<double, 24, 1>::Zero();
-  local.head(num_dofs()) = map * u;
-  Eigen::Matrix<double, 4, 24> modes;
-  calc_local_stiffness(&modes);
-  const Eigen::Vector4d a = modes * local;
-  for (int q = 0; q < num_points(); ++q) {
-    const Point p = calc_point(q);
-    force.segment<3>(3 * q) = section_.A * (p.membrane * local + p.modes * a) + section_.B * (p.bending * local);
-  }
+  num_nodes_ == 4 ? calc_forces_of<4>(u, force) : calc_forces_of<3>(u, force);
 }
 
 std::vector<std::string> Shell::internal_force_names() const {
   std::vector<std::string> names;
   for (int q = 1; q <= num_points(); ++q)
-    for (const char* c : {"Nx", "Ny", "Nxy"}) names.push_back(c + std::string("@") + std::to_string(q));
+    for (const char* c : {"Nx", "Ny", "Nxy", "Mx", "My", "Mxy", "Qx", "Qy"})
+      names.push_back(c + std::string("@") + std::to_string(q));
   return names;
 }
 
 void Shell::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                     Eigen::Ref<MatrixXd> K_G) const {
-  const int n = num_nodes();
-  Eigen::Matrix<double, 24, 24> local = Eigen::Matrix<double, 24, 24>::Zero();
-  for (int q = 0; q < num_points(); ++q) {
-    const Point p = calc_point(q);
-    Eigen::Matrix2d N;
-    N << force[3 * q], force[3 * q + 2], force[3 * q + 2], force[3 * q + 1];
-    N *= p.weight;
-    local.noalias() += p.slope.transpose() * N * p.slope;
-    local.noalias() += p.gradient.topRows<2>().transpose() * N * p.gradient.topRows<2>();
-    local.noalias() += p.gradient.bottomRows<2>().transpose() * N * p.gradient.bottomRows<2>();
+  num_nodes_ == 4 ? add_geometric_stiffness_of<4>(force, scale, K_G) : add_geometric_stiffness_of<3>(force, scale, K_G);
+}
+
+/// Force times the second order of the strains, as quadratic form of the surface's dofs; see docs/elements/shell.md.
+template <int N>
+void Shell::add_geometric_stiffness_of(const Eigen::Ref<const VectorXd>& force, double scale,
+                                       Eigen::Ref<MatrixXd> out) const {
+  const Corners<N> xy = get_corners<N>();
+  const Points<N> points = calc_points<N>(xy);
+  const Plate<N> plate = calc_plate<N>(xy, points, section_);
+  Eigen::Matrix<double, N, N> NN = Eigen::Matrix<double, N, N>::Zero(), MM = NN;  // ∫ N_i,a (N, M)_ab N_j,b
+  Eigen::Matrix<double, 3 * N, 3 * N> slopes = Eigen::Matrix<double, 3 * N, 3 * N>::Zero();
+  Eigen::Matrix<double, 2, N> M_grad = Eigen::Matrix<double, 2, N>::Zero();  // ∫ M_ab N_i,b
+  std::array<double, N> side_force{};                                        // works on the mean shear of each side
+  for (int q = 0; q < N; ++q) {
+    const auto f = points[q].weight * force.segment<kNumForces>(kNumForces * q);
+    Eigen::Matrix2d n, m;
+    n << f[0], f[2], f[2], f[1];
+    m << f[3], f[5], f[5], f[4];
+    const auto& grad = points[q].dshape;
+    const Eigen::Matrix<double, 2, N> m_grad = m * grad;
+    NN.noalias() += grad.transpose() * (n * grad);
+    MM.noalias() += grad.transpose() * m_grad;
+    M_grad += m_grad;
+    slopes.noalias() += plate.slope[q].transpose() * (n * plate.slope[q]);
+    for (int k = 0; k < N; ++k)
+      side_force[k] += plate.side_bending[k][q].dot(Eigen::Vector3d(f[3], f[4], f[5])) +
+                       plate.side_shear[k][q].dot(Eigen::Vector2d(f[6], f[7]));
   }
-  add_mapped(local.topLeftCorner(6 * n, 6 * n), scale, K_G);
+  Square<N> K = Square<N>::Zero();
+  const auto add = [&K](int i, int j, double value) {
+    K(i, j) += value;
+    K(j, i) += value;
+  };
+  for (int j = 0; j < 3 * N; ++j)
+    for (int i = 0; i < 3 * N; ++i) K(kPlate<N>[i], kPlate<N>[j]) = slopes(i, j);
+  for (int j = 0; j < N; ++j)
+    for (int i = 0; i < N; ++i) {
+      K(6 * i, 6 * j) += NN(i, j);
+      K(6 * i + 1, 6 * j + 1) += NN(i, j);
+      add(6 * i, 6 * j + 4, MM(i, j));  // M_ab u,a·β,b with β = (θy, -θx)
+      add(6 * i + 1, 6 * j + 3, -MM(i, j));
+    }
+  std::array<Eigen::Vector2d, N> turn;  // factor of (θx, θy) θz / 2 of node i
+  std::array<double, N> lift{};         // force on w of node i
+  for (int i = 0; i < N; ++i) turn[i] = M_grad.col(i);
+  for (int k = 0; k < N; ++k) {
+    const auto& side = plate.sides[k];
+    const double T = side_force[k], half = 0.5 * T / side.length;
+    for (int m : {side.i, side.j}) {  // T (u_j - u_i)/L · ½ (β_i + β_j)
+      add(6 * side.j, 6 * m + 4, half);
+      add(6 * side.i, 6 * m + 4, -half);
+      add(6 * side.j + 1, 6 * m + 3, -half);
+      add(6 * side.i + 1, 6 * m + 3, half);
+      turn[m] += 0.5 * T * side.t;
+    }
+    lift[side.j] += T / side.length;
+    lift[side.i] -= T / side.length;
+  }
+  Square<N> at_nodes =
+      Square<N>::Zero();  // of the second-order arms d_i ½ (θ θz - n |θ|²): on the nodes' own rotations
+  if (has_arms_) {
+    const Membrane<N> membrane = calc_membrane<N>(kind_, xy, points, section_, plate);
+    Eigen::Matrix<double, 3 * N, 1> f = Eigen::Matrix<double, 3 * N, 1>::Zero();
+    for (int q = 0; q < N; ++q)
+      f += points[q].weight * membrane.strain[q].transpose() * force.segment<3>(kNumForces * q);
+    for (int i = 0; i < N; ++i) {
+      turn[i] += arm_[i] * f.template segment<2>(3 * i);
+      at_nodes(6 * i + 3, 6 * i + 3) -= arm_[i] * lift[i];
+      at_nodes(6 * i + 4, 6 * i + 4) -= arm_[i] * lift[i];
+    }
+  }
+  for (int i = 0; i < N; ++i)
+    for (int a = 0; a < 2; ++a) {
+      at_nodes(6 * i + 3 + a, 6 * i + 5) += 0.5 * turn[i][a];
+      at_nodes(6 * i + 5, 6 * i + 3 + a) += 0.5 * turn[i][a];
+    }
+  if (has_arms_ || has_lean_) {
+    const Row<N> spin = has_lean_ ? calc_spin<N>(calc_centre<N>(xy)) : Row<N>::Zero();
+    to_nodes<N>(spin, K);
+    K.transposeInPlace();
+    to_nodes<N>(spin, K);
+  }
+  add_turned<N>(K + at_nodes, scale, out);
 }
 
 }  // namespace bough::fe

@@ -23,10 +23,11 @@ void add_isotropic(SmallModel& m, double t) {
   m.deck.psolid.push_back({1, 1, 0, {}});
 }
 
-void add_shell(SmallModel& m, std::vector<int> grids, double z_offset = 0) {
+/// drilling: CQUADR or CTRIAR.
+void add_shell(SmallModel& m, std::vector<int> grids, double z_offset = 0, bool drilling = false) {
   records::ShellElement e;
   e.id = static_cast<int>(m.deck.shells.size()) + 1, e.pid = 1, e.z_offset = z_offset;
-  e.card = grids.size() == 4 ? "CQUAD4" : "CTRIA3";
+  e.card = grids.size() == 4 ? (drilling ? "CQUADR" : "CQUAD4") : (drilling ? "CTRIAR" : "CTRIA3");
   e.grids = std::move(grids);
   m.deck.shells.push_back(e);
 }
@@ -48,14 +49,14 @@ struct Case {
 const std::vector<Vector3d> kFlat = {{0, 0, 0}, {1.2, 0.1, 0}, {1.1, 0.9, 0}, {-0.1, 1.1, 0}};
 const std::vector<Vector3d> kWarped = {{0, 0, 0.03}, {1.2, 0.1, -0.02}, {1.1, 0.9, 0.04}, {-0.1, 1.1, -0.03}};
 
-Case make_shell_case(const char* name, std::vector<Vector3d> x, double t, double z_offset) {
+Case make_shell_case(const char* name, std::vector<Vector3d> x, double t, double z_offset, bool drilling = false) {
   const int n = static_cast<int>(x.size());
   return {name, 6 * n - 6, [=](SmallModel& m) {
             add_isotropic(m, t);
             add_grids(m, x);
             std::vector<int> grids;
             for (int i = 1; i <= n; ++i) grids.push_back(i);
-            add_shell(m, grids, z_offset);
+            add_shell(m, grids, z_offset, drilling);
           }};
 }
 
@@ -103,6 +104,10 @@ std::vector<Case> make_shell_cases() {
           make_shell_case("quad_warped_offset", kWarped, 0.1, 0.2),
           make_shell_case("tri_thick", tri, 0.3, 0),
           make_shell_case("tri_thin_offset", tri, 1e-2, -0.05),
+          make_shell_case("quadr_thick", kFlat, 0.3, 0, true),
+          make_shell_case("quadr_warped_offset", kWarped, 0.1, 0.2, true),
+          make_shell_case("triar_thick", tri, 0.3, 0, true),
+          make_shell_case("triar_thin_offset", tri, 1e-2, -0.05, true),
           {"laminate", 18,
            [](SmallModel& m) {
              add_isotropic(m, 0.1);
@@ -265,7 +270,7 @@ TEST(SolidPatch, ConstantStrain) {
 }
 
 /// The patch of Macneal and Harder (1985): 0.24 x 0.12, five distorted quadrilaterals about four inner grids.
-SmallModel make_patch(bool triangles, double t, double shear_ratio = 5.0 / 6) {
+SmallModel make_patch(bool triangles, double t, double shear_ratio = 5.0 / 6, bool drilling = false) {
   SmallModel m;
   add_isotropic(m, t);
   m.deck.pshell[0].shear_ratio = shear_ratio;
@@ -280,10 +285,10 @@ SmallModel make_patch(bool triangles, double t, double shear_ratio = 5.0 / 6) {
   for (const auto& q :
        std::vector<std::vector<int>>{{1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}, {5, 6, 7, 8}}) {
     if (triangles) {
-      add_shell(m, {q[0], q[1], q[2]});
-      add_shell(m, {q[0], q[2], q[3]});
+      add_shell(m, {q[0], q[1], q[2]}, 0, drilling);
+      add_shell(m, {q[0], q[2], q[3]}, 0, drilling);
     } else {
-      add_shell(m, q);
+      add_shell(m, q, 0, drilling);
     }
   }
   m.make();
@@ -313,15 +318,15 @@ void expect_patch(const SmallModel& m, const Field& field, double tolerance, con
 }
 
 TEST(ShellPatch, MembraneAndBendingOfDistortedElements) {
-  for (bool triangles : {false, true})
+  for (int kind = 0; kind < 4; ++kind)
     for (double t : {1e-4, 1e-3, 1e-2}) {
-      const SmallModel m = make_patch(triangles, t);
+      const SmallModel m = make_patch(kind % 2, t, 5.0 / 6, kind > 1);
       const double tolerance = 1e-13 * std::pow(0.24 / t, 2);  // of membrane to bending: the condition of K
       expect_patch(
           m,
           [](const Vector3d& x) {
-            return std::pair(Vector3d(1e-3 * (x.x() + 0.5 * x.y()), 1e-3 * (x.y() + 0.5 * x.x()), 0),
-                             Vector3d(0, 0, 0));
+            return std::pair(Vector3d(1e-3 * (x.x() + 0.8 * x.y()), 1e-3 * (x.y() + 0.2 * x.x()), 0),
+                             Vector3d(0, 0, 1e-3 * 0.5 * (0.2 - 0.8)));
           },
           tolerance, "membrane");
       expect_patch(
@@ -332,6 +337,24 @@ TEST(ShellPatch, MembraneAndBendingOfDistortedElements) {
                              Vector3d(1e-3 * (0.5 * x.x() + x.y()), -1e-3 * (x.x() + 0.5 * x.y()), 0));
           },
           tolerance, "bending");
+    }
+}
+
+/// A drilling moment is carried: in a plate with true drilling rotations PARAM,K6ROT changes nothing.
+TEST(ShellPatch, DrillingRotationsDoNotUseK6rot) {
+  for (bool triangles : {false, true})
+    for (bool drilling : {false, true}) {
+      MatrixXd K[2];
+      for (int i = 0; i < 2; ++i) {
+        SmallModel m;
+        add_isotropic(m, 0.1);
+        add_grids(m, kFlat);
+        add_shell(m, triangles ? std::vector<int>{1, 2, 3} : std::vector<int>{1, 2, 3, 4}, 0, drilling);
+        m.deck.params.push_back({"K6ROT", i ? "1.E6" : "0.", {}});
+        m.make();
+        K[i] = m.calc_stiffness();
+      }
+      EXPECT_EQ((K[0] - K[1]).norm() > 1e-6 * K[0].norm(), !drilling);
     }
 }
 
@@ -382,26 +405,44 @@ TEST(ShellGeometric, RigidRotationUnderConstantForce) {
   }
 }
 
-/// An offset shell is the shell at the offset, joined to its grids by rigid arms: stiffness, both masses and K_G.
+/// An offset shell is the shell at the offset, joined to its grids by rigid arms w: stiffness, both masses, and K_G
+/// with the second order ½ θ×(θ×w) of the arms under the forces of the shell.
 TEST(ShellOffset, IsARigidArm) {
-  for (int corners : {3, 4}) {
-    const std::vector<Vector3d> x(kFlat.begin(), kFlat.begin() + corners);
-    const double d = 0.15;
-    std::vector<Vector3d> raised = x;
-    for (auto& p : raised) p.z() += d;
-    const SmallModel offset = make_model(make_shell_case("offset", x, 0.05, d));
-    const SmallModel plain = make_model(make_shell_case("plain", raised, 0.05, 0));
-    MatrixXd T = MatrixXd::Identity(6 * corners, 6 * corners);
-    for (int k = 0; k < corners; ++k) T.block<3, 3>(6 * k, 6 * k + 3) = -skew(d * kR.col(2));
-    const auto expect_equal = [&](const MatrixXd& a, const MatrixXd& b, const char* what) {
-      EXPECT_LT((a - T.transpose() * b * T).norm(), 1e-12 * a.norm()) << what;
-    };
-    expect_equal(offset.calc_stiffness(), plain.calc_stiffness(), "stiffness");
-    expect_equal(offset.calc_mass(MassKind::Lumped), plain.calc_mass(MassKind::Lumped), "lumped");
-    expect_equal(offset.calc_mass(MassKind::Consistent), plain.calc_mass(MassKind::Consistent), "consistent");
-    const VectorXd u = make_displacement(3, 6 * corners);
-    expect_equal(offset.calc_geometric_stiffness(u), plain.calc_geometric_stiffness(T * u), "geometric");
-  }
+  for (int corners : {3, 4})
+    for (bool drilling : {false, true}) {
+      const std::vector<Vector3d> x(kFlat.begin(), kFlat.begin() + corners);
+      const double d = 0.15;
+      std::vector<Vector3d> raised = x;
+      for (auto& p : raised) p.z() += d;
+      const auto make = [&](const char* name, const std::vector<Vector3d>& at, double z_offset) {
+        Case c = make_shell_case(name, at, 0.05, z_offset, drilling);
+        SmallModel m;
+        c.fill(m);
+        m.deck.params.push_back({"K6ROT", "0.", {}});  // its forces are not among the internal forces
+        m.make();
+        return m;
+      };
+      const SmallModel offset = make("offset", x, d), plain = make("plain", raised, 0);
+      MatrixXd T = MatrixXd::Identity(6 * corners, 6 * corners);
+      const Vector3d w = d * kR.col(2);
+      for (int k = 0; k < corners; ++k) T.block<3, 3>(6 * k, 6 * k + 3) = -skew(w);
+      const auto expect_equal = [&](const MatrixXd& a, const MatrixXd& b, const char* what) {
+        EXPECT_LT((a - b).norm(), 1e-12 * a.norm()) << what;
+      };
+      expect_equal(offset.calc_stiffness(), T.transpose() * plain.calc_stiffness() * T, "stiffness");
+      for (MassKind kind : {MassKind::Lumped, MassKind::Consistent})
+        expect_equal(offset.calc_mass(kind), T.transpose() * plain.calc_mass(kind) * T, "mass");
+      const VectorXd u = make_displacement(3, 6 * corners);
+      VectorXd f = plain.calc_stiffness() * (T * u);
+      if (drilling && corners == 4) continue;  // the two springs of CQUADR pull beside the strains
+      MatrixXd expected = T.transpose() * plain.calc_geometric_stiffness(T * u) * T;
+      for (int k = 0; k < corners; ++k) {
+        const Vector3d force = f.segment<3>(6 * k);
+        const Matrix3d fw = force * w.transpose();
+        expected.block<3, 3>(6 * k + 3, 6 * k + 3) += 0.5 * (fw + fw.transpose()) - force.dot(w) * Matrix3d::Identity();
+      }
+      expect_equal(offset.calc_geometric_stiffness(u), expected, "geometric");
+    }
 }
 
 /// Mass, centre and inertia of a square plate under rigid motion, exactly those of the body.
