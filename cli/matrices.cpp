@@ -6,8 +6,9 @@
 #include <sstream>
 
 #include "bough/fe/static_case.hpp"
-#include "bough/formats/export/matrix_files.hpp"
 #include "bough/formats/hdf5/files.hpp"
+#include "bough/formats/matrices/matrix_market.hpp"
+#include "bough/formats/matrices/op4.hpp"
 #include "console.hpp"
 #include "model_options.hpp"
 #include "options.hpp"
@@ -101,11 +102,11 @@ std::vector<std::string> write(const records::MatricesResult& result, const Matr
   std::ostringstream op4;
   for (const auto& [name, matrix] : matrices) {
     if (options.format == "op4") {
-      exports::write_output4(op4, *matrix, name);
+      matrices::write_op4(op4, *matrix, name, {});
       continue;
     }
     std::ostringstream text;
-    exports::write_matrix_market(text, *matrix, name + " on the dofs listed in " + name_dof_file(path));
+    matrices::write_matrix_market(text, *matrix, name + " on the dofs listed in " + name_dof_file(path));
     keep(insert_name(path, name), text.str());
   }
   if (options.format == "op4") keep(path, op4.str());

@@ -19,6 +19,10 @@ if(NOT BOUGH_SOLVER_ONLY)
   # The openmpi flavour is the one PETSc links; the serial one in the same process would clash with it.
   pkg_check_modules(MPI REQUIRED IMPORTED_TARGET GLOBAL ompi-c)   # PETSc.pc names it for static links only
   pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET GLOBAL hdf5-openmpi)
+  # By name, not by its .pc: that links the serial HDF5, which the openmpi flavour's symbols could then bind to. The
+  # library's own use of it stays apart, since Debian gives the symbols of the two flavours different versions.
+  find_path(MATIO_INCLUDE_DIR matio.h REQUIRED)
+  find_library(MATIO_LIBRARY matio REQUIRED)
   find_package(CLI11 REQUIRED)
   find_package(nlohmann_json 3 REQUIRED)
   find_package(fmt REQUIRED)

@@ -103,6 +103,8 @@ FileReader::FileReader(const std::string& path, const std::string& format, const
   check_format(file_.get(), path, format, version);
 }
 
+FileReader::FileReader(const std::string& path) : path_(path), file_(open_file(path)) {}
+
 void FileReader::error(const char* id, const std::string& what, const std::string& advice) {
   diagnostics_.error(id, {path_}, what, advice);
 }

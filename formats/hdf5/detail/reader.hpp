@@ -29,6 +29,8 @@ struct NumberArray {
 class FileReader {
  public:
   FileReader(const std::string& path, const std::string& format, const std::string& version);
+  /// Of any format: a file of another program.
+  explicit FileReader(const std::string& path);
 
   hid_t get() const { return file_.get(); }
   bool has(const std::string& path) const { return exists(file_.get(), path); }

@@ -1,0 +1,23 @@
+#pragma once
+/// \file The reader of each format; read_matrices picks one. Each throws InputError "matrices.*".
+#include <string>
+#include <vector>
+
+#include "bough/base/diagnostic.hpp"
+#include "bough/formats/matrices/detail/input.hpp"
+#include "bough/formats/matrices/matrix.hpp"
+
+namespace bough::matrices::detail {
+
+std::vector<Matrix> read_dmig(const std::string& path, Diagnostics& diagnostics);
+std::vector<Matrix> read_matrix_market(const std::string& path);
+/// Lines "row column value"; the dofs from a file of the same name that ends in .dof, when there is one.
+std::vector<Matrix> read_triplet_lines(const std::string& path);
+/// Abaqus matrix input: "node, dof, node, dof, value".
+std::vector<Matrix> read_abaqus_labels(const std::string& path);
+/// The dofs from a file of the same name that ends in .mapping, when there is one.
+std::vector<Matrix> read_harwell_boeing(const std::string& path);
+std::vector<Matrix> read_hdf5(const std::string& path);
+std::vector<Matrix> read_mat(const std::string& path);
+
+}  // namespace bough::matrices::detail

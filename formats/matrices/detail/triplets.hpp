@@ -1,0 +1,37 @@
+#pragma once
+/// \file Gathers (row, column, value) in any order and makes compressed rows of them.
+#include <vector>
+
+#include "bough/formats/matrices/matrix.hpp"
+
+namespace bough::matrices::detail {
+
+/// No matrix of a body has more rows; a header that says so is damaged.
+inline constexpr long kMostRows = 50'000'000;
+
+enum class Triangle { Both, Mirror, MirrorNegative, MirrorConjugate };
+
+class Triplets {
+ public:
+  void add(int row, int column, double value, double imaginary = 0) {
+    row_.push_back(row);
+    column_.push_back(column);
+    value_.push_back(value);
+    imaginary_.push_back(imaginary);
+  }
+  std::size_t size() const { return row_.size(); }
+  /// Entries off the diagonal lie on one side only, and there is one.
+  bool is_triangular() const;
+  /// Adds the other side of every entry off the diagonal.
+  void mirror(Triangle how);
+  /// Indices of rows and columns replaced by row_of[index], column_of[index].
+  void renumber(const std::vector<int>& row_of, const std::vector<int>& column_of);
+  /// Sorted by row and column, entries of the same place added up, zeros left out.
+  void compress(int num_rows, int num_cols, bool is_complex, Matrix& matrix) const;
+
+ private:
+  std::vector<int> row_, column_;
+  std::vector<double> value_, imaginary_;
+};
+
+}  // namespace bough::matrices::detail
