@@ -1,0 +1,59 @@
+/// Formats of numbers: C's as printf, Fortran's as its standard writes them.
+#include "bough/formats/flx/number_format.hpp"
+
+#include <gmock/gmock.h>
+
+namespace bough::flx {
+namespace {
+
+std::string print(const std::string& format, double value) {
+  const auto parsed = NumberFormat::parse(format);
+  if (!parsed) return "bad format";
+  return parsed->print(value).value_or("too wide");
+}
+
+TEST(NumberFormat, Fortran) {
+  EXPECT_EQ(print("E16.8", 1234.5), "  0.12345000E+04");
+  EXPECT_EQ(print("5E16.8", -0.001), " -0.10000000E-02");
+  EXPECT_EQ(print("E16.8", 0), "  0.00000000E+00");
+  EXPECT_EQ(print("1PE16.8", 1234.5), "  1.23450000E+03");
+  EXPECT_EQ(print("1P5E16.8", 1234.5), "  1.23450000E+03");
+  EXPECT_EQ(print("1P,5E16.8", 1234.5), "  1.23450000E+03");
+  EXPECT_EQ(print("es12.3", 9.9996), "   1.000E+01");
+  EXPECT_EQ(print("D24.16", 0.1), "  0.1000000000000000D+00");
+  EXPECT_EQ(print("1PD10.2", -2e-120), " -2.00-120");
+  EXPECT_EQ(print("E10.2", 1e100), "  0.10+101");
+  EXPECT_EQ(print("F8.3", -1.5), "  -1.500");
+  EXPECT_EQ(print("E14.8", 1), "0.10000000E+01");
+  EXPECT_EQ(print("E13.8", 1), ".10000000E+01");
+  EXPECT_EQ(print("E13.8", -1), "too wide");
+  EXPECT_EQ(print("F5.1", 12345), "too wide");
+  EXPECT_EQ(print("E16.8", -0.0), "  0.00000000E+00");
+}
+
+TEST(NumberFormat, C) {
+  EXPECT_EQ(print("%16.8E", 1234.5), "  1.23450000E+03");
+  EXPECT_EQ(print("%-12.3e", 1), "1.000e+00   ");
+  EXPECT_EQ(print("%+.3f", 1), "+1.000");
+  EXPECT_EQ(print("%g", 0.1), "0.1");
+  EXPECT_EQ(print("%.17g", 0.1), "0.10000000000000001");
+  EXPECT_EQ(print("%8.3E", 1), "too wide");
+}
+
+TEST(NumberFormat, Integers) {
+  EXPECT_EQ(NumberFormat::parse("I5")->print_integer(42), "   42");
+  EXPECT_EQ(NumberFormat::parse("%05d")->print_integer(42), "00042");
+  EXPECT_EQ(NumberFormat::parse("%d")->print_integer(42), "42");
+  EXPECT_EQ(NumberFormat::parse("10I5")->per_line(), 10);
+  EXPECT_FALSE(NumberFormat::parse("I2")->print_integer(123));
+  EXPECT_EQ(NumberFormat::parse("5E16.8")->per_line(), 5);
+}
+
+TEST(NumberFormat, RefusesWhatItCannotPrint) {
+  for (const char* text : {"", "%s", "%n", "%*d", "%16.8E%d", "E16", "E16.", "I5.2x", "0E16.8", "3PE16.8", "E99.8",
+                           "A8", "%999d", "%.99f", "E16.0", "%ld", "E0.0"})
+    EXPECT_FALSE(NumberFormat::parse(text)) << text;
+}
+
+}  // namespace
+}  // namespace bough::flx
