@@ -1,10 +1,10 @@
-"""Rayleigh-Ritz with Legendre polynomials for plates, membranes and thick blocks: an oracle that shares nothing with Bough.
+"""Rayleigh-Ritz with Legendre polynomials for plates, membranes and thick blocks: an oracle apart from Bough.
 
-The domain is the image of -1 <= xi, eta <= 1 under a bilinear map; the displacement is a sum of products of Legendre polynomials,
-times a factor that makes it vanish on held edges. Every stiffness and mass is integrated by Gauss points, so the frequencies are
-upper bounds that fall with the number of polynomials.
+The domain is the image of -1 <= xi, eta <= 1 under a bilinear map; the displacement is a sum of products of Legendre
+polynomials, times a factor that makes it vanish on held edges. Every stiffness and mass is integrated by Gauss points,
+so the frequencies are upper bounds that fall with the number of polynomials.
 
-    /usr/bin/python3 tests/oracle/plate_ritz.py      prints the frequencies the tests of plates are held to, by number of terms
+    /usr/bin/python3 tests/oracle/plate_ritz.py      prints what the tests of plates are held to, by number of terms
 """
 import math
 
@@ -13,7 +13,7 @@ from numpy.polynomial import legendre
 
 
 def calc_basis(num, points, factor, derivatives):
-    """Values of factor(x) P_i(x), i < num, and of their derivatives: [derivative] of num x points; factor a Legendre series."""
+    """factor(x) P_i(x), i < num, scaled, and derivatives: [derivative] of num x points; factor a Legendre series."""
     series = [legendre.legmul(factor, [0] * i + [1]) for i in range(num)]
     rows = []
     for k in range(derivatives + 1):
@@ -68,7 +68,9 @@ class Patch:
 
 
 def calc_kirchhoff(corners, held, order, num, modes, nu=0.3):
-    """rho t omega^2 / D of the lowest modes of a thin parallelogram. held: "-+" sides of xi, of eta, to `order` 1 (w) or 2 (slope)."""
+    """rho t omega^2 / D of the lowest modes of a thin parallelogram.
+
+    held: which sides "-+" of xi and of eta; order: 1 holds w there, 2 the slope too."""
     patch = Patch(corners, num)
     v = patch.calc_values(held, order, 2)
     G = patch.inverse[0]
@@ -119,8 +121,9 @@ def calc_membrane(corners, held, num, modes, E, nu, rho):
 
 
 def calc_block(corners, held, num, through, modes, E, nu, rho, t, bending=True, in_plane_held=True):
-    """omega^2 of a solid of thickness t, its modes antisymmetric (bending) or symmetric to the middle plane; the side faces
-    that are held have w = 0 and, if asked, u = v = 0. `through`: terms of u, v and of w across the thickness."""
+    """omega^2 of a solid of thickness t, its modes antisymmetric (bending) or symmetric to the middle plane.
+
+    The side faces held have w = 0 and, if asked, u = v = 0. `through`: terms of u, v and of w across the thickness."""
     patch = Patch(corners, num)
     w = patch.calc_values(held, 1, 1)
     u = patch.calc_values(held if in_plane_held else ("", ""), 1, 1)
