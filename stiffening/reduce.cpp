@@ -5,6 +5,7 @@
 #include <numbers>
 #include <set>
 
+#include "bough/base/rotation.hpp"
 #include "bough/modal/integrals.hpp"
 
 namespace bough::stiffening {
@@ -48,6 +49,7 @@ class Reduction {
   void set_integrals(const fe::Model& model);
   void set_stiffening(const fe::Model& model, const fe::StaticSolver& solver);
   MatrixXd make_external_loads(const fe::Model& model);
+  void set_resultants(const fe::Model& model, const MatrixXd& F_ext);
   std::vector<int> choose_support(const fe::Model& model);
   fe::StaticSolver make_solver(const fe::Model& model, const fe::PetscMat& K);
   void add_mechanism_error(const std::string& what);
@@ -267,6 +269,20 @@ std::vector<int> Reduction::choose_support(const fe::Model& model) {
   if (!is_free()) return {};
   return fe::choose_determinate_support(model, spec_.support.empty() ? 0 : spec_.support.front());
 }
+/// What each external load does to the body as a whole: Φ_Rᵀ F, and Σ φ_kj × f_k by which mode j shifts its moment.
+void Reduction::set_resultants(const fe::Model& model, const MatrixXd& F_ext) {
+  body_.load_resultant = model.calc_rigid_modes().transpose() * F_ext;
+  body_.load_moment.assign(static_cast<std::size_t>(F_ext.cols()), MatrixXd::Zero(3, Phi_.cols()));
+  for (Eigen::Index e = 0; e < F_ext.cols(); ++e) {
+    for (const auto& node : model.nodes()) {
+      if (node.num_dofs != 6) continue;
+      const Eigen::Vector3d f = F_ext.block<3, 1>(node.first_gdof, e);
+      if (f.isZero(0)) continue;
+      body_.load_moment[static_cast<std::size_t>(e)] -= skew(f) * Phi_.middleRows<3>(node.first_gdof);
+    }
+  }
+}
+
 
 void Reduction::add_mechanism_error(const std::string& what) {
   if (is_free())
@@ -302,6 +318,7 @@ void Reduction::set_stiffening(const fe::Model& model, const fe::StaticSolver& s
   std::vector<int> inertial;
   if (spec_.inertial_loads.empty()) {
     for (int i = 0; i < records::kNumInertialLoads; ++i) inertial.push_back(i);
+  set_resultants(model, F_ext);
   } else {
     std::set<int> wanted;
     for (const auto load : spec_.inertial_loads) wanted.insert(static_cast<int>(load));

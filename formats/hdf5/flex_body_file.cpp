@@ -72,6 +72,23 @@ MassIntegrals read_integrals(FileReader& file, const std::string& method, long n
   return g;
 }
 
+/// Left out where the record does not know them (older files, other formats).
+void write_resultants(FileWriter& file, const FlexBody& body) {
+  const auto ne = body.locators.size();
+  if (ne > 0 && body.load_resultant.size() == 0) return;
+  BOUGH_DEMAND(body.load_moment.size() == ne);
+  file.write_matrix("/stiffening/load_resultant", ne == 0 ? MatrixXd::Zero(6, 0) : body.load_resultant,
+                    {"force x y z and moment x y z about the body origin of each locator's load: component, locator",
+                     "M L/T^2, M L^2/T^2 per load"});
+  std::vector<double> moment;
+  for (const auto& m : body.load_moment) append(moment, m);
+  const auto n = to_dim(static_cast<std::size_t>(body.num_modes()));
+  BOUGH_DEMAND(moment.size() == ne * 3 * n);
+  file.write_numbers(
+      "/stiffening/load_moment", {to_dim(ne), 3, n}, moment.data(),
+      {"what each mode adds to that moment, sum of phi_j x f: locator, axis, mode", "M L^2/(T^2 E) per load"});
+}
+
 void write_stiffening(FileWriter& file, const FlexBody& body) {
   const auto n = to_dim(static_cast<std::size_t>(body.num_modes()));
   std::vector<double> inertial;
@@ -111,6 +128,7 @@ void write_stiffening(FileWriter& file, const FlexBody& body) {
   file.write_matrix("/stiffening/external_load",
                     body.locators.empty() ? MatrixXd::Zero(body.num_modes(), 0) : body.external_load,
                     {"generalized force of each locator's load: mode, locator", "M L^2/(T^2 E) per load"});
+  write_resultants(file, body);
 }
 
 void read_stiffening(FileReader& file, FlexBody& body) {
@@ -139,6 +157,11 @@ void read_stiffening(FileReader& file, FlexBody& body) {
     }
   }
   body.external_load = file.read_matrix("/stiffening/external_load", n, ne);
+  if (!file.has("/stiffening/load_resultant")) return;  // an older file
+  body.load_resultant = file.read_matrix("/stiffening/load_resultant", 6, ne);
+  const NumberArray moment = file.read_array("/stiffening/load_moment", {ne, 3, n});
+  for (long e = 0; e < ne; ++e)
+    body.load_moment.emplace_back(Eigen::Map<const RowMajor>(moment.data.data() + e * 3 * n, 3, n));
 }
 
 void read_method(FileReader& file, FlexBody& body) {

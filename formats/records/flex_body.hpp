@@ -80,6 +80,8 @@ struct FlexBody {
   std::vector<Locator> locators;
   std::vector<MatrixXd> kg_external;  ///< K_G2, one per locator
   MatrixXd external_load;             ///< n x ne: ΦᵀF_ext of each locator
+  MatrixXd load_resultant;            ///< 6 x ne: force and moment about Bo of each locator's load; empty: not known
+  std::vector<MatrixXd> load_moment;  ///< [e] 3 x n: Σ φ_kj × f_k, what mode j adds to that moment; as load_resultant
 
   MatrixXd full_phi;  ///< ndof x n, only with --full
   BodyMesh mesh;

@@ -21,6 +21,8 @@ void add_applied_force(const AppliedForce& force, const Tree& tree, double t, Tr
   const int n = tb.body.num_modes();
   const auto eta = data.q.segment(tb.eta_offset(), n);
   if (force.pattern.size() > 0) {
+    d.applied.head<6>() += value * force.pattern_resultant;
+    d.applied.segment<3>(3).noalias() += value * (force.pattern_moment * eta);
     d.applied.tail(n) += value * force.pattern;
     d.applied.tail(n).noalias() -= value * (force.pattern_K2 * eta);
     return;

@@ -10,17 +10,18 @@ struct AppliedForce {
   records::VectorFrame frame = records::VectorFrame::Body;
   int body = 0, node = 0;
   Vector3d direction = Vector3d::Zero();
-  const TimeFunction* function = nullptr;  ///< nullptr: constant 1
-  VectorXd pattern;                        ///< n, ΦᵀF_ext; empty: a node force
-  MatrixXd pattern_K2;                     ///< n x n, K_G2 of the pattern (zero without stiffening)
+  const TimeFunction* function = nullptr;         ///< nullptr: constant 1
+  VectorXd pattern;                               ///< n, ΦᵀF_ext; empty: a node force
+  MatrixXd pattern_K2;                            ///< n x n, K_G2 of the pattern (zero without stiffening)
+  Vector6d pattern_resultant = Vector6d::Zero();  ///< force and moment about Bo on the undeformed body
+  MatrixXd pattern_moment;                        ///< 3 x n, what η adds to the moment
 };
 
 /// Adds the wrench [f; r×f + t; Jtᵀf + (Tψ)ᵀt] of a force and moment (components in B) at a node. No allocation.
 void add_wrench_in_body(const TreeBody& body, int node, const VectorXd& q, const Vector3d& f_B, const Vector3d& t_B,
                         BodyData& data);
-/// Adds a force at time t: body-fixed, inertial, or turning with its node. A pattern loads the modal coordinates only,
-/// (ΦᵀF - K_G2 η) f: the body file does not hold the pattern's rigid resultant, so it is meant for loads in
-/// equilibrium within the body (a running load and its reaction). No allocation.
+/// Adds a force at time t: body-fixed, inertial, or turning with its node. A pattern keeps its direction in B and puts
+/// [Σf; Σ p×f + t + (Σ φ×f) η; ΦᵀF - K_G2 η] times the function on the body: all to first order in η. No allocation.
 void add_applied_force(const AppliedForce& force, const Tree& tree, double t, TreeData& data);
 /// Springs and dampers of every free hinge: hinge_force and spring_energy. No allocation.
 void add_hinge_forces(const Tree& tree, TreeData& data);

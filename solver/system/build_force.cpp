@@ -25,6 +25,16 @@ bool set_locator(const records::ForceRecord& r, const Body& body, const records:
     force.pattern = flex->external_load.col(static_cast<Eigen::Index>(e)).head(n);
     force.pattern_K2 = MatrixXd::Zero(n, n);
     if (body.stiffened()) force.pattern_K2 = flex->kg_external[e].topLeftCorner(n, n);
+    force.pattern_moment = MatrixXd::Zero(3, n);
+    if (flex->load_resultant.size() > 0) {
+      force.pattern_resultant = flex->load_resultant.col(static_cast<Eigen::Index>(e));
+      force.pattern_moment = flex->load_moment[e].leftCols(n);
+    } else {
+      diagnostics.warning("system.no-resultant", r.at,
+                          "the file of body " + quote(r.body) + " does not hold the resultant of load pattern " +
+                              quote(r.locator) + ": it loads the modes only",
+                          "reduce the body again, unless the pattern is in equilibrium by itself");
+    }
     return true;
   }
   const std::string near = find_nearest(r.locator, names);

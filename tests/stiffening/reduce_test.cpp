@@ -67,6 +67,15 @@ TEST(Reduce, CantileverRecordIsComplete) {
   // The pattern is twice the unit force at the tip along y.
   EXPECT_LT((body.kg_external[5] - 2 * body.kg_external[3]).norm(), 1e-9 * body.kg_external[0].norm());
   EXPECT_LT((body.external_load.col(5) - 2 * body.phi[2].row(1).transpose()).norm(), 1e-12);
+  // The tip is at (8, 0, 0): 2 along y is the force and 16 about z its moment; a mode moves the tip, v along y and w
+  // along z, by which the force gets the arm (v, w): moment (-2 w, 0, 2 u).
+  ASSERT_EQ(body.load_resultant.cols(), 6);
+  EXPECT_LT((body.load_resultant.col(5) - (Eigen::VectorXd(6) << 0, 2, 0, 0, 0, 16).finished()).norm(), 1e-12);
+  EXPECT_LT((body.load_resultant.col(4) - Eigen::VectorXd::Unit(6, 5)).norm(), 1e-12);  // a moment at the tip
+  EXPECT_LT((body.load_moment[5].row(0) + 2 * body.phi[2].row(2)).norm(), 1e-12);
+  EXPECT_LT(body.load_moment[5].row(1).norm(), 1e-12);
+  EXPECT_LT((body.load_moment[5].row(2) - 2 * body.phi[2].row(0)).norm(), 1e-12);
+  EXPECT_EQ(body.load_moment[4].norm(), 0);
   // A pull on the tip stiffens: ∫ φ'² dx of the first mode with unit modal mass, 4.64778 / (ρA L²).
   EXPECT_NEAR(body.kg_external[0](0, 0) / (4.6477778 / (1.6154 / 8 * 64)), 1, 1e-3);
   for (const bool computed : body.kg_inertial_computed) EXPECT_TRUE(computed);

@@ -14,7 +14,7 @@ expected = {
     "/inertial_loads/f": (ndof, 12), "/dof_map": (ndof, 2), "/full/phi": (ndof, n),
     "/stiffening/kg_inertial": (12, n, n), "/stiffening/computed": (12,), "/stiffening/kg_external": (ne, n, n),
     "/stiffening/locator/name": (ne,), "/stiffening/locator/node": (ne,), "/stiffening/locator/direction": (ne,),
-    "/stiffening/external_load": (n, ne),
+    "/stiffening/external_load": (n, ne), "/stiffening/load_resultant": (6, ne), "/stiffening/load_moment": (ne, 3, n),
     "/effective_mass": (n, 6), "/grids/id": (g,), "/grids/xyz": (g, 3),
 }
 for method in ("lumped", "consistent", "exact"):

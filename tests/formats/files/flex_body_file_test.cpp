@@ -79,6 +79,25 @@ TEST(FlexBodyFile, RoundTripIsExact) {
   }
 }
 
+TEST(FlexBodyFile, ResultantsOfLoadsMayBeAbsent) {
+  const TempFolder folder;
+  auto body = test::make_random_body(2, 3, 5, true);
+  write_flex_body(body, folder.at("body.h5"));
+  {
+    Surgeon surgeon(folder.at("body.h5"));
+    surgeon.remove("/stiffening/load_resultant");
+    surgeon.remove("/stiffening/load_moment");
+  }
+  const auto old = read_flex_body(folder.at("body.h5"));
+  EXPECT_EQ(old.load_resultant.size(), 0);
+  EXPECT_TRUE(old.load_moment.empty());
+  body.load_resultant.resize(0, 0);
+  body.load_moment.clear();
+  EXPECT_TRUE(test::are_identical(old, body));
+  write_flex_body(old, folder.at("again.h5"));  // what is not known is not written
+  EXPECT_TRUE(test::are_identical(read_flex_body(folder.at("again.h5")), body));
+}
+
 TEST(FlexBodyFile, BodyWithoutModesOrWithoutNodesRoundTrips) {
   const TempFolder folder;
   for (const auto& [n, p] : {std::pair{0, 3}, std::pair{2, 0}}) {

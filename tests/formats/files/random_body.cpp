@@ -111,6 +111,7 @@ FlexBody make_random_body(unsigned seed, int n, int p, bool full) {
     body.kg_inertial[i] = i % 2 == 0 ? r.make(n, n) : MatrixXd::Zero(n, n);
   }
   body.external_load = MatrixXd::Zero(n, 0);
+  body.load_resultant = MatrixXd::Zero(6, 0);
   if (!full) return body;
 
   body.lumped = make_integrals(r, n);
@@ -118,6 +119,8 @@ FlexBody make_random_body(unsigned seed, int n, int p, bool full) {
   body.locators = {{"tip x", 8, 1}, {"tip y", 8, 2}, {"thrust", 0, 0}};
   for (int e = 0; e < 3; ++e) body.kg_external.push_back(r.make(n, n));
   body.external_load = r.make(n, 3);
+  body.load_resultant = r.make(6, 3);
+  for (int e = 0; e < 3; ++e) body.load_moment.push_back(r.make(3, n));
   body.dof_map.resize(6 * p + 1, 2);
   for (int i = 0; i < 6 * p; ++i) body.dof_map.row(i) << body.node_id[static_cast<std::size_t>(i / 6)], i % 6 + 1;
   body.dof_map.row(6 * p) << 99999, 0;
@@ -164,7 +167,8 @@ bool are_identical(const FlexBody& a, const FlexBody& b) {
             a.integrals_method == b.integrals_method && same(a.F_I, b.F_I) && a.dof_map.rows() == b.dof_map.rows() &&
             a.dof_map == b.dof_map && a.kg_inertial_computed == b.kg_inertial_computed &&
             same(a.locators, b.locators) && same(a.kg_external, b.kg_external) &&
-            same(a.external_load, b.external_load) && same(a.full_phi, b.full_phi) && same(a.mesh, b.mesh);
+            same(a.external_load, b.external_load) && same(a.load_resultant, b.load_resultant) &&
+            same(a.load_moment, b.load_moment) && same(a.full_phi, b.full_phi) && same(a.mesh, b.mesh);
   for (std::size_t i = 0; ok && i < records::kNumInertialLoads; ++i) ok = same(a.kg_inertial[i], b.kg_inertial[i]);
   return ok;
 }

@@ -162,6 +162,50 @@ TEST(FlexibleSystem, LoadPatternActsOnTheModes) {
   EXPECT_LT((m.flex.modal_mass * calc_u_dot(system, *data, 0, eta, VectorXd::Zero(2)) - expected).norm(), 1e-12);
 }
 
+/// A pattern of one force at a node is that force, on a flying body too.
+TEST(FlexibleSystem, LoadPatternMovesTheFrameAsItsForcesDo) {
+  Model m = make_model(3, false);
+  m.spec.bodies[0].stiffening = false;  // the second-order arm of the force is beyond a pattern
+  const Vector3d f(3, -2, 5);
+  const MatrixXd& phi = m.points.phi[3];
+  const Vector3d& p = m.points.p[3];
+  m.flex.locators.push_back({"pattern", 0, 0});
+  m.flex.kg_external.push_back(MatrixXd::Zero(3, 3));
+  m.flex.external_load.conservativeResize(3, m.flex.external_load.cols() + 1);
+  m.flex.external_load.rightCols<1>() = phi.transpose() * f;
+  const auto ne = m.flex.locators.size();
+  m.flex.load_resultant = MatrixXd::Zero(6, static_cast<Eigen::Index>(ne));
+  m.flex.load_resultant.rightCols<1>() << f, p.cross(f);
+  m.flex.load_moment.assign(ne, MatrixXd::Zero(3, 3));
+  for (int j = 0; j < 3; ++j) m.flex.load_moment.back().col(j) = Vector3d(phi.col(j)).cross(f);
+  records::ForceRecord force;
+  force.name = "push";
+  force.body = "f";
+  Model by_node = m;
+  force.locator = "pattern";
+  m.spec.forces = {force};
+  force.locator.clear();
+  force.node = 104;
+  force.direction = f;
+  by_node.spec.forces = {force};
+  const System a = m.make(), b = by_node.make();
+  VectorXd q, u;
+  make_random_state(a, 6, q, u);
+  auto data = a.make_data(), other = b.make_data();
+  const VectorXd expected = calc_u_dot(b, *other, 0, q, u);
+  EXPECT_LT((calc_u_dot(a, *data, 0, q, u) - expected).norm(), 1e-12 * expected.norm());
+
+  // An older file does not hold the resultant: the frame is not pushed, and the user is told.
+  m.flex.load_resultant.resize(0, 0);
+  m.flex.load_moment.clear();
+  Diagnostics diagnostics;
+  System::build(m.spec, {{"f.h5", m.flex}}, diagnostics);
+  int num_warnings = 0;
+  for (const auto& item : diagnostics.items())
+    num_warnings += item.id == "system.no-resultant" && item.severity == Severity::Warning ? 1 : 0;
+  EXPECT_EQ(num_warnings, 1);
+}
+
 TEST(FlexibleSystem, ForcesFollowTheFrameTheyAreGivenIn) {
   for (const auto frame : {records::VectorFrame::Inertial, records::VectorFrame::Body, records::VectorFrame::Node}) {
     for (const auto kind : {records::ForceKind::Force, records::ForceKind::Moment}) {
