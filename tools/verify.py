@@ -16,6 +16,7 @@ import tempfile
 
 import h5py
 import numpy as np
+from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 import demo_report
@@ -179,6 +180,16 @@ def verify_free_flyer(folder):
             np.linalg.norm(m - m[0], axis=1).max() / np.linalg.norm(m[0]), 1e-9, None, "conservation")
 
 
+def verify_plate(folder):
+    for name in os.listdir(os.path.join(ROOT, "data/examples/ex05-plate")):
+        shutil.copy(os.path.join(ROOT, "data/examples/ex05-plate", name), folder)
+    bough(folder, "reduce", "plate.toml")
+    with h5py.File(os.path.join(folder, "plate.h5")) as f:
+        at = list(f["/stiffening/locator/name"].asstr()).index("running")
+        critical = -1 / eigh(f["/stiffening/kg_external"][at], f["/modal/stiffness"][:], eigvals_only=True)[0]
+    add("plate of ex05, 24 x 16", "critical running load, 10 modes [lb/in]", critical, 0.16753, 0.01, "k pi^2 D / b^2, k = 4.340")
+
+
 HEAD = """# Verification: our number next to the reference
 
 Written by `tools/verify.py` from runs of the program on data/decks and data/examples; the tests hold the same numbers. A row
@@ -195,7 +206,7 @@ References are exact theory where it exists, not printed targets; nothing is tun
 
 verify_modes()
 verify_buckling()
-for verify in [verify_rotating, verify_spinup, verify_hub, verify_two_link, verify_free_flyer]:
+for verify in [verify_rotating, verify_spinup, verify_hub, verify_two_link, verify_free_flyer, verify_plate]:
     with tempfile.TemporaryDirectory() as scratch:
         verify(scratch)
 with tempfile.TemporaryDirectory() as scratch:

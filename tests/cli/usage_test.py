@@ -86,7 +86,7 @@ class Output(ProgramTest):
         self.fails(3, "init", "hub", "-o", "spinup/README.md/x", error="cli.write")
 
     def test_init_copies_each_template_and_refuses_to_overwrite(self):
-        for name in ["spinup", "hub", "two-link", "free-flyer"]:
+        for name in ["spinup", "hub", "two-link", "free-flyer", "plate"]:
             self.bough("init", name)
             self.assertIn("README.md", os.listdir(self.path(name)))
         self.fails(1, "init", "spinup", error="cli.output-exists")

@@ -1,0 +1,37 @@
+"""ex05-plate: bounded at 0.165 lb/in, unbounded at 0.170 after a tap at 1 s; the critical load from the body file."""
+import unittest
+
+import h5py
+import numpy as np
+from scipy.linalg import eigh
+
+from support import ProgramTest
+
+
+class Plate(ProgramTest):
+    def test_bounded_below_and_unbounded_above_the_critical_load(self):
+        self.copy_example("ex05-plate")
+        self.bough("reduce", "plate.toml")
+        with h5py.File(self.path("plate.h5")) as f:
+            at = list(f["/stiffening/locator/name"].asstr()).index("running")
+            K, K_G2 = f["/modal/stiffness"][:], f["/stiffening/kg_external"][at]
+            resultant = f["/stiffening/load_resultant"][:, at]
+        critical = -1 / eigh(K_G2, K, eigvals_only=True)[0]
+        self.assertLess(abs(critical / 0.1675 - 1), 0.01)
+        self.assertLess(np.abs(resultant).max(), 1e-10)
+        deflection = {}
+        for p in ["0.165", "0.170"]:
+            self.bough("run", f"plate-{p}.toml", "-o", f"plate-{p}.h5")
+            with h5py.File(self.path(f"plate-{p}.h5")) as f:
+                t, deflection[p] = f["/time"][:], np.abs(f["/sensors/deflection"][:, 2])
+            self.assertLess(deflection[p][t < 1].max(), 1e-8)  # flat until the tap
+        self.assertLess(deflection["0.165"].max(), 0.01)
+        self.assertGreater(deflection["0.170"][-1], 1.0)
+        self.bough("plot", "plate-0.165.h5", "plate-0.170.h5", "--sensor", "deflection:z", "--y-min", "-0.01",
+                   "--y-max", "0.04", "-o", "plate.svg")
+        with open(self.path("plate.svg")) as f:
+            self.assertIn("<svg", f.read(200))
+
+
+if __name__ == "__main__":
+    unittest.main()
