@@ -67,6 +67,13 @@ double calc_material_angle(Maker& maker, const records::ShellElement& card, cons
   if (!card.mcid) return card.theta_deg * kDegree;
   const Vector3d axis =
       maker.nodes().calc_axes(*card.mcid, x, maker.deck().locate(card.at), maker.diagnostics()).col(0);
+  if (normal.cross(axis).norm() < 1e-6) {
+    maker.error("fe.bad-material-axes", card.at,
+                card.card + " " + std::to_string(card.id) + ": the x-axis of MCID " + std::to_string(*card.mcid) +
+                    " is normal to the element",
+                "name a system whose x-axis has a part in the element, or give THETA");
+    return 0;
+  }
   return std::atan2(normal.dot(side.cross(axis)), side.dot(axis) - side.dot(normal) * normal.dot(axis));
 }
 

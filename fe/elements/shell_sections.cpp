@@ -78,6 +78,24 @@ std::optional<PlaneMaterial> ShellSections::make_material(int mid, const std::st
   return make_isotropic_plane(m->E, m->G, m->nu, m->rho);
 }
 
+std::optional<PlaneMaterial> ShellSections::find_plane_strain(const records::Pshell& p) {
+  const std::string name = "PSHELL " + std::to_string(p.id);
+  const auto* m = mat1_.find(p.mid1);
+  if (!m || !(std::abs(m->nu) < 0.5)) {
+    maker_.error("fe.bad-property", p.at,
+                 name + " is in plane strain (MID2 = -1), but MID1 " + std::to_string(p.mid1) +
+                     (m ? " has NU of 0.5 or more" : " is no MAT1"),
+                 "give MID1 a MAT1 with NU below 0.5");
+    return std::nullopt;
+  }
+  if (!maker_.find_material(p.mid1, name, p.at)) return std::nullopt;
+  auto plane = make_isotropic_plane(m->E, m->G, m->nu, m->rho);
+  const double c = m->E / ((1 + m->nu) * (1 - 2 * m->nu));
+  plane.Q(0, 0) = plane.Q(1, 1) = c * (1 - m->nu);
+  plane.Q(0, 1) = plane.Q(1, 0) = c * m->nu;
+  return plane;
+}
+
 std::optional<ShellSection> ShellSections::make_pshell(const records::Pshell& p, const std::string& who,
                                                        const records::CardLocation& at,
                                                        std::optional<double> thickness) {
@@ -99,18 +117,17 @@ std::optional<ShellSection> ShellSections::make_pshell(const records::Pshell& p,
   };
   double rho = 0;
   if (p.mid1 > 0) {
-    const auto m = material(p.mid1);
-    s.A = t * m.Q;
-    rho = m.rho;
+    const auto m = p.mid2 == -1 ? find_plane_strain(p) : find_material(p.mid1, name, p.at);
+    ok = m.has_value();
+    if (m) s.A = t * m->Q, rho = m->rho;
   }
-  const int bending = p.mid2 == -1 ? p.mid1 : p.mid2;
-  if (bending > 0) {
-    const auto m = material(bending);
+  if (p.mid2 > 0) {
+    const auto m = material(p.mid2);
     s.D = p.bending_ratio * t * t * t / 12 * m.Q;
     if (p.mid1 <= 0) rho = m.rho;
   }
   if (p.mid4 > 0) s.B = -t * t * material(p.mid4).Q;  // Nastran's curvature has the other sign
-  s.shear_flexible = p.mid3 > 0 && bending > 0 && p.shear_ratio > 0;
+  s.shear_flexible = p.mid3 > 0 && p.mid2 > 0 && p.shear_ratio > 0;
   if (s.shear_flexible) s.S = p.shear_ratio * t * material(p.mid3).G;
   // A material without transverse shear moduli leaves the plate rigid in shear, as a blank MID3 does.
   s.shear_flexible = s.shear_flexible && s.S.determinant() > 0 && s.S(0, 0) > 0;

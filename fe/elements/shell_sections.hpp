@@ -26,6 +26,8 @@ class ShellSections {
   /// The material as a plate sees it, made once; empty after reporting.
   std::optional<PlaneMaterial> find_material(int mid, const std::string& who, const records::CardLocation& at);
   std::optional<PlaneMaterial> make_material(int mid, const std::string& who, const records::CardLocation& at);
+  /// MID1 of a PSHELL with MID2 = -1: no strain along the normal. Empty after reporting.
+  std::optional<PlaneMaterial> find_plane_strain(const records::Pshell& p);
   std::optional<ShellSection> make_pshell(const records::Pshell& p, const std::string& who,
                                           const records::CardLocation& at, std::optional<double> thickness);
   std::optional<ShellSection> make_pcomp(const records::Pcomp& p);

@@ -22,10 +22,10 @@ void DeckText::add_mesh(const PlateMesh& mesh) {
       const int a = mesh.get_id(i, j), b = mesh.get_id(i + 1, j), c = mesh.get_id(i + 1, j + 1),
                 d = mesh.get_id(i, j + 1);
       if (mesh.triangles) {
-        add("CTRIA3", ++id, 1, a, b, c);
-        add("CTRIA3", ++id, 1, a, c, d);
+        add(mesh.drilling ? "CTRIAR" : "CTRIA3", ++id, 1, a, b, c);
+        add(mesh.drilling ? "CTRIAR" : "CTRIA3", ++id, 1, a, c, d);
       } else {
-        add("CQUAD4", ++id, 1, a, b, c, d);
+        add(mesh.drilling ? "CQUADR" : "CQUAD4", ++id, 1, a, b, c, d);
       }
     }
 }
@@ -33,6 +33,11 @@ void DeckText::add_mesh(const PlateMesh& mesh) {
 void DeckText::add_plate(double E, double nu, double rho, double t) {
   add("MAT1", 1, real(E), "", real(nu), real(rho));
   add("PSHELL", 1, 1, real(t), 1, "", 1);
+}
+
+void DeckText::add_kirchhoff(double E, double nu, double t) {
+  add("MAT1", 1, real(E), "", real(nu));
+  add("PSHELL", 1, 1, real(t), 1);
 }
 
 void DeckText::fix_edges(const PlateMesh& mesh, const char* edges, const char* components) {

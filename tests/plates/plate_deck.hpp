@@ -24,6 +24,7 @@ struct PlateMesh {
   int nx = 8, ny = 8;
   bool triangles = false;
   std::function<Vector3d(double, double)> place;
+  bool drilling = false;  ///< CQUADR, CTRIAR
   int get_id(int i, int j) const { return j * (nx + 1) + i + 1; }
 };
 
@@ -41,11 +42,20 @@ class DeckText {
   void add_mesh(const PlateMesh& mesh);
   /// MAT1 1 and PSHELL 1 with bending and shear.
   void add_plate(double E, double nu, double rho, double t);
+  /// The same without mass and without transverse shear flexibility (MID3 blank).
+  void add_kirchhoff(double E, double nu, double t);
   /// Fixes the components on the edges named: any of "WESN" (x = 0, x = 1, y = 0, y = 1).
   void fix_edges(const PlateMesh& mesh, const char* edges, const char* components);
   void fix(const char* components, int grid) { add("SPC1", 1, components, grid); }
   /// A force in set 10 spread along an edge of a mesh as a uniform traction's nodal forces (equal elements).
   void add_edge_load(const PlateMesh& mesh, char edge, const Vector3d& total);
+  /// Into set 10, in basic.
+  void add_force(int grid, const Vector3d& f) {
+    add("FORCE", 10, grid, 0, real(1.0), real(f.x()), real(f.y()), real(f.z()));
+  }
+  void add_moment(int grid, const Vector3d& m) {
+    add("MOMENT", 10, grid, 0, real(1.0), real(m.x()), real(m.y()), real(m.z()));
+  }
   std::string str() const { return text_.str(); }
 
  private:
