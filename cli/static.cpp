@@ -41,7 +41,8 @@ std::vector<records::Subcase> choose_subcases(const records::Deck& deck, int ask
 struct Prepared {
   fe::Model model;
   std::unique_ptr<fe::StaticSolver> solver;
-  int spc = 0, mpc = 0;
+  fe::Suport suport;
+  int spc = 0, mpc = 0, suport1 = 0;
 };
 
 std::unique_ptr<Prepared> prepare(const records::Deck& deck, const StaticOptions& options,
@@ -49,11 +50,14 @@ std::unique_ptr<Prepared> prepare(const records::Deck& deck, const StaticOptions
   auto model_options = make_model_options(options.model);
   model_options.subcase = subcase.id;
   model_options.uses_enforced = true;
-  auto prepared = std::make_unique<Prepared>(
-      Prepared{fe::Model::build(deck, model_options, diagnostics), nullptr, subcase.spc, subcase.mpc});
+  auto prepared = std::make_unique<Prepared>(Prepared{
+      fe::Model::build(deck, model_options, diagnostics), nullptr, {}, subcase.spc, subcase.mpc, subcase.suport1});
+  const auto relief = fe::read_inertia_relief(deck, diagnostics);
+  auto held = fe::choose_suport(prepared->model, deck, relief, diagnostics);
   diagnostics.throw_if_errors();
   const auto K = fe::assemble_stiffness(prepared->model, fe::DofSet::Free);
-  prepared->solver = std::make_unique<fe::StaticSolver>(prepared->model, K);
+  prepared->solver = std::make_unique<fe::StaticSolver>(prepared->model, K, held);
+  prepared->suport = fe::calc_suport(prepared->model, *prepared->solver, std::move(held), relief, diagnostics);
   return prepared;
 }
 
@@ -73,11 +77,12 @@ int run_static(const StaticOptions& options) {
   records::StaticResult result;
   std::unique_ptr<Prepared> prepared;
   for (const auto& subcase : subcases) {
-    if (!prepared || prepared->spc != subcase.spc || prepared->mpc != subcase.mpc)
+    if (!prepared || prepared->spc != subcase.spc || prepared->mpc != subcase.mpc ||
+        prepared->suport1 != subcase.suport1)
       prepared = prepare(deck, options, subcase, diagnostics);
     const auto load = fe::calc_static_load(prepared->model, deck, subcase.load, diagnostics);
     diagnostics.throw_if_errors();
-    auto solved = fe::solve_static_case(prepared->model, *prepared->solver, load);
+    auto solved = fe::solve_static_case(prepared->model, *prepared->solver, load, prepared->suport);
     solved.id = subcase.id;
     solved.label = subcase.label.empty() ? subcase.subtitle : subcase.label;
     solved.load_set = subcase.load;

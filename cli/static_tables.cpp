@@ -49,8 +49,19 @@ std::string format_balance(const records::StaticSubcase& s) {
   add("OLOAD", s.load_resultant);
   add("SPCFORCE", s.reaction_resultant);
   add("MPCFORCE", s.mpc_resultant);
-  add("sum", s.load_resultant + s.reaction_resultant + s.mpc_resultant);
+  if (s.inertia.size() > 0) add("INERTIA", s.inertia_resultant);
+  add("sum", s.load_resultant + s.reaction_resultant + s.mpc_resultant + s.inertia_resultant);
   return table.to_text() + fmt::format("\nepsilon {:.3e}, strain energy {:.8g}\n", s.epsilon, s.strain_energy);
+}
+
+std::string format_support(const records::StaticSubcase& s) {
+  if (s.support.empty()) return {};
+  Table table{{"SUPORT", "component", "strain energy", "acceleration"}, {}};
+  for (const auto& row : s.support)
+    table.rows.push_back({std::to_string(row.node), std::to_string(row.component),
+                          fmt::format("{:.3e}", row.strain_energy),
+                          s.inertia.size() > 0 ? fmt::format("{:.6e}", row.acceleration) : ""});
+  return table.to_text() + fmt::format("\nepsilon of SUPORT {:.3e}\n\n", s.support_epsilon);
 }
 
 /// Grids whose vector is not zero: six numbers each, a scalar point's in the first.
@@ -106,7 +117,7 @@ nlohmann::json list_maxima(const std::vector<Extreme>& maxima) {
 std::string format_static(const records::StaticResult& result, const records::StaticSubcase& s, bool full) {
   std::string text = fmt::format("subcase {}{}: LOAD {}, SPC {}, MPC {}\n\n", s.id,
                                  s.label.empty() ? "" : " (" + s.label + ")", s.load_set, s.spc_set, s.mpc_set);
-  text += format_maxima(result, s) + "\n" + format_balance(s) + "\n";
+  text += format_maxima(result, s) + "\n" + format_balance(s) + "\n" + format_support(s);
   if (full) {
     text += format_vector("displacement", result.dof_map, s.displacement) + "\n";
     text += format_vector("load", result.dof_map, s.load) + "\n";
@@ -130,7 +141,15 @@ nlohmann::json to_json(const records::StaticResult& result, const records::Stati
                        {{"load", to_json_list(s.load_resultant)},
                         {"reaction", to_json_list(s.reaction_resultant)},
                         {"mpc_force", to_json_list(s.mpc_resultant)}}}};
+  for (const auto& row : s.support)
+    json["support"].push_back({{"grid", row.node},
+                               {"component", row.component},
+                               {"strain_energy", row.strain_energy},
+                               {"acceleration", row.acceleration}});
+  if (!s.support.empty()) json["support_epsilon"] = s.support_epsilon;
+  if (s.inertia.size() > 0) json["resultants"]["inertia"] = to_json_list(s.inertia_resultant);
   if (!full) return json;
+  if (s.inertia.size() > 0) json["inertia"] = to_json_list(s.inertia);
   json["dof_map"] = nlohmann::json::array();
   for (Eigen::Index i = 0; i < result.dof_map.rows(); ++i)
     json["dof_map"].push_back({result.dof_map(i, 0), result.dof_map(i, 1)});

@@ -37,16 +37,34 @@ StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int l
   return result;
 }
 
-records::StaticSubcase solve_static_case(const Model& model, const StaticSolver& solver, const StaticLoad& load) {
+records::StaticSubcase solve_static_case(const Model& model, const StaticSolver& solver, const StaticLoad& load,
+                                         const Suport& suport) {
   records::StaticSubcase result;
   const VectorXd u0 = model.T_fixed() * load.d;
   VectorXd F = load.F;
   if (!load.d.isZero(0)) F -= calc_stiffness_times(model, u0);
-  const VectorXd u1 = solver.solve(F);
+  VectorXd applied = load.F;
+  for (const int fdof : suport.fdofs) {
+    const auto [node, component] = model.describe_fdof(fdof);
+    const auto row = static_cast<Eigen::Index>(result.support.size());
+    result.support.push_back({node, component, suport.strain_energy[row], 0});
+  }
+  result.support_epsilon = suport.epsilon;
+  if (suport.relief != InertiaRelief::None) {
+    const VectorXd a = calc_acceleration(suport, F);
+    for (std::size_t i = 0; i < result.support.size(); ++i)
+      result.support[i].acceleration = a[static_cast<Eigen::Index>(i)];
+    result.inertia = -suport.M_motions * a;
+    result.inertia_resultant = calc_resultant(model, result.inertia);
+    F += result.inertia;
+    applied += result.inertia;
+  }
+  VectorXd u1 = solver.solve(F);
+  if (suport.relief == InertiaRelief::Free) remove_rigid_part(suport, u1);
   result.displacement = u1 + u0;
   result.load = load.F;
   const VectorXd K_u = calc_stiffness_times(model, result.displacement);
-  const VectorXd residual = K_u - load.F;
+  const VectorXd residual = K_u - applied;
   const double work = std::abs(u1.dot(F));
   result.epsilon = work > 0 ? std::abs(u1.dot(residual)) / work : 0;
   result.strain_energy = 0.5 * result.displacement.dot(K_u);
@@ -55,6 +73,13 @@ records::StaticSubcase solve_static_case(const Model& model, const StaticSolver&
   result.reaction = VectorXd::Zero(model.num_gdofs());
   for (std::size_t i = 0; i < model.fixed_dofs().size(); ++i)
     result.reaction[model.fixed_dofs()[i]] = held[static_cast<Eigen::Index>(i)];
+  if (!suport.fdofs.empty()) {
+    const VectorXd at_f = model.T().transpose() * residual;
+    for (const int fdof : suport.fdofs) {
+      const auto [node, component] = model.describe_fdof(fdof);
+      result.reaction[model.node(model.find_node(node)).first_gdof + std::max(component - 1, 0)] = at_f[fdof];
+    }
+  }
   for (const Node& node : model.nodes()) {
     if (node.num_dofs != 6) continue;
     for (const int part : {0, 3}) {

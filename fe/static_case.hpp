@@ -1,6 +1,7 @@
 #pragma once
 /// \file One static subcase: displacements, reactions, balance, element forces (SOL 101).
 #include "bough/fe/statics.hpp"
+#include "bough/fe/suport.hpp"
 #include "bough/formats/records/static_result.hpp"
 
 namespace bough::fe {
@@ -14,7 +15,10 @@ StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int l
 
 /// u = T q + T_fixed d with Tᵀ(K u - F) = 0. With R = K u - F: reactions of the fixed dofs T_fixedᵀ R; the rest of R is
 /// the force of MPC and rigid elements. epsilon = |qᵀTᵀR| / |qᵀTᵀ(F - K T_fixed d)| (Nastran's residual work).
-records::StaticSubcase solve_static_case(const Model& model, const StaticSolver& solver, const StaticLoad& load);
+/// `suport`: dofs that the solver holds beside the fixed ones, their forces count as reactions; with inertia relief the
+/// load is F - M Φ a (calc_acceleration), and with INREL -2 ΦᵀM u = 0.
+records::StaticSubcase solve_static_case(const Model& model, const StaticSolver& solver, const StaticLoad& load,
+                                         const Suport& suport = {});
 
 /// Forces and strain energy of every element, by card in alphabetical order. Replicated. `deck`, `load`: loads along
 /// beams, which act between the ends that u knows.

@@ -9,6 +9,7 @@
 #include "bough/fe/model/direct_matrices.hpp"
 #include "bough/fe/model/rigid.hpp"
 #include "bough/fe/model/sets.hpp"
+#include "bough/fe/suport.hpp"
 
 namespace bough::fe {
 namespace {
@@ -55,6 +56,7 @@ Model ModelBuilder::build(const ElementFactory& factory) {
       model_.num_gdofs_, std::move(equations_), [this](int l) { return name_dof(l); }, diagnostics_);
   diagnostics_.throw_if_errors();
   apply_autospc(set_transform());
+  report_suport(model_, deck_, diagnostics_);
   return std::move(model_);
 }
 

@@ -27,6 +27,26 @@ void write_subcase(FileWriter& file, const records::StaticSubcase& subcase) {
   file.write_matrix(
       path + "/resultants", resultants,
       {"of loads, reactions, multipoint forces: forces x y z and moments x y z about the origin", "F, F L"});
+  if (!subcase.support.empty()) {
+    const auto rows = static_cast<Eigen::Index>(subcase.support.size());
+    Eigen::MatrixXi dofs(rows, 2);
+    Eigen::VectorXd energy(rows), acceleration(rows);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const auto& row = subcase.support[static_cast<std::size_t>(i)];
+      dofs.row(i) << row.node, row.component;
+      energy[i] = row.strain_energy;
+      acceleration[i] = row.acceleration;
+    }
+    const std::string group = path + "/support";
+    file.write_integers(group + "/dofs", dofs, {"SUPORT: node id and component in its displacement system", "1"});
+    file.write_vector(group + "/strain_energy", energy, {"strain energy of the unit motion of each", "F L, F L"});
+    file.write_number(group + "/epsilon", subcase.support_epsilon, {"stiffness of these motions over K_rr", "1"});
+    if (subcase.inertia.size() > 0) {
+      file.write_vector(group + "/acceleration", acceleration, {"acceleration of each", "L/T^2, 1/T^2"});
+      file.write_vector(path + "/inertia", subcase.inertia,
+                        {"forces of the mass that balance the load, in the order of /dof_map", "F, F L"});
+    }
+  }
   for (const auto& block : subcase.elements) {
     const std::string group = path + "/elements/" + block.card;
     file.write_integers(group + "/id", block.id, {"element ids", "1"});

@@ -26,6 +26,16 @@ struct StaticSubcase {
   double epsilon = 0;  ///< work of the residual over the work of the loads
   /// About the origin: forces x y z, moments x y z.
   Eigen::Matrix<double, 6, 1> load_resultant, reaction_resultant, mpc_resultant;
+  /// SUPORT, a row per dof; its forces are among the reactions. Empty without.
+  struct Support {
+    int node = 0, component = 0;
+    double strain_energy = 0;  ///< of its unit motion: none if the body is free
+    double acceleration = 0;   ///< with inertia relief
+  };
+  std::vector<Support> support;
+  double support_epsilon = 0;  ///< of all of them, as Nastran prints it
+  VectorXd inertia;            ///< inertia relief: the forces of the mass that balance the load; empty without
+  Eigen::Matrix<double, 6, 1> inertia_resultant = Eigen::Matrix<double, 6, 1>::Zero();
   std::vector<ElementForces> elements;
 };
 

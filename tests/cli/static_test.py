@@ -75,6 +75,25 @@ class Static(ProgramTest):
             self.assertEqual(f["/dof_map"].shape, (18, 2))
             self.assertEqual(f["/subcases/1"].attrs["label"], "TIP FORCE")
 
+    def test_inertia_relief_of_a_pushed_bar(self):
+        # Lumped: half of the mass at the ends, so a = F/m along the bar, and the middle pushes the far half.
+        free = FRAME.replace("SPC = 1\nSUBCASE 1", "SUBCASE 1")
+        text = free.split("SUBCASE 2")[0] + "BEGIN BULK" + free.split("BEGIN BULK")[1]
+        text = text.replace("FORCE,4,3,,10.,0.,1.,0.", "FORCE,4,3,,10.,1.,0.,0.\nSUPORT,1,123456\nPARAM,INREL,-1")
+        self.write("free.bdf", text.replace("ENDDATA", "CONM2,9,2,,0.,,,,,+\n+,1.,,1.,,,1.\nENDDATA"))
+        run = self.bough("static", "free.bdf", "--json", "--full", "-o", "free.h5")
+        case = json.loads(run.stdout)["subcases"][0]
+        mass, stiffness = 2 * 1e-3 * 2700, 7e10 * 1e-3
+        self.assertAlmostEqual(case["support"][0]["acceleration"], 10 / mass, places=9)
+        dofs = {(n, c): i for i, (n, c) in enumerate(case["dof_map"])}
+        self.assertAlmostEqual(case["displacement"][dofs[3, 1]] * stiffness, 10 * (0.25 + 0.75), places=9)
+        self.assertLess(np.abs(np.add(case["resultants"]["load"], case["resultants"]["inertia"])).max(), 1e-9)
+        self.assertLess(case["support_epsilon"], 1e-12)
+        with h5py.File(self.path("free.h5")) as f:
+            self.assertAlmostEqual(f["subcases/1/support/acceleration"][0], 10 / mass, places=9)
+            self.assertEqual(f["subcases/1/support/dofs"][:].tolist(), [[1, c] for c in range(1, 7)])
+        self.assertIn("INERTIA", self.bough("static", "free.bdf").stdout)
+
     def test_plate_under_pressure(self):
         # Simply supported square plate: w = 0.00406235 q a^4 / D (Timoshenko & Woinowsky-Krieger, table 8).
         n, a, E, nu, t, q = 16, 2.0, 7e10, 0.3, 0.01, 100.0
