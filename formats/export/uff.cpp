@@ -1,0 +1,213 @@
+#include "bough/formats/export/uff.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "bough/base/diagnostic.hpp"
+
+namespace bough::exports {
+namespace {
+
+/// A trace line has at most 250 numbers.
+constexpr std::size_t kLongestTrace = 250;
+
+class UffText {
+ public:
+  template <class... T>
+  void print(const char* format, T... values) {
+    char line[256];
+    std::snprintf(line, sizeof line, format, values...);
+    text_ += line;
+  }
+  void begin(int dataset) { print("%6d\n%6d%74s\n", -1, dataset, ""); }
+  void end() { print("%6d\n", -1); }
+  /// An identification line may not be blank; 80 columns.
+  void put_id(std::string id) {
+    for (auto& c : id)
+      if (c < ' ' || c > '~') c = '?';
+    print("%-80.80s\n", id.empty() ? "NONE" : id.c_str());
+  }
+  std::string take() { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+/// Edges between corners, by the first letters of the block's type.
+const std::vector<std::pair<int, int>>& get_edges(const std::string& type) {
+  static const std::vector<std::pair<std::string, std::vector<std::pair<int, int>>>> table{
+      {"line", {{0, 1}}},
+      {"tri", {{0, 1}, {1, 2}, {2, 0}}},
+      {"quad", {{0, 1}, {1, 2}, {2, 3}, {3, 0}}},
+      {"tetra", {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}},
+      {"penta", {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}}},
+      {"hexa", {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}}};
+  static const std::vector<std::pair<int, int>> none;
+  for (const auto& [name, edges] : table)
+    if (type.rfind(name, 0) == 0) return edges;
+  return none;
+}
+
+void put_nodes(UffText& out, const std::vector<int>& id, const Eigen::MatrixXd& xyz) {
+  out.begin(15);
+  for (std::size_t k = 0; k < id.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    out.print("%10d%10d%10d%10d%13.5E%13.5E%13.5E\n", id[k], 0, 0, 1, xyz(i, 0), xyz(i, 1), xyz(i, 2));
+  }
+  out.end();
+}
+
+void put_lines(UffText& out, const records::BodyMesh& mesh) {
+  std::set<std::pair<int, int>> edges;
+  for (const auto& block : mesh.blocks)
+    for (const auto& [a, b] : get_edges(block.type))
+      for (Eigen::Index e = 0; e < block.connectivity.rows(); ++e) {
+        if (std::max(a, b) >= block.connectivity.cols()) continue;
+        const int first = block.connectivity(e, a), second = block.connectivity(e, b);
+        if (first >= 0 && second >= 0 && first != second) edges.insert(std::minmax(first, second));
+      }
+  std::vector<std::vector<int>> traces;
+  int last = -1;
+  for (const auto& [first, second] : edges) {
+    if (traces.empty() || traces.back().size() + 3 > kLongestTrace) {
+      traces.emplace_back();
+      last = -1;
+    }
+    auto& trace = traces.back();
+    // A zero lifts the pen.
+    if (last != first) {
+      trace.push_back(0);
+      trace.push_back(mesh.grid_id[static_cast<std::size_t>(first)]);
+    }
+    trace.push_back(mesh.grid_id[static_cast<std::size_t>(second)]);
+    last = second;
+  }
+  for (std::size_t t = 0; t < traces.size(); ++t) {
+    out.begin(82);
+    out.print("%10d%10d%10d\n", static_cast<int>(t) + 1, static_cast<int>(traces[t].size()), 0);
+    out.put_id("edges of the elements");
+    for (std::size_t i = 0; i < traces[t].size(); ++i)
+      out.print("%10d%s", traces[t][i], (i + 1) % 8 == 0 || i + 1 == traces[t].size() ? "\n" : "");
+    out.end();
+  }
+}
+
+struct UffMode {
+  int number = 0;
+  bool is_buckling = false;
+  double value = 0;  ///< frequency, or load factor
+  double mass = 0, damping_ratio = 0;
+};
+
+/// Six displacements per node, real.
+void put_mode(UffText& out, const std::string& model, int load_case, const UffMode& mode, const std::vector<int>& id,
+              const std::vector<Eigen::MatrixXd>& phi) {
+  out.begin(55);
+  out.put_id(model);
+  out.put_id(mode.is_buckling ? "Buckling mode" : "Normal mode");
+  out.put_id("");
+  out.put_id("");
+  out.put_id("");
+  out.print("%10d%10d%10d%10d%10d%10d\n", 1, mode.is_buckling ? 6 : 2, 3, 8, 2, 6);
+  if (mode.is_buckling) {
+    out.print("%10d%10d%10d\n%13.5E\n", 1, 1, load_case, mode.value);
+  } else {
+    out.print("%10d%10d%10d%10d\n%13.5E%13.5E%13.5E%13.5E\n", 2, 4, load_case, mode.number, mode.value, mode.mass,
+              mode.damping_ratio, 0.0);
+  }
+  for (std::size_t k = 0; k < id.size(); ++k) {
+    const auto& u = phi[k].col(mode.number - 1);
+    out.print("%10d\n%13.5E%13.5E%13.5E%13.5E%13.5E%13.5E\n", id[k], u(0), u(1), u(2), u(3), u(4), u(5));
+  }
+  out.end();
+}
+
+/// All grids of the drawing, or the nodes alone.
+void put_geometry(UffText& out, const records::BodyMesh& mesh, const std::vector<int>& id, const Eigen::MatrixXd& xyz) {
+  if (mesh.grid_id.empty()) {
+    put_nodes(out, id, xyz);
+    return;
+  }
+  put_nodes(out, mesh.grid_id, mesh.grid_xyz);
+  put_lines(out, mesh);
+}
+
+std::string name_source(const std::vector<std::pair<std::string, std::string>>& source) {
+  return source.empty() ? "" : source.front().first;
+}
+
+/// As it stands in 13 columns.
+double round_to_five(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%13.5E", value);
+  return std::atof(text);
+}
+
+/// Equal steps that 13 columns hold.
+bool is_even(const Eigen::VectorXd& time, double step) {
+  if (time.size() < 2 || step <= 0 || round_to_five(step) != step || round_to_five(time(0)) != time(0)) return false;
+  for (Eigen::Index i = 0; i < time.size(); ++i)
+    if (std::abs(time(i) - time(0) - static_cast<double>(i) * step) > 1e-9 * step) return false;
+  return true;
+}
+
+void put_function(UffText& out, int number, const Eigen::VectorXd& time, const CsvColumn& column) {
+  const auto n = time.size();
+  // The mean step, with the digits that would be written.
+  const double step = n > 1 ? round_to_five((time(n - 1) - time(0)) / static_cast<double>(n - 1)) : 0;
+  const bool even = is_even(time, step);
+  out.begin(58);
+  out.put_id(column.name);
+  for (int i = 0; i < 4; ++i) out.put_id("");
+  out.print("%5d%10d%5d%10d %-10s%10d%4d %-10s%10d%4d\n", 1, number, 0, 0, "NONE", 0, 0, "NONE", 0, 0);
+  out.print("%10d%10d%10d%13.5E%13.5E%13.5E\n", 4, static_cast<int>(n), even ? 1 : 0, even ? time(0) : 0.0,
+            even ? step : 0.0, 0.0);
+  for (const auto& [type, label] : {std::pair{17, "Time"}, {0, "NONE"}, {0, "NONE"}, {0, "NONE"}})
+    out.print("%10d%5d%5d%5d %-20s %-20s\n", type, 0, 0, 0, label, "NONE");
+  const Eigen::Index per_line = even ? 4 : 2;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!even) out.print("%13.5E", time(i));
+    out.print("%20.12E%s", column.values(i), (i + 1) % per_line == 0 || i + 1 == n ? "\n" : "");
+  }
+  out.end();
+}
+
+}  // namespace
+
+std::string make_uff(const records::ModesResult& modes) {
+  UffText out;
+  put_geometry(out, modes.mesh, modes.node_id, modes.node_xyz);
+  const bool is_buckling = modes.load_factor.size() > 0;
+  const auto& values = is_buckling ? modes.load_factor : modes.frequency_hz;
+  for (Eigen::Index j = 0; j < values.size(); ++j) {
+    const double mass = modes.modal_mass.size() > j ? modes.modal_mass(j) : 0;
+    put_mode(out, name_source(modes.source), modes.subcase, {static_cast<int>(j) + 1, is_buckling, values(j), mass, 0},
+             modes.node_id, modes.phi);
+  }
+  return out.take();
+}
+
+std::string make_uff(const records::FlexBody& body) {
+  UffText out;
+  put_geometry(out, body.mesh, body.node_id, body.node_xyz);
+  for (Eigen::Index j = 0; j < body.num_modes(); ++j) {
+    const double mass = body.modal_mass(j, j), critical = 2 * std::sqrt(std::abs(body.modal_stiffness(j, j) * mass));
+    put_mode(out, body.name, 1,
+             {static_cast<int>(j) + 1, false, body.frequency_hz(j), mass,
+              critical > 0 ? body.modal_damping(j, j) / critical : 0},
+             body.node_id, body.phi);
+  }
+  return out.take();
+}
+
+std::string make_uff(const std::vector<CsvColumn>& columns) {
+  BOUGH_DEMAND(!columns.empty());
+  UffText out;
+  for (std::size_t c = 1; c < columns.size(); ++c)
+    put_function(out, static_cast<int>(c), columns.front().values, columns[c]);
+  return out.take();
+}
+
+}  // namespace bough::exports
