@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -92,15 +93,22 @@ std::string format_elements(const records::ElementForces& block, bool full) {
     }
     return table.to_text();
   }
+  // One row per component: those of several points (Nx@1, Nx@2, ...) share the row of their name.
   Table table{{block.card, "smallest", "element", "largest", "element"}, {}};
-  const auto add = [&](const std::string& name, const Eigen::Ref<const VectorXd>& values) {
-    Eigen::Index low = 0, high = 0;
-    const double least = values.minCoeff(&low), most = values.maxCoeff(&high);
+  const auto add = [&](const std::string& name, const Eigen::Ref<const Eigen::MatrixXd>& values) {
+    Eigen::Index low = 0, high = 0, column = 0;
+    const double least = values.minCoeff(&low, &column), most = values.maxCoeff(&high, &column);
     table.rows.push_back({name, fmt::format("{:.6e}", least), std::to_string(block.id[static_cast<std::size_t>(low)]),
                           fmt::format("{:.6e}", most), std::to_string(block.id[static_cast<std::size_t>(high)])});
   };
-  for (std::size_t c = 0; c < block.components.size(); ++c)
-    add(block.components[c], block.force.col(static_cast<Eigen::Index>(c)));
+  std::vector<std::pair<std::string, std::vector<Eigen::Index>>> groups;
+  for (std::size_t c = 0; c < block.components.size(); ++c) {
+    const std::string name = block.components[c].substr(0, block.components[c].find('@'));
+    const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == name; });
+    auto& columns = same == groups.end() ? groups.emplace_back(name, std::vector<Eigen::Index>{}).second : same->second;
+    columns.push_back(static_cast<Eigen::Index>(c));
+  }
+  for (const auto& [name, columns] : groups) add(name, block.force(Eigen::all, columns));
   add("strain energy", block.strain_energy);
   return table.to_text();
 }
