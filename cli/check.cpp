@@ -8,6 +8,7 @@
 #include "bough/formats/hdf5/files.hpp"
 #include "bough/formats/nastran/reader.hpp"
 #include "bough/formats/toml/specs.hpp"
+#include "check_solutions.hpp"
 #include "console.hpp"
 #include "deck_tables.hpp"
 #include "model_options.hpp"
@@ -214,11 +215,15 @@ int check_hdf5(const CheckOptions& options, const Console& console) {
                         modes.num_rigid_modes);
     json["kind"] = "bough-modes";
     json["num_modes"] = modes.residual.size();
+  } else if (format != info.attributes.end() && format->second == "bough-static") {
+    check_static(options.file, info, text, json, diagnostics);
+  } else if (format != info.attributes.end() && format->second == "bough-matrices") {
+    check_matrices(options.file, info, text, json, diagnostics);
   } else {
     diagnostics.error("cli.unknown-format", {options.file},
                       "an HDF5 file without a format that Bough knows" +
                           (format == info.attributes.end() ? std::string() : ", found \"" + format->second + "\""),
-                      "expected bough-flexbody, bough-modes or bough-results");
+                      "expected bough-flexbody, bough-modes, bough-results, bough-static or bough-matrices");
   }
   return finish(options, console, text, json, diagnostics);
 }

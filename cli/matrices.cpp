@@ -93,6 +93,7 @@ std::vector<std::string> write(const records::MatricesResult& result, const Matr
     return {path};
   }
   std::vector<std::pair<std::string, const records::SparseMatrix*>> matrices{{"K", &result.K}, {"M", &result.M}};
+  if (result.B.num_rows > 0) matrices.emplace_back("B", &result.B);
   for (const auto& [name, matrix] : result.K_G) matrices.emplace_back("KG" + name.substr(5), &matrix);
   std::vector<std::string> files;
   const auto keep = [&](const std::string& file, const std::string& text) {
@@ -132,6 +133,7 @@ int run_matrices(const MatricesOptions& options) {
   result.mesh = model.calc_mesh();
   result.K = fe::gather_sparse(fe::assemble_stiffness(model, fe::DofSet::Global));
   result.M = fe::gather_sparse(fe::assemble_mass(model, fe::DofSet::Global, model.mass_kind()));
+  if (fe::has_damping(model)) result.B = fe::gather_sparse(fe::assemble_damping(model, fe::DofSet::Global));
   for (const auto& load_case : choose_load_cases(deck, options))
     result.K_G.emplace_back(fmt::format("LOAD_{}", load_case.load),
                             fe::gather_sparse(calc_geometric(deck, options, load_case, diagnostics)));
@@ -147,6 +149,7 @@ int run_matrices(const MatricesOptions& options) {
   };
   add("K", result.K);
   add("M", result.M);
+  if (result.B.num_rows > 0) add("B", result.B);
   for (const auto& [name, matrix] : result.K_G) add("KG/" + name, matrix);
   if (options.json) {
     console.print_data(json.dump(2) + "\n");
@@ -161,7 +164,8 @@ int run_matrices(const MatricesOptions& options) {
 
 void add_matrices(CLI::App& app, Action& action) {
   auto o = std::make_shared<MatricesOptions>();
-  auto* verb = app.add_subcommand("matrices", "Stiffness, mass and geometric stiffness of a deck before constraints");
+  auto* verb =
+      app.add_subcommand("matrices", "Stiffness, mass, damping and geometric stiffness of a deck before constraints");
   verb->add_option("deck", o->deck, "Nastran deck")->required();
   verb->add_option("--to", o->format, "h5 (HDF5), mtx (Matrix Market) or op4 (Nastran OUTPUT4, formatted)")
       ->check(CLI::IsMember({"h5", "mtx", "op4"}))

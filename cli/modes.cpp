@@ -244,6 +244,9 @@ int run_modes(const ModesOptions& options) {
     model_options.subcase = id;
     auto model = fe::Model::build(deck, model_options, own);
     own.throw_if_errors();
+    if (fe::has_damping(model))
+      own.note("fe.damping-unused", deck.locate({}), "the dampers of the deck do not act on its modes, as in SOL 103",
+               "bough reduce adds them to the modal damping");
     const auto pairs = solve(options, deck, model, console, own);
     console.end_progress();
     auto result = make_result(model, pairs, options.buckling);

@@ -11,13 +11,15 @@
 #include "model_options.hpp"
 #include "options.hpp"
 #include "static_tables.hpp"
+#include "text_file.hpp"
+#include "vtu_file.hpp"
 
 namespace bough::cli {
 
 namespace {
 
 struct StaticOptions : CommonOptions {
-  std::string deck;
+  std::string deck, vtu;
   DeckModelOptions model;
   bool full = false;
 };
@@ -66,6 +68,7 @@ int run_static(const StaticOptions& options) {
   demand_file(options.deck);
   console.set_rank(fe::initialize_petsc().rank);
   if (!options.output.empty()) check_output(options, options.output);
+  if (!options.vtu.empty()) check_output(options, options.vtu);
 
   Diagnostics diagnostics;
   const auto deck = read_deck_or_throw(options.deck, make_model_options(options.model), diagnostics);
@@ -94,6 +97,9 @@ int run_static(const StaticOptions& options) {
   result.dof_map = prepared->model.calc_dof_map();
   result.mesh = prepared->model.calc_mesh();
   result.source = calc_sources(deck.files);
+  std::string picture;
+  if (!options.vtu.empty() && console.is_root())
+    picture = make_vtu_text(exports::make_picture(result), exports::VtuEncoding::Base64, options.deck, diagnostics);
   console.print(diagnostics);
 
   if (options.json) {
@@ -104,6 +110,7 @@ int run_static(const StaticOptions& options) {
     for (const auto& subcase : result.subcases) console.print(format_static(result, subcase, options.full));
   }
   if (!options.output.empty() && console.is_root()) hdf5::write_static(result, options.output);
+  if (!picture.empty()) write_text_file(options.vtu, picture);
   return kSuccess;
 }
 
@@ -114,6 +121,7 @@ void add_static(CLI::App& app, Action& action) {
   auto* verb = app.add_subcommand("static", "Static solution (SOL 101) of every subcase with a load");
   verb->add_option("deck", o->deck, "Nastran deck")->required();
   verb->add_flag("--full", o->full, "Every grid and element instead of the largest values");
+  verb->add_option("--vtu", o->vtu, "Write the displacements of every subcase to this file for ParaView");
   add_model_options(*verb, o->model);
   add_common_options(*verb, *o, kOutput | kJson, "Write displacements, reactions and forces to this HDF5 file");
   verb->footer("Example:\n  bough static frame.bdf -o frame-static.h5\n  bough static frame.bdf --subcase 2 --full");

@@ -143,6 +143,10 @@ PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind) {
   return assemble(model, set, [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); });
 }
 
+PetscMat assemble_damping(const Model& model, DofSet set) {
+  return assemble(model, set, [](const Element& e, Eigen::Ref<MatrixXd> B) { e.add_damping(1, B); });
+}
+
 PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const VectorXd& u_g) {
   BOUGH_DEMAND(u_g.size() == model.num_gdofs());
   return assemble(model, set, [&u_g](const Element& e, Eigen::Ref<MatrixXd> K_G) {
@@ -162,6 +166,15 @@ MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<con
 MatrixXd calc_stiffness_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g) {
   return calc_times(
       model, [](const Element& e, Eigen::Ref<MatrixXd> K) { e.add_stiffness(1, K); }, X_g);
+}
+
+MatrixXd calc_damping_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g) {
+  return calc_times(
+      model, [](const Element& e, Eigen::Ref<MatrixXd> B) { e.add_damping(1, B); }, X_g);
+}
+
+bool has_damping(const Model& model) {
+  return std::any_of(model.elements().begin(), model.elements().end(), [](const auto& e) { return e->has_damping(); });
 }
 
 std::pair<int, int> calc_element_range(const Model& model) {

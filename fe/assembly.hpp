@@ -10,6 +10,8 @@ enum class DofSet { Free, Global };  ///< f-set (TᵀKT) or g-set
 /// K, or M when mass is true (times WTMASS), on PETSC_COMM_WORLD; exactly preallocated; MATAIJ. O(elements).
 PetscMat assemble_stiffness(const Model& model, DofSet set);
 PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind);
+/// The viscous damping B of dampers and bushes.
+PetscMat assemble_damping(const Model& model, DofSet set);
 /// K_G of the displacement field u (num_gdofs), f-set or g-set.
 PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const VectorXd& u_g);
 
@@ -17,6 +19,10 @@ PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const Vect
 MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g);
 /// The same with K.
 MatrixXd calc_stiffness_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g);
+/// The same with B.
+MatrixXd calc_damping_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g);
+/// Whether any element damps.
+bool has_damping(const Model& model);
 
 /// Elements [first, last) of this rank; the union over ranks is every element.
 std::pair<int, int> calc_element_range(const Model& model);

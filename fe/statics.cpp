@@ -73,14 +73,16 @@ double calc_model_size(const Model& model) {
 }  // namespace
 
 struct StaticSolver::Impl {
-  const Model* model = nullptr;
+  SparseRows T;                                 ///< a copy: the model may move, or be reduced
+  std::shared_ptr<const StaticSolver> omitted;  ///< of the model
   std::vector<int> kept;  ///< f-dofs that are not held, ascending
   std::optional<SymmetricFactor> factor;
 };
 
 StaticSolver::StaticSolver(const Model& model, const PetscMat& K_f, std::vector<int> held_fdofs)
     : impl_(std::make_unique<Impl>()) {
-  impl_->model = &model;
+  impl_->T = model.T();
+  impl_->omitted = model.omitted();
   std::sort(held_fdofs.begin(), held_fdofs.end());
   BOUGH_DEMAND(held_fdofs.empty() || (held_fdofs.front() >= 0 && held_fdofs.back() < model.num_fdofs()));
   auto& kept = impl_->kept;
@@ -110,12 +112,14 @@ StaticSolver::StaticSolver(const Model& model, const PetscMat& K_f, std::vector<
 StaticSolver::~StaticSolver() = default;
 
 MatrixXd StaticSolver::solve(const Eigen::Ref<const MatrixXd>& F_g) const {
-  const Model& model = *impl_->model;
-  BOUGH_DEMAND(F_g.rows() == model.num_gdofs());
-  const MatrixXd F_f = model.T().transpose() * F_g;
-  MatrixXd u_f = MatrixXd::Zero(model.num_fdofs(), F_g.cols());
+  const SparseRows& T = impl_->T;
+  BOUGH_DEMAND(F_g.rows() == T.rows());
+  const MatrixXd F_f = T.transpose() * F_g;
+  MatrixXd u_f = MatrixXd::Zero(T.cols(), F_g.cols());
   u_f(impl_->kept, Eigen::all) = impl_->factor->solve(F_f(impl_->kept, Eigen::all));
-  return model.T() * u_f;
+  MatrixXd u_g = T * u_f;
+  if (impl_->omitted) u_g += impl_->omitted->solve(F_g);  // K_oo^-1 P_o
+  return u_g;
 }
 
 }  // namespace bough::fe

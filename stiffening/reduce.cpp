@@ -44,7 +44,7 @@ class Reduction {
   fe::ModelOptions make_model_options() const;
   void set_rigid_part(const fe::Model& model);
   void set_modes(const fe::Model& model);
-  void set_damping();
+  void set_damping(const fe::Model& model);
   void set_nodes(const fe::Model& model);
   void set_integrals(const fe::Model& model);
   void set_stiffening(const fe::Model& model, const fe::StaticSolver& solver);
@@ -185,10 +185,11 @@ void Reduction::set_modes(const fe::Model& model) {
   body_.modal_mass = MatrixXd::Identity(n, n);
   body_.modal_stiffness = lambda.asDiagonal();
   body_.effective_mass = modal::calc_effective_mass(model, Phi_);
-  set_damping();
+  set_damping(model);
 }
 
-void Reduction::set_damping() {
+/// 2 ζ ω of the ratios, plus ΦᵀBΦ of the dampers of the deck, which couples modes.
+void Reduction::set_damping(const fe::Model& model) {
   const auto n = body_.eigenvalue.size();
   VectorXd zeta = VectorXd::Constant(n, spec_.damping_ratio);
   if (!spec_.damping_ratios.empty()) {
@@ -201,6 +202,9 @@ void Reduction::set_damping() {
     zeta = VectorXd::Map(spec_.damping_ratios.data(), n);
   }
   body_.modal_damping = (2 * zeta.array() * body_.eigenvalue.array().max(0).sqrt()).matrix().asDiagonal();
+  if (!fe::has_damping(model)) return;
+  const MatrixXd B = Phi_.transpose() * fe::calc_damping_times(model, Phi_);
+  body_.modal_damping += 0.5 * (B + B.transpose());
 }
 
 void Reduction::set_nodes(const fe::Model& model) {
@@ -265,10 +269,6 @@ MatrixXd Reduction::make_external_loads(const fe::Model& model) {
   return F;
 }
 
-std::vector<int> Reduction::choose_support(const fe::Model& model) {
-  if (!is_free()) return {};
-  return fe::choose_determinate_support(model, spec_.support.empty() ? 0 : spec_.support.front());
-}
 /// What each external load does to the body as a whole: Φ_Rᵀ F, and Σ φ_kj × f_k by which mode j shifts its moment.
 void Reduction::set_resultants(const fe::Model& model, const MatrixXd& F_ext) {
   body_.load_resultant = model.calc_rigid_modes().transpose() * F_ext;
@@ -283,6 +283,10 @@ void Reduction::set_resultants(const fe::Model& model, const MatrixXd& F_ext) {
   }
 }
 
+std::vector<int> Reduction::choose_support(const fe::Model& model) {
+  if (!is_free()) return {};
+  return fe::choose_determinate_support(model, spec_.support.empty() ? 0 : spec_.support.front());
+}
 
 void Reduction::add_mechanism_error(const std::string& what) {
   if (is_free())
@@ -314,11 +318,11 @@ void Reduction::set_stiffening(const fe::Model& model, const fe::StaticSolver& s
   body_.F_I = calc_inertial_loads(model, model.mass_kind());
   const MatrixXd F_ext = make_external_loads(model);
   body_.external_load = Phi_.transpose() * F_ext;
+  set_resultants(model, F_ext);
 
   std::vector<int> inertial;
   if (spec_.inertial_loads.empty()) {
     for (int i = 0; i < records::kNumInertialLoads; ++i) inertial.push_back(i);
-  set_resultants(model, F_ext);
   } else {
     std::set<int> wanted;
     for (const auto load : spec_.inertial_loads) wanted.insert(static_cast<int>(load));

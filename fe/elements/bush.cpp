@@ -1,5 +1,7 @@
 #include "bough/fe/elements/bush.hpp"
 
+#include <algorithm>
+
 #include "bough/base/rotation.hpp"
 
 namespace bough::fe {
@@ -26,6 +28,16 @@ void Bush::add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const {
   const auto B = calc_stretch();
   const Eigen::Map<const Eigen::Matrix<double, 6, 1>> k(data_.k.data());
   K += scale * (B.transpose() * (k.asDiagonal() * B));
+}
+
+bool Bush::has_damping() const {
+  return std::any_of(data_.b.begin(), data_.b.end(), [](double b) { return b != 0; });
+}
+
+void Bush::add_damping(double scale, Eigen::Ref<MatrixXd> B) const {
+  const auto stretch = calc_stretch();
+  const Eigen::Map<const Eigen::Matrix<double, 6, 1>> b(data_.b.data());
+  B += scale * (stretch.transpose() * (b.asDiagonal() * stretch));
 }
 
 void Bush::add_mass(MassKind, double scale, Eigen::Ref<MatrixXd> M) const {

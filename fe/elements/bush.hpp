@@ -1,5 +1,5 @@
 #pragma once
-/// \file CBUSH: six springs in element axes at one point, carried to the grids by rigid arms.
+/// \file CBUSH: six springs and six dampers in element axes at one point, carried to the grids by rigid arms.
 /// Source: Nastran Quick Reference Guide, CBUSH and PBUSH.
 #include "bough/fe/elements/element.hpp"
 
@@ -8,6 +8,7 @@ namespace bough::fe {
 struct BushData {
   Matrix3d R_basic_element = Matrix3d::Identity();
   std::array<double, 6> k{};          ///< along and about the element axes
+  std::array<double, 6> b{};          ///< viscous damping, likewise
   Vector3d arm_a = Vector3d::Zero();  ///< spring point from grid A, basic
   Vector3d arm_b = Vector3d::Zero();  ///< and from grid B
   double mass = 0;
@@ -22,6 +23,8 @@ class Bush final : public Element {
   ElementShape shape() const override { return nodes().size() == 2 ? ElementShape{"line2", nodes()} : ElementShape{}; }
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  bool has_damping() const override;
+  void add_damping(double scale, Eigen::Ref<MatrixXd> B) const override;
   /// Six spring forces in element axes, of B on the spring's B side. (K_G does not depend on them.)
   Eigen::Matrix<double, 6, 1> calc_spring_forces(const Eigen::Ref<const VectorXd>& u) const;
 

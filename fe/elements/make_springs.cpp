@@ -77,7 +77,7 @@ struct BushAxes {
 };
 
 BushAxes calc_bush_axes(Maker& maker, const records::Cbush& card, const std::string& who, const Node& a, const Node* b,
-                        const std::array<double, 6>& k) {
+                        const records::Pbush& property) {
   BushAxes axes;
   if (card.cid) {
     axes.R = maker.nodes().calc_axes(*card.cid, a.x, maker.deck().locate(card.at), maker.diagnostics());
@@ -102,9 +102,11 @@ BushAxes calc_bush_axes(Maker& maker, const records::Cbush& card, const std::str
   } else if (card.v) {
     v = a.R_basic_cd * *card.v;
   } else {
-    // Only axial and torsional springs need no orientation.
-    if (k[1] != 0 || k[2] != 0 || k[4] != 0 || k[5] != 0)
-      return fail(" has stiffness across its axis but no orientation", "give an orientation vector, GO or CID");
+    // Only axial and torsional springs and dampers need no orientation.
+    for (const int i : {1, 2, 4, 5})
+      if (property.k[i] != 0 || property.b[i] != 0)
+        return fail(" has stiffness or damping across its axis but no orientation",
+                    "give an orientation vector, GO or CID");
     v = ex.unitOrthogonal();
   }
   Vector3d ez = ex.cross(v);
@@ -124,11 +126,12 @@ void make_bush(Maker& maker, const Index<records::Pbush>& properties, const reco
   if (!property || a < 0 || (card.gb != 0 && b < 0)) return;
   const Node& node_a = maker.nodes().node(a);
   const Node* node_b = b < 0 ? nullptr : &maker.nodes().node(b);
-  const BushAxes axes = calc_bush_axes(maker, card, who, node_a, node_b, property->k);
+  const BushAxes axes = calc_bush_axes(maker, card, who, node_a, node_b, *property);
   if (!axes.ok) return;
   BushData data;
   data.R_basic_element = axes.R;
   data.k = property->k;
+  data.b = property->b;
   data.mass = property->mass;
   Vector3d point = node_a.x;
   if (card.ocid >= 0) {
@@ -184,6 +187,23 @@ void make_springs(Maker& maker) {
     if (!ok || !ends) continue;
     maker.add(std::make_unique<ScalarMass>(card.id, name, std::move(ends->nodes), std::move(ends->gdofs), m,
                                            std::move(ends->b)));
+  }
+  const Index<records::Pdamp> pdamp(deck.pdamp);
+  for (const records::ScalarDamper& card : deck.dampers) {
+    const std::string name = name_scalar("CDAMP", card.pid, card.by_scalar_points),
+                      who = name + " " + std::to_string(card.id);
+    double b = card.b;
+    bool ok = true;
+    if (card.pid > 0) {
+      const records::Pdamp* property = pdamp.find(card.pid);
+      if (!property) maker.report_missing_property(card.pid, "PDAMP", who, card.at);
+      ok = property != nullptr;
+      if (property) b = property->b;
+    }
+    auto ends = find_ends(maker, who, {card.g1, card.g2}, {card.c1, card.c2}, card.at);
+    if (!ok || !ends) continue;
+    maker.add(std::make_unique<ScalarDamper>(card.id, name, std::move(ends->nodes), std::move(ends->gdofs), b,
+                                             std::move(ends->b)));
   }
   const Index<records::Pbush> pbush(deck.pbush);
   for (const records::Cbush& card : deck.cbush) make_bush(maker, pbush, card);

@@ -63,6 +63,7 @@ std::string show(double value);
 void make_beams(Maker& maker);
 void make_rods(Maker& maker);
 void make_springs(Maker& maker);
+void make_line_dampers(Maker& maker);
 void make_masses(Maker& maker);
 void make_shells(Maker& maker);
 void make_solids(Maker& maker);

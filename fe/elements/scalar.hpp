@@ -1,6 +1,7 @@
 #pragma once
-/// \file CELAS1 to 4 and CMASS1 to 4: a spring or a mass between two degrees of freedom (in the displacement axes of
-/// their grids), or from one to ground. Source: Nastran Quick Reference Guide, CELAS1, CELAS2, CMASS1, CMASS2.
+/// \file CELAS1 to 4, CDAMP1 to 4 and CMASS1 to 4: a spring, a damper or a mass between two degrees of freedom (in the
+/// displacement axes of their grids), or from one to ground. Source: Nastran Quick Reference Guide, CELAS1, CELAS2,
+/// CDAMP1, CDAMP2, CMASS1, CMASS2.
 #include "bough/fe/elements/element.hpp"
 
 namespace bough::fe {
@@ -19,6 +20,21 @@ class ScalarSpring final : public Element {
 
  private:
   double k_;
+  VectorXd b_;
+};
+
+/// B = coefficient b bᵀ: a force against the difference of the two rates.
+class ScalarDamper final : public Element {
+ public:
+  ScalarDamper(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, double coefficient, VectorXd b)
+      : Element(id, std::move(card), std::move(nodes), std::move(gdofs)), coefficient_(coefficient), b_(std::move(b)) {}
+
+  ElementShape shape() const override { return nodes().size() == 2 ? ElementShape{"line2", nodes()} : ElementShape{}; }
+  bool has_damping() const override { return true; }
+  void add_damping(double scale, Eigen::Ref<MatrixXd> B) const override;
+
+ private:
+  double coefficient_;
   VectorXd b_;
 };
 

@@ -56,6 +56,8 @@ Model ModelBuilder::build(const ElementFactory& factory) {
       model_.num_gdofs_, std::move(equations_), [this](int l) { return name_dof(l); }, diagnostics_);
   diagnostics_.throw_if_errors();
   apply_autospc(set_transform());
+  omit_dofs();
+  add_drawn_lines();
   report_suport(model_, deck_, diagnostics_);
   return std::move(model_);
 }

@@ -27,6 +27,11 @@ class ModelBuilder {
   /// T from the equations and the fixed dofs; again after AUTOSPC has fixed more.
   Elimination set_transform();
   void apply_autospc(const Elimination& first);
+  /// ASET and OMIT: T of the a-set by static reduction (guyan.cpp).
+  void omit_dofs();
+  std::vector<int> list_set(const std::vector<records::GridComponents>& set, const std::string& card);
+  /// PLOTEL (plot_elements.cpp).
+  void add_drawn_lines();
   /// l-dof of component 1..6 (0: scalar point) of a grid; -1 and a report when there is none.
   int find_ldof(int grid, int component, const std::string& card, const SourceLocation& at);
   std::string name_dof(int ldof) const;

@@ -31,6 +31,7 @@ records::BodyMesh Model::calc_mesh() const {
     ElementShape shape = element->shape();
     if (!shape.type.empty()) by_type[shape.type].emplace_back(element->id(), std::move(shape.nodes));
   }
+  for (const auto& [id, shape] : drawn_lines_) by_type[shape.type].emplace_back(id, shape.nodes);
   for (const auto& [type, members] : by_type) {
     records::BodyMesh::Block block;
     block.type = type;

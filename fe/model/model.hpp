@@ -3,6 +3,7 @@
 ///
 /// g-set: every dof of every node, translations and rotations in **basic** axes (one row for a scalar point).
 /// f-set: the free dofs left after SPC, permanent SPC, AUTOSPC, MPC and rigid elements, in the displacement (CD) axes.
+/// With ASET or OMIT they are those of the a-set, the others following them statically (fe/model/guyan.cpp).
 /// u_g = T q_f, with the CD rotation, the constraint elimination and the zeros all inside the sparse T.
 #include <array>
 #include <functional>
@@ -39,6 +40,7 @@ struct AutospcEntry {
 };
 
 class CoordinateSystems;
+class StaticSolver;
 
 /// Makes the elements of a deck; make_elements unless a caller brings its own.
 using ElementFactory = std::function<ElementList(const records::Deck&, const NodeTable&, Diagnostics&)>;
@@ -56,6 +58,8 @@ class Model final : public NodeTable {
   int num_gdofs() const { return num_gdofs_; }
   int num_fdofs() const { return static_cast<int>(T_.cols()); }
   const SparseRows& T() const { return T_; }  ///< num_gdofs x num_fdofs
+  /// Solves for the dofs that ASET or OMIT leave out, the others held; nullptr when none is left out.
+  const std::shared_ptr<const StaticSolver>& omitted() const { return omitted_; }
   /// The fixed dofs' part: u_g = T q_f + T_fixed d, d the displacements of the fixed dofs in their CD axes, in the
   /// order of fixed_dofs() (SPC, permanent SPC, AUTOSPC). num_gdofs x num_fixed.
   const SparseRows& T_fixed() const { return T_fixed_; }
@@ -98,6 +102,8 @@ class Model final : public NodeTable {
   std::vector<std::unique_ptr<const Element>> elements_;
   int num_gdofs_ = 0;
   SparseRows T_, T_fixed_;
+  std::shared_ptr<const StaticSolver> omitted_;
+  std::vector<std::pair<int, ElementShape>> drawn_lines_;  ///< PLOTEL: id, shape
   std::vector<int> fixed_dofs_;
   std::unordered_map<int, double> enforced_;  ///< by dof: the values of the SPC set that are not zero
   std::vector<int> fdof_node_, fdof_component_;

@@ -98,6 +98,19 @@ std::unordered_map<int, MatrixXd> map_shapes(const std::vector<int>& ids, const 
   return shapes;
 }
 
+/// Rows of U as the dof map says.
+std::unordered_map<int, MatrixXd> map_shapes(const Eigen::MatrixXi& dof_map, const MatrixXd& U) {
+  BOUGH_DEMAND(U.rows() == dof_map.rows());
+  std::unordered_map<int, MatrixXd> shapes;
+  for (Eigen::Index i = 0; i < dof_map.rows(); ++i) {
+    const int code = dof_map(i, 1);
+    if (code < 1 || code > 6) continue;
+    auto& shape = shapes.try_emplace(dof_map(i, 0), MatrixXd::Zero(6, U.cols())).first->second;
+    shape.row(code - 1) = U.row(i);
+  }
+  return shapes;
+}
+
 std::vector<std::string> make_names(const Eigen::VectorXd& frequency_hz) {
   std::vector<std::string> names;
   for (int j = 0; j < frequency_hz.size(); ++j) names.push_back(format_name("mode", j + 1, "", frequency_hz[j], "Hz"));
@@ -131,19 +144,24 @@ Picture make_picture(const records::ModesResult& modes) {
 
 Picture make_picture(const records::FlexBody& body) {
   std::unordered_map<int, MatrixXd> shapes;
-  const int n = body.num_modes();
   if (body.full_phi.size() > 0) {
-    BOUGH_DEMAND(body.full_phi.rows() == body.dof_map.rows());
-    for (Eigen::Index i = 0; i < body.dof_map.rows(); ++i) {
-      const int code = body.dof_map(i, 1);
-      if (code < 1 || code > 6) continue;
-      auto& shape = shapes.try_emplace(body.dof_map(i, 0), MatrixXd::Zero(6, n)).first->second;
-      shape.row(code - 1) = body.full_phi.row(i);
-    }
+    shapes = map_shapes(body.dof_map, body.full_phi);
   } else {
     shapes = map_shapes(body.node_id, body.phi);
   }
   return make_picture(choose_mesh(body.mesh, body.node_id, body.node_xyz), shapes, make_names(body.frequency_hz));
+}
+
+Picture make_picture(const records::StaticResult& result) {
+  MatrixXd U(result.dof_map.rows(), static_cast<Eigen::Index>(result.subcases.size()));
+  std::vector<std::string> names;
+  for (const auto& subcase : result.subcases) {
+    U.col(static_cast<Eigen::Index>(names.size())) = subcase.displacement;
+    char name[40];
+    std::snprintf(name, sizeof name, "subcase_%03d_displacement", subcase.id);
+    names.emplace_back(name);
+  }
+  return make_picture(result.mesh, map_shapes(result.dof_map, U), names);
 }
 
 }  // namespace bough::exports

@@ -5,6 +5,7 @@
 
 #include "bough/formats/records/flex_body.hpp"
 #include "bough/formats/records/modes.hpp"
+#include "bough/formats/records/static_result.hpp"
 
 namespace bough::exports {
 
@@ -37,5 +38,7 @@ std::string make_vtu(const records::BodyMesh& mesh, const std::vector<PointArray
 Picture make_picture(const records::ModesResult& modes);
 /// The same of a body, in its frame B: of all grids when full_phi is there, else of the output nodes only.
 Picture make_picture(const records::FlexBody& body);
+/// Static solutions as arrays subcase_001_displacement and subcase_001_displacement_rotation, basic frame.
+Picture make_picture(const records::StaticResult& result);
 
 }  // namespace bough::exports

@@ -88,6 +88,8 @@ void write_matrices(const records::MatricesResult& result, const std::string& pa
   write_mesh(file, result.mesh);
   write_sparse(file, "/K", result.K, "stiffness before constraints", "F/L, F, F L");
   write_sparse(file, "/M", result.M, "mass before constraints", "M, M L, M L^2");
+  if (result.B.num_rows > 0)
+    write_sparse(file, "/B", result.B, "viscous damping before constraints", "F T/L, F T, F T L");
   for (const auto& [name, matrix] : result.K_G)
     write_sparse(file, "/KG/" + name, matrix, "geometric stiffness of the static solution", "F/L, F, F L");
   file.commit();

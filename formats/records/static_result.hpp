@@ -57,7 +57,7 @@ struct MatricesResult {
   std::vector<std::pair<std::string, std::string>> source;
   Eigen::MatrixXi dof_map;
   BodyMesh mesh;
-  SparseMatrix K, M;
+  SparseMatrix K, M, B;                                   ///< B, viscous damping: empty without dampers
   std::vector<std::pair<std::string, SparseMatrix>> K_G;  ///< by name: LOAD_n
 };
 
