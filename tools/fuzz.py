@@ -2,7 +2,7 @@
 
     /usr/bin/python3 tools/fuzz.py build/bin/bough [--seconds 60] [--seed 1] [--keep FOLDER] [DECK ...]
 
-Without decks: those of data/decks, which are the project's own. The same seed makes the same mutants. A mutant that
+Without decks: those of data/decks and data/examples, the project's own. The same seed makes the same mutants. A mutant that
 breaks the rule is kept, and its name is printed. Exit 1 when there was one.
 """
 import argparse
@@ -90,9 +90,10 @@ def main():
     parser.add_argument("--verb", default="check")
     parser.add_argument("--keep", default="fuzz-found")
     options = parser.parse_intermixed_args()
-    decks = options.decks or sorted(glob.glob(os.path.join(ROOT, "data/decks/*.bdf")))
+    own = ["data/decks/*.bdf", "data/examples/*/*.bdf"]
+    decks = options.decks or sorted(deck for pattern in own for deck in glob.glob(os.path.join(ROOT, pattern)))
     if not decks:
-        sys.exit("error: no decks; name some or run from a checkout with data/decks")
+        sys.exit("error: no decks; name some, or run it in a checkout with data/decks")
     texts = {}
     for deck in decks:
         with open(deck, encoding="latin-1") as f:
