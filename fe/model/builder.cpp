@@ -9,6 +9,7 @@
 #include "bough/fe/model/direct_matrices.hpp"
 #include "bough/fe/model/rigid.hpp"
 #include "bough/fe/model/sets.hpp"
+#include "bough/fe/model/unmodelled.hpp"
 #include "bough/fe/suport.hpp"
 
 namespace bough::fe {
@@ -46,6 +47,7 @@ Model ModelBuilder::build(const ElementFactory& factory) {
   set_params();
   add_nodes();
   model_.elements_ = factory(deck_, model_, diagnostics_).elements;
+  report_unmodelled(deck_, model_.elements_, diagnostics_);
   for (auto& element : make_direct(deck_, model_.subcase_, model_, diagnostics_).elements)
     model_.elements_.push_back(std::move(element));
   is_fixed_.assign(model_.num_gdofs_, 0);
