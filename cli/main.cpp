@@ -47,6 +47,8 @@ int run(int argc, char** argv) {
   cli::add_static(app, action);
   cli::add_matrices(app, action);
   cli::add_reduce(app, action);
+  cli::add_integrals(app, action);
+  cli::add_flx(app, action);
   cli::add_run(app, action);
   cli::add_export(app, action);
   cli::add_plot(app, action);

@@ -18,22 +18,29 @@ MassIntegrals make_empty(int num_modes) {
   return g;
 }
 
+MassTimes make_mass_times(const fe::Model& model, fe::MassKind kind) {
+  return [&model, kind](const MatrixXd& X) { return fe::calc_mass_times(model, kind, X); };
+}
+
 }  // namespace
 
 MassIntegrals calc_momentum_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi,
                                       const Vector3d& reference) {
-  BOUGH_DEMAND(Phi.rows() == model.num_gdofs());
+  return calc_momentum_integrals(NodalDofs::from_model(model), make_mass_times(model, kind), Phi, reference);
+}
+
+MassIntegrals calc_momentum_integrals(const NodalDofs& dofs, const MassTimes& mass_times, const MatrixXd& Phi,
+                                      const Vector3d& reference) {
+  BOUGH_DEMAND(Phi.rows() == dofs.num_dofs);
   const auto n = static_cast<int>(Phi.cols());
-  const MatrixXd M_Phi = fe::calc_mass_times(model, kind, Phi);
+  const MatrixXd M_Phi = mass_times(Phi);
   MassIntegrals g = make_empty(n);
   // G[a](b) = Σ_k A^T_kj(a) φ_kl(b) for all pairs at once: Γ2 and Γ4 are its antisymmetric part and trace.
   std::array<MatrixXd, 9> G;
   G.fill(MatrixXd::Zero(n, n));
-  for (const auto& node : model.nodes()) {
-    if (node.num_dofs != 6) continue;
-    const Vector3d p = node.x - reference;
-    const auto A = M_Phi.middleRows(node.first_gdof, 6);
-    const auto phi = Phi.middleRows(node.first_gdof, 3);
+  for (int node = 0; node < dofs.num_nodes(); ++node) {
+    const Vector3d p = dofs.xyz.row(node).transpose() - reference;
+    const MatrixXd A = dofs.gather(M_Phi, node), phi = dofs.gather(Phi, node);
     g.gamma0 += A.topRows(3);
     g.gamma1 += A.bottomRows(3) + skew(p) * A.topRows(3);
     for (int j = 0; j < n; ++j) {
@@ -56,18 +63,26 @@ MassIntegrals calc_momentum_integrals(const fe::Model& model, fe::MassKind kind,
 
 MassIntegrals calc_exact_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi,
                                    const Vector3d& reference) {
-  BOUGH_DEMAND(Phi.rows() == model.num_gdofs());
+  return calc_exact_integrals(NodalDofs::from_model(model), make_mass_times(model, kind), Phi, reference);
+}
+
+MassIntegrals calc_exact_integrals(const NodalDofs& dofs, const MassTimes& mass_times, const MatrixXd& Phi,
+                                   const Vector3d& reference) {
+  BOUGH_DEMAND(Phi.rows() == dofs.num_dofs);
   const auto n = static_cast<int>(Phi.cols());
   // Columns: Φ_R (6), e_a×φ_j (3n, j + a n), Φ (n).
   MatrixXd B = MatrixXd::Zero(Phi.rows(), 6 + 4 * n);
-  B.leftCols(6) = model.calc_rigid_modes(reference);
+  B.leftCols(6) = dofs.calc_rigid_modes(reference);
   B.rightCols(n) = Phi;
-  for (const auto& node : model.nodes()) {
-    if (node.num_dofs != 6) continue;
-    for (int a = 0; a < 3; ++a)
-      B.block(node.first_gdof, 6 + a * n, 3, n) = skew(Vector3d::Unit(a)) * Phi.middleRows(node.first_gdof, 3);
+  for (int node = 0; node < dofs.num_nodes(); ++node) {
+    MatrixXd turned = MatrixXd::Zero(6, n);
+    const MatrixXd phi = dofs.gather(Phi, node).topRows(3);
+    for (int a = 0; a < 3; ++a) {
+      turned.topRows(3) = skew(Vector3d::Unit(a)) * phi;
+      dofs.scatter(turned, node, B.middleCols(6 + a * n, n));
+    }
   }
-  const MatrixXd M_turned = fe::calc_mass_times(model, kind, B.rightCols(4 * n));
+  const MatrixXd M_turned = mass_times(B.rightCols(4 * n));
   const MatrixXd gram = B.transpose() * M_turned;  // (6 + 4n) x 4n
   const auto turned = [n](int a, int j) { return a * n + j; };
   const auto plain = [n](int j) { return 3 * n + j; };

@@ -1,7 +1,10 @@
 #pragma once
 /// \file The five mass integrals Γ0..Γ4 (docs/theory/flexible-body.md §4): momentum formulas and the exact Gram set.
+#include <functional>
+
 #include "bough/fe/assembly.hpp"
 #include "bough/formats/records/flex_body.hpp"
+#include "bough/modal/nodal_dofs.hpp"
 
 namespace bough::modal {
 
@@ -17,6 +20,16 @@ MassIntegrals calc_momentum_integrals(const fe::Model& model, fe::MassKind kind,
 
 /// From the Gram matrix of [Φ_R, e_a×φ_j, Φ] under M: exact for any M.
 MassIntegrals calc_exact_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi,
+                                   const Vector3d& reference = Vector3d::Zero());
+
+/// X -> M X for a mass matrix known only by its products, ndof x m.
+using MassTimes = std::function<MatrixXd(const MatrixXd&)>;
+
+/// The same sets for any mass matrix and dof map: the model may lack dofs at its nodes and have generalized ones
+/// besides (NASA-CR-202063 4.2.2). Phi: num_dofs x n.
+MassIntegrals calc_momentum_integrals(const NodalDofs& dofs, const MassTimes& mass_times, const MatrixXd& Phi,
+                                      const Vector3d& reference = Vector3d::Zero());
+MassIntegrals calc_exact_integrals(const NodalDofs& dofs, const MassTimes& mass_times, const MatrixXd& Phi,
                                    const Vector3d& reference = Vector3d::Zero());
 
 }  // namespace bough::modal

@@ -6,18 +6,24 @@ namespace bough::stiffening {
 using records::InertialLoad;
 
 MatrixXd calc_inertial_loads(const fe::Model& model, fe::MassKind kind) {
-  const MatrixXd P = fe::calc_mass_times(model, kind, model.calc_rigid_modes());
+  return calc_inertial_loads(modal::NodalDofs::from_model(model),
+                             fe::calc_mass_times(model, kind, model.calc_rigid_modes()));
+}
+
+MatrixXd calc_inertial_loads(const modal::NodalDofs& dofs, const MatrixXd& P) {
+  BOUGH_DEMAND(P.rows() == dofs.num_dofs && P.cols() == 6);
   MatrixXd F_I = MatrixXd::Zero(P.rows(), records::kNumInertialLoads);
   F_I.leftCols(6) = -P;
   const auto column = [](InertialLoad load) { return static_cast<int>(load); };
-  for (const auto& node : model.nodes()) {
-    if (node.num_dofs != 6) continue;
+  for (int node = 0; node < dofs.num_nodes(); ++node) {
+    const MatrixXd momentum = dofs.gather(P, node);
+    MatrixXd f_I = dofs.gather(F_I, node);
     // S_s: e_s × (every nodal 3-vector of the column), translations and rotations alike.
-    for (int row = node.first_gdof; row < node.first_gdof + 6; row += 3) {
+    for (int row = 0; row < 6; row += 3) {
       const auto calc_S_times = [&](int s, int r) -> Eigen::Vector3d {
-        return Eigen::Vector3d::Unit(s).cross(P.block<3, 1>(row, 3 + r).eval());
+        return Eigen::Vector3d::Unit(s).cross(momentum.block<3, 1>(row, 3 + r).eval());
       };
-      const auto set = [&](InertialLoad load, const Eigen::Vector3d& f) { F_I.block<3, 1>(row, column(load)) = f; };
+      const auto set = [&](InertialLoad load, const Eigen::Vector3d& f) { f_I.block<3, 1>(row, column(load)) = f; };
       set(InertialLoad::wx2, -calc_S_times(0, 0));
       set(InertialLoad::wy2, -calc_S_times(1, 1));
       set(InertialLoad::wz2, -calc_S_times(2, 2));
@@ -25,6 +31,7 @@ MatrixXd calc_inertial_loads(const fe::Model& model, fe::MassKind kind) {
       set(InertialLoad::wxwz, -(calc_S_times(0, 2) + calc_S_times(2, 0)));
       set(InertialLoad::wywz, -(calc_S_times(1, 2) + calc_S_times(2, 1)));
     }
+    dofs.scatter(f_I, node, F_I);
   }
   return F_I;
 }

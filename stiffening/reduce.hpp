@@ -5,6 +5,7 @@
 #include "bough/fe/statics.hpp"
 #include "bough/formats/records/body_spec.hpp"
 #include "bough/modal/eigen.hpp"
+#include "bough/modal/nodal_dofs.hpp"
 
 namespace bough::stiffening {
 
@@ -14,6 +15,9 @@ using Eigen::VectorXd;
 /// F_I, num_gdofs x 12, columns in the order of records::InertialLoad (docs/theory/flexible-body.md §2, report eqs.
 /// 3-12).
 MatrixXd calc_inertial_loads(const fe::Model& model, fe::MassKind kind);
+/// The same for any mass matrix and dof map, as the report's fimake5: P = M Φ_R (num_dofs x 6). Rows of generalized
+/// dofs carry the six accelerations only: the map does not tell which way a spin turns them.
+MatrixXd calc_inertial_loads(const modal::NodalDofs& dofs, const MatrixXd& P);
 
 /// K_G(u_c) projected on Phi for every column c of U (num_gdofs x m): m matrices n x n, accumulated element by element,
 /// O(elements (m s + m n)) with s the element size; summed over ranks.

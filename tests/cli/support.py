@@ -7,7 +7,7 @@ import unittest
 
 PROGRAM = os.environ["BOUGH_PROGRAM"]
 SOURCE = os.environ["BOUGH_SOURCE_DIR"]
-VERBS = ["check", "modes", "static", "matrices", "reduce", "run", "export", "plot", "info", "init"]
+VERBS = ["check", "modes", "static", "matrices", "reduce", "integrals", "flx", "run", "export", "plot", "info", "init"]
 
 
 class ProgramTest(unittest.TestCase):
