@@ -109,6 +109,19 @@ class Guyan(ProgramTest):
             # Gravity along -z is the inertial load of an acceleration along z.
             self.assertLess(np.abs(9.81 * a["/stiffening/kg_inertial"][2] - expected).max(), 1e-9 * np.abs(expected).max())
 
+    def test_the_same_on_two_and_three_processes(self):
+        self.write("a.bdf", make_deck(ASET))
+        one, tip = self.calc_modes("a.bdf"), None
+        for ranks in (1, 2, 3):
+            launcher = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", ranks]
+            found = json.loads(self.bough("modes", "a.bdf", "--json", launcher=map(str, launcher)).stdout)["eigenvalue"]
+            self.assertLess(np.abs(np.array(found) / one - 1).max(), 1e-9)
+            self.bough("static", "a.bdf", "-o", "a.h5", launcher=map(str, launcher))
+            with h5py.File(self.path("a.h5")) as f:
+                u = f["/subcases/1/displacement"][:]
+            tip = u if tip is None else tip
+            self.assertLess(np.abs(u - tip).max(), 1e-10 * np.abs(tip).max())
+
     def test_wrong_sets_are_named(self):
         for cards, words in [("ASET1,123456,1\n", "grid 1 component 1, which is fixed at line"),
                              ("ASET1,3,9\n", "grid 9 component 3, which MPC set 5 makes dependent"),
@@ -123,7 +136,9 @@ class Guyan(ProgramTest):
 
     def test_the_user_is_told(self):
         self.write("a.bdf", make_deck(ASET))
-        self.assertIn("leave 12 dofs to the analysis, 35 follow", self.bough("modes", "a.bdf", "-v").stderr)
+        told = self.bough("modes", "a.bdf", "-v").stderr
+        self.assertIn("leave 12 dofs to the analysis, 35 follow", told)
+        self.assertIn("[fe.static-reduction]", told)
 
 
 if __name__ == "__main__":
