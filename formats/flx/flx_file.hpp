@@ -48,7 +48,7 @@ struct MakeOptions {
 FlxFile make_flx(const records::FlexBody& body, const MakeOptions& options);
 
 /// The text of the file. Bough's own layout is make_native_layout(digits). Throws
-/// InputError("flx.number-too-wide") or "flx.not-finite".
+/// InputError("flx.number-too-wide"), "flx.layout-index" or "flx.not-finite".
 std::string write_flx(const FlxFile& file, const Layout& layout);
 
 /// Reads Bough's own layout. Throws InputError with all of "flx.not-flx", "flx.version", "flx.bad-line",

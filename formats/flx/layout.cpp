@@ -6,76 +6,15 @@
 #include <sstream>
 
 #include "bough/base/diagnostic.hpp"
+#include "bough/formats/flx/detail/layout_words.hpp"
 
 namespace bough::flx {
 
-const std::vector<BlockInfo>& get_blocks() {
-  static const std::vector<BlockInfo> blocks{{"modes", "j"},
-                                             {"mass", "jk"},
-                                             {"stiffness", "jk"},
-                                             {"damping", "jk"},
-                                             {"mass_diagonal", "j"},
-                                             {"stiffness_diagonal", "j"},
-                                             {"damping_diagonal", "j"},
-                                             {"alpha", "ja"},
-                                             {"gamma0", "ja"},
-                                             {"gamma1", "ja"},
-                                             {"gamma2", "jka"},
-                                             {"gamma3", "jab"},
-                                             {"gamma4", "jkab"},
-                                             {"node_id", "i"},
-                                             {"node_xyz", "ia"},
-                                             {"phi", "ija"},
-                                             {"psi", "ija"},
-                                             {"gains", "ijd"}};
-  return blocks;
-}
-
 namespace {
 
+using namespace detail;
+
 const std::string kIndices = "ijkabd";
-
-/// A field of a text and the indices that it needs.
-const std::vector<BlockInfo>& get_fields() {
-  static const std::vector<BlockInfo> fields{
-      {"body_id", ""},   {"name", ""},      {"modopt", ""},      {"method", ""}, {"mass", ""},  {"digits", ""},
-      {"num_modes", ""}, {"num_nodes", ""}, {"num_special", ""}, {"i", "i"},     {"j", "j"},    {"k", "k"},
-      {"a", "a"},        {"b", "b"},        {"d", "d"},          {"node", "i"},  {"mode", "j"}, {"mode_k", "k"}};
-  return fields;
-}
-
-const BlockInfo* find(const std::vector<BlockInfo>& list, const std::string& name) {
-  const auto found = std::find_if(list.begin(), list.end(), [&](const auto& info) { return info.name == name; });
-  return found == list.end() ? nullptr : &*found;
-}
-
-/// Words of a line; "..." keeps blanks, \" \\ and \n inside it. False when a quote is not closed.
-bool split(const std::string& line, std::vector<std::string>& words) {
-  std::size_t i = 0;
-  const auto is_blank = [&](std::size_t at) { return line[at] == ' ' || line[at] == '\t' || line[at] == '\r'; };
-  while (i < line.size()) {
-    if (is_blank(i)) {
-      ++i;
-      continue;
-    }
-    if (line[i] == '#') break;
-    std::string word;
-    bool quoted = false;
-    for (; i < line.size() && (quoted || !is_blank(i)); ++i) {
-      if (line[i] == '"') {
-        quoted = !quoted;
-      } else if (quoted && line[i] == '\\' && i + 1 < line.size()) {
-        const char c = line[++i];
-        word += c == 'n' ? '\n' : c;
-      } else {
-        word += line[i];
-      }
-    }
-    if (quoted) return false;
-    words.push_back(word);
-  }
-  return true;
-}
 
 class LayoutParser {
  public:

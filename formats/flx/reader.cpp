@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <sstream>
+#include <unordered_map>
 
 #include "bough/base/diagnostic.hpp"
 #include "bough/formats/flx/flx_file.hpp"
@@ -73,7 +74,7 @@ class FlxReader {
   /// What the values of a label are read into; -1 in `slots` for none.
   using Slot = double*;
   struct Label {
-    std::string shape;  ///< the indices before the values: n node, j k modes, a axis
+    std::string shape;  ///< the indices before the values: m new node, n node, s special node, j k modes, a axis
     std::function<Slot(const std::vector<int>&, int)> place;  ///< of the v-th value
     bool runs = false;                                        ///< values run over k to the end of the row
   };
@@ -128,8 +129,7 @@ class FlxReader {
     if (label == "MODE") return read_mode();
     if (label == "SNODE") {
       int id = 0;
-      return size() && words_.size() == 2 && parse(words_[1], id) &&
-             find_node(file_.special_id, id, num_special_, true) == static_cast<int>(file_.special_id.size()) - 1;
+      return size() && words_.size() == 2 && parse(words_[1], id) && special_nodes_.add(id, num_special_) >= 0;
     }
     if (const auto found = get_labels().find(label); found != get_labels().end()) return read_values(found->second);
     const std::map<std::string, int*> integers{{"BODY", &file_.body_id},  {"MODOPT", &file_.modopt},
@@ -178,14 +178,23 @@ class FlxReader {
     return true;
   }
 
-  /// Position of a node; a new one is added where `adds`, up to `most`.
-  static int find_node(std::vector<int>& ids, int id, int most, bool adds) {
-    const auto found = std::find(ids.begin(), ids.end(), id);
-    if (found != ids.end()) return static_cast<int>(found - ids.begin());
-    if (!adds || static_cast<int>(ids.size()) == most) return -1;
-    ids.push_back(id);
-    return static_cast<int>(ids.size()) - 1;
-  }
+  /// Nodes in their order, found by id.
+  struct NodeList {
+    std::vector<int>& ids;
+    std::unordered_map<int, int> position = {};
+    /// -1 when it is not there.
+    int find(int id) const {
+      const auto found = position.find(id);
+      return found == position.end() ? -1 : found->second;
+    }
+    /// -1 when it is there already, or the list is full.
+    int add(int id, int most) {
+      const int next = static_cast<int>(ids.size());
+      if (next >= most || !position.emplace(id, next).second) return -1;
+      ids.push_back(id);
+      return next;
+    }
+  };
 
   bool read_values(const Label& label) {
     if (!size()) return false;
@@ -194,10 +203,12 @@ class FlxReader {
     for (char kind : label.shape) {
       int index = 0;
       if (w == words_.size() || !parse(words_[w++], index)) return false;
-      if (kind == 'm' || kind == 'n') {
-        index = find_node(file_.node_id, index, num_nodes_, kind == 'm');
+      if (kind == 'm') {
+        index = nodes_.add(index, num_nodes_);
+      } else if (kind == 'n') {
+        index = nodes_.find(index);
       } else if (kind == 's') {
-        index = find_node(file_.special_id, index, num_special_, false);
+        index = special_nodes_.find(index);
       } else {
         --index;
         if (index >= (kind == 'a' ? 3 : num_modes_)) return false;
@@ -249,6 +260,7 @@ class FlxReader {
   std::ifstream in_;
   FlxFile file_;
   Diagnostics diagnostics_;
+  NodeList nodes_{file_.node_id}, special_nodes_{file_.special_id};
   std::map<std::string, Label> labels_;
   std::vector<std::string> words_;
   int line_ = 0, num_modes_ = -1, num_nodes_ = -1, num_special_ = -1;

@@ -167,7 +167,12 @@ class FlxWriter {
   void write_block(const Statement& s) {
     for (const auto& [index, value] : s.fixed) {
       const auto [first, last] = get_range(index, s.nodes);
-      if (first + value > last) return;
+      if (first == last) return;
+      if (first + value > last)
+        throw InputError("flx.layout-index", {layout_.file, s.line},
+                         "block " + s.name + " takes " + index + " = " + std::to_string(value) +
+                             ", the body has 1 to " + std::to_string(last - first),
+                         "correct the index");
       at_[index] = first + value - 1;
     }
     in_line_ = 0;

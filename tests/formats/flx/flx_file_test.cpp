@@ -271,6 +271,8 @@ TEST_F(FlxFileTest, FaultsOfALayout) {
   for (const char* text : {"block mas", "block", "text \"{bodyid}\"", "text \"{j}\"", "block mass label=\"{node}\""})
     EXPECT_EQ(id_of(text, &line), "flx.layout-name") << text;
   EXPECT_EQ(get_id([] { write_by("block mass number=F3.2\n"); }), "flx.number-too-wide");
+  EXPECT_EQ(get_id([&] { write_by("number %g\nblock phi j=3\n"); }, &line), "flx.layout-index");
+  EXPECT_EQ(line, 2);
   EXPECT_EQ(get_id([] { read_layout("no-such.layout"); }), "flx.cannot-read");
 }
 
