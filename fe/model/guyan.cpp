@@ -82,7 +82,10 @@ void ModelBuilder::omit_dofs() {
   diagnostics_.throw_if_errors();
   // With an ASET everything else is left out but the supports of a free body; with OMIT alone what it names is.
   if (!deck_.aset.empty()) {
-    for (const auto& entry : deck_.suport)
+    std::vector<records::GridComponents> supports = deck_.suport;
+    if (const auto set = deck_.suport1.find(model_.subcase_.suport1); set != deck_.suport1.end())
+      supports.insert(supports.end(), set->second.begin(), set->second.end());
+    for (const auto& entry : supports)
       for (int c = 0; c < 6; ++c)
         if (entry.c >> c & 1u) kept_ldofs.push_back(find_ldof(entry.g, c + 1, "SUPORT", deck_.locate(entry.at)));
     std::sort(kept_ldofs.begin(), kept_ldofs.end());

@@ -122,6 +122,13 @@ class Guyan(ProgramTest):
             tip = u if tip is None else tip
             self.assertLess(np.abs(u - tip).max(), 1e-10 * np.abs(tip).max())
 
+    def test_supports_stay_in_the_analysis(self):
+        self.write("s.bdf", make_deck(ASET + "SUPORT,6,12\n"))
+        self.write("b.bdf", make_deck(ASET + "ASET1,12,6\n"))
+        self.assertIn("leave 14 dofs", self.bough("modes", "s.bdf", "-v").stderr)
+        same = self.calc_modes("b.bdf") / self.calc_modes("s.bdf")
+        self.assertLess(np.abs(same - 1).max(), 1e-9)
+
     def test_wrong_sets_are_named(self):
         for cards, words in [("ASET1,123456,1\n", "grid 1 component 1, which is fixed at line"),
                              ("ASET1,3,9\n", "grid 9 component 3, which MPC set 5 makes dependent"),
