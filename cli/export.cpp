@@ -4,11 +4,13 @@
 #include <memory>
 #include <sstream>
 
+#include "bough/formats/export/uff.hpp"
 #include "bough/formats/export/vtu.hpp"
 #include "bough/formats/nastran/reader.hpp"
 #include "bough/formats/nastran/writer.hpp"
 #include "channels.hpp"
 #include "console.hpp"
+#include "export_matrices.hpp"
 #include "options.hpp"
 #include "text_file.hpp"
 #include "vtu_file.hpp"
@@ -26,7 +28,8 @@ struct ExportOptions : CommonOptions {
   std::vector<std::string> ignore_cards;
 };
 
-std::string make_csv(const ExportOptions& o) {
+/// The time and the channels chosen, all by default.
+std::vector<exports::CsvColumn> read_columns(const ExportOptions& o) {
   const auto results = hdf5::read_results(o.file);
   std::vector<exports::CsvColumn> columns{{"time", results.time}};
   if (o.channels.empty()) {
@@ -38,16 +41,26 @@ std::string make_csv(const ExportOptions& o) {
   for (const auto& choice : o.channels) {
     for (auto& column : choose_columns(results, o.file, choice)) columns.push_back(std::move(column));
   }
+  return columns;
+}
+
+std::string make_csv(const ExportOptions& o) {
   std::ostringstream text;
-  exports::write_csv(text, columns);
+  exports::write_csv(text, read_columns(o));
   return text.str();
+}
+
+std::string make_universal(const ExportOptions& o) {
+  const auto format = read_file_format(o.file);
+  if (format == "bough-modes") return exports::make_uff(hdf5::read_modes(o.file));
+  if (format == "bough-flexbody") return exports::make_uff(hdf5::read_flex_body(o.file));
+  if (format == "bough-results") return exports::make_uff(read_columns(o));
+  refuse_export(o.file, "uff", "a flexible body, or what bough modes or run wrote");
 }
 
 /// The mode shapes of a modes file or a flexible body.
 std::string make_shapes(const ExportOptions& o, Diagnostics& diagnostics) {
-  const auto attributes = hdf5::read_info(o.file).attributes;
-  const auto found = attributes.find("format");
-  const std::string format = found == attributes.end() ? std::string{} : found->second;
+  const std::string format = read_file_format(o.file);
   const auto encoding = o.ascii ? exports::VtuEncoding::Ascii : exports::VtuEncoding::Base64;
   if (format == "bough-modes")
     return make_vtu_text(exports::make_picture(hdf5::read_modes(o.file)), encoding, o.file, diagnostics);
@@ -74,8 +87,19 @@ int run_export(const ExportOptions& o) {
   demand_file(o.file);
   if (!o.output.empty()) check_output(o, o.output);
   Diagnostics diagnostics;
+  if (o.format == "mat") {
+    if (o.output.empty()) {
+      console.print_error("cli.usage", "--to mat writes no text: give the file with -o", "see bough export --help");
+      return kUsageError;
+    }
+    export_mat(o.file, o.output, diagnostics);
+    console.print(diagnostics);
+    return kSuccess;
+  }
   const auto text = o.format == "vtu"   ? make_shapes(o, diagnostics)
                     : o.format == "bdf" ? make_bdf(o, diagnostics)
+                    : o.format == "op4" ? make_op4(o.file, diagnostics)
+                    : o.format == "uff" ? make_universal(o)
                                         : make_csv(o);
   console.print(diagnostics);
   if (o.output.empty()) {
@@ -91,14 +115,18 @@ int run_export(const ExportOptions& o) {
 void add_export(CLI::App& app, Action& action) {
   auto o = std::make_shared<ExportOptions>();
   auto* verb = app.add_subcommand("export", "Results, mode shapes or a deck in another format");
-  verb->add_option("file", o->file, "csv: results file; vtu: modes file or flexible body; bdf: Nastran deck")
+  verb->add_option("file", o->file,
+                   "csv: results file; vtu: modes file or flexible body; bdf: Nastran deck; mat, op4, uff: any "
+                   "HDF5 file of Bough that has such arrays")
       ->required();
-  verb->add_option("--to", o->format, "Format: csv, vtu (mode shapes for ParaView), bdf (the deck as Bough reads it)")
+  verb->add_option("--to", o->format,
+                   "Format: csv, vtu (mode shapes for ParaView), bdf (the deck as Bough reads it), mat (MATLAB), "
+                   "op4 (Nastran OUTPUT4), uff (universal file)")
       ->required()
-      ->check(CLI::IsMember({"csv", "vtu", "bdf"}));
-  verb->add_option(
-          "--channel", o->channels,
-          "csv: only these: a path or folder of the file, or a sensor; with :component; may be repeated (default: all)")
+      ->check(CLI::IsMember({"csv", "vtu", "bdf", "mat", "op4", "uff"}));
+  verb->add_option("--channel", o->channels,
+                   "csv, uff: only these: a path or folder of the file, or a sensor; with :component; may be repeated "
+                   "(default: all)")
       ->allow_extra_args(false);
   verb->add_flag("--ascii", o->ascii, "vtu: numbers as text instead of base64");
   verb->add_option("--fields", o->fields,
@@ -110,7 +138,8 @@ void add_export(CLI::App& app, Action& action) {
   verb->footer(
       "Example:\n  bough export spinup.h5 --to csv -o spinup.csv\n"
       "  bough export spinup.h5 --to csv --channel tip_deflection:y --channel /bodies/boom/eta\n"
-      "  bough export boom-modes.h5 --to vtu -o boom.vtu\n  bough export boom.bdf --to bdf -o plain.bdf");
+      "  bough export boom-modes.h5 --to vtu -o boom.vtu\n  bough export boom.h5 --to mat -o boom.mat\n"
+      "  bough export boom-modes.h5 --to uff -o boom.uff\n  bough export boom.bdf --to bdf -o plain.bdf");
   verb->callback([&action, o] { action = [o] { return run_export(*o); }; });
 }
 

@@ -23,7 +23,8 @@ def pair(numbers, is_complex):
 
 
 def read_binary(path):
-    head = open(path, "rb").read(4)
+    with open(path, "rb") as file:
+        head = file.read(4)
     order = "<" if int.from_bytes(head, "little") in (24, 48) else ">"
     wide = int.from_bytes(head, "little" if order == "<" else "big") == 48
     integer = np.dtype(order + ("i8" if wide else "i4"))
@@ -68,7 +69,8 @@ def read_binary(path):
 
 
 def read_text(path):
-    lines = iter(open(path).read().splitlines())
+    with open(path) as file:
+        lines = iter(file.read().splitlines())
     for header in lines:
         columns, rows, form, kind = (int(header[i:i + 8]) for i in (0, 8, 16, 24))
         name = header[32:40].strip()

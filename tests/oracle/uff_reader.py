@@ -58,7 +58,8 @@ READERS = {15: read_15, 55: read_55, 58: read_58, 82: read_82}
 
 
 def read(path):
-    lines = open(path).read().splitlines()
+    with open(path) as file:
+        lines = file.read().splitlines()
     assert all(len(line) <= 80 for line in lines), "a record has 80 columns"
     sets, at = [], 0
     while at < len(lines):

@@ -1,0 +1,21 @@
+#pragma once
+/// \file What export writes as named arrays: MATLAB and OUTPUT4 files of Bough's HDF5 files.
+#include <string>
+
+#include "bough/base/diagnostic.hpp"
+
+namespace bough::cli {
+
+/// Writes the MATLAB file of a flexible body, modes, matrices or results file. Throws "cli.no-export".
+void export_mat(const std::string& file, const std::string& output, Diagnostics& diagnostics);
+
+/// The text of the OUTPUT4 file of a flexible body, modes or matrices file. Throws "cli.no-export".
+std::string make_op4(const std::string& file, Diagnostics& diagnostics);
+
+/// The root attribute "format" of an HDF5 file; empty when there is none.
+std::string read_file_format(const std::string& file);
+
+/// "cli.no-export": the file is of a kind that has no export to `format`.
+[[noreturn]] void refuse_export(const std::string& file, const std::string& format, const std::string& expected);
+
+}  // namespace bough::cli
