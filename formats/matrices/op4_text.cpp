@@ -1,4 +1,4 @@
-#include <cstdlib>
+#include <algorithm>
 
 #include "bough/formats/matrices/detail/input.hpp"
 #include "bough/formats/matrices/detail/op4_header.hpp"
@@ -117,6 +117,12 @@ class TextReader {
     for (long i = 0; i < num_reals;) {
       in_.demand_line("the numbers of a column");
       const auto line = in_.get_line();
+      const auto used = format_.width * std::min(format_.per_line, static_cast<std::size_t>(num_reals - i));
+      if (line.size() > used && !trim(line.substr(used)).empty())
+        in_.fail("matrices.op4-format",
+                 "found " + quote(line.substr(used)) + " behind column " + std::to_string(used) +
+                     ", where the numbers of this line end",
+                 "the format of the header is not that of the numbers: write the file again");
       for (std::size_t k = 0; k < format_.per_line && i < num_reals; ++k, ++i) {
         const auto value =
             line.size() > k * format_.width ? parse_real(line.substr(k * format_.width, format_.width)) : std::nullopt;

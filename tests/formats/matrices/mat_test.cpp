@@ -65,8 +65,9 @@ class MatOfSciPy : public testing::Test {
     const auto code = folder_.write("make.py", R"(
 import sys, numpy as np, scipy.io as io, scipy.sparse as sp
 k = sp.csc_matrix([[4, -1.5, 0], [-1.5, 5, 0], [0, 0, 6.25]])
-io.savemat(sys.argv[1], dict(K=k, M=k.toarray(), I=np.array([[1, 2], [3, 4]], 'i2'), C=k * 2j + k, F=k.toarray().astype('f4'),
-    B=k.toarray() > 0, text='hello', cube=np.ones((2, 2, 2)), sys=dict(K=k, name='x'), cells=np.array([1, 'a'], object)),
+dense = k.toarray()
+io.savemat(sys.argv[1], dict(K=k, M=dense, I=np.array([[1, 2], [3, 4]], 'i2'), C=k * 2j + k, F=dense.astype('f4'),
+    B=dense > 0, text='hello', cube=np.ones((2, 2, 2)), sys=dict(K=k, name='x'), cells=np.array([1, 'a'], object)),
 )" + arguments + ")");
     ASSERT_EQ(run_python(code + " " + path_), 0);
   }
@@ -107,6 +108,34 @@ TEST_F(MatOfSciPy, DamagedFilesAreRefused) {
     }
   }
   EXPECT_EQ(read_error(folder_.write("head.mat", "MATLAB 5.0 MAT-file")), "matrices.mat");
+}
+
+/// As MATLAB lays out -v7.3: HDF5 behind 512 bytes, columns first, classes as attributes.
+TEST(MatFile, Version73) {
+  const TempFolder folder;
+  const auto path = folder.at("m.mat");
+  const auto code = folder.write("make.py", R"(
+import sys, h5py, numpy as np
+def mark(item, text):
+    kind = h5py.h5t.C_S1.copy()
+    kind.set_size(len(text) + 1)
+    attribute = h5py.h5a.create(item.id, b'MATLAB_class', kind, h5py.h5s.create(h5py.h5s.SCALAR))
+    attribute.write(np.array(text.encode(), dtype='S%d' % (len(text) + 1)))
+with h5py.File(sys.argv[1], 'w', userblock_size=512) as f:
+    mark(f.create_dataset('A', data=np.array([[1., 2], [3, 4], [5, 6]]).T), 'double')
+    group = f.create_group('K')
+    mark(group, 'double')
+    group.attrs.create('MATLAB_sparse', np.uint64(3))
+    group['data'] = np.array([4., -1.5, -1.5, 5., 6.25])
+    group['ir'], group['jc'] = np.array([0, 1, 0, 1, 2], 'u8'), np.array([0, 2, 4, 5], 'u8')
+with open(sys.argv[1], 'r+b') as f:
+    f.write(b'MATLAB 7.3 MAT-file, Platform: GLNXA64'.ljust(116) + bytes(8) + b'\x00\x02IM')
+)");
+  ASSERT_EQ(run_python(code + " " + path), 0);
+  expect_same(read_one(path, "A"),
+              make_matrix("A", 3, 2, {{0, 0, 1.0}, {0, 1, 2.0}, {1, 0, 3.0}, {1, 1, 4.0}, {2, 0, 5.0}, {2, 1, 6.0}}));
+  expect_same(read_one(path, "K"),
+              make_matrix("K", 3, 3, {{0, 0, 4.0}, {0, 1, -1.5}, {1, 0, -1.5}, {1, 1, 5.0}, {2, 2, 6.25}}));
 }
 
 }  // namespace

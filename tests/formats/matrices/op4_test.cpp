@@ -173,6 +173,7 @@ TEST(Op4Text, EachFaultHasItsErrorAndItsLine) {
   EXPECT_EQ(error(head + "       1       0       3\n     393217\n"), "matrices.op4-string");
   EXPECT_EQ(error("       2       2       1       7K       1P,3E23.16\n"), "matrices.op4-header");
   EXPECT_EQ(error("       2       2       1       2K       nonsense\n"), "matrices.op4-format");
+  EXPECT_EQ(error(head + column + " 1.00000000000000000E+00 2.00000000000000000E+00\n"), "matrices.op4-format");
   EXPECT_EQ(error("       2 9999999       1       2K\n"), "matrices.truncated");
   EXPECT_EQ(error("       299999999       1       2K\n"), "matrices.size");
   EXPECT_EQ(error("       2       0       1       2K\n"), "matrices.size");
