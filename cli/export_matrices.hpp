@@ -1,8 +1,12 @@
 #pragma once
 /// \file What export writes as named arrays: MATLAB and OUTPUT4 files of Bough's HDF5 files.
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "bough/base/diagnostic.hpp"
+#include "bough/formats/export/reduced_solid.hpp"
 
 namespace bough::cli {
 
@@ -17,5 +21,14 @@ std::string read_file_format(const std::string& file);
 
 /// "cli.no-export": the file is of a kind that has no export to `format`.
 [[noreturn]] void refuse_export(const std::string& file, const std::string& format, const std::string& expected);
+
+/// The sets of mass integrals that the body has, by name.
+std::vector<std::pair<std::string, const records::MassIntegrals*>> list_integrals(const records::FlexBody& body);
+
+/// Nothing for a body of normal modes; the warning "export.no-frames" for one whose constraint modes do not fit.
+std::optional<exports::ReducedSolid> find_solid(const records::FlexBody& body, const std::string& file,
+                                                Diagnostics& diagnostics);
+
+inline std::size_t to_size(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace bough::cli
