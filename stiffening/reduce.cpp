@@ -44,6 +44,7 @@ class Reduction {
   fe::ModelOptions make_model_options() const;
   void set_rigid_part(const fe::Model& model);
   void set_modes(const fe::Model& model);
+  void set_given_modes(const fe::Model& model);
   void set_damping(const fe::Model& model);
   void set_nodes(const fe::Model& model);
   void set_integrals(const fe::Model& model);
@@ -65,7 +66,7 @@ class Reduction {
 };
 
 void Reduction::check_spec() {
-  if (spec_.num_modes <= 0 && !spec_.max_frequency_hz && spec_.select.empty())
+  if (spec_.num_modes <= 0 && !spec_.max_frequency_hz && spec_.select.empty() && !options_.modes)
     diagnostics_.error("reduce.no-modes", where(), "the body asks for no modes",
                        "give [body.modes] number, max_frequency or select");
   for (const int s : spec_.select)
@@ -188,6 +189,43 @@ void Reduction::set_modes(const fe::Model& model) {
   set_damping(model);
 }
 
+/// Any basis: what is not diagonal in ΦᵀMΦ and ΦᵀKΦ stays.
+void Reduction::set_given_modes(const fe::Model& model) {
+  Phi_ = options_.modes(model);
+  const auto available = static_cast<int>(Phi_.cols());
+  std::vector<int> columns;
+  for (const int s : spec_.select) {
+    if (s <= available)
+      columns.push_back(s - 1);
+    else
+      diagnostics_.error("reduce.bad-select", where(),
+                         "mode " + std::to_string(s) + " in select, " + std::to_string(available) + " are given");
+  }
+  diagnostics_.throw_if_errors();
+  if (!spec_.select.empty())
+    Phi_ = Phi_(Eigen::all, columns).eval();
+  else if (spec_.num_modes > 0 && spec_.num_modes < available)
+    Phi_ = Phi_.leftCols(spec_.num_modes).eval();
+  const auto n = Phi_.cols();
+  const auto project = [this](const MatrixXd& A_Phi) -> MatrixXd {
+    const MatrixXd A = Phi_.transpose() * A_Phi;
+    return 0.5 * (A + A.transpose());
+  };
+  body_.modal_mass = project(fe::calc_mass_times(model, model.mass_kind(), Phi_));
+  body_.modal_stiffness = project(fe::calc_stiffness_times(model, Phi_));
+  for (Eigen::Index j = 0; j < n; ++j)
+    if (!(body_.modal_mass(j, j) > 0))
+      diagnostics_.error("reduce.no-modal-mass", where(),
+                         "mode " + std::to_string(j + 1) + " of those kept has no mass (phi' M phi is not positive)",
+                         "check the mass matrix, the mode shapes and their dofs");
+  diagnostics_.throw_if_errors();
+  body_.eigenvalue = body_.modal_stiffness.diagonal().cwiseQuotient(body_.modal_mass.diagonal());
+  body_.frequency_hz = body_.eigenvalue.cwiseMax(0).cwiseSqrt() / (2 * std::numbers::pi);
+  body_.kind.assign(static_cast<std::size_t>(n), records::ModeKind::Normal);
+  body_.effective_mass = modal::calc_effective_mass(model, Phi_);
+  set_damping(model);
+}
+
 /// 2 ζ ω of the ratios, plus ΦᵀBΦ of the dampers of the deck, which couples modes.
 void Reduction::set_damping(const fe::Model& model) {
   const auto n = body_.eigenvalue.size();
@@ -201,7 +239,8 @@ void Reduction::set_damping(const fe::Model& model) {
     diagnostics_.throw_if_errors();
     zeta = VectorXd::Map(spec_.damping_ratios.data(), n);
   }
-  body_.modal_damping = (2 * zeta.array() * body_.eigenvalue.array().max(0).sqrt()).matrix().asDiagonal();
+  const Eigen::ArrayXd mass = body_.modal_mass.diagonal().array();
+  body_.modal_damping = (2 * zeta.array() * body_.eigenvalue.array().max(0).sqrt() * mass).matrix().asDiagonal();
   if (!fe::has_damping(model)) return;
   const MatrixXd B = Phi_.transpose() * fe::calc_damping_times(model, Phi_);
   body_.modal_damping += 0.5 * (B + B.transpose());
@@ -347,7 +386,8 @@ void Reduction::set_stiffening(const fe::Model& model, const fe::StaticSolver& s
 FlexBody Reduction::run() {
   check_spec();
   report("model");
-  const auto model = fe::Model::build(deck_, make_model_options(), diagnostics_);
+  const auto& elements = options_.elements ? options_.elements : fe::make_elements;
+  const auto model = fe::Model::build(deck_, make_model_options(), elements, diagnostics_);
   check_nodes(model);
   set_rigid_part(model);
 
@@ -356,7 +396,10 @@ FlexBody Reduction::run() {
   const fe::PetscMat K = fe::assemble_stiffness(model, fe::DofSet::Free);
   const auto solver = make_solver(model, K);
   report("modes");
-  set_modes(model);
+  if (options_.modes)
+    set_given_modes(model);
+  else
+    set_modes(model);
   set_nodes(model);
   report("mass integrals");
   set_integrals(model);
