@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <set>
 
 namespace bough::fe {
@@ -43,15 +44,15 @@ std::optional<ResolvedShell> resolve_shell(Maker& maker, ShellSections& sections
     r.midsides.push_back(g == 0 ? -1 : maker.find_grid(g, r.who, card.at));
     ok = ok && (g == 0 || r.midsides.back() >= 0);
   }
-  std::optional<double> thickness;
+  std::optional<double> mean;
   if (!card.t.empty()) {
-    double mean = 0;
-    for (double t : card.t) mean += t / static_cast<double>(card.t.size());
-    thickness = card.relative_thickness ? mean * sections.find_thickness(card.pid).value_or(0) : mean;
-    if (std::any_of(card.t.begin(), card.t.end(), [&](double t) { return t != card.t[0]; }))
-      for (double t : card.t) r.thickness_ratio.push_back(t / mean);
+    const double own = sections.find_thickness(card.pid).value_or(0);
+    for (double t : card.t) r.thickness.push_back(std::isnan(t) ? own : card.relative_thickness ? t * own : t);
+    mean = std::accumulate(r.thickness.begin(), r.thickness.end(), 0.0) / static_cast<double>(r.thickness.size());
+    if (std::all_of(r.thickness.begin(), r.thickness.end(), [&](double t) { return t == r.thickness[0]; }))
+      r.thickness.clear();
   }
-  r.section = sections.find(card.pid, r.who, card.at, thickness);
+  r.section = sections.find(card.pid, r.who, card.at, mean);
   if (!r.section || !ok) return std::nullopt;
   for (int n : r.nodes) r.x.push_back(maker.nodes().node(n).x);
   if (const std::string wrong = check_facet(r.x); !wrong.empty()) {

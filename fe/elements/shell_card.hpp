@@ -16,8 +16,8 @@ struct ResolvedShell {
   std::vector<Vector3d> x;                ///< corners in basic
   Vector3d normal = Vector3d::UnitZ();    ///< of the mean plane of the corners
   const ShellSection* section = nullptr;  ///< in material axes, at the mean of the corner thicknesses
-  /// T1 ... of the corners as fractions of their mean (TFLAG applied); empty = uniform.
-  std::vector<double> thickness_ratio;
+  /// Of the corners: T1... with TFLAG applied, the property's where blank; empty = uniform.
+  std::vector<double> thickness;
 };
 
 /// Empty after reporting fe.missing-grid, fe.missing-property, fe.bad-property or fe.bad-facet.

@@ -66,7 +66,9 @@ Model ModelBuilder::build(const ElementFactory& factory) {
 
 void ModelBuilder::set_params() {
   model_.wtmass_ = get_real_param(deck_, "WTMASS", 1, diagnostics_);
-  const bool is_coupled = get_real_param(deck_, "COUPMASS", -1, diagnostics_) > 0;
+  const auto* coupmass = deck_.find_param("COUPMASS");
+  const bool is_word = coupmass && (coupmass->value == "YES" || coupmass->value == "NO");
+  const bool is_coupled = is_word ? coupmass->value == "YES" : get_real_param(deck_, "COUPMASS", -1, diagnostics_) > 0;
   model_.mass_kind_ = options_.mass_kind.value_or(is_coupled ? MassKind::Consistent : MassKind::Lumped);
 }
 

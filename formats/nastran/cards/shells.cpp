@@ -1,3 +1,4 @@
+#include <limits>
 #include <string>
 
 #include "bough/formats/nastran/detail/parsers.hpp"
@@ -35,13 +36,8 @@ void read_thickness(Card& card, int first, int flag, ShellElement& e) {
   e.relative_thickness = tflag == 1;
   const int corners = static_cast<int>(e.grids.size());
   if (card.is_blank(first, first + corners)) return;
-  for (int i = first; i < first + corners; ++i) {
-    if (card.is_blank(i)) {
-      card.fail("deck.missing-field", i, "some of T1.. are blank and some are not", "give all of them or none");
-      break;
-    }
-    e.t.push_back(card.read_real(i, "Ti"));
-  }
+  for (int i = first; i < first + corners; ++i)
+    e.t.push_back(card.is_blank(i) ? std::numeric_limits<double>::quiet_NaN() : card.read_real(i, "Ti"));
 }
 
 void add_shell(Card& card, Reading& r, ShellElement&& e) {

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "bough/formats/nastran/detail/card_sink.hpp"
 
 namespace bough::nastran::detail {
@@ -20,7 +22,7 @@ void add_axes(const ShellElement& e, CardFields& card) {
 }
 
 void add_thickness(const ShellElement& e, CardFields& card) {
-  for (const double t : e.t) card.add(t);
+  for (const double t : e.t) std::isnan(t) ? card.add_blank() : card.add(t);
   if (e.t.empty()) card.add_blank(static_cast<int>(e.grids.size()));
 }
 

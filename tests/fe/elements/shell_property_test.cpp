@@ -86,7 +86,14 @@ TEST(ShellProperty, CornerThicknessesAndTflag) {
   relative.deck.shells[0].t = {0.5, 1.0, 1.5, 1.0};
   relative.deck.shells[0].relative_thickness = true;
   relative.make();
-  for (const auto* m : {&own, &relative}) {
+  SmallModel blank = make_quad();  // a blank corner has the property's, with TFLAG or without
+  blank.deck.shells[0].t = {0.1, std::nan(""), 0.3, std::nan("")};
+  blank.make();
+  SmallModel blank_relative = make_quad();
+  blank_relative.deck.shells[0].t = {0.5, std::nan(""), 1.5, 1.0};
+  blank_relative.deck.shells[0].relative_thickness = true;
+  blank_relative.make();
+  for (const auto* m : {&own, &relative, &blank, &blank_relative}) {
     EXPECT_LT(calc_distance(m->calc_stiffness(), uniform.calc_stiffness()), 1e-13);
     EXPECT_LT(calc_distance(m->calc_mass(MassKind::Lumped), uniform.calc_mass(MassKind::Lumped)), 1e-13);
   }

@@ -157,6 +157,10 @@ TEST(ModelMap, options_choose_mass_kind_and_origin) {
   EXPECT_TRUE(model.node(1).x.isApprox(Vector3d(0.75, -1, 0)));
   options.mass_kind = MassKind::Lumped;
   EXPECT_EQ(Model::build(deck, options, make_links({{1, 2}}), d).mass_kind(), MassKind::Lumped);
+  deck.params.push_back({"COUPMASS", "NO", {}});
+  EXPECT_EQ(Model::build(deck, {}, make_links({{1, 2}}), d).mass_kind(), MassKind::Lumped);
+  deck.params.push_back({"COUPMASS", "YES", {}});
+  EXPECT_EQ(Model::build(deck, {}, make_links({{1, 2}}), d).mass_kind(), MassKind::Consistent);
 }
 
 }  // namespace

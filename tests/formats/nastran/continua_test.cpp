@@ -74,7 +74,7 @@ TEST(ContinuumCards, WhatIsWrong) {
   EXPECT_EQ(read("PCOMP,5,,,,,,,SMEAR\n,1,.1\n").count("deck.bad-word"), 1);
   EXPECT_EQ(
       read("CQUAD4,1,1,1,2,3\n").count("deck.bad-integer") + read("CQUAD4,1,1,1,2,3\n").count("deck.missing-field"), 1);
-  EXPECT_EQ(read("CQUAD4,1,1,1,2,3,4\n,,,.1,,.1,.1\n").count("deck.missing-field"), 1);
+  EXPECT_EQ(read("CQUAD4,1,1,1,2,3,4\n,,2,.1\n").count("deck.field-range"), 1);
   EXPECT_EQ(read("PSHELL,7,1,.1\nPCOMP,7\n,1,.1\n").count("deck.duplicate-id"), 1);
   EXPECT_EQ(read("MAT1,7,1.,,.3\nMAT8,7,1.,1.\n").count("deck.duplicate-id"), 1);
   EXPECT_EQ(read("RROD,1,2,3\n").count("deck.field-range"), 1);
