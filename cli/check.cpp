@@ -13,6 +13,7 @@
 #include "deck_tables.hpp"
 #include "model_options.hpp"
 #include "options.hpp"
+#include "ranks.hpp"
 #include "system_files.hpp"
 
 namespace bough::cli {
@@ -86,7 +87,7 @@ void describe_deck(const records::Deck& deck, std::string& text, nlohmann::json&
 int check_deck(const CheckOptions& options, Console& console) {
   console.set_rank(fe::initialize_petsc().rank);
   Diagnostics diagnostics;
-  const auto deck = nastran::read_deck(options.file, {options.model.ignore_cards}, diagnostics);
+  const auto deck = read_deck_once(options.file, options.model.ignore_cards, diagnostics);
   std::string text;
   nlohmann::json json;
   describe_deck(deck, text, json);
@@ -98,15 +99,15 @@ int check_deck(const CheckOptions& options, Console& console) {
 int check_body(const CheckOptions& options, Console& console) {
   console.set_rank(fe::initialize_petsc().rank);
   Diagnostics diagnostics;
-  const auto spec = toml_files::read_body_spec(options.file, diagnostics);
+  const auto spec = read_body_spec_once(options.file, diagnostics);
   nlohmann::json json{{"kind", "body"}, {"name", spec.name}, {"deck", spec.deck}};
   std::string text = fmt::format("body file: \"{}\" from {}, {} frame, {} modes, {} interface nodes, {} loads\n",
                                  spec.name, spec.deck, spec.frame == records::BodyFrame::Free ? "free" : "fixed",
                                  spec.num_modes, spec.interface_nodes.size(), spec.loads.size());
   const auto deck_path = resolve_beside(options.file, spec.deck);
   if (!spec.deck.empty()) {
-    demand_file(deck_path);
-    const auto deck = nastran::read_deck(deck_path, {spec.ignore_cards}, diagnostics);
+    do_once([&] { demand_file(deck_path); });
+    const auto deck = read_deck_once(deck_path, spec.ignore_cards, diagnostics);
     describe_deck(deck, text, json);
     json["kind"] = "body";
     auto model_options = make_model_options(options.model);
@@ -229,11 +230,11 @@ int check_hdf5(const CheckOptions& options, const Console& console) {
 }
 
 int check_file(const CheckOptions& options, Console& console) {
-  demand_file(options.file);
+  do_once([&] { demand_file(options.file); });
   if (has_suffix(options.file, ".h5") || has_suffix(options.file, ".hdf5")) return check_hdf5(options, console);
   if (has_suffix(options.file, ".toml")) {
-    return toml_files::detect_kind(options.file) == "body" ? check_body(options, console)
-                                                           : check_system(options, console);
+    const auto kind = share([&] { return toml_files::detect_kind(options.file); });
+    return kind == "body" ? check_body(options, console) : check_system(options, console);
   }
   return check_deck(options, console);
 }

@@ -12,6 +12,7 @@
 #include "console.hpp"
 #include "model_options.hpp"
 #include "options.hpp"
+#include "ranks.hpp"
 #include "text_file.hpp"
 
 namespace bough::cli {
@@ -117,9 +118,11 @@ std::vector<std::string> write(const records::MatricesResult& result, const Matr
 
 int run_matrices(const MatricesOptions& options) {
   Console console(options.quiet, options.verbosity);
-  demand_file(options.deck);
+  do_once([&] {
+    demand_file(options.deck);
+    check_output(options, options.output);
+  });
   console.set_rank(fe::initialize_petsc().rank);
-  check_output(options, options.output);
 
   Diagnostics diagnostics;
   const auto deck = read_deck_or_throw(options.deck, make_model_options(options.model), diagnostics);

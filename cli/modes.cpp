@@ -15,6 +15,7 @@
 #include "deck_tables.hpp"
 #include "model_options.hpp"
 #include "options.hpp"
+#include "ranks.hpp"
 #include "text_file.hpp"
 #include "vtu_file.hpp"
 
@@ -31,6 +32,7 @@ struct ModesOptions : CommonOptions {
   int number = 0;
   std::optional<double> max_hz;
   bool buckling = false;
+  bool no_check = false;
   std::string vtu;
 };
 
@@ -38,6 +40,7 @@ struct ModesOptions : CommonOptions {
 modal::EigenOptions choose_eigen_options(const ModesOptions& options, const records::Deck& deck, int method) {
   modal::EigenOptions eigen;
   eigen.num_modes = 0;
+  eigen.check_inertia = !options.no_check;
   for (const auto& card : deck.eigen_methods) {
     if (method != 0 && card.sid != method) continue;
     eigen.num_modes = card.num_modes;
@@ -82,8 +85,9 @@ records::ModesResult make_result(const fe::Model& model, const modal::EigenPairs
   result.eigenvalue = pairs.lambda;
   result.frequency_hz = pairs.lambda.cwiseMax(0.0).cwiseSqrt() / (2 * M_PI);
   result.kind.assign(n, records::ModeKind::Normal);
-  result.modal_mass = pairs.Phi.cwiseProduct(fe::calc_mass_times(model, model.mass_kind(), pairs.Phi)).colwise().sum();
-  result.effective_mass = modal::calc_effective_mass(model, pairs.Phi);
+  const Eigen::MatrixXd M_Phi = fe::calc_mass_times(model, model.mass_kind(), pairs.Phi);
+  result.modal_mass = pairs.Phi.cwiseProduct(M_Phi).colwise().sum();
+  result.effective_mass = modal::calc_effective_mass(model, pairs.Phi, M_Phi);
   return result;
 }
 
@@ -127,6 +131,7 @@ std::string format_health(const records::ModesResult& r) {
         fmt::format("Sturm count: {} eigenvalues up to the highest, {} in the table: none missed{}\n", r.inertia_count,
                     n, r.inertia_count > n ? " (the others are below the range or copies of the last root)" : "");
   }
+  if (r.inertia_count < 0 && n > 0) text += "Sturm count: not made\n";
   if (n > 0) text += fmt::format("largest residual: {:.1e}\n", r.residual.maxCoeff());
   return text;
 }
@@ -224,10 +229,12 @@ void add_new(const Diagnostics& from, Diagnostics& to) {
 
 int run_modes(const ModesOptions& options) {
   Console console(options.quiet, options.verbosity);
-  demand_file(options.deck);
+  do_once([&] {
+    demand_file(options.deck);
+    if (!options.output.empty()) check_output(options, options.output);
+    if (!options.vtu.empty()) check_output(options, options.vtu);
+  });
   console.set_rank(fe::initialize_petsc().rank);
-  if (!options.output.empty()) check_output(options, options.output);
-  if (!options.vtu.empty()) check_output(options, options.vtu);
 
   Diagnostics diagnostics;
   auto model_options = make_model_options(options.model);
@@ -261,17 +268,20 @@ int run_modes(const ModesOptions& options) {
     if (is_first) json = make_json(result);
     if (subcases.size() > 1) json["subcases"].push_back(make_json(result));
     const auto output = name_output(options.output, result.subcase, is_first);
-    if (!output.empty() && console.is_root()) {
-      check_output(options, output);
-      hdf5::write_modes(result, output);
-    }
+    if (!output.empty())
+      do_once([&] {
+        check_output(options, output);
+        hdf5::write_modes(result, output);
+      });
   }
   console.print(diagnostics);
   if (options.json)
     console.print_data(json.dump(2) + "\n");
   else
     console.print(text);
-  for (const auto& [path, picture] : pictures) write_text_file(path, picture);
+  do_once([&] {
+    for (const auto& [path, picture] : pictures) write_text_file(path, picture);
+  });
   return kSuccess;
 }
 
@@ -285,6 +295,7 @@ void add_modes(CLI::App& app, Action& action) {
       ->check(CLI::PositiveNumber);
   verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted");
   verb->add_flag("--buckling", o->buckling, "Load factors of the static subcase instead of normal modes");
+  verb->add_flag("--no-check", o->no_check, "Leave out the count of eigenvalues that proves that no mode was missed");
   verb->add_option("--vtu", o->vtu, "Write the mode shapes to this file for ParaView");
   add_model_options(*verb, o->model);
   add_common_options(*verb, *o, kOutput | kJson, "Write the modes to this HDF5 file");

@@ -5,9 +5,13 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "bough/formats/hdf5/files.hpp"
 #include "bough/formats/nastran/reader.hpp"
+#include "bough/formats/toml/specs.hpp"
+#include "console.hpp"
+#include "ranks.hpp"
 
 namespace bough::cli {
 
@@ -46,9 +50,25 @@ void demand_file(const std::string& path) {
   }
 }
 
+records::Deck read_deck_once(const std::string& path, const std::vector<std::string>& ignore_cards,
+                             Diagnostics& diagnostics) {
+  if (!is_one_of_many()) return nastran::read_deck(path, {ignore_cards}, diagnostics);
+  return nastran::read_packed_deck(share([&] { return nastran::pack_deck(path); }), {ignore_cards}, diagnostics);
+}
+
+records::BodySpec read_body_spec_once(const std::string& path, Diagnostics& diagnostics) {
+  if (!is_one_of_many()) return toml_files::read_body_spec(path, diagnostics);
+  const auto text = share([&] {
+    demand_file(path);
+    std::ifstream in(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  });
+  return toml_files::read_body_spec_text(text, path, diagnostics);
+}
+
 records::Deck read_deck_or_throw(const std::string& path, const fe::ModelOptions& options, Diagnostics& diagnostics) {
-  demand_file(path);
-  auto deck = nastran::read_deck(path, {options.ignore_cards}, diagnostics);
+  do_once([&] { demand_file(path); });
+  auto deck = read_deck_once(path, options.ignore_cards, diagnostics);
   // A deck with errors is still taken as far as it goes, so that one pass shows all of them.
   if (diagnostics.num_errors() > 0) fe::Model::build(deck, options, diagnostics);
   diagnostics.throw_if_errors();
@@ -57,6 +77,7 @@ records::Deck read_deck_or_throw(const std::string& path, const fe::ModelOptions
 
 std::vector<std::pair<std::string, std::string>> calc_sources(const std::vector<std::string>& files) {
   std::vector<std::pair<std::string, std::string>> source;
+  if (Console::get_launch_rank() != 0) return source;
   for (const auto& file : files) source.emplace_back(fs::path(file).filename().string(), hdf5::calc_sha256(file));
   return source;
 }

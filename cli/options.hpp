@@ -32,9 +32,14 @@ void check_output(const CommonOptions& options, const std::string& path);
 /// "fixed" when the text ends so, case aside: ".h5", ".toml".
 bool has_suffix(const std::string& path, const std::string& suffix);
 
-/// Reads a deck, throws InputError with all its errors; warnings stay in `diagnostics`.
+/// Reads a deck on the first rank and hands it to the others. Collective.
+records::Deck read_deck_once(const std::string& path, const std::vector<std::string>& ignore_cards,
+                             Diagnostics& diagnostics);
+/// The same for a body file.
+records::BodySpec read_body_spec_once(const std::string& path, Diagnostics& diagnostics);
+/// Reads a deck, throws InputError with all its errors; warnings stay in `diagnostics`. Collective.
 records::Deck read_deck_or_throw(const std::string& path, const fe::ModelOptions& options, Diagnostics& diagnostics);
-/// (file name, SHA-256) of each.
+/// (file name, SHA-256) of each; nothing on the ranks that write no file.
 std::vector<std::pair<std::string, std::string>> calc_sources(const std::vector<std::string>& files);
 
 /// Throws InputError("cli.no-file") when the path is no readable file.

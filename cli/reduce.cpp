@@ -13,6 +13,7 @@
 #include "console.hpp"
 #include "deck_tables.hpp"
 #include "options.hpp"
+#include "ranks.hpp"
 #include "system_files.hpp"
 
 namespace bough::cli {
@@ -76,7 +77,7 @@ records::BodySpec make_spec(const ReduceVerbOptions& o, Diagnostics& diagnostics
   records::BodySpec spec;
   const bool is_toml = has_suffix(o.file, ".toml");
   if (is_toml) {
-    spec = toml_files::read_body_spec(o.file, diagnostics);
+    spec = read_body_spec_once(o.file, diagnostics);
     diagnostics.throw_if_errors();
     spec.deck = resolve_beside(o.file, spec.deck);
   } else {
@@ -133,11 +134,11 @@ std::string format_summary(const records::FlexBody& body, const std::string& out
 
 int run_reduce(const ReduceVerbOptions& o) {
   Console console(o.quiet, o.verbosity);
-  demand_file(o.file);
+  do_once([&] { demand_file(o.file); });
   Diagnostics diagnostics;
   const auto spec = make_spec(o, diagnostics);
   const auto output = choose_output(o, spec);
-  check_output(o, output);
+  do_once([&] { check_output(o, output); });
   console.set_rank(fe::initialize_petsc().rank);
   fe::ModelOptions model_options;
   model_options.subcase = spec.subcase;
@@ -152,7 +153,7 @@ int run_reduce(const ReduceVerbOptions& o) {
   body.source = calc_sources(files);
   console.print(diagnostics);
   diagnostics.throw_if_errors();
-  if (console.is_root()) hdf5::write_flex_body(body, output);
+  do_once([&] { hdf5::write_flex_body(body, output); });
   if (o.json) {
     console.print_data(nlohmann::json{{"name", body.name},
                                       {"output", output},

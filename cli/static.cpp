@@ -10,6 +10,7 @@
 #include "console.hpp"
 #include "model_options.hpp"
 #include "options.hpp"
+#include "ranks.hpp"
 #include "static_tables.hpp"
 #include "text_file.hpp"
 #include "vtu_file.hpp"
@@ -65,10 +66,12 @@ std::unique_ptr<Prepared> prepare(const records::Deck& deck, const StaticOptions
 
 int run_static(const StaticOptions& options) {
   Console console(options.quiet, options.verbosity);
-  demand_file(options.deck);
+  do_once([&] {
+    demand_file(options.deck);
+    if (!options.output.empty()) check_output(options, options.output);
+    if (!options.vtu.empty()) check_output(options, options.vtu);
+  });
   console.set_rank(fe::initialize_petsc().rank);
-  if (!options.output.empty()) check_output(options, options.output);
-  if (!options.vtu.empty()) check_output(options, options.vtu);
 
   Diagnostics diagnostics;
   const auto deck = read_deck_or_throw(options.deck, make_model_options(options.model), diagnostics);

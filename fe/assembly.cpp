@@ -20,49 +20,103 @@ SparseRows make_identity(int size) {
   return identity;
 }
 
-/// Rows [first, last) of the pattern of Σ T_eᵀ K_e T_e in CSR, columns ascending, diagonal always there.
-struct Pattern {
-  std::vector<int> start, columns;
+/// Rows [first, last) of Σ T_eᵀ K_e T_e in CSR: columns ascending, the diagonal always there. `same[i]`: row i has the
+/// elements, and so the columns, of the row before.
+struct Rows {
+  std::vector<int> start{0}, columns;
+  std::vector<char> same;
+  std::vector<double> values;
+  std::vector<int> elements;  ///< those that touch the rows, ascending
 };
 
-Pattern calc_pattern(const Model& model, const SparseRows& T, int first, int last) {
+Rows calc_pattern(const Model& model, const SparseRows& T, int first, int last) {
   const auto& elements = model.elements();
   const int num_rows = last - first;
+  Rows rows;
   // Each element's columns once; then, per own row, the elements that touch it.
   std::vector<int> element_start{0}, element_columns, columns;
   std::vector<int> count(num_rows + 1, 0);
-  for (const auto& element : elements) {
-    calc_element_columns(T, element->gdofs(), columns);
+  for (int e = 0; e < static_cast<int>(elements.size()); ++e) {
+    calc_element_columns(T, elements[e]->gdofs(), columns);
+    bool touches = false;
     for (int c : columns)
-      if (c >= first && c < last) ++count[c - first + 1];
+      if (c >= first && c < last) ++count[c - first + 1], touches = true;
+    if (!touches) continue;
+    rows.elements.push_back(e);
     element_columns.insert(element_columns.end(), columns.begin(), columns.end());
     element_start.push_back(static_cast<int>(element_columns.size()));
   }
   std::partial_sum(count.begin(), count.end(), count.begin());
   std::vector<int> touching(count.back()), next(count.begin(), count.end() - 1);
-  for (int e = 0; e < static_cast<int>(elements.size()); ++e)
+  for (int e = 0; e < static_cast<int>(rows.elements.size()); ++e)
     for (int i = element_start[e]; i < element_start[e + 1]; ++i)
       if (const int c = element_columns[i]; c >= first && c < last) touching[next[c - first]++] = e;
 
-  Pattern pattern;
-  pattern.start.push_back(0);
+  rows.start.reserve(num_rows + 1);
+  rows.same.assign(num_rows, 0);
   std::vector<int> mark(T.cols(), -1);
   for (int row = 0; row < num_rows; ++row) {
-    const size_t begin = pattern.columns.size();
-    mark[first + row] = row;
-    pattern.columns.push_back(first + row);
-    for (int t = count[row]; t < count[row + 1]; ++t)
-      for (int i = element_start[touching[t]]; i < element_start[touching[t] + 1]; ++i)
-        if (mark[element_columns[i]] != row) {
-          mark[element_columns[i]] = row;
-          pattern.columns.push_back(element_columns[i]);
-        }
-    std::sort(pattern.columns.begin() + static_cast<std::ptrdiff_t>(begin), pattern.columns.end());
-    pattern.start.push_back(static_cast<int>(pattern.columns.size()));
+    const auto begin = static_cast<std::ptrdiff_t>(rows.columns.size());
+    const auto own = touching.begin() + count[row], own_end = touching.begin() + count[row + 1];
+    if (row > 0 && own != own_end && std::equal(touching.begin() + count[row - 1], own, own, own_end)) {
+      rows.same[row] = 1;
+      for (int i = rows.start[row - 1]; i < begin; ++i) rows.columns.push_back(rows.columns[i]);
+    } else {
+      mark[first + row] = row;
+      rows.columns.push_back(first + row);
+      for (auto t = own; t != own_end; ++t)
+        for (int i = element_start[*t]; i < element_start[*t + 1]; ++i)
+          if (mark[element_columns[i]] != row) {
+            mark[element_columns[i]] = row;
+            rows.columns.push_back(element_columns[i]);
+          }
+      std::sort(rows.columns.begin() + begin, rows.columns.end());
+    }
+    BOUGH_DEMAND(rows.columns.size() < 2147483647u);
+    rows.start.push_back(static_cast<int>(rows.columns.size()));
   }
-  return pattern;
+  return rows;
 }
 
+/// Adds the rows of K_f, on the f-dofs `columns`, that lie in [first, last).
+void add_rows(const MatrixXd& K_f, const std::vector<int>& columns, int first, int last, Rows& rows) {
+  std::vector<int> at(columns.size());
+  int known = -2;
+  for (size_t i = 0; i < columns.size(); ++i) {
+    const int row = columns[i] - first;
+    if (row < 0 || columns[i] >= last) continue;
+    const int* begin = rows.columns.data() + rows.start[row];
+    if (row != known + 1 || !rows.same[row]) {
+      const int* p = begin;
+      for (size_t j = 0; j < columns.size(); ++j) {
+        while (*p != columns[j]) ++p;
+        at[j] = static_cast<int>(p - begin);
+      }
+    }
+    known = row;
+    double* values = rows.values.data() + rows.start[row];
+    for (size_t j = 0; j < columns.size(); ++j) values[at[j]] += K_f(static_cast<int>(j), static_cast<int>(i));
+  }
+}
+
+/// Leaves out the zeros, the diagonal apart: a flat shell in a coordinate plane couples half of its dofs only, a mass
+/// fewer, and the factor's work goes with what is stored.
+void drop_zeros(Rows& rows, int first) {
+  int kept = 0;
+  for (int row = 0; row + 1 < static_cast<int>(rows.start.size()); ++row) {
+    const int begin = rows.start[row], end = rows.start[row + 1];
+    rows.start[row] = kept;
+    for (int i = begin; i < end; ++i)
+      if (rows.values[i] != 0 || rows.columns[i] == first + row) {
+        rows.values[kept] = rows.values[i];
+        rows.columns[kept++] = rows.columns[i];
+      }
+  }
+  rows.start.back() = kept;
+}
+
+/// Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an entry does not
+/// depend on the number of ranks.
 PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add) {
   initialize_petsc();
   const SparseRows identity = set == DofSet::Global ? make_identity(model.num_gdofs()) : SparseRows{};
@@ -77,29 +131,22 @@ PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add) {
   check_petsc(MatSetUp(A));
   PetscInt first = 0, last = 0;
   check_petsc(MatGetOwnershipRange(A, &first, &last));
-  const Pattern pattern = calc_pattern(model, T, first, last);
-  // Each does nothing for the other's type.
-  check_petsc(MatSeqAIJSetPreallocationCSR(A, pattern.start.data(), pattern.columns.data(), nullptr));
-  check_petsc(MatMPIAIJSetPreallocationCSR(A, pattern.start.data(), pattern.columns.data(), nullptr));
-  check_petsc(MatSetOption(A, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_TRUE));
-  check_petsc(MatSetOption(A, MAT_ROW_ORIENTED, PETSC_FALSE));  // Eigen's order
+  Rows rows = calc_pattern(model, T, first, last);
+  rows.values.assign(rows.columns.size(), 0);
 
   ElementTransform transform;
   MatrixXd K_e;
-  const auto [begin, end] = calc_element_range(model);
-  for (int e = begin; e < end; ++e) {
+  for (int e : rows.elements) {
     const Element& element = *model.elements()[e];
     transform.set(T, element.gdofs());
-    const auto& columns = transform.columns();
-    if (columns.empty()) continue;
     K_e.setZero(element.num_dofs(), element.num_dofs());
     add(element, K_e);
-    const MatrixXd& K_f = transform.project(K_e);
-    const PetscInt num = static_cast<PetscInt>(columns.size());
-    check_petsc(MatSetValues(A, num, columns.data(), num, columns.data(), K_f.data(), ADD_VALUES));
+    add_rows(transform.project(K_e), transform.columns(), first, last, rows);
   }
-  check_petsc(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
-  check_petsc(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+  drop_zeros(rows, first);
+  // Each does nothing for the other's type.
+  check_petsc(MatSeqAIJSetPreallocationCSR(A, rows.start.data(), rows.columns.data(), rows.values.data()));
+  check_petsc(MatMPIAIJSetPreallocationCSR(A, rows.start.data(), rows.columns.data(), rows.values.data()));
   check_petsc(MatSetOption(A, MAT_SYMMETRIC, PETSC_TRUE));
   check_petsc(MatSetOption(A, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
   return matrix;

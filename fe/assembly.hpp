@@ -7,7 +7,8 @@ namespace bough::fe {
 
 enum class DofSet { Free, Global };  ///< f-set (TᵀKT) or g-set
 
-/// K, or M when mass is true (times WTMASS), on PETSC_COMM_WORLD; exactly preallocated; MATAIJ. O(elements).
+/// K, or M (times WTMASS), on PETSC_COMM_WORLD; MATAIJ, zeros left out except on the diagonal; the same to the last bit
+/// on any number of ranks. O(elements).
 PetscMat assemble_stiffness(const Model& model, DofSet set);
 PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind);
 /// The viscous damping B of dampers and bushes.

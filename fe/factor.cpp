@@ -58,7 +58,31 @@ FactorState judge_factorization(int status, int detail) {
                          status == -13 ? "give the process more memory" : "report the deck");
 }
 
-SymmetricFactor::SymmetricFactor(Mat A, bool find_null_pivots) {
+PetscMat factor_definite(Mat A) {
+  if (initialize_petsc().size > 1) return {};
+  // Without this a small matrix gets an LDLᵀ that takes negative pivots as they come.
+  check_petsc(PetscOptionsSetValue(nullptr, "-mat_cholmod_final_ll", "true"));
+  check_petsc(PetscOptionsSetValue(nullptr, "-mat_cholmod_print", "0"));  // it would write to stdout
+  PetscMat factor;
+  check_petsc(MatGetFactor(A, MATSOLVERCHOLMOD, MAT_FACTOR_CHOLESKY, factor.out()));
+  MatFactorInfo info;
+  check_petsc(MatFactorInfoInitialize(&info));
+  MatFactorError error = MAT_FACTOR_NOERROR;
+  if (MatCholeskyFactorSymbolic(factor.get(), A, nullptr, &info) != 0 ||
+      MatCholeskyFactorNumeric(factor.get(), A, &info) != 0)
+    return {};
+  check_petsc(MatFactorGetError(factor.get(), &error));
+  if (error != MAT_FACTOR_NOERROR) return {};
+  return factor;
+}
+
+SymmetricFactor::SymmetricFactor(Mat A, bool find_null_pivots, FactorMethod method) {
+  if (method == FactorMethod::Fastest) factor_ = factor_definite(A);
+  is_definite_ = static_cast<bool>(factor_);
+  if (!is_definite_) factor_by_mumps(A, find_null_pivots);
+}
+
+void SymmetricFactor::factor_by_mumps(Mat A, bool find_null_pivots) {
   // MUMPS estimates its workspace; where pivoting needs more it says so and is given more.
   for (PetscInt extra_percent : {50, 200, 1000}) {
     factor_ = PetscMat();

@@ -1,5 +1,5 @@
 #pragma once
-/// \file LDLᵀ of a sparse symmetric PETSc matrix by MUMPS, with many dense right-hand sides at once.
+/// \file Factors of a sparse symmetric PETSc matrix by CHOLMOD or MUMPS, with many dense right-hand sides at once.
 #include "bough/fe/petsc.hpp"
 
 namespace bough::fe {
@@ -9,22 +9,34 @@ enum class FactorState { Done, Singular, NeedsWorkspace };
 /// Throws ComputationError("fe.factorization") for an error that more workspace does not cure.
 FactorState judge_factorization(int status, int detail);
 
+enum class FactorMethod {
+  Fastest,  ///< LLᵀ by CHOLMOD on one process, MUMPS where A is not positive definite and on several
+  Pivoting  ///< LDLᵀ by MUMPS: counts null pivots
+};
+
 class SymmetricFactor {
  public:
   /// Factors A (MATAIJ, symmetric; lower and upper part both stored). With `find_null_pivots`, pivots below 1e-15 of
-  /// the scaled matrix are set aside and counted instead of failing (MUMPS ICNTL(24)).
-  SymmetricFactor(Mat A, bool find_null_pivots);
+  /// the scaled matrix are set aside and counted by MUMPS (ICNTL(24)) instead of failing; LLᵀ counts none: a singular
+  /// matrix whose roundoff is positive passes.
+  SymmetricFactor(Mat A, bool find_null_pivots, FactorMethod method = FactorMethod::Fastest);
 
   bool is_singular() const { return is_singular_; }  ///< an exact zero pivot ended the factorization
+  bool is_definite() const { return is_definite_; }  ///< LLᵀ: every pivot was above zero, in roundoff
   int num_null_pivots() const { return num_null_pivots_; }
   /// X with A X = B; B num_rows x m, replicated on every rank, and so is X.
   Eigen::MatrixXd solve(const Eigen::Ref<const Eigen::MatrixXd>& B) const;
 
  private:
+  void factor_by_mumps(Mat A, bool find_null_pivots);
+
   PetscMat factor_;
-  bool is_singular_ = false;
+  bool is_singular_ = false, is_definite_ = false;
   int num_null_pivots_ = 0;
 };
+
+/// LLᵀ by CHOLMOD of a positive definite A on one process; empty when A is not, or there are several.
+PetscMat factor_definite(Mat A);
 
 /// A X of a distributed A and a replicated X, replicated.
 Eigen::MatrixXd multiply(Mat A, const Eigen::Ref<const Eigen::MatrixXd>& X);

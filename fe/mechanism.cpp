@@ -56,7 +56,7 @@ MatrixXd find_mechanisms(Mat K, int expected) {
   check_petsc(MatCreateVecs(K, shift.out(), nullptr));
   scatter(1e-13 * D, shift.get());
   check_petsc(MatDiagonalSet(shifted.get(), shift.get(), ADD_VALUES));
-  const SymmetricFactor factor(shifted.get(), false);
+  const SymmetricFactor factor(shifted.get(), false, FactorMethod::Pivoting);
   if (factor.is_singular()) return MatrixXd(n, 0);
 
   MatrixXd X = make_random(n, m);

@@ -27,6 +27,8 @@ MpiWorld initialize_petsc() {
       setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
       setenv("OMPI_MCA_btl", "self", 0);
       setenv("OMPI_MCA_pml", "ob1", 0);
+      // Nor a folder of its own in /tmp, which processes that start at the same time fight over.
+      setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
     }
     // A crash is Bough's to report, not PETSc's.
     PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");

@@ -94,16 +94,21 @@ StaticSolver::StaticSolver(const Model& model, const PetscMat& K_f, std::vector<
   const PetscMat part = held_fdofs.empty() ? PetscMat() : take_kept(K_f.get(), kept);
   Mat K = part ? part.get() : K_f.get();
 
-  // Null pivots are a suspicion; the energy of the motion decides. A singular matrix may also factor without one.
+  // Null pivots are a suspicion; the energy of the motion decides. A singular matrix may also factor without one, and
+  // by LLᵀ, which is quicker, always without: then it is pivoted to see how many motions there are.
   impl_->factor.emplace(K, true);
-  const int suspects = impl_->factor->is_singular() ? 1 : impl_->factor->num_null_pivots();
   const auto is_sound = [&] {
     return !impl_->factor->is_singular() && calc_softest_energy(K, *impl_->factor) >= kMechanismEnergy;
   };
+  if (impl_->factor->is_definite()) {
+    if (is_sound()) return;
+    impl_->factor.emplace(K, true, FactorMethod::Pivoting);
+  }
+  const int suspects = impl_->factor->is_singular() ? 1 : impl_->factor->num_null_pivots();
   if (suspects == 0 && is_sound()) return;
   const MatrixXd motions = find_mechanisms(K, suspects);
   if (motions.cols() > 0) throw_mechanisms(model, kept, motions);
-  impl_->factor.emplace(K, false);
+  impl_->factor.emplace(K, false, FactorMethod::Pivoting);
   if (!is_sound())
     throw ComputationError("fe.mechanism", {}, "the stiffness matrix is singular to working precision",
                            "look for very soft and very stiff parts side by side, or for values that are not numbers");

@@ -143,7 +143,6 @@ void NormalModes::solve_dense() {
   const MatrixXd identity = MatrixXd::Identity(n, n);
   MatrixXd K = pencil_.calc_K_times(identity);
   MatrixXd M = pencil_.calc_M_times(identity);
-  for (const int f : rigid_.held) K(f, f) += pencil_.K_diagonal(f) > 0 ? pencil_.K_diagonal(f) : K.maxCoeff();
   K = 0.5 * (K + K.transpose()).eval();
   M = 0.5 * (M + M.transpose()).eval();
 
@@ -209,7 +208,7 @@ int NormalModes::find_cut() const {
 }
 
 void NormalModes::find_all() {
-  const int guard = std::max(4, (last_ - num_rigid()) / 10);
+  constexpr int guard = 1;  // the one above shows the gap
   const int request = std::max(0, last_ - num_rigid()) + guard;
   const bool dense = pencil_.size() <= kDenseSize || (2 * request >= max_elastic_ && pencil_.size() <= kDenseLimit);
   shift_ = 0.01 * detail::estimate_first_eigenvalue(pencil_);
@@ -373,7 +372,10 @@ EigenPairs calc_normal_modes(const fe::Model& model, const EigenOptions& options
 }
 
 MatrixXd calc_effective_mass(const fe::Model& model, const MatrixXd& Phi) {
-  const MatrixXd M_Phi = fe::calc_mass_times(model, model.mass_kind(), Phi);
+  return calc_effective_mass(model, Phi, fe::calc_mass_times(model, model.mass_kind(), Phi));
+}
+
+MatrixXd calc_effective_mass(const fe::Model& model, const MatrixXd& Phi, const MatrixXd& M_Phi) {
   const MatrixXd L = M_Phi.transpose() * model.calc_rigid_modes();
   const VectorXd modal_mass = Phi.cwiseProduct(M_Phi).colwise().sum();
   return modal_mass.cwiseInverse().asDiagonal() * L.cwiseAbs2();

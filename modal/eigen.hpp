@@ -1,5 +1,5 @@
 #pragma once
-/// \file Normal modes and buckling factors by SLEPc (Krylov-Schur, shift-invert, MUMPS).
+/// \file Normal modes and buckling factors by SLEPc (Krylov-Schur, shift-invert; CHOLMOD or MUMPS).
 #include <functional>
 #include <optional>
 
@@ -45,5 +45,7 @@ EigenPairs calc_buckling_modes(const fe::Model& model, const VectorXd& u_g, cons
 
 /// m_eff,j,r = (Φ_Rᵀ M φ_j)_r² / (φ_jᵀ M φ_j), n x 6, about Bo.
 MatrixXd calc_effective_mass(const fe::Model& model, const MatrixXd& Phi);
+/// The same with M Φ on the g-set at hand.
+MatrixXd calc_effective_mass(const fe::Model& model, const MatrixXd& Phi, const MatrixXd& M_Phi);
 
 }  // namespace bough::modal

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <vector>
 
 #include "bough/base/diagnostic.hpp"
@@ -19,13 +20,13 @@ namespace {
 
 using SlepcEps = fe::PetscHandle<EPS, EPSDestroy>;
 
-/// Direct solution by MUMPS' LDLᵀ.
-void set_direct_solver(KSP ksp) {
+/// Direct solution by CHOLMOD's LLᵀ or MUMPS' LDLᵀ.
+void set_direct_solver(KSP ksp, MatSolverType solver) {
   PC pc = nullptr;
   check_petsc(KSPSetType(ksp, KSPPREONLY));
   check_petsc(KSPGetPC(ksp, &pc));
   check_petsc(PCSetType(pc, PCCHOLESKY));
-  check_petsc(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  check_petsc(PCFactorSetMatSolverType(pc, solver));
 }
 
 fe::PetscVec make_vector(Mat A, const Eigen::Ref<const VectorXd>& values) {
@@ -59,6 +60,8 @@ void initialize_slepc() {
   check_petsc(SlepcInitialize(&argc, &argv, nullptr, nullptr));
   // MUMPS estimates its workspace for a definite matrix; an indefinite one needs more for delayed pivots.
   check_petsc(PetscOptionsInsertString(nullptr, "-st_mat_mumps_icntl_14 60"));
+  // Without this CHOLMOD gives a small matrix an LDLᵀ that takes negative pivots as they come.
+  check_petsc(PetscOptionsInsertString(nullptr, "-st_mat_cholmod_final_ll true -st_mat_cholmod_print 0"));
   std::atexit([] {
     PetscBool finalized = PETSC_FALSE;
     PetscFinalized(&finalized);
@@ -76,17 +79,13 @@ double calc_fixed_number(int index, int start) {
   return 2.0 * (static_cast<double>(z >> 11) * 0x1p-53) - 1.0;
 }
 
-KrylovResult solve_krylov_schur(const KrylovProblem& problem) {
-  initialize_slepc();
-  PetscInt n = 0;
-  check_petsc(MatGetSize(problem.A, &n, nullptr));
-  const int room = (problem.max_subspace > 0 ? std::min<int>(problem.max_subspace, n) : static_cast<int>(n));
-  const int wanted = std::clamp(problem.num_wanted, 1, std::max(1, room));
-  const int subspace = std::min(std::max(2 * wanted, wanted + 20), std::max(room, 1));
+namespace {
 
-  SlepcEps eps;
+/// Sets up SLEPc for the problem with one solver; false when that solver cannot factor the matrix.
+bool set_up(const KrylovProblem& problem, MatSolverType solver, int wanted, int subspace, SlepcEps& eps) {
   ST st = nullptr;
   KSP ksp = nullptr;
+  eps = SlepcEps();
   check_petsc(EPSCreate(PETSC_COMM_WORLD, eps.out()));
   check_petsc(EPSSetOperators(eps.get(), problem.A, problem.B));
   check_petsc(EPSSetProblemType(eps.get(), EPS_GHEP));
@@ -104,7 +103,7 @@ KrylovResult solve_krylov_schur(const KrylovProblem& problem) {
     check_petsc(EPSSetWhichEigenpairs(eps.get(), EPS_LARGEST_MAGNITUDE));
   }
   check_petsc(STGetKSP(st, &ksp));
-  set_direct_solver(ksp);
+  set_direct_solver(ksp, solver);
 
   std::vector<fe::PetscVec> known;
   std::vector<Vec> known_raw;
@@ -115,22 +114,42 @@ KrylovResult solve_krylov_schur(const KrylovProblem& problem) {
   if (!known_raw.empty())
     check_petsc(EPSSetDeflationSpace(eps.get(), static_cast<PetscInt>(known_raw.size()), known_raw.data()));
 
+  PetscInt n = 0;
+  check_petsc(MatGetSize(problem.A, &n, nullptr));
   VectorXd first(n);
   for (int i = 0; i < n; ++i) first(i) = calc_fixed_number(i, problem.start);
   fe::PetscVec first_vector = make_vector(problem.A, first);
   Vec first_raw = first_vector.get();
   check_petsc(EPSSetInitialSpace(eps.get(), 1, &first_raw));
 
-  Watch watch{problem.progress, wanted};
-  if (watch.progress) check_petsc(EPSMonitorSet(eps.get(), report_progress, &watch, nullptr));
-
-  KrylovResult result;
   const PetscErrorCode code = EPSSetUp(eps.get());
-  if (code == PETSC_ERR_LIB) {  // MUMPS met a zero pivot: SLEPc makes that an error of the library
+  // CHOLMOD met a pivot that is not positive, MUMPS one that is zero: SLEPc makes that an error.
+  if (code != 0 && (code == PETSC_ERR_LIB || std::strcmp(solver, MATSOLVERCHOLMOD) == 0)) return false;
+  check_petsc(code);
+  return true;
+}
+
+}  // namespace
+
+KrylovResult solve_krylov_schur(const KrylovProblem& problem) {
+  initialize_slepc();
+  PetscInt n = 0;
+  check_petsc(MatGetSize(problem.A, &n, nullptr));
+  const int room = (problem.max_subspace > 0 ? std::min<int>(problem.max_subspace, n) : static_cast<int>(n));
+  const int wanted = std::clamp(problem.num_wanted, 1, std::max(1, room));
+  // 2.6 vectors a mode: the lowest modes of a plate are there before the first restart.
+  const int subspace = std::min(std::max(13 * wanted / 5, wanted + 20), std::max(room, 1));
+
+  SlepcEps eps;
+  KrylovResult result;
+  const bool is_alone = fe::initialize_petsc().size == 1;
+  if (!(is_alone && set_up(problem, MATSOLVERCHOLMOD, wanted, subspace, eps)) &&
+      !set_up(problem, MATSOLVERMUMPS, wanted, subspace, eps)) {
     result.is_singular = true;
     return result;
   }
-  check_petsc(code);
+  Watch watch{problem.progress, wanted};
+  if (watch.progress) check_petsc(EPSMonitorSet(eps.get(), report_progress, &watch, nullptr));
   check_petsc(EPSSolve(eps.get()));
 
   PetscInt converged = 0;
@@ -159,13 +178,15 @@ int count_negative(Mat A, double factor, Mat B) {
   Mat F = nullptr;
   check_petsc(KSPCreate(PETSC_COMM_WORLD, ksp.out()));
   check_petsc(KSPSetOperators(ksp.get(), C.get(), C.get()));
-  set_direct_solver(ksp.get());
+  set_direct_solver(ksp.get(), MATSOLVERMUMPS);
   check_petsc(KSPGetPC(ksp.get(), &pc));
   check_petsc(PCFactorSetUpMatSolverType(pc));
   check_petsc(PCFactorGetMatrix(pc, &F));
   // The inertia leaves out the root front when ScaLAPACK factors it: keep it sequential.
   check_petsc(MatMumpsSetIcntl(F, 13, 1));
   check_petsc(MatMumpsSetIcntl(F, 14, 60));
+  check_petsc(MatMumpsSetIcntl(F, 7, 2));   // approximate minimum fill: half the time of MUMPS' own choice on plates
+  check_petsc(MatMumpsSetIcntl(F, 31, 1));  // only the signs of the pivots are wanted: the factor is not kept
   check_petsc(KSPSetUp(ksp.get()));
   PCFailedReason failed = PC_NOERROR;
   check_petsc(PCGetFailedReason(pc, &failed));

@@ -82,13 +82,9 @@ Pencil::Pencil(const fe::Model& model_in)
       K_diagonal(fe::get_diagonal(K.get()).cwiseAbs()),
       M_diagonal(fe::get_diagonal(M.get())) {}
 
-MatrixXd Pencil::calc_K_times(const MatrixXd& X) const {
-  return model.T().transpose() * fe::calc_stiffness_times(model, MatrixXd(model.T() * X));
-}
+MatrixXd Pencil::calc_K_times(const MatrixXd& X) const { return fe::multiply(K.get(), X); }
 
-MatrixXd Pencil::calc_M_times(const MatrixXd& X) const {
-  return model.T().transpose() * fe::calc_mass_times(model, model.mass_kind(), MatrixXd(model.T() * X));
-}
+MatrixXd Pencil::calc_M_times(const MatrixXd& X) const { return fe::multiply(M.get(), X); }
 
 double Pencil::calc_relative_energy(const VectorXd& x, double energy) const {
   const double scale = x.cwiseAbs2().dot(K_diagonal);

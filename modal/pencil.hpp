@@ -10,7 +10,7 @@ namespace bough::modal::detail {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The f-set pencil. Products run element by element on the g-set, so no rank needs another's rows.
+/// The f-set pencil; products with vectors replicated on every rank.
 struct Pencil {
   explicit Pencil(const fe::Model& model_in);
 

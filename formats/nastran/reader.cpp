@@ -3,6 +3,7 @@
 #include "bough/formats/nastran/detail/builder.hpp"
 #include "bough/formats/nastran/detail/control.hpp"
 #include "bough/formats/nastran/detail/lines.hpp"
+#include "bough/formats/nastran/detail/packing.hpp"
 
 namespace bough::nastran {
 namespace {
@@ -24,6 +25,16 @@ records::Deck read_deck(const std::string& path, const ReadOptions& options, Dia
 records::Deck read_deck_text(std::string_view text, const std::string& name, const ReadOptions& options,
                              Diagnostics& diagnostics) {
   return make_deck(detail::read_source_text(text, name, diagnostics), options, diagnostics);
+}
+
+std::string pack_deck(const std::string& path) {
+  Diagnostics diagnostics;
+  const auto source = detail::read_source(path, diagnostics);
+  return detail::pack(source, diagnostics);
+}
+
+records::Deck read_packed_deck(std::string bytes, const ReadOptions& options, Diagnostics& diagnostics) {
+  return make_deck(detail::unpack(std::move(bytes), diagnostics), options, diagnostics);
 }
 
 }  // namespace bough::nastran

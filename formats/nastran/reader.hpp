@@ -18,4 +18,9 @@ records::Deck read_deck(const std::string& path, const ReadOptions& options, Dia
 records::Deck read_deck_text(std::string_view text, const std::string& name, const ReadOptions& options,
                              Diagnostics& diagnostics);
 
+/// What the files of a deck say, and what went wrong in opening them, as bytes for the other processes of one run.
+std::string pack_deck(const std::string& path);
+/// The deck that read_deck would have made of those files, with the same diagnostics; no file is opened.
+records::Deck read_packed_deck(std::string bytes, const ReadOptions& options, Diagnostics& diagnostics);
+
 }  // namespace bough::nastran

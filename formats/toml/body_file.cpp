@@ -89,11 +89,18 @@ void read_loads(const Fields& body, records::BodySpec& spec, Diagnostics& diagno
 }  // namespace
 
 records::BodySpec read_body_spec(const std::string& path, Diagnostics& diagnostics) {
+  std::string text;
+  if (read_text(path, text, diagnostics)) return read_body_spec_text(text, path, diagnostics);
   records::BodySpec spec;
   spec.file = path;
-  std::string text;
+  return spec;
+}
+
+records::BodySpec read_body_spec_text(const std::string& text, const std::string& path, Diagnostics& diagnostics) {
+  records::BodySpec spec;
+  spec.file = path;
   Value root;
-  if (!read_text(path, text, diagnostics) || !parse_toml(text, path, root, diagnostics)) return spec;
+  if (!parse_toml(text, path, root, diagnostics)) return spec;
   check_schema(root, get_body_schema(), path, diagnostics);
 
   const Fields body = Fields(root, path).get_table("body");

@@ -7,6 +7,8 @@
 namespace bough::toml_files {
 
 records::BodySpec read_body_spec(const std::string& path, Diagnostics& diagnostics);
+/// The same of the text of the file `path`, which is not opened.
+records::BodySpec read_body_spec_text(const std::string& text, const std::string& path, Diagnostics& diagnostics);
 records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagnostics);
 /// What the file is by its tables: "body", "system", or empty.
 std::string detect_kind(const std::string& path);

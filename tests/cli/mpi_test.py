@@ -1,11 +1,14 @@
 """The same numbers on one process and on two."""
 import json
+import os
+import subprocess
+import sys
 import unittest
 
 import h5py
 import numpy as np
 
-from support import ProgramTest
+from support import PROGRAM, SOURCE, ProgramTest
 
 
 def launch(ranks):
@@ -31,6 +34,49 @@ class Ranks(ProgramTest):
                          "/integrals/exact/gamma0", "/integrals/exact/gamma4", "/rigid/inertia"]:
                 scale = max(np.abs(a[path][:]).max(), 1e-300)
                 np.testing.assert_allclose(b[path][:] / scale, a[path][:] / scale, atol=1e-7, err_msg=path)
+
+    def test_plate(self):
+        deck = subprocess.run([sys.executable, os.path.join(SOURCE, "bench/plate_deck.py"), "7", "--modes", "8"],
+                              capture_output=True, text=True, check=True).stdout
+        self.write("plate.bdf", deck)
+        call = ("modes", "plate.bdf", "--json")
+        found = {n: json.loads(self.bough(*call, launcher=launch(n)).stdout) for n in (1, 2, 3)}
+        self.assertEqual(len(found[1]["frequency_hz"]), 8)
+        for n in (2, 3):
+            np.testing.assert_allclose(found[n]["frequency_hz"], found[1]["frequency_hz"], rtol=1e-8)
+            self.assertEqual(found[n]["inertia_count"], found[1]["inertia_count"])
+        # Without mpirun a different solver factors the matrix.
+        alone = json.loads(self.bough(*call).stdout)
+        np.testing.assert_allclose(alone["frequency_hz"], found[2]["frequency_hz"], rtol=1e-8)
+
+    def launch_apart(self, *arguments):
+        """Rank 0 in the folder with the files, ranks 1 and 2 in an empty one: only the first may need the disk."""
+        os.makedirs(self.path("empty"), exist_ok=True)
+        command = ["mpirun", "--allow-run-as-root", "--oversubscribe"]
+        for count, folder in ((1, self.folder), (2, self.path("empty"))):
+            command += [":"] * (count == 2) + ["-n", str(count), "-wdir", folder, PROGRAM, *map(str, arguments)]
+        return subprocess.run(command, cwd=self.folder, text=True, capture_output=True, timeout=250)
+
+    def test_one_rank_reads_the_files(self):
+        with open(self.path("boom.bdf")) as f:
+            head, bulk = f.read().split("BEGIN BULK", 1)
+        self.write("boom.bdf", head + "BEGIN BULK\nINCLUDE 'bulk.inc'\nENDDATA\n")
+        self.write("bulk.inc", bulk.split("\n", 1)[1].replace("ENDDATA", ""))
+        alone = json.loads(self.bough("modes", "boom.bdf", "-n", 4, "--json").stdout)
+        result = self.launch_apart("modes", "boom.bdf", "-n", 4, "--json", "-o", "modes.h5")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        np.testing.assert_allclose(json.loads(result.stdout)["frequency_hz"], alone["frequency_hz"], rtol=1e-8)
+        with h5py.File(self.path("modes.h5")) as file:
+            self.assertIn("modes", file)
+        self.assertEqual(os.listdir(self.path("empty")), [])
+        result = self.launch_apart("reduce", "boom.toml", "-o", "boom.h5")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(os.listdir(self.path("empty")), [])
+
+    def test_what_the_first_rank_misses_ends_all(self):
+        result = self.launch_apart("modes", "nowhere.bdf")
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(result.stderr.count("[cli.no-file]"), 1)
 
     def test_an_error_is_said_once(self):
         self.write("bad.bdf", "SOL 103\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\nENDDATA\n")

@@ -1,0 +1,18 @@
+#pragma once
+/// \file One rank touches the disk, the others take what it found. Collective: every rank of an mpirun calls these
+/// together. In a process that is alone they run the function and start no MPI.
+#include <functional>
+#include <string>
+
+namespace bough::cli {
+
+/// Whether mpirun started this process together with others.
+bool is_one_of_many();
+
+/// The bytes that `make` gives on the first rank, on every rank. A Failure thrown there is thrown on every rank, so
+/// that all end with the same exit code and none waits for another.
+std::string share(const std::function<std::string()>& make);
+/// The same for something done on the first rank alone.
+void do_once(const std::function<void()>& act);
+
+}  // namespace bough::cli
