@@ -6,6 +6,7 @@
 
 #include "bough/base/diagnostic.hpp"
 #include "bough/formats/records/flex_body.hpp"
+#include "bough/formats/records/matrices_spec.hpp"
 
 namespace bough::records {
 
@@ -48,6 +49,8 @@ struct BodySpec {
   std::string output_file;        ///< empty = NAME.h5
   bool full = false;
   std::vector<std::string> ignore_cards;
+
+  std::optional<MatricesSpec> matrices;  ///< instead of the deck's elements
 };
 
 }  // namespace bough::records

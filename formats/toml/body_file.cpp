@@ -3,6 +3,7 @@
 #include <map>
 
 #include "bough/formats/toml/detail/fields.hpp"
+#include "bough/formats/toml/detail/matrices_table.hpp"
 #include "bough/formats/toml/detail/schema.hpp"
 #include "bough/formats/toml/specs.hpp"
 
@@ -136,6 +137,8 @@ records::BodySpec read_body_spec_text(const std::string& text, const std::string
 
   spec.inertial_loads = read_inertial(body.get_table("stiffening"), diagnostics);
   read_loads(body, spec, diagnostics);
+
+  spec.matrices = read_matrices_spec(body, path, diagnostics);
 
   const Fields damping = body.get_table("damping");
   spec.damping_ratio = damping.get_number("ratio", 0);

@@ -10,6 +10,8 @@ records::BodySpec read_body_spec(const std::string& path, Diagnostics& diagnosti
 /// The same of the text of the file `path`, which is not opened.
 records::BodySpec read_body_spec_text(const std::string& text, const std::string& path, Diagnostics& diagnostics);
 records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagnostics);
+/// "FILE", "FILE:NAME", or ":NAME" of the common file; not resolved.
+records::MatrixSource parse_matrix_source(const std::string& text, const std::string& common);
 /// What the file is by its tables: "body", "system", or empty.
 std::string detect_kind(const std::string& path);
 

@@ -202,7 +202,7 @@ std::vector<BadDocument> get_bad_bodies() {
       {"toml.unknown-key", "support = [1]", "suport = [1]", "did you mean 'support'?"},
       {"toml.unknown-table", "[body.damping]", "[body.dampng]", "did you mean 'damping'?"},
       {"toml.wrong-type", "interface = [1, 41]", "interface = 1", "is an integer, expected an array"},
-      {"toml.missing-key", "deck = \"decks/boom.bdf\"\n", "", "missing key 'deck'"},
+      {"toml.missing-key", "deck = \"decks/boom.bdf\"\n", "", "missing key in body, expected one of 'deck', 'matrices'"},
       {"toml.missing-table", "[body.modes]\nnumber = 6\nmax_frequency = 100.0\nselect = [1, 2, 4]\n", "",
        "missing table 'modes'"},
       {"toml.missing-key", "number = 6\nmax_frequency = 100.0\n", "", "expected one of 'number', 'max_frequency'"},

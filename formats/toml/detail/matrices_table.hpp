@@ -1,0 +1,14 @@
+#pragma once
+/// \file [body.matrices] of a body file, and what names a matrix.
+#include <optional>
+
+#include "bough/formats/records/matrices_spec.hpp"
+#include "bough/formats/toml/detail/fields.hpp"
+
+namespace bough::toml_files {
+
+/// Empty without the table. `path`: the body file.
+std::optional<records::MatricesSpec> read_matrices_spec(const Fields& body, const std::string& path,
+                                                        Diagnostics& diagnostics);
+
+}  // namespace bough::toml_files
