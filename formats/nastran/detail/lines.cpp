@@ -135,7 +135,7 @@ class Loader {
       diagnostics_.error("deck.include-syntax", where, "INCLUDE names no file", "write INCLUDE 'file'");
       return;
     }
-    include(name, folder, where);
+    include(name, folder, where, {file, where.line, cursor.get_number(), 0});
   }
 
   std::optional<fs::path> find_file(const std::string& name, const fs::path& folder) const {
@@ -149,7 +149,7 @@ class Loader {
     return std::nullopt;
   }
 
-  void include(const std::string& name, const fs::path& folder, const SourceLocation& where) {
+  void include(const std::string& name, const fs::path& folder, const SourceLocation& where, IncludeLine statement) {
     const auto path = find_file(name, folder);
     if (!path) {
       diagnostics_.error("deck.include-missing", where, "included file '" + name + "' does not exist",
@@ -177,7 +177,12 @@ class Loader {
     const std::string_view text = source_.storage.back();
     const std::string shown = path->lexically_normal().string();
     auto known = std::find(source_.files.begin(), source_.files.end(), shown);
-    if (known == source_.files.end()) known = source_.files.insert(known, shown);
+    if (known == source_.files.end()) {
+      known = source_.files.insert(known, shown);
+      source_.texts.push_back(text);
+    }
+    statement.target = static_cast<int>(known - source_.files.begin());
+    source_.includes.push_back(statement);
     push(canonical);
     load(text, static_cast<int>(known - source_.files.begin()), path->parent_path());
     pop();
@@ -194,6 +199,7 @@ void load_root(Source& source, std::string bytes, const std::string& name, const
                const fs::path& folder, Diagnostics& diagnostics) {
   source.files.push_back(name);
   source.storage.push_back(std::move(bytes));
+  source.texts.push_back(source.storage.back());
   source.lines.reserve(source.storage.back().size() / 60);
   Loader loader(source, diagnostics);
   loader.push(canonical);

@@ -16,10 +16,18 @@ struct Line {
   records::CardLocation at;
 };
 
+/// An INCLUDE statement: the lines it takes in `file`, and which file it names.
+struct IncludeLine {
+  int file = 0, first_line = 0, last_line = 0;
+  int target = 0;
+};
+
 /// The text of all files and the lines in reading order, up to ENDDATA.
 struct Source {
   std::vector<std::string> files;
+  std::vector<std::string_view> texts;  ///< all bytes of each file
   std::vector<Line> lines;
+  std::vector<IncludeLine> includes;
   std::deque<std::string> storage;  ///< what the lines point into; never moved
 };
 

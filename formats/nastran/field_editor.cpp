@@ -1,0 +1,312 @@
+#include "bough/formats/nastran/field_editor.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "bough/formats/nastran/detail/card.hpp"
+#include "bough/formats/nastran/detail/card_text.hpp"
+#include "bough/formats/nastran/detail/control.hpp"
+#include "bough/formats/nastran/detail/field_names.hpp"
+#include "bough/formats/nastran/detail/field_text.hpp"
+#include "bough/formats/nastran/detail/images.hpp"
+#include "bough/formats/nastran/detail/lines.hpp"
+#include "bough/formats/nastran/detail/replication.hpp"
+#include "bough/formats/nastran/detail/text.hpp"
+
+namespace bough::nastran {
+
+namespace fs = std::filesystem;
+using detail::CardText;
+using detail::Line;
+
+namespace {
+
+/// A line of a card and its first data field.
+struct CardLine {
+  int line = 0;
+  int first_field = 0;
+  bool is_large = false;
+};
+
+struct LineChange {
+  std::string text;   ///< instead of the line, without its comment
+  std::string added;  ///< lines after it
+};
+
+std::string join_some(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size() && i < 12; ++i) text += (i == 0 ? "" : ", ") + words[i];
+  return words.size() > 12 ? text + ", ..." : text;
+}
+
+/// 0-based data field of a field number, or -1.
+int find_data_field(int number) {
+  const int column = number % 10;
+  return number < 2 || column < 2 ? -1 : 8 * (number / 10) + column - 2;
+}
+
+/// The lines of a text, each with its line end.
+std::vector<std::string_view> split_text(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const auto end = text.find('\n');
+    const auto size = end == std::string_view::npos ? text.size() : end + 1;
+    lines.push_back(text.substr(0, size));
+    text.remove_prefix(size);
+  }
+  return lines;
+}
+
+/// Where the comment or the trailing blanks and the line end begin.
+std::size_t find_tail(std::string_view line) {
+  auto size = std::min(line.find('$'), line.size());
+  while (size > 0 &&
+         (line[size - 1] == ' ' || line[size - 1] == '\t' || line[size - 1] == '\r' || line[size - 1] == '\n'))
+    --size;
+  return size;
+}
+
+std::string quote_path(const std::string& path) {
+  const char quote = path.find('\'') == std::string::npos ? '\'' : '"';
+  return quote + path + quote;
+}
+
+}  // namespace
+
+struct DeckEditor::Contents {
+  detail::Source source;
+  detail::CardImages images;
+
+  const detail::CardImage& image(int card) const {
+    return images.images[static_cast<std::size_t>(images.cards[static_cast<std::size_t>(card)])];
+  }
+  const Line& line(int i) const { return source.lines[static_cast<std::size_t>(i)]; }
+  int num_cards() const { return static_cast<int>(images.cards.size()); }
+
+  std::vector<CardLine> list_lines(int card, CardText& text) const {
+    std::vector<CardLine> lines;
+    detail::SplitLine split;
+    text.clear();
+    const auto pad = [&] { text.fields.resize((text.fields.size() + 7) / 8 * 8); };
+    const auto* part = &image(card);
+    while (true) {
+      for (int i = part->first_line; i < part->first_line + part->num_lines; ++i) {
+        detail::split_line(line(i).text, split);
+        if (lines.empty()) text.name = detail::make_upper(split.name);
+        if (!split.is_large) pad();
+        lines.push_back({i, static_cast<int>(text.fields.size()), split.is_large});
+        text.fields.insert(text.fields.end(), split.data.begin(), split.data.end());
+      }
+      if (part->next < 0) break;
+      part = &images.images[static_cast<std::size_t>(part->next)];
+    }
+    pad();
+    return lines;
+  }
+
+  SourceLocation locate(int card) const {
+    const auto& at = line(image(card).first_line).at;
+    return {source.files[static_cast<std::size_t>(at.file)], at.line, 0};
+  }
+
+  bool is_relative(int card) const {
+    CardText text;
+    if (card >= num_cards()) return false;
+    list_lines(card, text);
+    return detail::Replicator::is_relative(text);
+  }
+};
+
+std::string format_field(double value) { return detail::format_exact_real(value); }
+
+DeckEditor::DeckEditor(const std::string& path, Diagnostics& diagnostics) : contents_(std::make_unique<Contents>()) {
+  auto& c = *contents_;
+  c.source = detail::read_source(path, diagnostics);
+  records::Deck control;
+  control.files = c.source.files;
+  Diagnostics ignored;  // the verb that reads the deck reports them
+  const auto first = detail::read_control(c.source, control, ignored);
+  c.images = detail::make_card_images(c.source, first, ignored);
+}
+DeckEditor::~DeckEditor() = default;
+DeckEditor::DeckEditor(DeckEditor&&) noexcept = default;
+
+const std::vector<std::string>& DeckEditor::get_files() const { return contents_->source.files; }
+
+std::optional<FieldPlace> DeckEditor::find(const FieldAddress& address, const SourceLocation& asked_at,
+                                           Diagnostics& diagnostics) const {
+  const auto& c = *contents_;
+  const auto name = detail::make_upper(detail::trim(address.card));
+  const auto id = detail::make_upper(detail::trim(address.id));
+  const int entry_size = detail::get_entry_size(name);
+  std::set<std::string> names;
+  std::vector<std::string> ids;
+  std::vector<FieldPlace> found;
+  CardText text;
+  for (int card = 0; card < c.num_cards(); ++card) {
+    const auto first = detail::make_upper(detail::get_first_field(c.line(c.image(card).first_line).text));
+    const auto bare = std::string(detail::trim(std::string_view(first).substr(0, first.find('*'))));
+    names.insert(bare);
+    if (bare != name) continue;
+    c.list_lines(card, text);
+    const int last = entry_size > 0 ? 8 : 1;
+    for (int field = 0; field < last; field += std::max(entry_size, 1)) {
+      const auto own = detail::make_upper(text.fields[static_cast<std::size_t>(field)]);
+      if (own.empty() && field > 0) continue;
+      ids.push_back(own);
+      if (id.empty() || own == id) found.push_back({card, field});
+    }
+  }
+  if (found.empty()) {
+    const std::vector<std::string> all(names.begin(), names.end());
+    const auto nearest = find_nearest(ids.empty() ? name : id, ids.empty() ? all : ids);
+    diagnostics.error(
+        "batch.unknown-card", asked_at,
+        ids.empty() ? "the deck has no card " + name : "no " + name + " of the deck has the id " + address.id,
+        (nearest.empty() ? "" : "did you mean " + nearest + "; ") + std::string("it has ") +
+            join_some(ids.empty() ? all : ids));
+    return std::nullopt;
+  }
+  const auto count = static_cast<int>(found.size());
+  if (address.occurrence > count || (address.occurrence == 0 && count > 1)) {
+    std::vector<std::string> places;
+    for (const auto& place : found) places.push_back(std::to_string(c.locate(place.card).line));
+    diagnostics.error(
+        "batch.ambiguous-card", asked_at,
+        std::to_string(count) + " cards " + name + (id.empty() ? "" : " have the id " + address.id) + ", in lines " +
+            join_some(places),
+        std::string(id.empty() ? "give id, or " : "give ") + "occurrence = 1 to " + std::to_string(count));
+    return std::nullopt;
+  }
+  auto place = found[static_cast<std::size_t>(std::max(address.occurrence, 1) - 1)];
+  if (address.field.empty()) {
+    place.field = find_data_field(address.number);
+    if (place.field < 0) {
+      diagnostics.error("batch.unknown-field", asked_at,
+                        "field " + std::to_string(address.number) + " is no data field",
+                        "the manuals count 2 to 9 in the first line of a card, 12 to 19 in its second, and so on");
+      return std::nullopt;
+    }
+  } else {
+    const auto& known = detail::get_field_names(name);
+    const auto wanted = detail::make_upper(detail::trim(address.field));
+    const auto at = std::find(known.begin(), known.end(), wanted);
+    if (at == known.end() || wanted == "-") {
+      const auto nearest = find_nearest(wanted, known);
+      diagnostics.error("batch.unknown-field", asked_at, name + " has no field " + address.field,
+                        known.empty() ? "fields of this card have no names here; give its number, as field = 3"
+                                      : (nearest.empty() ? "" : "did you mean " + nearest + "; ") +
+                                            std::string("its fields are ") + join_some(known));
+      return std::nullopt;
+    }
+    place.field += static_cast<int>(at - known.begin());
+  }
+  if (c.is_relative(place.card) || c.is_relative(place.card + 1)) {
+    const auto where = c.locate(place.card);
+    diagnostics.error(
+        "batch.replicated-card", asked_at,
+        name + " at " + where.file + ":" + std::to_string(where.line) + " is written or copied by replication",
+        "write the deck out with bough export --to bdf first");
+    return std::nullopt;
+  }
+  return place;
+}
+
+std::string DeckEditor::get_text(const FieldPlace& place) const {
+  CardText text;
+  contents_->list_lines(place.card, text);
+  const auto field = static_cast<std::size_t>(place.field);
+  return field < text.fields.size() ? std::string(text.fields[field]) : std::string();
+}
+
+std::vector<EditedFile> DeckEditor::write(const std::string& name, const std::vector<FieldEdit>& edits) const {
+  const auto& c = *contents_;
+  std::map<int, LineChange> changes;  // by line of the source
+  CardText card_text;
+  for (const auto& edit : edits) {
+    const auto lines = c.list_lines(edit.place.card, card_text);
+    auto at = std::find_if(lines.rbegin(), lines.rend(),
+                           [&](const CardLine& l) { return l.first_field <= edit.place.field; });
+    int field = edit.place.field - at->first_field;
+    const bool is_large = at->is_large;
+    const auto& line = c.line(at->line);
+    auto [change, is_new] = changes.try_emplace(at->line, LineChange{std::string(line.text), {}});
+    const auto fail = [&] {
+      const auto where = c.locate(edit.place.card);
+      throw InputError("batch.field-width", {where.file, line.at.line, 0},
+                       "the value " + edit.text + " does not fit the field of " + card_text.name + " '" +
+                           std::string(line.text) + "'",
+                       "write the card in free field");
+    };
+    if (field < (is_large ? 4 : 8)) {
+      const auto changed = detail::set_line_field(change->second.text, field, edit.text);
+      if (changed.empty()) fail();
+      change->second.text = changed;
+      continue;
+    }
+    // The card ends before this field. The lines that are added are free-field ones; a large pair is made full first.
+    if (!change->second.added.empty()) fail();
+    auto mark = detail::make_continuation_mark(line.text, false);
+    if (is_large && at->first_field % 8 == 0) {
+      mark = detail::make_continuation_mark(line.text, true);
+      if (field < 8) {
+        change->second.added = mark + std::string(static_cast<std::size_t>(field - 3), ',') + edit.text + "\n";
+        continue;
+      }
+      change->second.added = mark + ",\n";
+      mark = "+";
+    }
+    field -= is_large && at->first_field % 8 != 0 ? 4 : 8;
+    for (; field >= 8; field -= 8, mark = "+") change->second.added += mark + ",\n";
+    change->second.added += mark + std::string(static_cast<std::size_t>(field + 1), ',') + edit.text + "\n";
+  }
+
+  std::map<int, std::map<int, const LineChange*>> by_file;  // file, line number
+  for (const auto& [line, change] : changes) by_file[c.line(line).at.file][c.line(line).at.line] = &change;
+  // A file that includes a written file is written too.
+  std::set<int> written{0};
+  for (const auto& [file, unused] : by_file) written.insert(file);
+  for (bool is_complete = false; !is_complete;) {
+    is_complete = true;
+    for (const auto& include : c.source.includes)
+      if (written.count(include.target) > 0 && written.insert(include.file).second) is_complete = false;
+  }
+  std::map<int, std::string> names{{0, name}};
+  for (const int file : written)
+    if (file != 0) names[file] = name + ".include" + std::to_string(file);
+
+  std::vector<EditedFile> result;
+  for (const int file : written) {
+    EditedFile edited{names.at(file), {}};
+    const auto lines = split_text(c.source.texts[static_cast<std::size_t>(file)]);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const int number = static_cast<int>(i) + 1;
+      const auto include = std::find_if(c.source.includes.begin(), c.source.includes.end(),
+                                        [&](const auto& at) { return at.file == file && at.first_line == number; });
+      const auto of_file = by_file.find(file);
+      const LineChange* change = nullptr;
+      if (of_file != by_file.end())
+        if (const auto at = of_file->second.find(number); at != of_file->second.end()) change = at->second;
+      if (include != c.source.includes.end()) {
+        const auto target = names.find(include->target);
+        const auto path = fs::absolute(c.source.files[static_cast<std::size_t>(include->target)]).lexically_normal();
+        edited.text += "INCLUDE " + quote_path(target == names.end() ? path.string() : target->second) + "\n";
+        i += static_cast<std::size_t>(include->last_line - include->first_line);
+      } else if (change != nullptr) {
+        const auto tail = lines[i].substr(find_tail(lines[i]));
+        edited.text += change->text;
+        edited.text += tail;
+        if (!change->added.empty() && (tail.empty() || tail.back() != '\n')) edited.text += '\n';
+        edited.text += change->added;
+      } else {
+        edited.text += lines[i];
+      }
+    }
+    result.push_back(std::move(edited));
+  }
+  return result;
+}
+
+}  // namespace bough::nastran
