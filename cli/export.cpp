@@ -10,6 +10,7 @@
 #include "bough/formats/nastran/writer.hpp"
 #include "channels.hpp"
 #include "console.hpp"
+#include "export_bodies.hpp"
 #include "export_matrices.hpp"
 #include "options.hpp"
 #include "text_file.hpp"
@@ -25,6 +26,7 @@ struct ExportOptions : CommonOptions {
   std::vector<std::string> channels;
   bool ascii = false;
   std::string fields = "large";
+  BodyExportOptions body;
   std::vector<std::string> ignore_cards;
 };
 
@@ -96,11 +98,12 @@ int run_export(const ExportOptions& o) {
     console.print(diagnostics);
     return kSuccess;
   }
-  const auto text = o.format == "vtu"   ? make_shapes(o, diagnostics)
-                    : o.format == "bdf" ? make_bdf(o, diagnostics)
-                    : o.format == "op4" ? make_op4(o.file, diagnostics)
-                    : o.format == "uff" ? make_universal(o)
-                                        : make_csv(o);
+  const auto text = o.format == "vtu"          ? make_shapes(o, diagnostics)
+                    : o.format == "bdf"        ? make_bdf(o, diagnostics)
+                    : o.format == "op4"        ? make_op4(o.file, diagnostics)
+                    : o.format == "uff"        ? make_universal(o)
+                    : is_body_format(o.format) ? make_body_text(o.file, o.format, o.body, diagnostics)
+                                               : make_csv(o);
   console.print(diagnostics);
   if (o.output.empty()) {
     console.print_data(text);
@@ -115,15 +118,16 @@ int run_export(const ExportOptions& o) {
 void add_export(CLI::App& app, Action& action) {
   auto o = std::make_shared<ExportOptions>();
   auto* verb = app.add_subcommand("export", "Results, mode shapes or a deck in another format");
-  verb->add_option("file", o->file,
-                   "csv: results file; vtu: modes file or flexible body; bdf: Nastran deck; mat, op4, uff: any "
-                   "HDF5 file of Bough that has such arrays")
+  verb->add_option(
+          "file", o->file,
+          "csv: results file; vtu: modes file or flexible body; bdf: Nastran deck; sid, mbdyn: flexible body; mat, "
+          "op4, uff: any HDF5 file of Bough that has such arrays")
       ->required();
   verb->add_option("--to", o->format,
                    "Format: csv, vtu (mode shapes for ParaView), bdf (the deck as Bough reads it), mat (MATLAB), "
-                   "op4 (Nastran OUTPUT4), uff (universal file)")
+                   "op4 (Nastran OUTPUT4), uff (universal file), sid (Standard Input Data), mbdyn (.fem)")
       ->required()
-      ->check(CLI::IsMember({"csv", "vtu", "bdf", "mat", "op4", "uff"}));
+      ->check(CLI::IsMember({"csv", "vtu", "bdf", "mat", "op4", "uff", "sid", "mbdyn"}));
   verb->add_option("--channel", o->channels,
                    "csv, uff: only these: a path or folder of the file, or a sensor; with :component; may be repeated "
                    "(default: all)")
@@ -134,12 +138,14 @@ void add_export(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"large", "small", "free"}))
       ->capture_default_str();
   verb->add_option("--ignore", o->ignore_cards, "bdf: leave this card out; may be repeated")->allow_extra_args(false);
+  add_body_export_options(*verb, o->body);
   add_common_options(*verb, *o, kOutput, "Write to this file instead of stdout");
   verb->footer(
       "Example:\n  bough export spinup.h5 --to csv -o spinup.csv\n"
       "  bough export spinup.h5 --to csv --channel tip_deflection:y --channel /bodies/boom/eta\n"
       "  bough export boom-modes.h5 --to vtu -o boom.vtu\n  bough export boom.h5 --to mat -o boom.mat\n"
-      "  bough export boom-modes.h5 --to uff -o boom.uff\n  bough export boom.bdf --to bdf -o plain.bdf");
+      "  bough export boom-modes.h5 --to uff -o boom.uff\n  bough export boom.h5 --to sid -o boom.SID_FEM\n"
+      "  bough export boom.h5 --to mbdyn -o boom.fem\n  bough export boom.bdf --to bdf -o plain.bdf");
   verb->callback([&action, o] { action = [o] { return run_export(*o); }; });
 }
 

@@ -16,6 +16,8 @@ MAY_INCLUDE = [
     ("formats/report", RECORDS),
     ("formats/matrices", RECORDS + ["formats/nastran/reader.hpp", "formats/hdf5/sparse_file.hpp"]),
     ("formats/flx", RECORDS),
+    ("formats/sid", RECORDS),
+    ("formats/mbdyn", RECORDS),
     ("fe/shape", RECORDS + ["fe/elements/beam_property.hpp"]),
     ("fe/materials", RECORDS),
     ("fe/elements", RECORDS + ["fe/shape", "fe/materials"]),

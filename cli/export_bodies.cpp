@@ -1,0 +1,37 @@
+#include "export_bodies.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "bough/formats/hdf5/files.hpp"
+#include "bough/formats/mbdyn/fem_file.hpp"
+#include "bough/formats/sid/sid.hpp"
+#include "export_matrices.hpp"
+
+namespace bough::cli {
+
+void add_body_export_options(CLI::App& verb, BodyExportOptions& o) {
+  verb.add_option("--inertia", o.inertia, "sid: the inertia J as 6x1 (11 22 33 12 13 23) or 3x3")
+      ->check(CLI::IsMember({"6x1", "3x3"}))
+      ->capture_default_str();
+  verb.add_option("--ge-order", o.ge_order,
+                  "sid: columns of Ge by mode (3 for each) or by component (one for each mode)")
+      ->check(CLI::IsMember({"mode", "component"}))
+      ->capture_default_str();
+  verb.add_option("--digits", o.digits, "sid: significant digits")->check(CLI::Range(6, 17))->capture_default_str();
+}
+
+bool is_body_format(const std::string& format) { return format == "sid" || format == "mbdyn"; }
+
+std::string make_body_text(const std::string& file, const std::string& format, const BodyExportOptions& o,
+                           Diagnostics& diagnostics) {
+  if (read_file_format(file) != "bough-flexbody") refuse_export(file, format, "a flexible body, from bough reduce");
+  const auto body = hdf5::read_flex_body(file);
+  if (format == "mbdyn") return mbdyn::make_fem(body, {file}, diagnostics);
+  sid::Layout layout;
+  layout.is_full_inertia = o.inertia == "3x3";
+  layout.by_component = o.ge_order == "component";
+  layout.digits = o.digits;
+  return sid::write_sid(sid::make_sid(body, layout, {file}, diagnostics), layout);
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,25 @@
+#pragma once
+/// \file export --to sid and mbdyn: a flexible body as the text of another program.
+#include <string>
+
+#include "bough/base/diagnostic.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace bough::cli {
+
+struct BodyExportOptions {
+  std::string inertia = "6x1";
+  std::string ge_order = "mode";
+  int digits = 17;
+};
+
+void add_body_export_options(CLI::App& verb, BodyExportOptions& options);
+bool is_body_format(const std::string& format);
+/// Throws InputError "cli.no-export" for a file that is no flexible body.
+std::string make_body_text(const std::string& file, const std::string& format, const BodyExportOptions& options,
+                           Diagnostics& diagnostics);
+
+}  // namespace bough::cli
