@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 enum class InertialLoad { ax, ay, az, alx, aly, alz, wx2, wy2, wz2, wxwy, wxwz, wywz };
 inline constexpr int kNumInertialLoads = 12;
 
-enum class ModeKind { Normal, Constraint, Attachment };
+enum class ModeKind { Normal, Constraint, Attachment, Residual };
 
 /// The five mass integrals (docs/theory/flexible-body.md §4). Column j belongs to mode j.
 struct MassIntegrals {

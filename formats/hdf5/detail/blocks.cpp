@@ -50,9 +50,10 @@ std::vector<records::ModeKind> read_mode_kinds(FileReader& file, long num_modes)
   for (const auto& word : file.read_strings("/modes/kind", num_modes)) {
     kinds.push_back(word == "constraint"   ? records::ModeKind::Constraint
                     : word == "attachment" ? records::ModeKind::Attachment
+                    : word == "residual"   ? records::ModeKind::Residual
                                            : records::ModeKind::Normal);
-    if (!word.empty() && word != "normal" && word != "constraint" && word != "attachment") {
-      file.error("hdf5.value", "/modes/kind has '" + word + "', expected normal, constraint or attachment",
+    if (!word.empty() && word != "normal" && word != "constraint" && word != "attachment" && word != "residual") {
+      file.error("hdf5.value", "/modes/kind has '" + word + "', expected normal, constraint, attachment or residual",
                  "write the file again");
     }
   }

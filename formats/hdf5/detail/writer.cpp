@@ -244,9 +244,10 @@ void write_mode_kinds(FileWriter& file, const std::vector<records::ModeKind>& ki
   for (const auto kind : kinds) {
     words.push_back(kind == records::ModeKind::Normal       ? "normal"
                     : kind == records::ModeKind::Constraint ? "constraint"
-                                                            : "attachment");
+                    : kind == records::ModeKind::Attachment ? "attachment"
+                                                            : "residual");
   }
-  file.write_strings("/modes/kind", words, {"normal, constraint or attachment mode", "1"});
+  file.write_strings("/modes/kind", words, {"normal, constraint, attachment or residual mode", "1"});
 }
 
 }  // namespace bough::hdf5

@@ -1,0 +1,254 @@
+#include "bough/modal/bases/basis.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "bough/modal/canonical.hpp"
+#include "bough/modal/pencil.hpp"
+
+namespace bough::modal::bases {
+
+using records::ModeKind;
+
+namespace {
+
+MatrixXd join(const MatrixXd& A, const MatrixXd& B) {
+  MatrixXd C(A.rows(), A.cols() + B.cols());
+  C << A, B;
+  return C;
+}
+VectorXd join(const VectorXd& a, const VectorXd& b) {
+  VectorXd c(a.size() + b.size());
+  c << a, b;
+  return c;
+}
+MatrixXd times_M(const fe::Model& model, const MatrixXd& X) { return fe::calc_mass_times(model, model.mass_kind(), X); }
+MatrixXd calc_gram_M(const fe::Model& model, const MatrixXd& X) {
+  const MatrixXd G = X.transpose() * times_M(model, X);
+  return 0.5 * (G + G.transpose());
+}
+MatrixXd calc_gram_K(const fe::Model& model, const MatrixXd& X) {
+  const MatrixXd G = X.transpose() * fe::calc_stiffness_times(model, X);
+  return 0.5 * (G + G.transpose());
+}
+
+/// Unit loads on the interface dofs: Tᵀ of them is the row of T that a boundary dof is.
+MatrixXd calc_interface_loads(const fe::Model& model, const Partition& part) {
+  MatrixXd F = MatrixXd::Zero(model.num_gdofs(), part.num_boundary());
+  for (int b = 0; b < part.num_boundary(); ++b) {
+    const auto [id, component] = part.boundary[static_cast<std::size_t>(b)];
+    const auto& node = model.node(model.find_node(id));
+    const int c = component - 1;
+    F.block<3, 1>(node.first_gdof + 3 * (c / 3), b) = node.R_basic_cd.col(c % 3);
+  }
+  return F;
+}
+
+/// One basis of each repeated root and the sign of each vector, so that they do not depend on roundoff.
+MatrixXd make_canonical(const fe::Model& model, VectorXd& lambda, MatrixXd& Phi) {
+  const VectorXd weights = detail::calc_basis_weights(model);
+  MatrixXd Q = MatrixXd::Identity(lambda.size(), lambda.size());
+  for (int a = 0, b = 0; a < lambda.size(); a = b) {
+    b = detail::find_cluster_end(lambda, a, 1e-8, 0);
+    if (b == a + 1) continue;
+    Q.block(a, a, b - a, b - a) = detail::calc_cluster_rotation(weights, MatrixXd(Phi.middleCols(a, b - a)));
+    lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
+  }
+  Phi = Phi * Q;
+  detail::fix_signs(Phi);
+  return Q;
+}
+
+/// `kind` for the `count` entries of largest share.
+void mark_largest(const VectorXd& share, Eigen::Index count, ModeKind kind, std::vector<ModeKind>& kinds) {
+  std::vector<int> order(kinds.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return share(a) > share(b); });
+  for (Eigen::Index i = 0; i < std::min<Eigen::Index>(count, share.size()); ++i)
+    kinds[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])] = kind;
+}
+
+/// Normal modes of the model, then the residual vectors of the interface and of the loads.
+Basis calc_free_interface_basis(const fe::Model& model, const BasisOptions& options, const StaticSolve& solve,
+                                Diagnostics& diagnostics) {
+  Basis basis;
+  EigenOptions eigen;
+  eigen.num_modes = options.num_modes > 0 || !options.max_hz ? options.num_modes + (options.is_free ? 6 : 0) : 0;
+  if (!options.max_hz) eigen.num_modes = std::max(eigen.num_modes, 1);
+  eigen.max_hz = options.max_hz;
+  const auto pairs = calc_normal_modes(model, eigen, diagnostics);
+  basis.num_rigid = pairs.num_rigid;
+  basis.num_massless = pairs.num_massless;
+  auto kept = pairs.lambda.size() - pairs.num_rigid;
+  if (options.num_modes == 0 && !options.max_hz) kept = 0;
+  // A massless rigid motion takes none of the modes asked for: what came in its place is cut again.
+  if (options.num_modes > 0) kept = std::min<Eigen::Index>(kept, options.num_modes);
+  basis.Phi = pairs.Phi.middleCols(pairs.num_rigid, kept);
+  basis.lambda = pairs.lambda.segment(pairs.num_rigid, kept);
+  basis.kind.assign(static_cast<std::size_t>(kept), ModeKind::Normal);
+
+  MatrixXd F = options.residual_loads;
+  if (F.rows() == 0) F.resize(model.num_gdofs(), 0);
+  Eigen::Index num_attachments = 0;
+  if (options.kind == BasisKind::CraigChang) {
+    const auto part = make_partition(model, options.interface_nodes, diagnostics);
+    F = join(calc_interface_loads(model, part), F);
+    num_attachments = part.num_boundary();
+  }
+  const auto residual = calc_residual_vectors(model, solve, pairs.Phi.leftCols(pairs.num_rigid), basis.Phi, F);
+  basis.Phi = join(basis.Phi, residual.modes.Phi);
+  basis.lambda = join(basis.lambda, residual.modes.lambda);
+  const auto num_unused =
+      std::count_if(residual.unused.begin(), residual.unused.end(), [&](int i) { return i < num_attachments; });
+  std::vector<ModeKind> kinds(static_cast<std::size_t>(residual.modes.lambda.size()), ModeKind::Residual);
+  mark_largest(residual.share.topRows(num_attachments).colwise().sum(), num_attachments - num_unused,
+               ModeKind::Attachment, kinds);
+  basis.kind.insert(basis.kind.end(), kinds.begin(), kinds.end());
+  // The eigenvectors end where Krylov's tolerance does: what strain energy they share with the new vectors is taken
+  // out.
+  if (!kinds.empty()) {
+    const auto pairs_all = calc_ritz_pairs(calc_gram_M(model, basis.Phi), calc_gram_K(model, basis.Phi));
+    basis.Phi = basis.Phi * pairs_all.N;
+    basis.lambda = pairs_all.lambda;
+    make_canonical(model, basis.lambda, basis.Phi);
+  }
+  for (const int i : residual.unused)
+    if (i >= num_attachments) basis.unused_loads.push_back(i - static_cast<int>(num_attachments));
+  const auto n = basis.lambda.size();
+  basis.M = MatrixXd::Identity(n, n);
+  basis.K = basis.lambda.asDiagonal();
+  return basis;
+}
+
+/// K^N = M^ND of the component, twice: the second time nearly diagonal, for the digits of the lowest values.
+void orthogonalize(const fe::Model& model, const MatrixXd& rigid, Eigen::Index num_constraint, Basis& basis) {
+  MatrixXd& Phi = basis.Phi;
+  for (int pass = 0; pass < 2 && rigid.cols() > 0; ++pass)
+    Phi -= rigid * (times_M(model, rigid).transpose() * Phi).eval();
+  const MatrixXd K = basis.K;
+  MatrixXd N = MatrixXd::Identity(Phi.cols(), Phi.cols());
+  for (int pass = 0; pass < 2; ++pass) {
+    const auto pairs = calc_ritz_pairs(calc_gram_M(model, Phi), pass == 0 ? K : calc_gram_K(model, Phi));
+    Phi = Phi * pairs.N;
+    N = N * pairs.N;
+    basis.lambda = pairs.lambda;
+  }
+  N = N * make_canonical(model, basis.lambda, Phi);
+
+  const auto n = basis.lambda.size();
+  VectorXd constraint(n), residual(n);  // shares in the strain energy
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const VectorXd b = N.col(j).head(num_constraint);
+    constraint(j) = b.dot(K.topLeftCorner(num_constraint, num_constraint) * b) / basis.lambda(j);
+    residual(j) = 0;
+    for (Eigen::Index i = num_constraint; i < N.rows(); ++i)
+      if (basis.kind[static_cast<std::size_t>(i)] == ModeKind::Residual)
+        residual(j) += K(i, i) * N(i, j) * N(i, j) / basis.lambda(j);
+  }
+  const auto num_residual = std::count(basis.kind.begin(), basis.kind.end(), ModeKind::Residual);
+  std::vector<ModeKind> kind(static_cast<std::size_t>(n), ModeKind::Normal);
+  mark_largest(constraint, std::clamp<Eigen::Index>(num_constraint - rigid.cols(), 0, n), ModeKind::Constraint, kind);
+  for (Eigen::Index j = 0; j < n; ++j)
+    if (kind[static_cast<std::size_t>(j)] == ModeKind::Constraint) residual(j) = -1;
+  mark_largest(residual, num_residual, ModeKind::Residual, kind);
+  basis.kind = kind;
+  basis.M = MatrixXd::Identity(n, n);
+  basis.K = basis.lambda.asDiagonal();
+}
+
+Basis calc_craig_bampton_basis(const fe::Model& model, const BasisOptions& options, Diagnostics& diagnostics) {
+  Basis basis;
+  MatrixXd rigid(model.num_gdofs(), 0);
+  if (options.is_free) {
+    const detail::Pencil pencil(model);
+    const auto motions = detail::find_rigid_motions(pencil);
+    rigid = model.T() * motions.modes;
+    basis.num_rigid = static_cast<int>(motions.modes.cols());
+    basis.num_massless = static_cast<int>(motions.massless.cols());
+  }
+  const FixedInterface fixed(model, options.interface_nodes, diagnostics);
+  basis.boundary = fixed.partition().boundary;
+  const auto nb = static_cast<Eigen::Index>(basis.boundary.size());
+  const MatrixXd Psi = fixed.calc_constraint_modes();
+  const auto modes = fixed.calc_modes(options.num_modes, options.max_hz, diagnostics);
+  // A load is carried by the interface, which the constraint modes hold exactly, and by the interior with it held.
+  MatrixXd F = options.residual_loads.rows() == 0 ? MatrixXd(model.num_gdofs(), 0) : options.residual_loads;
+  if (options.is_free && F.cols() > 0) {
+    // In equilibrium with the inertia of the body; what inertia balances of itself (a uniform acceleration) is nothing.
+    const VectorXd before = F.colwise().norm();
+    F -= times_M(model, rigid) * (rigid.transpose() * F).eval();
+    for (Eigen::Index c = 0; c < F.cols(); ++c)
+      if (F.col(c).norm() < 1e-10 * before(c)) F.col(c).setZero();
+  }
+  const auto residual = calc_residual_vectors(
+      model, [&](const MatrixXd& loads) { return fixed.solve(loads); }, MatrixXd(model.num_gdofs(), 0), modes.Phi, F);
+  basis.unused_loads = residual.unused;
+
+  const VectorXd lambda = join(modes.lambda, residual.modes.lambda);
+  basis.Phi = join(Psi, join(modes.Phi, residual.modes.Phi));
+  basis.kind.assign(static_cast<std::size_t>(nb), ModeKind::Constraint);
+  basis.kind.insert(basis.kind.end(), static_cast<std::size_t>(modes.lambda.size()), ModeKind::Normal);
+  basis.kind.insert(basis.kind.end(), static_cast<std::size_t>(residual.modes.lambda.size()), ModeKind::Residual);
+  // K^ = diag(K_bb + K_bi Ψ, Λ): constraint modes and what moves with the interface held share no strain energy.
+  basis.K = MatrixXd::Zero(basis.Phi.cols(), basis.Phi.cols());
+  basis.K.topLeftCorner(nb, nb) = calc_gram_K(model, Psi);
+  basis.K.bottomRightCorner(lambda.size(), lambda.size()) = lambda.asDiagonal();
+  if (options.orthogonalize) {
+    orthogonalize(model, rigid, nb, basis);
+    return basis;
+  }
+  basis.is_raw = true;
+  basis.M = calc_gram_M(model, basis.Phi);
+  basis.lambda = basis.K.diagonal().cwiseQuotient(basis.M.diagonal());
+  return basis;
+}
+
+}  // namespace
+
+Basis calc_basis(const fe::Model& model, const BasisOptions& options, const StaticSolve& solve,
+                 Diagnostics& diagnostics) {
+  if (options.kind != BasisKind::Normal && options.interface_nodes.empty())
+    throw InputError("modal.no-interface", {}, "the basis needs interface nodes", "name them in interface");
+  if (options.kind == BasisKind::CraigBampton) return calc_craig_bampton_basis(model, options, diagnostics);
+  return calc_free_interface_basis(model, options, solve, diagnostics);
+}
+
+Basis select_columns(const Basis& basis, const std::vector<int>& columns) {
+  Basis kept = basis;
+  kept.Phi = basis.Phi(Eigen::all, columns);
+  kept.lambda = basis.lambda(columns);
+  kept.M = basis.M(columns, columns);
+  kept.K = basis.K(columns, columns);
+  kept.kind.clear();
+  kept.boundary.clear();
+  for (const int c : columns) {
+    kept.kind.push_back(basis.kind[static_cast<std::size_t>(c)]);
+    if (basis.is_raw && c < static_cast<int>(basis.boundary.size()))
+      kept.boundary.push_back(basis.boundary[static_cast<std::size_t>(c)]);
+  }
+  return kept;
+}
+
+void move_to_frame(const fe::Model& model, const FrameSpec& frame, Basis& basis) {
+  const MatrixXd C = calc_reference_conditions(model, frame);
+  const bool is_on_node = frame.kind == FrameKind::Node;
+  if (basis.is_raw) {
+    std::vector<int> columns;
+    for (int j = 0; j < basis.lambda.size(); ++j)
+      if (j >= static_cast<int>(basis.boundary.size()) || !is_on_node ||
+          basis.boundary[static_cast<std::size_t>(j)].first != frame.nodes[0])
+        columns.push_back(j);
+    if (basis.lambda.size() - static_cast<Eigen::Index>(columns.size()) != 6)
+      throw InputError("modal.raw-frame", {},
+                       "Craig-Bampton coordinates that are kept hold the rigid motions of a free body",
+                       "put the frame on an interface node, fix it by constraints, or orthogonalize");
+    basis = select_columns(basis, columns);
+  }
+  basis.Phi = shift_to_frame(model, C, basis.Phi);
+  // At rest, not at rest to roundoff: who asks whether the node moves must hear no.
+  if (is_on_node) basis.Phi.middleRows(model.node(model.find_node(frame.nodes[0])).first_gdof, 6).setZero();
+  basis.M = calc_gram_M(model, basis.Phi);
+  if (basis.is_raw) basis.lambda = basis.K.diagonal().cwiseQuotient(basis.M.diagonal());
+}
+
+}  // namespace bough::modal::bases

@@ -1,0 +1,101 @@
+#include "bough/modal/bases/ritz.hpp"
+
+#include <cmath>
+
+#include "bough/modal/canonical.hpp"
+
+namespace bough::modal::bases {
+
+namespace {
+
+MatrixXd symmetrize(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
+
+}  // namespace
+
+RitzPairs calc_ritz_pairs(const MatrixXd& M, const MatrixXd& K) {
+  RitzPairs pairs{VectorXd(0), MatrixXd(M.rows(), 0)};
+  if (M.rows() == 0) return pairs;
+  const VectorXd scale = M.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(symmetrize(scale.asDiagonal() * M * scale.asDiagonal()));
+  const VectorXd& d = gram.eigenvalues();
+  const auto dropped = (d.array() <= 1e-12 * std::max(d.maxCoeff(), 0.0)).count();
+  const auto n = d.size() - dropped;
+  if (n == 0) return pairs;
+  const MatrixXd W =
+      scale.asDiagonal() * gram.eigenvectors().rightCols(n) * d.tail(n).cwiseSqrt().cwiseInverse().asDiagonal();
+  const MatrixXd K_w = symmetrize(W.transpose() * K * W);
+  if (Eigen::LLT<MatrixXd>(K_w).info() == Eigen::Success) {
+    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(MatrixXd::Identity(n, n), K_w);
+    const VectorXd theta = solver.eigenvalues().reverse();
+    pairs.lambda = theta.cwiseInverse();
+    pairs.N = W * solver.eigenvectors().rowwise().reverse() * theta.cwiseSqrt().cwiseInverse().asDiagonal();
+  } else {
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(K_w);
+    pairs.lambda = solver.eigenvalues();
+    pairs.N = W * solver.eigenvectors();
+  }
+  return pairs;
+}
+
+ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve& solve, const MatrixXd& rigid,
+                                      const MatrixXd& kept, const MatrixXd& F) {
+  const auto times_M = [&](const MatrixXd& X) { return fe::calc_mass_times(model, model.mass_kind(), X); };
+  const auto m = F.cols();
+  ResidualVectors result;
+  result.modes = {VectorXd(0), MatrixXd(F.rows(), 0)};
+  result.share.resize(m, 0);
+  if (m == 0) return result;
+
+  MatrixXd F_e = F;  // in equilibrium
+  if (rigid.cols() > 0) F_e -= times_M(rigid) * (rigid.transpose() * F);
+  MatrixXd X = solve(F_e);
+  if (rigid.cols() > 0) X -= rigid * (rigid.transpose() * times_M(X));
+  const VectorXd before = X.cwiseProduct(times_M(X)).colwise().sum().cwiseMax(0).cwiseSqrt();
+
+  MatrixXd Q(F.rows(), rigid.cols() + kept.cols());
+  Q << rigid, kept;
+  std::vector<int> used;
+  for (int i = 0; i < m; ++i) used.push_back(i);
+  for (int pass = 0; pass < 2; ++pass) {
+    if (Q.cols() > 0) X -= Q * (times_M(Q).transpose() * X).eval();
+    MatrixXd MX = times_M(X);
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      const auto c = static_cast<Eigen::Index>(i);
+      for (Eigen::Index b = 0; b < c; ++b) {
+        const double along = X.col(b).dot(MX.col(c));
+        X.col(c) -= along * X.col(b);
+        MX.col(c) -= along * MX.col(b);
+      }
+      const double norm = std::sqrt(std::max(X.col(c).dot(MX.col(c)), 0.0));
+      // A load that inertia balances of itself (a uniform acceleration) leaves roundoff only.
+      const bool is_balanced = F_e.col(used[i]).norm() < 1e-10 * F.col(used[i]).norm();
+      if (pass == 0 && (is_balanced || !(norm > 1e-6 * before(used[i])))) {
+        X.col(c).setZero();
+        MX.col(c).setZero();
+        result.unused.push_back(used[i]);
+        continue;
+      }
+      X.col(c) /= norm;
+      MX.col(c) /= norm;
+    }
+    if (pass > 0) break;
+    std::vector<int> rest;
+    for (const int i : used)
+      if (!(X.col(i).isZero(0))) rest.push_back(i);
+    X = X(Eigen::all, rest).eval();
+    used = rest;
+  }
+
+  const MatrixXd K = X.transpose() * fe::calc_stiffness_times(model, X);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(symmetrize(K));
+  if (!used.empty()) {
+    result.modes.lambda = ritz.eigenvalues();
+    result.modes.Phi = X * ritz.eigenvectors();
+    detail::fix_signs(result.modes.Phi);
+    result.share = MatrixXd::Zero(m, static_cast<Eigen::Index>(used.size()));
+    result.share(used, Eigen::all) = ritz.eigenvectors().cwiseAbs2();
+  }
+  return result;
+}
+
+}  // namespace bough::modal::bases

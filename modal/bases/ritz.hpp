@@ -1,0 +1,35 @@
+#pragma once
+/// \file Small dense steps of every basis: Rayleigh-Ritz, removal of rigid motions and of dependent vectors, residual
+/// vectors.
+#include <functional>
+
+#include "bough/modal/bases/fixed_interface.hpp"
+
+namespace bough::modal::bases {
+
+/// K N = M N D of m x m matrices, ascending, NᵀMN = 1. Directions whose share of M is below 1e-12 (dependent vectors,
+/// massless ones) are left out, so N may have fewer than m columns. Solved as M x = θ K x where K is definite: the
+/// lowest values keep their digits beside values many orders larger.
+struct RitzPairs {
+  VectorXd lambda;
+  MatrixXd N;
+};
+RitzPairs calc_ritz_pairs(const MatrixXd& M, const MatrixXd& K);
+
+/// u_g for loads F_g (num_gdofs x m) on some support.
+using StaticSolve = std::function<MatrixXd(const MatrixXd& F_g)>;
+
+struct ResidualVectors {
+  ModeSet modes;            ///< pseudo-modes: unit generalized mass, orthogonal to `rigid` and `kept`
+  MatrixXd share;           ///< m x n: part of mode j that load i brought, columns sum to one
+  std::vector<int> unused;  ///< loads whose static solution the kept modes and the loads before hold already
+};
+
+/// The part of the static solutions for F that the kept modes leave out: X = K⁻¹F - ΦΛ⁻¹ΦᵀF, and for a free body
+/// X = PᵀGPF with P = 1 - MΦ_rΦ_rᵀ, G the flexibility on any determinate support; M-orthogonal to `rigid` and `kept` in
+/// two passes, dropped below 1e-6 of the norm of the static solution, then Rayleigh-Ritz (Dickens, Nakagawa &
+/// Wittbrodt, Comput. Struct. 62 (1997) 985). `rigid`, `kept`: M-orthonormal, num_gdofs x k.
+ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve& solve, const MatrixXd& rigid,
+                                      const MatrixXd& kept, const MatrixXd& F);
+
+}  // namespace bough::modal::bases
