@@ -167,7 +167,10 @@ std::vector<WorstQuality> find_worst_quality(const Model& model) {
     if (shape.type.empty() || shape.type == "vertex" || shape.type == "line2") continue;
     std::vector<Vector3d> corners;
     for (int k : shape.nodes) corners.push_back(model.node(k).x);
-    const ElementQuality q = calc_quality(shape.type, corners);
+    // Curved shells by their corners (their own maker refuses what folds over between them).
+    const std::string type = shape.type == "quad8" ? "quad4" : shape.type == "tri6" ? "tri3" : shape.type;
+    corners.resize(type == "quad4" ? 4 : type == "tri3" ? 3 : corners.size());
+    const ElementQuality q = calc_quality(type, corners);
     WorstQuality& w = by_card[element->card()];
     const bool is_first = w.count++ == 0;
     if (is_first || q.aspect > w.worst.aspect * (1 + 1e-9)) w.worst.aspect = q.aspect, w.aspect_id = element->id();

@@ -8,7 +8,7 @@ ElementList make_elements(const records::Deck& deck, const NodeTable& nodes, Dia
   list.elements.reserve(deck.beams.size() + deck.crod.size() + deck.conrod.size() + deck.ctube.size() +
                         deck.springs.size() + deck.cbush.size() + deck.scalar_masses.size() + deck.dampers.size() +
                         deck.cvisc.size() + deck.cbush1d.size() + deck.conm1.size() + deck.conm2.size() +
-                        deck.shells.size() + deck.solids.size());
+                        deck.shells.size() + deck.shear_panels.size() + deck.solids.size());
   Maker maker(deck, nodes, diagnostics, list);
   make_beams(maker);
   make_rods(maker);
@@ -16,6 +16,8 @@ ElementList make_elements(const records::Deck& deck, const NodeTable& nodes, Dia
   make_line_dampers(maker);
   make_masses(maker);
   make_shells(maker);
+  make_curved_shells(maker);
+  make_shear_panels(maker);
   make_solids(maker);
   return list;
 }

@@ -8,7 +8,7 @@ void make_shells(Maker& maker) {
   ShellSections sections(maker);
   std::vector<ResolvedShell> shells;
   for (const auto& card : maker.deck().shells) {
-    if (card.card == "CQUAD8" || card.card == "CTRIA6") continue;
+    if (!card.midsides.empty()) continue;  // curved
     if (auto shell = resolve_shell(maker, sections, card)) shells.push_back(std::move(*shell));
   }
   const auto surface = calc_surface_normals(maker, shells);

@@ -66,6 +66,8 @@ void make_springs(Maker& maker);
 void make_line_dampers(Maker& maker);
 void make_masses(Maker& maker);
 void make_shells(Maker& maker);
+void make_curved_shells(Maker& maker);
+void make_shear_panels(Maker& maker);
 void make_solids(Maker& maker);
 
 }  // namespace bough::fe

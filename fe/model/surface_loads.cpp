@@ -78,6 +78,7 @@ class SurfaceLoads {
     double sign = 1;
     if (shell != shells_.end()) {
       face.corners = shell->second->grids;
+      face.midside = shell->second->midsides;
     } else if (solid != solids_.end()) {
       face = find_solid_face(*solid->second, load.g1, load.g34);
       sign = -1;  // inward
