@@ -114,14 +114,16 @@ void SymmetricFactor::factor_by_mumps(Mat A, bool find_null_pivots) {
   throw ComputationError("fe.factorization", {}, "MUMPS ran out of workspace with 1000 % to spare", "report the deck");
 }
 
-MatrixXd SymmetricFactor::solve(const Eigen::Ref<const MatrixXd>& B) const {
+MatrixXd solve_factored(Mat factor, const Eigen::Ref<const MatrixXd>& B) {
   if (B.cols() == 0) return B;
-  const PetscMat rhs = make_dense(factor_.get(), B);
+  const PetscMat rhs = make_dense(factor, B);
   PetscMat x;
   check_petsc(MatDuplicate(rhs.get(), MAT_DO_NOT_COPY_VALUES, x.out()));
-  check_petsc(MatMatSolve(factor_.get(), rhs.get(), x.get()));
+  check_petsc(MatMatSolve(factor, rhs.get(), x.get()));
   return replicate(x.get());
 }
+
+MatrixXd SymmetricFactor::solve(const Eigen::Ref<const MatrixXd>& B) const { return solve_factored(factor_.get(), B); }
 
 MatrixXd multiply(Mat A, const Eigen::Ref<const MatrixXd>& X) {
   const PetscMat dense = make_dense(A, X);

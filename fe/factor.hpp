@@ -38,6 +38,8 @@ class SymmetricFactor {
 /// LLᵀ by CHOLMOD of a positive definite A on one process; empty when A is not, or there are several.
 PetscMat factor_definite(Mat A);
 
+/// X with A X = B from a factor of A that PETSc holds.
+Eigen::MatrixXd solve_factored(Mat factor, const Eigen::Ref<const Eigen::MatrixXd>& B);
 /// A X of a distributed A and a replicated X, replicated.
 Eigen::MatrixXd multiply(Mat A, const Eigen::Ref<const Eigen::MatrixXd>& X);
 /// The diagonal of A, replicated.

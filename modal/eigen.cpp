@@ -82,7 +82,9 @@ class NormalModes {
   void hold_massless();
   void choose_range();
   void solve_dense();
-  void run_krylov(int num_wanted);
+  /// False when `definite_only` and the shifted stiffness is not definite.
+  bool run_krylov(int num_wanted, bool definite_only = false);
+  bool find_unshifted(int request);
   void find_all();
   int find_cut() const;
   EigenPairs make_pairs(int cut, int count);
@@ -175,22 +177,25 @@ void NormalModes::solve_dense() {
   found_.add(theta.cwiseInverse().array() - shift_, X);
 }
 
-void NormalModes::run_krylov(int num_wanted) {
+bool NormalModes::run_krylov(int num_wanted, bool definite_only) {
   detail::KrylovProblem problem;
   problem.A = pencil_.K.get();
   problem.B = pencil_.M.get();
   problem.shift = -shift_;
   problem.max_subspace = max_elastic_ - static_cast<int>(found_.lambda.size());
-  if (problem.max_subspace <= 0) return;
+  if (problem.max_subspace <= 0) return true;
   problem.num_wanted = std::min(num_wanted, problem.max_subspace);
   problem.deflate = join(rigid_.modes, found_.X);
   problem.tolerance = options_.tolerance;
   problem.start = round_++;
+  problem.definite_only = definite_only;
   problem.progress = options_.progress;
   const auto result = detail::solve_krylov_schur(problem);
+  if (result.is_singular && definite_only) return false;
   if (result.is_singular) detail::throw_singular(pencil_, shift_);
   found_.add(result.values, result.vectors);
   found_.num_zero = count_zeros(pencil_, found_);
+  return true;
 }
 
 /// First position at or after last_ where the list has a gap: what lies below it can be counted.
@@ -207,10 +212,21 @@ int NormalModes::find_cut() const {
   return static_cast<int>(found_.lambda.size()) >= max_elastic_ ? num_found() : -1;
 }
 
+/// K itself as the matrix to factor, where supports hold the model: no shift to choose, and no second factor because it
+/// was too high. A mechanism, or a mode too soft to tell from one, shows as a first vector with next to no strain.
+bool NormalModes::find_unshifted(int request) {
+  if (num_rigid() > 0 || !rigid_.held.empty()) return false;
+  shift_ = 0;
+  return run_krylov(request, true) && found_.lambda.size() > 0 && found_.num_zero == 0 && found_.lambda(0) > 0 &&
+         pencil_.calc_relative_energy(found_.X.col(0), found_.lambda(0)) > 1e-13;
+}
+
 void NormalModes::find_all() {
-  constexpr int guard = 1;  // the one above shows the gap
+  constexpr int guard = 2;  // those above show the gap
   const int request = std::max(0, last_ - num_rigid()) + guard;
   const bool dense = pencil_.size() <= kDenseSize || (2 * request >= max_elastic_ && pencil_.size() <= kDenseLimit);
+  found_.X.resize(pencil_.size(), 0);
+  if (!dense && find_unshifted(request)) return;
   shift_ = 0.01 * detail::estimate_first_eigenvalue(pencil_);
   for (int attempt = 0; attempt < 4; ++attempt) {
     found_ = {};

@@ -11,6 +11,7 @@
 
 #include "bough/base/diagnostic.hpp"
 #include "bough/fe/assembly.hpp"
+#include "bough/fe/factor.hpp"
 
 namespace bough::modal::detail {
 
@@ -97,7 +98,7 @@ bool set_up(const KrylovProblem& problem, MatSolverType solver, int wanted, int 
     check_petsc(STSetType(st, STSINVERT));
     check_petsc(EPSSetWhichEigenpairs(eps.get(), EPS_TARGET_MAGNITUDE));
     check_petsc(EPSSetTarget(eps.get(), problem.shift));
-    check_petsc(EPSSetPurify(eps.get(), PETSC_TRUE));
+    check_petsc(EPSSetPurify(eps.get(), PETSC_FALSE));  // done for all vectors at once
   } else {
     check_petsc(STSetType(st, STSHIFT));
     check_petsc(EPSSetWhichEigenpairs(eps.get(), EPS_LARGEST_MAGNITUDE));
@@ -129,6 +130,26 @@ bool set_up(const KrylovProblem& problem, MatSolverType solver, int wanted, int 
   return true;
 }
 
+/// x = (λ - σ)(A - σB)⁻¹B x: removes what a semi-definite B lets into the vectors unseen (Nour-Omid et al., Math. Comp.
+/// 48 (1987) 663). A solve of eight right-hand sides costs a third of eight solves.
+void purify(const KrylovProblem& problem, EPS eps, KrylovResult& result) {
+  if (result.values.size() == 0) return;
+  ST st = nullptr;
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  Mat factor = nullptr;
+  check_petsc(EPSGetST(eps, &st));
+  check_petsc(STGetKSP(st, &ksp));
+  check_petsc(KSPGetPC(ksp, &pc));
+  check_petsc(PCFactorGetMatrix(pc, &factor));
+  const VectorXd scale = result.values.array() - problem.shift;
+  constexpr Eigen::Index kBlock = 8;  // enough for the speed, few for the memory
+  for (Eigen::Index first = 0; first < scale.size(); first += kBlock) {
+    auto X = result.vectors.middleCols(first, std::min(kBlock, scale.size() - first));
+    X = fe::solve_factored(factor, fe::multiply(problem.B, X)) * scale.segment(first, X.cols()).asDiagonal();
+  }
+}
+
 }  // namespace
 
 KrylovResult solve_krylov_schur(const KrylovProblem& problem) {
@@ -144,7 +165,7 @@ KrylovResult solve_krylov_schur(const KrylovProblem& problem) {
   KrylovResult result;
   const bool is_alone = fe::initialize_petsc().size == 1;
   if (!(is_alone && set_up(problem, MATSOLVERCHOLMOD, wanted, subspace, eps)) &&
-      !set_up(problem, MATSOLVERMUMPS, wanted, subspace, eps)) {
+      ((is_alone && problem.definite_only) || !set_up(problem, MATSOLVERMUMPS, wanted, subspace, eps))) {
     result.is_singular = true;
     return result;
   }
@@ -164,6 +185,7 @@ KrylovResult solve_krylov_schur(const KrylovProblem& problem) {
     result.values(i) = value;
     result.vectors.col(i) = fe::gather(x.get());
   }
+  if (problem.spectrum == Spectrum::NearShift) purify(problem, eps.get(), result);
   return result;
 }
 
