@@ -1,0 +1,39 @@
+#pragma once
+/// \file Given matrices on the g-set of a deck, and as elements of a model.
+#include <Eigen/SparseCore>
+
+#include "bough/fe/elements/direct.hpp"
+#include "bough/fe/model/model.hpp"
+#include "bough/stiffening/reduce_matrices.hpp"
+
+namespace bough::stiffening {
+
+using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+/// The points of a deck while its model is built, in the order of their dofs.
+struct PointTable {
+  PointTable(const records::Deck& deck, const fe::NodeTable& nodes);
+
+  std::vector<int> index;  ///< of each point in the node table, ascending by first dof
+  int num_gdofs = 0;
+  const fe::NodeTable& nodes;
+
+  /// Rows of a file that names none: grids and scalar points by id, six dofs and one.
+  Eigen::MatrixXi calc_default_dofs() const;
+  Eigen::MatrixXi calc_dof_map() const;  ///< num_gdofs x 2: node, code (scalar point: 0)
+  modal::NodalDofs calc_nodal_dofs() const;
+};
+
+/// P: num_gdofs x rows of the matrix, so that P A Pᵀ is A on the g-set in basic axes. Reports "reduce.matrix-size",
+/// "reduce.matrix-dof".
+SparseRows calc_placement(const PointTable& points, const GivenMatrix& matrix, Diagnostics& diagnostics);
+
+/// One element for each pair of points that A (num_gdofs x num_gdofs, symmetric) couples, and for each point.
+void add_direct_elements(const PointTable& points, const SparseRows& A, fe::DirectKind kind, fe::ElementList& list);
+/// The shapes of the deck's own elements, to draw the body; those that cannot be made are left out.
+void add_drawn_elements(const records::Deck& deck, const fe::NodeTable& nodes, fe::ElementList& list);
+
+/// Whether A couples any two points.
+bool couples_points(const PointTable& points, const SparseRows& A);
+
+}  // namespace bough::stiffening

@@ -1,0 +1,378 @@
+#include "bough/stiffening/reduce_matrices.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <set>
+
+#include "bough/base/rotation.hpp"
+#include "bough/fe/factor.hpp"
+#include "bough/stiffening/given_elements.hpp"
+
+namespace bough::stiffening {
+
+using records::BodySpec;
+using records::Deck;
+using records::FlexBody;
+
+namespace {
+
+constexpr double kAsymmetry = 1e-6;  ///< of the largest entries of both rows: files of seven digits are below it
+
+template <class Container, class Value>
+bool has(const Container& values, const Value& value) {
+  return std::find(values.begin(), values.end(), value) != values.end();
+}
+
+/// Grids, coordinate systems, constraints and loads of the deck; no element, no matrix of its own, no scale of mass.
+Deck keep_points(const Deck& deck, const GivenMatrices& given) {
+  Deck kept = deck;
+  kept.beams.clear(), kept.crod.clear(), kept.conrod.clear(), kept.ctube.clear();
+  kept.springs.clear(), kept.cbush.clear(), kept.cbush1d.clear(), kept.dampers.clear(), kept.cvisc.clear();
+  kept.shells.clear(), kept.shear_panels.clear(), kept.solids.clear();
+  kept.scalar_masses.clear(), kept.conm1.clear(), kept.conm2.clear(), kept.direct_matrices.clear();
+  for (auto& subcase : kept.subcases) subcase.k2gg.clear(), subcase.m2gg.clear(), subcase.b2gg.clear();
+  const std::set<std::string> of_elements = {"WTMASS", "COUPMASS", "CK1", "CK2", "CM1", "CM2", "CB1", "CB2", "AUTOSPC"};
+  const auto is_of_elements = [&](const records::Param& p) { return of_elements.count(p.name) > 0; };
+  kept.params.erase(std::remove_if(kept.params.begin(), kept.params.end(), is_of_elements), kept.params.end());
+  // A matrix on fewer dofs than the g-set was reduced already.
+  const auto num_gdofs = 6 * deck.grids.size() + deck.scalar_points.size();
+  if (static_cast<std::size_t>(given.K.values.rows()) < num_gdofs) kept.aset.clear(), kept.omit.clear();
+  for (auto& grid : kept.grids)
+    if (has(given.clamped, grid.id)) grid.ps = 63;
+  return kept;
+}
+
+/// The first pair of rows where A differs from its transpose, beyond the digits of a file and roundoff.
+std::optional<std::pair<int, int>> find_asymmetry(const SparseRows& A) {
+  VectorXd largest = VectorXd::Zero(A.rows());  // of each row and column
+  for (int i = 0; i < A.outerSize(); ++i)
+    for (SparseRows::InnerIterator it(A, i); it; ++it)
+      for (const auto k : {Eigen::Index(i), Eigen::Index(it.col())})
+        largest[k] = std::max(largest[k], std::abs(it.value()));
+  const double roundoff = 1e-12 * (A.rows() > 0 ? largest.maxCoeff() : 0.0);
+  const SparseRows difference = A - SparseRows(A.transpose());
+  for (int i = 0; i < difference.outerSize(); ++i)
+    for (SparseRows::InnerIterator it(difference, i); it; ++it)
+      if (std::abs(it.value()) > std::max(kAsymmetry * std::sqrt(largest[i] * largest[it.col()]), roundoff))
+        return std::pair(i, static_cast<int>(it.col()));
+  return {};
+}
+
+class MatrixReduction {
+ public:
+  MatrixReduction(const Deck& deck, const BodySpec& spec, const GivenMatrices& given, const ReduceOptions& options,
+                  Diagnostics& diagnostics)
+      : deck_(deck), spec_(spec), given_(given), options_(options), diagnostics_(diagnostics) {}
+
+  FlexBody run();
+
+ private:
+  void check_spec();
+  BodySpec make_spec() const;
+  fe::ElementList make_elements(const fe::NodeTable& nodes);
+  SparseRows place(const PointTable& points, const GivenMatrix& matrix, SparseRows* placement = nullptr);
+  void check_mass(const SparseRows& M);
+  MatrixXd calc_modes(const fe::Model& model);
+  void compare_eigenvalues(const fe::Model& model, const MatrixXd& Phi);
+  void check_integrals();
+  void set_geometric(FlexBody& body);
+  void add_locator(FlexBody& body, const GivenGeometric& g, const VectorXd& F);
+  void warn_of_missing(const FlexBody& body);
+  void warn_of_stiffening(const FlexBody& body, const std::set<std::size_t>& set);
+  std::string describe(Eigen::Index gdof) const;
+
+  const Deck& deck_;
+  const BodySpec& spec_;
+  const GivenMatrices& given_;
+  const ReduceOptions& options_;
+  Diagnostics& diagnostics_;
+  // Set while the model is built, all on its g-set.
+  modal::NodalDofs dofs_;
+  Eigen::MatrixXi dof_map_;
+  std::vector<char> has_row_;  ///< whether K has the dof
+  bool is_lumped_ = false;
+  std::vector<SparseRows> K_G_;
+  std::vector<VectorXd> F_;  ///< of each K_G that came with its load; empty for the others
+  SparseRows P_modes_;
+};
+
+void MatrixReduction::check_spec() {
+  if (spec_.mass != "deck")
+    diagnostics_.error("reduce.bad-mass", given_.M.at, "mass is \"" + spec_.mass + "\", but the mass matrix is given",
+                       "remove the key");
+  if (deck_.card_counts.count("SEQGP") > 0 && given_.K.row_dofs.rows() == 0)
+    diagnostics_.warning("reduce.matrix-order", given_.K.at,
+                         given_.K.label + " names no dofs and the deck has SEQGP: rows are taken by the ids of points",
+                         "give a table of dofs in the order of the matrix");
+  for (const int id : given_.clamped)
+    if (std::none_of(deck_.grids.begin(), deck_.grids.end(), [id](const auto& g) { return g.id == id; }))
+      diagnostics_.error("reduce.unknown-node", given_.K.at,
+                         "clamped names node " + std::to_string(id) + ", there is no such grid", "correct the id");
+}
+
+/// K_G of a unit load or a load set takes its locator from the ones that reduce() makes.
+BodySpec MatrixReduction::make_spec() const {
+  BodySpec spec = spec_;
+  spec.full = true;
+  spec.integrals = "exact";
+  for (const auto& g : given_.geometric) {
+    if (g.inertial >= 0 || !g.load.empty()) continue;
+    if (g.node > 0 && g.direction <= 3 && has(spec.interface_nodes, g.node)) continue;
+    records::ExternalLoadSpec load;
+    load.name = g.name;
+    load.node = g.node;
+    if (g.node > 0) load.directions = {g.direction};
+    load.load_set = g.load_set;
+    load.at = g.K_G.at;
+    spec.loads.push_back(load);
+  }
+  return spec;
+}
+
+std::string MatrixReduction::describe(Eigen::Index gdof) const {
+  const int id = dof_map_(gdof, 0), code = dof_map_(gdof, 1);
+  return code == 0 ? "scalar point " + std::to_string(id)
+                   : "grid " + std::to_string(id) + " component " + std::to_string(code);
+}
+
+/// P A Pᵀ, symmetric to the last bit; a matrix that is not symmetric is an error.
+SparseRows MatrixReduction::place(const PointTable& points, const GivenMatrix& matrix, SparseRows* placement) {
+  const SparseRows P = calc_placement(points, matrix, diagnostics_);
+  if (placement) *placement = P;
+  if (diagnostics_.num_errors() > 0) return SparseRows(points.num_gdofs, points.num_gdofs);
+  if (const auto pair = find_asymmetry(matrix.values)) {
+    const auto [i, j] = *pair;
+    diagnostics_.error("reduce.not-symmetric", matrix.at,
+                       fmt::format("{} is not symmetric: ({}, {}) is {:.9g}, ({}, {}) is {:.9g}", matrix.label, i + 1,
+                                   j + 1, matrix.values.coeff(i, j), j + 1, i + 1, matrix.values.coeff(j, i)),
+                       "give a symmetric matrix: without follower loads, gyroscopic or friction terms");
+  }
+  const SparseRows A = P * matrix.values * SparseRows(P.transpose());
+  return 0.5 * (A + SparseRows(A.transpose()));
+}
+
+fe::ElementList MatrixReduction::make_elements(const fe::NodeTable& nodes) {
+  const PointTable points(deck_, nodes);
+  dofs_ = points.calc_nodal_dofs();
+  dof_map_ = points.calc_dof_map();
+  fe::ElementList list;
+  if (diagnostics_.num_errors() > 0) return list;  // of the grids
+
+  SparseRows P_K;
+  const SparseRows K = place(points, given_.K, &P_K);
+  const SparseRows M = given_.mass_scale * place(points, given_.M);
+  const SparseRows B = given_.B.empty() ? SparseRows() : place(points, given_.B);
+  K_G_.clear(), F_.clear();
+  for (const auto& g : given_.geometric) {
+    K_G_.push_back(place(points, g.K_G));
+    F_.emplace_back();
+    if (g.load.empty()) continue;
+    const SparseRows P = calc_placement(points, g.load, diagnostics_);
+    if (g.load_column > g.load.values.cols())
+      diagnostics_.error(
+          "reduce.matrix-size", g.load.at,
+          fmt::format("column {} of {}, which has {}", g.load_column, g.load.label, g.load.values.cols()),
+          "give one of its columns");
+    else if (diagnostics_.num_errors() == 0)
+      F_.back() = P * VectorXd(MatrixXd(g.load.values).col(g.load_column - 1));
+  }
+  if (!given_.modes.Phi.empty()) P_modes_ = calc_placement(points, given_.modes.Phi, diagnostics_);
+  if (diagnostics_.num_errors() > 0) return list;
+
+  has_row_.assign(static_cast<std::size_t>(points.num_gdofs), 0);
+  for (int i = 0; i < P_K.outerSize(); ++i) has_row_[static_cast<std::size_t>(i)] = P_K.row(i).nonZeros() > 0;
+  check_mass(M);
+  is_lumped_ = !couples_points(points, M);
+  check_integrals();
+  add_direct_elements(points, K, fe::DirectKind::Stiffness, list);
+  add_direct_elements(points, M, fe::DirectKind::Mass, list);
+  if (B.rows() > 0) add_direct_elements(points, B, fe::DirectKind::Damping, list);
+  add_drawn_elements(deck_, nodes, list);
+  return list;
+}
+
+/// No negative entry on the diagonal, and rigid motions that see one mass: Φ_RᵀMΦ_R = [m 1, -m c̃; m c̃, J].
+void MatrixReduction::check_mass(const SparseRows& M) {
+  const VectorXd diagonal = M.diagonal();
+  for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
+    if (diagonal[i] >= 0) continue;
+    diagnostics_.error("reduce.negative-mass", given_.M.at,
+                       fmt::format("{} has {:.6g} on the diagonal at {}", given_.M.label, diagonal[i], describe(i)),
+                       "give a mass matrix that is positive, or at least semidefinite");
+    return;
+  }
+  const MatrixXd Phi_R = dofs_.calc_rigid_modes();
+  const MatrixXd R = Phi_R.transpose() * (M * Phi_R);
+  const double m = R.topLeftCorner<3, 3>().trace() / 3;
+  if (!(m > 0)) {
+    diagnostics_.error(
+        "reduce.negative-mass", given_.M.at,
+        fmt::format("the translations of {} carry the mass {:.6g}, expected more than zero", given_.M.label, m),
+        "check that it is the mass matrix, and the list of dofs");
+    return;
+  }
+  const Eigen::Matrix3d T = R.topLeftCorner<3, 3>(), S = R.topRightCorner<3, 3>();
+  const double length = std::sqrt(std::max(R.bottomRightCorner<3, 3>().trace() / m, 0.0));
+  const double off = std::max((T - m * Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() / m,
+                              length > 0 ? (S + S.transpose()).cwiseAbs().maxCoeff() / (m * length) : 0.0);
+  if (off <= 1e-6) return;
+  diagnostics_.warning("reduce.not-rigid-mass", given_.M.at,
+                       fmt::format("rigid motions see the masses {:.6g}, {:.6g}, {:.6g} in x, y, z and differ from "
+                                   "those of one rigid body by a part of {:.2g}: mass, centre and inertia are means",
+                                   T(0, 0), T(1, 1), T(2, 2), off),
+                       "give the matrix before supports and omitted dofs took their part; check axes and dofs");
+}
+
+MatrixXd MatrixReduction::calc_modes(const fe::Model& model) {
+  MatrixXd Phi = P_modes_ * MatrixXd(given_.modes.Phi.values);
+  // Rigid motions of a free body leave no strain; its frame has them already.
+  const VectorXd diagonal = fe::get_diagonal(fe::assemble_stiffness(model, fe::DofSet::Global).get()).cwiseAbs();
+  const MatrixXd K_Phi = fe::calc_stiffness_times(model, Phi);
+  std::vector<int> elastic;
+  for (int j = 0; j < Phi.cols(); ++j) {
+    const double scale = Phi.col(j).cwiseAbs2().dot(diagonal);
+    if (Phi.col(j).dot(K_Phi.col(j)) > 1e-11 * scale) elastic.push_back(j);
+  }
+  if (static_cast<Eigen::Index>(elastic.size()) < Phi.cols())
+    diagnostics_.note(
+        "reduce.rigid-modes", given_.modes.Phi.at,
+        fmt::format("{} of the {} modes of {} have no strain and are left out",
+                    Phi.cols() - static_cast<Eigen::Index>(elastic.size()), Phi.cols(), given_.modes.Phi.label));
+  if (given_.modes.eigenvalue.size() == Phi.cols()) compare_eigenvalues(model, Phi);
+  return Phi(Eigen::all, elastic);
+}
+
+/// λ of the file against the Rayleigh quotient under K and M: units, dofs and axes that do not belong together show.
+void MatrixReduction::compare_eigenvalues(const fe::Model& model, const MatrixXd& Phi) {
+  const VectorXd k = Phi.cwiseProduct(fe::calc_stiffness_times(model, Phi)).colwise().sum();
+  const VectorXd m = Phi.cwiseProduct(fe::calc_mass_times(model, model.mass_kind(), Phi)).colwise().sum();
+  const VectorXd& lambda = given_.modes.eigenvalue;
+  const double largest = lambda.cwiseAbs().maxCoeff();
+  for (Eigen::Index j = 0; j < lambda.size(); ++j) {
+    if (std::abs(lambda[j]) < 1e-6 * largest && std::abs(k[j]) < 1e-5 * largest * m[j]) continue;
+    if (m[j] > 0 && std::abs(k[j] / m[j] - lambda[j]) <= 1e-3 * std::abs(lambda[j])) continue;
+    diagnostics_.warning("reduce.modes-differ", given_.modes.Phi.at,
+                         fmt::format("mode {} of {} has the eigenvalue {:.6g}, K and M give it {:.6g}", j + 1,
+                                     given_.modes.Phi.label, lambda[j], m[j] > 0 ? k[j] / m[j] : 0.0),
+                         "check that modes and matrices are of one run, their axes (CD) and dofs");
+    return;
+  }
+}
+
+/// M knows one set of momentum integrals, under the name of its kind.
+void MatrixReduction::check_integrals() {
+  if (spec_.integrals == (is_lumped_ ? "consistent" : "lumped"))
+    diagnostics_.error("reduce.bad-integrals", given_.M.at,
+                       "integrals is \"" + spec_.integrals + "\", but the mass matrix given is " +
+                           (is_lumped_ ? "lumped" : "consistent"),
+                       std::string("choose \"exact\" or \"") + (is_lumped_ ? "lumped" : "consistent") + "\"");
+}
+
+void MatrixReduction::add_locator(FlexBody& body, const GivenGeometric& g, const VectorXd& F) {
+  const auto n = body.full_phi.cols(), e = body.external_load.cols();
+  body.locators.push_back({g.name, 0, 0});
+  body.external_load.conservativeResize(n, e + 1);
+  body.external_load.col(e) = body.full_phi.transpose() * F;
+  body.load_resultant.conservativeResize(6, e + 1);
+  body.load_resultant.col(e) = dofs_.calc_rigid_modes().transpose() * F;
+  MatrixXd moment = MatrixXd::Zero(3, n);
+  for (int k = 0; k < dofs_.num_nodes(); ++k) {
+    const Eigen::Vector3d f = dofs_.gather(F, k).topRows<3>();
+    if (!f.isZero(0)) moment -= skew(f) * dofs_.gather(body.full_phi, k).topRows<3>();
+  }
+  body.load_moment.push_back(moment);
+  body.kg_external.emplace_back(MatrixXd::Zero(n, n));
+}
+
+void MatrixReduction::set_geometric(FlexBody& body) {
+  const auto n = body.full_phi.cols();
+  body.kg_inertial.fill(MatrixXd::Zero(n, n));
+  body.kg_inertial_computed.fill(false);
+  for (auto& K_G : body.kg_external) K_G.setZero();
+  std::set<std::size_t> set;
+  for (std::size_t i = 0; i < given_.geometric.size(); ++i) {
+    const auto& g = given_.geometric[i];
+    const MatrixXd K_G = body.full_phi.transpose() * (K_G_[i] * body.full_phi);
+    if (g.inertial >= 0) {
+      body.kg_inertial[static_cast<std::size_t>(g.inertial)] = K_G;
+      body.kg_inertial_computed[static_cast<std::size_t>(g.inertial)] = true;
+      continue;
+    }
+    if (!g.load.empty()) add_locator(body, g, F_[i]);
+    const auto found = std::find_if(body.locators.begin(), body.locators.end(), [&](const auto& locator) {
+      return g.node > 0 ? locator.node == g.node && locator.direction == g.direction : locator.name == g.name;
+    });
+    BOUGH_DEMAND(found != body.locators.end());
+    const auto e = static_cast<std::size_t>(found - body.locators.begin());
+    found->name = g.name;
+    body.kg_external[e] = K_G;
+    set.insert(e);
+  }
+  warn_of_stiffening(body, set);
+}
+
+void MatrixReduction::warn_of_stiffening(const FlexBody& body, const std::set<std::size_t>& set) {
+  const auto num_inertial = std::count(body.kg_inertial_computed.begin(), body.kg_inertial_computed.end(), true);
+  if (num_inertial == 0)
+    diagnostics_.warning("reduce.no-stiffening", given_.K.at,
+                         "no K_G of an inertial load is given: the body does not stiffen when it moves",
+                         "give them in [body.matrices.inertial], or reduce the deck itself");
+  std::string names;
+  for (std::size_t e = 0; e < body.locators.size(); ++e)
+    if (set.count(e) == 0) names += (names.empty() ? "" : ", ") + body.locators[e].name;
+  if (!names.empty() && (num_inertial > 0 || !set.empty()))
+    diagnostics_.warning("reduce.no-stiffening", given_.K.at, "no K_G is given for " + names + ": it is taken as zero",
+                         "give it in [[body.matrices.geometric]]");
+}
+
+/// Dofs that the matrix lacks are dependent in the deck, and follow, or zero in every mode: as they should be only
+/// where a constraint holds them.
+void MatrixReduction::warn_of_missing(const FlexBody& body) {
+  std::set<int> held;
+  for (const auto& grid : deck_.grids)
+    if (grid.ps != 0) held.insert(grid.id);
+  for (const auto& spc : deck_.spc) held.insert(spc.g);
+  held.insert(given_.clamped.begin(), given_.clamped.end());
+  std::set<int> grids;
+  Eigen::Index first = -1;
+  for (Eigen::Index i = 0; i < body.full_phi.rows(); ++i) {
+    const int id = dof_map_(i, 0), code = dof_map_(i, 1);
+    if (has_row_[static_cast<std::size_t>(i)] || code > 3 || held.count(id) > 0 || !body.full_phi.row(i).isZero(0))
+      continue;
+    if (first < 0) first = i;
+    grids.insert(id);
+  }
+  if (grids.empty()) return;
+  diagnostics_.warning("reduce.missing-dofs", given_.K.at,
+                       fmt::format("{} has no row for translations of {} points, the first {}: they are taken as zero",
+                                   given_.K.label, grids.size(), describe(first)),
+                       "constrained ones are zero indeed; omitted ones cannot be recovered: name other output nodes");
+}
+
+FlexBody MatrixReduction::run() {
+  check_spec();
+  ReduceOptions options = options_;
+  options.elements = [this](const Deck&, const fe::NodeTable& nodes, Diagnostics&) { return make_elements(nodes); };
+  if (!given_.modes.Phi.empty()) options.modes = [this](const fe::Model& model) { return calc_modes(model); };
+  FlexBody body = reduce(keep_points(deck_, given_), make_spec(), options, diagnostics_);
+  (is_lumped_ ? body.consistent : body.lumped) = {};
+  body.integrals_method = spec_.integrals;
+  set_geometric(body);
+  warn_of_missing(body);
+  if (!spec_.full) body.full_phi.resize(0, 0);
+  diagnostics_.throw_if_errors();
+  return body;
+}
+
+}  // namespace
+
+FlexBody reduce_matrices(const Deck& deck, const BodySpec& spec, const GivenMatrices& given,
+                         const ReduceOptions& options, Diagnostics& diagnostics) {
+  return MatrixReduction(deck, spec, given, options, diagnostics).run();
+}
+
+}  // namespace bough::stiffening
