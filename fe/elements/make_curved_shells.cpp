@@ -46,7 +46,7 @@ std::optional<ReadyShell> prepare(Maker& maker, ShellSections& sections, const r
   }
   calc_own_normals(r.geometry, r.card.normal);
   for (const auto& frame : CurvedShell::calc_frames(r.geometry))
-    if (!(frame.area > 0)) {
+    if (!(frame.area > 0 && frame.R.col(2).dot(r.card.normal) > 0)) {
       maker.error("fe.bad-facet", card.at, r.card.who + " folds over itself between its corners and midside grids",
                   "put each midside grid near the middle of its side, in the order of the corners");
       return std::nullopt;

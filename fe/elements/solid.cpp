@@ -2,11 +2,11 @@
 
 namespace bough::fe {
 
-/// Gradients at a quadrature point: of the shapes (3 x m) and of the incompatible modes (3 x 3).
+/// Gradients at a quadrature point: of the shapes (3 x m) and of the incompatible modes (3 x num_modes()).
 struct Solid::Field {
   VectorXd shape;
   Eigen::Matrix3Xd gradient;
-  Matrix3d modes = Matrix3d::Zero();
+  Eigen::Matrix3Xd modes;
   double weight = 0;
 };
 
@@ -23,6 +23,21 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> calc_strain_disp(const Eigen::Ref<const
   Eigen::Matrix<double, 6, Eigen::Dynamic> b(6, 3 * gradient.cols());
   for (int i = 0; i < gradient.cols(); ++i) b.middleCols<3>(3 * i) = calc_strain_block(gradient.col(i));
   return b;
+}
+
+/// Where a corner stands in the middle of its element, in natural coordinates.
+Vector3d calc_centre(SolidKind kind) {
+  return kind == SolidKind::Penta ? Vector3d(1.0 / 3, 1.0 / 3, 0) : Vector3d(Vector3d::Zero());
+}
+
+/// Natural gradients of the incompatible modes, each of no mean over the element: 1 - ξ², 1 - η², 1 - ζ² of the brick;
+/// r², s², rs less their linear parts, and 1 - ζ², of the wedge.
+Eigen::Matrix3Xd calc_mode_gradients(SolidKind kind, const Vector3d& at) {
+  if (kind == SolidKind::Hexa) return Matrix3d(-2 * at.asDiagonal());
+  const double r = at.x() - 1.0 / 3, s = at.y() - 1.0 / 3;
+  Eigen::Matrix3Xd g(3, 4);
+  g << 2 * r, 0, s, 0, 0, 2 * s, r, 0, 0, 0, 0, -2 * at.z();
+  return g;
 }
 
 }  // namespace
@@ -53,7 +68,7 @@ std::vector<Solid::Field> Solid::calc_fields(bool mass) const {
   VectorXd shape(m);
   Matrix3d J0 = Matrix3d::Identity();
   if (has_modes()) {
-    calc_solid_shape(geometry_.kind, geometry_.midside, Vector3d::Zero(), shape, dshape);
+    calc_solid_shape(geometry_.kind, geometry_.midside, calc_centre(geometry_.kind), shape, dshape);
     J0 = dshape * x.transpose();
   }
   std::vector<Field> fields;
@@ -64,20 +79,17 @@ std::vector<Solid::Field> Solid::calc_fields(bool mass) const {
     f.shape = shape;
     f.gradient = J.inverse() * dshape;
     f.weight = point.weight * J.determinant();
-    if (has_modes()) {
-      const Matrix3d scaled = J0.determinant() / J.determinant() * J0.inverse();
-      for (int a = 0; a < 3; ++a) f.modes.col(a) = -2 * point.natural[a] * scaled.col(a);
-    }
+    if (has_modes())
+      f.modes = J0.determinant() / J.determinant() * J0.inverse() * calc_mode_gradients(geometry_.kind, point.natural);
     fields.push_back(std::move(f));
   }
   return fields;
 }
 
-/// Incompatible amplitudes (9) from nodal displacements; `condensed` receives the condensed stiffness.
+/// Incompatible amplitudes (three per mode) from nodal displacements; `condensed` receives the condensed stiffness.
 MatrixXd Solid::calc_mode_map(const std::vector<Field>& fields, MatrixXd* condensed) const {
-  const int n = num_dofs();
-  MatrixXd K = MatrixXd::Zero(n, n), Kau = MatrixXd::Zero(9, n);
-  Eigen::Matrix<double, 9, 9> Kaa = Eigen::Matrix<double, 9, 9>::Zero();
+  const int n = num_dofs(), m = 3 * num_modes();
+  MatrixXd K = MatrixXd::Zero(n, n), Kau = MatrixXd::Zero(m, n), Kaa = MatrixXd::Zero(m, m);
   for (const auto& f : fields) {
     const auto B = calc_strain_disp(f.gradient);
     const Eigen::Matrix<double, 6, Eigen::Dynamic> stress = C_el_ * B;
@@ -87,7 +99,7 @@ MatrixXd Solid::calc_mode_map(const std::vector<Field>& fields, MatrixXd* conden
     Kaa += f.weight * Ba.transpose() * C_el_ * Ba;
     Kau.noalias() += f.weight * Ba.transpose() * stress;
   }
-  MatrixXd map = MatrixXd::Zero(9, n);
+  MatrixXd map = MatrixXd::Zero(m, n);
   if (has_modes()) {
     map = -Kaa.ldlt().solve(Kau);
     K.noalias() += Kau.transpose() * map;

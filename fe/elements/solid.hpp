@@ -3,9 +3,11 @@
 ///
 /// Isoparametric, full quadrature. The brick of eight nodes has in addition the nine incompatible modes of Wilson in
 /// the form of Taylor, Beresford & Wilson, IJNME 10 (1976) 1211-1219, so that one layer of bricks bends without locking
-/// and the patch test still holds. The wedge of six and the tetrahedron of four nodes are the plain, stiff elements.
-/// Geometric stiffness ∫ σ_ab u,a·u,b (Cook et al., "Concepts and applications of finite element analysis", 4th ed.,
-/// eq. 18.4-10). Lumped mass: the diagonal of the consistent one, scaled (Hinton, Rock & Zienkiewicz 1976).
+/// and the patch test still holds. The wedge of six nodes has the same of 1 - ζ² and of the three quadratics over its
+/// triangle, so that one layer bends over its thickness; in the plane of its triangle it strains as the triangle of
+/// three nodes. The tetrahedron of four nodes is the plain, stiff element. Geometric stiffness ∫ σ_ab u,a·u,b (Cook et
+/// al., "Concepts and applications of finite element analysis", 4th ed., eq. 18.4-10). Lumped mass: the diagonal of the
+/// consistent one, scaled (Hinton, Rock & Zienkiewicz 1976).
 #include "bough/fe/elements/element.hpp"
 #include "bough/fe/shape/solid_shape.hpp"
 
@@ -41,7 +43,12 @@ class Solid final : public Element {
  private:
   struct Field;
   std::vector<Field> calc_fields(bool mass) const;
-  bool has_modes() const { return geometry_.kind == SolidKind::Hexa && geometry_.x.size() == 8; }
+  bool has_modes() const { return num_modes() > 0; }
+  int num_modes() const {
+    if (geometry_.kind == SolidKind::Tetra || static_cast<int>(geometry_.x.size()) > get_num_corners(geometry_.kind))
+      return 0;
+    return geometry_.kind == SolidKind::Hexa ? 3 : 4;
+  }
   MatrixXd calc_mode_map(const std::vector<Field>& fields, MatrixXd* condensed) const;
 
   SolidGeometry geometry_;

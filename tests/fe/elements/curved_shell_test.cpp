@@ -301,5 +301,33 @@ TEST(CurvedShellPatch, ForcesOfALaminate) {
   }
 }
 
+TEST(CurvedShell, FoldedSurfaceIsRefused) {
+  Case c{.name = "", .corners = kCorners};
+  SmallModel m = make_model(c);
+  // Two midside grids far out of their places.
+  const int a = m.nodes.add_grid(20, m.nodes.node(4).x + 1.5 * (m.nodes.node(6).x - m.nodes.node(4).x)) + 1;
+  ASSERT_GT(a, 0);
+  m.deck.shells[0].midsides[0] = 20;
+  Diagnostics diagnostics;
+  EXPECT_TRUE(make_elements(m.deck, m.nodes, diagnostics).elements.empty());
+  ASSERT_EQ(diagnostics.items().size(), 1u);
+  EXPECT_EQ(diagnostics.items()[0].id, "fe.bad-facet");
+}
+
+/// Without midside grids the card is the flat element.
+TEST(CurvedShell, WithoutMidsideGridsItIsFlat) {
+  Case c{.name = "", .corners = kCorners};
+  SmallModel m = make_model(c);
+  m.deck.shells[0].midsides.clear();
+  m.make();
+  ASSERT_EQ(m.elements.size(), 1u);
+  EXPECT_EQ(m.elements[0]->shape().type, "quad4");
+  EXPECT_EQ(m.elements[0]->card(), "CQUAD8");
+  m.deck.shells[0].card = "CQUAD4";
+  const MatrixXd K8 = m.calc_stiffness();
+  m.make();
+  EXPECT_EQ((m.calc_stiffness() - K8).norm(), 0);
+}
+
 }  // namespace
 }  // namespace bough::fe::test

@@ -163,6 +163,49 @@ TEST(Pressure, WarpedQuadCarriesItsVectorArea) {
   EXPECT_GT(along[2], 2.5 * area.norm() * 0.9);
 }
 
+/// Serendipity's work-equivalent forces of a uniform pressure on a flat square: -1/12 and 1/3; 0 and 1/3 of a triangle.
+/// On half a cylinder the resultant is p times the projected area, in the limit of the parabolas' arcs.
+TEST(Pressure, QuadraticShells) {
+  Diagnostics d;
+  const std::string plate = "PSHELL,1,1,.1,1,,1\nMAT1,1,7.+10,,.3\n";
+  const auto flat = make_loaded(
+      "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,2.,2.,0.\nGRID,4,,0.,2.,0.\nGRID,5,,1.,0.,0.\nGRID,6,,2.,1.,0.\n"
+      "GRID,7,,1.,2.,0.\nGRID,8,,0.,1.,0.\nGRID,9,,5.,0.,0.\nGRID,10,,3.5,0.,0.\nGRID,11,,3.5,1.,0.\n"
+      "CQUAD8,1,1,1,2,3,4,5,6\n,7,8\nCTRIA6,2,1,2,9,3,10,11,6\n" +
+          plate + "PLOAD2,4,3.,1\nPLOAD4,5,2,3.\n",
+      d);
+  const auto quad = flat.model.calc_load(flat.deck, 4, d), tri = flat.model.calc_load(flat.deck, 5, d);
+  const auto get = [&](const auto& f, int grid) {
+    return f[flat.model.node(flat.model.find_node(grid)).first_gdof + 2];
+  };
+  for (int grid = 1; grid <= 8; ++grid) EXPECT_NEAR(get(quad, grid), 12 * (grid < 5 ? -1.0 / 12 : 1.0 / 3), 1e-13);
+  for (int grid : {2, 9, 3}) EXPECT_NEAR(get(tri, grid), 0, 1e-13);
+  for (int grid : {10, 11, 6}) EXPECT_NEAR(get(tri, grid), 9.0 / 3, 1e-13);
+
+  std::string bulk = plate;
+  const int n = 8;  // arcs over 180 degrees, length 1, radius 1
+  const auto add_grid = [&](int id, double at, double y) {
+    const double a = M_PI * at / (2 * n);
+    bulk += "GRID," + std::to_string(id) + ",," + std::to_string(std::cos(a)) + "," + std::to_string(y) + "," +
+            std::to_string(std::sin(a)) + "\n";
+  };
+  for (int k = 0; k <= 2 * n; ++k) {
+    add_grid(3 * k + 1, k, 0);
+    if (k % 2 == 0) add_grid(3 * k + 2, k, .5);
+    add_grid(3 * k + 3, k, 1);
+  }
+  for (int k = 0; k < 2 * n; k += 2) {
+    const auto id = [&](int column, int row) { return "," + std::to_string(3 * (k + column) + row); };
+    bulk += "CQUAD8," + std::to_string(k + 1) + ",1" + id(0, 1) + id(0, 3) + id(2, 3) + id(2, 1) + id(0, 2) + id(1, 3) +
+            "\n" + id(2, 2) + id(1, 1) + "\nPLOAD2,4,3.," + std::to_string(k + 1) + "\n";
+  }
+  const auto half = make_loaded(bulk, d);
+  const Vector6d r = calc_resultant(half.model, half.model.calc_load(half.deck, 4, d));
+  EXPECT_NEAR(std::abs(r[2]), 3 * 2 * 1, 1e-5);
+  EXPECT_NEAR(r[0], 0, 1e-5);
+  EXPECT_NEAR(r[1], 0, 1e-13);
+}
+
 TEST(Pressure, ClosedBrickIsInBalanceAndEachFacePushesInward) {
   Diagnostics d;
   std::string bulk =

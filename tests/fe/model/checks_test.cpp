@@ -34,6 +34,24 @@ TEST(ElementQuality, KnownShapes) {
   EXPECT_LT(calc_quality("tetra4", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}}).jacobian, 0);
 }
 
+/// Quadratic shells and shear panels are judged by their corners.
+TEST(Checks, QualityOfCurvedShellsAndShearPanels) {
+  Diagnostics d;
+  const auto deck = nastran::read_deck_text(
+      "GRID,1,,0.,0.,0.\nGRID,2,,4.,0.,0.\nGRID,3,,4.,2.,0.\nGRID,4,,0.,2.,0.\nGRID,5,,2.,0.,0.\nGRID,6,,4.,1.,0.\n"
+      "GRID,7,,2.,2.,0.\nGRID,8,,0.,1.,0.\nCQUAD8,1,1,1,2,3,4,5,6\n,7,8\nCTRIA6,2,1,1,2,3,5,6\nCSHEAR,3,2,1,2,3,4\n"
+      "PSHELL,1,1,.1,1,,1\nPSHEAR,2,1,.1\nMAT1,1,7.+10,,.3\n",
+      "deck.bdf", {}, d);
+  const Model model = Model::build(deck, {}, d);
+  const auto worst = find_worst_quality(model);
+  ASSERT_EQ(worst.size(), 3u);
+  EXPECT_EQ(worst[0].card, "CQUAD8");
+  EXPECT_NEAR(worst[0].worst.aspect, 2, 1e-15);
+  EXPECT_EQ(worst[1].card, "CSHEAR");
+  EXPECT_EQ(worst[2].card, "CTRIA6");
+  EXPECT_NEAR(worst[2].worst.aspect, std::sqrt(20.0) / 2, 1e-15);
+}
+
 TEST(Checks, GridsAndGrounds) {
   Diagnostics d;
   const auto deck = nastran::read_deck_text(
