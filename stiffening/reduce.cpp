@@ -7,6 +7,7 @@
 
 #include "bough/base/rotation.hpp"
 #include "bough/modal/integrals.hpp"
+#include "bough/stiffening/body_basis.hpp"
 
 namespace bough::stiffening {
 
@@ -15,6 +16,8 @@ using records::BodySpec;
 using records::FlexBody;
 
 namespace {
+
+using modal::bases::StaticSolve;
 
 constexpr const char* kDirections[] = {"x", "y", "z", "rx", "ry", "rz"};
 
@@ -43,19 +46,24 @@ class Reduction {
   void check_node(const fe::Model& model, int id, const std::string& what, const SourceLocation& at);
   fe::ModelOptions make_model_options() const;
   void set_rigid_part(const fe::Model& model);
-  void set_modes(const fe::Model& model);
+  std::vector<int> choose_columns(int available, const std::string& whose);
+  void check_rigid(const modal::bases::Basis& basis);
+  void set_modes(const fe::Model& model, const StaticSolve& solve);
   void set_given_modes(const fe::Model& model);
-  void set_damping(const fe::Model& model);
+  void set_damping(const modal::bases::Basis& basis);
+  void add_dampers(const fe::Model& model);
   void set_nodes(const fe::Model& model);
   void set_integrals(const fe::Model& model);
-  void set_stiffening(const fe::Model& model, const fe::StaticSolver& solver);
-  MatrixXd make_external_loads(const fe::Model& model);
+  void set_stiffening(const fe::Model& model, const StaticSolve& solve);
+  void make_loads(const fe::Model& model);
   void set_resultants(const fe::Model& model, const MatrixXd& F_ext);
   std::vector<int> choose_support(const fe::Model& model);
-  fe::StaticSolver make_solver(const fe::Model& model, const fe::PetscMat& K);
+  bool is_on_dependent_node(const fe::Model& model) const;
+  StaticSolve make_solver(const fe::Model& model, const fe::PetscMat& K);
+  fe::Model build_model();
   void add_mechanism_error(const std::string& what);
 
-  bool is_free() const { return spec_.frame == BodyFrame::Free; }
+  bool is_free() const { return spec_.frame != BodyFrame::Fixed; }
 
   const records::Deck& deck_;
   const BodySpec& spec_;
@@ -63,12 +71,11 @@ class Reduction {
   Diagnostics& diagnostics_;
   FlexBody body_;
   MatrixXd Phi_;
+  std::vector<BodyLoad> loads_;
 };
 
 void Reduction::check_spec() {
-  if (spec_.num_modes <= 0 && !spec_.max_frequency_hz && spec_.select.empty() && !options_.modes)
-    diagnostics_.error("reduce.no-modes", where(), "the body asks for no modes",
-                       "give [body.modes] number, max_frequency or select");
+  check_basis(spec_, !options_.modes, where(), diagnostics_);
   for (const int s : spec_.select)
     if (s < 1)
       diagnostics_.error("reduce.bad-select", where(), "mode " + std::to_string(s) + " in select, modes count from 1");
@@ -90,9 +97,10 @@ void Reduction::check_spec() {
   if (!spec_.support.empty() && !is_free())
     diagnostics_.warning("reduce.support-unused", where(), "support is given but the frame is fixed",
                          "the deck's SPC set supports a fixed body");
-  if (spec_.damping_ratio < 0 ||
-      std::any_of(spec_.damping_ratios.begin(), spec_.damping_ratios.end(), [](double z) { return z < 0; }))
-    diagnostics_.error("reduce.bad-damping", where(), "a damping ratio is negative", "give ratios of 0 or more");
+  if (!spec_.support.empty() && spec_.frame == BodyFrame::Node)
+    diagnostics_.warning("reduce.support-unused", where(), "support is given but a node carries the frame",
+                         "that node supports the body");
+  check_damping(spec_, where(), diagnostics_);
   diagnostics_.throw_if_errors();
 }
 
@@ -120,6 +128,7 @@ void Reduction::check_nodes(const fe::Model& model) {
   for (const int id : spec_.interface_nodes) check_node(model, id, "interface", {});
   for (const int id : spec_.output_nodes) check_node(model, id, "output", {});
   for (const int id : spec_.support) check_node(model, id, "support", {});
+  for (const int id : spec_.frame_nodes) check_node(model, id, "frame_nodes", {});
   for (const auto& load : spec_.loads) {
     if (load.load_set > 0) continue;
     check_node(model, load.node, "load \"" + load.name + "\"", load.at);
@@ -137,18 +146,27 @@ void Reduction::set_rigid_part(const fe::Model& model) {
   body_.mass = properties.mass;
   body_.cg = properties.cg;
   body_.inertia = properties.inertia;
-  body_.is_free_free = is_free();
+  body_.is_free_free = is_free() && spec_.frame != BodyFrame::Node && spec_.frame != BodyFrame::ThreeNodes;
 }
 
-void Reduction::set_modes(const fe::Model& model) {
-  modal::EigenOptions options;
-  const int num_rigid = is_free() ? 6 : 0;
-  int num_elastic = spec_.num_modes;
-  for (const int s : spec_.select) num_elastic = std::max(num_elastic, s);
-  options.num_modes = num_elastic > 0 ? num_elastic + num_rigid : 0;
-  options.max_hz = spec_.max_frequency_hz;
-  const auto pairs = modal::calc_normal_modes(model, options, diagnostics_);
-  const int found_rigid = pairs.num_rigid + pairs.num_massless;
+/// The columns that select names, or all of them.
+std::vector<int> Reduction::choose_columns(int available, const std::string& whose) {
+  std::vector<int> columns;
+  for (const int s : spec_.select) {
+    if (s <= available)
+      columns.push_back(s - 1);
+    else
+      diagnostics_.error("reduce.bad-select", where(),
+                         "mode " + std::to_string(s) + " in select, " + whose + std::to_string(available) +
+                             " elastic modes in the range");
+  }
+  diagnostics_.throw_if_errors();
+  for (int j = 0; j < available && spec_.select.empty(); ++j) columns.push_back(j);
+  return columns;
+}
+
+void Reduction::check_rigid(const modal::bases::Basis& basis) {
+  const int num_rigid = is_free() ? 6 : 0, found_rigid = basis.num_rigid + basis.num_massless;
   if (is_free() && found_rigid < 6)
     diagnostics_.error("reduce.grounded", where(),
                        "a free body must have 6 rigid motions, this model has " + std::to_string(found_rigid),
@@ -156,56 +174,56 @@ void Reduction::set_modes(const fe::Model& model) {
   if (found_rigid > num_rigid)
     add_mechanism_error(std::to_string(found_rigid - num_rigid) + " motion(s) have no strain");
   diagnostics_.throw_if_errors();
+}
 
-  const auto available = static_cast<int>(pairs.lambda.size()) - pairs.num_rigid;
-  std::vector<int> columns;
-  if (spec_.select.empty()) {
-    // A massless rigid motion takes none of the modes asked for: what came in its place is cut again.
-    const int kept = spec_.num_modes > 0 ? std::min(available, spec_.num_modes) : available;
-    for (int j = 0; j < kept; ++j) columns.push_back(pairs.num_rigid + j);
-  } else {
-    for (const int s : spec_.select) {
-      if (s > available)
-        diagnostics_.error("reduce.bad-select", where(),
-                           "mode " + std::to_string(s) + " in select, the model gives " + std::to_string(available) +
-                               " elastic modes in the range");
-      else
-        columns.push_back(pairs.num_rigid + s - 1);
-    }
-    diagnostics_.throw_if_errors();
-  }
+void Reduction::set_modes(const fe::Model& model, const StaticSolve& solve) {
+  auto options = make_basis_options(spec_);
+  std::vector<std::string> names;
+  options.residual_loads = collect_residual_loads(model, spec_, loads_, names);
+  auto basis = modal::bases::calc_basis(model, options, solve, diagnostics_);
+  check_rigid(basis);
+  std::string unused;
+  for (const int i : basis.unused_loads) unused += (unused.empty() ? "" : ", ") + names[static_cast<std::size_t>(i)];
+  if (!unused.empty())
+    diagnostics_.note("reduce.residual-unused", where(),
+                      "no residual vector for " + unused + ": the modes and the loads before hold its deflection",
+                      "nothing to do");
+
+  const bool is_moved = is_free() && spec_.frame != BodyFrame::Free;
+  // Raw coordinates lose those of the frame's node first, so that select counts what is left.
+  if (basis.is_raw && is_moved) modal::bases::move_to_frame(model, make_frame_spec(spec_), basis);
+  auto columns = choose_columns(static_cast<int>(basis.lambda.size()), "the model gives ");
+  if (spec_.select.empty() && options.kind == modal::bases::BasisKind::Normal && options.residual_loads.cols() == 0 &&
+      spec_.num_modes > 0 && static_cast<int>(columns.size()) > spec_.num_modes)
+    columns.resize(static_cast<std::size_t>(spec_.num_modes));
   if (columns.empty())
     diagnostics_.warning("reduce.rigid", where(), "no elastic mode is in the range: the body is rigid",
                          "raise max_frequency or the number of modes");
-  Phi_ = pairs.Phi(Eigen::all, columns);
-  const VectorXd lambda = pairs.lambda(columns);
-  const auto n = lambda.size();
-  body_.eigenvalue = lambda;
-  body_.frequency_hz = lambda.cwiseMax(0).cwiseSqrt() / (2 * std::numbers::pi);
-  body_.kind.assign(n, records::ModeKind::Normal);
-  body_.modal_mass = MatrixXd::Identity(n, n);
-  body_.modal_stiffness = lambda.asDiagonal();
+  basis = modal::bases::select_columns(basis, columns);
+  set_damping(basis);
+  if (!basis.is_raw && is_moved) modal::bases::move_to_frame(model, make_frame_spec(spec_), basis);
+  Phi_ = basis.Phi;
+  body_.eigenvalue = basis.lambda;
+  body_.frequency_hz = basis.lambda.cwiseMax(0).cwiseSqrt() / (2 * std::numbers::pi);
+  body_.kind = basis.kind;
+  body_.modal_mass = basis.M;
+  body_.modal_stiffness = basis.K;
   body_.effective_mass = modal::calc_effective_mass(model, Phi_);
-  set_damping(model);
+  add_dampers(model);
 }
 
 /// Any basis: what is not diagonal in ΦᵀMΦ and ΦᵀKΦ stays.
 void Reduction::set_given_modes(const fe::Model& model) {
   Phi_ = options_.modes(model);
   const auto available = static_cast<int>(Phi_.cols());
-  std::vector<int> columns;
-  for (const int s : spec_.select) {
-    if (s <= available)
-      columns.push_back(s - 1);
-    else
-      diagnostics_.error("reduce.bad-select", where(),
-                         "mode " + std::to_string(s) + " in select, " + std::to_string(available) + " are given");
+  auto columns = choose_columns(available, "the file gives ");
+  if (spec_.select.empty() && spec_.num_modes > 0 && spec_.num_modes < available)
+    columns.resize(static_cast<std::size_t>(spec_.num_modes));
+  Phi_ = Phi_(Eigen::all, columns).eval();
+  if (is_free() && spec_.frame != BodyFrame::Free) {
+    const auto C = modal::bases::calc_reference_conditions(model, make_frame_spec(spec_));
+    Phi_ = modal::bases::shift_to_frame(model, C, Phi_);
   }
-  diagnostics_.throw_if_errors();
-  if (!spec_.select.empty())
-    Phi_ = Phi_(Eigen::all, columns).eval();
-  else if (spec_.num_modes > 0 && spec_.num_modes < available)
-    Phi_ = Phi_.leftCols(spec_.num_modes).eval();
   const auto n = Phi_.cols();
   const auto project = [this](const MatrixXd& A_Phi) -> MatrixXd {
     const MatrixXd A = Phi_.transpose() * A_Phi;
@@ -223,24 +241,47 @@ void Reduction::set_given_modes(const fe::Model& model) {
   body_.frequency_hz = body_.eigenvalue.cwiseMax(0).cwiseSqrt() / (2 * std::numbers::pi);
   body_.kind.assign(static_cast<std::size_t>(n), records::ModeKind::Normal);
   body_.effective_mass = modal::calc_effective_mass(model, Phi_);
-  set_damping(model);
+  modal::bases::Basis basis;
+  basis.Phi = Phi_;
+  basis.lambda = body_.eigenvalue;
+  basis.M = body_.modal_mass;
+  basis.K = body_.modal_stiffness;
+  basis.kind = body_.kind;
+  set_damping(basis);
+  add_dampers(model);
 }
 
-/// 2 ζ ω of the ratios, plus ΦᵀBΦ of the dampers of the deck, which couples modes.
-void Reduction::set_damping(const fe::Model& model) {
-  const auto n = body_.eigenvalue.size();
-  VectorXd zeta = VectorXd::Constant(n, spec_.damping_ratio);
-  if (!spec_.damping_ratios.empty()) {
-    if (static_cast<Eigen::Index>(spec_.damping_ratios.size()) != n)
-      diagnostics_.error(
-          "reduce.bad-damping", where(),
-          std::to_string(spec_.damping_ratios.size()) + " damping ratios for " + std::to_string(n) + " modes",
-          "give one per kept mode, or one for all");
+/// By ratio, table, Rayleigh's factors and the materials, in the frame where the basis is orthogonal to rigid motions:
+/// those do not dissipate.
+void Reduction::set_damping(const modal::bases::Basis& basis) {
+  const auto spec = make_damping_spec(spec_);
+  const auto n = static_cast<std::size_t>(basis.lambda.size());
+  const auto bad = [&](const std::string& what, const std::string& advice) {
+    diagnostics_.error("reduce.bad-damping", where(), what, advice);
     diagnostics_.throw_if_errors();
-    zeta = VectorXd::Map(spec_.damping_ratios.data(), n);
+  };
+  if (!spec.ratios.empty() && spec.ratios.size() != n)
+    bad(std::to_string(spec.ratios.size()) + " damping ratios for " + std::to_string(n) + " modes",
+        "give one per kept mode, or one for all");
+  std::vector<bool> is_residual;
+  for (const auto kind : basis.kind)
+    is_residual.push_back(kind == records::ModeKind::Residual || kind == records::ModeKind::Attachment);
+  for (std::size_t j = 0; j < n && !spec.table.empty(); ++j) {
+    const double hz = std::sqrt(std::max(basis.lambda(static_cast<Eigen::Index>(j)), 0.0)) / (2 * std::numbers::pi);
+    if (const double zeta = modal::bases::calc_table_ratio(spec, hz); !(zeta >= 0) || std::isinf(zeta))
+      bad("the damping table gives the ratio " + std::to_string(zeta) + " at " + std::to_string(hz) +
+              " Hz, where its end lines lead",
+          "add a point to the table beyond the modes");
   }
-  const Eigen::ArrayXd mass = body_.modal_mass.diagonal().array();
-  body_.modal_damping = (2 * zeta.array() * body_.eigenvalue.array().max(0).sqrt() * mass).matrix().asDiagonal();
+  MatrixXd K_g;
+  if (spec_.has_material_damping && options_.elements)
+    bad("material = true, but the stiffness comes from given matrices", "use ratios, a table or structural");
+  if (spec_.has_material_damping) K_g = calc_material_damping(deck_, basis.Phi, where(), diagnostics_);
+  body_.modal_damping = modal::bases::calc_damping(basis.M, basis.K, spec, K_g, is_residual);
+}
+
+/// ΦᵀBΦ of the dampers of the deck, which couples modes.
+void Reduction::add_dampers(const fe::Model& model) {
   if (!fe::has_damping(model)) return;
   const MatrixXd B = Phi_.transpose() * fe::calc_damping_times(model, Phi_);
   body_.modal_damping += 0.5 * (B + B.transpose());
@@ -257,11 +298,6 @@ void Reduction::set_nodes(const fe::Model& model) {
     for (const auto& node : model.nodes())
       if (node.num_dofs == 6) add(node.id);
   for (const int id : spec_.interface_nodes) add(id);
-  body_.interface_nodes.clear();
-  for (const int id : spec_.interface_nodes)
-    if (std::find(body_.interface_nodes.begin(), body_.interface_nodes.end(), id) == body_.interface_nodes.end())
-      body_.interface_nodes.push_back(id);
-
   body_.node_id = ids;
   body_.node_xyz.resize(static_cast<Eigen::Index>(ids.size()), 3);
   body_.phi.clear();
@@ -282,30 +318,31 @@ void Reduction::set_integrals(const fe::Model& model) {
   body_.integrals_method = spec_.integrals;
 }
 
-MatrixXd Reduction::make_external_loads(const fe::Model& model) {
-  std::vector<VectorXd> columns;
-  const auto add_unit = [&](const std::string& name, int id, int direction) {
+/// A locator for each translation of the interface nodes and each load of the body file.
+void Reduction::make_loads(const fe::Model& model) {
+  for (const int id : spec_.interface_nodes)
+    if (std::find(body_.interface_nodes.begin(), body_.interface_nodes.end(), id) == body_.interface_nodes.end())
+      body_.interface_nodes.push_back(id);
+  const auto add_unit = [&](const std::string& group, const std::string& name, int id, int direction) {
     const auto& node = model.node(model.find_node(id));
-    columns.push_back(VectorXd::Unit(model.num_gdofs(), node.first_gdof + direction - 1));
-    body_.locators.push_back({name, id, direction});
+    loads_.push_back(
+        {group, {name, id, direction}, VectorXd::Unit(model.num_gdofs(), node.first_gdof + direction - 1)});
   };
   for (const int id : body_.interface_nodes)
-    for (int d = 1; d <= 3; ++d) add_unit("node" + std::to_string(id) + "_" + kDirections[d - 1], id, d);
+    for (int d = 1; d <= 3; ++d) add_unit("", "node" + std::to_string(id) + "_" + kDirections[d - 1], id, d);
   for (std::size_t i = 0; i < spec_.loads.size(); ++i) {
     const auto& load = spec_.loads[i];
     const std::string name = load.name.empty() ? "load" + std::to_string(i + 1) : load.name;
     if (load.load_set > 0) {
-      columns.push_back(model.calc_load(deck_, load.load_set, diagnostics_));
-      body_.locators.push_back({name, 0, 0});
+      BodyLoad& pattern = loads_.emplace_back();
+      pattern.group = pattern.locator.name = name;
+      pattern.F = model.calc_load(deck_, load.load_set, diagnostics_);
       continue;
     }
     for (const int d : load.directions)
-      add_unit(load.directions.size() == 1 ? name : name + "_" + kDirections[d - 1], load.node, d);
+      add_unit(name, load.directions.size() == 1 ? name : name + "_" + kDirections[d - 1], load.node, d);
   }
   diagnostics_.throw_if_errors();
-  MatrixXd F(model.num_gdofs(), static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t i = 0; i < columns.size(); ++i) F.col(static_cast<Eigen::Index>(i)) = columns[i];
-  return F;
 }
 
 /// What each external load does to the body as a whole: Φ_Rᵀ F, and Σ φ_kj × f_k by which mode j shifts its moment.
@@ -324,7 +361,9 @@ void Reduction::set_resultants(const fe::Model& model, const MatrixXd& F_ext) {
 
 std::vector<int> Reduction::choose_support(const fe::Model& model) {
   if (!is_free()) return {};
-  return fe::choose_determinate_support(model, spec_.support.empty() ? 0 : spec_.support.front());
+  int node = spec_.support.empty() ? 0 : spec_.support.front();
+  if (spec_.frame == BodyFrame::Node) node = spec_.frame_nodes.front();
+  return fe::choose_determinate_support(model, node);
 }
 
 void Reduction::add_mechanism_error(const std::string& what) {
@@ -336,26 +375,44 @@ void Reduction::add_mechanism_error(const std::string& what) {
                        "complete the SPC set and select it in the case control, or use frame = \"free\"");
 }
 
+/// The frame rides on a node that follows others (RBE2, RBE3): no dof of its own can be held.
+bool Reduction::is_on_dependent_node(const fe::Model& model) const {
+  if (spec_.frame != BodyFrame::Node) return false;
+  const int index = model.find_node(spec_.frame_nodes.front());
+  for (int c = 1; c <= 6; ++c)
+    if (model.find_fdof(index, c) < 0) return true;
+  return false;
+}
+
 /// A deck that leaves a mechanism is wrong input here: what the factorization says, with what a body needs.
-fe::StaticSolver Reduction::make_solver(const fe::Model& model, const fe::PetscMat& K) {
-  const auto support = choose_support(model);
+StaticSolve Reduction::make_solver(const fe::Model& model, const fe::PetscMat& K) {
   try {
-    return fe::StaticSolver(model, K, support);
+    if (is_on_dependent_node(model)) {
+      const auto fixed = std::make_shared<modal::bases::FixedInterface>(model, spec_.frame_nodes, diagnostics_);
+      return [fixed](const MatrixXd& F) { return fixed->solve(F); };
+    }
+    const auto solver = std::make_shared<fe::StaticSolver>(model, K, choose_support(model));
+    return [solver](const MatrixXd& F) { return solver->solve(F); };
   } catch (const ComputationError& error) {
     for (auto item : error.items()) {
       if (item.where.file.empty()) item.where = deck_.locate({0, 0});
       diagnostics_.add(std::move(item));
     }
-    if (error.items().front().id != "fe.mechanism") throw;
+    const auto& id = error.items().front().id;
+    if (id != "fe.mechanism" && id != "modal.interface-mechanism") throw;
     add_mechanism_error("the stiffness matrix is singular");
     throw InputError(diagnostics_.items());
   }
 }
 
-void Reduction::set_stiffening(const fe::Model& model, const fe::StaticSolver& solver) {
+void Reduction::set_stiffening(const fe::Model& model, const StaticSolve& solve) {
   const auto n = Phi_.cols();
   body_.F_I = calc_inertial_loads(model, model.mass_kind());
-  const MatrixXd F_ext = make_external_loads(model);
+  MatrixXd F_ext(model.num_gdofs(), static_cast<Eigen::Index>(loads_.size()));
+  for (std::size_t e = 0; e < loads_.size(); ++e) {
+    F_ext.col(static_cast<Eigen::Index>(e)) = loads_[e].F;
+    body_.locators.push_back(loads_[e].locator);
+  }
   body_.external_load = Phi_.transpose() * F_ext;
   set_resultants(model, F_ext);
 
@@ -371,7 +428,7 @@ void Reduction::set_stiffening(const fe::Model& model, const fe::StaticSolver& s
   MatrixXd F(model.num_gdofs(), num_inertial + F_ext.cols());
   F << body_.F_I(Eigen::all, inertial), F_ext;
 
-  const MatrixXd U = solver.solve(F);
+  const MatrixXd U = solve(F);
   report("geometric stiffness");
   auto K_G = calc_generalized_geometric_stiffness(model, U, Phi_);
   body_.kg_inertial.fill(MatrixXd::Zero(n, n));
@@ -383,28 +440,46 @@ void Reduction::set_stiffening(const fe::Model& model, const fe::StaticSolver& s
   body_.kg_external.assign(std::make_move_iterator(K_G.begin() + num_inertial), std::make_move_iterator(K_G.end()));
 }
 
+/// Twice where the origin is a node or the mass centre: the first model says where that is.
+fe::Model Reduction::build_model() {
+  const auto& elements = options_.elements ? options_.elements : fe::make_elements;
+  auto options = make_model_options();
+  auto model = fe::Model::build(deck_, options, elements, diagnostics_);
+  if (spec_.origin_node > 0) check_node(model, spec_.origin_node, "origin", {});
+  check_nodes(model);
+  if (spec_.frame != BodyFrame::Fixed && spec_.frame != BodyFrame::Free)
+    modal::bases::calc_reference_conditions(model, make_frame_spec(spec_));
+  if (spec_.origin_node > 0)
+    options.origin = model.node(model.find_node(spec_.origin_node)).x;
+  else if (spec_.origin_at_mass_centre)
+    options.origin = fe::calc_mass_properties(model, model.mass_kind(), Eigen::Vector3d::Zero()).cg;
+  else
+    return model;
+  Diagnostics reported;
+  return fe::Model::build(deck_, options, elements, reported);
+}
+
 FlexBody Reduction::run() {
   check_spec();
   report("model");
-  const auto& elements = options_.elements ? options_.elements : fe::make_elements;
-  const auto model = fe::Model::build(deck_, make_model_options(), elements, diagnostics_);
-  check_nodes(model);
+  const auto model = build_model();
   set_rigid_part(model);
 
   // The factor first: of a mechanism it names the dofs, which the modes could not.
   report("static factorization");
   const fe::PetscMat K = fe::assemble_stiffness(model, fe::DofSet::Free);
-  const auto solver = make_solver(model, K);
+  const auto solve = make_solver(model, K);
+  make_loads(model);
   report("modes");
   if (options_.modes)
     set_given_modes(model);
   else
-    set_modes(model);
+    set_modes(model, solve);
   set_nodes(model);
   report("mass integrals");
   set_integrals(model);
   report("static solutions");
-  set_stiffening(model, solver);
+  set_stiffening(model, solve);
   return std::move(body_);
 }
 

@@ -10,9 +10,21 @@
 
 namespace bough::records {
 
+/// What carries the frame (docs/theory/bases.md). All but Fixed leave the SPC set out and remove the rigid motions.
 enum class BodyFrame {
-  Fixed,  ///< the deck's SPC set carries the frame: fixed-frame modes
-  Free    ///< free-free modes; rigid modes are removed
+  Fixed,       ///< the deck's SPC set: fixed-frame modes
+  Free,        ///< nothing: free-free modes, whose mean axes the frame is
+  MeanAxes,    ///< the same for any basis
+  Node,        ///< one node: its translation and rotation
+  ThreeNodes,  ///< 3-2-1
+  MassCentre   ///< the mass centre; turns as a node, as three, or as mean axes
+};
+
+enum class BodyBasis { Normal, CraigBampton, CraigChang };
+
+struct DampingTableSpec {
+  std::vector<std::pair<double, double>> points;  ///< Hz, value
+  std::string kind = "ratio";                     ///< "ratio", "structural" (2 ζ), "quality" (1 / 2ζ)
 };
 
 struct ExternalLoadSpec {
@@ -31,8 +43,14 @@ struct BodySpec {
   BodyFrame frame = BodyFrame::Fixed;
   std::vector<int> support;  ///< free: node(s) of the determinate support on which K_G is solved; empty = chosen
   std::vector<int> interface_nodes;  ///< get three translational locators each
+  std::vector<int> frame_nodes;      ///< Node: one; ThreeNodes: three; MassCentre: none, one or three
   std::optional<Vector3d> origin;    ///< Bo in basic; default: basic origin
+  int origin_node = 0;               ///< or at this node
+  bool origin_at_mass_centre = false;
 
+  BodyBasis basis = BodyBasis::Normal;
+  bool orthogonalize = true;          ///< Craig-Bampton: modes of K^N = M^ND, else its own coordinates
+  std::vector<std::string> residual;  ///< loads with a residual vector: names, "inertial", "interface"
   int num_modes = 0;
   std::optional<double> max_frequency_hz;
   std::vector<int> select;          ///< 1-based elastic modes kept, in this order; empty = all
@@ -44,6 +62,11 @@ struct BodySpec {
 
   double damping_ratio = 0;            ///< uniform
   std::vector<double> damping_ratios;  ///< or per mode
+  DampingTableSpec damping_table;      ///< or over frequency
+  double rayleigh_alpha = 0, rayleigh_beta = 0;
+  double structural_damping = 0;           ///< g, besides
+  bool has_material_damping = false;       ///< GE of the deck, PARAM,G
+  std::optional<double> residual_damping;  ///< ζ of residual and attachment vectors
 
   std::vector<int> output_nodes;  ///< empty = all grids
   std::string output_file;        ///< empty = NAME.h5

@@ -87,6 +87,46 @@ void read_loads(const Fields& body, records::BodySpec& spec, Diagnostics& diagno
   }
 }
 
+records::BodyFrame read_frame(const std::string& word) {
+  using records::BodyFrame;
+  static const std::map<std::string, BodyFrame> frames{{"free", BodyFrame::Free},
+                                                       {"mean", BodyFrame::MeanAxes},
+                                                       {"node", BodyFrame::Node},
+                                                       {"3-2-1", BodyFrame::ThreeNodes},
+                                                       {"mass-centre", BodyFrame::MassCentre}};
+  const auto found = frames.find(word);
+  return found == frames.end() ? BodyFrame::Fixed : found->second;
+}
+
+/// Three numbers, a node, or "mass-centre".
+void read_origin(const Fields& body, records::BodySpec& spec, Diagnostics& diagnostics) {
+  const Value* v = body.find("origin");
+  if (!v) return;
+  if (v->is_array()) spec.origin = body.get_vector("origin", Eigen::Vector3d::Zero());
+  if (v->kind == Value::Kind::Integer) spec.origin_node = body.get_int("origin", 0);
+  if (!v->is_string()) return;
+  spec.origin_at_mass_centre = v->text == "mass-centre";
+  if (!spec.origin_at_mass_centre)
+    diagnostics.error("toml.bad-value", body.locate("origin"),
+                      "origin is '" + v->text + "', expected three numbers, a node id or \"mass-centre\"");
+}
+
+void read_more_damping(const Fields& damping, records::BodySpec& spec) {
+  if (const Value* table = damping.find("table")) {
+    for (const Value& row : table->items)
+      if (row.items.size() == 2 && row.items[0].is_number() && row.items[1].is_number())
+        spec.damping_table.points.emplace_back(row.items[0].number, row.items[1].number);
+  }
+  spec.damping_table.kind = damping.get_string("table_kind", spec.damping_table.kind);
+  if (const auto rayleigh = damping.get_numbers("rayleigh"); rayleigh.size() == 2) {
+    spec.rayleigh_alpha = rayleigh[0];
+    spec.rayleigh_beta = rayleigh[1];
+  }
+  spec.structural_damping = damping.get_number("structural", 0);
+  spec.has_material_damping = damping.get_bool("material", false);
+  spec.residual_damping = damping.get_number("residual_ratio");
+}
+
 }  // namespace
 
 records::BodySpec read_body_spec(const std::string& path, Diagnostics& diagnostics) {
@@ -108,10 +148,11 @@ records::BodySpec read_body_spec_text(const std::string& text, const std::string
   spec.name = body.get_string("name", get_stem(path));
   spec.deck = resolve_path(path, body.get_string("deck"));
   spec.subcase = body.get_int("subcase", 0);
-  spec.frame = body.get_string("frame") == "free" ? records::BodyFrame::Free : records::BodyFrame::Fixed;
+  spec.frame = read_frame(body.get_string("frame"));
+  spec.frame_nodes = body.get_ints("frame_nodes");
   spec.support = body.get_ints("support");
   spec.interface_nodes = body.get_ints("interface");
-  if (body.has("origin")) spec.origin = body.get_vector("origin", Eigen::Vector3d::Zero());
+  read_origin(body, spec, diagnostics);
   spec.mass = body.get_string("mass", spec.mass);
   spec.integrals = body.get_string("integrals", spec.integrals);
   spec.ignore_cards = body.get_strings("ignore");
@@ -125,7 +166,13 @@ records::BodySpec read_body_spec_text(const std::string& text, const std::string
   spec.num_modes = modes.get_int("number", 0);
   spec.max_frequency_hz = modes.get_number("max_frequency");
   spec.select = modes.get_ints("select");
-  if (modes.has("number")) {
+  spec.residual = modes.get_strings("residual");
+  spec.orthogonalize = modes.get_bool("orthogonalize", true);
+  if (const auto basis = modes.get_string("basis"); basis == "craig-bampton")
+    spec.basis = records::BodyBasis::CraigBampton;
+  else if (basis == "craig-chang")
+    spec.basis = records::BodyBasis::CraigChang;
+  if (modes.has("number") && spec.basis == records::BodyBasis::Normal && spec.residual.empty()) {
     for (const int mode : spec.select) {
       if (mode <= spec.num_modes) continue;
       diagnostics.error(
@@ -143,6 +190,7 @@ records::BodySpec read_body_spec_text(const std::string& text, const std::string
   const Fields damping = body.get_table("damping");
   spec.damping_ratio = damping.get_number("ratio", 0);
   spec.damping_ratios = damping.get_numbers("ratios");
+  read_more_damping(damping, spec);
 
   const Fields output = body.get_table("output");
   spec.output_file = resolve_path(path, output.get_string("file"));

@@ -8,6 +8,18 @@
 
 namespace bough::modal::bases {
 
+namespace {
+
+/// To the digits of mode shapes from a file.
+bool is_diagonal(const MatrixXd& A) {
+  for (Eigen::Index j = 0; j < A.cols(); ++j)
+    for (Eigen::Index i = 0; i < j; ++i)
+      if (std::abs(A(i, j)) > 1e-6 * std::sqrt(std::abs(A(i, i) * A(j, j)))) return false;
+  return true;
+}
+
+}  // namespace
+
 bool DampingSpec::is_zero() const {
   return ratio == 0 && ratios.empty() && table.empty() && alpha == 0 && beta == 0 && structural == 0 &&
          residual_ratio.value_or(0) == 0;
@@ -29,12 +41,11 @@ double calc_table_ratio(const DampingSpec& spec, double hz) {
 
 MatrixXd calc_damping(const MatrixXd& M, const MatrixXd& K, const DampingSpec& spec, const MatrixXd& K_g,
                       const std::vector<bool>& is_residual) {
-  const auto n = M.rows();
-  VectorXd lambda = K.diagonal();
-  const MatrixXd diagonal = lambda.asDiagonal();
-  const bool is_modal =
-      M.isIdentity(1e-9) && (K - diagonal).cwiseAbs().maxCoeff() <= 1e-9 * lambda.cwiseAbs().maxCoeff();
-  MatrixXd N = MatrixXd::Identity(n, n);
+  if (M.rows() == 0) return M;
+  const VectorXd mass = M.diagonal();
+  const bool is_modal = mass.minCoeff() > 0 && is_diagonal(M) && is_diagonal(K);
+  VectorXd lambda = K.diagonal().cwiseQuotient(mass);
+  MatrixXd N = mass.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal();
   if (!is_modal) {
     const auto pairs = calc_ritz_pairs(M, K);
     lambda = pairs.lambda;
@@ -51,7 +62,7 @@ MatrixXd calc_damping(const MatrixXd& M, const MatrixXd& K, const DampingSpec& s
     C(j) = (2 * zeta + spec.structural) * omega(j);
     if (K_g.size() > 0 && omega(j) > 0) C(j) += N.col(j).dot(K_g * N.col(j)) / omega(j);
   }
-  if (is_modal) return MatrixXd(C.asDiagonal()) + spec.alpha * M + spec.beta * K;
+  if (is_modal) return MatrixXd((C.cwiseProduct(mass)).asDiagonal()) + spec.alpha * M + spec.beta * K;
   const MatrixXd MN = M * N;
   return MN * C.asDiagonal() * MN.transpose() + spec.alpha * M + spec.beta * K;
 }

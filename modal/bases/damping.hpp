@@ -31,7 +31,8 @@ double calc_table_ratio(const DampingSpec& spec, double hz);
 
 /// D, n x n, of coordinates with mass M and stiffness K. With K N = M N Ω² it is M N C NᵀM + αM + βK, where C is
 /// diagonal: 2 ζ_j ω_j + g ω_j + (NᵀK_g N)_jj / ω_j. `K_g` (n x n or empty): ΦᵀΣ g_e K_e Φ of the deck's materials.
-/// `is_residual` (n, or empty): which coordinates are residual vectors; used where M is 1 and K diagonal.
+/// `is_residual` (n, or empty): which coordinates are residual vectors; used where M and K are
+/// diagonal, where `ratios` are in the order of the coordinates; else in that of the frequencies.
 MatrixXd calc_damping(const MatrixXd& M, const MatrixXd& K, const DampingSpec& spec, const MatrixXd& K_g,
                       const std::vector<bool>& is_residual);
 
