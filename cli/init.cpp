@@ -62,8 +62,9 @@ int run_init(const InitOptions& o) {
 
 void add_init(CLI::App& app, Action& action) {
   auto o = std::make_shared<InitOptions>();
-  auto* verb = app.add_subcommand("init", "A ready example to start from: spinup, hub, two-link, free-flyer, plate");
-  verb->add_option("template", o->name, "spinup, hub, two-link, free-flyer or plate")->required();
+  auto* verb =
+      app.add_subcommand("init", "A ready example to start from: spinup, hub, two-link, free-flyer, plate, campaign");
+  verb->add_option("template", o->name, "spinup, hub, two-link, free-flyer, plate or campaign")->required();
   verb->add_option("-o,--output", o->output, "Folder to write into (default: the template's name, here)");
   verb->add_flag("--force", o->force, "Overwrite files that are there already");
   verb->add_flag("-q,--quiet", o->quiet, "Print errors only");

@@ -9,39 +9,7 @@ namespace {
 
 using namespace bough;
 
-std::vector<std::string> list_verbs(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const auto* verb : app.get_subcommands(nullptr)) names.push_back(verb->get_name());
-  return names;
-}
-
-/// The first argument that is no option must be a verb; anything else is answered with the nearest one.
-bool check_verb(const CLI::App& app, int argc, char** argv, const cli::Console& console) {
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (!word.empty() && word[0] == '-') continue;
-    const auto verbs = list_verbs(app);
-    if (std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return true;
-    const auto nearest = find_nearest(word, verbs);
-    console.print_error("cli.unknown-verb", "unknown verb \"" + word + "\"",
-                        nearest.empty() ? "bough --help lists the verbs" : "did you mean \"" + nearest + "\"");
-    return false;
-  }
-  return true;
-}
-
-int run(int argc, char** argv) {
-  CLI::App app("Bough: from a finite-element model to a flexible multibody simulation", "bough");
-  app.set_help_flag("-h,--help", "Print this help and exit");
-  app.footer(
-      "bough VERB --help explains a verb. Exit codes: 0 success, 1 the input is wrong, 2 usage, 3 the computation "
-      "failed.\n"
-      "Example:\n  bough init spinup && cd spinup && bough reduce boom.toml && bough run spinup.toml -o spinup.h5");
-  bool show_version = false;
-  app.add_flag("--version", show_version, "Print the versions of Bough and of its libraries");
-  app.require_subcommand(0, 1);
-
-  cli::Action action;
+void add_verbs(CLI::App& app, cli::Action& action) {
   cli::add_check(app, action);
   cli::add_modes(app, action);
   cli::add_static(app, action);
@@ -54,6 +22,43 @@ int run(int argc, char** argv) {
   cli::add_plot(app, action);
   cli::add_info(app, action);
   cli::add_init(app, action);
+  cli::add_batch(app, action);
+}
+
+std::vector<std::string> get_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const auto* verb : app.get_subcommands(nullptr)) names.push_back(verb->get_name());
+  return names;
+}
+
+/// The first argument that is no option must be a verb; anything else is answered with the nearest one.
+bool check_verb(const CLI::App& app, int argc, const char* const* argv, const cli::Console& console) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (!word.empty() && word[0] == '-') continue;
+    const auto verbs = get_names(app);
+    if (std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return true;
+    const auto nearest = find_nearest(word, verbs);
+    console.print_error("cli.unknown-verb", "unknown verb \"" + word + "\"",
+                        nearest.empty() ? "bough --help lists the verbs" : "did you mean \"" + nearest + "\"");
+    return false;
+  }
+  return true;
+}
+
+int run(int argc, const char* const* argv) {
+  CLI::App app("Bough: from a finite-element model to a flexible multibody simulation", "bough");
+  app.set_help_flag("-h,--help", "Print this help and exit");
+  app.footer(
+      "bough VERB --help explains a verb. Exit codes: 0 success, 1 the input is wrong, 2 usage, 3 the computation "
+      "failed.\n"
+      "Example:\n  bough init spinup && cd spinup && bough reduce boom.toml && bough run spinup.toml -o spinup.h5");
+  bool show_version = false;
+  app.add_flag("--version", show_version, "Print the versions of Bough and of its libraries");
+  app.require_subcommand(0, 1);
+
+  cli::Action action;
+  add_verbs(app, action);
 
   const cli::Console console(false, 0);
   if (!check_verb(app, argc, argv, console)) return cli::kUsageError;
@@ -89,5 +94,22 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
+
+namespace bough::cli {
+
+int run_command(const std::vector<std::string>& words) {
+  std::vector<const char*> arguments{"bough"};
+  for (const auto& word : words) arguments.push_back(word.c_str());
+  return run(static_cast<int>(arguments.size()), arguments.data());
+}
+
+std::vector<std::string> list_verbs() {
+  CLI::App app;
+  Action action;
+  add_verbs(app, action);
+  return get_names(app);
+}
+
+}  // namespace bough::cli
 
 int main(int argc, char** argv) { return run(argc, argv); }

@@ -1,6 +1,8 @@
 #pragma once
 /// \file The list of verbs. Each adds its subcommand and sets `action` when the command line names it.
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -22,5 +24,11 @@ void add_export(CLI::App& app, Action& action);
 void add_plot(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_init(CLI::App& app, Action& action);
+void add_batch(CLI::App& app, Action& action);
+
+/// Runs one command line in this process, messages and exit code as from the shell. Words without the program's name.
+int run_command(const std::vector<std::string>& words);
+/// Every verb's name.
+std::vector<std::string> list_verbs();
 
 }  // namespace bough::cli

@@ -24,6 +24,8 @@ def load(folder, kind):
 
 
 def find_kind(document):
+    if "campaign" in document:
+        return "campaign"
     return "body" if isinstance(document.get("body"), dict) else "system"
 
 
@@ -85,7 +87,7 @@ def check_docs(validators, folder):
 
 def main():
     folder = pathlib.Path(sys.argv[1])
-    validators = {kind: load(folder, kind) for kind in ("system", "body")}
+    validators = {kind: load(folder, kind) for kind in ("system", "body", "campaign")}
     if sys.argv[2] == "--examples":
         faults = check_examples(validators, pathlib.Path(sys.argv[3]))
     elif sys.argv[2] == "--cases":

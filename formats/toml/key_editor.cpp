@@ -1,0 +1,169 @@
+#include "bough/formats/toml/key_editor.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <vector>
+
+#include <toml++/toml.h>
+
+#include "bough/formats/toml/detail/schema.hpp"
+
+namespace bough::toml_files {
+
+namespace {
+
+/// "a.\"b.c\".2" -> a, b.c, 2
+std::vector<std::string> split_path(const std::string& path) {
+  std::vector<std::string> parts(1);
+  bool quoted = false;
+  for (const char c : path) {
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == '.' && !quoted)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+std::string quote_key(const std::string& key) {
+  const bool is_bare = !key.empty() && std::all_of(key.begin(), key.end(), [](unsigned char c) {
+    return std::isalnum(c) || c == '_' || c == '-';
+  });
+  return is_bare ? key : quote_text(key);
+}
+
+/// Byte of a place; the parser counts characters, not bytes, in a line.
+std::size_t find_byte(const std::string& text, const toml::source_position& at) {
+  std::size_t byte = 0;
+  for (toml::source_index line = 1; line < at.line; ++line) byte = text.find('\n', byte) + 1;
+  for (toml::source_index column = 1; column < at.column && byte < text.size(); ++column) {
+    ++byte;
+    while (byte < text.size() && (static_cast<unsigned char>(text[byte]) & 0xC0) == 0x80) ++byte;
+  }
+  return byte;
+}
+
+bool is_number(const std::string& s) {
+  return !s.empty() && s.size() < 7 && std::all_of(s.begin(), s.end(), [](unsigned char c) { return std::isdigit(c); });
+}
+
+toml::node* find_item(toml::array& list, const std::string& part) {
+  if (is_number(part)) {
+    const auto i = static_cast<std::size_t>(std::stoul(part));
+    return i >= 1 && i <= list.size() ? list.get(i - 1) : nullptr;
+  }
+  for (auto& item : list)
+    if (auto* table = item.as_table())
+      if (const auto name = (*table)["name"].value<std::string>(); name && *name == part) return &item;
+  return nullptr;
+}
+
+/// Where a new key of this table can be written, and what has to stand around it.
+std::string add_key(std::string& text, const toml::table& table, bool is_root, const std::string& line) {
+  if (is_root) {
+    text.insert(0, line + "\n");
+    return {};
+  }
+  auto at = find_byte(text, table.source().begin);
+  if (at >= text.size()) return "the table cannot be found in the text";
+  if (table.is_inline()) {
+    const auto open = text.find('{', at);
+    text.insert(open + 1, table.empty() ? " " + line + " " : " " + line + ",");
+    return {};
+  }
+  if (text[at] != '[') return "its table is made by dotted keys; give the table a heading of its own";
+  const auto end = text.find('\n', at);
+  if (end == std::string::npos)
+    text += "\n" + line + "\n";
+  else
+    text.insert(end + 1, line + "\n");
+  return {};
+}
+
+struct Place {
+  std::size_t begin, end;
+  std::string old;
+};
+
+void collect_files(const std::string& text, const toml::table& table, const std::string& path,
+                   std::vector<Place>& places) {
+  for (const auto& [key, node] : table) {
+    const std::string below = path + "." + std::string(key.str());
+    if (const auto* word = node.as_string(); word && (key.str() == "deck" || key.str() == "file")) {
+      if (path != ".body.output")
+        places.push_back({find_byte(text, node.source().begin), find_byte(text, node.source().end), word->get()});
+    } else if (const auto* child = node.as_table()) {
+      collect_files(text, *child, below, places);
+    } else if (const auto* list = node.as_array()) {
+      for (const auto& item : *list)
+        if (const auto* entry = item.as_table()) collect_files(text, *entry, below, places);
+    }
+  }
+}
+
+}  // namespace
+
+std::string quote_text(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+void check_text(const std::string& text, const std::string& file, Diagnostics& diagnostics) {
+  Value root;
+  if (!parse_toml(text, file, root, diagnostics)) return;
+  const Value* body = root.find("body");
+  check_schema(root, body && body->is_table() ? get_body_schema() : get_system_schema(), file, diagnostics);
+}
+
+std::string set_key(std::string& text, const std::string& path, const std::string& value) {
+  const auto parts = split_path(path);
+  toml::table root;
+  try {
+    root = toml::parse(std::string_view(text));
+  } catch (const toml::parse_error& error) {
+    return std::string(error.description());
+  }
+  toml::node* node = &root;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    toml::node* next = nullptr;
+    if (auto* table = node->as_table()) {
+      next = table->get(parts[i]);
+      if (next == nullptr) {
+        std::string line;
+        for (std::size_t k = i; k < parts.size(); ++k) line += (k == i ? "" : ".") + quote_key(parts[k]);
+        return add_key(text, *table, node == &root, line + " = " + value);
+      }
+    } else if (auto* list = node->as_array()) {
+      next = find_item(*list, parts[i]);
+      if (next == nullptr) return "'" + parts[i] + "' is neither a number nor a name of the list before it";
+    } else {
+      return "'" + parts[i] + "' stands below a single value";
+    }
+    node = next;
+  }
+  if (node->is_table() || node->is_array_of_tables()) return "it is a table, not a value";
+  const auto begin = find_byte(text, node->source().begin), end = find_byte(text, node->source().end);
+  text.replace(begin, end - begin, value);
+  return {};
+}
+
+void change_file_keys(std::string& text, const std::function<std::string(const std::string&)>& change) {
+  std::vector<Place> places;
+  try {
+    collect_files(text, toml::parse(std::string_view(text)), {}, places);
+  } catch (const toml::parse_error&) {
+    return;  // whoever reads the file reports it
+  }
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.begin > b.begin; });
+  for (const auto& place : places)
+    if (const auto changed = change(place.old); changed != place.old)
+      text.replace(place.begin, place.end - place.begin, quote_text(changed));
+}
+
+}  // namespace bough::toml_files
