@@ -12,6 +12,7 @@
 #include "bough/formats/toml/specs.hpp"
 #include "console.hpp"
 #include "deck_tables.hpp"
+#include "matrix_files.hpp"
 #include "options.hpp"
 #include "ranks.hpp"
 #include "system_files.hpp"
@@ -36,6 +37,7 @@ struct ReduceVerbOptions : CommonOptions {
   std::vector<std::string> ignore_cards;
   int subcase = 0;
   double damping = -1;
+  std::vector<std::string> matrices;
 };
 
 /// "[NAME=]NODE:DIRECTIONS" or "[NAME=]set:ID".
@@ -73,17 +75,31 @@ records::ExternalLoadSpec parse_load(const std::string& text) {
   return load;
 }
 
+void add_matrices(const ReduceVerbOptions& o, records::BodySpec& spec) {
+  if (o.matrices.empty()) return;
+  if (!spec.matrices) spec.matrices.emplace();
+  // The common file first: ":NAME" of the others is in it.
+  for (const bool is_file : {true, false})
+    for (const auto& text : o.matrices)
+      if ((text.find('=') == std::string::npos) == is_file) add_matrices_option(text, *spec.matrices);
+  if (spec.name.empty())
+    spec.name = fs::path(spec.matrices->file.empty() ? spec.matrices->stiffness.file : spec.matrices->file).stem();
+}
+
 records::BodySpec make_spec(const ReduceVerbOptions& o, Diagnostics& diagnostics) {
   records::BodySpec spec;
   const bool is_toml = has_suffix(o.file, ".toml");
   if (is_toml) {
     spec = read_body_spec_once(o.file, diagnostics);
     diagnostics.throw_if_errors();
-    spec.deck = resolve_beside(o.file, spec.deck);
+    if (!spec.deck.empty()) spec.deck = resolve_beside(o.file, spec.deck);
+    add_matrices(o, spec);
   } else {
     spec.deck = o.file;
     spec.name = fs::path(o.file).stem().string();
-    if (o.num_modes == 0 && !o.max_hz) {
+    add_matrices(o, spec);
+    const bool has_modes = spec.matrices && !spec.matrices->modes.empty();
+    if (o.num_modes == 0 && !o.max_hz && !has_modes) {
       throw InputError("cli.no-modes", {o.file}, "the number of modes is not given", "add --modes N or --max-hz F");
     }
   }
@@ -132,42 +148,81 @@ std::string format_summary(const records::FlexBody& body, const std::string& out
       body.interface_nodes.empty() ? "none" : fmt::format("{}", fmt::join(body.interface_nodes, " ")), output);
 }
 
+/// Each mode of the body with the most similar one of the others.
+Table make_check_table(const records::FlexBody& body, const stiffening::ModeCheck& check) {
+  Table table{{"mode", "Hz", "other", "Hz", "difference %", "MAC"}, {}};
+  for (int j = 0; j < body.num_modes() && check.mac.cols() > 0; ++j) {
+    Eigen::Index other = 0;
+    const double mac = check.mac.row(j).maxCoeff(&other);
+    const double hz = check.frequency_hz[other];
+    table.rows.push_back({std::to_string(j + 1), fmt::format("{:.7g}", body.frequency_hz[j]), std::to_string(other + 1),
+                          hz < 0 ? "-" : fmt::format("{:.7g}", hz),
+                          hz > 0 ? fmt::format("{:.4f}", 100 * (body.frequency_hz[j] / hz - 1)) : "-",
+                          fmt::format("{:.6f}", mac)});
+  }
+  return table;
+}
+
+struct Reduced {
+  records::FlexBody body;
+  std::vector<std::string> files;
+  std::optional<stiffening::ModeCheck> check;
+};
+
+Reduced reduce_deck(const records::BodySpec& spec, const stiffening::ReduceOptions& options, Diagnostics& diagnostics) {
+  fe::ModelOptions model_options;
+  model_options.subcase = spec.subcase;
+  model_options.ignore_cards = spec.ignore_cards;
+  const auto deck = read_deck_or_throw(spec.deck, model_options, diagnostics);
+  return {stiffening::reduce(deck, spec, options, diagnostics), deck.files, {}};
+}
+
+Reduced reduce_given(const records::BodySpec& spec, const stiffening::ReduceOptions& options,
+                     Diagnostics& diagnostics) {
+  const auto deck = read_points(spec, diagnostics);
+  Reduced result;
+  result.files = deck.files;
+  const auto given = read_given_matrices(*spec.matrices, deck, result.files, diagnostics);
+  result.body = stiffening::reduce_matrices(deck, spec, given, options, diagnostics);
+  if (spec.matrices->check_modes.empty()) return result;
+  const auto others = read_given_modes(spec.matrices->check_modes, *spec.matrices, deck, diagnostics);
+  result.check = stiffening::compare_modes(result.body, deck, others, diagnostics);
+  return result;
+}
+
 int run_reduce(const ReduceVerbOptions& o) {
   Console console(o.quiet, o.verbosity);
-  do_once([&] { demand_file(o.file); });
+  if (!o.file.empty()) do_once([&] { demand_file(o.file); });
   Diagnostics diagnostics;
   const auto spec = make_spec(o, diagnostics);
   const auto output = choose_output(o, spec);
   do_once([&] { check_output(o, output); });
   console.set_rank(fe::initialize_petsc().rank);
-  fe::ModelOptions model_options;
-  model_options.subcase = spec.subcase;
-  model_options.ignore_cards = spec.ignore_cards;
-  const auto deck = read_deck_or_throw(spec.deck, model_options, diagnostics);
   stiffening::ReduceOptions options;
   options.progress = [&](const std::string& stage) { console.show_progress("reduce: " + stage); };
-  auto body = stiffening::reduce(deck, spec, options, diagnostics);
+  auto [body, files, check] =
+      spec.matrices ? reduce_given(spec, options, diagnostics) : reduce_deck(spec, options, diagnostics);
   console.end_progress();
-  auto files = deck.files;
   if (!spec.file.empty()) files.insert(files.begin(), o.file);
   body.source = calc_sources(files);
   console.print(diagnostics);
   diagnostics.throw_if_errors();
   do_once([&] { hdf5::write_flex_body(body, output); });
   if (o.json) {
-    console.print_data(nlohmann::json{{"name", body.name},
-                                      {"output", output},
-                                      {"mass", body.mass},
-                                      {"cg", to_json_list(body.cg)},
-                                      {"frequency_hz", to_json_list(body.frequency_hz)},
-                                      {"eigenvalue", to_json_list(body.eigenvalue)},
-                                      {"effective_mass", to_json(body.effective_mass)},
-                                      {"interface_nodes", body.interface_nodes},
-                                      {"num_locators", body.locators.size()}}
-                           .dump(2) +
-                       "\n");
+    nlohmann::json json{{"name", body.name},
+                        {"output", output},
+                        {"mass", body.mass},
+                        {"cg", to_json_list(body.cg)},
+                        {"frequency_hz", to_json_list(body.frequency_hz)},
+                        {"eigenvalue", to_json_list(body.eigenvalue)},
+                        {"effective_mass", to_json(body.effective_mass)},
+                        {"interface_nodes", body.interface_nodes},
+                        {"num_locators", body.locators.size()}};
+    if (check) json["check"] = {{"frequency_hz", to_json_list(check->frequency_hz)}, {"mac", to_json(check->mac)}};
+    console.print_data(json.dump(2) + "\n");
   } else {
     console.print(format_summary(body, output));
+    if (check) console.print("compared with other modes:\n" + make_check_table(body, *check).to_text());
   }
   return kSuccess;
 }
@@ -178,7 +233,7 @@ void add_reduce(CLI::App& app, Action& action) {
   auto o = std::make_shared<ReduceVerbOptions>();
   auto* verb =
       app.add_subcommand("reduce", "A deck becomes a flexible body: modes, mass integrals, geometric stiffness");
-  verb->add_option("file", o->file, "Body file (.toml) or Nastran deck")->required();
+  verb->add_option("file", o->file, "Body file (.toml) or Nastran deck; may be missing with --matrices");
   verb->add_option("-n,--modes", o->num_modes, "Number of elastic modes")->check(CLI::PositiveNumber);
   verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted");
   verb->add_option("--name", o->name, "Name of the body (default: the file's)");
@@ -197,12 +252,20 @@ void add_reduce(CLI::App& app, Action& action) {
   verb->add_option("--subcase", o->subcase, "Subcase whose SPC and MPC sets are used (default: the first)");
   verb->add_option("--ignore", o->ignore_cards, "Skip this card though it carries stiffness, mass or constraint")
       ->allow_extra_args(false);
+  verb->add_option(
+          "--matrices", o->matrices,
+          "Matrices of another program instead of the deck's elements: FILE with K and M, or KEY=FILE:NAME with "
+          "K, M, B, phi, check, wx2, ...; may be repeated (docs/other-fe-codes.md)")
+      ->allow_extra_args(false);
   verb->add_flag("--full", o->full, "Write the modes and inertial loads of every dof too");
   add_common_options(*verb, *o, kOutput | kJson, "Flexible-body HDF5 file (default: the body file's, else NAME.h5)");
   verb->footer(
       "Example:\n  bough reduce boom.toml\n  bough reduce boom.bdf --modes 3 --interface 41 -o boom.h5\n"
-      "  mpirun -n 2 bough reduce boom.toml");
-  verb->callback([&action, o] { action = [o] { return run_reduce(*o); }; });
+      "  bough reduce boom.bdf --matrices boom.op4 --modes 3\n  mpirun -n 2 bough reduce boom.toml");
+  verb->callback([&action, o] {
+    if (o->file.empty() && o->matrices.empty()) throw CLI::RequiredError("file");
+    action = [o] { return run_reduce(*o); };
+  });
 }
 
 }  // namespace bough::cli

@@ -6,12 +6,14 @@
 namespace bough::matrices::detail {
 
 bool Triplets::is_triangular() const {
-  bool has_lower = false, has_upper = false;
-  for (std::size_t i = 0; i < row_.size(); ++i) {
-    has_lower |= row_[i] > column_[i];
-    has_upper |= row_[i] < column_[i];
-  }
-  return has_lower != has_upper;
+  std::vector<std::pair<int, int>> places;
+  for (std::size_t i = 0; i < row_.size(); ++i)
+    if (row_[i] != column_[i]) places.emplace_back(row_[i], column_[i]);
+  std::sort(places.begin(), places.end());
+  const auto has_mirror = [&](const std::pair<int, int>& place) {
+    return std::binary_search(places.begin(), places.end(), std::pair(place.second, place.first));
+  };
+  return !places.empty() && std::none_of(places.begin(), places.end(), has_mirror);
 }
 
 void Triplets::mirror(Triangle how) {

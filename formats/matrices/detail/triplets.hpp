@@ -20,7 +20,7 @@ class Triplets {
     imaginary_.push_back(imaginary);
   }
   std::size_t size() const { return row_.size(); }
-  /// Entries off the diagonal lie on one side only, and there is one.
+  /// Of each pair of places across the diagonal one at most is given, in whatever order the dofs are numbered.
   bool is_triangular() const;
   /// Adds the other side of every entry off the diagonal.
   void mirror(Triangle how);

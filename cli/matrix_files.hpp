@@ -1,0 +1,26 @@
+#pragma once
+/// \file Files of matrices and mode shapes, and the grids they belong to, for `reduce --matrices`.
+#include <string>
+#include <vector>
+
+#include "bough/formats/records/body_spec.hpp"
+#include "bough/stiffening/reduce_matrices.hpp"
+
+namespace bough::cli {
+
+/// --matrices of the command line into the spec: FILE, or KEY=VALUE with a key of [body.matrices], K, M, B, phi, or the
+/// name of an inertial load. Throws InputError("cli.bad-matrices").
+void add_matrices_option(const std::string& text, records::MatricesSpec& spec);
+
+/// The deck's grids, constraints, loads, whatever elements it has; or the grids of a table or of an HDF5 file. Throws
+/// InputError, "cli.no-grids", "cli.grids-twice" among them.
+records::Deck read_points(const records::BodySpec& spec, Diagnostics& diagnostics);
+
+/// Reads them all; file names that were read are added to `files`.
+stiffening::GivenMatrices read_given_matrices(const records::MatricesSpec& spec, const records::Deck& deck,
+                                              std::vector<std::string>& files, Diagnostics& diagnostics);
+/// A matrix with a column for each mode, or an OP2 or punch file ("FILE:SUBCASE" where it has several).
+stiffening::GivenModes read_given_modes(const records::MatrixSource& source, const records::MatricesSpec& spec,
+                                        const records::Deck& deck, Diagnostics& diagnostics);
+
+}  // namespace bough::cli
