@@ -102,7 +102,7 @@ int check_body(const CheckOptions& options, Console& console) {
   const auto spec = read_body_spec_once(options.file, diagnostics);
   nlohmann::json json{{"kind", "body"}, {"name", spec.name}, {"deck", spec.deck}};
   std::string text = fmt::format("body file: \"{}\" from {}, {} frame, {} modes, {} interface nodes, {} loads\n",
-                                 spec.name, spec.deck, spec.frame == records::BodyFrame::Free ? "free" : "fixed",
+                                 spec.name, spec.deck, spec.frame == records::BodyFrame::Fixed ? "fixed" : "free",
                                  spec.num_modes, spec.interface_nodes.size(), spec.loads.size());
   const auto deck_path = resolve_beside(options.file, spec.deck);
   if (!spec.deck.empty()) {
@@ -112,7 +112,7 @@ int check_body(const CheckOptions& options, Console& console) {
     json["kind"] = "body";
     auto model_options = make_model_options(options.model);
     model_options.subcase = spec.subcase;
-    model_options.ignore_spc = spec.frame == records::BodyFrame::Free;
+    model_options.ignore_spc = spec.frame != records::BodyFrame::Fixed;
     model_options.origin = spec.origin;
     model_options.ignore_cards = spec.ignore_cards;
     check_model(deck, model_options, text, json, diagnostics);

@@ -72,7 +72,10 @@ MatrixXd collect_residual_loads(const fe::Model& model, const BodySpec& spec, co
   };
   for (const auto& word : spec.residual) {
     if (word == "inertial") {
-      add(calc_inertial_loads(model, model.mass_kind()), word);
+      static constexpr const char* kNames[records::kNumInertialLoads] = {"ax",  "ay",  "az",  "alx",  "aly",  "alz",
+                                                                         "wx2", "wy2", "wz2", "wxwy", "wxwz", "wywz"};
+      const MatrixXd F_I = calc_inertial_loads(model, model.mass_kind());
+      for (int i = 0; i < records::kNumInertialLoads; ++i) add(F_I.col(i), kNames[i]);
     } else if (word == "interface") {
       for (const int id : spec.interface_nodes) {
         MatrixXd units = MatrixXd::Zero(model.num_gdofs(), 6);

@@ -156,6 +156,25 @@ void orthogonalize(const fe::Model& model, const MatrixXd& rigid, Eigen::Index n
   basis.K = basis.lambda.asDiagonal();
 }
 
+/// Raw coordinates without the constraint modes that move no mass (the roll of a line of bars): no coordinate of
+/// motion.
+Basis drop_massless(const Basis& basis, Diagnostics& diagnostics) {
+  const VectorXd mass = basis.M.diagonal();
+  std::vector<int> columns;
+  for (int j = 0; j < mass.size(); ++j) {
+    if (j >= static_cast<int>(basis.boundary.size()) || mass(j) > 1e-20 * mass.maxCoeff()) {
+      columns.push_back(j);
+      continue;
+    }
+    const auto [node, component] = basis.boundary[static_cast<std::size_t>(j)];
+    diagnostics.warning("modal.massless-constraint", {},
+                        "the constraint mode of node " + std::to_string(node) + " component " +
+                            std::to_string(component) + " moves no mass and is left out",
+                        "give the model inertia about that axis, or hold it");
+  }
+  return static_cast<Eigen::Index>(columns.size()) == mass.size() ? basis : select_columns(basis, columns);
+}
+
 Basis calc_craig_bampton_basis(const fe::Model& model, const BasisOptions& options, Diagnostics& diagnostics) {
   Basis basis;
   MatrixXd rigid(model.num_gdofs(), 0);
@@ -200,7 +219,7 @@ Basis calc_craig_bampton_basis(const fe::Model& model, const BasisOptions& optio
   basis.is_raw = true;
   basis.M = calc_gram_M(model, basis.Phi);
   basis.lambda = basis.K.diagonal().cwiseQuotient(basis.M.diagonal());
-  return basis;
+  return drop_massless(basis, diagnostics);
 }
 
 }  // namespace

@@ -36,8 +36,9 @@ struct Basis {
 /// Order: normal modes, then attachment and residual vectors; Craig-Bampton re-orthogonalized: ascending frequency, the
 /// dependent and the six rigid vectors removed, a vector "constraint" where the constraint modes have the larger share
 /// of its strain energy (as many as there are constraint modes, less six in a free body). The component of largest
-/// magnitude of each vector is positive, but of raw constraint modes. `solve`: static solutions on the model's support
-/// (free: any determinate one). What calc_normal_modes and FixedInterface throw, and InputError "modal.no-interface".
+/// magnitude of each vector is positive, but of raw constraint modes. Raw constraint modes that move no mass are left
+/// out, warning "modal.massless-constraint". `solve`: static solutions on the model's support (free: any determinate
+/// one). What calc_normal_modes and FixedInterface throw, and InputError "modal.no-interface".
 Basis calc_basis(const fe::Model& model, const BasisOptions& options, const StaticSolve& solve,
                  Diagnostics& diagnostics);
 

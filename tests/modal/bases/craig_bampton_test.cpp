@@ -321,6 +321,22 @@ TEST(CraigBampton, RawCoordinatesInTheFrameOfAnInterfaceNode) {
   }
 }
 
+// The roll of a straight line of bars without torsional inertia is no coordinate of motion.
+TEST(CraigBampton, MasslessConstraintModesAreLeftOut) {
+  const auto model = build(test::make_cantilever(kSection, 1, 6).deck);
+  BasisOptions options;
+  options.kind = BasisKind::CraigBampton;
+  options.interface_nodes = {7};
+  options.num_modes = 2;
+  options.orthogonalize = false;
+  Diagnostics diagnostics;
+  const auto basis = modal::bases::calc_basis(model, options, {}, diagnostics);
+  EXPECT_EQ(basis.lambda.size(), 7);
+  EXPECT_TRUE(diagnostics.has("modal.massless-constraint"));
+  for (const auto& dof : basis.boundary) EXPECT_NE(dof.second, 4);
+  EXPECT_TRUE(basis.lambda.allFinite());
+}
+
 // Residual vectors: the static solution of each load is in the basis, of a held body and of a free one (inertia
 // relief).
 TEST(ResidualVectors, HoldTheStaticSolutions) {
