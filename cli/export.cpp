@@ -48,7 +48,8 @@ std::vector<exports::CsvColumn> read_columns(const ExportOptions& o) {
 
 std::string make_csv(const ExportOptions& o) {
   std::ostringstream text;
-  exports::write_csv(text, read_columns(o));
+  const auto format = o.channels.empty() ? read_file_format(o.file) : "";
+  exports::write_csv(text, has_shapes(format) ? read_shape_columns(o.file, format) : read_columns(o));
   return text.str();
 }
 
@@ -118,10 +119,10 @@ int run_export(const ExportOptions& o) {
 void add_export(CLI::App& app, Action& action) {
   auto o = std::make_shared<ExportOptions>();
   auto* verb = app.add_subcommand("export", "Results, mode shapes or a deck in another format");
-  verb->add_option(
-          "file", o->file,
-          "csv: results file; vtu: modes file or flexible body; bdf: Nastran deck; sid, mbdyn: flexible body; mat, "
-          "op4, uff: any HDF5 file of Bough that has such arrays")
+  verb->add_option("file", o->file,
+                   "csv: results file, modes file or flexible body; vtu: modes file or flexible body; bdf: Nastran "
+                   "deck; sid, mbdyn: flexible body; mat, "
+                   "op4, uff: any HDF5 file of Bough that has such arrays")
       ->required();
   verb->add_option("--to", o->format,
                    "Format: csv, vtu (mode shapes for ParaView), bdf (the deck as Bough reads it), mat (MATLAB), "

@@ -1,5 +1,7 @@
 #include "export_bodies.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 
 #include "bough/formats/hdf5/files.hpp"
@@ -32,6 +34,30 @@ std::string make_body_text(const std::string& file, const std::string& format, c
   layout.by_component = o.ge_order == "component";
   layout.digits = o.digits;
   return sid::write_sid(sid::make_sid(body, layout, {file}, diagnostics), layout);
+}
+
+bool has_shapes(const std::string& format) { return format == "bough-flexbody" || format == "bough-modes"; }
+
+std::vector<exports::CsvColumn> read_shape_columns(const std::string& file, const std::string& format) {
+  const auto make = [](const std::vector<int>& id, const Eigen::MatrixXd& xyz,
+                       const std::vector<Eigen::MatrixXd>& phi) {
+    static constexpr const char* kDirections[] = {"x", "y", "z", "rx", "ry", "rz"};
+    const auto p = static_cast<Eigen::Index>(id.size());
+    std::vector<exports::CsvColumn> columns{{"id", Eigen::Map<const Eigen::VectorXi>(id.data(), p).cast<double>()}};
+    for (int a = 0; a < 3 && p > 0; ++a) columns.push_back({kDirections[a], xyz.col(a)});
+    for (Eigen::Index j = 0; p > 0 && j < phi[0].cols(); ++j)
+      for (int d = 0; d < 6; ++d) {
+        columns.push_back({fmt::format("mode_{:03}_{}", j + 1, kDirections[d]), Eigen::VectorXd(p)});
+        for (Eigen::Index k = 0; k < p; ++k) columns.back().values[k] = phi[static_cast<std::size_t>(k)](d, j);
+      }
+    return columns;
+  };
+  if (format == "bough-modes") {
+    const auto modes = hdf5::read_modes(file);
+    return make(modes.node_id, modes.node_xyz, modes.phi);
+  }
+  const auto body = hdf5::read_flex_body(file);
+  return make(body.node_id, body.node_xyz, body.phi);
 }
 
 }  // namespace bough::cli

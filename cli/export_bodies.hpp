@@ -2,7 +2,10 @@
 /// \file export --to sid and mbdyn: a flexible body as the text of another program.
 #include <string>
 
+#include <vector>
+
 #include "bough/base/diagnostic.hpp"
+#include "bough/formats/export/csv.hpp"
 
 namespace CLI {
 class App;
@@ -21,5 +24,10 @@ bool is_body_format(const std::string& format);
 /// Throws InputError "cli.no-export" for a file that is no flexible body.
 std::string make_body_text(const std::string& file, const std::string& format, const BodyExportOptions& options,
                            Diagnostics& diagnostics);
+
+/// Modes files and flexible bodies.
+bool has_shapes(const std::string& format);
+/// id, x, y, z of every node, then six columns for each mode: mode_001_x ... mode_001_rz.
+std::vector<exports::CsvColumn> read_shape_columns(const std::string& file, const std::string& format);
 
 }  // namespace bough::cli

@@ -17,6 +17,7 @@ void add_verbs(CLI::App& app, cli::Action& action) {
   cli::add_reduce(app, action);
   cli::add_integrals(app, action);
   cli::add_flx(app, action);
+  cli::add_compare(app, action);
   cli::add_run(app, action);
   cli::add_export(app, action);
   cli::add_plot(app, action);

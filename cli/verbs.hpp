@@ -19,6 +19,7 @@ void add_matrices(CLI::App& app, Action& action);
 void add_reduce(CLI::App& app, Action& action);
 void add_integrals(CLI::App& app, Action& action);
 void add_flx(CLI::App& app, Action& action);
+void add_compare(CLI::App& app, Action& action);
 void add_run(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
 void add_plot(CLI::App& app, Action& action);

@@ -140,7 +140,7 @@ class SidFile(ProgramTest):
 
         solution = scipy.integrate.solve_ivp(derivative, (0, 8), np.zeros(6), method="DOP853", t_eval=time, rtol=1e-9,
                                              atol=1e-12)
-        self.assertLess(np.abs(solution.y[:3].T - eta).max(), 1e-7)
+        self.assertLess(np.abs(solution.y[:3].T - eta).max(), 1e-9)
         tip = s.nodes[41]["phi"].m0[1] @ solution.y[:3]
         self.assertAlmostEqual(tip.min(), -0.534664, delta=2e-5)
 

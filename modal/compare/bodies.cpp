@@ -1,0 +1,144 @@
+#include "bough/modal/compare/bodies.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "bough/base/rotation.hpp"
+
+namespace bough::modal {
+
+using Eigen::Index;
+using Eigen::Matrix3d;
+using records::FlexBody;
+using records::MassIntegrals;
+
+namespace {
+
+/// Columns of the chosen modes, scaled.
+struct Choice {
+  std::vector<int> modes;
+  VectorXd scale;
+
+  MatrixXd project(const MatrixXd& K) const {
+    return scale.asDiagonal() * MatrixXd(K(modes, modes)) * scale.asDiagonal();
+  }
+  MassIntegrals choose(const MassIntegrals& set) const {
+    MassIntegrals g;
+    if (set.empty()) return g;
+    g.gamma0 = set.gamma0(Eigen::all, modes) * scale.asDiagonal();
+    g.gamma1 = set.gamma1(Eigen::all, modes) * scale.asDiagonal();
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      const auto j = static_cast<std::size_t>(modes[i]);
+      const double s = scale[static_cast<Index>(i)];
+      g.gamma2.push_back(s * set.gamma2[j](Eigen::all, modes) * scale.asDiagonal());
+      g.gamma3.push_back(s * set.gamma3[j]);
+      g.gamma4.emplace_back();
+      for (std::size_t k = 0; k < modes.size(); ++k)
+        g.gamma4.back().push_back(s * scale[static_cast<Index>(k)] * set.gamma4[j][static_cast<std::size_t>(modes[k])]);
+    }
+    return g;
+  }
+};
+
+/// About a point from where every place is p + d.
+void shift(MassIntegrals& set, const Vector3d& d) {
+  for (std::size_t j = 0; j < set.gamma3.size(); ++j) {
+    const Vector3d g0 = set.gamma0.col(static_cast<Index>(j));
+    set.gamma1.col(static_cast<Index>(j)) += d.cross(g0);
+    set.gamma3[j] += d.dot(g0) * Matrix3d::Identity() - g0 * d.transpose();
+  }
+}
+
+FlexBody choose(const FlexBody& body, const Choice& choice) {
+  FlexBody chosen;
+  chosen.name = body.name;
+  chosen.mass = body.mass;
+  chosen.cg = body.cg;
+  chosen.inertia = body.inertia;
+  chosen.eigenvalue = body.eigenvalue(choice.modes);
+  chosen.frequency_hz = body.frequency_hz(choice.modes);
+  chosen.modal_mass = choice.project(body.modal_mass);
+  chosen.lumped = choice.choose(body.lumped);
+  chosen.consistent = choice.choose(body.consistent);
+  chosen.exact = choice.choose(body.exact);
+  chosen.integrals_method = body.integrals_method;
+  chosen.kg_inertial_computed = body.kg_inertial_computed;
+  for (std::size_t i = 0; i < body.kg_inertial.size(); ++i)
+    if (body.kg_inertial_computed[i]) chosen.kg_inertial[i] = choice.project(body.kg_inertial[i]);
+  chosen.locators = body.locators;
+  for (const auto& K : body.kg_external) chosen.kg_external.push_back(choice.project(K));
+  return chosen;
+}
+
+StiffnessDifference compare(const std::string& load, const MatrixXd& a, const MatrixXd& b) {
+  StiffnessDifference d{load, a.norm(), b.norm(), 0};
+  const double larger = std::max(d.norm_a, d.norm_b);
+  d.difference = larger > 0 ? (a - b).norm() / larger : std::numeric_limits<double>::quiet_NaN();
+  return d;
+}
+
+}  // namespace
+
+bool can_move_gamma3(const Vector3d& offset) { return offset.isZero(0); }
+
+FlexBody keep_paired(const FlexBody& a, const std::vector<ModePair>& pairs) {
+  Choice choice;
+  for (const auto& p : pairs) choice.modes.push_back(p.a);
+  choice.scale = VectorXd::Ones(static_cast<Index>(pairs.size()));
+  return choose(a, choice);
+}
+
+FlexBody align_body(const FlexBody& a, const FlexBody& b, const std::vector<ModePair>& pairs, const Vector3d& offset) {
+  Choice choice;
+  choice.scale.resize(static_cast<Index>(pairs.size()));
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto& p = pairs[i];
+    choice.modes.push_back(p.b);
+    choice.scale[static_cast<Index>(i)] = p.sign * std::sqrt(a.modal_mass(p.a, p.a) / b.modal_mass(p.b, p.b));
+  }
+  FlexBody aligned = choose(b, choice);
+  for (auto* set : {&aligned.lumped, &aligned.consistent, &aligned.exact}) shift(*set, -offset);
+  const Vector3d c = b.cg - offset;
+  const Matrix3d central = b.inertia + b.mass * skew(b.cg) * skew(b.cg);
+  aligned.cg = c;
+  aligned.inertia = central - b.mass * skew(c) * skew(c);
+  return aligned;
+}
+
+BodyComparison compare_bodies(const FlexBody& a, const FlexBody& b, const std::vector<ModePair>& pairs,
+                              const Vector3d& offset) {
+  static constexpr const char* kLoads[] = {"ax",  "ay",  "az",  "alx",  "aly",  "alz",
+                                           "wx2", "wy2", "wz2", "wxwy", "wxwz", "wywz"};
+  const FlexBody x = keep_paired(a, pairs), y = align_body(a, b, pairs, offset);
+  BodyComparison result;
+  const MatrixXd scale = calc_integral_scale(x);
+  for (int m = 0; m < kNumMethods; ++m) {
+    const auto &of_x = get_method(x, m), &of_y = get_method(y, m);
+    const auto s = static_cast<std::size_t>(m);
+    result.has[s] = !of_x.empty() && !of_y.empty() && !pairs.empty();
+    if (!result.has[s]) continue;
+    result.norm_a[s] = calc_integral_norms(of_x);
+    result.norm_b[s] = calc_integral_norms(of_y);
+    result.difference[s] = calc_integral_differences(of_x, of_y, scale);
+  }
+  constexpr std::size_t kExact = 2;
+  if (result.has[kExact] && !can_move_gamma3(offset)) {
+    result.difference[kExact].col(3).setConstant(std::numeric_limits<double>::quiet_NaN());
+    result.norm_b[kExact].col(3).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  if (pairs.empty()) return result;
+  // Angular accelerations and rates turn about the origin: with another one only accelerations can be compared.
+  const std::size_t count = offset.isZero(0) ? x.kg_inertial.size() : 3;
+  for (std::size_t i = 0; i < count; ++i)
+    if (x.kg_inertial_computed[i] && y.kg_inertial_computed[i])
+      result.stiffness.push_back(compare(kLoads[i], x.kg_inertial[i], y.kg_inertial[i]));
+  for (std::size_t e = 0; e < x.locators.size(); ++e)
+    for (std::size_t f = 0; f < y.locators.size(); ++f)
+      if (x.locators[e].name == y.locators[f].name) {
+        result.stiffness.push_back(compare(x.locators[e].name, x.kg_external[e], y.kg_external[f]));
+        break;
+      }
+  return result;
+}
+
+}  // namespace bough::modal
