@@ -121,7 +121,7 @@ std::string format_report(const SingleReport& r) {
         row.push_back(r.check.has[m] ? difference(r.check.difference[m](j, k)) : "-");
       table.rows.push_back(row);
     }
-  if (r.body.num_modes() == 0) return text;
+  if (r.body.num_modes() == 0 || !r.check.has[2]) return text;
   return text + table.to_text() + format_captured(r);
 }
 

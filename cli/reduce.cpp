@@ -10,6 +10,7 @@
 
 #include "bough/formats/hdf5/files.hpp"
 #include "bough/formats/toml/specs.hpp"
+#include "compare_report.hpp"
 #include "console.hpp"
 #include "deck_tables.hpp"
 #include "matrix_files.hpp"
@@ -32,6 +33,7 @@ struct ReduceVerbOptions : CommonOptions {
   std::vector<int> interface_nodes;
   std::vector<std::string> loads;
   bool full = false;
+  bool integrals_report = false;
   std::string mass, integrals;
   std::vector<double> origin;
   std::vector<std::string> ignore_cards;
@@ -222,6 +224,7 @@ int run_reduce(const ReduceVerbOptions& o) {
     console.print_data(json.dump(2) + "\n");
   } else {
     console.print(format_summary(body, output));
+    if (o.integrals_report) console.print("\n" + format_report(SingleReport{body, modal::check_integrals(body)}));
     if (check) console.print("compared with other modes:\n" + make_check_table(body, *check).to_text());
   }
   return kSuccess;
@@ -257,6 +260,8 @@ void add_reduce(CLI::App& app, Action& action) {
           "Matrices of another program instead of the deck's elements: FILE with K and M, or KEY=FILE:NAME with "
           "K, M, B, phi, check, wx2, ...; may be repeated (docs/other-fe-codes.md)")
       ->allow_extra_args(false);
+  verb->add_flag("--integrals-report", o->integrals_report,
+                 "Print the mass integrals by three methods side by side, as bough compare BODY.h5 does");
   verb->add_flag("--full", o->full, "Write the modes and inertial loads of every dof too");
   add_common_options(*verb, *o, kOutput | kJson, "Flexible-body HDF5 file (default: the body file's, else NAME.h5)");
   verb->footer(

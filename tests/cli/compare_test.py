@@ -233,6 +233,15 @@ class Compare(ProgramTest):
         with h5py.File(self.path("r.h5")) as f:
             self.assertEqual(f["refinement/values"].shape[1], 6)
 
+    def test_the_report_of_reduce_is_that_of_compare(self):
+        self.body("a", 8)
+        text = self.bough("reduce", "a.bdf", "--modes", 4, "--integrals-report", "-o", "again.h5").stdout
+        report = self.bough("compare", "again.h5").stdout
+        self.assertIn("consistent diff", report)
+        self.assertTrue(text.endswith("\n" + report))
+        # --json gives the table of modes alone.
+        json.loads(self.bough("reduce", "a.bdf", "--modes", 4, "--integrals-report", "--json", "-o", "b.h5").stdout)
+
     def test_what_cannot_be_compared(self):
         self.body("a", 8)
         self.bough("modes", "a.bdf", "-o", "m.h5", "-q")
