@@ -202,7 +202,7 @@ modal::EigenPairs solve(const ModesOptions& options, const records::Deck& deck, 
 std::vector<int> choose_subcases(const ModesOptions& options, const records::Deck& deck) {
   if (options.model.subcase != 0) return {options.model.subcase};
   if (options.buckling) return {choose_buckling_cases(deck).statics.id};
-  if (!deck.sol.empty() && deck.sol != "103" && deck.sol != "SEMODES") return {0};
+  if (!deck.sol.empty() && deck.sol != "103" && deck.sol != "3" && deck.sol != "SEMODES") return {0};
   std::vector<int> chosen;
   std::set<std::array<int, 3>> seen;
   for (const auto& subcase : deck.subcases)

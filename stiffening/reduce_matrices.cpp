@@ -1,9 +1,8 @@
 #include "bough/stiffening/reduce_matrices.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -21,6 +20,12 @@ using records::FlexBody;
 namespace {
 
 constexpr double kAsymmetry = 1e-6;  ///< of the largest entries of both rows: files of seven digits are below it
+
+std::string show(double value, const char* format = "%.6g") {
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
 
 template <class Container, class Value>
 bool has(const Container& values, const Value& value) {
@@ -147,8 +152,9 @@ SparseRows MatrixReduction::place(const PointTable& points, const GivenMatrix& m
   if (const auto pair = find_asymmetry(matrix.values)) {
     const auto [i, j] = *pair;
     diagnostics_.error("reduce.not-symmetric", matrix.at,
-                       fmt::format("{} is not symmetric: ({}, {}) is {:.9g}, ({}, {}) is {:.9g}", matrix.label, i + 1,
-                                   j + 1, matrix.values.coeff(i, j), j + 1, i + 1, matrix.values.coeff(j, i)),
+                       matrix.label + " is not symmetric: (" + std::to_string(i + 1) + ", " + std::to_string(j + 1) +
+                           ") is " + show(matrix.values.coeff(i, j), "%.9g") + ", (" + std::to_string(j + 1) + ", " +
+                           std::to_string(i + 1) + ") is " + show(matrix.values.coeff(j, i), "%.9g"),
                        "give a symmetric matrix: without follower loads, gyroscopic or friction terms");
   }
   const SparseRows A = P * matrix.values * SparseRows(P.transpose());
@@ -173,10 +179,10 @@ fe::ElementList MatrixReduction::make_elements(const fe::NodeTable& nodes) {
     if (g.load.empty()) continue;
     const SparseRows P = calc_placement(points, g.load, diagnostics_);
     if (g.load_column > g.load.values.cols())
-      diagnostics_.error(
-          "reduce.matrix-size", g.load.at,
-          fmt::format("column {} of {}, which has {}", g.load_column, g.load.label, g.load.values.cols()),
-          "give one of its columns");
+      diagnostics_.error("reduce.matrix-size", g.load.at,
+                         "column " + std::to_string(g.load_column) + " of " + g.load.label + ", which has " +
+                             std::to_string(g.load.values.cols()),
+                         "give one of its columns");
     else if (diagnostics_.num_errors() == 0)
       F_.back() = P * VectorXd(MatrixXd(g.load.values).col(g.load_column - 1));
   }
@@ -201,7 +207,7 @@ void MatrixReduction::check_mass(const SparseRows& M) {
   for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
     if (diagonal[i] >= 0) continue;
     diagnostics_.error("reduce.negative-mass", given_.M.at,
-                       fmt::format("{} has {:.6g} on the diagonal at {}", given_.M.label, diagonal[i], describe(i)),
+                       given_.M.label + " has " + show(diagonal[i]) + " on the diagonal at " + describe(i),
                        "give a mass matrix that is positive, or at least semidefinite");
     return;
   }
@@ -211,7 +217,7 @@ void MatrixReduction::check_mass(const SparseRows& M) {
   if (!(m > 0)) {
     diagnostics_.error(
         "reduce.negative-mass", given_.M.at,
-        fmt::format("the translations of {} carry the mass {:.6g}, expected more than zero", given_.M.label, m),
+        "the translations of " + given_.M.label + " carry the mass " + show(m) + ", expected more than zero",
         "check that it is the mass matrix, and the list of dofs");
     return;
   }
@@ -221,9 +227,9 @@ void MatrixReduction::check_mass(const SparseRows& M) {
                               length > 0 ? (S + S.transpose()).cwiseAbs().maxCoeff() / (m * length) : 0.0);
   if (off <= 1e-6) return;
   diagnostics_.warning("reduce.not-rigid-mass", given_.M.at,
-                       fmt::format("rigid motions see the masses {:.6g}, {:.6g}, {:.6g} in x, y, z and differ from "
-                                   "those of one rigid body by a part of {:.2g}: mass, centre and inertia are means",
-                                   T(0, 0), T(1, 1), T(2, 2), off),
+                       "rigid motions see the masses " + show(T(0, 0)) + ", " + show(T(1, 1)) + ", " + show(T(2, 2)) +
+                           " in x, y, z and differ from those of one rigid body by a part of " + show(off, "%.2g") +
+                           ": mass, centre and inertia are means",
                        "give the matrix before supports and omitted dofs took their part; check axes and dofs");
 }
 
@@ -238,10 +244,10 @@ MatrixXd MatrixReduction::calc_modes(const fe::Model& model) {
     if (Phi.col(j).dot(K_Phi.col(j)) > 1e-11 * scale) elastic.push_back(j);
   }
   if (static_cast<Eigen::Index>(elastic.size()) < Phi.cols())
-    diagnostics_.note(
-        "reduce.rigid-modes", given_.modes.Phi.at,
-        fmt::format("{} of the {} modes of {} have no strain and are left out",
-                    Phi.cols() - static_cast<Eigen::Index>(elastic.size()), Phi.cols(), given_.modes.Phi.label));
+    diagnostics_.note("reduce.rigid-modes", given_.modes.Phi.at,
+                      std::to_string(Phi.cols() - static_cast<Eigen::Index>(elastic.size())) + " of the " +
+                          std::to_string(Phi.cols()) + " modes of " + given_.modes.Phi.label +
+                          " have no strain and are left out");
   if (given_.modes.eigenvalue.size() == Phi.cols()) compare_eigenvalues(model, Phi);
   return Phi(Eigen::all, elastic);
 }
@@ -256,8 +262,8 @@ void MatrixReduction::compare_eigenvalues(const fe::Model& model, const MatrixXd
     if (std::abs(lambda[j]) < 1e-6 * largest && std::abs(k[j]) < 1e-5 * largest * m[j]) continue;
     if (m[j] > 0 && std::abs(k[j] / m[j] - lambda[j]) <= 1e-3 * std::abs(lambda[j])) continue;
     diagnostics_.warning("reduce.modes-differ", given_.modes.Phi.at,
-                         fmt::format("mode {} of {} has the eigenvalue {:.6g}, K and M give it {:.6g}", j + 1,
-                                     given_.modes.Phi.label, lambda[j], m[j] > 0 ? k[j] / m[j] : 0.0),
+                         "mode " + std::to_string(j + 1) + " of " + given_.modes.Phi.label + " has the eigenvalue " +
+                             show(lambda[j]) + ", K and M give it " + show(m[j] > 0 ? k[j] / m[j] : 0.0),
                          "check that modes and matrices are of one run, their axes (CD) and dofs");
     return;
   }
@@ -348,8 +354,8 @@ void MatrixReduction::warn_of_missing(const FlexBody& body) {
   }
   if (grids.empty()) return;
   diagnostics_.warning("reduce.missing-dofs", given_.K.at,
-                       fmt::format("{} has no row for translations of {} points, the first {}: they are taken as zero",
-                                   given_.K.label, grids.size(), describe(first)),
+                       given_.K.label + " has no row for translations of " + std::to_string(grids.size()) +
+                           " points, the first " + describe(first) + ": they are taken as zero",
                        "constrained ones are zero indeed; omitted ones cannot be recovered: name other output nodes");
 }
 
