@@ -23,6 +23,7 @@ if(NOT BOUGH_SOLVER_ONLY)
   # library's own use of it stays apart, since Debian gives the symbols of the two flavours different versions.
   find_path(MATIO_INCLUDE_DIR matio.h REQUIRED)
   find_library(MATIO_LIBRARY matio REQUIRED)
+  find_library(BLAS_LIBRARY blas REQUIRED)  # the one PETSc uses
   find_package(CLI11 REQUIRED)
   find_package(nlohmann_json 3 REQUIRED)
   find_package(fmt REQUIRED)

@@ -24,6 +24,7 @@ class SymmetricFactor {
   bool is_singular() const { return is_singular_; }  ///< an exact zero pivot ended the factorization
   bool is_definite() const { return is_definite_; }  ///< LLᵀ: every pivot was above zero, in roundoff
   int num_null_pivots() const { return num_null_pivots_; }
+  Mat get() const { return factor_.get(); }  ///< the factor, for MatSolve
   /// X with A X = B; B num_rows x m, replicated on every rank, and so is X.
   Eigen::MatrixXd solve(const Eigen::Ref<const Eigen::MatrixXd>& B) const;
 

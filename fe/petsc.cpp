@@ -1,5 +1,7 @@
 #include "bough/fe/petsc.hpp"
 
+#include <dlfcn.h>
+
 #include <cstdlib>
 #include <string>
 
@@ -16,10 +18,23 @@ void check_petsc(PetscErrorCode code) {
                          "run with a smaller model or report the deck");
 }
 
+namespace {
+
+/// One thread in OpenBLAS unless the user says otherwise: the factors' dense blocks are small, and threads that wait
+/// for each other by spinning double the time on a busy machine. Found by name, since another BLAS may be installed.
+void hold_blas_threads() {
+  if (std::getenv("OPENBLAS_NUM_THREADS") || std::getenv("OMP_NUM_THREADS")) return;
+  using SetThreads = void (*)(int);
+  if (const auto set = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))) set(1);
+}
+
+}  // namespace
+
 MpiWorld initialize_petsc() {
   PetscBool initialized = PETSC_FALSE;
   PetscInitialized(&initialized);
   if (!initialized) {
+    hold_blas_threads();
     // A process that no launcher started needs no daemon and no network transport; making them ready takes ten times as
     // long as the rest of MPI's start (360 ms against 30 ms).
     const bool is_launched = std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMIX_RANK") || std::getenv("PMI_RANK");

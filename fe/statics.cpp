@@ -75,7 +75,7 @@ double calc_model_size(const Model& model) {
 struct StaticSolver::Impl {
   SparseRows T;                                 ///< a copy: the model may move, or be reduced
   std::shared_ptr<const StaticSolver> omitted;  ///< of the model
-  std::vector<int> kept;  ///< f-dofs that are not held, ascending
+  std::vector<int> kept;                        ///< f-dofs that are not held, ascending
   std::optional<SymmetricFactor> factor;
 };
 
@@ -115,6 +115,11 @@ StaticSolver::StaticSolver(const Model& model, const PetscMat& K_f, std::vector<
 }
 
 StaticSolver::~StaticSolver() = default;
+
+const SymmetricFactor* StaticSolver::find_definite_factor() const {
+  const bool is_whole = impl_->kept.size() == static_cast<size_t>(impl_->T.cols());
+  return is_whole && impl_->factor->is_definite() ? &*impl_->factor : nullptr;
+}
 
 MatrixXd StaticSolver::solve(const Eigen::Ref<const MatrixXd>& F_g) const {
   const SparseRows& T = impl_->T;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "bough/fe/assembly.hpp"
+#include "bough/fe/factor.hpp"
 
 namespace bough::fe {
 
@@ -15,6 +16,8 @@ class StaticSolver {
 
   /// u_g (num_gdofs x m) for loads F_g (num_gdofs x m) in basic on the g-set; both replicated on every rank.
   MatrixXd solve(const Eigen::Ref<const MatrixXd>& F_g) const;
+  /// LLᵀ of K on the whole f-set, as long as this lives; nullptr where dofs are held or K took pivoting.
+  const SymmetricFactor* find_definite_factor() const;
 
  private:
   struct Impl;

@@ -189,6 +189,7 @@ bool NormalModes::run_krylov(int num_wanted, bool definite_only) {
   problem.tolerance = options_.tolerance;
   problem.start = round_++;
   problem.definite_only = definite_only;
+  if (shift_ == 0 && options_.factor && options_.factor->is_definite()) problem.factor = options_.factor->get();
   problem.progress = options_.progress;
   const auto result = detail::solve_krylov_schur(problem);
   if (result.is_singular && definite_only) return false;

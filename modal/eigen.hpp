@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "bough/fe/assembly.hpp"
+#include "bough/fe/factor.hpp"
 
 namespace bough::modal {
 
@@ -16,6 +17,7 @@ struct EigenOptions {
   double tolerance = 1e-12;
   bool check_inertia = true;  ///< Sylvester count: no mode missed below the highest
   std::function<void(int converged, int wanted)> progress;
+  const fe::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K on the f-set, where the caller has it: saves one
 };
 
 /// K φ = λ M φ, φᵀMφ = 1, ascending λ. Sign rule: the component of largest magnitude (first by g-dof among those

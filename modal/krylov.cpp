@@ -30,6 +30,22 @@ void set_direct_solver(KSP ksp, MatSolverType solver) {
   check_petsc(PCFactorSetMatSolverType(pc, solver));
 }
 
+PetscErrorCode apply_factor(PC pc, Vec b, Vec x) {
+  Mat factor = nullptr;
+  const PetscErrorCode code = PCShellGetContext(pc, static_cast<void*>(&factor));
+  return code != 0 ? code : MatSolve(factor, b, x);
+}
+
+/// Direct solution by a factor that somebody else made.
+void set_known_factor(KSP ksp, Mat factor) {
+  PC pc = nullptr;
+  check_petsc(KSPSetType(ksp, KSPPREONLY));
+  check_petsc(KSPGetPC(ksp, &pc));
+  check_petsc(PCSetType(pc, PCSHELL));
+  check_petsc(PCShellSetContext(pc, factor));
+  check_petsc(PCShellSetApply(pc, apply_factor));
+}
+
 fe::PetscVec make_vector(Mat A, const Eigen::Ref<const VectorXd>& values) {
   fe::PetscVec v;
   check_petsc(MatCreateVecs(A, v.out(), nullptr));
@@ -104,7 +120,10 @@ bool set_up(const KrylovProblem& problem, MatSolverType solver, int wanted, int 
     check_petsc(EPSSetWhichEigenpairs(eps.get(), EPS_LARGEST_MAGNITUDE));
   }
   check_petsc(STGetKSP(st, &ksp));
-  set_direct_solver(ksp, solver);
+  if (problem.factor)
+    set_known_factor(ksp, problem.factor);
+  else
+    set_direct_solver(ksp, solver);
 
   std::vector<fe::PetscVec> known;
   std::vector<Vec> known_raw;
@@ -137,11 +156,13 @@ void purify(const KrylovProblem& problem, EPS eps, KrylovResult& result) {
   ST st = nullptr;
   KSP ksp = nullptr;
   PC pc = nullptr;
-  Mat factor = nullptr;
-  check_petsc(EPSGetST(eps, &st));
-  check_petsc(STGetKSP(st, &ksp));
-  check_petsc(KSPGetPC(ksp, &pc));
-  check_petsc(PCFactorGetMatrix(pc, &factor));
+  Mat factor = problem.factor;
+  if (!factor) {
+    check_petsc(EPSGetST(eps, &st));
+    check_petsc(STGetKSP(st, &ksp));
+    check_petsc(KSPGetPC(ksp, &pc));
+    check_petsc(PCFactorGetMatrix(pc, &factor));
+  }
   const VectorXd scale = result.values.array() - problem.shift;
   constexpr Eigen::Index kBlock = 8;  // enough for the speed, few for the memory
   for (Eigen::Index first = 0; first < scale.size(); first += kBlock) {

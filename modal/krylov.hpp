@@ -29,6 +29,7 @@ struct KrylovProblem {
   int max_subspace = 0;  ///< rank of the operator, 0: the size of A
   MatrixXd deflate;      ///< n x k known eigenvectors, kept out; k may be 0
   double tolerance = 1e-12;
+  Mat factor = nullptr;        ///< of A, for a zero shift; nullptr: made here
   bool definite_only = false;  ///< an indefinite matrix to factor counts as singular
   int start = 0;               ///< picks one of the fixed start vectors
   std::function<void(int converged, int wanted)> progress;

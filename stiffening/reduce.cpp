@@ -72,6 +72,7 @@ class Reduction {
   FlexBody body_;
   MatrixXd Phi_;
   std::vector<BodyLoad> loads_;
+  const fe::SymmetricFactor* factor_ = nullptr;  // of K, kept by the static solver
 };
 
 void Reduction::check_spec() {
@@ -178,6 +179,7 @@ void Reduction::check_rigid(const modal::bases::Basis& basis) {
 
 void Reduction::set_modes(const fe::Model& model, const StaticSolve& solve) {
   auto options = make_basis_options(spec_);
+  options.factor = factor_;
   std::vector<std::string> names;
   options.residual_loads = collect_residual_loads(model, spec_, loads_, names);
   auto basis = modal::bases::calc_basis(model, options, solve, diagnostics_);
@@ -392,6 +394,7 @@ StaticSolve Reduction::make_solver(const fe::Model& model, const fe::PetscMat& K
       return [fixed](const MatrixXd& F) { return fixed->solve(F); };
     }
     const auto solver = std::make_shared<fe::StaticSolver>(model, K, choose_support(model));
+    factor_ = solver->find_definite_factor();
     return [solver](const MatrixXd& F) { return solver->solve(F); };
   } catch (const ComputationError& error) {
     for (auto item : error.items()) {

@@ -76,6 +76,7 @@ Basis calc_free_interface_basis(const fe::Model& model, const BasisOptions& opti
   eigen.num_modes = options.num_modes > 0 || !options.max_hz ? options.num_modes + (options.is_free ? 6 : 0) : 0;
   if (!options.max_hz) eigen.num_modes = std::max(eigen.num_modes, 1);
   eigen.max_hz = options.max_hz;
+  eigen.factor = options.factor;
   const auto pairs = calc_normal_modes(model, eigen, diagnostics);
   basis.num_rigid = pairs.num_rigid;
   basis.num_massless = pairs.num_massless;
