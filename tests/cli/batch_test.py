@@ -264,7 +264,7 @@ take = "min"
         process.wait()
         done = {c: os.stat(p).st_mtime_ns for c in range(1, 301)
                 if os.path.exists(p := self.path(f"study/case-{c:04d}/outcome.json"))}
-        self.assertTrue(10 <= len(done) < 300, len(done))
+        self.assertTrue(9 <= len(done) < 300, len(done))  # the other worker may still be at the ninth
         summary = json.loads(self.bough("batch", "study.toml", "--json").stdout)
         self.assertEqual((summary["done_before"], summary["done"]), (len(done), 300 - len(done)))
         for case, stamp in done.items():
