@@ -3,6 +3,7 @@
 #include <array>
 
 #include "bough/base/rotation.hpp"
+#include "bough/fe/blas.hpp"
 
 namespace bough::modal {
 
@@ -83,7 +84,8 @@ MassIntegrals calc_exact_integrals(const NodalDofs& dofs, const MassTimes& mass_
     }
   }
   const MatrixXd M_turned = mass_times(B.rightCols(4 * n));
-  const MatrixXd gram = B.transpose() * M_turned;  // (6 + 4n) x 4n
+  MatrixXd gram(6 + 4 * n, 4 * n);
+  fe::multiply_dense(true, B, M_turned, 0, gram);
   const auto turned = [n](int a, int j) { return a * n + j; };
   const auto plain = [n](int j) { return 3 * n + j; };
 

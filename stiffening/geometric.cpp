@@ -1,24 +1,9 @@
-// First: the BLAS header needs PETSc's own names.
-#include <petscsys.h>
-
-#include <petscblaslapack.h>
-
+#include "bough/fe/blas.hpp"
 #include "bough/stiffening/reduce.hpp"
 
 namespace bough::stiffening {
 
 namespace {
-
-/// C = op(A) B by the library's own product: Eigen's is three times slower here without the processor's wide registers.
-/// A: transposed when `transposed`; all column-major, with leading dimensions of their own.
-void multiply(bool transposed, const Eigen::Ref<const MatrixXd>& A, const Eigen::Ref<const MatrixXd>& B, double beta,
-              Eigen::Ref<MatrixXd> C) {
-  const auto as_blas = [](Eigen::Index i) { return static_cast<PetscBLASInt>(i); };
-  const PetscBLASInt m = as_blas(C.rows()), n = as_blas(C.cols()), k = as_blas(B.rows());
-  const PetscBLASInt lda = as_blas(A.outerStride()), ldb = as_blas(B.outerStride()), ldc = as_blas(C.outerStride());
-  const double one = 1;
-  BLASgemm_(transposed ? "T" : "N", "N", &m, &n, &k, &one, A.data(), &lda, B.data(), &ldb, &beta, C.data(), &ldc);
-}
 
 /// Sums Φ_eᵀ K_G,c Φ_e of element after element, many elements a product: W_c = [Φ_1ᵀ K_1c, Φ_2ᵀ K_2c, ...], then W_c
 /// Φ.
@@ -32,7 +17,7 @@ class LoadSums {
     const Eigen::Index N = Phi_e.rows();
     if (used_ + N > kDofs) flush();
     if (product_.cols() != N * m_) product_.resize(n_, N * m_);
-    multiply(true, Phi_e, K_all, 0, product_);
+    fe::multiply_dense(true, Phi_e, K_all, 0, product_);
     for (Eigen::Index c = 0; c < m_; ++c) W_.middleCols(kDofs * c + used_, N) = product_.middleCols(N * c, N);
     Phi_.middleRows(used_, N) = Phi_e;
     used_ += N;
@@ -49,7 +34,7 @@ class LoadSums {
   void flush() {
     if (used_ == 0) return;
     for (Eigen::Index c = 0; c < m_; ++c)
-      multiply(false, W_.middleCols(kDofs * c, used_), Phi_.topRows(used_), 1, sum_.middleCols(n_ * c, n_));
+      fe::multiply_dense(false, W_.middleCols(kDofs * c, used_), Phi_.topRows(used_), 1, sum_.middleCols(n_ * c, n_));
     used_ = 0;
   }
 
