@@ -149,6 +149,29 @@ class Export(ProgramTest):
         self.assertIn("export.no-frames", result.stderr)
         self.assertNotIn("P", load(self.path("body.mat")))
 
+    def test_frames_of_a_craig_bampton_body(self):
+        self.reduce()
+        for raw in ("true", "false"):
+            self.write("cb.toml", (BODY % 3).replace(
+                "number = 3", f'number = 3\nbasis = "craig-bampton"\northogonalize = {raw}'))
+            self.bough("reduce", "cb.toml", "-o", "cb.h5", "-q")
+            self.bough("export", "cb.h5", "--to", "mat", "-o", "cb.mat")
+            m = load(self.path("cb.mat"))
+            with h5py.File(self.path("cb.h5")) as f:
+                own = scipy.linalg.eigh(f["modal/stiffness"][:], f["modal/mass"][:], eigvals_only=True)
+                mass, cg, inertia = f["rigid/mass"][0], f["rigid/cg"][:], f["rigid/inertia"][:]
+            self.assertEqual((m["K"].shape, len(own)), ((15, 15), 9))
+            tip = m["P"][1]
+            arm = np.array([[0, -tip[2], tip[1]], [tip[2], 0, -tip[0]], [-tip[1], tip[0], 0]])
+            moment = mass * np.array([[0, -cg[2], cg[1]], [cg[2], 0, -cg[0]], [-cg[1], cg[0], 0]])
+            R = np.vstack([np.eye(6), np.block([[np.eye(3), -arm], [np.zeros((3, 3)), np.eye(3)]]), np.zeros((3, 6))])
+            rigid = np.block([[mass * np.eye(3), -moment], [moment, inertia]])
+            self.assertLess(np.abs(m["K"] @ R).max(), 1e-9 * np.abs(m["K"]).max())
+            np.testing.assert_allclose(R.T @ m["M"] @ R, rigid, atol=1e-9 * np.abs(rigid).max())
+            # The root held: the body's own shapes and frequencies.
+            held = scipy.linalg.eigh(m["K"][6:, 6:], m["M"][6:, 6:], eigvals_only=True)
+            np.testing.assert_allclose(held, own, rtol=1e-8)
+
     def test_modes(self):
         self.write("beam.bdf", BEAM)
         self.bough("modes", "beam.bdf", "-o", "m.h5", "-q")
