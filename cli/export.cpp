@@ -118,7 +118,7 @@ int run_export(const ExportOptions& o) {
 
 void add_export(CLI::App& app, Action& action) {
   auto o = std::make_shared<ExportOptions>();
-  auto* verb = app.add_subcommand("export", "Results, mode shapes or a deck in another format");
+  auto* verb = app.add_subcommand("export", "Bodies, modes, matrices, results or a deck in the format of another program");
   verb->add_option("file", o->file,
                    "csv: results file, modes file or flexible body; vtu: modes file or flexible body; bdf: Nastran "
                    "deck; sid, mbdyn: flexible body; mat, "
