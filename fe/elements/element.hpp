@@ -21,6 +21,8 @@ using Eigen::VectorXd;
 
 enum class MassKind { Lumped, Consistent };
 
+struct ElementTemperature;
+
 /// A grid (six dofs: translations and rotations in basic) or a scalar point (one dof).
 struct Node {
   int id = 0;
@@ -69,6 +71,12 @@ class Element {
   /// K_G += scale K_G(force), N x N, symmetric and linear in force.
   virtual void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                        Eigen::Ref<MatrixXd> K_G) const;
+
+  /// True when add_thermal() adds something: the material expands.
+  virtual bool has_expansion() const { return false; }
+  /// For temperatures T: load (N) += the forces at the nodes that stretch the element as it would stretch freely;
+  /// initial (s) += its internal forces at u = 0. With temperatures they are calc_internal_forces(u) + initial.
+  virtual void add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const;
 
  private:
   int id_;
