@@ -17,7 +17,7 @@ constexpr std::array written_cards{
     "CDAMP3", "CDAMP4", "CELAS1", "CELAS2", "CELAS3", "CELAS4", "CHEXA",  "CMASS1",  "CMASS2",  "CMASS3",
     "CMASS4", "CONM1",  "CONM2",  "CONROD", "CORD1C", "CORD1R", "CORD1S", "CORD2C",  "CORD2R",  "CORD2S",
     "CPENTA", "CQUAD4", "CQUAD8", "CQUADR", "CROD",   "CSHEAR", "CTETRA", "CTRIA3",  "CTRIA6",  "CTRIAR",
-    "CTUBE",  "CVISC",  "DMIG",   "EIGR",   "EIGRL",  "FORCE",  "FORCE1", "FORCE2",  "GRAV",    "GRDSET",
+    "CTUBE",  "CVISC",  "DMIG",   "EIGB",   "EIGR",   "EIGRL",  "FORCE",  "FORCE1", "FORCE2",  "GRAV",    "GRDSET",
     "GRID",   "LOAD",   "MAT1",   "MAT2",   "MAT8",   "MAT9",   "MOMENT", "MOMENT1", "MOMENT2", "MPC",
     "MPCADD", "OMIT",   "OMIT1",  "PARAM",  "PBAR",   "PBARL",  "PBEAM",  "PBEAML",  "PBUSH",   "PBUSH1D",
     "PCOMP",  "PCOMPG", "PDAMP",  "PELAS",  "PLOAD",  "PLOAD1", "PLOAD2", "PLOAD4",  "PLOTEL",  "PMASS",

@@ -89,6 +89,23 @@ void parse_eigr(Card& card, Reading& r) {
   if (r.claim(IdSpace::EigenMethod, m.sid, card)) r.deck.eigen_methods.push_back(std::move(m));
 }
 
+/// SID METHOD L1 L2 NEP NDP NDN, NORM G C: what EIGRL says in fewer words. Roots of both signs are one search here, and
+/// the shape is scaled as EIGRL scales it.
+void parse_eigb(Card& card, Reading& r) {
+  EigenMethod m;
+  m.sid = card.read_id(0, "SID");
+  m.f1 = card.read_optional_real(2, "L1");
+  m.f2 = card.read_optional_real(3, "L2");
+  const int positive = card.read_int(5, "NDP", 3 * card.read_int(4, "NEP", 0));
+  m.num_modes = std::max(positive, card.read_int(6, "NDN", 0));
+  m.norm = "MAX";
+  m.at = card.get_location();
+  card.demand(m.num_modes >= 0, 5, "NDP", "zero or a positive integer");
+  if (m.f1 && m.f2 && *m.f2 <= *m.f1) m.f1 = m.f2 = std::nullopt;
+  if (m.num_modes == 0 && !m.f2) m.num_modes = 1;
+  if (r.claim(IdSpace::EigenMethod, m.sid, card)) r.deck.eigen_methods.push_back(std::move(m));
+}
+
 /// The last value of a name counts.
 void parse_param(Card& card, Reading& r) {
   records::Param p{card.get_upper(0), card.get_upper(1), card.get_location()};
@@ -108,6 +125,7 @@ void parse_param(Card& card, Reading& r) {
 void add_solution_parsers(ParserTable& table) {
   table["EIGRL"] = parse_eigrl;
   table["EIGR"] = parse_eigr;
+  table["EIGB"] = parse_eigb;
   table["PARAM"] = parse_param;
 }
 

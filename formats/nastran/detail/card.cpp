@@ -63,8 +63,22 @@ int Card::read_reference(int i, const char* what, int fallback) {
     demand(*value >= 0, i, what, "zero or a positive integer");
   return value.value_or(fallback);
 }
+/// The old programs skip blanks in a field; where that is no accident of columns it is one number.
+std::string Card::join_blanks(int i, const char* what) {
+  std::string joined(get(i));
+  std::erase(joined, ' ');
+  warn("deck.blank-inside", i, std::string(what) + " is '" + std::string(get(i)) + "', read as '" + joined + "'",
+       "check the columns");
+  return joined;
+}
 double Card::read_real(int i, const char* what) {
-  const auto value = parse_real(get(i));
+  auto value = parse_real(get(i));
+  if (const auto blank = get(i).find(' '); !value && blank != std::string_view::npos) {
+    const auto exponent = trim(get(i).substr(blank));
+    if (parse_real(get(i).substr(0, blank)) && std::string_view("+-eEdD").find(exponent[0]) != std::string_view::npos &&
+        exponent.find(' ') == std::string_view::npos)
+      value = parse_real(join_blanks(i, what));
+  }
   if (!value) fail_field("deck.bad-real", i, what, "a real number");
   return value.value_or(0.0);
 }
@@ -80,7 +94,8 @@ Eigen::Vector2d Card::read_point(int i, const char* what) {
   return {read_real(i, what, 0.0), read_real(i + 1, what, 0.0)};
 }
 unsigned Card::read_components(int i, const char* what) {
-  const auto value = parse_components(get(i));
+  const bool has_blank = get(i).find(' ') != std::string_view::npos;
+  const auto value = has_blank ? parse_components(join_blanks(i, what)) : parse_components(get(i));
   if (!value) fail_field("deck.bad-components", i, what, "component numbers 1 to 6 such as 123, or 0");
   return value.value_or(0u);
 }

@@ -77,6 +77,8 @@ class Card {
 
  private:
   SourceLocation locate(int i) const;
+  /// "10.4  +6" and "12 456" without their blanks, with the warning deck.blank-inside.
+  std::string join_blanks(int i, const char* what);
   void fail_field(std::string_view id, int i, const char* what, const char* expected);
 
   const CardText& text_;

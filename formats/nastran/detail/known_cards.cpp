@@ -21,7 +21,7 @@ constexpr std::string_view stiffness_cards =
     "CSHEAR CSLOT3 CSLOT4 CSPOT CSUPER CSUPEXT CTETRA CTORDRG CTRAPAX CTRAPRG CTRBSC CTRIA1 CTRIA2 CTRIA3 CTRIA6 "
     "CTRIAAX CTRIAP CTRIAR CTRIARG CTRIAX CTRIAX6 CTRIM6 CTRMEM CTRPLT CTRPLT1 CTRSHL CTRAX3 CTRAX6 CTUBE CTWIST "
     "CWEDGE CWELD CWELDC DMIAX DMIG DMIGOUT EPOINT GENEL RINGAX RINGFL SECTAX SPOINT "
-    "CBUTT CCRSFIL CFILLET COMBWLD";
+    "CBUTT CCRSFIL CFILLET COMBWLD CUSER1 CUSERIN";
 constexpr std::string_view mass_cards =
     "CMASS1 CMASS2 CMASS3 CMASS4 CONM1 CONM2 CONM3 NSM NSM1 NSMADD NSML NSML1 MFLUID";
 constexpr std::string_view constraint_cards =
@@ -89,7 +89,9 @@ constexpr std::string_view neutral_cards =
     "DVSHAP DVTREL1 TOMVAR TOPVAR DSYM DRESP1L DRESP2L TOPBMF STPGEN "
     // Control systems, superelement bookkeeping.
     "CONSYS EXTRN EXTRUDE SEBNDRY SEDLINK SEDRSP2 SEDRSP3 SEEXCLD SELABEL SELOC SENQSET SEQGP SETREE NPSET SWITCH "
-    "TEMPMAP TOPLIN VECTOR VCCT";
+    "TEMPMAP TOPLIN VECTOR VCCT "
+    // Hints and switches of MYSTRAN and NASTRAN-95: congruent elements, debug output, partitions of printed matrices.
+    "CNGRNT DEBUG PARVEC PARVEC1 PUSER1 PUSERIN";
 
 /// A name listed twice has the first effect.
 const std::unordered_map<std::string_view, CardEffect>& get_effects() {

@@ -202,5 +202,39 @@ TEST(MoreCards, WhatIsWrong) {
   EXPECT_EQ(count("DMIG,K,0,1,1\nDMIG,K,1,1,,2,1,2.\n,2,1,3.\n", "deck.duplicate-term"), 1);
 }
 
+TEST(OldDecks, BlanksInsideNumbers) {
+  const auto r = read(
+      "MAT1    1       10.4  +64.   +6                                                 \n"
+      "SPC1    1       12 456  1041\n"
+      "GRID    1041\n");
+  EXPECT_EQ(r.diagnostics.num_errors(), 0) << r.get_messages();
+  EXPECT_EQ(r.count("deck.blank-inside"), 3);
+  ASSERT_EQ(r.deck.mat1.size(), 1u);
+  EXPECT_EQ(r.deck.mat1[0].E, 10.4e6);
+  EXPECT_EQ(r.deck.mat1[0].G, 4.0e6);
+  ASSERT_EQ(r.deck.spc.size(), 1u);
+  EXPECT_EQ(r.deck.spc[0].c, 0b111011u);
+  // Two numbers in one field are two numbers, and columns that are off.
+  EXPECT_EQ(read("GRID    1               1.0 2.0\n").count("deck.bad-real"), 1);
+}
+
+TEST(OldDecks, HintsAndSwitchesAreNoErrors) {
+  const auto r = read("GRID,1\nDEBUG   192     2\nPARVEC  A       13      3\nCNGRNT  1       2       THRU    40\n");
+  EXPECT_EQ(r.diagnostics.num_errors(), 0) << r.get_messages();
+  EXPECT_EQ(read("CUSERIN,1,2,3\n").count("deck.unsupported-card"), 1);
+}
+
+TEST(OldDecks, TableOfBucklingRoots) {
+  const auto deck = read_clean(
+      "EIGB    300     UDET    .10     2.5     4       4       0       1.5E-05 +EIGB300\n+EIGB300MAX\n"
+      "EIGB,301,INV,,,2\n");
+  ASSERT_EQ(deck.eigen_methods.size(), 2u);
+  EXPECT_EQ(deck.eigen_methods[0].sid, 300);
+  EXPECT_EQ(deck.eigen_methods[0].f1, 0.1);
+  EXPECT_EQ(deck.eigen_methods[0].f2, 2.5);
+  EXPECT_EQ(deck.eigen_methods[0].num_modes, 4);
+  EXPECT_EQ(deck.eigen_methods[1].num_modes, 6);
+}
+
 }  // namespace
 }  // namespace bough::nastran
