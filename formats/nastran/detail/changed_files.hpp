@@ -1,0 +1,22 @@
+#pragma once
+/// \file The files of a deck once more, byte for byte but for some changed lines.
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bough/formats/nastran/detail/lines.hpp"
+#include "bough/formats/nastran/field_editor.hpp"
+
+namespace bough::nastran::detail {
+
+struct LineChange {
+  std::string text;   ///< instead of the line, without its comment
+  std::string added;  ///< lines after it
+};
+
+/// The main file under `name`, and every file that changes or includes one that does under a name made of it; INCLUDE
+/// statements name these, or the others by their full paths. `changes`: by line of the source.
+std::vector<EditedFile> write_changed_files(const Source& source, const std::string& name,
+                                            const std::map<int, LineChange>& changes);
+
+}  // namespace bough::nastran::detail
