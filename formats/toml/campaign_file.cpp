@@ -1,11 +1,10 @@
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <sstream>
 
 #include "bough/formats/toml/campaign.hpp"
+#include "bough/formats/toml/detail/campaign_words.hpp"
 #include "bough/formats/toml/detail/fields.hpp"
 #include "bough/formats/toml/detail/schema.hpp"
 
@@ -20,60 +19,6 @@ Setting read_value(const Value& v) {
   if (v.kind == Value::Kind::Float) return make_setting(v.number, false);
   if (v.kind == Value::Kind::Boolean) return {Kind::Boolean, v.boolean ? "true" : "false", v.boolean ? 1.0 : 0.0};
   return {Kind::Word, v.text, 0};
-}
-
-std::string trim(std::string text) {
-  const auto first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
-
-/// A cell of a CSV file: an integer, a real, true or false, else a word.
-Setting read_cell(const std::string& cell) {
-  const char *first = cell.data() + (cell.size() > 1 && cell[0] == '+' ? 1 : 0), *last = cell.data() + cell.size();
-  long long integer = 0;
-  if (const auto r = std::from_chars(first, last, integer); r.ec == std::errc() && r.ptr == last)
-    return make_setting(static_cast<double>(integer), true);
-  double real = 0;
-  if (const auto r = std::from_chars(first, last, real); r.ec == std::errc() && r.ptr == last && std::isfinite(real))
-    return make_setting(real, false);
-  if (cell == "true" || cell == "false") return {Kind::Boolean, cell, cell == "true" ? 1.0 : 0.0};
-  return {Kind::Word, cell, 0};
-}
-
-std::vector<std::string> split_cells(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      cells.emplace_back();
-    else
-      cells.back() += c;
-  }
-  for (auto& cell : cells) cell = trim(cell);
-  return cells;
-}
-
-/// Words between blanks; quotes, single or double, keep blanks.
-std::vector<std::string> split_words(const std::string& text) {
-  std::vector<std::string> words;
-  char quote = 0;
-  bool open = false;
-  for (const char c : text) {
-    if (quote != 0 ? c == quote : c == '\'' || c == '"') {
-      quote = quote != 0 ? '\0' : c;
-      if (!open) words.emplace_back();
-      open = true;
-    } else if (quote == 0 && (c == ' ' || c == '\t' || c == '\n')) {
-      open = false;
-    } else {
-      if (!open) words.emplace_back();
-      open = true;
-      words.back() += c;
-    }
-  }
-  return words;
 }
 
 class Reader {
@@ -284,14 +229,6 @@ class Reader {
 };
 
 }  // namespace
-
-Setting make_setting(double value, bool is_integer) {
-  char buffer[40];
-  if (is_integer) return {Kind::Integer, std::to_string(static_cast<long long>(std::llround(value))), value};
-  std::string text(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
-  if (text.find_first_of(".en") == std::string::npos) text += ".0";
-  return {Kind::Real, text, value};
-}
 
 CampaignSpec read_campaign(const std::string& path, Diagnostics& diagnostics) {
   CampaignSpec spec;
