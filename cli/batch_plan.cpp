@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "batch_steps.hpp"
 #include "bough/formats/hdf5/files.hpp"
 #include "bough/formats/toml/key_editor.hpp"
 #include "bough/formats/toml/specs.hpp"
@@ -40,25 +41,6 @@ std::string make_toml(const Setting& value) {
   return value.kind == Setting::Kind::Word ? toml_files::quote_text(value.text) : value.text;
 }
 
-/// The value of -o, --output of a command; empty when it has none.
-std::string find_option(const std::vector<std::string>& words, const std::vector<std::string>& names) {
-  for (std::size_t i = 1; i < words.size(); ++i)
-    for (const auto& name : names) {
-      if (words[i] == name && i + 1 < words.size()) return words[i + 1];
-      if (words[i].rfind(name + "=", 0) == 0) return words[i].substr(name.size() + 1);
-    }
-  return {};
-}
-
-/// A word that may be an input file: no option, and not the value of one.
-bool is_input_word(const std::vector<std::string>& words, std::size_t i) {
-  return i > 0 && words[i].rfind('-', 0) != 0 && (i == 1 || words[i - 1].rfind('-', 0) != 0);
-}
-
-std::string make_absolute(const std::string& folder, const std::string& path) {
-  return (fs::path(folder) / path).lexically_normal().string();
-}
-
 std::string describe(const Diagnostics& diagnostics) {
   for (const auto& item : diagnostics.items())
     if (item.severity == Severity::Error) return item.what + (item.advice.empty() ? "" : "; " + item.advice);
@@ -80,38 +62,15 @@ BatchPlan::BatchPlan(const std::string& campaign_file, const std::vector<std::st
     throw InputError("batch.too-many-cases", {campaign_file}, "the campaign has more than a million cases",
                      "use method = \"latin-hypercube\" or fewer values");
   cases_ = make_cases(spec_);
-  check_steps(verbs);
+  check_steps(spec_, verbs, diagnostics_);
   carry_all();
   diagnostics_.throw_if_errors();
-  find_outputs();
+  outputs_ = find_outputs(spec_, campaign_folder_);
   for (auto& [file, carried] : carried_)
     if (carried.kind == FileKind::Toml) resolve_paths(file, carried);
   find_fields();
   diagnostics_.throw_if_errors();
   calc_inputs();
-}
-
-void BatchPlan::check_steps(const std::vector<std::string>& verbs) {
-  std::vector<std::string> names{"case"};
-  for (const auto& p : spec_.parameters) names.push_back(p.name);
-  for (const auto& step : spec_.steps) {
-    const auto& verb = step.words.front();
-    if (std::find(verbs.begin(), verbs.end(), verb) == verbs.end() || verb == "batch") {
-      const auto nearest = find_nearest(verb, verbs);
-      diagnostics_.error(
-          "batch.bad-step", step.at, "'" + verb + "' is no verb for a step",
-          nearest.empty() || verb == "batch" ? "bough --help lists the verbs" : "did you mean " + nearest);
-    }
-    for (const auto& word : step.words)
-      for (auto open = word.find('{'); open != std::string::npos; open = word.find('{', open + 1)) {
-        const auto close = word.find('}', open);
-        const auto name = word.substr(open + 1, close == std::string::npos ? close : close - open - 1);
-        if (close != std::string::npos && std::find(names.begin(), names.end(), name) != names.end()) continue;
-        const auto nearest = find_nearest(name, names);
-        diagnostics_.error("batch.bad-step", step.at, "{" + name + "} is no parameter",
-                           nearest.empty() ? "add it as [[parameter]]" : "did you mean {" + nearest + "}");
-      }
-  }
 }
 
 void BatchPlan::carry(const std::string& file, const SourceLocation& at, bool has_cards) {
@@ -161,31 +120,6 @@ void BatchPlan::carry_all() {
       if (is_input_word(step.words, i) && has_suffix(file, ".toml") && fs::is_regular_file(file))
         carry(file, step.at, false);
     }
-  }
-}
-
-/// What the steps write, by -o or by the verbs' defaults: such a file is the case's own, not one of the same name that
-/// lies beside the campaign.
-void BatchPlan::find_outputs() {
-  const auto& folder = campaign_folder_;
-  for (const auto& step : spec_.steps) {
-    const auto& words = step.words;
-    std::string output = find_option(words, {"-o", "--output"});
-    const std::string input = words.size() > 1 ? words[1] : "";
-    const auto stem = fs::path(input).stem().string();
-    if (output.empty() && words[0] == "run") output = stem + ".h5";
-    if (output.empty() && words[0] == "flx") output = stem + ".FLX";
-    if (output.empty() && words[0] == "reduce") {
-      auto name = find_option(words, {"--name"});
-      if (const auto file = make_absolute(folder, input); has_suffix(file, ".toml") && fs::is_regular_file(file)) {
-        Diagnostics ignored;
-        const auto body = toml_files::read_body_spec(file, ignored);
-        output = body.output_file;
-        if (name.empty()) name = body.name;
-      }
-      if (output.empty()) output = (name.empty() ? stem : name) + ".h5";
-    }
-    if (!output.empty()) outputs_.push_back(make_absolute(folder, output));
   }
 }
 
@@ -317,18 +251,9 @@ std::vector<std::string> BatchPlan::make_words(const BatchCase& one, std::size_t
     else if (std::find(outputs_.begin(), outputs_.end(), input) == outputs_.end() && fs::is_regular_file(input))
       words[i] = input;
   }
-  for (auto& word : words)
-    for (std::size_t i = 0; i <= spec_.parameters.size(); ++i) {
-      const bool is_case = i == spec_.parameters.size();
-      const auto name = "{" + (is_case ? "case" : spec_.parameters[i].name) + "}";
-      const auto text = is_case ? std::to_string(one.number) : one.values[i].text;
-      for (auto at = word.find(name); at != std::string::npos; at = word.find(name, at + text.size()))
-        word.replace(at, name.size(), text);
-    }
-  const bool wants_json = std::any_of(spec_.collect.begin(), spec_.collect.end(), [&](const auto& c) {
-    return !c.json.empty() && c.step == static_cast<int>(step) + 1;
-  });
-  if (wants_json && std::find(words.begin(), words.end(), "--json") == words.end()) words.emplace_back("--json");
+  fill_in(words, spec_, one);
+  if (is_collected_as_json(spec_, step) && std::find(words.begin(), words.end(), "--json") == words.end())
+    words.emplace_back("--json");
   return words;
 }
 

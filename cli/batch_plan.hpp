@@ -41,11 +41,9 @@ class BatchPlan {
 
   void carry(const std::string& file, const SourceLocation& at, bool has_cards);
   void carry_all();
-  void find_outputs();
   void resolve_paths(const std::string& file, Carried& carried);
   void find_fields();
   void check_keys(const toml_files::CampaignParameter& p);
-  void check_steps(const std::vector<std::string>& verbs);
   void calc_inputs();
 
   toml_files::CampaignSpec spec_;
