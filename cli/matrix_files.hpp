@@ -1,5 +1,5 @@
 #pragma once
-/// \file Files of matrices and mode shapes, and the grids they belong to, for `reduce --matrices`.
+/// \file Files of matrices and mode shapes for `reduce --matrices`.
 #include <string>
 #include <vector>
 
@@ -11,10 +11,6 @@ namespace bough::cli {
 /// --matrices of the command line into the spec: FILE, or KEY=VALUE with a key of [body.matrices], K, M, B, phi, or the
 /// name of an inertial load. Throws InputError("cli.bad-matrices").
 void add_matrices_option(const std::string& text, records::MatricesSpec& spec);
-
-/// The deck's grids, constraints, loads, whatever elements it has; or the grids of a table or of an HDF5 file. Throws
-/// InputError, "cli.no-grids", "cli.grids-twice" among them.
-records::Deck read_points(const records::BodySpec& spec, Diagnostics& diagnostics);
 
 /// Reads them all; file names that were read are added to `files`.
 stiffening::GivenMatrices read_given_matrices(const records::MatricesSpec& spec, const records::Deck& deck,
