@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <numbers>
-#include <optional>
 #include <set>
 
 #include "bough/base/rotation.hpp"
 #include "bough/fe/factor.hpp"
+#include "bough/stiffening/given_checks.hpp"
 #include "bough/stiffening/given_elements.hpp"
 
 namespace bough::stiffening {
@@ -18,14 +16,6 @@ using records::Deck;
 using records::FlexBody;
 
 namespace {
-
-constexpr double kAsymmetry = 1e-6;  ///< of the largest entries of both rows: files of seven digits are below it
-
-std::string show(double value, const char* format = "%.6g") {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 template <class Container, class Value>
 bool has(const Container& values, const Value& value) {
@@ -51,22 +41,6 @@ Deck keep_points(const Deck& deck, const GivenMatrices& given) {
   return kept;
 }
 
-/// The first pair of rows where A differs from its transpose, beyond the digits of a file and roundoff.
-std::optional<std::pair<int, int>> find_asymmetry(const SparseRows& A) {
-  VectorXd largest = VectorXd::Zero(A.rows());  // of each row and column
-  for (int i = 0; i < A.outerSize(); ++i)
-    for (SparseRows::InnerIterator it(A, i); it; ++it)
-      for (const auto k : {Eigen::Index(i), Eigen::Index(it.col())})
-        largest[k] = std::max(largest[k], std::abs(it.value()));
-  const double roundoff = 1e-12 * (A.rows() > 0 ? largest.maxCoeff() : 0.0);
-  const SparseRows difference = A - SparseRows(A.transpose());
-  for (int i = 0; i < difference.outerSize(); ++i)
-    for (SparseRows::InnerIterator it(difference, i); it; ++it)
-      if (std::abs(it.value()) > std::max(kAsymmetry * std::sqrt(largest[i] * largest[it.col()]), roundoff))
-        return std::pair(i, static_cast<int>(it.col()));
-  return {};
-}
-
 class MatrixReduction {
  public:
   MatrixReduction(const Deck& deck, const BodySpec& spec, const GivenMatrices& given, const ReduceOptions& options,
@@ -80,15 +54,12 @@ class MatrixReduction {
   BodySpec make_spec() const;
   fe::ElementList make_elements(const fe::NodeTable& nodes);
   SparseRows place(const PointTable& points, const GivenMatrix& matrix, SparseRows* placement = nullptr);
-  void check_mass(const SparseRows& M);
   MatrixXd calc_modes(const fe::Model& model);
-  void compare_eigenvalues(const fe::Model& model, const MatrixXd& Phi);
   void check_integrals();
   void set_geometric(FlexBody& body);
   void add_locator(FlexBody& body, const GivenGeometric& g, const VectorXd& F);
   void warn_of_missing(const FlexBody& body);
   void warn_of_stiffening(const FlexBody& body, const std::set<std::size_t>& set);
-  std::string describe(Eigen::Index gdof) const;
 
   const Deck& deck_;
   const BodySpec& spec_;
@@ -138,25 +109,12 @@ BodySpec MatrixReduction::make_spec() const {
   return spec;
 }
 
-std::string MatrixReduction::describe(Eigen::Index gdof) const {
-  const int id = dof_map_(gdof, 0), code = dof_map_(gdof, 1);
-  return code == 0 ? "scalar point " + std::to_string(id)
-                   : "grid " + std::to_string(id) + " component " + std::to_string(code);
-}
-
 /// P A Pᵀ, symmetric to the last bit; a matrix that is not symmetric is an error.
 SparseRows MatrixReduction::place(const PointTable& points, const GivenMatrix& matrix, SparseRows* placement) {
   const SparseRows P = calc_placement(points, matrix, diagnostics_);
   if (placement) *placement = P;
   if (diagnostics_.num_errors() > 0) return SparseRows(points.num_gdofs, points.num_gdofs);
-  if (const auto pair = find_asymmetry(matrix.values)) {
-    const auto [i, j] = *pair;
-    diagnostics_.error("reduce.not-symmetric", matrix.at,
-                       matrix.label + " is not symmetric: (" + std::to_string(i + 1) + ", " + std::to_string(j + 1) +
-                           ") is " + show(matrix.values.coeff(i, j), "%.9g") + ", (" + std::to_string(j + 1) + ", " +
-                           std::to_string(i + 1) + ") is " + show(matrix.values.coeff(j, i), "%.9g"),
-                       "give a symmetric matrix: without follower loads, gyroscopic or friction terms");
-  }
+  check_symmetry(matrix, diagnostics_);
   const SparseRows A = P * matrix.values * SparseRows(P.transpose());
   return 0.5 * (A + SparseRows(A.transpose()));
 }
@@ -191,7 +149,7 @@ fe::ElementList MatrixReduction::make_elements(const fe::NodeTable& nodes) {
 
   has_row_.assign(static_cast<std::size_t>(points.num_gdofs), 0);
   for (int i = 0; i < P_K.outerSize(); ++i) has_row_[static_cast<std::size_t>(i)] = P_K.row(i).nonZeros() > 0;
-  check_mass(M);
+  check_mass(M, given_.M, points, diagnostics_);
   is_lumped_ = !couples_points(points, M);
   check_integrals();
   add_direct_elements(points, K, fe::DirectKind::Stiffness, list);
@@ -199,38 +157,6 @@ fe::ElementList MatrixReduction::make_elements(const fe::NodeTable& nodes) {
   if (B.rows() > 0) add_direct_elements(points, B, fe::DirectKind::Damping, list);
   add_drawn_elements(deck_, nodes, list);
   return list;
-}
-
-/// No negative entry on the diagonal, and rigid motions that see one mass: Φ_RᵀMΦ_R = [m 1, -m c̃; m c̃, J].
-void MatrixReduction::check_mass(const SparseRows& M) {
-  const VectorXd diagonal = M.diagonal();
-  for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
-    if (diagonal[i] >= 0) continue;
-    diagnostics_.error("reduce.negative-mass", given_.M.at,
-                       given_.M.label + " has " + show(diagonal[i]) + " on the diagonal at " + describe(i),
-                       "give a mass matrix that is positive, or at least semidefinite");
-    return;
-  }
-  const MatrixXd Phi_R = dofs_.calc_rigid_modes();
-  const MatrixXd R = Phi_R.transpose() * (M * Phi_R);
-  const double m = R.topLeftCorner<3, 3>().trace() / 3;
-  if (!(m > 0)) {
-    diagnostics_.error(
-        "reduce.negative-mass", given_.M.at,
-        "the translations of " + given_.M.label + " carry the mass " + show(m) + ", expected more than zero",
-        "check that it is the mass matrix, and the list of dofs");
-    return;
-  }
-  const Eigen::Matrix3d T = R.topLeftCorner<3, 3>(), S = R.topRightCorner<3, 3>();
-  const double length = std::sqrt(std::max(R.bottomRightCorner<3, 3>().trace() / m, 0.0));
-  const double off = std::max((T - m * Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() / m,
-                              length > 0 ? (S + S.transpose()).cwiseAbs().maxCoeff() / (m * length) : 0.0);
-  if (off <= 1e-6) return;
-  diagnostics_.warning("reduce.not-rigid-mass", given_.M.at,
-                       "rigid motions see the masses " + show(T(0, 0)) + ", " + show(T(1, 1)) + ", " + show(T(2, 2)) +
-                           " in x, y, z and differ from those of one rigid body by a part of " + show(off, "%.2g") +
-                           ": mass, centre and inertia are means",
-                       "give the matrix before supports and omitted dofs took their part; check axes and dofs");
 }
 
 MatrixXd MatrixReduction::calc_modes(const fe::Model& model) {
@@ -248,25 +174,8 @@ MatrixXd MatrixReduction::calc_modes(const fe::Model& model) {
                       std::to_string(Phi.cols() - static_cast<Eigen::Index>(elastic.size())) + " of the " +
                           std::to_string(Phi.cols()) + " modes of " + given_.modes.Phi.label +
                           " have no strain and are left out");
-  if (given_.modes.eigenvalue.size() == Phi.cols()) compare_eigenvalues(model, Phi);
+  if (given_.modes.eigenvalue.size() == Phi.cols()) compare_eigenvalues(model, given_.modes, Phi, diagnostics_);
   return Phi(Eigen::all, elastic);
-}
-
-/// λ of the file against the Rayleigh quotient under K and M: units, dofs and axes that do not belong together show.
-void MatrixReduction::compare_eigenvalues(const fe::Model& model, const MatrixXd& Phi) {
-  const VectorXd k = Phi.cwiseProduct(fe::calc_stiffness_times(model, Phi)).colwise().sum();
-  const VectorXd m = Phi.cwiseProduct(fe::calc_mass_times(model, model.mass_kind(), Phi)).colwise().sum();
-  const VectorXd& lambda = given_.modes.eigenvalue;
-  const double largest = lambda.cwiseAbs().maxCoeff();
-  for (Eigen::Index j = 0; j < lambda.size(); ++j) {
-    if (std::abs(lambda[j]) < 1e-6 * largest && std::abs(k[j]) < 1e-5 * largest * m[j]) continue;
-    if (m[j] > 0 && std::abs(k[j] / m[j] - lambda[j]) <= 1e-3 * std::abs(lambda[j])) continue;
-    diagnostics_.warning("reduce.modes-differ", given_.modes.Phi.at,
-                         "mode " + std::to_string(j + 1) + " of " + given_.modes.Phi.label + " has the eigenvalue " +
-                             show(lambda[j]) + ", K and M give it " + show(m[j] > 0 ? k[j] / m[j] : 0.0),
-                         "check that modes and matrices are of one run, their axes (CD) and dofs");
-    return;
-  }
 }
 
 /// M knows one set of momentum integrals, under the name of its kind.
@@ -355,7 +264,7 @@ void MatrixReduction::warn_of_missing(const FlexBody& body) {
   if (grids.empty()) return;
   diagnostics_.warning("reduce.missing-dofs", given_.K.at,
                        given_.K.label + " has no row for translations of " + std::to_string(grids.size()) +
-                           " points, the first " + describe(first) + ": they are taken as zero",
+                           " points, the first " + describe_dof(dof_map_, first) + ": they are taken as zero",
                        "constrained ones are zero indeed; omitted ones cannot be recovered: name other output nodes");
 }
 
