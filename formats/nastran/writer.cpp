@@ -22,7 +22,7 @@ constexpr std::array written_cards{
     "MPCADD", "OMIT",   "OMIT1",  "PARAM",  "PBAR",   "PBARL",  "PBEAM",  "PBEAML",  "PBUSH",   "PBUSH1D",
     "PCOMP",  "PCOMPG", "PDAMP",  "PELAS",  "PLOAD",  "PLOAD1", "PLOAD2", "PLOAD4",  "PLOTEL",  "PMASS",
     "PROD",   "PSHEAR", "PSHELL", "PSOLID", "PTUBE",  "PVISC",  "RBAR",   "RBE1",    "RBE2",    "RBE3",
-    "RFORCE", "RROD",   "SLOAD",  "SPC",    "SPC1",   "SPCADD", "SPCD",   "SPOINT",  "SUPORT",  "SUPORT1"};
+    "RFORCE", "RROD",   "SLOAD",  "SPC",    "SPC1",   "SPCADD", "SPCD",   "SPOINT",  "SUPORT",  "SUPORT1", "TEMP", "TEMPD", "TEMPP1", "TEMPRB"};
 
 /// "1.5*K1, 1.*K2": a line for each, so that none grows beyond 72 columns.
 std::string join_matrices(const std::vector<std::pair<double, std::string>>& matrices) {
@@ -45,6 +45,7 @@ void write_selection(const records::Subcase& subcase, std::string& out) {
   add_set("SPC", subcase.spc);
   add_set("MPC", subcase.mpc);
   add_set("LOAD", subcase.load);
+  add_set("TEMPERATURE(LOAD)", subcase.temperature);
   add_set("METHOD", subcase.method);
   add_set("STATSUB", subcase.statsub);
   add_set("SUPORT1", subcase.suport1);
@@ -103,6 +104,7 @@ std::string write_deck(const Deck& deck, const WriteOptions& options, Diagnostic
   detail::write_dof_sets(deck, sink);
   detail::write_direct_matrices(deck, sink);
   detail::write_loads(deck, sink);
+  detail::write_temperatures(deck, sink);
   sink.out += "ENDDATA\n";
   return std::move(sink.out);
 }

@@ -16,6 +16,7 @@
 #include "bough/formats/records/card_location.hpp"
 #include "bough/formats/records/deck_continua.hpp"
 #include "bough/formats/records/deck_loads.hpp"
+#include "bough/formats/records/deck_temperatures.hpp"
 
 namespace bough::records {
 
@@ -355,6 +356,7 @@ struct Subcase {
   int id = 0;  ///< 0: what stands above the first SUBCASE (already merged into each subcase)
   std::string title, subtitle, label;
   int spc = 0, mpc = 0, load = 0, method = 0, statsub = 0;  ///< 0: none
+  int temperature = 0;                                      ///< TEMPERATURE(LOAD) or (BOTH)
   int suport1 = 0;
   std::vector<std::pair<double, std::string>> k2gg, m2gg, b2gg;  ///< (scale, DMIG name)
 };
@@ -428,6 +430,7 @@ struct Deck {
   std::vector<PointLoad> point_loads;
   std::vector<Gravity> gravity;
   std::vector<LoadCombination> loads;
+  TemperatureCards temperatures;
   LoadCards load_cards;  ///< PLOADx, RFORCE, SPCD, SLOAD, FORCE1 ...
   std::vector<EigenMethod> eigen_methods;
   std::vector<Param> params;

@@ -12,6 +12,8 @@ void parse_mat2(Card& card, Reading& r) {
   for (int i = 0; i < 6; ++i)
     mat.G(kPlace[i][0], kPlace[i][1]) = mat.G(kPlace[i][1], kPlace[i][0]) = card.read_real(1 + i, "Gij", 0.0);
   mat.rho = card.read_real(7, "RHO", 0.0);
+  mat.alpha = card.read_vector(8, "A1 A2 A3");
+  mat.tref = card.read_real(11, "TREF", 0.0);
   mat.at = card.get_location();
   if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat2.push_back(mat);
 }
@@ -26,6 +28,9 @@ void parse_mat8(Card& card, Reading& r) {
   mat.G1z = card.read_real(5, "G1Z", 0.0);
   mat.G2z = card.read_real(6, "G2Z", 0.0);
   mat.rho = card.read_real(7, "RHO", 0.0);
+  mat.a1 = card.read_real(8, "A1", 0.0);
+  mat.a2 = card.read_real(9, "A2", 0.0);
+  mat.tref = card.read_real(10, "TREF", 0.0);
   mat.at = card.get_location();
   if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat8.push_back(mat);
 }
@@ -36,7 +41,9 @@ void parse_mat9(Card& card, Reading& r) {
   int field = 1;
   for (int i = 0; i < 6; ++i)
     for (int j = i; j < 6; ++j) mat.G(i, j) = mat.G(j, i) = card.read_real(field++, "Gij", 0.0);
-  mat.rho = card.read_real(field, "RHO", 0.0);
+  mat.rho = card.read_real(field++, "RHO", 0.0);
+  for (int i = 0; i < 6; ++i) mat.alpha[i] = card.read_real(field++, "Ai", 0.0);
+  mat.tref = card.read_real(field, "TREF", 0.0);
   mat.at = card.get_location();
   if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat9.push_back(mat);
 }
@@ -65,6 +72,7 @@ void parse_laminate(Card& card, Reading& r, int skip, int stride) {
   p.id = card.read_id(0, "PID");
   const auto z0 = card.read_optional_real(1, "Z0");
   p.nsm = card.read_real(2, "NSM", 0.0);
+  p.tref = card.read_real(5, "TREF", 0.0);
   const std::string lam = card.read_word(7, "LAM", "", {"", "SYM", "MEM", "BEND", "SMEAR", "SMCORE"});
   if (lam == "SMEAR" || lam == "SMCORE")
     card.fail("deck.bad-word", 7, "LAM is " + lam + ", expected SYM, MEM, BEND or blank", "write the plies out");

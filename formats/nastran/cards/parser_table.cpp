@@ -19,6 +19,7 @@ const ParserTable& get_card_parsers() {
     add_direct_matrix_parsers(t);
     add_load_parsers(t);
     add_pressure_parsers(t);
+    add_temperature_parsers(t);
     add_solution_parsers(t);
     return t;
   }();

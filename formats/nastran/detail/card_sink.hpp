@@ -26,6 +26,7 @@ void write_dof_sets(const records::Deck& deck, CardSink& sink);         ///< SUP
 void write_direct_matrices(const records::Deck& deck, CardSink& sink);  ///< DMIG
 void write_loads(const records::Deck& deck,
                  CardSink& sink);  ///< FORCEi, MOMENTi, PLOADi, GRAV, RFORCE, SPCD, SLOAD, LOAD
-void write_solution(const records::Deck& deck, CardSink& sink);  ///< EIGRL, EIGR, PARAM
+void write_temperatures(const records::Deck& deck, CardSink& sink);  ///< TEMP, TEMPD, TEMPRB, TEMPP1
+void write_solution(const records::Deck& deck, CardSink& sink);      ///< EIGRL, EIGR, PARAM
 
 }  // namespace bough::nastran::detail

@@ -105,6 +105,8 @@ class CaseControl {
       read_set(c, current().mpc);
     else if (c.word == "LOAD")
       read_set(c, current().load);
+    else if (is_command(c.word, "TEMPERATURE", 4))
+      read_temperature(c);
     else if (is_command(c.word, "METHOD", 4)) {
       if (c.options != "FLUID") read_set(c, current().method);
     } else if (is_command(c.word, "STATSUB", 4)) {
@@ -155,6 +157,15 @@ class CaseControl {
       set = *id;
     else
       bad_value(c);
+  }
+
+  /// (LOAD) or nothing, which is (BOTH): a load. (MATERIAL) and (INITIAL) are for materials that change with it.
+  void read_temperature(const Command& c) {
+    const std::string kind = c.options.empty() ? "BOTH" : c.options;
+    if (is_command(kind, "LOAD", 1) || is_command(kind, "BOTH", 1))
+      read_set(c, current().temperature);
+    else
+      note("TEMPERATURE(" + kind + ")");
   }
 
   /// Names of DMIG with or without factors: "K1, K2", "1.25*K1, 0.82*K2", or the id of a SET of such a list.

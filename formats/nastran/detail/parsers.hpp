@@ -23,6 +23,7 @@ void add_dof_set_parsers(ParserTable& table);         ///< SUPORT, SUPORT1, ASET
 void add_direct_matrix_parsers(ParserTable& table);   ///< DMIG
 void add_load_parsers(ParserTable& table);            ///< FORCE, MOMENT, GRAV, LOAD
 void add_pressure_parsers(ParserTable& table);        ///< FORCE1/2, MOMENT1/2, PLOAD, 1, 2, 4, RFORCE, SPCD, SLOAD
+void add_temperature_parsers(ParserTable& table);     ///< TEMP, TEMPD, TEMPRB, TEMPP1
 void add_solution_parsers(ParserTable& table);        ///< EIGRL, EIGR, PARAM
 
 /// After the last card: polar terms become real and imaginary parts. Adds deck.missing-header, deck.duplicate-term.

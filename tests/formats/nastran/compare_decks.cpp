@@ -52,9 +52,17 @@ class Content {
     return (*this)(r.id)(static_cast<int>(r.kind))(r.by_grids)(r.grids)(r.rid)(r.a)(r.b)(r.c);
   }
   Content& operator()(const Mat1& r) { return (*this)(r.id)(r.E)(r.G)(r.nu)(r.rho)(r.alpha)(r.tref)(r.ge); }
-  Content& operator()(const Mat2& r) { return (*this)(r.id)(r.G)(r.rho); }
-  Content& operator()(const Mat8& r) { return (*this)(r.id)(r.E1)(r.E2)(r.nu12)(r.G12)(r.G1z)(r.G2z)(r.rho); }
-  Content& operator()(const Mat9& r) { return (*this)(r.id)(r.G)(r.rho); }
+  Content& operator()(const Mat2& r) { return (*this)(r.id)(r.G)(r.rho)(r.alpha)(r.tref); }
+  Content& operator()(const Mat8& r) {
+    return (*this)(r.id)(r.E1)(r.E2)(r.nu12)(r.G12)(r.G1z)(r.G2z)(r.rho)(r.a1)(r.a2)(r.tref);
+  }
+  Content& operator()(const Mat9& r) { return (*this)(r.id)(r.G)(r.rho)(r.alpha)(r.tref); }
+  Content& operator()(const GridTemperature& r) { return (*this)(r.sid)(r.g)(r.t); }
+  Content& operator()(const DefaultTemperature& r) { return (*this)(r.sid)(r.t); }
+  Content& operator()(const BarTemperature& r) {
+    return (*this)(r.sid)(r.element)(r.t_a)(r.t_b)(r.gradient_a)(r.gradient_b);
+  }
+  Content& operator()(const PlateTemperature& r) { return (*this)(r.sid)(r.element)(r.t)(r.gradient); }
   Content& operator()(const Pbar& r) {
     return (*this)(r.id)(r.mid)(r.A)(r.I1)(r.I2)(r.I12)(r.J)(r.nsm)(r.k1)(r.k2)(r.recovery);
   }
@@ -77,7 +85,7 @@ class Content {
     return (*this)(r.id)(r.mid1)(r.mid2)(r.mid3)(r.mid4)(r.t)(r.bending_ratio)(r.shear_ratio)(r.nsm);
   }
   Content& operator()(const Ply& r) { return (*this)(r.mid)(r.t)(r.theta_deg); }
-  Content& operator()(const Pcomp& r) { return (*this)(r.id)(r.z0)(r.nsm)(r.plies)(r.bending)(r.membrane); }
+  Content& operator()(const Pcomp& r) { return (*this)(r.id)(r.z0)(r.nsm)(r.tref)(r.plies)(r.bending)(r.membrane); }
   Content& operator()(const Pshear& r) { return (*this)(r.id)(r.mid)(r.t)(r.nsm)(r.f1)(r.f2); }
   Content& operator()(const ShearPanel& r) { return (*this)(r.id)(r.pid)(r.grids); }
   Content& operator()(const Pbush1d& r) { return (*this)(r.id)(r.k)(r.c)(r.m); }
@@ -150,7 +158,7 @@ class Content {
   }
   Content& operator()(const Param& r) { return (*this)(r.name)(r.value); }
   Content& operator()(const Subcase& r) {
-    (*this)(r.id)(r.title)(r.subtitle)(r.label)(r.spc)(r.mpc)(r.load)(r.method)(r.statsub);
+    (*this)(r.id)(r.title)(r.subtitle)(r.label)(r.spc)(r.mpc)(r.load)(r.method)(r.statsub)(r.temperature);
     return (*this)(r.suport1)(r.k2gg)(r.m2gg)(r.b2gg);
   }
 
@@ -231,6 +239,10 @@ void expect_equal_decks(const Deck& a, const Deck& b, double tolerance) {
   BOUGH_COMPARE(point_loads);
   BOUGH_COMPARE(gravity);
   BOUGH_COMPARE(loads);
+  BOUGH_COMPARE(temperatures.grids);
+  BOUGH_COMPARE(temperatures.defaults);
+  BOUGH_COMPARE(temperatures.bars);
+  BOUGH_COMPARE(temperatures.plates);
   BOUGH_COMPARE(load_cards.directed);
   BOUGH_COMPARE(load_cards.beams);
   BOUGH_COMPARE(load_cards.grid_pressures);

@@ -124,7 +124,7 @@ TEST(WrittenDecks, ThruOfMissingGridsStaysHarmless) {
 }
 
 TEST(WrittenDecks, NothingIsLostSilently) {
-  auto r = read("GRID,1,,0.,0.,0.\nTEMPD,1,20.\n");
+  auto r = read("GRID,1,,0.,0.,0.\nDEFORM,1,5,.1\n");
   Diagnostics diagnostics;
   write_deck(r.deck, {}, diagnostics);
   EXPECT_TRUE(diagnostics.has("deck.left-out"));

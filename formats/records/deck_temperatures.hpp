@@ -1,0 +1,44 @@
+#pragma once
+/// \file Temperatures of grids and elements: included by deck.hpp.
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "bough/formats/records/card_location.hpp"
+
+namespace bough::records {
+
+struct GridTemperature {  ///< TEMP
+  int sid = 0, g = 0;
+  double t = 0;
+  CardLocation at;
+};
+struct DefaultTemperature {  ///< TEMPD: of the grids that have no TEMP
+  int sid = 0;
+  double t = 0;
+  CardLocation at;
+};
+/// TEMPRB, one for each element: a bar, beam, rod or tube. Gradients (by y, by z) of the section at ends A and B, in
+/// element axes.
+struct BarTemperature {
+  int sid = 0, element = 0;
+  double t_a = 0, t_b = 0;
+  Eigen::Vector2d gradient_a = Eigen::Vector2d::Zero(), gradient_b = Eigen::Vector2d::Zero();
+  CardLocation at;
+};
+/// TEMPP1, one for each element: a shell.
+struct PlateTemperature {
+  int sid = 0, element = 0;
+  double t = 0;         ///< at the reference surface
+  double gradient = 0;  ///< along the normal
+  CardLocation at;
+};
+
+struct TemperatureCards {
+  std::vector<GridTemperature> grids;
+  std::vector<DefaultTemperature> defaults;
+  std::vector<BarTemperature> bars;
+  std::vector<PlateTemperature> plates;
+};
+
+}  // namespace bough::records
