@@ -72,29 +72,51 @@ InputError::InputError(std::string_view id, SourceLocation where, std::string wh
 ComputationError::ComputationError(std::string_view id, SourceLocation where, std::string what, std::string advice)
     : ComputationError({make(Severity::Error, id, std::move(where), std::move(what), std::move(advice))}) {}
 
+namespace {
+/// Letters to change, add, leave out or swap with their neighbour to make one word of the other; case aside.
+std::size_t calc_distance(std::string_view a, std::string_view b) {
+  const auto same = [](char x, char y) {
+    return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
+  };
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        d[i][j] = i + j;
+        continue;
+      }
+      d[i][j] = std::min({d[i - 1][j - 1] + (same(a[i - 1], b[j - 1]) ? 0 : 1), d[i - 1][j] + 1, d[i][j - 1] + 1});
+      if (i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1]))
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+/// The one candidate that begins with the word, of three letters at least; empty when there are none or several.
+std::string find_completion(std::string_view word, const std::vector<std::string>& candidates) {
+  std::string found;
+  for (const auto& candidate : candidates) {
+    if (word.size() < 3 || candidate.size() < word.size()) continue;
+    if (calc_distance(word, std::string_view(candidate).substr(0, word.size())) != 0) continue;
+    if (!found.empty()) return {};
+    found = candidate;
+  }
+  return found;
+}
+}  // namespace
+
 std::string find_nearest(std::string_view word, const std::vector<std::string>& candidates) {
-  auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
-  std::vector<std::size_t> row;
   for (const auto& candidate : candidates) {
-    row.resize(candidate.size() + 1);
-    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= word.size(); ++i) {
-      std::size_t diagonal = row[0];
-      row[0] = i;
-      for (std::size_t j = 1; j < row.size(); ++j) {
-        const std::size_t substitute = diagonal + (lower(word[i - 1]) == lower(candidate[j - 1]) ? 0 : 1);
-        diagonal = row[j];
-        row[j] = std::min({substitute, row[j] + 1, row[j - 1] + 1});
-      }
-    }
-    if (row.back() < best_distance) {
-      best_distance = row.back();
+    const auto distance = calc_distance(word, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
       best = candidate;
     }
   }
-  return best;
+  return best.empty() ? find_completion(word, candidates) : best;
 }
 
 void demand_failed(const char* condition, const char* function, const char* file, int line) {

@@ -20,6 +20,7 @@
 #include "console.hpp"
 #include "options.hpp"
 #include "text_file.hpp"
+#include "usage_text.hpp"
 #include "verbs.hpp"
 #include "worker.hpp"
 #include "worker_pool.hpp"
@@ -286,11 +287,11 @@ void add_batch(CLI::App& app, Action& action) {
   auto o = std::make_shared<BatchOptions>();
   auto* verb = app.add_subcommand("batch", "One job over a grid, a list or a sample of parameters; resumable");
   verb->add_option("campaign", o->campaign, "Campaign file (.toml)")->required();
-  verb->add_option("-j,--jobs", o->jobs, "Worker processes (default: one a core)")->check(CLI::PositiveNumber);
+  verb->add_option("-j,--jobs", o->jobs, "Worker processes (default: one a core)")->check(make_positive());
   verb->add_option("-o,--output", o->output, "Folder of the cases and the table (default: the campaign's name, here)");
   verb->add_option("--shard", o->shard, "i/n: only every n-th case from the i-th on, for job arrays");
   verb->add_option("--time-limit", o->time_limit, "Seconds a case may take (default: the campaign's)")
-      ->check(CLI::PositiveNumber);
+      ->check(make_positive());
   verb->add_flag("--retry", o->retry, "Do failed cases again");
   verb->add_flag("--restart", o->restart, "Do every case again, also after the campaign has changed");
   verb->add_flag("--dry-run", o->dry_run, "Check the campaign and list its cases");

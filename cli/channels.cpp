@@ -53,8 +53,13 @@ std::vector<exports::CsvColumn> choose_columns(const hdf5::ResultsFile& results,
       known.push_back(name.starts_with('/') || !channel.starts_with("/sensors/") ? channel : channel.substr(9));
     }
     const auto nearest = find_nearest(name, known);
+    std::string sensors;
+    for (const auto& [channel, values] : results.channels)
+      if (channel.starts_with("/sensors/")) sensors += (sensors.empty() ? "" : ", ") + channel.substr(9);
     throw InputError("cli.unknown-channel", {file}, "no channel \"" + name + "\"",
-                     nearest.empty() ? "bough info lists the channels" : "did you mean \"" + nearest + "\"");
+                     !nearest.empty()  ? "did you mean \"" + nearest + "\""
+                     : sensors.empty() ? "bough info lists the channels"
+                                       : "the sensors are " + sensors + "; bough info lists all channels");
   }
   return columns;
 }

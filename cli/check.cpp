@@ -34,13 +34,15 @@ int finish(const CheckOptions& options, const Console& console, const std::strin
     json["messages"] = messages;
     json["errors"] = diagnostics.num_errors();
     json["warnings"] = diagnostics.num_warnings();
-    console.print_data(json.dump(2) + "\n");
+    put_out(options, console, json.dump(2) + "\n");
+    console.print(diagnostics);
   } else {
-    console.print(text);
-  }
-  console.print(diagnostics);
-  if (!options.json) {
-    console.print(fmt::format("{} errors, {} warnings\n", diagnostics.num_errors(), diagnostics.num_warnings()));
+    const auto sum = count(static_cast<std::size_t>(diagnostics.num_errors()), "error") + ", " +
+                     count(static_cast<std::size_t>(diagnostics.num_warnings()), "warning") + "\n";
+    // On the screen the messages stand before their sum.
+    if (options.output.empty()) console.print(text);
+    console.print(diagnostics);
+    put_out(options, console, options.output.empty() ? sum : text + sum);
   }
   return diagnostics.num_errors() > 0 ? kInputError : kSuccess;
 }
@@ -50,6 +52,9 @@ void check_model(const records::Deck& deck, const fe::ModelOptions& model_option
   const auto model = fe::Model::build(deck, model_options, diagnostics);
   if (diagnostics.num_errors() > 0) return;
   const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
+  if (mass.rigid_mass.isZero(0))
+    diagnostics.note("cli.no-mass", deck.locate({}), "the model has no mass",
+                     "for modes and bodies give RHO in MAT1, NSM in a property, or CONM2 and CMASS cards");
   const GroundChecks ground{fe::calc_ground_check(model, fe::GroundSet::Global),
                             fe::calc_ground_check(model, fe::GroundSet::Independent),
                             fe::calc_ground_check(model, fe::GroundSet::Free)};
@@ -74,8 +79,8 @@ void check_model(const records::Deck& deck, const fe::ModelOptions& model_option
 }
 
 void describe_deck(const records::Deck& deck, std::string& text, nlohmann::json& json) {
-  text += fmt::format("Nastran deck, SOL {}, {} subcases, {} files\n", deck.sol.empty() ? "-" : deck.sol,
-                      deck.subcases.size(), deck.files.size());
+  text += fmt::format("Nastran deck, SOL {}, {}, {}\n", deck.sol.empty() ? "-" : deck.sol,
+                      count(deck.subcases.size(), "subcase"), count(deck.files.size(), "file"));
   text += format_card_counts(deck);
   json["kind"] = "deck";
   json["sol"] = deck.sol;
@@ -85,6 +90,7 @@ void describe_deck(const records::Deck& deck, std::string& text, nlohmann::json&
 }
 
 int check_deck(const CheckOptions& options, Console& console) {
+  do_once([&] { demand_deck(options.file); });
   console.set_rank(fe::initialize_petsc().rank);
   Diagnostics diagnostics;
   const auto deck = read_deck_once(options.file, options.model.ignore_cards, diagnostics);
@@ -101,9 +107,11 @@ int check_body(const CheckOptions& options, Console& console) {
   Diagnostics diagnostics;
   const auto spec = read_body_spec_once(options.file, diagnostics);
   nlohmann::json json{{"kind", "body"}, {"name", spec.name}, {"deck", spec.deck}};
-  std::string text = fmt::format("body file: \"{}\" from {}, {} frame, {} modes, {} interface nodes, {} loads\n",
-                                 spec.name, spec.deck, spec.frame == records::BodyFrame::Fixed ? "fixed" : "free",
-                                 spec.num_modes, spec.interface_nodes.size(), spec.loads.size());
+  std::string text =
+      fmt::format("body file: \"{}\" from {}, {} frame, {}, {}, {}\n", spec.name, spec.deck,
+                  spec.frame == records::BodyFrame::Fixed ? "fixed" : "free",
+                  count(static_cast<std::size_t>(spec.num_modes), "mode"),
+                  count(spec.interface_nodes.size(), "interface node"), count(spec.loads.size(), "load"));
   const auto deck_path = resolve_beside(options.file, spec.deck);
   if (!spec.deck.empty()) {
     do_once([&] { demand_file(deck_path); });
@@ -144,10 +152,10 @@ int check_system(const CheckOptions& options, const Console& console) {
   }
   const auto& spec = loaded.spec;
   const auto text = fmt::format(
-      "system file: {} bodies, {} hinges, {} forces, {} sensors, {} functions; {} generalized speeds\n{}integrator {}, "
-      "duration {:g}\n",
-      spec.bodies.size(), spec.hinges.size(), spec.forces.size(), spec.sensors.size(), spec.functions.size(),
-      system.num_u(), table.to_text(), spec.simulation.integrator, spec.simulation.duration);
+      "system file: {}, {}, {}, {}, {}; {}\n{}integrator {}, duration {:g}\n", count(spec.bodies.size(), "body"),
+      count(spec.hinges.size(), "hinge"), count(spec.forces.size(), "force"), count(spec.sensors.size(), "sensor"),
+      count(spec.functions.size(), "function"), count(static_cast<std::size_t>(system.num_u()), "generalized speed"),
+      table.to_text(), spec.simulation.integrator, spec.simulation.duration);
   return finish(options, console, text, {{"kind", "system"}, {"bodies", bodies}, {"num_speeds", system.num_u()}},
                 diagnostics);
 }
@@ -234,13 +242,16 @@ int check_file(const CheckOptions& options, Console& console) {
   if (has_suffix(options.file, ".h5") || has_suffix(options.file, ".hdf5")) return check_hdf5(options, console);
   if (has_suffix(options.file, ".toml")) {
     const auto kind = share([&] { return toml_files::detect_kind(options.file); });
-    return kind == "body" ? check_body(options, console) : check_system(options, console);
+    if (kind == "body") return check_body(options, console);
+    demand_kind(options.file, kind, "system");
+    return check_system(options, console);
   }
   return check_deck(options, console);
 }
 
 int run_check(const CheckOptions& options) {
   Console console(options.quiet, options.verbosity);
+  if (!options.output.empty()) do_once([&] { check_output(options, options.output, {options.file}); });
   try {
     return check_file(options, console);
   } catch (const InputError& failure) {
@@ -259,7 +270,7 @@ void add_check(CLI::App& app, Action& action) {
       app.add_subcommand("check", "Read a deck, body, system or HDF5 file; print what it holds and every error");
   verb->add_option("file", o->file, "Nastran deck, body.toml, system.toml or .h5")->required();
   add_model_options(*verb, o->model);
-  add_common_options(*verb, *o, kJson);
+  add_common_options(*verb, *o, kOutput | kJson, "Write the report to this file instead of stdout");
   verb->footer("Example:\n  bough check boom.bdf\n  bough check spinup.toml --json");
   verb->callback([&action, o] { action = [o] { return run_check(*o); }; });
 }

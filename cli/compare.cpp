@@ -112,7 +112,7 @@ void put_out(const Report& report, const CompareOptions& o, const Console& conso
   if (o.json)
     console.print_data(make_json(report).dump(2) + "\n");
   else
-    console.print(format_report(report));
+    console.print(format_report(report) + (o.output.empty() ? "" : "\nwritten: " + o.output + "\n"));
 }
 
 int run_compare(const CompareOptions& o) {
@@ -124,7 +124,11 @@ int run_compare(const CompareOptions& o) {
                         o.refinement ? "--refinement takes three" : "give one or two; three with --refinement");
     return kUsageError;
   }
-  if (!o.output.empty()) check_output(o, o.output);
+  if (!o.output.empty()) {
+    auto inputs = o.files;
+    inputs.push_back(o.mass);
+    check_output(o, o.output, inputs);
+  }
   if (o.refinement) {
     put_out(compare_meshes(o), o, console);
   } else if (o.files.size() == 2) {

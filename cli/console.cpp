@@ -1,10 +1,12 @@
 #include "console.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <sstream>
 
 namespace bough::cli {
 
@@ -32,6 +34,33 @@ std::string Table::to_text() const {
   add_row(headings);
   for (const auto& row : rows) add_row(row);
   return text;
+}
+
+std::string count(std::size_t number, const std::string& noun) {
+  if (number == 1) return "1 " + noun;
+  const bool is_y = noun.ends_with('y');
+  return std::to_string(number) + " " + (is_y ? noun.substr(0, noun.size() - 1) + "ies" : noun + "s");
+}
+
+std::string wrap(const std::string& text, std::size_t indent, std::size_t width) {
+  std::istringstream words(text);
+  std::string out, word;
+  std::size_t column = indent;
+  while (words >> word) {
+    if (column > indent && column + 1 + display_width(word) > width) {
+      out += "\n" + std::string(indent, ' ');
+      column = indent;
+    }
+    if (column > indent) out += ' ';
+    out += word;
+    column += display_width(word) + (column > indent ? 1 : 0);
+  }
+  return out;
+}
+
+std::size_t get_terminal_width() {
+  winsize size{};
+  return isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
 Console::Console(bool quiet, int verbosity)
@@ -106,12 +135,13 @@ void Console::end_progress() {
 }
 
 int report_failure(const Failure& failure, const Console& console) {
-  bool is_mechanism = false;
+  bool is_input = false;
   for (const auto& item : failure.items()) {
     console.print(item);
-    is_mechanism |= item.id == "fe.mechanism";
+    // Both are found by the computation, and both are mended in the deck.
+    is_input |= item.id == "fe.mechanism" || item.id == "modal.no-mass";
   }
-  return is_mechanism ? kInputError : failure.exit_code();
+  return is_input ? kInputError : failure.exit_code();
 }
 
 }  // namespace bough::cli

@@ -18,6 +18,15 @@ struct Table {
   std::string to_text() const;
 };
 
+/// "1 mode", "2 modes", "0 bodies".
+std::string count(std::size_t number, const std::string& noun);
+
+/// Words of `text` on lines of at most `width` columns; lines after the first begin with `indent` blanks.
+std::string wrap(const std::string& text, std::size_t indent, std::size_t width);
+
+/// Columns of the terminal behind stdout; 0 when it is none.
+std::size_t get_terminal_width();
+
 class Console {
  public:
   Console(bool quiet, int verbosity);
@@ -56,7 +65,8 @@ class Console {
   bool progress_open_ = false;
 };
 
-/// Prints every diagnostic of a Failure and gives the exit code. A mechanism counts as wrong input (docs/adr/0006).
+/// Prints every diagnostic of a Failure and gives the exit code. A mechanism and a model without mass
+/// count as wrong input (docs/adr/0006).
 int report_failure(const Failure& failure, const Console& console);
 
 }  // namespace bough::cli

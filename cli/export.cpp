@@ -74,6 +74,7 @@ std::string make_shapes(const ExportOptions& o, Diagnostics& diagnostics) {
 }
 
 std::string make_bdf(const ExportOptions& o, Diagnostics& diagnostics) {
+  demand_deck(o.file);
   const auto deck = nastran::read_deck(o.file, {o.ignore_cards}, diagnostics);
   diagnostics.throw_if_errors();
   nastran::WriteOptions options;
@@ -88,7 +89,7 @@ int run_export(const ExportOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
   demand_file(o.file);
-  if (!o.output.empty()) check_output(o, o.output);
+  if (!o.output.empty()) check_output(o, o.output, {o.file});
   Diagnostics diagnostics;
   if (o.format == "mat") {
     if (o.output.empty()) {
@@ -97,6 +98,7 @@ int run_export(const ExportOptions& o) {
     }
     export_mat(o.file, o.output, diagnostics);
     console.print(diagnostics);
+    console.print("written: " + o.output + "\n");
     return kSuccess;
   }
   const auto text = o.format == "vtu"          ? make_shapes(o, diagnostics)
@@ -110,6 +112,7 @@ int run_export(const ExportOptions& o) {
     console.print_data(text);
   } else {
     write_text_file(o.output, text);
+    console.print("written: " + o.output + "\n");
   }
   return kSuccess;
 }
@@ -118,7 +121,8 @@ int run_export(const ExportOptions& o) {
 
 void add_export(CLI::App& app, Action& action) {
   auto o = std::make_shared<ExportOptions>();
-  auto* verb = app.add_subcommand("export", "Bodies, modes, matrices, results or a deck in the format of another program");
+  auto* verb =
+      app.add_subcommand("export", "Bodies, modes, matrices, results or a deck in the format of another program");
   verb->add_option("file", o->file,
                    "csv: results file, modes file or flexible body; vtu: modes file or flexible body; bdf: Nastran "
                    "deck; sid, mbdyn: flexible body; mat, "

@@ -24,13 +24,15 @@ int run_read(const FlxVerbOptions& o, const Console& console) {
   demand_file(o.read);
   const auto file = flx::read_flx(o.read);
   if (!o.output.empty()) {
-    check_output(o, o.output);
+    check_output(o, o.output, {o.read, o.layout});
     write_text_file(o.output, flx::write_flx(file, choose_layout(o, o.digits_given ? o.digits : file.digits)));
   }
   if (o.json)
     console.print_data(format_flx_json(file));
   else if (o.output.empty())
     console.print_data(format_flx_text(file));
+  else
+    console.print("written: " + o.output + "\n");
   return kSuccess;
 }
 
@@ -53,12 +55,12 @@ int run_flx(const FlxVerbOptions& o) {
   options.digits = o.digits;
   const auto file = flx::make_flx(body, options);
   const std::string output = o.output.empty() ? std::filesystem::path(o.body).stem().string() + ".FLX" : o.output;
-  check_output(o, output);
+  check_output(o, output, {o.body, o.layout});
   write_text_file(output, flx::write_flx(file, layout));
   if (o.json)
     console.print_data(format_flx_json(file));
   else
-    console.print("wrote " + output + "\n");
+    console.print("written: " + output + "\n");
   return kSuccess;
 }
 

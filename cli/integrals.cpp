@@ -81,8 +81,8 @@ int run_integrals(const IntegralsOptions& o) {
   demand_file(o.model);
   demand_file(o.matrices);
   const std::string output = o.output.empty() ? std::filesystem::path(o.model).stem().string() + ".FLX" : o.output;
-  check_output(o, output);
-  if (!o.fi.empty()) check_output(o, o.fi);
+  check_output(o, output, {o.model, o.matrices, o.layout});
+  if (!o.fi.empty()) check_output(o, o.fi, {o.model, o.matrices, o.layout});
   const auto layout = choose_layout(o, o.digits);
 
   Diagnostics diagnostics;
@@ -109,7 +109,7 @@ int run_integrals(const IntegralsOptions& o) {
   if (o.json)
     console.print_data(format_flx_json(file));
   else
-    console.print("wrote " + output + (o.fi.empty() ? "" : " and " + o.fi) + "\n");
+    console.print("written: " + output + (o.fi.empty() ? "" : " and " + o.fi) + "\n");
   return kSuccess;
 }
 

@@ -2,6 +2,7 @@
 
 #include "bough/base/diagnostic.hpp"
 #include "console.hpp"
+#include "usage_text.hpp"
 #include "verbs.hpp"
 #include "versions.hpp"
 
@@ -49,6 +50,7 @@ bool check_verb(const CLI::App& app, int argc, const char* const* argv, const cl
 
 int run(int argc, const char* const* argv) {
   CLI::App app("Bough: from a finite-element model to a flexible multibody simulation", "bough");
+  app.formatter(cli::make_formatter());
   app.set_help_flag("-h,--help", "Print this help and exit");
   app.footer(
       "bough VERB --help explains a verb. Exit codes: 0 success, 1 the input is wrong, 2 usage, 3 the computation "
@@ -68,9 +70,8 @@ int run(int argc, const char* const* argv) {
   } catch (const CLI::Success& help) {
     return console.is_root() ? app.exit(help) : cli::kSuccess;
   } catch (const CLI::ParseError& error) {
-    const auto chosen = app.get_subcommands();
-    const std::string verb = chosen.empty() ? "bough" : "bough " + chosen.front()->get_name();
-    console.print_error("cli.usage", error.what(), "see " + verb + " --help");
+    const auto [what, advice] = cli::describe_parse_error(app, error);
+    console.print_error("cli.usage", what, advice);
     return cli::kUsageError;
   }
   if (show_version) {

@@ -119,8 +119,8 @@ std::vector<std::string> write(const records::MatricesResult& result, const Matr
 int run_matrices(const MatricesOptions& options) {
   Console console(options.quiet, options.verbosity);
   do_once([&] {
-    demand_file(options.deck);
-    check_output(options, options.output);
+    demand_deck(options.deck);
+    check_output(options, options.output, {options.deck});
   });
   console.set_rank(fe::initialize_petsc().rank);
 
@@ -158,7 +158,7 @@ int run_matrices(const MatricesOptions& options) {
     console.print_data(json.dump(2) + "\n");
   } else {
     console.print(table.to_text());
-    for (const auto& file : files) console.print("wrote " + file + "\n");
+    for (const auto& file : files) console.print("written: " + file + "\n");
   }
   return kSuccess;
 }

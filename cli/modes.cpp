@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "options.hpp"
 #include "ranks.hpp"
 #include "text_file.hpp"
+#include "usage_text.hpp"
 #include "vtu_file.hpp"
 
 namespace bough::cli {
@@ -37,12 +39,18 @@ struct ModesOptions : CommonOptions {
 };
 
 /// The deck's EIGRL/EIGR of the subcase, overruled by the command line; 10 modes when neither says.
-modal::EigenOptions choose_eigen_options(const ModesOptions& options, const records::Deck& deck, int method) {
+modal::EigenOptions choose_eigen_options(const ModesOptions& options, const records::Deck& deck, int method,
+                                         Diagnostics& diagnostics) {
   modal::EigenOptions eigen;
+  const auto names = [method](const auto& card) { return method == 0 || card.sid == method; };
+  if (method != 0 && std::none_of(deck.eigen_methods.begin(), deck.eigen_methods.end(), names))
+    diagnostics.warning("cli.no-method", deck.locate({}),
+                        fmt::format("METHOD = {} names no EIGRL or EIGR card of the deck", method),
+                        "add the card or correct the id; --number and --max-hz go before it");
   eigen.num_modes = 0;
   eigen.check_inertia = !options.no_check;
   for (const auto& card : deck.eigen_methods) {
-    if (method != 0 && card.sid != method) continue;
+    if (!names(card)) continue;
     eigen.num_modes = card.num_modes;
     if (!options.buckling) {
       eigen.min_hz = card.f1;
@@ -92,25 +100,24 @@ records::ModesResult make_result(const fe::Model& model, const modal::EigenPairs
 }
 
 std::string format_modes(const records::ModesResult& r) {
-  Table table{{"mode", "eigenvalue", "rad/s", "Hz", "modal mass", "mx %", "my %", "mz %", "sum mx", "sum my", "sum mz",
-               "residual"},
-              {}};
+  Table roots{{"mode", "eigenvalue", "rad/s", "Hz", "modal mass", "residual"}, {}};
+  Table shares{{"mode", "x", "sum", "y", "sum", "z", "sum", "rx", "ry", "rz"}, {}};
   Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
   for (int j = 0; j < r.eigenvalue.size(); ++j) {
-    Eigen::RowVector3d share = Eigen::RowVector3d::Zero();
-    for (int a = 0; a < 3; ++a) {
+    const std::string number = std::to_string(j + 1);
+    roots.rows.push_back({number, fmt::format("{:.8g}", r.eigenvalue[j]),
+                          fmt::format("{:.7g}", 2 * M_PI * r.frequency_hz[j]), fmt::format("{:.7g}", r.frequency_hz[j]),
+                          fmt::format("{:.6g}", r.modal_mass[j]), fmt::format("{:.1e}", r.residual[j])});
+    std::vector<std::string> row{number};
+    for (int a = 0; a < 6; ++a) {
       const double total = r.mass_properties.rigid_mass(a, a);
-      if (total > 0) share[a] = 100 * r.effective_mass(j, a) / total;
+      const double share = total > 0 ? 100 * r.effective_mass(j, a) / total : 0;
+      row.push_back(fmt::format("{:.2f}", share));
+      if (a < 3) row.push_back(fmt::format("{:.2f}", sum[a] += share));
     }
-    sum += share;
-    const double omega = 2 * M_PI * r.frequency_hz[j];
-    table.rows.push_back({std::to_string(j + 1), fmt::format("{:.8g}", r.eigenvalue[j]), fmt::format("{:.7g}", omega),
-                          fmt::format("{:.7g}", r.frequency_hz[j]), fmt::format("{:.6g}", r.modal_mass[j]),
-                          fmt::format("{:.2f}", share[0]), fmt::format("{:.2f}", share[1]),
-                          fmt::format("{:.2f}", share[2]), fmt::format("{:.2f}", sum[0]), fmt::format("{:.2f}", sum[1]),
-                          fmt::format("{:.2f}", sum[2]), fmt::format("{:.1e}", r.residual[j])});
+    shares.rows.push_back(std::move(row));
   }
-  return table.to_text();
+  return roots.to_text() + "\neffective mass, % of the mass and of the inertia about the origin\n" + shares.to_text();
 }
 
 std::string format_buckling(const records::ModesResult& r) {
@@ -178,10 +185,16 @@ BucklingCases choose_buckling_cases(const records::Deck& deck) {
   return cases;
 }
 
+/// The load that the factors multiply: "load factors of LOAD 3 (subcase 1)".
+std::string describe_load(const records::Subcase& statics) {
+  return fmt::format("load factors of LOAD {}", statics.load) +
+         (statics.id > 0 ? fmt::format(" (subcase {})", statics.id) : "");
+}
+
 modal::EigenPairs solve(const ModesOptions& options, const records::Deck& deck, fe::Model& model, Console& console,
                         Diagnostics& diagnostics) {
   if (!options.buckling) {
-    auto eigen = choose_eigen_options(options, deck, model.subcase().method);
+    auto eigen = choose_eigen_options(options, deck, model.subcase().method, diagnostics);
     eigen.progress = [&](int converged, int wanted) {
       console.show_progress(fmt::format("modes: {} of {} converged", converged, wanted));
     };
@@ -193,7 +206,7 @@ modal::EigenPairs solve(const ModesOptions& options, const records::Deck& deck, 
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
   const fe::StaticSolver statics(model, K);
   const VectorXd u = fe::solve_static_case(model, statics, load).displacement;
-  auto eigen = choose_eigen_options(options, deck, cases.buckling.method);
+  auto eigen = choose_eigen_options(options, deck, cases.buckling.method, diagnostics);
   return modal::calc_buckling_modes(model, u, eigen, diagnostics);
 }
 
@@ -230,9 +243,9 @@ void add_new(const Diagnostics& from, Diagnostics& to) {
 int run_modes(const ModesOptions& options) {
   Console console(options.quiet, options.verbosity);
   do_once([&] {
-    demand_file(options.deck);
-    if (!options.output.empty()) check_output(options, options.output);
-    if (!options.vtu.empty()) check_output(options, options.vtu);
+    demand_deck(options.deck);
+    if (!options.output.empty()) check_output(options, options.output, {options.deck});
+    if (!options.vtu.empty()) check_output(options, options.vtu, {options.deck});
   });
   console.set_rank(fe::initialize_petsc().rank);
 
@@ -243,7 +256,7 @@ int run_modes(const ModesOptions& options) {
   const auto sources = calc_sources(deck.files);
   const auto subcases = choose_subcases(options, deck);
   nlohmann::json json;
-  std::string text;
+  std::string text, written;
   std::vector<std::pair<std::string, std::string>> pictures;
   for (const int id : subcases) {
     const bool is_first = id == subcases.front();
@@ -264,15 +277,18 @@ int run_modes(const ModesOptions& options) {
           vtu, make_vtu_text(exports::make_picture(result), exports::VtuEncoding::Base64, options.deck, own));
     add_new(own, diagnostics);
     if (subcases.size() > 1) text += fmt::format("{}subcase {}\n\n", is_first ? "" : "\n", result.subcase);
+    if (options.buckling) text += describe_load(choose_buckling_cases(deck).statics) + "\n\n";
     text += (options.buckling ? format_buckling(result) : format_modes(result)) + "\n" + format_health(result);
     if (is_first) json = make_json(result);
     if (subcases.size() > 1) json["subcases"].push_back(make_json(result));
     const auto output = name_output(options.output, result.subcase, is_first);
-    if (!output.empty())
+    if (!output.empty()) {
       do_once([&] {
-        check_output(options, output);
+        check_output(options, output, {options.deck});
         hdf5::write_modes(result, output);
       });
+      written += "written: " + output + "\n";
+    }
   }
   console.print(diagnostics);
   if (options.json)
@@ -282,6 +298,8 @@ int run_modes(const ModesOptions& options) {
   do_once([&] {
     for (const auto& [path, picture] : pictures) write_text_file(path, picture);
   });
+  for (const auto& [path, picture] : pictures) written += "written: " + path + "\n";
+  if (!options.json) console.print(written);
   return kSuccess;
 }
 
@@ -292,7 +310,7 @@ void add_modes(CLI::App& app, Action& action) {
   auto* verb = app.add_subcommand("modes", "Normal modes (SOL 103) or buckling load factors (SOL 105) of a deck");
   verb->add_option("deck", o->deck, "Nastran deck")->required();
   verb->add_option("-n,--number", o->number, "Number of modes (default: the deck's EIGRL, else 10)")
-      ->check(CLI::PositiveNumber);
+      ->check(make_positive());
   verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted");
   verb->add_flag("--buckling", o->buckling, "Load factors of the static subcase instead of normal modes");
   verb->add_flag("--no-check", o->no_check, "Leave out the count of eigenvalues that proves that no mode was missed");

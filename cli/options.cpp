@@ -1,17 +1,22 @@
 #include "options.hpp"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 
 #include "bough/formats/hdf5/files.hpp"
 #include "bough/formats/nastran/reader.hpp"
 #include "bough/formats/toml/specs.hpp"
 #include "console.hpp"
 #include "ranks.hpp"
+#include "text_file.hpp"
 
 namespace bough::cli {
 
@@ -28,11 +33,40 @@ void add_common_options(CLI::App& verb, CommonOptions& options, unsigned offers,
   verb.add_flag("-v,--verbose", options.verbosity, "Print more; may be repeated");
 }
 
-void check_output(const CommonOptions& options, const std::string& path) {
-  if (options.no_clobber && fs::exists(path)) {
+void check_output(const CommonOptions& options, const std::string& path, const std::vector<std::string>& inputs) {
+  std::error_code ignored;
+  for (const auto& input : inputs) {
+    if (fs::equivalent(path, input, ignored))
+      throw InputError("cli.output-is-input", {path}, "the output would overwrite the input file " + input,
+                       "choose another file with -o");
+  }
+  if (options.no_clobber && fs::exists(path, ignored)) {
     throw InputError("cli.output-exists", {path}, "the output file exists",
                      "choose another name or leave out --no-clobber");
   }
+  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
+    throw ComputationError("cli.write", {path}, fs::is_directory(path, ignored) ? "is a folder" : "is no regular file",
+                           "choose a file with -o");
+  }
+  const auto parent = fs::path(path).parent_path();
+  const std::string folder = parent.empty() ? "." : parent.string();
+  if (!fs::is_directory(folder, ignored))
+    throw ComputationError("cli.write", {path}, "there is no folder " + folder, "make it, or choose another with -o");
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw ComputationError("cli.write", {path},
+                           "the folder " + folder + " cannot be written: " + std::generic_category().message(errno),
+                           "choose another with -o, or change its permissions");
+  }
+}
+
+void put_out(const CommonOptions& options, const Console& console, const std::string& text) {
+  if (options.output.empty()) {
+    if (options.json || !options.quiet) console.print_data(text);
+    return;
+  }
+  if (!console.is_root()) return;
+  write_text_file(options.output, text);
+  console.print("written: " + options.output + "\n");
 }
 
 bool has_suffix(const std::string& path, const std::string& suffix) {
@@ -48,6 +82,24 @@ void demand_file(const std::string& path) {
                      fs::is_directory(path) ? "is a folder, not a file" : "no such file, or not readable",
                      "check the path");
   }
+}
+
+void demand_kind(const std::string& path, const std::string& kind, const std::string& expected) {
+  if (kind.empty() || kind == expected) return;
+  const std::string verb = kind == "body" ? "reduce" : kind == "system" ? "run" : "batch";
+  throw InputError("cli.wrong-file", {path}, "the file is a " + kind + " file, expected a " + expected + " file",
+                   "bough " + verb + " takes it" + (kind == "campaign" ? ", with --dry-run to check it" : ""));
+}
+
+void demand_deck(const std::string& path) {
+  demand_file(path);
+  std::string begin(8, '\0');
+  std::ifstream(path, std::ios::binary).read(begin.data(), 8);
+  const bool is_hdf5 = begin == "\x89HDF\r\n\x1a\n";
+  if (!is_hdf5 && !has_suffix(path, ".toml")) return;
+  throw InputError("cli.wrong-file", {path},
+                   std::string("the file is ") + (is_hdf5 ? "HDF5" : "TOML") + ", expected a Nastran deck",
+                   is_hdf5 ? "bough info tells what it holds" : "bough check tells what it is");
 }
 
 records::Deck read_deck_once(const std::string& path, const std::vector<std::string>& ignore_cards,
@@ -67,7 +119,7 @@ records::BodySpec read_body_spec_once(const std::string& path, Diagnostics& diag
 }
 
 records::Deck read_deck_or_throw(const std::string& path, const fe::ModelOptions& options, Diagnostics& diagnostics) {
-  do_once([&] { demand_file(path); });
+  do_once([&] { demand_deck(path); });
   auto deck = read_deck_once(path, options.ignore_cards, diagnostics);
   // A deck with errors is still taken as far as it goes, so that one pass shows all of them.
   if (diagnostics.num_errors() > 0) fe::Model::build(deck, options, diagnostics);

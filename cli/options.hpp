@@ -13,6 +13,8 @@
 
 namespace bough::cli {
 
+class Console;
+
 struct CommonOptions {
   std::string output;
   bool quiet = false;
@@ -26,10 +28,15 @@ enum Offers : unsigned { kOutput = 1, kJson = 2 };
 /// Adds -q, -v and, as `offers` says, -o/--output with --no-clobber and --force, and --json.
 void add_common_options(CLI::App& verb, CommonOptions& options, unsigned offers, const std::string& output_help = {});
 
-/// Throws InputError("cli.output-exists") when the file is there and --no-clobber was given.
-void check_output(const CommonOptions& options, const std::string& path);
+/// Before the work: throws when the output cannot be meant or written. InputError("cli.output-exists") when the file is
+/// there and --no-clobber was given, InputError("cli.output-is-input") when it is one of the inputs,
+/// ComputationError("cli.write") when its folder is missing or closed, or when it is no regular file.
+void check_output(const CommonOptions& options, const std::string& path, const std::vector<std::string>& inputs = {});
 
-/// "fixed" when the text ends so, case aside: ".h5", ".toml".
+/// A report, to the output file when one is given, else to stdout: JSON always, text unless quiet.
+void put_out(const CommonOptions& options, const Console& console, const std::string& text);
+
+/// Whether the text ends so, case aside: ".h5", ".toml".
 bool has_suffix(const std::string& path, const std::string& suffix);
 
 /// Reads a deck on the first rank and hands it to the others. Collective.
@@ -44,5 +51,10 @@ std::vector<std::pair<std::string, std::string>> calc_sources(const std::vector<
 
 /// Throws InputError("cli.no-file") when the path is no readable file.
 void demand_file(const std::string& path);
+/// Throws InputError("cli.wrong-file") when a TOML file is of another kind than the one expected ("body", "system"),
+/// with the command that takes it; "" is unknown and passes: whoever reads the file says what is missing in it.
+void demand_kind(const std::string& path, const std::string& kind, const std::string& expected);
+/// The same for a deck; InputError("cli.wrong-file") when the file is HDF5 or TOML.
+void demand_deck(const std::string& path);
 
 }  // namespace bough::cli

@@ -1,3 +1,8 @@
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -50,6 +55,35 @@ report::Curve read_points(const std::string& path) {
           Eigen::Map<Eigen::VectorXd>(y.data(), n), true};
 }
 
+/// The library behind rsvg-convert draws the same picture as points or as pages.
+void write_picture(const std::string& path, const std::string& svg) {
+  const std::string format = has_suffix(path, ".png") ? "png" : has_suffix(path, ".pdf") ? "pdf" : "svg";
+  if (format == "svg") return write_text_file(path, svg);
+  const std::string source = path + fmt::format(".part{}.svg", getpid()),
+                    part = path + fmt::format(".part{}", getpid());
+  write_text_file(source, svg);
+  const std::string words[] = {"rsvg-convert",       "--zoom=2",         "--background-color=white",
+                               "--format=" + format, "--output=" + part, source};
+  std::vector<char*> arguments;
+  for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  pid_t child = 0;
+  int status = 0;
+  const int failed = posix_spawnp(&child, words[0].c_str(), nullptr, nullptr, arguments.data(), environ);
+  const bool is_drawn = failed == 0 && waitpid(child, &status, 0) == child && WIFEXITED(status);
+  std::error_code ignored, error;
+  fs::remove(source, ignored);
+  if (is_drawn && WEXITSTATUS(status) == 0) fs::rename(part, path, error);
+  if (is_drawn && WEXITSTATUS(status) == 0 && !error) return;
+  fs::remove(part, ignored);
+  // 127: some systems report a missing program only through the child.
+  if (failed != 0 || !is_drawn || WEXITSTATUS(status) == 127)
+    throw ComputationError("cli.no-converter", {path}, "the program rsvg-convert is not there, or does not start",
+                           "install librsvg2-bin, or write .svg");
+  throw ComputationError("cli.write", {path}, "rsvg-convert could not write the picture",
+                         "check the folder, its permissions and the space left, or write .svg");
+}
+
 int run_plot(const PlotOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
@@ -77,13 +111,18 @@ int run_plot(const PlotOptions& o) {
     if (plot.curves.size() <= o.labels.size()) plot.curves.back().label = o.labels[plot.curves.size() - 1];
   }
   std::string output = o.output;
+  if (const auto ending = fs::path(output).extension().string();
+      !ending.empty() && !has_suffix(output, ".svg") && !has_suffix(output, ".png") && !has_suffix(output, ".pdf"))
+    throw InputError("cli.picture-format", {output}, "no picture format " + ending, "choose .svg, .png or .pdf");
   if (output.empty()) {
     output = o.sensors.front() + ".svg";
     for (char& c : output)
       if (c == '/' || c == ':') c = '_';
   }
-  check_output(o, output);
-  write_text_file(output, report::draw_svg(plot));
+  auto inputs = o.files;
+  inputs.insert(inputs.end(), o.points.begin(), o.points.end());
+  check_output(o, output, inputs);
+  write_picture(output, report::draw_svg(plot));
   console.print("written: " + output + "\n");
   return kSuccess;
 }
@@ -92,7 +131,7 @@ int run_plot(const PlotOptions& o) {
 
 void add_plot(CLI::App& app, Action& action) {
   auto o = std::make_shared<PlotOptions>();
-  auto* verb = app.add_subcommand("plot", "Curves of one or several results files against time, as an SVG picture");
+  auto* verb = app.add_subcommand("plot", "Curves of one or several results files against time, as a picture");
   verb->add_option("files", o->files, "Results HDF5 files")->required();
   verb->add_option("--sensor", o->sensors,
                    "Sensor NAME or NAME:component, or a path such as /energy/strain; may be repeated")
@@ -109,7 +148,7 @@ void add_plot(CLI::App& app, Action& action) {
   auto* high = verb->add_option("--y-max", o->y_max, "Upper end of the y axis");
   low->needs(high);
   high->needs(low);
-  add_common_options(*verb, *o, kOutput, "SVG file (default: the sensor's name with .svg, here)");
+  add_common_options(*verb, *o, kOutput, "Picture: .svg, .png or .pdf (default: the sensor's name with .svg, here)");
   verb->footer(
       "Example:\n  bough plot spinup.h5 --sensor tip_deflection:y -o tip.svg\n"
       "  bough plot spinup.h5 spinup-no-kg.h5 --sensor tip_deflection:y --y-min -1.2 --y-max 0.2 -o tip.svg");

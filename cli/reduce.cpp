@@ -17,6 +17,7 @@
 #include "options.hpp"
 #include "ranks.hpp"
 #include "system_files.hpp"
+#include "usage_text.hpp"
 
 namespace bough::cli {
 
@@ -92,11 +93,13 @@ records::BodySpec make_spec(const ReduceVerbOptions& o, Diagnostics& diagnostics
   records::BodySpec spec;
   const bool is_toml = has_suffix(o.file, ".toml");
   if (is_toml) {
+    do_once([&] { demand_kind(o.file, toml_files::detect_kind(o.file), "body"); });
     spec = read_body_spec_once(o.file, diagnostics);
     diagnostics.throw_if_errors();
     if (!spec.deck.empty()) spec.deck = resolve_beside(o.file, spec.deck);
     add_matrices(o, spec);
   } else {
+    if (!o.file.empty()) do_once([&] { demand_deck(o.file); });
     spec.deck = o.file;
     spec.name = fs::path(o.file).stem().string();
     add_matrices(o, spec);
@@ -198,7 +201,7 @@ int run_reduce(const ReduceVerbOptions& o) {
   Diagnostics diagnostics;
   const auto spec = make_spec(o, diagnostics);
   const auto output = choose_output(o, spec);
-  do_once([&] { check_output(o, output); });
+  do_once([&] { check_output(o, output, {o.file, spec.deck}); });
   console.set_rank(fe::initialize_petsc().rank);
   stiffening::ReduceOptions options;
   options.progress = [&](const std::string& stage) { console.show_progress("reduce: " + stage); };
@@ -237,7 +240,7 @@ void add_reduce(CLI::App& app, Action& action) {
   auto* verb =
       app.add_subcommand("reduce", "A deck becomes a flexible body: modes, mass integrals, geometric stiffness");
   verb->add_option("file", o->file, "Body file (.toml) or Nastran deck; may be missing with --matrices");
-  verb->add_option("-n,--modes", o->num_modes, "Number of elastic modes")->check(CLI::PositiveNumber);
+  verb->add_option("-n,--modes", o->num_modes, "Number of elastic modes")->check(make_positive());
   verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted");
   verb->add_option("--name", o->name, "Name of the body (default: the file's)");
   verb->add_flag("--free", o->free, "Free-free modes: no node carries the frame, SPC sets are left out");
@@ -251,7 +254,7 @@ void add_reduce(CLI::App& app, Action& action) {
   verb->add_option("--integrals", o->integrals, "Mass integrals that the solver uses: exact, consistent or lumped")
       ->check(CLI::IsMember({"exact", "consistent", "lumped"}));
   verb->add_option("--origin", o->origin, "Origin of the body frame in basic: X Y Z")->expected(3);
-  verb->add_option("--damping", o->damping, "Modal damping ratio of every mode")->check(CLI::NonNegativeNumber);
+  verb->add_option("--damping", o->damping, "Modal damping ratio of every mode")->check(make_not_negative());
   verb->add_option("--subcase", o->subcase, "Subcase whose SPC and MPC sets are used (default: the first)");
   verb->add_option("--ignore", o->ignore_cards, "Skip this card though it carries stiffness, mass or constraint")
       ->allow_extra_args(false);

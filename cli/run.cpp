@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bough/formats/hdf5/files.hpp"
+#include "bough/formats/toml/specs.hpp"
 #include "bough/solver/integrate/simulate.hpp"
 #include "console.hpp"
 #include "options.hpp"
@@ -112,7 +113,7 @@ int report(const RunOptions& o, const Console& console, const solver::SimulateOu
         last.num_evaluations, last.energy_error, seconds, output));
   }
   if (outcome.completed) return kSuccess;
-  console.print_error("cli.interrupted", fmt::format("the run stopped at t = {:g}: {}", outcome.time, outcome.reason),
+  console.print_error("cli.interrupted", outcome.reason,
                       fmt::format("continue it with bough run {} -o {} --resume", o.file, output));
   return kComputationFailed;
 }
@@ -120,6 +121,8 @@ int report(const RunOptions& o, const Console& console, const solver::SimulateOu
 int run_run(const RunOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;  // one process integrates; the others have nothing to do
+  demand_file(o.file);
+  if (has_suffix(o.file, ".toml")) demand_kind(o.file, toml_files::detect_kind(o.file), "system");
   Diagnostics diagnostics;
   const auto loaded = load_system(o.file, diagnostics);
   const auto output = choose_output(o);

@@ -67,9 +67,9 @@ std::unique_ptr<Prepared> prepare(const records::Deck& deck, const StaticOptions
 int run_static(const StaticOptions& options) {
   Console console(options.quiet, options.verbosity);
   do_once([&] {
-    demand_file(options.deck);
-    if (!options.output.empty()) check_output(options, options.output);
-    if (!options.vtu.empty()) check_output(options, options.vtu);
+    demand_deck(options.deck);
+    if (!options.output.empty()) check_output(options, options.output, {options.deck});
+    if (!options.vtu.empty()) check_output(options, options.vtu, {options.deck});
   });
   console.set_rank(fe::initialize_petsc().rank);
 
@@ -114,6 +114,9 @@ int run_static(const StaticOptions& options) {
   }
   if (!options.output.empty() && console.is_root()) hdf5::write_static(result, options.output);
   if (!picture.empty()) write_text_file(options.vtu, picture);
+  if (options.json) return kSuccess;
+  for (const auto& path : {options.output, options.vtu})
+    if (!path.empty()) console.print("written: " + path + "\n");
   return kSuccess;
 }
 

@@ -41,18 +41,22 @@ std::string format_maxima(const records::StaticResult& result, const records::St
 }
 
 std::string format_balance(const records::StaticSubcase& s) {
-  Table table{{"resultant about the origin", "Fx", "Fy", "Fz", "Mx", "My", "Mz"}, {}};
-  const auto add = [&](const std::string& name, const Eigen::Matrix<double, 6, 1>& f) {
-    std::vector<std::string> row{name};
-    for (int i = 0; i < 6; ++i) row.push_back(fmt::format("{:.6e}", f[i] + 0.0));
+  using Vector6d = Eigen::Matrix<double, 6, 1>;
+  std::vector<std::pair<std::string, Vector6d>> columns{
+      {"OLOAD", s.load_resultant}, {"SPCFORCE", s.reaction_resultant}, {"MPCFORCE", s.mpc_resultant}};
+  if (s.inertia.size() > 0) columns.emplace_back("INERTIA", s.inertia_resultant);
+  Vector6d sum = Vector6d::Zero();
+  for (const auto& [name, f] : columns) sum += f;
+  columns.emplace_back("sum", sum);
+  Table table{{""}, {}};
+  for (const auto& [name, f] : columns) table.headings.push_back(name);
+  for (int i = 0; i < 6; ++i) {
+    std::vector<std::string> row{std::string(i < 3 ? "F" : "M") + "xyz"[i % 3]};
+    for (const auto& [name, f] : columns) row.push_back(fmt::format("{:.6e}", f[i] + 0.0));
     table.rows.push_back(std::move(row));
-  };
-  add("OLOAD", s.load_resultant);
-  add("SPCFORCE", s.reaction_resultant);
-  add("MPCFORCE", s.mpc_resultant);
-  if (s.inertia.size() > 0) add("INERTIA", s.inertia_resultant);
-  add("sum", s.load_resultant + s.reaction_resultant + s.mpc_resultant + s.inertia_resultant);
-  return table.to_text() + fmt::format("\nepsilon {:.3e}, strain energy {:.8g}\n", s.epsilon, s.strain_energy);
+  }
+  return "resultants about the origin\n" + table.to_text() +
+         fmt::format("\nepsilon {:.3e}, strain energy {:.8g}\n", s.epsilon, s.strain_energy);
 }
 
 std::string format_support(const records::StaticSubcase& s) {

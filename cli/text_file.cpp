@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 
@@ -13,10 +14,12 @@ void write_text_file(const std::string& path, const std::string& text) {
   const std::string beside = path + ".part" + std::to_string(getpid());
   std::error_code failed;
   {
+    errno = 0;
     std::ofstream out(beside, std::ios::binary);
     out << text;
     out.flush();
-    if (!out) failed = std::make_error_code(std::errc::io_error);
+    // The stream keeps no reason; errno does, where the system gave one.
+    if (!out) failed = std::error_code(errno != 0 ? errno : EIO, std::generic_category());
   }
   if (!failed) std::filesystem::rename(beside, path, failed);
   if (failed) {

@@ -374,7 +374,7 @@ void Reduction::add_mechanism_error(const std::string& what) {
                        "tie the loose parts or constrain the free dofs");
   else
     diagnostics_.error("reduce.mechanism", where(), "the constraints do not hold the fixed body: " + what,
-                       "complete the SPC set and select it in the case control, or use frame = \"free\"");
+                       "complete the SPC set and select it in the case control, or use frame = \"free\" (--free)");
 }
 
 /// The frame rides on a node that follows others (RBE2, RBE3): no dof of its own can be held.

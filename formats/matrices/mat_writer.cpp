@@ -1,5 +1,7 @@
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include <matio.h>
@@ -79,6 +81,23 @@ Variable make_variable(const char* name, const MatValue& value) {
   return std::visit(Make{name}, value.value);
 }
 
+/// Whether a level 5 file holds `count` variables from end to end. The library does not tell of writes that failed, as
+/// on a full disk: what is there is walked from head to head (MAT-File Format, level 5: 128 bytes, then each element
+/// with its type and length of four bytes).
+bool is_whole(const std::string& path, std::size_t count) {
+  std::ifstream in(path, std::ios::binary);
+  in.seekg(0, std::ios::end);
+  const auto size = static_cast<std::uint64_t>(in.tellg());
+  std::uint64_t at = 128;
+  for (std::size_t k = 0; k < count; ++k) {
+    std::uint32_t head[2];
+    in.seekg(static_cast<std::streamoff>(at));
+    if (!in.read(reinterpret_cast<char*>(head), sizeof head) || head[1] == 0) return false;
+    at += sizeof head + head[1];
+  }
+  return at == size;
+}
+
 }  // namespace
 
 MatValue::MatValue(double number) : value(MatArray{{1, 1}, {number}}) {}
@@ -111,13 +130,13 @@ void write_mat(const std::string& path, const MatFields& variables) {
       break;
     }
   }
-  const bool is_closed = Mat_Close(file) == 0;
+  const bool is_closed = Mat_Close(file) == 0 && is_whole(part, variables.size());
   std::error_code error;
   if (bad.empty() && is_closed) std::filesystem::rename(part, path, error);
   if (!bad.empty() || !is_closed || error) {
     std::error_code ignored;
     std::filesystem::remove(part, ignored);
-    fail(bad.empty() ? "the file cannot be written" : "variable " + bad + " cannot be written");
+    fail(bad.empty() ? "the file cannot be written whole" : "variable " + bad + " cannot be written");
   }
 }
 

@@ -211,6 +211,7 @@ std::string detect_kind(const std::string& path) {
   if (parse_toml(text, path, root, ignored)) {
     const Value* body = root.find("body");
     if (body && body->is_table()) return "body";
+    if (root.find("campaign")) return "campaign";
     if ((body && body->is_array()) || root.find("simulation") || root.find("hinge")) return "system";
     return {};
   }

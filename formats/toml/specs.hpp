@@ -12,7 +12,7 @@ records::BodySpec read_body_spec_text(const std::string& text, const std::string
 records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagnostics);
 /// "FILE", "FILE:NAME", or ":NAME" of the common file; not resolved.
 records::MatrixSource parse_matrix_source(const std::string& text, const std::string& common);
-/// What the file is by its tables: "body", "system", or empty.
+/// What the file is by its tables: "body", "system", "campaign", or empty.
 std::string detect_kind(const std::string& path);
 
 }  // namespace bough::toml_files

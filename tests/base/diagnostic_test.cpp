@@ -28,6 +28,10 @@ TEST(Diagnostic, AllErrorsAreThrownTogether) {
 TEST(Diagnostic, NearestWordIsFoundOnlyWhenNear) {
   EXPECT_EQ(find_nearest("integartor", {"duration", "integrator", "gravity"}), "integrator");
   EXPECT_EQ(find_nearest("zzz", {"duration", "integrator"}), "");
+  EXPECT_EQ(find_nearest("CBRA", {"CROD", "CBAR", "CBUSH"}), "CBAR");  // swapped letters
+  EXPECT_EQ(find_nearest("tip", {"root_force", "tip_deflection"}), "tip_deflection");
+  EXPECT_EQ(find_nearest("tip", {"tip_deflection", "tip_rotation"}), "");  // which of them?
+  EXPECT_EQ(find_nearest("t", {"tip_deflection"}), "");
 }
 
 }  // namespace

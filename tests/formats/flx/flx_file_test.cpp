@@ -16,6 +16,8 @@
 namespace bough::flx {
 namespace {
 
+using testing::AllOf;
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -234,7 +236,8 @@ TEST_F(FlxFileTest, ExampleLayoutsArePlain) {
   EXPECT_THAT(write_flx(file, read_layout(data + "columns.layout")),
               StartsWith("    1    0    3    2    4  0.42500000E+01\n  0.10000000E+01  0.00000000E+00"));
   EXPECT_THAT(write_flx(file, read_layout(data + "diagonals.layout")),
-              StartsWith("body 1 \"boom \"1\"\" mass 4.25\nmass 1 1 1\nstiffness "));
+              AllOf(StartsWith("body 1 \"boom \"1\"\" mass 4.25\nmass 1 1 1\nstiffness "),
+                    ContainsRegex("\nphi [0-9]+ 1 [-+.e0-9]+, [-+.e0-9]+, [-+.e0-9]+\n")));
 }
 
 TEST_F(FlxFileTest, FaultsOfALayout) {

@@ -1,0 +1,26 @@
+#pragma once
+/// \file What is said when the command line itself is wrong.
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace CLI {
+class App;
+class Formatter;
+class ParseError;
+class Validator;
+}  // namespace CLI
+
+namespace bough::cli {
+
+/// What is wrong and what to do: unknown options with the nearest one, the rest in the words of CLI11.
+std::pair<std::string, std::string> describe_parse_error(const CLI::App& app, const CLI::ParseError& error);
+
+/// Help in lines of eighty columns; the indented examples of a footer stay as they are.
+std::shared_ptr<CLI::Formatter> make_formatter();
+
+/// Above 0; at least 0. CLI11's own name the largest double in their message.
+CLI::Validator make_positive();
+CLI::Validator make_not_negative();
+
+}  // namespace bough::cli
