@@ -28,26 +28,28 @@ struct MatricesOptions : CommonOptions {
 
 /// A load set and the subcase whose constraints hold the structure under it.
 struct LoadCase {
-  int load = 0, subcase = 0;
+  int load = 0, temperature = 0, subcase = 0;
+
+  std::string get_name() const { return load > 0 ? fmt::format("LOAD_{}", load) : fmt::format("TEMP_{}", temperature); }
 };
 
 /// --load, or every LOAD of the case control (of one subcase with --subcase), each set once.
 std::vector<LoadCase> choose_load_cases(const records::Deck& deck, const MatricesOptions& options) {
   std::vector<LoadCase> cases;
   if (options.no_kg) return cases;
-  const auto add = [&](int load, int subcase) {
-    const auto same = [load](const LoadCase& c) { return c.load == load; };
-    if (load > 0 && std::none_of(cases.begin(), cases.end(), same)) cases.push_back({load, subcase});
+  const auto add = [&](const LoadCase& one) {
+    const auto same = [&](const LoadCase& c) { return c.get_name() == one.get_name(); };
+    if ((one.load > 0 || one.temperature > 0) && std::none_of(cases.begin(), cases.end(), same)) cases.push_back(one);
   };
   for (int load : options.loads) {
-    int subcase = options.model.subcase;
+    LoadCase one{load, 0, options.model.subcase};
     for (const auto& s : deck.subcases)
-      if (subcase == 0 && s.load == load) subcase = s.id;
-    add(load, subcase);
+      if (one.subcase == 0 && s.load == load) one = {load, s.temperature, s.id};
+    add(one);
   }
   if (!options.loads.empty()) return cases;
   for (const auto& s : deck.subcases)
-    if (options.model.subcase == 0 || s.id == options.model.subcase) add(s.load, s.id);
+    if (options.model.subcase == 0 || s.id == options.model.subcase) add({s.load, s.temperature, s.id});
   return cases;
 }
 
@@ -57,12 +59,15 @@ fe::PetscMat calc_geometric(const records::Deck& deck, const MatricesOptions& op
   model_options.subcase = load_case.subcase;
   model_options.uses_enforced = true;
   const auto model = fe::Model::build(deck, model_options, diagnostics);
-  const auto load = fe::calc_static_load(model, deck, load_case.load, diagnostics);
+  records::Subcase subcase;
+  subcase.load = load_case.load;
+  subcase.temperature = load_case.temperature;
+  const auto load = fe::calc_static_load(model, deck, subcase, diagnostics);
   diagnostics.throw_if_errors();
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
   const fe::StaticSolver solver(model, K);
   return fe::assemble_geometric_stiffness(model, fe::DofSet::Global,
-                                          fe::solve_static_case(model, solver, load).displacement);
+                                          fe::solve_static_case(model, solver, load).displacement, &load.initial);
 }
 
 /// "boom.mtx" for K gives "boom.K.mtx".
@@ -95,7 +100,8 @@ std::vector<std::string> write(const records::MatricesResult& result, const Matr
   }
   std::vector<std::pair<std::string, const records::SparseMatrix*>> matrices{{"K", &result.K}, {"M", &result.M}};
   if (result.B.num_rows > 0) matrices.emplace_back("B", &result.B);
-  for (const auto& [name, matrix] : result.K_G) matrices.emplace_back("KG" + name.substr(5), &matrix);
+  for (const auto& [name, matrix] : result.K_G)
+    matrices.emplace_back((name[0] == 'T' ? "KGT" : "KG") + name.substr(5), &matrix);
   std::vector<std::string> files;
   const auto keep = [&](const std::string& file, const std::string& text) {
     write_text_file(file, text);
@@ -138,7 +144,7 @@ int run_matrices(const MatricesOptions& options) {
   result.M = fe::gather_sparse(fe::assemble_mass(model, fe::DofSet::Global, model.mass_kind()));
   if (fe::has_damping(model)) result.B = fe::gather_sparse(fe::assemble_damping(model, fe::DofSet::Global));
   for (const auto& load_case : choose_load_cases(deck, options))
-    result.K_G.emplace_back(fmt::format("LOAD_{}", load_case.load),
+    result.K_G.emplace_back(load_case.get_name(),
                             fe::gather_sparse(calc_geometric(deck, options, load_case, diagnostics)));
   console.print(diagnostics);
   if (!console.is_root()) return kSuccess;

@@ -12,6 +12,7 @@
 #include "bough/fe/static_case.hpp"
 #include "bough/formats/hdf5/files.hpp"
 #include "bough/modal/eigen.hpp"
+#include "buckling_cases.hpp"
 #include "console.hpp"
 #include "deck_tables.hpp"
 #include "model_options.hpp"
@@ -52,9 +53,9 @@ modal::EigenOptions choose_eigen_options(const ModesOptions& options, const reco
   for (const auto& card : deck.eigen_methods) {
     if (!names(card)) continue;
     eigen.num_modes = card.num_modes;
+    eigen.min_hz = card.f1;
+    eigen.max_hz = card.f2;
     if (!options.buckling) {
-      eigen.min_hz = card.f1;
-      eigen.max_hz = card.f2;
       // The methods by transformation compute every root; ND then asks for the lowest whatever F1 and F2 say.
       static const std::set<std::string> by_transformation{"GIV", "MGIV", "HOU", "MHOU", "AGIV", "AHOU"};
       if (!card.is_eigrl && card.num_modes > 0 && by_transformation.count(card.method) > 0)
@@ -160,68 +161,40 @@ nlohmann::json make_json(const records::ModesResult& r) {
   return json;
 }
 
-/// SOL 105: the static subcase carries LOAD, the buckling one METHOD and perhaps STATSUB.
-struct BucklingCases {
-  records::Subcase statics, buckling;
-};
-BucklingCases choose_buckling_cases(const records::Deck& deck) {
-  BucklingCases cases;
-  bool found = false;
-  for (const auto& subcase : deck.subcases) {
-    if (subcase.method != 0 || subcase.statsub != 0) cases.buckling = subcase;
-  }
-  for (const auto& subcase : deck.subcases) {
-    const bool is_asked = cases.buckling.statsub != 0 && subcase.id == cases.buckling.statsub;
-    if (subcase.load != 0 && (is_asked || (cases.buckling.statsub == 0 && !found))) {
-      cases.statics = subcase;
-      found = true;
-    }
-  }
-  if (!found) {
-    throw InputError("cli.no-static-load", {deck.files.empty() ? std::string{} : deck.files[0]},
-                     "buckling needs a subcase with LOAD, found none",
-                     "put SUBCASE 1 with LOAD before SUBCASE 2 with METHOD, as in SOL 105");
-  }
-  return cases;
-}
-
-/// The load that the factors multiply: "load factors of LOAD 3 (subcase 1)".
-std::string describe_load(const records::Subcase& statics) {
-  return fmt::format("load factors of LOAD {}", statics.load) +
-         (statics.id > 0 ? fmt::format(" (subcase {})", statics.id) : "");
-}
-
 modal::EigenPairs solve(const ModesOptions& options, const records::Deck& deck, fe::Model& model, Console& console,
                         Diagnostics& diagnostics) {
-  if (!options.buckling) {
-    auto eigen = choose_eigen_options(options, deck, model.subcase().method, diagnostics);
-    eigen.progress = [&](int converged, int wanted) {
-      console.show_progress(fmt::format("modes: {} of {} converged", converged, wanted));
-    };
-    return modal::calc_normal_modes(model, eigen, diagnostics);
-  }
-  const auto cases = choose_buckling_cases(deck);
-  const auto load = fe::calc_static_load(model, deck, cases.statics.load, diagnostics);
-  diagnostics.throw_if_errors();
-  const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
-  const fe::StaticSolver statics(model, K);
-  const VectorXd u = fe::solve_static_case(model, statics, load).displacement;
-  auto eigen = choose_eigen_options(options, deck, cases.buckling.method, diagnostics);
-  return modal::calc_buckling_modes(model, u, eigen, diagnostics);
+  auto eigen = choose_eigen_options(options, deck, model.subcase().method, diagnostics);
+  eigen.progress = [&](int converged, int wanted) {
+    console.show_progress(fmt::format("modes: {} of {} converged", converged, wanted));
+  };
+  return modal::calc_normal_modes(model, eigen, diagnostics);
 }
+
+/// One table of the verb: the subcase whose constraints hold, and with --buckling its load.
+struct Task {
+  int subcase = 0;
+  std::optional<BucklingCases> buckling;
+};
 
 /// The subcases that SOL 103 solves one after the other, each with its METHOD, SPC and MPC; those that select the same
 /// as an earlier one are left out. One id (0: the first subcase) otherwise.
-std::vector<int> choose_subcases(const ModesOptions& options, const records::Deck& deck) {
-  if (options.model.subcase != 0) return {options.model.subcase};
-  if (options.buckling) return {choose_buckling_cases(deck).statics.id};
-  if (!deck.sol.empty() && deck.sol != "103" && deck.sol != "3" && deck.sol != "SEMODES") return {0};
-  std::vector<int> chosen;
+std::vector<Task> choose_tasks(const ModesOptions& options, const records::Deck& deck) {
+  std::vector<Task> chosen;
+  if (options.buckling) {
+    for (const auto& cases : list_buckling_cases(deck, options.model.subcase)) {
+      const bool is_held = cases.buckling.spc != 0 || cases.buckling.mpc != 0;
+      chosen.push_back({is_held ? cases.buckling.id : cases.statics.id, cases});
+    }
+    return chosen;
+  }
+  if (options.model.subcase != 0) return {{options.model.subcase, {}}};
+  static const std::set<std::string> with_modes{"", "103", "3", "SEMODES", "MODES"};
+  if (with_modes.count(deck.sol) == 0) return {{0, {}}};
   std::set<std::array<int, 3>> seen;
   for (const auto& subcase : deck.subcases)
     if (subcase.id > 0 && subcase.method > 0 && seen.insert({subcase.method, subcase.spc, subcase.mpc}).second)
-      chosen.push_back(subcase.id);
-  return chosen.empty() ? std::vector<int>{0} : chosen;
+      chosen.push_back({subcase.id, {}});
+  return chosen.empty() ? std::vector<Task>{Task{}} : chosen;
 }
 
 /// "boom.h5" is "boom-subcase-2.h5" for a subcase after the first.
@@ -254,33 +227,41 @@ int run_modes(const ModesOptions& options) {
   model_options.uses_enforced = options.buckling;
   const auto deck = read_deck_or_throw(options.deck, model_options, diagnostics);
   const auto sources = calc_sources(deck.files);
-  const auto subcases = choose_subcases(options, deck);
+  const auto tasks = choose_tasks(options, deck);
+  const bool is_eigen_deck = deck.sol == "105" || deck.sol == "5" || deck.sol == "SEBUCKL" || deck.sol == "BUCKLING";
+  if (is_eigen_deck && !options.buckling)
+    diagnostics.note("cli.buckling-deck", deck.locate({}), "the deck asks for buckling (SOL " + deck.sol + ")",
+                     "these are its normal modes; --buckling gives the load factors");
   nlohmann::json json;
   std::string text, written;
   std::vector<std::pair<std::string, std::string>> pictures;
-  for (const int id : subcases) {
-    const bool is_first = id == subcases.front();
+  for (const auto& task : tasks) {
+    const bool is_first = &task == &tasks.front();
     Diagnostics own;
-    model_options.subcase = id;
+    model_options.subcase = task.subcase;
     auto model = fe::Model::build(deck, model_options, own);
     own.throw_if_errors();
     if (fe::has_damping(model))
       own.note("fe.damping-unused", deck.locate({}), "the dampers of the deck do not act on its modes, as in SOL 103",
                "bough reduce adds them to the modal damping");
-    const auto pairs = solve(options, deck, model, console, own);
+    const auto pairs =
+        task.buckling ? solve_buckling(deck, *task.buckling, model_options, model,
+                                       choose_eigen_options(options, deck, task.buckling->buckling.method, own), own)
+                      : solve(options, deck, model, console, own);
     console.end_progress();
     auto result = make_result(model, pairs, options.buckling);
     result.source = sources;
+    if (task.buckling && tasks.size() > 1) result.subcase = task.buckling->buckling.id;
     const auto vtu = name_output(options.vtu, result.subcase, is_first);
     if (!vtu.empty() && console.is_root())
       pictures.emplace_back(
           vtu, make_vtu_text(exports::make_picture(result), exports::VtuEncoding::Base64, options.deck, own));
     add_new(own, diagnostics);
-    if (subcases.size() > 1) text += fmt::format("{}subcase {}\n\n", is_first ? "" : "\n", result.subcase);
-    if (options.buckling) text += describe_load(choose_buckling_cases(deck).statics) + "\n\n";
+    if (tasks.size() > 1) text += fmt::format("{}subcase {}\n\n", is_first ? "" : "\n", result.subcase);
+    if (task.buckling) text += describe_load(task.buckling->statics) + "\n\n";
     text += (options.buckling ? format_buckling(result) : format_modes(result)) + "\n" + format_health(result);
     if (is_first) json = make_json(result);
-    if (subcases.size() > 1) json["subcases"].push_back(make_json(result));
+    if (tasks.size() > 1) json["subcases"].push_back(make_json(result));
     const auto output = name_output(options.output, result.subcase, is_first);
     if (!output.empty()) {
       do_once([&] {

@@ -127,8 +127,9 @@ nlohmann::json list_maxima(const std::vector<Extreme>& maxima) {
 }  // namespace
 
 std::string format_static(const records::StaticResult& result, const records::StaticSubcase& s, bool full) {
-  std::string text = fmt::format("subcase {}{}: LOAD {}, SPC {}, MPC {}\n\n", s.id,
-                                 s.label.empty() ? "" : " (" + s.label + ")", s.load_set, s.spc_set, s.mpc_set);
+  std::string text = fmt::format("subcase {}{}: LOAD {}, SPC {}, MPC {}{}\n\n", s.id,
+                                 s.label.empty() ? "" : " (" + s.label + ")", s.load_set, s.spc_set, s.mpc_set,
+                                 s.temperature_set ? fmt::format(", TEMPERATURE {}", s.temperature_set) : "");
   text += format_maxima(result, s) + "\n" + format_balance(s) + "\n" + format_support(s);
   if (full) {
     text += format_vector("displacement", result.dof_map, s.displacement) + "\n";
@@ -145,6 +146,7 @@ nlohmann::json to_json(const records::StaticResult& result, const records::Stati
                       {"load_set", s.load_set},
                       {"spc_set", s.spc_set},
                       {"mpc_set", s.mpc_set},
+                      {"temperature_set", s.temperature_set},
                       {"strain_energy", s.strain_energy},
                       {"epsilon", s.epsilon},
                       {"max_displacement", list_maxima(find_maxima(result.dof_map, s.displacement))},

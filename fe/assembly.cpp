@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "bough/fe/model/element_transform.hpp"
+#include "bough/fe/model/temperatures.hpp"
 
 namespace bough::fe {
 namespace {
@@ -194,12 +195,14 @@ PetscMat assemble_damping(const Model& model, DofSet set) {
   return assemble(model, set, [](const Element& e, Eigen::Ref<MatrixXd> B) { e.add_damping(1, B); });
 }
 
-PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const VectorXd& u_g) {
+PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const VectorXd& u_g,
+                                      const InitialForces* initial) {
   BOUGH_DEMAND(u_g.size() == model.num_gdofs());
-  return assemble(model, set, [&u_g](const Element& e, Eigen::Ref<MatrixXd> K_G) {
+  return assemble(model, set, [&u_g, initial](const Element& e, Eigen::Ref<MatrixXd> K_G) {
     if (e.num_internal_forces() == 0) return;
     VectorXd force = VectorXd::Zero(e.num_internal_forces());
     e.calc_internal_forces(gather_rows(u_g, e.gdofs()), force);
+    if (const auto* heated = initial ? initial->find(e) : nullptr) force += heated->force;
     e.add_geometric_stiffness(force, 1, K_G);
   });
 }

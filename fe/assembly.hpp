@@ -13,8 +13,12 @@ PetscMat assemble_stiffness(const Model& model, DofSet set);
 PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind);
 /// The viscous damping B of dampers and bushes.
 PetscMat assemble_damping(const Model& model, DofSet set);
-/// K_G of the displacement field u (num_gdofs), f-set or g-set.
-PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const VectorXd& u_g);
+struct InitialForces;
+
+/// K_G of the displacement field u (num_gdofs) with the forces of heated elements (fe/model/temperatures.hpp), f-set or
+/// g-set.
+PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const VectorXd& u_g,
+                                      const InitialForces* initial = nullptr);
 
 /// Products with the g-set mass matrix without forming it: M X, num_gdofs x k, replicated on every rank. O(elements k).
 MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g);

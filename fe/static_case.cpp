@@ -18,22 +18,32 @@ std::vector<std::string> list_components(const Element& element) {
   return element.internal_force_names();
 }
 
-VectorXd calc_forces(const Element& element, const VectorXd& u) {
+VectorXd calc_forces(const Element& element, const VectorXd& u, const InitialForces::Part* initial) {
   if (const auto* spring = dynamic_cast<const ScalarSpring*>(&element))
     return VectorXd::Constant(1, spring->calc_force(u));
   if (const auto* bush = dynamic_cast<const Bush*>(&element)) return bush->calc_spring_forces(u);
   VectorXd force = VectorXd::Zero(element.num_internal_forces());
   element.calc_internal_forces(u, force);
+  if (initial) force += initial->force;
   return force;
 }
 
 }  // namespace
 
 StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int load, Diagnostics& diagnostics) {
-  const int set = load >= 0 ? load : model.subcase().load;
+  if (load < 0) return calc_static_load(model, deck, model.subcase(), diagnostics);
+  records::Subcase subcase;
+  subcase.load = load;
+  return calc_static_load(model, deck, subcase, diagnostics);
+}
+
+StaticLoad calc_static_load(const Model& model, const records::Deck& deck, const records::Subcase& subcase,
+                            Diagnostics& diagnostics) {
   StaticLoad result;
-  result.F = set > 0 ? model.calc_load(deck, set, diagnostics) : VectorXd::Zero(model.num_gdofs());
-  result.d = model.calc_enforced(deck, set, diagnostics);
+  result.F = subcase.load > 0 ? model.calc_load(deck, subcase.load, diagnostics) : VectorXd::Zero(model.num_gdofs());
+  result.d = model.calc_enforced(deck, subcase.load, diagnostics);
+  result.initial = calc_thermal(model, deck, subcase.temperature, diagnostics);
+  if (!result.initial.of.empty()) result.F += sum_loads(model, result.initial);
   return result;
 }
 
@@ -68,6 +78,11 @@ records::StaticSubcase solve_static_case(const Model& model, const StaticSolver&
   const double work = std::abs(u1.dot(F));
   result.epsilon = work > 0 ? std::abs(u1.dot(residual)) / work : 0;
   result.strain_energy = 0.5 * result.displacement.dot(K_u);
+  if (!load.initial.of.empty()) {
+    result.strain_energy -= result.displacement.dot(sum_loads(model, load.initial));
+    for (const auto& element : model.elements())
+      if (const auto* part = load.initial.find(*element)) result.strain_energy += part->energy;
+  }
 
   const VectorXd held = model.T_fixed().transpose() * residual;
   result.reaction = VectorXd::Zero(model.num_gdofs());
@@ -95,7 +110,8 @@ records::StaticSubcase solve_static_case(const Model& model, const StaticSolver&
 }
 
 std::vector<records::ElementForces> calc_element_forces(const Model& model, const VectorXd& u_g,
-                                                        const records::Deck& deck, int load, Diagnostics& diagnostics) {
+                                                        const records::Deck& deck, int load, Diagnostics& diagnostics,
+                                                        const InitialForces& initial) {
   BOUGH_DEMAND(u_g.size() == model.num_gdofs());
   std::unordered_map<int, VectorXd> end_loads;
   if (load > 0) end_loads = calc_beam_end_loads(model, deck, load, diagnostics);
@@ -123,13 +139,15 @@ std::vector<records::ElementForces> calc_element_forces(const Model& model, cons
       if (e < begin || e >= end) continue;
       VectorXd u(element.num_dofs());
       for (int i = 0; i < u.size(); ++i) u[i] = u_g[element.gdofs()[static_cast<std::size_t>(i)]];
-      VectorXd force = calc_forces(element, u);
+      const auto* heated = initial.find(element);
+      VectorXd force = calc_forces(element, u, heated);
       if (const auto own = end_loads.find(e); own != end_loads.end())
         static_cast<const Beam&>(element).add_load_forces(own->second, force);
       block.force.row(r) = force.transpose();
       MatrixXd K = MatrixXd::Zero(u.size(), u.size());
       element.add_stiffness(1, K);
       energy(r, 0) = 0.5 * u.dot(K * u);
+      if (heated) energy(r, 0) += heated->energy - u.dot(heated->load);
     }
     sum_over_ranks(block.force);
     sum_over_ranks(energy);

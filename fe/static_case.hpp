@@ -1,16 +1,22 @@
 #pragma once
 /// \file One static subcase: displacements, reactions, balance, element forces (SOL 101).
+#include "bough/fe/model/temperatures.hpp"
 #include "bough/fe/statics.hpp"
 #include "bough/fe/suport.hpp"
 #include "bough/formats/records/static_result.hpp"
 
 namespace bough::fe {
 
-/// Loads of a subcase: F on the g-set in basic, d of the fixed dofs in their CD axes (Model::calc_enforced).
+/// Loads of a subcase: F on the g-set in basic, d of the fixed dofs in their CD axes (Model::calc_enforced). F holds
+/// the loads of `initial`, the heated elements.
 struct StaticLoad {
   VectorXd F, d;
+  InitialForces initial;
 };
-/// From LOAD of the model's subcase, or from set `load` when it is not negative; 0: enforced displacements alone.
+/// Of LOAD and TEMPERATURE(LOAD) of a subcase; without them its enforced displacements alone.
+StaticLoad calc_static_load(const Model& model, const records::Deck& deck, const records::Subcase& subcase,
+                            Diagnostics& diagnostics);
+/// Of set `load` alone, or of the model's subcase when it is negative.
 StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int load, Diagnostics& diagnostics);
 
 /// u = T q + T_fixed d with Tᵀ(K u - F) = 0. With R = K u - F: reactions of the fixed dofs T_fixedᵀ R; the rest of R is
@@ -21,9 +27,10 @@ records::StaticSubcase solve_static_case(const Model& model, const StaticSolver&
                                          const Suport& suport = {});
 
 /// Forces and strain energy of every element, by card in alphabetical order. Replicated. `deck`, `load`: loads along
-/// beams, which act between the ends that u knows.
+/// beams, which act between the ends that u knows; `initial`: of heated elements.
 std::vector<records::ElementForces> calc_element_forces(const Model& model, const VectorXd& u_g,
-                                                        const records::Deck& deck, int load, Diagnostics& diagnostics);
+                                                        const records::Deck& deck, int load, Diagnostics& diagnostics,
+                                                        const InitialForces& initial = {});
 
 /// Forces and moments about `point` of a load on the g-set.
 Eigen::Matrix<double, 6, 1> calc_resultant(const Model& model, const VectorXd& F_g,

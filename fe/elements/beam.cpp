@@ -151,7 +151,8 @@ void Beam::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, doub
     const double t = point.x / geometry_.length;
     const double My = (1 - t) * force[4] + t * force[6], Mz = (1 - t) * force[5] + t * force[7];
     const BeamSection s = property_->calc_section(t);
-    const double r2 = s.n.squaredNorm() + (s.A > 0 ? (s.I1 + s.I2) / s.A : 0);
+    // Without torsional stiffness the twist is anybody's, AUTOSPC's in skew axes: no work for N on it.
+    const double r2 = field.active().torsion ? s.n.squaredNorm() + (s.A > 0 ? (s.I1 + s.I2) / s.A : 0) : 0;
     // ½ qᵀ W q = second-order part of the stress power, docs/elements/beam.md eq. (7).
     Eigen::Matrix<double, 9, 9> W = Eigen::Matrix<double, 9, 9>::Zero();
     const auto set = [&](int i, int j, double value) { W(i, j) = W(j, i) = value; };

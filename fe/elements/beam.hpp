@@ -47,6 +47,10 @@ class Beam final : public Element {
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
 
+  bool has_expansion() const override { return property_->material.alpha != 0; }
+  double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
+                     Eigen::Ref<VectorXd> initial) const override;
+
   /// Equivalent loads at the ends (12, element axes) before pins: ∫ Dᵀ p dx with the element's own field D. The nodal
   /// displacements under them are those of the loaded beam.
   Eigen::Matrix<double, 12, 1> calc_end_load(const BeamLineLoad& load) const;

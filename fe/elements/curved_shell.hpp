@@ -55,6 +55,12 @@ class CurvedShell final : public Element {
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
 
+  bool has_expansion() const override { return sections_.front().expansion != nullptr; }
+  /// The temperature is interpolated from the corners and the midside nodes (the mean of its corners where one is
+  /// absent).
+  double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
+                     Eigen::Ref<VectorXd> initial) const override;
+
   double calc_area() const;
 
   static constexpr int kNumForces = 8;

@@ -76,7 +76,9 @@ class Element {
   virtual bool has_expansion() const { return false; }
   /// For temperatures T: load (N) += the forces at the nodes that stretch the element as it would stretch freely;
   /// initial (s) += its internal forces at u = 0. With temperatures they are calc_internal_forces(u) + initial.
-  virtual void add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const;
+  /// Returns the strain energy at u = 0.
+  virtual double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
+                             Eigen::Ref<VectorXd> initial) const;
 
  private:
   int id_;

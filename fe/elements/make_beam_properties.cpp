@@ -7,7 +7,9 @@
 namespace bough::fe {
 namespace {
 
-Isotropic make_isotropic(const records::Mat1& material) { return {material.E, material.G, material.rho}; }
+Isotropic make_isotropic(const records::Mat1& material) {
+  return {material.E, material.G, material.rho, material.alpha, material.tref};
+}
 
 bool is_same(const BeamSection& a, const BeamSection& b) {
   return a.A == b.A && a.I1 == b.I1 && a.I2 == b.I2 && a.I12 == b.I12 && a.J == b.J && a.nsm == b.nsm &&

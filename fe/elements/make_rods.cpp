@@ -34,7 +34,7 @@ bool check_section(Maker& maker, const std::string& who, double A, double J, dou
 
 RodProperty make_property(const records::Mat1& material, double A, double J, double nsm) {
   const double mass = material.rho * A + nsm;
-  return {material.E * A, material.G * J, mass, mass};
+  return {material.E * A, material.G * J, mass, mass, material.alpha, material.tref};
 }
 
 /// Hollow or solid circular tube, diameter linear from od to od2, constant wall t (t = 0: solid). Axial and torsional
@@ -55,8 +55,12 @@ RodProperty make_tube(const records::Mat1& material, const records::Ptube& tube)
     per_A += g.weight / area(od);
     per_J += g.weight / polar(od);
   }
-  return {material.E / per_A, material.G / per_J, material.rho * area(tube.od) + tube.nsm,
-          material.rho * area(od2) + tube.nsm};
+  return {material.E / per_A,
+          material.G / per_J,
+          material.rho * area(tube.od) + tube.nsm,
+          material.rho * area(od2) + tube.nsm,
+          material.alpha,
+          material.tref};
 }
 
 }  // namespace

@@ -10,11 +10,12 @@ namespace {
 struct SolidMaterial {
   Matrix6d C = Matrix6d::Zero();
   double rho = 0;
+  SolidExpansion expansion;  ///< in the axes of C
 };
 
-/// The law seen from basic axes when R holds the material axes in basic (Bond transformation; Auld, "Acoustic fields
-/// and waves in solids", vol. 1, 3.D): strains in material axes are Tε.
-Matrix6d rotate_law(const Matrix6d& C, const Matrix3d& R) {
+/// Strains in material axes from strains in basic ones; R holds the material axes in basic (Bond transformation; Auld,
+/// "Acoustic fields and waves in solids", vol. 1, 3.D).
+Matrix6d calc_strain_transform(const Matrix3d& R) {
   static constexpr int kPair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
   Matrix6d T;
   for (int i = 0; i < 6; ++i)
@@ -24,7 +25,11 @@ Matrix6d rotate_law(const Matrix6d& C, const Matrix3d& R) {
       const double sum = R(c, a) * R(d, b) + (c == d ? 0 : R(d, a) * R(c, b));
       T(i, j) = i < 3 ? sum * (j < 3 ? 1 : 0.5) : (j < 3 ? 2 * R(c, a) * R(c, b) : sum);
     }
-  return T.transpose() * C * T;
+  return T;
+}
+
+std::shared_ptr<const SolidExpansion> share_expansion(const SolidExpansion& expansion) {
+  return expansion.alpha.isZero(0) ? nullptr : std::make_shared<const SolidExpansion>(expansion);
 }
 
 /// The law and density a PSOLID names, made once; empty after reporting.
@@ -48,7 +53,7 @@ class MaterialMaker {
                      "give the material axes as a coordinate system");
         return std::nullopt;
       }
-      return SolidMaterial{m->G, m->rho};
+      return SolidMaterial{m->G, m->rho, {m->alpha, m->tref}};
     }
     const auto* m = maker_.find_material(property.mid, name, property.at);
     if (!m) return std::nullopt;
@@ -63,6 +68,8 @@ class MaterialMaker {
     material.C.diagonal().head<3>().array() += 2 * m->G;
     material.C.diagonal().tail<3>().setConstant(m->G);
     material.rho = m->rho;
+    material.expansion.alpha.head<3>().setConstant(m->alpha);
+    material.expansion.tref = m->tref;
     return material;
   }
 
@@ -77,6 +84,7 @@ void make_solids(Maker& maker) {
   const auto& deck = maker.deck();
   const Index<records::Psolid> psolid(deck.psolid);
   MaterialMaker materials(maker);
+  std::map<int, std::shared_ptr<const SolidExpansion>> expansions;  // by PSOLID
   for (const auto& card : deck.solids) {
     const std::string who = card.card + " " + std::to_string(card.id);
     SolidGeometry geometry;
@@ -106,11 +114,18 @@ void make_solids(Maker& maker) {
       for (int c = 0; c < 3; ++c) gdofs.push_back(maker.nodes().node(n).first_gdof + c);
     }
     Matrix6d C = material->C;
-    if (property->cordm > 0)
-      C = rotate_law(C,
-                     maker.nodes().calc_axes(property->cordm, centre, deck.locate(property->at), maker.diagnostics()));
-    auto solid =
-        std::make_unique<Solid>(card.id, card.card, nodes, std::move(gdofs), std::move(geometry), C, material->rho);
+    // Only what differs from element to element is made anew.
+    auto& expansion = expansions[property->id];
+    if (!expansion) expansion = share_expansion(material->expansion);
+    auto own = expansion;
+    if (property->cordm > 0) {
+      const Matrix6d T = calc_strain_transform(
+          maker.nodes().calc_axes(property->cordm, centre, deck.locate(property->at), maker.diagnostics()));
+      C = (T.transpose() * C * T).eval();
+      if (own) own = share_expansion({T.inverse() * own->alpha, own->tref});
+    }
+    auto solid = std::make_unique<Solid>(card.id, card.card, nodes, std::move(gdofs), std::move(geometry), C,
+                                         material->rho, std::move(own));
     double ratio = 0;
     if (!(solid->calc_volume(&ratio) > 0) || !(ratio > 0)) {
       maker.error(

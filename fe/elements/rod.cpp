@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "bough/base/rotation.hpp"
+#include "bough/fe/elements/temperature.hpp"
 
 namespace bough::fe {
 namespace {
@@ -50,6 +51,14 @@ void Rod::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const {
 void Rod::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
   force[0] = property_.EA / length_ * axis_.dot(u.segment<3>(6) - u.segment<3>(0));
   force[1] = property_.GJ / length_ * axis_.dot(u.segment<3>(9) - u.segment<3>(3));
+}
+
+double Rod::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const {
+  const double strain = property_.alpha * (T.node.mean() - property_.tref), N = property_.EA * strain;
+  load.segment<3>(0) -= N * axis_;
+  load.segment<3>(6) += N * axis_;
+  initial[0] -= N;
+  return 0.5 * N * strain * length_;
 }
 
 void Rod::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,

@@ -9,6 +9,7 @@ namespace bough::fe {
 struct RodProperty {
   double EA = 0, GJ = 0;          ///< for a taper: the length over the integrated compliance
   double mass_a = 0, mass_b = 0;  ///< mass per length at the ends, linear between (nsm included)
+  double alpha = 0, tref = 0;     ///< thermal expansion from tref on
 };
 
 /// Rod between two grids. Mass: translations only. Geometric stiffness: N/L across the axis (taut string), and the
@@ -26,6 +27,9 @@ class Rod final : public Element {
   std::vector<std::string> internal_force_names() const override { return {"axial", "torque"}; }
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
+  bool has_expansion() const override { return property_.alpha != 0; }
+  double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
+                     Eigen::Ref<VectorXd> initial) const override;
 
  private:
   RodProperty property_;

@@ -17,6 +17,8 @@ ShellSections::ShellSections(Maker& maker)
       mat2_(maker.deck().mat2),
       mat8_(maker.deck().mat8) {
   const auto* k6rot = maker.deck().find_param("K6ROT");
+  const auto& t = maker.deck().temperatures;
+  has_temperatures_ = !t.grids.empty() || !t.defaults.empty() || !t.bars.empty() || !t.plates.empty();
   drilling_factor_ = 1e-6 * (k6rot ? std::atof(k6rot->value.c_str()) : 100.0);
 }
 
@@ -56,7 +58,10 @@ std::optional<PlaneMaterial> ShellSections::make_material(int mid, const std::st
                    "E1, E2, G12 are positive and NU12² E2 < E1");
       return std::nullopt;
     }
-    return make_orthotropic_plane(m->E1, m->E2, m->nu12, m->G12, m->G1z, m->G2z, m->rho);
+    auto p = make_orthotropic_plane(m->E1, m->E2, m->nu12, m->G12, m->G1z, m->G2z, m->rho);
+    p.alpha = {m->a1, m->a2, 0};
+    p.tref = m->tref;
+    return p;
   }
   if (const auto* m = mat2_.find(mid)) {
     PlaneMaterial p;
@@ -64,6 +69,8 @@ std::optional<PlaneMaterial> ShellSections::make_material(int mid, const std::st
     p.G << m->G(0, 0), m->G(0, 1), m->G(0, 1), m->G(1, 1);  // a MAT2 named by MID3 gives G11 G12 G22 of the shear law
     p.rho = m->rho;
     p.shear_rigid = true;  // and none when it stands for a ply
+    p.alpha = m->alpha;
+    p.tref = m->tref;
     return p;
   }
   if (!mat1_.find(mid)) {
@@ -75,7 +82,10 @@ std::optional<PlaneMaterial> ShellSections::make_material(int mid, const std::st
   }
   const records::Mat1* m = maker_.find_material(mid, who, at);
   if (!m) return std::nullopt;
-  return make_isotropic_plane(m->E, m->G, m->nu, m->rho);
+  auto p = make_isotropic_plane(m->E, m->G, m->nu, m->rho);
+  p.alpha = {m->alpha, m->alpha, 0};
+  p.tref = m->tref;
+  return p;
 }
 
 std::optional<PlaneMaterial> ShellSections::find_plane_strain(const records::Pshell& p) {
@@ -93,6 +103,8 @@ std::optional<PlaneMaterial> ShellSections::find_plane_strain(const records::Psh
   const double c = m->E / ((1 + m->nu) * (1 - 2 * m->nu));
   plane.Q(0, 0) = plane.Q(1, 1) = c * (1 - m->nu);
   plane.Q(0, 1) = plane.Q(1, 0) = c * m->nu;
+  plane.alpha.head<2>().setConstant((1 + m->nu) * m->alpha);
+  plane.tref = m->tref;
   return plane;
 }
 
@@ -116,13 +128,14 @@ std::optional<ShellSection> ShellSections::make_pshell(const records::Pshell& p,
     return m.value_or(PlaneMaterial{});
   };
   double rho = 0;
+  PlaneMaterial membrane, bending;
   if (p.mid1 > 0) {
     const auto m = p.mid2 == -1 ? find_plane_strain(p) : find_material(p.mid1, name, p.at);
     ok = m.has_value();
-    if (m) s.A = t * m->Q, rho = m->rho;
+    if (m) s.A = t * m->Q, rho = m->rho, membrane = *m;
   }
   if (p.mid2 > 0) {
-    const auto m = material(p.mid2);
+    const auto m = bending = material(p.mid2);
     s.D = p.bending_ratio * t * t * t / 12 * m.Q;
     if (p.mid1 <= 0) rho = m.rho;
   }
@@ -134,7 +147,23 @@ std::optional<ShellSection> ShellSections::make_pshell(const records::Pshell& p,
   s.mass = rho * t + p.nsm;
   s.rotary_inertia = rho * t * t * t / 12;
   if (!ok) return std::nullopt;
+  set_expansion(membrane, bending, s);
   return s;
+}
+
+void ShellSections::set_expansion(const PlaneMaterial& membrane, const PlaneMaterial& bending,
+                                  ShellSection& section) const {
+  if (!has_temperatures_ || (membrane.alpha.isZero(0) && bending.alpha.isZero(0))) return;
+  auto e = std::make_shared<ShellExpansion>();
+  e->N_t = section.A * membrane.alpha;
+  e->M_t = section.B.transpose() * membrane.alpha;
+  e->N_g = section.B * bending.alpha;
+  e->M_g = section.D * bending.alpha;
+  e->e_tt = membrane.alpha.dot(e->N_t);
+  e->e_tg = membrane.alpha.dot(e->N_g);
+  e->e_gg = bending.alpha.dot(e->M_g);
+  e->tref = membrane.tref;
+  section.expansion = std::move(e);
 }
 
 std::optional<ShellSection> ShellSections::make_pcomp(const records::Pcomp& p) {
@@ -152,6 +181,17 @@ std::optional<ShellSection> ShellSections::make_pcomp(const records::Pcomp& p) {
   if (!ok) return std::nullopt;
   ShellSection s = make_laminate_section(layers, p.z0);
   s.mass += p.nsm;
+  auto expansion = make_laminate_expansion(layers, p.z0);
+  expansion.tref = p.tref;
+  if (!p.bending || !p.membrane) {
+    expansion.M_t.setZero();
+    expansion.N_g.setZero();
+    expansion.e_tg = 0;
+    (p.bending ? expansion.N_t : expansion.M_g).setZero();
+    (p.bending ? expansion.e_tt : expansion.e_gg) = 0;
+  }
+  if (has_temperatures_ && expansion.e_tt + expansion.e_gg > 0)
+    s.expansion = std::make_shared<ShellExpansion>(expansion);
   if (!p.bending) {
     s.D.setZero();
     s.B.setZero();

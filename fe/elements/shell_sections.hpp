@@ -30,6 +30,8 @@ class ShellSections {
   std::optional<PlaneMaterial> find_plane_strain(const records::Pshell& p);
   std::optional<ShellSection> make_pshell(const records::Pshell& p, const std::string& who,
                                           const records::CardLocation& at, std::optional<double> thickness);
+  /// Of A, B, D with the expansions of MID1 and MID2.
+  void set_expansion(const PlaneMaterial& membrane, const PlaneMaterial& bending, ShellSection& section) const;
   std::optional<ShellSection> make_pcomp(const records::Pcomp& p);
 
   Maker& maker_;
@@ -38,6 +40,7 @@ class ShellSections {
   Index<records::Mat1> mat1_;
   Index<records::Mat2> mat2_;
   Index<records::Mat8> mat8_;
+  bool has_temperatures_ = false;  // else no section needs its expansion
   double drilling_factor_ = 1e-4;
   std::map<int, std::optional<PlaneMaterial>> materials_;
   std::map<std::pair<int, double>, std::optional<ShellSection>> made_;

@@ -1,5 +1,7 @@
 #include "bough/fe/elements/solid.hpp"
 
+#include "bough/fe/elements/temperature.hpp"
+
 namespace bough::fe {
 
 /// Gradients at a quadrature point: of the shapes (3 x m) and of the incompatible modes (3 x num_modes()).
@@ -43,11 +45,12 @@ Eigen::Matrix3Xd calc_mode_gradients(SolidKind kind, const Vector3d& at) {
 }  // namespace
 
 Solid::Solid(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, SolidGeometry geometry,
-             const Matrix6d& C_el, double density)
+             const Matrix6d& C_el, double density, std::shared_ptr<const SolidExpansion> expansion)
     : Element(id, std::move(card), std::move(nodes), std::move(gdofs)),
       geometry_(std::move(geometry)),
       C_el_(C_el),
-      density_(density) {
+      density_(density),
+      expansion_(std::move(expansion)) {
   const bool quadratic = static_cast<int>(geometry_.x.size()) > get_num_corners(geometry_.kind);
   num_points_ = static_cast<int>(calc_solid_points(geometry_.kind, quadratic, false).size());
 }
@@ -140,6 +143,39 @@ void Solid::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref
     if (has_modes()) strain += calc_strain_disp(fields[q].modes) * a;
     force.segment<6>(6 * static_cast<int>(q)) = C_el_ * strain;
   }
+}
+
+double Solid::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const {
+  const auto fields = calc_fields(false);
+  const int m = 3 * num_modes();
+  MatrixXd Kaa = MatrixXd::Zero(m, m);
+  VectorXd f_a = VectorXd::Zero(m), f_u = VectorXd::Zero(num_dofs());
+  std::vector<Eigen::Matrix<double, 6, 1>> stress;
+  double energy = 0;
+  for (const auto& f : fields) {
+    const Eigen::Matrix<double, 6, 1> strain = (f.shape.dot(T.node) - expansion_->tref) * expansion_->alpha;
+    stress.push_back(C_el_ * strain);
+    f_u += f.weight * calc_strain_disp(f.gradient).transpose() * stress.back();
+    energy += 0.5 * f.weight * strain.dot(stress.back());
+    if (m == 0) continue;
+    const auto Ba = calc_strain_disp(f.modes);
+    Kaa += f.weight * Ba.transpose() * C_el_ * Ba;
+    f_a += f.weight * Ba.transpose() * stress.back();
+  }
+  // The incompatible modes move at once; what is left works on the nodes.
+  VectorXd a = VectorXd::Zero(m);
+  if (m > 0) {
+    a = Kaa.ldlt().solve(f_a);
+    f_u += calc_mode_map(fields, nullptr).transpose() * f_a;
+    energy -= 0.5 * a.dot(f_a);
+  }
+  load += f_u;
+  for (std::size_t q = 0; q < fields.size(); ++q) {
+    auto at = initial.segment<6>(6 * static_cast<int>(q));
+    at -= stress[q];
+    if (m > 0) at += C_el_ * (calc_strain_disp(fields[q].modes) * a);
+  }
+  return energy;
 }
 
 std::vector<std::string> Solid::internal_force_names() const {

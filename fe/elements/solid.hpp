@@ -21,11 +21,18 @@ struct SolidGeometry {
   std::vector<Vector3d> x;   ///< nodes in basic
 };
 
+/// Thermal expansion in basic axes, Voigt as the law.
+struct SolidExpansion {
+  Eigen::Matrix<double, 6, 1> alpha = Eigen::Matrix<double, 6, 1>::Zero();
+  double tref = 0;
+};
+
 class Solid final : public Element {
  public:
-  /// C_el: 6 x 6 elasticity in basic axes, Voigt xx yy zz xy yz zx with engineering shears; density per volume.
+  /// C_el: 6 x 6 elasticity in basic axes, Voigt xx yy zz xy yz zx with engineering shears; density per volume;
+  /// expansion: empty = none.
   Solid(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, SolidGeometry geometry,
-        const Matrix6d& C_el, double density);
+        const Matrix6d& C_el, double density, std::shared_ptr<const SolidExpansion> expansion = nullptr);
 
   ElementShape shape() const override;
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
@@ -36,6 +43,11 @@ class Solid final : public Element {
   std::vector<std::string> internal_force_names() const override;
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
+
+  bool has_expansion() const override { return expansion_ != nullptr; }
+  /// The temperature is interpolated from the nodes with the shapes of the displacements.
+  double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
+                     Eigen::Ref<VectorXd> initial) const override;
 
   /// Volume, and the smallest Jacobian determinant over its mean at the quadrature points (<= 0: inside out).
   double calc_volume(double* smallest_jacobian_ratio = nullptr) const;
@@ -54,6 +66,7 @@ class Solid final : public Element {
   SolidGeometry geometry_;
   Matrix6d C_el_;
   double density_;
+  std::shared_ptr<const SolidExpansion> expansion_;
   int num_points_;
 };
 

@@ -6,6 +6,7 @@ namespace bough::fe {
 /// E, G in stress, density in mass per volume (deck units). G is independent of E and ν, as MAT1 allows.
 struct Isotropic {
   double E = 0, G = 0, rho = 0;
+  double alpha = 0, tref = 0;  ///< thermal expansion from tref on
 };
 
 }  // namespace bough::fe

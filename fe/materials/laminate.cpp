@@ -32,7 +32,15 @@ PlaneMaterial rotate_material(const PlaneMaterial& material, double angle) {
   PlaneMaterial m = material;
   m.Q = turned.A;
   m.G = turned.S;
+  m.alpha = rotate_strain(material.alpha, angle);
   return m;
+}
+
+Eigen::Vector3d rotate_strain(const Eigen::Vector3d& strain, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  Eigen::Matrix3d t;
+  t << c * c, s * s, -c * s, s * s, c * c, c * s, 2 * c * s, -2 * c * s, c * c - s * s;
+  return t * strain;
 }
 
 namespace {
@@ -89,6 +97,27 @@ ShellSection make_laminate_section(const std::vector<LaminateLayer>& layers, dou
   s.shear_flexible = Sx > 0 && Sy > 0;
   if (s.shear_flexible) s.S = Eigen::Vector2d(Sx, Sy).asDiagonal();
   return s;
+}
+
+ShellExpansion make_laminate_expansion(const std::vector<LaminateLayer>& layers, double z0) {
+  ShellExpansion e;
+  double z = z0;
+  for (const auto& l : layers) {
+    const double top = z + l.thickness;
+    const double first = (top * top - z * z) / 2, second = (top * top * top - z * z * z) / 3;
+    const Eigen::Vector3d stress = l.material.Q * l.material.alpha;
+    const double energy = stress.dot(l.material.alpha);
+    e.N_t += l.thickness * stress;
+    e.M_t += first * stress;
+    e.M_g += second * stress;
+    e.e_tt += l.thickness * energy;
+    e.e_tg += first * energy;
+    e.e_gg += second * energy;
+    z = top;
+  }
+  if (e.M_t.norm() < 1e-12 * (z - z0) * e.N_t.norm()) e.M_t.setZero();  // a symmetric stack
+  e.N_g = e.M_t;
+  return e;
 }
 
 }  // namespace bough::fe

@@ -10,6 +10,8 @@ struct PlaneMaterial {
   Eigen::Matrix2d G = Eigen::Matrix2d::Zero();  ///< transverse shear xz, yz
   bool shear_rigid = false;                     ///< no transverse shear flexibility (MAT8 without G1Z, G2Z)
   double rho = 0;
+  Eigen::Vector3d alpha = Eigen::Vector3d::Zero();  ///< thermal expansion
+  double tref = 0;
 };
 
 PlaneMaterial make_isotropic_plane(double E, double G, double nu, double rho);
@@ -18,6 +20,9 @@ PlaneMaterial make_orthotropic_plane(double E1, double E2, double nu12, double G
 
 /// Seen from axes at -angle from the material's own.
 PlaneMaterial rotate_material(const PlaneMaterial& material, double angle);
+
+/// Seen from axes at -angle from the material's own.
+Eigen::Vector3d rotate_strain(const Eigen::Vector3d& strain, double angle);
 
 struct LaminateLayer {
   PlaneMaterial material;  ///< already in the laminate's axes
@@ -29,5 +34,7 @@ struct LaminateLayer {
 /// F(z) = ∫ E (z' - z̄) dz' (MSC Nastran's PCOMP; Whitney, "Shear correction factors for orthotropic laminates", 1973).
 /// One homogeneous layer gives 5/6 G t.
 ShellSection make_laminate_section(const std::vector<LaminateLayer>& layers, double z0);
+/// The expansion of the same stack; tref is not set.
+ShellExpansion make_laminate_expansion(const std::vector<LaminateLayer>& layers, double z0);
 
 }  // namespace bough::fe

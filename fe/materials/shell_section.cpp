@@ -16,6 +16,11 @@ ShellSection rotate_section(const ShellSection& section, double angle) {
   turned.B = t.transpose() * section.B * t;
   turned.D = t.transpose() * section.D * t;
   turned.S = r.transpose() * section.S * r;
+  if (section.expansion) {
+    auto e = std::make_shared<ShellExpansion>(*section.expansion);
+    for (auto* v : {&e->N_t, &e->M_t, &e->N_g, &e->M_g}) *v = (t.transpose() * *v).eval();
+    turned.expansion = std::move(e);
+  }
   return turned;
 }
 

@@ -73,6 +73,8 @@ std::vector<int> ModelBuilder::list_set(const std::vector<records::GridComponent
 
 void ModelBuilder::omit_dofs() {
   if (deck_.aset.empty() && deck_.omit.empty()) return;
+  // With a QSET the a-set is the boundary of component modes, which stand for the others: those then stay as they are.
+  if (deck_.card_counts.count("QSET") + deck_.card_counts.count("QSET1") > 0) return;
   std::vector<int> kept_ldofs = list_set(deck_.aset, "ASET");
   const std::vector<int> omit = list_set(deck_.omit, "OMIT");
   for (const int ldof : omit)

@@ -11,6 +11,7 @@ void write_subcase(FileWriter& file, const records::StaticSubcase& subcase) {
   file.make_group(path);
   file.write_attribute(path, "label", subcase.label);
   file.write_attribute(path, "load_set", subcase.load_set);
+  file.write_attribute(path, "temperature_set", subcase.temperature_set);
   file.write_attribute(path, "spc_set", subcase.spc_set);
   file.write_attribute(path, "mpc_set", subcase.mpc_set);
   file.write_vector(path + "/displacement", subcase.displacement, {"displacements in the order of /dof_map", "L, 1"});

@@ -17,7 +17,7 @@ struct ElementForces {
 struct StaticSubcase {
   int id = 0;
   std::string label;
-  int load_set = 0, spc_set = 0, mpc_set = 0;
+  int load_set = 0, spc_set = 0, mpc_set = 0, temperature_set = 0;
   VectorXd displacement;
   VectorXd load;
   VectorXd reaction;   ///< forces of the single-point constraints on the structure

@@ -132,6 +132,36 @@ class Static(ProgramTest):
         self.write("frame.bdf", FRAME)
         self.fails(1, "static", "frame.bdf", "--subcase", "9", error="fe.unknown-subcase")
 
+    def test_temperatures(self):
+        # The first bar may expand, the second is heated too; a force in subcase 8 alone.
+        deck = FRAME.replace("ENDDATA", "TEMPD,9,100.\nENDDATA").replace(
+            "MAT1,1,7.+10,,.3,2700.", "MAT1,1,7.+10,,.3,2700.,1.-5,20.").replace(
+            "SUBCASE 2\n", "SUBCASE 2\nTEMP(LOAD) = 9\n").replace("SUBCASE 3", "SUBCASE 7\nTEMP = 9\nLOAD = 0\nSUBCASE 3")
+        self.write("frame.bdf", deck)
+        data = json.loads(self.bough("static", "frame.bdf", "--json", "--full", "-o", "frame.h5").stdout)["subcases"]
+        by_id = {s["id"]: s for s in data}
+        self.assertEqual([by_id[i]["temperature_set"] for i in (1, 2, 7)], [0, 9, 9])
+        for i in (2, 7):
+            self.assertAlmostEqual(by_id[i]["displacement"][12], 2 * 80e-5, delta=1e-12)
+            self.assertLess(abs(by_id[i]["elements"]["CBAR"]["force"][1][0]), 1e-6)
+        self.assertIn("TEMPERATURE 9", self.bough("static", "frame.bdf", "--subcase", "7").stdout)
+        with h5py.File(self.path("frame.h5")) as f:
+            self.assertEqual(f["subcases/7"].attrs["temperature_set"], 9)
+        self.bough("matrices", "frame.bdf", "-o", "frame-matrices.h5")
+        with h5py.File(self.path("frame-matrices.h5")) as f:
+            self.assertIn("TEMP_9", f["KG"])
+
+    def test_displacement_axes(self):
+        deck = FRAME.replace("GRID,3,,2.,0.,0.", "CORD2R,5,,0.,0.,0.,0.,0.,1.,+\n+,0.,1.,0.\nGRID,3,,2.,0.,0.,5")
+        self.write("frame.bdf", deck)
+        basic, cd = (json.loads(self.bough("static", "frame.bdf", "--json", "--full", "--subcase", "1",
+                                           *options).stdout)["subcases"][0] for options in ([], ["--cd"]))
+        # x of the system is y of basic.
+        self.assertAlmostEqual(cd["displacement"][12], basic["displacement"][13], delta=1e-15)
+        self.assertAlmostEqual(cd["displacement"][13], -basic["displacement"][12], delta=1e-15)
+        self.assertEqual(cd["displacement"][:12], basic["displacement"][:12])
+        self.assertEqual(cd["load"][12], 10)
+
     def test_two_ranks(self):
         self.write("frame.bdf", FRAME)
         one = json.loads(self.bough("static", "frame.bdf", "--json", "--full").stdout)["subcases"]

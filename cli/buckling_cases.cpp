@@ -1,0 +1,114 @@
+#include "buckling_cases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "bough/fe/assembly.hpp"
+
+namespace bough::cli {
+
+using Eigen::VectorXd;
+
+std::vector<BucklingCases> list_buckling_cases(const records::Deck& deck, int asked) {
+  const auto is_loaded = [](const records::Subcase& s) { return s.load != 0 || s.temperature != 0; };
+  std::vector<records::Subcase> buckling;
+  const auto collect = [&](const auto& belongs) {
+    if (!buckling.empty()) return;
+    std::copy_if(deck.subcases.begin(), deck.subcases.end(), std::back_inserter(buckling), belongs);
+  };
+  collect([](const auto& s) { return s.statsub != 0; });
+  collect([&](const auto& s) { return s.method != 0 && !is_loaded(s); });
+  collect([](const auto& s) { return s.method != 0; });
+  if (buckling.empty()) buckling.emplace_back();
+  std::vector<BucklingCases> cases;
+  std::set<std::array<int, 5>> seen;
+  for (const auto& b : buckling)
+    for (const auto& s : deck.subcases) {
+      if (!is_loaded(s) || (b.statsub != 0 && s.id != b.statsub)) continue;
+      if (b.statsub == 0 && asked != 0 && b.id != asked && s.id != asked) continue;
+      const bool is_asked = asked == 0 || b.id == asked || s.id == asked;
+      if (is_asked && seen.insert({s.id, b.method, b.spc, b.mpc, b.suport1}).second) cases.push_back({s, b});
+      break;
+    }
+  const auto is_id = [asked](const auto& s) { return s.id == asked; };
+  if (asked != 0 && std::none_of(deck.subcases.begin(), deck.subcases.end(), is_id)) {  // Model::build reports it
+    cases.emplace_back();
+    cases.back().statics.id = asked;
+  }
+  if (cases.empty()) {
+    throw InputError("cli.no-static-load", {deck.files.empty() ? std::string{} : deck.files[0]},
+                     "buckling needs a subcase with LOAD or TEMPERATURE(LOAD), found none",
+                     "put SUBCASE 1 with LOAD before SUBCASE 2 with METHOD, as in SOL 105");
+  }
+  return cases;
+}
+
+std::string describe_load(const records::Subcase& statics) {
+  std::string text = "load factors of ";
+  if (statics.load != 0) text += fmt::format("LOAD {}", statics.load);
+  if (statics.temperature != 0) text += fmt::format("{}TEMPERATURE {}", statics.load ? ", " : "", statics.temperature);
+  return text + (statics.id > 0 ? fmt::format(" (subcase {})", statics.id) : "");
+}
+
+namespace {
+
+/// Those of `pairs` between V1 and V2 of the card, `wanted` at most (0: all).
+modal::EigenPairs pick_in_range(const modal::EigenPairs& pairs, const modal::EigenOptions& range, int wanted) {
+  std::vector<int> kept;
+  for (int i = 0; i < pairs.lambda.size(); ++i)
+    if (!(range.min_hz && pairs.lambda[i] < *range.min_hz) && !(range.max_hz && pairs.lambda[i] > *range.max_hz) &&
+        (wanted == 0 || static_cast<int>(kept.size()) < wanted))
+      kept.push_back(i);
+  modal::EigenPairs picked = pairs;
+  picked.lambda = pairs.lambda(kept);
+  picked.Phi = pairs.Phi(Eigen::all, kept);
+  picked.residual = pairs.residual(kept);
+  return picked;
+}
+
+modal::EigenPairs solve_in_range(const fe::Model& model, const VectorXd& u, const fe::InitialForces& initial,
+                                 modal::EigenOptions eigen, Diagnostics& diagnostics) {
+  const modal::EigenOptions range = eigen;
+  const int wanted = eigen.num_modes;
+  if (wanted == 0) return modal::calc_buckling_modes(model, u, eigen, diagnostics, &initial);
+  eigen.min_hz = eigen.max_hz = std::nullopt;
+  for (;; eigen.num_modes *= 2) {
+    const auto pairs = modal::calc_buckling_modes(model, u, eigen, diagnostics, &initial);
+    auto picked = pick_in_range(pairs, range, wanted);
+    const auto num = pairs.lambda.size();
+    const bool is_all = num < eigen.num_modes || num == 0;
+    const bool is_beyond = range.min_hz && range.max_hz && num > 0 &&
+                           std::abs(pairs.lambda[num - 1]) > std::max(std::abs(*range.min_hz), std::abs(*range.max_hz));
+    if (picked.lambda.size() == wanted || is_all || is_beyond) return picked;
+  }
+}
+
+}  // namespace
+
+modal::EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases, fe::ModelOptions model_options,
+                                 const fe::Model& model, const modal::EigenOptions& eigen, Diagnostics& diagnostics) {
+  // The static subcase may be held in another way, as for antisymmetric buckling under a symmetric load.
+  std::optional<fe::Model> own;
+  const auto& b = cases.buckling;
+  const bool is_same = (b.spc == 0 && b.mpc == 0) || (b.spc == cases.statics.spc && b.mpc == cases.statics.mpc);
+  if (!is_same) {
+    model_options.subcase = cases.statics.id;
+    own.emplace(fe::Model::build(deck, model_options, diagnostics));
+  }
+  const fe::Model& statics = own ? *own : model;
+  const auto load = fe::calc_static_load(statics, deck, cases.statics, diagnostics);
+  diagnostics.throw_if_errors();
+  const auto K = fe::assemble_stiffness(statics, fe::DofSet::Free);
+  const fe::StaticSolver solver(statics, K);
+  const VectorXd u = fe::solve_static_case(statics, solver, load).displacement;
+  if (!own) return solve_in_range(model, u, load.initial, eigen, diagnostics);
+  const auto initial = fe::calc_thermal(model, deck, cases.statics.temperature, diagnostics);
+  return solve_in_range(model, u, initial, eigen, diagnostics);
+}
+
+}  // namespace bough::cli

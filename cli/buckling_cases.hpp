@@ -1,0 +1,26 @@
+#pragma once
+/// \file Which subcases SOL 105 pairs, and the load factors of a pair.
+#include "bough/fe/static_case.hpp"
+#include "bough/modal/eigen.hpp"
+
+namespace bough::cli {
+
+/// The static subcase carries LOAD or TEMPERATURE(LOAD), the buckling one METHOD and perhaps STATSUB.
+struct BucklingCases {
+  records::Subcase statics, buckling;
+};
+
+/// Every pair of subcases that SOL 105 solves: those with STATSUB, else those with METHOD and without a load of their
+/// own, else those with METHOD, each with the static subcase that it names or with the first. `asked`: a subcase of the
+/// pair, 0 for all. Throws InputError cli.no-static-load.
+std::vector<BucklingCases> list_buckling_cases(const records::Deck& deck, int asked);
+
+/// The load that the factors multiply: "load factors of LOAD 3, TEMPERATURE 5 (subcase 1)".
+std::string describe_load(const records::Subcase& statics);
+
+/// The lowest load factors by magnitude on `model`, which is held as the buckling subcase says; with V1 and V2 (min_hz,
+/// max_hz of `eigen`) as many between them, though others are nearer to zero.
+modal::EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases, fe::ModelOptions model_options,
+                                 const fe::Model& model, const modal::EigenOptions& eigen, Diagnostics& diagnostics);
+
+}  // namespace bough::cli

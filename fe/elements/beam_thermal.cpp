@@ -1,0 +1,43 @@
+#include "bough/fe/elements/beam.hpp"
+#include "bough/fe/elements/temperature.hpp"
+
+namespace bough::fe {
+
+/// A section strains freely by α (T - TREF + (y - n_y) dT/dy + (z - n_z) dT/dz): axially, and with κz = -α dT/dy,
+/// κy = α dT/dz. Temperature and gradients are linear along the beam. δ is how end B then moves from end A; the end
+/// forces are G (S u - δ).
+double Beam::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const {
+  const BeamField field(*property_, geometry_.length);
+  const double L = geometry_.length, alpha = property_->material.alpha, tref = property_->material.tref;
+  const Eigen::Vector2d n_a = property_->calc_section(0).n, n_b = property_->calc_section(1).n;
+  const double at_a = T.node[0] - tref - n_a.dot(T.gradient_a), at_b = T.node[1] - tref - n_b.dot(T.gradient_b);
+  const Eigen::Vector2d turn = L / 2 * (T.gradient_a + T.gradient_b),  // ∫ gradient dx
+      lift = L * L * (T.gradient_a / 3 + T.gradient_b / 6);            // ∫ gradient (L - x) dx
+  Eigen::Matrix<double, 6, 1> delta;
+  delta << L / 2 * (at_a + at_b), -lift[0], -lift[1], 0, turn[1], -turn[0];
+  delta *= alpha;
+
+  const Matrix6d G = field.calc_stiffness();
+  const Matrix6x12d S = field.calc_relative();
+  const Eigen::Matrix<double, 12, 1> end = S.transpose() * (G * delta);
+  load += calc_grid_load(end);
+  Eigen::Matrix<double, 6, 1> q = -G * delta;
+  double energy = 0.5 * delta.dot(G * delta);
+  if (const unsigned pins = geometry_.pin_a | (geometry_.pin_b << 6)) {
+    // What is released moves: K_rr v = f_r.
+    std::vector<int> released;
+    for (int i = 0; i < 12; ++i)
+      if (pins >> i & 1u) released.push_back(i);
+    const MatrixXd S_r = S(Eigen::all, released);
+    const VectorXd f_r = end(released);
+    const VectorXd v = MatrixXd(S_r.transpose() * G * S_r).completeOrthogonalDecomposition().solve(f_r);
+    q += G * (S_r * v);
+    energy -= 0.5 * v.dot(f_r);
+  }
+  Eigen::Matrix<double, 8, 1> force;
+  force << q[0], q[1], q[2], q[3], q[4] - q[2] * L, q[5] + q[1] * L, q[4], q[5];
+  initial += force;
+  return energy;
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,48 @@
+#include "bough/fe/elements/curved_shell_operators.hpp"
+#include "bough/fe/elements/temperature.hpp"
+
+namespace bough::fe {
+
+double CurvedShell::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
+                                Eigen::Ref<VectorXd> initial) const {
+  const int n = num_full(), corners = tying_->num_corners, m = num_bubbles();
+  VectorXd nodal(n);
+  for (int i = 0; i < n; ++i) {
+    const int at = place_[static_cast<std::size_t>(i)];
+    nodal[i] = at >= 0 ? T.node[at] : 0.5 * (T.node[i - corners] + T.node[(i - corners + 1) % corners]);
+  }
+  const Operators o = calc_operators(false);
+  VectorXd full = VectorXd::Zero(6 * n + m);
+  std::vector<Vector3d> N, M;
+  double energy = 0;
+  for (std::size_t q = 0; q < o.points.size(); ++q) {
+    const auto& p = o.points[q];
+    const ShellSection section = calc_section(static_cast<int>(q));
+    const ShellExpansion& e = *section.expansion;
+    const auto& at = tying_->samples[static_cast<std::size_t>(tying_->points[q].sample)];
+    const double t = at.shape.head(n).dot(nodal) - e.tref;
+    N.push_back(e.calc_N(t, T.gradient_z));
+    M.push_back(e.calc_M(t, T.gradient_z));
+    full += p.area * (p.membrane.transpose() * N.back() + p.bending.transpose() * M.back());
+    energy += p.area * e.calc_energy(t, T.gradient_z);
+  }
+  // The bubbles move at once; what is left works on the nodes.
+  const MatrixXd K = calc_full_stiffness(o), bubble_map = calc_bubble_map(K);
+  load += calc_map().transpose() * (full.head(6 * n) + bubble_map.transpose() * full.tail(m));
+  VectorXd u = VectorXd::Zero(6 * n + m);
+  u.tail(m) = K.bottomRightCorner(m, m).completeOrthogonalDecomposition().solve(full.tail(m));
+  energy -= 0.5 * u.tail(m).dot(full.tail(m));
+  const double area = calc_area();
+  for (std::size_t q = 0; q < o.points.size(); ++q) {
+    const auto& p = o.points[q];
+    const ShellSection c = calc_section(static_cast<int>(q));
+    const Vector3d e = p.membrane * u, k = p.bending * u;
+    auto at = initial.segment<kNumForces>(kNumForces * static_cast<int>(q));
+    at.head<3>() += c.A * e + c.B * k - N[q];
+    at.segment<3>(3) += c.B.transpose() * e + c.D * k - M[q];
+    at.tail<2>() += calc_shear_stiffness(c, area) * (p.shear * u);
+  }
+  return energy;
+}
+
+}  // namespace bough::fe

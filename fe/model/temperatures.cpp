@@ -1,0 +1,110 @@
+#include "bough/fe/model/temperatures.hpp"
+
+#include <optional>
+
+#include "bough/fe/elements/temperature.hpp"
+
+namespace bough::fe {
+namespace {
+
+/// The cards of one set by what they heat.
+class TemperatureSet {
+ public:
+  TemperatureSet(const records::TemperatureCards& cards, int set) {
+    const auto fill = [set](const auto& list, auto& map, auto key) {
+      for (const auto& card : list)
+        if (card.sid == set) map[key(card)] = &card;
+    };
+    const auto by_element = [](const auto& card) { return card.element; };
+    fill(cards.grids, grids_, [](const auto& card) { return card.g; });
+    fill(cards.bars, bars_, by_element);
+    fill(cards.plates, plates_, by_element);
+    for (const auto& card : cards.defaults)
+      if (card.sid == set) default_ = card.t;
+  }
+
+  bool is_empty() const { return grids_.empty() && bars_.empty() && plates_.empty() && !default_; }
+
+  /// What the element's own card says, else its grids; `missing`: the first grid that has no temperature.
+  std::optional<ElementTemperature> find(const Model& model, const Element& element, int& missing) const {
+    ElementTemperature T;
+    T.node.resize(static_cast<Eigen::Index>(element.nodes().size()));
+    const bool is_line = element.shape().type == "line2";
+    const auto own = is_line ? bars_.find(element.id()) : bars_.end();
+    if (own != bars_.end()) {
+      T.node << own->second->t_a, own->second->t_b;
+      T.gradient_a = own->second->gradient_a;
+      T.gradient_b = own->second->gradient_b;
+      return T;
+    }
+    const bool is_plate = element.shape().type.rfind("tri", 0) == 0 || element.shape().type.rfind("quad", 0) == 0;
+    if (const auto plate = plates_.find(element.id()); is_plate && plate != plates_.end()) {
+      T.node.setConstant(plate->second->t);
+      T.gradient_z = plate->second->gradient;
+      return T;
+    }
+    for (Eigen::Index i = 0; i < T.node.size(); ++i) {
+      const int id = model.node(element.nodes()[static_cast<std::size_t>(i)]).id;
+      const auto grid = grids_.find(id);
+      if (grid == grids_.end() && !default_) {
+        missing = id;
+        return std::nullopt;
+      }
+      T.node[i] = grid != grids_.end() ? grid->second->t : *default_;
+    }
+    return T;
+  }
+
+ private:
+  std::unordered_map<int, const records::GridTemperature*> grids_;
+  std::unordered_map<int, const records::BarTemperature*> bars_;
+  std::unordered_map<int, const records::PlateTemperature*> plates_;
+  std::optional<double> default_;
+};
+
+}  // namespace
+
+InitialForces calc_thermal(const Model& model, const records::Deck& deck, int set, Diagnostics& diagnostics) {
+  InitialForces result;
+  if (set == 0) return result;
+  const TemperatureSet temperatures(deck.temperatures, set);
+  if (temperatures.is_empty()) {
+    diagnostics.error("fe.missing-load", deck.locate({}),
+                      "temperature set " + std::to_string(set) + " has no TEMP, TEMPD, TEMPRB or TEMPP1 card",
+                      "correct TEMPERATURE(LOAD) or add its cards");
+    return result;
+  }
+  int num_missing = 0, first_grid = 0;
+  const Element* first_missing = nullptr;
+  for (const auto& element : model.elements()) {
+    if (!element->has_expansion()) continue;
+    int grid = 0;
+    const auto T = temperatures.find(model, *element, grid);
+    if (!T) {
+      if (num_missing++ == 0) first_missing = element.get(), first_grid = grid;
+      continue;
+    }
+    InitialForces::Part part{VectorXd::Zero(element->num_internal_forces()), VectorXd::Zero(element->num_dofs()), 0};
+    part.energy = element->add_thermal(*T, part.load, part.force);
+    result.of.emplace(element.get(), std::move(part));
+  }
+  if (first_missing)
+    diagnostics.error("fe.missing-temperature", deck.locate({}),
+                      first_missing->card() + " " + std::to_string(first_missing->id()) +
+                          " has no temperature in set " + std::to_string(set) + ": none is given for grid " +
+                          std::to_string(first_grid) +
+                          (num_missing > 1 ? " (and " + std::to_string(num_missing - 1) + " elements more)" : ""),
+                      "add TEMP for the grid, or TEMPD for all grids that have none");
+  return result;
+}
+
+VectorXd sum_loads(const Model& model, const InitialForces& initial) {
+  VectorXd F = VectorXd::Zero(model.num_gdofs());
+  // In the order of the model: the sum must not depend on that of the map.
+  for (const auto& element : model.elements())
+    if (const auto* part = initial.find(*element))
+      for (int i = 0; i < element->num_dofs(); ++i) F[element->gdofs()[static_cast<std::size_t>(i)]] += part->load[i];
+  return F;
+}
+
+}  // namespace bough::fe
