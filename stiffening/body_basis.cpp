@@ -154,6 +154,9 @@ MatrixXd calc_material_damping(const records::Deck& deck, const MatrixXd& Phi, c
     for (std::size_t i = 0; i < 6; ++i) p.k[i] *= calc_factor(p.ge[i]);
   for (auto& p : scaled.pbush1d) p.k *= calc_factor(0);
   for (auto& spring : scaled.springs) spring.k *= calc_factor(spring.ge);
+  for (auto& e : scaled.special.genel) e.matrix *= e.is_flexibility ? 1 / calc_factor(0) : calc_factor(0);
+  for (auto& p : scaled.special.pgap)
+    for (double* k : {&p.ka, &p.kb, &p.kt}) *k *= calc_factor(0);
   fe::ModelOptions options;
   options.ignore_spc = true;
   options.autospc = false;

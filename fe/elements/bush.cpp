@@ -6,8 +6,8 @@
 
 namespace bough::fe {
 
-Bush::Bush(int id, std::vector<int> nodes, std::vector<int> gdofs, const BushData& data)
-    : Element(id, "CBUSH", std::move(nodes), std::move(gdofs)), data_(data) {
+Bush::Bush(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, const BushData& data)
+    : Element(id, std::move(card), std::move(nodes), std::move(gdofs)), data_(data) {
   BOUGH_DEMAND(num_dofs() == 6 || num_dofs() == 12);
 }
 

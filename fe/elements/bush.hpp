@@ -1,5 +1,5 @@
 #pragma once
-/// \file CBUSH: six springs and six dampers in element axes at one point, carried to the grids by rigid arms.
+/// \file CBUSH and CGAP: six springs and six dampers in element axes at one point, carried to the grids by rigid arms.
 /// Source: Nastran Quick Reference Guide, CBUSH and PBUSH.
 #include "bough/fe/elements/element.hpp"
 
@@ -18,7 +18,7 @@ struct BushData {
 /// ground. No geometric stiffness: the element has no length over which it could turn.
 class Bush final : public Element {
  public:
-  Bush(int id, std::vector<int> nodes, std::vector<int> gdofs, const BushData& data);
+  Bush(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, const BushData& data);
 
   ElementShape shape() const override { return nodes().size() == 2 ? ElementShape{"line2", nodes()} : ElementShape{}; }
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;

@@ -19,6 +19,8 @@ ElementList make_elements(const records::Deck& deck, const NodeTable& nodes, Dia
   make_curved_shells(maker);
   make_shear_panels(maker);
   make_solids(maker);
+  make_bends(maker);
+  make_generals(maker);
   return list;
 }
 

@@ -5,11 +5,12 @@
 #include "bough/fe/elements/section_library.hpp"
 
 namespace bough::fe {
-namespace {
 
 Isotropic make_isotropic(const records::Mat1& material) {
   return {material.E, material.G, material.rho, material.alpha, material.tref};
 }
+
+namespace {
 
 bool is_same(const BeamSection& a, const BeamSection& b) {
   return a.A == b.A && a.I1 == b.I1 && a.I2 == b.I2 && a.I12 == b.I12 && a.J == b.J && a.nsm == b.nsm &&
@@ -30,7 +31,8 @@ BeamProperties::BeamProperties(Maker& maker)
       pbar_(maker.deck().pbar),
       pbarl_(maker.deck().pbarl),
       pbeam_(maker.deck().pbeam),
-      pbeaml_(maker.deck().pbeaml) {}
+      pbeaml_(maker.deck().pbeaml),
+      pbcomp_(maker.deck().special.pbcomp) {}
 
 std::shared_ptr<const BeamProperty> BeamProperties::find(const records::BeamElement& card, const std::string& who) {
   auto& made = card.is_cbeam ? beams_ : bars_;
@@ -41,10 +43,12 @@ std::shared_ptr<const BeamProperty> BeamProperties::find(const records::BeamElem
       property = make(*p);
     } else if (const auto* l = pbeaml_.find(card.pid)) {
       property = make(*l);
+    } else if (const auto* c = pbcomp_.find(card.pid)) {
+      property = make(*c);
     } else {
       const bool is_bar = pbar_.find(card.pid) || pbarl_.find(card.pid);
-      maker_.report_missing_property(card.pid, is_bar ? "PBEAM or PBEAML (it is a bar property)" : "PBEAM or PBEAML",
-                                     who, card.at);
+      maker_.report_missing_property(
+          card.pid, is_bar ? "PBEAM or PBEAML (it is a bar property)" : "PBEAM, PBEAML or PBCOMP", who, card.at);
       return nullptr;
     }
   } else {
@@ -53,7 +57,7 @@ std::shared_ptr<const BeamProperty> BeamProperties::find(const records::BeamElem
     } else if (const auto* l = pbarl_.find(card.pid)) {
       property = make(*l);
     } else {
-      const bool is_beam = pbeam_.find(card.pid) || pbeaml_.find(card.pid);
+      const bool is_beam = pbeam_.find(card.pid) || pbeaml_.find(card.pid) || pbcomp_.find(card.pid);
       maker_.report_missing_property(card.pid, is_beam ? "PBAR or PBARL (it is a beam property)" : "PBAR or PBARL", who,
                                      card.at);
       return nullptr;

@@ -1,5 +1,5 @@
 #pragma once
-/// \file PBAR, PBARL, PBEAM, PBEAML to BeamProperty, each made once and shared by its elements. Internal.
+/// \file PBAR, PBARL, PBEAM, PBEAML, PBCOMP to BeamProperty, each made once and shared by its elements. Internal.
 #include <memory>
 #include <unordered_map>
 
@@ -7,6 +7,8 @@
 #include "bough/fe/elements/maker.hpp"
 
 namespace bough::fe {
+
+Isotropic make_isotropic(const records::Mat1& material);
 
 class BeamProperties {
  public:
@@ -20,6 +22,7 @@ class BeamProperties {
   std::shared_ptr<BeamProperty> make(const records::Pbarl& card);
   std::shared_ptr<BeamProperty> make(const records::Pbeam& card);
   std::shared_ptr<BeamProperty> make(const records::Pbeaml& card);
+  std::shared_ptr<BeamProperty> make(const records::Pbcomp& card);
   bool check(const BeamProperty& property, const std::string& who, const records::CardLocation& at);
 
   Maker& maker_;
@@ -27,6 +30,7 @@ class BeamProperties {
   Index<records::Pbarl> pbarl_;
   Index<records::Pbeam> pbeam_;
   Index<records::Pbeaml> pbeaml_;
+  Index<records::Pbcomp> pbcomp_;
   std::unordered_map<int, std::shared_ptr<const BeamProperty>> bars_, beams_;
 };
 

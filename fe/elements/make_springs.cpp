@@ -117,10 +117,8 @@ BushAxes calc_bush_axes(Maker& maker, const records::Cbush& card, const std::str
   return axes;
 }
 
-void make_bush(Maker& maker, const Index<records::Pbush>& properties, const records::Cbush& card) {
-  const std::string who = "CBUSH " + std::to_string(card.id);
-  const records::Pbush* property = properties.find(card.pid);
-  if (!property) maker.report_missing_property(card.pid, "PBUSH", who, card.at);
+void make_bush(Maker& maker, const char* name, const records::Pbush* property, const records::Cbush& card) {
+  const std::string who = std::string(name) + " " + std::to_string(card.id);
   const int a = maker.find_grid(card.ga, who, card.at);
   const int b = card.gb == 0 ? -1 : maker.find_grid(card.gb, who, card.at);
   if (!property || a < 0 || (card.gb != 0 && b < 0)) return;
@@ -147,7 +145,27 @@ void make_bush(Maker& maker, const Index<records::Pbush>& properties, const reco
     nodes.push_back(b);
   }
   auto gdofs = maker.list_gdofs(nodes);
-  maker.add(std::make_unique<Bush>(card.id, std::move(nodes), std::move(gdofs), data));
+  maker.add(std::make_unique<Bush>(card.id, name, std::move(nodes), std::move(gdofs), data));
+}
+
+/// A gap of a linear analysis stays as it is at the start (Quick Reference Guide, CGAP): closed with KA along its axis
+/// and KT across it, open with KB. Both act half-way between the grids, so that rigid motions stay free.
+void make_gap(Maker& maker, const records::Pgap* property, const records::Cgap& card) {
+  if (!property) maker.report_missing_property(card.pid, "PGAP", "CGAP " + std::to_string(card.id), card.at);
+  records::Pbush springs;
+  const bool is_closed = property && (property->u0 <= 0 || property->f0 > 0);
+  if (property) springs.k[0] = is_closed ? property->ka : property->kb;
+  // Equal across the axis: any orientation is as good.
+  if (is_closed) springs.k[1] = springs.k[2] = property->kt;
+  records::Cbush bush;
+  bush.id = card.id, bush.ga = card.ga, bush.gb = card.gb, bush.at = card.at, bush.cid = card.cid;
+  const int a = maker.nodes().find_node(card.ga), b = maker.nodes().find_node(card.gb);
+  if (!card.cid && a >= 0 && b >= 0) {
+    const Node& node_a = maker.nodes().node(a);
+    const Vector3d along = maker.nodes().node(b).x - node_a.x;
+    if (!along.isZero(0)) bush.v = node_a.R_basic_cd.transpose() * along.unitOrthogonal();
+  }
+  make_bush(maker, "CGAP", property ? &springs : nullptr, bush);
 }
 
 }  // namespace
@@ -206,7 +224,13 @@ void make_springs(Maker& maker) {
                                              std::move(ends->b)));
   }
   const Index<records::Pbush> pbush(deck.pbush);
-  for (const records::Cbush& card : deck.cbush) make_bush(maker, pbush, card);
+  for (const records::Cbush& card : deck.cbush) {
+    const records::Pbush* property = pbush.find(card.pid);
+    if (!property) maker.report_missing_property(card.pid, "PBUSH", "CBUSH " + std::to_string(card.id), card.at);
+    make_bush(maker, "CBUSH", property, card);
+  }
+  const Index<records::Pgap> pgap(deck.special.pgap);
+  for (const records::Cgap& card : deck.special.cgap) make_gap(maker, pgap.find(card.pid), card);
 }
 
 }  // namespace bough::fe

@@ -69,5 +69,7 @@ void make_shells(Maker& maker);
 void make_curved_shells(Maker& maker);
 void make_shear_panels(Maker& maker);
 void make_solids(Maker& maker);
+void make_bends(Maker& maker);
+void make_generals(Maker& maker);
 
 }  // namespace bough::fe

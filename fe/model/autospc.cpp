@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include <Eigen/Eigenvalues>
 
@@ -100,6 +101,39 @@ std::vector<AutospcEntry> find_singular_dofs(const std::vector<Node>& nodes,
               [](const AutospcEntry& x, const AutospcEntry& y) { return x.component < y.component; });
   }
   return entries;
+}
+
+void drop_with_mass(const std::vector<Node>& nodes, const std::vector<std::unique_ptr<const Element>>& elements,
+                    MassKind kind, std::vector<AutospcEntry>& entries) {
+  std::unordered_map<int, std::size_t> index;  // of the nodes by id
+  for (std::size_t k = 0; k < nodes.size(); ++k) index[nodes[k].id] = k;
+  std::vector<std::vector<std::size_t>> at_node(nodes.size());  // entries
+  for (std::size_t e = 0; e < entries.size(); ++e) at_node[index[entries[e].node]].push_back(e);
+  std::vector<double> mass(entries.size(), 0);
+  MatrixXd M;
+  for (const auto& element : elements) {
+    M.resize(0, 0);
+    for (const int k : element->nodes())
+      for (const std::size_t e : at_node[static_cast<std::size_t>(k)]) {
+        if (M.size() == 0) {
+          M.setZero(element->num_dofs(), element->num_dofs());
+          element->add_mass(kind, 1, M);
+        }
+        const Node& node = nodes[static_cast<std::size_t>(k)];
+        const int slot = std::max(entries[e].component - 1, 0), first = node.first_gdof + 3 * (slot / 3);
+        VectorXd direction = VectorXd::Zero(M.rows());
+        for (Eigen::Index i = 0; i < M.rows(); ++i) {
+          const int row = element->gdofs()[static_cast<std::size_t>(i)] - first;
+          if (node.num_dofs == 1 ? row == 0 : row >= 0 && row < 3)
+            direction[i] = node.num_dofs == 1 ? 1 : node.R_basic_cd(row, slot % 3);
+        }
+        mass[e] += direction.dot(M * direction);
+      }
+  }
+  std::size_t kept = 0;
+  for (std::size_t e = 0; e < entries.size(); ++e)
+    if (!(mass[e] > 0)) entries[kept++] = entries[e];
+  entries.resize(kept);
 }
 
 }  // namespace bough::fe

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "bough/base/rotation.hpp"
@@ -20,6 +21,14 @@ void add_offset_terms(const LoadTarget& t, const Vector3d& omega) {
     t.F.segment<3>(first) -= omega.cross(omega.cross(moment));
     t.F.segment<3>(first + 3) -= omega.cross(Vector3d(inertia * omega));
   }
+}
+
+double interpolate(const std::vector<std::pair<double, double>>& table, double x) {
+  const auto after = std::find_if(table.begin(), table.end(), [x](const auto& point) { return point.first > x; });
+  if (after == table.begin()) return after->second;
+  if (after == table.end()) return table.back().second;
+  const auto& [x0, y0] = *(after - 1);
+  return y0 + (x - x0) / (after->first - x0) * (after->second - y0);
 }
 
 /// Centrifugal force outward and force along an angular acceleration: M (-ω×(ω×r) + α×r) at the grids (Nastran Quick
@@ -45,6 +54,33 @@ void add_rotation(const LoadTarget& t, const records::Rotation& load) {
   add_offset_terms(t, omega);
 }
 
+/// ACCEL1: A N at its grids. ACCEL: N times a value that varies along one axis of CID, linear between the places of its
+/// table and constant beyond them (Quick Reference Guide, ACCEL, ACCEL1). The sign is that of GRAV.
+void add_grid_accelerations(const LoadTarget& t, const records::GridAcceleration& load) {
+  const SourceLocation at = t.deck.locate(load.at);
+  VectorXd field = VectorXd::Zero(t.model.num_gdofs());
+  const auto set = [&](const Node& node, double value) {
+    if (node.num_dofs != 6) return;
+    field.segment<3>(node.first_gdof) = value * (t.model.calc_axes(load.cid, node.x, at, t.diagnostics) * load.n);
+  };
+  if (load.direction >= 0) {
+    const Vector3d origin = t.model.calc_point(load.cid, Vector3d::Zero(), at, t.diagnostics);
+    const Vector3d axis = t.model.calc_axes(load.cid, origin, at, t.diagnostics).col(load.direction);
+    for (const Node& node : t.model.nodes()) set(node, interpolate(load.table, axis.dot(node.x - origin)));
+  } else if (load.is_all) {
+    for (const Node& node : t.model.nodes()) set(node, load.a);
+  } else {
+    for (const int grid : load.grids) {
+      const int index = t.model.find_node(grid);
+      if (index >= 0)
+        set(t.model.node(index), load.a);
+      else if (!load.skip_if_missing)
+        t.find_grid(grid, "ACCEL1", load.at);
+    }
+  }
+  t.F += t.scale * calc_mass_times(t.model, t.model.mass_kind(), field);
+}
+
 }  // namespace
 
 bool add_body_loads(const LoadTarget& t) {
@@ -63,6 +99,11 @@ bool add_body_loads(const LoadTarget& t) {
     if (load.sid != t.set) continue;
     is_found = true;
     add_rotation(t, load);
+  }
+  for (const auto& load : t.deck.special.accelerations) {
+    if (load.sid != t.set) continue;
+    is_found = true;
+    add_grid_accelerations(t, load);
   }
   return is_found;
 }

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <set>
 
+#include "bough/fe/elements/nonstructural.hpp"
 #include "bough/fe/model/autospc.hpp"
 #include "bough/fe/model/coordinates.hpp"
 #include "bough/fe/model/direct_matrices.hpp"
@@ -50,6 +51,8 @@ Model ModelBuilder::build(const ElementFactory& factory) {
   report_unmodelled(deck_, model_.elements_, diagnostics_);
   for (auto& element : make_direct(deck_, model_.subcase_, model_, diagnostics_).elements)
     model_.elements_.push_back(std::move(element));
+  auto added = make_nonstructural(deck_, model_.subcase_.nsm, model_.elements_, model_, diagnostics_);
+  for (auto& element : added.elements) model_.elements_.push_back(std::move(element));
   is_fixed_.assign(model_.num_gdofs_, 0);
   collect_fixed();
   collect_equations();
@@ -221,6 +224,8 @@ void ModelBuilder::collect_equations() {
   for (const auto& card : deck_.rbe3) add_rbe3(card, model_, deck_.locate(card.at), diagnostics_, equations_);
   for (const auto& card : deck_.rrod) add_rrod(card, model_, deck_.locate(card.at), diagnostics_, equations_);
   for (const auto& card : deck_.rbar) add_rbar(card, model_, deck_.locate(card.at), diagnostics_, equations_);
+  for (const auto& card : deck_.special.rspline)
+    add_rspline(card, model_, deck_.locate(card.at), diagnostics_, equations_);
   if (model_.subcase_.mpc == 0) return;
   std::set<int> plain;
   for (const auto& mpc : deck_.mpc) plain.insert(mpc.sid);
@@ -266,17 +271,32 @@ Elimination ModelBuilder::set_transform() {
 
 void ModelBuilder::apply_autospc(const Elimination& first) {
   const records::Param* param = deck_.find_param("AUTOSPC");
-  const bool is_on = options_.autospc.value_or(!param || param->value != "NO");
+  const bool is_on = options_.autospc.value_or(!param || (param->value != "NO" && param->value != "N"));
   const double epsilon = get_real_param(deck_, "EPZERO", 1e-8, diagnostics_);
   diagnostics_.throw_if_errors();
-  if (!is_on) return;
-  model_.autospc_ = find_singular_dofs(model_.nodes_, model_.elements_, model_.T_, first.fdof_ldof, epsilon);
+  // Decks with AUTOSPC NO still have dofs that nothing touches; Nastran's solvers pass over such empty columns.
+  const bool only_null = !is_on && param && !options_.autospc;
+  if (!is_on && !only_null) return;
+  model_.autospc_ =
+      find_singular_dofs(model_.nodes_, model_.elements_, model_.T_, first.fdof_ldof, only_null ? 1e-14 : epsilon);
+  if (only_null && !options_.uses_enforced)
+    drop_with_mass(model_.nodes_, model_.elements_, model_.mass_kind_, model_.autospc_);
+  // Without any stiffness at all there is nothing to solve yet.
+  if (only_null && model_.autospc_.size() == static_cast<size_t>(model_.T_.cols())) model_.autospc_.clear();
   if (model_.autospc_.empty()) return;
   for (const auto& entry : model_.autospc_) {
     const Node& node = model_.nodes_[model_.find_node(entry.node)];
     is_fixed_[node.first_gdof + std::max(entry.component - 1, 0)] = 1;
   }
   set_transform();
+  if (only_null) {
+    diagnostics_.warning("fe.null-dofs", deck_.locate(param->at),
+                         "PARAM,AUTOSPC,NO leaves " + std::to_string(model_.autospc_.size()) +
+                             " dofs that nothing stiffens, the first at grid " +
+                             std::to_string(model_.autospc_[0].node) + "; they are held all the same",
+                         "there is no solution with them; hold or remove them");
+    return;
+  }
   diagnostics_.note("fe.autospc", deck_.locate({}),
                     "AUTOSPC holds " + std::to_string(model_.autospc_.size()) +
                         " dofs without stiffness, the first at grid " + std::to_string(model_.autospc_[0].node),

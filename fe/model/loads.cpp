@@ -55,13 +55,18 @@ bool add_scalar_loads(const LoadTarget& t) {
     if (load.sid != t.set) continue;
     is_found = true;
     const int index = t.model.find_node(load.point);
-    if (index >= 0 && t.model.node(index).num_dofs == 1) {
-      t.F[t.model.node(index).first_gdof] += t.scale * load.f;
+    if (index >= 0) {
+      // At a grid: along the first displacement axis (Quick Reference Guide, SLOAD).
+      const Node& node = t.model.node(index);
+      if (node.num_dofs == 1)
+        t.F[node.first_gdof] += t.scale * load.f;
+      else
+        t.F.segment<3>(node.first_gdof) += t.scale * load.f * node.R_basic_cd.col(0);
       continue;
     }
     t.diagnostics.error("fe.missing-grid", t.deck.locate(load.at),
-                        "SLOAD names scalar point " + std::to_string(load.point) + ", which the deck does not define",
-                        "add the SPOINT or correct the id");
+                        "SLOAD names point " + std::to_string(load.point) + ", which the deck does not define",
+                        "add the SPOINT or GRID, or correct the id");
   }
   return is_found;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Rigid elements RBE1, RBE2, RBE3, RBAR and RROD as constraint equations.
+/// \file Rigid elements RBE1, RBE2, RBE3, RBAR, RROD and RSPLINE as constraint equations.
 #include "bough/fe/elements/element.hpp"
 #include "bough/fe/model/constraints.hpp"
 
@@ -34,6 +34,11 @@ void add_rbe1(const records::Rbe1& card, const NodeTable& nodes, const SourceLoc
 /// connected components do not hold a rigid body, fe.rigid-independent when UM cannot be solved for.
 void add_rbe3(const records::Rbe3& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations);
+
+/// Grids between two independent ones follow the elastic line of a tube through all of them, bent by its ends alone; on
+/// a straight line that is the cubic. Source: Nastran Quick Reference Guide, RSPLINE.
+void add_rspline(const records::Rspline& record, const NodeTable& nodes, const SourceLocation& at,
+                 Diagnostics& diagnostics, std::vector<ConstraintEquation>& equations);
 
 /// e·(u_b - u_a) = 0 along the rod. Reports fe.rigid-independent when the dependent component is across the rod.
 void add_rrod(const records::Rrod& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,

@@ -13,16 +13,18 @@ using records::Deck;
 
 /// What the writer carries over; GRDSET, BAROR and BEAMOR are in the cards that they give defaults to.
 constexpr std::array written_cards{
-    "ASET",   "ASET1",  "BAROR",  "BEAMOR", "CBAR",   "CBEAM",  "CBUSH",  "CBUSH1D", "CDAMP1",  "CDAMP2",
-    "CDAMP3", "CDAMP4", "CELAS1", "CELAS2", "CELAS3", "CELAS4", "CHEXA",  "CMASS1",  "CMASS2",  "CMASS3",
-    "CMASS4", "CONM1",  "CONM2",  "CONROD", "CORD1C", "CORD1R", "CORD1S", "CORD2C",  "CORD2R",  "CORD2S",
-    "CPENTA", "CQUAD4", "CQUAD8", "CQUADR", "CROD",   "CSHEAR", "CTETRA", "CTRIA3",  "CTRIA6",  "CTRIAR",
-    "CTUBE",  "CVISC",  "DMIG",   "EIGB",   "EIGR",   "EIGRL",  "FORCE",  "FORCE1", "FORCE2",  "GRAV",    "GRDSET",
-    "GRID",   "LOAD",   "MAT1",   "MAT2",   "MAT8",   "MAT9",   "MOMENT", "MOMENT1", "MOMENT2", "MPC",
-    "MPCADD", "OMIT",   "OMIT1",  "PARAM",  "PBAR",   "PBARL",  "PBEAM",  "PBEAML",  "PBUSH",   "PBUSH1D",
-    "PCOMP",  "PCOMPG", "PDAMP",  "PELAS",  "PLOAD",  "PLOAD1", "PLOAD2", "PLOAD4",  "PLOTEL",  "PMASS",
-    "PROD",   "PSHEAR", "PSHELL", "PSOLID", "PTUBE",  "PVISC",  "RBAR",   "RBE1",    "RBE2",    "RBE3",
-    "RFORCE", "RROD",   "SLOAD",  "SPC",    "SPC1",   "SPCADD", "SPCD",   "SPOINT",  "SUPORT",  "SUPORT1", "TEMP", "TEMPD", "TEMPP1", "TEMPRB"};
+    "ACCEL",  "ACCEL1", "CBEND",   "PCOMPS", "PBEND",   "CGAP",    "GENEL",  "NSM",     "NSM1",   "NSML",   "NSML1",
+    "NSMADD", "PBCOMP", "PGAP",    "RBAR1",  "RJOINT",  "RSPLINE", "RTRPLT", "RTRPLT1", "ASET",   "ASET1",  "BAROR",
+    "BEAMOR", "CBAR",   "CBEAM",   "CBUSH",  "CBUSH1D", "CDAMP1",  "CDAMP2", "CDAMP3",  "CDAMP4", "CELAS1", "CELAS2",
+    "CELAS3", "CELAS4", "CHEXA",   "CMASS1", "CMASS2",  "CMASS3",  "CMASS4", "CONM1",   "CONM2",  "CONROD", "CORD1C",
+    "CORD1R", "CORD1S", "CORD2C",  "CORD2R", "CORD2S",  "CPENTA",  "CQUAD4", "CQUAD8",  "CQUADR", "CRIGD1", "CRIGD2",
+    "CRIGDR", "CROD",   "CSHEAR",  "CTETRA", "CTRIA3",  "CTRIA6",  "CTRIAR", "CTUBE",   "CVISC",  "DMIG",   "EIGB",
+    "EIGR",   "EIGRL",  "FORCE",   "FORCE1", "FORCE2",  "GRAV",    "GRDSET", "GRID",    "LOAD",   "MAT1",   "MAT11",
+    "MAT2",   "MAT8",   "MAT9",    "MOMENT", "MOMENT1", "MOMENT2", "MPC",    "MPCADD",  "OMIT",   "OMIT1",  "PARAM",
+    "PBAR",   "PBARL",  "PBEAM",   "PBEAML", "PBUSH",   "PBUSH1D", "PCOMP",  "PCOMPG",  "PDAMP",  "PELAS",  "PLOAD",
+    "PLOAD1", "PLOAD2", "PLOAD4",  "PLOTEL", "PMASS",   "PROD",    "PSHEAR", "PSHELL",  "PSOLID", "PTUBE",  "PVISC",
+    "RBAR",   "RBE1",   "RBE2",    "RBE3",   "RFORCE",  "RROD",    "SLOAD",  "SPC",     "SPC1",   "SPCADD", "SPCD",
+    "SPOINT", "SUPORT", "SUPORT1", "TEMP",   "TEMPD",   "TEMPP1",  "TEMPRB"};
 
 /// "1.5*K1, 1.*K2": a line for each, so that none grows beyond 72 columns.
 std::string join_matrices(const std::vector<std::pair<double, std::string>>& matrices) {
@@ -49,6 +51,7 @@ void write_selection(const records::Subcase& subcase, std::string& out) {
   add_set("METHOD", subcase.method);
   add_set("STATSUB", subcase.statsub);
   add_set("SUPORT1", subcase.suport1);
+  add_set("NSM", subcase.nsm);
   add("K2GG", join_matrices(subcase.k2gg));
   add("M2GG", join_matrices(subcase.m2gg));
   add("B2GG", join_matrices(subcase.b2gg));
@@ -105,6 +108,7 @@ std::string write_deck(const Deck& deck, const WriteOptions& options, Diagnostic
   detail::write_direct_matrices(deck, sink);
   detail::write_loads(deck, sink);
   detail::write_temperatures(deck, sink);
+  detail::write_special(deck, sink);
   sink.out += "ENDDATA\n";
   return std::move(sink.out);
 }

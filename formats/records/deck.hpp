@@ -17,6 +17,7 @@
 #include "bough/formats/records/deck_continua.hpp"
 #include "bough/formats/records/deck_loads.hpp"
 #include "bough/formats/records/deck_temperatures.hpp"
+#include "bough/formats/records/deck_special.hpp"
 
 namespace bough::records {
 
@@ -357,7 +358,7 @@ struct Subcase {
   std::string title, subtitle, label;
   int spc = 0, mpc = 0, load = 0, method = 0, statsub = 0;  ///< 0: none
   int temperature = 0;                                      ///< TEMPERATURE(LOAD) or (BOTH)
-  int suport1 = 0;
+  int suport1 = 0, nsm = 0;
   std::vector<std::pair<double, std::string>> k2gg, m2gg, b2gg;  ///< (scale, DMIG name)
 };
 
@@ -432,6 +433,7 @@ struct Deck {
   std::vector<LoadCombination> loads;
   TemperatureCards temperatures;
   LoadCards load_cards;  ///< PLOADx, RFORCE, SPCD, SLOAD, FORCE1 ...
+  SpecialCards special;  ///< PBCOMP, GENEL, CBEND, NSM, RSPLINE, CGAP, ACCEL
   std::vector<EigenMethod> eigen_methods;
   std::vector<Param> params;
   std::vector<UnusedCard> unused;

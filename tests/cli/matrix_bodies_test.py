@@ -230,7 +230,7 @@ class MatrixBodies(ProgramTest):
         self.same("body.h5", 1e-4, ["/modes/frequency_hz", "/modes/phi", "/integrals/exact/gamma0"])
 
     def test_cards_that_bough_lacks_do_not_matter_here(self):
-        self.write("points.bdf", CASE + POINTS + "CGAP,900,900,1,11\nPGAP,900,0.,0.,1.+6\nENDDATA\n")
+        self.write("points.bdf", CASE + POINTS + "CFAST,900,900,ELEM,1,11\nENDDATA\n")
         self.reduce("own.h5")
         self.same("body.h5")
 
@@ -245,9 +245,10 @@ class MatrixBodies(ProgramTest):
                    error="cli.grids-twice")
         self.fails(1, "reduce", "points.bdf", "--matrices", "own.h5", "--matrices", "Q=own.h5", "-n", 3,
                    error="cli.bad-matrices")
-        self.write("map.csv", "node,component\n1,1\n1,two\n")
-        self.fails(1, "reduce", "points.bdf", "--matrices", "own.h5", "--matrices", "dofs=map.csv", "-n", 3,
-                   says=["map.csv:3"], error="cli.bad-table")
+        for third in ["1,two", "1,2.5", "1e300,1"]:
+            self.write("map.csv", f"node,component\n1,1\n{third}\n")
+            self.fails(1, "reduce", "points.bdf", "--matrices", "own.h5", "--matrices", "dofs=map.csv", "-n", 3,
+                       says=["map.csv:3"], error="cli.bad-table")
         write_op4(self.path("n.op4"), [("KGG", self.K_cd), ("MGG", self.M_cd)])
         said = self.bough("reduce", "points.bdf", "--matrices", "n.op4", "-n", 3, "-v").stderr
         self.assertIn("[reduce.matrix-axes]", said)

@@ -5,17 +5,16 @@
 namespace bough::nastran::detail {
 namespace {
 
-/// EID GN CM GM..., the last field may be ALPHA (thermal expansion), a real.
+bool is_real(const Card& card, int i) { return !card.is_integer(i) && card.get(i).find('.') != std::string_view::npos; }
+
+/// EID GN CM GM..., then perhaps ALPHA (thermal expansion) and TREF, reals.
 void parse_rbe2(Card& card, Reading& r) {
   records::Rbe2 e;
   e.id = card.read_id(0, "EID");
   e.gn = card.read_id(1, "GN");
   e.cm = card.read_components(2, "CM");
   int last = card.get_size();
-  if (last > 4 && !card.is_integer(last - 1) && card.get(last - 1).find('.') != std::string_view::npos) {
-    card.read_real(last - 1, "ALPHA");
-    --last;
-  }
+  for (int count = 0; count < 2 && last > 4 && is_real(card, last - 1); ++count) card.read_real(--last, "ALPHA TREF");
   e.gm = read_ids(card, 3, last, "GM");
   if (e.gm.empty() && card.is_ok())
     card.fail("deck.missing-field", 3, "GM is blank, expected a dependent grid at least");
@@ -67,7 +66,7 @@ void parse_rbe3(Card& card, Reading& r) {
   if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe3.push_back(std::move(e));
 }
 
-/// EID, pairs GN CN (three per line), UM with pairs GM CM, then ALPHA, a real.
+/// EID, pairs GN CN (three per line), UM with pairs GM CM, then ALPHA and TREF, reals.
 void parse_rbe1(Card& card, Reading& r) {
   records::Rbe1 e;
   e.id = card.read_id(0, "EID");
@@ -80,8 +79,8 @@ void parse_rbe1(Card& card, Reading& r) {
     } else if (card.is_word(i, "UM") && !has_um) {
       has_um = true;
       ++i;
-    } else if (i == size - 1 && !card.is_integer(i)) {
-      card.read_real(i++, "ALPHA");
+    } else if (i >= size - 2 && is_real(card, i)) {
+      card.read_real(i++, "ALPHA TREF");
     } else {
       const int g = card.read_id(i, has_um ? "GM" : "GN");
       (has_um ? e.dependent : e.independent).push_back({g, card.read_components(i + 1, has_um ? "CM" : "CN"), e.at});

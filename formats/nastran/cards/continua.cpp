@@ -1,4 +1,8 @@
+#include <array>
 #include <string>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "bough/formats/nastran/detail/parsers.hpp"
 
@@ -45,6 +49,32 @@ void parse_mat9(Card& card, Reading& r) {
   for (int i = 0; i < 6; ++i) mat.alpha[i] = card.read_real(field++, "Ai", 0.0);
   mat.tref = card.read_real(field, "TREF", 0.0);
   mat.at = card.get_location();
+  if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat9.push_back(mat);
+}
+
+/// MAT11, an orthotropic solid, becomes the MAT9 of the same law.
+void parse_mat11(Card& card, Reading& r) {
+  records::Mat9 mat;
+  mat.id = card.read_id(0, "MID");
+  const double E1 = card.read_real(1, "E1"), E2 = card.read_real(2, "E2"), E3 = card.read_real(3, "E3");
+  const double nu12 = card.read_real(4, "NU12"), nu13 = card.read_real(5, "NU13"), nu23 = card.read_real(6, "NU23");
+  const std::array<double, 3> shear{card.read_real(7, "G12"), card.read_real(9, "G23"), card.read_real(8, "G13")};
+  mat.rho = card.read_real(10, "RHO", 0.0);
+  for (int i = 0; i < 3; ++i) mat.alpha[i] = card.read_real(11 + i, "Ai", 0.0);
+  mat.tref = card.read_real(14, "TREF", 0.0);
+  mat.at = card.get_location();
+  if (card.is_ok()) {
+    Eigen::Matrix3d compliance;
+    compliance << 1 / E1, -nu12 / E1, -nu13 / E1,  //
+        -nu12 / E1, 1 / E2, -nu23 / E2,            //
+        -nu13 / E1, -nu23 / E2, 1 / E3;
+    const bool is_law = E1 > 0 && E2 > 0 && E3 > 0 && Eigen::LLT<Eigen::Matrix3d>(compliance).info() == Eigen::Success;
+    if (!is_law)
+      card.fail("deck.field-range", 1, "the law of E1 to NU23 is not positive definite", "correct the material");
+    else
+      mat.G.topLeftCorner<3, 3>() = compliance.inverse();
+    for (int i = 0; i < 3; ++i) mat.G(3 + i, 3 + i) = shear[static_cast<std::size_t>(i)];
+  }
   if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat9.push_back(mat);
 }
 
@@ -134,6 +164,7 @@ void add_continuum_parsers(ParserTable& table) {
   table["MAT2"] = parse_mat2;
   table["MAT8"] = parse_mat8;
   table["MAT9"] = parse_mat9;
+  table["MAT11"] = parse_mat11;
   table["PSHELL"] = parse_pshell;
   table["PCOMP"] = parse_pcomp;
   table["PCOMPG"] = parse_pcompg;

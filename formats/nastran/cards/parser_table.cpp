@@ -20,6 +20,10 @@ const ParserTable& get_card_parsers() {
     add_load_parsers(t);
     add_pressure_parsers(t);
     add_temperature_parsers(t);
+    add_old_constraint_parsers(t);
+    add_special_element_parsers(t);
+    add_special_constraint_parsers(t);
+    add_nonstructural_parsers(t);
     add_solution_parsers(t);
     return t;
   }();

@@ -113,6 +113,8 @@ class CaseControl {
       if (c.options != "PRELOAD") read_set(c, current().statsub);
     } else if (is_command(c.word, "SUPORT1", 4))
       read_set(c, current().suport1);
+    else if (c.word == "NSM")
+      read_set(c, current().nsm);
     else if (c.word == "K2GG")
       read_matrices(c, current().k2gg);
     else if (c.word == "M2GG")

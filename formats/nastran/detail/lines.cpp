@@ -149,8 +149,48 @@ class Loader {
     return std::nullopt;
   }
 
+  /// A deck that has moved: SYMBOL:name as the path below the folder, a path of another machine by its last part,
+  /// letters in another case.
+  std::optional<fs::path> find_moved_file(std::string name, const fs::path& folder) const {
+    std::replace(name.begin(), name.end(), '\\', '/');
+    const auto colon = name.find(':');
+    if (colon != std::string::npos) name.erase(0, colon + 1);
+    const std::string last = fs::path(name).filename().string();
+    for (const std::string& spelling : {name, last})
+      if (!spelling.empty() && spelling.front() != '/')
+        if (auto path = find_file(spelling, folder)) return path;
+    for (const fs::path& from : {folder, root_}) {
+      std::error_code failed;
+      for (const auto& entry : fs::directory_iterator(from.empty() ? fs::path(".") : from, failed))
+        if (make_upper(entry.path().filename().string()) == make_upper(last) && entry.is_regular_file(failed))
+          return from / entry.path().filename();
+    }
+    return std::nullopt;
+  }
+
+  /// Between SOL and CEND.
+  bool is_executive() const {
+    bool has_sol = false;
+    for (const auto& line : source_.lines) {
+      const auto word = find_first_word(line.text);
+      has_sol = has_sol || is_word(word, "SOL");
+      if (is_word(word, "CEND") || is_word(word, "BEGIN")) return false;
+    }
+    return has_sol;
+  }
+
   void include(const std::string& name, const fs::path& folder, const SourceLocation& where, IncludeLine statement) {
-    const auto path = find_file(name, folder);
+    auto path = find_file(name, folder);
+    if (!path && (path = find_moved_file(name, folder)))
+      diagnostics_.warning(
+          "deck.include-moved", where,
+          "included file '" + name + "' does not exist; " + path->lexically_normal().string() + " is read instead",
+          "correct the name if another file was meant");
+    if (!path && is_executive()) {
+      diagnostics_.warning("deck.include-missing", where, "included file '" + name + "' does not exist",
+                           "it stands in the executive control, where DMAP is not run anyway");
+      return;
+    }
     if (!path) {
       diagnostics_.error("deck.include-missing", where, "included file '" + name + "' does not exist",
                          "it is looked for in the folder of the including file and of the deck");

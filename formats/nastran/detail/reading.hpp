@@ -48,6 +48,11 @@ enum class IdSpace {
   MpcAdd,
   Load,
   EigenMethod,
+  General,
+  Gap,
+  GapProperty,
+  Bend,
+  BendProperty,
   Count
 };
 

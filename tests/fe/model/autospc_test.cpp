@@ -86,8 +86,12 @@ TEST(Autospc, switches_and_threshold) {
   deck.grids[0].ps = 63;
   deck.params.push_back({"AUTOSPC", "NO", {}});
   Diagnostics d;
-  EXPECT_EQ(Model::build(deck, {}, make_rods({{1, 2}}), d).num_fdofs(), 6);
   ModelOptions options;
+  options.autospc = false;
+  EXPECT_EQ(Model::build(deck, options, make_rods({{1, 2}}), d).num_fdofs(), 6);
+  // By PARAM alone the rotations, which have neither stiffness nor mass, are held all the same.
+  EXPECT_EQ(Model::build(deck, {}, make_rods({{1, 2}}), d).num_fdofs(), 3);
+  EXPECT_TRUE(d.has("fe.null-dofs"));
   options.autospc = true;
   EXPECT_EQ(Model::build(deck, options, make_rods({{1, 2}}), d).num_fdofs(), 1);
   // A transverse stiffness of 1e-5 survives the default and falls to a larger EPZERO.

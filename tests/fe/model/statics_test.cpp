@@ -87,12 +87,13 @@ TEST(StaticsMpi, unheld_model_is_a_mechanism_of_six_motions) {
 TEST(StaticsMpi, hinge_is_named_by_grid_and_component) {
   auto deck = make_line(6, 5);
   deck.spc.push_back(make_spc(1, 1, 63));
-  deck.params.push_back({"AUTOSPC", "NO", {}});
+  ModelOptions options;
+  options.autospc = false;
   Eigen::Matrix<double, 6, 6> pinned = make_beam(1);
   pinned.row(3).setZero();  // the last link does not carry torque: grid 6 spins
   pinned.col(3).setZero();
   Diagnostics d;
-  const std::string text = catch_mechanism(Model::build(deck, {}, make_chain(1, pinned), d));
+  const std::string text = catch_mechanism(Model::build(deck, options, make_chain(1, pinned), d));
   EXPECT_THAT(text, HasSubstr("mechanism 1 of 1 moves most at grid 6 component 4;"));
   EXPECT_THAT(text, HasSubstr("[fe.mechanism]"));
 }
@@ -112,11 +113,12 @@ TEST(StaticsMpi, unattached_grid_without_autospc_is_named) {
   auto points = make_points();
   points.emplace_back(9, 9, 9);
   auto deck = make_deck(points);
-  deck.params.push_back({"AUTOSPC", "NO", {}});
+  ModelOptions options;
+  options.autospc = false;
   deck.subcases[0].spc = 1;
   deck.spc.push_back(make_spc(1, 1, 63));
   Diagnostics d;
-  const std::string text = catch_mechanism(Model::build(deck, {}, make_links(kLinks), d));
+  const std::string text = catch_mechanism(Model::build(deck, options, make_links(kLinks), d));
   for (int c = 1; c <= 6; ++c) EXPECT_THAT(text, HasSubstr("most at grid 7 component " + std::to_string(c) + ";"));
 }
 

@@ -156,10 +156,36 @@ class Content {
     (*this)(r.sid)(r.is_eigrl)(r.method)(r.f1)(r.f2)(r.num_modes)(r.norm);
     return (*this)(r.norm_grid)(r.norm_component);
   }
+  Content& operator()(const std::pair<int, int>& r) { return (*this)(r.first)(r.second); }
+  Content& operator()(const std::pair<double, double>& r) { return (*this)(r.first)(r.second); }
+  Content& operator()(const std::pair<int, std::vector<int>>& r) { return (*this)(r.first)(r.second); }
+  Content& operator()(const Pbcomp::Lump& r) { return (*this)(r.r)(r.fraction)(r.mid); }
+  Content& operator()(const Pbcomp& r) {
+    (*this)(r.id)(r.mid)(r.A)(r.I1)(r.I2)(r.I12)(r.J)(r.nsm)(r.k1)(r.k2);
+    return (*this)(r.m)(r.n)(r.section)(r.lumps);
+  }
+  Content& operator()(const GridComponent& r) { return (*this)(r.g)(r.c); }
+  Content& operator()(const Genel& r) { return (*this)(r.id)(r.ui)(r.ud)(r.is_flexibility)(r.matrix)(r.s); }
+  Content& operator()(const Cbend& r) { return (*this)(r.id)(r.pid)(r.ga)(r.gb)(r.g0)(r.v)(r.geom); }
+  Content& operator()(const Pbend& r) {
+    (*this)(r.id)(r.mid)(r.A)(r.I1)(r.I2)(r.J)(r.k1)(r.k2)(r.rb)(r.theta_b_deg)(r.nsm)(r.rc)(r.zc);
+    return (*this)(r.delta_n)(r.is_pipe)(r.fsi)(r.rm)(r.t)(r.pressure);
+  }
+  Content& operator()(const Cgap& r) { return (*this)(r.id)(r.pid)(r.ga)(r.gb)(r.g0)(r.v)(r.cid); }
+  Content& operator()(const Pgap& r) { return (*this)(r.id)(r.u0)(r.f0)(r.ka)(r.kb)(r.kt); }
+  Content& operator()(const NonstructuralMass& r) {
+    return (*this)(r.sid)(r.type)(r.is_total)(r.is_all)(r.range)(r.value);
+  }
+  Content& operator()(const Rspline::Point& r) { return (*this)(r.g)(r.c); }
+  Content& operator()(const Rspline& r) { return (*this)(r.id)(r.ratio)(r.points); }
+  Content& operator()(const GridAcceleration& r) {
+    (*this)(r.sid)(r.cid)(r.a)(r.n)(r.is_all)(r.grids)(r.skip_if_missing);
+    return (*this)(r.direction)(r.table);
+  }
   Content& operator()(const Param& r) { return (*this)(r.name)(r.value); }
   Content& operator()(const Subcase& r) {
     (*this)(r.id)(r.title)(r.subtitle)(r.label)(r.spc)(r.mpc)(r.load)(r.method)(r.statsub)(r.temperature);
-    return (*this)(r.suport1)(r.k2gg)(r.m2gg)(r.b2gg);
+    return (*this)(r.suport1)(r.nsm)(r.k2gg)(r.m2gg)(r.b2gg);
   }
 
   std::vector<double> numbers;
@@ -250,6 +276,16 @@ void expect_equal_decks(const Deck& a, const Deck& b, double tolerance) {
   BOUGH_COMPARE(load_cards.rotations);
   BOUGH_COMPARE(load_cards.spcd);
   BOUGH_COMPARE(load_cards.scalar);
+  BOUGH_COMPARE(special.pbcomp);
+  BOUGH_COMPARE(special.genel);
+  BOUGH_COMPARE(special.cbend);
+  BOUGH_COMPARE(special.pbend);
+  BOUGH_COMPARE(special.cgap);
+  BOUGH_COMPARE(special.pgap);
+  BOUGH_COMPARE(special.nsm);
+  BOUGH_COMPARE(special.nsmadd);
+  BOUGH_COMPARE(special.rspline);
+  BOUGH_COMPARE(special.accelerations);
   BOUGH_COMPARE(eigen_methods);
   BOUGH_COMPARE(params);
 #undef BOUGH_COMPARE

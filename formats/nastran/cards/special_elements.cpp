@@ -1,0 +1,200 @@
+#include "bough/formats/nastran/detail/parsers.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+using records::GridComponent;
+
+/// PID MID A I1 I2 I12 J NSM, K1 K2 M1 M2 N1 N2 SECTION, then lines Y Z C MID.
+void parse_pbcomp(Card& card, Reading& r) {
+  records::Pbcomp p;
+  p.id = card.read_id(0, "PID");
+  p.mid = card.read_id(1, "MID");
+  p.A = card.read_real(2, "A", 0.0);
+  p.I1 = card.read_real(3, "I1", 0.0);
+  p.I2 = card.read_real(4, "I2", 0.0);
+  p.I12 = card.read_real(5, "I12", 0.0);
+  p.J = card.read_real(6, "J", 0.0);
+  p.nsm = card.read_real(7, "NSM", 0.0);
+  p.k1 = card.read_real(8, "K1", 1.0);
+  p.k2 = card.read_real(9, "K2", 1.0);
+  p.m = card.read_point(10, "M1 M2");
+  p.n = card.read_point(12, "N1 N2");
+  p.section = card.read_int(14, "SECTION", 0);
+  p.at = card.get_location();
+  card.demand(p.A > 0, 2, "A", "a positive area");
+  card.demand(p.section >= 0 && p.section <= 5, 14, "SECTION", "0 to 5");
+  for (int i = 16; i < card.get_size(); i += 8) {
+    if (card.is_blank(i, i + 8)) continue;
+    records::Pbcomp::Lump lump;
+    lump.r = card.read_point(i, "Y Z");
+    lump.fraction = card.read_real(i + 2, "C", 0.0);
+    lump.mid = card.read_id(i + 3, "MID", p.mid);
+    card.demand(lump.fraction >= 0, i + 2, "C", "a fraction that is not negative");
+    p.lumps.push_back(lump);
+  }
+  if (r.claim(IdSpace::BeamProperty, p.id, card)) r.deck.special.pbcomp.push_back(std::move(p));
+}
+
+bool is_section_word(const Card& card, int i) {
+  return card.is_word(i, "UD") || card.is_word(i, "K") || card.is_word(i, "Z") || card.is_word(i, "S");
+}
+
+/// Pairs G C up to the next section; the first line of a section has a blank after its word.
+int read_pairs(Card& card, int i, std::vector<GridComponent>& pairs) {
+  while (i < card.get_size() && !is_section_word(card, i)) {
+    if (card.is_blank(i)) {
+      ++i;
+      continue;
+    }
+    const int g = card.read_id(i, "U");
+    pairs.push_back({g, card.read_component(i + 1, "C")});
+    i += 2;
+  }
+  return i;
+}
+
+/// EID, pairs UI C; UD, pairs; K or Z with the columns from the diagonal on; S by rows.
+void parse_genel(Card& card, Reading& r) {
+  records::Genel e;
+  e.id = card.read_id(0, "EID");
+  e.at = card.get_location();
+  int i = read_pairs(card, 2, e.ui);
+  if (card.is_word(i, "UD")) i = read_pairs(card, i + 1, e.ud);
+  const auto m = static_cast<Eigen::Index>(e.ui.size()), n = static_cast<Eigen::Index>(e.ud.size());
+  if (card.is_ok() && m == 0) card.fail("deck.missing-field", 2, "UI1 is blank, expected a component at least");
+  if (card.is_ok() && !card.is_word(i, "K") && !card.is_word(i, "Z"))
+    card.fail("deck.missing-field", i, "neither K nor Z is given", "begin a line with K or Z and its terms");
+  if (!card.is_ok()) return;
+  e.is_flexibility = card.is_word(i, "Z");
+  e.matrix.setZero(m, m);
+  for (Eigen::Index column = 0; column < m; ++column)
+    for (Eigen::Index row = column; row < m; ++row)
+      e.matrix(row, column) = e.matrix(column, row) = card.read_real(++i, "KZ", 0.0);
+  while (++i < card.get_size() && card.is_blank(i)) {
+  }
+  if (card.is_word(i, "S")) {
+    e.s.setZero(m, n);
+    for (Eigen::Index row = 0; row < m; ++row)
+      for (Eigen::Index column = 0; column < n; ++column) e.s(row, column) = card.read_real(++i, "S", 0.0);
+    ++i;
+  }
+  if (card.is_ok() && i < card.get_size())
+    card.fail("deck.too-many-fields", i, "more fields than K or Z and S of its components have",
+              "K or Z has " + std::to_string(m * (m + 1) / 2) + " terms, S has " + std::to_string(m * n));
+  if (r.claim(IdSpace::General, e.id, card)) r.deck.special.genel.push_back(std::move(e));
+}
+
+/// EID PID GA GB X1 X2 X3 CID; X1 alone is a grid.
+void parse_cgap(Card& card, Reading& r) {
+  records::Cgap e;
+  e.id = card.read_id(0, "EID");
+  e.pid = card.read_id(1, "PID", e.id);
+  e.ga = card.read_id(2, "GA");
+  e.gb = card.read_id(3, "GB");
+  if (card.is_integer(4) && card.is_blank(5, 7))
+    e.g0 = card.read_id(4, "G0");
+  else if (!card.is_blank(4, 7))
+    e.v = card.read_vector(4, "X1 X2 X3");
+  if (!card.is_blank(7)) e.cid = card.read_reference(7, "CID");
+  e.at = card.get_location();
+  if (r.claim(IdSpace::Gap, e.id, card)) r.deck.special.cgap.push_back(e);
+}
+
+/// PID U0 F0 KA KB KT MU1 MU2; KB = 1e-14 KA, KT = MU1 KA.
+void parse_pgap(Card& card, Reading& r) {
+  records::Pgap p;
+  p.id = card.read_id(0, "PID");
+  p.u0 = card.read_real(1, "U0", 0.0);
+  p.f0 = card.read_real(2, "F0", 0.0);
+  p.ka = card.read_real(3, "KA", 0.0);
+  p.kb = card.read_real(4, "KB", 1e-14 * p.ka);
+  p.kt = card.read_real(5, "KT", card.read_real(6, "MU1", 0.0) * p.ka);
+  p.at = card.get_location();
+  for (const auto& [field, value] : {std::pair(3, p.ka), std::pair(4, p.kb), std::pair(5, p.kt)})
+    card.demand(value >= 0, field, "KA KB KT", "stiffnesses that are not negative");
+  if (r.claim(IdSpace::GapProperty, p.id, card)) r.deck.special.pgap.push_back(p);
+}
+
+/// EID PID GA GB X1 X2 X3 GEOM; X1 alone is a grid.
+void parse_cbend(Card& card, Reading& r) {
+  records::Cbend e;
+  e.id = card.read_id(0, "EID");
+  e.pid = card.read_id(1, "PID", e.id);
+  e.ga = card.read_id(2, "GA");
+  e.gb = card.read_id(3, "GB");
+  if (card.is_integer(4) && card.is_blank(5, 7))
+    e.g0 = card.read_id(4, "G0");
+  else
+    e.v = card.read_vector(4, "X1 X2 X3");
+  e.geom = card.read_int(7, "GEOM");
+  e.at = card.get_location();
+  card.demand(e.geom >= 1 && e.geom <= 4, 7, "GEOM", "1 to 4");
+  if (r.claim(IdSpace::Bend, e.id, card)) r.deck.special.cbend.push_back(e);
+}
+
+/// PID MID A I1 I2 J RB THETAB, points C to F, K1 K2 NSM RC ZC DELTAN; or a pipe: PID MID FSI RM T P RB THETAB, blank
+/// blank NSM RC ZC.
+void parse_pbend(Card& card, Reading& r) {
+  records::Pbend p;
+  p.id = card.read_id(0, "PID");
+  p.mid = card.read_id(1, "MID");
+  p.is_pipe = card.is_integer(2);
+  if (p.is_pipe) {
+    p.fsi = card.read_int(2, "FSI");
+    p.rm = card.read_real(3, "RM");
+    p.t = card.read_real(4, "T");
+    p.pressure = card.read_real(5, "P", 0.0);
+  } else {
+    p.A = card.read_real(2, "A");
+    p.I1 = card.read_real(3, "I1");
+    p.I2 = card.read_real(4, "I2");
+    p.J = card.read_real(5, "J", 0.0);
+    p.k1 = card.read_real(16, "K1", 0.0);
+    p.k2 = card.read_real(17, "K2", 0.0);
+    p.delta_n = card.read_optional_real(21, "DELTAN");
+  }
+  p.rb = card.read_real(6, "RB", 0.0);
+  p.theta_b_deg = card.read_real(7, "THETAB", 0.0);
+  const int last = p.is_pipe ? 10 : 18;
+  p.nsm = card.read_real(last, "NSM", 0.0);
+  p.rc = card.read_real(last + 1, "RC", 0.0);
+  p.zc = card.read_real(last + 2, "ZC", 0.0);
+  p.at = card.get_location();
+  if (r.claim(IdSpace::BendProperty, p.id, card)) r.deck.special.pbend.push_back(p);
+}
+
+/// PCOMPS: PID CORDM PSDIR SB NB TREF GE, plies GPLYID MID TR THETA. Plies of one material are a solid of it.
+void parse_pcomps(Card& card, Reading& r) {
+  records::Psolid p;
+  p.id = card.read_id(0, "PID");
+  p.cordm = card.read_int(1, "CORDM", 0);
+  p.at = card.get_location();
+  for (int i = 8; i < card.get_size(); i += 8) {
+    if (card.is_blank(i, i + 8)) continue;
+    const int mid = card.read_id(i + 1, "MID", p.mid);
+    if (card.read_real(i + 3, "THETA", 0.0) != 0 || (p.mid != 0 && mid != p.mid)) {
+      card.fail("deck.field-range", i + 1,
+                "the plies differ in material or have angles, expected one material at angle 0",
+                "model each ply by solids of its own, with a PSOLID");
+      break;
+    }
+    p.mid = mid;
+  }
+  if (card.is_ok() && p.mid == 0) card.fail("deck.missing-field", 9, "the laminate has no ply", "give MID1");
+  if (r.claim(IdSpace::SolidProperty, p.id, card)) r.deck.psolid.push_back(p);
+}
+
+}  // namespace
+
+void add_special_element_parsers(ParserTable& table) {
+  table["PBCOMP"] = parse_pbcomp;
+  table["GENEL"] = parse_genel;
+  table["PCOMPS"] = parse_pcomps;
+  table["CBEND"] = parse_cbend;
+  table["PBEND"] = parse_pbend;
+  table["CGAP"] = parse_cgap;
+  table["PGAP"] = parse_pgap;
+}
+
+}  // namespace bough::nastran::detail
