@@ -54,6 +54,8 @@ class CurvedShell final : public Element {
   /// Second order of e, κ, γ (sampled and interpolated as they are) with d_i = exp(θ_i) V_i.
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
+  void add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
+                                         GeometricProjection& sums) const override;
 
   bool has_expansion() const override { return sections_.front().expansion != nullptr; }
   /// The temperature is interpolated from the corners and the midside nodes (the mean of its corners where one is
@@ -79,6 +81,12 @@ class CurvedShell final : public Element {
   MatrixXd calc_full_stiffness(const Operators& operators) const;
   /// Bubbles per (u_i, d_i): rows as the bubbles.
   MatrixXd calc_bubble_map(const MatrixXd& full) const;
+  /// (u_i, d_i, bubbles) per dof of the element.
+  MatrixXd calc_inner_map(const Operators& operators) const;
+  MatrixXd calc_force_map(const Operators& operators, const MatrixXd& inner_map) const;  ///< internal forces per dof
+  /// K_G(force) on (u_i, d_i, bubbles), and what of it acts on the rotations of the element's dofs at once.
+  void calc_second_order(const Operators& operators, const Eigen::Ref<const VectorXd>& force, MatrixXd& inner,
+                         MatrixXd& at_nodes) const;
   int find_dof(int full_node, int component) const;
 
   const ShellTying* tying_;

@@ -2,6 +2,7 @@
 
 #include "bough/base/rotation.hpp"
 #include "bough/fe/elements/curved_shell_operators.hpp"
+#include "bough/fe/elements/geometric_projection.hpp"
 
 namespace bough::fe {
 
@@ -65,22 +66,30 @@ void CurvedShell::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) 
     }
 }
 
-void CurvedShell::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
+MatrixXd CurvedShell::calc_inner_map(const Operators& o) const {
   const int n = 6 * num_full();
-  const Operators o = calc_operators(false);
-  VectorXd full(n + num_bubbles());
-  full.head(n) = calc_map() * u;
-  full.tail(num_bubbles()) = calc_bubble_map(calc_full_stiffness(o)) * full.head(n);
+  MatrixXd inner = MatrixXd::Identity(n + num_bubbles(), n);
+  inner.bottomRows(num_bubbles()) = calc_bubble_map(calc_full_stiffness(o));
+  return inner * calc_map();
+}
+
+MatrixXd CurvedShell::calc_force_map(const Operators& o, const MatrixXd& inner_map) const {
+  MatrixXd map(num_internal_forces(), inner_map.rows());
   const double area = calc_area();
   for (std::size_t q = 0; q < o.points.size(); ++q) {
     const auto& p = o.points[q];
     const ShellSection c = calc_section(static_cast<int>(q));
-    const Vector3d e = p.membrane * full, k = p.bending * full;
-    auto at = force.segment<kNumForces>(kNumForces * static_cast<int>(q));
-    at.head<3>() = c.A * e + c.B * k;
-    at.segment<3>(3) = c.B.transpose() * e + c.D * k;
-    at.tail<2>() = calc_shear_stiffness(c, area) * (p.shear * full);
+    auto at = map.middleRows<kNumForces>(kNumForces * static_cast<int>(q));
+    at.topRows<3>() = c.A * p.membrane + c.B * p.bending;
+    at.middleRows<3>(3) = c.B.transpose() * p.membrane + c.D * p.bending;
+    at.bottomRows<2>() = calc_shear_stiffness(c, area) * p.shear;
   }
+  return map * inner_map;
+}
+
+void CurvedShell::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
+  const Operators o = calc_operators(false);
+  force = calc_force_map(o, calc_inner_map(o)) * u;
 }
 
 std::vector<std::string> CurvedShell::internal_force_names() const {
@@ -91,11 +100,10 @@ std::vector<std::string> CurvedShell::internal_force_names() const {
   return names;
 }
 
-void CurvedShell::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
-                                          Eigen::Ref<MatrixXd> K_G) const {
+void CurvedShell::calc_second_order(const Operators& o, const Eigen::Ref<const VectorXd>& force, MatrixXd& K,
+                                    MatrixXd& at_nodes) const {
   const int n = num_full(), m = num_bubbles(), size = 6 * n + m, corners = tying_->num_corners;
   const bool quad = m == 4;
-  const Operators o = calc_operators(false);
   // Forces that work on the covariant strains at the samples: e by tying, κ at the points, γ by tying.
   std::vector<Vector3d> on_e(tying_->samples.size(), Vector3d::Zero()), on_k = on_e, with_bubble = on_e;
   std::vector<Eigen::Vector2d> on_g(tying_->samples.size(), Eigen::Vector2d::Zero());
@@ -143,13 +151,20 @@ void CurvedShell::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& forc
     if (!on_k[k].isZero(0)) ud += at.dshape.transpose() * form(on_k[k]) * at.dshape;
     if (!on_g[k].isZero(0)) ud += at.dshape.transpose() * on_g[k] * at.shape.transpose();
   }
-  MatrixXd K = MatrixXd::Zero(size, size);
+  K.setZero(size, size);
   const auto add_block = [&](int row, int col, const MatrixXd& block) {
     K.block(row, col, block.rows(), block.cols()) += block;
   };
   const Matrix3d identity = Matrix3d::Identity();
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (int a = 0; a < 3; ++a) {
+        K(6 * i + a, 6 * j + a) += uu(i, j);
+        K(6 * i + a, 6 * j + 3 + a) += ud(i, j);
+        K(6 * j + 3 + a, 6 * i + a) += ud(i, j);
+      }
   for (int i = 0; i <= n; ++i)
-    for (int j = 0; j <= n; ++j) {
+    for (int j = i < n ? n : 0; j <= n; ++j) {
       // Bases of u and d of a node are the axes, those of a bubble the two tangents.
       const MatrixXd a = i < n ? MatrixXd(identity) : MatrixXd(bubble_);
       const MatrixXd b = j < n ? MatrixXd(identity) : MatrixXd(bubble_);
@@ -161,10 +176,7 @@ void CurvedShell::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& forc
       add_block(u_i, d_j, ud(i, j) * ab);
       add_block(d_j, u_i, ud(i, j) * ab.transpose());
     }
-  MatrixXd inner = MatrixXd::Identity(size, 6 * n);
-  inner.bottomRows(m) = calc_bubble_map(calc_full_stiffness(o));
-  const MatrixXd map = inner * calc_map();
-  K_G.noalias() += scale * (map.transpose() * K * map);
+  at_nodes.setZero(num_dofs(), num_dofs());
   // Second order of d_i = exp(θ_i) V_i, at the ends of the arms too: V → V + θ×V + ½ (θ (θ·V) - V |θ|²).
   VectorXd on_arm = nodal.head(6 * n);
   for (int i = corners; i < n; ++i)
@@ -176,14 +188,38 @@ void CurvedShell::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& forc
     const bool present = place_[static_cast<std::size_t>(i)] >= 0;
     Vector3d g = nodal.segment<3>(6 * i + 3);
     if (present) g += z_offset_ * on_arm.segment<3>(6 * i);
-    const Matrix3d H = scale * (0.5 * (g * V.transpose() + V * g.transpose()) - g.dot(V) * Matrix3d::Identity());
+    const Matrix3d H = 0.5 * (g * V.transpose() + V * g.transpose()) - g.dot(V) * Matrix3d::Identity();
     if (present) {
-      K_G.block<3, 3>(find_dof(i, 3), find_dof(i, 3)) += H;
+      at_nodes.block<3, 3>(find_dof(i, 3), find_dof(i, 3)) += H;
       continue;
     }
     const int ends[2] = {i - corners, (i - corners + 1) % corners};
     for (int a : ends)
-      for (int b : ends) K_G.block<3, 3>(find_dof(a, 3), find_dof(b, 3)) += 0.25 * H;
+      for (int b : ends) at_nodes.block<3, 3>(find_dof(a, 3), find_dof(b, 3)) += 0.25 * H;
+  }
+}
+
+void CurvedShell::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
+                                          Eigen::Ref<MatrixXd> K_G) const {
+  const Operators o = calc_operators(false);
+  const MatrixXd map = calc_inner_map(o);
+  MatrixXd inner, at_nodes;
+  calc_second_order(o, force, inner, at_nodes);
+  K_G += scale * (map.transpose() * inner * map + at_nodes);
+}
+
+void CurvedShell::add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U,
+                                                    const Eigen::Ref<const MatrixXd>& Phi,
+                                                    GeometricProjection& sums) const {
+  const Operators o = calc_operators(false);
+  const MatrixXd map = calc_inner_map(o), force = calc_force_map(o, map) * U, inner_Phi = map * Phi;
+  MatrixXd inner, at_nodes;
+  auto terms = sums.add_terms(U.cols());
+  terms.weights.setIdentity();
+  for (Eigen::Index c = 0; c < U.cols(); ++c) {
+    calc_second_order(o, force.col(c), inner, at_nodes);
+    add_projection(inner, inner_Phi, terms.products.col(c));
+    add_projection(at_nodes, Phi, terms.products.col(c));
   }
 }
 

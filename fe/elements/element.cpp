@@ -1,5 +1,9 @@
 #include "bough/fe/elements/element.hpp"
 
+#include <algorithm>
+
+#include "bough/fe/elements/geometric_projection.hpp"
+
 namespace bough::fe {
 
 void Element::add_stiffness(double, Eigen::Ref<MatrixXd>) const {}
@@ -8,5 +12,27 @@ void Element::add_damping(double, Eigen::Ref<MatrixXd>) const {}
 void Element::calc_internal_forces(const Eigen::Ref<const VectorXd>&, Eigen::Ref<VectorXd>) const {}
 double Element::add_thermal(const ElementTemperature&, Eigen::Ref<VectorXd>, Eigen::Ref<VectorXd>) const { return 0; }
 void Element::add_geometric_stiffness(const Eigen::Ref<const VectorXd>&, double, Eigen::Ref<MatrixXd>) const {}
+
+void Element::add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U,
+                                                const Eigen::Ref<const MatrixXd>& Phi,
+                                                GeometricProjection& sums) const {
+  const Eigen::Index s = num_internal_forces(), m = U.cols();
+  MatrixXd force(s, m), K_G(num_dofs(), num_dofs());
+  for (Eigen::Index c = 0; c < m; ++c) calc_internal_forces(U.col(c), force.col(c));
+  const Eigen::Index num_terms = std::min(s, m);
+  auto terms = sums.add_terms(num_terms);
+  for (Eigen::Index k = 0; k < num_terms; ++k) {
+    K_G.setZero();
+    if (s <= m)
+      add_geometric_stiffness(VectorXd::Unit(s, k), 1, K_G);
+    else
+      add_geometric_stiffness(force.col(k), 1, K_G);
+    add_projection(K_G, Phi, terms.products.col(k));
+  }
+  if (s <= m)
+    terms.weights = force;
+  else
+    terms.weights.setIdentity();
+}
 
 }  // namespace bough::fe

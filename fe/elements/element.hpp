@@ -21,6 +21,7 @@ using Eigen::VectorXd;
 
 enum class MassKind { Lumped, Consistent };
 
+class GeometricProjection;
 struct ElementTemperature;
 
 /// A grid (six dofs: translations and rotations in basic) or a scalar point (one dof).
@@ -71,6 +72,11 @@ class Element {
   /// K_G += scale K_G(force), N x N, symmetric and linear in force.
   virtual void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                        Eigen::Ref<MatrixXd> K_G) const;
+  /// sums += Φᵀ K_G(forces of u_c) Φ for every column u_c of U (N x m); Phi: N x n. The default takes the two functions
+  /// above, load after load or, where the internal forces are fewer, one unit force after the other.
+  virtual void add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U,
+                                                 const Eigen::Ref<const MatrixXd>& Phi,
+                                                 GeometricProjection& sums) const;
 
   /// True when add_thermal() adds something: the material expands.
   virtual bool has_expansion() const { return false; }

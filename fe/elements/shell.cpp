@@ -44,8 +44,19 @@ Shell::Shell(int id, std::string card, std::vector<int> nodes, std::vector<int> 
 
 ElementShape Shell::shape() const { return {num_nodes() == 4 ? "quad4" : "tri3", nodes()}; }
 
+template <int N>
+ShellFields<N> Shell::calc_fields() const {
+  const Corners<N> xy = get_corners<N>();
+  ShellFields<N> f;
+  f.points = calc_points<N>(xy);
+  f.plate = calc_plate<N>(xy, f.points, section_);
+  f.membrane = calc_membrane<N>(kind_, xy, f.points, section_, f.plate);
+  return f;
+}
+
 template <int N, class Columns>
-void Shell::to_nodes(const Row<N>& spin, Columns&& local) const {
+void Shell::to_nodes(Columns&& local) const {
+  const Row<N> spin = has_lean_ ? calc_spin<N>(calc_centre<N>(get_corners<N>())) : Row<N>::Zero();
   // Where the nodal normal m leans, the part of θ along m is replaced by what the membrane turns about z (Ω, at the
   // centre): θ_t + m (Ω - θ_t·z)/(m·z) with θ_t = θ - m (m·θ). A rigid rotation is unchanged.
   for (int i = 0; i < N && has_lean_; ++i) {
@@ -69,6 +80,13 @@ void Shell::to_nodes(const Row<N>& spin, Columns&& local) const {
 }
 
 template <int N>
+Shell::Square<N> Shell::calc_surface_map() const {
+  Square<N> map = Square<N>::Identity();
+  to_nodes<N>(map);
+  return map;
+}
+
+template <int N>
 void Shell::add_turned(const Square<N>& local, double scale, Eigen::Ref<MatrixXd> out) const {
   for (int j = 0; j < 2 * N; ++j)
     for (int i = 0; i <= j; ++i) {
@@ -85,10 +103,7 @@ void Shell::add_turned(const Square<N>& local, double scale, Eigen::Ref<MatrixXd
 template <int N>
 void Shell::add_stiffness_of(double scale, Eigen::Ref<MatrixXd> out) const {
   using Block = Eigen::Matrix<double, 3 * N, 3 * N>;
-  const Corners<N> xy = get_corners<N>();
-  const Points<N> points = calc_points<N>(xy);
-  const Plate<N> plate = calc_plate<N>(xy, points, section_);
-  const Membrane<N> membrane = calc_membrane<N>(kind_, xy, points, section_, plate);
+  const auto [points, plate, membrane] = calc_fields<N>();
   const auto& c = section_;
   const bool coupled = !c.B.isZero(0);
   Block K_mm = Block::Zero(), K_pp = Block::Zero(), K_mp = Block::Zero();
@@ -116,10 +131,9 @@ void Shell::add_stiffness_of(double scale, Eigen::Ref<MatrixXd> out) const {
       K(kMembrane<N>[i], kPlate<N>[j]) = K(kPlate<N>[j], kMembrane<N>[i]) = K_mp(i, j);
     }
   if (has_arms_ || has_lean_) {
-    const Row<N> spin = has_lean_ ? calc_spin<N>(calc_centre<N>(xy)) : Row<N>::Zero();
-    to_nodes<N>(spin, K);
+    to_nodes<N>(K);
     K.transposeInPlace();
-    to_nodes<N>(spin, K);
+    to_nodes<N>(K);
   }
   add_turned<N>(K, scale, out);
 }
@@ -152,27 +166,29 @@ void Shell::add_mass_of(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) con
 }
 
 template <int N>
-void Shell::calc_forces_of(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
-  const Corners<N> xy = get_corners<N>();
-  const Points<N> points = calc_points<N>(xy);
-  const Plate<N> plate = calc_plate<N>(xy, points, section_);
-  const Membrane<N> membrane = calc_membrane<N>(kind_, xy, points, section_, plate);
-  Square<N> map = Square<N>::Identity();
-  to_nodes<N>(has_lean_ ? calc_spin<N>(calc_centre<N>(xy)) : Row<N>::Zero(), map);
-  Eigen::Matrix<double, 6 * N, 1> turned;
-  for (int i = 0; i < 2 * N; ++i) turned.template segment<3>(3 * i) = R_.transpose() * u.segment<3>(3 * i);
-  const Eigen::Matrix<double, 6 * N, 1> local = map * turned;
-  Eigen::Matrix<double, 3 * N, 1> m, p;
-  for (int i = 0; i < 3 * N; ++i) m[i] = local[kMembrane<N>[i]], p[i] = local[kPlate<N>[i]];
+Shell::ForceMap<N> Shell::calc_force_map(const ShellFields<N>& fields) const {
+  ForceMap<N> map = ForceMap<N>::Zero();
+  const auto& c = section_;
   for (int q = 0; q < N; ++q) {
-    Eigen::Vector3d strain = membrane.strain[q] * m;
-    if (membrane.coupled) strain += membrane.strain_of_plate[q] * p;
-    const Eigen::Vector3d curvature = plate.bending[q] * p;
-    auto at = force.segment<kNumForces>(kNumForces * q);
-    at.head<3>() = section_.A * strain + section_.B * curvature;
-    at.segment<3>(3) = section_.B.transpose() * strain + section_.D * curvature;
-    at.tail<2>() = plate.force[q] * p;
+    const Strains<N>&e = fields.membrane.strain[q], &k = fields.plate.bending[q];
+    const Strains<N> N_e = c.A * e, M_e = c.B.transpose() * e;
+    Strains<N> N_k = c.B * k, M_k = c.D * k;
+    if (fields.membrane.coupled) {
+      N_k += c.A * fields.membrane.strain_of_plate[q];
+      M_k += c.B.transpose() * fields.membrane.strain_of_plate[q];
+    }
+    for (int i = 0; i < 3 * N; ++i) {
+      map.template block<3, 1>(kNumForces * q, kMembrane<N>[i]) = N_e.col(i);
+      map.template block<3, 1>(kNumForces * q + 3, kMembrane<N>[i]) = M_e.col(i);
+      map.template block<3, 1>(kNumForces * q, kPlate<N>[i]) = N_k.col(i);
+      map.template block<3, 1>(kNumForces * q + 3, kPlate<N>[i]) = M_k.col(i);
+      map.template block<2, 1>(kNumForces * q + 6, kPlate<N>[i]) = fields.plate.force[q].col(i);
+    }
   }
+  to_nodes<N>(map);
+  for (int i = 0; i < 2 * N; ++i)
+    map.template middleCols<3>(3 * i) = (map.template middleCols<3>(3 * i) * R_.transpose()).eval();
+  return map;
 }
 
 void Shell::add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const {
@@ -184,7 +200,10 @@ void Shell::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const 
 }
 
 void Shell::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
-  num_nodes_ == 4 ? calc_forces_of<4>(u, force) : calc_forces_of<3>(u, force);
+  if (num_nodes_ == 4)
+    force = calc_force_map<4>(calc_fields<4>()) * u;
+  else
+    force = calc_force_map<3>(calc_fields<3>()) * u;
 }
 
 std::vector<std::string> Shell::internal_force_names() const {
@@ -195,92 +214,13 @@ std::vector<std::string> Shell::internal_force_names() const {
   return names;
 }
 
-void Shell::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
-                                    Eigen::Ref<MatrixXd> K_G) const {
-  num_nodes_ == 4 ? add_geometric_stiffness_of<4>(force, scale, K_G) : add_geometric_stiffness_of<3>(force, scale, K_G);
-}
-
-/// Force times the second order of the strains, as quadratic form of the surface's dofs; see docs/elements/shell.md.
-template <int N>
-void Shell::add_geometric_stiffness_of(const Eigen::Ref<const VectorXd>& force, double scale,
-                                       Eigen::Ref<MatrixXd> out) const {
-  const Corners<N> xy = get_corners<N>();
-  const Points<N> points = calc_points<N>(xy);
-  const Plate<N> plate = calc_plate<N>(xy, points, section_);
-  Eigen::Matrix<double, N, N> NN = Eigen::Matrix<double, N, N>::Zero(), MM = NN;  // ∫ N_i,a (N, M)_ab N_j,b
-  Eigen::Matrix<double, 3 * N, 3 * N> slopes = Eigen::Matrix<double, 3 * N, 3 * N>::Zero();
-  Eigen::Matrix<double, 2, N> M_grad = Eigen::Matrix<double, 2, N>::Zero();  // ∫ M_ab N_i,b
-  std::array<double, N> side_force{};                                        // works on the mean shear of each side
-  for (int q = 0; q < N; ++q) {
-    const auto f = points[q].weight * force.segment<kNumForces>(kNumForces * q);
-    Eigen::Matrix2d n, m;
-    n << f[0], f[2], f[2], f[1];
-    m << f[3], f[5], f[5], f[4];
-    const auto& grad = points[q].dshape;
-    const Eigen::Matrix<double, 2, N> m_grad = m * grad;
-    NN.noalias() += grad.transpose() * (n * grad);
-    MM.noalias() += grad.transpose() * m_grad;
-    M_grad += m_grad;
-    slopes.noalias() += plate.slope[q].transpose() * (n * plate.slope[q]);
-    for (int k = 0; k < N; ++k)
-      side_force[k] += plate.side_bending[k][q].dot(Eigen::Vector3d(f[3], f[4], f[5])) +
-                       plate.side_shear[k][q].dot(Eigen::Vector2d(f[6], f[7]));
-  }
-  Square<N> K = Square<N>::Zero();
-  const auto add = [&K](int i, int j, double value) {
-    K(i, j) += value;
-    K(j, i) += value;
-  };
-  for (int j = 0; j < 3 * N; ++j)
-    for (int i = 0; i < 3 * N; ++i) K(kPlate<N>[i], kPlate<N>[j]) = slopes(i, j);
-  for (int j = 0; j < N; ++j)
-    for (int i = 0; i < N; ++i) {
-      K(6 * i, 6 * j) += NN(i, j);
-      K(6 * i + 1, 6 * j + 1) += NN(i, j);
-      add(6 * i, 6 * j + 4, MM(i, j));  // M_ab u,a·β,b with β = (θy, -θx)
-      add(6 * i + 1, 6 * j + 3, -MM(i, j));
-    }
-  std::array<Eigen::Vector2d, N> turn;  // factor of (θx, θy) θz / 2 of node i
-  std::array<double, N> lift{};         // force on w of node i
-  for (int i = 0; i < N; ++i) turn[i] = M_grad.col(i);
-  for (int k = 0; k < N; ++k) {
-    const auto& side = plate.sides[k];
-    const double T = side_force[k], half = 0.5 * T / side.length;
-    for (int m : {side.i, side.j}) {  // T (u_j - u_i)/L · ½ (β_i + β_j)
-      add(6 * side.j, 6 * m + 4, half);
-      add(6 * side.i, 6 * m + 4, -half);
-      add(6 * side.j + 1, 6 * m + 3, -half);
-      add(6 * side.i + 1, 6 * m + 3, half);
-      turn[m] += 0.5 * T * side.t;
-    }
-    lift[side.j] += T / side.length;
-    lift[side.i] -= T / side.length;
-  }
-  Square<N> at_nodes =
-      Square<N>::Zero();  // of the second-order arms d_i ½ (θ θz - n |θ|²): on the nodes' own rotations
-  if (has_arms_) {
-    const Membrane<N> membrane = calc_membrane<N>(kind_, xy, points, section_, plate);
-    Eigen::Matrix<double, 3 * N, 1> f = Eigen::Matrix<double, 3 * N, 1>::Zero();
-    for (int q = 0; q < N; ++q)
-      f += points[q].weight * membrane.strain[q].transpose() * force.segment<3>(kNumForces * q);
-    for (int i = 0; i < N; ++i) {
-      turn[i] += arm_[i] * f.template segment<2>(3 * i);
-      at_nodes(6 * i + 3, 6 * i + 3) -= arm_[i] * lift[i];
-      at_nodes(6 * i + 4, 6 * i + 4) -= arm_[i] * lift[i];
-    }
-  }
-  for (int i = 0; i < N; ++i)
-    for (int a = 0; a < 2; ++a) {
-      at_nodes(6 * i + 3 + a, 6 * i + 5) += 0.5 * turn[i][a];
-      at_nodes(6 * i + 5, 6 * i + 3 + a) += 0.5 * turn[i][a];
-    }
-  if (has_arms_ || has_lean_) {
-    const Row<N> spin = has_lean_ ? calc_spin<N>(calc_centre<N>(xy)) : Row<N>::Zero();
-    to_nodes<N>(spin, K);
-    K.transposeInPlace();
-    to_nodes<N>(spin, K);
-  }
-  add_turned<N>(K + at_nodes, scale, out);
-}
+template ShellFields<3> Shell::calc_fields<3>() const;
+template ShellFields<4> Shell::calc_fields<4>() const;
+template Shell::Square<3> Shell::calc_surface_map<3>() const;
+template Shell::Square<4> Shell::calc_surface_map<4>() const;
+template void Shell::add_turned<3>(const Square<3>&, double, Eigen::Ref<MatrixXd>) const;
+template void Shell::add_turned<4>(const Square<4>&, double, Eigen::Ref<MatrixXd>) const;
+template Shell::ForceMap<3> Shell::calc_force_map<3>(const ShellFields<3>&) const;
+template Shell::ForceMap<4> Shell::calc_force_map<4>(const ShellFields<4>&) const;
 
 }  // namespace bough::fe

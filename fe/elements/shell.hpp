@@ -44,6 +44,13 @@ class Shell final : public Element {
   /// Second order of the element's strains under N, M, Q and of its rigid arms (docs/elements/shell.md).
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
+  void add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
+                                         GeometricProjection& sums) const override;
+
+  bool has_expansion() const override { return section_.expansion != nullptr; }
+  /// The mean temperature of the corners over the whole element, as Nastran has it (Quick Reference Guide, TEMP).
+  double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
+                     Eigen::Ref<VectorXd> initial) const override;
 
   double area() const { return area_; }
   const Matrix3d& R_basic_element() const { return R_; }  ///< columns: element axes in basic
@@ -53,6 +60,8 @@ class Shell final : public Element {
  private:
   template <int N>
   using Square = Eigen::Matrix<double, 6 * N, 6 * N>;
+  template <int N>
+  using ForceMap = Eigen::Matrix<double, 8 * N, 6 * N>;
   int num_nodes() const { return num_nodes_; }
   int num_points() const { return num_nodes_; }
   template <int N>
@@ -64,13 +73,28 @@ class Shell final : public Element {
   template <int N>
   void add_mass_of(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const;
   template <int N>
-  void calc_forces_of(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const;
+  void add_thermal_of(const Vector3d& normal_force, const Vector3d& moment, Eigen::Ref<VectorXd> load) const;
+  template <int N>
+  shell::ShellFields<N> calc_fields() const;
+  /// Internal forces per dof of the element, basic axes.
+  template <int N>
+  ForceMap<N> calc_force_map(const shell::ShellFields<N>& fields) const;
+  template <int N>
+  struct SecondOrder;
+  template <int N>
+  SecondOrder<N> calc_second_order(const shell::ShellFields<N>& fields, const double* force) const;
   template <int N>
   void add_geometric_stiffness_of(const Eigen::Ref<const VectorXd>& force, double scale,
                                   Eigen::Ref<MatrixXd> K_G) const;
+  template <int N>
+  void add_projected_of(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
+                        GeometricProjection& sums) const;
   /// Columns (rows) of the dofs of the surface become those of the nodes, all in element axes: arms, leaning normals.
   template <int N, class Columns>
-  void to_nodes(const shell::Row<N>& spin, Columns&& local) const;
+  void to_nodes(Columns&& local) const;
+  /// Dofs of the surface per dof of the nodes, in element axes.
+  template <int N>
+  Square<N> calc_surface_map() const;
   /// out += scale R (local symmetric, element axes at the nodes) Rᵀ.
   template <int N>
   void add_turned(const Square<N>& local, double scale, Eigen::Ref<MatrixXd> out) const;

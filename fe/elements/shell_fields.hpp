@@ -73,6 +73,13 @@ template <int N>
 Membrane<N> calc_membrane(MembraneKind kind, const Corners<N>& xy, const Points<N>& points, const ShellSection& section,
                           const Plate<N>& plate);
 
+template <int N>
+struct ShellFields {
+  Points<N> points;
+  Plate<N> plate;
+  Membrane<N> membrane;
+};
+
 /// ½(v,x - u,y) of the bilinear (linear) field at a point.
 template <int N>
 Row<N> calc_spin(const Point<N>& at) {

@@ -1,5 +1,7 @@
 #include "bough/fe/elements/solid.hpp"
 
+#include "bough/fe/blas.hpp"
+#include "bough/fe/elements/geometric_projection.hpp"
 #include "bough/fe/elements/temperature.hpp"
 
 namespace bough::fe {
@@ -135,14 +137,19 @@ void Solid::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const 
     }
 }
 
-void Solid::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
-  const auto fields = calc_fields(false);
-  const VectorXd a = calc_mode_map(fields, nullptr) * u;
+MatrixXd Solid::calc_force_map(const std::vector<Field>& fields) const {
+  const MatrixXd modes = calc_mode_map(fields, nullptr);
+  MatrixXd map(num_internal_forces(), num_dofs());
   for (std::size_t q = 0; q < fields.size(); ++q) {
-    Eigen::Matrix<double, 6, 1> strain = calc_strain_disp(fields[q].gradient) * u;
-    if (has_modes()) strain += calc_strain_disp(fields[q].modes) * a;
-    force.segment<6>(6 * static_cast<int>(q)) = C_el_ * strain;
+    Eigen::Matrix<double, 6, Eigen::Dynamic> strain = calc_strain_disp(fields[q].gradient);
+    if (has_modes()) strain += calc_strain_disp(fields[q].modes) * modes;
+    map.middleRows<6>(6 * static_cast<int>(q)) = C_el_ * strain;
   }
+  return map;
+}
+
+void Solid::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
+  force = calc_force_map(calc_fields(false)) * u;
 }
 
 double Solid::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const {
@@ -200,6 +207,31 @@ void Solid::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, dou
   for (int i = 0; i < m; ++i)
     for (int j = 0; j < m; ++j)
       for (int a = 0; a < 3; ++a) K_G(3 * i + a, 3 * j + a) += scale * scalar(i, j);
+}
+
+/// Σ_ij A_ij u_i·u_j with A = ∫ N_i,a σ_ab N_j,b, whose rows sum to zero, is -Σ_i<j A_ij (u_j - u_i)².
+void Solid::add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U,
+                                              const Eigen::Ref<const MatrixXd>& Phi, GeometricProjection& sums) const {
+  const auto fields = calc_fields(false);
+  const int m = static_cast<int>(geometry_.x.size()), num_pairs = m * (m - 1) / 2;
+  MatrixXd pairs(num_pairs, num_internal_forces());  // -A_ij per internal force
+  for (int q = 0; q < num_points_; ++q) {
+    const auto& f = fields[static_cast<std::size_t>(q)];
+    for (int j = 0, k = 0; j < m; ++j)
+      for (int i = 0; i < j; ++i, ++k) {
+        const Vector3d a = f.gradient.col(i), b = -f.weight * f.gradient.col(j);
+        pairs.block<1, 6>(k, 6 * q) << a.x() * b.x(), a.y() * b.y(), a.z() * b.z(), a.x() * b.y() + a.y() * b.x(),
+            a.y() * b.z() + a.z() * b.y(), a.z() * b.x() + a.x() * b.z();
+      }
+  }
+  auto terms = sums.add_terms(num_pairs);
+  MatrixXd force(num_internal_forces(), U.cols());
+  multiply_dense(false, calc_force_map(fields), U, 0, force);
+  multiply_dense(false, pairs, force, 0, terms.weights);
+  const MatrixXd X = Phi.transpose();
+  for (int j = 0, k = 0; j < m; ++j)
+    for (int i = 0; i < j; ++i, ++k)
+      for (int a = 0; a < 3; ++a) add_square(X.col(3 * j + a) - X.col(3 * i + a), 1, terms.products.col(k));
 }
 
 double Solid::calc_volume(double* smallest_jacobian_ratio) const {

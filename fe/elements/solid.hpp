@@ -43,6 +43,8 @@ class Solid final : public Element {
   std::vector<std::string> internal_force_names() const override;
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
+  void add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
+                                         GeometricProjection& sums) const override;
 
   bool has_expansion() const override { return expansion_ != nullptr; }
   /// The temperature is interpolated from the nodes with the shapes of the displacements.
@@ -61,6 +63,7 @@ class Solid final : public Element {
       return 0;
     return geometry_.kind == SolidKind::Hexa ? 3 : 4;
   }
+  MatrixXd calc_force_map(const std::vector<Field>& fields) const;  ///< internal forces per dof
   MatrixXd calc_mode_map(const std::vector<Field>& fields, MatrixXd* condensed) const;
 
   SolidGeometry geometry_;

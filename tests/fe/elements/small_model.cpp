@@ -5,6 +5,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "bough/fe/elements/geometric_projection.hpp"
+
 namespace bough::fe::test {
 
 int HandNodes::add_grid(int id, const Vector3d& x, const Matrix3d& R_basic_cd) {
@@ -98,6 +100,26 @@ MatrixXd SmallModel::calc_mass(MassKind kind) const {
   return M;
 }
 
+/// Its projection for one load and for more than there are internal forces is that of the element's matrix.
+static void check_projection(const Element& element, const VectorXd& u, const MatrixXd& K_G) {
+  const Eigen::Index N = u.size();
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (const Eigen::Index num_loads : {1, 250}) {
+    const VectorXd factor = VectorXd::NullaryExpr(num_loads, [](auto c) { return c % 2 ? 1.0 : -2.0; });  // exact
+    const MatrixXd Phi = num_loads == 1 ? MatrixXd(MatrixXd::Identity(N, N))
+                                        : MatrixXd(MatrixXd::NullaryExpr(N, 3, [&] { return normal(random); }));
+    GeometricProjection sums(Phi.cols(), num_loads);
+    element.add_projected_geometric_stiffness(u * factor.transpose(), Phi, sums);
+    const auto result = sums.finish();
+    const MatrixXd expected = Phi.transpose() * (0.5 * (K_G + K_G.transpose())) * Phi;
+    for (const Eigen::Index c : {Eigen::Index(0), num_loads - 1})
+      EXPECT_LE((result[static_cast<std::size_t>(c)] - factor[c] * expected).norm(),
+                1e-12 * Phi.squaredNorm() * K_G.norm())
+          << element.card() << " " << element.id() << ", " << num_loads << " loads";
+  }
+}
+
 MatrixXd SmallModel::calc_geometric_stiffness(const VectorXd& u) const {
   MatrixXd K_G = MatrixXd::Zero(nodes.num_gdofs(), nodes.num_gdofs());
   for (const auto& element : elements) {
@@ -108,6 +130,7 @@ MatrixXd SmallModel::calc_geometric_stiffness(const VectorXd& u) const {
     element->calc_internal_forces(u_e, force);
     MatrixXd local = MatrixXd::Zero(element->num_dofs(), element->num_dofs());
     element->add_geometric_stiffness(force, 1, local);
+    check_projection(*element, u_e, local);
     scatter(*element, local, &K_G);
   }
   return K_G;
