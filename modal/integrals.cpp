@@ -1,7 +1,5 @@
 #include "bough/modal/integrals.hpp"
 
-#include <array>
-
 #include "bough/base/rotation.hpp"
 #include "bough/fe/blas.hpp"
 
@@ -17,6 +15,39 @@ MassIntegrals make_empty(int num_modes) {
   g.gamma3.assign(num_modes, Matrix3d::Zero());
   g.gamma4.assign(num_modes, std::vector<Matrix3d>(num_modes, Matrix3d::Zero()));
   return g;
+}
+
+/// Rows of one component (0..5) at every node: p x m, zero where the dof is missing.
+MatrixXd take_component(const NodalDofs& dofs, const MatrixXd& X, int component) {
+  MatrixXd part(dofs.num_nodes(), X.cols());
+  for (Eigen::Index j = 0; j < X.cols(); ++j)
+    for (Eigen::Index k = 0; k < part.rows(); ++k) {
+      const int row = dofs.row(k, component);
+      part(k, j) = row >= 0 ? X(row, j) : 0;
+    }
+  return part;
+}
+
+/// Translations side by side: p x 3m, x of every column first.
+MatrixXd take_translations(const NodalDofs& dofs, const MatrixXd& X) {
+  MatrixXd parts(dofs.num_nodes(), 3 * X.cols());
+  for (int a = 0; a < 3; ++a) parts.middleCols(a * X.cols(), X.cols()) = take_component(dofs, X, a);
+  return parts;
+}
+
+/// e_a×φ_j (3n columns, j + a n; rotations zero), then Φ itself (n).
+MatrixXd make_turned(const NodalDofs& dofs, const MatrixXd& Phi) {
+  const Eigen::Index n = Phi.cols();
+  MatrixXd X = MatrixXd::Zero(Phi.rows(), 4 * n);
+  X.rightCols(n) = Phi;
+  const auto at = [](int a) { return a % 3; };
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (int a = 0; a < 3; ++a)
+      for (Eigen::Index k = 0; k < dofs.num_nodes(); ++k) {
+        const int first = dofs.row(k, at(a + 1)), second = dofs.row(k, at(a + 2));
+        if (first >= 0 && second >= 0) X(first, a * n + j) = -Phi(second, j), X(second, a * n + j) = Phi(first, j);
+      }
+  return X;
 }
 
 MassTimes make_mass_times(const fe::Model& model, fe::MassKind kind) {
@@ -36,25 +67,23 @@ MassIntegrals calc_momentum_integrals(const NodalDofs& dofs, const MassTimes& ma
   const auto n = static_cast<int>(Phi.cols());
   const MatrixXd M_Phi = mass_times(Phi);
   MassIntegrals g = make_empty(n);
-  // G[a](b) = Σ_k A^T_kj(a) φ_kl(b) for all pairs at once: Γ2 and Γ4 are its antisymmetric part and trace.
-  std::array<MatrixXd, 9> G;
-  G.fill(MatrixXd::Zero(n, n));
-  for (int node = 0; node < dofs.num_nodes(); ++node) {
-    const Vector3d p = dofs.xyz.row(node).transpose() - reference;
-    const MatrixXd A = dofs.gather(M_Phi, node), phi = dofs.gather(Phi, node);
-    g.gamma0 += A.topRows(3);
-    g.gamma1 += A.bottomRows(3) + skew(p) * A.topRows(3);
-    for (int j = 0; j < n; ++j) {
-      const Vector3d a = A.col(j).head<3>();
-      g.gamma3[j] += p.dot(a) * Matrix3d::Identity() - a * p.transpose();
-    }
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) G[3 * a + b] += A.row(a).transpose() * phi.row(b);
+  const MatrixXd p = dofs.xyz.rowwise() - reference.transpose(), A = take_translations(dofs, M_Phi);
+  MatrixXd p_A(3, 3 * n), G(3 * n, 3 * n);  // Σ_k p_k(b) A_kj(a), Σ_k A_kj(a) φ_kl(b), x of every mode first
+  fe::multiply_dense(true, p, A, 0, p_A);
+  fe::multiply_dense(true, A, take_translations(dofs, Phi), 0, G);
+  for (int a = 0; a < 3; ++a) {
+    const int b = (a + 1) % 3, c = (a + 2) % 3;
+    g.gamma0.row(a) = A.middleCols(a * n, n).colwise().sum();
+    g.gamma1.row(a) =
+        take_component(dofs, M_Phi, 3 + a).colwise().sum() + p_A.block(b, c * n, 1, n) - p_A.block(c, b * n, 1, n);
   }
   for (int j = 0; j < n; ++j) {
+    Matrix3d outer;
+    for (int i = 0; i < 9; ++i) outer(i / 3, i % 3) = p_A(i % 3, i / 3 * n + j);
+    g.gamma3[j] = outer.trace() * Matrix3d::Identity() - outer;
+    // Γ2 and Γ4 are the antisymmetric part and trace of G.
     for (int k = 0; k < n; ++k) {
-      Matrix3d outer;
-      for (int i = 0; i < 9; ++i) outer(i / 3, i % 3) = G[i](j, k);
+      for (int i = 0; i < 9; ++i) outer(i / 3, i % 3) = G(i / 3 * n + j, i % 3 * n + k);
       g.gamma2[j].col(k) << outer(1, 2) - outer(2, 1), outer(2, 0) - outer(0, 2), outer(0, 1) - outer(1, 0);
       g.gamma4[j][k] = outer.trace() * Matrix3d::Identity() - outer;
     }
@@ -71,33 +100,25 @@ MassIntegrals calc_exact_integrals(const NodalDofs& dofs, const MassTimes& mass_
                                    const Vector3d& reference) {
   BOUGH_DEMAND(Phi.rows() == dofs.num_dofs);
   const auto n = static_cast<int>(Phi.cols());
-  // Columns: Φ_R (6), e_a×φ_j (3n, j + a n), Φ (n).
-  MatrixXd B = MatrixXd::Zero(Phi.rows(), 6 + 4 * n);
-  B.leftCols(6) = dofs.calc_rigid_modes(reference);
-  B.rightCols(n) = Phi;
-  for (int node = 0; node < dofs.num_nodes(); ++node) {
-    MatrixXd turned = MatrixXd::Zero(6, n);
-    const MatrixXd phi = dofs.gather(Phi, node).topRows(3);
-    for (int a = 0; a < 3; ++a) {
-      turned.topRows(3) = skew(Vector3d::Unit(a)) * phi;
-      dofs.scatter(turned, node, B.middleCols(6 + a * n, n));
-    }
+  const MatrixXd X = make_turned(dofs, Phi), Phi_R = dofs.calc_rigid_modes(reference);
+  MatrixXd gram_R(6, 4 * n), gram(3 * n, 4 * n);  // of Φ_R, and of e_a×φ_j, with X
+  for (int a = 0; a < 4; ++a) {                   // a quarter of M X at a time: less memory
+    const MatrixXd M_X = mass_times(X.middleCols(a * n, n));
+    fe::multiply_dense(true, Phi_R, M_X, 0, gram_R.middleCols(a * n, n));
+    fe::multiply_dense(true, X.leftCols(3 * n), M_X, 0, gram.middleCols(a * n, n));
   }
-  const MatrixXd M_turned = mass_times(B.rightCols(4 * n));
-  MatrixXd gram(6 + 4 * n, 4 * n);
-  fe::multiply_dense(true, B, M_turned, 0, gram);
   const auto turned = [n](int a, int j) { return a * n + j; };
   const auto plain = [n](int j) { return 3 * n + j; };
 
   MassIntegrals g = make_empty(n);
-  g.gamma0 = gram.block(0, 3 * n, 3, n);
-  g.gamma1 = gram.block(3, 3 * n, 3, n);
+  g.gamma0 = gram_R.topRightCorner(3, n);
+  g.gamma1 = gram_R.bottomRightCorner(3, n);
   for (int j = 0; j < n; ++j) {
     for (int a = 0; a < 3; ++a) {
-      for (int b = 0; b < 3; ++b) g.gamma3[j](a, b) = gram(3 + a, turned(b, j));
+      for (int b = 0; b < 3; ++b) g.gamma3[j](a, b) = gram_R(3 + a, turned(b, j));
       for (int k = 0; k < n; ++k) {
-        g.gamma2[j](a, k) = gram(6 + turned(a, j), plain(k));
-        for (int b = 0; b < 3; ++b) g.gamma4[j][k](a, b) = gram(6 + turned(a, k), turned(b, j));
+        g.gamma2[j](a, k) = gram(turned(a, j), plain(k));
+        for (int b = 0; b < 3; ++b) g.gamma4[j][k](a, b) = gram(turned(a, k), turned(b, j));
       }
     }
   }

@@ -1,0 +1,130 @@
+#include "bough/stiffening/reduction.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "bough/base/rotation.hpp"
+
+namespace bough::stiffening {
+
+using modal::bases::StaticSolve;
+using records::BodyFrame;
+
+namespace {
+constexpr const char* kDirections[] = {"x", "y", "z", "rx", "ry", "rz"};
+}
+
+/// A locator for each translation of the interface nodes and each load of the body file.
+void Reduction::make_loads(const fe::Model& model) {
+  for (const int id : spec_.interface_nodes)
+    if (std::find(body_.interface_nodes.begin(), body_.interface_nodes.end(), id) == body_.interface_nodes.end())
+      body_.interface_nodes.push_back(id);
+  const auto add_unit = [&](const std::string& group, const std::string& name, int id, int direction) {
+    const auto& node = model.node(model.find_node(id));
+    loads_.push_back(
+        {group, {name, id, direction}, VectorXd::Unit(model.num_gdofs(), node.first_gdof + direction - 1)});
+  };
+  for (const int id : body_.interface_nodes)
+    for (int d = 1; d <= 3; ++d) add_unit("", "node" + std::to_string(id) + "_" + kDirections[d - 1], id, d);
+  for (std::size_t i = 0; i < spec_.loads.size(); ++i) {
+    const auto& load = spec_.loads[i];
+    const std::string name = load.name.empty() ? "load" + std::to_string(i + 1) : load.name;
+    if (load.load_set > 0) {
+      BodyLoad& pattern = loads_.emplace_back();
+      pattern.group = pattern.locator.name = name;
+      pattern.F = model.calc_load(deck_, load.load_set, diagnostics_);
+      continue;
+    }
+    for (const int d : load.directions)
+      add_unit(name, load.directions.size() == 1 ? name : name + "_" + kDirections[d - 1], load.node, d);
+  }
+  diagnostics_.throw_if_errors();
+}
+
+/// What each external load does to the body as a whole: Φ_Rᵀ F, and Σ φ_kj × f_k by which mode j shifts its moment.
+void Reduction::set_resultants(const fe::Model& model, const MatrixXd& F_ext) {
+  body_.load_resultant = model.calc_rigid_modes().transpose() * F_ext;
+  body_.load_moment.assign(static_cast<std::size_t>(F_ext.cols()), MatrixXd::Zero(3, Phi_.cols()));
+  for (Eigen::Index e = 0; e < F_ext.cols(); ++e) {
+    for (const auto& node : model.nodes()) {
+      if (node.num_dofs != 6) continue;
+      const Eigen::Vector3d f = F_ext.block<3, 1>(node.first_gdof, e);
+      if (f.isZero(0)) continue;
+      body_.load_moment[static_cast<std::size_t>(e)] -= skew(f) * Phi_.middleRows<3>(node.first_gdof);
+    }
+  }
+}
+
+std::vector<int> Reduction::choose_support(const fe::Model& model) {
+  if (!is_free()) return {};
+  int node = spec_.support.empty() ? 0 : spec_.support.front();
+  if (spec_.frame == BodyFrame::Node) node = spec_.frame_nodes.front();
+  return fe::choose_determinate_support(model, node);
+}
+
+/// The frame rides on a node that follows others (RBE2, RBE3): no dof of its own can be held.
+bool Reduction::is_on_dependent_node(const fe::Model& model) const {
+  if (spec_.frame != BodyFrame::Node) return false;
+  const int index = model.find_node(spec_.frame_nodes.front());
+  for (int c = 1; c <= 6; ++c)
+    if (model.find_fdof(index, c) < 0) return true;
+  return false;
+}
+
+/// A deck that leaves a mechanism is wrong input here: what the factorization says, with what a body needs.
+StaticSolve Reduction::make_solver(const fe::Model& model, const fe::PetscMat& K) {
+  try {
+    if (is_on_dependent_node(model)) {
+      const auto fixed = std::make_shared<modal::bases::FixedInterface>(model, spec_.frame_nodes, diagnostics_);
+      return [fixed](const MatrixXd& F) { return fixed->solve(F); };
+    }
+    const auto solver = std::make_shared<fe::StaticSolver>(model, K, choose_support(model));
+    factor_ = solver->find_definite_factor();
+    return [solver](const MatrixXd& F) { return solver->solve(F); };
+  } catch (const ComputationError& error) {
+    for (auto item : error.items()) {
+      if (item.where.file.empty()) item.where = deck_.locate({0, 0});
+      diagnostics_.add(std::move(item));
+    }
+    const auto& id = error.items().front().id;
+    if (id != "fe.mechanism" && id != "modal.interface-mechanism") throw;
+    add_mechanism_error("the stiffness matrix is singular");
+    throw InputError(diagnostics_.items());
+  }
+}
+
+void Reduction::set_stiffening(const fe::Model& model, const StaticSolve& solve) {
+  const auto n = Phi_.cols();
+  MatrixXd F_ext(model.num_gdofs(), static_cast<Eigen::Index>(loads_.size()));
+  for (std::size_t e = 0; e < loads_.size(); ++e) {
+    F_ext.col(static_cast<Eigen::Index>(e)) = loads_[e].F;
+    body_.locators.push_back(loads_[e].locator);
+  }
+  body_.external_load = Phi_.transpose() * F_ext;
+  set_resultants(model, F_ext);
+
+  std::vector<int> inertial;
+  if (spec_.inertial_loads.empty()) {
+    for (int i = 0; i < records::kNumInertialLoads; ++i) inertial.push_back(i);
+  } else {
+    std::set<int> wanted;
+    for (const auto load : spec_.inertial_loads) wanted.insert(static_cast<int>(load));
+    inertial.assign(wanted.begin(), wanted.end());
+  }
+  const auto num_inertial = static_cast<Eigen::Index>(inertial.size());
+  MatrixXd F(model.num_gdofs(), num_inertial + F_ext.cols());
+  F << body_.F_I(Eigen::all, inertial), F_ext;
+
+  const MatrixXd U = solve(F);
+  report("geometric stiffness");
+  auto K_G = calc_generalized_geometric_stiffness(model, U, Phi_);
+  body_.kg_inertial.fill(MatrixXd::Zero(n, n));
+  body_.kg_inertial_computed.fill(false);
+  for (Eigen::Index c = 0; c < num_inertial; ++c) {
+    body_.kg_inertial[inertial[c]] = std::move(K_G[c]);
+    body_.kg_inertial_computed[inertial[c]] = true;
+  }
+  body_.kg_external.assign(std::make_move_iterator(K_G.begin() + num_inertial), std::make_move_iterator(K_G.end()));
+}
+
+}  // namespace bough::stiffening

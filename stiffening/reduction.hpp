@@ -1,0 +1,58 @@
+#pragma once
+/// \file The stages of reduce(): one deck, one spec, one body. Internal.
+#include "bough/fe/statics.hpp"
+#include "bough/stiffening/body_basis.hpp"
+#include "bough/stiffening/reduce.hpp"
+
+namespace bough::stiffening {
+
+/// The stages in order, each filling its part of the record.
+class Reduction {
+ public:
+  Reduction(const records::Deck& deck, const records::BodySpec& spec, const ReduceOptions& options,
+            Diagnostics& diagnostics)
+      : deck_(deck), spec_(spec), options_(options), diagnostics_(diagnostics) {}
+
+  records::FlexBody run();
+
+ private:
+  /// The body file, or the deck when there is none.
+  SourceLocation where() const { return spec_.file.empty() ? deck_.locate({0, 0}) : SourceLocation{spec_.file, 0, 0}; }
+  void report(const std::string& stage) const {
+    if (options_.progress) options_.progress(stage);
+  }
+  void check_spec();
+  void check_nodes(const fe::Model& model);
+  void check_node(const fe::Model& model, int id, const std::string& what, const SourceLocation& at);
+  fe::ModelOptions make_model_options() const;
+  void set_rigid_part(const fe::Model& model);
+  std::vector<int> choose_columns(int available, const std::string& whose);
+  void check_rigid(const modal::bases::Basis& basis);
+  void set_modes(const fe::Model& model, const modal::bases::StaticSolve& solve);
+  void set_given_modes(const fe::Model& model);
+  void set_damping(const modal::bases::Basis& basis);
+  void add_dampers(const fe::Model& model);
+  void set_nodes(const fe::Model& model);
+  void set_integrals(const fe::Model& model);  ///< and effective masses, F_I
+  void set_stiffening(const fe::Model& model, const modal::bases::StaticSolve& solve);
+  void make_loads(const fe::Model& model);
+  void set_resultants(const fe::Model& model, const MatrixXd& F_ext);
+  std::vector<int> choose_support(const fe::Model& model);
+  bool is_on_dependent_node(const fe::Model& model) const;
+  modal::bases::StaticSolve make_solver(const fe::Model& model, const fe::PetscMat& K);
+  fe::Model build_model();
+  void add_mechanism_error(const std::string& what);
+
+  bool is_free() const { return spec_.frame != records::BodyFrame::Fixed; }
+
+  const records::Deck& deck_;
+  const records::BodySpec& spec_;
+  const ReduceOptions& options_;
+  Diagnostics& diagnostics_;
+  records::FlexBody body_;
+  MatrixXd Phi_;
+  std::vector<BodyLoad> loads_;
+  const fe::SymmetricFactor* factor_ = nullptr;  // of K, kept by the static solver
+};
+
+}  // namespace bough::stiffening
