@@ -224,6 +224,26 @@ TEST(OldDecks, HintsAndSwitchesAreNoErrors) {
   EXPECT_EQ(read("CUSERIN,1,2,3\n").count("deck.unsupported-card"), 1);
 }
 
+TEST(OldDecks, RigidElements) {
+  const auto deck = read_clean(
+      "GRID,1\nGRID,2\nGRID,3\nGRID,4\nCRIGD1,7,1,2,THRU,4\nCRIGD2,8,1,2,123,3,46\nCRIGDR,9,1,4,2\n");
+  ASSERT_EQ(deck.rbe2.size(), 1u);
+  EXPECT_EQ(deck.rbe2[0].gn, 1);
+  EXPECT_EQ(deck.rbe2[0].cm, 63u);
+  EXPECT_EQ(deck.rbe2[0].gm, (std::vector<int>{2, 3, 4}));
+  ASSERT_EQ(deck.rbe1.size(), 1u);
+  EXPECT_EQ(deck.rbe1[0].independent[0].g, 1);
+  EXPECT_EQ(deck.rbe1[0].independent[0].c, 63u);
+  ASSERT_EQ(deck.rbe1[0].dependent.size(), 2u);
+  EXPECT_EQ(deck.rbe1[0].dependent[1].c, 0b101000u);
+  ASSERT_EQ(deck.rrod.size(), 1u);
+  EXPECT_EQ(deck.rrod[0].gb, 4);
+  EXPECT_EQ(deck.rrod[0].cmb, 2);
+  EXPECT_EQ(read("CRIGD1,7,1\n").count("deck.missing-field"), 1);
+  EXPECT_EQ(read("CRIGD2,7,1\n").count("deck.missing-field"), 1);
+  EXPECT_EQ(read("CRIGDR,7,1,2,4\n").count("deck.field-range"), 1);
+}
+
 TEST(OldDecks, TableOfBucklingRoots) {
   const auto deck = read_clean(
       "EIGB    300     UDET    .10     2.5     4       4       0       1.5E-05 +EIGB300\n+EIGB300MAX\n"
