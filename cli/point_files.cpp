@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "bough/formats/hdf5/grids_file.hpp"
@@ -17,8 +18,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Rows of numbers between commas, semicolons, tabs or blanks; # and $ begin comments; a heading may come first.
-std::vector<std::vector<double>> read_table(const std::string& path, std::size_t num_columns, const std::string& what) {
+bool is_whole(double value) { return std::abs(value) <= std::numeric_limits<int>::max() && value == std::trunc(value); }
+
+/// Rows of numbers between commas, semicolons, tabs or blanks, whole numbers in the first `num_ids` columns; # and $
+/// begin comments; a heading may come first.
+std::vector<std::vector<double>> read_table(const std::string& path, std::size_t num_columns, std::size_t num_ids,
+                                            const std::string& what) {
   demand_file(path);
   std::ifstream in(path);
   std::vector<std::vector<double>> rows;
@@ -37,7 +42,8 @@ std::vector<std::vector<double>> read_table(const std::string& path, std::size_t
         row.push_back(std::stod(word, &used));
       } catch (const std::exception&) {
       }
-      is_good = is_good && used == word.size() && std::isfinite(row.back());
+      is_good =
+          is_good && used == word.size() && std::isfinite(row.back()) && (row.size() > num_ids || is_whole(row.back()));
     }
     if (row.empty() && is_good) continue;
     if (is_good && row.size() == num_columns) {
@@ -70,7 +76,7 @@ records::Deck read_grids(const std::string& path) {
     if (!grids) throw InputError("cli.no-grids", {path}, "the file has no /grids", "give a table of id, x, y, z");
     return make_points(grids->id, grids->xyz, path);
   }
-  const auto rows = read_table(path, 4, "the id of a grid and x, y, z");
+  const auto rows = read_table(path, 4, 1, "the id of a grid and x, y, z");
   std::vector<int> id;
   Eigen::MatrixXd xyz(static_cast<Eigen::Index>(rows.size()), 3);
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -105,7 +111,7 @@ bool is_hdf5(const std::string& path) {
 
 Eigen::MatrixXi read_dof_table(const std::string& path) {
   if (is_hdf5(path)) return hdf5::read_sparse_file(path).dof_map;
-  const auto rows = read_table(path, 2, "a node and a component");
+  const auto rows = read_table(path, 2, 2, "a node and a component");
   Eigen::MatrixXi dofs(static_cast<Eigen::Index>(rows.size()), 2);
   for (std::size_t i = 0; i < rows.size(); ++i)
     dofs.row(static_cast<Eigen::Index>(i)) << static_cast<int>(rows[i][0]), static_cast<int>(rows[i][1]);
