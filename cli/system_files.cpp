@@ -15,6 +15,23 @@ std::string resolve_beside(const std::string& from_file, const std::string& path
   return (fs::path(from_file).parent_path() / path).string();
 }
 
+namespace {
+
+/// As seen from here, unless that climbs out of this folder.
+std::string shorten(const std::string& path) {
+  std::error_code failed;
+  const auto near = fs::proximate(path, failed).string();
+  return failed || near.rfind("..", 0) == 0 ? path : near;
+}
+
+/// What to reduce into the body file that is missing: the body file of the same name beside it, when there is one.
+std::string name_reducible(const std::string& file) {
+  const auto spec = fs::path(file).replace_extension(".toml");
+  return fs::exists(spec) ? spec.string() : "BODY.toml";
+}
+
+}  // namespace
+
 LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics) {
   demand_file(path);
   auto spec = toml_files::read_system_spec(path, diagnostics);
@@ -23,6 +40,13 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics) {
   for (const auto& body : spec.bodies) {
     if (body.file.empty() || flex.count(body.file)) continue;
     const auto file = resolve_beside(path, body.file);
+    if (!fs::exists(file)) {
+      diagnostics.error("cli.no-body-file", body.at.file.empty() ? SourceLocation{path} : body.at,
+                        "body \"" + body.name + "\": there is no file " + shorten(file),
+                        "make it with bough reduce " + name_reducible(shorten(file)) + " -o " + shorten(file) +
+                            ", or correct the name");
+      continue;
+    }
     try {
       flex[body.file] = hdf5::read_flex_body(file);
       flex_path[body.file] = file;

@@ -131,7 +131,11 @@ class BadSystem(ProgramTest):
         self.fails_with(SYSTEM.replace('child = "b"', 'child = "bb"'), "bb")
 
     def test_missing_body_file(self):
-        self.fails_with(SYSTEM.replace('mass = 1.0\n', 'file = "none.h5"\n', 1), "none.h5")
+        text = SYSTEM.replace('mass = 1.0\n', 'file = "none.h5"\n', 1)
+        result = self.fails_with(text, "[cli.no-body-file]", "bough reduce BODY.toml -o none.h5")
+        self.assertRegex(result.stderr, r'(?m)^system.toml:1(:\d+)?: error: body "a": there is no file none.h5;')
+        self.write("none.toml", "[body]\n")
+        self.fails_with(text, "bough reduce none.toml -o none.h5")
 
     def test_truncated_body_file(self):
         self.write("deck.bdf", BEAM)
