@@ -2,6 +2,7 @@
 
 #include "bough/base/diagnostic.hpp"
 #include "console.hpp"
+#include "help_files.hpp"
 #include "usage_text.hpp"
 #include "verbs.hpp"
 #include "versions.hpp"
@@ -56,8 +57,10 @@ int run(int argc, const char* const* argv) {
       "bough VERB --help explains a verb. Exit codes: 0 success, 1 the input is wrong, 2 usage, 3 the computation "
       "failed.\n"
       "Example:\n  bough init spinup && cd spinup && bough reduce boom.toml && bough run spinup.toml -o spinup.h5");
-  bool show_version = false;
+  bool show_version = false, show_man_page = false, show_completion = false;
   app.add_flag("--version", show_version, "Print the versions of Bough and of its libraries");
+  app.add_flag("--man-page", show_man_page, "Print the manual page, as installed: bough --man-page | man -l -");
+  app.add_flag("--bash-completion", show_completion, "Print the completion for bash: . <(bough --bash-completion)");
   app.require_subcommand(0, 1);
 
   cli::Action action;
@@ -74,8 +77,10 @@ int run(int argc, const char* const* argv) {
     console.print_error("cli.usage", what, advice);
     return cli::kUsageError;
   }
-  if (show_version) {
-    console.print_data(cli::describe_versions());
+  if (show_version || show_man_page || show_completion) {
+    console.print_data(show_version    ? cli::describe_versions()
+                       : show_man_page ? cli::make_man_page(app)
+                                       : cli::make_bash_completion(app));
     return cli::kSuccess;
   }
   if (!action) {

@@ -4,6 +4,15 @@ install(TARGETS ${modules} EXPORT BoughTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 if(TARGET bough)
   install(TARGETS bough RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  # The program writes its manual page and its completion itself, so that they say what --help says.
+  install(CODE "
+    execute_process(COMMAND \"$<TARGET_FILE:bough>\" --man-page
+      OUTPUT_FILE \"${CMAKE_BINARY_DIR}/bough.1\" COMMAND_ERROR_IS_FATAL ANY)
+    execute_process(COMMAND \"$<TARGET_FILE:bough>\" --bash-completion
+      OUTPUT_FILE \"${CMAKE_BINARY_DIR}/bough.bash\" COMMAND_ERROR_IS_FATAL ANY)")
+  install(FILES ${CMAKE_BINARY_DIR}/bough.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${CMAKE_BINARY_DIR}/bough.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+    RENAME bough)
 endif()
 foreach(room base formats fe modal stiffening solver)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bough

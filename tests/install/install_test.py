@@ -28,6 +28,9 @@ with tempfile.TemporaryDirectory() as folder:
     assert abs(angle - 0.1) < 1e-4, angle
     bough = os.path.join(prefix, "bin", "bough")
     assert "bough" in run(bough, "--version", stdout=subprocess.PIPE).stdout
+    for name, words in [("man/man1/bough.1", ".SS bough reduce"), ("bash-completion/completions/bough", "complete ")]:
+        with open(os.path.join(prefix, "share", name)) as f:
+            assert words in f.read(), name
     share = os.path.join(prefix, "share", "bough")
     assert os.path.exists(os.path.join(share, "examples/ex01-spinup/boom.bdf")), share
     headers = [os.path.join(base, name) for base, _, names in os.walk(os.path.join(prefix, "include")) for name in names]
