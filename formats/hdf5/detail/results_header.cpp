@@ -1,0 +1,65 @@
+#include "bough/formats/hdf5/detail/results_header.hpp"
+
+#include <cerrno>
+#include <vector>
+
+#include "bough/base/version.hpp"
+#include "bough/formats/hdf5/detail/results_layout.hpp"
+#include "bough/formats/hdf5/files.hpp"
+
+namespace bough::hdf5 {
+
+namespace {
+
+void write_source(GrowingFile& file, const std::vector<std::pair<std::string, std::string>>& source) {
+  const Handle type = make_string_type();
+  const hsize_t shape[2] = {source.size(), 2};
+  const Handle space(H5Screate_simple(2, shape, nullptr), H5Sclose);
+  const Handle attribute(H5Acreate2(file.get(), "source", type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  std::vector<const char*> data;
+  for (const auto& [name, hash] : source) {
+    data.push_back(name.c_str());
+    data.push_back(hash.c_str());
+  }
+  file.check(attribute.is_valid() && (data.empty() || H5Awrite(attribute.get(), type.get(), data.data()) >= 0),
+             "attribute source cannot be written");
+}
+
+}  // namespace
+
+void write_provenance(GrowingFile& file, const records::ResultsHeader& header) {
+  file.check(write_text_attribute(file.get(), "format", kResultsFormat) &&
+                 write_text_attribute(file.get(), "format_version", kResultsFormatVersion) &&
+                 write_text_attribute(file.get(), "bough_version", get_version()),
+             "the file cannot be written");
+  write_source(file, header.source);
+}
+
+void write_settings(GrowingFile& file, const records::ResultsHeader& header) {
+  const Handle type = make_string_type();
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  Handle system(exists(file.get(), "/system")
+                    ? H5Dopen2(file.get(), "/system", H5P_DEFAULT)
+                    : H5Dcreate2(file.get(), "/system", type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                H5Dclose);
+  const char* text = header.system_text.c_str();
+  file.check(system.is_valid() && H5Dwrite(system.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &text) >= 0 &&
+                 write_text_attribute(system.get(), "description", "the system file of the run, TOML") &&
+                 write_text_attribute(system.get(), "dims", "1"),
+             "/system cannot be written");
+  const Handle settings(exists(file.get(), "/settings")
+                            ? H5Gopen2(file.get(), "/settings", H5P_DEFAULT)
+                            : H5Gcreate2(file.get(), "/settings", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                        H5Gclose);
+  for (const auto& [name, value] : header.settings) {
+    file.check(write_text_attribute(settings.get(), name, value), "setting " + name + " cannot be written");
+  }
+}
+
+void write_state(GrowingFile& file, bool completed, const std::string& reason) {
+  errno = 0;
+  file.write_integer(file.get(), "completed", completed ? 1 : 0, H5T_STD_I32LE);
+  file.check(write_text_attribute(file.get(), "reason", reason), "attribute reason cannot be written");
+}
+
+}  // namespace bough::hdf5
