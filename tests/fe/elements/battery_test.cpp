@@ -1,9 +1,7 @@
 /// What every element owes, over every kind of element in a random orientation: symmetry, rigid motions, mass, K_G.
 #include <functional>
 
-#include <Eigen/Eigenvalues>
-
-#include "small_model.hpp"
+#include "element_checks.hpp"
 
 namespace bough::fe::test {
 namespace {
@@ -136,37 +134,18 @@ SmallModel make_model(const Case& c) {
   return m;
 }
 
-VectorXd make_displacement(unsigned seed, int n) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  VectorXd u(n);
-  for (double& value : u) value = normal(random);
-  return u;
-}
-
 class Battery : public testing::TestWithParam<Case> {};
 
 TEST_P(Battery, StiffnessIsSymmetricAndFreeOfRigidMotion) {
-  const SmallModel m = make_model(GetParam());
-  const MatrixXd K = m.calc_stiffness();
-  const double scale = std::max(K.cwiseAbs().maxCoeff(), 1e-300);
-  EXPECT_LT((K - K.transpose()).cwiseAbs().maxCoeff(), 1e-14 * scale);
-  EXPECT_LT((K * m.nodes.calc_rigid_modes()).cwiseAbs().maxCoeff(), 1e-12 * scale);
-  const VectorXd lambda = Eigen::SelfAdjointEigenSolver<MatrixXd>(K).eigenvalues();
-  EXPECT_EQ((lambda.array() > 1e-11 * scale).count(), GetParam().rank) << lambda.transpose();
-  EXPECT_GE(lambda.minCoeff(), -1e-13 * scale);
+  expect_sound_stiffness(make_model(GetParam()), GetParam().rank, 1e-11);
 }
 
 TEST_P(Battery, MassIsSymmetricAndSemidefinite) {
   const SmallModel m = make_model(GetParam());
   MatrixXd rigid[2];
   for (MassKind kind : {MassKind::Lumped, MassKind::Consistent}) {
-    const MatrixXd M = m.calc_mass(kind);
-    ASSERT_EQ(M.cwiseAbs().maxCoeff() > 0, GetParam().has_mass);
-    EXPECT_LT((M - M.transpose()).cwiseAbs().maxCoeff(), 1e-14 * M.cwiseAbs().maxCoeff());
-    EXPECT_GE(Eigen::SelfAdjointEigenSolver<MatrixXd>(M).eigenvalues().minCoeff(), -1e-14 * M.cwiseAbs().maxCoeff());
-    const MatrixXd Phi_R = m.nodes.calc_rigid_modes();
-    rigid[kind == MassKind::Lumped ? 0 : 1] = Phi_R.transpose() * M * Phi_R;
+    ASSERT_EQ(m.calc_mass(kind).cwiseAbs().maxCoeff() > 0, GetParam().has_mass);
+    rigid[kind == MassKind::Lumped ? 0 : 1] = check_mass(m, kind);
   }
   // Mass and first moments of the two agree; the same mass in every direction.
   EXPECT_LT((rigid[0] - rigid[1]).topRows<3>().cwiseAbs().maxCoeff(), 1e-13 * rigid[0].cwiseAbs().maxCoeff());
@@ -176,45 +155,18 @@ TEST_P(Battery, MassIsSymmetricAndSemidefinite) {
 TEST_P(Battery, GeometricStiffnessTurnsTheNodalForces) {
   const SmallModel m = make_model(GetParam());
   const int n = m.nodes.num_gdofs();
-  const VectorXd u1 = make_displacement(21, n), u2 = make_displacement(22, n);
-  const MatrixXd K_G = m.calc_geometric_stiffness(u1);
-  const double scale = std::max(K_G.cwiseAbs().maxCoeff(), 1e-300);
-  EXPECT_LT((K_G - K_G.transpose()).cwiseAbs().maxCoeff(), 1e-13 * scale);
-  EXPECT_LT((m.calc_geometric_stiffness(2 * u1 - 3 * u2) - 2 * K_G + 3 * m.calc_geometric_stiffness(u2)).norm(),
-            1e-12 * scale * n);
+  const VectorXd u = make_random(21, n);
+  expect_sound_geometric(m, u);
   if (m.elements.front()->num_internal_forces() == 0) return;
-  // A rigid rotation turns forces by θ×f; moments appear as θ×m - ½ θ×m, conjugate to the rotation vector.
-  const VectorXd f = m.calc_stiffness() * u1;
-  const MatrixXd Phi_R = m.nodes.calc_rigid_modes();
-  EXPECT_LT((K_G * Phi_R.leftCols<3>()).norm(), 1e-12 * scale * n);
+  const VectorXd f = m.calc_stiffness() * u;
+  const MatrixXd turned = m.calc_geometric_stiffness(u) * m.nodes.calc_rigid_modes().rightCols<3>();
   for (int axis = 0; axis < 3; ++axis) {
-    const Vector3d theta = Vector3d::Unit(axis);
-    VectorXd expected(n);
-    for (int i = 0; i < n; i += 6) {
-      expected.segment<3>(i) = theta.cross(f.segment<3>(i));
-      expected.segment<3>(i + 3) = 0.5 * theta.cross(f.segment<3>(i + 3));
-    }
-    EXPECT_LT((K_G * Phi_R.col(3 + axis) - expected).norm(), 1e-11 * expected.norm()) << axis;
+    const VectorXd expected = turn_forces(Vector3d::Unit(axis), f);
+    EXPECT_LT((turned.col(axis) - expected).norm(), 1e-11 * expected.norm()) << axis;
   }
 }
 
-TEST_P(Battery, AddsScaledIntoStorage) {
-  const SmallModel m = make_model(GetParam());
-  for (const auto& element : m.elements) {
-    const int n = element->num_dofs();
-    MatrixXd once = MatrixXd::Zero(n, n), K = MatrixXd::Constant(n, n, 2.0);
-    element->add_stiffness(1, once);
-    element->add_stiffness(-3, K);
-    EXPECT_LT((K - MatrixXd::Constant(n, n, 2.0) + 3 * once).norm(), 1e-13 * (1 + once.norm()));
-    for (MassKind kind : {MassKind::Lumped, MassKind::Consistent}) {
-      MatrixXd mass = MatrixXd::Zero(n, n), M = MatrixXd::Constant(n, n, 2.0);
-      element->add_mass(kind, 1, mass);
-      element->add_mass(kind, -3, M);
-      EXPECT_LT((M - MatrixXd::Constant(n, n, 2.0) + 3 * mass).norm(), 1e-13 * (1 + mass.norm()));
-    }
-    EXPECT_EQ(element->internal_force_names().size(), static_cast<std::size_t>(element->num_internal_forces()));
-  }
-}
+TEST_P(Battery, AddsScaledIntoStorage) { expect_scaled_additions(make_model(GetParam())); }
 
 INSTANTIATE_TEST_SUITE_P(Elements, Battery, testing::ValuesIn(make_cases()),
                          [](const auto& test) { return test.param.name; });

@@ -1,7 +1,7 @@
 /// K_G of shells by moments and transverse shears: a rigid rotation turns the nodal forces and moments; the Hessian of
 /// the strains of a finitely rotated element, by differences.
 #include "bough/fe/elements/shell.hpp"
-#include "small_model.hpp"
+#include "element_checks.hpp"
 
 namespace bough::fe::test {
 namespace {
@@ -34,14 +34,6 @@ Eigen::Matrix3d make_law() {
   return (Eigen::Matrix3d() << c, 0.3 * c, 0, 0.3 * c, c, 0, 0, 0, 3 / 2.6).finished();
 }
 
-VectorXd make_random(unsigned seed, int n) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  VectorXd u(n);
-  for (double& value : u) value = normal(random);
-  return u;
-}
-
 /// With f = K u and a rigid rotation θ: K_G θ = θ×f for forces, ½ θ×m for moments (semitangential), as of the beams.
 TEST(ShellGeometric, RigidRotationTurnsShearsAndMoments) {
   for (const char* card : {"CQUAD4", "CTRIA3", "CQUADR", "CTRIAR"})
@@ -53,12 +45,7 @@ TEST(ShellGeometric, RigidRotationTurnsShearsAndMoments) {
       const VectorXd f = m.calc_stiffness() * u;
       const MatrixXd K_G = m.calc_geometric_stiffness(u), Phi_R = m.nodes.calc_rigid_modes();
       for (int axis = 0; axis < 3; ++axis) {
-        const Vector3d theta = Vector3d::Unit(axis);
-        VectorXd expected(n);
-        for (int i = 0; i < n; i += 6) {
-          expected.segment<3>(i) = theta.cross(f.segment<3>(i));
-          expected.segment<3>(i + 3) = 0.5 * theta.cross(f.segment<3>(i + 3));
-        }
+        const VectorXd expected = turn_forces(Vector3d::Unit(axis), f);
         EXPECT_LT((K_G * Phi_R.col(3 + axis) - expected).norm(), 1e-11 * f.norm()) << card << shear << axis;
       }
     }
