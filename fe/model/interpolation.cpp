@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
+
 #include "bough/fe/model/rigid.hpp"
 
 namespace bough::fe {
@@ -78,19 +80,30 @@ void add_rbe3(const records::Rbe3& record, const NodeTable& nodes, const SourceL
   // Judged with rotations in units of arm.
   Eigen::Matrix<double, 6, 1> unit;
   unit << 1, 1, 1, 1 / arm, 1 / arm, 1 / arm;
-  Eigen::FullPivLU<Matrix6d> lu(unit.asDiagonal() * A * unit.asDiagonal());
-  lu.setThreshold(1e-10);
-  if (!lu.isInvertible()) {
+  Matrix6d R = Matrix6d::Zero();
+  R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = reference->R_basic_cd.transpose();
+  // Grids on a line say nothing of a rotation about it; what does not depend on that is as well defined as ever.
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> parts(unit.asDiagonal() * A * unit.asDiagonal());
+  Matrix6d inverse = Matrix6d::Zero();
+  bool is_determined = true;
+  for (int k = 0; k < 6; ++k) {
+    const Eigen::Matrix<double, 6, 1> mode = unit.asDiagonal() * parts.eigenvectors().col(k);
+    if (parts.eigenvalues()[k] > 1e-10 * parts.eigenvalues()[5]) {
+      inverse += mode * mode.transpose() / parts.eigenvalues()[k];
+      continue;
+    }
+    const Eigen::Matrix<double, 6, 1> moved = R * mode;
+    for (int c = 0; c < 6; ++c)
+      if (record.ref_c >> c & 1u) is_determined = is_determined && std::abs(moved[c]) < 1e-8 * unit[c];
+  }
+  if (!is_determined) {
     diagnostics.error("fe.rbe3-mechanism", at,
                       card +
-                          " joins components that do not hold a rigid body, expected three grids out of line or "
+                          " joins components that leave REFC free to move, expected three grids out of line or "
                           "rotations too",
                       "add grids or the components 456 to the connected ones");
     return;
   }
-  const Matrix6d inverse = unit.asDiagonal() * lu.inverse() * unit.asDiagonal();
-  Matrix6d R = Matrix6d::Zero();
-  R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = reference->R_basic_cd.transpose();
   std::vector<int> ldofs, dependent;
   for (int c = 0; c < 6; ++c)
     if (record.ref_c >> c & 1u) ldofs.push_back(reference->first_gdof + c);

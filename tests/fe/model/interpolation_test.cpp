@@ -85,7 +85,7 @@ TEST(Rbe3, OtherDependentComponentsKeepTheSameMotions) {
 
 TEST(Rbe3, Errors) {
   EXPECT_EQ(
-      count("GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,2.,0.,0.\nRBE3,5,,1,123,1.,123,2,3\n", "fe.rbe3-mechanism"),
+      count("GRID,1,,0.,1.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,2.,0.,0.\nRBE3,5,,1,123,1.,123,2,3\n", "fe.rbe3-mechanism"),
       1);
   EXPECT_EQ(count(kSquare + "RBE3,5,,9,123,1.,123,1,2\n,3,4\n,UM,1,3\n", "fe.rigid-independent"), 1);
   EXPECT_EQ(count(kSquare + "RBE3,5,,9,123,1.,123,1,77\n", "fe.missing-grid"), 1);

@@ -158,6 +158,27 @@ TEST(AutospcNo, WhatNothingStiffensIsHeldAndWithMassItFloats) {
   EXPECT_EQ(build(false, modes).num_fdofs(), 2 + 2 + 3);
 }
 
+TEST(Rbe3OnALine, FollowsWhereTheLineSaysEnough) {
+  // Grids 2 to 4 and the reference on a line along y: their x, weighted, is that of the reference (three stations at
+  // distances -1, 0, 2 from it), and so is any motion but the rotation about y.
+  const auto l = make(
+      "BEGIN BULK\nGRID,1,,5.,2.,0.\nGRID,2,,5.,1.,0.\nGRID,3,,5.,2.,0.\nGRID,4,,5.,4.,0.\n"
+      "RBE3,7,,1,12346,2.,123,2,1.,+\n+,123,3,1.,123,4\n");
+  const MatrixXd T = MatrixXd(l.model.T());
+  const MatrixXd rigid = l.model.calc_rigid_modes();
+  const MatrixXd q = T.completeOrthogonalDecomposition().solve(rigid);
+  EXPECT_LT((T * q - rigid).norm(), 1e-12 * rigid.norm());
+  // Least squares of x over the distance: weights 2, 1, 1 at -1, 0, 2 have their mean at 0.
+  const int f2 = l.model.find_fdof(l.model.find_node(2), 1), f4 = l.model.find_fdof(l.model.find_node(4), 1);
+  const int row = l.model.node(l.model.find_node(1)).first_gdof;
+  EXPECT_NEAR(T(row, f2), 0.5, 1e-13);
+  EXPECT_NEAR(T(row, f4), 0.25, 1e-13);
+  Diagnostics d;
+  EXPECT_THROW(make("BEGIN BULK\nGRID,1,,5.,2.,0.\nGRID,2,,5.,1.,0.\nGRID,3,,5.,3.,0.\nRBE3,7,,1,5,1.,123,2,3\n", d),
+               InputError);
+  EXPECT_TRUE(d.has("fe.rbe3-mechanism"));
+}
+
 TEST(Sload, AtAGridActsAlongItsFirstAxis) {
   Diagnostics d;
   const auto l = make(
