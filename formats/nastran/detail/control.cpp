@@ -81,7 +81,7 @@ class CaseControl {
       in_plot_section_ = !c.options.empty();
       return;
     }
-    if (is_command(c.word, "SUBCASE", 5) || c.word == "SUBC") {
+    if (is_command(c.word, "SUBCASE", 4) || c.word == "SYM") {  // SYM: a subcase of a part with a symmetry
       begin_subcase(c);
       return;
     }

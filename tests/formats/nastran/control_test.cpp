@@ -60,6 +60,20 @@ TEST(Control, SetsWrapAndPlotSectionsAreIgnored) {
   EXPECT_EQ(deck.find_param("WTMASS")->value, ".00259");
 }
 
+TEST(Control, PartsWithSymmetryAreSubcasesAndTheirCombinationIsNone) {
+  const auto r = read(
+      "CEND\nSYM 1\nSPC = 11\nLOAD = 12\nSYM 2\nSPC = 21\nLOAD = 22\nSYMCOM 3\nSYMSEQ 1.0, -1.0\nLOAD = 7\n"
+      "BEGIN BULK\n");
+  ASSERT_EQ(r.deck.subcases.size(), 2u);
+  EXPECT_EQ(r.deck.subcases[0].id, 1);
+  EXPECT_EQ(r.deck.subcases[0].spc, 11);
+  EXPECT_EQ(r.deck.subcases[0].load, 12);
+  EXPECT_EQ(r.deck.subcases[1].spc, 21);
+  EXPECT_EQ(r.deck.subcases[1].load, 22);
+  ASSERT_EQ(r.count("deck.case-control-ignored"), 1);
+  EXPECT_NE(r.find("deck.case-control-ignored")->what.find("SYMCOM"), std::string::npos);
+}
+
 TEST(Control, WhatIsNotRecognizedIsOneNote) {
   const auto r = read("CEND\nFMETHOD = 3\nSPC = 1\nDSAPRT = 4\nFMETHOD = 5\nBEGIN BULK\n");
   ASSERT_EQ(r.count("deck.case-control-ignored"), 1);
