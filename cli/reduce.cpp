@@ -15,6 +15,7 @@
 #include "deck_tables.hpp"
 #include "matrix_files.hpp"
 #include "options.hpp"
+#include "point_files.hpp"
 #include "ranks.hpp"
 #include "system_files.hpp"
 #include "usage_text.hpp"
