@@ -227,8 +227,16 @@ void ModelBuilder::collect_equations() {
   for (const auto& card : deck_.special.rspline)
     add_rspline(card, model_, deck_.locate(card.at), diagnostics_, equations_);
   if (model_.subcase_.mpc == 0) return;
-  std::set<int> plain;
+  std::set<int> plain, known;
   for (const auto& mpc : deck_.mpc) plain.insert(mpc.sid);
+  for (const auto& united : deck_.mpcadd) known.insert(united.sid);
+  known.insert(plain.begin(), plain.end());
+  // Other codes run such a deck: the selection is often left over in the case control when the cards are gone.
+  if (!known.contains(model_.subcase_.mpc))
+    return diagnostics_.warning(
+        "fe.empty-mpc-set", deck_.locate({}),
+        "MPC set " + std::to_string(model_.subcase_.mpc) + " is selected but has no cards; nothing is coupled by it",
+        "correct the set id or remove the selection");
   const auto sets =
       expand_set(model_.subcase_.mpc, deck_.mpcadd, {plain.begin(), plain.end()}, "MPC", deck_, diagnostics_);
   for (const auto& mpc : deck_.mpc)

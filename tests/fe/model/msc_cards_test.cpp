@@ -81,6 +81,15 @@ TEST(NonstructuralMass, WhatIsNotSelectedOrNotFoundIsSaid) {
   EXPECT_TRUE(none.has("fe.nsm-no-element"));
 }
 
+TEST(MpcSelection, WithoutCardsIsAWarningButAMissingMemberOfAUnionIsAnError) {
+  Diagnostics empty, member;
+  const auto coupled = make("MPC = 3\n" + kPlateAndBar, empty);
+  EXPECT_TRUE(empty.has("fe.empty-mpc-set"));
+  EXPECT_EQ(coupled.model.num_fdofs(), make(kPlateAndBar).model.num_fdofs());
+  EXPECT_THROW(make("MPC = 3\n" + kPlateAndBar + "MPCADD,3,4\n", member), InputError);
+  EXPECT_TRUE(member.has("fe.missing-set"));
+}
+
 /// Displacements of a deck whose end grids are enforced by load set 4.
 VectorXd enforce(const std::string& text) {
   Diagnostics d;

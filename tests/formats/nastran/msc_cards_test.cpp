@@ -16,6 +16,11 @@ TEST(MscCards, WhatBelongsToOtherAnalysesIsAWarningThatSaysWhatIsLost) {
   EXPECT_NE(r.diagnostics.items()[0].advice.find("extra points"), std::string::npos);
   EXPECT_NE(r.diagnostics.items()[2].advice.find("superelements are not formed"), std::string::npos);
   EXPECT_NE(r.diagnostics.items()[3].advice.find("AUTOSPC"), std::string::npos);
+  // Names a preprocessor leaves for itself.
+  const auto names = read("ABSNMVS 1\n+       ABSNAME Constraint 1\nABSTRCT BCEVENT 1       SPC     1\n");
+  EXPECT_EQ(names.diagnostics.num_errors(), 0) << names.get_messages();
+  ASSERT_EQ(names.count("deck.unused-card"), 2) << names.get_messages();
+  EXPECT_NE(names.get_messages().find("carries nothing"), std::string::npos);
   // Superelements that move or copy grids change the model.
   EXPECT_EQ(read("SELOC,1,1,2,3\nSEMPLN,1,PLANE,1,2,3\nCSUPER,1,2,3\n").diagnostics.num_errors(), 2);
 }
