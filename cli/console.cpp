@@ -93,7 +93,7 @@ void Console::print_detail(const std::string& text) const {
 
 void Console::print(const Diagnostic& diagnostic) const {
   if (!is_root_) return;
-  std::string text = format(diagnostic);
+  std::string text = format(locate(diagnostic, subject_));
   if (colors_) {
     const bool is_error = diagnostic.severity == Severity::Error;
     const std::string word = is_error ? "error:" : diagnostic.severity == Severity::Warning ? "warning:" : "note:";
@@ -132,6 +132,11 @@ void Console::show_progress(const std::string& text) {
 void Console::end_progress() {
   if (progress_open_) std::fputc('\n', stderr);
   progress_open_ = false;
+}
+
+Diagnostic locate(Diagnostic diagnostic, const std::string& file) {
+  if (diagnostic.where.file.empty() && !diagnostic.id.starts_with("cli.")) diagnostic.where.file = file;
+  return diagnostic;
 }
 
 int report_failure(const Failure& failure, const Console& console) {

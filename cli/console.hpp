@@ -34,6 +34,9 @@ class Console {
   /// Rank of this process as mpirun's environment tells it; 0 outside mpirun.
   static int get_launch_rank();
 
+  /// The file that a message is about when it names none, unless it concerns the command line.
+  void set_subject(std::string file) { subject_ = std::move(file); }
+
   bool is_root() const { return is_root_; }
   void set_rank(int rank) { is_root_ = rank == 0; }
 
@@ -63,7 +66,11 @@ class Console {
   bool stderr_is_terminal_;
   bool colors_;
   bool progress_open_ = false;
+  std::string subject_;
 };
+
+/// The same message, at `file` when it names no place and does not concern the command line.
+Diagnostic locate(Diagnostic diagnostic, const std::string& file);
 
 /// Prints every diagnostic of a Failure and gives the exit code. A mechanism and a model without mass
 /// count as wrong input (docs/adr/0006).

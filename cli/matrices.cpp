@@ -124,6 +124,7 @@ std::vector<std::string> write(const records::MatricesResult& result, const Matr
 
 int run_matrices(const MatricesOptions& options) {
   Console console(options.quiet, options.verbosity);
+  console.set_subject(options.deck);
   do_once([&] {
     demand_deck(options.deck);
     check_output(options, options.output, {options.deck});
@@ -189,7 +190,7 @@ void add_matrices(CLI::App& app, Action& action) {
   verb->get_option("--output")->required();
   verb->footer(
       "Example:\n  bough matrices column.bdf -o column.h5\n  bough matrices column.bdf --to mtx -o column.mtx");
-  verb->callback([&action, o] { action = [o] { return run_matrices(*o); }; });
+  verb->callback([&action, o] { action = [o] { return blame(o->deck, [&] { return run_matrices(*o); }); }; });
 }
 
 }  // namespace bough::cli

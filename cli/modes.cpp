@@ -215,6 +215,7 @@ void add_new(const Diagnostics& from, Diagnostics& to) {
 
 int run_modes(const ModesOptions& options) {
   Console console(options.quiet, options.verbosity);
+  console.set_subject(options.deck);
   do_once([&] {
     demand_deck(options.deck);
     if (!options.output.empty()) check_output(options, options.output, {options.deck});
@@ -302,7 +303,7 @@ void add_modes(CLI::App& app, Action& action) {
       "Example:\n  bough modes boom.bdf --number 6 -o boom-modes.h5 --vtu boom.vtu\n"
       "  bough modes column.bdf --buckling\n"
       "  mpirun -n 2 bough modes boom.bdf");
-  verb->callback([&action, o] { action = [o] { return run_modes(*o); }; });
+  verb->callback([&action, o] { action = [o] { return blame(o->deck, [&] { return run_modes(*o); }); }; });
 }
 
 }  // namespace bough::cli

@@ -69,6 +69,21 @@ void put_out(const CommonOptions& options, const Console& console, const std::st
   console.print("written: " + options.output + "\n");
 }
 
+int blame(const std::string& file, const std::function<int()>& act) {
+  const auto place = [&](const Failure& failure) {
+    auto items = failure.items();
+    for (auto& item : items) item = locate(std::move(item), file);
+    return items;
+  };
+  try {
+    return act();
+  } catch (const InputError& failure) {
+    throw InputError(place(failure));
+  } catch (const ComputationError& failure) {
+    throw ComputationError(place(failure));
+  }
+}
+
 bool has_suffix(const std::string& path, const std::string& suffix) {
   auto same = [](char a, char b) {
     return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));

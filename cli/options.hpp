@@ -1,5 +1,6 @@
 #pragma once
 /// \file Options that several verbs share, declared once.
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,6 +49,9 @@ records::BodySpec read_body_spec_once(const std::string& path, Diagnostics& diag
 records::Deck read_deck_or_throw(const std::string& path, const fe::ModelOptions& options, Diagnostics& diagnostics);
 /// (file name, SHA-256) of each; nothing on the ranks that write no file.
 std::vector<std::pair<std::string, std::string>> calc_sources(const std::vector<std::string>& files);
+
+/// Does `act`; failures that it throws without a place are thrown on as failures of `file`.
+int blame(const std::string& file, const std::function<int()>& act);
 
 /// Throws InputError("cli.no-file") when the path is no readable file.
 void demand_file(const std::string& path);

@@ -88,9 +88,9 @@ int run_plot(const PlotOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
   report::Plot plot;
-  plot.title = o.title.empty() ? o.sensors.front() : o.title;
+  plot.title = o.title.empty() ? fmt::format("{}", fmt::join(o.sensors, ", ")) : o.title;
   plot.x_label = o.x_label;
-  plot.y_label = o.y_label.empty() ? o.sensors.front() : o.y_label;
+  plot.y_label = o.y_label.empty() && o.sensors.size() == 1 ? o.sensors.front() : o.y_label;
   plot.y_min = o.y_min;
   plot.y_max = o.y_max;
   for (const auto& file : o.files) {

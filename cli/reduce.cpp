@@ -198,6 +198,7 @@ Reduced reduce_given(const records::BodySpec& spec, const stiffening::ReduceOpti
 
 int run_reduce(const ReduceVerbOptions& o) {
   Console console(o.quiet, o.verbosity);
+  console.set_subject(o.file);
   if (!o.file.empty()) do_once([&] { demand_file(o.file); });
   Diagnostics diagnostics;
   const auto spec = make_spec(o, diagnostics);
@@ -273,7 +274,7 @@ void add_reduce(CLI::App& app, Action& action) {
       "  bough reduce boom.bdf --matrices boom.op4 --modes 3\n  mpirun -n 2 bough reduce boom.toml");
   verb->callback([&action, o] {
     if (o->file.empty() && o->matrices.empty()) throw CLI::RequiredError("file");
-    action = [o] { return run_reduce(*o); };
+    action = [o] { return blame(o->file, [&] { return run_reduce(*o); }); };
   });
 }
 

@@ -84,6 +84,7 @@ records::StaticResult turn_to_cd(const fe::Model& model, records::StaticResult r
 
 int run_static(const StaticOptions& options) {
   Console console(options.quiet, options.verbosity);
+  console.set_subject(options.deck);
   do_once([&] {
     demand_deck(options.deck);
     if (!options.output.empty()) check_output(options, options.output, {options.deck});
@@ -153,7 +154,7 @@ void add_static(CLI::App& app, Action& action) {
   add_model_options(*verb, o->model);
   add_common_options(*verb, *o, kOutput | kJson, "Write displacements, reactions and forces to this HDF5 file");
   verb->footer("Example:\n  bough static frame.bdf -o frame-static.h5\n  bough static frame.bdf --subcase 2 --full");
-  verb->callback([&action, o] { action = [o] { return run_static(*o); }; });
+  verb->callback([&action, o] { action = [o] { return blame(o->deck, [&] { return run_static(*o); }); }; });
 }
 
 }  // namespace bough::cli

@@ -133,6 +133,13 @@ class Decks(ProgramTest):
         self.assertIn("METHOD = 7 names no EIGRL", result.stderr)
         self.assertIn("[cli.no-method]", result.stderr)
 
+    def test_messages_of_the_computation_name_the_deck(self):
+        self.write("beam.bdf", BEAM)
+        for call in [["modes", "beam.bdf", "-n", 300], ["reduce", "beam.bdf", "--modes", 300]]:
+            self.assertRegex(self.bough(*call).stderr, r"(?m)^beam\.bdf: warning: .*\[modal\.fewer-modes\]$")
+        self.write("beam.bdf", BEAM.replace(",2700.", ""))
+        self.assertRegex(self.fails(1, "modes", "beam.bdf").stderr, r"(?m)^beam\.bdf: error: .*\[modal\.no-mass\]$")
+
     def test_a_model_without_mass_is_wrong_input(self):
         self.write("beam.bdf", BEAM.replace(",2700.", ""))
         self.assertIn("[cli.no-mass]", self.bough("check", "beam.bdf").stderr)
