@@ -61,15 +61,20 @@ MatrixXd calc_rigid_rows(const Maker& maker, const std::vector<Component>& compo
   return rows;
 }
 
-/// S (m x 6) by which u_i follows u_d as one rigid body; nothing when u_d does not hold one (reported).
+/// S by which u_i follows u_d as one rigid body; nothing when u_d does not hold it (reported). Fewer than six
+/// components hold it where the others do not move u_i, as in a plane model.
 std::optional<MatrixXd> calc_rigid_s(Maker& maker, const std::vector<Component>& ui, const std::vector<Component>& ud,
                                      const std::string& who, const records::CardLocation& at) {
-  const MatrixXd P = calc_rigid_rows(maker, ud);
-  const Eigen::FullPivLU<MatrixXd> lu(P);
-  if (P.rows() == 6 && lu.isInvertible()) return MatrixXd(calc_rigid_rows(maker, ui) * lu.inverse());
-  maker.error("fe.rigid-independent", at,
-              who + " has no S and its UD list has " + std::to_string(P.rows()) + " components that do not hold a body",
-              "give S, or six components in UD that fix a rigid body");
+  const MatrixXd P_d = calc_rigid_rows(maker, ud), P_i = calc_rigid_rows(maker, ui);
+  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> factor(P_d);
+  if (factor.rank() == P_d.rows()) {
+    const MatrixXd S = P_i * factor.pseudoInverse();
+    if ((S * P_d - P_i).norm() <= 1e-9 * P_i.norm()) return S;
+  }
+  maker.error(
+      "fe.rigid-independent", at,
+      who + " has no S and its UD list has " + std::to_string(P_d.rows()) + " components that do not hold a body",
+      "give S, or components in UD that fix its rigid motions");
   return std::nullopt;
 }
 

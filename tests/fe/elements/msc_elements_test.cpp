@@ -87,6 +87,29 @@ TEST(Genel, GivenSAndScalarPoints) {
   EXPECT_NEAR(u.dot(m.calc_stiffness() * u), d.dot(e.matrix * d), 1e-12);
 }
 
+TEST(Genel, PlaneUdHoldsAPlaneBody) {
+  SmallModel m;
+  const Vector3d arm(3, 2, 0);
+  m.nodes.add_grid(1, {1, 1, 5});
+  m.nodes.add_grid(2, Vector3d(1, 1, 5) + arm);
+  records::Genel e;
+  e.id = 5;
+  e.ui = {{1, 1}, {1, 2}, {1, 6}};
+  e.ud = {{2, 1}, {2, 2}, {2, 6}};
+  e.matrix = Eigen::Matrix3d{{6, 1, 0}, {1, 7, 3}, {0, 3, 2}};
+  m.deck.special.genel.push_back(e);
+  m.make();
+  // u_i of the body that moves by u_d: its translation, and the turn times the arm back.
+  const Eigen::Matrix3d S{{1, 0, arm.y()}, {0, 1, -arm.x()}, {0, 0, 1}};
+  MatrixXd B = MatrixXd::Zero(3, 12);
+  const std::array dofs{0, 1, 5};
+  for (int i = 0; i < 3; ++i) {
+    B(i, dofs[i]) = 1;
+    for (int j = 0; j < 3; ++j) B(i, 6 + dofs[j]) = -S(i, j);
+  }
+  EXPECT_LT((m.calc_stiffness() - B.transpose() * e.matrix * B).norm(), 1e-12);
+}
+
 TEST(Genel, BadInputIsReported) {
   const auto diagnose = [](const auto& change) {
     SmallModel m = make_grids();
@@ -104,6 +127,7 @@ TEST(Genel, BadInputIsReported) {
   EXPECT_TRUE(diagnose([](auto& e) { e.ui[0].g = 99; }).has("fe.missing-grid"));
   EXPECT_TRUE(diagnose([](auto& e) { e.ui[0].c = 0; }).has("fe.bad-component"));
   EXPECT_TRUE(diagnose([](auto& e) { e.ud = {{1, 1}}; }).has("fe.rigid-independent"));
+  EXPECT_TRUE(diagnose([](auto& e) { e.ud = {{1, 1}, {1, 1}}; }).has("fe.rigid-independent"));
   EXPECT_TRUE(diagnose([](auto& e) { e.is_flexibility = true, e.matrix(0, 0) = -1; }).has("fe.bad-property"));
 }
 
