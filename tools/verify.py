@@ -192,15 +192,15 @@ def verify_plate(folder):
 
 HEAD = """# Verification: our number next to the reference
 
-Written by `./dev docs` (`tools/verify.py`) from runs of the program on data/decks and data/examples; the tests hold the same
-numbers. A row passes when the error is within what is allowed; a reference of 0 with a bound says that the number must stay
-below it.
+Written by `./dev docs` (`tools/verify.py`) from runs of the program on data/decks and data/examples; the tests hold the
+same numbers. A row passes when the error is within what is allowed; a reference of 0 with a bound says that the number
+must stay below it.
 
-Deviations known and left: FV2 modes 2, 3, 10 and 11 are a little below the clamped-pinned beam, since the arms also stretch
-there. FV4's targets have the rotary inertia of the section, as CBEAM has. FV5 takes the polar moment of area as torsion
-constant, as its target does; a square section has less.
-The printed targets of FV12, FV15, FV16 and FV22 are up to 2.2 % off converged theory (tests/oracle/plate_ritz.py).
-References are exact theory where it exists, not printed targets; nothing is tuned.
+Deviations known and left: FV2 modes 2, 3, 10 and 11 are a little below the clamped-pinned beam, since the arms also
+stretch there. FV4's targets have the rotary inertia of the section, as CBEAM has. FV5 takes the polar moment of area as
+torsion constant, as its target does; a square section has less. The printed targets of FV12, FV15, FV16 and FV22 are up
+to 2.2 % off converged theory (tests/oracle/plate_ritz.py). References are exact theory where it exists, not printed
+targets; nothing is tuned.
 
 | case | quantity | computed | reference | error | allowed | | source |
 | --- | --- | --- | --- | --- | --- | --- | --- |
