@@ -10,7 +10,11 @@ endforeach()
 add_library(bough_flags INTERFACE)
 target_compile_options(bough_flags INTERFACE $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wno-restrict>)
 if(BOUGH_SANITIZE)
-  target_compile_options(bough_flags INTERFACE $<BUILD_INTERFACE:-fsanitize=${BOUGH_SANITIZE};-fno-omit-frame-pointer>)
+  # A finding ends the program: a test that only prints one would pass. Eigen makes references to the first entry of
+  # empty matrices; null pointers that are used the address sanitizer finds itself.
+  set(checks -fsanitize=${BOUGH_SANITIZE} -fno-sanitize-recover=all -fno-sanitize=null,alignment,vptr)
+  target_compile_options(bough_flags INTERFACE "$<BUILD_INTERFACE:${checks};-fno-omit-frame-pointer>")
+  target_compile_definitions(bough_flags INTERFACE $<BUILD_INTERFACE:_GLIBCXX_ASSERTIONS>)
   target_link_options(bough_flags INTERFACE $<BUILD_INTERFACE:-fsanitize=${BOUGH_SANITIZE}>)
 endif()
 if(BOUGH_NAN)
