@@ -21,6 +21,10 @@ TEST(MscCards, WhatBelongsToOtherAnalysesIsAWarningThatSaysWhatIsLost) {
   EXPECT_EQ(names.diagnostics.num_errors(), 0) << names.get_messages();
   ASSERT_EQ(names.count("deck.unused-card"), 2) << names.get_messages();
   EXPECT_NE(names.get_messages().find("carries nothing"), std::string::npos);
+  // Rotors and manufacturing limits of NX; bolts in sequence load the model.
+  const auto nx = read("ROTORD,99,0.,200.,118,FIX\nDMRLAW,1,LINEAR\nBOLTFRC,1,2,3.\nBCTPARM,1,NCONT,3\n");
+  EXPECT_EQ(nx.diagnostics.num_errors(), 0) << nx.get_messages();
+  EXPECT_EQ(nx.count("deck.unused-card"), 4) << nx.get_messages();
   // Superelements that move or copy grids change the model.
   EXPECT_EQ(read("SELOC,1,1,2,3\nSEMPLN,1,PLANE,1,2,3\nCSUPER,1,2,3\n").diagnostics.num_errors(), 2);
 }
