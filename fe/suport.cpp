@@ -56,7 +56,9 @@ void add_fdofs(const Model& model, const records::GridComponents& term, const So
 }  // namespace
 
 InertiaRelief read_inertia_relief(const records::Deck& deck, Diagnostics& diagnostics) {
-  const double value = get_real_param(deck, "INREL", 0, diagnostics);
+  // SOL 2 of the first Nastrans is static with inertia relief.
+  const bool is_old = deck.sol == "2" && (!deck.suport.empty() || !deck.suport1.empty());
+  const double value = get_real_param(deck, "INREL", is_old ? -1 : 0, diagnostics);
   if (value == 0) return InertiaRelief::None;
   if (value == -1) return InertiaRelief::Supported;
   if (value == -2) return InertiaRelief::Free;

@@ -23,6 +23,38 @@ void add_offset_terms(const LoadTarget& t, const Vector3d& omega) {
   }
 }
 
+/// From each grid of an element to its lumped mass (3 x grids); none where the element has no lumps off its grids.
+MatrixXd find_lump_offsets(const LoadTarget& t, const Element& element) {
+  const auto n = static_cast<Eigen::Index>(element.nodes().size());
+  if (n < 2 || element.num_dofs() != 6 * n || element.card() == "DMIG") return {};
+  MatrixXd M = MatrixXd::Zero(6 * n, 6 * n), offsets = MatrixXd::Zero(3, n);
+  element.add_mass(MassKind::Lumped, t.model.wtmass(), M);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto block = M.block<6, 6>(6 * i, 6 * i);
+    const double m = block(0, 0);
+    if (!(m > 0)) continue;
+    offsets.col(i) = Vector3d(block(1, 5), block(2, 3), block(0, 4)) / m;  // -m s̃
+  }
+  if (offsets.isZero(0)) return {};
+  for (Eigen::Index i = 0; i < n; ++i) M.block<6, 6>(6 * i, 6 * i).setZero();
+  return M.isZero(0) ? offsets : MatrixXd{};
+}
+
+/// The mass of bars off their grids turns about the axis at its own radius, not at that of the grids.
+void add_offset_elements(const LoadTarget& t, const Vector3d& omega) {
+  for (const auto& element : t.model.elements()) {
+    const MatrixXd offsets = find_lump_offsets(t, *element);
+    if (offsets.size() == 0) continue;
+    const auto n = offsets.cols();
+    VectorXd field = VectorXd::Zero(6 * n);
+    for (Eigen::Index i = 0; i < n; ++i) field.segment<3>(6 * i) = -omega.cross(omega.cross(Vector3d(offsets.col(i))));
+    MatrixXd M = MatrixXd::Zero(6 * n, 6 * n);
+    element->add_mass(t.model.mass_kind(), t.scale * t.model.wtmass(), M);
+    const VectorXd f = M * field;
+    for (Eigen::Index i = 0; i < 6 * n; ++i) t.F[element->gdofs()[static_cast<std::size_t>(i)]] += f[i];
+  }
+}
+
 double interpolate(const std::vector<std::pair<double, double>>& table, double x) {
   const auto after = std::find_if(table.begin(), table.end(), [x](const auto& point) { return point.first > x; });
   if (after == table.begin()) return after->second;
@@ -52,6 +84,7 @@ void add_rotation(const LoadTarget& t, const records::Rotation& load) {
   }
   t.F += t.scale * calc_mass_times(t.model, t.model.mass_kind(), field);
   add_offset_terms(t, omega);
+  add_offset_elements(t, omega);
 }
 
 /// ACCEL1: A N at its grids. ACCEL: N times a value that varies along one axis of CID, linear between the places of its

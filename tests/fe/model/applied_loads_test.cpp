@@ -271,6 +271,26 @@ TEST(Rotation, CentrifugalAndTangentialForces) {
   EXPECT_NEAR(r[5], inertia * 2 * M_PI * 0.7, 1e-9);
 }
 
+TEST(Rotation, OffsetBarsActWhereTheirMassIs) {
+  const std::string bar =
+      "GRID,1,,1.,0.,0.\nGRID,2,,3.,0.,1.\nCBAR,1,1,1,2,0.,1.,0.\n,,,-.2,.4,.1,.3,.5,-.6\nPBAR,1,1,1.-3,1.-8,1.-8,1.-"
+      "8\n"
+      "MAT1,1,7.+10,,.3,2700.\nRFORCE,4,0,0,.5,0.,0.,2.\n";
+  const Vector3d a(0.8, 0.4, 0.1), b(3.3, 0.5, 0.4);  // the ends of the bar
+  const double omega = 2 * M_PI, half = 2700 * 1e-3 * (b - a).norm() / 2;
+  const auto push = [&](const Vector3d& p) { return Vector3d(omega * omega * half * Vector3d(p.x(), p.y(), 0)); };
+  Diagnostics d;
+  const auto lumped = make_loaded(bar, d), consistent = make_loaded(bar + "PARAM,COUPMASS,1\n", d);
+  const VectorXd F = lumped.model.calc_load(lumped.deck, 4, d);
+  EXPECT_LT((F.segment<3>(0) - push(a)).norm(), 1e-9);
+  EXPECT_LT((F.segment<3>(3) - (a - Vector3d(1, 0, 0)).cross(push(a))).norm(), 1e-9);
+  EXPECT_LT((F.segment<3>(6) - push(b)).norm(), 1e-9);
+  EXPECT_LT((F.segment<3>(9) - (b - Vector3d(3, 0, 1)).cross(push(b))).norm(), 1e-9);
+  const VectorXd G = consistent.model.calc_load(consistent.deck, 4, d);
+  EXPECT_LT((G.segment<3>(0) + G.segment<3>(6) - push(a) - push(b)).norm(), 1e-9);
+  EXPECT_GT((G - F).norm(), 1);
+}
+
 TEST(DirectedLoads, ForcesAndMomentsByGrids) {
   Diagnostics d;
   const auto l = make_loaded(

@@ -106,6 +106,17 @@ TEST(Suport, TooManyDofsAndHiddenGroundAreSeen) {
   EXPECT_EQ(count(make_line(200, load + "SUPORT,1,123456\nCELAS2,9000,.1,201,2\n"), "fe.suport-strained"), 1);
 }
 
+TEST(InertiaRelief, IsWhatTheOldSolTwoIs) {
+  Diagnostics d;
+  records::Deck deck;
+  deck.sol = "2";
+  EXPECT_EQ(read_inertia_relief(deck, d), InertiaRelief::None);
+  deck.suport.emplace_back();
+  EXPECT_EQ(read_inertia_relief(deck, d), InertiaRelief::Supported);
+  deck.sol = "1";
+  EXPECT_EQ(read_inertia_relief(deck, d), InertiaRelief::None);
+}
+
 TEST(Suport, Errors) {
   EXPECT_EQ(count(kCase + kFrame + "SUPORT,77,1\n", "fe.missing-grid"), 1);
   EXPECT_EQ(count(kCase + kFrame + "SUPORT,1,0\n", "fe.bad-component"), 1);
