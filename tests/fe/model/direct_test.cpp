@@ -5,35 +5,17 @@
 #include <Eigen/Eigenvalues>
 
 #include "bough/fe/assembly.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "text_model.hpp"
 
 namespace bough::fe {
 namespace {
 
-Model build(const std::string& text, Diagnostics& diagnostics) {
-  const auto deck = nastran::read_deck_text(text, "deck.bdf", {}, diagnostics);
-  diagnostics.throw_if_errors();
-  return Model::build(deck, {}, diagnostics);
-}
-Model build(const std::string& text) {
-  Diagnostics diagnostics;
-  return build(text, diagnostics);
-}
-
-int count(const std::string& text, const std::string& id) {
-  Diagnostics diagnostics;
-  try {
-    build(text, diagnostics);
-  } catch (const InputError&) {
-  }
-  int n = 0;
-  for (const auto& d : diagnostics.items()) n += d.id == id ? 1 : 0;
-  return n;
-}
+using test::build;
+using test::count;
 
 const std::string kGrids =
     "CORD2R,3,,1.,2.,3.,2.,3.,5.\n,4.,1.,0.\nCORD2C,4,,0.,0.,-1.,0.,1.,1.\n,3.,0.,0.\nPARAM,WTMASS,.0025\n"
-    "PARAM,COUPMASS,1\nPARAM,AUTOSPC,NO\n"
+    "PARAM,COUPMASS,1\n"
     "GRID,1,,0.,0.,0.,3\nGRID,2,,1.,.2,.1,4\nGRID,3,,1.3,1.4,-.2\nGRID,4,,.5,2.7,2.,3\nSPOINT,9\nCELAS2,8,7000.,9,0,3,"
     "2\n"
     "CMASS2,7,40.,9\nSPC1,1,123456,1\n";

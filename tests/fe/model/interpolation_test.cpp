@@ -2,33 +2,13 @@
 #include <gtest/gtest.h>
 
 #include "bough/fe/assembly.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "text_model.hpp"
 
 namespace bough::fe {
 namespace {
 
-Model build(const std::string& text, Diagnostics& diagnostics) {
-  const auto deck = nastran::read_deck_text(text + "PARAM,AUTOSPC,NO\n", "deck.bdf", {}, diagnostics);
-  diagnostics.throw_if_errors();
-  return Model::build(deck, {}, diagnostics);
-}
-
-Model build(const std::string& text) {
-  Diagnostics diagnostics;
-  return build(text, diagnostics);
-}
-
-/// How often an error of this id comes.
-int count(const std::string& text, const std::string& id) {
-  Diagnostics diagnostics;
-  try {
-    build(text, diagnostics);
-  } catch (const InputError&) {
-  }
-  int n = 0;
-  for (const auto& d : diagnostics.items()) n += d.id == id ? 1 : 0;
-  return n;
-}
+using test::build;
+using test::count;
 
 MatrixXd get_dense(const Model& model) { return MatrixXd(model.T()); }
 

@@ -1,33 +1,13 @@
 /// RBE1 from decks to the transformation: against RBE2 and RBAR where they are the same, and against rigid kinematics.
 #include <gtest/gtest.h>
 
-#include "bough/fe/model/model.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "text_model.hpp"
 
 namespace bough::fe {
 namespace {
 
-Model build(const std::string& text, Diagnostics& diagnostics) {
-  const auto deck = nastran::read_deck_text(text + "PARAM,AUTOSPC,NO\n", "deck.bdf", {}, diagnostics);
-  diagnostics.throw_if_errors();
-  return Model::build(deck, {}, diagnostics);
-}
-
-Model build(const std::string& text) {
-  Diagnostics diagnostics;
-  return build(text, diagnostics);
-}
-
-int count(const std::string& text, const std::string& id) {
-  Diagnostics diagnostics;
-  try {
-    build(text, diagnostics);
-  } catch (const InputError&) {
-  }
-  int n = 0;
-  for (const auto& d : diagnostics.items()) n += d.id == id ? 1 : 0;
-  return n;
-}
+using test::build;
+using test::count;
 
 /// Five grids in general position, three of them in skewed or cylindrical systems.
 const std::string kGrids =
