@@ -6,6 +6,7 @@
 
 #include "bough/fe/model/element_transform.hpp"
 #include "bough/fe/model/temperatures.hpp"
+#include "bough/fe/ordering.hpp"
 
 namespace bough::fe {
 namespace {
@@ -116,6 +117,15 @@ void drop_zeros(Rows& rows, int first) {
   rows.start.back() = kept;
 }
 
+/// Where the runs of rows with the same elements start, and the end.
+std::vector<int> find_row_groups(const Rows& rows) {
+  std::vector<int> start;
+  for (int row = 0; row < static_cast<int>(rows.same.size()); ++row)
+    if (!rows.same[row]) start.push_back(row);
+  start.push_back(static_cast<int>(rows.same.size()));
+  return start;
+}
+
 /// Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an entry does not
 /// depend on the number of ranks.
 PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add) {
@@ -150,6 +160,7 @@ PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add) {
   check_petsc(MatMPIAIJSetPreallocationCSR(A, rows.start.data(), rows.columns.data(), rows.values.data()));
   check_petsc(MatSetOption(A, MAT_SYMMETRIC, PETSC_TRUE));
   check_petsc(MatSetOption(A, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
+  if (initialize_petsc().size == 1) set_row_groups(A, find_row_groups(rows));
   return matrix;
 }
 

@@ -2,14 +2,27 @@
 
 #include "bough/base/diagnostic.hpp"
 #include "bough/fe/assembly.hpp"
+#include "bough/fe/ordering.hpp"
 
 namespace bough::fe {
 namespace {
 
 using Eigen::MatrixXd;
 
+/// A PETSc matrix on the storage of `values`, which outlives it and, if const, is not written to. One process only.
+PetscMat share_dense(const Eigen::Ref<const MatrixXd>& values) {
+  PetscMat dense;
+  const auto n = static_cast<PetscInt>(values.rows()), m = static_cast<PetscInt>(values.cols());
+  check_petsc(MatCreateDense(PETSC_COMM_WORLD, n, m, n, m, const_cast<double*>(values.data()), dense.out()));
+  check_petsc(MatDenseSetLDA(dense.get(), static_cast<PetscInt>(values.outerStride())));
+  check_petsc(MatAssemblyBegin(dense.get(), MAT_FINAL_ASSEMBLY));
+  check_petsc(MatAssemblyEnd(dense.get(), MAT_FINAL_ASSEMBLY));
+  return dense;
+}
+
 /// A dense matrix distributed as A's rows, holding this rank's rows of `values`.
 PetscMat make_dense(Mat A, const Eigen::Ref<const MatrixXd>& values) {
+  if (initialize_petsc().size == 1) return share_dense(values);
   PetscInt local = 0, size = 0, first = 0;
   check_petsc(MatGetLocalSize(A, &local, nullptr));
   check_petsc(MatGetSize(A, &size, nullptr));
@@ -63,12 +76,18 @@ PetscMat factor_definite(Mat A) {
   // Without this a small matrix gets an LDLᵀ that takes negative pivots as they come.
   check_petsc(PetscOptionsSetValue(nullptr, "-mat_cholmod_final_ll", "true"));
   check_petsc(PetscOptionsSetValue(nullptr, "-mat_cholmod_print", "0"));  // it would write to stdout
+  const PetscIs order = find_elimination_order(A);
+  // One method is the order given; none are CHOLMOD's own, which would be tried beside it.
+  if (order)
+    check_petsc(PetscOptionsSetValue(nullptr, "-mat_cholmod_nmethods", "1"));
+  else
+    check_petsc(PetscOptionsClearValue(nullptr, "-mat_cholmod_nmethods"));
   PetscMat factor;
   check_petsc(MatGetFactor(A, MATSOLVERCHOLMOD, MAT_FACTOR_CHOLESKY, factor.out()));
   MatFactorInfo info;
   check_petsc(MatFactorInfoInitialize(&info));
   MatFactorError error = MAT_FACTOR_NOERROR;
-  if (MatCholeskyFactorSymbolic(factor.get(), A, nullptr, &info) != 0 ||
+  if (MatCholeskyFactorSymbolic(factor.get(), A, order.get(), &info) != 0 ||
       MatCholeskyFactorNumeric(factor.get(), A, &info) != 0)
     return {};
   check_petsc(MatFactorGetError(factor.get(), &error));
@@ -117,6 +136,11 @@ void SymmetricFactor::factor_by_mumps(Mat A, bool find_null_pivots) {
 MatrixXd solve_factored(Mat factor, const Eigen::Ref<const MatrixXd>& B) {
   if (B.cols() == 0) return B;
   const PetscMat rhs = make_dense(factor, B);
+  if (initialize_petsc().size == 1) {
+    MatrixXd X(B.rows(), B.cols());
+    check_petsc(MatMatSolve(factor, rhs.get(), share_dense(X).get()));
+    return X;
+  }
   PetscMat x;
   check_petsc(MatDuplicate(rhs.get(), MAT_DO_NOT_COPY_VALUES, x.out()));
   check_petsc(MatMatSolve(factor, rhs.get(), x.get()));
@@ -128,8 +152,34 @@ MatrixXd SymmetricFactor::solve(const Eigen::Ref<const MatrixXd>& B) const { ret
 MatrixXd multiply(Mat A, const Eigen::Ref<const MatrixXd>& X) {
   const PetscMat dense = make_dense(A, X);
   PetscMat product;
+  if (initialize_petsc().size == 1 && X.cols() > 0) {
+    MatrixXd Y(X.rows(), X.cols());
+    product = share_dense(Y);
+    check_petsc(MatMatMult(A, dense.get(), MAT_REUSE_MATRIX, PETSC_DEFAULT, product.out()));
+    return Y;
+  }
   check_petsc(MatMatMult(A, dense.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, product.out()));
   return replicate(product.get());
+}
+
+MatrixXd calc_residual(Mat A, const Eigen::Ref<const MatrixXd>& X, const Eigen::Ref<const MatrixXd>& B) {
+  MatrixXd R = MatrixXd::Zero(B.rows(), B.cols());
+  PetscInt first = 0, last = 0, num = 0;
+  check_petsc(MatGetOwnershipRange(A, &first, &last));
+  const PetscInt* columns = nullptr;
+  const PetscScalar* values = nullptr;
+  for (PetscInt row = first; row < last; ++row) {
+    check_petsc(MatGetRow(A, row, &num, &columns, &values));
+    for (Eigen::Index c = 0; c < B.cols(); ++c) {
+      long double sum = B(row, c);
+      const double* x = X.col(c).data();
+      for (PetscInt k = 0; k < num; ++k) sum -= static_cast<long double>(values[k]) * x[columns[k]];
+      R(row, c) = static_cast<double>(sum);
+    }
+    check_petsc(MatRestoreRow(A, row, &num, &columns, &values));
+  }
+  sum_over_ranks(R);
+  return R;
 }
 
 Eigen::VectorXd get_diagonal(Mat A) {

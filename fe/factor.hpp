@@ -43,6 +43,9 @@ PetscMat factor_definite(Mat A);
 Eigen::MatrixXd solve_factored(Mat factor, const Eigen::Ref<const Eigen::MatrixXd>& B);
 /// A X of a distributed A and a replicated X, replicated.
 Eigen::MatrixXd multiply(Mat A, const Eigen::Ref<const Eigen::MatrixXd>& X);
+/// B - A X, every entry summed in extended precision before it is rounded; all replicated.
+Eigen::MatrixXd calc_residual(Mat A, const Eigen::Ref<const Eigen::MatrixXd>& X,
+                              const Eigen::Ref<const Eigen::MatrixXd>& B);
 /// The diagonal of A, replicated.
 Eigen::VectorXd get_diagonal(Mat A);
 

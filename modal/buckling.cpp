@@ -55,7 +55,7 @@ void BucklingModes::run_krylov(int num_wanted) {
   problem.tolerance = options_.tolerance;
   problem.start = round_++;
   problem.progress = options_.progress;
-  const auto result = detail::solve_krylov_schur(problem);
+  const auto result = detail::solve_krylov(problem);
   if (result.is_singular) detail::throw_singular(pencil_, 0);
 
   VectorXd all(size() + result.values.size());

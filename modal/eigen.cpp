@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "bough/fe/blas.hpp"
 #include "bough/modal/canonical.hpp"
 #include "bough/modal/krylov.hpp"
 #include "bough/modal/pencil.hpp"
@@ -34,6 +35,11 @@ struct Found {
   VectorXd lambda;
   MatrixXd X;
   int num_zero = 0;
+
+  void keep(int count) {
+    lambda.conservativeResize(count);
+    X.conservativeResize(Eigen::NoChange, count);
+  }
 
   void add(const VectorXd& values, const MatrixXd& vectors) {
     VectorXd all(lambda.size() + values.size());
@@ -83,8 +89,8 @@ class NormalModes {
   void choose_range();
   void solve_dense();
   /// False when `definite_only` and the shifted stiffness is not definite.
-  bool run_krylov(int num_wanted, bool definite_only = false);
-  bool find_unshifted(int request);
+  bool run_krylov(int num_wanted, int num_guard, bool definite_only = false);
+  bool find_unshifted(int request, int guard);
   void find_all();
   int find_cut() const;
   EigenPairs make_pairs(int cut, int count);
@@ -177,7 +183,7 @@ void NormalModes::solve_dense() {
   found_.add(theta.cwiseInverse().array() - shift_, X);
 }
 
-bool NormalModes::run_krylov(int num_wanted, bool definite_only) {
+bool NormalModes::run_krylov(int num_wanted, int num_guard, bool definite_only) {
   detail::KrylovProblem problem;
   problem.A = pencil_.K.get();
   problem.B = pencil_.M.get();
@@ -185,13 +191,14 @@ bool NormalModes::run_krylov(int num_wanted, bool definite_only) {
   problem.max_subspace = max_elastic_ - static_cast<int>(found_.lambda.size());
   if (problem.max_subspace <= 0) return true;
   problem.num_wanted = std::min(num_wanted, problem.max_subspace);
+  problem.num_guard = num_wanted <= problem.max_subspace ? num_guard : 0;
   problem.deflate = join(rigid_.modes, found_.X);
   problem.tolerance = options_.tolerance;
   problem.start = round_++;
   problem.definite_only = definite_only;
   if (shift_ == 0 && options_.factor && options_.factor->is_definite()) problem.factor = options_.factor->get();
   problem.progress = options_.progress;
-  const auto result = detail::solve_krylov_schur(problem);
+  const auto result = detail::solve_krylov(problem);
   if (result.is_singular && definite_only) return false;
   if (result.is_singular) detail::throw_singular(pencil_, shift_);
   found_.add(result.values, result.vectors);
@@ -215,10 +222,10 @@ int NormalModes::find_cut() const {
 
 /// K itself as the matrix to factor, where supports hold the model: no shift to choose, and no second factor because it
 /// was too high. A mechanism, or a mode too soft to tell from one, shows as a first vector with next to no strain.
-bool NormalModes::find_unshifted(int request) {
+bool NormalModes::find_unshifted(int request, int guard) {
   if (num_rigid() > 0 || !rigid_.held.empty()) return false;
   shift_ = 0;
-  return run_krylov(request, true) && found_.lambda.size() > 0 && found_.num_zero == 0 && found_.lambda(0) > 0 &&
+  return run_krylov(request, guard, true) && found_.lambda.size() > 0 && found_.num_zero == 0 && found_.lambda(0) > 0 &&
          pencil_.calc_relative_energy(found_.X.col(0), found_.lambda(0)) > 1e-13;
 }
 
@@ -227,7 +234,7 @@ void NormalModes::find_all() {
   const int request = std::max(0, last_ - num_rigid()) + guard;
   const bool dense = pencil_.size() <= kDenseSize || (2 * request >= max_elastic_ && pencil_.size() <= kDenseLimit);
   found_.X.resize(pencil_.size(), 0);
-  if (!dense && find_unshifted(request)) return;
+  if (!dense && find_unshifted(request, guard)) return;
   shift_ = 0.01 * detail::estimate_first_eigenvalue(pencil_);
   for (int attempt = 0; attempt < 4; ++attempt) {
     found_ = {};
@@ -236,7 +243,7 @@ void NormalModes::find_all() {
       solve_dense();
       found_.num_zero = count_zeros(pencil_, found_);
     } else {
-      run_krylov(request);
+      run_krylov(request, guard);
     }
     // A shift far above the first eigenvalue costs digits: move it down and solve again.
     if (found_.num_zero >= found_.lambda.size()) return;
@@ -260,10 +267,11 @@ EigenPairs NormalModes::make_pairs(int cut, int count) {
     // symmetrically.
     const MatrixXd& R = rigid_.modes;
     MatrixXd Y = X.rightCols(cut - k);
-    Y -= R * (pencil_.calc_M_times(R).transpose() * Y).eval();
-    const MatrixXd G = Y.transpose() * pencil_.calc_M_times(Y);
+    if (k > 0) Y -= R * (pencil_.calc_M_times(R).transpose() * Y).eval();
+    MatrixXd G(cut - k, cut - k);
+    fe::multiply_dense(true, Y, pencil_.calc_M_times(Y), 0, G);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(0.5 * (G + G.transpose()));
-    X.rightCols(cut - k) = Y * gram.operatorInverseSqrt();
+    fe::multiply_dense(false, Y, gram.operatorInverseSqrt(), 0, X.rightCols(cut - k));
   }
   for (int a = std::min(k, cut), b = a; a < cut; a = b) {
     if (a < num_zero) {
@@ -344,8 +352,8 @@ EigenPairs NormalModes::solve() {
   constexpr int kRounds = 8;
   int count = -1, cut = -1;
   for (int round = 0; round < kRounds; ++round) {
-    const int before = num_found();
     int missing = last_ - num_found();
+    cut = -1;
     if (missing <= 0) {
       cut = find_cut();
       missing = cut < 0 ? 4 : 0;
@@ -368,7 +376,9 @@ EigenPairs NormalModes::solve() {
       return make_pairs(cut, count);
     }
     if (missing < 0) break;
-    run_krylov(missing + 2);
+    if (cut >= num_rigid()) found_.keep(cut - num_rigid());  // those above may be rough
+    const int before = num_found();
+    run_krylov(missing + 2, 0);
     if (num_found() == before) break;
   }
   throw ComputationError(

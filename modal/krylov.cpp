@@ -6,12 +6,14 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
+#include <optional>
 #include <vector>
 
 #include "bough/base/diagnostic.hpp"
 #include "bough/fe/assembly.hpp"
 #include "bough/fe/factor.hpp"
+#include "bough/fe/ordering.hpp"
+#include "bough/modal/block_lanczos.hpp"
 
 namespace bough::modal::detail {
 
@@ -21,22 +23,13 @@ namespace {
 
 using SlepcEps = fe::PetscHandle<EPS, EPSDestroy>;
 
-/// Direct solution by CHOLMOD's LLᵀ or MUMPS' LDLᵀ.
-void set_direct_solver(KSP ksp, MatSolverType solver) {
-  PC pc = nullptr;
-  check_petsc(KSPSetType(ksp, KSPPREONLY));
-  check_petsc(KSPGetPC(ksp, &pc));
-  check_petsc(PCSetType(pc, PCCHOLESKY));
-  check_petsc(PCFactorSetMatSolverType(pc, solver));
-}
-
 PetscErrorCode apply_factor(PC pc, Vec b, Vec x) {
   Mat factor = nullptr;
   const PetscErrorCode code = PCShellGetContext(pc, static_cast<void*>(&factor));
   return code != 0 ? code : MatSolve(factor, b, x);
 }
 
-/// Direct solution by a factor that somebody else made.
+/// Direct solution by a factor that is there already.
 void set_known_factor(KSP ksp, Mat factor) {
   PC pc = nullptr;
   check_petsc(KSPSetType(ksp, KSPPREONLY));
@@ -46,12 +39,45 @@ void set_known_factor(KSP ksp, Mat factor) {
   check_petsc(PCShellSetApply(pc, apply_factor));
 }
 
+/// Direct solution by MUMPS' LDLᵀ.
+void set_mumps(KSP ksp) {
+  PC pc = nullptr;
+  check_petsc(KSPSetType(ksp, KSPPREONLY));
+  check_petsc(KSPGetPC(ksp, &pc));
+  check_petsc(PCSetType(pc, PCCHOLESKY));
+  check_petsc(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+}
+
 fe::PetscVec make_vector(Mat A, const Eigen::Ref<const VectorXd>& values) {
   fe::PetscVec v;
   check_petsc(MatCreateVecs(A, v.out(), nullptr));
   fe::scatter(values, v.get());
   return v;
 }
+
+/// A + factor B, for factorization.
+fe::PetscMat add(Mat A, double factor, Mat B) {
+  fe::PetscMat C;
+  check_petsc(MatDuplicate(A, MAT_COPY_VALUES, C.out()));
+  check_petsc(MatAXPY(C.get(), factor, B, DIFFERENT_NONZERO_PATTERN));
+  check_petsc(MatSetOption(C.get(), MAT_SYMMETRIC, PETSC_TRUE));
+  fe::copy_row_groups(A, C.get());
+  return C;
+}
+
+/// An option of PETSc while it lives.
+class MumpsOption {
+ public:
+  MumpsOption(const char* name, const char* value) : name_(name) {
+    check_petsc(PetscOptionsSetValue(nullptr, name, value));
+  }
+  ~MumpsOption() { PetscOptionsClearValue(nullptr, name_); }
+  MumpsOption(const MumpsOption&) = delete;
+  MumpsOption& operator=(const MumpsOption&) = delete;
+
+ private:
+  const char* name_;
+};
 
 struct Watch {
   std::function<void(int, int)> progress;
@@ -77,8 +103,6 @@ void initialize_slepc() {
   check_petsc(SlepcInitialize(&argc, &argv, nullptr, nullptr));
   // MUMPS estimates its workspace for a definite matrix; an indefinite one needs more for delayed pivots.
   check_petsc(PetscOptionsInsertString(nullptr, "-st_mat_mumps_icntl_14 60"));
-  // Without this CHOLMOD gives a small matrix an LDLᵀ that takes negative pivots as they come.
-  check_petsc(PetscOptionsInsertString(nullptr, "-st_mat_cholmod_final_ll true -st_mat_cholmod_print 0"));
   std::atexit([] {
     PetscBool finalized = PETSC_FALSE;
     PetscFinalized(&finalized);
@@ -98,11 +122,40 @@ double calc_fixed_number(int index, int start) {
 
 namespace {
 
-/// Sets up SLEPc for the problem with one solver; false when that solver cannot factor the matrix.
-bool set_up(const KrylovProblem& problem, MatSolverType solver, int wanted, int subspace, SlepcEps& eps) {
+/// b fixed columns; the first does not depend on b.
+MatrixXd make_start(const KrylovProblem& problem, int b) {
+  PetscInt n = 0;
+  check_petsc(MatGetSize(problem.A, &n, nullptr));
+  MatrixXd start(n, b);
+  for (int c = 0; c < b; ++c)
+    for (int i = 0; i < n; ++i) start(i, c) = calc_fixed_number(i, problem.start + 1000 * c);
+  return start;
+}
+
+Mat get_factor(EPS eps) {
   ST st = nullptr;
   KSP ksp = nullptr;
-  eps = SlepcEps();
+  PC pc = nullptr;
+  Mat factor = nullptr;
+  check_petsc(EPSGetST(eps, &st));
+  check_petsc(STGetKSP(st, &ksp));
+  check_petsc(KSPGetPC(ksp, &pc));
+  check_petsc(PCFactorGetMatrix(pc, &factor));
+  return factor;
+}
+
+/// A definite factor of the matrix that is factored; empty where it is not definite, or there are several processes.
+fe::PetscMat make_definite_factor(const KrylovProblem& problem) {
+  if (problem.spectrum == Spectrum::LargestMagnitude) return fe::factor_definite(problem.B);
+  if (problem.shift == 0) return fe::factor_definite(problem.A);
+  return fe::factor_definite(add(problem.A, -problem.shift, problem.B).get());
+}
+
+/// SLEPc, set up with a factor of ours or, without one, with MUMPS; empty when MUMPS finds the matrix singular.
+SlepcEps set_up(const KrylovProblem& problem, Mat factor, int wanted, int subspace) {
+  ST st = nullptr;
+  KSP ksp = nullptr;
+  SlepcEps eps;
   check_petsc(EPSCreate(PETSC_COMM_WORLD, eps.out()));
   check_petsc(EPSSetOperators(eps.get(), problem.A, problem.B));
   check_petsc(EPSSetProblemType(eps.get(), EPS_GHEP));
@@ -120,10 +173,10 @@ bool set_up(const KrylovProblem& problem, MatSolverType solver, int wanted, int 
     check_petsc(EPSSetWhichEigenpairs(eps.get(), EPS_LARGEST_MAGNITUDE));
   }
   check_petsc(STGetKSP(st, &ksp));
-  if (problem.factor)
-    set_known_factor(ksp, problem.factor);
+  if (factor)
+    set_known_factor(ksp, factor);
   else
-    set_direct_solver(ksp, solver);
+    set_mumps(ksp);
 
   std::vector<fe::PetscVec> known;
   std::vector<Vec> known_raw;
@@ -134,59 +187,33 @@ bool set_up(const KrylovProblem& problem, MatSolverType solver, int wanted, int 
   if (!known_raw.empty())
     check_petsc(EPSSetDeflationSpace(eps.get(), static_cast<PetscInt>(known_raw.size()), known_raw.data()));
 
-  PetscInt n = 0;
-  check_petsc(MatGetSize(problem.A, &n, nullptr));
-  VectorXd first(n);
-  for (int i = 0; i < n; ++i) first(i) = calc_fixed_number(i, problem.start);
-  fe::PetscVec first_vector = make_vector(problem.A, first);
+  fe::PetscVec first_vector = make_vector(problem.A, make_start(problem, 1));
   Vec first_raw = first_vector.get();
   check_petsc(EPSSetInitialSpace(eps.get(), 1, &first_raw));
 
   const PetscErrorCode code = EPSSetUp(eps.get());
-  // CHOLMOD met a pivot that is not positive, MUMPS one that is zero: SLEPc makes that an error.
-  if (code != 0 && (code == PETSC_ERR_LIB || std::strcmp(solver, MATSOLVERCHOLMOD) == 0)) return false;
+  if (code == PETSC_ERR_LIB) return {};  // a zero pivot: SLEPc makes that an error
   check_petsc(code);
-  return true;
+  return eps;
 }
 
 /// x = (λ - σ)(A - σB)⁻¹B x: removes what a semi-definite B lets into the vectors unseen (Nour-Omid et al., Math. Comp.
-/// 48 (1987) 663). A solve of eight right-hand sides costs a third of eight solves.
-void purify(const KrylovProblem& problem, EPS eps, KrylovResult& result) {
-  if (result.values.size() == 0) return;
-  ST st = nullptr;
-  KSP ksp = nullptr;
-  PC pc = nullptr;
-  Mat factor = problem.factor;
-  if (!factor) {
-    check_petsc(EPSGetST(eps, &st));
-    check_petsc(STGetKSP(st, &ksp));
-    check_petsc(KSPGetPC(ksp, &pc));
-    check_petsc(PCFactorGetMatrix(pc, &factor));
-  }
+/// 48 (1987) 663). A solve of eight right-hand sides costs a third of eight solves, of sixteen a fifth.
+void purify(const KrylovProblem& problem, Mat factor, KrylovResult& result) {
   const VectorXd scale = result.values.array() - problem.shift;
-  constexpr Eigen::Index kBlock = 8;  // enough for the speed, few for the memory
+  constexpr Eigen::Index kBlock = 24;  // enough for the speed, few for the memory
   for (Eigen::Index first = 0; first < scale.size(); first += kBlock) {
     auto X = result.vectors.middleCols(first, std::min(kBlock, scale.size() - first));
     X = fe::solve_factored(factor, fe::multiply(problem.B, X)) * scale.segment(first, X.cols()).asDiagonal();
   }
 }
 
-}  // namespace
-
-KrylovResult solve_krylov_schur(const KrylovProblem& problem) {
-  initialize_slepc();
-  PetscInt n = 0;
-  check_petsc(MatGetSize(problem.A, &n, nullptr));
-  const int room = (problem.max_subspace > 0 ? std::min<int>(problem.max_subspace, n) : static_cast<int>(n));
-  const int wanted = std::clamp(problem.num_wanted, 1, std::max(1, room));
+KrylovResult solve_one_vector(const KrylovProblem& problem, Mat factor, int wanted, int room) {
   // 2.6 vectors a mode: the lowest modes of a plate are there before the first restart.
   const int subspace = std::min(std::max(13 * wanted / 5, wanted + 20), std::max(room, 1));
-
-  SlepcEps eps;
   KrylovResult result;
-  const bool is_alone = fe::initialize_petsc().size == 1;
-  if (!(is_alone && set_up(problem, MATSOLVERCHOLMOD, wanted, subspace, eps)) &&
-      ((is_alone && problem.definite_only) || !set_up(problem, MATSOLVERMUMPS, wanted, subspace, eps))) {
+  const SlepcEps eps = set_up(problem, factor, wanted, subspace);
+  if (!eps) {
     result.is_singular = true;
     return result;
   }
@@ -194,7 +221,8 @@ KrylovResult solve_krylov_schur(const KrylovProblem& problem) {
   if (watch.progress) check_petsc(EPSMonitorSet(eps.get(), report_progress, &watch, nullptr));
   check_petsc(EPSSolve(eps.get()));
 
-  PetscInt converged = 0;
+  PetscInt converged = 0, n = 0;
+  check_petsc(MatGetSize(problem.A, &n, nullptr));
   check_petsc(EPSGetConverged(eps.get(), &converged));
   result.values.resize(converged);
   result.vectors.resize(n, converged);
@@ -206,36 +234,83 @@ KrylovResult solve_krylov_schur(const KrylovProblem& problem) {
     result.values(i) = value;
     result.vectors.col(i) = fe::gather(x.get());
   }
-  if (problem.spectrum == Spectrum::NearShift) purify(problem, eps.get(), result);
+  if (problem.spectrum == Spectrum::NearShift) purify(problem, factor ? factor : get_factor(eps.get()), result);
   return result;
+}
+
+/// Above this size a solve of one right-hand side mostly waits for the factor's entries.
+constexpr int kBlockSize = 5000;
+
+/// Nothing when the blocks did not converge.
+std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, Mat factor, int wanted) {
+  BlockLanczosProblem blocks;
+  blocks.solve = [&](const Eigen::Ref<const MatrixXd>& X) { return fe::solve_factored(factor, X); };
+  blocks.multiply_mass = [&](const Eigen::Ref<const MatrixXd>& X) { return fe::multiply(problem.B, X); };
+  blocks.start = make_start(problem, wanted > 100 ? 8 : 4);
+  blocks.deflate = problem.deflate;
+  blocks.num_wanted = wanted;
+  blocks.num_guard = std::min(problem.num_guard, wanted - 1);
+  blocks.max_subspace = 11 * wanted / 5 + 60;
+  blocks.tolerance = problem.tolerance;
+  blocks.progress = problem.progress;
+  BlockLanczosResult found = solve_block_lanczos(blocks);
+  if (!found.is_done) return std::nullopt;
+  // θ beyond the rank of B are roundoff.
+  const auto size = (found.theta.array() > 1e-15 * found.theta.maxCoeff()).count();
+  KrylovResult result;
+  result.values = found.theta.head(size).cwiseInverse().array() + problem.shift;
+  result.vectors = std::move(found.X);
+  if (size < result.vectors.cols()) result.vectors = result.vectors.leftCols(size).eval();
+  purify(problem, factor, result);
+  return result;
+}
+
+}  // namespace
+
+KrylovResult solve_krylov(const KrylovProblem& problem) {
+  initialize_slepc();
+  PetscInt n = 0;
+  check_petsc(MatGetSize(problem.A, &n, nullptr));
+  const int room = (problem.max_subspace > 0 ? std::min<int>(problem.max_subspace, n) : static_cast<int>(n));
+  const int wanted = std::clamp(problem.num_wanted, 1, std::max(1, room));
+
+  const bool is_alone = fe::initialize_petsc().size == 1;
+  fe::PetscMat own_factor;
+  if (!problem.factor && is_alone) own_factor = make_definite_factor(problem);
+  Mat factor = problem.factor ? problem.factor : own_factor.get();
+  if (!factor && is_alone && problem.definite_only) {
+    KrylovResult result;
+    result.is_singular = true;
+    return result;
+  }
+  const bool by_blocks = problem.method == KrylovMethod::Blocks ||
+                         (problem.method == KrylovMethod::Fastest && n >= kBlockSize && 4 * wanted < room);
+  if (by_blocks && factor && is_alone && problem.spectrum == Spectrum::NearShift)
+    if (auto result = solve_blocks(problem, factor, wanted)) return std::move(*result);
+  return solve_one_vector(problem, factor, wanted, room);
 }
 
 int count_negative(Mat A, double factor, Mat B) {
   initialize_slepc();
-  fe::PetscMat C;
-  check_petsc(MatDuplicate(A, MAT_COPY_VALUES, C.out()));
-  check_petsc(MatAXPY(C.get(), factor, B, DIFFERENT_NONZERO_PATTERN));
-  check_petsc(MatSetOption(C.get(), MAT_SYMMETRIC, PETSC_TRUE));
-  fe::PetscKsp ksp;
-  PC pc = nullptr;
-  Mat F = nullptr;
-  check_petsc(KSPCreate(PETSC_COMM_WORLD, ksp.out()));
-  check_petsc(KSPSetOperators(ksp.get(), C.get(), C.get()));
-  set_direct_solver(ksp.get(), MATSOLVERMUMPS);
-  check_petsc(KSPGetPC(ksp.get(), &pc));
-  check_petsc(PCFactorSetUpMatSolverType(pc));
-  check_petsc(PCFactorGetMatrix(pc, &F));
+  const fe::PetscMat C = add(A, factor, B);
+  fe::PetscMat F;
+  check_petsc(MatGetFactor(C.get(), MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, F.out()));
   // The inertia leaves out the root front when ScaLAPACK factors it: keep it sequential.
-  check_petsc(MatMumpsSetIcntl(F, 13, 1));
-  check_petsc(MatMumpsSetIcntl(F, 14, 60));
-  check_petsc(MatMumpsSetIcntl(F, 7, 2));   // approximate minimum fill: half the time of MUMPS' own choice on plates
-  check_petsc(MatMumpsSetIcntl(F, 31, 1));  // only the signs of the pivots are wanted: the factor is not kept
-  check_petsc(KSPSetUp(ksp.get()));
-  PCFailedReason failed = PC_NOERROR;
-  check_petsc(PCGetFailedReason(pc, &failed));
-  if (failed != PC_NOERROR) return -1;
+  check_petsc(MatMumpsSetIcntl(F.get(), 13, 1));
+  check_petsc(MatMumpsSetIcntl(F.get(), 14, 60));
+  check_petsc(MatMumpsSetIcntl(F.get(), 31, 1));  // only the signs of the pivots are wanted: the factor is not kept
+  // Approximate minimum fill: half the time of MUMPS' own choice on plates. PETSc 3.18 loses this one unless it is an
+  // option.
+  const MumpsOption ordering("-mat_mumps_icntl_7", "2");
+  MatFactorInfo info;
+  check_petsc(MatFactorInfoInitialize(&info));
+  check_petsc(MatCholeskyFactorSymbolic(F.get(), C.get(), nullptr, &info));
+  check_petsc(MatCholeskyFactorNumeric(F.get(), C.get(), &info));
+  MatFactorError error = MAT_FACTOR_NOERROR;
+  check_petsc(MatFactorGetError(F.get(), &error));
+  if (error != MAT_FACTOR_NOERROR) return -1;
   PetscInt negative = 0;
-  check_petsc(MatGetInertia(F, &negative, nullptr, nullptr));
+  check_petsc(MatGetInertia(F.get(), &negative, nullptr, nullptr));
   return static_cast<int>(negative);
 }
 

@@ -21,17 +21,25 @@ enum class Spectrum {
   LargestMagnitude  ///< A x = θ B x of largest |θ|; B, positive definite, is factored
 };
 
+enum class KrylovMethod {
+  Fastest,  ///< by blocks near a shift on one process, where the factor is definite and larger than a cache
+  Blocks,
+  OneVector  ///< SLEPc's Krylov-Schur
+};
+
 struct KrylovProblem {
   Mat A = nullptr, B = nullptr;
   Spectrum spectrum = Spectrum::NearShift;
   double shift = 0;
   int num_wanted = 1;
+  int num_guard = 0;     ///< of num_wanted: the last ones, to show the gap; rough unless close to the others
   int max_subspace = 0;  ///< rank of the operator, 0: the size of A
   MatrixXd deflate;      ///< n x k known eigenvectors, kept out; k may be 0
   double tolerance = 1e-12;
-  Mat factor = nullptr;        ///< of A, for a zero shift; nullptr: made here
+  Mat factor = nullptr;        ///< of A - shift B or of B, whichever is factored; nullptr: made here
   bool definite_only = false;  ///< an indefinite matrix to factor counts as singular
   int start = 0;               ///< picks one of the fixed start vectors
+  KrylovMethod method = KrylovMethod::Fastest;
   std::function<void(int converged, int wanted)> progress;
 };
 
@@ -41,9 +49,9 @@ struct KrylovResult {
   bool is_singular = false;  ///< the matrix to factor is singular: nothing was solved
 };
 
-/// Krylov-Schur with a B inner product (Stewart, SIAM J. Matrix Anal. Appl. 23 (2001) 601; SLEPc), purified for a
-/// semi-definite B.
-KrylovResult solve_krylov_schur(const KrylovProblem& problem);
+/// Krylov-Schur with a B inner product (Stewart, SIAM J. Matrix Anal. Appl. 23 (2001) 601; SLEPc) or Lanczos by blocks
+/// (block_lanczos.hpp), purified for a semi-definite B.
+KrylovResult solve_krylov(const KrylovProblem& problem);
 
 /// Negative eigenvalues of A + factor B by an LDLᵀ factorization (Sylvester): for a positive semi-definite B and
 /// factor = -μ the number of eigenvalues of A x = λ B x below μ. -1 when the factorization met a zero pivot.

@@ -155,7 +155,7 @@ ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Dia
     problem.deflate = X;
     problem.tolerance = 1e-12;
     problem.start = round;
-    const auto found = detail::solve_krylov_schur(problem);
+    const auto found = detail::solve_krylov(problem);
     if (found.values.size() == 0) break;
     VectorXd all(lambda.size() + found.values.size());
     all << lambda, found.values;

