@@ -43,7 +43,8 @@ TEST(Hub, UnboundedAboveIt) {
 /// Lowest eigenvalue of -∂η̈/∂η at η = 0 and a steady rate: the beam buckles where it passes zero.
 double calc_lowest_eigenvalue(double rate) {
   Example example = load_example("ex02-hub", "hub-2.18.toml");
-  example.spec.functions[0].values["value"] = 60 * rate;
+  auto& ramp = example.spec.functions[0].values;
+  ramp["value"] = (ramp.at("to") - ramp.at("from")) * rate;
   const solver::System system = example.build();
   const int body = system.find_body("boom"), n = system.num_modes(body), at = system.eta_offset(body);
   auto data = system.make_data();
