@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <string>
+#include <string_view>
 
 #include "bough/base/diagnostic.hpp"
 
@@ -20,12 +21,21 @@ void check_petsc(PetscErrorCode code) {
 
 namespace {
 
-/// One thread in OpenBLAS unless the user says otherwise: the factors' dense blocks are small, and threads that wait
-/// for each other by spinning double the time on a busy machine. Found by name, since another BLAS may be installed.
-void hold_blas_threads() {
-  if (std::getenv("OPENBLAS_NUM_THREADS") || std::getenv("OMP_NUM_THREADS")) return;
-  using SetThreads = void (*)(int);
-  if (const auto set = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))) set(1);
+template <class Function>
+Function* find_function(const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
+}
+
+/// One thread in OpenBLAS and in CHOLMOD unless the user says otherwise: the factors' dense blocks are small, and
+/// threads that wait for each other by spinning double the time on a busy machine and add a fifth on a quiet one.
+/// CHOLMOD asks OpenMP for a number of threads of its own, whatever OMP_NUM_THREADS says; no level of parallel regions
+/// means one. Found by name, since other libraries may be installed.
+void hold_threads() {
+  const char* openmp = std::getenv("OMP_NUM_THREADS");
+  if (!openmp || std::string_view(openmp) == "1")
+    if (const auto set = find_function<void(int)>("omp_set_max_active_levels")) set(0);
+  if (openmp || std::getenv("OPENBLAS_NUM_THREADS")) return;
+  if (const auto set = find_function<void(int)>("openblas_set_num_threads")) set(1);
 }
 
 }  // namespace
@@ -34,7 +44,7 @@ MpiWorld initialize_petsc() {
   PetscBool initialized = PETSC_FALSE;
   PetscInitialized(&initialized);
   if (!initialized) {
-    hold_blas_threads();
+    hold_threads();
     // A process that no launcher started needs no daemon and no network transport; making them ready takes ten times as
     // long as the rest of MPI's start (360 ms against 30 ms).
     const bool is_launched = std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMIX_RANK") || std::getenv("PMI_RANK");
