@@ -198,7 +198,7 @@ SlepcEps set_up(const KrylovProblem& problem, Mat factor, int wanted, int subspa
 }
 
 /// x = (λ - σ)(A - σB)⁻¹B x: removes what a semi-definite B lets into the vectors unseen (Nour-Omid et al., Math. Comp.
-/// 48 (1987) 663). A solve of eight right-hand sides costs a third of eight solves, of sixteen a fifth.
+/// 48 (1987) 663). A solve of eight right-hand sides costs a third of eight solves, of sixteen a quarter.
 void purify(const KrylovProblem& problem, Mat factor, KrylovResult& result) {
   const VectorXd scale = result.values.array() - problem.shift;
   constexpr Eigen::Index kBlock = 24;  // enough for the speed, few for the memory
