@@ -5,11 +5,10 @@
 #include <optional>
 
 #include "bough/fe/mechanism.hpp"
+#include "bough/fe/ordering.hpp"
 
 namespace bough::fe {
 namespace {
-
-using PetscIs = PetscHandle<IS, ISDestroy>;
 
 /// K without the held rows and columns; kept[i] is the f-dof of its row i.
 PetscMat take_kept(Mat K, const std::vector<int>& kept) {
