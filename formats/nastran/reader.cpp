@@ -2,6 +2,7 @@
 
 #include "bough/formats/nastran/detail/builder.hpp"
 #include "bough/formats/nastran/detail/control.hpp"
+#include "bough/formats/nastran/detail/executive.hpp"
 #include "bough/formats/nastran/detail/lines.hpp"
 #include "bough/formats/nastran/detail/packing.hpp"
 
@@ -11,6 +12,7 @@ namespace {
 records::Deck make_deck(const detail::Source& source, const ReadOptions& options, Diagnostics& diagnostics) {
   records::Deck deck;
   deck.files = source.files;
+  detail::read_system_cells(source, deck);
   const auto first_line = detail::read_control(source, deck, diagnostics);
   detail::read_bulk(source, first_line, options, deck, diagnostics);
   return deck;

@@ -374,6 +374,8 @@ struct UnusedCard {
 struct Deck {
   std::vector<std::string> files;  ///< as opened; files[0] is the deck
   std::string sol;                 ///< "103", "SEMODES", ... upper case; empty in a fragment
+  /// What NASTRAN statements set, upper case: "BARMASS" -> "1", "SYSTEM(304)" -> "5"; the last one given counts.
+  std::map<std::string, std::string> system_cells;
   std::vector<Subcase> subcases;   ///< at least one
 
   std::vector<Grid> grids;
@@ -423,6 +425,7 @@ struct Deck {
   std::vector<GridComponents> suport;                  ///< SUPORT
   std::map<int, std::vector<GridComponents>> suport1;  ///< SUPORT1, by set
   std::vector<GridComponents> aset, omit;              ///< ASETi, OMITi, flattened; empty: no reduction
+  std::vector<GridComponents> qset;                    ///< QSETi: component modes, which are not computed
   std::vector<Plotel> plotel;
   std::vector<Spc> spc;
   std::vector<SetUnion> spcadd;
@@ -437,6 +440,7 @@ struct Deck {
   std::vector<EigenMethod> eigen_methods;
   std::vector<Param> params;
   std::vector<UnusedCard> unused;
+  std::vector<std::string> left_out;       ///< what the record does not keep of cards that it reads: "12 fluid GRID"
   std::map<std::string, int> card_counts;  ///< every card name in the bulk data
 
   /// Value of a PARAM, the last one given; nullptr when absent.
