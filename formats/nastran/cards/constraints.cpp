@@ -51,7 +51,7 @@ void parse_rbe3(Card& card, Reading& r) {
     e.groups.push_back(std::move(group));
   }
   if (card.is_word(i, "UM"))
-    for (++i; i < size && !card.is_word(i, "ALPHA");) {
+    for (card.use(i++); i < size && !card.is_word(i, "ALPHA");) {
       if (card.is_blank(i)) {
         ++i;
         continue;
@@ -60,7 +60,11 @@ void parse_rbe3(Card& card, Reading& r) {
       e.um.push_back({g, card.read_components(i + 1, "CM")});
       i += 2;
     }
-  if (card.is_word(i, "ALPHA")) card.read_real(i + 1, "ALPHA");
+  if (card.is_word(i, "ALPHA")) {
+    card.use(i);
+    card.read_real(i + 1, "ALPHA");
+    card.use(i + 2);  // TREF
+  }
   if (e.groups.empty() && card.is_ok()) card.fail("deck.missing-field", 4, "WT1 is blank, expected a weight and grids");
   e.at = card.get_location();
   if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe3.push_back(std::move(e));
@@ -78,7 +82,7 @@ void parse_rbe1(Card& card, Reading& r) {
       ++i;
     } else if (card.is_word(i, "UM") && !has_um) {
       has_um = true;
-      ++i;
+      card.use(i++);
     } else if (i >= size - 2 && is_real(card, i)) {
       card.read_real(i++, "ALPHA TREF");
     } else {
@@ -104,6 +108,7 @@ void parse_rrod(Card& card, Reading& r) {
   e.gb = card.read_id(2, "GB");
   e.cma = card.read_component(3, "CMA");
   e.cmb = card.read_component(4, "CMB");
+  card.use(5, 7);  // ALPHA, TREF
   if (card.is_ok() && ((e.cma == 0) == (e.cmb == 0) || e.cma > 3 || e.cmb > 3))
     card.fail("deck.field-range", 3,
               "CMA and CMB name " + std::to_string(e.cma) + " and " + std::to_string(e.cmb) +
@@ -123,6 +128,7 @@ void parse_rbar(Card& card, Reading& r) {
   e.cnb = card.read_components(4, "CNB", 0);
   e.cma = card.read_components(5, "CMA", 0);
   e.cmb = card.read_components(6, "CMB", 0);
+  card.use(7, 9);  // ALPHA, TREF
   if (card.is_ok() && std::popcount(e.cna) + std::popcount(e.cnb) != 6)
     card.fail("deck.field-range", 3,
               "CNA and CNB have " + std::to_string(std::popcount(e.cna) + std::popcount(e.cnb)) +

@@ -18,6 +18,7 @@ void parse_mat2(Card& card, Reading& r) {
   mat.rho = card.read_real(7, "RHO", 0.0);
   mat.alpha = card.read_vector(8, "A1 A2 A3");
   mat.tref = card.read_real(11, "TREF", 0.0);
+  card.use(12, 17);  // GE, stress limits, MCSID
   mat.at = card.get_location();
   if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat2.push_back(mat);
 }
@@ -35,6 +36,7 @@ void parse_mat8(Card& card, Reading& r) {
   mat.a1 = card.read_real(8, "A1", 0.0);
   mat.a2 = card.read_real(9, "A2", 0.0);
   mat.tref = card.read_real(10, "TREF", 0.0);
+  card.use(11, card.get_size());  // strengths, GE
   mat.at = card.get_location();
   if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat8.push_back(mat);
 }
@@ -48,6 +50,7 @@ void parse_mat9(Card& card, Reading& r) {
   mat.rho = card.read_real(field++, "RHO", 0.0);
   for (int i = 0; i < 6; ++i) mat.alpha[i] = card.read_real(field++, "Ai", 0.0);
   mat.tref = card.read_real(field, "TREF", 0.0);
+  card.use(field + 1);  // GE
   mat.at = card.get_location();
   if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat9.push_back(mat);
 }
@@ -62,6 +65,7 @@ void parse_mat11(Card& card, Reading& r) {
   mat.rho = card.read_real(10, "RHO", 0.0);
   for (int i = 0; i < 3; ++i) mat.alpha[i] = card.read_real(11 + i, "Ai", 0.0);
   mat.tref = card.read_real(14, "TREF", 0.0);
+  card.use(15);  // GE
   mat.at = card.get_location();
   if (card.is_ok()) {
     Eigen::Matrix3d compliance;
@@ -89,6 +93,7 @@ void parse_pshell(Card& card, Reading& r) {
   p.shear_ratio = card.read_real(6, "TS/T", 5.0 / 6);
   p.nsm = card.read_real(7, "NSM", 0.0);
   p.mid4 = card.read_id(10, "MID4", 0);
+  card.use(8, 10);  // Z1, Z2
   p.at = card.get_location();
   card.demand(p.mid2 >= -1, 3, "MID2", "a material id, blank or -1");
   if (p.mid1 == 0 && p.mid2 <= 0)
@@ -103,6 +108,7 @@ void parse_laminate(Card& card, Reading& r, int skip, int stride) {
   const auto z0 = card.read_optional_real(1, "Z0");
   p.nsm = card.read_real(2, "NSM", 0.0);
   p.tref = card.read_real(5, "TREF", 0.0);
+  for (const int i : {3, 4, 6}) card.use(i);  // SB, FT, GE
   const std::string lam = card.read_word(7, "LAM", "", {"", "SYM", "MEM", "BEND", "SMEAR", "SMCORE"});
   if (lam == "SMEAR" || lam == "SMCORE")
     card.fail("deck.bad-word", 7, "LAM is " + lam + ", expected SYM, MEM, BEND or blank", "write the plies out");
@@ -115,6 +121,8 @@ void parse_laminate(Card& card, Reading& r, int skip, int stride) {
     ply.mid = p.plies.empty() ? card.read_id(i + skip, "MID1") : card.read_id(i + skip, "MIDi", ply.mid);
     ply.t = p.plies.empty() ? card.read_real(i + skip + 1, "T1") : card.read_real(i + skip + 1, "Ti", ply.t);
     ply.theta_deg = card.read_real(i + skip + 2, "THETAi", 0.0);
+    card.use(i + skip + 3);        // SOUT
+    if (skip > 0) card.use(i);  // GPLYID
     p.plies.push_back(ply);
   }
   if (p.plies.empty()) card.fail("deck.missing-field", 8, "the laminate has no ply", "give MID1, T1, THETA1");
@@ -134,6 +142,7 @@ void parse_psolid(Card& card, Reading& r) {
   p.cordm = card.is_integer(2) ? card.read_int(2, "CORDM", 0) : 0;
   p.at = card.get_location();
   const std::string fluid = card.get_upper(6);
+  card.use(2, 6);  // CORDM, IN, STRESS, ISOP
   if (fluid == "PFLUID" || fluid == "FFLUID")
     card.fail("deck.bad-word", 6, "FCTN is " + fluid + ": fluids are not structure", "leave fluid elements out");
   if (r.claim(IdSpace::SolidProperty, p.id, card)) r.deck.psolid.push_back(p);

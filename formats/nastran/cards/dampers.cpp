@@ -6,21 +6,21 @@ namespace {
 using records::ScalarDamper;
 
 /// EID, PID or B.
-ScalarDamper read_head(Card& card, bool by_property) {
+ScalarDamper read_head(Card& card, bool by_property, int first = 0) {
   ScalarDamper e;
-  e.id = card.read_id(0, "EID");
+  e.id = card.read_id(first, "EID");
   if (by_property)
-    e.pid = card.read_id(1, "PID", e.id);
+    e.pid = card.read_id(first + 1, "PID", e.id);
   else
-    e.b = card.read_real(1, "B", 0.0);
+    e.b = card.read_real(first + 1, "B", 0.0);
   e.at = card.get_location();
   return e;
 }
 
-void add_damper(Card& card, Reading& r, const ScalarDamper& e) {
+void add_damper(Card& card, Reading& r, const ScalarDamper& e, int first = 0, int num_fields = 1 << 20) {
   if (e.g1 == 0 && e.g2 == 0 && card.is_ok())
-    card.fail("deck.missing-field", 2, "both ends are blank, expected one at least");
-  if (r.claim(IdSpace::Damper, e.id, card)) r.deck.dampers.push_back(e);
+    card.fail("deck.missing-field", first + 2, "both ends are blank, expected one at least");
+  if (r.claim(IdSpace::Damper, e.id, card, first, num_fields)) r.deck.dampers.push_back(e);
 }
 
 /// G1 C1 G2 C2; a blank grid is ground.
@@ -35,15 +35,18 @@ void parse_on_grids(Card& card, Reading& r, bool by_property) {
 void parse_cdamp1(Card& card, Reading& r) { parse_on_grids(card, r, true); }
 void parse_cdamp2(Card& card, Reading& r) { parse_on_grids(card, r, false); }
 
-/// S1 S2: points that no SPOINT names become ones.
+/// S1 S2, one or two dampers on a card: points that no SPOINT names become ones.
 void parse_on_points(Card& card, Reading& r, bool by_property) {
-  auto e = read_head(card, by_property);
-  e.g1 = card.read_reference(2, "S1");
-  e.g2 = card.read_reference(3, "S2");
-  e.by_scalar_points = true;
-  for (const int point : {e.g1, e.g2})
-    if (point > 0 && card.is_ok()) r.deck.scalar_points.push_back(point);
-  add_damper(card, r, e);
+  for (const int first : {0, 4}) {
+    if (first > 0 && card.is_blank(first, first + 4)) break;
+    auto e = read_head(card, by_property, first);
+    e.g1 = card.read_reference(first + 2, "S1");
+    e.g2 = card.read_reference(first + 3, "S2");
+    e.by_scalar_points = true;
+    for (const int point : {e.g1, e.g2})
+      if (point > 0 && card.is_ok()) r.deck.scalar_points.push_back(point);
+    add_damper(card, r, e, first, 4);
+  }
 }
 void parse_cdamp3(Card& card, Reading& r) { parse_on_points(card, r, true); }
 void parse_cdamp4(Card& card, Reading& r) { parse_on_points(card, r, false); }
@@ -59,14 +62,18 @@ void parse_pdamp(Card& card, Reading& r) {
   }
 }
 
+/// EID PID G1 G2, one or two on a card.
 void parse_cvisc(Card& card, Reading& r) {
-  records::Cvisc e;
-  e.id = card.read_id(0, "EID");
-  e.pid = card.read_id(1, "PID", e.id);
-  e.ga = card.read_id(2, "G1");
-  e.gb = card.read_id(3, "G2");
-  e.at = card.get_location();
-  if (r.claim(IdSpace::Visc, e.id, card)) r.deck.cvisc.push_back(e);
+  for (const int first : {0, 4}) {
+    if (first > 0 && card.is_blank(first, first + 4)) break;
+    records::Cvisc e;
+    e.id = card.read_id(first, "EID");
+    e.pid = card.read_id(first + 1, "PID", e.id);
+    e.ga = card.read_id(first + 2, "G1");
+    e.gb = card.read_id(first + 3, "G2");
+    e.at = card.get_location();
+    if (r.claim(IdSpace::Visc, e.id, card, first, 4)) r.deck.cvisc.push_back(e);
+  }
 }
 
 void parse_pvisc(Card& card, Reading& r) {
@@ -102,6 +109,8 @@ void parse_pbush1d(Card& card, Reading& r) {
   p.k = card.read_real(1, "K", 0.0);
   p.c = card.read_real(2, "C", 0.0);
   p.m = card.read_real(3, "M", 0.0);
+  card.use(4, 6);                  // SA, SE
+  card.use(8, card.get_size());  // the lines below
   p.at = card.get_location();
   for (int line = 8; line < card.get_size(); line += 8) {
     if (card.is_blank(line)) continue;  // further fields of SHOCKA

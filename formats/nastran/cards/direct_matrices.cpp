@@ -30,6 +30,7 @@ void parse_header(Card& card, Reading& r, const std::string& name) {
   card.demand(type >= 1 && type <= 4, 3, "TIN", "a type 1 to 4");
   const int out = card.read_int(4, "TOUT", 0);
   card.demand(out >= 0 && out <= 4, 4, "TOUT", "a type 0 to 4");
+  card.use(6, 8);  // NCOL
   auto& state = find_matrix(name, card, r);
   if (state.has_header) {
     card.fail("deck.duplicate-id", 0, "matrix " + name + " has two headers", "give one of them another name");
@@ -61,6 +62,7 @@ void parse_column(Card& card, Reading& r, const std::string& name) {
 /// A name of letters and digits that begins with a letter; the zero in the next field makes a card the header.
 void parse_dmig(Card& card, Reading& r) {
   const auto name = card.get_upper(0);
+  card.use(3);  // blank behind GJ CJ
   if (name.empty() || !std::isalpha(static_cast<unsigned char>(name.front())) || name.size() > 8) {
     if (name.empty())
       card.fail("deck.missing-field", 0, "NAME is blank, expected the name of the matrix");

@@ -13,6 +13,7 @@ void parse_grid(Card& card, Reading& r) {
   grid.x = card.read_vector(2, "X1 X2 X3");
   grid.cd = card.read_reference(5, "CD", r.grid_defaults.cd);
   grid.ps = card.read_components(6, "PS", r.grid_defaults.ps);
+  card.use(7);  // SEID
   grid.at = card.get_location();
   if (r.claim(IdSpace::Grid, grid.id, card)) r.deck.grids.push_back(grid);
 }
@@ -21,6 +22,7 @@ void parse_grdset(Card& card, Reading& r) {
   r.grid_defaults.cp = card.read_reference(1, "CP");
   r.grid_defaults.cd = card.read_reference(5, "CD");
   r.grid_defaults.ps = card.read_components(6, "PS", 0);
+  for (const int i : {0, 7}) card.use(i);  // some decks put a word there; SEID
 }
 
 template <CoordKind kind>

@@ -84,6 +84,7 @@ void parse_cbar(Card& card, Reading& r) { parse_beam(card, r, false); }
 void parse_cbeam(Card& card, Reading& r) { parse_beam(card, r, true); }
 
 void parse_defaults(Card& card, BeamDefaults& defaults) {
+  card.use(0);  // some decks put a word there
   defaults.pid = card.read_id(1, "PID", 0);
   int flag = 0;
   defaults.offt = read_offt(card, 7, "GGG", flag);
@@ -95,16 +96,19 @@ void parse_defaults(Card& card, BeamDefaults& defaults) {
 void parse_baror(Card& card, Reading& r) { parse_defaults(card, r.bar_defaults); }
 void parse_beamor(Card& card, Reading& r) { parse_defaults(card, r.beam_defaults); }
 
-/// EID PID G1 G2: CROD and CTUBE.
+/// EID PID G1 G2: CROD and CTUBE, one or two on a card (NASTRAN-95 User's Manual 2.4).
 template <class Element, IdSpace space>
 void parse_two_grids(Card& card, Reading& r, std::vector<Element>& elements) {
-  Element e;
-  e.id = card.read_id(0, "EID");
-  e.pid = card.read_id(1, "PID", e.id);
-  e.ga = card.read_id(2, "G1");
-  e.gb = card.read_id(3, "G2");
-  e.at = card.get_location();
-  if (r.claim(space, e.id, card)) elements.push_back(e);
+  for (const int first : {0, 4}) {
+    if (first > 0 && card.is_blank(first, first + 4)) break;
+    Element e;
+    e.id = card.read_id(first, "EID");
+    e.pid = card.read_id(first + 1, "PID", e.id);
+    e.ga = card.read_id(first + 2, "G1");
+    e.gb = card.read_id(first + 3, "G2");
+    e.at = card.get_location();
+    if (r.claim(space, e.id, card, first, 4)) elements.push_back(e);
+  }
 }
 
 void parse_crod(Card& card, Reading& r) { parse_two_grids<records::Crod, IdSpace::Rod>(card, r, r.deck.crod); }

@@ -45,6 +45,7 @@ void parse_pbar(Card& card, Reading& r) {
 
 /// Group and shape; 0 dimensions when the shape is not known (reported).
 int read_shape(Card& card, std::string& shape) {
+  card.use(2);
   if (!card.is_blank(2) && !card.is_word(2, "MSCBML0"))
     card.fail("deck.bad-word", 2, "section group is '" + std::string(card.get(2)) + "', expected MSCBML0",
               "other groups of sections are not read; give the dimensions of an MSCBML0 shape");
@@ -154,6 +155,7 @@ void parse_pbeam(Card& card, Reading& r) {
     for (auto& point : station.recovery) point.setZero();
     station.x_over_L = read_station_position(card, i + 1);
     read_station_values(card, i + 2, blank, station);
+    card.use(i);
     if (card.is_word(i, "YESA")) station.recovery = a.recovery;
     const bool has_points = card.is_word(i, "YES") && !is_station(card, i + 8);
     i += 8;

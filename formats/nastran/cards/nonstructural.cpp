@@ -34,6 +34,7 @@ void parse_list(Card& card, Reading& r) {
   m.is_total = card.get_name() == "NSML1";
   m.at = card.get_location();
   m.is_all = card.is_word(3, "ALL");
+  if (m.is_all) card.use(3);
   if (!m.is_all)
     for (const auto& range : read_id_list(card, 3, card.get_size(), "ID")) {
       if (range.step == 1 && range.except.empty())
@@ -62,6 +63,7 @@ void parse_accel1(Card& card, Reading& r) {
   a.n = card.read_vector(3, "N1 N2 N3");
   a.at = card.get_location();
   a.is_all = card.is_word(8, "ALL");
+  if (a.is_all) card.use(8);
   if (!a.is_all)
     for (const auto& range : read_id_list(card, 8, card.get_size(), "GRID")) {
       a.skip_if_missing = a.skip_if_missing || range.is_thru;

@@ -30,16 +30,19 @@ void parse_crigd2(Card& card, Reading& r) {
   if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe1.push_back(std::move(e));
 }
 
-/// CRIGDR: EID IG G C: a rigid rod whose translation C at G depends.
+/// CRIGDR: EID IG G C, one or two on a card: a rigid rod whose translation C at G depends.
 void parse_crigdr(Card& card, Reading& r) {
-  records::Rrod e;
-  e.id = card.read_id(0, "EID");
-  e.ga = card.read_id(1, "IG");
-  e.gb = card.read_id(2, "G");
-  e.cmb = card.read_component(3, "C");
-  card.demand(e.cmb >= 1 && e.cmb <= 3, 3, "C", "a translation 1, 2 or 3");
-  e.at = card.get_location();
-  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rrod.push_back(e);
+  for (const int first : {0, 4}) {
+    if (first > 0 && card.is_blank(first, first + 4)) break;
+    records::Rrod e;
+    e.id = card.read_id(first, "EID");
+    e.ga = card.read_id(first + 1, "IG");
+    e.gb = card.read_id(first + 2, "G");
+    e.cmb = card.read_component(first + 3, "C");
+    card.demand(e.cmb >= 1 && e.cmb <= 3, first + 3, "C", "a translation 1, 2 or 3");
+    e.at = card.get_location();
+    if (r.claim(IdSpace::Rigid, e.id, card, first, 4)) r.deck.rrod.push_back(e);
+  }
 }
 
 }  // namespace

@@ -52,41 +52,41 @@ void parse_cmass2(Card& card, Reading& r) {
   if (r.claim(IdSpace::ScalarMass, e.id, card)) r.deck.scalar_masses.push_back(e);
 }
 
-/// EID, PID or value, S1 S2 of CELAS3/4 and CMASS3/4: a point that no SPOINT names becomes one.
+/// EID, PID or value, S1 S2 of CELAS3/4 and CMASS3/4, one or two on a card: a point that no SPOINT names becomes one.
 template <class Element>
-Element parse_scalar_pair(Card& card, Reading& r, bool by_property, double Element::*value, const char* what) {
-  Element e;
-  e.id = card.read_id(0, "EID");
-  if (by_property)
-    e.pid = card.read_id(1, "PID", e.id);
-  else
-    e.*value = card.read_real(1, what, 0.0);
-  e.g1 = card.read_reference(2, "S1");
-  e.g2 = card.read_reference(3, "S2");
-  e.by_scalar_points = true;
-  if (e.g1 == 0 && e.g2 == 0 && card.is_ok())
-    card.fail("deck.missing-field", 2, "S1 and S2 are both blank, expected one at least");
-  e.at = card.get_location();
-  for (const int point : {e.g1, e.g2})
-    if (point > 0 && card.is_ok()) r.deck.scalar_points.push_back(point);
-  return e;
+void parse_scalar_pairs(Card& card, Reading& r, bool by_property, double Element::*value, IdSpace space,
+                        std::vector<Element>& elements) {
+  for (const int first : {0, 4}) {
+    if (first > 0 && card.is_blank(first, first + 4)) break;
+    Element e;
+    e.id = card.read_id(first, "EID");
+    if (by_property)
+      e.pid = card.read_id(first + 1, "PID", e.id);
+    else
+      e.*value = card.read_real(first + 1, "K or M", 0.0);
+    e.g1 = card.read_reference(first + 2, "S1");
+    e.g2 = card.read_reference(first + 3, "S2");
+    e.by_scalar_points = true;
+    if (e.g1 == 0 && e.g2 == 0 && card.is_ok())
+      card.fail("deck.missing-field", first + 2, "S1 and S2 are both blank, expected one at least");
+    e.at = card.get_location();
+    for (const int point : {e.g1, e.g2})
+      if (point > 0 && card.is_ok()) r.deck.scalar_points.push_back(point);
+    if (r.claim(space, e.id, card, first, 4)) elements.push_back(e);
+  }
 }
 
 void parse_celas3(Card& card, Reading& r) {
-  const auto e = parse_scalar_pair(card, r, true, &records::ScalarSpring::k, "K");
-  if (r.claim(IdSpace::Spring, e.id, card)) r.deck.springs.push_back(e);
+  parse_scalar_pairs(card, r, true, &records::ScalarSpring::k, IdSpace::Spring, r.deck.springs);
 }
 void parse_celas4(Card& card, Reading& r) {
-  const auto e = parse_scalar_pair(card, r, false, &records::ScalarSpring::k, "K");
-  if (r.claim(IdSpace::Spring, e.id, card)) r.deck.springs.push_back(e);
+  parse_scalar_pairs(card, r, false, &records::ScalarSpring::k, IdSpace::Spring, r.deck.springs);
 }
 void parse_cmass3(Card& card, Reading& r) {
-  const auto e = parse_scalar_pair(card, r, true, &records::ScalarMass::m, "M");
-  if (r.claim(IdSpace::ScalarMass, e.id, card)) r.deck.scalar_masses.push_back(e);
+  parse_scalar_pairs(card, r, true, &records::ScalarMass::m, IdSpace::ScalarMass, r.deck.scalar_masses);
 }
 void parse_cmass4(Card& card, Reading& r) {
-  const auto e = parse_scalar_pair(card, r, false, &records::ScalarMass::m, "M");
-  if (r.claim(IdSpace::ScalarMass, e.id, card)) r.deck.scalar_masses.push_back(e);
+  parse_scalar_pairs(card, r, false, &records::ScalarMass::m, IdSpace::ScalarMass, r.deck.scalar_masses);
 }
 
 void parse_spoint(Card& card, Reading& r) {

@@ -33,6 +33,7 @@ void parse_pbush(Card& card, Reading& r) {
       continue;
     }
     const auto flag = card.read_word(line + 1, "flag", "", {"K", "B", "GE", "RCV", "M", "T"});
+    if (flag == "RCV" || flag == "T") card.use(line + 2, line + 8);
     if (flag == "K") read_six(card, line + 2, "K1 to K6", p.k);
     if (flag == "B") read_six(card, line + 2, "B1 to B6", p.b);
     if (flag == "GE") {

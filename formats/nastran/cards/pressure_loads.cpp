@@ -81,6 +81,7 @@ void parse_pload2(Card& card, Reading& r) {
   load.p.fill(card.read_real(1, "P"));
   load.at = card.get_location();
   if (card.is_word(3, "THRU")) {
+    card.use(3);
     const int first = card.read_id(2, "EID1"), last = card.read_id(4, "EID2");
     if (card.is_ok()) add_range(card, r, load, first, last, 4);
     return;
@@ -105,12 +106,14 @@ void parse_pload4(Card& card, Reading& r) {
   const bool is_range = card.is_word(6, "THRU");
   int last = 0;
   if (is_range) {
+    card.use(6);
     last = card.read_id(7, "EID2");
   } else {
     load.g1 = card.read_id(6, "G1", 0);
     load.g34 = card.read_id(7, "G3 or G4", 0);
   }
   load.cid = card.read_reference(8, "CID");
+  card.use(13);  // LDIR
   if (const Eigen::Vector3d n = card.read_vector(9, "N1 N2 N3"); !n.isZero(0)) load.n = n;
   if (card.read_word(12, "SORL", "SURF", {"SURF", "LINE"}) == "LINE")
     card.fail("deck.bad-word", 12, "SORL is LINE: loads along edges are not supported, expected SURF",
@@ -132,6 +135,8 @@ void parse_rforce(Card& card, Reading& r) {
   load.a = card.read_real(3, "A", 0.0);
   load.r = card.read_vector(4, "R1 R2 R3");
   load.racc = card.read_real(8, "RACC", 0.0);
+  card.use(7);      // METHOD
+  card.use(9, 11);  // MB, IDRF
   load.at = card.get_location();
   if (card.is_ok() && load.r.isZero(0) && (load.a != 0 || load.racc != 0))
     card.fail("deck.field-range", 4, "R1 R2 R3 are all zero", "give the axis of rotation");

@@ -91,19 +91,24 @@ void parse_cshear(Card& card, Reading& r) {
   if (r.claim(IdSpace::Shell, e.id, card)) r.deck.shear_panels.push_back(e);
 }
 
+/// PID MID T NSM F1 F2; with integers in the place of F1 and F2 a second PID MID T NSM (NASTRAN-95).
 void parse_pshear(Card& card, Reading& r) {
-  records::Pshear p;
-  p.id = card.read_id(0, "PID");
-  p.mid = card.read_id(1, "MID");
-  p.t = card.read_real(2, "T");
-  p.nsm = card.read_real(3, "NSM", 0.0);
-  p.f1 = card.read_real(4, "F1", 0.0);
-  p.f2 = card.read_real(5, "F2", 0.0);
-  p.at = card.get_location();
-  if (card.is_ok()) card.demand(p.t > 0, 2, "T", "a positive thickness");
-  card.demand(p.f1 >= 0, 4, "F1", "zero or a positive effectiveness");
-  card.demand(p.f2 >= 0, 5, "F2", "zero or a positive effectiveness");
-  if (r.claim(IdSpace::ShearProperty, p.id, card)) r.deck.pshear.push_back(p);
+  const bool has_second = card.is_integer(4) && card.is_integer(5);
+  for (const int first : {0, 4}) {
+    if (first > 0 && !has_second) break;
+    records::Pshear p;
+    p.id = card.read_id(first, "PID");
+    p.mid = card.read_id(first + 1, "MID");
+    p.t = card.read_real(first + 2, "T");
+    p.nsm = card.read_real(first + 3, "NSM", 0.0);
+    p.f1 = has_second ? 0 : card.read_real(4, "F1", 0.0);
+    p.f2 = has_second ? 0 : card.read_real(5, "F2", 0.0);
+    p.at = card.get_location();
+    if (card.is_ok()) card.demand(p.t > 0, first + 2, "T", "a positive thickness");
+    card.demand(p.f1 >= 0, 4, "F1", "zero or a positive effectiveness");
+    card.demand(p.f2 >= 0, 5, "F2", "zero or a positive effectiveness");
+    if (r.claim(IdSpace::ShearProperty, p.id, card, first, has_second ? 4 : 8)) r.deck.pshear.push_back(p);
+  }
 }
 
 }  // namespace

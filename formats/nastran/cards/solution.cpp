@@ -59,6 +59,7 @@ void parse_eigrl(Card& card, Reading& r) {
   m.f2 = card.read_optional_real(2, "V2");
   m.num_modes = card.read_int(3, "ND", 0);
   m.norm = card.read_word(7, "NORM", "MASS", get_norms());
+  card.use(4, card.get_size());  // MSGLVL MAXSET SHFSCL; keywords
   m.at = card.get_location();
   card.demand(card.is_blank(3) || m.num_modes > 0, 3, "ND", "a positive integer");
   read_keywords(card, m);
@@ -77,6 +78,7 @@ void parse_eigr(Card& card, Reading& r) {
   m.f1 = card.read_optional_real(2, "F1");
   m.f2 = card.read_optional_real(3, "F2");
   const int estimate = card.read_int(4, "NE", 0);
+  card.use(6);  // E of the COSMIC programs
   m.num_modes = card.read_int(5, "ND", 0);
   if (m.num_modes == 0 && (m.method == "INV" || m.method == "SINV")) m.num_modes = 3 * estimate;
   m.norm = card.read_word(8, "NORM", "MASS", get_norms());
@@ -99,6 +101,7 @@ void parse_eigb(Card& card, Reading& r) {
   const int positive = card.read_int(5, "NDP", 3 * card.read_int(4, "NEP", 0));
   m.num_modes = std::max(positive, card.read_int(6, "NDN", 0));
   m.norm = "MAX";
+  for (const int i : {1, 7, 8, 9, 10}) card.use(i);  // METHOD, E, NORM G C
   m.at = card.get_location();
   card.demand(m.num_modes >= 0, 5, "NDP", "zero or a positive integer");
   if (m.f1 && m.f2 && *m.f2 <= *m.f1) m.f1 = m.f2 = std::nullopt;
@@ -109,6 +112,7 @@ void parse_eigb(Card& card, Reading& r) {
 /// The last value of a name counts.
 void parse_param(Card& card, Reading& r) {
   records::Param p{card.get_upper(0), card.get_upper(1), card.get_location()};
+  card.use(2);  // imaginary part
   if (p.name.empty()) {
     card.fail("deck.missing-field", 0, "the name is blank, expected the name of a parameter");
     return;

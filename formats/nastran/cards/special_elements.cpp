@@ -61,6 +61,7 @@ void parse_genel(Card& card, Reading& r) {
   e.at = card.get_location();
   int i = read_pairs(card, 2, e.ui);
   if (card.is_word(i, "UD")) i = read_pairs(card, i + 1, e.ud);
+  card.use(1, card.get_size());  // what is left over is found below
   const auto m = static_cast<Eigen::Index>(e.ui.size()), n = static_cast<Eigen::Index>(e.ud.size());
   if (card.is_ok() && m == 0) card.fail("deck.missing-field", 2, "UI1 is blank, expected a component at least");
   if (card.is_ok() && !card.is_word(i, "K") && !card.is_word(i, "Z"))
@@ -110,6 +111,7 @@ void parse_pgap(Card& card, Reading& r) {
   p.ka = card.read_real(3, "KA", 0.0);
   p.kb = card.read_real(4, "KB", 1e-14 * p.ka);
   p.kt = card.read_real(5, "KT", card.read_real(6, "MU1", 0.0) * p.ka);
+  card.use(6, card.get_size());  // friction, adaptive gaps
   p.at = card.get_location();
   for (const auto& [field, value] : {std::pair(3, p.ka), std::pair(4, p.kb), std::pair(5, p.kt)})
     card.demand(value >= 0, field, "KA KB KT", "stiffnesses that are not negative");
@@ -160,6 +162,7 @@ void parse_pbend(Card& card, Reading& r) {
   p.nsm = card.read_real(last, "NSM", 0.0);
   p.rc = card.read_real(last + 1, "RC", 0.0);
   p.zc = card.read_real(last + 2, "ZC", 0.0);
+  card.use(8, 16);  // C to F; of a pipe SACL, ALPHA and further
   p.at = card.get_location();
   if (r.claim(IdSpace::BendProperty, p.id, card)) r.deck.special.pbend.push_back(p);
 }
@@ -169,6 +172,7 @@ void parse_pcomps(Card& card, Reading& r) {
   records::Psolid p;
   p.id = card.read_id(0, "PID");
   p.cordm = card.read_int(1, "CORDM", 0);
+  card.use(2, card.get_size());  // PSDIR to GE; the plies are read below
   p.at = card.get_location();
   for (int i = 8; i < card.get_size(); i += 8) {
     if (card.is_blank(i, i + 8)) continue;

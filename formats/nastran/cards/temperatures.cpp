@@ -48,6 +48,7 @@ void parse_temprb(Card& card, Reading& r) {
   t.t_b = card.read_real(3, "TB", 0.0);
   t.gradient_a = {card.read_real(4, "TP1A", 0.0), card.read_real(6, "TP2A", 0.0)};
   t.gradient_b = {card.read_real(5, "TP1B", 0.0), card.read_real(7, "TP2B", 0.0)};
+  card.use(8, 16);  // temperatures for stress recovery
   add_elements(card, t, 16, r.deck.temperatures.bars);
 }
 
@@ -57,6 +58,7 @@ void parse_tempp1(Card& card, Reading& r) {
   t.sid = card.read_id(0, "SID");
   t.t = card.read_real(2, "TBAR", 0.0);
   t.gradient = card.read_real(3, "TPRIME", 0.0);
+  card.use(4, 8);  // TS1, TS2
   add_elements(card, t, 8, r.deck.temperatures.plates);
 }
 

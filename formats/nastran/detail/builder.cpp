@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <tuple>
 #include <unordered_set>
 
@@ -52,6 +53,7 @@ class Builder {
                          "check that the file is a Nastran deck");
     expand_ranges();
     finish_direct_matrices(reading_);
+    report_leftovers();
     report_names();
   }
 
@@ -61,13 +63,23 @@ class Builder {
     return images_.images[static_cast<std::size_t>(images_.cards[static_cast<std::size_t>(card)])];
   }
 
+  /// Which fields of cards of one name nothing reads.
+  struct Leftover {
+    int count = 0;
+    SourceLocation where;
+    std::string text;
+  };
+
   /// The text of a card; returns the line with too many fields, or nullptr.
   const Line* join(int card, CardText& text) {
     text.clear();
     const Line* excess = nullptr;
+    const Line* numbered = nullptr;  // its tag is a number
+    std::string_view number;
     const CardImage* part = &image(card);
     while (true) {
       for (int i = part->first_line; i < part->first_line + part->num_lines; ++i) {
+        if (numbered != nullptr && !is_continued_by(number, line(i).text)) excess = numbered;
         split_line(line(i).text, split_);
         if (text.lines.empty()) {
           text.name.assign(split_.name);
@@ -78,12 +90,14 @@ class Builder {
         text.lines.push_back({static_cast<int>(text.fields.size()), line(i).at, line(i).text});
         text.fields.insert(text.fields.end(), split_.data.begin(), split_.data.end());
         if (split_.num_excess > 0) excess = &line(i);
+        numbered = split_.has_number_tag ? &line(i) : nullptr;
+        number = split_.tag;
       }
       if (part->next < 0) break;
       part = &images_.images[static_cast<std::size_t>(part->next)];
     }
     pad(text);
-    return excess;
+    return numbered != nullptr ? numbered : excess;
   }
 
   static void pad(CardText& text) { text.fields.resize((text.fields.size() + 7) / 8 * 8); }
@@ -104,6 +118,7 @@ class Builder {
       return;
     }
     get_card_parsers().at(name)(parsed, reading_);
+    note_leftover(parsed);
   }
 
   std::string at_text(const records::CardLocation& at) const {
@@ -112,12 +127,15 @@ class Builder {
   }
 
   void read_card(int card) {
-    if (const Line* excess = join(card, text_))
+    const Line* excess = join(card, text_);
+    if (skip_statement()) return;
+    const bool is_relative = Replicator::is_relative(text_);
+    if (excess != nullptr && (is_relative || is_read(text_.name)))
       diagnostics_.error("deck.too-many-fields", deck_.locate(excess->at),
-                         text_.name + ": the free-field line has data after field 9",
+                         text_.name + ": the free-field line has data in field 10 or behind a continuation mark",
                          "continue on another line that begins with a comma");
     reading_.card = card;
-    if (!Replicator::is_relative(text_)) {
+    if (!is_relative) {
       last_is_plain_ = true;
       last_card_ = card;
       dispatch();
@@ -138,6 +156,27 @@ class Builder {
       return;
     }
     finish_relative(replicator_.resolve(text_));
+  }
+
+  bool is_read(const std::string& name) const {
+    return ignored_.count(name) == 0 && get_card_parsers().count(name) > 0;
+  }
+
+  /// Lines that are no cards and change nothing here: a deletion, which belongs to a restart, and a second BEGIN BULK.
+  bool skip_statement() {
+    const auto where = [&] { return deck_.locate(text_.lines.front().at); };
+    if (!text_.name.empty() && text_.name.front() == '/') {
+      diagnostics_.warning("deck.delete-line", where(), "'" + text_.name + "' deletes cards of an earlier run: not done",
+                           "a deck is read as it stands; take the cards out that should not count");
+      return true;
+    }
+    if (text_.name.substr(0, 5) != "BEGIN") return false;
+    const auto statement = trim(text_.lines.front().text);
+    const auto section = make_upper(trim(statement.substr(5)));
+    if (find_first_word(statement).size() != 5 || (section != "" && section != "BULK")) return false;
+    diagnostics_.warning("deck.second-begin", where(), "a second BEGIN BULK: what follows is read as part of the first",
+                         "remove it if the deck is one");
+    return true;
   }
 
   bool finish_relative(const std::string& wrong) {
@@ -172,6 +211,27 @@ class Builder {
     if (entry->parser == nullptr || is_default_card(text_.name)) return;
     Card card(text_, deck_.files, diagnostics_);
     entry->parser(card, reading_);
+    if (card.is_ok()) note_leftover(card);
+  }
+
+  /// Field 2 is the first after the name, as the manuals count.
+  void note_leftover(const Card& card) {
+    const int i = card.find_leftover();
+    if (i < 0) return;
+    auto& leftover = leftovers_[{card.get_name(), i}];
+    if (leftover.count++ > 0) return;
+    leftover.where = card.locate(i);
+    leftover.text = "field " + std::to_string(i % 8 + 2) + (i < 8 ? "" : " of line " + std::to_string(i / 8 + 1)) +
+                    " '" + std::string(card.get(i)) + "'";
+  }
+
+  void report_leftovers() {
+    for (const auto& [place, leftover] : leftovers_)
+      diagnostics_.warning("deck.unused-field", leftover.where,
+                           place.first + ": " + leftover.text + " is not used" +
+                               (leftover.count == 1 ? "" : " (" + std::to_string(leftover.count) +
+                                                               " cards with data there, the first here)"),
+                           "the card has nothing there; check the columns");
   }
 
   NameEntry& find_entry() {
@@ -280,6 +340,7 @@ class Builder {
   std::unordered_set<std::string> ignored_;
   std::unordered_map<std::string, NameEntry> names_;
   std::unordered_map<std::string, records::CardLocation> defaults_seen_;
+  std::map<std::pair<std::string, int>, Leftover> leftovers_;
   SplitLine split_;
   CardText text_, relative_;
   NameEntry* last_entry_ = nullptr;

@@ -13,7 +13,17 @@ bool Card::is_blank(int first, int last) const {
 }
 bool Card::is_integer(int i) const { return parse_int(get(i)).has_value(); }
 bool Card::is_word(int i, std::string_view word) const { return detail::is_word(get(i), word); }
-std::string Card::get_upper(int i) const { return make_upper(get(i)); }
+std::string Card::get_upper(int i) {
+  use(i);
+  return make_upper(get(i));
+}
+int Card::find_leftover() const {
+  for (int i = 0; i < size_; ++i) {
+    const bool is_used = i < 64 ? (used_ >> i & 1u) != 0 : i < used_end_;
+    if (!is_used && !is_blank(i)) return i;
+  }
+  return -1;
+}
 
 SourceLocation Card::locate(int i) const {
   const auto* line = &text_.lines.front();
@@ -40,12 +50,14 @@ void Card::demand(bool condition, int i, const char* what, const char* expected)
 }
 
 int Card::read_int(int i, const char* what) {
+  use(i);
   const auto value = parse_int(get(i));
   if (!value) fail_field("deck.bad-integer", i, what, "an integer");
   return value.value_or(0);
 }
 int Card::read_int(int i, const char* what, int fallback) { return is_blank(i) ? fallback : read_int(i, what); }
 int Card::read_id(int i, const char* what) {
+  use(i);
   const auto value = parse_int(get(i));
   if (!value)
     fail_field("deck.bad-integer", i, what, "a positive integer");
@@ -55,6 +67,7 @@ int Card::read_id(int i, const char* what) {
 }
 int Card::read_id(int i, const char* what, int fallback) { return is_blank(i) ? fallback : read_id(i, what); }
 int Card::read_reference(int i, const char* what, int fallback) {
+  use(i);
   if (is_blank(i)) return fallback;
   const auto value = parse_int(get(i));
   if (!value)
@@ -72,6 +85,7 @@ std::string Card::join_blanks(int i, const char* what) {
   return joined;
 }
 double Card::read_real(int i, const char* what) {
+  use(i);
   auto value = parse_real(get(i));
   if (const auto blank = get(i).find(' '); !value && blank != std::string_view::npos) {
     const auto exponent = trim(get(i).substr(blank));
@@ -94,6 +108,7 @@ Eigen::Vector2d Card::read_point(int i, const char* what) {
   return {read_real(i, what, 0.0), read_real(i + 1, what, 0.0)};
 }
 unsigned Card::read_components(int i, const char* what) {
+  use(i);
   const bool has_blank = get(i).find(' ') != std::string_view::npos;
   const auto value = has_blank ? parse_components(join_blanks(i, what)) : parse_components(get(i));
   if (!value) fail_field("deck.bad-components", i, what, "component numbers 1 to 6 such as 123, or 0");
@@ -103,6 +118,7 @@ unsigned Card::read_components(int i, const char* what, unsigned fallback) {
   return is_blank(i) ? fallback : read_components(i, what);
 }
 int Card::read_component(int i, const char* what) {
+  use(i);
   if (is_blank(i)) return 0;
   const auto value = parse_int(get(i));
   if (!value || *value < 0 || *value > 6) {
@@ -131,6 +147,7 @@ bool IdRange::contains(int id) const {
 
 std::vector<IdRange> read_id_list(Card& card, int first, int last, const char* what) {
   std::vector<IdRange> list;
+  card.use(first, last);
   const auto fail = [&](int i, const char* why) {
     card.fail("deck.bad-list", i, std::string(what) + " list: " + why + " at '" + std::string(card.get(i)) + "'",
               "write ids, or FIRST THRU LAST, optionally BY STEP and EXCEPT ids");

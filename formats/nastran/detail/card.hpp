@@ -1,6 +1,8 @@
 #pragma once
 /// \file One card with typed access to its fields. Field i = 0 is the first data field (field 2 of the line, in the
 /// counting of the manuals); every line of a card has eight of them whatever its format.
+#include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -52,6 +54,19 @@ class Card {
   bool is_integer(int i) const;
   bool is_word(int i, std::string_view upper_case_word) const;
 
+  /// Fields that the card may have and that need no word when they are not looked at; reading a field does the same.
+  void use(int i) {
+    if (i >= 0 && i < 64) used_ |= std::uint64_t{1} << i;
+    used_end_ = std::max(used_end_, i + 1);
+  }
+  void use(int first, int last) {
+    for (int i = first; i < std::min(last, size_); ++i) use(i);
+  }
+  /// First field with data that was neither read nor used, or -1. Beyond 64 fields it is what follows the last one.
+  int find_leftover() const;
+  /// Where field i stands (its line).
+  SourceLocation locate(int i) const;
+
   int read_int(int i, const char* what);  ///< required
   int read_int(int i, const char* what, int fallback);
   int read_id(int i, const char* what);                           ///< required, > 0
@@ -67,7 +82,7 @@ class Card {
   int read_component(int i, const char* what);  ///< one component 0..6, blank = 0
   /// A word of `choices` (upper case), `fallback` when blank.
   std::string read_word(int i, const char* what, std::string_view fallback, const std::vector<std::string>& choices);
-  std::string get_upper(int i) const;
+  std::string get_upper(int i);
 
   /// An error of this card at field i (its line), or at the card's first line.
   void fail(std::string_view id, int i, std::string what, std::string advice = {});
@@ -76,7 +91,6 @@ class Card {
   void demand(bool condition, int i, const char* what, const char* expected);
 
  private:
-  SourceLocation locate(int i) const;
   /// "10.4  +6" and "12 456" without their blanks, with the warning deck.blank-inside.
   std::string join_blanks(int i, const char* what);
   void fail_field(std::string_view id, int i, const char* what, const char* expected);
@@ -85,6 +99,8 @@ class Card {
   const std::vector<std::string>& files_;
   Diagnostics& diagnostics_;
   int size_;
+  int used_end_ = 0;
+  std::uint64_t used_ = 0;  ///< bit i: field i
   bool ok_ = true;
 };
 

@@ -18,11 +18,18 @@ std::string_view slice(std::string_view text, std::size_t from, std::size_t leng
 bool is_mark(std::string_view field) { return !field.empty() && (field.front() == '+' || field.front() == '*'); }
 bool is_continuation(std::string_view first_field) { return first_field.empty() || is_mark(first_field); }
 std::string_view strip_mark(std::string_view tag) { return is_mark(tag) ? trim(tag.substr(1)) : tag; }
+/// Without all its marks: "++000001" continues "+000001" in decks that repeat the tag behind a mark of its own.
+std::string_view strip_marks(std::string_view tag) {
+  while (is_mark(tag)) tag = trim(tag.substr(1));
+  return tag;
+}
+bool is_same(std::string_view a, std::string_view b) { return a.size() == b.size() && is_word(a, make_upper(b)); }
 
-/// Nastran compares columns 2-8 with 74-80, so the first letter of a parent's tag counts only if it is not a mark.
+/// Nastran compares columns 2-8 with 74-80 without regard to case, so the first letter of a parent's tag counts only if
+/// it is not a mark.
 bool matches(std::string_view parent_tag, std::string_view tag) {
-  if (strip_mark(parent_tag) == tag) return true;
-  return !parent_tag.empty() && !is_mark(parent_tag) && trim(parent_tag.substr(1)) == tag;
+  if (is_same(strip_marks(parent_tag), strip_marks(tag))) return true;
+  return !parent_tag.empty() && !is_mark(parent_tag) && is_same(trim(parent_tag.substr(1)), tag);
 }
 
 std::string_view get_tag(std::string_view text, SplitLine& scratch) {
@@ -67,7 +74,7 @@ class Grouper {
       return;
     }
     const int before = static_cast<int>(result_.images.size()) - 1;
-    if (tag.empty() || matches(tail_tag(before), tag)) {
+    if (strip_marks(tag).empty() || matches(tail_tag(before), tag)) {
       ++image(before).num_lines;
       return;
     }
@@ -75,28 +82,35 @@ class Grouper {
     result_.images.push_back({line, 1, -1});
   }
 
-  /// Tags first, over the whole deck; then what only follows an untagged card.
+  using Tails = std::unordered_map<std::string, std::vector<int>>;
+
+  /// The nearest parent before the fragment that nothing continues yet, else the first one after it; or -1.
+  int find_parent(const Tails& tails, const std::string& tag, int fragment) {
+    const auto found = tails.find(tag);
+    if (found == tails.end()) return -1;
+    int parent = -1;
+    for (const int i : found->second)
+      if (i != fragment && image(i).next < 0 && (i < fragment || parent < 0)) parent = i;
+    return parent;
+  }
+
+  /// Tags first, over the whole deck, those that are equal to the letter before those that differ by marks; then what
+  /// only follows an untagged card.
   void join_fragments() {
-    std::unordered_map<std::string_view, std::vector<int>> tails;
+    Tails tails, bare_tails;
     for (int i = 0; i < static_cast<int>(result_.images.size()); ++i) {
       const auto tag = tail_tag(i);
       if (tag.empty()) continue;
-      tails[strip_mark(tag)].push_back(i);
-      if (!is_mark(tag) && tag.size() > 1) tails[trim(tag.substr(1))].push_back(i);
+      tails[make_upper(strip_mark(tag))].push_back(i);
+      if (!is_mark(tag) && tag.size() > 1) tails[make_upper(trim(tag.substr(1)))].push_back(i);
+      bare_tails[make_upper(strip_marks(tag))].push_back(i);
     }
     for (const auto& fragment : fragments_) {
       const auto tag = strip_mark(get_first_field(text(image(fragment.image).first_line)));
-      if (const auto found = tails.find(tag); found != tails.end()) {
-        // The nearest parent before the fragment that nothing continues yet, else the first one after it.
-        int parent = -1;
-        for (const int i : found->second)
-          if (i != fragment.image && image(i).next < 0 && (i < fragment.image || parent < 0)) parent = i;
-        if (parent >= 0) {
-          image(parent).next = fragment.image;
-          continue;
-        }
-      }
-      if (fragment.fallback >= 0 && image(fragment.fallback).next < 0) image(fragment.fallback).next = fragment.image;
+      int parent = find_parent(tails, make_upper(tag), fragment.image);
+      if (parent < 0) parent = find_parent(bare_tails, make_upper(strip_marks(tag)), fragment.image);
+      if (parent < 0 && fragment.fallback >= 0 && image(fragment.fallback).next < 0) parent = fragment.fallback;
+      if (parent >= 0) image(parent).next = fragment.image;
     }
     std::vector<char> reached(result_.images.size(), 0);
     for (int card : result_.cards)
@@ -126,34 +140,66 @@ bool is_number_like(std::string_view field) {
   return parse_real(field).has_value() && field.find_first_of("0123456789") != std::string_view::npos;
 }
 
-void split_free(std::string_view text, SplitLine& line) {
-  std::size_t index = 0, per_line = 8;
+bool is_separator(char c) { return c == ' ' || c == '\t'; }
+
+/// Eight blank columns or more before the data: field 1 is blank.
+bool has_blank_name(std::string_view text) { return text.find_first_not_of(" \t") >= 8; }
+
+/// Commas and blanks separate; a comma with blanks around it is one separator, two commas have a blank field between.
+void split_tokens(std::string_view text, std::vector<std::string_view>& tokens) {
+  tokens.clear();
+  if (has_blank_name(text)) tokens.emplace_back();
   std::size_t end = 0;
-  for (std::size_t from = 0; end != std::string_view::npos; from = end + 1, ++index) {
+  for (std::size_t from = 0; end != std::string_view::npos; from = end + 1) {
     end = text.find(',', from);
-    auto field = trim(text.substr(from, end == std::string_view::npos ? end : end - from));
-    if (index == 0) {
-      if (is_keyword(field)) field = {};
-      const bool star = !field.empty() && (field.front() == '*' || field.back() == '*');
-      line.is_large = star;
-      per_line = star ? 4 : 8;
-      if (star && field.front() != '*') field = trim(field.substr(0, field.size() - 1));
-      line.name = field;
-    } else if (index <= per_line) {
-      line.data.push_back(field);
-    } else if (index == per_line + 1) {
-      line.tag = field;
-      // A bare number in field 10 is data that Nastran would not read.
-      if (!is_mark(field) && is_number_like(field)) ++line.num_excess;
-    } else if (index == per_line + 2 && (line.tag.empty() || is_mark(line.tag)) && is_mark(field)) {
-      // "+,+" goes on with the next ten fields on the same line.
-      line.tag = {};
-      line.data.resize(line.data.size() / per_line * per_line);
-      index = 0;
-      per_line = 8;
-    } else if (!field.empty()) {
-      ++line.num_excess;
+    auto piece = trim(text.substr(from, end == std::string_view::npos ? end : end - from));
+    if (from == 0 && is_keyword(piece) && get_first_field(text).empty()) tokens.emplace_back();
+    // A blank field 1 with its own comma, ",1.,2." or "        ,1.,2.", is there already.
+    if (piece.empty() && from == 0 && !tokens.empty()) continue;
+    do {
+      const auto last = std::find_if(piece.begin(), piece.end(), is_separator);
+      tokens.push_back(piece.substr(0, static_cast<std::size_t>(last - piece.begin())));
+      piece = trim(piece.substr(tokens.back().size()));
+    } while (!piece.empty());
+  }
+}
+
+bool has_data(const std::vector<std::string_view>& tokens, std::size_t from) {
+  return std::any_of(tokens.begin() + static_cast<std::ptrdiff_t>(std::min(from, tokens.size())), tokens.end(),
+                     [](std::string_view t) { return !t.empty(); });
+}
+
+/// Data beyond field 9 goes on in the first field of a continuation, as if it stood on a line of its own.
+void split_free(std::string_view text, SplitLine& line) {
+  auto& tokens = line.tokens;
+  split_tokens(text, tokens);
+  line.name = tokens.front();
+  line.is_large = !line.name.empty() && (line.name.front() == '*' || line.name.back() == '*');
+  if (line.is_large && line.name.front() != '*') line.name = trim(line.name.substr(0, line.name.size() - 1));
+  std::size_t per_line = line.is_large ? 4 : 8;
+  for (std::size_t i = 1, place = 0; i < tokens.size(); ++i, ++place) {
+    const auto token = tokens[i];
+    if (place == per_line) {
+      const bool is_end = token.empty() || is_mark(token);
+      if (is_end && i + 1 < tokens.size() && is_mark(tokens[i + 1])) {
+        // "+,+" goes on with the next ten fields on the same line.
+        per_line = 8;
+        line.data.resize((line.data.size() + 7) / 8 * 8);
+        place = static_cast<std::size_t>(-1);
+        ++i;
+        continue;
+      }
+      const bool is_last = !has_data(tokens, i + 1);
+      if (is_mark(token) || is_last) {
+        line.tag = token;
+        // A bare number in field 10 is data that Nastran would not read.
+        line.has_number_tag = !is_mark(token) && is_number_like(token);
+        for (++i; i < tokens.size(); ++i) line.num_excess += tokens[i].empty() ? 0 : 1;
+        break;
+      }
+      place = 0;
     }
+    line.data.push_back(token);
   }
   const std::size_t unit = line.is_large ? 4 : 8;
   line.data.resize((line.data.size() + unit - 1) / unit * unit);
@@ -168,14 +214,22 @@ bool is_free_field(std::string_view text) {
 
 std::string_view get_first_field(std::string_view text) {
   if (!is_free_field(text)) return slice(text, 0, 8);
+  if (has_blank_name(text)) return {};
   const auto first = trim(text.substr(0, text.find(',')));
-  return is_keyword(first) ? std::string_view{} : first;
+  const auto word = first.substr(0, static_cast<std::size_t>(
+                                        std::find_if(first.begin(), first.end(), is_separator) - first.begin()));
+  return is_keyword(first) && !is_word(word, "DEQATN") ? std::string_view{} : word;
+}
+
+bool is_continued_by(std::string_view tag, std::string_view next_line) {
+  const auto first = get_first_field(next_line);
+  return is_mark(first) && matches(tag, strip_mark(first));
 }
 
 void split_line(std::string_view text, SplitLine& line) {
   line.data.clear();
   line.tag = {};
-  line.is_large = false;
+  line.is_large = line.has_number_tag = false;
   line.num_excess = 0;
   if (is_free_field(text)) {
     split_free(text, line);

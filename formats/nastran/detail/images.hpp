@@ -22,7 +22,7 @@ struct CardImages {
 };
 
 /// Groups the lines from `first_line` on. A continuation follows its parent, or is found by its tag (columns 2-8
-/// against 74-80 of the parent). Adds deck.orphan-continuation.
+/// against 74-80 of the parent, whatever their case and their marks). Adds deck.orphan-continuation.
 CardImages make_card_images(const Source& source, std::size_t first_line, Diagnostics& diagnostics);
 
 /// The fields of one line: name or continuation mark, data, continuation tag.
@@ -31,7 +31,9 @@ struct SplitLine {
   std::vector<std::string_view> data;  ///< 8 (small, free) or 4 (large) fields per line, trimmed
   std::string_view tag;                ///< field 10
   bool is_large = false;
-  int num_excess = 0;  ///< fields of a free-field line that are neither data nor a tag
+  int num_excess = 0;           ///< fields of a free-field line that are neither data nor a tag
+  bool has_number_tag = false;  ///< free field: a number stands in field 10
+  std::vector<std::string_view> tokens;  ///< storage of split_line
 };
 
 /// Splits a line in place; `line` is reused to keep its storage.
@@ -39,5 +41,7 @@ void split_line(std::string_view text, SplitLine& line);
 /// Field 1 of a line, trimmed, as written.
 std::string_view get_first_field(std::string_view text);
 bool is_free_field(std::string_view text);
+/// True if `next_line` is the continuation that names `tag`.
+bool is_continued_by(std::string_view tag, std::string_view next_line);
 
 }  // namespace bough::nastran::detail

@@ -1,6 +1,8 @@
 #include "bough/formats/nastran/detail/lines.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -149,6 +151,22 @@ class Loader {
     return std::nullopt;
   }
 
+  /// SYMBOL of SYMBOL:name; a single letter is a drive.
+  static std::string get_symbol(const std::string& name) {
+    const auto colon = name.find(':');
+    if (colon == std::string::npos || colon < 2) return {};
+    const auto is_letter = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+    const auto end = name.begin() + static_cast<std::ptrdiff_t>(colon);
+    return std::all_of(name.begin(), end, is_letter) ? name.substr(0, colon) : std::string{};
+  }
+
+  /// The folder that a logical symbol stands for: the environment variable of this name, or of its capitals.
+  static std::optional<std::string> find_symbol(const std::string& symbol) {
+    for (const std::string& name : {symbol, make_upper(symbol)})
+      if (const char* value = symbol.empty() ? nullptr : std::getenv(name.c_str())) return value;
+    return std::nullopt;
+  }
+
   /// A deck that has moved: SYMBOL:name as the path below the folder, a path of another machine by its last part,
   /// letters in another case.
   std::optional<fs::path> find_moved_file(std::string name, const fs::path& folder) const {
@@ -181,6 +199,9 @@ class Loader {
 
   void include(const std::string& name, const fs::path& folder, const SourceLocation& where, IncludeLine statement) {
     auto path = find_file(name, folder);
+    const std::string symbol = get_symbol(name);
+    const auto value = find_symbol(symbol);
+    if (!path && value) path = find_file(*value + "/" + name.substr(symbol.size() + 1), folder);
     if (!path && (path = find_moved_file(name, folder)))
       diagnostics_.warning(
           "deck.include-moved", where,
@@ -193,7 +214,9 @@ class Loader {
     }
     if (!path) {
       diagnostics_.error("deck.include-missing", where, "included file '" + name + "' does not exist",
-                         "it is looked for in the folder of the including file and of the deck");
+                         symbol.empty() ? "it is looked for in the folder of the including file and of the deck"
+                         : value        ? symbol + " is '" + *value + "' in the environment"
+                                        : "set the environment variable " + symbol + " to the folder it stands for");
       return;
     }
     std::error_code failed;

@@ -19,8 +19,8 @@ std::string_view get_argument(std::string_view field) {
 
 bool Replicator::is_relative(const CardText& card) {
   if (!card.name.empty() && card.name.front() == '=') return true;
-  // Keywords of EIGRL are written NAME = value.
-  if (card.name == "EIGRL") return false;
+  // Keywords of EIGRL are written NAME = value, equations have the sign in their text.
+  if (card.name == "EIGRL" || card.name == "DEQATN") return false;
   for (const auto field : card.fields)
     if (field == "=" || field == "==") return true;
   return false;
@@ -33,7 +33,9 @@ std::optional<int> Replicator::find_repeats(const CardText& card) {
 
 std::string Replicator::add_increment(std::string_view field, std::string_view increment, std::string_view& sum) {
   char buffer[40];
-  const auto a = parse_int(field), b = parse_int(increment);
+  const auto b = parse_int(increment);
+  // A blank field counts as zero, of the kind of the increment.
+  const auto a = field.empty() && b ? std::optional<int>(0) : parse_int(field);
   if (a && b) {
     const long total = static_cast<long>(*a) + *b;
     const auto end = std::to_chars(buffer, buffer + sizeof buffer, total).ptr;
