@@ -24,7 +24,13 @@ constexpr std::array written_cards{
     "PBAR",   "PBARL",  "PBEAM",   "PBEAML", "PBUSH",   "PBUSH1D", "PCOMP",  "PCOMPG",  "PDAMP",  "PELAS",  "PLOAD",
     "PLOAD1", "PLOAD2", "PLOAD4",  "PLOTEL", "PMASS",   "PROD",    "PSHEAR", "PSHELL",  "PSOLID", "PTUBE",  "PVISC",
     "RBAR",   "RBE1",   "RBE2",    "RBE3",   "RFORCE",  "RROD",    "SLOAD",  "SPC",     "SPC1",   "SPCADD", "SPCD",
-    "SPOINT", "SUPORT", "SUPORT1", "TEMP",   "TEMPD",   "TEMPP1",  "TEMPRB"};
+    "SPOINT", "SUPORT", "SUPORT1", "TEMP",   "TEMPD",   "TEMPP1",  "TEMPRB",
+    // Those of NASTRAN-95 stand as what they became.
+    "CELBOW", "CHEXA1", "CHEXA2", "CIHEX1", "CIHEX2", "CIS2D8", "CQDMEM", "CQDMEM1", "CQDMEM2", "CQDPLT", "CQUAD1",
+    "CQUAD2", "CRBAR", "CRBE1", "CRBE2", "CRBE3", "CRIGD3", "CRROD", "CRSPLINE", "CRTRPLT", "CTRBSC", "CTRIA1",
+    "CTRIA2", "CTRIM6", "CTRMEM", "CTRPLT", "CTRPLT1", "CTRSHL", "CWEDGE", "PCOMP1", "PCOMP2", "PELBOW", "PIHEX",
+    "PIS2D8", "PQDMEM", "PQDMEM1", "PQDMEM2", "PQDPLT", "PQUAD1", "PQUAD2", "PTRBSC", "PTRIA1", "PTRIA2", "PTRIM6",
+    "PTRMEM", "PTRPLT", "PTRPLT1", "PTRSHL", "QSET", "QSET1"};
 
 /// "1.5*K1, 1.*K2": a line for each, so that none grows beyond 72 columns.
 std::string join_matrices(const std::vector<std::pair<double, std::string>>& matrices) {
@@ -72,6 +78,7 @@ void report_lost(const Deck& deck, Diagnostics& diagnostics) {
   const SourceLocation where{deck.files.empty() ? std::string{} : deck.files.front()};
   std::string left_out;
   for (const auto& card : deck.unused) left_out += (left_out.empty() ? "" : ", ") + card.name;
+  for (const auto& text : deck.left_out) left_out += (left_out.empty() ? "" : ", ") + text;
   if (!left_out.empty())
     diagnostics.warning("deck.left-out", where, "cards that are not in the new deck: " + left_out,
                         "copy them from the old one if they are needed");

@@ -70,7 +70,7 @@ void parse_rbe3(Card& card, Reading& r) {
   if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe3.push_back(std::move(e));
 }
 
-/// EID, pairs GN CN (three per line), UM with pairs GM CM, then ALPHA and TREF, reals.
+/// EID, pairs GN CN (three per line), UM (CRIGD3: MSET) with pairs GM CM, then ALPHA and TREF, reals.
 void parse_rbe1(Card& card, Reading& r) {
   records::Rbe1 e;
   e.id = card.read_id(0, "EID");
@@ -80,7 +80,7 @@ void parse_rbe1(Card& card, Reading& r) {
   for (int i = 1; i < size;) {
     if (card.is_blank(i)) {
       ++i;
-    } else if (card.is_word(i, "UM") && !has_um) {
+    } else if ((card.is_word(i, "UM") || card.is_word(i, "MSET")) && !has_um) {
       has_um = true;
       card.use(i++);
     } else if (i >= size - 2 && is_real(card, i)) {
@@ -216,6 +216,12 @@ void add_constraint_parsers(ParserTable& table) {
   table["SPCADD"] = parse_spcadd;
   table["MPC"] = parse_mpc;
   table["MPCADD"] = parse_mpcadd;
+  // The names of NASTRAN-95, with the same fields.
+  table["CRBE1"] = table["CRIGD3"] = parse_rbe1;
+  table["CRBE2"] = parse_rbe2;
+  table["CRBE3"] = parse_rbe3;
+  table["CRROD"] = parse_rrod;
+  table["CRBAR"] = parse_rbar;
 }
 
 }  // namespace bough::nastran::detail

@@ -135,6 +135,35 @@ void parse_laminate(Card& card, Reading& r, int skip, int stride) {
 void parse_pcomp(Card& card, Reading& r) { parse_laminate(card, r, 0, 4); }
 void parse_pcompg(Card& card, Reading& r) { parse_laminate(card, r, 1, 8); }
 
+/// PCOMP1: PID Z0 NSM SB FT MID T LAM, angles. PCOMP2: PID Z0 NSM SB FT MID blank LAM, pairs of T and angle.
+void parse_equal_plies(Card& card, Reading& r) {
+  const bool is_constant = card.get_name() == "PCOMP1";
+  records::Pcomp p;
+  p.id = card.read_id(0, "PID");
+  const auto z0 = card.read_optional_real(1, "Z0");
+  p.nsm = card.read_real(2, "NSM", 0.0);
+  card.use(3, 5);  // SB, FT
+  records::Ply ply;
+  ply.mid = card.read_id(5, "MID");
+  if (is_constant) ply.t = card.read_real(6, "T");
+  const std::string lam = card.read_word(7, "LAM", "", {"", "ALL", "SYM", "MEM", "SYMMEM"});
+  p.bending = lam != "MEM" && lam != "SYMMEM";
+  p.at = card.get_location();
+  const int stride = is_constant ? 1 : 2;
+  for (int i = 8; i < card.get_size(); i += stride) {
+    if (card.is_blank(i, i + stride) && !is_constant) continue;
+    if (!is_constant) ply.t = card.read_real(i, "Ti", ply.t);
+    ply.theta_deg = card.read_real(i + stride - 1, "THi", ply.theta_deg);
+    p.plies.push_back(ply);
+  }
+  if (p.plies.empty()) card.fail("deck.missing-field", 8, "the laminate has no ply", "give its angles");
+  if (lam == "SYM" || lam == "SYMMEM") p.plies.insert(p.plies.end(), p.plies.rbegin(), p.plies.rend());
+  double total = 0;
+  for (const auto& each : p.plies) total += each.t;
+  p.z0 = z0.value_or(-0.5 * total);
+  if (r.claim(IdSpace::ShellProperty, p.id, card)) r.deck.pcomp.push_back(p);
+}
+
 void parse_psolid(Card& card, Reading& r) {
   records::Psolid p;
   p.id = card.read_id(0, "PID");
@@ -143,9 +172,13 @@ void parse_psolid(Card& card, Reading& r) {
   p.at = card.get_location();
   const std::string fluid = card.get_upper(6);
   card.use(2, 6);  // CORDM, IN, STRESS, ISOP
-  if (fluid == "PFLUID" || fluid == "FFLUID")
-    card.fail("deck.bad-word", 6, "FCTN is " + fluid + ": fluids are not structure", "leave fluid elements out");
-  if (r.claim(IdSpace::SolidProperty, p.id, card)) r.deck.psolid.push_back(p);
+  if (!r.claim(IdSpace::SolidProperty, p.id, card)) return;
+  if (fluid == "PFLUID" || fluid == "FFLUID") {
+    if (r.fluid_grids.empty() && r.fluid_properties.empty()) r.first_fluid = p.at;
+    r.fluid_properties.insert(p.id);
+  } else {
+    r.deck.psolid.push_back(p);
+  }
 }
 
 void parse_solid(Card& card, Reading& r, int corners, int edges) {
@@ -177,6 +210,7 @@ void add_continuum_parsers(ParserTable& table) {
   table["PSHELL"] = parse_pshell;
   table["PCOMP"] = parse_pcomp;
   table["PCOMPG"] = parse_pcompg;
+  table["PCOMP1"] = table["PCOMP2"] = parse_equal_plies;
   table["PSOLID"] = parse_psolid;
   table["CHEXA"] = parse_hexa;
   table["CPENTA"] = parse_penta;

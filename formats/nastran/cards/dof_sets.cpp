@@ -28,6 +28,8 @@ void parse_suport1(Card& card, Reading& r) {
 void parse_aset(Card& card, Reading& r) { read_pairs(card, 0, r.deck.aset); }
 void parse_omit(Card& card, Reading& r) { read_pairs(card, 0, r.deck.omit); }
 
+void parse_qset(Card& card, Reading& r) { read_pairs(card, 0, r.deck.qset); }
+
 /// C ID1 ID2 ... or C ID1 THRU ID2, of which only the points that exist are meant.
 void read_list(Card& card, Reading& r, std::vector<GridComponents>& terms) {
   const unsigned c = card.read_components(0, "C", 0);
@@ -43,6 +45,7 @@ void read_list(Card& card, Reading& r, std::vector<GridComponents>& terms) {
 }
 void parse_aset1(Card& card, Reading& r) { read_list(card, r, r.deck.aset); }
 void parse_omit1(Card& card, Reading& r) { read_list(card, r, r.deck.omit); }
+void parse_qset1(Card& card, Reading& r) { read_list(card, r, r.deck.qset); }
 
 }  // namespace
 
@@ -53,6 +56,8 @@ void add_dof_set_parsers(ParserTable& table) {
   table["ASET1"] = parse_aset1;
   table["OMIT"] = parse_omit;
   table["OMIT1"] = parse_omit1;
+  table["QSET"] = parse_qset;
+  table["QSET1"] = parse_qset1;
 }
 
 }  // namespace bough::nastran::detail

@@ -11,11 +11,18 @@ void parse_grid(Card& card, Reading& r) {
   grid.id = card.read_id(0, "ID");
   grid.cp = card.read_reference(1, "CP", r.grid_defaults.cp);
   grid.x = card.read_vector(2, "X1 X2 X3");
-  grid.cd = card.read_reference(5, "CD", r.grid_defaults.cd);
+  const bool is_fluid = card.get(5) == "-1";
+  grid.cd = is_fluid ? 0 : card.read_reference(5, "CD", r.grid_defaults.cd);
+  card.use(5);
   grid.ps = card.read_components(6, "PS", r.grid_defaults.ps);
   card.use(7);  // SEID
   grid.at = card.get_location();
-  if (r.claim(IdSpace::Grid, grid.id, card)) r.deck.grids.push_back(grid);
+  if (!r.claim(IdSpace::Grid, grid.id, card)) return;
+  if (is_fluid && r.fluid_grids.empty()) r.first_fluid = grid.at;
+  if (is_fluid)
+    r.fluid_grids.insert(grid.id);
+  else
+    r.deck.grids.push_back(grid);
 }
 
 void parse_grdset(Card& card, Reading& r) {

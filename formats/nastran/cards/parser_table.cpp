@@ -21,6 +21,8 @@ const ParserTable& get_card_parsers() {
     add_pressure_parsers(t);
     add_temperature_parsers(t);
     add_old_constraint_parsers(t);
+    add_old_shell_parsers(t);
+    add_old_solid_parsers(t);
     add_special_element_parsers(t);
     add_special_constraint_parsers(t);
     add_nonstructural_parsers(t);

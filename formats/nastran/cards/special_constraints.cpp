@@ -85,6 +85,9 @@ void add_special_constraint_parsers(ParserTable& table) {
   table["RTRPLT"] = parse_rtrplt;
   table["RTRPLT1"] = parse_rtrplt1;
   table["RSPLINE"] = parse_rspline;
+  // The names of NASTRAN-95, with the same fields.
+  table["CRTRPLT"] = parse_rtrplt;
+  table["CRSPLINE"] = parse_rspline;
 }
 
 }  // namespace bough::nastran::detail

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <unordered_set>
 
+#include "bough/formats/nastran/detail/design.hpp"
 #include "bough/formats/nastran/detail/known_cards.hpp"
 #include "bough/formats/nastran/detail/parsers.hpp"
 #include "bough/formats/nastran/detail/replication.hpp"
@@ -45,7 +46,9 @@ class Builder {
 
   void read() {
     const int num_cards = static_cast<int>(images_.cards.size());
-    for (int card = 0; card < num_cards; ++card) read_defaults(card);
+    for (int card = 0; card < num_cards && !begins_section(card); ++card) read_ahead(card);
+    const bool is_design = deck_.sol == "200" || deck_.sol == "DESOPT";
+    design_.finish(is_design, deck_.sol, deck_, diagnostics_);
     for (int card = 0; card < num_cards && !stopped_; ++card) read_card(card);
     if (num_unreadable_ > max_unreadable)
       diagnostics_.error("deck.unreadable-line", {deck_.files.front(), 0, 0},
@@ -53,6 +56,9 @@ class Builder {
                          "check that the file is a Nastran deck");
     expand_ranges();
     finish_direct_matrices(reading_);
+    finish_fluid(reading_);
+    finish_old_elements(reading_);
+    design_.report(deck_, diagnostics_);
     report_leftovers();
     report_names();
   }
@@ -102,19 +108,36 @@ class Builder {
 
   static void pad(CardText& text) { text.fields.resize((text.fields.size() + 7) / 8 * 8); }
 
-  void read_defaults(int card) {
+  /// A section of its own (BEGIN SUPER): its cards are no part of this model.
+  bool begins_section(int card) const {
+    const auto text = trim(line(image(card).first_line).text);
+    if (text.size() < 5 || !is_word(find_first_word(text), "BEGIN")) return false;
+    const auto section = find_first_word(text.substr(5));
+    return !section.empty() && (!is_word(section, "BULK") || !trim(trim(text.substr(5)).substr(4)).empty());
+  }
+
+  /// What must be known before all other cards: defaults (GRDSET, BAROR, BEAMOR) and design variables.
+  void read_ahead(int card) {
     const auto first = get_first_field(line(image(card).first_line).text);
-    if (first.size() < 5 || first.size() > 7 ||
-        (first.front() != 'G' && first.front() != 'g' && first.front() != 'B' && first.front() != 'b'))
-      return;
+    if (first.size() < 5 || std::string_view("GgBbDd").find(first.front()) == std::string_view::npos) return;
     auto name = make_upper(first);
     if (name.back() == '*') name = trim(std::string_view(name).substr(0, name.size() - 1));
-    if (!is_default_card(name) || ignored_.count(name) > 0) return;
+    if (ignored_.count(name) > 0) return;
+    if (Design::is_design(name)) {
+      join(card, text_);
+      design_.add(text_, deck_.files, diagnostics_);
+    }
+    if (!is_default_card(name)) return;
     join(card, text_);
     Card parsed(text_, deck_.files, diagnostics_);
-    if (const auto [at, is_new] = defaults_seen_.emplace(name, parsed.get_location()); !is_new) {
-      parsed.fail("deck.duplicate-id", 0, "the card is given twice, first at " + at_text(at->second),
-                  "keep one of them");
+    if (const auto [earlier, is_new] = defaults_seen_.emplace(name, card); !is_new) {
+      join(earlier->second, relative_);
+      const auto where = at_text(relative_.lines.front().at);
+      if (relative_.fields == text_.fields)
+        parsed.warn("deck.repeated-card", 0, "the card is given again with the same content, first at " + where,
+                    "remove one of them");
+      else
+        parsed.fail("deck.duplicate-id", 0, "the card is given twice, first at " + where, "keep one of them");
       return;
     }
     get_card_parsers().at(name)(parsed, reading_);
@@ -209,6 +232,7 @@ class Builder {
     }
     if (entry->count++ == 0) entry->first = text_.lines.front().at;
     if (entry->parser == nullptr || is_default_card(text_.name)) return;
+    design_.apply(text_);
     Card card(text_, deck_.files, diagnostics_);
     entry->parser(card, reading_);
     if (card.is_ok()) note_leftover(card);
@@ -277,7 +301,7 @@ class Builder {
       for (auto id = std::lower_bound(ids.begin(), ids.end(), set.range.first);
            id != ids.end() && *id <= set.range.last; ++id)
         if (set.range.contains(*id)) set.terms->push_back({*id, set.c, set.at});
-      if (set.terms->size() == before)
+      if (set.terms->size() == before && set.terms != &deck_.qset)
         diagnostics_.error("deck.bad-list", deck_.locate(set.at),
                            std::to_string(set.range.first) + " THRU " + std::to_string(set.range.last) +
                                " holds no grid or scalar point of the deck",
@@ -290,7 +314,7 @@ class Builder {
     std::vector<const std::pair<const std::string, NameEntry>*> unread;
     for (const auto& entry : names_) {
       deck_.card_counts[entry.first] = entry.second.count;
-      if (entry.second.parser == nullptr) unread.push_back(&entry);
+      if (entry.second.parser == nullptr || find_loss(entry.first) != nullptr) unread.push_back(&entry);
     }
     std::sort(unread.begin(), unread.end(), [](const auto* a, const auto* b) {
       const auto &x = a->second.first, &y = b->second.first;
@@ -302,9 +326,13 @@ class Builder {
   void report_unread(const std::string& name, const NameEntry& entry) {
     const auto effect = find_effect(name);
     const auto where = deck_.locate(entry.first);
-    deck_.unused.push_back({name, effect.value_or(records::CardEffect::None), entry.count, entry.first});
-    const std::string times = entry.count == 1 ? "1 card" : std::to_string(entry.count) + " cards, the first here";
     const bool is_ignored = ignored_.count(name) > 0;
+    if (Design::is_design(name) && !is_ignored && !design_.is_empty()) {
+      deck_.unused.push_back({name, records::CardEffect::None, entry.count, entry.first});
+      return;  // design_ has said it
+    }
+    if (entry.parser == nullptr) deck_.unused.push_back({name, effect.value_or(records::CardEffect::None), entry.count, entry.first});
+    const std::string times = entry.count == 1 ? "1 card" : std::to_string(entry.count) + " cards, the first here";
     if (!effect) {
       const auto nearest = find_nearest_card(name);
       const std::string what = name + " is not the name of a Nastran card (" + times + ")";
@@ -327,7 +355,7 @@ class Builder {
                          "replace it, or --ignore " + name + " to compute without it");
     else
       diagnostics_.warning(
-          "deck.unused-card", where, name + " is not used (" + times + ")",
+          "deck.unused-card", where, name + (entry.parser == nullptr ? " is not read (" : " is not used (") + times + ")",
           find_loss(name) != nullptr ? find_loss(name) : std::string("it carries ") + get_effect_name(*effect));
   }
 
@@ -339,7 +367,8 @@ class Builder {
   Replicator replicator_;
   std::unordered_set<std::string> ignored_;
   std::unordered_map<std::string, NameEntry> names_;
-  std::unordered_map<std::string, records::CardLocation> defaults_seen_;
+  std::unordered_map<std::string, int> defaults_seen_;  ///< card index
+  Design design_;
   std::map<std::pair<std::string, int>, Leftover> leftovers_;
   SplitLine split_;
   CardText text_, relative_;

@@ -19,17 +19,23 @@ void add_damper_parsers(ParserTable& table);              ///< CDAMPx, PDAMP, CV
 void add_shell_parsers(ParserTable& table);               ///< CQUADx, CTRIAx, CSHEAR, PSHEAR
 void add_continuum_parsers(ParserTable& table);           ///< MAT2, MAT8, MAT9, PSHELL, PCOMP, PSOLID, solids
 void add_constraint_parsers(ParserTable& table);          ///< RBE1, RBE2, RBE3, RBAR, RROD, SPC, SPC1, MPC, xADD
-void add_dof_set_parsers(ParserTable& table);             ///< SUPORT, SUPORT1, ASET, ASET1, OMIT, OMIT1
+void add_dof_set_parsers(ParserTable& table);             ///< SUPORT, SUPORT1, ASETi, OMITi, QSETi
 void add_direct_matrix_parsers(ParserTable& table);       ///< DMIG
 void add_load_parsers(ParserTable& table);                ///< FORCE, MOMENT, GRAV, LOAD
 void add_pressure_parsers(ParserTable& table);            ///< FORCE1/2, MOMENT1/2, PLOAD, 1, 2, 4, RFORCE, SPCD, SLOAD
-void add_old_constraint_parsers(ParserTable& table);      ///< CRIGD1, CRIGD2, CRIGDR
+void add_old_constraint_parsers(ParserTable& table);      ///< CRIGD1, CRIGD2, CRIGD3, CRIGDR
+void add_old_shell_parsers(ParserTable& table);           ///< CQUAD1, CTRIA1, CQDMEM, CTRPLT ... and their properties
+void add_old_solid_parsers(ParserTable& table);           ///< CHEXA1, CHEXA2, CWEDGE, CIHEX1, CIHEX2, PIHEX, CELBOW
 void add_temperature_parsers(ParserTable& table);         ///< TEMP, TEMPD, TEMPRB, TEMPP1
 void add_special_element_parsers(ParserTable& table);     ///< PBCOMP, GENEL, CGAP, PGAP, CBEND, PBEND
 void add_special_constraint_parsers(ParserTable& table);  ///< RBAR1, RJOINT, RTRPLT, RTRPLT1, RSPLINE
 void add_nonstructural_parsers(ParserTable& table);       ///< NSM, NSM1, NSML, NSML1, NSMADD, ACCEL, ACCEL1
 void add_solution_parsers(ParserTable& table);            ///< EIGRL, EIGR, PARAM
 
+/// After the last card: the elements of NASTRAN-95 get their PSHELL and PSOLID. Adds deck.old-element, deck.old-property.
+void finish_old_elements(Reading& reading);
+/// After the last card: fluid grids and solids, and what is said of their dofs, are taken out. Adds deck.fluid.
+void finish_fluid(Reading& reading);
 /// After the last card: polar terms become real and imaginary parts. Adds deck.missing-header, deck.duplicate-term.
 void finish_direct_matrices(Reading& reading);
 

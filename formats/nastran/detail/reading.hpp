@@ -2,6 +2,7 @@
 /// \file What the card parsers share while a deck is read, and the table of parsers.
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -53,6 +54,7 @@ enum class IdSpace {
   GapProperty,
   Bend,
   BendProperty,
+  OldSolidProperty,
   Count
 };
 
@@ -105,6 +107,26 @@ struct BeamDefaults {
   std::string offt = "GGG";
 };
 
+/// Elements of NASTRAN-95 that are read as those of today. Each old property card has ids of its own, so that PSHELL and
+/// PSOLID get theirs when all cards are known.
+struct OldElements {
+  struct Use {
+    std::size_t index = 0;  ///< in deck.shells or deck.solids
+    std::string property;   ///< "PQUAD2", "PIHEX"; empty: the element names a material
+  };
+  std::map<std::pair<std::string, int>, records::Pshell> shell_properties;   ///< by card and id
+  std::map<std::pair<std::string, int>, std::vector<double>> corner_t;       ///< where it varies over a triangle
+  std::map<int, records::Psolid> solid_properties;                           ///< PIHEX
+  std::vector<Use> shells, solids;
+  std::map<std::pair<std::string, std::string>, int> counts;  ///< (old card, card of today)
+  records::CardLocation first;
+
+  void count(Card& card, const char* today) {
+    if (counts.empty()) first = card.get_location();
+    ++counts[{card.get_name(), today}];
+  }
+};
+
 struct Reading {
   Reading(records::Deck& deck_read, Diagnostics& diagnostics_of_deck)
       : deck(deck_read), diagnostics(diagnostics_of_deck) {}
@@ -120,6 +142,9 @@ struct Reading {
   std::vector<SpcRange> spc_ranges;
   std::vector<SetRange> set_ranges;
   std::map<std::string, DmigState> direct_matrices;  ///< by name
+  OldElements old_elements;
+  std::set<int> fluid_grids, fluid_properties;  ///< GRID with CD = -1, PSOLID with FCTN = PFLUID
+  records::CardLocation first_fluid;
 
   /// True if `id` is new in its space. A second card with the same content adds deck.repeated-card, with another
   /// content deck.duplicate-id. The content is num_fields fields from first_field on (all of them by default).

@@ -1,0 +1,121 @@
+/// Solids and the curved pipe of NASTRAN-95 (User's Manual, section 2.4) as CHEXA, CPENTA, CTETRA and CBEND.
+#include <array>
+#include <string>
+
+#include "bough/formats/nastran/detail/parsers.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+void add_solid(Card& card, Reading& r, records::SolidElement&& e, const char* today, const char* property) {
+  e.card = today;
+  e.at = card.get_location();
+  if (!r.claim(IdSpace::Solid, e.id, card)) return;
+  r.old_elements.solids.push_back({r.deck.solids.size(), property});
+  r.old_elements.count(card, today);
+  r.deck.solids.push_back(std::move(e));
+}
+
+/// EID MID G1...: tetrahedra that share the grids of a hexahedron or a wedge.
+template <int corners>
+void parse_by_material(Card& card, Reading& r) {
+  records::SolidElement e;
+  e.id = card.read_id(0, "EID");
+  e.pid = card.read_id(1, "MID");
+  for (int i = 0; i < corners; ++i) e.corners.push_back(card.read_id(2 + i, "G1.."));
+  add_solid(card, r, std::move(e), corners == 8 ? "CHEXA" : "CPENTA", "");
+}
+
+/// CIHEX1: EID PID G1 to G8, in the order of CHEXA.
+void parse_cihex1(Card& card, Reading& r) {
+  records::SolidElement e;
+  e.id = card.read_id(0, "EID");
+  e.pid = card.read_id(1, "PID");
+  for (int i = 0; i < 8; ++i) e.corners.push_back(card.read_id(2 + i, "G1 to G8"));
+  add_solid(card, r, std::move(e), "CHEXA", "PIHEX");
+}
+
+/// CIHEX2: corners and midsides by turns round the bottom (G1 to G8), the edges between (G9 to G12), the top by turns.
+void parse_cihex2(Card& card, Reading& r) {
+  constexpr std::array corners{1, 3, 5, 7, 13, 15, 17, 19};
+  constexpr std::array midsides{2, 4, 6, 8, 9, 10, 11, 12, 14, 16, 18, 20};
+  records::SolidElement e;
+  e.id = card.read_id(0, "EID");
+  e.pid = card.read_id(1, "PID");
+  for (const int i : corners) e.corners.push_back(card.read_id(1 + i, "G1 to G20"));
+  for (const int i : midsides) e.midsides.push_back(card.read_id(1 + i, "G1 to G20"));
+  add_solid(card, r, std::move(e), "CHEXA", "PIHEX");
+}
+
+/// PID MID CID NIP AR ALPHA BETA.
+void parse_pihex(Card& card, Reading& r) {
+  records::Psolid p;
+  p.id = card.read_id(0, "PID");
+  p.mid = card.read_id(1, "MID");
+  p.cordm = card.read_reference(2, "CID");
+  card.use(3, 7);  // points of integration, limits of the shape
+  p.at = card.get_location();
+  if (r.claim(IdSpace::OldSolidProperty, p.id, card)) r.old_elements.solid_properties.emplace(p.id, p);
+}
+
+/// EID PID GA GB X1 X2 X3 1: the vector points to the centre.
+void parse_celbow(Card& card, Reading& r) {
+  records::Cbend e;
+  e.id = card.read_id(0, "EID");
+  e.pid = card.read_id(1, "PID", e.id);
+  e.ga = card.read_id(2, "GA");
+  e.gb = card.read_id(3, "GB");
+  e.v = card.read_vector(4, "X1 X2 X3");
+  e.geom = 1;
+  card.use(7);
+  e.at = card.get_location();
+  if (!r.claim(IdSpace::Bend, e.id, card)) return;
+  r.old_elements.count(card, "CBEND");
+  r.deck.special.cbend.push_back(e);
+}
+
+/// A factor of shear area: blank is 1, and decks of before 1992 have its reciprocal (NASTRAN-95, KELBOW).
+double read_shear_factor(Card& card, int i) {
+  const double k = card.read_real(i, "K1 K2", 1.0);
+  return k < 1e-8 ? 1 : k > 1 ? 1 / k : k;
+}
+/// A flexibility factor divides the moment of inertia (NASTRAN-95, KELBOW); blank is 1.
+double read_flexibility(Card& card, int i) {
+  const double k = card.read_real(i, "KX KY KZ", 1.0);
+  return k < 1e-8 ? 1 : k;
+}
+
+/// PID MID A I1 I2 J NSM, points of stress, K1 K2 C KX KY KZ R BETA.
+void parse_pelbow(Card& card, Reading& r) {
+  records::Pbend p;
+  p.id = card.read_id(0, "PID");
+  p.mid = card.read_id(1, "MID");
+  p.A = card.read_real(2, "A");
+  p.I1 = card.read_real(3, "I1") / read_flexibility(card, 21);
+  p.I2 = card.read_real(4, "I2") / read_flexibility(card, 20);
+  p.J = card.read_real(5, "J", 0.0) / read_flexibility(card, 19);
+  p.nsm = card.read_real(6, "NSM", 0.0);
+  p.k1 = read_shear_factor(card, 16);
+  p.k2 = read_shear_factor(card, 17);
+  card.use(18);     // stress intensification
+  card.use(8, 16);  // points of stress
+  p.rb = card.read_real(22, "R", 0.0);
+  p.theta_b_deg = card.read_real(23, "BETA", 0.0);
+  p.delta_n = 0.0;
+  p.at = card.get_location();
+  if (r.claim(IdSpace::BendProperty, p.id, card)) r.deck.special.pbend.push_back(p);
+}
+
+}  // namespace
+
+void add_old_solid_parsers(ParserTable& table) {
+  table["CHEXA1"] = table["CHEXA2"] = parse_by_material<8>;
+  table["CWEDGE"] = parse_by_material<6>;
+  table["CIHEX1"] = parse_cihex1;
+  table["CIHEX2"] = parse_cihex2;
+  table["PIHEX"] = parse_pihex;
+  table["CELBOW"] = parse_celbow;
+  table["PELBOW"] = parse_pelbow;
+}
+
+}  // namespace bough::nastran::detail

@@ -1,0 +1,60 @@
+#pragma once
+/// \file Design variables of SOL 200: the values that they give to properties at the start.
+#include <deque>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bough/formats/nastran/detail/card.hpp"
+
+namespace bough::nastran::detail {
+
+/// DESVAR, DLINK and the linear relations DVPREL1, DVMREL1, DVCREL1 give a field of a card the value C0 + sum of
+/// COEF times XINIT; Nastran computes with that, not with what the card says (SOL 200 only).
+class Design {
+ public:
+  /// True for the cards that add() takes.
+  static bool is_design(std::string_view name);
+  void add(const CardText& text, const std::vector<std::string>& files, Diagnostics& diagnostics);
+  bool is_empty() const { return num_cards_.empty(); }
+
+  /// Sums up the variables; without `is_active` (another SOL) no value is given.
+  void finish(bool is_active, const std::string& sol, const records::Deck& deck, Diagnostics& diagnostics);
+  /// Writes the values over the fields of a card.
+  void apply(CardText& text);
+  /// Says what got what, and what was not found.
+  void report(const records::Deck& deck, Diagnostics& diagnostics) const;
+
+ private:
+  struct Relation {
+    std::string card;     ///< DVPREL1 ...
+    int id = 0;           ///< of the relation
+    std::string type;     ///< PSHELL ...
+    int target = 0;       ///< PID, MID, EID
+    std::string name;     ///< T, or a field number
+    double c0 = 0;
+    std::vector<std::pair<int, double>> terms;  ///< (variable, coefficient)
+    int by_value = 0;                           ///< variable that multiplies the property's own value (PVAL)
+    records::CardLocation at;
+    bool is_done = false;
+    std::string done;
+  };
+  struct Link {
+    int variable = 0;
+    double c0 = 0, scale = 1;
+    std::vector<std::pair<int, double>> terms;
+  };
+  double find_value(int variable, const Relation& relation, const records::Deck& deck, Diagnostics& diagnostics) const;
+
+  std::map<int, double> variables_;
+  std::vector<Link> links_;
+  std::vector<Relation> relations_;
+  std::multimap<std::pair<std::string, int>, std::size_t> by_target_;
+  std::map<std::string, int> num_cards_;
+  std::map<std::string, records::CardLocation> first_;
+  std::deque<std::string> storage_;  ///< the values as text; never moved
+  bool is_active_ = false;
+};
+
+}  // namespace bough::nastran::detail
