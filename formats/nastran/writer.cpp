@@ -64,6 +64,7 @@ void write_selection(const records::Subcase& subcase, std::string& out) {
 }
 
 void write_control(const Deck& deck, std::string& out) {
+  for (const auto& [cell, value] : deck.system_cells) out += "NASTRAN " + cell + "=" + value + "\n";
   if (!deck.sol.empty()) out += "SOL " + deck.sol + "\n";
   out += "CEND\n";
   for (const auto& subcase : deck.subcases) {

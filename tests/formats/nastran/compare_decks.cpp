@@ -209,6 +209,7 @@ void compare(const char* what, const std::vector<Record>& a, const std::vector<R
 
 void expect_equal_decks(const Deck& a, const Deck& b, double tolerance) {
   EXPECT_EQ(a.sol, b.sol);
+  EXPECT_EQ(a.system_cells, b.system_cells);
 #define BOUGH_COMPARE(member) compare(#member, a.member, b.member, tolerance)
   BOUGH_COMPARE(subcases);
   BOUGH_COMPARE(grids);
@@ -257,6 +258,7 @@ void expect_equal_decks(const Deck& a, const Deck& b, double tolerance) {
   BOUGH_COMPARE(direct_matrices);
   BOUGH_COMPARE(suport);
   BOUGH_COMPARE(aset);
+  BOUGH_COMPARE(qset);
   BOUGH_COMPARE(omit);
   BOUGH_COMPARE(spc);
   BOUGH_COMPARE(spcadd);
