@@ -9,6 +9,7 @@
 
 #include "tests/cases/support/example.hpp"
 #include "tests/support/beam_decks.hpp"
+#include "tests/support/paths.hpp"
 
 namespace bough::test {
 namespace {

@@ -9,6 +9,7 @@
 #include "bough/fe/statics.hpp"
 #include "bough/formats/nastran/reader.hpp"
 #include "bough/modal/eigen.hpp"
+#include "tests/support/paths.hpp"
 
 namespace bough {
 namespace {

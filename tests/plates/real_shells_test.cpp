@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "tests/plates/plate_deck.hpp"
+#include "tests/support/paths.hpp"
 
 namespace bough::test {
 namespace {

@@ -9,6 +9,7 @@
 #include "bough/formats/nastran/reader.hpp"
 #include "bough/formats/toml/specs.hpp"
 #include "bough/stiffening/reduce.hpp"
+#include "tests/support/paths.hpp"
 
 namespace bough::test {
 

@@ -5,6 +5,7 @@
 #include "bough/fe/assembly.hpp"
 #include "bough/fe/statics.hpp"
 #include "bough/formats/nastran/reader.hpp"
+#include "tests/support/paths.hpp"
 
 namespace bough::fe {
 namespace {

@@ -11,6 +11,7 @@
 
 #include "bough/solver/bodies/body.hpp"
 #include "tests/formats/exports/point_masses.hpp"
+#include "tests/support/paths.hpp"
 
 namespace bough::test {
 namespace {

@@ -11,6 +11,7 @@
 #include "full_disk.hpp"
 #include "random_body.hpp"
 #include "temp_folder.hpp"
+#include "tests/support/paths.hpp"
 
 namespace bough::hdf5 {
 namespace {

@@ -13,6 +13,7 @@
 #include "bough/formats/hdf5/files.hpp"
 #include "full_disk.hpp"
 #include "temp_folder.hpp"
+#include "tests/support/paths.hpp"
 
 namespace bough::hdf5 {
 namespace {

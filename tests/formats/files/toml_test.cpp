@@ -6,6 +6,7 @@
 
 #include "bough/formats/toml/specs.hpp"
 #include "temp_folder.hpp"
+#include "tests/support/paths.hpp"
 #include "toml_cases.hpp"
 
 namespace bough::toml_files {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/formats/files/temp_folder.hpp"
+#include "tests/support/paths.hpp"
 
 namespace bough {
 namespace {

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "bough/base/diagnostic.hpp"
+#include "tests/support/paths.hpp"
 
 namespace bough::flx {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "bough/formats/matrices/matrix_reader.hpp"
 #include "tests/formats/files/temp_folder.hpp"
+#include "tests/support/paths.hpp"
 
 namespace bough::test {
 

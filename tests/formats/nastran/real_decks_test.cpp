@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "tests/formats/nastran/deck_text.hpp"
+#include "tests/support/paths.hpp"
 
 namespace bough::nastran {
 namespace {

@@ -11,6 +11,7 @@
 #include "tests/formats/nastran/compare_decks.hpp"
 #include "tests/formats/nastran/deck_text.hpp"
 #include "tests/formats/nastran/every_card.hpp"
+#include "tests/support/paths.hpp"
 
 namespace bough::nastran {
 namespace {
