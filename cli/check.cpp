@@ -61,6 +61,7 @@ void check_model(const records::Deck& deck, const fe::ModelOptions& model_option
   text += fmt::format("\n{} nodes, {} elements, {} dofs, {} free after constraints; {} mass\n\n", model.nodes().size(),
                       model.elements().size(), model.num_gdofs(), model.num_fdofs(),
                       model.mass_kind() == fe::MassKind::Lumped ? "lumped" : "consistent");
+  text += format_sections(deck);
   text += format_mass_properties(mass) + "\n" + format_ground_check(ground) + "\n" + format_autospc(model) + "\n" +
           format_geometry(model, deck);
   json["num_nodes"] = model.nodes().size();
@@ -72,6 +73,7 @@ void check_model(const records::Deck& deck, const fe::ModelOptions& model_option
   json["ground_check_n"] = to_json_list(ground.n);
   json["ground_check_f"] = to_json_list(ground.f);
   json["geometry"] = make_geometry_json(model, deck);
+  json["sections"] = make_sections_json(deck);
   json["autospc"] = nlohmann::json::array();
   for (const auto& entry : model.autospc()) {
     json["autospc"].push_back({{"grid", entry.node}, {"component", entry.component}, {"ratio", entry.ratio}});

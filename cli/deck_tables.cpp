@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bough/base/rotation.hpp"
+#include "bough/fe/elements/section_library.hpp"
 #include "console.hpp"
 
 namespace bough::cli {
@@ -88,6 +89,89 @@ nlohmann::json make_geometry_json(const fe::Model& model, const records::Deck& d
                                {"warp_element", q.warp_id},
                                {"jacobian", q.worst.jacobian},
                                {"jacobian_element", q.jacobian_id}};
+  return json;
+}
+
+namespace {
+
+/// What one station of a PBARL or PBEAML became.
+struct SectionRow {
+  std::string card, shape;
+  int id = 0;
+  double x_over_L = 0, nsm = 0;
+  fe::LibrarySection section;
+};
+
+/// Sections with wrong dimensions are left out: the model reports them.
+std::vector<SectionRow> list_sections(const records::Deck& deck) {
+  std::vector<SectionRow> rows;
+  const auto add = [&](SectionRow row, const std::vector<double>& dims) {
+    std::string problem;
+    const auto section = fe::calc_library_section(row.shape, dims, &problem);
+    if (!section) return false;
+    row.section = *section;
+    rows.push_back(std::move(row));
+    return true;
+  };
+  for (const auto& p : deck.pbarl) {
+    if (!add({"PBARL", p.shape, p.id, 0, p.nsm, {}}, p.dims)) continue;
+    auto& s = rows.back().section;
+    s.n.setZero();                    // a CBAR's axis is the centroid
+    if (s.I12 != 0) s.k1 = s.k2 = 0;  // as for a PBAR, I12 rules shear out
+  }
+  for (const auto& p : deck.pbeaml) {
+    double k1 = 0, k2 = 0;
+    for (std::size_t i = 0; i < p.stations.size(); ++i) {
+      const auto& station = p.stations[i];
+      if (!add({"PBEAML", p.shape, p.id, station.x_over_L, station.nsm, {}}, station.dims)) continue;
+      auto& s = rows.back().section;
+      if (i == 0) k1 = s.k1, k2 = s.k2;
+      s.k1 = k1, s.k2 = k2;
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string format_sections(const records::Deck& deck) {
+  constexpr std::size_t kShown = 20;
+  const auto rows = list_sections(deck);
+  if (rows.empty()) return {};
+  Table table{{"section", "shape", "x/L", "A", "I1", "I2", "I12", "J", "K1", "K2", "NSM"}, {}};
+  for (std::size_t i = 0; i < std::min(kShown, rows.size()); ++i) {
+    const auto& r = rows[i];
+    std::vector<std::string> cells{fmt::format("{} {}", r.card, r.id), r.shape, fmt::format("{:g}", r.x_over_L)};
+    const auto& s = r.section;
+    for (const double value : {s.A, s.I1, s.I2, s.I12, s.J, s.k1, s.k2, r.nsm})
+      cells.push_back(fmt::format("{:.5g}", value + 0.0));
+    table.rows.push_back(std::move(cells));
+  }
+  std::string text = "sections by dimensions (K 0: no shear flexibility)\n";
+  text += table.to_text();
+  if (rows.size() > kShown) text += fmt::format("... and {} more; --json lists all\n", rows.size() - kShown);
+  return text + "\n";
+}
+
+nlohmann::json make_sections_json(const records::Deck& deck) {
+  auto json = nlohmann::json::array();
+  for (const auto& r : list_sections(deck)) {
+    const auto& s = r.section;
+    json.push_back({{"card", r.card},
+                    {"id", r.id},
+                    {"shape", r.shape},
+                    {"x_over_L", r.x_over_L},
+                    {"A", s.A},
+                    {"I1", s.I1},
+                    {"I2", s.I2},
+                    {"I12", s.I12},
+                    {"J", s.J},
+                    {"K1", s.k1},
+                    {"K2", s.k2},
+                    {"N1", s.n[0]},
+                    {"N2", s.n[1]},
+                    {"NSM", r.nsm}});
+  }
   return json;
 }
 

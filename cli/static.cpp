@@ -64,8 +64,10 @@ std::unique_ptr<Prepared> prepare(const records::Deck& deck, const StaticOptions
   const auto relief = fe::read_inertia_relief(deck, diagnostics);
   auto held = fe::choose_suport(prepared->model, deck, relief, diagnostics);
   diagnostics.throw_if_errors();
-  const auto K = fe::assemble_stiffness(prepared->model, fe::DofSet::Free);
-  prepared->solver = std::make_unique<fe::StaticSolver>(prepared->model, K, held);
+  prepared->solver = prepared->model.num_fdofs() == 0
+                         ? std::make_unique<fe::StaticSolver>(prepared->model)
+                         : std::make_unique<fe::StaticSolver>(
+                               prepared->model, fe::assemble_stiffness(prepared->model, fe::DofSet::Free), held);
   prepared->suport = fe::calc_suport(prepared->model, *prepared->solver, std::move(held), relief, diagnostics);
   return prepared;
 }
@@ -103,7 +105,7 @@ int run_static(const StaticOptions& options) {
   std::unique_ptr<Prepared> prepared;
   for (const auto& subcase : subcases) {
     if (!prepared || prepared->spc != subcase.spc || prepared->mpc != subcase.mpc ||
-        prepared->suport1 != subcase.suport1)
+        prepared->suport1 != subcase.suport1 || !prepared->model.is_held_for(deck, subcase.load))
       prepared = prepare(deck, options, subcase, diagnostics);
     const auto load = fe::calc_static_load(prepared->model, deck, subcase, diagnostics);
     diagnostics.throw_if_errors();

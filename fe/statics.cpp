@@ -119,16 +119,22 @@ StaticSolver::StaticSolver(const Model& model, const PetscMat& K_f, std::vector<
                            "look for very soft and very stiff parts side by side, or for values that are not numbers");
 }
 
+StaticSolver::StaticSolver(const Model& model) : impl_(std::make_unique<Impl>()) {
+  BOUGH_DEMAND(model.num_fdofs() == 0);
+  impl_->T = model.T();
+}
+
 StaticSolver::~StaticSolver() = default;
 
 const SymmetricFactor* StaticSolver::find_definite_factor() const {
   const bool is_whole = impl_->kept.size() == static_cast<size_t>(impl_->T.cols());
-  return is_whole && impl_->factor->is_definite() ? &*impl_->factor : nullptr;
+  return is_whole && impl_->factor && impl_->factor->is_definite() ? &*impl_->factor : nullptr;
 }
 
 MatrixXd StaticSolver::solve(const Eigen::Ref<const MatrixXd>& F_g) const {
   const SparseRows& T = impl_->T;
   BOUGH_DEMAND(F_g.rows() == T.rows());
+  if (impl_->kept.empty()) return MatrixXd::Zero(F_g.rows(), F_g.cols());
   const MatrixXd F_f = T.transpose() * F_g;
   MatrixXd u_f = MatrixXd::Zero(T.cols(), F_g.cols());
   const MatrixXd F_kept = F_f(impl_->kept, Eigen::all);

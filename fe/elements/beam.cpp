@@ -12,6 +12,7 @@ Matrix6d calc_section_mass(const BeamProperty& property, const BeamSection& s, b
   const double mu = rho_A + s.nsm;
   Matrix6d m = Matrix6d::Zero();
   m.topLeftCorner<3, 3>() = mu * Matrix3d::Identity();
+  if (property.has_torsional_inertia) m(3, 3) = property.material.rho * (s.I1 + s.I2);
   if (!property.has_section_inertia) return m;
   const Eigen::Vector2d first = rho_A * s.n + s.nsm * s.m;
   const Vector3d p(0, first[0], first[1]);
@@ -119,8 +120,8 @@ void Beam::add_consistent_mass(double scale, Eigen::Ref<MatrixXd> M) const {
     local.noalias() += D.transpose().lazyProduct(mD);
     mass += point.weight * m(0, 0);
   }
-  if (!property_->has_section_inertia) {
-    // Nastran's coupled CBAR: the axial terms are the mean of lumped and consistent.
+  if (!property_->has_section_inertia && !property_->has_torsional_inertia) {
+    // Nastran's coupled CBAR: the axial terms are the mean of lumped and consistent. BARMASS makes them consistent.
     local(0, 0) += mass / 12;
     local(6, 6) += mass / 12;
     local(0, 6) -= mass / 12;

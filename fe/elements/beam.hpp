@@ -38,7 +38,8 @@ class Beam final : public Element {
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   /// Lumped: half the line's mass at each end (tapered: its first moment is kept), translations only for CBAR, with the
   /// torsional inertia of the section for CBEAM. Consistent: ∫ Dᵀ m D with the static field D; CBAR has no section
-  /// inertia and Nastran's axial terms (5/12, 1/12); CBEAM has rotary and torsional inertia.
+  /// inertia and Nastran's axial terms (5/12, 1/12); CBEAM has rotary and torsional inertia. NASTRAN BARMASS gives the
+  /// CBAR torsional inertia in both, and consistent axial terms.
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
 
   int num_internal_forces() const override { return 8; }

@@ -21,9 +21,10 @@ struct BeamSection {
 
 struct BeamProperty {
   Isotropic material;
-  double k1 = 0, k2 = 0;              ///< shear factors of planes 1 and 2; 0: no shear flexibility
-  std::vector<BeamSection> stations;  ///< one (uniform), or sorted from 0 to 1
-  bool has_section_inertia = false;   ///< mass carries the inertia of the section (CBEAM), not CBAR
+  double k1 = 0, k2 = 0;               ///< shear factors of planes 1 and 2; 0: no shear flexibility
+  std::vector<BeamSection> stations;   ///< one (uniform), or sorted from 0 to 1
+  bool has_section_inertia = false;    ///< mass carries the inertia of the section (CBEAM), not CBAR
+  bool has_torsional_inertia = false;  ///< CBAR with NASTRAN BARMASS: ρ (I1 + I2) about the axis
 
   bool is_uniform() const { return stations.size() == 1; }
   /// Linear between stations (as PBEAM defines it).

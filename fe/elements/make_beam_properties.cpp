@@ -1,6 +1,7 @@
 #include "bough/fe/elements/make_beam_properties.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "bough/fe/elements/section_library.hpp"
 
@@ -22,6 +23,12 @@ void simplify(BeamProperty* property) {
   auto& stations = property->stations;
   if (std::all_of(stations.begin(), stations.end(), [&](const auto& s) { return is_same(s, stations.front()); }))
     stations.resize(1);
+}
+
+/// NASTRAN BARMASS = n, n > 0 (Quick Reference Guide, nastran command: system cells).
+bool has_barmass(const records::Deck& deck) {
+  const auto cell = deck.system_cells.find("BARMASS");
+  return cell != deck.system_cells.end() && std::atoi(cell->second.c_str()) > 0;
 }
 
 }  // namespace
@@ -63,6 +70,7 @@ std::shared_ptr<const BeamProperty> BeamProperties::find(const records::BeamElem
       return nullptr;
     }
   }
+  if (property && !card.is_cbeam) property->has_torsional_inertia = has_barmass(maker_.deck());
   made[card.pid] = property;
   return property;
 }

@@ -28,19 +28,21 @@ std::vector<Pbcomp::Lump> mirror_lumps(const Pbcomp& card) {
 
 }  // namespace
 
-/// One material: A, I and N of the card. Several: the section is its lumped areas, stiffness weighted by E and mass by
-/// density, each about its own centre; J and the shear factors stay those of the card.
+/// Without lumped areas: A, I and N of the card. With them I1, I2, I12 and N of the card do not count (Quick Reference
+/// Guide, PBCOMP): the section is its lumps, stiffness weighted by E and mass by density, each about its own centre; A,
+/// J and the shear factors stay those of the card. Lumps without a fraction only say where stresses are printed.
 std::shared_ptr<BeamProperty> BeamProperties::make(const records::Pbcomp& card) {
   const std::string who = "PBCOMP " + std::to_string(card.id);
   const records::Mat1* material = maker_.find_material(card.mid, who, card.at);
-  bool ok = material != nullptr, is_mixed = false;
+  bool ok = material != nullptr, is_mixed = false, is_lumped = false;
   for (const auto& lump : card.lumps) {
     is_mixed = is_mixed || lump.mid != card.mid;
+    is_lumped = is_lumped || lump.fraction > 0;
     ok = maker_.find_material(lump.mid, who, card.at) && ok;
   }
-  if (is_mixed && card.section == 0) {
-    maker_.error("fe.bad-property", card.at, who + " has lumped areas of several materials with SECTION 0",
-                 "say with SECTION 1 to 5 which symmetry places them");
+  if (is_mixed && !is_lumped) {
+    maker_.error("fe.bad-property", card.at, who + " has several materials but no lumped area with a fraction C",
+                 "give Y, Z and C of each material");
     return nullptr;
   }
   if (!ok) return nullptr;
@@ -52,7 +54,7 @@ std::shared_ptr<BeamProperty> BeamProperties::make(const records::Pbcomp& card) 
   property->material = make_isotropic(*material);
   property->has_section_inertia = true;
   property->k1 = card.k1, property->k2 = card.k2;
-  if (is_mixed) {
+  if (is_lumped) {
     const auto lumps = mirror_lumps(card);
     const auto find = [&](const Pbcomp::Lump& lump) { return maker_.find_material(lump.mid, who, card.at); };
     double stiffness = 0, mass = 0;
@@ -65,18 +67,20 @@ std::shared_ptr<BeamProperty> BeamProperties::make(const records::Pbcomp& card) 
     }
     s.A = stiffness;
     s.n = n / (stiffness > 0 ? stiffness : 1);
-    // The mass is carried as nonstructural, since its centre and that of the stiffness differ.
-    s.nsm = mass + card.nsm;
-    s.m = (m + card.nsm * card.m) / (s.nsm > 0 ? s.nsm : 1);
-    s.I1 = s.I2 = s.I12 = s.nsi = 0;
+    s.I1 = s.I2 = s.I12 = 0;
     for (const auto& lump : lumps) {
       const double e = find(lump)->E / material->E * lump.fraction * card.A;
       const Eigen::Vector2d d = lump.r - s.n;
       s.I1 += e * d[0] * d[0], s.I2 += e * d[1] * d[1], s.I12 += e * d[0] * d[1];
-      s.nsi += find(lump)->rho * lump.fraction * card.A * (lump.r - s.m).squaredNorm();
     }
-    s.nsi += card.nsm * (card.m - s.m).squaredNorm();
-    property->material.rho = 0;
+    if (is_mixed) {
+      // The mass is carried as nonstructural, since its centre and that of the stiffness differ.
+      s.nsm = mass + card.nsm;
+      s.m = (m + card.nsm * card.m) / (s.nsm > 0 ? s.nsm : 1);
+      s.nsi = card.nsm * (card.m - s.m).squaredNorm();
+      for (const auto& lump : lumps) s.nsi += find(lump)->rho * lump.fraction * card.A * (lump.r - s.m).squaredNorm();
+      property->material.rho = 0;
+    }
     // Equal weights leave round-off where a product of inertia should vanish.
     if (std::abs(s.I12) < 1e-14 * (s.I1 + s.I2)) s.I12 = 0;
   }

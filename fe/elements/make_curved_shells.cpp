@@ -113,8 +113,11 @@ void make_curved_shells(Maker& maker) {
     for (const auto& frame : frames) {
       // THETA counts from the line of constant η.
       const Vector3d along = std::cos(frame.along_r) * frame.R.col(0) + std::sin(frame.along_r) * frame.R.col(1);
-      angle.push_back(frame.along_r + calc_material_angle(maker, *shell.card.card, frame.x, frame.R.col(2), along));
+      const auto own = calc_material_angle(maker, shell.card, frame.x, frame.R.col(2), along);
+      if (!own) break;
+      angle.push_back(frame.along_r + *own);
     }
+    if (angle.size() < frames.size()) continue;
     auto own = find_sections(sections, shell.card, frames);
     const auto gdofs = maker.list_gdofs(shell.nodes);
     maker.add(std::make_unique<CurvedShell>(shell.card.card->id, shell.card.card->card, std::move(shell.nodes), gdofs,

@@ -13,6 +13,8 @@ void make_shells(Maker& maker) {
   }
   const auto surface = calc_surface_normals(maker, shells);
   for (const auto& shell : shells) {
+    const auto angle = calc_material_angle(maker, shell);
+    if (!angle) continue;
     ShellGeometry geometry{shell.x, shell.card->z_offset, {}};
     for (int n : shell.nodes) {
       const auto it = surface.find(n);
@@ -22,8 +24,7 @@ void make_shells(Maker& maker) {
     const bool drilling = shell.card->card == "CQUADR" || shell.card->card == "CTRIAR";
     const auto kind = drilling ? shell::MembraneKind::Drilling : shell::MembraneKind::Plain;
     maker.add(std::make_unique<Shell>(shell.card->id, shell.card->card, shell.nodes, maker.list_gdofs(shell.nodes),
-                                      geometry, rotate_section(*shell.section, calc_material_angle(maker, shell)),
-                                      kind));
+                                      geometry, rotate_section(*shell.section, *angle), kind));
   }
 }
 

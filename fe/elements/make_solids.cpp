@@ -1,5 +1,6 @@
 #include <map>
 #include <optional>
+#include <set>
 
 #include "bough/fe/elements/maker.hpp"
 #include "bough/fe/elements/solid.hpp"
@@ -78,6 +79,34 @@ class MaterialMaker {
   std::map<int, std::optional<SolidMaterial>> made_;
 };
 
+/// IN and ISOP as far as they make another element (table of the Quick Reference Guide, PSOLID): with midside nodes the
+/// points; without, TWO or THREE and FULL together are the plain element. Other combinations are the default, which is
+/// said once a property: FULL alone (as in Nastran), and reduced shear without bubbles (Nastran's own).
+SolidScheme choose_scheme(Maker& maker, const records::Psolid& property, const records::SolidElement& card,
+                          std::set<int>& said) {
+  if (!card.midsides.empty()) return {property.points, true};
+  if (card.corners.size() == 4 || (!property.is_full && property.points == 0)) return {};
+  if (property.is_full && property.points > 0) return {property.points, true};
+  if (said.insert(property.id).second)
+    maker.diagnostics().note(
+        "fe.solid-scheme", maker.deck().locate(property.at),
+        "PSOLID " + std::to_string(property.id) +
+            (property.is_full
+                 ? " has ISOP = FULL without IN, which Nastran takes as blank for elements without midside "
+                   "nodes: they have their inner modes"
+                 : " asks for reduced shear without bubbles (IN without ISOP = FULL), which is not here: "
+                   "elements without midside nodes have their inner modes"),
+        "IN = TWO and ISOP = FULL give the plain isoparametric element");
+  return {};
+}
+
+/// Elements that count their grids the other way round, as one note.
+struct LeftHanded {
+  int count = 0;
+  std::string first;
+  records::CardLocation at;
+};
+
 }  // namespace
 
 void make_solids(Maker& maker) {
@@ -85,6 +114,8 @@ void make_solids(Maker& maker) {
   const Index<records::Psolid> psolid(deck.psolid);
   MaterialMaker materials(maker);
   std::map<int, std::shared_ptr<const SolidExpansion>> expansions;  // by PSOLID
+  std::set<int> said, bad_axes;
+  LeftHanded turned;
   for (const auto& card : deck.solids) {
     const std::string who = card.card + " " + std::to_string(card.id);
     SolidGeometry geometry;
@@ -107,35 +138,56 @@ void make_solids(Maker& maker) {
     for (int n : nodes) complete = complete && n >= 0;
     if (!complete) continue;
     Vector3d centre = Vector3d::Zero();
-    std::vector<int> gdofs;
     for (int n : nodes) {
       geometry.x.push_back(maker.nodes().node(n).x);
       centre += geometry.x.back() / static_cast<double>(nodes.size());
-      for (int c = 0; c < 3; ++c) gdofs.push_back(maker.nodes().node(n).first_gdof + c);
     }
+    geometry.scheme = choose_scheme(maker, *property, card, said);
+    const SolidQuality quality = calc_quality(geometry);
+    if (!(quality.smallest_ratio > 0)) {
+      maker.error("fe.bad-solid", card.at,
+                  who + (quality.volume == 0 ? std::string(" has no volume")
+                                             : " folds over itself (least Jacobian over its mean " +
+                                                   show(quality.smallest_ratio) + ", expected above 0)"),
+                  "check the order and the places of its grids");
+      continue;
+    }
+    if (quality.volume < 0) {
+      turn_round(geometry, nodes);
+      if (turned.count++ == 0) turned.first = who, turned.at = card.at;
+    }
+    std::vector<int> gdofs;
+    for (int n : nodes)
+      for (int c = 0; c < 3; ++c) gdofs.push_back(maker.nodes().node(n).first_gdof + c);
     Matrix6d C = material->C;
     // Only what differs from element to element is made anew.
     auto& expansion = expansions[property->id];
     if (!expansion) expansion = share_expansion(material->expansion);
     auto own = expansion;
     if (property->cordm > 0) {
-      const Matrix6d T = calc_strain_transform(
-          maker.nodes().calc_axes(property->cordm, centre, deck.locate(property->at), maker.diagnostics()));
+      Diagnostics found;
+      const Matrix3d R = maker.nodes().calc_axes(property->cordm, centre, deck.locate(property->at), found);
+      if (found.num_errors() > 0) {
+        if (bad_axes.insert(property->id).second)
+          maker.error("fe.missing-coordinates", property->at,
+                      "PSOLID " + std::to_string(property->id) + " has CORDM " + std::to_string(property->cordm) +
+                          ", a coordinate system that the deck does not define",
+                      "add the CORD card or correct the field");
+        continue;
+      }
+      const Matrix6d T = calc_strain_transform(R);
       C = (T.transpose() * C * T).eval();
       if (own) own = share_expansion({T.inverse() * own->alpha, own->tref});
     }
-    auto solid = std::make_unique<Solid>(card.id, card.card, nodes, std::move(gdofs), std::move(geometry), C,
-                                         material->rho, std::move(own));
-    double ratio = 0;
-    if (!(solid->calc_volume(&ratio) > 0) || !(ratio > 0)) {
-      maker.error(
-          "fe.bad-solid", card.at,
-          who + " is turned inside out or folded (smallest Jacobian ratio " + show(ratio) + ", expected above 0)",
-          "check the order of its grids");
-      continue;
-    }
-    maker.add(std::move(solid));
+    maker.add(std::make_unique<Solid>(card.id, card.card, nodes, std::move(gdofs), std::move(geometry), C,
+                                      material->rho, std::move(own)));
   }
+  if (turned.count > 0)
+    maker.diagnostics().note("fe.left-handed", deck.locate(turned.at),
+                             turned.first +
+                                 (turned.count > 1 ? " and " + std::to_string(turned.count - 1) + " solids more" : "") +
+                                 " count their grids left-handed; they are taken the other way round",
+                             {});
 }
 
 }  // namespace bough::fe

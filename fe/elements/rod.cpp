@@ -34,18 +34,13 @@ void Rod::add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const {
 }
 
 void Rod::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const {
-  // ∫ N_i N_j μ with linear shapes and a linear mass per length; lumped: ∫ N_i μ, which keeps mass and its moment.
+  // Lumped: ∫ N_i μ, which keeps mass and its moment.
   const double a = scale * property_.mass_a * length_, b = scale * property_.mass_b * length_;
-  double m_aa = a / 4 + b / 12, m_bb = a / 12 + b / 4, m_ab = (a + b) / 12;
-  if (kind == MassKind::Lumped) {
-    m_aa = a / 3 + b / 6;
-    m_bb = a / 6 + b / 3;
-    m_ab = 0;
-  }
-  M.block<3, 3>(0, 0) += m_aa * Matrix3d::Identity();
-  M.block<3, 3>(6, 6) += m_bb * Matrix3d::Identity();
-  M.block<3, 3>(0, 6) += m_ab * Matrix3d::Identity();
-  M.block<3, 3>(6, 0) += m_ab * Matrix3d::Identity();
+  M.block<3, 3>(0, 0) += (a / 3 + b / 6) * Matrix3d::Identity();
+  M.block<3, 3>(6, 6) += (a / 6 + b / 3) * Matrix3d::Identity();
+  if (kind == MassKind::Lumped) return;
+  // Nastran couples along the axis only, by the mean of lumped and ∫ N_i N_j μ: 5/12 and 1/12 of a uniform rod.
+  add_pair(0, 6, -(a + b) / 24 * axis_ * axis_.transpose(), M);
 }
 
 void Rod::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {

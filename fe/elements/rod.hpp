@@ -12,7 +12,8 @@ struct RodProperty {
   double alpha = 0, tref = 0;     ///< thermal expansion from tref on
 };
 
-/// Rod between two grids. Mass: translations only. Geometric stiffness: N/L across the axis (taut string), and the
+/// Rod between two grids. Mass: translations only; consistent is Nastran's: along the axis the mean of lumped and
+/// ∫NᵀNμ (5/12, 1/12), lumped across it. Geometric stiffness: N/L across the axis (taut string), and the
 /// torque that turns with the axis (semitangential moments).
 class Rod final : public Element {
  public:

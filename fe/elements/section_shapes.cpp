@@ -212,7 +212,11 @@ LibrarySection calc_box(double w, double h, double top, double bottom, double le
   o.add_wall(x1, y0, x1, y1, right);
   o.add_wall(x1, y1, x0, y1, top);
   o.add_wall(x0, y1, x0, y0, left);
-  return calc_from_outline(o);
+  LibrarySection s = calc_from_outline(o);
+  // As MSC Nastran prints them: the clear walls along the shear over the area.
+  s.k1 = (left + right) * (h - top - bottom) / s.A;
+  s.k2 = (top + bottom) * (w - left - right) / s.A;
+  return s;
 }
 
 LibrarySection calc_dbox(const Dims& d) {

@@ -30,6 +30,7 @@ LibrarySection calc_h(const Dims& d);
 /// Top flange to the left, bottom flange to the right, each d1 long beyond the web.
 LibrarySection calc_z(const Dims& d);
 LibrarySection calc_l(const Dims& d);
+/// Shear factors are the vendor's, the clear walls along the shear over the area.
 LibrarySection calc_box(double w, double h, double top, double bottom, double left, double right);
 LibrarySection calc_dbox(const Dims& d);
 LibrarySection calc_hat(const Dims& d);

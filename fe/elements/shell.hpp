@@ -48,7 +48,7 @@ class Shell final : public Element {
                                          GeometricProjection& sums) const override;
 
   bool has_expansion() const override { return section_.expansion != nullptr; }
-  /// The mean temperature of the corners over the whole element, as Nastran has it (Quick Reference Guide, TEMP).
+  /// The temperature is interpolated between the corners.
   double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
                      Eigen::Ref<VectorXd> initial) const override;
 
@@ -73,7 +73,7 @@ class Shell final : public Element {
   template <int N>
   void add_mass_of(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const;
   template <int N>
-  void add_thermal_of(const Vector3d& normal_force, const Vector3d& moment, Eigen::Ref<VectorXd> load) const;
+  double add_thermal_of(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const;
   template <int N>
   shell::ShellFields<N> calc_fields() const;
   /// Internal forces per dof of the element, basic axes.

@@ -63,25 +63,47 @@ std::optional<ResolvedShell> resolve_shell(Maker& maker, ShellSections& sections
   return r;
 }
 
-double calc_material_angle(Maker& maker, const records::ShellElement& card, const Vector3d& x, const Vector3d& normal,
-                           const Vector3d& side) {
+namespace {
+
+/// The same in all directions of the plane: material axes do not matter.
+bool is_isotropic(const ShellSection& section) {
+  const auto differs = [](const auto& a, const auto& b) { return (a - b).norm() > 1e-10 * a.norm(); };
+  const ShellSection turned = rotate_section(section, 0.5);
+  if (differs(section.A, turned.A) || differs(section.B, turned.B) || differs(section.D, turned.D)) return false;
+  if (section.shear_flexible && differs(section.S, turned.S)) return false;
+  if (!section.expansion) return true;
+  const ShellExpansion &e = *section.expansion, &f = *turned.expansion;
+  return !differs(e.N_t, f.N_t) && !differs(e.M_t, f.M_t) && !differs(e.N_g, f.N_g) && !differs(e.M_g, f.M_g);
+}
+
+}  // namespace
+
+std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& shell, const Vector3d& x,
+                                          const Vector3d& normal, const Vector3d& side) {
+  const auto& card = *shell.card;
   if (!card.mcid) return card.theta_deg * kDegree;
-  const Vector3d axis =
-      maker.nodes().calc_axes(*card.mcid, x, maker.deck().locate(card.at), maker.diagnostics()).col(0);
+  const std::string field = shell.who + " has MCID " + std::to_string(*card.mcid) + ", ";
+  Diagnostics found;  // reported here, with the field
+  const Vector3d axis = maker.nodes().calc_axes(*card.mcid, x, maker.deck().locate(card.at), found).col(0);
+  if (found.num_errors() > 0) {
+    maker.error("fe.missing-coordinates", card.at, field + "a coordinate system that the deck does not define",
+                "add the CORD card or correct the field");
+    return std::nullopt;
+  }
   if (normal.cross(axis).norm() < 1e-6) {
+    if (is_isotropic(*shell.section)) return 0;
     maker.error("fe.bad-material-axes", card.at,
-                card.card + " " + std::to_string(card.id) + ": the x-axis of MCID " + std::to_string(*card.mcid) +
-                    " is normal to the element",
+                field + "whose x-axis is normal to the element, and its property has directions",
                 "name a system whose x-axis has a part in the element, or give THETA");
-    return 0;
+    return std::nullopt;
   }
   return std::atan2(normal.dot(side.cross(axis)), side.dot(axis) - side.dot(normal) * normal.dot(axis));
 }
 
-double calc_material_angle(Maker& maker, const ResolvedShell& shell) {
+std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& shell) {
   Vector3d centre = Vector3d::Zero();
   for (const auto& p : shell.x) centre += p / static_cast<double>(shell.x.size());
-  return calc_material_angle(maker, *shell.card, centre, shell.normal, shell.x[1] - shell.x[0]);
+  return calc_material_angle(maker, shell, centre, shell.normal, shell.x[1] - shell.x[0]);
 }
 
 std::unordered_map<int, Vector3d> calc_surface_normals(const Maker& maker, const std::vector<ResolvedShell>& shells) {

@@ -23,11 +23,12 @@ struct ResolvedShell {
 /// Empty after reporting fe.missing-grid, fe.missing-property, fe.bad-property or fe.bad-facet.
 std::optional<ResolvedShell> resolve_shell(Maker& maker, ShellSections& sections, const records::ShellElement& card);
 
-/// Angle (radians) about `normal` from `side` to the material's x-axis: THETA, or the x-axis of MCID at x projected.
-double calc_material_angle(Maker& maker, const records::ShellElement& card, const Vector3d& x, const Vector3d& normal,
-                           const Vector3d& side);
+/// Angle (radians) about `normal` from `side` to the material's x-axis: THETA, or the x-axis of MCID at x projected; 0
+/// where that is normal to an isotropic shell. Empty after reporting fe.missing-coordinates or fe.bad-material-axes.
+std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& shell, const Vector3d& x,
+                                          const Vector3d& normal, const Vector3d& side);
 /// The same at the centre of the corners, from side 1-2.
-double calc_material_angle(Maker& maker, const ResolvedShell& shell);
+std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& shell);
 
 /// Normals of the surface at every node where all shells agree within PARAM,SNORM degrees (default 20): the sum of the
 /// unit normals, each turned to the side of the first.

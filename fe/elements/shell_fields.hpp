@@ -63,6 +63,10 @@ struct Membrane {
   std::array<Strains<N>, N> strain;
   bool coupled = false;                       ///< strain_of_plate counts
   std::array<Strains<N>, N> strain_of_plate;  ///< strain of the inner modes by curvature where the section couples
+  /// Strains of the four inner modes, condensed into `strain`, and their own stiffness; only where has_modes.
+  bool has_modes = false;
+  std::array<Eigen::Matrix<double, 3, 4>, N> mode;
+  Eigen::Matrix4d mode_stiffness;
   /// Stiffness beside that of the strains: weight (row·dofs)²: drilling.
   int num_springs = 0;
   std::array<Row<N>, N> spring;

@@ -37,8 +37,10 @@ void set_bilinear(const Points<N>& points, Membrane<N>& m) {
 void add_modes(const Corners<4>& xy, const Points<4>& points, const ShellSection& section, const Plate<4>& plate,
                Membrane<4>& m) {
   const Point<4> centre = calc_centre<4>(xy);
-  std::array<Eigen::Matrix<double, 3, 4>, 4> modes;
-  Eigen::Matrix4d Kaa = Eigen::Matrix4d::Zero();
+  auto& modes = m.mode;
+  Eigen::Matrix4d& Kaa = m.mode_stiffness;
+  Kaa.setZero();
+  m.has_modes = true;
   Eigen::Matrix<double, 4, 12> Kau = Eigen::Matrix<double, 4, 12>::Zero(), Kap = Kau;
   m.coupled = !section.B.isZero(0);
   for (int q = 0; q < 4; ++q) {

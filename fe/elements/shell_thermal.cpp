@@ -1,3 +1,5 @@
+#include <Eigen/Cholesky>
+
 #include "bough/fe/elements/shell.hpp"
 #include "bough/fe/elements/shell_dofs.hpp"
 #include "bough/fe/elements/temperature.hpp"
@@ -6,35 +8,49 @@ namespace bough::fe {
 
 using namespace shell;
 
-/// ∫ Bᵀ (N, M). Inner modes of the membrane have no mean: they do not feel what is uniform.
+/// ∫ Bᵀ (N, M) with the inner modes of the membrane inside B; they move at once by what their own strains do, which is
+/// nothing where the temperature is uniform, since they have no mean.
 template <int N>
-void Shell::add_thermal_of(const Vector3d& normal_force, const Vector3d& moment, Eigen::Ref<VectorXd> load) const {
+double Shell::add_thermal_of(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
+                             Eigen::Ref<VectorXd> initial) const {
+  const ShellExpansion& e = *section_.expansion;
   const auto fields = calc_fields<N>();
+  const auto& membrane = fields.membrane;
+  const Eigen::Matrix<double, N, 1> corner = T.node.head<N>();
   Eigen::Matrix<double, 6 * N, 1> local = Eigen::Matrix<double, 6 * N, 1>::Zero();
+  Eigen::Vector4d f_a = Eigen::Vector4d::Zero();
+  double energy = 0;
   for (int q = 0; q < N; ++q) {
-    const double w = fields.points[q].weight;
-    const Eigen::Matrix<double, 3 * N, 1> m = w * fields.membrane.strain[q].transpose() * normal_force;
+    const double w = fields.points[q].weight, t = fields.points[q].shape.dot(corner) - e.tref;
+    const Vector3d normal_force = e.calc_N(t, T.gradient_z), moment = e.calc_M(t, T.gradient_z);
+    const Eigen::Matrix<double, 3 * N, 1> m = w * membrane.strain[q].transpose() * normal_force;
     Eigen::Matrix<double, 3 * N, 1> p = w * fields.plate.bending[q].transpose() * moment;
-    if (fields.membrane.coupled) p += w * fields.membrane.strain_of_plate[q].transpose() * normal_force;
+    if (membrane.coupled) p += w * membrane.strain_of_plate[q].transpose() * normal_force;
     for (int i = 0; i < 3 * N; ++i) {
       local[kMembrane<N>[i]] += m[i];
       local[kPlate<N>[i]] += p[i];
     }
-  }
-  local = (calc_surface_map<N>().transpose() * local).eval();
-  for (int i = 0; i < 2 * N; ++i) load.segment<3>(3 * i) += R_ * local.template segment<3>(3 * i);
-}
-
-double Shell::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const {
-  const ShellExpansion& e = *section_.expansion;
-  const double t = T.node.mean() - e.tref;
-  const Vector3d normal_force = e.calc_N(t, T.gradient_z), moment = e.calc_M(t, T.gradient_z);
-  num_nodes_ == 4 ? add_thermal_of<4>(normal_force, moment, load) : add_thermal_of<3>(normal_force, moment, load);
-  for (int q = 0; q < num_points(); ++q) {
+    if (membrane.has_modes) f_a += w * membrane.mode[q].transpose() * normal_force;
+    energy += w * e.calc_energy(t, T.gradient_z);
     initial.segment<3>(kNumForces * q) -= normal_force;
     initial.segment<3>(kNumForces * q + 3) -= moment;
   }
-  return area_ * e.calc_energy(t, T.gradient_z);
+  if (membrane.has_modes) {
+    const Eigen::Vector4d a = membrane.mode_stiffness.ldlt().solve(f_a);
+    energy -= 0.5 * a.dot(f_a);
+    for (int q = 0; q < N; ++q) {
+      const Vector3d strain = membrane.mode[q] * a;
+      initial.segment<3>(kNumForces * q) += section_.A * strain;
+      initial.segment<3>(kNumForces * q + 3) += section_.B.transpose() * strain;
+    }
+  }
+  local = (calc_surface_map<N>().transpose() * local).eval();
+  for (int i = 0; i < 2 * N; ++i) load.segment<3>(3 * i) += R_ * local.template segment<3>(3 * i);
+  return energy;
+}
+
+double Shell::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const {
+  return num_nodes_ == 4 ? add_thermal_of<4>(T, load, initial) : add_thermal_of<3>(T, load, initial);
 }
 
 }  // namespace bough::fe

@@ -1,5 +1,8 @@
 #include "bough/fe/elements/solid.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "bough/fe/blas.hpp"
 #include "bough/fe/elements/geometric_projection.hpp"
 #include "bough/fe/elements/temperature.hpp"
@@ -53,8 +56,8 @@ Solid::Solid(int id, std::string card, std::vector<int> nodes, std::vector<int> 
       C_el_(C_el),
       density_(density),
       expansion_(std::move(expansion)) {
-  const bool quadratic = static_cast<int>(geometry_.x.size()) > get_num_corners(geometry_.kind);
-  num_points_ = static_cast<int>(calc_solid_points(geometry_.kind, quadratic, false).size());
+  num_points_ =
+      static_cast<int>(calc_solid_points(geometry_.kind, is_quadratic(), false, geometry_.scheme.points).size());
 }
 
 ElementShape Solid::shape() const {
@@ -67,7 +70,6 @@ ElementShape Solid::shape() const {
 
 std::vector<Solid::Field> Solid::calc_fields(bool mass) const {
   const int m = static_cast<int>(geometry_.x.size());
-  const bool quadratic = m > get_num_corners(geometry_.kind);
   Eigen::Matrix3Xd x(3, m), dshape(3, m);
   for (int i = 0; i < m; ++i) x.col(i) = geometry_.x[i];
   VectorXd shape(m);
@@ -77,7 +79,7 @@ std::vector<Solid::Field> Solid::calc_fields(bool mass) const {
     J0 = dshape * x.transpose();
   }
   std::vector<Field> fields;
-  for (const auto& point : calc_solid_points(geometry_.kind, quadratic, mass)) {
+  for (const auto& point : calc_solid_points(geometry_.kind, is_quadratic(), mass, geometry_.scheme.points)) {
     calc_solid_shape(geometry_.kind, geometry_.midside, point.natural, shape, dshape);
     const Matrix3d J = dshape * x.transpose();  // rows: dx/dξ
     Field f;
@@ -234,18 +236,38 @@ void Solid::add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& 
       for (int a = 0; a < 3; ++a) add_square(X.col(3 * j + a) - X.col(3 * i + a), 1, terms.products.col(k));
 }
 
-double Solid::calc_volume(double* smallest_jacobian_ratio) const {
-  double volume = 0, smallest = 1e300, reference = 0;
-  const bool quadratic = static_cast<int>(geometry_.x.size()) > get_num_corners(geometry_.kind);
-  const auto points = calc_solid_points(geometry_.kind, quadratic, false);
-  const auto fields = calc_fields(false);
-  for (std::size_t q = 0; q < fields.size(); ++q) {
-    volume += fields[q].weight;
-    reference += points[q].weight;
-    smallest = std::min(smallest, fields[q].weight / points[q].weight);
+SolidQuality calc_quality(const SolidGeometry& geometry) {
+  const int m = static_cast<int>(geometry.x.size());
+  Eigen::Matrix3Xd x(3, m), dshape(3, m);
+  VectorXd shape(m);
+  for (int i = 0; i < m; ++i) x.col(i) = geometry.x[static_cast<std::size_t>(i)];
+  const bool quadratic = m > get_num_corners(geometry.kind);
+  double volume = 0, reference = 0, least = 1e300, most = -1e300;
+  for (const auto& point : calc_solid_points(geometry.kind, quadratic, false, geometry.scheme.points)) {
+    calc_solid_shape(geometry.kind, geometry.midside, point.natural, shape, dshape);
+    const double J = Matrix3d(dshape * x.transpose()).determinant();
+    volume += point.weight * J;
+    reference += point.weight;
+    least = std::min(least, J);
+    most = std::max(most, J);
   }
-  if (smallest_jacobian_ratio) *smallest_jacobian_ratio = smallest * reference / volume;
-  return volume;
+  if (volume == 0) return {};
+  return {volume, (volume > 0 ? least : most) * reference / volume};
+}
+
+void turn_round(SolidGeometry& geometry, std::vector<int>& nodes) {
+  // Corners, and with them edges, that change places: below and above, or two corners of a tetrahedron.
+  using Pairs = std::vector<std::pair<int, int>>;
+  static const Pairs corners[] = {{{0, 4}, {1, 5}, {2, 6}, {3, 7}}, {{0, 3}, {1, 4}, {2, 5}}, {{1, 2}}};
+  static const Pairs edges[] = {{{0, 8}, {1, 9}, {2, 10}, {3, 11}}, {{0, 6}, {1, 7}, {2, 8}}, {{0, 2}, {4, 5}}};
+  const int kind = geometry.kind == SolidKind::Hexa ? 0 : geometry.kind == SolidKind::Penta ? 1 : 2;
+  for (const auto& [a, b] : corners[kind]) {
+    std::swap(geometry.x[static_cast<std::size_t>(a)], geometry.x[static_cast<std::size_t>(b)]);
+    std::swap(nodes[static_cast<std::size_t>(a)], nodes[static_cast<std::size_t>(b)]);
+  }
+  if (geometry.midside.empty()) return;
+  for (const auto& [a, b] : edges[kind])
+    std::swap(geometry.midside[static_cast<std::size_t>(a)], geometry.midside[static_cast<std::size_t>(b)]);
 }
 
 }  // namespace bough::fe

@@ -7,7 +7,8 @@
 /// triangle, so that one layer bends over its thickness; in the plane of its triangle it strains as the triangle of
 /// three nodes. The tetrahedron of four nodes is the plain, stiff element. Geometric stiffness ∫ σ_ab u,a·u,b (Cook et
 /// al., "Concepts and applications of finite element analysis", 4th ed., eq. 18.4-10). Lumped mass: the diagonal of the
-/// consistent one, scaled (Hinton, Rock & Zienkiewicz 1976).
+/// consistent one, scaled (Hinton, Rock & Zienkiewicz 1976). SolidScheme takes the inner modes away or sets the order
+/// of the quadrature, as IN and ISOP of PSOLID do.
 #include "bough/fe/elements/element.hpp"
 #include "bough/fe/shape/solid_shape.hpp"
 
@@ -15,11 +16,27 @@ namespace bough::fe {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
+struct SolidScheme {
+  int points = 0;         ///< 2 or 3 Gauss points a direction (CHEXA; CPENTA along its axis); 0: by the number of nodes
+  bool is_plain = false;  ///< isoparametric without inner modes
+};
+
 struct SolidGeometry {
   SolidKind kind = SolidKind::Hexa;
   std::vector<int> midside;  ///< per edge: position among the nodes, -1 when absent; empty = none
   std::vector<Vector3d> x;   ///< nodes in basic
+  SolidScheme scheme;
 };
+
+/// Volume (below zero: left-handed) and the smallest Jacobian determinant at the quadrature points over their mean;
+/// zero or less: folded.
+struct SolidQuality {
+  double volume = 0, smallest_ratio = 0;
+};
+SolidQuality calc_quality(const SolidGeometry& geometry);
+
+/// The mirror image in natural coordinates: the same body counted the other way round. `nodes` goes with geometry.x.
+void turn_round(SolidGeometry& geometry, std::vector<int>& nodes);
 
 /// Thermal expansion in basic axes, Voigt as the law.
 struct SolidExpansion {
@@ -51,16 +68,15 @@ class Solid final : public Element {
   double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
                      Eigen::Ref<VectorXd> initial) const override;
 
-  /// Volume, and the smallest Jacobian determinant over its mean at the quadrature points (<= 0: inside out).
-  double calc_volume(double* smallest_jacobian_ratio = nullptr) const;
+  double calc_volume() const { return calc_quality(geometry_).volume; }
 
  private:
   struct Field;
   std::vector<Field> calc_fields(bool mass) const;
+  bool is_quadratic() const { return static_cast<int>(geometry_.x.size()) > get_num_corners(geometry_.kind); }
   bool has_modes() const { return num_modes() > 0; }
   int num_modes() const {
-    if (geometry_.kind == SolidKind::Tetra || static_cast<int>(geometry_.x.size()) > get_num_corners(geometry_.kind))
-      return 0;
+    if (geometry_.scheme.is_plain || geometry_.kind == SolidKind::Tetra || is_quadratic()) return 0;
     return geometry_.kind == SolidKind::Hexa ? 3 : 4;
   }
   MatrixXd calc_force_map(const std::vector<Field>& fields) const;  ///< internal forces per dof

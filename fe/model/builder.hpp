@@ -19,6 +19,7 @@ class ModelBuilder {
   void set_params();
   /// Masks of permanent and set SPC over the l-set.
   void collect_fixed();
+  void hold_spcd();  ///< what SPCD cards move is fixed, with fe.spcd-not-fixed where no SPC does it
   void fix(const records::Spc& spc);
   /// RBE1, RBE2, RBE3, RROD, RBAR, MPC.
   void collect_equations();

@@ -2,8 +2,18 @@
 #include "bough/fe/model/load_sets.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace bough::fe {
+namespace {
+
+std::string show_factor(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+}  // namespace
 
 FixedPart collect_fixed_part(int num_ldofs, const std::vector<ConstraintEquation>& resolved,
                              const std::vector<char>& is_fixed) {
@@ -26,6 +36,32 @@ FixedPart collect_fixed_part(int num_ldofs, const std::vector<ConstraintEquation
   return part;
 }
 
+std::vector<std::pair<int, const records::Spcd*>> list_spcd_dofs(const Model& model, const records::Deck& deck,
+                                                                 int set) {
+  std::vector<std::pair<int, const records::Spcd*>> dofs;
+  if (set == 0 || deck.load_cards.spcd.empty()) return dofs;
+  for (const auto& plain : list_plain_sets(deck, set)) {
+    for (const auto& card : deck.load_cards.spcd) {
+      const int index = card.sid == plain.sid ? model.find_node(card.g) : -1;
+      if (index < 0) continue;
+      const Node& where = model.node(index);
+      for (int c = 0; c < where.num_dofs; ++c)
+        if (where.num_dofs == 1 || (card.c >> c & 1u)) dofs.emplace_back(where.first_gdof + c, &card);
+    }
+  }
+  return dofs;
+}
+
+bool Model::is_held_for(const records::Deck& deck, int set) const {
+  std::vector<int> moved;
+  for (const auto& [dof, card] : list_spcd_dofs(*this, deck, set)) moved.push_back(dof);
+  std::sort(moved.begin(), moved.end());
+  return std::all_of(moved.begin(), moved.end(),
+                     [&](int dof) { return std::binary_search(fixed_dofs_.begin(), fixed_dofs_.end(), dof); }) &&
+         std::all_of(held_by_spcd_.begin(), held_by_spcd_.end(),
+                     [&](int dof) { return std::binary_search(moved.begin(), moved.end(), dof); });
+}
+
 VectorXd Model::calc_enforced(const records::Deck& deck, int set, Diagnostics& diagnostics) const {
   VectorXd d = VectorXd::Zero(static_cast<Eigen::Index>(fixed_dofs_.size()));
   const auto find = [&](int dof) {
@@ -37,9 +73,11 @@ VectorXd Model::calc_enforced(const records::Deck& deck, int set, Diagnostics& d
   if (set == 0) return d;
   VectorXd by_load = VectorXd::Zero(d.size());
   std::vector<char> is_given(static_cast<std::size_t>(d.size()), 0);
-  for_each_plain_set(deck, set, [&](int sid, double scale, const records::CardLocation&) {
+  for (const auto& [sid, scale, by, enforced_only] : list_plain_sets(deck, set)) {
+    bool is_combined = false;
     for (const auto& card : deck.load_cards.spcd) {
       if (card.sid != sid) continue;
+      is_combined = sid != set;
       const SourceLocation at = deck.locate(card.at);
       const int index = find_node(card.g);
       if (index < 0) {
@@ -63,7 +101,12 @@ VectorXd Model::calc_enforced(const records::Deck& deck, int set, Diagnostics& d
         is_given[static_cast<std::size_t>(i)] = 1;
       }
     }
-  });
+    if (is_combined)
+      diagnostics.warning("fe.spcd-combined", deck.locate(by),
+                          "LOAD " + std::to_string(set) + " combines the SPCD cards of set " + std::to_string(sid) +
+                              ", which MSC Nastran leaves out; they are taken " + show_factor(scale) + " times",
+                          "give the SPCD cards the id of the LOAD card for their own values");
+  }
   for (Eigen::Index i = 0; i < d.size(); ++i)
     if (is_given[static_cast<std::size_t>(i)]) d[i] = by_load[i];
   return d;

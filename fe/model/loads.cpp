@@ -76,7 +76,56 @@ bool has_enforced(const records::Deck& deck, int set) {
   return std::any_of(spcd.begin(), spcd.end(), [set](const auto& s) { return s.sid == set; });
 }
 
+bool has_cards(const records::Deck& deck, int set) {
+  const auto in = [set](const auto& cards) {
+    return std::any_of(cards.begin(), cards.end(), [set](const auto& card) { return card.sid == set; });
+  };
+  const auto& c = deck.load_cards;
+  return in(deck.point_loads) || in(deck.gravity) || in(c.directed) || in(c.beams) || in(c.grid_pressures) ||
+         in(c.pressures) || in(c.rotations) || in(c.spcd) || in(c.scalar);
+}
+
+const records::LoadCombination* find_combination(const records::Deck& deck, int set) {
+  const auto found = std::find_if(deck.loads.begin(), deck.loads.end(), [set](const auto& l) { return l.sid == set; });
+  return found == deck.loads.end() ? nullptr : &*found;
+}
+
+/// `open`: the LOAD cards on the way here; one of them is not entered again.
+void add_plain_sets(const records::Deck& deck, const records::LoadCombination& card, double factor,
+                    std::vector<int>& open, std::vector<PlainLoadSet>& sets) {
+  open.push_back(card.sid);
+  for (const auto& [scale, sid] : card.terms) {
+    const auto* nested = has_cards(deck, sid) ? nullptr : find_combination(deck, sid);
+    if (nested && std::find(open.begin(), open.end(), sid) == open.end())
+      add_plain_sets(deck, *nested, factor * card.s * scale, open, sets);
+    else
+      sets.push_back({sid, factor * card.s * scale, card.at, false});
+  }
+  open.pop_back();
+}
+
+/// What Nastran passes over, or forbids and Bough adds up, in a LOAD card.
+void report_terms(const records::Deck& deck, const records::LoadCombination& card, Diagnostics& diagnostics) {
+  for (const auto& [scale, sid] : card.terms)
+    if (!has_cards(deck, sid) && find_combination(deck, sid))
+      diagnostics.warning("fe.nested-load", deck.locate(card.at),
+                          "LOAD " + std::to_string(card.sid) + " names set " + std::to_string(sid) +
+                              ", which is a LOAD card itself; the sets of that card are added, as MSC Nastran does",
+                          "name plain load sets: other Nastrans stop here");
+}
+
 }  // namespace
+
+std::vector<PlainLoadSet> list_plain_sets(const records::Deck& deck, int set) {
+  const auto* card = find_combination(deck, set);
+  if (!card) return {{set, 1.0, {}, false}};
+  std::vector<PlainLoadSet> sets;
+  // SPCD cards have the id that the case control selects, beside the LOAD card (Quick Reference Guide, LOAD).
+  if (has_enforced(deck, set)) sets.push_back({set, 1.0, card->at, true});
+  std::vector<int> open;
+  add_plain_sets(deck, *card, 1, open, sets);
+  return sets;
+}
 
 bool add_point_loads(const LoadTarget& t) {
   bool is_found = false;
@@ -95,15 +144,24 @@ bool add_point_loads(const LoadTarget& t) {
 
 VectorXd Model::calc_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const {
   VectorXd F = VectorXd::Zero(num_gdofs_);
-  for_each_plain_set(deck, set, [&](int sid, double scale, const records::CardLocation& at) {
-    const LoadTarget target{*this, deck, sid, scale, F, diagnostics};
+  if (const auto* card = find_combination(deck, set)) report_terms(deck, *card, diagnostics);
+  const auto sets = list_plain_sets(deck, set);
+  std::vector<PlainLoadSet> missing;
+  for (const auto& plain : sets) {
+    if (plain.enforced_only) continue;
+    const LoadTarget target{*this, deck, plain.sid, plain.scale, F, diagnostics};
     const bool found[] = {add_point_loads(target), add_body_loads(target), add_surface_loads(target),
-                          add_beam_loads(target), has_enforced(deck, sid)};
-    if (std::find(std::begin(found), std::end(found), true) == std::end(found))
-      diagnostics.error("fe.missing-load", deck.locate(at),
-                        "load set " + std::to_string(sid) + " has no FORCE, MOMENT, GRAV, PLOAD or LOAD card",
-                        "correct the set id or add its cards");
-  });
+                          add_beam_loads(target), has_enforced(deck, plain.sid)};
+    if (std::find(std::begin(found), std::end(found), true) == std::end(found)) missing.push_back(plain);
+  }
+  // A LOAD card of which something is left loads the structure, as in Nastran.
+  const auto severity = missing.size() < sets.size() ? Severity::Warning : Severity::Error;
+  for (const auto& plain : missing)
+    diagnostics.add(
+        {severity, "fe.missing-load", deck.locate(plain.at),
+         "load set " + std::to_string(plain.sid) + " has no FORCE, MOMENT, GRAV, PLOAD or LOAD card" +
+             (severity == Severity::Warning ? "; LOAD " + std::to_string(set) + " is taken without it" : ""),
+         "correct the set id or add its cards"});
   return F;
 }
 

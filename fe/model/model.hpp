@@ -86,6 +86,9 @@ class Model final : public NodeTable {
   Matrix3d calc_axes(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const override;
   Vector3d calc_point(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const override;
 
+  /// Whether the fixed dofs are those of load set `set`: every dof that its SPCD cards move is fixed, and no dof is
+  /// fixed for the SPCD cards of another set alone.
+  bool is_held_for(const records::Deck& deck, int set) const;
   /// Displacements d of the fixed dofs: those of the SPC set, overruled by the SPCD cards of load set `set` (0: none).
   /// Reports fe.spcd-not-fixed.
   VectorXd calc_enforced(const records::Deck& deck, int set, Diagnostics& diagnostics) const;
@@ -106,6 +109,7 @@ class Model final : public NodeTable {
   std::vector<std::pair<int, ElementShape>> drawn_lines_;  ///< PLOTEL: id, shape
   std::vector<int> fixed_dofs_;
   std::unordered_map<int, double> enforced_;  ///< by dof: the values of the SPC set that are not zero
+  std::vector<int> held_by_spcd_;             ///< dofs that no SPC fixes but an SPCD of the subcase's load moves
   std::vector<int> fdof_node_, fdof_component_;
   std::vector<std::array<int, 6>> node_fdof_;
   MassKind mass_kind_ = MassKind::Lumped;

@@ -131,14 +131,25 @@ void add_rbar(const records::Rbar& record, const NodeTable& nodes, const SourceL
   const Node* ga = find_rigid_grid(record.ga, card, nodes, at, diagnostics);
   const Node* gb = find_rigid_grid(record.gb, card, nodes, at, diagnostics);
   if (!ga || !gb) return;
-  unsigned cma = record.cma, cmb = record.cmb;
+  unsigned cna = record.cna, cnb = record.cnb, cma = record.cma, cmb = record.cmb;
+  if (cna == 0 && cnb == 0) cna = 63u;
+  if (std::popcount(cna) + std::popcount(cnb) < 6 && (cna == 0 || cnb == 0)) {
+    // Part of one grid: what it leaves open of that grid holds the body too, unless the card makes it dependent.
+    (cna != 0 ? cna : cnb) = 63u & ~(cna != 0 ? cma : cmb);
+    if (std::popcount(cna) + std::popcount(cnb) == 6)
+      diagnostics.warning("fe.rbar-completed", at,
+                          card + " has " + std::to_string(std::popcount(record.cna) + std::popcount(record.cnb)) +
+                              " independent components, expected 6; all six of grid " +
+                              std::to_string(cna != 0 ? record.ga : record.gb) + " are taken",
+                          "write 123456");
+  }
   if (cma == 0 && cmb == 0) {
-    cma = 63u & ~record.cna;
-    cmb = 63u & ~record.cnb;
+    cma = 63u & ~cna;
+    cmb = 63u & ~cnb;
   }
   int num = 0;
-  if ((record.cna & cma) == 0 && (record.cnb & cmb) == 0 &&
-      add_body({{ga, record.cna}, {gb, record.cnb}}, {{ga, cma}, {gb, cmb}}, card, at, num, equations))
+  if ((cna & cma) == 0 && (cnb & cmb) == 0 &&
+      add_body({{ga, cna}, {gb, cnb}}, {{ga, cma}, {gb, cmb}}, card, at, num, equations))
     return;
   num = std::popcount(record.cna) + std::popcount(record.cnb);
   diagnostics.error("fe.rigid-independent", at,

@@ -18,7 +18,8 @@ void add_rbe2(const records::Rbe2& card, const NodeTable& nodes, const SourceLoc
               std::vector<ConstraintEquation>& equations);
 
 /// Six independent components on the two grids span the rigid motion: u_m = D P⁻¹ u_n with P, D the rows of the rigid
-/// map of the independent and dependent components. Blank CMA and CMB: everything that is not independent is dependent.
+/// map of the independent and dependent components. Blank CNA and CNB: all six of GA; fewer than six on one grid alone:
+/// all six of that, with fe.rbar-completed. Blank CMA and CMB: everything that is not independent is dependent.
 /// Reports fe.rigid-independent when there are not six or P is singular.
 void add_rbar(const records::Rbar& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations);

@@ -95,6 +95,7 @@ class SurfaceLoads {
                              "correct the element id");
       return;
     }
+    if (solid != solids_.end() && shell == shells_.end()) turn_outward(*solid->second, face);
     std::vector<double> p(load.p.begin(), load.p.begin() + static_cast<std::ptrdiff_t>(face.corners.size()));
     const SourceLocation at = t_.deck.locate(load.at);
     add_face(face, p, card, load.at, [&](double value, const Vector3d& x, const Vector3d& n) -> Vector3d {
@@ -104,6 +105,25 @@ class SurfaceLoads {
   }
 
  private:
+  /// The faces of a solid that counts its grids left-handed have their normals inside: such a face is gone round the
+  /// other way, from the same first corner.
+  void turn_outward(const records::SolidElement& solid, Face& face) const {
+    const auto sum = [&](const std::vector<int>& grids) {
+      Vector3d x = Vector3d::Zero();
+      for (int grid : grids)
+        if (const int k = t_.model.find_node(grid); k >= 0) x += t_.model.node(k).x / static_cast<double>(grids.size());
+      return x;
+    };
+    const Vector3d inside = sum(solid.corners), middle = sum(face.corners);
+    Vector3d normal = Vector3d::Zero();
+    const std::size_t n = face.corners.size();
+    for (std::size_t i = 0; i < n; ++i)
+      normal += (sum({face.corners[i]}) - middle).cross(sum({face.corners[(i + 1) % n]}) - middle);
+    if (normal.dot(middle - inside) >= 0) return;
+    std::reverse(face.corners.begin() + 1, face.corners.end());
+    std::reverse(face.midside.begin(), face.midside.end());
+  }
+
   void add_face(const Face& face, const std::vector<double>& p, const std::string& card,
                 const records::CardLocation& at, const Traction& traction) {
     std::vector<int> nodes;

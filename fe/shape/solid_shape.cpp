@@ -97,10 +97,11 @@ void calc_solid_shape(SolidKind kind, const std::vector<int>& midside, const Eig
   }
 }
 
-std::vector<SolidPoint> calc_solid_points(SolidKind kind, bool quadratic, bool mass) {
+std::vector<SolidPoint> calc_solid_points(SolidKind kind, bool quadratic, bool mass, int order) {
   std::vector<SolidPoint> points;
+  const int along = !mass && order > 0 ? order : quadratic ? 3 : 2;
   if (kind == SolidKind::Hexa) {
-    const Gauss g = get_gauss(quadratic ? 3 : 2);
+    const Gauss g = get_gauss(along);
     for (std::size_t i = 0; i < g.x.size(); ++i)
       for (std::size_t j = 0; j < g.x.size(); ++j)
         for (std::size_t k = 0; k < g.x.size(); ++k)
@@ -115,6 +116,13 @@ std::vector<SolidPoint> calc_solid_points(SolidKind kind, bool quadratic, bool m
       points.push_back({p, 1.0 / 24});
     return points;
   }
+  if (kind == SolidKind::Penta && !mass && order == 2) {
+    const Gauss z = get_gauss(2);
+    for (int t = 0; t < 3; ++t)
+      for (std::size_t k = 0; k < z.x.size(); ++k)
+        points.push_back({{t == 1 ? 2.0 / 3 : 1.0 / 6, t == 2 ? 2.0 / 3 : 1.0 / 6, z.x[k]}, z.w[k] / 6});
+    return points;
+  }
   // Products of Gauss rules on the collapsed square or cube (Stroud): exact to degree 2n-3 or better.
   const Gauss g = get_gauss(mass && quadratic ? 4 : 3);
   auto half = [](double x) { return 0.5 * (1 + x); };
@@ -122,7 +130,7 @@ std::vector<SolidPoint> calc_solid_points(SolidKind kind, bool quadratic, bool m
     for (std::size_t j = 0; j < g.x.size(); ++j) {
       const double r = half(g.x[i]), s = half(g.x[j]) * (1 - r), w = 0.25 * g.w[i] * g.w[j] * (1 - r);
       if (kind == SolidKind::Penta) {
-        const Gauss z = get_gauss(quadratic ? 3 : 2);
+        const Gauss z = get_gauss(along);
         for (std::size_t k = 0; k < z.x.size(); ++k) points.push_back({{r, s, z.x[k]}, w * z.w[k]});
       } else {
         for (std::size_t k = 0; k < g.x.size(); ++k)

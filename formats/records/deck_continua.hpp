@@ -90,7 +90,10 @@ struct Pshear {
 
 struct Psolid {
   int id = 0, mid = 0;
-  int cordm = 0;  ///< material system; 0 basic, -1 element
+  int cordm = 0;            ///< material system; 0 basic, -1 element
+  int points = 0;           ///< IN: 2 or 3 integration points a direction; 0: blank or BUBBLE
+  bool is_full = false;     ///< ISOP is FULL: plain isoparametric
+  bool is_reduced = false;  ///< ISOP says REDUCED; blank is the same
   CardLocation at;
 };
 struct SolidElement {

@@ -31,7 +31,7 @@ struct BeamLoad {
   bool is_projected = false;     ///< LEPR, FRPR: intensity per length seen along the load
   double x1 = 0, p1 = 0;
   std::optional<double> x2;  ///< empty or x1: a load at the point x1
-  double p2 = 0;
+  double p2 = 0;             ///< at x2; blank is zero
   CardLocation at;
 };
 

@@ -67,6 +67,36 @@ class Check(ProgramTest):
         self.assertEqual(data["cards"]["GRID"], 3)
         self.assertLess(max(map(abs, data["ground_check"])), 1e-10)
 
+    def test_sections_by_dimensions_are_printed(self):
+        tube = "PBARL,7,1,,TUBE,,,,,+\n+,.02,.01,.3\n"
+        tee = "PBEAML,8,1,,T,,,,,+\n+,.03,.04,.005,.004\n"
+        self.write("beam.bdf", BEAM.replace("ENDDATA", tube + tee + "ENDDATA"))
+        text = self.bough("check", "beam.bdf").stdout
+        self.assertIn("PBARL 7", text)
+        rows = json.loads(self.bough("check", "beam.bdf", "--json").stdout)["sections"]
+        self.assertEqual([(r["card"], r["id"], r["x_over_L"]) for r in rows],
+                         [("PBARL", 7, 0), ("PBEAML", 8, 0), ("PBEAML", 8, 1)])
+        self.assertAlmostEqual(rows[0]["A"], math.pi * 3e-4, places=12)
+        self.assertAlmostEqual(rows[0]["J"], math.pi / 2 * 15e-8, places=15)
+        self.assertEqual((rows[0]["K1"], rows[0]["NSM"]), (0.5, 0.3))
+        self.assertAlmostEqual(rows[1]["A"], .03 * .005 + .035 * .004, places=12)
+        self.assertLess(rows[1]["N1"], 0)
+
+    def test_all_dofs_prescribed_and_spcd_that_no_spc_holds(self):
+        bulk = ("GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\nPBAR,1,1,1.-3,1.-8,5.-9,1.-8\n"
+                "MAT1,1,7.+10,,.3\nSPC1,1,123456,1\nSPC1,2,123456,1,2\nSPCD,4,2,1,.01\nFORCE,5,2,,3.,0.,1.,0.\n")
+        self.write("held.bdf", "SOL 101\nCEND\nSUBCASE 1\nSPC=2\nLOAD=4\nSUBCASE 2\nSPC=1\nLOAD=4\nSUBCASE 3\nSPC=1\n"
+                               "LOAD=5\nBEGIN BULK\n" + bulk + "ENDDATA\n")
+        done = self.bough("static", "held.bdf", "--json", "--full")
+        self.assertIn("fe.spcd-not-fixed", done.stderr)
+        cases = json.loads(done.stdout)["subcases"]
+        for case in cases[:2]:  # EA d / L, whether an SPC holds the dof or not
+            self.assertAlmostEqual(case["displacement"][6], .01, places=15)
+            self.assertAlmostEqual(case["reaction"][6] / (7e7 * .01 / 2), 1, places=12)
+        # What SPCD held is free again for the next load.
+        self.assertAlmostEqual(cases[2]["displacement"][7] / (3 * 8 / (3 * 700)), 1, places=9)
+        self.assertAlmostEqual(cases[2]["resultants"]["reaction"][1], -3, places=9)
+
     def test_body_system_and_hdf5(self):
         self.write("beam.bdf", BEAM)
         self.write("body.toml", '[body]\nname = "b"\ndeck = "beam.bdf"\n[body.modes]\nnumber = 2\n[body.output]\nfile = "b.h5"\n')

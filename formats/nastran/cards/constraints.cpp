@@ -129,12 +129,13 @@ void parse_rbar(Card& card, Reading& r) {
   e.cma = card.read_components(5, "CMA", 0);
   e.cmb = card.read_components(6, "CMB", 0);
   card.use(7, 9);  // ALPHA, TREF
-  if (card.is_ok() && std::popcount(e.cna) + std::popcount(e.cnb) != 6)
-    card.fail("deck.field-range", 3,
-              "CNA and CNB have " + std::to_string(std::popcount(e.cna) + std::popcount(e.cnb)) +
-                  " components, expected six in all",
+  if (e.cna == 0 && e.cnb == 0) e.cna = all;
+  const int num = std::popcount(e.cna) + std::popcount(e.cnb);
+  // Fewer than six on one grid alone: the model completes them.
+  if (card.is_ok() && (num > 6 || (num < 6 && e.cna != 0 && e.cnb != 0)))
+    card.fail("deck.field-range", 3, "CNA and CNB have " + std::to_string(num) + " components, expected six in all",
               "for a rigid bar write CNA = 123456");
-  if (e.cma == 0 && e.cmb == 0) {
+  if (num == 6 && e.cma == 0 && e.cmb == 0) {
     e.cma = all & ~e.cna;
     e.cmb = all & ~e.cnb;
   }

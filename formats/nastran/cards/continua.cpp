@@ -164,12 +164,30 @@ void parse_equal_plies(Card& card, Reading& r) {
   if (r.claim(IdSpace::ShellProperty, p.id, card)) r.deck.pcomp.push_back(p);
 }
 
+/// IN and ISOP, as words or as numbers (Quick Reference Guide, PSOLID).
+void read_solid_scheme(const Card& card, Reading& r, records::Psolid& p) {
+  const std::string in = card.get_upper(3), isop = card.get_upper(5);
+  if (in == "TWO" || in == "2")
+    p.points = 2;
+  else if (in == "THREE" || in == "3")
+    p.points = 3;
+  p.is_full = isop == "FULL" || isop == "1";
+  p.is_reduced = isop == "REDUCED" || isop == "0";
+  const bool knows_in = p.points > 0 || in.empty() || in == "BUBBLE" || in == "GAUSS" || in == "0" || in == "1";
+  if (knows_in && (p.is_full || p.is_reduced || isop.empty())) return;
+  r.diagnostics.warning("deck.solid-scheme", r.deck.locate(p.at),
+                        "PSOLID " + std::to_string(p.id) + " has IN = '" + in + "', ISOP = '" + isop +
+                            "'; what is unknown there is taken as blank",
+                        "IN is BUBBLE, TWO or THREE, ISOP is REDUCED or FULL");
+}
+
 void parse_psolid(Card& card, Reading& r) {
   records::Psolid p;
   p.id = card.read_id(0, "PID");
   p.mid = card.read_id(1, "MID");
   p.cordm = card.is_integer(2) ? card.read_int(2, "CORDM", 0) : 0;
   p.at = card.get_location();
+  read_solid_scheme(card, r, p);
   const std::string fluid = card.get_upper(6);
   card.use(2, 6);  // CORDM, IN, STRESS, ISOP
   if (!r.claim(IdSpace::SolidProperty, p.id, card)) return;

@@ -49,7 +49,7 @@ void parse_pload1(Card& card, Reading& r) {
   load.x1 = card.read_real(4, "X1", 0.0);
   load.p1 = card.read_real(5, "P1", 0.0);
   load.x2 = card.read_optional_real(6, "X2");
-  load.p2 = card.read_real(7, "P2", load.p1);
+  load.p2 = card.read_real(7, "P2", 0.0);  // not P1: MSC and NX taper to zero
   load.at = card.get_location();
   card.demand(load.x1 >= 0, 4, "X1", "zero or more");
   card.demand(!load.x2 || *load.x2 >= load.x1, 6, "X2", "X1 or more");

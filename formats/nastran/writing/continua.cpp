@@ -42,7 +42,12 @@ void write_pcomp(const records::Pcomp& p, CardSink& sink) {
 void write_continua(const records::Deck& deck, CardSink& sink) {
   for (const auto& p : deck.pshell) write_pshell(p, sink);
   for (const auto& p : deck.pcomp) write_pcomp(p, sink);
-  for (const auto& p : deck.psolid) sink.put(CardFields("PSOLID").add(p.id).add(p.mid).add_id(p.cordm));
+  for (const auto& p : deck.psolid) {
+    CardFields card("PSOLID");
+    card.add(p.id).add(p.mid).add_id(p.cordm).add_id(p.points);
+    if (p.is_full || p.is_reduced) card.add_blank().add_word(p.is_full ? "FULL" : "REDUCED");
+    sink.put(card);
+  }
   for (const auto& e : deck.solids) {
     CardFields card(e.card);
     card.add(e.id).add(e.pid);

@@ -192,7 +192,7 @@ SmallModel make_composite(const records::Pbcomp& p) {
 TEST(Pbcomp, OfOneMaterialIsThePbeam) {
   auto p = make_pbcomp();
   p.section = 5;
-  p.lumps = {{{0.1, 0.2}, 0.5, 1}, {{-0.1, 0.3}, 0.5, 1}};
+  p.lumps = {{{0.1, 0.2}, 0, 1}, {{-0.1, 0.3}, 0, 1}};  // without fractions: where stresses are printed
   const SmallModel composite = make_composite(p);
   SmallModel beam = make_grids();
   records::Pbeam q;
@@ -206,6 +206,28 @@ TEST(Pbcomp, OfOneMaterialIsThePbeam) {
   EXPECT_LT((composite.calc_stiffness() - beam.calc_stiffness()).norm(), 1e-13 * beam.calc_stiffness().norm());
   for (MassKind kind : {MassKind::Lumped, MassKind::Consistent})
     EXPECT_LT((composite.calc_mass(kind) - beam.calc_mass(kind)).norm(), 1e-14);
+}
+
+/// Lumps count before I1, I2 of the card, blank or not: 2 (0.3, 0.2) and 2 (-0.1, 0.4) of A/4 each, mirrored in z.
+TEST(Pbcomp, OfLumpsOfOneMaterialBendsByTheLumps) {
+  auto p = make_pbcomp();
+  p.section = 2;
+  p.lumps = {{{0.3, 0.2}, 0.25, 1}, {{-0.1, 0.4}, 0.25, 1}};
+  p.n.setZero();
+  const double A = p.A, y = 0.1, I1 = A * 0.04, I2 = A / 2 * (0.04 + 0.16);
+  for (const double given : {0.0, 0.5}) {
+    p.I1 = p.I2 = given;
+    p.I12 = 0;
+    const SmallModel m = make_composite(p);
+    const BeamSection& s = dynamic_cast<const Beam&>(*m.elements[0]).property().stations.front();
+    EXPECT_NEAR(s.A, A, 1e-15);
+    EXPECT_NEAR(s.I1, I1, 1e-15);
+    EXPECT_NEAR(s.I2, I2, 1e-15);
+    EXPECT_EQ(s.I12, 0);
+    EXPECT_NEAR(s.n[0], y, 1e-15);
+    EXPECT_NEAR(s.n[1], 0, 1e-15);
+    EXPECT_EQ(s.nsm, p.nsm);
+  }
 }
 
 TEST(Pbcomp, OfSeveralMaterialsWeighsItsLumps) {

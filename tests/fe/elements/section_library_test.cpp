@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "bough/fe/elements/section_library.hpp"
+#include "bough/fe/elements/thin_wall.hpp"
 
 namespace bough::fe {
 namespace {
@@ -247,7 +248,20 @@ TEST(SectionLibrary, BoxTorsionAndShear) {
   const LibrarySection twin = calc("DBOX", {w, h, w / 2, t2, t2, t2, t1, t1, t1, t1});
   EXPECT_NEAR(twin.J, box.J, 1e-10);
   // Thin square tube: V² / (∫q²/t ds A) = 5/12 (Cowper 1966 with ν = 0: 20/48).
-  EXPECT_NEAR(calc("BOX", {1, 1, 1e-4, 1e-4}).k1, 5.0 / 12, 1e-3);
+  const ThinWallResult tube =
+      calc_thin_wall({{{0, 0}, {1, 0}, 1e-4}, {{1, 0}, {1, 1}, 1e-4}, {{1, 1}, {0, 1}, 1e-4}, {{0, 1}, {0, 0}, 1e-4}});
+  EXPECT_NEAR(tube.shear_area_1 / 4e-4, 5.0 / 12, 1e-12);
+}
+
+/// A listing of MSC Nastran prints K1 = .90876, K2 = .087591 for BOX .05 x .5 x .001; BOX1 with equal walls is that
+/// BOX.
+TEST(SectionLibrary, BoxShearFactorsOfTheVendor) {
+  const LibrarySection box = calc("BOX", {.05, .5, .001, .001});
+  EXPECT_NEAR(box.k1, .90876, 5e-6);
+  EXPECT_NEAR(box.k2, .087591, 5e-7);
+  const LibrarySection twin = calc("BOX1", {.05, .5, .001, .001, .001, .001});
+  EXPECT_NEAR(twin.k1, box.k1, 1e-14);
+  EXPECT_NEAR(twin.k2, box.k2, 1e-14);
 }
 
 /// A box slit nowhere but thick on one side: the shear centre moves to that side, the centroid less so or more.

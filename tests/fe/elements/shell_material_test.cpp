@@ -188,7 +188,7 @@ TEST(ContinuaErrors, AreReported) {
   EXPECT_EQ(count(solid, "fe.bad-material"), 1);
   solid.deck.mat1[0].nu = 0.3;
   EXPECT_EQ(count(solid, "fe.bad-material"), 0);
-  solid.deck.solids[0].corners = {1, 3, 2, 4};
+  solid.deck.solids[0].corners = {1, 2, 3, 2};
   EXPECT_EQ(count(solid, "fe.bad-solid"), 1);
 }
 

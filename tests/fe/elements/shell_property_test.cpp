@@ -174,13 +174,44 @@ int count(const SmallModel& m, const char* id) {
 TEST(ShellProperty, ErrorsAreReported) {
   SmallModel m = make_quad();
   m.nodes.add_system(7, Vector3d::Zero(), Eigen::AngleAxisd(std::acos(-1.0) / 2, Vector3d::UnitY()).toRotationMatrix());
-  m.deck.shells[0].mcid = 7;  // its x-axis is along -z
-  EXPECT_EQ(count(m, "fe.bad-material-axes"), 1);
+  m.deck.shells[0].mcid = 7;  // its x-axis is along -z: no matter for an isotropic shell
+  EXPECT_EQ(count(m, "fe.bad-material-axes"), 0);
   m.deck.shells[0].mcid.reset();
   m.deck.pshell[0].mid2 = -1;
   EXPECT_EQ(count(m, "fe.bad-property"), 0);
   m.deck.mat1[0].nu = 0.5;
   EXPECT_EQ(count(m, "fe.bad-property"), 1);
+}
+
+/// A MAT1 has no axes; a MAT8 has. CQUAD8 asks at every point but speaks once, with its field.
+TEST(ShellProperty, MaterialAxesThatAreNone) {
+  for (const bool curved : {false, true}) {
+    SmallModel m = make_quad();
+    m.nodes.add_system(7, Vector3d::Zero(),
+                       Eigen::AngleAxisd(std::acos(-1.0) / 2, Vector3d::UnitY()).toRotationMatrix());
+    if (curved) {
+      m.deck.shells[0].card = "CQUAD8";
+      m.deck.shells[0].midsides = {0, 0, 0, 0};
+    }
+    m.make();
+    const MatrixXd K = m.calc_stiffness();
+    m.elements.clear();
+    m.deck.shells[0].mcid = 7;
+    m.make();
+    EXPECT_LT((m.calc_stiffness() - K).norm(), 1e-12 * K.norm());
+
+    records::Mat8 ply;
+    ply.id = 8, ply.E1 = 3, ply.E2 = 1, ply.G12 = 0.5;
+    m.deck.mat8.push_back(ply);
+    m.deck.pshell[0].mid1 = m.deck.pshell[0].mid2 = 8;
+    EXPECT_EQ(count(m, "fe.bad-material-axes"), 1) << curved;
+    m.deck.shells[0].mcid = 99;
+    Diagnostics d;
+    make_elements(m.deck, m.nodes, d);
+    ASSERT_EQ(d.items().size(), 1u) << curved;
+    EXPECT_EQ(d.items()[0].id, "fe.missing-coordinates");
+    EXPECT_NE(d.items()[0].what.find("has MCID 99"), std::string::npos);
+  }
 }
 
 }  // namespace

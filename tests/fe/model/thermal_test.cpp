@@ -215,6 +215,47 @@ TEST(ThermalLoads, BimetalPlateBendsAsTimoshenkoSays) {
   }
 }
 
+/// A temperature linear over a rectangle is harmonic: u = α (g (x² - y²)/2 + h x y), v = α (h (y² - x²)/2 + g x y)
+/// leaves no stress (Boley & Weiner, Theory of thermal stresses, 3.4). The inner modes of CQUAD4 hold it exactly.
+TEST(ThermalLoads, LinearTemperatureLeavesARectangleFree) {
+  Heated h(
+      "TEMP(LOAD) = 5\nSPC = 1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,3.,0.,0.\nGRID,3,,3.,2.,0.\nGRID,4,,0.,2.,0.\n"
+      "CQUAD4,1,1,1,2,3,4\nPSHELL,1,1,.05,1,,1\nMAT1,1,7.+10,,.3,2700.,1.2-5,20.\nSPC1,1,123,1\nSPC1,1,23,2\n"
+      "SPC1,1,3,4\nTEMP,5,1,30.,2,60.,3,100.\nTEMP,5,4,70.\n");
+  auto solved = h.solve();
+  ASSERT_EQ(solved.elements.size(), 1u);
+  const double held = 7e10 / 0.7 * 0.05 * 1.2e-5 * 80;
+  EXPECT_LT(solved.elements[0].force.norm(), 1e-9 * held);
+  EXPECT_LT(std::abs(solved.strain_energy), 1e-9 * held * 1.2e-5 * 80 * 6);
+  // Relative to side 1-2 held: its curvature α h gives v = -α h x²/2 + ω x with v(3) = 0.
+  const double g = 10, k = 20, a = 1.2e-5;
+  const auto exact = [&](double x, double y) {
+    return Vector3d(a * (10 * x + g * (x * x - y * y) / 2 + k * x * y),
+                    a * (10 * y + k * (y * y - x * x) / 2 + g * x * y), 0);
+  };
+  const double turn = -exact(3, 0).y() / 3;
+  const Vector3d corner[4] = {{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {0, 2, 0}};
+  for (int i = 0; i < 4; ++i) {
+    const Vector3d& x = corner[i];
+    const Vector3d u = exact(x.x(), x.y()) + turn * Vector3d(-x.y(), x.x(), 0);
+    EXPECT_LT((solved.displacement.segment<3>(6 * i) - u).norm(), 1e-9 * u.norm() + 1e-15) << i;
+  }
+}
+
+/// One element of a bimetal cantilever, temperature rising along it: w = κ1 L²/6 when κ = κ1 x/L (the mean gives κ1
+/// L²/4).
+TEST(ThermalLoads, TemperatureAlongABimetalPlate) {
+  for (const char* card : {"CQUAD4,1,1,1,2,3,4\n", "CQUADR,1,1,1,2,3,4\n"}) {
+    Heated h(std::string("TEMP(LOAD) = 5\nSPC = 1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,.2,0.\n"
+                         "GRID,4,,0.,.2,0.\nPCOMP,1,,,,,20.\n,1,.01,0.,,2,.01,0.\nMAT1,1,7.+10,,0.,,1.-5\n"
+                         "MAT1,2,7.+10,,0.,,3.-5\nSPC1,1,123456,1,4\nTEMP,5,1,20.,4,20.\nTEMP,5,2,120.,3,120.\n") +
+             card);
+    // Equal layers: κ = (3/2) Δα ΔT / t with t of both (Timoshenko 1925), towards the layer that expands less.
+    const double kappa = 1.5 * 2e-5 * 100 / .02;
+    EXPECT_NEAR(h.solve().displacement[8] / (-kappa / 6), 1, 1e-6) << card;
+  }
+}
+
 TEST(ThermalLoads, QuasiIsotropicLaminateExpandsByItsInvariants) {
   // [0/45/-45/90]s: α = (β1 + β2) / (Q11 + Q22 + 2 Q12) with β = Q α of a ply. TREF is the laminate's.
   const double E1 = 2.03e7, E2 = 1.49e6, nu = .29, a1 = .7e-6, a2 = 31.2e-6, c = 1 - nu * nu * E2 / E1;

@@ -52,7 +52,7 @@ TEST(Errors, FieldsOutOfRange) {
   expect_error("deck.field-range", 2, "CBAR,1,1,1,2,0.,1.,0.\n,123456\n");
   expect_error("deck.field-range", 1, "FORCE,1,1,,2.,0.,0.,0.\n");
   expect_error("deck.field-range", 1, "LOAD,1,1.,1.,1\n");
-  expect_error("deck.field-range", 1, "RBAR,1,1,2,12345\n");
+  expect_error("deck.field-range", 1, "RBAR,1,1,2,123,45\n");
   expect_error("deck.field-range", 1, "EIGRL,1,5.,2.\n");
   expect_error("deck.field-range", 3, "PBAR,1,1,1.,1.,1.\n,\n,,,2.\n");
   expect_error("deck.field-range", 2, "CBUSH,1,1,1,2\n,1.5\n");

@@ -32,7 +32,7 @@ TEST(LoadCards, LinesAlongBeams) {
   ASSERT_EQ(b.size(), 2u);
   EXPECT_TRUE(b[0].in_element_axes && b[0].is_fraction && b[0].is_projected && !b[0].is_moment);
   EXPECT_EQ(b[0].axis, 1);
-  EXPECT_EQ(b[0].p2, 2);
+  EXPECT_EQ(b[0].p2, 0);  // blank: not P1
   EXPECT_FALSE(b[1].x2.has_value());
   EXPECT_TRUE(b[1].is_moment && !b[1].is_fraction && !b[1].in_element_axes);
   EXPECT_EQ(b[1].axis, 2);

@@ -225,8 +225,8 @@ TEST(OldDecks, HintsAndSwitchesAreNoErrors) {
 }
 
 TEST(OldDecks, RigidElements) {
-  const auto deck = read_clean(
-      "GRID,1\nGRID,2\nGRID,3\nGRID,4\nCRIGD1,7,1,2,THRU,4\nCRIGD2,8,1,2,123,3,46\nCRIGDR,9,1,4,2\n");
+  const auto deck =
+      read_clean("GRID,1\nGRID,2\nGRID,3\nGRID,4\nCRIGD1,7,1,2,THRU,4\nCRIGD2,8,1,2,123,3,46\nCRIGDR,9,1,4,2\n");
   ASSERT_EQ(deck.rbe2.size(), 1u);
   EXPECT_EQ(deck.rbe2[0].gn, 1);
   EXPECT_EQ(deck.rbe2[0].cm, 63u);

@@ -60,6 +60,34 @@ TEST(MscCards, RigidElementsMayEndWithAlphaAndTref) {
   EXPECT_EQ(deck.rbe1[0].dependent.size(), 1u);
 }
 
+/// IN and ISOP by word and by number (Quick Reference Guide, PSOLID).
+TEST(MscCards, PsolidSchemes) {
+  const auto deck =
+      read_clean("PSOLID,1,9,,THREE,GRID,FULL\nPSOLID,2,9,,2,,1\nPSOLID,3,9,,BUBBLE,,REDUCED\nPSOLID,4,9\n");
+  ASSERT_EQ(deck.psolid.size(), 4u);
+  EXPECT_EQ(deck.psolid[0].points, 3);
+  EXPECT_TRUE(deck.psolid[0].is_full);
+  EXPECT_EQ(deck.psolid[1].points, 2);
+  EXPECT_TRUE(deck.psolid[1].is_full);
+  EXPECT_EQ(deck.psolid[2].points, 0);
+  EXPECT_TRUE(deck.psolid[2].is_reduced && !deck.psolid[2].is_full);
+  EXPECT_TRUE(deck.psolid[3].points == 0 && !deck.psolid[3].is_full && !deck.psolid[3].is_reduced);
+  const auto odd = read("PSOLID,1,9,,FOUR\n");
+  EXPECT_EQ(odd.diagnostics.num_errors(), 0);
+  EXPECT_EQ(odd.count("deck.solid-scheme"), 1);
+}
+
+/// CNA blank is 123456; fewer than six on one grid are the model's to complete.
+TEST(MscCards, RbarWithoutSixComponents) {
+  const auto deck = read_clean("RBAR,1,1,2\nRBAR,2,1,2,123\nRBAR,3,1,2,,123\n");
+  ASSERT_EQ(deck.rbar.size(), 3u);
+  EXPECT_EQ(deck.rbar[0].cna, 63u);
+  EXPECT_EQ(deck.rbar[0].cmb, 63u);
+  EXPECT_EQ(deck.rbar[1].cna, 7u);
+  EXPECT_EQ(deck.rbar[1].cmb, 0u);
+  EXPECT_EQ(deck.rbar[2].cnb, 7u);
+}
+
 TEST(MscCards, PcompsOfOneMaterialIsThePsolid) {
   const auto deck = read_clean("PCOMPS,2,5,13,,,20.,,,+\n+,1,7,5.,0.,,YES,ABS,,+\n+,2,7,4.\n");
   ASSERT_EQ(deck.psolid.size(), 1u);
