@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bough/fe/checks.hpp"
+#include "bough/fe/grid_point_weight.hpp"
 #include "bough/formats/records/deck.hpp"
 
 namespace bough::cli {
@@ -14,13 +15,16 @@ std::string format_mass_properties(const records::MassProperties& properties);
 struct GroundChecks {
   Eigen::Matrix<double, 6, 1> g, n, f;
 };
+std::string format_weight(const fe::GridPointWeight& weight);
 std::string format_ground_check(const GroundChecks& ground);
 /// Coincident and unused grids, and the worst shapes of plane and solid elements.
 std::string format_geometry(const fe::Model& model, const records::Deck& deck);
 nlohmann::json make_geometry_json(const fe::Model& model, const records::Deck& deck);
+/// At most ten of them.
 std::string format_autospc(const fe::Model& model);
 std::string format_card_counts(const records::Deck& deck);
 
+nlohmann::json to_json(const fe::GridPointWeight& weight);
 nlohmann::json to_json(const records::MassProperties& properties);
 /// Rows of any matrix or the entries of any vector as nested JSON arrays.
 nlohmann::json to_json(const Eigen::Ref<const Eigen::MatrixXd>& matrix);

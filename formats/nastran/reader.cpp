@@ -2,6 +2,7 @@
 
 #include "bough/formats/nastran/detail/builder.hpp"
 #include "bough/formats/nastran/detail/control.hpp"
+#include "bough/formats/nastran/detail/known_params.hpp"
 #include "bough/formats/nastran/detail/lines.hpp"
 #include "bough/formats/nastran/detail/packing.hpp"
 
@@ -13,6 +14,7 @@ records::Deck make_deck(const detail::Source& source, const ReadOptions& options
   deck.files = source.files;
   const auto first_line = detail::read_control(source, deck, diagnostics);
   detail::read_bulk(source, first_line, options, deck, diagnostics);
+  detail::report_params(deck, diagnostics);
   return deck;
 }
 
