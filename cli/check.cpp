@@ -7,13 +7,16 @@
 #include "bough/fe/assembly.hpp"
 #include "bough/formats/hdf5/files.hpp"
 #include "bough/formats/nastran/reader.hpp"
+#include "bough/formats/records/params.hpp"
 #include "bough/formats/toml/specs.hpp"
 #include "check_solutions.hpp"
+#include "check_subcases.hpp"
 #include "console.hpp"
 #include "deck_tables.hpp"
 #include "model_options.hpp"
 #include "options.hpp"
 #include "ranks.hpp"
+#include "solution.hpp"
 #include "system_files.hpp"
 
 namespace bough::cli {
@@ -23,7 +26,17 @@ namespace {
 struct CheckOptions : CommonOptions {
   std::string file;
   DeckModelOptions model;
+  std::optional<int> gpwg;  ///< grid of the weight table; 0: the origin
 };
+
+/// Of the command line, else of PARAM,GRDPNT, whose negative value asks for no table.
+std::optional<int> choose_weight_grid(const CheckOptions& options, const records::Deck& deck,
+                                      Diagnostics& diagnostics) {
+  if (options.gpwg) return options.gpwg;
+  if (!deck.find_param("GRDPNT")) return std::nullopt;
+  const double value = records::get_real_param(deck, "GRDPNT", -1, diagnostics);
+  return value < 0 ? std::nullopt : std::optional<int>(static_cast<int>(std::min(value, 1e9)));
+}
 
 /// Prints the summary and what was found, as text or JSON, and throws when an error is among it.
 int finish(const CheckOptions& options, const Console& console, const std::string& text, nlohmann::json json,
@@ -47,8 +60,11 @@ int finish(const CheckOptions& options, const Console& console, const std::strin
   return diagnostics.num_errors() > 0 ? kInputError : kSuccess;
 }
 
-void check_model(const records::Deck& deck, const fe::ModelOptions& model_options, std::string& text,
-                 nlohmann::json& json, Diagnostics& diagnostics) {
+void check_model(const CheckOptions& options, const records::Deck& deck, fe::ModelOptions model_options,
+                 std::string& text, nlohmann::json& json, Diagnostics& diagnostics) {
+  model_options.uses_enforced = true;
+  warn_preload(deck, diagnostics);
+  note_solution(deck, diagnostics);
   const auto model = fe::Model::build(deck, model_options, diagnostics);
   if (diagnostics.num_errors() > 0) return;
   const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
@@ -64,6 +80,19 @@ void check_model(const records::Deck& deck, const fe::ModelOptions& model_option
   text += format_sections(deck);
   text += format_mass_properties(mass) + "\n" + format_ground_check(ground) + "\n" + format_autospc(model) + "\n" +
           format_geometry(model, deck);
+  if (const auto grid = choose_weight_grid(options, deck, diagnostics)) {
+    auto weight_grid = *grid;
+    if (weight_grid > 0 && model.find_node(weight_grid) < 0 && !options.gpwg) {
+      diagnostics.warning("cli.no-weight-grid", deck.locate(deck.find_param("GRDPNT")->at),
+                          fmt::format("PARAM,GRDPNT names grid {}, which the deck does not define", weight_grid),
+                          "the weight table is about the origin");
+      weight_grid = 0;
+    }
+    const auto weight = fe::calc_grid_point_weight(model, weight_grid);
+    text += "\n" + format_weight(weight);
+    json["weight"] = to_json(weight);
+  }
+  check_subcases(deck, model, model_options, text, json, diagnostics);
   json["num_nodes"] = model.nodes().size();
   json["num_elements"] = model.elements().size();
   json["num_dofs"] = model.num_gdofs();
@@ -100,7 +129,7 @@ int check_deck(const CheckOptions& options, Console& console) {
   nlohmann::json json;
   describe_deck(deck, text, json);
   // A deck with errors is still taken as far as it goes, so that one pass shows all of them.
-  check_model(deck, make_model_options(options.model), text, json, diagnostics);
+  check_model(options, deck, make_model_options(options.model), text, json, diagnostics);
   return finish(options, console, text, json, diagnostics);
 }
 
@@ -125,7 +154,7 @@ int check_body(const CheckOptions& options, Console& console) {
     model_options.ignore_spc = spec.frame != records::BodyFrame::Fixed;
     model_options.origin = spec.origin;
     model_options.ignore_cards = spec.ignore_cards;
-    check_model(deck, model_options, text, json, diagnostics);
+    check_model(options, deck, model_options, text, json, diagnostics);
     for (int id : spec.interface_nodes) {
       const bool found = std::any_of(deck.grids.begin(), deck.grids.end(), [&](const auto& g) { return g.id == id; });
       if (!found && diagnostics.num_errors() == 0) {
@@ -271,6 +300,11 @@ void add_check(CLI::App& app, Action& action) {
   auto* verb =
       app.add_subcommand("check", "Read a deck, body, system or HDF5 file; print what it holds and every error");
   verb->add_option("file", o->file, "Nastran deck, body.toml, system.toml or .h5")->required();
+  verb->add_option("--gpwg", o->gpwg,
+                   "Weights about this grid (0: the origin) as the grid point weight generator of Nastran prints them "
+                   "(default: PARAM,GRDPNT)")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("GRID");
   add_model_options(*verb, o->model);
   add_common_options(*verb, *o, kOutput | kJson, "Write the report to this file instead of stdout");
   verb->footer("Example:\n  bough check boom.bdf\n  bough check spinup.toml --json");

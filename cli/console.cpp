@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <sstream>
+#include <tuple>
 
 namespace bough::cli {
 
@@ -14,6 +16,13 @@ namespace {
 std::size_t display_width(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+/// "5,990"
+std::string group_digits(std::size_t number) {
+  auto text = std::to_string(number);
+  for (auto at = text.size(); at > 3; at -= 3) text.insert(at - 3, ",");
+  return text;
 }
 }  // namespace
 
@@ -114,8 +123,10 @@ void Console::print_unless_quiet(const Diagnostic& diagnostic) const {
   if (diagnostic.severity == Severity::Error || !quiet_) print(diagnostic);
 }
 
-void Console::print(const Diagnostics& diagnostics) const {
-  for (const auto& item : diagnostics.items()) print_unless_quiet(item);
+void Console::print(const Diagnostics& diagnostics) const { print(diagnostics.items()); }
+
+void Console::print(const std::vector<Diagnostic>& items) const {
+  for (const auto& item : verbosity_ > 0 ? items : shorten(items)) print_unless_quiet(item);
 }
 
 void Console::show_progress(const std::string& text) {
@@ -139,14 +150,41 @@ Diagnostic locate(Diagnostic diagnostic, const std::string& file) {
   return diagnostic;
 }
 
-int report_failure(const Failure& failure, const Console& console) {
-  bool is_input = false;
-  for (const auto& item : failure.items()) {
-    console.print(item);
-    // Both are found by the computation, and both are mended in the deck.
-    is_input |= item.id == "fe.mechanism" || item.id == "modal.no-mass";
+std::vector<Diagnostic> shorten(const std::vector<Diagnostic>& items, std::size_t most) {
+  struct Kind {
+    std::size_t count = 0, line = 0;  ///< how many there are; where the line about the rest stands
+  };
+  std::map<std::tuple<std::string, Severity, std::string>, Kind> kinds;
+  std::vector<Diagnostic> shown;
+  for (const auto& item : items) {
+    auto& kind = kinds[{item.id, item.severity, item.where.file}];
+    if (item.id.empty() || ++kind.count <= most) {
+      shown.push_back(item);
+    } else if (kind.count == most + 1) {
+      kind.line = shown.size();
+      shown.push_back({item.severity, item.id, {item.where.file}, {}, {}});
+    }
   }
+  for (const auto& [key, kind] : kinds)
+    if (kind.count > most) {
+      auto& line = shown[kind.line];
+      line.what = "... and " + group_digits(kind.count - most) + " more of " + line.id;
+      line.advice = "-v prints them all";
+    }
+  return shown;
+}
+
+int choose_exit_code(const Failure& failure) {
+  // Both are found by the computation, and both are mended in the deck.
+  const bool is_input = std::any_of(failure.items().begin(), failure.items().end(), [](const auto& item) {
+    return item.id == "fe.mechanism" || item.id == "modal.no-mass";
+  });
   return is_input ? kInputError : failure.exit_code();
+}
+
+int report_failure(const Failure& failure, const Console& console) {
+  console.print(failure.items());
+  return choose_exit_code(failure);
 }
 
 }  // namespace bough::cli

@@ -52,8 +52,9 @@ class Console {
   void print_error(const std::string& id, const std::string& what, const std::string& advice) const;
   /// The same, but warnings and notes are left out when quiet.
   void print_unless_quiet(const Diagnostic& diagnostic) const;
-  /// All of them; warnings and notes are left out when quiet.
+  /// All of them; warnings and notes are left out when quiet, and all but the first of a kind without -v (shorten).
   void print(const Diagnostics& diagnostics) const;
+  void print(const std::vector<Diagnostic>& items) const;
   /// Overwrites the progress line on a terminal; elsewhere, with -v, prints lines.
   void show_progress(const std::string& text);
   void end_progress();
@@ -72,8 +73,13 @@ class Console {
 /// The same message, at `file` when it names no place and does not concern the command line.
 Diagnostic locate(Diagnostic diagnostic, const std::string& file);
 
-/// Prints every diagnostic of a Failure and gives the exit code. A mechanism and a model without mass
-/// count as wrong input (docs/adr/0006).
+/// The first `most` messages of each id, severity and file, in their order; one line where the next would stand says
+/// how many follow.
+std::vector<Diagnostic> shorten(const std::vector<Diagnostic>& items, std::size_t most = 10);
+
+/// A mechanism and a model without mass count as wrong input (docs/adr/0006).
+int choose_exit_code(const Failure& failure);
+/// Prints the diagnostics of a Failure and gives the exit code.
 int report_failure(const Failure& failure, const Console& console);
 
 }  // namespace bough::cli

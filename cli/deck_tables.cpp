@@ -42,6 +42,20 @@ std::string format_mass_properties(const records::MassProperties& p) {
   return text;
 }
 
+std::string format_weight(const fe::GridPointWeight& w) {
+  std::string text = w.grid ? fmt::format("grid point weights about grid {}, before WTMASS\n", w.grid)
+                            : std::string("grid point weights about the origin of basic, before WTMASS\n");
+  text += "  MO\n" + format_rows(w.MO) + "  S\n" + format_rows(w.S);
+  Table table{{"  axis of S", "mass", "X-C.G.", "Y-C.G.", "Z-C.G."}, {}};
+  for (int i = 0; i < 3; ++i) {
+    std::vector<std::string> row{std::string(1, "XYZ"[i]), fmt::format("{:.6e}", w.mass[i] + 0.0)};
+    for (int c = 0; c < 3; ++c) row.push_back(fmt::format("{:.6e}", w.cg(i, c) + 0.0));
+    table.rows.push_back(std::move(row));
+  }
+  return text + table.to_text() + "  I(S)\n" + format_rows(w.I_S) + "  I(Q)\n" + format_rows(w.I_Q.transpose()) +
+         "  Q\n" + format_rows(w.Q);
+}
+
 std::string format_ground_check(const GroundChecks& ground) {
   static const char* const kNames[] = {"x", "y", "z", "rx", "ry", "rz"};
   Table table{{"ground check", "g-set", "", "n-set", "", "f-set"}, {}};
@@ -177,12 +191,14 @@ nlohmann::json make_sections_json(const records::Deck& deck) {
 
 std::string format_autospc(const fe::Model& model) {
   if (model.autospc().empty()) return "AUTOSPC: none\n";
+  constexpr std::size_t kShown = 10;
+  const auto& all = model.autospc();
   Table table{{"AUTOSPC grid", "component", "stiffness ratio"}, {}};
-  for (const auto& entry : model.autospc()) {
+  for (std::size_t i = 0; i < std::min(kShown, all.size()); ++i)
     table.rows.push_back(
-        {std::to_string(entry.node), std::to_string(entry.component), fmt::format("{:.2e}", entry.ratio)});
-  }
-  return table.to_text();
+        {std::to_string(all[i].node), std::to_string(all[i].component), fmt::format("{:.2e}", all[i].ratio)});
+  return table.to_text() +
+         (all.size() > kShown ? fmt::format("... and {} more\n", count(all.size() - kShown, "dof")) : "");
 }
 
 std::string format_card_counts(const records::Deck& deck) {
@@ -207,6 +223,17 @@ nlohmann::json to_json(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
   auto rows = nlohmann::json::array();
   for (int i = 0; i < matrix.rows(); ++i) rows.push_back(to_json_list(matrix.row(i).transpose().eval()));
   return rows;
+}
+
+nlohmann::json to_json(const fe::GridPointWeight& w) {
+  return {{"grid", w.grid},
+          {"MO", to_json(Eigen::MatrixXd(w.MO))},
+          {"S", to_json(Eigen::MatrixXd(w.S))},
+          {"mass", to_json_list(w.mass)},
+          {"cg", to_json(Eigen::MatrixXd(w.cg))},
+          {"I_S", to_json(Eigen::MatrixXd(w.I_S))},
+          {"I_Q", to_json_list(w.I_Q)},
+          {"Q", to_json(Eigen::MatrixXd(w.Q))}};
 }
 
 nlohmann::json to_json(const records::MassProperties& p) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bough/fe/checks.hpp"
+#include "bough/fe/grid_point_weight.hpp"
 #include "bough/formats/records/deck.hpp"
 
 namespace bough::cli {
@@ -14,6 +15,7 @@ std::string format_mass_properties(const records::MassProperties& properties);
 struct GroundChecks {
   Eigen::Matrix<double, 6, 1> g, n, f;
 };
+std::string format_weight(const fe::GridPointWeight& weight);
 std::string format_ground_check(const GroundChecks& ground);
 /// Coincident and unused grids, and the worst shapes of plane and solid elements.
 std::string format_geometry(const fe::Model& model, const records::Deck& deck);
@@ -21,9 +23,11 @@ nlohmann::json make_geometry_json(const fe::Model& model, const records::Deck& d
 /// What every PBARL and PBEAML became, station by station; empty without them.
 std::string format_sections(const records::Deck& deck);
 nlohmann::json make_sections_json(const records::Deck& deck);
+/// At most ten of them.
 std::string format_autospc(const fe::Model& model);
 std::string format_card_counts(const records::Deck& deck);
 
+nlohmann::json to_json(const fe::GridPointWeight& weight);
 nlohmann::json to_json(const records::MassProperties& properties);
 /// Rows of any matrix or the entries of any vector as nested JSON arrays.
 nlohmann::json to_json(const Eigen::Ref<const Eigen::MatrixXd>& matrix);

@@ -83,6 +83,12 @@ int run(int argc, const char* const* argv) {
                                        : cli::make_bash_completion(app));
     return cli::kSuccess;
   }
+  const auto count_given = [&](const char* name) {
+    std::size_t count = 0;
+    for (const auto* verb : app.get_subcommands())
+      if (const auto* option = verb->get_option_no_throw(name)) count += option->count();
+    return static_cast<int>(count);
+  };
   if (!action) {
     console.print_error("cli.usage", "no verb given", "see bough --help");
     return cli::kUsageError;
@@ -90,7 +96,7 @@ int run(int argc, const char* const* argv) {
   try {
     return action();
   } catch (const Failure& failure) {
-    return cli::report_failure(failure, console);
+    return cli::report_failure(failure, cli::Console(count_given("--quiet") > 0, count_given("--verbose")));
   } catch (const std::bad_alloc&) {
     console.print_error({}, "not enough memory", "use a smaller model or fewer modes");
     return cli::kComputationFailed;

@@ -18,6 +18,8 @@
 #include "model_options.hpp"
 #include "options.hpp"
 #include "ranks.hpp"
+#include "solution.hpp"
+#include "subcase_failures.hpp"
 #include "text_file.hpp"
 #include "usage_text.hpp"
 #include "vtu_file.hpp"
@@ -205,12 +207,21 @@ std::string name_output(const std::string& path, int subcase, bool is_first) {
       .string();
 }
 
-/// Adds what is new: each subcase's model says again what the deck made the first one say.
-void add_new(const Diagnostics& from, Diagnostics& to) {
-  std::set<std::string> known;
-  for (const auto& item : to.items()) known.insert(format(item));
-  for (const auto& item : from.items())
-    if (known.insert(format(item)).second) to.add(item);
+records::ModesResult solve_task(const ModesOptions& options, const records::Deck& deck, const Task& task,
+                                const fe::ModelOptions& model_options, Console& console, Diagnostics& diagnostics) {
+  auto model = fe::Model::build(deck, model_options, diagnostics);
+  diagnostics.throw_if_errors();
+  if (fe::has_damping(model))
+    diagnostics.note("fe.damping-unused", deck.locate({}),
+                     "the dampers of the deck do not act on its modes, as in SOL 103",
+                     "bough reduce adds them to the modal damping");
+  const auto pairs =
+      task.buckling ? solve_buckling(deck, *task.buckling, model_options, model,
+                                     choose_eigen_options(options, deck, task.buckling->buckling.method, diagnostics),
+                                     diagnostics)
+                    : solve(options, deck, model, console, diagnostics);
+  console.end_progress();
+  return make_result(model, pairs, options.buckling);
 }
 
 int run_modes(const ModesOptions& options) {
@@ -229,28 +240,27 @@ int run_modes(const ModesOptions& options) {
   const auto deck = read_deck_or_throw(options.deck, model_options, diagnostics);
   const auto sources = calc_sources(deck.files);
   const auto tasks = choose_tasks(options, deck);
-  const bool is_eigen_deck = deck.sol == "105" || deck.sol == "5" || deck.sol == "SEBUCKL" || deck.sol == "BUCKLING";
-  if (is_eigen_deck && !options.buckling)
+  if (is_buckling_solution(deck) && !options.buckling)
     diagnostics.note("cli.buckling-deck", deck.locate({}), "the deck asks for buckling (SOL " + deck.sol + ")",
                      "these are its normal modes; --buckling gives the load factors");
+  demand_no_preload(deck, options.buckling);
+  note_solution(deck, diagnostics);
   nlohmann::json json;
   std::string text, written;
   std::vector<std::pair<std::string, std::string>> pictures;
+  SubcaseFailures failures(tasks.size(), deck.subcases.size());
+  bool is_first = true;
   for (const auto& task : tasks) {
-    const bool is_first = &task == &tasks.front();
     Diagnostics own;
-    model_options.subcase = task.subcase;
-    auto model = fe::Model::build(deck, model_options, own);
-    own.throw_if_errors();
-    if (fe::has_damping(model))
-      own.note("fe.damping-unused", deck.locate({}), "the dampers of the deck do not act on its modes, as in SOL 103",
-               "bough reduce adds them to the modal damping");
-    const auto pairs =
-        task.buckling ? solve_buckling(deck, *task.buckling, model_options, model,
-                                       choose_eigen_options(options, deck, task.buckling->buckling.method, own), own)
-                      : solve(options, deck, model, console, own);
-    console.end_progress();
-    auto result = make_result(model, pairs, options.buckling);
+    records::ModesResult result;
+    try {
+      model_options.subcase = task.subcase;
+      result = solve_task(options, deck, task, model_options, console, own);
+    } catch (const Failure& failure) {
+      console.end_progress();
+      failures.add(task.buckling ? task.buckling->buckling.id : task.subcase, failure);
+      continue;
+    }
     result.source = sources;
     if (task.buckling && tasks.size() > 1) result.subcase = task.buckling->buckling.id;
     const auto vtu = name_output(options.vtu, result.subcase, is_first);
@@ -264,15 +274,18 @@ int run_modes(const ModesOptions& options) {
     if (is_first) json = make_json(result);
     if (tasks.size() > 1) json["subcases"].push_back(make_json(result));
     const auto output = name_output(options.output, result.subcase, is_first);
-    if (!output.empty()) {
-      do_once([&] {
-        check_output(options, output, {options.deck});
-        hdf5::write_modes(result, output);
-      });
-      written += "written: " + output + "\n";
-    }
+    is_first = false;
+    if (output.empty()) continue;
+    do_once([&] {
+      check_output(options, output, {options.deck});
+      hdf5::write_modes(result, output);
+    });
+    written += "written: " + output + "\n";
   }
+  if (is_first) failures.throw_all(diagnostics);
+  if (!failures.is_empty()) json["failed"] = failures.to_json();
   console.print(diagnostics);
+  console.print(failures.get_items(diagnostics));
   if (options.json)
     console.print_data(json.dump(2) + "\n");
   else
@@ -282,7 +295,7 @@ int run_modes(const ModesOptions& options) {
   });
   for (const auto& [path, picture] : pictures) written += "written: " + path + "\n";
   if (!options.json) console.print(written);
-  return kSuccess;
+  return failures.get_exit_code();
 }
 
 }  // namespace
@@ -291,7 +304,7 @@ void add_modes(CLI::App& app, Action& action) {
   auto o = std::make_shared<ModesOptions>();
   auto* verb = app.add_subcommand("modes", "Normal modes (SOL 103) or buckling load factors (SOL 105) of a deck");
   verb->add_option("deck", o->deck, "Nastran deck")->required();
-  verb->add_option("-n,--number", o->number, "Number of modes (default: the deck's EIGRL, else 10)")
+  verb->add_option("-n,--number,--modes", o->number, "Number of modes (default: the deck's EIGRL, else 10)")
       ->check(make_positive());
   verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted");
   verb->add_flag("--buckling", o->buckling, "Load factors of the static subcase instead of normal modes");

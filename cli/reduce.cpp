@@ -17,6 +17,7 @@
 #include "options.hpp"
 #include "point_files.hpp"
 #include "ranks.hpp"
+#include "solution.hpp"
 #include "system_files.hpp"
 #include "usage_text.hpp"
 
@@ -180,6 +181,8 @@ Reduced reduce_deck(const records::BodySpec& spec, const stiffening::ReduceOptio
   model_options.subcase = spec.subcase;
   model_options.ignore_cards = spec.ignore_cards;
   const auto deck = read_deck_or_throw(spec.deck, model_options, diagnostics);
+  demand_no_preload(deck, false);
+  note_solution(deck, diagnostics);
   return {stiffening::reduce(deck, spec, options, diagnostics), deck.files, {}};
 }
 
@@ -242,7 +245,7 @@ void add_reduce(CLI::App& app, Action& action) {
   auto* verb =
       app.add_subcommand("reduce", "A deck becomes a flexible body: modes, mass integrals, geometric stiffness");
   verb->add_option("file", o->file, "Body file (.toml) or Nastran deck; may be missing with --matrices");
-  verb->add_option("-n,--modes", o->num_modes, "Number of elastic modes")->check(make_positive());
+  verb->add_option("-n,--modes,--number", o->num_modes, "Number of elastic modes")->check(make_positive());
   verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted");
   verb->add_option("--name", o->name, "Name of the body (default: the file's)");
   verb->add_flag("--free", o->free, "Free-free modes: no node carries the frame, SPC sets are left out");

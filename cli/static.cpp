@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
+#include <exception>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,7 +13,9 @@
 #include "model_options.hpp"
 #include "options.hpp"
 #include "ranks.hpp"
+#include "solution.hpp"
 #include "static_tables.hpp"
+#include "subcase_failures.hpp"
 #include "text_file.hpp"
 #include "vtu_file.hpp"
 
@@ -24,7 +28,7 @@ namespace {
 struct StaticOptions : CommonOptions {
   std::string deck, vtu;
   DeckModelOptions model;
-  bool full = false, in_cd = false;
+  bool full = false, in_cd = false, is_linear = false;
 };
 
 /// The subcases with a load, temperatures, or with displacements that their SPC set enforces; the one asked for in any
@@ -46,31 +50,73 @@ std::vector<records::Subcase> choose_subcases(const records::Deck& deck, int ask
                    "write LOAD = n in the case control");
 }
 
-/// A model and its factor, kept while the constraints stay the same.
-struct Prepared {
-  fe::Model model;
-  std::unique_ptr<fe::StaticSolver> solver;
-  fe::Suport suport;
-  int spc = 0, mpc = 0, suport1 = 0;
-};
+/// Solves subcases one after the other; model and factor are kept while the constraints stay the same.
+class CaseSolver {
+ public:
+  CaseSolver(const records::Deck& deck, const DeckModelOptions& options)
+      : deck_(deck), model_options_(make_model_options(options)) {
+    model_options_.uses_enforced = true;
+  }
 
-std::unique_ptr<Prepared> prepare(const records::Deck& deck, const StaticOptions& options,
-                                  const records::Subcase& subcase, Diagnostics& diagnostics) {
-  auto model_options = make_model_options(options.model);
-  model_options.subcase = subcase.id;
-  model_options.uses_enforced = true;
-  auto prepared = std::make_unique<Prepared>(Prepared{
-      fe::Model::build(deck, model_options, diagnostics), nullptr, {}, subcase.spc, subcase.mpc, subcase.suport1});
-  const auto relief = fe::read_inertia_relief(deck, diagnostics);
-  auto held = fe::choose_suport(prepared->model, deck, relief, diagnostics);
-  diagnostics.throw_if_errors();
-  prepared->solver = prepared->model.num_fdofs() == 0
-                         ? std::make_unique<fe::StaticSolver>(prepared->model)
-                         : std::make_unique<fe::StaticSolver>(
-                               prepared->model, fe::assemble_stiffness(prepared->model, fe::DofSet::Free), held);
-  prepared->suport = fe::calc_suport(prepared->model, *prepared->solver, std::move(held), relief, diagnostics);
-  return prepared;
-}
+  /// Throws what is wrong with this subcase alone; warnings are added to `diagnostics`.
+  records::StaticSubcase solve(const records::Subcase& subcase, Diagnostics& diagnostics) {
+    prepare(subcase, diagnostics);
+    Diagnostics own;
+    const auto load = fe::calc_static_load(*model_, deck_, subcase, own);
+    own.throw_if_errors();
+    auto solved = fe::solve_static_case(*model_, *solver_, load, suport_);
+    solved.id = subcase.id;
+    solved.label = subcase.label.empty() ? subcase.subtitle : subcase.label;
+    solved.load_set = subcase.load;
+    solved.temperature_set = subcase.temperature;
+    solved.spc_set = subcase.spc;
+    solved.mpc_set = subcase.mpc;
+    solved.elements = fe::calc_element_forces(*model_, solved.displacement, deck_, subcase.load, own, load.initial);
+    add_new(own, diagnostics);
+    return solved;
+  }
+
+  const fe::Model& model() const { return *model_; }
+
+ private:
+  void prepare(const records::Subcase& subcase, Diagnostics& diagnostics) {
+    const std::array<int, 3> held{subcase.spc, subcase.mpc, subcase.suport1};
+    if (held_ == held && (!model_ || model_->is_held_for(deck_, subcase.load))) {
+      if (failure_) std::rethrow_exception(failure_);
+      return;
+    }
+    held_ = held;
+    failure_ = nullptr;
+    solver_.reset();
+    try {
+      Diagnostics own;
+      model_options_.subcase = subcase.id;
+      auto model = fe::Model::build(deck_, model_options_, own);
+      const auto relief = fe::read_inertia_relief(deck_, own);
+      auto fdofs = fe::choose_suport(model, deck_, relief, own);
+      own.throw_if_errors();
+      auto solver = model.num_fdofs() == 0
+                        ? std::make_unique<fe::StaticSolver>(model)
+                        : std::make_unique<fe::StaticSolver>(
+                              model, fe::assemble_stiffness(model, fe::DofSet::Free), fdofs);
+      suport_ = fe::calc_suport(model, *solver, std::move(fdofs), relief, own);
+      model_.emplace(std::move(model));
+      solver_ = std::move(solver);
+      add_new(own, diagnostics);
+    } catch (const Failure&) {
+      failure_ = std::current_exception();
+      throw;
+    }
+  }
+
+  const records::Deck& deck_;
+  fe::ModelOptions model_options_;
+  std::optional<std::array<int, 3>> held_;  ///< SPC, MPC and SUPORT1 of what is kept
+  std::exception_ptr failure_;              ///< what came of them
+  std::optional<fe::Model> model_;
+  std::unique_ptr<fe::StaticSolver> solver_;
+  fe::Suport suport_;
+};
 
 /// Vectors in the displacement axes of their grids, as other programs print them.
 records::StaticResult turn_to_cd(const fe::Model& model, records::StaticResult result) {
@@ -101,47 +147,41 @@ int run_static(const StaticOptions& options) {
     subcases.emplace_back();
     subcases.back().id = options.model.subcase;
   }
+  demand_static_solution(deck, options.is_linear, diagnostics);
   records::StaticResult result;
-  std::unique_ptr<Prepared> prepared;
+  CaseSolver solver(deck, options.model);
+  SubcaseFailures failures(subcases.size(), deck.subcases.size());
   for (const auto& subcase : subcases) {
-    if (!prepared || prepared->spc != subcase.spc || prepared->mpc != subcase.mpc ||
-        prepared->suport1 != subcase.suport1 || !prepared->model.is_held_for(deck, subcase.load))
-      prepared = prepare(deck, options, subcase, diagnostics);
-    const auto load = fe::calc_static_load(prepared->model, deck, subcase, diagnostics);
-    diagnostics.throw_if_errors();
-    auto solved = fe::solve_static_case(prepared->model, *prepared->solver, load, prepared->suport);
-    solved.id = subcase.id;
-    solved.label = subcase.label.empty() ? subcase.subtitle : subcase.label;
-    solved.load_set = subcase.load;
-    solved.temperature_set = subcase.temperature;
-    solved.spc_set = subcase.spc;
-    solved.mpc_set = subcase.mpc;
-    solved.elements =
-        fe::calc_element_forces(prepared->model, solved.displacement, deck, subcase.load, diagnostics, load.initial);
-    result.subcases.push_back(std::move(solved));
+    try {
+      result.subcases.push_back(solver.solve(subcase, diagnostics));
+    } catch (const Failure& failure) {
+      failures.add(subcase.id, failure);
+    }
   }
-  result.dof_map = prepared->model.calc_dof_map();
-  result.mesh = prepared->model.calc_mesh();
+  if (result.subcases.empty()) failures.throw_all(diagnostics);
+  result.dof_map = solver.model().calc_dof_map();
+  result.mesh = solver.model().calc_mesh();
   result.source = calc_sources(deck.files);
   std::string picture;
   if (!options.vtu.empty() && console.is_root())
     picture = make_vtu_text(exports::make_picture(result), exports::VtuEncoding::Base64, options.deck, diagnostics);
   console.print(diagnostics);
+  console.print(failures.get_items(diagnostics));
 
   if (!options.output.empty() && console.is_root()) hdf5::write_static(result, options.output);
-  if (options.in_cd) result = turn_to_cd(prepared->model, std::move(result));
+  if (options.in_cd) result = turn_to_cd(solver.model(), std::move(result));
   if (options.json) {
     nlohmann::json json{{"subcases", nlohmann::json::array()}};
     for (const auto& subcase : result.subcases) json["subcases"].push_back(to_json(result, subcase, options.full));
+    if (!failures.is_empty()) json["failed"] = failures.to_json();
     console.print_data(json.dump(2) + "\n");
   } else {
     for (const auto& subcase : result.subcases) console.print(format_static(result, subcase, options.full));
   }
   if (!picture.empty()) write_text_file(options.vtu, picture);
-  if (options.json) return kSuccess;
   for (const auto& path : {options.output, options.vtu})
-    if (!path.empty()) console.print("written: " + path + "\n");
-  return kSuccess;
+    if (!path.empty() && !options.json) console.print("written: " + path + "\n");
+  return failures.get_exit_code();
 }
 
 }  // namespace
@@ -152,6 +192,7 @@ void add_static(CLI::App& app, Action& action) {
   verb->add_option("deck", o->deck, "Nastran deck")->required();
   verb->add_flag("--full", o->full, "Every grid and element instead of the largest values");
   verb->add_flag("--cd", o->in_cd, "Print vectors in the displacement (CD) axes of each grid, not in basic");
+  verb->add_flag("--linear", o->is_linear, "Solve the cards linearly though SOL is nonlinear (106, 129, 400, ...)");
   verb->add_option("--vtu", o->vtu, "Write the displacements of every subcase to this file for ParaView");
   add_model_options(*verb, o->model);
   add_common_options(*verb, *o, kOutput | kJson, "Write displacements, reactions and forces to this HDF5 file");

@@ -94,6 +94,12 @@ std::vector<int> find_unused_grids(const Model& model, const records::Deck& deck
     for (const auto& group : e.groups) used.insert(group.grids.begin(), group.grids.end());
     for (const auto& dependent : e.um) used.insert(dependent.g);
   }
+  for (const auto& e : deck.rbe1) {
+    for (const auto& dof : e.independent) used.insert(dof.g);
+    for (const auto& dof : e.dependent) used.insert(dof.g);
+  }
+  for (const auto& e : deck.special.rspline)
+    for (const auto& point : e.points) used.insert(point.g);
   for (const auto& e : deck.rbar) used.insert({e.ga, e.gb});
   for (const auto& e : deck.rrod) used.insert({e.ga, e.gb});
   for (const auto& e : deck.mpc)

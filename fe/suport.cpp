@@ -95,6 +95,7 @@ void report_suport(const Model& model, const records::Deck& deck, Diagnostics& d
   for (const auto& item : found.items())
     if (item.severity == Severity::Error) diagnostics.add(item);
   diagnostics.throw_if_errors();
+  if (list.empty()) return;
   diagnostics.note("fe.suport", deck.locate(deck.suport.empty() ? records::CardLocation{} : deck.suport[0].at),
                    "SUPORT names " + list, "static holds these dofs; in modes and reduce they stay free");
 }
@@ -109,10 +110,15 @@ std::vector<int> choose_suport(const Model& model, const records::Deck& deck, In
     return choose_determinate_support(model, 0);
   }
   auto fdofs = find_suport(model, deck, diagnostics);
-  if (relief == InertiaRelief::Supported && fdofs.empty())
-    diagnostics.error("fe.missing-suport", deck.locate(deck.find_param("INREL")->at),
-                      "PARAM,INREL,-1 needs the reference dofs of SUPORT, the deck has none",
-                      "add SUPORT, or write PARAM,INREL,-2");
+  if (relief == InertiaRelief::Supported && fdofs.empty()) {
+    const auto* param = deck.find_param("INREL");  // SOL 2 goes without
+    const bool has_cards = !deck.suport.empty() || model.subcase().suport1 != 0;
+    diagnostics.error(
+        "fe.missing-suport", deck.locate(param ? param->at : records::CardLocation{}),
+        std::string(param ? "PARAM,INREL,-1" : "inertia relief of SOL 2") + " needs the reference dofs of SUPORT, " +
+            (has_cards ? "and all that the deck names are without stiffness" : "the deck has none"),
+        has_cards ? "name dofs with stiffness, or write PARAM,INREL,-2" : "add SUPORT, or write PARAM,INREL,-2");
+  }
   return fdofs;
 }
 

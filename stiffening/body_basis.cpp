@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "bough/formats/records/params.hpp"
 #include "bough/stiffening/reduce.hpp"
 
 namespace bough::stiffening {
@@ -133,9 +134,7 @@ MatrixXd calc_material_damping(const records::Deck& deck, const MatrixXd& Phi, c
     diagnostics.warning("reduce.no-ge", where,
                         "the deck has MAT2, MAT8 or MAT9: their GE is not read and counts as PARAM,G alone",
                         "use MAT1, or give the damping by ratios or a table");
-  double g = 0;
-  for (const auto& param : deck.params)
-    if (param.name == "G") g = std::strtod(param.value.c_str(), nullptr);
+  const double g = records::get_real_param(deck, "G", 0, diagnostics);
   // Zero moduli are not accepted by every element: a factor that adds nothing in 16 digits stands for it.
   const auto calc_factor = [&](double ge) { return std::max(g + ge, 1e-24); };
   records::Deck scaled = deck;

@@ -6,6 +6,7 @@
 #include "bough/fe/elements/curved_shell.hpp"
 #include "bough/fe/elements/shell_card.hpp"
 #include "bough/fe/shape/surface_shape.hpp"
+#include "bough/formats/records/params.hpp"
 
 namespace bough::fe {
 namespace {
@@ -55,9 +56,8 @@ std::optional<ReadyShell> prepare(Maker& maker, ShellSections& sections, const r
 }
 
 /// Normals at the nodes become the mean of all curved shells' where they agree within PARAM,SNORM degrees.
-void unite_normals(const Maker& maker, std::vector<ReadyShell>& shells) {
-  const auto* param = maker.deck().find_param("SNORM");
-  const double limit = param ? std::atof(param->value.c_str()) : 20.0;
+void unite_normals(Maker& maker, std::vector<ReadyShell>& shells) {
+  const double limit = records::get_real_param(maker.deck(), "SNORM", 20, maker.diagnostics());
   if (!(limit > 0)) return;
   std::unordered_map<int, Vector3d> sum;
   std::set<int> broken;

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <set>
 
+#include "bough/formats/records/params.hpp"
+
 namespace bough::fe {
 namespace {
 
@@ -106,9 +108,8 @@ std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& she
   return calc_material_angle(maker, shell, centre, shell.normal, shell.x[1] - shell.x[0]);
 }
 
-std::unordered_map<int, Vector3d> calc_surface_normals(const Maker& maker, const std::vector<ResolvedShell>& shells) {
-  const auto* param = maker.deck().find_param("SNORM");
-  const double limit = param ? std::atof(param->value.c_str()) : 20.0;
+std::unordered_map<int, Vector3d> calc_surface_normals(Maker& maker, const std::vector<ResolvedShell>& shells) {
+  const double limit = records::get_real_param(maker.deck(), "SNORM", 20, maker.diagnostics());
   std::unordered_map<int, Vector3d> sum;
   std::set<int> broken;
   if (!(limit > 0)) return sum;

@@ -32,6 +32,6 @@ std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& she
 
 /// Normals of the surface at every node where all shells agree within PARAM,SNORM degrees (default 20): the sum of the
 /// unit normals, each turned to the side of the first.
-std::unordered_map<int, Vector3d> calc_surface_normals(const Maker& maker, const std::vector<ResolvedShell>& shells);
+std::unordered_map<int, Vector3d> calc_surface_normals(Maker& maker, const std::vector<ResolvedShell>& shells);
 
 }  // namespace bough::fe

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "bough/formats/records/params.hpp"
+
 namespace bough::fe {
 
 namespace {
@@ -16,10 +18,9 @@ ShellSections::ShellSections(Maker& maker)
       mat1_(maker.deck().mat1),
       mat2_(maker.deck().mat2),
       mat8_(maker.deck().mat8) {
-  const auto* k6rot = maker.deck().find_param("K6ROT");
   const auto& t = maker.deck().temperatures;
   has_temperatures_ = !t.grids.empty() || !t.defaults.empty() || !t.bars.empty() || !t.plates.empty();
-  drilling_factor_ = 1e-6 * (k6rot ? std::atof(k6rot->value.c_str()) : 100.0);
+  drilling_factor_ = 1e-6 * records::get_real_param(maker.deck(), "K6ROT", 100, maker.diagnostics());
 }
 
 const ShellSection* ShellSections::find(int pid, const std::string& who, const records::CardLocation& at,

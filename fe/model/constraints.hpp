@@ -29,9 +29,11 @@ struct Elimination {
   std::vector<int> fdof_ldof;  ///< the l-dof of each f-dof, ascending
 };
 
-/// Substitutes chains of equations until every dependent dof is expressed in independent ones. Reports
-/// fe.dependent-twice (two equations for one dof) and fe.cyclic-constraints. The result has one row of independent
-/// terms per equation, in the equations' order; empty when an error was reported. O(terms of the result).
+/// Substitutes chains of equations until every dependent dof is expressed in independent ones; equations whose
+/// dependent dofs name each other are solved together (R_mm of Nastran). Reports fe.dependent-twice (two equations for
+/// one dof) and fe.cyclic-constraints (such a system is singular). The result has one row of independent terms per
+/// equation, in the equations' order; empty when an error was reported. O(terms of the result), and cubic in the
+/// number of equations that name each other.
 std::vector<ConstraintEquation> resolve_chains(int num_ldofs, std::vector<ConstraintEquation> equations,
                                                const std::function<std::string(int)>& name_dof,
                                                Diagnostics& diagnostics);

@@ -1,8 +1,6 @@
 #include "bough/fe/model/sets.hpp"
 
 #include <algorithm>
-#include <cctype>
-#include <cstdlib>
 
 namespace bough::fe {
 
@@ -45,26 +43,6 @@ std::vector<int> expand_set(int sid, const std::vector<records::SetUnion>& union
   }
   std::sort(result.begin(), result.end());
   return result;
-}
-
-double get_real_param(const records::Deck& deck, const std::string& name, double fallback, Diagnostics& diagnostics) {
-  const records::Param* param = deck.find_param(name);
-  if (!param) return fallback;
-  std::string text;
-  for (char c : param->value) {
-    if (c == 'D' || c == 'd') c = 'E';
-    // "2.59-3": an exponent without its letter.
-    if ((c == '+' || c == '-') && !text.empty() && text.back() != 'E' && text.back() != 'e') text += 'E';
-    if (!std::isspace(static_cast<unsigned char>(c))) text += c;
-  }
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0') {
-    diagnostics.error("fe.bad-param", deck.locate(param->at),
-                      "PARAM," + name + " is \"" + param->value + "\", expected a number", "correct the value");
-    return fallback;
-  }
-  return value;
 }
 
 }  // namespace bough::fe

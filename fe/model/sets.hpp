@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bough/formats/records/deck.hpp"
+#include "bough/formats/records/params.hpp"
 
 namespace bough::fe {
 
@@ -15,7 +16,6 @@ records::Subcase select_subcase(const records::Deck& deck, int id, Diagnostics& 
 std::vector<int> expand_set(int sid, const std::vector<records::SetUnion>& unions, const std::vector<int>& plain,
                             const std::string& what, const records::Deck& deck, Diagnostics& diagnostics);
 
-/// A PARAM as a real number in any Nastran spelling ("2.59-3", "1.D2"); `fallback` when absent. Reports fe.bad-param.
-double get_real_param(const records::Deck& deck, const std::string& name, double fallback, Diagnostics& diagnostics);
+using records::get_real_param;
 
 }  // namespace bough::fe

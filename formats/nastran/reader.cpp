@@ -3,6 +3,7 @@
 #include "bough/formats/nastran/detail/builder.hpp"
 #include "bough/formats/nastran/detail/control.hpp"
 #include "bough/formats/nastran/detail/executive.hpp"
+#include "bough/formats/nastran/detail/known_params.hpp"
 #include "bough/formats/nastran/detail/lines.hpp"
 #include "bough/formats/nastran/detail/packing.hpp"
 
@@ -15,6 +16,7 @@ records::Deck make_deck(const detail::Source& source, const ReadOptions& options
   detail::read_system_cells(source, deck);
   const auto first_line = detail::read_control(source, deck, diagnostics);
   detail::read_bulk(source, first_line, options, deck, diagnostics);
+  detail::report_params(deck, diagnostics);
   return deck;
 }
 

@@ -165,7 +165,7 @@ void parse_equal_plies(Card& card, Reading& r) {
 }
 
 /// IN and ISOP, as words or as numbers (Quick Reference Guide, PSOLID).
-void read_solid_scheme(const Card& card, Reading& r, records::Psolid& p) {
+void read_solid_scheme(Card& card, Reading& r, records::Psolid& p) {
   const std::string in = card.get_upper(3), isop = card.get_upper(5);
   if (in == "TWO" || in == "2")
     p.points = 2;

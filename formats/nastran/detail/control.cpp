@@ -1,8 +1,9 @@
 #include "bough/formats/nastran/detail/control.hpp"
 
 #include <algorithm>
-#include <array>
+#include <set>
 
+#include "bough/formats/nastran/detail/control_words.hpp"
 #include "bough/formats/nastran/detail/matrix_selection.hpp"
 #include "bough/formats/nastran/detail/text.hpp"
 
@@ -10,15 +11,6 @@ namespace bough::nastran::detail {
 namespace {
 
 using records::Subcase;
-
-/// Output requests and solver settings without influence on what Bough computes; Nastran reads the first four letters.
-constexpr std::array ignored_commands{
-    "ACCE", "ADAC", "AECO", "ANAL", "AUTO", "BCRE", "BOUT", "DATA", "DISP", "DSAP", "DSYM", "ECHO", "EDE",
-    "EKE",  "ELFO", "ELST", "ENTH", "EQUI", "ESE",  "EXTS", "FLUX", "FORC", "GPFO", "GPKE", "GPST", "GPRS",
-    "GROU", "HDOT", "HOUT", "INTE", "LINE", "MAXL", "MAXM", "MEFF", "MODA", "MODE", "MPCF", "MPRE", "NLOU",
-    "NLPR", "NLST", "NOUT", "OFRE", "OLOA", "OMOD", "OTIM", "OUTP", "OUTR", "PAGE", "POST", "PRES", "RCRO",
-    "RESV", "SACC", "SDIS", "SEAL", "SEDR", "SEEX", "SEFI", "SET",  "SEUP", "SETS", "SKIP", "SORT", "SPCF",
-    "STRA", "STRE", "STRF", "SURF", "SVEC", "SVEL", "THER", "VECT", "VELO", "VOLU", "WEIG"};
 
 /// Exact word, or an abbreviation of at least `shortest` letters.
 bool is_command(std::string_view word, std::string_view command, std::size_t shortest) {
@@ -110,7 +102,7 @@ class CaseControl {
     else if (is_command(c.word, "METHOD", 4)) {
       if (c.options != "FLUID") read_set(c, current().method);
     } else if (is_command(c.word, "STATSUB", 4)) {
-      if (c.options != "PRELOAD") read_set(c, current().statsub);
+      read_statsub(c);
     } else if (is_command(c.word, "SUPORT1", 4))
       read_set(c, current().suport1);
     else if (c.word == "NSM")
@@ -127,14 +119,33 @@ class CaseControl {
       read_param(c);
     else if (with_executive && is_command(c.word, "SOL", 3))
       deck_.sol = make_upper(c.value.substr(0, c.value.find_first_of(" ,")));
-    else if (!is_ignored(c.word))
-      note(c.word);
+    else if (!is_plain_command(c.word))
+      report_unused(c.word);
   }
 
-  static bool is_ignored(std::string_view word) {
-    if (word.substr(0, 2) == "XY" || word.substr(0, 4) == "PLOT") return true;
-    return std::any_of(ignored_commands.begin(), ignored_commands.end(),
-                       [&](std::string_view c) { return c.size() < 4 ? word == c : word.substr(0, 4) == c; });
+  void report_unused(const std::string& word) {
+    const auto nearest = find_nearest_command(word);
+    if (nearest.empty()) return note(word);
+    diagnostics_.warning("deck.unknown-case-control", deck_.locate(at_),
+                         word + " is no command of the case control that Nastran knows; it is not used",
+                         "did you mean " + nearest);
+  }
+
+  /// The subcase whose load a buckling subcase scales; in modes of any kind, and as (PRELOAD), the one that preloads
+  /// the structure. A preload is kept among what is not used, for those whose answer would need it.
+  void read_statsub(const Command& c) {
+    static const std::set<std::string> without{"",        "101", "1", "24",      "SESTATIC", "SESTATICS",
+                                               "STATICS", "105", "5", "SEBUCKL", "BUCKLING"};
+    const bool is_named = is_command(c.options, "PRELOAD", 1);
+    if (!is_named) read_set(c, current().statsub);
+    if (!is_named && without.count(deck_.sol) > 0) return;
+    const std::string name = is_named ? "STATSUB(PRELOAD)" : "STATSUB";
+    for (auto& other : deck_.unused)
+      if (other.name == name) {
+        ++other.count;
+        return;
+      }
+    deck_.unused.push_back({name, records::CardEffect::Stiffness, 1, at_});
   }
 
   void begin_subcase(const Command& c) {
@@ -207,8 +218,8 @@ class CaseControl {
   }
 
   void note(const std::string& word) {
-    if (ignored_.empty()) first_ignored_ = at_;
-    if (std::find(ignored_.begin(), ignored_.end(), word) == ignored_.end()) ignored_.push_back(word);
+    const bool is_new = std::none_of(ignored_.begin(), ignored_.end(), [&](const auto& i) { return i.first == word; });
+    if (is_new) ignored_.emplace_back(word, at_);
   }
 
   void finish() {
@@ -216,8 +227,10 @@ class CaseControl {
     choose_matrices(deck_, sets_, at_, diagnostics_);
     if (ignored_.empty()) return;
     std::string words;
-    for (const auto& word : ignored_) words += (words.empty() ? "" : ", ") + word;
-    diagnostics_.note("deck.case-control-ignored", deck_.locate(first_ignored_), "case control not used: " + words);
+    for (const auto& [word, at] : ignored_)
+      words += (words.empty() ? "" : ", ") + word + " (line " + std::to_string(at.line) + ")";
+    diagnostics_.note("deck.case-control-ignored", deck_.locate(ignored_.front().second),
+                      "case control not used: " + words, "nothing to do, unless one of them should matter");
   }
 
   const Source& source_;
@@ -225,8 +238,8 @@ class CaseControl {
   Diagnostics& diagnostics_;
   Subcase above_;
   bool in_subcase_ = false, in_plot_section_ = false, skipping_ = false;
-  records::CardLocation at_, first_ignored_;
-  std::vector<std::string> ignored_;
+  records::CardLocation at_;
+  std::vector<std::pair<std::string, records::CardLocation>> ignored_;
   NamedSets sets_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <cctype>
 #include <charconv>
-#include <cmath>
 
 namespace bough::nastran::detail {
 namespace {
@@ -47,38 +46,6 @@ std::optional<int> parse_int(std::string_view text) {
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || text.empty()) return std::nullopt;
-  return value;
-}
-
-std::optional<double> parse_real(std::string_view text) {
-  if (!text.empty() && text.front() == '+') {
-    text.remove_prefix(1);
-    if (!text.empty() && text.front() == '-') return std::nullopt;
-  }
-  if (text.empty()) return std::nullopt;
-  const char first = text.front() == '-' && text.size() > 1 ? text[1] : text.front();
-  if (!is_digit(first) && first != '.') return std::nullopt;  // from_chars would take "inf" and "nan"
-  double value = 0;
-  const char* const last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, value);
-  if (end == last) {
-    if (error == std::errc()) return value;
-    return std::nullopt;
-  }
-  // What stands before a letter D or a bare sign is the mantissa: write it the usual way and read again.
-  char buffer[64];
-  const std::size_t mantissa = static_cast<std::size_t>(end - text.data());
-  if (mantissa == 0 || text.size() + 2 > sizeof buffer) return std::nullopt;
-  const bool has_letter = *end == 'D' || *end == 'd';
-  if (!has_letter && *end != '+' && *end != '-') return std::nullopt;
-  for (std::size_t i = 0; i < mantissa; ++i)
-    if (text[i] == 'e' || text[i] == 'E') return std::nullopt;
-  text.copy(buffer, mantissa);
-  std::size_t n = mantissa;
-  buffer[n++] = 'e';
-  for (std::size_t i = mantissa + (has_letter ? 1 : 0); i < text.size(); ++i) buffer[n++] = text[i];
-  const auto again = std::from_chars(buffer, buffer + n, value);
-  if (again.ec != std::errc() || again.ptr != buffer + n) return std::nullopt;
   return value;
 }
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "bough/formats/records/params.hpp"
+
 namespace bough::nastran::detail {
 
 /// Without blanks, tabs and carriage returns at both ends.
@@ -16,9 +18,7 @@ std::string_view find_first_word(std::string_view text);
 
 /// An integer with an optional sign and nothing else; nothing if it is not one or does not fit an int.
 std::optional<int> parse_int(std::string_view text);
-/// A real: 1.0, .5, 1.0E-3, 1.0-3, 1.D2, and (as most decks need) an integer such as 7.
-/// Infinity, NaN and numbers beyond double are not reals.
-std::optional<double> parse_real(std::string_view text);
+using records::parse_real;
 /// Component list "126" as a mask with bit c-1 set for component c; "0" is mask 0.
 std::optional<unsigned> parse_components(std::string_view text);
 

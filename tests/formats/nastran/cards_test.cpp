@@ -374,11 +374,11 @@ TEST(Cards, EigenvalueMethods) {
 
 TEST(Cards, Parameters) {
   const auto deck =
-      read_clean("PARAM   COUPMASS1\nPARAM    AUTOSPC no\nparam,wtmass,.00259\nPARAM*  GRDPNT          7\n");
+      read_clean("PARAM   COUPMASS1\nPARAM    AUTOSPC no\nparam,wtmass,.00259\nPARAM*  EPZERO          7\n");
   EXPECT_EQ(deck.find_param("COUPMASS")->value, "1");
   EXPECT_EQ(deck.find_param("AUTOSPC")->value, "NO");
   EXPECT_EQ(deck.find_param("WTMASS")->value, ".00259");
-  EXPECT_EQ(deck.find_param("GRDPNT")->value, "7");
+  EXPECT_EQ(deck.find_param("EPZERO")->value, "7");
 }
 
 }  // namespace

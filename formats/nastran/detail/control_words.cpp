@@ -1,0 +1,51 @@
+#include "bough/formats/nastran/detail/control_words.hpp"
+
+#include <vector>
+
+#include "bough/base/diagnostic.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+constexpr std::string_view plain_commands =
+    "ACCE BOUT DISP ECHO ELFO ELST FORC GROU HOUT LINE MAXL MPCF NOUT OLOA OUTP PAGE POST PRES SACC SDIS SET SETS "
+    "SKIP SORT SPCF STRA STRE SURF SVEC SVEL VECT VELO VOLU";
+
+/// The other commands of the quick reference guides.
+constexpr std::string_view known_commands =
+    "A2GG ACFP ACOU ACPO ACTI ADAC ADAM ADAP ADJU AECO AERC AERO AESY AEUX ALOA ANAL APRE ASCA ASSI AUTO AUXC AUXM "
+    "AUXT AVLE AXIS B2PP BCHA BCMO BCON BCRE BCSE BFRI BGRE BGSE BLDO BOLT BSEQ BSQU BUCK CAMP CCOM CMET CMSE CMSF "
+    "COND COSM CRAC CSSC CYCF CYCS CZRE DACC DATA DATR DBSA DEAC DEFO DEMA DEPO DESF DESG DESM DESO DESS DESV DIVE "
+    "DLOA DMTR DRSP DSAP DSPR DSYM DTEM DVEL DYNR DYRL EBDS EDE EFLO EFOR EKE ELAR ELPF ELSD ELSU ENDS ENDT ENFO ENTH "
+    "EQUI ERP ESE EXPL EXTD EXTR EXTS FATI FBOD FLSF FLST FLUX FMET FORM FREQ FRFI FRFO FRFR GCRS GELD GPFO GPKE GPRS "
+    "GPSD GPST GUST GVEC HADA HARM HDOT HTFL IC INCL INIT INPO INTE INTK IRAN JINT JOIN K2PP K42G KOUN LAMI LINK LOAD "
+    "LSEQ M2PP MASS MATR MATV MAXT MAXU MCFR MEFF MODA MODC MODE MODP MODS MODT MONI MONV MPRE MTXP MXSP NCHI NLBU "
+    "NLCN NLHA NLIC NLLO NLOP NLPA NLPC NLRE NLST NONL NSMS OFRE OFRQ OMOD OPRE OSTN OTIM OTME OUTR P2G PACI PAMF "
+    "PANC PART PCHA PEAK PENE PFGR PFMO PFPA PLOT PLSL PREF PREL PROG RADB RAND RCPA RCRO RCSE REPC REPS RESI RESV "
+    "RGYR RIGI RMAX ROTO RSDA RSMA RSPE RSVC RVEL SDAM SDEN SEAL SECO SEDA SEDC SEDL SEDR SEDV SEEF SEEX SEFI SEKR "
+    "SELG SELO SELR SEMG SEMP SEMR SERE SETP SEUP SHEL SKIN SMET SPCG SPLI STAT STEP STOC STRF SUBM SUBS SUPE SYMC "
+    "SYMS TERM TFL THER TRIM TSTE TSTR UNGL USER VARC VATV VCCT VIBR VUGR WEAK WEIG XYCO";
+
+bool is_among(std::string_view commands, std::string_view word) {
+  word = word.substr(0, 4);
+  while (!commands.empty()) {
+    const auto end = std::min(commands.find(' '), commands.size());
+    if (commands.substr(0, end) == word) return true;
+    commands.remove_prefix(std::min(end + 1, commands.size()));
+  }
+  return false;
+}
+
+}  // namespace
+
+bool is_plain_command(std::string_view word) {
+  return word.substr(0, 2) == "XY" || word.substr(0, 4) == "PLOT" || is_among(plain_commands, word);
+}
+
+std::string find_nearest_command(std::string_view word) {
+  static const std::vector<std::string> used{"SPC",     "MPC",         "LOAD", "METHOD", "STATSUB", "SUBCASE",
+                                             "SUPORT1", "TEMPERATURE", "NSM",  "K2GG",   "M2GG",    "B2GG"};
+  return is_among(known_commands, word) ? std::string{} : find_nearest(word, used);
+}
+
+}  // namespace bough::nastran::detail

@@ -1,0 +1,16 @@
+#pragma once
+/// \file Commands of the case control. Words are upper case; Nastran reads their first four letters.
+#include <string>
+#include <string_view>
+
+namespace bough::nastran::detail {
+
+/// Titles of pages, sets, plots and requests for plain results: what they ask for is printed anyway, or means nothing
+/// here.
+bool is_plain_command(std::string_view word);
+
+/// The command that Bough uses and that was meant, for a word that no Nastran knows; empty for known ones and when none
+/// is near.
+std::string find_nearest_command(std::string_view word);
+
+}  // namespace bough::nastran::detail
