@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "bough/fe/blas.hpp"
 
@@ -55,7 +57,8 @@ BlockLanczos::BlockLanczos(const BlockLanczosProblem& problem) : problem_(proble
   V_.resize(n, room);
   T_ = MatrixXd::Zero(room, room);
   // Through A⁻¹B once: a start outside the range of A⁻¹B stays in the vectors where B is singular.
-  next_ = problem.solve(problem.multiply_mass(problem.start));
+  next_ = problem.solve(problem.multiply_operator ? problem.multiply_operator(problem.start)
+                                                  : problem.multiply_mass(problem.start));
   ++num_solves_;
   MatrixXd C, R;
   orthonormalize(next_, C, R);
@@ -108,7 +111,7 @@ void BlockLanczos::append(const MatrixXd& W) {
 
 void BlockLanczos::expand() {
   append(next_);
-  MatrixXd W = problem_.solve(B_next_);
+  MatrixXd W = problem_.solve(problem_.multiply_operator ? problem_.multiply_operator(next_) : B_next_);
   ++num_solves_;
   MatrixXd C;
   orthonormalize(W, C, R_);
@@ -123,14 +126,20 @@ void BlockLanczos::expand() {
 
 int BlockLanczos::calc_ritz() {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(T_.topLeftCorner(size_, size_));
-  theta_ = ritz.eigenvalues().reverse();
-  S_ = ritz.eigenvectors().rowwise().reverse();
+  const VectorXd& values = ritz.eigenvalues();
+  std::vector<int> order(static_cast<std::size_t>(size_));
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&](int i) { return problem_.positive_only ? values(i) : std::abs(values(i)); };
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) > key(b); });
+  theta_ = values(order);
+  S_ = ritz.eigenvectors()(Eigen::all, order);
   const MatrixXd residual = R_ * S_.bottomRows(last_width_);
   const int num_strict = problem_.num_wanted - problem_.num_guard;
   int converged = 0;
-  for (; converged < size_ && theta_(converged) > 0; ++converged) {
-    const double theta = theta_(converged);
-    const bool is_rough = converged >= num_strict && theta < (1 - 1e-3) * theta_(num_strict - 1);
+  for (; converged < size_; ++converged) {
+    const double theta = problem_.positive_only ? theta_(converged) : std::abs(theta_(converged));
+    if (!(theta > 0)) break;
+    const bool is_rough = converged >= num_strict && theta < (1 - 1e-3) * std::abs(theta_(num_strict - 1));
     if (next_.cols() > 0 && residual.col(converged).norm() > (is_rough ? 1e-4 : problem_.tolerance) * theta) break;
   }
   return converged;

@@ -14,21 +14,24 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 struct BlockLanczosProblem {
-  /// Y = A⁻¹X, n x b to n x b; A symmetric, positive definite outside the span of `deflate`.
+  /// Y = A⁻¹X, n x b to n x b; A symmetric.
   std::function<MatrixXd(const Eigen::Ref<const MatrixXd>&)> solve;
   std::function<MatrixXd(const Eigen::Ref<const MatrixXd>&)> multiply_mass;  ///< B X, B positive semi-definite
+  /// C X where the operator is A⁻¹C, C symmetric and B = A (load factors); without it the operator is A⁻¹B.
+  std::function<MatrixXd(const Eigen::Ref<const MatrixXd>&)> multiply_operator;
   MatrixXd start;                                                            ///< n x b: fixes the block's width
   MatrixXd deflate;  ///< n x k, B-orthonormal eigenvectors that are known already
   int num_wanted = 1;
   int num_guard = 0;     ///< of num_wanted: the last ones need be rough only, unless their θ is close to the others
   int max_subspace = 0;  ///< vectors kept before a restart, at least num_wanted + 2 b; 0: 2 num_wanted + 8 b
   double tolerance = 1e-12;
+  bool positive_only = false;  ///< θ > 0 from the largest down; else by magnitude
   int max_restarts = 100;
   std::function<void(int converged, int wanted)> progress;
 };
 
 struct BlockLanczosResult {
-  VectorXd theta;        ///< largest eigenvalues of A⁻¹B, descending: 1/λ
+  VectorXd theta;        ///< largest eigenvalues of A⁻¹B, descending by magnitude: 1/λ
   MatrixXd X;            ///< n x theta.size(), B-orthonormal
   int num_solves = 0;    ///< calls of `solve`
   bool is_done = false;  ///< all wanted ones converged, or the whole space was spanned

@@ -55,16 +55,6 @@ fe::PetscVec make_vector(Mat A, const Eigen::Ref<const VectorXd>& values) {
   return v;
 }
 
-/// A + factor B, for factorization.
-fe::PetscMat add(Mat A, double factor, Mat B) {
-  fe::PetscMat C;
-  check_petsc(MatDuplicate(A, MAT_COPY_VALUES, C.out()));
-  check_petsc(MatAXPY(C.get(), factor, B, DIFFERENT_NONZERO_PATTERN));
-  check_petsc(MatSetOption(C.get(), MAT_SYMMETRIC, PETSC_TRUE));
-  fe::copy_row_groups(A, C.get());
-  return C;
-}
-
 /// An option of PETSc while it lives.
 class MumpsOption {
  public:
@@ -92,6 +82,15 @@ PetscErrorCode report_progress(EPS, PetscInt, PetscInt converged, PetscScalar*, 
 }
 
 }  // namespace
+
+fe::PetscMat add(Mat A, double factor, Mat B) {
+  fe::PetscMat C;
+  check_petsc(MatDuplicate(A, MAT_COPY_VALUES, C.out()));
+  check_petsc(MatAXPY(C.get(), factor, B, DIFFERENT_NONZERO_PATTERN));
+  check_petsc(MatSetOption(C.get(), MAT_SYMMETRIC, PETSC_TRUE));
+  fe::copy_row_groups(A, C.get());
+  return C;
+}
 
 void initialize_slepc() {
   fe::initialize_petsc();
@@ -146,7 +145,7 @@ Mat get_factor(EPS eps) {
 
 /// A definite factor of the matrix that is factored; empty where it is not definite, or there are several processes.
 fe::PetscMat make_definite_factor(const KrylovProblem& problem) {
-  if (problem.spectrum == Spectrum::LargestMagnitude) return fe::factor_definite(problem.B);
+  if (problem.spectrum != Spectrum::NearShift) return fe::factor_definite(problem.B);
   if (problem.shift == 0) return fe::factor_definite(problem.A);
   return fe::factor_definite(add(problem.A, -problem.shift, problem.B).get());
 }
@@ -170,7 +169,8 @@ SlepcEps set_up(const KrylovProblem& problem, Mat factor, int wanted, int subspa
     check_petsc(EPSSetPurify(eps.get(), PETSC_FALSE));  // done for all vectors at once
   } else {
     check_petsc(STSetType(st, STSHIFT));
-    check_petsc(EPSSetWhichEigenpairs(eps.get(), EPS_LARGEST_MAGNITUDE));
+    const bool is_signed = problem.spectrum == Spectrum::LargestPositive;
+    check_petsc(EPSSetWhichEigenpairs(eps.get(), is_signed ? EPS_LARGEST_REAL : EPS_LARGEST_MAGNITUDE));
   }
   check_petsc(STGetKSP(st, &ksp));
   if (factor)
@@ -208,7 +208,8 @@ void purify(const KrylovProblem& problem, Mat factor, KrylovResult& result) {
   }
 }
 
-KrylovResult solve_one_vector(const KrylovProblem& problem, Mat factor, int wanted, int room) {
+/// Nothing when SLEPc gives up: a subspace beyond the rank of B, where its inner product is roundoff.
+std::optional<KrylovResult> solve_one_vector(const KrylovProblem& problem, Mat factor, int wanted, int room) {
   // 2.6 vectors a mode: the lowest modes of a plate are there before the first restart.
   const int subspace = std::min(std::max(13 * wanted / 5, wanted + 20), std::max(room, 1));
   KrylovResult result;
@@ -219,7 +220,7 @@ KrylovResult solve_one_vector(const KrylovProblem& problem, Mat factor, int want
   }
   Watch watch{problem.progress, wanted};
   if (watch.progress) check_petsc(EPSMonitorSet(eps.get(), report_progress, &watch, nullptr));
-  check_petsc(EPSSolve(eps.get()));
+  if (EPSSolve(eps.get()) != 0) return std::nullopt;
 
   PetscInt converged = 0, n = 0;
   check_petsc(MatGetSize(problem.A, &n, nullptr));
@@ -243,9 +244,13 @@ constexpr int kBlockSize = 5000;
 
 /// Nothing when the blocks did not converge.
 std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, Mat factor, int wanted) {
+  const bool is_near = problem.spectrum == Spectrum::NearShift;
   BlockLanczosProblem blocks;
   blocks.solve = [&](const Eigen::Ref<const MatrixXd>& X) { return fe::solve_factored(factor, X); };
   blocks.multiply_mass = [&](const Eigen::Ref<const MatrixXd>& X) { return fe::multiply(problem.B, X); };
+  if (!is_near)
+    blocks.multiply_operator = [&](const Eigen::Ref<const MatrixXd>& X) { return fe::multiply(problem.A, X); };
+  blocks.positive_only = problem.spectrum == Spectrum::LargestPositive;
   blocks.start = make_start(problem, wanted > 100 ? 8 : 4);
   blocks.deflate = problem.deflate;
   blocks.num_wanted = wanted;
@@ -256,12 +261,16 @@ std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, Mat facto
   BlockLanczosResult found = solve_block_lanczos(blocks);
   if (!found.is_done) return std::nullopt;
   // θ beyond the rank of B are roundoff.
-  const auto size = (found.theta.array() > 1e-15 * found.theta.maxCoeff()).count();
   KrylovResult result;
-  result.values = found.theta.head(size).cwiseInverse().array() + problem.shift;
-  result.vectors = std::move(found.X);
-  if (size < result.vectors.cols()) result.vectors = result.vectors.leftCols(size).eval();
-  purify(problem, factor, result);
+  const double largest = found.theta.size() > 0 ? found.theta.cwiseAbs().maxCoeff() : 0;
+  std::vector<int> kept;
+  for (int i = 0; i < found.theta.size(); ++i)
+    if (std::abs(found.theta(i)) > 1e-15 * largest && (!blocks.positive_only || found.theta(i) > 0)) kept.push_back(i);
+  const VectorXd theta = found.theta(kept);
+  result.values = is_near ? VectorXd(theta.cwiseInverse().array() + problem.shift) : theta;
+  result.vectors = kept.size() == static_cast<std::size_t>(found.theta.size()) ? std::move(found.X)
+                                                                               : MatrixXd(found.X(Eigen::all, kept));
+  if (is_near) purify(problem, factor, result);
   return result;
 }
 
@@ -285,33 +294,61 @@ KrylovResult solve_krylov(const KrylovProblem& problem) {
   }
   const bool by_blocks = problem.method == KrylovMethod::Blocks ||
                          (problem.method == KrylovMethod::Fastest && n >= kBlockSize && 4 * wanted < room);
-  if (by_blocks && factor && is_alone && problem.spectrum == Spectrum::NearShift)
+  const bool prefers_blocks = by_blocks && factor && is_alone && problem.spectrum == Spectrum::NearShift;
+  if (prefers_blocks)
     if (auto result = solve_blocks(problem, factor, wanted)) return std::move(*result);
-  return solve_one_vector(problem, factor, wanted, room);
+  if (problem.method != KrylovMethod::Blocks || prefers_blocks)
+    if (auto result = solve_one_vector(problem, factor, wanted, room)) return std::move(*result);
+  if (!prefers_blocks) {
+    std::optional<fe::SymmetricFactor> other;  // not definite, or on several processes
+    if (!factor) {
+      const bool is_near = problem.spectrum == Spectrum::NearShift;
+      other.emplace(is_near ? add(problem.A, -problem.shift, problem.B).get() : problem.B, false,
+                    fe::FactorMethod::Pivoting);
+      if (other->is_singular()) {
+        KrylovResult result;
+        result.is_singular = true;
+        return result;
+      }
+      factor = other->get();
+    }
+    if (auto result = solve_blocks(problem, factor, wanted)) return std::move(*result);
+  }
+  throw ComputationError("modal.no-convergence", {},
+                         "the eigenvalue solver found no " + std::to_string(wanted) + " modes: it did not converge",
+                         "ask for fewer modes; look for parts that nothing holds, and for very soft beside very stiff "
+                         "ones");
 }
 
 int count_negative(Mat A, double factor, Mat B) {
   initialize_slepc();
   const fe::PetscMat C = add(A, factor, B);
-  fe::PetscMat F;
-  check_petsc(MatGetFactor(C.get(), MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, F.out()));
-  // The inertia leaves out the root front when ScaLAPACK factors it: keep it sequential.
-  check_petsc(MatMumpsSetIcntl(F.get(), 13, 1));
-  check_petsc(MatMumpsSetIcntl(F.get(), 14, 60));
-  check_petsc(MatMumpsSetIcntl(F.get(), 31, 1));  // only the signs of the pivots are wanted: the factor is not kept
   // Approximate minimum fill: half the time of MUMPS' own choice on plates. PETSc 3.18 loses this one unless it is an
   // option.
   const MumpsOption ordering("-mat_mumps_icntl_7", "2");
   MatFactorInfo info;
   check_petsc(MatFactorInfoInitialize(&info));
-  check_petsc(MatCholeskyFactorSymbolic(F.get(), C.get(), nullptr, &info));
-  check_petsc(MatCholeskyFactorNumeric(F.get(), C.get(), &info));
-  MatFactorError error = MAT_FACTOR_NOERROR;
-  check_petsc(MatFactorGetError(F.get(), &error));
-  if (error != MAT_FACTOR_NOERROR) return -1;
-  PetscInt negative = 0;
-  check_petsc(MatGetInertia(F.get(), &negative, nullptr, nullptr));
-  return static_cast<int>(negative);
+  for (PetscInt extra_percent : {60, 200, 1000}) {
+    fe::PetscMat F;
+    check_petsc(MatGetFactor(C.get(), MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, F.out()));
+    // The inertia leaves out the root front when ScaLAPACK factors it: keep it sequential.
+    check_petsc(MatMumpsSetIcntl(F.get(), 13, 1));
+    check_petsc(MatMumpsSetIcntl(F.get(), 14, extra_percent));
+    check_petsc(MatMumpsSetIcntl(F.get(), 31, 1));  // only the signs of the pivots are wanted: the factor is not kept
+    check_petsc(MatCholeskyFactorSymbolic(F.get(), C.get(), nullptr, &info));
+    check_petsc(MatCholeskyFactorNumeric(F.get(), C.get(), &info));
+    MatFactorError error = MAT_FACTOR_NOERROR;
+    PetscInt status = 0, detail = 0, negative = 0;
+    check_petsc(MatFactorGetError(F.get(), &error));
+    check_petsc(MatMumpsGetInfog(F.get(), 1, &status));
+    check_petsc(MatMumpsGetInfog(F.get(), 2, &detail));
+    const auto state = fe::judge_factorization(status, detail);
+    if (state == fe::FactorState::NeedsWorkspace) continue;
+    if (state == fe::FactorState::Singular || error != MAT_FACTOR_NOERROR) return -1;
+    check_petsc(MatGetInertia(F.get(), &negative, nullptr, nullptr));
+    return static_cast<int>(negative);
+  }
+  return -1;
 }
 
 }  // namespace bough::modal::detail

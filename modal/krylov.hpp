@@ -18,7 +18,8 @@ void initialize_slepc();
 
 enum class Spectrum {
   NearShift,        ///< A x = λ B x nearest `shift` by shift-invert; A - shift B is factored
-  LargestMagnitude  ///< A x = θ B x of largest |θ|; B, positive definite, is factored
+  LargestMagnitude,  ///< A x = θ B x of largest |θ|; B, positive definite, is factored
+  LargestPositive    ///< the same, θ > 0 only
 };
 
 enum class KrylovMethod {
@@ -50,8 +51,12 @@ struct KrylovResult {
 };
 
 /// Krylov-Schur with a B inner product (Stewart, SIAM J. Matrix Anal. Appl. 23 (2001) 601; SLEPc) or Lanczos by blocks
-/// (block_lanczos.hpp), purified for a semi-definite B.
+/// (block_lanczos.hpp), purified for a semi-definite B. Where SLEPc gives up (a B of lower rank than its subspace) the
+/// blocks take over. Throws ComputationError("modal.no-convergence").
 KrylovResult solve_krylov(const KrylovProblem& problem);
+
+/// A + factor B, for factorization.
+fe::PetscMat add(Mat A, double factor, Mat B);
 
 /// Negative eigenvalues of A + factor B by an LDLᵀ factorization (Sylvester): for a positive semi-definite B and
 /// factor = -μ the number of eigenvalues of A x = λ B x below μ. -1 when the factorization met a zero pivot.

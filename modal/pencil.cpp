@@ -36,6 +36,52 @@ MatrixXd calc_range(const MatrixXd& A, double threshold, bool above, VectorXd* v
   return solver.eigenvectors().middleCols(first, count);
 }
 
+/// The combinations of Y (n x s) whose forces K Y c are roundoff in every row, 1e-9 of the sum of their terms: a stiff
+/// part that a soft one holds moves with next to none of its own energy, but the rows of the soft one see a force.
+MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y) {
+  PetscInt first = 0, last = 0, num = 0;
+  fe::check_petsc(MatGetOwnershipRange(pencil.K.get(), &first, &last));
+  const PetscInt* columns = nullptr;
+  const PetscScalar* values = nullptr;
+  MatrixXd G = MatrixXd::Zero(Y.cols(), Y.cols());
+  Eigen::RowVectorXd force(Y.cols()), terms(Y.cols());
+  for (PetscInt row = first; row < last; ++row) {
+    fe::check_petsc(MatGetRow(pencil.K.get(), row, &num, &columns, &values));
+    force.setZero(), terms.setZero();
+    for (PetscInt k = 0; k < num; ++k)
+      for (Eigen::Index c = 0; c < Y.cols(); ++c) {
+        const double term = values[k] * Y(columns[k], c);
+        force(c) += term;
+        terms(c) += std::abs(term);
+      }
+    fe::check_petsc(MatRestoreRow(pencil.K.get(), row, &num, &columns, &values));
+    if (terms.maxCoeff() > 0) force /= terms.maxCoeff();
+    G += force.transpose() * force;
+  }
+  fe::sum_over_ranks(G);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(G);
+  return solver.eigenvectors().leftCols((solver.eigenvalues().array() < 1e-18).count());
+}
+
+/// Unit vectors of the dofs with mass and nothing at all that stiffens them.
+MatrixXd find_loose(const Pencil& pencil) {
+  VectorXd loose = VectorXd::Zero(pencil.size());
+  PetscInt first = 0, last = 0, num = 0;
+  fe::check_petsc(MatGetOwnershipRange(pencil.K.get(), &first, &last));
+  const PetscScalar* values = nullptr;
+  for (PetscInt row = first; row < last; ++row) {
+    if (pencil.K_diagonal(row) != 0 || !(pencil.M_diagonal(row) > 0)) continue;
+    fe::check_petsc(MatGetRow(pencil.K.get(), row, &num, nullptr, &values));
+    loose(row) = std::all_of(values, values + num, [](double v) { return v == 0; });
+    fe::check_petsc(MatRestoreRow(pencil.K.get(), row, &num, nullptr, &values));
+  }
+  fe::sum_over_ranks(loose);
+  MatrixXd X = MatrixXd::Zero(pencil.size(), static_cast<Eigen::Index>(loose.sum()));
+  for (int f = 0, c = 0; f < pencil.size(); ++f)
+    if (loose(f) > 0) X(f, c++) = 1;
+  return X;
+}
+
 Vector3d calc_mean_position(const fe::Model& model) {
   Vector3d sum = Vector3d::Zero();
   int count = 0;
@@ -91,7 +137,10 @@ double Pencil::calc_relative_energy(const VectorXd& x, double energy) const {
   return scale > 0 ? std::abs(energy) / scale : 0;
 }
 
-RigidMotions find_rigid_motions(const Pencil& pencil) {
+namespace {
+
+/// Of the motions of the whole.
+RigidMotions find_global_motions(const Pencil& pencil) {
   const auto& model = pencil.model;
   const auto properties = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
   const Vector3d centre = properties.mass > 0 ? properties.cg : calc_mean_position(model);
@@ -121,6 +170,8 @@ RigidMotions find_rigid_motions(const Pencil& pencil) {
     if (std::abs(energy(i)) < 1e-13) strainless.push_back(i);
   if (strainless.empty()) return result;
   Y = Y(Eigen::all, strainless).eval();
+  Y = (Y * find_forceless(pencil, Y)).eval();
+  if (Y.cols() == 0) return result;
 
   VectorXd mass;
   for (int pass = 0; pass < 2; ++pass) {
@@ -152,6 +203,23 @@ RigidMotions find_rigid_motions(const Pencil& pencil) {
     const Eigen::ColPivHouseholderQR<MatrixXd> qr(result.massless.transpose());
     for (Eigen::Index i = 0; i < num_massless; ++i)
       result.held.push_back(static_cast<int>(qr.colsPermutation().indices()(i)));
+  }
+  return result;
+}
+
+}  // namespace
+
+RigidMotions find_rigid_motions(const Pencil& pencil) {
+  auto result = find_global_motions(pencil);
+  const MatrixXd loose = find_loose(pencil);
+  for (Eigen::Index c = 0; c < loose.cols(); ++c) {
+    VectorXd x = loose.col(c);
+    const double before = x.dot(pencil.calc_M_times(x).col(0));
+    for (int pass = 0; pass < 2; ++pass) x -= result.modes * (result.modes.transpose() * pencil.calc_M_times(x)).eval();
+    const double after = x.dot(pencil.calc_M_times(x).col(0));
+    if (!(after > 1e-10 * before)) continue;
+    result.modes.conservativeResize(Eigen::NoChange, result.modes.cols() + 1);
+    result.modes.rightCols(1) = x / std::sqrt(after);
   }
   return result;
 }

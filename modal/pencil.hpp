@@ -27,13 +27,14 @@ struct Pencil {
 
 /// The rigid motions of the model that its constraints and springs leave free.
 struct RigidMotions {
-  MatrixXd modes;         ///< num_fdofs x k, orthonormal under M, in order: translations of the cg, rotations
+  MatrixXd modes;         ///< num_fdofs x k, orthonormal under M, in order: translations of the cg, rotations, loose dofs
   MatrixXd massless;      ///< num_fdofs x l: no strain and no mass; K - σM is singular along them for every σ
   std::vector<int> held;  ///< l f-dofs whose holding removes the massless motions and changes nothing else
 };
 
-/// Combinations c of Φ_R (about the cg) with (Φ_R c)ᵀ K (Φ_R c) zero in roundoff on the f-set. A motion that a support
-/// prevents shows as strain where it was cut off.
+/// Combinations c of Φ_R (about the cg) with (Φ_R c)ᵀ K (Φ_R c) and every row of K Φ_R c zero in roundoff on the f-set,
+/// and the dofs with mass that nothing stiffens at all. A motion that a support prevents shows as strain where it was
+/// cut off.
 RigidMotions find_rigid_motions(const Pencil& pencil);
 
 /// An estimate from above of the lowest eigenvalue with strain: Rayleigh-Ritz on the polynomials of degree 0..2 (the

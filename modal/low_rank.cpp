@@ -1,0 +1,91 @@
+#include "bough/modal/low_rank.hpp"
+
+#include <cmath>
+#include <vector>
+
+namespace bough::modal::detail {
+namespace {
+
+using fe::check_petsc;
+
+struct Entry {
+  int row;
+  double value;
+};
+using Column = std::vector<Entry>;
+
+/// Row i of M on every rank: its column, M being symmetric.
+Column get_column(Mat M, int i) {
+  PetscInt first = 0, last = 0, num = 0;
+  check_petsc(MatGetOwnershipRange(M, &first, &last));
+  Column column;
+  if (i >= first && i < last) {
+    const PetscInt* rows = nullptr;
+    const PetscScalar* values = nullptr;
+    check_petsc(MatGetRow(M, i, &num, &rows, &values));
+    for (PetscInt k = 0; k < num; ++k)
+      if (values[k] != 0) column.push_back({rows[k], values[k]});
+    check_petsc(MatRestoreRow(M, i, &num, &rows, &values));
+  }
+  if (fe::initialize_petsc().size == 1) return column;
+  const PetscInt* starts = nullptr;
+  check_petsc(MatGetOwnershipRanges(M, &starts));
+  int owner = 0;
+  while (i >= starts[owner + 1]) ++owner;
+  int size = static_cast<int>(column.size());
+  MPI_Bcast(&size, 1, MPI_INT, owner, PETSC_COMM_WORLD);
+  column.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(column.data(), size * static_cast<int>(sizeof(Entry)), MPI_BYTE, owner, PETSC_COMM_WORLD);
+  return column;
+}
+
+}  // namespace
+
+std::optional<Eigen::SparseMatrix<double>> factor_low_rank(Mat M, const Eigen::VectorXd& diagonal, int max_rank) {
+  const auto n = static_cast<int>(diagonal.size());
+  Eigen::VectorXd root(n), left(n), column = Eigen::VectorXd::Zero(n);
+  for (int i = 0; i < n; ++i) {
+    if (diagonal(i) < 0) return std::nullopt;
+    root(i) = std::sqrt(diagonal(i));
+    left(i) = diagonal(i) > 0 ? 1 : 0;
+  }
+  std::vector<Column> factor, of_row(static_cast<std::size_t>(n));  // by column, and by row: column, value
+  for (double threshold = 0.3; threshold > 1e-12; threshold *= 0.1)
+    for (int i = 0; i < n; ++i) {
+      if (!(left(i) > threshold)) continue;
+      if (static_cast<int>(factor.size()) == max_rank) return std::nullopt;
+      std::vector<int> touched;
+      const auto add = [&](int row, double value) {
+        if (column(row) == 0) touched.push_back(row);
+        column(row) += value;
+      };
+      for (const auto& [row, value] : get_column(M, i))
+        if (diagonal(row) > 0)
+          add(row, value / (root(row) * root(i)));
+        else
+          return std::nullopt;
+      for (const auto& [k, value] : of_row[static_cast<std::size_t>(i)])
+        for (const auto& entry : factor[static_cast<std::size_t>(k)]) add(entry.row, -value * entry.value);
+      const double pivot = std::sqrt(left(i));
+      const auto k = static_cast<int>(factor.size());
+      factor.push_back({{i, pivot}});
+      left(i) = 0;
+      for (const int row : touched) {
+        const double value = column(row) / pivot;
+        column(row) = 0;
+        if (left(row) <= 0 || std::abs(value) < 1e-17) continue;
+        factor.back().push_back({row, value});
+        of_row[static_cast<std::size_t>(row)].push_back({k, value});
+        left(row) -= value * value;
+        if (left(row) < -1e-8) return std::nullopt;
+      }
+    }
+  Eigen::SparseMatrix<double> C(n, static_cast<int>(factor.size()));
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t k = 0; k < factor.size(); ++k)
+    for (const auto& [row, value] : factor[k]) entries.emplace_back(row, static_cast<int>(k), root(row) * value);
+  C.setFromTriplets(entries.begin(), entries.end());
+  return C;
+}
+
+}  // namespace bough::modal::detail

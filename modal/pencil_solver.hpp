@@ -1,0 +1,50 @@
+#pragma once
+/// \file Roots of K x = λ M x from the lowest up: a mass matrix of low rank solved whole, any other by Krylov.
+#include <optional>
+
+#include "bough/fe/factor.hpp"
+#include "bough/modal/krylov.hpp"
+#include "bough/modal/low_rank.hpp"
+#include "bough/modal/roots.hpp"
+
+namespace bough::modal::detail {
+
+struct PencilProblem {
+  Mat K = nullptr, M = nullptr;
+  VectorXd M_diagonal;  ///< replicated
+  MatrixXd rigid;       ///< n x k, M-orthonormal motions without strain, known; kept out
+  const fe::SymmetricFactor* factor = nullptr;  ///< of K, where the caller has it
+  double tolerance = 1e-12;
+  KrylovMethod method = KrylovMethod::Fastest;
+  std::function<void(int converged, int wanted)> progress;
+};
+
+class PencilSolver {
+ public:
+  /// `request`: as many roots as the caller may ask for at first. Where M has a rank not much above it, the rank is
+  /// found (factor_low_rank).
+  PencilSolver(const PencilProblem& problem, int request);
+
+  /// No more roots than this exist beside the rigid motions; exact where the rank of M is known.
+  int num_available() const { return num_available_; }
+
+  /// Adds the next `number` roots above those in `roots`, the last `num_guard` of them rough; all that exist where
+  /// there are fewer. K + shift M is factored. False where that is singular, or with `definite_only` not definite.
+  ///
+  /// With M = C Cᵀ of low rank the roots are those of CᵀA⁻¹C y = θ y, A = K + shift M, x = A⁻¹C y / θ, λ = 1/θ - shift:
+  /// as many as C has columns, and every x is in the range of A⁻¹M. Else Krylov (solve_krylov).
+  bool solve(double shift, int number, int num_guard, bool definite_only, Roots& roots);
+
+ private:
+  bool solve_whole(double shift, int number, bool definite_only, Roots& roots);
+
+  PencilProblem problem_;
+  std::optional<Eigen::SparseMatrix<double>> C_;
+  int num_available_ = 0;
+  int round_ = 0;
+};
+
+/// Roots of K x = λ M x below mu by the inertia of K - μM, moved a little where a pivot is zero; -1 where it stays so.
+int count_roots_below(Mat K, Mat M, double mu);
+
+}  // namespace bough::modal::detail

@@ -1,0 +1,99 @@
+#include "bough/modal/roots.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace bough::modal::detail {
+
+MatrixXd join(const MatrixXd& A, const MatrixXd& B) {
+  MatrixXd C(A.rows(), A.cols() + B.cols());
+  C << A, B;
+  return C;
+}
+
+void Roots::keep(int count) {
+  value.conservativeResize(count);
+  X.conservativeResize(Eigen::NoChange, count);
+}
+
+void Roots::add(const VectorXd& values, const MatrixXd& vectors, bool by_magnitude) {
+  VectorXd all(value.size() + values.size());
+  all << value, values;
+  const MatrixXd both = join(X, vectors);
+  const auto key = [&](int i) { return by_magnitude ? std::abs(all(i)) : all(i); };
+  std::vector<int> order(static_cast<std::size_t>(all.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
+  value = all(order);
+  X = both(Eigen::all, order);
+}
+
+namespace {
+
+double get_key(const RootSearch& search, const Roots& roots, int i) {
+  if (i < 0) return search.lowest;
+  return search.by_magnitude ? std::abs(roots.value(i)) : roots.value(i);
+}
+
+/// First position at or after `wanted` where the list has a gap: what lies below it can be counted. -1: none yet.
+int find_cut(const RootSearch& search, const Roots& roots) {
+  for (int c = std::max(search.wanted, 0); c < roots.size(); ++c) {
+    const double tolerance = c > 0 ? search.closeness(roots, c - 1) : 1e-8, below = get_key(search, roots, c - 1);
+    if (get_key(search, roots, c) - below > std::max(1e-6, 2 * tolerance) * std::abs(below + search.shift)) return c;
+  }
+  return roots.size() >= search.num_available ? roots.size() : -1;
+}
+
+/// Just above the last one, since roundoff differs between this factor and the solver's; a count that falls short of
+/// what was found is made again higher in the gap.
+int count_below_gap(const RootSearch& search, const Roots& roots, int cut) {
+  const double top = get_key(search, roots, cut - 1), length = std::abs(top + search.shift);
+  const double half = cut < roots.size() ? 0.5 * (get_key(search, roots, cut) - top) : 0.5 * length;
+  double step = length * std::clamp(cut > 0 ? 100 * search.roundoff(roots, cut - 1) : 0.0, 1e-3, 0.5);
+  int count = -1;
+  for (int attempt = 0; attempt < 3 && count < cut; ++attempt, step *= 20) {
+    count = std::max(count, search.count(top + std::min(step, half)));
+    if (step >= half) break;
+  }
+  return count;
+}
+
+}  // namespace
+
+RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
+  constexpr int kStuck = 4;
+  RootSearchResult result;
+  int last_cut = -1, last_count = -1, num_stuck = 0;
+  for (;;) {
+    int missing = search.wanted - roots.size(), cut = -1, count = -1;
+    if (missing <= 0) {
+      cut = find_cut(search, roots);
+      missing = cut < 0 ? 4 : 0;
+    }
+    if (missing == 0 && search.counts) {
+      count = count_below_gap(search, roots, cut);
+      missing = std::max(0, count - cut);
+    }
+    if (missing > 0) {
+      if (cut >= 0) roots.keep(cut);  // those above may be rough
+      const int kept = roots.size();
+      num_stuck = cut >= 0 && cut == last_cut && count == last_count ? num_stuck + 1 : 0;
+      last_cut = cut, last_count = count;
+      if (num_stuck < kStuck) search.solve(roots, missing + 2);
+      if (roots.size() > kept) continue;
+      result.is_missing = cut >= 0;
+      if (cut < 0 && search.counts && kept > 0) {  // the solver has no more to give: there are no more
+        count = count_below_gap(search, roots, kept);
+        result.is_missing = count > kept;
+      }
+      cut = kept;
+    }
+    result.cut = cut;
+    (count < cut ? result.doubtful : result.count) = count;
+    return result;
+  }
+}
+
+}  // namespace bough::modal::detail

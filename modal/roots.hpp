@@ -1,0 +1,51 @@
+#pragma once
+/// \file The search that modes, modes of a held interface and load factors share: solve, look for a gap, count.
+#include <functional>
+
+#include <Eigen/Dense>
+
+namespace bough::modal::detail {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Eigenvalues found, in the order of what is sought (see add), and their vectors.
+struct Roots {
+  VectorXd value;
+  MatrixXd X;  ///< n x value.size()
+  int size() const { return static_cast<int>(value.size()); }
+  void keep(int count);
+  /// Ascending afterwards, or by ascending magnitude.
+  void add(const VectorXd& values, const MatrixXd& vectors, bool by_magnitude = false);
+};
+
+/// What is asked of one kind of eigenproblem. Positions count the roots alone, without known motions.
+struct RootSearch {
+  int wanted = 0;
+  int num_available = 0;      ///< no more roots than this exist
+  bool by_magnitude = false;  ///< order
+  bool counts = true;         ///< Sylvester: no root missed below the highest
+  double lowest = 0;          ///< no root is below it
+  double shift = 0;           ///< distances are relative to value + shift
+  /// Adds up to `number` more roots, orthogonal to those known; adds none when there are no more.
+  std::function<void(Roots& roots, int number)> solve;
+  /// Relative distance to the next root within which root i and the next may be copies.
+  std::function<double(const Roots& roots, int i)> closeness;
+  std::function<double(const Roots& roots, int i)> roundoff;  ///< relative error of root i by roundoff
+  std::function<int(double mu)> count;                        ///< roots below mu; -1 where the factor cannot say
+};
+
+struct RootSearchResult {
+  int cut = 0;              ///< the roots before it are complete: a gap follows, or nothing
+  int count = -1;           ///< of the inertia below that gap, at least `cut`; -1: not made, or not to be trusted
+  int doubtful = -1;        ///< the inertia's own number where it is below `cut`
+  bool is_missing = false;  ///< the inertia counts roots that the solver does not find
+};
+
+/// Repeats solve, gap, count until the first `wanted` roots are complete or the solver has no more. An inertia below
+/// what was found is tried again further into the gap; roots with vectors of their own prove it wrong, not the roots.
+RootSearchResult search_roots(const RootSearch& search, Roots& roots);
+
+MatrixXd join(const MatrixXd& A, const MatrixXd& B);
+
+}  // namespace bough::modal::detail
