@@ -58,8 +58,44 @@ GRID,99,,1.,5.,0.,,123456
 SPC1,1,123456,1
 ENDDATA
 """
-ONLY_COSMIC = ["CQUAD1", "CQUAD2", "CTRIA1", "CTRIA2", "CTRMEM", "CTRPLT", "CTRBSC", "CQDMEM", "CQDMEM1", "CQDMEM2",
-               "CQDPLT", "CHEXA1", "CIHEX1", "CWEDGE", "CTWIST", "CTORDRG", "CTRIM6", "CTRSHL"]
+ONLY_COSMIC = ["CIHEX3", "CTWIST", "CTORDRG", "CTRAPRG"]
+# A plate of one quadrilateral and two triangles, and a block on it, in the cards of both programs.
+PLATE = """SOL 103
+CEND
+SPC = 1
+METHOD = 1
+BEGIN BULK
+EIGRL,1,,,6
+MAT1,1,7.+10,,.3,2700.
+GRID,1,,0.,0.,0.
+GRID,2,,1.,0.,0.
+GRID,3,,1.,1.,0.
+GRID,4,,0.,1.,0.
+GRID,5,,2.,0.,0.
+GRID,6,,2.,1.,0.
+GRID,11,,0.,0.,1.
+GRID,12,,1.,0.,1.
+GRID,13,,1.,1.,1.
+GRID,14,,0.,1.,1.
+SPC1,1,123456,1,4
+"""
+OLD_ELEMENTS = """CQUAD2,1,7,1,2,3,4
+PQUAD2,7,1,.05,3.
+CTRIA1,2,7,2,5,6
+PTRIA1,7,1,.05,1,1.0416666666667-5,1,.05,3.
+CTRIA2,3,7,2,6,3
+PTRIA2,7,1,.05,3.
+CHEXA1,4,1,1,2,3,4,11,12,+
++,13,14
+"""
+NEW_ELEMENTS = """CQUAD4,1,7,1,2,3,4
+PSHELL,7,1,.05,1,,1,1.,3.
+CTRIA3,2,7,2,5,6
+CTRIA3,3,7,2,6,3
+CHEXA,4,1,1,2,3,4,11,12,+
++,13,14
+PSOLID,1,1
+"""
 
 
 class Dialects(ProgramTest):
@@ -75,7 +111,7 @@ class Dialects(ProgramTest):
             found, said = self.find_modes("cosmic.dat", COSMIC.format(method=method))
             for a, b in zip(found, expected, strict=True):
                 self.assertAlmostEqual(a / b, 1, delta=1e-12)
-            self.assertIn("SEQGP is not used", said)
+            self.assertIn("SEQGP is not read", said)
 
     def test_subcases_of_solution_3(self):
         """Each with its METHOD, as in SOL 103."""
@@ -90,12 +126,38 @@ class Dialects(ProgramTest):
             self.write("old.dat", MSC.replace("ENDDATA", f"{card:<8}50      1       1       2       3       4\nENDDATA"))
             self.fails(1, "modes", "old.dat", says=[f"{card} is not supported and carries stiffness"],
                        error="deck.unsupported-card")
-        self.write("old.dat", MSC.replace("ENDDATA", "CRIGD3  50      1       2       3\nENDDATA"))
-        self.fails(1, "modes", "old.dat", says=["CRIGD3 is not supported and carries a constraint"])
+        self.write("old.dat", MSC.replace("ENDDATA", "MPCAX   50      1       2       3\nENDDATA"))
+        self.fails(1, "modes", "old.dat", says=["MPCAX is not supported and carries a constraint"])
+
+    def test_plates_and_solids_of_cosmic_are_those_of_today(self):
+        expected, _ = self.find_modes("new.bdf", PLATE + NEW_ELEMENTS + "ENDDATA\n")
+        found, said = self.find_modes("old.bdf", PLATE + OLD_ELEMENTS + "ENDDATA\n")
+        self.assertEqual(len(found), 6)
+        for a, b in zip(found, expected, strict=True):
+            self.assertAlmostEqual(a / b, 1, delta=1e-9)
+        self.assertIn("1 CHEXA1 as CHEXA, 1 CQUAD2 as CQUAD4, 1 CTRIA1 as CTRIA3, 1 CTRIA2 as CTRIA3", said)
+        self.assertIn("[deck.old-element]", said)
+
+    def test_design_variables_of_solution_200(self):
+        """The deck with the values of the variables written into its cards."""
+        design = "DESVAR,1,A,2.\nDVPREL1,1,PBAR,1,I1\n+,1,2.-7\nDVMREL1,2,MAT1,1,RHO,,,700.\n+,1,1000.\nENDDATA"
+        bar = "PBAR,1,1,1.-3,2.-7,2.-7"
+        expected, _ = self.find_modes("written.bdf", MSC.replace(bar, "PBAR,1,1,1.-3,4.-7,2.-7"))
+        text = MSC.replace(bar, "PBAR,1,1,1.-3,9.-7,2.-7").replace(",2700.", ",1.")
+        found, said = self.find_modes("design.bdf", text.replace("SOL 103", "SOL 200").replace("ENDDATA", design))
+        for a, b in zip(found, expected, strict=True):
+            self.assertAlmostEqual(a / b, 1, delta=1e-12)
+        self.assertIn("PBAR 1 I1 = 4.-7 (was 9.-7)", said)
+
+    def test_export_keeps_the_sets_of_component_modes(self):
+        self.write("q.bdf", MSC.replace("ENDDATA", "SPOINT,901,902\nASET1,123,2,3\nQSET1,0,901,902\nENDDATA"))
+        self.bough("export", "q.bdf", "--to", "bdf", "-o", "out.bdf")
+        with open(self.path("out.bdf")) as f:
+            self.assertIn("QSET1", f.read())
 
     def test_matrices_by_column_are_not_dmig(self):
         self.write("dmi.dat", MSC.replace("ENDDATA", "DMI,K,0,6,2,2,,4,4\nENDDATA"))
-        self.assertIn("DMI is not used", self.bough("modes", "dmi.dat").stderr)
+        self.assertIn("DMI is not read", self.bough("modes", "dmi.dat").stderr)
 
 
 if __name__ == "__main__":

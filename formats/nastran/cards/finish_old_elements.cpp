@@ -28,7 +28,8 @@ class Finisher {
     std::string what;
     for (const auto& [names, count] : old_.counts)
       what += (what.empty() ? "" : ", ") + std::to_string(count) + " " + names.first + " as " + names.second;
-    r_.diagnostics.note("deck.old-element", deck_.locate(old_.first), "elements of NASTRAN-95 are read as those of today: " + what,
+    r_.diagnostics.note("deck.old-element", deck_.locate(old_.first),
+                        "elements of NASTRAN-95 are read as those of today: " + what,
                         "they are of the same grids and properties but stiffer or softer than the old formulations");
   }
 
@@ -95,7 +96,8 @@ class Finisher {
       const std::pair key(use.property, e.pid);
       const auto id = ids.find(key);
       if (id == ids.end()) {
-        fail_property("element " + std::to_string(e.id) + " refers to " + use.property + " " + std::to_string(e.pid), e.at);
+        fail_property("element " + std::to_string(e.id) + " refers to " + use.property + " " + std::to_string(e.pid),
+                      e.at);
         continue;
       }
       e.pid = id->second;

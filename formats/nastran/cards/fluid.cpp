@@ -1,5 +1,5 @@
-/// Acoustic fluid: pressures at grids with CD = -1, solids with FCTN = PFLUID. Real modes and statics of the structure are
-/// without it in Nastran too (the coupling is in the complex and frequency solutions).
+/// Acoustic fluid: pressures at grids with CD = -1, solids with FCTN = PFLUID. Real modes and statics of the structure
+/// are without it in Nastran too (the coupling is in the complex and frequency solutions).
 #include <string>
 
 #include "bough/formats/nastran/detail/parsers.hpp"
@@ -27,8 +27,8 @@ void finish_fluid(Reading& r) {
     return text;
   };
   std::string what;
-  for (const auto& text : {count(r.fluid_grids.size(), "GRID"), count(r.fluid_properties.size(), "PSOLID"),
-                           count(num_solids, "solids")})
+  for (const auto& text :
+       {count(r.fluid_grids.size(), "GRID"), count(r.fluid_properties.size(), "PSOLID"), count(num_solids, "solids")})
     if (!text.empty()) what += (what.empty() ? "" : ", ") + text;
   r.diagnostics.note("deck.fluid", deck.locate(r.first_fluid), "fluid is left out: " + what,
                      "it has pressures, not displacements; its effect on the structure is not computed");

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <map>
 #include <tuple>
 #include <unordered_set>
 
 #include "bough/formats/nastran/detail/design.hpp"
 #include "bough/formats/nastran/detail/known_cards.hpp"
+#include "bough/formats/nastran/detail/leftovers.hpp"
 #include "bough/formats/nastran/detail/parsers.hpp"
 #include "bough/formats/nastran/detail/replication.hpp"
 #include "bough/formats/nastran/detail/text.hpp"
@@ -54,12 +54,12 @@ class Builder {
       diagnostics_.error("deck.unreadable-line", {deck_.files.front(), 0, 0},
                          "and " + std::to_string(num_unreadable_ - max_unreadable) + " more lines that are no cards",
                          "check that the file is a Nastran deck");
-    expand_ranges();
+    expand_ranges(reading_);
     finish_direct_matrices(reading_);
     finish_fluid(reading_);
     finish_old_elements(reading_);
     design_.report(deck_, diagnostics_);
-    report_leftovers();
+    leftovers_.report(diagnostics_);
     report_names();
   }
 
@@ -68,13 +68,6 @@ class Builder {
   const CardImage& image(int card) const {
     return images_.images[static_cast<std::size_t>(images_.cards[static_cast<std::size_t>(card)])];
   }
-
-  /// Which fields of cards of one name nothing reads.
-  struct Leftover {
-    int count = 0;
-    SourceLocation where;
-    std::string text;
-  };
 
   /// The text of a card; returns the line with too many fields, or nullptr.
   const Line* join(int card, CardText& text) {
@@ -141,7 +134,7 @@ class Builder {
       return;
     }
     get_card_parsers().at(name)(parsed, reading_);
-    note_leftover(parsed);
+    leftovers_.add(parsed);
   }
 
   std::string at_text(const records::CardLocation& at) const {
@@ -189,7 +182,8 @@ class Builder {
   bool skip_statement() {
     const auto where = [&] { return deck_.locate(text_.lines.front().at); };
     if (!text_.name.empty() && text_.name.front() == '/') {
-      diagnostics_.warning("deck.delete-line", where(), "'" + text_.name + "' deletes cards of an earlier run: not done",
+      diagnostics_.warning("deck.delete-line", where(),
+                           "'" + text_.name + "' deletes cards of an earlier run: not done",
                            "a deck is read as it stands; take the cards out that should not count");
       return true;
     }
@@ -235,27 +229,7 @@ class Builder {
     design_.apply(text_);
     Card card(text_, deck_.files, diagnostics_);
     entry->parser(card, reading_);
-    if (card.is_ok()) note_leftover(card);
-  }
-
-  /// Field 2 is the first after the name, as the manuals count.
-  void note_leftover(const Card& card) {
-    const int i = card.find_leftover();
-    if (i < 0) return;
-    auto& leftover = leftovers_[{card.get_name(), i}];
-    if (leftover.count++ > 0) return;
-    leftover.where = card.locate(i);
-    leftover.text = "field " + std::to_string(i % 8 + 2) + (i < 8 ? "" : " of line " + std::to_string(i / 8 + 1)) +
-                    " '" + std::string(card.get(i)) + "'";
-  }
-
-  void report_leftovers() {
-    for (const auto& [place, leftover] : leftovers_)
-      diagnostics_.warning("deck.unused-field", leftover.where,
-                           place.first + ": " + leftover.text + " is not used" +
-                               (leftover.count == 1 ? "" : " (" + std::to_string(leftover.count) +
-                                                               " cards with data there, the first here)"),
-                           "the card has nothing there; check the columns");
+    if (card.is_ok()) leftovers_.add(card);
   }
 
   NameEntry& find_entry() {
@@ -283,32 +257,6 @@ class Builder {
                        "fixed fields are eight columns wide and begin with the name; comments begin with $");
   }
 
-  /// Lists of SPC1, ASET1, OMIT1 with THRU mean the grids and scalar points that exist.
-  void expand_ranges() {
-    if (reading_.spc_ranges.empty() && reading_.set_ranges.empty()) return;
-    std::vector<int> ids;
-    ids.reserve(deck_.grids.size() + deck_.scalar_points.size());
-    for (const auto& grid : deck_.grids) ids.push_back(grid.id);
-    ids.insert(ids.end(), deck_.scalar_points.begin(), deck_.scalar_points.end());
-    std::sort(ids.begin(), ids.end());
-    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-    for (const auto& spc : reading_.spc_ranges)
-      for (auto id = std::lower_bound(ids.begin(), ids.end(), spc.range.first);
-           id != ids.end() && *id <= spc.range.last; ++id)
-        if (spc.range.contains(*id)) deck_.spc.push_back({spc.sid, *id, spc.c, 0.0, true, spc.at});
-    for (const auto& set : reading_.set_ranges) {
-      const auto before = set.terms->size();
-      for (auto id = std::lower_bound(ids.begin(), ids.end(), set.range.first);
-           id != ids.end() && *id <= set.range.last; ++id)
-        if (set.range.contains(*id)) set.terms->push_back({*id, set.c, set.at});
-      if (set.terms->size() == before && set.terms != &deck_.qset)
-        diagnostics_.error("deck.bad-list", deck_.locate(set.at),
-                           std::to_string(set.range.first) + " THRU " + std::to_string(set.range.last) +
-                               " holds no grid or scalar point of the deck",
-                           "correct the ids");
-    }
-  }
-
   /// Counts of all names; one message for each name that is not read, in the order of the deck.
   void report_names() {
     std::vector<const std::pair<const std::string, NameEntry>*> unread;
@@ -331,7 +279,8 @@ class Builder {
       deck_.unused.push_back({name, records::CardEffect::None, entry.count, entry.first});
       return;  // design_ has said it
     }
-    if (entry.parser == nullptr) deck_.unused.push_back({name, effect.value_or(records::CardEffect::None), entry.count, entry.first});
+    if (entry.parser == nullptr)
+      deck_.unused.push_back({name, effect.value_or(records::CardEffect::None), entry.count, entry.first});
     const std::string times = entry.count == 1 ? "1 card" : std::to_string(entry.count) + " cards, the first here";
     if (!effect) {
       const auto nearest = find_nearest_card(name);
@@ -355,7 +304,8 @@ class Builder {
                          "replace it, or --ignore " + name + " to compute without it");
     else
       diagnostics_.warning(
-          "deck.unused-card", where, name + (entry.parser == nullptr ? " is not read (" : " is not used (") + times + ")",
+          "deck.unused-card", where,
+          name + (entry.parser == nullptr ? " is not read (" : " is not used (") + times + ")",
           find_loss(name) != nullptr ? find_loss(name) : std::string("it carries ") + get_effect_name(*effect));
   }
 
@@ -369,7 +319,7 @@ class Builder {
   std::unordered_map<std::string, NameEntry> names_;
   std::unordered_map<std::string, int> defaults_seen_;  ///< card index
   Design design_;
-  std::map<std::pair<std::string, int>, Leftover> leftovers_;
+  Leftovers leftovers_;
   SplitLine split_;
   CardText text_, relative_;
   NameEntry* last_entry_ = nullptr;

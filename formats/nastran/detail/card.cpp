@@ -17,8 +17,8 @@ std::string Card::get_upper(int i) {
   use(i);
   return make_upper(get(i));
 }
-int Card::find_leftover() const {
-  for (int i = 0; i < size_; ++i) {
+int Card::find_leftover(int first) const {
+  for (int i = first; i < size_; ++i) {
     const bool is_used = i < 64 ? (used_ >> i & 1u) != 0 : i < used_end_;
     if (!is_used && !is_blank(i)) return i;
   }

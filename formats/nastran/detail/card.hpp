@@ -62,8 +62,9 @@ class Card {
   void use(int first, int last) {
     for (int i = first; i < std::min(last, size_); ++i) use(i);
   }
-  /// First field with data that was neither read nor used, or -1. Beyond 64 fields it is what follows the last one.
-  int find_leftover() const;
+  /// First field from `first` on with data that was neither read nor used, or -1. Beyond 64 fields it is what follows
+  /// the last one.
+  int find_leftover(int first) const;
   /// Where field i stands (its line).
   SourceLocation locate(int i) const;
 

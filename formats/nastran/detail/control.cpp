@@ -264,7 +264,12 @@ std::size_t read_control(const Source& source, records::Deck& deck, Diagnostics&
     if (is_word(word, "CEND") && word.size() == text.size() && cend == none) cend = i;
     if (!is_word(word, "BEGIN")) continue;
     const auto section = find_first_word(text.substr(word.size()));
-    if (section.empty() || is_word(section, "BULK")) begin = i;
+    // A bare BEGIN before CEND belongs to a DMAP sequence.
+    const auto is_cend = [](const Line& line) { return is_word(trim(line.text), "CEND"); };
+    const bool is_dmap =
+        section.empty() && cend == none &&
+        std::any_of(source.lines.begin() + static_cast<std::ptrdiff_t>(i), source.lines.end(), is_cend);
+    if ((section.empty() && !is_dmap) || is_word(section, "BULK")) begin = i;
   }
   if (begin == none && cend == none) {
     deck.subcases.emplace_back();

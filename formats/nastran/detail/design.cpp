@@ -103,7 +103,8 @@ void Design::apply(CardText& text) {
       auto& relation = relations_[entry->second];
       const int i = find_design_field(text, relation.name, static_cast<int>(first));
       if (i < 0) continue;
-      if (static_cast<std::size_t>(i) >= text.fields.size()) text.fields.resize((static_cast<std::size_t>(i) / 8 + 1) * 8);
+      if (static_cast<std::size_t>(i) >= text.fields.size())
+        text.fields.resize((static_cast<std::size_t>(i) / 8 + 1) * 8);
       auto& field = text.fields[static_cast<std::size_t>(i)];
       const std::string before(field.empty() ? "blank" : field);
       double value = relation.c0;
@@ -127,8 +128,8 @@ void Design::report(const records::Deck& deck, Diagnostics& diagnostics) const {
   for (const auto& relation : relations_) {
     if (!relation.is_done)
       diagnostics.warning("deck.design-relation", deck.locate(relation.at),
-                          relation.card + " " + std::to_string(relation.id) + " gives no value: " + relation.type + " " +
-                              std::to_string(relation.target) + " '" + relation.name + "' is not found",
+                          relation.card + " " + std::to_string(relation.id) + " gives no value: " + relation.type +
+                              " " + std::to_string(relation.target) + " '" + relation.name + "' is not found",
                           "the property stays as its card says; write the number of the field for its name");
     else if (count++ < most_shown)
       done += (done.empty() ? "" : ", ") + relation.done;

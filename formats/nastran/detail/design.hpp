@@ -28,11 +28,11 @@ class Design {
 
  private:
   struct Relation {
-    std::string card;     ///< DVPREL1 ...
-    int id = 0;           ///< of the relation
-    std::string type;     ///< PSHELL ...
-    int target = 0;       ///< PID, MID, EID
-    std::string name;     ///< T, or a field number
+    std::string card;  ///< DVPREL1 ...
+    int id = 0;        ///< of the relation
+    std::string type;  ///< PSHELL ...
+    int target = 0;    ///< PID, MID, EID
+    std::string name;  ///< T, or a field number
     double c0 = 0;
     std::vector<std::pair<int, double>> terms;  ///< (variable, coefficient)
     int by_value = 0;                           ///< variable that multiplies the property's own value (PVAL)

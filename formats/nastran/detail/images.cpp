@@ -216,8 +216,8 @@ std::string_view get_first_field(std::string_view text) {
   if (!is_free_field(text)) return slice(text, 0, 8);
   if (has_blank_name(text)) return {};
   const auto first = trim(text.substr(0, text.find(',')));
-  const auto word = first.substr(0, static_cast<std::size_t>(
-                                        std::find_if(first.begin(), first.end(), is_separator) - first.begin()));
+  const auto word =
+      first.substr(0, static_cast<std::size_t>(std::find_if(first.begin(), first.end(), is_separator) - first.begin()));
   return is_keyword(first) && !is_word(word, "DEQATN") ? std::string_view{} : word;
 }
 

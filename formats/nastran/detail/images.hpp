@@ -31,8 +31,8 @@ struct SplitLine {
   std::vector<std::string_view> data;  ///< 8 (small, free) or 4 (large) fields per line, trimmed
   std::string_view tag;                ///< field 10
   bool is_large = false;
-  int num_excess = 0;           ///< fields of a free-field line that are neither data nor a tag
-  bool has_number_tag = false;  ///< free field: a number stands in field 10
+  int num_excess = 0;                    ///< fields of a free-field line that are neither data nor a tag
+  bool has_number_tag = false;           ///< free field: a number stands in field 10
   std::vector<std::string_view> tokens;  ///< storage of split_line
 };
 

@@ -32,7 +32,11 @@ void add_special_constraint_parsers(ParserTable& table);  ///< RBAR1, RJOINT, RT
 void add_nonstructural_parsers(ParserTable& table);       ///< NSM, NSM1, NSML, NSML1, NSMADD, ACCEL, ACCEL1
 void add_solution_parsers(ParserTable& table);            ///< EIGRL, EIGR, PARAM
 
-/// After the last card: the elements of NASTRAN-95 get their PSHELL and PSOLID. Adds deck.old-element, deck.old-property.
+/// After the last card: lists of SPC1, ASET1, OMIT1, QSET1 with THRU mean the grids and scalar points that exist. Adds
+/// deck.bad-list.
+void expand_ranges(Reading& reading);
+/// After the last card: the elements of NASTRAN-95 get their PSHELL and PSOLID. Adds deck.old-element,
+/// deck.old-property.
 void finish_old_elements(Reading& reading);
 /// After the last card: fluid grids and solids, and what is said of their dofs, are taken out. Adds deck.fluid.
 void finish_fluid(Reading& reading);
