@@ -182,12 +182,15 @@ void make_solids(Maker& maker) {
     maker.add(std::make_unique<Solid>(card.id, card.card, nodes, std::move(gdofs), std::move(geometry), C,
                                       material->rho, std::move(own)));
   }
-  if (turned.count > 0)
-    maker.diagnostics().note("fe.left-handed", deck.locate(turned.at),
-                             turned.first +
-                                 (turned.count > 1 ? " and " + std::to_string(turned.count - 1) + " solids more" : "") +
-                                 " count their grids left-handed; they are taken the other way round",
-                             {});
+  if (turned.count > 0) {
+    const std::string more = turned.count > 1 ? " and " + std::to_string(turned.count - 1) + " solids more" : "";
+    maker.diagnostics().note(
+        "fe.left-handed", deck.locate(turned.at),
+        turned.first + more +
+            (more.empty() ? " counts its grids left-handed and is" : " count their grids left-handed and are") +
+            " taken the other way round",
+        {});
+  }
 }
 
 }  // namespace bough::fe

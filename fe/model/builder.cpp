@@ -8,7 +8,6 @@
 #include "bough/fe/model/autospc.hpp"
 #include "bough/fe/model/coordinates.hpp"
 #include "bough/fe/model/direct_matrices.hpp"
-#include "bough/fe/model/load_sets.hpp"
 #include "bough/fe/model/rigid.hpp"
 #include "bough/fe/model/sets.hpp"
 #include "bough/fe/model/unmodelled.hpp"
@@ -195,25 +194,6 @@ void ModelBuilder::collect_fixed() {
   const auto sets = expand_set(sid, deck_.spcadd, {plain.begin(), plain.end()}, "SPC", deck_, diagnostics_);
   for (const auto& spc : deck_.spc)
     if (std::binary_search(sets.begin(), sets.end(), spc.sid)) fix(spc);
-}
-
-void ModelBuilder::hold_spcd() {
-  if (!options_.uses_enforced || options_.ignore_spc) return;
-  const records::Spcd* first = nullptr;
-  for (const auto& [dof, card] : list_spcd_dofs(model_, deck_, model_.subcase_.load)) {
-    if (is_fixed_[dof]) continue;
-    if (!first) first = card;
-    is_fixed_[dof] = 1;
-    fixed_by_.emplace_back(dof, deck_.locate(card->at));
-    model_.held_by_spcd_.push_back(dof);
-  }
-  if (!first) return;
-  const auto num = model_.held_by_spcd_.size();
-  diagnostics_.warning("fe.spcd-not-fixed", deck_.locate(first->at),
-                       "SPCD moves " + name_dof(model_.held_by_spcd_.front()) +
-                           (num > 1 ? " (and " + std::to_string(num - 1) + " dofs more)" : "") +
-                           ", which no SPC of the subcase fixes; it is held as if one did",
-                       "fix it with the SPC set of the subcase");
 }
 
 void ModelBuilder::add_mpc(const records::Mpc& mpc) {

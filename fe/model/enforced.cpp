@@ -1,3 +1,4 @@
+#include "bough/fe/model/builder.hpp"
 #include "bough/fe/model/constraints.hpp"
 #include "bough/fe/model/load_sets.hpp"
 
@@ -50,6 +51,25 @@ std::vector<std::pair<int, const records::Spcd*>> list_spcd_dofs(const Model& mo
     }
   }
   return dofs;
+}
+
+void ModelBuilder::hold_spcd() {
+  if (!options_.uses_enforced || options_.ignore_spc) return;
+  const records::Spcd* first = nullptr;
+  for (const auto& [dof, card] : list_spcd_dofs(model_, deck_, model_.subcase_.load)) {
+    if (is_fixed_[dof]) continue;
+    if (!first) first = card;
+    is_fixed_[dof] = 1;
+    fixed_by_.emplace_back(dof, deck_.locate(card->at));
+    model_.held_by_spcd_.push_back(dof);
+  }
+  if (!first) return;
+  const auto num = model_.held_by_spcd_.size();
+  diagnostics_.warning("fe.spcd-not-fixed", deck_.locate(first->at),
+                       "SPCD moves " + name_dof(model_.held_by_spcd_.front()) +
+                           (num > 1 ? " (and " + std::to_string(num - 1) + " dofs more)" : "") +
+                           ", which no SPC of the subcase fixes; it is held as if one did",
+                       "fix it with the SPC set of the subcase");
 }
 
 bool Model::is_held_for(const records::Deck& deck, int set) const {

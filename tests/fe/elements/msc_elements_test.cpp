@@ -385,14 +385,14 @@ TEST(Cbend, BadInputIsReported) {
 
 TEST(Pbcomp, BadInputIsReported) {
   auto p = make_pbcomp();
-  p.lumps = {{{0.1, 0.2}, 1, 2}};
+  p.lumps = {{{0.1, 0.2}, 0, 2}};
   SmallModel m = make_grids();
   m.deck.special.pbcomp.push_back(p);
   m.deck.beams.push_back(make_beam(true));
   Diagnostics d;
   make_elements(m.deck, m.nodes, d);
   EXPECT_TRUE(d.has("fe.missing-material"));
-  EXPECT_TRUE(d.has("fe.bad-property"));  // SECTION 0 does not say where the lumps are
+  EXPECT_TRUE(d.has("fe.bad-property"));  // no fraction C says how much of the area they are
 }
 
 }  // namespace

@@ -144,7 +144,7 @@ TEST(VendorLoads, RbarIsCompletedAtItsFirstGrid) {
 /// Pressure on a face by its grids, whichever way the solid counts them, P1 to P4 at the same grids.
 TEST(VendorLoads, PressureOnLeftHandedSolids) {
   const std::string head =
-      "SPC = 1\nLOAD = 4\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,.1\nGRID,3,,1.2,1.,0.\n"
+      "LOAD = 4\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,.1\nGRID,3,,1.2,1.,0.\n"
       "GRID,4,,0.,.9,0.\nGRID,5,,0.,0.,1.\nGRID,6,,1.,0.,1.2\nGRID,7,,1.,1.1,1.\nGRID,8,,0.,1.,1.1\n"
       "PSOLID,1,1\nMAT1,1,7.,,.3\n";
   const std::pair<std::string, std::string> bodies[] = {
