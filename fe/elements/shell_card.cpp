@@ -68,8 +68,15 @@ std::optional<ResolvedShell> resolve_shell(Maker& maker, ShellSections& sections
 double calc_material_angle(Maker& maker, const records::ShellElement& card, const Vector3d& x, const Vector3d& normal,
                            const Vector3d& side) {
   if (!card.mcid) return card.theta_deg * kDegree;
-  const Vector3d axis =
-      maker.nodes().calc_axes(*card.mcid, x, maker.deck().locate(card.at), maker.diagnostics()).col(0);
+  Diagnostics own;
+  const Vector3d axis = maker.nodes().calc_axes(*card.mcid, x, maker.deck().locate(card.at), own).col(0);
+  for (auto item : own.items()) {
+    item.what = card.card + " " + std::to_string(card.id) + ", MCID: " + item.what;
+    // A curved shell asks at each of its nodes.
+    const auto& said = maker.diagnostics().items();
+    if (said.empty() || format(said.back()) != format(item)) maker.diagnostics().add(std::move(item));
+  }
+  if (own.num_errors() > 0) return 0;
   if (normal.cross(axis).norm() < 1e-6) {
     maker.error("fe.bad-material-axes", card.at,
                 card.card + " " + std::to_string(card.id) + ": the x-axis of MCID " + std::to_string(*card.mcid) +
