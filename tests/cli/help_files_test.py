@@ -9,7 +9,7 @@ from support import VERBS, ProgramTest
 
 def list_options(help_text):
     """The options of a --help text, each as its names: [["-o", "--output"], ["--force"], ...]."""
-    return [names.split(",") for names in re.findall(r"(?m)^  (-{1,2}\w[\w-]*(?:,--\w[\w-]*)?)(?=\s|$)", help_text)]
+    return [names.split(",") for names in re.findall(r"(?m)^  (-{1,2}\w[\w-]*(?:,--\w[\w-]*)*)(?=\s|$)", help_text)]
 
 
 class HelpFiles(ProgramTest):

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bough/fe/checks.hpp"
+#include "bough/fe/grid_point_weight.hpp"
 #include "bough/formats/nastran/reader.hpp"
 
 namespace bough::fe {
@@ -66,6 +67,58 @@ TEST(Checks, GridsAndGrounds) {
   EXPECT_LT(calc_ground_check(model, GroundSet::Independent).maxCoeff(), 1e-12);
   // Moving all but the clamp along x stretches the bar.
   EXPECT_GT(calc_ground_check(model, GroundSet::Free)[0], 0.1);
+}
+
+TEST(Checks, GridsOfRbe1AndRsplineAreUsed) {
+  Diagnostics d;
+  const auto deck = nastran::read_deck_text(
+      "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,2.,0.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,9.,1.,0.\nCBAR,1,1,1,3,0.,1.,0."
+      "\n"
+      "PBAR,1,1,1.,1.,1.,1.\nMAT1,1,1.+7,,.3\nRSPLINE,7,.1,1,2,123456,3\nRBE1,8,1,123456,,,,,,+\n+,UM,4,123\n",
+      "deck.bdf", {}, d);
+  EXPECT_EQ(d.num_errors(), 0);
+  EXPECT_EQ(find_unused_grids(Model::build(deck, {}, d), deck), std::vector<int>{5});
+}
+
+TEST(GridPointWeight, MassesThatActInOneDirectionEach) {
+  // 2 along (1, 1, 0)/√2 and 4 along (-1, 1, 0)/√2, both at (3, 0, 0), and 1 along z at (0, 0, 5): S is turned by 45°.
+  const double r = std::sqrt(0.5);
+  const Vector3d axes[] = {{r, r, 0}, {-r, r, 0}, {0, 0, 1}}, places[] = {{3, 0, 0}, {3, 0, 0}, {0, 0, 5}};
+  const double masses[] = {2, 4, 1};
+  Eigen::Matrix<double, 6, 6> MO = Eigen::Matrix<double, 6, 6>::Zero();
+  for (int i = 0; i < 3; ++i) {
+    Eigen::Matrix<double, 6, 1> g;
+    g << axes[i], places[i].cross(axes[i]);
+    MO += masses[i] * g * g.transpose();
+  }
+  const auto w = calc_grid_point_weight(MO);
+  EXPECT_NEAR((w.S - (Matrix3d() << r, -r, 0, r, r, 0, 0, 0, 1).finished()).norm(), 0, 1e-12);
+  EXPECT_NEAR((w.mass - Vector3d(2, 4, 1)).norm(), 0, 1e-12);
+  // The first acts along X at Y = -3 r, the second along Y at X = 3 r of the axes S.
+  EXPECT_NEAR(w.cg(0, 1), -3 * r, 1e-12);
+  EXPECT_NEAR(w.cg(1, 0), 3 * r, 1e-12);
+  // About its own centre no mass is left to turn.
+  EXPECT_NEAR(w.I_S.norm(), 0, 1e-12);
+}
+
+TEST(GridPointWeight, OneBodyHasItsTensor) {
+  Matrix3d I;
+  I << 5, -.3, .2, -.3, 6, -.7, .2, -.7, 7;
+  const double m = 3;
+  const Vector3d c(.5, -1, 2);
+  Matrix3d C;
+  C << 0, -c.z(), c.y(), c.z(), 0, -c.x(), -c.y(), c.x(), 0;
+  Eigen::Matrix<double, 6, 6> MO;
+  MO << m * Matrix3d::Identity(), -m * C, m * C, I - m * C * C;
+  const auto w = calc_grid_point_weight(MO);
+  EXPECT_TRUE(w.S.isIdentity(0));
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      EXPECT_NEAR(w.cg(i, j), i == j ? 0 : c[j], 1e-12);
+      EXPECT_NEAR(w.I_S(i, j), i == j ? I(i, j) : -I(i, j), 1e-12);
+    }
+  EXPECT_NEAR((w.Q * w.I_Q.asDiagonal() * w.Q.transpose() - I).norm(), 0, 1e-12);
+  EXPECT_NEAR(w.Q.determinant(), 1, 1e-12);
 }
 
 TEST(Checks, AnMpcThatGroundsIsFoundOnTheNSet) {

@@ -193,12 +193,12 @@ TEST(Probes, BushAwayFromItsGrids) {
   const std::string bars = kHead + kTurned + kBar + kPush + kLine +
                            "GRID,3,,2.,.5,0.\nSPC1,1,123456,3\nCBAR,1,1,1,2,0.,1.,0.\n"
                            "PBUSH,9,K,1.+5,2.+5,3.+5,400.,500.,600.\n";
-  // At S of the line GA-GB, or at a point of system 7: (1.4, -.3, .2) is .84 + .24, 1.12 - .18, .2 of basic.
+  // At S of the line GA-GB, or at an offset from GA in system 7: (1.4, -.3, .2) is .84 + .24, 1.12 - .18, .2 of basic.
   const std::string ends = "RBE2,41,2,123456,51\nRBE2,42,3,123456,52\n";
   expect_same(bars + "CBUSH,9,9,2,3,,,,7,+\n+,.25\n",
               bars + ends + "GRID,51,,1.25,.125,0.\nGRID,52,,1.25,.125,0.\nCBUSH,9,9,51,52,,,,7\n");
   expect_same(bars + "CBUSH,9,9,2,3,,,,7,+\n+,,7,1.4,-.3,.2\n",
-              bars + ends + "GRID,51,,1.08,.94,.2\nGRID,52,,1.08,.94,.2\nCBUSH,9,9,51,52,,,,7\n");
+              bars + ends + "GRID,51,,2.08,.94,.2\nGRID,52,,2.08,.94,.2\nCBUSH,9,9,51,52,,,,7\n");
 }
 
 TEST(Probes, PointMasses) {
@@ -235,12 +235,13 @@ TEST(Probes, PropertiesOfPlates) {
               head + ply +
                   "PCOMP,1,,,,,,,,+\n+,8,.001,0.,,8,.002,45.,,+\n+,8,.001,-30.,,8,.001,-30.,,+\n"
                   "+,8,.002,45.,,8,.001,0.\n");
-  // Plies from Z0 = 0 up are a plate whose middle is .005 above the grids.
-  const auto zoffs = [](std::string text) {
-    return text.replace(text.find("CQUAD4,1,1,1,2,3,4"), 18, "CQUAD4,1,1,1,2,3,4,,.005");
-  };
-  expect_same(head + "PCOMP,1,0.,,,,,,,+\n+,1,.004,0.,,1,.006,0.\n",
-              zoffs(head + "PCOMP,1,,,,,,,,+\n+,1,.004,0.,,1,.006,0.\n"));
+  // Plies from Z0 = 0 up: A = Q t, B = Q t²/2, D = Q t³/3; MID4 couples with the other sign.
+  const std::string light = head.substr(0, head.find(",2700.")) + "\n";  // the plies carry their mass where they are
+  expect_same(light + "PCOMP,1,0.,,,,,,,+\n+,1,.004,0.,,1,.006,0.\n",
+              light +
+                  "PSHELL,1,1,.01,1,4.,1,,,+\n+,,,4\nMAT2,4,-3.8461538461538+10,-1.1538461538462+10,0.,"
+                  "-3.8461538461538+10,0.,-1.3461538461538+10\n",
+              1e-6);
 }
 
 TEST(Probes, WeightIsTurnedIntoMass) {

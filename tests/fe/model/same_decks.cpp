@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <deque>
+
 #include <Eigen/Eigenvalues>
 
 #include "bough/fe/static_case.hpp"
@@ -12,7 +14,7 @@ namespace {
 
 struct Solved {
   records::Deck deck;
-  std::vector<Model> models;  ///< one per subcase
+  std::deque<Model> models;  ///< one per subcase
   std::vector<VectorXd> u;
 };
 

@@ -128,6 +128,10 @@ TEST(Suport, Errors) {
   EXPECT_EQ(count(kCase + kFrame + "PARAM,INREL,-3\n", "fe.bad-param"), 1);
   EXPECT_EQ(count(kCase + kFrame + "PARAM,INREL,-2\nSUPORT,1,123456\n", "fe.suport-unused"), 1);
   EXPECT_EQ(count(kCase + kFrame + "SPOINT,9\nSUPORT,1,123456,9,0\n", "fe.suport-autospc"), 1);
+  // SOL 2 asks for inertia relief without a PARAM: all dofs of its SUPORT are without stiffness here.
+  const std::string old = "SOL 2\nCEND\nLOAD=3\nBEGIN BULK\n" + kFrame + "SPOINT,9\nSUPORT,9,0\n";
+  EXPECT_EQ(count(old, "fe.missing-suport"), 1);
+  EXPECT_EQ(count(old, "fe.suport"), 0);
   // Not enough dofs: what is left is a mechanism.
   EXPECT_EQ(count(kCase + kFrame + "SUPORT,1,12345\n", "fe.mechanism"), 1);
   EXPECT_EQ(count(kCase + kFrame + "SUPORT,1,123456\nCELAS2,9,5.,4,1\nPARAM,INREL,-1\n", "fe.suport-strained"), 1);

@@ -82,6 +82,40 @@ TEST(Control, WhatIsNotRecognizedIsOneNote) {
   EXPECT_NE(r.find("deck.case-control-ignored")->what.find("FMETHOD"), std::string::npos);
 }
 
+TEST(Control, MisspelledAndUnusedCommands) {
+  const auto r = read("SOL 103\nCEND\nRESVEC = YES\nMETOD = 3\nMEFFMASS(ALL) = YES\nMPCC = 2\nBEGIN BULK\n");
+  ASSERT_EQ(r.count("deck.unknown-case-control"), 2) << r.get_messages();
+  EXPECT_EQ(r.find("deck.unknown-case-control")->where.line, 4);
+  EXPECT_EQ(r.find("deck.unknown-case-control")->advice, "did you mean METHOD");
+  EXPECT_EQ(r.find("deck.case-control-ignored")->what, "case control not used: RESVEC (line 3), MEFFMASS (line 5)");
+}
+
+TEST(Control, PreloadIsKeptAsWhatIsNotUsed) {
+  const auto find = [](const std::string& sol, const std::string& word) {
+    const auto deck =
+        read_clean("SOL " + sol + "\nCEND\nSUBCASE 1\nLOAD = 1\nSUBCASE 2\n" + word + " = 1\nBEGIN BULK\n");
+    return std::pair(deck.unused.empty() ? "" : deck.unused[0].name, deck.subcases[1].statsub);
+  };
+  EXPECT_EQ(find("103", "STATSUB"), std::pair(std::string("STATSUB"), 1));
+  EXPECT_EQ(find("103", "STATSUB(PRELOAD)"), std::pair(std::string("STATSUB(PRELOAD)"), 0));
+  EXPECT_EQ(find("105", "STATSUB(PRELOAD)"), std::pair(std::string("STATSUB(PRELOAD)"), 0));
+  EXPECT_EQ(find("105", "STATSUB"), std::pair(std::string(), 1));
+  EXPECT_EQ(find("105", "STATSUB(BUCKLING)"), std::pair(std::string(), 1));
+  EXPECT_EQ(find("SEBUCKL", "STATSUB"), std::pair(std::string(), 1));
+}
+
+TEST(Params, WhatIsNotUsedIsOneNoteAndWhatNobodyKnowsAWarning) {
+  const auto r = read(
+      "CEND\nPARAM,POST,-1\nBEGIN BULK\nPARAM,WTMAS,.1\nPARAM,K6R0T,1.\nPARAM,GRDPNT,0\nPARAM,WTMASS,2.\n"
+      "PARAM,XYZZYQ,1\nPARAM,MARCPOS,1\nPARAM,FCTC3,1.\nPARAM,POST,-1\n");
+  ASSERT_EQ(r.count("deck.unknown-param"), 3) << r.get_messages();
+  EXPECT_EQ(r.find("deck.unknown-param")->where.line, 4);
+  EXPECT_EQ(r.find("deck.unknown-param")->advice, "did you mean WTMASS");
+  ASSERT_EQ(r.count("deck.unused-params"), 1);
+  EXPECT_EQ(r.find("deck.unused-params")->what,
+            "PARAM not used: POST (line 2), GRDPNT (line 6, by bough check only), MARCPOS (line 9), FCTC3 (line 10)");
+}
+
 TEST(Control, BadValues) {
   const auto r = read("CEND\nSPC = all\nSUBCASE x\nSUBCASE 1\nSUBCASE 1\nBEGIN BULK\n");
   EXPECT_EQ(r.count("deck.case-control-value"), 3);

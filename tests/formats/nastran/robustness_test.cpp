@@ -21,7 +21,7 @@ constexpr std::string_view sound_deck =
     "PBUSH,1,K,1.,2.,3.\n,,B,.1\nMAT1\t1\t2.+11\t\t.3\t7800.\n"
     "RBE2,9,1,123456,2,101,THRU,104\nSPC1,1,123456,1,THRU,5,EXCEPT,3\nMPC,1,1,1,1.,2,1,-1.\n,,101,1,.5\n"
     "LOAD,9,2.,1.,1,.5,5\nFORCE,1,2,,1.0E8,0.25,0.5,-1.0\n"
-    "EIGRL   2                       10\n        NORM=MAX\nPARAM,POST,-1\nENDDATA\n";
+    "EIGRL   2                       10\n        NORM=MAX\nPARAM,INREL,0\nENDDATA\n";
 
 TEST(Robustness, TheDeckItselfIsSound) {
   const auto deck = read_clean(sound_deck);

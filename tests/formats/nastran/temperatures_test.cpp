@@ -42,7 +42,8 @@ TEST(Temperatures, SelectionInTheCaseControl) {
   EXPECT_EQ(r.deck.subcases[1].temperature, 8);
   EXPECT_EQ(r.deck.subcases[2].temperature, 0);
   ASSERT_NE(r.find("deck.case-control-ignored"), nullptr);
-  EXPECT_NE(r.find("deck.case-control-ignored")->what.find("TEMPERATURE(INIT), TEMPERATURE(MATE)"), std::string::npos);
+  EXPECT_NE(r.find("deck.case-control-ignored")->what.find("TEMPERATURE(INIT) (line 3), TEMPERATURE(MATE) (line 9)"),
+            std::string::npos);
 }
 
 TEST(Temperatures, ExpansionOfMaterials) {
