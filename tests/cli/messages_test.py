@@ -62,7 +62,7 @@ class Many(ProgramTest):
         self.write("q8.bdf", grids + "CQUAD8,1,1,1,2,3,4,5,6,+\n+,7,8,,,,,77\nPSHELL,1,1,.01,1,,1\nMAT1,1,7.+10,,.3\nENDDATA\n")
         text = self.bough("check", "q8.bdf", code=1).stderr
         self.assertEqual(text.count("[fe.missing-coordinates]"), 1)
-        self.assertIn("q8.bdf:9: error: CQUAD8 1, MCID: coordinate system 77 is used but not defined", text)
+        self.assertIn("q8.bdf:9: error: CQUAD8 1 has MCID 77, a coordinate system that the deck does not define", text)
 
     def test_few_are_all_printed(self):
         self.write("bars.bdf", make_bad_bars(10))
