@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -295,6 +296,8 @@ int run_modes(const ModesOptions& options) {
   });
   for (const auto& [path, picture] : pictures) written += "written: " + path + "\n";
   if (!options.json) console.print(written);
+  // A rank that ends with an error ends the others: the first one must be through.
+  do_once([] { std::fflush(stdout); });
   return failures.get_exit_code();
 }
 

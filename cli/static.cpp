@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <cstdio>
 #include <exception>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -181,6 +182,8 @@ int run_static(const StaticOptions& options) {
   if (!picture.empty()) write_text_file(options.vtu, picture);
   for (const auto& path : {options.output, options.vtu})
     if (!path.empty() && !options.json) console.print("written: " + path + "\n");
+  // A rank that ends with an error ends the others: the first one must be through.
+  do_once([] { std::fflush(stdout); });
   return failures.get_exit_code();
 }
 
