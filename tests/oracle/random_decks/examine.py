@@ -8,6 +8,7 @@ import judge_body
 import judge_modes
 import judge_static
 import pencil
+import simple
 import spoil
 from generate import generate
 from truth import Truth, Unclear
@@ -80,6 +81,9 @@ class Examination:
         elif self.fault is None or self.fault.keeps_truth:
             try:
                 truth = Truth(self.model, *matrices)
+                wrong = self.fault is None and simple.judge(self.model, truth)
+                if wrong:
+                    return Report("wrong", {"matrices": wrong}, text)
                 spectrum = pencil.solve(truth.K, truth.M, truth.K_size, truth.M_size)
                 unclear = spectrum.grey
             except Unclear as e:
@@ -108,6 +112,8 @@ class Examination:
         code, found = 1, {}
         for verb in self.verbs:
             wrong = None
+            if verb == "matrices":      # has been run
+                continue
             if verb == "modes":
                 ran, answer = self.program.modes("deck.bdf")
                 code = ran.code

@@ -12,6 +12,7 @@ import numpy as np  # noqa: E402
 import judge_modes                                                       # noqa: E402
 import judge_static                                                      # noqa: E402
 import pencil                                                            # noqa: E402
+import simple                                                            # noqa: E402
 from examine import Examination                                          # noqa: E402
 from program import Program                                              # noqa: E402
 from truth import Truth                                                  # noqa: E402
@@ -45,7 +46,7 @@ class Seeds(Case):
 class PlantedErrors(Case):
     """Without these the oracle could be content with everything."""
 
-    SEED = 21
+    SEED, MASSLESS_SEED = 21, 3
 
     def setUp(self):
         super().setUp()
@@ -113,6 +114,17 @@ class PlantedErrors(Case):
             self.truth.index, key=self.truth.index.get))
         self.spectrum = pencil.solve(self.truth.K, self.truth.M, self.truth.K_size, self.truth.M_size)
         self.assertIsNotNone(self.judge())
+
+    def test_a_matrix_that_is_not_that_of_the_cards(self):
+        examination = Examination(self.program, self.MASSLESS_SEED, False, [])
+        examination.write(self.eigrl)
+        _, matrices = self.program.matrices("deck.bdf")
+        truth = Truth(examination.model, *matrices)
+        self.assertTrue(simple.Simple(examination.model, truth.index).has_M)
+        self.assertIsNone(simple.judge(examination.model, truth))
+        at = int(truth.M_g.diagonal().argmax())
+        truth.M_g[at, at] *= 1 + 1e-6
+        self.assertIn("the cards give", simple.judge(examination.model, truth))
 
     def test_static_displacements_and_forces_that_are_off(self):
         truth, rng = self.truth, np.random.default_rng(1)

@@ -1,8 +1,10 @@
 """Spoils the cards of a sound structure: what a hand, a script or a translator does to a deck."""
 TIES = {"RBE1", "RBE2", "RBE3", "RBAR", "RROD", "MPC"}
 PLACES = {"GRID", "SPOINT", "SPC", "SPC1", "CORD1R", "CORD2R", "CORD2C", "CORD2S"} | TIES
-PROPERTIES = {"PBAR", "PBARL", "PBEAM", "PBEAML", "PBCOMP", "PROD", "PTUBE", "PSHELL", "PCOMP", "PSOLID", "PSHEAR",
-              "PELAS", "PBUSH", "PMASS"}
+BEAM, SHELL = ("CBEAM",), ("CQUAD4", "CTRIA3", "CQUADR", "CTRIAR", "CQUAD8", "CTRIA6")
+PROPERTIES = {"PBAR": ("CBAR",), "PBARL": ("CBAR",), "PBEAM": BEAM, "PBEAML": BEAM, "PBCOMP": BEAM, "PROD": ("CROD",),
+              "PTUBE": ("CTUBE",), "PSHELL": SHELL, "PCOMP": SHELL, "PSOLID": ("CHEXA", "CPENTA", "CTETRA"),
+              "PSHEAR": ("CSHEAR",), "PELAS": ("CELAS1", "CELAS3"), "PBUSH": ("CBUSH",), "PMASS": ("CMASS1", "CMASS3")}
 
 
 class Spoiled:
@@ -63,7 +65,8 @@ def duplicate_grid(rng, cards):
 
 
 def drop_property(rng, cards):
-    k = pick(rng, cards, lambda name, _: name in PROPERTIES)
+    used = {(name, fields[1]) for name, fields in cards if len(fields) > 1}
+    k = pick(rng, cards, lambda name, f: any((user, f[0]) in used for user in PROPERTIES.get(name, ())))
     if k is None:
         return None
     return Spoiled(cards[:k] + cards[k + 1:], f"without {cards[k][0]} {cards[k][1][0]}", {"fe.missing-property"}, True)
@@ -74,7 +77,10 @@ def drop_material(rng, cards):
     if k is None:
         return None
     mid = cards[k][1][0]
-    users = [n for n, f in cards if n in PROPERTIES - {"PELAS", "PBUSH", "PMASS", "PCOMP"} and f[1] == mid]
+    of_springs = {"PELAS", "PBUSH", "PMASS", "PCOMP"}
+    used = {(name, fields[1]) for name, fields in cards if len(fields) > 1}
+    users = [n for n, f in cards if n in PROPERTIES and n not in of_springs and f[1] == mid
+             and any((user, f[0]) in used for user in PROPERTIES[n])]
     users += [n for n, f in cards if n == "CONROD" and f[3] == mid]
     ids = {"fe.missing-material"} if users else None
     return Spoiled(cards[:k] + cards[k + 1:], f"without material {mid}", ids, True)
