@@ -28,6 +28,7 @@ struct CardLine {
   int line = 0;
   int first_field = 0;
   bool is_large = false;
+  int num_fields = 0;  ///< a free-field line may hold more than eight
 };
 
 std::string join_some(const std::vector<std::string>& words) {
@@ -65,7 +66,7 @@ struct DeckEditor::Contents {
         detail::split_line(line(i).text, split);
         if (lines.empty()) text.name = detail::make_upper(split.name);
         if (!split.is_large) pad();
-        lines.push_back({i, static_cast<int>(text.fields.size()), split.is_large});
+        lines.push_back({i, static_cast<int>(text.fields.size()), split.is_large, static_cast<int>(split.data.size())});
         text.fields.insert(text.fields.end(), split.data.begin(), split.data.end());
       }
       if (part->next < 0) break;
@@ -209,7 +210,7 @@ std::vector<EditedFile> DeckEditor::write(const std::string& name, const std::ve
                            std::string(line.text) + "'",
                        "write the card in free field");
     };
-    if (field < (is_large ? 4 : 8)) {
+    if (field < std::max(at->num_fields, is_large ? 4 : 8)) {
       const auto changed = detail::set_line_field(change->second.text, field, edit.text);
       if (changed.empty()) fail();
       change->second.text = changed;

@@ -16,8 +16,8 @@
 #include "bough/formats/records/card_location.hpp"
 #include "bough/formats/records/deck_continua.hpp"
 #include "bough/formats/records/deck_loads.hpp"
-#include "bough/formats/records/deck_temperatures.hpp"
 #include "bough/formats/records/deck_special.hpp"
+#include "bough/formats/records/deck_temperatures.hpp"
 
 namespace bough::records {
 
@@ -376,7 +376,7 @@ struct Deck {
   std::string sol;                 ///< "103", "SEMODES", ... upper case; empty in a fragment
   /// What NASTRAN statements set, upper case: "BARMASS" -> "1", "SYSTEM(304)" -> "5"; the last one given counts.
   std::map<std::string, std::string> system_cells;
-  std::vector<Subcase> subcases;   ///< at least one
+  std::vector<Subcase> subcases;  ///< at least one
 
   std::vector<Grid> grids;
   std::vector<int> scalar_points;  ///< SPOINT, and those that CELAS3/4, CMASS3/4 name

@@ -121,7 +121,7 @@ void parse_laminate(Card& card, Reading& r, int skip, int stride) {
     ply.mid = p.plies.empty() ? card.read_id(i + skip, "MID1") : card.read_id(i + skip, "MIDi", ply.mid);
     ply.t = p.plies.empty() ? card.read_real(i + skip + 1, "T1") : card.read_real(i + skip + 1, "Ti", ply.t);
     ply.theta_deg = card.read_real(i + skip + 2, "THETAi", 0.0);
-    card.use(i + skip + 3);        // SOUT
+    card.use(i + skip + 3);     // SOUT
     if (skip > 0) card.use(i);  // GPLYID
     p.plies.push_back(ply);
   }

@@ -109,7 +109,7 @@ void parse_pbush1d(Card& card, Reading& r) {
   p.k = card.read_real(1, "K", 0.0);
   p.c = card.read_real(2, "C", 0.0);
   p.m = card.read_real(3, "M", 0.0);
-  card.use(4, 6);                  // SA, SE
+  card.use(4, 6);                // SA, SE
   card.use(8, card.get_size());  // the lines below
   p.at = card.get_location();
   for (int line = 8; line < card.get_size(); line += 8) {

@@ -41,7 +41,10 @@ class Builder {
         images_(make_card_images(source, first_line, diagnostics)),
         reading_(deck, diagnostics) {
     for (const auto& name : options.ignore_cards) ignored_.insert(make_upper(trim(name)));
-    reading_.reread = [this](int card, CardText& text) { join(card, text); };
+    reading_.reread = [this](int card, CardText& text) {
+      join(card, text);
+      design_.apply(text);
+    };
   }
 
   void read() {

@@ -16,7 +16,7 @@ std::string set_free(std::string_view line, const SplitLine& split, std::size_t 
     return result;
   }
   // The line ends before this field.
-  const auto num_commas = static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
+  const std::size_t num_commas = split.tokens.size() - 1;  // or blanks, which separate too
   if (!split.tag.empty() || num_commas > index) return {};
   return result + std::string(index + 1 - num_commas, ',') + text;
 }

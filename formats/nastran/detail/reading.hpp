@@ -107,16 +107,16 @@ struct BeamDefaults {
   std::string offt = "GGG";
 };
 
-/// Elements of NASTRAN-95 that are read as those of today. Each old property card has ids of its own, so that PSHELL and
-/// PSOLID get theirs when all cards are known.
+/// Elements of NASTRAN-95 that are read as those of today. Each old property card has ids of its own, so that PSHELL
+/// and PSOLID get theirs when all cards are known.
 struct OldElements {
   struct Use {
     std::size_t index = 0;  ///< in deck.shells or deck.solids
     std::string property;   ///< "PQUAD2", "PIHEX"; empty: the element names a material
   };
-  std::map<std::pair<std::string, int>, records::Pshell> shell_properties;   ///< by card and id
-  std::map<std::pair<std::string, int>, std::vector<double>> corner_t;       ///< where it varies over a triangle
-  std::map<int, records::Psolid> solid_properties;                           ///< PIHEX
+  std::map<std::pair<std::string, int>, records::Pshell> shell_properties;  ///< by card and id
+  std::map<std::pair<std::string, int>, std::vector<double>> corner_t;      ///< where it varies over a triangle
+  std::map<int, records::Psolid> solid_properties;                          ///< PIHEX
   std::vector<Use> shells, solids;
   std::map<std::pair<std::string, std::string>, int> counts;  ///< (old card, card of today)
   records::CardLocation first;

@@ -56,6 +56,14 @@ class FieldEditor : public testing::Test {
   fs::path folder_;
 };
 
+TEST_F(FieldEditor, LinesOfBlanksAndBeyondFieldNine) {
+  const std::string bar = "PBAR,1,1,1.,2.,3.,4.,,,.1,.2,.3,.4\n";
+  EXPECT_EQ(edit(bar, at("PBAR", "1", "C2"), ".25"), "PBAR,1,1,1.,2.,3.,4.,,,.1,.25,.3,.4\n");
+  EXPECT_EQ(edit(bar, at("PBAR", "1", "E1"), ".5"), "PBAR,1,1,1.,2.,3.,4.,,,.1,.2,.3,.4,.5\n");
+  EXPECT_EQ(edit("MAT1, 1 7.+10\n", at("MAT1", "1", "E"), "6.9+10"), "MAT1, 1 6.9+10\n");
+  EXPECT_EQ(edit("MAT1, 1 7.+10\n", at("MAT1", "1", "NU"), ".3"), "MAT1, 1 7.+10,,.3\n");
+}
+
 TEST_F(FieldEditor, SmallFieldKeepsEveryOtherByte) {
   const std::string before =
       "$ head\r\nMAT1    1       7.+10           .3      2700.    $ aluminium\r\nENDDATA\r\n tail";
