@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <set>
 
@@ -55,41 +54,6 @@ std::string describe_load(const records::Subcase& statics) {
   return text + (statics.id > 0 ? fmt::format(" (subcase {})", statics.id) : "");
 }
 
-namespace {
-
-/// Those of `pairs` between V1 and V2 of the card, `wanted` at most (0: all).
-modal::EigenPairs pick_in_range(const modal::EigenPairs& pairs, const modal::EigenOptions& range, int wanted) {
-  std::vector<int> kept;
-  for (int i = 0; i < pairs.lambda.size(); ++i)
-    if (!(range.min_hz && pairs.lambda[i] < *range.min_hz) && !(range.max_hz && pairs.lambda[i] > *range.max_hz) &&
-        (wanted == 0 || static_cast<int>(kept.size()) < wanted))
-      kept.push_back(i);
-  modal::EigenPairs picked = pairs;
-  picked.lambda = pairs.lambda(kept);
-  picked.Phi = pairs.Phi(Eigen::all, kept);
-  picked.residual = pairs.residual(kept);
-  return picked;
-}
-
-modal::EigenPairs solve_in_range(const fe::Model& model, const VectorXd& u, const fe::InitialForces& initial,
-                                 modal::EigenOptions eigen, Diagnostics& diagnostics) {
-  const modal::EigenOptions range = eigen;
-  const int wanted = eigen.num_modes;
-  if (wanted == 0) return modal::calc_buckling_modes(model, u, eigen, diagnostics, &initial);
-  eigen.min_hz = eigen.max_hz = std::nullopt;
-  for (;; eigen.num_modes *= 2) {
-    const auto pairs = modal::calc_buckling_modes(model, u, eigen, diagnostics, &initial);
-    auto picked = pick_in_range(pairs, range, wanted);
-    const auto num = pairs.lambda.size();
-    const bool is_all = num < eigen.num_modes || num == 0;
-    const bool is_beyond = range.min_hz && range.max_hz && num > 0 &&
-                           std::abs(pairs.lambda[num - 1]) > std::max(std::abs(*range.min_hz), std::abs(*range.max_hz));
-    if (picked.lambda.size() == wanted || is_all || is_beyond) return picked;
-  }
-}
-
-}  // namespace
-
 modal::EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases, fe::ModelOptions model_options,
                                  const fe::Model& model, const modal::EigenOptions& eigen, Diagnostics& diagnostics) {
   // The static subcase may be held in another way, as for antisymmetric buckling under a symmetric load.
@@ -106,9 +70,9 @@ modal::EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases&
   const auto K = fe::assemble_stiffness(statics, fe::DofSet::Free);
   const fe::StaticSolver solver(statics, K);
   const VectorXd u = fe::solve_static_case(statics, solver, load).displacement;
-  if (!own) return solve_in_range(model, u, load.initial, eigen, diagnostics);
+  if (!own) return modal::calc_buckling_modes(model, u, eigen, diagnostics, &load.initial);
   const auto initial = fe::calc_thermal(model, deck, cases.statics.temperature, diagnostics);
-  return solve_in_range(model, u, initial, eigen, diagnostics);
+  return modal::calc_buckling_modes(model, u, eigen, diagnostics, &initial);
 }
 
 }  // namespace bough::cli

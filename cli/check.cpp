@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bough/fe/assembly.hpp"
+#include "bough/fe/factor.hpp"
 #include "bough/formats/hdf5/files.hpp"
 #include "bough/formats/nastran/reader.hpp"
 #include "bough/formats/records/params.hpp"
@@ -68,9 +69,15 @@ void check_model(const CheckOptions& options, const records::Deck& deck, fe::Mod
   const auto model = fe::Model::build(deck, model_options, diagnostics);
   if (diagnostics.num_errors() > 0) return;
   const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
-  if (mass.rigid_mass.isZero(0))
-    diagnostics.note("cli.no-mass", deck.locate({}), "the model has no mass",
-                     "for modes and bodies give RHO in MAT1, NSM in a property, or CONM2 and CMASS cards");
+  if (mass.rigid_mass.isZero(0)) {
+    const auto M = fe::assemble_mass(model, fe::DofSet::Global, model.mass_kind());
+    if (model.num_gdofs() > 0 && fe::get_diagonal(M.get()).maxCoeff() > 0)
+      diagnostics.note("cli.no-mass", deck.locate({}), "the only mass is at scalar points, which have no place",
+                       "modes are right; a body needs mass at grids");
+    else
+      diagnostics.note("cli.no-mass", deck.locate({}), "the model has no mass",
+                       "for modes and bodies give RHO in MAT1, NSM in a property, or CONM2 and CMASS cards");
+  }
   const GroundChecks ground{fe::calc_ground_check(model, fe::GroundSet::Global),
                             fe::calc_ground_check(model, fe::GroundSet::Independent),
                             fe::calc_ground_check(model, fe::GroundSet::Free)};

@@ -13,6 +13,7 @@
 #include "bough/fe/static_case.hpp"
 #include "bough/formats/hdf5/files.hpp"
 #include "bough/modal/eigen.hpp"
+#include "bough/modal/normalize.hpp"
 #include "buckling_cases.hpp"
 #include "console.hpp"
 #include "deck_tables.hpp"
@@ -36,7 +37,7 @@ struct ModesOptions : CommonOptions {
   std::string deck;
   DeckModelOptions model;
   int number = 0;
-  std::optional<double> max_hz;
+  std::optional<double> min_hz, max_hz;
   bool buckling = false;
   bool no_check = false;
   std::string vtu;
@@ -50,7 +51,7 @@ modal::EigenOptions choose_eigen_options(const ModesOptions& options, const reco
   if (method != 0 && std::none_of(deck.eigen_methods.begin(), deck.eigen_methods.end(), names))
     diagnostics.warning("cli.no-method", deck.locate({}),
                         fmt::format("METHOD = {} names no EIGRL or EIGR card of the deck", method),
-                        "add the card or correct the id; --number and --max-hz go before it");
+                        "add the card or correct the id; --number, --min-hz and --max-hz go before it");
   eigen.num_modes = 0;
   eigen.check_inertia = !options.no_check;
   for (const auto& card : deck.eigen_methods) {
@@ -66,10 +67,21 @@ modal::EigenOptions choose_eigen_options(const ModesOptions& options, const reco
     }
     break;
   }
+  if (options.min_hz) eigen.min_hz = options.min_hz;
   if (options.max_hz) eigen.max_hz = options.max_hz;
+  if (eigen.min_hz && eigen.max_hz && *eigen.max_hz <= *eigen.min_hz)
+    throw InputError("cli.bad-range", {}, fmt::format("the range from {} to {} is empty", *eigen.min_hz, *eigen.max_hz),
+                     "give --max-hz above --min-hz; either may also come from the deck's EIGRL");
   if (options.number > 0) eigen.num_modes = options.number;
   if (eigen.num_modes == 0 && !eigen.max_hz) eigen.num_modes = 10;
   return eigen;
+}
+
+/// NORM of the deck's card.
+modal::Norm choose_norm(const records::Deck& deck, int method) {
+  for (const auto& card : deck.eigen_methods)
+    if (method == 0 || card.sid == method) return {card.norm, card.norm_grid, card.norm_component};
+  return {};
 }
 
 records::ModesResult make_result(const fe::Model& model, const modal::EigenPairs& pairs, bool buckling) {
@@ -133,27 +145,34 @@ std::string format_buckling(const records::ModesResult& r) {
   return table.to_text();
 }
 
-std::string format_health(const records::ModesResult& r) {
+std::string format_health(const records::ModesResult& r, const std::string& norm, bool buckling) {
   const auto n = r.residual.size();
-  std::string text = fmt::format("rigid-body modes: {}\n", r.num_rigid_modes);
+  std::string text = buckling ? "" : fmt::format("rigid-body modes: {}\n", r.num_rigid_modes);
+  if (norm == "MAX" || norm == "POINT")
+    text += fmt::format("shapes: {} (NORM = {} of the deck){}\n",
+                        norm == "MAX" ? "the largest component is 1" : "one dof is 1", norm,
+                        buckling ? "" : "; modal mass and stiffness go with them");
   // A missed mode is an error of modal (modal.missed-modes); what the count has more is below the range or a copy.
+  const char* what = buckling ? "load factors" : "eigenvalues";
+  if (n == 0) return text + fmt::format("no {} in the range asked for\n", what);
   if (r.inertia_count >= 0) {
-    text +=
-        fmt::format("Sturm count: {} eigenvalues up to the highest, {} in the table: none missed{}\n", r.inertia_count,
-                    n, r.inertia_count > n ? " (the others are below the range or copies of the last root)" : "");
+    text += fmt::format("Sturm count: {} {} up to the highest, {} in the table: none missed{}\n", r.inertia_count, what,
+                        n, r.inertia_count > n ? " (the others are below the range or copies of the last root)" : "");
+  } else {
+    text += "Sturm count: none, or none to be trusted\n";
   }
-  if (r.inertia_count < 0 && n > 0) text += "Sturm count: not made\n";
   if (n > 0) text += fmt::format("largest residual: {:.1e}\n", r.residual.maxCoeff());
   return text;
 }
 
-nlohmann::json make_json(const records::ModesResult& r) {
+nlohmann::json make_json(const records::ModesResult& r, const std::string& norm, bool buckling) {
   nlohmann::json json{{"subcase", r.subcase},
                       {"mass_properties", to_json(r.mass_properties)},
                       {"num_rigid_modes", r.num_rigid_modes},
                       {"inertia_count", r.inertia_count},
+                      {"norm", norm},
                       {"residual", to_json_list(r.residual)}};
-  if (r.load_factor.size() > 0) {
+  if (buckling) {
     json["load_factor"] = to_json_list(r.load_factor);
     return json;
   }
@@ -208,21 +227,28 @@ std::string name_output(const std::string& path, int subcase, bool is_first) {
       .string();
 }
 
-records::ModesResult solve_task(const ModesOptions& options, const records::Deck& deck, const Task& task,
-                                const fe::ModelOptions& model_options, Console& console, Diagnostics& diagnostics) {
+struct Solved {
+  records::ModesResult result;
+  std::string norm;
+};
+
+Solved solve_task(const ModesOptions& options, const records::Deck& deck, const Task& task,
+                  const fe::ModelOptions& model_options, Console& console, Diagnostics& diagnostics) {
   auto model = fe::Model::build(deck, model_options, diagnostics);
   diagnostics.throw_if_errors();
   if (fe::has_damping(model))
     diagnostics.note("fe.damping-unused", deck.locate({}),
                      "the dampers of the deck do not act on its modes, as in SOL 103",
                      "bough reduce adds them to the modal damping");
-  const auto pairs =
+  auto pairs =
       task.buckling ? solve_buckling(deck, *task.buckling, model_options, model,
                                      choose_eigen_options(options, deck, task.buckling->buckling.method, diagnostics),
                                      diagnostics)
                     : solve(options, deck, model, console, diagnostics);
   console.end_progress();
-  return make_result(model, pairs, options.buckling);
+  const auto norm = choose_norm(deck, task.buckling ? task.buckling->buckling.method : model.subcase().method);
+  modal::normalize(model, norm, pairs.Phi, diagnostics);
+  return {make_result(model, pairs, options.buckling), norm.kind};
 }
 
 int run_modes(const ModesOptions& options) {
@@ -253,15 +279,16 @@ int run_modes(const ModesOptions& options) {
   bool is_first = true;
   for (const auto& task : tasks) {
     Diagnostics own;
-    records::ModesResult result;
+    Solved solved;
     try {
       model_options.subcase = task.subcase;
-      result = solve_task(options, deck, task, model_options, console, own);
+      solved = solve_task(options, deck, task, model_options, console, own);
     } catch (const Failure& failure) {
       console.end_progress();
       failures.add(task.buckling ? task.buckling->buckling.id : task.subcase, failure);
       continue;
     }
+    auto& [result, norm] = solved;
     result.source = sources;
     if (task.buckling && tasks.size() > 1) result.subcase = task.buckling->buckling.id;
     const auto vtu = name_output(options.vtu, result.subcase, is_first);
@@ -271,9 +298,10 @@ int run_modes(const ModesOptions& options) {
     add_new(own, diagnostics);
     if (tasks.size() > 1) text += fmt::format("{}subcase {}\n\n", is_first ? "" : "\n", result.subcase);
     if (task.buckling) text += describe_load(task.buckling->statics) + "\n\n";
-    text += (options.buckling ? format_buckling(result) : format_modes(result)) + "\n" + format_health(result);
-    if (is_first) json = make_json(result);
-    if (tasks.size() > 1) json["subcases"].push_back(make_json(result));
+    text += (options.buckling ? format_buckling(result) : format_modes(result)) + "\n" +
+            format_health(result, norm, options.buckling);
+    if (is_first) json = make_json(result, norm, options.buckling);
+    if (tasks.size() > 1) json["subcases"].push_back(make_json(result, norm, options.buckling));
     const auto output = name_output(options.output, result.subcase, is_first);
     is_first = false;
     if (output.empty()) continue;
@@ -309,7 +337,8 @@ void add_modes(CLI::App& app, Action& action) {
   verb->add_option("deck", o->deck, "Nastran deck")->required();
   verb->add_option("-n,--number,--modes", o->number, "Number of modes (default: the deck's EIGRL, else 10)")
       ->check(make_positive());
-  verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted");
+  verb->add_option("--min-hz", o->min_hz, "Lowest frequency wanted (with --buckling: load factor)");
+  verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted (with --buckling: load factor)");
   verb->add_flag("--buckling", o->buckling, "Load factors of the static subcase instead of normal modes");
   verb->add_flag("--no-check", o->no_check, "Leave out the count of eigenvalues that proves that no mode was missed");
   verb->add_option("--vtu", o->vtu, "Write the mode shapes to this file for ParaView");

@@ -65,7 +65,7 @@ class CaseSolver {
     Diagnostics own;
     const auto load = fe::calc_static_load(*model_, deck_, subcase, own);
     own.throw_if_errors();
-    auto solved = fe::solve_static_case(*model_, *solver_, load, suport_);
+    auto solved = fe::solve_static_case(*model_, *solver_, load, suport_, &own);
     solved.id = subcase.id;
     solved.label = subcase.label.empty() ? subcase.subtitle : subcase.label;
     solved.load_set = subcase.load;

@@ -3,6 +3,7 @@
 #include "bough/base/diagnostic.hpp"
 #include "bough/fe/assembly.hpp"
 #include "bough/fe/ordering.hpp"
+#include "bough/fe/petsc_message.hpp"
 
 namespace bough::fe {
 namespace {
@@ -65,10 +66,30 @@ FactorState judge_factorization(int status, int detail) {
   if (status >= 0) return FactorState::Done;
   if (status == -8 || status == -9) return FactorState::NeedsWorkspace;
   if (status == -10) return FactorState::Singular;
-  throw ComputationError("fe.factorization", {},
-                         "MUMPS could not factor the stiffness matrix, code " + std::to_string(status) + " (" +
-                             std::to_string(detail) + ")",
-                         status == -13 ? "give the process more memory" : "report the deck");
+  const bool is_memory = status == -13 || status == -7 || status == -19 || status == -22;
+  const std::string own = "code " + std::to_string(status) + " (" + std::to_string(detail) + ") of MUMPS";
+  if (is_memory)
+    throw ComputationError("fe.out-of-memory", {}, "the factor of the stiffness matrix does not fit the memory, " + own,
+                           "use a coarser mesh, or run on more processes of a larger machine (mpirun -n 2 bough ...)");
+  throw ComputationError("fe.factorization", {}, "the stiffness matrix cannot be factored, " + own,
+                         "look for values that are no numbers or of extreme size in properties, materials and grids");
+}
+
+/// LLᵀ met a pivot that is not positive: PETSc's code for it; anything else is a failure that another method may share.
+void judge_definite(PetscErrorCode code) {
+  if (code == 0 || code == PETSC_ERR_MAT_CH_ZRPVT) return;
+  const std::string message = get_petsc_message(code);
+  const auto has = [&](const char* text) { return message.find(text) != std::string::npos; };
+  // CHOLMOD_NOT_POSDEF is 1, CHOLMOD_OUT_OF_MEMORY -2, CHOLMOD_TOO_LARGE -3.
+  if (has("status 1") || has("not positive definite")) return;
+  if (has("status -2") || code == PETSC_ERR_MEM)
+    throw ComputationError("fe.out-of-memory", {}, "the factor of the stiffness matrix does not fit the memory",
+                           "use a coarser mesh, or run on more processes of a larger machine (mpirun -n 2 bough ...)");
+  if (has("status -3"))
+    throw ComputationError("fe.out-of-memory", {},
+                           "the factor of the stiffness matrix has more than 2^31 entries, more than CHOLMOD counts",
+                           "run on two processes or more, where MUMPS factors (mpirun -n 2 bough ...)");
+  check_petsc(code);
 }
 
 PetscMat factor_definite(Mat A) {
@@ -87,9 +108,10 @@ PetscMat factor_definite(Mat A) {
   MatFactorInfo info;
   check_petsc(MatFactorInfoInitialize(&info));
   MatFactorError error = MAT_FACTOR_NOERROR;
-  if (MatCholeskyFactorSymbolic(factor.get(), A, order.get(), &info) != 0 ||
-      MatCholeskyFactorNumeric(factor.get(), A, &info) != 0)
-    return {};
+  PetscErrorCode code = MatCholeskyFactorSymbolic(factor.get(), A, order.get(), &info);
+  if (code == 0) code = MatCholeskyFactorNumeric(factor.get(), A, &info);
+  judge_definite(code);
+  if (code != 0) return {};
   check_petsc(MatFactorGetError(factor.get(), &error));
   if (error != MAT_FACTOR_NOERROR) return {};
   return factor;
@@ -130,7 +152,9 @@ void SymmetricFactor::factor_by_mumps(Mat A, bool find_null_pivots) {
     num_null_pivots_ = find_null_pivots ? static_cast<int>(num) : 0;
     return;
   }
-  throw ComputationError("fe.factorization", {}, "MUMPS ran out of workspace with 1000 % to spare", "report the deck");
+  throw ComputationError("fe.factorization", {},
+                         "the stiffness matrix cannot be factored: pivoting needs more than ten times the workspace",
+                         "look for negative springs, and for very soft and very stiff parts side by side");
 }
 
 MatrixXd solve_factored(Mat factor, const Eigen::Ref<const MatrixXd>& B) {

@@ -6,8 +6,11 @@ namespace bough::fe {
 
 /// What a MUMPS factorization ended with (INFOG(1), INFOG(2)).
 enum class FactorState { Done, Singular, NeedsWorkspace };
-/// Throws ComputationError("fe.factorization") for an error that more workspace does not cure.
+/// Throws ComputationError "fe.out-of-memory" or "fe.factorization" for an error that more workspace does not cure.
 FactorState judge_factorization(int status, int detail);
+/// What PETSc's code of a failed LLᵀ by CHOLMOD means: returns where the matrix is not positive definite; throws
+/// ComputationError "fe.out-of-memory" where memory or CHOLMOD's 32-bit counts ran out, "fe.petsc" for the rest.
+void judge_definite(PetscErrorCode code);
 
 enum class FactorMethod {
   Fastest,  ///< LLᵀ by CHOLMOD on one process, MUMPS where A is not positive definite and on several

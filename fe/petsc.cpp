@@ -2,21 +2,50 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <string>
 #include <string_view>
 
 #include "bough/base/diagnostic.hpp"
+#include "bough/fe/petsc_message.hpp"
 
 namespace bough::fe {
 
-void check_petsc(PetscErrorCode code) {
-  if (code == 0) return;
+std::string get_petsc_message(PetscErrorCode code) {
   const char* text = nullptr;
   char* specific = nullptr;
   PetscErrorMessage(code, &text, &specific);
-  throw ComputationError("fe.petsc", {}, std::string("PETSc failed: ") + (text ? text : "unknown error"),
-                         "run with a smaller model or report the deck");
+  std::string message = specific && *specific ? specific : text ? text : "no text";
+  while (!message.empty() && std::isspace(static_cast<unsigned char>(message.back()))) message.pop_back();
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  return message;
+}
+
+void check_petsc(PetscErrorCode code) {
+  if (code == 0) return;
+  const std::string own = " (code " + std::to_string(code) + " of the library: " + get_petsc_message(code) + ")";
+  switch (code) {
+    case PETSC_ERR_MEM:
+      throw ComputationError("fe.out-of-memory", {}, "the matrices of the model do not fit the memory" + own,
+                             "use a coarser mesh, ask for fewer modes, or run on more processes of a larger machine "
+                             "(mpirun -n 2 bough ...)");
+    case PETSC_ERR_ARG_OUTOFRANGE:
+    case PETSC_ERR_SUP:
+    case PETSC_ERR_INT_OVERFLOW:
+      throw ComputationError("fe.petsc", {},
+                             "the model is too large for the matrix library, or of a form it lacks" + own,
+                             "use a coarser mesh, or run on more processes (mpirun -n 2 bough ...)");
+    case PETSC_ERR_FP:
+      throw ComputationError("fe.petsc", {}, "a number of the matrices overflows or is no number" + own,
+                             "look for extreme or missing values in properties, materials and grids");
+    default:
+      throw ComputationError(
+          "fe.petsc", {}, "the solver of linear equations and eigenvalues refuses the matrices of this model" + own,
+          "look for parts that nothing holds, for masses and stiffness of extreme size and for negative springs; "
+          "bough check names most of them");
+  }
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #include "bough/fe/residual.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -30,9 +31,17 @@ VectorXd calc_residuals(const MatrixXd& D, const MatrixXd& X, const MatrixXd& Y,
   return residual;
 }
 
+VectorXd calc_static_residuals(const VectorXd& K_diagonal, const MatrixXd& X, const MatrixXd& Y, const MatrixXd& F) {
+  VectorXd residual = calc_residuals(K_diagonal.cwiseAbs(), X, Y, F);
+  for (Eigen::Index j = 0; j < X.cols(); ++j) {
+    const double work = std::abs(X.col(j).dot(F.col(j)));
+    if (work > 0) residual(j) = std::max(residual(j), std::abs(X.col(j).dot(Y.col(j) - F.col(j))) / work);
+  }
+  return residual;
+}
+
 MatrixXd calc_residual_scale(const VectorXd& K_diagonal, const VectorXd& B_diagonal, const VectorXd& lambda) {
-  return K_diagonal.cwiseAbs().replicate(1, lambda.size()) +
-         B_diagonal.cwiseAbs() * lambda.cwiseAbs().transpose();
+  return K_diagonal.cwiseAbs().replicate(1, lambda.size()) + B_diagonal.cwiseAbs() * lambda.cwiseAbs().transpose();
 }
 
 void check_residuals(const VectorXd& residual, std::string_view name, Diagnostics& diagnostics) {

@@ -48,7 +48,7 @@ StaticLoad calc_static_load(const Model& model, const records::Deck& deck, const
 }
 
 records::StaticSubcase solve_static_case(const Model& model, const StaticSolver& solver, const StaticLoad& load,
-                                         const Suport& suport) {
+                                         const Suport& suport, Diagnostics* diagnostics) {
   records::StaticSubcase result;
   const VectorXd u0 = model.T_fixed() * load.d;
   VectorXd F = load.F;
@@ -69,7 +69,7 @@ records::StaticSubcase solve_static_case(const Model& model, const StaticSolver&
     F += result.inertia;
     applied += result.inertia;
   }
-  VectorXd u1 = solver.solve(F);
+  VectorXd u1 = solver.solve(F, diagnostics);
   if (suport.relief == InertiaRelief::Free) remove_rigid_part(suport, u1);
   result.displacement = u1 + u0;
   result.load = load.F;

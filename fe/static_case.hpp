@@ -24,7 +24,7 @@ StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int l
 /// `suport`: dofs that the solver holds beside the fixed ones, their forces count as reactions; with inertia relief the
 /// load is F - M Φ a (calc_acceleration), and with INREL -2 ΦᵀM u = 0.
 records::StaticSubcase solve_static_case(const Model& model, const StaticSolver& solver, const StaticLoad& load,
-                                         const Suport& suport = {});
+                                         const Suport& suport = {}, Diagnostics* diagnostics = nullptr);
 
 /// Forces and strain energy of every element, by card in alphabetical order. Replicated. `deck`, `load`: loads along
 /// beams, which act between the ends that u knows; `initial`: of heated elements.

@@ -6,6 +6,7 @@
 
 #include "bough/fe/mechanism.hpp"
 #include "bough/fe/ordering.hpp"
+#include "bough/fe/residual.hpp"
 
 namespace bough::fe {
 namespace {
@@ -131,7 +132,7 @@ const SymmetricFactor* StaticSolver::find_definite_factor() const {
   return is_whole && impl_->factor && impl_->factor->is_definite() ? &*impl_->factor : nullptr;
 }
 
-MatrixXd StaticSolver::solve(const Eigen::Ref<const MatrixXd>& F_g) const {
+MatrixXd StaticSolver::solve(const Eigen::Ref<const MatrixXd>& F_g, Diagnostics* diagnostics) const {
   const SparseRows& T = impl_->T;
   BOUGH_DEMAND(F_g.rows() == T.rows());
   if (impl_->kept.empty()) return MatrixXd::Zero(F_g.rows(), F_g.cols());
@@ -142,6 +143,9 @@ MatrixXd StaticSolver::solve(const Eigen::Ref<const MatrixXd>& F_g) const {
   // One refinement with a residual of more digits: a slender line of 1000 elements gains three (Higham, Accuracy and
   // Stability of Numerical Algorithms, 2nd ed., ch. 12).
   u_kept += impl_->factor->solve(calc_residual(impl_->K.get(), u_kept, F_kept));
+  Diagnostics unheard;
+  check_residuals(calc_static_residuals(get_diagonal(impl_->K.get()), u_kept, multiply(impl_->K.get(), u_kept), F_kept),
+                  "load case", diagnostics ? *diagnostics : unheard);
   u_f(impl_->kept, Eigen::all) = u_kept;
   MatrixXd u_g = T * u_f;
   if (impl_->omitted) u_g += impl_->omitted->solve(F_g);  // K_oo^-1 P_o

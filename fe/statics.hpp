@@ -16,8 +16,9 @@ class StaticSolver {
   explicit StaticSolver(const Model& model);
   ~StaticSolver();
 
-  /// u_g (num_gdofs x m) for loads F_g (num_gdofs x m) in basic on the g-set; both replicated on every rank.
-  MatrixXd solve(const Eigen::Ref<const MatrixXd>& F_g) const;
+  /// u_g (num_gdofs x m) for loads F_g (num_gdofs x m) in basic on the g-set; both replicated on every rank. Throws
+  /// ComputationError("fe.residual") where the forces of u do not balance the loads; its warning needs `diagnostics`.
+  MatrixXd solve(const Eigen::Ref<const MatrixXd>& F_g, Diagnostics* diagnostics = nullptr) const;
   /// LLᵀ of K on the whole f-set, as long as this lives; nullptr where dofs are held or K took pivoting.
   const SymmetricFactor* find_definite_factor() const;
 

@@ -170,6 +170,7 @@ BlockLanczosResult BlockLanczos::finish(bool is_done) {
 }
 
 BlockLanczosResult BlockLanczos::run() {
+  if (next_.cols() == 0) return {VectorXd(0), MatrixXd(V_.rows(), 0), num_solves_, true};  // A⁻¹B is nothing
   const int room = static_cast<int>(V_.cols() - problem_.start.cols());
   for (int restarts = 0; next_.cols() > 0; ++restarts) {
     int check = 2 * problem_.num_wanted;  // before, the Ritz values tell nothing

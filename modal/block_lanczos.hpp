@@ -19,7 +19,7 @@ struct BlockLanczosProblem {
   std::function<MatrixXd(const Eigen::Ref<const MatrixXd>&)> multiply_mass;  ///< B X, B positive semi-definite
   /// C X where the operator is A⁻¹C, C symmetric and B = A (load factors); without it the operator is A⁻¹B.
   std::function<MatrixXd(const Eigen::Ref<const MatrixXd>&)> multiply_operator;
-  MatrixXd start;                                                            ///< n x b: fixes the block's width
+  MatrixXd start;    ///< n x b: fixes the block's width
   MatrixXd deflate;  ///< n x k, B-orthonormal eigenvectors that are known already
   int num_wanted = 1;
   int num_guard = 0;     ///< of num_wanted: the last ones need be rough only, unless their θ is close to the others

@@ -1,15 +1,20 @@
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
+#include <optional>
 
+#include "bough/fe/residual.hpp"
 #include "bough/modal/canonical.hpp"
 #include "bough/modal/eigen.hpp"
 #include "bough/modal/krylov.hpp"
 #include "bough/modal/pencil.hpp"
+#include "bough/modal/roots.hpp"
 
 namespace bough::modal {
 
 namespace {
+
+using detail::Roots;
 
 /// -K_G φ = θ K φ by descending |θ|; λ = 1/θ.
 class BucklingModes {
@@ -20,77 +25,144 @@ class BucklingModes {
         options_(options),
         diagnostics_(diagnostics),
         pencil_(model),
-        K_G_(fe::assemble_geometric_stiffness(model, fe::DofSet::Free, u_g, initial)) {
-    fe::check_petsc(MatDuplicate(K_G_.get(), MAT_COPY_VALUES, minus_K_G_.out()));
-    fe::check_petsc(MatScale(minus_K_G_.get(), -1));
-    X_.resize(pencil_.size(), 0);
-  }
+        K_G_(fe::assemble_geometric_stiffness(model, fe::DofSet::Free, u_g, initial)) {}
   EigenPairs solve();
 
  private:
-  int size() const { return static_cast<int>(theta_.size()); }
-  void run_krylov(int num_wanted);
-  int count_within(double lambda) const;
-  EigenPairs make_pairs(int cut, int num, int count);
+  /// Which load factors: both signs by magnitude, or one sign.
+  enum Side { Negative = -1, Both = 0, Positive = 1 };
+
+  /// Up to `number` more, by magnitude.
+  void add_roots(Side side, int number, Roots& roots);
+  int count_below(Side side, double magnitude) const;
+  /// The first `wanted` of one side (or both), complete; `available` exist at most.
+  void find(Side side, int wanted, int available, Roots& roots);
+  Roots find_in_range();
+  Roots find_on_side(Side side, double low, double high);
+  /// The first `number` in the range.
+  EigenPairs make_pairs(Roots roots, int number);
 
   const fe::Model& model_;
   const EigenOptions& options_;
   Diagnostics& diagnostics_;
   detail::Pencil pencil_;
-  fe::PetscMat K_G_, minus_K_G_;
-  VectorXd theta_;
-  MatrixXd X_;
-  int round_ = 0;
+  fe::PetscMat K_G_, signed_K_G_;
+  Side signed_as_ = Both;
+  std::optional<fe::SymmetricFactor> factor_;  ///< of K
+  double largest_theta_ = 0;
+  int round_ = 0, count_ = -1;
 };
 
-void BucklingModes::run_krylov(int num_wanted) {
+Roots make_none(const detail::Pencil& pencil) { return {VectorXd(0), MatrixXd(pencil.size(), 0)}; }
+
+void BucklingModes::add_roots(Side side, int number, Roots& roots) {
+  // A: -K_G, whose positive θ are positive load factors, or K_G for the negative ones.
+  const Side sign = side == Negative ? Negative : Positive;
+  if (!signed_K_G_ || signed_as_ != sign) {
+    signed_K_G_ = fe::PetscMat();
+    fe::check_petsc(MatDuplicate(K_G_.get(), MAT_COPY_VALUES, signed_K_G_.out()));
+    fe::check_petsc(MatScale(signed_K_G_.get(), -sign));
+    signed_as_ = sign;
+  }
+  if (!factor_) factor_.emplace(pencil_.K.get(), false);
+  if (factor_->is_singular()) detail::throw_singular(pencil_, 0);
   detail::KrylovProblem problem;
-  problem.A = minus_K_G_.get();
+  problem.A = signed_K_G_.get();
   problem.B = pencil_.K.get();
-  problem.spectrum = detail::Spectrum::LargestMagnitude;
-  problem.max_subspace = pencil_.size() - size();
-  if (problem.max_subspace <= 0) return;
-  problem.num_wanted = std::min(num_wanted, problem.max_subspace);
-  problem.deflate = X_;
+  problem.factor = factor_->get();
+  problem.spectrum = side == Both ? detail::Spectrum::LargestMagnitude : detail::Spectrum::LargestPositive;
+  problem.max_subspace = pencil_.size() - roots.size();
+  if (problem.max_subspace <= 0 || number <= 0) return;
+  problem.num_wanted = std::min(number, problem.max_subspace);
+  problem.deflate = roots.X;
   problem.tolerance = options_.tolerance;
   problem.start = round_++;
   problem.progress = options_.progress;
   const auto result = detail::solve_krylov(problem);
-  if (result.is_singular) detail::throw_singular(pencil_, 0);
-
-  VectorXd all(size() + result.values.size());
-  all << theta_, result.values;
-  MatrixXd both(X_.rows(), all.size());
-  both << X_, result.vectors;
-  std::vector<int> order(all.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return std::abs(all(a)) > std::abs(all(b)); });
+  if (result.values.size() == 0) return;
   // θ = 0 is the dofs that no internal force stiffens: no load buckles them.
-  const double floor = all.size() ? 1e-12 * std::abs(all(order[0])) : 0;
-  std::erase_if(order, [&](int i) { return std::abs(all(i)) <= floor; });
-  theta_ = all(order);
-  X_ = both(Eigen::all, order);
+  largest_theta_ = std::max(largest_theta_, result.values.cwiseAbs().maxCoeff());
+  std::vector<int> kept;
+  for (int i = 0; i < result.values.size(); ++i)
+    if (std::abs(result.values(i)) > 1e-12 * largest_theta_ && (side == Both || result.values(i) > 0))
+      kept.push_back(i);
+  roots.add(sign * result.values(kept).cwiseInverse(), result.vectors(Eigen::all, kept), true);
 }
 
-/// Load factors in (-lambda, lambda), by the inertia of K ± λ K_G.
-int BucklingModes::count_within(double lambda) const {
+/// Load factors between zero and ±magnitude, by the inertia of K ± λ K_G; -1 where a pivot stays zero.
+int BucklingModes::count_below(Side side, double magnitude) const {
   int sum = 0;
-  for (const double factor : {lambda, -lambda}) {
+  for (const int sign : {1, -1}) {
+    if (side == -sign) continue;
     int count = -1;
-    for (double f = factor; count < 0 && std::abs(f) < 1.001 * lambda; f *= 1 + 1e-6)
-      count = detail::count_negative(pencil_.K.get(), f, K_G_.get());
-    if (count < 0) detail::throw_singular(pencil_, 0);
+    for (double f = magnitude; count < 0 && f < 1.001 * magnitude; f *= 1 + 1e-6)
+      count = detail::count_negative(pencil_.K.get(), sign * f, K_G_.get());
+    if (count < 0) return -1;
     sum += count;
   }
   return sum;
 }
 
-EigenPairs BucklingModes::make_pairs(int cut, int num, int count) {
-  VectorXd lambda = theta_.head(cut).cwiseInverse();
-  MatrixXd X = X_.leftCols(cut);
-  const MatrixXd KX = pencil_.calc_K_times(X);
+void BucklingModes::find(Side side, int wanted, int available, Roots& roots) {
+  detail::RootSearch search;
+  search.wanted = std::min(wanted, available);
+  search.num_available = available;
+  search.by_magnitude = true;
+  search.counts = options_.check_inertia;
+  search.solve = [&](Roots& known, int number) { add_roots(side, std::min(number, available - known.size()), known); };
+  search.closeness = [](const Roots&, int) { return 1e-8; };
+  search.roundoff = [](const Roots&, int) { return 0.0; };
+  search.count = [&](double mu) { return mu > 0 ? count_below(side, mu) : 0; };
+  search.solve(roots, search.wanted + std::max(4, wanted / 10));
+  const auto result = detail::search_roots(search, roots);
+  if (result.is_missing)
+    throw ComputationError("modal.missed-modes", {},
+                           "found " + std::to_string(result.cut) + " load factors, the inertia of the factor counts " +
+                               std::to_string(result.count),
+                           "ask for more load factors; look for negative springs");
+  if (search.counts && result.count < 0 && result.cut > 0)
+    diagnostics_.warning(
+        "modal.uncertain-count", {},
+        std::to_string(result.cut) + " load factors were found, but the inertia of the factor " +
+            (result.doubtful < 0 ? std::string("could not be counted") : "counts " + std::to_string(result.doubtful)) +
+            ": its pivots are roundoff, and a load factor between may be missing",
+        "replace the stiffest parts by rigid elements");
+  count_ = result.count < 0 || count_ < -1 ? -2 : std::max(count_, 0) + result.count;
+  roots.keep(result.cut);
+}
+
+/// The first num_modes of one sign between two magnitudes, and those below them (they are counted with them).
+Roots BucklingModes::find_on_side(Side side, double low, double high) {
+  Roots roots = make_none(pencil_);
+  if (!(high > low)) return roots;
+  // How many there are at all: without this the solver would look for the last of a kind that does not exist.
+  const double end = std::min(high, 1e6 / largest_theta_);
+  const int available = count_below(side, end), below = low > 0 ? count_below(side, low) : 0;
+  if (available < 0 || below < 0) detail::throw_singular(pencil_, 0);
+  const int wanted = std::min(below + options_.num_modes, available);
+  if (wanted > below) find(side, wanted, available, roots);
+  return roots;
+}
+
+/// Within [min_hz, max_hz] of the load factor, one sign after the other.
+Roots BucklingModes::find_in_range() {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double low = options_.min_hz.value_or(-infinity), high = options_.max_hz.value_or(infinity);
+  Roots nearest = make_none(pencil_);
+  add_roots(Both, 1, nearest);
+  if (nearest.size() == 0) return nearest;
+  Roots roots = find_on_side(Positive, std::max(low, 0.0), high);
+  const Roots negative = find_on_side(Negative, std::max(-high, 0.0), -low);
+  roots.add(negative.value, negative.X, true);
+  return roots;
+}
+
+EigenPairs BucklingModes::make_pairs(Roots roots, int number) {
+  VectorXd lambda = roots.value;
+  MatrixXd X = roots.X;
   const VectorXd weights = detail::calc_basis_weights(model_);
-  for (int a = 0, b = 0; a < cut; a = b) {
+  const MatrixXd KX = pencil_.calc_K_times(X);
+  for (int a = 0, b = 0; a < roots.size(); a = b) {
     b = detail::find_cluster_end(lambda, a, 1e-8, 0);
     const MatrixXd G = X.middleCols(a, b - a).transpose() * KX.middleCols(a, b - a);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(0.5 * (G + G.transpose()));
@@ -99,24 +171,19 @@ EigenPairs BucklingModes::make_pairs(int cut, int num, int count) {
     lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
   }
   std::vector<int> kept;
-  for (int i = 0; i < num; ++i)
+  for (int i = 0; i < roots.size() && static_cast<int>(kept.size()) < number; ++i)
     if (!(options_.min_hz && lambda(i) < *options_.min_hz) && !(options_.max_hz && lambda(i) > *options_.max_hz))
       kept.push_back(i);
+  lambda = VectorXd(lambda(kept));
+  X = MatrixXd(X(Eigen::all, kept));
   EigenPairs pairs;
-  pairs.lambda = lambda(kept);
-  const MatrixXd Y = X(Eigen::all, kept);
-  pairs.Phi = model_.T() * Y;
+  pairs.lambda = lambda;
+  pairs.Phi = model_.T() * X;
   detail::fix_signs(pairs.Phi);
-  pairs.inertia_count = count;
-  pairs.residual.resize(pairs.lambda.size());
-  for (Eigen::Index j = 0; j < Y.cols(); ++j) {
-    fe::PetscVec x, y;
-    fe::check_petsc(MatCreateVecs(K_G_.get(), x.out(), y.out()));
-    fe::scatter(Y.col(j), x.get());
-    fe::check_petsc(MatMult(K_G_.get(), x.get(), y.get()));
-    const VectorXd k = pencil_.calc_K_times(Y.col(j));
-    pairs.residual(j) = (k + pairs.lambda(j) * fe::gather(y.get())).norm() / k.norm();
-  }
+  pairs.inertia_count = std::max(count_, -1);
+  pairs.residual = fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, fe::get_diagonal(K_G_.get()), lambda),
+                                      X, pencil_.calc_K_times(X), -fe::multiply(K_G_.get(), X) * lambda.asDiagonal());
+  fe::check_residuals(pairs.residual, "load factor", diagnostics_);
   return pairs;
 }
 
@@ -127,51 +194,28 @@ EigenPairs BucklingModes::solve() {
                            "buckling needs a supported model: " +
                                std::to_string(rigid.modes.cols() + rigid.massless.cols()) + " rigid motion(s) are free",
                            "add SPC cards and select them with SPC in the case control");
+  Roots roots = make_none(pencil_);
   int wanted = options_.num_modes;
-  if (wanted <= 0) {
+  if (wanted > 0 && (options_.min_hz || options_.max_hz)) {
+    roots = find_in_range();
+  } else {
     double bound = 0;
     for (const auto& end : {options_.min_hz, options_.max_hz})
       if (end) bound = std::max(bound, std::abs(*end));
-    wanted = bound > 0 ? count_within(bound) : pencil_.size();
+    if (wanted <= 0) wanted = bound > 0 ? count_below(Both, bound) : pencil_.size();
+    if (wanted < 0) detail::throw_singular(pencil_, 0);
+    if (wanted > 0) find(Both, wanted, pencil_.size(), roots);
+    if (roots.size() < wanted && options_.num_modes > 0)
+      diagnostics_.warning("modal.fewer-modes", {},
+                           "the load has " + std::to_string(roots.size()) + " buckling modes, " +
+                               std::to_string(wanted) + " were asked for",
+                           "ask for fewer");
   }
-  const int asked = wanted;
-  wanted = std::min(wanted, pencil_.size());
-  if (wanted > 0) run_krylov(wanted + std::max(4, wanted / 10));
-
-  int count = -1, cut = -1;
-  for (int round = 0; round < 8; ++round) {
-    const int before = size();
-    int missing = wanted - size();
-    if (missing <= 0) {
-      for (cut = std::max(wanted, 0); cut < size(); ++cut)
-        if (cut == 0 || std::abs(theta_(cut - 1)) - std::abs(theta_(cut)) > 1e-6 * std::abs(theta_(cut - 1))) break;
-      if (cut >= size() && size() < pencil_.size()) cut = -1;
-      missing = cut < 0 ? 4 : 0;
-    }
-    if (missing == 0 && options_.check_inertia && cut > 0) {
-      const double top = 1 / std::abs(theta_(cut - 1));
-      const double next = cut < size() ? 1 / std::abs(theta_(cut)) : 2 * top;
-      count = count_within(top + std::min(0.5 * (next - top), 1e-3 * top));
-      missing = count - cut;
-    }
-    if (missing == 0) return make_pairs(cut, std::min(wanted, cut), count);
-    if (missing < 0) break;
-    run_krylov(missing + 2);
-    if (size() == before) {
-      if (size() >= wanted && cut >= 0) break;
-      // The solver has nothing more to give: K_G has no more rank.
-      if (size() < asked && options_.num_modes > 0)
-        diagnostics_.warning(
-            "modal.fewer-modes", {},
-            "the load has " + std::to_string(size()) + " buckling modes, " + std::to_string(asked) + " were asked for",
-            "ask for fewer");
-      return make_pairs(size(), std::min(wanted, size()), -1);
-    }
-  }
-  throw ComputationError("modal.missed-modes", {},
-                         "found " + std::to_string(std::max(cut, 0)) +
-                             " load factors, the inertia of the factor counts " + std::to_string(count),
-                         "ask for more modes");
+  auto pairs = make_pairs(std::move(roots), wanted);
+  if (pairs.lambda.size() == 0)
+    diagnostics_.warning("modal.empty-range", {}, "no load factor lies in the range asked for",
+                         "widen V1 and V2 of the card; a load that only stiffens has negative load factors alone");
+  return pairs;
 }
 
 }  // namespace

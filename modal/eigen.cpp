@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "bough/fe/blas.hpp"
 #include "bough/fe/residual.hpp"
@@ -69,6 +71,7 @@ class NormalModes {
   Diagnostics& diagnostics_;
   Pencil pencil_;
   RigidMotions rigid_;
+  std::vector<std::pair<int, double>> springs_;  ///< f-dofs of the massless motions, held by them in K
   std::optional<detail::PencilSolver> solver_;
   int first_ = 0, last_ = 0;  ///< positions wanted, [first, last)
   double shift_ = 0;          ///< K + shift M is definite
@@ -88,6 +91,7 @@ void NormalModes::hold_massless() {
   for (const int f : rigid_.held) {
     const double stiffness = pencil_.K_diagonal(f) > 0 ? pencil_.K_diagonal(f) : largest;
     if (f >= first && f < last) fe::check_petsc(MatSetValue(pencil_.K.get(), f, f, stiffness, ADD_VALUES));
+    springs_.emplace_back(f, stiffness);
     where += (where.empty() ? "" : ", ") + detail::describe(pencil_.model, f);
   }
   fe::check_petsc(MatAssemblyBegin(pencil_.K.get(), MAT_FINAL_ASSEMBLY));
@@ -109,8 +113,12 @@ void NormalModes::choose_range(detail::KrylovMethod method) {
   first_ = options_.min_hz ? count_below(*options_.min_hz) : 0;
   last_ = options_.num_modes > 0 ? first_ + options_.num_modes : pencil_.size();
   if (options_.max_hz) last_ = std::min(last_, count_below(*options_.max_hz));
-  detail::PencilProblem problem{pencil_.K.get(), pencil_.M.get(), pencil_.M_diagonal, rigid_.modes};
-  // A mass on a held dof of a massless motion would be none: K has a spring there that the caller's factor has not.
+  detail::PencilProblem problem;
+  problem.K = pencil_.K.get();
+  problem.M = pencil_.M.get();
+  problem.M_diagonal = pencil_.M_diagonal;
+  problem.rigid = rigid_.modes;
+  // hold_massless() puts springs into K that the caller's factor has not.
   if (rigid_.held.empty()) problem.factor = options_.factor;
   problem.tolerance = options_.tolerance;
   problem.method = method;
@@ -124,7 +132,6 @@ bool NormalModes::add_roots(Roots& roots, int number, int guard, bool definite_o
     detail::throw_singular(pencil_, shift_);
   }
   num_zero_ = count_zeros(pencil_, roots);
-  if (getenv("DBG")) { fprintf(stderr, "shift %g zero %d:", shift_, num_zero_); const MatrixXd KX = pencil_.calc_K_times(roots.X), MX=pencil_.calc_M_times(roots.X); for (int i=0;i<std::min(8,roots.size());++i) fprintf(stderr," %g(%.1e, ray %g)", roots.value(i), pencil_.calc_relative_energy(roots.X.col(i), roots.value(i)), roots.X.col(i).dot(KX.col(i))/roots.X.col(i).dot(MX.col(i))); fprintf(stderr,"\n"); }
   return true;
 }
 
@@ -143,14 +150,14 @@ void NormalModes::find_first() {
   for (int attempt = 0; attempt < 6; ++attempt) {
     found_ = none;
     add_roots(found_, request, guard);
-    // A shift far above the first eigenvalue costs digits, and the vectors where it is out of all proportion: move it
-    // down by what their strain energy says and solve again.
+    // A shift far above the first eigenvalue with strain costs digits, and the vectors where it is out of all
+    // proportion; one far below it lets the motions without strain into them: move it by what the strain energies say.
     const VectorXd energy = found_.X.cwiseProduct(pencil_.calc_K_times(found_.X)).colwise().sum();
     double lowest = 0;
     for (int i = 0; i < found_.size(); ++i)
       if (pencil_.calc_relative_energy(found_.X.col(i), energy(i)) > 1e-12 && (lowest == 0 || energy(i) < lowest))
         lowest = energy(i);
-    if (!(lowest > 0) || shift_ <= 10 * lowest) return;
+    if (!(lowest > 0) || (shift_ <= 10 * lowest && shift_ >= 1e-5 * lowest)) return;
     shift_ = 0.1 * lowest;
   }
 }
@@ -164,8 +171,7 @@ detail::RootSearchResult NormalModes::search() {
   search.shift = shift_;
   search.solve = [&](Roots& roots, int number) { add_roots(roots, number, 0); };
   search.closeness = [&](const Roots& roots, int i) {
-    return i < num_zero_ ? 1e-8
-                         : calc_cluster_tolerance(pencil_.calc_relative_energy(roots.X.col(i), roots.value(i)));
+    return i < num_zero_ ? 1e-8 : calc_cluster_tolerance(pencil_.calc_relative_energy(roots.X.col(i), roots.value(i)));
   };
   search.roundoff = [&](const Roots& roots, int i) { return calc_roundoff(roots, i); };
   search.count = [&](double mu) {
@@ -216,9 +222,10 @@ EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
   pairs.inertia_count = count;
   pairs.num_massless = static_cast<int>(rigid_.held.size());
   warn_of_roundoff(pairs, X, said);
-  pairs.residual = fe::calc_residuals(
-      fe::calc_residual_scale(pencil_.K_diagonal, pencil_.M_diagonal, pairs.lambda), X, pencil_.calc_K_times(X),
-      pencil_.calc_M_times(X) * pairs.lambda.asDiagonal());
+  MatrixXd KX = pencil_.calc_K_times(X);
+  for (const auto& [f, stiffness] : springs_) KX.row(f) -= stiffness * X.row(f);  // rigid motions move them
+  pairs.residual = fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, pencil_.M_diagonal, pairs.lambda), X,
+                                      KX, pencil_.calc_M_times(X) * pairs.lambda.asDiagonal());
   pairs.Phi = model.T() * X;
   detail::fix_signs(pairs.Phi);
   return pairs;
@@ -263,11 +270,12 @@ EigenPairs NormalModes::find_pairs(detail::KrylovMethod method, bool& is_sound, 
   const int cut = num_rigid() + result.cut;
   if (result.is_missing) {
     is_sound = false;
-    said.error("modal.missed-modes", {},
-               "found " + std::to_string(cut) + " modes, the inertia of the factor counts " +
-                   std::to_string(num_rigid() + result.count),
-               "look for negative springs and for DMIG that take stiffness away; if stiffness spans many orders, soften "
-               "the stiffest parts or use rigid elements");
+    said.error(
+        "modal.missed-modes", {},
+        "found " + std::to_string(cut) + " modes, the inertia of the factor counts " +
+            std::to_string(num_rigid() + result.count),
+        "look for negative springs and for DMIG that take stiffness away; if stiffness spans many orders, soften "
+        "the stiffest parts or use rigid elements");
     return {};
   }
   last_ = std::min(last_, cut);

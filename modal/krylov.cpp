@@ -225,6 +225,7 @@ std::optional<KrylovResult> solve_one_vector(const KrylovProblem& problem, Mat f
   PetscInt converged = 0, n = 0;
   check_petsc(MatGetSize(problem.A, &n, nullptr));
   check_petsc(EPSGetConverged(eps.get(), &converged));
+  if (converged == 0) return std::nullopt;
   result.values.resize(converged);
   result.vectors.resize(n, converged);
   fe::PetscVec x;

@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 void initialize_slepc();
 
 enum class Spectrum {
-  NearShift,        ///< A x = λ B x nearest `shift` by shift-invert; A - shift B is factored
+  NearShift,         ///< A x = λ B x nearest `shift` by shift-invert; A - shift B is factored
   LargestMagnitude,  ///< A x = θ B x of largest |θ|; B, positive definite, is factored
   LargestPositive    ///< the same, θ > 0 only
 };

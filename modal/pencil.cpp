@@ -231,12 +231,14 @@ double estimate_first_eigenvalue(const Pencil& pencil) {
   const VectorXd scale = M.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
   VectorXd m;
   const MatrixXd V = calc_range(scale.asDiagonal() * M * scale.asDiagonal(), 1e-9, true, &m);
-  const MatrixXd W = scale.asDiagonal() * V * m.cwiseSqrt().cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(W.transpose() * K * W);
-  const MatrixXd Y = X * (W * ritz.eigenvectors());
-  for (Eigen::Index i = 0; i < Y.cols(); ++i) {
-    const double lambda = ritz.eigenvalues()(i);
-    if (lambda > 0 && pencil.calc_relative_energy(Y.col(i), lambda) > 1e-12) return lambda;
+  if (V.cols() > 0) {  // scalar points alone: none
+    const MatrixXd W = scale.asDiagonal() * V * m.cwiseSqrt().cwiseInverse().asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(W.transpose() * K * W);
+    const MatrixXd Y = X * (W * ritz.eigenvectors());
+    for (Eigen::Index i = 0; i < Y.cols(); ++i) {
+      const double lambda = ritz.eigenvalues()(i);
+      if (lambda > 0 && pencil.calc_relative_energy(Y.col(i), lambda) > 1e-12) return lambda;
+    }
   }
   // No polynomial strains the model: fall back on the softest single dof.
   double lowest = 0;

@@ -27,8 +27,8 @@ struct Pencil {
 
 /// The rigid motions of the model that its constraints and springs leave free.
 struct RigidMotions {
-  MatrixXd modes;         ///< num_fdofs x k, orthonormal under M, in order: translations of the cg, rotations, loose dofs
-  MatrixXd massless;      ///< num_fdofs x l: no strain and no mass; K - σM is singular along them for every σ
+  MatrixXd modes;     ///< num_fdofs x k, orthonormal under M, in order: translations of the cg, rotations, loose dofs
+  MatrixXd massless;  ///< num_fdofs x l: no strain and no mass; K - σM is singular along them for every σ
   std::vector<int> held;  ///< l f-dofs whose holding removes the massless motions and changes nothing else
 };
 

@@ -51,7 +51,6 @@ bool PencilSolver::solve_whole(double shift, int number, bool definite_only, Roo
   std::optional<fe::SymmetricFactor> own;
   const fe::SymmetricFactor* factor = shift == 0 ? problem_.factor : nullptr;
   if (!factor) factor = &own.emplace(A, false);
-  if (getenv("DBG")) fprintf(stderr, "whole shift %g singular %d definite %d soft %g rank %d\n", shift, factor->is_singular(), factor->is_definite(), fe::calc_softest_energy(A, *factor), (int)r);
   if (factor->is_singular()) return false;
   if (definite_only && fe::initialize_petsc().size == 1 && !factor->is_definite()) return false;
   if (k == 0 && fe::calc_softest_energy(A, *factor) < fe::kMechanismEnergy) return false;

@@ -11,12 +11,12 @@ namespace bough::modal::detail {
 
 struct PencilProblem {
   Mat K = nullptr, M = nullptr;
-  VectorXd M_diagonal;  ///< replicated
-  MatrixXd rigid;       ///< n x k, M-orthonormal motions without strain, known; kept out
+  VectorXd M_diagonal;                          ///< replicated
+  MatrixXd rigid;                               ///< n x k, M-orthonormal motions without strain, known; kept out
   const fe::SymmetricFactor* factor = nullptr;  ///< of K, where the caller has it
   double tolerance = 1e-12;
   KrylovMethod method = KrylovMethod::Fastest;
-  std::function<void(int converged, int wanted)> progress;
+  std::function<void(int converged, int wanted)> progress = {};
 };
 
 class PencilSolver {

@@ -104,31 +104,31 @@ std::vector<AutospcEntry> find_singular_dofs(const std::vector<Node>& nodes,
 }
 
 void drop_with_mass(const std::vector<Node>& nodes, const std::vector<std::unique_ptr<const Element>>& elements,
-                    MassKind kind, std::vector<AutospcEntry>& entries) {
-  std::unordered_map<int, std::size_t> index;  // of the nodes by id
-  for (std::size_t k = 0; k < nodes.size(); ++k) index[nodes[k].id] = k;
-  std::vector<std::vector<std::size_t>> at_node(nodes.size());  // entries
-  for (std::size_t e = 0; e < entries.size(); ++e) at_node[index[entries[e].node]].push_back(e);
+                    const SparseRows& T0, const std::vector<int>& fdof_ldof, MassKind kind,
+                    std::vector<AutospcEntry>& entries) {
+  std::unordered_map<int, int> first_dof;  // of the nodes by id
+  for (const Node& node : nodes) first_dof[node.id] = node.first_gdof;
+  std::unordered_map<int, std::size_t> at_dof;  // entries
+  for (std::size_t e = 0; e < entries.size(); ++e)
+    at_dof[first_dof[entries[e].node] + std::max(entries[e].component - 1, 0)] = e;
+  std::vector<int> entry_of(fdof_ldof.size(), -1);
+  for (std::size_t f = 0; f < fdof_ldof.size(); ++f)
+    if (const auto found = at_dof.find(fdof_ldof[f]); found != at_dof.end())
+      entry_of[f] = static_cast<int>(found->second);
   std::vector<double> mass(entries.size(), 0);
-  MatrixXd M;
+  ElementTransform transform;
+  MatrixXd M_e;
   for (const auto& element : elements) {
-    M.resize(0, 0);
-    for (const int k : element->nodes())
-      for (const std::size_t e : at_node[static_cast<std::size_t>(k)]) {
-        if (M.size() == 0) {
-          M.setZero(element->num_dofs(), element->num_dofs());
-          element->add_mass(kind, 1, M);
-        }
-        const Node& node = nodes[static_cast<std::size_t>(k)];
-        const int slot = std::max(entries[e].component - 1, 0), first = node.first_gdof + 3 * (slot / 3);
-        VectorXd direction = VectorXd::Zero(M.rows());
-        for (Eigen::Index i = 0; i < M.rows(); ++i) {
-          const int row = element->gdofs()[static_cast<std::size_t>(i)] - first;
-          if (node.num_dofs == 1 ? row == 0 : row >= 0 && row < 3)
-            direction[i] = node.num_dofs == 1 ? 1 : node.R_basic_cd(row, slot % 3);
-        }
-        mass[e] += direction.dot(M * direction);
-      }
+    transform.set(T0, element->gdofs());
+    const auto& columns = transform.columns();
+    if (std::none_of(columns.begin(), columns.end(), [&](int f) { return entry_of[static_cast<std::size_t>(f)] >= 0; }))
+      continue;
+    M_e.setZero(element->num_dofs(), element->num_dofs());
+    element->add_mass(kind, 1, M_e);
+    const MatrixXd& M_f = transform.project(M_e);
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      if (const int e = entry_of[static_cast<std::size_t>(columns[i])]; e >= 0)
+        mass[static_cast<std::size_t>(e)] += M_f(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i));
   }
   std::size_t kept = 0;
   for (std::size_t e = 0; e < entries.size(); ++e)

@@ -18,8 +18,10 @@ std::vector<AutospcEntry> find_singular_dofs(const std::vector<Node>& nodes,
                                              const std::vector<std::unique_ptr<const Element>>& elements,
                                              const SparseRows& T0, const std::vector<int>& fdof_ldof, double epsilon);
 
-/// Takes out those of `entries` that carry mass: in normal modes they move at zero frequency.
+/// Takes out those of `entries` that carry mass, their own or of dofs that follow them: in normal modes they move at
+/// zero frequency.
 void drop_with_mass(const std::vector<Node>& nodes, const std::vector<std::unique_ptr<const Element>>& elements,
-                    MassKind kind, std::vector<AutospcEntry>& entries);
+                    const SparseRows& T0, const std::vector<int>& fdof_ldof, MassKind kind,
+                    std::vector<AutospcEntry>& entries);
 
 }  // namespace bough::fe

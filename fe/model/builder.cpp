@@ -289,7 +289,7 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
   model_.autospc_ =
       find_singular_dofs(model_.nodes_, model_.elements_, model_.T_, first.fdof_ldof, only_null ? 1e-14 : epsilon);
   if (only_null && !options_.uses_enforced)
-    drop_with_mass(model_.nodes_, model_.elements_, model_.mass_kind_, model_.autospc_);
+    drop_with_mass(model_.nodes_, model_.elements_, model_.T_, first.fdof_ldof, model_.mass_kind_, model_.autospc_);
   // Without any stiffness at all there is nothing to solve yet.
   if (only_null && model_.autospc_.size() == static_cast<size_t>(model_.T_.cols())) model_.autospc_.clear();
   if (model_.autospc_.empty()) return;

@@ -3,20 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "bough/fe/mechanism.hpp"
+#include "bough/fe/residual.hpp"
 #include "bough/fe/statics.hpp"
 #include "bough/modal/canonical.hpp"
-#include "bough/modal/krylov.hpp"
 #include "bough/modal/pencil.hpp"
+#include "bough/modal/pencil_solver.hpp"
 
 namespace bough::modal::bases {
 
 namespace {
-
-/// As in eigen.cpp: below this size Krylov has nothing to offer.
-constexpr int kDenseSize = 60, kDenseLimit = 4000;
 
 [[noreturn]] void throw_mechanism(const fe::Model& model, const Partition& part, Mat K_ii) {
   const MatrixXd motions = fe::find_mechanisms(K_ii, 1);
@@ -53,15 +50,18 @@ struct FixedInterface::Impl {
     factor.emplace(K_ii.get(), false);
     if (!is_sound()) throw_mechanism(model, part, K_ii.get());
   }
-  MatrixXd expand(const MatrixXd& X_i) const { return model.T() * MatrixXd(part.S_i * X_i); }
-  int count_below(double lambda) const {
-    for (int attempt = 0; attempt < 4; ++attempt, lambda *= 1 + 1e-9) {
-      const int count = detail::count_negative(K_ii.get(), -lambda, M_ii.get());
-      if (count >= 0) return count;
-    }
-    return -1;
+  /// As StaticSolver::solve: one refinement with a residual of more digits.
+  MatrixXd solve_refined(const MatrixXd& F_i) const {
+    MatrixXd X = factor->solve(F_i);
+    X += factor->solve(fe::calc_residual(K_ii.get(), X, F_i));
+    Diagnostics unheard;
+    fe::check_residuals(fe::calc_static_residuals(fe::get_diagonal(K_ii.get()), X, fe::multiply(K_ii.get(), X), F_i),
+                        "load case with the interface held", unheard);
+    return X;
   }
-  void solve_dense(VectorXd& lambda, MatrixXd& X) const;
+  MatrixXd expand(const MatrixXd& X_i) const { return model.T() * MatrixXd(part.S_i * X_i); }
+  int count_below(double hz) const;
+  detail::RootSearchResult find_roots(int wanted, detail::PencilSolver& solver, detail::Roots& roots) const;
   void make_canonical(VectorXd& lambda, MatrixXd& X) const;
 };
 
@@ -76,30 +76,16 @@ MatrixXd FixedInterface::calc_constraint_modes() const {
   const auto& part = impl_->part;
   MatrixXd X = part.S_b;
   if (impl_->factor && part.num_boundary() > 0)
-    X -= part.S_i * impl_->factor->solve(part.S_i.transpose() * fe::multiply(impl_->K.get(), part.S_b));
+    X -= part.S_i * impl_->solve_refined(part.S_i.transpose() * fe::multiply(impl_->K.get(), part.S_b));
   return impl_->model.T() * X;
 }
 
 MatrixXd FixedInterface::solve(const MatrixXd& F_g) const {
   MatrixXd U = MatrixXd::Zero(F_g.rows(), F_g.cols());
   if (impl_->factor && F_g.cols() > 0)
-    U = impl_->expand(impl_->factor->solve(impl_->part.S_i.transpose() * MatrixXd(impl_->model.T().transpose() * F_g)));
+    U = impl_->expand(impl_->solve_refined(impl_->part.S_i.transpose() * MatrixXd(impl_->model.T().transpose() * F_g)));
   if (impl_->model.omitted()) U += impl_->model.omitted()->solve(F_g);
   return U;
-}
-
-/// M x = θ K x, λ = 1/θ: massless dofs sit harmlessly at θ = 0.
-void FixedInterface::Impl::solve_dense(VectorXd& lambda, MatrixXd& X) const {
-  const auto n = static_cast<Eigen::Index>(part.interior.size());
-  const MatrixXd identity = MatrixXd::Identity(n, n);
-  MatrixXd K_dense = fe::multiply(K_ii.get(), identity), M_dense = fe::multiply(M_ii.get(), identity);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(0.5 * (M_dense + M_dense.transpose()),
-                                                                  0.5 * (K_dense + K_dense.transpose()));
-  const VectorXd theta = solver.eigenvalues().reverse();
-  const auto rank = (theta.array() > 1e-14 * std::max(theta.maxCoeff(), 0.0)).count();
-  lambda = theta.head(rank).cwiseInverse();
-  X = solver.eigenvectors().rowwise().reverse().leftCols(rank) *
-      theta.head(rank).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
 /// Orthonormal once more, and one basis of each repeated root.
@@ -117,77 +103,76 @@ void FixedInterface::Impl::make_canonical(VectorXd& lambda, MatrixXd& X) const {
   }
 }
 
+int FixedInterface::Impl::count_below(double hz) const {
+  const double w = 2 * std::numbers::pi * hz;
+  const int count = hz > 0 ? detail::count_roots_below(K_ii.get(), M_ii.get(), w * w) : 0;
+  if (count >= 0) return count;
+  throw ComputationError("modal.missed-modes", {},
+                         "the modes with the interface held below " + std::to_string(hz) +
+                             " Hz cannot be counted: the " + "factor of K - w^2 M has zero pivots",
+                         "ask for a number of modes instead of a highest frequency");
+}
+
+detail::RootSearchResult FixedInterface::Impl::find_roots(int wanted, detail::PencilSolver& solver,
+                                                          detail::Roots& roots) const {
+  detail::RootSearch search;
+  search.wanted = wanted;
+  search.num_available = solver.num_available();
+  search.solve = [&](detail::Roots& known, int number) { solver.solve(0, number, 0, false, known); };
+  search.closeness = [](const detail::Roots&, int) { return 1e-8; };
+  search.roundoff = [](const detail::Roots&, int) { return 0.0; };
+  search.count = [&](double mu) { return detail::count_roots_below(K_ii.get(), M_ii.get(), mu); };
+  solver.solve(0, wanted + 2, 2, false, roots);
+  return detail::search_roots(search, roots);
+}
+
 ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Diagnostics& diagnostics) const {
   const Impl& in = *impl_;
   const auto size = static_cast<int>(in.part.interior.size());
   ModeSet set{VectorXd(0), MatrixXd(in.model.num_gdofs(), 0)};
   if (size == 0) return set;
-  const int available = static_cast<int>((fe::get_diagonal(in.M_ii.get()).array() > 0).count());
-  int wanted = number > 0 ? number : (max_hz ? available : 0);
-  if (max_hz) {
-    const double w = 2 * std::numbers::pi * *max_hz;
-    const int below = w > 0 ? in.count_below(w * w) : 0;
-    if (below >= 0) wanted = std::min(wanted, below);
-  }
-  if (wanted > available) {
-    diagnostics.warning("modal.fewer-modes", {},
-                        "the model has " + std::to_string(available) + " modes with its interface held, " +
-                            std::to_string(wanted) + " were asked for",
-                        "ask for fewer, or use a finer mesh or a consistent mass");
-    wanted = available;
-  }
+  int wanted = number > 0 ? number : (max_hz ? size : 0);
+  if (max_hz) wanted = std::min(wanted, in.count_below(*max_hz));
   if (wanted == 0) return set;
 
-  VectorXd lambda(0);
-  MatrixXd X(size, 0);
-  int request = wanted + std::max(4, wanted / 10), complete = -1;
-  if (size <= kDenseSize || (2 * request >= available && size <= kDenseLimit)) {
-    in.solve_dense(lambda, X);
-    complete = static_cast<int>(lambda.size());
-  }
-  for (int round = 0; complete < 0 && round < 8; ++round) {
-    detail::KrylovProblem problem;
-    problem.A = in.K_ii.get();
-    problem.B = in.M_ii.get();
-    problem.max_subspace = available - static_cast<int>(lambda.size());
-    if (problem.max_subspace <= 0) break;
-    problem.num_wanted = std::min(request, problem.max_subspace);
-    problem.deflate = X;
-    problem.tolerance = 1e-12;
-    problem.start = round;
-    const auto found = detail::solve_krylov(problem);
-    if (found.values.size() == 0) break;
-    VectorXd all(lambda.size() + found.values.size());
-    all << lambda, found.values;
-    MatrixXd both(size, all.size());
-    both << X, found.vectors;
-    std::vector<int> order(static_cast<std::size_t>(all.size()));
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return all(a) < all(b); });
-    lambda = all(order);
-    X = both(Eigen::all, order);
-    // The first gap at or after the last one wanted: what lies below can be counted.
-    int cut = wanted;
-    while (cut < lambda.size() && lambda(cut) - lambda(cut - 1) <= 1e-6 * lambda(cut)) ++cut;
-    request = 4;
-    if (cut >= lambda.size() && cut < available) continue;
-    const double top = lambda(cut - 1);
-    const double mu = cut < lambda.size() ? std::min(0.5 * (top + lambda(cut)), 1.001 * top) : 1.001 * top;
-    const int count = in.count_below(mu);
-    if (count == cut) complete = cut;
-    request = std::max(4, count - cut + 2);
-  }
-  if (complete < 0 || lambda.size() < std::min(wanted, complete))
+  const VectorXd K_diagonal = fe::get_diagonal(in.K_ii.get());
+  detail::PencilProblem problem;
+  problem.K = in.K_ii.get();
+  problem.M = in.M_ii.get();
+  problem.M_diagonal = fe::get_diagonal(in.M_ii.get());
+  problem.rigid.resize(size, 0);
+  problem.factor = &*in.factor;
+  detail::PencilSolver solver(problem, wanted);
+  detail::Roots roots{VectorXd(0), MatrixXd(size, 0)};
+  const auto result = in.find_roots(wanted, solver, roots);
+  if (result.is_missing)
     throw ComputationError("modal.missed-modes", {},
-                           "found " + std::to_string(lambda.size()) + " modes with the interface held, not all of them",
-                           "ask for more modes; look for negative springs");
-  complete = std::min<int>(complete, static_cast<int>(lambda.size()));
-  lambda = lambda.head(complete).eval();
-  X = X.leftCols(complete).eval();
-  in.make_canonical(lambda, X);
-  const int kept = std::min(wanted, complete);
-  set.lambda = lambda.head(kept);
-  set.Phi = in.expand(X.leftCols(kept));
+                           "found " + std::to_string(result.cut) +
+                               " modes with the interface held, the inertia of the " + "factor counts " +
+                               std::to_string(result.count),
+                           "look for negative springs and for DMIG that take stiffness away");
+  if (result.cut < wanted)
+    diagnostics.warning("modal.fewer-modes", {},
+                        "the model has " + std::to_string(result.cut) + " modes with its interface held, " +
+                            std::to_string(wanted) + " were asked for",
+                        "ask for fewer, or use a finer mesh or a consistent mass");
+  if (result.count < 0)
+    diagnostics.warning("modal.uncertain-count", {},
+                        std::to_string(result.cut) +
+                            " modes were found with the interface held, but the inertia of the " + "factor counts " +
+                            std::to_string(result.doubtful) +
+                            ": stiffness spans so many orders that its pivots are roundoff",
+                        "replace the stiffest parts by rigid elements");
+  roots.keep(result.cut);
+  if (result.cut == 0) return set;
+  in.make_canonical(roots.value, roots.X);
+  roots.keep(std::min(wanted, result.cut));
+  fe::check_residuals(fe::calc_residuals(fe::calc_residual_scale(K_diagonal, problem.M_diagonal, roots.value), roots.X,
+                                         fe::multiply(in.K_ii.get(), roots.X),
+                                         fe::multiply(in.M_ii.get(), roots.X) * roots.value.asDiagonal()),
+                      "mode with the interface held", diagnostics);
+  set.lambda = roots.value;
+  set.Phi = in.expand(roots.X);
   detail::fix_signs(set.Phi);
   return set;
 }

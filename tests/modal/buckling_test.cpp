@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <vector>
 
 #include "bough/fe/statics.hpp"
 #include "bough/modal/eigen.hpp"
@@ -19,13 +21,16 @@ using test::DeckMaker;
 using test::Section;
 constexpr double kPi = std::numbers::pi;
 
-EigenPairs solve(const records::Deck& deck, int num_modes, Diagnostics& diagnostics) {
+EigenPairs solve(const records::Deck& deck, int num_modes, Diagnostics& diagnostics, std::optional<double> low = {},
+                 std::optional<double> high = {}) {
   const auto model = fe::Model::build(deck, {}, diagnostics);
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
   const fe::StaticSolver solver(model, K);
   const MatrixXd u = solver.solve(model.calc_load(deck, 10, diagnostics));
   EigenOptions options;
   options.num_modes = num_modes;
+  options.min_hz = low;
+  options.max_hz = high;
   return calc_buckling_modes(model, u.col(0), options, diagnostics);
 }
 
@@ -90,6 +95,16 @@ TEST(Buckling, SignTellsPushFromPull) {
   EXPECT_NEAR(pairs.lambda(0) / (-kPi * kPi * kSection.E * kSection.I2 / 4), 1, 1e-4);
 }
 
+// A pull with V1 = 0: an answer, and an empty one.
+TEST(Buckling, LoadThatOnlyStiffensHasNoPositiveFactor) {
+  auto maker = make_column(13, 3);
+  maker.deck.point_loads.front().n *= -1;
+  Diagnostics diagnostics;
+  EXPECT_EQ(solve(maker.deck, 3, diagnostics, 0.0).lambda.size(), 0);
+  EXPECT_TRUE(diagnostics.has("modal.empty-range"));
+  EXPECT_EQ(solve(maker.deck, 3, diagnostics, std::nullopt, 0.0).lambda.size(), 3);
+}
+
 // Timoshenko & Gere, Theory of Elastic Stability, 6.3: narrow strip, cantilever under an end load.
 TEST(Buckling, LateralTorsionalCantilever) {
   const Section strip = {70e9, 27e9, 2700, 1e-4, 1e-6, 1e-10, 4e-10};
@@ -103,6 +118,21 @@ TEST(Buckling, LateralTorsionalCantilever) {
   EXPECT_NEAR(std::abs(pairs.lambda(0)) / expected, 1, 2e-3);
   EXPECT_NEAR(pairs.lambda(0) / pairs.lambda(1), -1, 1e-6);  // up or down alike
   EXPECT_EQ(pairs.inertia_count, 2);
+
+  // One sign alone, and a window that leaves the first out.
+  Diagnostics diagnostics;
+  const auto all = solve(maker.deck, 6, diagnostics);
+  std::vector<double> up;
+  for (const double lambda : all.lambda)
+    if (lambda > 0) up.push_back(lambda);
+  ASSERT_EQ(up.size(), 3);
+  const auto positive = solve(maker.deck, 3, diagnostics, 0.0);
+  ASSERT_EQ(positive.lambda.size(), 3);
+  EXPECT_EQ(positive.inertia_count, 3);
+  for (int j = 0; j < 3; ++j) EXPECT_NEAR(positive.lambda(j) / up[static_cast<std::size_t>(j)], 1, 1e-8);
+  const auto window = solve(maker.deck, 5, diagnostics, 1.1 * up[0], 1.1 * up[1]);
+  ASSERT_EQ(window.lambda.size(), 1);
+  EXPECT_NEAR(window.lambda(0) / up[1], 1, 1e-8);
 }
 
 // Equal end moments on simply supported ends that cannot twist: π √(EI GJ) / L. The moment is bending of the strong

@@ -92,7 +92,7 @@ void parse_eigr(Card& card, Reading& r) {
 }
 
 /// SID METHOD L1 L2 NEP NDP NDN, NORM G C: what EIGRL says in fewer words. Roots of both signs are one search here, and
-/// the shape is scaled as EIGRL scales it.
+/// the largest component of the shape is 1.
 void parse_eigb(Card& card, Reading& r) {
   EigenMethod m;
   m.sid = card.read_id(0, "SID");

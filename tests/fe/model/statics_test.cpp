@@ -158,11 +158,17 @@ TEST(Factor, states_of_mumps) {
   EXPECT_EQ(judge_factorization(0, 0), FactorState::Done);
   EXPECT_EQ(judge_factorization(-10, 3), FactorState::Singular);
   EXPECT_EQ(judge_factorization(-9, 100), FactorState::NeedsWorkspace);
-  EXPECT_EQ(catch_id([] { judge_factorization(-13, 100); }), "fe.factorization");
+  EXPECT_EQ(catch_id([] { judge_factorization(-13, 100); }), "fe.out-of-memory");
+  EXPECT_EQ(catch_id([] { judge_factorization(-3, 100); }), "fe.factorization");
 }
 
 TEST(Petsc, error_codes_become_failures) {
   EXPECT_EQ(catch_id([] { check_petsc(PETSC_ERR_ARG_WRONG); }), "fe.petsc");
+  EXPECT_EQ(catch_id([] { check_petsc(PETSC_ERR_MEM); }), "fe.out-of-memory");
+  // Only "not positive definite" sends a matrix on to the other factor.
+  judge_definite(PETSC_ERR_MAT_CH_ZRPVT);
+  EXPECT_EQ(catch_id([] { judge_definite(PETSC_ERR_MEM); }), "fe.out-of-memory");
+  EXPECT_EQ(catch_id([] { judge_definite(PETSC_ERR_ARG_WRONG); }), "fe.petsc");
   check_petsc(0);
 }
 

@@ -1,0 +1,49 @@
+#include "bough/modal/normalize.hpp"
+
+#include <cmath>
+
+namespace bough::modal {
+namespace {
+
+/// The row of a dof in its displacement axes; component 0: a scalar point.
+Eigen::RowVectorXd calc_row(const fe::Node& node, int component, const MatrixXd& Phi) {
+  if (node.num_dofs != 6) return Phi.row(node.first_gdof);
+  const int c = component - 1;
+  return node.R_basic_cd.col(c % 3).transpose() * Phi.middleRows(node.first_gdof + 3 * (c / 3), 3);
+}
+
+}  // namespace
+
+void normalize(const fe::Model& model, const Norm& norm, MatrixXd& Phi, Diagnostics& diagnostics) {
+  if (norm.kind != "MAX" && norm.kind != "POINT") return;
+  Eigen::RowVectorXd scale = Eigen::RowVectorXd::Zero(Phi.cols());
+  for (int f = 0; f < model.num_fdofs(); ++f) {
+    const auto [id, component] = model.describe_fdof(f);
+    const Eigen::RowVectorXd row = calc_row(model.node(model.find_node(id)), component, Phi);
+    for (Eigen::Index j = 0; j < Phi.cols(); ++j)  // the first of those that are as large but for roundoff
+      if (std::abs(row(j)) > (1 + 1e-6) * std::abs(scale(j))) scale(j) = row(j);
+  }
+  if (norm.kind == "POINT") {
+    const int node = model.find_node(norm.grid);
+    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(Phi.cols());
+    const bool is_there = node >= 0 && (model.node(node).num_dofs != 6 || (norm.component > 0 && norm.component <= 6));
+    if (is_there) row = calc_row(model.node(node), norm.component, Phi);
+    std::string still;
+    for (Eigen::Index j = 0; j < Phi.cols(); ++j) {
+      if (std::abs(row(j)) > 1e-9 * std::abs(scale(j)))
+        scale(j) = row(j);
+      else
+        still += (still.empty() ? "" : ", ") + std::to_string(j + 1);
+    }
+    if (!still.empty())
+      diagnostics.warning("modal.norm-point", {},
+                          "grid " + std::to_string(norm.grid) + " component " + std::to_string(norm.component) +
+                              " of NORM = POINT does not move in mode " + still +
+                              ": its largest component is 1 instead",
+                          "name a dof that moves in every mode, or use NORM MAX");
+  }
+  for (Eigen::Index j = 0; j < Phi.cols(); ++j)
+    if (scale(j) != 0) Phi.col(j) /= scale(j);
+}
+
+}  // namespace bough::modal
