@@ -81,8 +81,8 @@ class SharedCases(ProgramTest):
 
     def test_shear_factors_of_the_vendor(self):
         sections = json.loads(self.bough("check", self.deck("d03_pbarl_box"), "--json").stdout)["sections"]
-        self.assertAlmostEqual(sections[0]["k1"], .90876, delta=5e-6)
-        self.assertAlmostEqual(sections[0]["k2"], .087591, delta=5e-7)
+        self.assertAlmostEqual(sections[0]["K1"], .90876, delta=5e-6)
+        self.assertAlmostEqual(sections[0]["K2"], .087591, delta=5e-7)
 
     def test_full_integration_as_asked(self):
         u, _ = self.static("d05_psolid_full")
