@@ -78,6 +78,11 @@ class Output(ProgramTest):
         self.fails(1, "modes", "beam.bdf", "-o", "m.h5", "--no-clobber", error="cli.output-exists")
         self.bough("modes", "beam.bdf", "-o", "m.h5", "--force")
 
+    def test_a_range_upside_down_is_refused(self):
+        self.write("beam.bdf", BEAM)
+        self.fails(1, "modes", "beam.bdf", "--min-hz", "20", "--max-hz", "10", error="cli.bad-range")
+        self.fails(1, "modes", "beam.bdf", "--min-hz", "20", "--max-hz", "20", error="cli.bad-range")
+
     def test_a_failed_verb_leaves_no_output_file(self):
         self.write("beam.bdf", BEAM.replace("CBAR,2,1,2,3", "CBAR,2,1,2,99"))
         self.bough("reduce", "beam.bdf", "--modes", "2", "-o", "b.h5", code=1)
