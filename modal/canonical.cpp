@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "bough/fe/blas.hpp"
 #include "bough/modal/krylov.hpp"
 
 namespace bough::modal::detail {
@@ -30,6 +31,18 @@ MatrixXd calc_cluster_rotation(const VectorXd& weights, const Eigen::Ref<const M
   const MatrixXd W = Phi.transpose() * weights.asDiagonal() * Phi;
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (W + W.transpose()));
   return solver.eigenvectors();
+}
+
+void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X) {
+  if (X.cols() == 0) return;
+  const Eigen::LLT<MatrixXd> cholesky(0.5 * (G + G.transpose()));
+  MatrixXd inverse = MatrixXd::Identity(G.rows(), G.cols());
+  if (cholesky.info() == Eigen::Success)
+    inverse = cholesky.matrixU().solve(inverse);
+  else
+    inverse = Eigen::SelfAdjointEigenSolver<MatrixXd>(0.5 * (G + G.transpose())).operatorInverseSqrt();
+  const MatrixXd Y = X;
+  fe::multiply_dense(false, Y, inverse, 0, X);
 }
 
 void fix_signs(MatrixXd& Phi) {

@@ -191,16 +191,15 @@ EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
 
   const VectorXd weights = detail::calc_basis_weights(model);
   if (cut > k) {
-    // Purification and separate Krylov runs leave the vectors orthogonal to nine digits or so: once more,
-    // symmetrically.
+    // Purification and separate Krylov runs leave the vectors orthogonal to nine digits or so: once more.
     const MatrixXd& R = rigid_.modes;
     MatrixXd Y = X.rightCols(cut - k);
     if (k > 0) Y -= R * (pencil_.calc_M_times(R).transpose() * Y).eval();
     MatrixXd G(cut - k, cut - k);
     fe::multiply_dense(true, Y, pencil_.calc_M_times(Y), 0, G);
     overlap_ = (G - MatrixXd::Identity(cut - k, cut - k)).cwiseAbs().maxCoeff();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(0.5 * (G + G.transpose()));
-    fe::multiply_dense(false, Y, gram.operatorInverseSqrt(), 0, X.rightCols(cut - k));
+    detail::orthonormalize_ascending(G, Y);
+    X.rightCols(cut - k) = Y;
   }
   for (int a = std::min(k, cut), b = a; a < cut; a = b) {
     if (a < num_zero) {

@@ -212,6 +212,22 @@ RigidMotions find_global_motions(const Pencil& pencil) {
 RigidMotions find_rigid_motions(const Pencil& pencil) {
   auto result = find_global_motions(pencil);
   const MatrixXd loose = find_loose(pencil);
+  if (loose.cols() == 0) return result;
+  // Masses that RBE3 and MPC share out among loose dofs are fewer than these: some of their motions move none.
+  const MatrixXd M = loose.transpose() * pencil.calc_M_times(loose);
+  const VectorXd scale = M.diagonal().cwiseSqrt().cwiseInverse();
+  const MatrixXd null = scale.asDiagonal() * calc_range(scale.asDiagonal() * M * scale.asDiagonal(), 1e-12, false);
+  if (null.cols() > 0) {
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(null.transpose());
+    for (Eigen::Index i = 0; i < null.cols(); ++i) {
+      Eigen::Index f = 0;
+      loose.col(qr.colsPermutation().indices()(i)).maxCoeff(&f);
+      result.held.push_back(static_cast<int>(f));
+    }
+    MatrixXd massless(pencil.size(), result.massless.cols() + null.cols());
+    massless << result.massless, loose * null;
+    result.massless = massless;
+  }
   for (Eigen::Index c = 0; c < loose.cols(); ++c) {
     VectorXd x = loose.col(c);
     const double before = x.dot(pencil.calc_M_times(x).col(0));

@@ -91,8 +91,7 @@ MatrixXd FixedInterface::solve(const MatrixXd& F_g) const {
 /// Orthonormal once more, and one basis of each repeated root.
 void FixedInterface::Impl::make_canonical(VectorXd& lambda, MatrixXd& X) const {
   const MatrixXd G = X.transpose() * fe::multiply(M_ii.get(), X);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(0.5 * (G + G.transpose()));
-  X = X * gram.operatorInverseSqrt();
+  detail::orthonormalize_ascending(G, X);
   const VectorXd weights = detail::calc_basis_weights(model);
   for (int a = 0, b = 0; a < lambda.size(); a = b) {
     b = detail::find_cluster_end(lambda, a, 1e-8, 0);
