@@ -104,7 +104,7 @@ TEST(SolidScheme, LeftHandedSolidsAreTurnedRound) {
   };
   const Case cases[] = {{"CHEXA", kBrick, {5, 6, 7, 8, 1, 2, 3, 4}, SolidKind::Hexa},
                         {"CHEXA", kBrick, {1, 4, 3, 2, 5, 8, 7, 6}, SolidKind::Hexa},
-                        {"CPENTA", kWedge, {1, 3, 2, 4, 6, 5}, SolidKind::Penta},
+                        {"CPENTA", kWedge, {4, 5, 6, 1, 2, 3}, SolidKind::Penta},
                         {"CTETRA", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {2, 1, 3, 4}, SolidKind::Tetra}};
   for (const auto& c : cases)
     for (const int with_midsides : {0, 1, 2}) {  // none, all, every other
