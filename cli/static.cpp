@@ -107,8 +107,7 @@ int run_static(const StaticOptions& options) {
       prepared = prepare(deck, options, subcase, diagnostics);
     const auto load = fe::calc_static_load(prepared->model, deck, subcase, diagnostics);
     diagnostics.throw_if_errors();
-    auto solved =
-        fe::solve_static_case(prepared->model, *prepared->solver, load, prepared->suport, &diagnostics);
+    auto solved = fe::solve_static_case(prepared->model, *prepared->solver, load, prepared->suport, &diagnostics);
     solved.id = subcase.id;
     solved.label = subcase.label.empty() ? subcase.subtitle : subcase.label;
     solved.load_set = subcase.load;
