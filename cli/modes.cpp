@@ -240,11 +240,11 @@ Solved solve_task(const ModesOptions& options, const records::Deck& deck, const 
     diagnostics.note("fe.damping-unused", deck.locate({}),
                      "the dampers of the deck do not act on its modes, as in SOL 103",
                      "bough reduce adds them to the modal damping");
-  auto pairs =
-      task.buckling ? solve_buckling(deck, *task.buckling, model_options, model,
-                                     choose_eigen_options(options, deck, task.buckling->buckling.method, diagnostics),
-                                     diagnostics)
-                    : solve(options, deck, model, console, diagnostics);
+  auto pairs = task.buckling
+                   ? solve_buckling(deck, *task.buckling, model_options, model,
+                                    choose_eigen_options(options, deck, task.buckling->buckling.method, diagnostics),
+                                    diagnostics)
+                   : solve(options, deck, model, console, diagnostics);
   console.end_progress();
   const auto norm = choose_norm(deck, task.buckling ? task.buckling->buckling.method : model.subcase().method);
   modal::normalize(model, norm, pairs.Phi, diagnostics);

@@ -96,10 +96,9 @@ class CaseSolver {
       const auto relief = fe::read_inertia_relief(deck_, own);
       auto fdofs = fe::choose_suport(model, deck_, relief, own);
       own.throw_if_errors();
-      auto solver = model.num_fdofs() == 0
-                        ? std::make_unique<fe::StaticSolver>(model)
-                        : std::make_unique<fe::StaticSolver>(
-                              model, fe::assemble_stiffness(model, fe::DofSet::Free), fdofs);
+      auto solver = model.num_fdofs() == 0 ? std::make_unique<fe::StaticSolver>(model)
+                                           : std::make_unique<fe::StaticSolver>(
+                                                 model, fe::assemble_stiffness(model, fe::DofSet::Free), fdofs);
       suport_ = fe::calc_suport(model, *solver, std::move(fdofs), relief, own);
       model_.emplace(std::move(model));
       solver_ = std::move(solver);

@@ -78,9 +78,9 @@ FactorState judge_factorization(int status, int detail) {
 /// LLᵀ met a pivot that is not positive: PETSc's code for it; anything else is a failure that another method may share.
 void judge_definite(PetscErrorCode code) {
   if (code == 0 || code == PETSC_ERR_MAT_CH_ZRPVT) return;
-  const std::string message = get_petsc_message(code);
+  // Of the library's own: CHOLMOD_NOT_POSDEF is 1, CHOLMOD_OUT_OF_MEMORY -2, CHOLMOD_TOO_LARGE -3.
+  const std::string message = code == PETSC_ERR_LIB ? get_petsc_message(code) : "";
   const auto has = [&](const char* text) { return message.find(text) != std::string::npos; };
-  // CHOLMOD_NOT_POSDEF is 1, CHOLMOD_OUT_OF_MEMORY -2, CHOLMOD_TOO_LARGE -3.
   if (has("status 1") || has("not positive definite")) return;
   if (has("status -2") || code == PETSC_ERR_MEM)
     throw ComputationError("fe.out-of-memory", {}, "the factor of the stiffness matrix does not fit the memory",

@@ -115,18 +115,7 @@ void BucklingModes::find(Side side, int wanted, int available, Roots& roots) {
   search.count = [&](double mu) { return mu > 0 ? count_below(side, mu) : 0; };
   search.solve(roots, search.wanted + std::max(4, wanted / 10));
   const auto result = detail::search_roots(search, roots);
-  if (result.is_missing)
-    throw ComputationError("modal.missed-modes", {},
-                           "found " + std::to_string(result.cut) + " load factors, the inertia of the factor counts " +
-                               std::to_string(result.count),
-                           "ask for more load factors; look for negative springs");
-  if (search.counts && result.count < 0 && result.cut > 0)
-    diagnostics_.warning(
-        "modal.uncertain-count", {},
-        std::to_string(result.cut) + " load factors were found, but the inertia of the factor " +
-            (result.doubtful < 0 ? std::string("could not be counted") : "counts " + std::to_string(result.doubtful)) +
-            ": its pivots are roundoff, and a load factor between may be missing",
-        "replace the stiffest parts by rigid elements");
+  detail::report_count(result, 0, "load factors", search.counts, diagnostics_);
   count_ = result.count < 0 || count_ < -1 ? -2 : std::max(count_, 0) + result.count;
   roots.keep(result.cut);
 }

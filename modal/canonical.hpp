@@ -16,8 +16,8 @@ VectorXd calc_basis_weights(const fe::Model& model);
 /// projected on their span, ascending: Phi Q depends on the span alone.
 MatrixXd calc_cluster_rotation(const VectorXd& weights, const Eigen::Ref<const MatrixXd>& Phi);
 
-/// Makes the columns of X (ascending), nearly orthonormal in the inner product whose Gram matrix is G, orthonormal: each
-/// by those before it, so that what roundoff left of the others in a low one is none of their forces.
+/// Makes the columns of X (ascending), nearly orthonormal in the inner product with Gram matrix G, orthonormal: each by
+/// those before it, so that what roundoff left of the others in a low one is none of their forces.
 void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X);
 
 /// Makes the component of largest magnitude of each column positive, the first among those within 1e-6 of it.

@@ -55,20 +55,6 @@ fe::PetscVec make_vector(Mat A, const Eigen::Ref<const VectorXd>& values) {
   return v;
 }
 
-/// An option of PETSc while it lives.
-class MumpsOption {
- public:
-  MumpsOption(const char* name, const char* value) : name_(name) {
-    check_petsc(PetscOptionsSetValue(nullptr, name, value));
-  }
-  ~MumpsOption() { PetscOptionsClearValue(nullptr, name_); }
-  MumpsOption(const MumpsOption&) = delete;
-  MumpsOption& operator=(const MumpsOption&) = delete;
-
- private:
-  const char* name_;
-};
-
 struct Watch {
   std::function<void(int, int)> progress;
   int wanted = 0;
@@ -150,8 +136,9 @@ fe::PetscMat make_definite_factor(const KrylovProblem& problem) {
   return fe::factor_definite(add(problem.A, -problem.shift, problem.B).get());
 }
 
-/// SLEPc, set up with a factor of ours or, without one, with MUMPS; empty when MUMPS finds the matrix singular.
-SlepcEps set_up(const KrylovProblem& problem, Mat factor, int wanted, int subspace) {
+/// SLEPc, set up with a factor of ours or, without one, with MUMPS; empty when MUMPS finds the matrix singular or SLEPc
+/// refuses (a subspace as large as the problem).
+SlepcEps set_up(const KrylovProblem& problem, Mat factor, int wanted, int subspace, bool& is_singular) {
   ST st = nullptr;
   KSP ksp = nullptr;
   SlepcEps eps;
@@ -192,8 +179,8 @@ SlepcEps set_up(const KrylovProblem& problem, Mat factor, int wanted, int subspa
   check_petsc(EPSSetInitialSpace(eps.get(), 1, &first_raw));
 
   const PetscErrorCode code = EPSSetUp(eps.get());
-  if (code == PETSC_ERR_LIB) return {};  // a zero pivot: SLEPc makes that an error
-  check_petsc(code);
+  is_singular = code == PETSC_ERR_LIB;  // a zero pivot: SLEPc makes that an error
+  if (code != 0) return {};
   return eps;
 }
 
@@ -213,11 +200,9 @@ std::optional<KrylovResult> solve_one_vector(const KrylovProblem& problem, Mat f
   // 2.6 vectors a mode: the lowest modes of a plate are there before the first restart.
   const int subspace = std::min(std::max(13 * wanted / 5, wanted + 20), std::max(room, 1));
   KrylovResult result;
-  const SlepcEps eps = set_up(problem, factor, wanted, subspace);
-  if (!eps) {
-    result.is_singular = true;
-    return result;
-  }
+  const SlepcEps eps = set_up(problem, factor, wanted, subspace, result.is_singular);
+  if (result.is_singular) return result;
+  if (!eps) return std::nullopt;
   Watch watch{problem.progress, wanted};
   if (watch.progress) check_petsc(EPSMonitorSet(eps.get(), report_progress, &watch, nullptr));
   if (EPSSolve(eps.get()) != 0) return std::nullopt;
@@ -319,37 +304,6 @@ KrylovResult solve_krylov(const KrylovProblem& problem) {
                          "the eigenvalue solver found no " + std::to_string(wanted) + " modes: it did not converge",
                          "ask for fewer modes; look for parts that nothing holds, and for very soft beside very stiff "
                          "ones");
-}
-
-int count_negative(Mat A, double factor, Mat B) {
-  initialize_slepc();
-  const fe::PetscMat C = add(A, factor, B);
-  // Approximate minimum fill: half the time of MUMPS' own choice on plates. PETSc 3.18 loses this one unless it is an
-  // option.
-  const MumpsOption ordering("-mat_mumps_icntl_7", "2");
-  MatFactorInfo info;
-  check_petsc(MatFactorInfoInitialize(&info));
-  for (PetscInt extra_percent : {60, 200, 1000}) {
-    fe::PetscMat F;
-    check_petsc(MatGetFactor(C.get(), MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, F.out()));
-    // The inertia leaves out the root front when ScaLAPACK factors it: keep it sequential.
-    check_petsc(MatMumpsSetIcntl(F.get(), 13, 1));
-    check_petsc(MatMumpsSetIcntl(F.get(), 14, extra_percent));
-    check_petsc(MatMumpsSetIcntl(F.get(), 31, 1));  // only the signs of the pivots are wanted: the factor is not kept
-    check_petsc(MatCholeskyFactorSymbolic(F.get(), C.get(), nullptr, &info));
-    check_petsc(MatCholeskyFactorNumeric(F.get(), C.get(), &info));
-    MatFactorError error = MAT_FACTOR_NOERROR;
-    PetscInt status = 0, detail = 0, negative = 0;
-    check_petsc(MatFactorGetError(F.get(), &error));
-    check_petsc(MatMumpsGetInfog(F.get(), 1, &status));
-    check_petsc(MatMumpsGetInfog(F.get(), 2, &detail));
-    const auto state = fe::judge_factorization(status, detail);
-    if (state == fe::FactorState::NeedsWorkspace) continue;
-    if (state == fe::FactorState::Singular || error != MAT_FACTOR_NOERROR) return -1;
-    check_petsc(MatGetInertia(F.get(), &negative, nullptr, nullptr));
-    return static_cast<int>(negative);
-  }
-  return -1;
 }
 
 }  // namespace bough::modal::detail

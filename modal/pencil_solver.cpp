@@ -53,7 +53,8 @@ bool PencilSolver::solve_whole(double shift, int number, bool definite_only, Roo
   if (!factor) factor = &own.emplace(A, false);
   if (factor->is_singular()) return false;
   if (definite_only && fe::initialize_petsc().size == 1 && !factor->is_definite()) return false;
-  if (k == 0 && fe::calc_softest_energy(A, *factor) < fe::kMechanismEnergy) return false;
+  // With a shift, mechanisms have the energy of their mass: little, but not roundoff.
+  if (k == 0 && fe::calc_softest_energy(A, *factor) < (shift == 0 ? fe::kMechanismEnergy : 3e-16)) return false;
 
   MatrixXd G(r, r);
   for (Eigen::Index first = 0; first < r; first += kBlock) {

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <vector>
 
+#include "bough/base/diagnostic.hpp"
+
 namespace bough::modal::detail {
 
 MatrixXd join(const MatrixXd& A, const MatrixXd& B) {
@@ -65,7 +67,7 @@ int count_below_gap(const RootSearch& search, const Roots& roots, int cut) {
 RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
   constexpr int kStuck = 4;
   RootSearchResult result;
-  int last_cut = -1, last_count = -1, num_stuck = 0;
+  int best_cut = -1, best_size = 0, num_stuck = 0;
   for (;;) {
     int missing = search.wanted - roots.size(), cut = -1, count = -1;
     if (missing <= 0) {
@@ -77,10 +79,13 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
       missing = std::max(0, count - cut);
     }
     if (missing > 0) {
+      const int before = roots.size();
       if (cut >= 0) roots.keep(cut);  // those above may be rough
       const int kept = roots.size();
-      num_stuck = cut >= 0 && cut == last_cut && count == last_count ? num_stuck + 1 : 0;
-      last_cut = cut, last_count = count;
+      // New roots, or old ones told apart: else the solver finds the same again and again.
+      num_stuck = cut > best_cut || before > best_size ? 0 : num_stuck + 1;
+      best_cut = std::max(best_cut, cut);
+      best_size = std::max(best_size, before);
       if (num_stuck < kStuck) search.solve(roots, missing + 2);
       if (roots.size() > kept) continue;
       result.is_missing = cut >= 0;
@@ -94,6 +99,24 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
     (count < cut ? result.doubtful : result.count) = count;
     return result;
   }
+}
+
+void report_count(const RootSearchResult& result, int num_known, const std::string& name, bool counts,
+                  Diagnostics& diagnostics) {
+  const std::string found = std::to_string(num_known + result.cut) + " " + name;
+  if (result.is_missing)
+    throw ComputationError(
+        "modal.missed-modes", {},
+        "found " + found + ", the inertia of the factor counts " + std::to_string(num_known + result.count),
+        "look for negative springs and for DMIG that take stiffness away; if stiffness spans many "
+        "orders, soften the stiffest parts or use rigid elements");
+  if (!counts || result.count >= 0 || result.cut == 0) return;
+  diagnostics.warning("modal.uncertain-count", {},
+                      found + " were found, each with its own residual, but the inertia of the factor " +
+                          (result.doubtful < 0 ? std::string("cannot be counted")
+                                               : "counts " + std::to_string(num_known + result.doubtful)) +
+                          ": its pivots are roundoff where stiffness spans many orders, and one between may be missing",
+                      "replace the stiffest parts by rigid elements");
 }
 
 }  // namespace bough::modal::detail

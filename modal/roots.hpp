@@ -1,8 +1,13 @@
 #pragma once
 /// \file The search that modes, modes of a held interface and load factors share: solve, look for a gap, count.
 #include <functional>
+#include <string>
 
 #include <Eigen/Dense>
+
+namespace bough {
+class Diagnostics;
+}
 
 namespace bough::modal::detail {
 
@@ -45,6 +50,11 @@ struct RootSearchResult {
 /// Repeats solve, gap, count until the first `wanted` roots are complete or the solver has no more. An inertia below
 /// what was found is tried again further into the gap; roots with vectors of their own prove it wrong, not the roots.
 RootSearchResult search_roots(const RootSearch& search, Roots& roots);
+
+/// Throws ComputationError("modal.missed-modes") where roots are missing; warns "modal.uncertain-count" where the count
+/// was asked for and is not to be trusted. `name`: "modes", "load factors"; `num_known`: motions counted beside them.
+void report_count(const RootSearchResult& result, int num_known, const std::string& name, bool counts,
+                  Diagnostics& diagnostics);
 
 MatrixXd join(const MatrixXd& A, const MatrixXd& B);
 

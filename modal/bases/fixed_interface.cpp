@@ -144,24 +144,12 @@ ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Dia
   detail::PencilSolver solver(problem, wanted);
   detail::Roots roots{VectorXd(0), MatrixXd(size, 0)};
   const auto result = in.find_roots(wanted, solver, roots);
-  if (result.is_missing)
-    throw ComputationError("modal.missed-modes", {},
-                           "found " + std::to_string(result.cut) +
-                               " modes with the interface held, the inertia of the " + "factor counts " +
-                               std::to_string(result.count),
-                           "look for negative springs and for DMIG that take stiffness away");
+  detail::report_count(result, 0, "modes with the interface held", true, diagnostics);
   if (result.cut < wanted)
     diagnostics.warning("modal.fewer-modes", {},
                         "the model has " + std::to_string(result.cut) + " modes with its interface held, " +
                             std::to_string(wanted) + " were asked for",
                         "ask for fewer, or use a finer mesh or a consistent mass");
-  if (result.count < 0)
-    diagnostics.warning("modal.uncertain-count", {},
-                        std::to_string(result.cut) +
-                            " modes were found with the interface held, but the inertia of the " + "factor counts " +
-                            std::to_string(result.doubtful) +
-                            ": stiffness spans so many orders that its pivots are roundoff",
-                        "replace the stiffest parts by rigid elements");
   roots.keep(result.cut);
   if (result.cut == 0) return set;
   in.make_canonical(roots.value, roots.X);

@@ -133,6 +133,13 @@ class Decks(ProgramTest):
         self.assertIn("METHOD = 7 names no EIGRL", result.stderr)
         self.assertIn("[cli.no-method]", result.stderr)
 
+    def test_a_range_without_an_inside_is_an_error(self):
+        self.write("beam.bdf", BEAM)
+        self.fails(1, "modes", "beam.bdf", "--min-hz", 20, "--max-hz", 10, says=["from 20 to 10"], error="cli.bad-range")
+        result = self.bough("modes", "beam.bdf", "--min-hz", 1e-6, "--max-hz", 2e-6)
+        self.assertIn("[modal.empty-range]", result.stderr)
+        self.assertNotIn("none missed", result.stdout)
+
     def test_messages_of_the_computation_name_the_deck(self):
         self.write("beam.bdf", BEAM)
         for call in [["modes", "beam.bdf", "-n", 300], ["reduce", "beam.bdf", "--modes", 300]]:

@@ -9,7 +9,7 @@
 namespace bough::modal::detail {
 namespace {
 
-/// Solves for the roots of a diagonal matrix, the lowest that are not known yet; `hidden` comes in the second call only.
+/// Solves for the roots of a diagonal matrix, the lowest that are not known yet; `hidden` comes in later calls only.
 struct Diagonal {
   VectorXd all;
   int hidden = -1;

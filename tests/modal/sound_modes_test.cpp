@@ -196,6 +196,24 @@ TEST(RootSearch, CountsAndDoubts) {
   EXPECT_EQ(result.count, 7);
 }
 
+TEST(RootSearch, SaysWhatTheCountIsWorth) {
+  Diagnostics d;
+  modal::detail::RootSearchResult result;
+  result.cut = result.count = 6;
+  modal::detail::report_count(result, 2, "modes", true, d);
+  EXPECT_TRUE(d.items().empty());
+  result.count = -1;
+  result.doubtful = 5;
+  modal::detail::report_count(result, 2, "modes", false, d);
+  EXPECT_TRUE(d.items().empty());
+  modal::detail::report_count(result, 2, "modes", true, d);
+  ASSERT_TRUE(d.has("modal.uncertain-count"));
+  EXPECT_NE(d.items().front().what.find("8 modes were found"), std::string::npos);
+  EXPECT_NE(d.items().front().what.find("counts 7"), std::string::npos);
+  result.is_missing = true;
+  EXPECT_THROW(modal::detail::report_count(result, 2, "modes", true, d), ComputationError);
+}
+
 TEST(Normalize, LargestComponentOrOnePointIsOne) {
   Diagnostics d;
   const auto model = build(make_cantilever("SPC1,1,2456,2,THRU,11\n"), d);
