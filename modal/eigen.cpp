@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -171,7 +172,9 @@ detail::RootSearchResult NormalModes::search() {
   search.shift = shift_;
   search.solve = [&](Roots& roots, int number) { add_roots(roots, number, 0); };
   search.closeness = [&](const Roots& roots, int i) {
-    return i < num_zero_ ? 1e-8 : calc_cluster_tolerance(pencil_.calc_relative_energy(roots.X.col(i), roots.value(i)));
+    if (i + 1 < num_zero_) return std::numeric_limits<double>::infinity();  // zeros are copies of each other
+    if (i < num_zero_) return 1e-8;
+    return calc_cluster_tolerance(pencil_.calc_relative_energy(roots.X.col(i), roots.value(i)));
   };
   search.roundoff = [&](const Roots& roots, int i) { return calc_roundoff(roots, i); };
   search.count = [&](double mu) {
@@ -238,7 +241,7 @@ double calc_roundoff_of(const Pencil& pencil, const VectorXd& x, double lambda) 
 }
 
 double NormalModes::calc_roundoff(const Roots& roots, int i) const {
-  return i < num_zero_ ? 0 : calc_roundoff_of(pencil_, roots.X.col(i), roots.value(i));
+  return i < num_zero_ ? 1 : calc_roundoff_of(pencil_, roots.X.col(i), roots.value(i));
 }
 
 void NormalModes::warn_of_roundoff(const EigenPairs& pairs, const MatrixXd& X, Diagnostics& said) const {

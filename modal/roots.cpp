@@ -76,6 +76,11 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
     }
     if (missing == 0 && search.counts) {
       count = count_below_gap(search, roots, cut);
+      if (count > search.num_available) {  // more than exist
+        result.cut = cut;
+        result.doubtful = count;
+        return result;
+      }
       missing = std::max(0, count - cut);
     }
     if (missing > 0) {
@@ -91,12 +96,12 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
       result.is_missing = cut >= 0;
       if (cut < 0 && search.counts && kept > 0) {  // the solver has no more to give: there are no more
         count = count_below_gap(search, roots, kept);
-        result.is_missing = count > kept;
+        result.is_missing = count > kept && count <= search.num_available;
       }
       cut = kept;
     }
     result.cut = cut;
-    (count < cut ? result.doubtful : result.count) = count;
+    (count < cut || count > search.num_available ? result.doubtful : result.count) = count;
     return result;
   }
 }
@@ -111,12 +116,14 @@ void report_count(const RootSearchResult& result, int num_known, const std::stri
         "look for negative springs and for DMIG that take stiffness away; if stiffness spans many "
         "orders, soften the stiffest parts or use rigid elements");
   if (!counts || result.count >= 0 || result.cut == 0) return;
-  diagnostics.warning("modal.uncertain-count", {},
-                      found + " were found, each with its own residual, but the inertia of the factor " +
-                          (result.doubtful < 0 ? std::string("cannot be counted")
-                                               : "counts " + std::to_string(num_known + result.doubtful)) +
-                          ": its pivots are roundoff where stiffness spans many orders, and one between may be missing",
-                      "replace the stiffest parts by rigid elements");
+  diagnostics.warning(
+      "modal.uncertain-count", {},
+      found + " were found, each with its own residual, but the inertia of the factor " +
+          (result.doubtful < 0 ? std::string("cannot be counted")
+                               : "counts " + std::to_string(num_known + result.doubtful)) +
+          ": its pivots are roundoff (stiffness over many orders, or motions without strain and mass), and one "
+          "between may be missing",
+      "replace the stiffest parts by rigid elements");
 }
 
 }  // namespace bough::modal::detail

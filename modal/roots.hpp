@@ -43,7 +43,7 @@ struct RootSearch {
 struct RootSearchResult {
   int cut = 0;              ///< the roots before it are complete: a gap follows, or nothing
   int count = -1;           ///< of the inertia below that gap, at least `cut`; -1: not made, or not to be trusted
-  int doubtful = -1;        ///< the inertia's own number where it is below `cut`
+  int doubtful = -1;        ///< the inertia's own number where it is below `cut` or above what exists
   bool is_missing = false;  ///< the inertia counts roots that the solver does not find
 };
 

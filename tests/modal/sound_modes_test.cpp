@@ -191,6 +191,11 @@ TEST(RootSearch, CountsAndDoubts) {
   EXPECT_FALSE(result.is_missing);
   result = FakeRoots{20, 3, [&](double mu) { return honest(mu) + 1; }}.run(7, roots);
   EXPECT_TRUE(result.is_missing);
+  // More than exist: the count is wrong.
+  result = FakeRoots{8, 8, [&](double mu) { return honest(mu) + 2; }}.run(8, roots);
+  EXPECT_FALSE(result.is_missing);
+  EXPECT_EQ(result.cut, 8);
+  EXPECT_EQ(result.doubtful, 10);
   // The count just above the last root is short by roundoff, further up it is right.
   result = FakeRoots{20, 3, [&](double mu) { return mu < 7.05 ? 6 : honest(mu); }}.run(7, roots);
   EXPECT_EQ(result.count, 7);
