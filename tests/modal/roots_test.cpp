@@ -72,7 +72,12 @@ TEST(Roots, AnInertiaAboveAllThatCanBeFoundIsAMiss) {
   Diagonal diagonal{VectorXd{{1, 2, 3}}};
   diagonal.lie = 1;
   Roots roots = make_empty(diagonal);
-  EXPECT_TRUE(search_roots(diagonal.make_search(3), roots).is_missing);
+  RootSearch search = diagonal.make_search(3);
+  search.num_available = 4;  // as far as anyone knows
+  EXPECT_TRUE(search_roots(search, roots).is_missing);
+  // Where there cannot be more, the inertia is wrong.
+  roots = make_empty(diagonal);
+  EXPECT_FALSE(search_roots(diagonal.make_search(3), roots).is_missing);
 }
 
 }  // namespace
