@@ -71,14 +71,15 @@ modal::EigenPairs pick_in_range(const modal::EigenPairs& pairs, const modal::Eig
   return picked;
 }
 
-modal::EigenPairs solve_in_range(const fe::Model& model, const VectorXd& u, const fe::InitialForces& initial,
-                                 modal::EigenOptions eigen, Diagnostics& diagnostics) {
+modal::EigenPairs solve_in_range(const fe::Model& model, const fe::AppliedLoad& load, const VectorXd& u,
+                                 const fe::InitialForces& initial, modal::EigenOptions eigen,
+                                 Diagnostics& diagnostics) {
   const modal::EigenOptions range = eigen;
   const int wanted = eigen.num_modes;
-  if (wanted == 0) return modal::calc_buckling_modes(model, u, eigen, diagnostics, &initial);
+  if (wanted == 0) return modal::calc_buckling_modes(model, load, u, eigen, diagnostics, &initial);
   eigen.min_hz = eigen.max_hz = std::nullopt;
   for (;; eigen.num_modes *= 2) {
-    const auto pairs = modal::calc_buckling_modes(model, u, eigen, diagnostics, &initial);
+    const auto pairs = modal::calc_buckling_modes(model, load, u, eigen, diagnostics, &initial);
     auto picked = pick_in_range(pairs, range, wanted);
     const auto num = pairs.lambda.size();
     const bool is_all = num < eigen.num_modes || num == 0;
@@ -106,9 +107,9 @@ modal::EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases&
   const auto K = fe::assemble_stiffness(statics, fe::DofSet::Free);
   const fe::StaticSolver solver(statics, K);
   const VectorXd u = fe::solve_static_case(statics, solver, load).displacement;
-  if (!own) return solve_in_range(model, u, load.initial, eigen, diagnostics);
+  if (!own) return solve_in_range(model, load, u, load.initial, eigen, diagnostics);
   const auto initial = fe::calc_thermal(model, deck, cases.statics.temperature, diagnostics);
-  return solve_in_range(model, u, initial, eigen, diagnostics);
+  return solve_in_range(model, load, u, initial, eigen, diagnostics);
 }
 
 }  // namespace bough::cli

@@ -28,6 +28,10 @@ struct BeamLineLoad {
   Eigen::Matrix<double, 6, 1> p1 = Eigen::Matrix<double, 6, 1>::Zero(), p2 = p1;
 };
 
+/// Mass per length of a section about its shear centre, for the motion [u v w θx θy θz]: 6 x 6.
+/// bending: with the rotary inertia of the section about its y and z axes.
+Matrix6d calc_section_mass(const BeamProperty& property, const BeamSection& s, bool bending);
+
 class Beam final : public Element {
  public:
   /// nodes: two; gdofs: twelve. The property must give E > 0 and a positive length is the caller's check.
@@ -40,6 +44,9 @@ class Beam final : public Element {
   /// torsional inertia of the section for CBEAM. Consistent: ∫ Dᵀ m D with the static field D; CBAR has no section
   /// inertia and Nastran's axial terms (5/12, 1/12); CBEAM has rotary and torsional inertia.
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+
+  bool carries_turning_mass(MassKind kind) const override;
+  bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
 
   int num_internal_forces() const override { return 8; }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
@@ -71,6 +78,8 @@ class Beam final : public Element {
   void add_pin_stiffness(const Eigen::Ref<const VectorXd>& force, double scale, Eigen::Ref<MatrixXd> K_G) const;
   void add_lumped_mass(double scale, Eigen::Ref<MatrixXd> M) const;
   void add_consistent_mass(double scale, Eigen::Ref<MatrixXd> M) const;
+  void add_lumped_bodies(const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const;
+  void add_consistent_bodies(const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const;
 
   std::shared_ptr<const BeamProperty> property_;
   BeamGeometry geometry_;

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "bough/fe/model/inertial_loads.hpp"
 #include "bough/fe/model/load_sets.hpp"
 
 namespace bough::fe {
@@ -94,9 +95,14 @@ bool add_point_loads(const LoadTarget& t) {
 }
 
 VectorXd Model::calc_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const {
-  VectorXd F = VectorXd::Zero(num_gdofs_);
+  return calc_applied_load(deck, set, diagnostics).F;
+}
+
+AppliedLoad Model::calc_applied_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const {
+  AppliedLoad load;
+  load.F = VectorXd::Zero(num_gdofs_);
   for_each_plain_set(deck, set, [&](int sid, double scale, const records::CardLocation& at) {
-    const LoadTarget target{*this, deck, sid, scale, F, diagnostics};
+    const LoadTarget target{*this, deck, sid, scale, load.F, diagnostics, load.A_I, load.arms};
     const bool found[] = {add_point_loads(target), add_body_loads(target), add_surface_loads(target),
                           add_beam_loads(target), has_enforced(deck, sid)};
     if (std::find(std::begin(found), std::end(found), true) == std::end(found))
@@ -104,7 +110,8 @@ VectorXd Model::calc_load(const records::Deck& deck, int set, Diagnostics& diagn
                         "load set " + std::to_string(sid) + " has no FORCE, MOMENT, GRAV, PLOAD or LOAD card",
                         "correct the set id or add its cards");
   });
-  return F;
+  if (!load.A_I.isZero(0)) load.F += calc_inertial_loads(*this, mass_kind_, load.A_I);
+  return load;
 }
 
 }  // namespace bough::fe
