@@ -114,7 +114,7 @@ void Beam::add_consistent_mass(double scale, Eigen::Ref<MatrixXd> M) const {
     local.noalias() += D.transpose().lazyProduct(mD);
     mass += point.weight * m(0, 0);
   }
-  if (!property_->has_section_inertia) {
+  if (!property_->has_section_inertia && !geometry_.is_part) {
     // Nastran's coupled CBAR: the axial terms are the mean of lumped and consistent.
     local(0, 0) += mass / 12;
     local(6, 6) += mass / 12;

@@ -19,6 +19,7 @@ struct BeamGeometry {
   double length = 0;                                      ///< between the offset ends
   Vector3d wa = Vector3d::Zero(), wb = Vector3d::Zero();  ///< offsets of the ends from the grids, in basic
   unsigned pin_a = 0, pin_b = 0;                          ///< released element dofs (masks), element axes
+  bool is_part = false;                                   ///< of an arc: consistent mass by the field alone
 };
 
 /// Force and moment along a beam, in element axes: p1 at x1 to p2 at x2 (per length), or p1 at the point x1.

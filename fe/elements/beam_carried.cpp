@@ -91,7 +91,7 @@ void Beam::add_consistent_bodies(const Eigen::Ref<const Matrix3Xd>& x, CarriedMa
     mass += section.m;
   }
   carried.add_chord_field(x_a, geometry_.length * R.col(0), tips, moved);
-  if (!property_->has_section_inertia) {  // the mean of lumped and consistent along the axis
+  if (!property_->has_section_inertia && !geometry_.is_part) {  // the mean of lumped and consistent along the axis
     const Motion stretch = R.col(0) * (released.row(6) - released.row(0));
     const int p = carried.add_point(false, geometry_.length * R.col(0), stretch * tips);
     carried.mu(p, p) = mass / 12;

@@ -106,6 +106,7 @@ Bend::Bend(int id, std::vector<int> nodes, std::vector<int> gdofs, std::shared_p
     const Point before = calc_point(geometry, geometry.angle * (k - 1) / kNumParts),
                 middle = calc_point(geometry, geometry.angle * (k - 0.5) / kNumParts);
     BeamGeometry straight;
+    straight.is_part = true;
     straight.length = (p.x - before.x).norm();
     straight.R_basic_element = middle.axes;
     parts_.push_back(std::make_unique<Beam>(id, "CBEND", std::vector<int>{0, 1}, dofs, property, straight));

@@ -11,7 +11,7 @@ namespace {
 /// EI = 1, the lower half of length 1 flexible, the upper half the given lever from grid 21 to grid 100.
 double calc_factor(const std::string& lever, const std::string& selection = "") {
   std::string text =
-      selection + "SPC = 1\nLOAD = 2\nBEGIN BULK\nMAT1,1,1.,,0.,1.\nPBAR,1,1,1.,1.,2.,1.\nSPC1,1,123456,1\n";
+      selection + "SPC = 1\nLOAD = 2\nBEGIN BULK\nMAT1,1,1.,,0.,1.\nPBAR,1,1,1.+4,1.,2.,1.\nSPC1,1,123456,1\n";
   for (int i = 1; i <= 21; ++i) {
     text += "GRID," + std::to_string(i) + ",," + std::to_string(0.05 * (i - 1)) + ",0.,0.\n";
     if (i > 1)
@@ -42,7 +42,7 @@ TEST(LinkBuckling, ColumnWithARigidUpperHalf) {
       "RBE3,200,,100,123456,1.,123456,21\n",
       "GRID,99,,1.5,0.,0.\nRBE2,200,21,123456,99\nRBE2,201,99,123456,100\n",
       "GRID,99,,1.4,.3,0.\nRBE2,200,21,123456,99\nRBE2,201,99,123456,100\n",
-      "GRID,98,,1.,.4,0.\nGRID,99,,1.,-.4,.3\nRTRPLT,200,21,98,99,123456,,,\n,123456,123456\n"
+      "GRID,98,,1.,.4,0.\nGRID,99,,1.,-.4,.3\nRTRPLT,200,21,98,99,123456\n,,123456,123456\n"
       "RBE2,201,98,123456,100\n",
       "PBAR,2,1,1.+6,1.+6,1.+6,1.+6\nCBAR,200,2,21,100,0.,1.,0.\n",
   };
