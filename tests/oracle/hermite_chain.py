@@ -1,0 +1,49 @@
+#!/usr/bin/python3
+"""Two links under gravity as chains of inextensible pieces that turn without limit: python3 hermite_chain.py PIECES ...
+
+The links of tests/cases/two_link_modes_test.cpp. Chord angles psi are the coordinates; each piece bends as a cubic beam,
+(2 EI/h)(a^2 + a b + b^2) with a, b the slopes of its ends less psi, and the slopes, which have no mass, are eliminated.
+Masses at the nodes: rho A h, half at the tip, and the tip mass.
+"""
+import sys
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+
+def make_bending(n, h, EI):
+    K = np.zeros((2 * n + 1, 2 * n + 1))  # psi (n), slopes (n + 1)
+    k = 2 * EI / h * np.array([[2.0, 1.0], [1.0, 2.0]])
+    for e in range(n):
+        B = np.zeros((2, 2 * n + 1))
+        B[:, e] = -1
+        B[0, n + e] = B[1, n + e + 1] = 1
+        K += B.T @ k @ B
+    return K[:n, :n] - K[:n, n:] @ np.linalg.solve(K[n:, n:], K[n:, :n])
+
+
+def simulate(pieces, times, length=1.0, rhoA=0.27, EI=2.4, tip=0.05, g=9.81):
+    n, h = 2 * pieces, length / pieces
+    node = np.full(n, rhoA * h)
+    node[-1] = rhoA * h / 2 + tip
+    a = h * np.tril(np.ones((n, n)))
+    c = a.T @ np.diag(node) @ a
+    weight = g * (node @ a)
+    K = np.zeros((n, n))
+    K[:pieces, :pieces] = K[pieces:, pieces:] = make_bending(pieces, h, EI)
+
+    def rate(_, state):
+        psi, omega = state[:n], state[n:]
+        d = psi[:, None] - psi[None, :]
+        force = -weight * np.cos(psi) - K @ psi - (c * np.sin(d)) @ omega**2
+        return np.concatenate([omega, np.linalg.solve(c * np.cos(d), force)])
+
+    solution = solve_ivp(rate, (0, times[-1]), np.zeros(2 * n), method="DOP853", t_eval=times, rtol=1e-9, atol=1e-11)
+    psi = solution.y[:n]
+    return h * np.cos(psi).sum(axis=0), h * np.sin(psi).sum(axis=0)
+
+
+if __name__ == "__main__":
+    for pieces in [int(word) for word in sys.argv[1:]]:
+        x, y = simulate(pieces, np.array([1.0]))
+        print(f"{pieces} pieces a link: tip at 1 s ({x[-1]:.8f}, {y[-1]:.8f})")
