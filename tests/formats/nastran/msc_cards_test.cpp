@@ -1,8 +1,8 @@
 /// Cards and writing of decks from MSC and NX Nastran.
 #include <filesystem>
-#include <fstream>
 
 #include "deck_text.hpp"
+#include "tests/formats/files/temp_folder.hpp"
 
 namespace bough::nastran {
 namespace {
@@ -100,10 +100,9 @@ TEST(MscCards, PcompsOfOneMaterialIsThePsolid) {
 
 class Moved : public testing::Test {
  protected:
-  fs::path folder = fs::temp_directory_path() / "bough-moved-include";
-  void SetUp() override { fs::create_directories(folder / "sub"); }
-  void TearDown() override { fs::remove_all(folder); }
-  void write(const std::string& name, const std::string& text) { std::ofstream(folder / name) << text; }
+  test::TempFolder temp;  // one a test: they run side by side
+  fs::path folder = temp.get_path();
+  void write(const std::string& name, const std::string& text) { temp.write(name, text); }
 };
 
 TEST_F(Moved, IncludesOfAnotherMachineAreFoundWithAWarning) {
