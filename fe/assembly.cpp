@@ -234,6 +234,11 @@ MatrixXd calc_damping_times(const Model& model, const Eigen::Ref<const MatrixXd>
       model, [](const Element& e, Eigen::Ref<MatrixXd> B) { e.add_damping(1, B); }, X_g);
 }
 
+MatrixXd calc_structural_damping_times(const Model& model, double g, const Eigen::Ref<const MatrixXd>& X_g) {
+  return calc_times(
+      model, [g](const Element& e, Eigen::Ref<MatrixXd> K) { e.add_structural_damping(g, K); }, X_g);
+}
+
 bool has_damping(const Model& model) {
   return std::any_of(model.elements().begin(), model.elements().end(), [](const auto& e) { return e->has_damping(); });
 }

@@ -26,6 +26,8 @@ MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<con
 MatrixXd calc_stiffness_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g);
 /// The same with B.
 MatrixXd calc_damping_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g);
+/// Σ (g + GE of the element) K_e X, the structural damping of stiffness; direct matrices (K2GG) have g alone.
+MatrixXd calc_structural_damping_times(const Model& model, double g, const Eigen::Ref<const MatrixXd>& X_g);
 /// Whether any element damps.
 bool has_damping(const Model& model);
 

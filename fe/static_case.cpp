@@ -182,21 +182,21 @@ records::SparseMatrix gather_sparse(const PetscMat& A) {
     sizes.push_back(static_cast<int>(data.size() - before));
     check_petsc(MatRestoreRow(A.get(), row, &count, &columns, &values));
   }
-  // One block after the other to the first rank.
+  // One block after the other, to every rank.
   records::SparseMatrix result;
   result.num_rows = num_rows;
   result.num_cols = num_cols;
   const auto collect = [&](const auto& own, auto& all, MPI_Datatype type) {
     const int own_size = static_cast<int>(own.size());
     std::vector<int> counts(static_cast<std::size_t>(world.size)), starts(counts.size(), 0);
-    MPI_Gather(&own_size, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, PETSC_COMM_WORLD);
+    MPI_Allgather(&own_size, 1, MPI_INT, counts.data(), 1, MPI_INT, PETSC_COMM_WORLD);
     int total = 0;
     for (std::size_t r = 0; r < counts.size(); ++r) {
       starts[r] = total;
       total += counts[r];
     }
-    all.resize(world.rank == 0 ? static_cast<std::size_t>(total) : 0);
-    MPI_Gatherv(own.data(), own_size, type, all.data(), counts.data(), starts.data(), type, 0, PETSC_COMM_WORLD);
+    all.resize(static_cast<std::size_t>(total));
+    MPI_Allgatherv(own.data(), own_size, type, all.data(), counts.data(), starts.data(), type, PETSC_COMM_WORLD);
   };
   std::vector<int> all_sizes;
   collect(data, result.data, MPI_DOUBLE);

@@ -36,7 +36,7 @@ std::vector<records::ElementForces> calc_element_forces(const Model& model, cons
 Eigen::Matrix<double, 6, 1> calc_resultant(const Model& model, const VectorXd& F_g,
                                            const Vector3d& point = Vector3d::Zero());
 
-/// A distributed matrix on the first rank (empty on the others), without zero entries.
+/// A distributed matrix as a whole on every rank, without zero entries.
 records::SparseMatrix gather_sparse(const PetscMat& A);
 
 }  // namespace bough::fe

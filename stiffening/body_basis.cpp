@@ -128,40 +128,8 @@ modal::bases::DampingSpec make_damping_spec(const BodySpec& spec) {
   return damping;
 }
 
-MatrixXd calc_material_damping(const records::Deck& deck, const MatrixXd& Phi, const SourceLocation& where,
-                               Diagnostics& diagnostics) {
-  if (!deck.mat2.empty() || !deck.mat8.empty() || !deck.mat9.empty())
-    diagnostics.warning("reduce.no-ge", where,
-                        "the deck has MAT2, MAT8 or MAT9: their GE is not read and counts as PARAM,G alone",
-                        "use MAT1, or give the damping by ratios or a table");
-  const double g = records::get_real_param(deck, "G", 0, diagnostics);
-  // Zero moduli are not accepted by every element: a factor that adds nothing in 16 digits stands for it.
-  const auto calc_factor = [&](double ge) { return std::max(g + ge, 1e-24); };
-  records::Deck scaled = deck;
-  for (auto& mat : scaled.mat1) {
-    const double factor = calc_factor(mat.ge);
-    mat.E *= factor;
-    mat.G *= factor;
-  }
-  for (auto& mat : scaled.mat2) mat.G *= calc_factor(0);
-  for (auto& mat : scaled.mat8) {
-    for (double* modulus : {&mat.E1, &mat.E2, &mat.G12, &mat.G1z, &mat.G2z}) *modulus *= calc_factor(0);
-  }
-  for (auto& mat : scaled.mat9) mat.G *= calc_factor(0);
-  for (auto& p : scaled.pelas) p.k *= calc_factor(p.ge);
-  for (auto& p : scaled.pbush)
-    for (std::size_t i = 0; i < 6; ++i) p.k[i] *= calc_factor(p.ge[i]);
-  for (auto& p : scaled.pbush1d) p.k *= calc_factor(0);
-  for (auto& spring : scaled.springs) spring.k *= calc_factor(spring.ge);
-  for (auto& e : scaled.special.genel) e.matrix *= e.is_flexibility ? 1 / calc_factor(0) : calc_factor(0);
-  for (auto& p : scaled.special.pgap)
-    for (double* k : {&p.ka, &p.kb, &p.kt}) *k *= calc_factor(0);
-  fe::ModelOptions options;
-  options.ignore_spc = true;
-  options.autospc = false;
-  Diagnostics ignored;  // reported for the deck itself
-  const auto model = fe::Model::build(scaled, options, ignored);
-  const MatrixXd K_g = Phi.transpose() * fe::calc_stiffness_times(model, Phi);
+MatrixXd calc_material_damping(const fe::Model& model, double g, const MatrixXd& Phi) {
+  const MatrixXd K_g = Phi.transpose() * fe::calc_structural_damping_times(model, g, Phi);
   return 0.5 * (K_g + K_g.transpose());
 }
 

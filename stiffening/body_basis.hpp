@@ -33,9 +33,8 @@ modal::bases::BasisOptions make_basis_options(const records::BodySpec& spec);
 modal::bases::FrameSpec make_frame_spec(const records::BodySpec& spec);
 modal::bases::DampingSpec make_damping_spec(const records::BodySpec& spec);
 
-/// Σ g_e K_e times Φ, projected: n x n. g_e: GE of MAT1, PELAS, CELAS2 and PBUSH, and PARAM,G for every element. The
-/// deck with each modulus times its GE is assembled as any other. Warns reduce.no-ge where other materials are used.
-MatrixXd calc_material_damping(const records::Deck& deck, const MatrixXd& Phi, const SourceLocation& where,
-                               Diagnostics& diagnostics);
+/// Φᵀ Σ (g + GE) K_e Φ, n x n: g is PARAM,G, GE of the material or property of each element (MAT1, MAT2, MAT8, MAT9,
+/// PCOMP, PELAS, CELAS2, PBUSH); MID1 of a PSHELL counts for all of it (Quick Reference Guide, PSHELL).
+MatrixXd calc_material_damping(const fe::Model& model, double g, const MatrixXd& Phi);
 
 }  // namespace bough::stiffening

@@ -61,7 +61,7 @@ void Reduction::set_modes(const fe::Model& model, const StaticSolve& solve) {
     diagnostics_.warning("reduce.rigid", where(), "no elastic mode is in the range: the body is rigid",
                          "raise max_frequency or the number of modes");
   basis = modal::bases::select_columns(basis, columns);
-  set_damping(basis);
+  set_damping(model, basis);
   if (!basis.is_raw && is_moved) modal::bases::move_to_frame(model, make_frame_spec(spec_), basis);
   Phi_ = basis.Phi;
   body_.eigenvalue = basis.lambda;
@@ -106,13 +106,13 @@ void Reduction::set_given_modes(const fe::Model& model) {
   basis.M = body_.modal_mass;
   basis.K = body_.modal_stiffness;
   basis.kind = body_.kind;
-  set_damping(basis);
+  set_damping(model, basis);
   add_dampers(model);
 }
 
 /// By ratio, table, Rayleigh's factors and the materials, in the frame where the basis is orthogonal to rigid motions:
 /// those do not dissipate.
-void Reduction::set_damping(const modal::bases::Basis& basis) {
+void Reduction::set_damping(const fe::Model& model, const modal::bases::Basis& basis) {
   const auto spec = make_damping_spec(spec_);
   const auto n = static_cast<std::size_t>(basis.lambda.size());
   const auto bad = [&](const std::string& what, const std::string& advice) {
@@ -135,7 +135,8 @@ void Reduction::set_damping(const modal::bases::Basis& basis) {
   MatrixXd K_g;
   if (spec_.has_material_damping && options_.elements)
     bad("material = true, but the stiffness comes from given matrices", "use ratios, a table or structural");
-  if (spec_.has_material_damping) K_g = calc_material_damping(deck_, basis.Phi, where(), diagnostics_);
+  if (spec_.has_material_damping)
+    K_g = calc_material_damping(model, records::get_real_param(deck_, "G", 0, diagnostics_), basis.Phi);
   body_.modal_damping = modal::bases::calc_damping(basis.M, basis.K, spec, K_g, is_residual);
 }
 

@@ -30,7 +30,7 @@ class Reduction {
   void check_rigid(const modal::bases::Basis& basis);
   void set_modes(const fe::Model& model, const modal::bases::StaticSolve& solve);
   void set_given_modes(const fe::Model& model);
-  void set_damping(const modal::bases::Basis& basis);
+  void set_damping(const fe::Model& model, const modal::bases::Basis& basis);
   void add_dampers(const fe::Model& model);
   void set_nodes(const fe::Model& model);
   void set_integrals(const fe::Model& model);  ///< and effective masses, F_I

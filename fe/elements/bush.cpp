@@ -40,6 +40,12 @@ void Bush::add_damping(double scale, Eigen::Ref<MatrixXd> B) const {
   B += scale * (stretch.transpose() * (b.asDiagonal() * stretch));
 }
 
+void Bush::add_structural_damping(double g, Eigen::Ref<MatrixXd> K) const {
+  const auto stretch = calc_stretch();
+  const Eigen::Map<const Eigen::Array<double, 6, 1>> k(data_.k.data()), ge(data_.ge.data());
+  K += stretch.transpose() * ((g + ge) * k).matrix().asDiagonal() * stretch;
+}
+
 void Bush::add_mass(MassKind, double scale, Eigen::Ref<MatrixXd> M) const {
   for (int first = 0; first < num_dofs(); first += 6)
     M.block<3, 3>(first, first) += 0.5 * scale * data_.mass * Matrix3d::Identity();

@@ -9,6 +9,7 @@ struct BushData {
   Matrix3d R_basic_element = Matrix3d::Identity();
   std::array<double, 6> k{};          ///< along and about the element axes
   std::array<double, 6> b{};          ///< viscous damping, likewise
+  std::array<double, 6> ge{};         ///< structural damping, likewise
   Vector3d arm_a = Vector3d::Zero();  ///< spring point from grid A, basic
   Vector3d arm_b = Vector3d::Zero();  ///< and from grid B
   double mass = 0;
@@ -25,6 +26,7 @@ class Bush final : public Element {
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
   bool has_damping() const override;
   void add_damping(double scale, Eigen::Ref<MatrixXd> B) const override;
+  void add_structural_damping(double g, Eigen::Ref<MatrixXd> K) const override;
   /// Six spring forces in element axes, of B on the spring's B side. (K_G does not depend on them.)
   Eigen::Matrix<double, 6, 1> calc_spring_forces(const Eigen::Ref<const VectorXd>& u) const;
 

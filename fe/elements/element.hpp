@@ -64,6 +64,12 @@ class Element {
   /// B += scale B_e, N x N: viscous damping. Symmetric; B_e times any rigid motion is zero for an ungrounded element.
   virtual void add_damping(double scale, Eigen::Ref<MatrixXd> B) const;
 
+  /// GE of the material or property; springs with one a direction have their own add_structural_damping().
+  double structural_damping() const { return structural_damping_; }
+  void set_structural_damping(double ge) { structural_damping_ = ge; }
+  /// K += (g + GE) K_e, N x N: the imaginary part of the stiffness (Nastran's K4 with g of PARAM,G).
+  virtual void add_structural_damping(double g, Eigen::Ref<MatrixXd> K) const;
+
   /// Number s of internal force components (stress resultants) on which K_G depends; 0: no geometric stiffness.
   virtual int num_internal_forces() const { return 0; }
   /// Internal forces (s) of the element for its nodal displacements u (N), linear in u. Names: internal_force_names().
@@ -91,6 +97,7 @@ class Element {
   std::string card_;
   std::vector<int> nodes_;
   std::vector<int> gdofs_;
+  double structural_damping_ = 0;
 };
 
 /// Looks up nodes by deck id while elements are made.

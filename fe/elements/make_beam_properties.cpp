@@ -8,7 +8,7 @@
 namespace bough::fe {
 
 Isotropic make_isotropic(const records::Mat1& material) {
-  return {material.E, material.G, material.rho, material.alpha, material.tref};
+  return {material.E, material.G, material.rho, material.alpha, material.tref, material.ge};
 }
 
 namespace {

@@ -93,8 +93,10 @@ void make_beam(Maker& maker, BeamProperties& properties, const records::BeamElem
     maker.diagnostics().warning("fe.warping-ignored", maker.deck().locate(card.at),
                                 who + " has warping points SA, SB, which are not used");
   if (!property) return;
+  const double ge = property->material.ge;
   maker.add(std::make_unique<Beam>(card.id, name, std::vector{a, b}, maker.list_gdofs({a, b}), std::move(property),
-                                   geometry));
+                                   geometry),
+            ge);
 }
 
 }  // namespace

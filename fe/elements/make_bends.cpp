@@ -109,7 +109,8 @@ void make_bends(Maker& maker) {
       continue;
     }
     if (made[card.pid])
-      maker.add(std::make_unique<Bend>(card.id, std::vector{a, b}, maker.list_gdofs({a, b}), made[card.pid], *arc));
+      maker.add(std::make_unique<Bend>(card.id, std::vector{a, b}, maker.list_gdofs({a, b}), made[card.pid], *arc),
+                made[card.pid]->material.ge);
   }
 }
 

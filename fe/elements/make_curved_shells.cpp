@@ -121,7 +121,8 @@ void make_curved_shells(Maker& maker) {
     auto own = find_sections(sections, shell.card, frames);
     const auto gdofs = maker.list_gdofs(shell.nodes);
     maker.add(std::make_unique<CurvedShell>(shell.card.card->id, shell.card.card->card, std::move(shell.nodes), gdofs,
-                                            std::move(shell.geometry), std::move(own), std::move(angle)));
+                                            std::move(shell.geometry), std::move(own), std::move(angle)),
+              shell.card.section->ge);
   }
 }
 

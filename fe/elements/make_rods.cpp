@@ -21,7 +21,8 @@ void make_rod(Maker& maker, const char* card_name, int id, int ga, int gb, const
     return;
   }
   if (!property) return;
-  maker.add(std::make_unique<Rod>(id, card_name, std::vector{a, b}, maker.list_gdofs({a, b}), *property, xa, xb));
+  maker.add(std::make_unique<Rod>(id, card_name, std::vector{a, b}, maker.list_gdofs({a, b}), *property, xa, xb),
+            property->ge);
 }
 
 bool check_section(Maker& maker, const std::string& who, double A, double J, double nsm,
@@ -34,7 +35,7 @@ bool check_section(Maker& maker, const std::string& who, double A, double J, dou
 
 RodProperty make_property(const records::Mat1& material, double A, double J, double nsm) {
   const double mass = material.rho * A + nsm;
-  return {material.E * A, material.G * J, mass, mass, material.alpha, material.tref};
+  return {material.E * A, material.G * J, mass, mass, material.alpha, material.tref, material.ge};
 }
 
 /// Hollow or solid circular tube, diameter linear from od to od2, constant wall t (t = 0: solid). Axial and torsional
@@ -60,7 +61,8 @@ RodProperty make_tube(const records::Mat1& material, const records::Ptube& tube)
           material.rho * area(tube.od) + tube.nsm,
           material.rho * area(od2) + tube.nsm,
           material.alpha,
-          material.tref};
+          material.tref,
+          material.ge};
 }
 
 }  // namespace

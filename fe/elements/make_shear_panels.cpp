@@ -50,7 +50,7 @@ void make_shear_panels(Maker& maker) {
       // Quick Reference Guide, PSHEAR: up to 1.01 a fraction of the panel's width, above a multiple of its thickness.
       p.rod_area[i] = f > 1.01 ? 0.5 * f * p.t * p.t : f * p.t * area / (length(i) + length((i + 2) % 4));
     }
-    maker.add(std::make_unique<ShearPanel>(card.id, std::move(nodes), std::move(gdofs), x, p));
+    maker.add(std::make_unique<ShearPanel>(card.id, std::move(nodes), std::move(gdofs), x, p), material->ge);
   }
 }
 

@@ -24,7 +24,8 @@ void make_shells(Maker& maker) {
     const bool drilling = shell.card->card == "CQUADR" || shell.card->card == "CTRIAR";
     const auto kind = drilling ? shell::MembraneKind::Drilling : shell::MembraneKind::Plain;
     maker.add(std::make_unique<Shell>(shell.card->id, shell.card->card, shell.nodes, maker.list_gdofs(shell.nodes),
-                                      geometry, rotate_section(*shell.section, *angle), kind));
+                                      geometry, rotate_section(*shell.section, *angle), kind),
+              shell.section->ge);
   }
 }
 

@@ -12,6 +12,7 @@ struct SolidMaterial {
   Matrix6d C = Matrix6d::Zero();
   double rho = 0;
   SolidExpansion expansion;  ///< in the axes of C
+  double ge = 0;
 };
 
 /// Strains in material axes from strains in basic ones; R holds the material axes in basic (Bond transformation; Auld,
@@ -54,7 +55,7 @@ class MaterialMaker {
                      "give the material axes as a coordinate system");
         return std::nullopt;
       }
-      return SolidMaterial{m->G, m->rho, {m->alpha, m->tref}};
+      return SolidMaterial{m->G, m->rho, {m->alpha, m->tref}, m->ge};
     }
     const auto* m = maker_.find_material(property.mid, name, property.at);
     if (!m) return std::nullopt;
@@ -71,6 +72,7 @@ class MaterialMaker {
     material.rho = m->rho;
     material.expansion.alpha.head<3>().setConstant(m->alpha);
     material.expansion.tref = m->tref;
+    material.ge = m->ge;
     return material;
   }
 
@@ -180,7 +182,8 @@ void make_solids(Maker& maker) {
       if (own) own = share_expansion({T.inverse() * own->alpha, own->tref});
     }
     maker.add(std::make_unique<Solid>(card.id, card.card, nodes, std::move(gdofs), std::move(geometry), C,
-                                      material->rho, std::move(own)));
+                                      material->rho, std::move(own)),
+              material->ge);
   }
   if (turned.count > 0) {
     const std::string more = turned.count > 1 ? " and " + std::to_string(turned.count - 1) + " solids more" : "";

@@ -130,6 +130,7 @@ void make_bush(Maker& maker, const char* name, const records::Pbush* property, c
   data.R_basic_element = axes.R;
   data.k = property->k;
   data.b = property->b;
+  data.ge = property->ge;
   data.mass = property->mass;
   Vector3d point = node_a.x;
   if (card.ocid >= 0) {
@@ -176,18 +177,19 @@ void make_springs(Maker& maker) {
   for (const records::ScalarSpring& card : deck.springs) {
     const std::string name = name_scalar("CELAS", card.pid, card.by_scalar_points),
                       who = name + " " + std::to_string(card.id);
-    double k = card.k;
+    double k = card.k, ge = card.ge;
     bool ok = true;
     if (card.pid > 0) {
       const records::Pelas* property = pelas.find(card.pid);
       if (!property) maker.report_missing_property(card.pid, "PELAS", who, card.at);
       ok = property != nullptr;
-      if (property) k = property->k;
+      if (property) k = property->k, ge = property->ge;
     }
     auto ends = find_ends(maker, who, {card.g1, card.g2}, {card.c1, card.c2}, card.at);
     if (!ok || !ends) continue;
     maker.add(std::make_unique<ScalarSpring>(card.id, name, std::move(ends->nodes), std::move(ends->gdofs), k,
-                                             std::move(ends->b)));
+                                             std::move(ends->b)),
+              ge);
   }
   const Index<records::Pmass> pmass(deck.pmass);
   for (const records::ScalarMass& card : deck.scalar_masses) {

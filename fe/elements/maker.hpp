@@ -31,7 +31,11 @@ class Maker {
   const records::Deck& deck() const { return deck_; }
   const NodeTable& nodes() const { return nodes_; }
   Diagnostics& diagnostics() { return diagnostics_; }
-  void add(std::unique_ptr<const Element> element) { list_.elements.push_back(std::move(element)); }
+  /// ge: structural damping of the material or property.
+  void add(std::unique_ptr<Element> element, double ge = 0) {
+    element->set_structural_damping(ge);
+    list_.elements.push_back(std::move(element));
+  }
 
   void error(const std::string& id, const records::CardLocation& at, std::string what, std::string advice = {}) {
     diagnostics_.error(id, deck_.locate(at), std::move(what), std::move(advice));

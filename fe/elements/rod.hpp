@@ -10,6 +10,7 @@ struct RodProperty {
   double EA = 0, GJ = 0;          ///< for a taper: the length over the integrated compliance
   double mass_a = 0, mass_b = 0;  ///< mass per length at the ends, linear between (nsm included)
   double alpha = 0, tref = 0;     ///< thermal expansion from tref on
+  double ge = 0;                  ///< structural damping
 };
 
 /// Rod between two grids. Mass: translations only; consistent is Nastran's: along the axis the mean of lumped and

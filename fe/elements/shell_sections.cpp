@@ -62,6 +62,7 @@ std::optional<PlaneMaterial> ShellSections::make_material(int mid, const std::st
     auto p = make_orthotropic_plane(m->E1, m->E2, m->nu12, m->G12, m->G1z, m->G2z, m->rho);
     p.alpha = {m->a1, m->a2, 0};
     p.tref = m->tref;
+    p.ge = m->ge;
     return p;
   }
   if (const auto* m = mat2_.find(mid)) {
@@ -72,6 +73,7 @@ std::optional<PlaneMaterial> ShellSections::make_material(int mid, const std::st
     p.shear_rigid = true;  // and none when it stands for a ply
     p.alpha = m->alpha;
     p.tref = m->tref;
+    p.ge = m->ge;
     return p;
   }
   if (!mat1_.find(mid)) {
@@ -86,6 +88,7 @@ std::optional<PlaneMaterial> ShellSections::make_material(int mid, const std::st
   auto p = make_isotropic_plane(m->E, m->G, m->nu, m->rho);
   p.alpha = {m->alpha, m->alpha, 0};
   p.tref = m->tref;
+  p.ge = m->ge;
   return p;
 }
 
@@ -106,6 +109,7 @@ std::optional<PlaneMaterial> ShellSections::find_plane_strain(const records::Psh
   plane.Q(0, 1) = plane.Q(1, 0) = c * m->nu;
   plane.alpha.head<2>().setConstant((1 + m->nu) * m->alpha);
   plane.tref = m->tref;
+  plane.ge = m->ge;
   return plane;
 }
 
@@ -146,6 +150,7 @@ std::optional<ShellSection> ShellSections::make_pshell(const records::Pshell& p,
   // A material without transverse shear moduli leaves the plate rigid in shear, as a blank MID3 does.
   s.shear_flexible = s.shear_flexible && s.S.determinant() > 0 && s.S(0, 0) > 0;
   s.mass = rho * t + p.nsm;
+  s.ge = p.mid1 > 0 ? membrane.ge : bending.ge;
   s.rotary_inertia = rho * t * t * t / 12;
   if (!ok) return std::nullopt;
   set_expansion(membrane, bending, s);
@@ -182,6 +187,7 @@ std::optional<ShellSection> ShellSections::make_pcomp(const records::Pcomp& p) {
   if (!ok) return std::nullopt;
   ShellSection s = make_laminate_section(layers, p.z0);
   s.mass += p.nsm;
+  s.ge = p.ge;
   auto expansion = make_laminate_expansion(layers, p.z0);
   expansion.tref = p.tref;
   if (!p.bending || !p.membrane) {

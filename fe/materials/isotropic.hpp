@@ -7,6 +7,7 @@ namespace bough::fe {
 struct Isotropic {
   double E = 0, G = 0, rho = 0;
   double alpha = 0, tref = 0;  ///< thermal expansion from tref on
+  double ge = 0;               ///< structural damping
 };
 
 }  // namespace bough::fe

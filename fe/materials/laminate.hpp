@@ -12,6 +12,7 @@ struct PlaneMaterial {
   double rho = 0;
   Eigen::Vector3d alpha = Eigen::Vector3d::Zero();  ///< thermal expansion
   double tref = 0;
+  double ge = 0;  ///< structural damping
 };
 
 PlaneMaterial make_isotropic_plane(double E, double G, double nu, double rho);

@@ -20,6 +20,7 @@ struct ShellSection {
   double mass_offset = 0;                           ///< centre of mass above the reference surface
   double rotary_inertia = 0;                        ///< ∫ρ z² dz about the centre of mass
   double drilling = 0;                              ///< stiffness per area against θz - ½(v,x - u,y): 1e-6 K6ROT G t
+  double ge = 0;                                    ///< structural damping, of MID1 (MID2 without it) or of the PCOMP
   std::shared_ptr<const ShellExpansion> expansion;  ///< empty: no temperatures in the deck, or no expansion
 };
 

@@ -18,7 +18,8 @@ void parse_mat2(Card& card, Reading& r) {
   mat.rho = card.read_real(7, "RHO", 0.0);
   mat.alpha = card.read_vector(8, "A1 A2 A3");
   mat.tref = card.read_real(11, "TREF", 0.0);
-  card.use(12, 17);  // GE, stress limits, MCSID
+  mat.ge = card.read_real(12, "GE", 0.0);
+  card.use(13, 17);  // stress limits, MCSID
   mat.at = card.get_location();
   if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat2.push_back(mat);
 }
@@ -36,7 +37,8 @@ void parse_mat8(Card& card, Reading& r) {
   mat.a1 = card.read_real(8, "A1", 0.0);
   mat.a2 = card.read_real(9, "A2", 0.0);
   mat.tref = card.read_real(10, "TREF", 0.0);
-  card.use(11, card.get_size());  // strengths, GE
+  mat.ge = card.read_real(16, "GE", 0.0);
+  card.use(11, card.get_size());  // strengths, F12, STRN
   mat.at = card.get_location();
   if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat8.push_back(mat);
 }
@@ -50,7 +52,7 @@ void parse_mat9(Card& card, Reading& r) {
   mat.rho = card.read_real(field++, "RHO", 0.0);
   for (int i = 0; i < 6; ++i) mat.alpha[i] = card.read_real(field++, "Ai", 0.0);
   mat.tref = card.read_real(field, "TREF", 0.0);
-  card.use(field + 1);  // GE
+  mat.ge = card.read_real(field + 1, "GE", 0.0);
   mat.at = card.get_location();
   if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat9.push_back(mat);
 }
@@ -65,7 +67,7 @@ void parse_mat11(Card& card, Reading& r) {
   mat.rho = card.read_real(10, "RHO", 0.0);
   for (int i = 0; i < 3; ++i) mat.alpha[i] = card.read_real(11 + i, "Ai", 0.0);
   mat.tref = card.read_real(14, "TREF", 0.0);
-  card.use(15);  // GE
+  mat.ge = card.read_real(15, "GE", 0.0);
   mat.at = card.get_location();
   if (card.is_ok()) {
     Eigen::Matrix3d compliance;
@@ -108,7 +110,8 @@ void parse_laminate(Card& card, Reading& r, int skip, int stride) {
   const auto z0 = card.read_optional_real(1, "Z0");
   p.nsm = card.read_real(2, "NSM", 0.0);
   p.tref = card.read_real(5, "TREF", 0.0);
-  for (const int i : {3, 4, 6}) card.use(i);  // SB, FT, GE
+  p.ge = card.read_real(6, "GE", 0.0);
+  for (const int i : {3, 4}) card.use(i);  // SB, FT
   const std::string lam = card.read_word(7, "LAM", "", {"", "SYM", "MEM", "BEND", "SMEAR", "SMCORE"});
   if (lam == "SMEAR" || lam == "SMCORE")
     card.fail("deck.bad-word", 7, "LAM is " + lam + ", expected SYM, MEM, BEND or blank", "write the plies out");

@@ -28,7 +28,7 @@ void write_pcomp(const records::Pcomp& p, CardSink& sink) {
     card.add_blank();
   else
     card.add(p.z0);
-  card.add(p.nsm).add_blank(2).add(p.tref).add_blank();
+  card.add(p.nsm).add_blank(2).add(p.tref).add(p.ge);
   if (!p.membrane || !p.bending)
     card.add_word(p.membrane ? "MEM" : "BEND");
   else

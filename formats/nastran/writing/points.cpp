@@ -60,12 +60,14 @@ void write_materials(const records::Deck& deck, CardSink& sink) {
     card.add(mat.id);
     for (int i = 0; i < 3; ++i)
       for (int j = i; j < 3; ++j) card.add(mat.G(i, j));
-    sink.put(card.add(mat.rho).add(mat.alpha).add(mat.tref));
+    sink.put(card.add(mat.rho).add(mat.alpha).add(mat.tref).add(mat.ge));
   }
   for (const auto& mat : deck.mat8) {
     CardFields card("MAT8");
     card.add(mat.id).add(mat.E1).add(mat.E2).add(mat.nu12).add(mat.G12).add(mat.G1z).add(mat.G2z).add(mat.rho);
-    sink.put(card.add(mat.a1).add(mat.a2).add(mat.tref));
+    card.add(mat.a1).add(mat.a2).add(mat.tref);
+    if (mat.ge != 0) card.add_blank(5).add(mat.ge);
+    sink.put(card);
   }
   for (const auto& mat : deck.mat9) {
     CardFields card("MAT9");
@@ -74,7 +76,7 @@ void write_materials(const records::Deck& deck, CardSink& sink) {
       for (int j = i; j < 6; ++j) card.add(mat.G(i, j));
     card.add(mat.rho);
     for (int i = 0; i < 6; ++i) card.add(mat.alpha[i]);
-    sink.put(card.add(mat.tref));
+    sink.put(card.add(mat.tref).add(mat.ge));
   }
 }
 

@@ -52,11 +52,11 @@ class Content {
     return (*this)(r.id)(static_cast<int>(r.kind))(r.by_grids)(r.grids)(r.rid)(r.a)(r.b)(r.c);
   }
   Content& operator()(const Mat1& r) { return (*this)(r.id)(r.E)(r.G)(r.nu)(r.rho)(r.alpha)(r.tref)(r.ge); }
-  Content& operator()(const Mat2& r) { return (*this)(r.id)(r.G)(r.rho)(r.alpha)(r.tref); }
+  Content& operator()(const Mat2& r) { return (*this)(r.id)(r.G)(r.rho)(r.alpha)(r.tref)(r.ge); }
   Content& operator()(const Mat8& r) {
-    return (*this)(r.id)(r.E1)(r.E2)(r.nu12)(r.G12)(r.G1z)(r.G2z)(r.rho)(r.a1)(r.a2)(r.tref);
+    return (*this)(r.id)(r.E1)(r.E2)(r.nu12)(r.G12)(r.G1z)(r.G2z)(r.rho)(r.a1)(r.a2)(r.tref)(r.ge);
   }
-  Content& operator()(const Mat9& r) { return (*this)(r.id)(r.G)(r.rho)(r.alpha)(r.tref); }
+  Content& operator()(const Mat9& r) { return (*this)(r.id)(r.G)(r.rho)(r.alpha)(r.tref)(r.ge); }
   Content& operator()(const GridTemperature& r) { return (*this)(r.sid)(r.g)(r.t); }
   Content& operator()(const DefaultTemperature& r) { return (*this)(r.sid)(r.t); }
   Content& operator()(const BarTemperature& r) {
@@ -85,7 +85,7 @@ class Content {
     return (*this)(r.id)(r.mid1)(r.mid2)(r.mid3)(r.mid4)(r.t)(r.bending_ratio)(r.shear_ratio)(r.nsm);
   }
   Content& operator()(const Ply& r) { return (*this)(r.mid)(r.t)(r.theta_deg); }
-  Content& operator()(const Pcomp& r) { return (*this)(r.id)(r.z0)(r.nsm)(r.tref)(r.plies)(r.bending)(r.membrane); }
+  Content& operator()(const Pcomp& r) { return (*this)(r.id)(r.z0)(r.nsm)(r.tref)(r.ge)(r.plies)(r.bending)(r.membrane); }
   Content& operator()(const Pshear& r) { return (*this)(r.id)(r.mid)(r.t)(r.nsm)(r.f1)(r.f2); }
   Content& operator()(const ShearPanel& r) { return (*this)(r.id)(r.pid)(r.grids); }
   Content& operator()(const Pbush1d& r) { return (*this)(r.id)(r.k)(r.c)(r.m); }
