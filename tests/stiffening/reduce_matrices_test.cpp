@@ -96,12 +96,12 @@ struct Exported {
     return fe::Model::build(deck, {}, diagnostics);
   }
   /// K_G of a load, with the deck's supports.
-  GivenMatrix calc_geometric(const VectorXd& F) const {
+  GivenMatrix calc_geometric(const fe::AppliedLoad& load) const {
     const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
     const fe::StaticSolver solver(model, K);
     GivenMatrix K_G = given.K;
-    const VectorXd u = solver.solve(F);
-    K_G.values = to_eigen(fe::gather_sparse(fe::assemble_geometric_stiffness(model, fe::DofSet::Global, u)));
+    const VectorXd u = solver.solve(load.F);
+    K_G.values = to_eigen(fe::gather_sparse(fe::assemble_geometric_stiffness(model, fe::DofSet::Global, load, u)));
     return K_G;
   }
 
@@ -175,21 +175,21 @@ TEST(ReduceMatrices, OwnMatricesGiveTheBodyOfTheDeck) {
 
   // Every K_G, each with its load: the twelve inertial ones, a unit load on the link's end, a load set, a column.
   const VectorXd tip = VectorXd::Unit(own.model.num_gdofs(), own.model.node(own.model.find_node(6)).first_gdof + 1);
-  const VectorXd push = own.model.calc_load(deck, 7, diagnostics);
+  const auto push = own.model.calc_applied_load(deck, 7, diagnostics);
   for (int i = 0; i < 12; ++i) {
     GivenGeometric g;
     g.name = "inertial " + std::to_string(i);
-    g.K_G = own.calc_geometric(expected.F_I.col(i));
+    g.K_G = own.calc_geometric({expected.F_I.col(i), fe::Vector12d::Unit(i), {}});
     g.inertial = i;
     own.given.geometric.push_back(g);
   }
-  GivenGeometric at_node{"tip_y", own.calc_geometric(tip)}, by_set{"push", own.calc_geometric(push)},
-      by_column = by_set;
+  GivenGeometric at_node{"tip_y", own.calc_geometric({tip, fe::Vector12d::Zero(), {}})},
+      by_set{"push", own.calc_geometric(push)}, by_column = by_set;
   at_node.node = 6, at_node.direction = 2;
   by_set.load_set = 7;
   by_column.name = "column";
   by_column.load = own.given.K;
-  by_column.load.values = MatrixXd((MatrixXd(tip.size(), 2) << tip, push).finished()).sparseView();
+  by_column.load.values = MatrixXd((MatrixXd(tip.size(), 2) << tip, push.F).finished()).sparseView();
   by_column.load_column = 2;
   for (const auto& g : {at_node, by_set, by_column}) own.given.geometric.push_back(g);
 
