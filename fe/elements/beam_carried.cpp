@@ -101,12 +101,12 @@ void Beam::add_consistent_bodies(const Eigen::Ref<const Matrix3Xd>& x, CarriedMa
     mass += section.m;
   }
   carried.add_chord_field(x_a, geometry_.length * R.col(0), tips, moved);
-  if (!property_->has_section_inertia && !property_->has_torsional_inertia &&
-      !geometry_.is_part) {  // the mean of lumped and consistent along the axis
+  if (!property_->has_section_inertia && !property_->has_torsional_inertia && !geometry_.is_part) {
+    // The mean of lumped and consistent along the axis: a mass that feels the stretch and is nowhere, so that the pull
+    // of spin is that of the line.
     const Motion stretch = R.col(0) * (released.row(6) - released.row(0));
-    const int p = carried.add_point(false, geometry_.length * R.col(0), stretch * tips);
+    const int p = carried.add_point(false, Vector3d::Zero(), stretch * tips);
     carried.mu(p, p) = mass / 12;
-    add_ends(p, stretch);
   }
   for (int k = 0; k < 2; ++k) {
     if (by_end[k].empty()) continue;

@@ -489,8 +489,8 @@ TEST(ReduceMatrices, Errors) {
   spec.mass = "lumped";
   fails(own.given, "reduce.bad-mass", "the mass matrix is given", spec);
   spec = make_spec(2);
-  spec.integrals = "lumped";
-  fails(own.given, "reduce.bad-integrals", "mass matrix given is consistent", spec);
+  spec.integrals = "consistent";
+  fails(own.given, "reduce.bad-integrals", "mass matrix given is lumped", spec);
   given = own.given;
   given.geometric.push_back({"pull", own.given.K});
   given.geometric.back().load = own.given.K;
