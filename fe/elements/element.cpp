@@ -8,6 +8,7 @@ namespace bough::fe {
 
 void Element::add_stiffness(double, Eigen::Ref<MatrixXd>) const {}
 void Element::add_mass(MassKind, double, Eigen::Ref<MatrixXd>) const {}
+bool Element::add_carried(MassKind, const Eigen::Ref<const Matrix3Xd>&, CarriedMass&) const { return false; }
 void Element::add_damping(double, Eigen::Ref<MatrixXd>) const {}
 
 void Element::add_structural_damping(double g, Eigen::Ref<MatrixXd> K) const {
