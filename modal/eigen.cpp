@@ -62,6 +62,8 @@ class NormalModes {
   bool add_roots(Roots& roots, int number, int guard, bool definite_only = false);
   void find_first();
   detail::RootSearchResult search();
+  bool fit_range(int cut);
+  bool has_every_root();
   /// The modes by one method; `is_sound` false where it missed some or left a residual.
   EigenPairs find_pairs(detail::KrylovMethod method, bool& is_sound, Diagnostics& said);
   EigenPairs make_pairs(int cut, int count, Diagnostics& said);
@@ -165,7 +167,7 @@ void NormalModes::find_first() {
 
 detail::RootSearchResult NormalModes::search() {
   detail::RootSearch search;
-  search.wanted = last_ - num_rigid();
+  search.wanted = std::min(last_ - num_rigid(), solver_->num_available());
   search.num_available = solver_->num_available();
   search.counts = options_.check_inertia;
   search.lowest = num_rigid() > 0 ? 0 : -shift_;
@@ -182,6 +184,37 @@ detail::RootSearchResult NormalModes::search() {
     return count < 0 ? -1 : count - num_rigid();
   };
   return detail::search_roots(search, found_);
+}
+
+/// The ends of the range by the roots themselves: the count that guessed them is off where parts move without strain
+/// and with next to no mass. True when the list is too short for the range.
+bool NormalModes::fit_range(int cut) {
+  if (!options_.min_hz && !options_.max_hz) return false;
+  const auto count_values = [&](const std::optional<double>& hz) {
+    int n = 0;
+    while (hz && n < cut && value(n) < calc_lambda(std::max(*hz, 0.0))) ++n;
+    return n;
+  };
+  const int first = count_values(options_.min_hz), before = last_;
+  int last = options_.num_modes > 0 ? first + options_.num_modes : last_;
+  if (options_.max_hz) {
+    const int above = count_values(options_.max_hz);  // the list's end says nothing of what comes after it
+    last = std::min(last, above < cut ? above : std::max(before, above));
+  }
+  first_ = first;
+  last_ = std::max(first, last);
+  return last_ > before && last_ > cut && cut < num_rigid() + solver_->num_available();
+}
+
+/// Whether as many roots as M has rank are found, each a root indeed: then no count can find more.
+bool NormalModes::has_every_root() {
+  if (!solver_->knows_rank()) return false;
+  add_roots(found_, solver_->num_available() - found_.size(), 0);
+  if (found_.size() < solver_->num_available()) return false;
+  const VectorXd residual =
+      fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, pencil_.M_diagonal, found_.value), found_.X,
+                         pencil_.calc_K_times(found_.X), pencil_.calc_M_times(found_.X) * found_.value.asDiagonal());
+  return residual.size() > 0 && residual.maxCoeff() <= fe::kResidualError;
 }
 
 EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
@@ -265,11 +298,15 @@ EigenPairs NormalModes::find_pairs(detail::KrylovMethod method, bool& is_sound, 
     num_zero_ = 0;
     return make_pairs(0, last_, said);
   }
-  const int wanted = last_;
-  last_ = std::min(last_, num_rigid() + solver_->num_available());
   find_first();
-  const auto result = search();
-  const int cut = num_rigid() + result.cut;
+  auto result = search();
+  for (int round = 0; round < 3 && fit_range(num_rigid() + result.cut); ++round) result = search();
+  const int wanted = last_, cut = num_rigid() + result.cut;
+  if (result.is_missing && has_every_root()) {
+    result.is_missing = false;
+    std::swap(result.doubtful, result.count);
+    result.count = -1;
+  }
   if (result.is_missing) {
     is_sound = false;
     if (method == detail::KrylovMethod::Fastest) return {};  // another method may find them
@@ -281,7 +318,7 @@ EigenPairs NormalModes::find_pairs(detail::KrylovMethod method, bool& is_sound, 
                  "the model has " + std::to_string(std::max(0, last_ - first_)) + " modes, " +
                      std::to_string(wanted - first_) + " were asked for",
                  "ask for fewer, or use a finer mesh or a consistent mass");
-  if (cut > last_ && value(cut - 1) > 0)
+  if (cut > last_ && last_ > 0 && value(cut - 1) > 0 && value(last_) - value(last_ - 1) <= 3e-4 * value(last_))
     said.warning("modal.cut-root", {},
                  "the last mode belongs to a repeated root: " + std::to_string(cut - last_) +
                      " more mode(s) have the same frequency",

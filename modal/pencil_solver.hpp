@@ -27,6 +27,7 @@ class PencilSolver {
 
   /// No more roots than this exist beside the rigid motions; exact where the rank of M is known.
   int num_available() const { return num_available_; }
+  bool knows_rank() const { return C_.has_value(); }
 
   /// Adds the next `number` roots above those in `roots`, the last `num_guard` of them rough; all that exist where
   /// there are fewer. K + shift M is factored. False where that is singular, or with `definite_only` not definite.
