@@ -44,17 +44,25 @@ PencilSolver::PencilSolver(const PencilProblem& problem, int request) : problem_
   if (C_) num_available_ = std::max(0, static_cast<int>(C_->cols()) - k);
 }
 
+void PencilSolver::take_out_rigid(MatrixXd& X) const {
+  if (!problem_.supported || problem_.rigid.cols() == 0) return;
+  for (int pass = 0; pass < 2; ++pass)
+    X -= problem_.rigid * (fe::multiply(problem_.M, problem_.rigid).transpose() * X).eval();
+}
+
 bool PencilSolver::solve_whole(double shift, int number, bool definite_only, Roots& roots) {
   const auto r = C_->cols(), k = problem_.rigid.cols();
   const fe::PetscMat shifted = shift == 0 ? fe::PetscMat() : add(problem_.K, shift, problem_.M);
-  Mat A = shift == 0 ? problem_.K : shifted.get();
+  Mat A = problem_.supported ? problem_.supported : shift == 0 ? problem_.K : shifted.get();
   std::optional<fe::SymmetricFactor> own;
-  const fe::SymmetricFactor* factor = shift == 0 ? problem_.factor : nullptr;
+  const fe::SymmetricFactor* factor = shift == 0 && !problem_.supported ? problem_.factor : nullptr;
   if (!factor) factor = &own.emplace(A, false);
   if (factor->is_singular()) return false;
   if (definite_only && fe::initialize_petsc().size == 1 && !factor->is_definite()) return false;
   // With a shift, mechanisms have the energy of their mass: little, but not roundoff.
-  if (k == 0 && fe::calc_softest_energy(A, *factor) < (shift == 0 ? fe::kMechanismEnergy : 3e-16)) return false;
+  if ((k == 0 || problem_.supported) &&
+      fe::calc_softest_energy(A, *factor) < (shift == 0 ? fe::kMechanismEnergy : 3e-16))
+    return false;
 
   MatrixXd G(r, r);
   for (Eigen::Index first = 0; first < r; first += kBlock) {
@@ -85,6 +93,7 @@ bool PencilSolver::solve_whole(double shift, int number, bool definite_only, Roo
     all.X.middleCols(first, size) = factor->solve(MatrixXd(*C_ * Y.middleCols(first, size))) *
                                     (all.value.segment(first, size).array() + shift).matrix().asDiagonal();
   }
+  take_out_rigid(all.X);
   refine_high(problem_, all, shift);
   roots = Roots{VectorXd(0), MatrixXd(C_->rows(), 0)};
   roots.add(all.value, all.X);
@@ -96,7 +105,7 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
   if (left <= 0) return true;
   if (C_) return solve_whole(shift, std::min(number, left), definite_only, roots);
   KrylovProblem krylov;
-  krylov.A = problem_.K;
+  krylov.A = problem_.supported ? problem_.supported : problem_.K;
   krylov.B = problem_.M;
   krylov.shift = -shift;
   krylov.max_subspace = left;
@@ -107,10 +116,12 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
   krylov.start = round_++;
   krylov.definite_only = definite_only;
   krylov.method = problem_.method;
-  if (shift == 0 && problem_.factor && problem_.factor->is_definite()) krylov.factor = problem_.factor->get();
+  if (shift == 0 && !problem_.supported && problem_.factor && problem_.factor->is_definite())
+    krylov.factor = problem_.factor->get();
   krylov.progress = problem_.progress;
-  const auto result = solve_krylov(krylov);
+  auto result = solve_krylov(krylov);
   if (result.is_singular) return false;
+  take_out_rigid(result.vectors);
   roots.add(result.values, result.vectors);
   return true;
 }
