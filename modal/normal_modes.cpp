@@ -76,7 +76,7 @@ bool NormalModes::add_roots(Roots& roots, int number, int guard, bool definite_o
     if (definite_only) return false;
     throw_singular(pencil_, shift_);
   }
-  num_zero_ = count_zeros(pencil_, roots);
+  num_zero_ = has_supports() ? 0 : count_zeros(pencil_, roots);  // all known before
   return true;
 }
 

@@ -2,22 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "bough/fe/factor.hpp"
 #include "bough/modal/canonical.hpp"
 #include "bough/modal/krylov.hpp"
+#include "bough/modal/roots.hpp"
 
 namespace bough::modal::detail {
 namespace {
 
 using Eigen::Index;
 
-/// diag K with a plain value where nothing stiffens a dof.
+/// diag K; where nothing stiffens a dof what is in keeping with its mass.
 VectorXd calc_scale(const Pencil& pencil) {
   VectorXd D = pencil.K_diagonal;
+  const VectorXd& M = pencil.M_diagonal;
   const double largest = D.maxCoeff();
-  for (double& d : D)
-    if (d <= 1e-14 * largest) d = largest > 0 ? largest : 1;
+  double mass = 0;  // per stiffness
+  for (Index i = 0; i < D.size(); ++i)
+    if (D(i) > 1e-14 * largest) mass = std::max(mass, M(i) / D(i));
+  for (Index i = 0; i < D.size(); ++i)
+    if (D(i) <= 1e-14 * largest) D(i) = mass > 0 && M(i) > 0 ? M(i) / mass : largest > 0 ? largest : 1;
   return D;
 }
 
@@ -64,50 +70,33 @@ MatrixXd find_null_space(const Pencil& pencil, const VectorXd& D, int expected) 
   }
 }
 
-/// Each column gets a unit entry in D-scale (largest by complete pivoting) where the others are zero: motions of
-/// separate parts come apart.
-void separate(const VectorXd& D, MatrixXd& Y) {
-  const VectorXd root = D.cwiseSqrt();
-  MatrixXd X = root.asDiagonal() * Y;
-  for (Index c = 0; c < X.cols(); ++c) {
-    Index row = 0, column = 0;
-    X.rightCols(X.cols() - c).cwiseAbs().maxCoeff(&row, &column);
-    X.col(c).swap(X.col(c + column));
-    X.col(c) /= X(row, c);
-    for (Index other = 0; other < X.cols(); ++other)
-      if (other != c) X.col(other) -= X(row, other) * X.col(c);
-  }
-  Y = root.cwiseInverse().asDiagonal() * X;
-}
+void append(MatrixXd& A, const MatrixXd& B) { A = join(A, B); }
 
-VectorXd calc_masses(const Pencil& pencil, const MatrixXd& Y) {
-  return Y.cwiseProduct(pencil.M_diagonal.asDiagonal() * Y).colwise().sum();
-}
-
-/// Splits the motions by whether they move mass; `light`: the share of its parts' masses below which a motion has none.
-void split_by_mass(const Pencil& pencil, const VectorXd& D, MatrixXd& Y, MatrixXd& massless) {
-  constexpr double light = 1e-13;
-  separate(D, Y);
-  VectorXd parts = calc_masses(pencil, Y);
-  const double largest = (pencil.M_diagonal.array() / D.array()).maxCoeff();
-  std::vector<Index> some, none;
-  for (Index c = 0; c < Y.cols(); ++c) (parts(c) > 1e-22 * largest ? some : none).push_back(c);
-  massless = Y(Eigen::all, none);
-  Y = Y(Eigen::all, some).eval();
-  for (int pass = 0; pass < 2 && Y.cols() > 0; ++pass) {
-    parts = calc_masses(pencil, Y);
-    Y = (Y * parts.cwiseSqrt().cwiseInverse().asDiagonal()).eval();
+/// Makes the D-orthonormal motions Y orthogonal under D and M, normal under M, by descending mass. In rounds: a motion
+/// with little mass per D among such with much keeps its digits. Those that have none in roundoff, beside their parts
+/// or beside the others, go to `massless`: as modes their zero would be vague by 1e-3 of what the others have.
+MatrixXd split_by_mass(const Pencil& pencil, const VectorXd& D, MatrixXd Y, MatrixXd& massless) {
+  MatrixXd heavy(Y.rows(), 0);
+  double most = 0;
+  while (Y.cols() > 0) {
+    for (int pass = 0; pass < 2 && heavy.cols() > 0; ++pass)
+      Y -= heavy * (pencil.calc_M_times(heavy).transpose() * Y).eval();
+    Y *= (Y.cwiseAbs2().transpose() * D).cwiseSqrt().cwiseInverse().asDiagonal();
     const MatrixXd G = Y.transpose() * pencil.calc_M_times(Y);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (G + G.transpose()));
-    const auto num_light = (solver.eigenvalues().array() < light).count();
-    MatrixXd more(Y.rows(), massless.cols() + num_light);
-    more << massless, Y * solver.eigenvectors().leftCols(num_light);
-    massless = more;
-    const Index left = Y.cols() - num_light;
-    Y = (Y * solver.eigenvectors().rightCols(left) *
-         solver.eigenvalues().tail(left).cwiseSqrt().cwiseInverse().asDiagonal())
-            .eval();
+    Y = (Y * solver.eigenvectors()).eval();
+    const VectorXd mass = solver.eigenvalues(), parts = Y.cwiseAbs2().transpose() * pencil.M_diagonal;
+    most = std::max(most, mass.maxCoeff());
+    std::vector<Index> next, none, later;
+    for (Index c = Y.cols() - 1; c >= 0; --c) {
+      const bool is_light = !(mass(c) > 1e-13 * std::max(parts(c), most));
+      (is_light ? none : mass(c) > 1e-6 * mass.maxCoeff() ? next : later).push_back(c);
+    }
+    append(massless, Y(Eigen::all, none));
+    append(heavy, Y(Eigen::all, next) * mass(next).cwiseSqrt().cwiseInverse().asDiagonal());
+    Y = Y(Eigen::all, later).eval();
   }
+  return heavy;
 }
 
 /// As many dofs as X has columns, whose holding holds every combination of them.
@@ -121,16 +110,22 @@ std::vector<int> choose_dofs(const VectorXd& D, const MatrixXd& X) {
   return dofs;
 }
 
-/// X without what is in the M-orthonormal R, orthonormal under M; directions of which next to nothing is left go.
-MatrixXd complement(const Pencil& pencil, const MatrixXd& R, MatrixXd X) {
-  for (int pass = 0; pass < 2 && X.cols() > 0; ++pass) {
-    if (R.cols() > 0) X -= R * (pencil.calc_M_times(R).transpose() * X).eval();
-    const MatrixXd G = X.transpose() * pencil.calc_M_times(X);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (G + G.transpose()));
-    const auto left = (solver.eigenvalues().array() > 1e-8).count();
-    X = (X * solver.eigenvectors().rightCols(left) *
-         solver.eigenvalues().tail(left).cwiseSqrt().cwiseInverse().asDiagonal())
-            .eval();
+/// The motions in the span of Z that are M-orthogonal to R, which is in it: as those of split_by_mass, and where two
+/// have the same mass, turned by the weights of repeated roots.
+MatrixXd complement(const Pencil& pencil, const VectorXd& D, const MatrixXd& R, const MatrixXd& Z) {
+  const Index left = Z.cols() - R.cols();
+  if (left <= 0) return MatrixXd(Z.rows(), 0);
+  MatrixXd X = Z * (Z.cwiseAbs2().transpose() * D).cwiseSqrt().cwiseInverse().asDiagonal();
+  for (int pass = 0; pass < 2 && R.cols() > 0; ++pass) X -= R * (pencil.calc_M_times(R).transpose() * X).eval();
+  const VectorXd root = D.cwiseSqrt();
+  const Eigen::JacobiSVD<MatrixXd> svd(root.asDiagonal() * X, Eigen::ComputeThinU);
+  MatrixXd none(Z.rows(), 0);
+  X = split_by_mass(pencil, D, root.cwiseInverse().asDiagonal() * svd.matrixU().leftCols(left), none);
+  const VectorXd weights = calc_basis_weights(pencil.model), size = X.cwiseAbs2().transpose() * D;
+  for (Index a = 0, b = 0; a < X.cols(); a = b) {
+    b = find_cluster_end(size, static_cast<int>(a), 1e-6, 0);
+    const MatrixXd Y = X.middleCols(a, b - a);
+    X.middleCols(a, b - a) = Y * calc_cluster_rotation(weights, pencil.model.T() * Y);
   }
   return X;
 }
@@ -140,22 +135,19 @@ MatrixXd complement(const Pencil& pencil, const MatrixXd& R, MatrixXd X) {
 RigidMotions find_null_motions(const Pencil& pencil) {
   auto result = find_rigid_motions(pencil);
   const VectorXd D = calc_scale(pencil);
-  MatrixXd Y = find_null_space(pencil, D, static_cast<int>(result.modes.cols() + result.massless.cols()));
+  const MatrixXd Y = find_null_space(pencil, D, static_cast<int>(result.modes.cols() + result.massless.cols()));
   if (Y.cols() == 0) return result;
-  split_by_mass(pencil, D, Y, result.massless);
-  // The motions of the whole in their order, as the iteration has them: what is no motion of K falls out.
-  const MatrixXd known = Y * (Y.transpose() * pencil.calc_M_times(result.modes));
+  result.massless.resize(pencil.size(), 0);
+  const MatrixXd Z = split_by_mass(pencil, D, Y, result.massless);
+  // The motions of the whole in their order, as far as the iteration has them.
   MatrixXd R(pencil.size(), 0);
-  for (Index i = 0; i < known.cols(); ++i) {
-    const MatrixXd next = complement(pencil, R, known.col(i));
-    R = (MatrixXd(R.rows(), R.cols() + next.cols()) << R, next).finished();
+  for (Index i = 0; i < result.modes.cols(); ++i) {
+    MatrixXd x = Z * (Z.transpose() * pencil.calc_M_times(result.modes.col(i)));
+    for (int pass = 0; pass < 2 && R.cols() > 0; ++pass) x -= R * (pencil.calc_M_times(R).transpose() * x).eval();
+    const double mass = x.cwiseProduct(pencil.calc_M_times(x)).sum();
+    if (mass > 1e-8) append(R, x / std::sqrt(mass));
   }
-  const MatrixXd others = complement(pencil, R, Y);
-  const MatrixXd turned =
-      others.cols() > 0
-          ? (others * calc_cluster_rotation(calc_basis_weights(pencil.model), pencil.model.T() * others)).eval()
-          : others;
-  result.modes = (MatrixXd(R.rows(), R.cols() + turned.cols()) << R, turned).finished();
+  result.modes = join(R, complement(pencil, D, R, Z));
   result.held = choose_dofs(D, result.massless);
   if (!result.held.empty()) {
     const MatrixXd at_held = result.massless(result.held, Eigen::all);

@@ -41,7 +41,7 @@ class PencilSolver {
 
  private:
   bool solve_whole(double shift, int number, bool definite_only, Roots& roots);
-  void take_out_rigid(MatrixXd& X) const;
+  Roots solve_stage(const fe::SymmetricFactor& factor, double shift, const MatrixXd& known, int number);
 
   PencilProblem problem_;
   std::optional<Eigen::SparseMatrix<double>> C_;
