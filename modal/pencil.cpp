@@ -36,33 +36,6 @@ MatrixXd calc_range(const MatrixXd& A, double threshold, bool above, VectorXd* v
   return solver.eigenvectors().middleCols(first, count);
 }
 
-/// The combinations of Y (n x s) whose forces K Y c are roundoff in every row, 1e-9 of the sum of their terms: a stiff
-/// part that a soft one holds moves with next to none of its own energy, but the rows of the soft one see a force.
-MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y) {
-  PetscInt first = 0, last = 0, num = 0;
-  fe::check_petsc(MatGetOwnershipRange(pencil.K.get(), &first, &last));
-  const PetscInt* columns = nullptr;
-  const PetscScalar* values = nullptr;
-  MatrixXd G = MatrixXd::Zero(Y.cols(), Y.cols());
-  Eigen::RowVectorXd force(Y.cols()), terms(Y.cols());
-  for (PetscInt row = first; row < last; ++row) {
-    fe::check_petsc(MatGetRow(pencil.K.get(), row, &num, &columns, &values));
-    force.setZero(), terms.setZero();
-    for (PetscInt k = 0; k < num; ++k)
-      for (Eigen::Index c = 0; c < Y.cols(); ++c) {
-        const double term = values[k] * Y(columns[k], c);
-        force(c) += term;
-        terms(c) += std::abs(term);
-      }
-    fe::check_petsc(MatRestoreRow(pencil.K.get(), row, &num, &columns, &values));
-    if (terms.maxCoeff() > 0) force /= terms.maxCoeff();
-    G += force.transpose() * force;
-  }
-  fe::sum_over_ranks(G);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(G);
-  return solver.eigenvectors().leftCols((solver.eigenvalues().array() < 1e-18).count());
-}
-
 /// Unit vectors of the dofs with mass and nothing at all that stiffens them.
 MatrixXd find_loose(const Pencil& pencil) {
   VectorXd loose = VectorXd::Zero(pencil.size());
@@ -135,6 +108,31 @@ MatrixXd Pencil::calc_M_times(const MatrixXd& X) const { return fe::multiply(M.g
 double Pencil::calc_relative_energy(const VectorXd& x, double energy) const {
   const double scale = x.cwiseAbs2().dot(K_diagonal);
   return scale > 0 ? std::abs(energy) / scale : 0;
+}
+
+MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y) {
+  PetscInt first = 0, last = 0, num = 0;
+  fe::check_petsc(MatGetOwnershipRange(pencil.K.get(), &first, &last));
+  const PetscInt* columns = nullptr;
+  const PetscScalar* values = nullptr;
+  MatrixXd G = MatrixXd::Zero(Y.cols(), Y.cols());
+  Eigen::RowVectorXd force(Y.cols()), terms(Y.cols());
+  for (PetscInt row = first; row < last; ++row) {
+    fe::check_petsc(MatGetRow(pencil.K.get(), row, &num, &columns, &values));
+    force.setZero(), terms.setZero();
+    for (PetscInt k = 0; k < num; ++k)
+      for (Eigen::Index c = 0; c < Y.cols(); ++c) {
+        const double term = values[k] * Y(columns[k], c);
+        force(c) += term;
+        terms(c) += std::abs(term);
+      }
+    fe::check_petsc(MatRestoreRow(pencil.K.get(), row, &num, &columns, &values));
+    if (terms.maxCoeff() > 0) force /= terms.maxCoeff();
+    G += force.transpose() * force;
+  }
+  fe::sum_over_ranks(G);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(G);
+  return solver.eigenvectors().leftCols((solver.eigenvalues().array() < 1e-18).count());
 }
 
 namespace {

@@ -29,8 +29,14 @@ struct Pencil {
 struct RigidMotions {
   MatrixXd modes;     ///< num_fdofs x k, orthonormal under M, in order: translations of the cg, rotations, loose dofs
   MatrixXd massless;  ///< num_fdofs x l: no strain and no mass; K - σM is singular along them for every σ
-  std::vector<int> held;  ///< l f-dofs whose holding removes the massless motions and changes nothing else
+  std::vector<int> held;      ///< l f-dofs whose holding removes the massless motions and changes nothing else
+  std::vector<int> supports;  ///< k f-dofs whose holding holds `modes` too; only by find_null_motions
 };
+
+/// The combinations (s x m) of Y (n x s) whose forces K Y c are roundoff in every row, 1e-9 of the sum of their terms:
+/// a stiff part that a soft one holds moves with next to none of its own energy, but the rows of the soft one see a
+/// force.
+MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y);
 
 /// Combinations c of Φ_R (about the cg) with (Φ_R c)ᵀ K (Φ_R c) and every row of K Φ_R c zero in roundoff on the f-set,
 /// and the dofs with mass that nothing stiffens at all. A motion that a support prevents shows as strain where it was

@@ -5,6 +5,7 @@
 
 #include "bough/fe/blas.hpp"
 #include "bough/fe/mechanism.hpp"
+#include "bough/modal/canonical.hpp"
 
 namespace bough::modal::detail {
 namespace {
@@ -13,26 +14,23 @@ constexpr Eigen::Index kBlock = 24;  ///< right-hand sides at once
 
 MatrixXd symmetrize(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
 
-/// The columns far above the first were found beside values 1e6 times theirs and more: the lower vectors taken out of
-/// them, they are solved among themselves, where K has their digits.
-void refine_high(const PencilProblem& problem, Roots& roots, double shift) {
-  const VectorXd distance = (roots.value.array() + shift).abs();
-  int low = 0;
-  while (low < roots.size() && distance(low) <= 1e6 * distance(0)) ++low;
-  const int high = roots.size() - low;
-  if (high == 0) return;
-  const MatrixXd below = join(problem.rigid, roots.X.leftCols(low));
-  MatrixXd X = roots.X.rightCols(high);
-  for (int pass = 0; pass < 2; ++pass) {
-    if (below.cols() > 0) X -= below * (fe::multiply(problem.M, below).transpose() * X).eval();
-    const VectorXd mass = X.cwiseProduct(fe::multiply(problem.M, X)).colwise().sum();
-    X = (X * mass.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal()).eval();
-  }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> ritz(symmetrize(X.transpose() * fe::multiply(problem.K, X)),
-                                                                symmetrize(X.transpose() * fe::multiply(problem.M, X)));
+constexpr double kReach = 1e6;  ///< how far above the first root of a stage the digits suffice
+
+/// X without the M-orthonormal R.
+void take_out(Mat M, const MatrixXd& R, MatrixXd& X) {
+  if (R.cols() == 0) return;
+  const MatrixXd MR = fe::multiply(M, R);
+  for (int pass = 0; pass < 2; ++pass) X -= R * (MR.transpose() * X).eval();
+}
+
+/// Values and vectors among X by K itself.
+void solve_among(Mat K, Mat M, Roots& roots) {
+  const MatrixXd& X = roots.X;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> ritz(symmetrize(X.transpose() * fe::multiply(K, X)),
+                                                                symmetrize(X.transpose() * fe::multiply(M, X)));
   if (ritz.info() != Eigen::Success) return;
-  roots.value.tail(high) = ritz.eigenvalues();
-  roots.X.rightCols(high) = X * ritz.eigenvectors();
+  roots.value = ritz.eigenvalues();
+  roots.X = (X * ritz.eigenvectors()).eval();
 }
 
 }  // namespace
@@ -47,48 +45,74 @@ PencilSolver::PencilSolver(const PencilProblem& problem, int request) : problem_
 bool PencilSolver::solve_whole(double shift, int number, bool definite_only, Roots& roots) {
   const auto r = C_->cols(), k = problem_.rigid.cols();
   const fe::PetscMat shifted = shift == 0 ? fe::PetscMat() : add(problem_.K, shift, problem_.M);
-  Mat A = shift == 0 ? problem_.K : shifted.get();
+  Mat A = problem_.supported ? problem_.supported : shift == 0 ? problem_.K : shifted.get();
   std::optional<fe::SymmetricFactor> own;
-  const fe::SymmetricFactor* factor = shift == 0 ? problem_.factor : nullptr;
+  const fe::SymmetricFactor* factor = shift == 0 && !problem_.supported ? problem_.factor : nullptr;
   if (!factor) factor = &own.emplace(A, false);
   if (factor->is_singular()) return false;
   if (definite_only && fe::initialize_petsc().size == 1 && !factor->is_definite()) return false;
   // With a shift, mechanisms have the energy of their mass: little, but not roundoff.
-  if (k == 0 && fe::calc_softest_energy(A, *factor) < (shift == 0 ? fe::kMechanismEnergy : 3e-16)) return false;
+  if ((k == 0 || problem_.supported) &&
+      fe::calc_softest_energy(A, *factor) < (shift == 0 ? fe::kMechanismEnergy : 3e-16))
+    return false;
 
-  MatrixXd G(r, r);
-  for (Eigen::Index first = 0; first < r; first += kBlock) {
-    const auto size = std::min(kBlock, r - first);
-    G.middleCols(first, size) = C_->transpose() * factor->solve(MatrixXd(C_->middleCols(first, size)));
+  // In stages: beside values a million times as large roundoff is all that G has of the small ones.
+  Roots all{VectorXd(0), MatrixXd(C_->rows(), 0)};
+  MatrixXd known = problem_.rigid;
+  const auto wanted = std::min<Eigen::Index>(roots.size() + number, r - k);
+  while (all.size() < wanted) {
+    Roots stage = solve_stage(*factor, shift, known, static_cast<int>(wanted) - all.size());
+    if (stage.size() == 0) break;
+    if (all.size() > 0) solve_among(problem_.K, problem_.M, stage);
+    if (all.size() + stage.size() < wanted) {
+      MatrixXd X = stage.X;
+      orthonormalize_ascending(X.transpose() * fe::multiply(problem_.M, X), X);
+      known = join(known, X);
+    }
+    all.add(stage.value, stage.X);
   }
-  // Z: what is orthogonal to the rigid motions, whose Cᵀx are orthonormal.
+  roots = std::move(all);
+  return true;
+}
+
+/// The lowest roots besides the M-orthonormal `known` ones, up to kReach times the first of them.
+Roots PencilSolver::solve_stage(const fe::SymmetricFactor& factor, double shift, const MatrixXd& known, int number) {
+  const auto r = C_->cols(), k = known.cols();
+  // Z: what is orthogonal to the known ones, whose Cᵀx are orthonormal.
   MatrixXd Z = MatrixXd::Identity(r, r);
   if (k > 0) {
-    const Eigen::HouseholderQR<MatrixXd> qr(MatrixXd(C_->transpose() * problem_.rigid));
+    const Eigen::HouseholderQR<MatrixXd> qr(MatrixXd(C_->transpose() * known));
     Z = MatrixXd(qr.householderQ()).rightCols(r - k);
   }
-  if (Z.cols() == 0) return true;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetrize(Z.transpose() * G * Z));
+  const bool is_first = k == problem_.rigid.cols();
+  const auto solve_for = [&](const MatrixXd& Y) {
+    MatrixXd X = factor.solve(MatrixXd(*C_ * Y));
+    if (!is_first || problem_.supported) take_out(problem_.M, known, X);
+    return X;
+  };
+  MatrixXd G(Z.cols(), Z.cols());
+  for (Eigen::Index first = 0; first < Z.cols(); first += kBlock) {
+    const auto size = std::min(kBlock, Z.cols() - first);
+    G.middleCols(first, size) = Z.transpose() * (C_->transpose() * solve_for(Z.middleCols(first, size)));
+  }
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetrize(G));
   const VectorXd lambda = solver.eigenvalues().cwiseInverse().array() - shift;
   std::vector<int> order;
   for (int i = 0; i < lambda.size(); ++i)
     if (std::isfinite(lambda(i))) order.push_back(i);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return lambda(a) < lambda(b); });
-  order.resize(std::min(order.size(), static_cast<std::size_t>(roots.size() + number)));
+  order.resize(std::min(order.size(), static_cast<std::size_t>(number)));
+  while (!order.empty() && std::abs(lambda(order.back()) + shift) > kReach * std::abs(lambda(order[0]) + shift))
+    order.pop_back();
 
-  Roots all;
-  all.value = lambda(order);
-  all.X.resize(C_->rows(), all.size());
+  Roots stage{lambda(order), MatrixXd(C_->rows(), static_cast<Eigen::Index>(order.size()))};
   const MatrixXd Y = Z * solver.eigenvectors()(Eigen::all, order);
   for (Eigen::Index first = 0; first < Y.cols(); first += kBlock) {
     const auto size = std::min(kBlock, Y.cols() - first);
-    all.X.middleCols(first, size) = factor->solve(MatrixXd(*C_ * Y.middleCols(first, size))) *
-                                    (all.value.segment(first, size).array() + shift).matrix().asDiagonal();
+    stage.X.middleCols(first, size) =
+        solve_for(Y.middleCols(first, size)) * (stage.value.segment(first, size).array() + shift).matrix().asDiagonal();
   }
-  refine_high(problem_, all, shift);
-  roots = Roots{VectorXd(0), MatrixXd(C_->rows(), 0)};
-  roots.add(all.value, all.X);
-  return true;
+  return stage;
 }
 
 bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_only, Roots& roots) {
@@ -96,7 +120,7 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
   if (left <= 0) return true;
   if (C_) return solve_whole(shift, std::min(number, left), definite_only, roots);
   KrylovProblem krylov;
-  krylov.A = problem_.K;
+  krylov.A = problem_.supported ? problem_.supported : problem_.K;
   krylov.B = problem_.M;
   krylov.shift = -shift;
   krylov.max_subspace = left;
@@ -107,10 +131,12 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
   krylov.start = round_++;
   krylov.definite_only = definite_only;
   krylov.method = problem_.method;
-  if (shift == 0 && problem_.factor && problem_.factor->is_definite()) krylov.factor = problem_.factor->get();
+  if (shift == 0 && !problem_.supported && problem_.factor && problem_.factor->is_definite())
+    krylov.factor = problem_.factor->get();
   krylov.progress = problem_.progress;
-  const auto result = solve_krylov(krylov);
+  auto result = solve_krylov(krylov);
   if (result.is_singular) return false;
+  if (problem_.supported) take_out(problem_.M, problem_.rigid, result.vectors);
   roots.add(result.values, result.vectors);
   return true;
 }

@@ -13,6 +13,7 @@ struct PencilProblem {
   Mat K = nullptr, M = nullptr;
   VectorXd M_diagonal;                          ///< replicated
   MatrixXd rigid;                               ///< n x k, M-orthonormal motions without strain, known; kept out
+  Mat supported = nullptr;                      ///< K with a spring for each rigid motion, statically determinate
   const fe::SymmetricFactor* factor = nullptr;  ///< of K, where the caller has it
   double tolerance = 1e-12;
   KrylovMethod method = KrylovMethod::Fastest;
@@ -27,9 +28,12 @@ class PencilSolver {
 
   /// No more roots than this exist beside the rigid motions; exact where the rank of M is known.
   int num_available() const { return num_available_; }
+  bool knows_rank() const { return C_.has_value(); }
 
   /// Adds the next `number` roots above those in `roots`, the last `num_guard` of them rough; all that exist where
   /// there are fewer. K + shift M is factored. False where that is singular, or with `definite_only` not definite.
+  /// With `supported` that is factored instead, and shift is 0: M x of what is orthogonal to the rigid motions is in
+  /// balance, so the springs see no force, and what they hold of the rigid motions is taken out of the solution.
   ///
   /// With M = C Cᵀ of low rank the roots are those of CᵀA⁻¹C y = θ y, A = K + shift M, x = A⁻¹C y / θ, λ = 1/θ - shift:
   /// as many as C has columns, and every x is in the range of A⁻¹M. Else Krylov (solve_krylov).
@@ -37,6 +41,7 @@ class PencilSolver {
 
  private:
   bool solve_whole(double shift, int number, bool definite_only, Roots& roots);
+  Roots solve_stage(const fe::SymmetricFactor& factor, double shift, const MatrixXd& known, int number);
 
   PencilProblem problem_;
   std::optional<Eigen::SparseMatrix<double>> C_;

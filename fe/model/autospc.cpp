@@ -11,12 +11,40 @@
 namespace bough::fe {
 namespace {
 
-constexpr double kNothing = 1e-14;  ///< below this share of the model's largest term a block is round-off
+constexpr double kNothing = 1e-14;  ///< below this share of the terms that it is a sum of, stiffness is round-off
 
 struct NodeBlocks {
   std::vector<Matrix3d> K;    ///< 2k and 2k+1: node k's translations and rotations
-  std::vector<double> noise;  ///< what round-off of the elements at the node can leave in the block
+  std::vector<double> noise;  ///< what round-off of the elements that reach the block can leave in it
 };
+
+/// How large the terms are whose sums the diagonal of K_e is: of one size for the translations, since directions are
+/// sums of others; in the rotations also k r² of a translational stiffness k on an arm r.
+VectorXd calc_sizes(const Element& element, const std::vector<Node>& nodes, const std::vector<int>& gdof_node,
+                    const MatrixXd& K_e) {
+  double arm = 0, largest[2] = {0, 0};
+  for (int k : element.nodes()) arm = std::max(arm, (nodes[k].x - nodes[element.nodes()[0]].x).norm());
+  std::vector<char> kinds;
+  for (int i = 0; i < element.num_dofs(); ++i) {
+    const int g = element.gdofs()[i];
+    kinds.push_back(g - nodes[gdof_node[g]].first_gdof < 3 ? 0 : 1);
+    largest[kinds.back()] = std::max(largest[kinds.back()], std::abs(K_e(i, i)));
+  }
+  largest[1] = std::max(largest[1], largest[0] * arm * arm);
+  VectorXd sizes(element.num_dofs());
+  for (int i = 0; i < sizes.size(); ++i) sizes(i) = largest[kinds[i]];
+  return sizes;
+}
+
+/// Rigid elements whose parts cancel leave the round-off of Σ T_if² d_i; that of several elements adds up like noise.
+void add_noise(const VectorXd& sizes, ElementTransform& transform, const std::vector<int>& fdof_block,
+               std::vector<double>& noise_squared) {
+  const VectorXd& projected = transform.project_diagonal(sizes);
+  for (std::size_t i = 0; i < transform.columns().size(); ++i) {
+    double& noise = noise_squared[fdof_block[transform.columns()[i]]];
+    noise += std::pow(kNothing * projected(static_cast<Eigen::Index>(i)), 2);
+  }
+}
 
 NodeBlocks calc_node_blocks(const std::vector<Node>& nodes, const std::vector<std::unique_ptr<const Element>>& elements,
                             const SparseRows& T0, const std::vector<int>& gdof_node, const std::vector<int>& fdof_block,
@@ -30,16 +58,10 @@ NodeBlocks calc_node_blocks(const std::vector<Node>& nodes, const std::vector<st
     const int n = element->num_dofs();
     K_e.setZero(n, n);
     element->add_stiffness(1, K_e);
-    // A translational stiffness k on an arm r leaves round-off of k r² in the rotations.
-    double arm = 0, largest = 0;
-    for (int k : element->nodes()) arm = std::max(arm, (nodes[k].x - nodes[element->nodes()[0]].x).norm());
-    for (int i = 0; i < n; ++i)
-      if (element->gdofs()[i] - nodes[gdof_node[element->gdofs()[i]]].first_gdof < 3)
-        largest = std::max(largest, K_e(i, i));
-    for (int k : element->nodes()) result.noise[2 * k + 1] += kNothing * largest * arm * arm;
     transform.set(T0, element->gdofs());
-    const MatrixXd& K_f = transform.project(K_e);
     const auto& columns = transform.columns();
+    add_noise(calc_sizes(*element, nodes, gdof_node, K_e), transform, fdof_block, result.noise);
+    const MatrixXd& K_f = transform.project(K_e);
     for (size_t i = 0; i < columns.size(); ++i)
       for (size_t j = i; j < columns.size() && j < i + 6; ++j) {
         if (fdof_block[columns[i]] != fdof_block[columns[j]]) continue;
@@ -49,6 +71,7 @@ NodeBlocks calc_node_blocks(const std::vector<Node>& nodes, const std::vector<st
         if (a != b) block(b, a) += K_f(i, j);
       }
   }
+  for (double& noise : result.noise) noise = std::sqrt(noise);
   return result;
 }
 
@@ -87,7 +110,7 @@ std::vector<AutospcEntry> find_singular_dofs(const std::vector<Node>& nodes,
       if (scale > std::max(kNothing * largest[b % 2], noise[b])) {
         const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(MatrixXd(blocks[b](slots, slots)));
         ratio = std::max(0.0, solver.eigenvalues()[0] / scale);
-        if (ratio > epsilon) break;
+        if (ratio * scale > std::max(epsilon * scale, noise[b])) break;
         // Of equal shares the last: a rod along a diagonal keeps its first component.
         const Eigen::VectorXd share = solver.eigenvectors().col(0).cwiseAbs();
         for (int i = 0; i < share.size(); ++i)

@@ -10,7 +10,8 @@ namespace bough::fe {
 /// The singular directions of the 3 x 3 translational and rotational stiffness of each node, after constraints.
 ///
 /// A direction is singular when its principal stiffness is at most `epsilon` times the largest diagonal term of its
-/// block, or the whole block at most 1e-14 of the largest of its type in the model. The component (CD) with the largest
+/// block or round-off of the stiffness that reached it (rigid elements whose parts cancel), or the whole block at most
+/// 1e-14 of the largest of its type in the model. The component (CD) with the largest
 /// share in it is held and the block looked at again, so that a rigid-body motion of the whole model, to which every
 /// node has stiffness, is never touched (MSC Nastran's grid point singularity processing, PARAM,EPZERO).
 /// T0 = constraints before AUTOSPC; fdof_ldof as in Elimination.

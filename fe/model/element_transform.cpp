@@ -49,4 +49,15 @@ const MatrixXd& ElementTransform::project(const Eigen::Ref<const MatrixXd>& K_e)
   return K_f_;
 }
 
+const VectorXd& ElementTransform::project_diagonal(const Eigen::Ref<const VectorXd>& d) {
+  d_f_.setZero(static_cast<int>(columns_.size()));
+  if (!is_selection_) {
+    d_f_.noalias() = T_e_.cwiseAbs2().transpose() * d;
+    return d_f_;
+  }
+  for (size_t i = 0; i < selected_.size(); ++i)
+    if (selected_[i] >= 0) d_f_(selected_[i]) += d(static_cast<int>(i));
+  return d_f_;
+}
+
 }  // namespace bough::fe

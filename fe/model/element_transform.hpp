@@ -22,12 +22,15 @@ class ElementTransform {
   const std::vector<int>& columns() const { return columns_; }
   /// T_eᵀ K_e T_e, columns().size() square; valid until the next call.
   const MatrixXd& project(const Eigen::Ref<const MatrixXd>& K_e);
+  /// The diagonal of T_eᵀ diag(d) T_e, columns().size(): Σ_i T_if² d_i; valid until the next call.
+  const VectorXd& project_diagonal(const Eigen::Ref<const VectorXd>& d);
 
  private:
   std::vector<int> columns_;
   std::vector<int> selected_;  ///< per element dof: position in columns_, -1 for a zero row
   bool is_selection_ = false;  ///< every row of T_e is zero or one unit entry
   MatrixXd T_e_, K_T_, K_f_;
+  VectorXd d_f_;
 };
 
 }  // namespace bough::fe

@@ -75,11 +75,26 @@ class Grouper {
     }
     const int before = static_cast<int>(result_.images.size()) - 1;
     if (strip_marks(tag).empty() || matches(tail_tag(before), tag)) {
+      if (strip_marks(tag).empty() && is_after_empty(line)) warn_of_empty(line);
       ++image(before).num_lines;
       return;
     }
     fragments_.push_back({before + 1, strip_mark(tail_tag(before)).empty() ? before : -1});
     result_.images.push_back({line, 1, -1});
+  }
+
+  bool is_after_empty(int line) const {
+    const auto& all = source_.after_empty;
+    return std::binary_search(all.begin(), all.end(), static_cast<std::size_t>(line));
+  }
+
+  /// A script that writes eight blank fields writes an empty line, which no reader of decks takes for a continuation.
+  void warn_of_empty(int line) {
+    const auto& at = source_.lines[static_cast<std::size_t>(line)].at;
+    diagnostics_.warning("deck.empty-line", {source_.files[static_cast<std::size_t>(at.file)], at.line, 0},
+                         "a continuation stands behind an empty line, which counts as none: these fields follow those "
+                         "of the line before it",
+                         "write '+' in the empty line if it stands for eight blank fields, or remove it");
   }
 
   using Tails = std::unordered_map<std::string, std::vector<int>>;

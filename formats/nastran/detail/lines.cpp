@@ -67,9 +67,13 @@ class Loader {
     if (depth() == 1) root_ = folder;
     Cursor cursor(text);
     std::string_view raw;
+    bool is_after_empty = false;
     while (!done_ && cursor.read_next(raw)) {
       const auto line = cut(raw);
-      if (line.empty()) continue;
+      if (line.empty()) {
+        is_after_empty = is_after_empty || trim(raw).empty();
+        continue;
+      }
       const char c = *std::find_if_not(line.begin(), line.end(), [](char x) { return x == ' ' || x == '\t'; });
       if ((c == 'I' || c == 'i') && is_include(line)) {
         read_include(raw, cursor, file, folder);
@@ -79,6 +83,8 @@ class Loader {
         done_ = true;
         return;
       }
+      if (is_after_empty) source_.after_empty.push_back(source_.lines.size());
+      is_after_empty = false;
       source_.lines.push_back({line, {file, cursor.get_number()}});
     }
   }

@@ -126,5 +126,21 @@ TEST(Autospc, stiffness_through_a_dependent_grid_counts) {
   EXPECT_EQ(model.num_fdofs(), 6);
 }
 
+// Both ends of the rod follow one grid: what is left of its stiffness there is round-off, whatever its size.
+TEST(Autospc, stiffness_that_rigid_elements_cancel_is_none) {
+  for (const double far : {0.3, 30.0, 3000.0}) {
+    auto deck = make_deck({{-1.027, -.12688, -.15252}, {-.89331, -.085771, -.41502}, {far, -.11119, .2}});
+    records::Rbe2 rbe2;
+    rbe2.gn = 3;
+    rbe2.cm = 63;
+    rbe2.gm = {1, 2};
+    deck.rbe2.push_back(rbe2);
+    Diagnostics d;
+    const Model model = Model::build(deck, {}, make_links({{1, 2}}), d);
+    EXPECT_EQ(model.autospc().size(), 6u) << far;
+    EXPECT_EQ(model.num_fdofs(), 0) << far;
+  }
+}
+
 }  // namespace
 }  // namespace bough::fe

@@ -11,7 +11,7 @@ import pencil
 import simple
 import spoil
 from generate import generate
-from truth import Truth, Unclear
+from truth import Truth, Unclear, Wrong
 from writer import round_to
 
 FORMATS = [("small",), ("large",), ("free",), ("small", "large", "free")]
@@ -80,12 +80,14 @@ class Examination:
                 return Report("wrong", {"matrices": wrong}, text)
         elif self.fault is None or self.fault.keeps_truth:
             try:
-                truth = Truth(self.model, *matrices)
+                truth = Truth(self.model, *matrices, self.program.autospc("deck.bdf"))
                 wrong = self.fault is None and simple.judge(self.model, truth)
                 if wrong:
                     return Report("wrong", {"matrices": wrong}, text)
                 spectrum = pencil.solve(truth.K, truth.M, truth.K_size, truth.M_size)
                 unclear = spectrum.grey
+            except Wrong as e:
+                return Report("wrong", {"autospc": str(e)}, text)
             except Unclear as e:
                 truth, unclear = None, str(e)
         if eigrl is None:

@@ -54,6 +54,13 @@ class Program:
         with h5py.File(os.path.join(self.folder, "matrices.h5")) as f:
             return ran, (*(read_dense(f[name]) for name in "KM"), f["dof_map"][:])
 
+    def autospc(self, deck):
+        """(grid, component) of what `check` says is held; None where it does not answer."""
+        ran = self.run("check", deck, "--json")
+        if ran.code != 0:
+            return None
+        return [(entry["grid"], entry["component"]) for entry in json.loads(ran.out)["autospc"]]
+
     def modes(self, deck):
         """The run, its JSON and the shapes at the grids (ids, p × 6 × n)."""
         ran = self.run("modes", deck, "--json", "-o", "modes.h5")

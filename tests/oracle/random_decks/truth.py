@@ -90,10 +90,54 @@ def find_autospc(K, free, index, model, epsilon=1e-8):
     return held
 
 
-class Truth:
-    """Dense K, M and T of the free dofs."""
+class Wrong(Exception):
+    """The program holds a dof that has stiffness, or leaves one that has none."""
 
-    def __init__(self, model, K, M, dof_map):
+
+def accept_autospc(K, K_size, free, index, reported, epsilon=1e-8):
+    """The positions in `free` of the dofs that the program says AUTOSPC holds, once its choice is proved: of each triple
+    what is left has stiffness, as much as the triple has directions with it, and no direction less than it must.
+    Directions near epsilon or near round-off may be held or not."""
+    names = {row: dof for dof, row in index.items()}
+    place = {names[row]: k for k, row in enumerate(free)}
+    strangers = sorted(set(reported) - set(place))
+    if strangers:
+        raise Wrong(f"AUTOSPC holds {strangers[:5]}, which are not free")
+    held, triples = {place[d] for d in reported}, {}
+    for k, row in enumerate(free):
+        g, c = names[row]
+        triples.setdefault((g, 0 if c < 4 else 1), []).append(k)
+    for (g, kind), ks in triples.items():
+        block = 0.5 * (K[np.ix_(ks, ks)] + K[np.ix_(ks, ks)].T)
+        size, scale = K_size.diagonal()[ks].max(), block.diagonal().max()
+        out = [k in held for k in ks]
+        who = f"grid {g}: of {[names[free[k]][1] for k in ks]} AUTOSPC holds {[names[free[k]][1] for k in ks if k in held]}"
+        if scale <= 1e-15 * size:
+            if not all(out):
+                raise Wrong(f"{who}, but its stiffness {scale:.1e} is round-off of {size:.1e}")
+            continue
+        if scale < 1e-12 * size and all(out):
+            continue
+        ratios = np.linalg.eigvalsh(block) / scale
+        doubt = 1e-13 * size / scale
+        num_stiff = int((ratios > 3 * epsilon + doubt).sum())
+        num_soft = int((ratios < 0.3 * epsilon - doubt).sum())
+        left = [i for i, is_out in enumerate(out) if not is_out]
+        if len(left) < num_stiff:
+            raise Wrong(f"{who}, but {num_stiff} directions have stiffness: ratios {ratios}")
+        if len(ks) - len(left) < num_soft:
+            raise Wrong(f"{who}, but {num_soft} directions have none: ratios {ratios}")
+        if left and len(left) == num_stiff:
+            lowest = np.linalg.eigvalsh(block[np.ix_(left, left)])[0] / scale
+            if lowest < 0.1 * ratios[len(ks) - num_stiff]:
+                raise Wrong(f"{who}: what is left has {lowest:.1e}, its directions {ratios}")
+    return sorted(held)
+
+
+class Truth:
+    """Dense K, M and T of the free dofs; `reported`: what the program says AUTOSPC holds, to prove and take over."""
+
+    def __init__(self, model, K, M, dof_map, reported=None):
         self.index = index_dofs(dof_map)
         expected = {(g, c) for g in model.grids for c in range(1, 7)} | {(s, 0) for s in model.points}
         if set(self.index) != expected:
@@ -104,7 +148,9 @@ class Truth:
         C, free = eliminate(model, self.index, held)
         T = self.R @ C
         if model.params.get("AUTOSPC") != "NO":
-            self.autospc = find_autospc(T.T @ K @ T, free, self.index, model)
+            size = np.abs(T)
+            self.autospc = (find_autospc(T.T @ K @ T, free, self.index, model) if reported is None else
+                            accept_autospc(T.T @ K @ T, size.T @ np.abs(K) @ size, free, self.index, reported))
             T = np.delete(T, self.autospc, axis=1)
             held |= {free[k] for k in self.autospc}
             free = [row for k, row in enumerate(free) if k not in set(self.autospc)]

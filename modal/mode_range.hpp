@@ -1,0 +1,20 @@
+#pragma once
+/// \file Which of the ascending modes are wanted: a number, a range of frequencies, or both.
+#include "bough/modal/eigen.hpp"
+
+namespace bough::modal::detail {
+
+double calc_lambda(double hz);
+
+/// Positions wanted, [first, last). The inertia of the factor guesses them, the roots found decide: the inertia is off
+/// where parts move without strain and with next to no mass.
+struct ModeRange {
+  int first = 0, last = 0;
+
+  bool is_empty() const { return last <= first; }
+  /// Adjusts both ends to the roots: `lambda`, ascending, the first `cut` of them complete, `available` exist. True
+  /// when more roots have to be found first.
+  bool fit(const EigenOptions& options, const VectorXd& lambda, int cut, int available);
+};
+
+}  // namespace bough::modal::detail

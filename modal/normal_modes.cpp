@@ -1,0 +1,267 @@
+#include "bough/modal/normal_modes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bough/fe/blas.hpp"
+#include "bough/fe/ordering.hpp"
+#include "bough/modal/canonical.hpp"
+
+namespace bough::modal::detail {
+namespace {
+
+/// Springs from ground to f-dofs of K, each as stiff as K is there.
+std::vector<std::pair<int, double>> add_springs(const std::vector<int>& dofs, const VectorXd& K_diagonal, Mat K) {
+  std::vector<std::pair<int, double>> springs;
+  const double largest = K_diagonal.maxCoeff(), plain = largest > 0 ? largest : 1;
+  PetscInt first = 0, last = 0;
+  fe::check_petsc(MatGetOwnershipRange(K, &first, &last));
+  for (const int f : dofs) {
+    springs.emplace_back(f, K_diagonal(f) > 0 ? K_diagonal(f) : plain);
+    if (f >= first && f < last) fe::check_petsc(MatSetValue(K, f, f, springs.back().second, ADD_VALUES));
+  }
+  fe::check_petsc(MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY));
+  fe::check_petsc(MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY));
+  return springs;
+}
+
+}  // namespace
+
+void NormalModes::add_supports() {
+  if (rigid_.supports.empty()) return;
+  fe::check_petsc(MatDuplicate(pencil_.K.get(), MAT_COPY_VALUES, supported_.out()));
+  fe::copy_row_groups(pencil_.K.get(), supported_.get());
+  add_springs(rigid_.supports, pencil_.K_diagonal, supported_.get());
+}
+
+/// A spring to ground on one dof of each massless motion: strain and mass of every eigenvector are indifferent to how
+/// much of the motion is in it, so nothing else changes.
+void NormalModes::hold_massless(Diagnostics& said) {
+  if (rigid_.held.empty()) return;
+  springs_ = add_springs(rigid_.held, pencil_.K_diagonal, pencil_.K.get());
+  std::string where;
+  for (const int f : rigid_.held) where += (where.empty() ? "" : ", ") + describe(pencil_.model, f);
+  said.warning("modal.massless-motion", {},
+               std::to_string(rigid_.held.size()) + " rigid motion(s) have neither strain nor mass; held at " + where,
+               "use a consistent mass or give the model inertia about that axis");
+}
+
+int NormalModes::count_below(double hz) const {
+  if (!(hz > 0)) return 0;
+  const int count = count_roots_below(pencil_.K.get(), pencil_.M.get(), calc_lambda(hz));
+  if (count < 0) throw_singular(pencil_, -calc_lambda(hz));
+  return count;
+}
+
+void NormalModes::choose_range(KrylovMethod method) {
+  range_.first = options_.min_hz ? count_below(*options_.min_hz) : 0;
+  range_.last = options_.num_modes > 0 ? range_.first + options_.num_modes : pencil_.size();
+  if (options_.max_hz) range_.last = std::min(range_.last, count_below(*options_.max_hz));
+  PencilProblem problem;
+  problem.K = pencil_.K.get();
+  problem.M = pencil_.M.get();
+  problem.M_diagonal = pencil_.M_diagonal;
+  problem.rigid = rigid_.modes;
+  problem.supported = supported_.get();
+  // hold_massless() puts springs into K that the caller's factor has not.
+  if (rigid_.held.empty()) problem.factor = options_.factor;
+  problem.tolerance = options_.tolerance;
+  problem.method = method;
+  problem.progress = options_.progress;
+  solver_.emplace(problem, std::max(0, range_.last - num_rigid()));
+}
+
+bool NormalModes::add_roots(Roots& roots, int number, int guard, bool definite_only) {
+  if (!solver_->solve(shift_, number, guard, definite_only, roots)) {
+    if (definite_only) return false;
+    throw_singular(pencil_, shift_);
+  }
+  num_zero_ = has_supports() ? 0 : count_zeros(pencil_, roots);  // all known before
+  return true;
+}
+
+/// K itself is factored where supports hold the model: no shift to choose, and no second factor because it was too
+/// high. A mechanism, or a mode too soft to tell from one, shows as a first vector with next to no strain.
+void NormalModes::find_first() {
+  constexpr int guard = 2;  // those above show the gap
+  const int request = std::max(0, range_.last - num_rigid()) + guard;
+  const Roots none{VectorXd(0), MatrixXd(pencil_.size(), 0)};
+  found_ = none;
+  shift_ = 0;
+  if (has_supports()) {
+    add_roots(found_, request, guard);
+    return;
+  }
+  if (num_rigid() == 0 && rigid_.held.empty() && add_roots(found_, request, guard, true) && found_.size() > 0 &&
+      num_zero_ == 0 && found_.value(0) > 0 && pencil_.calc_relative_energy(found_.X.col(0), found_.value(0)) > 1e-13)
+    return;
+  shift_ = 0.01 * estimate_first_eigenvalue(pencil_);
+  for (int attempt = 0; attempt < 6; ++attempt) {
+    found_ = none;
+    add_roots(found_, request, guard);
+    // A shift far above the first eigenvalue with strain costs digits, and the vectors where it is out of all
+    // proportion; one far below it lets the motions without strain into them: move it by what the strain energies say.
+    const VectorXd energy = found_.X.cwiseProduct(pencil_.calc_K_times(found_.X)).colwise().sum();
+    double lowest = 0;
+    for (int i = 0; i < found_.size(); ++i)
+      if (pencil_.calc_relative_energy(found_.X.col(i), energy(i)) > 1e-12 && (lowest == 0 || energy(i) < lowest))
+        lowest = energy(i);
+    if (!(lowest > 0) || (shift_ <= 10 * lowest && shift_ >= 1e-5 * lowest)) return;
+    shift_ = 0.1 * lowest;
+  }
+}
+
+RootSearchResult NormalModes::search() {
+  RootSearch search;
+  search.wanted = std::min(range_.last - num_rigid(), solver_->num_available());
+  search.num_available = solver_->num_available();
+  search.counts = options_.check_inertia;
+  search.lowest = num_rigid() > 0 ? 0 : -shift_;
+  search.shift = shift_;
+  search.solve = [&](Roots& roots, int number) { add_roots(roots, number, 0); };
+  search.closeness = [&](const Roots& roots, int i) {
+    if (i + 1 < num_zero_) return std::numeric_limits<double>::infinity();  // zeros are copies of each other
+    if (i < num_zero_) return 1e-8;
+    return calc_cluster_tolerance(pencil_, roots.X.col(i), roots.value(i));
+  };
+  search.roundoff = [&](const Roots& roots, int i) {
+    return i < num_zero_ ? 1 : calc_roundoff(pencil_, roots.X.col(i), roots.value(i));
+  };
+  search.count = [&](double mu) {
+    const int count = count_roots_below(pencil_.K.get(), pencil_.M.get(), mu);
+    return count < 0 ? -1 : count - num_rigid();
+  };
+  return search_roots(search, found_);
+}
+
+bool NormalModes::fit_range(int cut) {
+  VectorXd lambda(num_rigid() + found_.size());
+  for (int i = 0; i < lambda.size(); ++i) lambda(i) = value(i);
+  return range_.fit(options_, lambda, cut, num_rigid() + solver_->num_available());
+}
+
+/// Whether as many roots as M has rank are found, each a root indeed: then no count can find more.
+bool NormalModes::has_every_root() {
+  if (!solver_->knows_rank()) return false;
+  add_roots(found_, solver_->num_available() - found_.size(), 0);
+  if (found_.size() < solver_->num_available()) return false;
+  const VectorXd residual =
+      fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, pencil_.M_diagonal, found_.value), found_.X,
+                         pencil_.calc_K_times(found_.X), pencil_.calc_M_times(found_.X) * found_.value.asDiagonal());
+  return residual.size() > 0 && residual.maxCoeff() <= fe::kResidualError;
+}
+
+EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
+  const auto& model = pencil_.model;
+  const int k = num_rigid(), num_zero = k + num_zero_;
+  VectorXd lambda(cut);
+  for (int i = 0; i < cut; ++i) lambda(i) = value(i);
+  MatrixXd X(pencil_.size(), cut);
+  X << rigid_.modes.leftCols(std::min(k, cut)), found_.X.leftCols(std::max(0, cut - k));
+
+  const VectorXd weights = calc_basis_weights(model);
+  if (cut > k) {
+    // Purification and separate Krylov runs leave the vectors orthogonal to nine digits or so: once more.
+    const MatrixXd& R = rigid_.modes;
+    MatrixXd Y = X.rightCols(cut - k);
+    if (k > 0) Y -= R * (pencil_.calc_M_times(R).transpose() * Y).eval();
+    MatrixXd G(cut - k, cut - k);
+    fe::multiply_dense(true, Y, pencil_.calc_M_times(Y), 0, G);
+    overlap_ = (G - MatrixXd::Identity(cut - k, cut - k)).cwiseAbs().maxCoeff();
+    orthonormalize_ascending(G, Y);
+    X.rightCols(cut - k) = Y;
+  }
+  for (int a = std::min(k, cut), b = a; a < cut; a = b) {
+    if (a < num_zero) {
+      b = std::min(num_zero, cut);
+    } else {
+      b = find_cluster_end(lambda, a, calc_cluster_tolerance(pencil_, X.col(a), lambda(a)), 0);
+    }
+    const MatrixXd Y = X.middleCols(a, b - a);
+    X.middleCols(a, b - a) = Y * calc_cluster_rotation(weights, MatrixXd(model.T() * Y));
+    lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
+  }
+
+  EigenPairs pairs;
+  const int first = std::min(range_.first, cut), size = std::clamp(range_.last, first, cut) - first;
+  X = X.middleCols(first, size).eval();
+  pairs.lambda = lambda.segment(first, size);
+  pairs.num_rigid = std::clamp(num_zero - first, 0, size);
+  pairs.inertia_count = count;
+  pairs.num_massless = static_cast<int>(rigid_.held.size());
+  warn_of_roundoff(pencil_, pairs.lambda, X, pairs.num_rigid, said);
+  MatrixXd KX = pencil_.calc_K_times(X);
+  for (const auto& [f, stiffness] : springs_) KX.row(f) -= stiffness * X.row(f);  // rigid motions move them
+  pairs.residual = fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, pencil_.M_diagonal, pairs.lambda), X,
+                                      KX, pencil_.calc_M_times(X) * pairs.lambda.asDiagonal());
+  pairs.Phi = model.T() * X;
+  fix_signs(pairs.Phi);
+  return pairs;
+}
+
+EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnostics& said) {
+  choose_range(method);
+  is_sound = true;
+  const auto answer_nothing = [&] {
+    said.warning("modal.empty-range", {}, "no mode lies in the frequency range asked for",
+                 "widen the range of EIGRL or of --min-hz and --max-hz");
+    found_ = {VectorXd(0), MatrixXd(pencil_.size(), 0)};
+    num_zero_ = 0;
+    return make_pairs(0, range_.last, said);
+  };
+  // Where it costs little the roots decide that too.
+  if (range_.is_empty() && range_.first > 100) return answer_nothing();
+  find_first();
+  auto result = search();
+  for (int cut = -1; fit_range(num_rigid() + result.cut) && result.cut > cut;) {
+    cut = result.cut;
+    result = search();
+  }
+  if (range_.is_empty() && (options_.min_hz || options_.max_hz)) return answer_nothing();
+  const int wanted = range_.last, cut = num_rigid() + result.cut;
+  if (result.is_missing && has_every_root()) {
+    result.is_missing = false;
+    std::swap(result.doubtful, result.count);
+    result.count = -1;
+  }
+  if (result.is_missing) {
+    is_sound = false;
+    if (method == KrylovMethod::Fastest) return {};  // another method may find them
+  }
+  report_count(result, num_rigid(), "modes", options_.check_inertia, said);
+  range_.last = std::min(range_.last, cut);
+  if (range_.last < wanted && options_.num_modes > 0)
+    said.warning("modal.fewer-modes", {},
+                 "the model has " + std::to_string(std::max(0, range_.last - range_.first)) + " modes, " +
+                     std::to_string(wanted - range_.first) + " were asked for",
+                 "ask for fewer, or use a finer mesh or a consistent mass");
+  if (cut > range_.last && range_.last > 0 && value(cut - 1) > 0 &&
+      value(range_.last) - value(range_.last - 1) <= 3e-4 * value(range_.last))
+    said.warning("modal.cut-root", {},
+                 "the last mode belongs to a repeated root: " + std::to_string(cut - range_.last) +
+                     " more mode(s) have the same frequency",
+                 "ask for " + std::to_string(cut - range_.first) + " modes");
+  auto pairs = make_pairs(cut, result.count < 0 ? -1 : num_rigid() + result.count, said);
+  // As many vectors as modes, orthogonal and each with a small residual: they are there, whatever the pivots say.
+  if (options_.check_inertia && result.count < 0) is_sound = overlap_ < 1e-6;
+  is_sound = is_sound && (pairs.residual.size() == 0 || pairs.residual.maxCoeff() <= fe::kResidualError);
+  return pairs;
+}
+
+Answer NormalModes::solve() {
+  if (!(pencil_.M_diagonal.maxCoeff() > 0))
+    throw ComputationError("modal.no-mass", {}, "no free dof of the model has mass",
+                           "give RHO in MAT1, NSM in a property, or CONM2 and CMASS cards");
+  Diagnostics about_model;
+  hold_massless(about_model);
+  add_supports();
+  Answer answer;
+  for (const auto method : {KrylovMethod::Fastest, KrylovMethod::Blocks}) {
+    answer.said = about_model;
+    answer.pairs = find_pairs(method, answer.is_sound, answer.said);
+    if (answer.is_sound) break;
+  }
+  return answer;
+}
+
+}  // namespace bough::modal::detail

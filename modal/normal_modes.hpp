@@ -1,0 +1,68 @@
+#pragma once
+/// \file One way to the normal modes of a model: its motions without strain, the roots besides them, what they are
+/// worth.
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "bough/base/diagnostic.hpp"
+#include "bough/fe/residual.hpp"
+#include "bough/modal/mode_range.hpp"
+#include "bough/modal/pencil_solver.hpp"
+#include "bough/modal/roundoff.hpp"
+
+namespace bough::modal::detail {
+
+/// What one way to the modes came to.
+struct Answer {
+  EigenPairs pairs;
+  bool is_sound = false;
+  Diagnostics said;
+
+  double worst() const { return pairs.residual.size() > 0 ? pairs.residual.maxCoeff() : 0; }
+  /// No mode may be missing, and no residual needs a word.
+  bool is_clean() const { return is_sound && worst() <= fe::kResidualWarning; }
+};
+
+class NormalModes {
+ public:
+  using FindRigid = RigidMotions (*)(const Pencil&);
+  NormalModes(const fe::Model& model, const EigenOptions& options, FindRigid find_rigid)
+      : options_(options), pencil_(model), rigid_(find_rigid(pencil_)) {}
+
+  Answer solve();
+  bool has_supports() const { return !rigid_.supports.empty(); }
+
+ private:
+  int num_rigid() const { return static_cast<int>(rigid_.modes.cols()); }
+  /// Eigenvalue by position in the whole list: rigid ones, then the found ones.
+  double value(int i) const { return i < num_rigid() + num_zero_ ? 0 : found_.value(i - num_rigid()); }
+  int count_below(double hz) const;
+  void hold_massless(Diagnostics& said);
+  void add_supports();
+  void choose_range(KrylovMethod method);
+  /// False when `definite_only` and the shifted stiffness is not definite.
+  bool add_roots(Roots& roots, int number, int guard, bool definite_only = false);
+  void find_first();
+  RootSearchResult search();
+  bool fit_range(int cut);
+  bool has_every_root();
+  /// The modes by one method; `is_sound` false where it missed some or left a residual.
+  EigenPairs find_pairs(KrylovMethod method, bool& is_sound, Diagnostics& said);
+  EigenPairs make_pairs(int cut, int count, Diagnostics& said);
+
+  const EigenOptions& options_;
+  Pencil pencil_;
+  RigidMotions rigid_;
+  std::vector<std::pair<int, double>> springs_;  ///< f-dofs of the massless motions, held by them in K
+  fe::PetscMat supported_;                       ///< K with springs at the supports too
+  std::optional<PencilSolver> solver_;
+  ModeRange range_;
+  double shift_ = 0;    ///< K + shift M is definite
+  Roots found_;         ///< besides the rigid motions, ascending
+  int num_zero_ = 0;    ///< mechanisms among them, first: no strain either
+  double overlap_ = 0;  ///< how far the vectors found were from M-orthonormal
+};
+
+}  // namespace bough::modal::detail

@@ -1,0 +1,160 @@
+#include "bough/modal/null_motions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "bough/fe/factor.hpp"
+#include "bough/modal/canonical.hpp"
+#include "bough/modal/krylov.hpp"
+#include "bough/modal/roots.hpp"
+
+namespace bough::modal::detail {
+namespace {
+
+using Eigen::Index;
+
+/// diag K; where nothing stiffens a dof what is in keeping with its mass.
+VectorXd calc_scale(const Pencil& pencil) {
+  VectorXd D = pencil.K_diagonal;
+  const VectorXd& M = pencil.M_diagonal;
+  const double largest = D.maxCoeff();
+  double mass = 0;  // per stiffness
+  for (Index i = 0; i < D.size(); ++i)
+    if (D(i) > 1e-14 * largest) mass = std::max(mass, M(i) / D(i));
+  for (Index i = 0; i < D.size(); ++i)
+    if (D(i) <= 1e-14 * largest) D(i) = mass > 0 && M(i) > 0 ? M(i) / mass : largest > 0 ? largest : 1;
+  return D;
+}
+
+/// The D-orthonormal motions of K whose forces are roundoff, by inverse iteration of K + 1e-13 D on `m` vectors; all of
+/// them where fewer than m come out.
+MatrixXd iterate(const Pencil& pencil, const VectorXd& D, const fe::SymmetricFactor& factor, Index m) {
+  const VectorXd root = D.cwiseSqrt();
+  MatrixXd X(pencil.size(), m);
+  for (Index c = 0; c < m; ++c)
+    for (int i = 0; i < pencil.size(); ++i) X(i, c) = calc_fixed_number(i, static_cast<int>(c)) / root(i);
+  VectorXd energy;
+  for (int iteration = 0; iteration < 6; ++iteration) {
+    X = factor.solve(D.asDiagonal() * X);
+    MatrixXd scaled = root.asDiagonal() * X;
+    scaled = Eigen::HouseholderQR<MatrixXd>(scaled).householderQ() * MatrixXd::Identity(pencil.size(), m);
+    X = root.cwiseInverse().asDiagonal() * scaled;
+    const MatrixXd projected = X.transpose() * pencil.calc_K_times(X);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(0.5 * (projected + projected.transpose()));
+    X = (X * ritz.eigenvectors()).eval();
+    energy = ritz.eigenvalues().cwiseAbs();
+  }
+  std::vector<Index> low;
+  for (Index c = 0; c < m; ++c)
+    if (energy(c) < 1e-13) low.push_back(c);
+  const MatrixXd Y = X(Eigen::all, low);
+  return Y.cols() > 0 ? (Y * find_forceless(pencil, Y)).eval() : Y;
+}
+
+MatrixXd find_null_space(const Pencil& pencil, const VectorXd& D, int expected) {
+  fe::PetscMat shifted;
+  fe::check_petsc(MatDuplicate(pencil.K.get(), MAT_COPY_VALUES, shifted.out()));
+  fe::PetscVec shift;
+  fe::check_petsc(MatCreateVecs(pencil.K.get(), shift.out(), nullptr));
+  fe::scatter(1e-13 * D, shift.get());
+  fe::check_petsc(MatDiagonalSet(shifted.get(), shift.get(), ADD_VALUES));
+  const fe::SymmetricFactor factor(shifted.get(), false, fe::FactorMethod::Pivoting);
+  if (factor.is_singular()) return MatrixXd(pencil.size(), 0);
+  constexpr Index most = 400;
+  for (Index m = expected + 6;; m *= 2) {
+    m = std::min<Index>({m, most, pencil.size()});
+    MatrixXd Y = iterate(pencil, D, factor, m);
+    if (Y.cols() < m || m == pencil.size()) return Y;
+    if (m == most) return MatrixXd(pencil.size(), 0);
+  }
+}
+
+void append(MatrixXd& A, const MatrixXd& B) { A = join(A, B); }
+
+/// Makes the D-orthonormal motions Y orthogonal under D and M, normal under M, by descending mass. In rounds: a motion
+/// with little mass per D among such with much keeps its digits. Those that have none in roundoff, beside their parts
+/// or beside the others, go to `massless`: as modes their zero would be vague by 1e-3 of what the others have.
+MatrixXd split_by_mass(const Pencil& pencil, const VectorXd& D, MatrixXd Y, MatrixXd& massless) {
+  MatrixXd heavy(Y.rows(), 0);
+  double most = 0;
+  while (Y.cols() > 0) {
+    for (int pass = 0; pass < 2 && heavy.cols() > 0; ++pass)
+      Y -= heavy * (pencil.calc_M_times(heavy).transpose() * Y).eval();
+    Y *= (Y.cwiseAbs2().transpose() * D).cwiseSqrt().cwiseInverse().asDiagonal();
+    const MatrixXd G = Y.transpose() * pencil.calc_M_times(Y);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (G + G.transpose()));
+    Y = (Y * solver.eigenvectors()).eval();
+    const VectorXd mass = solver.eigenvalues(), parts = Y.cwiseAbs2().transpose() * pencil.M_diagonal;
+    most = std::max(most, mass.maxCoeff());
+    std::vector<Index> next, none, later;
+    for (Index c = Y.cols() - 1; c >= 0; --c) {
+      const bool is_light = !(mass(c) > 1e-13 * std::max(parts(c), most));
+      (is_light ? none : mass(c) > 1e-6 * mass.maxCoeff() ? next : later).push_back(c);
+    }
+    append(massless, Y(Eigen::all, none));
+    append(heavy, Y(Eigen::all, next) * mass(next).cwiseSqrt().cwiseInverse().asDiagonal());
+    Y = Y(Eigen::all, later).eval();
+  }
+  return heavy;
+}
+
+/// As many dofs as X has columns, whose holding holds every combination of them.
+std::vector<int> choose_dofs(const VectorXd& D, const MatrixXd& X) {
+  std::vector<int> dofs;
+  if (X.cols() == 0) return dofs;
+  MatrixXd scaled = D.cwiseSqrt().asDiagonal() * X;
+  scaled *= scaled.colwise().norm().cwiseInverse().asDiagonal();
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(scaled.transpose());
+  for (Index i = 0; i < X.cols(); ++i) dofs.push_back(static_cast<int>(qr.colsPermutation().indices()(i)));
+  return dofs;
+}
+
+/// The motions in the span of Z that are M-orthogonal to R, which is in it: as those of split_by_mass, and where two
+/// have the same mass, turned by the weights of repeated roots.
+MatrixXd complement(const Pencil& pencil, const VectorXd& D, const MatrixXd& R, const MatrixXd& Z) {
+  const Index left = Z.cols() - R.cols();
+  if (left <= 0) return MatrixXd(Z.rows(), 0);
+  MatrixXd X = Z * (Z.cwiseAbs2().transpose() * D).cwiseSqrt().cwiseInverse().asDiagonal();
+  for (int pass = 0; pass < 2 && R.cols() > 0; ++pass) X -= R * (pencil.calc_M_times(R).transpose() * X).eval();
+  const VectorXd root = D.cwiseSqrt();
+  const Eigen::JacobiSVD<MatrixXd> svd(root.asDiagonal() * X, Eigen::ComputeThinU);
+  MatrixXd none(Z.rows(), 0);
+  X = split_by_mass(pencil, D, root.cwiseInverse().asDiagonal() * svd.matrixU().leftCols(left), none);
+  const VectorXd weights = calc_basis_weights(pencil.model), size = X.cwiseAbs2().transpose() * D;
+  for (Index a = 0, b = 0; a < X.cols(); a = b) {
+    b = find_cluster_end(size, static_cast<int>(a), 1e-6, 0);
+    const MatrixXd Y = X.middleCols(a, b - a);
+    X.middleCols(a, b - a) = Y * calc_cluster_rotation(weights, pencil.model.T() * Y);
+  }
+  return X;
+}
+
+}  // namespace
+
+RigidMotions find_null_motions(const Pencil& pencil) {
+  auto result = find_rigid_motions(pencil);
+  const VectorXd D = calc_scale(pencil);
+  const MatrixXd Y = find_null_space(pencil, D, static_cast<int>(result.modes.cols() + result.massless.cols()));
+  if (Y.cols() == 0) return result;
+  result.massless.resize(pencil.size(), 0);
+  const MatrixXd Z = split_by_mass(pencil, D, Y, result.massless);
+  // The motions of the whole in their order, as far as the iteration has them.
+  MatrixXd R(pencil.size(), 0);
+  for (Index i = 0; i < result.modes.cols(); ++i) {
+    MatrixXd x = Z * (Z.transpose() * pencil.calc_M_times(result.modes.col(i)));
+    for (int pass = 0; pass < 2 && R.cols() > 0; ++pass) x -= R * (pencil.calc_M_times(R).transpose() * x).eval();
+    const double mass = x.cwiseProduct(pencil.calc_M_times(x)).sum();
+    if (mass > 1e-8) append(R, x / std::sqrt(mass));
+  }
+  result.modes = join(R, complement(pencil, D, R, Z));
+  result.held = choose_dofs(D, result.massless);
+  if (!result.held.empty()) {
+    const MatrixXd at_held = result.massless(result.held, Eigen::all);
+    result.modes -= result.massless * at_held.partialPivLu().solve(MatrixXd(result.modes(result.held, Eigen::all)));
+  }
+  result.supports = choose_dofs(D, result.modes);
+  return result;
+}
+
+}  // namespace bough::modal::detail
