@@ -14,7 +14,8 @@ namespace {
 constexpr const char* kDirections[] = {"x", "y", "z", "rx", "ry", "rz"};
 }
 
-/// A locator for each translation of the interface nodes and each load of the body file.
+/// A locator for each translation of the interface nodes, each load of the body file, and each rotation of the interface
+/// nodes. Moments that act on nothing (grids of solids) are left out once the shapes are known.
 void Reduction::make_loads(const fe::Model& model) {
   for (const int id : spec_.interface_nodes)
     if (std::find(body_.interface_nodes.begin(), body_.interface_nodes.end(), id) == body_.interface_nodes.end())
@@ -38,6 +39,9 @@ void Reduction::make_loads(const fe::Model& model) {
     for (const int d : load.directions)
       add_unit(name, load.directions.size() == 1 ? name : name + "_" + kDirections[d - 1], load.node, d);
   }
+  for (const int id : body_.interface_nodes)
+    for (int d = 4; spec_.interface_moments && d <= 6; ++d)
+      add_unit("", "node" + std::to_string(id) + "_" + kDirections[d - 1], id, d);
   diagnostics_.throw_if_errors();
 }
 
@@ -95,6 +99,13 @@ StaticSolve Reduction::make_solver(const fe::Model& model, const fe::PetscMat& K
 
 void Reduction::set_stiffening(const fe::Model& model, const StaticSolve& solve) {
   const auto n = Phi_.cols();
+  loads_.erase(std::remove_if(loads_.begin(), loads_.end(),
+                              [&](const BodyLoad& load) {
+                                if (!load.group.empty() || load.locator.direction <= 3) return false;
+                                const auto& node = model.node(model.find_node(load.locator.node));
+                                return Phi_.middleRows(node.first_gdof + 3, 3).isZero(0);
+                              }),
+               loads_.end());
   MatrixXd F_ext(model.num_gdofs(), static_cast<Eigen::Index>(loads_.size()));
   for (std::size_t e = 0; e < loads_.size(); ++e) {
     F_ext.col(static_cast<Eigen::Index>(e)) = loads_[e].F;

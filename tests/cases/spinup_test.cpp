@@ -129,11 +129,46 @@ TEST(Spinup, SecondBeam) {
   record("minimum", h.v[peak]);
   record("minimum_time", h.t[peak]);
   record("shortening", h.u[peak]);
-  record("residual", calc_amplitude(h.t, h.v, 15));
   EXPECT_NEAR(h.v[peak], -0.5744, 0.005 * 0.5744);
   EXPECT_NEAR(h.t[peak], 6.76, 0.02);
   EXPECT_NEAR(h.u[peak], -0.0189, 0.03 * 0.0189);
-  EXPECT_NEAR(calc_amplitude(h.t, h.v, 15), 3.61e-3, 0.02 * 3.61e-3);  // three modes
+  // What swings on after the spin-up, 0.6 % of the peak, is its small difference: the body in two parts, whose
+  // deflections in their own frames are a quarter of it, against the exact beam (tests/oracle/hermite_chain.py spin: 16
+  // and 24 pieces, extrapolated).
+  const auto first = example.spec.bodies[0];
+  const auto spin = example.spec.hinges[0];
+  DeckMaker half = make_cantilever({E, E / 2.6, 600, A, I, I, 2 * I}, 5, 20);
+  half.fix_all(345);
+  body.basis = records::BodyBasis::CraigBampton;
+  body.interface_nodes = {21};
+  body.output_nodes = {1, 21};
+  const auto all = reduce(half.deck, body);
+  for (int j = 0; j < all.num_modes(); ++j)  // what only stretches the beam is left out
+    if (all.phi[1].col(j).tail<1>().norm() > 1e-6 * all.phi[1].cwiseAbs().maxCoeff()) body.select.push_back(j + 1);
+  example.flex = {{first.file, reduce(half.deck, body)}};
+  auto outer = first;
+  outer.name = "outer";
+  auto joint = spin;
+  joint.name = "joint";
+  joint.type = records::HingeType::Fixed;
+  joint.parent = first.name;
+  joint.parent_node = 21;
+  joint.child = "outer";
+  joint.motion.clear();
+  example.spec.bodies.push_back(outer);
+  example.spec.hinges.push_back(joint);
+  records::SensorRecord tip;
+  tip.name = "tip";
+  tip.type = records::SensorType::Position;
+  tip.body = "outer";
+  tip.node = 21;
+  tip.frame = tip.relative_to = first.name;
+  example.spec.sensors = {tip};
+  solver::MemorySink sink;
+  example.run(sink);
+  const double residual = calc_amplitude(sink.time(), sink.get("/sensors/tip").col(1), 15);
+  record("residual", residual);
+  EXPECT_NEAR(residual, 3.636e-3, 0.02 * 3.636e-3);
 }
 
 }  // namespace

@@ -59,8 +59,9 @@ TEST(Reduce, CantileverRecordIsComplete) {
   EXPECT_EQ(body.dof_map.rows(), 41 * 6);
   EXPECT_EQ(body.full_phi.size(), 0);
   EXPECT_EQ(body.mesh.grid_id.size(), 41u);
-  ASSERT_EQ(body.locators.size(), 6u);
-  ASSERT_EQ(body.kg_external.size(), 6u);
+  ASSERT_EQ(body.locators.size(), 9u);
+  ASSERT_EQ(body.kg_external.size(), 9u);
+  for (int d = 4; d <= 6; ++d) EXPECT_EQ(body.find_locator(41, d), d == 6 ? 4 : d + 2);  // a load names the third
   EXPECT_GE(body.find_locator(41, 1), 0);
   EXPECT_EQ(body.locators[3].name, "tip_y");
   EXPECT_EQ(body.locators[5].name, "push");
@@ -69,7 +70,7 @@ TEST(Reduce, CantileverRecordIsComplete) {
   EXPECT_LT((body.external_load.col(5) - 2 * body.phi[2].row(1).transpose()).norm(), 1e-12);
   // The tip is at (8, 0, 0): 2 along y is the force and 16 about z its moment; a mode moves the tip, v along y and w
   // along z, by which the force gets the arm (v, w): moment (-2 w, 0, 2 u).
-  ASSERT_EQ(body.load_resultant.cols(), 6);
+  ASSERT_EQ(body.load_resultant.cols(), 9);
   EXPECT_LT((body.load_resultant.col(5) - (Eigen::VectorXd(6) << 0, 2, 0, 0, 0, 16).finished()).norm(), 1e-12);
   EXPECT_LT((body.load_resultant.col(4) - Eigen::VectorXd::Unit(6, 5)).norm(), 1e-12);  // a moment at the tip
   EXPECT_LT((body.load_moment[5].row(0) + 2 * body.phi[2].row(2)).norm(), 1e-12);
