@@ -15,7 +15,7 @@ constexpr const char* kDirections[] = {"x", "y", "z", "rx", "ry", "rz"};
 }
 
 /// A locator for each translation of the interface nodes, each load of the body file, and each rotation of the interface
-/// nodes. Moments that act on nothing (grids of solids) are left out once the shapes are known.
+/// nodes; set_stiffening leaves out moments that act on nothing (grids of solids).
 void Reduction::make_loads(const fe::Model& model) {
   for (const int id : spec_.interface_nodes)
     if (std::find(body_.interface_nodes.begin(), body_.interface_nodes.end(), id) == body_.interface_nodes.end())
@@ -102,8 +102,7 @@ void Reduction::set_stiffening(const fe::Model& model, const StaticSolve& solve)
   loads_.erase(std::remove_if(loads_.begin(), loads_.end(),
                               [&](const BodyLoad& load) {
                                 if (!load.group.empty() || load.locator.direction <= 3) return false;
-                                const auto& node = model.node(model.find_node(load.locator.node));
-                                return Phi_.middleRows(node.first_gdof + 3, 3).isZero(0);
+                                return !has_rotation(model, model.node(model.find_node(load.locator.node)));
                               }),
                loads_.end());
   MatrixXd F_ext(model.num_gdofs(), static_cast<Eigen::Index>(loads_.size()));

@@ -113,7 +113,7 @@ void Body::add_flexible_nodes(const records::FlexBody& flex) {
       return true;
     };
     node.has_locators = stack_locators(1, node.K2);
-    stack_locators(4, node.K2_theta);
+    node.has_moments = stack_locators(4, node.K2_theta);
     nodes_.push_back(std::move(node));
   }
 }

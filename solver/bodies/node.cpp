@@ -11,7 +11,7 @@ Vector3d calc_K2_column(const RowMatrixXd& K2, int j, const ConstVectorRef& x) {
 }  // namespace
 
 bool Node::has_no_rotation() const {
-  return moves && psi.size() > 0 && psi.cwiseAbs().maxCoeff() <= 1e-14 * phi.cwiseAbs().maxCoeff();
+  return moves && !has_moments && psi.size() > 0 && psi.cwiseAbs().maxCoeff() <= 1e-14 * phi.cwiseAbs().maxCoeff();
 }
 
 void calc_node_in_body(const Node& node, const ConstVectorRef& eta, const ConstVectorRef& eta_dot, NodeInBody& out) {

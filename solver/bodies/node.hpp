@@ -18,6 +18,7 @@ struct Node {
   RowMatrixXd K2_theta;           ///< the same for unit moments
   bool moves = false;             ///< φ or ψ is not zero
   bool has_locators = false;      ///< the body file holds all three translational locators of this node
+  bool has_moments = false;       ///< and all three of moments
 
   /// Moves, but its file has no rotation of it: a grid of solids.
   bool has_no_rotation() const;

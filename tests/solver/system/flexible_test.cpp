@@ -272,11 +272,14 @@ TEST(FlexibleSystem, DeflectionIsThatOfThePoint) {
   Random random(2);
   const VectorXd eta = random.vector_n(3, 0.3);
   calc_kinematics(system, *data, 0, eta, VectorXd::Zero(3));
-  Vector3d deflection, rotation, expected = m.points.phi[1] * eta;
-  for (int a = 0; a < 3; ++a) expected[a] += 0.5 * eta.dot(m.points.g[1][static_cast<size_t>(a)] * eta);
+  Vector3d deflection, rotation, expected = m.points.phi[1] * eta, theta = m.points.psi[1] * eta;
+  for (size_t a = 0; a < 3; ++a) {
+    expected[static_cast<int>(a)] += 0.5 * eta.dot(m.points.g[1][a] * eta);
+    theta[static_cast<int>(a)] += 0.5 * eta.dot(m.points.g_theta[1][a] * eta);
+  }
   calc_node_deflection(system, *data, 0, system.find_node(0, 102), deflection, rotation);
   EXPECT_LT((deflection - expected).norm(), 1e-14);
-  EXPECT_LT((rotation - m.points.psi[1] * eta).norm(), 1e-14);
+  EXPECT_LT((rotation - theta).norm(), 1e-14);
   EXPECT_TRUE(system.has_node_second_order(0, system.find_node(0, 102)));
 }
 
