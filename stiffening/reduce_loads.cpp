@@ -14,8 +14,8 @@ namespace {
 constexpr const char* kDirections[] = {"x", "y", "z", "rx", "ry", "rz"};
 }
 
-/// A locator for each translation of the interface nodes, each load of the body file, and each rotation of the interface
-/// nodes; set_stiffening leaves out moments that act on nothing (grids of solids).
+/// A locator for each translation and rotation of the interface nodes and each load of the body file; set_stiffening
+/// leaves out the moments at interface nodes that act on nothing (grids of solids).
 void Reduction::make_loads(const fe::Model& model) {
   for (const int id : spec_.interface_nodes)
     if (std::find(body_.interface_nodes.begin(), body_.interface_nodes.end(), id) == body_.interface_nodes.end())
@@ -26,7 +26,8 @@ void Reduction::make_loads(const fe::Model& model) {
         {group, {name, id, direction}, VectorXd::Unit(model.num_gdofs(), node.first_gdof + direction - 1)});
   };
   for (const int id : body_.interface_nodes)
-    for (int d = 1; d <= 3; ++d) add_unit("", "node" + std::to_string(id) + "_" + kDirections[d - 1], id, d);
+    for (int d = 1; d <= (spec_.interface_moments ? 6 : 3); ++d)
+      add_unit("", "node" + std::to_string(id) + "_" + kDirections[d - 1], id, d);
   for (std::size_t i = 0; i < spec_.loads.size(); ++i) {
     const auto& load = spec_.loads[i];
     const std::string name = load.name.empty() ? "load" + std::to_string(i + 1) : load.name;
@@ -39,9 +40,6 @@ void Reduction::make_loads(const fe::Model& model) {
     for (const int d : load.directions)
       add_unit(name, load.directions.size() == 1 ? name : name + "_" + kDirections[d - 1], load.node, d);
   }
-  for (const int id : body_.interface_nodes)
-    for (int d = 4; spec_.interface_moments && d <= 6; ++d)
-      add_unit("", "node" + std::to_string(id) + "_" + kDirections[d - 1], id, d);
   diagnostics_.throw_if_errors();
 }
 
@@ -102,7 +100,7 @@ void Reduction::set_stiffening(const fe::Model& model, const StaticSolve& solve)
   loads_.erase(std::remove_if(loads_.begin(), loads_.end(),
                               [&](const BodyLoad& load) {
                                 if (!load.group.empty() || load.locator.direction <= 3) return false;
-                                return !has_rotation(model, model.node(model.find_node(load.locator.node)));
+                                return lacks_rotation(model, model.node(model.find_node(load.locator.node)));
                               }),
                loads_.end());
   MatrixXd F_ext(model.num_gdofs(), static_cast<Eigen::Index>(loads_.size()));

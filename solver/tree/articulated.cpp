@@ -18,8 +18,8 @@ struct Reduced {  // what a body passes on to its parent, at Bo, in B
   throw ComputationError(
       "solver.indefinite-mass", {}, "the articulated mass matrix of body '" + tb.name + "' is not positive definite",
       tb.body.num_modes() > 0
-          ? "its deflection has left the range of the second-order expansion: reduce the load or the "
-            "step, or split the body"
+          ? "its mass integrals do not belong to one mass matrix, or its hinge moves no mass: write the file anew with "
+            "reduce"
           : "give the body, or one that it carries, mass and inertia along its hinge freedoms");
 }
 

@@ -122,9 +122,6 @@ TEST(TwoLinkModes, ExampleRunsForAMinute) {
   Example example = load_example("ex03-two-link", "two-link.toml");
   example.spec.simulation.duration = 60;
   example.spec.simulation.output_step = 0.1;
-  example.spec.simulation.relative_tolerance = 1e-11;
-  example.spec.simulation.absolute_tolerance = 1e-12;
-  example.spec.simulation.integrator = "rk";
   solver::MemorySink sink;
   ASSERT_TRUE(example.run(sink).completed);
   const VectorXd balance = calc_energy_balance(sink);
