@@ -70,9 +70,9 @@ modal::EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases&
   const auto K = fe::assemble_stiffness(statics, fe::DofSet::Free);
   const fe::StaticSolver solver(statics, K);
   const VectorXd u = fe::solve_static_case(statics, solver, load).displacement;
-  if (!own) return modal::calc_buckling_modes(model, u, eigen, diagnostics, &load.initial);
+  if (!own) return modal::calc_buckling_modes(model, load, u, eigen, diagnostics, &load.initial);
   const auto initial = fe::calc_thermal(model, deck, cases.statics.temperature, diagnostics);
-  return modal::calc_buckling_modes(model, u, eigen, diagnostics, &initial);
+  return modal::calc_buckling_modes(model, load, u, eigen, diagnostics, &initial);
 }
 
 }  // namespace bough::cli

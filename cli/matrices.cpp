@@ -66,7 +66,7 @@ fe::PetscMat calc_geometric(const records::Deck& deck, const MatricesOptions& op
   diagnostics.throw_if_errors();
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
   const fe::StaticSolver solver(model, K);
-  return fe::assemble_geometric_stiffness(model, fe::DofSet::Global,
+  return fe::assemble_geometric_stiffness(model, fe::DofSet::Global, load,
                                           fe::solve_static_case(model, solver, load).displacement, &load.initial);
 }
 

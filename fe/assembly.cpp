@@ -7,6 +7,7 @@
 #include "bough/fe/model/element_transform.hpp"
 #include "bough/fe/model/temperatures.hpp"
 #include "bough/fe/ordering.hpp"
+#include "bough/fe/second_order.hpp"
 
 namespace bough::fe {
 namespace {
@@ -31,15 +32,17 @@ struct Rows {
   std::vector<int> elements;  ///< those that touch the rows, ascending
 };
 
-Rows calc_pattern(const Model& model, const SparseRows& T, int first, int last) {
-  const auto& elements = model.elements();
+/// The g-dofs of all that is added: elements, then others.
+using Parts = std::vector<const std::vector<int>*>;
+
+Rows calc_pattern(const Parts& parts, const SparseRows& T, int first, int last) {
   const int num_rows = last - first;
   Rows rows;
   // Each element's columns once; then, per own row, the elements that touch it.
   std::vector<int> element_start{0}, element_columns, columns;
   std::vector<int> count(num_rows + 1, 0);
-  for (int e = 0; e < static_cast<int>(elements.size()); ++e) {
-    calc_element_columns(T, elements[e]->gdofs(), columns);
+  for (int e = 0; e < static_cast<int>(parts.size()); ++e) {
+    calc_element_columns(T, *parts[e], columns);
     bool touches = false;
     for (int c : columns)
       if (c >= first && c < last) ++count[c - first + 1], touches = true;
@@ -128,7 +131,8 @@ std::vector<int> find_row_groups(const Rows& rows) {
 
 /// Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an entry does not
 /// depend on the number of ranks.
-PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add) {
+PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add,
+                  const std::vector<QuadraticForm>& forms = {}) {
   initialize_petsc();
   const SparseRows identity = set == DofSet::Global ? make_identity(model.num_gdofs()) : SparseRows{};
   const SparseRows& T = set == DofSet::Global ? identity : model.T();
@@ -142,16 +146,23 @@ PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add) {
   check_petsc(MatSetUp(A));
   PetscInt first = 0, last = 0;
   check_petsc(MatGetOwnershipRange(A, &first, &last));
-  Rows rows = calc_pattern(model, T, first, last);
+  const int num_elements = static_cast<int>(model.elements().size());
+  Parts parts;
+  for (const auto& element : model.elements()) parts.push_back(&element->gdofs());
+  for (const auto& form : forms) parts.push_back(&form.gdofs);
+  Rows rows = calc_pattern(parts, T, first, last);
   rows.values.assign(rows.columns.size(), 0);
 
   ElementTransform transform;
   MatrixXd K_e;
   for (int e : rows.elements) {
-    const Element& element = *model.elements()[e];
-    transform.set(T, element.gdofs());
-    K_e.setZero(element.num_dofs(), element.num_dofs());
-    add(element, K_e);
+    transform.set(T, *parts[e]);
+    if (e < num_elements) {
+      K_e.setZero(parts[e]->size(), parts[e]->size());
+      add(*model.elements()[e], K_e);
+    } else {
+      K_e = calc_form(forms[e - num_elements], 0);
+    }
     add_rows(transform.project(K_e), transform.columns(), first, last, rows);
   }
   drop_zeros(rows, first);
@@ -202,20 +213,30 @@ PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind) {
   return assemble(model, set, [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); });
 }
 
+PetscMat assemble_grid_mass(const Model& model, MassKind kind) {
+  const double scale = model.wtmass();
+  return assemble(model, DofSet::Global, [&](const Element& e, Eigen::Ref<MatrixXd> M) {
+    CarriedMass carried(e.num_dofs());
+    if (e.carries_turning_mass(kind) && calc_carried(model, e, kind, carried)) return;
+    e.add_mass(kind, scale, M);
+  });
+}
+
 PetscMat assemble_damping(const Model& model, DofSet set) {
   return assemble(model, set, [](const Element& e, Eigen::Ref<MatrixXd> B) { e.add_damping(1, B); });
 }
 
-PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const VectorXd& u_g,
+PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const AppliedLoad& load, const VectorXd& u_g,
                                       const InitialForces* initial) {
   BOUGH_DEMAND(u_g.size() == model.num_gdofs());
-  return assemble(model, set, [&u_g, initial](const Element& e, Eigen::Ref<MatrixXd> K_G) {
+  const auto add = [&u_g, initial](const Element& e, Eigen::Ref<MatrixXd> K_G) {
     if (e.num_internal_forces() == 0) return;
     VectorXd force = VectorXd::Zero(e.num_internal_forces());
     e.calc_internal_forces(gather_rows(u_g, e.gdofs()), force);
     if (const auto* heated = initial ? initial->find(e) : nullptr) force += heated->force;
     e.add_geometric_stiffness(force, 1, K_G);
-  });
+  };
+  return assemble(model, set, add, calc_second_order(model, make_loads(load), u_g));
 }
 
 MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g) {

@@ -11,13 +11,16 @@ enum class DofSet { Free, Global };  ///< f-set (TᵀKT) or g-set
 /// on any number of ranks. O(elements).
 PetscMat assemble_stiffness(const Model& model, DofSet set);
 PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind);
+/// The part of M on the g-set that moves as the translations of the grids do, and what is not known to do otherwise:
+/// all but what calc_carried() tells of (fe/model/inertial_loads.hpp).
+PetscMat assemble_grid_mass(const Model& model, MassKind kind);
 /// The viscous damping B of dampers and bushes.
 PetscMat assemble_damping(const Model& model, DofSet set);
 struct InitialForces;
 
-/// K_G of the displacement field u (num_gdofs) with the forces of heated elements (fe/model/temperatures.hpp), f-set or
-/// g-set.
-PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const VectorXd& u_g,
+/// K_G of a load with its static displacements u (num_gdofs) and the forces of heated elements
+/// (fe/model/temperatures.hpp), f-set or g-set: of internal forces, carried masses, loads on arms and links.
+PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const AppliedLoad& load, const VectorXd& u_g,
                                       const InitialForces* initial = nullptr);
 
 /// Products with the g-set mass matrix without forming it: M X, num_gdofs x k, replicated on every rank. O(elements k).

@@ -40,7 +40,10 @@ StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int l
 StaticLoad calc_static_load(const Model& model, const records::Deck& deck, const records::Subcase& subcase,
                             Diagnostics& diagnostics) {
   StaticLoad result;
-  result.F = subcase.load > 0 ? model.calc_load(deck, subcase.load, diagnostics) : VectorXd::Zero(model.num_gdofs());
+  if (subcase.load > 0)
+    static_cast<AppliedLoad&>(result) = model.calc_applied_load(deck, subcase.load, diagnostics);
+  else
+    result.F = VectorXd::Zero(model.num_gdofs());
   result.d = model.calc_enforced(deck, subcase.load, diagnostics);
   result.initial = calc_thermal(model, deck, subcase.temperature, diagnostics);
   if (!result.initial.of.empty()) result.F += sum_loads(model, result.initial);

@@ -9,8 +9,8 @@ namespace bough::fe {
 
 /// Loads of a subcase: F on the g-set in basic, d of the fixed dofs in their CD axes (Model::calc_enforced). F holds
 /// the loads of `initial`, the heated elements.
-struct StaticLoad {
-  VectorXd F, d;
+struct StaticLoad : AppliedLoad {
+  VectorXd d;
   InitialForces initial;
 };
 /// Of LOAD and TEMPERATURE(LOAD) of a subcase; without them its enforced displacements alone.

@@ -19,13 +19,14 @@ using detail::Roots;
 /// -K_G φ = θ K φ by descending |θ|; λ = 1/θ.
 class BucklingModes {
  public:
-  BucklingModes(const fe::Model& model, const VectorXd& u_g, const EigenOptions& options, Diagnostics& diagnostics,
-                const fe::InitialForces* initial)
+  BucklingModes(const fe::Model& model, const fe::AppliedLoad& load, const VectorXd& u_g, const EigenOptions& options,
+                Diagnostics& diagnostics, const fe::InitialForces* initial)
       : model_(model),
         options_(options),
         diagnostics_(diagnostics),
         pencil_(model),
-        K_G_(fe::assemble_geometric_stiffness(model, fe::DofSet::Free, u_g, initial)) {}
+        K_G_(fe::assemble_geometric_stiffness(model, fe::DofSet::Free, load, u_g, initial)) {}
+
   EigenPairs solve();
 
  private:
@@ -209,13 +210,14 @@ EigenPairs BucklingModes::solve() {
 
 }  // namespace
 
-EigenPairs calc_buckling_modes(const fe::Model& model, const VectorXd& u_g, const EigenOptions& options,
-                               Diagnostics& diagnostics, const fe::InitialForces* initial) {
+EigenPairs calc_buckling_modes(const fe::Model& model, const fe::AppliedLoad& load, const VectorXd& u_g,
+                               const EigenOptions& options, Diagnostics& diagnostics,
+                               const fe::InitialForces* initial) {
   BOUGH_DEMAND(u_g.size() == model.num_gdofs());
   if (model.num_fdofs() == 0)
     throw ComputationError("modal.no-dofs", {}, "the model has no free dof", "check its SPC sets and rigid elements");
   detail::initialize_slepc();
-  return BucklingModes(model, u_g, options, diagnostics, initial).solve();
+  return BucklingModes(model, load, u_g, options, diagnostics, initial).solve();
 }
 
 }  // namespace bough::modal

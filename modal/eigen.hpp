@@ -39,12 +39,13 @@ struct EigenPairs {
 /// modal.singular-shift, modal.missed-modes.
 EigenPairs calc_normal_modes(const fe::Model& model, const EigenOptions& options, Diagnostics& diagnostics);
 
-/// (K + λ K_G(u)) φ = 0 for the static displacement u_g: load factors λ nearest zero, by magnitude; φᵀKφ = 1. Solved as
-/// -K_G φ = θ K φ, λ = 1/θ, with K's factor as inner product. min_hz, max_hz bound the (signed) load factor here;
-/// residual is |Kφ + λK_Gφ| / |Kφ|. `initial`: heated elements, whose forces λ multiplies too. Throws ComputationError
-/// modal.buckling-free when K is singular in a rigid motion.
-EigenPairs calc_buckling_modes(const fe::Model& model, const VectorXd& u_g, const EigenOptions& options,
-                               Diagnostics& diagnostics, const fe::InitialForces* initial = nullptr);
+/// (K + λ K_G) φ = 0, K_G of a load and its static displacement u_g: load factors λ nearest zero, by magnitude; φᵀKφ
+/// = 1. Solved as -K_G φ = θ K φ, λ = 1/θ, with K's factor as inner product. min_hz, max_hz bound the (signed) load
+/// factor here; residual is |Kφ + λK_Gφ| / |Kφ|. `initial`: heated elements, whose forces λ multiplies too. Throws
+/// ComputationError modal.buckling-free when K is singular in a rigid motion.
+EigenPairs calc_buckling_modes(const fe::Model& model, const fe::AppliedLoad& load, const VectorXd& u_g,
+                               const EigenOptions& options, Diagnostics& diagnostics,
+                               const fe::InitialForces* initial = nullptr);
 
 /// m_eff,j,r = (Φ_Rᵀ M φ_j)_r² / (φ_jᵀ M φ_j), n x 6, about Bo.
 MatrixXd calc_effective_mass(const fe::Model& model, const MatrixXd& Phi);

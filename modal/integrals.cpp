@@ -2,6 +2,8 @@
 
 #include "bough/base/rotation.hpp"
 #include "bough/fe/blas.hpp"
+#include "bough/fe/factor.hpp"
+#include "bough/fe/model/inertial_loads.hpp"
 
 namespace bough::modal {
 
@@ -54,6 +56,30 @@ MassTimes make_mass_times(const fe::Model& model, fe::MassKind kind) {
   return [&model, kind](const MatrixXd& X) { return fe::calc_mass_times(model, kind, X); };
 }
 
+/// Adds what carried masses have: gram as calc_carried_gram gives it.
+void add_carried(MatrixXd gram, const Vector3d& reference, MassIntegrals& g) {
+  const auto n = g.gamma0.cols();
+  gram.middleRows<3>(1) -= reference * gram.row(0);  // x from the reference point
+  gram.middleCols<3>(1) -= gram.col(0) * reference.transpose();
+  const auto at = [n](int a, Eigen::Index j) { return 4 + a * n + j; };
+  const auto cross = [](const Matrix3d& outer) {  // of Σ a bᵀ: Σ a×b
+    return Vector3d(outer(1, 2) - outer(2, 1), outer(2, 0) - outer(0, 2), outer(0, 1) - outer(1, 0));
+  };
+  Matrix3d outer;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (int a = 0; a < 3; ++a) g.gamma0(a, j) += gram(0, at(a, j));
+    for (int i = 0; i < 9; ++i) outer(i / 3, i % 3) = gram(1 + i / 3, at(i % 3, j));
+    g.gamma1.col(j) += cross(outer);
+    g.gamma3[static_cast<std::size_t>(j)] += outer.trace() * Matrix3d::Identity() - outer.transpose();
+    for (Eigen::Index k = 0; k < n; ++k) {
+      for (int i = 0; i < 9; ++i) outer(i / 3, i % 3) = gram(at(i / 3, j), at(i % 3, k));
+      g.gamma2[static_cast<std::size_t>(j)].col(k) += cross(outer);
+      g.gamma4[static_cast<std::size_t>(j)][static_cast<std::size_t>(k)] +=
+          outer.trace() * Matrix3d::Identity() - outer;
+    }
+  }
+}
+
 }  // namespace
 
 MassIntegrals calc_momentum_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi,
@@ -93,7 +119,17 @@ MassIntegrals calc_momentum_integrals(const NodalDofs& dofs, const MassTimes& ma
 
 MassIntegrals calc_exact_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi,
                                    const Vector3d& reference) {
-  return calc_exact_integrals(NodalDofs::from_model(model), make_mass_times(model, kind), Phi, reference);
+  const auto M = fe::assemble_grid_mass(model, kind);
+  const auto mass_times = [&M](const MatrixXd& X) -> MatrixXd { return fe::multiply(M.get(), X); };
+  MassIntegrals g = calc_exact_integrals(NodalDofs::from_model(model), mass_times, Phi, reference);
+  add_carried(fe::calc_carried_gram(model, kind, Phi), reference, g);
+  return g;
+}
+
+MassIntegrals calc_named_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi) {
+  if (kind == fe::MassKind::Lumped && !fe::has_approximate_mass(model, kind))
+    return calc_exact_integrals(model, kind, Phi);
+  return calc_momentum_integrals(model, kind, Phi);
 }
 
 MassIntegrals calc_exact_integrals(const NodalDofs& dofs, const MassTimes& mass_times, const MatrixXd& Phi,

@@ -18,9 +18,14 @@ using records::MassIntegrals;
 MassIntegrals calc_momentum_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi,
                                       const Vector3d& reference = Vector3d::Zero());
 
-/// From the Gram matrix of [Φ_R, e_a×φ_j, Φ] under M: exact for any M.
+/// From the Gram matrix of [Φ_R, e_a×u_j, u] under the mass, u the motion of every piece of it, on arms and between
+/// grids too. Masses that are not of bodies (fe/model/inertial_loads.hpp) count as if e×φ had no rotations.
 MassIntegrals calc_exact_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi,
                                    const Vector3d& reference = Vector3d::Zero());
+
+/// The integrals that the momentum formulas stand for, where they hold: of a lumped mass, whose pieces are bodies on
+/// single grids, those of the pieces; else the formulas with M of the given kind.
+MassIntegrals calc_named_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi);
 
 /// X -> M X for a mass matrix known only by its products, ndof x m.
 using MassTimes = std::function<MatrixXd(const MatrixXd&)>;

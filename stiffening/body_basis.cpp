@@ -85,7 +85,7 @@ MatrixXd collect_residual_loads(const fe::Model& model, const BodySpec& spec, co
       }
     } else {
       for (const auto& load : loads)
-        if (load.group == word) add(load.F, load.locator.name);
+        if (load.group == word) add(load.load.F, load.locator.name);
     }
   }
   return F;

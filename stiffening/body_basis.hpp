@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 struct BodyLoad {
   std::string group;  ///< the name in the body file; "" for the translations of the interface nodes
   records::Locator locator;
-  Eigen::VectorXd F;
+  fe::AppliedLoad load;
 };
 
 /// Reports reduce.no-modes, reduce.bad-basis, reduce.unknown-load.

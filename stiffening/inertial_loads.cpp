@@ -5,11 +5,6 @@ namespace bough::stiffening {
 
 using records::InertialLoad;
 
-MatrixXd calc_inertial_loads(const fe::Model& model, fe::MassKind kind) {
-  return calc_inertial_loads(modal::NodalDofs::from_model(model),
-                             fe::calc_mass_times(model, kind, model.calc_rigid_modes()));
-}
-
 MatrixXd calc_inertial_loads(const modal::NodalDofs& dofs, const MatrixXd& P) {
   BOUGH_DEMAND(P.rows() == dofs.num_dofs && P.cols() == 6);
   MatrixXd F_I = MatrixXd::Zero(P.rows(), records::kNumInertialLoads);

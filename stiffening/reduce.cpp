@@ -57,13 +57,21 @@ void Reduction::set_integrals(const fe::Model& model) {
   const auto dofs = modal::NodalDofs::from_model(model);
   const fe::PetscMat M = fe::assemble_mass(model, fe::DofSet::Global, kind);
   const auto mass_times = [&M](const MatrixXd& X) { return fe::multiply(M.get(), X); };
-  (is_lumped ? body_.lumped : body_.consistent) = modal::calc_momentum_integrals(dofs, mass_times, Phi_);
+  body_.exact = modal::calc_exact_integrals(model, kind, Phi_);
+  const bool is_approximate = fe::has_approximate_mass(model, kind);
+  body_.masses = is_approximate ? "nodal momenta" : "bodies";
+  if (is_approximate)
+    diagnostics_.warning("reduce.inertia-approximated", where(),
+                         "part of the mass matrix is not that of bodies on single grids: the loads of spin, the exact "
+                         "integrals and the stiffening by carried mass take its nodal momenta instead",
+                         "reduce the deck itself, or give a lumped mass matrix");
+  (is_lumped ? body_.lumped : body_.consistent) =
+      is_lumped && !is_approximate ? body_.exact : modal::calc_momentum_integrals(dofs, mass_times, Phi_);
   (is_lumped ? body_.consistent : body_.lumped) =
-      modal::calc_momentum_integrals(model, is_lumped ? fe::MassKind::Consistent : fe::MassKind::Lumped, Phi_);
-  body_.exact = modal::calc_exact_integrals(dofs, mass_times, Phi_);
+      modal::calc_named_integrals(model, is_lumped ? fe::MassKind::Consistent : fe::MassKind::Lumped, Phi_);
   body_.integrals_method = spec_.integrals;
   body_.effective_mass = modal::calc_effective_mass(model, Phi_, mass_times(Phi_));
-  body_.F_I = calc_inertial_loads(dofs, mass_times(dofs.calc_rigid_modes()));
+  body_.F_I = fe::calc_inertial_loads(model, kind, MatrixXd::Identity(12, 12), mass_times);
 }
 
 void Reduction::add_mechanism_error(const std::string& what) {

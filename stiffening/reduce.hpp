@@ -2,6 +2,7 @@
 /// \file F_I, K_G1, K_G2 and the whole reduction of a deck to a flexible body.
 #include <functional>
 
+#include "bough/fe/second_order.hpp"
 #include "bough/fe/statics.hpp"
 #include "bough/formats/records/body_spec.hpp"
 #include "bough/modal/eigen.hpp"
@@ -12,17 +13,16 @@ namespace bough::stiffening {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// F_I, num_gdofs x 12, columns in the order of records::InertialLoad (docs/theory/flexible-body.md §2, report eqs.
-/// 3-12).
-MatrixXd calc_inertial_loads(const fe::Model& model, fe::MassKind kind);
-/// The same for any mass matrix and dof map, as the report's fimake5: P = M Φ_R (num_dofs x 6). Rows of generalized
-/// dofs carry the six accelerations only: the map does not tell which way a spin turns them.
+using fe::calc_inertial_loads;  ///< of a model
+/// F_I for any mass matrix and dof map, as the report's fimake5 (eqs. 3-12): P = M Φ_R (num_dofs x 6). Spin takes every
+/// nodal momentum as that of a mass at its node. Rows of generalized dofs carry the six accelerations only: the map
+/// does not tell which way a spin turns them.
 MatrixXd calc_inertial_loads(const modal::NodalDofs& dofs, const MatrixXd& P);
 
-/// K_G(u_c) projected on Phi for every column c of U (num_gdofs x m): m matrices n x n, accumulated element by element,
-/// O(elements (m s + m n)) with s the element size; summed over ranks.
-std::vector<MatrixXd> calc_generalized_geometric_stiffness(const fe::Model& model, const MatrixXd& U,
-                                                           const MatrixXd& Phi);
+/// K_G of every load projected on Phi, U (num_gdofs x m) their static solutions: m matrices n x n, accumulated element
+/// by element, O(elements (m s + m n)) with s the element size; summed over ranks.
+std::vector<MatrixXd> calc_generalized_geometric_stiffness(const fe::Model& model, const fe::AppliedLoads& loads,
+                                                           const MatrixXd& U, const MatrixXd& Phi);
 
 struct ReduceOptions {
   std::function<void(const std::string& stage)> progress;

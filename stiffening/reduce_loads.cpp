@@ -22,8 +22,10 @@ void Reduction::make_loads(const fe::Model& model) {
       body_.interface_nodes.push_back(id);
   const auto add_unit = [&](const std::string& group, const std::string& name, int id, int direction) {
     const auto& node = model.node(model.find_node(id));
-    loads_.push_back(
-        {group, {name, id, direction}, VectorXd::Unit(model.num_gdofs(), node.first_gdof + direction - 1)});
+    BodyLoad& load = loads_.emplace_back();
+    load.group = group;
+    load.locator = {name, id, direction};
+    load.load.F = VectorXd::Unit(model.num_gdofs(), node.first_gdof + direction - 1);
   };
   for (const int id : body_.interface_nodes)
     for (int d = 1; d <= (spec_.interface_moments ? 6 : 3); ++d)
@@ -34,7 +36,7 @@ void Reduction::make_loads(const fe::Model& model) {
     if (load.load_set > 0) {
       BodyLoad& pattern = loads_.emplace_back();
       pattern.group = pattern.locator.name = name;
-      pattern.F = model.calc_load(deck_, load.load_set, diagnostics_);
+      pattern.load = model.calc_applied_load(deck_, load.load_set, diagnostics_);
       continue;
     }
     for (const int d : load.directions)
@@ -105,7 +107,7 @@ void Reduction::set_stiffening(const fe::Model& model, const StaticSolve& solve)
                loads_.end());
   MatrixXd F_ext(model.num_gdofs(), static_cast<Eigen::Index>(loads_.size()));
   for (std::size_t e = 0; e < loads_.size(); ++e) {
-    F_ext.col(static_cast<Eigen::Index>(e)) = loads_[e].F;
+    F_ext.col(static_cast<Eigen::Index>(e)) = loads_[e].load.F;
     body_.locators.push_back(loads_[e].locator);
   }
   body_.external_load = Phi_.transpose() * F_ext;
@@ -120,12 +122,20 @@ void Reduction::set_stiffening(const fe::Model& model, const StaticSolve& solve)
     inertial.assign(wanted.begin(), wanted.end());
   }
   const auto num_inertial = static_cast<Eigen::Index>(inertial.size());
-  MatrixXd F(model.num_gdofs(), num_inertial + F_ext.cols());
-  F << body_.F_I(Eigen::all, inertial), F_ext;
+  fe::AppliedLoads all;
+  all.F.resize(model.num_gdofs(), num_inertial + F_ext.cols());
+  all.F << body_.F_I(Eigen::all, inertial), F_ext;
+  all.A_I = MatrixXd::Zero(records::kNumInertialLoads, all.F.cols());
+  for (Eigen::Index c = 0; c < num_inertial; ++c) all.A_I(inertial[static_cast<std::size_t>(c)], c) = 1;
+  all.arms.resize(inertial.size());
+  for (std::size_t e = 0; e < loads_.size(); ++e) {
+    all.A_I.col(num_inertial + static_cast<Eigen::Index>(e)) = loads_[e].load.A_I;
+    all.arms.push_back(loads_[e].load.arms);
+  }
 
-  const MatrixXd U = solve(F);
+  const MatrixXd U = solve(all.F);
   report("geometric stiffness");
-  auto K_G = calc_generalized_geometric_stiffness(model, U, Phi_);
+  auto K_G = calc_generalized_geometric_stiffness(model, all, U, Phi_);
   body_.kg_inertial.fill(MatrixXd::Zero(n, n));
   body_.kg_inertial_computed.fill(false);
   for (Eigen::Index c = 0; c < num_inertial; ++c) {

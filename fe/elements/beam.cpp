@@ -3,10 +3,7 @@
 #include "bough/base/rotation.hpp"
 
 namespace bough::fe {
-namespace {
 
-/// Mass per length of a section about its shear centre, for the motion [u v w θx θy θz]: 6 x 6.
-/// bending: with the rotary inertia of the section about its y and z axes.
 Matrix6d calc_section_mass(const BeamProperty& property, const BeamSection& s, bool bending) {
   const double rho_A = property.material.rho * s.A;
   const double mu = rho_A + s.nsm;
@@ -33,8 +30,6 @@ Matrix6d calc_section_mass(const BeamProperty& property, const BeamSection& s, b
   m(4, 5) = m(5, 4) = -yz;
   return m;
 }
-
-}  // namespace
 
 Beam::Beam(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs,
            std::shared_ptr<const BeamProperty> property, const BeamGeometry& geometry)
@@ -120,7 +115,7 @@ void Beam::add_consistent_mass(double scale, Eigen::Ref<MatrixXd> M) const {
     local.noalias() += D.transpose().lazyProduct(mD);
     mass += point.weight * m(0, 0);
   }
-  if (!property_->has_section_inertia && !property_->has_torsional_inertia) {
+  if (!property_->has_section_inertia && !property_->has_torsional_inertia && !geometry_.is_part) {
     // Nastran's coupled CBAR: the axial terms are the mean of lumped and consistent. BARMASS makes them consistent.
     local(0, 0) += mass / 12;
     local(6, 6) += mass / 12;

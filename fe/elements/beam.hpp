@@ -19,6 +19,7 @@ struct BeamGeometry {
   double length = 0;                                      ///< between the offset ends
   Vector3d wa = Vector3d::Zero(), wb = Vector3d::Zero();  ///< offsets of the ends from the grids, in basic
   unsigned pin_a = 0, pin_b = 0;                          ///< released element dofs (masks), element axes
+  bool is_part = false;                                   ///< of an arc: consistent mass by the field alone
 };
 
 /// Force and moment along a beam, in element axes: p1 at x1 to p2 at x2 (per length), or p1 at the point x1.
@@ -27,6 +28,10 @@ struct BeamLineLoad {
   bool is_point = false;
   Eigen::Matrix<double, 6, 1> p1 = Eigen::Matrix<double, 6, 1>::Zero(), p2 = p1;
 };
+
+/// Mass per length of a section about its shear centre, for the motion [u v w θx θy θz]: 6 x 6.
+/// bending: with the rotary inertia of the section about its y and z axes.
+Matrix6d calc_section_mass(const BeamProperty& property, const BeamSection& s, bool bending);
 
 class Beam final : public Element {
  public:
@@ -41,6 +46,9 @@ class Beam final : public Element {
   /// inertia and Nastran's axial terms (5/12, 1/12); CBEAM has rotary and torsional inertia. NASTRAN BARMASS gives the
   /// CBAR torsional inertia in both, and consistent axial terms.
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+
+  bool carries_turning_mass(MassKind kind) const override;
+  bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
 
   int num_internal_forces() const override { return 8; }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
@@ -72,6 +80,8 @@ class Beam final : public Element {
   void add_pin_stiffness(const Eigen::Ref<const VectorXd>& force, double scale, Eigen::Ref<MatrixXd> K_G) const;
   void add_lumped_mass(double scale, Eigen::Ref<MatrixXd> M) const;
   void add_consistent_mass(double scale, Eigen::Ref<MatrixXd> M) const;
+  void add_lumped_bodies(const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const;
+  void add_consistent_bodies(const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const;
 
   std::shared_ptr<const BeamProperty> property_;
   BeamGeometry geometry_;

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 
 #include "bough/base/rotation.hpp"
+#include "bough/fe/elements/carried.hpp"
 #include "bough/fe/elements/temperature.hpp"
 #include "bough/fe/shape/gauss.hpp"
 
@@ -97,6 +98,7 @@ Bend::Bend(int id, std::vector<int> nodes, std::vector<int> gdofs, std::shared_p
   for (int k = 0; k <= kNumParts; ++k) {
     const double angle = geometry.angle * k / kNumParts;
     const Point p = calc_point(geometry, angle);
+    chain_.push_back(p.x);
     auto rows = motion_.middleRows<6>(6 * k);
     rows.leftCols<6>() = calc_carry(p.x - a.x);
     rows += calc_flexibility(geometry, compliance, angle, b.x) * end_force;
@@ -104,6 +106,7 @@ Bend::Bend(int id, std::vector<int> nodes, std::vector<int> gdofs, std::shared_p
     const Point before = calc_point(geometry, geometry.angle * (k - 1) / kNumParts),
                 middle = calc_point(geometry, geometry.angle * (k - 0.5) / kNumParts);
     BeamGeometry straight;
+    straight.is_part = true;
     straight.length = (p.x - before.x).norm();
     straight.R_basic_element = middle.axes;
     parts_.push_back(std::make_unique<Beam>(id, "CBEND", std::vector<int>{0, 1}, dofs, property, straight));
@@ -134,6 +137,23 @@ void Bend::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const {
   for (const int i : {0, 6})
     for (const int j : {0, 6}) mass += whole(i, j);
   for (const int i : {0, 1, 2, 6, 7, 8}) M(i, i) += 0.5 * mass;
+}
+
+bool Bend::add_carried(MassKind, const Eigen::Ref<const Matrix3Xd>&, CarriedMass& carried) const {
+  std::vector<CarriedMass::ChordPoint> moved;
+  for (int k = 0; k < kNumParts; ++k) {
+    const Eigen::Matrix<double, 12, 12> motion = motion_.middleRows<12>(6 * k);
+    CarriedMass part(12);
+    Matrix3Xd x(3, 2);
+    x << chain_[static_cast<std::size_t>(k)], chain_[static_cast<std::size_t>(k) + 1];
+    parts_[static_cast<std::size_t>(k)]->add_carried(MassKind::Consistent, x, part);
+    const auto first = static_cast<int>(carried.points.size());
+    for (const auto& point : part.points) carried.add_point(point.is_place, point.x, point.H * motion);
+    carried.mu.bottomRightCorner(part.mu.rows(), part.mu.cols()) = mass_scale_ * part.mu;
+    for (const auto& p : part.chord_points) moved.push_back({first + p.point, p.motion * motion, p.turn * motion});
+  }
+  carried.add_chord_field(chain_.front(), chain_.back() - chain_.front(), MatrixXd::Identity(12, 12), moved);
+  return true;
 }
 
 std::vector<std::string> Bend::internal_force_names() const {

@@ -25,6 +25,8 @@ class Bend final : public Element {
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   /// Consistent with the motion of the arc; lumped: half at each end, translations only.
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  bool carries_turning_mass(MassKind kind) const override { return kind == MassKind::Consistent; }
+  bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
   /// Section forces at ends A and B, on the face towards B, axes tangent, radial (outward), normal to the arc's plane.
   int num_internal_forces() const override { return 12; }
   std::vector<std::string> internal_force_names() const override;
@@ -40,6 +42,7 @@ class Bend final : public Element {
 
  private:
   std::vector<std::unique_ptr<const Beam>> parts_;
+  std::vector<Vector3d> chain_;  ///< the chain's points
   MatrixXd motion_;           ///< 6 (parts + 1) x 12: displacements of the chain's points by those of the ends, basic
   MatrixXd sections_;         ///< 12 x 12: section forces by displacements
   MatrixXd parts_by_forces_;  ///< 8 parts x 6: internal forces of the parts by the section forces at end B

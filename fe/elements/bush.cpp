@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bough/base/rotation.hpp"
+#include "bough/fe/elements/carried.hpp"
 
 namespace bough::fe {
 
@@ -48,6 +49,26 @@ void Bush::add_mass(MassKind, double scale, Eigen::Ref<MatrixXd> M) const {
 Eigen::Matrix<double, 6, 1> Bush::calc_spring_forces(const Eigen::Ref<const VectorXd>& u) const {
   const Eigen::Map<const Eigen::Matrix<double, 6, 1>> k(data_.k.data());
   return k.asDiagonal() * (calc_stretch() * u);
+}
+
+void Bush::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
+                                   Eigen::Ref<MatrixXd> K_G) const {
+  const Matrix3d& R = data_.R_basic_element;
+  const Vector3d f = R * force.head<3>(), m = R * force.tail<3>();
+  K_G.block<3, 3>(3, 3) += scale * calc_arm_stiffness(f, data_.arm_a);
+  if (num_dofs() == 6) return;
+  K_G.block<3, 3>(9, 9) -= scale * calc_arm_stiffness(f, data_.arm_b);
+  // Seen from axes that turn by θ the stretch lacks θ×(u_b - u_a), the relative rotation ½ θ_a×θ_b.
+  Eigen::Matrix<double, 3, 12> gap = Eigen::Matrix<double, 3, 12>::Zero(), turn = gap;
+  gap.block<3, 3>(0, 0) = -Matrix3d::Identity();
+  gap.block<3, 3>(0, 3) = skew(data_.arm_a);
+  gap.block<3, 3>(0, 6) = Matrix3d::Identity();
+  gap.block<3, 3>(0, 9) = -skew(data_.arm_b);
+  turn.block<3, 3>(0, 3) = turn.block<3, 3>(0, 9) = 0.5 * Matrix3d::Identity();
+  const Eigen::Matrix<double, 12, 12> half = turn.transpose() * (skew(f) * gap);
+  K_G += scale * (half + half.transpose());
+  K_G.block<3, 3>(3, 9) += scale * 0.5 * skew(m);
+  K_G.block<3, 3>(9, 3) -= scale * 0.5 * skew(m);
 }
 
 }  // namespace bough::fe

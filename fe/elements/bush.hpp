@@ -15,7 +15,8 @@ struct BushData {
 };
 
 /// One node (grounded) or two. Half the mass at each end, translations only; the half of a grounded end is on the
-/// ground. No geometric stiffness: the element has no length over which it could turn.
+/// ground. K_G: the forces on the arms, and the axes of the spring, which turn with the mean of the two grids; a spring
+/// to ground keeps its axes.
 class Bush final : public Element {
  public:
   Bush(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, const BushData& data);
@@ -25,7 +26,16 @@ class Bush final : public Element {
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
   bool has_damping() const override;
   void add_damping(double scale, Eigen::Ref<MatrixXd> B) const override;
-  /// Six spring forces in element axes, of B on the spring's B side. (K_G does not depend on them.)
+  int num_internal_forces() const override { return 6; }
+  void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override {
+    force = calc_spring_forces(u);
+  }
+  std::vector<std::string> internal_force_names() const override {
+    return {"force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z"};
+  }
+  void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
+                               Eigen::Ref<MatrixXd> K_G) const override;
+  /// Six spring forces in element axes, of B on the spring's B side.
   Eigen::Matrix<double, 6, 1> calc_spring_forces(const Eigen::Ref<const VectorXd>& u) const;
 
  private:

@@ -47,6 +47,8 @@ class CurvedShell final : public Element {
   /// Consistent: the shapes, with rotary inertia. Lumped: its diagonal scaled to the mass (Hinton, Rock & Zienkiewicz
   /// 1976), without rotary inertia. Both at the centre of mass of the section.
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  bool carries_turning_mass(MassKind kind) const override;
+  bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
   /// Nx Ny Nxy Mx My Mxy Qx Qy at each point of quadrature, in its frame.
   int num_internal_forces() const override { return kNumForces * static_cast<int>(tying_->points.size()); }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
@@ -70,6 +72,12 @@ class CurvedShell final : public Element {
  private:
   struct Surface;  // position and director with their derivatives at a sample
   struct Operators;
+  /// Masses between the nodes: ∫ (1, z, z²) ρ N_i N_j dV, z along the normals at the nodes.
+  struct NodalMasses {
+    MatrixXd zeroth, first, second;
+    std::vector<Vector3d> normal;
+  };
+  NodalMasses calc_nodal_masses(MassKind kind) const;
   int num_full() const { return tying_->num_nodes; }
   int num_bubbles() const { return tying_->num_corners == 4 ? 4 : 2; }
   Surface calc_surface(int sample) const;

@@ -15,7 +15,7 @@ double CurvedShell::calc_area() const {
   return area;
 }
 
-void CurvedShell::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const {
+CurvedShell::NodalMasses CurvedShell::calc_nodal_masses(MassKind kind) const {
   const int n = num_full(), corners = tying_->num_corners, num = static_cast<int>(nodes().size());
   // An absent midside node moves by the mean of its corners.
   MatrixXd reduce = MatrixXd::Zero(num, n);
@@ -51,10 +51,18 @@ void CurvedShell::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) 
     first = total_first * MatrixXd(part.asDiagonal());
     second = total_second * MatrixXd(part.asDiagonal());
   }
-  std::vector<Matrix3d> turn(static_cast<std::size_t>(num));  // θ × V
+  NodalMasses result{mass, first, second, std::vector<Vector3d>(static_cast<std::size_t>(num))};
   for (int i = 0; i < n; ++i)
-    if (place_[static_cast<std::size_t>(i)] >= 0)
-      turn[static_cast<std::size_t>(place_[static_cast<std::size_t>(i)])] = -skew(normal_[static_cast<std::size_t>(i)]);
+    if (const int at = place_[static_cast<std::size_t>(i)]; at >= 0)
+      result.normal[static_cast<std::size_t>(at)] = normal_[static_cast<std::size_t>(i)];
+  return result;
+}
+
+void CurvedShell::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const {
+  const auto [mass, first, second, normal] = calc_nodal_masses(kind);
+  const int num = static_cast<int>(nodes().size());
+  std::vector<Matrix3d> turn;  // θ × V
+  for (const Vector3d& V : normal) turn.push_back(-skew(V));
   for (int i = 0; i < num; ++i)
     for (int j = 0; j < num; ++j) {
       if (kind == MassKind::Lumped && i != j) continue;

@@ -19,10 +19,15 @@ class DirectElement final : public Element {
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   /// Consistent and lumped alike.
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  /// Unless it is one mass between translations.
+  bool carries_turning_mass(MassKind) const override { return kind_ == DirectKind::Mass && !is_plain(); }
+  /// Of a block of one grid that is a rigid body's.
+  bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
   bool has_damping() const override { return kind_ == DirectKind::Damping; }
   void add_damping(double scale, Eigen::Ref<MatrixXd> B) const override;
 
  private:
+  bool is_plain() const;
   void add_block(double scale, Eigen::Ref<MatrixXd> A) const;
 
   DirectKind kind_;

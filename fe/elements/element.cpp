@@ -8,6 +8,7 @@ namespace bough::fe {
 
 void Element::add_stiffness(double, Eigen::Ref<MatrixXd>) const {}
 void Element::add_mass(MassKind, double, Eigen::Ref<MatrixXd>) const {}
+bool Element::add_carried(MassKind, const Eigen::Ref<const Matrix3Xd>&, CarriedMass&) const { return false; }
 void Element::add_damping(double, Eigen::Ref<MatrixXd>) const {}
 void Element::calc_internal_forces(const Eigen::Ref<const VectorXd>&, Eigen::Ref<VectorXd>) const {}
 double Element::add_thermal(const ElementTemperature&, Eigen::Ref<VectorXd>, Eigen::Ref<VectorXd>) const { return 0; }

@@ -15,6 +15,7 @@
 namespace bough::fe {
 
 using Eigen::Matrix3d;
+using Eigen::Matrix3Xd;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
@@ -23,6 +24,7 @@ enum class MassKind { Lumped, Consistent };
 
 class GeometricProjection;
 struct ElementTemperature;
+struct CarriedMass;
 
 /// A grid (six dofs: translations and rotations in basic) or a scalar point (one dof).
 struct Node {
@@ -58,6 +60,12 @@ class Element {
   virtual void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const;
   /// M += scale M_e, N x N, in deck units (PARAM,WTMASS is applied by assembly).
   virtual void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const;
+
+  /// True when mass of this kind is off the grids or has inertia of its own: then add_carried() says of what bodies M
+  /// is. Mass of other elements moves as the translations of the grids do, in all directions alike.
+  virtual bool carries_turning_mass(MassKind) const { return false; }
+  /// The bodies of M, at scale 1 and where x (3 x nodes, basic) are. False: M is not that of bodies.
+  virtual bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const;
 
   /// True when add_damping() adds something: dampers, bushes with B.
   virtual bool has_damping() const { return false; }

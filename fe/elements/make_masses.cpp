@@ -15,8 +15,15 @@ void make_conm1(Maker& maker, const Conm1& card) {
       maker.nodes().calc_axes(card.cid, maker.nodes().node(node).x, maker.deck().locate(card.at), maker.diagnostics());
   Eigen::Matrix<double, 6, 6> T = Eigen::Matrix<double, 6, 6>::Zero();
   T.topLeftCorner<3, 3>() = T.bottomRightCorner<3, 3>() = R;
-  maker.add(std::make_unique<PointMass>(card.id, "CONM1", std::vector{node}, maker.list_gdofs({node}),
-                                        T * card.m * T.transpose()));
+  auto mass = std::make_unique<PointMass>(card.id, "CONM1", std::vector{node}, maker.list_gdofs({node}),
+                                          T * card.m * T.transpose());
+  if (!mass->is_rigid())
+    maker.diagnostics().warning("fe.mass-not-rigid", maker.deck().locate(card.at),
+                                who +
+                                    " is not the mass of a rigid body (one mass in all directions, coupled to "
+                                    "rotations by m s): what spin does to it is an approximation",
+                                "give a CONM2, or accept the approximation");
+  maker.add(std::move(mass));
 }
 
 void make_conm2(Maker& maker, const Conm2& card) {

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "bough/fe/elements/beam.hpp"
+#include "bough/fe/elements/carried.hpp"
 
 namespace bough::fe {
 
@@ -29,6 +30,17 @@ void NonstructuralMass::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixX
   const int count = static_cast<int>(nodes().size()), stride = num_dofs() / count;
   for (int k = 0; k < count; ++k)
     for (int i = 0; i < 3; ++i) M(stride * k + i, stride * k + i) += scale * mass_ / count;
+}
+
+bool NonstructuralMass::carries_turning_mass(MassKind kind) const {
+  return factor_ != 0 && !card_is_shell(host_.card()) && host_.carries_turning_mass(kind);
+}
+
+bool NonstructuralMass::add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const {
+  BOUGH_DEMAND(carried.points.empty());
+  const bool is_known = host_.add_carried(kind, x, carried);
+  carried.mu *= factor_;
+  return is_known;
 }
 
 double calc_element_mass(const Element& element) {

@@ -13,6 +13,8 @@ class NonstructuralMass final : public Element {
       : Element(host.id(), "NSM", host.nodes(), host.gdofs()), host_(host), factor_(factor), mass_(mass) {}
 
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  bool carries_turning_mass(MassKind kind) const override;
+  bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
 
  private:
   const Element& host_;

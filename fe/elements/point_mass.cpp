@@ -6,6 +6,15 @@ namespace bough::fe {
 
 void PointMass::add_mass(MassKind, double scale, Eigen::Ref<MatrixXd> M) const { M += scale * M_; }
 
+bool PointMass::carries_turning_mass(MassKind) const {
+  return !is_rigid_ || !moments_.S.isZero(0) || !moments_.E.isZero(0);
+}
+
+bool PointMass::add_carried(MassKind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const {
+  if (is_rigid_) carried.add_grid_body(x.col(0), moments_.m, moments_.S, moments_.E, 0);
+  return is_rigid_;
+}
+
 Eigen::Matrix<double, 6, 6> calc_rigid_mass(double m, const Vector3d& s, const Matrix3d& I) {
   const Matrix3d S = skew(s);
   Eigen::Matrix<double, 6, 6> M;

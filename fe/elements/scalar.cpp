@@ -1,5 +1,7 @@
 #include "bough/fe/elements/scalar.hpp"
 
+#include "bough/fe/elements/carried.hpp"
+
 namespace bough::fe {
 
 void ScalarSpring::add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const {
@@ -12,6 +14,21 @@ void ScalarDamper::add_damping(double scale, Eigen::Ref<MatrixXd> B) const {
 
 void ScalarMass::add_mass(MassKind, double scale, Eigen::Ref<MatrixXd> M) const {
   M.noalias() += scale * m_ * b_ * b_.transpose();
+}
+
+bool ScalarMass::carries_turning_mass(MassKind) const {
+  if (b_.size() % 6 != 0) return false;
+  for (Eigen::Index i = 0; i < b_.size(); ++i)
+    if (i % 6 > 2 && b_[i] != 0) return true;
+  return false;
+}
+
+bool ScalarMass::add_carried(MassKind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const {
+  if (b_.size() != 6 || !b_.head<3>().isZero(0)) return false;
+  const Vector3d axis = b_.tail<3>();
+  const Matrix3d E = m_ * (0.5 * axis.squaredNorm() * Matrix3d::Identity() - axis * axis.transpose());
+  carried.add_grid_body(x.col(0), 0, Vector3d::Zero(), E, 0);
+  return true;
 }
 
 }  // namespace bough::fe

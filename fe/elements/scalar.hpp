@@ -45,6 +45,9 @@ class ScalarMass final : public Element {
       : Element(id, std::move(card), std::move(nodes), std::move(gdofs)), m_(m), b_(std::move(b)) {}
 
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  /// At rotations. One grid: the moment of inertia about an axis, of which several make that of a body.
+  bool carries_turning_mass(MassKind kind) const override;
+  bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
 
  private:
   double m_;

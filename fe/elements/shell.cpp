@@ -139,11 +139,7 @@ void Shell::add_stiffness_of(double scale, Eigen::Ref<MatrixXd> out) const {
 }
 
 template <int N>
-void Shell::add_mass_of(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const {
-  // The centre of mass of the section moves by u + θ × d z.
-  const Vector3d z = R_.col(2);
-  const double d = z_offset_ + section_.mass_offset;
-  const Matrix3d arm = -d * skew(z), tangent = Matrix3d::Identity() - z * z.transpose();
+Eigen::Matrix<double, N, N> Shell::calc_mass_areas_of(MassKind kind) const {
   Eigen::Matrix<double, N, N> area = Eigen::Matrix<double, N, N>::Zero();
   for (const auto& p : calc_points<N>(get_corners<N>())) {
     if (kind == MassKind::Lumped)
@@ -151,6 +147,21 @@ void Shell::add_mass_of(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) con
     else
       area.noalias() += p.weight * p.shape * p.shape.transpose();
   }
+  return area;
+}
+
+MatrixXd Shell::calc_mass_areas(MassKind kind) const {
+  if (num_nodes_ == 4) return calc_mass_areas_of<4>(kind);
+  return calc_mass_areas_of<3>(kind);
+}
+
+template <int N>
+void Shell::add_mass_of(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const {
+  // The centre of mass of the section moves by u + θ × d z.
+  const Vector3d z = R_.col(2);
+  const double d = z_offset_ + section_.mass_offset;
+  const Matrix3d arm = -d * skew(z), tangent = Matrix3d::Identity() - z * z.transpose();
+  const Eigen::Matrix<double, N, N> area = calc_mass_areas_of<N>(kind);
   const double inertia = section_.mass * d * d + (kind == MassKind::Consistent ? section_.rotary_inertia : 0);
   for (int j = 0; j < N; ++j)
     for (int i = 0; i < N; ++i) {

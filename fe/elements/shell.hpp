@@ -37,6 +37,8 @@ class Shell final : public Element {
   ElementShape shape() const override;
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  bool carries_turning_mass(MassKind kind) const override;
+  bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
   /// Nx Ny Nxy Mx My Mxy Qx Qy at each quadrature point, in element axes: M = ∫σ z dz, Q = ∫τ dz.
   int num_internal_forces() const override { return kNumForces * num_points(); }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
@@ -70,6 +72,10 @@ class Shell final : public Element {
   }
   template <int N>
   void add_stiffness_of(double scale, Eigen::Ref<MatrixXd> K) const;
+  /// ∫ N_i N_j dA, or its row sums.
+  template <int N>
+  Eigen::Matrix<double, N, N> calc_mass_areas_of(MassKind kind) const;
+  MatrixXd calc_mass_areas(MassKind kind) const;
   template <int N>
   void add_mass_of(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const;
   template <int N>

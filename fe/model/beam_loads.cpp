@@ -60,7 +60,13 @@ bool for_each_beam_load(const LoadTarget& t, const Visit& visit) {
 
 bool add_beam_loads(const LoadTarget& t) {
   return for_each_beam_load(t, [&](int, const Beam& beam, const BeamLineLoad& load) {
-    const VectorXd f = beam.calc_grid_load(beam.calc_end_load(load));
+    const auto end_load = beam.calc_end_load(load);
+    const VectorXd f = beam.calc_grid_load(end_load);
+    for (int k = 0; k < 2; ++k) {
+      const Vector3d& arm = k == 0 ? beam.geometry().wa : beam.geometry().wb;
+      if (!arm.isZero(0))
+        t.arms.push_back({beam.gdofs()[static_cast<std::size_t>(6 * k + 3)], arm, t.scale * f.segment<3>(6 * k)});
+    }
     for (int i = 0; i < 12; ++i) t.F[beam.gdofs()[static_cast<std::size_t>(i)]] += t.scale * f[i];
   });
 }
@@ -68,9 +74,9 @@ bool add_beam_loads(const LoadTarget& t) {
 std::unordered_map<int, VectorXd> calc_beam_end_loads(const Model& model, const records::Deck& deck, int set,
                                                       Diagnostics& diagnostics) {
   std::unordered_map<int, VectorXd> result;
-  VectorXd unused;
+  AppliedLoad unused;
   for_each_plain_set(deck, set, [&](int sid, double scale, const records::CardLocation&) {
-    const LoadTarget target{model, deck, sid, scale, unused, diagnostics};
+    const LoadTarget target{model, deck, sid, scale, unused.F, diagnostics, unused.A_I, unused.arms};
     for_each_beam_load(target, [&](int index, const Beam& beam, const BeamLineLoad& load) {
       VectorXd& f = result.try_emplace(index, VectorXd::Zero(12)).first->second;
       f += scale * beam.calc_end_load(load);

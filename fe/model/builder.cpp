@@ -58,9 +58,11 @@ Model ModelBuilder::build(const ElementFactory& factory) {
   hold_spcd();
   collect_equations();
   check_dependent_not_fixed();
+  auto equations = equations_;
   equations_ = resolve_chains(
       model_.num_gdofs_, std::move(equations_), [this](int l) { return name_dof(l); }, diagnostics_);
   diagnostics_.throw_if_errors();
+  model_.links_ = Links(std::move(links_), std::move(equations));
   apply_autospc(set_transform());
   omit_dofs();
   add_drawn_lines();
@@ -220,11 +222,11 @@ void ModelBuilder::add_mpc(const records::Mpc& mpc) {
 }
 
 void ModelBuilder::collect_equations() {
-  for (const auto& card : deck_.rbe1) add_rbe1(card, model_, deck_.locate(card.at), diagnostics_, equations_);
-  for (const auto& card : deck_.rbe2) add_rbe2(card, model_, deck_.locate(card.at), diagnostics_, equations_);
-  for (const auto& card : deck_.rbe3) add_rbe3(card, model_, deck_.locate(card.at), diagnostics_, equations_);
-  for (const auto& card : deck_.rrod) add_rrod(card, model_, deck_.locate(card.at), diagnostics_, equations_);
-  for (const auto& card : deck_.rbar) add_rbar(card, model_, deck_.locate(card.at), diagnostics_, equations_);
+  for (const auto& card : deck_.rbe1) add_rbe1(card, model_, deck_.locate(card.at), diagnostics_, equations_, links_);
+  for (const auto& card : deck_.rbe2) add_rbe2(card, model_, deck_.locate(card.at), diagnostics_, equations_, links_);
+  for (const auto& card : deck_.rbe3) add_rbe3(card, model_, deck_.locate(card.at), diagnostics_, equations_, links_);
+  for (const auto& card : deck_.rrod) add_rrod(card, model_, deck_.locate(card.at), diagnostics_, equations_, links_);
+  for (const auto& card : deck_.rbar) add_rbar(card, model_, deck_.locate(card.at), diagnostics_, equations_, links_);
   for (const auto& card : deck_.special.rspline)
     add_rspline(card, model_, deck_.locate(card.at), diagnostics_, equations_);
   if (model_.subcase_.mpc == 0) return;

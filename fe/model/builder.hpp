@@ -42,6 +42,7 @@ class ModelBuilder {
   Diagnostics& diagnostics_;
   Model model_;
   std::vector<ConstraintEquation> equations_;
+  std::vector<Link> links_;
   std::vector<char> is_fixed_;
   std::vector<std::pair<int, SourceLocation>> fixed_by_;  ///< (l-dof, card) in the order of the cards
 };

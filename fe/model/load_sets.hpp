@@ -6,7 +6,7 @@
 
 namespace bough::fe {
 
-/// Where the cards of one load set go: F += scale times them.
+/// Where the cards of one load set go: F += scale times them. Those of accelerated frames go into A_I instead.
 struct LoadTarget {
   const Model& model;
   const records::Deck& deck;
@@ -14,6 +14,8 @@ struct LoadTarget {
   double scale;
   VectorXd& F;
   Diagnostics& diagnostics;
+  Vector12d& A_I;
+  std::vector<ArmLoad>& arms;
 
   /// Index of a grid with six dofs, or -1 after reporting fe.missing-grid.
   int find_grid(int id, const std::string& card, const records::CardLocation& at) const;

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "bough/fe/model/inertial_loads.hpp"
 #include "bough/fe/model/load_sets.hpp"
 
 namespace bough::fe {
@@ -143,13 +144,18 @@ bool add_point_loads(const LoadTarget& t) {
 }
 
 VectorXd Model::calc_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const {
-  VectorXd F = VectorXd::Zero(num_gdofs_);
+  return calc_applied_load(deck, set, diagnostics).F;
+}
+
+AppliedLoad Model::calc_applied_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const {
+  AppliedLoad load;
+  load.F = VectorXd::Zero(num_gdofs_);
   if (const auto* card = find_combination(deck, set)) report_terms(deck, *card, diagnostics);
   const auto sets = list_plain_sets(deck, set);
   std::vector<PlainLoadSet> missing;
   for (const auto& plain : sets) {
     if (plain.enforced_only) continue;
-    const LoadTarget target{*this, deck, plain.sid, plain.scale, F, diagnostics};
+    const LoadTarget target{*this, deck, plain.sid, plain.scale, load.F, diagnostics, load.A_I, load.arms};
     const bool found[] = {add_point_loads(target), add_body_loads(target), add_surface_loads(target),
                           add_beam_loads(target), has_enforced(deck, plain.sid)};
     if (std::find(std::begin(found), std::end(found), true) == std::end(found)) missing.push_back(plain);
@@ -162,7 +168,8 @@ VectorXd Model::calc_load(const records::Deck& deck, int set, Diagnostics& diagn
          "load set " + std::to_string(plain.sid) + " has no FORCE, MOMENT, GRAV, PLOAD or LOAD card" +
              (severity == Severity::Warning ? "; LOAD " + std::to_string(set) + " is taken without it" : ""),
          "correct the set id or add its cards"});
-  return F;
+  if (!load.A_I.isZero(0)) load.F += calc_inertial_loads(*this, mass_kind_, load.A_I);
+  return load;
 }
 
 }  // namespace bough::fe

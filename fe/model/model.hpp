@@ -16,6 +16,8 @@
 #include <Eigen/Sparse>
 
 #include "bough/fe/elements/element.hpp"
+#include "bough/fe/model/applied_load.hpp"
+#include "bough/fe/model/links.hpp"
 #include "bough/formats/records/flex_body.hpp"
 #include "bough/formats/records/modes.hpp"
 
@@ -72,6 +74,9 @@ class Model final : public NodeTable {
   Eigen::MatrixXi calc_dof_map() const;
   records::BodyMesh calc_mesh() const;
 
+  /// Rigid links with the second order of their motion (fe/model/links.hpp).
+  const Links& links() const { return links_; }
+
   /// The f-dof that alone carries g-dof (node, component in CD axes), or -1 (constrained, dependent).
   int find_fdof(int node_index, int component) const;
   /// Node id and CD component of an f-dof, for messages.
@@ -96,6 +101,8 @@ class Model final : public NodeTable {
   /// Load vector (num_gdofs) of a set, in basic: FORCEx, MOMENTx, SLOAD, PLOADx, GRAV and RFORCE (with this model's
   /// mass), LOAD. Reports fe.missing-load and what is wrong with its cards.
   VectorXd calc_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const;
+  /// The same with what K_G wants to know of it.
+  AppliedLoad calc_applied_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const;
 
  private:
   friend class ModelBuilder;
@@ -106,6 +113,7 @@ class Model final : public NodeTable {
   int num_gdofs_ = 0;
   SparseRows T_, T_fixed_;
   std::shared_ptr<const StaticSolver> omitted_;
+  Links links_;
   std::vector<std::pair<int, ElementShape>> drawn_lines_;  ///< PLOTEL: id, shape
   std::vector<int> fixed_dofs_;
   std::unordered_map<int, double> enforced_;  ///< by dof: the values of the SPC set that are not zero

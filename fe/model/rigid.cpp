@@ -24,6 +24,57 @@ void add_equation(int dependent, const RowVector6d& row, const std::array<int, 6
   equations.push_back(std::move(equation));
 }
 
+/// Components of one grid of a rigid body.
+struct BodyTerm {
+  const Node* node = nullptr;
+  unsigned c = 0;
+};
+
+/// What the six independent components of a rigid body make of its motion about `reference`.
+struct BodyFrame {
+  Vector3d reference;
+  std::vector<BodyTerm> independent;
+  std::vector<std::pair<const Node*, int>> components;  ///< six: grid, component 0..5
+  Matrix6d inverse;                                     ///< [v; θ] = inverse u_n, u_n in the axes of the grids
+};
+
+std::array<DofSum, 3> make_motion(const BodyFrame& frame, int first_row) {
+  std::array<DofSum, 3> motion;
+  for (int a = 0; a < 3; ++a)
+    for (int j = 0; j < 6; ++j) {
+      const auto [node, c] = frame.components[static_cast<std::size_t>(j)];
+      for (int b = 0; b < 3; ++b)
+        if (const double v = frame.inverse(first_row + a, j) * node->R_basic_cd(b, c % 3); v != 0)
+          motion[static_cast<std::size_t>(a)][node->first_gdof + 3 * (c / 3) + b] += v;
+    }
+  return motion;
+}
+
+/// The link of one dependent grid, whose equations `equations[first...]` have as independent dofs those of the frame.
+void add_body_link(const BodyFrame& frame, const BodyTerm& dependent, int first,
+                   const std::vector<ConstraintEquation>& equations, std::vector<Link>& links) {
+  const auto count_joined = [&](const Node* node) {
+    unsigned c = node == dependent.node ? dependent.c : 0;
+    for (const auto& term : frame.independent)
+      if (term.node == node) c |= term.c;
+    return c;
+  };
+  const auto make_component = [&](const Node* node, int c) {
+    const bool is_rotation = c > 2;
+    return LinkBuilder::Component{node, node->x - frame.reference, node->R_basic_cd.col(c % 3), is_rotation,
+                                  (count_joined(node) >> (is_rotation ? 3 : 0) & 7u) == 7u};
+  };
+  LinkBuilder builder(make_motion(frame, 0), make_motion(frame, 3));
+  for (auto e = static_cast<std::size_t>(first); e < equations.size(); ++e) {
+    builder.start_equation();
+    builder.add_component(make_component(dependent.node, equations[e].dependent - dependent.node->first_gdof), 1);
+    for (const auto& [ldof, c] : equations[e].terms)
+      for (const auto& [node, component] : frame.components)
+        if (node->first_gdof + component == ldof) builder.add_component(make_component(node, component), -c);
+  }
+  links.push_back(builder.finish(first));
+}
+
 }  // namespace
 
 const Node* find_rigid_grid(int id, const std::string& card, const NodeTable& nodes, const SourceLocation& at,
@@ -46,7 +97,7 @@ Matrix6d calc_rigid_map(const Node& node, const Vector3d& reference) {
 }
 
 void add_rbe2(const records::Rbe2& record, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
-              std::vector<ConstraintEquation>& equations) {
+              std::vector<ConstraintEquation>& equations, std::vector<Link>& links) {
   const std::string card = "RBE2 " + std::to_string(record.id);
   const Node* gn = find_rigid_grid(record.gn, card, nodes, at, diagnostics);
   for (int id : record.gm) {
@@ -63,6 +114,7 @@ void add_rbe2(const records::Rbe2& record, const NodeTable& nodes, const SourceL
     rotation.topLeftCorner<3, 3>() = rotation.bottomRightCorner<3, 3>() = gn->R_basic_cd;
     const Matrix6d map = calc_rigid_map(*gm, gn->x) * rotation;
     const double arm = (gm->x - gn->x).norm();
+    const auto first = static_cast<int>(equations.size());
     std::array<int, 6> ldofs;
     for (int j = 0; j < 6; ++j) ldofs[j] = gn->first_gdof + j;
     for (int c = 0; c < 6; ++c) {
@@ -71,32 +123,33 @@ void add_rbe2(const records::Rbe2& record, const NodeTable& nodes, const SourceL
       scale << 1, 1, 1, RowVector6d::Constant(c < 3 ? arm : 1).head<3>();
       add_equation(gm->first_gdof + c, map.row(c), ldofs, scale, card, at, equations);
     }
+    if (arm == 0 && record.cm == 63u) continue;
+    BodyFrame frame{gn->x, {{gn, 63u}}, {}, rotation};
+    for (int c = 0; c < 6; ++c) frame.components.emplace_back(gn, c);
+    add_body_link(frame, {gm, record.cm}, first, equations, links);
   }
 }
 
 namespace {
 
-/// Components of one grid of a rigid body.
-struct BodyTerm {
-  const Node* node = nullptr;
-  unsigned c = 0;
-};
-
 /// u_m = D P⁻¹ u_n, P and D the rows of the rigid map of the independent and dependent components. False when P is not
 /// 6 x 6 and regular; `num` is the number of its rows. Rotations count with the size of the independent grids as arm.
 bool add_body(const std::vector<BodyTerm>& independent, const std::vector<BodyTerm>& dependent, const std::string& card,
-              const SourceLocation& at, int& num, std::vector<ConstraintEquation>& equations) {
+              const SourceLocation& at, int& num, std::vector<ConstraintEquation>& equations,
+              std::vector<Link>& links) {
   const Vector3d reference = independent.front().node->x;
   Matrix6d P = Matrix6d::Zero();
   std::array<int, 6> ldofs{};
   double arm = 0;
   num = 0;
+  BodyFrame frame{reference, independent, {}, Matrix6d::Zero()};
   for (const auto& term : independent) {
     const Matrix6d map = calc_rigid_map(*term.node, reference);
     arm = std::max(arm, (term.node->x - reference).norm());
     for (int c = 0; c < 6; ++c)
       if (term.c >> c & 1u) {
         if (num < 6) {
+          frame.components.emplace_back(term.node, c);
           P.row(num) = map.row(c);
           ldofs[num] = term.node->first_gdof + c;
         }
@@ -110,7 +163,9 @@ bool add_body(const std::vector<BodyTerm>& independent, const std::vector<BodyTe
   lu.setThreshold(1e-10);
   if (lu.rank() < 6) return false;
   const Matrix6d inverse = P.inverse();
+  frame.inverse = inverse;
   for (const auto& term : dependent) {
+    const auto first = static_cast<int>(equations.size());
     const Matrix6d map = calc_rigid_map(*term.node, reference);
     for (int c = 0; c < 6; ++c) {
       if (!(term.c >> c & 1u)) continue;
@@ -119,6 +174,7 @@ bool add_body(const std::vector<BodyTerm>& independent, const std::vector<BodyTe
       const RowVector6d scale = map.row(c).cwiseAbs() * inverse.cwiseAbs();
       add_equation(term.node->first_gdof + c, row, ldofs, scale, card, at, equations);
     }
+    if (static_cast<int>(equations.size()) > first) add_body_link(frame, term, first, equations, links);
   }
   return true;
 }
@@ -126,7 +182,7 @@ bool add_body(const std::vector<BodyTerm>& independent, const std::vector<BodyTe
 }  // namespace
 
 void add_rbar(const records::Rbar& record, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
-              std::vector<ConstraintEquation>& equations) {
+              std::vector<ConstraintEquation>& equations, std::vector<Link>& links) {
   const std::string card = "RBAR " + std::to_string(record.id);
   const Node* ga = find_rigid_grid(record.ga, card, nodes, at, diagnostics);
   const Node* gb = find_rigid_grid(record.gb, card, nodes, at, diagnostics);
@@ -149,7 +205,7 @@ void add_rbar(const records::Rbar& record, const NodeTable& nodes, const SourceL
   }
   int num = 0;
   if ((cna & cma) == 0 && (cnb & cmb) == 0 &&
-      add_body({{ga, cna}, {gb, cnb}}, {{ga, cma}, {gb, cmb}}, card, at, num, equations))
+      add_body({{ga, cna}, {gb, cnb}}, {{ga, cma}, {gb, cmb}}, card, at, num, equations, links))
     return;
   num = std::popcount(record.cna) + std::popcount(record.cnb);
   diagnostics.error("fe.rigid-independent", at,
@@ -159,7 +215,7 @@ void add_rbar(const records::Rbar& record, const NodeTable& nodes, const SourceL
 }
 
 void add_rbe1(const records::Rbe1& record, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
-              std::vector<ConstraintEquation>& equations) {
+              std::vector<ConstraintEquation>& equations, std::vector<Link>& links) {
   const std::string card = "RBE1 " + std::to_string(record.id);
   bool is_good = !record.independent.empty();
   const auto find = [&](const std::vector<records::GridComponents>& terms) {
@@ -182,7 +238,7 @@ void add_rbe1(const records::Rbe1& record, const NodeTable& nodes, const SourceL
         return;
       }
   int num = 0;
-  if (!add_body(independent, dependent, card, at, num, equations))
+  if (!add_body(independent, dependent, card, at, num, equations, links))
     diagnostics.error("fe.rigid-independent", at,
                       card + " has " + std::to_string(num) + " independent components" +
                           (num == 6 ? " that do not fix its rigid motion" : ", expected 6"),

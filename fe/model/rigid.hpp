@@ -1,7 +1,9 @@
 #pragma once
-/// \file Rigid elements RBE1, RBE2, RBE3, RBAR, RROD and RSPLINE as constraint equations.
+/// \file Rigid elements RBE1, RBE2, RBE3, RBAR, RROD and RSPLINE as constraint equations, and, RSPLINE apart, as links
+/// with a second order.
 #include "bough/fe/elements/element.hpp"
 #include "bough/fe/model/constraints.hpp"
+#include "bough/fe/model/links.hpp"
 
 namespace bough::fe {
 
@@ -15,26 +17,26 @@ Eigen::Matrix<double, 6, 6> calc_rigid_map(const Node& node, const Vector3d& ref
 
 /// The dependent components of every grid GM follow the rigid motion of GN; components are in each grid's CD axes.
 void add_rbe2(const records::Rbe2& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
-              std::vector<ConstraintEquation>& equations);
+              std::vector<ConstraintEquation>& equations, std::vector<Link>& links);
 
 /// Six independent components on the two grids span the rigid motion: u_m = D P⁻¹ u_n with P, D the rows of the rigid
 /// map of the independent and dependent components. Blank CNA and CNB: all six of GA; fewer than six on one grid alone:
 /// all six of that, with fe.rbar-completed. Blank CMA and CMB: everything that is not independent is dependent.
 /// Reports fe.rigid-independent when there are not six or P is singular.
 void add_rbar(const records::Rbar& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
-              std::vector<ConstraintEquation>& equations);
+              std::vector<ConstraintEquation>& equations, std::vector<Link>& links);
 
 /// As RBAR for any number of grids: six independent components on up to six grids hold the rigid motion, the
 /// components after UM follow it.
 void add_rbe1(const records::Rbe1& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
-              std::vector<ConstraintEquation>& equations);
+              std::vector<ConstraintEquation>& equations, std::vector<Link>& links);
 
 /// The reference grid's components follow the rigid motion that fits the connected components best in the least squares
 /// of their weights (rotations scaled by the square of the mean arm, as MSC Nastran does): u_ref = R Σ A⁻¹ S_iᵀ W_i
 /// u_i, A = Σ S_iᵀ W_i S_i. UM turns the equations to other dependent components. Reports fe.rbe3-mechanism when the
 /// connected components do not hold a rigid body, fe.rigid-independent when UM cannot be solved for.
 void add_rbe3(const records::Rbe3& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
-              std::vector<ConstraintEquation>& equations);
+              std::vector<ConstraintEquation>& equations, std::vector<Link>& links);
 
 /// Grids between two independent ones follow the elastic line of a tube through all of them, bent by its ends alone; on
 /// a straight line that is the cubic. Source: Nastran Quick Reference Guide, RSPLINE.
@@ -43,6 +45,6 @@ void add_rspline(const records::Rspline& record, const NodeTable& nodes, const S
 
 /// e·(u_b - u_a) = 0 along the rod. Reports fe.rigid-independent when the dependent component is across the rod.
 void add_rrod(const records::Rrod& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
-              std::vector<ConstraintEquation>& equations);
+              std::vector<ConstraintEquation>& equations, std::vector<Link>& links);
 
 }  // namespace bough::fe

@@ -166,6 +166,7 @@ void read_stiffening(FileReader& file, FlexBody& body) {
 
 void read_method(FileReader& file, FlexBody& body) {
   body.integrals_method = file.read_attribute("/integrals", "method");
+  body.masses = file.read_attribute("/integrals", "masses");
   const bool is_known =
       std::find(std::begin(kMethods), std::end(kMethods), body.integrals_method) != std::end(kMethods);
   if (!is_known) {
@@ -211,6 +212,7 @@ void write_flex_body(const FlexBody& body, const std::string& path) {
 
   file.make_group("/integrals");
   file.write_attribute("/integrals", "method", body.integrals_method);
+  if (!body.masses.empty()) file.write_attribute("/integrals", "masses", body.masses);
   write_integrals(file, "lumped", body.lumped);
   write_integrals(file, "consistent", body.consistent);
   write_integrals(file, "exact", body.exact);

@@ -73,6 +73,7 @@ struct FlexBody {
   std::string integrals_method;             ///< "lumped", "consistent" or "exact": the one the solver uses
 
   MatrixXd F_I;             ///< ndof x 12; may be empty
+  std::string masses;       ///< of F_I and the exact integrals: "bodies", or "nodal momenta" where M is not of bodies
   Eigen::MatrixXi dof_map;  ///< ndof x 2: node id, code 1..6 (scalar point: 0)
 
   std::array<MatrixXd, kNumInertialLoads> kg_inertial;  ///< K_G1, n x n each; zero where not computed

@@ -26,12 +26,13 @@ EigenPairs solve(const records::Deck& deck, int num_modes, Diagnostics& diagnost
   const auto model = fe::Model::build(deck, {}, diagnostics);
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
   const fe::StaticSolver solver(model, K);
-  const MatrixXd u = solver.solve(model.calc_load(deck, 10, diagnostics));
+  const auto load = model.calc_applied_load(deck, 10, diagnostics);
+  const MatrixXd u = solver.solve(load.F);
   EigenOptions options;
   options.num_modes = num_modes;
   options.min_hz = low;
   options.max_hz = high;
-  return calc_buckling_modes(model, u.col(0), options, diagnostics);
+  return calc_buckling_modes(model, load, u.col(0), options, diagnostics);
 }
 
 EigenPairs solve(const records::Deck& deck, int num_modes) {
@@ -158,7 +159,8 @@ TEST(Buckling, FreeModelIsAnError) {
   Diagnostics diagnostics;
   const auto model = fe::Model::build(maker.deck, {}, diagnostics);
   try {
-    modal::calc_buckling_modes(model, Eigen::VectorXd::Zero(model.num_gdofs()), {}, diagnostics);
+    const fe::AppliedLoad load{Eigen::VectorXd::Zero(model.num_gdofs()), fe::Vector12d::Zero(), {}};
+    modal::calc_buckling_modes(model, load, load.F, {}, diagnostics);
     FAIL() << "no error";
   } catch (const ComputationError& error) {
     EXPECT_EQ(error.items().front().id, "modal.buckling-free");

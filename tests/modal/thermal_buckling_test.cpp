@@ -25,7 +25,7 @@ double calc_factor(const std::string& text) {
   const auto u = fe::solve_static_case(model, solver, load).displacement;
   modal::EigenOptions options;
   options.num_modes = 1;
-  return modal::calc_buckling_modes(model, u, options, diagnostics, &load.initial).lambda[0];
+  return modal::calc_buckling_modes(model, load, u, options, diagnostics, &load.initial).lambda[0];
 }
 
 TEST(ThermalBuckling, ColumnBetweenWalls) {

@@ -87,10 +87,11 @@ VectorXd calc_load_factors(const DeckText& text, int num) {
   const auto model = fe::Model::build(deck, {}, diagnostics);
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
   const fe::StaticSolver solver(model, K);
-  const MatrixXd u = solver.solve(model.calc_load(deck, 10, diagnostics));
+  const auto load = model.calc_applied_load(deck, 10, diagnostics);
+  const MatrixXd u = solver.solve(load.F);
   modal::EigenOptions options;
   options.num_modes = num;
-  return calc_buckling_modes(model, u.col(0), options, diagnostics).lambda;
+  return calc_buckling_modes(model, load, u.col(0), options, diagnostics).lambda;
 }
 
 double calc_compliance(const DeckText& text) {
