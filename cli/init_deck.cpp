@@ -36,7 +36,8 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
   if (is_fixed) frame = "frame = \"fixed\"          # the deck's constraints hold the body frame\n";
   if (grid > 0)
     frame = fmt::format(
-        "frame = \"mean\"           # not \"fixed\": modes clamped at a free hinge take nearly all inertia away from it\n"
+        "frame = \"mean\"           # not \"fixed\": modes clamped at a free hinge take nearly all inertia away from "
+        "it\n"
         "interface = [{}]          # the hinge; add each grid that a hinge, force or moment loads\n",
         grid);
   const std::string body = fmt::format(
@@ -44,7 +45,10 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
       "[body.output]\nfile = \"{0}.h5\"\n",
       name, quote(start.path), frame);
   std::string hinge = fmt::format("type = \"{}\"\nparent = \"ground\"\nchild = \"{}\"\n",
-                                  grid > 0 ? "revolute" : is_fixed ? "fixed" : "free", name);
+                                  grid > 0   ? "revolute"
+                                  : is_fixed ? "fixed"
+                                             : "free",
+                                  name);
   if (grid > 0) hinge += fmt::format("child_node = {}\naxis = [0.0, 0.0, 1.0]\n", grid);
   const std::string system = fmt::format(
       "# bough run {0}-run.toml -o {0}-run.h5\n[[body]]\nname = \"{0}\"\nfile = \"{0}.h5\"\n\n"

@@ -15,9 +15,9 @@ constexpr double kSameSpan = 1e-26;  // of the largest eigenvalue of CCᵀ: 1e-1
 // f_b = scale_b (p - c)·a_b for b > 0.
 struct Basis {
   Amplitudes A0 = Amplitudes::Zero();
-  Matrix3d axes = Matrix3d::Zero();       // a_b / √e_b; zero where there is no mass
-  Matrix3d damped = Matrix3d::Zero();     // the same, less for a thin body's thin sides
-  double scale = 0;                       // 1/√m
+  Matrix3d axes = Matrix3d::Zero();    // a_b / √e_b; zero where there is no mass
+  Matrix3d damped = Matrix3d::Zero();  // the same, less for a thin body's thin sides
+  double scale = 0;                    // 1/√m
 };
 
 Basis make_basis(const records::FlexBody& flex) {
@@ -79,9 +79,9 @@ AffineField AffineField::fit(const records::FlexBody& flex, int n, bool stiffeni
     const Vector3d gamma0 = integrals.gamma0.col(j);
     Eigen::Map<Amplitudes> L(field.L.col(j).data());
     L.col(0) = basis.scale * gamma0;
-    L.rightCols<3>() = (make_W(integrals.gamma3[static_cast<size_t>(j)], integrals.gamma1.col(j)) -
-                        gamma0 * flex.cg.transpose()) *
-                       basis.axes;
+    L.rightCols<3>() =
+        (make_W(integrals.gamma3[static_cast<size_t>(j)], integrals.gamma1.col(j)) - gamma0 * flex.cg.transpose()) *
+        basis.axes;
   }
   std::vector<int> loads;
   for (int i = 0; stiffening && i < records::kNumInertialLoads; ++i) {

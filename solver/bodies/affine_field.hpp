@@ -20,12 +20,12 @@ struct AffineField {
   using Columns = Eigen::Matrix<double, 12, Eigen::Dynamic>;  ///< a 3 x 4, column by column, per mode
 
   Amplitudes A0 = Amplitudes::Zero();
-  Columns L;                 ///< 12 x n: ∫ρ φ_j fᵀ; its first column is Γ0_j/√m
-  Columns B;                 ///< 12 x r, r = 4, 8 or 12; orthonormal, the identity when r = 12, zero without K_G1
-  std::vector<MatrixXd> c;   ///< [q] n x n, symmetric
+  Columns L;                ///< 12 x n: ∫ρ φ_j fᵀ; its first column is Γ0_j/√m
+  Columns B;                ///< 12 x r, r = 4, 8 or 12; orthonormal, the identity when r = 12, zero without K_G1
+  std::vector<MatrixXd> c;  ///< [q] n x n, symmetric
   Matrix3d Q = Matrix3d::Zero();
   Amplitudes W = Amplitudes::Zero();  ///< its first column is zero
-  double lost = 0;           ///< largest part of a K_G1, relative to the largest, that no affine field of this mass has
+  double lost = 0;  ///< largest part of a K_G1, relative to the largest, that no affine field of this mass has
 
   /// Q (a bᵀ + b aᵀ) W: the part of x that is bilinear in a, twice.
   Amplitudes calc_correction(const Amplitudes& a, const Amplitudes& b) const {

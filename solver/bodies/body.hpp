@@ -68,10 +68,10 @@ class Body {
   Vector6d J0_ = Vector6d::Zero();  ///< xx yy zz xy xz yz (tensor components) about Bo
   Matrix6d M6_ = Matrix6d::Zero();
   AffineField field_;
-  MatrixXd M_rest_;  ///< n x n: M - LᵀL
-  MatrixXd by_eta_;  ///< (9+r)n x n: per mode j, column k: Γ4 as components of J, Γ2_kj, (c_q)_jk
-  MatrixXd A2_;      ///< 3n x n: per mode j, column k: Γ2_kj - Γ2_jk
-  MatrixXd by_pair_; ///< (3+r) x n(n+1)/2: Ċη̇ of Γ2, η̇ᵀc_qη̇ per product η̇_j η̇_k, k ≤ j
+  MatrixXd M_rest_;   ///< n x n: M - LᵀL
+  MatrixXd by_eta_;   ///< (9+r)n x n: per mode j, column k: Γ4 as components of J, Γ2_kj, (c_q)_jk
+  MatrixXd A2_;       ///< 3n x n: per mode j, column k: Γ2_kj - Γ2_jk
+  MatrixXd by_pair_;  ///< (3+r) x n(n+1)/2: Ċη̇ of Γ2, η̇ᵀc_qη̇ per product η̇_j η̇_k, k ≤ j
   // What the affine functions do not hold of Γ1, J0 and J's linear part: functions without mass, rounding.
   Matrix3Xd gamma1_rest_;
   Vector6d J0_rest_ = Vector6d::Zero();

@@ -137,8 +137,7 @@ void Body::calc_flexible_inertia(const Vector3d& w, const ConstVectorRef& eta, c
   x.M.template block<3, 3>(0, 3) = -skew(x.S);
   x.M.template block<3, 3>(3, 0) = skew(x.S);
   x.M.template block<3, 3>(3, 3) = J;
-  x.h.template head<3>() =
-      w.cross(w.cross(x.S)) + 2 * root * w.cross(Vector3d(P_dot.col(0))) + root * A_ddot.col(0);
+  x.h.template head<3>() = w.cross(w.cross(x.S)) + 2 * root * w.cross(Vector3d(P_dot.col(0))) + root * A_ddot.col(0);
   Vector3d moment = J_dot * w + x.by_pair.template head<3>() + w.cross(Vector3d(J * w + C_eta_dot));
   for (int b = 0; b < 4; ++b) moment += Vector3d(P.col(b)).cross(Vector3d(A_ddot.col(b)));
   x.h.template segment<3>(3) = moment;

@@ -36,8 +36,8 @@ struct NodeInBody {
   Vector3d gamma_r = Vector3d::Zero();  ///< ẇ at η̈ = 0
 };
 
-/// Position and velocity-level terms. eta, eta_dot: n. Cost 6n² with locators of forces, 12n² with those of moments too.
-/// No allocation.
+/// Position and velocity-level terms. eta, eta_dot: n. Cost 6n² with locators of forces, 12n² with those of moments
+/// too. No allocation.
 void calc_node_in_body(const Node& node, const ConstVectorRef& eta, const ConstVectorRef& eta_dot, NodeInBody& out);
 
 /// J = [Jt; T Jθ] (6 x n). No allocation.

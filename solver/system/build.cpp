@@ -41,8 +41,8 @@ Attachment build_attachment(const std::string& body_name, const Body& body, int 
   a.p_KH = p;
   a.R_KH = R;
   // A ball joint at the node itself passes on no moment, and a free hinge nothing.
-  const bool is_ball = hinge.type == records::HingeType::Spherical && p.isZero(0) && hinge.stiffness.empty() &&
-                       hinge.damping.empty();
+  const bool is_ball =
+      hinge.type == records::HingeType::Spherical && p.isZero(0) && hinge.stiffness.empty() && hinge.damping.empty();
   const bool is_free = hinge.type == records::HingeType::Free;
   a.node = std::max(0, find_loaded_node(body_name, body, node_id, {true, !is_ball && !is_free}, hinge.at,
                                         "hinge " + quote(hinge.name), diagnostics));

@@ -43,8 +43,8 @@ struct NodeLoad {
 };
 /// Index of node `id`; -1 with "system.unknown-node", "system.missing-locators" (a force on a stiffened body needs the
 /// node's three) or "system.node-without-rotation" (a moment at a grid of solids) reported.
-int find_loaded_node(const std::string& body_name, const Body& body, int id, NodeLoad load,
-                     const SourceLocation& where, const std::string& user, Diagnostics& diagnostics);
+int find_loaded_node(const std::string& body_name, const Body& body, int id, NodeLoad load, const SourceLocation& where,
+                     const std::string& user, Diagnostics& diagnostics);
 
 /// Notes what makes a flexible body hard or impossible to integrate: "system.spanned-hinge" (clamped modes that leave
 /// next to no inertia about the body's own hinge), "system.inconsistent-integrals" (mass integrals of no body).

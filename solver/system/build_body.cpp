@@ -118,8 +118,8 @@ std::optional<Body> build_body(const records::BodyRecord& r, const FlexMap& flex
   return body;
 }
 
-int find_loaded_node(const std::string& body_name, const Body& body, int id, NodeLoad load,
-                     const SourceLocation& where, const std::string& user, Diagnostics& diagnostics) {
+int find_loaded_node(const std::string& body_name, const Body& body, int id, NodeLoad load, const SourceLocation& where,
+                     const std::string& user, Diagnostics& diagnostics) {
   const int index = body.find_node(id);
   if (index < 0) {
     std::string known;

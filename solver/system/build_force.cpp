@@ -18,8 +18,8 @@ bool set_locator(const records::ForceRecord& r, const Body& body, const records:
       force.kind = is_force ? records::ForceKind::Force : records::ForceKind::Moment;
       force.frame = records::VectorFrame::Body;
       force.direction = Vector3d::Unit((locator.direction - 1) % 3);
-      force.node = find_loaded_node(r.body, body, locator.node, {is_force, !is_force}, r.at,
-                                    "force " + quote(r.name), diagnostics);
+      force.node = find_loaded_node(r.body, body, locator.node, {is_force, !is_force}, r.at, "force " + quote(r.name),
+                                    diagnostics);
       return force.node >= 0;
     }
     const int n = body.num_modes();

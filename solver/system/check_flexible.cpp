@@ -8,7 +8,7 @@ namespace bough::solver {
 
 namespace {
 
-constexpr double kSpanned = 1e-3;      // of the rigid inertia
+constexpr double kSpanned = 1e-3;       // of the rigid inertia
 constexpr double kInconsistent = 1e-3;  // of the modal mass
 
 std::string quote(const std::string& s) { return "'" + s + "'"; }
@@ -86,7 +86,8 @@ void check_flexible_body(const TreeBody& tb, const records::FlexBody& flex, cons
   if (!(tb.body.mass() > 0) || is_gram(flex, tb.body.field(), tb.body.num_modes())) return;
   diagnostics.note("system.inconsistent-integrals", record.at,
                    "the '" + flex.integrals_method + "' mass integrals in '" + record.file + "' (body " +
-                       quote(tb.name) + ") are not those of one mass distribution: its kinetic energy could become "
+                       quote(tb.name) +
+                       ") are not those of one mass distribution: its kinetic energy could become "
                        "negative at large deflections",
                    "if the run stops with solver.indefinite-mass, take another set of integrals");
 }

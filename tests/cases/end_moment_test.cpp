@@ -94,8 +94,9 @@ double calc_lowest_eigenvalue(Example& example, double moment) {
   return A.eigenvalues().real().minCoeff();
 }
 
-// EI2 θ_y' = M (φ - φ(L)), GJ φ' = -M θ_y: the couple follows the twist of the tip and not its slope, so cos(kL) = 0 with
-// k = M/√(EI2 GJ), M = (π/2) √(EI2 GJ)/L. It neglects the bend in the strong plane: EI2/EI1 = 0.25 %, GJ/EI1 = 0.4 %.
+// EI2 θ_y' = M (φ - φ(L)), GJ φ' = -M θ_y: the couple follows the twist of the tip and not its slope, so cos(kL) = 0
+// with k = M/√(EI2 GJ), M = (π/2) √(EI2 GJ)/L. It neglects the bend in the strong plane: EI2/EI1 = 0.25 %, GJ/EI1 = 0.4
+// %.
 TEST(EndMoment, LateralTorsionalBucklingDoesNotDependOnTheCuts) {
   const double exact = std::acos(0.0) * std::sqrt(kStrip.E * kStrip.I2 * kStrip.G * kStrip.J) / kLength;
   const auto find_critical = [&](Example example) {
@@ -119,7 +120,8 @@ TEST(EndMoment, LateralTorsionalBucklingDoesNotDependOnTheCuts) {
   }
   // Without the second order of rotations the cuts and the tip let the moment through straight.
   Example first_order = make_strip(1, false);
-  const double at_critical = calc_lowest_eigenvalue(first_order, exact), at_rest = calc_lowest_eigenvalue(first_order, 0);
+  const double at_critical = calc_lowest_eigenvalue(first_order, exact),
+               at_rest = calc_lowest_eigenvalue(first_order, 0);
   record("without_moments", at_critical / at_rest);
   EXPECT_GT(std::abs(at_critical / at_rest), 0.1);
 }

@@ -20,8 +20,7 @@ records::Deck make_bar() {
   const auto id = [](int i, int corner) { return 1 + 4 * i + corner; };
   const double y[] = {0, 0.1, 0.1, 0}, z[] = {0, 0, 0.1, 0.1};
   for (int i = 0; i <= kCells; ++i)
-    for (int c = 0; c < 4; ++c)
-      file << "GRID," << id(i, c) << ",," << 0.2 * i << "," << y[c] << "," << z[c] << "\n";
+    for (int c = 0; c < 4; ++c) file << "GRID," << id(i, c) << ",," << 0.2 * i << "," << y[c] << "," << z[c] << "\n";
   for (int i = 0; i < kCells; ++i) {
     file << "CHEXA," << i + 1 << ",1";
     for (int c = 0; c < 6; ++c) file << "," << id(i + c / 4, c % 4);

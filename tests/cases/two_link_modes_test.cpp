@@ -1,6 +1,6 @@
 // Two links on revolute joints with modes clamped at the joints: 2, 4, 6, 10 modes each (docs/theory/flexible-body.md
-// §5). Such modes leave next to no inertia about the free joint; cut off after η² the kinetic energy lost its sign there,
-// and 4 modes and more stopped within half a second.
+// §5). Such modes leave next to no inertia about the free joint; cut off after η² the kinetic energy lost its sign
+// there, and 4 modes and more stopped within half a second.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -32,7 +32,7 @@ struct PointBody {
   int num_modes = 0;
   std::vector<double> mass;
   std::vector<Vector3d> p;
-  std::vector<MatrixXd> phi, psi;          ///< [k] 3 x n
+  std::vector<MatrixXd> phi, psi;                   ///< [k] 3 x n
   std::vector<std::array<MatrixXd, 3>> g, g_theta;  ///< [k][a] n x n, symmetric; of the rotation: may be empty
   MatrixXd K, D;
 

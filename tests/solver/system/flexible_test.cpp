@@ -72,8 +72,9 @@ TEST(FlexibleSystem, PrescribedSpinStiffensAndSoftensAsInTheLinearTheory) {
     EXPECT_LT((at_rest - rate * rate * pull).norm(), 1e-12);
     for (int j = 0; j < n; ++j) {
       const VectorXd step = 1e-3 * VectorXd::Unit(n, j);
-      const VectorXd slope = (8 * (calc_force(step) - calc_force(-step)) -
-                              (calc_force(2 * step) - calc_force(-2 * step))) / 12e-3;  // exact for a cubic
+      const VectorXd slope =
+          (8 * (calc_force(step) - calc_force(-step)) - (calc_force(2 * step) - calc_force(-2 * step))) /
+          12e-3;  // exact for a cubic
       EXPECT_LT((slope + K.col(j)).norm(), 1e-9) << "stiffening " << stiffening;
     }
   }
