@@ -5,7 +5,7 @@ namespace bough {
 /// Version of this build, "major.minor.patch".
 const char* get_version();
 
-inline constexpr const char* kFlexBodyFormatVersion = "1.0";
+inline constexpr const char* kFlexBodyFormatVersion = "1.1";
 inline constexpr const char* kResultsFormatVersion = "1.0";
 inline constexpr const char* kModesFormatVersion = "1.0";
 inline constexpr const char* kMatricesFormatVersion = "1.0";

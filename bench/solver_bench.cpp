@@ -55,7 +55,8 @@ records::FlexBody make_beam(int n) {
   g.gamma3.assign(static_cast<size_t>(n), Matrix3d::Zero());
   g.gamma4.assign(static_cast<size_t>(n), std::vector<Matrix3d>(static_cast<size_t>(n), Matrix3d::Zero()));
   for (auto& K : b.kg_inertial) K = MatrixXd::Zero(n, n);
-  b.kg_inertial_computed.fill(true);
+  for (const auto load : {records::InertialLoad::wz2, records::InertialLoad::ax})
+    b.kg_inertial_computed[static_cast<size_t>(load)] = true;
   b.modal_mass = b.modal_stiffness = b.modal_damping = MatrixXd::Zero(n, n);
   const auto slope = [&](int j, double x) { return (j + 0.5) * pi * std::sin((j + 0.5) * pi * x); };
   for (int k = 0; k < num; ++k) {

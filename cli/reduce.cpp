@@ -250,7 +250,7 @@ void add_reduce(CLI::App& app, Action& action) {
   verb->add_option("--name", o->name, "Name of the body (default: the file's)");
   verb->add_flag("--free", o->free, "Free-free modes: no node carries the frame, SPC sets are left out");
   verb->add_option("--interface", o->interface_nodes,
-                   "Grids where hinges or forces attach: three locators each, e.g. 1,41")
+                   "Grids where hinges or forces attach: six locators each (forces, moments), e.g. 1,41")
       ->delimiter(',');
   verb->add_option("--load", o->loads, "Unit loads NODE:DIRECTIONS or a load set set:ID, with K_G; may be repeated")
       ->allow_extra_args(false);

@@ -20,6 +20,11 @@ void Reduction::set_rigid_part(const fe::Model& model) {
   body_.is_free_free = is_free() && spec_.frame != BodyFrame::Node && spec_.frame != BodyFrame::ThreeNodes;
 }
 
+bool Reduction::lacks_rotation(const fe::Model& model, const fe::Node& node) {
+  const auto moves = [&](int c) { return model.T().row(node.first_gdof + c).norm() > 0; };
+  return (moves(0) || moves(1) || moves(2)) && !moves(3) && !moves(4) && !moves(5);
+}
+
 void Reduction::set_nodes(const fe::Model& model) {
   std::vector<int> ids;
   std::set<int> seen;
@@ -38,6 +43,7 @@ void Reduction::set_nodes(const fe::Model& model) {
     const auto& node = model.node(model.find_node(ids[k]));
     body_.node_xyz.row(static_cast<Eigen::Index>(k)) = node.x.transpose();
     body_.phi.push_back(Phi_.middleRows(node.first_gdof, 6));
+    if (lacks_rotation(model, node)) body_.phi.back().bottomRows<3>().setZero();
   }
   body_.mesh = model.calc_mesh();
   body_.dof_map = model.calc_dof_map();

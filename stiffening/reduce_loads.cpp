@@ -14,7 +14,8 @@ namespace {
 constexpr const char* kDirections[] = {"x", "y", "z", "rx", "ry", "rz"};
 }
 
-/// A locator for each translation of the interface nodes and each load of the body file.
+/// A locator for each translation and rotation of the interface nodes and each load of the body file; set_stiffening
+/// leaves out the moments at interface nodes that act on nothing (grids of solids).
 void Reduction::make_loads(const fe::Model& model) {
   for (const int id : spec_.interface_nodes)
     if (std::find(body_.interface_nodes.begin(), body_.interface_nodes.end(), id) == body_.interface_nodes.end())
@@ -27,7 +28,8 @@ void Reduction::make_loads(const fe::Model& model) {
     load.load.F = VectorXd::Unit(model.num_gdofs(), node.first_gdof + direction - 1);
   };
   for (const int id : body_.interface_nodes)
-    for (int d = 1; d <= 3; ++d) add_unit("", "node" + std::to_string(id) + "_" + kDirections[d - 1], id, d);
+    for (int d = 1; d <= (spec_.interface_moments ? 6 : 3); ++d)
+      add_unit("", "node" + std::to_string(id) + "_" + kDirections[d - 1], id, d);
   for (std::size_t i = 0; i < spec_.loads.size(); ++i) {
     const auto& load = spec_.loads[i];
     const std::string name = load.name.empty() ? "load" + std::to_string(i + 1) : load.name;
@@ -97,6 +99,12 @@ StaticSolve Reduction::make_solver(const fe::Model& model, const fe::PetscMat& K
 
 void Reduction::set_stiffening(const fe::Model& model, const StaticSolve& solve) {
   const auto n = Phi_.cols();
+  loads_.erase(std::remove_if(loads_.begin(), loads_.end(),
+                              [&](const BodyLoad& load) {
+                                if (!load.group.empty() || load.locator.direction <= 3) return false;
+                                return lacks_rotation(model, model.node(model.find_node(load.locator.node)));
+                              }),
+               loads_.end());
   MatrixXd F_ext(model.num_gdofs(), static_cast<Eigen::Index>(loads_.size()));
   for (std::size_t e = 0; e < loads_.size(); ++e) {
     F_ext.col(static_cast<Eigen::Index>(e)) = loads_[e].load.F;

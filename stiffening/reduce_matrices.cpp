@@ -95,6 +95,7 @@ BodySpec MatrixReduction::make_spec() const {
   BodySpec spec = spec_;
   spec.full = true;
   spec.integrals = "exact";
+  spec.interface_moments = false;  // those given come as loads
   for (const auto& g : given_.geometric) {
     if (g.inertial >= 0 || !g.load.empty()) continue;
     if (g.node > 0 && g.direction <= 3 && has(spec.interface_nodes, g.node)) continue;

@@ -36,6 +36,8 @@ class Reduction {
   void set_integrals(const fe::Model& model);  ///< and effective masses, F_I
   void set_stiffening(const fe::Model& model, const modal::bases::StaticSolve& solve);
   void make_loads(const fe::Model& model);
+  /// Moves without turning: a grid of solids or rods alone. What a frame takes off its rows is no rotation of it.
+  static bool lacks_rotation(const fe::Model& model, const fe::Node& node);
   void set_resultants(const fe::Model& model, const MatrixXd& F_ext);
   std::vector<int> choose_support(const fe::Model& model);
   bool is_on_dependent_node(const fe::Model& model) const;

@@ -42,7 +42,8 @@ struct BodySpec {
   int subcase = 0;   ///< 0: the first
   BodyFrame frame = BodyFrame::Fixed;
   std::vector<int> support;  ///< free: node(s) of the determinate support on which K_G is solved; empty = chosen
-  std::vector<int> interface_nodes;  ///< get three translational locators each
+  std::vector<int> interface_nodes;  ///< get locators: three forces, three moments
+  bool interface_moments = true;     ///< false: no moments there
   std::vector<int> frame_nodes;      ///< Node: one; ThreeNodes: three; MassCentre: none, one or three
   std::optional<Vector3d> origin;    ///< Bo in basic; default: basic origin
   int origin_node = 0;               ///< or at this node

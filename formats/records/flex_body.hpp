@@ -60,7 +60,7 @@ struct FlexBody {
 
   std::vector<int> node_id;          ///< p output nodes
   MatrixXd node_xyz;                 ///< p x 3
-  std::vector<int> interface_nodes;  ///< ids among node_id that have three translational locators
+  std::vector<int> interface_nodes;  ///< ids among node_id that have locators: three forces, three moments
   bool is_free_free = false;         ///< rigid modes were removed: the frame is carried by no node
 
   VectorXd frequency_hz, eigenvalue;  ///< n

@@ -152,6 +152,7 @@ records::BodySpec read_body_spec_text(const std::string& text, const std::string
   spec.frame_nodes = body.get_ints("frame_nodes");
   spec.support = body.get_ints("support");
   spec.interface_nodes = body.get_ints("interface");
+  spec.interface_moments = body.get_bool("interface_moments", true);
   read_origin(body, spec, diagnostics);
   spec.mass = body.get_string("mass", spec.mass);
   spec.integrals = body.get_string("integrals", spec.integrals);

@@ -3,22 +3,19 @@
 ///
 /// In B about Bo, in the order [v; ω; η̇], T = ½ [v;ω;η̇]ᵀ M(η) [v;ω;η̇] with
 ///
-///            | m1       -S̃       Γ0(η) |     S  = m c + Γ0 η + ½ [ηᵀ G_a η]_a
-///     M(η) = | S̃         J(η)    C(η)  |     Γ0(η) = ∂S/∂η
-///            | Γ0(η)ᵀ    C(η)ᵀ   M     |     C row a = Γ1 row a + Σ_j η_j Γ2_j row a + (G_{3+a} η)ᵀ
+///            | m1       -S̃       ∂S/∂η |     S, J: first and second moment of r = Σ_b A_b f_b + φη (AffineField)
+///     M(η) = | S̃         J       C     |     C_j = ∫ρ r×∂r/∂η_j
+///            | (∂S/∂η)ᵀ  Cᵀ      M_ηη  |     M_ηη = ∫ρ ∂r/∂ηᵀ ∂r/∂η
 ///
-///     J = J0 + Σ η_j (Γ3_j + Γ3_jᵀ) + ΣΣ η_j η_k Γ4_jk + J_G,   ½ ωᵀ J_G ω = -½ Σ_{i=6..11} A_I(i) ηᵀ G_i η
+/// where r holds the second-order displacement, an affine field, so that T is a sum of squares; it is left out when
+/// stiffening is off. Products of two φ are Γ2, Γ4 and M. d'Alembert with a the inertial acceleration of Bo (in B),
 ///
-/// G_i = K_G1(i), zero when stiffening is off. Hamel's equations with a the inertial acceleration of Bo (in B),
-///
-///     M(η) [a; α; η̈] + h(η, η̇, ω) = applied,
-///     h_f = ω×(ω×S) + 2ω×Ṡ + [η̇ᵀ G_a η̇]_a
-///     h_τ = J̇ω + Ċη̇ + ω×(Jω + Cη̇)
-///     h_η = Σ_k η̇_k ω·(Γ2_kj - Γ2_jk) - ½ ωᵀ(∂J/∂η_j)ω + (Kη + Dη̇)_j
+///     M(η) [a; α; η̈] + h(η, η̇, ω) = applied
 #include <string>
 #include <vector>
 
 #include "bough/formats/records/system_spec.hpp"
+#include "bough/solver/bodies/affine_field.hpp"
 #include "bough/solver/bodies/node.hpp"
 
 namespace bough::solver {
@@ -28,8 +25,8 @@ struct BodyInertia {
   MatrixXd M;                           ///< (6+n)², flexible bodies only (a rigid one has Body::M6)
   VectorXd h;                           ///< 6+n
   Vector3d S = Vector3d::Zero();        ///< first moment of mass about Bo
-  VectorXd GS, GS_dot, C2, C2_dot, A2;  ///< 3n
-  VectorXd Q;                           ///< 6n
+  VectorXd by_eta, A2, pairs, by_pair;  ///< (9+r)n, 3n, n(n+1)/2, 3+r; r = rank of the affine field
+  AffineField::Columns V;               ///< 12 x n: ∫ρ ∂r/∂η_j fᵀ
 };
 
 class Body {
@@ -46,6 +43,7 @@ class Body {
   const Matrix6d& M6() const { return M6_; }  ///< the mass matrix of the undeformed body
   const MatrixXd& K() const { return K_; }
   const MatrixXd& D() const { return D_; }
+  const AffineField& field() const { return field_; }
 
   const std::vector<Node>& nodes() const { return nodes_; }  ///< [0] is Bo
   int find_node(int id) const;                               ///< index into nodes(), -1 when absent
@@ -58,6 +56,9 @@ class Body {
 
  private:
   void add_second_order(const records::FlexBody& flex);
+  template <int R>
+  void calc_flexible_inertia(const Vector3d& w_B, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
+                             BodyInertia& inertia) const;
   void add_flexible_nodes(const records::FlexBody& flex);
 
   int n_ = 0;
@@ -66,13 +67,17 @@ class Body {
   Vector3d S0_ = Vector3d::Zero();
   Vector6d J0_ = Vector6d::Zero();  ///< xx yy zz xy xz yz (tensor components) about Bo
   Matrix6d M6_ = Matrix6d::Zero();
-  Matrix3Xd gamma0_, gamma1_;  ///< 3 x n
-  MatrixXd GS_;                ///< 3n x n, row a + 3j: row j of G_a
-  MatrixXd C2_;                ///< 3n x n, row a + 3k, column j: ∂C(a,k)/∂η_j = Γ2_j(a,k) + G_{3+a}(k,j)
-  MatrixXd A2_;                ///< 3n x n, row a + 3j, column k: Γ2_k(a,j) - Γ2_j(a,k)
-  Matrix6Xd J1_;               ///< 6 x n: linear part of J
-  MatrixXd Q_;                 ///< 6n x n, row c + 6j: row j of the quadratic form of J's component c
+  AffineField field_;
+  MatrixXd M_rest_;   ///< n x n: M - LᵀL
+  MatrixXd by_eta_;   ///< (9+r)n x n: per mode j, column k: Γ4 as components of J, Γ2_kj, (c_q)_jk
+  MatrixXd A2_;       ///< 3n x n: per mode j, column k: Γ2_kj - Γ2_jk
+  MatrixXd by_pair_;  ///< (3+r) x n(n+1)/2: Ċη̇ of Γ2, η̇ᵀc_qη̇ per product η̇_j η̇_k, k ≤ j
+  // What the affine functions do not hold of Γ1, J0 and J's linear part: functions without mass, rounding.
+  Matrix3Xd gamma1_rest_;
+  Vector6d J0_rest_ = Vector6d::Zero();
+  Matrix6Xd J1_rest_;
   MatrixXd M_, K_, D_;
+  bool K_is_diagonal_ = false, D_is_diagonal_ = false;
   std::vector<Node> nodes_;
 };
 

@@ -3,35 +3,35 @@
 namespace bough::solver {
 
 namespace {
-// Column j of the 3 x n matrix [K_G2(a) x]_a.
-Vector3d calc_K2_column(const Node& node, int j, const ConstVectorRef& x) {
-  return {node.K2.row(3 * j).dot(x), node.K2.row(3 * j + 1).dot(x), node.K2.row(3 * j + 2).dot(x)};
+// Column j of the 3 x n matrix [K_a x]_a, zero without locators.
+Vector3d calc_K2_column(const RowMatrixXd& K2, int j, const ConstVectorRef& x) {
+  if (K2.size() == 0) return Vector3d::Zero();
+  return {K2.row(3 * j).dot(x), K2.row(3 * j + 1).dot(x), K2.row(3 * j + 2).dot(x)};
 }
 }  // namespace
+
+bool Node::has_no_rotation() const {
+  return moves && !has_moments && psi.size() > 0 && psi.cwiseAbs().maxCoeff() <= 1e-14 * phi.cwiseAbs().maxCoeff();
+}
 
 void calc_node_in_body(const Node& node, const ConstVectorRef& eta, const ConstVectorRef& eta_dot, NodeInBody& out) {
   out = NodeInBody();
   out.r = node.p;
   if (!node.moves) return;
-  Vector3d theta_dot = Vector3d::Zero();
+  Vector3d theta_dot = Vector3d::Zero(), theta_ddot = Vector3d::Zero();  // the latter at η̈ = 0
   for (int j = 0; j < eta.size(); ++j) {
-    out.r += node.phi.col(j) * eta[j];
-    out.v += node.phi.col(j) * eta_dot[j];
-    out.theta += node.psi.col(j) * eta[j];
-    theta_dot += node.psi.col(j) * eta_dot[j];
-  }
-  if (node.K2.size() > 0) {
-    for (int j = 0; j < eta.size(); ++j) {
-      const Vector3d k = calc_K2_column(node, j, eta);
-      out.r -= 0.5 * eta[j] * k;
-      out.v -= eta_dot[j] * k;
-      out.gamma_t -= eta_dot[j] * calc_K2_column(node, j, eta_dot);
-    }
+    const Vector3d k = calc_K2_column(node.K2, j, eta), k_theta = calc_K2_column(node.K2_theta, j, eta);
+    out.r += (node.phi.col(j) - 0.5 * k) * eta[j];
+    out.v += (node.phi.col(j) - k) * eta_dot[j];
+    out.gamma_t -= calc_K2_column(node.K2, j, eta_dot) * eta_dot[j];
+    out.theta += (node.psi.col(j) - 0.5 * k_theta) * eta[j];
+    theta_dot += (node.psi.col(j) - k_theta) * eta_dot[j];
+    theta_ddot -= calc_K2_column(node.K2_theta, j, eta_dot) * eta_dot[j];
   }
   out.R_BK = calc_rotation_exp(out.theta);
   out.T = calc_rotation_tangent(out.theta);
   out.w = out.T * theta_dot;
-  out.gamma_r = calc_rotation_tangent_rate(out.theta, theta_dot);
+  out.gamma_r = calc_rotation_tangent_rate(out.theta, theta_dot) + out.T * theta_ddot;
 }
 
 void calc_node_jacobian(const Node& node, const ConstVectorRef& eta, const Matrix3d& T, Eigen::Ref<Matrix6Xd> J) {
@@ -40,21 +40,30 @@ void calc_node_jacobian(const Node& node, const ConstVectorRef& eta, const Matri
     return;
   }
   for (int j = 0; j < eta.size(); ++j) {
-    Vector3d translation = node.phi.col(j);
-    if (node.K2.size() > 0) translation -= calc_K2_column(node, j, eta);
-    J.col(j).head<3>() = translation;
-    J.col(j).tail<3>() = T * node.psi.col(j);
+    J.col(j).head<3>() = node.phi.col(j) - calc_K2_column(node.K2, j, eta);
+    J.col(j).tail<3>() = T * (node.psi.col(j) - calc_K2_column(node.K2_theta, j, eta));
   }
+}
+
+void add_node_acceleration(const Node& node, const ConstVectorRef& eta, const ConstVectorRef& eta_ddot,
+                           const Matrix3d& T, Vector3d& a, Vector3d& alpha) {
+  if (!node.moves) return;
+  Vector3d theta_ddot = Vector3d::Zero();
+  for (int j = 0; j < eta.size(); ++j) {
+    a += (node.phi.col(j) - calc_K2_column(node.K2, j, eta)) * eta_ddot[j];
+    theta_ddot += (node.psi.col(j) - calc_K2_column(node.K2_theta, j, eta)) * eta_ddot[j];
+  }
+  alpha += T * theta_ddot;
 }
 
 void add_node_generalized_force(const Node& node, const ConstVectorRef& eta, const Matrix3d& T, const Vector3d& f,
                                 const Vector3d& t, Eigen::Ref<VectorXd> generalized) {
   if (!node.moves) return;
-  const Vector3d t_psi = T.transpose() * t;
+  const Vector3d t_theta = T.transpose() * t;
+  const bool forced = !f.isZero(0), twisted = !t.isZero(0);
   for (int j = 0; j < eta.size(); ++j) {
-    double g = node.phi.col(j).dot(f) + node.psi.col(j).dot(t_psi);
-    if (node.K2.size() > 0) g -= calc_K2_column(node, j, eta).dot(f);
-    generalized[j] += g;
+    if (forced) generalized[j] += (node.phi.col(j) - calc_K2_column(node.K2, j, eta)).dot(f);
+    if (twisted) generalized[j] += (node.psi.col(j) - calc_K2_column(node.K2_theta, j, eta)).dot(t_theta);
   }
 }
 

@@ -40,8 +40,12 @@ Attachment build_attachment(const std::string& body_name, const Body& body, int 
   Attachment a;
   a.p_KH = p;
   a.R_KH = R;
-  a.node = std::max(
-      0, find_loaded_node(body_name, body, node_id, true, hinge.at, "hinge " + quote(hinge.name), diagnostics));
+  // A ball joint at the node itself passes on no moment, and a free hinge nothing.
+  const bool is_ball =
+      hinge.type == records::HingeType::Spherical && p.isZero(0) && hinge.stiffness.empty() && hinge.damping.empty();
+  const bool is_free = hinge.type == records::HingeType::Free;
+  a.node = std::max(0, find_loaded_node(body_name, body, node_id, {true, !is_ball && !is_free}, hinge.at,
+                                        "hinge " + quote(hinge.name), diagnostics));
   a.moves = body.nodes()[static_cast<size_t>(a.node)].moves;
   return a;
 }
@@ -125,7 +129,9 @@ System System::build(const records::SystemSpec& spec, const std::map<std::string
       tb.on_child = build_attachment(tb.name, *body, hinge.child_node, hinge.child_position, hinge.child_rotation,
                                      hinge, diagnostics);
     }
+    const bool is_flexible = body->num_modes() > 0;
     tb.body = std::move(*body);
+    if (is_flexible) check_flexible_body(tb, flex.at(record.file), record, diagnostics);
     // A parent whose record failed has no nodes to look up.
     if (tb.parent < 0) {
       tb.on_parent.p_KH = hinge.parent_position;

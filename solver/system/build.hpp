@@ -37,9 +37,18 @@ std::optional<AppliedForce> build_force(const records::ForceRecord& record, cons
                                         const records::FlexBody* flex, const FunctionMap& functions,
                                         Diagnostics& diagnostics);
 
-/// Index of node `id`; -1 with "system.unknown-node" or "system.missing-locators" reported. `takes_force`: a force acts
-/// there, so a stiffened body needs the node's three locators.
-int find_loaded_node(const std::string& body_name, const Body& body, int id, bool takes_force,
-                     const SourceLocation& where, const std::string& user, Diagnostics& diagnostics);
+/// What acts at a node. A hinge that can pass on a moment takes both.
+struct NodeLoad {
+  bool force = false, moment = false;
+};
+/// Index of node `id`; -1 with "system.unknown-node", "system.missing-locators" (a force on a stiffened body needs the
+/// node's three) or "system.node-without-rotation" (a moment at a grid of solids) reported.
+int find_loaded_node(const std::string& body_name, const Body& body, int id, NodeLoad load, const SourceLocation& where,
+                     const std::string& user, Diagnostics& diagnostics);
+
+/// Notes what makes a flexible body hard or impossible to integrate: "system.spanned-hinge" (clamped modes that leave
+/// next to no inertia about the body's own hinge), "system.inconsistent-integrals" (mass integrals of no body).
+void check_flexible_body(const TreeBody& tb, const records::FlexBody& flex, const records::BodyRecord& record,
+                         Diagnostics& diagnostics);
 
 }  // namespace bough::solver

@@ -118,8 +118,8 @@ std::optional<Body> build_body(const records::BodyRecord& r, const FlexMap& flex
   return body;
 }
 
-int find_loaded_node(const std::string& body_name, const Body& body, int id, bool takes_force,
-                     const SourceLocation& where, const std::string& user, Diagnostics& diagnostics) {
+int find_loaded_node(const std::string& body_name, const Body& body, int id, NodeLoad load, const SourceLocation& where,
+                     const std::string& user, Diagnostics& diagnostics) {
   const int index = body.find_node(id);
   if (index < 0) {
     std::string known;
@@ -137,7 +137,14 @@ int find_loaded_node(const std::string& body_name, const Body& body, int id, boo
     return -1;
   }
   const Node& node = body.nodes()[static_cast<size_t>(index)];
-  if (takes_force && body.stiffened() && !node.has_locators && node.phi.size() > 0 &&
+  if (load.moment && node.has_no_rotation()) {
+    diagnostics.error("system.node-without-rotation", where,
+                      user + " needs the rotation of node " + std::to_string(id) + " of body " + quote(body_name) +
+                          ", which has none: solid elements alone do not turn a grid",
+                      "attach at a grid that an RBE2 or RBE3 ties to the solid's grids");
+    return -1;
+  }
+  if (load.force && body.stiffened() && !node.has_locators && node.phi.size() > 0 &&
       node.phi.cwiseAbs().maxCoeff() > 0) {
     diagnostics.error("system.missing-locators", where,
                       user + " loads node " + std::to_string(id) + " of body " + quote(body_name) +

@@ -18,7 +18,8 @@ bool set_locator(const records::ForceRecord& r, const Body& body, const records:
       force.kind = is_force ? records::ForceKind::Force : records::ForceKind::Moment;
       force.frame = records::VectorFrame::Body;
       force.direction = Vector3d::Unit((locator.direction - 1) % 3);
-      force.node = find_loaded_node(r.body, body, locator.node, is_force, r.at, "force " + quote(r.name), diagnostics);
+      force.node = find_loaded_node(r.body, body, locator.node, {is_force, !is_force}, r.at, "force " + quote(r.name),
+                                    diagnostics);
       return force.node >= 0;
     }
     const int n = body.num_modes();
@@ -64,8 +65,9 @@ std::optional<AppliedForce> build_force(const records::ForceRecord& r, const Tre
   if (!r.locator.empty()) {
     set_locator(r, body, flex, force, diagnostics);
   } else {
-    force.node = find_loaded_node(r.body, body, r.node, r.kind == records::ForceKind::Force, r.at,
-                                  "force " + quote(r.name), diagnostics);
+    const bool is_force = r.kind == records::ForceKind::Force;
+    force.node =
+        find_loaded_node(r.body, body, r.node, {is_force, !is_force}, r.at, "force " + quote(r.name), diagnostics);
     if (!r.direction.allFinite() || r.direction.isZero(0)) {
       diagnostics.error("system.zero-direction", r.at, "force " + quote(r.name) + " has no direction",
                         "give 'direction' three numbers, not all zero");

@@ -21,15 +21,8 @@ NodeMotion calc_node_motion(const System& system, const SystemData& data, int bo
   const NodeInBody k = calc_node(tb, data.tree, node_index);
   Vector3d a_rel = k.gamma_t, alpha_rel = k.gamma_r;  // + J η̈
   if (node.moves) {
-    const auto eta = data.tree.q.segment(tb.eta_offset(), tb.body.num_modes());
-    for (int j = 0; j < tb.body.num_modes(); ++j) {
-      const double eta_ddot = d.eta_ddot[j];
-      a_rel += node.phi.col(j) * eta_ddot;
-      alpha_rel += k.T * node.psi.col(j) * eta_ddot;
-      if (node.K2.size() > 0) {
-        for (int a = 0; a < 3; ++a) a_rel[a] -= node.K2.row(a + 3 * j).dot(eta) * eta_ddot;
-      }
-    }
+    add_node_acceleration(node, data.tree.q.segment(tb.eta_offset(), tb.body.num_modes()), d.eta_ddot, k.T, a_rel,
+                          alpha_rel);
   }
   NodeMotion m;
   const Matrix3d& R = s.R_WB;

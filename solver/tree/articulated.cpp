@@ -2,6 +2,7 @@
 // extra mobilizer coordinates: Jain & Rodriguez, JGCD 15(6) 1992. With ℋ = [H -Jc; 0 1] over [u_h; η̇]:
 //   W = 𝒫ℋ, D = ℋᵀW, G = D⁻¹ W_topᵀ, 𝒫⁺ = 𝒫_66 - W_top G, z = D⁻¹(τ - ℋᵀ(β + 𝒫b)), β⁺ = (β + 𝒫b)_6 + W_top z,
 //   parent: 𝒫 += Xᵀ𝒫⁺X, β += Xᵀβ⁺;   then u̇ = z - G X [A'_P; η̈_P].
+// With D = LLᵀ a flexible body stops halfway, G = L⁻¹W_topᵀ and z likewise: 𝒫⁺ = 𝒫_66 - GᵀG, u̇ = L⁻ᵀ(z - G X [..]).
 #include "bough/solver/tree/tree.hpp"
 
 namespace bough::solver {
@@ -17,8 +18,8 @@ struct Reduced {  // what a body passes on to its parent, at Bo, in B
   throw ComputationError(
       "solver.indefinite-mass", {}, "the articulated mass matrix of body '" + tb.name + "' is not positive definite",
       tb.body.num_modes() > 0
-          ? "its deflection has left the range of the second-order expansion: reduce the load or the "
-            "step, or split the body"
+          ? "its mass integrals do not belong to one mass matrix, or its hinge moves no mass: write the file anew with "
+            "reduce"
           : "give the body, or one that it carries, mass and inertia along its hinge freedoms");
 }
 
@@ -75,24 +76,25 @@ void eliminate_flexible(const TreeBody& tb, BodyData& d, Reduced& out) {
   d.beta.noalias() += d.P.leftCols<6>() * d.b;  // β + 𝒫b
   d.W.rightCols(n) = d.P.rightCols(n);
   for (int i = 0; i < nh; ++i) d.W.col(i).noalias() = d.P.leftCols<6>() * H.col(i);
-  d.z.tail(n) = -d.beta.tail(n);
-  for (int i = 0; i < nh; ++i) d.z[i] = d.hinge_force[i] - H.col(i).dot(d.beta.head<6>());
+  auto z = d.Gz.col(6);
+  z.tail(n) = -d.beta.tail(n);
+  for (int i = 0; i < nh; ++i) z[i] = d.hinge_force[i] - H.col(i).dot(d.beta.head<6>());
   if (tb.on_child.moves) {
     d.W.rightCols(n).noalias() -= d.P.leftCols<6>() * d.Jc;
-    d.z.tail(n).noalias() += d.Jc.transpose() * d.beta.head<6>();
+    z.tail(n).noalias() += d.Jc.transpose() * d.beta.head<6>();
   }
   d.D.bottomRows(n) = d.W.bottomRows(n);
   for (int i = 0; i < nh; ++i) d.D.row(i).noalias() = H.col(i).transpose() * d.W.topRows<6>();
   if (tb.on_child.moves) d.D.bottomRows(n).noalias() -= d.Jc.transpose() * d.W.topRows<6>();
   const Eigen::LLT<Eigen::Ref<MatrixXd>> D_factor(d.D);  // in place
   if (D_factor.info() != Eigen::Success) fail_indefinite(tb);
-  d.G = d.W.topRows<6>().transpose();
-  D_factor.solveInPlace(d.G);
-  D_factor.solveInPlace(d.z);
+  d.Gz.leftCols<6>() = d.W.topRows<6>().transpose();
+  d.D.triangularView<Eigen::Lower>().solveInPlace(d.Gz);
+  const auto G = d.Gz.leftCols<6>();
   out.P = d.P.topLeftCorner<6, 6>();
-  out.P.noalias() -= d.W.topRows<6>() * d.G;
+  out.P.noalias() -= G.transpose() * G;
   out.beta = d.beta.head<6>();
-  out.beta.noalias() += d.W.topRows<6>() * d.z;
+  out.beta.noalias() += G.transpose() * z;
 }
 
 // [S(r)ᵀR P Rᵀ S(r)] and the wrench moved likewise, R = R_PB.
@@ -148,11 +150,13 @@ void calc_body_acceleration(const Tree& tree, int b, TreeData& data, Eigen::Ref<
     A.tail<3>() = d.R_PB.transpose() * P.state.alpha_B;
   }
   auto u_dot_b = u_dot.segment(tb.u_offset, nh + n);
-  u_dot_b = d.z;
   if (n == 0) {
+    u_dot_b = d.z;
     for (int i = 0; i < nh; ++i) u_dot_b[i] -= d.G6.row(i).dot(A);
   } else {
-    u_dot_b.noalias() -= d.G * A;
+    u_dot_b = d.Gz.col(6);
+    u_dot_b.noalias() -= d.Gz.leftCols<6>() * A;
+    d.D.transpose().triangularView<Eigen::Upper>().solveInPlace(u_dot_b);
   }
   d.eta_ddot = u_dot_b.tail(n);
   A += d.b;

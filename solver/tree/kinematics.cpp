@@ -166,7 +166,7 @@ TreeData make_tree_data(const Tree& tree) {
       d.P = MatrixXd::Zero(6 + n, 6 + n);
       d.W = MatrixXd::Zero(6 + n, nf);
       d.D = MatrixXd::Identity(nf, nf);
-      d.G = MatrixXd::Zero(nf, 6);
+      d.Gz = MatrixXd::Zero(nf, 7);
     }
     data.bodies.push_back(std::move(d));
   }

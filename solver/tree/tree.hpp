@@ -73,8 +73,9 @@ struct BodyData {
   MatrixXd P;         ///< flexible: (6+n)²
   VectorXd beta;      ///< 6+n
   Matrix6d G6;        ///< rigid: D⁻¹ Uᵀ, nh x 6
-  MatrixXd W, D, G;   ///< flexible: P ℋ (6+n)x(nh+n), ℋᵀPℋ (then its factor), D⁻¹ W_topᵀ (nh+n) x 6
-  VectorXd z;         ///< nh+n
+  VectorXd z;         ///< rigid: nh
+  MatrixXd W, D;      ///< flexible: P ℋ (6+n)x(nh+n), ℋᵀPℋ (then its factor L)
+  MatrixXd Gz;        ///< flexible: L⁻¹ [W_topᵀ, τ - ℋᵀ(β + Pb)], (nh+n) x 7
   VectorXd eta_ddot;  ///< n, after calc_tree_accelerations
   Matrix6Xd PX;       ///< 6 x (6+m)
 };

@@ -71,11 +71,12 @@ TEST(Plate, BoundedBelowTheCriticalLoad) {
 TEST(Plate, UnboundedAboveIt) {
   VectorXd t;
   const VectorXd w = run_plate("0.170", t);
-  // It leaves as exp(s t), s² = -λ the negative eigenvalue of K + p K_G2.
+  // It leaves as exp(s t), s² = -λ the negative eigenvalue of K + p K_G2, as long as it is small beside the plate: 1 in
+  // at 7 s. Later its edges draw in so fast that their motion takes up energy.
   const auto& body = get_body();
   const MatrixXd K = body.modal_stiffness + 0.170 * body.kg_external.back();
   const double rate = std::sqrt(-Eigen::SelfAdjointEigenSolver<MatrixXd>(K).eigenvalues()[0]);
-  const double growth = std::log(calc_largest(t, w, 14.5, 15) / calc_largest(t, w, 9.5, 10)) / 5;
+  const double growth = std::log(calc_largest(t, w, 6.5, 7) / calc_largest(t, w, 4.5, 5)) / 2;
   record("growth_rate", growth);
   EXPECT_NEAR(growth / rate, 1, 0.01);
   EXPECT_GT(calc_largest(t, w, 14.5, 15), 1);

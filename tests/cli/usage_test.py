@@ -70,6 +70,31 @@ class Usage(ProgramTest):
                 self.bough(*call, env=no_mpi)
 
 
+class InitFromDeck(ProgramTest):
+    def start(self, *options):
+        self.bough("init", "boom.bdf", "--force", *options)
+        self.bough("reduce", "boom.toml", "-o", "boom.h5")
+        result = self.bough("run", "boom-run.toml", "-o", "r.h5")
+        with open(self.path("boom.toml")) as f:
+            return f.read(), result.stdout + result.stderr
+
+    def test_constraints_hold_the_frame_and_a_hinge_takes_mean_axes(self):
+        self.bough("init", "spinup", "-o", ".")
+        body, said = self.start()
+        self.assertIn('frame = "fixed"', body)
+        body, said = self.start("--hinge", "1")
+        self.assertIn('frame = "mean"', body)
+        self.assertIn("interface = [1]", body)
+        self.assertNotIn("system.spanned-hinge", said)
+        # The other choice is noted, with the way out.
+        self.write("boom.toml", body.replace('frame = "mean"', 'frame = "fixed"').replace("interface = [1]", ""))
+        self.bough("reduce", "boom.toml", "-o", "boom.h5")
+        said = self.bough("check", "boom-run.toml")
+        self.assertIn("system.spanned-hinge", said.stdout + said.stderr)
+        self.assertIn('frame = "mean"', said.stdout + said.stderr)
+        self.fails(1, "init", "boom.bdf", "--hinge", "99", "--force", error="cli.unknown-interface")
+
+
 class Output(ProgramTest):
     def test_output_is_overwritten_unless_told_otherwise(self):
         self.write("beam.bdf", BEAM)
@@ -98,6 +123,7 @@ class Output(ProgramTest):
             self.assertIn("README.md", os.listdir(self.path(name)))
         self.fails(1, "init", "spinup", error="cli.output-exists")
         self.bough("init", "spinup", "--force")
+        self.fails(1, "init", "no.bdf", error="cli.no-file")
         self.fails(1, "init", "spinnup", says=['did you mean "spinup"'], error="cli.unknown-template")
 
 

@@ -120,7 +120,7 @@ TEST(Bases, FrameOnANodeIsTheClampedBody) {
     EXPECT_LT((on_node.kg_inertial[i] - clamped.kg_inertial[i]).norm(), 1e-8 * clamped.kg_inertial[i].norm()) << i;
   EXPECT_EQ(on_node.locators.size(), clamped.locators.size());
   for (std::size_t e = 0; e < clamped.kg_external.size(); ++e)
-    EXPECT_LT((on_node.kg_external[e] - clamped.kg_external[e]).norm(), 1e-8 * clamped.kg_external[5].norm());
+    EXPECT_LT((on_node.kg_external[e] - clamped.kg_external[e]).norm(), 1e-8 * clamped.kg_external[8].norm());
   EXPECT_EQ(std::count(clamped.kind.begin(), clamped.kind.end(), ModeKind::Constraint), 6);
 }
 
@@ -177,7 +177,7 @@ TEST(Bases, ResidualVectorsAndSelection) {
     const VectorXd load = body.external_load.col(e);
     return load.dot(body.modal_stiffness.ldlt().solve(load));
   };
-  for (const int e : {6, 7}) EXPECT_NEAR(deflect(all, e) / deflect(exact, e), 1, 1e-9);
+  for (const int e : {12, 13}) EXPECT_NEAR(deflect(all, e) / deflect(exact, e), 1, 1e-9);
   spec.select = {5, 1, 4};
   const auto some = reduce(maker.deck, spec);
   ASSERT_EQ(some.num_modes(), 3);

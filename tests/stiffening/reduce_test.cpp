@@ -59,28 +59,46 @@ TEST(Reduce, CantileverRecordIsComplete) {
   EXPECT_EQ(body.dof_map.rows(), 41 * 6);
   EXPECT_EQ(body.full_phi.size(), 0);
   EXPECT_EQ(body.mesh.grid_id.size(), 41u);
-  ASSERT_EQ(body.locators.size(), 6u);
-  ASSERT_EQ(body.kg_external.size(), 6u);
-  EXPECT_GE(body.find_locator(41, 1), 0);
-  EXPECT_EQ(body.locators[3].name, "tip_y");
-  EXPECT_EQ(body.locators[5].name, "push");
+  ASSERT_EQ(body.locators.size(), 9u);
+  ASSERT_EQ(body.kg_external.size(), 9u);
+  for (int d = 1; d <= 6; ++d) EXPECT_EQ(body.find_locator(41, d), d - 1);  // three forces, three moments
+  EXPECT_EQ(body.locators[6].name, "tip_y");
+  EXPECT_EQ(body.locators[8].name, "push");
   // The pattern is twice the unit force at the tip along y.
-  EXPECT_LT((body.kg_external[5] - 2 * body.kg_external[3]).norm(), 1e-9 * body.kg_external[0].norm());
-  EXPECT_LT((body.external_load.col(5) - 2 * body.phi[2].row(1).transpose()).norm(), 1e-12);
+  EXPECT_LT((body.kg_external[8] - 2 * body.kg_external[6]).norm(), 1e-9 * body.kg_external[0].norm());
+  EXPECT_LT((body.external_load.col(8) - 2 * body.phi[2].row(1).transpose()).norm(), 1e-12);
   // The tip is at (8, 0, 0): 2 along y is the force and 16 about z its moment; a mode moves the tip, v along y and w
   // along z, by which the force gets the arm (v, w): moment (-2 w, 0, 2 u).
-  ASSERT_EQ(body.load_resultant.cols(), 6);
-  EXPECT_LT((body.load_resultant.col(5) - (Eigen::VectorXd(6) << 0, 2, 0, 0, 0, 16).finished()).norm(), 1e-12);
-  EXPECT_LT((body.load_resultant.col(4) - Eigen::VectorXd::Unit(6, 5)).norm(), 1e-12);  // a moment at the tip
-  EXPECT_LT((body.load_moment[5].row(0) + 2 * body.phi[2].row(2)).norm(), 1e-12);
-  EXPECT_LT(body.load_moment[5].row(1).norm(), 1e-12);
-  EXPECT_LT((body.load_moment[5].row(2) - 2 * body.phi[2].row(0)).norm(), 1e-12);
-  EXPECT_EQ(body.load_moment[4].norm(), 0);
+  ASSERT_EQ(body.load_resultant.cols(), 9);
+  EXPECT_LT((body.load_resultant.col(8) - (Eigen::VectorXd(6) << 0, 2, 0, 0, 0, 16).finished()).norm(), 1e-12);
+  EXPECT_LT((body.load_resultant.col(7) - Eigen::VectorXd::Unit(6, 5)).norm(), 1e-12);  // a moment at the tip
+  EXPECT_LT((body.load_moment[8].row(0) + 2 * body.phi[2].row(2)).norm(), 1e-12);
+  EXPECT_LT(body.load_moment[8].row(1).norm(), 1e-12);
+  EXPECT_LT((body.load_moment[8].row(2) - 2 * body.phi[2].row(0)).norm(), 1e-12);
+  EXPECT_EQ(body.load_moment[7].norm(), 0);
   // A pull on the tip stiffens: ∫ φ'² dx of the first mode with unit modal mass, 4.64778 / (ρA L²).
   EXPECT_NEAR(body.kg_external[0](0, 0) / (4.6477778 / (1.6154 / 8 * 64)), 1, 1e-3);
   for (const bool computed : body.kg_inertial_computed) EXPECT_TRUE(computed);
   EXPECT_FALSE(body.lumped.empty() || body.consistent.empty() || body.exact.empty());
   EXPECT_EQ(&body.integrals(), &body.exact);
+}
+
+TEST(Reduce, MomentsOfInterfaceNodesMayBeLeftOut) {
+  const auto maker = test::make_cantilever(kSection, 1, 20);
+  auto spec = make_spec(3);
+  spec.interface_nodes = {11, 21};
+  const auto all = reduce(maker.deck, spec);
+  ASSERT_EQ(all.locators.size(), 12u);
+  spec.interface_moments = false;
+  const auto forces = reduce(maker.deck, spec);
+  ASSERT_EQ(forces.locators.size(), 6u);
+  for (const int id : {11, 21}) {
+    EXPECT_LT(forces.find_locator(id, 4), 0);
+    for (int d = 1; d <= 3; ++d) {
+      const auto& with = all.kg_external[static_cast<size_t>(all.find_locator(id, d))];
+      EXPECT_EQ((with - forces.kg_external[static_cast<size_t>(forces.find_locator(id, d))]).norm(), 0);
+    }
+  }
 }
 
 TEST(Reduce, SubsetsAndSelection) {
@@ -129,7 +147,7 @@ TEST(Reduce, FreeBody) {
   EXPECT_LT(body.exact.gamma0.cwiseAbs().maxCoeff(), 1e-8);
   EXPECT_LT(body.exact.gamma1.cwiseAbs().maxCoeff(), 1e-8);
   EXPECT_LT(body.effective_mass.cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_EQ(body.kg_external.size(), 3u);
+  EXPECT_EQ(body.kg_external.size(), 6u);
 }
 
 std::vector<std::string> get_errors(const records::Deck& deck, const BodySpec& spec) {

@@ -24,7 +24,7 @@ for method in ("lumped", "consistent", "exact"):
 
 with h5py.File(path, "r") as f:
     assert f.attrs["format"] == "bough-flexbody", f.attrs["format"]
-    assert f.attrs["format_version"] == "1.0" and f.attrs["bough_version"]
+    assert f.attrs["format_version"] == "1.1" and f.attrs["bough_version"]
     assert f.attrs["source"].shape == (2, 2) and f.attrs["source"][1, 0] == "größe.toml"
     assert f["/integrals"].attrs["method"] == "exact"
     for name, shape in expected.items():

@@ -126,6 +126,9 @@ TEST_P(BodyTest, NodeVelocityAndBiasAreTheRatesOfItsPlace) {
   Vector3d r = points_.p[2] + points_.phi[2] * eta_;
   for (int c = 0; c < 3; ++c) r[c] += 0.5 * eta_.dot(points_.g[2][static_cast<size_t>(c)] * eta_);
   EXPECT_LT((k.r - r).norm(), 1e-14);
+  Vector3d theta = points_.psi[2] * eta_;
+  for (int c = 0; c < 3; ++c) theta[c] += 0.5 * eta_.dot(points_.g_theta[2][static_cast<size_t>(c)] * eta_);
+  EXPECT_LT((k.R_BK - calc_rotation_exp(theta)).norm(), 1e-14);
   // A wrench does the same work through the generalized force as at the node.
   const Vector3d f = random.vector(), t = random.vector();
   VectorXd Q = VectorXd::Zero(n);

@@ -24,7 +24,7 @@ double PointBody::calc_kinetic(const Vector3d& v, const Vector3d& w, const Vecto
 }
 
 PointBody make_point_body(int n, unsigned seed, double second_order_scale) {
-  Random random(seed);
+  Random random(seed), turning(seed + 1000);
   PointBody body;
   body.num_modes = n;
   const int num = n + 6;
@@ -35,6 +35,8 @@ PointBody make_point_body(int n, unsigned seed, double second_order_scale) {
     body.psi.push_back(MatrixXd::NullaryExpr(3, n, [&] { return random(0.5); }));
     body.g.push_back({random.symmetric(n, second_order_scale), random.symmetric(n, second_order_scale),
                       random.symmetric(n, second_order_scale)});
+    body.g_theta.push_back({turning.symmetric(n, second_order_scale), turning.symmetric(n, second_order_scale),
+                            turning.symmetric(n, second_order_scale)});
   }
   const MatrixXd k = random.symmetric(n, 1), d = random.symmetric(n, 0.1);
   body.K = 30 * MatrixXd::Identity(n, n) + 5 * k * k.transpose();
@@ -61,7 +63,7 @@ records::FlexBody PointBody::make_record(const std::string& name) const {
   flex.eigenvalue = K.diagonal();
   flex.frequency_hz = flex.eigenvalue.cwiseSqrt() / 6.283185307179586;
   Vector3d moment = Vector3d::Zero();
-  flex.external_load.resize(n, 3 * num);
+  flex.external_load.resize(n, (g_theta.empty() ? 3 : 6) * num);
   for (int k = 0; k < num; ++k) {
     const auto i = static_cast<size_t>(k);
     const double m = mass[i];
@@ -105,6 +107,14 @@ records::FlexBody PointBody::make_record(const std::string& name) const {
       flex.locators.push_back({name + std::to_string(101 + k) + "xyz"[a], 101 + k, a + 1});
       flex.kg_external.push_back(-g[i][static_cast<size_t>(a)]);
       flex.external_load.col(3 * k + a) = phi[i].row(a).transpose();
+    }
+  }
+  for (size_t i = 0; i < g_theta.size(); ++i) {
+    const int id = flex.node_id[i];
+    for (int a = 0; a < 3; ++a) {
+      flex.locators.push_back({name + std::to_string(id) + "_r" + "xyz"[a], id, a + 4});
+      flex.external_load.col(static_cast<Eigen::Index>(flex.kg_external.size())) = psi[i].row(a).transpose();
+      flex.kg_external.push_back(-g_theta[i][static_cast<size_t>(a)]);
     }
   }
   flex.interface_nodes = flex.node_id;

@@ -32,13 +32,13 @@ struct PointBody {
   int num_modes = 0;
   std::vector<double> mass;
   std::vector<Vector3d> p;
-  std::vector<MatrixXd> phi, psi;          ///< [k] 3 x n
-  std::vector<std::array<MatrixXd, 3>> g;  ///< [k][a] n x n, symmetric
+  std::vector<MatrixXd> phi, psi;                   ///< [k] 3 x n
+  std::vector<std::array<MatrixXd, 3>> g, g_theta;  ///< [k][a] n x n, symmetric; of the rotation: may be empty
   MatrixXd K, D;
 
   /// Kinetic energy of the points themselves (to all orders in η).
   double calc_kinetic(const Vector3d& v, const Vector3d& w, const VectorXd& eta, const VectorXd& eta_dot) const;
-  /// Output nodes have the ids 101, 102, ...; all have locators.
+  /// Output nodes have the ids 101, 102, ...; all have locators of forces, and of moments when there is a g_theta.
   records::FlexBody make_record(const std::string& name) const;
 };
 

@@ -216,6 +216,39 @@ TEST_F(BuildTest, MissingLocatorsAtAnAttachment) {
   EXPECT_EQ(try_build(), "");
 }
 
+// A file without the rotations of node 102: that of a grid of solids.
+TEST_F(BuildTest, NodeWithoutRotation) {
+  auto& flex = flex_["arm.h5"];
+  for (size_t e = flex.locators.size(); e-- > 0;) {
+    if (flex.locators[e].direction <= 3) continue;
+    flex.locators.erase(flex.locators.begin() + static_cast<long>(e));
+    flex.kg_external.erase(flex.kg_external.begin() + static_cast<long>(e));
+  }
+  EXPECT_EQ(try_build(), "");  // no locators of moments: first order, as version 1.0
+  flex.phi[1].bottomRows<3>().setZero();
+  EXPECT_EQ(try_build(), "");  // a force needs no rotation
+  spec_.forces[0].kind = records::ForceKind::Moment;
+  expect_error("system.node-without-rotation", "force 'push' needs the rotation of node 102 of body 'arm'");
+  EXPECT_THAT(try_build(), ::testing::HasSubstr("RBE2 or RBE3"));
+  spec_.forces.clear();
+  spec_.hinges[1].child_node = 102;
+  expect_error("system.node-without-rotation", "hinge 'root'");
+  spec_.hinges[1].type = HingeType::Spherical;
+  EXPECT_EQ(try_build(), "");  // a ball joint passes on no moment
+  spec_.hinges[1].child_position = {0.1, 0, 0};
+  expect_error("system.node-without-rotation", "hinge 'root'");
+  spec_.hinges[1].child_position.setZero();
+  spec_.hinges[1].stiffness = {1, 1, 1};
+  expect_error("system.node-without-rotation", "hinge 'root'");
+}
+
+TEST_F(BuildTest, IntegralsOfNoMassDistribution) {
+  EXPECT_FALSE(diagnostics_.has("system.inconsistent-integrals"));
+  flex_["arm.h5"].modal_mass *= 0.5;  // less than the shapes' own turning allows
+  EXPECT_THAT(try_build(), ::testing::HasSubstr("system.inconsistent-integrals"));
+  EXPECT_EQ(diagnostics_.num_errors(), 0);
+}
+
 TEST_F(BuildTest, MissingBodyFile) {
   flex_.clear();
   expect_error("system.missing-body-file", "needs the file 'arm.h5'");
