@@ -53,6 +53,11 @@ Body Body::make_flexible(const records::FlexBody& flex, int num_modes, bool stif
   body.gamma1_ = integrals.gamma1.leftCols(n);
   body.M_ = flex.modal_mass.topLeftCorner(n, n);
   body.K_ = flex.modal_stiffness.topLeftCorner(n, n);
+  // Stiffening by the motion comes with the motion: what of it the preload put into the stiffness goes out.
+  if (stiffening)
+    for (std::size_t i = 0; i < flex.kg_inertial.size() && flex.preload_A_I.size() > 0; ++i)
+      if (const double a = flex.preload_A_I(static_cast<Eigen::Index>(i)); a != 0)
+        body.K_ -= a * flex.kg_inertial[i].topLeftCorner(n, n);
   body.D_ = MatrixXd::Zero(n, n);
   if (!damping_ratios.empty()) {
     for (int j = 0; j < n; ++j) {
