@@ -7,7 +7,8 @@
 #include <optional>
 #include <set>
 
-#include "bough/fe/assembly.hpp"
+#include "bough/fe/preload.hpp"
+#include "solution.hpp"
 
 namespace bough::cli {
 
@@ -30,6 +31,10 @@ std::vector<BucklingCases> list_buckling_cases(const records::Deck& deck, int as
     for (const auto& s : deck.subcases) {
       if (!is_loaded(s) || (b.statsub != 0 && s.id != b.statsub)) continue;
       if (b.statsub == 0 && asked != 0 && b.id != asked && s.id != asked) continue;
+      // With a preload alone the load to scale is another one, if there is another.
+      const auto is_other = [&](const auto& other) { return is_loaded(other) && other.id != b.preload; };
+      if (b.statsub == 0 && s.id == b.preload && std::any_of(deck.subcases.begin(), deck.subcases.end(), is_other))
+        continue;
       const bool is_asked = asked == 0 || b.id == asked || s.id == asked;
       if (is_asked && seen.insert({s.id, b.method, b.spc, b.mpc, b.suport1}).second) cases.push_back({s, b});
       break;
@@ -54,13 +59,24 @@ std::string describe_load(const records::Subcase& statics) {
   return text + (statics.id > 0 ? fmt::format(" (subcase {})", statics.id) : "");
 }
 
+records::Subcase get_preloaded(const records::Deck& deck, const BucklingCases& cases) {
+  auto subcase = cases.buckling;
+  // STATSUB of a deck for modes, read for its load factors: what it names is scaled.
+  if (subcase.preload == subcase.statsub && !is_buckling_solution(deck)) subcase.preload = 0;
+  return subcase;
+}
+
 modal::EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases, fe::ModelOptions model_options,
                                  const fe::Model& model, const modal::EigenOptions& eigen, Diagnostics& diagnostics) {
   // The static subcase may be held in another way, as for antisymmetric buckling under a symmetric load.
   std::optional<fe::Model> own;
   const auto& b = cases.buckling;
   const bool is_same = (b.spc == 0 && b.mpc == 0) || (b.spc == cases.statics.spc && b.mpc == cases.statics.mpc);
-  if (!is_same) {
+  // The load to scale acts on the preloaded structure, unless its subcase names a preload of its own.
+  const int preload = cases.statics.preload;
+  const bool is_own = preload != 0 && preload != get_preloaded(deck, cases).preload;
+  if (is_own) model_options.prestress = fe::calc_subcase_prestress(deck, model_options, cases.statics, diagnostics);
+  if (!is_same || is_own) {
     model_options.subcase = cases.statics.id;
     own.emplace(fe::Model::build(deck, model_options, diagnostics));
   }

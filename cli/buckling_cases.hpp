@@ -18,7 +18,11 @@ std::vector<BucklingCases> list_buckling_cases(const records::Deck& deck, int as
 /// The load that the factors multiply: "load factors of LOAD 3, TEMPERATURE 5 (subcase 1)".
 std::string describe_load(const records::Subcase& statics);
 
-/// The lowest load factors by magnitude on `model`, which is held as the buckling subcase says; with V1 and V2 (min_hz,
+/// The buckling subcase with the preload that its load factors count from: STATSUB(PRELOAD), 0 for none.
+records::Subcase get_preloaded(const records::Deck& deck, const BucklingCases& cases);
+
+/// The lowest load factors by magnitude on `model`, which is held and preloaded as the buckling subcase says
+/// (and `model_options` too); with V1 and V2 (min_hz,
 /// max_hz of `eigen`) as many between them, though others are nearer to zero.
 modal::EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases, fe::ModelOptions model_options,
                                  const fe::Model& model, const modal::EigenOptions& eigen, Diagnostics& diagnostics);

@@ -6,6 +6,7 @@
 
 #include "bough/fe/assembly.hpp"
 #include "bough/fe/factor.hpp"
+#include "bough/fe/preload.hpp"
 #include "bough/formats/hdf5/files.hpp"
 #include "bough/formats/nastran/reader.hpp"
 #include "bough/formats/records/params.hpp"
@@ -64,7 +65,7 @@ int finish(const CheckOptions& options, const Console& console, const std::strin
 void check_model(const CheckOptions& options, const records::Deck& deck, fe::ModelOptions model_options,
                  std::string& text, nlohmann::json& json, Diagnostics& diagnostics) {
   model_options.uses_enforced = true;
-  warn_preload(deck, diagnostics);
+  fe::check_preloads(deck, diagnostics);
   note_solution(deck, diagnostics);
   const auto model = fe::Model::build(deck, model_options, diagnostics);
   if (diagnostics.num_errors() > 0) return;

@@ -2,6 +2,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include "bough/fe/model/sets.hpp"
+#include "bough/fe/preload.hpp"
+
 namespace bough::cli {
 
 void add_model_options(CLI::App& verb, DeckModelOptions& options) {
@@ -24,6 +27,12 @@ fe::ModelOptions make_model_options(const DeckModelOptions& options) {
   if (options.mass == "lumped") model.mass_kind = fe::MassKind::Lumped;
   if (options.mass == "consistent") model.mass_kind = fe::MassKind::Consistent;
   return model;
+}
+
+std::shared_ptr<const fe::Prestress> calc_prestress(const records::Deck& deck, const fe::ModelOptions& options,
+                                                    Diagnostics& diagnostics) {
+  Diagnostics unknown;  // Model::build reports a subcase that is not there
+  return fe::calc_subcase_prestress(deck, options, fe::select_subcase(deck, options.subcase, unknown), diagnostics);
 }
 
 }  // namespace bough::cli

@@ -21,4 +21,8 @@ struct DeckModelOptions {
 void add_model_options(CLI::App& verb, DeckModelOptions& options);
 fe::ModelOptions make_model_options(const DeckModelOptions& options);
 
+/// The stress that STATSUB of the subcase of `options` asks for; nullptr for none.
+std::shared_ptr<const fe::Prestress> calc_prestress(const records::Deck& deck, const fe::ModelOptions& options,
+                                                    Diagnostics& diagnostics);
+
 }  // namespace bough::cli

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "bough/fe/assembly.hpp"
+#include "bough/fe/preload.hpp"
 #include "bough/fe/static_case.hpp"
 #include "bough/formats/hdf5/files.hpp"
 #include "bough/modal/eigen.hpp"
@@ -212,9 +213,10 @@ std::vector<Task> choose_tasks(const ModesOptions& options, const records::Deck&
   if (options.model.subcase != 0) return {{options.model.subcase, {}}};
   static const std::set<std::string> with_modes{"", "103", "3", "SEMODES", "MODES"};
   if (with_modes.count(deck.sol) == 0) return {{0, {}}};
-  std::set<std::array<int, 3>> seen;
+  std::set<std::array<int, 4>> seen;
   for (const auto& subcase : deck.subcases)
-    if (subcase.id > 0 && subcase.method > 0 && seen.insert({subcase.method, subcase.spc, subcase.mpc}).second)
+    if (subcase.id > 0 && subcase.method > 0 &&
+        seen.insert({subcase.method, subcase.spc, subcase.mpc, subcase.preload}).second)
       chosen.push_back({subcase.id, {}});
   return chosen.empty() ? std::vector<Task>{Task{}} : chosen;
 }
@@ -233,7 +235,10 @@ struct Solved {
 };
 
 Solved solve_task(const ModesOptions& options, const records::Deck& deck, const Task& task,
-                  const fe::ModelOptions& model_options, Console& console, Diagnostics& diagnostics) {
+                  fe::ModelOptions model_options, Console& console, Diagnostics& diagnostics) {
+  model_options.prestress =
+      task.buckling ? fe::calc_subcase_prestress(deck, model_options, get_preloaded(deck, *task.buckling), diagnostics)
+                    : calc_prestress(deck, model_options, diagnostics);
   auto model = fe::Model::build(deck, model_options, diagnostics);
   diagnostics.throw_if_errors();
   if (fe::has_damping(model))
@@ -270,7 +275,6 @@ int run_modes(const ModesOptions& options) {
   if (is_buckling_solution(deck) && !options.buckling)
     diagnostics.note("cli.buckling-deck", deck.locate({}), "the deck asks for buckling (SOL " + deck.sol + ")",
                      "these are its normal modes; --buckling gives the load factors");
-  demand_no_preload(deck, options.buckling);
   note_solution(deck, diagnostics);
   nlohmann::json json;
   std::string text, written;

@@ -45,13 +45,13 @@ struct ReduceVerbOptions : CommonOptions {
   std::vector<std::string> matrices;
 };
 
-/// "[NAME=]NODE:DIRECTIONS" or "[NAME=]set:ID".
+/// "[NAME=]NODE:DIRECTIONS", "[NAME=]set:ID" or "[NAME=]temperature:ID".
 records::ExternalLoadSpec parse_load(const std::string& text) {
   const auto fail = [&]() -> InputError {
     return {"cli.bad-load",
             {},
             "cannot read --load \"" + text + "\"",
-            "write NODE:DIRECTIONS such as 41:2 or 41:123, or set:ID; NAME= may stand before"};
+            "write NODE:DIRECTIONS such as 41:2 or 41:123, set:ID or temperature:ID; NAME= may stand before"};
   };
   records::ExternalLoadSpec load;
   std::string rest = text;
@@ -68,6 +68,8 @@ records::ExternalLoadSpec parse_load(const std::string& text) {
   if (!is_number(after)) throw fail();
   if (before == "set") {
     load.load_set = std::stoi(after);
+  } else if (before == "temperature") {
+    load.temperature_set = std::stoi(after);
   } else {
     if (!is_number(before)) throw fail();
     load.node = std::stoi(before);
@@ -181,7 +183,6 @@ Reduced reduce_deck(const records::BodySpec& spec, const stiffening::ReduceOptio
   model_options.subcase = spec.subcase;
   model_options.ignore_cards = spec.ignore_cards;
   const auto deck = read_deck_or_throw(spec.deck, model_options, diagnostics);
-  demand_no_preload(deck, false);
   note_solution(deck, diagnostics);
   return {stiffening::reduce(deck, spec, options, diagnostics), deck.files, {}};
 }
@@ -252,7 +253,8 @@ void add_reduce(CLI::App& app, Action& action) {
   verb->add_option("--interface", o->interface_nodes,
                    "Grids where hinges or forces attach: six locators each (forces, moments), e.g. 1,41")
       ->delimiter(',');
-  verb->add_option("--load", o->loads, "Unit loads NODE:DIRECTIONS or a load set set:ID, with K_G; may be repeated")
+  verb->add_option("--load", o->loads, "Unit loads NODE:DIRECTIONS, a load set set:ID or a temperature set temperature:ID, with K_G; may be "
+                   "repeated")
       ->allow_extra_args(false);
   verb->add_option("--mass", o->mass, "Mass matrix: deck, lumped or consistent")
       ->check(CLI::IsMember({"deck", "lumped", "consistent"}));

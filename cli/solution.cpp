@@ -55,13 +55,6 @@ const OtherSolution* find_other_solution(const std::string& sol) {
   return found == all.end() ? nullptr : &found->second;
 }
 
-const records::UnusedCard* find_preload(const records::Deck& deck, bool is_buckling) {
-  const auto found = std::find_if(deck.unused.begin(), deck.unused.end(), [&](const auto& card) {
-    return card.name == "STATSUB(PRELOAD)" || (!is_buckling && card.name == "STATSUB");
-  });
-  return found == deck.unused.end() ? nullptr : &*found;
-}
-
 }  // namespace
 
 bool is_buckling_solution(const records::Deck& deck) {
@@ -82,20 +75,6 @@ void demand_static_solution(const records::Deck& deck, bool is_linear, Diagnosti
                      fmt::format("SOL {} is {}, found no --linear", deck.sol, other->name),
                      "bough static --linear gives the linear solution of the cards as they stand");
   note_solution(deck, diagnostics);
-}
-
-void demand_no_preload(const records::Deck& deck, bool is_buckling) {
-  if (const auto* card = find_preload(deck, is_buckling))
-    throw InputError("cli.preload", deck.locate(card->first),
-                     card->name + " asks for the structure under a preload, which is not computed",
-                     "remove it for the structure without the load");
-}
-
-void warn_preload(const records::Deck& deck, Diagnostics& diagnostics) {
-  if (const auto* card = find_preload(deck, false))
-    diagnostics.warning("cli.preload", deck.locate(card->first),
-                        card->name + " asks for the structure under a preload, which is not computed",
-                        "modes and reduce refuse the deck; remove it for the structure without the load");
 }
 
 }  // namespace bough::cli

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the deck's SOL and STATSUB ask for beyond linear statics, modes and buckling.
+/// \file What the deck's SOL asks for beyond linear statics, modes and buckling.
 #include "bough/formats/records/deck.hpp"
 
 namespace bough::cli {
@@ -12,9 +12,5 @@ void note_solution(const records::Deck& deck, Diagnostics& diagnostics);
 /// Static solutions of a SOL that is nonlinear in its statics only when asked for: throws
 /// InputError("cli.nonlinear-static") unless `is_linear`, else notes as note_solution.
 void demand_static_solution(const records::Deck& deck, bool is_linear, Diagnostics& diagnostics);
-
-/// A preload that the case control asks for, in modes and bodies (a warning in check): cli.preload.
-void demand_no_preload(const records::Deck& deck, bool is_buckling);
-void warn_preload(const records::Deck& deck, Diagnostics& diagnostics);
 
 }  // namespace bough::cli

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "bough/fe/preload.hpp"
 #include "bough/fe/static_case.hpp"
 #include "bough/formats/hdf5/files.hpp"
 #include "console.hpp"
@@ -81,7 +82,7 @@ class CaseSolver {
 
  private:
   void prepare(const records::Subcase& subcase, Diagnostics& diagnostics) {
-    const std::array<int, 3> held{subcase.spc, subcase.mpc, subcase.suport1};
+    const std::array<int, 4> held{subcase.spc, subcase.mpc, subcase.suport1, subcase.preload};
     if (held_ == held && (!model_ || model_->is_held_for(deck_, subcase.load))) {
       if (failure_) std::rethrow_exception(failure_);
       return;
@@ -92,6 +93,8 @@ class CaseSolver {
     try {
       Diagnostics own;
       model_options_.subcase = subcase.id;
+      model_options_.prestress = nullptr;
+      model_options_.prestress = fe::calc_subcase_prestress(deck_, model_options_, subcase, own);
       auto model = fe::Model::build(deck_, model_options_, own);
       const auto relief = fe::read_inertia_relief(deck_, own);
       auto fdofs = fe::choose_suport(model, deck_, relief, own);
@@ -111,7 +114,7 @@ class CaseSolver {
 
   const records::Deck& deck_;
   fe::ModelOptions model_options_;
-  std::optional<std::array<int, 3>> held_;  ///< SPC, MPC and SUPORT1 of what is kept
+  std::optional<std::array<int, 4>> held_;  ///< SPC, MPC, SUPORT1 and preload of what is kept
   std::exception_ptr failure_;              ///< what came of them
   std::optional<fe::Model> model_;
   std::unique_ptr<fe::StaticSolver> solver_;

@@ -181,8 +181,14 @@ VectorXd gather_rows(const VectorXd& x, const std::vector<int>& rows) {
   return result;
 }
 
-/// Σ_e of element matrices times X, over ranks.
-MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen::Ref<const MatrixXd>& X) {
+const std::vector<QuadraticForm>& get_forms(const Model& model) {
+  static const std::vector<QuadraticForm> none;
+  return model.prestress() ? model.prestress()->forms : none;
+}
+
+/// Σ_e of element matrices and of forms times X, over ranks.
+MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen::Ref<const MatrixXd>& X,
+                    const std::vector<QuadraticForm>& forms = {}) {
   BOUGH_DEMAND(X.rows() == model.num_gdofs());
   MatrixXd Y = MatrixXd::Zero(X.rows(), X.cols());
   MatrixXd K_e, X_e, Y_e;
@@ -198,6 +204,9 @@ MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen
     Y_e.noalias() = K_e * X_e;
     for (int i = 0; i < n; ++i) Y.row(gdofs[i]) += Y_e.row(i);
   }
+  const MpiWorld world = initialize_petsc();
+  for (size_t k = static_cast<size_t>(world.rank); k < forms.size(); k += static_cast<size_t>(world.size))
+    Y(forms[k].gdofs, Eigen::all) += calc_form(forms[k], 0) * X(forms[k].gdofs, Eigen::all);
   sum_over_ranks(Y);
   return Y;
 }
@@ -205,7 +214,9 @@ MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen
 }  // namespace
 
 PetscMat assemble_stiffness(const Model& model, DofSet set) {
-  return assemble(model, set, [](const Element& e, Eigen::Ref<MatrixXd> K) { e.add_stiffness(1, K); });
+  return assemble(
+      model, set, [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); },
+      get_forms(model));
 }
 
 PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind) {
@@ -247,7 +258,17 @@ MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<con
 
 MatrixXd calc_stiffness_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g) {
   return calc_times(
-      model, [](const Element& e, Eigen::Ref<MatrixXd> K) { e.add_stiffness(1, K); }, X_g);
+      model, [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); }, X_g, get_forms(model));
+}
+
+MatrixXd calc_prestress_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g) {
+  const auto add = [&model](const Element& e, Eigen::Ref<MatrixXd> K) {
+    MatrixXd elastic = MatrixXd::Zero(K.rows(), K.cols());
+    e.add_stiffness(-1, elastic);
+    model.add_stiffness(e, K);
+    K += elastic;
+  };
+  return calc_times(model, add, X_g, get_forms(model));
 }
 
 MatrixXd calc_damping_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g) {

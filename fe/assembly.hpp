@@ -7,7 +7,7 @@ namespace bough::fe {
 
 enum class DofSet { Free, Global };  ///< f-set (TᵀKT) or g-set
 
-/// K, or M (times WTMASS), on PETSC_COMM_WORLD; MATAIJ, zeros left out except on the diagonal; the same to the last bit
+/// K (with K_G0 of a prestressed model), or M (times WTMASS), on PETSC_COMM_WORLD; MATAIJ, zeros left out except on the diagonal; the same to the last bit
 /// on any number of ranks. O(elements).
 PetscMat assemble_stiffness(const Model& model, DofSet set);
 PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind);
@@ -27,6 +27,8 @@ PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const Appl
 MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g);
 /// The same with K.
 MatrixXd calc_stiffness_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g);
+/// The same with the share of K that is K_G0 of the prestress.
+MatrixXd calc_prestress_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g);
 /// The same with B.
 MatrixXd calc_damping_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g);
 /// Σ (g + GE of the element) K_e X, the structural damping of stiffness; direct matrices (K2GG) have g alone.

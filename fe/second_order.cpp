@@ -96,16 +96,21 @@ MatrixXd calc_residual(const Model& model, const std::vector<int>& ldofs, const 
       gdofs.push_back(first + c);
     }
   MatrixXd R = F(gdofs, Eigen::all), K;
+  const auto subtract = [&](const std::vector<int>& own, const MatrixXd& stiffness) {
+    if (stiffness.isZero(0)) return;
+    const MatrixXd f = stiffness * U(own, Eigen::all);
+    for (std::size_t i = 0; i < own.size(); ++i)
+      if (const int r = row[static_cast<std::size_t>(own[i])]; r >= 0) R.row(r) -= f.row(static_cast<Eigen::Index>(i));
+  };
   for (const auto& element : model.elements()) {
     const auto& own = element->gdofs();
     if (std::none_of(own.begin(), own.end(), [&](int g) { return row[static_cast<std::size_t>(g)] >= 0; })) continue;
     K.setZero(element->num_dofs(), element->num_dofs());
-    element->add_stiffness(1, K);
-    if (K.isZero(0)) continue;
-    const MatrixXd f = K * U(own, Eigen::all);
-    for (int i = 0; i < element->num_dofs(); ++i)
-      if (const int r = row[static_cast<std::size_t>(own[static_cast<std::size_t>(i)])]; r >= 0) R.row(r) -= f.row(i);
+    model.add_stiffness(*element, K);
+    subtract(own, K);
   }
+  if (model.prestress())
+    for (const auto& form : model.prestress()->forms) subtract(form.gdofs, calc_form(form, 0));
   MatrixXd result(ldofs.size(), F.cols());
   for (std::size_t i = 0; i < ldofs.size(); ++i) {
     const Node& node = *std::prev(nodes.upper_bound(ldofs[i]))->second;
@@ -121,7 +126,7 @@ MatrixXd calc_residual(const Model& model, const std::vector<int>& ldofs, const 
 
 }  // namespace
 
-AppliedLoads make_loads(const AppliedLoad& load) { return {load.F, load.A_I, {load.arms}}; }
+AppliedLoads make_loads(const AppliedLoad& load) { return {load.F, load.A_I, {load.arms}, {load.followers}}; }
 
 std::vector<QuadraticForm> calc_second_order(const Model& model, const AppliedLoads& loads,
                                              const Eigen::Ref<const MatrixXd>& U) {
@@ -133,6 +138,11 @@ std::vector<QuadraticForm> calc_second_order(const Model& model, const AppliedLo
     for (const auto& arm : loads.arms[c])
       grids.find(arm.first_rotation).col(static_cast<Eigen::Index>(c)) += calc_arm_weights(arm.force, arm.arm);
   grids.move_to(forms);
+  for (std::size_t c = 0; c < loads.followers.size(); ++c)
+    for (const auto& follower : loads.followers[c]) {
+      forms.push_back({follower.gdofs, follower.L, MatrixXd::Zero(follower.weights.rows(), U.cols())});
+      forms.back().weights.col(static_cast<Eigen::Index>(c)) = follower.weights.col(0);
+    }
   if (!model.links().empty())
     for (auto& form : model.links().calc_forms(calc_residual(model, model.links().dependents(), loads.F, U)))
       forms.push_back(std::move(form));

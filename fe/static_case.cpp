@@ -148,7 +148,7 @@ std::vector<records::ElementForces> calc_element_forces(const Model& model, cons
         static_cast<const Beam&>(element).add_load_forces(own->second, force);
       block.force.row(r) = force.transpose();
       MatrixXd K = MatrixXd::Zero(u.size(), u.size());
-      element.add_stiffness(1, K);
+      model.add_stiffness(element, K);
       energy(r, 0) = 0.5 * u.dot(K * u);
       if (heated) energy(r, 0) += heated->energy - u.dot(heated->load);
     }

@@ -1,5 +1,6 @@
 #pragma once
 /// \file What a body file says of basis, frame and damping, in the terms of modal/bases.
+#include "bough/fe/model/temperatures.hpp"
 #include "bough/formats/records/body_spec.hpp"
 #include "bough/formats/records/deck.hpp"
 #include "bough/modal/bases/basis.hpp"
@@ -14,6 +15,7 @@ struct BodyLoad {
   std::string group;  ///< the name in the body file; "" for the translations of the interface nodes
   records::Locator locator;
   fe::AppliedLoad load;
+  fe::InitialForces initial;  ///< of a temperature set
 };
 
 /// Reports reduce.no-modes, reduce.bad-basis, reduce.unknown-load.

@@ -83,7 +83,7 @@ void Reduction::add_mechanism_error(const std::string& what) {
                        "complete the SPC set and select it in the case control, or use frame = \"free\" (--free)");
 }
 
-/// Twice where the origin is a node or the mass centre: the first model says where that is.
+/// Twice where the origin is a node or the mass centre, which the first model knows, and for a preload.
 fe::Model Reduction::build_model() {
   const auto& elements = options_.elements ? options_.elements : fe::make_elements;
   auto options = make_model_options();
@@ -96,8 +96,8 @@ fe::Model Reduction::build_model() {
     options.origin = model.node(model.find_node(spec_.origin_node)).x;
   else if (spec_.origin_at_mass_centre)
     options.origin = fe::calc_mass_properties(model, model.mass_kind(), Eigen::Vector3d::Zero()).cg;
-  else
-    return model;
+  options.prestress = calc_prestress(options);
+  if (!options.origin && !options.prestress) return model;
   Diagnostics reported;
   return fe::Model::build(deck_, options, elements, reported);
 }
@@ -106,6 +106,7 @@ FlexBody Reduction::run() {
   check_spec();
   report("model");
   const auto model = build_model();
+  if (model.prestress()) body_.preload = model.prestress()->name;
   set_rigid_part(model);
 
   // The factor first: of a mechanism it names the dofs, which the modes could not.
@@ -123,6 +124,7 @@ FlexBody Reduction::run() {
   set_integrals(model);
   report("static solutions");
   set_stiffening(model, solve);
+  set_preload(model);
   return std::move(body_);
 }
 

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "bough/base/rotation.hpp"
+#include "bough/fe/static_case.hpp"
 
 namespace bough::stiffening {
 
@@ -33,10 +34,15 @@ void Reduction::make_loads(const fe::Model& model) {
   for (std::size_t i = 0; i < spec_.loads.size(); ++i) {
     const auto& load = spec_.loads[i];
     const std::string name = load.name.empty() ? "load" + std::to_string(i + 1) : load.name;
-    if (load.load_set > 0) {
+    if (load.load_set > 0 || load.temperature_set > 0) {
       BodyLoad& pattern = loads_.emplace_back();
       pattern.group = pattern.locator.name = name;
-      pattern.load = model.calc_applied_load(deck_, load.load_set, diagnostics_);
+      records::Subcase sets;
+      sets.load = load.load_set;
+      sets.temperature = load.temperature_set;
+      auto both = fe::calc_static_load(model, deck_, sets, diagnostics_);
+      pattern.initial = std::move(both.initial);
+      pattern.load = std::move(both);
       continue;
     }
     for (const int d : load.directions)
@@ -128,9 +134,11 @@ void Reduction::set_stiffening(const fe::Model& model, const StaticSolve& solve)
   all.A_I = MatrixXd::Zero(records::kNumInertialLoads, all.F.cols());
   for (Eigen::Index c = 0; c < num_inertial; ++c) all.A_I(inertial[static_cast<std::size_t>(c)], c) = 1;
   all.arms.resize(inertial.size());
+  all.followers.resize(inertial.size());
   for (std::size_t e = 0; e < loads_.size(); ++e) {
     all.A_I.col(num_inertial + static_cast<Eigen::Index>(e)) = loads_[e].load.A_I;
     all.arms.push_back(loads_[e].load.arms);
+    all.followers.push_back(loads_[e].load.followers);
   }
 
   const MatrixXd U = solve(all.F);
@@ -142,6 +150,9 @@ void Reduction::set_stiffening(const fe::Model& model, const StaticSolve& solve)
     body_.kg_inertial[inertial[c]] = std::move(K_G[c]);
     body_.kg_inertial_computed[inertial[c]] = true;
   }
+  for (std::size_t e = 0; e < loads_.size(); ++e)
+    if (!loads_[e].initial.of.empty())
+      add_thermal_stiffness(model, e, K_G[static_cast<std::size_t>(num_inertial) + e]);
   body_.kg_external.assign(std::make_move_iterator(K_G.begin() + num_inertial), std::make_move_iterator(K_G.end()));
 }
 

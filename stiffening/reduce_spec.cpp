@@ -44,12 +44,16 @@ void Reduction::check_spec() {
     diagnostics_.warning("reduce.support-unused", where(), "support is given but a node carries the frame",
                          "that node supports the body");
   check_damping(spec_, where(), diagnostics_);
+  if (spec_.preload && options_.elements)
+    diagnostics_.error("reduce.bad-preload", spec_.preload->at,
+                       "a preload is given with the matrices of another program, which do not tell their stress",
+                       "let that program add the geometric stiffness of the preload to K");
   diagnostics_.throw_if_errors();
 }
 
 fe::ModelOptions Reduction::make_model_options() const {
   fe::ModelOptions options;
-  options.subcase = spec_.subcase;
+  options.subcase = choose_subcase();
   options.ignore_spc = is_free();
   options.origin = spec_.origin;
   options.ignore_cards = spec_.ignore_cards;
@@ -73,7 +77,7 @@ void Reduction::check_nodes(const fe::Model& model) {
   for (const int id : spec_.support) check_node(model, id, "support", {});
   for (const int id : spec_.frame_nodes) check_node(model, id, "frame_nodes", {});
   for (const auto& load : spec_.loads) {
-    if (load.load_set > 0) continue;
+    if (load.load_set > 0 || load.temperature_set > 0) continue;
     check_node(model, load.node, "load \"" + load.name + "\"", load.at);
     if (load.directions.empty() ||
         std::any_of(load.directions.begin(), load.directions.end(), [](int d) { return d < 1 || d > 6; }))

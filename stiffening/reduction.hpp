@@ -25,6 +25,10 @@ class Reduction {
   void check_nodes(const fe::Model& model);
   void check_node(const fe::Model& model, int id, const std::string& what, const SourceLocation& at);
   fe::ModelOptions make_model_options() const;
+  int choose_subcase() const;
+  std::shared_ptr<const fe::Prestress> calc_prestress(const fe::ModelOptions& options);
+  void set_preload(const fe::Model& model);
+  void add_thermal_stiffness(const fe::Model& model, std::size_t load, MatrixXd& K_G) const;
   void set_rigid_part(const fe::Model& model);
   std::vector<int> choose_columns(int available, const std::string& whose);
   void check_rigid(const modal::bases::Basis& basis);

@@ -4,6 +4,8 @@
 
 #include <Eigen/Dense>
 
+#include "bough/fe/model/links.hpp"
+
 namespace bough::fe {
 
 using Vector12d = Eigen::Matrix<double, 12, 1>;
@@ -18,6 +20,8 @@ struct AppliedLoad {
   Eigen::VectorXd F;                  ///< num_gdofs, basic: everything
   Vector12d A_I = Vector12d::Zero();  ///< of the accelerated frame whose inertial load is in F
   std::vector<ArmLoad> arms;          ///< on the ends of offset beams
+  /// Pressures that turn with their faces (PARAM,FOLLOWK): their stiffness, one load.
+  std::vector<QuadraticForm> followers;
 };
 
 }  // namespace bough::fe

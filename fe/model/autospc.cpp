@@ -46,22 +46,17 @@ void add_noise(const VectorXd& sizes, ElementTransform& transform, const std::ve
   }
 }
 
-NodeBlocks calc_node_blocks(const std::vector<Node>& nodes, const std::vector<std::unique_ptr<const Element>>& elements,
-                            const SparseRows& T0, const std::vector<int>& gdof_node, const std::vector<int>& fdof_block,
+NodeBlocks calc_node_blocks(const Model& model, const std::vector<int>& gdof_node, const std::vector<int>& fdof_block,
                             const std::vector<int>& fdof_slot) {
+  const auto& nodes = model.nodes();
   const size_t num_blocks = 2 * nodes.size();
   NodeBlocks result{std::vector<Matrix3d>(num_blocks, Matrix3d::Zero()), std::vector<double>(num_blocks, 0)};
   auto& blocks = result.K;
   ElementTransform transform;
   MatrixXd K_e;
-  for (const auto& element : elements) {
-    const int n = element->num_dofs();
-    K_e.setZero(n, n);
-    element->add_stiffness(1, K_e);
-    transform.set(T0, element->gdofs());
+  const auto add = [&](const MatrixXd& K) {
+    const MatrixXd& K_f = transform.project(K);
     const auto& columns = transform.columns();
-    add_noise(calc_sizes(*element, nodes, gdof_node, K_e), transform, fdof_block, result.noise);
-    const MatrixXd& K_f = transform.project(K_e);
     for (size_t i = 0; i < columns.size(); ++i)
       for (size_t j = i; j < columns.size() && j < i + 6; ++j) {
         if (fdof_block[columns[i]] != fdof_block[columns[j]]) continue;
@@ -70,16 +65,28 @@ NodeBlocks calc_node_blocks(const std::vector<Node>& nodes, const std::vector<st
         block(a, b) += K_f(i, j);
         if (a != b) block(b, a) += K_f(i, j);
       }
+  };
+  for (const auto& element : model.elements()) {
+    const int n = element->num_dofs();
+    K_e.setZero(n, n);
+    model.add_stiffness(*element, K_e);
+    transform.set(model.T(), element->gdofs());
+    add_noise(calc_sizes(*element, nodes, gdof_node, K_e), transform, fdof_block, result.noise);
+    add(K_e);
   }
   for (double& noise : result.noise) noise = std::sqrt(noise);
+  if (model.prestress())
+    for (const auto& form : model.prestress()->forms) {
+      transform.set(model.T(), form.gdofs);
+      add(calc_form(form, 0));
+    }
   return result;
 }
 
 }  // namespace
 
-std::vector<AutospcEntry> find_singular_dofs(const std::vector<Node>& nodes,
-                                             const std::vector<std::unique_ptr<const Element>>& elements,
-                                             const SparseRows& T0, const std::vector<int>& fdof_ldof, double epsilon) {
+std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vector<int>& fdof_ldof, double epsilon) {
+  const auto& nodes = model.nodes();
   // A scalar point is a block of one translation.
   std::vector<int> ldof_node;
   for (size_t k = 0; k < nodes.size(); ++k) ldof_node.insert(ldof_node.end(), nodes[k].num_dofs, static_cast<int>(k));
@@ -92,9 +99,14 @@ std::vector<AutospcEntry> find_singular_dofs(const std::vector<Node>& nodes,
     fdof_slot[f] = component % 3;
     is_free[fdof_block[f]][fdof_slot[f]] = 1;
   }
-  const auto [blocks, noise] = calc_node_blocks(nodes, elements, T0, ldof_node, fdof_block, fdof_slot);
+  const NodeBlocks found = calc_node_blocks(model, ldof_node, fdof_block, fdof_slot);
+  const std::vector<Matrix3d>& blocks = found.K;
+  const std::vector<double>& noise = found.noise;
+  const auto get_scale = [&](int b) {
+    return model.prestress() ? blocks[b].diagonal().cwiseAbs().maxCoeff() : blocks[b].diagonal().maxCoeff();
+  };
   double largest[2] = {0, 0};
-  for (int b = 0; b < num_blocks; ++b) largest[b % 2] = std::max(largest[b % 2], blocks[b].diagonal().maxCoeff());
+  for (int b = 0; b < num_blocks; ++b) largest[b % 2] = std::max(largest[b % 2], get_scale(b));
 
   std::vector<AutospcEntry> entries;
   for (int b = 0; b < num_blocks; ++b) {
@@ -102,15 +114,16 @@ std::vector<AutospcEntry> find_singular_dofs(const std::vector<Node>& nodes,
     std::vector<int> slots;
     for (int s = 0; s < 3; ++s)
       if (is_free[b][s]) slots.push_back(s);
-    const double scale = blocks[b].diagonal().maxCoeff();
+    const double scale = get_scale(b);
     const size_t first = entries.size();
     while (!slots.empty()) {
       int singular = 0;
       double ratio = 0;
       if (scale > std::max(kNothing * largest[b % 2], noise[b])) {
         const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(MatrixXd(blocks[b](slots, slots)));
-        ratio = std::max(0.0, solver.eigenvalues()[0] / scale);
-        if (ratio * scale > std::max(epsilon * scale, noise[b])) break;
+        const double lowest = solver.eigenvalues()[0] / scale;
+        ratio = std::max(0.0, lowest);
+        if (ratio * scale > std::max(epsilon * scale, noise[b]) || (model.prestress() && lowest < -epsilon)) break;
         // Of equal shares the last: a rod along a diagonal keeps its first component.
         const Eigen::VectorXd share = solver.eigenvectors().col(0).cwiseAbs();
         for (int i = 0; i < share.size(); ++i)

@@ -14,10 +14,9 @@ namespace bough::fe {
 /// 1e-14 of the largest of its type in the model. The component (CD) with the largest
 /// share in it is held and the block looked at again, so that a rigid-body motion of the whole model, to which every
 /// node has stiffness, is never touched (MSC Nastran's grid point singularity processing, PARAM,EPZERO).
-/// T0 = constraints before AUTOSPC; fdof_ldof as in Elimination.
-std::vector<AutospcEntry> find_singular_dofs(const std::vector<Node>& nodes,
-                                             const std::vector<std::unique_ptr<const Element>>& elements,
-                                             const SparseRows& T0, const std::vector<int>& fdof_ldof, double epsilon);
+/// The stiffness of a prestressed model has that of its stress; what it softens is left free, as no support may hide
+/// that it buckles. T of `model` = constraints before AUTOSPC; fdof_ldof as in Elimination.
+std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vector<int>& fdof_ldof, double epsilon);
 
 /// Takes out those of `entries` that carry mass, their own or of dofs that follow them: in normal modes they move at
 /// zero frequency.

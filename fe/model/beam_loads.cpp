@@ -76,7 +76,7 @@ std::unordered_map<int, VectorXd> calc_beam_end_loads(const Model& model, const 
   std::unordered_map<int, VectorXd> result;
   AppliedLoad unused;
   for_each_plain_set(deck, set, [&](int sid, double scale, const records::CardLocation&) {
-    const LoadTarget target{model, deck, sid, scale, unused.F, diagnostics, unused.A_I, unused.arms};
+    const LoadTarget target{model, deck, sid, scale, unused.F, diagnostics, unused.A_I, unused.arms, unused.followers};
     for_each_beam_load(target, [&](int index, const Beam& beam, const BeamLineLoad& load) {
       VectorXd& f = result.try_emplace(index, VectorXd::Zero(12)).first->second;
       f += scale * beam.calc_end_load(load);

@@ -53,6 +53,7 @@ Model ModelBuilder::build(const ElementFactory& factory) {
     model_.elements_.push_back(std::move(element));
   auto added = make_nonstructural(deck_, model_.subcase_.nsm, model_.elements_, model_, diagnostics_);
   for (auto& element : added.elements) model_.elements_.push_back(std::move(element));
+  set_prestress();
   is_fixed_.assign(model_.num_gdofs_, 0);
   collect_fixed();
   hold_spcd();
@@ -64,6 +65,7 @@ Model ModelBuilder::build(const ElementFactory& factory) {
   diagnostics_.throw_if_errors();
   model_.links_ = Links(std::move(links_), std::move(equations));
   apply_autospc(set_transform());
+  check_prestress();
   omit_dofs();
   add_drawn_lines();
   report_suport(model_, deck_, diagnostics_);
@@ -289,7 +291,7 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
   const bool only_null = !is_on && param && !options_.autospc;
   if (!is_on && !only_null) return;
   model_.autospc_ =
-      find_singular_dofs(model_.nodes_, model_.elements_, model_.T_, first.fdof_ldof, only_null ? 1e-14 : epsilon);
+      find_singular_dofs(model_, first.fdof_ldof, only_null ? 1e-14 : epsilon);
   if (only_null && !options_.uses_enforced)
     drop_with_mass(model_.nodes_, model_.elements_, model_.T_, first.fdof_ldof, model_.mass_kind_, model_.autospc_);
   // Without any stiffness at all there is nothing to solve yet.

@@ -27,6 +27,9 @@ class ModelBuilder {
   void check_dependent_not_fixed();
   /// T from the equations and the fixed dofs; again after AUTOSPC has fixed more.
   Elimination set_transform();
+  /// The stress of the options by element; after all elements are there (prestress.cpp).
+  void set_prestress();
+  void check_prestress();  ///< that the structure does not buckle under it
   void apply_autospc(const Elimination& first);
   /// ASET and OMIT: T of the a-set by static reduction (guyan.cpp).
   void omit_dofs();

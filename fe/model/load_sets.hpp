@@ -16,6 +16,7 @@ struct LoadTarget {
   Diagnostics& diagnostics;
   Vector12d& A_I;
   std::vector<ArmLoad>& arms;
+  std::vector<QuadraticForm>& followers;
 
   /// Index of a grid with six dofs, or -1 after reporting fe.missing-grid.
   int find_grid(int id, const std::string& card, const records::CardLocation& at) const;

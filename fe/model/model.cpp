@@ -46,6 +46,13 @@ records::BodyMesh Model::calc_mesh() const {
   return mesh;
 }
 
+void Model::add_stiffness(const Element& element, Eigen::Ref<MatrixXd> K) const {
+  element.add_stiffness(1, K);
+  if (prestressed_.empty()) return;
+  if (const auto found = prestressed_.find(&element); found != prestressed_.end())
+    element.add_geometric_stiffness(*found->second, 1, K);
+}
+
 int Model::find_fdof(int node_index, int component) const {
   BOUGH_DEMAND(node_index >= 0 && node_index < static_cast<int>(nodes_.size()));
   BOUGH_DEMAND(component >= 0 && component <= 6);

@@ -18,6 +18,7 @@
 #include "bough/fe/elements/element.hpp"
 #include "bough/fe/model/applied_load.hpp"
 #include "bough/fe/model/links.hpp"
+#include "bough/fe/model/prestress.hpp"
 #include "bough/formats/records/flex_body.hpp"
 #include "bough/formats/records/modes.hpp"
 
@@ -33,6 +34,7 @@ struct ModelOptions {
   std::optional<Vector3d> origin;     ///< Bo in basic: node positions become relative to it
   std::vector<std::string> ignore_cards;  ///< --ignore CARD
   bool uses_enforced = false;  ///< the caller applies calc_enforced(): no warning that an SPC's value is dropped
+  std::shared_ptr<const Prestress> prestress;  ///< of this deck (fe/preload.hpp): its K_G0 joins the stiffness
 };
 
 /// One dof removed by AUTOSPC: node id, component 1..6 in CD axes, stiffness ratio that condemned it.
@@ -49,7 +51,8 @@ using ElementFactory = std::function<ElementList(const records::Deck&, const Nod
 
 class Model final : public NodeTable {
  public:
-  /// Builds everything; throws InputError with every error of the deck that concerns fe.
+  /// Builds everything; throws InputError with every error of the deck that concerns fe, ComputationError
+  /// ("fe.preload-buckles") where the stiffness with that of the prestress is not definite.
   static Model build(const records::Deck& deck, const ModelOptions& options, Diagnostics& diagnostics);
   /// The same with elements from `factory`.
   static Model build(const records::Deck& deck, const ModelOptions& options, const ElementFactory& factory,
@@ -73,6 +76,10 @@ class Model final : public NodeTable {
   /// ndof_g x 2: node id, code 1..6 (0 for a scalar point).
   Eigen::MatrixXi calc_dof_map() const;
   records::BodyMesh calc_mesh() const;
+
+  /// K += K_e of an element of this model (N x N, as Element::add_stiffness), with K_G of its part of the prestress.
+  void add_stiffness(const Element& element, Eigen::Ref<MatrixXd> K) const;
+  const Prestress* prestress() const { return prestress_.get(); }  ///< nullptr: the model starts without stress
 
   /// Rigid links with the second order of their motion (fe/model/links.hpp).
   const Links& links() const { return links_; }
@@ -114,6 +121,8 @@ class Model final : public NodeTable {
   SparseRows T_, T_fixed_;
   std::shared_ptr<const StaticSolver> omitted_;
   Links links_;
+  std::shared_ptr<const Prestress> prestress_;
+  std::unordered_map<const Element*, const VectorXd*> prestressed_;  ///< internal forces in prestress_
   std::vector<std::pair<int, ElementShape>> drawn_lines_;  ///< PLOTEL: id, shape
   std::vector<int> fixed_dofs_;
   std::unordered_map<int, double> enforced_;  ///< by dof: the values of the SPC set that are not zero

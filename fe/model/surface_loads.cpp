@@ -62,11 +62,16 @@ class SurfaceLoads {
   explicit SurfaceLoads(const LoadTarget& target) : t_(target) {
     for (const auto& shell : t_.deck.shells) shells_[shell.id] = &shell;
     for (const auto& solid : t_.deck.solids) solids_[solid.id] = &solid;
+    const auto* param = t_.deck.find_param("FOLLOWK");
+    follows_ = param && (param->value == "YES" || param->value == "Y");
+    if (param && !follows_ && param->value != "NO" && param->value != "N")
+      t_.diagnostics.error("fe.bad-param", t_.deck.locate(param->at),
+                           "PARAM,FOLLOWK is " + param->value + ", expected YES or NO", "correct it");
   }
 
   void add(const records::GridPressure& load) {
     std::vector<double> p(load.grids.size(), load.p);
-    add_face({load.grids, {}}, p, "PLOAD", load.at,
+    add_face({load.grids, {}}, p, "PLOAD", load.at, 1,
              [](double value, const Vector3d&, const Vector3d& n) { return Vector3d(value * n); });
   }
 
@@ -98,7 +103,7 @@ class SurfaceLoads {
     if (solid != solids_.end() && shell == shells_.end()) turn_outward(*solid->second, face);
     std::vector<double> p(load.p.begin(), load.p.begin() + static_cast<std::ptrdiff_t>(face.corners.size()));
     const SourceLocation at = t_.deck.locate(load.at);
-    add_face(face, p, card, load.at, [&](double value, const Vector3d& x, const Vector3d& n) -> Vector3d {
+    add_face(face, p, card, load.at, load.n ? 0 : sign, [&](double value, const Vector3d& x, const Vector3d& n) -> Vector3d {
       if (!load.n) return sign * value * n;
       return value * (t_.model.calc_axes(load.cid, x, at, t_.diagnostics) * load.n->normalized());
     });
@@ -124,8 +129,9 @@ class SurfaceLoads {
     std::reverse(face.midside.begin(), face.midside.end());
   }
 
+  /// `follows`: times the normal, the direction of a traction that turns with the face; 0: it does not.
   void add_face(const Face& face, const std::vector<double>& p, const std::string& card,
-                const records::CardLocation& at, const Traction& traction) {
+                const records::CardLocation& at, double follows, const Traction& traction) {
     std::vector<int> nodes;
     std::vector<Vector3d> corners, midside;
     std::vector<char> has_midside;
@@ -145,9 +151,19 @@ class SurfaceLoads {
     const Eigen::Matrix3Xd f = calc_face_load(corners, midside, has_midside, p, traction);
     for (std::size_t i = 0; i < nodes.size(); ++i)
       t_.F.segment<3>(t_.model.node(nodes[i]).first_gdof) += t_.scale * f.col(static_cast<Eigen::Index>(i));
+    if (!follows_ || follows == 0) return;
+    const MatrixXd K = follows * t_.scale * calc_follower_stiffness(corners, midside, has_midside, p);
+    const auto size = static_cast<int>(K.rows());
+    QuadraticForm form{{}, MatrixXd::Identity(size, size), MatrixXd(size * (size + 1) / 2, 1)};
+    for (const int node : nodes)
+      for (int a = 0; a < 3; ++a) form.gdofs.push_back(t_.model.node(node).first_gdof + a);
+    for (int j = 0; j < size; ++j)
+      for (int i = j; i < size; ++i) form.weights(find_weight(size, i, j), 0) = K(i, j);
+    t_.followers.push_back(std::move(form));
   }
 
   const LoadTarget& t_;
+  bool follows_ = false;
   std::unordered_map<int, const records::ShellElement*> shells_;
   std::unordered_map<int, const records::SolidElement*> solids_;
 };

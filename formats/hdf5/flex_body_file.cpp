@@ -131,6 +131,25 @@ void write_stiffening(FileWriter& file, const FlexBody& body) {
   write_resultants(file, body);
 }
 
+void write_preload(FileWriter& file, const FlexBody& body) {
+  if (body.preload.empty()) return;
+  file.make_group("/preload");
+  file.write_attribute("/preload", "loads", body.preload);
+  file.write_vector("/preload/inertial", body.preload_A_I,
+                    {"inertial load factors A_I among the preload; the solver takes their K_G1 off the modal stiffness, as "
+                     "the motion brings it",
+                     "L/T^2, 1/T^2"});
+  file.write_matrix("/stiffening/kg_preload", body.kg_preload,
+                    {"modal geometric stiffness of the preload, part of /modal/stiffness", "M L^2/(T^2 E^2)"});
+}
+
+void read_preload(FileReader& file, FlexBody& body) {
+  if (!file.has("/preload")) return;
+  body.preload = file.read_attribute("/preload", "loads");
+  body.preload_A_I = file.read_vector("/preload/inertial", records::kNumInertialLoads);
+  body.kg_preload = file.read_matrix("/stiffening/kg_preload", body.num_modes(), body.num_modes());
+}
+
 void read_stiffening(FileReader& file, FlexBody& body) {
   const long n = body.num_modes();
   const NumberArray inertial = file.read_array("/stiffening/kg_inertial", {records::kNumInertialLoads, n, n});
@@ -229,6 +248,7 @@ void write_flex_body(const FlexBody& body, const std::string& path) {
                         {"a row per degree of freedom: node id, code 1..6 (0: scalar point)", "1"});
   }
   write_stiffening(file, body);
+  write_preload(file, body);
   if (body.full_phi.size() > 0) {
     file.write_matrix("/full/phi", body.full_phi,
                       {"mode shapes at every degree of freedom: rows as /dof_map", "L/E, 1/E"});
@@ -277,6 +297,7 @@ FlexBody read_flex_body(const std::string& path) {
   if (has_loads) body.F_I = file.read_matrix("/inertial_loads/f", body.dof_map.rows(), records::kNumInertialLoads);
   if (has_full) body.full_phi = file.read_matrix("/full/phi", body.dof_map.rows(), n);
   read_stiffening(file, body);
+  read_preload(file, body);
   body.mesh = read_mesh(file);
   file.throw_if_errors();
   return body;

@@ -55,6 +55,7 @@ void write_selection(const records::Subcase& subcase, std::string& out) {
   add_set("TEMPERATURE(LOAD)", subcase.temperature);
   add_set("METHOD", subcase.method);
   add_set("STATSUB", subcase.statsub);
+  add_set("STATSUB(PRELOAD)", subcase.preload);
   add_set("SUPORT1", subcase.suport1);
   add_set("NSM", subcase.nsm);
   add("K2GG", join_matrices(subcase.k2gg));

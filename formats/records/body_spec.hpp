@@ -1,5 +1,5 @@
 #pragma once
-/// \file A body file (TOML: [body] [body.modes] [[body.load]] [body.damping] [body.output]) as a record.
+/// \file A body file (TOML: [body] [body.modes] [body.preload] [[body.load]] [body.damping] [body.output]) as a record.
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,6 +32,14 @@ struct ExternalLoadSpec {
   int node = 0;                 ///< with direction: a unit load there
   std::vector<int> directions;  ///< 1..6
   int load_set = 0;             ///< or a LOAD/FORCE/MOMENT/GRAV set of the deck
+  int temperature_set = 0;      ///< or a temperature set
+  SourceLocation at;
+};
+
+/// The state of stress that the body starts from: a subcase, or sets of loads and a spin together.
+struct PreloadSpec {
+  int subcase = 0, load_set = 0, temperature_set = 0;
+  Vector3d spin = Vector3d::Zero();  ///< angular velocity about Bo, body axes
   SourceLocation at;
 };
 
@@ -60,6 +68,7 @@ struct BodySpec {
 
   std::vector<InertialLoad> inertial_loads;  ///< empty = all twelve
   std::vector<ExternalLoadSpec> loads;
+  std::optional<PreloadSpec> preload;
 
   double damping_ratio = 0;            ///< uniform
   std::vector<double> damping_ratios;  ///< or per mode

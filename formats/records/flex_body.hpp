@@ -84,6 +84,10 @@ struct FlexBody {
   MatrixXd load_resultant;            ///< 6 x ne: force and moment about Bo of each locator's load; empty: not known
   std::vector<MatrixXd> load_moment;  ///< [e] 3 x n: Σ φ_kj × f_k, what mode j adds to that moment; as load_resultant
 
+  std::string preload;   ///< what stresses the body before anything else does; empty: nothing
+  MatrixXd kg_preload;   ///< n x n: its geometric stiffness, part of modal_stiffness; empty without
+  VectorXd preload_A_I;  ///< 12: the inertial load factors among it, which a motion with them does not add again
+
   MatrixXd full_phi;  ///< ndof x n, only with --full
   BodyMesh mesh;
 

@@ -72,11 +72,13 @@ void read_loads(const Fields& body, records::BodySpec& spec, Diagnostics& diagno
     load.name = table.get_string("name");
     load.node = table.get_int("node", 0);
     load.load_set = table.get_int("load_set", 0);
+    load.temperature_set = table.get_int("temperature_set", 0);
     load.directions = read_directions(table, diagnostics);
-    if (table.has("load_set") && table.has("direction")) {
-      diagnostics.error("toml.conflicting-keys", table.locate("direction"),
-                        "'load_set' and 'direction' stand together in load '" + load.name + "'", "keep one of them");
-    }
+    for (const std::string set : {"load_set", "temperature_set"})
+      if (table.has(set) && table.has("direction"))
+        diagnostics.error("toml.conflicting-keys", table.locate("direction"),
+                          "'" + set + "' and 'direction' stand together in load '" + load.name + "'",
+                          "keep one of them");
     const auto [it, is_new] = lines.emplace(load.name, load.at.line);
     if (!is_new && !load.name.empty()) {
       diagnostics.error("toml.duplicate-name", table.locate("name"),
@@ -85,6 +87,22 @@ void read_loads(const Fields& body, records::BodySpec& spec, Diagnostics& diagno
     }
     spec.loads.push_back(std::move(load));
   }
+}
+
+/// [body.preload], or [preload] on its own.
+void read_preload(const Fields& table, records::BodySpec& spec, Diagnostics& diagnostics) {
+  records::PreloadSpec preload;
+  preload.at = table.locate();
+  preload.subcase = table.get_int("subcase", 0);
+  preload.load_set = table.get_int("load_set", 0);
+  preload.temperature_set = table.get_int("temperature_set", 0);
+  preload.spin = table.get_vector("spin", Eigen::Vector3d::Zero());
+  for (const std::string other : {"load_set", "temperature_set"})
+    if (table.has("subcase") && table.has(other))
+      diagnostics.error("toml.conflicting-keys", table.locate(other),
+                        "'subcase' and '" + other + "' stand together in preload",
+                        "the subcase says what loads: keep one of them");
+  spec.preload = preload;
 }
 
 records::BodyFrame read_frame(const std::string& word) {
@@ -185,6 +203,13 @@ records::BodySpec read_body_spec_text(const std::string& text, const std::string
 
   spec.inertial_loads = read_inertial(body.get_table("stiffening"), diagnostics);
   read_loads(body, spec, diagnostics);
+  for (const Fields& parent : {body, Fields(root, path)})
+    if (parent.has("preload")) {
+      if (spec.preload)
+        diagnostics.error("toml.conflicting-keys", parent.locate("preload"),
+                          "[body.preload] and [preload] stand together", "keep one of them");
+      read_preload(parent.get_table("preload"), spec, diagnostics);
+    }
 
   spec.matrices = read_matrices_spec(body, path, diagnostics);
 

@@ -7,7 +7,6 @@ import unittest
 import h5py
 
 from support import BEAM, ProgramTest
-from verbs_test import make_column
 
 TWO = """SOL 101
 CEND
@@ -137,19 +136,6 @@ class Solutions(ProgramTest):
             result = self.bough("static", "two.bdf", *(["--linear"] if asks else []))
             self.assertIn("[cli.other-solution]", result.stderr)
             self.assertIn("subcase 9", result.stdout)
-
-    def test_preload_is_an_error_that_names_it(self):
-        column = make_column()
-        for word in ["STATSUB(PRELOAD)", "STATSUB"]:
-            self.write("pre.bdf", column.replace("SOL 105", "SOL 103").replace("STATSUB = 1", word + " = 1"))
-            self.fails(1, "modes", "pre.bdf", says=[word, "pre.bdf:8:"], error="cli.preload")
-            self.fails(1, "reduce", "pre.bdf", "--modes", "2", "-o", "b.h5", says=[word], error="cli.preload")
-            self.assertIn("[cli.preload]", self.bough("check", "pre.bdf").stderr)
-        self.write("b.bdf", column.replace("STATSUB = 1", "STATSUB(PRELOAD) = 1\nSTATSUB(BUCKLING) = 1"))
-        self.fails(1, "modes", "b.bdf", "--buckling", says=["STATSUB(PRELOAD)"], error="cli.preload")
-        for plain in ["STATSUB = 1", "STATSUB(BUCKLING) = 1"]:
-            self.write("b.bdf", column.replace("STATSUB = 1", plain))
-            self.bough("modes", "b.bdf", "--buckling")
 
 
 class Subcases(ProgramTest):

@@ -56,9 +56,28 @@ class SharedCases(ProgramTest):
         self.modes("b03_scalar_only_segv", [math.sqrt(100 * (3 - 5 ** .5) / 2) / (2 * math.pi)], 1e-9)
         self.assertNotIn("no mass", self.bough("check", self.deck("b03_scalar_only_segv")).stderr)
 
-    def test_preload_is_not_passed_over(self):
-        for name in ("b04_statsub_sol103", "b04_statsub_preload_sol105"):
-            self.fails(1, "modes", self.deck(name), says=("STATSUB(PRELOAD)",), error="cli.preload")
+    def test_preload(self):
+        # A clamped strip of two bending stiffnesses pulled at its end: the characteristic equation of the taut beam.
+        EI, m, pull = 70.0, 0.27, 1000.0
+        def equation(omega):
+            root = math.sqrt((pull / EI) ** 2 / 4 + m * omega ** 2 / EI)
+            a, b = math.sqrt(root + pull / EI / 2), math.sqrt(root - pull / EI / 2)
+            return (2 * a * a * b * b + (a ** 4 + b ** 4) * math.cosh(a) * math.cos(b) +
+                    (a * a - b * b) * a * b * math.sinh(a) * math.sin(b))
+        exact, omega = [], 1.0
+        while len(exact) < 2:
+            if equation(omega) * equation(omega + 1) <= 0:
+                low, high = omega, omega + 1
+                for _ in range(60):
+                    middle = (low + high) / 2
+                    low, high = (middle, high) if equation(low) * equation(middle) > 0 else (low, middle)
+                exact.append(low / (2 * math.pi))
+            omega += 1
+        found = json.loads(self.bough("modes", self.deck("b04_statsub_sol103"), "--json").stdout)["frequency_hz"]
+        for f, e in zip(found, [exact[0]] * 2 + [exact[1]] * 2):
+            self.assertAlmostEqual(f / e, 1, delta=2e-3, msg=f"{found} {exact}")
+        found = json.loads(self.bough("modes", self.deck("b04_statsub_preload_sol105"), "--buckling", "--json").stdout)
+        self.assertAlmostEqual(found["load_factor"][0] / (math.pi ** 2 * EI / 4 + 100), 1, delta=1e-4)
 
     def test_blank_p2_is_zero(self):
         u, _ = self.static("b05_pload1_p2")

@@ -132,20 +132,15 @@ class CaseControl {
   }
 
   /// The subcase whose load a buckling subcase scales; in modes of any kind, and as (PRELOAD), the one that preloads
-  /// the structure. A preload is kept among what is not used, for those whose answer would need it.
+  /// the structure.
   void read_statsub(const Command& c) {
     static const std::set<std::string> without{"",        "101", "1", "24",      "SESTATIC", "SESTATICS",
                                                "STATICS", "105", "5", "SEBUCKL", "BUCKLING"};
     const bool is_named = is_command(c.options, "PRELOAD", 1);
     if (!is_named) read_set(c, current().statsub);
     if (!is_named && without.count(deck_.sol) > 0) return;
-    const std::string name = is_named ? "STATSUB(PRELOAD)" : "STATSUB";
-    for (auto& other : deck_.unused)
-      if (other.name == name) {
-        ++other.count;
-        return;
-      }
-    deck_.unused.push_back({name, records::CardEffect::Stiffness, 1, at_});
+    read_set(c, current().preload);
+    current().preload_at = at_;
   }
 
   void begin_subcase(const Command& c) {

@@ -15,6 +15,7 @@ expected = {
     "/stiffening/kg_inertial": (12, n, n), "/stiffening/computed": (12,), "/stiffening/kg_external": (ne, n, n),
     "/stiffening/locator/name": (ne,), "/stiffening/locator/node": (ne,), "/stiffening/locator/direction": (ne,),
     "/stiffening/external_load": (n, ne), "/stiffening/load_resultant": (6, ne), "/stiffening/load_moment": (ne, 3, n),
+    "/stiffening/kg_preload": (n, n), "/preload/inertial": (12,),
     "/effective_mass": (n, 6), "/grids/id": (g,), "/grids/xyz": (g, 3),
 }
 for method in ("lumped", "consistent", "exact"):

@@ -128,6 +128,9 @@ FlexBody make_random_body(unsigned seed, int n, int p, bool full) {
   body.F_I = r.make(6 * p + 1, 12);
   body.full_phi = r.make(6 * p + 1, n);
   body.mesh = make_mesh(r, p);
+  body.preload = "spin (0, 0, 5)";
+  body.kg_preload = r.make(n, n);
+  body.preload_A_I = r.make(12, 1);
   return body;
 }
 
@@ -158,8 +161,9 @@ records::ModesResult make_random_modes(unsigned seed, int n, int p) {
 }
 
 bool are_identical(const FlexBody& a, const FlexBody& b) {
-  bool ok = a.name == b.name && a.source == b.source && a.mass == b.mass && a.cg == b.cg && a.inertia == b.inertia &&
-            a.node_id == b.node_id && same(a.node_xyz, b.node_xyz) && a.interface_nodes == b.interface_nodes &&
+  bool ok = a.name == b.name && a.preload == b.preload && same(a.kg_preload, b.kg_preload) &&
+            same(a.preload_A_I, b.preload_A_I) && a.source == b.source && a.mass == b.mass && a.cg == b.cg &&
+            a.inertia == b.inertia && a.node_id == b.node_id && same(a.node_xyz, b.node_xyz) && a.interface_nodes == b.interface_nodes &&
             a.is_free_free == b.is_free_free && same(a.frequency_hz, b.frequency_hz) &&
             same(a.eigenvalue, b.eigenvalue) && a.kind == b.kind && same(a.phi, b.phi) &&
             same(a.modal_mass, b.modal_mass) && same(a.modal_stiffness, b.modal_stiffness) &&

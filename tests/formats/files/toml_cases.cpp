@@ -117,6 +117,15 @@ direction = ["x", 5]
 name = "thrust"
 load_set = 7
 
+[[body.load]]
+name = "sun"
+temperature_set = 8
+
+[body.preload]
+load_set = 5
+temperature_set = 6
+spin = [0.0, 0.5, 2.0]
+
 [body.damping]
 ratios = [0.01, 0.02, 0.03]
 
@@ -218,6 +227,12 @@ std::vector<BadDocument> get_bad_bodies() {
       {"toml.out-of-range", "subcase = 2", "subcase = -2", "expected at least 0"},
       {"toml.conflicting-keys", "load_set = 7", "load_set = 7\nnode = 3", "'node' and 'load_set'"},
       {"toml.conflicting-keys", "load_set = 7", "load_set = 7\ndirection = 3", "'load_set' and 'direction'", false},
+      {"toml.conflicting-keys", "load_set = 7", "load_set = 7\ntemperature_set = 9", "'load_set' and 'temperature_set'"},
+      {"toml.conflicting-keys", "load_set = 5", "subcase = 2\nload_set = 5", "'subcase' and 'load_set'", false},
+      {"toml.conflicting-keys", "[body]\n", "[preload]\nsubcase = 1\n[body]\n", "[preload] stand together", false},
+      {"toml.missing-key", "load_set = 5\ntemperature_set = 6\nspin = [0.0, 0.5, 2.0]\n", "",
+       "expected one of 'subcase', 'load_set', 'temperature_set', 'spin'"},
+      {"toml.wrong-length", "spin = [0.0, 0.5, 2.0]", "spin = [0.0, 0.5]", "expected at least 3"},
       {"toml.conflicting-keys", "ratios = [0.01, 0.02, 0.03]", "ratios = [0.01]\nratio = 0.1", "'ratio' and 'ratios'"},
       {"toml.conflicting-keys", "frame = \"free\"", "frame = \"fixed\"", "'support' stands with frame", false},
       {"toml.duplicate-name", "name = \"thrust\"", "name = \"tip\"", "load 'tip' was already given", false},

@@ -255,7 +255,14 @@ TEST(BodyFile, EveryKeyOfAGoodFileArrives) {
   EXPECT_EQ(spec.max_frequency_hz, 100.0);
   EXPECT_THAT(spec.select, ElementsAre(1, 2, 4));
   EXPECT_THAT(spec.inertial_loads, ElementsAre(InertialLoad::ax, InertialLoad::wz2));
-  ASSERT_EQ(spec.loads.size(), 2u);
+  ASSERT_EQ(spec.loads.size(), 3u);
+  EXPECT_EQ(spec.loads[2].temperature_set, 8);
+  ASSERT_TRUE(spec.preload.has_value());
+  EXPECT_EQ(spec.preload->subcase, 0);
+  EXPECT_EQ(spec.preload->load_set, 5);
+  EXPECT_EQ(spec.preload->temperature_set, 6);
+  EXPECT_EQ(spec.preload->spin, Vector3d(0, 0.5, 2));
+  EXPECT_EQ(spec.preload->at.line, 34);
   EXPECT_EQ(spec.loads[0].name, "tip");
   EXPECT_EQ(spec.loads[0].node, 41);
   EXPECT_THAT(spec.loads[0].directions, ElementsAre(1, 5));
@@ -283,6 +290,17 @@ TEST(BodyFile, SmallestFileHasTheDefaults) {
   EXPECT_EQ(spec.integrals, "exact");
   EXPECT_TRUE(spec.inertial_loads.empty() && spec.output_nodes.empty() && spec.output_file.empty());
   EXPECT_THAT(spec.loads[0].directions, ElementsAre(1, 2, 3));
+}
+
+TEST(BodyFile, PreloadBesideTheBody) {
+  const TempFolder folder;
+  Diagnostics diagnostics;
+  const auto spec = read_body_spec(
+      folder.write("arm.toml", "[body]\ndeck = \"a.bdf\"\n[body.modes]\nnumber = 3\n[preload]\nsubcase = 4\n"),
+      diagnostics);
+  ASSERT_TRUE(diagnostics.items().empty()) << join(diagnostics);
+  ASSERT_TRUE(spec.preload.has_value());
+  EXPECT_EQ(spec.preload->subcase, 4);
 }
 
 TEST(DetectKind, ByTheTablesEvenWhenTheSyntaxIsBroken) {

@@ -184,7 +184,7 @@ class Content {
   }
   Content& operator()(const Param& r) { return (*this)(r.name)(r.value); }
   Content& operator()(const Subcase& r) {
-    (*this)(r.id)(r.title)(r.subtitle)(r.label)(r.spc)(r.mpc)(r.load)(r.method)(r.statsub)(r.temperature);
+    (*this)(r.id)(r.title)(r.subtitle)(r.label)(r.spc)(r.mpc)(r.load)(r.method)(r.statsub)(r.preload)(r.temperature);
     return (*this)(r.suport1)(r.nsm)(r.k2gg)(r.m2gg)(r.b2gg);
   }
 

@@ -90,18 +90,21 @@ TEST(Control, MisspelledAndUnusedCommands) {
   EXPECT_EQ(r.find("deck.case-control-ignored")->what, "case control not used: RESVEC (line 3), MEFFMASS (line 5)");
 }
 
-TEST(Control, PreloadIsKeptAsWhatIsNotUsed) {
+TEST(Control, PreloadAndScaledLoad) {
   const auto find = [](const std::string& sol, const std::string& word) {
     const auto deck =
         read_clean("SOL " + sol + "\nCEND\nSUBCASE 1\nLOAD = 1\nSUBCASE 2\n" + word + " = 1\nBEGIN BULK\n");
-    return std::pair(deck.unused.empty() ? "" : deck.unused[0].name, deck.subcases[1].statsub);
+    EXPECT_TRUE(deck.unused.empty());
+    EXPECT_EQ(deck.subcases[0].preload, 0);
+    EXPECT_EQ(deck.subcases[1].preload_at.line, deck.subcases[1].preload == 0 ? 0 : 6);
+    return std::pair(deck.subcases[1].preload, deck.subcases[1].statsub);
   };
-  EXPECT_EQ(find("103", "STATSUB"), std::pair(std::string("STATSUB"), 1));
-  EXPECT_EQ(find("103", "STATSUB(PRELOAD)"), std::pair(std::string("STATSUB(PRELOAD)"), 0));
-  EXPECT_EQ(find("105", "STATSUB(PRELOAD)"), std::pair(std::string("STATSUB(PRELOAD)"), 0));
-  EXPECT_EQ(find("105", "STATSUB"), std::pair(std::string(), 1));
-  EXPECT_EQ(find("105", "STATSUB(BUCKLING)"), std::pair(std::string(), 1));
-  EXPECT_EQ(find("SEBUCKL", "STATSUB"), std::pair(std::string(), 1));
+  EXPECT_EQ(find("103", "STATSUB"), std::pair(1, 1));
+  EXPECT_EQ(find("103", "STATSUB(PRELOAD)"), std::pair(1, 0));
+  EXPECT_EQ(find("105", "STATSUB(PRELOAD)"), std::pair(1, 0));
+  EXPECT_EQ(find("105", "STATSUB"), std::pair(0, 1));
+  EXPECT_EQ(find("105", "STATSUB(BUCKLING)"), std::pair(0, 1));
+  EXPECT_EQ(find("SEBUCKL", "STATSUB"), std::pair(0, 1));
 }
 
 TEST(Params, WhatIsNotUsedIsOneNoteAndWhatNobodyKnowsAWarning) {

@@ -1,0 +1,55 @@
+/// What a prestress does to a model that is built with it.
+#include <algorithm>
+
+#include "bough/fe/assembly.hpp"
+#include "bough/fe/factor.hpp"
+#include "bough/fe/model/builder.hpp"
+
+namespace bough::fe {
+namespace {
+
+/// Whether A has a negative eigenvalue beyond roundoff; those of motions without stiffness are none.
+bool has_negative(const PetscMat& A) {
+  if (factor_definite(A.get())) return false;
+  PetscMat shifted;
+  check_petsc(MatDuplicate(A.get(), MAT_COPY_VALUES, shifted.out()));
+  VectorXd shift = 1e-13 * get_diagonal(A.get()).cwiseAbs();
+  shift = shift.cwiseMax(1e-6 * shift.maxCoeff());
+  PetscVec v;
+  check_petsc(MatCreateVecs(A.get(), v.out(), nullptr));
+  scatter(shift, v.get());
+  check_petsc(MatDiagonalSet(shifted.get(), v.get(), ADD_VALUES));
+  if (initialize_petsc().size == 1) return !factor_definite(shifted.get());
+  const SymmetricFactor factor(shifted.get(), false, FactorMethod::Pivoting);
+  if (factor.is_singular()) return false;
+  PetscInt negative = 0;
+  check_petsc(MatGetInertia(factor.get(), &negative, nullptr, nullptr));
+  return negative > 0;
+}
+
+}  // namespace
+
+void ModelBuilder::set_prestress() {
+  model_.prestress_ = options_.prestress;
+  if (!model_.prestress_) return;
+  // Elements behind those of the deck's cards, which masses and matrices of a subcase make, have no internal forces.
+  const auto& force = model_.prestress_->force;
+  const auto num = std::min(force.size(), model_.elements_.size());
+  for (std::size_t e = 0; e < num; ++e) {
+    if (force[e].size() == 0) continue;
+    BOUGH_DEMAND(force[e].size() == model_.elements_[e]->num_internal_forces());
+    model_.prestressed_.emplace(model_.elements_[e].get(), &force[e]);
+  }
+}
+
+void ModelBuilder::check_prestress() {
+  if (!model_.prestress_ || model_.num_fdofs() == 0) return;
+  if (!has_negative(assemble_stiffness(model_, DofSet::Free))) return;
+  throw ComputationError("fe.preload-buckles", model_.prestress_->at,
+                         "the structure buckles under its preload, " + model_.prestress_->name +
+                             ": its stiffness with that of the stress is not positive definite",
+                         "lower the load below its first load factor (bough modes --buckling), or look for rods and "
+                         "membranes under compression");
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,127 @@
+/// Pressure that follows its faces against finite differences; K_G0 as a share of the stiffness of a model.
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "bough/base/rotation.hpp"
+#include "bough/fe/preload.hpp"
+#include "bough/fe/shape/face_load.hpp"
+#include "bough/fe/static_case.hpp"
+#include "tests/fe/model/text_model.hpp"
+
+namespace bough::fe {
+namespace {
+
+using Points = std::vector<Vector3d>;
+
+const Traction kNormal = [](double p, const Vector3d&, const Vector3d& n) -> Vector3d { return p * n; };
+
+/// -∂f/∂u of calc_face_load by central differences.
+MatrixXd differentiate(const Points& corners, const Points& midside, const std::vector<char>& has,
+                       const std::vector<double>& p) {
+  const auto load = [&](int node, int axis, double step) {
+    Points c = corners, m = midside;
+    int k = node - static_cast<int>(c.size());
+    if (k < 0) {
+      c[static_cast<std::size_t>(node)][axis] += step;
+    } else {
+      std::size_t side = 0;
+      for (;; ++side)
+        if (has[side] && k-- == 0) break;
+      m[side][axis] += step;
+    }
+    const Matrix3Xd f = calc_face_load(c, m, has, p, kNormal);
+    return VectorXd(f.reshaped());
+  };
+  const int num = static_cast<int>(load(0, 0, 0).size());
+  MatrixXd K(num, num);
+  const double step = 1e-4;
+  for (int i = 0; i < num; ++i) K.col(i) = (load(i / 3, i % 3, -step) - load(i / 3, i % 3, step)) / (2 * step);
+  return K;
+}
+
+TEST(FollowerPressure, IsTheSymmetricPartOfTheDerivative) {
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> uniform(-0.2, 0.2);
+  const auto jitter = [&](double x, double y) {
+    return Vector3d(x + uniform(engine), y + uniform(engine), uniform(engine));
+  };
+  for (const int n : {3, 4})
+    for (const bool is_curved : {false, true}) {
+      Points corners{jitter(0, 0), jitter(1, 0), jitter(1, 1)}, midside;
+      if (n == 4) corners.push_back(jitter(0, 1));
+      std::vector<char> has;
+      for (int k = 0; k < n && is_curved; ++k) {
+        has.push_back(k != 1);
+        const auto a = static_cast<std::size_t>(k), b = static_cast<std::size_t>((k + 1) % n);
+        midside.emplace_back(0.5 * (corners[a] + corners[b]) + 0.2 * jitter(0, 0));
+      }
+      std::vector<double> p{1.0, 2.0, -0.5, 3.0};
+      p.resize(static_cast<std::size_t>(n));
+      const MatrixXd K = differentiate(corners, midside, has, p);
+      const MatrixXd found = calc_follower_stiffness(corners, midside, has, p);
+      EXPECT_LT((found - 0.5 * (K + K.transpose())).norm(), 1e-7 * K.norm()) << n << is_curved;
+    }
+}
+
+TEST(FollowerPressure, OfAClosedSurfaceIsSymmetricByItself) {
+  const Points x{{0, 0, 0}, {1, 0.1, 0}, {1.2, 1, 0.1}, {0, 1, 0}, {0, 0.1, 1}, {1, 0, 1.1}, {1, 1, 1}, {0.1, 1, 0.9}};
+  const std::vector<std::vector<int>> faces{{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                            {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+  MatrixXd whole = MatrixXd::Zero(24, 24), found = whole;
+  for (const auto& face : faces) {
+    Points corners;
+    std::vector<int> dofs;
+    for (const int k : face) {
+      corners.push_back(x[static_cast<std::size_t>(k)]);
+      for (int a = 0; a < 3; ++a) dofs.push_back(3 * k + a);
+    }
+    whole(dofs, dofs) += differentiate(corners, {}, {}, {2, 2, 2, 2});
+    found(dofs, dofs) += calc_follower_stiffness(corners, {}, {}, {2, 2, 2, 2});
+  }
+  EXPECT_LT((whole - whole.transpose()).norm(), 1e-8 * whole.norm());
+  EXPECT_LT((whole - found).norm(), 1e-8 * whole.norm());
+}
+
+/// A frame with an offset bar, a rigid link with a mass, a spring and a shell, loaded in all ways.
+constexpr const char* kFrame =
+    "SOL 103\nCEND\nSPC = 1\nSUBCASE 1\nLOAD = 10\nTEMP(LOAD) = 20\nSUBCASE 2\nSTATSUB = 1\nMETHOD = 3\nBEGIN BULK\n"
+    "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,.2\nGRID,5,,2.,.5,.3\n"
+    "CBAR,1,1,1,2,0.,0.,1.\n,,,0.,0.,.1,0.,.05,.1\nCBAR,2,1,2,3,0.,0.,1.\nCROD,3,2,3,4\nCQUAD4,4,3,1,2,3,4\n"
+    "PBAR,1,1,1.-3,2.-6,3.-6,1.-6\nPROD,2,1,1.-4\nPSHELL,3,1,.01,1,,1\nMAT1,1,7.+10,,.3,2700.,1.-5\n"
+    "RBE2,6,3,123456,5\nCONM2,7,5,,3.,.1,.2,.0\nSPC1,1,123456,1,4\n"
+    "FORCE,10,5,,2000.,1.,2.,3.\nGRAV,10,,9.81,0.,0.,-1.\nPLOAD2,10,500.,4\nTEMPD,20,3.\nPARAM,FOLLOWK,YES\n";
+
+TEST(Prestress, IsTheGeometricStiffnessOfItsLoadWhereverKIs) {
+  Diagnostics diagnostics;
+  const auto deck = nastran::read_deck_text(kFrame, "deck.bdf", {}, diagnostics);
+  diagnostics.throw_if_errors();
+  ModelOptions options;
+  options.subcase = 1;
+  const auto plain = Model::build(deck, options, diagnostics);
+  const auto load = calc_static_load(plain, deck, plain.subcase(), diagnostics);
+  ASSERT_GT(load.followers.size(), 0u);
+  const StaticSolver solver(plain, assemble_stiffness(plain, DofSet::Free));
+  const VectorXd u = solve_static_case(plain, solver, load).displacement;
+  const auto K_G = assemble_geometric_stiffness(plain, DofSet::Global, load, u, &load.initial);
+
+  options.subcase = 2;
+  options.prestress = calc_subcase_prestress(deck, options, deck.subcases[1], diagnostics);
+  ASSERT_TRUE(options.prestress);
+  EXPECT_EQ(options.prestress->name, "subcase 1 (LOAD 10, TEMPERATURE 20)");
+  EXPECT_NEAR(options.prestress->A_I[2], 9.81, 1e-12);
+  EXPECT_TRUE(diagnostics.has("fe.preload"));
+  const auto model = Model::build(deck, options, diagnostics);
+  const int n = model.num_gdofs();
+  const MatrixXd one = MatrixXd::Identity(n, n), K0 = multiply(K_G.get(), one);
+  EXPECT_GT(K0.norm(), 1);
+  EXPECT_LT((calc_prestress_times(model, one) - K0).norm(), 1e-10 * K0.norm());
+  EXPECT_LT((calc_stiffness_times(model, one) - calc_stiffness_times(plain, one) - K0).norm(), 1e-6 * K0.norm());
+  const MatrixXd T = model.T(), K_f = multiply(assemble_stiffness(model, DofSet::Free).get(),
+                                               MatrixXd::Identity(model.num_fdofs(), model.num_fdofs()));
+  const MatrixXd expected = T.transpose() * (calc_stiffness_times(plain, T) + K0 * T);
+  EXPECT_LT((K_f - expected).norm(), 1e-12 * K_f.norm());
+}
+
+}  // namespace
+}  // namespace bough::fe
