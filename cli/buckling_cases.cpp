@@ -8,6 +8,7 @@
 #include <set>
 
 #include "bough/fe/assembly.hpp"
+#include "bough/fe/wide_links.hpp"
 
 namespace bough::cli {
 
@@ -66,6 +67,7 @@ modal::EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases&
   }
   const fe::Model& statics = own ? *own : model;
   const auto load = fe::calc_static_load(statics, deck, cases.statics, diagnostics);
+  fe::report_wide_links(deck, diagnostics);
   diagnostics.throw_if_errors();
   const auto K = fe::assemble_stiffness(statics, fe::DofSet::Free);
   const fe::StaticSolver solver(statics, K);
