@@ -7,7 +7,9 @@
 #include <optional>
 #include <set>
 
+#include "bough/fe/assembly.hpp"
 #include "bough/fe/preload.hpp"
+#include "bough/fe/wide_links.hpp"
 #include "solution.hpp"
 
 namespace bough::cli {
@@ -82,6 +84,7 @@ modal::EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases&
   }
   const fe::Model& statics = own ? *own : model;
   const auto load = fe::calc_static_load(statics, deck, cases.statics, diagnostics);
+  fe::report_wide_links(deck, diagnostics);
   diagnostics.throw_if_errors();
   const auto K = fe::assemble_stiffness(statics, fe::DofSet::Free);
   const fe::StaticSolver solver(statics, K);

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "bough/fe/static_case.hpp"
+#include "bough/fe/wide_links.hpp"
 #include "bough/formats/hdf5/files.hpp"
 #include "bough/formats/matrices/matrix_market.hpp"
 #include "bough/formats/matrices/op4.hpp"
@@ -64,6 +65,7 @@ fe::PetscMat calc_geometric(const records::Deck& deck, const MatricesOptions& op
   subcase.load = load_case.load;
   subcase.temperature = load_case.temperature;
   const auto load = fe::calc_static_load(model, deck, subcase, diagnostics);
+  fe::report_wide_links(deck, diagnostics);
   diagnostics.throw_if_errors();
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
   const fe::StaticSolver solver(model, K);

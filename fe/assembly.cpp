@@ -8,6 +8,7 @@
 #include "bough/fe/model/temperatures.hpp"
 #include "bough/fe/ordering.hpp"
 #include "bough/fe/second_order.hpp"
+#include "bough/fe/wide_links.hpp"
 
 namespace bough::fe {
 namespace {
@@ -247,7 +248,10 @@ PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const Appl
     if (const auto* heated = initial ? initial->find(e) : nullptr) force += heated->force;
     e.add_geometric_stiffness(force, 1, K_G);
   };
-  return assemble(model, set, add, calc_second_order(model, make_loads(load), u_g));
+  auto forms = calc_second_order(model, make_loads(load), u_g);
+  // With the reference's own dofs.
+  std::erase_if(forms, [](const QuadraticForm& form) { return form.gdofs.size() > kMaxLinkDofs + 6; });
+  return assemble(model, set, add, forms);
 }
 
 MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bough/fe/static_case.hpp"
+#include "bough/fe/wide_links.hpp"
 #include "bough/formats/nastran/reader.hpp"
 #include "bough/modal/eigen.hpp"
 
@@ -47,6 +48,23 @@ TEST(LinkBuckling, ColumnWithARigidUpperHalf) {
       "PBAR,2,1,1.+6,1.+6,1.+6,1.+6\nCBAR,200,2,21,100,0.,1.,0.\n",
   };
   for (const auto& lever : levers) EXPECT_NEAR(calc_factor(lever) / expected, 1, 1e-4) << lever;
+}
+
+// The second order of a mean over very many grids would fill K_G: it is left out, and the card is named.
+TEST(LinkBuckling, WideLinksAreNamed) {
+  std::string text = "BEGIN BULK\nGRID,9001,,0.,0.,0.\n";
+  for (const int num : {1001, 999}) {
+    text += "RBE3," + std::to_string(num) + ",,9001,123456,1.,123";
+    for (int i = 1; i <= num; ++i) text += (i > 2 && i % 8 == 3 ? "\n," : ",") + std::to_string(i);
+    text += "\n";
+  }
+  for (int i = 1; i <= 1001; ++i) text += "GRID," + std::to_string(i) + ",,1.,0.,0.\n";
+  Diagnostics diagnostics;
+  const auto deck = nastran::read_deck_text(text, "deck.bdf", {}, diagnostics);
+  fe::report_wide_links(deck, diagnostics);
+  ASSERT_EQ(diagnostics.items().size(), 1u);
+  EXPECT_EQ(diagnostics.items()[0].id, "fe.wide-link");
+  EXPECT_EQ(diagnostics.items()[0].where.line, 3);
 }
 
 // The lever as equations: its end goes along a straight line, and the push finds no lever.
