@@ -93,9 +93,6 @@ std::vector<AutospcEntry> find_singular_dofs(const std::vector<Node>& nodes,
     is_free[fdof_block[f]][fdof_slot[f]] = 1;
   }
   const auto [blocks, noise] = calc_node_blocks(nodes, elements, T0, ldof_node, fdof_block, fdof_slot);
-  double largest[2] = {0, 0};
-  for (int b = 0; b < num_blocks; ++b) largest[b % 2] = std::max(largest[b % 2], blocks[b].diagonal().maxCoeff());
-
   std::vector<AutospcEntry> entries;
   for (int b = 0; b < num_blocks; ++b) {
     const Node& node = nodes[b / 2];
@@ -107,7 +104,7 @@ std::vector<AutospcEntry> find_singular_dofs(const std::vector<Node>& nodes,
     while (!slots.empty()) {
       int singular = 0;
       double ratio = 0;
-      if (scale > std::max(kNothing * largest[b % 2], noise[b])) {
+      if (scale > noise[b]) {
         const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(MatrixXd(blocks[b](slots, slots)));
         ratio = std::max(0.0, solver.eigenvalues()[0] / scale);
         if (ratio * scale > std::max(epsilon * scale, noise[b])) break;
