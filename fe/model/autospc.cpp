@@ -24,7 +24,7 @@ VectorXd calc_sizes(const Element& element, const std::vector<Node>& nodes, cons
                     const MatrixXd& K_e) {
   double arm = 0, largest[2] = {0, 0};
   for (int k : element.nodes()) arm = std::max(arm, (nodes[k].x - nodes[element.nodes()[0]].x).norm());
-  std::vector<char> kinds;
+  std::vector<int> kinds;
   for (int i = 0; i < element.num_dofs(); ++i) {
     const int g = element.gdofs()[i];
     kinds.push_back(g - nodes[gdof_node[g]].first_gdof < 3 ? 0 : 1);
