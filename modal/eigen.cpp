@@ -26,7 +26,7 @@ Answer find_answer(const fe::Model& model, const EigenOptions& options) {
   }
   try {
     NormalModes again(model, options, detail::find_null_motions);
-    if (again.has_supports()) {
+    if (again.knows_motions()) {
       Answer other = again.solve();
       if (!answer || (other.is_sound && !answer->is_sound) ||
           (other.is_sound == answer->is_sound && !(other.worst() >= answer->worst())))

@@ -46,17 +46,18 @@ void NormalModes::hold_massless(Diagnostics& said) {
                "use a consistent mass or give the model inertia about that axis");
 }
 
+/// A guess, -1 where the factor has none: the roots decide (fit_range).
 int NormalModes::count_below(double hz) const {
-  if (!(hz > 0)) return 0;
-  const int count = count_roots_below(pencil_.K.get(), pencil_.M.get(), calc_lambda(hz));
-  if (count < 0) throw_singular(pencil_, -calc_lambda(hz));
-  return count;
+  return hz > 0 ? count_roots_below(pencil_.K.get(), pencil_.M.get(), calc_lambda(hz)) : 0;
 }
 
 void NormalModes::choose_range(KrylovMethod method) {
-  range_.first = options_.min_hz ? count_below(*options_.min_hz) : 0;
+  range_.first = options_.min_hz ? std::max(0, count_below(*options_.min_hz)) : 0;
   range_.last = options_.num_modes > 0 ? range_.first + options_.num_modes : pencil_.size();
-  if (options_.max_hz) range_.last = std::min(range_.last, count_below(*options_.max_hz));
+  if (options_.max_hz) {
+    const int below = count_below(*options_.max_hz);
+    range_.last = std::min(range_.last, below >= 0 ? below : range_.first + 10);
+  }
   PencilProblem problem;
   problem.K = pencil_.K.get();
   problem.M = pencil_.M.get();
@@ -76,7 +77,7 @@ bool NormalModes::add_roots(Roots& roots, int number, int guard, bool definite_o
     if (definite_only) return false;
     throw_singular(pencil_, shift_);
   }
-  num_zero_ = has_supports() ? 0 : count_zeros(pencil_, roots);  // all known before
+  num_zero_ = knows_motions() ? 0 : count_zeros(pencil_, roots);
   return true;
 }
 

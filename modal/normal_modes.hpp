@@ -33,6 +33,7 @@ class NormalModes {
 
   Answer solve();
   bool has_supports() const { return !rigid_.supports.empty(); }
+  bool knows_motions() const { return rigid_.is_complete; }
 
  private:
   int num_rigid() const { return static_cast<int>(rigid_.modes.cols()); }

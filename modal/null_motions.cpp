@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "bough/fe/factor.hpp"
@@ -52,7 +53,8 @@ MatrixXd iterate(const Pencil& pencil, const VectorXd& D, const fe::SymmetricFac
   return Y.cols() > 0 ? (Y * find_forceless(pencil, Y)).eval() : Y;
 }
 
-MatrixXd find_null_space(const Pencil& pencil, const VectorXd& D, int expected) {
+/// Nothing when they are too many, or the factor fails.
+std::optional<MatrixXd> find_null_space(const Pencil& pencil, const VectorXd& D, int expected) {
   fe::PetscMat shifted;
   fe::check_petsc(MatDuplicate(pencil.K.get(), MAT_COPY_VALUES, shifted.out()));
   fe::PetscVec shift;
@@ -60,13 +62,13 @@ MatrixXd find_null_space(const Pencil& pencil, const VectorXd& D, int expected) 
   fe::scatter(1e-13 * D, shift.get());
   fe::check_petsc(MatDiagonalSet(shifted.get(), shift.get(), ADD_VALUES));
   const fe::SymmetricFactor factor(shifted.get(), false, fe::FactorMethod::Pivoting);
-  if (factor.is_singular()) return MatrixXd(pencil.size(), 0);
+  if (factor.is_singular()) return std::nullopt;
   constexpr Index most = 400;
   for (Index m = expected + 6;; m *= 2) {
     m = std::min<Index>({m, most, pencil.size()});
     MatrixXd Y = iterate(pencil, D, factor, m);
     if (Y.cols() < m || m == pencil.size()) return Y;
-    if (m == most) return MatrixXd(pencil.size(), 0);
+    if (m == most) return std::nullopt;
   }
 }
 
@@ -135,10 +137,11 @@ MatrixXd complement(const Pencil& pencil, const VectorXd& D, const MatrixXd& R, 
 RigidMotions find_null_motions(const Pencil& pencil) {
   auto result = find_rigid_motions(pencil);
   const VectorXd D = calc_scale(pencil);
-  const MatrixXd Y = find_null_space(pencil, D, static_cast<int>(result.modes.cols() + result.massless.cols()));
-  if (Y.cols() == 0) return result;
+  const auto Y = find_null_space(pencil, D, static_cast<int>(result.modes.cols() + result.massless.cols()));
+  if (!Y) return result;
+  result.is_complete = true;
   result.massless.resize(pencil.size(), 0);
-  const MatrixXd Z = split_by_mass(pencil, D, Y, result.massless);
+  const MatrixXd Z = split_by_mass(pencil, D, *Y, result.massless);
   // The motions of the whole in their order, as far as the iteration has them.
   MatrixXd R(pencil.size(), 0);
   for (Index i = 0; i < result.modes.cols(); ++i) {

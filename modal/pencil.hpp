@@ -31,6 +31,7 @@ struct RigidMotions {
   MatrixXd massless;  ///< num_fdofs x l: no strain and no mass; K - σM is singular along them for every σ
   std::vector<int> held;      ///< l f-dofs whose holding removes the massless motions and changes nothing else
   std::vector<int> supports;  ///< k f-dofs whose holding holds `modes` too; only by find_null_motions
+  bool is_complete = false;   ///< every other motion has strain
 };
 
 /// The combinations (s x m) of Y (n x s) whose forces K Y c are roundoff in every row, 1e-9 of the sum of their terms:

@@ -96,10 +96,11 @@ Roots PencilSolver::solve_stage(const fe::SymmetricFactor& factor, double shift,
     G.middleCols(first, size) = Z.transpose() * (C_->transpose() * solve_for(Z.middleCols(first, size)));
   }
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetrize(G));
-  const VectorXd lambda = solver.eigenvalues().cwiseInverse().array() - shift;
+  const VectorXd theta = solver.eigenvalues(), lambda = theta.cwiseInverse().array() - shift;
+  const double largest = theta.size() > 0 ? theta.cwiseAbs().maxCoeff() : 0;
   std::vector<int> order;
   for (int i = 0; i < lambda.size(); ++i)
-    if (std::isfinite(lambda(i))) order.push_back(i);
+    if (std::abs(theta(i)) > 1e-14 * largest && std::isfinite(lambda(i))) order.push_back(i);  // the rest is roundoff
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return lambda(a) < lambda(b); });
   order.resize(std::min(order.size(), static_cast<std::size_t>(number)));
   while (!order.empty() && std::abs(lambda(order.back()) + shift) > kReach * std::abs(lambda(order[0]) + shift))

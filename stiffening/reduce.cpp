@@ -17,6 +17,11 @@ void Reduction::set_rigid_part(const fe::Model& model) {
   body_.mass = properties.mass;
   body_.cg = properties.cg;
   body_.inertia = properties.inertia;
+  if (!(body_.mass > 0)) {
+    diagnostics_.error("reduce.no-mass", where(), "the translations of the grids carry no mass: this is no body",
+                       "give RHO, NSM or CONM2 cards; scalar points and CMASS between them are in no place");
+    diagnostics_.throw_if_errors();
+  }
   body_.is_free_free = is_free() && spec_.frame != BodyFrame::Node && spec_.frame != BodyFrame::ThreeNodes;
 }
 

@@ -33,6 +33,11 @@ void make_beam(Maker& maker, BeamProperties& properties, const records::BeamElem
   auto property = properties.find(card, who);
   const int a = maker.find_grid(card.ga, who, card.at), b = maker.find_grid(card.gb, who, card.at);
   if (a < 0 || b < 0) return;
+  if (a == b) {
+    maker.error("fe.zero-length", card.at, who + " has grid " + std::to_string(card.ga) + " at both ends",
+                "correct GA or GB; offsets give it a length, but no part that bends");
+    return;
+  }
   const Node& node_a = maker.nodes().node(a);
   const Node& node_b = maker.nodes().node(b);
   const auto is_frame = [](char c, const char* allowed) { return std::string(allowed).find(c) != std::string::npos; };

@@ -24,7 +24,7 @@ VectorXd calc_sizes(const Element& element, const std::vector<Node>& nodes, cons
                     const MatrixXd& K_e) {
   double arm = 0, largest[2] = {0, 0};
   for (int k : element.nodes()) arm = std::max(arm, (nodes[k].x - nodes[element.nodes()[0]].x).norm());
-  std::vector<char> kinds;
+  std::vector<int> kinds;
   for (int i = 0; i < element.num_dofs(); ++i) {
     const int g = element.gdofs()[i];
     kinds.push_back(g - nodes[gdof_node[g]].first_gdof < 3 ? 0 : 1);
@@ -99,27 +99,20 @@ std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vect
     fdof_slot[f] = component % 3;
     is_free[fdof_block[f]][fdof_slot[f]] = 1;
   }
-  const NodeBlocks found = calc_node_blocks(model, ldof_node, fdof_block, fdof_slot);
-  const std::vector<Matrix3d>& blocks = found.K;
-  const std::vector<double>& noise = found.noise;
-  const auto get_scale = [&](int b) {
-    return model.prestress() ? blocks[b].diagonal().cwiseAbs().maxCoeff() : blocks[b].diagonal().maxCoeff();
-  };
-  double largest[2] = {0, 0};
-  for (int b = 0; b < num_blocks; ++b) largest[b % 2] = std::max(largest[b % 2], get_scale(b));
-
+  const auto [blocks, noise] = calc_node_blocks(model, ldof_node, fdof_block, fdof_slot);
   std::vector<AutospcEntry> entries;
   for (int b = 0; b < num_blocks; ++b) {
     const Node& node = nodes[b / 2];
     std::vector<int> slots;
     for (int s = 0; s < 3; ++s)
       if (is_free[b][s]) slots.push_back(s);
-    const double scale = get_scale(b);
+    const Eigen::Vector3d diagonal = blocks[b].diagonal();
+    const double scale = model.prestress() ? diagonal.cwiseAbs().maxCoeff() : diagonal.maxCoeff();
     const size_t first = entries.size();
     while (!slots.empty()) {
       int singular = 0;
       double ratio = 0;
-      if (scale > std::max(kNothing * largest[b % 2], noise[b])) {
+      if (scale > noise[b]) {
         const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(MatrixXd(blocks[b](slots, slots)));
         const double lowest = solver.eigenvalues()[0] / scale;
         ratio = std::max(0.0, lowest);

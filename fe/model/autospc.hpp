@@ -10,10 +10,10 @@ namespace bough::fe {
 /// The singular directions of the 3 x 3 translational and rotational stiffness of each node, after constraints.
 ///
 /// A direction is singular when its principal stiffness is at most `epsilon` times the largest diagonal term of its
-/// block or round-off of the stiffness that reached it (rigid elements whose parts cancel), or the whole block at most
-/// 1e-14 of the largest of its type in the model. The component (CD) with the largest
-/// share in it is held and the block looked at again, so that a rigid-body motion of the whole model, to which every
-/// node has stiffness, is never touched (MSC Nastran's grid point singularity processing, PARAM,EPZERO).
+/// block, or round-off of the terms that the block is a sum of (parts that rigid elements cancel); how stiff the model
+/// is elsewhere does not matter. The component (CD) with the largest share in it is held and the block looked at again,
+/// so that a rigid-body motion of the whole model, to which every node has stiffness, is never touched (MSC Nastran's
+/// grid point singularity processing, PARAM,EPZERO).
 /// The stiffness of a prestressed model has that of its stress; what it softens is left free, as no support may hide
 /// that it buckles. T of `model` = constraints before AUTOSPC; fdof_ldof as in Elimination.
 std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vector<int>& fdof_ldof, double epsilon);

@@ -191,6 +191,18 @@ TEST(Reduce, ReportsEveryErrorOfTheSpec) {
   EXPECT_EQ(get_errors(maker.deck, damping), std::vector<std::string>{"reduce.bad-damping"});
 }
 
+// Mass between scalar points is in no place: nothing that a multibody system could move.
+TEST(Reduce, ABodyNeedsMass) {
+  records::Deck deck;
+  deck.scalar_points = {1, 2};
+  deck.scalar_masses.emplace_back();
+  deck.scalar_masses.back().id = 3, deck.scalar_masses.back().m = 2, deck.scalar_masses.back().g1 = 2;
+  records::ScalarSpring spring;
+  spring.id = 4, spring.k = 10, spring.g1 = 1, spring.g2 = 2;
+  deck.springs.push_back(spring);
+  EXPECT_EQ(get_errors(deck, make_spec(1)), std::vector<std::string>{"reduce.no-mass"});
+}
+
 TEST(Reduce, MasslessRigidMotionTakesNoneOfTheModesAskedFor) {
   // A straight CBAR line has no inertia about its own axis: five rigid modes have mass, the roll has none.
   auto maker = test::DeckMaker();

@@ -75,7 +75,7 @@ class Grouper {
     }
     const int before = static_cast<int>(result_.images.size()) - 1;
     if (strip_marks(tag).empty() || matches(tail_tag(before), tag)) {
-      if (strip_marks(tag).empty() && is_after_empty(line)) warn_of_empty(line);
+      if (strip_marks(tag).empty() && !is_free_field(text(line)) && is_after_empty(line)) warn_of_empty(line);
       ++image(before).num_lines;
       return;
     }
@@ -88,7 +88,7 @@ class Grouper {
     return std::binary_search(all.begin(), all.end(), static_cast<std::size_t>(line));
   }
 
-  /// A script that writes eight blank fields writes an empty line, which no reader of decks takes for a continuation.
+  /// A script that writes eight blank fields of eight columns writes an empty line, which readers of decks skip.
   void warn_of_empty(int line) {
     const auto& at = source_.lines[static_cast<std::size_t>(line)].at;
     diagnostics_.warning("deck.empty-line", {source_.files[static_cast<std::size_t>(at.file)], at.line, 0},

@@ -104,6 +104,8 @@ TEST(Catalog, ZeroLength) {
   SmallModel m = make_sound();
   m.deck.beams[0].gb = 1;
   expect_error(m, "fe.zero-length", 12);
+  m.deck.beams[0].wb = Vector3d(0, 2, 0);  // the two ends are one rigid grid all the same
+  expect_error(m, "fe.zero-length", 12);
   SmallModel offset = make_sound();
   offset.deck.beams[0].wa = Vector3d(2, 0, 0);
   expect_error(offset, "fe.zero-length", 12);

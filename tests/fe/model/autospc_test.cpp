@@ -126,6 +126,20 @@ TEST(Autospc, stiffness_through_a_dependent_grid_counts) {
   EXPECT_EQ(model.num_fdofs(), 6);
 }
 
+TEST(Autospc, soft_beside_very_stiff_is_not_none) {
+  const auto deck = make_deck({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
+  const ElementFactory links = [](const records::Deck&, const NodeTable& nodes, Diagnostics&) {
+    ElementList list;
+    for (int k = 0; k < 2; ++k) {
+      const Eigen::Matrix<double, 6, 6> S = Eigen::Matrix<double, 6, 6>::Identity() * (k == 0 ? 1e20 : 1e3);
+      list.elements.push_back(std::make_unique<LinkElement>(k + 1, k, k + 1, nodes, S, 1.0));
+    }
+    return list;
+  };
+  Diagnostics d;
+  EXPECT_TRUE(Model::build(deck, {}, links, d).autospc().empty());
+}
+
 // Both ends of the rod follow one grid: what is left of its stiffness there is round-off, whatever its size.
 TEST(Autospc, stiffness_that_rigid_elements_cancel_is_none) {
   for (const double far : {0.3, 30.0, 3000.0}) {

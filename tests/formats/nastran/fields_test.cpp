@@ -118,13 +118,15 @@ TEST(Fields, OrphanContinuation) {
   EXPECT_EQ(read("+A,1,2\n+B,3\n").count("deck.orphan-continuation"), 2);
 }
 
-// Eight blank fields written as an empty line: the readers of decks skip it, and K1, K2 of a PBEAM become stress points.
+// Eight blank fields written as an empty line: the readers of decks skip it, and K1, K2 of a PBEAM become stress
+// points.
 TEST(Fields, EmptyLineBeforeAContinuation) {
   const std::string head = "PBEAM   7       7       1.      1.      1.              1.\n";
   const auto r = read(head + "\n        0.      0.\nGRID,1\n\n$\nGRID,2\n");
   ASSERT_EQ(r.count("deck.empty-line"), 1);
   EXPECT_EQ(r.find("deck.empty-line")->where.line, 3);
   EXPECT_EQ(read(head + "+\n        0.      0.\n").count("deck.empty-line"), 0);
+  EXPECT_EQ(read("PBEAM,7,7,1.,1.,1.,,1.\n\n,0.,0.\n").count("deck.empty-line"), 0);
   EXPECT_EQ(read(head + "$ a comment is none\n        0.      0.\n").count("deck.empty-line"), 0);
 }
 

@@ -67,7 +67,7 @@ def main():
     parser.add_argument("--shrink", action="store_true", help="cut down the decks that break a rule")
     parser.add_argument("--decks", nargs="+", help="these decks, and those in these folders, by the rules alone")
     parser.add_argument("--timeout", type=float, default=20)
-    parser.add_argument("--list-unclear", action="store_true", help="say why a deck has no certain answer")
+    parser.add_argument("--list-unclear", action="store_true", help="say why a deck has no certain answer, or is refused")
     parser.add_argument("--keep", default="oracle-found")
     parser.add_argument("-j", "--jobs", type=int, default=1)
     options = parser.parse_args()
@@ -81,8 +81,8 @@ def main():
     with multiprocessing.Pool(options.jobs) as pool:
         for seed, fault, report in pool.imap(examine, jobs):
             kinds[report.kind] += 1
-            if report.kind == "unclear" and options.list_unclear:
-                print(f"seed {seed}: unclear: {report.what}", flush=True)
+            if report.kind in ("unclear", "refused") and options.list_unclear:
+                print(f"seed {seed}: {report.kind}: {report.what}", flush=True)
             if report.kind != "wrong":
                 continue
             os.makedirs(options.keep, exist_ok=True)

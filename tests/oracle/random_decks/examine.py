@@ -99,7 +99,7 @@ class Examination:
             return Report("wrong", wrong, text)
         if unclear:
             return Report("unclear", unclear, text)
-        return Report("ok" if code == 0 else "refused", "", text)
+        return Report("ok" if code == 0 else "refused", self.refusal, text)
 
     def judge_refusal(self, ran):
         """Of a deck that `matrices` refuses."""
@@ -111,14 +111,14 @@ class Examination:
 
     def try_verbs(self, matrices, truth, spectrum, eigrl):
         """What is wrong by verb, and the exit code of modes."""
-        code, found = 1, {}
+        code, found, self.refusal = 1, {}, ""
         for verb in self.verbs:
             wrong = None
             if verb == "matrices":      # has been run
                 continue
             if verb == "modes":
                 ran, answer = self.program.modes("deck.bdf")
-                code = ran.code
+                code, self.refusal = ran.code, ran.first_error() if ran.code else ""
                 if matrices is None:
                     wrong = ran.broken_rule() or (code == 0 and "modes answers a deck that matrices refuses")
                 else:

@@ -21,15 +21,25 @@ def rigid_motions(model, truth, origin):
     return Phi
 
 
+def weigh(model, truth):
+    """The mass of translations."""
+    R = rigid_motions(model, truth, np.zeros(3))[:, :3]
+    return float(np.trace(R.T @ truth.M_g @ R)) / 3
+
+
 def judge(ran, path, model, truth, spectrum, is_free):
     broken = ran.broken_rule()
     if broken or truth is None or spectrum is None or spectrum.grey:
         return broken
     if ran.code != 0:
+        if set(ran.ids()) == {"reduce.no-mass"} and weigh(model, truth) <= 0:
+            return None
         loose = spectrum.num_null > 0 or spectrum.is_zero().any() or len(spectrum.lam) == 0
         if is_free or loose:
             return None      # which motions a free body may have is decided by rules of its own
         return f"reduce refuses a sound structure (exit {ran.code}): {ran.first_error()}"
+    if weigh(model, truth) <= 0:
+        return "reduce: a body without mass, exit 0"
     with h5py.File(os.path.join(path, "body.h5")) as f:
         if "full/phi" not in f:
             return "reduce: a body without modes and with shapes" if len(f["modes/eigenvalue"]) else None

@@ -137,8 +137,31 @@ def solve(K, M, K_size, M_size):
         if shift <= 3 * target or not len(strained):
             break
         shift = max(target, shift * 1e-6)
-    found.lam, found.noise, found.X = lam, noise, X
+    found.lam, found.noise, found.X = refine_high(K, M, K_size, M_size, lam, noise, X, shift, big)
     return found
+
+
+def refine_high(K, M, K_size, M_size, lam, noise, X, shift, big):
+    """Values far above the shift are roundoff beside those near it: the lower vectors taken out of theirs, which span
+    all the rest, they are solved among themselves."""
+    first = 0
+    while first < len(lam):
+        reach = 1e5 * max(shift, abs(lam[first]))
+        first += int((lam[first:] <= reach).sum())
+        if first == len(lam):
+            break
+        low, high = (V.astype(LONG) for V in (X[:, :first], X[:, first:]))
+        for _ in range(2):
+            high = high - low @ (low.T @ (M.astype(LONG) @ high))
+        solved = invert(*(0.5 * (P + P.T) for P in (high.T @ B.astype(LONG) @ high for B in (K, M))), LONG(0))
+        if solved is None:
+            break
+        high_lam, high_noise, high = measure(K, M, K_size, M_size, (high @ solved[1][:, np.argsort(-solved[0])]))
+        if high_lam[0] < lam[first - 1]:
+            break
+        lam, noise = np.r_[lam[:first], high_lam], np.r_[noise[:first], high_noise + 1e-26 * big]
+        X, shift = np.hstack([X[:, :first], high]), high_lam[0]
+    return lam, noise, X
 
 
 def measure(K, M, K_size, M_size, X):

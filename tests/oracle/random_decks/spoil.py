@@ -87,8 +87,7 @@ def drop_material(rng, cards):
 
 
 def no_length(rng, cards):
-    # offsets would give it a length
-    k = pick(rng, cards, lambda name, f: name in ("CROD", "CTUBE") or (name in ("CBAR", "CBEAM") and len(f) < 9))
+    k = pick(rng, cards, lambda name, f: name in ("CROD", "CTUBE", "CBAR", "CBEAM"))
     if k is None:
         return None
     fields = list(cards[k][1])

@@ -77,7 +77,7 @@ class Writer:
                 tail = f"{'*' if star else '+'}T{self.tag}"
                 body = f"{body:<64}" + tail
             text.append((head + body).rstrip())
-            if kind == "blank" and not any(v is not None for v in line):
+            if kind == "blank" and not star and not any(v is not None for v in line):
                 text[-1] = "+"      # an empty line would count as none
             mark = star or {"blank": "", "plus": "+", "tag": tail}[kind]
             head = f"{tail if kind == 'tag' else mark:<8}"
