@@ -48,6 +48,7 @@ records::FlexBody calc_matrix_body(const MatrixModel& model, const std::vector<i
   body.consistent = calc_momentum_integrals(model.dofs, mass_times, model.Phi, model.reference);
   body.exact = calc_exact_integrals(model.dofs, mass_times, model.Phi, model.reference);
   body.integrals_method = "consistent";
+  body.masses = "nodal momenta";
 
   body.node_id = nodes;
   body.node_xyz.resize(static_cast<Eigen::Index>(nodes.size()), 3);

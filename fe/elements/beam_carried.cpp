@@ -1,4 +1,6 @@
 /// \file The bodies behind the mass of a beam: sections on its field, or at the ends of its arms.
+#include <cmath>
+
 #include "bough/base/rotation.hpp"
 #include "bough/fe/elements/beam.hpp"
 #include "bough/fe/elements/carried.hpp"
@@ -6,14 +8,22 @@
 namespace bough::fe {
 namespace {
 
-/// Moments per length about the shear centre, in element axes. A polar inertia (NSI) counts half for each axis.
-MassMoments calc_section_moments(const BeamProperty& property, const BeamSection& s) {
-  const Matrix6d m = calc_section_mass(property, s, true);
-  MassMoments moments{m(0, 0), {m(1, 5), m(2, 3), m(0, 4)}, Matrix3d::Zero()};
-  const double polar = m(3, 3) - m(4, 4) - m(5, 5);
-  moments.E(1, 1) = m(5, 5) + 0.5 * polar;
-  moments.E(2, 2) = m(4, 4) + 0.5 * polar;
-  moments.E(1, 2) = moments.E(2, 1) = -m(4, 5);
+/// Moments per length about the shear centre, in element axes: those of M, with the inertia of the section about its y
+/// and z axes where `bending` says so. A polar inertia (NSI) counts half for each axis. Where M has no bending inertia
+/// the propeller moment still needs ∫(y² - z²): E is then wide of M by that, and not above it, so that no motion has
+/// less energy in M than its pieces.
+MassMoments calc_section_moments(const BeamProperty& property, const BeamSection& s, bool bending) {
+  const Matrix6d m = calc_section_mass(property, s, bending);
+  const Matrix3d J = m.bottomRightCorner<3, 3>();
+  MassMoments moments{m(0, 0), {m(1, 5), m(2, 3), m(0, 4)}, 0.5 * J.trace() * Matrix3d::Identity() - J};
+  if (property.has_torsional_inertia || (property.has_section_inertia && !bending)) {
+    const double half = 0.5 * property.material.rho * (s.I1 - s.I2), product = property.material.rho * s.I12;
+    moments.E(0, 0) -= std::hypot(half, product);
+    moments.E(1, 1) += half;
+    moments.E(2, 2) -= half;
+    moments.E(1, 2) += product;
+    moments.E(2, 1) += product;
+  }
   return moments;
 }
 
@@ -30,8 +40,8 @@ MassMoments shift(const MassMoments& a, const Vector3d& arm) {
 }  // namespace
 
 bool Beam::carries_turning_mass(MassKind kind) const {
-  return kind == MassKind::Consistent || property_->has_section_inertia || !geometry_.wa.isZero(0) ||
-         !geometry_.wb.isZero(0);
+  return kind == MassKind::Consistent || property_->has_section_inertia || property_->has_torsional_inertia ||
+         !geometry_.wa.isZero(0) || !geometry_.wb.isZero(0);
 }
 
 bool Beam::add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const {
@@ -44,7 +54,7 @@ void Beam::add_lumped_bodies(const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& 
   MassMoments end[2];
   for (const auto& point : field.calc_points(2, 3)) {
     const double t = point.x / geometry_.length;
-    const MassMoments section = calc_section_moments(*property_, property_->calc_section(t));
+    const MassMoments section = calc_section_moments(*property_, property_->calc_section(t), false);
     for (int k = 0; k < 2; ++k) {
       const double part = point.weight * (k == 0 ? 1 - t : t);
       end[k].m += part * section.m, end[k].S += part * section.S, end[k].E += part * section.E;
@@ -77,7 +87,7 @@ void Beam::add_consistent_bodies(const Eigen::Ref<const Matrix3Xd>& x, CarriedMa
   double mass = 0;
   for (const auto& point : field.calc_points(4, 7)) {
     const auto section = turn_and_scale(
-        calc_section_moments(*property_, property_->calc_section(point.x / geometry_.length)), R, point.weight);
+        calc_section_moments(*property_, property_->calc_section(point.x / geometry_.length), true), R, point.weight);
     Matrix6x12d D;
     field.calc_shape(point.x, &D, nullptr);
     const Motion U = R * D.topRows<3>() * released, Theta = R * D.bottomRows<3>() * released;
@@ -91,11 +101,12 @@ void Beam::add_consistent_bodies(const Eigen::Ref<const Matrix3Xd>& x, CarriedMa
     mass += section.m;
   }
   carried.add_chord_field(x_a, geometry_.length * R.col(0), tips, moved);
-  if (!property_->has_section_inertia && !geometry_.is_part) {  // the mean of lumped and consistent along the axis
+  if (!property_->has_section_inertia && !property_->has_torsional_inertia && !geometry_.is_part) {
+    // The mean of lumped and consistent along the axis: a mass that feels the stretch and is nowhere, so that the pull
+    // of spin is that of the line.
     const Motion stretch = R.col(0) * (released.row(6) - released.row(0));
-    const int p = carried.add_point(false, geometry_.length * R.col(0), stretch * tips);
+    const int p = carried.add_point(false, Vector3d::Zero(), stretch * tips);
     carried.mu(p, p) = mass / 12;
-    add_ends(p, stretch);
   }
   for (int k = 0; k < 2; ++k) {
     if (by_end[k].empty()) continue;

@@ -117,7 +117,8 @@ TEST(GeometricStiffness, BalancedLoadsDoNotFeelTheSupport) {
 }
 
 // K_G1(ωz²) of the cantilever's bending modes: Southwell's K0 (Rayleigh quotient of the tension ρAΩ²(L²-x²)/2 with the
-// non-rotating modes), and K1 from the centripetal -Ω²L of a hub of radius L. The error falls as h².
+// non-rotating modes), and K1 from the centripetal -Ω²L of a hub of radius L. The mass between grids is pulled where it
+// is: 40 elements give the digits of the reference.
 TEST(GeometricStiffness, SouthwellCoefficients) {
   const double K0[] = {1.193336, 6.478225, 17.859520, 36.055388};
   const double K1[] = {1.570878, 8.647143, 24.952113, 51.459105};
@@ -140,8 +141,8 @@ TEST(GeometricStiffness, SouthwellCoefficients) {
     }
     EXPECT_EQ(found, 4);
   }
-  EXPECT_LT(error[1], 5e-5);
-  EXPECT_NEAR(std::log2(error[0] / error[1]), 2, 0.1);
+  EXPECT_LT(error[0], 1e-6);
+  EXPECT_LT(error[1], 1e-6);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ SPC = 1
 METHOD = 1
 BEGIN BULK
 EIGRL,1,,,6
-PARAM,COUPMASS,1
+PARAM,COUPMASS,-1
 PARAM,WTMASS,.5
 CORD2C,3,,0.,0.,0.,0.,0.,1.
 ,1.,0.,0.
@@ -196,8 +196,10 @@ TEST(ReduceMatrices, OwnMatricesGiveTheBodyOfTheDeck) {
   Diagnostics found;
   const auto body = reduce_given(deck, spec, own.given, &found);
   expect_same_body(body, expected);
-  expect_same_integrals(body.consistent, expected.consistent, "consistent");
-  EXPECT_TRUE(body.lumped.empty());  // M is consistent
+  expect_same_integrals(body.lumped, expected.lumped, "lumped");
+  EXPECT_TRUE(body.consistent.empty());
+  EXPECT_EQ(body.masses, "bodies");  // the blocks of grids are those of rigid bodies
+  EXPECT_FALSE(has_id(found, "reduce.inertia-approximated"));
   for (int i = 0; i < 12; ++i) {
     EXPECT_TRUE(body.kg_inertial_computed[std::size_t(i)]);
     expect_near(body.kg_inertial[std::size_t(i)], expected.kg_inertial[std::size_t(i)], 1e-9, "K_G1");
@@ -222,6 +224,26 @@ TEST(ReduceMatrices, OwnMatricesGiveTheBodyOfTheDeck) {
   // K_G of the other two directions of the interface node is not there.
   EXPECT_TRUE(has_id(found, "reduce.no-stiffening"));
   EXPECT_FALSE(has_id(found, "reduce.missing-dofs") || has_id(found, "reduce.not-rigid-mass"));
+}
+
+// Blocks that couple the rotations of two grids are of no bodies: spin takes their nodal momenta, and the file says so.
+TEST(ReduceMatrices, ConsistentMassTakesItsNodalMomenta) {
+  const auto deck = read(replace(kDeck, "PARAM,COUPMASS,-1", "PARAM,COUPMASS,1"));
+  const Exported own(deck);
+  const auto spec = make_spec(4);
+  Diagnostics found, diagnostics;
+  const auto body = reduce_given(deck, spec, own.given, &found);
+  EXPECT_TRUE(has_id(found, "reduce.inertia-approximated"));
+  EXPECT_EQ(body.masses, "nodal momenta");
+  EXPECT_TRUE(body.lumped.empty());
+  const auto expected = stiffening::reduce(deck, spec, {}, diagnostics);
+  EXPECT_EQ(expected.masses, "bodies");
+  expect_near(body.frequency_hz, expected.frequency_hz, 1e-10, "frequency");
+  expect_near(body.F_I.leftCols(6), expected.F_I.leftCols(6), 1e-12, "F_I of accelerations");
+  expect_same_integrals(body.consistent, expected.consistent, "consistent");
+  // The force on the whole is right all the same.
+  const MatrixXd rigid = own.model.calc_rigid_modes().leftCols(3);
+  expect_near(rigid.transpose() * body.F_I, rigid.transpose() * expected.F_I, 1e-12, "resultant");
 }
 
 TEST(ReduceMatrices, DisplacementAxesAndTheOrderOfPoints) {
@@ -276,8 +298,7 @@ void keep_dofs(GivenMatrix& matrix, const std::vector<int>& rows) {
 
 TEST(ReduceMatrices, DofsThatTheMatrixLacks) {
   // Without the clamped dofs, as most programs write, and in the plane only.
-  const auto planar = read(replace(replace(kDeck, "PARAM,COUPMASS,1", "PARAM,COUPMASS,-1"), "CONM2,20,5,,1.5,.1,.2,0.",
-                                   "CONM2,20,5,,1.5,0.,0.,0."));
+  const auto planar = read(replace(kDeck, "CONM2,20,5,,1.5,.1,.2,0.", "CONM2,20,5,,1.5,0.,0.,0."));
   Exported own(planar);
   const auto spec = make_spec(4);
   Diagnostics diagnostics;
@@ -468,8 +489,8 @@ TEST(ReduceMatrices, Errors) {
   spec.mass = "lumped";
   fails(own.given, "reduce.bad-mass", "the mass matrix is given", spec);
   spec = make_spec(2);
-  spec.integrals = "lumped";
-  fails(own.given, "reduce.bad-integrals", "mass matrix given is consistent", spec);
+  spec.integrals = "consistent";
+  fails(own.given, "reduce.bad-integrals", "mass matrix given is lumped", spec);
   given = own.given;
   given.geometric.push_back({"pull", own.given.K});
   given.geometric.back().load = own.given.K;

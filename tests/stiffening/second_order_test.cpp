@@ -25,7 +25,7 @@ struct BalancedLoad {
   VectorXd at_grids;  ///< the part that acts on grids
 };
 
-BalancedLoad make_load(const fe::Model& model, bool has_alpha) {
+BalancedLoad make_load(const fe::Model& model, bool has_alpha, const fe::AppliedLoad& along_beams = {}) {
   std::srand(3);
   BalancedLoad result;
   result.load.A_I = fe::calc_load_factors(
@@ -38,6 +38,8 @@ BalancedLoad make_load(const fe::Model& model, bool has_alpha) {
     f.segment<3>(first) = 20 * Vector3d::Random();
     if (id != 23) f.segment<3>(first + 3) = 3 * Vector3d::Random();
   }
+  result.load.arms = along_beams.arms;
+  if (along_beams.F.size() > 0) f += along_beams.F;
   const auto& last = model.node(model.find_node(5));
   const Eigen::Matrix<double, 6, 1> open = model.calc_rigid_modes(last.x).transpose() * (body + f);
   f.segment<6>(last.first_gdof) -= open;
@@ -62,6 +64,8 @@ VectorXd turn_load(const fe::Model& model, const BalancedLoad& load, const Vecto
   auto a = fe::calc_acceleration_field(load.load.A_I);
   a.a_o = theta.cross(a.a_o).eval();
   a.A = skew(theta) * a.A;
+  for (const auto& [first, arm, force] : load.load.arms)  // moments arm×(θ×f)
+    turned.segment<3>(first) += arm.cross(theta.cross(force)) - 0.5 * theta.cross(arm.cross(force));
   for (const auto& node : model.nodes()) field.segment<3>(node.first_gdof) = a.a_o + a.A * node.x;
   turned -= fe::multiply(fe::assemble_grid_mass(model, model.mass_kind()).get(), field);
   for (const auto& element : model.elements()) {
@@ -120,9 +124,13 @@ TEST(SecondOrder, CarriedMassesTurnWithTheBody) {
 TEST(SecondOrder, TurnsTheLoadWithTheBody) {
   for (const auto kind : {MassKind::Lumped, MassKind::Consistent}) {
     Diagnostics diagnostics;
-    const auto deck = test::read_deck(test::make_all_kinds(kind == MassKind::Lumped, false), diagnostics);
+    const auto deck = test::read_deck(test::make_all_kinds(kind == MassKind::Lumped, false) +
+                                          "PLOAD1,9,1,FYE,FR,.1,30.,.8,50.\nPLOAD1,9,3,FX,FR,.4,-70.\n",
+                                      diagnostics);
     const auto model = build(deck, kind);
-    const auto load = make_load(model, kind == MassKind::Consistent);
+    const auto along_beams = model.calc_applied_load(deck, 9, diagnostics);
+    ASSERT_EQ(along_beams.arms.size(), 4u);
+    const auto load = make_load(model, kind == MassKind::Consistent, along_beams);
     const fe::StaticSolver solver(model, fe::assemble_stiffness(model, fe::DofSet::Free),
                                   fe::choose_determinate_support(model, 5));
     const VectorXd u = solver.solve(load.load.F);

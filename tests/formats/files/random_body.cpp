@@ -106,6 +106,7 @@ FlexBody make_random_body(unsigned seed, int n, int p, bool full) {
   body.effective_mass = r.make(n, 6);
   body.exact = make_integrals(r, n);
   body.integrals_method = "exact";
+  body.masses = "bodies";
   for (std::size_t i = 0; i < records::kNumInertialLoads; ++i) {
     body.kg_inertial_computed[i] = i % 2 == 0;
     body.kg_inertial[i] = i % 2 == 0 ? r.make(n, n) : MatrixXd::Zero(n, n);
@@ -168,11 +169,12 @@ bool are_identical(const FlexBody& a, const FlexBody& b) {
             same(a.modal_mass, b.modal_mass) && same(a.modal_stiffness, b.modal_stiffness) &&
             same(a.modal_damping, b.modal_damping) && same(a.effective_mass, b.effective_mass) &&
             same(a.lumped, b.lumped) && same(a.consistent, b.consistent) && same(a.exact, b.exact) &&
-            a.integrals_method == b.integrals_method && same(a.F_I, b.F_I) && a.dof_map.rows() == b.dof_map.rows() &&
-            a.dof_map == b.dof_map && a.kg_inertial_computed == b.kg_inertial_computed &&
-            same(a.locators, b.locators) && same(a.kg_external, b.kg_external) &&
-            same(a.external_load, b.external_load) && same(a.load_resultant, b.load_resultant) &&
-            same(a.load_moment, b.load_moment) && same(a.full_phi, b.full_phi) && same(a.mesh, b.mesh);
+            a.integrals_method == b.integrals_method && a.masses == b.masses && same(a.F_I, b.F_I) &&
+            a.dof_map.rows() == b.dof_map.rows() && a.dof_map == b.dof_map &&
+            a.kg_inertial_computed == b.kg_inertial_computed && same(a.locators, b.locators) &&
+            same(a.kg_external, b.kg_external) && same(a.external_load, b.external_load) &&
+            same(a.load_resultant, b.load_resultant) && same(a.load_moment, b.load_moment) &&
+            same(a.full_phi, b.full_phi) && same(a.mesh, b.mesh);
   for (std::size_t i = 0; ok && i < records::kNumInertialLoads; ++i) ok = same(a.kg_inertial[i], b.kg_inertial[i]);
   return ok;
 }
