@@ -91,8 +91,7 @@ TEST(SymmetricFactor, OfAnIndefiniteMatrixIsNoCholeskyFactor) {
     for (const double last : {1.0, -1.0}) {
       PetscMat A;
       check_petsc(MatCreateSeqAIJ(PETSC_COMM_SELF, size, size, 1, nullptr, A.out()));
-      for (int i = 0; i < size; ++i)
-        check_petsc(MatSetValue(A.get(), i, i, i + 1 == size ? last : 1.0, INSERT_VALUES));
+      for (int i = 0; i < size; ++i) check_petsc(MatSetValue(A.get(), i, i, i + 1 == size ? last : 1.0, INSERT_VALUES));
       check_petsc(MatAssemblyBegin(A.get(), MAT_FINAL_ASSEMBLY));
       check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
       check_petsc(MatSetOption(A.get(), MAT_SYMMETRIC, PETSC_TRUE));
