@@ -253,8 +253,10 @@ void add_reduce(CLI::App& app, Action& action) {
   verb->add_option("--interface", o->interface_nodes,
                    "Grids where hinges or forces attach: six locators each (forces, moments), e.g. 1,41")
       ->delimiter(',');
-  verb->add_option("--load", o->loads, "Unit loads NODE:DIRECTIONS, a load set set:ID or a temperature set temperature:ID, with K_G; may be "
-                   "repeated")
+  verb->add_option(
+          "--load", o->loads,
+          "Unit loads NODE:DIRECTIONS, a load set set:ID or a temperature set temperature:ID, with K_G; may be "
+          "repeated")
       ->allow_extra_args(false);
   verb->add_option("--mass", o->mass, "Mass matrix: deck, lumped or consistent")
       ->check(CLI::IsMember({"deck", "lumped", "consistent"}));

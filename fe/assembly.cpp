@@ -216,8 +216,7 @@ MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen
 
 PetscMat assemble_stiffness(const Model& model, DofSet set) {
   return assemble(
-      model, set, [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); },
-      get_forms(model));
+      model, set, [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); }, get_forms(model));
 }
 
 PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind) {

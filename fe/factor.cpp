@@ -94,7 +94,8 @@ void judge_definite(PetscErrorCode code) {
 
 PetscMat factor_definite(Mat A) {
   if (initialize_petsc().size > 1) return {};
-  // Without this a small matrix gets an LDLᵀ that takes negative pivots as they come.
+  // Without both a small matrix gets an LDLᵀ that takes negative pivots as they come.
+  check_petsc(PetscOptionsSetValue(nullptr, "-mat_cholmod_final_asis", "false"));
   check_petsc(PetscOptionsSetValue(nullptr, "-mat_cholmod_final_ll", "true"));
   check_petsc(PetscOptionsSetValue(nullptr, "-mat_cholmod_print", "0"));  // it would write to stdout
   const PetscIs order = find_elimination_order(A);

@@ -151,8 +151,7 @@ void Reduction::set_stiffening(const fe::Model& model, const StaticSolve& solve)
     body_.kg_inertial_computed[inertial[c]] = true;
   }
   for (std::size_t e = 0; e < loads_.size(); ++e)
-    if (!loads_[e].initial.of.empty())
-      add_thermal_stiffness(model, e, K_G[static_cast<std::size_t>(num_inertial) + e]);
+    if (!loads_[e].initial.of.empty()) add_thermal_stiffness(model, e, K_G[static_cast<std::size_t>(num_inertial) + e]);
   body_.kg_external.assign(std::make_move_iterator(K_G.begin() + num_inertial), std::make_move_iterator(K_G.end()));
 }
 

@@ -47,7 +47,7 @@ struct Plate {
   std::array<Side, N> sides;
   std::array<Strains<N>, N> bending;
   std::array<Vectors<N>, N> shear;  ///< γ
-  std::array<Vectors<N>, N> slope;  ///< w,x w,y = γ - β
+  std::array<Vectors<N>, N> slope;  ///< w,x w,y = γ - β; of w alone without bending
   std::array<Vectors<N>, N> force;  ///< Q: S γ, or its limit 12 D_s/L² of each side's mean when rigid in shear
   /// Per side and point: curvature and shear by a unit mean shear of the side.
   std::array<std::array<Eigen::Vector3d, N>, N> side_bending;

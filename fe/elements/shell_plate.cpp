@@ -156,6 +156,10 @@ Plate<N> calc_plate(const Corners<N>& xy, const Points<N>& points, const ShellSe
       }
     }
     if (section.shear_flexible) force = section.S * shear;
+    if (section.D.isZero(0)) {  // a membrane: no bending ties the rotations to the slopes of the surface
+      slope.setZero();
+      for (int i = 0; i < N; ++i) slope.col(3 * i) = p.dshape.col(i);
+    }
   }
   return plate;
 }

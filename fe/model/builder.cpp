@@ -290,8 +290,7 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
   // Decks with AUTOSPC NO still have dofs that nothing touches; Nastran's solvers pass over such empty columns.
   const bool only_null = !is_on && param && !options_.autospc;
   if (!is_on && !only_null) return;
-  model_.autospc_ =
-      find_singular_dofs(model_, first.fdof_ldof, only_null ? 1e-14 : epsilon);
+  model_.autospc_ = find_singular_dofs(model_, first.fdof_ldof, only_null ? 1e-14 : epsilon);
   if (only_null && !options_.uses_enforced)
     drop_with_mass(model_.nodes_, model_.elements_, model_.T_, first.fdof_ldof, model_.mass_kind_, model_.autospc_);
   // Without any stiffness at all there is nothing to solve yet.

@@ -155,7 +155,8 @@ AppliedLoad Model::calc_applied_load(const records::Deck& deck, int set, Diagnos
   std::vector<PlainLoadSet> missing;
   for (const auto& plain : sets) {
     if (plain.enforced_only) continue;
-    const LoadTarget target{*this, deck, plain.sid, plain.scale, load.F, diagnostics, load.A_I, load.arms, load.followers};
+    const LoadTarget target{*this,       deck,     plain.sid, plain.scale,   load.F,
+                            diagnostics, load.A_I, load.arms, load.followers};
     const bool found[] = {add_point_loads(target), add_body_loads(target), add_surface_loads(target),
                           add_beam_loads(target), has_enforced(deck, plain.sid)};
     if (std::find(std::begin(found), std::end(found), true) == std::end(found)) missing.push_back(plain);

@@ -103,10 +103,11 @@ class SurfaceLoads {
     if (solid != solids_.end() && shell == shells_.end()) turn_outward(*solid->second, face);
     std::vector<double> p(load.p.begin(), load.p.begin() + static_cast<std::ptrdiff_t>(face.corners.size()));
     const SourceLocation at = t_.deck.locate(load.at);
-    add_face(face, p, card, load.at, load.n ? 0 : sign, [&](double value, const Vector3d& x, const Vector3d& n) -> Vector3d {
-      if (!load.n) return sign * value * n;
-      return value * (t_.model.calc_axes(load.cid, x, at, t_.diagnostics) * load.n->normalized());
-    });
+    add_face(face, p, card, load.at, load.n ? 0 : sign,
+             [&](double value, const Vector3d& x, const Vector3d& n) -> Vector3d {
+               if (!load.n) return sign * value * n;
+               return value * (t_.model.calc_axes(load.cid, x, at, t_.diagnostics) * load.n->normalized());
+             });
   }
 
  private:

@@ -75,8 +75,7 @@ Eigen::MatrixXd calc_follower_stiffness(const std::vector<Eigen::Vector3d>& corn
                      // x,r × x,s changes by N_j,r u × x,s + x,r × N_j,s u.
                      const Eigen::Matrix3d turned =
                          weight * intensity * (shapes.dall(1, j) * skew(dr) - shapes.dall(0, j) * skew(ds));
-                     for (int i = 0; i < shapes.all.size(); ++i)
-                       K.block<3, 3>(3 * i, 3 * j) -= shapes.all[i] * turned;
+                     for (int i = 0; i < shapes.all.size(); ++i) K.block<3, 3>(3 * i, 3 * j) -= shapes.all[i] * turned;
                    }
                  });
   return 0.5 * (K + K.transpose());

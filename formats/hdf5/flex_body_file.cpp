@@ -135,10 +135,11 @@ void write_preload(FileWriter& file, const FlexBody& body) {
   if (body.preload.empty()) return;
   file.make_group("/preload");
   file.write_attribute("/preload", "loads", body.preload);
-  file.write_vector("/preload/inertial", body.preload_A_I,
-                    {"inertial load factors A_I among the preload; the solver takes their K_G1 off the modal stiffness, as "
-                     "the motion brings it",
-                     "L/T^2, 1/T^2"});
+  file.write_vector(
+      "/preload/inertial", body.preload_A_I,
+      {"inertial load factors A_I among the preload; the solver takes their K_G1 off the modal stiffness, as "
+       "the motion brings it",
+       "L/T^2, 1/T^2"});
   file.write_matrix("/stiffening/kg_preload", body.kg_preload,
                     {"modal geometric stiffness of the preload, part of /modal/stiffness", "M L^2/(T^2 E^2)"});
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bough/base/rotation.hpp"
+#include "bough/fe/factor.hpp"
 #include "bough/fe/preload.hpp"
 #include "bough/fe/shape/face_load.hpp"
 #include "bough/fe/static_case.hpp"
@@ -81,6 +82,23 @@ TEST(FollowerPressure, OfAClosedSurfaceIsSymmetricByItself) {
   }
   EXPECT_LT((whole - whole.transpose()).norm(), 1e-8 * whole.norm());
   EXPECT_LT((whole - found).norm(), 1e-8 * whole.norm());
+}
+
+/// LLᵀ says so of small matrices too, for which CHOLMOD has another method than for large ones.
+TEST(SymmetricFactor, OfAnIndefiniteMatrixIsNoCholeskyFactor) {
+  initialize_petsc();
+  for (const int size : {1, 2, 40})
+    for (const double last : {1.0, -1.0}) {
+      PetscMat A;
+      check_petsc(MatCreateSeqAIJ(PETSC_COMM_SELF, size, size, 1, nullptr, A.out()));
+      for (int i = 0; i < size; ++i) check_petsc(MatSetValue(A.get(), i, i, i + 1 == size ? last : 1.0, INSERT_VALUES));
+      check_petsc(MatAssemblyBegin(A.get(), MAT_FINAL_ASSEMBLY));
+      check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
+      check_petsc(MatSetOption(A.get(), MAT_SYMMETRIC, PETSC_TRUE));
+      const SymmetricFactor factor(A.get(), false);
+      EXPECT_EQ(factor.is_definite(), last > 0) << size;
+      EXPECT_NEAR(factor.solve(VectorXd::Ones(size))(size - 1, 0), last, 1e-15);
+    }
 }
 
 /// A frame with an offset bar, a rigid link with a mass, a spring and a shell, loaded in all ways.

@@ -163,10 +163,10 @@ records::ModesResult make_random_modes(unsigned seed, int n, int p) {
 bool are_identical(const FlexBody& a, const FlexBody& b) {
   bool ok = a.name == b.name && a.preload == b.preload && same(a.kg_preload, b.kg_preload) &&
             same(a.preload_A_I, b.preload_A_I) && a.source == b.source && a.mass == b.mass && a.cg == b.cg &&
-            a.inertia == b.inertia && a.node_id == b.node_id && same(a.node_xyz, b.node_xyz) && a.interface_nodes == b.interface_nodes &&
-            a.is_free_free == b.is_free_free && same(a.frequency_hz, b.frequency_hz) &&
-            same(a.eigenvalue, b.eigenvalue) && a.kind == b.kind && same(a.phi, b.phi) &&
-            same(a.modal_mass, b.modal_mass) && same(a.modal_stiffness, b.modal_stiffness) &&
+            a.inertia == b.inertia && a.node_id == b.node_id && same(a.node_xyz, b.node_xyz) &&
+            a.interface_nodes == b.interface_nodes && a.is_free_free == b.is_free_free &&
+            same(a.frequency_hz, b.frequency_hz) && same(a.eigenvalue, b.eigenvalue) && a.kind == b.kind &&
+            same(a.phi, b.phi) && same(a.modal_mass, b.modal_mass) && same(a.modal_stiffness, b.modal_stiffness) &&
             same(a.modal_damping, b.modal_damping) && same(a.effective_mass, b.effective_mass) &&
             same(a.lumped, b.lumped) && same(a.consistent, b.consistent) && same(a.exact, b.exact) &&
             a.integrals_method == b.integrals_method && a.masses == b.masses && same(a.F_I, b.F_I) &&
