@@ -64,6 +64,7 @@ void NormalModes::choose_range(KrylovMethod method) {
   problem.M_diagonal = pencil_.M_diagonal;
   problem.rigid = rigid_.modes;
   problem.supported = supported_.get();
+  problem.is_complete = rigid_.is_complete;
   // hold_massless() puts springs into K that the caller's factor has not.
   if (rigid_.held.empty()) problem.factor = options_.factor;
   problem.tolerance = options_.tolerance;
