@@ -28,8 +28,8 @@ Answer find_answer(const fe::Model& model, const EigenOptions& options) {
     NormalModes again(model, options, detail::find_null_motions);
     if (again.knows_motions()) {
       Answer other = again.solve();
-      if (!answer || (other.is_sound && !answer->is_sound) ||
-          (other.is_sound == answer->is_sound && !(other.worst() >= answer->worst())))
+      const bool is_better = !answer || !answer->is_sound || other.worst() < answer->worst();
+      if (is_better && other.is_sound && other.worst_roundoff < 1e-2)  // of vague values the first do no worse
         answer = std::move(other);
     }
   } catch (const ComputationError&) {  // what was said first is nearer to the model

@@ -64,6 +64,7 @@ void NormalModes::choose_range(KrylovMethod method) {
   problem.M_diagonal = pencil_.M_diagonal;
   problem.rigid = rigid_.modes;
   problem.supported = supported_.get();
+  problem.is_complete = rigid_.is_complete;
   // hold_massless() puts springs into K that the caller's factor has not.
   if (rigid_.held.empty()) problem.factor = options_.factor;
   problem.tolerance = options_.tolerance;
@@ -191,6 +192,9 @@ EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
   pairs.inertia_count = count;
   pairs.num_massless = static_cast<int>(rigid_.held.size());
   warn_of_roundoff(pencil_, pairs.lambda, X, pairs.num_rigid, said);
+  worst_roundoff_ = 0;
+  for (int j = pairs.num_rigid; j < size; ++j)
+    worst_roundoff_ = std::max(worst_roundoff_, calc_roundoff(pencil_, X.col(j), pairs.lambda(j)));
   MatrixXd KX = pencil_.calc_K_times(X);
   for (const auto& [f, stiffness] : springs_) KX.row(f) -= stiffness * X.row(f);  // rigid motions move them
   pairs.residual = fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, pencil_.M_diagonal, pairs.lambda), X,
@@ -260,6 +264,7 @@ Answer NormalModes::solve() {
   for (const auto method : {KrylovMethod::Fastest, KrylovMethod::Blocks}) {
     answer.said = about_model;
     answer.pairs = find_pairs(method, answer.is_sound, answer.said);
+    answer.worst_roundoff = worst_roundoff_;
     if (answer.is_sound) break;
   }
   return answer;

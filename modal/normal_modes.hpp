@@ -19,6 +19,7 @@ struct Answer {
   EigenPairs pairs;
   bool is_sound = false;
   Diagnostics said;
+  double worst_roundoff = 0;  ///< relative, of the eigenvalues with strain
 
   double worst() const { return pairs.residual.size() > 0 ? pairs.residual.maxCoeff() : 0; }
   /// No mode may be missing, and no residual needs a word.
@@ -60,9 +61,10 @@ class NormalModes {
   fe::PetscMat supported_;                       ///< K with springs at the supports too
   std::optional<PencilSolver> solver_;
   ModeRange range_;
-  double shift_ = 0;    ///< K + shift M is definite
-  Roots found_;         ///< besides the rigid motions, ascending
-  int num_zero_ = 0;    ///< mechanisms among them, first: no strain either
+  double shift_ = 0;  ///< K + shift M is definite
+  Roots found_;       ///< besides the rigid motions, ascending
+  int num_zero_ = 0;  ///< mechanisms among them, first: no strain either
+  double worst_roundoff_ = 0;
   double overlap_ = 0;  ///< how far the vectors found were from M-orthonormal
 };
 

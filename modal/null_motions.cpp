@@ -50,7 +50,7 @@ MatrixXd iterate(const Pencil& pencil, const VectorXd& D, const fe::SymmetricFac
   for (Index c = 0; c < m; ++c)
     if (energy(c) < 1e-13) low.push_back(c);
   const MatrixXd Y = X(Eigen::all, low);
-  return Y.cols() > 0 ? (Y * find_forceless(pencil, Y)).eval() : Y;
+  return Y.cols() > 0 ? (Y * find_forceless(pencil, Y, 1e-6)).eval() : Y;
 }
 
 /// Nothing when they are too many, or the factor fails.
@@ -79,6 +79,7 @@ void append(MatrixXd& A, const MatrixXd& B) { A = join(A, B); }
 /// or beside the others, go to `massless`: as modes their zero would be vague by 1e-3 of what the others have.
 MatrixXd split_by_mass(const Pencil& pencil, const VectorXd& D, MatrixXd Y, MatrixXd& massless) {
   MatrixXd heavy(Y.rows(), 0);
+  const double nothing = 1e-18 * (pencil.M_diagonal.array() / D.array()).maxCoeff();  // of a single dof
   double most = 0;
   while (Y.cols() > 0) {
     for (int pass = 0; pass < 2 && heavy.cols() > 0; ++pass)
@@ -91,7 +92,7 @@ MatrixXd split_by_mass(const Pencil& pencil, const VectorXd& D, MatrixXd Y, Matr
     most = std::max(most, mass.maxCoeff());
     std::vector<Index> next, none, later;
     for (Index c = Y.cols() - 1; c >= 0; --c) {
-      const bool is_light = !(mass(c) > 1e-13 * std::max(parts(c), most));
+      const bool is_light = !(mass(c) > std::max(1e-13 * std::max(parts(c), most), nothing));
       (is_light ? none : mass(c) > 1e-6 * mass.maxCoeff() ? next : later).push_back(c);
     }
     append(massless, Y(Eigen::all, none));

@@ -110,7 +110,7 @@ double Pencil::calc_relative_energy(const VectorXd& x, double energy) const {
   return scale > 0 ? std::abs(energy) / scale : 0;
 }
 
-MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y) {
+MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor) {
   PetscInt first = 0, last = 0, num = 0;
   fe::check_petsc(MatGetOwnershipRange(pencil.K.get(), &first, &last));
   const PetscInt* columns = nullptr;
@@ -127,7 +127,8 @@ MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y) {
         terms(c) += std::abs(term);
       }
     fe::check_petsc(MatRestoreRow(pencil.K.get(), row, &num, &columns, &values));
-    if (terms.maxCoeff() > 0) force /= terms.maxCoeff();
+    const double scale = terms.maxCoeff() + floor * std::sqrt(pencil.K_diagonal(row));
+    if (scale > 0) force /= scale;
     G += force.transpose() * force;
   }
   fe::sum_over_ranks(G);

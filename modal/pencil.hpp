@@ -37,7 +37,8 @@ struct RigidMotions {
 /// The combinations (s x m) of Y (n x s) whose forces K Y c are roundoff in every row, 1e-9 of the sum of their terms:
 /// a stiff part that a soft one holds moves with next to none of its own energy, but the rows of the soft one see a
 /// force.
-MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y);
+/// `floor`: share of the root of K_ii that counts as a term too, for Y of unit length under diag K with roundoff in it.
+MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor = 0);
 
 /// Combinations c of Φ_R (about the cg) with (Φ_R c)ᵀ K (Φ_R c) and every row of K Φ_R c zero in roundoff on the f-set,
 /// and the dofs with mass that nothing stiffens at all. A motion that a support prevents shows as strain where it was

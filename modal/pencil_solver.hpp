@@ -14,6 +14,7 @@ struct PencilProblem {
   VectorXd M_diagonal;                          ///< replicated
   MatrixXd rigid;                               ///< n x k, M-orthonormal motions without strain, known; kept out
   Mat supported = nullptr;                      ///< K with a spring for each rigid motion, statically determinate
+  bool is_complete = false;                     ///< every motion without strain is in `rigid`: no look for another
   const fe::SymmetricFactor* factor = nullptr;  ///< of K, where the caller has it
   double tolerance = 1e-12;
   KrylovMethod method = KrylovMethod::Fastest;

@@ -37,10 +37,10 @@ EigenPairs solve(const std::string& text, int number) {
 }
 
 /// A free tetrahedron of rods. One of them has torsion: AUTOSPC leaves a rotation at each of its ends, and it spins.
-std::string make_truss(const std::string& more) {
-  std::string text =
-      "SOL 103\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,.2,.1\nGRID,3,,.3,1.1,-.2\nGRID,4,,.4,.3,.9\n"
-      "MAT1,1,7.+10,,.3,2700.\nPROD,1,1,1.-3\nPROD,2,1,1.-3,1.-6\nCROD,1,2,1,2\n";
+std::string make_truss(const std::string& more, const std::string& control = "") {
+  std::string text = "SOL 103\nCEND\n" + control +
+                     "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,.2,.1\nGRID,3,,.3,1.1,-.2\nGRID,4,,.4,.3,.9\n"
+                     "MAT1,1,7.+10,,.3,2700.\nPROD,1,1,1.-3\nPROD,2,1,1.-3,1.-6\nCROD,1,2,1,2\n";
   int id = 1;
   for (const char* ends : {"1,3", "1,4", "2,3", "2,4", "3,4"})
     text += "CROD," + std::to_string(++id) + ",1," + ends + "\n";
@@ -49,7 +49,7 @@ std::string make_truss(const std::string& more) {
 
 /// The six modes with strain of the truss without that rotation at all.
 VectorXd calc_strained(const std::string& more) {
-  const auto pairs = solve(make_truss("PARAM,AUTOSPC,NO\nSPC1,1,456,1,2,3,4\n" + more), 12);
+  const auto pairs = solve(make_truss("PARAM,AUTOSPC,NO\nSPC1,1,456,1,2,3,4\n" + more, "SPC=1\n"), 12);
   EXPECT_EQ(pairs.num_rigid, 6);
   return pairs.lambda.tail(6);
 }
@@ -62,6 +62,18 @@ TEST(NullMotions, ARodSpinsWithoutMass) {
   EXPECT_LT(pairs.residual.maxCoeff(), 1e-8);
   const VectorXd expected = calc_strained("");
   for (int j = 0; j < 6; ++j) EXPECT_NEAR(pairs.lambda(6 + j) / expected(j), 1, 1e-9) << j;
+}
+
+// Nothing but the spin is free: all that has no strain has no mass either.
+TEST(NullMotions, ARodSpinsInAHeldTruss) {
+  const auto with = [](const std::string& more) {
+    return solve(make_truss("SPC1,1,123,1,2,3\n" + more, "SPC=1\n"), 5);
+  };
+  const auto pairs = with(""), expected = with("SPC1,1,456,1,2,3,4\n");
+  ASSERT_EQ(pairs.lambda.size(), 3);
+  ASSERT_EQ(expected.lambda.size(), 3);
+  EXPECT_EQ(pairs.num_rigid, 0);
+  for (int j = 0; j < 3; ++j) EXPECT_NEAR(pairs.lambda(j) / expected.lambda(j), 1, 1e-9) << j;
 }
 
 TEST(NullMotions, ARodSpinsWithNextToNoMass) {

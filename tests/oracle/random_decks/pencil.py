@@ -73,6 +73,8 @@ def count_rank(M, M_size, with_mass, found):
 def invert(K, M, shift):
     """θ ascending and vectors (A-normal) of M x = θ (K + shift M) x; None when that is not definite."""
     A = K + shift * M
+    if not np.all(A.diagonal() > 0):
+        return None
     s = 1 / np.sqrt(A.diagonal())
     L = cholesky(A * np.outer(s, s))
     if L is None:
