@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "bough/formats/records/params.hpp"
 namespace bough::stiffening {
 
 using modal::bases::StaticSolve;

@@ -70,7 +70,7 @@ AffineField AffineField::fit(const records::FlexBody& flex, int n, bool stiffeni
   const auto& integrals = flex.integrals();
   AffineField field;
   field.A0 = basis.A0;
-  field.W = basis.damped;
+  field.W.rightCols<3>() = basis.damped;
   field.Q = Matrix3d::Identity() - 0.5 * basis.A0.rightCols<3>() * basis.damped.transpose();
   field.L = Columns::Zero(12, n);
   field.B = Columns::Zero(12, 4);

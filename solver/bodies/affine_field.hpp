@@ -23,14 +23,14 @@ struct AffineField {
   Columns L;                ///< 12 x n: ∫ρ φ_j fᵀ; its first column is Γ0_j/√m
   Columns B;                ///< 12 x r, r = 4, 8 or 12; orthonormal, the identity when r = 12, zero without K_G1
   std::vector<MatrixXd> c;  ///< [q] n x n, symmetric
-  Matrix3d Q = Matrix3d::Zero(), W = Matrix3d::Zero();  ///< W without its first column, which is zero
+  Matrix3d Q = Matrix3d::Zero();
+  Amplitudes W = Amplitudes::Zero();  ///< its first column is zero
   double lost = 0;  ///< largest part of a K_G1, relative to the largest, that no affine field of this mass has
 
-  /// Q (a bᵀ + b aᵀ) W: the part of x, less its first column, that is bilinear in a, twice.
-  Matrix3d calc_correction(const Amplitudes& a, const Amplitudes& b) const {
-    Matrix3d ab = a * b.transpose();
-    ab += ab.transpose().eval();
-    return Q * (ab * W);
+  /// Q (a bᵀ + b aᵀ) W: the part of x that is bilinear in a, twice.
+  Amplitudes calc_correction(const Amplitudes& a, const Amplitudes& b) const {
+    const Matrix3d ab = a * b.transpose();
+    return Q * ((ab + ab.transpose()) * W);
   }
   int rank() const { return static_cast<int>(c.size()); }
   /// From mass, inertia, Γ0, Γ1, Γ3 and those of the twelve K_G1 that were computed. The first n modes.

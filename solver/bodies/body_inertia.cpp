@@ -29,9 +29,8 @@ Amplitudes expand(const AffineField::Columns& B, const Eigen::Matrix<double, R, 
 // ∂A/∂a b.
 Vector12d turn(const AffineField& field, const Amplitudes& a, const Vector12d& b) {
   const Eigen::Map<const Amplitudes> b_34(b.data());
-  Vector12d x = b;
-  Eigen::Map<Amplitudes>(x.data()).rightCols<3>() -= field.calc_correction(a, b_34);
-  return x;
+  const Amplitudes x = b_34 - field.calc_correction(a, b_34);
+  return Eigen::Map<const Vector12d>(x.data());
 }
 
 // Rows 0..2: Σ_b P_b × x_b, row 3: Σ_b U_b · x_b, as factors of the 3 x 4 amplitudes x.
@@ -82,10 +81,10 @@ void Body::calc_flexible_inertia(const Vector3d& w, const ConstVectorRef& eta, c
   const Eigen::Map<const Amplitudes> l_34(l.data()), l_dot_34(l_dot.data());
   const Amplitudes a_34 = expand<R>(field_.B, a), a_dot_34 = expand<R>(field_.B, a_dot),
                    a_ddot_34 = expand<R>(field_.B, x.by_pair.template tail<R>());  // at η̈ = 0
-  Amplitudes A = field_.A0 + a_34, A_dot = a_dot_34, A_ddot = a_ddot_34;
-  A.rightCols<3>() -= 0.5 * field_.calc_correction(a_34, a_34);
-  A_dot.rightCols<3>() -= field_.calc_correction(a_34, a_dot_34);
-  A_ddot.rightCols<3>() -= field_.calc_correction(a_34, a_ddot_34) + field_.calc_correction(a_dot_34, a_dot_34);
+  const Amplitudes A = field_.A0 + a_34 - 0.5 * field_.calc_correction(a_34, a_34);
+  const Amplitudes A_dot = a_dot_34 - field_.calc_correction(a_34, a_dot_34);
+  const Amplitudes A_ddot =
+      a_ddot_34 - field_.calc_correction(a_34, a_ddot_34) - field_.calc_correction(a_dot_34, a_dot_34);
   const Amplitudes P = A + l_34, P_dot = A_dot + l_dot_34;
   const double root = std::sqrt(mass_);
   x.S = root * P.col(0);
