@@ -37,7 +37,10 @@ std::shared_ptr<const fe::Prestress> Reduction::calc_prestress(const fe::ModelOp
     std::snprintf(text, sizeof text, "spin (%g, %g, %g)", spec.spin.x(), spec.spin.y(), spec.spin.z());
     add(text);
   }
-  return fe::calc_prestress(deck_, own, fe::make_elements, preload, diagnostics_);
+  auto prestress = fe::calc_prestress(deck_, own, fe::make_elements, preload, diagnostics_);
+  diagnostics_.note("fe.preload", spec.at, "the stiffness holds that of the stress of " + prestress->name,
+                    "displacements and forces count from the loaded state");
+  return prestress;
 }
 
 /// What of the stiffness is the preload's, and what of that a moving frame would add again.

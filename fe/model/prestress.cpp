@@ -4,6 +4,7 @@
 #include "bough/fe/assembly.hpp"
 #include "bough/fe/factor.hpp"
 #include "bough/fe/model/builder.hpp"
+#include "bough/fe/statics.hpp"
 
 namespace bough::fe {
 namespace {
@@ -27,6 +28,20 @@ bool has_negative(const PetscMat& A) {
   return negative > 0;
 }
 
+/// Holds what carries the rigid motions of a free model: where those need no force, the sign of the rest stays.
+void hold_support(const Model& model, const PetscMat& A) {
+  std::vector<int> held;
+  try {
+    held = choose_determinate_support(model, 0);
+  } catch (const InputError&) {
+    return;
+  }
+  const double scale = get_diagonal(A.get()).cwiseAbs().maxCoeff();
+  if (initialize_petsc().rank > 0) held.clear();
+  check_petsc(
+      MatZeroRowsColumns(A.get(), static_cast<PetscInt>(held.size()), held.data(), scale, nullptr, nullptr));
+}
+
 }  // namespace
 
 void ModelBuilder::set_prestress() {
@@ -44,7 +59,9 @@ void ModelBuilder::set_prestress() {
 
 void ModelBuilder::check_prestress() {
   if (!model_.prestress_ || model_.num_fdofs() == 0) return;
-  if (!has_negative(assemble_stiffness(model_, DofSet::Free))) return;
+  const auto K = assemble_stiffness(model_, DofSet::Free);
+  if (options_.ignore_spc) hold_support(model_, K);
+  if (!has_negative(K)) return;
   throw ComputationError("fe.preload-buckles", model_.prestress_->at,
                          "the structure buckles under its preload, " + model_.prestress_->name +
                              ": its stiffness with that of the stress is not positive definite",

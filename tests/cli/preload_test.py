@@ -278,6 +278,34 @@ class Preload(ProgramTest):
         self.write("b.bdf", write_line("SPC = 1\n" + CHAIN, cards, element=BAR))
         self.fails(1, "reduce", "b.bdf", "--free", "--modes", "3", "-o", "b.h5", says=["preload"], error="reduce.grounded")
 
+    def test_free_frame_with_a_hot_bar(self):
+        """Three bars between rigid ends, the middle one hot: stress in balance with itself leaves rigid motions alone."""
+        deck = ("SOL 103\nCEND\nBEGIN BULK\nPARAM,COUPMASS,1\nMAT1,1,7.+10,,.3,2700.,1.-5\nMAT1,2,7.+10,,.3,2700.,0.\n"
+                "PBAR,1,1,1.-4,2.-10,2.-10,4.-10\nPBAR,2,2,1.-4,2.-10,2.-10,4.-10\nTEMPD,30,%r\n")
+        ends = []
+        for k in range(3):
+            ends.append((100 * k + 1, 100 * k + 11))
+            for i in range(11):
+                deck += f"GRID,{100 * k + i + 1},,{0.1 * i:.1f},{0.2 * (k - 1):.1f},0.\n"
+            for i in range(10):
+                deck += f"CBAR,{100 * k + i + 1},{1 if k == 1 else 2},{100 * k + i + 1},{100 * k + i + 2},0.,0.,1.\n"
+        deck += "".join(f"RBE2,{900 + e},{100 + (1, 11)[e]},123456,{(1, 11)[e]},{200 + (1, 11)[e]}\n" for e in (0, 1))
+        deck += "ENDDATA\n"
+        found = []
+        for hot in (1e-9, 2.0):
+            self.write("h.bdf", deck % hot)
+            self.write("h.toml", '[body]\ndeck = "h.bdf"\nframe = "free"\n[body.modes]\nnumber = 4\n'
+                       '[body.preload]\ntemperature_set = 30\n')
+            self.bough("reduce", "h.toml", "-o", "h.h5")
+            with h5py.File(self.path("h.h5")) as f:
+                found.append(f["modes/frequency_hz"][:])
+                self.assertEqual(f["preload"].attrs["loads"], "TEMPERATURE 30")
+        # Alone between hinges the middle bar would buckle at N = pi^2 EI / L^2 = 138; here N = -2/3 EA alpha T = -93.
+        self.assertTrue(np.all(found[0] > 1))
+        self.assertGreater(np.abs(found[1] / found[0] - 1).max(), 0.05)
+        self.write("h.bdf", deck % 400.0)
+        self.fails(3, "reduce", "h.toml", "-o", "h.h5", says=["TEMPERATURE 30"], error="fe.preload-buckles")
+
     def test_wrong_preloads(self):
         for change, words in ((("PRELOAD) = 1", "PRELOAD) = 9"), "subcase 9"), (("LOAD = 10\n", "\n"), "no load"),
                               (("LOAD = 10\n", "LOAD = 10\nSTATSUB(PRELOAD) = 1\n"), "its own preload")):
