@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bough/formats/records/params.hpp"
+
 namespace bough::stiffening {
 
 using modal::bases::StaticSolve;
