@@ -7,8 +7,8 @@ namespace bough::fe {
 
 enum class DofSet { Free, Global };  ///< f-set (TᵀKT) or g-set
 
-/// K (with K_G0 of a prestressed model), or M (times WTMASS), on PETSC_COMM_WORLD; MATAIJ, zeros left out except on the diagonal; the same to the last bit
-/// on any number of ranks. O(elements).
+/// K (with K_G0 of a prestressed model), or M (times WTMASS), on PETSC_COMM_WORLD; MATAIJ, zeros left out except on the
+/// diagonal; the same to the last bit on any number of ranks. O(elements).
 PetscMat assemble_stiffness(const Model& model, DofSet set);
 PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind);
 /// The part of M on the g-set that moves as the translations of the grids do, and what is not known to do otherwise:

@@ -7,9 +7,9 @@ namespace bough::fe {
 
 /// Loads as columns, as AppliedLoad.
 struct AppliedLoads {
-  MatrixXd F;                              ///< num_gdofs x m
-  MatrixXd A_I;                            ///< 12 x m
-  std::vector<std::vector<ArmLoad>> arms;  ///< per load; may be shorter than m
+  MatrixXd F;                                              ///< num_gdofs x m
+  MatrixXd A_I;                                            ///< 12 x m
+  std::vector<std::vector<ArmLoad>> arms;                  ///< per load; may be shorter than m
   std::vector<std::vector<QuadraticForm>> followers = {};  ///< the same
 };
 AppliedLoads make_loads(const AppliedLoad& load);

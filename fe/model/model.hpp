@@ -123,7 +123,7 @@ class Model final : public NodeTable {
   Links links_;
   std::shared_ptr<const Prestress> prestress_;
   std::unordered_map<const Element*, const VectorXd*> prestressed_;  ///< internal forces in prestress_
-  std::vector<std::pair<int, ElementShape>> drawn_lines_;  ///< PLOTEL: id, shape
+  std::vector<std::pair<int, ElementShape>> drawn_lines_;            ///< PLOTEL: id, shape
   std::vector<int> fixed_dofs_;
   std::unordered_map<int, double> enforced_;  ///< by dof: the values of the SPC set that are not zero
   std::vector<int> held_by_spcd_;             ///< dofs that no SPC fixes but an SPCD of the subcase's load moves

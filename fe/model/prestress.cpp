@@ -9,6 +9,29 @@
 namespace bough::fe {
 namespace {
 
+/// By the inertia of MUMPS, on several ranks.
+bool has_negative_pivot(Mat A) {
+  MatFactorInfo info;
+  check_petsc(MatFactorInfoInitialize(&info));
+  for (const PetscInt extra_percent : {60, 200, 1000}) {
+    PetscMat F;
+    check_petsc(MatGetFactor(A, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, F.out()));
+    check_petsc(MatMumpsSetIcntl(F.get(), 13, 1));  // the inertia leaves out a root front that ScaLAPACK factors
+    check_petsc(MatMumpsSetIcntl(F.get(), 14, extra_percent));
+    check_petsc(MatCholeskyFactorSymbolic(F.get(), A, nullptr, &info));
+    check_petsc(MatCholeskyFactorNumeric(F.get(), A, &info));
+    PetscInt status = 0, detail = 0, negative = 0;
+    check_petsc(MatMumpsGetInfog(F.get(), 1, &status));
+    check_petsc(MatMumpsGetInfog(F.get(), 2, &detail));
+    const auto state = judge_factorization(status, detail);
+    if (state == FactorState::NeedsWorkspace) continue;
+    if (state == FactorState::Singular) return false;
+    check_petsc(MatGetInertia(F.get(), &negative, nullptr, nullptr));
+    return negative > 0;
+  }
+  return false;
+}
+
 /// Whether A has a negative eigenvalue beyond roundoff; those of motions without stiffness are none.
 bool has_negative(const PetscMat& A) {
   if (factor_definite(A.get())) return false;
@@ -21,11 +44,7 @@ bool has_negative(const PetscMat& A) {
   scatter(shift, v.get());
   check_petsc(MatDiagonalSet(shifted.get(), v.get(), ADD_VALUES));
   if (initialize_petsc().size == 1) return !factor_definite(shifted.get());
-  const SymmetricFactor factor(shifted.get(), false, FactorMethod::Pivoting);
-  if (factor.is_singular()) return false;
-  PetscInt negative = 0;
-  check_petsc(MatGetInertia(factor.get(), &negative, nullptr, nullptr));
-  return negative > 0;
+  return has_negative_pivot(shifted.get());
 }
 
 /// Holds what carries the rigid motions of a free model: where those need no force, the sign of the rest stays.
@@ -38,8 +57,7 @@ void hold_support(const Model& model, const PetscMat& A) {
   }
   const double scale = get_diagonal(A.get()).cwiseAbs().maxCoeff();
   if (initialize_petsc().rank > 0) held.clear();
-  check_petsc(
-      MatZeroRowsColumns(A.get(), static_cast<PetscInt>(held.size()), held.data(), scale, nullptr, nullptr));
+  check_petsc(MatZeroRowsColumns(A.get(), static_cast<PetscInt>(held.size()), held.data(), scale, nullptr, nullptr));
 }
 
 }  // namespace

@@ -359,7 +359,7 @@ struct Subcase {
   int spc = 0, mpc = 0, load = 0, method = 0, statsub = 0;  ///< 0: none
   int preload = 0;                                          ///< STATSUB(PRELOAD), and STATSUB of modes of any kind
   CardLocation preload_at;
-  int temperature = 0;                                      ///< TEMPERATURE(LOAD) or (BOTH)
+  int temperature = 0;  ///< TEMPERATURE(LOAD) or (BOTH)
   int suport1 = 0, nsm = 0;
   std::vector<std::pair<double, std::string>> k2gg, m2gg, b2gg;  ///< (scale, DMIG name)
 };
