@@ -221,7 +221,17 @@ std::optional<KrylovResult> solve_one_vector(const KrylovProblem& problem, Mat f
     result.values(i) = value;
     result.vectors.col(i) = fe::gather(x.get());
   }
-  if (problem.spectrum == Spectrum::NearShift) purify(problem, factor ? factor : get_factor(eps.get()), result);
+  if (problem.spectrum != Spectrum::NearShift) return result;
+  // 1/(λ - shift) beyond the rank of B are roundoff, as in solve_blocks.
+  const VectorXd distance = (result.values.array() - problem.shift).abs();
+  std::vector<int> kept;
+  for (PetscInt i = 0; i < converged; ++i)
+    if (1e-15 * distance(i) < distance.minCoeff()) kept.push_back(i);
+  if (static_cast<PetscInt>(kept.size()) < converged) {
+    result.values = VectorXd(result.values(kept));
+    result.vectors = MatrixXd(result.vectors(Eigen::all, kept));
+  }
+  purify(problem, factor ? factor : get_factor(eps.get()), result);
   return result;
 }
 

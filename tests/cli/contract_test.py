@@ -207,7 +207,7 @@ class Layout(ProgramTest):
     def test_flexible_body(self):
         self.write("panel.bdf", PANEL)
         self.bough("reduce", "panel.bdf", "--modes", 3, "--interface", "5,7", "--full", "-o", "b.h5")
-        n, p, ndof, g, ne = 3, 9, 55, 9, 6
+        n, p, ndof, g, ne = 3, 9, 55, 9, 12
         gamma = {"gamma0": (n, 3), "gamma1": (n, 3), "gamma2": (n, n, 3), "gamma3": (n, 3, 3), "gamma4": (n, n, 3, 3)}
         shapes = {"/rigid/mass": (1,), "/rigid/cg": (3,), "/rigid/inertia": (3, 3), "/nodes/id": (p,), "/nodes/xyz": (p, 3),
                   "/modes/frequency_hz": (n,), "/modes/eigenvalue": (n,), "/modes/kind": (n,), "/modes/phi": (p, 6, n),

@@ -133,10 +133,15 @@ class OfADeck(OracleTest):
                 Phi = body["full/phi"][:]
                 momentum = momentum_integrals(M, Phi, dof_map, xyz)
                 exact = exact_integrals(M, Phi, dof_map, xyz)
+                # Of a consistent M the grids do not know where the mass between them is: there the second order is that of
+                # the lines (docs/theory/carried-bodies.md, tests/modal), and the nodal formulas have the first.
                 for name in momentum:
                     self.assert_equal(body[f"integrals/{mass}/{name}"][:], momentum[name], f"{mass} {name}")
-                    self.assert_equal(body[f"integrals/exact/{name}"][:], exact[name], f"{mass} exact {name}")
-                self.assert_equal(body["inertial_loads/f"][:], inertial_loads(M, dof_map, xyz), mass)
+                    if mass == "lumped" or name in ("gamma0", "gamma1"):
+                        self.assert_equal(body[f"integrals/exact/{name}"][:], exact[name], f"{mass} exact {name}")
+                columns = slice(0, 12 if mass == "lumped" else 6)
+                F = inertial_loads(M, dof_map, xyz)
+                self.assert_equal(body["inertial_loads/f"][:][:, columns], F[:, columns], mass)
 
     def test_lumped_inertial_loads_are_those_of_particles(self):
         M, dof_map, xyz, body = self.read("lumped")

@@ -244,7 +244,7 @@ TEST(Bases, ErrorsOfTheSpec) {
 TEST(Bases, Warnings) {
   auto maker = make_frame();
   auto spec = make_spec(BodyFrame::Fixed, 2);
-  spec.loads = {{"tip", 106, {2}, 0, {}}, {"again", 106, {2}, 0, {}}};
+  spec.loads = {{"tip", 106, {2}, 0, 0, {}}, {"again", 106, {2}, 0, 0, {}}};
   spec.residual = {"tip", "again"};
   Diagnostics diagnostics;
   stiffening::reduce(maker.deck, spec, {}, diagnostics);

@@ -50,8 +50,8 @@ TEST(MaterialDamping, OfEveryKindOfMaterial) {
                 .06, "PCOMP");
   const std::string solid = kBox + "PSOLID,1,1\n";
   expect_factor(reduce("", solid + "MAT1,1,7.+10,,.3,2700.,,,.03\n"), .03, "MAT1 of a solid");
-  expect_factor(reduce("", solid + "MAT9,1,1.+11,4.+10,4.+10,,,,+\n+,1.+11,4.+10,,,,1.+11,,,+\n"
-                                   "+,,3.+10,,,3.+10,,3.+10,2700.,+\n+,,,,,,,,.07\n"),
+  expect_factor(reduce("", solid + "MAT9,1,1.+11,4.+10,4.+10,,,,1.+11,+\n+,4.+10,,,,1.+11,,,,+\n"
+                                   "+,3.+10,,,3.+10,,3.+10,2700.,,+\n+,,,,,,,.07\n"),
                 .07, "MAT9");
   expect_factor(reduce("", kBar + "MAT1,1,7.+10,,.3,,,,.02\nPARAM,G,.01\n"), .03, "a bar with PARAM,G");
 }
@@ -62,7 +62,7 @@ TEST(MaterialDamping, OfGivenMatricesAndBushes) {
   expect_factor(reduce("K2GG = KA\n", kBar + bar + "DMIG,KA,0,6,1\nDMIG,KA,2,1,,2,1,5.+6,,+\n+,2,3,7.+4\n"), .04, "K2GG");
   expect_factor(reduce("", kBar + bar + "CBUSH,8,8,2,,,,,0\nPBUSH,8,K,1.+6,2.+6,3.+6\n"), .04, "PBUSH without GE");
   const std::string bush = "GRID,1,,0.,0.,0.\nCONM2,9,1,,2.,,,,,+\n+,1.,,1.,,,1.\nCBUSH,8,8,1,,,,,0\nSPC1,1,456,1\n";
-  const auto body = reduce("", bush + "PBUSH,8,K,1.+6,4.+6,9.+6,,,,+\n+,GE,.1,.2,.3\n");
+  const auto body = reduce("", bush + "PBUSH,8,K,1.+6,4.+6,9.+6,,,,+\n+,,GE,.1,.2,.3\n");
   ASSERT_EQ(body.num_modes(), 3);
   for (int j = 0; j < 3; ++j)
     EXPECT_NEAR(body.modal_damping(j, j) / std::sqrt(body.eigenvalue(j)), .1 * (j + 1), 1e-12);

@@ -176,8 +176,8 @@ TEST(Reduce, ReportsEveryErrorOfTheSpec) {
   nodes.interface_nodes = {99};
   nodes.output_nodes = {98, 1};
   nodes.loads.resize(2);
-  nodes.loads[0] = {"a", 97, {1}, 0, {"beam.toml", 12, 0}};
-  nodes.loads[1] = {"b", 1, {7}, 0, {"beam.toml", 16, 0}};
+  nodes.loads[0] = {"a", 97, {1}, 0, 0, {"beam.toml", 12, 0}};
+  nodes.loads[1] = {"b", 1, {7}, 0, 0, {"beam.toml", 16, 0}};
   EXPECT_EQ(get_errors(maker.deck, nodes), (std::vector<std::string>{"reduce.unknown-node", "reduce.unknown-node",
                                                                      "reduce.unknown-node", "reduce.bad-direction"}));
 
