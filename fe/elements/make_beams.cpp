@@ -99,9 +99,9 @@ void make_beam(Maker& maker, BeamProperties& properties, const records::BeamElem
                                 who + " has warping points SA, SB, which are not used");
   if (!property) return;
   const double ge = property->material.ge;
-  maker.add(std::make_unique<Beam>(card.id, name, std::vector{a, b}, maker.list_gdofs({a, b}), std::move(property),
-                                   geometry),
-            ge);
+  maker.add(
+      std::make_unique<Beam>(card.id, name, std::vector{a, b}, maker.list_gdofs({a, b}), std::move(property), geometry),
+      ge);
 }
 
 }  // namespace

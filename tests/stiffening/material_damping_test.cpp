@@ -19,8 +19,8 @@ const std::string kBar =
 
 records::FlexBody reduce(const std::string& control, const std::string& bulk) {
   Diagnostics diagnostics;
-  const auto deck = nastran::read_deck_text("SOL 103\nCEND\nSPC = 1\n" + control + "BEGIN BULK\n" + bulk, "d.bdf", {},
-                                            diagnostics);
+  const auto deck =
+      nastran::read_deck_text("SOL 103\nCEND\nSPC = 1\n" + control + "BEGIN BULK\n" + bulk, "d.bdf", {}, diagnostics);
   EXPECT_EQ(diagnostics.num_errors(), 0);
   records::BodySpec spec;
   spec.file = "d.toml";
@@ -41,7 +41,8 @@ TEST(MaterialDamping, OfEveryKindOfMaterial) {
   const std::string shell = kPlate + "PSHELL,1,1,.01,1,,1\n";
   expect_factor(reduce("", shell + "MAT1,1,7.+10,,.3,2700.,,,.03\n"), .03, "MAT1 of a PSHELL");
   expect_factor(reduce("", shell + "MAT2,1,7.+10,2.+10,,7.+10,,2.5+10,2700.,+\n+,,,,,.04\n"), .04, "MAT2");
-  expect_factor(reduce("", shell + "MAT8,1,7.+10,3.+10,.3,2.+10,2.+10,1.+10,2700.,+\n+,,,,,,,,,+\n+,.05\n"), .05, "MAT8");
+  expect_factor(reduce("", shell + "MAT8,1,7.+10,3.+10,.3,2.+10,2.+10,1.+10,2700.,+\n+,,,,,,,,,+\n+,.05\n"), .05,
+                "MAT8");
   // MID1's for the whole of a PSHELL; a laminate's own, not its plies'.
   expect_factor(reduce("", kPlate + "PSHELL,1,1,.01,2,,2\nMAT1,1,7.+10,,.3,2700.,,,.03\nMAT1,2,7.+10,,.3,,,,.5\n"), .03,
                 "MID1");
@@ -59,7 +60,8 @@ TEST(MaterialDamping, OfEveryKindOfMaterial) {
 /// Stiffness that is given is scaled by PARAM,G as that of the elements; a bush has one GE a direction.
 TEST(MaterialDamping, OfGivenMatricesAndBushes) {
   const std::string bar = "MAT1,1,7.+10,,.3\nPARAM,G,4.-2\n";
-  expect_factor(reduce("K2GG = KA\n", kBar + bar + "DMIG,KA,0,6,1\nDMIG,KA,2,1,,2,1,5.+6,,+\n+,2,3,7.+4\n"), .04, "K2GG");
+  expect_factor(reduce("K2GG = KA\n", kBar + bar + "DMIG,KA,0,6,1\nDMIG,KA,2,1,,2,1,5.+6,,+\n+,2,3,7.+4\n"), .04,
+                "K2GG");
   expect_factor(reduce("", kBar + bar + "CBUSH,8,8,2,,,,,0\nPBUSH,8,K,1.+6,2.+6,3.+6\n"), .04, "PBUSH without GE");
   const std::string bush = "GRID,1,,0.,0.,0.\nCONM2,9,1,,2.,,,,,+\n+,1.,,1.,,,1.\nCBUSH,8,8,1,,,,,0\nSPC1,1,456,1\n";
   const auto body = reduce("", bush + "PBUSH,8,K,1.+6,4.+6,9.+6,,,,+\n+,,GE,.1,.2,.3\n");

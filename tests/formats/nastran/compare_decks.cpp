@@ -85,7 +85,9 @@ class Content {
     return (*this)(r.id)(r.mid1)(r.mid2)(r.mid3)(r.mid4)(r.t)(r.bending_ratio)(r.shear_ratio)(r.nsm);
   }
   Content& operator()(const Ply& r) { return (*this)(r.mid)(r.t)(r.theta_deg); }
-  Content& operator()(const Pcomp& r) { return (*this)(r.id)(r.z0)(r.nsm)(r.tref)(r.ge)(r.plies)(r.bending)(r.membrane); }
+  Content& operator()(const Pcomp& r) {
+    return (*this)(r.id)(r.z0)(r.nsm)(r.tref)(r.ge)(r.plies)(r.bending)(r.membrane);
+  }
   Content& operator()(const Pshear& r) { return (*this)(r.id)(r.mid)(r.t)(r.nsm)(r.f1)(r.f2); }
   Content& operator()(const ShearPanel& r) { return (*this)(r.id)(r.pid)(r.grids); }
   Content& operator()(const Pbush1d& r) { return (*this)(r.id)(r.k)(r.c)(r.m); }
