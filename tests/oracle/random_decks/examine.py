@@ -110,8 +110,8 @@ class Examination:
         return None
 
     def try_verbs(self, matrices, truth, spectrum, eigrl):
-        """What is wrong by verb, and the exit code of modes."""
-        code, found, self.refusal = 1, {}, ""
+        """What is wrong by verb, and the worst exit code of modes, or of the other verbs where modes is not run."""
+        code, found, self.refusal = 0, {}, ""
         for verb in self.verbs:
             wrong = None
             if verb == "matrices":      # has been run
@@ -137,6 +137,8 @@ class Examination:
                 wrong = ran.broken_rule()
                 if not wrong and (ran.code == 0) != (matrices is not None):
                     wrong = f"{verb} ends with {ran.code}, matrices with {0 if matrices is not None else 1}"
+            if "modes" not in self.verbs and ran.code:
+                code, self.refusal = max(code, ran.code), ran.first_error()
             if wrong:
                 found[verb] = wrong
         if self.fault and self.fault.ids and matrices is not None:
