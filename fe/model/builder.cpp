@@ -285,6 +285,11 @@ Elimination ModelBuilder::set_transform() {
 void ModelBuilder::apply_autospc(const Elimination& first) {
   const records::Param* param = deck_.find_param("AUTOSPC");
   const bool is_on = options_.autospc.value_or(!param || (param->value != "NO" && param->value != "N"));
+  const std::string value = param ? param->value : "YES";
+  if (!options_.autospc && value != "YES" && value != "Y" && value != "NO" && value != "N" && value != "1")
+    diagnostics_.warning("fe.bad-param", deck_.locate(param->at),
+                         "PARAM,AUTOSPC is \"" + value + "\", expected YES or NO; it is taken as YES",
+                         "correct the value");
   const double epsilon = get_real_param(deck_, "EPZERO", 1e-8, diagnostics_);
   diagnostics_.throw_if_errors();
   // Decks with AUTOSPC NO still have dofs that nothing touches; Nastran's solvers pass over such empty columns.

@@ -93,7 +93,8 @@ VectorXd Model::calc_enforced(const records::Deck& deck, int set, Diagnostics& d
   if (set == 0) return d;
   VectorXd by_load = VectorXd::Zero(d.size());
   std::vector<char> is_given(static_cast<std::size_t>(d.size()), 0);
-  for (const auto& [sid, scale, by, enforced_only] : list_plain_sets(deck, set)) {
+  for (const auto& plain : list_plain_sets(deck, set)) {
+    const int sid = plain.sid;
     bool is_combined = false;
     for (const auto& card : deck.load_cards.spcd) {
       if (card.sid != sid) continue;
@@ -117,14 +118,14 @@ VectorXd Model::calc_enforced(const records::Deck& deck, int set, Diagnostics& d
                             "fix it with the SPC set of the subcase");
           continue;
         }
-        by_load[i] += scale * card.d;
+        by_load[i] += plain.scale * card.d;
         is_given[static_cast<std::size_t>(i)] = 1;
       }
     }
     if (is_combined)
-      diagnostics.warning("fe.spcd-combined", deck.locate(by),
+      diagnostics.warning("fe.spcd-combined", deck.locate(plain.at),
                           "LOAD " + std::to_string(set) + " combines the SPCD cards of set " + std::to_string(sid) +
-                              ", which MSC Nastran leaves out; they are taken " + show_factor(scale) + " times",
+                              ", which MSC Nastran leaves out; they are taken " + show_factor(plain.scale) + " times",
                           "give the SPCD cards the id of the LOAD card for their own values");
   }
   for (Eigen::Index i = 0; i < d.size(); ++i)

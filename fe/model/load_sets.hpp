@@ -34,6 +34,7 @@ struct PlainLoadSet {
   double scale = 1;
   records::CardLocation at;    ///< of the LOAD card that names it; empty: the set itself was asked for
   bool enforced_only = false;  ///< its SPCD cards alone: those with the id of a LOAD card, beside it
+  bool is_circle = false;      ///< a LOAD card that is on the way to itself
 };
 
 /// The plain sets that `set` stands for: itself, or the terms of its LOAD card. A term with cards of its own is that

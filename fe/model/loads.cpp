@@ -97,10 +97,11 @@ void add_plain_sets(const records::Deck& deck, const records::LoadCombination& c
   open.push_back(card.sid);
   for (const auto& [scale, sid] : card.terms) {
     const auto* nested = has_cards(deck, sid) ? nullptr : find_combination(deck, sid);
-    if (nested && std::find(open.begin(), open.end(), sid) == open.end())
+    const bool is_circle = nested && std::find(open.begin(), open.end(), sid) != open.end();
+    if (nested && !is_circle)
       add_plain_sets(deck, *nested, factor * card.s * scale, open, sets);
     else
-      sets.push_back({sid, factor * card.s * scale, card.at, false});
+      sets.push_back({sid, factor * card.s * scale, card.at, false, is_circle});
   }
   open.pop_back();
 }
@@ -119,10 +120,10 @@ void report_terms(const records::Deck& deck, const records::LoadCombination& car
 
 std::vector<PlainLoadSet> list_plain_sets(const records::Deck& deck, int set) {
   const auto* card = find_combination(deck, set);
-  if (!card) return {{set, 1.0, {}, false}};
+  if (!card) return {{set, 1.0, {}, false, false}};
   std::vector<PlainLoadSet> sets;
   // SPCD cards have the id that the case control selects, beside the LOAD card (Quick Reference Guide, LOAD).
-  if (has_enforced(deck, set)) sets.push_back({set, 1.0, card->at, true});
+  if (has_enforced(deck, set)) sets.push_back({set, 1.0, card->at, true, false});
   std::vector<int> open;
   add_plain_sets(deck, *card, 1, open, sets);
   return sets;
@@ -155,6 +156,12 @@ AppliedLoad Model::calc_applied_load(const records::Deck& deck, int set, Diagnos
   std::vector<PlainLoadSet> missing;
   for (const auto& plain : sets) {
     if (plain.enforced_only) continue;
+    if (plain.is_circle) {
+      diagnostics.error("fe.load-circle", deck.locate(plain.at),
+                        "LOAD " + std::to_string(plain.sid) + " goes in a circle: this card names it again",
+                        "name sets of FORCE, MOMENT, PLOAD and the like");
+      continue;
+    }
     const LoadTarget target{*this,       deck,     plain.sid, plain.scale,   load.F,
                             diagnostics, load.A_I, load.arms, load.followers};
     const bool found[] = {add_point_loads(target), add_body_loads(target), add_surface_loads(target),

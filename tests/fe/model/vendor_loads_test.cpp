@@ -80,10 +80,18 @@ TEST(VendorLoads, LoadOfLoadsAddsThemUp) {
   EXPECT_NEAR(s.load[7], 2 * 5 + 2 * 3 * .5 * 4 * 5, 1e-12);
   EXPECT_NEAR(s.load[8], 2 * 3 * .5 * 7, 1e-12);
   EXPECT_EQ(c.count("fe.nested-load", Severity::Warning), 1);
-  // A LOAD that comes back to itself ends there.
+  // One that comes back to itself has no sum.
   Case loop(kHead + kBar + "LOAD,4,1.,1.,20,1.,21\nFORCE,20,2,,5.,0.,1.,0.\nLOAD,21,1.,1.,4,1.,20\n");
-  EXPECT_NEAR(loop.solve().load[7], 10, 1e-13);
-  EXPECT_EQ(loop.count("fe.missing-load", Severity::Warning), 1);
+  EXPECT_THROW(loop.solve(), InputError);
+  EXPECT_EQ(loop.count("fe.load-circle", Severity::Error), 1);
+}
+
+TEST(VendorLoads, AutospcThatIsNeitherYesNorNoIsNamed) {
+  for (const auto& [value, count] : {std::pair{"N0", 1}, {"YESS", 1}, {"NO", 0}, {"YES", 0}}) {
+    Case c(kHead + kBar + "FORCE,4,2,,5.,0.,1.,0.\nPARAM,AUTOSPC," + value + "\n");
+    Model::build(c.deck, {}, c.diagnostics);
+    EXPECT_EQ(c.count("fe.bad-param", Severity::Warning), count) << value;
+  }
 }
 
 TEST(VendorLoads, SpcdHoldsWhatItMoves) {
