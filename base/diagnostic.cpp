@@ -1,4 +1,4 @@
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -13,8 +13,8 @@
 #include <ctime>
 #include <string>
 
-#include "bough/fe/assembly.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "fe/matrices/assembly.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace {
 

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "bough/solver/integrate/memory_sink.hpp"
-#include "bough/solver/integrate/simulate.hpp"
-#include "bough/solver/integrate/system_ode.hpp"
+#include "solver/integrate/memory_sink.hpp"
+#include "solver/integrate/simulate.hpp"
+#include "solver/integrate/system_ode.hpp"
 
 namespace {
 

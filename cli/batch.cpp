@@ -14,10 +14,10 @@
 #include <set>
 #include <thread>
 
+#include "base/version.hpp"
 #include "batch_outcome.hpp"
-#include "bough/base/version.hpp"
-#include "bough/formats/hdf5/files.hpp"
 #include "console.hpp"
+#include "formats/hdf5/files.hpp"
 #include "options.hpp"
 #include "text_file.hpp"
 #include "usage_text.hpp"

@@ -2,7 +2,7 @@
 /// \file The cases of a campaign.
 #include <vector>
 
-#include "bough/formats/toml/campaign.hpp"
+#include "formats/toml/campaign.hpp"
 
 namespace bough::cli {
 

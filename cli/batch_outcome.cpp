@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "bough/formats/hdf5/table_file.hpp"
+#include "formats/hdf5/table_file.hpp"
 #include "text_file.hpp"
 
 namespace bough::cli {

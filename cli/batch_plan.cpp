@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "batch_steps.hpp"
-#include "bough/formats/hdf5/files.hpp"
-#include "bough/formats/toml/key_editor.hpp"
-#include "bough/formats/toml/specs.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/toml/key_editor.hpp"
+#include "formats/toml/specs.hpp"
 #include "options.hpp"
 #include "text_file.hpp"
 

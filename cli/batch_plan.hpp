@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "batch_cases.hpp"
-#include "bough/formats/nastran/field_editor.hpp"
+#include "formats/nastran/field_editor.hpp"
 
 namespace bough::cli {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "bough/formats/toml/specs.hpp"
+#include "formats/toml/specs.hpp"
 #include "options.hpp"
 
 namespace bough::cli {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.hpp"
 #include "batch_cases.hpp"
-#include "bough/base/diagnostic.hpp"
 
 namespace bough::cli {
 

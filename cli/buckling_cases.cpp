@@ -7,9 +7,9 @@
 #include <optional>
 #include <set>
 
-#include "bough/fe/assembly.hpp"
-#include "bough/fe/preload.hpp"
-#include "bough/fe/wide_links.hpp"
+#include "fe/matrices/assembly.hpp"
+#include "fe/matrices/wide_links.hpp"
+#include "fe/statics/preload.hpp"
 #include "solution.hpp"
 
 namespace bough::cli {

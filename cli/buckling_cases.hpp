@@ -1,7 +1,7 @@
 #pragma once
 /// \file Which subcases SOL 105 pairs, and the load factors of a pair.
-#include "bough/fe/static_case.hpp"
-#include "bough/modal/eigen.hpp"
+#include "fe/statics/static_case.hpp"
+#include "modal/eigen.hpp"
 
 namespace bough::cli {
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/export/csv.hpp"
-#include "bough/formats/hdf5/files.hpp"
+#include "formats/export/csv.hpp"
+#include "formats/hdf5/files.hpp"
 
 namespace bough::cli {
 

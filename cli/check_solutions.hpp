@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/hdf5/files.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/hdf5/files.hpp"
 
 namespace bough::cli {
 

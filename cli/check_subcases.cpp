@@ -8,9 +8,9 @@
 #include <optional>
 #include <set>
 
-#include "bough/fe/static_case.hpp"
 #include "console.hpp"
 #include "deck_tables.hpp"
+#include "fe/statics/static_case.hpp"
 #include "subcase_failures.hpp"
 
 namespace bough::cli {

@@ -2,7 +2,7 @@
 /// \file What `check` says of each subcase: its sets exist and what they sum up to.
 #include <nlohmann/json_fwd.hpp>
 
-#include "bough/fe/model/model.hpp"
+#include "fe/model/model.hpp"
 
 namespace bough::cli {
 

@@ -3,12 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "bough/formats/hdf5/comparison_file.hpp"
-#include "bough/formats/hdf5/files.hpp"
-#include "bough/formats/hdf5/sparse_file.hpp"
 #include "compare_report.hpp"
 #include "console.hpp"
 #include "export_matrices.hpp"
+#include "formats/hdf5/comparison_file.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/hdf5/sparse_file.hpp"
 #include "options.hpp"
 
 namespace bough::cli {

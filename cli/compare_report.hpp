@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/records/comparison.hpp"
-#include "bough/modal/compare/bodies.hpp"
-#include "bough/modal/compare/refinement.hpp"
+#include "formats/records/comparison.hpp"
+#include "modal/compare/bodies.hpp"
+#include "modal/compare/refinement.hpp"
 
 namespace bough::cli {
 

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/elements/section_library.hpp"
+#include "base/rotation.hpp"
 #include "console.hpp"
+#include "fe/sections/section_library.hpp"
 
 namespace bough::cli {
 

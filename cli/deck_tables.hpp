@@ -3,9 +3,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "bough/fe/checks.hpp"
-#include "bough/fe/grid_point_weight.hpp"
-#include "bough/formats/records/deck.hpp"
+#include "fe/matrices/checks.hpp"
+#include "fe/matrices/grid_point_weight.hpp"
+#include "formats/records/deck.hpp"
 
 namespace bough::cli {
 

@@ -4,14 +4,14 @@
 #include <memory>
 #include <sstream>
 
-#include "bough/formats/export/uff.hpp"
-#include "bough/formats/export/vtu.hpp"
-#include "bough/formats/nastran/reader.hpp"
-#include "bough/formats/nastran/writer.hpp"
 #include "channels.hpp"
 #include "console.hpp"
 #include "export_bodies.hpp"
 #include "export_matrices.hpp"
+#include "formats/export/uff.hpp"
+#include "formats/export/vtu.hpp"
+#include "formats/nastran/reader.hpp"
+#include "formats/nastran/writer.hpp"
 #include "options.hpp"
 #include "text_file.hpp"
 #include "vtu_file.hpp"

@@ -4,10 +4,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include "bough/formats/hdf5/files.hpp"
-#include "bough/formats/mbdyn/fem_file.hpp"
-#include "bough/formats/sid/sid.hpp"
 #include "export_matrices.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/mbdyn/fem_file.hpp"
+#include "formats/sid/sid.hpp"
 
 namespace bough::cli {
 

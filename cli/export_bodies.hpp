@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/export/csv.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/export/csv.hpp"
 
 namespace CLI {
 class App;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cctype>
 
-#include "bough/formats/hdf5/files.hpp"
-#include "bough/formats/hdf5/sparse_file.hpp"
-#include "bough/formats/matrices/mat_file.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/hdf5/sparse_file.hpp"
+#include "formats/matrices/mat_file.hpp"
 
 namespace bough::cli {
 

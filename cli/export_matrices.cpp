@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bough/formats/hdf5/files.hpp"
+#include "formats/hdf5/files.hpp"
 
 namespace bough::cli {
 

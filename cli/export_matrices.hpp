@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/export/reduced_solid.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/export/reduced_solid.hpp"
 
 namespace bough::cli {
 

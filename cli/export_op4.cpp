@@ -2,10 +2,10 @@
 #include <cctype>
 #include <sstream>
 
-#include "bough/formats/hdf5/files.hpp"
-#include "bough/formats/hdf5/sparse_file.hpp"
-#include "bough/formats/matrices/op4.hpp"
 #include "export_matrices.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/hdf5/sparse_file.hpp"
+#include "formats/matrices/op4.hpp"
 
 namespace bough::cli {
 

@@ -1,12 +1,12 @@
-#include "bough/formats/flx/flx_file.hpp"
+#include "formats/flx/flx_file.hpp"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 
-#include "bough/formats/hdf5/files.hpp"
 #include "console.hpp"
 #include "flx_output.hpp"
+#include "formats/hdf5/files.hpp"
 #include "text_file.hpp"
 
 namespace bough::cli {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file Options and steps that `flx` and `integrals` share.
-#include "bough/formats/flx/flx_file.hpp"
+#include "formats/flx/flx_file.hpp"
 #include "options.hpp"
 
 namespace bough::cli {

@@ -2,8 +2,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "bough/formats/hdf5/files.hpp"
 #include "console.hpp"
+#include "formats/hdf5/files.hpp"
 #include "options.hpp"
 
 namespace bough::cli {

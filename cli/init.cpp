@@ -2,8 +2,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "bough/formats/nastran/reader.hpp"
 #include "console.hpp"
+#include "formats/nastran/reader.hpp"
 #include "init_deck.hpp"
 #include "options.hpp"
 #include "templates.hpp"

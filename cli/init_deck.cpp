@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::cli {
 

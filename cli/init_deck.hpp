@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/records/deck.hpp"
+#include "formats/records/deck.hpp"
 
 namespace bough::cli {
 

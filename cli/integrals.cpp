@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <memory>
 
-#include "bough/formats/flx/model_input.hpp"
-#include "bough/modal/matrix_body.hpp"
-#include "bough/stiffening/reduce.hpp"
 #include "console.hpp"
 #include "flx_output.hpp"
+#include "formats/flx/model_input.hpp"
+#include "modal/matrix_body.hpp"
+#include "stiffening/reduce.hpp"
 #include "text_file.hpp"
 
 namespace bough::cli {

@@ -1,6 +1,6 @@
 #include <CLI/CLI.hpp>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 #include "console.hpp"
 #include "help_files.hpp"
 #include "usage_text.hpp"

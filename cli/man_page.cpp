@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <sstream>
 
-#include "bough/base/version.hpp"
+#include "base/version.hpp"
 #include "help_files.hpp"
 
 namespace bough::cli {

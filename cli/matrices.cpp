@@ -5,12 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "bough/fe/static_case.hpp"
-#include "bough/fe/wide_links.hpp"
-#include "bough/formats/hdf5/files.hpp"
-#include "bough/formats/matrices/matrix_market.hpp"
-#include "bough/formats/matrices/op4.hpp"
 #include "console.hpp"
+#include "fe/matrices/wide_links.hpp"
+#include "fe/statics/static_case.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/matrices/matrix_market.hpp"
+#include "formats/matrices/op4.hpp"
 #include "model_options.hpp"
 #include "options.hpp"
 #include "ranks.hpp"

@@ -7,10 +7,10 @@
 #include <map>
 #include <set>
 
-#include "bough/formats/hdf5/grids_file.hpp"
-#include "bough/formats/matrices/matrix_reader.hpp"
-#include "bough/formats/matrices/mode_table.hpp"
-#include "bough/formats/toml/specs.hpp"
+#include "formats/hdf5/grids_file.hpp"
+#include "formats/matrices/matrix_reader.hpp"
+#include "formats/matrices/mode_table.hpp"
+#include "formats/toml/specs.hpp"
 #include "options.hpp"
 #include "point_files.hpp"
 

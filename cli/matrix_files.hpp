@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/records/body_spec.hpp"
-#include "bough/stiffening/reduce_matrices.hpp"
+#include "formats/records/body_spec.hpp"
+#include "stiffening/reduce_matrices.hpp"
 
 namespace bough::cli {
 

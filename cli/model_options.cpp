@@ -2,8 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "bough/fe/model/sets.hpp"
-#include "bough/fe/preload.hpp"
+#include "fe/model/sets.hpp"
+#include "fe/statics/preload.hpp"
 
 namespace bough::cli {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bough/fe/model/model.hpp"
+#include "fe/model/model.hpp"
 
 namespace CLI {
 class App;

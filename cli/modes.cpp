@@ -9,15 +9,15 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "bough/fe/assembly.hpp"
-#include "bough/fe/preload.hpp"
-#include "bough/fe/static_case.hpp"
-#include "bough/formats/hdf5/files.hpp"
-#include "bough/modal/eigen.hpp"
-#include "bough/modal/normalize.hpp"
 #include "buckling_cases.hpp"
 #include "console.hpp"
 #include "deck_tables.hpp"
+#include "fe/matrices/assembly.hpp"
+#include "fe/statics/preload.hpp"
+#include "fe/statics/static_case.hpp"
+#include "formats/hdf5/files.hpp"
+#include "modal/eigen.hpp"
+#include "modal/normalize.hpp"
 #include "model_options.hpp"
 #include "options.hpp"
 #include "ranks.hpp"

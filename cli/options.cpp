@@ -11,10 +11,10 @@
 #include <iterator>
 #include <system_error>
 
-#include "bough/formats/hdf5/files.hpp"
-#include "bough/formats/nastran/reader.hpp"
-#include "bough/formats/toml/specs.hpp"
 #include "console.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/nastran/reader.hpp"
+#include "formats/toml/specs.hpp"
 #include "ranks.hpp"
 #include "text_file.hpp"
 

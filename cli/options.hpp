@@ -7,9 +7,9 @@
 
 #include <Eigen/Dense>
 
-#include "bough/fe/model/model.hpp"
-#include "bough/formats/records/body_spec.hpp"
-#include "bough/formats/records/deck.hpp"
+#include "fe/model/model.hpp"
+#include "formats/records/body_spec.hpp"
+#include "formats/records/deck.hpp"
 #include "verbs.hpp"
 
 namespace bough::cli {

@@ -10,9 +10,9 @@
 #include <memory>
 #include <sstream>
 
-#include "bough/formats/report/svg_plot.hpp"
 #include "channels.hpp"
 #include "console.hpp"
+#include "formats/report/svg_plot.hpp"
 #include "options.hpp"
 #include "text_file.hpp"
 

@@ -7,9 +7,9 @@
 #include <limits>
 #include <sstream>
 
-#include "bough/formats/hdf5/grids_file.hpp"
-#include "bough/formats/hdf5/sparse_file.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "formats/hdf5/grids_file.hpp"
+#include "formats/hdf5/sparse_file.hpp"
+#include "formats/nastran/reader.hpp"
 #include "options.hpp"
 
 namespace bough::cli {

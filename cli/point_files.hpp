@@ -4,8 +4,8 @@
 
 #include <Eigen/Dense>
 
-#include "bough/formats/records/body_spec.hpp"
-#include "bough/formats/records/deck.hpp"
+#include "formats/records/body_spec.hpp"
+#include "formats/records/deck.hpp"
 
 namespace bough::cli {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/records/results.hpp"
+#include "formats/records/results.hpp"
 
 namespace bough::cli {
 

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/fe/petsc.hpp"
+#include "base/diagnostic.hpp"
+#include "fe/linear/petsc.hpp"
 
 namespace bough::cli {
 

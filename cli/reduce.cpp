@@ -1,4 +1,4 @@
-#include "bough/stiffening/reduce.hpp"
+#include "stiffening/reduce.hpp"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "bough/formats/hdf5/files.hpp"
-#include "bough/formats/toml/specs.hpp"
 #include "compare_report.hpp"
 #include "console.hpp"
 #include "deck_tables.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/toml/specs.hpp"
 #include "matrix_files.hpp"
 #include "options.hpp"
 #include "point_files.hpp"

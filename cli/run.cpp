@@ -8,12 +8,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "bough/formats/hdf5/files.hpp"
-#include "bough/formats/toml/specs.hpp"
-#include "bough/solver/integrate/simulate.hpp"
 #include "console.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/toml/specs.hpp"
 #include "options.hpp"
 #include "provenance_sink.hpp"
+#include "solver/integrate/simulate.hpp"
 #include "system_files.hpp"
 
 namespace bough::cli {

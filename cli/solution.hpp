@@ -1,6 +1,6 @@
 #pragma once
 /// \file What the deck's SOL asks for beyond linear statics, modes and buckling.
-#include "bough/formats/records/deck.hpp"
+#include "formats/records/deck.hpp"
 
 namespace bough::cli {
 

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "bough/fe/preload.hpp"
-#include "bough/fe/static_case.hpp"
-#include "bough/formats/hdf5/files.hpp"
 #include "console.hpp"
+#include "fe/statics/preload.hpp"
+#include "fe/statics/static_case.hpp"
+#include "formats/hdf5/files.hpp"
 #include "model_options.hpp"
 #include "options.hpp"
 #include "ranks.hpp"

@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "bough/formats/records/static_result.hpp"
+#include "formats/records/static_result.hpp"
 
 namespace bough::cli {
 

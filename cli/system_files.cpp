@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "bough/formats/hdf5/files.hpp"
-#include "bough/formats/toml/specs.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/toml/specs.hpp"
 #include "options.hpp"
 
 namespace bough::cli {

@@ -3,8 +3,8 @@
 #include <map>
 #include <string>
 
-#include "bough/formats/records/system_spec.hpp"
-#include "bough/solver/system/system.hpp"
+#include "formats/records/system_spec.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::cli {
 

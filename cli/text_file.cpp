@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::cli {
 

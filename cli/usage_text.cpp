@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <sstream>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 #include "console.hpp"
 
 namespace bough::cli {

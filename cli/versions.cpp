@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include "bough/base/version.hpp"
+#include "base/version.hpp"
 
 namespace bough::cli {
 

@@ -2,8 +2,8 @@
 /// \file Mode shapes on their way to a .vtu file.
 #include <string>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/export/vtu.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/export/vtu.hpp"
 
 namespace bough::cli {
 

@@ -1,12 +1,6 @@
 # bough_module(NAME SOURCES_DIRS dir... DEPENDS target...): one static library bough::NAME from every .cpp below the
-# given folders (default: this one). Headers sit beside their sources and are reached as "bough/<room>/x.hpp" through one
-# link folder in the build tree, the same spelling as after installation.
-set(BOUGH_INCLUDE_ROOT ${CMAKE_BINARY_DIR}/include)
-file(MAKE_DIRECTORY ${BOUGH_INCLUDE_ROOT}/bough)
-foreach(room base formats fe modal stiffening solver)
-  file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${room} ${BOUGH_INCLUDE_ROOT}/bough/${room} SYMBOLIC)
-endforeach()
-
+# given folders (default: this one). Headers sit beside their sources; the path in an include is the path in the
+# repository, and below include/bough after installation.
 add_library(bough_flags INTERFACE)
 target_compile_options(bough_flags INTERFACE $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wno-restrict>)
 if(BOUGH_SANITIZE)
@@ -43,7 +37,7 @@ function(bough_module name)
   add_library(bough::${name} ALIAS bough_${name})
   set_target_properties(bough_${name} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(bough_${name} ${scope}
-    $<BUILD_INTERFACE:${BOUGH_INCLUDE_ROOT}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/bough>)
   target_link_libraries(bough_${name} ${scope} ${ARG_DEPENDS})
   set_property(GLOBAL APPEND PROPERTY BOUGH_MODULES bough_${name})
 endfunction()

@@ -1,11 +1,11 @@
-#include "bough/modal/block_lanczos.hpp"
+#include "modal/block_lanczos.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
-#include "bough/fe/blas.hpp"
+#include "fe/linear/blas.hpp"
 
 namespace bough::modal::detail {
 namespace {

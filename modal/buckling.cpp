@@ -3,12 +3,12 @@
 #include <limits>
 #include <optional>
 
-#include "bough/fe/residual.hpp"
-#include "bough/modal/canonical.hpp"
-#include "bough/modal/eigen.hpp"
-#include "bough/modal/krylov.hpp"
-#include "bough/modal/pencil.hpp"
-#include "bough/modal/roots.hpp"
+#include "fe/linear/residual.hpp"
+#include "modal/canonical.hpp"
+#include "modal/eigen.hpp"
+#include "modal/krylov.hpp"
+#include "modal/pencil.hpp"
+#include "modal/roots.hpp"
 
 namespace bough::modal {
 

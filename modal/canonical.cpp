@@ -1,9 +1,9 @@
-#include "bough/modal/canonical.hpp"
+#include "modal/canonical.hpp"
 
 #include <cmath>
 
-#include "bough/fe/blas.hpp"
-#include "bough/modal/krylov.hpp"
+#include "fe/linear/blas.hpp"
+#include "modal/krylov.hpp"
 
 namespace bough::modal::detail {
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file What makes eigenvectors the same on any number of ranks: a canonical basis of each repeated root, and signs.
-#include "bough/fe/model/model.hpp"
+#include "fe/model/model.hpp"
 
 namespace bough::modal::detail {
 

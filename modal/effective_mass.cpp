@@ -1,4 +1,4 @@
-#include "bough/modal/eigen.hpp"
+#include "modal/eigen.hpp"
 
 namespace bough::modal {
 

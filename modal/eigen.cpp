@@ -1,9 +1,9 @@
-#include "bough/modal/eigen.hpp"
+#include "modal/eigen.hpp"
 
 #include <optional>
 
-#include "bough/modal/normal_modes.hpp"
-#include "bough/modal/null_motions.hpp"
+#include "modal/normal_modes.hpp"
+#include "modal/null_motions.hpp"
 
 namespace bough::modal {
 

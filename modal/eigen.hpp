@@ -3,8 +3,8 @@
 #include <functional>
 #include <optional>
 
-#include "bough/fe/assembly.hpp"
-#include "bough/fe/factor.hpp"
+#include "fe/linear/factor.hpp"
+#include "fe/matrices/assembly.hpp"
 
 namespace bough::modal {
 

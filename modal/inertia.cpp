@@ -1,6 +1,6 @@
 /// \file The inertia of a shifted pencil by MUMPS.
-#include "bough/fe/factor.hpp"
-#include "bough/modal/krylov.hpp"
+#include "fe/linear/factor.hpp"
+#include "modal/krylov.hpp"
 
 namespace bough::modal::detail {
 namespace {

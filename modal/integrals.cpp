@@ -1,9 +1,9 @@
-#include "bough/modal/integrals.hpp"
+#include "modal/integrals.hpp"
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/blas.hpp"
-#include "bough/fe/factor.hpp"
-#include "bough/fe/model/inertial_loads.hpp"
+#include "base/rotation.hpp"
+#include "fe/linear/blas.hpp"
+#include "fe/linear/factor.hpp"
+#include "fe/loads/inertial_loads.hpp"
 
 namespace bough::modal {
 

@@ -2,9 +2,9 @@
 /// \file The five mass integrals Γ0..Γ4 (docs/theory/flexible-body.md §4): momentum formulas and the exact Gram set.
 #include <functional>
 
-#include "bough/fe/assembly.hpp"
-#include "bough/formats/records/flex_body.hpp"
-#include "bough/modal/nodal_dofs.hpp"
+#include "fe/matrices/assembly.hpp"
+#include "formats/records/flex_body.hpp"
+#include "modal/nodal_dofs.hpp"
 
 namespace bough::modal {
 
@@ -19,7 +19,7 @@ MassIntegrals calc_momentum_integrals(const fe::Model& model, fe::MassKind kind,
                                       const Vector3d& reference = Vector3d::Zero());
 
 /// From the Gram matrix of [Φ_R, e_a×u_j, u] under the mass, u the motion of every piece of it, on arms and between
-/// grids too. Masses that are not of bodies (fe/model/inertial_loads.hpp) count as if e×φ had no rotations.
+/// grids too. Masses that are not of bodies (fe/loads/inertial_loads.hpp) count as if e×φ had no rotations.
 MassIntegrals calc_exact_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi,
                                    const Vector3d& reference = Vector3d::Zero());
 

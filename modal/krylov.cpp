@@ -1,4 +1,4 @@
-#include "bough/modal/krylov.hpp"
+#include "modal/krylov.hpp"
 
 #include <slepceps.h>
 
@@ -9,11 +9,11 @@
 #include <optional>
 #include <vector>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/fe/assembly.hpp"
-#include "bough/fe/factor.hpp"
-#include "bough/fe/ordering.hpp"
-#include "bough/modal/block_lanczos.hpp"
+#include "base/diagnostic.hpp"
+#include "fe/linear/factor.hpp"
+#include "fe/linear/ordering.hpp"
+#include "fe/matrices/assembly.hpp"
+#include "modal/block_lanczos.hpp"
 
 namespace bough::modal::detail {
 

@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-#include "bough/fe/petsc.hpp"
+#include "fe/linear/petsc.hpp"
 
 namespace bough::modal::detail {
 

@@ -1,4 +1,4 @@
-#include "bough/modal/low_rank.hpp"
+#include "modal/low_rank.hpp"
 
 #include <cmath>
 #include <vector>

@@ -4,7 +4,7 @@
 
 #include <Eigen/SparseCore>
 
-#include "bough/fe/petsc.hpp"
+#include "fe/linear/petsc.hpp"
 
 namespace bough::modal::detail {
 

@@ -1,9 +1,9 @@
-#include "bough/modal/matrix_body.hpp"
+#include "modal/matrix_body.hpp"
 
 #include <cmath>
 #include <numbers>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::modal {
 

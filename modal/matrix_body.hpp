@@ -3,7 +3,7 @@
 /// (NASA-CR-202063 4.2.2, 4.2.3).
 #include <Eigen/SparseCore>
 
-#include "bough/modal/integrals.hpp"
+#include "modal/integrals.hpp"
 
 namespace bough::modal {
 

@@ -1,4 +1,4 @@
-#include "bough/modal/mode_range.hpp"
+#include "modal/mode_range.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 /// \file Which of the ascending modes are wanted: a number, a range of frequencies, or both.
-#include "bough/modal/eigen.hpp"
+#include "modal/eigen.hpp"
 
 namespace bough::modal::detail {
 

@@ -1,7 +1,7 @@
-#include "bough/modal/nodal_dofs.hpp"
+#include "modal/nodal_dofs.hpp"
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/base/rotation.hpp"
+#include "base/diagnostic.hpp"
+#include "base/rotation.hpp"
 
 namespace bough::modal {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file Which row of a vector is which displacement of which node: what the integrals and the inertial loads need to
 /// know of a model, be it Bough's own or matrices from elsewhere (NASA-CR-202063 4.2.2, degree-of-freedom map).
-#include "bough/fe/model/model.hpp"
+#include "fe/model/model.hpp"
 
 namespace bough::modal {
 

@@ -1,11 +1,11 @@
-#include "bough/modal/normal_modes.hpp"
+#include "modal/normal_modes.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bough/fe/blas.hpp"
-#include "bough/fe/ordering.hpp"
-#include "bough/modal/canonical.hpp"
+#include "fe/linear/blas.hpp"
+#include "fe/linear/ordering.hpp"
+#include "modal/canonical.hpp"
 
 namespace bough::modal::detail {
 namespace {

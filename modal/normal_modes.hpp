@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/fe/residual.hpp"
-#include "bough/modal/mode_range.hpp"
-#include "bough/modal/pencil_solver.hpp"
-#include "bough/modal/roundoff.hpp"
+#include "base/diagnostic.hpp"
+#include "fe/linear/residual.hpp"
+#include "modal/mode_range.hpp"
+#include "modal/pencil_solver.hpp"
+#include "modal/roundoff.hpp"
 
 namespace bough::modal::detail {
 

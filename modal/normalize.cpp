@@ -1,4 +1,4 @@
-#include "bough/modal/normalize.hpp"
+#include "modal/normalize.hpp"
 
 #include <cmath>
 

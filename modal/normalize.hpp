@@ -2,7 +2,7 @@
 /// \file Lengths of mode shapes as NORM of EIGRL and EIGR asks for them.
 #include <string>
 
-#include "bough/fe/model/model.hpp"
+#include "fe/model/model.hpp"
 
 namespace bough::modal {
 

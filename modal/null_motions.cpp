@@ -1,14 +1,14 @@
-#include "bough/modal/null_motions.hpp"
+#include "modal/null_motions.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
 
-#include "bough/fe/factor.hpp"
-#include "bough/modal/canonical.hpp"
-#include "bough/modal/krylov.hpp"
-#include "bough/modal/roots.hpp"
+#include "fe/linear/factor.hpp"
+#include "modal/canonical.hpp"
+#include "modal/krylov.hpp"
+#include "modal/roots.hpp"
 
 namespace bough::modal::detail {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file Every motion without strain, of the whole and of its parts: by inverse iteration, for where the modes found
 /// from a shifted K are not sound.
-#include "bough/modal/pencil.hpp"
+#include "modal/pencil.hpp"
 
 namespace bough::modal::detail {
 

@@ -1,9 +1,9 @@
-#include "bough/modal/pencil.hpp"
+#include "modal/pencil.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bough/fe/mechanism.hpp"
+#include "fe/linear/mechanism.hpp"
 
 namespace bough::modal::detail {
 

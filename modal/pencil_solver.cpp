@@ -1,11 +1,11 @@
-#include "bough/modal/pencil_solver.hpp"
+#include "modal/pencil_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bough/fe/blas.hpp"
-#include "bough/fe/mechanism.hpp"
-#include "bough/modal/canonical.hpp"
+#include "fe/linear/blas.hpp"
+#include "fe/linear/mechanism.hpp"
+#include "modal/canonical.hpp"
 
 namespace bough::modal::detail {
 namespace {

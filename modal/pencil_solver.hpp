@@ -2,10 +2,10 @@
 /// \file Roots of K x = λ M x from the lowest up: a mass matrix of low rank solved whole, any other by Krylov.
 #include <optional>
 
-#include "bough/fe/factor.hpp"
-#include "bough/modal/krylov.hpp"
-#include "bough/modal/low_rank.hpp"
-#include "bough/modal/roots.hpp"
+#include "fe/linear/factor.hpp"
+#include "modal/krylov.hpp"
+#include "modal/low_rank.hpp"
+#include "modal/roots.hpp"
 
 namespace bough::modal::detail {
 

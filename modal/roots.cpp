@@ -1,11 +1,11 @@
-#include "bough/modal/roots.hpp"
+#include "modal/roots.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::modal::detail {
 

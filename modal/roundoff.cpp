@@ -1,9 +1,9 @@
-#include "bough/modal/roundoff.hpp"
+#include "modal/roundoff.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::modal::detail {
 

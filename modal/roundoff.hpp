@@ -1,7 +1,7 @@
 #pragma once
 /// \file What roundoff can do to the eigenvalues of a pencil: which are zero, which may be copies, which are vague.
-#include "bough/modal/pencil.hpp"
-#include "bough/modal/roots.hpp"
+#include "modal/pencil.hpp"
+#include "modal/roots.hpp"
 
 namespace bough::modal::detail {
 

@@ -1,11 +1,11 @@
-#include "bough/stiffening/body_basis.hpp"
+#include "stiffening/body_basis.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "bough/formats/records/params.hpp"
-#include "bough/stiffening/reduce.hpp"
+#include "formats/records/params.hpp"
+#include "stiffening/reduce.hpp"
 
 namespace bough::stiffening {
 

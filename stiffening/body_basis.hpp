@@ -1,10 +1,10 @@
 #pragma once
 /// \file What a body file says of basis, frame and damping, in the terms of modal/bases.
-#include "bough/fe/model/temperatures.hpp"
-#include "bough/formats/records/body_spec.hpp"
-#include "bough/formats/records/deck.hpp"
-#include "bough/modal/bases/basis.hpp"
-#include "bough/modal/bases/damping.hpp"
+#include "fe/model/temperatures.hpp"
+#include "formats/records/body_spec.hpp"
+#include "formats/records/deck.hpp"
+#include "modal/bases/basis.hpp"
+#include "modal/bases/damping.hpp"
 
 namespace bough::stiffening {
 

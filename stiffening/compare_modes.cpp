@@ -1,8 +1,8 @@
 #include <map>
 #include <numbers>
 
-#include "bough/fe/model/coordinates.hpp"
-#include "bough/stiffening/reduce_matrices.hpp"
+#include "fe/model/coordinates.hpp"
+#include "stiffening/reduce_matrices.hpp"
 
 namespace bough::stiffening {
 

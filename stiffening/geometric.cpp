@@ -1,5 +1,5 @@
-#include "bough/fe/elements/geometric_projection.hpp"
-#include "bough/stiffening/reduce.hpp"
+#include "fe/elements/geometric_projection.hpp"
+#include "stiffening/reduce.hpp"
 
 namespace bough::stiffening {
 

@@ -1,4 +1,4 @@
-#include "bough/stiffening/given_checks.hpp"
+#include "stiffening/given_checks.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 /// \file Checks that given matrices and modes can be what they are said to be, and belong together.
 #include <string>
 
-#include "bough/stiffening/given_elements.hpp"
+#include "stiffening/given_elements.hpp"
 
 namespace bough::stiffening {
 

@@ -1,4 +1,4 @@
-#include "bough/stiffening/given_elements.hpp"
+#include "stiffening/given_elements.hpp"
 
 #include <algorithm>
 #include <map>

@@ -2,9 +2,9 @@
 /// \file Given matrices on the g-set of a deck, and as elements of a model.
 #include <Eigen/SparseCore>
 
-#include "bough/fe/elements/direct.hpp"
-#include "bough/fe/model/model.hpp"
-#include "bough/stiffening/reduce_matrices.hpp"
+#include "fe/elements/direct.hpp"
+#include "fe/model/model.hpp"
+#include "stiffening/reduce_matrices.hpp"
 
 namespace bough::stiffening {
 

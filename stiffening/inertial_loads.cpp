@@ -1,5 +1,5 @@
-#include "bough/base/rotation.hpp"
-#include "bough/stiffening/reduce.hpp"
+#include "base/rotation.hpp"
+#include "stiffening/reduce.hpp"
 
 namespace bough::stiffening {
 

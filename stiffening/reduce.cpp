@@ -1,9 +1,9 @@
-#include "bough/stiffening/reduction.hpp"
+#include "stiffening/reduction.hpp"
 
 #include <set>
 
-#include "bough/fe/factor.hpp"
-#include "bough/modal/integrals.hpp"
+#include "fe/linear/factor.hpp"
+#include "modal/integrals.hpp"
 
 namespace bough::stiffening {
 

@@ -2,11 +2,11 @@
 /// \file F_I, K_G1, K_G2 and the whole reduction of a deck to a flexible body.
 #include <functional>
 
-#include "bough/fe/second_order.hpp"
-#include "bough/fe/statics.hpp"
-#include "bough/formats/records/body_spec.hpp"
-#include "bough/modal/eigen.hpp"
-#include "bough/modal/nodal_dofs.hpp"
+#include "fe/loads/second_order.hpp"
+#include "fe/statics/statics.hpp"
+#include "formats/records/body_spec.hpp"
+#include "modal/eigen.hpp"
+#include "modal/nodal_dofs.hpp"
 
 namespace bough::stiffening {
 

@@ -1,10 +1,10 @@
-#include "bough/stiffening/reduction.hpp"
+#include "stiffening/reduction.hpp"
 
 #include <algorithm>
 #include <set>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/static_case.hpp"
+#include "base/rotation.hpp"
+#include "fe/statics/static_case.hpp"
 
 namespace bough::stiffening {
 

@@ -1,13 +1,13 @@
-#include "bough/stiffening/reduce_matrices.hpp"
+#include "stiffening/reduce_matrices.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/factor.hpp"
-#include "bough/stiffening/given_checks.hpp"
-#include "bough/stiffening/given_elements.hpp"
+#include "base/rotation.hpp"
+#include "fe/linear/factor.hpp"
+#include "stiffening/given_checks.hpp"
+#include "stiffening/given_elements.hpp"
 
 namespace bough::stiffening {
 

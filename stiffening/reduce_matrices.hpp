@@ -3,7 +3,7 @@
 /// a deck, K and M of the files in place of its elements.
 #include <Eigen/SparseCore>
 
-#include "bough/stiffening/reduce.hpp"
+#include "stiffening/reduce.hpp"
 
 namespace bough::stiffening {
 

@@ -1,10 +1,10 @@
-#include "bough/stiffening/reduction.hpp"
+#include "stiffening/reduction.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "bough/formats/records/params.hpp"
+#include "formats/records/params.hpp"
 
 namespace bough::stiffening {
 

@@ -1,8 +1,8 @@
 /// The preload of a body, and temperatures as loads: stress that is there before the body deforms.
 #include <cstdio>
 
-#include "bough/fe/preload.hpp"
-#include "bough/stiffening/reduction.hpp"
+#include "fe/statics/preload.hpp"
+#include "stiffening/reduction.hpp"
 
 namespace bough::stiffening {
 

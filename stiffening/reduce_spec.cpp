@@ -1,4 +1,4 @@
-#include "bough/stiffening/reduction.hpp"
+#include "stiffening/reduction.hpp"
 
 #include <algorithm>
 #include <set>

@@ -1,8 +1,8 @@
 #pragma once
 /// \file The stages of reduce(): one deck, one spec, one body. Internal.
-#include "bough/fe/statics.hpp"
-#include "bough/stiffening/body_basis.hpp"
-#include "bough/stiffening/reduce.hpp"
+#include "fe/statics/statics.hpp"
+#include "stiffening/body_basis.hpp"
+#include "stiffening/reduce.hpp"
 
 namespace bough::stiffening {
 

@@ -1,6 +1,6 @@
-#include "bough/fe/elements/beam.hpp"
+#include "fe/elements/beam.hpp"
 
-#include "bough/base/rotation.hpp"
+#include "base/rotation.hpp"
 
 namespace bough::fe {
 

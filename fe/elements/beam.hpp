@@ -8,9 +8,9 @@
 /// McGuire, J. Struct. Eng. 112 (1986).
 #include <memory>
 
-#include "bough/fe/elements/beam_property.hpp"
-#include "bough/fe/elements/element.hpp"
-#include "bough/fe/shape/beam_field.hpp"
+#include "fe/elements/beam_field.hpp"
+#include "fe/elements/element.hpp"
+#include "fe/sections/beam_property.hpp"
 
 namespace bough::fe {
 

@@ -1,9 +1,9 @@
 /// \file The bodies behind the mass of a beam: sections on its field, or at the ends of its arms.
 #include <cmath>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/elements/beam.hpp"
-#include "bough/fe/elements/carried.hpp"
+#include "base/rotation.hpp"
+#include "fe/elements/beam.hpp"
+#include "fe/elements/carried.hpp"
 
 namespace bough::fe {
 namespace {

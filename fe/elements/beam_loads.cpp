@@ -1,5 +1,5 @@
-#include "bough/fe/elements/beam.hpp"
-#include "bough/fe/shape/gauss.hpp"
+#include "fe/elements/beam.hpp"
+#include "fe/shape/gauss.hpp"
 
 namespace bough::fe {
 

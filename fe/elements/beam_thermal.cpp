@@ -1,5 +1,5 @@
-#include "bough/fe/elements/beam.hpp"
-#include "bough/fe/elements/temperature.hpp"
+#include "fe/elements/beam.hpp"
+#include "fe/elements/temperature.hpp"
 
 namespace bough::fe {
 

@@ -1,13 +1,13 @@
-#include "bough/fe/elements/bend.hpp"
+#include "fe/elements/bend.hpp"
 
 #include <cmath>
 
 #include <Eigen/Cholesky>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/elements/carried.hpp"
-#include "bough/fe/elements/temperature.hpp"
-#include "bough/fe/shape/gauss.hpp"
+#include "base/rotation.hpp"
+#include "fe/elements/carried.hpp"
+#include "fe/elements/temperature.hpp"
+#include "fe/shape/gauss.hpp"
 
 namespace bough::fe {
 namespace {

@@ -3,7 +3,7 @@
 /// shape/beam_field.hpp for the straight beam; mass and geometric stiffness by a chain of straight beams that moves as
 /// the arc does. Sources: Nastran Quick Reference Guide, CBEND and PBEND; Timoshenko, Strength of Materials II (1956),
 /// §§12-14.
-#include "bough/fe/elements/beam.hpp"
+#include "fe/elements/beam.hpp"
 
 namespace bough::fe {
 

@@ -1,9 +1,9 @@
-#include "bough/fe/elements/bush.hpp"
+#include "fe/elements/bush.hpp"
 
 #include <algorithm>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/elements/carried.hpp"
+#include "base/rotation.hpp"
+#include "fe/elements/carried.hpp"
 
 namespace bough::fe {
 

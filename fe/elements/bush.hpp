@@ -1,7 +1,7 @@
 #pragma once
 /// \file CBUSH and CGAP: six springs and six dampers in element axes at one point, carried to the grids by rigid arms.
 /// Source: Nastran Quick Reference Guide, CBUSH and PBUSH.
-#include "bough/fe/elements/element.hpp"
+#include "fe/elements/element.hpp"
 
 namespace bough::fe {
 

@@ -1,4 +1,4 @@
-#include "bough/fe/elements/bush1d.hpp"
+#include "fe/elements/bush1d.hpp"
 
 namespace bough::fe {
 

@@ -3,7 +3,7 @@
 /// to ground). Source: Nastran Quick Reference Guide, CBUSH1D and PBUSH1D (linear part).
 #include <optional>
 
-#include "bough/fe/elements/element.hpp"
+#include "fe/elements/element.hpp"
 
 namespace bough::fe {
 

@@ -1,6 +1,6 @@
-#include "bough/fe/elements/carried.hpp"
+#include "fe/elements/carried.hpp"
 
-#include "bough/base/rotation.hpp"
+#include "base/rotation.hpp"
 
 namespace bough::fe {
 

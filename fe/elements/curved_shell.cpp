@@ -1,9 +1,9 @@
-#include "bough/fe/elements/curved_shell.hpp"
+#include "fe/elements/curved_shell.hpp"
 
 #include <cmath>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/elements/curved_shell_operators.hpp"
+#include "base/rotation.hpp"
+#include "fe/elements/curved_shell_operators.hpp"
 
 namespace bough::fe {
 

@@ -10,9 +10,9 @@
 /// shape). An absent midside node lies midway, turns by the mean, and moves as the Hermite beam between its corners
 /// does along the normal. Drilling: penalty on θ·n - ½ rot u, weight as PARAM,K6ROT. The law is taken in local axes at
 /// each point.
-#include "bough/fe/elements/element.hpp"
-#include "bough/fe/materials/shell_section.hpp"
-#include "bough/fe/shape/shell_tying.hpp"
+#include "fe/elements/element.hpp"
+#include "fe/sections/shell_section.hpp"
+#include "fe/shape/shell_tying.hpp"
 
 namespace bough::fe {
 

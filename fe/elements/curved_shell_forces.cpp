@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/elements/curved_shell_operators.hpp"
-#include "bough/fe/elements/geometric_projection.hpp"
+#include "base/rotation.hpp"
+#include "fe/elements/curved_shell_operators.hpp"
+#include "fe/elements/geometric_projection.hpp"
 
 namespace bough::fe {
 

@@ -2,7 +2,7 @@
 /// \file What curved_shell.cpp and curved_shell_forces.cpp share. Internal.
 #include <Eigen/Dense>
 
-#include "bough/fe/elements/curved_shell.hpp"
+#include "fe/elements/curved_shell.hpp"
 
 namespace bough::fe {
 

@@ -1,5 +1,5 @@
-#include "bough/fe/elements/curved_shell_operators.hpp"
-#include "bough/fe/elements/temperature.hpp"
+#include "fe/elements/curved_shell_operators.hpp"
+#include "fe/elements/temperature.hpp"
 
 namespace bough::fe {
 

@@ -1,6 +1,6 @@
-#include "bough/fe/elements/direct.hpp"
+#include "fe/elements/direct.hpp"
 
-#include "bough/fe/elements/carried.hpp"
+#include "fe/elements/carried.hpp"
 
 namespace bough::fe {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file DMIG selected by K2GG, M2GG, B2GG: stiffness, mass or damping given term by term.
 /// Sources: Nastran Quick Reference Guide, DMIG, K2GG, M2GG, B2GG; OptiStruct Reference Guide, PARAM,CK2 and CM2.
-#include "bough/fe/elements/element.hpp"
+#include "fe/elements/element.hpp"
 
 namespace bough::fe {
 

@@ -1,8 +1,8 @@
-#include "bough/fe/elements/element.hpp"
+#include "fe/elements/element.hpp"
 
 #include <algorithm>
 
-#include "bough/fe/elements/geometric_projection.hpp"
+#include "fe/elements/geometric_projection.hpp"
 
 namespace bough::fe {
 

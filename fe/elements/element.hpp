@@ -9,8 +9,8 @@
 
 #include <Eigen/Dense>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/records/deck.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/records/deck.hpp"
 
 namespace bough::fe {
 
@@ -127,7 +127,7 @@ struct ElementList {
 
 /// Every element of the deck (bars, beams, rods, tubes, springs, bushes, masses, shells, solids); missing properties,
 /// materials, grids, zero lengths and bad orientations are reported with file and line, all of them. The only list of
-/// element types (fe/elements/catalog.cpp).
+/// element types (fe/cards/catalog.cpp).
 ElementList make_elements(const records::Deck& deck, const NodeTable& nodes, Diagnostics& diagnostics);
 
 }  // namespace bough::fe

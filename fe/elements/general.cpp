@@ -1,4 +1,4 @@
-#include "bough/fe/elements/general.hpp"
+#include "fe/elements/general.hpp"
 
 namespace bough::fe {
 

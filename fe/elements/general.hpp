@@ -1,7 +1,7 @@
 #pragma once
 /// \file GENEL: a stiffness given on any degrees of freedom. Source: Nastran Quick Reference Guide, GENEL; MSC.Nastran
 /// Linear Static Analysis User's Guide, "general element".
-#include "bough/fe/elements/element.hpp"
+#include "fe/elements/element.hpp"
 
 namespace bough::fe {
 

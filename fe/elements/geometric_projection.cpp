@@ -1,8 +1,8 @@
-#include "bough/fe/elements/geometric_projection.hpp"
+#include "fe/elements/geometric_projection.hpp"
 
 #include <algorithm>
 
-#include "bough/fe/blas.hpp"
+#include "fe/linear/blas.hpp"
 
 namespace bough::fe {
 

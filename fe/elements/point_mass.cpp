@@ -1,6 +1,6 @@
-#include "bough/fe/elements/point_mass.hpp"
+#include "fe/elements/point_mass.hpp"
 
-#include "bough/base/rotation.hpp"
+#include "base/rotation.hpp"
 
 namespace bough::fe {
 

@@ -1,8 +1,8 @@
 #pragma once
 /// \file CONM1 and CONM2: a 6 x 6 mass at one grid.
 /// Source: Nastran Quick Reference Guide, CONM1 and CONM2.
-#include "bough/fe/elements/carried.hpp"
-#include "bough/fe/elements/element.hpp"
+#include "fe/elements/carried.hpp"
+#include "fe/elements/element.hpp"
 
 namespace bough::fe {
 

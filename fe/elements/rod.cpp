@@ -1,9 +1,9 @@
-#include "bough/fe/elements/rod.hpp"
+#include "fe/elements/rod.hpp"
 
 #include <utility>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/elements/temperature.hpp"
+#include "base/rotation.hpp"
+#include "fe/elements/temperature.hpp"
 
 namespace bough::fe {
 namespace {

@@ -2,7 +2,7 @@
 /// \file CROD, CONROD, CTUBE: axial force and torque only.
 /// Sources: Przemieniecki, Theory of Matrix Structural Analysis (1968), §5.1 and §15.2; Argyris et al., CMAME 20
 /// (1979), for the torque.
-#include "bough/fe/elements/element.hpp"
+#include "fe/elements/element.hpp"
 
 namespace bough::fe {
 

@@ -1,6 +1,6 @@
-#include "bough/fe/elements/scalar.hpp"
+#include "fe/elements/scalar.hpp"
 
-#include "bough/fe/elements/carried.hpp"
+#include "fe/elements/carried.hpp"
 
 namespace bough::fe {
 

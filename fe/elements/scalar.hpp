@@ -2,7 +2,7 @@
 /// \file CELAS1 to 4, CDAMP1 to 4 and CMASS1 to 4: a spring, a damper or a mass between two degrees of freedom (in the
 /// displacement axes of their grids), or from one to ground. Source: Nastran Quick Reference Guide, CELAS1, CELAS2,
 /// CDAMP1, CDAMP2, CMASS1, CMASS2.
-#include "bough/fe/elements/element.hpp"
+#include "fe/elements/element.hpp"
 
 namespace bough::fe {
 

@@ -1,6 +1,6 @@
-#include "bough/fe/elements/shear_panel.hpp"
+#include "fe/elements/shear_panel.hpp"
 
-#include "bough/fe/shape/gauss.hpp"
+#include "fe/shape/gauss.hpp"
 
 namespace bough::fe {
 

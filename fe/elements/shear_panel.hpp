@@ -11,7 +11,7 @@
 /// put those at the true corners into equilibrium.
 #include <array>
 
-#include "bough/fe/elements/element.hpp"
+#include "fe/elements/element.hpp"
 
 namespace bough::fe {
 

@@ -1,9 +1,9 @@
-#include "bough/fe/elements/shell.hpp"
+#include "fe/elements/shell.hpp"
 
 #include <cmath>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/elements/shell_dofs.hpp"
+#include "base/rotation.hpp"
+#include "fe/elements/shell_dofs.hpp"
 
 namespace bough::fe {
 

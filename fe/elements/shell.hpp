@@ -14,8 +14,8 @@
 /// Quadrature: 2 x 2 Gauss, or three interior points. K_G: docs/elements/shell.md.
 #include <array>
 
-#include "bough/fe/elements/element.hpp"
-#include "bough/fe/elements/shell_fields.hpp"
+#include "fe/elements/element.hpp"
+#include "fe/elements/shell_fields.hpp"
 
 namespace bough::fe {
 

@@ -1,9 +1,9 @@
 /// \file The bodies behind the mass of the shells: points at the centre of mass of the section over each grid, and arms
 /// along the normal for what is spread through the thickness.
-#include "bough/base/rotation.hpp"
-#include "bough/fe/elements/carried.hpp"
-#include "bough/fe/elements/curved_shell.hpp"
-#include "bough/fe/elements/shell.hpp"
+#include "base/rotation.hpp"
+#include "fe/elements/carried.hpp"
+#include "fe/elements/curved_shell.hpp"
+#include "fe/elements/shell.hpp"
 
 namespace bough::fe {
 

@@ -4,7 +4,7 @@
 /// Membrane operators act on u v θz of each corner, plate operators on w θx θy. All sizes are fixed: no heap.
 #include <array>
 
-#include "bough/fe/materials/shell_section.hpp"
+#include "fe/sections/shell_section.hpp"
 
 namespace bough::fe::shell {
 

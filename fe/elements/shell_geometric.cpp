@@ -1,7 +1,7 @@
-#include "bough/fe/blas.hpp"
-#include "bough/fe/elements/geometric_projection.hpp"
-#include "bough/fe/elements/shell.hpp"
-#include "bough/fe/elements/shell_dofs.hpp"
+#include "fe/elements/geometric_projection.hpp"
+#include "fe/elements/shell.hpp"
+#include "fe/elements/shell_dofs.hpp"
+#include "fe/linear/blas.hpp"
 
 namespace bough::fe {
 

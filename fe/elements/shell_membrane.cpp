@@ -12,7 +12,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "bough/fe/elements/shell_fields.hpp"
+#include "fe/elements/shell_fields.hpp"
 
 namespace bough::fe::shell {
 namespace {

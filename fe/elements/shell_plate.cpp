@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "bough/fe/elements/shell_fields.hpp"
+#include "fe/elements/shell_fields.hpp"
 
 namespace bough::fe::shell {
 namespace {

@@ -1,8 +1,8 @@
 #include <Eigen/Cholesky>
 
-#include "bough/fe/elements/shell.hpp"
-#include "bough/fe/elements/shell_dofs.hpp"
-#include "bough/fe/elements/temperature.hpp"
+#include "fe/elements/shell.hpp"
+#include "fe/elements/shell_dofs.hpp"
+#include "fe/elements/temperature.hpp"
 
 namespace bough::fe {
 

@@ -1,11 +1,11 @@
-#include "bough/fe/elements/solid.hpp"
+#include "fe/elements/solid.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "bough/fe/blas.hpp"
-#include "bough/fe/elements/geometric_projection.hpp"
-#include "bough/fe/elements/temperature.hpp"
+#include "fe/elements/geometric_projection.hpp"
+#include "fe/elements/temperature.hpp"
+#include "fe/linear/blas.hpp"
 
 namespace bough::fe {
 

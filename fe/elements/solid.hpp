@@ -9,8 +9,8 @@
 /// al., "Concepts and applications of finite element analysis", 4th ed., eq. 18.4-10). Lumped mass: the diagonal of the
 /// consistent one, scaled (Hinton, Rock & Zienkiewicz 1976). SolidScheme takes the inner modes away or sets the order
 /// of the quadrature, as IN and ISOP of PSOLID do.
-#include "bough/fe/elements/element.hpp"
-#include "bough/fe/shape/solid_shape.hpp"
+#include "fe/elements/element.hpp"
+#include "fe/shape/solid_shape.hpp"
 
 namespace bough::fe {
 

@@ -1,4 +1,4 @@
-#include "bough/fe/elements/viscous.hpp"
+#include "fe/elements/viscous.hpp"
 
 namespace bough::fe {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file CVISC: a damper along the line of two grids and one about it. Source: Nastran Quick Reference Guide, CVISC and
 /// PVISC.
-#include "bough/fe/elements/element.hpp"
+#include "fe/elements/element.hpp"
 
 namespace bough::fe {
 

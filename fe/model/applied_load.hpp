@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-#include "bough/fe/model/links.hpp"
+#include "fe/model/links.hpp"
 
 namespace bough::fe {
 

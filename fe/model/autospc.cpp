@@ -1,4 +1,4 @@
-#include "bough/fe/model/autospc.hpp"
+#include "fe/model/autospc.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "bough/fe/model/element_transform.hpp"
+#include "fe/model/element_transform.hpp"
 
 namespace bough::fe {
 namespace {

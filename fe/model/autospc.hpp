@@ -2,8 +2,8 @@
 /// \file AUTOSPC: dofs without stiffness of their own are held.
 #include <array>
 
-#include "bough/fe/model/constraints.hpp"
-#include "bough/fe/model/model.hpp"
+#include "fe/model/constraints.hpp"
+#include "fe/model/model.hpp"
 
 namespace bough::fe {
 

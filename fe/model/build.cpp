@@ -1,4 +1,4 @@
-#include "bough/fe/model/model.hpp"
+#include "fe/model/model.hpp"
 
 namespace bough::fe {
 

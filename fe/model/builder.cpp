@@ -1,17 +1,17 @@
-#include "bough/fe/model/builder.hpp"
+#include "fe/model/builder.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <set>
 
-#include "bough/fe/elements/nonstructural.hpp"
-#include "bough/fe/model/autospc.hpp"
-#include "bough/fe/model/coordinates.hpp"
-#include "bough/fe/model/direct_matrices.hpp"
-#include "bough/fe/model/rigid.hpp"
-#include "bough/fe/model/sets.hpp"
-#include "bough/fe/model/unmodelled.hpp"
-#include "bough/fe/suport.hpp"
+#include "fe/cards/nonstructural.hpp"
+#include "fe/model/autospc.hpp"
+#include "fe/model/coordinates.hpp"
+#include "fe/model/direct_matrices.hpp"
+#include "fe/model/rigid.hpp"
+#include "fe/model/sets.hpp"
+#include "fe/model/suport.hpp"
+#include "fe/model/unmodelled.hpp"
 
 namespace bough::fe {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file Builds a Model from a deck: systems, nodes, elements, constraints, AUTOSPC, in this order.
-#include "bough/fe/model/constraints.hpp"
-#include "bough/fe/model/model.hpp"
+#include "fe/model/constraints.hpp"
+#include "fe/model/model.hpp"
 
 namespace bough::fe {
 

@@ -1,4 +1,4 @@
-#include "bough/fe/model/constraints.hpp"
+#include "fe/model/constraints.hpp"
 
 #include <algorithm>
 #include <cmath>

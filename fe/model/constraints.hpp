@@ -9,7 +9,7 @@
 
 #include <Eigen/Sparse>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::fe {
 

@@ -1,4 +1,4 @@
-#include "bough/fe/model/coordinates.hpp"
+#include "fe/model/coordinates.hpp"
 
 #include <algorithm>
 #include <cmath>

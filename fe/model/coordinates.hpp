@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/records/deck.hpp"
+#include "formats/records/deck.hpp"
 
 namespace bough::fe {
 

@@ -1,4 +1,4 @@
-#include "bough/fe/model/direct_matrices.hpp"
+#include "fe/model/direct_matrices.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <set>
 #include <tuple>
 
-#include "bough/fe/elements/direct.hpp"
-#include "bough/fe/elements/maker.hpp"
-#include "bough/fe/model/sets.hpp"
+#include "fe/cards/maker.hpp"
+#include "fe/elements/direct.hpp"
+#include "fe/model/sets.hpp"
 
 namespace bough::fe {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file The direct matrices (DMIG) that a subcase selects, as elements.
-#include "bough/fe/elements/element.hpp"
+#include "fe/elements/element.hpp"
 
 namespace bough::fe {
 

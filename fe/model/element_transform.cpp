@@ -1,4 +1,4 @@
-#include "bough/fe/model/element_transform.hpp"
+#include "fe/model/element_transform.hpp"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Sparse>
 
-#include "bough/fe/elements/element.hpp"
+#include "fe/elements/element.hpp"
 
 namespace bough::fe {
 

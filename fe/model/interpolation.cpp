@@ -5,8 +5,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/model/rigid.hpp"
+#include "base/rotation.hpp"
+#include "fe/model/rigid.hpp"
 
 namespace bough::fe {
 namespace {

@@ -1,10 +1,10 @@
-#include "bough/fe/model/links.hpp"
+#include "fe/model/links.hpp"
 
 #include <algorithm>
 #include <set>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/elements/carried.hpp"
+#include "base/rotation.hpp"
+#include "fe/elements/carried.hpp"
 
 namespace bough::fe {
 

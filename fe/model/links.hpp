@@ -4,8 +4,8 @@
 #include <map>
 #include <vector>
 
-#include "bough/fe/elements/element.hpp"
-#include "bough/fe/model/constraints.hpp"
+#include "fe/elements/element.hpp"
+#include "fe/model/constraints.hpp"
 
 namespace bough::fe {
 

@@ -1,9 +1,9 @@
-#include "bough/fe/model/model.hpp"
+#include "fe/model/model.hpp"
 
 #include <map>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/model/coordinates.hpp"
+#include "base/rotation.hpp"
+#include "fe/model/coordinates.hpp"
 
 namespace bough::fe {
 

@@ -3,7 +3,7 @@
 ///
 /// g-set: every dof of every node, translations and rotations in **basic** axes (one row for a scalar point).
 /// f-set: the free dofs left after SPC, permanent SPC, AUTOSPC, MPC and rigid elements, in the displacement (CD) axes.
-/// With ASET or OMIT they are those of the a-set, the others following them statically (fe/model/guyan.cpp).
+/// With ASET or OMIT they are those of the a-set, the others following them statically (fe/statics/guyan.cpp).
 /// u_g = T q_f, with the CD rotation, the constraint elimination and the zeros all inside the sparse T.
 #include <array>
 #include <functional>
@@ -15,12 +15,12 @@
 
 #include <Eigen/Sparse>
 
-#include "bough/fe/elements/element.hpp"
-#include "bough/fe/model/applied_load.hpp"
-#include "bough/fe/model/links.hpp"
-#include "bough/fe/model/prestress.hpp"
-#include "bough/formats/records/flex_body.hpp"
-#include "bough/formats/records/modes.hpp"
+#include "fe/elements/element.hpp"
+#include "fe/model/applied_load.hpp"
+#include "fe/model/links.hpp"
+#include "fe/model/prestress.hpp"
+#include "formats/records/flex_body.hpp"
+#include "formats/records/modes.hpp"
 
 namespace bough::fe {
 
@@ -34,7 +34,7 @@ struct ModelOptions {
   std::optional<Vector3d> origin;     ///< Bo in basic: node positions become relative to it
   std::vector<std::string> ignore_cards;  ///< --ignore CARD
   bool uses_enforced = false;  ///< the caller applies calc_enforced(): no warning that an SPC's value is dropped
-  std::shared_ptr<const Prestress> prestress;  ///< of this deck (fe/preload.hpp): its K_G0 joins the stiffness
+  std::shared_ptr<const Prestress> prestress;  ///< of this deck (fe/statics/preload.hpp): its K_G0 joins the stiffness
 };
 
 /// One dof removed by AUTOSPC: node id, component 1..6 in CD axes, stiffness ratio that condemned it.

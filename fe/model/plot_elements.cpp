@@ -1,4 +1,4 @@
-#include "bough/fe/model/builder.hpp"
+#include "fe/model/builder.hpp"
 
 namespace bough::fe {
 

@@ -1,10 +1,10 @@
 /// What a prestress does to a model that is built with it.
 #include <algorithm>
 
-#include "bough/fe/assembly.hpp"
-#include "bough/fe/factor.hpp"
-#include "bough/fe/model/builder.hpp"
-#include "bough/fe/statics.hpp"
+#include "fe/linear/factor.hpp"
+#include "fe/matrices/assembly.hpp"
+#include "fe/model/builder.hpp"
+#include "fe/statics/statics.hpp"
 
 namespace bough::fe {
 namespace {

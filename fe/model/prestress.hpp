@@ -2,8 +2,8 @@
 /// \file A state of stress that a model starts from: what of it enters the stiffness (docs/theory/preload.md).
 #include <string>
 
-#include "bough/fe/model/applied_load.hpp"
-#include "bough/fe/model/links.hpp"
+#include "fe/model/applied_load.hpp"
+#include "fe/model/links.hpp"
 
 namespace bough::fe {
 

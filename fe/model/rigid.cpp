@@ -1,10 +1,10 @@
-#include "bough/fe/model/rigid.hpp"
+#include "fe/model/rigid.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include "bough/base/rotation.hpp"
+#include "base/rotation.hpp"
 
 namespace bough::fe {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 /// \file Rigid elements RBE1, RBE2, RBE3, RBAR, RROD and RSPLINE as constraint equations, and, RSPLINE apart, as links
 /// with a second order.
-#include "bough/fe/elements/element.hpp"
-#include "bough/fe/model/constraints.hpp"
-#include "bough/fe/model/links.hpp"
+#include "fe/elements/element.hpp"
+#include "fe/model/constraints.hpp"
+#include "fe/model/links.hpp"
 
 namespace bough::fe {
 

@@ -1,4 +1,4 @@
-#include "bough/fe/model/sets.hpp"
+#include "fe/model/sets.hpp"
 
 #include <algorithm>
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/records/deck.hpp"
-#include "bough/formats/records/params.hpp"
+#include "formats/records/deck.hpp"
+#include "formats/records/params.hpp"
 
 namespace bough::fe {
 

@@ -3,8 +3,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "bough/fe/elements/beam.hpp"
-#include "bough/fe/model/rigid.hpp"
+#include "fe/elements/beam.hpp"
+#include "fe/model/rigid.hpp"
 
 namespace bough::fe {
 namespace {

@@ -1,8 +1,8 @@
-#include "bough/fe/model/temperatures.hpp"
+#include "fe/model/temperatures.hpp"
 
 #include <optional>
 
-#include "bough/fe/elements/temperature.hpp"
+#include "fe/elements/temperature.hpp"
 
 namespace bough::fe {
 namespace {

@@ -2,7 +2,7 @@
 /// \file Temperature sets as loads, and what heated elements carry before they deform.
 #include <unordered_map>
 
-#include "bough/fe/model/model.hpp"
+#include "fe/model/model.hpp"
 
 namespace bough::fe {
 

@@ -1,4 +1,4 @@
-#include "bough/fe/model/unmodelled.hpp"
+#include "fe/model/unmodelled.hpp"
 
 #include <map>
 #include <set>

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "bough/fe/elements/element.hpp"
+#include "fe/elements/element.hpp"
 
 namespace bough::fe {
 

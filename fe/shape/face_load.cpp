@@ -1,11 +1,11 @@
-#include "bough/fe/shape/face_load.hpp"
+#include "fe/shape/face_load.hpp"
 
 #include <algorithm>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/base/rotation.hpp"
-#include "bough/fe/shape/gauss.hpp"
-#include "bough/fe/shape/surface_shape.hpp"
+#include "base/diagnostic.hpp"
+#include "base/rotation.hpp"
+#include "fe/shape/gauss.hpp"
+#include "fe/shape/surface_shape.hpp"
 
 namespace bough::fe {
 

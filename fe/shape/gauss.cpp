@@ -1,10 +1,10 @@
-#include "bough/fe/shape/gauss.hpp"
+#include "fe/shape/gauss.hpp"
 
 #include <array>
 #include <cmath>
 #include <numbers>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::fe {
 namespace {

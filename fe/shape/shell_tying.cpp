@@ -1,10 +1,10 @@
-#include "bough/fe/shape/shell_tying.hpp"
+#include "fe/shape/shell_tying.hpp"
 
 #include <array>
 #include <cmath>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/fe/shape/surface_shape.hpp"
+#include "base/diagnostic.hpp"
+#include "fe/shape/surface_shape.hpp"
 
 namespace bough::fe {
 namespace {

@@ -1,4 +1,4 @@
-#include "bough/fe/shape/solid_shape.hpp"
+#include "fe/shape/solid_shape.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "bough/fe/shape/surface_shape.hpp"
+#include "fe/shape/surface_shape.hpp"
 
 namespace bough::fe {
 namespace {

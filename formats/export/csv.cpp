@@ -1,8 +1,8 @@
-#include "bough/formats/export/csv.hpp"
+#include "formats/export/csv.hpp"
 
 #include <charconv>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::exports {
 

@@ -1,8 +1,8 @@
 #include <cstdio>
 #include <unordered_map>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/export/vtu.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/export/vtu.hpp"
 
 namespace bough::exports {
 

@@ -1,6 +1,6 @@
-#include "bough/formats/export/reduced_solid.hpp"
+#include "formats/export/reduced_solid.hpp"
 
-#include "bough/base/rotation.hpp"
+#include "base/rotation.hpp"
 
 namespace bough::exports {
 namespace {

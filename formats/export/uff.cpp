@@ -1,11 +1,11 @@
-#include "bough/formats/export/uff.hpp"
+#include "formats/export/uff.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <set>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::exports {
 namespace {

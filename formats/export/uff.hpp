@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/export/csv.hpp"
-#include "bough/formats/records/flex_body.hpp"
-#include "bough/formats/records/modes.hpp"
+#include "formats/export/csv.hpp"
+#include "formats/records/flex_body.hpp"
+#include "formats/records/modes.hpp"
 
 namespace bough::exports {
 

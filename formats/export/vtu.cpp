@@ -1,4 +1,4 @@
-#include "bough/formats/export/vtu.hpp"
+#include "formats/export/vtu.hpp"
 
 #include <array>
 #include <bit>
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::exports {
 

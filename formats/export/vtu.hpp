@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/records/flex_body.hpp"
-#include "bough/formats/records/modes.hpp"
-#include "bough/formats/records/static_result.hpp"
+#include "formats/records/flex_body.hpp"
+#include "formats/records/modes.hpp"
+#include "formats/records/static_result.hpp"
 
 namespace bough::exports {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/flx/layout.hpp"
-#include "bough/formats/records/flex_body.hpp"
+#include "formats/flx/layout.hpp"
+#include "formats/records/flex_body.hpp"
 
 namespace bough::flx {
 

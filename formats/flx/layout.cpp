@@ -1,12 +1,12 @@
-#include "bough/formats/flx/layout.hpp"
+#include "formats/flx/layout.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <fstream>
 #include <sstream>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/flx/detail/layout_words.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/flx/detail/layout_words.hpp"
 
 namespace bough::flx {
 

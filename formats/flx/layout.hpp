@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/flx/number_format.hpp"
+#include "formats/flx/number_format.hpp"
 
 namespace bough::flx {
 

@@ -1,4 +1,4 @@
-#include "bough/formats/flx/list_directed.hpp"
+#include "formats/flx/list_directed.hpp"
 
 #include <algorithm>
 #include <charconv>

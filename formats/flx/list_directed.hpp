@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::flx {
 

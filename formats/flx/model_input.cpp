@@ -1,10 +1,10 @@
-#include "bough/formats/flx/model_input.hpp"
+#include "formats/flx/model_input.hpp"
 
 #include <fmt/format.h>
 
 #include <set>
 
-#include "bough/formats/flx/list_directed.hpp"
+#include "formats/flx/list_directed.hpp"
 
 namespace bough::flx {
 

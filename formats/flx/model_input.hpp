@@ -7,7 +7,7 @@
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::flx {
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/flx/layout.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/flx/layout.hpp"
 
 namespace bough::flx {
 

@@ -1,4 +1,4 @@
-#include "bough/formats/flx/number_format.hpp"
+#include "formats/flx/number_format.hpp"
 
 #include <array>
 #include <cctype>

@@ -9,8 +9,8 @@
 #include <sstream>
 #include <unordered_map>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/flx/flx_file.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/flx/flx_file.hpp"
 
 namespace bough::flx {
 

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <functional>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/flx/flx_file.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/flx/flx_file.hpp"
 
 namespace bough::flx {
 

@@ -1,6 +1,6 @@
-#include "bough/formats/hdf5/comparison_file.hpp"
+#include "formats/hdf5/comparison_file.hpp"
 
-#include "bough/formats/hdf5/detail/writer.hpp"
+#include "formats/hdf5/detail/writer.hpp"
 
 namespace bough::hdf5 {
 

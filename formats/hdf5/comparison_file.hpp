@@ -2,7 +2,7 @@
 /// \file The file that `compare -o` writes (docs/formats/comparison.md).
 #include <string>
 
-#include "bough/formats/records/comparison.hpp"
+#include "formats/records/comparison.hpp"
 
 namespace bough::hdf5 {
 

@@ -5,10 +5,10 @@
 #include <memory>
 #include <string>
 
-#include "bough/formats/records/flex_body.hpp"
-#include "bough/formats/records/modes.hpp"
-#include "bough/formats/records/results.hpp"
-#include "bough/formats/records/static_result.hpp"
+#include "formats/records/flex_body.hpp"
+#include "formats/records/modes.hpp"
+#include "formats/records/results.hpp"
+#include "formats/records/static_result.hpp"
 
 namespace bough::hdf5 {
 

@@ -1,6 +1,6 @@
-#include "bough/formats/hdf5/grids_file.hpp"
+#include "formats/hdf5/grids_file.hpp"
 
-#include "bough/formats/hdf5/detail/reader.hpp"
+#include "formats/hdf5/detail/reader.hpp"
 
 namespace bough::hdf5 {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "bough/formats/hdf5/detail/reader.hpp"
-#include "bough/formats/hdf5/files.hpp"
+#include "formats/hdf5/detail/reader.hpp"
+#include "formats/hdf5/files.hpp"
 
 namespace bough::hdf5 {
 

@@ -1,9 +1,9 @@
 #include <algorithm>
 
-#include "bough/base/version.hpp"
-#include "bough/formats/hdf5/detail/reader.hpp"
-#include "bough/formats/hdf5/detail/writer.hpp"
-#include "bough/formats/hdf5/files.hpp"
+#include "base/version.hpp"
+#include "formats/hdf5/detail/reader.hpp"
+#include "formats/hdf5/detail/writer.hpp"
+#include "formats/hdf5/files.hpp"
 
 namespace bough::hdf5 {
 

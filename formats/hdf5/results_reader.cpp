@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <thread>
 
-#include "bough/base/version.hpp"
-#include "bough/formats/hdf5/detail/reader.hpp"
-#include "bough/formats/hdf5/detail/results_layout.hpp"
-#include "bough/formats/hdf5/files.hpp"
+#include "base/version.hpp"
+#include "formats/hdf5/detail/reader.hpp"
+#include "formats/hdf5/detail/results_layout.hpp"
+#include "formats/hdf5/files.hpp"
 
 namespace bough::hdf5 {
 

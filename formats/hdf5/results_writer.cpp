@@ -3,10 +3,10 @@
 #include <cmath>
 #include <optional>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/hdf5/detail/results_header.hpp"
-#include "bough/formats/hdf5/detail/results_layout.hpp"
-#include "bough/formats/hdf5/files.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/hdf5/detail/results_header.hpp"
+#include "formats/hdf5/detail/results_layout.hpp"
+#include "formats/hdf5/files.hpp"
 
 namespace bough::hdf5 {
 

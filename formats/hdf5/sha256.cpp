@@ -6,8 +6,8 @@
 #include <fstream>
 #include <vector>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/hdf5/files.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/hdf5/files.hpp"
 
 namespace bough::hdf5 {
 

@@ -1,8 +1,8 @@
-#include "bough/formats/hdf5/sparse_file.hpp"
+#include "formats/hdf5/sparse_file.hpp"
 
 #include <algorithm>
 
-#include "bough/formats/hdf5/detail/reader.hpp"
+#include "formats/hdf5/detail/reader.hpp"
 
 namespace bough::hdf5 {
 namespace {

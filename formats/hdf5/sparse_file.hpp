@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "bough/formats/records/static_result.hpp"
+#include "formats/records/static_result.hpp"
 
 namespace bough::hdf5 {
 

@@ -1,6 +1,6 @@
-#include "bough/base/version.hpp"
-#include "bough/formats/hdf5/detail/writer.hpp"
-#include "bough/formats/hdf5/files.hpp"
+#include "base/version.hpp"
+#include "formats/hdf5/detail/writer.hpp"
+#include "formats/hdf5/files.hpp"
 
 namespace bough::hdf5 {
 namespace {

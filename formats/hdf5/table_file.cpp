@@ -1,7 +1,7 @@
-#include "bough/formats/hdf5/table_file.hpp"
+#include "formats/hdf5/table_file.hpp"
 
-#include "bough/formats/hdf5/detail/reader.hpp"
-#include "bough/formats/hdf5/detail/writer.hpp"
+#include "formats/hdf5/detail/reader.hpp"
+#include "formats/hdf5/detail/writer.hpp"
 
 namespace bough::hdf5 {
 

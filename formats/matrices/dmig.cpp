@@ -1,9 +1,9 @@
 #include <algorithm>
 
-#include "bough/formats/matrices/detail/dofs.hpp"
-#include "bough/formats/matrices/detail/readers.hpp"
-#include "bough/formats/matrices/detail/triplets.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "formats/matrices/detail/dofs.hpp"
+#include "formats/matrices/detail/readers.hpp"
+#include "formats/matrices/detail/triplets.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough::matrices::detail {
 namespace {

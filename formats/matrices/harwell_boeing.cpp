@@ -4,8 +4,8 @@
 #include <cstring>
 #include <filesystem>
 
-#include "bough/formats/matrices/detail/readers.hpp"
-#include "bough/formats/matrices/detail/triplets.hpp"
+#include "formats/matrices/detail/readers.hpp"
+#include "formats/matrices/detail/triplets.hpp"
 
 namespace bough::matrices::detail {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "bough/formats/matrices/detail/dofs.hpp"
-#include "bough/formats/matrices/detail/readers.hpp"
-#include "bough/formats/matrices/detail/triplets.hpp"
+#include "formats/matrices/detail/dofs.hpp"
+#include "formats/matrices/detail/readers.hpp"
+#include "formats/matrices/detail/triplets.hpp"
 
 namespace bough::matrices::detail {
 namespace {

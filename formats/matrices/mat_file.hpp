@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "bough/formats/records/static_result.hpp"
+#include "formats/records/static_result.hpp"
 
 namespace bough::matrices {
 

@@ -4,8 +4,8 @@
 
 #include <matio.h>
 
-#include "bough/formats/matrices/detail/readers.hpp"
-#include "bough/formats/matrices/detail/triplets.hpp"
+#include "formats/matrices/detail/readers.hpp"
+#include "formats/matrices/detail/triplets.hpp"
 
 namespace bough::matrices::detail {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <matio.h>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/base/version.hpp"
-#include "bough/formats/matrices/mat_file.hpp"
+#include "base/diagnostic.hpp"
+#include "base/version.hpp"
+#include "formats/matrices/mat_file.hpp"
 
 namespace bough::matrices {
 namespace {

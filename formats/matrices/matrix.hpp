@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/records/static_result.hpp"
+#include "formats/records/static_result.hpp"
 
 namespace bough::matrices {
 

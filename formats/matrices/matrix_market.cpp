@@ -1,9 +1,9 @@
-#include "bough/formats/matrices/matrix_market.hpp"
+#include "formats/matrices/matrix_market.hpp"
 
 #include <cstdio>
 
-#include "bough/formats/matrices/detail/readers.hpp"
-#include "bough/formats/matrices/detail/triplets.hpp"
+#include "formats/matrices/detail/readers.hpp"
+#include "formats/matrices/detail/triplets.hpp"
 
 namespace bough::matrices {
 

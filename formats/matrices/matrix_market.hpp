@@ -3,7 +3,7 @@
 #include <ostream>
 #include <string>
 
-#include "bough/formats/matrices/matrix.hpp"
+#include "formats/matrices/matrix.hpp"
 
 namespace bough::matrices {
 

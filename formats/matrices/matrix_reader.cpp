@@ -1,12 +1,12 @@
-#include "bough/formats/matrices/matrix_reader.hpp"
+#include "formats/matrices/matrix_reader.hpp"
 
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
 
-#include "bough/formats/hdf5/sparse_file.hpp"
-#include "bough/formats/matrices/detail/readers.hpp"
-#include "bough/formats/matrices/op4.hpp"
+#include "formats/hdf5/sparse_file.hpp"
+#include "formats/matrices/detail/readers.hpp"
+#include "formats/matrices/op4.hpp"
 
 namespace bough::matrices {
 

@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/matrices/matrix.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/matrices/matrix.hpp"
 
 namespace bough::matrices {
 

@@ -1,9 +1,9 @@
 // Nastran OUTPUT2: Fortran records that alternate between a key (one word) and data. A key n > 0 announces n words, a
 // negative one ends a logical record, zero ends a table; the first data word of every logical record after the second
 // is its kind (0: table).
-#include "bough/formats/matrices/detail/binary.hpp"
-#include "bough/formats/matrices/detail/input.hpp"
-#include "bough/formats/matrices/detail/mode_builder.hpp"
+#include "formats/matrices/detail/binary.hpp"
+#include "formats/matrices/detail/input.hpp"
+#include "formats/matrices/detail/mode_builder.hpp"
 
 namespace bough::matrices::detail {
 namespace {

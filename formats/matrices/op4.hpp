@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/matrices/matrix.hpp"
+#include "formats/matrices/matrix.hpp"
 
 namespace bough::matrices {
 

@@ -1,7 +1,7 @@
-#include "bough/formats/matrices/detail/binary.hpp"
-#include "bough/formats/matrices/detail/input.hpp"
-#include "bough/formats/matrices/detail/op4_header.hpp"
-#include "bough/formats/matrices/op4.hpp"
+#include "formats/matrices/detail/binary.hpp"
+#include "formats/matrices/detail/input.hpp"
+#include "formats/matrices/detail/op4_header.hpp"
+#include "formats/matrices/op4.hpp"
 
 namespace bough::matrices {
 namespace {

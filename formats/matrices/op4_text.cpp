@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "bough/formats/matrices/detail/input.hpp"
-#include "bough/formats/matrices/detail/op4_header.hpp"
-#include "bough/formats/matrices/op4.hpp"
+#include "formats/matrices/detail/input.hpp"
+#include "formats/matrices/detail/op4_header.hpp"
+#include "formats/matrices/op4.hpp"
 
 namespace bough::matrices {
 namespace {

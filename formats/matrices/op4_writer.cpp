@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <cstring>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/matrices/detail/op4_header.hpp"
-#include "bough/formats/matrices/op4.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/matrices/detail/op4_header.hpp"
+#include "formats/matrices/op4.hpp"
 
 namespace bough::matrices {
 namespace {

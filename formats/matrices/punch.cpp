@@ -1,6 +1,6 @@
 // Nastran punch: lines of 72 columns and a sequence number; $ lines say what follows.
-#include "bough/formats/matrices/detail/input.hpp"
-#include "bough/formats/matrices/detail/mode_builder.hpp"
+#include "formats/matrices/detail/input.hpp"
+#include "formats/matrices/detail/mode_builder.hpp"
 
 namespace bough::matrices::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "bough/formats/mbdyn/fem_file.hpp"
+#include "formats/mbdyn/fem_file.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,19 +1,19 @@
-#include "bough/formats/nastran/field_editor.hpp"
+#include "formats/nastran/field_editor.hpp"
 
 #include <algorithm>
 #include <map>
 #include <set>
 
-#include "bough/formats/nastran/detail/card.hpp"
-#include "bough/formats/nastran/detail/card_text.hpp"
-#include "bough/formats/nastran/detail/changed_files.hpp"
-#include "bough/formats/nastran/detail/control.hpp"
-#include "bough/formats/nastran/detail/field_names.hpp"
-#include "bough/formats/nastran/detail/field_text.hpp"
-#include "bough/formats/nastran/detail/images.hpp"
-#include "bough/formats/nastran/detail/lines.hpp"
-#include "bough/formats/nastran/detail/replication.hpp"
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/card.hpp"
+#include "formats/nastran/detail/card_text.hpp"
+#include "formats/nastran/detail/changed_files.hpp"
+#include "formats/nastran/detail/control.hpp"
+#include "formats/nastran/detail/field_names.hpp"
+#include "formats/nastran/detail/field_text.hpp"
+#include "formats/nastran/detail/images.hpp"
+#include "formats/nastran/detail/lines.hpp"
+#include "formats/nastran/detail/replication.hpp"
+#include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran {
 

@@ -1,11 +1,11 @@
-#include "bough/formats/nastran/reader.hpp"
+#include "formats/nastran/reader.hpp"
 
-#include "bough/formats/nastran/detail/builder.hpp"
-#include "bough/formats/nastran/detail/control.hpp"
-#include "bough/formats/nastran/detail/executive.hpp"
-#include "bough/formats/nastran/detail/known_params.hpp"
-#include "bough/formats/nastran/detail/lines.hpp"
-#include "bough/formats/nastran/detail/packing.hpp"
+#include "formats/nastran/detail/builder.hpp"
+#include "formats/nastran/detail/control.hpp"
+#include "formats/nastran/detail/executive.hpp"
+#include "formats/nastran/detail/known_params.hpp"
+#include "formats/nastran/detail/lines.hpp"
+#include "formats/nastran/detail/packing.hpp"
 
 namespace bough::nastran {
 namespace {

@@ -1,10 +1,10 @@
-#include "bough/formats/nastran/writer.hpp"
+#include "formats/nastran/writer.hpp"
 
 #include <algorithm>
 #include <array>
 #include <string_view>
 
-#include "bough/formats/nastran/detail/card_sink.hpp"
+#include "formats/nastran/detail/card_sink.hpp"
 
 namespace bough::nastran {
 namespace {

@@ -2,7 +2,7 @@
 /// \file records::Deck to a Nastran deck.
 #include <string>
 
-#include "bough/formats/records/deck.hpp"
+#include "formats/records/deck.hpp"
 
 namespace bough::nastran {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/records/flex_body.hpp"
-#include "bough/formats/records/matrices_spec.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/records/flex_body.hpp"
+#include "formats/records/matrices_spec.hpp"
 
 namespace bough::records {
 

@@ -1,4 +1,4 @@
-#include "bough/formats/records/deck.hpp"
+#include "formats/records/deck.hpp"
 
 namespace bough::records {
 

@@ -12,12 +12,12 @@
 
 #include <Eigen/Dense>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/records/card_location.hpp"
-#include "bough/formats/records/deck_continua.hpp"
-#include "bough/formats/records/deck_loads.hpp"
-#include "bough/formats/records/deck_special.hpp"
-#include "bough/formats/records/deck_temperatures.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/records/card_location.hpp"
+#include "formats/records/deck_continua.hpp"
+#include "formats/records/deck_loads.hpp"
+#include "formats/records/deck_special.hpp"
+#include "formats/records/deck_temperatures.hpp"
 
 namespace bough::records {
 

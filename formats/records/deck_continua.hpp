@@ -7,7 +7,7 @@
 
 #include <Eigen/Dense>
 
-#include "bough/formats/records/card_location.hpp"
+#include "formats/records/card_location.hpp"
 
 namespace bough::records {
 

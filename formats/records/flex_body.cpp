@@ -1,4 +1,4 @@
-#include "bough/formats/records/flex_body.hpp"
+#include "formats/records/flex_body.hpp"
 
 #include <algorithm>
 

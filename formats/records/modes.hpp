@@ -1,6 +1,6 @@
 #pragma once
 /// \file What `modes` writes: normal modes or buckling factors of a deck, with the health tables.
-#include "bough/formats/records/flex_body.hpp"
+#include "formats/records/flex_body.hpp"
 
 namespace bough::records {
 

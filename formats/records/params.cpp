@@ -1,4 +1,4 @@
-#include "bough/formats/records/params.hpp"
+#include "formats/records/params.hpp"
 
 #include <charconv>
 

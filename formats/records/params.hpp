@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "bough/formats/records/deck.hpp"
+#include "formats/records/deck.hpp"
 
 namespace bough::records {
 

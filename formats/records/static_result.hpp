@@ -1,6 +1,6 @@
 #pragma once
 /// \file What `static` and `matrices` write.
-#include "bough/formats/records/flex_body.hpp"
+#include "formats/records/flex_body.hpp"
 
 namespace bough::records {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/records/flex_body.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/records/flex_body.hpp"
 
 namespace bough::records {
 

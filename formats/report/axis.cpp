@@ -1,4 +1,4 @@
-#include "bough/formats/report/axis.hpp"
+#include "formats/report/axis.hpp"
 
 #include <algorithm>
 #include <cmath>

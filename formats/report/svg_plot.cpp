@@ -1,4 +1,4 @@
-#include "bough/formats/report/svg_plot.hpp"
+#include "formats/report/svg_plot.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/report/axis.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/report/axis.hpp"
 
 namespace bough::report {
 

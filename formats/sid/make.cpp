@@ -1,5 +1,5 @@
-#include "bough/base/rotation.hpp"
-#include "bough/formats/sid/sid.hpp"
+#include "base/rotation.hpp"
+#include "formats/sid/sid.hpp"
 
 namespace bough::sid {
 

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <map>
 
-#include "bough/formats/sid/sid.hpp"
+#include "formats/sid/sid.hpp"
 
 namespace bough::sid {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "bough/base/rotation.hpp"
-#include "bough/formats/sid/sid.hpp"
+#include "base/rotation.hpp"
+#include "formats/sid/sid.hpp"
 
 namespace bough::sid {
 

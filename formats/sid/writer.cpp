@@ -1,6 +1,6 @@
 #include <cstdio>
 
-#include "bough/formats/sid/sid.hpp"
+#include "formats/sid/sid.hpp"
 
 namespace bough::sid {
 

@@ -2,10 +2,10 @@
 #include <array>
 #include <map>
 
-#include "bough/formats/toml/detail/fields.hpp"
-#include "bough/formats/toml/detail/matrices_table.hpp"
-#include "bough/formats/toml/detail/schema.hpp"
-#include "bough/formats/toml/specs.hpp"
+#include "formats/toml/detail/fields.hpp"
+#include "formats/toml/detail/matrices_table.hpp"
+#include "formats/toml/detail/schema.hpp"
+#include "formats/toml/specs.hpp"
 
 namespace bough::toml_files {
 

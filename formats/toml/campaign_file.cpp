@@ -3,10 +3,10 @@
 #include <fstream>
 #include <map>
 
-#include "bough/formats/toml/campaign.hpp"
-#include "bough/formats/toml/detail/campaign_words.hpp"
-#include "bough/formats/toml/detail/fields.hpp"
-#include "bough/formats/toml/detail/schema.hpp"
+#include "formats/toml/campaign.hpp"
+#include "formats/toml/detail/campaign_words.hpp"
+#include "formats/toml/detail/fields.hpp"
+#include "formats/toml/detail/schema.hpp"
 
 namespace bough::toml_files {
 

@@ -1,4 +1,4 @@
-#include "bough/formats/toml/key_editor.hpp"
+#include "formats/toml/key_editor.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -6,7 +6,7 @@
 
 #include <toml++/toml.h>
 
-#include "bough/formats/toml/detail/schema.hpp"
+#include "formats/toml/detail/schema.hpp"
 
 namespace bough::toml_files {
 

@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::toml_files {
 

@@ -1,8 +1,8 @@
-#include "bough/formats/toml/detail/matrices_table.hpp"
+#include "formats/toml/detail/matrices_table.hpp"
 
 #include <algorithm>
 
-#include "bough/formats/toml/specs.hpp"
+#include "formats/toml/specs.hpp"
 
 namespace bough::toml_files {
 

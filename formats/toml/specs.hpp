@@ -1,8 +1,8 @@
 #pragma once
 /// \file Body and system files in TOML: text to records, every error with file and line, unknown keys with the nearest
 /// match.
-#include "bough/formats/records/body_spec.hpp"
-#include "bough/formats/records/system_spec.hpp"
+#include "formats/records/body_spec.hpp"
+#include "formats/records/system_spec.hpp"
 
 namespace bough::toml_files {
 

@@ -3,11 +3,11 @@
 #include <numbers>
 #include <set>
 
-#include "bough/formats/toml/detail/fields.hpp"
-#include "bough/formats/toml/detail/hinge_table.hpp"
-#include "bough/formats/toml/detail/references.hpp"
-#include "bough/formats/toml/detail/schema.hpp"
-#include "bough/formats/toml/specs.hpp"
+#include "formats/toml/detail/fields.hpp"
+#include "formats/toml/detail/hinge_table.hpp"
+#include "formats/toml/detail/references.hpp"
+#include "formats/toml/detail/schema.hpp"
+#include "formats/toml/specs.hpp"
 
 namespace bough::toml_files {
 

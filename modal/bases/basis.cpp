@@ -1,10 +1,10 @@
-#include "bough/modal/bases/basis.hpp"
+#include "modal/bases/basis.hpp"
 
 #include <algorithm>
 #include <numeric>
 
-#include "bough/modal/canonical.hpp"
-#include "bough/modal/pencil.hpp"
+#include "modal/canonical.hpp"
+#include "modal/pencil.hpp"
 
 namespace bough::modal::bases {
 

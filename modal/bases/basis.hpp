@@ -1,8 +1,8 @@
 #pragma once
 /// \file The deformation shapes of a body: normal modes, Craig-Bampton, Craig-Chang, with residual vectors
 /// (docs/theory/bases.md).
-#include "bough/modal/bases/frame.hpp"
-#include "bough/modal/bases/ritz.hpp"
+#include "modal/bases/frame.hpp"
+#include "modal/bases/ritz.hpp"
 
 namespace bough::modal::bases {
 

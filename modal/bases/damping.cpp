@@ -1,10 +1,10 @@
-#include "bough/modal/bases/damping.hpp"
+#include "modal/bases/damping.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "bough/modal/bases/ritz.hpp"
+#include "modal/bases/ritz.hpp"
 
 namespace bough::modal::bases {
 

@@ -1,15 +1,15 @@
-#include "bough/modal/bases/fixed_interface.hpp"
+#include "modal/bases/fixed_interface.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "bough/fe/mechanism.hpp"
-#include "bough/fe/residual.hpp"
-#include "bough/fe/statics.hpp"
-#include "bough/modal/canonical.hpp"
-#include "bough/modal/pencil.hpp"
-#include "bough/modal/pencil_solver.hpp"
+#include "fe/linear/mechanism.hpp"
+#include "fe/linear/residual.hpp"
+#include "fe/statics/statics.hpp"
+#include "modal/canonical.hpp"
+#include "modal/pencil.hpp"
+#include "modal/pencil_solver.hpp"
 
 namespace bough::modal::bases {
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "bough/modal/bases/partition.hpp"
-#include "bough/modal/eigen.hpp"
+#include "modal/bases/partition.hpp"
+#include "modal/eigen.hpp"
 
 namespace bough::modal::bases {
 

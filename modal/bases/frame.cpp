@@ -1,6 +1,6 @@
-#include "bough/modal/bases/frame.hpp"
+#include "modal/bases/frame.hpp"
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::modal::bases {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bough/fe/assembly.hpp"
+#include "fe/matrices/assembly.hpp"
 
 namespace bough::modal::bases {
 

@@ -1,4 +1,4 @@
-#include "bough/modal/bases/partition.hpp"
+#include "modal/bases/partition.hpp"
 
 #include <algorithm>
 #include <cmath>

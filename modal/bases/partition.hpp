@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "bough/fe/model/model.hpp"
-#include "bough/fe/petsc.hpp"
+#include "fe/linear/petsc.hpp"
+#include "fe/model/model.hpp"
 
 namespace bough::modal::bases {
 

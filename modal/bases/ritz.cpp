@@ -1,8 +1,8 @@
-#include "bough/modal/bases/ritz.hpp"
+#include "modal/bases/ritz.hpp"
 
 #include <cmath>
 
-#include "bough/modal/canonical.hpp"
+#include "modal/canonical.hpp"
 
 namespace bough::modal::bases {
 

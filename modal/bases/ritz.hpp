@@ -3,7 +3,7 @@
 /// vectors.
 #include <functional>
 
-#include "bough/modal/bases/fixed_interface.hpp"
+#include "modal/bases/fixed_interface.hpp"
 
 namespace bough::modal::bases {
 

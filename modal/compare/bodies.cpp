@@ -1,9 +1,9 @@
-#include "bough/modal/compare/bodies.hpp"
+#include "modal/compare/bodies.hpp"
 
 #include <cmath>
 #include <limits>
 
-#include "bough/base/rotation.hpp"
+#include "base/rotation.hpp"
 
 namespace bough::modal {
 

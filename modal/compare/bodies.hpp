@@ -1,7 +1,7 @@
 #pragma once
 /// \file Mass integrals and geometric stiffness of two bodies on their paired modes.
-#include "bough/modal/compare/integrals_check.hpp"
-#include "bough/modal/compare/shapes.hpp"
+#include "modal/compare/integrals_check.hpp"
+#include "modal/compare/shapes.hpp"
 
 namespace bough::modal {
 

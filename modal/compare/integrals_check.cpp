@@ -1,9 +1,9 @@
-#include "bough/modal/compare/integrals_check.hpp"
+#include "modal/compare/integrals_check.hpp"
 
 #include <cmath>
 #include <limits>
 
-#include "bough/base/rotation.hpp"
+#include "base/rotation.hpp"
 
 namespace bough::modal {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/records/flex_body.hpp"
+#include "formats/records/flex_body.hpp"
 
 namespace bough::modal {
 

@@ -1,4 +1,4 @@
-#include "bough/modal/compare/refinement.hpp"
+#include "modal/compare/refinement.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 /// \file Convergence over three meshes of one body: observed orders and extrapolated values.
-#include "bough/modal/compare/bodies.hpp"
+#include "modal/compare/bodies.hpp"
 
 namespace bough::modal {
 

@@ -1,4 +1,4 @@
-#include "bough/modal/compare/shapes.hpp"
+#include "modal/compare/shapes.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "bough/solver/bodies/affine_field.hpp"
+#include "solver/bodies/affine_field.hpp"
 
 #include <cmath>
 

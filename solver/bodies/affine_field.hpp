@@ -10,8 +10,8 @@
 /// out: its column of A is zero.
 #include <vector>
 
-#include "bough/formats/records/flex_body.hpp"
-#include "bough/solver/bodies/spatial.hpp"
+#include "formats/records/flex_body.hpp"
+#include "solver/bodies/spatial.hpp"
 
 namespace bough::solver {
 

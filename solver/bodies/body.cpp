@@ -1,9 +1,9 @@
-#include "bough/solver/bodies/body.hpp"
+#include "solver/bodies/body.hpp"
 
 #include <cmath>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/solver/bodies/tensor.hpp"
+#include "base/diagnostic.hpp"
+#include "solver/bodies/tensor.hpp"
 
 namespace bough::solver {
 

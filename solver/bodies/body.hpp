@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/records/system_spec.hpp"
-#include "bough/solver/bodies/affine_field.hpp"
-#include "bough/solver/bodies/node.hpp"
+#include "formats/records/system_spec.hpp"
+#include "solver/bodies/affine_field.hpp"
+#include "solver/bodies/node.hpp"
 
 namespace bough::solver {
 

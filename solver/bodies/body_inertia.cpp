@@ -1,11 +1,11 @@
 // M(η) and h of one body. All in B; r(p) = Σ_b A_b f_b(p) + φη with orthonormal f, A = A0 + x(a), P = ∫ρ r fᵀ, Y =
 // ∂A/∂η. The mass integrals of a product of r's follow from ∫ρ ffᵀ = 1, L = ∫ρ φfᵀ and, for φ with φ, Γ2, Γ4 and M.
-#include "bough/solver/bodies/body.hpp"
+#include "solver/bodies/body.hpp"
 
 #include <cmath>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/solver/bodies/tensor.hpp"
+#include "base/diagnostic.hpp"
+#include "solver/bodies/tensor.hpp"
 
 namespace bough::solver {
 

@@ -1,4 +1,4 @@
-#include "bough/solver/bodies/node.hpp"
+#include "solver/bodies/node.hpp"
 
 namespace bough::solver {
 

@@ -6,7 +6,7 @@
 ///     R_BK = exp(θ̃), θ = ψη + ½[ηᵀ gθ_a η]_a       gθ_a = -K_G2(moment a), likewise
 ///     velocity Jt η̇, angular velocity T(θ) Jθ η̇    Jt row a = φ_a + (g_a η)ᵀ, Jθ row a = ψ_a + (gθ_a η)ᵀ
 /// All components are in B; n = number of modes (0 for a rigid body).
-#include "bough/solver/bodies/spatial.hpp"
+#include "solver/bodies/spatial.hpp"
 
 namespace bough::solver {
 

@@ -2,7 +2,7 @@
 /// \file Small fixed-size types of the tree: linear before angular everywhere.
 #include <Eigen/Dense>
 
-#include "bough/base/rotation.hpp"
+#include "base/rotation.hpp"
 
 namespace bough::solver {
 

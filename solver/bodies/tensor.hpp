@@ -1,6 +1,6 @@
 #pragma once
 /// \file Symmetric tensors as six components xx yy zz xy xz yz, the order of A_I(6..11).
-#include "bough/solver/bodies/spatial.hpp"
+#include "solver/bodies/spatial.hpp"
 
 namespace bough::solver {
 

@@ -1,4 +1,4 @@
-#include "bough/solver/forces/applied.hpp"
+#include "solver/forces/applied.hpp"
 
 namespace bough::solver {
 

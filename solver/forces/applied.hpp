@@ -1,6 +1,6 @@
 #pragma once
 /// \file [[force]] of a system file at run time: a force or moment at a node, or a load pattern of a flexible body.
-#include "bough/solver/tree/tree.hpp"
+#include "solver/tree/tree.hpp"
 
 namespace bough::solver {
 

@@ -1,4 +1,4 @@
-#include "bough/solver/forces/function.hpp"
+#include "solver/forces/function.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <set>
 #include <sstream>
 
-#include "bough/solver/forces/table.hpp"
+#include "solver/forces/table.hpp"
 
 namespace bough::solver {
 namespace {

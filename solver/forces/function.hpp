@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/records/system_spec.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/records/system_spec.hpp"
 
 namespace bough::solver {
 

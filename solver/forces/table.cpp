@@ -1,4 +1,4 @@
-#include "bough/solver/forces/table.hpp"
+#include "solver/forces/table.hpp"
 
 #include <algorithm>
 

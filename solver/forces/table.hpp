@@ -2,7 +2,7 @@
 /// \file Tabulated functions of time. Outside the table the end values hold.
 #include <vector>
 
-#include "bough/solver/forces/function.hpp"
+#include "solver/forces/function.hpp"
 
 namespace bough::solver {
 

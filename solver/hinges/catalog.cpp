@@ -1,12 +1,12 @@
 #include <cmath>
 
-#include "bough/solver/hinges/cylindrical.hpp"
-#include "bough/solver/hinges/fixed.hpp"
-#include "bough/solver/hinges/free.hpp"
-#include "bough/solver/hinges/planar.hpp"
-#include "bough/solver/hinges/prismatic.hpp"
-#include "bough/solver/hinges/revolute.hpp"
-#include "bough/solver/hinges/universal.hpp"
+#include "solver/hinges/cylindrical.hpp"
+#include "solver/hinges/fixed.hpp"
+#include "solver/hinges/free.hpp"
+#include "solver/hinges/planar.hpp"
+#include "solver/hinges/prismatic.hpp"
+#include "solver/hinges/revolute.hpp"
+#include "solver/hinges/universal.hpp"
 
 namespace bough::solver {
 

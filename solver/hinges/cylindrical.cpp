@@ -1,4 +1,4 @@
-#include "bough/solver/hinges/cylindrical.hpp"
+#include "solver/hinges/cylindrical.hpp"
 
 namespace bough::solver {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file Cylindrical hinge. q: angle about, then travel along `axis` (unit, the same in Hp and Hc); u = q̇.
 /// H = [0 axis; axis 0], bias 0.
-#include "bough/solver/hinges/hinge.hpp"
+#include "solver/hinges/hinge.hpp"
 
 namespace bough::solver {
 

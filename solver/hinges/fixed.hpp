@@ -1,6 +1,6 @@
 #pragma once
 /// \file Fixed hinge: Hc = Hp. No coordinates.
-#include "bough/solver/hinges/hinge.hpp"
+#include "solver/hinges/hinge.hpp"
 
 namespace bough::solver {
 

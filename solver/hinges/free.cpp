@@ -1,4 +1,4 @@
-#include "bough/solver/hinges/free.hpp"
+#include "solver/hinges/free.hpp"
 
 namespace bough::solver {
 

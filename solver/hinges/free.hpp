@@ -1,7 +1,7 @@
 #pragma once
 /// \file Free hinge. q: quaternion of R_HpHc (x y z w), then p_HpHc in Hp; u: angular velocity of Hc in Hp, components
 /// in Hc, then the rate of p_HpHc. H = [0 1; R_HpHc 0], bias 0. Springs: as spherical, then one per translation.
-#include "bough/solver/hinges/spherical.hpp"
+#include "solver/hinges/spherical.hpp"
 
 namespace bough::solver {
 

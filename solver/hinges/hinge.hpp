@@ -8,9 +8,9 @@
 /// Powers: τ = Hᵀ [f; t] for a force at Hc's origin and a moment, components in Hp.
 #include <memory>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/records/system_spec.hpp"
-#include "bough/solver/bodies/spatial.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/records/system_spec.hpp"
+#include "solver/bodies/spatial.hpp"
 
 namespace bough::solver {
 

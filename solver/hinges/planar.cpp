@@ -1,4 +1,4 @@
-#include "bough/solver/hinges/planar.hpp"
+#include "solver/hinges/planar.hpp"
 
 #include <cmath>
 

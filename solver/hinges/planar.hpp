@@ -2,7 +2,7 @@
 /// \file Planar hinge. q: travel along e1, travel along e2 (in the plane, fixed in Hp), then the angle about the unit
 /// normal n; u = q̇. e1 is Hp's x made perpendicular to n (Hp's z when n is along x), e2 = n × e1; for n = z they are
 /// x and y. H = [e1 e2 0; 0 0 n], bias 0.
-#include "bough/solver/hinges/hinge.hpp"
+#include "solver/hinges/hinge.hpp"
 
 namespace bough::solver {
 

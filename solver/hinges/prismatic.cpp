@@ -1,4 +1,4 @@
-#include "bough/solver/hinges/prismatic.hpp"
+#include "solver/hinges/prismatic.hpp"
 
 namespace bough::solver {
 

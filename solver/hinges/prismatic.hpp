@@ -1,6 +1,6 @@
 #pragma once
 /// \file Prismatic hinge. q: travel along `axis` (unit, in Hp); u = q̇. H = [axis; 0], bias 0.
-#include "bough/solver/hinges/hinge.hpp"
+#include "solver/hinges/hinge.hpp"
 
 namespace bough::solver {
 

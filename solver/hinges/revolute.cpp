@@ -1,4 +1,4 @@
-#include "bough/solver/hinges/revolute.hpp"
+#include "solver/hinges/revolute.hpp"
 
 namespace bough::solver {
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file Revolute hinge. q: angle about `axis` (unit, the same in Hp and Hc); u = q̇. H = [0; axis], bias 0.
-#include "bough/solver/hinges/hinge.hpp"
+#include "solver/hinges/hinge.hpp"
 
 namespace bough::solver {
 

@@ -1,4 +1,4 @@
-#include "bough/solver/hinges/spherical.hpp"
+#include "solver/hinges/spherical.hpp"
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 /// \file Spherical hinge. q: unit quaternion of R_HpHc, x y z w; u: angular velocity of Hc in Hp, components in Hc.
 /// H = [0; R_HpHc], bias 0 (d/dt (R w) = R ẇ). Springs: ½ θᵀ diag(k) θ with θ the rotation vector from the null
 /// orientation, components in the null frame; τ = -T(θ)⁻¹ k θ, which is -kθ when the three k are equal.
-#include "bough/solver/hinges/hinge.hpp"
+#include "solver/hinges/hinge.hpp"
 
 namespace bough::solver {
 

@@ -1,4 +1,4 @@
-#include "bough/solver/hinges/universal.hpp"
+#include "solver/hinges/universal.hpp"
 
 namespace bough::solver {
 

@@ -2,7 +2,7 @@
 /// \file Universal hinge. q: angle 1 about `axis` fixed in Hp, then angle 2 about `axis2`, which turns with the first
 /// (in Hp at q = 0); R_HpHc = exp(q1 axis) exp(q2 axis2); u = q̇.
 /// H = [0 0; axis, R1 axis2], bias = [0; q̇1 q̇2 axis × R1 axis2]. The axes may not be parallel.
-#include "bough/solver/hinges/hinge.hpp"
+#include "solver/hinges/hinge.hpp"
 
 namespace bough::solver {
 

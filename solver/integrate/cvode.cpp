@@ -3,7 +3,7 @@
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-#include "bough/solver/integrate/sundials.hpp"
+#include "solver/integrate/sundials.hpp"
 
 namespace bough::solver {
 namespace {

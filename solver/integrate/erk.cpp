@@ -1,6 +1,6 @@
 #include <arkode/arkode_erkstep.h>
 
-#include "bough/solver/integrate/sundials.hpp"
+#include "solver/integrate/sundials.hpp"
 
 namespace bough::solver {
 namespace {

@@ -1,6 +1,6 @@
-#include "bough/solver/integrate/linear_limit.hpp"
+#include "solver/integrate/linear_limit.hpp"
 
-#include "bough/solver/system/impl.hpp"
+#include "solver/system/impl.hpp"
 
 namespace bough::solver {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bough/solver/system/system.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 

@@ -1,6 +1,6 @@
-#include "bough/solver/integrate/memory_sink.hpp"
+#include "solver/integrate/memory_sink.hpp"
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::solver {
 

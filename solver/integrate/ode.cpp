@@ -1,4 +1,4 @@
-#include "bough/solver/integrate/ode.hpp"
+#include "solver/integrate/ode.hpp"
 
 #include <algorithm>
 

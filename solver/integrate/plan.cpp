@@ -1,4 +1,4 @@
-#include "bough/solver/integrate/plan.hpp"
+#include "solver/integrate/plan.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 /// \file When a run samples and where it restarts, from [simulation] and the jumps of its functions.
 #include <vector>
 
-#include "bough/formats/records/system_spec.hpp"
+#include "formats/records/system_spec.hpp"
 
 namespace bough::solver {
 

@@ -1,4 +1,4 @@
-#include "bough/solver/integrate/recorder.hpp"
+#include "solver/integrate/recorder.hpp"
 
 namespace bough::solver {
 

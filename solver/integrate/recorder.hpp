@@ -1,8 +1,8 @@
 #pragma once
 /// \file What a run records: the channels of the results file (docs/formats) and one sample of them.
-#include "bough/formats/records/results.hpp"
-#include "bough/solver/sensors/sensor.hpp"
-#include "bough/solver/system/system.hpp"
+#include "formats/records/results.hpp"
+#include "solver/sensors/sensor.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 

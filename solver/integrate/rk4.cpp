@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/solver/integrate/stepper.hpp"
+#include "base/diagnostic.hpp"
+#include "solver/integrate/stepper.hpp"
 
 namespace bough::solver {
 namespace {

@@ -1,15 +1,15 @@
-#include "bough/solver/integrate/simulate.hpp"
+#include "solver/integrate/simulate.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
-#include "bough/solver/integrate/linear_limit.hpp"
-#include "bough/solver/integrate/plan.hpp"
-#include "bough/solver/integrate/recorder.hpp"
-#include "bough/solver/integrate/stepper.hpp"
-#include "bough/solver/integrate/system_ode.hpp"
+#include "solver/integrate/linear_limit.hpp"
+#include "solver/integrate/plan.hpp"
+#include "solver/integrate/recorder.hpp"
+#include "solver/integrate/stepper.hpp"
+#include "solver/integrate/system_ode.hpp"
 
 namespace bough::solver {
 namespace {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <optional>
 
-#include "bough/formats/records/results.hpp"
-#include "bough/solver/system/system.hpp"
+#include "formats/records/results.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 

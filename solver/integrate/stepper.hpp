@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "bough/solver/integrate/ode.hpp"
+#include "solver/integrate/ode.hpp"
 
 namespace bough::solver {
 

@@ -5,8 +5,8 @@
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/solver/integrate/stepper.hpp"
+#include "base/diagnostic.hpp"
+#include "solver/integrate/stepper.hpp"
 
 namespace bough::solver::detail {
 

@@ -1,4 +1,4 @@
-#include "bough/solver/integrate/system_ode.hpp"
+#include "solver/integrate/system_ode.hpp"
 
 namespace bough::solver {
 

@@ -3,8 +3,8 @@
 /// work is constant whatever is applied, damped or prescribed.
 #include <string>
 
-#include "bough/solver/integrate/ode.hpp"
-#include "bough/solver/system/system.hpp"
+#include "solver/integrate/ode.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 

@@ -1,4 +1,4 @@
-#include "bough/solver/sensors/sensor.hpp"
+#include "solver/sensors/sensor.hpp"
 
 namespace bough::solver {
 namespace {

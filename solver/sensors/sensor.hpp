@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/records/system_spec.hpp"
-#include "bough/solver/system/system.hpp"
+#include "formats/records/system_spec.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 

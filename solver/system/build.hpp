@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "bough/solver/system/impl.hpp"
+#include "solver/system/impl.hpp"
 
 namespace bough::solver {
 

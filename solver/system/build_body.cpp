@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bough/solver/system/build.hpp"
+#include "solver/system/build.hpp"
 
 namespace bough::solver {
 

@@ -1,4 +1,4 @@
-#include "bough/solver/system/build.hpp"
+#include "solver/system/build.hpp"
 
 namespace bough::solver {
 

@@ -1,6 +1,6 @@
 #include <set>
 
-#include "bough/solver/system/build.hpp"
+#include "solver/system/build.hpp"
 
 namespace bough::solver {
 

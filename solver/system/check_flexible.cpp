@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "bough/solver/system/build.hpp"
+#include "solver/system/build.hpp"
 
 namespace bough::solver {
 

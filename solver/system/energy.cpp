@@ -1,5 +1,5 @@
 // Energies, power and momenta of the whole system, from M(η) of each body (docs/theory/multibody.md).
-#include "bough/solver/system/impl.hpp"
+#include "solver/system/impl.hpp"
 
 namespace bough::solver {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file What stands behind System and SystemData.
-#include "bough/solver/forces/applied.hpp"
-#include "bough/solver/tree/tree.hpp"
+#include "solver/forces/applied.hpp"
+#include "solver/tree/tree.hpp"
 
 namespace bough::solver {
 

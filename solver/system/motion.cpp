@@ -1,5 +1,5 @@
 // Motion of nodes as sensors see it.
-#include "bough/solver/system/impl.hpp"
+#include "solver/system/impl.hpp"
 
 namespace bough::solver {
 

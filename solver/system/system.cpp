@@ -1,8 +1,8 @@
-#include "bough/solver/system/system.hpp"
+#include "solver/system/system.hpp"
 
 #include <algorithm>
 
-#include "bough/solver/system/impl.hpp"
+#include "solver/system/impl.hpp"
 
 void std::default_delete<bough::solver::SystemData>::operator()(bough::solver::SystemData* data) const { delete data; }
 

@@ -12,8 +12,8 @@
 
 #include <Eigen/Dense>
 
-#include "bough/base/rotation.hpp"
-#include "bough/formats/records/system_spec.hpp"
+#include "base/rotation.hpp"
+#include "formats/records/system_spec.hpp"
 
 namespace bough::solver {
 

@@ -3,7 +3,7 @@
 //   W = 𝒫ℋ, D = ℋᵀW, G = D⁻¹ W_topᵀ, 𝒫⁺ = 𝒫_66 - W_top G, z = D⁻¹(τ - ℋᵀ(β + 𝒫b)), β⁺ = (β + 𝒫b)_6 + W_top z,
 //   parent: 𝒫 += Xᵀ𝒫⁺X, β += Xᵀβ⁺;   then u̇ = z - G X [A'_P; η̈_P].
 // With D = LLᵀ a flexible body stops halfway, G = L⁻¹W_topᵀ and z likewise: 𝒫⁺ = 𝒫_66 - GᵀG, u̇ = L⁻ᵀ(z - G X [..]).
-#include "bough/solver/tree/tree.hpp"
+#include "solver/tree/tree.hpp"
 
 namespace bough::solver {
 

@@ -1,5 +1,5 @@
 // The second route: Jacobians of every body with respect to u, M = Σ JᵀM(η)J, no elimination.
-#include "bough/solver/tree/tree.hpp"
+#include "solver/tree/tree.hpp"
 
 namespace bough::solver {
 

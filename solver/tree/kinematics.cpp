@@ -1,4 +1,4 @@
-#include "bough/solver/tree/tree.hpp"
+#include "solver/tree/tree.hpp"
 
 namespace bough::solver {
 

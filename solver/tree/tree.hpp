@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "bough/solver/bodies/body.hpp"
-#include "bough/solver/forces/function.hpp"
-#include "bough/solver/hinges/hinge.hpp"
-#include "bough/solver/system/system.hpp"
+#include "solver/bodies/body.hpp"
+#include "solver/forces/function.hpp"
+#include "solver/hinges/hinge.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 

@@ -22,7 +22,7 @@ def is_first_include_of_its_source(header):
     if not os.path.exists(os.path.join(ROOT, source)):
         return False
     first = re.search(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', read(source), re.M)
-    return first is not None and first.group(1) == "bough/" + header
+    return first is not None and first.group(1) == header
 
 
 def read_include_flags():
@@ -48,7 +48,7 @@ FLAGS = read_include_flags()
 
 def compile_alone(header):
     result = subprocess.run(
-        ["c++", "-std=c++20", "-O0", "-fsyntax-only", *FLAGS, "-x", "c++", "-include", "bough/" + header, os.devnull],
+        ["c++", "-std=c++20", "-O0", "-fsyntax-only", *FLAGS, "-x", "c++", "-include", header, os.devnull],
         capture_output=True, text=True)
     if result.returncode == 0:
         return None

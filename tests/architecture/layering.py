@@ -2,9 +2,11 @@
 import os
 import re
 
-from common import ROOT, finish, line_of, list_sources, read, strip_comments
+from common import ROOMS, ROOT, finish, line_of, list_sources, read, strip_comments
 
 RECORDS = ["base", "formats/records"]
+# fe by question, from the ground up; each may use those before it.
+FE = ["linear", "shape", "sections", "elements", "cards", "model", "matrices", "loads", "statics"]
 # First match wins; a folder may always include itself and what lies below it.
 MAY_INCLUDE = [
     ("base", []),
@@ -18,10 +20,8 @@ MAY_INCLUDE = [
     ("formats/flx", RECORDS),
     ("formats/sid", RECORDS),
     ("formats/mbdyn", RECORDS),
-    ("fe/shape", RECORDS + ["fe/elements/beam_property.hpp"]),
-    ("fe/materials", RECORDS),
-    ("fe/elements", RECORDS + ["fe/shape", "fe/materials", "fe/blas.hpp"]),
-    ("fe", RECORDS),
+    ("fe/shape", RECORDS + ["fe/sections/beam_property.hpp"]),
+    *[("fe/" + room, RECORDS + ["fe/" + below for below in FE[:i]]) for i, room in enumerate(FE)],
     ("modal", RECORDS + ["fe"]),
     ("stiffening", RECORDS + ["fe", "modal"]),
     ("solver/hinges", RECORDS + ["solver/bodies"]),
@@ -31,7 +31,7 @@ MAY_INCLUDE = [
 # Outside headers and the only folders that may see them.
 OUTSIDE = [
     (r"^petsc", ["fe", "modal", "stiffening", "cli/versions.cpp"]),
-    (r"^slepc", ["fe/petsc.cpp", "modal", "cli/versions.cpp"]),
+    (r"^slepc", ["fe/linear/petsc.cpp", "modal", "cli/versions.cpp"]),
     (r"^mpi\.h", ["fe"]),
     (r"^metis", ["fe"]),
     (r"^(hdf5|H5)", ["formats/hdf5", "cli/versions.cpp"]),
@@ -58,8 +58,8 @@ for source in list_sources():
     for match in re.finditer(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', text, re.M):
         kind, target = match.groups()
         where = f"{source}:{line_of(text, match.start())}"
-        if target.startswith("bough/"):
-            header = target[len("bough/"):]
+        header = target
+        if kind == '"' and header.split("/")[0] in ROOMS and "/" in header:
             if not os.path.exists(os.path.join(ROOT, header)):
                 if header != "base/version.hpp":
                     findings.append(f"{where}: includes {target}, which does not exist")
@@ -69,7 +69,7 @@ for source in list_sources():
                 findings.append(f"{where}: no library room below includes {target}")
             continue
         if kind == '"' and rule:
-            findings.append(f'{where}: spell it "bough/...", found "{target}"')
+            findings.append(f'{where}: spell it by its path in the repository, found "{target}"')
         for pattern, folders in OUTSIDE:
             if re.match(pattern, target) and not lies_in(source, folders):
                 findings.append(f"{where}: only {', '.join(folders)} may see <{target}>")

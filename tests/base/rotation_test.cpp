@@ -1,4 +1,4 @@
-#include "bough/base/rotation.hpp"
+#include "base/rotation.hpp"
 
 #include <gtest/gtest.h>
 

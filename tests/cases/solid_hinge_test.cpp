@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "bough/formats/nastran/reader.hpp"
+#include "formats/nastran/reader.hpp"
 #include "tests/cases/support/example.hpp"
 
 namespace bough::test {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bough/modal/eigen.hpp"
+#include "modal/eigen.hpp"
 #include "tests/support/beam_decks.hpp"
 
 namespace bough {

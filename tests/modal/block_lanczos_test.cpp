@@ -1,5 +1,5 @@
 /// Lanczos by blocks against eigenvalues known in closed form, and against Krylov-Schur on finite elements.
-#include "bough/modal/block_lanczos.hpp"
+#include "modal/block_lanczos.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <numbers>
 #include <vector>
 
-#include "bough/fe/factor.hpp"
-#include "bough/fe/ordering.hpp"
-#include "bough/modal/krylov.hpp"
-#include "bough/modal/pencil.hpp"
+#include "fe/linear/factor.hpp"
+#include "fe/linear/ordering.hpp"
+#include "modal/krylov.hpp"
+#include "modal/pencil.hpp"
 #include "tests/support/beam_decks.hpp"
 
 namespace bough {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "bough/fe/statics.hpp"
-#include "bough/modal/eigen.hpp"
+#include "fe/statics/statics.hpp"
+#include "modal/eigen.hpp"
 #include "tests/support/beam_decks.hpp"
 
 namespace bough {

@@ -1,5 +1,5 @@
 /// The eigenvalue solver itself: repeated roots, ranges, small and singular problems, messages.
-#include "bough/modal/eigen.hpp"
+#include "modal/eigen.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,12 +1,12 @@
 /// Γ0..Γ4: momentum and exact sets against dense sums, against each other, and their mesh convergence.
-#include "bough/modal/integrals.hpp"
+#include "modal/integrals.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "bough/base/rotation.hpp"
-#include "bough/modal/eigen.hpp"
+#include "base/rotation.hpp"
+#include "modal/eigen.hpp"
 #include "tests/support/beam_decks.hpp"
 
 namespace bough {

@@ -1,10 +1,10 @@
 /// Buckling of columns that end in rigid levers.
 #include <gtest/gtest.h>
 
-#include "bough/fe/static_case.hpp"
-#include "bough/fe/wide_links.hpp"
-#include "bough/formats/nastran/reader.hpp"
-#include "bough/modal/eigen.hpp"
+#include "fe/matrices/wide_links.hpp"
+#include "fe/statics/static_case.hpp"
+#include "formats/nastran/reader.hpp"
+#include "modal/eigen.hpp"
 
 namespace bough {
 namespace {

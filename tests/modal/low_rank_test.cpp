@@ -1,5 +1,5 @@
 /// Mass matrices of low rank: point masses on massless structures, tied by RBE2, RBE3 and MPC.
-#include "bough/modal/low_rank.hpp"
+#include "modal/low_rank.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,13 +10,13 @@
 #include <numbers>
 #include <utility>
 
-#include "bough/fe/assembly.hpp"
-#include "bough/formats/nastran/reader.hpp"
-#include "bough/modal/bases/fixed_interface.hpp"
-#include "bough/modal/eigen.hpp"
-#include "bough/modal/krylov.hpp"
-#include "bough/modal/pencil.hpp"
-#include "bough/modal/pencil_solver.hpp"
+#include "fe/matrices/assembly.hpp"
+#include "formats/nastran/reader.hpp"
+#include "modal/bases/fixed_interface.hpp"
+#include "modal/eigen.hpp"
+#include "modal/krylov.hpp"
+#include "modal/pencil.hpp"
+#include "modal/pencil_solver.hpp"
 #include "tests/support/beam_decks.hpp"
 
 namespace bough {

@@ -1,6 +1,6 @@
 /// Integrals and gains from plain matrices and a dof map: against the model they came from, with dofs missing and in
 /// any order.
-#include "bough/modal/matrix_body.hpp"
+#include "modal/matrix_body.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "bough/formats/nastran/reader.hpp"
-#include "bough/modal/eigen.hpp"
-#include "bough/modal/krylov.hpp"
-#include "bough/modal/mode_range.hpp"
-#include "bough/modal/null_motions.hpp"
+#include "formats/nastran/reader.hpp"
+#include "modal/eigen.hpp"
+#include "modal/krylov.hpp"
+#include "modal/mode_range.hpp"
+#include "modal/null_motions.hpp"
 
 namespace bough {
 namespace {

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <numbers>
 
-#include "bough/fe/statics.hpp"
-#include "bough/formats/nastran/reader.hpp"
-#include "bough/modal/eigen.hpp"
+#include "fe/statics/statics.hpp"
+#include "formats/nastran/reader.hpp"
+#include "modal/eigen.hpp"
 #include "tests/support/paths.hpp"
 
 namespace bough {

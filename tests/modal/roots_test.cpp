@@ -1,6 +1,6 @@
 /// The search for roots against lists that are known: copies at the cut, roots that the solver passes over, and an
 /// inertia that counts too few, which normal modes and those of a held interface tell as "modal.uncertain-count".
-#include "bough/modal/roots.hpp"
+#include "modal/roots.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "bough/fe/residual.hpp"
-#include "bough/formats/nastran/reader.hpp"
-#include "bough/modal/eigen.hpp"
-#include "bough/modal/normalize.hpp"
-#include "bough/modal/roots.hpp"
+#include "fe/linear/residual.hpp"
+#include "formats/nastran/reader.hpp"
+#include "modal/eigen.hpp"
+#include "modal/normalize.hpp"
+#include "modal/roots.hpp"
 
 namespace bough {
 namespace {

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <string>
 
-#include "bough/fe/static_case.hpp"
-#include "bough/formats/nastran/reader.hpp"
-#include "bough/modal/eigen.hpp"
+#include "fe/statics/static_case.hpp"
+#include "formats/nastran/reader.hpp"
+#include "modal/eigen.hpp"
 
 namespace bough {
 namespace {

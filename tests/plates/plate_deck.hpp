@@ -9,9 +9,9 @@
 
 #include <Eigen/Dense>
 
-#include "bough/fe/statics.hpp"
-#include "bough/formats/nastran/reader.hpp"
-#include "bough/modal/eigen.hpp"
+#include "fe/statics/statics.hpp"
+#include "formats/nastran/reader.hpp"
+#include "modal/eigen.hpp"
 
 namespace bough::test {
 

@@ -2,7 +2,7 @@
 /// \file A free deck with a bit of everything that carries mass or holds by arms and links.
 #include <string>
 
-#include "bough/formats/nastran/reader.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough::test {
 

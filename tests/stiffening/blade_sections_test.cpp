@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "bough/stiffening/reduce.hpp"
+#include "stiffening/reduce.hpp"
 #include "tests/stiffening/all_kinds.hpp"
 
 namespace bough {

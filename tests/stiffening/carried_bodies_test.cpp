@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/static_case.hpp"
-#include "bough/formats/nastran/reader.hpp"
-#include "bough/modal/integrals.hpp"
-#include "bough/stiffening/reduce.hpp"
+#include "base/rotation.hpp"
+#include "fe/statics/static_case.hpp"
+#include "formats/nastran/reader.hpp"
+#include "modal/integrals.hpp"
+#include "stiffening/reduce.hpp"
 #include "tests/stiffening/all_kinds.hpp"
 
 namespace bough {

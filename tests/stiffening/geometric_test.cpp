@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "bough/base/rotation.hpp"
-#include "bough/stiffening/reduce.hpp"
+#include "base/rotation.hpp"
+#include "stiffening/reduce.hpp"
 #include "tests/support/beam_decks.hpp"
 
 namespace bough {

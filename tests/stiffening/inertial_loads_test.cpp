@@ -1,8 +1,8 @@
 /// F_I against the report's lumped formulas node by node, and against d'Alembert by the full mass matrix.
 #include <gtest/gtest.h>
 
-#include "bough/base/rotation.hpp"
-#include "bough/stiffening/reduce.hpp"
+#include "base/rotation.hpp"
+#include "stiffening/reduce.hpp"
 #include "tests/support/beam_decks.hpp"
 
 namespace bough {

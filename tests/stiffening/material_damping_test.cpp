@@ -1,8 +1,8 @@
 /// Structural damping of materials: where every element has the same g, Σ g_e K_e is g K, and a mode has g ω.
 #include <gtest/gtest.h>
 
-#include "bough/formats/nastran/reader.hpp"
-#include "bough/stiffening/reduce.hpp"
+#include "formats/nastran/reader.hpp"
+#include "stiffening/reduce.hpp"
 
 namespace bough {
 namespace {

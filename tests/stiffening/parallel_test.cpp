@@ -2,7 +2,7 @@
 /// the same on each alone. With one process it compares the thing with itself.
 #include <gtest/gtest.h>
 
-#include "bough/stiffening/reduce.hpp"
+#include "stiffening/reduce.hpp"
 #include "tests/support/beam_decks.hpp"
 
 namespace bough {

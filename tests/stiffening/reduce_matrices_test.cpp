@@ -1,5 +1,5 @@
 /// A body from its own matrices is the body of its deck; and what is wrong with matrices.
-#include "bough/stiffening/reduce_matrices.hpp"
+#include "stiffening/reduce_matrices.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include <numbers>
 #include <set>
 
-#include "bough/fe/assembly.hpp"
-#include "bough/fe/static_case.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "fe/matrices/assembly.hpp"
+#include "fe/statics/static_case.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough {
 namespace {

@@ -1,5 +1,5 @@
 /// The whole way from a deck to a flexible body: what the record holds, and its errors.
-#include "bough/stiffening/reduce.hpp"
+#include "stiffening/reduce.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "bough/stiffening/reduce.hpp"
+#include "stiffening/reduce.hpp"
 #include "tests/support/beam_decks.hpp"
 
 namespace bough {

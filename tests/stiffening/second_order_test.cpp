@@ -4,10 +4,10 @@
 
 #include <Eigen/SVD>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/factor.hpp"
-#include "bough/fe/second_order.hpp"
-#include "bough/stiffening/reduce.hpp"
+#include "base/rotation.hpp"
+#include "fe/linear/factor.hpp"
+#include "fe/loads/second_order.hpp"
+#include "stiffening/reduce.hpp"
 #include "tests/stiffening/all_kinds.hpp"
 
 namespace bough {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bough/stiffening/reduce.hpp"
+#include "stiffening/reduce.hpp"
 #include "tests/stiffening/all_kinds.hpp"
 
 namespace bough {

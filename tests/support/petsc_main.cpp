@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "bough/fe/petsc.hpp"
+#include "fe/linear/petsc.hpp"
 
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);

@@ -1,4 +1,4 @@
-#include "bough/formats/flx/detail/layout_words.hpp"
+#include "formats/flx/detail/layout_words.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file Names and words of a layout (docs/formats/flx.md).
-#include "bough/formats/flx/layout.hpp"
+#include "formats/flx/layout.hpp"
 
 namespace bough::flx::detail {
 

@@ -1,7 +1,7 @@
 // Reading the blocks that flexible-body and modes files share.
 #include <algorithm>
 
-#include "bough/formats/hdf5/detail/reader.hpp"
+#include "formats/hdf5/detail/reader.hpp"
 
 namespace bough::hdf5 {
 

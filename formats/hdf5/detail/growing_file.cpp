@@ -1,11 +1,11 @@
-#include "bough/formats/hdf5/detail/growing_file.hpp"
+#include "formats/hdf5/detail/growing_file.hpp"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::hdf5 {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "bough/formats/hdf5/detail/handle.hpp"
+#include "formats/hdf5/detail/handle.hpp"
 
 namespace bough::hdf5 {
 

@@ -1,4 +1,4 @@
-#include "bough/formats/hdf5/detail/handle.hpp"
+#include "formats/hdf5/detail/handle.hpp"
 
 #include <cerrno>
 

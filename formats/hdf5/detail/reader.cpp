@@ -1,4 +1,4 @@
-#include "bough/formats/hdf5/detail/reader.hpp"
+#include "formats/hdf5/detail/reader.hpp"
 
 #include <cmath>
 #include <cstring>

@@ -5,9 +5,9 @@
 
 #include <Eigen/Dense>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/hdf5/detail/handle.hpp"
-#include "bough/formats/records/flex_body.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/hdf5/detail/handle.hpp"
+#include "formats/records/flex_body.hpp"
 
 namespace bough::hdf5 {
 

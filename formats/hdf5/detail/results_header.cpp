@@ -1,11 +1,11 @@
-#include "bough/formats/hdf5/detail/results_header.hpp"
+#include "formats/hdf5/detail/results_header.hpp"
 
 #include <cerrno>
 #include <vector>
 
-#include "bough/base/version.hpp"
-#include "bough/formats/hdf5/detail/results_layout.hpp"
-#include "bough/formats/hdf5/files.hpp"
+#include "base/version.hpp"
+#include "formats/hdf5/detail/results_layout.hpp"
+#include "formats/hdf5/files.hpp"
 
 namespace bough::hdf5 {
 

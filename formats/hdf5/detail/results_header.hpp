@@ -2,8 +2,8 @@
 /// \file What a results file says of its run, beside the samples.
 #include <string>
 
-#include "bough/formats/hdf5/detail/growing_file.hpp"
-#include "bough/formats/records/results.hpp"
+#include "formats/hdf5/detail/growing_file.hpp"
+#include "formats/records/results.hpp"
 
 namespace bough::hdf5 {
 

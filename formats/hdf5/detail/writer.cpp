@@ -1,4 +1,4 @@
-#include "bough/formats/hdf5/detail/writer.hpp"
+#include "formats/hdf5/detail/writer.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -8,8 +8,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/base/version.hpp"
+#include "base/diagnostic.hpp"
+#include "base/version.hpp"
 
 namespace bough::hdf5 {
 

@@ -5,8 +5,8 @@
 
 #include <Eigen/Dense>
 
-#include "bough/formats/hdf5/detail/handle.hpp"
-#include "bough/formats/records/flex_body.hpp"
+#include "formats/hdf5/detail/handle.hpp"
+#include "formats/records/flex_body.hpp"
 
 namespace bough::hdf5 {
 

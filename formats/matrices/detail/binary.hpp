@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::matrices::detail {
 

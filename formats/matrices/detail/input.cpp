@@ -1,4 +1,4 @@
-#include "bough/formats/matrices/detail/input.hpp"
+#include "formats/matrices/detail/input.hpp"
 
 #include <charconv>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "bough/formats/matrices/mode_table.hpp"
+#include "formats/matrices/mode_table.hpp"
 
 namespace bough::matrices::detail {
 

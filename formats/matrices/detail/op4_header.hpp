@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "bough/formats/matrices/detail/triplets.hpp"
+#include "formats/matrices/detail/triplets.hpp"
 
 namespace bough::matrices::detail {
 

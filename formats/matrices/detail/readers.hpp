@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/matrices/detail/input.hpp"
-#include "bough/formats/matrices/matrix.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/matrices/detail/input.hpp"
+#include "formats/matrices/matrix.hpp"
 
 namespace bough::matrices::detail {
 

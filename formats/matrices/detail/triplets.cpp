@@ -1,4 +1,4 @@
-#include "bough/formats/matrices/detail/triplets.hpp"
+#include "formats/matrices/detail/triplets.hpp"
 
 #include <algorithm>
 #include <numeric>

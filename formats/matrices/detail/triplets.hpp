@@ -2,7 +2,7 @@
 /// \file Gathers (row, column, value) in any order and makes compressed rows of them.
 #include <vector>
 
-#include "bough/formats/matrices/matrix.hpp"
+#include "formats/matrices/matrix.hpp"
 
 namespace bough::matrices::detail {
 

@@ -1,6 +1,6 @@
 #include <bit>
 
-#include "bough/formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/parsers.hpp"
 
 namespace bough::nastran::detail {
 namespace {

@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "bough/formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/parsers.hpp"
 
 namespace bough::nastran::detail {
 namespace {

@@ -3,7 +3,7 @@
 #include <set>
 #include <string>
 
-#include "bough/formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/parsers.hpp"
 
 namespace bough::nastran::detail {
 namespace {

@@ -2,7 +2,7 @@
 /// are without it in Nastran too (the coupling is in the complex and frequency solutions).
 #include <string>
 
-#include "bough/formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/parsers.hpp"
 
 namespace bough::nastran::detail {
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "bough/formats/nastran/detail/parsers.hpp"
-#include "bough/formats/nastran/detail/sections.hpp"
+#include "formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/sections.hpp"
 
 namespace bough::nastran::detail {
 namespace {

@@ -1,5 +1,5 @@
 /// Nonstructural mass by sets (NSM = n of the case control), and accelerations of grids as loads.
-#include "bough/formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/parsers.hpp"
 
 namespace bough::nastran::detail {
 namespace {

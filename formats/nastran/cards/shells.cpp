@@ -1,7 +1,7 @@
 #include <limits>
 #include <string>
 
-#include "bough/formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/parsers.hpp"
 
 namespace bough::nastran::detail {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "bough/formats/nastran/detail/parsers.hpp"
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 namespace {

@@ -1,7 +1,7 @@
 /// Rigid elements that are others in another writing, and RSPLINE.
 #include <bit>
 
-#include "bough/formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/parsers.hpp"
 
 namespace bough::nastran::detail {
 namespace {

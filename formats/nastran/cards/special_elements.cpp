@@ -1,4 +1,4 @@
-#include "bough/formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/parsers.hpp"
 
 namespace bough::nastran::detail {
 namespace {

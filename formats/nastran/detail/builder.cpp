@@ -1,16 +1,16 @@
-#include "bough/formats/nastran/detail/builder.hpp"
+#include "formats/nastran/detail/builder.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <tuple>
 #include <unordered_set>
 
-#include "bough/formats/nastran/detail/design.hpp"
-#include "bough/formats/nastran/detail/known_cards.hpp"
-#include "bough/formats/nastran/detail/leftovers.hpp"
-#include "bough/formats/nastran/detail/parsers.hpp"
-#include "bough/formats/nastran/detail/replication.hpp"
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/design.hpp"
+#include "formats/nastran/detail/known_cards.hpp"
+#include "formats/nastran/detail/leftovers.hpp"
+#include "formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/replication.hpp"
+#include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 namespace {

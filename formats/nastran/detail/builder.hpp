@@ -1,8 +1,8 @@
 #pragma once
 /// \file From card images to card texts: joins lines, carries out replication, hands each card to its parser.
-#include "bough/formats/nastran/detail/images.hpp"
-#include "bough/formats/nastran/detail/reading.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "formats/nastran/detail/images.hpp"
+#include "formats/nastran/detail/reading.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough::nastran::detail {
 

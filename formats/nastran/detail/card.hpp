@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bough/formats/records/deck.hpp"
+#include "formats/records/deck.hpp"
 
 namespace bough::nastran::detail {
 

@@ -2,7 +2,7 @@
 /// \file The groups of card writers, as parsers.hpp has the groups of card parsers.
 #include <string>
 
-#include "bough/formats/nastran/detail/card_text.hpp"
+#include "formats/nastran/detail/card_text.hpp"
 
 namespace bough::nastran::detail {
 

@@ -1,9 +1,9 @@
-#include "bough/formats/nastran/detail/card_text.hpp"
+#include "formats/nastran/detail/card_text.hpp"
 
 #include <algorithm>
 #include <charconv>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::nastran::detail {
 namespace {

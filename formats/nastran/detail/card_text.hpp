@@ -7,7 +7,7 @@
 
 #include <Eigen/Dense>
 
-#include "bough/formats/nastran/writer.hpp"
+#include "formats/nastran/writer.hpp"
 
 namespace bough::nastran::detail {
 

@@ -1,4 +1,4 @@
-#include "bough/formats/nastran/detail/changed_files.hpp"
+#include "formats/nastran/detail/changed_files.hpp"
 
 #include <algorithm>
 #include <filesystem>

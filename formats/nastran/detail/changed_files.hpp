@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/nastran/detail/lines.hpp"
-#include "bough/formats/nastran/field_editor.hpp"
+#include "formats/nastran/detail/lines.hpp"
+#include "formats/nastran/field_editor.hpp"
 
 namespace bough::nastran::detail {
 

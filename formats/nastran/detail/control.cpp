@@ -1,11 +1,11 @@
-#include "bough/formats/nastran/detail/control.hpp"
+#include "formats/nastran/detail/control.hpp"
 
 #include <algorithm>
 #include <set>
 
-#include "bough/formats/nastran/detail/control_words.hpp"
-#include "bough/formats/nastran/detail/matrix_selection.hpp"
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/control_words.hpp"
+#include "formats/nastran/detail/matrix_selection.hpp"
+#include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 namespace {

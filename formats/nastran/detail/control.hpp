@@ -2,7 +2,7 @@
 /// \file Executive and case control: which solution, which sets.
 #include <cstddef>
 
-#include "bough/formats/nastran/detail/lines.hpp"
+#include "formats/nastran/detail/lines.hpp"
 
 namespace bough::nastran::detail {
 

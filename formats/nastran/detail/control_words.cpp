@@ -1,8 +1,8 @@
-#include "bough/formats/nastran/detail/control_words.hpp"
+#include "formats/nastran/detail/control_words.hpp"
 
 #include <vector>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::nastran::detail {
 namespace {

@@ -1,8 +1,8 @@
-#include "bough/formats/nastran/detail/design.hpp"
+#include "formats/nastran/detail/design.hpp"
 
-#include "bough/formats/nastran/detail/card_text.hpp"
-#include "bough/formats/nastran/detail/design_fields.hpp"
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/card_text.hpp"
+#include "formats/nastran/detail/design_fields.hpp"
+#include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 namespace {

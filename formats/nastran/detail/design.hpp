@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bough/formats/nastran/detail/card.hpp"
+#include "formats/nastran/detail/card.hpp"
 
 namespace bough::nastran::detail {
 

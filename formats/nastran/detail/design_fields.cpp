@@ -1,10 +1,10 @@
-#include "bough/formats/nastran/detail/design_fields.hpp"
+#include "formats/nastran/detail/design_fields.hpp"
 
 #include <map>
 #include <string_view>
 
-#include "bough/formats/nastran/detail/sections.hpp"
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/sections.hpp"
+#include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 namespace {

@@ -2,7 +2,7 @@
 /// \file Which field of a card a property name of DVPREL1, DVMREL1 and DVCREL1 means.
 #include <string>
 
-#include "bough/formats/nastran/detail/card.hpp"
+#include "formats/nastran/detail/card.hpp"
 
 namespace bough::nastran::detail {
 

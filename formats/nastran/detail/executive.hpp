@@ -1,6 +1,6 @@
 #pragma once
 /// \file Statements of the executive control and the file management that change what Nastran computes.
-#include "bough/formats/nastran/detail/lines.hpp"
+#include "formats/nastran/detail/lines.hpp"
 
 namespace bough::nastran::detail {
 

@@ -1,4 +1,4 @@
-#include "bough/formats/nastran/detail/field_names.hpp"
+#include "formats/nastran/detail/field_names.hpp"
 
 #include <map>
 #include <sstream>

@@ -1,9 +1,9 @@
-#include "bough/formats/nastran/detail/field_text.hpp"
+#include "formats/nastran/detail/field_text.hpp"
 
 #include <algorithm>
 
-#include "bough/formats/nastran/detail/images.hpp"
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/images.hpp"
+#include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 namespace {

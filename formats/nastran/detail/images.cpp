@@ -1,10 +1,10 @@
-#include "bough/formats/nastran/detail/images.hpp"
+#include "formats/nastran/detail/images.hpp"
 
 #include <algorithm>
 #include <cstring>
 #include <unordered_map>
 
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 namespace {

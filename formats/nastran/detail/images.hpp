@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bough/formats/nastran/detail/lines.hpp"
+#include "formats/nastran/detail/lines.hpp"
 
 namespace bough::nastran::detail {
 

@@ -1,10 +1,10 @@
-#include "bough/formats/nastran/detail/known_cards.hpp"
+#include "formats/nastran/detail/known_cards.hpp"
 
 #include <algorithm>
 #include <unordered_map>
 #include <vector>
 
-#include "bough/formats/nastran/detail/reading.hpp"
+#include "formats/nastran/detail/reading.hpp"
 
 namespace bough::nastran::detail {
 namespace {

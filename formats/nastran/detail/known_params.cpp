@@ -1,4 +1,4 @@
-#include "bough/formats/nastran/detail/known_params.hpp"
+#include "formats/nastran/detail/known_params.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #pragma once
 /// \file Names of PARAM in the Nastran family.
-#include "bough/formats/records/deck.hpp"
+#include "formats/records/deck.hpp"
 
 namespace bough::nastran::detail {
 

@@ -1,6 +1,6 @@
-#include "bough/formats/nastran/detail/leftovers.hpp"
+#include "formats/nastran/detail/leftovers.hpp"
 
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 

@@ -1,4 +1,4 @@
-#include "bough/formats/nastran/detail/lines.hpp"
+#include "formats/nastran/detail/lines.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <optional>
 
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 namespace {

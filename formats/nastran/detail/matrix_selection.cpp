@@ -1,10 +1,10 @@
-#include "bough/formats/nastran/detail/matrix_selection.hpp"
+#include "formats/nastran/detail/matrix_selection.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <optional>
 
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 namespace {

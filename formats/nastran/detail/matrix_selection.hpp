@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bough/formats/records/deck.hpp"
+#include "formats/records/deck.hpp"
 
 namespace bough::nastran::detail {
 

@@ -1,4 +1,4 @@
-#include "bough/formats/nastran/detail/packing.hpp"
+#include "formats/nastran/detail/packing.hpp"
 
 #include <cstring>
 

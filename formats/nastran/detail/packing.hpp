@@ -2,8 +2,8 @@
 /// \file The lines of a deck as bytes, so that one process reads the files and others take what it read.
 #include <string>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/nastran/detail/lines.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/nastran/detail/lines.hpp"
 
 namespace bough::nastran::detail {
 

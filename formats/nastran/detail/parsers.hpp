@@ -3,7 +3,7 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "bough/formats/nastran/detail/reading.hpp"
+#include "formats/nastran/detail/reading.hpp"
 
 namespace bough::nastran::detail {
 

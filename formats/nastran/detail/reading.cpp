@@ -1,8 +1,8 @@
-#include "bough/formats/nastran/detail/reading.hpp"
+#include "formats/nastran/detail/reading.hpp"
 
 #include <algorithm>
 
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 namespace {

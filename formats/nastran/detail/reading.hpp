@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "bough/formats/nastran/detail/card.hpp"
+#include "formats/nastran/detail/card.hpp"
 
 namespace bough::nastran::detail {
 

@@ -1,9 +1,9 @@
-#include "bough/formats/nastran/detail/replication.hpp"
+#include "formats/nastran/detail/replication.hpp"
 
 #include <charconv>
 #include <climits>
 
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "bough/formats/nastran/detail/card.hpp"
+#include "formats/nastran/detail/card.hpp"
 
 namespace bough::nastran::detail {
 

@@ -1,4 +1,4 @@
-#include "bough/formats/nastran/detail/sections.hpp"
+#include "formats/nastran/detail/sections.hpp"
 
 #include <array>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/text.hpp"
 
 #include <cctype>
 #include <charconv>

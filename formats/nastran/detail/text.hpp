@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "bough/formats/records/params.hpp"
+#include "formats/records/params.hpp"
 
 namespace bough::nastran::detail {
 

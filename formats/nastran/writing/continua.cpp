@@ -1,4 +1,4 @@
-#include "bough/formats/nastran/detail/card_sink.hpp"
+#include "formats/nastran/detail/card_sink.hpp"
 
 namespace bough::nastran::detail {
 namespace {

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "bough/formats/nastran/detail/card_sink.hpp"
+#include "formats/nastran/detail/card_sink.hpp"
 
 namespace bough::nastran::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "bough/formats/toml/detail/campaign_words.hpp"
+#include "formats/toml/detail/campaign_words.hpp"
 
 #include <charconv>
 #include <cmath>

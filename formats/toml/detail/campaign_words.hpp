@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bough/formats/toml/campaign.hpp"
+#include "formats/toml/campaign.hpp"
 
 namespace bough::toml_files {
 

@@ -1,4 +1,4 @@
-#include "bough/formats/toml/detail/fields.hpp"
+#include "formats/toml/detail/fields.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 
 #include <Eigen/Dense>
 
-#include "bough/formats/toml/detail/value.hpp"
+#include "formats/toml/detail/value.hpp"
 
 namespace bough::toml_files {
 

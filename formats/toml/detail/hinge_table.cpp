@@ -1,4 +1,4 @@
-#include "bough/formats/toml/detail/hinge_table.hpp"
+#include "formats/toml/detail/hinge_table.hpp"
 
 #include <algorithm>
 #include <map>

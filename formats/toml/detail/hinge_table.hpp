@@ -1,7 +1,7 @@
 #pragma once
 /// \file [[hinge]] of a system file.
-#include "bough/formats/records/system_spec.hpp"
-#include "bough/formats/toml/detail/fields.hpp"
+#include "formats/records/system_spec.hpp"
+#include "formats/toml/detail/fields.hpp"
 
 namespace bough::toml_files {
 

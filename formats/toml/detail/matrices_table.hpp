@@ -2,8 +2,8 @@
 /// \file [body.matrices] of a body file, and what names a matrix.
 #include <optional>
 
-#include "bough/formats/records/matrices_spec.hpp"
-#include "bough/formats/toml/detail/fields.hpp"
+#include "formats/records/matrices_spec.hpp"
+#include "formats/toml/detail/fields.hpp"
 
 namespace bough::toml_files {
 

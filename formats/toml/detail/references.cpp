@@ -1,4 +1,4 @@
-#include "bough/formats/toml/detail/references.hpp"
+#include "formats/toml/detail/references.hpp"
 
 #include <algorithm>
 #include <map>

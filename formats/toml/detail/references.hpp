@@ -1,6 +1,6 @@
 #pragma once
 /// \file Names of a system file: unique, and every reference to a declared one.
-#include "bough/formats/records/system_spec.hpp"
+#include "formats/records/system_spec.hpp"
 
 namespace bough::toml_files {
 

@@ -1,4 +1,4 @@
-#include "bough/formats/toml/detail/schema.hpp"
+#include "formats/toml/detail/schema.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 /// \file Checks a TOML document against one of the JSON Schemas of data/schema: they are the one list of keys, types,
 /// ranges and choices, for the reader, for editors and for the documentation.
-#include "bough/formats/toml/detail/value.hpp"
+#include "formats/toml/detail/value.hpp"
 
 namespace bough::toml_files {
 

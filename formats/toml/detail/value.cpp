@@ -1,4 +1,4 @@
-#include "bough/formats/toml/detail/value.hpp"
+#include "formats/toml/detail/value.hpp"
 
 #include <algorithm>
 #include <filesystem>

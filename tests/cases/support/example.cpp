@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <sstream>
 
-#include "bough/formats/nastran/reader.hpp"
-#include "bough/formats/toml/specs.hpp"
-#include "bough/stiffening/reduce.hpp"
+#include "formats/nastran/reader.hpp"
+#include "formats/toml/specs.hpp"
+#include "stiffening/reduce.hpp"
 #include "tests/support/paths.hpp"
 
 namespace bough::test {

@@ -3,10 +3,10 @@
 #include <map>
 #include <string>
 
-#include "bough/formats/records/body_spec.hpp"
-#include "bough/formats/records/deck.hpp"
-#include "bough/solver/integrate/memory_sink.hpp"
-#include "bough/solver/integrate/simulate.hpp"
+#include "formats/records/body_spec.hpp"
+#include "formats/records/deck.hpp"
+#include "solver/integrate/memory_sink.hpp"
+#include "solver/integrate/simulate.hpp"
 
 namespace bough::test {
 

@@ -2,8 +2,8 @@
 /// offsets.
 #include "small_model.hpp"
 
-#include "bough/fe/elements/beam.hpp"
-#include "bough/fe/elements/bush.hpp"
+#include "fe/elements/beam.hpp"
+#include "fe/elements/bush.hpp"
 
 namespace bough::fe::test {
 namespace {

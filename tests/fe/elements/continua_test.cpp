@@ -2,8 +2,8 @@
 /// patch tests.
 #include <functional>
 
-#include "bough/fe/elements/solid.hpp"
 #include "element_checks.hpp"
+#include "fe/elements/solid.hpp"
 
 namespace bough::fe::test {
 namespace {

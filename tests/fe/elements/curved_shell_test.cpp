@@ -1,8 +1,8 @@
 /// What CQUAD8 and CTRIA6 owe: symmetry, rigid motions, rank, mass, K_G, patch tests, material axes.
 #include <functional>
 
-#include "bough/fe/elements/curved_shell.hpp"
 #include "element_checks.hpp"
+#include "fe/elements/curved_shell.hpp"
 
 namespace bough::fe::test {
 namespace {

@@ -1,5 +1,5 @@
 /// Sums of weighted products; that each element fills them rightly is seen wherever SmallModel makes a K_G.
-#include "bough/fe/elements/geometric_projection.hpp"
+#include "fe/elements/geometric_projection.hpp"
 
 #include <random>
 

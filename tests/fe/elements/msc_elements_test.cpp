@@ -1,8 +1,8 @@
 /// GENEL, CGAP and PBCOMP against elements and closed forms that are the same thing written otherwise.
 #include <Eigen/Eigenvalues>
 
-#include "bough/fe/elements/beam.hpp"
-#include "bough/fe/elements/temperature.hpp"
+#include "fe/elements/beam.hpp"
+#include "fe/elements/temperature.hpp"
 #include "small_model.hpp"
 
 namespace bough::fe::test {

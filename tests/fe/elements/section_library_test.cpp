@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "bough/fe/elements/section_library.hpp"
-#include "bough/fe/elements/thin_wall.hpp"
+#include "fe/sections/section_library.hpp"
+#include "fe/sections/thin_wall.hpp"
 
 namespace bough::fe {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "bough/fe/elements/shear_panel.hpp"
+#include "fe/elements/shear_panel.hpp"
 #include "small_model.hpp"
 
 namespace bough::fe::test {

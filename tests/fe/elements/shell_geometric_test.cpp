@@ -1,7 +1,7 @@
 /// K_G of shells by moments and transverse shears: a rigid rotation turns the nodal forces and moments; the Hessian of
 /// the strains of a finitely rotated element, by differences.
-#include "bough/fe/elements/shell.hpp"
 #include "element_checks.hpp"
+#include "fe/elements/shell.hpp"
 
 namespace bough::fe::test {
 namespace {

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "bough/fe/elements/solid.hpp"
-#include "bough/fe/materials/laminate.hpp"
+#include "fe/elements/solid.hpp"
+#include "fe/sections/laminate.hpp"
 #include "small_model.hpp"
 
 namespace bough::fe::test {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "bough/fe/elements/geometric_projection.hpp"
+#include "fe/elements/geometric_projection.hpp"
 
 namespace bough::fe::test {
 

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/elements/element.hpp"
+#include "base/rotation.hpp"
+#include "fe/elements/element.hpp"
 
 namespace bough::fe::test {
 

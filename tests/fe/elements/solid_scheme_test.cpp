@@ -1,7 +1,7 @@
 /// PSOLID's IN and ISOP, and solids that count their grids left-handed.
 #include <numeric>
 
-#include "bough/fe/elements/solid.hpp"
+#include "fe/elements/solid.hpp"
 #include "small_model.hpp"
 
 namespace bough::fe::test {

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/elements/beam.hpp"
-#include "bough/fe/static_case.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "base/rotation.hpp"
+#include "fe/elements/beam.hpp"
+#include "fe/statics/static_case.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough::fe {
 namespace {

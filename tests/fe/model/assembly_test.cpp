@@ -1,9 +1,9 @@
-#include "bough/fe/assembly.hpp"
+#include "fe/matrices/assembly.hpp"
 
 #include <gtest/gtest.h>
 
-#include "bough/fe/factor.hpp"
-#include "bough/fe/statics.hpp"
+#include "fe/linear/factor.hpp"
+#include "fe/statics/statics.hpp"
 #include "tests/fe/model/spring_model.hpp"
 
 namespace bough::fe {

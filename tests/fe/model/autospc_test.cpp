@@ -1,4 +1,4 @@
-#include "bough/fe/model/autospc.hpp"
+#include "fe/model/autospc.hpp"
 
 #include <gtest/gtest.h>
 

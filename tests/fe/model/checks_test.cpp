@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "bough/fe/checks.hpp"
-#include "bough/fe/grid_point_weight.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "fe/matrices/checks.hpp"
+#include "fe/matrices/grid_point_weight.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough::fe {
 namespace {

@@ -1,10 +1,10 @@
-#include "bough/fe/model/constraints.hpp"
+#include "fe/model/constraints.hpp"
 
 #include <gtest/gtest.h>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/factor.hpp"
-#include "bough/fe/statics.hpp"
+#include "base/rotation.hpp"
+#include "fe/linear/factor.hpp"
+#include "fe/statics/statics.hpp"
 #include "tests/fe/model/spring_model.hpp"
 
 namespace bough::fe {

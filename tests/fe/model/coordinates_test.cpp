@@ -1,10 +1,10 @@
-#include "bough/fe/model/coordinates.hpp"
+#include "fe/model/coordinates.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "bough/base/rotation.hpp"
+#include "base/rotation.hpp"
 #include "tests/fe/model/spring_model.hpp"
 
 namespace bough::fe {

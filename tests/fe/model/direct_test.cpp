@@ -4,7 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "bough/fe/assembly.hpp"
+#include "fe/matrices/assembly.hpp"
 #include "text_model.hpp"
 
 namespace bough::fe {

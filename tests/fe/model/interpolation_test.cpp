@@ -1,7 +1,7 @@
 /// RBE3, RROD and scalar points, from decks to the transformation.
 #include <gtest/gtest.h>
 
-#include "bough/fe/assembly.hpp"
+#include "fe/matrices/assembly.hpp"
 #include "text_model.hpp"
 
 namespace bough::fe {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/assembly.hpp"
+#include "base/rotation.hpp"
+#include "fe/matrices/assembly.hpp"
 #include "tests/fe/model/spring_model.hpp"
 
 namespace bough::fe {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "bough/fe/assembly.hpp"
-#include "bough/fe/static_case.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "fe/matrices/assembly.hpp"
+#include "fe/statics/static_case.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough::fe {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "bough/base/rotation.hpp"
-#include "bough/fe/factor.hpp"
-#include "bough/fe/preload.hpp"
-#include "bough/fe/shape/face_load.hpp"
-#include "bough/fe/static_case.hpp"
+#include "base/rotation.hpp"
+#include "fe/linear/factor.hpp"
+#include "fe/shape/face_load.hpp"
+#include "fe/statics/preload.hpp"
+#include "fe/statics/static_case.hpp"
 #include "tests/fe/model/text_model.hpp"
 
 namespace bough::fe {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "bough/fe/assembly.hpp"
-#include "bough/fe/statics.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "fe/matrices/assembly.hpp"
+#include "fe/statics/statics.hpp"
+#include "formats/nastran/reader.hpp"
 #include "tests/support/paths.hpp"
 
 namespace bough::fe {

@@ -6,8 +6,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "bough/fe/static_case.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "fe/statics/static_case.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough::fe::test {
 namespace {

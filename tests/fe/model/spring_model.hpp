@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "bough/fe/model/model.hpp"
+#include "fe/model/model.hpp"
 
 namespace bough::fe::test {
 

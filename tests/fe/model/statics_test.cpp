@@ -1,4 +1,4 @@
-#include "bough/fe/statics.hpp"
+#include "fe/statics/statics.hpp"
 
 #include <cmath>
 #include <functional>
@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bough/fe/mechanism.hpp"
+#include "fe/linear/mechanism.hpp"
 #include "tests/fe/model/spring_model.hpp"
 
 namespace bough::fe {

@@ -1,10 +1,10 @@
 /// SUPORT in statics: against SPC; inertia relief against the free-flying beam in closed form.
-#include "bough/fe/suport.hpp"
+#include "fe/model/suport.hpp"
 
 #include <gtest/gtest.h>
 
-#include "bough/fe/static_case.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "fe/statics/static_case.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough::fe {
 namespace {

@@ -2,8 +2,8 @@
 /// \file Models of decks that a test writes out.
 #include <string>
 
-#include "bough/fe/model/model.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "fe/model/model.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough::fe::test {
 

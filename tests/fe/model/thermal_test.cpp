@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "bough/fe/static_case.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "fe/statics/static_case.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough::fe {
 namespace {

@@ -1,8 +1,8 @@
 /// No element card is dropped between the reader and the model.
 #include <gtest/gtest.h>
 
-#include "bough/fe/model/model.hpp"
-#include "bough/formats/nastran/reader.hpp"
+#include "fe/model/model.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough::fe {
 namespace {

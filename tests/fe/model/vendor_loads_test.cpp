@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "bough/fe/static_case.hpp"
+#include "fe/statics/static_case.hpp"
 #include "text_model.hpp"
 
 namespace bough::fe::test {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bough/formats/mbdyn/fem_file.hpp"
+#include "formats/mbdyn/fem_file.hpp"
 #include "tests/formats/exports/point_masses.hpp"
 
 namespace bough::test {

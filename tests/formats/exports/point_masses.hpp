@@ -2,7 +2,7 @@
 /// \file A body of point masses whose every number follows by a plain sum: no code of the product is asked.
 #include <random>
 
-#include "bough/formats/records/flex_body.hpp"
+#include "formats/records/flex_body.hpp"
 
 namespace bough::test {
 

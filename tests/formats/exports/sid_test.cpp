@@ -1,6 +1,6 @@
 // Standard Input Data: a case by hand, round trips, files of others, and the motion that the blocks describe against
 // the solver's.
-#include "bough/formats/sid/sid.hpp"
+#include "formats/sid/sid.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "bough/solver/bodies/body.hpp"
+#include "solver/bodies/body.hpp"
 #include "tests/formats/exports/point_masses.hpp"
 #include "tests/support/paths.hpp"
 

@@ -1,7 +1,7 @@
 // Bases, frames and damping in a body file.
 #include <gtest/gtest.h>
 
-#include "bough/formats/toml/specs.hpp"
+#include "formats/toml/specs.hpp"
 
 namespace bough {
 namespace {

@@ -6,8 +6,8 @@
 #include <hdf5.h>
 #include <unistd.h>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/hdf5/files.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/hdf5/files.hpp"
 #include "full_disk.hpp"
 #include "random_body.hpp"
 #include "temp_folder.hpp"

@@ -1,4 +1,4 @@
-#include "bough/formats/toml/key_editor.hpp"
+#include "formats/toml/key_editor.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #pragma once
 /// \file Records filled with random numbers, and their exact comparison.
-#include "bough/formats/records/flex_body.hpp"
-#include "bough/formats/records/modes.hpp"
+#include "formats/records/flex_body.hpp"
+#include "formats/records/modes.hpp"
 
 namespace bough::test {
 

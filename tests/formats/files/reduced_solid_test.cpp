@@ -1,9 +1,9 @@
 // The Simscape set of a clamped Euler beam reduced to its tip: the free beam element's own matrices.
-#include "bough/formats/export/reduced_solid.hpp"
+#include "formats/export/reduced_solid.hpp"
 
 #include <gtest/gtest.h>
 
-#include "bough/base/rotation.hpp"
+#include "base/rotation.hpp"
 
 namespace bough {
 namespace {

@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bough/formats/export/csv.hpp"
-#include "bough/formats/report/axis.hpp"
-#include "bough/formats/report/svg_plot.hpp"
+#include "formats/export/csv.hpp"
+#include "formats/report/axis.hpp"
+#include "formats/report/svg_plot.hpp"
 #include "temp_folder.hpp"
 
 namespace bough::report {

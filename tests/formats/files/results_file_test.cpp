@@ -9,8 +9,8 @@
 #include <csignal>
 #include <thread>
 
-#include "bough/base/diagnostic.hpp"
-#include "bough/formats/hdf5/files.hpp"
+#include "base/diagnostic.hpp"
+#include "formats/hdf5/files.hpp"
 #include "full_disk.hpp"
 #include "temp_folder.hpp"
 #include "tests/support/paths.hpp"

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bough/formats/toml/specs.hpp"
+#include "formats/toml/specs.hpp"
 #include "temp_folder.hpp"
 #include "tests/support/paths.hpp"
 #include "toml_cases.hpp"

@@ -1,5 +1,5 @@
 // Universal files, read back by tests/oracle/uff_reader.py.
-#include "bough/formats/export/uff.hpp"
+#include "formats/export/uff.hpp"
 
 #include <gtest/gtest.h>
 

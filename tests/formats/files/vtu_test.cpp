@@ -1,9 +1,9 @@
 /// \file The .vtu text itself; tests/cli/meshio_test.py has it read by meshio.
-#include "bough/formats/export/vtu.hpp"
+#include "formats/export/vtu.hpp"
 
 #include <gtest/gtest.h>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::exports {
 namespace {

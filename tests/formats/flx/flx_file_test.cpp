@@ -1,5 +1,5 @@
 /// .FLX: special nodes, write -> read -> write, layouts, faults of files and of layouts.
-#include "bough/formats/flx/flx_file.hpp"
+#include "formats/flx/flx_file.hpp"
 
 #include <gmock/gmock.h>
 
@@ -11,7 +11,7 @@
 #include <random>
 #include <sstream>
 
-#include "bough/base/diagnostic.hpp"
+#include "base/diagnostic.hpp"
 #include "tests/support/paths.hpp"
 
 namespace bough::flx {

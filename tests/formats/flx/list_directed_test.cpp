@@ -1,5 +1,5 @@
 /// Fortran's list-directed reading, record by record.
-#include "bough/formats/flx/list_directed.hpp"
+#include "formats/flx/list_directed.hpp"
 
 #include <gmock/gmock.h>
 

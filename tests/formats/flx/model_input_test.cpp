@@ -1,5 +1,5 @@
 /// MODEL.inp and MATRICES.mat: what the example files hold, and each fault with its line and item.
-#include "bough/formats/flx/model_input.hpp"
+#include "formats/flx/model_input.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 /// Formats of numbers: C's as printf, Fortran's as its standard writes them.
-#include "bough/formats/flx/number_format.hpp"
+#include "formats/flx/number_format.hpp"
 
 #include <gmock/gmock.h>
 

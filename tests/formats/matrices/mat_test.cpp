@@ -1,5 +1,5 @@
 // MATLAB files: written and read by scipy.io, and the other way round.
-#include "bough/formats/matrices/mat_file.hpp"
+#include "formats/matrices/mat_file.hpp"
 
 #include <fstream>
 #include <random>

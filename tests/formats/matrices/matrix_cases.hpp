@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bough/formats/matrices/matrix_reader.hpp"
+#include "formats/matrices/matrix_reader.hpp"
 #include "tests/formats/files/temp_folder.hpp"
 #include "tests/support/paths.hpp"
 

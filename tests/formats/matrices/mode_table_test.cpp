@@ -1,5 +1,5 @@
 // Eigenvectors of Nastran: files written by tests/oracle/nastran_modes_writer.py.
-#include "bough/formats/matrices/mode_table.hpp"
+#include "formats/matrices/mode_table.hpp"
 
 #include <cmath>
 #include <fstream>

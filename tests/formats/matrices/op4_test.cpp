@@ -1,5 +1,5 @@
 // Nastran OUTPUT4 of every flavour: written and read back, and read by tests/oracle/op4_reader.py.
-#include "bough/formats/matrices/op4.hpp"
+#include "formats/matrices/op4.hpp"
 
 #include <cmath>
 #include <fstream>

@@ -2,8 +2,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "bough/formats/matrices/matrix_market.hpp"
-#include "bough/formats/matrices/op4.hpp"
+#include "formats/matrices/matrix_market.hpp"
+#include "formats/matrices/op4.hpp"
 #include "tests/formats/matrices/matrix_cases.hpp"
 
 namespace bough {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file Two decks compared field by field.
-#include "bough/formats/records/deck.hpp"
+#include "formats/records/deck.hpp"
 
 namespace bough::nastran {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "bough/formats/nastran/reader.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough::nastran {
 

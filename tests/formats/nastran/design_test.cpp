@@ -1,5 +1,5 @@
 /// \file Values of design variables (SOL 200), fluid, sets of component modes, names that are not read.
-#include "bough/formats/nastran/writer.hpp"
+#include "formats/nastran/writer.hpp"
 #include "tests/formats/nastran/deck_text.hpp"
 
 namespace bough::nastran {

@@ -1,4 +1,4 @@
-#include "bough/formats/nastran/field_editor.hpp"
+#include "formats/nastran/field_editor.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "bough/formats/nastran/reader.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough::nastran {
 namespace {

@@ -1,7 +1,7 @@
 /// \file Quadratic shells, shear panels, dampers, RBE1, direct matrices, sets of degrees of freedom: fields and errors.
 #include <cmath>
 
-#include "bough/formats/nastran/writer.hpp"
+#include "formats/nastran/writer.hpp"
 #include "tests/formats/nastran/deck_text.hpp"
 
 namespace bough::nastran {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 namespace {

@@ -1,13 +1,13 @@
 /// \file Written decks: numbers in their columns, and read -> write -> read gives equal records.
-#include "bough/formats/nastran/writer.hpp"
+#include "formats/nastran/writer.hpp"
 
 #include <cmath>
 #include <filesystem>
 #include <random>
 
-#include "bough/formats/nastran/detail/card_text.hpp"
-#include "bough/formats/nastran/detail/parsers.hpp"
-#include "bough/formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/card_text.hpp"
+#include "formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/text.hpp"
 #include "tests/formats/nastran/compare_decks.hpp"
 #include "tests/formats/nastran/deck_text.hpp"
 #include "tests/formats/nastran/every_card.hpp"

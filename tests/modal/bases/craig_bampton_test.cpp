@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "bough/fe/statics.hpp"
-#include "bough/modal/bases/basis.hpp"
+#include "fe/statics/statics.hpp"
+#include "modal/bases/basis.hpp"
 #include "tests/support/beam_decks.hpp"
 
 namespace bough {

@@ -1,13 +1,13 @@
 /// Body frames: their conditions hold, and what a body is does not depend on them. Damping of any coordinates.
-#include "bough/modal/bases/frame.hpp"
+#include "modal/bases/frame.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "bough/modal/bases/damping.hpp"
-#include "bough/modal/bases/ritz.hpp"
+#include "modal/bases/damping.hpp"
+#include "modal/bases/ritz.hpp"
 #include "tests/support/beam_decks.hpp"
 
 namespace bough {

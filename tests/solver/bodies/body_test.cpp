@@ -1,4 +1,4 @@
-#include "bough/solver/bodies/body.hpp"
+#include "solver/bodies/body.hpp"
 
 #include <gtest/gtest.h>
 

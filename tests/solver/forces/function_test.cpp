@@ -1,5 +1,5 @@
 // Functions of time against closed forms and finite differences; every fault of a record is reported.
-#include "bough/solver/forces/function.hpp"
+#include "solver/forces/function.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

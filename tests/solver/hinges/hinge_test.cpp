@@ -1,4 +1,4 @@
-#include "bough/solver/hinges/hinge.hpp"
+#include "solver/hinges/hinge.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // No allocation in a run once it is under way: steps, samples, sensors, checkpoints.
 #include <gtest/gtest.h>
 
-#include "bough/solver/integrate/simulate.hpp"
+#include "solver/integrate/simulate.hpp"
 #include "tests/solver/support/malloc_count.hpp"
 #include "tests/solver/support/models.hpp"
 

@@ -1,5 +1,5 @@
 // Output times, restarts at jumps, and the checks of [simulation].
-#include "bough/solver/integrate/plan.hpp"
+#include "solver/integrate/plan.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // Whole runs: closed-form motions with every integrator, energy against work, jumps, restart, failures.
-#include "bough/solver/integrate/simulate.hpp"
+#include "solver/integrate/simulate.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bough/solver/integrate/memory_sink.hpp"
+#include "solver/integrate/memory_sink.hpp"
 #include "tests/solver/support/models.hpp"
 
 namespace bough::solver::testing {

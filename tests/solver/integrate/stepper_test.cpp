@@ -1,5 +1,5 @@
 // Steppers on equations with closed solutions: order, tolerance, jumps, failures.
-#include "bough/solver/integrate/stepper.hpp"
+#include "solver/integrate/stepper.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Sensors against the analytic motion of a rigid body that spins and flies, in every frame, and against finite
 // differences.
-#include "bough/solver/sensors/sensor.hpp"
+#include "solver/sensors/sensor.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

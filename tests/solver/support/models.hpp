@@ -8,7 +8,7 @@
 #include <memory>
 #include <random>
 
-#include "bough/solver/system/impl.hpp"
+#include "solver/system/impl.hpp"
 
 namespace bough::solver::testing {
 

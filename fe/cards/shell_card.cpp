@@ -1,0 +1,129 @@
+#include "fe/cards/shell_card.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <set>
+
+#include "formats/records/params.hpp"
+
+namespace bough::fe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+Vector3d calc_normal(const std::vector<Vector3d>& x) {
+  return x.size() == 4 ? (x[2] - x[0]).cross(x[3] - x[1]) : (x[1] - x[0]).cross(x[2] - x[0]);
+}
+
+/// Empty when the corners make a proper convex facet, else what is wrong.
+std::string check_facet(const std::vector<Vector3d>& x) {
+  const Vector3d normal = calc_normal(x);
+  const double scale = (x[2] - x[0]).squaredNorm();
+  if (!(normal.norm() > 1e-10 * scale)) return "has no area";
+  const std::size_t n = x.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vector3d a = x[(i + 1) % n] - x[i], b = x[(i + n - 1) % n] - x[i];
+    if (!(a.cross(b).dot(normal) > 0))
+      return "has an interior angle of 180 degrees or more at corner " + std::to_string(i + 1);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<ResolvedShell> resolve_shell(Maker& maker, ShellSections& sections, const records::ShellElement& card) {
+  ResolvedShell r;
+  r.card = &card;
+  r.who = card.card + " " + std::to_string(card.id);
+  bool ok = true;
+  for (int g : card.grids) {
+    r.nodes.push_back(maker.find_grid(g, r.who, card.at));
+    ok = ok && r.nodes.back() >= 0;
+  }
+  for (int g : card.midsides) {
+    r.midsides.push_back(g == 0 ? -1 : maker.find_grid(g, r.who, card.at));
+    ok = ok && (g == 0 || r.midsides.back() >= 0);
+  }
+  std::optional<double> mean;
+  if (!card.t.empty()) {
+    const double own = sections.find_thickness(card.pid).value_or(0);
+    for (double t : card.t) r.thickness.push_back(std::isnan(t) ? own : card.relative_thickness ? t * own : t);
+    mean = std::accumulate(r.thickness.begin(), r.thickness.end(), 0.0) / static_cast<double>(r.thickness.size());
+    if (std::all_of(r.thickness.begin(), r.thickness.end(), [&](double t) { return t == r.thickness[0]; }))
+      r.thickness.clear();
+  }
+  r.section = sections.find(card.pid, r.who, card.at, mean);
+  if (!r.section || !ok) return std::nullopt;
+  for (int n : r.nodes) r.x.push_back(maker.nodes().node(n).x);
+  if (const std::string wrong = check_facet(r.x); !wrong.empty()) {
+    maker.error("fe.bad-facet", card.at, r.who + " " + wrong, "correct the corners or their order");
+    return std::nullopt;
+  }
+  r.normal = calc_normal(r.x).normalized();
+  return r;
+}
+
+namespace {
+
+/// The same in all directions of the plane: material axes do not matter.
+bool is_isotropic(const ShellSection& section) {
+  const auto differs = [](const auto& a, const auto& b) { return (a - b).norm() > 1e-10 * a.norm(); };
+  const ShellSection turned = rotate_section(section, 0.5);
+  if (differs(section.A, turned.A) || differs(section.B, turned.B) || differs(section.D, turned.D)) return false;
+  if (section.shear_flexible && differs(section.S, turned.S)) return false;
+  if (!section.expansion) return true;
+  const ShellExpansion &e = *section.expansion, &f = *turned.expansion;
+  return !differs(e.N_t, f.N_t) && !differs(e.M_t, f.M_t) && !differs(e.N_g, f.N_g) && !differs(e.M_g, f.M_g);
+}
+
+}  // namespace
+
+std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& shell, const Vector3d& x,
+                                          const Vector3d& normal, const Vector3d& side) {
+  const auto& card = *shell.card;
+  if (!card.mcid) return card.theta_deg * kDegree;
+  const std::string field = shell.who + " has MCID " + std::to_string(*card.mcid) + ", ";
+  Diagnostics found;  // reported here, with the field
+  const Vector3d axis = maker.nodes().calc_axes(*card.mcid, x, maker.deck().locate(card.at), found).col(0);
+  if (found.num_errors() > 0) {
+    maker.error("fe.missing-coordinates", card.at, field + "a coordinate system that the deck does not define",
+                "add the CORD card or correct the field");
+    return std::nullopt;
+  }
+  if (normal.cross(axis).norm() < 1e-6) {
+    if (is_isotropic(*shell.section)) return 0;
+    maker.error("fe.bad-material-axes", card.at,
+                field + "whose x-axis is normal to the element, and its property has directions",
+                "name a system whose x-axis has a part in the element, or give THETA");
+    return std::nullopt;
+  }
+  return std::atan2(normal.dot(side.cross(axis)), side.dot(axis) - side.dot(normal) * normal.dot(axis));
+}
+
+std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& shell) {
+  Vector3d centre = Vector3d::Zero();
+  for (const auto& p : shell.x) centre += p / static_cast<double>(shell.x.size());
+  return calc_material_angle(maker, shell, centre, shell.normal, shell.x[1] - shell.x[0]);
+}
+
+std::unordered_map<int, Vector3d> calc_surface_normals(Maker& maker, const std::vector<ResolvedShell>& shells) {
+  const double limit = records::get_real_param(maker.deck(), "SNORM", 20, maker.diagnostics());
+  std::unordered_map<int, Vector3d> sum;
+  std::set<int> broken;
+  if (!(limit > 0)) return sum;
+  for (const auto& shell : shells)
+    for (int node : shell.nodes) {
+      Vector3d& total = sum.try_emplace(node, Vector3d::Zero()).first->second;
+      total += total.dot(shell.normal) < 0 ? Vector3d(-shell.normal) : shell.normal;
+    }
+  for (const auto& shell : shells)
+    for (int node : shell.nodes)
+      if (std::abs(sum[node].normalized().dot(shell.normal)) < std::cos(limit * kDegree)) broken.insert(node);
+  for (int node : broken) sum.erase(node);
+  for (auto& [node, total] : sum) total.normalize();
+  return sum;
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,37 @@
+#pragma once
+/// \file What every shell card needs before it becomes an element: grids, property, material angle, surface normals.
+/// Internal.
+#include <unordered_map>
+
+#include "fe/cards/shell_sections.hpp"
+
+namespace bough::fe {
+
+/// A shell card whose grids and property exist and whose corners make a proper convex facet.
+struct ResolvedShell {
+  const records::ShellElement* card = nullptr;
+  std::string who;                        ///< "CQUAD4 17"
+  std::vector<int> nodes;                 ///< indices of the corners
+  std::vector<int> midsides;              ///< indices, -1 = absent; as card->midsides
+  std::vector<Vector3d> x;                ///< corners in basic
+  Vector3d normal = Vector3d::UnitZ();    ///< of the mean plane of the corners
+  const ShellSection* section = nullptr;  ///< in material axes, at the mean of the corner thicknesses
+  /// Of the corners: T1... with TFLAG applied, the property's where blank; empty = uniform.
+  std::vector<double> thickness;
+};
+
+/// Empty after reporting fe.missing-grid, fe.missing-property, fe.bad-property or fe.bad-facet.
+std::optional<ResolvedShell> resolve_shell(Maker& maker, ShellSections& sections, const records::ShellElement& card);
+
+/// Angle (radians) about `normal` from `side` to the material's x-axis: THETA, or the x-axis of MCID at x projected; 0
+/// where that is normal to an isotropic shell. Empty after reporting fe.missing-coordinates or fe.bad-material-axes.
+std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& shell, const Vector3d& x,
+                                          const Vector3d& normal, const Vector3d& side);
+/// The same at the centre of the corners, from side 1-2.
+std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& shell);
+
+/// Normals of the surface at every node where all shells agree within PARAM,SNORM degrees (default 20): the sum of the
+/// unit normals, each turned to the side of the first.
+std::unordered_map<int, Vector3d> calc_surface_normals(Maker& maker, const std::vector<ResolvedShell>& shells);
+
+}  // namespace bough::fe

@@ -1,0 +1,49 @@
+#pragma once
+/// \file PSHELL, PCOMP and PCOMPG of a deck as sections of plates. Internal.
+#include <map>
+#include <optional>
+#include <string>
+
+#include "fe/cards/maker.hpp"
+#include "fe/sections/laminate.hpp"
+
+namespace bough::fe {
+
+class ShellSections {
+ public:
+  explicit ShellSections(Maker& maker);
+
+  /// The section of property `pid` in its material axes, made once, or nullptr after reporting (`who`: the element,
+  /// `at`: its card). thickness: the element's own (mean of its corners); empty = the property's. drilling holds
+  /// PARAM,K6ROT.
+  const ShellSection* find(int pid, const std::string& who, const records::CardLocation& at,
+                           std::optional<double> thickness = {});
+
+  /// T of a PSHELL; empty when blank or when `pid` is no PSHELL.
+  std::optional<double> find_thickness(int pid) const;
+
+ private:
+  /// The material as a plate sees it, made once; empty after reporting.
+  std::optional<PlaneMaterial> find_material(int mid, const std::string& who, const records::CardLocation& at);
+  std::optional<PlaneMaterial> make_material(int mid, const std::string& who, const records::CardLocation& at);
+  /// MID1 of a PSHELL with MID2 = -1: no strain along the normal. Empty after reporting.
+  std::optional<PlaneMaterial> find_plane_strain(const records::Pshell& p);
+  std::optional<ShellSection> make_pshell(const records::Pshell& p, const std::string& who,
+                                          const records::CardLocation& at, std::optional<double> thickness);
+  /// Of A, B, D with the expansions of MID1 and MID2.
+  void set_expansion(const PlaneMaterial& membrane, const PlaneMaterial& bending, ShellSection& section) const;
+  std::optional<ShellSection> make_pcomp(const records::Pcomp& p);
+
+  Maker& maker_;
+  Index<records::Pshell> pshell_;
+  Index<records::Pcomp> pcomp_;
+  Index<records::Mat1> mat1_;
+  Index<records::Mat2> mat2_;
+  Index<records::Mat8> mat8_;
+  bool has_temperatures_ = false;  // else no section needs its expansion
+  double drilling_factor_ = 1e-4;
+  std::map<int, std::optional<PlaneMaterial>> materials_;
+  std::map<std::pair<int, double>, std::optional<ShellSection>> made_;
+};
+
+}  // namespace bough::fe

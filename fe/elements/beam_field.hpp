@@ -1,0 +1,60 @@
+#pragma once
+/// \file Displacement field of a straight beam by the exact (flexibility) route: equilibrium gives the section forces,
+/// the section compliance their deformations, integration the displacements. Exact for any taper, up to quadrature.
+///
+/// Local axes: x along the shear centres from end A to end B, y and z in the section. Displacements of a section are
+/// [u v w θx θy θz] of its shear centre; section forces [N Vy Vz T My Mz] act on the face whose normal is +x, moments
+/// about the shear centre; section deformations [ε γy γz κx κy κz]: γy = v' - θz, γz = w' + θy, κ = θ'.
+#include <vector>
+
+#include "fe/sections/beam_property.hpp"
+
+namespace bough::fe {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Matrix6x12d = Eigen::Matrix<double, 6, 12>;
+using Matrix12d = Eigen::Matrix<double, 12, 12>;
+
+/// The four section stiffnesses that a deck may leave zero (as PBAR without I2 does).
+struct ActiveForces {
+  bool axial = true, torsion = true, plane1 = true, plane2 = true;
+};
+
+class BeamField {
+ public:
+  BeamField(const BeamProperty& property, double length);
+
+  /// 6 x 6 inverse flexibility: forces at B per displacement of B with A clamped. Rows and columns of a stiffness that
+  /// the property lacks still hold a shape (unit) stiffness; mask() tells which.
+  const Matrix6d& shape_stiffness() const { return G_; }
+  ActiveForces active() const { return active_; }
+  /// shape_stiffness() with zeros where the property has no stiffness.
+  Matrix6d calc_stiffness() const;
+
+  /// S (6 x 12): displacement of B relative to the rigid motion of A, for the nodal displacements [A; B].
+  Matrix6x12d calc_relative() const;
+
+  /// At x: displacement D (6 x 12) and section deformation e (6 x 12) per nodal displacement [A; B].
+  void calc_shape(double x, Matrix6x12d* D, Matrix6x12d* e) const;
+
+  double length() const { return length_; }
+  bool is_uniform() const { return uniform_; }
+  /// Gauss points for integrals over the element (mass, geometric stiffness); absolute x, weights sum to L.
+  struct Point {
+    double x, weight;
+  };
+  std::vector<Point> calc_points(int num_uniform, int num_tapered) const;
+
+ private:
+  Matrix6d calc_compliance(double x) const;
+  Matrix6d calc_flexibility(double x) const;
+
+  const BeamProperty& property_;
+  double length_;
+  bool uniform_;
+  ActiveForces active_;
+  Matrix6d G_;
+  std::vector<double> breaks_;  ///< tapered: ends of the panels of the quadrature, 0 to length
+};
+
+}  // namespace bough::fe

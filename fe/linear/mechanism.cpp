@@ -1,0 +1,84 @@
+#include "fe/linear/mechanism.hpp"
+
+#include <algorithm>
+#include <random>
+
+#include <Eigen/Eigenvalues>
+
+#include "fe/matrices/assembly.hpp"
+
+namespace bough::fe {
+namespace {
+
+MatrixXd make_random(Eigen::Index rows, Eigen::Index cols) {
+  std::mt19937 generator(20111);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  return MatrixXd::NullaryExpr(rows, cols, [&] { return uniform(generator); });
+}
+
+/// D = diag K, with a plain value where a dof has no stiffness at all.
+VectorXd get_scale(Mat K) {
+  VectorXd D = get_diagonal(K).cwiseAbs();
+  const double largest = D.size() ? D.maxCoeff() : 0;
+  for (double& d : D)
+    if (d <= 1e-14 * largest) d = largest > 0 ? largest : 1;
+  return D;
+}
+
+void reduce_columns(MatrixXd& X) {
+  for (Eigen::Index c = 0; c < X.cols(); ++c) {
+    Eigen::Index row = 0, column = 0;
+    X.rightCols(X.cols() - c).cwiseAbs().maxCoeff(&row, &column);
+    X.col(c).swap(X.col(c + column));
+    X.col(c) /= X(row, c);
+    for (Eigen::Index other = 0; other < X.cols(); ++other)
+      if (other != c) X.col(other) -= X(row, other) * X.col(c);
+  }
+}
+
+}  // namespace
+
+double calc_softest_energy(Mat K, const SymmetricFactor& factor) {
+  const VectorXd D = get_scale(K);
+  VectorXd x = factor.solve(D.cwiseProduct(make_random(D.size(), 1).col(0)));
+  const double size = x.dot(D.cwiseProduct(x));
+  if (!(size > 0) || !std::isfinite(size)) return 0;
+  x /= std::sqrt(size);
+  return std::abs(x.dot(multiply(K, x).col(0)));
+}
+
+MatrixXd find_mechanisms(Mat K, int expected) {
+  const VectorXd D = get_scale(K);
+  const Eigen::Index n = D.size(), m = std::min<Eigen::Index>(n, std::clamp(expected + 2, 6, 24));
+  PetscMat shifted;
+  check_petsc(MatDuplicate(K, MAT_COPY_VALUES, shifted.out()));
+  PetscVec shift;
+  check_petsc(MatCreateVecs(K, shift.out(), nullptr));
+  scatter(1e-13 * D, shift.get());
+  check_petsc(MatDiagonalSet(shifted.get(), shift.get(), ADD_VALUES));
+  const SymmetricFactor factor(shifted.get(), false, FactorMethod::Pivoting);
+  if (factor.is_singular()) return MatrixXd(n, 0);
+
+  MatrixXd X = make_random(n, m);
+  VectorXd energy;
+  for (int iteration = 0; iteration < 5; ++iteration) {
+    X = factor.solve(D.asDiagonal() * X);
+    for (Eigen::Index c = 0; c < m; ++c) X.col(c) /= std::sqrt(X.col(c).dot(D.cwiseProduct(X.col(c))));
+    // An orthonormal basis under D, then its Ritz vectors.
+    MatrixXd scaled = D.cwiseSqrt().asDiagonal() * X;
+    scaled = Eigen::HouseholderQR<MatrixXd>(scaled).householderQ() * MatrixXd::Identity(n, m);
+    X = D.cwiseSqrt().cwiseInverse().asDiagonal() * scaled;
+    MatrixXd projected = X.transpose() * multiply(K, X);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(0.5 * (projected + projected.transpose()));
+    X = (X * ritz.eigenvectors()).eval();
+    energy = ritz.eigenvalues().cwiseAbs();
+  }
+  std::vector<int> found;
+  for (int c = 0; c < m; ++c)
+    if (energy[c] < kMechanismEnergy) found.push_back(c);
+  MatrixXd basis = X(Eigen::all, found);
+  reduce_columns(basis);
+  return basis;
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,24 @@
+#pragma once
+/// \file The order in which a factorization eliminates the rows of an assembled matrix.
+#include <vector>
+
+#include "fe/linear/petsc.hpp"
+
+namespace bough::fe {
+
+/// IS, owning.
+using PetscIs = PetscHandle<IS, ISDestroy>;
+
+/// Tells A that its rows fall into runs that couple alike, as the six of a grid do: run i is [start[i], start[i + 1]).
+/// One process only.
+void set_row_groups(Mat A, const std::vector<int>& start);
+/// Gives `to`, a matrix of the same rows, the groups of `from`.
+void copy_row_groups(Mat from, Mat to);
+
+/// Nested dissection (METIS; Karypis & Kumar, SIAM J. Sci. Comput. 20 (1998) 359) of the graph of row groups, some
+/// thirty times smaller than the graph of rows (Ashcraft, SIAM J. Sci. Comput. 16 (1995) 1404). Empty, for the solver's
+/// own choice, where A has no groups, is small, is lines rather than a mesh, or lives on several processes. Costs
+/// O(nonzeros).
+PetscIs find_elimination_order(Mat A);
+
+}  // namespace bough::fe

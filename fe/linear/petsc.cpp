@@ -1,0 +1,105 @@
+#include "fe/linear/petsc.hpp"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "base/diagnostic.hpp"
+#include "fe/linear/petsc_message.hpp"
+
+namespace bough::fe {
+
+std::string get_petsc_message(PetscErrorCode code) {
+  const char* text = nullptr;
+  char* specific = nullptr;
+  PetscErrorMessage(code, &text, &specific);
+  std::string message = specific && *specific ? specific : text ? text : "no text";
+  while (!message.empty() && std::isspace(static_cast<unsigned char>(message.back()))) message.pop_back();
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  return message;
+}
+
+void check_petsc(PetscErrorCode code) {
+  if (code == 0) return;
+  const std::string own = " (code " + std::to_string(code) + " of the library: " + get_petsc_message(code) + ")";
+  switch (code) {
+    case PETSC_ERR_MEM:
+      throw ComputationError("fe.out-of-memory", {}, "the matrices of the model do not fit the memory" + own,
+                             "use a coarser mesh, ask for fewer modes, or run on more processes of a larger machine "
+                             "(mpirun -n 2 bough ...)");
+    case PETSC_ERR_ARG_OUTOFRANGE:
+    case PETSC_ERR_SUP:
+    case PETSC_ERR_INT_OVERFLOW:
+      throw ComputationError("fe.petsc", {},
+                             "the model is too large for the matrix library, or of a form it lacks" + own,
+                             "use a coarser mesh, or run on more processes (mpirun -n 2 bough ...)");
+    case PETSC_ERR_FP:
+      throw ComputationError("fe.petsc", {}, "a number of the matrices overflows or is no number" + own,
+                             "look for extreme or missing values in properties, materials and grids");
+    default:
+      throw ComputationError(
+          "fe.petsc", {}, "the solver of linear equations and eigenvalues refuses the matrices of this model" + own,
+          "look for parts that nothing holds, for masses and stiffness of extreme size and for negative springs; "
+          "bough check names most of them");
+  }
+}
+
+namespace {
+
+template <class Function>
+Function* find_function(const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
+}
+
+/// One thread in OpenBLAS and in CHOLMOD unless the user says otherwise: the factors' dense blocks are small, and
+/// threads that wait for each other by spinning double the time on a busy machine and add a fifth on a quiet one.
+/// CHOLMOD asks OpenMP for a number of threads of its own, whatever OMP_NUM_THREADS says; no level of parallel regions
+/// means one. Found by name, since other libraries may be installed.
+void hold_threads() {
+  const char* openmp = std::getenv("OMP_NUM_THREADS");
+  if (!openmp || std::string_view(openmp) == "1")
+    if (const auto set = find_function<void(int)>("omp_set_max_active_levels")) set(0);
+  if (openmp || std::getenv("OPENBLAS_NUM_THREADS")) return;
+  if (const auto set = find_function<void(int)>("openblas_set_num_threads")) set(1);
+}
+
+}  // namespace
+
+MpiWorld initialize_petsc() {
+  PetscBool initialized = PETSC_FALSE;
+  PetscInitialized(&initialized);
+  if (!initialized) {
+    hold_threads();
+    // A process that no launcher started needs no daemon and no network transport; making them ready takes ten times as
+    // long as the rest of MPI's start (360 ms against 30 ms).
+    const bool is_launched = std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMIX_RANK") || std::getenv("PMI_RANK");
+    if (!is_launched) {
+      setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+      setenv("OMPI_MCA_btl", "self", 0);
+      setenv("OMPI_MCA_pml", "ob1", 0);
+      // Nor a folder of its own in /tmp, which processes that start at the same time fight over.
+      setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
+    }
+    // A crash is Bough's to report, not PETSc's.
+    PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
+    int argc = 0;
+    char** argv = nullptr;
+    check_petsc(PetscInitialize(&argc, &argv, nullptr, nullptr));
+    PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+    std::atexit([] {
+      PetscBool finalized = PETSC_FALSE;
+      PetscFinalized(&finalized);
+      if (!finalized) PetscFinalize();
+    });
+  }
+  MpiWorld world;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &world.rank);
+  MPI_Comm_size(PETSC_COMM_WORLD, &world.size);
+  return world;
+}
+
+}  // namespace bough::fe

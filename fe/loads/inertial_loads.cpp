@@ -1,0 +1,178 @@
+#include "fe/loads/inertial_loads.hpp"
+
+#include "base/rotation.hpp"
+#include "fe/linear/blas.hpp"
+#include "fe/matrices/assembly.hpp"
+
+namespace bough::fe {
+namespace {
+
+/// Column of A_I for ω_a ω_b.
+int find_product(int a, int b) { return a == b ? 6 + a : 8 + a + b; }
+
+/// Nodal displacements as if the grids were accelerated: translations a_o + A x and rotations α.
+MatrixXd calc_grid_field(const Model& model, const MatrixXd& A_I) {
+  MatrixXd X = MatrixXd::Zero(model.num_gdofs(), A_I.cols());
+  for (Eigen::Index c = 0; c < A_I.cols(); ++c) {
+    const auto field = calc_acceleration_field(A_I.col(c));
+    for (const Node& node : model.nodes()) {
+      if (node.num_dofs != 6) continue;
+      X.block<3, 1>(node.first_gdof, c) = field.a_o + field.A * node.x;
+      X.block<3, 1>(node.first_gdof + 3, c) = A_I.block<3, 1>(3, c);
+    }
+  }
+  return X;
+}
+
+/// -Σ ω_r ω_s S_r P_s, P = M_e Φ_R of rotations: each nodal momentum turned as if it were that of a mass at the grid
+/// (NASA-CR-202063, eqs. 7-12).
+MatrixXd turn_momenta(const Model& model, const Element& element, const MatrixXd& M, const MatrixXd& A_I) {
+  MatrixXd Phi_R = MatrixXd::Zero(element.num_dofs(), 3), F = MatrixXd::Zero(element.num_dofs(), A_I.cols());
+  std::vector<int> vectors;  // first row of every nodal vector
+  int row = 0;
+  for (int k : element.nodes()) {
+    const Node& node = model.node(k);
+    if (node.num_dofs == 6 && row + 6 <= element.num_dofs() &&
+        element.gdofs()[static_cast<std::size_t>(row)] == node.first_gdof) {
+      Phi_R.middleRows<3>(row) = -skew(node.x);
+      Phi_R.middleRows<3>(row + 3).setIdentity();
+      vectors.insert(vectors.end(), {row, row + 3});
+    }
+    row += node.num_dofs;
+  }
+  const MatrixXd P = M * Phi_R;
+  for (int r = 0; r < 3; ++r)
+    for (int s = 0; s < 3; ++s)
+      for (int first : vectors) {
+        const Vector3d turned = Vector3d::Unit(r).cross(Vector3d(P.block<3, 1>(first, s)));
+        F.middleRows<3>(first) -= turned * A_I.row(find_product(r, s));
+      }
+  return F;
+}
+
+}  // namespace
+
+AccelerationField calc_acceleration_field(const Vector12d& A_I) {
+  AccelerationField field;
+  field.a_o = A_I.head<3>();
+  field.A = skew(A_I.segment<3>(3));
+  // ω̃ω̃ = ω ωᵀ - |ω|² 1.
+  Matrix3d products;
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) products(a, b) = A_I[find_product(a, b)];
+  field.A += products - products.trace() * Matrix3d::Identity();
+  return field;
+}
+
+Vector12d calc_load_factors(const Vector3d& a_o, const Vector3d& alpha, const Vector3d& omega) {
+  Vector12d A_I;
+  A_I << a_o, alpha, omega.cwiseAbs2(), omega.x() * omega.y(), omega.x() * omega.z(), omega.y() * omega.z();
+  return A_I;
+}
+
+bool calc_carried(const Model& model, const Element& element, MassKind kind, CarriedMass& carried) {
+  Matrix3Xd x(3, element.nodes().size());
+  for (Eigen::Index k = 0; k < x.cols(); ++k) x.col(k) = model.node(element.nodes()[static_cast<std::size_t>(k)]).x;
+  if (!element.add_carried(kind, x, carried)) return false;
+  carried.mu *= model.wtmass();
+  return true;
+}
+
+Matrix3Xd calc_point_loads(const CarriedMass& carried, const AccelerationField& field) {
+  Matrix3Xd a(3, carried.points.size());
+  for (Eigen::Index s = 0; s < a.cols(); ++s) {
+    const auto& point = carried.points[static_cast<std::size_t>(s)];
+    a.col(s) = field.A * point.x;
+    if (point.is_place) a.col(s) += field.a_o;
+  }
+  return -a * carried.mu;
+}
+
+MatrixXd calc_inertial_loads(const Model& model, MassKind kind, const MatrixXd& A_I, const MassProduct& mass_times) {
+  BOUGH_DEMAND(A_I.rows() == 12);
+  MatrixXd F = -mass_times(calc_grid_field(model, A_I));
+  MatrixXd spin = A_I;
+  spin.topRows<6>().setZero();
+  if (spin.isZero(0)) return F;
+  // Where mass hangs on rotations the grids' own accelerations are not those of the mass.
+  const MatrixXd grid_field = calc_grid_field(model, spin);
+  MatrixXd change = MatrixXd::Zero(F.rows(), F.cols()), M;
+  const auto [begin, end] = calc_element_range(model);
+  for (int e = begin; e < end; ++e) {
+    const Element& element = *model.elements()[static_cast<std::size_t>(e)];
+    if (!element.carries_turning_mass(kind)) continue;
+    M.setZero(element.num_dofs(), element.num_dofs());
+    element.add_mass(kind, model.wtmass(), M);
+    MatrixXd f = M * grid_field(element.gdofs(), Eigen::all);
+    CarriedMass carried(element.num_dofs());
+    if (calc_carried(model, element, kind, carried)) {
+      for (Eigen::Index c = 0; c < f.cols(); ++c) {
+        const Matrix3Xd loads = calc_point_loads(carried, calc_acceleration_field(spin.col(c)));
+        for (Eigen::Index r = 0; r < loads.cols(); ++r)
+          f.col(c) += carried.points[static_cast<std::size_t>(r)].H.transpose() * loads.col(r);
+      }
+    } else {
+      f += turn_momenta(model, element, M, spin);
+    }
+    for (int i = 0; i < element.num_dofs(); ++i) change.row(element.gdofs()[static_cast<std::size_t>(i)]) += f.row(i);
+  }
+  sum_over_ranks(change);
+  return F + change;
+}
+
+MatrixXd calc_inertial_loads(const Model& model, MassKind kind, const MatrixXd& A_I) {
+  return calc_inertial_loads(model, kind, A_I,
+                             [&](const MatrixXd& X) -> MatrixXd { return calc_mass_times(model, kind, X); });
+}
+
+MatrixXd calc_inertial_loads(const Model& model, MassKind kind) {
+  return calc_inertial_loads(model, kind, MatrixXd::Identity(12, 12));
+}
+
+bool has_approximate_mass(const Model& model, MassKind kind) {
+  for (const auto& element : model.elements()) {
+    CarriedMass carried(element->num_dofs());
+    if (element->carries_turning_mass(kind) && !calc_carried(model, *element, kind, carried)) return true;
+  }
+  return false;
+}
+
+MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Phi) {
+  const Eigen::Index n = Phi.cols(), size = 4 + 3 * n;
+  constexpr Eigen::Index kPoints = 512;
+  MatrixXd gram = MatrixXd::Zero(size, size), Z(kPoints, size), mu_Z = Z, Phi_e, u;
+  Eigen::Index used = 0;
+  const auto flush = [&] {
+    multiply_dense(true, Z.topRows(used), mu_Z.topRows(used), 1, gram);
+    used = 0;
+  };
+  const auto [begin, end] = calc_element_range(model);
+  for (int e = begin; e < end; ++e) {
+    const Element& element = *model.elements()[static_cast<std::size_t>(e)];
+    if (!element.carries_turning_mass(kind)) continue;
+    CarriedMass carried(element.num_dofs());
+    if (!calc_carried(model, element, kind, carried)) continue;
+    const auto count = static_cast<Eigen::Index>(carried.points.size());
+    if (used + count > Z.rows()) flush();
+    if (count > Z.rows()) {
+      Z.resize(count, size);
+      mu_Z.resize(count, size);
+    }
+    Phi_e = Phi(element.gdofs(), Eigen::all);
+    for (Eigen::Index r = 0; r < count; ++r) {
+      const auto& point = carried.points[static_cast<std::size_t>(r)];
+      auto row = Z.row(used + r);
+      row[0] = point.is_place ? 1 : 0;
+      row.segment<3>(1) = point.x.transpose();
+      u.noalias() = point.H * Phi_e;
+      for (int a = 0; a < 3; ++a) row.segment(4 + a * n, n) = u.row(a);
+    }
+    mu_Z.middleRows(used, count).noalias() = carried.mu * Z.middleRows(used, count);
+    used += count;
+  }
+  flush();
+  sum_over_ranks(gram);
+  return gram;
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,45 @@
+#pragma once
+/// \file What an accelerated frame does to the mass of a model: F_I, and with it GRAV and RFORCE.
+#include <functional>
+
+#include "fe/elements/carried.hpp"
+#include "fe/model/applied_load.hpp"
+#include "fe/model/model.hpp"
+
+namespace bough::fe {
+
+/// The field a_o + A x of acceleration of places, by the twelve load factors A_I in the order of records::InertialLoad:
+/// A = α̃ + ω̃ω̃ (docs/theory/carried-bodies.md).
+struct AccelerationField {
+  Vector3d a_o = Vector3d::Zero();
+  Matrix3d A = Matrix3d::Zero();
+};
+AccelerationField calc_acceleration_field(const Vector12d& A_I);
+/// A_I of a_o, α and ω.
+Vector12d calc_load_factors(const Vector3d& a_o, const Vector3d& alpha, const Vector3d& omega);
+
+/// X -> M X on the g-set.
+using MassProduct = std::function<MatrixXd(const MatrixXd&)>;
+
+/// F_I A_I, num_gdofs x k, for load factors A_I (12 x k): -M Φ_R for accelerations; for spin what every piece of mass
+/// feels where it is. Masses that are not of bodies take their nodal momenta instead (docs/theory/carried-bodies.md);
+/// has_approximate_mass() tells. Replicated; O(elements).
+MatrixXd calc_inertial_loads(const Model& model, MassKind kind, const MatrixXd& A_I, const MassProduct& mass_times);
+MatrixXd calc_inertial_loads(const Model& model, MassKind kind, const MatrixXd& A_I);
+/// F_I itself, num_gdofs x 12.
+MatrixXd calc_inertial_loads(const Model& model, MassKind kind);
+
+/// Whether masses are there whose elements cannot say of what bodies they are.
+bool has_approximate_mass(const Model& model, MassKind kind);
+
+/// The bodies of one element that carries_turning_mass(), masses times WTMASS; false when it cannot say.
+bool calc_carried(const Model& model, const Element& element, MassKind kind, CarriedMass& carried);
+
+/// Σ μ_rs z_r z_sᵀ over the points of all carried masses, z = [1 or 0 for an arm, x, u] with u the motions of the point
+/// in Phi (num_gdofs x n), x of every column first: 4 + 3n square. Summed over ranks.
+MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Phi);
+
+/// Forces -Σ_s μ_rs a_s on the points of a carried mass: 3 x points.
+Matrix3Xd calc_point_loads(const CarriedMass& carried, const AccelerationField& field);
+
+}  // namespace bough::fe

@@ -1,0 +1,183 @@
+#include <algorithm>
+
+#include "fe/loads/inertial_loads.hpp"
+#include "fe/loads/load_sets.hpp"
+
+namespace bough::fe {
+
+int LoadTarget::find_grid(int id, const std::string& card, const records::CardLocation& at) const {
+  const int index = model.find_node(id);
+  if (index >= 0 && model.node(index).num_dofs == 6) return index;
+  diagnostics.error("fe.missing-grid", deck.locate(at),
+                    card + " names grid " + std::to_string(id) + ", which the deck does not define",
+                    "add the GRID or correct the id");
+  return -1;
+}
+
+namespace {
+
+bool add_directed_loads(const LoadTarget& t) {
+  bool is_found = false;
+  for (const auto& load : t.deck.load_cards.directed) {
+    if (load.sid != t.set) continue;
+    is_found = true;
+    const std::string card = std::string(load.is_moment ? "MOMENT" : "FORCE") + (load.is_cross ? "2" : "1");
+    const int index = t.find_grid(load.g, card, load.at);
+    std::array<Vector3d, 4> x;
+    bool is_good = index >= 0;
+    for (std::size_t i = 0; i < (load.is_cross ? 4u : 2u); ++i) {
+      const int k = t.find_grid(load.grids[i], card, load.at);
+      is_good = is_good && k >= 0;
+      if (k >= 0) x[i] = t.model.node(k).x;
+    }
+    if (!is_good) continue;
+    Vector3d direction = x[1] - x[0];
+    double size = direction.norm();
+    if (load.is_cross) {
+      size *= (x[3] - x[2]).norm();
+      direction = direction.cross(x[3] - x[2]).eval();
+    }
+    if (!(direction.norm() > 1e-12 * size)) {
+      t.diagnostics.error("fe.no-direction", t.deck.locate(load.at),
+                          card + " at grid " + std::to_string(load.g) + " has no direction: its grids " +
+                              (load.is_cross ? "give two parallel vectors" : "coincide"),
+                          "name other grids");
+      continue;
+    }
+    t.F.segment<3>(t.model.node(index).first_gdof + (load.is_moment ? 3 : 0)) +=
+        t.scale * load.f * direction.normalized();
+  }
+  return is_found;
+}
+
+bool add_scalar_loads(const LoadTarget& t) {
+  bool is_found = false;
+  for (const auto& load : t.deck.load_cards.scalar) {
+    if (load.sid != t.set) continue;
+    is_found = true;
+    const int index = t.model.find_node(load.point);
+    if (index >= 0) {
+      // At a grid: along the first displacement axis (Quick Reference Guide, SLOAD).
+      const Node& node = t.model.node(index);
+      if (node.num_dofs == 1)
+        t.F[node.first_gdof] += t.scale * load.f;
+      else
+        t.F.segment<3>(node.first_gdof) += t.scale * load.f * node.R_basic_cd.col(0);
+      continue;
+    }
+    t.diagnostics.error("fe.missing-grid", t.deck.locate(load.at),
+                        "SLOAD names point " + std::to_string(load.point) + ", which the deck does not define",
+                        "add the SPOINT or GRID, or correct the id");
+  }
+  return is_found;
+}
+
+bool has_enforced(const records::Deck& deck, int set) {
+  const auto& spcd = deck.load_cards.spcd;
+  return std::any_of(spcd.begin(), spcd.end(), [set](const auto& s) { return s.sid == set; });
+}
+
+bool has_cards(const records::Deck& deck, int set) {
+  const auto in = [set](const auto& cards) {
+    return std::any_of(cards.begin(), cards.end(), [set](const auto& card) { return card.sid == set; });
+  };
+  const auto& c = deck.load_cards;
+  return in(deck.point_loads) || in(deck.gravity) || in(c.directed) || in(c.beams) || in(c.grid_pressures) ||
+         in(c.pressures) || in(c.rotations) || in(c.spcd) || in(c.scalar);
+}
+
+const records::LoadCombination* find_combination(const records::Deck& deck, int set) {
+  const auto found = std::find_if(deck.loads.begin(), deck.loads.end(), [set](const auto& l) { return l.sid == set; });
+  return found == deck.loads.end() ? nullptr : &*found;
+}
+
+/// `open`: the LOAD cards on the way here; one of them is not entered again.
+void add_plain_sets(const records::Deck& deck, const records::LoadCombination& card, double factor,
+                    std::vector<int>& open, std::vector<PlainLoadSet>& sets) {
+  open.push_back(card.sid);
+  for (const auto& [scale, sid] : card.terms) {
+    const auto* nested = has_cards(deck, sid) ? nullptr : find_combination(deck, sid);
+    const bool is_circle = nested && std::find(open.begin(), open.end(), sid) != open.end();
+    if (nested && !is_circle)
+      add_plain_sets(deck, *nested, factor * card.s * scale, open, sets);
+    else
+      sets.push_back({sid, factor * card.s * scale, card.at, false, is_circle});
+  }
+  open.pop_back();
+}
+
+/// What Nastran passes over, or forbids and Bough adds up, in a LOAD card.
+void report_terms(const records::Deck& deck, const records::LoadCombination& card, Diagnostics& diagnostics) {
+  for (const auto& [scale, sid] : card.terms)
+    if (!has_cards(deck, sid) && find_combination(deck, sid))
+      diagnostics.warning("fe.nested-load", deck.locate(card.at),
+                          "LOAD " + std::to_string(card.sid) + " names set " + std::to_string(sid) +
+                              ", which is a LOAD card itself; the sets of that card are added, as MSC Nastran does",
+                          "name plain load sets: other Nastrans stop here");
+}
+
+}  // namespace
+
+std::vector<PlainLoadSet> list_plain_sets(const records::Deck& deck, int set) {
+  const auto* card = find_combination(deck, set);
+  if (!card) return {{set, 1.0, {}, false, false}};
+  std::vector<PlainLoadSet> sets;
+  // SPCD cards have the id that the case control selects, beside the LOAD card (Quick Reference Guide, LOAD).
+  if (has_enforced(deck, set)) sets.push_back({set, 1.0, card->at, true, false});
+  std::vector<int> open;
+  add_plain_sets(deck, *card, 1, open, sets);
+  return sets;
+}
+
+bool add_point_loads(const LoadTarget& t) {
+  bool is_found = false;
+  for (const auto& load : t.deck.point_loads) {
+    if (load.sid != t.set) continue;
+    is_found = true;
+    const int index = t.find_grid(load.g, load.is_moment ? "MOMENT" : "FORCE", load.at);
+    if (index < 0) continue;
+    const Node& node = t.model.node(index);
+    const Matrix3d R = t.model.calc_axes(load.cid, node.x, t.deck.locate(load.at), t.diagnostics);
+    t.F.segment<3>(node.first_gdof + (load.is_moment ? 3 : 0)) += t.scale * load.f * (R * load.n);
+  }
+  const bool has_directed = add_directed_loads(t), has_scalar = add_scalar_loads(t);
+  return is_found || has_directed || has_scalar;
+}
+
+VectorXd Model::calc_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const {
+  return calc_applied_load(deck, set, diagnostics).F;
+}
+
+AppliedLoad Model::calc_applied_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const {
+  AppliedLoad load;
+  load.F = VectorXd::Zero(num_gdofs_);
+  if (const auto* card = find_combination(deck, set)) report_terms(deck, *card, diagnostics);
+  const auto sets = list_plain_sets(deck, set);
+  std::vector<PlainLoadSet> missing;
+  for (const auto& plain : sets) {
+    if (plain.enforced_only) continue;
+    if (plain.is_circle) {
+      diagnostics.error("fe.load-circle", deck.locate(plain.at),
+                        "LOAD " + std::to_string(plain.sid) + " goes in a circle: this card names it again",
+                        "name sets of FORCE, MOMENT, PLOAD and the like");
+      continue;
+    }
+    const LoadTarget target{*this,       deck,     plain.sid, plain.scale,   load.F,
+                            diagnostics, load.A_I, load.arms, load.followers};
+    const bool found[] = {add_point_loads(target), add_body_loads(target), add_surface_loads(target),
+                          add_beam_loads(target), has_enforced(deck, plain.sid)};
+    if (std::find(std::begin(found), std::end(found), true) == std::end(found)) missing.push_back(plain);
+  }
+  // A LOAD card of which something is left loads the structure, as in Nastran.
+  const auto severity = missing.size() < sets.size() ? Severity::Warning : Severity::Error;
+  for (const auto& plain : missing)
+    diagnostics.add(
+        {severity, "fe.missing-load", deck.locate(plain.at),
+         "load set " + std::to_string(plain.sid) + " has no FORCE, MOMENT, GRAV, PLOAD or LOAD card" +
+             (severity == Severity::Warning ? "; LOAD " + std::to_string(set) + " is taken without it" : ""),
+         "correct the set id or add its cards"});
+  if (!load.A_I.isZero(0)) load.F += calc_inertial_loads(*this, mass_kind_, load.A_I);
+  return load;
+}
+
+}  // namespace bough::fe

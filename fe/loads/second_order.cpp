@@ -1,0 +1,152 @@
+#include "fe/loads/second_order.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace bough::fe {
+namespace {
+
+using Weights = Eigen::Matrix<double, 6, Eigen::Dynamic>;  ///< of a 3 x 3 form, per load
+
+/// Lower triangle of K_arm, in the order of QuadraticForm.
+Eigen::Matrix<double, 6, 1> calc_arm_weights(const Vector3d& f, const Vector3d& arm) {
+  const Matrix3d K = calc_arm_stiffness(f, arm);
+  Eigen::Matrix<double, 6, 1> w;
+  w << K(0, 0), K(1, 0), K(2, 0), K(1, 1), K(2, 1), K(2, 2);
+  return w;
+}
+
+/// Forms on the rotations of grids, one a grid: what many elements do there is summed.
+class GridForms {
+ public:
+  explicit GridForms(Eigen::Index num_loads) : num_loads_(num_loads) {}
+
+  Weights& find(int first_rotation) {
+    return at_.try_emplace(first_rotation, Weights::Zero(6, num_loads_)).first->second;
+  }
+  void move_to(std::vector<QuadraticForm>& forms) {
+    for (auto& [first, weights] : at_)
+      if (!weights.isZero(0))
+        forms.push_back({{first, first + 1, first + 2}, Matrix3d::Identity(), std::move(weights)});
+    at_.clear();
+  }
+
+ private:
+  Eigen::Index num_loads_;
+  std::map<int, Weights> at_;
+};
+
+/// -f·(zᵀ Q z) of every point is ½ zᵀ W z.
+void add_field(const Element& element, const CarriedMass& carried, const CarriedField& field, const MatrixXd& A_I,
+               std::vector<QuadraticForm>& forms) {
+  const auto r = static_cast<int>(field.L.rows());
+  MatrixXd unit = MatrixXd::Zero(r * (r + 1) / 2, 12), W(r, r);
+  for (int c = 0; c < 12; ++c) {
+    const Matrix3Xd f = calc_point_loads(carried, calc_acceleration_field(Vector12d::Unit(c)));
+    W.setZero();
+    for (const auto& part : field.parts)
+      for (int a = 0; a < 3; ++a) W -= f(a, part.point) * part.Q[static_cast<std::size_t>(a)];
+    for (int j = 0; j < r; ++j)
+      for (int i = j; i < r; ++i) unit(find_weight(r, i, j), c) = W(i, j) + W(j, i);
+  }
+  MatrixXd weights = unit * A_I;
+  if (!weights.isZero(0)) forms.push_back({element.gdofs(), field.L, std::move(weights)});
+}
+
+void add_carried_masses(const Model& model, const MatrixXd& A_I, GridForms& grids, std::vector<QuadraticForm>& forms) {
+  for (const auto& element : model.elements()) {
+    if (!element->carries_turning_mass(model.mass_kind())) continue;
+    CarriedMass carried(element->num_dofs());
+    if (!calc_carried(model, *element, model.mass_kind(), carried)) continue;
+    std::vector<Weights> unit(carried.turns.size(), Weights::Zero(6, 12));
+    for (int i = 0; i < 12; ++i) {
+      const Matrix3Xd f = calc_point_loads(carried, calc_acceleration_field(Vector12d::Unit(i)));
+      for (std::size_t t = 0; t < carried.turns.size(); ++t)
+        for (const auto& part : carried.turns[t].parts)
+          unit[t].col(i) += calc_arm_weights(part.B.transpose() * f.col(part.point), part.arm);
+    }
+    for (const auto& field : carried.fields) add_field(*element, carried, field, A_I, forms);
+    for (std::size_t t = 0; t < carried.turns.size(); ++t) {
+      const auto& turn = carried.turns[t];
+      const Weights weights = unit[t] * A_I;
+      if (weights.isZero(0)) continue;
+      if (turn.slot >= 0)
+        grids.find(element->gdofs()[static_cast<std::size_t>(turn.slot)]) += weights;
+      else
+        forms.push_back({element->gdofs(), turn.Theta, weights});
+    }
+  }
+}
+
+/// F - K u of the dofs that the links need, in the displacement axes.
+MatrixXd calc_residual(const Model& model, const std::vector<int>& ldofs, const MatrixXd& F,
+                       const Eigen::Ref<const MatrixXd>& U) {
+  std::map<int, const Node*> nodes;  // by first g-dof
+  {
+    std::size_t k = 0;
+    for (int ldof : ldofs) {
+      while (k + 1 < model.nodes().size() && model.nodes()[k + 1].first_gdof <= ldof) ++k;
+      nodes[model.nodes()[k].first_gdof] = &model.nodes()[k];
+    }
+  }
+  std::vector<int> row(static_cast<std::size_t>(model.num_gdofs()), -1), gdofs;
+  for (const auto& [first, node] : nodes)
+    for (int c = 0; c < node->num_dofs; ++c) {
+      row[static_cast<std::size_t>(first + c)] = static_cast<int>(gdofs.size());
+      gdofs.push_back(first + c);
+    }
+  MatrixXd R = F(gdofs, Eigen::all), K;
+  const auto subtract = [&](const std::vector<int>& own, const MatrixXd& stiffness) {
+    if (stiffness.isZero(0)) return;
+    const MatrixXd f = stiffness * U(own, Eigen::all);
+    for (std::size_t i = 0; i < own.size(); ++i)
+      if (const int r = row[static_cast<std::size_t>(own[i])]; r >= 0) R.row(r) -= f.row(static_cast<Eigen::Index>(i));
+  };
+  for (const auto& element : model.elements()) {
+    const auto& own = element->gdofs();
+    if (std::none_of(own.begin(), own.end(), [&](int g) { return row[static_cast<std::size_t>(g)] >= 0; })) continue;
+    K.setZero(element->num_dofs(), element->num_dofs());
+    model.add_stiffness(*element, K);
+    subtract(own, K);
+  }
+  if (model.prestress())
+    for (const auto& form : model.prestress()->forms) subtract(form.gdofs, calc_form(form, 0));
+  MatrixXd result(ldofs.size(), F.cols());
+  for (std::size_t i = 0; i < ldofs.size(); ++i) {
+    const Node& node = *std::prev(nodes.upper_bound(ldofs[i]))->second;
+    const int c = ldofs[i] - node.first_gdof, first = row[static_cast<std::size_t>(node.first_gdof + 3 * (c / 3))];
+    const auto k = static_cast<Eigen::Index>(i);
+    if (node.num_dofs == 6)
+      result.row(k) = node.R_basic_cd.col(c % 3).transpose() * R.middleRows<3>(first);
+    else
+      result.row(k) = R.row(first);
+  }
+  return result;
+}
+
+}  // namespace
+
+AppliedLoads make_loads(const AppliedLoad& load) { return {load.F, load.A_I, {load.arms}, {load.followers}}; }
+
+std::vector<QuadraticForm> calc_second_order(const Model& model, const AppliedLoads& loads,
+                                             const Eigen::Ref<const MatrixXd>& U) {
+  BOUGH_DEMAND(loads.F.cols() == U.cols() && loads.A_I.cols() == U.cols() && loads.A_I.rows() == 12);
+  std::vector<QuadraticForm> forms;
+  GridForms grids(U.cols());
+  if (!loads.A_I.isZero(0)) add_carried_masses(model, loads.A_I, grids, forms);
+  for (std::size_t c = 0; c < loads.arms.size(); ++c)
+    for (const auto& arm : loads.arms[c])
+      grids.find(arm.first_rotation).col(static_cast<Eigen::Index>(c)) += calc_arm_weights(arm.force, arm.arm);
+  grids.move_to(forms);
+  for (std::size_t c = 0; c < loads.followers.size(); ++c)
+    for (const auto& follower : loads.followers[c]) {
+      forms.push_back({follower.gdofs, follower.L, MatrixXd::Zero(follower.weights.rows(), U.cols())});
+      forms.back().weights.col(static_cast<Eigen::Index>(c)) = follower.weights.col(0);
+    }
+  if (!model.links().empty())
+    for (auto& form : model.links().calc_forms(calc_residual(model, model.links().dependents(), loads.F, U)))
+      forms.push_back(std::move(form));
+  return forms;
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,23 @@
+#pragma once
+/// \file What K_G has beside the internal forces of elements: loads that hang on arms, and rigid links.
+#include "fe/loads/inertial_loads.hpp"
+#include "fe/model/links.hpp"
+
+namespace bough::fe {
+
+/// Loads as columns, as AppliedLoad.
+struct AppliedLoads {
+  MatrixXd F;                                              ///< num_gdofs x m
+  MatrixXd A_I;                                            ///< 12 x m
+  std::vector<std::vector<ArmLoad>> arms;                  ///< per load; may be shorter than m
+  std::vector<std::vector<QuadraticForm>> followers = {};  ///< the same
+};
+AppliedLoads make_loads(const AppliedLoad& load);
+
+/// Second order of carried masses, of loads on arms and of links under the loads, with U their static solutions
+/// (num_gdofs x m): K_G of load c is that of the internal forces plus the sum of all forms. Every rank has all of them.
+/// O(elements).
+std::vector<QuadraticForm> calc_second_order(const Model& model, const AppliedLoads& loads,
+                                             const Eigen::Ref<const MatrixXd>& U);
+
+}  // namespace bough::fe

@@ -1,0 +1,328 @@
+#include "fe/matrices/assembly.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+#include "fe/linear/ordering.hpp"
+#include "fe/loads/second_order.hpp"
+#include "fe/matrices/wide_links.hpp"
+#include "fe/model/element_transform.hpp"
+#include "fe/model/temperatures.hpp"
+
+namespace bough::fe {
+namespace {
+
+static_assert(sizeof(PetscInt) == sizeof(int), "rows are handed to PETSc as int");
+
+/// Adds one element's N x N matrix (basic) into zeroed storage.
+using AddElementMatrix = std::function<void(const Element&, Eigen::Ref<MatrixXd>)>;
+
+SparseRows make_identity(int size) {
+  SparseRows identity(size, size);
+  identity.setIdentity();
+  return identity;
+}
+
+/// Rows [first, last) of Σ T_eᵀ K_e T_e in CSR: columns ascending, the diagonal always there. `same[i]`: row i has the
+/// elements, and so the columns, of the row before.
+struct Rows {
+  std::vector<int> start{0}, columns;
+  std::vector<char> same;
+  std::vector<double> values;
+  std::vector<int> elements;  ///< those that touch the rows, ascending
+};
+
+/// The g-dofs of all that is added: elements, then others.
+using Parts = std::vector<const std::vector<int>*>;
+
+Rows calc_pattern(const Parts& parts, const SparseRows& T, int first, int last) {
+  const int num_rows = last - first;
+  Rows rows;
+  // Each element's columns once; then, per own row, the elements that touch it.
+  std::vector<int> element_start{0}, element_columns, columns;
+  std::vector<int> count(num_rows + 1, 0);
+  for (int e = 0; e < static_cast<int>(parts.size()); ++e) {
+    calc_element_columns(T, *parts[e], columns);
+    bool touches = false;
+    for (int c : columns)
+      if (c >= first && c < last) ++count[c - first + 1], touches = true;
+    if (!touches) continue;
+    rows.elements.push_back(e);
+    element_columns.insert(element_columns.end(), columns.begin(), columns.end());
+    element_start.push_back(static_cast<int>(element_columns.size()));
+  }
+  std::partial_sum(count.begin(), count.end(), count.begin());
+  std::vector<int> touching(count.back()), next(count.begin(), count.end() - 1);
+  for (int e = 0; e < static_cast<int>(rows.elements.size()); ++e)
+    for (int i = element_start[e]; i < element_start[e + 1]; ++i)
+      if (const int c = element_columns[i]; c >= first && c < last) touching[next[c - first]++] = e;
+
+  rows.start.reserve(num_rows + 1);
+  rows.same.assign(num_rows, 0);
+  std::vector<int> mark(T.cols(), -1);
+  for (int row = 0; row < num_rows; ++row) {
+    const auto begin = static_cast<std::ptrdiff_t>(rows.columns.size());
+    const auto own = touching.begin() + count[row], own_end = touching.begin() + count[row + 1];
+    if (row > 0 && own != own_end && std::equal(touching.begin() + count[row - 1], own, own, own_end)) {
+      rows.same[row] = 1;
+      for (int i = rows.start[row - 1]; i < begin; ++i) rows.columns.push_back(rows.columns[i]);
+    } else {
+      mark[first + row] = row;
+      rows.columns.push_back(first + row);
+      for (auto t = own; t != own_end; ++t)
+        for (int i = element_start[*t]; i < element_start[*t + 1]; ++i)
+          if (mark[element_columns[i]] != row) {
+            mark[element_columns[i]] = row;
+            rows.columns.push_back(element_columns[i]);
+          }
+      std::sort(rows.columns.begin() + begin, rows.columns.end());
+    }
+    BOUGH_DEMAND(rows.columns.size() < 2147483647u);
+    rows.start.push_back(static_cast<int>(rows.columns.size()));
+  }
+  return rows;
+}
+
+/// Adds the rows of K_f, on the f-dofs `columns`, that lie in [first, last).
+void add_rows(const MatrixXd& K_f, const std::vector<int>& columns, int first, int last, Rows& rows) {
+  std::vector<int> at(columns.size());
+  int known = -2;
+  for (size_t i = 0; i < columns.size(); ++i) {
+    const int row = columns[i] - first;
+    if (row < 0 || columns[i] >= last) continue;
+    const int* begin = rows.columns.data() + rows.start[row];
+    if (row != known + 1 || !rows.same[row]) {
+      const int* p = begin;
+      for (size_t j = 0; j < columns.size(); ++j) {
+        while (*p != columns[j]) ++p;
+        at[j] = static_cast<int>(p - begin);
+      }
+    }
+    known = row;
+    double* values = rows.values.data() + rows.start[row];
+    for (size_t j = 0; j < columns.size(); ++j) values[at[j]] += K_f(static_cast<int>(j), static_cast<int>(i));
+  }
+}
+
+/// Leaves out the zeros, the diagonal apart: a flat shell in a coordinate plane couples half of its dofs only, a mass
+/// fewer, and the factor's work goes with what is stored.
+void drop_zeros(Rows& rows, int first) {
+  int kept = 0;
+  for (int row = 0; row + 1 < static_cast<int>(rows.start.size()); ++row) {
+    const int begin = rows.start[row], end = rows.start[row + 1];
+    rows.start[row] = kept;
+    for (int i = begin; i < end; ++i)
+      if (rows.values[i] != 0 || rows.columns[i] == first + row) {
+        rows.values[kept] = rows.values[i];
+        rows.columns[kept++] = rows.columns[i];
+      }
+  }
+  rows.start.back() = kept;
+}
+
+/// Where the runs of rows with the same elements start, and the end.
+std::vector<int> find_row_groups(const Rows& rows) {
+  std::vector<int> start;
+  for (int row = 0; row < static_cast<int>(rows.same.size()); ++row)
+    if (!rows.same[row]) start.push_back(row);
+  start.push_back(static_cast<int>(rows.same.size()));
+  return start;
+}
+
+/// Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an entry does not
+/// depend on the number of ranks.
+PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add,
+                  const std::vector<QuadraticForm>& forms = {}) {
+  initialize_petsc();
+  const SparseRows identity = set == DofSet::Global ? make_identity(model.num_gdofs()) : SparseRows{};
+  const SparseRows& T = set == DofSet::Global ? identity : model.T();
+  const PetscInt size = static_cast<PetscInt>(T.cols());
+
+  PetscMat matrix;
+  check_petsc(MatCreate(PETSC_COMM_WORLD, matrix.out()));
+  Mat A = matrix.get();
+  check_petsc(MatSetSizes(A, PETSC_DECIDE, PETSC_DECIDE, size, size));
+  check_petsc(MatSetType(A, MATAIJ));
+  check_petsc(MatSetUp(A));
+  PetscInt first = 0, last = 0;
+  check_petsc(MatGetOwnershipRange(A, &first, &last));
+  const int num_elements = static_cast<int>(model.elements().size());
+  Parts parts;
+  for (const auto& element : model.elements()) parts.push_back(&element->gdofs());
+  for (const auto& form : forms) parts.push_back(&form.gdofs);
+  Rows rows = calc_pattern(parts, T, first, last);
+  rows.values.assign(rows.columns.size(), 0);
+
+  ElementTransform transform;
+  MatrixXd K_e;
+  for (int e : rows.elements) {
+    transform.set(T, *parts[e]);
+    if (e < num_elements) {
+      K_e.setZero(parts[e]->size(), parts[e]->size());
+      add(*model.elements()[e], K_e);
+    } else {
+      K_e = calc_form(forms[e - num_elements], 0);
+    }
+    add_rows(transform.project(K_e), transform.columns(), first, last, rows);
+  }
+  drop_zeros(rows, first);
+  // Each does nothing for the other's type.
+  check_petsc(MatSeqAIJSetPreallocationCSR(A, rows.start.data(), rows.columns.data(), rows.values.data()));
+  check_petsc(MatMPIAIJSetPreallocationCSR(A, rows.start.data(), rows.columns.data(), rows.values.data()));
+  check_petsc(MatSetOption(A, MAT_SYMMETRIC, PETSC_TRUE));
+  check_petsc(MatSetOption(A, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
+  if (initialize_petsc().size == 1) set_row_groups(A, find_row_groups(rows));
+  return matrix;
+}
+
+VectorXd gather_rows(const VectorXd& x, const std::vector<int>& rows) {
+  VectorXd result(static_cast<int>(rows.size()));
+  for (int i = 0; i < result.size(); ++i) result[i] = x[rows[i]];
+  return result;
+}
+
+const std::vector<QuadraticForm>& get_forms(const Model& model) {
+  static const std::vector<QuadraticForm> none;
+  return model.prestress() ? model.prestress()->forms : none;
+}
+
+/// Σ_e of element matrices and of forms times X, over ranks.
+MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen::Ref<const MatrixXd>& X,
+                    const std::vector<QuadraticForm>& forms = {}) {
+  BOUGH_DEMAND(X.rows() == model.num_gdofs());
+  MatrixXd Y = MatrixXd::Zero(X.rows(), X.cols());
+  MatrixXd K_e, X_e, Y_e;
+  const auto [begin, end] = calc_element_range(model);
+  for (int e = begin; e < end; ++e) {
+    const Element& element = *model.elements()[e];
+    const auto& gdofs = element.gdofs();
+    const int n = element.num_dofs();
+    K_e.setZero(n, n);
+    add(element, K_e);
+    X_e.resize(n, X.cols());
+    for (int i = 0; i < n; ++i) X_e.row(i) = X.row(gdofs[i]);
+    Y_e.noalias() = K_e * X_e;
+    for (int i = 0; i < n; ++i) Y.row(gdofs[i]) += Y_e.row(i);
+  }
+  const MpiWorld world = initialize_petsc();
+  for (size_t k = static_cast<size_t>(world.rank); k < forms.size(); k += static_cast<size_t>(world.size))
+    Y(forms[k].gdofs, Eigen::all) += calc_form(forms[k], 0) * X(forms[k].gdofs, Eigen::all);
+  sum_over_ranks(Y);
+  return Y;
+}
+
+}  // namespace
+
+PetscMat assemble_stiffness(const Model& model, DofSet set) {
+  return assemble(
+      model, set, [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); }, get_forms(model));
+}
+
+PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind) {
+  const double scale = model.wtmass();
+  return assemble(model, set, [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); });
+}
+
+PetscMat assemble_grid_mass(const Model& model, MassKind kind) {
+  const double scale = model.wtmass();
+  return assemble(model, DofSet::Global, [&](const Element& e, Eigen::Ref<MatrixXd> M) {
+    CarriedMass carried(e.num_dofs());
+    if (e.carries_turning_mass(kind) && calc_carried(model, e, kind, carried)) return;
+    e.add_mass(kind, scale, M);
+  });
+}
+
+PetscMat assemble_damping(const Model& model, DofSet set) {
+  return assemble(model, set, [](const Element& e, Eigen::Ref<MatrixXd> B) { e.add_damping(1, B); });
+}
+
+PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const AppliedLoad& load, const VectorXd& u_g,
+                                      const InitialForces* initial) {
+  BOUGH_DEMAND(u_g.size() == model.num_gdofs());
+  const auto add = [&u_g, initial](const Element& e, Eigen::Ref<MatrixXd> K_G) {
+    if (e.num_internal_forces() == 0) return;
+    VectorXd force = VectorXd::Zero(e.num_internal_forces());
+    e.calc_internal_forces(gather_rows(u_g, e.gdofs()), force);
+    if (const auto* heated = initial ? initial->find(e) : nullptr) force += heated->force;
+    e.add_geometric_stiffness(force, 1, K_G);
+  };
+  auto forms = calc_second_order(model, make_loads(load), u_g);
+  // With the reference's own dofs.
+  std::erase_if(forms, [](const QuadraticForm& form) { return form.gdofs.size() > kMaxLinkDofs + 6; });
+  return assemble(model, set, add, forms);
+}
+
+MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g) {
+  const double scale = model.wtmass();
+  return calc_times(
+      model, [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); }, X_g);
+}
+
+MatrixXd calc_stiffness_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g) {
+  return calc_times(
+      model, [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); }, X_g, get_forms(model));
+}
+
+MatrixXd calc_prestress_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g) {
+  const auto add = [&model](const Element& e, Eigen::Ref<MatrixXd> K) {
+    MatrixXd elastic = MatrixXd::Zero(K.rows(), K.cols());
+    e.add_stiffness(-1, elastic);
+    model.add_stiffness(e, K);
+    K += elastic;
+  };
+  return calc_times(model, add, X_g, get_forms(model));
+}
+
+MatrixXd calc_damping_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g) {
+  return calc_times(
+      model, [](const Element& e, Eigen::Ref<MatrixXd> B) { e.add_damping(1, B); }, X_g);
+}
+
+MatrixXd calc_structural_damping_times(const Model& model, double g, const Eigen::Ref<const MatrixXd>& X_g) {
+  return calc_times(
+      model, [g](const Element& e, Eigen::Ref<MatrixXd> K) { e.add_structural_damping(g, K); }, X_g);
+}
+
+bool has_damping(const Model& model) {
+  return std::any_of(model.elements().begin(), model.elements().end(), [](const auto& e) { return e->has_damping(); });
+}
+
+std::pair<int, int> calc_element_range(const Model& model) {
+  const MpiWorld world = initialize_petsc();
+  const long long num = static_cast<long long>(model.elements().size());
+  return {static_cast<int>(num * world.rank / world.size), static_cast<int>(num * (world.rank + 1) / world.size)};
+}
+
+void sum_over_ranks(Eigen::Ref<MatrixXd> values) {
+  if (initialize_petsc().size == 1) return;
+  for (Eigen::Index j = 0; j < values.cols(); ++j)
+    MPI_Allreduce(MPI_IN_PLACE, values.col(j).data(), static_cast<int>(values.rows()), MPI_DOUBLE, MPI_SUM,
+                  PETSC_COMM_WORLD);
+}
+
+VectorXd gather(Vec v) {
+  PetscInt size = 0, first = 0, last = 0;
+  check_petsc(VecGetSize(v, &size));
+  check_petsc(VecGetOwnershipRange(v, &first, &last));
+  VectorXd result = VectorXd::Zero(size);
+  const PetscScalar* values = nullptr;
+  check_petsc(VecGetArrayRead(v, &values));
+  std::copy(values, values + (last - first), result.data() + first);
+  check_petsc(VecRestoreArrayRead(v, &values));
+  sum_over_ranks(result);
+  return result;
+}
+
+void scatter(const Eigen::Ref<const VectorXd>& values, Vec v) {
+  PetscInt size = 0, first = 0, last = 0;
+  check_petsc(VecGetSize(v, &size));
+  BOUGH_DEMAND(values.size() == size);
+  check_petsc(VecGetOwnershipRange(v, &first, &last));
+  PetscScalar* own = nullptr;
+  check_petsc(VecGetArray(v, &own));
+  std::copy(values.data() + first, values.data() + last, own);
+  check_petsc(VecRestoreArray(v, &own));
+}
+
+}  // namespace bough::fe

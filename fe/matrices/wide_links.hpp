@@ -1,0 +1,17 @@
+#pragma once
+/// \file Links over so many grids that their second order would fill K_G.
+#include <cstddef>
+
+#include "base/diagnostic.hpp"
+#include "formats/records/deck.hpp"
+
+namespace bough::fe {
+
+/// An RBE3 over more g-dofs than this makes a dense block of K_G of that size: assemble_geometric_stiffness() leaves it
+/// out. (Projected on modes it costs a product per row: reduce takes every link.)
+inline constexpr std::size_t kMaxLinkDofs = 3000;
+
+/// Reports fe.wide-link (warning) for every such RBE3.
+void report_wide_links(const records::Deck& deck, Diagnostics& diagnostics);
+
+}  // namespace bough::fe

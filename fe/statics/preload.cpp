@@ -1,0 +1,136 @@
+#include "fe/statics/preload.hpp"
+
+#include <algorithm>
+
+#include "fe/loads/inertial_loads.hpp"
+#include "fe/loads/second_order.hpp"
+#include "fe/statics/static_case.hpp"
+
+namespace bough::fe {
+namespace {
+
+const records::Subcase* find_subcase(const records::Deck& deck, int id) {
+  const auto found =
+      std::find_if(deck.subcases.begin(), deck.subcases.end(), [id](const auto& s) { return s.id == id; });
+  return found == deck.subcases.end() ? nullptr : &*found;
+}
+
+/// The subcases that load the structure one after the other before `id` is done, `id` last.
+std::vector<const records::Subcase*> list_chain(const records::Deck& deck, int id, SourceLocation at,
+                                                Diagnostics& diagnostics) {
+  std::vector<const records::Subcase*> chain;
+  const auto fail = [&](const std::string& what, const std::string& advice) {
+    diagnostics.error("fe.preload-subcase", at, what, advice);
+    return std::vector<const records::Subcase*>{};
+  };
+  while (id != 0) {
+    const auto* subcase = find_subcase(deck, id);
+    const std::string name = "subcase " + std::to_string(id);
+    if (!subcase)
+      return fail("the preload is that of " + name + ", which the deck does not have", "correct the subcase id");
+    if (std::find(chain.begin(), chain.end(), subcase) != chain.end())
+      return fail(name + " is its own preload", "let STATSUB name a static subcase that has no STATSUB of its own");
+    const bool enforces =
+        subcase->spc != 0 && std::any_of(deck.spc.begin(), deck.spc.end(), [](const auto& s) { return s.d != 0; });
+    if (subcase->load == 0 && subcase->temperature == 0 && !enforces)
+      return fail("the preload is that of " + name + ", which has no load",
+                  "name a subcase with LOAD or TEMPERATURE(LOAD)");
+    chain.push_back(subcase);
+    if (subcase->preload != 0) at = deck.locate(subcase->preload_at);
+    id = subcase->preload;
+  }
+  std::reverse(chain.begin(), chain.end());
+  return chain;
+}
+
+std::string describe(const records::Subcase& subcase) {
+  std::string sets;
+  if (subcase.load != 0) sets += "LOAD " + std::to_string(subcase.load);
+  if (subcase.temperature != 0)
+    sets += (sets.empty() ? "" : ", ") + std::string("TEMPERATURE ") + std::to_string(subcase.temperature);
+  return "subcase " + std::to_string(subcase.id) + (sets.empty() ? "" : " (" + sets + ")");
+}
+
+/// Warnings once, whoever builds the model next says them again; notes are those of that model.
+void keep_warnings(const Diagnostics& from, Diagnostics& to) {
+  for (const auto& item : from.items()) {
+    const auto is_same = [&](const Diagnostic& other) { return format(other) == format(item); };
+    if (item.severity != Severity::Note && std::none_of(to.items().begin(), to.items().end(), is_same)) to.add(item);
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const Prestress> calc_prestress(const records::Deck& deck, const ModelOptions& options,
+                                                const ElementFactory& elements, const Preload& preload,
+                                                Diagnostics& diagnostics) {
+  Diagnostics own;
+  auto held = options;
+  held.uses_enforced = true;
+  const auto model = Model::build(deck, held, elements, own);
+  records::Subcase subcase;
+  subcase.load = preload.load;
+  subcase.temperature = preload.temperature;
+  auto load = calc_static_load(model, deck, subcase, own);
+  own.throw_if_errors();
+  if (!preload.spin.isZero(0)) {
+    const Vector12d A_I = calc_load_factors(Vector3d::Zero(), Vector3d::Zero(), preload.spin);
+    load.F += calc_inertial_loads(model, model.mass_kind(), A_I);
+    load.A_I += A_I;
+  }
+  const auto make_solver = [&] {
+    if (model.num_fdofs() == 0) return StaticSolver(model);
+    return StaticSolver(model, assemble_stiffness(model, DofSet::Free),
+                        options.ignore_spc ? choose_determinate_support(model, 0) : std::vector<int>{});
+  };
+  const StaticSolver solver = make_solver();
+  const VectorXd u = solve_static_case(model, solver, load, {}, &own).displacement;
+
+  auto result = options.prestress ? std::make_shared<Prestress>(*options.prestress) : std::make_shared<Prestress>();
+  result->name += (result->name.empty() ? "" : " and ") + preload.name;
+  result->at = preload.at;
+  result->A_I += load.A_I;
+  result->force.resize(model.elements().size());
+  for (std::size_t e = 0; e < result->force.size(); ++e) {
+    const Element& element = *model.elements()[e];
+    if (element.num_internal_forces() == 0) continue;
+    VectorXd force = VectorXd::Zero(element.num_internal_forces());
+    element.calc_internal_forces(u(element.gdofs()), force);
+    if (const auto* heated = load.initial.find(element)) force += heated->force;
+    result->force[e] = result->force[e].size() == 0 ? force : VectorXd(result->force[e] + force);
+  }
+  for (auto& form : calc_second_order(model, make_loads(load), u)) result->forms.push_back(std::move(form));
+  keep_warnings(own, diagnostics);
+  return result;
+}
+
+std::shared_ptr<const Prestress> calc_subcase_prestress(const records::Deck& deck, ModelOptions options,
+                                                        const ElementFactory& elements, int id,
+                                                        const SourceLocation& at, Diagnostics& diagnostics) {
+  options.prestress = nullptr;
+  const auto chain = list_chain(deck, id, at, diagnostics);
+  diagnostics.throw_if_errors();
+  for (const auto* subcase : chain) {
+    options.subcase = subcase->id;
+    const Preload preload{subcase->load, subcase->temperature, Vector3d::Zero(), describe(*subcase), at};
+    options.prestress = calc_prestress(deck, options, elements, preload, diagnostics);
+  }
+  if (options.prestress)
+    diagnostics.note("fe.preload", at, "the stiffness holds that of the stress of " + options.prestress->name,
+                     "displacements and forces count from the loaded state");
+  return options.prestress;
+}
+
+std::shared_ptr<const Prestress> calc_subcase_prestress(const records::Deck& deck, const ModelOptions& options,
+                                                        const records::Subcase& subcase, Diagnostics& diagnostics) {
+  if (subcase.preload == 0) return nullptr;
+  return calc_subcase_prestress(deck, options, make_elements, subcase.preload, deck.locate(subcase.preload_at),
+                                diagnostics);
+}
+
+void check_preloads(const records::Deck& deck, Diagnostics& diagnostics) {
+  for (const auto& subcase : deck.subcases)
+    if (subcase.preload != 0) list_chain(deck, subcase.preload, deck.locate(subcase.preload_at), diagnostics);
+}
+
+}  // namespace bough::fe

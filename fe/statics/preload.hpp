@@ -1,0 +1,33 @@
+#pragma once
+/// \file Preload: the state of stress from which modes, statics, buckling and bodies start (docs/theory/preload.md).
+#include "fe/model/model.hpp"
+
+namespace bough::fe {
+
+/// What loads a structure first.
+struct Preload {
+  int load = 0, temperature = 0;     ///< sets of the deck; 0: none
+  Vector3d spin = Vector3d::Zero();  ///< about Bo, in basic
+  std::string name;
+  SourceLocation at;  ///< what asks for it
+};
+
+/// The stress of `preload` on the model of `options`: linear statics on its constraints (a determinate support where
+/// ignore_spc leaves them out), on top of the prestress of the options. Throws what the solution throws.
+std::shared_ptr<const Prestress> calc_prestress(const records::Deck& deck, const ModelOptions& options,
+                                                const ElementFactory& elements, const Preload& preload,
+                                                Diagnostics& diagnostics);
+
+/// The stress of subcase `id`, held as it says, with that of its own STATSUB(PRELOAD), and so on; `at`: what asks for
+/// it. Throws InputError fe.preload-subcase where a subcase is not there, loads nothing or names itself.
+std::shared_ptr<const Prestress> calc_subcase_prestress(const records::Deck& deck, ModelOptions options,
+                                                        const ElementFactory& elements, int id,
+                                                        const SourceLocation& at, Diagnostics& diagnostics);
+/// What the subcase asks for by STATSUB (as PRELOAD); nullptr for nothing.
+std::shared_ptr<const Prestress> calc_subcase_prestress(const records::Deck& deck, const ModelOptions& options,
+                                                        const records::Subcase& subcase, Diagnostics& diagnostics);
+
+/// Reports fe.preload-subcase for every subcase that asks for a preload.
+void check_preloads(const records::Deck& deck, Diagnostics& diagnostics);
+
+}  // namespace bough::fe

@@ -1,0 +1,213 @@
+#include "fe/statics/static_case.hpp"
+
+#include <cmath>
+#include <map>
+
+#include "fe/elements/beam.hpp"
+#include "fe/elements/bush.hpp"
+#include "fe/elements/scalar.hpp"
+#include "fe/loads/load_sets.hpp"
+
+namespace bough::fe {
+namespace {
+
+/// What is printed of an element: its internal forces, or those of a spring, which no geometric stiffness asks for.
+std::vector<std::string> list_components(const Element& element) {
+  if (dynamic_cast<const ScalarSpring*>(&element)) return {"force"};
+  if (dynamic_cast<const Bush*>(&element)) return {"force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z"};
+  return element.internal_force_names();
+}
+
+VectorXd calc_forces(const Element& element, const VectorXd& u, const InitialForces::Part* initial) {
+  if (const auto* spring = dynamic_cast<const ScalarSpring*>(&element))
+    return VectorXd::Constant(1, spring->calc_force(u));
+  if (const auto* bush = dynamic_cast<const Bush*>(&element)) return bush->calc_spring_forces(u);
+  VectorXd force = VectorXd::Zero(element.num_internal_forces());
+  element.calc_internal_forces(u, force);
+  if (initial) force += initial->force;
+  return force;
+}
+
+}  // namespace
+
+StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int load, Diagnostics& diagnostics) {
+  if (load < 0) return calc_static_load(model, deck, model.subcase(), diagnostics);
+  records::Subcase subcase;
+  subcase.load = load;
+  return calc_static_load(model, deck, subcase, diagnostics);
+}
+
+StaticLoad calc_static_load(const Model& model, const records::Deck& deck, const records::Subcase& subcase,
+                            Diagnostics& diagnostics) {
+  StaticLoad result;
+  if (subcase.load > 0)
+    static_cast<AppliedLoad&>(result) = model.calc_applied_load(deck, subcase.load, diagnostics);
+  else
+    result.F = VectorXd::Zero(model.num_gdofs());
+  result.d = model.calc_enforced(deck, subcase.load, diagnostics);
+  result.initial = calc_thermal(model, deck, subcase.temperature, diagnostics);
+  if (!result.initial.of.empty()) result.F += sum_loads(model, result.initial);
+  return result;
+}
+
+records::StaticSubcase solve_static_case(const Model& model, const StaticSolver& solver, const StaticLoad& load,
+                                         const Suport& suport, Diagnostics* diagnostics) {
+  records::StaticSubcase result;
+  const VectorXd u0 = model.T_fixed() * load.d;
+  VectorXd F = load.F;
+  if (!load.d.isZero(0)) F -= calc_stiffness_times(model, u0);
+  VectorXd applied = load.F;
+  for (const int fdof : suport.fdofs) {
+    const auto [node, component] = model.describe_fdof(fdof);
+    const auto row = static_cast<Eigen::Index>(result.support.size());
+    result.support.push_back({node, component, suport.strain_energy[row], 0});
+  }
+  result.support_epsilon = suport.epsilon;
+  if (suport.relief != InertiaRelief::None) {
+    const VectorXd a = calc_acceleration(suport, F);
+    for (std::size_t i = 0; i < result.support.size(); ++i)
+      result.support[i].acceleration = a[static_cast<Eigen::Index>(i)];
+    result.inertia = -suport.M_motions * a;
+    result.inertia_resultant = calc_resultant(model, result.inertia);
+    F += result.inertia;
+    applied += result.inertia;
+  }
+  VectorXd u1 = solver.solve(F, diagnostics);
+  if (suport.relief == InertiaRelief::Free) remove_rigid_part(suport, u1);
+  result.displacement = u1 + u0;
+  result.load = load.F;
+  const VectorXd K_u = calc_stiffness_times(model, result.displacement);
+  const VectorXd residual = K_u - applied;
+  const double work = std::abs(u1.dot(F));
+  result.epsilon = work > 0 ? std::abs(u1.dot(residual)) / work : 0;
+  result.strain_energy = 0.5 * result.displacement.dot(K_u);
+  if (!load.initial.of.empty()) {
+    result.strain_energy -= result.displacement.dot(sum_loads(model, load.initial));
+    for (const auto& element : model.elements())
+      if (const auto* part = load.initial.find(*element)) result.strain_energy += part->energy;
+  }
+
+  const VectorXd held = model.T_fixed().transpose() * residual;
+  result.reaction = VectorXd::Zero(model.num_gdofs());
+  for (std::size_t i = 0; i < model.fixed_dofs().size(); ++i)
+    result.reaction[model.fixed_dofs()[i]] = held[static_cast<Eigen::Index>(i)];
+  if (!suport.fdofs.empty()) {
+    const VectorXd at_f = model.T().transpose() * residual;
+    for (const int fdof : suport.fdofs) {
+      const auto [node, component] = model.describe_fdof(fdof);
+      result.reaction[model.node(model.find_node(node)).first_gdof + std::max(component - 1, 0)] = at_f[fdof];
+    }
+  }
+  for (const Node& node : model.nodes()) {
+    if (node.num_dofs != 6) continue;
+    for (const int part : {0, 3}) {
+      auto f = result.reaction.segment<3>(node.first_gdof + part);
+      f = (node.R_basic_cd * f).eval();
+    }
+  }
+  result.mpc_force = residual - result.reaction;
+  result.load_resultant = calc_resultant(model, result.load);
+  result.reaction_resultant = calc_resultant(model, result.reaction);
+  result.mpc_resultant = calc_resultant(model, result.mpc_force);
+  return result;
+}
+
+std::vector<records::ElementForces> calc_element_forces(const Model& model, const VectorXd& u_g,
+                                                        const records::Deck& deck, int load, Diagnostics& diagnostics,
+                                                        const InitialForces& initial) {
+  BOUGH_DEMAND(u_g.size() == model.num_gdofs());
+  std::unordered_map<int, VectorXd> end_loads;
+  if (load > 0) end_loads = calc_beam_end_loads(model, deck, load, diagnostics);
+  // Elements of one card may differ in their number of points: "CTETRA" and "CTETRA-24".
+  std::map<std::pair<std::string, int>, std::vector<int>> groups;
+  const auto& elements = model.elements();
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    const int count = static_cast<int>(list_components(*elements[e]).size());
+    if (count > 0) groups[{elements[e]->card(), count}].push_back(static_cast<int>(e));
+  }
+  const auto [begin, end] = calc_element_range(model);
+  std::vector<records::ElementForces> result;
+  for (const auto& [key, members] : groups) {
+    records::ElementForces block;
+    block.card =
+        !result.empty() && result.back().card == key.first ? key.first + "-" + std::to_string(key.second) : key.first;
+    block.components = list_components(*elements[static_cast<std::size_t>(members.front())]);
+    const auto rows = static_cast<Eigen::Index>(members.size());
+    block.force = MatrixXd::Zero(rows, key.second);
+    MatrixXd energy = MatrixXd::Zero(rows, 1);
+    for (Eigen::Index r = 0; r < rows; ++r) {
+      const int e = members[static_cast<std::size_t>(r)];
+      const Element& element = *elements[static_cast<std::size_t>(e)];
+      block.id.push_back(element.id());
+      if (e < begin || e >= end) continue;
+      VectorXd u(element.num_dofs());
+      for (int i = 0; i < u.size(); ++i) u[i] = u_g[element.gdofs()[static_cast<std::size_t>(i)]];
+      const auto* heated = initial.find(element);
+      VectorXd force = calc_forces(element, u, heated);
+      if (const auto own = end_loads.find(e); own != end_loads.end())
+        static_cast<const Beam&>(element).add_load_forces(own->second, force);
+      block.force.row(r) = force.transpose();
+      MatrixXd K = MatrixXd::Zero(u.size(), u.size());
+      model.add_stiffness(element, K);
+      energy(r, 0) = 0.5 * u.dot(K * u);
+      if (heated) energy(r, 0) += heated->energy - u.dot(heated->load);
+    }
+    sum_over_ranks(block.force);
+    sum_over_ranks(energy);
+    block.strain_energy = energy.col(0);
+    result.push_back(std::move(block));
+  }
+  return result;
+}
+
+Eigen::Matrix<double, 6, 1> calc_resultant(const Model& model, const VectorXd& F_g, const Vector3d& point) {
+  return model.calc_rigid_modes(point).transpose() * F_g;
+}
+
+records::SparseMatrix gather_sparse(const PetscMat& A) {
+  const MpiWorld world = initialize_petsc();
+  PetscInt first = 0, last = 0, num_rows = 0, num_cols = 0;
+  check_petsc(MatGetOwnershipRange(A.get(), &first, &last));
+  check_petsc(MatGetSize(A.get(), &num_rows, &num_cols));
+  std::vector<double> data;
+  std::vector<int> indices, sizes;
+  for (PetscInt row = first; row < last; ++row) {
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    check_petsc(MatGetRow(A.get(), row, &count, &columns, &values));
+    const std::size_t before = data.size();
+    for (PetscInt i = 0; i < count; ++i)
+      if (values[i] != 0) {
+        data.push_back(values[i]);
+        indices.push_back(columns[i]);
+      }
+    sizes.push_back(static_cast<int>(data.size() - before));
+    check_petsc(MatRestoreRow(A.get(), row, &count, &columns, &values));
+  }
+  // One block after the other, to every rank.
+  records::SparseMatrix result;
+  result.num_rows = num_rows;
+  result.num_cols = num_cols;
+  const auto collect = [&](const auto& own, auto& all, MPI_Datatype type) {
+    const int own_size = static_cast<int>(own.size());
+    std::vector<int> counts(static_cast<std::size_t>(world.size)), starts(counts.size(), 0);
+    MPI_Allgather(&own_size, 1, MPI_INT, counts.data(), 1, MPI_INT, PETSC_COMM_WORLD);
+    int total = 0;
+    for (std::size_t r = 0; r < counts.size(); ++r) {
+      starts[r] = total;
+      total += counts[r];
+    }
+    all.resize(static_cast<std::size_t>(total));
+    MPI_Allgatherv(own.data(), own_size, type, all.data(), counts.data(), starts.data(), type, PETSC_COMM_WORLD);
+  };
+  std::vector<int> all_sizes;
+  collect(data, result.data, MPI_DOUBLE);
+  collect(indices, result.indices, MPI_INT);
+  collect(sizes, all_sizes, MPI_INT);
+  result.indptr.assign(1, 0);
+  for (int size : all_sizes) result.indptr.push_back(result.indptr.back() + size);
+  return result;
+}
+
+}  // namespace bough::fe

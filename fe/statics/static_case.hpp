@@ -1,0 +1,42 @@
+#pragma once
+/// \file One static subcase: displacements, reactions, balance, element forces (SOL 101).
+#include "fe/model/suport.hpp"
+#include "fe/model/temperatures.hpp"
+#include "fe/statics/statics.hpp"
+#include "formats/records/static_result.hpp"
+
+namespace bough::fe {
+
+/// Loads of a subcase: F on the g-set in basic, d of the fixed dofs in their CD axes (Model::calc_enforced). F holds
+/// the loads of `initial`, the heated elements.
+struct StaticLoad : AppliedLoad {
+  VectorXd d;
+  InitialForces initial;
+};
+/// Of LOAD and TEMPERATURE(LOAD) of a subcase; without them its enforced displacements alone.
+StaticLoad calc_static_load(const Model& model, const records::Deck& deck, const records::Subcase& subcase,
+                            Diagnostics& diagnostics);
+/// Of set `load` alone, or of the model's subcase when it is negative.
+StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int load, Diagnostics& diagnostics);
+
+/// u = T q + T_fixed d with Tᵀ(K u - F) = 0. With R = K u - F: reactions of the fixed dofs T_fixedᵀ R; the rest of R is
+/// the force of MPC and rigid elements. epsilon = |qᵀTᵀR| / |qᵀTᵀ(F - K T_fixed d)| (Nastran's residual work).
+/// `suport`: dofs that the solver holds beside the fixed ones, their forces count as reactions; with inertia relief the
+/// load is F - M Φ a (calc_acceleration), and with INREL -2 ΦᵀM u = 0.
+records::StaticSubcase solve_static_case(const Model& model, const StaticSolver& solver, const StaticLoad& load,
+                                         const Suport& suport = {}, Diagnostics* diagnostics = nullptr);
+
+/// Forces and strain energy of every element, by card in alphabetical order. Replicated. `deck`, `load`: loads along
+/// beams, which act between the ends that u knows; `initial`: of heated elements.
+std::vector<records::ElementForces> calc_element_forces(const Model& model, const VectorXd& u_g,
+                                                        const records::Deck& deck, int load, Diagnostics& diagnostics,
+                                                        const InitialForces& initial = {});
+
+/// Forces and moments about `point` of a load on the g-set.
+Eigen::Matrix<double, 6, 1> calc_resultant(const Model& model, const VectorXd& F_g,
+                                           const Vector3d& point = Vector3d::Zero());
+
+/// A distributed matrix as a whole on every rank, without zero entries.
+records::SparseMatrix gather_sparse(const PetscMat& A);
+
+}  // namespace bough::fe
