@@ -97,7 +97,7 @@ Owners list_owners(const records::Deck& deck) {
 
 /// Length of a line element between its (offset) ends, area of the corners of a panel or shell.
 double calc_measure(const Element& element, const NodeTable& nodes) {
-  if (const auto* beam = dynamic_cast<const Beam*>(&element)) return beam->geometry().length;
+  if (const auto* beam = element.as_beam()) return beam->geometry().length;
   const auto x = [&](std::size_t k) -> const Vector3d& { return nodes.node(element.nodes()[k]).x; };
   const std::string& card = element.card();
   if (card == "CROD" || card == "CTUBE" || card == "CONROD") return (x(1) - x(0)).norm();

@@ -5,10 +5,13 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "fe/matrices/assembly.hpp"
+#include "fe/linear/ranks.hpp"
 
 namespace bough::fe {
 namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 MatrixXd make_random(Eigen::Index rows, Eigen::Index cols) {
   std::mt19937 generator(20111);

@@ -4,26 +4,13 @@
 #include <map>
 
 #include "fe/elements/beam.hpp"
-#include "fe/elements/bush.hpp"
-#include "fe/elements/scalar.hpp"
 #include "fe/loads/load_sets.hpp"
 
 namespace bough::fe {
 namespace {
 
-/// What is printed of an element: its internal forces, or those of a spring, which no geometric stiffness asks for.
-std::vector<std::string> list_components(const Element& element) {
-  if (dynamic_cast<const ScalarSpring*>(&element)) return {"force"};
-  if (dynamic_cast<const Bush*>(&element)) return {"force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z"};
-  return element.internal_force_names();
-}
-
 VectorXd calc_forces(const Element& element, const VectorXd& u, const InitialForces::Part* initial) {
-  if (const auto* spring = dynamic_cast<const ScalarSpring*>(&element))
-    return VectorXd::Constant(1, spring->calc_force(u));
-  if (const auto* bush = dynamic_cast<const Bush*>(&element)) return bush->calc_spring_forces(u);
-  VectorXd force = VectorXd::Zero(element.num_internal_forces());
-  element.calc_internal_forces(u, force);
+  VectorXd force = element.calc_printed_forces(u);
   if (initial) force += initial->force;
   return force;
 }
@@ -122,7 +109,7 @@ std::vector<records::ElementForces> calc_element_forces(const Model& model, cons
   std::map<std::pair<std::string, int>, std::vector<int>> groups;
   const auto& elements = model.elements();
   for (std::size_t e = 0; e < elements.size(); ++e) {
-    const int count = static_cast<int>(list_components(*elements[e]).size());
+    const int count = static_cast<int>(elements[e]->printed_force_names().size());
     if (count > 0) groups[{elements[e]->card(), count}].push_back(static_cast<int>(e));
   }
   const auto [begin, end] = calc_element_range(model);
@@ -131,7 +118,7 @@ std::vector<records::ElementForces> calc_element_forces(const Model& model, cons
     records::ElementForces block;
     block.card =
         !result.empty() && result.back().card == key.first ? key.first + "-" + std::to_string(key.second) : key.first;
-    block.components = list_components(*elements[static_cast<std::size_t>(members.front())]);
+    block.components = elements[static_cast<std::size_t>(members.front())]->printed_force_names();
     const auto rows = static_cast<Eigen::Index>(members.size());
     block.force = MatrixXd::Zero(rows, key.second);
     MatrixXd energy = MatrixXd::Zero(rows, 1);
@@ -145,7 +132,7 @@ std::vector<records::ElementForces> calc_element_forces(const Model& model, cons
       const auto* heated = initial.find(element);
       VectorXd force = calc_forces(element, u, heated);
       if (const auto own = end_loads.find(e); own != end_loads.end())
-        static_cast<const Beam&>(element).add_load_forces(own->second, force);
+        element.as_beam()->add_load_forces(own->second, force);
       block.force.row(r) = force.transpose();
       MatrixXd K = MatrixXd::Zero(u.size(), u.size());
       model.add_stiffness(element, K);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file One static subcase: displacements, reactions, balance, element forces (SOL 101).
-#include "fe/model/suport.hpp"
 #include "fe/model/temperatures.hpp"
+#include "fe/statics/inertia_relief.hpp"
 #include "fe/statics/statics.hpp"
 #include "formats/records/static_result.hpp"
 

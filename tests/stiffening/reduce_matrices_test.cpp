@@ -1,5 +1,6 @@
 /// A body from its own matrices is the body of its deck; and what is wrong with matrices.
 #include "stiffening/reduce_matrices.hpp"
+#include "fe/loads/second_order.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
