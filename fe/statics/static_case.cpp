@@ -1,6 +1,8 @@
 #include "fe/statics/static_case.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 
 #include "fe/elements/beam.hpp"
@@ -16,6 +18,28 @@ VectorXd calc_forces(const Element& element, const VectorXd& u, const InitialFor
 }
 
 }  // namespace
+
+std::vector<std::string> list_lost_loads(const Model& model, const VectorXd& F) {
+  std::vector<std::pair<double, const AutospcEntry*>> found;
+  const double least = 1e-9 * F.cwiseAbs().maxCoeff();
+  for (const auto& entry : model.autospc()) {
+    const Node& node = model.node(model.find_node(entry.node));
+    const int c = std::max(entry.component - 1, 0);
+    const double f = node.num_dofs == 1 ? F[node.first_gdof]
+                                        : F.segment<3>(node.first_gdof + 3 * (c / 3)).dot(node.R_basic_cd.col(c % 3));
+    if (std::abs(f) > least) found.emplace_back(f, &entry);
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
+  std::vector<std::string> text;
+  for (const auto& [f, entry] : found) {
+    char number[32];
+    std::snprintf(number, sizeof number, " (%.4g)", f);
+    text.push_back("component " + std::to_string(entry->component) + " of grid " + std::to_string(entry->node) +
+                   number);
+  }
+  return text;
+}
 
 StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int load, Diagnostics& diagnostics) {
   if (load < 0) return calc_static_load(model, deck, model.subcase(), diagnostics);
@@ -34,6 +58,12 @@ StaticLoad calc_static_load(const Model& model, const records::Deck& deck, const
   result.d = model.calc_enforced(deck, subcase.load, diagnostics);
   result.initial = calc_thermal(model, deck, subcase.temperature, diagnostics);
   if (!result.initial.of.empty()) result.F += sum_loads(model, result.initial);
+  if (const auto lost = list_lost_loads(model, result.F); !lost.empty())
+    diagnostics.warning("fe.load-autospc", deck.locate({}),
+                        "loads of subcase " + std::to_string(subcase.id) + " act on " + std::to_string(lost.size()) +
+                            " dof(s) without stiffness, which AUTOSPC holds: " + lost.front() +
+                            (lost.size() > 1 ? ", ..." : ""),
+                        "a moment on a grid of solids needs an RBE2 or RBE3 that ties it to other grids");
   return result;
 }
 
