@@ -16,6 +16,7 @@
 #include "formats/nastran/reader.hpp"
 #include "formats/toml/specs.hpp"
 #include "ranks.hpp"
+#include "subcase_failures.hpp"
 #include "text_file.hpp"
 
 namespace bough::cli {
@@ -81,6 +82,23 @@ int blame(const std::string& file, const std::function<int()>& act) {
     throw InputError(place(failure));
   } catch (const ComputationError& failure) {
     throw ComputationError(place(failure));
+  }
+}
+
+void say_first(const Diagnostics& said, const std::function<void()>& act) {
+  const auto join = [&said](const Failure& failure) {
+    Diagnostics own, all;
+    for (const auto& item : failure.items()) own.add(item);
+    add_new(said, all);
+    add_new(own, all);
+    return all.items();
+  };
+  try {
+    act();
+  } catch (const InputError& failure) {
+    throw InputError(join(failure));
+  } catch (const ComputationError& failure) {
+    throw ComputationError(join(failure));
   }
 }
 

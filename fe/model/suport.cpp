@@ -24,6 +24,7 @@ std::string show(double value) {
 void add_fdofs(const Model& model, const records::GridComponents& term, const SourceLocation& at,
                Diagnostics& diagnostics, std::vector<int>& fdofs) {
   const int index = model.find_node(term.g);
+  if (index < 0 && model.is_refused(term.g)) return;
   if (index < 0) {
     diagnostics.error("fe.missing-grid", at,
                       "SUPORT names grid " + std::to_string(term.g) + ", which the deck does not define",
@@ -59,13 +60,7 @@ InertiaRelief read_inertia_relief(const records::Deck& deck, Diagnostics& diagno
   // SOL 2 of the first Nastrans is static with inertia relief.
   const bool is_old = deck.sol == "2" && (!deck.suport.empty() || !deck.suport1.empty());
   const double value = get_real_param(deck, "INREL", is_old ? -1 : 0, diagnostics);
-  if (value == 0) return InertiaRelief::None;
-  if (value == -1) return InertiaRelief::Supported;
-  if (value == -2) return InertiaRelief::Free;
-  diagnostics.error("fe.bad-param", deck.locate(deck.find_param("INREL")->at),
-                    "PARAM,INREL is " + deck.find_param("INREL")->value + ", expected 0, -1 or -2",
-                    "-1 with SUPORT, -2 without");
-  return InertiaRelief::None;
+  return value == -1 ? InertiaRelief::Supported : value == -2 ? InertiaRelief::Free : InertiaRelief::None;
 }
 
 std::vector<int> find_suport(const Model& model, const records::Deck& deck, Diagnostics& diagnostics) {
@@ -74,7 +69,7 @@ std::vector<int> find_suport(const Model& model, const records::Deck& deck, Diag
   if (const int sid = model.subcase().suport1; sid != 0) {
     const auto found = deck.suport1.find(sid);
     if (found == deck.suport1.end())
-      diagnostics.error("fe.missing-set", deck.locate({}),
+      diagnostics.error("fe.missing-set", deck.locate(model.subcase().find_command("SUPORT1")),
                         "SUPORT1 set " + std::to_string(sid) + " is selected but has no cards", "correct the set id");
     else
       for (const auto& term : found->second) add_fdofs(model, term, deck.locate(term.at), diagnostics, fdofs);

@@ -72,7 +72,13 @@ records::StaticSubcase solve_static_case(const Model& model, const StaticSolver&
     F += result.inertia;
     applied += result.inertia;
   }
-  VectorXd u1 = solver.solve(F, diagnostics);
+  VectorXd u1;
+  try {
+    u1 = solver.solve(F, diagnostics);
+  } catch (const ComputationError&) {
+    solver.demand_no_mechanism(model);
+    throw;
+  }
   if (suport.relief == InertiaRelief::Free) remove_rigid_part(suport, u1);
   result.displacement = u1 + u0;
   result.load = load.F;
