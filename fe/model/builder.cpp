@@ -294,8 +294,11 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
   const bool only_null = !is_on && param && !options_.autospc;
   if (!is_on && !only_null) return;
   model_.autospc_ = find_singular_dofs(model_, first.fdof_ldof, only_null ? 1e-14 : epsilon);
-  const auto mass =
-      calc_masses(model_.nodes_, model_.elements_, model_.T_, first.fdof_ldof, model_.mass_kind_, model_.autospc_);
+  const bool asks_mass = only_null || std::any_of(model_.autospc_.begin(), model_.autospc_.end(),
+                                                  [](const AutospcEntry& entry) { return entry.is_skew; });
+  std::vector<double> mass(model_.autospc_.size(), 0);
+  if (asks_mass)
+    mass = calc_masses(model_.nodes_, model_.elements_, model_.T_, first.fdof_ldof, model_.mass_kind_, model_.autospc_);
   std::set<std::pair<int, bool>> massive;  // blocks by node and whether they are rotations
   for (size_t e = 0; e < mass.size(); ++e)
     if (mass[e] > 0 && !only_null) massive.emplace(model_.autospc_[e].node, model_.autospc_[e].component > 3);
@@ -308,8 +311,8 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
     // Where the block carries mass or its weight, the oblique direction is held and the others stay what they are; else
     // the component alone, which strains nothing either and is what Nastran prints.
     if (massive.count({entry.node, entry.component > 3}) == 0) entry.terms.clear();
-    num_massive += mass[e] > 0 ? 1 : 0;
     num_skew += entry.is_skew ? 1 : 0;
+    num_massive += entry.is_skew && mass[e] > 0 ? 1 : 0;
     held.push_back(std::move(entry));
   }
   model_.autospc_ = std::move(held);
@@ -347,7 +350,7 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
                      " dofs without stiffness, the first at grid " + std::to_string(model_.autospc_[0].node);
   if (num_skew > 0)
     what += "; " + are(num_skew) + " the weakest of a singular block (an oblique direction without stiffness)";
-  if (num_massive > 0) what += "; " + std::to_string(num_massive) + " with mass, which then does not move that way";
+  if (num_massive > 0) what += ", " + std::to_string(num_massive) + " of them with mass: the direction itself is held";
   diagnostics_.note("fe.autospc", deck_.locate({}), what, "PARAM,AUTOSPC,NO keeps them");
 }
 

@@ -59,16 +59,17 @@ TEST(MassDirections, ScalarMassesAreSeenInSizeAndInPlace) {
 
 TEST(ObliqueSingularities, TheDirectionIsHeldWhereItHasMass) {
   const std::string rod =
-      "GRID,1,,0.,0.,0.\nGRID,2,,1.,2.,.5\nCONROD,1,1,1,2,1.-4\nMAT1,1,7.+10,,.3\nSPC1,1,123456,1\n";
+      "GRID,1,,0.,0.,0.\nGRID,2,,1.,2.,.5\nCONROD,1,1,2,1,1.-4\nMAT1,1,7.+10,,.3\nSPC1,1,123456,1\n";
   const Built massive(rod + "CONM2,2,2,,10.\n");
   ASSERT_EQ(massive.model->num_fdofs(), 1);
   // u = n q: along the rod, wherever q is counted.
-  const VectorXd u = MatrixXd(massive.model->T()).col(0).segment<3>(6);
+  const Vector3d u = MatrixXd(massive.model->T()).col(0).segment<3>(6);
   const Vector3d n = Vector3d(1, 2, .5).normalized();
   EXPECT_LT(u.cross(n).norm(), 1e-12 * u.norm());
   int num_oblique = 0;
   for (const auto& entry : massive.model->autospc()) num_oblique += entry.is_skew && !entry.terms.empty() ? 1 : 0;
   EXPECT_EQ(num_oblique, 2);
+  EXPECT_EQ(Built(rod + "CONM2,2,2,,10.\nASET1,123,2\n").model->num_fdofs(), 1);  // what is held may be named
   // Without mass the components that Nastran holds: 2 is the nearest to the rod and stays.
   const Built massless(rod);
   ASSERT_EQ(massless.model->num_fdofs(), 1);
@@ -79,8 +80,8 @@ TEST(ObliqueSingularities, TheDirectionIsHeldWhereItHasMass) {
 TEST(ObliqueSingularities, WhatHangsOnTheGridFollows) {
   // Two rods in an oblique plane, a mass on a rigid arm whose translations follow grid 3.
   const Built b(
-      "GRID,1,,0.,0.,0.\nGRID,2,,1.,1.,1.\nGRID,3,,.2,1.3,.4\nGRID,4,,.2,1.3,.4\nCONROD,1,1,1,3,1.-4\n"
-      "CONROD,2,1,2,3,2.-4\nMAT1,1,7.+10,,.3\nSPC1,1,123456,1,2\nRBE2,8,3,123,4\nCONM2,2,4,,10.\nSPC1,1,456,4\n");
+      "GRID,1,,0.,0.,0.\nGRID,2,,1.,1.,1.\nGRID,3,,.2,1.3,.4\nGRID,4,,.2,1.3,.4\nCONROD,1,1,3,1,1.-4\n"
+      "CONROD,2,2,3,1,2.-4\nMAT1,1,7.+10,,.3\nSPC1,1,123456,1,2\nRBE2,8,3,123,4\nCONM2,2,4,,10.\nSPC1,1,456,4\n");
   ASSERT_EQ(b.model->num_fdofs(), 2);
   const Vector3d normal = Vector3d(.2, 1.3, .4).cross(Vector3d(-.8, .3, -.6)).normalized();
   const MatrixXd T(b.model->T());
