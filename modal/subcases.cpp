@@ -57,6 +57,15 @@ std::vector<BucklingCases> list_buckling_cases(const records::Deck& deck, int as
     cases.emplace_back();
     cases.back().statics.id = asked;
   }
+  for (const auto& b : buckling) {
+    const auto is_statsub = [&](const auto& s) { return s.id == b.statsub; };
+    if (!cases.empty() || b.statsub == 0) continue;
+    const bool is_there = std::any_of(deck.subcases.begin(), deck.subcases.end(), is_statsub);
+    throw InputError("cli.no-static-load", deck.locate(b.find_command("STATSUB")),
+                     "STATSUB of subcase " + std::to_string(b.id) + " names subcase " + std::to_string(b.statsub) +
+                         ", which " + (is_there ? "has no LOAD and no TEMPERATURE(LOAD)" : "the deck does not have"),
+                     is_there ? "give that subcase its load" : "name the subcase whose load is scaled");
+  }
   if (cases.empty()) {
     throw InputError("cli.no-static-load", {deck.files.empty() ? std::string{} : deck.files[0]},
                      "buckling needs a subcase with LOAD or TEMPERATURE(LOAD), found none",

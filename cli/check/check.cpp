@@ -15,6 +15,7 @@
 #include "cli/common/system_files.hpp"
 #include "fe/linear/factor.hpp"
 #include "fe/matrices/assembly.hpp"
+#include "fe/matrices/mass_directions.hpp"
 #include "fe/statics/preload.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/nastran/reader.hpp"
@@ -79,6 +80,7 @@ void check_model(const CheckOptions& options, const records::Deck& deck, fe::Mod
       diagnostics.note("cli.no-mass", deck.locate({}), "the model has no mass",
                        "for modes and bodies give RHO in MAT1, NSM in a property, or CONM2 and CMASS cards");
   }
+  fe::report_mass(model, deck, mass, diagnostics);
   const GroundChecks ground{fe::calc_ground_check(model, fe::GroundSet::Global),
                             fe::calc_ground_check(model, fe::GroundSet::Independent),
                             fe::calc_ground_check(model, fe::GroundSet::Free)};
@@ -113,7 +115,11 @@ void check_model(const CheckOptions& options, const records::Deck& deck, fe::Mod
   json["sections"] = make_sections_json(deck);
   json["autospc"] = nlohmann::json::array();
   for (const auto& entry : model.autospc()) {
-    json["autospc"].push_back({{"grid", entry.node}, {"component", entry.component}, {"ratio", entry.ratio}});
+    json["autospc"].push_back({{"grid", entry.node},
+                               {"component", entry.component},
+                               {"ratio", entry.ratio},
+                               {"oblique", entry.is_skew},
+                               {"follows", entry.terms}});
   }
 }
 

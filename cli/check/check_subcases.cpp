@@ -77,7 +77,7 @@ void check_subcases(const records::Deck& deck, const fe::Model& model, const fe:
       row.num_heated = static_cast<int>(load.initial.of.size());
       row.is_resolved = true;
       if (load.F.isZero(0) && row.num_enforced == 0 && row.num_heated == 0)
-        diagnostics.warning("cli.empty-load", deck.locate({}),
+        diagnostics.warning("cli.empty-load", deck.locate(row.subcase.find_command("LOAD")),
                             fmt::format("subcase {}: its loads and temperatures apply nothing", row.subcase.id),
                             "look at the factors of LOAD, at zero loads, and at grids that the loads miss");
       add_new(said, diagnostics);

@@ -6,6 +6,7 @@
 
 #include "base/rotation.hpp"
 #include "cli/common/console.hpp"
+#include "fe/matrices/mass_directions.hpp"
 #include "fe/sections/section_library.hpp"
 
 namespace bough::cli {
@@ -26,6 +27,19 @@ Matrix3d calc_central_inertia(const records::MassProperties& p) {
   const Vector3d c = p.cg - p.reference;
   return p.inertia - p.mass * (c.squaredNorm() * Matrix3d::Identity() - c * c.transpose());
 }
+
+/// Where each direction has a mass of its own: three masses with their centres from the reference, as in the weight
+/// table of Nastran.
+std::string format_masses(const fe::GridPointWeight& w) {
+  std::string text = w.S.isIdentity(0) ? "" : "  principal axes of the mass (columns)\n" + format_rows(w.S);
+  Table table{{"  axis", "mass", "centre x", "y", "z"}, {}};
+  for (int i = 0; i < 3; ++i) {
+    std::vector<std::string> row{std::string("  ") + "xyz"[i], fmt::format("{:.8g}", w.mass[i] + 0.0)};
+    for (int c = 0; c < 3; ++c) row.push_back(fmt::format("{:.8g}", w.cg(i, c) + 0.0));
+    table.rows.push_back(std::move(row));
+  }
+  return text + table.to_text();
+}
 }  // namespace
 
 std::string format_mass_properties(const records::MassProperties& p) {
@@ -34,6 +48,9 @@ std::string format_mass_properties(const records::MassProperties& p) {
   std::string text = fmt::format("mass properties about ({:g}, {:g}, {:g}), basic axes\n", p.reference.x(),
                                  p.reference.y(), p.reference.z());
   text += "  rigid mass matrix (x y z, rotations x y z)\n" + format_rows(p.rigid_mass);
+  if (fe::calc_mass_difference(p.rigid_mass) > fe::kMassDifference)
+    return text + format_masses(fe::calc_grid_point_weight(p.rigid_mass)) + "  inertia about the reference\n" +
+           format_rows(p.inertia);
   text += fmt::format("  mass {:.8g}\n  centre of mass {:.8g} {:.8g} {:.8g}\n", p.mass, p.cg.x() + 0.0, p.cg.y() + 0.0,
                       p.cg.z() + 0.0);
   text += "  inertia about the reference\n" + format_rows(p.inertia);
@@ -193,10 +210,13 @@ std::string format_autospc(const fe::Model& model) {
   if (model.autospc().empty()) return "AUTOSPC: none\n";
   constexpr std::size_t kShown = 10;
   const auto& all = model.autospc();
-  Table table{{"AUTOSPC grid", "component", "stiffness ratio"}, {}};
+  Table table{{"AUTOSPC grid", "component", "stiffness ratio", ""}, {}};
   for (std::size_t i = 0; i < std::min(kShown, all.size()); ++i)
-    table.rows.push_back(
-        {std::to_string(all[i].node), std::to_string(all[i].component), fmt::format("{:.2e}", all[i].ratio)});
+    table.rows.push_back({std::to_string(all[i].node), std::to_string(all[i].component),
+                          fmt::format("{:.2e}", all[i].ratio),
+                          !all[i].is_skew        ? ""
+                          : all[i].terms.empty() ? "the weakest of a singular block"
+                                                 : "of an oblique direction, which is held"});
   return table.to_text() +
          (all.size() > kShown ? fmt::format("... and {} more\n", count(all.size() - kShown, "dof")) : "");
 }
@@ -237,12 +257,19 @@ nlohmann::json to_json(const fe::GridPointWeight& w) {
 }
 
 nlohmann::json to_json(const records::MassProperties& p) {
-  return {{"reference", to_json_list(p.reference)},
-          {"mass", p.mass},
-          {"cg", to_json_list(p.cg)},
-          {"inertia", to_json(Eigen::MatrixXd(p.inertia))},
-          {"inertia_cg", to_json(Eigen::MatrixXd(calc_central_inertia(p)))},
-          {"rigid_mass", to_json(Eigen::MatrixXd(p.rigid_mass))}};
+  nlohmann::json json{{"reference", to_json_list(p.reference)},
+                      {"mass", p.mass},
+                      {"cg", to_json_list(p.cg)},
+                      {"inertia", to_json(Eigen::MatrixXd(p.inertia))},
+                      {"inertia_cg", to_json(Eigen::MatrixXd(calc_central_inertia(p)))},
+                      {"rigid_mass", to_json(Eigen::MatrixXd(p.rigid_mass))}};
+  if (fe::calc_mass_difference(p.rigid_mass) > fe::kMassDifference) {  // no one mass, no centre
+    const auto w = fe::calc_grid_point_weight(p.rigid_mass);
+    json["by_direction"] = {{"axes", to_json(Eigen::MatrixXd(w.S))},
+                            {"mass", to_json_list(w.mass)},
+                            {"cg", to_json(Eigen::MatrixXd(w.cg))}};
+  }
+  return json;
 }
 
 }  // namespace bough::cli

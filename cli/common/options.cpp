@@ -13,6 +13,7 @@
 
 #include "cli/common/console.hpp"
 #include "cli/common/ranks.hpp"
+#include "cli/common/subcase_failures.hpp"
 #include "cli/common/text_file.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/nastran/reader.hpp"
@@ -81,6 +82,23 @@ int blame(const std::string& file, const std::function<int()>& act) {
     throw InputError(place(failure));
   } catch (const ComputationError& failure) {
     throw ComputationError(place(failure));
+  }
+}
+
+void say_first(const Diagnostics& said, const std::function<void()>& act) {
+  const auto join = [&said](const Failure& failure) {
+    Diagnostics own, all;
+    for (const auto& item : failure.items()) own.add(item);
+    add_new(said, all);
+    add_new(own, all);
+    return all.items();
+  };
+  try {
+    act();
+  } catch (const InputError& failure) {
+    throw InputError(join(failure));
+  } catch (const ComputationError& failure) {
+    throw ComputationError(join(failure));
   }
 }
 

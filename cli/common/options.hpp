@@ -50,6 +50,9 @@ records::Deck read_deck_or_throw(const std::string& path, const fe::ModelOptions
 /// (file name, SHA-256) of each; nothing on the ranks that write no file.
 std::vector<std::pair<std::string, std::string>> calc_sources(const std::vector<std::string>& files);
 
+/// Does `act`; a failure of it is thrown on behind what was `said` before it, so that no word of the reader is lost.
+void say_first(const Diagnostics& said, const std::function<void()>& act);
+
 /// Does `act`; failures that it throws without a place are thrown on as failures of `file`.
 int blame(const std::string& file, const std::function<int()>& act);
 

@@ -60,7 +60,7 @@ fe::PetscMat calc_geometric(const records::Deck& deck, const MatricesOptions& op
   auto model_options = make_model_options(options.model);
   model_options.subcase = load_case.subcase;
   model_options.uses_enforced = true;
-  model_options.prestress = calc_prestress(deck, model_options, diagnostics);
+  say_first(diagnostics, [&] { model_options.prestress = calc_prestress(deck, model_options, diagnostics); });
   const auto model = fe::Model::build(deck, model_options, diagnostics);
   records::Subcase subcase;
   subcase.load = load_case.load;

@@ -20,9 +20,11 @@
 #include "cli/common/usage_text.hpp"
 #include "cli/common/vtu_file.hpp"
 #include "fe/matrices/assembly.hpp"
+#include "fe/matrices/mass_directions.hpp"
 #include "fe/statics/preload.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/hdf5/files.hpp"
+#include "formats/records/selection.hpp"
 #include "modal/eigen.hpp"
 #include "modal/normalize.hpp"
 #include "modal/subcases.hpp"
@@ -50,7 +52,7 @@ modal::EigenOptions choose_eigen_options(const ModesOptions& options, const reco
   modal::EigenOptions eigen;
   const auto names = [method](const auto& card) { return method == 0 || card.sid == method; };
   if (method != 0 && std::none_of(deck.eigen_methods.begin(), deck.eigen_methods.end(), names))
-    diagnostics.warning("cli.no-method", deck.locate({}),
+    diagnostics.warning("cli.no-method", deck.locate(records::find_selection(deck, "METHOD", method)),
                         fmt::format("METHOD = {} names no EIGRL or EIGR card of the deck", method),
                         "add the card or correct the id; --number, --min-hz and --max-hz go before it");
   eigen.num_modes = 0;
@@ -78,10 +80,22 @@ modal::EigenOptions choose_eigen_options(const ModesOptions& options, const reco
   return eigen;
 }
 
-/// NORM of the deck's card.
-modal::Norm choose_norm(const records::Deck& deck, int method) {
-  for (const auto& card : deck.eigen_methods)
-    if (method == 0 || card.sid == method) return {card.norm, card.norm_grid, card.norm_component};
+/// NORM of the deck's card. Throws fe.missing-grid and fe.bad-component where it names no dof.
+modal::Norm choose_norm(const records::Deck& deck, int method, const fe::Model& model) {
+  for (const auto& card : deck.eigen_methods) {
+    if (method != 0 && card.sid != method) continue;
+    if (card.norm == "POINT") {
+      const std::string who = fmt::format("EIGR {}: NORM = POINT names grid {}", card.sid, card.norm_grid);
+      const int node = model.find_node(card.norm_grid);
+      if (node < 0)
+        throw InputError("fe.missing-grid", deck.locate(card.at), who + ", which the deck does not define",
+                         "add the GRID, correct the id, or use NORM = MASS or MAX");
+      if (model.node(node).num_dofs == 6 && card.norm_component == 0)
+        throw InputError("fe.bad-component", deck.locate(card.at), who + " without a component, expected C = 1 to 6",
+                         "name the component");
+    }
+    return {card.norm, card.norm_grid, card.norm_component};
+  }
   return {};
 }
 
@@ -238,13 +252,15 @@ Solved solve_task(const ModesOptions& options, const records::Deck& deck, const 
     diagnostics.note("fe.damping-unused", deck.locate({}),
                      "the dampers of the deck do not act on its modes, as in SOL 103",
                      "bough reduce adds them to the modal damping");
+  const auto norm = choose_norm(deck, task.buckling ? task.buckling->buckling.method : model.subcase().method, model);
   auto pairs = task.buckling
                    ? modal::solve_buckling(
                          deck, *task.buckling, model_options, model,
                          choose_eigen_options(options, deck, task.buckling->buckling.method, diagnostics), diagnostics)
                    : solve(options, deck, model, console, diagnostics);
   console.end_progress();
-  const auto norm = choose_norm(deck, task.buckling ? task.buckling->buckling.method : model.subcase().method);
+  if (!options.buckling)
+    fe::report_mass(model, deck, fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero()), diagnostics);
   modal::normalize(model, norm, pairs.Phi, diagnostics);
   return {make_result(model, pairs, options.buckling), norm.kind};
 }
@@ -264,7 +280,8 @@ int run_modes(const ModesOptions& options) {
   model_options.uses_enforced = options.buckling;
   const auto deck = read_deck_or_throw(options.deck, model_options, diagnostics);
   const auto sources = calc_sources(deck.files);
-  const auto tasks = choose_tasks(options, deck);
+  std::vector<Task> tasks;
+  say_first(diagnostics, [&] { tasks = choose_tasks(options, deck); });
   if (modal::is_buckling_solution(deck) && !options.buckling)
     diagnostics.note("cli.buckling-deck", deck.locate({}), "the deck asks for buckling (SOL " + deck.sol + ")",
                      "these are its normal modes; --buckling gives the load factors");

@@ -137,14 +137,25 @@ std::string choose_output(const ReduceVerbOptions& o, const records::BodySpec& s
   return spec.name + ".h5";
 }
 
+/// The mass that each direction moves: the resultant of a unit acceleration that way. All are body.mass but where
+/// scalar masses or given matrices have another one in some direction.
+Vector3d calc_masses(const records::FlexBody& body) {
+  if (body.F_I.rows() != body.dof_map.rows() || body.F_I.cols() < 3) return Vector3d::Constant(body.mass);
+  Vector3d masses = Vector3d::Zero();
+  for (Eigen::Index row = 0; row < body.dof_map.rows(); ++row)
+    if (const int code = body.dof_map(row, 1); code >= 1 && code <= 3) masses[code - 1] -= body.F_I(row, code - 1);
+  return masses;
+}
+
 std::string format_summary(const records::FlexBody& body, const std::string& output) {
+  const Vector3d masses = calc_masses(body);
   Table table{{"mode", "Hz", "rad/s", "mx %", "my %", "mz %"}, {}};
   for (int j = 0; j < body.num_modes(); ++j) {
     std::vector<std::string> row{std::to_string(j + 1), fmt::format("{:.7g}", body.frequency_hz[j]),
                                  fmt::format("{:.7g}", std::sqrt(std::max(0.0, body.eigenvalue[j])))};
     for (int a = 0; a < 3; ++a) {
-      row.push_back(fmt::format("{:.2f}", body.effective_mass.size() > 0 && body.mass > 0
-                                              ? 100 * body.effective_mass(j, a) / body.mass
+      row.push_back(fmt::format("{:.2f}", body.effective_mass.size() > 0 && masses[a] > 0
+                                              ? 100 * body.effective_mass(j, a) / masses[a]
                                               : 0.0));
     }
     table.rows.push_back(row);
@@ -184,7 +195,9 @@ Reduced reduce_deck(const records::BodySpec& spec, const stiffening::ReduceOptio
   model_options.ignore_cards = spec.ignore_cards;
   const auto deck = read_deck_or_throw(spec.deck, model_options, diagnostics);
   note_solution(deck, diagnostics);
-  return {stiffening::reduce(deck, spec, options, diagnostics), deck.files, {}};
+  Reduced result{{}, deck.files, {}};
+  say_first(diagnostics, [&] { result.body = stiffening::reduce(deck, spec, options, diagnostics); });
+  return result;
 }
 
 Reduced reduce_given(const records::BodySpec& spec, const stiffening::ReduceOptions& options,
@@ -193,7 +206,7 @@ Reduced reduce_given(const records::BodySpec& spec, const stiffening::ReduceOpti
   Reduced result;
   result.files = deck.files;
   const auto given = read_given_matrices(*spec.matrices, deck, result.files, diagnostics);
-  result.body = stiffening::reduce_matrices(deck, spec, given, options, diagnostics);
+  say_first(diagnostics, [&] { result.body = stiffening::reduce_matrices(deck, spec, given, options, diagnostics); });
   if (spec.matrices->check_modes.empty()) return result;
   const auto others = read_given_modes(spec.matrices->check_modes, *spec.matrices, deck, diagnostics);
   result.check = stiffening::compare_modes(result.body, deck, others, diagnostics);

@@ -53,12 +53,15 @@ int run_static(const StaticOptions& options) {
 
   Diagnostics diagnostics;
   const auto deck = read_deck_or_throw(options.deck, make_model_options(options.model), diagnostics);
-  auto subcases = fe::choose_static_subcases(deck, options.model.subcase);
+  std::vector<records::Subcase> subcases;
+  say_first(diagnostics, [&] {
+    subcases = fe::choose_static_subcases(deck, options.model.subcase);
+    demand_static_solution(deck, options.is_linear, diagnostics);
+  });
   if (subcases.empty()) {  // Model::build reports it
     subcases.emplace_back();
     subcases.back().id = options.model.subcase;
   }
-  demand_static_solution(deck, options.is_linear, diagnostics);
   records::StaticResult result;
   fe::CaseSolver solver(deck, make_model_options(options.model));
   SubcaseFailures failures(subcases.size(), deck.subcases.size());

@@ -7,6 +7,7 @@
 
 #include "fe/elements/beam.hpp"
 #include "fe/elements/carried.hpp"
+#include "formats/records/selection.hpp"
 
 namespace bough::fe {
 
@@ -171,7 +172,7 @@ ElementList make_nonstructural(const records::Deck& deck, int nsm,
     }
   }
   for (const int set : missing)
-    diagnostics.error("fe.missing-set", deck.locate({}),
+    diagnostics.error("fe.missing-set", deck.locate(records::find_selection(deck, "NSM", nsm)),
                       "NSM set " + std::to_string(set) + " is selected but has no cards", "correct the set id");
   return list;
 }

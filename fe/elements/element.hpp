@@ -119,6 +119,8 @@ class NodeTable {
  public:
   virtual ~NodeTable() = default;
   virtual int find_node(int id) const = 0;  ///< index, -1 when absent
+  /// Its GRID card has an error of its own: who names it need not say that it is missing.
+  virtual bool is_refused(int /*id*/) const { return false; }
   virtual const Node& node(int index) const = 0;
   /// R_basic_cid at point x (the axes of a cylindrical or spherical system depend on it); nullptr-safe: reports and
   /// returns identity when cid does not exist.

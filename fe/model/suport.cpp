@@ -11,6 +11,7 @@ namespace {
 void add_fdofs(const Model& model, const records::GridComponents& term, const SourceLocation& at,
                Diagnostics& diagnostics, std::vector<int>& fdofs) {
   const int index = model.find_node(term.g);
+  if (index < 0 && model.is_refused(term.g)) return;
   if (index < 0) {
     diagnostics.error("fe.missing-grid", at,
                       "SUPORT names grid " + std::to_string(term.g) + ", which the deck does not define",
@@ -54,7 +55,7 @@ std::vector<int> find_suport(const Model& model, const records::Deck& deck, Diag
   if (const int sid = model.subcase().suport1; sid != 0) {
     const auto found = deck.suport1.find(sid);
     if (found == deck.suport1.end())
-      diagnostics.error("fe.missing-set", deck.locate({}),
+      diagnostics.error("fe.missing-set", deck.locate(model.subcase().find_command("SUPORT1")),
                         "SUPORT1 set " + std::to_string(sid) + " is selected but has no cards", "correct the set id");
     else
       for (const auto& term : found->second) add_fdofs(model, term, deck.locate(term.at), diagnostics, fdofs);

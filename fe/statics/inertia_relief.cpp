@@ -20,13 +20,7 @@ InertiaRelief read_inertia_relief(const records::Deck& deck, Diagnostics& diagno
   // SOL 2 of the first Nastrans is static with inertia relief.
   const bool is_old = deck.sol == "2" && (!deck.suport.empty() || !deck.suport1.empty());
   const double value = get_real_param(deck, "INREL", is_old ? -1 : 0, diagnostics);
-  if (value == 0) return InertiaRelief::None;
-  if (value == -1) return InertiaRelief::Supported;
-  if (value == -2) return InertiaRelief::Free;
-  diagnostics.error("fe.bad-param", deck.locate(deck.find_param("INREL")->at),
-                    "PARAM,INREL is " + deck.find_param("INREL")->value + ", expected 0, -1 or -2",
-                    "-1 with SUPORT, -2 without");
-  return InertiaRelief::None;
+  return value == -1 ? InertiaRelief::Supported : value == -2 ? InertiaRelief::Free : InertiaRelief::None;
 }
 
 std::vector<int> choose_suport(const Model& model, const records::Deck& deck, InertiaRelief relief,

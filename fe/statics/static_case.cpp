@@ -25,8 +25,12 @@ std::vector<std::string> list_lost_loads(const Model& model, const VectorXd& F) 
   for (const auto& entry : model.autospc()) {
     const Node& node = model.node(model.find_node(entry.node));
     const int c = std::max(entry.component - 1, 0);
-    const double f = node.num_dofs == 1 ? F[node.first_gdof]
-                                        : F.segment<3>(node.first_gdof + 3 * (c / 3)).dot(node.R_basic_cd.col(c % 3));
+    if (entry.is_skew && entry.terms.empty()) continue;  // what has stiffness passes the load on
+    Vector3d n = Vector3d::Unit(c % 3);
+    for (const auto& [component, factor] : entry.terms) n[(component - 1) % 3] -= factor;
+    const double f = node.num_dofs == 1
+                         ? F[node.first_gdof]
+                         : F.segment<3>(node.first_gdof + 3 * (c / 3)).dot(node.R_basic_cd * n.normalized());
     if (std::abs(f) > least) found.emplace_back(f, &entry);
   }
   std::stable_sort(found.begin(), found.end(),
@@ -89,7 +93,13 @@ records::StaticSubcase solve_static_case(const Model& model, const StaticSolver&
     F += result.inertia;
     applied += result.inertia;
   }
-  VectorXd u1 = solver.solve(F, diagnostics);
+  VectorXd u1;
+  try {
+    u1 = solver.solve(F, diagnostics);
+  } catch (const ComputationError&) {
+    solver.demand_no_mechanism(model);
+    throw;
+  }
   if (suport.relief == InertiaRelief::Free) remove_rigid_part(suport, u1);
   result.displacement = u1 + u0;
   result.load = load.F;

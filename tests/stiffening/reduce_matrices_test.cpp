@@ -384,6 +384,7 @@ TEST(ReduceMatrices, FreeBodyAndGivenModes) {
   Diagnostics found;
   const auto body = reduce_given(deck, spec, given, &found);
   EXPECT_FALSE(has_id(found, "reduce.modes-differ"));
+  EXPECT_FALSE(has_id(found, "reduce.modes-residual"));
   EXPECT_TRUE(has_id(found, "reduce.rigid-modes"));
   ASSERT_EQ(body.num_modes(), 4);
   expect_near(body.frequency_hz, expected.frequency_hz, 1e-10, "frequency");
@@ -396,6 +397,20 @@ TEST(ReduceMatrices, FreeBodyAndGivenModes) {
   Diagnostics warned;
   reduce_given(deck, spec, given, &warned);
   EXPECT_TRUE(has_id(warned, "reduce.modes-differ"));
+
+  // A sum of two modes is none; the digits that a printed shape loses do not count.
+  Diagnostics mixed;
+  MatrixXd Phi_mixed = Phi;
+  Phi_mixed.col(7) += .1 * Phi.col(8);
+  given.modes.Phi.values = Phi_mixed.sparseView();
+  given.modes.eigenvalue.resize(0);
+  reduce_given(deck, spec, given, &mixed);
+  EXPECT_TRUE(has_id(mixed, "reduce.modes-residual"));
+  Diagnostics printed;
+  const double size = Phi.cwiseAbs().maxCoeff();
+  given.modes.Phi.values = MatrixXd((Phi * (1e6 / size)).array().round() * (size / 1e6)).sparseView();
+  reduce_given(deck, spec, given, &printed);
+  EXPECT_FALSE(has_id(printed, "reduce.modes-residual"));
 
   // No mass in a mode.
   given.modes.Phi.values = MatrixXd(VectorXd::Unit(Phi.rows(), scalar)).sparseView();
