@@ -199,9 +199,9 @@ int check_system(const CheckOptions& options, const Console& console) {
   const auto text = fmt::format(
       "system file: {}, {}, {}, {}, {}; {}\n{}integrator {}, duration {:g}\n", count(spec.bodies.size(), "body"),
       count(spec.hinges.size(), "hinge"), count(spec.forces.size(), "force"), count(spec.sensors.size(), "sensor"),
-      count(spec.functions.size(), "function"), count(static_cast<std::size_t>(system.num_u()), "generalized speed"),
+      count(spec.functions.size(), "function"), count(static_cast<std::size_t>(system.num_dofs()), "generalized speed"),
       table.to_text(), spec.simulation.integrator, spec.simulation.duration);
-  return finish(options, console, text, {{"kind", "system"}, {"bodies", bodies}, {"num_speeds", system.num_u()}},
+  return finish(options, console, text, {{"kind", "system"}, {"bodies", bodies}, {"num_speeds", system.num_dofs()}},
                 diagnostics);
 }
 

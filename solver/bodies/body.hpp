@@ -27,6 +27,7 @@ struct BodyInertia {
   Vector3d S = Vector3d::Zero();        ///< first moment of mass about Bo
   VectorXd by_eta, A2, pairs, by_pair;  ///< (9+r)n, 3n, n(n+1)/2, 3+r; r = rank of the affine field
   AffineField::Columns V;               ///< 12 x n: ∫ρ ∂r/∂η_j fᵀ
+  AffineField::Amplitudes a = AffineField::Amplitudes::Zero(), A = a, P = a;  ///< of the field; P = ∫ρ r fᵀ
 };
 
 class Body {
@@ -39,6 +40,7 @@ class Body {
 
   int num_modes() const { return n_; }
   double mass() const { return mass_; }
+  Vector3d first_moment() const { return S0_; }  ///< of the undeformed body about Bo
   bool stiffened() const { return stiffened_; }
   const Matrix6d& M6() const { return M6_; }  ///< the mass matrix of the undeformed body
   const MatrixXd& K() const { return K_; }
@@ -50,15 +52,26 @@ class Body {
   void add_rigid_node(int id, const Vector3d& p);
 
   BodyInertia make_inertia() const;
-  /// M(η), S and h(η, η̇, ω). eta, eta_dot: n. O(n²), no allocation.
+  /// M(η) and S; eta: n. O(n²), no allocation.
+  void calc_mass(const ConstVectorRef& eta, BodyInertia& inertia) const;
+  /// h(η, η̇, ω), after calc_mass. O(n²), no allocation.
+  void calc_bias(const Vector3d& w_B, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
+                 BodyInertia& inertia) const;
+  /// h (6) of a rigid body.
+  void calc_rigid_bias(const Vector3d& w_B, double* h) const;
   void calc_inertia(const Vector3d& w_B, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
-                    BodyInertia& inertia) const;
+                    BodyInertia& inertia) const {
+    calc_mass(eta, inertia);
+    calc_bias(w_B, eta, eta_dot, inertia);
+  }
 
  private:
   void add_second_order(const records::FlexBody& flex);
   template <int R>
-  void calc_flexible_inertia(const Vector3d& w_B, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
-                             BodyInertia& inertia) const;
+  void calc_flexible_mass(const ConstVectorRef& eta, BodyInertia& inertia) const;
+  template <int R>
+  void calc_flexible_bias(const Vector3d& w_B, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
+                          BodyInertia& inertia) const;
   void add_flexible_nodes(const records::FlexBody& flex);
 
   int n_ = 0;

@@ -34,14 +34,25 @@ void calc_node_in_body(const Node& node, const ConstVectorRef& eta, const ConstV
   out.gamma_r = calc_rotation_tangent_rate(out.theta, theta_dot) + out.T * theta_ddot;
 }
 
-void calc_node_jacobian(const Node& node, const ConstVectorRef& eta, const Matrix3d& T, Eigen::Ref<Matrix6Xd> J) {
-  if (!node.moves) {
-    J.setZero();
-    return;
-  }
+void calc_node_position(const Node& node, const ConstVectorRef& eta, Vector3d& r, Vector3d& theta,
+                        Eigen::Ref<Matrix6Xd> J) {
+  r = node.p;
+  theta.setZero();
   for (int j = 0; j < eta.size(); ++j) {
-    J.col(j).head<3>() = node.phi.col(j) - calc_K2_column(node.K2, j, eta);
-    J.col(j).tail<3>() = T * (node.psi.col(j) - calc_K2_column(node.K2_theta, j, eta));
+    const Vector3d k = calc_K2_column(node.K2, j, eta), k_theta = calc_K2_column(node.K2_theta, j, eta);
+    r += (node.phi.col(j) - 0.5 * k) * eta[j];
+    theta += (node.psi.col(j) - 0.5 * k_theta) * eta[j];
+    J.col(j).head<3>() = node.phi.col(j) - k;
+    J.col(j).tail<3>() = node.psi.col(j) - k_theta;
+  }
+}
+
+void calc_node_bias(const Node& node, const ConstVectorRef& eta_dot, Vector3d& r_ddot, Vector3d& theta_ddot) {
+  r_ddot.setZero();
+  theta_ddot.setZero();
+  for (int j = 0; j < eta_dot.size(); ++j) {
+    if (node.K2.size() > 0) r_ddot -= calc_K2_column(node.K2, j, eta_dot) * eta_dot[j];
+    if (node.K2_theta.size() > 0) theta_ddot -= calc_K2_column(node.K2_theta, j, eta_dot) * eta_dot[j];
   }
 }
 

@@ -40,8 +40,12 @@ struct NodeInBody {
 /// too. No allocation.
 void calc_node_in_body(const Node& node, const ConstVectorRef& eta, const ConstVectorRef& eta_dot, NodeInBody& out);
 
-/// J = [Jt; T Jθ] (6 x n). No allocation.
-void calc_node_jacobian(const Node& node, const ConstVectorRef& eta, const Matrix3d& T, Eigen::Ref<Matrix6Xd> J);
+/// r, θ and J = [Jt; Jθ] (6 x n) of a node that moves. No allocation.
+void calc_node_position(const Node& node, const ConstVectorRef& eta, Vector3d& r, Vector3d& theta,
+                        Eigen::Ref<Matrix6Xd> J);
+
+/// r̈ and θ̈ at η̈ = 0. No allocation.
+void calc_node_bias(const Node& node, const ConstVectorRef& eta_dot, Vector3d& r_ddot, Vector3d& theta_ddot);
 
 /// a += Jt η̈, alpha += T Jθ η̈. No allocation.
 void add_node_acceleration(const Node& node, const ConstVectorRef& eta, const ConstVectorRef& eta_ddot,

@@ -2,7 +2,7 @@
 
 namespace bough::solver {
 
-void CylindricalHinge::calc_motion(const double* q, const double*, HingeMotion& motion) const {
+void CylindricalHinge::calc_position(const double* q, HingeMotion& motion) const {
   motion.R_HpHc = Eigen::AngleAxisd(q[0], axis_).toRotationMatrix();
   motion.p_HpHc = q[1] * axis_;
   motion.H.col(0).tail<3>() = axis_;

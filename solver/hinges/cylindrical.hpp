@@ -8,7 +8,8 @@ namespace bough::solver {
 class CylindricalHinge final : public Hinge {
  public:
   explicit CylindricalHinge(const Vector3d& unit_axis) : Hinge(2, 2), axis_(unit_axis) {}
-  void calc_motion(const double* q, const double* u, HingeMotion& motion) const override;
+  void calc_position(const double* q, HingeMotion& motion) const override;
+  bool is_constant_in_child() const override { return true; }
 
  private:
   Vector3d axis_;

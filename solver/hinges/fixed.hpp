@@ -7,7 +7,8 @@ namespace bough::solver {
 class FixedHinge final : public Hinge {
  public:
   FixedHinge() : Hinge(0, 0) {}
-  void calc_motion(const double*, const double*, HingeMotion&) const override {}
+  void calc_position(const double*, HingeMotion&) const override {}
+  bool is_constant_in_child() const override { return true; }
 };
 
 }  // namespace bough::solver

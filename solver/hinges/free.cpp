@@ -2,8 +2,8 @@
 
 namespace bough::solver {
 
-void FreeHinge::calc_motion(const double* q, const double* u, HingeMotion& motion) const {
-  SphericalHinge::calc_motion(q, u, motion);
+void FreeHinge::calc_position(const double* q, HingeMotion& motion) const {
+  SphericalHinge::calc_position(q, motion);
   motion.p_HpHc = Vector3d(q[4], q[5], q[6]);
   motion.H.block<3, 3>(0, 3).setIdentity();
 }

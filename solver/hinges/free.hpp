@@ -8,7 +8,8 @@ namespace bough::solver {
 class FreeHinge final : public SphericalHinge {
  public:
   FreeHinge() : SphericalHinge(7, 6) {}
-  void calc_motion(const double* q, const double* u, HingeMotion& motion) const override;
+  void calc_position(const double* q, HingeMotion& motion) const override;
+  bool is_constant_in_child() const override { return false; }
   void calc_q_dot(const double* q, const double* u, double* q_dot) const override;
   double calc_spring(const double* q, const double* q_null, const double* k, double* force) const override;
 };

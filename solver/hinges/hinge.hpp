@@ -28,8 +28,16 @@ class Hinge {
   int num_q() const { return num_q_; }
   int num_u() const { return num_u_; }
 
-  /// Pose, H and bias. q: num_q (any quaternion length but zero), u: num_u. Fills every used part of `motion`.
-  virtual void calc_motion(const double* q, const double* u, HingeMotion& motion) const = 0;
+  /// Pose and H. q: num_q (any quaternion length but zero). Fills every used part of `motion`.
+  virtual void calc_position(const double* q, HingeMotion& motion) const = 0;
+  /// The bias, after calc_position. u: num_u. Default: it is zero and stays so.
+  virtual void calc_bias(const double*, HingeMotion&) const {}
+  void calc_motion(const double* q, const double* u, HingeMotion& motion) const {
+    calc_position(q, motion);
+    calc_bias(u, motion);
+  }
+  /// Whether H is constant with components in Hc, as that of a revolute hinge is.
+  virtual bool is_constant_in_child() const { return false; }
   /// q̇ = N(q) u. Default: q̇ = u.
   virtual void calc_q_dot(const double* q, const double* u, double* q_dot) const;
   /// The coordinates at which Hc coincides with Hp (zero; identity quaternion).

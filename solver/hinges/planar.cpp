@@ -11,7 +11,7 @@ PlanarHinge::PlanarHinge(const Vector3d& unit_normal) : Hinge(3, 3), normal_(uni
   e2_ = normal_.cross(e1_);
 }
 
-void PlanarHinge::calc_motion(const double* q, const double*, HingeMotion& motion) const {
+void PlanarHinge::calc_position(const double* q, HingeMotion& motion) const {
   motion.R_HpHc = Eigen::AngleAxisd(q[2], normal_).toRotationMatrix();
   motion.p_HpHc = q[0] * e1_ + q[1] * e2_;
   motion.H.col(0).head<3>() = e1_;

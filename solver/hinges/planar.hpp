@@ -9,7 +9,7 @@ namespace bough::solver {
 class PlanarHinge final : public Hinge {
  public:
   explicit PlanarHinge(const Vector3d& unit_normal);
-  void calc_motion(const double* q, const double* u, HingeMotion& motion) const override;
+  void calc_position(const double* q, HingeMotion& motion) const override;
 
  private:
   Vector3d normal_, e1_, e2_;

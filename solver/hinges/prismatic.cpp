@@ -2,7 +2,7 @@
 
 namespace bough::solver {
 
-void PrismaticHinge::calc_motion(const double* q, const double*, HingeMotion& motion) const {
+void PrismaticHinge::calc_position(const double* q, HingeMotion& motion) const {
   motion.p_HpHc = q[0] * axis_;
   motion.H.col(0).head<3>() = axis_;
 }

@@ -2,7 +2,7 @@
 
 namespace bough::solver {
 
-void RevoluteHinge::calc_motion(const double* q, const double*, HingeMotion& motion) const {
+void RevoluteHinge::calc_position(const double* q, HingeMotion& motion) const {
   motion.R_HpHc = Eigen::AngleAxisd(q[0], axis_).toRotationMatrix();
   motion.H.col(0).tail<3>() = axis_;
 }

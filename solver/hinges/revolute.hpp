@@ -7,7 +7,8 @@ namespace bough::solver {
 class RevoluteHinge final : public Hinge {
  public:
   explicit RevoluteHinge(const Vector3d& unit_axis) : Hinge(1, 1), axis_(unit_axis) {}
-  void calc_motion(const double* q, const double* u, HingeMotion& motion) const override;
+  void calc_position(const double* q, HingeMotion& motion) const override;
+  bool is_constant_in_child() const override { return true; }
 
  private:
   Vector3d axis_;

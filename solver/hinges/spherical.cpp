@@ -16,7 +16,7 @@ Vector3d calc_rotation_log(Eigen::Quaterniond q) {
 }
 }  // namespace
 
-void SphericalHinge::calc_motion(const double* q, const double*, HingeMotion& motion) const {
+void SphericalHinge::calc_position(const double* q, HingeMotion& motion) const {
   motion.R_HpHc = as_quaternion(q).normalized().toRotationMatrix();
   motion.H.block<3, 3>(3, 0) = motion.R_HpHc;
 }

@@ -9,7 +9,8 @@ namespace bough::solver {
 class SphericalHinge : public Hinge {
  public:
   SphericalHinge() : SphericalHinge(4, 3) {}
-  void calc_motion(const double* q, const double* u, HingeMotion& motion) const override;
+  void calc_position(const double* q, HingeMotion& motion) const override;
+  bool is_constant_in_child() const override { return true; }
   void calc_q_dot(const double* q, const double* u, double* q_dot) const override;
   void set_neutral(double* q) const override;
   void set_from_file(const double* file, double* q) const override;

@@ -10,7 +10,8 @@ class UniversalHinge final : public Hinge {
  public:
   UniversalHinge(const Vector3d& unit_axis, const Vector3d& unit_axis2)
       : Hinge(2, 2), axis_(unit_axis), axis2_(unit_axis2) {}
-  void calc_motion(const double* q, const double* u, HingeMotion& motion) const override;
+  void calc_position(const double* q, HingeMotion& motion) const override;
+  void calc_bias(const double* u, HingeMotion& motion) const override;
 
  private:
   Vector3d axis_, axis2_;

@@ -17,14 +17,22 @@ Recorder::Recorder(const System& system, Sensors sensors) : system_(system), sen
   }
   for (int b = 0; b < system.num_bodies(); ++b) {
     const std::string path = "/hinges/" + system.hinge_name(b) + "/";
-    if (system.num_hinge_q(b) == 0) continue;
-    add_channel(path + "q", system.num_hinge_q(b),
-                "hinge coordinates, child relative to parent; quaternion as w, x, y, z", "1 or L");
-    add_channel(path + "qdot", system.num_hinge_rates(b),
-                "hinge rates; spherical and free: angular velocity of the child's hinge frame in the parent's",
-                "1/T or L/T");
-    add_channel(path + "force", system.num_hinge_rates(b),
-                "generalized hinge force: spring and damper, or what enforces a prescribed motion", "F L or F");
+    if (system.num_hinge_q(b) > 0) {
+      add_channel(path + "q", system.num_hinge_q(b),
+                  "hinge coordinates, child relative to parent; quaternion as w, x, y, z", "1 or L");
+      add_channel(path + "qdot", system.num_hinge_rates(b),
+                  "hinge rates; spherical and free: angular velocity of the child's hinge frame in the parent's",
+                  "1/T or L/T");
+      add_channel(
+          path + "force", system.num_hinge_rates(b),
+          "generalized hinge force: spring and damper; all that crosses the hinge where it is locked or prescribed",
+          "F L or F");
+    }
+    add_channel(path + "reaction_force", 3,
+                "force of the parent on the child at the child's hinge frame, in the hinge axes of the parent", "F");
+    add_channel(path + "reaction_moment", 3,
+                "moment of the parent on the child about the child's hinge frame, in the hinge axes of the parent",
+                "F L");
   }
   for (const auto& entry : sensors_.entries())
     add_channel("/sensors/" + entry.name, entry.size, entry.description, entry.dims);
@@ -34,6 +42,10 @@ Recorder::Recorder(const System& system, Sensors sensors) : system_(system), sen
   add_channel("/energy/work", 1, "work done since the start by applied forces, dampers and prescribed motions", "F L");
   add_channel("/momentum/linear", 3, "linear momentum, in the inertial frame", "M L/T");
   add_channel("/momentum/angular", 3, "angular momentum about the inertial origin, in the inertial frame", "M L^2/T");
+  add_channel("/system_mass/mass", 1, "mass of the system", "M");
+  add_channel("/system_mass/cg", 3, "centre of mass of the system, in the inertial frame", "L");
+  add_channel("/system_mass/inertia", 9,
+              "inertia of the system about its centre of mass, in the inertial frame: three rows", "M L^2");
   int size = 0;
   for (const auto& channel : channels_) size += channel.size;
   sample_.setZero(size);
@@ -64,10 +76,14 @@ const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Ei
   }
   for (int b = 0; b < system_.num_bodies(); ++b) {
     const int nq = system_.num_hinge_q(b), nu = system_.num_hinge_rates(b);
-    if (nq == 0) continue;
-    get_hinge(system_, data, b, sample_.segment(at, nq), sample_.segment(at + nq, nu),
-              sample_.segment(at + nq + nu, nu));
-    at += nq + 2 * nu;
+    if (nq > 0) {
+      get_hinge(system_, data, b, sample_.segment(at, nq), sample_.segment(at + nq, nu),
+                sample_.segment(at + nq + nu, nu));
+      at += nq + 2 * nu;
+    }
+    const HingeReaction reaction = get_hinge_reaction(system_, data, b);
+    put(reaction.force);
+    put(reaction.moment);
   }
   sensors_.calc(system_, data, sample_.segment(at, sensors_.size()));
   at += sensors_.size();
@@ -77,6 +93,10 @@ const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Ei
   calc_momentum(system_, data, linear, angular);
   put(linear);
   put(angular);
+  const SystemMass mass = calc_system_mass(system_, data);
+  sample_[at++] = mass.mass;
+  put(mass.cg_W);
+  put(Eigen::Map<const Eigen::Matrix<double, 9, 1>>(mass.inertia_W.data()));  // symmetric
   BOUGH_DEMAND(at == sample_.size());
   return sample_;
 }

@@ -9,7 +9,8 @@ namespace bough::solver {
 class Recorder {
  public:
   /// Channels, their order fixed here once: /time; per body position, quaternion, velocity, angular_velocity, and eta,
-  /// eta_dot when it has modes; per hinge with coordinates q, qdot, force; sensors; energy; momentum.
+  /// eta_dot when it has modes; per hinge q, qdot, force when it has coordinates, reaction_force, reaction_moment;
+  /// sensors; energy; momentum; system_mass.
   Recorder(const System& system, Sensors sensors);
 
   const std::vector<records::Channel>& channels() const { return channels_; }

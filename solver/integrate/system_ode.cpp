@@ -11,7 +11,7 @@ void SystemOde::calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, E
   calc_kinematics(system_, *data_, t, q, u);
   add_forces(system_, *data_, t);
   calc_accelerations(system_, *data_, t, y_dot.segment(num_q_, num_u_));
-  calc_q_dot(system_, *data_, t, q, u, y_dot.head(num_q_));
+  get_q_dot(system_, *data_, y_dot.head(num_q_));
   y_dot[num_q_ + num_u_] = calc_power(system_, *data_);
 }
 
@@ -26,7 +26,7 @@ std::string SystemOde::name_row(int row) const {
   const int i = is_rate ? row - num_q_ : row;
   for (int b = 0; b < system_.num_bodies(); ++b) {
     const int hinge = is_rate ? system_.u_offset(b) : system_.q_offset(b);
-    const int hinge_size = is_rate ? system_.num_hinge_u(b) : system_.num_hinge_q(b);
+    const int hinge_size = is_rate ? system_.num_hinge_rates(b) : system_.num_hinge_q(b);
     const int eta = is_rate ? system_.eta_dot_offset(b) : system_.eta_offset(b);
     const std::string body = "body '" + system_.body_name(b) + "'";
     if (i >= hinge && i < hinge + hinge_size)

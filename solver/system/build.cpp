@@ -35,11 +35,11 @@ VectorXd make_modal_state(const std::vector<double>& values, int n) {
   return Eigen::Map<const VectorXd>(values.data(), n);
 }
 
-Attachment build_attachment(const std::string& body_name, const Body& body, int node_id, const Vector3d& p,
-                            const Matrix3d& R, const records::HingeRecord& hinge, Diagnostics& diagnostics) {
-  Attachment a;
-  a.p_KH = p;
-  a.R_KH = R;
+Marker build_attachment(const std::string& body_name, const Body& body, int node_id, const Vector3d& p,
+                        const Matrix3d& R, const records::HingeRecord& hinge, Diagnostics& diagnostics) {
+  Marker a;
+  a.p_KM = p;
+  a.R_KM = R;
   // A ball joint at the node itself passes on no moment, and a free hinge nothing.
   const bool is_ball =
       hinge.type == records::HingeType::Spherical && p.isZero(0) && hinge.stiffness.empty() && hinge.damping.empty();
@@ -69,7 +69,7 @@ void check_masses(const Tree& tree, const records::SystemSpec& spec, const TreeO
     const TreeBody& tb = tree.bodies[b];
     carried[b] += tb.body.mass() + tb.body.M6().bottomRightCorner<3, 3>().trace();
     if (tb.parent >= 0) carried[static_cast<size_t>(tb.parent)] += carried[b];
-    if (tb.num_hinge_u > 0 && carried[b] <= 0) {
+    if (tb.count(HingeMode::Free) > 0 && carried[b] <= 0) {
       diagnostics.error("system.massless", spec.bodies[static_cast<size_t>(order.body[b])].at,
                         "body " + quote(tb.name) + " and what it carries have no mass, yet its hinge " +
                             quote(tb.hinge_name) + " is free to move",
@@ -78,9 +78,20 @@ void check_masses(const Tree& tree, const records::SystemSpec& spec, const TreeO
   }
 }
 
+void add_force_marker(AppliedForce& force, Tree& tree) {
+  if (force.pattern.size() > 0) return;
+  Marker at;
+  at.body = force.body;
+  at.node = force.node;
+  at.moves = tree[force.body].body.nodes()[static_cast<size_t>(force.node)].moves;
+  force.marker = tree.add_marker(at);
+}
+
 void collect_breakpoints(System::Impl& impl) {
   std::vector<const TimeFunction*> used;
-  for (const TreeBody& tb : impl.tree.bodies) used.insert(used.end(), tb.motion.begin(), tb.motion.end());
+  for (const TreeBody& tb : impl.tree.bodies)
+    std::copy_if(tb.motion.begin(), tb.motion.end(), std::back_inserter(used),
+                 [](const TimeFunction* f) { return f != nullptr; });
   for (const AppliedForce& force : impl.forces) {
     if (force.function != nullptr) used.push_back(force.function);
   }
@@ -114,6 +125,7 @@ System System::build(const records::SystemSpec& spec, const std::map<std::string
     TreeBody tb;
     tb.name = record.name;
     tb.hinge_name = hinge.name;
+    tb.hinge_at = hinge.at;
     tb.parent = hinge.parent == "ground" ? -1 : order.tree_index.at(hinge.parent);
     tb.hinge = make_hinge(hinge, diagnostics);
     auto body = build_body(record, flex, diagnostics);
@@ -134,8 +146,8 @@ System System::build(const records::SystemSpec& spec, const std::map<std::string
     if (is_flexible) check_flexible_body(tb, flex.at(record.file), record, diagnostics);
     // A parent whose record failed has no nodes to look up.
     if (tb.parent < 0) {
-      tb.on_parent.p_KH = hinge.parent_position;
-      tb.on_parent.R_KH = hinge.parent_rotation;
+      tb.on_parent.p_KM = hinge.parent_position;
+      tb.on_parent.R_KM = hinge.parent_rotation;
       if (hinge.parent_node != 0) {
         diagnostics.error("system.unknown-node", hinge.at,
                           "hinge " + quote(hinge.name) + " names node " + std::to_string(hinge.parent_node) +
@@ -146,12 +158,6 @@ System System::build(const records::SystemSpec& spec, const std::map<std::string
       const TreeBody& parent = tree.bodies[static_cast<size_t>(tb.parent)];
       tb.on_parent = build_attachment(parent.name, parent.body, hinge.parent_node, hinge.parent_position,
                                       hinge.parent_rotation, hinge, diagnostics);
-    }
-    tb.q_offset = tree.num_q;
-    tb.u_offset = tree.num_u;
-    if (tb.hinge) {
-      tree.num_q += tb.num_hinge_q() + tb.body.num_modes();
-      tree.num_u += tb.num_hinge_u + tb.body.num_modes();
     }
     tree.bodies.push_back(std::move(tb));
   }
@@ -179,6 +185,8 @@ System System::build(const records::SystemSpec& spec, const std::map<std::string
   }
   if (complete) check_masses(tree, spec, order, diagnostics);
   diagnostics.throw_if_errors();
+  tree.finish();
+  for (AppliedForce& force : impl.forces) add_force_marker(force, tree);
   collect_breakpoints(impl);
   return system;
 }

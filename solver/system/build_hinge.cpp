@@ -57,7 +57,9 @@ void build_motion(const records::HingeRecord& r, const FunctionMap& functions, T
   }
   for (const auto& name : r.motion) {
     const TimeFunction* f = find_function(functions, name, r.at, "hinge " + quote(r.name), diagnostics);
-    if (f != nullptr) tb.motion.push_back(f);
+    if (f == nullptr) return;
+    tb.mode[tb.motion.size()] = HingeMode::Prescribed;
+    tb.motion.push_back(f);
   }
   if (!r.stiffness.empty() || !r.damping.empty()) {
     diagnostics.warning("system.ignored-spring", r.at,
@@ -96,12 +98,12 @@ void build_hinge_coordinates(const records::HingeRecord& r, const FunctionMap& f
   tb.null_position = make_coordinates(r, r.null_position, *tb.hinge, "null_position", diagnostics);
   tb.initial_u = VectorXd::Zero(nu);
   if (!r.rate.empty() && check_count(r, r.rate, nu, "rate", diagnostics)) tb.initial_u = as_vector(r.rate);
+  tb.mode.assign(static_cast<size_t>(nu), HingeMode::Free);
   build_motion(r, functions, tb, diagnostics);
-  if (r.motion.empty() || !tb.is_prescribed()) {
+  if (tb.motion.empty()) {
     tb.stiffness = as_vector(r.stiffness);
     tb.damping = as_vector(r.damping);
   }
-  tb.num_hinge_u = tb.is_prescribed() ? 0 : nu;
 }
 
 }  // namespace bough::solver

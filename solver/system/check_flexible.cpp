@@ -13,23 +13,24 @@ constexpr double kInconsistent = 1e-3;  // of the modal mass
 
 std::string quote(const std::string& s) { return "'" + s + "'"; }
 
-// The hinge's columns at Bo, in B, at the initial coordinates; the child's end does not move.
+// The hinge's free columns at Bo, in B, at the initial coordinates; the child's end does not move.
 MatrixXd calc_hinge_columns(const TreeBody& tb) {
   HingeMotion motion;
   const VectorXd rate = VectorXd::Zero(6);
   tb.hinge->calc_motion(tb.initial_q.data(), rate.data(), motion);
-  const Matrix3d R = tb.on_child.R_KH * motion.R_HpHc.transpose();  // R_BHp
-  const Vector3d r = tb.body.nodes()[static_cast<size_t>(tb.on_child.node)].p + tb.on_child.p_KH;
-  MatrixXd H(6, tb.num_hinge_u);
-  for (int i = 0; i < tb.num_hinge_u; ++i) {
+  const Matrix3d R = tb.on_child.R_KM * motion.R_HpHc.transpose();  // R_BHp
+  const Vector3d r = tb.body.nodes()[static_cast<size_t>(tb.on_child.node)].p + tb.on_child.p_KM;
+  MatrixXd H(6, tb.count(HingeMode::Free));
+  for (int i = 0, free = 0; i < tb.num_hinge_u(); ++i) {
+    if (tb.mode[static_cast<size_t>(i)] != HingeMode::Free) continue;
     const Vector3d angular = R * motion.H.col(i).tail<3>();
-    H.col(i) << R * motion.H.col(i).head<3>() + r.cross(angular), angular;
+    H.col(free++) << R * motion.H.col(i).head<3>() + r.cross(angular), angular;
   }
   return H;
 }
 
 void check_hinge(const TreeBody& tb, const records::BodyRecord& record, Diagnostics& diagnostics) {
-  if (tb.num_hinge_u == 0 || tb.on_child.moves) return;
+  if (tb.count(HingeMode::Free) == 0 || tb.on_child.moves) return;
   const int n = tb.body.num_modes();
   BodyInertia x = tb.body.make_inertia();
   tb.body.calc_inertia(Vector3d::Zero(), VectorXd::Zero(n), VectorXd::Zero(n), x);

@@ -11,7 +11,7 @@ struct BodyMomentum {
   double kinetic = 0;
 };
 
-BodyMomentum calc_body_momentum(const TreeBody& tb, const BodyData& d, const TreeData& data) {
+BodyMomentum calc_own_momentum(const TreeBody& tb, const BodyData& d, const TreeData& data) {
   const int n = tb.body.num_modes();
   Vector6d V;
   V << d.state.v_B, d.state.w_B;
@@ -32,53 +32,100 @@ BodyMomentum calc_body_momentum(const TreeBody& tb, const BodyData& d, const Tre
   return m;
 }
 
+Vector3d first_moment(const TreeBody& tb, const BodyData& d) {
+  return tb.is_flexible() ? d.inertia.S : tb.body.first_moment();
+}
+
 }  // namespace
 
 Energies calc_energies(const System& system, const SystemData& data) {
   const Tree& tree = system.impl().tree;
+  data.tree.demand(Stage::Velocity);
   Energies e;
-  for (size_t b = 0; b < tree.bodies.size(); ++b) {
-    const TreeBody& tb = tree.bodies[b];
-    const BodyData& d = data.tree.bodies[b];
-    const int n = tb.body.num_modes();
-    e.kinetic += calc_body_momentum(tb, d, data.tree).kinetic;
+  for (int b = 0; b < tree.size(); ++b) {
+    const TreeBody& tb = tree[b];
+    const BodyData& d = data.tree[b];
+    const int n = tb.num_modes();
+    e.kinetic += calc_own_momentum(tb, d, data.tree).kinetic;
     const auto eta = data.tree.q.segment(tb.eta_offset(), n);
     for (int j = 0; j < n; ++j) e.strain += 0.5 * eta[j] * tb.body.K().col(j).dot(eta);
-    e.strain += d.spring_energy;
-    e.potential -= data.tree.gravity.dot(tb.body.mass() * d.state.p_WBo + d.state.R_WB * d.inertia.S);
+    double force[6];
+    if (tb.stiffness.size() > 0)
+      e.strain +=
+          tb.hinge->calc_spring(data.tree.q.data() + tb.q_offset, tb.null_position.data(), tb.stiffness.data(), force);
+    e.potential -= system.impl().gravity.dot(tb.body.mass() * d.state.p_WBo + d.state.R_WB * first_moment(tb, d));
   }
   return e;
 }
 
 double calc_power(const System& system, const SystemData& data) {
   const Tree& tree = system.impl().tree;
+  data.tree.demand(Stage::Acceleration);
+  const VectorXd &u = data.tree.u, &applied = data.tree.applied;
   double power = 0;
-  for (size_t b = 0; b < tree.bodies.size(); ++b) {
-    const TreeBody& tb = tree.bodies[b];
-    const BodyData& d = data.tree.bodies[b];
-    const int n = tb.body.num_modes();
-    const auto eta_dot = data.tree.u.segment(tb.eta_dot_offset(), n);
-    power += d.applied.head<3>().dot(d.state.v_B) + d.applied.segment<3>(3).dot(d.state.w_B);
-    power += d.applied.tail(n).dot(eta_dot);
-    for (int j = 0; j < n; ++j) power -= eta_dot[j] * tb.body.D().col(j).dot(eta_dot);
-    const int nu = tb.hinge->num_u();
-    if (tb.is_prescribed()) power += d.hinge_force.head(nu).dot(d.hinge_rate.head(nu));
-    for (int i = 0; i < tb.damping.size(); ++i) power -= tb.damping[i] * d.hinge_rate[i] * d.hinge_rate[i];
+  for (int b = 0; b < tree.size(); ++b) {
+    const TreeBody& tb = tree[b];
+    const BodyState& state = data.tree[b].state;
+    power += applied.segment<3>(tb.v_offset).dot(state.v_B) + applied.segment<3>(tb.v_offset + 3).dot(state.w_B);
+    for (int j = 0; j < tb.num_modes(); ++j) {
+      const auto eta_dot = u.segment(tb.eta_dot_offset(), tb.num_modes());
+      power += eta_dot[j] * (applied[tb.v_offset + 6 + j] - tb.body.D().col(j).dot(eta_dot));
+    }
+    if (tb.motion.empty() && tb.damping.size() == 0) continue;
+    for (int i = 0; i < tb.num_hinge_u(); ++i) {
+      const int row = tb.u_offset + i;
+      if (data.tree.mode[static_cast<size_t>(row)] == HingeMode::Prescribed) {
+        power += data.tree.hinge_force[row] * u[row];
+      } else if (tb.damping.size() > 0) {
+        power -= tb.damping[i] * u[row] * u[row];
+      }
+    }
   }
   return power;
 }
 
+void calc_body_momentum(const System& system, const SystemData& data, int body, Vector3d& linear, Vector3d& angular) {
+  data.tree.demand(Stage::Velocity);
+  const BodyData& d = data.tree[body];
+  const BodyMomentum m = calc_own_momentum(system.impl().tree[body], d, data.tree);
+  linear = d.state.R_WB * m.p.head<3>();
+  angular = d.state.R_WB * m.p.tail<3>() + d.state.p_WBo.cross(linear);
+}
+
 void calc_momentum(const System& system, const SystemData& data, Vector3d& linear, Vector3d& angular) {
-  const Tree& tree = system.impl().tree;
   linear.setZero();
   angular.setZero();
-  for (size_t b = 0; b < tree.bodies.size(); ++b) {
-    const BodyData& d = data.tree.bodies[b];
-    const BodyMomentum m = calc_body_momentum(tree.bodies[b], d, data.tree);
-    const Vector3d p_W = d.state.R_WB * m.p.head<3>();
-    linear += p_W;
-    angular += d.state.R_WB * m.p.tail<3>() + d.state.p_WBo.cross(p_W);
+  for (int b = 0; b < system.num_bodies(); ++b) {
+    Vector3d p, l;
+    calc_body_momentum(system, data, b, p, l);
+    linear += p;
+    angular += l;
   }
+}
+
+SystemMass calc_system_mass(const System& system, const SystemData& data) {
+  const Tree& tree = system.impl().tree;
+  data.tree.demand(Stage::Position);
+  SystemMass total;
+  Vector3d moment = Vector3d::Zero();
+  for (int b = 0; b < tree.size(); ++b) {
+    total.mass += tree[b].body.mass();
+    moment +=
+        tree[b].body.mass() * data.tree[b].state.p_WBo + data.tree[b].state.R_WB * first_moment(tree[b], data.tree[b]);
+  }
+  if (!(total.mass > 0)) return total;
+  total.cg_W = moment / total.mass;
+  for (int b = 0; b < tree.size(); ++b) {
+    const TreeBody& tb = tree[b];
+    const BodyData& d = data.tree[b];
+    const Matrix3d J =
+        tb.is_flexible() ? Matrix3d(d.inertia.M.block<3, 3>(3, 3)) : Matrix3d(tb.body.M6().bottomRightCorner<3, 3>());
+    // ∫ρ -(r + x)~(r + x)~ with r from cg to Bo, x from Bo.
+    const Matrix3d r = skew(Vector3d(d.state.p_WBo - total.cg_W)),
+                   S = skew(Vector3d(d.state.R_WB * first_moment(tb, d)));
+    total.inertia_W += d.state.R_WB * J * d.state.R_WB.transpose() - r * S - S * r - tb.body.mass() * r * r;
+  }
+  return total;
 }
 
 }  // namespace bough::solver

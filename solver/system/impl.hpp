@@ -1,7 +1,8 @@
 #pragma once
 /// \file What stands behind System and SystemData.
 #include "solver/forces/applied.hpp"
-#include "solver/tree/tree.hpp"
+#include "solver/system/system.hpp"
+#include "solver/tree/data.hpp"
 
 namespace bough::solver {
 

@@ -21,8 +21,8 @@ NodeMotion calc_node_motion(const System& system, const SystemData& data, int bo
   const NodeInBody k = calc_node(tb, data.tree, node_index);
   Vector3d a_rel = k.gamma_t, alpha_rel = k.gamma_r;  // + J η̈
   if (node.moves) {
-    add_node_acceleration(node, data.tree.q.segment(tb.eta_offset(), tb.body.num_modes()), d.eta_ddot, k.T, a_rel,
-                          alpha_rel);
+    add_node_acceleration(node, data.tree.q.segment(tb.eta_offset(), tb.body.num_modes()),
+                          data.tree.motion.u_dot.segment(tb.eta_dot_offset(), tb.num_modes()), k.T, a_rel, alpha_rel);
   }
   NodeMotion m;
   const Matrix3d& R = s.R_WB;

@@ -41,8 +41,13 @@ int System::num_modes(int b) const { return at(*this, b).body.num_modes(); }
 int System::q_offset(int b) const { return at(*this, b).q_offset; }
 int System::u_offset(int b) const { return at(*this, b).u_offset; }
 int System::num_hinge_q(int b) const { return at(*this, b).num_hinge_q(); }
-int System::num_hinge_u(int b) const { return at(*this, b).num_hinge_u; }
+int System::num_hinge_u(int b) const { return at(*this, b).count(HingeMode::Free); }
 int System::num_hinge_rates(int b) const { return at(*this, b).hinge->num_u(); }
+int System::num_dofs() const {
+  int num = 0;
+  for (int b = 0; b < num_bodies(); ++b) num += num_hinge_u(b) + num_modes(b);
+  return num;
+}
 int System::eta_offset(int b) const { return at(*this, b).eta_offset(); }
 int System::eta_dot_offset(int b) const { return at(*this, b).eta_dot_offset(); }
 int System::find_node(int b, int id) const { return at(*this, b).body.find_node(id); }
@@ -60,38 +65,69 @@ std::unique_ptr<SystemData> System::make_data() const {
 void System::calc_initial_state(Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) const {
   BOUGH_DEMAND(q.size() == num_q() && u.size() == num_u());
   for (const TreeBody& tb : impl_->tree.bodies) {
-    const int n = tb.body.num_modes(), nq = tb.num_hinge_q();
-    q.segment(tb.q_offset, nq) = tb.initial_q;
-    for (size_t i = 0; i < tb.motion.size(); ++i)
-      q[tb.q_offset + static_cast<int>(i)] = tb.motion[i]->calc(impl_->start).f;
-    u.segment(tb.u_offset, tb.num_hinge_u) = tb.initial_u.head(tb.num_hinge_u);
+    const int n = tb.num_modes();
+    q.segment(tb.q_offset, tb.num_hinge_q()) = tb.initial_q;
+    u.segment(tb.u_offset, tb.num_hinge_u()) = tb.initial_u;
     q.segment(tb.eta_offset(), n) = tb.initial_eta;
     u.segment(tb.eta_dot_offset(), n) = tb.initial_eta_dot;
+    for (int i = 0; i < tb.num_hinge_u(); ++i) {
+      if (tb.mode[as_index(i)] == HingeMode::Locked) u[tb.u_offset + i] = 0;
+      if (tb.mode[as_index(i)] != HingeMode::Prescribed) continue;
+      const auto value = tb.motion[as_index(i)]->calc(impl_->start);
+      q[tb.q_offset + i] = value.f;
+      u[tb.u_offset + i] = value.f_dot;
+    }
   }
 }
 
-void calc_q_dot(const System& system, SystemData&, double t, const Eigen::Ref<const VectorXd>& q,
+State System::make_initial_state() const {
+  State state;
+  state.t = impl_->start;
+  state.q.resize(num_q());
+  state.u.resize(num_u());
+  calc_initial_state(state.q, state.u);
+  state.discrete.mode = make_tree_data(impl_->tree).mode;
+  return state;
+}
+
+void set_modes(const System& system, SystemData& data, const Discrete& discrete) {
+  set_modes(system.impl().tree, discrete.mode, data.tree);
+}
+
+void calc_q_dot(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                 const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> q_dot) {
   BOUGH_DEMAND(q.size() == system.num_q() && u.size() == system.num_u() && q_dot.size() == q.size());
   for (const TreeBody& tb : system.impl().tree.bodies) {
-    const int n = tb.body.num_modes();
-    if (tb.is_prescribed()) {
-      for (size_t i = 0; i < tb.motion.size(); ++i)
-        q_dot[tb.q_offset + static_cast<int>(i)] = tb.motion[i]->calc(t).f_dot;
-    } else {
-      tb.hinge->calc_q_dot(q.data() + tb.q_offset, u.data() + tb.u_offset, q_dot.data() + tb.q_offset);
+    double rates[6];
+    for (int i = 0; i < tb.num_hinge_u(); ++i) {
+      const HingeMode mode = data.tree.mode[as_index(tb.u_offset + i)];
+      rates[i] = mode == HingeMode::Free     ? u[tb.u_offset + i]
+                 : mode == HingeMode::Locked ? 0
+                                             : tb.motion[as_index(i)]->calc(t).f_dot;
     }
-    q_dot.segment(tb.eta_offset(), n) = u.segment(tb.eta_dot_offset(), n);
+    tb.hinge->calc_q_dot(q.data() + tb.q_offset, rates, q_dot.data() + tb.q_offset);
+    q_dot.segment(tb.eta_offset(), tb.num_modes()) = u.segment(tb.eta_dot_offset(), tb.num_modes());
+  }
+}
+
+void get_q_dot(const System& system, const SystemData& data, Eigen::Ref<VectorXd> q_dot) {
+  const TreeData& d = data.tree;
+  d.demand(Stage::Velocity);
+  BOUGH_DEMAND(q_dot.size() == system.num_q());
+  for (const TreeBody& tb : system.impl().tree.bodies) {
+    tb.hinge->calc_q_dot(d.q.data() + tb.q_offset, d.u.data() + tb.u_offset, q_dot.data() + tb.q_offset);
+    for (int j = 0; j < tb.num_modes(); ++j) q_dot[tb.eta_offset() + j] = d.u[tb.eta_dot_offset() + j];
   }
 }
 
 void calc_kinematics(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                      const Eigen::Ref<const VectorXd>& u) {
-  calc_tree_kinematics(system.impl().tree, t, q, u, data.tree);
+  calc_kinematics(system.impl().tree, t, q, u, data.tree);
 }
 
 void add_forces(const System& system, SystemData& data, double t) {
   const System::Impl& impl = system.impl();
+  data.tree.demand(Stage::Velocity);
   data.tree.gravity = impl.gravity;
   for (const AppliedForce& force : impl.forces) add_applied_force(force, impl.tree, t, data.tree);
   add_hinge_forces(impl.tree, data.tree);
@@ -99,13 +135,13 @@ void add_forces(const System& system, SystemData& data, double t) {
 
 void add_node_wrench(const System& system, SystemData& data, int body, int node_index, const Vector3d& f_W,
                      const Vector3d& t_W) {
-  BodyData& d = data.tree.bodies[as_index(body)];
-  const Matrix3d R_BW = d.state.R_WB.transpose();
-  add_wrench_in_body(at(system, body), node_index, data.tree.q, R_BW * f_W, R_BW * t_W, d);
+  data.tree.demand(Stage::Velocity);
+  const Matrix3d R_BW = data.tree[body].state.R_WB.transpose();
+  add_wrench_in_body(at(system, body), node_index, R_BW * f_W, R_BW * t_W, data.tree);
 }
 
 void calc_accelerations(const System& system, SystemData& data, double, Eigen::Ref<VectorXd> u_dot) {
-  calc_tree_accelerations(system.impl().tree, data.tree, u_dot);
+  factor_and_solve(system.impl().tree, data.tree, u_dot);
 }
 
 void calc_accelerations_dense(const System& system, SystemData& data, double, Eigen::Ref<VectorXd> u_dot) {
@@ -117,12 +153,15 @@ const BodyState& get_body_state(const SystemData& data, int body) { return data.
 void get_hinge(const System& system, const SystemData& data, int body, Eigen::Ref<VectorXd> q,
                Eigen::Ref<VectorXd> q_dot, Eigen::Ref<VectorXd> force) {
   const TreeBody& tb = at(system, body);
-  const BodyData& d = data.tree.bodies[as_index(body)];
-  const int nu = tb.hinge->num_u();
+  const int nu = tb.num_hinge_u();
   BOUGH_DEMAND(q.size() == tb.num_hinge_q() && q_dot.size() == nu && force.size() == nu);
   tb.hinge->get_for_file(data.tree.q.data() + tb.q_offset, q.data());
-  q_dot = d.hinge_rate.head(nu);
-  force = d.hinge_force.head(nu);
+  q_dot = data.tree.u.segment(tb.u_offset, nu);
+  force = data.tree.hinge_force.segment(tb.u_offset, nu);
+}
+
+HingeReaction get_hinge_reaction(const System& system, const SystemData& data, int body) {
+  return calc_hinge_reaction(system.impl().tree, data.tree, body);
 }
 
 }  // namespace bough::solver

@@ -3,7 +3,8 @@
 ///
 /// Generalized positions q (num_q): per body in tree order, hinge coordinates (an orientation as quaternion x,y,z,w for
 /// spherical and free) then η. Generalized speeds u (num_u): hinge rates (spherical, free: angular velocity of Hc in
-/// Hp, components in Hc) then η̇. Prescribed hinges keep their rows in q and have no rows in u.
+/// Hp, components in Hc) then η̇. Locked and prescribed coordinates keep their rows (solver/state): what a caller puts
+/// there is not read, u̇ and q̇ hold what is prescribed.
 /// Frames: W inertial; B body, origin Bo; Hp, Hc hinge frames on parent and child. Linear before angular everywhere.
 #include <map>
 #include <memory>
@@ -14,30 +15,12 @@
 
 #include "base/rotation.hpp"
 #include "formats/records/system_spec.hpp"
+#include "solver/state/motion.hpp"
+#include "solver/state/state.hpp"
 
 namespace bough::solver {
 
 using records::FlexBody;
-
-struct BodyState {  ///< results of calc_positions / calc_velocities / calc_accelerations for one body
-  Vector3d p_WBo = Vector3d::Zero();
-  Matrix3d R_WB = Matrix3d::Identity();
-  Vector3d v_B = Vector3d::Zero();      ///< velocity of Bo, in B
-  Vector3d w_B = Vector3d::Zero();      ///< angular velocity of B, in B
-  Vector3d a_B = Vector3d::Zero();      ///< inertial acceleration of Bo, in B
-  Vector3d alpha_B = Vector3d::Zero();  ///< angular acceleration of B, in B
-};
-
-struct NodeMotion {  ///< of a material node K, in the inertial frame
-  Vector3d p_WK = Vector3d::Zero();
-  Matrix3d R_WK = Matrix3d::Identity();
-  Vector3d v_WK = Vector3d::Zero(), w_WK = Vector3d::Zero();
-  Vector3d a_WK = Vector3d::Zero(), alpha_WK = Vector3d::Zero();
-};
-
-struct Energies {
-  double kinetic = 0, strain = 0, potential = 0;  ///< strain: modal ½ηᵀKη plus hinge springs; potential: gravity
-};
 
 class SystemData;  ///< made by System::make_data; one per thread
 
@@ -72,8 +55,9 @@ class System {
   int q_offset(int body) const;  ///< hinge coordinates start here; η follows
   int u_offset(int body) const;
   int num_hinge_q(int body) const;
-  int num_hinge_u(int body) const;      ///< degrees of freedom; 0 when prescribed
-  int num_hinge_rates(int body) const;  ///< rates and forces of get_hinge; = num_hinge_u unless prescribed
+  int num_hinge_u(int body) const;      ///< hinge coordinates that are free at the start
+  int num_hinge_rates(int body) const;  ///< rows of the hinge in u; rates and forces of get_hinge
+  int num_dofs() const;                 ///< rows of u that are free at the start
   int eta_offset(int body) const;       ///< in q
   int eta_dot_offset(int body) const;   ///< in u
   /// Index of node `id` for calc_node_motion (0: Bo), -1 when the body has none such.
@@ -86,6 +70,7 @@ class System {
   std::unique_ptr<SystemData> make_data() const;
   /// Initial state as the records say; q (num_q), u (num_u).
   void calc_initial_state(Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) const;
+  State make_initial_state() const;
 
   struct Impl;
   const Impl& impl() const { return *impl_; }
@@ -95,9 +80,18 @@ class System {
   std::unique_ptr<Impl> impl_;
 };
 
+/// What each coordinate does from now on (SystemData starts with the modes of the records). Not within a step:
+/// allocates.
+void set_modes(const System& system, SystemData& data, const Discrete& discrete);
+/// The whole chain at a state: position, velocity, forces, factor, acceleration, and both derivatives. No allocation.
+void evaluate(const System& system, const State& state, SystemData& data, Eigen::Ref<VectorXd> q_dot,
+              Eigen::Ref<VectorXd> u_dot);
+
 /// q̇ = N(q) u (prescribed coordinates: their given rates). O(num_bodies).
 void calc_q_dot(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                 const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> q_dot);
+/// The same at the state of the last calc_kinematics.
+void get_q_dot(const System& system, const SystemData& data, Eigen::Ref<VectorXd> q_dot);
 /// Positions and velocities of every body; clears the applied forces. Must precede the calls below. O(num_bodies).
 void calc_kinematics(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                      const Eigen::Ref<const VectorXd>& u);
@@ -107,7 +101,7 @@ void add_forces(const System& system, SystemData& data, double t);
 void add_node_wrench(const System& system, SystemData& data, int body, int node_index, const Vector3d& f_W,
                      const Vector3d& t_W);
 /// u̇ by the order-n recursion with what was added; body accelerations and hinge forces become available. Order n.
-/// No allocation. Throws ComputationError when a body's articulated inertia is not positive definite.
+/// No allocation. Throws ComputationError when the articulated inertia of a body is not positive definite.
 void calc_accelerations(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> u_dot);
 /// The same by assembling the dense M(q) and solving: the second route for tests. O(num_u³).
 void calc_accelerations_dense(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> u_dot);
@@ -120,10 +114,13 @@ NodeMotion calc_node_motion(const System& system, const SystemData& data, int bo
 void calc_node_deflection(const System& system, const SystemData& data, int body, int node_index,
                           Vector3d& deflection_B, Vector3d& rotation_B);
 /// Hinge coordinates (num_hinge_q; a quaternion as w, x, y, z) and rates (num_hinge_rates) as the user knows them,
-/// prescribed ones too, and the generalized hinge force (num_hinge_rates): spring + damper after add_forces, or the
-/// force that enforces a prescribed motion after calc_accelerations.
+/// prescribed ones too, and the generalized hinge force (num_hinge_rates): spring + damper after add_forces; along
+/// coordinates that are locked or prescribed all that crosses the hinge, after calc_accelerations.
 void get_hinge(const System& system, const SystemData& data, int body, Eigen::Ref<VectorXd> q,
                Eigen::Ref<VectorXd> q_dot, Eigen::Ref<VectorXd> force);
+
+/// The wrench across the inboard hinge of a body, of every type. After calc_accelerations.
+HingeReaction get_hinge_reaction(const System& system, const SystemData& data, int body);
 
 Energies calc_energies(const System& system, const SystemData& data);
 /// Power of applied forces, dampers and prescribed motions: d/dt(kinetic + strain + potential). After
@@ -131,5 +128,9 @@ Energies calc_energies(const System& system, const SystemData& data);
 double calc_power(const System& system, const SystemData& data);
 /// Linear momentum and angular momentum about the inertial origin, in W.
 void calc_momentum(const System& system, const SystemData& data, Vector3d& linear, Vector3d& angular);
+/// The same of one body.
+void calc_body_momentum(const System& system, const SystemData& data, int body, Vector3d& linear, Vector3d& angular);
+/// Of the bodies as they are deformed. After calc_kinematics.
+SystemMass calc_system_mass(const System& system, const SystemData& data);
 
 }  // namespace bough::solver

@@ -112,7 +112,10 @@ TEST_P(BodyTest, NodeVelocityAndBiasAreTheRatesOfItsPlace) {
   };
   const NodeInBody k = at(0), plus = at(h), minus = at(-h);
   Matrix6Xd J(6, n);
-  calc_node_jacobian(node, eta_, k.T, J);
+  Vector3d place, turned;
+  calc_node_position(node, eta_, place, turned, J);
+  J.bottomRows<3>() = (k.T * J.bottomRows<3>()).eval();
+  EXPECT_LT((place - k.r).norm() + (turned - k.theta).norm(), 1e-15);
   const Vector3d v = (plus.r - minus.r) / (2 * h), a = (plus.v - minus.v) / (2 * h),
                  alpha = (plus.w - minus.w) / (2 * h);
   const Matrix3d w_skew = (plus.R_BK - minus.R_BK) / (2 * h) * k.R_BK.transpose();

@@ -102,19 +102,19 @@ TEST(Classics, PrescribedSpinNeedsTheTorqueOfInverseDynamics) {
   spec.hinges[0].motion = {"swing"};
   const System system = build(spec);
   ASSERT_EQ(system.num_q(), 1);
-  ASSERT_EQ(system.num_u(), 0);
+  ASSERT_EQ(system.num_u(), 1);
   EXPECT_EQ(system.num_hinge_u(0), 0);
   EXPECT_EQ(system.num_hinge_rates(0), 1);
   auto data = system.make_data();
   const double t = 0.35, angle = 0.6 * std::sin(2 * t), acceleration = -2.4 * std::sin(2 * t);
-  calc_u_dot(system, *data, t, VectorXd::Constant(1, 99.0), VectorXd());  // the row in q is not read
+  calc_u_dot(system, *data, t, VectorXd::Constant(1, 99.0), VectorXd::Constant(1, 99.0));  // rows that are not read
   VectorXd q(1), rate(1), torque(1);
   get_hinge(system, *data, 0, q, rate, torque);
   EXPECT_NEAR(q[0], angle, 1e-15);
   EXPECT_NEAR(rate[0], 1.2 * std::cos(2 * t), 1e-15);
   EXPECT_NEAR(torque[0], 4 * acceleration + 3 * 9.81 * std::cos(angle), 1e-12);  // J = m L²/3 = 4
   VectorXd q_dot(1);
-  calc_q_dot(system, *data, t, q, VectorXd(), q_dot);
+  calc_q_dot(system, *data, t, q, VectorXd::Zero(1), q_dot);
   EXPECT_EQ(q_dot[0], rate[0]);
 }
 

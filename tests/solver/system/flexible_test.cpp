@@ -65,8 +65,8 @@ TEST(FlexibleSystem, PrescribedSpinStiffensAndSoftensAsInTheLinearTheory) {
     VectorXd q = VectorXd::Zero(1 + n);
     auto calc_force = [&](const VectorXd& eta) {
       q.tail(n) = eta;
-      const VectorXd eta_ddot = calc_u_dot(system, *data, 1, q, VectorXd::Zero(n));
-      return VectorXd(calc_mass(system, *data) * eta_ddot);
+      const VectorXd u_dot = calc_u_dot(system, *data, 1, q, VectorXd::Zero(1 + n));
+      return VectorXd((calc_mass(system, *data) * u_dot).tail(n));
     };
     const VectorXd at_rest = calc_force(VectorXd::Zero(n));
     EXPECT_LT((at_rest - rate * rate * pull).norm(), 1e-12);

@@ -1,0 +1,29 @@
+#pragma once
+/// \file The state of a system. Rows never change their meaning: a hinge coordinate keeps its rows in q and u whether
+/// it is free, locked or prescribed, so that locking and releasing one moves nothing else.
+#include <vector>
+
+#include <Eigen/Dense>
+
+namespace bough::solver {
+
+using Eigen::VectorXd;
+
+/// What a hinge coordinate does: moves as the equations say; keeps its place (its rate is zero); follows a function.
+enum class HingeMode : unsigned char { Free, Locked, Prescribed };
+
+/// What changes at instants only.
+struct Discrete {
+  std::vector<HingeMode> mode;  ///< num_u, by row of u; modal rows are Free
+};
+
+struct State {
+  double t = 0;
+  VectorXd q;  ///< num_q; rows of prescribed coordinates are those of their functions
+  VectorXd u;  ///< num_u; likewise; zero where locked
+  VectorXd z;  ///< states of controllers
+  Discrete discrete;
+  double work = 0;  ///< done since the start by what is applied, damped or prescribed
+};
+
+}  // namespace bough::solver

@@ -1,0 +1,120 @@
+#pragma once
+/// \file Every array that the passes over a tree write, cut by stage, and the passes themselves.
+///
+///     position      calc_position(t, q)     markers, R_PB, r, X, H, Jc, M(η)
+///     velocity      calc_velocity(u)        V, b, h; clears what is applied
+///     forces        (solver/forces)         applied, hinge_force
+///     factor        calc_factor             𝒫, D = LLᵀ, G: position only
+///     acceleration  solve                   β, z, A', u̇
+/// A stage demands those it reads and undoes those that read it. No pass allocates.
+#include "solver/state/motion.hpp"
+#include "solver/tree/tree.hpp"
+
+namespace bough::solver {
+
+enum class Stage : unsigned { Position = 1, Velocity = 2, Forces = 4, Factor = 8, Acceleration = 16 };
+
+/// Of one body; nh = its free hinge coordinates, n = modes, m = modes of the parent.
+struct BodyData {
+  // Which hinge columns are free
+  int num_free = 0;
+  int free[6] = {0, 1, 2, 3, 4, 5};
+  // Position
+  HingeMotion hinge;
+  Matrix3d R_PB = Matrix3d::Identity();
+  Vector3d r_PoBo = Vector3d::Zero();  ///< in P
+  Matrix6d H = Matrix6d::Zero();       ///< free columns; at Bo, in B
+  Matrix6Xd X;                         ///< 6 x (6+m); only where the parent's end deforms
+  Matrix6Xd Jc;                        ///< 6 x n; only where the child's end deforms
+  BodyInertia inertia;                 ///< flexible only
+  BodyState state;                     ///< its parts by stage
+  // Factor
+  Matrix6d P6 = Matrix6d::Zero();  ///< rigid: articulated inertia 𝒫
+  Matrix6d G6 = Matrix6d::Zero();  ///< rigid: D⁻¹ Wᵀ, nh x 6
+  Matrix6d D6 = Matrix6d::Zero();  ///< rigid: 1/D (nh = 1) or its factor L
+  MatrixXd P;                      ///< flexible: 𝒫, (6+n)²
+  MatrixXd W, D, G;                ///< flexible: 𝒫ℋ (6+n)x(nh+n), L of ℋᵀ𝒫ℋ, L⁻¹W_topᵀ (nh+n)x6
+  Matrix6Xd PX;                    ///< 6 x (6+m), scratch
+  // What the terms of a pivot may add up to
+  double mass_carried = 0;   ///< of the body and all that hangs on it
+  double second_moment = 0;  ///< bound of ∫ρ|p|² of them about Bo
+  VectorXd modal_size;       ///< n: of the modal rows
+};
+
+/// One use of the factored tree: loads in, accelerations (or jumps of the velocity) out.
+struct Sweep {
+  VectorXd beta;   ///< num_v: h - applied, tip to base; then β + 𝒫b
+  Matrix6Xd b;     ///< 6 x bodies
+  VectorXd tau;    ///< num_u: hinge rows
+  VectorXd z;      ///< num_u: free hinge rows first, then modal rows, per body
+  Matrix6Xd A;     ///< 6 x bodies
+  VectorXd u_dot;  ///< num_u: given where not free
+  Vector6d ground = Vector6d::Zero();
+};
+
+struct TreeData {
+  unsigned done = 0;  ///< Stage bits
+  std::vector<HingeMode> mode;
+  double t = 0;
+  VectorXd q, u;                 ///< rows of prescribed coordinates hold their functions' values, of locked ones zero
+  VectorXd given_u, given_udot;  ///< num_u: rates and accelerations of the prescribed ones
+  std::vector<MarkerMotion> markers;
+  VectorXd h, applied;   ///< num_v: [f; t about Bo; modal] per body, in B, gravity left out
+  VectorXd hinge_force;  ///< num_u: springs and dampers; after solve, where not free, all that crosses the hinge
+  Vector3d gravity = Vector3d::Zero();  ///< set by add_forces
+  Sweep motion, response;
+  BodyData ground;
+  std::vector<BodyData> bodies;
+
+  bool has(Stage s) const { return (done & static_cast<unsigned>(s)) != 0; }
+  void demand(Stage s) const { BOUGH_DEMAND(has(s)); }
+  const BodyData& operator[](int b) const { return b < 0 ? ground : bodies[static_cast<size_t>(b)]; }
+  BodyData& operator[](int b) { return bodies[static_cast<size_t>(b)]; }
+};
+
+TreeData make_tree_data(const Tree& tree);
+/// What each coordinate does from now on; mode: num_u. Sizes the arrays of flexible bodies anew: allocates.
+void set_modes(const Tree& tree, const std::vector<HingeMode>& mode, TreeData& data);
+
+void calc_position(const Tree& tree, double t, const ConstVectorRef& q, TreeData& data);
+void calc_velocity(const Tree& tree, const ConstVectorRef& u, TreeData& data);
+/// Both in one walk over the bodies.
+void calc_kinematics(const Tree& tree, double t, const ConstVectorRef& q, const ConstVectorRef& u, TreeData& data);
+
+/// Throws ComputationError "solver.indefinite-mass" naming time, body and coordinate where a pivot of D is less than
+/// kLeastPivot of what its terms may add up to.
+void calc_factor(const Tree& tree, TreeData& data);
+inline constexpr double kLeastPivot = 1e-12;
+
+/// u̇ (num_u) of what is applied.
+void solve(const Tree& tree, TreeData& data, Eigen::Ref<VectorXd> u_dot);
+/// calc_factor and solve in one walk over the bodies.
+void factor_and_solve(const Tree& tree, TreeData& data, Eigen::Ref<VectorXd> u_dot);
+
+/// M⁻¹ Jᵀ [f; t] of a wrench at a marker, in the basis of its body: what it adds to u̇, or, as an impulse, to u. After
+/// calc_factor. `bodies` (ascending, closed towards the base) are those whose rows are wanted; empty: all. Base to tip
+/// it visits them only, tip to base the marker's body and its ancestors.
+void solve_response(const Tree& tree, TreeData& data, int marker, const Vector6d& wrench,
+                    const std::vector<int>& bodies, Eigen::Ref<VectorXd> du);
+/// The jump of u (num_u) where the rates of coordinates that are not free jump by `given` (num_u; free and modal rows
+/// are not read) and nothing else acts: momenta along free coordinates hold. After calc_factor.
+void solve_jump(const Tree& tree, TreeData& data, const ConstVectorRef& given, Eigen::Ref<VectorXd> du);
+
+/// The wrench that the parent puts on body b across its hinge, about Bo, in B. After solve.
+Vector6d calc_hinge_wrench(const Tree& tree, const TreeData& data, int b);
+/// The same at the origin of Hc, in the axes of Hp.
+HingeReaction calc_hinge_reaction(const Tree& tree, const TreeData& data, int b);
+
+/// The second route to u̇: Jacobians of every body, M = Σ Jᵀ M(η) J, no elimination.
+void calc_dense_accelerations(const Tree& tree, const TreeData& data, Eigen::Ref<VectorXd> u_dot);
+/// The dense mass matrix over all rows of u and the right-hand side it meets where all rows are free.
+void calc_dense_equations(const Tree& tree, const TreeData& data, MatrixXd& mass, VectorXd& force);
+
+// One body at a time, for the walks.
+void calc_body_position(const Tree& tree, int b, TreeData& data);
+void calc_body_velocity(const Tree& tree, int b, TreeData& data);
+void factor_body(const Tree& tree, int b, TreeData& data);
+void solve_to_base(const Tree& tree, int b, const TreeData& data, Sweep& s);
+void solve_to_tip(const Tree& tree, int b, const TreeData& data, Sweep& s);
+
+}  // namespace bough::solver

@@ -1,0 +1,188 @@
+// Articulated inertia, tip to base: Featherstone, "Rigid Body Dynamics Algorithms" (2008), table 7.1; modal coordinates
+// as extra mobilizer coordinates: Jain & Rodriguez, JGCD 15(6) 1992. With ℋ = [H -Jc; 0 1] over [u_h; η̇], H the free
+// columns:
+//   W = 𝒫ℋ, D = ℋᵀW, G = D⁻¹ W_topᵀ, 𝒫⁺ = 𝒫_66 - W_top G;   parent: 𝒫 += Xᵀ𝒫⁺X.
+// With D = LLᵀ a flexible body stops halfway: G = L⁻¹W_topᵀ, 𝒫⁺ = 𝒫_66 - GᵀG.
+#include <cmath>
+#include <sstream>
+
+#include "solver/tree/data.hpp"
+
+namespace bough::solver {
+
+namespace {
+
+// Bound of (Hᵀ 𝒫 H)_ii before anything of it cancels.
+double calc_size(const BodyData& d, const ConstVectorRef& column) {
+  const double root = std::sqrt(d.mass_carried) * column.head<3>().norm() +
+                      std::sqrt(std::max(0.0, d.second_moment)) * column.tail<3>().norm();
+  return root * root;
+}
+
+[[noreturn]] void fail_indefinite(const TreeBody& tb, const BodyData& d, int pivot, double t) {
+  std::ostringstream what;
+  what << "the articulated mass matrix of body '" << tb.name << "' is not positive definite at t = " << t << ": ";
+  if (pivot < d.num_free) {
+    what << "next to nothing moves along coordinate " << d.free[pivot] + 1 << " of its hinge '" << tb.hinge_name << "'";
+  } else {
+    what << "next to nothing moves with its modal coordinate " << pivot - d.num_free + 1;
+  }
+  throw ComputationError("solver.indefinite-mass", tb.hinge_at, what.str(),
+                         pivot < d.num_free
+                             ? "give the body, or one that it carries, mass and inertia along that coordinate"
+                             : "its mass integrals do not belong to one mass matrix, or its modes do what its hinge "
+                               "does: write the file anew with reduce, or keep fewer modes");
+}
+
+template <int NH>
+void factor_rigid(const TreeBody& tb, BodyData& d, double t, Matrix6d& passed) {
+  if constexpr (NH == 0) {
+    passed = d.P6;
+  } else {
+    const auto H = d.H.leftCols<NH>();
+    const Eigen::Matrix<double, 6, NH> W = d.P6 * H;
+    Eigen::Matrix<double, NH, NH> D = H.transpose() * W;
+    for (int i = 0; i < NH; ++i) {  // Cholesky, so that a bad pivot has a name
+      double pivot = D(i, i);
+      for (int k = 0; k < i; ++k) pivot -= D(i, k) * D(i, k);
+      if (!(pivot > kLeastPivot * calc_size(d, d.H.col(i)))) fail_indefinite(tb, d, i, t);
+      D(i, i) = std::sqrt(pivot);
+      for (int j = i + 1; j < NH; ++j) {
+        double below = D(j, i);
+        for (int k = 0; k < i; ++k) below -= D(j, k) * D(i, k);
+        D(j, i) = below / D(i, i);
+      }
+    }
+    Eigen::Matrix<double, NH, 6> G = W.transpose();
+    if constexpr (NH == 1) {
+      d.D6(0, 0) = 1 / (D(0, 0) * D(0, 0));
+      G *= d.D6(0, 0);
+    } else {
+      D.template triangularView<Eigen::Lower>().solveInPlace(G);
+      D.template triangularView<Eigen::Lower>().transpose().solveInPlace(G);
+      d.D6.topLeftCorner<NH, NH>() = D;
+    }
+    d.G6.topRows<NH>() = G;
+    passed.noalias() = d.P6 - W * G;
+  }
+}
+
+void factor_rigid(const TreeBody& tb, BodyData& d, double t, Matrix6d& passed) {
+  switch (d.num_free) {
+    case 0:
+      return factor_rigid<0>(tb, d, t, passed);
+    case 1:
+      return factor_rigid<1>(tb, d, t, passed);
+    case 2:
+      return factor_rigid<2>(tb, d, t, passed);
+    case 3:
+      return factor_rigid<3>(tb, d, t, passed);
+    case 4:
+      return factor_rigid<4>(tb, d, t, passed);
+    case 5:
+      return factor_rigid<5>(tb, d, t, passed);
+    case 6:
+      return factor_rigid<6>(tb, d, t, passed);
+    default:
+      BOUGH_DEMAND(false);
+  }
+}
+
+void set_D(const TreeBody& tb, BodyData& d) {
+  const int n = tb.num_modes();
+  d.D.bottomRows(n) = d.W.bottomRows(n);
+  for (int i = 0; i < d.num_free; ++i) d.D.row(i).noalias() = d.H.col(i).transpose() * d.W.topRows<6>();
+  if (tb.on_child.moves) d.D.bottomRows(n).noalias() -= d.Jc.transpose() * d.W.topRows<6>();
+}
+
+// The first pivot of the flexible body's D that is too small, or -1; after it D holds no factor any more.
+int find_bad_pivot(const TreeBody& tb, BodyData& d) {
+  set_D(tb, d);
+  const auto size = d.D.rows();
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const double own = i < d.num_free ? calc_size(d, d.H.col(i)) : d.modal_size[i - d.num_free];
+    const double pivot = d.D(i, i) - d.D.row(i).head(i).squaredNorm();
+    if (!(pivot > kLeastPivot * own)) return static_cast<int>(i);
+    d.D(i, i) = std::sqrt(pivot);
+    for (Eigen::Index j = i + 1; j < size; ++j)
+      d.D(j, i) = (d.D(j, i) - d.D.row(j).head(i).dot(d.D.row(i).head(i))) / d.D(i, i);
+  }
+  return -1;
+}
+
+void factor_flexible(const TreeBody& tb, BodyData& d, double t, Matrix6d& passed) {
+  const int n = tb.num_modes(), nh = d.num_free;
+  d.W.rightCols(n) = d.P.rightCols(n);
+  for (int i = 0; i < nh; ++i) d.W.col(i).noalias() = d.P.leftCols<6>() * d.H.col(i);
+  if (tb.on_child.moves) {
+    d.W.rightCols(n).noalias() -= d.P.leftCols<6>() * d.Jc;
+    for (int j = 0; j < n; ++j) {
+      const double root = std::sqrt(d.modal_size[j]) + std::sqrt(calc_size(d, d.Jc.col(j)));
+      d.modal_size[j] = root * root;
+    }
+  }
+  set_D(tb, d);
+  const Eigen::LLT<Eigen::Ref<MatrixXd>> factor(d.D);  // in place
+  bool good = factor.info() == Eigen::Success;
+  for (int i = 0; i < nh && good; ++i) good = d.D(i, i) * d.D(i, i) > kLeastPivot * calc_size(d, d.H.col(i));
+  for (int j = 0; j < n && good; ++j) good = d.D(nh + j, nh + j) * d.D(nh + j, nh + j) > kLeastPivot * d.modal_size[j];
+  if (!good) fail_indefinite(tb, d, std::max(0, find_bad_pivot(tb, d)), t);
+  d.G = d.W.topRows<6>().transpose();
+  d.D.triangularView<Eigen::Lower>().solveInPlace(d.G);
+  passed = d.P.topLeftCorner<6, 6>();
+  passed.noalias() -= d.G.transpose() * d.G;
+}
+
+// S(r)ᵀR P Rᵀ S(r), R = R_PB, of a symmetric P.
+void add_moved(const BodyData& d, const Matrix6d& from, Eigen::Ref<Matrix6d, 0, Eigen::OuterStride<>> to) {
+  const Matrix3d& R = d.R_PB;
+  const Matrix3d R_BP = R.transpose(), r = skew(d.r_PoBo);
+  const Matrix3d M = R * from.topLeftCorner<3, 3>() * R_BP;
+  const Matrix3d C = R * from.topRightCorner<3, 3>() * R_BP;
+  const Matrix3d I = R * from.bottomRightCorner<3, 3>() * R_BP;
+  const Matrix3d N = C - M * r;
+  to.topLeftCorner<3, 3>() += M;
+  to.topRightCorner<3, 3>() += N;
+  to.bottomLeftCorner<3, 3>() += N.transpose();
+  to.bottomRightCorner<3, 3>() += I + r * N - C.transpose() * r;
+}
+
+void add_size(const BodyData& d, BodyData& P) {
+  const double root = std::sqrt(std::max(0.0, d.second_moment)) + std::sqrt(d.mass_carried) * d.r_PoBo.norm();
+  P.second_moment += root * root;
+  P.mass_carried += d.mass_carried;
+}
+
+}  // namespace
+
+void factor_body(const Tree& tree, int b, TreeData& data) {
+  const TreeBody& tb = tree[b];
+  BodyData& d = data[b];
+  Matrix6d passed;
+  if (tb.is_flexible()) {
+    factor_flexible(tb, d, data.t, passed);
+  } else {
+    factor_rigid(tb, d, data.t, passed);
+  }
+  if (tb.parent < 0) return;
+  BodyData& P = data[tb.parent];
+  if (tb.on_parent.moves) {
+    d.PX.noalias() = passed * d.X;
+    P.P.noalias() += d.X.transpose() * d.PX;
+    for (int j = 0; j < P.modal_size.size(); ++j) P.modal_size[j] += calc_size(d, d.X.col(6 + j));
+  } else if (tree[tb.parent].is_flexible()) {
+    add_moved(d, passed, P.P.topLeftCorner<6, 6>());
+  } else {
+    add_moved(d, passed, P.P6);
+  }
+  add_size(d, P);
+}
+
+void calc_factor(const Tree& tree, TreeData& data) {
+  data.demand(Stage::Position);
+  if (data.has(Stage::Factor)) return;
+  for (int b = tree.size() - 1; b >= 0; --b) factor_body(tree, b, data);
+  data.done |= static_cast<unsigned>(Stage::Factor);
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,67 @@
+// M⁻¹ times something: the sweeps of solve.cpp without h, gravity and bias.
+#include "solver/tree/data.hpp"
+
+namespace bough::solver {
+
+namespace {
+
+Sweep& clear(TreeData& data) {
+  data.demand(Stage::Factor);
+  Sweep& s = data.response;
+  s.beta.setZero();
+  s.b.setZero();
+  s.tau.setZero();
+  s.z.setZero();
+  s.u_dot.setZero();
+  s.ground.setZero();
+  return s;
+}
+
+}  // namespace
+
+void solve_response(const Tree& tree, TreeData& data, int marker, const Vector6d& wrench,
+                    const std::vector<int>& bodies, Eigen::Ref<VectorXd> du) {
+  BOUGH_DEMAND(du.size() == tree.num_u);
+  Sweep& s = clear(data);
+  const Marker& m = tree.markers[static_cast<size_t>(marker)];
+  if (m.body >= 0) {
+    const TreeBody& tb = tree[m.body];
+    const MarkerMotion& motion = data.markers[static_cast<size_t>(marker)];
+    const Vector3d f = wrench.head<3>();
+    s.beta.segment<3>(tb.v_offset) = -f;
+    s.beta.segment<3>(tb.v_offset + 3) = -(motion.r.cross(f) + wrench.tail<3>());
+    for (int j = 0; j < motion.J.cols(); ++j) s.beta[tb.v_offset + 6 + j] = -motion.J.col(j).dot(wrench);
+  }
+  for (int b = m.body; b >= 0; b = tree[b].parent) solve_to_base(tree, b, data, s);
+  if (bodies.empty()) {
+    for (int b = 0; b < tree.size(); ++b) solve_to_tip(tree, b, data, s);
+  } else {
+    for (const int b : bodies) solve_to_tip(tree, b, data, s);
+  }
+  du = s.u_dot;
+}
+
+void solve_jump(const Tree& tree, TreeData& data, const ConstVectorRef& given, Eigen::Ref<VectorXd> du) {
+  BOUGH_DEMAND(given.size() == tree.num_u && du.size() == tree.num_u);
+  Sweep& s = clear(data);
+  for (int b = 0; b < tree.size(); ++b) {
+    const TreeBody& tb = tree[b];
+    const BodyData& d = data[b];
+    const MarkerMotion& p = data.markers[static_cast<size_t>(tb.parent_marker)];
+    const MarkerMotion& c = data.markers[static_cast<size_t>(tb.child_marker)];
+    const Matrix3d R_BHp = d.R_PB.transpose() * p.R;
+    for (int i = 0; i < tb.num_hinge_u(); ++i) {
+      const int row = tb.u_offset + i;
+      if (data.mode[static_cast<size_t>(row)] == HingeMode::Free) continue;
+      const Vector3d angular = R_BHp * d.hinge.H.col(i).tail<3>() * given[row];
+      s.b.col(b).head<3>() += R_BHp * d.hinge.H.col(i).head<3>() * given[row] + c.r.cross(angular);
+      s.b.col(b).tail<3>() += angular;
+      s.u_dot[row] = given[row];
+    }
+  }
+  for (int b = tree.size() - 1; b >= 0; --b) solve_to_base(tree, b, data, s);
+  for (int b = 0; b < tree.size(); ++b) solve_to_tip(tree, b, data, s);
+  du = s.u_dot;
+}
+
+}  // namespace bough::solver
