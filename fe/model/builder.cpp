@@ -299,9 +299,9 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
   std::vector<double> mass(model_.autospc_.size(), 0);
   if (asks_mass)
     mass = calc_masses(model_.nodes_, model_.elements_, model_.T_, first.fdof_ldof, model_.mass_kind_, model_.autospc_);
-  std::set<std::pair<int, bool>> massive;  // blocks by node and whether they are rotations
+  std::set<int> massive;  // nodes; rotations have next to no mass, and rigid motions are told by their components
   for (size_t e = 0; e < mass.size(); ++e)
-    if (mass[e] > 0 && !only_null) massive.emplace(model_.autospc_[e].node, model_.autospc_[e].component > 3);
+    if (mass[e] > 0 && !only_null && model_.autospc_[e].component <= 3) massive.insert(model_.autospc_[e].node);
   int num_massive = 0, num_skew = 0;
   std::vector<AutospcEntry> held;
   for (size_t e = 0; e < mass.size(); ++e) {
@@ -310,9 +310,9 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
     if (only_null && !options_.uses_enforced && mass[e] > 0) continue;
     // Where the block carries mass or its weight, the oblique direction is held and the others stay what they are; else
     // the component alone, which strains nothing either and is what Nastran prints.
-    if (massive.count({entry.node, entry.component > 3}) == 0) entry.terms.clear();
+    if (entry.component > 3 || massive.count(entry.node) == 0) entry.terms.clear();
     num_skew += entry.is_skew ? 1 : 0;
-    num_massive += entry.is_skew && mass[e] > 0 ? 1 : 0;
+    num_massive += entry.terms.empty() ? 0 : 1;
     held.push_back(std::move(entry));
   }
   model_.autospc_ = std::move(held);
