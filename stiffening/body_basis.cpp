@@ -35,8 +35,9 @@ void check_basis(const BodySpec& spec, bool needs_modes, const SourceLocation& w
   for (const auto& name : spec.residual) {
     if (names.count(name)) continue;
     const std::vector<std::string> known(names.begin(), names.end());
+    const std::string near = find_nearest(name, known);
     diagnostics.error("reduce.unknown-load", where, "residual names '" + name + "', no load of the body is called so",
-                      "did you mean \"" + find_nearest(name, known) + "\"");
+                      near.empty() ? "name a load, inertial or interface" : "did you mean \"" + near + "\"?");
   }
 }
 

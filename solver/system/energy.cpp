@@ -50,9 +50,9 @@ Energies calc_energies(const System& system, const SystemData& data) {
   return e;
 }
 
-double calc_power(const System& system, const SystemData& data) {
+Power calc_powers(const System& system, const SystemData& data) {
   const Tree& tree = system.impl().tree;
-  double power = 0;
+  double power = 0, dissipated = 0;
   for (size_t b = 0; b < tree.bodies.size(); ++b) {
     const TreeBody& tb = tree.bodies[b];
     const BodyData& d = data.tree.bodies[b];
@@ -60,12 +60,12 @@ double calc_power(const System& system, const SystemData& data) {
     const auto eta_dot = data.tree.u.segment(tb.eta_dot_offset(), n);
     power += d.applied.head<3>().dot(d.state.v_B) + d.applied.segment<3>(3).dot(d.state.w_B);
     power += d.applied.tail(n).dot(eta_dot);
-    for (int j = 0; j < n; ++j) power -= eta_dot[j] * tb.body.D().col(j).dot(eta_dot);
+    for (int j = 0; j < n; ++j) dissipated += eta_dot[j] * tb.body.D().col(j).dot(eta_dot);
     const int nu = tb.hinge->num_u();
     if (tb.is_prescribed()) power += d.hinge_force.head(nu).dot(d.hinge_rate.head(nu));
-    for (int i = 0; i < tb.damping.size(); ++i) power -= tb.damping[i] * d.hinge_rate[i] * d.hinge_rate[i];
+    for (int i = 0; i < tb.damping.size(); ++i) dissipated += tb.damping[i] * d.hinge_rate[i] * d.hinge_rate[i];
   }
-  return power;
+  return {power - dissipated, dissipated};
 }
 
 void calc_momentum(const System& system, const SystemData& data, Vector3d& linear, Vector3d& angular) {

@@ -322,11 +322,11 @@ TEST(Simulate, HeaderListsTheChannels) {
     EXPECT_FALSE(c.description.empty());
     EXPECT_FALSE(c.dims.empty());
   }
-  EXPECT_THAT(paths,
-              ::testing::ElementsAre("/time", "/bodies/body/position", "/bodies/body/quaternion",
-                                     "/bodies/body/velocity", "/bodies/body/angular_velocity", "/hinges/hinge/q",
-                                     "/hinges/hinge/qdot", "/hinges/hinge/force", "/energy/kinetic", "/energy/strain",
-                                     "/energy/potential", "/energy/work", "/momentum/linear", "/momentum/angular"));
+  EXPECT_THAT(paths, ::testing::ElementsAre("/time", "/bodies/body/position", "/bodies/body/quaternion",
+                                            "/bodies/body/velocity", "/bodies/body/angular_velocity", "/hinges/hinge/q",
+                                            "/hinges/hinge/qdot", "/hinges/hinge/force", "/energy/kinetic",
+                                            "/energy/strain", "/energy/potential", "/energy/work", "/energy/dissipated",
+                                            "/momentum/linear", "/momentum/angular"));
   EXPECT_EQ(r.sink.header().system_text, "# the file");
   EXPECT_THAT(r.sink.header().settings,
               ::testing::Contains(std::pair<std::string, std::string>("integrator", "adams")));
