@@ -53,6 +53,7 @@ std::string SystemOde::name_first_non_finite(double t, const Eigen::Ref<const Ve
   const System::Impl& impl = system_.impl();
   for (const TreeBody& tb : impl.tree.bodies) {
     for (const TimeFunction* f : tb.motion) {
+      if (f == nullptr) continue;
       const auto value = f->calc(t);
       if (!std::isfinite(value.f + value.f_dot + value.f_ddot)) return "the motion of hinge '" + tb.hinge_name + "'";
     }
@@ -64,7 +65,9 @@ std::string SystemOde::name_first_non_finite(double t, const Eigen::Ref<const Ve
   VectorXd y_dot = VectorXd::Zero(size());
   calc_derivative(t, y, y_dot);
   for (size_t b = 0; b < impl.tree.bodies.size(); ++b) {
-    if (!data_->tree.bodies[b].applied.allFinite()) return "the load on body '" + impl.tree.bodies[b].name + "'";
+    const TreeBody& tb = impl.tree.bodies[b];
+    if (!data_->tree.applied.segment(tb.v_offset, 6 + tb.num_modes()).allFinite())
+      return "the load on body '" + impl.tree.bodies[b].name + "'";
   }
   const int row = find_bad(y_dot.tail(size() - num_q_));
   return row < 0 ? "" : "the derivative of " + name_row(num_q_ + row);

@@ -92,6 +92,7 @@ void collect_breakpoints(System::Impl& impl) {
     to.insert(to.end(), times.begin(), times.end());
   };
   const auto add_motion = [&](const TimeFunction* f) {
+    if (f == nullptr) return;
     add(impl.breakpoints, f->breakpoints());
     add(impl.landmarks, f->landmarks());
   };
