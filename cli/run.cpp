@@ -132,6 +132,7 @@ int run_run(const RunOptions& o) {
   std::unique_ptr<records::ResultSink> writer;
   if (o.resume) {
     demand_file(output);
+    check_place(output);
     options.resume = hdf5::read_checkpoint(output);
     const double end = loaded.spec.simulation.start + loaded.spec.simulation.duration;
     if (options.resume->time >= end * (1 - 1e-12)) {

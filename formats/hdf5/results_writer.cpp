@@ -212,6 +212,7 @@ void ResultsWriter::write_checkpoint_to(const std::string& group, const records:
 }
 
 void ResultsWriter::open_existing(const records::ResultsHeader& header) {
+  file_.lock();
   // Everything that can be wrong is looked at before the file is touched.
   const ResultsFile old = read_results(file_.path());
   Diagnostics diagnostics;
@@ -247,6 +248,10 @@ void ResultsWriter::open_existing(const records::ResultsHeader& header) {
   const auto num_kept_events = std::count_if(old.events.begin(), old.events.end(),
                                              [&](const records::EventRecord& e) { return e.time <= time + tolerance; });
   const records::Checkpoint checkpoint = read_checkpoint(file_.path());
+  if (checkpoint.time != time)
+    throw InputError("hdf5.resume", {file_.path()},
+                     "the file was continued to time " + std::to_string(checkpoint.time) + " in the meantime",
+                     "resume it again");
 
   file_.open();
   last_checkpoint_ = checkpoint;
