@@ -85,8 +85,9 @@ class Folder {
     const bool is_own = before.is_object() && before.value("format", "") == "bough-campaign";
     check_foreign(in ? is_own : !fs::exists(state), is_own);
     if (is_own && before != now && !restart) throw describe_change(before, now);
-    lock(fmt::format(".lock-{}-of-{}", shard.index + 1, shard.count));
-    if (restart) remove_cases();
+    const auto own = fmt::format(".lock-{}-of-{}", shard.index + 1, shard.count);
+    lock(own);
+    if (restart) remove_cases(own);
     write_text_file(state, now.dump(2) + "\n");
     fingerprint_ = hdf5::calc_sha256(state);
   }
@@ -137,11 +138,11 @@ class Folder {
                        "wait until it ends");
   }
 
-  void remove_cases() {
+  void remove_cases(const std::string& own_lock) {
     std::vector<fs::path> cases;
     for (const auto& entry : fs::directory_iterator(path_)) {
       const auto name = entry.path().filename().string();
-      if (name.starts_with(".lock-")) lock(name);
+      if (name.starts_with(".lock-") && name != own_lock) lock(name);
       const bool is_case = name.starts_with("case-") && name.find_first_not_of("0123456789", 5) == std::string::npos;
       if (is_case && is_case_folder(entry.path()) && !fs::is_empty(entry.path())) cases.push_back(entry.path());
     }

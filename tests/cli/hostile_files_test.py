@@ -40,6 +40,10 @@ class HostileFiles(ProgramTest):
     READ_BODY = [["info", "boom.h5"], ["check", "boom.h5"], ["flx", "boom.h5", "-o", "x.FLX"], ["compare", "boom.h5"],
                  ["run", "spinup.toml", "-o", "new.h5"]]
 
+    def get_bytes(self, name):
+        with open(self.path(name), "rb") as f:
+            return f.read()
+
     def read(self, words, seconds=20):
         """In little memory and time, without a crash."""
         begin = time.monotonic()
@@ -94,12 +98,12 @@ class HostileFiles(ProgramTest):
             del f["rigid/mass"]
             f["rigid/mass"] = h5py.ExternalLink("other.h5", "secret")
         self.refused(self.READ_BODY, "hdf5.outside", ["/rigid/mass is a link to another file"])
-        before = open(self.path("other.h5"), "rb").read()
+        before = self.get_bytes("other.h5")
         with h5py.File(self.path("r.h5"), "a") as f:
             f.move("checkpoint", "old")
             f["checkpoint"] = h5py.ExternalLink("other.h5", "/")
         self.refused(self.READ_RESULTS, "hdf5.outside")
-        self.assertEqual(open(self.path("other.h5"), "rb").read(), before)
+        self.assertEqual(self.get_bytes("other.h5"), before)
 
     def test_pipe_is_no_file(self):
         os.mkfifo(self.path("pipe.h5"))
@@ -159,7 +163,7 @@ class HostileFiles(ProgramTest):
     def test_bits_that_fell_over(self):
         draw = random.Random(7)
         for name, commands in (("r.h5", self.READ_RESULTS), ("boom.h5", self.READ_BODY)):
-            whole = bytearray(open(self.path(name), "rb").read())
+            whole = bytearray(self.get_bytes(name))
             # Heads, attributes and heaps lie between the data: the bytes that are not part of a long run of numbers.
             for k in range(25):
                 bytes_ = bytearray(whole)

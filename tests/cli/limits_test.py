@@ -40,7 +40,7 @@ class Limits(ProgramTest):
         self.fails(1, "check", "twice.bdf", says=["a gigabyte"], error="deck.include-many")
 
     def test_repeats(self):
-        lines = "GRID,{0},,5.,0.,0.\n=,*1,==\n={1}\n"
+        lines = "GRID,{0},,5.,0.,0.\n=,*1,==\n={1},\n"
         self.write("repeat.bdf", BEAM.replace("GRID,3", lines.format(10, 1000000000) + "GRID,3"))
         self.fails(1, "check", "repeat.bdf", says=["1000000000, expected 1 to 1000000"], error="deck.bad-replication")
         many = "".join(lines.format(k * 1000000, 700000) for k in (1, 2, 3))

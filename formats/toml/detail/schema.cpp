@@ -13,8 +13,7 @@ using nlohmann::json;
 using Kind = Value::Kind;
 
 constexpr const char* kNamePattern = R"(^(?!\.{1,2}$)[^/\x00-\x1f\x7f]{1,1000}$)";
-/// Most letters of a name, and of what a message shows of it.
-constexpr std::size_t kMostLetters = 1000, kMostShown = 80;
+constexpr std::size_t kMostLetters = 1000;
 
 /// Tables of the contract that this version does not have yet.
 const std::vector<std::string>& get_later_tables() {
@@ -22,7 +21,11 @@ const std::vector<std::string>& get_later_tables() {
   return names;
 }
 
-std::string quote(const std::string& s) { return "'" + s + "'"; }
+/// What a message shows of a text.
+constexpr std::size_t kMostShown = 80;
+std::string quote(const std::string& s) {
+  return "'" + (s.size() <= kMostShown ? s : s.substr(0, kMostShown) + "...") + "'";
+}
 
 std::string join(const std::vector<std::string>& words, const char* separator = ", ") {
   std::string text;
@@ -156,10 +159,9 @@ class Checker {
     const std::string& name = v.text;
     const bool has_control =
         std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; });
-    const std::string shown = quote(name.size() <= kMostShown ? name : name.substr(0, kMostShown) + "...");
     if (name.empty() || name.find('/') != std::string::npos || name == "." || name == ".." || has_control)
       error("toml.bad-name", line,
-            path + " is " + (has_control ? "a text with control characters" : shown) +
+            path + " is " + (has_control ? "a text with control characters" : quote(name)) +
                 ", expected a name without a slash and not empty",
             "rename it");
     else if (name.size() > kMostLetters)
