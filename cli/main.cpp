@@ -147,6 +147,5 @@ std::vector<std::string> list_verbs() {
 int main(int argc, char** argv) {
   bough::cli::prepare_for_memory_limit(argv);
   bough::cli::secure_streams();
-  bough::cli::end_cleanly_on_signals();
   return run(argc, argv);
 }

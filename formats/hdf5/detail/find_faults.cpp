@@ -12,10 +12,14 @@ namespace {
 constexpr double kMega = 1024.0 * 1024.0;
 /// Bytes read at a time.
 constexpr double kPiece = 8 * kMega;
+/// At the end of a dataset whose middle is passed over.
+constexpr double kEnd = kMega / 4;
 /// Numbers may be claimed and not stored up to this many bytes in a whole file: samples of a run that was killed.
 constexpr double kMostUnstored = 64 * kMega;
 /// A compressed file may hold this many times its size.
 constexpr double kMostCompression = 200;
+/// Of numbers that are stored as they are so many bytes are read, and then the ends of each dataset.
+constexpr double kMostPlain = 32 * kMega;
 constexpr int kMostLevels = 64;
 
 struct Link {
@@ -170,17 +174,22 @@ class Walker {
       return report_claim(path + " claims the shape " + describe_shape(dims) + ", which the " +
                           std::to_string(static_cast<long long>(file_size_)) + " bytes of the file cannot hold");
     const Handle memory = make_memory_type(type.get());
-    if (memory.is_valid()) read_rows(dataset, path, memory, dims);
+    if (!memory.is_valid()) return;
+    // H5Dget_storage_size has walked through all chunks; what is behind them is numbers as they lie in the file.
+    const bool is_plain = num_filters == 0 && H5Tget_class(memory.get()) != H5T_STRING;
+    read_rows(dataset, path, memory, dims, is_plain && plain_ > kMostPlain);
+    if (is_plain) plain_ += size;
   }
 
-  /// All of the dataset, some rows at a time.
-  void read_rows(hid_t dataset, const std::string& path, const Handle& memory, const Dims& dims) {
+  /// All of the dataset, some rows at a time, or the first and the last of them.
+  void read_rows(hid_t dataset, const std::string& path, const Handle& memory, const Dims& dims, bool ends_only) {
     const double width = static_cast<double>(H5Tget_size(memory.get()));
     Dims start(dims.size(), 0), block = dims;
     const hsize_t rows = dims.empty() ? 1 : dims[0];
     const double row_size = calc_count(dims) / static_cast<double>(rows) * width;
-    const auto step = static_cast<hsize_t>(std::max(1.0, kPiece / row_size));
-    for (hsize_t row = 0; row < rows; row += step) {
+    const auto step = static_cast<hsize_t>(std::max(1.0, (ends_only ? kEnd : kPiece) / row_size));
+    for (hsize_t row = 0; row < rows;
+         row = ends_only ? std::max(row + step, rows - std::min(rows, step)) : row + step) {
       const Handle from(H5Dget_space(dataset), H5Sclose);
       Handle to(H5Scopy(from.get()), H5Sclose);
       if (!dims.empty()) {
@@ -200,7 +209,7 @@ class Walker {
   }
 
   const std::string& path_;
-  double file_size_ = 0, unstored_ = 0, text_ = 0;
+  double file_size_ = 0, unstored_ = 0, text_ = 0, plain_ = 0;
   std::set<haddr_t> seen_;
   Diagnostics found_;
 };
