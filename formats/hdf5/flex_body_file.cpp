@@ -274,7 +274,8 @@ FlexBody read_flex_body(const std::string& path) {
   const auto is_unknown = [&](int id) { return body.find_node(id) < 0; };
   if (const auto& nodes = body.interface_nodes; std::any_of(nodes.begin(), nodes.end(), is_unknown)) {
     const auto first = std::find_if(nodes.begin(), nodes.end(), is_unknown);
-    file.error("hdf5.value", "/nodes/interface names node " + std::to_string(*first) + ", which /nodes/id does not have",
+    file.error("hdf5.value",
+               "/nodes/interface names node " + std::to_string(*first) + ", which /nodes/id does not have",
                "write the file again");
   }
 

@@ -182,14 +182,16 @@ class Files(ProgramTest):
             self.assertEqual(f.read(), BEAM)
 
     def test_limit_of_memory_is_told(self):
-        for limit in (250, 400, 600):
+        told = 0
+        for limit in range(170, 620, 30):  # in MB; below some 160 the libraries are not loaded
             result = subprocess.run(["bash", "-c", f"ulimit -v {limit}000; exec {PROGRAM} modes beam.bdf -n 3"],
-                                    cwd=self.folder, text=True, capture_output=True, timeout=30,
+                                    cwd=self.folder, text=True, capture_output=True, timeout=60,
                                     env={k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"})
-            self.assertIn(result.returncode, (0, 3), result.stderr)
-            if result.returncode == 3:
-                self.assertIn("error:", result.stderr)
-        # [cli.no-memory] where MPI itself still starts depends on the machine.
+            told += "[cli.no-memory]" in result.stderr
+            if result.returncode != 127:
+                self.assertIn(result.returncode, (0, 3), result.stderr)
+                self.assertTrue(result.returncode == 0 or result.stderr)
+        self.assertGreater(told, 0)
 
 
 class Campaigns(ProgramTest):

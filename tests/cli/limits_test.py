@@ -53,6 +53,14 @@ class Limits(ProgramTest):
         self.fails(3, "modes", "y.bdf", says=["AUTOSPC holds 1", "CELAS2 7 has negative stiffness"],
                    error="modal.no-dofs")
 
+    def test_more_modes_than_dofs(self):
+        grids = [f"GRID,{k},,{k}.,0.,0." for k in range(4, 300)]
+        bars = [f"CBAR,{k},1,{k},{k + 1},0.,1.,0." for k in range(3, 299)]
+        self.write("line.bdf", BEAM.replace("ENDDATA", "\n".join(grids + bars + ["ENDDATA"])))
+        self.fails(1, "modes", "line.bdf", "-n", 2147483647, says=["the model has 1788 free dofs"],
+                   error="modal.more-than-dofs")
+        self.bough("modes", "line.bdf", "-n", 3)
+
     def test_impossible_inertia(self):
         self.write("top.toml", '[[body]]\nname = "top"\nmass = 1.0\ninertia = [0.1, 0.1, 5.0, 0.0, 0.0, 0.0]\n'
                    '[[hinge]]\nname = "h"\ntype = "free"\nparent = "ground"\nchild = "top"\n'
