@@ -7,7 +7,7 @@ namespace {
 
 TEST(XmlText, HoldsOnlyWhatXmlTakes) {
   EXPECT_EQ(escape_xml("a<b> & \"c\""), "a&lt;b&gt; &amp; &quot;c&quot;");
-  EXPECT_EQ(escape_xml(std::string("a\x01\0\x1f\x7f\tb\n", 7)), "a\tb\n");
+  EXPECT_EQ(escape_xml(std::string("a\x01\0\x1f\x7f\tb\n", 8)), "a\tb\n");
   EXPECT_EQ(escape_xml("\u00fc \u20ac \U0001F600"), "\u00fc \u20ac \U0001F600");
   // Not UTF-8: latin-1, cut short, too long a form, half of a pair, past the last character.
   const std::string bad = "\xEF\xBF\xBD";
