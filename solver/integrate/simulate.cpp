@@ -100,13 +100,16 @@ class Run {
         const double t_out = plan_.outputs[next];
         if (!advance(t_out)) return stop();
         guard([&] { stepper_->calc_state(t_out, y_); });
+        if (t_out == segment.end) cross_jump(segment);
         write_sample(t_out);
         if (next % kCheckpointEvery == 0) sink_.write_checkpoint(checkpoint_);
         if (is_stop_asked() && next + 1 < plan_.outputs.size()) return stop();
       }
-      if (!advance(segment.end)) return stop();
       t = segment.end;
+      if (plan_.outputs[next - 1] == t) continue;
+      if (!advance(t)) return stop();
       stepper_->calc_state(t, y_);
+      cross_jump(segment);
     }
     sink_.write_checkpoint(checkpoint_);
     sink_.end(true, "");
@@ -145,6 +148,13 @@ class Run {
       if (num_tiny_ > 1000) fail_stalled(before, "1000 steps in a row were shorter than " + short_text(taken));
     }
     return true;
+  }
+
+  void cross_jump(const Segment& segment) {
+    if (segment.end >= progress_.end) return;
+    guard([&] {
+      for (const auto& what : ode_.cross_jump(segment.latest, segment.end, y_)) sink_.write_event({segment.end, what});
+    });
   }
 
   void write_sample(double t) {

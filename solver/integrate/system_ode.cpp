@@ -15,6 +15,13 @@ void SystemOde::calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, E
   y_dot[num_q_ + num_u_] = calc_power(system_, *data_);
 }
 
+std::vector<std::string> SystemOde::cross_jump(double before, double t, Eigen::Ref<VectorXd> y) {
+  std::vector<std::string> events;
+  solver::cross_jump(system_, *data_, before, t, nullptr, y.head(num_q_), y.segment(num_q_, num_u_), y[size() - 1],
+                     events);
+  return events;
+}
+
 VectorXd SystemOde::make_initial_state() const {
   VectorXd y = VectorXd::Zero(size());
   system_.calc_initial_state(y.head(num_q_), y.segment(num_q_, num_u_));

@@ -21,6 +21,8 @@ class SystemOde final : public Ode {
   void calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) override;
   const SystemData& data() const { return *data_; }
   VectorXd make_initial_state() const;
+  /// Takes y over the jump at t; `before` is the last moment that sees what was. Describes each jump of a rate.
+  std::vector<std::string> cross_jump(double before, double t, Eigen::Ref<VectorXd> y);
   /// "body 'boom' (modal rate 2)" for a row of y.
   std::string name_row(int row) const;
 
