@@ -1,11 +1,11 @@
 #include <CLI/CLI.hpp>
 
 #include "base/diagnostic.hpp"
-#include "console.hpp"
-#include "help_files.hpp"
-#include "usage_text.hpp"
-#include "verbs.hpp"
-#include "versions.hpp"
+#include "cli/common/console.hpp"
+#include "cli/common/help_files.hpp"
+#include "cli/common/usage_text.hpp"
+#include "cli/common/versions.hpp"
+#include "cli/verbs.hpp"
 
 namespace {
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "fe/linear/residual.hpp"
+#include "fe/loads/second_order.hpp"
 #include "modal/canonical.hpp"
 #include "modal/eigen.hpp"
 #include "modal/krylov.hpp"

@@ -5,6 +5,7 @@
 
 #include "fe/linear/factor.hpp"
 #include "fe/matrices/assembly.hpp"
+#include "fe/model/temperatures.hpp"
 
 namespace bough::modal {
 

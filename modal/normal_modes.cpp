@@ -245,7 +245,7 @@ EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnost
     said.warning("modal.cut-root", {},
                  "the last mode belongs to a repeated root: " + std::to_string(cut - range_.last) +
                      " more mode(s) have the same frequency",
-                 "ask for " + std::to_string(cut - range_.first) + " modes");
+                 "ask for " + std::to_string(cut - range_.last) + " more");
   auto pairs = make_pairs(cut, result.count < 0 ? -1 : num_rigid() + result.count, said);
   // As many vectors as modes, orthogonal and each with a small residual: they are there, whatever the pivots say.
   if (options_.check_inertia && result.count < 0) is_sound = overlap_ < 1e-6;

@@ -157,6 +157,8 @@ RigidMotions find_null_motions(const Pencil& pencil) {
     const MatrixXd at_held = result.massless(result.held, Eigen::all);
     result.modes -= result.massless * at_held.partialPivLu().solve(MatrixXd(result.modes(result.held, Eigen::all)));
   }
+  // Parts of the massless motions have come and gone: what is left of them shows in M.
+  orthonormalize(pencil, result.modes);
   result.supports = choose_dofs(D, result.modes);
   return result;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fe/linear/mechanism.hpp"
+#include "modal/canonical.hpp"
 
 namespace bough::modal::detail {
 
@@ -211,7 +212,10 @@ RigidMotions find_global_motions(const Pencil& pencil) {
 RigidMotions find_rigid_motions(const Pencil& pencil) {
   auto result = find_global_motions(pencil);
   const MatrixXd loose = find_loose(pencil);
-  if (loose.cols() == 0) return result;
+  if (loose.cols() == 0) {
+    orthonormalize(pencil, result.modes);
+    return result;
+  }
   // Masses that RBE3 and MPC share out among loose dofs are fewer than these: some of their motions move none.
   const MatrixXd M = loose.transpose() * pencil.calc_M_times(loose);
   const VectorXd scale = M.diagonal().cwiseSqrt().cwiseInverse();
@@ -236,7 +240,13 @@ RigidMotions find_rigid_motions(const Pencil& pencil) {
     result.modes.conservativeResize(Eigen::NoChange, result.modes.cols() + 1);
     result.modes.rightCols(1) = x / std::sqrt(after);
   }
+  orthonormalize(pencil, result.modes);
   return result;
+}
+
+void orthonormalize(const Pencil& pencil, MatrixXd& modes) {
+  for (int pass = 0; pass < 2 && modes.cols() > 0; ++pass)
+    orthonormalize_ascending(modes.transpose() * pencil.calc_M_times(modes), modes);
 }
 
 double estimate_first_eigenvalue(const Pencil& pencil) {

@@ -44,6 +44,9 @@ MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor = 
 /// and the dofs with mass that nothing stiffens at all. A motion that a support prevents shows as strain where it was
 /// cut off.
 RigidMotions find_rigid_motions(const Pencil& pencil);
+/// Makes motions without strain, ascending, orthonormal in M by products of themselves: those of the six motions that
+/// they are sums of cancel where a turn about an oblique axis has next to no inertia.
+void orthonormalize(const Pencil& pencil, MatrixXd& modes);
 
 /// An estimate from above of the lowest eigenvalue with strain: Rayleigh-Ritz on the polynomials of degree 0..2 (the
 /// rotations are half the curl). A positive number always.

@@ -34,9 +34,11 @@ void check_basis(const BodySpec& spec, bool needs_modes, const SourceLocation& w
   for (const auto& load : spec.loads) names.insert(load.name);
   for (const auto& name : spec.residual) {
     if (names.count(name)) continue;
-    const std::vector<std::string> known(names.begin(), names.end());
+    std::string known;
+    for (const auto& other : names)
+      if (!other.empty()) known += (known.empty() ? "" : ", ") + other;
     diagnostics.error("reduce.unknown-load", where, "residual names '" + name + "', no load of the body is called so",
-                      "did you mean \"" + find_nearest(name, known) + "\"");
+                      "the body has " + known);
   }
 }
 

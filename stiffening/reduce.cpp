@@ -3,6 +3,7 @@
 #include <set>
 
 #include "fe/linear/factor.hpp"
+#include "fe/matrices/mass_directions.hpp"
 #include "modal/integrals.hpp"
 
 namespace bough::stiffening {
@@ -21,6 +22,16 @@ void Reduction::set_rigid_part(const fe::Model& model) {
     diagnostics_.error("reduce.no-mass", where(), "the translations of the grids carry no mass: this is no body",
                        "give RHO, NSM or CONM2 cards; scalar points and CMASS between them are in no place");
     diagnostics_.throw_if_errors();
+  }
+  if (fe::calc_mass_difference(properties.rigid_mass) > fe::kMassDifference) {
+    SourceLocation at = where();
+    const auto what = fe::describe_mass(model, deck_, properties.rigid_mass, at);
+    diagnostics_.warning("reduce.mass-by-direction", at,
+                         what +
+                             ": a rigid body has one; the body gets their mean, by which gravity, joints and forces "
+                             "move it",
+                         "give CONM2, or CMASS of one value in all three translations of one grid, unless only the "
+                         "modes matter");
   }
   body_.is_free_free = is_free() && spec_.frame != BodyFrame::Node && spec_.frame != BodyFrame::ThreeNodes;
 }

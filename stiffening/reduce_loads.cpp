@@ -31,6 +31,7 @@ void Reduction::make_loads(const fe::Model& model) {
   for (const int id : body_.interface_nodes)
     for (int d = 1; d <= (spec_.interface_moments ? 6 : 3); ++d)
       add_unit("", "node" + std::to_string(id) + "_" + kDirections[d - 1], id, d);
+  if (spec_.interface_moments) report_partial_rotation(model);
   for (std::size_t i = 0; i < spec_.loads.size(); ++i) {
     const auto& load = spec_.loads[i];
     const std::string name = load.name.empty() ? "load" + std::to_string(i + 1) : load.name;
@@ -43,12 +44,40 @@ void Reduction::make_loads(const fe::Model& model) {
       auto both = fe::calc_static_load(model, deck_, sets, diagnostics_);
       pattern.initial = std::move(both.initial);
       pattern.load = std::move(both);
+      demand_effect(model, name, pattern.load.F);
       continue;
     }
-    for (const int d : load.directions)
+    for (const int d : load.directions) {
       add_unit(name, load.directions.size() == 1 ? name : name + "_" + kDirections[d - 1], load.node, d);
+      demand_effect(model, name, loads_.back().load.F);
+    }
   }
   diagnostics_.throw_if_errors();
+}
+
+/// A load that a body is asked for must act on it.
+void Reduction::demand_effect(const fe::Model& model, const std::string& name, const Eigen::VectorXd& F) {
+  const auto lost = fe::list_lost_loads(model, F);
+  if (lost.empty()) return;
+  diagnostics_.error("reduce.load-on-nothing", where(),
+                     "load '" + name + "' acts on what has no stiffness: " + lost.front(),
+                     "tie the grid by an RBE2 or RBE3 to grids that carry the load");
+}
+
+/// Grids that turn about some axes only (membranes, bars without one of their stiffnesses) are named: what hangs on
+/// them is not carried about the others.
+void Reduction::report_partial_rotation(const fe::Model& model) {
+  for (const int id : body_.interface_nodes) {
+    if (lacks_rotation(model, model.node(model.find_node(id)))) continue;
+    std::string axes;
+    for (const auto& entry : model.autospc())
+      if (entry.node == id && entry.component > 3) axes += std::to_string(entry.component);
+    if (!axes.empty())
+      diagnostics_.warning("reduce.partial-rotation", where(),
+                           "interface grid " + std::to_string(id) + " has no stiffness in component(s) " + axes +
+                               ": a hinge or moment there finds none either",
+                           "tie it by an RBE2 or RBE3 to other grids, or see that nothing turns it so");
+  }
 }
 
 /// What each external load does to the body as a whole: Φ_Rᵀ F, and Σ φ_kj × f_k by which mode j shifts its moment.

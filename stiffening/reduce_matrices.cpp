@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <set>
 
 #include "base/rotation.hpp"
@@ -55,6 +56,7 @@ class MatrixReduction {
   fe::ElementList make_elements(const fe::NodeTable& nodes);
   SparseRows place(const PointTable& points, const GivenMatrix& matrix, SparseRows* placement = nullptr);
   MatrixXd calc_modes(const fe::Model& model);
+  void warn_of_strangers(const fe::Model& model, const MatrixXd& Phi, const std::vector<int>& elastic);
   void check_integrals();
   void set_geometric(FlexBody& body);
   void add_locator(FlexBody& body, const GivenGeometric& g, const VectorXd& F);
@@ -176,7 +178,42 @@ MatrixXd MatrixReduction::calc_modes(const fe::Model& model) {
                           std::to_string(Phi.cols()) + " modes of " + given_.modes.Phi.label +
                           " have no strain and are left out");
   if (given_.modes.eigenvalue.size() == Phi.cols()) compare_eigenvalues(model, given_.modes, Phi, diagnostics_);
+  warn_of_strangers(model, Phi, elastic);
   return Phi(Eigen::all, elastic);
+}
+
+/// One step of inverse iteration: x = (λ + σ)(K + σ M)⁻¹ M x of a mode of K and M, λ its Rayleigh quotient. Measured in
+/// M, so that the last digits of printed shapes, which strain a fine mesh as much as the mode itself, do not count.
+void MatrixReduction::warn_of_strangers(const fe::Model& model, const MatrixXd& Phi, const std::vector<int>& elastic) {
+  constexpr double most = 1e-3;
+  const auto kind = model.mass_kind();
+  const MatrixXd X = Phi(Eigen::all, elastic), M_X = fe::calc_mass_times(model, kind, X);
+  const VectorXd mass = X.cwiseProduct(M_X).colwise().sum(),
+                 stiffness = X.cwiseProduct(fe::calc_stiffness_times(model, X)).colwise().sum();
+  if (X.cols() == 0 || !(mass.minCoeff() > 0) || model.num_fdofs() == 0) return;  // reduce.no-modal-mass says it
+  const VectorXd lambda = stiffness.cwiseQuotient(mass);
+  const double shift = lambda.minCoeff();
+  const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
+  const auto M = fe::assemble_mass(model, fe::DofSet::Free, kind);
+  fe::check_petsc(MatAXPY(K.get(), shift, M.get(), DIFFERENT_NONZERO_PATTERN));
+  const fe::SymmetricFactor factor(K.get(), true, fe::FactorMethod::Pivoting);
+  if (factor.is_singular()) return;
+  const MatrixXd f = model.T().transpose() * M_X;
+  const MatrixXd E = X - model.T() * (factor.solve(f) * (lambda.array() + shift).matrix().asDiagonal());
+  const VectorXd wrong =
+      E.cwiseProduct(fe::calc_mass_times(model, kind, E)).colwise().sum().transpose().cwiseQuotient(mass).cwiseSqrt();
+  Eigen::Index worst = 0;
+  const auto num = (wrong.array() > most).count();
+  if (num == 0 || !(wrong.maxCoeff(&worst) > most)) return;
+  char share[32];
+  std::snprintf(share, sizeof share, "%.1e", wrong[worst]);
+  diagnostics_.warning("reduce.modes-residual", given_.modes.Phi.at,
+                       std::to_string(num) + " of the " + std::to_string(X.cols()) + " modes of " +
+                           given_.modes.Phi.label + " are no modes of K and M: mode " +
+                           std::to_string(elastic[static_cast<std::size_t>(worst)] + 1) + " is off by " + share +
+                           " of its size",
+                       "look whether they are of the same model, constraints, units and order of dofs; shapes that are "
+                       "meant (Ritz vectors) are kept as they are");
 }
 
 /// M knows one set of momentum integrals, under the name of its kind.

@@ -44,6 +44,10 @@ void Reduction::check_spec() {
     diagnostics_.warning("reduce.support-unused", where(), "support is given but a node carries the frame",
                          "that node supports the body");
   check_damping(spec_, where(), diagnostics_);
+  if (spec_.preload && spec_.preload->subcase == 0 && spec_.preload->load_set == 0 &&
+      spec_.preload->temperature_set == 0 && spec_.preload->spin.isZero(0))
+    diagnostics_.error("reduce.bad-preload", spec_.preload->at, "the preload names nothing that loads the body",
+                       "give subcase, load_set, temperature_set or a spin that is not zero");
   if (spec_.preload && options_.elements)
     diagnostics_.error("reduce.bad-preload", spec_.preload->at,
                        "a preload is given with the matrices of another program, which do not tell their stress",

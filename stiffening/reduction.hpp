@@ -42,6 +42,8 @@ class Reduction {
   void make_loads(const fe::Model& model);
   /// Moves without turning: a grid of solids or rods alone. What a frame takes off its rows is no rotation of it.
   static bool lacks_rotation(const fe::Model& model, const fe::Node& node);
+  void demand_effect(const fe::Model& model, const std::string& name, const Eigen::VectorXd& F);
+  void report_partial_rotation(const fe::Model& model);
   void set_resultants(const fe::Model& model, const MatrixXd& F_ext);
   std::vector<int> choose_support(const fe::Model& model);
   bool is_on_dependent_node(const fe::Model& model) const;

@@ -1,5 +1,6 @@
 #include "fe/cards/maker.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace bough::fe {
@@ -12,7 +13,7 @@ std::string show(double value) {
 
 int Maker::find_point(int grid, const std::string& who, const records::CardLocation& at) {
   const int index = nodes_.find_node(grid);
-  if (index < 0)
+  if (index < 0 && !nodes_.is_refused(grid))
     error("fe.missing-grid", at, who + " refers to grid " + std::to_string(grid) + ", which the deck does not define",
           "add the GRID or correct the id");
   return index;
@@ -32,6 +33,7 @@ int Maker::find_grid(int grid, const std::string& who, const records::CardLocati
 const records::Mat1* Maker::find_material(int mid, const std::string& who, const records::CardLocation& at) {
   const records::Mat1* material = mat1_.find(mid);
   if (!material) {
+    if (deck_.is_refused(mid, {"MAT1"})) return nullptr;
     error("fe.missing-material", at,
           who + " refers to MAT1 " + std::to_string(mid) + ", which the deck does not define",
           "add the MAT1 or correct the id");
@@ -50,6 +52,10 @@ const records::Mat1* Maker::find_material(int mid, const std::string& who, const
 
 void Maker::report_missing_property(int pid, const std::string& kinds, const std::string& who,
                                     const records::CardLocation& at) {
+  for (std::size_t from = 0, to = 0; from < kinds.size(); from = to + 1) {
+    to = std::min(kinds.find_first_of(" ,", from), kinds.size());
+    if (deck_.is_refused(pid, {kinds.substr(from, to - from)})) return;
+  }
   error("fe.missing-property", at,
         who + " refers to property " + std::to_string(pid) + ", but the deck has no " + kinds + " with that id",
         "add the property or correct the id");

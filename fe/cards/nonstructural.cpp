@@ -7,6 +7,7 @@
 
 #include "fe/elements/beam.hpp"
 #include "fe/elements/carried.hpp"
+#include "formats/records/selection.hpp"
 
 namespace bough::fe {
 
@@ -97,7 +98,7 @@ Owners list_owners(const records::Deck& deck) {
 
 /// Length of a line element between its (offset) ends, area of the corners of a panel or shell.
 double calc_measure(const Element& element, const NodeTable& nodes) {
-  if (const auto* beam = dynamic_cast<const Beam*>(&element)) return beam->geometry().length;
+  if (const auto* beam = element.as_beam()) return beam->geometry().length;
   const auto x = [&](std::size_t k) -> const Vector3d& { return nodes.node(element.nodes()[k]).x; };
   const std::string& card = element.card();
   if (card == "CROD" || card == "CTUBE" || card == "CONROD") return (x(1) - x(0)).norm();
@@ -171,7 +172,7 @@ ElementList make_nonstructural(const records::Deck& deck, int nsm,
     }
   }
   for (const int set : missing)
-    diagnostics.error("fe.missing-set", deck.locate({}),
+    diagnostics.error("fe.missing-set", deck.locate(records::find_selection(deck, "NSM", nsm)),
                       "NSM set " + std::to_string(set) + " is selected but has no cards", "correct the set id");
   return list;
 }

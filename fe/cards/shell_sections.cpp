@@ -77,6 +77,7 @@ std::optional<PlaneMaterial> ShellSections::make_material(int mid, const std::st
     return p;
   }
   if (!mat1_.find(mid)) {
+    if (maker_.deck().is_refused(mid, {"MAT1", "MAT2", "MAT8"})) return std::nullopt;
     maker_.error(
         "fe.missing-material", at,
         who + " refers to material " + std::to_string(mid) + ", but the deck has no MAT1, MAT2 or MAT8 with that id",

@@ -69,6 +69,7 @@ class Beam final : public Element {
   /// shear forces and torque at end A.
   void add_load_forces(const Eigen::Matrix<double, 12, 1>& end_load, Eigen::Ref<VectorXd> force) const;
 
+  const Beam* as_beam() const override { return this; }
   const BeamGeometry& geometry() const { return geometry_; }
   const BeamProperty& property() const { return *property_; }
 

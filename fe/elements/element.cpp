@@ -15,6 +15,11 @@ void Element::add_structural_damping(double g, Eigen::Ref<MatrixXd> K) const {
   if (g + structural_damping_ != 0) add_stiffness(g + structural_damping_, K);
 }
 void Element::calc_internal_forces(const Eigen::Ref<const VectorXd>&, Eigen::Ref<VectorXd>) const {}
+VectorXd Element::calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const {
+  VectorXd force = VectorXd::Zero(num_internal_forces());
+  calc_internal_forces(u, force);
+  return force;
+}
 double Element::add_thermal(const ElementTemperature&, Eigen::Ref<VectorXd>, Eigen::Ref<VectorXd>) const { return 0; }
 void Element::add_geometric_stiffness(const Eigen::Ref<const VectorXd>&, double, Eigen::Ref<MatrixXd>) const {}
 

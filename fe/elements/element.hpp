@@ -22,6 +22,7 @@ using Eigen::VectorXd;
 
 enum class MassKind { Lumped, Consistent };
 
+class Beam;
 class GeometricProjection;
 struct ElementTemperature;
 struct CarriedMass;
@@ -83,6 +84,11 @@ class Element {
   /// Internal forces (s) of the element for its nodal displacements u (N), linear in u. Names: internal_force_names().
   virtual void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const;
   virtual std::vector<std::string> internal_force_names() const { return {}; }
+  /// What static solutions print of an element: its internal forces, or those of a spring, which no K_G asks for.
+  virtual std::vector<std::string> printed_force_names() const { return internal_force_names(); }
+  virtual VectorXd calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const;
+  /// The beam that takes loads along its length (PLOAD1) and has a length between its offset ends.
+  virtual const Beam* as_beam() const { return nullptr; }
   /// K_G += scale K_G(force), N x N, symmetric and linear in force.
   virtual void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                        Eigen::Ref<MatrixXd> K_G) const;
@@ -113,6 +119,8 @@ class NodeTable {
  public:
   virtual ~NodeTable() = default;
   virtual int find_node(int id) const = 0;  ///< index, -1 when absent
+  /// Its GRID card has an error of its own: who names it need not say that it is missing.
+  virtual bool is_refused(int /*id*/) const { return false; }
   virtual const Node& node(int index) const = 0;
   /// R_basic_cid at point x (the axes of a cylindrical or spherical system depend on it); nullptr-safe: reports and
   /// returns identity when cid does not exist.

@@ -16,7 +16,10 @@ class ScalarSpring final : public Element {
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   /// One force: tension k (u1 - u2). It has no geometric stiffness (the spring has no direction of its own), so it is
   /// not among the internal forces that K_G asks for.
-  double calc_force(const Eigen::Ref<const VectorXd>& u) const { return k_ * b_.dot(u); }
+  std::vector<std::string> printed_force_names() const override { return {"force"}; }
+  VectorXd calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const override {
+    return VectorXd::Constant(1, k_ * b_.dot(u));
+  }
 
  private:
   double k_;

@@ -3,7 +3,7 @@
 #include "base/diagnostic.hpp"
 #include "fe/linear/ordering.hpp"
 #include "fe/linear/petsc_message.hpp"
-#include "fe/matrices/assembly.hpp"
+#include "fe/linear/ranks.hpp"
 
 namespace bough::fe {
 namespace {

@@ -5,10 +5,13 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "fe/matrices/assembly.hpp"
+#include "fe/linear/ranks.hpp"
 
 namespace bough::fe {
 namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 MatrixXd make_random(Eigen::Index rows, Eigen::Index cols) {
   std::mt19937 generator(20111);
@@ -47,7 +50,7 @@ double calc_softest_energy(Mat K, const SymmetricFactor& factor) {
   return std::abs(x.dot(multiply(K, x).col(0)));
 }
 
-MatrixXd find_mechanisms(Mat K, int expected) {
+MatrixXd find_mechanisms(Mat K, int expected, double most) {
   const VectorXd D = get_scale(K);
   const Eigen::Index n = D.size(), m = std::min<Eigen::Index>(n, std::clamp(expected + 2, 6, 24));
   PetscMat shifted;
@@ -75,7 +78,7 @@ MatrixXd find_mechanisms(Mat K, int expected) {
   }
   std::vector<int> found;
   for (int c = 0; c < m; ++c)
-    if (energy[c] < kMechanismEnergy) found.push_back(c);
+    if (energy[c] < most) found.push_back(c);
   MatrixXd basis = X(Eigen::all, found);
   reduce_columns(basis);
   return basis;

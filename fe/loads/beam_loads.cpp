@@ -39,8 +39,7 @@ bool for_each_beam_load(const LoadTarget& t, const Visit& visit) {
   if (std::none_of(cards.begin(), cards.end(), is_here)) return false;
   std::unordered_map<int, int> beams;
   for (std::size_t e = 0; e < t.model.elements().size(); ++e)
-    if (dynamic_cast<const Beam*>(t.model.elements()[e].get()))
-      beams[t.model.elements()[e]->id()] = static_cast<int>(e);
+    if (t.model.elements()[e]->as_beam()) beams[t.model.elements()[e]->id()] = static_cast<int>(e);
   for (const auto& card : cards) {
     if (!is_here(card)) continue;
     const auto found = beams.find(card.element);
@@ -50,7 +49,7 @@ bool for_each_beam_load(const LoadTarget& t, const Visit& visit) {
                           "correct the element id");
       continue;
     }
-    const auto& beam = static_cast<const Beam&>(*t.model.elements()[static_cast<std::size_t>(found->second)]);
+    const auto& beam = *t.model.elements()[static_cast<std::size_t>(found->second)]->as_beam();
     visit(found->second, beam, make_line_load(t, card, beam));
   }
   return true;

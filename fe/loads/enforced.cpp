@@ -101,6 +101,7 @@ VectorXd Model::calc_enforced(const records::Deck& deck, int set, Diagnostics& d
       is_combined = sid != set;
       const SourceLocation at = deck.locate(card.at);
       const int index = find_node(card.g);
+      if (index < 0 && is_refused(card.g)) continue;
       if (index < 0) {
         diagnostics.error("fe.missing-grid", at,
                           "SPCD names grid " + std::to_string(card.g) + ", which the deck does not define",

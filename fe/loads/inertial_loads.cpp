@@ -2,7 +2,6 @@
 
 #include "base/rotation.hpp"
 #include "fe/linear/blas.hpp"
-#include "fe/matrices/assembly.hpp"
 
 namespace bough::fe {
 namespace {
@@ -173,6 +172,15 @@ MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Ph
   flush();
   sum_over_ranks(gram);
   return gram;
+}
+
+PetscMat assemble_grid_mass(const Model& model, MassKind kind) {
+  const double scale = model.wtmass();
+  return assemble(model, DofSet::Global, [&](const Element& e, Eigen::Ref<MatrixXd> M) {
+    CarriedMass carried(e.num_dofs());
+    if (e.carries_turning_mass(kind) && calc_carried(model, e, kind, carried)) return;
+    e.add_mass(kind, scale, M);
+  });
 }
 
 }  // namespace bough::fe

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "fe/elements/carried.hpp"
+#include "fe/matrices/assembly.hpp"
 #include "fe/model/applied_load.hpp"
 #include "fe/model/model.hpp"
 
@@ -34,6 +35,10 @@ bool has_approximate_mass(const Model& model, MassKind kind);
 
 /// The bodies of one element that carries_turning_mass(), masses times WTMASS; false when it cannot say.
 bool calc_carried(const Model& model, const Element& element, MassKind kind, CarriedMass& carried);
+
+/// The part of M on the g-set that moves as the translations of the grids do, and what is not known to do otherwise:
+/// all but what calc_carried() tells of.
+PetscMat assemble_grid_mass(const Model& model, MassKind kind);
 
 /// Σ μ_rs z_r z_sᵀ over the points of all carried masses, z = [1 or 0 for an arm, x, u] with u the motions of the point
 /// in Phi (num_gdofs x n), x of every column first: 4 + 3n square. Summed over ranks.

@@ -2,12 +2,14 @@
 
 #include "fe/loads/inertial_loads.hpp"
 #include "fe/loads/load_sets.hpp"
+#include "formats/records/selection.hpp"
 
 namespace bough::fe {
 
 int LoadTarget::find_grid(int id, const std::string& card, const records::CardLocation& at) const {
   const int index = model.find_node(id);
   if (index >= 0 && model.node(index).num_dofs == 6) return index;
+  if (index < 0 && model.is_refused(id)) return -1;
   diagnostics.error("fe.missing-grid", deck.locate(at),
                     card + " names grid " + std::to_string(id) + ", which the deck does not define",
                     "add the GRID or correct the id");
@@ -65,6 +67,7 @@ bool add_scalar_loads(const LoadTarget& t) {
         t.F.segment<3>(node.first_gdof) += t.scale * load.f * node.R_basic_cd.col(0);
       continue;
     }
+    if (t.model.is_refused(load.point)) continue;
     t.diagnostics.error("fe.missing-grid", t.deck.locate(load.at),
                         "SLOAD names point " + std::to_string(load.point) + ", which the deck does not define",
                         "add the SPOINT or GRID, or correct the id");
@@ -172,7 +175,8 @@ AppliedLoad Model::calc_applied_load(const records::Deck& deck, int set, Diagnos
   const auto severity = missing.size() < sets.size() ? Severity::Warning : Severity::Error;
   for (const auto& plain : missing)
     diagnostics.add(
-        {severity, "fe.missing-load", deck.locate(plain.at),
+        {severity, "fe.missing-load",
+         deck.locate(plain.at.line > 0 ? plain.at : records::find_selection(deck, "LOAD", set)),
          "load set " + std::to_string(plain.sid) + " has no FORCE, MOMENT, GRAV, PLOAD or LOAD card" +
              (severity == Severity::Warning ? "; LOAD " + std::to_string(set) + " is taken without it" : ""),
          "correct the set id or add its cards"});

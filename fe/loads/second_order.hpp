@@ -1,9 +1,12 @@
 #pragma once
 /// \file What K_G has beside the internal forces of elements: loads that hang on arms, and rigid links.
 #include "fe/loads/inertial_loads.hpp"
+#include "fe/matrices/assembly.hpp"
 #include "fe/model/links.hpp"
 
 namespace bough::fe {
+
+struct InitialForces;
 
 /// Loads as columns, as AppliedLoad.
 struct AppliedLoads {
@@ -19,5 +22,10 @@ AppliedLoads make_loads(const AppliedLoad& load);
 /// O(elements).
 std::vector<QuadraticForm> calc_second_order(const Model& model, const AppliedLoads& loads,
                                              const Eigen::Ref<const MatrixXd>& U);
+
+/// K_G of a load with its static displacements u (num_gdofs) and the forces of heated elements
+/// (fe/model/temperatures.hpp), f-set or g-set: of internal forces, carried masses, loads on arms and links.
+PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const AppliedLoad& load, const VectorXd& u_g,
+                                      const InitialForces* initial = nullptr);
 
 }  // namespace bough::fe

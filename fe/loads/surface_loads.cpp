@@ -64,9 +64,6 @@ class SurfaceLoads {
     for (const auto& solid : t_.deck.solids) solids_[solid.id] = &solid;
     const auto* param = t_.deck.find_param("FOLLOWK");
     follows_ = param && (param->value == "YES" || param->value == "Y");
-    if (param && !follows_ && param->value != "NO" && param->value != "N")
-      t_.diagnostics.error("fe.bad-param", t_.deck.locate(param->at),
-                           "PARAM,FOLLOWK is " + param->value + ", expected YES or NO", "correct it");
   }
 
   void add(const records::GridPressure& load) {

@@ -5,18 +5,12 @@
 #include <numeric>
 
 #include "fe/linear/ordering.hpp"
-#include "fe/loads/second_order.hpp"
-#include "fe/matrices/wide_links.hpp"
 #include "fe/model/element_transform.hpp"
-#include "fe/model/temperatures.hpp"
 
 namespace bough::fe {
 namespace {
 
 static_assert(sizeof(PetscInt) == sizeof(int), "rows are handed to PETSc as int");
-
-/// Adds one element's N x N matrix (basic) into zeroed storage.
-using AddElementMatrix = std::function<void(const Element&, Eigen::Ref<MatrixXd>)>;
 
 SparseRows make_identity(int size) {
   SparseRows identity(size, size);
@@ -130,10 +124,42 @@ std::vector<int> find_row_groups(const Rows& rows) {
   return start;
 }
 
-/// Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an entry does not
-/// depend on the number of ranks.
+const std::vector<QuadraticForm>& get_forms(const Model& model) {
+  static const std::vector<QuadraticForm> none;
+  return model.prestress() ? model.prestress()->forms : none;
+}
+
+/// Σ_e of element matrices and of forms times X, over ranks.
+MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen::Ref<const MatrixXd>& X,
+                    const std::vector<QuadraticForm>& forms = {}) {
+  BOUGH_DEMAND(X.rows() == model.num_gdofs());
+  MatrixXd Y = MatrixXd::Zero(X.rows(), X.cols());
+  MatrixXd K_e, X_e, Y_e;
+  const auto [begin, end] = calc_element_range(model);
+  for (int e = begin; e < end; ++e) {
+    const Element& element = *model.elements()[e];
+    const auto& gdofs = element.gdofs();
+    const int n = element.num_dofs();
+    K_e.setZero(n, n);
+    add(element, K_e);
+    X_e.resize(n, X.cols());
+    for (int i = 0; i < n; ++i) X_e.row(i) = X.row(gdofs[i]);
+    Y_e.noalias() = K_e * X_e;
+    for (int i = 0; i < n; ++i) Y.row(gdofs[i]) += Y_e.row(i);
+  }
+  const MpiWorld world = initialize_petsc();
+  for (size_t k = static_cast<size_t>(world.rank); k < forms.size(); k += static_cast<size_t>(world.size))
+    Y(forms[k].gdofs, Eigen::all) += calc_form(forms[k], 0) * X(forms[k].gdofs, Eigen::all);
+  sum_over_ranks(Y);
+  return Y;
+}
+
+}  // namespace
+
+// Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an entry does not
+// depend on the number of ranks.
 PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add,
-                  const std::vector<QuadraticForm>& forms = {}) {
+                  const std::vector<QuadraticForm>& forms) {
   initialize_petsc();
   const SparseRows identity = set == DofSet::Global ? make_identity(model.num_gdofs()) : SparseRows{};
   const SparseRows& T = set == DofSet::Global ? identity : model.T();
@@ -176,44 +202,6 @@ PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add,
   return matrix;
 }
 
-VectorXd gather_rows(const VectorXd& x, const std::vector<int>& rows) {
-  VectorXd result(static_cast<int>(rows.size()));
-  for (int i = 0; i < result.size(); ++i) result[i] = x[rows[i]];
-  return result;
-}
-
-const std::vector<QuadraticForm>& get_forms(const Model& model) {
-  static const std::vector<QuadraticForm> none;
-  return model.prestress() ? model.prestress()->forms : none;
-}
-
-/// Σ_e of element matrices and of forms times X, over ranks.
-MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen::Ref<const MatrixXd>& X,
-                    const std::vector<QuadraticForm>& forms = {}) {
-  BOUGH_DEMAND(X.rows() == model.num_gdofs());
-  MatrixXd Y = MatrixXd::Zero(X.rows(), X.cols());
-  MatrixXd K_e, X_e, Y_e;
-  const auto [begin, end] = calc_element_range(model);
-  for (int e = begin; e < end; ++e) {
-    const Element& element = *model.elements()[e];
-    const auto& gdofs = element.gdofs();
-    const int n = element.num_dofs();
-    K_e.setZero(n, n);
-    add(element, K_e);
-    X_e.resize(n, X.cols());
-    for (int i = 0; i < n; ++i) X_e.row(i) = X.row(gdofs[i]);
-    Y_e.noalias() = K_e * X_e;
-    for (int i = 0; i < n; ++i) Y.row(gdofs[i]) += Y_e.row(i);
-  }
-  const MpiWorld world = initialize_petsc();
-  for (size_t k = static_cast<size_t>(world.rank); k < forms.size(); k += static_cast<size_t>(world.size))
-    Y(forms[k].gdofs, Eigen::all) += calc_form(forms[k], 0) * X(forms[k].gdofs, Eigen::all);
-  sum_over_ranks(Y);
-  return Y;
-}
-
-}  // namespace
-
 PetscMat assemble_stiffness(const Model& model, DofSet set) {
   return assemble(
       model, set, [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); }, get_forms(model));
@@ -224,33 +212,8 @@ PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind) {
   return assemble(model, set, [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); });
 }
 
-PetscMat assemble_grid_mass(const Model& model, MassKind kind) {
-  const double scale = model.wtmass();
-  return assemble(model, DofSet::Global, [&](const Element& e, Eigen::Ref<MatrixXd> M) {
-    CarriedMass carried(e.num_dofs());
-    if (e.carries_turning_mass(kind) && calc_carried(model, e, kind, carried)) return;
-    e.add_mass(kind, scale, M);
-  });
-}
-
 PetscMat assemble_damping(const Model& model, DofSet set) {
   return assemble(model, set, [](const Element& e, Eigen::Ref<MatrixXd> B) { e.add_damping(1, B); });
-}
-
-PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const AppliedLoad& load, const VectorXd& u_g,
-                                      const InitialForces* initial) {
-  BOUGH_DEMAND(u_g.size() == model.num_gdofs());
-  const auto add = [&u_g, initial](const Element& e, Eigen::Ref<MatrixXd> K_G) {
-    if (e.num_internal_forces() == 0) return;
-    VectorXd force = VectorXd::Zero(e.num_internal_forces());
-    e.calc_internal_forces(gather_rows(u_g, e.gdofs()), force);
-    if (const auto* heated = initial ? initial->find(e) : nullptr) force += heated->force;
-    e.add_geometric_stiffness(force, 1, K_G);
-  };
-  auto forms = calc_second_order(model, make_loads(load), u_g);
-  // With the reference's own dofs.
-  std::erase_if(forms, [](const QuadraticForm& form) { return form.gdofs.size() > kMaxLinkDofs + 6; });
-  return assemble(model, set, add, forms);
 }
 
 MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g) {
@@ -292,37 +255,6 @@ std::pair<int, int> calc_element_range(const Model& model) {
   const MpiWorld world = initialize_petsc();
   const long long num = static_cast<long long>(model.elements().size());
   return {static_cast<int>(num * world.rank / world.size), static_cast<int>(num * (world.rank + 1) / world.size)};
-}
-
-void sum_over_ranks(Eigen::Ref<MatrixXd> values) {
-  if (initialize_petsc().size == 1) return;
-  for (Eigen::Index j = 0; j < values.cols(); ++j)
-    MPI_Allreduce(MPI_IN_PLACE, values.col(j).data(), static_cast<int>(values.rows()), MPI_DOUBLE, MPI_SUM,
-                  PETSC_COMM_WORLD);
-}
-
-VectorXd gather(Vec v) {
-  PetscInt size = 0, first = 0, last = 0;
-  check_petsc(VecGetSize(v, &size));
-  check_petsc(VecGetOwnershipRange(v, &first, &last));
-  VectorXd result = VectorXd::Zero(size);
-  const PetscScalar* values = nullptr;
-  check_petsc(VecGetArrayRead(v, &values));
-  std::copy(values, values + (last - first), result.data() + first);
-  check_petsc(VecRestoreArrayRead(v, &values));
-  sum_over_ranks(result);
-  return result;
-}
-
-void scatter(const Eigen::Ref<const VectorXd>& values, Vec v) {
-  PetscInt size = 0, first = 0, last = 0;
-  check_petsc(VecGetSize(v, &size));
-  BOUGH_DEMAND(values.size() == size);
-  check_petsc(VecGetOwnershipRange(v, &first, &last));
-  PetscScalar* own = nullptr;
-  check_petsc(VecGetArray(v, &own));
-  std::copy(values.data() + first, values.data() + last, own);
-  check_petsc(VecRestoreArray(v, &own));
 }
 
 }  // namespace bough::fe

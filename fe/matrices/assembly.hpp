@@ -1,28 +1,25 @@
 #pragma once
 /// \file Sparse matrices of a model in PETSc, assembled element by element by each rank; nothing dense of size ndof².
-#include "fe/linear/petsc.hpp"
+#include "fe/linear/ranks.hpp"
 #include "fe/model/model.hpp"
 
 namespace bough::fe {
 
 enum class DofSet { Free, Global };  ///< f-set (TᵀKT) or g-set
 
-/// K (with K_G0 of a prestressed model), or M (times WTMASS), on PETSC_COMM_WORLD; MATAIJ, zeros left out except on the
-/// diagonal; the same to the last bit on any number of ranks. O(elements).
+/// Adds one element's N x N matrix (basic) into zeroed storage.
+using AddElementMatrix = std::function<void(const Element&, Eigen::Ref<MatrixXd>)>;
+
+/// Σ of element matrices and of forms on PETSC_COMM_WORLD; MATAIJ, zeros left out except on the diagonal; the same to
+/// the last bit on any number of ranks. O(elements).
+PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add,
+                  const std::vector<QuadraticForm>& forms = {});
+
+/// K (with K_G0 of a prestressed model), or M (times WTMASS).
 PetscMat assemble_stiffness(const Model& model, DofSet set);
 PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind);
-/// The part of M on the g-set that moves as the translations of the grids do, and what is not known to do otherwise:
-/// all but what calc_carried() tells of (fe/loads/inertial_loads.hpp).
-PetscMat assemble_grid_mass(const Model& model, MassKind kind);
 /// The viscous damping B of dampers and bushes.
 PetscMat assemble_damping(const Model& model, DofSet set);
-struct InitialForces;
-
-/// K_G of a load with its static displacements u (num_gdofs) and the forces of heated elements
-/// (fe/model/temperatures.hpp), f-set or g-set: of internal forces, carried masses, loads on arms and links.
-PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const AppliedLoad& load, const VectorXd& u_g,
-                                      const InitialForces* initial = nullptr);
-
 /// Products with the g-set mass matrix without forming it: M X, num_gdofs x k, replicated on every rank. O(elements k).
 MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g);
 /// The same with K.
@@ -38,13 +35,6 @@ bool has_damping(const Model& model);
 
 /// Elements [first, last) of this rank; the union over ranks is every element.
 std::pair<int, int> calc_element_range(const Model& model);
-/// Sums a replicated matrix over ranks in place.
-void sum_over_ranks(Eigen::Ref<MatrixXd> values);
-
-/// Gathers a distributed f-set vector onto every rank / spreads a replicated one.
-VectorXd gather(Vec v);
-void scatter(const Eigen::Ref<const VectorXd>& values, Vec v);
-
 /// Mass properties about `reference` (basic), with the model's own mass kind.
 records::MassProperties calc_mass_properties(const Model& model, MassKind kind, const Vector3d& reference);
 

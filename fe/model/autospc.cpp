@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include "fe/model/element_transform.hpp"
 
@@ -83,6 +84,35 @@ NodeBlocks calc_node_blocks(const Model& model, const std::vector<int>& gdof_nod
   return result;
 }
 
+/// Makes the entries of a block oblique where a held component has stiffness of its own: of the directions N without
+/// stiffness (columns, rows `slots`) the held components follow the free ones by Nᵀ u = 0. `limit`: what is none.
+void set_oblique(const Matrix3d& K, const std::vector<int>& slots, double limit, bool is_rotation,
+                 std::vector<AutospcEntry>& entries, std::size_t first) {
+  const auto slot_of = [&](const AutospcEntry& e) { return e.component - 1 - (is_rotation ? 3 : 0); };
+  const auto m = static_cast<Eigen::Index>(entries.size() - first);
+  std::vector<Eigen::Index> held, free;  // of slots
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const bool is_held = std::any_of(entries.begin() + static_cast<std::ptrdiff_t>(first), entries.end(),
+                                     [&](const AutospcEntry& e) { return slot_of(e) == slots[i]; });
+    (is_held ? held : free).push_back(static_cast<Eigen::Index>(i));
+  }
+  for (std::size_t e = first; e < entries.size(); ++e)
+    entries[e].is_skew = K(slot_of(entries[e]), slot_of(entries[e])) > limit;
+  const bool is_any = std::any_of(entries.begin() + static_cast<std::ptrdiff_t>(first), entries.end(),
+                                  [](const AutospcEntry& e) { return e.is_skew; });
+  if (!is_any || free.empty()) return;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(MatrixXd(K(slots, slots)));
+  if (solver.eigenvalues()[m - 1] > limit || solver.eigenvalues()[m] <= limit) return;
+  const MatrixXd N = solver.eigenvectors().leftCols(m);
+  const Eigen::FullPivLU<MatrixXd> lu(MatrixXd(N(held, Eigen::all).transpose()));
+  if (lu.rcond() < 1e-6) return;
+  const MatrixXd C = lu.solve(-MatrixXd(N(free, Eigen::all).transpose()));
+  for (std::size_t i = 0; i < held.size(); ++i)
+    for (std::size_t j = 0; j < free.size(); ++j)
+      if (const double c = C(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)); std::abs(c) > 1e-12)
+        entries[first + i].terms.emplace_back(slots[static_cast<std::size_t>(free[j])] + 1 + (is_rotation ? 3 : 0), c);
+}
+
 }  // namespace
 
 std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vector<int>& fdof_ldof, double epsilon) {
@@ -106,6 +136,7 @@ std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vect
     std::vector<int> slots;
     for (int s = 0; s < 3; ++s)
       if (is_free[b][s]) slots.push_back(s);
+    const auto all_slots = slots;
     const Eigen::Vector3d diagonal = blocks[b].diagonal();
     const double scale = model.prestress() ? diagonal.cwiseAbs().maxCoeff() : diagonal.maxCoeff();
     const size_t first = entries.size();
@@ -128,13 +159,16 @@ std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vect
     }
     std::sort(entries.begin() + static_cast<std::ptrdiff_t>(first), entries.end(),
               [](const AutospcEntry& x, const AutospcEntry& y) { return x.component < y.component; });
+    if (entries.size() > first && node.num_dofs == 6 && scale > noise[b])
+      set_oblique(blocks[b], all_slots, std::max(epsilon * scale, noise[b]), b % 2 == 1, entries, first);
   }
   return entries;
 }
 
-void drop_with_mass(const std::vector<Node>& nodes, const std::vector<std::unique_ptr<const Element>>& elements,
-                    const SparseRows& T0, const std::vector<int>& fdof_ldof, MassKind kind,
-                    std::vector<AutospcEntry>& entries) {
+std::vector<double> calc_masses(const std::vector<Node>& nodes,
+                                const std::vector<std::unique_ptr<const Element>>& elements, const SparseRows& T0,
+                                const std::vector<int>& fdof_ldof, MassKind kind,
+                                const std::vector<AutospcEntry>& entries) {
   std::unordered_map<int, int> first_dof;  // of the nodes by id
   for (const Node& node : nodes) first_dof[node.id] = node.first_gdof;
   std::unordered_map<int, std::size_t> at_dof;  // entries
@@ -159,10 +193,7 @@ void drop_with_mass(const std::vector<Node>& nodes, const std::vector<std::uniqu
       if (const int e = entry_of[static_cast<std::size_t>(columns[i])]; e >= 0)
         mass[static_cast<std::size_t>(e)] += M_f(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i));
   }
-  std::size_t kept = 0;
-  for (std::size_t e = 0; e < entries.size(); ++e)
-    if (!(mass[e] > 0)) entries[kept++] = entries[e];
-  entries.resize(kept);
+  return mass;
 }
 
 }  // namespace bough::fe

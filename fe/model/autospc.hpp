@@ -16,12 +16,14 @@ namespace bough::fe {
 /// grid point singularity processing, PARAM,EPZERO).
 /// The stiffness of a prestressed model has that of its stress; what it softens is left free, as no support may hide
 /// that it buckles. T of `model` = constraints before AUTOSPC; fdof_ldof as in Elimination.
+/// Entries whose component has stiffness of its own, as at the end of an oblique rod, say so (is_skew) and have the
+/// terms by which the components follow each other when the direction itself is held.
 std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vector<int>& fdof_ldof, double epsilon);
 
-/// Takes out those of `entries` that carry mass, their own or of dofs that follow them: in normal modes they move at
-/// zero frequency.
-void drop_with_mass(const std::vector<Node>& nodes, const std::vector<std::unique_ptr<const Element>>& elements,
-                    const SparseRows& T0, const std::vector<int>& fdof_ldof, MassKind kind,
-                    std::vector<AutospcEntry>& entries);
+/// The mass of each of `entries`, its own and of dofs that follow it (the diagonal of M before AUTOSPC).
+std::vector<double> calc_masses(const std::vector<Node>& nodes,
+                                const std::vector<std::unique_ptr<const Element>>& elements, const SparseRows& T0,
+                                const std::vector<int>& fdof_ldof, MassKind kind,
+                                const std::vector<AutospcEntry>& entries);
 
 }  // namespace bough::fe

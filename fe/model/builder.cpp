@@ -81,9 +81,11 @@ void ModelBuilder::set_params() {
 }
 
 void ModelBuilder::add_nodes() {
+  if (const auto refused = deck_.refused.find("GRID"); refused != deck_.refused.end())
+    model_.refused_grids_ = refused->second;
   const Vector3d origin = options_.origin.value_or(Vector3d::Zero());
   model_.systems_ = std::make_shared<const CoordinateSystems>(deck_, origin, diagnostics_);
-  if (deck_.grids.empty() && deck_.scalar_points.empty())
+  if (deck_.grids.empty() && deck_.scalar_points.empty() && model_.refused_grids_.empty())
     diagnostics_.error("fe.no-grids", deck_.locate({}), "the deck has no GRID", "give the bulk data of a model");
   std::vector<int> order(deck_.grids.size());
   std::iota(order.begin(), order.end(), 0);
@@ -123,6 +125,7 @@ void ModelBuilder::add_scalar_points() {
 
 int ModelBuilder::find_ldof(int grid, int component, const std::string& card, const SourceLocation& at) {
   const int index = model_.find_node(grid);
+  if (index < 0 && model_.is_refused(grid)) return -1;
   if (index < 0) {
     diagnostics_.error("fe.missing-grid", at,
                        card + " names grid " + std::to_string(grid) + ", which the deck does not define",
@@ -239,7 +242,7 @@ void ModelBuilder::collect_equations() {
   // Other codes run such a deck: the selection is often left over in the case control when the cards are gone.
   if (!known.contains(model_.subcase_.mpc))
     return diagnostics_.warning(
-        "fe.empty-mpc-set", deck_.locate({}),
+        "fe.empty-mpc-set", deck_.locate(model_.subcase_.find_command("MPC")),
         "MPC set " + std::to_string(model_.subcase_.mpc) + " is selected but has no cards; nothing is coupled by it",
         "correct the set id or remove the selection");
   const auto sets =
@@ -285,26 +288,54 @@ Elimination ModelBuilder::set_transform() {
 void ModelBuilder::apply_autospc(const Elimination& first) {
   const records::Param* param = deck_.find_param("AUTOSPC");
   const bool is_on = options_.autospc.value_or(!param || (param->value != "NO" && param->value != "N"));
-  const std::string value = param ? param->value : "YES";
-  if (!options_.autospc && value != "YES" && value != "Y" && value != "NO" && value != "N" && value != "1")
-    diagnostics_.warning("fe.bad-param", deck_.locate(param->at),
-                         "PARAM,AUTOSPC is \"" + value + "\", expected YES or NO; it is taken as YES",
-                         "correct the value");
   const double epsilon = get_real_param(deck_, "EPZERO", 1e-8, diagnostics_);
   diagnostics_.throw_if_errors();
   // Decks with AUTOSPC NO still have dofs that nothing touches; Nastran's solvers pass over such empty columns.
   const bool only_null = !is_on && param && !options_.autospc;
   if (!is_on && !only_null) return;
   model_.autospc_ = find_singular_dofs(model_, first.fdof_ldof, only_null ? 1e-14 : epsilon);
-  if (only_null && !options_.uses_enforced)
-    drop_with_mass(model_.nodes_, model_.elements_, model_.T_, first.fdof_ldof, model_.mass_kind_, model_.autospc_);
+  const bool asks_mass = only_null || std::any_of(model_.autospc_.begin(), model_.autospc_.end(),
+                                                  [](const AutospcEntry& entry) { return entry.is_skew; });
+  std::vector<double> mass(model_.autospc_.size(), 0);
+  if (asks_mass)
+    mass = calc_masses(model_.nodes_, model_.elements_, model_.T_, first.fdof_ldof, model_.mass_kind_, model_.autospc_);
+  std::set<int> massive;  // nodes; rotations have next to no mass, and rigid motions are told by their components
+  for (size_t e = 0; e < mass.size(); ++e)
+    if (mass[e] > 0 && !only_null && model_.autospc_[e].component <= 3) massive.insert(model_.autospc_[e].node);
+  int num_massive = 0, num_skew = 0;
+  std::vector<AutospcEntry> held;
+  for (size_t e = 0; e < mass.size(); ++e) {
+    auto& entry = model_.autospc_[e];
+    // Mass without stiffness moves at zero frequency in normal modes.
+    if (only_null && !options_.uses_enforced && mass[e] > 0) continue;
+    // Where the block carries mass or its weight, the oblique direction is held and the others stay what they are; else
+    // the component alone, which strains nothing either and is what Nastran prints.
+    if (entry.component > 3 || massive.count(entry.node) == 0) entry.terms.clear();
+    num_skew += entry.is_skew ? 1 : 0;
+    num_massive += entry.terms.empty() ? 0 : 1;
+    held.push_back(std::move(entry));
+  }
+  model_.autospc_ = std::move(held);
   // Without any stiffness at all there is nothing to solve yet.
   if (only_null && model_.autospc_.size() == static_cast<size_t>(model_.T_.cols())) model_.autospc_.clear();
   if (model_.autospc_.empty()) return;
+  bool has_equations = false;
   for (const auto& entry : model_.autospc_) {
     const Node& node = model_.nodes_[model_.find_node(entry.node)];
-    is_fixed_[node.first_gdof + std::max(entry.component - 1, 0)] = 1;
+    const int ldof = node.first_gdof + std::max(entry.component - 1, 0);
+    if (entry.terms.empty()) {
+      is_fixed_[ldof] = 1;
+      continue;
+    }
+    ConstraintEquation equation{ldof, {}, "AUTOSPC of grid " + std::to_string(entry.node), deck_.locate({})};
+    for (const auto& [component, factor] : entry.terms)
+      equation.terms.emplace_back(node.first_gdof + component - 1, factor);
+    equations_.push_back(std::move(equation));
+    has_equations = true;
   }
+  if (has_equations)  // what hangs on these dofs follows too
+    equations_ = resolve_chains(
+        model_.num_gdofs_, std::move(equations_), [this](int l) { return name_dof(l); }, diagnostics_);
   set_transform();
   if (only_null) {
     diagnostics_.warning("fe.null-dofs", deck_.locate(param->at),
@@ -314,10 +345,13 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
                          "there is no solution with them; hold or remove them");
     return;
   }
-  diagnostics_.note("fe.autospc", deck_.locate({}),
-                    "AUTOSPC holds " + std::to_string(model_.autospc_.size()) +
-                        " dofs without stiffness, the first at grid " + std::to_string(model_.autospc_[0].node),
-                    "PARAM,AUTOSPC,NO keeps them");
+  const auto are = [](int n) { return std::to_string(n) + (n == 1 ? " is" : " are"); };
+  std::string what = "AUTOSPC holds " + std::to_string(model_.autospc_.size()) +
+                     " dofs without stiffness, the first at grid " + std::to_string(model_.autospc_[0].node);
+  if (num_skew > 0)
+    what += "; " + are(num_skew) + " the weakest of a singular block (an oblique direction without stiffness)";
+  if (num_massive > 0) what += ", " + std::to_string(num_massive) + " of them with mass: the direction itself is held";
+  diagnostics_.note("fe.autospc", deck_.locate({}), what, "PARAM,AUTOSPC,NO keeps them");
 }
 
 Model Model::build(const records::Deck& deck, const ModelOptions& options, const ElementFactory& factory,

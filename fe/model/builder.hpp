@@ -29,9 +29,9 @@ class ModelBuilder {
   Elimination set_transform();
   /// The stress of the options by element; after all elements are there (prestress.cpp).
   void set_prestress();
-  void check_prestress();  ///< that the structure does not buckle under it
+  void check_prestress();  ///< that the structure does not buckle under it (statics/preload_check.cpp)
   void apply_autospc(const Elimination& first);
-  /// ASET and OMIT: T of the a-set by static reduction (guyan.cpp).
+  /// ASET and OMIT: T of the a-set by static reduction (statics/guyan.cpp).
   void omit_dofs();
   std::vector<int> list_set(const std::vector<records::GridComponents>& set, const std::string& card);
   /// PLOTEL (plot_elements.cpp).

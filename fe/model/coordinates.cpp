@@ -52,6 +52,8 @@ Matrix3d clean(Matrix3d R) {
 
 enum class State { New, Busy, Done };
 
+const std::vector<std::string> kCoordinateCards{"CORD1R", "CORD1C", "CORD1S", "CORD2R", "CORD2C", "CORD2S"};
+
 /// Depth-first resolution; a chain that meets itself is a cycle. Systems and grids depend on each other (CORD1x, CP).
 class Resolver {
  public:
@@ -88,6 +90,7 @@ class Resolver {
   /// True when system id exists and is resolved after the call.
   bool require_system(int id, const std::string& who, const SourceLocation& at) {
     if (id == 0) return true;
+    if (!records_.count(id) && deck_.is_refused(id, kCoordinateCards)) return false;
     if (!records_.count(id)) {
       diagnostics_.error("fe.missing-coordinates", at,
                          who + " names coordinate system " + std::to_string(id) + ", which the deck does not define",
@@ -132,11 +135,12 @@ class Resolver {
     for (int i = 0; i < 3; ++i) {
       const auto it = grid_index_.find(card.grids[i]);
       if (it == grid_index_.end()) {
+        found = false;
+        if (deck_.is_refused(card.grids[i], {"GRID"})) continue;
         diagnostics_.error("fe.missing-grid", at,
                            "coordinate system " + std::to_string(card.id) + " names grid " +
                                std::to_string(card.grids[i]) + ", which the deck does not define",
                            "add the GRID or correct the id");
-        found = false;
         continue;
       }
       const int cp = deck_.grids[it->second].cp;
@@ -204,6 +208,13 @@ CoordinateSystems::CoordinateSystems(const records::Deck& deck, const Vector3d& 
   Resolver resolver(deck, origin, diagnostics);
   resolver.run();
   systems_ = std::move(resolver.systems);
+  for (const auto& card : kCoordinateCards)  // refused: they stand for basic, without more words
+    if (const auto refused = deck.refused.find(card); refused != deck.refused.end())
+      for (const int id : refused->second) {
+        CoordinateSystem basic = systems_.at(0);
+        basic.is_resolved = false;
+        systems_.emplace(id, basic);
+      }
   grid_positions_ = std::move(resolver.positions);
 }
 

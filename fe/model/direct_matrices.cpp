@@ -120,7 +120,7 @@ ElementList make_direct(const records::Deck& deck, const records::Subcase& subca
       const auto found = std::find_if(deck.direct_matrices.begin(), deck.direct_matrices.end(),
                                       [&, &n = name](const auto& matrix) { return matrix.name == n; });
       if (found == deck.direct_matrices.end()) {
-        maker.error("fe.missing-direct", {},
+        maker.error("fe.missing-direct", subcase.find_command(command),
                     std::string(command) + " selects " + name + ", but the deck has no DMIG of that name",
                     "correct the name or add the DMIG");
         continue;

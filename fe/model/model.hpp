@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -41,6 +42,9 @@ struct ModelOptions {
 struct AutospcEntry {
   int node = 0, component = 0;
   double ratio = 0;
+  bool is_skew = false;  ///< the component has stiffness of its own: the direction that has none is oblique
+  /// Of a direction that is held: the component follows these (component, factor) of its node. Empty: it is held.
+  std::vector<std::pair<int, double>> terms;
 };
 
 class CoordinateSystems;
@@ -94,6 +98,7 @@ class Model final : public NodeTable {
   MatrixXd calc_rigid_modes(const Vector3d& point = Vector3d::Zero()) const;
 
   int find_node(int id) const override;
+  bool is_refused(int id) const override { return refused_grids_.count(id) > 0; }
   const Node& node(int index) const override { return nodes_[index]; }
   Matrix3d calc_axes(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const override;
   Vector3d calc_point(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const override;
@@ -116,6 +121,7 @@ class Model final : public NodeTable {
   std::shared_ptr<const CoordinateSystems> systems_;
   std::vector<Node> nodes_;
   std::unordered_map<int, int> node_index_;
+  std::set<int> refused_grids_;
   std::vector<std::unique_ptr<const Element>> elements_;
   int num_gdofs_ = 0;
   SparseRows T_, T_fixed_;

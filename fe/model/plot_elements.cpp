@@ -12,6 +12,7 @@ void ModelBuilder::add_drawn_lines() {
         line.nodes.push_back(index);
         continue;
       }
+      if (index < 0 && model_.is_refused(grid)) continue;
       diagnostics_.error("fe.missing-grid", deck_.locate(card.at),
                          who + " refers to grid " + std::to_string(grid) +
                              (index < 0 ? ", which the deck does not define" : ", which is a scalar point"),

@@ -81,6 +81,7 @@ const Node* find_rigid_grid(int id, const std::string& card, const NodeTable& no
                             Diagnostics& diagnostics) {
   const int index = nodes.find_node(id);
   if (index >= 0 && nodes.node(index).num_dofs == 6) return &nodes.node(index);
+  if (index < 0 && nodes.is_refused(id)) return nullptr;
   diagnostics.error("fe.missing-grid", at,
                     card + " names grid " + std::to_string(id) + ", which the deck does not define",
                     "add the GRID or correct the id");

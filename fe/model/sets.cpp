@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "formats/records/selection.hpp"
+
 namespace bough::fe {
 
 records::Subcase select_subcase(const records::Deck& deck, int id, Diagnostics& diagnostics) {
@@ -21,9 +23,11 @@ records::Subcase select_subcase(const records::Deck& deck, int id, Diagnostics& 
 
 std::vector<int> expand_set(int sid, const std::vector<records::SetUnion>& unions, const std::vector<int>& plain,
                             const std::string& what, const records::Deck& deck, Diagnostics& diagnostics) {
-  std::vector<int> result, open{sid}, seen;
+  std::vector<int> result, seen;
+  std::vector<std::pair<int, records::CardLocation>> open{
+      {sid, records::find_selection(deck, what, sid)}};  // who names it
   while (!open.empty()) {
-    const int id = open.back();
+    const auto [id, at] = open.back();
     open.pop_back();
     if (std::find(seen.begin(), seen.end(), id) != seen.end()) continue;
     seen.push_back(id);
@@ -34,11 +38,11 @@ std::vector<int> expand_set(int sid, const std::vector<records::SetUnion>& union
     }
     for (const auto& u : unions)
       if (u.sid == id) {
-        open.insert(open.end(), u.sets.begin(), u.sets.end());
+        for (const int member : u.sets) open.emplace_back(member, u.at);
         exists = true;
       }
     if (!exists)
-      diagnostics.error("fe.missing-set", deck.locate({}),
+      diagnostics.error("fe.missing-set", deck.locate(at),
                         what + " set " + std::to_string(id) + " is selected but has no cards", "correct the set id");
   }
   std::sort(result.begin(), result.end());

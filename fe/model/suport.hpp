@@ -1,14 +1,8 @@
 #pragma once
-/// \file SUPORT: the r-set, its motions, and inertia relief. Source: MSC Nastran Linear Static Analysis User's Guide,
-/// "Inertia Relief"; Quick Reference Guide, SUPORT, SUPORT1, PARAM,INREL.
-#include "fe/statics/statics.hpp"
+/// \file SUPORT: the r-set. Source: MSC Nastran Quick Reference Guide, SUPORT, SUPORT1.
+#include "fe/model/model.hpp"
 
 namespace bough::fe {
-
-/// PARAM,INREL: 0; -1: the body is free at its SUPORT; -2: it is free, without SUPORT.
-enum class InertiaRelief { None, Supported, Free };
-/// Reports fe.bad-param.
-InertiaRelief read_inertia_relief(const records::Deck& deck, Diagnostics& diagnostics);
 
 /// f-dofs of SUPORT and of the SUPORT1 set of the model's subcase, ascending, each once. Reports fe.missing-set,
 /// fe.missing-grid, fe.bad-component, fe.suport-not-free (fixed, dependent or omitted); a dof without stiffness, which
@@ -18,32 +12,7 @@ std::vector<int> find_suport(const Model& model, const records::Deck& deck, Diag
 /// Errors of find_suport() are thrown; a note lists the dofs, which only a static solution holds.
 void report_suport(const Model& model, const records::Deck& deck, Diagnostics& diagnostics);
 
-/// What a static solution holds beside its SPC, and what moves with it.
-struct Suport {
-  InertiaRelief relief = InertiaRelief::None;
-  std::vector<int> fdofs;  ///< r
-  MatrixXd motions;        ///< Φ, num_gdofs x r: u_r = 1 for each in turn, the others follow without force
-  VectorXd strain_energy;  ///< r: ½ Φᵀ K Φ; none if the motion is rigid
-  double epsilon = 0;      ///< |K_rr - K_rl K_ll⁻¹ K_lr| / |K_rr|, as Nastran prints it
-  MatrixXd M_motions;      ///< M Φ, with inertia relief
-  MatrixXd mass;           ///< Φᵀ M Φ, r x r, with inertia relief
-};
-
-/// f-dofs to hold: find_suport(), or for INREL -2 a determinate support of Bough's choice. Reports fe.missing-suport
-/// (INREL -1 without SUPORT), fe.suport-unused (warning: INREL -2 with SUPORT).
-std::vector<int> choose_suport(const Model& model, const records::Deck& deck, InertiaRelief relief,
-                               Diagnostics& diagnostics);
-
-/// `solver` holds `fdofs`. A motion that strains the model (more than kMechanismEnergy of the diagonal's energy) means
-/// that SUPORT holds more than a rigid body, or that the model is held elsewhere too: fe.suport-strained (warning),
-/// with inertia relief ComputationError. One without mass is ComputationError fe.inertia-massless with inertia relief.
-Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<int> fdofs, InertiaRelief relief,
-                   Diagnostics& diagnostics);
-
-/// Accelerations a of the r dofs under the load F (num_gdofs): ΦᵀMΦ a = ΦᵀF. The balanced load is F - MΦ a.
-VectorXd calc_acceleration(const Suport& suport, const VectorXd& F_g);
-
-/// INREL -2: u less its rigid part in the sense of the mass, so that ΦᵀM u = 0.
-void remove_rigid_part(const Suport& suport, VectorXd& u_g);
+/// "grid 3 component 2", "scalar point 3".
+std::string name_suport(int grid, int component);
 
 }  // namespace bough::fe

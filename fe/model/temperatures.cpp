@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "fe/elements/temperature.hpp"
+#include "formats/records/selection.hpp"
 
 namespace bough::fe {
 namespace {
@@ -69,7 +70,7 @@ InitialForces calc_thermal(const Model& model, const records::Deck& deck, int se
   if (set == 0) return result;
   const TemperatureSet temperatures(deck.temperatures, set);
   if (temperatures.is_empty()) {
-    diagnostics.error("fe.missing-load", deck.locate({}),
+    diagnostics.error("fe.missing-load", deck.locate(records::find_selection(deck, "TEMPERATURE", set)),
                       "temperature set " + std::to_string(set) + " has no TEMP, TEMPD, TEMPRB or TEMPP1 card",
                       "correct TEMPERATURE(LOAD) or add its cards");
     return result;
@@ -89,7 +90,7 @@ InitialForces calc_thermal(const Model& model, const records::Deck& deck, int se
     result.of.emplace(element.get(), std::move(part));
   }
   if (first_missing)
-    diagnostics.error("fe.missing-temperature", deck.locate({}),
+    diagnostics.error("fe.missing-temperature", deck.locate(records::find_selection(deck, "TEMPERATURE", set)),
                       first_missing->card() + " " + std::to_string(first_missing->id()) +
                           " has no temperature in set " + std::to_string(set) + ": none is given for grid " +
                           std::to_string(first_grid) +

@@ -47,6 +47,8 @@ std::vector<int> ModelBuilder::list_set(const std::vector<records::GridComponent
   for (const auto& [ldof, at] : fixed_by_) fixed.emplace(ldof, &at);
   std::unordered_map<int, const std::string*> dependent;
   for (const auto& equation : equations_) dependent.emplace(equation.dependent, &equation.card);
+  for (const auto& entry : model_.autospc_)  // may be named all the same
+    dependent.erase(model_.nodes_[model_.find_node(entry.node)].first_gdof + std::max(entry.component - 1, 0));
   const auto add = [&](int ldof, const SourceLocation& at) {
     if (ldof < 0) return;
     std::string why;

@@ -1,34 +1,49 @@
 #include "fe/statics/static_case.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 
 #include "fe/elements/beam.hpp"
-#include "fe/elements/bush.hpp"
-#include "fe/elements/scalar.hpp"
 #include "fe/loads/load_sets.hpp"
 
 namespace bough::fe {
 namespace {
 
-/// What is printed of an element: its internal forces, or those of a spring, which no geometric stiffness asks for.
-std::vector<std::string> list_components(const Element& element) {
-  if (dynamic_cast<const ScalarSpring*>(&element)) return {"force"};
-  if (dynamic_cast<const Bush*>(&element)) return {"force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z"};
-  return element.internal_force_names();
-}
-
 VectorXd calc_forces(const Element& element, const VectorXd& u, const InitialForces::Part* initial) {
-  if (const auto* spring = dynamic_cast<const ScalarSpring*>(&element))
-    return VectorXd::Constant(1, spring->calc_force(u));
-  if (const auto* bush = dynamic_cast<const Bush*>(&element)) return bush->calc_spring_forces(u);
-  VectorXd force = VectorXd::Zero(element.num_internal_forces());
-  element.calc_internal_forces(u, force);
+  VectorXd force = element.calc_printed_forces(u);
   if (initial) force += initial->force;
   return force;
 }
 
 }  // namespace
+
+std::vector<std::string> list_lost_loads(const Model& model, const VectorXd& F) {
+  std::vector<std::pair<double, const AutospcEntry*>> found;
+  const double least = 1e-9 * F.cwiseAbs().maxCoeff();
+  for (const auto& entry : model.autospc()) {
+    const Node& node = model.node(model.find_node(entry.node));
+    const int c = std::max(entry.component - 1, 0);
+    if (entry.is_skew && entry.terms.empty()) continue;  // what has stiffness passes the load on
+    Vector3d n = Vector3d::Unit(c % 3);
+    for (const auto& [component, factor] : entry.terms) n[(component - 1) % 3] -= factor;
+    const double f = node.num_dofs == 1
+                         ? F[node.first_gdof]
+                         : F.segment<3>(node.first_gdof + 3 * (c / 3)).dot(node.R_basic_cd * n.normalized());
+    if (std::abs(f) > least) found.emplace_back(f, &entry);
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
+  std::vector<std::string> text;
+  for (const auto& [f, entry] : found) {
+    char number[32];
+    std::snprintf(number, sizeof number, " (%.4g)", f);
+    text.push_back("component " + std::to_string(entry->component) + " of grid " + std::to_string(entry->node) +
+                   number);
+  }
+  return text;
+}
 
 StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int load, Diagnostics& diagnostics) {
   if (load < 0) return calc_static_load(model, deck, model.subcase(), diagnostics);
@@ -47,6 +62,12 @@ StaticLoad calc_static_load(const Model& model, const records::Deck& deck, const
   result.d = model.calc_enforced(deck, subcase.load, diagnostics);
   result.initial = calc_thermal(model, deck, subcase.temperature, diagnostics);
   if (!result.initial.of.empty()) result.F += sum_loads(model, result.initial);
+  if (const auto lost = list_lost_loads(model, result.F); !lost.empty())
+    diagnostics.warning("fe.load-autospc", deck.locate({}),
+                        "loads of subcase " + std::to_string(subcase.id) + " act on " + std::to_string(lost.size()) +
+                            " dof(s) without stiffness, which AUTOSPC holds: " + lost.front() +
+                            (lost.size() > 1 ? ", ..." : ""),
+                        "a moment on a grid of solids needs an RBE2 or RBE3 that ties it to other grids");
   return result;
 }
 
@@ -72,7 +93,13 @@ records::StaticSubcase solve_static_case(const Model& model, const StaticSolver&
     F += result.inertia;
     applied += result.inertia;
   }
-  VectorXd u1 = solver.solve(F, diagnostics);
+  VectorXd u1;
+  try {
+    u1 = solver.solve(F, diagnostics);
+  } catch (const ComputationError&) {
+    solver.demand_no_mechanism(model);
+    throw;
+  }
   if (suport.relief == InertiaRelief::Free) remove_rigid_part(suport, u1);
   result.displacement = u1 + u0;
   result.load = load.F;
@@ -122,7 +149,7 @@ std::vector<records::ElementForces> calc_element_forces(const Model& model, cons
   std::map<std::pair<std::string, int>, std::vector<int>> groups;
   const auto& elements = model.elements();
   for (std::size_t e = 0; e < elements.size(); ++e) {
-    const int count = static_cast<int>(list_components(*elements[e]).size());
+    const int count = static_cast<int>(elements[e]->printed_force_names().size());
     if (count > 0) groups[{elements[e]->card(), count}].push_back(static_cast<int>(e));
   }
   const auto [begin, end] = calc_element_range(model);
@@ -131,7 +158,7 @@ std::vector<records::ElementForces> calc_element_forces(const Model& model, cons
     records::ElementForces block;
     block.card =
         !result.empty() && result.back().card == key.first ? key.first + "-" + std::to_string(key.second) : key.first;
-    block.components = list_components(*elements[static_cast<std::size_t>(members.front())]);
+    block.components = elements[static_cast<std::size_t>(members.front())]->printed_force_names();
     const auto rows = static_cast<Eigen::Index>(members.size());
     block.force = MatrixXd::Zero(rows, key.second);
     MatrixXd energy = MatrixXd::Zero(rows, 1);
@@ -145,7 +172,7 @@ std::vector<records::ElementForces> calc_element_forces(const Model& model, cons
       const auto* heated = initial.find(element);
       VectorXd force = calc_forces(element, u, heated);
       if (const auto own = end_loads.find(e); own != end_loads.end())
-        static_cast<const Beam&>(element).add_load_forces(own->second, force);
+        element.as_beam()->add_load_forces(own->second, force);
       block.force.row(r) = force.transpose();
       MatrixXd K = MatrixXd::Zero(u.size(), u.size());
       model.add_stiffness(element, K);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file One static subcase: displacements, reactions, balance, element forces (SOL 101).
-#include "fe/model/suport.hpp"
 #include "fe/model/temperatures.hpp"
+#include "fe/statics/inertia_relief.hpp"
 #include "fe/statics/statics.hpp"
 #include "formats/records/static_result.hpp"
 
@@ -17,6 +17,10 @@ struct StaticLoad : AppliedLoad {
 StaticLoad calc_static_load(const Model& model, const records::Deck& deck, const records::Subcase& subcase,
                             Diagnostics& diagnostics);
 /// Of set `load` alone, or of the model's subcase when it is negative.
+/// Forces and moments of F (num_gdofs) on dofs that AUTOSPC holds: they act on nothing. The largest first, as
+/// "component 6 of grid 20 (5)"; empty when there is none above 1e-9 of the largest load.
+std::vector<std::string> list_lost_loads(const Model& model, const VectorXd& F);
+
 StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int load, Diagnostics& diagnostics);
 
 /// u = T q + T_fixed d with Tᵀ(K u - F) = 0. With R = K u - F: reactions of the fixed dofs T_fixedᵀ R; the rest of R is

@@ -65,6 +65,10 @@ double calc_model_size(const Model& model) {
     item.what = "the stiffness matrix is singular: mechanism " + std::to_string(c + 1) + " of " +
                 std::to_string(motions.cols()) + " moves most at " + describe_motion(model, kept, motions.col(c), size);
     item.advice = "hold or stiffen these dofs (components in the displacement axes of the grids)";
+    const auto& subcase = model.subcase();
+    if (c == 0 && subcase.spc == 0 && model.fixed_dofs().size() <= model.autospc().size())
+      item.advice = (subcase.id > 0 ? "subcase " + std::to_string(subcase.id) : std::string("the case control")) +
+                    " selects no SPC set and nothing is held: write SPC = n, or hold these dofs";
     items.push_back(std::move(item));
   }
   throw ComputationError(std::move(items));
@@ -130,6 +134,12 @@ StaticSolver::~StaticSolver() = default;
 const SymmetricFactor* StaticSolver::find_definite_factor() const {
   const bool is_whole = impl_->kept.size() == static_cast<size_t>(impl_->T.cols());
   return is_whole && impl_->factor && impl_->factor->is_definite() ? &*impl_->factor : nullptr;
+}
+
+void StaticSolver::demand_no_mechanism(const Model& model) const {
+  if (impl_->kept.empty()) return;
+  const MatrixXd motions = find_mechanisms(impl_->K.get(), 1, kSoftMotionEnergy);
+  if (motions.cols() > 0) throw_mechanisms(model, impl_->kept, motions);
 }
 
 MatrixXd StaticSolver::solve(const Eigen::Ref<const MatrixXd>& F_g, Diagnostics* diagnostics) const {

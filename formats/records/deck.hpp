@@ -7,6 +7,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -362,6 +363,10 @@ struct Subcase {
   int temperature = 0;  ///< TEMPERATURE(LOAD) or (BOTH)
   int suport1 = 0, nsm = 0;
   std::vector<std::pair<double, std::string>> k2gg, m2gg, b2gg;  ///< (scale, DMIG name)
+  std::map<std::string, CardLocation> commands;  ///< where "SPC", "LOAD", "METHOD", ... of this subcase stand
+
+  /// Where `command` selects something for this subcase; line 0 where none does.
+  CardLocation find_command(const std::string& command) const;
 };
 
 /// A card that Bough does not use: what it would have carried, how often, and where first.
@@ -444,10 +449,14 @@ struct Deck {
   std::vector<UnusedCard> unused;
   std::vector<std::string> left_out;       ///< what the record does not keep of cards that it reads: "12 fluid GRID"
   std::map<std::string, int> card_counts;  ///< every card name in the bulk data
+  /// Ids of cards that were refused with an error of their own, by card name: who refers to one says nothing more.
+  std::map<std::string, std::set<int>> refused;
 
   /// Value of a PARAM, the last one given; nullptr when absent.
   const Param* find_param(const std::string& name) const;
   SourceLocation locate(const CardLocation& at) const;
+  /// Whether one of the cards (names such as "MAT1") was refused under this id.
+  bool is_refused(int id, const std::vector<std::string>& cards) const;
 };
 
 }  // namespace bough::records

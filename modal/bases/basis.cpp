@@ -1,6 +1,8 @@
 #include "modal/bases/basis.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <map>
 #include <numeric>
 
 #include "modal/canonical.hpp"
@@ -121,8 +123,36 @@ Basis calc_free_interface_basis(const fe::Model& model, const BasisOptions& opti
   return basis;
 }
 
+/// What the directions X of Craig-Bampton coordinates do at the interface, each: "turning of grid 31 about (0.33 0.67
+/// 0.67)".
+std::string describe_directions(const fe::Model& model, const Basis& basis, const MatrixXd& X) {
+  std::string text;
+  for (Eigen::Index c = 0; c < X.cols(); ++c) {
+    std::map<std::pair<int, bool>, Vector3d> parts;  // by grid and whether it turns
+    for (std::size_t b = 0; b < basis.boundary.size(); ++b) {
+      const auto [id, component] = basis.boundary[b];
+      auto& part = parts.try_emplace({id, component > 3}, Vector3d::Zero()).first->second;
+      part += X(static_cast<Eigen::Index>(b), c) * model.node(model.find_node(id)).R_basic_cd.col((component - 1) % 3);
+    }
+    const auto largest = std::max_element(parts.begin(), parts.end(), [](const auto& a, const auto& b) {
+      return a.second.squaredNorm() < b.second.squaredNorm();
+    });
+    if (largest == parts.end()) continue;
+    Vector3d axis = largest->second.normalized();
+    Eigen::Index first = 0;
+    axis.cwiseAbs().maxCoeff(&first);
+    if (axis(first) < 0) axis = -axis;
+    char numbers[80];
+    std::snprintf(numbers, sizeof numbers, " (%.3g %.3g %.3g)", axis.x() + 0.0, axis.y() + 0.0, axis.z() + 0.0);
+    text += (text.empty() ? "" : ", ") + std::string(largest->first.second ? "turning of grid " : "motion of grid ") +
+            std::to_string(largest->first.first) + (largest->first.second ? " about" : " along") + numbers;
+  }
+  return text;
+}
+
 /// K^N = M^ND of the component, twice: the second time nearly diagonal, for the digits of the lowest values.
-void orthogonalize(const fe::Model& model, const MatrixXd& rigid, Eigen::Index num_constraint, Basis& basis) {
+void orthogonalize(const fe::Model& model, const MatrixXd& rigid, Eigen::Index num_constraint, Basis& basis,
+                   Diagnostics& diagnostics) {
   MatrixXd& Phi = basis.Phi;
   for (int pass = 0; pass < 2 && rigid.cols() > 0; ++pass)
     Phi -= rigid * (times_M(model, rigid).transpose() * Phi).eval();
@@ -130,6 +160,11 @@ void orthogonalize(const fe::Model& model, const MatrixXd& rigid, Eigen::Index n
   MatrixXd N = MatrixXd::Identity(Phi.cols(), Phi.cols());
   for (int pass = 0; pass < 2; ++pass) {
     const auto pairs = calc_ritz_pairs(calc_gram_M(model, Phi), pass == 0 ? K : calc_gram_K(model, Phi));
+    if (pass == 0 && pairs.massless.cols() > 0)
+      diagnostics.warning("modal.massless-interface", {},
+                          describe_directions(model, basis, pairs.massless) +
+                              " moves no mass: it follows the other shapes without force",
+                          "a hinge passes nothing in that direction; give the model inertia there if it should");
     Phi = Phi * pairs.N;
     N = N * pairs.N;
     basis.lambda = pairs.lambda;
@@ -214,13 +249,18 @@ Basis calc_craig_bampton_basis(const fe::Model& model, const BasisOptions& optio
   basis.K.topLeftCorner(nb, nb) = calc_gram_K(model, Psi);
   basis.K.bottomRightCorner(lambda.size(), lambda.size()) = lambda.asDiagonal();
   if (options.orthogonalize) {
-    orthogonalize(model, rigid, nb, basis);
+    orthogonalize(model, rigid, nb, basis, diagnostics);
     return basis;
   }
   basis.is_raw = true;
   basis.M = calc_gram_M(model, basis.Phi);
   basis.lambda = basis.K.diagonal().cwiseQuotient(basis.M.diagonal());
-  return drop_massless(basis, diagnostics);
+  basis = drop_massless(basis, diagnostics);
+  if (const auto massless = calc_ritz_pairs(basis.M, basis.K).massless; massless.cols() > 0)
+    diagnostics.warning("modal.massless-interface", {},
+                        describe_directions(model, basis, massless) + " moves no mass: the mass matrix is singular",
+                        "give the model inertia in that direction, or hold it");
+  return basis;
 }
 
 }  // namespace

@@ -10,19 +10,50 @@ namespace {
 
 MatrixXd symmetrize(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
 
+/// Coordinates to units in which each has mass 1; those whose mass is next to none for their stiffness (frequencies
+/// 1e7 times that of the softest) go by their stiffness, so that their mass stays next to none.
+VectorXd calc_mass_scale(const MatrixXd& M, const MatrixXd& K) {
+  const VectorXd m = M.diagonal(), k = K.diagonal();
+  double longest = 0;  // 1/ω²
+  for (Eigen::Index j = 0; j < m.size(); ++j)
+    if (m(j) > 0 && k(j) > 0) longest = std::max(longest, m(j) / k(j));
+  VectorXd scale = VectorXd::Zero(m.size());
+  for (Eigen::Index j = 0; j < m.size(); ++j) {
+    const double least = k(j) > 0 ? longest * k(j) : 0;
+    const double mass = m(j) > 1e-14 * least ? m(j) : least;
+    if (mass > 0) scale(j) = 1 / std::sqrt(mass);
+  }
+  return scale;
+}
+
+/// Of the directions Z, those that strain: Y with YᵀKY = 1. The others are dependent vectors.
+MatrixXd find_stiff(const MatrixXd& Z, const MatrixXd& K) {
+  if (Z.cols() == 0) return Z;
+  const VectorXd diagonal = (Z.cwiseAbs2().transpose() * K.diagonal().cwiseMax(0)).cwiseSqrt();
+  const VectorXd scale = diagonal.unaryExpr([](double d) { return d > 0 ? 1 / d : 0.0; });
+  const MatrixXd unit = Z * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> energy(symmetrize(unit.transpose() * K * unit));
+  const VectorXd& e = energy.eigenvalues();
+  const auto num = (e.array() > 1e-10).count();
+  return unit * energy.eigenvectors().rightCols(num) * e.tail(num).cwiseSqrt().cwiseInverse().asDiagonal();
+}
+
 }  // namespace
 
 RitzPairs calc_ritz_pairs(const MatrixXd& M, const MatrixXd& K) {
   RitzPairs pairs{VectorXd(0), MatrixXd(M.rows(), 0)};
   if (M.rows() == 0) return pairs;
-  const VectorXd scale = M.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  const VectorXd scale = calc_mass_scale(M, K);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(symmetrize(scale.asDiagonal() * M * scale.asDiagonal()));
   const VectorXd& d = gram.eigenvalues();
   const auto dropped = (d.array() <= 1e-12 * std::max(d.maxCoeff(), 0.0)).count();
   const auto n = d.size() - dropped;
+  MatrixXd W = scale.asDiagonal() * gram.eigenvectors().rightCols(n) *
+               d.tail(n).cwiseMax(0).cwiseSqrt().cwiseInverse().asDiagonal();
+  pairs.massless = find_stiff(scale.asDiagonal() * gram.eigenvectors().leftCols(dropped), K);
   if (n == 0) return pairs;
-  const MatrixXd W =
-      scale.asDiagonal() * gram.eigenvectors().rightCols(n) * d.tail(n).cwiseSqrt().cwiseInverse().asDiagonal();
+  // What has no mass follows without force. Left out instead, it would be held.
+  if (pairs.massless.cols() > 0) W -= pairs.massless * (pairs.massless.transpose() * K * W).eval();
   const MatrixXd K_w = symmetrize(W.transpose() * K * W);
   if (Eigen::LLT<MatrixXd>(K_w).info() == Eigen::Success) {
     const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(MatrixXd::Identity(n, n), K_w);

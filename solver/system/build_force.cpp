@@ -70,7 +70,8 @@ std::optional<AppliedForce> build_force(const records::ForceRecord& r, const Tre
         find_loaded_node(r.body, body, r.node, {is_force, !is_force}, r.at, "force " + quote(r.name), diagnostics);
     if (!r.direction.allFinite() || r.direction.isZero(0)) {
       diagnostics.error("system.zero-direction", r.at, "force " + quote(r.name) + " has no direction",
-                        "give 'direction' three numbers, not all zero");
+                        r.kind == records::ForceKind::Force ? "give 'force' three numbers, not all zero"
+                                                                  : "give 'moment' three numbers, not all zero");
     }
   }
   if (diagnostics.num_errors() != errors) return std::nullopt;

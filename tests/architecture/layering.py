@@ -30,17 +30,17 @@ MAY_INCLUDE = [
 ]
 # Outside headers and the only folders that may see them.
 OUTSIDE = [
-    (r"^petsc", ["fe", "modal", "stiffening", "cli/versions.cpp"]),
-    (r"^slepc", ["fe/linear/petsc.cpp", "modal", "cli/versions.cpp"]),
+    (r"^petsc", ["fe", "modal", "stiffening", "cli/common/versions.cpp"]),
+    (r"^slepc", ["fe/linear/petsc.cpp", "modal", "cli/common/versions.cpp"]),
     (r"^mpi\.h", ["fe"]),
     (r"^metis", ["fe"]),
-    (r"^(hdf5|H5)", ["formats/hdf5", "cli/versions.cpp"]),
+    (r"^(hdf5|H5)", ["formats/hdf5", "cli/common/versions.cpp"]),
     (r"^toml\+\+", ["formats/toml"]),
     (r"^matio", ["formats/matrices"]),
     (r"^nlohmann", ["formats/toml", "cli"]),
     (r"^CLI/", ["cli"]),
     (r"^fmt/", ["cli", "formats"]),
-    (r"^(sundials|cvode|arkode|nvector|sunlinsol|sunmatrix|sunnonlinsol)", ["solver/integrate", "cli/versions.cpp"]),
+    (r"^(sundials|cvode|arkode|nvector|sunlinsol|sunmatrix|sunnonlinsol)", ["solver/integrate", "cli/common/versions.cpp"]),
 ]
 
 

@@ -316,6 +316,9 @@ class Preload(ProgramTest):
         self.write("b.toml", '[body]\ndeck = "r.bdf"\n[body.modes]\nnumber = 3\n[body.stiffening]\ninertial = ["ax"]\n'
                    '[body.preload]\nspin = [0.0, 0.0, 1.0]\n')
         self.fails(1, "reduce", "b.toml", "-o", "b.h5", says=["b.toml:7"], error="reduce.bad-preload")
+        self.write("z.toml", '[body]\ndeck = "r.bdf"\n[body.modes]\nnumber = 3\n'
+                   '[body.preload]\nspin = [0.0, 0.0, 0.0]\n')
+        self.fails(1, "reduce", "z.toml", "-o", "z.h5", says=["z.toml:5", "nothing"], error="reduce.bad-preload")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 /// Buckling of columns that end in rigid levers.
 #include <gtest/gtest.h>
 
-#include "fe/matrices/wide_links.hpp"
+#include "fe/loads/wide_links.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/eigen.hpp"

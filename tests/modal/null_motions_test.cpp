@@ -121,6 +121,24 @@ TEST(NullMotions, BasisAndSupports) {
   EXPECT_GT(Eigen::JacobiSVD<MatrixXd>(at_supports).singularValues().minCoeff(), 1e-3);
 }
 
+// A free bar along an oblique line, far from the origin, with next to no inertia about itself: its motions are
+// orthonormal to the last digits all the same.
+TEST(NullMotions, ZeroModesAreOrthonormal) {
+  modal::detail::initialize_slepc();
+  const auto model = build(
+      "SOL 103\nCEND\nBEGIN BULK\nGRID,1,,31.3,-17.1,12.7\nGRID,2,,32.1,-16.4,13.9\nGRID,3,,32.9,-15.7,15.1\n"
+      "MAT1,1,7.+10,,.3\nPBAR,1,1,1.-4,1.-8,1.-8,2.-8\nCBAR,1,1,1,2,0.,1.,0.\nCBAR,2,1,2,3,0.,1.,0.\n"
+      "CONM2,4,1,,2.\n,1.-11,,1.-11,,,1.-11\nCONM2,5,2,,3.\n,1.-11,,1.-11,,,1.-11\nCONM2,6,3,,1.\n"
+      ",1.-11,,1.-11,,,1.-11\nENDDATA\n");
+  const modal::detail::Pencil pencil(model);
+  for (const auto& found : {modal::detail::find_rigid_motions(pencil), modal::detail::find_null_motions(pencil)}) {
+    const auto num = found.modes.cols();
+    ASSERT_GE(num, 5);  // the spin about itself may be next to nothing
+    const MatrixXd G = found.modes.transpose() * pencil.calc_M_times(found.modes);
+    EXPECT_LT((G - MatrixXd::Identity(num, num)).cwiseAbs().maxCoeff(), 1e-11);
+  }
+}
+
 // Point masses on a massless cantilever, one of them on a spring a hundred million times as soft: M of low rank, and
 // the stiff modes keep their digits beside the soft one.
 TEST(LowRank, KeepsTheDigitsOfHighModes) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/rotation.hpp"
+#include "fe/loads/second_order.hpp"
 #include "stiffening/reduce.hpp"
 #include "tests/support/beam_decks.hpp"
 

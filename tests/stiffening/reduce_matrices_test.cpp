@@ -1,5 +1,6 @@
 /// A body from its own matrices is the body of its deck; and what is wrong with matrices.
 #include "stiffening/reduce_matrices.hpp"
+#include "fe/loads/second_order.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -383,6 +384,7 @@ TEST(ReduceMatrices, FreeBodyAndGivenModes) {
   Diagnostics found;
   const auto body = reduce_given(deck, spec, given, &found);
   EXPECT_FALSE(has_id(found, "reduce.modes-differ"));
+  EXPECT_FALSE(has_id(found, "reduce.modes-residual"));
   EXPECT_TRUE(has_id(found, "reduce.rigid-modes"));
   ASSERT_EQ(body.num_modes(), 4);
   expect_near(body.frequency_hz, expected.frequency_hz, 1e-10, "frequency");
@@ -395,6 +397,19 @@ TEST(ReduceMatrices, FreeBodyAndGivenModes) {
   Diagnostics warned;
   reduce_given(deck, spec, given, &warned);
   EXPECT_TRUE(has_id(warned, "reduce.modes-differ"));
+
+  // A sum of two modes is none; the digits that single precision loses do not count.
+  Diagnostics mixed;
+  MatrixXd Phi_mixed = Phi;
+  Phi_mixed.col(7) += .1 * Phi.col(8);
+  given.modes.Phi.values = Phi_mixed.sparseView();
+  given.modes.eigenvalue.resize(0);
+  reduce_given(deck, spec, given, &mixed);
+  EXPECT_TRUE(has_id(mixed, "reduce.modes-residual"));
+  Diagnostics printed;
+  given.modes.Phi.values = MatrixXd(Phi.cast<float>().cast<double>()).sparseView();
+  reduce_given(deck, spec, given, &printed);
+  EXPECT_FALSE(has_id(printed, "reduce.modes-residual"));
 
   // No mass in a mode.
   given.modes.Phi.values = MatrixXd(VectorXd::Unit(Phi.rows(), scalar)).sparseView();

@@ -11,7 +11,8 @@ using records::PbeamlStation;
 using records::PbeamStation;
 
 void read_recovery(Card& card, int first, std::array<Eigen::Vector2d, 4>& points) {
-  for (int i = 0; i < 4; ++i) points[static_cast<std::size_t>(i)] = card.read_point(first + 2 * i, "C1 to F2");
+  static constexpr std::array names{"C1 C2", "D1 D2", "E1 E2", "F1 F2"};
+  for (std::size_t i = 0; i < 4; ++i) points[i] = card.read_point(first + 2 * static_cast<int>(i), names[i]);
 }
 
 /// Blank and 0.0 both mean that the section has no shear flexibility.

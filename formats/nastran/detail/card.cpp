@@ -5,6 +5,15 @@
 #include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
+namespace {
+
+/// The one at `index` of names between blanks.
+std::string take_name(std::string_view names, int index) {
+  for (; index > 0; --index) names = trim(names.substr(std::min(names.find(' '), names.size())));
+  return std::string(names.substr(0, names.find(' ')));
+}
+
+}  // namespace
 
 bool Card::is_blank(int first, int last) const {
   for (int i = first; i < last; ++i)
@@ -25,6 +34,10 @@ int Card::find_leftover(int first) const {
   return -1;
 }
 
+std::string Card::name_field(int i) {
+  return "field " + std::to_string(i % 8 + 2) + (i < 8 ? "" : " of line " + std::to_string(i / 8 + 1));
+}
+
 SourceLocation Card::locate(int i) const {
   const auto* line = &text_.lines.front();
   for (const auto& other : text_.lines)
@@ -39,11 +52,12 @@ void Card::fail(std::string_view id, int i, std::string what, std::string advice
 void Card::warn(std::string_view id, int i, std::string what, std::string advice) {
   diagnostics_.warning(id, locate(i), text_.name + ": " + what, std::move(advice));
 }
-void Card::fail_field(std::string_view id, int i, const char* what, const char* expected) {
+void Card::fail_field(std::string_view id, int i, const std::string& what, const char* expected) {
+  const auto who = what + " (" + name_field(i) + ")";
   if (is_blank(i))
-    fail("deck.missing-field", i, std::string(what) + " is blank, expected " + expected);
+    fail("deck.missing-field", i, who + " is blank, expected " + expected);
   else
-    fail(id, i, std::string(what) + " is '" + std::string(get(i)) + "', expected " + expected);
+    fail(id, i, who + " is '" + std::string(get(i)) + "', expected " + expected);
 }
 void Card::demand(bool condition, int i, const char* what, const char* expected) {
   if (!condition) fail_field("deck.field-range", i, what, expected);
@@ -77,14 +91,14 @@ int Card::read_reference(int i, const char* what, int fallback) {
   return value.value_or(fallback);
 }
 /// The old programs skip blanks in a field; where that is no accident of columns it is one number.
-std::string Card::join_blanks(int i, const char* what) {
+std::string Card::join_blanks(int i, const std::string& what) {
   std::string joined(get(i));
   std::erase(joined, ' ');
-  warn("deck.blank-inside", i, std::string(what) + " is '" + std::string(get(i)) + "', read as '" + joined + "'",
+  warn("deck.blank-inside", i, what + " is '" + std::string(get(i)) + "', read as '" + joined + "'",
        "check the columns");
   return joined;
 }
-double Card::read_real(int i, const char* what) {
+double Card::read_real(int i, const std::string& what) {
   use(i);
   auto value = parse_real(get(i));
   if (const auto blank = get(i).find(' '); !value && blank != std::string_view::npos) {
@@ -96,16 +110,19 @@ double Card::read_real(int i, const char* what) {
   if (!value) fail_field("deck.bad-real", i, what, "a real number");
   return value.value_or(0.0);
 }
-double Card::read_real(int i, const char* what, double fallback) { return is_blank(i) ? fallback : read_real(i, what); }
+double Card::read_real(int i, const std::string& what, double fallback) {
+  return is_blank(i) ? fallback : read_real(i, what);
+}
 std::optional<double> Card::read_optional_real(int i, const char* what) {
   if (is_blank(i)) return std::nullopt;
   return read_real(i, what);
 }
-Eigen::Vector3d Card::read_vector(int i, const char* what) {
-  return {read_real(i, what, 0.0), read_real(i + 1, what, 0.0), read_real(i + 2, what, 0.0)};
+Eigen::Vector3d Card::read_vector(int i, const char* names) {
+  return {read_real(i, take_name(names, 0), 0.0), read_real(i + 1, take_name(names, 1), 0.0),
+          read_real(i + 2, take_name(names, 2), 0.0)};
 }
-Eigen::Vector2d Card::read_point(int i, const char* what) {
-  return {read_real(i, what, 0.0), read_real(i + 1, what, 0.0)};
+Eigen::Vector2d Card::read_point(int i, const char* names) {
+  return {read_real(i, take_name(names, 0), 0.0), read_real(i + 1, take_name(names, 1), 0.0)};
 }
 unsigned Card::read_components(int i, const char* what) {
   use(i);

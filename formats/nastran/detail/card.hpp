@@ -65,6 +65,8 @@ class Card {
   /// First field from `first` on with data that was neither read nor used, or -1. Beyond 64 fields it is what follows
   /// the last one.
   int find_leftover(int first) const;
+  /// "field 4", "field 2 of line 3": as the manuals count, the name being field 1.
+  static std::string name_field(int i);
   /// Where field i stands (its line).
   SourceLocation locate(int i) const;
 
@@ -73,12 +75,12 @@ class Card {
   int read_id(int i, const char* what);                           ///< required, > 0
   int read_id(int i, const char* what, int fallback);             ///< > 0 or blank
   int read_reference(int i, const char* what, int fallback = 0);  ///< >= 0 or blank: coordinate systems, open ends
-  double read_real(int i, const char* what);                      ///< required
-  double read_real(int i, const char* what, double fallback);
+  double read_real(int i, const std::string& what);               ///< required
+  double read_real(int i, const std::string& what, double fallback);
   std::optional<double> read_optional_real(int i, const char* what);
-  Eigen::Vector3d read_vector(int i, const char* what);  ///< fields i..i+2, blank = 0
-  Eigen::Vector2d read_point(int i, const char* what);   ///< fields i, i+1, blank = 0
-  unsigned read_components(int i, const char* what);     ///< required
+  Eigen::Vector3d read_vector(int i, const char* names);  ///< fields i..i+2, blank = 0; names "N1 N2 N3"
+  Eigen::Vector2d read_point(int i, const char* names);   ///< fields i, i+1, blank = 0; names "C1 C2"
+  unsigned read_components(int i, const char* what);      ///< required
   unsigned read_components(int i, const char* what, unsigned fallback);
   int read_component(int i, const char* what);  ///< one component 0..6, blank = 0
   /// A word of `choices` (upper case), `fallback` when blank.
@@ -93,8 +95,8 @@ class Card {
 
  private:
   /// "10.4  +6" and "12 456" without their blanks, with the warning deck.blank-inside.
-  std::string join_blanks(int i, const char* what);
-  void fail_field(std::string_view id, int i, const char* what, const char* expected);
+  std::string join_blanks(int i, const std::string& what);
+  void fail_field(std::string_view id, int i, const std::string& what, const char* expected);
 
   const CardText& text_;
   const std::vector<std::string>& files_;

@@ -92,27 +92,27 @@ class CaseControl {
     else if (is_command(c.word, "LABEL", 4))
       current().label = c.value;
     else if (c.word == "SPC")
-      read_set(c, current().spc);
+      read_set(c, "SPC", current().spc);
     else if (c.word == "MPC")
-      read_set(c, current().mpc);
+      read_set(c, "MPC", current().mpc);
     else if (c.word == "LOAD")
-      read_set(c, current().load);
+      read_set(c, "LOAD", current().load);
     else if (is_command(c.word, "TEMPERATURE", 4))
       read_temperature(c);
     else if (is_command(c.word, "METHOD", 4)) {
-      if (c.options != "FLUID") read_set(c, current().method);
+      if (c.options != "FLUID") read_set(c, "METHOD", current().method);
     } else if (is_command(c.word, "STATSUB", 4)) {
       read_statsub(c);
     } else if (is_command(c.word, "SUPORT1", 4))
-      read_set(c, current().suport1);
+      read_set(c, "SUPORT1", current().suport1);
     else if (c.word == "NSM")
-      read_set(c, current().nsm);
+      read_set(c, "NSM", current().nsm);
     else if (c.word == "K2GG")
-      read_matrices(c, current().k2gg);
+      read_matrices(c, "K2GG", current().k2gg);
     else if (c.word == "M2GG")
-      read_matrices(c, current().m2gg);
+      read_matrices(c, "M2GG", current().m2gg);
     else if (c.word == "B2GG")
-      read_matrices(c, current().b2gg);
+      read_matrices(c, "B2GG", current().b2gg);
     else if (c.word == "SET")
       read_named_set(c);
     else if (c.word == "PARAM")
@@ -137,9 +137,9 @@ class CaseControl {
     static const std::set<std::string> without{"",        "101", "1", "24",      "SESTATIC", "SESTATICS",
                                                "STATICS", "105", "5", "SEBUCKL", "BUCKLING"};
     const bool is_named = is_command(c.options, "PRELOAD", 1);
-    if (!is_named) read_set(c, current().statsub);
+    if (!is_named) read_set(c, "STATSUB", current().statsub);
     if (!is_named && without.count(deck_.sol) > 0) return;
-    read_set(c, current().preload);
+    read_set(c, "PRELOAD", current().preload);
     current().preload_at = at_;
   }
 
@@ -159,8 +159,9 @@ class CaseControl {
     in_subcase_ = true;
   }
 
-  void read_set(const Command& c, int& set) {
+  void read_set(const Command& c, const char* name, int& set) {
     const auto id = parse_int(c.value);
+    current().commands[name] = at_;
     if (id && *id >= 0)
       set = *id;
     else
@@ -171,14 +172,15 @@ class CaseControl {
   void read_temperature(const Command& c) {
     const std::string kind = c.options.empty() ? "BOTH" : c.options;
     if (is_command(kind, "LOAD", 1) || is_command(kind, "BOTH", 1))
-      read_set(c, current().temperature);
+      read_set(c, "TEMPERATURE", current().temperature);
     else
       note("TEMPERATURE(" + kind + ")");
   }
 
   /// Names of DMIG with or without factors: "K1, K2", "1.25*K1, 0.82*K2", or the id of a SET of such a list.
-  void read_matrices(const Command& c, MatrixList& matrices) {
+  void read_matrices(const Command& c, const char* name, MatrixList& matrices) {
     matrices.clear();
+    current().commands[name] = at_;
     if (const auto set = parse_int(c.value); set && *set > 0) {
       matrices.emplace_back(1.0, std::string(c.value));  // replaced when all sets are known
       return;

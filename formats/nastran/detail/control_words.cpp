@@ -45,7 +45,10 @@ bool is_plain_command(std::string_view word) {
 std::string find_nearest_command(std::string_view word) {
   static const std::vector<std::string> used{"SPC",     "MPC",         "LOAD", "METHOD", "STATSUB", "SUBCASE",
                                              "SUPORT1", "TEMPERATURE", "NSM",  "K2GG",   "M2GG",    "B2GG"};
-  return is_among(known_commands, word) ? std::string{} : find_nearest(word, used);
+  const bool is_loadset = word.substr(0, 6) == "LOADSE";
+  // Of the words that begin as LOAD does only LOADSET is another command; LOADS is a slip.
+  const bool is_known = word.substr(0, 4) == "LOAD" ? is_loadset : is_among(known_commands, word);
+  return is_known ? std::string{} : find_nearest(word, used);
 }
 
 }  // namespace bough::nastran::detail

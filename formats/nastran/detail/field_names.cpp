@@ -47,7 +47,7 @@ constexpr const char* cards[][2] = {
     {"CBEAM", beam},
     {"CROD", "EID PID G1 G2"},
     {"CTUBE", "EID PID G1 G2"},
-    {"CONROD", "EID MID G1 G2 A J C NSM"},
+    {"CONROD", "EID G1 G2 MID A J C NSM"},
     {"CONM2", "EID G CID M X1 X2 X3 - I11 I21 I22 I31 I32 I33"},
     {"CELAS1", two_points},
     {"CELAS2", "EID K G1 C1 G2 C2 GE S"},

@@ -2,15 +2,64 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <unordered_set>
 #include <vector>
+
+#include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 namespace {
 
-/// Those that change what Bough computes.
-constexpr std::string_view used_params =
-    "AUTOSPC CB1 CB2 CK1 CK2 CM1 CM2 COUPMASS EPZERO FOLLOWK G INREL K6ROT SNORM WTMASS";
+/// What a value of a parameter must be.
+struct Rule {
+  std::string_view name;
+  const char* expected;
+  bool (*accepts)(const std::string& value);
+  /// What a value that it does not accept is taken as; empty: an error.
+  std::string (*mend)(const std::string& value) = [](const std::string&) { return std::string(); };
+};
+
+bool is_real(const std::string& v) { return parse_real(v).has_value(); }
+bool is_integer(const std::string& v) { return parse_int(v).has_value(); }
+bool is_answer(const std::string& v) { return v == "YES" || v == "Y" || v == "NO" || v == "N"; }
+/// A whole number written as a real one.
+std::string round_real(const std::string& v) {
+  const auto value = parse_real(v);
+  return value && std::abs(*value) < 1e9 && std::round(*value) == *value ? std::to_string(std::lround(*value)) : "";
+}
+
+/// Those that change what Bough computes, and GRDPNT, which check prints.
+const std::vector<Rule>& get_rules() {
+  static const std::vector<Rule> rules{
+      {"AUTOSPC", "YES or NO", [](const std::string& v) { return is_answer(v) || v == "1"; },
+       [](const std::string&) { return std::string("YES"); }},
+      {"CB1", "a number", is_real},
+      {"CB2", "a number", is_real},
+      {"CK1", "a number", is_real},
+      {"CK2", "a number", is_real},
+      {"CK3", "a number", is_real},
+      {"CM1", "a number", is_real},
+      {"CM2", "a number", is_real},
+      {"COUPMASS", "an integer", is_integer,
+       [](const std::string& v) {
+         if (const auto value = parse_real(v)) return std::string(*value > 0 ? "1" : "-1");
+         return std::string(v == "YES" ? "1" : v == "NO" ? "-1" : "");
+       }},
+      {"EPZERO", "a number, 0 or above", [](const std::string& v) { return parse_real(v).value_or(-1) >= 0; }},
+      {"FOLLOWK", "YES or NO", is_answer},
+      {"G", "a number", is_real},
+      {"GRDPNT", "an integer", is_integer, round_real},
+      {"INREL", "0, -1 or -2", [](const std::string& v) { return v == "0" || v == "-1" || v == "-2"; },
+       [](const std::string& v) {
+         const auto whole = round_real(v);
+         return whole == "0" || whole == "-1" || whole == "-2" ? whole : std::string();
+       }},
+      {"K6ROT", "a number, 0 or above", [](const std::string& v) { return parse_real(v).value_or(-1) >= 0; }},
+      {"SNORM", "a number", is_real},
+      {"WTMASS", "a number above 0", [](const std::string& v) { return parse_real(v).value_or(0) > 0; }}};
+  return rules;
+}
 
 /// The others of the quick reference guides (MSC, NX, COSMIC, Autodesk).
 constexpr std::string_view known_params =
@@ -75,9 +124,12 @@ std::vector<std::string> split(std::string_view names) {
 }
 
 struct Names {
-  std::vector<std::string> used = split(used_params), all = used;
+  std::vector<std::string> used, all;
   std::unordered_set<std::string> known, stems;
   Names() {
+    for (const auto& rule : get_rules())
+      if (rule.name != "GRDPNT" && rule.name != "CK3") used.emplace_back(rule.name);
+    all = used;
     const auto others = split(known_params), numbered = split(numbered_params);
     all.insert(all.end(), others.begin(), others.end());
     known.insert(all.begin(), all.end());
@@ -93,9 +145,34 @@ bool is_known(const Names& names, const std::string& name) {
          (last != std::string::npos && last + 1 < name.size() && names.stems.count(name.substr(0, last + 1)) > 0);
 }
 
+/// Values that are none of their kind: fe.bad-param, and the card is taken as the message says or left out.
+void check_values(records::Deck& deck, Diagnostics& diagnostics) {
+  std::vector<records::Param> good;
+  for (auto& param : deck.params) {
+    const auto& rules = get_rules();
+    const auto rule = std::find_if(rules.begin(), rules.end(), [&](const Rule& r) { return r.name == param.name; });
+    if (rule != rules.end() && !rule->accepts(param.value)) {
+      const auto mended = rule->mend(param.value);
+      const std::string what = "PARAM," + param.name + " is " +
+                               (param.value.empty() ? std::string("blank") : '"' + param.value + '"') + ", expected " +
+                               rule->expected;
+      if (mended.empty()) {
+        diagnostics.error("fe.bad-param", deck.locate(param.at), what, "correct the value");
+        continue;
+      }
+      diagnostics.warning("fe.bad-param", deck.locate(param.at), what + "; it is taken as " + mended,
+                          "correct the value");
+      param.value = mended;
+    }
+    good.push_back(std::move(param));
+  }
+  deck.params = std::move(good);
+}
+
 }  // namespace
 
-void report_params(const records::Deck& deck, Diagnostics& diagnostics) {
+void report_params(records::Deck& deck, Diagnostics& diagnostics) {
+  check_values(deck, diagnostics);
   static const Names names;
   std::string list;
   records::CardLocation first;

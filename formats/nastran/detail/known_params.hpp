@@ -1,11 +1,13 @@
 #pragma once
-/// \file Names of PARAM in the Nastran family.
+/// \file Names and values of PARAM in the Nastran family.
 #include "formats/records/deck.hpp"
 
 namespace bough::nastran::detail {
 
-/// One note with every PARAM that has no effect here, by line (deck.unused-params), and a warning for each name that no
-/// Nastran knows, with the nearest that one does (deck.unknown-param).
-void report_params(const records::Deck& deck, Diagnostics& diagnostics);
+/// Values of the PARAM that Bough uses that are none of their kind (fe.bad-param): an error, after which the card is
+/// left out of the deck, or a warning with what it is taken as. One note with every PARAM that has no effect here, by
+/// line (deck.unused-params), and a warning for each name that no Nastran knows, with the nearest that one does
+/// (deck.unknown-param).
+void report_params(records::Deck& deck, Diagnostics& diagnostics);
 
 }  // namespace bough::nastran::detail

@@ -11,9 +11,7 @@ void Leftovers::add(const Card& card) {
   auto& entry = entries_[{card.get_name(), i}];
   if (entry.count++ > 0) return;
   entry.where = card.locate(i);
-  // Field 2 is the first after the name, as the manuals count.
-  entry.text = "field " + std::to_string(i % 8 + 2) + (i < 8 ? "" : " of line " + std::to_string(i / 8 + 1)) + " '" +
-               std::string(card.get(i)) + "'";
+  entry.text = Card::name_field(i) + " '" + std::string(card.get(i)) + "'";
 }
 
 void Leftovers::report(Diagnostics& diagnostics) const {

@@ -30,7 +30,10 @@ const IdTable::Entry* IdTable::insert(const Entry& entry) {
 }
 
 bool Reading::claim(IdSpace space, int id, Card& card_, int first_field, int num_fields) {
-  if (!card_.is_ok()) return false;
+  if (!card_.is_ok()) {
+    deck.refused[card_.get_name()].insert(id);
+    return false;
+  }
   const auto* earlier = ids[static_cast<std::size_t>(space)].insert({id, card, first_field, num_fields});
   if (earlier == nullptr) return true;
   bool is_same = earlier->card >= 0;

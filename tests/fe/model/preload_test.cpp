@@ -5,6 +5,7 @@
 
 #include "base/rotation.hpp"
 #include "fe/linear/factor.hpp"
+#include "fe/loads/second_order.hpp"
 #include "fe/shape/face_load.hpp"
 #include "fe/statics/preload.hpp"
 #include "fe/statics/static_case.hpp"

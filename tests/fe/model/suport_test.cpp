@@ -1,5 +1,5 @@
 /// SUPORT in statics: against SPC; inertia relief against the free-flying beam in closed form.
-#include "fe/model/suport.hpp"
+#include "fe/statics/inertia_relief.hpp"
 
 #include <gtest/gtest.h>
 

@@ -337,6 +337,39 @@ TEST(CraigBampton, MasslessConstraintModesAreLeftOut) {
   EXPECT_TRUE(basis.lambda.allFinite());
 }
 
+// The same line in a skew direction, its mid grid the interface: the twist is no motion of its own, and must not hold
+// the bending. Reference: the modes of the whole.
+TEST(CraigBampton, MasslessDirectionsFollow) {
+  for (const bool is_skew : {false, true}) {
+    DeckMaker maker;
+    maker.add_section(1, kSection, false);
+    if (is_skew)
+      maker.add_line(1, 1, {0, 0, 0}, {1. / 3, 2. / 3, 2. / 3}, 24, {2, 1, -2});
+    else
+      maker.add_line(1, 1, {0, 0, 0}, {1, 0, 0}, 24, Vector3d::UnitY());
+    maker.fix(1, 123456);
+    const auto model = build(maker.deck);
+    BasisOptions options;
+    options.kind = BasisKind::CraigBampton;
+    options.interface_nodes = {13};
+    options.num_modes = 60;
+    Diagnostics diagnostics;
+    const auto basis = modal::bases::calc_basis(model, options, {}, diagnostics);
+    modal::EigenOptions eigen;
+    eigen.num_modes = 6;
+    Diagnostics unheard;
+    const auto exact = modal::calc_normal_modes(model, eigen, unheard);
+    for (int j = 0; j < 6; ++j) EXPECT_NEAR(basis.lambda(j), exact.lambda(j), 1e-6 * exact.lambda(j)) << j;
+    ASSERT_TRUE(diagnostics.has("modal.massless-interface")) << is_skew;
+    options.orthogonalize = false;
+    Diagnostics raw;
+    const auto kept = modal::bases::calc_basis(model, options, {}, raw);
+    EXPECT_EQ(raw.has("modal.massless-interface"), is_skew);
+    EXPECT_EQ(raw.has("modal.massless-constraint"), !is_skew);
+    EXPECT_EQ(kept.boundary.size(), is_skew ? 6u : 5u);
+  }
+}
+
 // Residual vectors: the static solution of each load is in the basis, of a held body and of a free one (inertia
 // relief).
 TEST(ResidualVectors, HoldTheStaticSolutions) {

@@ -55,11 +55,12 @@ class Program:
             return ran, (*(read_dense(f[name]) for name in "KM"), f["dof_map"][:])
 
     def autospc(self, deck):
-        """(grid, component) of what `check` says is held; None where it does not answer."""
+        """(grid, component, [(component, factor), ...]) of what `check` says is held, or follows those components of its
+        grid; None where it does not answer."""
         ran = self.run("check", deck, "--json")
         if ran.code != 0:
             return None
-        return [(entry["grid"], entry["component"]) for entry in json.loads(ran.out)["autospc"]]
+        return [(e["grid"], e["component"], [tuple(f) for f in e["follows"]]) for e in json.loads(ran.out)["autospc"]]
 
     def modes(self, deck):
         """The run, its JSON and the shapes at the grids (ids, p × 6 × n)."""

@@ -15,7 +15,7 @@ import pencil                                                            # noqa:
 import simple                                                            # noqa: E402
 from examine import Examination                                          # noqa: E402
 from program import Program                                              # noqa: E402
-from truth import Truth, Wrong, accept_autospc                                                  # noqa: E402
+from truth import Truth, Wrong, accept_autospc, follow_directions                                                  # noqa: E402
 
 PROGRAM = os.environ["BOUGH_PROGRAM"]
 
@@ -138,6 +138,14 @@ class PlantedErrors(Case):
             accept_autospc(K, np.abs(K), range(6), index, [(7, 2)])
         with self.assertRaisesRegex(Wrong, "round-off"):
             accept_autospc(1e-17 * K, np.abs(K), range(6), index, [(7, 3)])
+
+    def test_a_direction_of_autospc_that_has_stiffness(self):
+        index, n = {(7, c): c - 1 for c in range(1, 4)}, np.ones(3) / np.sqrt(3)
+        K = np.outer(n, n)                           # a rod along (1, 1, 1)
+        T = follow_directions(K, np.eye(3), range(3), index, [(7, 2, [(1, 1.0)]), (7, 3, [(1, 1.0)])])
+        self.assertEqual(list(T[:, 0]), [1, 1, 1])
+        with self.assertRaisesRegex(Wrong, "has stiffness"):
+            follow_directions(K, np.eye(3), range(3), index, [(7, 2, [(1, 1.1)]), (7, 3, [(1, 1.0)])])
 
     def test_roots_over_many_orders_keep_their_digits(self):
         K, rng = np.diag([1e-2, 1.0, 1e8, 2e8, 1e15, 1e17]), np.random.default_rng(3)

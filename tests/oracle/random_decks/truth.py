@@ -134,6 +134,30 @@ def accept_autospc(K, K_size, free, index, reported, epsilon=1e-8):
     return sorted(held)
 
 
+def follow_directions(K, T, free, index, reported, epsilon=1e-8):
+    """T with the columns of the held dofs in those that they follow, once it is proved that what a grid loses so has no
+    stiffness: the directions orthogonal to what is left of the triple."""
+    place = {dof: k for k, dof in enumerate({row: dof for dof, row in index.items()}[row] for row in free)}
+    triples = {}
+    for g, c, follows in reported:
+        if follows:
+            triples.setdefault((g, c > 3), []).append((c, dict(follows)))
+    T = T.copy()
+    for (g, is_rotation), held in triples.items():
+        ks = [place[g, c] for c in (range(4, 7) if is_rotation else range(1, 4)) if (g, c) in place]
+        lost = np.zeros((len(ks), len(held)))
+        for j, (c, follows) in enumerate(held):
+            lost[ks.index(place[g, c]), j] = 1
+            for other, factor in follows.items():
+                lost[ks.index(place[g, other]), j] = -factor
+                T[:, place[g, other]] += factor * T[:, place[g, c]]
+        lost /= np.linalg.norm(lost, axis=0)
+        block = K[np.ix_(ks, ks)]
+        if np.abs(block @ lost).max() > 3 * epsilon * block.diagonal().max():
+            raise Wrong(f"grid {g}: the direction that AUTOSPC holds has stiffness: {block @ lost}")
+    return T
+
+
 class Truth:
     """Dense K, M and T of the free dofs; `reported`: what the program says AUTOSPC holds, to prove and take over."""
 
@@ -149,8 +173,11 @@ class Truth:
         T = self.R @ C
         if model.params.get("AUTOSPC") != "NO":
             size = np.abs(T)
-            self.autospc = (find_autospc(T.T @ K @ T, free, self.index, model) if reported is None else
-                            accept_autospc(T.T @ K @ T, size.T @ np.abs(K) @ size, free, self.index, reported))
+            K_f = T.T @ K @ T
+            self.autospc = (find_autospc(K_f, free, self.index, model) if reported is None else
+                            accept_autospc(K_f, size.T @ np.abs(K) @ size, free, self.index,
+                                           [(g, c) for g, c, _ in reported]))
+            T = follow_directions(K_f, T, free, self.index, reported or [])
             T = np.delete(T, self.autospc, axis=1)
             held |= {free[k] for k in self.autospc}
             free = [row for k, row in enumerate(free) if k not in set(self.autospc)]

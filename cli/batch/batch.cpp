@@ -1,0 +1,307 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "base/version.hpp"
+#include "cli/batch/batch_outcome.hpp"
+#include "cli/batch/worker.hpp"
+#include "cli/batch/worker_pool.hpp"
+#include "cli/common/console.hpp"
+#include "cli/common/options.hpp"
+#include "cli/common/text_file.hpp"
+#include "cli/common/usage_text.hpp"
+#include "cli/verbs.hpp"
+#include "formats/hdf5/files.hpp"
+
+namespace bough::cli {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+struct BatchOptions : CommonOptions {
+  std::string campaign, shard;
+  int jobs = 0;
+  double time_limit = 0;
+  bool dry_run = false, retry = false, restart = false;
+  int worker_fd = -1;
+};
+
+/// Which part of the cases this call does: those with (number - 1) % count == index.
+struct Shard {
+  int index = 0, count = 1;
+  bool holds(int number) const { return (number - 1) % count == index; }
+};
+
+/// Set by SIGINT and SIGTERM; a handler can reach nothing but static storage.
+volatile int& get_stop() {
+  static volatile int stop = 0;
+  return stop;
+}
+void on_signal(int) { get_stop() = 1; }
+
+Shard parse_shard(const std::string& text) {
+  Shard shard;
+  if (text.empty()) return shard;
+  char slash = 0, rest = 0;
+  const int found = std::sscanf(text.c_str(), "%d%c%d%c", &shard.index, &slash, &shard.count, &rest);
+  if (found != 3 || slash != '/' || shard.index < 1 || shard.index > shard.count)
+    throw InputError("batch.bad-shard", {}, "--shard is \"" + text + "\", expected i/n with i from 1 to n",
+                     "write --shard 1/4 to --shard 4/4");
+  --shard.index;
+  return shard;
+}
+
+/// The folder belongs to one campaign with certain inputs; this file says which.
+class Folder {
+ public:
+  Folder(const fs::path& path, const BatchPlan& plan, bool restart) : path_(path), plan_(plan) {
+    std::error_code failed;
+    fs::create_directories(path, failed);
+    if (failed)
+      throw ComputationError("cli.write", {path.string()}, "the folder could not be made: " + failed.message(),
+                             "choose another with -o");
+    json now{{"format", "bough-campaign"}, {"name", plan.get_spec().name}, {"bough", get_version()}};
+    now["cases"] = plan.num_cases();
+    for (const auto& [file, hash] : plan.get_inputs())
+      now["inputs"].push_back({fs::path(file).filename().string(), hash});
+    const auto state = (path / "campaign.json").string();
+    std::ifstream in(state);
+    if (in) {
+      const auto before = json::parse(in, nullptr, false);
+      if (before != now && !restart) throw describe_change(before, now);
+      if (restart) remove_cases();
+    }
+    write_text_file(state, now.dump(2) + "\n");
+    fingerprint_ = hdf5::calc_sha256(state);
+  }
+
+  /// Keeps a second call for the same cases away for as long as this one lives.
+  void lock(const Shard& shard) {
+    const auto name = path_ / fmt::format(".lock-{}-of-{}", shard.index + 1, shard.count);
+    lock_ = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+      throw InputError("batch.busy", {path_.string()}, "another bough batch works on these cases",
+                       "wait until it ends");
+  }
+  ~Folder() {
+    if (lock_ >= 0) close(lock_);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  fs::path get_case(int number) const { return path_ / plan_.get_folder(number); }
+  const std::string& get_fingerprint() const { return fingerprint_; }
+
+ private:
+  InputError describe_change(const json& before, const json& now) const {
+    std::string what;
+    if (before.is_object() && before.contains("inputs") && before.value("bough", "") == now["bough"]) {
+      std::set<json> known(before["inputs"].begin(), before["inputs"].end());
+      for (const auto& input : now["inputs"])
+        if (known.count(input) == 0) what += (what.empty() ? "" : ", ") + input[0].get<std::string>();
+    }
+    return {"batch.changed-campaign",
+            {path_.string()},
+            "the folder holds cases of another campaign" + (what.empty() ? "" : " (changed: " + what + ")"),
+            "choose another folder with -o, or --restart to do every case again"};
+  }
+
+  void remove_cases() const {
+    for (const auto& entry : fs::directory_iterator(path_))
+      if (entry.is_directory() && entry.path().filename().string().rfind("case-", 0) == 0) fs::remove_all(entry.path());
+  }
+
+  fs::path path_;
+  const BatchPlan& plan_;
+  std::string fingerprint_;
+  int lock_ = -1;
+};
+
+std::string join_words(const std::vector<std::string>& words) {
+  std::string text;
+  for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+void list_cases(const BatchPlan& plan, const Shard& shard, bool as_json, const Console& console) {
+  const auto& spec = plan.get_spec();
+  json all = json::array();
+  Table table{{"case"}, {}};
+  for (const auto& p : spec.parameters) table.headings.push_back(p.name);
+  int count = 0;
+  for (const auto& one : plan.get_cases()) {
+    if (!shard.holds(one.number)) continue;
+    ++count;
+    std::vector<std::string> row{std::to_string(one.number)};
+    json entry{{"case", one.number}};
+    for (std::size_t i = 0; i < one.values.size(); ++i) {
+      const auto& value = one.values[i];
+      row.push_back(value.text);
+      if (value.kind == toml_files::Setting::Kind::Word)
+        entry["parameters"][spec.parameters[i].name] = value.text;
+      else
+        entry["parameters"][spec.parameters[i].name] = value.number;
+    }
+    for (std::size_t i = 0; i < spec.steps.size(); ++i) entry["steps"].push_back(join_words(plan.make_words(one, i)));
+    table.rows.push_back(std::move(row));
+    all.push_back(std::move(entry));
+  }
+  if (as_json) return console.print_data(all.dump(2) + "\n");
+  console.print_data(table.to_text());
+  console.print(fmt::format("{} cases, each:\n", count));
+  for (const auto& step : spec.steps) console.print("  bough " + join_words(step.words) + "\n");
+}
+
+/// What the cases of this call came to.
+struct Tally {
+  int num_before = 0, num_done = 0;
+  std::vector<BatchOutcome> failed;
+  double seconds = 0;
+  bool completed = true;
+};
+
+std::string format_failed(const BatchPlan& plan, const std::vector<BatchOutcome>& failed) {
+  constexpr std::size_t most = 20;
+  std::string text;
+  for (std::size_t i = 0; i < failed.size() && i < most; ++i)
+    text += fmt::format("  {}: {}\n", plan.get_folder(failed[i].number), failed[i].error);
+  if (failed.size() > most) text += fmt::format("  and {} more: see the table\n", failed.size() - most);
+  return text;
+}
+
+int report(const BatchOptions& o, const BatchPlan& plan, const Tally& tally, int num_wanted, int num_in_table,
+           const fs::path& folder, const Console& console) {
+  const auto table = (folder / "outcomes.csv").string();
+  if (o.json) {
+    json failed = json::array();
+    for (const auto& f : tally.failed)
+      failed.push_back({{"case", f.number}, {"exit_code", f.exit_code}, {"error", f.error}});
+    console.print_data(json{{"name", plan.get_spec().name},
+                            {"folder", folder.string()},
+                            {"cases", num_wanted},
+                            {"done_before", tally.num_before},
+                            {"done", tally.num_done},
+                            {"failed", failed},
+                            {"completed", tally.completed},
+                            {"seconds", tally.seconds},
+                            {"table", table}}
+                           .dump(2) +
+                       "\n");
+  } else {
+    console.print(fmt::format("{}: {} of {} cases done{}, {} failed, {:.2f} s\nwritten: {} and .h5, {} cases\n",
+                              plan.get_spec().name, tally.num_before + tally.num_done, num_wanted,
+                              tally.num_before > 0 ? fmt::format(" ({} before)", tally.num_before) : "",
+                              tally.failed.size(), tally.seconds, table, num_in_table));
+  }
+  if (!tally.failed.empty()) {
+    console.print_error("batch.failed-cases", fmt::format("{} of {} cases failed", tally.failed.size(), num_wanted),
+                        "their folders hold what they printed; --retry does them again");
+    if (!o.json) console.print_data("failed:\n" + format_failed(plan, tally.failed));
+  }
+  if (!tally.completed)
+    console.print_error("cli.interrupted",
+                        fmt::format("stopped after {} of {} cases", tally.num_before + tally.num_done, num_wanted),
+                        "the same command goes on with the others");
+  return tally.failed.empty() && tally.completed ? kSuccess : kComputationFailed;
+}
+
+int run_batch(const BatchOptions& o) {
+  Console console(o.quiet, o.verbosity);
+  if (!console.is_root()) return kSuccess;  // workers are this process's own; other ranks have nothing to do
+  const auto shard = parse_shard(o.shard);
+  const BatchPlan plan(o.campaign, list_verbs());
+  const auto folder = fs::absolute(o.output.empty() ? plan.get_spec().name : o.output).lexically_normal();
+  if (o.worker_fd >= 0) return serve_cases(plan, folder, o.worker_fd);
+  if (o.dry_run) {
+    list_cases(plan, shard, o.json, console);
+    return kSuccess;
+  }
+  Folder state(folder, plan, o.restart);
+  state.lock(shard);
+
+  Tally tally;
+  std::vector<int> wanted, open;
+  for (const auto& one : plan.get_cases())
+    if (shard.holds(one.number)) wanted.push_back(one.number);
+  for (const int number : wanted) {
+    const auto outcome = read_outcome(state.get_case(number));
+    if (!outcome || (o.retry && !outcome->error.empty())) {
+      open.push_back(number);
+      continue;
+    }
+    ++tally.num_before;
+    if (!outcome->error.empty()) tally.failed.push_back(*outcome);
+  }
+
+  PoolOptions pool;
+  pool.command = {"bough", "batch", o.campaign, "-o", folder.string(), "--worker"};
+  pool.num_workers = o.jobs > 0 ? o.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  pool.time_limit = o.time_limit > 0 ? o.time_limit : plan.get_spec().time_limit;
+  pool.stop = &get_stop();
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  auto shown = begin - std::chrono::seconds(1);
+  const auto count_seconds = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  tally.completed = run_pool(pool, open, [&](const BatchOutcome& outcome) {
+    write_outcome(outcome, state.get_case(outcome.number));
+    ++tally.num_done;
+    if (!outcome.error.empty()) tally.failed.push_back(outcome);
+    if (Clock::now() - shown < std::chrono::milliseconds(100)) return;
+    shown = Clock::now();
+    const double each = count_seconds() / tally.num_done;
+    console.show_progress(
+        fmt::format("batch: {}/{} done, {} failed, {:.3g} s a case, {:.0f} s left", tally.num_before + tally.num_done,
+                    wanted.size(), tally.failed.size(), each,
+                    each * static_cast<double>(open.size() - static_cast<std::size_t>(tally.num_done))));
+  });
+  tally.seconds = count_seconds();
+  console.end_progress();
+  std::sort(tally.failed.begin(), tally.failed.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+
+  std::vector<BatchOutcome> outcomes;  // of all shards, as far as they are
+  for (const auto& one : plan.get_cases())
+    if (auto outcome = read_outcome(state.get_case(one.number))) outcomes.push_back(std::move(*outcome));
+  write_tables(plan, outcomes, state.get_fingerprint(), folder);
+  return report(o, plan, tally, static_cast<int>(wanted.size()), static_cast<int>(outcomes.size()), folder, console);
+}
+
+}  // namespace
+
+void add_batch(CLI::App& app, Action& action) {
+  auto o = std::make_shared<BatchOptions>();
+  auto* verb = app.add_subcommand("batch", "One job over a grid, a list or a sample of parameters; resumable");
+  verb->add_option("campaign", o->campaign, "Campaign file (.toml)")->required();
+  verb->add_option("-j,--jobs", o->jobs, "Worker processes (default: one a core)")->check(make_positive());
+  verb->add_option("-o,--output", o->output, "Folder of the cases and the table (default: the campaign's name, here)");
+  verb->add_option("--shard", o->shard, "i/n: only every n-th case from the i-th on, for job arrays");
+  verb->add_option("--time-limit", o->time_limit, "Seconds a case may take (default: the campaign's)")
+      ->check(make_positive());
+  verb->add_flag("--retry", o->retry, "Do failed cases again");
+  verb->add_flag("--restart", o->restart, "Do every case again, also after the campaign has changed");
+  verb->add_flag("--dry-run", o->dry_run, "Check the campaign and list its cases");
+  verb->add_option("--worker", o->worker_fd, "Socket of a worker process")->group("");
+  add_common_options(*verb, *o, kJson);
+  verb->footer(
+      "Example:\n  bough batch study.toml --dry-run\n  bough batch study.toml -j 8 -o study\n"
+      "  bough batch study.toml --shard 3/10 -o /scratch/study\n"
+      "Finished cases are skipped: the same command goes on after Ctrl-C or a kill. Exit code 3 when a case failed.");
+  verb->callback([&action, o] { action = [o] { return run_batch(*o); }; });
+}
+
+}  // namespace bough::cli

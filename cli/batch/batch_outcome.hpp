@@ -1,0 +1,35 @@
+#pragma once
+/// \file What became of one case, and where it is kept: outcome.json in the case's folder, written when it is over.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/batch/batch_plan.hpp"
+
+namespace bough::cli {
+
+struct BatchOutcome {
+  int number = 0;
+  int exit_code = 0;                         ///< of the step that failed; 0 when none did
+  double seconds = 0;                        ///< wall time
+  std::string error;                         ///< the first one, with its step; empty: the case succeeded
+  long memory_kb = 0;                        ///< resident memory of the worker afterwards
+  std::vector<std::vector<double>> outputs;  ///< by [[collect]]
+};
+
+/// One line of JSON, and back; nothing when it is no outcome.
+std::string to_text(const BatchOutcome& outcome);
+std::optional<BatchOutcome> parse_outcome(const std::string& text);
+
+/// The outcome kept in this folder; nothing when the case is not over.
+std::optional<BatchOutcome> read_outcome(const std::filesystem::path& case_folder);
+void write_outcome(const BatchOutcome& outcome, const std::filesystem::path& case_folder);
+
+/// The numbers that a [[collect]] asks for, from the case's folder. Throws InputError "batch.collect".
+std::vector<double> collect(const toml_files::CampaignCollect& wanted, const std::filesystem::path& case_folder);
+
+/// Writes outcomes.csv and outcomes.h5: a row for each outcome there is.
+void write_tables(const BatchPlan& plan, const std::vector<BatchOutcome>& outcomes, const std::string& fingerprint,
+                  const std::filesystem::path& folder);
+
+}  // namespace bough::cli

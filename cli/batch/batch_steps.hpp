@@ -1,0 +1,29 @@
+#pragma once
+/// \file The commands of a campaign: what they are called with, read and write.
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.hpp"
+#include "cli/batch/batch_cases.hpp"
+
+namespace bough::cli {
+
+std::string make_absolute(const std::string& folder, const std::string& path);
+
+/// A word that may be an input file: no option, and not the value of one.
+bool is_input_word(const std::vector<std::string>& words, std::size_t i);
+
+/// Reports "batch.bad-step": no verb, or {NAME} that is no parameter.
+void check_steps(const toml_files::CampaignSpec& spec, const std::vector<std::string>& verbs, Diagnostics& diagnostics);
+
+/// What the steps write, by -o or by the verbs' defaults: such a file is the case's own, not one of the same name that
+/// lies beside the campaign.
+std::vector<std::string> find_outputs(const toml_files::CampaignSpec& spec, const std::string& folder);
+
+/// {NAME} and {case} become the case's values.
+void fill_in(std::vector<std::string>& words, const toml_files::CampaignSpec& spec, const BatchCase& one);
+
+/// Whether a [[collect]] reads what the step (from 0) prints.
+bool is_collected_as_json(const toml_files::CampaignSpec& spec, std::size_t step);
+
+}  // namespace bough::cli

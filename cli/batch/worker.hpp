@@ -1,0 +1,15 @@
+#pragma once
+/// \file A process that takes case after case: MPI and PETSc start once, the verbs run in it.
+#include "cli/batch/batch_outcome.hpp"
+
+namespace bough::cli {
+
+/// Does a case in its folder below `folder`, emptied first: files, steps (what step k prints goes to step-k.out and
+/// step-k.err), outputs.
+BatchOutcome run_case(const BatchPlan& plan, const BatchCase& one, const std::filesystem::path& folder);
+
+/// Reads case numbers, one a line, from the socket `fd`, answers each with the outcome as a line of JSON; 0 when the
+/// other side has closed it.
+int serve_cases(const BatchPlan& plan, const std::filesystem::path& folder, int fd);
+
+}  // namespace bough::cli

@@ -1,0 +1,67 @@
+#include "cli/common/channels.hpp"
+
+#include <algorithm>
+
+#include "cli/common/console.hpp"
+
+namespace bough::cli {
+
+std::vector<std::string> get_component_names(const std::string& path, int size) {
+  if (size == 1) return {""};
+  if (size == 3 && path.find("/eta") == std::string::npos && path.find("/hinges/") == std::string::npos)
+    return {"x", "y", "z"};
+  if (size == 4 && path.ends_with("/quaternion")) return {"w", "x", "y", "z"};
+  std::vector<std::string> names;
+  for (int i = 1; i <= size; ++i) names.push_back(std::to_string(i));
+  return names;
+}
+
+namespace {
+void add_columns(const std::string& path, const Eigen::MatrixXd& values, const std::string& component,
+                 const std::string& file, std::vector<exports::CsvColumn>& columns) {
+  const auto names = get_component_names(path, static_cast<int>(values.cols()));
+  bool found = false;
+  for (int c = 0; c < values.cols(); ++c) {
+    if (!component.empty() && component != names[c] && component != std::to_string(c + 1)) continue;
+    found = true;
+    columns.push_back({path.substr(1) + (names[c].empty() ? "" : ":" + names[c]), values.col(c)});
+  }
+  if (!found) {
+    std::string list;
+    for (const auto& name : names) list += (list.empty() ? "" : " ") + name;
+    throw InputError("cli.unknown-channel", {file}, "channel " + path + " has no component \"" + component + "\"",
+                     list.empty() ? "it is a scalar" : "its components are " + list);
+  }
+}
+}  // namespace
+
+std::vector<exports::CsvColumn> choose_columns(const hdf5::ResultsFile& results, const std::string& file,
+                                               const std::string& choice) {
+  std::string name = choice, component;
+  if (const auto colon = choice.rfind(':'); colon != std::string::npos) {
+    name = choice.substr(0, colon);
+    component = choice.substr(colon + 1);
+  }
+  std::vector<exports::CsvColumn> columns;
+  const std::string path = name.starts_with('/') ? name : "/sensors/" + name;
+  for (const auto& [channel, values] : results.channels) {
+    if (channel == path || channel.starts_with(path + "/")) add_columns(channel, values, component, file, columns);
+  }
+  if (columns.empty()) {
+    std::vector<std::string> known;
+    for (const auto& [channel, values] : results.channels) {
+      known.push_back(name.starts_with('/') || !channel.starts_with("/sensors/") ? channel : channel.substr(9));
+    }
+    const auto nearest = find_nearest(name, known);
+    std::string sensors;
+    for (const auto& [channel, values] : results.channels)
+      if (channel.starts_with("/sensors/")) sensors += (sensors.empty() ? "" : ", ") + channel.substr(9);
+    throw InputError("cli.unknown-channel", {file}, "no channel \"" + name + "\"",
+                     !nearest.empty()  ? "did you mean \"" + nearest + "\""
+                     : sensors.empty() ? "bough info lists the channels"
+                                       : "the sensors are " + sensors + "; bough info lists all channels");
+  }
+  return columns;
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,190 @@
+#include "cli/common/console.hpp"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <sstream>
+#include <tuple>
+
+namespace bough::cli {
+
+namespace {
+std::size_t display_width(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+/// "5,990"
+std::string group_digits(std::size_t number) {
+  auto text = std::to_string(number);
+  for (auto at = text.size(); at > 3; at -= 3) text.insert(at - 3, ",");
+  return text;
+}
+}  // namespace
+
+std::string Table::to_text() const {
+  std::vector<std::size_t> width(headings.size());
+  for (std::size_t c = 0; c < headings.size(); ++c) {
+    width[c] = display_width(headings[c]);
+    for (const auto& row : rows)
+      if (c < row.size()) width[c] = std::max(width[c], display_width(row[c]));
+  }
+  std::string text;
+  auto add_row = [&](const std::vector<std::string>& row) {
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      text += std::string(width[c] - display_width(row[c]) + (c == 0 ? 0 : 2), ' ') + row[c];
+    }
+    text += '\n';
+  };
+  add_row(headings);
+  for (const auto& row : rows) add_row(row);
+  return text;
+}
+
+std::string count(std::size_t number, const std::string& noun) {
+  if (number == 1) return "1 " + noun;
+  const bool is_y = noun.ends_with('y');
+  return std::to_string(number) + " " + (is_y ? noun.substr(0, noun.size() - 1) + "ies" : noun + "s");
+}
+
+std::string wrap(const std::string& text, std::size_t indent, std::size_t width) {
+  std::istringstream words(text);
+  std::string out, word;
+  std::size_t column = indent;
+  while (words >> word) {
+    if (column > indent && column + 1 + display_width(word) > width) {
+      out += "\n" + std::string(indent, ' ');
+      column = indent;
+    }
+    if (column > indent) out += ' ';
+    out += word;
+    column += display_width(word) + (column > indent ? 1 : 0);
+  }
+  return out;
+}
+
+std::size_t get_terminal_width() {
+  winsize size{};
+  return isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+Console::Console(bool quiet, int verbosity)
+    : quiet_(quiet),
+      verbosity_(verbosity),
+      is_root_(get_launch_rank() == 0),
+      stderr_is_terminal_(isatty(STDERR_FILENO) != 0) {
+  const char* no_color = std::getenv("NO_COLOR");
+  colors_ = stderr_is_terminal_ && (no_color == nullptr || *no_color == '\0');
+}
+
+int Console::get_launch_rank() {
+  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}) {
+    if (const char* value = std::getenv(name)) return std::atoi(value);
+  }
+  return 0;
+}
+
+void Console::print_data(const std::string& text) const {
+  if (is_root_) std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+void Console::print(const std::string& text) const {
+  if (!quiet_) print_data(text);
+}
+
+void Console::print_detail(const std::string& text) const {
+  if (is_root_ && verbosity_ > 0) std::fprintf(stderr, "%s\n", text.c_str());
+}
+
+void Console::print(const Diagnostic& diagnostic) const {
+  if (!is_root_) return;
+  std::string text = format(locate(diagnostic, subject_));
+  if (colors_) {
+    const bool is_error = diagnostic.severity == Severity::Error;
+    const std::string word = is_error ? "error:" : diagnostic.severity == Severity::Warning ? "warning:" : "note:";
+    if (const auto at = text.find(word); at != std::string::npos) {
+      text.replace(at, word.size(), (is_error ? "\033[1;31m" : "\033[1;33m") + word + "\033[0m");
+    }
+  }
+  std::fprintf(stderr, "%s\n", text.c_str());
+}
+
+void Console::print_error(const std::string& id, const std::string& what, const std::string& advice) const {
+  Diagnostics one;
+  one.error(id, {}, what, advice);
+  print(one.items().front());
+}
+
+void Console::print_unless_quiet(const Diagnostic& diagnostic) const {
+  if (diagnostic.severity == Severity::Error || !quiet_) print(diagnostic);
+}
+
+void Console::print(const Diagnostics& diagnostics) const { print(diagnostics.items()); }
+
+void Console::print(const std::vector<Diagnostic>& items) const {
+  for (const auto& item : verbosity_ > 0 ? items : shorten(items)) print_unless_quiet(item);
+}
+
+void Console::show_progress(const std::string& text) {
+  if (!shows_progress()) return;
+  if (stderr_is_terminal_) {
+    std::fprintf(stderr, "\r\033[K%s", text.c_str());
+    std::fflush(stderr);
+    progress_open_ = true;
+  } else {
+    std::fprintf(stderr, "%s\n", text.c_str());
+  }
+}
+
+void Console::end_progress() {
+  if (progress_open_) std::fputc('\n', stderr);
+  progress_open_ = false;
+}
+
+Diagnostic locate(Diagnostic diagnostic, const std::string& file) {
+  if (diagnostic.where.file.empty() && !diagnostic.id.starts_with("cli.")) diagnostic.where.file = file;
+  return diagnostic;
+}
+
+std::vector<Diagnostic> shorten(const std::vector<Diagnostic>& items, std::size_t most) {
+  struct Kind {
+    std::size_t count = 0, line = 0;  ///< how many there are; where the line about the rest stands
+  };
+  std::map<std::tuple<std::string, Severity, std::string>, Kind> kinds;
+  std::vector<Diagnostic> shown;
+  for (const auto& item : items) {
+    auto& kind = kinds[{item.id, item.severity, item.where.file}];
+    if (item.id.empty() || ++kind.count <= most) {
+      shown.push_back(item);
+    } else if (kind.count == most + 1) {
+      kind.line = shown.size();
+      shown.push_back({item.severity, item.id, {item.where.file}, {}, {}});
+    }
+  }
+  for (const auto& [key, kind] : kinds)
+    if (kind.count > most) {
+      auto& line = shown[kind.line];
+      line.what = "... and " + group_digits(kind.count - most) + " more of " + line.id;
+      line.advice = "-v prints them all";
+    }
+  return shown;
+}
+
+int choose_exit_code(const Failure& failure) {
+  // Both are found by the computation, and both are mended in the deck.
+  const bool is_input = std::any_of(failure.items().begin(), failure.items().end(), [](const auto& item) {
+    return item.id == "fe.mechanism" || item.id == "modal.no-mass";
+  });
+  return is_input ? kInputError : failure.exit_code();
+}
+
+int report_failure(const Failure& failure, const Console& console) {
+  console.print(failure.items());
+  return choose_exit_code(failure);
+}
+
+}  // namespace bough::cli

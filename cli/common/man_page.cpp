@@ -1,0 +1,92 @@
+#include <CLI/CLI.hpp>
+#include <sstream>
+
+#include "base/version.hpp"
+#include "cli/common/help_files.hpp"
+
+namespace bough::cli {
+
+namespace {
+
+/// Text as roff prints it unchanged: a backslash and a hyphen are commands, a dot or quote at a line's start a request.
+std::string escape(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if ((c == '.' || c == '\'') && (out.empty() || out.back() == '\n')) out += "\\&";
+    if (c == '\\') {
+      out += "\\e";
+    } else if (c == '-') {
+      out += "\\-";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string bold(const std::string& text) { return "\\fB" + escape(text) + "\\fR"; }
+std::string italic(const std::string& text) { return "\\fI" + escape(text) + "\\fR"; }
+
+/// A footer: indented lines, the examples, are kept as they are, the others fill paragraphs.
+std::string format_footer(const std::string& text) {
+  std::string out = ".PP\n", line;
+  bool kept = false;
+  for (std::istringstream in(text); std::getline(in, line);) {
+    const bool keep = line.rfind("  ", 0) == 0;
+    if (keep != kept) out += keep ? ".nf\n" : ".fi\n.PP\n";
+    kept = keep;
+    out += escape(line) + "\n";
+  }
+  return kept ? out + ".fi\n" : out;
+}
+
+/// "-o, --output TEXT" or the name of a positional, with what it takes.
+std::string format_names(const CLI::Option& option) {
+  std::string out;
+  for (const auto& name : option.get_snames()) out += (out.empty() ? "" : ", ") + bold("-" + name);
+  for (const auto& name : option.get_lnames()) out += (out.empty() ? "" : ", ") + bold("--" + name);
+  if (out.empty()) out = italic(option.get_name());
+  if (option.get_type_size() == 0) return out;
+  if (option.nonpositional()) out += " " + italic(option.get_type_name());
+  if (option.get_expected_max() == CLI::detail::expected_max_vector_size) out += " ...";
+  if (!option.get_default_str().empty()) out += " (default " + escape(option.get_default_str()) + ")";
+  if (option.get_required() && option.nonpositional()) out += " (required)";
+  return out;
+}
+
+std::string format_options(const CLI::App& app) {
+  std::string out;
+  for (const auto* option : app.get_options()) {
+    if (option->get_group().empty()) continue;  // not for users
+    out += ".TP\n" + format_names(*option) + "\n" + escape(option->get_description()) + "\n";
+  }
+  return out;
+}
+
+std::string format_synopsis(const CLI::App& verb) {
+  std::string out = ".B bough " + verb.get_name() + "\n[\\fIOPTIONS\\fR]";
+  for (const auto* option : verb.get_options([](const CLI::Option* o) { return !o->nonpositional(); })) {
+    const bool many = option->get_expected_max() == CLI::detail::expected_max_vector_size;
+    const auto name = italic(option->get_name()) + (many ? " ..." : "");
+    out += " " + (option->get_required() ? name : "[" + name + "]");
+  }
+  return out + "\n";
+}
+
+}  // namespace
+
+std::string make_man_page(const CLI::App& app) {
+  std::string out = ".TH BOUGH 1 \"\" \"Bough " + std::string(get_version()) + "\" \"User Commands\"\n.SH NAME\n" +
+                    "bough \\- from a finite\\-element model to a flexible multibody simulation\n.SH SYNOPSIS\n";
+  const auto verbs = app.get_subcommands(nullptr);
+  for (const auto* verb : verbs) out += (verb == verbs.front() ? "" : ".br\n") + format_synopsis(*verb);
+  out += ".SH DESCRIPTION\n" + format_footer(app.get_footer()) + ".SH OPTIONS\n" + format_options(app);
+  out += ".SH VERBS\n";
+  for (const auto* verb : verbs) {
+    out += ".SS bough " + verb->get_name() + "\n" + escape(verb->get_description()) + "\n" + format_options(*verb);
+    out += format_footer(verb->get_footer());
+  }
+  return out;
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,67 @@
+#pragma once
+/// \file Options that several verbs share, declared once.
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "cli/verbs.hpp"
+#include "fe/model/model.hpp"
+#include "formats/records/body_spec.hpp"
+#include "formats/records/deck.hpp"
+
+namespace bough::cli {
+
+class Console;
+
+struct CommonOptions {
+  std::string output;
+  bool quiet = false;
+  int verbosity = 0;
+  bool json = false;
+  bool no_clobber = false;
+};
+
+enum Offers : unsigned { kOutput = 1, kJson = 2 };
+
+/// Adds -q, -v and, as `offers` says, -o/--output with --no-clobber and --force, and --json.
+void add_common_options(CLI::App& verb, CommonOptions& options, unsigned offers, const std::string& output_help = {});
+
+/// Before the work: throws when the output cannot be meant or written. InputError("cli.output-exists") when the file is
+/// there and --no-clobber was given, InputError("cli.output-is-input") when it is one of the inputs,
+/// ComputationError("cli.write") when its folder is missing or closed, or when it is no regular file.
+void check_output(const CommonOptions& options, const std::string& path, const std::vector<std::string>& inputs = {});
+
+/// A report, to the output file when one is given, else to stdout: JSON always, text unless quiet.
+void put_out(const CommonOptions& options, const Console& console, const std::string& text);
+
+/// Whether the text ends so, case aside: ".h5", ".toml".
+bool has_suffix(const std::string& path, const std::string& suffix);
+
+/// Reads a deck on the first rank and hands it to the others. Collective.
+records::Deck read_deck_once(const std::string& path, const std::vector<std::string>& ignore_cards,
+                             Diagnostics& diagnostics);
+/// The same for a body file.
+records::BodySpec read_body_spec_once(const std::string& path, Diagnostics& diagnostics);
+/// Reads a deck, throws InputError with all its errors; warnings stay in `diagnostics`. Collective.
+records::Deck read_deck_or_throw(const std::string& path, const fe::ModelOptions& options, Diagnostics& diagnostics);
+/// (file name, SHA-256) of each; nothing on the ranks that write no file.
+std::vector<std::pair<std::string, std::string>> calc_sources(const std::vector<std::string>& files);
+
+/// Does `act`; a failure of it is thrown on behind what was `said` before it, so that no word of the reader is lost.
+void say_first(const Diagnostics& said, const std::function<void()>& act);
+
+/// Does `act`; failures that it throws without a place are thrown on as failures of `file`.
+int blame(const std::string& file, const std::function<int()>& act);
+
+/// Throws InputError("cli.no-file") when the path is no readable file.
+void demand_file(const std::string& path);
+/// Throws InputError("cli.wrong-file") when a TOML file is of another kind than the one expected ("body", "system"),
+/// with the command that takes it; "" is unknown and passes: whoever reads the file says what is missing in it.
+void demand_kind(const std::string& path, const std::string& kind, const std::string& expected);
+/// The same for a deck; InputError("cli.wrong-file") when the file is HDF5 or TOML.
+void demand_deck(const std::string& path);
+
+}  // namespace bough::cli

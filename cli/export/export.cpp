@@ -1,0 +1,157 @@
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+
+#include "cli/common/channels.hpp"
+#include "cli/common/console.hpp"
+#include "cli/common/options.hpp"
+#include "cli/common/text_file.hpp"
+#include "cli/common/vtu_file.hpp"
+#include "cli/export/export_bodies.hpp"
+#include "cli/export/export_matrices.hpp"
+#include "formats/export/uff.hpp"
+#include "formats/export/vtu.hpp"
+#include "formats/nastran/reader.hpp"
+#include "formats/nastran/writer.hpp"
+
+namespace bough::cli {
+
+namespace {
+
+struct ExportOptions : CommonOptions {
+  std::string file;
+  std::string format;
+  std::vector<std::string> channels;
+  bool ascii = false;
+  std::string fields = "large";
+  BodyExportOptions body;
+  std::vector<std::string> ignore_cards;
+};
+
+/// The time and the channels chosen, all by default.
+std::vector<exports::CsvColumn> read_columns(const ExportOptions& o) {
+  const auto results = hdf5::read_results(o.file);
+  std::vector<exports::CsvColumn> columns{{"time", results.time}};
+  if (o.channels.empty()) {
+    for (const auto& [path, values] : results.channels) {
+      if (path == "/time") continue;
+      for (auto& column : choose_columns(results, o.file, path)) columns.push_back(std::move(column));
+    }
+  }
+  for (const auto& choice : o.channels) {
+    for (auto& column : choose_columns(results, o.file, choice)) columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+std::string make_csv(const ExportOptions& o) {
+  std::ostringstream text;
+  const auto format = o.channels.empty() ? read_file_format(o.file) : "";
+  exports::write_csv(text, has_shapes(format) ? read_shape_columns(o.file, format) : read_columns(o));
+  return text.str();
+}
+
+std::string make_universal(const ExportOptions& o) {
+  const auto format = read_file_format(o.file);
+  if (format == "bough-modes") return exports::make_uff(hdf5::read_modes(o.file));
+  if (format == "bough-flexbody") return exports::make_uff(hdf5::read_flex_body(o.file));
+  if (format == "bough-results") return exports::make_uff(read_columns(o));
+  refuse_export(o.file, "uff", "a flexible body, or what bough modes or run wrote");
+}
+
+/// The mode shapes of a modes file or a flexible body.
+std::string make_shapes(const ExportOptions& o, Diagnostics& diagnostics) {
+  const std::string format = read_file_format(o.file);
+  const auto encoding = o.ascii ? exports::VtuEncoding::Ascii : exports::VtuEncoding::Base64;
+  if (format == "bough-modes")
+    return make_vtu_text(exports::make_picture(hdf5::read_modes(o.file)), encoding, o.file, diagnostics);
+  if (format == "bough-flexbody")
+    return make_vtu_text(exports::make_picture(hdf5::read_flex_body(o.file)), encoding, o.file, diagnostics);
+  throw InputError("cli.no-shapes", {o.file}, "the file holds no mode shapes, found format \"" + format + "\"",
+                   "give a file that bough modes or bough reduce wrote");
+}
+
+std::string make_bdf(const ExportOptions& o, Diagnostics& diagnostics) {
+  demand_deck(o.file);
+  const auto deck = nastran::read_deck(o.file, {o.ignore_cards}, diagnostics);
+  diagnostics.throw_if_errors();
+  nastran::WriteOptions options;
+  if (o.fields == "small") options.fields = nastran::FieldFormat::Small;
+  if (o.fields == "free") options.fields = nastran::FieldFormat::Free;
+  auto text = nastran::write_deck(deck, options, diagnostics);
+  diagnostics.throw_if_errors();
+  return text;
+}
+
+int run_export(const ExportOptions& o) {
+  Console console(o.quiet, o.verbosity);
+  if (!console.is_root()) return kSuccess;
+  demand_file(o.file);
+  if (!o.output.empty()) check_output(o, o.output, {o.file});
+  Diagnostics diagnostics;
+  if (o.format == "mat") {
+    if (o.output.empty()) {
+      console.print_error("cli.usage", "--to mat writes no text: give the file with -o", "see bough export --help");
+      return kUsageError;
+    }
+    export_mat(o.file, o.output, diagnostics);
+    console.print(diagnostics);
+    console.print("written: " + o.output + "\n");
+    return kSuccess;
+  }
+  const auto text = o.format == "vtu"          ? make_shapes(o, diagnostics)
+                    : o.format == "bdf"        ? make_bdf(o, diagnostics)
+                    : o.format == "op4"        ? make_op4(o.file, diagnostics)
+                    : o.format == "uff"        ? make_universal(o)
+                    : is_body_format(o.format) ? make_body_text(o.file, o.format, o.body, diagnostics)
+                                               : make_csv(o);
+  console.print(diagnostics);
+  if (o.output.empty()) {
+    console.print_data(text);
+  } else {
+    write_text_file(o.output, text);
+    console.print("written: " + o.output + "\n");
+  }
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, Action& action) {
+  auto o = std::make_shared<ExportOptions>();
+  auto* verb =
+      app.add_subcommand("export", "Bodies, modes, matrices, results or a deck in the format of another program");
+  verb->add_option("file", o->file,
+                   "csv: results file, modes file or flexible body; vtu: modes file or flexible body; bdf: Nastran "
+                   "deck; sid, mbdyn: flexible body; mat, "
+                   "op4, uff: any HDF5 file of Bough that has such arrays")
+      ->required();
+  verb->add_option("--to", o->format,
+                   "Format: csv, vtu (mode shapes for ParaView), bdf (the deck as Bough reads it), mat (MATLAB), "
+                   "op4 (Nastran OUTPUT4), uff (universal file), sid (Standard Input Data), mbdyn (.fem)")
+      ->required()
+      ->check(CLI::IsMember({"csv", "vtu", "bdf", "mat", "op4", "uff", "sid", "mbdyn"}));
+  verb->add_option("--channel", o->channels,
+                   "csv, uff: only these: a path or folder of the file, or a sensor; with :component; may be repeated "
+                   "(default: all)")
+      ->allow_extra_args(false);
+  verb->add_flag("--ascii", o->ascii, "vtu: numbers as text instead of base64");
+  verb->add_option("--fields", o->fields,
+                   "bdf: large (16 columns where 8 lose digits), small (always 8) or free (commas, every digit)")
+      ->check(CLI::IsMember({"large", "small", "free"}))
+      ->capture_default_str();
+  verb->add_option("--ignore", o->ignore_cards, "bdf: leave this card out; may be repeated")->allow_extra_args(false);
+  add_body_export_options(*verb, o->body);
+  add_common_options(*verb, *o, kOutput, "Write to this file instead of stdout");
+  verb->footer(
+      "Example:\n  bough export spinup.h5 --to csv -o spinup.csv\n"
+      "  bough export spinup.h5 --to csv --channel tip_deflection:y --channel /bodies/boom/eta\n"
+      "  bough export boom-modes.h5 --to vtu -o boom.vtu\n  bough export boom.h5 --to mat -o boom.mat\n"
+      "  bough export boom-modes.h5 --to uff -o boom.uff\n  bough export boom.h5 --to sid -o boom.SID_FEM\n"
+      "  bough export boom.h5 --to mbdyn -o boom.fem\n  bough export boom.bdf --to bdf -o plain.bdf");
+  verb->callback([&action, o] { action = [o] { return run_export(*o); }; });
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,63 @@
+#include "cli/export/export_bodies.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/export/export_matrices.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/mbdyn/fem_file.hpp"
+#include "formats/sid/sid.hpp"
+
+namespace bough::cli {
+
+void add_body_export_options(CLI::App& verb, BodyExportOptions& o) {
+  verb.add_option("--inertia", o.inertia, "sid: the inertia J as 6x1 (11 22 33 12 13 23) or 3x3")
+      ->check(CLI::IsMember({"6x1", "3x3"}))
+      ->capture_default_str();
+  verb.add_option("--ge-order", o.ge_order,
+                  "sid: columns of Ge by mode (3 for each) or by component (one for each mode)")
+      ->check(CLI::IsMember({"mode", "component"}))
+      ->capture_default_str();
+  verb.add_option("--digits", o.digits, "sid: significant digits")->check(CLI::Range(6, 17))->capture_default_str();
+}
+
+bool is_body_format(const std::string& format) { return format == "sid" || format == "mbdyn"; }
+
+std::string make_body_text(const std::string& file, const std::string& format, const BodyExportOptions& o,
+                           Diagnostics& diagnostics) {
+  if (read_file_format(file) != "bough-flexbody") refuse_export(file, format, "a flexible body, from bough reduce");
+  const auto body = hdf5::read_flex_body(file);
+  if (format == "mbdyn") return mbdyn::make_fem(body, {file}, diagnostics);
+  sid::Layout layout;
+  layout.is_full_inertia = o.inertia == "3x3";
+  layout.by_component = o.ge_order == "component";
+  layout.digits = o.digits;
+  return sid::write_sid(sid::make_sid(body, layout, {file}, diagnostics), layout);
+}
+
+bool has_shapes(const std::string& format) { return format == "bough-flexbody" || format == "bough-modes"; }
+
+std::vector<exports::CsvColumn> read_shape_columns(const std::string& file, const std::string& format) {
+  const auto make = [](const std::vector<int>& id, const Eigen::MatrixXd& xyz,
+                       const std::vector<Eigen::MatrixXd>& phi) {
+    static constexpr const char* kDirections[] = {"x", "y", "z", "rx", "ry", "rz"};
+    const auto p = static_cast<Eigen::Index>(id.size());
+    std::vector<exports::CsvColumn> columns{{"id", Eigen::Map<const Eigen::VectorXi>(id.data(), p).cast<double>()}};
+    for (int a = 0; a < 3 && p > 0; ++a) columns.push_back({kDirections[a], xyz.col(a)});
+    for (Eigen::Index j = 0; p > 0 && j < phi[0].cols(); ++j)
+      for (int d = 0; d < 6; ++d) {
+        columns.push_back({fmt::format("mode_{:03}_{}", j + 1, kDirections[d]), Eigen::VectorXd(p)});
+        for (Eigen::Index k = 0; k < p; ++k) columns.back().values[k] = phi[static_cast<std::size_t>(k)](d, j);
+      }
+    return columns;
+  };
+  if (format == "bough-modes") {
+    const auto modes = hdf5::read_modes(file);
+    return make(modes.node_id, modes.node_xyz, modes.phi);
+  }
+  const auto body = hdf5::read_flex_body(file);
+  return make(body.node_id, body.node_xyz, body.phi);
+}
+
+}  // namespace bough::cli

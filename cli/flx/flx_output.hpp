@@ -1,0 +1,24 @@
+#pragma once
+/// \file Options and steps that `flx` and `integrals` share.
+#include "cli/common/options.hpp"
+#include "formats/flx/flx_file.hpp"
+
+namespace bough::cli {
+
+struct FlxOptions : CommonOptions {
+  std::string layout;
+  int digits = 9;
+};
+
+/// --layout and --digits.
+void add_flx_options(CLI::App& verb, FlxOptions& options);
+
+/// The template of --layout, or Bough's own with so many digits.
+flx::Layout choose_layout(const FlxOptions& options, int digits);
+
+/// Every block by name, as `flx --read --json` prints it; arrays as in the flexible-body file.
+std::string format_flx_json(const flx::FlxFile& file);
+/// The same as tables for a reader.
+std::string format_flx_text(const flx::FlxFile& file);
+
+}  // namespace bough::cli

@@ -1,0 +1,68 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/common/console.hpp"
+#include "cli/common/options.hpp"
+#include "formats/hdf5/files.hpp"
+
+namespace bough::cli {
+
+namespace {
+
+struct InfoOptions : CommonOptions {
+  std::string file;
+};
+
+int run_info(const InfoOptions& o) {
+  const Console console(o.quiet, o.verbosity);
+  demand_file(o.file);
+  if (!o.output.empty()) check_output(o, o.output, {o.file});
+  const auto info = hdf5::read_info(o.file);
+  if (o.json) {
+    auto objects = nlohmann::json::array();
+    for (const auto& object : info.objects) {
+      objects.push_back({{"path", object.path},
+                         {"shape", object.shape},
+                         {"type", object.type},
+                         {"description", object.description},
+                         {"dims", object.dims}});
+    }
+    put_out(o, console, nlohmann::json{{"attributes", info.attributes}, {"objects", objects}}.dump(2) + "\n");
+    return kSuccess;
+  }
+  const std::size_t width = get_terminal_width();
+  std::string text;
+  for (const auto& [name, value] : info.attributes) text += name + ": " + value + "\n";
+  text += '\n';
+  std::size_t path_width = 0, shape_width = 0;
+  for (const auto& object : info.objects) {
+    path_width = std::max(path_width, object.path.size());
+    shape_width = std::max(shape_width, object.shape.size());
+  }
+  const auto pad = [](const std::string& s, std::size_t to) { return s + std::string(to - s.size() + 2, ' '); };
+  for (const auto& object : info.objects) {
+    const std::string about =
+        object.description + (object.dims.empty() || object.dims == "1" ? "" : " [" + object.dims + "]");
+    std::string line = pad(object.path, path_width) + pad(object.shape, shape_width);
+    // On a narrow terminal the description goes on below; elsewhere one object is one line.
+    line += width > line.size() + 20 ? wrap(about, line.size(), width) : about;
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  put_out(o, console, text);
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Action& action) {
+  auto o = std::make_shared<InfoOptions>();
+  auto* verb = app.add_subcommand("info", "What an HDF5 file of Bough holds");
+  verb->add_option("file", o->file, "HDF5 file")->required();
+  add_common_options(*verb, *o, kOutput | kJson, "Write the list to this file instead of stdout");
+  verb->footer("Example:\n  bough info boom.h5");
+  verb->callback([&action, o] { action = [o] { return run_info(*o); }; });
+}
+
+}  // namespace bough::cli

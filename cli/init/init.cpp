@@ -1,0 +1,110 @@
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "cli/common/console.hpp"
+#include "cli/common/options.hpp"
+#include "cli/common/text_file.hpp"
+#include "cli/init/init_deck.hpp"
+#include "cli/init/templates.hpp"
+#include "formats/nastran/reader.hpp"
+
+namespace bough::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct InitOptions {
+  std::string name, output;
+  int hinge = 0;
+  bool quiet = false, force = false;
+};
+
+struct Files {
+  std::string folder, advice;
+  std::vector<StartFile> files;
+};
+
+const Template& find_template(const std::string& name) {
+  std::vector<std::string> names;
+  std::string list;
+  for (const auto& t : get_templates()) {
+    if (name == t.name || name == t.folder) return t;
+    names.push_back(t.name);
+    list += (list.empty() ? "" : ", ") + std::string(t.name);
+  }
+  const auto nearest = find_nearest(name, names);
+  throw InputError("cli.unknown-template", {}, "no template \"" + name + "\"",
+                   nearest.empty() ? "the templates are " + list : "did you mean \"" + nearest + "\"");
+}
+
+bool is_deck(const std::string& name) { return fs::path(name).has_extension() || fs::is_regular_file(name); }
+
+Files make_files(const InitOptions& o, Diagnostics& diagnostics) {
+  Files made;
+  if (!is_deck(o.name)) {
+    const auto& chosen = find_template(o.name);
+    made.folder = chosen.name;
+    made.advice = "README.md there tells what it is and how to run it\n";
+    for (const auto& file : chosen.files) made.files.push_back({file.name, file.text});
+    return made;
+  }
+  demand_deck(o.name);
+  const auto deck = nastran::read_deck(o.name, {}, diagnostics);
+  diagnostics.throw_if_errors();
+  made.folder = ".";
+  const fs::path folder = fs::absolute(o.output.empty() ? "." : o.output);
+  made.files = make_start_files(
+      deck, {fs::absolute(o.name).lexically_relative(folder).string(), fs::path(o.name).stem().string(), o.hinge});
+  made.advice = "reduce the first, then run the second\n";
+  return made;
+}
+
+int run_init(const InitOptions& o) {
+  const Console console(o.quiet, 0);
+  if (!console.is_root()) return kSuccess;
+  Diagnostics diagnostics;
+  const Files chosen = make_files(o, diagnostics);
+  console.print(diagnostics);
+  const fs::path folder = o.output.empty() ? fs::path(chosen.folder) : fs::path(o.output);
+  for (const auto& file : chosen.files) {
+    const auto path = (folder / file.name).string();
+    if (!o.force && fs::exists(path)) {
+      diagnostics.error("cli.output-exists", {path}, "the file exists", "choose another folder with -o, or --force");
+    }
+  }
+  diagnostics.throw_if_errors();
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) {
+    throw ComputationError("cli.write", {folder.string()}, "the folder could not be made: " + failed.message(),
+                           "choose another with -o");
+  }
+  for (const auto& file : chosen.files) {
+    write_text_file((folder / file.name).string(), file.text);
+    console.print((folder / file.name).string() + "\n");
+  }
+  console.print(chosen.advice);
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_init(CLI::App& app, Action& action) {
+  auto o = std::make_shared<InitOptions>();
+  auto* verb =
+      app.add_subcommand("init", "A ready example to start from, or the files for a deck: spinup, hub, two-link, ...");
+  verb->add_option("template", o->name, "spinup, hub, two-link, free-flyer, plate or campaign; or a Nastran deck")
+      ->required();
+  verb->add_option("-o,--output", o->output, "Folder to write into (default: the template's name; for a deck, here)");
+  verb->add_option("--hinge", o->hinge, "Of a deck: the grid on a revolute hinge to ground; chooses the basis for it")
+      ->check(CLI::PositiveNumber);
+  verb->add_flag("--force", o->force, "Overwrite files that are there already");
+  verb->add_flag("-q,--quiet", o->quiet, "Print errors only");
+  verb->add_flag("-v,--verbose")->description("Accepted as by every verb; init has nothing more to tell");
+  verb->footer("Example:\n  bough init spinup\n  bough init hub -o my-hub\n  bough init arm.bdf --hinge 1");
+  verb->callback([&action, o] { action = [o] { return run_init(*o); }; });
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,301 @@
+#include "stiffening/reduce.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/common/console.hpp"
+#include "cli/common/deck_tables.hpp"
+#include "cli/common/options.hpp"
+#include "cli/common/ranks.hpp"
+#include "cli/common/solution.hpp"
+#include "cli/common/system_files.hpp"
+#include "cli/common/usage_text.hpp"
+#include "cli/compare/compare_report.hpp"
+#include "cli/reduce/matrix_files.hpp"
+#include "cli/reduce/point_files.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/toml/specs.hpp"
+
+namespace bough::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct ReduceVerbOptions : CommonOptions {
+  std::string file;
+  std::string name;
+  int num_modes = 0;
+  std::optional<double> max_hz;
+  bool free = false;
+  std::vector<int> interface_nodes;
+  std::vector<std::string> loads;
+  bool full = false;
+  bool integrals_report = false;
+  std::string mass, integrals;
+  std::vector<double> origin;
+  std::vector<std::string> ignore_cards;
+  int subcase = 0;
+  double damping = -1;
+  std::vector<std::string> matrices;
+};
+
+/// "[NAME=]NODE:DIRECTIONS", "[NAME=]set:ID" or "[NAME=]temperature:ID".
+records::ExternalLoadSpec parse_load(const std::string& text) {
+  const auto fail = [&]() -> InputError {
+    return {"cli.bad-load",
+            {},
+            "cannot read --load \"" + text + "\"",
+            "write NODE:DIRECTIONS such as 41:2 or 41:123, set:ID or temperature:ID; NAME= may stand before"};
+  };
+  records::ExternalLoadSpec load;
+  std::string rest = text;
+  if (const auto equals = rest.find('='); equals != std::string::npos) {
+    load.name = rest.substr(0, equals);
+    rest.erase(0, equals + 1);
+  }
+  const auto colon = rest.find(':');
+  if (colon == std::string::npos || colon + 1 == rest.size()) throw fail();
+  const auto before = rest.substr(0, colon), after = rest.substr(colon + 1);
+  const auto is_number = [](const std::string& s) {
+    return !s.empty() && s.size() < 9 && s.find_first_not_of("0123456789") == std::string::npos;
+  };
+  if (!is_number(after)) throw fail();
+  if (before == "set") {
+    load.load_set = std::stoi(after);
+  } else if (before == "temperature") {
+    load.temperature_set = std::stoi(after);
+  } else {
+    if (!is_number(before)) throw fail();
+    load.node = std::stoi(before);
+    for (char c : after) {
+      if (c < '1' || c > '6') throw fail();
+      load.directions.push_back(c - '0');
+    }
+  }
+  if (load.name.empty()) load.name = "load " + rest;
+  return load;
+}
+
+void add_matrices(const ReduceVerbOptions& o, records::BodySpec& spec) {
+  if (o.matrices.empty()) return;
+  if (!spec.matrices) spec.matrices.emplace();
+  // The common file first: ":NAME" of the others is in it.
+  for (const bool is_file : {true, false})
+    for (const auto& text : o.matrices)
+      if ((text.find('=') == std::string::npos) == is_file) add_matrices_option(text, *spec.matrices);
+  if (spec.name.empty())
+    spec.name = fs::path(spec.matrices->file.empty() ? spec.matrices->stiffness.file : spec.matrices->file).stem();
+}
+
+records::BodySpec make_spec(const ReduceVerbOptions& o, Diagnostics& diagnostics) {
+  records::BodySpec spec;
+  const bool is_toml = has_suffix(o.file, ".toml");
+  if (is_toml) {
+    do_once([&] { demand_kind(o.file, toml_files::detect_kind(o.file), "body"); });
+    spec = read_body_spec_once(o.file, diagnostics);
+    diagnostics.throw_if_errors();
+    if (!spec.deck.empty()) spec.deck = resolve_beside(o.file, spec.deck);
+    add_matrices(o, spec);
+  } else {
+    if (!o.file.empty()) do_once([&] { demand_deck(o.file); });
+    spec.deck = o.file;
+    spec.name = fs::path(o.file).stem().string();
+    add_matrices(o, spec);
+    const bool has_modes = spec.matrices && !spec.matrices->modes.empty();
+    if (o.num_modes == 0 && !o.max_hz && !has_modes) {
+      throw InputError("cli.no-modes", {o.file}, "the number of modes is not given", "add --modes N or --max-hz F");
+    }
+  }
+  if (!o.name.empty()) spec.name = o.name;
+  if (o.num_modes > 0) spec.num_modes = o.num_modes;
+  if (o.max_hz) spec.max_frequency_hz = o.max_hz;
+  if (o.free) spec.frame = records::BodyFrame::Free;
+  if (!o.interface_nodes.empty()) spec.interface_nodes = o.interface_nodes;
+  for (const auto& load : o.loads) spec.loads.push_back(parse_load(load));
+  if (o.full) spec.full = true;
+  if (!o.mass.empty()) spec.mass = o.mass;
+  if (!o.integrals.empty()) spec.integrals = o.integrals;
+  if (!o.origin.empty()) spec.origin = Vector3d(o.origin[0], o.origin[1], o.origin[2]);
+  spec.ignore_cards.insert(spec.ignore_cards.end(), o.ignore_cards.begin(), o.ignore_cards.end());
+  if (o.subcase > 0) spec.subcase = o.subcase;
+  if (o.damping >= 0) {
+    spec.damping_ratio = o.damping;
+    spec.damping_ratios.clear();
+  }
+  return spec;
+}
+
+std::string choose_output(const ReduceVerbOptions& o, const records::BodySpec& spec) {
+  if (!o.output.empty()) return o.output;
+  if (!spec.output_file.empty()) return resolve_beside(spec.file, spec.output_file);
+  return spec.name + ".h5";
+}
+
+/// The mass that each direction moves: the resultant of a unit acceleration that way. All are body.mass but where
+/// scalar masses or given matrices have another one in some direction.
+Vector3d calc_masses(const records::FlexBody& body) {
+  if (body.F_I.rows() != body.dof_map.rows() || body.F_I.cols() < 3) return Vector3d::Constant(body.mass);
+  Vector3d masses = Vector3d::Zero();
+  for (Eigen::Index row = 0; row < body.dof_map.rows(); ++row)
+    if (const int code = body.dof_map(row, 1); code >= 1 && code <= 3) masses[code - 1] -= body.F_I(row, code - 1);
+  return masses;
+}
+
+std::string format_summary(const records::FlexBody& body, const std::string& output) {
+  const Vector3d masses = calc_masses(body);
+  Table table{{"mode", "Hz", "rad/s", "mx %", "my %", "mz %"}, {}};
+  for (int j = 0; j < body.num_modes(); ++j) {
+    std::vector<std::string> row{std::to_string(j + 1), fmt::format("{:.7g}", body.frequency_hz[j]),
+                                 fmt::format("{:.7g}", std::sqrt(std::max(0.0, body.eigenvalue[j])))};
+    for (int a = 0; a < 3; ++a) {
+      row.push_back(fmt::format("{:.2f}", body.effective_mass.size() > 0 && masses[a] > 0
+                                              ? 100 * body.effective_mass(j, a) / masses[a]
+                                              : 0.0));
+    }
+    table.rows.push_back(row);
+  }
+  return fmt::format(
+      "body \"{}\": mass {:.8g}, centre of mass ({:.6g}, {:.6g}, {:.6g}), {} nodes\n{}{} locators, "
+      "interface nodes: {}\nwritten: {}\n",
+      body.name, body.mass, body.cg.x() + 0.0, body.cg.y() + 0.0, body.cg.z() + 0.0, body.num_nodes(), table.to_text(),
+      body.locators.size(),
+      body.interface_nodes.empty() ? "none" : fmt::format("{}", fmt::join(body.interface_nodes, " ")), output);
+}
+
+/// Each mode of the body with the most similar one of the others.
+Table make_check_table(const records::FlexBody& body, const stiffening::ModeCheck& check) {
+  Table table{{"mode", "Hz", "other", "Hz", "difference %", "MAC"}, {}};
+  for (int j = 0; j < body.num_modes() && check.mac.cols() > 0; ++j) {
+    Eigen::Index other = 0;
+    const double mac = check.mac.row(j).maxCoeff(&other);
+    const double hz = check.frequency_hz[other];
+    table.rows.push_back({std::to_string(j + 1), fmt::format("{:.7g}", body.frequency_hz[j]), std::to_string(other + 1),
+                          hz < 0 ? "-" : fmt::format("{:.7g}", hz),
+                          hz > 0 ? fmt::format("{:.4f}", 100 * (body.frequency_hz[j] / hz - 1)) : "-",
+                          fmt::format("{:.6f}", mac)});
+  }
+  return table;
+}
+
+struct Reduced {
+  records::FlexBody body;
+  std::vector<std::string> files;
+  std::optional<stiffening::ModeCheck> check;
+};
+
+Reduced reduce_deck(const records::BodySpec& spec, const stiffening::ReduceOptions& options, Diagnostics& diagnostics) {
+  fe::ModelOptions model_options;
+  model_options.subcase = spec.subcase;
+  model_options.ignore_cards = spec.ignore_cards;
+  const auto deck = read_deck_or_throw(spec.deck, model_options, diagnostics);
+  note_solution(deck, diagnostics);
+  Reduced result{{}, deck.files, {}};
+  say_first(diagnostics, [&] { result.body = stiffening::reduce(deck, spec, options, diagnostics); });
+  return result;
+}
+
+Reduced reduce_given(const records::BodySpec& spec, const stiffening::ReduceOptions& options,
+                     Diagnostics& diagnostics) {
+  const auto deck = read_points(spec, diagnostics);
+  Reduced result;
+  result.files = deck.files;
+  const auto given = read_given_matrices(*spec.matrices, deck, result.files, diagnostics);
+  say_first(diagnostics, [&] { result.body = stiffening::reduce_matrices(deck, spec, given, options, diagnostics); });
+  if (spec.matrices->check_modes.empty()) return result;
+  const auto others = read_given_modes(spec.matrices->check_modes, *spec.matrices, deck, diagnostics);
+  result.check = stiffening::compare_modes(result.body, deck, others, diagnostics);
+  return result;
+}
+
+int run_reduce(const ReduceVerbOptions& o) {
+  Console console(o.quiet, o.verbosity);
+  console.set_subject(o.file);
+  if (!o.file.empty()) do_once([&] { demand_file(o.file); });
+  Diagnostics diagnostics;
+  const auto spec = make_spec(o, diagnostics);
+  const auto output = choose_output(o, spec);
+  do_once([&] { check_output(o, output, {o.file, spec.deck}); });
+  console.set_rank(fe::initialize_petsc().rank);
+  stiffening::ReduceOptions options;
+  options.progress = [&](const std::string& stage) { console.show_progress("reduce: " + stage); };
+  auto [body, files, check] =
+      spec.matrices ? reduce_given(spec, options, diagnostics) : reduce_deck(spec, options, diagnostics);
+  console.end_progress();
+  if (!spec.file.empty()) files.insert(files.begin(), o.file);
+  body.source = calc_sources(files);
+  console.print(diagnostics);
+  diagnostics.throw_if_errors();
+  do_once([&] { hdf5::write_flex_body(body, output); });
+  if (o.json) {
+    nlohmann::json json{{"name", body.name},
+                        {"output", output},
+                        {"mass", body.mass},
+                        {"cg", to_json_list(body.cg)},
+                        {"frequency_hz", to_json_list(body.frequency_hz)},
+                        {"eigenvalue", to_json_list(body.eigenvalue)},
+                        {"effective_mass", to_json(body.effective_mass)},
+                        {"interface_nodes", body.interface_nodes},
+                        {"num_locators", body.locators.size()}};
+    if (check) json["check"] = {{"frequency_hz", to_json_list(check->frequency_hz)}, {"mac", to_json(check->mac)}};
+    console.print_data(json.dump(2) + "\n");
+  } else {
+    console.print(format_summary(body, output));
+    if (o.integrals_report) console.print("\n" + format_report(SingleReport{body, modal::check_integrals(body)}));
+    if (check) console.print("compared with other modes:\n" + make_check_table(body, *check).to_text());
+  }
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_reduce(CLI::App& app, Action& action) {
+  auto o = std::make_shared<ReduceVerbOptions>();
+  auto* verb =
+      app.add_subcommand("reduce", "A deck becomes a flexible body: modes, mass integrals, geometric stiffness");
+  verb->add_option("file", o->file, "Body file (.toml) or Nastran deck; may be missing with --matrices");
+  verb->add_option("-n,--modes,--number", o->num_modes, "Number of elastic modes")->check(make_positive());
+  verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted");
+  verb->add_option("--name", o->name, "Name of the body (default: the file's)");
+  verb->add_flag("--free", o->free, "Free-free modes: no node carries the frame, SPC sets are left out");
+  verb->add_option("--interface", o->interface_nodes,
+                   "Grids where hinges or forces attach: six locators each (forces, moments), e.g. 1,41")
+      ->delimiter(',');
+  verb->add_option(
+          "--load", o->loads,
+          "Unit loads NODE:DIRECTIONS, a load set set:ID or a temperature set temperature:ID, with K_G; may be "
+          "repeated")
+      ->allow_extra_args(false);
+  verb->add_option("--mass", o->mass, "Mass matrix: deck, lumped or consistent")
+      ->check(CLI::IsMember({"deck", "lumped", "consistent"}));
+  verb->add_option("--integrals", o->integrals, "Mass integrals that the solver uses: exact, consistent or lumped")
+      ->check(CLI::IsMember({"exact", "consistent", "lumped"}));
+  verb->add_option("--origin", o->origin, "Origin of the body frame in basic: X Y Z")->expected(3);
+  verb->add_option("--damping", o->damping, "Modal damping ratio of every mode")->check(make_not_negative());
+  verb->add_option("--subcase", o->subcase, "Subcase whose SPC and MPC sets are used (default: the first)");
+  verb->add_option("--ignore", o->ignore_cards, "Skip this card though it carries stiffness, mass or constraint")
+      ->allow_extra_args(false);
+  verb->add_option(
+          "--matrices", o->matrices,
+          "Matrices of another program instead of the deck's elements: FILE with K and M, or KEY=FILE:NAME with "
+          "K, M, B, phi, check, wx2, ...; may be repeated (docs/other-fe-codes.md)")
+      ->allow_extra_args(false);
+  verb->add_flag("--integrals-report", o->integrals_report,
+                 "Print the mass integrals by three methods side by side, as bough compare BODY.h5 does");
+  verb->add_flag("--full", o->full, "Write the modes and inertial loads of every dof too");
+  add_common_options(*verb, *o, kOutput | kJson, "Flexible-body HDF5 file (default: the body file's, else NAME.h5)");
+  verb->footer(
+      "Example:\n  bough reduce boom.toml\n  bough reduce boom.bdf --modes 3 --interface 41 -o boom.h5\n"
+      "  bough reduce boom.bdf --matrices boom.op4 --modes 3\n  mpirun -n 2 bough reduce boom.toml");
+  verb->callback([&action, o] {
+    if (o->file.empty() && o->matrices.empty()) throw CLI::RequiredError("file");
+    action = [o] { return blame(o->file, [&] { return run_reduce(*o); }); };
+  });
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/common/console.hpp"
+#include "cli/common/options.hpp"
+#include "cli/common/system_files.hpp"
+#include "cli/run/provenance_sink.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/toml/specs.hpp"
+#include "solver/integrate/simulate.hpp"
+
+namespace bough::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct RunOptions : CommonOptions {
+  std::string file;
+  bool resume = false;
+};
+
+/// Set by SIGINT and SIGTERM; a handler can reach nothing but static storage.
+std::atomic<bool>& get_stop_flag() {
+  static std::atomic<bool> stop{false};
+  return stop;
+}
+void on_signal(int) { get_stop_flag().store(true); }
+
+std::string choose_output(const RunOptions& o) {
+  return o.output.empty() ? fs::path(o.file).stem().string() + ".h5" : o.output;
+}
+
+void demand_other_file(const std::string& output, const LoadedSystem& loaded, const std::string& system_file) {
+  std::vector<std::string> inputs{system_file};
+  for (const auto& [name, path] : loaded.flex_path) inputs.push_back(path);
+  for (const auto& input : inputs) {
+    std::error_code ignored;
+    if (fs::equivalent(output, input, ignored)) {
+      throw InputError("cli.output-is-input", {output}, "the results would overwrite the input file " + input,
+                       "choose another file with -o");
+    }
+  }
+}
+
+/// Prints warnings as they come up, not when the run is over.
+class MessageFeed {
+ public:
+  MessageFeed(Console& console, const Diagnostics& diagnostics) : console_(console), diagnostics_(diagnostics) {}
+  /// Errors are left to the failure that carries them.
+  void print_new() {
+    for (; printed_ < diagnostics_.items().size(); ++printed_) {
+      if (diagnostics_.items()[printed_].severity == Severity::Error) continue;
+      console_.end_progress();
+      console_.print_unless_quiet(diagnostics_.items()[printed_]);
+    }
+  }
+
+ private:
+  Console& console_;
+  const Diagnostics& diagnostics_;
+  std::size_t printed_ = 0;
+};
+
+class ProgressLine {
+ public:
+  explicit ProgressLine(Console& console) : console_(console), begin_(Clock::now()), shown_(begin_) {}
+  void show(const solver::Progress& p) {
+    const auto now = Clock::now();
+    if (!console_.shows_progress() || now - shown_ < std::chrono::milliseconds(100)) return;
+    shown_ = now;
+    const double done = p.end > p.start ? (p.time - p.start) / (p.end - p.start) : 1.0;
+    const double spent = std::chrono::duration<double>(now - begin_).count();
+    console_.show_progress(fmt::format(
+        "run: {:5.1f} %  t {:.4g}  step {:.2e}  order {}  steps {}  rejected {}  energy error {:.1e}  {:.0f} s left",
+        100 * done, p.time, p.step, p.order, p.num_steps, p.num_rejected, p.energy_error,
+        done > 0 ? spent * (1 - done) / done : 0.0));
+  }
+  double get_seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Console& console_;
+  Clock::time_point begin_, shown_;
+};
+
+int report(const RunOptions& o, const Console& console, const solver::SimulateOutcome& outcome,
+           const std::string& output, double seconds) {
+  const auto& last = outcome.last;
+  if (o.json) {
+    console.print_data(nlohmann::json{{"output", output},
+                                      {"completed", outcome.completed},
+                                      {"time", outcome.time},
+                                      {"reason", outcome.reason},
+                                      {"steps", last.num_steps},
+                                      {"rejected", last.num_rejected},
+                                      {"evaluations", last.num_evaluations},
+                                      {"energy_error", last.energy_error},
+                                      {"seconds", seconds}}
+                           .dump(2) +
+                       "\n");
+  } else {
+    console.print(fmt::format(
+        "{} at t = {:g} after {} steps ({} rejected, {} evaluations), energy error {:.1e}, {:.2f} s\nwritten: {}\n",
+        outcome.completed ? "completed" : "stopped", outcome.time, last.num_steps, last.num_rejected,
+        last.num_evaluations, last.energy_error, seconds, output));
+  }
+  if (outcome.completed) return kSuccess;
+  console.print_error("cli.interrupted", outcome.reason,
+                      fmt::format("continue it with bough run {} -o {} --resume", o.file, output));
+  return kComputationFailed;
+}
+
+int run_run(const RunOptions& o) {
+  Console console(o.quiet, o.verbosity);
+  if (!console.is_root()) return kSuccess;  // one process integrates; the others have nothing to do
+  demand_file(o.file);
+  if (has_suffix(o.file, ".toml")) demand_kind(o.file, toml_files::detect_kind(o.file), "system");
+  Diagnostics diagnostics;
+  const auto loaded = load_system(o.file, diagnostics);
+  const auto output = choose_output(o);
+  demand_other_file(output, loaded, o.file);
+
+  solver::SimulateOptions options;
+  std::unique_ptr<records::ResultSink> writer;
+  if (o.resume) {
+    demand_file(output);
+    options.resume = hdf5::read_checkpoint(output);
+    const double end = loaded.spec.simulation.start + loaded.spec.simulation.duration;
+    if (options.resume->time >= end * (1 - 1e-12)) {
+      console.print(fmt::format("{} is complete already\n", output));
+      return kSuccess;
+    }
+    writer = hdf5::make_results_appender(output, options.resume->time);
+  } else {
+    check_output(o, output);
+    writer = hdf5::make_results_writer(output);
+  }
+  std::vector<std::string> sources{o.file};
+  for (const auto& [name, path] : loaded.flex_path) sources.push_back(path);
+  ProvenanceSink sink(*writer, calc_sources(sources));
+  MessageFeed messages(console, diagnostics);
+  messages.print_new();
+  ProgressLine progress(console);
+  options.progress = [&](const solver::Progress& p) {
+    messages.print_new();
+    progress.show(p);
+  };
+  options.stop = &get_stop_flag();
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  solver::SimulateOutcome outcome;
+  try {
+    outcome = solver::simulate(loaded.system, loaded.spec, sink, options, diagnostics);
+  } catch (...) {
+    messages.print_new();
+    console.end_progress();
+    throw;
+  }
+  messages.print_new();
+  console.end_progress();
+  return report(o, console, outcome, output, progress.get_seconds());
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  auto o = std::make_shared<RunOptions>();
+  auto* verb = app.add_subcommand("run", "Time history of a multibody system");
+  verb->add_option("file", o->file, "System file (.toml)")->required();
+  verb->add_flag("--resume", o->resume, "Continue the results file from its last checkpoint");
+  add_common_options(*verb, *o, kOutput | kJson, "Results HDF5 file (default: the system file's name with .h5, here)");
+  verb->footer(
+      "Example:\n  bough run spinup.toml -o spinup.h5\n  bough run spinup.toml -o spinup.h5 --resume\n"
+      "SIGINT (Ctrl-C) and SIGTERM write a checkpoint and end the file cleanly, with exit code 3.");
+  verb->callback([&action, o] { action = [o] { return run_run(*o); }; });
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/common/console.hpp"
+#include "cli/common/model_options.hpp"
+#include "cli/common/options.hpp"
+#include "cli/common/ranks.hpp"
+#include "cli/common/solution.hpp"
+#include "cli/common/subcase_failures.hpp"
+#include "cli/common/text_file.hpp"
+#include "cli/common/vtu_file.hpp"
+#include "cli/static/static_tables.hpp"
+#include "fe/statics/case_solver.hpp"
+#include "formats/hdf5/files.hpp"
+
+namespace bough::cli {
+
+using Eigen::VectorXd;
+
+namespace {
+
+struct StaticOptions : CommonOptions {
+  std::string deck, vtu;
+  DeckModelOptions model;
+  bool full = false, in_cd = false, is_linear = false;
+};
+
+/// Vectors in the displacement axes of their grids, as other programs print them.
+records::StaticResult turn_to_cd(const fe::Model& model, records::StaticResult result) {
+  for (auto& s : result.subcases)
+    for (VectorXd* v : {&s.displacement, &s.load, &s.reaction, &s.mpc_force, &s.inertia})
+      for (const auto& node : model.nodes())
+        for (int i = 0; i < node.num_dofs / 3 && v->size() > 0; ++i) {
+          auto part = v->segment<3>(node.first_gdof + 3 * i);
+          part = (node.R_basic_cd.transpose() * part).eval();
+        }
+  return result;
+}
+
+int run_static(const StaticOptions& options) {
+  Console console(options.quiet, options.verbosity);
+  console.set_subject(options.deck);
+  do_once([&] {
+    demand_deck(options.deck);
+    if (!options.output.empty()) check_output(options, options.output, {options.deck});
+    if (!options.vtu.empty()) check_output(options, options.vtu, {options.deck});
+  });
+  console.set_rank(fe::initialize_petsc().rank);
+
+  Diagnostics diagnostics;
+  const auto deck = read_deck_or_throw(options.deck, make_model_options(options.model), diagnostics);
+  std::vector<records::Subcase> subcases;
+  say_first(diagnostics, [&] {
+    subcases = fe::choose_static_subcases(deck, options.model.subcase);
+    demand_static_solution(deck, options.is_linear, diagnostics);
+  });
+  if (subcases.empty()) {  // Model::build reports it
+    subcases.emplace_back();
+    subcases.back().id = options.model.subcase;
+  }
+  records::StaticResult result;
+  fe::CaseSolver solver(deck, make_model_options(options.model));
+  SubcaseFailures failures(subcases.size(), deck.subcases.size());
+  for (const auto& subcase : subcases) {
+    Diagnostics own;
+    try {
+      result.subcases.push_back(solver.solve(subcase, own));
+    } catch (const Failure& failure) {
+      failures.add(subcase.id, failure);
+    }
+    add_new(own, diagnostics);
+  }
+  if (result.subcases.empty()) failures.throw_all(diagnostics);
+  result.dof_map = solver.model().calc_dof_map();
+  result.mesh = solver.model().calc_mesh();
+  result.source = calc_sources(deck.files);
+  std::string picture;
+  if (!options.vtu.empty() && console.is_root())
+    picture = make_vtu_text(exports::make_picture(result), exports::VtuEncoding::Base64, options.deck, diagnostics);
+  console.print(diagnostics);
+  console.print(failures.get_items(diagnostics));
+
+  if (!options.output.empty() && console.is_root()) hdf5::write_static(result, options.output);
+  if (options.in_cd) result = turn_to_cd(solver.model(), std::move(result));
+  if (options.json) {
+    nlohmann::json json{{"subcases", nlohmann::json::array()}};
+    for (const auto& subcase : result.subcases) json["subcases"].push_back(to_json(result, subcase, options.full));
+    if (!failures.is_empty()) json["failed"] = failures.to_json();
+    console.print_data(json.dump(2) + "\n");
+  } else {
+    for (const auto& subcase : result.subcases) console.print(format_static(result, subcase, options.full));
+  }
+  if (!picture.empty()) write_text_file(options.vtu, picture);
+  for (const auto& path : {options.output, options.vtu})
+    if (!path.empty() && !options.json) console.print("written: " + path + "\n");
+  // A rank that ends with an error ends the others: the first one must be through.
+  do_once([] { std::fflush(stdout); });
+  return failures.get_exit_code();
+}
+
+}  // namespace
+
+void add_static(CLI::App& app, Action& action) {
+  auto o = std::make_shared<StaticOptions>();
+  auto* verb = app.add_subcommand("static", "Static solution (SOL 101) of every subcase with a load");
+  verb->add_option("deck", o->deck, "Nastran deck")->required();
+  verb->add_flag("--full", o->full, "Every grid and element instead of the largest values");
+  verb->add_flag("--cd", o->in_cd, "Print vectors in the displacement (CD) axes of each grid, not in basic");
+  verb->add_flag("--linear", o->is_linear, "Solve the cards linearly though SOL is nonlinear (106, 129, 400, ...)");
+  verb->add_option("--vtu", o->vtu, "Write the displacements of every subcase to this file for ParaView");
+  add_model_options(*verb, o->model);
+  add_common_options(*verb, *o, kOutput | kJson, "Write displacements, reactions and forces to this HDF5 file");
+  verb->footer("Example:\n  bough static frame.bdf -o frame-static.h5\n  bough static frame.bdf --subcase 2 --full");
+  verb->callback([&action, o] { action = [o] { return blame(o->deck, [&] { return run_static(*o); }); }; });
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,182 @@
+#include "cli/static/static_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/common/console.hpp"
+#include "cli/common/deck_tables.hpp"
+
+namespace bough::cli {
+
+namespace {
+
+using Eigen::VectorXd;
+
+const std::vector<std::string> kComponents{"x", "y", "z", "rx", "ry", "rz"};
+
+/// Largest magnitude of each component of a g-set vector: (signed value, node id).
+struct Extreme {
+  double value = 0;
+  int id = 0;
+};
+std::vector<Extreme> find_maxima(const Eigen::MatrixXi& dof_map, const VectorXd& values) {
+  std::vector<Extreme> maxima(6);
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    auto& most = maxima[static_cast<std::size_t>(std::max(dof_map(i, 1), 1) - 1)];
+    if (most.id == 0 || std::abs(values[i]) > std::abs(most.value) * (1 + 1e-9)) most = {values[i], dof_map(i, 0)};
+  }
+  return maxima;
+}
+
+std::string format_maxima(const records::StaticResult& result, const records::StaticSubcase& s) {
+  Table table{{"largest", "displacement", "at grid", "reaction", "at grid"}, {}};
+  const auto u = find_maxima(result.dof_map, s.displacement), r = find_maxima(result.dof_map, s.reaction);
+  for (std::size_t c = 0; c < 6; ++c)
+    table.rows.push_back({kComponents[c], fmt::format("{:.6e}", u[c].value), std::to_string(u[c].id),
+                          fmt::format("{:.6e}", r[c].value), std::to_string(r[c].id)});
+  return table.to_text();
+}
+
+std::string format_balance(const records::StaticSubcase& s) {
+  using Vector6d = Eigen::Matrix<double, 6, 1>;
+  std::vector<std::pair<std::string, Vector6d>> columns{
+      {"OLOAD", s.load_resultant}, {"SPCFORCE", s.reaction_resultant}, {"MPCFORCE", s.mpc_resultant}};
+  if (s.inertia.size() > 0) columns.emplace_back("INERTIA", s.inertia_resultant);
+  Vector6d sum = Vector6d::Zero();
+  for (const auto& [name, f] : columns) sum += f;
+  columns.emplace_back("sum", sum);
+  Table table{{""}, {}};
+  for (const auto& [name, f] : columns) table.headings.push_back(name);
+  for (int i = 0; i < 6; ++i) {
+    std::vector<std::string> row{std::string(i < 3 ? "F" : "M") + "xyz"[i % 3]};
+    for (const auto& [name, f] : columns) row.push_back(fmt::format("{:.6e}", f[i] + 0.0));
+    table.rows.push_back(std::move(row));
+  }
+  return "resultants about the origin\n" + table.to_text() +
+         fmt::format("\nepsilon {:.3e}, strain energy {:.8g}\n", s.epsilon, s.strain_energy);
+}
+
+std::string format_support(const records::StaticSubcase& s) {
+  if (s.support.empty()) return {};
+  Table table{{"SUPORT", "component", "strain energy", "acceleration"}, {}};
+  for (const auto& row : s.support)
+    table.rows.push_back({std::to_string(row.node), std::to_string(row.component),
+                          fmt::format("{:.3e}", row.strain_energy),
+                          s.inertia.size() > 0 ? fmt::format("{:.6e}", row.acceleration) : ""});
+  return table.to_text() + fmt::format("\nepsilon of SUPORT {:.3e}\n\n", s.support_epsilon);
+}
+
+/// Grids whose vector is not zero: six numbers each, a scalar point's in the first.
+std::string format_vector(const std::string& name, const Eigen::MatrixXi& dof_map, const VectorXd& values) {
+  Table table{{name, "x", "y", "z", "rx", "ry", "rz"}, {}};
+  for (Eigen::Index i = 0; i < values.size();) {
+    const Eigen::Index n = dof_map(i, 1) == 0 ? 1 : 6;
+    if (!values.segment(i, n).isZero(0)) {
+      std::vector<std::string> row{std::to_string(dof_map(i, 0))};
+      for (Eigen::Index c = 0; c < 6; ++c) row.push_back(c < n ? fmt::format("{:.6e}", values[i + c] + 0.0) : "");
+      table.rows.push_back(std::move(row));
+    }
+    i += n;
+  }
+  return table.to_text();
+}
+
+std::string format_elements(const records::ElementForces& block, bool full) {
+  if (full) {
+    Table table{{block.card}, {}};
+    table.headings.insert(table.headings.end(), block.components.begin(), block.components.end());
+    table.headings.push_back("strain energy");
+    for (Eigen::Index e = 0; e < block.force.rows(); ++e) {
+      std::vector<std::string> row{std::to_string(block.id[static_cast<std::size_t>(e)])};
+      for (Eigen::Index c = 0; c < block.force.cols(); ++c) row.push_back(fmt::format("{:.6e}", block.force(e, c)));
+      row.push_back(fmt::format("{:.6e}", block.strain_energy[e]));
+      table.rows.push_back(std::move(row));
+    }
+    return table.to_text();
+  }
+  // One row per component: those of several points (Nx@1, Nx@2, ...) share the row of their name.
+  Table table{{block.card, "smallest", "element", "largest", "element"}, {}};
+  const auto add = [&](const std::string& name, const Eigen::Ref<const Eigen::MatrixXd>& values) {
+    Eigen::Index low = 0, high = 0, column = 0;
+    const double least = values.minCoeff(&low, &column), most = values.maxCoeff(&high, &column);
+    table.rows.push_back({name, fmt::format("{:.6e}", least), std::to_string(block.id[static_cast<std::size_t>(low)]),
+                          fmt::format("{:.6e}", most), std::to_string(block.id[static_cast<std::size_t>(high)])});
+  };
+  std::vector<std::pair<std::string, std::vector<Eigen::Index>>> groups;
+  for (std::size_t c = 0; c < block.components.size(); ++c) {
+    const std::string name = block.components[c].substr(0, block.components[c].find('@'));
+    const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == name; });
+    auto& columns = same == groups.end() ? groups.emplace_back(name, std::vector<Eigen::Index>{}).second : same->second;
+    columns.push_back(static_cast<Eigen::Index>(c));
+  }
+  for (const auto& [name, columns] : groups) add(name, block.force(Eigen::all, columns));
+  add("strain energy", block.strain_energy);
+  return table.to_text();
+}
+
+nlohmann::json list_maxima(const std::vector<Extreme>& maxima) {
+  auto list = nlohmann::json::array();
+  for (std::size_t c = 0; c < maxima.size(); ++c)
+    list.push_back({{"component", kComponents[c]}, {"value", maxima[c].value}, {"grid", maxima[c].id}});
+  return list;
+}
+
+}  // namespace
+
+std::string format_static(const records::StaticResult& result, const records::StaticSubcase& s, bool full) {
+  std::string text = fmt::format("subcase {}{}: LOAD {}, SPC {}, MPC {}{}\n\n", s.id,
+                                 s.label.empty() ? "" : " (" + s.label + ")", s.load_set, s.spc_set, s.mpc_set,
+                                 s.temperature_set ? fmt::format(", TEMPERATURE {}", s.temperature_set) : "");
+  text += format_maxima(result, s) + "\n" + format_balance(s) + "\n" + format_support(s);
+  if (full) {
+    text += format_vector("displacement", result.dof_map, s.displacement) + "\n";
+    text += format_vector("load", result.dof_map, s.load) + "\n";
+    text += format_vector("reaction", result.dof_map, s.reaction) + "\n";
+  }
+  for (const auto& block : s.elements) text += format_elements(block, full) + "\n";
+  return text;
+}
+
+nlohmann::json to_json(const records::StaticResult& result, const records::StaticSubcase& s, bool full) {
+  nlohmann::json json{{"id", s.id},
+                      {"label", s.label},
+                      {"load_set", s.load_set},
+                      {"spc_set", s.spc_set},
+                      {"mpc_set", s.mpc_set},
+                      {"temperature_set", s.temperature_set},
+                      {"strain_energy", s.strain_energy},
+                      {"epsilon", s.epsilon},
+                      {"max_displacement", list_maxima(find_maxima(result.dof_map, s.displacement))},
+                      {"max_reaction", list_maxima(find_maxima(result.dof_map, s.reaction))},
+                      {"resultants",
+                       {{"load", to_json_list(s.load_resultant)},
+                        {"reaction", to_json_list(s.reaction_resultant)},
+                        {"mpc_force", to_json_list(s.mpc_resultant)}}}};
+  for (const auto& row : s.support)
+    json["support"].push_back({{"grid", row.node},
+                               {"component", row.component},
+                               {"strain_energy", row.strain_energy},
+                               {"acceleration", row.acceleration}});
+  if (!s.support.empty()) json["support_epsilon"] = s.support_epsilon;
+  if (s.inertia.size() > 0) json["resultants"]["inertia"] = to_json_list(s.inertia_resultant);
+  if (!full) return json;
+  if (s.inertia.size() > 0) json["inertia"] = to_json_list(s.inertia);
+  json["dof_map"] = nlohmann::json::array();
+  for (Eigen::Index i = 0; i < result.dof_map.rows(); ++i)
+    json["dof_map"].push_back({result.dof_map(i, 0), result.dof_map(i, 1)});
+  json["displacement"] = to_json_list(s.displacement);
+  json["load"] = to_json_list(s.load);
+  json["reaction"] = to_json_list(s.reaction);
+  json["mpc_force"] = to_json_list(s.mpc_force);
+  for (const auto& block : s.elements)
+    json["elements"][block.card] = {{"id", block.id},
+                                    {"components", block.components},
+                                    {"force", to_json(block.force)},
+                                    {"strain_energy", to_json_list(block.strain_energy)}};
+  return json;
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,34 @@
+#include <algorithm>
+
+#include "fe/loads/second_order.hpp"
+#include "fe/loads/wide_links.hpp"
+#include "fe/model/temperatures.hpp"
+
+namespace bough::fe {
+namespace {
+
+VectorXd gather_rows(const VectorXd& x, const std::vector<int>& rows) {
+  VectorXd result(static_cast<int>(rows.size()));
+  for (int i = 0; i < result.size(); ++i) result[i] = x[rows[i]];
+  return result;
+}
+
+}  // namespace
+
+PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const AppliedLoad& load, const VectorXd& u_g,
+                                      const InitialForces* initial) {
+  BOUGH_DEMAND(u_g.size() == model.num_gdofs());
+  const auto add = [&u_g, initial](const Element& e, Eigen::Ref<MatrixXd> K_G) {
+    if (e.num_internal_forces() == 0) return;
+    VectorXd force = VectorXd::Zero(e.num_internal_forces());
+    e.calc_internal_forces(gather_rows(u_g, e.gdofs()), force);
+    if (const auto* heated = initial ? initial->find(e) : nullptr) force += heated->force;
+    e.add_geometric_stiffness(force, 1, K_G);
+  };
+  auto forms = calc_second_order(model, make_loads(load), u_g);
+  // With the reference's own dofs.
+  std::erase_if(forms, [](const QuadraticForm& form) { return form.gdofs.size() > kMaxLinkDofs + 6; });
+  return assemble(model, set, add, forms);
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,116 @@
+#include "fe/statics/inertia_relief.hpp"
+
+#include <cstdio>
+
+#include "fe/linear/mechanism.hpp"
+#include "fe/model/sets.hpp"
+
+namespace bough::fe {
+namespace {
+
+std::string show(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+}  // namespace
+
+InertiaRelief read_inertia_relief(const records::Deck& deck, Diagnostics& diagnostics) {
+  // SOL 2 of the first Nastrans is static with inertia relief.
+  const bool is_old = deck.sol == "2" && (!deck.suport.empty() || !deck.suport1.empty());
+  const double value = get_real_param(deck, "INREL", is_old ? -1 : 0, diagnostics);
+  return value == -1 ? InertiaRelief::Supported : value == -2 ? InertiaRelief::Free : InertiaRelief::None;
+}
+
+std::vector<int> choose_suport(const Model& model, const records::Deck& deck, InertiaRelief relief,
+                               Diagnostics& diagnostics) {
+  if (relief == InertiaRelief::Free) {
+    if (!deck.suport.empty() || model.subcase().suport1 != 0)
+      diagnostics.warning("fe.suport-unused",
+                          deck.locate(deck.suport.empty() ? records::CardLocation{} : deck.suport[0].at),
+                          "PARAM,INREL,-2 needs no SUPORT and does not use it", "PARAM,INREL,-1 uses it");
+    return choose_determinate_support(model, 0);
+  }
+  auto fdofs = find_suport(model, deck, diagnostics);
+  if (relief == InertiaRelief::Supported && fdofs.empty()) {
+    const auto* param = deck.find_param("INREL");  // SOL 2 goes without
+    const bool has_cards = !deck.suport.empty() || model.subcase().suport1 != 0;
+    diagnostics.error(
+        "fe.missing-suport", deck.locate(param ? param->at : records::CardLocation{}),
+        std::string(param ? "PARAM,INREL,-1" : "inertia relief of SOL 2") + " needs the reference dofs of SUPORT, " +
+            (has_cards ? "and all that the deck names are without stiffness" : "the deck has none"),
+        has_cards ? "name dofs with stiffness, or write PARAM,INREL,-2" : "add SUPORT, or write PARAM,INREL,-2");
+  }
+  return fdofs;
+}
+
+Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<int> fdofs, InertiaRelief relief,
+                   Diagnostics& diagnostics) {
+  Suport suport;
+  suport.relief = relief;
+  suport.fdofs = std::move(fdofs);
+  const int num = static_cast<int>(suport.fdofs.size());
+  if (num == 0) return suport;
+  // u_r = 1, then K_ll u_l = -K_lr.
+  MatrixXd q = MatrixXd::Zero(model.num_fdofs(), num);
+  for (int j = 0; j < num; ++j) q(suport.fdofs[static_cast<std::size_t>(j)], j) = 1;
+  const MatrixXd unit = model.T() * q;
+  const MatrixXd K_unit = calc_stiffness_times(model, unit);
+  suport.motions = unit + solver.solve(-K_unit);
+  const MatrixXd K_motions = calc_stiffness_times(model, suport.motions);
+  const MatrixXd X = MatrixXd(model.T().transpose() * K_motions)(suport.fdofs, Eigen::all);
+  const MatrixXd K_rr = MatrixXd(model.T().transpose() * K_unit)(suport.fdofs, Eigen::all);
+  suport.epsilon = K_rr.norm() > 0 ? X.norm() / K_rr.norm() : 0;
+  suport.strain_energy = 0.5 * (suport.motions.transpose() * K_motions).diagonal();
+
+  // xᵀDx of the motions, by the elements.
+  VectorXd D = VectorXd::Zero(model.num_gdofs());
+  MatrixXd K_e;
+  for (const auto& element : model.elements()) {
+    const int n = element->num_dofs();
+    K_e.setZero(n, n);
+    element->add_stiffness(1, K_e);
+    for (int i = 0; i < n; ++i) D[element->gdofs()[static_cast<std::size_t>(i)]] += K_e(i, i);
+  }
+  for (int j = 0; j < num; ++j) {
+    const double diagonal = 0.5 * suport.motions.col(j).cwiseAbs2().dot(D);
+    if (suport.strain_energy[j] <= kMechanismEnergy * diagonal) continue;
+    const auto [grid, component] = model.describe_fdof(suport.fdofs[static_cast<std::size_t>(j)]);
+    const std::string what = "the motion of SUPORT " + name_suport(grid, component) + " strains the model: energy " +
+                             show(suport.strain_energy[j]) + " for a unit, epsilon " + show(suport.epsilon);
+    const std::string advice =
+        "SUPORT must hold a free body in a statically determinate way; look for SPC, grounded "
+        "springs or too many dofs";
+    if (relief != InertiaRelief::None) throw ComputationError("fe.suport-strained", {}, what, advice);
+    diagnostics.warning("fe.suport-strained", {}, what, advice);
+    break;
+  }
+  if (relief == InertiaRelief::None) return suport;
+  suport.M_motions = calc_mass_times(model, model.mass_kind(), suport.motions);
+  suport.mass = suport.motions.transpose() * suport.M_motions;
+  // Judged with a unit diagonal: translations and rotations side by side.
+  const VectorXd size = suport.mass.diagonal().cwiseMax(0).cwiseSqrt();
+  const bool has_mass = size.minCoeff() > 0;
+  Eigen::FullPivLU<MatrixXd> lu;
+  if (has_mass) {
+    lu.setThreshold(1e-12);
+    lu.compute(size.cwiseInverse().asDiagonal() * suport.mass * size.cwiseInverse().asDiagonal());
+  }
+  if (!has_mass || lu.rank() < num)
+    throw ComputationError("fe.inertia-massless", {},
+                           "a rigid motion of the model has no mass: loads along it cannot be balanced",
+                           "give the model mass and inertia in all directions, e.g. by density or CONM2");
+  return suport;
+}
+
+VectorXd calc_acceleration(const Suport& suport, const VectorXd& F_g) {
+  return suport.mass.ldlt().solve(suport.motions.transpose() * F_g);
+}
+
+void remove_rigid_part(const Suport& suport, VectorXd& u_g) {
+  const VectorXd rigid = suport.mass.ldlt().solve(suport.M_motions.transpose() * u_g);
+  u_g -= suport.motions * rigid;
+}
+
+}  // namespace bough::fe
