@@ -15,6 +15,12 @@ std::string join(const std::vector<std::string>& words) {
   return text;
 }
 
+/// The message lists the choices already.
+std::string suggest(const std::string& word, const std::vector<std::string>& choices) {
+  const auto near = find_nearest(word, choices);
+  return near.empty() ? "choose one of them" : "did you mean \"" + near + "\"?";
+}
+
 }  // namespace
 
 void Reduction::check_spec() {
@@ -27,12 +33,12 @@ void Reduction::check_spec() {
   const std::vector<std::string> masses = {"deck", "lumped", "consistent"};
   if (std::find(masses.begin(), masses.end(), spec_.mass) == masses.end())
     diagnostics_.error("reduce.bad-mass", where(), "mass is \"" + spec_.mass + "\", expected one of " + join(masses),
-                       "did you mean \"" + find_nearest(spec_.mass, masses) + "\"");
+                       suggest(spec_.mass, masses));
   const std::vector<std::string> methods = {"lumped", "consistent", "exact"};
   if (std::find(methods.begin(), methods.end(), spec_.integrals) == methods.end())
     diagnostics_.error("reduce.bad-integrals", where(),
                        "integrals is \"" + spec_.integrals + "\", expected one of " + join(methods),
-                       "did you mean \"" + find_nearest(spec_.integrals, methods) + "\"");
+                       suggest(spec_.integrals, methods));
   if (spec_.support.size() > 1)
     diagnostics_.error("reduce.bad-support", where(),
                        std::to_string(spec_.support.size()) + " support nodes, expected one that carries all six dofs",

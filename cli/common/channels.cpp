@@ -3,23 +3,14 @@
 #include <algorithm>
 
 #include "cli/common/console.hpp"
+#include "formats/records/signal_name.hpp"
 
 namespace bough::cli {
-
-std::vector<std::string> get_component_names(const std::string& path, int size) {
-  if (size == 1) return {""};
-  if (size == 3 && path.find("/eta") == std::string::npos && path.find("/hinges/") == std::string::npos)
-    return {"x", "y", "z"};
-  if (size == 4 && path.ends_with("/quaternion")) return {"w", "x", "y", "z"};
-  std::vector<std::string> names;
-  for (int i = 1; i <= size; ++i) names.push_back(std::to_string(i));
-  return names;
-}
 
 namespace {
 void add_columns(const std::string& path, const Eigen::MatrixXd& values, const std::string& component,
                  const std::string& file, std::vector<exports::CsvColumn>& columns) {
-  const auto names = get_component_names(path, static_cast<int>(values.cols()));
+  const auto names = records::get_component_names(path, static_cast<int>(values.cols()));
   bool found = false;
   for (int c = 0; c < values.cols(); ++c) {
     if (!component.empty() && component != names[c] && component != std::to_string(c + 1)) continue;

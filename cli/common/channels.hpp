@@ -8,9 +8,6 @@
 
 namespace bough::cli {
 
-/// Names of the components of a channel: x y z, quaternions w x y z, else 1 2 ...; empty for a scalar.
-std::vector<std::string> get_component_names(const std::string& path, int size);
-
 /// Columns for `choice`: a path, a folder ("/bodies/boom") or the name of a sensor, with an optional ":component".
 /// Column names read "sensors/tip_deflection:y". Throws InputError("cli.unknown-channel") with the nearest match.
 std::vector<exports::CsvColumn> choose_columns(const hdf5::ResultsFile& results, const std::string& file,

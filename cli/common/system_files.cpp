@@ -1,10 +1,12 @@
 #include "cli/common/system_files.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "cli/common/options.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/toml/specs.hpp"
+#include "solver/integrate/simulate.hpp"
 
 namespace bough::cli {
 
@@ -32,14 +34,26 @@ std::string name_reducible(const std::string& file) {
 
 }  // namespace
 
+std::vector<std::string> collect_sources(const std::string& path, const LoadedSystem& loaded) {
+  std::vector<std::string> files{path};
+  for (const auto& [name, file] : loaded.flex_path) files.push_back(file);
+  for (const auto& function : loaded.spec.functions) {
+    if (!function.file.empty() && std::find(files.begin(), files.end(), function.file) == files.end())
+      files.push_back(function.file);
+  }
+  return files;
+}
+
 LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics) {
   demand_file(path);
   auto spec = toml_files::read_system_spec(path, diagnostics);
+  const bool has_errors_of_text = diagnostics.num_errors() > 0;
   std::map<std::string, records::FlexBody> flex;
   std::map<std::string, std::string> flex_path;
-  for (const auto& body : spec.bodies) {
+  for (auto& body : spec.bodies) {
     if (body.file.empty() || flex.count(body.file)) continue;
     const auto file = resolve_beside(path, body.file);
+    body.is_unreadable = true;
     if (!fs::exists(file)) {
       diagnostics.error("cli.no-body-file", body.at.file.empty() ? SourceLocation{path} : body.at,
                         "body \"" + body.name + "\": there is no file " + shorten(file),
@@ -50,6 +64,7 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics) {
     try {
       flex[body.file] = hdf5::read_flex_body(file);
       flex_path[body.file] = file;
+      body.is_unreadable = false;
     } catch (const InputError& error) {
       for (auto item : error.items()) {
         item.advice += (item.advice.empty() ? "" : "; ") + std::string("named by body \"") + body.name + "\" at " +
@@ -58,8 +73,11 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics) {
       }
     }
   }
-  diagnostics.throw_if_errors();
-  auto system = solver::System::build(spec, flex, diagnostics);
+  // A file with errors of its own has no meaning to go on with; one without is taken as far as it goes, so that one
+  // round shows all errors of bodies, hinges, forces, sensors, events and the run.
+  if (has_errors_of_text) diagnostics.throw_if_errors();
+  auto system = solver::System::build_as_far(spec, flex, diagnostics);
+  solver::check_run(system, spec, diagnostics);
   diagnostics.throw_if_errors();
   return {std::move(spec), std::move(flex), std::move(flex_path), std::move(system)};
 }

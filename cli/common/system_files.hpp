@@ -2,6 +2,7 @@
 /// \file A system file with the bodies it names, ready to run; shared by check and run.
 #include <map>
 #include <string>
+#include <vector>
 
 #include "formats/records/system_spec.hpp"
 #include "solver/system/system.hpp"
@@ -15,7 +16,11 @@ struct LoadedSystem {
   solver::System system;
 };
 
-/// Reads and builds; throws InputError with every error found. Body files are relative to the system file's folder.
+/// Every file that the run reads: the system file first, bodies, tables.
+std::vector<std::string> collect_sources(const std::string& path, const LoadedSystem& loaded);
+
+/// Reads and builds; throws InputError with every error found, all that `run` would refuse among them. Body files are
+/// relative to the system file's folder.
 LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics);
 
 /// path itself when absolute or when `from_file` is empty, else relative to the folder of from_file.

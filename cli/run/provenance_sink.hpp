@@ -21,6 +21,7 @@ class ProvenanceSink final : public records::ResultSink {
   void write_sample(const Eigen::Ref<const Eigen::VectorXd>& sample) override { inner_.write_sample(sample); }
   void write_event(const records::EventRecord& event) override { inner_.write_event(event); }
   void write_checkpoint(const records::Checkpoint& checkpoint) override { inner_.write_checkpoint(checkpoint); }
+  void write_energy_error(double worst) override { inner_.write_energy_error(worst); }
   void end(bool completed, const std::string& reason) override { inner_.end(completed, reason); }
 
  private:

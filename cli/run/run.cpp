@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -39,9 +40,7 @@ std::string choose_output(const RunOptions& o) {
 }
 
 void demand_other_file(const std::string& output, const LoadedSystem& loaded, const std::string& system_file) {
-  std::vector<std::string> inputs{system_file};
-  for (const auto& [name, path] : loaded.flex_path) inputs.push_back(path);
-  for (const auto& input : inputs) {
+  for (const auto& input : collect_sources(system_file, loaded)) {
     std::error_code ignored;
     if (fs::equivalent(output, input, ignored)) {
       throw InputError("cli.output-is-input", {output}, "the results would overwrite the input file " + input,
@@ -68,6 +67,28 @@ class MessageFeed {
   const Diagnostics& diagnostics_;
   std::size_t printed_ = 0;
 };
+
+/// Throws InputError unless the results were begun with this system file and these bodies and tables, but for what may
+/// change. False, with a word about it, when the run is over.
+bool check_resume(const Console& console, const std::string& output, const std::string& file,
+                  const records::SystemSpec& spec, const std::vector<std::pair<std::string, std::string>>& sources) {
+  const auto inputs = hdf5::read_run_inputs(output);
+  Diagnostics diagnostics;
+  toml_files::check_same_system(inputs.system_text, spec.text, file, diagnostics);
+  for (const auto& [name, hash] : sources) {
+    if (name == sources.front().first) continue;  // compared above, key by key
+    const auto has_name = [&](const auto& s) { return s.first == name; };
+    const auto is_same = [&](const auto& s) { return s.first == name && s.second == hash; };
+    const auto& begun = inputs.source;
+    if (std::any_of(begun.begin(), begun.end(), has_name) && std::none_of(begun.begin(), begun.end(), is_same))
+      diagnostics.error("cli.changed-input", {name}, "the file is not the one that the run was started with",
+                        "put that one back, or start the run again");
+  }
+  diagnostics.throw_if_errors();
+  if (!inputs.completed || inputs.reason.empty()) return true;
+  console.print(fmt::format("{} is complete already: {}\n", output, inputs.reason));
+  return false;
+}
 
 class ProgressLine {
  public:
@@ -102,16 +123,20 @@ int report(const RunOptions& o, const Console& console, const solver::SimulateOu
                                       {"steps", last.num_steps},
                                       {"rejected", last.num_rejected},
                                       {"evaluations", last.num_evaluations},
-                                      {"energy_error", last.energy_error},
+                                      {"energy_error", outcome.energy_error},
                                       {"seconds", seconds}}
                            .dump(2) +
                        "\n");
   } else {
     console.print(fmt::format(
-        "{} at t = {:g} after {} steps ({} rejected, {} evaluations), energy error {:.1e}, {:.2f} s\nwritten: {}\n",
-        outcome.completed ? "completed" : "stopped", outcome.time, last.num_steps, last.num_rejected,
-        last.num_evaluations, last.energy_error, seconds, output));
+        "{} at t = {:g} after {} steps ({} rejected, {} evaluations), worst energy error {:.1e}, {:.2f} s\nwritten: "
+        "{}\n",
+        !outcome.completed       ? "stopped"
+        : outcome.reason.empty() ? "completed"
+                                 : outcome.reason.substr(0, outcome.reason.rfind(" at t =")),
+        outcome.time, last.num_steps, last.num_rejected, last.num_evaluations, outcome.energy_error, seconds, output));
   }
+  if (!outcome.energy_is_kept) return kComputationFailed;
   if (outcome.completed) return kSuccess;
   console.print_error("cli.interrupted", outcome.reason,
                       fmt::format("continue it with bough run {} -o {} --resume", o.file, output));
@@ -128,10 +153,12 @@ int run_run(const RunOptions& o) {
   const auto output = choose_output(o);
   demand_other_file(output, loaded, o.file);
 
+  const auto sources = calc_sources(collect_sources(o.file, loaded));
   solver::SimulateOptions options;
   std::unique_ptr<records::ResultSink> writer;
   if (o.resume) {
     demand_file(output);
+    if (!check_resume(console, output, o.file, loaded.spec, sources)) return kSuccess;
     options.resume = hdf5::read_checkpoint(output);
     const double end = loaded.spec.simulation.start + loaded.spec.simulation.duration;
     if (options.resume->time >= end * (1 - 1e-12)) {
@@ -143,9 +170,7 @@ int run_run(const RunOptions& o) {
     check_output(o, output);
     writer = hdf5::make_results_writer(output);
   }
-  std::vector<std::string> sources{o.file};
-  for (const auto& [name, path] : loaded.flex_path) sources.push_back(path);
-  ProvenanceSink sink(*writer, calc_sources(sources));
+  ProvenanceSink sink(*writer, sources);
   MessageFeed messages(console, diagnostics);
   messages.print_new();
   ProgressLine progress(console);
@@ -166,6 +191,12 @@ int run_run(const RunOptions& o) {
   }
   messages.print_new();
   console.end_progress();
+  if (!outcome.energy_is_kept) {
+    // The last item is the judgement, an error that the feed leaves to its failure.
+    for (const auto& item : diagnostics.items()) {
+      if (item.severity == Severity::Error) console.print(item);
+    }
+  }
   return report(o, console, outcome, output, progress.get_seconds());
 }
 
@@ -179,7 +210,9 @@ void add_run(CLI::App& app, Action& action) {
   add_common_options(*verb, *o, kOutput | kJson, "Results HDF5 file (default: the system file's name with .h5, here)");
   verb->footer(
       "Example:\n  bough run spinup.toml -o spinup.h5\n  bough run spinup.toml -o spinup.h5 --resume\n"
-      "SIGINT (Ctrl-C) and SIGTERM write a checkpoint and end the file cleanly, with exit code 3.");
+      "SIGINT (Ctrl-C) and SIGTERM write a checkpoint and end the file cleanly, with exit code 3. --resume takes the "
+      "system file of the run with another duration, other samples or limits; it refuses other changes. A worst "
+      "relative energy error above energy_error_limit ends with exit code 3 too, the results are written.");
   verb->callback([&action, o] { action = [o] { return run_run(*o); }; });
 }
 

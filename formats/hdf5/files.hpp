@@ -1,6 +1,7 @@
 #pragma once
 /// \file Bough's HDF5 files (docs/formats): flexible body, modes, results. Written beside and renamed: whole or not at
 /// all (results: readable while they grow, finished or not).
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -38,8 +39,17 @@ struct ResultsFile {
   std::string system_text;
   bool completed = false;
   std::string reason;
+  double energy_error = std::numeric_limits<double>::quiet_NaN();  ///< worst of the run, relative; NaN: not given
 };
 ResultsFile read_results(const std::string& path);
+/// What the run of a results file was started with, and how it ended.
+struct RunInputs {
+  std::string system_text;
+  std::vector<std::pair<std::string, std::string>> source;  ///< (file name, SHA-256)
+  bool completed = false;
+  std::string reason;
+};
+RunInputs read_run_inputs(const std::string& path);
 records::Checkpoint read_checkpoint(const std::string& path);
 
 /// One line per object: path, shape, type, description; for `info`.

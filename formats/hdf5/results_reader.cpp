@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <limits>
 #include <thread>
 
 #include "base/version.hpp"
@@ -19,7 +20,8 @@ void collect_datasets(FileReader& file, const std::string& group, int level, std
   if (level > 16) return;  // a group that contains itself
   for (const auto& name : file.get_children(group.empty() ? "/" : group)) {
     const std::string path = group + "/" + name;
-    if (path == "/checkpoint" || path == "/events" || path == "/system" || path == "/settings") continue;
+    if (path == "/checkpoint" || path == "/events" || path == "/system" || path == "/settings" || path == "/resumed")
+      continue;
     const Handle object(H5Oopen(file.get(), path.c_str(), H5P_DEFAULT), H5Oclose);
     const H5I_type_t type = object.is_valid() ? H5Iget_type(object.get()) : H5I_BADID;
     if (type == H5I_GROUP) collect_datasets(file, path, level + 1, paths);
@@ -44,12 +46,25 @@ std::string read_system_text(FileReader& file) {
   return result;
 }
 
+/// NaN where it is not given.
+double read_energy_error(FileReader& file) {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  if (!file.has("/energy")) return value;
+  const Handle group(H5Oopen(file.get(), "/energy", H5P_DEFAULT), H5Oclose);
+  if (H5Aexists(group.get(), kEnergyError) <= 0) return value;
+  const Handle attribute(H5Aopen(group.get(), kEnergyError, H5P_DEFAULT), H5Aclose);
+  const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+  if (H5Sget_simple_extent_npoints(space.get()) == 1) H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value);
+  return value;
+}
+
 ResultsFile read_once(const std::string& path) {
   FileReader file(path, kResultsFormat, kResultsFormatVersion);
   ResultsFile results;
   results.completed = file.read_integer_attribute("/", "completed", 0) != 0;
   results.reason = file.read_attribute("/", "reason");
   results.system_text = read_system_text(file);
+  results.energy_error = read_energy_error(file);
   // A run killed within a flush may have left a part of its last samples behind the ones that count.
   const long committed = file.read_integer_attribute("/", kNumSamples, -1);
   const NumberArray time = file.read_array("/time", {-1}, true, committed);
@@ -84,16 +99,33 @@ bool is_being_written(const std::string& path) {
   return !error && std::filesystem::file_time_type::clock::now() - written < std::chrono::seconds(2);
 }
 
+long read_count(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) return -1;
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+  std::int64_t count = -1;
+  if (H5Sget_simple_extent_npoints(space.get()) != 1 || H5Aread(attribute.get(), H5T_NATIVE_INT64, &count) < 0)
+    return -1;
+  return static_cast<long>(count);
+}
+
 bool read_checkpoint_from(FileReader& file, const std::string& group, records::Checkpoint& checkpoint) {
+  checkpoint = {};
   const std::string state = group + "/state";
   if (!file.has(group + "/time") || !file.has(state)) return false;
   checkpoint.time = file.read_number(group + "/time");
   checkpoint.state = file.read_vector(state, -1);
+  if (file.has(group + "/memory")) {
+    for (const auto& name : file.get_children(group + "/memory"))
+      checkpoint.memory.emplace_back(name, file.read_vector(group + "/memory/" + name, -1));
+  }
   const Handle dataset(H5Dopen2(file.get(), state.c_str(), H5P_DEFAULT), H5Dclose);
+  checkpoint.num_samples = read_count(dataset.get(), kNumSamples);
+  checkpoint.num_events = read_count(dataset.get(), kNumEvents);
   const Handle attribute(H5Aopen(dataset.get(), kChecksum, H5P_DEFAULT), H5Aclose);
   std::int64_t checksum = 0;
   return attribute.is_valid() && H5Aread(attribute.get(), H5T_NATIVE_INT64, &checksum) >= 0 &&
-         checksum == calc_checksum(checkpoint.time, checkpoint.state);
+         checksum == calc_checksum(checkpoint);
 }
 
 }  // namespace
@@ -109,6 +141,17 @@ ResultsFile read_results(const std::string& path) {
     }
   }
   return read_once(path);
+}
+
+RunInputs read_run_inputs(const std::string& path) {
+  FileReader file(path, kResultsFormat, kResultsFormatVersion);
+  RunInputs inputs;
+  inputs.system_text = read_system_text(file);
+  inputs.source = file.read_source();
+  inputs.completed = file.read_integer_attribute("/", "completed", 0) != 0;
+  inputs.reason = file.read_attribute("/", "reason");
+  file.throw_if_errors();
+  return inputs;
 }
 
 records::Checkpoint read_checkpoint(const std::string& path) {

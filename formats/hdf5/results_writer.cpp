@@ -79,8 +79,16 @@ class ResultsWriter final : public records::ResultSink {
     flush();
     // The old one is saved first: whenever a kill comes, one of the two is whole.
     if (last_checkpoint_) write_checkpoint_to("/checkpoint/previous", *last_checkpoint_);
-    write_checkpoint_to("/checkpoint", checkpoint);
     last_checkpoint_ = checkpoint;
+    last_checkpoint_->num_samples = static_cast<long>(num_written_);
+    last_checkpoint_->num_events = static_cast<long>(num_events_);
+    write_checkpoint_to("/checkpoint", *last_checkpoint_);
+  }
+
+  void write_energy_error(double worst) override {
+    BOUGH_DEMAND(file_.is_open());
+    QuietErrors quiet;
+    hdf5::write_energy_error(file_, worst);
   }
 
   void end(bool completed, const std::string& reason) override {
@@ -200,14 +208,21 @@ void ResultsWriter::write_checkpoint_to(const std::string& group, const records:
                 path + " cannot be written");
     return made;
   };
-  const Handle time = open_or_make(time_path, 1, "time of the checkpoint");
-  const Handle state =
-      open_or_make(state_path, static_cast<hsize_t>(checkpoint.state.size()), "state vector of the solver");
-  bool ok = H5Dwrite(time.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &checkpoint.time) >= 0;
-  ok = ok && (checkpoint.state.size() == 0 ||
-              H5Dwrite(state.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, checkpoint.state.data()) >= 0);
-  file_.check(ok, "the checkpoint cannot be written");
-  file_.write_integer(state.get(), kChecksum, calc_checksum(checkpoint.time, checkpoint.state), H5T_STD_I64LE);
+  const auto write_vector = [&](const std::string& path, const Eigen::VectorXd& values, const char* description) {
+    Handle dataset = open_or_make(path, static_cast<hsize_t>(values.size()), description);
+    const bool ok = values.size() == 0 ||
+                    H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
+    file_.check(ok, "the checkpoint cannot be written");
+    return dataset;
+  };
+  write_vector(time_path, Eigen::VectorXd::Constant(1, checkpoint.time), "time of the checkpoint");
+  const Handle state = write_vector(state_path, checkpoint.state, "state vector of the solver");
+  for (const auto& [name, values] : checkpoint.memory) {
+    if (values.size() > 0) write_vector(group + "/memory/" + name, values, "what the run carries on beside its state");
+  }
+  file_.write_integer(state.get(), kNumSamples, checkpoint.num_samples, H5T_STD_I64LE);
+  file_.write_integer(state.get(), kNumEvents, checkpoint.num_events, H5T_STD_I64LE);
+  file_.write_integer(state.get(), kChecksum, calc_checksum(checkpoint), H5T_STD_I64LE);
   file_.check(flush_file(file_.get()), "the checkpoint cannot be written");
 }
 
@@ -231,11 +246,15 @@ void ResultsWriter::open_existing(const records::ResultsHeader& header) {
   }
   const double time = *resume_time_;
   const double tolerance = 1e-12 * std::max(1.0, std::abs(time));
+  const records::Checkpoint checkpoint = read_checkpoint(file_.path());
   const Eigen::Index total = old.time.size();
   Eigen::Index keep = 0;
   while (keep < total && old.time[keep] <= time + tolerance) ++keep;
   const double last_step = total > 1 ? old.time[total - 1] - old.time[total - 2] : 0;
-  if (keep == 0 || (keep == total && old.time[total - 1] + 1.5 * last_step < time - tolerance)) {
+  // Where samples are written of a part of the run only, their count tells what belongs to the checkpoint.
+  const bool is_counted = checkpoint.time == time && checkpoint.num_samples >= 0;
+  if (is_counted ? checkpoint.num_samples > total
+                 : keep == 0 || (keep == total && old.time[total - 1] + 1.5 * last_step < time - tolerance)) {
     diagnostics.error("hdf5.resume", {file_.path()},
                       "the file ends at time " +
                           (total > 0 ? std::to_string(old.time[total - 1]) : std::string("(none)")) +
@@ -243,10 +262,12 @@ void ResultsWriter::open_existing(const records::ResultsHeader& header) {
                       "start the run again");
   }
   diagnostics.throw_if_errors();
-  skip_until_ = old.time[keep - 1] + tolerance;
-  const auto num_kept_events = std::count_if(old.events.begin(), old.events.end(),
-                                             [&](const records::EventRecord& e) { return e.time <= time + tolerance; });
-  const records::Checkpoint checkpoint = read_checkpoint(file_.path());
+  if (is_counted) keep = checkpoint.num_samples;
+  if (keep > 0) skip_until_ = old.time[keep - 1] + tolerance;
+  auto num_kept_events = std::count_if(old.events.begin(), old.events.end(),
+                                       [&](const records::EventRecord& e) { return e.time <= time + tolerance; });
+  if (is_counted && checkpoint.num_events >= 0 && checkpoint.num_events <= std::ssize(old.events))
+    num_kept_events = checkpoint.num_events;
 
   file_.open();
   last_checkpoint_ = checkpoint;
@@ -261,6 +282,7 @@ void ResultsWriter::open_existing(const records::ResultsHeader& header) {
   file_.cut(event_time_, num_events_);
   file_.cut(event_what_, num_events_);
   write_settings(file_, header);
+  write_resumed(file_, header, time);
 }
 
 }  // namespace

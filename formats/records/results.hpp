@@ -30,6 +30,18 @@ struct EventRecord {
 struct Checkpoint {
   double time = 0;
   Eigen::VectorXd state;
+  /// What else the run carries on, by name: energy so far, warnings given, the step it is in.
+  std::vector<std::pair<std::string, Eigen::VectorXd>> memory;
+  /// Of the file it was read from: samples and events before it; -1: not known.
+  long num_samples = -1, num_events = -1;
+
+  /// The part of that name, nullptr when it holds none.
+  const Eigen::VectorXd* find(const std::string& name) const {
+    for (const auto& [key, values] : memory) {
+      if (key == name) return &values;
+    }
+    return nullptr;
+  }
 };
 
 /// Implemented in formats/hdf5 and passed in by cli: results stream out without the solver knowing HDF5.
@@ -41,6 +53,8 @@ class ResultSink {
   virtual void write_sample(const Eigen::Ref<const Eigen::VectorXd>& sample) = 0;
   virtual void write_event(const EventRecord& event) = 0;
   virtual void write_checkpoint(const Checkpoint& checkpoint) = 0;
+  /// The worst relative energy error so far: with each checkpoint, and before the end.
+  virtual void write_energy_error(double) {}
   /// Flush and close; `completed` tells a whole run from one that stopped early.
   virtual void end(bool completed, const std::string& reason) = 0;
 };

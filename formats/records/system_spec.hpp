@@ -4,6 +4,7 @@
 /// Names refer to names; "ground" is the inertial body. A node of a rigid body is declared under it; a node of a
 /// flexible body is an output node id of its file; node 0 is the body origin Bo. Angles are in radians here.
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -21,7 +22,8 @@ struct RigidNode {
 
 struct BodyRecord {
   std::string name;
-  std::string file;  ///< flexible-body HDF5; empty = rigid
+  std::string file;            ///< flexible-body HDF5; empty = rigid
+  bool is_unreadable = false;  ///< file: could not be read, which has been said
   double mass = 0;
   Vector3d cg = Vector3d::Zero();       ///< in B
   Matrix3d inertia = Matrix3d::Zero();  ///< about the centre of mass (rigid bodies), in B
@@ -58,6 +60,7 @@ struct FunctionRecord {
   std::string type;                      ///< constant step ramp pulse sine table spinup
   std::map<std::string, double> values;  ///< parameters by key, after defaults
   std::vector<double> x, y;              ///< table
+  std::string file;                      ///< table: where x and y come from; empty: from the system file
   std::string interpolation = "linear";  ///< table: linear or cubic
   SourceLocation at;
 };
@@ -95,20 +98,43 @@ struct SensorRecord {
   std::string body;
   int node = 0;
   std::string frame = "inertial";  ///< "inertial", "body" (the node's own body) or another body's name: components
-  std::string relative_to;         ///< position, velocity: measured from this body's origin; empty = inertial origin
+  std::string relative_to;         ///< all but deflection and rotation: this body's motion is taken off; empty = none
+  bool from_turning = true;        ///< relative_to: as an observer who turns with that body sees it
   std::string hinge;               ///< hinge sensors
   int coordinate = 0;              ///< hinge sensors: 1-based; 0 = all
   SourceLocation at;
 };
 
+enum class EventDirection { Both, Rising, Falling };
+enum class EventAction { Log, Stop };
+
+/// [[event]]: at a time, or where a signal crosses a value.
+struct TriggerRecord {
+  std::string name;
+  std::optional<double> time;
+  std::string signal;  ///< "sensor:component" or "/channel:component"; empty with time
+  double value = 0;
+  EventDirection direction = EventDirection::Both;
+  double tolerance = 0;  ///< of the time found; 0: 1e-12 of the duration
+  EventAction action = EventAction::Log;
+  SourceLocation at;
+};
+
 struct SimulationRecord {
   double start = 0, duration = 0;
-  double output_step = 0;            ///< 0: duration / 1000
-  std::string integrator = "adams";  ///< adams, bdf (CVODE), rk (adaptive, ARKODE), rk4 (fixed step)
+  double output_step = 0;                                         ///< 0: duration / 1000
+  double output_from = -std::numeric_limits<double>::infinity();  ///< samples before it are not written
+  double output_until = std::numeric_limits<double>::infinity();  ///< nor those after it
+  int output_every = 1;                                           ///< of the others one in so many
+  std::vector<std::string> record;   ///< groups of channels: "bodies", "hinges/root", ...; empty = all
+  std::string integrator = "adams";  ///< adams, bdf (CVODE), rk (adaptive, ARKODE), rk4 (fixed step), auto
   double step = 0;                   ///< rk4; also the largest step of the others when > 0
+  int rk_order = 8;                  ///< rk: 5 or 8
   double relative_tolerance = 1e-8, absolute_tolerance = 1e-10;
+  double absolute_tolerance_modes = 0;  ///< of η and η̇; 0: as the others
   Vector3d gravity = Vector3d::Zero();  ///< inertial
-  double divergence_limit = 1e6;        ///< stop with a clear message when |state| passes it
+  double divergence_limit = 1e6;        ///< of a deflection to the body's size, of √(kinetic energy / energy put in)
+  double energy_error_limit = 1e-2;     ///< relative; a run past it is told to have failed
   SourceLocation at;
 };
 
@@ -120,6 +146,7 @@ struct SystemSpec {
   std::vector<FunctionRecord> functions;
   std::vector<ForceRecord> forces;
   std::vector<SensorRecord> sensors;
+  std::vector<TriggerRecord> events;
   SimulationRecord simulation;
 };
 

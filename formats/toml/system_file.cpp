@@ -110,8 +110,8 @@ records::FunctionRecord read_function(const Fields& fields, const Value& table, 
     if (!fields.get_string("file").empty()) {
       function.x.clear();
       function.y.clear();
-      read_two_columns(resolve_path(path, fields.get_string("file")), fields.locate("file"), function.x, function.y,
-                       diagnostics);
+      function.file = resolve_path(path, fields.get_string("file"));
+      read_two_columns(function.file, fields.locate("file"), function.x, function.y, diagnostics);
     }
     return function;
   }
@@ -181,14 +181,35 @@ records::SensorRecord read_sensor(const Fields& table, Diagnostics& diagnostics)
     diagnostics.error("toml.missing-key", sensor.at, "missing key '" + std::string(needed) + "' " + because, "add it");
   }
   if (is_hinge_sensor) {
-    refuse_keys(table, {"body", "node", "frame", "relative_to"}, because, diagnostics);
+    refuse_keys(table, {"body", "node", "frame", "relative_to", "observer"}, because, diagnostics);
   } else {
     refuse_keys(table, {"hinge", "coordinate"}, because, diagnostics);
-    if (sensor.type != SensorType::Position && sensor.type != SensorType::Velocity) {
-      refuse_keys(table, {"relative_to"}, because, diagnostics);
-    }
+    if (is_elastic) refuse_keys(table, {"relative_to", "observer"}, because, diagnostics);
+    if (!is_elastic && !table.has("relative_to"))
+      refuse_keys(table, {"observer"}, because + ", which has no relative_to", diagnostics);
   }
+  sensor.from_turning = table.get_string("observer", "turning") != "fixed";
   return sensor;
+}
+
+records::TriggerRecord read_event(const Fields& table, Diagnostics& diagnostics) {
+  records::TriggerRecord event;
+  event.at = table.locate();
+  event.name = table.get_string("name");
+  if (table.has("time")) {
+    event.time = table.get_number("time", 0);
+    refuse_keys(table, {"value", "direction", "tolerance"}, "in event '" + event.name + "', which is at a time",
+                diagnostics);
+  }
+  event.signal = table.get_string("signal");
+  event.value = table.get_number("value", 0);
+  event.tolerance = table.get_number("tolerance", 0);
+  const std::string direction = table.get_string("direction", "both");
+  event.direction = direction == "rising"    ? records::EventDirection::Rising
+                    : direction == "falling" ? records::EventDirection::Falling
+                                             : records::EventDirection::Both;
+  event.action = table.get_string("action", "log") == "stop" ? records::EventAction::Stop : records::EventAction::Log;
+  return event;
 }
 
 records::SimulationRecord read_simulation(const Fields& table, Diagnostics& diagnostics) {
@@ -197,10 +218,17 @@ records::SimulationRecord read_simulation(const Fields& table, Diagnostics& diag
   simulation.start = table.get_number("start", simulation.start);
   simulation.duration = table.get_number("duration", simulation.duration);
   simulation.output_step = table.get_number("output_step", simulation.output_step);
+  simulation.output_from = table.get_number("output_from", simulation.output_from);
+  simulation.output_until = table.get_number("output_until", simulation.output_until);
+  simulation.output_every = table.get_int("output_every", simulation.output_every);
+  simulation.record = table.get_strings("record");
   simulation.integrator = table.get_string("integrator", simulation.integrator);
+  simulation.rk_order = table.get_int("rk_order", simulation.rk_order);
   simulation.step = table.get_number("step", simulation.step);
   simulation.relative_tolerance = table.get_number("relative_tolerance", simulation.relative_tolerance);
   simulation.absolute_tolerance = table.get_number("absolute_tolerance", simulation.absolute_tolerance);
+  simulation.absolute_tolerance_modes = table.get_number("absolute_tolerance_modes", 0);
+  simulation.energy_error_limit = table.get_number("energy_error_limit", simulation.energy_error_limit);
   simulation.gravity = table.get_vector("gravity", simulation.gravity);
   simulation.divergence_limit = table.get_number("divergence_limit", simulation.divergence_limit);
   if (simulation.integrator == "rk4" && !table.has("step")) {
@@ -230,6 +258,7 @@ records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagn
   }
   for (const Fields& table : fields.get_tables("force")) spec.forces.push_back(read_force(table, diagnostics));
   for (const Fields& table : fields.get_tables("sensor")) spec.sensors.push_back(read_sensor(table, diagnostics));
+  for (const Fields& table : fields.get_tables("event")) spec.events.push_back(read_event(table, diagnostics));
   spec.simulation = read_simulation(fields.get_table("simulation"), diagnostics);
   check_names(spec, diagnostics);
   return spec;

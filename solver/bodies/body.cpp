@@ -117,6 +117,16 @@ void Body::add_flexible_nodes(const records::FlexBody& flex) {
   nodes_.emplace_back();
   nodes_[0].is_material = !flex.is_free_free || n_ == 0;
   nodes_[0].phi = nodes_[0].psi = Matrix3Xd::Zero(3, n_);
+  // A mode moves the mass by √(M_jj / m) in the mean; rotations are that over the body's size.
+  const VectorXd mean = (M_.diagonal().cwiseMax(0) / std::max(mass_, 1e-300)).cwiseSqrt();
+  const double size = std::sqrt(J0_.head<3>().sum() / std::max(mass_, 1e-300));
+  const auto is_rounding = [&](const Matrix3Xd& shape, double arm) {
+    if (!(mass_ > 0)) return false;
+    for (int j = 0; j < n_; ++j) {
+      if (arm * shape.col(j).cwiseAbs().maxCoeff() > 1e-12 * mean[j]) return false;
+    }
+    return true;
+  };
   for (int k = 0; k < flex.num_nodes(); ++k) {
     Node node;
     node.id = flex.node_id[static_cast<size_t>(k)];
@@ -124,7 +134,10 @@ void Body::add_flexible_nodes(const records::FlexBody& flex) {
     const MatrixXd& phi = flex.phi[static_cast<size_t>(k)];
     node.phi = phi.topLeftCorner(3, n_);
     node.psi = phi.block(3, 0, 3, n_);
-    node.moves = n_ > 0 && phi.leftCols(n_).cwiseAbs().maxCoeff() > 0;
+    // Rounding of another program's shapes is no motion.
+    if (is_rounding(node.phi, 1)) node.phi.setZero();
+    if (is_rounding(node.psi, size)) node.psi.setZero();
+    node.moves = !node.phi.isZero(0) || !node.psi.isZero(0);
     const auto stack_locators = [&](int first_direction, RowMatrixXd& K2) {
       int locator[3];
       for (int a = 0; a < 3; ++a) locator[a] = flex.find_locator(node.id, first_direction + a);

@@ -1,6 +1,7 @@
 #include "solver/forces/table.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace bough::solver {
 namespace {
@@ -11,7 +12,43 @@ size_t find_interval(const std::vector<double>& x, double t) {
   return static_cast<size_t>(std::clamp<std::ptrdiff_t>(it - x.begin() - 1, 0, std::ssize(x) - 2));
 }
 
+double calc_range(const std::vector<double>& y) {
+  const auto [least, most] = std::minmax_element(y.begin(), y.end());
+  return *most - *least;
+}
+
+/// A point wherever the table has changed by a quarter of its range since the last one, and the point before the first
+/// change of each such stretch.
+std::vector<double> find_landmarks(const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<double> found;
+  const double least = 0.25 * calc_range(y);
+  if (!(least > 0)) return found;
+  double last = y.front();
+  for (size_t i = 1; i < x.size(); ++i) {
+    if (std::abs(y[i] - last) < least) continue;
+    if (found.empty() || found.back() < x[i - 1]) found.push_back(x[i - 1]);
+    found.push_back(x[i]);
+    last = y[i];
+  }
+  return found;
+}
+
 }  // namespace
+
+std::vector<double> LinearTable::corners() const {
+  std::vector<double> found = {x_.front()};
+  const double least = 0.01 * calc_range(y_);
+  for (size_t i = 1; i + 1 < x_.size(); ++i) {
+    const double before = x_[i] - x_[i - 1], after = x_[i + 1] - x_[i];
+    const double bend = (y_[i + 1] - y_[i]) / after - (y_[i] - y_[i - 1]) / before;
+    if (std::abs(bend) * std::min(before, after) > least) found.push_back(x_[i]);
+  }
+  found.push_back(x_.back());
+  return found;
+}
+
+std::vector<double> LinearTable::landmarks() const { return find_landmarks(x_, y_); }
+std::vector<double> CubicTable::landmarks() const { return find_landmarks(x_, y_); }
 
 TimeFunction::Value LinearTable::calc(double t) const {
   if (t < x_.front()) return {y_.front(), 0, 0};

@@ -13,6 +13,9 @@ class LinearTable final : public TimeFunction {
   Value calc(double t) const override;
   /// Every point: the slope jumps there.
   std::vector<double> breakpoints() const override { return x_; }
+  /// Points that stand off the line of their neighbours by more than 1 % of the table's range, and the ends.
+  std::vector<double> corners() const override;
+  std::vector<double> landmarks() const override;
 
  private:
   std::vector<double> x_, y_;
@@ -26,6 +29,7 @@ class CubicTable final : public TimeFunction {
   Value calc(double t) const override;
   /// The two ends: the slope jumps there. Inside only the third derivative does, which a restart would not help.
   std::vector<double> breakpoints() const override { return {x_.front(), x_.back()}; }
+  std::vector<double> landmarks() const override;
 
  private:
   std::vector<double> x_, y_;

@@ -3,6 +3,8 @@
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
+#include <algorithm>
+
 #include "solver/integrate/sundials.hpp"
 
 namespace bough::solver {
@@ -29,27 +31,40 @@ class CvodeStepper final : public Stepper {
 
   void restart(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double latest) override {
     y_.values() = y;
-    t_ = t;
-    t_stop_ = t_stop;
-    ode_.set_latest(latest);
+    t_ = last_ = t;
     if (!cvode_) {
       create(t);
     } else {
       before_ = statistics();  // CVodeReInit sets the counters to zero
       BOUGH_DEMAND(CVodeReInit(cvode_, t, y_) == CV_SUCCESS);
     }
+    set_stop(t_stop, latest);
+  }
+
+  void set_stop(double t_stop, double latest) override {
+    t_stop_ = t_stop;
+    ode_.set_latest(latest);
     BOUGH_DEMAND(CVodeSetStopTime(cvode_, t_stop) == CV_SUCCESS);
-    BOUGH_DEMAND(CVodeSetMinStep(cvode_, detail::kSmallestStep * (t_stop - t)) == CV_SUCCESS);
+    // CVODE refuses a smallest step above the largest one.
+    double smallest = detail::kSmallestStep * (t_stop - t_);
+    if (options_.step > 0) smallest = std::min(smallest, 1e-3 * options_.step);
+    BOUGH_DEMAND(CVodeSetMinStep(cvode_, smallest) == CV_SUCCESS);
   }
 
   void step(double) override {
-    ode_.clear();
+    // CVODE changes its order only when it changes its step: at the largest step it would stay at the order it came
+    // with, which is 1 where the first step is the largest already. A limit that trembles lets it rise.
+    if (options_.step > 0) CVodeSetMaxStep(cvode_, options_.step * (trembles_ ? 1 : 1 - 1e-6));
+    trembles_ = !trembles_;
+    last_ = t_;
+    ode_.begin_step();
     const int flag = CVode(cvode_, t_stop_, y_, &t_, CV_ONE_STEP);
     if (flag >= 0) return;
     detail::throw_failure(ode_, t_, "CVODE", CVodeGetReturnFlagName(flag));
   }
 
   double time() const override { return t_; }
+  double last_time() const override { return last_; }
   Eigen::Map<const VectorXd> state() const override {
     const auto y = y_.values();
     return {y.data(), y.size()};
@@ -106,7 +121,8 @@ class CvodeStepper final : public Stepper {
   SUNNonlinearSolver nonlinear_ = nullptr;
   SUNLinearSolver linear_ = nullptr;
   SUNMatrix matrix_ = nullptr;
-  double t_ = 0, t_stop_ = 0;
+  double t_ = 0, last_ = 0, t_stop_ = 0;
+  bool trembles_ = false;
   StepStatistics before_;
 };
 

@@ -1,6 +1,5 @@
 #pragma once
-/// \file Watches whether a flexible body leaves the range of linear modes (the habit of Adams/Flex).
-#include <optional>
+/// \file Watches whether flexible bodies leave the range in which their modes mean something.
 #include <string>
 #include <vector>
 
@@ -8,27 +7,44 @@
 
 namespace bough::solver {
 
-/// Share of a body's size (largest distance of a node from Bo) that a deflection may reach before it is reported.
+/// Share of a body's size that a deflection may reach before it is reported (the habit of Adams/Flex).
 inline constexpr double kLinearLimit = 0.10;
+/// Share of the first frequency that the spin of a body without stiffening may reach: at half, the centrifugal terms
+/// soften the first mode by a quarter of its stiffness (docs/theory/when-stiffening-matters.md).
+inline constexpr double kSpinLimit = 0.5;
+
+/// Size of a body: the longer of the diagonal of the box around its nodes and that of the box of its mass and inertia.
+/// The body origin counts where the body hangs by it.
+double calc_body_size(const System& system, int body);
+
+/// First frequency of a body alone in its frame, rad per unit of time; 0 when it has none.
+double calc_first_frequency(const System& system, int body);
 
 class LinearLimit {
  public:
   explicit LinearLimit(const System& system);
 
+  /// What was passed at t for the first time, as one message each. No allocation while nothing is.
   struct Crossing {
-    std::string body;
-    int node = 0;  ///< id
-    double deflection = 0, size = 0;
+    const char* id;
+    std::string what, advice;
   };
-  /// The next body that passes the limit for the first time at q; empty when none does. Linear modes only. No
-  /// allocation while nothing crosses. O(nodes · modes).
-  std::optional<Crossing> find_crossing(const Eigen::Ref<const VectorXd>& q);
+  std::vector<Crossing> find_crossings(double t, const SystemData& data, const Eigen::Ref<const VectorXd>& q);
+
+  /// Size a mode coordinate times its shape may reach on every node: |η_j| to be judged against. num_q, infinite for
+  /// hinge coordinates. O(nodes · modes).
+  VectorXd calc_reach() const;
+
+  /// What was reported, for a checkpoint.
+  int num_watched() const { return static_cast<int>(watched_.size()); }
+  void get_memory(Eigen::Ref<VectorXd> memory) const;  ///< 2 num_watched
+  void set_memory(const VectorXd& memory);
 
  private:
   struct Watched {
     int body = 0;
-    double size = 0;
-    bool reported = false;
+    double size = 0, frequency = 0;  ///< frequency: 0 where stiffening is on
+    bool deflection_reported = false, spin_reported = false;
   };
   const System& system_;
   std::vector<Watched> watched_;

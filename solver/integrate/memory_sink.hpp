@@ -13,6 +13,7 @@ class MemorySink final : public records::ResultSink {
   void write_sample(const Eigen::Ref<const Eigen::VectorXd>& sample) override;
   void write_event(const records::EventRecord& event) override { events_.push_back(event); }
   void write_checkpoint(const records::Checkpoint& checkpoint) override { checkpoints_.push_back(checkpoint); }
+  void write_energy_error(double worst) override { energy_error_ = worst; }
   void end(bool completed, const std::string& reason) override;
 
   const records::ResultsHeader& header() const { return header_; }
@@ -26,6 +27,7 @@ class MemorySink final : public records::ResultSink {
   bool ended() const { return ended_; }
   bool completed() const { return completed_; }
   const std::string& reason() const { return reason_; }
+  double energy_error() const { return energy_error_; }  ///< the worst, as last written
 
  private:
   records::ResultsHeader header_;
@@ -33,6 +35,7 @@ class MemorySink final : public records::ResultSink {
   std::vector<records::EventRecord> events_;
   std::vector<records::Checkpoint> checkpoints_;
   bool ended_ = false, completed_ = false;
+  double energy_error_ = 0;
   std::string reason_;
 };
 

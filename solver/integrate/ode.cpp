@@ -6,11 +6,14 @@ namespace bough::solver {
 
 int GuardedOde::calc(double t, const double* y, double* y_dot) noexcept {
   ++num_evaluations_;
+  pending_ = nullptr;
+  const double time = std::min(t, latest_);
   try {
     Eigen::Map<VectorXd> result(y_dot, ode_.size());
-    ode_.calc_derivative(std::min(t, latest_), Eigen::Map<const VectorXd>(y, ode_.size()), result);
+    ode_.calc_derivative(time, Eigen::Map<const VectorXd>(y, ode_.size()), result);
     if (result.allFinite()) return 0;
     non_finite_ = true;
+    bad_time_ = time;
   } catch (...) {
     pending_ = std::current_exception();
   }

@@ -28,15 +28,18 @@ class GuardedOde {
   void set_latest(double latest) { latest_ = latest; }
   /// 0: fine; 1: the derivative is not finite or the equations threw (kept for throw_pending).
   int calc(double t, const double* y, double* y_dot) noexcept;
-  void clear() {
+  void begin_step() {
     pending_ = nullptr;
     non_finite_ = false;
   }
-  /// Rethrows what the equations threw since clear(), if anything.
+  /// Rethrows what the equations threw in their last evaluation, if anything: what a trial step threw before one that
+  /// could be evaluated is no cause of anything.
   void throw_pending() {
     if (pending_) std::rethrow_exception(std::exchange(pending_, nullptr));
   }
+  /// Since begin_step, last at bad_time().
   bool was_non_finite() const { return non_finite_; }
+  double bad_time() const { return bad_time_; }
   long num_evaluations() const { return num_evaluations_; }
 
  private:
@@ -44,6 +47,7 @@ class GuardedOde {
   double latest_ = std::numeric_limits<double>::infinity();
   std::exception_ptr pending_;
   bool non_finite_ = false;
+  double bad_time_ = 0;
   long num_evaluations_ = 0;
 };
 

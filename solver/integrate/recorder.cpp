@@ -1,5 +1,7 @@
 #include "solver/integrate/recorder.hpp"
 
+#include <algorithm>
+
 namespace bough::solver {
 
 Recorder::Recorder(const System& system, Sensors sensors) : system_(system), sensors_(std::move(sensors)) {
@@ -40,6 +42,7 @@ Recorder::Recorder(const System& system, Sensors sensors) : system_(system), sen
   add_channel("/energy/strain", 1, "strain energy of the modes and the hinge springs", "F L");
   add_channel("/energy/potential", 1, "potential energy of gravity", "F L");
   add_channel("/energy/work", 1, "work done since the start by applied forces, dampers and prescribed motions", "F L");
+  add_channel("/energy/dissipated", 1, "what dampers took since the start; part of work with its minus", "F L");
   add_channel("/momentum/linear", 3, "linear momentum, in the inertial frame", "M L/T");
   add_channel("/momentum/angular", 3, "angular momentum about the inertial origin, in the inertial frame", "M L^2/T");
   add_channel("/system_mass/mass", 1, "mass of the system", "M");
@@ -49,6 +52,66 @@ Recorder::Recorder(const System& system, Sensors sensors) : system_(system), sen
   int size = 0;
   for (const auto& channel : channels_) size += channel.size;
   sample_.setZero(size);
+  quaternions = VectorXd::Zero(4 * system.num_bodies());
+  quaternion_at_.resize(static_cast<size_t>(system.num_bodies()));
+  chosen_ = channels_;
+  ranges_ = {{0, size}};
+  kept_ = sample_;
+}
+
+int Recorder::find(const std::string& path, int component) const {
+  int first = 0;
+  for (const auto& channel : channels_) {
+    if (channel.path == path) return component >= 0 && component < channel.size ? first + component : -1;
+    first += channel.size;
+  }
+  return -1;
+}
+
+void Recorder::choose(const std::vector<std::string>& groups, const SourceLocation& where, Diagnostics& diagnostics) {
+  if (groups.empty()) return;
+  const auto lies_in = [](const std::string& path, const std::string& group) {
+    const std::string whole = (group.starts_with('/') ? "" : "/") + group;
+    return path == whole || path.starts_with(whole + "/");
+  };
+  std::vector<std::string> known;
+  for (const auto& channel : channels_) {
+    for (auto end = channel.path.find('/', 1); end != std::string::npos; end = channel.path.find('/', end + 1))
+      known.push_back(channel.path.substr(1, end - 1));
+    known.push_back(channel.path.substr(1));
+  }
+  for (const auto& group : groups) {
+    const auto is_in = [&](const auto& channel) { return lies_in(channel.path, group); };
+    if (std::any_of(channels_.begin(), channels_.end(), is_in)) continue;
+    const std::string near = find_nearest(group, known);
+    diagnostics.error("run.unknown-group", where, "record names '" + group + "', which the results do not hold",
+                      near.empty() ? "name bodies, hinges, sensors, energy, momentum or a part of them, as bodies/NAME"
+                                   : "did you mean '" + near + "'?");
+  }
+  chosen_.clear();
+  ranges_.clear();
+  int first = 0, size = 0;
+  for (const auto& channel : channels_) {
+    const auto holds = [&](const std::string& group) { return lies_in(channel.path, group); };
+    if (channel.path == "/time" || std::any_of(groups.begin(), groups.end(), holds)) {
+      chosen_.push_back(channel);
+      ranges_.emplace_back(first, channel.size);
+      size += channel.size;
+    }
+    first += channel.size;
+  }
+  kept_ = VectorXd::Zero(size);
+}
+
+const VectorXd& Recorder::keep_sample() {
+  int at = 0;
+  for (const auto& [first, size] : ranges_) {
+    kept_.segment(at, size) = sample_.segment(first, size);
+    at += size;
+  }
+  for (int b = 0; b < system_.num_bodies(); ++b)
+    quaternions.segment<4>(4 * b) = sample_.segment<4>(quaternion_at_[static_cast<size_t>(b)]);
+  return kept_;
 }
 
 void Recorder::add_channel(std::string path, int size, std::string description, std::string dims) {
@@ -56,7 +119,7 @@ void Recorder::add_channel(std::string path, int size, std::string description, 
 }
 
 const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Eigen::Ref<const VectorXd>& q,
-                                      const Eigen::Ref<const VectorXd>& u, double work) {
+                                      const Eigen::Ref<const VectorXd>& u, double work, double dissipated) {
   int at = 0;
   const auto put = [&](const auto& value) {
     sample_.segment(at, value.size()) = value;
@@ -68,7 +131,10 @@ const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Ei
     Eigen::Quaterniond q_WB(s.R_WB);
     q_WB.normalize();
     put(s.p_WBo);
-    put(Eigen::Vector4d(q_WB.w(), q_WB.x(), q_WB.y(), q_WB.z()));
+    Eigen::Vector4d wxyz(q_WB.w(), q_WB.x(), q_WB.y(), q_WB.z());
+    if (wxyz.dot(quaternions.segment<4>(4 * b)) < 0) wxyz = -wxyz;
+    quaternion_at_[static_cast<size_t>(b)] = at;
+    put(wxyz);
     put(Vector3d(s.R_WB * s.v_B));
     put(s.w_B);
     put(q.segment(system_.eta_offset(b), system_.num_modes(b)));
@@ -89,6 +155,7 @@ const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Ei
   at += sensors_.size();
   energies_ = calc_energies(system_, data);
   put(Eigen::Vector4d(energies_.kinetic, energies_.strain, energies_.potential, work));
+  sample_[at++] = dissipated;
   Vector3d linear, angular;
   calc_momentum(system_, data, linear, angular);
   put(linear);

@@ -13,20 +13,36 @@ class Recorder {
   /// sensors; energy; momentum; system_mass.
   Recorder(const System& system, Sensors sensors);
 
+  /// Of calc_sample.
   const std::vector<records::Channel>& channels() const { return channels_; }
-  /// The sample at t from `data` after calc_accelerations; q, u as given to calc_kinematics. No allocation.
+  /// Index in the sample of component `component` (from 0) of the channel, -1 when there is none such.
+  int find(const std::string& path, int component) const;
+  /// The sample at t from `data` after calc_accelerations; q, u as given to calc_kinematics. A quaternion has the sign
+  /// that is nearer to the one kept last. No allocation.
   const VectorXd& calc_sample(double t, const SystemData& data, const Eigen::Ref<const VectorXd>& q,
-                              const Eigen::Ref<const VectorXd>& u, double work);
+                              const Eigen::Ref<const VectorXd>& u, double work, double dissipated);
   /// Of the last sample.
   const Energies& energies() const { return energies_; }
+
+  /// Leaves of calc_sample what `groups` name ("bodies", "hinges/root", ...; empty: all), and /time, for the file.
+  /// Reports "run.unknown-group".
+  void choose(const std::vector<std::string>& groups, const SourceLocation& where, Diagnostics& diagnostics);
+  const std::vector<records::Channel>& chosen_channels() const { return chosen_; }
+  /// What is chosen of the last sample, whose quaternions are kept. No allocation.
+  const VectorXd& keep_sample();
+
+  /// The quaternions kept, for a checkpoint: 4 per body, zero before the first.
+  VectorXd quaternions;
 
  private:
   void add_channel(std::string path, int size, std::string description, std::string dims);
 
   const System& system_;
   Sensors sensors_;
-  std::vector<records::Channel> channels_;
-  VectorXd sample_;
+  std::vector<records::Channel> channels_, chosen_;
+  std::vector<std::pair<int, int>> ranges_;  ///< first and size in sample_ of what is chosen
+  std::vector<int> quaternion_at_;
+  VectorXd sample_, kept_;
   Energies energies_;
 };
 

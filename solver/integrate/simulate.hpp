@@ -1,6 +1,7 @@
 #pragma once
 /// \file A whole run: from a System to samples in a ResultSink.
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <optional>
 
@@ -13,24 +14,32 @@ struct Progress {
   double time = 0, start = 0, end = 0, step = 0;
   int order = 0;
   long num_steps = 0, num_rejected = 0, num_evaluations = 0;
-  double energy_error = 0;  ///< kinetic + strain + potential - work, relative to the largest of them so far
+  double energy_error = 0;  ///< at `time`, relative (EnergyMonitor)
 };
 
 struct SimulateOptions {
   std::function<void(const Progress&)> progress;  ///< called at each output sample
   const std::atomic<bool>* stop = nullptr;        ///< set by a signal: checkpoint and end cleanly
   std::optional<records::Checkpoint> resume;
+  std::chrono::seconds checkpoint_after{60};  ///< where samples are rare; else with every hundredth
 };
 
 struct SimulateOutcome {
   bool completed = false;
   double time = 0;
-  std::string reason;  ///< why it stopped early
+  std::string reason;  ///< why it stopped early: a request (then not completed) or an event
   Progress last;
+  double energy_error = 0;     ///< the worst of the run, relative
+  bool energy_is_kept = true;  ///< else "run.energy-error" was reported
 };
 
+/// Reports what simulate would refuse in the spec. The system may have come from System::build_as_far.
+void check_run(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics);
+
 /// Integrates spec.simulation and streams samples. A run that diverges (non-finite state, or past the limit) ends the
-/// sink with what it had and throws ComputationError("run.diverged") with the time and the body.
+/// sink with what it had and throws ComputationError("run.diverged") with the time and the body. An energy error past
+/// energy_error_limit is an error in `diagnostics` ("run.energy-error"), one past 1e-4 of the limit a warning
+/// ("run.energy-drift"): the samples are written all the same.
 SimulateOutcome simulate(const System& system, const records::SystemSpec& spec, records::ResultSink& sink,
                          const SimulateOptions& options, Diagnostics& diagnostics);
 

@@ -26,6 +26,7 @@ struct StepFailure {
   Kind kind = Kind::Stalled;
   double time = 0;
   std::string detail;
+  double tried = 0;  ///< NonFinite: time of the evaluation
 };
 
 class Stepper {
@@ -34,15 +35,23 @@ class Stepper {
   /// Starts afresh from (t, y): the history is dropped. No step passes t_stop, and no derivative is asked for at a time
   /// past `latest` (<= t_stop). y: size().
   virtual void restart(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double latest) = 0;
+  /// Goes on with its history to a later t_stop.
+  virtual void set_stop(double t_stop, double latest) = 0;
   /// One step from time(). Multistep methods may pass t_target (not t_stop); the others end on it when it is in reach.
   /// Throws StepFailure, or what the equations threw; the state is then that before the step.
   virtual void step(double t_target) = 0;
   virtual double time() const = 0;
+  /// Where the last step began; time() before the first.
+  virtual double last_time() const = 0;
   /// At time().
   virtual Eigen::Map<const VectorXd> state() const = 0;
-  /// At t within the last step, by the method's own interpolant.
+  /// At t within the last step, as exactly as the method steps: by its interpolant, or (rk, rk4) by a step to t.
   virtual void calc_state(double t, Eigen::Ref<VectorXd> y) = 0;
   virtual StepStatistics statistics() const = 0;
+  /// Where in its own division of time it is, for a checkpoint; set after restart. Empty where steps depend on nothing
+  /// but the history.
+  virtual Eigen::Vector4d memory() const { return Eigen::Vector4d::Zero(); }
+  virtual void set_memory(const Eigen::Vector4d&) {}
 };
 
 /// integrator: "adams", "bdf", "rk", "rk4". BOUGH_DEMAND on another name. The Ode must outlive the stepper.
@@ -54,7 +63,7 @@ std::unique_ptr<Stepper> make_cvode_stepper(Ode& ode, const StepperOptions& opti
 /// SUNDIALS ARKODE, explicit embedded pair: Dormand-Prince 5(4) or Fehlberg 8(7).
 std::unique_ptr<Stepper> make_erk_stepper(Ode& ode, const StepperOptions& options);
 /// The classical Runge-Kutta method of order 4, each interval to the next target cut into equal steps no longer than
-/// options.step: results depend on the targets only, not on where a run was interrupted.
+/// options.step: results depend on the targets only; with memory() not on where a run was interrupted.
 std::unique_ptr<Stepper> make_rk4_stepper(Ode& ode, const StepperOptions& options);
 
 }  // namespace bough::solver

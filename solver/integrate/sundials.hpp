@@ -53,7 +53,7 @@ inline void ignore_message(int, const char*, const char*, char*, void*) {}
   std::free(flag_name);
   ode.throw_pending();
   throw StepFailure{ode.was_non_finite() ? StepFailure::Kind::NonFinite : StepFailure::Kind::Stalled, t,
-                    std::move(detail)};
+                    std::move(detail), ode.bad_time()};
 }
 
 }  // namespace bough::solver::detail

@@ -1,5 +1,9 @@
 #include "solver/integrate/system_ode.hpp"
 
+#include <cmath>
+
+#include "solver/system/impl.hpp"
+
 namespace bough::solver {
 
 SystemOde::SystemOde(const System& system)
@@ -12,13 +16,15 @@ void SystemOde::calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, E
   add_forces(system_, *data_, t);
   calc_accelerations(system_, *data_, t, y_dot.segment(num_q_, num_u_));
   get_q_dot(system_, *data_, y_dot.head(num_q_));
-  y_dot[num_q_ + num_u_] = calc_power(system_, *data_);
+  const Power power = calc_powers(system_, *data_);
+  y_dot[num_q_ + num_u_] = power.total;
+  y_dot[num_q_ + num_u_ + 1] = power.dissipated;
 }
 
 std::vector<std::string> SystemOde::cross_jump(double before, double t, Eigen::Ref<VectorXd> y) {
   std::vector<std::string> events;
-  solver::cross_jump(system_, *data_, before, t, nullptr, y.head(num_q_), y.segment(num_q_, num_u_), y[size() - 1],
-                     events);
+  solver::cross_jump(system_, *data_, before, t, nullptr, y.head(num_q_), y.segment(num_q_, num_u_),
+                     y[num_coordinates()], events);
   return events;
 }
 
@@ -41,7 +47,36 @@ std::string SystemOde::name_row(int row) const {
     if (i >= eta && i < eta + system_.num_modes(b))
       return body + (is_rate ? " (modal rate " : " (modal coordinate ") + std::to_string(i - eta + 1) + ")";
   }
-  return "the work done";
+  return i == num_u_ ? "the work done" : "the energy dissipated";
+}
+
+std::string SystemOde::name_first_non_finite(double t, const Eigen::Ref<const VectorXd>& y) {
+  const auto find_bad = [](const auto& values) {
+    int row = 0;
+    while (row < values.size() && std::isfinite(values[row])) ++row;
+    return row < values.size() ? row : -1;
+  };
+  if (const int row = find_bad(y); row >= 0) return name_row(row);
+  const System::Impl& impl = system_.impl();
+  for (const TreeBody& tb : impl.tree.bodies) {
+    for (const TimeFunction* f : tb.motion) {
+      if (f == nullptr) continue;
+      const auto value = f->calc(t);
+      if (!std::isfinite(value.f + value.f_dot + value.f_ddot)) return "the motion of hinge '" + tb.hinge_name + "'";
+    }
+  }
+  for (const AppliedForce& force : impl.forces) {
+    const double value = force.function ? force.function->calc(t).f : 1;
+    if (!std::isfinite(value * force.direction.norm())) return "force '" + force.name + "'";
+  }
+  VectorXd y_dot = VectorXd::Zero(size());
+  calc_derivative(t, y, y_dot);
+  for (const TreeBody& tb : impl.tree.bodies) {
+    if (!data_->tree.applied.segment(tb.v_offset, 6 + tb.num_modes()).allFinite())
+      return "the load on body '" + tb.name + "'";
+  }
+  const int row = find_bad(y_dot.tail(size() - num_q_));
+  return row < 0 ? "" : "the derivative of " + name_row(num_q_ + row);
 }
 
 }  // namespace bough::solver

@@ -1,6 +1,7 @@
 #pragma once
-/// \file A System as ẏ = f(t, y), y = [q; u; work]: work integrates calc_power, so that kinetic + strain + potential -
-/// work is constant whatever is applied, damped or prescribed.
+/// \file A System as ẏ = f(t, y), y = [q; u; work; dissipated]: work integrates the power of all that is applied,
+/// damped or prescribed, so that kinetic + strain + potential - work is constant; dissipated is what dampers took of
+/// it.
 #include <string>
 
 #include "solver/integrate/ode.hpp"
@@ -12,7 +13,7 @@ class SystemOde final : public Ode {
  public:
   explicit SystemOde(const System& system);
 
-  int size() const override { return num_q_ + num_u_ + 1; }
+  int size() const override { return num_q_ + num_u_ + 2; }
   const System& system() const { return system_; }
   int num_q() const { return num_q_; }
   /// Rows of y that are q and u.
@@ -23,8 +24,13 @@ class SystemOde final : public Ode {
   VectorXd make_initial_state() const;
   /// Takes y over the jump at t; `before` is the last moment that sees what was. Describes each jump of a rate.
   std::vector<std::string> cross_jump(double before, double t, Eigen::Ref<VectorXd> y);
+  double get_work(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates()]; }
+  double get_dissipated(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates() + 1]; }
   /// "body 'boom' (modal rate 2)" for a row of y.
   std::string name_row(int row) const;
+  /// What is the first not to be a finite number at (t, y): a coordinate, a function of a force or a motion, a load, an
+  /// acceleration. Empty when all is finite.
+  std::string name_first_non_finite(double t, const Eigen::Ref<const VectorXd>& y);
 
  private:
   const System& system_;

@@ -1,5 +1,7 @@
 #include "solver/sensors/sensor.hpp"
 
+#include <algorithm>
+
 namespace bough::solver {
 namespace {
 
@@ -66,10 +68,12 @@ std::string make_advice(const std::string& word, const std::vector<std::string>&
 
 class Resolver {
  public:
-  Resolver(const System& system, Diagnostics& diagnostics) : system_(system), diagnostics_(diagnostics) {
+  Resolver(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics)
+      : system_(system), diagnostics_(diagnostics) {
+    for (const auto& body : spec.bodies) bodies_.push_back(body.name);
+    for (const auto& hinge : spec.hinges) hinges_.push_back(hinge.name);
     for (int b = 0; b < system.num_bodies(); ++b) {
-      bodies_.push_back(system.body_name(b));
-      hinges_.push_back(system.hinge_name(b));
+      if (!is_known(hinges_, system.hinge_name(b))) hinges_.push_back(system.hinge_name(b));  // made for a free body
     }
   }
 
@@ -85,13 +89,19 @@ class Resolver {
   }
 
  private:
+  static bool is_known(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  }
+
   void resolve_hinge(const SensorRecord& r, Sensors::Entry& e) {
     e.body = system_.find_hinge(r.hinge);
     if (e.body < 0) {
+      if (is_known(hinges_, r.hinge)) return;  // its own errors were reported
       error(r, "sensor.unknown-hinge", "watches the unknown hinge '" + r.hinge + "'",
             make_advice(r.hinge, hinges_, "hinges"));
       return;
     }
+    if (!system_.is_sound(e.body)) return;
     const bool angle = r.type == SensorType::HingeAngle;
     const int count = angle ? system_.num_hinge_q(e.body) : system_.num_hinge_rates(e.body);
     if (r.coordinate < 0 || r.coordinate > count || count == 0) {
@@ -107,11 +117,11 @@ class Resolver {
   }
 
   void resolve_node(const SensorRecord& r, Sensors::Entry& e) {
-    e.body = system_.find_body(r.body);
-    if (e.body < 0) {
+    e.body = find_body(r.body);
+    if (e.body == kAbsent) {
       error(r, "sensor.unknown-body", "is on the unknown body '" + r.body + "'",
             make_advice(r.body, bodies_, "bodies"));
-    } else {
+    } else if (e.body >= 0 && system_.is_sound(e.body)) {
       e.node = system_.find_node(e.body, r.node);
       if (e.node < 0)
         error(r, "sensor.unknown-node",
@@ -123,26 +133,34 @@ class Resolver {
     if (frame == "body") {
       e.frame = e.body;
     } else if (frame != "inertial" && frame != "ground") {
-      e.frame = system_.find_body(frame);
+      e.frame = find_body(frame);
       auto known = bodies_;
       known.insert(known.end(), {"inertial", "body"});
-      if (e.frame < 0)
+      if (e.frame == kAbsent)
         error(r, "sensor.bad-frame", "has the unknown frame '" + frame + "'", make_advice(frame, known, "frames"));
     }
     if (!r.relative_to.empty() && r.relative_to != "ground" && r.relative_to != "inertial") {
-      e.relative_to = system_.find_body(r.relative_to);
-      if (e.relative_to < 0)
+      e.relative_to = find_body(r.relative_to);
+      if (e.relative_to == kAbsent)
         error(r, "sensor.unknown-body", "is relative to the unknown body '" + r.relative_to + "'",
               make_advice(r.relative_to, bodies_, "bodies"));
     }
+    e.from_turning = r.from_turning;
     e.description = std::string(name_of(r.type)) + " of node " + std::to_string(r.node) + " of body " + r.body;
     if (is_deflection(r.type))
       e.description += " from its undeformed place";
     else if (e.relative_to >= 0)
-      e.description += " as seen from body " + r.relative_to;
+      e.description += (r.from_turning ? " as seen from body " : " less that of the origin of body ") + r.relative_to;
     e.description += ", components in the " + (frame == "body" ? "frame of body " + r.body
                                                : e.frame < 0   ? "inertial frame"
                                                                : "frame of body " + frame);
+  }
+
+  static constexpr int kAbsent = -2, kUnplaced = -1;
+  /// kUnplaced: a body of the spec that is not in the tree, for reasons that were reported.
+  int find_body(const std::string& name) const {
+    if (const int found = system_.find_body(name); found >= 0) return found;
+    return is_known(bodies_, name) ? kUnplaced : kAbsent;
   }
 
   void error(const SensorRecord& r, const char* id, const std::string& what, const std::string& advice) {
@@ -172,7 +190,13 @@ Observer calc_observer(const SystemData& data, int body) {
   return o;
 }
 
-Vector3d calc_relative(SensorType type, const NodeMotion& k, const Observer& o) {
+Vector3d calc_relative(SensorType type, bool from_turning, const NodeMotion& k, Observer o) {
+  if (!from_turning) {  // he keeps his axes
+    if (type == SensorType::AngularVelocity) return k.w_WK - o.w;
+    if (type == SensorType::AngularAcceleration) return k.alpha_WK - o.alpha;
+    o.w.setZero();
+    o.alpha.setZero();
+  }
   const Vector3d p = k.p_WK - o.p;
   if (type == SensorType::Position) return p;
   const Vector3d v = k.v_WK - o.v - o.w.cross(p);
@@ -187,7 +211,7 @@ Vector3d calc_relative(SensorType type, const NodeMotion& k, const Observer& o) 
 
 Sensors Sensors::build(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics) {
   Sensors sensors;
-  Resolver resolver(system, diagnostics);
+  Resolver resolver(system, spec, diagnostics);
   for (const auto& record : spec.sensors) {
     Entry entry;
     resolver.resolve(record, entry);
@@ -220,8 +244,8 @@ void Sensors::calc(const System& system, const SystemData& data, Eigen::Ref<Vect
       }
       value_W.noalias() = get_body_state(data, e.body).R_WB * value_B;
     } else {
-      value_W =
-          calc_relative(e.type, calc_node_motion(system, data, e.body, e.node), calc_observer(data, e.relative_to));
+      value_W = calc_relative(e.type, e.from_turning, calc_node_motion(system, data, e.body, e.node),
+                              calc_observer(data, e.relative_to));
     }
     if (e.frame < 0)
       out.segment<3>(e.first) = value_W;

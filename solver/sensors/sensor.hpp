@@ -1,17 +1,20 @@
 #pragma once
 /// \file Sensors: [[sensor]] of a system file, resolved once and evaluated without allocation.
 ///
-/// K is the node, B its body, A the body of relative_to, F the frame of components (W for "inertial", B for "body",
-/// else the named body). p, v, a, ω, α are of K in W unless marked.
-///   position              R_FW (p_WK - p_WAo)                                   without relative_to: R_FW p_WK
-///   velocity              R_FW (v_WK - v_WAo - ω_WA × p_AoK)                    the rate of p_AoK as A sees it
-///   acceleration          R_FW (a_WK - a_WAo - α_WA × p - ω_WA × (ω_WA × p) - 2 ω_WA × v_AK)    the rate of v_AK as A
-///   sees it angular_velocity      R_FW (ω_WK - ω_WA)                                    ω_WK includes the rate of the
-///   deformation angular_acceleration  R_FW (α_WK - α_WA - ω_WA × ω_AK)                      the rate of ω_AK as A sees
-///   it deflection, rotation  R_FB (φη + ½ηᵀgη), R_FB ψη: from the undeformed place in B hinge_angle, hinge_rate
-///   coordinates as the user knows them (quaternion w, x, y, z) and rates; one, or all for 0
-/// With frame = A and relative_to = A these are what an observer riding on A writes down. An empty frame means "body"
-/// for deflection and rotation and "inertial" for the others.
+/// K is the node, B its body, A the body of relative_to (W without), F the frame of components (W for "inertial", B for
+/// "body", else the named body). p, v, a, ω, α are of K in W, less those of Ao where marked Δ; all are given in F.
+///
+///   type                   observer = "turning": as A sees it           observer = "fixed"
+///   position               Δp                                           Δp
+///   velocity               v' = Δv - ω_A × Δp                           Δv
+///   acceleration           Δa - α_A × Δp - ω_A × (ω_A × Δp) - 2 ω_A × v'   Δa
+///   angular_velocity       Δω (with the rate of the deformation)        Δω
+///   angular_acceleration   Δα - ω_A × Δω                                Δα
+///   deflection, rotation   φη + ½[ηᵀg_aη]_a, ψη + ...: from the undeformed place, in B
+///   hinge_angle, hinge_rate   coordinates as the user knows them (quaternion w, x, y, z) and rates; one, or all for 0
+///
+/// With frame = A and relative_to = A, "turning" is what an observer who rides on A writes down. An empty frame means
+/// "body" for deflection and rotation and "inertial" for the others.
 #include <string>
 #include <vector>
 
@@ -35,7 +38,8 @@ class Sensors {
     int body = -1, node = 0;  ///< body: index; node: index within the body. Hinge sensors: body of the hinge
     int frame = -1;           ///< body index, -1: W
     int relative_to = -1;     ///< body index, -1: W
-    int coordinate = 0;       ///< 1-based, 0: all
+    bool from_turning = true;
+    int coordinate = 0;  ///< 1-based, 0: all
   };
   const std::vector<Entry>& entries() const { return entries_; }
   int size() const { return size_; }

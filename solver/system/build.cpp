@@ -89,25 +89,44 @@ void add_force_marker(AppliedForce& force, Tree& tree) {
 }
 
 void collect_breakpoints(System::Impl& impl) {
-  std::vector<const TimeFunction*> used;
-  for (const TreeBody& tb : impl.tree.bodies)
-    std::copy_if(tb.motion.begin(), tb.motion.end(), std::back_inserter(used),
-                 [](const TimeFunction* f) { return f != nullptr; });
+  const auto add = [](std::vector<double>& to, const std::vector<double>& times) {
+    to.insert(to.end(), times.begin(), times.end());
+  };
+  const auto add_motion = [&](const TimeFunction* f) {
+    if (f == nullptr) return;
+    add(impl.breakpoints, f->breakpoints());
+    add(impl.landmarks, f->landmarks());
+  };
+  for (const TreeBody& tb : impl.tree.bodies) std::for_each(tb.motion.begin(), tb.motion.end(), add_motion);
   for (const AppliedForce& force : impl.forces) {
-    if (force.function != nullptr) used.push_back(force.function);
+    if (force.function == nullptr) continue;
+    add(impl.breakpoints, force.function->corners());
+    add(impl.landmarks, force.function->landmarks());
   }
-  for (const TimeFunction* f : used) {
-    const auto times = f->breakpoints();
-    impl.breakpoints.insert(impl.breakpoints.end(), times.begin(), times.end());
+  for (auto* times : {&impl.breakpoints, &impl.landmarks}) {
+    std::sort(times->begin(), times->end());
+    times->erase(std::unique(times->begin(), times->end()), times->end());
   }
-  std::sort(impl.breakpoints.begin(), impl.breakpoints.end());
-  impl.breakpoints.erase(std::unique(impl.breakpoints.begin(), impl.breakpoints.end()), impl.breakpoints.end());
+}
+
+/// Stands for a hinge that could not be made, so that what hangs on it can be looked at.
+std::unique_ptr<const Hinge> make_stand_in(records::HingeRecord record) {
+  Diagnostics unheard;
+  record.type = records::HingeType::Fixed;
+  return make_hinge(record, unheard);
 }
 
 }  // namespace
 
 System System::build(const records::SystemSpec& spec, const std::map<std::string, FlexBody>& flex,
                      Diagnostics& diagnostics) {
+  System system = build_as_far(spec, flex, diagnostics);
+  diagnostics.throw_if_errors();
+  return system;
+}
+
+System System::build_as_far(const records::SystemSpec& spec, const std::map<std::string, FlexBody>& flex,
+                            Diagnostics& diagnostics) {
   System system;
   Impl& impl = *system.impl_;
   Tree& tree = impl.tree;
@@ -115,7 +134,6 @@ System System::build(const records::SystemSpec& spec, const std::map<std::string
   impl.start = spec.simulation.start;
   const FunctionMap functions = build_functions(spec, impl, diagnostics);
   const TreeOrder order = order_tree(spec, diagnostics);
-  bool complete = true;
   for (const auto& record : spec.bodies) {
     if (!order.tree_index.count(record.name)) build_body(record, flex, diagnostics);  // for its own errors
   }
@@ -133,9 +151,11 @@ System System::build(const records::SystemSpec& spec, const std::map<std::string
     const bool rotations_good = check_rotations(hinge, diagnostics);
     if (tb.hinge) build_hinge_coordinates(hinge, functions, tb, diagnostics);
     check_motion(hinge, spec.simulation, tb, diagnostics);
-    if (!body || !tb.hinge || !rotations_good) {
-      complete = false;
-      body = body ? std::move(body) : Body::make_rigid(1, Vector3d::Zero(), Matrix3d::Identity());
+    const bool is_sound = body && tb.hinge && rotations_good;
+    impl.sound.push_back(is_sound);
+    if (!is_sound) {
+      if (!tb.hinge) tb.hinge = make_stand_in(hinge);
+      body = Body::make_rigid(1, Vector3d::Zero(), Matrix3d::Identity());
     } else {
       const int n = body->num_modes();
       tb.initial_eta = make_modal_state(record.eta, n);
@@ -156,7 +176,7 @@ System System::build(const records::SystemSpec& spec, const std::map<std::string
                               " of ground, which has only node 0",
                           "give parent_position instead");
       }
-    } else if (complete) {
+    } else if (impl.sound[static_cast<size_t>(tb.parent)]) {
       const TreeBody& parent = tree.bodies[static_cast<size_t>(tb.parent)];
       tb.on_parent = build_attachment(parent.name, parent.body, hinge.parent_node, hinge.parent_position,
                                       hinge.parent_rotation, hinge, diagnostics);
@@ -172,10 +192,10 @@ System System::build(const records::SystemSpec& spec, const std::map<std::string
       const std::string near = find_nearest(record.body, body_names);
       diagnostics.error("system.unknown-body", record.at,
                         "force " + quote(record.name) + " names body " + quote(record.body) + ", which does not exist",
-                        near.empty() ? "" : "did you mean " + quote(near) + "?");
+                        near.empty() ? "declare it" : "did you mean " + quote(near) + "?");
       continue;
     }
-    if (!complete) continue;
+    if (!impl.sound[static_cast<size_t>(found->second)]) continue;
     const auto& file = spec.bodies[static_cast<size_t>(order.body[static_cast<size_t>(found->second)])].file;
     const auto flex_record = flex.find(file);
     auto force = build_force(record, tree, found->second, flex_record == flex.end() ? nullptr : &flex_record->second,
@@ -185,8 +205,8 @@ System System::build(const records::SystemSpec& spec, const std::map<std::string
   if (!impl.gravity.allFinite()) {
     diagnostics.error("system.bad-gravity", spec.simulation.at, "gravity is not three finite numbers");
   }
-  if (complete) check_masses(tree, spec, order, diagnostics);
-  diagnostics.throw_if_errors();
+  const bool is_complete = std::find(impl.sound.begin(), impl.sound.end(), false) == impl.sound.end();
+  if (is_complete) check_masses(tree, spec, order, diagnostics);
   tree.finish();
   for (AppliedForce& force : impl.forces) add_force_marker(force, tree);
   collect_breakpoints(impl);

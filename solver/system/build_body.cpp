@@ -92,6 +92,7 @@ std::optional<Body> build_body(const records::BodyRecord& r, const FlexMap& flex
   if (!r.file.empty()) {
     const auto found = flex.find(r.file);
     if (found == flex.end()) {
+      if (r.is_unreadable) return std::nullopt;
       diagnostics.error("system.missing-body-file", r.at,
                         "body " + quote(r.name) + " needs the file '" + r.file + "', which was not read");
       return std::nullopt;

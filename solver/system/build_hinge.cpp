@@ -115,7 +115,7 @@ const TimeFunction* find_function(const FunctionMap& functions, const std::strin
   const std::string near = find_nearest(name, names);
   diagnostics.error("system.unknown-function", where,
                     user + " names function " + quote(name) + ", which does not exist",
-                    near.empty() ? "" : "did you mean " + quote(near) + "?");
+                    near.empty() ? "declare it" : "did you mean " + quote(near) + "?");
   return nullptr;
 }
 

@@ -62,7 +62,7 @@ TreeOrder order_tree(const records::SystemSpec& spec, Diagnostics& diagnostics) 
       const std::string near = find_nearest(*name, names);
       diagnostics.error("system.unknown-body", hinge.at,
                         "hinge " + quote(hinge.name) + " names body " + quote(*name) + ", which does not exist",
-                        near.empty() ? "" : "did you mean " + quote(near) + "?");
+                        near.empty() ? "declare it" : "did you mean " + quote(near) + "?");
     }
     if (!known) continue;
     const auto [found, inserted] = inboard.emplace(hinge.child, h);

@@ -58,30 +58,30 @@ Energies calc_energies(const System& system, const SystemData& data) {
   return e;
 }
 
-double calc_power(const System& system, const SystemData& data) {
+Power calc_powers(const System& system, const SystemData& data) {
   const Tree& tree = system.impl().tree;
   data.tree.demand(Stage::Acceleration);
   const VectorXd &u = data.tree.u, &applied = data.tree.applied;
-  double power = 0;
+  double power = 0, dissipated = 0;
   for (int b = 0; b < tree.size(); ++b) {
     const TreeBody& tb = tree[b];
     const BodyState& state = data.tree[b].state;
     power += applied.segment<3>(tb.v_offset).dot(state.v_B) + applied.segment<3>(tb.v_offset + 3).dot(state.w_B);
     for (int j = 0; j < tb.num_modes(); ++j) {
       const auto eta_dot = u.segment(tb.eta_dot_offset(), tb.num_modes());
-      power += eta_dot[j] * (applied[tb.v_offset + 6 + j] - tb.body.D().col(j).dot(eta_dot));
+      power += eta_dot[j] * applied[tb.v_offset + 6 + j];
+      dissipated += eta_dot[j] * tb.body.D().col(j).dot(eta_dot);
     }
     if (tb.motion.empty() && tb.damping.size() == 0) continue;
     for (int i = 0; i < tb.num_hinge_u(); ++i) {
       const int row = tb.u_offset + i;
-      if (data.tree.mode[static_cast<size_t>(row)] == HingeMode::Prescribed) {
+      if (data.tree.mode[static_cast<size_t>(row)] == HingeMode::Prescribed)
         power += data.tree.hinge_force[row] * u[row];
-      } else if (tb.damping.size() > 0) {
-        power -= tb.damping[i] * u[row] * u[row];
-      }
+      else if (tb.damping.size() > 0)
+        dissipated += tb.damping[i] * u[row] * u[row];
     }
   }
-  return power;
+  return {power - dissipated, dissipated};
 }
 
 void calc_body_momentum(const System& system, const SystemData& data, int body, Vector3d& linear, Vector3d& angular) {

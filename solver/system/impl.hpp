@@ -11,8 +11,9 @@ struct System::Impl {
   std::vector<std::unique_ptr<const TimeFunction>> functions;
   std::vector<AppliedForce> forces;
   Vector3d gravity = Vector3d::Zero();
-  std::vector<double> breakpoints;
+  std::vector<double> breakpoints, landmarks;
   double start = 0;
+  std::vector<bool> sound;  ///< by body: its record and its hinge have no errors
 };
 
 class SystemData {

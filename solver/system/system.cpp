@@ -37,6 +37,7 @@ int System::find_hinge(const std::string& name) const {
 
 const std::string& System::body_name(int b) const { return at(*this, b).name; }
 const std::string& System::hinge_name(int b) const { return at(*this, b).hinge_name; }
+bool System::is_sound(int b) const { return impl_->sound[as_index(b)]; }
 int System::num_modes(int b) const { return at(*this, b).body.num_modes(); }
 int System::q_offset(int b) const { return at(*this, b).q_offset; }
 int System::u_offset(int b) const { return at(*this, b).u_offset; }
@@ -55,6 +56,7 @@ bool System::has_node_second_order(int b, int node) const {
   return at(*this, b).body.nodes()[as_index(node)].K2.size() > 0;
 }
 const std::vector<double>& System::breakpoints() const { return impl_->breakpoints; }
+const std::vector<double>& System::landmarks() const { return impl_->landmarks; }
 
 std::unique_ptr<SystemData> System::make_data() const {
   auto data = std::make_unique<SystemData>();

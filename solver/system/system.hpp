@@ -41,6 +41,10 @@ class System {
   /// body's file (as written) to its record. A body without an inboard hinge gets a free one (a note says so).
   static System build(const records::SystemSpec& spec, const std::map<std::string, FlexBody>& flex,
                       Diagnostics& diagnostics);
+  /// The same without a throw, so that what follows can report its errors too: not to be moved when there are any. A
+  /// body that cannot be built is a rigid one here, with is_sound false.
+  static System build_as_far(const records::SystemSpec& spec, const std::map<std::string, FlexBody>& flex,
+                             Diagnostics& diagnostics);
   ~System();
   System(System&&) noexcept;
 
@@ -51,6 +55,7 @@ class System {
   int find_hinge(const std::string& name) const;  ///< hinge h is the inboard hinge of body h
   const std::string& body_name(int body) const;
   const std::string& hinge_name(int body) const;
+  bool is_sound(int body) const;  ///< false only after build_as_far: neither its nodes nor its hinge are known
   int num_modes(int body) const;
   int q_offset(int body) const;  ///< hinge coordinates start here; η follows
   int u_offset(int body) const;
@@ -66,6 +71,8 @@ class System {
   bool has_node_second_order(int body, int node_index) const;
   /// Times at which a function that drives a hinge or a force jumps, ascending.
   const std::vector<double>& breakpoints() const;
+  /// Times that no step may pass over, ascending (TimeFunction::landmarks).
+  const std::vector<double>& landmarks() const;
 
   std::unique_ptr<SystemData> make_data() const;
   /// Initial state as the records say; q (num_q), u (num_u).
@@ -131,9 +138,13 @@ void get_hinge(const System& system, const SystemData& data, int body, Eigen::Re
 HingeReaction get_hinge_reaction(const System& system, const SystemData& data, int body);
 
 Energies calc_energies(const System& system, const SystemData& data);
-/// Power of applied forces, dampers and prescribed motions: d/dt(kinetic + strain + potential). After
-/// calc_accelerations.
-double calc_power(const System& system, const SystemData& data);
+struct Power {
+  double total = 0;       ///< of applied forces, dampers and prescribed motions: d/dt(kinetic + strain + potential)
+  double dissipated = 0;  ///< what dampers take, counted in total with its minus
+};
+/// After calc_accelerations.
+Power calc_powers(const System& system, const SystemData& data);
+inline double calc_power(const System& system, const SystemData& data) { return calc_powers(system, data).total; }
 /// Linear momentum and angular momentum about the inertial origin, in W.
 void calc_momentum(const System& system, const SystemData& data, Vector3d& linear, Vector3d& angular);
 /// The same of one body.

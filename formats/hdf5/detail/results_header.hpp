@@ -9,8 +9,12 @@ namespace bough::hdf5 {
 
 /// Of a new file: format, versions, the input files.
 void write_provenance(GrowingFile& file, const records::ResultsHeader& header);
-/// /system and /settings; a resumed run writes its own over those of before.
+/// /system, which a resumed run leaves as it was, and /settings, over those of before.
 void write_settings(GrowingFile& file, const records::ResultsHeader& header);
+/// A row of /resumed: when, and with which system file.
+void write_resumed(GrowingFile& file, const records::ResultsHeader& header, double time);
+/// @energy_error of /energy.
+void write_energy_error(GrowingFile& file, double worst);
 /// Whether the run has come to its end, and why it ended.
 void write_state(GrowingFile& file, bool completed, const std::string& reason);
 

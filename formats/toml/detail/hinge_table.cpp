@@ -68,7 +68,9 @@ class HingeReader {
 
   std::vector<std::string> read_motion() {
     const std::vector<std::string> names = table_.get_strings("motion");
-    if (table_.has("motion") && is_known_) {
+    // A hinge that cannot be prescribed is told so, not how many functions that would take.
+    const bool is_plain = coordinates_.q.find('q') == std::string::npos;
+    if (table_.has("motion") && is_known_ && is_plain) {
       const Value& given = *table_.find("motion");
       check_length("motion", given.is_array() ? given.items.size() : names.size(), coordinates_.u.size());
     }

@@ -52,6 +52,7 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
   const auto functions = collect_names(spec.functions, "function", diagnostics);
   collect_names(spec.forces, "force", diagnostics);
   collect_names(spec.sensors, "sensor", diagnostics);
+  collect_names(spec.events, "event", diagnostics);
 
   for (const auto& body : spec.bodies) {
     if (body.name == "ground" || body.name == "inertial" || body.name == "body") {

@@ -146,7 +146,7 @@ std::vector<BadDocument> get_bad_systems() {
       {"toml.unsupported-table", "[simulation]", "[[constraint]]\nname = \"x\"\n[simulation]", "'constraint'"},
       {"toml.unsupported-table", "[simulation]", "[[controller]]\nname = \"x\"\n[simulation]", "'controller'"},
       {"toml.unsupported-table", "[simulation]", "[[connect]]\nname = \"x\"\n[simulation]", "'connect'"},
-      {"toml.unsupported-table", "[simulation]", "[[event]]\nname = \"x\"\n[simulation]", "'event'"},
+      {"toml.unsupported-table", "[simulation]", "[[controller]]\nname = \"x\"\n[simulation]", "'controller'"},
       {"toml.wrong-type", "mass = 12", "mass = \"heavy\"", "mass is a string, expected a number"},
       {"toml.wrong-type", "stiffening = false", "stiffening = 0", "is an integer, expected true or false"},
       {"toml.wrong-type", "damping = [1.0, 2.0]", "damping = [1.0, \"two\"]", "damping[2] is a string"},

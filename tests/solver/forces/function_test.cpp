@@ -107,6 +107,38 @@ TEST(TimeFunction, LinearTable) {
   EXPECT_THAT(f->breakpoints(), testing::ElementsAre(0, 1, 3));
 }
 
+// A force restarts the integrator at the corners of a table, not at every point of a sampled curve; and no step passes
+// over a short event in a long rest.
+TEST(TimeFunction, CornersAndLandmarksOfTables) {
+  std::vector<double> x, y;
+  for (int i = 0; i <= 5000; ++i) {
+    x.push_back(1e-3 * i);
+    y.push_back(std::sin(2 * x.back()));
+  }
+  const auto sampled = make(make_table(x, y, "linear"));
+  EXPECT_EQ(sampled->breakpoints().size(), 5001u);
+  EXPECT_THAT(sampled->corners(), testing::ElementsAre(0, 5));
+  EXPECT_GT(sampled->landmarks().size(), 8u);
+  EXPECT_LT(sampled->landmarks().size(), 40u);
+  const auto triangle = make(make_table({0, 50, 50.01, 50.02, 100}, {0, 0, 1, 0, 0}, "linear"));
+  EXPECT_THAT(triangle->corners(), testing::ElementsAre(0, 50, 50.01, 50.02, 100));
+  // A smooth bump of a hundredth of a second in a hundred seconds.
+  x = {0};
+  y = {0};
+  for (int i = -100; i <= 100; ++i) {
+    x.push_back(50 + 1e-4 * i);
+    y.push_back(std::exp(-std::pow(i / 25.0, 2)));
+  }
+  x.push_back(100);
+  y.push_back(0);
+  for (const char* interpolation : {"linear", "cubic"}) {
+    const auto landmarks = make(make_table(x, y, interpolation))->landmarks();
+    ASSERT_GE(landmarks.size(), 4u);
+    EXPECT_GT(landmarks.front(), 49.99);
+    EXPECT_LT(landmarks.front(), 50);
+  }
+}
+
 TEST(TimeFunction, CubicTableReproducesCubics) {
   const auto p = [](double x) { return 2 - x + 3 * x * x - 0.5 * x * x * x; };
   for (const std::vector<double>& x : {std::vector<double>{0, 1, 2.5, 3}, {0, 0.3, 1.1, 2, 4, 4.5}}) {

@@ -322,12 +322,13 @@ TEST(Simulate, HeaderListsTheChannels) {
     EXPECT_FALSE(c.description.empty());
     EXPECT_FALSE(c.dims.empty());
   }
-  EXPECT_THAT(paths, ::testing::ElementsAre(
-                         "/time", "/bodies/body/position", "/bodies/body/quaternion", "/bodies/body/velocity",
-                         "/bodies/body/angular_velocity", "/hinges/hinge/q", "/hinges/hinge/qdot",
-                         "/hinges/hinge/force", "/hinges/hinge/reaction_force", "/hinges/hinge/reaction_moment",
-                         "/energy/kinetic", "/energy/strain", "/energy/potential", "/energy/work", "/momentum/linear",
-                         "/momentum/angular", "/system_mass/mass", "/system_mass/cg", "/system_mass/inertia"));
+  EXPECT_THAT(paths, ::testing::ElementsAre("/time", "/bodies/body/position", "/bodies/body/quaternion",
+                                            "/bodies/body/velocity", "/bodies/body/angular_velocity", "/hinges/hinge/q",
+                                            "/hinges/hinge/qdot", "/hinges/hinge/force", "/hinges/hinge/reaction_force",
+                                            "/hinges/hinge/reaction_moment", "/energy/kinetic", "/energy/strain",
+                                            "/energy/potential", "/energy/work", "/energy/dissipated",
+                                            "/momentum/linear", "/momentum/angular", "/system_mass/mass",
+                                            "/system_mass/cg", "/system_mass/inertia"));
   EXPECT_EQ(r.sink.header().system_text, "# the file");
   EXPECT_THAT(r.sink.header().settings,
               ::testing::Contains(std::pair<std::string, std::string>("integrator", "adams")));

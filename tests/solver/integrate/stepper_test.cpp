@@ -166,6 +166,85 @@ TEST(Stepper, ExceptionsOfTheEquationsArrive) {
   }
 }
 
+// At its largest step CVODE kept the order it came with: 1. Adams of order 1 at h = 1e-3 errs by 1e-3.
+TEST(Stepper, OrderRisesAtTheLargestStep) {
+  for (const std::string integrator : {"adams", "bdf"}) {
+    TestOde ode = make_oscillator();
+    const auto stepper = make_stepper(integrator, ode, make_options(2, 1e-10, 1e-3));
+    const VectorXd y = integrate(*stepper, Vector2d(1, 0), 10);
+    EXPECT_GE(stepper->statistics().order, 3) << integrator;
+    EXPECT_LT((y - Vector2d(std::cos(20.0), -2 * std::sin(20.0))).norm(), 1e-8) << integrator;
+  }
+}
+
+// A largest step below 1e-13 of the stretch is below the smallest one that is asked for.
+TEST(Stepper, TinyLargestStepIsNoBrokenContract) {
+  for (const std::string integrator : {"adams", "bdf", "rk"}) {
+    TestOde ode = make_oscillator();
+    const auto stepper = make_stepper(integrator, ode, make_options(2, 1e-8, 1e-12));
+    stepper->restart(0, Vector2d(1, 0), 20, 20);
+    for (int i = 0; i < 100; ++i) stepper->step(20);
+    EXPECT_GT(stepper->time(), 0) << integrator;
+    EXPECT_LT(stepper->time(), 2e-10) << integrator;
+  }
+}
+
+// Anywhere within the last step as exactly as at its end.
+TEST(Stepper, StatesWithinTheLastStep) {
+  for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
+    TestOde ode = make_oscillator();
+    const auto stepper = make_stepper(integrator, ode, make_options(2, 1e-9, integrator == "rk4" ? 0.01 : 0));
+    stepper->restart(0, Vector2d(1, 0), 10, 10);
+    VectorXd y(2);
+    double worst = 0;
+    while (stepper->time() < 10) {
+      stepper->step(10);
+      for (double share : {0.0, 0.3, 0.9, 1.0}) {
+        const double t = stepper->last_time() + share * (stepper->time() - stepper->last_time());
+        stepper->calc_state(std::min(t, stepper->time()), y);
+        worst = std::max(worst, std::abs(y[0] - std::cos(2 * t)));
+      }
+    }
+    EXPECT_LT(worst, calc_error_bound(integrator == "rk4" ? "rk" : integrator, 1e-9) * (integrator == "bdf" ? 2 : 1))
+        << integrator;
+  }
+}
+
+TEST(Stepper, PassesAStopWithItsHistory) {
+  TestOde ode = make_oscillator();
+  const auto stepper = make_stepper("adams", ode, make_options(2, 1e-9));
+  stepper->restart(0, Vector2d(1, 0), 5, 5);
+  while (stepper->time() < 5) stepper->step(5);
+  EXPECT_EQ(stepper->time(), 5);
+  const int order = stepper->statistics().order;
+  EXPECT_GT(order, 3);
+  stepper->set_stop(10, 10);
+  stepper->step(10);
+  EXPECT_GE(stepper->statistics().order, order - 1);
+  while (stepper->time() < 10) stepper->step(10);
+  EXPECT_NEAR(stepper->state()[0], std::cos(20.0), 1e-6);
+}
+
+// Trial steps may leave the domain of the equations; the step that fails later fails for its own reason.
+TEST(Stepper, AnExceptionOfARejectedTrialIsForgotten) {
+  int calls = 0;
+  TestOde ode(1, [&](double, const auto&, auto y_dot) {
+    if (++calls == 3) throw std::domain_error("a trial");
+    y_dot[0] = calls < 40 ? 1 : std::nan("");
+  });
+  GuardedOde guarded(ode);
+  const double y = 0;
+  double y_dot = 0;
+  int failures = 0;
+  for (int i = 0; i < 5; ++i) failures += guarded.calc(i, &y, &y_dot);
+  EXPECT_EQ(failures, 1);
+  EXPECT_NO_THROW(guarded.throw_pending());
+  calls = 50;
+  EXPECT_EQ(guarded.calc(7, &y, &y_dot), 1);
+  EXPECT_TRUE(guarded.was_non_finite());
+  EXPECT_EQ(guarded.bad_time(), 7);
+}
+
 // ẏ = y² from 1: infinite at t = 1.
 TEST(Stepper, BlowUpIsAFailureNotASilence) {
   for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {

@@ -199,6 +199,42 @@ TEST(Sensors, RatesOnFlexibleTrees) {
   EXPECT_LT((now.segment<3>(12) - R_WB * now.segment<3>(9)).norm(), 1e-12);
 }
 
+// The same, less the motion of the table's origin only: the difference of two inertial vectors.
+TEST(Sensors, FixedObserverKeepsHisAxes) {
+  const double t = 1.7;
+  const Angles x(t);
+  const double c = x.a + x.b, cd = x.ad + x.bd, cdd = x.add + x.bdd;
+  std::vector<records::SensorRecord> sensors;
+  for (SensorType type : {SensorType::Position, SensorType::Velocity, SensorType::Acceleration,
+                          SensorType::AngularVelocity, SensorType::AngularAcceleration}) {
+    sensors.push_back(make_sensor("s", type, "arm", 5, "inertial", "table"));
+    sensors.back().from_turning = false;
+  }
+  const VectorXd out = Carousel().calc(t, sensors);
+  // The table's origin rests: what is left is the inertial motion, the angular ones less the table's.
+  EXPECT_LT((out.segment<3>(0) - (2 * radial(x.a) + radial(c))).norm(), 1e-14);
+  EXPECT_LT((out.segment<3>(3) - (2 * x.ad * tangent(x.a) + cd * tangent(c))).norm(), 1e-14);
+  const Vector3d a = 2 * (x.add * tangent(x.a) - x.ad * x.ad * radial(x.a)) + cdd * tangent(c) - cd * cd * radial(c);
+  EXPECT_LT((out.segment<3>(6) - a).norm(), 1e-13);
+  EXPECT_LT((out.segment<3>(9) - Vector3d(0, 0, x.bd)).norm(), 1e-14);
+  EXPECT_LT((out.segment<3>(12) - Vector3d(0, 0, x.bdd)).norm(), 1e-13);
+}
+
+// What follows from errors of bodies is not held against the sensors on them.
+TEST(Sensors, BodiesThatFailedAreNotTheSensorsFault) {
+  Carousel carousel;
+  carousel.spec.bodies[1].inertia(0, 0) = -1;
+  Diagnostics of_build, diagnostics;
+  const System system = System::build_as_far(carousel.spec, {}, of_build);
+  EXPECT_EQ(of_build.num_errors(), 1);
+  EXPECT_FALSE(system.is_sound(1));
+  carousel.spec.sensors = {make_sensor("s1", SensorType::Position, "arm", 9, "inertial"),
+                           make_sensor("s2", SensorType::Position, "table", 7, "arm")};
+  Sensors::build(system, carousel.spec, diagnostics);
+  ASSERT_EQ(diagnostics.num_errors(), 1);
+  EXPECT_THAT(format(diagnostics.items()[0]), ::testing::HasSubstr("sensor 's2' is on node 7"));
+}
+
 TEST(Sensors, FaultsAreReported) {
   Carousel carousel;
   const System system = build(carousel.spec);

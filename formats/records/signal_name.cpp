@@ -1,0 +1,33 @@
+#include "formats/records/signal_name.hpp"
+
+namespace bough::records {
+
+SignalName parse_signal_name(const std::string& text) {
+  SignalName name{text, ""};
+  if (const auto colon = text.rfind(':'); colon != std::string::npos) {
+    name.path = text.substr(0, colon);
+    name.component = text.substr(colon + 1);
+  }
+  if (!name.path.starts_with('/')) name.path = "/sensors/" + name.path;
+  return name;
+}
+
+std::vector<std::string> get_component_names(const std::string& path, int size) {
+  if (size == 1) return {""};
+  if (size == 3 && path.find("/eta") == std::string::npos && path.find("/hinges/") == std::string::npos)
+    return {"x", "y", "z"};
+  if (size == 4 && path.ends_with("/quaternion")) return {"w", "x", "y", "z"};
+  std::vector<std::string> names;
+  for (int i = 1; i <= size; ++i) names.push_back(std::to_string(i));
+  return names;
+}
+
+int find_component(const SignalName& name, int size) {
+  const auto names = get_component_names(name.path, size);
+  for (int i = 0; i < size; ++i) {
+    if (name.component == names[static_cast<std::size_t>(i)] || name.component == std::to_string(i + 1)) return i;
+  }
+  return -1;
+}
+
+}  // namespace bough::records

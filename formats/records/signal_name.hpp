@@ -1,0 +1,21 @@
+#pragma once
+/// \file "name:component", the one form in which files and options name a signal: a sensor, or with a slash before it
+/// any channel of the results. Without a component a scalar is meant, or all of them.
+#include <string>
+#include <vector>
+
+namespace bough::records {
+
+struct SignalName {
+  std::string path;       ///< "/sensors/tip", "/hinges/root/q"
+  std::string component;  ///< "x", "2"; may be empty
+};
+SignalName parse_signal_name(const std::string& text);
+
+/// Of the channel: x y z, w x y z, or counts from 1; one empty name for a scalar.
+std::vector<std::string> get_component_names(const std::string& path, int size);
+
+/// Index from 0 of a component by its name or its count, -1 when there is none such; empty: 0 of a scalar.
+int find_component(const SignalName& name, int size);
+
+}  // namespace bough::records

@@ -1,0 +1,42 @@
+#pragma once
+/// \file The energy balance of a run: kinetic + strain + potential - work is constant.
+#include <algorithm>
+
+#include "solver/system/system.hpp"
+
+namespace bough::solver {
+
+/// The error is relative to the largest of kinetic energy, strain energy, change of the potential energy and work so
+/// far: where the inertial origin lies does not enter. A breach of the balance that is later made good stays on record.
+class EnergyMonitor {
+ public:
+  /// `noise`: energy below which nothing is said, that of motions as small as the absolute tolerance.
+  void start(const Energies& e, double noise) {
+    start_ = e.kinetic + e.strain + e.potential;
+    potential_ = e.potential;
+    noise_ = noise;
+  }
+  void add(double t, const Energies& e, double work);
+
+  /// Of the last moment added, with its sign; relative.
+  double latest() const { return latest_ / scale(); }
+  /// The largest of all moments added, without sign; relative.
+  double worst() const { return worst_ / scale(); }
+  double time_of_worst() const { return time_; }
+  /// What the motion was fed with at most: the largest so far of the initial kinetic and strain energy, the change of
+  /// the potential energy and the work without dampers. Kinetic energy far above it comes from nowhere.
+  double fed() const { return std::max(fed_, noise_); }
+  void add_feed(const Energies& e, double work, double dissipated);
+
+  void get_memory(Eigen::Ref<Eigen::VectorXd> memory) const;
+  void set_memory(const Eigen::VectorXd& memory);
+  static constexpr int kMemory = 8;
+
+ private:
+  double scale() const { return std::max(scale_, noise_) > 0 ? std::max(scale_, noise_) : 1; }
+
+  double start_ = 0, potential_ = 0, noise_ = 0;
+  double scale_ = 0, latest_ = 0, worst_ = 0, time_ = 0, fed_ = 0;
+};
+
+}  // namespace bough::solver

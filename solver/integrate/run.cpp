@@ -1,0 +1,286 @@
+#include "solver/integrate/run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "solver/system/impl.hpp"
+
+namespace bough::solver {
+namespace {
+
+/// Samples between checkpoints.
+constexpr int kCheckpointEvery = 100;
+/// Of energy_error_limit: an error worth a warning.
+constexpr double kEnergyWarning = 1e-4;
+/// Motions of so many absolute tolerances have an energy below which nothing is judged.
+constexpr double kNoise = 100;
+
+std::string text_of(double value) {
+  std::ostringstream text;
+  text.precision(17);
+  text << value;
+  return text.str();
+}
+
+records::ResultsHeader make_header(const records::SystemSpec& spec, const RunSetup& setup) {
+  const auto& s = spec.simulation;
+  records::ResultsHeader header;
+  header.system_text = spec.text;
+  header.channels = setup.recorder.chosen_channels();
+  header.settings = {{"integrator", setup.integrator},
+                     {"start", text_of(s.start)},
+                     {"duration", text_of(s.duration)},
+                     {"output_step", text_of(setup.plan.output_step)},
+                     {"output_every", std::to_string(s.output_every)},
+                     {"step", text_of(setup.plan.step)},
+                     {"rk_order", std::to_string(s.rk_order)},
+                     {"relative_tolerance", text_of(s.relative_tolerance)},
+                     {"absolute_tolerance", text_of(s.absolute_tolerance)},
+                     {"divergence_limit", text_of(s.divergence_limit)},
+                     {"energy_error_limit", text_of(s.energy_error_limit)},
+                     {"gravity", text_of(s.gravity.x()) + " " + text_of(s.gravity.y()) + " " + text_of(s.gravity.z())}};
+  return header;
+}
+
+StepperOptions make_stepper_options(const SystemOde& ode, const records::SimulationRecord& s, const RunPlan& plan) {
+  StepperOptions o;
+  o.relative_tolerance = s.relative_tolerance;
+  o.absolute_tolerance = VectorXd::Constant(ode.size(), s.absolute_tolerance);
+  if (s.absolute_tolerance_modes > 0) {
+    const System& system = ode.system();
+    for (int b = 0; b < system.num_bodies(); ++b) {
+      const int n = system.num_modes(b);
+      o.absolute_tolerance.segment(system.eta_offset(b), n).setConstant(s.absolute_tolerance_modes);
+      o.absolute_tolerance.segment(ode.num_q() + system.eta_dot_offset(b), n).setConstant(s.absolute_tolerance_modes);
+    }
+  }
+  // Work is a quadrature: it follows the motion's accuracy and must not set the step.
+  o.absolute_tolerance.tail(ode.size() - ode.num_coordinates()).setConstant(1e100);
+  o.step = plan.step;
+  o.rk_order = s.rk_order;
+  return o;
+}
+
+Timeline make_timeline(const System& system, const RunSetup& setup) {
+  auto restarts = setup.triggers.collect_times(records::EventAction::Stop);
+  auto landmarks = setup.triggers.collect_times(records::EventAction::Log);
+  restarts.insert(restarts.end(), system.breakpoints().begin(), system.breakpoints().end());
+  landmarks.insert(landmarks.end(), system.landmarks().begin(), system.landmarks().end());
+  return {setup.plan, std::move(restarts), std::move(landmarks)};
+}
+
+}  // namespace
+
+Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, records::ResultSink& sink,
+         const SimulateOptions& options, Diagnostics& diagnostics)
+    : spec_(spec),
+      sink_(sink),
+      options_(options),
+      diagnostics_(diagnostics),
+      setup_(std::move(setup)),
+      timeline_(make_timeline(system, setup_)),
+      ode_(system),
+      limit_(system),
+      reach_(limit_.calc_reach()) {
+  stepper_ = make_stepper(setup_.integrator, ode_, make_stepper_options(ode_, spec.simulation, setup_.plan));
+  y_ = y_dot_ = VectorXd::Zero(ode_.size());
+  gaps_ = last_gaps_ = trial_gaps_ = setup_.triggers.make_gaps();
+  checkpoint_.state = y_;
+  checkpoint_.memory = {{"energy", VectorXd::Zero(EnergyMonitor::kMemory)},
+                        {"quaternions", setup_.recorder.quaternions},
+                        {"limits", VectorXd::Zero(2 * limit_.num_watched())},
+                        {"events", VectorXd::Zero(1 + setup_.triggers.signs.size())},
+                        {"stepper", VectorXd::Zero(4)}};
+  progress_.start = timeline_.start();
+  progress_.end = timeline_.end();
+}
+
+SimulateOutcome Run::go() {
+  double t = begin();
+  if (outcome_) return *outcome_;
+  bool restarts = true;
+  while (t < timeline_.end()) {
+    const Stop stop = stop_ = timeline_.find_stop(t);
+    if (restarts) {
+      stepper_->restart(t, y_, stop.time, stop.latest);
+      is_started_ = true;
+      if (const auto* memory = restored_.find("stepper")) stepper_->set_memory(*memory);
+      restored_ = {};
+    } else {
+      stepper_->set_stop(stop.time, stop.latest);
+    }
+    while (stepper_->time() < stop.time) {
+      take_step(stop);
+      const auto ends = watch_signals(stop);
+      if (!write_outputs(ends ? ends->time : stepper_->time())) return *outcome_;
+      if (ends) return finish(*ends);
+      if (is_stop_asked()) return halt(stepper_->time());
+      save_now_and_then();
+    }
+    t = stop.time;
+    restarts = stop.restarts;
+    stepper_->calc_state(t, y_);
+    cross_jump();
+    if (const auto ends = pass(stop)) return finish(*ends);
+  }
+  save(timeline_.end());
+  return close(timeline_.end(), "");
+}
+
+double Run::begin() {
+  y_ = ode_.make_initial_state();
+  double t = timeline_.start();
+  if (options_.resume) check_resume();
+  sink_.begin(make_header(spec_, setup_));
+  guard([&] { ode_.calc_derivative(t, y_, y_dot_); });
+  monitor_.start(calc_energies(ode_.system(), ode_.data()), calc_noise());
+  saved_at_ = std::chrono::steady_clock::now();
+  if (options_.resume) {
+    t = restore(*options_.resume);
+    // A checkpoint at a sample that is an event's time was written before the event.
+    if (t > timeline_.start() && std::abs(passed_ - t) > timeline_.resolution()) fire_due(t);
+    return t;
+  }
+  checkpoint_.time = t;
+  write_outputs_at(t);
+  setup_.triggers.start(calc_gaps(t));
+  last_gaps_ = gaps_;
+  passed_ = t;
+  fire_due(t);
+  return t;
+}
+
+void Run::fire_due(double t) {
+  std::vector<Firing> due;
+  setup_.triggers.find_due(t, timeline_.resolution(), due);
+  if (const auto ends = fire(due)) outcome_ = finish(*ends);
+}
+
+double Run::calc_noise() {
+  const double small = kNoise * spec_.simulation.absolute_tolerance;
+  const System& system = ode_.system();
+  const VectorXd q = y_.head(ode_.num_q()), u = VectorXd::Constant(system.num_u(), small);
+  auto data = system.make_data();
+  calc_kinematics(system, *data, timeline_.start(), q, u);
+  double noise = calc_energies(system, *data).kinetic;
+  for (const TreeBody& tb : system.impl().tree.bodies) noise += 0.5 * small * small * tb.body.K().trace();
+  return noise;
+}
+
+void Run::cross_jump() {
+  if (!stop_.restarts || stop_.time >= timeline_.end()) return;
+  guard([&] {
+    const auto jumps = ode_.cross_jump(stop_.latest, stop_.time, y_);
+    if (crossed_ == stop_.time) return;
+    for (const auto& what : jumps) sink_.write_event({stop_.time, what});
+    crossed_ = stop_.time;
+  });
+}
+
+void Run::take_step(const Stop& stop) {
+  const double before = stepper_->time();
+  guard([&] { stepper_->step(std::min(stop.time, timeline_.next_output())); });
+  const auto y = stepper_->state();
+  if (!y.allFinite()) fail_non_finite(stepper_->time(), stepper_->time());
+  for (int row = 0; row < reach_.size(); ++row) {
+    if (std::abs(y[row]) > spec_.simulation.divergence_limit * reach_[row])
+      fail_diverged(stepper_->time(), ode_.name_row(row) + " reached " + short_text(y[row]) + ", " +
+                                          short_text(std::abs(y[row]) / reach_[row]) +
+                                          " times what deflects the body by its own size");
+  }
+  const double taken = stepper_->time() - before;
+  num_tiny_ = taken < 1e-11 * (progress_.end - progress_.start) ? num_tiny_ + 1 : 0;
+  if (num_tiny_ > 1000) fail_stalled(before, "1000 steps in a row were shorter than " + short_text(taken));
+}
+
+bool Run::write_outputs(double t) {
+  while (timeline_.next_output() <= t) {
+    const double t_out = timeline_.next_output();
+    guard([&] { stepper_->calc_state(t_out, y_); });
+    if (t_out == stop_.time) cross_jump();
+    const bool saves = timeline_.next_index() % kCheckpointEvery == 0;
+    write_outputs_at(t_out);
+    if (saves) save(t_out);
+    if (!is_stop_asked() || t_out >= timeline_.end()) continue;
+    outcome_ = halt(t_out);
+    return false;
+  }
+  return true;
+}
+
+void Run::write_outputs_at(double t) {
+  const bool is_chosen = timeline_.next_index() % spec_.simulation.output_every == 0 || t == timeline_.end();
+  const double slack = 1e-9 * setup_.plan.output_step;
+  const bool is_inside = t >= spec_.simulation.output_from - slack && t <= spec_.simulation.output_until + slack;
+  timeline_.take_output();
+  observe(t);
+  const VectorXd& sample = setup_.recorder.keep_sample();
+  if (is_chosen && is_inside) sink_.write_sample(sample);
+  last_sample_ = t;
+  if (options_.progress) options_.progress(progress_);
+}
+
+void Run::observe(double t) {
+  calc_sample(t, y_);
+  const Energies& e = setup_.recorder.energies();
+  const double work = ode_.get_work(y_), dissipated = ode_.get_dissipated(y_);
+  monitor_.add(t, e, work);
+  monitor_.add_feed(e, work, dissipated);
+  for (const auto& crossing : limit_.find_crossings(t, ode_.data(), y_.head(ode_.num_q()))) {
+    sink_.write_event({t, crossing.what});
+    diagnostics_.warning(crossing.id, spec_.simulation.at, crossing.what, crossing.advice);
+  }
+  update_progress(t);
+  const double limit = spec_.simulation.divergence_limit;
+  if (e.kinetic > limit * limit * monitor_.fed() && monitor_.fed() > 0) {
+    int row = 0;
+    y_.segment(ode_.num_q(), ode_.num_coordinates() - ode_.num_q()).cwiseAbs().maxCoeff(&row);
+    row += ode_.num_q();
+    fail_diverged(t, ode_.name_row(row) + " reached " + short_text(y_[row]) + ", and the kinetic energy " +
+                         short_text(e.kinetic) + " where " + short_text(monitor_.fed()) + " was put in");
+  }
+}
+
+const VectorXd& Run::calc_sample(double t, const VectorXd& y) {
+  guard([&] { ode_.calc_derivative(t, y, y_dot_); });
+  const int num_q = ode_.num_q();
+  return setup_.recorder.calc_sample(t, ode_.data(), y.head(num_q), y.segment(num_q, ode_.num_coordinates() - num_q),
+                                     ode_.get_work(y), ode_.get_dissipated(y));
+}
+
+const VectorXd& Run::calc_gaps(double t) {
+  if (setup_.triggers.has_signals()) setup_.triggers.calc_gaps(calc_sample(t, y_), gaps_);
+  return gaps_;
+}
+
+void Run::update_progress(double t) {
+  const StepStatistics s = stepper_->statistics();
+  progress_.time = t;
+  progress_.step = s.step;
+  progress_.order = s.order;
+  progress_.num_steps = s.num_steps;
+  progress_.num_rejected = s.num_rejected;
+  progress_.num_evaluations = s.num_evaluations;
+  progress_.energy_error = monitor_.latest();
+}
+
+SimulateOutcome Run::close(double t, const std::string& reason) {
+  sink_.end(true, reason);
+  const double worst = monitor_.worst(), limit = spec_.simulation.energy_error_limit;
+  const bool is_kept = worst <= limit;
+  if (worst > kEnergyWarning * limit) {
+    const std::string what = "the energy balance is off by " + short_text(worst) +
+                             " of the energy at t = " + short_text(monitor_.time_of_worst());
+    const std::string advice = std::string(setup_.integrator == "rk4" ? "shorten step" : "tighten relative_tolerance") +
+                               ", look for a motion whose position or rate jumps, or raise energy_error_limit";
+    if (is_kept)
+      diagnostics_.warning("run.energy-drift", spec_.simulation.at, what, advice);
+    else
+      diagnostics_.error("run.energy-error", spec_.simulation.at,
+                         what + ", more than energy_error_limit = " + short_text(limit), advice);
+  }
+  return {true, t, reason, progress_, worst, is_kept};
+}
+
+}  // namespace bough::solver

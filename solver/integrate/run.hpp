@@ -1,0 +1,110 @@
+#pragma once
+/// \file One run: the state of its loop and what it writes to. For simulate.cpp.
+#include <chrono>
+#include <limits>
+
+#include "solver/integrate/energy_monitor.hpp"
+#include "solver/integrate/linear_limit.hpp"
+#include "solver/integrate/run_setup.hpp"
+#include "solver/integrate/simulate.hpp"
+#include "solver/integrate/system_ode.hpp"
+
+namespace bough::solver {
+
+/// Six digits, for messages.
+std::string short_text(double value);
+
+class Run {
+ public:
+  Run(const System& system, const records::SystemSpec& spec, RunSetup setup, records::ResultSink& sink,
+      const SimulateOptions& options, Diagnostics& diagnostics);
+  SimulateOutcome go();
+
+ private:
+  bool is_stop_asked() const { return options_.stop && options_.stop->load(std::memory_order_relaxed); }
+
+  // The loop (run.cpp)
+  /// The first sample, or where a checkpoint left off. The time reached; `outcome_` when an event ends the run there.
+  double begin();
+  void fire_due(double t);
+  /// Energy of motions too small for the tolerances.
+  double calc_noise();
+  void take_step(const Stop& stop);
+  /// Takes y_ over the jumps of given rates at stop_, after calc_state at its time; logs them once.
+  void cross_jump();
+  /// The samples of the last step up to t; false when the run was asked to stop at one, and did.
+  bool write_outputs(double t);
+  /// The sample at t, of y_, which is the next one.
+  void write_outputs_at(double t);
+  /// Looks at y_ at t: sample, energies, limits.
+  void observe(double t);
+  const VectorXd& calc_sample(double t, const VectorXd& y);
+  const VectorXd& calc_gaps(double t);
+  void update_progress(double t);
+  /// The regular end, with the judgement of the energy.
+  SimulateOutcome close(double t, const std::string& reason);
+
+  // Events (run_events.cpp)
+  /// Signals that crossed their values in the last step: each is located and fires, up to the first that ends the run.
+  std::optional<Firing> watch_signals(const Stop& stop);
+  /// What comes at a stop itself: events at a time, and crossings by the jump.
+  std::optional<Firing> pass(const Stop& stop);
+  /// Carries the events out in the order of their times; the one that ends the run, when there is one.
+  std::optional<Firing> fire(std::vector<Firing>& firings);
+  /// The end that an event brings: a last sample at its time.
+  SimulateOutcome finish(const Firing& firing);
+
+  // Checkpoints (run_checkpoint.cpp)
+  void check_resume();
+  bool is_memory_good(const records::Checkpoint& c) const;
+  double restore(const records::Checkpoint& c);
+  /// A checkpoint of y_ at t.
+  void save(double t);
+  void save_now_and_then();
+  /// On request, at the last sample or the end of the last step.
+  SimulateOutcome halt(double t);
+
+  // Failures (run_failure.cpp)
+  /// Runs what evaluates the equations; on failure closes the sink first, so that the samples so far are kept.
+  template <class Action>
+  void guard(const Action& action) {
+    try {
+      action();
+    } catch (...) {
+      fail_as_thrown();
+    }
+  }
+  /// In a handler: what was thrown, as the failure of this run.
+  [[noreturn]] void fail_as_thrown();
+  /// `tried`: the time of the evaluation that gave no finite number, in a step from t.
+  [[noreturn]] void fail_non_finite(double t, double tried);
+  [[noreturn]] void fail_diverged(double t, const std::string& what);
+  [[noreturn]] void fail_stalled(double t, const std::string& detail);
+  [[noreturn]] void finish_failed(double t, const char* id, const std::string& what, const std::string& advice);
+
+  const records::SystemSpec& spec_;
+  records::ResultSink& sink_;
+  const SimulateOptions& options_;
+  Diagnostics& diagnostics_;
+  RunSetup setup_;
+  Timeline timeline_;
+  SystemOde ode_;
+  LinearLimit limit_;
+  VectorXd reach_;
+  EnergyMonitor monitor_;
+  std::unique_ptr<Stepper> stepper_;
+  VectorXd y_, y_dot_;
+  VectorXd gaps_, last_gaps_, trial_gaps_;  ///< of the signals of events, from their values
+  records::Checkpoint checkpoint_, restored_;
+  std::chrono::steady_clock::time_point saved_at_;
+  Progress progress_;
+  std::optional<SimulateOutcome> outcome_;
+  double last_sample_ = -std::numeric_limits<double>::infinity();
+  double passed_ = -std::numeric_limits<double>::infinity();   ///< the last stop whose events have come
+  Stop stop_;                                                  ///< the next one, or the one just met
+  double crossed_ = -std::numeric_limits<double>::infinity();  ///< the last stop whose jumps are logged
+  bool is_started_ = false;                                    ///< the stepper is
+  int num_tiny_ = 0;
+};
+
+}  // namespace bough::solver

@@ -1,0 +1,73 @@
+#include "solver/integrate/run_setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "solver/system/impl.hpp"
+
+namespace bough::solver {
+
+RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics) {
+  bool is_sound = true;
+  for (int b = 0; b < system.num_bodies(); ++b) is_sound = is_sound && system.is_sound(b);
+  const int errors = diagnostics.num_errors();
+  Sensors sensors = Sensors::build(system, spec, diagnostics);
+  is_sound = is_sound && diagnostics.num_errors() == errors;
+  RunSetup setup{make_run_plan(spec.simulation, diagnostics), Recorder(system, std::move(sensors)), {}, {}};
+  if (is_sound) setup.recorder.choose(spec.simulation.record, spec.simulation.at, diagnostics);
+  setup.triggers = Triggers::build(spec, setup.recorder, is_sound, diagnostics);
+  setup.integrator = spec.simulation.integrator;
+  if (setup.integrator == "auto" && diagnostics.num_errors() == 0)
+    setup.integrator = choose_integrator(system, spec.simulation, setup.plan.output_step, diagnostics);
+  return setup;
+}
+
+double calc_fastest_frequency(const System& system) {
+  const Tree& tree = system.impl().tree;
+  MatrixXd K = MatrixXd::Zero(tree.num_u, tree.num_u);
+  for (const TreeBody& tb : tree.bodies) {
+    const int n = tb.body.num_modes();
+    K.block(tb.eta_dot_offset(), tb.eta_dot_offset(), n, n) = tb.body.K();
+    for (int i = 0; i < std::min<int>(tb.num_hinge_u(), static_cast<int>(tb.stiffness.size())); ++i)
+      K(tb.u_offset + i, tb.u_offset + i) = tb.stiffness[i];
+  }
+  if (K.isZero(0)) return 0;
+  const auto data = system.make_data();
+  VectorXd q(system.num_q()), u(system.num_u()), force;
+  system.calc_initial_state(q, u);
+  calc_kinematics(system, *data, system.impl().start, q, u);
+  add_forces(system, *data, system.impl().start);
+  MatrixXd M;
+  calc_dense_equations(tree, data->tree, M, force);
+  const Eigen::LLT<MatrixXd> factor(M);
+  if (factor.info() != Eigen::Success) return 0;
+  // The largest eigenvalue of L⁻¹ K L⁻ᵀ.
+  MatrixXd A = factor.matrixL().solve(MatrixXd(0.5 * (K + K.transpose())));
+  A = factor.matrixL().solve(MatrixXd(A.transpose()));
+  const double largest = Eigen::SelfAdjointEigenSolver<MatrixXd>(0.5 * (A + A.transpose()), Eigen::EigenvaluesOnly)
+                             .eigenvalues()
+                             .tail(1)[0];
+  return std::sqrt(std::max(0.0, largest));
+}
+
+std::string choose_integrator(const System& system, const records::SimulationRecord& simulation, double output_step,
+                              Diagnostics& diagnostics) {
+  const double fastest = calc_fastest_frequency(system);
+  std::ostringstream why;
+  std::string choice = "adams";
+  if (fastest * output_step > kFastMode) {
+    choice = "bdf";
+    why << "the fastest mode swings at " << fastest << " rad per unit of time, " << fastest * output_step
+        << " rad between samples, which explicit steps would have to follow; bdf damps it out";
+  } else if (simulation.relative_tolerance < 1e-10) {
+    choice = "rk";
+    why << "relative_tolerance " << simulation.relative_tolerance << " is cheaper to meet at order 8";
+  } else {
+    why << "the fastest mode swings at " << fastest << " rad per unit of time, which steps can follow";
+  }
+  diagnostics.note("run.integrator-chosen", simulation.at, "integrator " + choice + " is taken: " + why.str());
+  return choice;
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,63 @@
+#include "solver/integrate/timeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/diagnostic.hpp"
+
+namespace bough::solver {
+
+Timeline::Timeline(const RunPlan& plan, std::vector<double> restarts, std::vector<double> landmarks)
+    : plan_(plan), close_(1e-12 * (plan.end - plan.start)) {
+  num_outputs_ = 1 + std::max(1L, std::lround(std::ceil((plan.end - plan.start) / plan.output_step - 1e-9)));
+  const auto is_inside = [&](double t) { return t > plan.start + close_ && t < plan.end - close_; };
+  std::sort(restarts.begin(), restarts.end());
+  for (size_t i = 0; i < restarts.size(); ++i) {
+    if (!is_inside(restarts[i])) continue;
+    const double first = restarts[i];
+    while (i + 1 < restarts.size() && restarts[i + 1] - first <= close_) ++i;
+    stops_.push_back({restarts[i], std::nextafter(first, plan.start), true});
+  }
+  stops_.push_back({plan.end, plan.end, true});
+  const auto earlier = [](const Stop& a, const Stop& b) { return a.time < b.time; };
+  std::vector<Stop> passed;
+  for (const double t : landmarks) {
+    if (is_inside(t) && std::abs(snap(t) - t) == 0) passed.push_back({t, t, false});
+  }
+  std::sort(passed.begin(), passed.end(), earlier);
+  const auto is_jump = [&](const Stop& s) {
+    return std::binary_search(stops_.begin(), stops_.end(), s, earlier);  // by time
+  };
+  passed.erase(std::remove_if(passed.begin(), passed.end(), is_jump), passed.end());
+  stops_.insert(stops_.end(), passed.begin(), passed.end());
+  std::sort(stops_.begin(), stops_.end(), earlier);
+  next_ = calc_output(0);
+}
+
+double Timeline::snap(double t) const {
+  const auto at =
+      std::lower_bound(stops_.begin(), stops_.end(), t - close_, [](const Stop& s, double x) { return s.time < x; });
+  return at != stops_.end() && at->time <= t + close_ ? at->time : t;
+}
+
+double Timeline::calc_output(long i) const {
+  if (i >= num_outputs_) return std::numeric_limits<double>::infinity();
+  if (i == num_outputs_ - 1) return plan_.end;
+  return snap(plan_.start + static_cast<double>(i) * plan_.output_step);
+}
+
+void Timeline::take_output() { next_ = calc_output(++index_); }
+
+void Timeline::skip_outputs(double t) {
+  index_ = std::clamp(std::lround(std::floor((t - plan_.start) / plan_.output_step)) - 1, 0L, num_outputs_);
+  while (index_ < num_outputs_ && calc_output(index_) <= t + close_) ++index_;
+  next_ = calc_output(index_);
+}
+
+const Stop& Timeline::find_stop(double t) const {
+  const auto at = std::upper_bound(stops_.begin(), stops_.end(), t, [](double x, const Stop& s) { return x < s.time; });
+  BOUGH_DEMAND(at != stops_.end());
+  return *at;
+}
+
+}  // namespace bough::solver

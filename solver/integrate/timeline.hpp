@@ -1,0 +1,60 @@
+#pragma once
+/// \file What a run meets on its way: samples, jumps, landmarks, events at a time, its end.
+#include <limits>
+#include <vector>
+
+#include "formats/records/system_spec.hpp"
+
+namespace bough::solver {
+
+/// A time that no step passes. Its right-hand side is asked for times up to `latest` <= time only: before a jump for
+/// earlier ones, so that the last step sees the values before it; what follows starts at `time` with those after it.
+struct Stop {
+  double time = 0, latest = 0;
+  bool restarts = false;  ///< a jump, or an event at a time: the integrator drops its history
+};
+
+/// Effective division of [simulation].
+struct RunPlan {
+  double start = 0, end = 0, output_step = 0;
+  double step = 0;  ///< rk4: effective step; others: the largest step, 0 = free
+};
+
+/// Checks [simulation]: "run.unknown-integrator", "run.bad-simulation"; note "run.step-adjusted" when rk4's step does
+/// not divide output_step.
+RunPlan make_run_plan(const records::SimulationRecord& simulation, Diagnostics& diagnostics);
+
+/// One queue of samples and stops. Times closer together than 1e-12 of the duration are one, the jump's. Samples are
+/// counted, not stored: start, start + output_step, ..., exactly the end.
+class Timeline {
+ public:
+  /// `restarts` (jumps, events at a time) and `landmarks`: in any order, inside the run or not.
+  Timeline(const RunPlan& plan, std::vector<double> restarts, std::vector<double> landmarks);
+  explicit Timeline(const RunPlan& plan) : Timeline(plan, {}, {}) {}
+
+  double start() const { return plan_.start; }
+  double end() const { return plan_.end; }
+  long num_outputs() const { return num_outputs_; }
+  double calc_output(long i) const;
+  /// The next sample that has not been taken; infinite after the last.
+  double next_output() const { return next_; }
+  long next_index() const { return index_; }
+  void take_output();
+  /// Passes over the samples up to t, and t itself.
+  void skip_outputs(double t);
+  /// The first stop past t; the end is one.
+  const Stop& find_stop(double t) const;
+  /// Times that are one.
+  double resolution() const { return close_; }
+
+ private:
+  double snap(double t) const;
+
+  RunPlan plan_;
+  double close_ = 0;
+  long num_outputs_ = 0, index_ = 0;
+  double next_ = 0;
+  std::vector<Stop> stops_;
+};
+
+}  // namespace bough::solver

@@ -1,0 +1,276 @@
+"""Runs from outside: what check foresees, what a resume accepts, how energy, events and samples are told."""
+import json
+import os
+import unittest
+
+import h5py
+import numpy as np
+
+from support import ProgramTest
+
+SATELLITE = """[[body]]
+name = "sat"
+mass = 1.0
+inertia = [5.0, 2.0, 9.0, 0.0, 0.0, 0.0]
+
+[[hinge]]
+name = "f"
+type = "free"
+child = "sat"
+rate = [0.1, 0.0, 1.0, 0.0, 0.0, 0.0]
+
+[[function]]
+name = "thrust"
+type = "table"
+file = "thrust.csv"
+
+[[force]]
+name = "push"
+body = "sat"
+force = [0.0, 0.0, 1.0]
+function = "thrust"
+
+[simulation]
+duration = 4.0
+output_step = 0.1
+"""
+
+PENDULUM = """[[body]]
+name = "bob"
+mass = 1.0
+cg = [0.0, -1.0, 0.0]
+inertia = [0.001, 0.001, 0.001, 0.0, 0.0, 0.0]
+
+[[hinge]]
+name = "pin"
+type = "revolute"
+child = "bob"
+position = 1.0
+
+[[sensor]]
+name = "angle"
+type = "hinge_angle"
+hinge = "pin"
+
+[simulation]
+duration = 2.0
+output_step = 0.1
+gravity = [0.0, -9.81, 0.0]
+"""
+
+
+class Check(ProgramTest):
+    def test_check_refuses_what_run_refuses(self):
+        for old, new, error in [('hinge = "pin"', 'hinge = "pin"\ncoordinate = 3', "sensor.bad-coordinate"),
+                                ("duration = 2.0", "duration = 2.0\nstart = 1e18", "run.bad-simulation"),
+                                ("duration = 2.0", 'duration = 2.0\nrecord = ["hinge"]', "run.unknown-group"),
+                                ("[simulation]", '[[event]]\nname = "e"\nsignal = "angel"\n[simulation]', "run.unknown-signal"),
+                                ("[simulation]", '[[sensor]]\nname = "s"\ntype = "position"\nbody = "bob"\nnode = 5\n[simulation]',
+                                 "sensor.unknown-node")]:
+            with self.subTest(error):
+                self.write("p.toml", PENDULUM.replace(old, new))
+                checked = self.fails(1, "check", "p.toml", error=error)
+                run = self.fails(1, "run", "p.toml", error=error)
+                self.assertFalse(os.path.exists(self.path("p.h5")))
+                lines = [line for line in checked.stderr.splitlines() if "error:" in line]
+                self.assertEqual(lines, [line for line in run.stderr.splitlines() if "error:" in line])
+
+    def test_a_ball_joint_is_not_asked_for_three_functions(self):
+        self.write("p.toml", PENDULUM.replace('type = "revolute"', 'type = "spherical"\nmotion = "f"').replace(
+            "position = 1.0", "").replace("[simulation]", '[[function]]\nname = "f"\ntype = "constant"\nvalue = 0.0\n[simulation]'))
+        result = self.fails(1, "check", "p.toml", error="system.prescribed-rotation")
+        self.assertNotIn("expected 3", result.stderr)
+
+    def test_all_errors_in_one_round(self):
+        self.write("four.toml", """[[body]]
+name = "a"
+mass = 1.0
+inertia = [1.0, 1.0, -1.0, 0.0, 0.0, 0.0]
+[[body]]
+name = "b"
+mass = 1.0
+inertia = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]
+[[body]]
+name = "c"
+file = "none.h5"
+[[hinge]]
+name = "h"
+type = "revolute"
+parent = "b"
+parent_node = 7
+child = "a"
+[[force]]
+name = "f"
+body = "b"
+node = 9
+force = [1.0, 0.0, 0.0]
+[[sensor]]
+name = "s"
+type = "position"
+body = "b"
+node = 5
+[[sensor]]
+name = "on_a"
+type = "position"
+body = "a"
+node = 8
+[[sensor]]
+name = "on_c"
+type = "position"
+body = "c"
+node = 8
+[[event]]
+name = "e"
+signal = "on_d:x"
+[simulation]
+duration = 1.0
+start = 1e18
+""")
+        result = self.fails(1, "check", "four.toml")
+        for error, line in [("system.bad-inertia", 1), ("cli.no-body-file", 9), ("system.unknown-node", 12),
+                            ("system.unknown-node", 18), ("sensor.unknown-node", 23), ("run.bad-simulation", 41)]:
+            self.assertRegex(result.stderr, rf"four.toml:{line}[:\d]*: error: .*\[{error}\]")
+        # What follows from those is not said.
+        self.assertEqual(result.stderr.count("error:"), 6, result.stderr)
+
+
+class Resume(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("thrust.csv", "0 0\n1 1\n4 0\n")
+        self.write("sat.toml", SATELLITE)
+        self.bough("run", "sat.toml")
+
+    def resume(self, text, **kwargs):
+        self.write("sat.toml", text)
+        return self.bough("run", "sat.toml", "--resume", **kwargs)
+
+    def test_goes_on_with_a_longer_duration(self):
+        self.resume(SATELLITE.replace("duration = 4.0", "duration = 6.0 # longer"))
+        self.write("whole.toml", SATELLITE.replace("duration = 4.0", "duration = 6.0"))
+        self.bough("run", "whole.toml")
+        with h5py.File(self.path("sat.h5")) as f, h5py.File(self.path("whole.h5")) as g:
+            self.assertEqual(f["time"].shape, (61,))
+            self.assertTrue(np.all(np.diff(f["time"][:]) > 0))
+            for path in ["bodies/sat/quaternion", "momentum/angular", "energy/work"]:
+                self.assertLess(np.abs(f[path][:] - g[path][:]).max(), 1e-6, path)
+            self.assertEqual(f.attrs["completed"], 1)
+            # What it began with, and what it went on with.
+            self.assertEqual(f["system"].asstr()[()], SATELLITE)
+            self.assertEqual(list(f["resumed/time"][:]), [4.0])
+            self.assertIn("# longer", f["resumed/system"].asstr()[0])
+            self.assertEqual([row[0] for row in f.attrs["source"]], ["sat.toml", "thrust.csv"])
+
+    def test_refuses_another_system(self):
+        before = open(self.path("sat.h5"), "rb").read()
+        for old, new, line, words in [
+                ("9.0, 0.0", "8.0, 0.0", 4, "body 'sat': inertia is [5, 2, 8, 0, 0, 0], was [5, 2, 9, 0, 0, 0] when the run was started"),
+                ("rate = [0.1", "rate = [0.2", 10, "hinge 'f': rate is"),
+                ("duration = 4.0", "duration = 6.0\nintegrator = \"rk\"", 25, "simulation: integrator was not there"),
+                ("child = \"sat\"\n", "", 6, "missing")]:
+            with self.subTest(words):
+                self.write("sat.toml", SATELLITE.replace(old, new))
+                result = self.bough("run", "sat.toml", "--resume", code=1)
+                self.assertIn(words, result.stderr)
+                if words != "missing":
+                    self.assertIn("[toml.changed]", result.stderr)
+                    self.assertIn(f"sat.toml:{line}", result.stderr)
+        self.assertEqual(open(self.path("sat.h5"), "rb").read(), before)
+
+    def test_refuses_another_table(self):
+        self.write("thrust.csv", "0 0\n1 2\n4 0\n")
+        result = self.resume(SATELLITE.replace("duration = 4.0", "duration = 6.0"), code=1)
+        self.assertIn("thrust.csv: error: the file is not the one that the run was started with", result.stderr)
+        self.assertIn("[cli.changed-input]", result.stderr)
+
+    def test_a_window_that_begins_later(self):
+        # The kill comes before the first sample that is written.
+        text = SATELLITE.replace("output_step = 0.1", "output_step = 0.1\noutput_from = 3.05\noutput_every = 2")
+        self.write("late.toml", text.replace("duration = 4.0", "duration = 3.1"))
+        self.bough("run", "late.toml")
+        with h5py.File(self.path("late.h5")) as f:
+            self.assertEqual(list(f["time"][:]), [3.1])
+        self.write("late.toml", text.replace("output_from", "divergence_limit = 1e5\noutput_from"))
+        self.bough("run", "late.toml", "--resume")
+        with h5py.File(self.path("late.h5")) as f:
+            self.assertTrue(np.allclose(f["time"][:], [3.1, 3.2, 3.4, 3.6, 3.8, 4.0]))
+
+
+class Told(ProgramTest):
+    def test_energy_from_nowhere_is_a_failure_with_results(self):
+        self.write("p.toml", PENDULUM.replace("position = 1.0", 'motion = "jump"').replace(
+            "[simulation]", '[[function]]\nname = "jump"\ntype = "step"\nvalue = 1.0\nat = 0.5\n[simulation]'))
+        result = self.bough("run", "p.toml", code=3)
+        self.assertIn("completed at t = 2", result.stdout)
+        self.assertIn("worst energy error 1.0e+00", result.stdout)
+        self.assertIn("[run.energy-error]", result.stderr)
+        with h5py.File(self.path("p.h5")) as f:
+            self.assertAlmostEqual(f["energy"].attrs["energy_error"], 1, delta=1e-6)
+            self.assertEqual(f.attrs["completed"], 1)
+            self.assertEqual(f["time"].shape, (21,))
+        report = self.bough("run", "p.toml", "--json", code=3)
+        self.assertAlmostEqual(json.loads(report.stdout)["energy_error"], 1, delta=1e-6)
+
+    def test_an_event_stops_the_run(self):
+        self.write("p.toml", PENDULUM.replace("[simulation]", """[[event]]
+name = "lowest"
+signal = "angle"
+value = 0.0
+action = "stop"
+[[event]]
+name = "half"
+signal = "/hinges/pin/q"
+value = 0.5
+direction = "falling"
+[simulation]"""))
+        result = self.bough("run", "p.toml")
+        self.assertIn("stopped by event 'lowest': angle falls through 0 at t = 0.5", result.stdout)
+        with h5py.File(self.path("p.h5")) as f:
+            self.assertEqual(f.attrs["completed"], 1)
+            self.assertIn("stopped by event 'lowest'", f.attrs["reason"])
+            self.assertLess(abs(f["sensors/angle"][-1]), 1e-9)
+            what = [x.decode() for x in f["events/what"][:]]
+            self.assertEqual(what, ["event 'half': /hinges/pin/q falls through 0.5", "event 'lowest': angle falls through 0"])
+        self.assertIn("complete already: stopped by event", self.bough("run", "p.toml", "--resume").stdout)
+
+    def test_only_what_is_asked_for_is_written(self):
+        self.write("p.toml", PENDULUM.replace("duration = 2.0", 'duration = 2.0\nrecord = ["sensors"]\noutput_every = 5'))
+        self.bough("run", "p.toml")
+        with h5py.File(self.path("p.h5")) as f:
+            self.assertEqual(sorted(f["sensors"]), ["angle"])
+            self.assertNotIn("bodies", f)
+            self.assertEqual(f["time"].shape, (5,))
+            self.assertIn("energy_error", f["energy"].attrs)
+
+    def test_relative_accelerations(self):
+        # Relative to a body that turns with it, a point of that body rests, as its riders see it.
+        text = PENDULUM.replace("inertia =", 'nodes = [{id = 1, position = [0.0, -2.0, 0.0]}]\ninertia =')
+        for kind in ["velocity", "acceleration", "angular_velocity", "angular_acceleration"]:
+            for observer in ["turning", "fixed"]:
+                text = text.replace("[simulation]", f'[[sensor]]\nname = "{kind}_{observer}"\ntype = "{kind}"\nbody = "bob"\n'
+                                    f'node = 1\nrelative_to = "bob"\nobserver = "{observer}"\n[simulation]')
+        self.write("p.toml", text)
+        self.bough("run", "p.toml")
+        with h5py.File(self.path("p.h5")) as f:
+            for kind in ["velocity", "acceleration", "angular_velocity", "angular_acceleration"]:
+                self.assertLess(np.abs(f[f"sensors/{kind}_turning"][:]).max(), 1e-12, kind)
+            rate, q = f["hinges/pin/qdot"][:], f["hinges/pin/q"][:]
+            expected = 2 * rate[:, None] * np.stack([np.cos(q), np.sin(q), 0 * q], axis=1)
+            self.assertLess(np.abs(f["sensors/velocity_fixed"][:] - expected).max(), 1e-12)
+        self.write("bad.toml", PENDULUM.replace('hinge = "pin"', 'hinge = "pin"\nobserver = "fixed"'))
+        self.fails(1, "check", "bad.toml", error="toml.conflicting-keys")
+
+    def test_a_tiny_largest_step(self):
+        self.write("p.toml", PENDULUM.replace("duration = 2.0", "duration = 20.0\nstep = 1e-12"))
+        self.fails(1, "run", "p.toml", error="run.bad-simulation", says=["step asks for more than 1e11 steps"])
+
+    def test_a_small_largest_step_keeps_the_accuracy(self):
+        errors = []
+        for step in ["", "step = 1e-4\n"]:
+            self.write("p.toml", PENDULUM.replace("duration = 2.0", step + "duration = 1.0"))
+            errors.append(json.loads(self.bough("run", "p.toml", "--json").stdout)["energy_error"])
+        self.assertLess(errors[1], max(10 * errors[0], 1e-8), errors)
+
+
+if __name__ == "__main__":
+    unittest.main()
