@@ -50,7 +50,8 @@ struct HingeRecord {
   Vector3d axis2 = Vector3d::UnitY();              ///< universal: second axis, in Hp at q = 0
   std::vector<double> stiffness, damping, null_position;  ///< per hinge coordinate; empty = 0
   std::vector<double> position, rate;  ///< initial; spherical/free orientation as quaternion w,x,y,z in position
-  std::vector<std::string> motion;     ///< prescribed: function name per coordinate ("" = free); all or none
+  std::vector<std::string> motion;     ///< prescribed: function name per coordinate ("" = free)
+  std::vector<bool> locked;            ///< at the start, per hinge rate; empty: none
   SourceLocation at;
 };
 

@@ -9,6 +9,29 @@ namespace bough::solver {
 
 namespace {
 using Amplitudes = AffineField::Amplitudes;
+
+// D = Σ 2ζ_i ω_i (M φ_i)(M φ_i)ᵀ over the motions K φ = ω² M φ, by rising ω. Damping belongs to them, not to
+// coordinates.
+MatrixXd make_damping(const MatrixXd& M, const MatrixXd& K, const std::vector<double>& ratios) {
+  const Eigen::Index n = M.rows();
+  const auto ratio = [&](Eigen::Index j) { return ratios.size() == 1 ? ratios[0] : ratios[static_cast<size_t>(j)]; };
+  MatrixXd D = MatrixXd::Zero(n, n);
+  const auto is_nearly_diagonal = [](const MatrixXd& A) {
+    const VectorXd root = A.diagonal().cwiseAbs().cwiseSqrt();
+    const MatrixXd rest = A - MatrixXd(A.diagonal().asDiagonal());
+    return (rest.cwiseAbs().array() <= 1e-9 * (root * root.transpose()).array()).all();
+  };
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> motions(K, M);
+  if ((is_nearly_diagonal(M) && is_nearly_diagonal(K)) || motions.info() != Eigen::Success) {
+    for (Eigen::Index j = 0; j < n; ++j) D(j, j) = 2 * ratio(j) * std::sqrt(std::max(0.0, K(j, j) * M(j, j)));
+    return D;
+  }
+  const MatrixXd A = M * motions.eigenvectors();
+  for (Eigen::Index i = 0; i < n; ++i)
+    D += 2 * ratio(i) * std::sqrt(std::max(0.0, motions.eigenvalues()[i])) * A.col(i) * A.col(i).transpose();
+  return D;
+}
+
 }  // namespace
 
 Body Body::make_rigid(double mass, const Vector3d& cg, const Matrix3d& inertia_about_cg) {
@@ -43,10 +66,7 @@ Body Body::make_flexible(const records::FlexBody& flex, int num_modes, bool stif
         body.K_ -= a * flex.kg_inertial[i].topLeftCorner(n, n);
   body.D_ = MatrixXd::Zero(n, n);
   if (!damping_ratios.empty()) {
-    for (int j = 0; j < n; ++j) {
-      const double ratio = damping_ratios.size() == 1 ? damping_ratios[0] : damping_ratios[static_cast<size_t>(j)];
-      body.D_(j, j) = 2 * ratio * std::sqrt(body.K_(j, j) * body.M_(j, j));
-    }
+    body.D_ = make_damping(body.M_, body.K_, damping_ratios);
   } else if (flex.modal_damping.size() > 0) {
     body.D_ = flex.modal_damping.topLeftCorner(n, n);
   }
@@ -95,6 +115,7 @@ void Body::add_second_order(const records::FlexBody& flex) {
 
 void Body::add_flexible_nodes(const records::FlexBody& flex) {
   nodes_.emplace_back();
+  nodes_[0].is_material = !flex.is_free_free || n_ == 0;
   nodes_[0].phi = nodes_[0].psi = Matrix3Xd::Zero(3, n_);
   // A mode moves the mass by √(M_jj / m) in the mean; rotations are that over the body's size.
   const VectorXd mean = (M_.diagonal().cwiseMax(0) / std::max(mass_, 1e-300)).cwiseSqrt();

@@ -1,6 +1,21 @@
 #include "solver/forces/applied.hpp"
 
+#include <cmath>
+#include <sstream>
+
 namespace bough::solver {
+
+namespace {
+
+[[noreturn]] void fail_spring(const TreeBody& tb, double t) {
+  std::ostringstream what;
+  what << "the spring of hinge '" << tb.hinge_name << "' is turned by more than 343 degrees at t = " << t;
+  throw ComputationError("solver.spring-past-turn", tb.hinge_at, what.str(),
+                         "springs of spherical and free hinges act in the rotation vector, which ends at one turn: use "
+                         "revolute or universal hinges where bodies turn further");
+}
+
+}  // namespace
 
 void add_marker_wrench(const Tree& tree, int marker, const Vector3d& f, const Vector3d& t, TreeData& data) {
   const Marker& m = tree.markers[static_cast<size_t>(marker)];
@@ -50,8 +65,10 @@ void add_applied_force(const AppliedForce& force, const Tree& tree, double t, Tr
 void add_hinge_forces(const Tree& tree, TreeData& data) {
   for (const TreeBody& tb : tree.bodies) {
     double* force = data.hinge_force.data() + tb.u_offset;
-    if (tb.stiffness.size() > 0)
-      tb.hinge->calc_spring(data.q.data() + tb.q_offset, tb.null_position.data(), tb.stiffness.data(), force);
+    if (tb.stiffness.size() > 0 &&
+        std::isnan(
+            tb.hinge->calc_spring(data.q.data() + tb.q_offset, tb.null_position.data(), tb.stiffness.data(), force)))
+      fail_spring(tb, data.t);
     for (int i = 0; i < tb.damping.size(); ++i) force[i] -= tb.damping[i] * data.u[tb.u_offset + i];
   }
 }

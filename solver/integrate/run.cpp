@@ -101,7 +101,7 @@ SimulateOutcome Run::go() {
   if (outcome_) return *outcome_;
   bool restarts = true;
   while (t < timeline_.end()) {
-    const Stop stop = timeline_.find_stop(t);
+    const Stop stop = stop_ = timeline_.find_stop(t);
     if (restarts) {
       stepper_->restart(t, y_, stop.time, stop.latest);
       is_started_ = true;
@@ -121,6 +121,7 @@ SimulateOutcome Run::go() {
     t = stop.time;
     restarts = stop.restarts;
     stepper_->calc_state(t, y_);
+    cross_jump();
     if (const auto ends = pass(stop)) return finish(*ends);
   }
   save(timeline_.end());
@@ -167,6 +168,16 @@ double Run::calc_noise() {
   return noise;
 }
 
+void Run::cross_jump() {
+  if (!stop_.restarts || stop_.time >= timeline_.end()) return;
+  guard([&] {
+    const auto jumps = ode_.cross_jump(stop_.latest, stop_.time, y_);
+    if (crossed_ == stop_.time) return;
+    for (const auto& what : jumps) sink_.write_event({stop_.time, what});
+    crossed_ = stop_.time;
+  });
+}
+
 void Run::take_step(const Stop& stop) {
   const double before = stepper_->time();
   guard([&] { stepper_->step(std::min(stop.time, timeline_.next_output())); });
@@ -187,6 +198,7 @@ bool Run::write_outputs(double t) {
   while (timeline_.next_output() <= t) {
     const double t_out = timeline_.next_output();
     guard([&] { stepper_->calc_state(t_out, y_); });
+    if (t_out == stop_.time) cross_jump();
     const bool saves = timeline_.next_index() % kCheckpointEvery == 0;
     write_outputs_at(t_out);
     if (saves) save(t_out);

@@ -30,6 +30,8 @@ class Run {
   /// Energy of motions too small for the tolerances.
   double calc_noise();
   void take_step(const Stop& stop);
+  /// Takes y_ over the jumps of given rates at stop_, after calc_state at its time; logs them once.
+  void cross_jump();
   /// The samples of the last step up to t; false when the run was asked to stop at one, and did.
   bool write_outputs(double t);
   /// The sample at t, of y_, which is the next one.
@@ -98,8 +100,10 @@ class Run {
   Progress progress_;
   std::optional<SimulateOutcome> outcome_;
   double last_sample_ = -std::numeric_limits<double>::infinity();
-  double passed_ = -std::numeric_limits<double>::infinity();  ///< the last stop whose events have come
-  bool is_started_ = false;                                   ///< the stepper is
+  double passed_ = -std::numeric_limits<double>::infinity();   ///< the last stop whose events have come
+  Stop stop_;                                                  ///< the next one, or the one just met
+  double crossed_ = -std::numeric_limits<double>::infinity();  ///< the last stop whose jumps are logged
+  bool is_started_ = false;                                    ///< the stepper is
   int num_tiny_ = 0;
 };
 

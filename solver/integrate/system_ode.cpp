@@ -21,6 +21,13 @@ void SystemOde::calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, E
   y_dot[num_q_ + num_u_ + 1] = power.dissipated;
 }
 
+std::vector<std::string> SystemOde::cross_jump(double before, double t, Eigen::Ref<VectorXd> y) {
+  std::vector<std::string> events;
+  solver::cross_jump(system_, *data_, before, t, nullptr, y.head(num_q_), y.segment(num_q_, num_u_),
+                     y[num_coordinates()], events);
+  return events;
+}
+
 VectorXd SystemOde::make_initial_state() const {
   VectorXd y = VectorXd::Zero(size());
   system_.calc_initial_state(y.head(num_q_), y.segment(num_q_, num_u_));
@@ -64,10 +71,9 @@ std::string SystemOde::name_first_non_finite(double t, const Eigen::Ref<const Ve
   }
   VectorXd y_dot = VectorXd::Zero(size());
   calc_derivative(t, y, y_dot);
-  for (size_t b = 0; b < impl.tree.bodies.size(); ++b) {
-    const TreeBody& tb = impl.tree.bodies[b];
+  for (const TreeBody& tb : impl.tree.bodies) {
     if (!data_->tree.applied.segment(tb.v_offset, 6 + tb.num_modes()).allFinite())
-      return "the load on body '" + impl.tree.bodies[b].name + "'";
+      return "the load on body '" + tb.name + "'";
   }
   const int row = find_bad(y_dot.tail(size() - num_q_));
   return row < 0 ? "" : "the derivative of " + name_row(num_q_ + row);

@@ -22,6 +22,8 @@ class SystemOde final : public Ode {
   void calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) override;
   const SystemData& data() const { return *data_; }
   VectorXd make_initial_state() const;
+  /// Takes y over the jump at t; `before` is the last moment that sees what was. Describes each jump of a rate.
+  std::vector<std::string> cross_jump(double before, double t, Eigen::Ref<VectorXd> y);
   double get_work(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates()]; }
   double get_dissipated(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates() + 1]; }
   /// "body 'boom' (modal rate 2)" for a row of y.

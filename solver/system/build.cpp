@@ -44,7 +44,8 @@ Marker build_attachment(const std::string& body_name, const Body& body, int node
   const bool is_ball =
       hinge.type == records::HingeType::Spherical && p.isZero(0) && hinge.stiffness.empty() && hinge.damping.empty();
   const bool is_free = hinge.type == records::HingeType::Free;
-  a.node = std::max(0, find_loaded_node(body_name, body, node_id, {true, !is_ball && !is_free}, hinge.at,
+  const bool is_frame = is_free && node_id == 0 && hinge.stiffness.empty() && hinge.damping.empty();
+  a.node = std::max(0, find_loaded_node(body_name, body, node_id, {!is_frame, !is_ball && !is_free}, hinge.at,
                                         "hinge " + quote(hinge.name), diagnostics));
   a.moves = body.nodes()[static_cast<size_t>(a.node)].moves;
   return a;
@@ -149,6 +150,7 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
     auto body = build_body(record, flex, diagnostics);
     const bool rotations_good = check_rotations(hinge, diagnostics);
     if (tb.hinge) build_hinge_coordinates(hinge, functions, tb, diagnostics);
+    check_motion(hinge, spec.simulation, tb, diagnostics);
     const bool is_sound = body && tb.hinge && rotations_good;
     impl.sound.push_back(is_sound);
     if (!is_sound) {

@@ -28,6 +28,10 @@ using FunctionMap = std::map<std::string, const TimeFunction*>;
 void build_hinge_coordinates(const records::HingeRecord& record, const FunctionMap& functions, TreeBody& tb,
                              Diagnostics& diagnostics);
 
+/// Reports "system.motion-jumps" where a prescribed position jumps within the run.
+void check_motion(const records::HingeRecord& record, const records::SimulationRecord& simulation, const TreeBody& tb,
+                  Diagnostics& diagnostics);
+
 /// The function of that name; reports "system.unknown-function" when there is none.
 const TimeFunction* find_function(const FunctionMap& functions, const std::string& name, const SourceLocation& where,
                                   const std::string& user, Diagnostics& diagnostics);
@@ -42,7 +46,8 @@ struct NodeLoad {
   bool force = false, moment = false;
 };
 /// Index of node `id`; -1 with "system.unknown-node", "system.missing-locators" (a force on a stiffened body needs the
-/// node's three) or "system.node-without-rotation" (a moment at a grid of solids) reported.
+/// node's three), "system.node-without-rotation" (a moment at a grid of solids) or "system.frame-node" (the origin of a
+/// free frame) reported.
 int find_loaded_node(const std::string& body_name, const Body& body, int id, NodeLoad load, const SourceLocation& where,
                      const std::string& user, Diagnostics& diagnostics);
 

@@ -138,6 +138,13 @@ int find_loaded_node(const std::string& body_name, const Body& body, int id, Nod
     return -1;
   }
   const Node& node = body.nodes()[static_cast<size_t>(index)];
+  if ((load.force || load.moment) && !node.is_material) {
+    diagnostics.error("system.frame-node", where,
+                      user + " acts at node 0 of body " + quote(body_name) +
+                          ", the origin of a free frame, which is no point of the body",
+                      "name one of its nodes, or reduce the body with a frame at a node");
+    return -1;
+  }
   if (load.moment && node.has_no_rotation()) {
     diagnostics.error("system.node-without-rotation", where,
                       user + " needs the rotation of node " + std::to_string(id) + " of body " + quote(body_name) +

@@ -49,29 +49,59 @@ void build_motion(const records::HingeRecord& r, const FunctionMap& functions, T
                       "use fixed, revolute, universal, prismatic, cylindrical or planar hinges");
     return;
   }
-  if (given != nu || static_cast<int>(r.motion.size()) != nu) {
+  if (static_cast<int>(r.motion.size()) != nu) {
     diagnostics.error("system.bad-count", r.at,
-                      "hinge " + quote(r.name) + ": motion names " + std::to_string(given) + " functions, expected " +
-                          std::to_string(nu) + ", one per coordinate, or none");
+                      "hinge " + quote(r.name) + ": motion names " + std::to_string(r.motion.size()) +
+                          " functions, expected " + std::to_string(nu) + ", one per coordinate (\"\": none)");
     return;
   }
-  for (const auto& name : r.motion) {
-    const TimeFunction* f = find_function(functions, name, r.at, "hinge " + quote(r.name), diagnostics);
-    if (f == nullptr) return;
-    tb.mode[tb.motion.size()] = HingeMode::Prescribed;
-    tb.motion.push_back(f);
+  for (size_t i = 0; i < r.motion.size(); ++i) {
+    tb.motion.push_back(r.motion[i].empty()
+                            ? nullptr
+                            : find_function(functions, r.motion[i], r.at, "hinge " + quote(r.name), diagnostics));
+    if (tb.motion[i] != nullptr) tb.mode[i] = HingeMode::Prescribed;
   }
-  if (!r.stiffness.empty() || !r.damping.empty()) {
+  if (given == nu && (!r.stiffness.empty() || !r.damping.empty())) {
     diagnostics.warning("system.ignored-spring", r.at,
                         "hinge " + quote(r.name) + " has a prescribed motion: its stiffness and damping have no effect",
                         "remove them");
   }
-  if (!r.position.empty() || !r.rate.empty()) {
+  if (given == nu && (!r.position.empty() || !r.rate.empty())) {
     diagnostics.warning("system.ignored-position", r.at,
                         "hinge " + quote(r.name) +
                             " has a prescribed motion: its initial position and rate are those "
                             "of the function",
                         "remove position and rate");
+  }
+}
+
+// Locked coordinates start at rest; an orientation is locked as a whole.
+void build_locks(const records::HingeRecord& r, TreeBody& tb, Diagnostics& diagnostics) {
+  const int nu = tb.hinge->num_u();
+  if (r.locked.empty()) return;
+  if (static_cast<int>(r.locked.size()) != nu) {
+    diagnostics.error("system.bad-count", r.at,
+                      "hinge " + quote(r.name) + ": locked has " + std::to_string(r.locked.size()) +
+                          " values, expected " + std::to_string(nu));
+    return;
+  }
+  const auto first = r.locked.begin();
+  if (!tb.hinge->has_plain_coordinates() && (r.locked[0] != r.locked[1] || r.locked[0] != r.locked[2])) {
+    diagnostics.error("system.partial-lock", r.at,
+                      "hinge " + quote(r.name) + ": of the three rates of an orientation some are locked and some not",
+                      "lock all three or none, or use a universal or revolute hinge");
+    return;
+  }
+  for (int i = 0; i < nu; ++i) {
+    if (!*(first + i)) continue;
+    const auto at = static_cast<size_t>(i);
+    if (tb.mode[at] == HingeMode::Prescribed || tb.initial_u[i] != 0) {
+      diagnostics.error("system.locked-motion", r.at,
+                        "hinge " + quote(r.name) + ": coordinate " + std::to_string(i + 1) +
+                            " is locked and has a motion or an initial rate",
+                        "remove one of them");
+    }
+    tb.mode[at] = HingeMode::Locked;
   }
 }
 }  // namespace
@@ -96,13 +126,20 @@ void build_hinge_coordinates(const records::HingeRecord& r, const FunctionMap& f
   check_count(r, r.damping, nu, "damping", diagnostics);
   tb.initial_q = make_coordinates(r, r.position, *tb.hinge, "position", diagnostics);
   tb.null_position = make_coordinates(r, r.null_position, *tb.hinge, "null_position", diagnostics);
+  // Of the two signs of a quaternion the one within half a turn of the springs' rest: they follow it from there.
+  if (!tb.hinge->has_plain_coordinates() && tb.initial_q.head<4>().dot(tb.null_position.head<4>()) < 0)
+    tb.initial_q.head<4>() *= -1;
   tb.initial_u = VectorXd::Zero(nu);
   if (!r.rate.empty() && check_count(r, r.rate, nu, "rate", diagnostics)) tb.initial_u = as_vector(r.rate);
   tb.mode.assign(static_cast<size_t>(nu), HingeMode::Free);
   build_motion(r, functions, tb, diagnostics);
-  if (tb.motion.empty()) {
-    tb.stiffness = as_vector(r.stiffness);
-    tb.damping = as_vector(r.damping);
+  build_locks(r, tb, diagnostics);
+  tb.stiffness = as_vector(r.stiffness);
+  tb.damping = as_vector(r.damping);
+  for (int i = 0; i < nu; ++i) {
+    if (tb.mode[static_cast<size_t>(i)] != HingeMode::Prescribed) continue;
+    if (i < tb.stiffness.size()) tb.stiffness[i] = 0;
+    if (i < tb.damping.size()) tb.damping[i] = 0;
   }
 }
 

@@ -94,6 +94,14 @@ void set_modes(const System& system, SystemData& data, const Discrete& discrete)
 void evaluate(const System& system, const State& state, SystemData& data, Eigen::Ref<VectorXd> q_dot,
               Eigen::Ref<VectorXd> u_dot);
 
+/// What happens at t where given rates jump: from those just before (functions at `before`, the modes so far) to those
+/// at t (under `modes`, or as they are for nullptr; they stay). Rates of free coordinates get the impulse M⁻¹ of it,
+/// their momenta hold; `work` grows by what the impulse does. u: in and out. Describes each jump in `events`; false
+/// when there is none. Positions do not jump. Allocates.
+bool cross_jump(const System& system, SystemData& data, double before, double t, const Discrete* modes,
+                const Eigen::Ref<const VectorXd>& q, Eigen::Ref<VectorXd> u, double& work,
+                std::vector<std::string>& events);
+
 /// q̇ = N(q) u (prescribed coordinates: their given rates). O(num_bodies).
 void calc_q_dot(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                 const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> q_dot);

@@ -100,6 +100,9 @@ void solve_response(const Tree& tree, TreeData& data, int marker, const Vector6d
 /// are not read) and nothing else acts: momenta along free coordinates hold. After calc_factor.
 void solve_jump(const Tree& tree, TreeData& data, const ConstVectorRef& given, Eigen::Ref<VectorXd> du);
 
+/// The impulse across the hinge of body b along its coordinate i, of the last solve_jump.
+double calc_jump_impulse(const Tree& tree, const TreeData& data, int b, int i);
+
 /// The wrench that the parent puts on body b across its hinge, about Bo, in B. After solve.
 Vector6d calc_hinge_wrench(const Tree& tree, const TreeData& data, int b);
 /// The same at the origin of Hc, in the axes of Hp.

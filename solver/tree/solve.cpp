@@ -182,11 +182,11 @@ void factor_and_solve(const Tree& tree, TreeData& data, Eigen::Ref<VectorXd> u_d
   finish_solve(tree, data, u_dot);
 }
 
-Vector6d calc_hinge_wrench(const Tree& tree, const TreeData& data, int b) {
-  data.demand(Stage::Acceleration);
+namespace {
+
+Vector6d calc_sweep_wrench(const Tree& tree, const TreeData& data, const Sweep& s, int b) {
   const TreeBody& tb = tree[b];
   const BodyData& d = data[b];
-  const Sweep& s = data.motion;
   const Vector6d A = s.A.col(b) - s.b.col(b);  // β holds 𝒫b already
   Vector6d wrench = s.beta.segment<6>(tb.v_offset);
   if (!tb.is_flexible()) return wrench + d.P6 * A;
@@ -196,14 +196,32 @@ Vector6d calc_hinge_wrench(const Tree& tree, const TreeData& data, int b) {
   return wrench;
 }
 
-HingeReaction calc_hinge_reaction(const Tree& tree, const TreeData& data, int b) {
+// From Bo, in B, to the origin of Hc, in Hp.
+HingeReaction move_to_hinge(const Tree& tree, const TreeData& data, int b, const Vector6d& wrench) {
   const TreeBody& tb = tree[b];
-  const Vector6d wrench = calc_hinge_wrench(tree, data, b);
   const MarkerMotion& p = data.markers[static_cast<size_t>(tb.parent_marker)];
   const MarkerMotion& c = data.markers[static_cast<size_t>(tb.child_marker)];
   const Matrix3d R_HpB = p.R.transpose() * data[b].R_PB;
   const Vector3d f = wrench.head<3>(), t = wrench.tail<3>();
   return {R_HpB * f, R_HpB * (t - c.r.cross(f))};
+}
+
+}  // namespace
+
+Vector6d calc_hinge_wrench(const Tree& tree, const TreeData& data, int b) {
+  data.demand(Stage::Acceleration);
+  return calc_sweep_wrench(tree, data, data.motion, b);
+}
+
+HingeReaction calc_hinge_reaction(const Tree& tree, const TreeData& data, int b) {
+  return move_to_hinge(tree, data, b, calc_hinge_wrench(tree, data, b));
+}
+
+double calc_jump_impulse(const Tree& tree, const TreeData& data, int b, int i) {
+  data.demand(Stage::Factor);
+  const HingeReaction r = move_to_hinge(tree, data, b, calc_sweep_wrench(tree, data, data.response, b));
+  const auto H = data[b].hinge.H.col(i);
+  return H.head<3>().dot(r.force) + H.tail<3>().dot(r.moment);
 }
 
 }  // namespace bough::solver

@@ -56,6 +56,22 @@ TEST_P(BodyTest, WithoutSecondOrderFieldTheKineticEnergyIsExact) {
   EXPECT_NEAR(calc_kinetic(body, V_, eta_), exact, 1e-13 * exact);
 }
 
+// Damping belongs to the motions: other coordinates of the same body decay alike.
+TEST_P(BodyTest, DampingRatiosAreThoseOfTheMotionsInAnyCoordinates) {
+  const int n = GetParam();
+  std::vector<double> ratios;
+  for (int j = 0; j < n; ++j) ratios.push_back(0.01 * (j + 1));
+  const MatrixXd &M = flex_.modal_mass, &K = flex_.modal_stiffness;
+  const Body body = Body::make_flexible(flex_, -1, false, ratios);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> motions(K, M);
+  const MatrixXd D = motions.eigenvectors().transpose() * body.D() * motions.eigenvectors();
+  for (int j = 0; j < n; ++j) {
+    const double omega = std::sqrt(motions.eigenvalues()[j]);
+    EXPECT_NEAR(D(j, j), 2 * ratios[static_cast<size_t>(j)] * omega, 1e-12 * omega);
+    EXPECT_LT(D.col(j).cwiseAbs().sum() - D(j, j), 1e-12 * omega);
+  }
+}
+
 TEST_P(BodyTest, MassMatrixIsSymmetric) {
   const Body body = Body::make_flexible(flex_, -1, true, {});
   BodyInertia x = body.make_inertia();

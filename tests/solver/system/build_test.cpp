@@ -356,6 +356,22 @@ TEST_F(BuildTest, UnknownFunction) {
   expect_error("system.unknown-function", "hinge 'pin' names function 'levels'");
 }
 
+// Node 0 of a free frame is no point of the body: nothing can hold or push it.
+TEST_F(BuildTest, OriginOfAFreeFrame) {
+  flex_["arm.h5"].is_free_free = true;
+  spec_.hinges[1].child_node = 0;
+  expect_error("system.frame-node", "hinge 'root' acts at node 0 of body 'arm'");
+  spec_.hinges[1].child_node = 102;
+  EXPECT_EQ(try_build(), "");
+  spec_.forces[0].body = "arm";
+  spec_.forces[0].node = 0;
+  expect_error("system.frame-node", "force 'push' acts at node 0 of body 'arm'");
+  spec_.forces.clear();
+  spec_.hinges[1].type = HingeType::Free;  // passes on nothing
+  spec_.hinges[1].child_node = 0;
+  EXPECT_EQ(try_build(), "");
+}
+
 TEST_F(BuildTest, UnknownLocator) {
   spec_.forces[0].locator = "arm102w";
   expect_error("system.unknown-locator", "names load pattern 'arm102w'");
