@@ -27,6 +27,7 @@ class EnergyMonitor {
   /// the potential energy and the work without dampers. Kinetic energy far above it comes from nowhere.
   double fed() const { return std::max(fed_, noise_); }
   void add_feed(const Energies& e, double work, double dissipated);
+  void add_feed(double energy) { fed_ = std::max(fed_, energy); }
 
   void get_memory(Eigen::Ref<Eigen::VectorXd> memory) const;
   void set_memory(const Eigen::VectorXd& memory);

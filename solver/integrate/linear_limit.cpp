@@ -25,8 +25,10 @@ double calc_body_size(const System& system, int b) {
   const TreeBody& tb = get_body(system, b);
   const Body& body = tb.body;
   Eigen::AlignedBox3d box;
+  double farthest = 0;  // from Bo
   for (const Node& node : body.nodes()) {
     if (node.id != 0) box.extend(node.p);
+    farthest = std::max(farthest, node.p.norm());
   }
   if (tb.on_child.node == 0 && tb.hinge->num_u() < 6) box.extend(tb.on_child.p_KM);
   double size = box.isEmpty() ? 0 : box.diagonal().norm();
@@ -36,7 +38,7 @@ double calc_body_size(const System& system, int b) {
     const double trace = body.M6().bottomRightCorner<3, 3>().trace() - 2 * body.mass() * cg.squaredNorm();
     size = std::max(size, std::sqrt(6 * std::max(0.0, trace) / body.mass()));
   }
-  return size;
+  return farthest > 0 && size > 0 ? std::min(farthest, size) : std::max(farthest, size);
 }
 
 double calc_first_frequency(const System& system, int b) {

@@ -13,8 +13,8 @@ inline constexpr double kLinearLimit = 0.10;
 /// soften the first mode by a quarter of its stiffness (docs/theory/when-stiffening-matters.md).
 inline constexpr double kSpinLimit = 0.5;
 
-/// Size of a body: the longer of the diagonal of the box around its nodes and that of the box of its mass and inertia.
-/// The body origin counts where the body hangs by it.
+/// Size of a body: the largest distance of a node from Bo, but no more than its extent where Bo is far away: the longer
+/// of the diagonal of the box around its nodes (and Bo, where the body hangs by it) and that of the box of its inertia.
 double calc_body_size(const System& system, int body);
 
 /// First frequency of a body alone in its frame, rad per unit of time; 0 when it has none.

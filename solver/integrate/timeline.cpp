@@ -54,6 +54,12 @@ void Timeline::skip_outputs(double t) {
   next_ = calc_output(index_);
 }
 
+bool Timeline::is_restart(double t) const {
+  const auto at =
+      std::lower_bound(stops_.begin(), stops_.end(), t - close_, [](const Stop& s, double x) { return s.time < x; });
+  return at != stops_.end() && at->time <= t + close_ && at->restarts;
+}
+
 const Stop& Timeline::find_stop(double t) const {
   const auto at = std::upper_bound(stops_.begin(), stops_.end(), t, [](double x, const Stop& s) { return x < s.time; });
   BOUGH_DEMAND(at != stops_.end());

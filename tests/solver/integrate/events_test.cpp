@@ -73,7 +73,7 @@ TEST(Locate, FindsTheFarSideOfARoot) {
     const double t = locate_crossing(counted, a, g(a), b, g(b), 1e-12);
     EXPECT_NEAR(t, root, 1.1e-12);
     EXPECT_GT(g(t) * g(b), 0);
-    EXPECT_LT(calls, 60);
+    EXPECT_LE(calls, 100);  // twice what halving takes
   };
   check([](double t) { return t - 0.3; }, 0, 1, 0.3);
   check([](double t) { return 1 - t * t * t * t * t * t * t; }, 0, 40, 1);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "solver/forces/function.hpp"
 #include "solver/integrate/linear_limit.hpp"
 #include "solver/integrate/memory_sink.hpp"
 #include "solver/integrate/run_setup.hpp"
@@ -137,6 +138,7 @@ TEST(Energy, HeightAboveTheOriginHidesNoError) {
   spec.hinges[0].stiffness = {18};
   spec.hinges[0].position = {0.5};
   spec.simulation.duration = 20;
+  spec.simulation.output_step = 10;  // rk ends its steps on the outputs: close ones would hide the tolerance
   spec.simulation.gravity = {0, -9.81, 0};
   spec.simulation.integrator = "rk";
   spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-6;
@@ -204,9 +206,14 @@ TEST(Divergence, SizeIsThatOfTheBody) {
   PointBody points = make_point_body(2, 5, 0.01);
   auto spec = make_one_body(HingeType::Free);
   spec.bodies[0].file = "points.h5";
-  const double near = calc_body_size(build(spec, {{"points.h5", points.make_record("points")}}), 0);
+  const auto size = [&] { return calc_body_size(build(spec, {{"points.h5", points.make_record("points")}}), 0); };
+  const double near = size();
   for (auto& p : points.p) p += Vector3d(1000, 0, 0);
-  EXPECT_NEAR(calc_body_size(build(spec, {{"points.h5", points.make_record("points")}}), 0), near, 1e-6 * near);
+  const double far = size();
+  EXPECT_GT(far, 0.9 * near);
+  EXPECT_LT(far, 4 * near);
+  for (auto& p : points.p) p += Vector3d(1000, 0, 0);
+  EXPECT_NEAR(size(), far, 1e-6 * far);
   // A rod of length 3 by its inertia; its only node is in its middle.
   auto rod = make_one_body(HingeType::Free);
   rod.bodies[0].mass = 4;
@@ -282,7 +289,7 @@ TEST(Samples, WindowAndDecimationLeaveTheMotion) {
   spec.simulation.output_every = 3;
   spec.simulation.record = {"hinges/hinge/q", "energy"};
   const RunResult some = run(spec);
-  EXPECT_THAT(some.sink.time(), ::testing::ElementsAre(6 * 0.05, 9 * 0.05, 12 * 0.05, 15 * 0.05, 18 * 0.05));
+  EXPECT_EQ(some.sink.time(), 0.05 * Eigen::VectorXd::LinSpaced(5, 6, 18));
   EXPECT_EQ(some.sink.get("/hinges/hinge/q")(1, 0), all.sink.get("/hinges/hinge/q")(9, 0));
   EXPECT_EQ(some.sink.get("/energy/strain")(4, 0), all.sink.get("/energy/strain")(18, 0));
   EXPECT_FALSE(some.sink.has("/hinges/hinge/qdot"));
@@ -330,9 +337,10 @@ TEST(Checkpoint, ByTheClockWithinAnInterval) {
     const RunResult whole = run(spec, {}, options);
     ASSERT_GT(whole.sink.checkpoints().size(), 10u) << integrator;
     SimulateOptions resume;
-    resume.resume = whole.sink.checkpoints()[7];
-    EXPECT_GT(resume.resume->time, 0.1);
-    EXPECT_LT(resume.resume->time, 0.9);
+    for (const auto& checkpoint : whole.sink.checkpoints()) {
+      if (checkpoint.time < 0.4) resume.resume = checkpoint;
+    }
+    EXPECT_GT(resume.resume->time, 0.3);
     const RunResult rest = run(spec, {}, resume);
     ASSERT_EQ(rest.sink.num_samples(), 1);
     const double a = whole.sink.get("/hinges/hinge/q")(1, 0), b = rest.sink.get("/hinges/hinge/q")(0, 0);
@@ -369,20 +377,19 @@ TEST(Tables, AShortGustIsNotMissed) {
     table.name = "f";
     table.type = "table";
     table.interpolation = interpolation;
-    table.x = {0};
-    table.y = {0};
+    table.x = {0, 25, 49, 49.9, 49.98};
+    for (int i = -100; i <= 100; ++i) table.x.push_back(50 + 1e-4 * i);
+    table.x.insert(table.x.end(), {50.02, 50.1, 51, 75, 100});
+    for (double x : table.x) table.y.push_back(std::pow(std::max(0.0, 1 - std::pow(100 * (x - 50), 2)), 4));
+    Diagnostics diagnostics;
+    const auto f = make_time_function(table, diagnostics);
     double impulse = 0;
-    for (int i = -100; i <= 100; ++i) {
-      table.x.push_back(50 + 1e-4 * i);
-      table.y.push_back(std::exp(-std::pow(i / 25.0, 2)));
-      impulse += 1e-4 * table.y.back();
-    }
-    table.x.push_back(100);
-    table.y.push_back(0);
+    for (int i = 0; i < 1000000; ++i) impulse += 1e-4 * f->calc(1e-4 * (i + 0.5)).f;
+    EXPECT_GT(impulse, 0.008);
     push(spec, table);
     spec.simulation.duration = 100;
     spec.simulation.output_step = 100;
-    EXPECT_NEAR(run(spec).sink.get("/bodies/body/velocity")(1, 0), impulse / 2, 1e-5 * impulse) << interpolation;
+    EXPECT_NEAR(run(spec).sink.get("/bodies/body/velocity")(1, 0), impulse / 2, 1e-4 * impulse) << interpolation;
   }
 }
 
