@@ -28,7 +28,7 @@ double calc_body_size(const System& system, int b) {
   for (const Node& node : body.nodes()) {
     if (node.id != 0) box.extend(node.p);
   }
-  if (tb.on_child.node == 0 && tb.hinge->num_u() < 6) box.extend(tb.on_child.p_KH);
+  if (tb.on_child.node == 0 && tb.hinge->num_u() < 6) box.extend(tb.on_child.p_KM);
   double size = box.isEmpty() ? 0 : box.diagonal().norm();
   if (body.mass() > 0) {
     // A box of edges a, b, c has tr I = m (a² + b² + c²) / 6 about its middle.
