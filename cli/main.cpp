@@ -1,8 +1,11 @@
 #include <CLI/CLI.hpp>
+#include <functional>
 
 #include "base/diagnostic.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/help_files.hpp"
+#include "cli/common/interrupt.hpp"
+#include "cli/common/memory_limit.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/common/versions.hpp"
 #include "cli/verbs.hpp"
@@ -49,6 +52,17 @@ bool check_verb(const CLI::App& app, int argc, const char* const* argv, const cl
   return true;
 }
 
+/// Prints and gives the exit code: what was asked for is printed whole, or it is a failure.
+int print_checked(const cli::Console& console, const std::function<void()>& print) {
+  try {
+    print();
+    cli::flush_data();
+    return cli::kSuccess;
+  } catch (const Failure& failure) {
+    return cli::report_failure(failure, console);
+  }
+}
+
 int run(int argc, const char* const* argv) {
   CLI::App app("Bough: from a finite-element model to a flexible multibody simulation", "bough");
   app.formatter(cli::make_formatter());
@@ -71,17 +85,19 @@ int run(int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    return console.is_root() ? app.exit(help) : cli::kSuccess;
+    if (!console.is_root()) return cli::kSuccess;
+    return print_checked(console, [&] { app.exit(help); });
   } catch (const CLI::ParseError& error) {
     const auto [what, advice] = cli::describe_parse_error(app, error);
     console.print_error("cli.usage", what, advice);
     return cli::kUsageError;
   }
   if (show_version || show_man_page || show_completion) {
-    console.print_data(show_version    ? cli::describe_versions()
-                       : show_man_page ? cli::make_man_page(app)
-                                       : cli::make_bash_completion(app));
-    return cli::kSuccess;
+    return print_checked(console, [&] {
+      console.print_data(show_version    ? cli::describe_versions()
+                         : show_man_page ? cli::make_man_page(app)
+                                         : cli::make_bash_completion(app));
+    });
   }
   const auto count_given = [&](const char* name) {
     std::size_t count = 0;
@@ -94,7 +110,10 @@ int run(int argc, const char* const* argv) {
     return cli::kUsageError;
   }
   try {
-    return action();
+    cli::set_work_space_aside();
+    const int code = action();
+    cli::flush_data();
+    return code;
   } catch (const Failure& failure) {
     return cli::report_failure(failure, cli::Console(count_given("--quiet") > 0, count_given("--verbose")));
   } catch (const std::bad_alloc&) {
@@ -125,4 +144,8 @@ std::vector<std::string> list_verbs() {
 
 }  // namespace bough::cli
 
-int main(int argc, char** argv) { return run(argc, argv); }
+int main(int argc, char** argv) {
+  bough::cli::prepare_for_memory_limit(argv);
+  bough::cli::secure_streams();
+  return run(argc, argv);
+}

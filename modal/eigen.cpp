@@ -38,11 +38,38 @@ Answer find_answer(const fe::Model& model, const EigenOptions& options) {
   return std::move(*answer);
 }
 
+/// All modes of a model up to this many dofs are found, however many were asked for.
+constexpr int most_whole = 1000;
+
+/// Says which springs took the last free dofs from AUTOSPC's point of view, where that is why there are none.
+[[noreturn]] void refuse_held_model(const fe::Model& model) {
+  std::string what = "the model has no free dof", advice = "check its SPC sets and rigid elements";
+  if (!model.autospc().empty()) {
+    const auto& first = model.autospc().front();
+    what += ": AUTOSPC holds " + std::to_string(model.autospc().size()) + " without stiffness, the first at grid " +
+            std::to_string(first.node);
+    MatrixXd K;
+    for (const auto& element : model.elements()) {
+      K.setZero(element->num_dofs(), element->num_dofs());
+      model.add_stiffness(*element, K);
+      if (K.size() == 0 || K.diagonal().minCoeff() >= 0) continue;
+      what += "; " + element->card() + " " + std::to_string(element->id()) + " has negative stiffness";
+      advice = "correct its sign";
+      break;
+    }
+  }
+  throw ComputationError("modal.no-dofs", {}, what, advice);
+}
+
 }  // namespace
 
 EigenPairs calc_normal_modes(const fe::Model& model, const EigenOptions& options, Diagnostics& diagnostics) {
-  if (model.num_fdofs() == 0)
-    throw ComputationError("modal.no-dofs", {}, "the model has no free dof", "check its SPC sets and rigid elements");
+  if (model.num_fdofs() == 0) refuse_held_model(model);
+  if (model.num_fdofs() > most_whole && options.num_modes > model.num_fdofs() && !options.max_hz)
+    throw InputError("modal.more-than-dofs", {},
+                     std::to_string(options.num_modes) + " modes are asked for, the model has " +
+                         std::to_string(model.num_fdofs()) + " free dofs",
+                     "ask for as many as the motion needs: all of them would take a dense matrix of every dof");
   detail::initialize_slepc();
   auto answer = find_answer(model, options);
   for (const auto& item : answer.said.items()) diagnostics.add(item);

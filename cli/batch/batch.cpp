@@ -36,7 +36,7 @@ struct BatchOptions : CommonOptions {
   std::string campaign, shard;
   int jobs = 0;
   double time_limit = 0;
-  bool dry_run = false, retry = false, restart = false;
+  bool dry_run = false, retry = false, restart = false, force_outside = false;
   int worker_fd = -1;
 };
 
@@ -65,10 +65,11 @@ Shard parse_shard(const std::string& text) {
   return shard;
 }
 
-/// The folder belongs to one campaign with certain inputs; this file says which.
+/// The folder belongs to one campaign with certain inputs; campaign.json says which. Nothing else in it is touched.
 class Folder {
  public:
-  Folder(const fs::path& path, const BatchPlan& plan, bool restart) : path_(path), plan_(plan) {
+  /// Locked for as long as it lives: a second call for the same cases is kept away, and with `restart` any other call.
+  Folder(const fs::path& path, const BatchPlan& plan, const Shard& shard, bool restart) : path_(path), plan_(plan) {
     std::error_code failed;
     fs::create_directories(path, failed);
     if (failed)
@@ -80,25 +81,18 @@ class Folder {
       now["inputs"].push_back({fs::path(file).filename().string(), hash});
     const auto state = (path / "campaign.json").string();
     std::ifstream in(state);
-    if (in) {
-      const auto before = json::parse(in, nullptr, false);
-      if (before != now && !restart) throw describe_change(before, now);
-      if (restart) remove_cases();
-    }
+    const auto before = in ? json::parse(in, nullptr, false) : json();
+    const bool is_own = before.is_object() && before.value("format", "") == "bough-campaign";
+    check_foreign(in ? is_own : !fs::exists(state), is_own);
+    if (is_own && before != now && !restart) throw describe_change(before, now);
+    const auto own = fmt::format(".lock-{}-of-{}", shard.index + 1, shard.count);
+    lock(own);
+    if (restart) remove_cases(own);
     write_text_file(state, now.dump(2) + "\n");
     fingerprint_ = hdf5::calc_sha256(state);
   }
-
-  /// Keeps a second call for the same cases away for as long as this one lives.
-  void lock(const Shard& shard) {
-    const auto name = path_ / fmt::format(".lock-{}-of-{}", shard.index + 1, shard.count);
-    lock_ = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-      throw InputError("batch.busy", {path_.string()}, "another bough batch works on these cases",
-                       "wait until it ends");
-  }
   ~Folder() {
-    if (lock_ >= 0) close(lock_);
+    for (const int lock : locks_) close(lock);
   }
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
@@ -120,15 +114,48 @@ class Folder {
             "choose another folder with -o, or --restart to do every case again"};
   }
 
-  void remove_cases() const {
-    for (const auto& entry : fs::directory_iterator(path_))
-      if (entry.is_directory() && entry.path().filename().string().rfind("case-", 0) == 0) fs::remove_all(entry.path());
+  /// What another hand put at a place that the campaign would write to or clear.
+  void check_foreign(bool may_write_state, bool is_own) const {
+    Diagnostics found;
+    const auto report = [&](const fs::path& path) {
+      found.error("batch.foreign-folder", {path.string()}, "is there already, and not the work of a campaign",
+                  "choose another folder with -o, or move it away");
+    };
+    if (!may_write_state) report(path_ / "campaign.json");
+    for (const char* table : {"outcomes.csv", "outcomes.h5"})
+      if (!is_own && fs::exists(path_ / table)) report(path_ / table);
+    for (const auto& one : plan_.get_cases())
+      if (!is_case_folder(get_case(one.number))) report(get_case(one.number));
+    found.throw_if_errors();
+  }
+
+  void lock(const std::string& name) {
+    const int descriptor = open((path_ / name).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor < 0) return;
+    locks_.push_back(descriptor);
+    if (flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+      throw InputError("batch.busy", {path_.string()}, "another bough batch works on these cases",
+                       "wait until it ends");
+  }
+
+  void remove_cases(const std::string& own_lock) {
+    std::vector<fs::path> cases;
+    for (const auto& entry : fs::directory_iterator(path_)) {
+      const auto name = entry.path().filename().string();
+      if (name.starts_with(".lock-") && name != own_lock) lock(name);
+      const bool is_case = name.starts_with("case-") && name.find_first_not_of("0123456789", 5) == std::string::npos;
+      if (is_case && is_case_folder(entry.path()) && !fs::is_empty(entry.path())) cases.push_back(entry.path());
+    }
+    for (const auto& folder : cases) {
+      clear_case_folder(folder);
+      fs::remove_all(folder);
+    }
   }
 
   fs::path path_;
   const BatchPlan& plan_;
   std::string fingerprint_;
-  int lock_ = -1;
+  std::vector<int> locks_;
 };
 
 std::string join_words(const std::vector<std::string>& words) {
@@ -223,15 +250,14 @@ int run_batch(const BatchOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;  // workers are this process's own; other ranks have nothing to do
   const auto shard = parse_shard(o.shard);
-  const BatchPlan plan(o.campaign, list_verbs());
+  const BatchPlan plan(o.campaign, list_verbs(), o.force_outside);
   const auto folder = fs::absolute(o.output.empty() ? plan.get_spec().name : o.output).lexically_normal();
-  if (o.worker_fd >= 0) return serve_cases(plan, folder, o.worker_fd);
+  if (o.worker_fd >= 0) return serve_cases(plan, folder, o.worker_fd, o.force_outside);
   if (o.dry_run) {
     list_cases(plan, shard, o.json, console);
     return kSuccess;
   }
-  Folder state(folder, plan, o.restart);
-  state.lock(shard);
+  const Folder state(folder, plan, shard, o.restart);
 
   Tally tally;
   std::vector<int> wanted, open;
@@ -248,7 +274,9 @@ int run_batch(const BatchOptions& o) {
   }
 
   PoolOptions pool;
-  pool.command = {"bough", "batch", o.campaign, "-o", folder.string(), "--worker"};
+  pool.command = {"bough", "batch", o.campaign, "-o", folder.string()};
+  if (o.force_outside) pool.command.emplace_back("--force-outside");
+  pool.command.emplace_back("--worker");
   pool.num_workers = o.jobs > 0 ? o.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   pool.time_limit = o.time_limit > 0 ? o.time_limit : plan.get_spec().time_limit;
   pool.stop = &get_stop();
@@ -294,6 +322,7 @@ void add_batch(CLI::App& app, Action& action) {
       ->check(make_positive());
   verb->add_flag("--retry", o->retry, "Do failed cases again");
   verb->add_flag("--restart", o->restart, "Do every case again, also after the campaign has changed");
+  verb->add_flag("--force-outside", o->force_outside, "Let the steps write outside the folder of their case");
   verb->add_flag("--dry-run", o->dry_run, "Check the campaign and list its cases");
   verb->add_option("--worker", o->worker_fd, "Socket of a worker process")->group("");
   add_common_options(*verb, *o, kJson);

@@ -1,6 +1,7 @@
 #include "cli/batch/batch_outcome.hpp"
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -19,6 +20,7 @@ using toml_files::CollectTake;
 namespace {
 
 constexpr std::size_t max_numbers = 1000;
+constexpr const char* kCaseMark = ".bough-case";
 
 InputError fail(const CampaignCollect& wanted, const std::string& what, const std::string& advice) {
   return {"batch.collect", wanted.at, "collect '" + wanted.name + "': " + what, advice};
@@ -66,8 +68,18 @@ std::string format_number(double x) {
   return std::isfinite(x) ? toml_files::make_setting(x, x == std::floor(x) && std::abs(x) < 1e15).text : "";
 }
 
-std::string quote_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+/// Whether a spreadsheet would take the text for a formula.
+bool is_formula(const std::string& text) {
+  if (text.empty() || std::string_view("=+-@\t\r").find(text[0]) == std::string_view::npos) return false;
+  char* end = nullptr;
+  std::strtod(text.c_str(), &end);
+  return *end != '\0';
+}
+
+/// A cell of a CSV file; what a spreadsheet would compute gets the apostrophe by which they mark text.
+std::string quote_cell(const std::string& cell) {
+  const std::string text = is_formula(cell) ? "'" + cell : cell;
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + '"';
@@ -162,8 +174,30 @@ std::optional<BatchOutcome> read_outcome(const fs::path& case_folder) {
   return parse_outcome(text.str());
 }
 
+bool is_case_folder(const fs::path& folder) {
+  std::error_code failed;
+  const auto kind = fs::symlink_status(folder, failed).type();
+  if (kind == fs::file_type::not_found) return true;
+  return kind == fs::file_type::directory &&
+         (fs::is_empty(folder, failed) || fs::exists(folder / kCaseMark, failed) || read_outcome(folder).has_value());
+}
+
+void clear_case_folder(const fs::path& folder) {
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(folder, failed))
+    if (entry.path().filename() != kCaseMark) fs::remove_all(entry.path());
+}
+
+void make_case_folder(const fs::path& folder) {
+  if (!is_case_folder(folder))
+    throw InputError("batch.foreign-folder", {folder.string()}, "is there already, and not the work of a campaign",
+                     "choose another folder with -o, or move it away");
+  fs::create_directories(folder);
+  std::ofstream(folder / kCaseMark) << "bough batch may clear this folder\n";
+}
+
 void write_outcome(const BatchOutcome& outcome, const fs::path& case_folder) {
-  fs::create_directories(case_folder);
+  make_case_folder(case_folder);
   write_text_file((case_folder / "outcome.json").string(), to_text(outcome));
 }
 

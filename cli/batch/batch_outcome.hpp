@@ -21,6 +21,14 @@ struct BatchOutcome {
 std::string to_text(const BatchOutcome& outcome);
 std::optional<BatchOutcome> parse_outcome(const std::string& text);
 
+/// Whether a campaign may clear this folder for a case: it is not there, is empty, or a campaign made it (a mark or an
+/// outcome in it says so). No symbolic link is.
+bool is_case_folder(const std::filesystem::path& folder);
+/// Everything in it goes but the mark, so that a kill in between leaves a folder that is known.
+void clear_case_folder(const std::filesystem::path& folder);
+/// Makes the folder with its mark. Throws InputError("batch.foreign-folder") when it is there and not a case's.
+void make_case_folder(const std::filesystem::path& folder);
+
 /// The outcome kept in this folder; nothing when the case is not over.
 std::optional<BatchOutcome> read_outcome(const std::filesystem::path& case_folder);
 void write_outcome(const BatchOutcome& outcome, const std::filesystem::path& case_folder);

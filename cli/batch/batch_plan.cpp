@@ -49,7 +49,7 @@ std::string describe(const Diagnostics& diagnostics) {
 
 }  // namespace
 
-BatchPlan::BatchPlan(const std::string& campaign_file, const std::vector<std::string>& verbs) {
+BatchPlan::BatchPlan(const std::string& campaign_file, const std::vector<std::string>& verbs, bool may_leave) {
   demand_file(campaign_file);
   campaign_folder_ = fs::absolute(campaign_file).parent_path().string();
   spec_ = toml_files::read_campaign(campaign_file, diagnostics_);
@@ -63,6 +63,7 @@ BatchPlan::BatchPlan(const std::string& campaign_file, const std::vector<std::st
                      "use method = \"latin-hypercube\" or fewer values");
   cases_ = make_cases(spec_);
   check_steps(spec_, verbs, diagnostics_);
+  if (!may_leave) check_places(spec_, diagnostics_);
   carry_all();
   diagnostics_.throw_if_errors();
   outputs_ = find_outputs(spec_, campaign_folder_);

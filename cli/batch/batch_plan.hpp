@@ -15,8 +15,9 @@ class BatchPlan {
  public:
   /// Reads the campaign and every file it changes, and looks every field and key up. Throws InputError with all errors,
   /// at the campaign's lines: batch.unknown-card, batch.unknown-field, batch.ambiguous-card, batch.replicated-card,
-  /// batch.unknown-key, batch.bad-value, batch.bad-step, batch.no-file, batch.too-many-cases.
-  BatchPlan(const std::string& campaign_file, const std::vector<std::string>& verbs);
+  /// batch.unknown-key, batch.bad-value, batch.bad-step, batch.no-file, batch.too-many-cases, and, unless
+  /// the steps `may_leave` the folder of their case, cli.output-outside.
+  BatchPlan(const std::string& campaign_file, const std::vector<std::string>& verbs, bool may_leave = false);
 
   const toml_files::CampaignSpec& get_spec() const { return spec_; }
   const std::vector<BatchCase>& get_cases() const { return cases_; }

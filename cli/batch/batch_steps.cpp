@@ -56,6 +56,17 @@ void check_steps(const CampaignSpec& spec, const std::vector<std::string>& verbs
   }
 }
 
+void check_places(const CampaignSpec& spec, Diagnostics& diagnostics) {
+  for (const auto& step : spec.steps)
+    for (const auto* option : {"-o", "--output", "--vtu", "--fi"}) {
+      const auto path = fs::path(find_option(step.words, {option})).lexically_normal();
+      if (path.is_absolute() || (!path.empty() && *path.begin() == ".."))
+        diagnostics.error("cli.output-outside", step.at,
+                          std::string(option) + " " + path.string() + " does not lie in the folder of the case",
+                          "let the steps write there, or give --force-outside");
+    }
+}
+
 std::vector<std::string> find_outputs(const CampaignSpec& spec, const std::string& folder) {
   std::vector<std::string> outputs;
   for (const auto& step : spec.steps) {

@@ -16,6 +16,9 @@ bool is_input_word(const std::vector<std::string>& words, std::size_t i);
 /// Reports "batch.bad-step": no verb, or {NAME} that is no parameter.
 void check_steps(const toml_files::CampaignSpec& spec, const std::vector<std::string>& verbs, Diagnostics& diagnostics);
 
+/// Reports "cli.output-outside": an output of a step that does not lie in the folder of its case.
+void check_places(const toml_files::CampaignSpec& spec, Diagnostics& diagnostics);
+
 /// What the steps write, by -o or by the verbs' defaults: such a file is the case's own, not one of the same name that
 /// lies beside the campaign.
 std::vector<std::string> find_outputs(const toml_files::CampaignSpec& spec, const std::string& folder);

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "cli/common/options.hpp"
 #include "cli/verbs.hpp"
 
 namespace bough::cli {
@@ -105,8 +106,8 @@ BatchOutcome run_case(const BatchPlan& plan, const BatchCase& one, const fs::pat
   outcome.number = one.number;
   const auto here = folder / plan.get_folder(one.number);
   try {
-    fs::remove_all(here);
-    fs::create_directories(here);
+    if (is_case_folder(here)) clear_case_folder(here);
+    make_case_folder(here);
     crash_if_told(one.number);
     plan.write_files(one, here);
     fs::current_path(here);
@@ -127,7 +128,7 @@ BatchOutcome run_case(const BatchPlan& plan, const BatchCase& one, const fs::pat
   return outcome;
 }
 
-int serve_cases(const BatchPlan& plan, const fs::path& folder, int fd) {
+int serve_cases(const BatchPlan& plan, const fs::path& folder, int fd, bool may_leave) {
   std::string waiting;
   char buffer[256];
   while (true) {
@@ -142,7 +143,9 @@ int serve_cases(const BatchPlan& plan, const fs::path& folder, int fd) {
     const int number = std::atoi(waiting.c_str());
     waiting.erase(0, end + 1);
     if (number < 1 || number > plan.num_cases()) return 1;
-    const auto outcome = run_case(plan, plan.get_cases()[static_cast<std::size_t>(number - 1)], folder);
+    const auto& one = plan.get_cases()[static_cast<std::size_t>(number - 1)];
+    if (!may_leave) confine_outputs((folder / plan.get_folder(number)).string());
+    const auto outcome = run_case(plan, one, folder);
     if (!send_line(fd, to_text(outcome))) return 0;
   }
 }

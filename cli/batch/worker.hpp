@@ -9,7 +9,7 @@ namespace bough::cli {
 BatchOutcome run_case(const BatchPlan& plan, const BatchCase& one, const std::filesystem::path& folder);
 
 /// Reads case numbers, one a line, from the socket `fd`, answers each with the outcome as a line of JSON; 0 when the
-/// other side has closed it.
-int serve_cases(const BatchPlan& plan, const std::filesystem::path& folder, int fd);
+/// other side has closed it. `may_leave`: the steps may write outside the case's folder.
+int serve_cases(const BatchPlan& plan, const std::filesystem::path& folder, int fd, bool may_leave);
 
 }  // namespace bough::cli

@@ -1,8 +1,11 @@
 #include "cli/common/channels.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "cli/common/console.hpp"
+#include "cli/export/export_matrices.hpp"
 #include "formats/records/signal_name.hpp"
 
 namespace bough::cli {
@@ -26,10 +29,28 @@ void add_columns(const std::string& path, const Eigen::MatrixXd& values, const s
 }
 }  // namespace
 
+void warn_incomplete(const std::string& file, Diagnostics& diagnostics) {
+  if (read_file_format(file) != "bough-results") return;
+  const auto state = hdf5::read_run_state(file);
+  if (state.completed) return;
+  const std::string why = state.reason.empty() || state.reason == "running" ? "" : " (" + state.reason + ")";
+  diagnostics.warning("cli.incomplete-run", {file},
+                      fmt::format("the run {}; these are its results up to t = {:g}{}",
+                                  state.is_written ? "still goes on" : "did not complete", state.time, why),
+                      state.is_written ? "do this again when it is through" : "bough run --resume continues it");
+}
+
 std::vector<exports::CsvColumn> choose_columns(const hdf5::ResultsFile& results, const std::string& file,
                                                const std::string& choice) {
   std::string name = choice, component;
-  if (const auto colon = choice.rfind(':'); colon != std::string::npos) {
+  const auto is_there = [&](const std::string& given) {
+    const std::string path = given.starts_with('/') ? given : "/sensors/" + given;
+    return std::any_of(results.channels.begin(), results.channels.end(), [&](const auto& channel) {
+      return channel.first == path || channel.first.starts_with(path + "/");
+    });
+  };
+  // A name may hold a colon itself.
+  if (const auto colon = choice.rfind(':'); colon != std::string::npos && !is_there(choice)) {
     name = choice.substr(0, colon);
     component = choice.substr(colon + 1);
   }

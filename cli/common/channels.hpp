@@ -3,13 +3,22 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.hpp"
 #include "formats/export/csv.hpp"
 #include "formats/hdf5/files.hpp"
 
 namespace bough::cli {
 
-/// Columns for `choice`: a path, a folder ("/bodies/boom") or the name of a sensor, with an optional ":component".
-/// Column names read "sensors/tip_deflection:y". Throws InputError("cli.unknown-channel") with the nearest match.
+/// Names of the components of a channel: x y z, quaternions w x y z, else 1 2 ...; empty for a scalar.
+std::vector<std::string> get_component_names(const std::string& path, int size);
+
+/// Adds "cli.incomplete-run" (warning) when the file holds results of a run that was stopped, was killed or goes on;
+/// nothing for a file of another kind.
+void warn_incomplete(const std::string& file, Diagnostics& diagnostics);
+
+/// Columns for `choice`: a path that is there as it stands; else a path, a folder ("/bodies/boom") or the name of a
+/// sensor, with an optional ":component". Column names read "sensors/tip_deflection:y". Throws
+/// InputError("cli.unknown-channel") with the nearest match.
 std::vector<exports::CsvColumn> choose_columns(const hdf5::ResultsFile& results, const std::string& file,
                                                const std::string& choice);
 

@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <map>
 #include <sstream>
 #include <tuple>
@@ -23,6 +25,16 @@ std::string group_digits(std::size_t number) {
   auto text = std::to_string(number);
   for (auto at = text.size(); at > 3; at -= 3) text.insert(at - 3, ",");
   return text;
+}
+
+/// Thrown once: what a full disk refused is not tried again at the end.
+ComputationError fail_to_print() {
+  const int cause = errno;
+  std::clearerr(stdout);
+  return {"cli.write",
+          {"standard output"},
+          "not everything could be printed" + (cause != 0 ? std::string(": ") + std::strerror(cause) : std::string()),
+          "check where the output goes, and the space left there"};
 }
 }  // namespace
 
@@ -89,7 +101,9 @@ int Console::get_launch_rank() {
 }
 
 void Console::print_data(const std::string& text) const {
-  if (is_root_) std::fwrite(text.data(), 1, text.size(), stdout);
+  if (!is_root_ || text.empty()) return;
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) < text.size()) throw fail_to_print();
 }
 
 void Console::print(const std::string& text) const {
@@ -143,6 +157,11 @@ void Console::show_progress(const std::string& text) {
 void Console::end_progress() {
   if (progress_open_) std::fputc('\n', stderr);
   progress_open_ = false;
+}
+
+void flush_data() {
+  errno = 0;
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw fail_to_print();
 }
 
 Diagnostic locate(Diagnostic diagnostic, const std::string& file) {

@@ -40,7 +40,8 @@ class Console {
   bool is_root() const { return is_root_; }
   void set_rank(int rank) { is_root_ = rank == 0; }
 
-  /// To stdout, also when quiet: the result that was asked for.
+  /// To stdout, also when quiet: the result that was asked for. Throws ComputationError("cli.write") when it is not
+  /// taken.
   void print_data(const std::string& text) const;
   /// To stdout unless quiet: tables and summaries for a reader.
   void print(const std::string& text) const;
@@ -69,6 +70,9 @@ class Console {
   bool progress_open_ = false;
   std::string subject_;
 };
+
+/// Everything printed so far goes out: ComputationError("cli.write") when it does not, or did not before.
+void flush_data();
 
 /// The same message, at `file` when it names no place and does not concern the command line.
 Diagnostic locate(Diagnostic diagnostic, const std::string& file);

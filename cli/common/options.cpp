@@ -11,6 +11,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "base/part_file.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/ranks.hpp"
 #include "cli/common/subcase_failures.hpp"
@@ -34,8 +35,51 @@ void add_common_options(CLI::App& verb, CommonOptions& options, unsigned offers,
   verb.add_flag("-v,--verbose", options.verbosity, "Print more; may be repeated");
 }
 
+namespace {
+
+/// Where this process may write: a property of the process, as its working folder is.
+std::string& get_output_folder() {
+  static std::string folder;
+  return folder;
+}
+
+fs::path find_real_path(const std::string& path) {
+  std::error_code failed;
+  const auto target = find_target(path, failed);
+  const auto real = fs::weakly_canonical(fs::absolute(target, failed), failed);
+  return real.empty() ? fs::path(target) : real;
+}
+
+}  // namespace
+
+bool is_inside(const std::string& path, const std::string& folder) {
+  const auto real = find_real_path(path).lexically_relative(find_real_path(folder.empty() ? "." : folder));
+  return !real.empty() && *real.begin() != "..";
+}
+
+void confine_outputs(const std::string& folder) { get_output_folder() = folder; }
+
+void check_outputs(const CommonOptions& options, const std::vector<std::string>& paths,
+                   const std::vector<std::string>& inputs) {
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (paths[i].empty()) continue;
+    check_output(options, paths[i], inputs);
+    for (std::size_t k = 0; k < i; ++k)
+      if (!paths[k].empty() && find_real_path(paths[k]) == find_real_path(paths[i]))
+        throw InputError("cli.same-output", {paths[i]}, "two outputs of this call would be this one file",
+                         "give each a name of its own");
+  }
+}
+
+void check_place(const std::string& path) {
+  if (get_output_folder().empty() || is_inside(path, get_output_folder())) return;
+  throw InputError("cli.output-outside", {path}, "the file does not lie in " + get_output_folder(),
+                   "let the steps of a campaign write into the case's own folder, or give --force-outside");
+}
+
 void check_output(const CommonOptions& options, const std::string& path, const std::vector<std::string>& inputs) {
   std::error_code ignored;
+  check_place(path);
   for (const auto& input : inputs) {
     if (fs::equivalent(path, input, ignored))
       throw InputError("cli.output-is-input", {path}, "the output would overwrite the input file " + input,
@@ -49,7 +93,12 @@ void check_output(const CommonOptions& options, const std::string& path, const s
     throw ComputationError("cli.write", {path}, fs::is_directory(path, ignored) ? "is a folder" : "is no regular file",
                            "choose a file with -o");
   }
-  const auto parent = fs::path(path).parent_path();
+  std::error_code failed;
+  const auto target = find_target(path, failed);
+  if (failed) throw ComputationError("cli.write", {path}, failed.message(), "choose a file with -o");
+  if (fs::exists(target, ignored) && access(target.c_str(), W_OK) != 0)
+    throw ComputationError("cli.write", {path}, "the file is write-protected", "choose another with -o");
+  const auto parent = fs::path(target).parent_path();
   const std::string folder = parent.empty() ? "." : parent.string();
   if (!fs::is_directory(folder, ignored))
     throw ComputationError("cli.write", {path}, "there is no folder " + folder, "make it, or choose another with -o");

@@ -91,6 +91,7 @@ int run_export(const ExportOptions& o) {
   demand_file(o.file);
   if (!o.output.empty()) check_output(o, o.output, {o.file});
   Diagnostics diagnostics;
+  if (o.format != "bdf") warn_incomplete(o.file, diagnostics);
   if (o.format == "mat") {
     if (o.output.empty()) {
       console.print_error("cli.usage", "--to mat writes no text: give the file with -o", "see bough export --help");

@@ -70,6 +70,7 @@ int run_init(const InitOptions& o) {
   const fs::path folder = o.output.empty() ? fs::path(chosen.folder) : fs::path(o.output);
   for (const auto& file : chosen.files) {
     const auto path = (folder / file.name).string();
+    check_place(path);
     if (!o.force && fs::exists(path)) {
       diagnostics.error("cli.output-exists", {path}, "the file exists", "choose another folder with -o, or --force");
     }

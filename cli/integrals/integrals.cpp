@@ -81,8 +81,7 @@ int run_integrals(const IntegralsOptions& o) {
   demand_file(o.model);
   demand_file(o.matrices);
   const std::string output = o.output.empty() ? std::filesystem::path(o.model).stem().string() + ".FLX" : o.output;
-  check_output(o, output, {o.model, o.matrices, o.layout});
-  if (!o.fi.empty()) check_output(o, o.fi, {o.model, o.matrices, o.layout});
+  check_outputs(o, {output, o.fi}, {o.model, o.matrices, o.layout});
   const auto layout = choose_layout(o, o.digits);
 
   Diagnostics diagnostics;
@@ -129,7 +128,7 @@ void add_integrals(CLI::App& app, Action& action) {
   verb->footer(
       "Example:\n  bough integrals test.inp test.mat -o test.FLX\n"
       "  bough integrals test.inp test.mat --fi test.fi --digits 17 -o test.FLX");
-  verb->callback([&action, o] { action = [o] { return run_integrals(*o); }; });
+  verb->callback([&action, o] { action = [o] { return blame(o->matrices, [&] { return run_integrals(*o); }); }; });
 }
 
 }  // namespace bough::cli

@@ -132,6 +132,11 @@ int run_matrices(const MatricesOptions& options) {
   do_once([&] {
     demand_deck(options.deck);
     check_output(options, options.output, {options.deck});
+    if (options.format == "op4") check_outputs(options, {name_dof_file(options.output)}, {options.deck});
+    if (options.format == "mtx")
+      check_outputs(options,
+                    {insert_name(options.output, "K"), insert_name(options.output, "M"), name_dof_file(options.output)},
+                    {options.deck});
   });
   console.set_rank(fe::initialize_petsc().rank);
 

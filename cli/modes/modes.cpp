@@ -270,8 +270,7 @@ int run_modes(const ModesOptions& options) {
   console.set_subject(options.deck);
   do_once([&] {
     demand_deck(options.deck);
-    if (!options.output.empty()) check_output(options, options.output, {options.deck});
-    if (!options.vtu.empty()) check_output(options, options.vtu, {options.deck});
+    check_outputs(options, {options.output, options.vtu}, {options.deck});
   });
   console.set_rank(fe::initialize_petsc().rank);
 
@@ -320,7 +319,7 @@ int run_modes(const ModesOptions& options) {
     is_first = false;
     if (output.empty()) continue;
     do_once([&] {
-      check_output(options, output, {options.deck});
+      check_outputs(options, {output, options.vtu, vtu == options.vtu ? "" : vtu}, {options.deck});
       hdf5::write_modes(result, output);
     });
     written += "written: " + output + "\n";
@@ -339,7 +338,7 @@ int run_modes(const ModesOptions& options) {
   for (const auto& [path, picture] : pictures) written += "written: " + path + "\n";
   if (!options.json) console.print(written);
   // A rank that ends with an error ends the others: the first one must be through.
-  do_once([] { std::fflush(stdout); });
+  do_once([] { flush_data(); });
   return failures.get_exit_code();
 }
 

@@ -10,6 +10,7 @@
 #include <memory>
 #include <sstream>
 
+#include "base/part_file.hpp"
 #include "cli/common/channels.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
@@ -59,11 +60,16 @@ report::Curve read_points(const std::string& path) {
 void write_picture(const std::string& path, const std::string& svg) {
   const std::string format = has_suffix(path, ".png") ? "png" : has_suffix(path, ".pdf") ? "pdf" : "svg";
   if (format == "svg") return write_text_file(path, svg);
-  const std::string source = path + fmt::format(".part{}.svg", getpid()),
-                    part = path + fmt::format(".part{}", getpid());
-  write_text_file(source, svg);
-  const std::string words[] = {"rsvg-convert",       "--zoom=2",         "--background-color=white",
-                               "--format=" + format, "--output=" + part, source};
+  PartFile source(path), part(path);
+  const auto fail = [&](const std::string& what, const std::string& advice) {
+    return ComputationError("cli.write", {path}, what, advice);
+  };
+  const std::string look = "check the folder, its permissions and the space left";
+  if (part.error() || !source.write(svg.data(), svg.size()))
+    throw fail("the file could not be written: " + (part.error() ? part : source).error().message(), look);
+  const std::string words[] = {
+      "rsvg-convert", "--zoom=2",       "--background-color=white", "--format=" + format, "--output=" + part.get_name(),
+      "--",           source.get_name()};
   std::vector<char*> arguments;
   for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
@@ -71,22 +77,18 @@ void write_picture(const std::string& path, const std::string& svg) {
   int status = 0;
   const int failed = posix_spawnp(&child, words[0].c_str(), nullptr, nullptr, arguments.data(), environ);
   const bool is_drawn = failed == 0 && waitpid(child, &status, 0) == child && WIFEXITED(status);
-  std::error_code ignored, error;
-  fs::remove(source, ignored);
-  if (is_drawn && WEXITSTATUS(status) == 0) fs::rename(part, path, error);
-  if (is_drawn && WEXITSTATUS(status) == 0 && !error) return;
-  fs::remove(part, ignored);
+  if (is_drawn && WEXITSTATUS(status) == 0 && part.commit()) return;
   // 127: some systems report a missing program only through the child.
   if (failed != 0 || !is_drawn || WEXITSTATUS(status) == 127)
     throw ComputationError("cli.no-converter", {path}, "the program rsvg-convert is not there, or does not start",
                            "install librsvg2-bin, or write .svg");
-  throw ComputationError("cli.write", {path}, "rsvg-convert could not write the picture",
-                         "check the folder, its permissions and the space left, or write .svg");
+  throw fail("rsvg-convert could not write the picture", look + ", or write .svg");
 }
 
 int run_plot(const PlotOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
+  Diagnostics diagnostics;
   report::Plot plot;
   plot.title = o.title.empty() ? fmt::format("{}", fmt::join(o.sensors, ", ")) : o.title;
   plot.x_label = o.x_label;
@@ -95,6 +97,7 @@ int run_plot(const PlotOptions& o) {
   plot.y_max = o.y_max;
   for (const auto& file : o.files) {
     demand_file(file);
+    warn_incomplete(file, diagnostics);
     const auto results = hdf5::read_results(file);
     for (const auto& sensor : o.sensors) {
       for (auto& column : choose_columns(results, file, sensor)) {
@@ -123,6 +126,7 @@ int run_plot(const PlotOptions& o) {
   inputs.insert(inputs.end(), o.points.begin(), o.points.end());
   check_output(o, output, inputs);
   write_picture(output, report::draw_svg(plot));
+  console.print(diagnostics);
   console.print("written: " + output + "\n");
   return kSuccess;
 }

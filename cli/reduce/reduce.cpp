@@ -43,6 +43,7 @@ struct ReduceVerbOptions : CommonOptions {
   int subcase = 0;
   double damping = -1;
   std::vector<std::string> matrices;
+  bool force_outside = false;
 };
 
 /// "[NAME=]NODE:DIRECTIONS", "[NAME=]set:ID" or "[NAME=]temperature:ID".
@@ -206,7 +207,12 @@ Reduced reduce_given(const records::BodySpec& spec, const stiffening::ReduceOpti
   Reduced result;
   result.files = deck.files;
   const auto given = read_given_matrices(*spec.matrices, deck, result.files, diagnostics);
-  say_first(diagnostics, [&] { result.body = stiffening::reduce_matrices(deck, spec, given, options, diagnostics); });
+  // What is wrong with the numbers is wrong in this file and not in the points.
+  const auto& matrices = *spec.matrices;
+  blame(matrices.file.empty() ? matrices.stiffness.file : matrices.file, [&] {
+    say_first(diagnostics, [&] { result.body = stiffening::reduce_matrices(deck, spec, given, options, diagnostics); });
+    return kSuccess;
+  });
   if (spec.matrices->check_modes.empty()) return result;
   const auto others = read_given_modes(spec.matrices->check_modes, *spec.matrices, deck, diagnostics);
   result.check = stiffening::compare_modes(result.body, deck, others, diagnostics);
@@ -220,7 +226,15 @@ int run_reduce(const ReduceVerbOptions& o) {
   Diagnostics diagnostics;
   const auto spec = make_spec(o, diagnostics);
   const auto output = choose_output(o, spec);
-  do_once([&] { check_output(o, output, {o.file, spec.deck}); });
+  do_once([&] {
+    // A body file may come from anywhere: it does not choose which file of the user's goes.
+    if (o.output.empty() && !spec.output_file.empty() && !o.force_outside &&
+        !is_inside(output, fs::path(o.file).parent_path().string()))
+      throw InputError("cli.output-outside", {o.file},
+                       "[body.output] file = \"" + output + "\" does not lie in the folder of the body file",
+                       "name the file with -o, or give --force-outside");
+    check_output(o, output, {o.file, spec.deck});
+  });
   console.set_rank(fe::initialize_petsc().rank);
   stiffening::ReduceOptions options;
   options.progress = [&](const std::string& stage) { console.show_progress("reduce: " + stage); };
@@ -287,6 +301,8 @@ void add_reduce(CLI::App& app, Action& action) {
       ->allow_extra_args(false);
   verb->add_flag("--integrals-report", o->integrals_report,
                  "Print the mass integrals by three methods side by side, as bough compare BODY.h5 does");
+  verb->add_flag("--force-outside", o->force_outside,
+                 "Write to [body.output] file also outside the body file's folder");
   verb->add_flag("--full", o->full, "Write the modes and inertial loads of every dof too");
   add_common_options(*verb, *o, kOutput | kJson, "Flexible-body HDF5 file (default: the body file's, else NAME.h5)");
   verb->footer(

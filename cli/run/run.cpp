@@ -158,6 +158,7 @@ int run_run(const RunOptions& o) {
   std::unique_ptr<records::ResultSink> writer;
   if (o.resume) {
     demand_file(output);
+    check_place(output);
     if (!check_resume(console, output, o.file, loaded.spec, sources)) return kSuccess;
     options.resume = hdf5::read_checkpoint(output);
     const double end = loaded.spec.simulation.start + loaded.spec.simulation.duration;

@@ -46,8 +46,7 @@ int run_static(const StaticOptions& options) {
   console.set_subject(options.deck);
   do_once([&] {
     demand_deck(options.deck);
-    if (!options.output.empty()) check_output(options, options.output, {options.deck});
-    if (!options.vtu.empty()) check_output(options, options.vtu, {options.deck});
+    check_outputs(options, {options.output, options.vtu}, {options.deck});
   });
   console.set_rank(fe::initialize_petsc().rank);
 
@@ -98,7 +97,7 @@ int run_static(const StaticOptions& options) {
   for (const auto& path : {options.output, options.vtu})
     if (!path.empty() && !options.json) console.print("written: " + path + "\n");
   // A rank that ends with an error ends the others: the first one must be through.
-  do_once([] { std::fflush(stdout); });
+  do_once([] { flush_data(); });
   return failures.get_exit_code();
 }
 

@@ -61,6 +61,9 @@ double choose_coincidence(const Model& model) {
   return box.isEmpty() ? 0 : 1e-6 * box.diagonal().norm();
 }
 
+/// A deck may have a million grids in one place.
+constexpr std::size_t most_partners = 10;
+
 std::vector<std::array<int, 2>> find_coincident_grids(const Model& model, double tolerance) {
   // Along one axis first: only neighbours within the tolerance are compared.
   std::vector<const Node*> grids;
@@ -69,10 +72,14 @@ std::vector<std::array<int, 2>> find_coincident_grids(const Model& model, double
   const Vector3d axis = Vector3d(0.48, 0.6, 0.64);
   std::sort(grids.begin(), grids.end(), [&](const Node* a, const Node* b) { return axis.dot(a->x) < axis.dot(b->x); });
   std::vector<std::array<int, 2>> pairs;
-  for (std::size_t i = 0; i < grids.size(); ++i)
-    for (std::size_t j = i + 1; j < grids.size() && axis.dot(grids[j]->x - grids[i]->x) <= tolerance; ++j)
-      if ((grids[j]->x - grids[i]->x).norm() <= tolerance)
-        pairs.push_back({std::min(grids[i]->id, grids[j]->id), std::max(grids[i]->id, grids[j]->id)});
+  for (std::size_t i = 0; i < grids.size(); ++i) {
+    const std::size_t before = pairs.size();
+    for (std::size_t j = i + 1; j < grids.size() && axis.dot(grids[j]->x - grids[i]->x) <= tolerance; ++j) {
+      if ((grids[j]->x - grids[i]->x).norm() > tolerance) continue;
+      pairs.push_back({std::min(grids[i]->id, grids[j]->id), std::max(grids[i]->id, grids[j]->id)});
+      if (pairs.size() == before + most_partners) break;
+    }
+  }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

@@ -17,7 +17,7 @@ enum class GroundSet { Global, Independent, Free };
 Eigen::Matrix<double, 6, 1> calc_ground_check(const Model& model, GroundSet set);
 
 /// Pairs of grids not further apart than `tolerance` (deck units), ids ascending. Springs and masses between coincident
-/// grids are common: a hint, not an error. O(n log n).
+/// grids are common: a hint, not an error. Of many in one place each is paired with ten others. O(n log n).
 std::vector<std::array<int, 2>> find_coincident_grids(const Model& model, double tolerance);
 /// 1e-6 of the diagonal of the box around the grids.
 double choose_coincidence(const Model& model);

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/diagnostic.hpp"
+#include "base/xml_text.hpp"
 
 namespace bough::exports {
 
@@ -89,21 +90,6 @@ std::string encode_base64(const unsigned char* bytes, std::size_t size) {
   return text;
 }
 
-std::string escape(const std::string& name) {
-  std::string text;
-  for (const char c : name) {
-    if (c == '&')
-      text += "&amp;";
-    else if (c == '<')
-      text += "&lt;";
-    else if (c == '"')
-      text += "&quot;";
-    else
-      text += c;
-  }
-  return text;
-}
-
 class VtuText {
  public:
   explicit VtuText(VtuEncoding encoding) : encoding_(encoding) {}
@@ -112,7 +98,7 @@ class VtuText {
 
   template <class Number>
   void add_array(const char* type, const std::string& name, int num_components, const std::vector<Number>& values) {
-    text_ += std::string("<DataArray type=\"") + type + "\" Name=\"" + escape(name) + "\"";
+    text_ += std::string("<DataArray type=\"") + type + "\" Name=\"" + escape_xml(name) + "\"";
     if (num_components > 1) text_ += " NumberOfComponents=\"" + std::to_string(num_components) + "\"";
     text_ += encoding_ == VtuEncoding::Ascii ? " format=\"ascii\">\n" : " format=\"binary\">\n";
     if (encoding_ == VtuEncoding::Ascii)

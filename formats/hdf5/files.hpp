@@ -52,6 +52,15 @@ struct RunInputs {
 RunInputs read_run_inputs(const std::string& path);
 records::Checkpoint read_checkpoint(const std::string& path);
 
+/// How far the run of a results file came, without its samples.
+struct RunState {
+  bool completed = false;
+  std::string reason;       ///< why it ended; "running": it goes on, or was killed
+  double time = 0;          ///< of the last sample
+  bool is_written = false;  ///< a process of Bough is at it now
+};
+RunState read_run_state(const std::string& path);
+
 /// One line per object: path, shape, type, description; for `info`.
 struct ObjectInfo {
   std::string path, shape, type, description, dims;

@@ -271,11 +271,12 @@ FlexBody read_flex_body(const std::string& path) {
   const long p = body.num_nodes();
   body.node_xyz = file.read_matrix("/nodes/xyz", p, 3);
   body.interface_nodes = file.read_integers("/nodes/interface", -1);
-  for (const int id : body.interface_nodes) {
-    if (body.find_node(id) < 0) {
-      file.error("hdf5.value", "/nodes/interface names node " + std::to_string(id) + ", which /nodes/id does not have",
-                 "write the file again");
-    }
+  const auto is_unknown = [&](int id) { return body.find_node(id) < 0; };
+  if (const auto& nodes = body.interface_nodes; std::any_of(nodes.begin(), nodes.end(), is_unknown)) {
+    const auto first = std::find_if(nodes.begin(), nodes.end(), is_unknown);
+    file.error("hdf5.value",
+               "/nodes/interface names node " + std::to_string(*first) + ", which /nodes/id does not have",
+               "write the file again");
   }
 
   body.eigenvalue = file.read_vector("/modes/eigenvalue", -1);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <set>
 
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/files.hpp"
@@ -83,11 +84,7 @@ herr_t add_child_name(hid_t, const char* name, const H5L_info_t*, void* names) {
   return 0;
 }
 
-/// Deeper than any file of Bough: a group that contains itself ends here.
-constexpr int kMostLevels = 16;
-
-void add_object(hid_t parent, const std::string& path, int level, FileInfo& info) {
-  if (level > kMostLevels) return;
+void add_object(hid_t parent, const std::string& path, std::set<haddr_t>& groups, FileInfo& info) {
   const Handle object(H5Oopen(parent, path.c_str(), H5P_DEFAULT), H5Oclose);
   if (!object.is_valid()) {
     info.objects.push_back({path, "", "unreadable", "", ""});
@@ -102,6 +99,10 @@ void add_object(hid_t parent, const std::string& path, int level, FileInfo& info
     return;
   }
   if (H5Iget_type(object.get()) != H5I_GROUP) return;
+  if (!groups.insert(get_address(object.get())).second) {
+    info.objects.push_back({path, "", "group", "another name of a group listed above", ""});
+    return;
+  }
   if (path != "/") {
     for (const auto& name : get_attribute_names(object.get())) {
       info.objects.push_back({path + "@" + name, "", "attribute", read_any_attribute(object.get(), name.c_str()), ""});
@@ -109,7 +110,7 @@ void add_object(hid_t parent, const std::string& path, int level, FileInfo& info
   }
   std::vector<std::string> names;
   H5Literate(object.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add_child_name, &names);
-  for (const auto& name : names) add_object(parent, (path == "/" ? "" : path) + "/" + name, level + 1, info);
+  for (const auto& name : names) add_object(parent, (path == "/" ? "" : path) + "/" + name, groups, info);
 }
 
 }  // namespace
@@ -122,7 +123,8 @@ FileInfo read_info(const std::string& path) {
   for (const auto& name : get_attribute_names(root.get())) {
     info.attributes[name] = read_any_attribute(root.get(), name.c_str());
   }
-  add_object(file.get(), "/", 0, info);
+  std::set<haddr_t> groups;
+  add_object(file.get(), "/", groups, info);
   return info;
 }
 

@@ -2,8 +2,10 @@
 #include <chrono>
 #include <filesystem>
 #include <limits>
+#include <set>
 #include <thread>
 
+#include "base/part_file.hpp"
 #include "base/version.hpp"
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/results_layout.hpp"
@@ -15,16 +17,17 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Paths of all datasets below `group` ("" is the root).
-void collect_datasets(FileReader& file, const std::string& group, int level, std::vector<std::string>& paths) {
-  if (level > 16) return;  // a group that contains itself
+/// Paths of all datasets below `group` ("" is the root), each under the first of its names.
+void collect_datasets(FileReader& file, const std::string& group, std::set<haddr_t>& seen,
+                      std::vector<std::string>& paths) {
   for (const auto& name : file.get_children(group.empty() ? "/" : group)) {
     const std::string path = group + "/" + name;
     if (path == "/checkpoint" || path == "/events" || path == "/system" || path == "/settings" || path == "/resumed")
       continue;
     const Handle object(H5Oopen(file.get(), path.c_str(), H5P_DEFAULT), H5Oclose);
-    const H5I_type_t type = object.is_valid() ? H5Iget_type(object.get()) : H5I_BADID;
-    if (type == H5I_GROUP) collect_datasets(file, path, level + 1, paths);
+    if (!object.is_valid() || !seen.insert(get_address(object.get())).second) continue;
+    const H5I_type_t type = H5Iget_type(object.get());
+    if (type == H5I_GROUP) collect_datasets(file, path, seen, paths);
     if (type == H5I_DATASET) paths.push_back(path);
   }
 }
@@ -33,17 +36,6 @@ int get_rank(const FileReader& file, const std::string& path) {
   const Handle dataset(H5Dopen2(file.get(), path.c_str(), H5P_DEFAULT), H5Dclose);
   const Handle space(H5Dget_space(dataset.get()), H5Sclose);
   return H5Sget_simple_extent_ndims(space.get());
-}
-
-std::string read_system_text(FileReader& file) {
-  if (!file.has("/system")) return {};
-  const Handle dataset(H5Dopen2(file.get(), "/system", H5P_DEFAULT), H5Dclose);
-  const Handle type = make_string_type();
-  char* text = nullptr;
-  if (H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &text) < 0 || !text) return {};
-  std::string result(text);
-  H5free_memory(text);
-  return result;
 }
 
 /// NaN where it is not given.
@@ -63,14 +55,16 @@ ResultsFile read_once(const std::string& path) {
   ResultsFile results;
   results.completed = file.read_integer_attribute("/", "completed", 0) != 0;
   results.reason = file.read_attribute("/", "reason");
-  results.system_text = read_system_text(file);
+  if (file.has("/system")) results.system_text = file.read_text("/system");
   results.energy_error = read_energy_error(file);
   // A run killed within a flush may have left a part of its last samples behind the ones that count.
   const long committed = file.read_integer_attribute("/", kNumSamples, -1);
   const NumberArray time = file.read_array("/time", {-1}, true, committed);
   results.time = Eigen::Map<const Eigen::VectorXd>(time.data.data(), static_cast<Eigen::Index>(time.data.size()));
   std::vector<std::string> paths;
-  collect_datasets(file, "", 0, paths);
+  const Handle root(H5Gopen2(file.get(), "/", H5P_DEFAULT), H5Gclose);
+  std::set<haddr_t> seen{get_address(root.get())};
+  collect_datasets(file, "", seen, paths);
   Eigen::Index rows = results.time.size();
   for (const auto& name : paths) {
     const bool is_vector = get_rank(file, name) == 1;
@@ -123,9 +117,10 @@ bool read_checkpoint_from(FileReader& file, const std::string& group, records::C
   checkpoint.num_samples = read_count(dataset.get(), kNumSamples);
   checkpoint.num_events = read_count(dataset.get(), kNumEvents);
   const Handle attribute(H5Aopen(dataset.get(), kChecksum, H5P_DEFAULT), H5Aclose);
+  const Handle space(H5Aget_space(attribute.get()), H5Sclose);
   std::int64_t checksum = 0;
-  return attribute.is_valid() && H5Aread(attribute.get(), H5T_NATIVE_INT64, &checksum) >= 0 &&
-         checksum == calc_checksum(checkpoint);
+  return attribute.is_valid() && H5Sget_simple_extent_npoints(space.get()) == 1 &&
+         H5Aread(attribute.get(), H5T_NATIVE_INT64, &checksum) >= 0 && checksum == calc_checksum(checkpoint);
 }
 
 }  // namespace
@@ -146,12 +141,23 @@ ResultsFile read_results(const std::string& path) {
 RunInputs read_run_inputs(const std::string& path) {
   FileReader file(path, kResultsFormat, kResultsFormatVersion);
   RunInputs inputs;
-  inputs.system_text = read_system_text(file);
+  inputs.system_text = file.has("/system") ? file.read_text("/system") : std::string();
   inputs.source = file.read_source();
   inputs.completed = file.read_integer_attribute("/", "completed", 0) != 0;
   inputs.reason = file.read_attribute("/", "reason");
   file.throw_if_errors();
   return inputs;
+}
+
+RunState read_run_state(const std::string& path) {
+  RunState state;
+  state.is_written = is_file_locked(path);
+  FileReader file(path, kResultsFormat, kResultsFormatVersion);
+  state.completed = file.read_integer_attribute("/", "completed", 0) != 0;
+  state.reason = file.read_attribute("/", "reason");
+  const auto time = file.read_array("/time", {-1}, true, file.read_integer_attribute("/", kNumSamples, -1)).data;
+  if (!time.empty()) state.time = time.back();
+  return state;
 }
 
 records::Checkpoint read_checkpoint(const std::string& path) {

@@ -227,6 +227,7 @@ void ResultsWriter::write_checkpoint_to(const std::string& group, const records:
 }
 
 void ResultsWriter::open_existing(const records::ResultsHeader& header) {
+  file_.lock();
   // Everything that can be wrong is looked at before the file is touched.
   const ResultsFile old = read_results(file_.path());
   Diagnostics diagnostics;
@@ -268,6 +269,10 @@ void ResultsWriter::open_existing(const records::ResultsHeader& header) {
                                        [&](const records::EventRecord& e) { return e.time <= time + tolerance; });
   if (is_counted && checkpoint.num_events >= 0 && checkpoint.num_events <= std::ssize(old.events))
     num_kept_events = checkpoint.num_events;
+  if (checkpoint.time != time)
+    throw InputError("hdf5.resume", {file_.path()},
+                     "the file was continued to time " + std::to_string(checkpoint.time) + " in the meantime",
+                     "resume it again");
 
   file_.open();
   last_checkpoint_ = checkpoint;

@@ -1,12 +1,12 @@
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 
 #include <matio.h>
 
 #include "base/diagnostic.hpp"
+#include "base/part_file.hpp"
 #include "base/version.hpp"
 #include "formats/matrices/mat_file.hpp"
 
@@ -117,10 +117,11 @@ void write_mat(const std::string& path, const MatFields& variables) {
   const auto fail = [&](const std::string& what) {
     throw ComputationError("matrices.write", {path}, what, "check the folder, its permissions and the free space");
   };
-  const std::string part = path + ".part";
+  PartFile part(path);
+  if (part.error()) fail("the file cannot be created: " + part.error().message());
   // A head without a date: the same variables give the same bytes.
   const auto head = std::string("MATLAB 5.0 MAT-file, written by Bough ") + get_version();
-  mat_t* file = Mat_CreateVer(part.c_str(), head.c_str(), MAT_FT_MAT5);
+  mat_t* file = Mat_CreateVer(part.get_name().c_str(), head.c_str(), MAT_FT_MAT5);
   if (!file) fail("the file cannot be written");
   std::string bad;
   for (const auto& [name, value] : variables) {
@@ -130,14 +131,9 @@ void write_mat(const std::string& path, const MatFields& variables) {
       break;
     }
   }
-  const bool is_closed = Mat_Close(file) == 0 && is_whole(part, variables.size());
-  std::error_code error;
-  if (bad.empty() && is_closed) std::filesystem::rename(part, path, error);
-  if (!bad.empty() || !is_closed || error) {
-    std::error_code ignored;
-    std::filesystem::remove(part, ignored);
-    fail(bad.empty() ? "the file cannot be written whole" : "variable " + bad + " cannot be written");
-  }
+  const bool is_closed = Mat_Close(file) == 0 && is_whole(part.get_name(), variables.size());
+  if (!bad.empty()) fail("variable " + bad + " cannot be written");
+  if (!is_closed || !part.commit()) fail("the file cannot be written whole");
 }
 
 }  // namespace bough::matrices

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/diagnostic.hpp"
+#include "base/xml_text.hpp"
 #include "formats/report/axis.hpp"
 
 namespace bough::report {
@@ -29,30 +30,13 @@ std::string number(double x) {
   return text == "-0" ? "0" : text;
 }
 
-std::string escape(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '&')
-      safe += "&amp;";
-    else if (c == '<')
-      safe += "&lt;";
-    else if (c == '>')
-      safe += "&gt;";
-    else if (c == '"')
-      safe += "&quot;";
-    else
-      safe += c;
-  }
-  return safe;
-}
-
 std::size_t count_characters(const std::string& utf8) {
   return static_cast<std::size_t>(
       std::count_if(utf8.begin(), utf8.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 std::string write_label(const std::string& label, int exponent) {
-  std::string text = escape(label);
+  std::string text = escape_xml(label);
   if (exponent != 0) {
     std::string power = std::to_string(exponent);
     if (power[0] == '-') power.replace(0, 1, "\u2212");
@@ -210,7 +194,7 @@ double draw_legend(const Plot& plot, double top, std::string& svg) {
     svg += plot.curves[i].markers_only ? draw_marker(x + 14, y - 4.5, style.color)
                                        : draw_stroke("M" + number(x) + " " + number(y - 4.5) + "h28", style);
     svg += "<text x=\"" + number(x + 36) + "\" y=\"" + number(y) + "\" font-size=\"13\" fill=\"#111111\">" +
-           escape(label) + "</text>\n";
+           escape_xml(label) + "</text>\n";
     x += width;
     any = true;
   }
@@ -241,10 +225,10 @@ std::string draw_svg(const Plot& plot) {
   std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(height) +
                     "\" width=\"" + number(kWidth) + "\" height=\"" + number(height) +
                     "\" role=\"img\" font-family=\"Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif\">\n";
-  svg += "<title>" + escape(plot.title) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
+  svg += "<title>" + escape_xml(plot.title) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
   if (!plot.title.empty()) {
     svg += "<text x=\"" + number(f.left) + "\" y=\"32\" font-size=\"18\" font-weight=\"bold\" fill=\"#111111\">" +
-           escape(plot.title) + "</text>\n";
+           escape_xml(plot.title) + "</text>\n";
   }
   svg += legend + draw_axes(plot, f);
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {

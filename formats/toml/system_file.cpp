@@ -2,6 +2,9 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <sstream>
+
+#include <Eigen/Eigenvalues>
 
 #include "formats/toml/detail/fields.hpp"
 #include "formats/toml/detail/hinge_table.hpp"
@@ -21,6 +24,21 @@ void refuse_keys(const Fields& table, std::initializer_list<const char*> keys, c
     diagnostics.error("toml.conflicting-keys", table.locate(key),
                       "'" + std::string(key) + "' has no meaning " + because, "remove it");
   }
+}
+
+/// No body has a principal moment above the sum of the two others. A little above is a warning, of whoever runs it;
+/// this far above the numbers stand in the wrong places. One about a single axis, the others zero, is a planar model.
+void check_inertia(const Eigen::Matrix3d& inertia, const Fields& table, Diagnostics& diagnostics) {
+  if (!inertia.allFinite()) return;
+  const Eigen::Vector3d principal =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  const double others = principal[0] + principal[1];
+  if (principal[0] < 0 || others <= 1e-12 * principal[2] || principal[2] <= 2 * others) return;
+  std::ostringstream what;
+  what << "no body has the inertia with the principal values " << principal[0] << ", " << principal[1] << ", "
+       << principal[2] << ": the largest is more than twice the sum of the others";
+  diagnostics.error("toml.bad-value", table.locate("inertia"), what.str(),
+                    "give it about the centre of mass, as [Ixx, Iyy, Izz, Ixy, Ixz, Iyz] or three rows");
 }
 
 Eigen::Matrix3d read_inertia(const Fields& table, Diagnostics& diagnostics) {
@@ -44,6 +62,7 @@ Eigen::Matrix3d read_inertia(const Fields& table, Diagnostics& diagnostics) {
                       "inertia is neither three rows of three nor six components",
                       "give [Ixx, Iyy, Izz, Ixy, Ixz, Iyz] or [[..], [..], [..]]");
   }
+  check_inertia(inertia, table, diagnostics);
   return inertia;
 }
 

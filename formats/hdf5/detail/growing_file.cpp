@@ -4,8 +4,14 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/diagnostic.hpp"
+#include "base/part_file.hpp"
 
 namespace bough::hdf5 {
 
@@ -36,19 +42,71 @@ Handle make_uncached_access() {
 
 hsize_t get_rows_per_chunk(int size) { return static_cast<hsize_t>(std::clamp(16384 / std::max(1, size), 16, 1024)); }
 
+GrowingFile::~GrowingFile() { close(); }
+
+bool GrowingFile::close() {
+  const bool ok = file_.reset();
+  if (lock_ >= 0) ::close(std::exchange(lock_, -1));
+  return ok;
+}
+
+/// Opens and locks the file at the target, a new one or the one there; false when it is not at the name any more.
+bool GrowingFile::lock_once(bool creates) {
+  lock_ =
+      ::open(target_.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC | (creates ? O_CREAT | O_EXCL : 0), 0666);
+  if (lock_ < 0 && errno == (creates ? EEXIST : ENOENT)) return false;
+  check(lock_ >= 0, creates ? "the file cannot be created" : "the file cannot be opened for writing");
+  if (lock_file(lock_) == LockState::Busy)
+    throw InputError("hdf5.busy", {path_}, "another process writes this file", "wait until it ends, or choose another");
+  struct stat named {
+  }, opened{};
+  if (::stat(target_.c_str(), &named) == 0 && ::fstat(lock_, &opened) == 0 && named.st_dev == opened.st_dev &&
+      named.st_ino == opened.st_ino)
+    return true;
+  ::close(lock_);
+  lock_ = -1;
+  return false;
+}
+
+void GrowingFile::lock() {
+  std::error_code failed;
+  target_ = find_target(path_, failed);
+  errno = failed.value();
+  check(!failed, "the file cannot be opened for writing");
+  // A file that is not there is told by who reads it next.
+  while (std::filesystem::exists(target_, failed) && !lock_once(false)) continue;
+}
+
 void GrowingFile::create() {
-  errno = 0;
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(path_, ignored)) std::filesystem::remove(path_, ignored);
-  check(make_empty_file(path_), "the file cannot be created");
+  std::error_code failed;
+  target_ = find_target(path_, failed);
+  errno = failed.value();
+  check(!failed, "the file cannot be created");
+  bool is_made = false;
+  for (int attempt = 0; !is_made && attempt < 10; ++attempt) {
+    if (std::filesystem::is_regular_file(target_, failed) && lock_once(false)) {
+      ::unlink(target_.c_str());
+      ::close(std::exchange(lock_, -1));
+    }
+    is_made = lock_once(true);
+  }
+  errno = is_made ? 0 : EBUSY;
+  const bool has_space = is_made && takes_a_block(lock_);
+  if (is_made && !has_space) {
+    const int cause = errno;
+    ::unlink(target_.c_str());
+    errno = cause;
+  }
+  check(has_space, "the file cannot be created");
   const Handle access = make_growing_access();
-  file_ = Handle(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
+  file_ = Handle(H5Fcreate(target_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
   check(file_.is_valid(), "the file cannot be created");
 }
 
 void GrowingFile::open() {
+  BOUGH_DEMAND(lock_ >= 0);
   const Handle access = make_growing_access();
-  file_ = Handle(H5Fopen(path_.c_str(), H5F_ACC_RDWR, access.get()), H5Fclose);
+  file_ = Handle(H5Fopen(target_.c_str(), H5F_ACC_RDWR, access.get()), H5Fclose);
   check(file_.is_valid(), "the file cannot be opened for writing");
 }
 
@@ -64,6 +122,11 @@ void GrowingFile::check(bool ok, const std::string& what) {
 
 void GrowingFile::write_integer(hid_t object, const char* name, std::int64_t value, hid_t type) {
   const std::string what = std::string("attribute ") + name + " cannot be written";
+  if (H5Aexists(object, name) > 0) {
+    const Handle old(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+    const Handle old_space(H5Aget_space(old.get()), H5Sclose);
+    if (H5Sget_simple_extent_npoints(old_space.get()) != 1) check(H5Adelete(object, name) >= 0, what);
+  }
   if (H5Aexists(object, name) <= 0) {
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
     const Handle made(H5Acreate2(object, name, type, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
@@ -114,6 +177,8 @@ void GrowingFile::append(Handle& column, hsize_t first, hsize_t rows, int size, 
 
 void GrowingFile::cut(Handle& column, hsize_t rows) {
   const Handle space(H5Dget_space(column.get()), H5Sclose);
+  const int rank = H5Sget_simple_extent_ndims(space.get());
+  check(rank == 1 || rank == 2, "the file cannot be cut back to the checkpoint");
   hsize_t shape[2] = {0, 0};
   H5Sget_simple_extent_dims(space.get(), shape, nullptr);
   shape[0] = rows;

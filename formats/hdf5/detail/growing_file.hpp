@@ -15,12 +15,19 @@ hsize_t get_rows_per_chunk(int size);
 class GrowingFile {
  public:
   explicit GrowingFile(std::string path) : path_(std::move(path)) {}
+  ~GrowingFile();
+  GrowingFile(const GrowingFile&) = delete;
+  GrowingFile& operator=(const GrowingFile&) = delete;
 
-  /// A new file, not the old one emptied: who is reading the old one keeps it.
+  /// A new file, not the old one emptied: who is reading the old one keeps it. Locked, and so is the one to go:
+  /// InputError "hdf5.busy" while another process writes it.
   void create();
+  /// Keeps other processes from writing the existing file for as long as this object lives: InputError "hdf5.busy".
+  void lock();
+  /// After lock().
   void open();
-  /// After the columns are closed; false when that failed.
-  bool close() { return file_.reset(); }
+  /// After the columns are closed, and the lock with it; false when that failed.
+  bool close();
   bool is_open() const { return file_.is_valid(); }
   bool has_failed() const { return failed_; }
   hid_t get() const { return file_.get(); }
@@ -43,7 +50,11 @@ class GrowingFile {
   void cut(Handle& column, hsize_t rows);
 
  private:
+  bool lock_once(bool creates);
+
   std::string path_;
+  std::string target_;  ///< what the path leads to by symbolic links
+  int lock_ = -1;       ///< descriptor that holds the lock
   bool failed_ = false;
   Handle file_;
 };

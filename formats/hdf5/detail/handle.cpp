@@ -22,17 +22,10 @@ Handle make_file_access() {
   return access;
 }
 
-bool make_empty_file(const std::string& path) {
-  const int descriptor = ::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0666);
-  if (descriptor < 0) return false;
+bool takes_a_block(int descriptor) {
   const std::string block(4096, '\0');
-  bool ok = ::pwrite(descriptor, block.data(), block.size(), 0) == static_cast<ssize_t>(block.size());
-  ok = ok && ::ftruncate(descriptor, 0) == 0;
-  const int cause = errno;
-  ::close(descriptor);
-  if (!ok) ::unlink(path.c_str());
-  errno = cause;
-  return ok;
+  return ::pwrite(descriptor, block.data(), block.size(), 0) == static_cast<ssize_t>(block.size()) &&
+         ::ftruncate(descriptor, 0) == 0;
 }
 
 namespace {
@@ -69,6 +62,11 @@ bool exists(hid_t file, const std::string& path) {
     if (part != "/" && H5Lexists(file, part.c_str(), H5P_DEFAULT) <= 0) return false;
     if (end == std::string::npos) return true;
   }
+}
+
+haddr_t get_address(hid_t object) {
+  H5O_info_t info;
+  return H5Oget_info2(object, &info, H5O_INFO_BASIC) < 0 ? HADDR_UNDEF : info.addr;
 }
 
 std::string describe_shape(const Dims& dims) {

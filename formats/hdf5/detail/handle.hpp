@@ -63,9 +63,9 @@ Handle make_string_type();
 /// file systems.
 Handle make_file_access();
 
-/// Makes an empty file that takes a few bytes; false, with errno, where that fails. HDF5 itself does not survive a
-/// file that cannot take its first block.
-bool make_empty_file(const std::string& path);
+/// Whether an empty file takes a few bytes, which are cut off again; false, with errno, where that fails. HDF5 itself
+/// does not survive a file that cannot take its first block.
+bool takes_a_block(int descriptor);
 
 /// Reserves disk space for all of the file as it is now in memory, and `more` bytes; false, with errno, when there is
 /// not enough. HDF5 does not survive a write or flush that fails half-way: neither closing the file nor the end of the
@@ -81,6 +81,9 @@ void abandon_writes(hid_t file);
 
 /// "/a/b/c" -> every proper parent and then whether the object itself is there.
 bool exists(hid_t file, const std::string& path);
+
+/// Where an open object stands in its file: two names of one object have one address.
+haddr_t get_address(hid_t object);
 
 /// "3 x 4"; "scalar" for no dimension.
 std::string describe_shape(const Dims& dims);

@@ -7,6 +7,8 @@
 
 #include <unistd.h>
 
+#include "formats/hdf5/detail/inspect.hpp"
+
 namespace bough::hdf5 {
 
 namespace {
@@ -57,8 +59,8 @@ int get_major(const std::string& version) { return std::atoi(version.c_str()); }
 
 Handle open_file(const std::string& path, bool to_write) {
   std::error_code ignored;
-  std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path, ignored)) {
+  std::ifstream in;  // opening a pipe would wait for a writer
+  if (!std::filesystem::is_regular_file(path, ignored) || !(in.open(path, std::ios::binary), in)) {
     throw InputError("hdf5.cannot-open", {path}, "the file cannot be opened", "check its path and permissions");
   }
   char head[8] = {};
@@ -67,6 +69,7 @@ Handle open_file(const std::string& path, bool to_write) {
   if (std::memcmp(head, kSignature, length) != 0) {
     throw InputError("hdf5.not-hdf5", {path}, "the file is not an HDF5 file", "give a file written by bough");
   }
+  inspect_file(path);
   const Handle access = make_file_access();
   Handle file(H5Fopen(path.c_str(), to_write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (!file.is_valid()) {
@@ -212,9 +215,9 @@ Eigen::MatrixXi FileReader::read_integer_matrix(const std::string& path, long ro
   return data;
 }
 
-std::vector<std::string> FileReader::read_strings(const std::string& path, long size) {
+std::vector<std::string> FileReader::read_strings(const std::string& path, const Shape& shape) {
   Dims found;
-  const Handle dataset = open_dataset(path, {size}, H5T_STRING, found);
+  const Handle dataset = open_dataset(path, shape, H5T_STRING, found);
   std::vector<std::string> words(count(found));
   if (!dataset.is_valid() || words.empty()) return words;
   const Handle type(H5Dget_type(dataset.get()), H5Tclose);
@@ -243,6 +246,18 @@ std::vector<std::string> FileReader::read_strings(const std::string& path, long 
     words[i] = word.substr(0, word.find('\0'));
   }
   return words;
+}
+
+std::string FileReader::read_text(const std::string& path) {
+  const Handle dataset(H5Dopen2(file_.get(), path.c_str(), H5P_DEFAULT), H5Dclose);
+  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
+  const Dims dims = get_dims(space.get());
+  if (count(dims) != 1) {
+    error("hdf5.shape", path + " has the shape " + describe_shape(dims) + ", expected one text",
+          "write the file again");
+    return {};
+  }
+  return read_strings(path, Shape(dims.size(), 1)).front();
 }
 
 std::string FileReader::read_attribute(const std::string& object, const std::string& name) {

@@ -11,7 +11,8 @@
 
 namespace bough::hdf5 {
 
-/// Opens an existing file. Throws InputError "hdf5.cannot-open", "hdf5.not-hdf5" or "hdf5.truncated".
+/// Opens an existing file that inspect_file finds nothing wrong with. Throws InputError "hdf5.cannot-open",
+/// "hdf5.not-hdf5", "hdf5.truncated", "hdf5.outside" or "hdf5.damaged".
 Handle open_file(const std::string& path, bool to_write = false);
 
 /// Throws InputError "hdf5.wrong-format" unless the root says this format, in a major version that is known.
@@ -44,7 +45,10 @@ class FileReader {
   double read_number(const std::string& path);
   std::vector<int> read_integers(const std::string& path, long size);
   Eigen::MatrixXi read_integer_matrix(const std::string& path, long rows, long cols);
-  std::vector<std::string> read_strings(const std::string& path, long size);
+  std::vector<std::string> read_strings(const std::string& path, long size) { return read_strings(path, Shape{size}); }
+  std::vector<std::string> read_strings(const std::string& path, const Shape& shape);
+  /// The one text of a dataset that is there.
+  std::string read_text(const std::string& path);
 
   std::string read_attribute(const std::string& object, const std::string& name);
   int read_integer_attribute(const std::string& object, const std::string& name, int otherwise);

@@ -37,6 +37,11 @@ void write_provenance(GrowingFile& file, const records::ResultsHeader& header) {
 }
 
 void write_settings(GrowingFile& file, const records::ResultsHeader& header) {
+  if (exists(file.get(), "/system")) {
+    const Handle old(H5Dopen2(file.get(), "/system", H5P_DEFAULT), H5Dclose);
+    const Handle old_space(H5Dget_space(old.get()), H5Sclose);
+    if (H5Sget_simple_extent_npoints(old_space.get()) != 1) H5Ldelete(file.get(), "/system", H5P_DEFAULT);
+  }
   if (!exists(file.get(), "/system")) {
     const Handle type = make_string_type();
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose);

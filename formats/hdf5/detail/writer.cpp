@@ -3,10 +3,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 #include "base/diagnostic.hpp"
 #include "base/version.hpp"
@@ -29,37 +25,23 @@ bool has_elements(const Dims& shape) {
   return true;
 }
 
-bool sync_to_disk(const std::string& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY);
-  if (descriptor < 0) return false;
-  const bool ok = ::fsync(descriptor) == 0;
-  return ::close(descriptor) == 0 && ok;
-}
-
 }  // namespace
 
 FileWriter::FileWriter(const std::string& path, const std::string& format, const std::string& version)
-    : path_(path), temporary_(path + ".part-" + std::to_string(::getpid())) {
+    : path_(path), part_(path) {
   // Creation times are left out, so that the same content gives the same bytes.
   Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.get(), false);
   const Handle access = make_file_access();
   link_creation_ = Handle(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(link_creation_.get(), 1);
-  errno = 0;
-  check(make_empty_file(temporary_), "the file cannot be created");
-  file_ = Handle(H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
+  errno = part_.error().value();
+  check(!part_.error() && takes_a_block(part_.get_descriptor()), "the file cannot be created");
+  file_ = Handle(H5Fcreate(part_.get_name().c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
   check(file_.is_valid(), "the file cannot be created");
   write_attribute("/", "format", format);
   write_attribute("/", "format_version", version);
   write_attribute("/", "bough_version", std::string(get_version()));
-}
-
-FileWriter::~FileWriter() {
-  if (temporary_.empty()) return;
-  file_.reset();
-  std::error_code ignored;
-  std::filesystem::remove(temporary_, ignored);
 }
 
 void FileWriter::check(bool ok, const std::string& what) {
@@ -191,9 +173,9 @@ void FileWriter::commit() {
   errno = 0;
   check(flush_file(file_.get()), "the file cannot be written");
   check(file_.reset(), "the file cannot be written");
-  check(sync_to_disk(temporary_), "the file cannot be written");
-  check(::rename(temporary_.c_str(), path_.c_str()) == 0, "the file cannot be put in its place");
-  temporary_.clear();
+  const bool is_there = part_.commit();
+  errno = part_.error().value();
+  check(is_there, "the file cannot be put in its place");
 }
 
 void FileWriter::link(const std::string& path, const std::string& existing) {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 
+#include "base/part_file.hpp"
 #include "formats/hdf5/detail/handle.hpp"
 #include "formats/records/flex_body.hpp"
 
@@ -19,7 +20,7 @@ struct Meaning {
 class FileWriter {
  public:
   FileWriter(const std::string& path, const std::string& format, const std::string& version);
-  ~FileWriter();
+  ~FileWriter() = default;
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
 
@@ -55,7 +56,8 @@ class FileWriter {
                        hid_t memory_type, const void* data);
 
   QuietErrors quiet_;
-  std::string path_, temporary_;
+  std::string path_;
+  PartFile part_;
   Handle file_, link_creation_;
 };
 

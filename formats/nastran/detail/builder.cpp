@@ -18,6 +18,8 @@ namespace {
 /// Beyond this many lines that are no cards the file is not a deck.
 constexpr int max_unreadable = 20;
 constexpr int max_repeats = 1'000'000;
+/// Of all repeat lines of a deck together.
+constexpr long max_all_repeats = 2'000'000;
 
 /// How one card name is treated, and how often it came.
 struct NameEntry {
@@ -170,7 +172,14 @@ class Builder {
     if (const auto repeats = Replicator::find_repeats(text_)) {
       if (*repeats < 1 || *repeats > max_repeats)
         fail_replication("the repeat count is " + std::to_string(*repeats) + ", expected 1 to 1000000");
-      for (int i = 0; i < *repeats && *repeats <= max_repeats; ++i)
+      if (*repeats > max_repeats) return;
+      num_repeats_ += *repeats;
+      if (num_repeats_ > max_all_repeats) {
+        fail_replication("the repeat lines of the deck make more than 2000000 cards");
+        stopped_ = true;
+        return;
+      }
+      for (int i = 0; i < *repeats; ++i)
         if (!finish_relative(replicator_.make_copy(text_))) return;
       return;
     }
@@ -330,6 +339,7 @@ class Builder {
   bool last_is_plain_ = false;
   int last_card_ = -1;
   int num_unreadable_ = 0;
+  long num_repeats_ = 0;  ///< cards made by repeat lines
   bool stopped_ = false;
 };
 

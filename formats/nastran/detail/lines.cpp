@@ -59,6 +59,13 @@ class Cursor {
   int number_ = 0;
 };
 
+/// Files that include files: more than this is no deck of a user.
+constexpr std::size_t kMostLevels = 100;
+/// INCLUDE statements followed, and bytes of files read again, all in all: files that include a file twice, which does
+/// the same, double with each level.
+constexpr int kMostIncludes = 20'000;
+constexpr std::size_t kMostRepeated = std::size_t{1} << 30;
+
 class Loader {
  public:
   Loader(Source& source, Diagnostics& diagnostics) : source_(source), diagnostics_(diagnostics) {}
@@ -236,19 +243,31 @@ class Loader {
                          "remove one of these INCLUDE lines");
       return;
     }
-    auto bytes = read_file(*path);
-    if (!bytes) {
-      diagnostics_.error("deck.include-missing", where, "included file '" + name + "' cannot be read",
-                         "check its permissions");
-      return;
-    }
-    source_.storage.push_back(std::move(*bytes));
-    const std::string_view text = source_.storage.back();
     const std::string shown = path->lexically_normal().string();
     auto known = std::find(source_.files.begin(), source_.files.end(), shown);
-    if (known == source_.files.end()) {
+    const bool is_new = known == source_.files.end();
+    if (is_new) {
+      auto bytes = read_file(*path);
+      if (!bytes) {
+        diagnostics_.error("deck.include-missing", where, "included file '" + name + "' cannot be read",
+                           "check its permissions");
+        return;
+      }
+      source_.storage.push_back(std::move(*bytes));
       known = source_.files.insert(known, shown);
-      source_.texts.push_back(text);
+      source_.texts.push_back(source_.storage.back());
+    }
+    const std::string_view text = source_.texts[static_cast<std::size_t>(known - source_.files.begin())];
+    if (!is_new) repeated_ += text.size();
+    if (depth() > kMostLevels || ++num_includes_ > kMostIncludes || repeated_ > kMostRepeated) {
+      diagnostics_.error("deck.include-many", where,
+                         depth() > kMostLevels
+                             ? "files include files over more than " + std::to_string(kMostLevels) + " levels"
+                             : "INCLUDE reads more than " + std::to_string(kMostIncludes) +
+                                   " files, or a gigabyte of files that were read before",
+                         "let the deck include each part once");
+      done_ = true;
+      return;
     }
     statement.target = static_cast<int>(known - source_.files.begin());
     source_.includes.push_back(statement);
@@ -261,6 +280,8 @@ class Loader {
   Diagnostics& diagnostics_;
   std::vector<std::string> chain_;  ///< canonical paths of the files open now
   fs::path root_;
+  int num_includes_ = 0;
+  std::size_t repeated_ = 0;  ///< bytes of files that were included before
   bool done_ = false;
 };
 

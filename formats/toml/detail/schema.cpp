@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
 
 #include <nlohmann/json.hpp>
 
@@ -13,13 +12,20 @@ namespace {
 using nlohmann::json;
 using Kind = Value::Kind;
 
+constexpr const char* kNamePattern = R"(^(?!\.{1,2}$)[^/\x00-\x1f\x7f]{1,1000}$)";
+constexpr std::size_t kMostLetters = 1000;
+
 /// Tables of the contract that this version does not have yet.
 const std::vector<std::string>& get_later_tables() {
   static const std::vector<std::string> names{"constraint", "actuator", "controller", "connect", "event"};
   return names;
 }
 
-std::string quote(const std::string& s) { return "'" + s + "'"; }
+/// What a message shows of a text.
+constexpr std::size_t kMostShown = 80;
+std::string quote(const std::string& s) {
+  return "'" + (s.size() <= kMostShown ? s : s.substr(0, kMostShown) + "...") + "'";
+}
 
 std::string join(const std::vector<std::string>& words, const char* separator = ", ") {
   std::string text;
@@ -147,9 +153,21 @@ class Checker {
 
   void check_pattern(const Value& v, const json& schema, const std::string& path, int line) {
     if (!schema.contains("pattern")) return;
-    if (std::regex_search(v.text, std::regex(schema["pattern"].get<std::string>()))) return;
-    error("toml.bad-name", line, path + " is " + quote(v.text) + ", expected a name without a slash and not empty",
-          "rename it");
+    // The schemas have one pattern, that of names; a regular expression of the library takes a frame of the stack for
+    // each letter of the text.
+    BOUGH_DEMAND(schema["pattern"] == kNamePattern);
+    const std::string& name = v.text;
+    const bool has_control =
+        std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; });
+    if (name.empty() || name.find('/') != std::string::npos || name == "." || name == ".." || has_control)
+      error("toml.bad-name", line,
+            path + " is " + (has_control ? "a text with control characters" : quote(name)) +
+                ", expected a name without a slash and not empty",
+            "rename it");
+    else if (name.size() > kMostLetters)
+      error("toml.bad-name", line,
+            path + " has " + std::to_string(name.size()) + " letters, expected at most " + std::to_string(kMostLetters),
+            "shorten it");
   }
 
   void check_array(const Value& v, const json& schema, const std::string& path, int line) {

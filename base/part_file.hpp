@@ -1,0 +1,54 @@
+#pragma once
+/// \file Output files that appear whole or not at all, and locks between processes of Bough.
+#include <string>
+#include <system_error>
+
+namespace bough {
+
+/// The file that writing to `path` reaches: symbolic links followed, whether it exists or not. `failed` is set where a
+/// link cannot be followed (a circle, or a link of another user in a shared folder) and then `path` is returned.
+std::string find_target(const std::string& path, std::error_code& failed);
+
+/// A new file beside the target of `path`, NAME.bough-part-PID, that takes its place when it is whole. It is made with
+/// O_EXCL and O_NOFOLLOW and locked while it is open; parts of the same name whose process is gone are removed first.
+/// Removed by its destructor, and by remove_parts.
+class PartFile {
+ public:
+  explicit PartFile(const std::string& path);
+  ~PartFile();
+  PartFile(const PartFile&) = delete;
+  PartFile& operator=(const PartFile&) = delete;
+
+  /// Why the file could not be made, or what went wrong since.
+  const std::error_code& error() const { return error_; }
+  /// The name to write to; the target's is get_target.
+  const std::string& get_name() const { return name_; }
+  const std::string& get_target() const { return target_; }
+  int get_descriptor() const { return descriptor_; }
+
+  /// Appends; false, with error(), when the file did not take all of it.
+  bool write(const char* data, std::size_t size);
+  /// Bytes to the disk, then the name: the file appears now, with the permissions of the old one. False, with error(),
+  /// and then the old one is untouched. A file that replaces none need not be on the disk when it appears.
+  bool commit(bool always_syncs = true);
+  /// Closes and removes.
+  void abandon();
+
+ private:
+  bool fail();
+  std::string name_, target_;
+  int descriptor_ = -1, slot_ = -1;
+  std::error_code error_;
+};
+
+/// Removes every part that this process has open. Async-signal-safe.
+void remove_parts() noexcept;
+
+enum class LockState { Held, Busy, Unsupported };
+/// Locks a file for as long as the descriptor, open for writing, stays open; no other program's reading is hindered (a
+/// lock of the open file description on one byte far behind the end). Processes forked share it.
+LockState lock_file(int descriptor);
+/// Whether a process holds the lock; false where that cannot be told.
+bool is_file_locked(const std::string& path);
+
+}  // namespace bough

@@ -1,0 +1,45 @@
+#include "cli/common/interrupt.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstring>
+
+#include "base/part_file.hpp"
+#include "cli/common/console.hpp"
+
+namespace bough::cli {
+
+namespace {
+
+/// Calls nothing that a handler may not.
+void end_on_signal(int signal) {
+  remove_parts();
+  const char* text = signal == SIGINT ? "error: interrupted; nothing was written [cli.interrupted]\n"
+                                      : "error: told to end; nothing was written [cli.interrupted]\n";
+  (void)!::write(STDERR_FILENO, text, std::strlen(text));
+  ::_exit(kComputationFailed);
+}
+
+/// As soon as the program is loaded: its many libraries start for longer than some verbs work.
+__attribute__((section(".preinit_array"), used)) void (*const begin)() = end_cleanly_on_signals;
+
+}  // namespace
+
+void end_cleanly_on_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction now {};
+    if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler == SIG_IGN) continue;
+    struct sigaction own {};
+    own.sa_handler = end_on_signal;
+    ::sigaction(signal, &own, nullptr);
+  }
+}
+
+void secure_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0) (void)!::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
+}  // namespace bough::cli

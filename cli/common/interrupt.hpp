@@ -1,0 +1,13 @@
+#pragma once
+
+namespace bough::cli {
+
+/// SIGINT, SIGTERM and SIGHUP end the program with exit code 3 and leave no half-written file behind; a signal that was
+/// ignored from the start stays so. In force before main() begins. Verbs that can stop in good order (run, batch) take
+/// the signals over.
+void end_cleanly_on_signals();
+
+/// Standard streams that the caller has closed lead to where every write fails, and not into the next file opened.
+void secure_streams();
+
+}  // namespace bough::cli

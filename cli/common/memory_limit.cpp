@@ -1,0 +1,53 @@
+#include "cli/common/memory_limit.hpp"
+
+#include <dlfcn.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <vector>
+
+#include "base/diagnostic.hpp"
+
+namespace bough::cli {
+
+namespace {
+
+constexpr const char* kThreads = "OPENBLAS_NUM_THREADS";
+/// What OpenBLAS takes for each thread, and what MPI and PETSc take when they start.
+constexpr std::size_t kWorkSpace = std::size_t{160} << 20;
+
+bool is_limited() {
+  rlimit limit{};
+  return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+}
+
+}  // namespace
+
+void prepare_for_memory_limit(char** arguments) {
+  if (!is_limited() || std::getenv(kThreads) != nullptr) return;
+  setenv(kThreads, "1", 1);
+  execv("/proc/self/exe", arguments);  // where that fails, the threads stay
+}
+
+void set_work_space_aside() {
+  if (!is_limited()) return;
+  void* room = mmap(nullptr, kWorkSpace, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED)
+    throw ComputationError("cli.no-memory", {}, "the limit of memory (ulimit -v) leaves too little to start with",
+                           "raise it by some 200 MB");
+  munmap(room, kWorkSpace);
+  // Whichever BLAS is there; a product of this size takes the work space, which is kept for those that follow.
+  using Product = void (*)(const char*, const char*, const int*, const int*, const int*, const double*, const double*,
+                           const int*, const double*, const int*, const double*, double*, const int*);
+  const auto multiply = reinterpret_cast<Product>(dlsym(RTLD_DEFAULT, "dgemm_"));
+  if (multiply == nullptr) return;
+  constexpr int n = 128;
+  const double one = 1, zero = 0;
+  const std::vector<double> a(n * n);
+  std::vector<double> c(n * n);
+  multiply("N", "N", &n, &n, &n, &one, a.data(), &n, a.data(), &n, &zero, c.data(), &n);
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,155 @@
+#include "formats/hdf5/detail/inspect.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <new>
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace bough::hdf5 {
+
+namespace {
+
+constexpr char kBetween = '\x1f', kEnd = '\x1e';
+/// Seconds of computing that a file may take, and those it may take more for each of its bytes.
+constexpr double kSeconds = 20, kSecondsPerByte = 1e-7;
+
+/// Exit code of a child that ran out of memory.
+constexpr int kNoMemory = 9;
+
+/// Which state of a file was looked at.
+using Stamp = std::array<long long, 5>;
+
+Stamp make_stamp(const struct stat& state) {
+  return {static_cast<long long>(state.st_dev), static_cast<long long>(state.st_ino),
+          static_cast<long long>(state.st_size), static_cast<long long>(state.st_mtim.tv_sec),
+          static_cast<long long>(state.st_mtim.tv_nsec)};
+}
+
+std::map<std::string, Stamp>& get_inspected() {
+  static std::map<std::string, Stamp> inspected;
+  return inspected;
+}
+
+void limit(decltype(RLIMIT_CPU) resource, double most) {
+  rlimit now{};
+  getrlimit(resource, &now);
+  now.rlim_cur = std::min(now.rlim_cur, static_cast<rlim_t>(most));
+  setrlimit(resource, &now);
+}
+
+double get_memory() {
+  std::ifstream in("/proc/self/statm");
+  double pages = 0;
+  in >> pages;
+  return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+void write_all(int descriptor, const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const auto done = ::write(descriptor, text.data() + at, text.size() - at);
+    if (done <= 0) return;
+    at += static_cast<std::size_t>(done);
+  }
+}
+
+[[noreturn]] void become_reader(const std::string& path, double size, int descriptor) {
+  // Nobody handles a crash here, or cleans up for the parent.
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM, SIGHUP, SIGXCPU})
+    std::signal(signal, SIG_DFL);
+  if (const int null = ::open("/dev/null", O_WRONLY); null >= 0) {
+    ::dup2(null, STDOUT_FILENO);
+    ::dup2(null, STDERR_FILENO);
+  }
+  ::mallopt(M_PERTURB, 0x5A);  // memory that was never set shows here, and not where it matters
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_CPU, kSeconds + kSecondsPerByte * size);
+#if !defined(__SANITIZE_ADDRESS__)
+  limit(RLIMIT_AS, get_memory() + 1e9 + 4 * size);
+#endif
+  try {
+    std::string text;
+    for (const auto& d : find_faults(path)) text += d.id + kBetween + d.what + kBetween + d.advice + kEnd;
+    write_all(descriptor, text);
+  } catch (const std::bad_alloc&) {
+    ::_exit(kNoMemory);
+  } catch (const std::exception&) {
+    ::_exit(1);
+  }
+  ::_exit(0);
+}
+
+void parse(const std::string& path, const std::string& text, Diagnostics& found) {
+  for (std::size_t at = 0; at < text.size();) {
+    const auto end = std::min(text.find(kEnd, at), text.size());
+    const auto first = text.find(kBetween, at), second = text.find(kBetween, first + 1);
+    if (second < end)
+      found.error(text.substr(at, first - at), {path}, text.substr(first + 1, second - first - 1),
+                  text.substr(second + 1, end - second - 1));
+    at = end + 1;
+  }
+}
+
+/// What the way in which the reader ended says of the file; empty: nothing.
+std::string describe_end(int status) {
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
+  if (WIFEXITED(status))
+    return WEXITSTATUS(status) == kNoMemory ? "reading it takes more memory than a file of its size can need"
+                                            : "reading it fails";
+  if (WTERMSIG(status) == SIGXCPU) return "reading it comes to no end";
+  return std::string("the HDF5 library does not survive reading it (") + strsignal(WTERMSIG(status)) + ")";
+}
+
+}  // namespace
+
+void inspect_file(const std::string& path) {
+  struct stat state {};
+  if (::stat(path.c_str(), &state) != 0) return;
+  const auto stamp = make_stamp(state);
+  if (const auto known = get_inspected().find(path); known != get_inspected().end() && known->second == stamp) return;
+
+  Diagnostics found;
+  int ends[2];
+  pid_t child = -1;
+  const bool has_pipe = ::pipe2(ends, O_CLOEXEC) == 0;
+  if (has_pipe) child = ::fork();
+  if (child == 0) become_reader(path, static_cast<double>(state.st_size), ends[1]);
+  if (child < 0) {
+    // No process to be had: better looked at here than not.
+    if (has_pipe) {
+      ::close(ends[0]);
+      ::close(ends[1]);
+    }
+    for (auto& fault : find_faults(path)) found.add(std::move(fault));
+  } else {
+    ::close(ends[1]);
+    std::string text;
+    char buffer[4096];
+    for (ssize_t n = 1; n != 0;) {
+      n = ::read(ends[0], buffer, sizeof buffer);
+      if (n > 0) text.append(buffer, static_cast<std::size_t>(n));
+      if (n < 0 && errno != EINTR) break;
+    }
+    ::close(ends[0]);
+    int status = 0;
+    pid_t ended = 0;
+    while ((ended = ::waitpid(child, &status, 0)) < 0 && errno == EINTR) continue;
+    parse(path, text, found);
+    const auto why = ended == child ? describe_end(status) : std::string();
+    if (!why.empty()) found.error("hdf5.damaged", {path}, "the file is damaged: " + why, "copy or write it again");
+  }
+  found.throw_if_errors();
+  get_inspected()[path] = stamp;
+}
+
+}  // namespace bough::hdf5

@@ -1,0 +1,83 @@
+"""Input without end or measure is told in a moment: names, includes, repeats, numbers, signs."""
+import unittest
+import xml.dom.minidom
+
+from support import BEAM, ProgramTest
+
+
+class Limits(ProgramTest):
+    def test_long_names(self):
+        self.copy_example("ex01-spinup")
+        self.bough("reduce", "boom.toml")
+        with open(self.path("spinup.toml")) as f:
+            text = f.read()
+        for length in (1001, 40000, 2000000):
+            self.write("long.toml", text.replace('name = "tip_deflection"', f'name = "{"x" * length}"'))
+            for verb in ("check", "run"):
+                said = self.fails(1, verb, "long.toml", says=[f"has {length} letters"], error="toml.bad-name").stderr
+                self.assertLess(len(said), 1000)
+        self.write("long.toml", text.replace('name = "tip_deflection"', f'name = "{"x" * 1000}"'))
+        self.bough("check", "long.toml")
+
+    def test_includes_over_many_levels(self):
+        for k in range(300):
+            self.write(f"d{k}.bdf", f"INCLUDE 'd{k + 1}.bdf'\n")
+        self.write("d300.bdf", "GRID,9,,3.,0.,0.\n")
+        deck = BEAM.replace("BEGIN BULK\n", "BEGIN BULK\nINCLUDE 'd{}.bdf'\n")
+        self.write("deep.bdf", deck.replace("{}", "0"))
+        self.fails(1, "check", "deep.bdf", says=["over more than 100 levels", "d"], error="deck.include-many")
+        self.write("deep.bdf", deck.replace("{}", "220"))
+        self.bough("check", "deep.bdf")
+
+    def test_includes_that_double(self):
+        for k in range(30):
+            self.write(f"d{k}.bdf", f"INCLUDE 'd{k + 1}.bdf'\n" * 2)
+        self.write("d30.bdf", "$ the end\n")
+        self.write("twice.bdf", BEAM.replace("BEGIN BULK\n", "BEGIN BULK\nINCLUDE 'd0.bdf'\n"))
+        self.fails(1, "check", "twice.bdf", says=["more than 20000 files"], error="deck.include-many")
+        self.write("big.bdf", "$" + "x" * 70_000_000 + "\n")
+        self.write("twice.bdf", BEAM.replace("BEGIN BULK\n", "BEGIN BULK\n" + "INCLUDE 'big.bdf'\n" * 40))
+        self.fails(1, "check", "twice.bdf", says=["a gigabyte"], error="deck.include-many")
+
+    def test_repeats(self):
+        lines = "GRID,{0},,5.,0.,0.\n=,*1,==\n={1},\n"
+        self.write("repeat.bdf", BEAM.replace("GRID,3", lines.format(10, 1000000000) + "GRID,3"))
+        self.fails(1, "check", "repeat.bdf", says=["1000000000, expected 1 to 1000000"], error="deck.bad-replication")
+        many = "".join(lines.format(k * 1000000, 700000) for k in (1, 2, 3))
+        self.write("repeat.bdf", BEAM.replace("GRID,3", many + "GRID,3"))
+        self.fails(1, "check", "repeat.bdf", says=["more than 2000000 cards"], error="deck.bad-replication")
+
+    def test_negative_spring_is_named(self):
+        self.write("y.bdf", "SOL 103\nCEND\nSPC=1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,0.,0.,0.\n"
+                   "CELAS2,7,-1.,1,1,2,1\nCONM2,5,2,,1.\nSPC1,1,123456,1\nSPC1,1,23456,2\nENDDATA\n")
+        self.fails(3, "modes", "y.bdf", says=["AUTOSPC holds 1", "CELAS2 7 has negative stiffness"],
+                   error="modal.no-dofs")
+
+    def test_more_modes_than_dofs(self):
+        grids = [f"GRID,{k},,{k}.,0.,0." for k in range(4, 300)]
+        bars = [f"CBAR,{k},1,{k},{k + 1},0.,1.,0." for k in range(3, 299)]
+        self.write("line.bdf", BEAM.replace("ENDDATA", "\n".join(grids + bars + ["ENDDATA"])))
+        self.fails(1, "modes", "line.bdf", "-n", 2147483647, says=["the model has 1788 free dofs"],
+                   error="modal.more-than-dofs")
+        self.bough("modes", "line.bdf", "-n", 3)
+
+    def test_impossible_inertia(self):
+        self.write("top.toml", '[[body]]\nname = "top"\nmass = 1.0\ninertia = [0.1, 0.1, 5.0, 0.0, 0.0, 0.0]\n'
+                   '[[hinge]]\nname = "h"\ntype = "free"\nparent = "ground"\nchild = "top"\n'
+                   '[simulation]\nduration = 1.0\noutput_step = 0.1\n')
+        self.fails(1, "check", "-q", "top.toml", says=["top.toml:4: error: no body has the inertia"],
+                   error="toml.bad-value")
+
+    def test_pictures_are_xml_whatever_the_title(self):
+        self.copy_example("ex01-spinup")
+        self.bough("reduce", "boom.toml")
+        with open(self.path("spinup.toml")) as f:
+            self.write("short.toml", f.read().replace("duration = 20.0", "duration = 0.2"))
+        self.bough("run", "short.toml")
+        self.bough("plot", "short.h5", "--sensor", "tip_deflection:y", "--title", "a\x01b <&\udcff", "-o", "p.svg")
+        title = xml.dom.minidom.parse(self.path("p.svg")).toxml()
+        self.assertIn("ab &lt;&amp;\ufffd", title)
+
+
+if __name__ == "__main__":
+    unittest.main()
