@@ -3,6 +3,7 @@
 #include "base/diagnostic.hpp"
 #include "console.hpp"
 #include "help_files.hpp"
+#include "linear_verbs.hpp"
 #include "usage_text.hpp"
 #include "verbs.hpp"
 #include "versions.hpp"
@@ -21,6 +22,9 @@ void add_verbs(CLI::App& app, cli::Action& action) {
   cli::add_flx(app, action);
   cli::add_compare(app, action);
   cli::add_run(app, action);
+  cli::add_equilibrium(app, action);
+  cli::add_linearize(app, action);
+  cli::add_select(app, action);
   cli::add_export(app, action);
   cli::add_plot(app, action);
   cli::add_info(app, action);

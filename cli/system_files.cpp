@@ -5,6 +5,7 @@
 #include "formats/hdf5/files.hpp"
 #include "formats/toml/specs.hpp"
 #include "options.hpp"
+#include "start_state.hpp"
 
 namespace bough::cli {
 
@@ -32,7 +33,7 @@ std::string name_reducible(const std::string& file) {
 
 }  // namespace
 
-LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics) {
+LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, const std::string& start_from) {
   demand_file(path);
   auto spec = toml_files::read_system_spec(path, diagnostics);
   std::map<std::string, records::FlexBody> flex;
@@ -59,6 +60,11 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics) {
     }
   }
   diagnostics.throw_if_errors();
+  if (!start_from.empty()) {
+    demand_file(start_from);
+    set_start_state(spec, start_from, diagnostics);
+    diagnostics.throw_if_errors();
+  }
   auto system = solver::System::build(spec, flex, diagnostics);
   diagnostics.throw_if_errors();
   return {std::move(spec), std::move(flex), std::move(flex_path), std::move(system)};
