@@ -1,5 +1,6 @@
 #include "solver/linear/difference.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <exception>
@@ -12,7 +13,8 @@ namespace bough::solver {
 namespace {
 
 using Eigen::VectorXd;
-constexpr int kLevels = 10, kHalvings = 30, kOrders = 5;
+constexpr std::size_t kLevels = 10, kOrders = 5;
+constexpr int kHalvings = 30;
 
 /// (f(h) - f(-h)) / 2h and max(|f(h)|, |f(-h)|); false where f has no value, with why.
 bool calc_central(const std::function<VectorXd(double)>& f, double h, VectorXd& slope, VectorXd& size,
@@ -35,9 +37,9 @@ Difference differentiate(const std::function<VectorXd(double)>& f, double step) 
   Difference best;
   std::array<VectorXd, kOrders> row, before;
   VectorXd slope, size, best_step;
-  std::vector<VectorXd> steps_apart;  // h |change of the slope from one step to the next|: rounding, or more
+  std::vector<VectorXd> steps_apart;  // h |change of the best slope from one step to the next|
   std::exception_ptr why;
-  int level = 0;
+  std::size_t level = 0;
   for (int i = 0; i < kHalvings && level < kLevels; ++i) {
     const double h = std::ldexp(step, -i);
     if (!calc_central(f, h, slope, size, why)) {
@@ -52,12 +54,9 @@ Difference differentiate(const std::function<VectorXd(double)>& f, double step) 
       best.value = slope;
       best.error = VectorXd::Constant(slope.size(), std::numeric_limits<double>::infinity());
       best_step = VectorXd::Constant(slope.size(), h);
-    } else {
-      steps_apart.push_back(h * (row[0] - before[0]).cwiseAbs());
     }
     double factor = 1;
-    for (int j = 1; j <= level && j < kOrders; ++j) {
-      const auto k = static_cast<std::size_t>(j);
+    for (std::size_t k = 1; k <= level && k < kOrders; ++k) {
       factor *= 4;
       row[k] = row[k - 1] + (row[k - 1] - before[k - 1]) / (factor - 1);
       const VectorXd error = (row[k] - row[k - 1]).cwiseAbs().cwiseMax((row[k] - before[k - 1]).cwiseAbs()) + rounding;
@@ -68,6 +67,10 @@ Difference differentiate(const std::function<VectorXd(double)>& f, double step) 
         best_step[e] = h;
       }
     }
+    // Extrapolated, two steps differ by rounding alone once they are short.
+    if (level > 0)
+      steps_apart.push_back(h *
+                            (row[std::min(level, kOrders - 1)] - before[std::min(level - 1, kOrders - 1)]).cwiseAbs());
     ++level;
   }
   if (level == 0) {
