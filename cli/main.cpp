@@ -8,6 +8,7 @@
 #include "cli/common/memory_limit.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/common/versions.hpp"
+#include "cli/linear_verbs.hpp"
 #include "cli/verbs.hpp"
 
 namespace {
@@ -24,6 +25,9 @@ void add_verbs(CLI::App& app, cli::Action& action) {
   cli::add_flx(app, action);
   cli::add_compare(app, action);
   cli::add_run(app, action);
+  cli::add_equilibrium(app, action);
+  cli::add_linearize(app, action);
+  cli::add_select(app, action);
   cli::add_export(app, action);
   cli::add_plot(app, action);
   cli::add_info(app, action);

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "cli/common/options.hpp"
+#include "cli/common/start_state.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/toml/specs.hpp"
 #include "solver/integrate/simulate.hpp"
@@ -44,7 +45,7 @@ std::vector<std::string> collect_sources(const std::string& path, const LoadedSy
   return files;
 }
 
-LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics) {
+LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, const std::string& start_from) {
   demand_file(path);
   auto spec = toml_files::read_system_spec(path, diagnostics);
   const bool has_errors_of_text = diagnostics.num_errors() > 0;
@@ -76,6 +77,11 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics) {
   // A file with errors of its own has no meaning to go on with; one without is taken as far as it goes, so that one
   // round shows all errors of bodies, hinges, forces, sensors, events and the run.
   if (has_errors_of_text) diagnostics.throw_if_errors();
+  if (!start_from.empty()) {
+    diagnostics.throw_if_errors();
+    demand_file(start_from);
+    set_start_state(spec, start_from, diagnostics);
+  }
   auto system = solver::System::build_as_far(spec, flex, diagnostics);
   solver::check_run(system, spec, diagnostics);
   diagnostics.throw_if_errors();

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct RunOptions : CommonOptions {
-  std::string file;
+  std::string file, start_from;
   bool resume = false;
 };
 
@@ -149,7 +149,7 @@ int run_run(const RunOptions& o) {
   demand_file(o.file);
   if (has_suffix(o.file, ".toml")) demand_kind(o.file, toml_files::detect_kind(o.file), "system");
   Diagnostics diagnostics;
-  const auto loaded = load_system(o.file, diagnostics);
+  const auto loaded = load_system(o.file, diagnostics, o.start_from);
   const auto output = choose_output(o);
   demand_other_file(output, loaded, o.file);
 
@@ -208,6 +208,9 @@ void add_run(CLI::App& app, Action& action) {
   auto* verb = app.add_subcommand("run", "Time history of a multibody system");
   verb->add_option("file", o->file, "System file (.toml)")->required();
   verb->add_flag("--resume", o->resume, "Continue the results file from its last checkpoint");
+  verb->add_option("--start-from", o->start_from,
+                   "Start from the last state of this results file, of run or equilibrium")
+      ->excludes("--resume");
   add_common_options(*verb, *o, kOutput | kJson, "Results HDF5 file (default: the system file's name with .h5, here)");
   verb->footer(
       "Example:\n  bough run spinup.toml -o spinup.h5\n  bough run spinup.toml -o spinup.h5 --resume\n"

@@ -26,6 +26,8 @@ MAY_INCLUDE = [
     ("stiffening", RECORDS + ["fe", "modal"]),
     ("solver/hinges", RECORDS + ["solver/bodies"]),
     ("solver/integrate", RECORDS + ["solver"]),
+    ("solver/statespace", RECORDS),
+    ("solver/linear", RECORDS + ["solver"]),
     ("solver", RECORDS),
 ]
 # Outside headers and the only folders that may see them.
@@ -48,8 +50,8 @@ def lies_in(path, folders):
     return any(path == f or path.startswith(f + "/") for f in folders)
 
 
-# Seen by nobody outside: the integrators stand above the rest of the solver.
-TOP = ["solver/integrate", "cli"]
+# Seen by nobody outside: the integrators and the linear models stand above the rest of the solver.
+TOP = ["solver/integrate", "solver/linear", "cli"]
 
 findings = []
 for source in list_sources():

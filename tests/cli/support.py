@@ -7,8 +7,8 @@ import unittest
 
 PROGRAM = os.environ["BOUGH_PROGRAM"]
 SOURCE = os.environ["BOUGH_SOURCE_DIR"]
-VERBS = ["check", "modes", "static", "matrices", "reduce", "integrals", "flx", "compare", "run", "export", "plot",
-         "info", "init", "batch"]
+VERBS = ["check", "modes", "static", "matrices", "reduce", "integrals", "flx", "compare", "run",
+         "equilibrium", "linearize", "select", "export", "plot", "info", "init", "batch"]
 
 
 class ProgramTest(unittest.TestCase):

@@ -1,0 +1,70 @@
+#include "cli/common/start_state.hpp"
+
+#include <algorithm>
+
+#include "formats/hdf5/files.hpp"
+
+namespace bough::cli {
+namespace {
+
+class Starter {
+ public:
+  Starter(const hdf5::ResultsFile& results, std::string path, SourceLocation at, Diagnostics& diagnostics)
+      : results_(results), path_(std::move(path)), at_(std::move(at)), diagnostics_(diagnostics) {}
+
+  bool has(const std::string& channel) const { return results_.channels.count(channel) > 0; }
+
+  /// The last row; `expected` 0: any size.
+  std::vector<double> read(const std::string& channel, std::size_t expected) {
+    const auto found = results_.channels.find(channel);
+    if (found == results_.channels.end() || found->second.rows() == 0) {
+      fail(channel + " is missing");
+      return {};
+    }
+    const Eigen::RowVectorXd row = found->second.bottomRows(1);
+    const auto size = static_cast<std::size_t>(row.size());
+    if (expected == 0 || size == expected) return {row.begin(), row.end()};
+    fail(channel + " has " + std::to_string(size) + " values, expected " + std::to_string(expected));
+    return {};
+  }
+
+ private:
+  void fail(const std::string& what) {
+    diagnostics_.error("cli.start-mismatch", at_, "--start-from names " + path_ + ", in which " + what,
+                       "start from a file of this system, made by bough run or bough equilibrium");
+  }
+
+  const hdf5::ResultsFile& results_;
+  std::string path_;
+  SourceLocation at_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+void set_start_state(records::SystemSpec& spec, const std::string& path, Diagnostics& diagnostics) {
+  const auto results = hdf5::read_results(path);
+  Starter starter(results, path, spec.simulation.at, diagnostics);
+  for (auto& body : spec.bodies) {
+    const auto carries = [&](const records::HingeRecord& hinge) { return hinge.child == body.name; };
+    const bool floats = std::none_of(spec.hinges.begin(), spec.hinges.end(), carries);
+    if (floats && starter.has("/hinges/" + body.name + "/q")) {
+      records::HingeRecord hinge;
+      hinge.name = hinge.child = body.name;
+      hinge.type = records::HingeType::Free;
+      hinge.at = body.at;
+      spec.hinges.push_back(hinge);
+    }
+    if (body.file.empty() || body.num_modes == 0) continue;
+    const auto expected = static_cast<std::size_t>(std::max(0, body.num_modes));
+    body.eta = starter.read("/bodies/" + body.name + "/eta", expected);
+    body.eta_dot = starter.read("/bodies/" + body.name + "/eta_dot", expected);
+  }
+  for (auto& hinge : spec.hinges) {
+    if (hinge.type == records::HingeType::Fixed || !hinge.motion.empty()) continue;
+    hinge.position = starter.read("/hinges/" + hinge.name + "/q", 0);
+    hinge.rate = starter.read("/hinges/" + hinge.name + "/qdot", 0);
+  }
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,114 @@
+#include "solver/linear/equilibrium.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/common/console.hpp"
+#include "cli/common/options.hpp"
+#include "cli/linear_verbs.hpp"
+#include "cli/linearize/operating_point.hpp"
+#include "cli/run/provenance_sink.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/toml/specs.hpp"
+#include "solver/integrate/recorder.hpp"
+
+namespace bough::cli {
+
+namespace {
+
+struct EquilibriumOptions : CommonOptions {
+  std::string file;
+};
+
+/// A results file of one sample: plot, export and --start-from take it as any other.
+void write_equilibrium(const LoadedSystem& loaded, solver::Plant& plant, const solver::Equilibrium& found,
+                       const std::vector<std::string>& sources, const std::string& path, Diagnostics& diagnostics) {
+  const auto& point = found.point;
+  plant.evaluate(point);
+  solver::Recorder recorder(loaded.system, solver::Sensors::build(loaded.system, loaded.spec, diagnostics));
+  records::ResultsHeader header;
+  header.system_text = loaded.spec.text;
+  header.channels = recorder.channels();
+  header.settings = {{"equilibrium_residual", fmt::format("{:.17g}", found.residual)}};
+  const auto writer = hdf5::make_results_writer(path);
+  ProvenanceSink sink(*writer, calc_sources(sources));
+  sink.begin(header);
+  sink.write_sample(recorder.calc_sample(point.t, plant.data(), point.q, point.u, 0));
+  Eigen::VectorXd state = Eigen::VectorXd::Zero(point.q.size() + point.u.size() + 1);
+  state << point.q, point.u, 0;
+  sink.write_checkpoint({point.t, state});
+  sink.end(true, "");
+}
+
+std::string join(const std::vector<std::string>& words) {
+  std::string text;
+  for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+int run_equilibrium(const EquilibriumOptions& o) {
+  Console console(o.quiet, o.verbosity);
+  if (!console.is_root()) return kSuccess;
+  demand_file(o.file);
+  if (has_suffix(o.file, ".toml")) demand_kind(o.file, toml_files::detect_kind(o.file), "system");
+  Diagnostics diagnostics;
+  const auto loaded = load_system(o.file, diagnostics);
+  std::vector<std::string> sources{o.file};
+  for (const auto& [name, path] : loaded.flex_path) sources.push_back(path);
+  if (!o.output.empty()) check_output(o, o.output, sources);
+  auto plant = make_plant(loaded, diagnostics);
+  const auto start = plant.make_initial_point();
+  const auto found = solver::find_equilibrium(plant, start, {o.file});
+  console.print(diagnostics);
+  const auto q = plant.get_for_file(found.point.q);
+  if (o.json) {
+    console.print_data(nlohmann::json{{"time", found.point.t},
+                                      {"q", std::vector<double>(q.begin(), q.end())},
+                                      {"u", std::vector<double>(found.point.u.begin(), found.point.u.end())},
+                                      {"residual", found.residual},
+                                      {"iterations", found.num_iterations},
+                                      {"indifferent", found.indifferent},
+                                      {"spinning", found.spinning}}
+                           .dump(2) +
+                       "\n");
+  } else {
+    std::string text =
+        fmt::format("equilibrium after {} iterations: |u_dot| {:.1e}\n", found.num_iterations, found.residual);
+    Table table{{"hinge", "coordinates"}, {}};
+    for (int b = 0; b < loaded.system.num_bodies(); ++b) {
+      std::vector<std::string> values;
+      for (int i = 0; i < loaded.system.num_hinge_q(b); ++i)
+        values.push_back(fmt::format("{:.8g}", q[loaded.system.q_offset(b) + i]));
+      if (!values.empty()) table.rows.push_back({loaded.system.hinge_name(b), join(values)});
+    }
+    if (!table.rows.empty()) text += table.to_text();
+    if (!found.spinning.empty()) text += "at a given rate: " + join(found.spinning) + "\n";
+    if (!found.indifferent.empty()) text += "indifferent, left where they were: " + join(found.indifferent) + "\n";
+    console.print(text);
+  }
+  if (!o.output.empty()) {
+    write_equilibrium(loaded, plant, found, sources, o.output, diagnostics);
+    if (!o.json) console.print("written: " + o.output + "\n");
+  }
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_equilibrium(CLI::App& app, Action& action) {
+  auto o = std::make_shared<EquilibriumOptions>();
+  auto* verb = app.add_subcommand("equilibrium", "A state of rest, or of steady spin, of a multibody system");
+  verb->add_option("file", o->file, "System file (.toml); hinge rates given there are kept")->required();
+  add_common_options(*verb, *o, kOutput | kJson, "Write the state to this HDF5 file, for --start-from");
+  verb->footer(
+      "Example:\n  bough equilibrium arm.toml -o rest.h5\n"
+      "  bough linearize arm.toml --start-from rest.h5 -o arm-linear.h5\n"
+      "Hinge rates of the system file are kept: other than zero they give a steady spin.");
+  verb->callback([&action, o] { action = [o] { return blame(o->file, [&] { return run_equilibrium(*o); }); }; });
+}
+
+}  // namespace bough::cli

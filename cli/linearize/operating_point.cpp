@@ -1,0 +1,54 @@
+#include "cli/linearize/operating_point.hpp"
+
+#include <fmt/format.h>
+
+#include "solver/integrate/simulate.hpp"
+
+namespace bough::cli {
+
+namespace {
+
+/// Keeps the last checkpoint and nothing else.
+class LastState final : public records::ResultSink {
+ public:
+  void begin(const records::ResultsHeader&) override {}
+  void write_sample(const Eigen::Ref<const Eigen::VectorXd>&) override {}
+  void write_event(const records::EventRecord&) override {}
+  void write_checkpoint(const records::Checkpoint& checkpoint) override { last_ = checkpoint; }
+  void end(bool, const std::string&) override {}
+  const records::Checkpoint& last() const { return last_; }
+
+ private:
+  records::Checkpoint last_;
+};
+
+}  // namespace
+
+solver::Plant make_plant(const LoadedSystem& loaded, Diagnostics& diagnostics) {
+  auto sensors = solver::Sensors::build(loaded.system, loaded.spec, diagnostics);
+  diagnostics.throw_if_errors();
+  return {loaded.system, std::move(sensors)};
+}
+
+solver::OperatingPoint run_to(const LoadedSystem& loaded, double t, Diagnostics& diagnostics) {
+  auto spec = loaded.spec;
+  auto& s = spec.simulation;
+  const int nq = loaded.system.num_q(), nu = loaded.system.num_u();
+  if (t < s.start) {
+    throw InputError("linear.bad-time", s.at,
+                     fmt::format("time {:g} lies before the start of the run, {:g}", t, s.start),
+                     "give a later time with --at");
+  }
+  if (t == s.start) {
+    solver::OperatingPoint point{t, solver::VectorXd::Zero(nq), solver::VectorXd::Zero(nu)};
+    loaded.system.calc_initial_state(point.q, point.u);
+    return point;
+  }
+  s.duration = s.output_step = t - s.start;
+  LastState sink;
+  solver::simulate(loaded.system, spec, sink, {}, diagnostics);
+  const auto& state = sink.last().state;
+  return {t, state.head(nq), state.segment(nq, nu)};
+}
+
+}  // namespace bough::cli

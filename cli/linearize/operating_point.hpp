@@ -1,0 +1,14 @@
+#pragma once
+/// \file The state to linearize about: the start, a later time of the run, or an equilibrium.
+#include "cli/common/system_files.hpp"
+#include "solver/linear/plant.hpp"
+
+namespace bough::cli {
+
+/// The plant of a system file; InputError with all errors of its sensors.
+solver::Plant make_plant(const LoadedSystem& loaded, Diagnostics& diagnostics);
+
+/// The state at time t, by the run's own integrator. InputError("linear.bad-time") before the start.
+solver::OperatingPoint run_to(const LoadedSystem& loaded, double t, Diagnostics& diagnostics);
+
+}  // namespace bough::cli

@@ -1,0 +1,98 @@
+#include "formats/hdf5/linear_file.hpp"
+
+#include "formats/hdf5/detail/reader.hpp"
+#include "formats/hdf5/detail/writer.hpp"
+
+namespace bough::hdf5 {
+namespace {
+
+constexpr const char* kFormat = "bough-linear";
+using records::LinearModel;
+using records::Signals;
+
+void write_signals(FileWriter& file, const std::string& group, const Signals& signals, const std::string& what) {
+  file.write_strings(group + "/name", signals.name, {"names of the " + what, "1"});
+  file.write_strings(group + "/dims", signals.dims, {"their dimensions in M L T F", "1"});
+}
+
+Signals read_signals(FileReader& file, const std::string& group) {
+  Signals signals;
+  signals.name = file.read_strings(group + "/name", -1);
+  signals.dims = file.read_strings(group + "/dims", static_cast<long>(signals.name.size()));
+  return signals;
+}
+
+void write_poles(FileWriter& file, const records::Poles& poles) {
+  file.write_vector("/poles/real", poles.real, {"eigenvalues of A, real part", "1/T"});
+  file.write_vector("/poles/imag", poles.imag, {"eigenvalues of A, imaginary part", "1/T"});
+  file.write_vector("/poles/frequency_hz", poles.frequency_hz, {"|pole| / 2 pi", "1/T"});
+  file.write_vector("/poles/damping", poles.damping, {"-real / |pole|; 0 for a pole at 0", "1"});
+  file.write_strings("/poles/mode", poles.mode, {"the coordinate that takes part most", "1"});
+}
+
+}  // namespace
+
+void write_linear_model(const LinearModel& model, const std::string& path) {
+  FileWriter file(path, kFormat, kLinearFormatVersion);
+  file.write_source(model.source);
+  const char* const dims = "as the names' dims say";
+  file.write_matrix("/A", model.A, {"x_dot = A x + B u: state, state", dims});
+  file.write_matrix("/B", model.B, {"x_dot = A x + B u: state, input", dims});
+  file.write_matrix("/C", model.C, {"y = C x + D u: output, state", dims});
+  file.write_matrix("/D", model.D, {"y = C x + D u: output, input", dims});
+  write_signals(file, "/states", model.states, "states: displacements of the freedoms, then their rates");
+  write_signals(file, "/inputs", model.inputs, "inputs: departures from their values at the operating point");
+  write_signals(file, "/outputs", model.outputs, "outputs: departures from their values at the operating point");
+  file.write_number("/operating_point/time", model.time, {"time", "T"});
+  file.write_vector("/operating_point/q", model.q,
+                    {"hinge coordinates (quaternions w, x, y, z), then modal coordinates, body by body", "1 or L"});
+  file.write_vector("/operating_point/u", model.u, {"hinge rates, then modal rates, body by body", "1/T or L/T"});
+  file.write_number("/operating_point/residual", model.residual,
+                    {"norm of u_dot: 0 at rest and in a steady motion", "1/T^2 or L/T^2"});
+  file.write_number("/accuracy/error", model.error,
+                    {"estimated error of A and C, relative to the largest entry of the row", "1"});
+  file.write_number("/accuracy/difference", model.difference,
+                    {"of A and C between two step sizes, relative to the largest entry of the row", "1"});
+  write_poles(file, model.poles);
+  if (model.has_zeros) {
+    file.write_vector("/zeros/real", model.zeros_real, {"finite transmission zeros, real part", "1/T"});
+    file.write_vector("/zeros/imag", model.zeros_imag, {"finite transmission zeros, imaginary part", "1/T"});
+  }
+  file.commit();
+}
+
+LinearModel read_linear_model(const std::string& path) {
+  FileReader file(path, kFormat, kLinearFormatVersion);
+  LinearModel model;
+  model.source = file.read_source();
+  model.states = read_signals(file, "/states");
+  model.inputs = read_signals(file, "/inputs");
+  model.outputs = read_signals(file, "/outputs");
+  const long nx = model.states.size(), nu = model.inputs.size(), ny = model.outputs.size();
+  model.A = file.read_matrix("/A", nx, nx);
+  model.B = file.read_matrix("/B", nx, nu);
+  model.C = file.read_matrix("/C", ny, nx);
+  model.D = file.read_matrix("/D", ny, nu);
+  model.time = file.read_number("/operating_point/time");
+  model.q = file.read_vector("/operating_point/q", -1);
+  model.u = file.read_vector("/operating_point/u", -1);
+  model.residual = file.read_number("/operating_point/residual");
+  if (file.has("/accuracy")) {
+    model.error = file.read_number("/accuracy/error");
+    model.difference = file.read_number("/accuracy/difference");
+  }
+  model.poles.real = file.read_vector("/poles/real", nx);
+  model.poles.imag = file.read_vector("/poles/imag", nx);
+  model.poles.frequency_hz = file.read_vector("/poles/frequency_hz", nx);
+  model.poles.damping = file.read_vector("/poles/damping", nx);
+  model.poles.mode = file.read_strings("/poles/mode", nx);
+  model.has_zeros = file.has("/zeros/real");
+  if (model.has_zeros) {
+    model.zeros_real = file.read_vector("/zeros/real", -1);
+    model.zeros_imag = file.read_vector("/zeros/imag", model.zeros_real.size());
+  }
+  file.throw_if_errors();
+  return model;
+}
+
+}  // namespace bough::hdf5

@@ -1,0 +1,42 @@
+#pragma once
+/// \file A linear model ẋ = A x + B u, y = C x + D u about an operating point (docs/formats/linear.md).
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Dense>
+
+namespace bough::records {
+
+/// States, inputs or outputs of a linear model: a name each, and its dimensions in M L T F.
+struct Signals {
+  std::vector<std::string> name, dims;
+  int size() const { return static_cast<int>(name.size()); }
+};
+
+/// Eigenvalues of A: complex pairs together, by distance from zero.
+struct Poles {
+  Eigen::VectorXd real, imag;
+  Eigen::VectorXd frequency_hz;   ///< |λ| / 2π
+  Eigen::VectorXd damping;        ///< -Re λ / |λ|; 0 for λ = 0
+  std::vector<std::string> mode;  ///< the coordinate that takes part most
+  int size() const { return static_cast<int>(real.size()); }
+};
+
+struct LinearModel {
+  std::vector<std::pair<std::string, std::string>> source;  ///< (file name, SHA-256)
+  Eigen::MatrixXd A, B, C, D;
+  Signals states, inputs, outputs;
+
+  double time = 0;        ///< of the operating point
+  Eigen::VectorXd q, u;   ///< generalized positions (quaternions w, x, y, z) and speeds there
+  double residual = 0;    ///< |u̇| there: 0 at rest and in a steady spin
+  double error = 0;       ///< estimated, of A and C, relative to the largest entry of the same row
+  double difference = 0;  ///< between A and C by one step size and by another, likewise
+
+  Poles poles;
+  bool has_zeros = false;  ///< there are as many outputs as inputs
+  Eigen::VectorXd zeros_real, zeros_imag;
+};
+
+}  // namespace bough::records

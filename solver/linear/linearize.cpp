@@ -1,0 +1,221 @@
+#include "solver/linear/linearize.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+#include "solver/linear/difference.hpp"
+#include "solver/statespace/poles.hpp"
+#include "solver/statespace/zeros.hpp"
+
+namespace bough::solver {
+namespace {
+
+using records::LinearModel;
+
+/// The second step, for comparison; no power of two of the first.
+constexpr double kOtherStep = 0.7;
+
+std::string short_text(double value) {
+  std::ostringstream text;
+  text.precision(3);
+  text << value;
+  return text.str();
+}
+
+/// Rows: those of [u̇; y] that were chosen. Columns: δ, then δu.
+struct Jacobian {
+  MatrixXd value, error;
+};
+
+Jacobian calc_jacobian(Plant& plant, const OperatingPoint& point, double step_factor) {
+  const int n = plant.num_freedoms(), rows = n + plant.outputs().size();
+  Jacobian jacobian{MatrixXd::Zero(rows, 2 * n), MatrixXd::Zero(rows, 2 * n)};
+  // The equations are quadratic in u: any step that is not lost in rounding gives the same.
+  const double rate = std::max(1.0, point.u.size() > 0 ? point.u.cwiseAbs().maxCoeff() : 0.0);
+  for (int j = 0; j < 2 * n; ++j) {
+    const int i = j % n;
+    const auto f = [&](double h) {
+      OperatingPoint moved = point;
+      if (j < n)
+        moved.q = plant.displace(point.q, h * VectorXd::Unit(n, i));
+      else
+        moved.u[i] += h;
+      return plant.evaluate(moved);
+    };
+    const Difference column = differentiate(f, step_factor * plant.step(i) * (j < n ? 1 : rate));
+    jacobian.error.col(j) = column.error;
+    // What does not rise above its own error is zero: structure is kept exactly.
+    jacobian.value.col(j) = (column.value.array().abs() > column.error.array()).select(column.value, 0.0);
+  }
+  return jacobian;
+}
+
+/// Exact, f being affine in the input: f(value) - f(0), with a value that brings out the difference.
+VectorXd calc_input_column(Plant& plant, const OperatingPoint& point, const PlantInput& input, const VectorXd& base) {
+  const double large = base.size() > 0 ? base.cwiseAbs().maxCoeff() : 0;
+  VectorXd column = plant.evaluate(point, &input, 1) - base;
+  const double own = column.size() > 0 ? column.cwiseAbs().maxCoeff() : 0;
+  const double value = own > 0 ? std::max(1.0, 10 * large / own) : 1;
+  if (value > 1) column = (plant.evaluate(point, &input, value) - base) / value;
+  const VectorXd rounding = 8 * std::numeric_limits<double>::epsilon() * (base.cwiseAbs() / value + column.cwiseAbs());
+  return (column.array().abs() > rounding.array()).select(column, 0.0);
+}
+
+/// Index of each wanted name; a name before ":" stands for all of its components.
+std::vector<int> choose(const std::vector<std::string>& wanted, const std::vector<std::string>& known,
+                        const std::string& noun, const char* id, const SourceLocation& at, Diagnostics& diagnostics) {
+  std::vector<int> chosen;
+  for (const auto& name : wanted) {
+    const auto size = chosen.size();
+    for (size_t i = 0; i < known.size(); ++i) {
+      if (known[i] == name || known[i].rfind(name + ":", 0) == 0) chosen.push_back(static_cast<int>(i));
+    }
+    if (chosen.size() > size) continue;
+    const std::string near = find_nearest(name, known);
+    std::string list;
+    for (const auto& word : known) list += (list.empty() ? "" : ", ") + word;
+    diagnostics.error(id, at, "there is no " + noun + " '" + name + "'",
+                      !near.empty()  ? "did you mean '" + near + "'?"
+                      : list.empty() ? "the system has none"
+                                     : "choose among: " + list);
+  }
+  return chosen;
+}
+
+/// Largest entry of `difference` relative to the largest of the same row of `value`.
+double calc_relative(const MatrixXd& difference, const MatrixXd& value) {
+  double worst = 0;
+  for (Eigen::Index i = 0; i < value.rows(); ++i) {
+    const double scale = value.cols() > 0 ? value.row(i).cwiseAbs().maxCoeff() : 0;
+    if (scale > 0) worst = std::max(worst, difference.row(i).cwiseAbs().maxCoeff() / scale);
+  }
+  return worst;
+}
+
+MatrixXd take_rows(const MatrixXd& m, int first, const std::vector<int>& rows) {
+  MatrixXd taken(static_cast<Eigen::Index>(rows.size()), m.cols());
+  for (size_t i = 0; i < rows.size(); ++i) taken.row(static_cast<Eigen::Index>(i)) = m.row(first + rows[i]);
+  return taken;
+}
+
+/// At rest or in a steady motion u̇ is small beside what small displacements make of it.
+void note_unsteady(Plant& plant, const VectorXd& u_dot, const MatrixXd& A_lower, const SourceLocation& at,
+                   Diagnostics& diagnostics) {
+  const int n = plant.num_freedoms();
+  VectorXd steps(n);
+  for (int i = 0; i < n; ++i) steps[i] = plant.step(i);
+  const VectorXd scale = A_lower.leftCols(n).cwiseAbs() * steps;
+  for (int i = 0; i < n; ++i) {
+    if (std::abs(u_dot[i]) <= 1e-6 * std::max(scale[i], 1e-6 * scale.maxCoeff())) continue;
+    diagnostics.note(
+        "linear.not-steady", at,
+        "the operating point is not steady: " + plant.freedom_name(i) + " accelerates by " + short_text(u_dot[i]),
+        "bough equilibrium finds a state of rest or of steady spin");
+    return;
+  }
+}
+
+/// A motion under way may change its own linear model.
+void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& here, const SourceLocation& at,
+                     Diagnostics& diagnostics) {
+  const int n = plant.num_freedoms();
+  int fastest = -1;
+  double travel = 0;  // in steps
+  for (int i = 0; i < n; ++i) {
+    if (plant.is_mode(i) || std::abs(point.u[i]) / plant.step(i) <= travel) continue;
+    fastest = i;
+    travel = std::abs(point.u[i]) / plant.step(i);
+  }
+  if (fastest < 0) return;
+  OperatingPoint later = point;
+  VectorXd delta = VectorXd::Zero(n);
+  for (int i = 0; i < n; ++i) {
+    if (!plant.is_mode(i)) delta[i] = 7 * point.u[i] / travel;
+  }
+  later.q = plant.displace(point.q, delta);
+  const MatrixXd there = calc_jacobian(plant, later, 1).value;
+  const double change = calc_relative(there.topRows(n) - here.value.topRows(n), here.value.topRows(n));
+  if (change < 1e-5) return;
+  diagnostics.warning("linear.time-varying", at,
+                      "A changes along the motion, by " + short_text(100 * change) + " % while " +
+                          plant.freedom_name(fastest) + " moves by " + short_text(delta[fastest]) +
+                          ": the model holds at this instant only",
+                      "its poles are not those of the motion; linearize at several times");
+}
+
+}  // namespace
+
+LinearModel linearize(Plant& plant, const OperatingPoint& point, const LinearizeOptions& options,
+                      const SourceLocation& at, Diagnostics& diagnostics) {
+  const int n = plant.num_freedoms();
+  std::vector<std::string> names;
+  for (const auto& input : plant.inputs()) names.push_back(input.name);
+  std::vector<std::string> wanted = options.inputs;
+  std::vector<int> inputs;
+  if (wanted.empty())
+    for (int i = 0; i < plant.num_forces(); ++i) inputs.push_back(i);
+  else
+    inputs = choose(wanted, names, "input", "linear.unknown-input", at, diagnostics);
+  const auto& known = plant.outputs();
+  std::vector<int> outputs;
+  if (options.outputs.empty())
+    for (int i = 0; i < known.size(); ++i) outputs.push_back(i);
+  else
+    outputs = choose(options.outputs, known.name, "output", "linear.unknown-output", at, diagnostics);
+  diagnostics.throw_if_errors();
+
+  LinearModel model;
+  for (const char* suffix : {"", "_dot"}) {
+    for (int i = 0; i < n; ++i) {
+      model.states.name.push_back(plant.freedom_name(i) + suffix);
+      model.states.dims.push_back(*suffix ? plant.freedom_dims(i) + "/T" : plant.freedom_dims(i));
+    }
+  }
+  model.time = point.t;
+  model.q = plant.get_for_file(point.q);
+  model.u = point.u;
+  const VectorXd base = plant.evaluate(point);
+  model.residual = base.head(n).norm();
+
+  const Jacobian jacobian = calc_jacobian(plant, point, 1);
+  model.A = MatrixXd::Zero(2 * n, 2 * n);
+  model.A.topLeftCorner(n, n) = plant.calc_turning(point.u);
+  model.A.topRightCorner(n, n).setIdentity();
+  model.A.bottomRows(n) = jacobian.value.topRows(n);
+  model.C = take_rows(jacobian.value, n, outputs);
+
+  const auto num_inputs = static_cast<Eigen::Index>(inputs.size());
+  model.B = MatrixXd::Zero(2 * n, num_inputs);
+  model.D = MatrixXd::Zero(static_cast<Eigen::Index>(outputs.size()), num_inputs);
+  for (Eigen::Index k = 0; k < num_inputs; ++k) {
+    const PlantInput& input = plant.inputs()[static_cast<size_t>(inputs[static_cast<size_t>(k)])];
+    model.inputs.name.push_back(input.name);
+    model.inputs.dims.push_back(input.dims);
+    const VectorXd column = calc_input_column(plant, point, input, base);
+    model.B.col(k).tail(n) = column.head(n);
+    model.D.col(k) = take_rows(column, n, outputs);
+  }
+  for (const int i : outputs) {
+    model.outputs.name.push_back(known.name[static_cast<size_t>(i)]);
+    model.outputs.dims.push_back(known.dims[static_cast<size_t>(i)]);
+  }
+
+  note_unsteady(plant, base.head(n), jacobian.value.topRows(n), at, diagnostics);
+  model.error = calc_relative(jacobian.error, jacobian.value);
+  if (options.check) {
+    const Jacobian other = calc_jacobian(plant, point, kOtherStep);
+    model.difference = calc_relative(other.value - jacobian.value, jacobian.value);
+    check_constancy(plant, point, jacobian, at, diagnostics);
+  }
+  model.poles = statespace::calc_poles(model.A, model.states.name);
+  if (num_inputs == static_cast<Eigen::Index>(outputs.size()) && num_inputs > 0) {
+    const Eigen::VectorXcd zeros = statespace::calc_zeros(model.A, model.B, model.C, model.D);
+    model.has_zeros = true;
+    model.zeros_real = zeros.real();
+    model.zeros_imag = zeros.imag();
+  }
+  return model;
+}
+
+}  // namespace bough::solver

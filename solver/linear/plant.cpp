@@ -1,0 +1,164 @@
+#include "solver/linear/plant.hpp"
+
+#include <algorithm>
+
+#include "solver/system/impl.hpp"
+
+namespace bough::solver {
+namespace {
+
+size_t as_index(int i) { return static_cast<size_t>(i); }
+
+/// A quaternion has one coordinate more than rates; it comes first, its rates too.
+bool has_quaternion(const System& s, int b) { return s.num_hinge_q(b) == s.num_hinge_rates(b) + 1; }
+
+/// Reach of the nodes and hinges of all bodies; 1 where all lie at the origin.
+double calc_size(const Tree& tree) {
+  double size = 0;
+  for (const TreeBody& tb : tree.bodies) {
+    for (const Node& node : tb.body.nodes()) size = std::max(size, node.p.norm());
+    size = std::max({size, tb.on_parent.p_KH.norm(), tb.on_child.p_KH.norm()});
+  }
+  return size > 0 ? size : 1;
+}
+
+/// Translations move without turning.
+bool is_translation(const TreeBody& tb, int coordinate) {
+  VectorXd q(tb.hinge->num_q()), u = VectorXd::Zero(tb.hinge->num_u());
+  tb.hinge->set_neutral(q.data());
+  HingeMotion motion;
+  tb.hinge->calc_motion(q.data(), u.data(), motion);
+  return motion.H.col(coordinate).tail<3>().isZero(0);
+}
+
+}  // namespace
+
+Plant::Plant(const System& system, Sensors sensors)
+    : system_(system), sensors_(std::move(sensors)), data_(system.make_data()) {
+  const double size = calc_size(system.impl().tree);
+  for (int b = 0; b < system.num_bodies(); ++b) {
+    add_hinge(b);
+    for (size_t i = freedoms_.size() - as_index(system.num_hinge_u(b)); i < freedoms_.size(); ++i) {
+      if (freedoms_[i].dims == "L") freedoms_[i].step = 0.05 * size;
+    }
+    add_modes(b, size);
+  }
+  BOUGH_DEMAND(num_freedoms() == system.num_u());
+  add_inputs();
+  add_outputs();
+}
+
+void Plant::add_hinge(int b) {
+  static const char* const kNames[] = {"rx", "ry", "rz", "x", "y", "z"};
+  const TreeBody& tb = system_.impl().tree.bodies[as_index(b)];
+  for (int i = 0; i < system_.num_hinge_u(b); ++i) {
+    const std::string coordinate = has_quaternion(system_, b) ? kNames[i] : std::to_string(i + 1);
+    freedoms_.push_back({system_.hinge_name(b) + ":" + coordinate, is_translation(tb, i) ? "L" : "1", false, 0.1});
+  }
+}
+
+void Plant::add_modes(int b, double size) {
+  const TreeBody& tb = system_.impl().tree.bodies[as_index(b)];
+  for (int i = 0; i < system_.num_modes(b); ++i) {
+    double largest = 0;
+    for (const Node& node : tb.body.nodes()) largest = std::max(largest, node.phi.col(i).norm() / size);
+    for (const Node& node : tb.body.nodes()) largest = std::max(largest, node.psi.col(i).norm());
+    freedoms_.push_back({system_.body_name(b) + ":eta" + std::to_string(i + 1), "by normalisation", true,
+                         largest > 0 ? 0.05 / largest : 1});
+  }
+}
+
+void Plant::add_inputs() {
+  const auto& forces = system_.impl().forces;
+  for (size_t i = 0; i < forces.size(); ++i) {
+    const bool is_moment = forces[i].pattern.size() == 0 && forces[i].kind == records::ForceKind::Moment;
+    inputs_.push_back({forces[i].name, is_moment ? "F L" : "F", static_cast<int>(i), -1, 0});
+  }
+  num_forces_ = static_cast<int>(inputs_.size());
+  for (int b = 0; b < system_.num_bodies(); ++b) {
+    for (int i = 0; i < system_.num_hinge_u(b); ++i) {
+      const size_t freedom = as_index(system_.u_offset(b) + i);
+      inputs_.push_back({freedoms_[freedom].name, freedoms_[freedom].dims == "L" ? "F" : "F L", -1, b, i});
+    }
+  }
+}
+
+void Plant::add_outputs() {
+  for (const auto& entry : sensors_.entries()) {
+    for (int i = 0; i < entry.size; ++i) {
+      const std::string component = entry.size == 3 ? std::string(1, "xyz"[i]) : std::to_string(i + 1);
+      outputs_.name.push_back(entry.size == 1 ? entry.name : entry.name + ":" + component);
+      outputs_.dims.push_back(entry.dims);
+    }
+  }
+}
+
+OperatingPoint Plant::make_initial_point() const {
+  OperatingPoint point{system_.impl().start, VectorXd::Zero(system_.num_q()), VectorXd::Zero(system_.num_u())};
+  system_.calc_initial_state(point.q, point.u);
+  return point;
+}
+
+VectorXd Plant::displace(const VectorXd& q, const VectorXd& delta) const {
+  BOUGH_DEMAND(q.size() == system_.num_q() && delta.size() == num_freedoms());
+  VectorXd moved = q;
+  for (int b = 0; b < system_.num_bodies(); ++b) {
+    int q_row = system_.q_offset(b), u_row = system_.u_offset(b), left = system_.num_hinge_u(b);
+    if (left > 0 && has_quaternion(system_, b)) {
+      const Eigen::Quaterniond before(q[q_row + 3], q[q_row], q[q_row + 1], q[q_row + 2]);
+      const Vector3d turn = delta.segment<3>(u_row);
+      const double angle = turn.norm();
+      const Eigen::Quaterniond by(
+          Eigen::AngleAxisd(angle, angle > 0 ? Vector3d(turn / angle) : Vector3d(Vector3d::UnitX())));
+      moved.segment<4>(q_row) = (before * by).coeffs();
+      q_row += 4, u_row += 3, left -= 3;
+    }
+    moved.segment(q_row, left) += delta.segment(u_row, left);
+    moved.segment(system_.eta_offset(b), system_.num_modes(b)) +=
+        delta.segment(system_.eta_dot_offset(b), system_.num_modes(b));
+  }
+  return moved;
+}
+
+MatrixXd Plant::calc_turning(const VectorXd& u) const {
+  MatrixXd turning = MatrixXd::Zero(num_freedoms(), num_freedoms());
+  for (int b = 0; b < system_.num_bodies(); ++b) {
+    const int row = system_.u_offset(b);
+    if (system_.num_hinge_u(b) == 0 || !has_quaternion(system_, b)) continue;
+    turning.block<3, 3>(row, row) = -skew(u.segment<3>(row));
+  }
+  return turning;
+}
+
+VectorXd Plant::get_for_file(const VectorXd& q) const {
+  VectorXd file = q;
+  for (int b = 0; b < system_.num_bodies(); ++b) {
+    if (!has_quaternion(system_, b)) continue;
+    const int row = system_.q_offset(b);
+    for (int i = 0; i < 4; ++i) file[row + (i + 1) % 4] = q[row + i];
+  }
+  return file;
+}
+
+VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, double value) {
+  VectorXd out(num_freedoms() + outputs_.size());
+  calc_kinematics(system_, *data_, point.t, point.q, point.u);
+  add_forces(system_, *data_, point.t);
+  if (input && input->force >= 0) {
+    AppliedForce one = system_.impl().forces[as_index(input->force)];
+    one.function = nullptr;
+    one.direction *= value;
+    one.pattern *= value;
+    one.pattern_K2 *= value;
+    one.pattern_resultant *= value;
+    one.pattern_moment *= value;
+    add_applied_force(one, system_.impl().tree, point.t, data_->tree);
+  } else if (input) {
+    data_->tree.bodies[as_index(input->body)].hinge_force[input->coordinate] += value;
+  }
+  calc_accelerations(system_, *data_, point.t, out.head(num_freedoms()));
+  sensors_.calc(system_, *data_, out.tail(outputs_.size()));
+  return out;
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,83 @@
+#pragma once
+/// \file A System as linearize and equilibrium see it: freedoms, inputs, outputs. The one door of solver/linear to the
+/// rest of the solver.
+///
+/// A freedom is a free hinge coordinate or a mode, in the order of u. Positions near q are q ⊕ δ, with one δ a freedom:
+/// q + δ, and for the orientation of a spherical or free hinge q exp(δ̃) (δ in Hc, as its u). About a motion q(t), u(t)
+/// that gives δ̇ = δu, and δ̇ = δu - ω × δ for an orientation that turns at ω: exact to first order.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "formats/records/linear_model.hpp"
+#include "solver/sensors/sensor.hpp"
+#include "solver/system/system.hpp"
+
+namespace bough::solver {
+
+struct OperatingPoint {
+  double t = 0;
+  VectorXd q, u;
+};
+
+/// A scalar that pushes: the value of a [[force]], or a generalized force on a free hinge coordinate.
+struct PlantInput {
+  std::string name, dims;
+  int force = -1;                 ///< index into the system's forces
+  int body = -1, coordinate = 0;  ///< or: hinge of this body, 0-based coordinate
+};
+
+class Plant {
+ public:
+  /// `sensors` were built without errors. The system must outlive the plant.
+  Plant(const System& system, Sensors sensors);
+
+  int num_freedoms() const { return static_cast<int>(freedoms_.size()); }
+  /// "shoulder:1"; "ball:rx" for rotations, "flyer:x" for translations of a spherical or free hinge; "boom:eta3".
+  const std::string& freedom_name(int i) const { return freedoms_[static_cast<size_t>(i)].name; }
+  const std::string& freedom_dims(int i) const { return freedoms_[static_cast<size_t>(i)].dims; }
+  bool is_mode(int i) const { return freedoms_[static_cast<size_t>(i)].is_mode; }
+  /// A displacement that is large but not absurd: 0.1 rad, 5 % of the size of the bodies.
+  double step(int i) const { return freedoms_[static_cast<size_t>(i)].step; }
+
+  OperatingPoint make_initial_point() const;
+  /// q ⊕ δ; delta: num_freedoms.
+  VectorXd displace(const VectorXd& q, const VectorXd& delta) const;
+  /// ∂δ̇/∂δ about a motion with the speeds u: zero but for orientations that turn. num_freedoms².
+  MatrixXd calc_turning(const VectorXd& u) const;
+  /// Quaternions as the files have them: w, x, y, z.
+  VectorXd get_for_file(const VectorXd& q) const;
+
+  /// Every force, then every free hinge coordinate.
+  const std::vector<PlantInput>& inputs() const { return inputs_; }
+  int num_forces() const { return num_forces_; }
+  /// Components of the sensors: "tip:x", or the sensor's name when it is a scalar.
+  const records::Signals& outputs() const { return outputs_; }
+
+  /// [u̇; y] with every function of time at its value, and `value` more of one input. May throw ComputationError.
+  VectorXd evaluate(const OperatingPoint& point, const PlantInput* input = nullptr, double value = 0);
+  /// Results of the last evaluate, for a Recorder.
+  const SystemData& data() const { return *data_; }
+
+ private:
+  struct Freedom {
+    std::string name, dims;
+    bool is_mode = false;
+    double step = 0.1;
+  };
+  void add_hinge(int body);
+  void add_modes(int body, double size);
+  void add_inputs();
+  void add_outputs();
+
+  const System& system_;
+  Sensors sensors_;
+  std::unique_ptr<SystemData> data_;
+  std::vector<Freedom> freedoms_;
+  std::vector<PlantInput> inputs_;
+  int num_forces_ = 0;
+  records::Signals outputs_;
+  VectorXd ones_;
+};
+
+}  // namespace bough::solver

@@ -1,0 +1,38 @@
+#pragma once
+/// \file What each state of a stable linear model adds to the mean square of its outputs (docs/theory/linear.md).
+#include <Eigen/Dense>
+
+namespace bough::statespace {
+
+/// The part of ẋ = A x that decays: z = L x, ż = T z, and what z means to x is U z. T is upper triangular.
+struct StablePart {
+  Eigen::MatrixXcd T, U, L;
+  int num_rigid = 0;                  ///< states left out: poles at 0
+  std::complex<double> unstable = 0;  ///< a pole that neither decays nor is at 0; 0: there is none
+  bool is_stable() const { return unstable == std::complex<double>(0); }
+};
+
+/// Schur's form with the poles at 0 (below 1e-6 of the largest) moved behind the others and decoupled.
+StablePart split_stable(const Eigen::MatrixXd& A);
+
+/// X of A X + X Aᵀ + Q = 0 on the stable part, Q symmetric: X = U Y Uᴴ with T Y + Y Tᴴ + L Q Lᴴ = 0 (Bartels & Stewart,
+/// CACM 15 (1972) 820). Poles at 0 take no part.
+Eigen::MatrixXd solve_lyapunov(const StablePart& part, const Eigen::MatrixXd& Q);
+
+/// Component cost (Skelton & Hughes, J. Dyn. Sys. Meas. Control 102 (1980) 151): with white noise of unit intensity at
+/// every input, V = tr(C X Cᵀ) is the mean square of y, and V_i = [X CᵀC]_ii the part of state i: Σ V_i = V. A part can
+/// be negative: the state then takes off what others add.
+struct ComponentCost {
+  double total = 0;
+  Eigen::VectorXd state;  ///< one per state
+  int num_rigid = 0;      ///< poles at 0, left out
+};
+
+/// Throws ComputationError "select.unstable" when a pole off 0 does not decay.
+ComponentCost calc_component_cost(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, const Eigen::MatrixXd& C);
+
+/// The same of one mode η̈ + 2ζω η̇ + ω² η = bᵀ u, y = c_d η + c_r η̇ alone: |b|² (|c_d|² + ω² |c_r|²) / (4 ζ ω³). Near
+/// V_i where the modes are lightly damped and apart.
+double calc_modal_cost(double omega, double zeta, double b_squared, double c_d_squared, double c_r_squared);
+
+}  // namespace bough::statespace

@@ -1,0 +1,83 @@
+#include "solver/statespace/poles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "base/diagnostic.hpp"
+#include "solver/statespace/blocks.hpp"
+
+namespace bough::statespace {
+namespace {
+
+using Eigen::MatrixXd;
+
+struct Pole {
+  std::complex<double> value;
+  std::string mode;
+};
+
+std::string get_coordinate(const std::string& state) {
+  const auto end = state.rfind("_dot");
+  return end != std::string::npos && end + 4 == state.size() ? state.substr(0, end) : state;
+}
+
+void add_poles(const MatrixXd& A, const std::vector<int>& block, const std::vector<std::string>& names,
+               std::vector<Pole>& poles) {
+  if (block.size() == 1) {
+    poles.push_back({A(block[0], block[0]), get_coordinate(names[static_cast<std::size_t>(block[0])])});
+    return;
+  }
+  const auto fail = [] {
+    throw ComputationError("linear.no-poles", {}, "the eigenvalues of A were not found", "look at A for huge entries");
+  };
+  MatrixXd a = A(block, block);
+  if (!a.allFinite()) fail();
+  balance(a);
+  const Eigen::EigenSolver<MatrixXd> solver(a);
+  if (solver.info() != Eigen::Success) fail();
+  const Eigen::MatrixXcd right = solver.eigenvectors();
+  // Least norm where several eigenvectors are one: the shares of the other poles stay right.
+  const Eigen::MatrixXcd left = right.completeOrthogonalDecomposition().pseudoInverse();
+  for (Eigen::Index p = 0; p < right.cols(); ++p) {
+    std::map<std::string, double> share;
+    for (std::size_t k = 0; k < block.size(); ++k) {
+      const auto row = static_cast<Eigen::Index>(k);
+      share[get_coordinate(names[static_cast<std::size_t>(block[k])])] += std::abs(right(row, p) * left(p, row));
+    }
+    const auto most =
+        std::max_element(share.begin(), share.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    poles.push_back({solver.eigenvalues()[p], most->first});
+  }
+}
+
+}  // namespace
+
+records::Poles calc_poles(const MatrixXd& A, const std::vector<std::string>& names) {
+  BOUGH_DEMAND(A.rows() == A.cols() && static_cast<Eigen::Index>(names.size()) == A.rows());
+  std::vector<Pole> poles;
+  for (const auto& block : find_blocks(A)) add_poles(A, block, names, poles);
+  // Pairs from one block are exact conjugates and stay together.
+  std::stable_sort(poles.begin(), poles.end(), [](const Pole& a, const Pole& b) {
+    const auto key = [](const Pole& p) {
+      return std::tuple(std::abs(p.value), p.value.real(), std::abs(p.value.imag()), -p.value.imag());
+    };
+    return key(a) < key(b);
+  });
+  records::Poles out;
+  const auto n = static_cast<Eigen::Index>(poles.size());
+  for (auto* v : {&out.real, &out.imag, &out.frequency_hz, &out.damping}) v->setZero(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Pole& pole = poles[static_cast<std::size_t>(i)];
+    const double size = std::abs(pole.value);
+    out.real[i] = pole.value.real();
+    out.imag[i] = pole.value.imag();
+    out.frequency_hz[i] = size / (2 * std::numbers::pi);
+    out.damping[i] = size > 0 ? -pole.value.real() / size + 0.0 : 0;
+    out.mode.push_back(pole.mode);
+  }
+  return out;
+}
+
+}  // namespace bough::statespace

@@ -1,0 +1,358 @@
+"""linearize, equilibrium and select from outside, against closed forms, scipy and the program's own run."""
+import json
+import math
+import os
+import unittest
+
+import h5py
+import numpy as np
+import scipy.io
+import scipy.linalg
+import scipy.optimize
+
+from support import SOURCE, ProgramTest
+
+PENDULUM = """[[body]]
+name = "bob"
+mass = 2.0
+cg = [0.0, -0.7, 0.0]
+nodes = [{ id = 1, position = [0.0, -0.7, 0.0] }]
+
+[[hinge]]
+name = "pin"
+type = "revolute"
+child = "bob"
+axis = [0.0, 0.0, 1.0]
+damping = 0.05
+position = [POSITION]
+
+[[function]]
+name = "push"
+type = "constant"
+value = 0.0
+
+[[force]]
+name = "push"
+body = "bob"
+node = 1
+force = [1.0, 0.0, 0.0]
+function = "push"
+
+[[sensor]]
+name = "angle"
+type = "hinge_angle"
+hinge = "pin"
+
+[[sensor]]
+name = "place"
+type = "position"
+body = "bob"
+node = 1
+
+[simulation]
+duration = 1.0
+gravity = [0.0, -9.81, 0.0]
+"""
+
+HUB = """[[body]]
+name = "hub"
+mass = 3.0
+cg = [0.0, 0.0, 0.0]
+inertia = [1.0, 1.0, INERTIA]
+
+[[body]]
+name = "boom"
+file = "boom.h5"
+ETA
+
+[[hinge]]
+name = "spin"
+type = "revolute"
+child = "hub"
+axis = [0.0, 0.0, 1.0]
+MOTION
+
+[[hinge]]
+name = "clamp"
+type = "fixed"
+parent = "hub"
+child = "boom"
+
+[[function]]
+name = "angle"
+type = "ramp"
+value = RATE
+from = 0.0
+to = 1.0
+
+[[function]]
+name = "nothing"
+type = "constant"
+value = 0.0
+
+[[force]]
+name = "torque"
+body = "hub"
+moment = [0.0, 0.0, 1.0]
+function = "nothing"
+
+[[sensor]]
+name = "angle"
+type = "hinge_angle"
+hinge = "spin"
+
+[[sensor]]
+name = "tip"
+type = "deflection"
+body = "boom"
+node = 41
+
+[simulation]
+duration = 0.5
+integrator = "rk"
+relative_tolerance = 1e-11
+absolute_tolerance = 1e-18
+"""
+
+
+def calc_hub_beam(mu):
+    """Frequencies of a beam (L = EI = rho A = 1) clamped to a hub of inertia mu that turns freely."""
+    def determinant(beta):
+        c, s, ch, sh = math.cos(beta), math.sin(beta), math.cosh(beta), math.sinh(beta)
+        return np.linalg.det(np.array([[2, -mu * beta**3, -mu * beta**3], [-c - ch, -s, sh], [s - sh, -c, ch]])) / ch
+    grid = np.linspace(0.5, 9, 400)
+    values = [determinant(b) for b in grid]
+    return [scipy.optimize.brentq(determinant, a, b, xtol=1e-14)**2
+            for a, b, x, y in zip(grid, grid[1:], values, values[1:]) if x * y < 0]
+
+
+class LinearTest(ProgramTest):
+    def make_boom(self, modes=12):
+        deck = os.path.join(SOURCE, "data/decks/rotating.bdf")
+        self.write("boom.toml", f'[body]\nname = "boom"\ndeck = "{deck}"\nframe = "fixed"\ninterface = [1, 41]\n'
+                                f'[body.modes]\nnumber = {modes}\n[body.output]\nfile = "boom.h5"\n')
+        self.bough("reduce", "boom.toml")
+
+    def write_hub(self, name, inertia=1.0, motion="", rate=0.0, eta=""):
+        text = HUB.replace("INERTIA", str(inertia)).replace("MOTION", motion).replace("RATE", str(rate))
+        return self.write(name, text.replace("ETA", eta))
+
+    def linearize(self, *arguments):
+        self.bough("linearize", *arguments, "-o", "model.h5")
+        with h5py.File(self.path("model.h5")) as f:
+            self.assertEqual(f.attrs["format"].decode() if isinstance(f.attrs["format"], bytes) else f.attrs["format"],
+                             "bough-linear")
+            out = {}
+            f.visititems(lambda name, item: out.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
+        for key in [k for k in out if k.endswith("name") or k.endswith("mode") or k.endswith("dims")]:
+            out[key] = [word.decode() for word in out[key]]
+        return out
+
+
+class Linearize(LinearTest):
+    def test_pendulum_file_mat_and_json(self):
+        self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.0"))
+        model = self.linearize("pendulum.toml", "--outputs", "angle", "--mat", "model.mat")
+        inertia = 2 * 0.7**2
+        np.testing.assert_allclose(model["A"], [[0, 1], [-9.81 / 0.7, -0.05 / inertia]], atol=1e-9)
+        np.testing.assert_allclose(model["B"], [[0], [0.7 / inertia]], atol=1e-12)
+        np.testing.assert_allclose(model["C"], [[1, 0]], atol=1e-12)
+        np.testing.assert_array_equal(model["D"], [[0]])
+        self.assertEqual(model["states/name"], ["pin:1", "pin:1_dot"])
+        self.assertEqual(model["inputs/name"], ["push"])
+        self.assertEqual(model["outputs/name"], ["angle"])
+        self.assertEqual(model["poles/mode"], ["pin:1", "pin:1"])
+        np.testing.assert_allclose(model["poles/frequency_hz"], math.sqrt(9.81 / 0.7) / 2 / math.pi, rtol=1e-10)
+        self.assertEqual(model["zeros/real"].shape, (0,))
+        self.assertEqual(float(np.squeeze(model["operating_point/residual"])), 0)
+        mat = scipy.io.loadmat(self.path("model.mat"))
+        self.assertEqual(sorted(k for k in mat if k[0] != "_"),
+                         ["A", "B", "C", "D", "input_name", "output_name", "state_name"])
+        np.testing.assert_array_equal(mat["A"], model["A"])
+        data = json.loads(self.bough("linearize", "pendulum.toml", "--json").stdout)
+        self.assertEqual(data["outputs"], ["angle", "place:x", "place:y", "place:z"])
+        np.testing.assert_allclose(data["C"], [[1, 0], [0.7, 0], [0, 0], [0, 0]], atol=1e-10)
+        self.assertNotIn("zeros", data)
+        text = self.bough("linearize", "pendulum.toml").stdout
+        self.assertIn("0.595", text)
+
+    def test_at_a_time_it_is_the_state_of_the_run(self):
+        self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.9"))
+        self.bough("run", "pendulum.toml", "-o", "run.h5")
+        with h5py.File(self.path("run.h5")) as f:
+            angle = np.squeeze(f["/hinges/pin/q"][-1])
+        result = self.bough("linearize", "pendulum.toml", "--at", "1.0", "--outputs", "angle", "-o", "late.h5")
+        self.assertIn("linear.not-steady", result.stderr)
+        with h5py.File(self.path("late.h5")) as f:
+            self.assertAlmostEqual(float(f["/A"][1, 0]), -9.81 / 0.7 * math.cos(angle), places=6)
+            self.assertEqual(float(np.squeeze(f["/operating_point/time"][()])), 1.0)
+        self.fails(1, "linearize", "pendulum.toml", "--at", "-1", error="linear.bad-time")
+
+    def test_names(self):
+        self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.0"))
+        self.fails(1, "linearize", "pendulum.toml", "--inputs", "pussh", "--outputs", "place:w",
+                   says=["did you mean 'push'", "linear.unknown-output"], error="linear.unknown-input")
+
+    def test_hub_and_cantilever(self):
+        self.make_boom()
+        clamped = [3.5160153, 22.0344916]
+        for mu in [0.1, 1.0, 10.0]:
+            with self.subTest(mu=mu):
+                self.write_hub("hub.toml", inertia=mu)
+                model = self.linearize("hub.toml", "--outputs", "angle")
+                found = np.unique(np.round(2 * math.pi * model["poles/frequency_hz"], 9))
+                for omega in calc_hub_beam(mu)[:2]:
+                    self.assertLess(np.abs(found / omega - 1).min(), 2e-3)
+                self.assertEqual(np.count_nonzero(model["poles/frequency_hz"] == 0), 2)
+                # Torque and angle at one place: the zeros are the poles with the hub held.
+                zeros = model["zeros/imag"][model["zeros/imag"] > 0]
+                for omega in clamped:
+                    self.assertLess(np.abs(zeros / omega - 1).min(), 1e-4)
+                self.assertLess(np.abs(model["zeros/real"]).max(), 1e-3)
+
+    def test_spinning_beam(self):
+        # Wright, Smith, Thresher & Wang, J. Appl. Mech. 49 (1982) 197.
+        self.make_boom(20)
+        for rate, flap, chord in [(2, 4.13732, 3.62180), (6, 7.36037, 4.26323)]:
+            self.write_hub("spin.toml", motion='motion = "angle"', rate=rate)
+            model = self.linearize("spin.toml")
+            omega = np.sort(2 * math.pi * model["poles/frequency_hz"])[::2]
+            self.assertLess(abs(omega[0] / chord - 1), 1e-3)
+            self.assertLess(abs(omega[1] / flap - 1), 1e-3)
+
+    def test_a_floating_beam(self):
+        self.make_boom(20)
+        text = '[[body]]\nname = "boom"\nfile = "boom.h5"\n[simulation]\nduration = 1.0\n'
+        self.write("float.toml", text)
+        model = self.linearize("float.toml")
+        omega = np.sort(2 * math.pi * model["poles/frequency_hz"])
+        self.assertEqual(np.count_nonzero(omega == 0), 12)
+        self.assertLess(abs(omega[12] / 22.3733 - 1), 5e-3)
+
+    def test_small_motions_of_a_run_follow_the_exponential_of_A(self):
+        self.make_boom(6)
+        start = [1e-7, -2e-7, 0.5e-7, 1e-7, 0.3e-7, -1e-7]
+        self.write_hub("hub.toml", eta=f"eta = {start}")
+        self.bough("run", "hub.toml", "-o", "run.h5")
+        self.write_hub("rest.toml")
+        model = self.linearize("rest.toml")
+        x = np.zeros(14)
+        x[1:7] = start
+        x = scipy.linalg.expm(model["A"] * 0.5) @ x
+        with h5py.File(self.path("run.h5")) as f:
+            found = np.concatenate([np.ravel(f[p][-1]) for p in ["/hinges/spin/q", "/bodies/boom/eta",
+                                                                 "/hinges/spin/qdot", "/bodies/boom/eta_dot"]])
+        for half in [slice(0, 7), slice(7, 14)]:
+            self.assertLess(np.abs(found - x)[half].max(), 1e-6 * np.abs(x[half]).max())
+
+
+class Equilibrium(LinearTest):
+    def test_rest_and_a_run_from_there(self):
+        self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.9").replace("value = 0.0", "value = 5.0"))
+        self.bough("equilibrium", "pendulum.toml", "-o", "rest.h5")
+        angle = math.atan2(5, 2 * 9.81)
+        data = json.loads(self.bough("equilibrium", "pendulum.toml", "--json").stdout)
+        self.assertAlmostEqual(data["q"][0], angle, places=10)
+        self.assertLess(data["residual"], 1e-9)
+        self.bough("run", "pendulum.toml", "--start-from", "rest.h5", "-o", "still.h5")
+        with h5py.File(self.path("still.h5")) as f:
+            self.assertLess(np.abs(np.ravel(f["/hinges/pin/q"][:]) - angle).max(), 1e-8)
+        model = self.linearize("pendulum.toml", "--start-from", "rest.h5")
+        self.assertAlmostEqual(model["A"][1, 0], -math.hypot(9.81, 2.5) / 0.7, places=8)
+        same = self.linearize("pendulum.toml", "--equilibrium")
+        np.testing.assert_allclose(same["A"], model["A"], atol=1e-8)
+        self.write("other.toml", PENDULUM.replace('"pin"', '"pen"').replace("POSITION", "0.0"))
+        self.fails(1, "run", "other.toml", "--start-from", "rest.h5", says=["/hinges/pen/q"], error="cli.start-mismatch")
+
+    def test_nothing_holds_a_stone(self):
+        self.write("stone.toml", '[[body]]\nname = "stone"\nmass = 1.0\ninertia = [1.0, 1.0, 1.0]\n'
+                                 "[simulation]\nduration = 1.0\ngravity = [0.0, 0.0, -9.81]\n")
+        self.fails(3, "equilibrium", "stone.toml", says=["stone:z", "9.81"], error="equilibrium.not-converged")
+
+
+class Select(LinearTest):
+    def calc_cost(self, body, nodes):
+        """V_i by scipy's dense Lyapunov solver: forces and displacements at the nodes."""
+        with h5py.File(self.path(body)) as f:
+            M, D, K = (f["/modal/" + name][:] for name in ["mass", "damping", "stiffness"])
+            phi, ids = f["/modes/phi"][:], list(f["/nodes/id"][:])
+        rows = np.vstack([phi[ids.index(node), :3] for node in nodes])
+        n = len(M)
+        D = np.where((np.diag(D) == 0) & np.eye(n, dtype=bool), 2 * 0.01 * np.sqrt(np.diag(K * M)), D)
+        A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
+        B = np.vstack([np.zeros((n, len(rows))), np.linalg.solve(M, rows.T)])
+        C = np.hstack([rows, np.zeros((len(rows), n))])
+        X = scipy.linalg.solve_continuous_lyapunov(A, -B @ B.T)
+        parts = np.diag(X @ C.T @ C)
+        return parts[:n] + parts[n:]
+
+    def test_costs_and_the_smaller_body(self):
+        self.make_boom(12)
+        data = json.loads(self.bough("select", "boom.h5", "--json", "--number", 5, "-o", "small.h5").stdout)
+        expected = self.calc_cost("boom.h5", [41])
+        cost = np.array([mode["cost"] for mode in data["modes"]])
+        np.testing.assert_allclose(cost, expected, atol=1e-10 * expected.sum())
+        self.assertAlmostEqual(cost.sum() / data["total_cost"], 1, places=12)
+        for mode in data["modes"]:
+            self.assertEqual(sorted(mode), ["closed_form", "cost", "frequency_hz", "kept", "mode", "reason", "share"])
+        kept = [i for i, mode in enumerate(data["modes"]) if mode["kept"]]
+        self.assertEqual(len(kept), 5)
+        self.assertEqual(sorted(np.argsort(cost)[-5:]), kept)
+        with h5py.File(self.path("boom.h5")) as big, h5py.File(self.path("small.h5")) as small:
+            np.testing.assert_array_equal(small["/modes/frequency_hz"][:], big["/modes/frequency_hz"][:][kept])
+            np.testing.assert_array_equal(small["/modes/phi"][:], big["/modes/phi"][:][:, :, kept])
+            np.testing.assert_array_equal(small["/modal/stiffness"][:], big["/modal/stiffness"][:][np.ix_(kept, kept)])
+            np.testing.assert_array_equal(small["/stiffening/kg_inertial"][:],
+                                          big["/stiffening/kg_inertial"][:][:, kept][:, :, kept])
+            method = big["/integrals"].attrs["method"]
+            method = method.decode() if isinstance(method, bytes) else method
+            for name, cut in [("gamma0", (kept,)), ("gamma2", np.ix_(kept, kept)), ("gamma3", (kept,)),
+                              ("gamma4", np.ix_(kept, kept))]:
+                path = f"/integrals/{method}/{name}"
+                np.testing.assert_array_equal(small[path][:], big[path][:][cut])
+        self.bough("check", "small.h5")
+
+    def test_rules(self):
+        self.make_boom(12)
+        def kept(*arguments):
+            data = json.loads(self.bough("select", "boom.h5", "--json", *arguments).stdout)
+            return [mode["frequency_hz"] for mode in data["modes"] if mode["kept"]], data
+        low, data = kept("--below", 10)
+        self.assertLess(max(low), 10)
+        self.assertEqual(len(low), sum(mode["frequency_hz"] < 10 for mode in data["modes"]))
+        all_, data = kept("--tolerance", 0)
+        gone, data = kept("--tolerance", 0.05)
+        self.assertLess(len(gone), len(all_))
+        self.assertLessEqual(data["dropped_share"], 0.05)
+        self.fails(1, "select", "boom.h5", "--inputs", "99:y", error="select.unknown-node")
+        self.fails(1, "select", "boom.h5", "--inputs", "41:w", error="select.unknown-direction")
+        self.fails(1, "select", "boom.h5", "--inputs", "1", "--outputs", "1", "--below", 1e-3, "-o", "x.h5",
+                   error="select.nothing-kept")
+
+    def test_in_a_system(self):
+        self.make_boom(12)
+        self.write_hub("hub.toml")
+        self.fails(3, "select", "boom.h5", "hub.toml", error="select.unstable")
+        self.write_hub("hub.toml", eta="damping = 0.01")
+        data = json.loads(self.bough("select", "boom.h5", "hub.toml", "--json").stdout)
+        cost = sum(mode["cost"] for mode in data["modes"])
+        self.assertAlmostEqual((cost + data["other_cost"]) / data["total_cost"], 1, places=9)
+        # The torque about z moves the chord only: flap costs nothing and goes.
+        with h5py.File(self.path("boom.h5")) as f:
+            phi, ids = f["/modes/phi"][:], list(f["/nodes/id"][:])
+        tip = np.abs(phi[ids.index(41)])
+        for mode, y, z in zip(data["modes"], tip[1], tip[2]):
+            if z > 1e3 * y:
+                self.assertFalse(mode["kept"], mode)
+        with open(self.path("hub.toml"), "a") as f:
+            f.write('[[sensor]]\nname = "felt"\ntype = "acceleration"\nbody = "boom"\nnode = 41\n')
+        self.assertIn("select.feedthrough", self.bough("select", "boom.h5", "hub.toml").stderr)
+        self.write("alone.toml", '[[body]]\nname = "boom"\nfile = "other.h5"\n[simulation]\nduration = 1.0\n')
+        os.rename(self.path("boom.h5"), self.path("other.h5"))
+        self.fails(1, "select", "other.h5", "alone.toml", error="select.no-signals")
+        self.bough("select", "other.h5", "--number", 3, "-o", "boom.h5")
+        self.fails(1, "select", "boom.h5", "alone.toml", error="select.body-not-in-system")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,115 @@
+// States of rest and of steady spin against statics by hand.
+#include "solver/linear/equilibrium.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/solver/support/models.hpp"
+
+namespace bough::solver::testing {
+namespace {
+
+using records::HingeType;
+
+records::BodyRecord make_point(const std::string& name, double mass, const Vector3d& cg) {
+  records::BodyRecord body;
+  body.name = name;
+  body.mass = mass;
+  body.cg = cg;
+  return body;
+}
+
+Equilibrium find(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex = {}) {
+  const System system = build(spec, flex);
+  Diagnostics diagnostics;
+  Plant plant(system, Sensors::build(system, spec, diagnostics));
+  return find_equilibrium(plant, plant.make_initial_point(), {"system.toml"});
+}
+
+TEST(Equilibrium, TwoLinksHangAgainstASpring) {
+  records::SystemSpec spec;
+  spec.simulation.gravity = {0, -9.81, 0};
+  spec.bodies = {make_point("a", 2, {0, -1, 0}), make_point("b", 1, {0, -1, 0})};
+  spec.hinges = {make_hinge_record("p", HingeType::Revolute, "ground", "a"),
+                 make_hinge_record("r", HingeType::Revolute, "a", "b")};
+  spec.hinges[1].parent_position = {0, -1, 0};
+  spec.hinges[0].stiffness = {10};
+  spec.hinges[0].null_position = {0.8};
+  const auto found = find(spec);
+  const double q1 = found.point.q[0], q2 = found.point.q[1];
+  EXPECT_NEAR(q1 + q2, 0, 1e-9);  // the outer link hangs straight
+  EXPECT_NEAR(10 * (0.8 - q1), 3 * 9.81 * std::sin(q1), 1e-8);
+  EXPECT_LT(found.residual, 1e-8);
+  EXPECT_TRUE(found.indifferent.empty());
+}
+
+TEST(Equilibrium, AGovernorSpins) {
+  // A mass on a hinge that a turning hub carries: w² l cos(angle) = g.
+  records::SystemSpec spec;
+  const double g = 9.81, l = 0.5, w = 6;
+  spec.simulation.gravity = {0, 0, -g};
+  spec.bodies = {make_point("hub", 1, {0, 0, 0}), make_point("ball", 2, {0, 0, -l})};
+  spec.bodies[0].inertia = Matrix3d::Identity();
+  spec.hinges = {make_hinge_record("spin", HingeType::Revolute, "ground", "hub"),
+                 make_hinge_record("arm", HingeType::Revolute, "hub", "ball")};
+  spec.hinges[1].axis = Vector3d::UnitY();
+  spec.hinges[0].rate = {w};
+  spec.hinges[1].position = {0.9};
+  const auto found = find(spec);
+  EXPECT_NEAR(std::cos(found.point.q[1]), g / (w * w * l), 1e-9);
+  EXPECT_EQ(found.spinning, std::vector<std::string>{"spin:1"});
+  EXPECT_LT(found.residual, 1e-8);
+}
+
+TEST(Equilibrium, AFlexibleBodySagsByItsStaticDeflection) {
+  PointBody points = make_point_body(3, 4, 0);
+  records::SystemSpec spec;
+  spec.simulation.gravity = {0, 0, -0.4};
+  records::BodyRecord body;
+  body.name = "arm";
+  body.file = "arm";
+  body.stiffening = false;
+  body.eta_dot = {0.3, 0, 1};
+  spec.bodies = {body};
+  spec.hinges = {make_hinge_record("clamp", HingeType::Fixed, "ground", "arm")};
+  const auto flex = points.make_record("arm");
+  const auto found = find(spec, {{"arm", flex}});
+  VectorXd load = VectorXd::Zero(3);
+  for (size_t k = 0; k < points.p.size(); ++k)
+    load += points.mass[k] * points.phi[k].transpose() * spec.simulation.gravity;
+  EXPECT_LT((found.point.q - points.K.ldlt().solve(load)).norm(), 1e-9);
+  EXPECT_EQ(found.point.u.norm(), 0);
+}
+
+TEST(Equilibrium, IndifferentFreedomsStay) {
+  records::SystemSpec spec;
+  spec.simulation.gravity.setZero();
+  spec.bodies = {make_point("cart", 2, {0, 0, 0}), make_point("bob", 1, {0.2, 0, 0})};
+  spec.hinges = {make_hinge_record("rail", HingeType::Prismatic, "ground", "cart"),
+                 make_hinge_record("pin", HingeType::Revolute, "cart", "bob")};
+  spec.hinges[0].axis = Vector3d::UnitX();
+  spec.hinges[0].position = {3};
+  spec.hinges[1].stiffness = {5};
+  spec.hinges[1].position = {1.3};
+  const auto found = find(spec);
+  EXPECT_EQ(found.indifferent, std::vector<std::string>{"rail:1"});
+  EXPECT_NEAR(found.point.q[0], 3, 1e-12);
+  EXPECT_NEAR(found.point.q[1], 0, 1e-10);
+}
+
+TEST(Equilibrium, NoneForAFallingBody) {
+  records::SystemSpec spec;
+  spec.simulation.gravity = {0, 0, -9.81};
+  spec.bodies = {make_point("stone", 2, {0, 0, 0})};
+  spec.bodies[0].inertia = Matrix3d::Identity();
+  try {
+    find(spec);
+    FAIL();
+  } catch (const ComputationError& error) {
+    EXPECT_EQ(error.items()[0].id, "equilibrium.not-converged");
+    EXPECT_NE(error.items()[0].what.find("9.81"), std::string::npos);
+    EXPECT_NE(error.items()[0].what.find("stone:z"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace bough::solver::testing
