@@ -29,6 +29,7 @@ void write_equilibrium(const LoadedSystem& loaded, solver::Plant& plant, const s
                        const std::vector<std::string>& sources, const std::string& path, Diagnostics& diagnostics) {
   const auto& point = found.point;
   plant.evaluate(point);
+  const Eigen::VectorXd u = plant.expand(point.u);
   solver::Recorder recorder(loaded.system, solver::Sensors::build(loaded.system, loaded.spec, diagnostics));
   records::ResultsHeader header;
   header.system_text = loaded.spec.text;
@@ -37,10 +38,13 @@ void write_equilibrium(const LoadedSystem& loaded, solver::Plant& plant, const s
   const auto writer = hdf5::make_results_writer(path);
   ProvenanceSink sink(*writer, calc_sources(sources));
   sink.begin(header);
-  sink.write_sample(recorder.calc_sample(point.t, plant.data(), point.q, point.u, 0));
-  Eigen::VectorXd state = Eigen::VectorXd::Zero(point.q.size() + point.u.size() + 1);
-  state << point.q, point.u, 0;
-  sink.write_checkpoint({point.t, state});
+  sink.write_sample(recorder.calc_sample(point.t, plant.data(), point.q, u, 0, 0));
+  Eigen::VectorXd state = Eigen::VectorXd::Zero(point.q.size() + u.size() + 2);
+  state.head(point.q.size() + u.size()) << point.q, u;
+  records::Checkpoint checkpoint;
+  checkpoint.time = point.t;
+  checkpoint.state = state;
+  sink.write_checkpoint(checkpoint);
   sink.end(true, "");
 }
 

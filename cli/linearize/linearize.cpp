@@ -35,7 +35,7 @@ int run_linearize(const LinearizeVerbOptions& o) {
   for (const auto& path : {o.output, o.mat})
     if (!path.empty()) check_output(o, path, sources);
   auto plant = make_plant(loaded, diagnostics);
-  auto point = o.at ? run_to(loaded, *o.at, diagnostics) : plant.make_initial_point();
+  auto point = o.at ? run_to(loaded, plant, *o.at, diagnostics) : plant.make_initial_point();
   if (o.equilibrium) point = solver::find_equilibrium(plant, point, {o.file}).point;
   auto model = solver::linearize(plant, point, {o.inputs, o.outputs, true}, {o.file}, diagnostics);
   model.source = calc_sources(sources);

@@ -30,7 +30,8 @@ solver::Plant make_plant(const LoadedSystem& loaded, Diagnostics& diagnostics) {
   return {loaded.system, std::move(sensors)};
 }
 
-solver::OperatingPoint run_to(const LoadedSystem& loaded, double t, Diagnostics& diagnostics) {
+solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& plant, double t,
+                              Diagnostics& diagnostics) {
   auto spec = loaded.spec;
   auto& s = spec.simulation;
   const int nq = loaded.system.num_q(), nu = loaded.system.num_u();
@@ -39,16 +40,12 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, double t, Diagnostics&
                      fmt::format("time {:g} lies before the start of the run, {:g}", t, s.start),
                      "give a later time with --at");
   }
-  if (t == s.start) {
-    solver::OperatingPoint point{t, solver::VectorXd::Zero(nq), solver::VectorXd::Zero(nu)};
-    loaded.system.calc_initial_state(point.q, point.u);
-    return point;
-  }
+  if (t == s.start) return plant.make_initial_point();
   s.duration = s.output_step = t - s.start;
   LastState sink;
   solver::simulate(loaded.system, spec, sink, {}, diagnostics);
   const auto& state = sink.last().state;
-  return {t, state.head(nq), state.segment(nq, nu)};
+  return {t, state.head(nq), plant.restrict(state.segment(nq, nu))};
 }
 
 }  // namespace bough::cli

@@ -9,6 +9,7 @@ namespace bough::cli {
 solver::Plant make_plant(const LoadedSystem& loaded, Diagnostics& diagnostics);
 
 /// The state at time t, by the run's own integrator. InputError("linear.bad-time") before the start.
-solver::OperatingPoint run_to(const LoadedSystem& loaded, double t, Diagnostics& diagnostics);
+solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& plant, double t,
+                              Diagnostics& diagnostics);
 
 }  // namespace bough::cli

@@ -93,7 +93,7 @@ ModeRanking rank_in_system(const SelectOptions& o, const records::FlexBody& body
                      "name the body file that the system uses");
   }
   auto plant = make_plant(loaded, diagnostics);
-  auto point = o.at ? run_to(loaded, *o.at, diagnostics) : plant.make_initial_point();
+  auto point = o.at ? run_to(loaded, plant, *o.at, diagnostics) : plant.make_initial_point();
   if (o.equilibrium) point = solver::find_equilibrium(plant, point, {o.system}).point;
   const auto model = solver::linearize(plant, point, {o.inputs, o.outputs, false}, {o.system}, diagnostics);
   if (model.inputs.size() == 0 || model.outputs.size() == 0) {

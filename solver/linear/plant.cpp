@@ -17,7 +17,7 @@ double calc_size(const Tree& tree) {
   double size = 0;
   for (const TreeBody& tb : tree.bodies) {
     for (const Node& node : tb.body.nodes()) size = std::max(size, node.p.norm());
-    size = std::max({size, tb.on_parent.p_KH.norm(), tb.on_child.p_KH.norm()});
+    size = std::max({size, tb.on_parent.p_KM.norm(), tb.on_child.p_KM.norm()});
   }
   return size > 0 ? size : 1;
 }
@@ -37,13 +37,14 @@ Plant::Plant(const System& system, Sensors sensors)
     : system_(system), sensors_(std::move(sensors)), data_(system.make_data()) {
   const double size = calc_size(system.impl().tree);
   for (int b = 0; b < system.num_bodies(); ++b) {
+    const size_t first = freedoms_.size();
     add_hinge(b);
-    for (size_t i = freedoms_.size() - as_index(system.num_hinge_u(b)); i < freedoms_.size(); ++i) {
+    for (size_t i = first; i < freedoms_.size(); ++i) {
       if (freedoms_[i].dims == "L") freedoms_[i].step = 0.05 * size;
     }
     add_modes(b, size);
   }
-  BOUGH_DEMAND(num_freedoms() == system.num_u());
+  BOUGH_DEMAND(num_freedoms() == system.num_dofs());
   add_inputs();
   add_outputs();
 }
@@ -51,7 +52,10 @@ Plant::Plant(const System& system, Sensors sensors)
 void Plant::add_hinge(int b) {
   static const char* const kNames[] = {"rx", "ry", "rz", "x", "y", "z"};
   const TreeBody& tb = system_.impl().tree.bodies[as_index(b)];
-  for (int i = 0; i < system_.num_hinge_u(b); ++i) {
+  for (int i = 0; i < system_.num_hinge_rates(b); ++i) {
+    const int row = system_.u_offset(b) + i;
+    if (data_->tree.mode[as_index(row)] != HingeMode::Free) continue;
+    rows_.push_back(row);
     const std::string coordinate = has_quaternion(system_, b) ? kNames[i] : std::to_string(i + 1);
     freedoms_.push_back({system_.hinge_name(b) + ":" + coordinate, is_translation(tb, i) ? "L" : "1", false, 0.1});
   }
@@ -63,6 +67,7 @@ void Plant::add_modes(int b, double size) {
     double largest = 0;
     for (const Node& node : tb.body.nodes()) largest = std::max(largest, node.phi.col(i).norm() / size);
     for (const Node& node : tb.body.nodes()) largest = std::max(largest, node.psi.col(i).norm());
+    rows_.push_back(system_.eta_dot_offset(b) + i);
     freedoms_.push_back({system_.body_name(b) + ":eta" + std::to_string(i + 1), "by normalisation", true,
                          largest > 0 ? 0.05 / largest : 1});
   }
@@ -72,14 +77,12 @@ void Plant::add_inputs() {
   const auto& forces = system_.impl().forces;
   for (size_t i = 0; i < forces.size(); ++i) {
     const bool is_moment = forces[i].pattern.size() == 0 && forces[i].kind == records::ForceKind::Moment;
-    inputs_.push_back({forces[i].name, is_moment ? "F L" : "F", static_cast<int>(i), -1, 0});
+    inputs_.push_back({forces[i].name, is_moment ? "F L" : "F", static_cast<int>(i), -1});
   }
   num_forces_ = static_cast<int>(inputs_.size());
-  for (int b = 0; b < system_.num_bodies(); ++b) {
-    for (int i = 0; i < system_.num_hinge_u(b); ++i) {
-      const size_t freedom = as_index(system_.u_offset(b) + i);
-      inputs_.push_back({freedoms_[freedom].name, freedoms_[freedom].dims == "L" ? "F" : "F L", -1, b, i});
-    }
+  for (size_t i = 0; i < freedoms_.size(); ++i) {
+    if (!freedoms_[i].is_mode)
+      inputs_.push_back({freedoms_[i].name, freedoms_[i].dims == "L" ? "F" : "F L", -1, rows_[i]});
   }
 }
 
@@ -94,40 +97,50 @@ void Plant::add_outputs() {
 }
 
 OperatingPoint Plant::make_initial_point() const {
-  OperatingPoint point{system_.impl().start, VectorXd::Zero(system_.num_q()), VectorXd::Zero(system_.num_u())};
-  system_.calc_initial_state(point.q, point.u);
+  OperatingPoint point{system_.impl().start, VectorXd::Zero(system_.num_q()), {}};
+  VectorXd u = VectorXd::Zero(system_.num_u());
+  system_.calc_initial_state(point.q, u);
+  point.u = u(rows_);
   return point;
+}
+
+VectorXd Plant::expand(const VectorXd& free) const {
+  VectorXd u = VectorXd::Zero(system_.num_u());
+  u(rows_) = free;
+  return u;
 }
 
 VectorXd Plant::displace(const VectorXd& q, const VectorXd& delta) const {
   BOUGH_DEMAND(q.size() == system_.num_q() && delta.size() == num_freedoms());
   VectorXd moved = q;
+  const VectorXd step = expand(delta);
   for (int b = 0; b < system_.num_bodies(); ++b) {
-    int q_row = system_.q_offset(b), u_row = system_.u_offset(b), left = system_.num_hinge_u(b);
+    int q_row = system_.q_offset(b), u_row = system_.u_offset(b), left = system_.num_hinge_rates(b);
     if (left > 0 && has_quaternion(system_, b)) {
       const Eigen::Quaterniond before(q[q_row + 3], q[q_row], q[q_row + 1], q[q_row + 2]);
-      const Vector3d turn = delta.segment<3>(u_row);
+      const Vector3d turn = step.segment<3>(u_row);
       const double angle = turn.norm();
       const Eigen::Quaterniond by(
           Eigen::AngleAxisd(angle, angle > 0 ? Vector3d(turn / angle) : Vector3d(Vector3d::UnitX())));
       moved.segment<4>(q_row) = (before * by).coeffs();
       q_row += 4, u_row += 3, left -= 3;
     }
-    moved.segment(q_row, left) += delta.segment(u_row, left);
+    moved.segment(q_row, left) += step.segment(u_row, left);
     moved.segment(system_.eta_offset(b), system_.num_modes(b)) +=
-        delta.segment(system_.eta_dot_offset(b), system_.num_modes(b));
+        step.segment(system_.eta_dot_offset(b), system_.num_modes(b));
   }
   return moved;
 }
 
-MatrixXd Plant::calc_turning(const VectorXd& u) const {
-  MatrixXd turning = MatrixXd::Zero(num_freedoms(), num_freedoms());
+MatrixXd Plant::calc_turning(const VectorXd& free) const {
+  const VectorXd u = expand(free);
+  MatrixXd turning = MatrixXd::Zero(u.size(), u.size());
   for (int b = 0; b < system_.num_bodies(); ++b) {
     const int row = system_.u_offset(b);
-    if (system_.num_hinge_u(b) == 0 || !has_quaternion(system_, b)) continue;
+    if (!has_quaternion(system_, b)) continue;
     turning.block<3, 3>(row, row) = -skew(u.segment<3>(row));
   }
-  return turning;
+  return turning(rows_, rows_);
 }
 
 VectorXd Plant::get_for_file(const VectorXd& q) const {
@@ -142,7 +155,7 @@ VectorXd Plant::get_for_file(const VectorXd& q) const {
 
 VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, double value) {
   VectorXd out(num_freedoms() + outputs_.size());
-  calc_kinematics(system_, *data_, point.t, point.q, point.u);
+  calc_kinematics(system_, *data_, point.t, point.q, expand(point.u));
   add_forces(system_, *data_, point.t);
   if (input && input->force >= 0) {
     AppliedForce one = system_.impl().forces[as_index(input->force)];
@@ -154,9 +167,11 @@ VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, d
     one.pattern_moment *= value;
     add_applied_force(one, system_.impl().tree, point.t, data_->tree);
   } else if (input) {
-    data_->tree.bodies[as_index(input->body)].hinge_force[input->coordinate] += value;
+    data_->tree.hinge_force[input->row] += value;
   }
-  calc_accelerations(system_, *data_, point.t, out.head(num_freedoms()));
+  VectorXd u_dot(system_.num_u());
+  calc_accelerations(system_, *data_, point.t, u_dot);
+  out.head(num_freedoms()) = u_dot(rows_);
   sensors_.calc(system_, *data_, out.tail(outputs_.size()));
   return out;
 }

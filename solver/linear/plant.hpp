@@ -17,14 +17,14 @@ namespace bough::solver {
 
 struct OperatingPoint {
   double t = 0;
-  VectorXd q, u;
+  VectorXd q, u;  ///< num_q; one rate a freedom
 };
 
 /// A scalar that pushes: the value of a [[force]], or a generalized force on a free hinge coordinate.
 struct PlantInput {
   std::string name, dims;
-  int force = -1;                 ///< index into the system's forces
-  int body = -1, coordinate = 0;  ///< or: hinge of this body, 0-based coordinate
+  int force = -1;  ///< index into the system's forces
+  int row = -1;    ///< or: row of u of the hinge coordinate
 };
 
 class Plant {
@@ -43,6 +43,9 @@ class Plant {
   OperatingPoint make_initial_point() const;
   /// q ⊕ δ; delta: num_freedoms.
   VectorXd displace(const VectorXd& q, const VectorXd& delta) const;
+  /// num_u of the system, zero where a motion is prescribed, of one value a freedom; and back.
+  VectorXd expand(const VectorXd& free) const;
+  VectorXd restrict(const VectorXd& u) const { return u(rows_); }
   /// ∂δ̇/∂δ about a motion with the speeds u: zero but for orientations that turn. num_freedoms².
   MatrixXd calc_turning(const VectorXd& u) const;
   /// Quaternions as the files have them: w, x, y, z.
@@ -74,6 +77,7 @@ class Plant {
   Sensors sensors_;
   std::unique_ptr<SystemData> data_;
   std::vector<Freedom> freedoms_;
+  std::vector<int> rows_;  ///< of u, one a freedom
   std::vector<PlantInput> inputs_;
   int num_forces_ = 0;
   records::Signals outputs_;
