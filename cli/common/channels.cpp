@@ -31,7 +31,12 @@ void add_columns(const std::string& path, const Eigen::MatrixXd& values, const s
 
 void warn_incomplete(const std::string& file, Diagnostics& diagnostics) {
   if (read_file_format(file) != "bough-results") return;
-  const auto state = hdf5::read_run_state(file);
+  hdf5::RunState state;
+  try {
+    state = hdf5::read_run_state(file);
+  } catch (const Failure&) {
+    return;  // who reads the rest says what is wrong
+  }
   if (state.completed) return;
   const std::string why = state.reason.empty() || state.reason == "running" ? "" : " (" + state.reason + ")";
   diagnostics.warning("cli.incomplete-run", {file},

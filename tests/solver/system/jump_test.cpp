@@ -121,6 +121,7 @@ class MotionTest : public ::testing::Test {
   records::SystemSpec spec_;
 };
 
+// "system.motion-jumps"
 TEST_F(MotionTest, ATeleportIsAnError) {
   spec_.hinges[0].motion = {"hop", "wave"};
   EXPECT_NE(try_build().find("sys.toml:4: error: hinge 'pin': the prescribed motion of coordinate 1 jumps from 0 to 1 "
