@@ -123,19 +123,25 @@ bool read_checkpoint_from(FileReader& file, const std::string& group, records::C
          H5Aread(attribute.get(), H5T_NATIVE_INT64, &checksum) >= 0 && checksum == calc_checksum(checkpoint);
 }
 
+/// A flush of the running program can fall into the reading: looks again a moment later, in no step with its flushes.
+template <class Read>
+auto read_patiently(const std::string& path, const Read& read) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  for (int attempt = 0; std::chrono::steady_clock::now() < end; ++attempt) {
+    try {
+      return read();
+    } catch (const InputError&) {
+      if (!is_being_written(path)) throw;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5 + 7 * (attempt % 6)));
+    }
+  }
+  return read();
+}
+
 }  // namespace
 
 ResultsFile read_results(const std::string& path) {
-  // A flush of the running program can fall into the reading: look again a moment later.
-  for (int attempt = 0; attempt < 5; ++attempt) {
-    try {
-      return read_once(path);
-    } catch (const InputError&) {
-      if (!is_being_written(path)) throw;
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-  }
-  return read_once(path);
+  return read_patiently(path, [&] { return read_once(path); });
 }
 
 RunInputs read_run_inputs(const std::string& path) {
@@ -152,12 +158,15 @@ RunInputs read_run_inputs(const std::string& path) {
 RunState read_run_state(const std::string& path) {
   RunState state;
   state.is_written = is_file_locked(path);
-  FileReader file(path, kResultsFormat, kResultsFormatVersion);
-  state.completed = file.read_integer_attribute("/", "completed", 0) != 0;
-  state.reason = file.read_attribute("/", "reason");
-  const auto time = file.read_array("/time", {-1}, true, file.read_integer_attribute("/", kNumSamples, -1)).data;
-  if (!time.empty()) state.time = time.back();
-  return state;
+  return read_patiently(path, [&] {
+    FileReader file(path, kResultsFormat, kResultsFormatVersion);
+    state.completed = file.read_integer_attribute("/", "completed", 0) != 0;
+    state.reason = file.read_attribute("/", "reason");
+    const auto time = file.read_array("/time", {-1}, true, file.read_integer_attribute("/", kNumSamples, -1)).data;
+    file.throw_if_errors();
+    if (!time.empty()) state.time = time.back();
+    return state;
+  });
 }
 
 records::Checkpoint read_checkpoint(const std::string& path) {

@@ -16,6 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/part_file.hpp"
 namespace bough::hdf5 {
 
 namespace {
@@ -115,6 +116,7 @@ std::string describe_end(int status) {
 void inspect_file(const std::string& path) {
   struct stat state {};
   if (::stat(path.c_str(), &state) != 0) return;
+  if (is_file_locked(path)) return;  // a run of Bough writes it now: between two looks it is another file
   const auto stamp = make_stamp(state);
   if (const auto known = get_inspected().find(path); known != get_inspected().end() && known->second == stamp) return;
 
