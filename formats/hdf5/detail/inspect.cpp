@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "base/part_file.hpp"
+
 namespace bough::hdf5 {
 
 namespace {
