@@ -40,6 +40,8 @@ TEST(Jump, OfASlideSwingsThePendulumOnIt) {
   spec.hinges[0].motion = {"go"};
   spec.simulation.duration = 1.5;
   spec.simulation.output_step = 0.25;
+  spec.simulation.relative_tolerance = 1e-11;
+  spec.simulation.absolute_tolerance = 1e-14;
   for (const char* integrator : {"adams", "rk", "rk4"}) {
     spec.simulation.integrator = integrator;
     spec.simulation.step = std::string(integrator) == "rk4" ? 0.01 : 0;
