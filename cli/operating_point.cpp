@@ -40,7 +40,7 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, double t, Diagnostics&
                      "give a later time with --at");
   }
   if (t == s.start) {
-    solver::OperatingPoint point{t, solver::VectorXd::Zero(nq), solver::VectorXd::Zero(nu)};
+    solver::OperatingPoint point{t, Eigen::VectorXd::Zero(nq), Eigen::VectorXd::Zero(nu)};
     loaded.system.calc_initial_state(point.q, point.u);
     return point;
   }
