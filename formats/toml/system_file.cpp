@@ -48,6 +48,8 @@ Eigen::Matrix3d read_inertia(const Fields& table, Diagnostics& diagnostics) {
   const std::vector<double> c = table.get_numbers("inertia");
   if (c.size() == 6 && v->items.size() == 6) {
     inertia << c[0], c[3], c[4], c[3], c[1], c[5], c[4], c[5], c[2];
+  } else if (c.size() == 3 && v->items.size() == 3) {
+    inertia.diagonal() << c[0], c[1], c[2];
   } else if (c.empty() && v->items.size() == 3) {
     for (int i = 0; i < 3; ++i) {
       const auto& row = v->items[static_cast<std::size_t>(i)].items;
@@ -59,8 +61,8 @@ Eigen::Matrix3d read_inertia(const Fields& table, Diagnostics& diagnostics) {
     }
   } else {
     diagnostics.error("toml.wrong-length", table.locate("inertia"),
-                      "inertia is neither three rows of three nor six components",
-                      "give [Ixx, Iyy, Izz, Ixy, Ixz, Iyz] or [[..], [..], [..]]");
+                      "inertia is neither three moments nor six components nor three rows of three",
+                      "give [Ixx, Iyy, Izz], [Ixx, Iyy, Izz, Ixy, Ixz, Iyz] or [[..], [..], [..]]");
   }
   check_inertia(inertia, table, diagnostics);
   return inertia;
