@@ -168,23 +168,25 @@ TEST(Linearize, NutationOfASpinningFreeBody) {
 }
 
 /// x = [δ; δu] of a state seen from a reference.
-VectorXd calc_departure(const System& system, const OperatingPoint& from, const VectorXd& q, const VectorXd& u) {
-  VectorXd x(2 * system.num_u());
+VectorXd calc_departure(const System& system, const Plant& plant, const VectorXd& q0_all, const VectorXd& u0,
+                        const VectorXd& q, const VectorXd& u) {
+  VectorXd x(system.num_u());
   for (int b = 0; b < system.num_bodies(); ++b) {
-    int q_row = system.q_offset(b), u_row = system.u_offset(b), left = system.num_hinge_u(b);
+    int q_row = system.q_offset(b), u_row = system.u_offset(b), left = system.num_hinge_rates(b);
     if (left > 0 && system.num_hinge_q(b) > left) {
-      const Eigen::Quaterniond q0(Eigen::Vector4d(from.q.segment<4>(q_row))), q1(Eigen::Vector4d(q.segment<4>(q_row)));
+      const Eigen::Quaterniond q0(Eigen::Vector4d(q0_all.segment<4>(q_row))), q1(Eigen::Vector4d(q.segment<4>(q_row)));
       const Eigen::AngleAxisd turn((q0.conjugate() * q1).normalized());
       x.segment<3>(u_row) = turn.angle() * turn.axis();
       q_row += 4, u_row += 3, left -= 3;
     }
-    x.segment(u_row, left) = q.segment(q_row, left) - from.q.segment(q_row, left);
+    x.segment(u_row, left) = q.segment(q_row, left) - q0_all.segment(q_row, left);
     x.segment(system.eta_dot_offset(b), system.num_modes(b)) =
         q.segment(system.eta_offset(b), system.num_modes(b)) -
-        from.q.segment(system.eta_offset(b), system.num_modes(b));
+        q0_all.segment(system.eta_offset(b), system.num_modes(b));
   }
-  x.tail(system.num_u()) = u - from.u;
-  return x;
+  VectorXd all(2 * plant.num_freedoms());
+  all << plant.restrict(x), plant.restrict(u - u0);
+  return all;
 }
 
 // Neighbours of a motion, by the nonlinear equations, against ẋ = A x: holds at any state, steady or not.
@@ -199,24 +201,26 @@ TEST(Linearize, NeighboursOfAMotionDepartAsASays) {
     auto data = system.make_data();
     Plant plant = make_plant(system, tree.spec);
     OperatingPoint point = plant.make_initial_point();
-    make_random_state(system, seed + 10, point.q, point.u);
+    VectorXd rates;
+    make_random_state(system, seed + 10, point.q, rates);
+    point.u = plant.restrict(rates);
     Diagnostics diagnostics;
     const auto model = linearize(plant, point, {}, {}, diagnostics);
     EXPECT_LT(model.error, 1e-8);
     EXPECT_LT(model.difference, 1e-8);
-    const int n = system.num_u();
+    const int n = plant.num_freedoms();
     Random random(seed);
     const VectorXd x0 = random.vector_n(2 * n, 1);
     // Central in the size of the departure, one-sided in time and extrapolated: d/dt x at t = 0.
     const double h = 1e-4, dt = 1e-4;
     const auto depart = [&](double size, double time) {
-      OperatingPoint reference = point;
-      VectorXd q = plant.displace(point.q, size * x0.head(n)), u = point.u + size * x0.tail(n);
+      VectorXd q0 = point.q, u0 = plant.expand(point.u);
+      VectorXd q = plant.displace(point.q, size * x0.head(n)), u = plant.expand(point.u + size * x0.tail(n));
       if (time != 0) {
-        step_rk4(system, *data, 0, time, reference.q, reference.u);
+        step_rk4(system, *data, 0, time, q0, u0);
         step_rk4(system, *data, 0, time, q, u);
       }
-      return calc_departure(system, reference, q, u);
+      return calc_departure(system, plant, q0, u0, q, u);
     };
     const auto slope = [&](double time) {
       const VectorXd ahead = (depart(h, time) - depart(-h, time)) / (2 * h);
@@ -244,14 +248,16 @@ TEST(Linearize, InputsAndOutputsOfARandomTree) {
   const System system = build(tree.spec, tree.flex);
   Plant plant = make_plant(system, tree.spec);
   OperatingPoint point = plant.make_initial_point();
-  make_random_state(system, 8, point.q, point.u);
+  VectorXd rates;
+  make_random_state(system, 8, point.q, rates);
+  point.u = plant.restrict(rates);
   Diagnostics diagnostics;
   LinearizeOptions options;
   for (const auto& input : plant.inputs()) options.inputs.push_back(input.name);
   const auto model = linearize(plant, point, options, {}, diagnostics);
   EXPECT_EQ(model.inputs.size(), static_cast<int>(plant.inputs().size()));
   EXPECT_EQ(model.outputs.size(), 36);
-  const int n = system.num_u();
+  const int n = plant.num_freedoms();
   // Any sum of inputs adds its columns: affine, not only linear for small ones.
   const VectorXd base = plant.evaluate(point);
   for (size_t k = 0; k < plant.inputs().size(); ++k) {
