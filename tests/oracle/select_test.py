@@ -25,7 +25,7 @@ class RandomBodies(unittest.TestCase):
         cls.addClassCleanup(cls.folder.cleanup)
         deck = os.path.join(SOURCE, "data/decks/rotating.bdf")
         with open(os.path.join(cls.folder.name, "body.toml"), "w") as f:
-            f.write(f'[body]\nname = "body"\ndeck = "{deck}"\nframe = "fixed"\ninterface = [1, 21, 41]\n'
+            f.write(f'[body]\nname = "panel"\ndeck = "{deck}"\nframe = "fixed"\ninterface = [1, 21, 41]\n'
                     '[body.modes]\nnumber = 7\n[body.output]\nfile = "body.h5"\n')
         cls.bough("reduce", "body.toml")
 
@@ -76,7 +76,7 @@ class RandomBodies(unittest.TestCase):
         n = len(M)
         # Integrals of another body: only the clamped one is asked for, where they have no part.
         with open(os.path.join(self.folder.name, "held.toml"), "w") as f:
-            f.write('[[body]]\nname = "body"\nfile = "body.h5"\nstiffening = false\n[[hinge]]\nname = "clamp"\n'
+            f.write('[[body]]\nname = "panel"\nfile = "body.h5"\nstiffening = false\n[[hinge]]\nname = "clamp"\n'
                     'type = "fixed"\nchild = "body"\n[simulation]\nduration = 1.0\n')
         data = json.loads(self.bough("linearize", "held.toml", "--json"))
         A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])

@@ -303,7 +303,7 @@ TEST(Linearize, ExponentialOfAMovesAsTheFullEquationsForSmallMotions) {
     VectorXd term = expected;
     for (int k = 1; k <= 20; ++k) expected += (term = model.A * term * (dt / k));
   }
-  const VectorXd found = calc_departure(system, point, q, u);
+  const VectorXd found = calc_departure(system, plant, point.q, plant.expand(point.u), q, u);
   EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-6 * expected.cwiseAbs().maxCoeff());
 }
 
