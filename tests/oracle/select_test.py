@@ -77,7 +77,7 @@ class RandomBodies(unittest.TestCase):
         # Integrals of another body: only the clamped one is asked for, where they have no part.
         with open(os.path.join(self.folder.name, "held.toml"), "w") as f:
             f.write('[[body]]\nname = "panel"\nfile = "body.h5"\nstiffening = false\n[[hinge]]\nname = "clamp"\n'
-                    'type = "fixed"\nchild = "body"\n[simulation]\nduration = 1.0\n')
+                    'type = "fixed"\nchild = "panel"\n[simulation]\nduration = 1.0\n')
         data = json.loads(self.bough("linearize", "held.toml", "--json"))
         A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
         np.testing.assert_allclose(data["A"], A, atol=1e-8 * np.abs(A).max())
