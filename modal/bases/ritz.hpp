@@ -7,9 +7,10 @@
 
 namespace bough::modal::bases {
 
-/// K N = M N D of m x m matrices, ascending, NᵀMN = 1. Directions whose share of M is below 1e-12 are no motion of their
-/// own, so N may have fewer than m columns: dependent vectors go, massless ones follow the others statically (Guyan).
-/// Solved as M x = θ K x where K is definite: the lowest values keep their digits beside values many orders larger.
+/// K N = M N D of m x m matrices, ascending, NᵀMN = 1. Directions whose share of M is below 1e-12 are no motion of
+/// their own, so N may have fewer than m columns: dependent vectors go, massless ones follow the others statically
+/// (Guyan). Solved as M x = θ K x where K is definite: the lowest values keep their digits beside values many orders
+/// larger.
 struct RitzPairs {
   VectorXd lambda;
   MatrixXd N;

@@ -55,8 +55,8 @@ StepperOptions make_stepper_options(const SystemOde& ode, const records::Simulat
       o.absolute_tolerance.segment(ode.num_q() + system.eta_dot_offset(b), n).setConstant(s.absolute_tolerance_modes);
     }
   }
-  // Work is a quadrature: it follows the motion's accuracy and should not set the step, but where the motion is so plain
-  // that any step would do, its own error must.
+  // Work is a quadrature: it follows the motion's accuracy and should not set the step, but where the motion is so
+  // plain that any step would do, its own error must.
   o.absolute_tolerance.tail(ode.size() - ode.num_coordinates()).setConstant(std::sqrt(s.absolute_tolerance));
   o.step = plan.step;
   o.rk_order = s.rk_order;

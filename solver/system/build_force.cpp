@@ -71,7 +71,7 @@ std::optional<AppliedForce> build_force(const records::ForceRecord& r, const Tre
     if (!r.direction.allFinite() || r.direction.isZero(0)) {
       diagnostics.error("system.zero-direction", r.at, "force " + quote(r.name) + " has no direction",
                         r.kind == records::ForceKind::Force ? "give 'force' three numbers, not all zero"
-                                                                  : "give 'moment' three numbers, not all zero");
+                                                            : "give 'moment' three numbers, not all zero");
     }
   }
   if (diagnostics.num_errors() != errors) return std::nullopt;

@@ -58,7 +58,7 @@ HUB = """[[body]]
 name = "hub"
 mass = 3.0
 cg = [0.0, 0.0, 0.0]
-inertia = [1.0, 1.0, INERTIA]
+inertia = [INERTIA, INERTIA, INERTIA]
 
 [[body]]
 name = "boom"
@@ -349,7 +349,8 @@ class Select(LinearTest):
         with open(self.path("hub.toml"), "a") as f:
             f.write('[[sensor]]\nname = "felt"\ntype = "acceleration"\nbody = "boom"\nnode = 41\n')
         self.assertIn("select.feedthrough", self.bough("select", "boom.h5", "hub.toml").stderr)
-        self.write("alone.toml", '[[body]]\nname = "boom"\nfile = "other.h5"\n[simulation]\nduration = 1.0\n')
+        self.write("alone.toml", '[[body]]\nname = "boom"\nfile = "other.h5"\n[[hinge]]\nname = "clamp"\n'
+                   'type = "fixed"\nchild = "boom"\n[simulation]\nduration = 1.0\n')
         os.rename(self.path("boom.h5"), self.path("other.h5"))
         self.fails(1, "select", "other.h5", "alone.toml", error="select.no-signals")
         self.bough("select", "other.h5", "--number", 3, "-o", "boom.h5")
