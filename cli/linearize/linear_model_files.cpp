@@ -51,7 +51,7 @@ std::string format_linear_model(const LinearModel& model) {
     if (poles.imag[i] < 0) continue;  // told by its partner
     table.rows.push_back({std::to_string(i + 1), format_number(poles.real[i], scale),
                           poles.imag[i] > 0 ? "±" + format_number(poles.imag[i], scale) : "0",
-                          format_number(poles.frequency_hz[i], scale), fmt::format("{:.6g}", poles.damping[i]),
+                          format_number(poles.frequency_hz[i], scale), format_number(poles.damping[i], 1),
                           poles.mode[static_cast<std::size_t>(i)]});
   }
   if (!table.rows.empty()) text += table.to_text();
