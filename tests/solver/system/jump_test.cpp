@@ -65,6 +65,38 @@ TEST(Jump, OfASlideSwingsThePendulumOnIt) {
   }
 }
 
+// The last sample of a run that ends where the rate jumps is that after the jump, and its work is booked.
+TEST(Jump, AtTheEndOfTheRun) {
+  records::SystemSpec spec;
+  records::BodyRecord cart, bob;
+  cart.name = "cart";
+  cart.mass = bob.mass = 1;
+  cart.inertia = Matrix3d::Identity();
+  bob.name = "bob";
+  bob.cg = {0, -1, 0};
+  bob.inertia = 0.1 * Matrix3d::Identity();
+  spec.bodies = {cart, bob};
+  spec.functions = {make_function("go", "ramp", {{"value", 10}, {"from", 1}, {"to", 2}})};
+  spec.hinges = {make_hinge_record("slide", HingeType::Prismatic, "ground", "cart"),
+                 make_hinge_record("pin", HingeType::Revolute, "cart", "bob")};
+  spec.hinges[0].axis = {1, 0, 0};
+  spec.hinges[0].motion = {"go"};
+  spec.simulation.gravity = {0, -9.81, 0};
+  spec.simulation.output_step = 0.25;
+  spec.simulation.relative_tolerance = 1e-11;
+  spec.simulation.absolute_tolerance = 1e-14;
+  for (const double duration : {2.0, 2.5}) {
+    spec.simulation.duration = duration;
+    const System system = build(spec);
+    MemorySink sink;
+    Diagnostics diagnostics;
+    const auto outcome = simulate(system, spec, sink, {}, diagnostics);
+    EXPECT_LT(outcome.energy_error, 1e-6) << duration;
+    EXPECT_EQ(sink.events().size(), 2u) << duration;
+    EXPECT_EQ(sink.get("/hinges/slide/qdot")(8), 0) << duration;
+  }
+}
+
 // Two free bodies on a hinge that turns: locking it takes their relative rate, linear and angular momentum stay.
 TEST(Jump, ByLockingKeepsTheMomenta) {
   RandomTreeOptions options;
