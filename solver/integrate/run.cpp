@@ -170,7 +170,7 @@ double Run::calc_noise() {
 }
 
 void Run::cross_jump() {
-  if (!stop_.restarts) return;
+  if (!stop_.restarts || stop_.latest >= stop_.time) return;  // at the end there may be no jump
   guard([&] {
     const auto jumps = ode_.cross_jump(stop_.latest, stop_.time, y_);
     if (crossed_ == stop_.time) return;

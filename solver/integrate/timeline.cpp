@@ -18,7 +18,9 @@ Timeline::Timeline(const RunPlan& plan, std::vector<double> restarts, std::vecto
     while (i + 1 < restarts.size() && restarts[i + 1] - first <= close_) ++i;
     stops_.push_back({restarts[i], std::nextafter(first, plan.start), true});
   }
-  stops_.push_back({plan.end, plan.end, true});
+  const bool jumps_at_end =
+      std::any_of(restarts.begin(), restarts.end(), [&](double t) { return std::abs(t - plan.end) <= close_; });
+  stops_.push_back({plan.end, jumps_at_end ? std::nextafter(plan.end, plan.start) : plan.end, true});
   const auto earlier = [](const Stop& a, const Stop& b) { return a.time < b.time; };
   std::vector<Stop> passed;
   for (const double t : landmarks) {
