@@ -1,0 +1,63 @@
+#include "cli/modes/eigen_choices.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "formats/records/selection.hpp"
+
+namespace bough::cli {
+
+modal::EigenOptions choose_eigen_options(const ModesOptions& options, const records::Deck& deck, int method,
+                                         Diagnostics& diagnostics) {
+  modal::EigenOptions eigen;
+  const auto names = [method](const auto& card) { return method == 0 || card.sid == method; };
+  if (method != 0 && std::none_of(deck.eigen_methods.begin(), deck.eigen_methods.end(), names))
+    diagnostics.warning("cli.no-method", deck.locate(records::find_selection(deck, "METHOD", method)),
+                        fmt::format("METHOD = {} names no EIGRL or EIGR card of the deck", method),
+                        "add the card or correct the id; --number, --min-hz and --max-hz go before it");
+  eigen.num_modes = 0;
+  eigen.check_inertia = !options.no_check;
+  for (const auto& card : deck.eigen_methods) {
+    if (!names(card)) continue;
+    eigen.num_modes = card.num_modes;
+    eigen.min_hz = card.f1;
+    eigen.max_hz = card.f2;
+    if (!options.buckling) {
+      // The methods by transformation compute every root; ND then asks for the lowest whatever F1 and F2 say.
+      static const std::set<std::string> by_transformation{"GIV", "MGIV", "HOU", "MHOU", "AGIV", "AHOU"};
+      if (!card.is_eigrl && card.num_modes > 0 && by_transformation.count(card.method) > 0)
+        eigen.min_hz = eigen.max_hz = std::nullopt;
+    }
+    break;
+  }
+  if (options.min_hz) eigen.min_hz = options.min_hz;
+  if (options.max_hz) eigen.max_hz = options.max_hz;
+  if (eigen.min_hz && eigen.max_hz && *eigen.max_hz <= *eigen.min_hz)
+    throw InputError("cli.bad-range", {}, fmt::format("the range from {} to {} is empty", *eigen.min_hz, *eigen.max_hz),
+                     "give --max-hz above --min-hz; either may also come from the deck's EIGRL");
+  if (options.number > 0) eigen.num_modes = options.number;
+  if (eigen.num_modes == 0 && !eigen.max_hz) eigen.num_modes = 10;
+  return eigen;
+}
+
+modal::Norm choose_norm(const records::Deck& deck, int method, const fe::Model& model) {
+  for (const auto& card : deck.eigen_methods) {
+    if (method != 0 && card.sid != method) continue;
+    if (card.norm == "POINT") {
+      const std::string who = fmt::format("EIGR {}: NORM = POINT names grid {}", card.sid, card.norm_grid);
+      const int node = model.find_node(card.norm_grid);
+      if (node < 0)
+        throw InputError("fe.missing-grid", deck.locate(card.at), who + ", which the deck does not define",
+                         "add the GRID, correct the id, or use NORM = MASS or MAX");
+      if (model.node(node).num_dofs == 6 && card.norm_component == 0)
+        throw InputError("fe.bad-component", deck.locate(card.at), who + " without a component, expected C = 1 to 6",
+                         "name the component");
+    }
+    return {card.norm, card.norm_grid, card.norm_component};
+  }
+  return {};
+}
+
+}  // namespace bough::cli

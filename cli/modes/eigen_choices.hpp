@@ -1,0 +1,30 @@
+#pragma once
+/// \file What `bough modes` solves for: the deck's EIGRL or EIGR, overruled by the command line.
+#include <optional>
+#include <string>
+
+#include "cli/common/model_options.hpp"
+#include "cli/common/options.hpp"
+#include "modal/eigen.hpp"
+#include "modal/normalize.hpp"
+
+namespace bough::cli {
+
+struct ModesOptions : CommonOptions {
+  std::string deck;
+  DeckModelOptions model;
+  int number = 0;
+  std::optional<double> min_hz, max_hz;
+  bool buckling = false;
+  bool no_check = false;
+  std::string vtu;
+};
+
+/// The deck's EIGRL/EIGR of the subcase, overruled by the command line; 10 modes when neither says.
+modal::EigenOptions choose_eigen_options(const ModesOptions& options, const records::Deck& deck, int method,
+                                         Diagnostics& diagnostics);
+
+/// NORM of the deck's card. Throws fe.missing-grid and fe.bad-component where it names no dof.
+modal::Norm choose_norm(const records::Deck& deck, int method, const fe::Model& model);
+
+}  // namespace bough::cli

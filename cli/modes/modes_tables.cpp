@@ -1,0 +1,81 @@
+#include "cli/modes/modes_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/common/console.hpp"
+#include "cli/common/deck_tables.hpp"
+
+namespace bough::cli {
+
+std::string format_modes(const records::ModesResult& r) {
+  Table roots{{"mode", "eigenvalue", "rad/s", "Hz", "modal mass", "residual"}, {}};
+  Table shares{{"mode", "x", "sum", "y", "sum", "z", "sum", "rx", "ry", "rz"}, {}};
+  Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+  for (int j = 0; j < r.eigenvalue.size(); ++j) {
+    const std::string number = std::to_string(j + 1);
+    roots.rows.push_back({number, fmt::format("{:.8g}", r.eigenvalue[j]),
+                          fmt::format("{:.7g}", 2 * M_PI * r.frequency_hz[j]), fmt::format("{:.7g}", r.frequency_hz[j]),
+                          fmt::format("{:.6g}", r.modal_mass[j]), fmt::format("{:.1e}", r.residual[j])});
+    std::vector<std::string> row{number};
+    for (int a = 0; a < 6; ++a) {
+      const double total = r.mass_properties.rigid_mass(a, a);
+      const double share = total > 0 ? 100 * r.effective_mass(j, a) / total : 0;
+      row.push_back(fmt::format("{:.2f}", share));
+      if (a < 3) row.push_back(fmt::format("{:.2f}", sum[a] += share));
+    }
+    shares.rows.push_back(std::move(row));
+  }
+  return roots.to_text() + "\neffective mass, % of the mass and of the inertia about the origin\n" + shares.to_text();
+}
+
+std::string format_buckling(const records::ModesResult& r) {
+  Table table{{"mode", "load factor", "residual"}, {}};
+  for (int j = 0; j < r.load_factor.size(); ++j) {
+    table.rows.push_back(
+        {std::to_string(j + 1), fmt::format("{:.8g}", r.load_factor[j]), fmt::format("{:.1e}", r.residual[j])});
+  }
+  return table.to_text();
+}
+
+std::string format_health(const records::ModesResult& r, const std::string& norm, bool buckling) {
+  const auto n = r.residual.size();
+  std::string text = buckling ? "" : fmt::format("rigid-body modes: {}\n", r.num_rigid_modes);
+  if (norm == "MAX" || norm == "POINT")
+    text += fmt::format("shapes: {} (NORM = {} of the deck){}\n",
+                        norm == "MAX" ? "the largest component is 1" : "one dof is 1", norm,
+                        buckling ? "" : "; modal mass and stiffness go with them");
+  // A missed mode is an error of modal (modal.missed-modes); what the count has more is below the range or a copy.
+  const char* what = buckling ? "load factors" : "eigenvalues";
+  if (n == 0) return text + fmt::format("no {} in the range asked for\n", what);
+  if (r.inertia_count >= 0) {
+    text += fmt::format("Sturm count: {} {} up to the highest, {} in the table: none missed{}\n", r.inertia_count, what,
+                        n, r.inertia_count > n ? " (the others are below the range or copies of the last root)" : "");
+  } else {
+    text += "Sturm count: none, or none to be trusted\n";
+  }
+  if (n > 0) text += fmt::format("largest residual: {:.1e}\n", r.residual.maxCoeff());
+  return text;
+}
+
+nlohmann::json make_json(const records::ModesResult& r, const std::string& norm, bool buckling) {
+  nlohmann::json json{{"subcase", r.subcase},
+                      {"mass_properties", to_json(r.mass_properties)},
+                      {"num_rigid_modes", r.num_rigid_modes},
+                      {"inertia_count", r.inertia_count},
+                      {"norm", norm},
+                      {"residual", to_json_list(r.residual)}};
+  if (buckling) {
+    json["load_factor"] = to_json_list(r.load_factor);
+    return json;
+  }
+  json["eigenvalue"] = to_json_list(r.eigenvalue);
+  json["frequency_hz"] = to_json_list(r.frequency_hz);
+  json["modal_mass"] = to_json_list(r.modal_mass);
+  json["effective_mass"] = to_json(r.effective_mass);
+  return json;
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,16 @@
+#pragma once
+/// \file What `bough modes` prints.
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "formats/records/modes.hpp"
+
+namespace bough::cli {
+
+std::string format_modes(const records::ModesResult& result);
+std::string format_buckling(const records::ModesResult& result);
+/// Rigid-body modes, the norm, the Sturm count, the largest residual.
+std::string format_health(const records::ModesResult& result, const std::string& norm, bool buckling);
+nlohmann::json make_json(const records::ModesResult& result, const std::string& norm, bool buckling);
+
+}  // namespace bough::cli

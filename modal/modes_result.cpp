@@ -1,0 +1,43 @@
+#include "modal/modes_result.hpp"
+
+#include <cmath>
+
+#include "fe/matrices/assembly.hpp"
+#include "fe/matrices/checks.hpp"
+
+namespace bough::modal {
+
+using Eigen::Vector3d;
+
+records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs& pairs, bool buckling) {
+  records::ModesResult result;
+  result.subcase = model.subcase().id;
+  result.mass_properties = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
+  const int n = static_cast<int>(pairs.lambda.size());
+  std::vector<const fe::Node*> grids;
+  for (const auto& node : model.nodes())
+    if (node.num_dofs == 6) grids.push_back(&node);
+  result.node_xyz.resize(static_cast<Eigen::Index>(grids.size()), 3);
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    result.node_id.push_back(grids[k]->id);
+    result.node_xyz.row(static_cast<Eigen::Index>(k)) = grids[k]->x.transpose();
+    result.phi.push_back(pairs.Phi.middleRows(grids[k]->first_gdof, 6));
+  }
+  result.residual = pairs.residual;
+  result.num_rigid_modes = pairs.num_rigid;
+  result.inertia_count = pairs.inertia_count;
+  result.mesh = model.calc_mesh();
+  if (buckling) {
+    result.load_factor = pairs.lambda;
+    return result;
+  }
+  result.eigenvalue = pairs.lambda;
+  result.frequency_hz = pairs.lambda.cwiseMax(0.0).cwiseSqrt() / (2 * M_PI);
+  result.kind.assign(n, records::ModeKind::Normal);
+  const Eigen::MatrixXd M_Phi = fe::calc_mass_times(model, model.mass_kind(), pairs.Phi);
+  result.modal_mass = pairs.Phi.cwiseProduct(M_Phi).colwise().sum();
+  result.effective_mass = calc_effective_mass(model, pairs.Phi, M_Phi);
+  return result;
+}
+
+}  // namespace bough::modal

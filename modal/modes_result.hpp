@@ -1,0 +1,13 @@
+#pragma once
+/// \file Eigenpairs as the record that files and tables are made of.
+#include "fe/model/model.hpp"
+#include "formats/records/modes.hpp"
+#include "modal/eigen.hpp"
+
+namespace bough::modal {
+
+/// Mass properties about the origin, shapes at the grids, residuals; of normal modes (not of buckling) frequencies,
+/// modal and effective masses too, with the shapes' own lengths.
+records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs& pairs, bool buckling);
+
+}  // namespace bough::modal
