@@ -20,6 +20,21 @@ const char* name_of(Severity s) {
   return "error";
 }
 
+/// Names come from files: what would end a message or move the cursor is written as "\\x00".
+std::string make_visible(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if ((code >= 0x20 && code != 0x7f) || c == '\n' || c == '\t') {
+      out += c;
+      continue;
+    }
+    constexpr char digits[] = "0123456789abcdef";
+    out += {'\\', 'x', digits[code >> 4], digits[code & 15]};
+  }
+  return out;
+}
+
 Diagnostic make(Severity s, std::string_view id, SourceLocation where, std::string what, std::string advice) {
   return {s, std::string(id), std::move(where), std::move(what), std::move(advice)};
 }
@@ -37,7 +52,7 @@ std::string format(const Diagnostic& d) {
   text += ": " + d.what;
   if (!d.advice.empty()) text += "; " + d.advice;
   if (!d.id.empty()) text += " [" + d.id + "]";
-  return text;
+  return make_visible(text);
 }
 
 void Diagnostics::add(Diagnostic d) {

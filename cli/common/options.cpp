@@ -119,10 +119,15 @@ void put_out(const CommonOptions& options, const Console& console, const std::st
   console.print("written: " + options.output + "\n");
 }
 
-int blame(const std::string& file, const std::function<int()>& act) {
+int blame(const std::string& file, const std::function<int()>& act, const std::string& innocent) {
+  const auto is_of_reduce = [](const Diagnostic& item) { return item.id.starts_with("reduce."); };
   const auto place = [&](const Failure& failure) {
     auto items = failure.items();
-    for (auto& item : items) item = locate(std::move(item), file);
+    for (auto& item : items) {
+      if (!innocent.empty() && item.where.file == innocent && item.where.line == 0 && !is_of_reduce(item))
+        item.where.file.clear();
+      item = locate(std::move(item), file);
+    }
     return items;
   };
   try {

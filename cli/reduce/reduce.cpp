@@ -209,10 +209,12 @@ Reduced reduce_given(const records::BodySpec& spec, const stiffening::ReduceOpti
   const auto given = read_given_matrices(*spec.matrices, deck, result.files, diagnostics);
   // What is wrong with the numbers is wrong in this file and not in the points.
   const auto& matrices = *spec.matrices;
-  blame(matrices.file.empty() ? matrices.stiffness.file : matrices.file, [&] {
+  const auto reduce = [&] {
     say_first(diagnostics, [&] { result.body = stiffening::reduce_matrices(deck, spec, given, options, diagnostics); });
     return kSuccess;
-  });
+  };
+  blame(matrices.file.empty() ? matrices.stiffness.file : matrices.file, reduce,
+        deck.files.empty() ? "" : deck.files.front());
   if (spec.matrices->check_modes.empty()) return result;
   const auto others = read_given_modes(spec.matrices->check_modes, *spec.matrices, deck, diagnostics);
   result.check = stiffening::compare_modes(result.body, deck, others, diagnostics);

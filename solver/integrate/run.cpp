@@ -226,6 +226,8 @@ void Run::observe(double t) {
   calc_sample(t, y_);
   const Energies& e = setup_.recorder.energies();
   const double work = ode_.get_work(y_), dissipated = ode_.get_dissipated(y_);
+  if (!std::isfinite(e.kinetic + e.strain + e.potential + work))
+    fail_diverged(t, name_fastest() + ", and the energy is no finite number any more");
   monitor_.add(t, e, work);
   monitor_.add_feed(e, work, dissipated);
   // What a motion that jumps gives or takes is no growth.
@@ -237,12 +239,16 @@ void Run::observe(double t) {
   update_progress(t);
   const double limit = spec_.simulation.divergence_limit;
   if (e.kinetic > limit * limit * monitor_.fed() && monitor_.fed() > 0) {
-    int row = 0;
-    y_.segment(ode_.num_q(), ode_.num_coordinates() - ode_.num_q()).cwiseAbs().maxCoeff(&row);
-    row += ode_.num_q();
-    fail_diverged(t, ode_.name_row(row) + " reached " + short_text(y_[row]) + ", and the kinetic energy " +
-                         short_text(e.kinetic) + " where " + short_text(monitor_.fed()) + " was put in");
+    fail_diverged(t, name_fastest() + ", and the kinetic energy " + short_text(e.kinetic) + " where " +
+                         short_text(monitor_.fed()) + " was put in");
   }
+}
+
+std::string Run::name_fastest() const {
+  int row = 0;
+  y_.segment(ode_.num_q(), ode_.num_coordinates() - ode_.num_q()).cwiseAbs().maxCoeff(&row);
+  row += ode_.num_q();
+  return ode_.name_row(row) + " reached " + short_text(y_[row]);
 }
 
 const VectorXd& Run::calc_sample(double t, const VectorXd& y) {

@@ -38,6 +38,8 @@ class Run {
   void write_outputs_at(double t);
   /// Looks at y_ at t: sample, energies, limits.
   void observe(double t);
+  /// The largest rate, in words.
+  std::string name_fastest() const;
   const VectorXd& calc_sample(double t, const VectorXd& y);
   const VectorXd& calc_gaps(double t);
   void update_progress(double t);

@@ -10,6 +10,11 @@ TEST(Diagnostic, FormatIsFileLineKindWhatAdviceId) {
   EXPECT_EQ(format(d), "a.bdf:12: error: grid 7 does not exist; add it [deck.missing-grid]");
 }
 
+TEST(Diagnostic, NamesThatNoTerminalShouldSeeAreWrittenOut) {
+  const Diagnostic d{Severity::Error, "x.name", {"f", 1, 0}, std::string("body 'a\0\x1b[2J'\n", 12), "rename it"};
+  EXPECT_EQ(format(d), "f:1: error: body 'a\\x00\\x1b[2J'; rename it [x.name]");
+}
+
 TEST(Diagnostic, AllErrorsAreThrownTogether) {
   Diagnostics diagnostics;
   diagnostics.warning("w", {}, "odd");

@@ -68,6 +68,18 @@ class Limits(ProgramTest):
         self.fails(1, "check", "-q", "top.toml", says=["top.toml:4: error: no body has the inertia"],
                    error="toml.bad-value")
 
+    def test_energy_without_end(self):
+        self.write("wheel.toml", '[[body]]\nname = "wheel"\nmass = 1.0\ninertia = [1.0, 1.0, 1.0]\n'
+                   '[[hinge]]\nname = "h"\ntype = "revolute"\nchild = "wheel"\nrate = 1e200\n'
+                   '[simulation]\nduration = 1.0\n')
+        self.fails(3, "run", "wheel.toml", says=["(hinge rate 1) reached 1e+200", "the energy is no finite number"],
+                   error="run.diverged")
+
+    def test_names_that_no_message_can_hold(self):
+        self.write("nul.toml", '[[body]]\nname = "a\\u0000b\\u001b"\nmass = 1.0\ninertia = [1.0, 1.0, 1.0]\n'
+                   '[simulation]\nduration = 1.0\n')
+        self.fails(1, "check", "nul.toml", says=["a\\x00b\\x1b", "rename it"], error="toml.bad-name")
+
     def test_pictures_are_xml_whatever_the_title(self):
         self.copy_example("ex01-spinup")
         self.bough("reduce", "boom.toml")

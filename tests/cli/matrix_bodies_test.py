@@ -254,6 +254,18 @@ class MatrixBodies(ProgramTest):
         self.assertIn("[reduce.matrix-axes]", said)
         self.bough("reduce", "-n", 3, code=2)
 
+    def test_the_file_of_the_matrix_is_blamed(self):
+        """Not the one of the points, which is sound."""
+        K = self.K.copy()
+        i, j = self.dofs.index((61, 3)), self.dofs.index((91, 3))
+        K[i] = K[j]
+        K[:, i] = K[:, j]
+        for A, name in ((K, "K"), (self.M, "M")):
+            scipy.io.mmwrite(self.path(f"m.{name}.mtx"), scipy.sparse.coo_matrix(A), precision=17)
+        self.write("m.dofs.csv", "node,component\n" + "".join(f"{n},{c}\n" for n, c in self.dofs))
+        run = self.bough("reduce", "points.bdf", "--matrices", "K=m.K.mtx", "--matrices", "M=m.M.mtx", "-n", 3, code=1)
+        self.assertIn("m.K.mtx", run.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()
