@@ -67,7 +67,15 @@ int run_equilibrium(const EquilibriumOptions& o) {
   auto plant = make_plant(loaded, diagnostics);
   const auto start = plant.make_initial_point();
   const auto found = solver::find_equilibrium(plant, start, {o.file});
+  if (!found.unstable.empty())
+    diagnostics.warning("equilibrium.unstable", {o.file},
+                        fmt::format("the state found is unstable: {} leaves it, growing by e in {:.3g}",
+                                    found.unstable.front().mode, 1 / found.unstable.front().rate),
+                        "start nearer to the state wanted, by position and eta; bough linearize --equilibrium has the "
+                        "poles");
   console.print(diagnostics);
+  nlohmann::json unstable = nlohmann::json::array();
+  for (const auto& growth : found.unstable) unstable.push_back({{"mode", growth.mode}, {"rate", growth.rate}});
   const auto q = plant.get_for_file(found.point.q);
   if (o.json) {
     console.print_data(nlohmann::json{{"time", found.point.t},
@@ -75,13 +83,16 @@ int run_equilibrium(const EquilibriumOptions& o) {
                                       {"u", std::vector<double>(found.point.u.begin(), found.point.u.end())},
                                       {"residual", found.residual},
                                       {"iterations", found.num_iterations},
+                                      {"stable", found.unstable.empty()},
+                                      {"unstable", unstable},
                                       {"indifferent", found.indifferent},
                                       {"spinning", found.spinning}}
                            .dump(2) +
                        "\n");
   } else {
     std::string text =
-        fmt::format("equilibrium after {} iterations: |u_dot| {:.1e}\n", found.num_iterations, found.residual);
+        fmt::format("{} equilibrium after {} iterations: |u_dot| {:.1e}\n",
+                    found.unstable.empty() ? "stable" : "unstable", found.num_iterations, found.residual);
     Table table{{"hinge", "coordinates"}, {}};
     for (int b = 0; b < loaded.system.num_bodies(); ++b) {
       std::vector<std::string> values;

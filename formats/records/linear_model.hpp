@@ -31,7 +31,7 @@ struct LinearModel {
   double time = 0;        ///< of the operating point
   Eigen::VectorXd q, u;   ///< generalized positions (quaternions w, x, y, z) and speeds there
   double residual = 0;    ///< |u̇| there: 0 at rest and in a steady spin
-  double error = 0;       ///< estimated, of A and C, relative to the largest entry of the same row
+  double error = 0;       ///< estimated, of A and C, relative to the largest entry of the row (docs/formats/linear.md)
   double difference = 0;  ///< between A and C by one step size and by another, likewise
 
   Poles poles;

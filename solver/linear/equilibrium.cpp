@@ -4,90 +4,83 @@
 #include <limits>
 #include <sstream>
 
-#include "solver/linear/difference.hpp"
+#include "solver/linear/descent.hpp"
+#include "solver/linear/linearize.hpp"
 
 namespace bough::solver {
 namespace {
 
 constexpr int kMostIterations = 60;
+/// Travel in steps of the plant within which the state found is the one that was meant, stable or not.
+constexpr double kNear = 1;
 
 class Newton {
  public:
-  Newton(Plant& plant, OperatingPoint point, const SourceLocation& at)
-      : plant_(plant), point_(std::move(point)), at_(at) {
-    const int n = plant.num_freedoms();
-    steps_.resize(n);
-    for (int i = 0; i < n; ++i) {
-      steps_[i] = plant.step(i);
-      if (plant.is_mode(i)) point_.u[i] = 0;
-      if (plant.is_mode(i) || point_.u[i] == 0) free_.push_back(i);
-    }
-    residual_ = calc_residual(point_);
-  }
+  explicit Newton(Balance at) : at_(std::move(at)) {}
 
-  Equilibrium solve() {
-    Equilibrium found;
-    for (; found.num_iterations < kMostIterations; ++found.num_iterations) {
+  void solve() {
+    for (; num_iterations_ < kMostIterations; ++num_iterations_) {
       linearize();
-      const VectorXd step = solve_step(residual_);
+      const VectorXd step = solve_step(at_.residual());
       const double size = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
       if (size < 1e-9) {
         // The last step is free: the Jacobian is there.
         take(step);
-        break;
+        return;
       }
-      if (!search(step)) break;
+      if (!search(step)) return;
     }
-    demand_rest(found.num_iterations);
-    found.point = point_;
-    found.residual = residual_.norm();
-    name_indifferent(found);
-    return found;
+  }
+
+  const Balance& at() const { return at_; }
+  int num_iterations() const { return num_iterations_; }
+
+  /// The freedom whose u̇ is the largest beside what a small displacement makes of it; -1 where all vanish.
+  int find_restless() const {
+    const VectorXd& residual = at_.residual();
+    const double floor = row_scale_.size() > 0 ? 1e-9 * row_scale_.maxCoeff() : 0;
+    int worst = -1;
+    double largest = 1;
+    for (int i = 0; i < static_cast<int>(residual.size()); ++i) {
+      const double allowed = std::max({1e-7 * row_scale_[i], floor * 1e-3, 1e3 * std::numeric_limits<double>::min()});
+      if (std::abs(residual[i]) / allowed <= largest) continue;
+      largest = std::abs(residual[i]) / allowed;
+      worst = i;
+    }
+    return worst;
+  }
+
+  bool is_held(int row) const { return row_scale_[row] > 0; }
+
+  /// A displacement without effect, to first order: its unit vector lies in the null space of the Jacobian.
+  std::vector<std::string> name_indifferent() const {
+    std::vector<std::string> names;
+    for (size_t j = 0; j < at_.free().size(); ++j) {
+      const VectorXd effect = weight_.asDiagonal() * at_.jacobian().col(static_cast<Eigen::Index>(j));
+      if (effect.size() == 0 || effect.cwiseAbs().maxCoeff() < 1e-9)
+        names.push_back(at_.plant().freedom_name(at_.free()[j]));
+    }
+    return names;
   }
 
  private:
-  VectorXd calc_residual(const OperatingPoint& point) { return plant_.evaluate(point).head(plant_.num_freedoms()); }
-
-  /// Displacements are counted in steps of the plant, so that columns are alike; rows are scaled by their largest.
+  /// Rows are scaled by their largest entry.
   void linearize() {
-    const int n = plant_.num_freedoms(), m = static_cast<int>(free_.size());
-    jacobian_.setZero(n, m);
-    for (int j = 0; j < m; ++j) {
-      const int i = free_[static_cast<size_t>(j)];
-      const auto f = [&](double h) {
-        OperatingPoint moved = point_;
-        moved.q = plant_.displace(point_.q, h * steps_[i] * VectorXd::Unit(n, i));
-        return calc_residual(moved);
-      };
-      const Difference column = differentiate(f, 0.5);
-      jacobian_.col(j) = (column.value.array().abs() > column.error.array()).select(column.value, 0.0);
-    }
-    row_scale_ = m > 0 ? VectorXd(jacobian_.rowwise().lpNorm<Eigen::Infinity>()) : VectorXd::Zero(n);
-    const VectorXd weight = row_scale_.unaryExpr([](double s) { return s > 0 ? 1 / s : 0; });
+    at_.linearize();
+    const MatrixXd& jacobian = at_.jacobian();
+    row_scale_ = jacobian.cols() > 0 ? VectorXd(jacobian.rowwise().lpNorm<Eigen::Infinity>())
+                                     : VectorXd(VectorXd::Zero(jacobian.rows()));
+    weight_ = row_scale_.unaryExpr([](double s) { return s > 0 ? 1 / s : 0; });
     factor_.setThreshold(1e-9);
-    factor_.compute(weight.asDiagonal() * jacobian_);
-    weight_ = weight;
+    factor_.compute(weight_.asDiagonal() * jacobian);
   }
 
   VectorXd solve_step(const VectorXd& residual) const { return -factor_.solve(weight_.asDiagonal() * residual); }
 
-  OperatingPoint move(const VectorXd& step, double by) const {
-    VectorXd delta = VectorXd::Zero(plant_.num_freedoms());
-    for (size_t j = 0; j < free_.size(); ++j) {
-      const int i = free_[j];
-      delta[i] = by * step[static_cast<Eigen::Index>(j)] * steps_[i];
-    }
-    OperatingPoint moved = point_;
-    moved.q = plant_.displace(point_.q, delta);
-    return moved;
-  }
-
   void take(const VectorXd& step) {
-    const OperatingPoint moved = move(step, 1);
-    const VectorXd residual = calc_residual(moved);
-    if (!(residual.norm() <= residual_.norm())) return;
-    point_ = moved;
-    residual_ = residual;
+    Balance moved = at_.move(step);
+    if (!(moved.residual().norm() <= at_.residual().norm())) return;
+    at_ = std::move(moved);
   }
 
   /// Half the step until the next correction, by the same Jacobian, is smaller.
@@ -96,11 +89,9 @@ class Newton {
     double by = std::min(1.0, 10 / step.cwiseAbs().maxCoeff());
     for (; by > 1e-6; by /= 2) {
       try {
-        const OperatingPoint moved = move(step, by);
-        const VectorXd residual = calc_residual(moved);
-        if (!residual.allFinite() || solve_step(residual).norm() > (1 - by / 4) * step.norm()) continue;
-        point_ = moved;
-        residual_ = residual;
+        Balance moved = at_.move(by * step);
+        if (!moved.residual().allFinite() || solve_step(moved.residual()).norm() > (1 - by / 4) * step.norm()) continue;
+        at_ = std::move(moved);
         return true;
       } catch (const ComputationError&) {
         // Too far: the equations have no solution there.
@@ -109,56 +100,71 @@ class Newton {
     return false;
   }
 
-  /// Each row of u̇ must vanish beside what a small displacement makes of it.
-  void demand_rest(int num_iterations) const {
-    const int n = plant_.num_freedoms();
-    const double floor = n > 0 ? 1e-9 * row_scale_.maxCoeff() : 0;
-    int worst = -1;
-    double largest = 1;
-    for (int i = 0; i < n; ++i) {
-      const double allowed = std::max({1e-7 * row_scale_[i], floor * 1e-3, 1e3 * std::numeric_limits<double>::min()});
-      if (std::abs(residual_[i]) / allowed <= largest) continue;
-      largest = std::abs(residual_[i]) / allowed;
-      worst = i;
-    }
-    if (worst < 0) return;
-    std::ostringstream what;
-    what << "no state of rest or steady spin was found: after " << num_iterations << " iterations |u_dot| is "
-         << residual_.norm() << ", most of all " << plant_.freedom_name(worst) << ", which accelerates by "
-         << residual_[worst];
-    throw ComputationError("equilibrium.not-converged", at_, what.str(),
-                           row_scale_[worst] > 0
-                               ? "start nearer to it, by position and eta"
-                               : "nothing holds it: take away the load, or give it a spring or a hinge");
-  }
-
-  void name_indifferent(Equilibrium& found) const {
-    const int n = plant_.num_freedoms();
-    for (int i = 0; i < n; ++i) {
-      if (!plant_.is_mode(i) && point_.u[i] != 0) found.spinning.push_back(plant_.freedom_name(i));
-    }
-    // A displacement without effect, to first order: its unit vector lies in the null space of the Jacobian.
-    for (size_t j = 0; j < free_.size(); ++j) {
-      const auto column = static_cast<Eigen::Index>(j);
-      const VectorXd effect = weight_.asDiagonal() * jacobian_.col(column);
-      if (effect.size() == 0 || effect.cwiseAbs().maxCoeff() < 1e-9)
-        found.indifferent.push_back(plant_.freedom_name(free_[j]));
-    }
-  }
-
-  Plant& plant_;
-  OperatingPoint point_;
-  SourceLocation at_;
-  VectorXd steps_, residual_, row_scale_, weight_;
-  std::vector<int> free_;
-  MatrixXd jacobian_;
+  Balance at_;
+  int num_iterations_ = 0;
+  VectorXd row_scale_, weight_;
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> factor_;
 };
+
+Newton run_newton(const Balance& start) {
+  Newton newton(start);
+  newton.solve();
+  return newton;
+}
+
+bool is_near(const Balance& at) { return at.travel().size() == 0 || at.travel().cwiseAbs().maxCoeff() <= kNear; }
+
+[[noreturn]] void fail(const Newton& newton, const SourceLocation& at) {
+  const int worst = newton.find_restless();
+  std::ostringstream what;
+  what << "no state of rest or steady spin was found: after " << newton.num_iterations() << " iterations |u_dot| is "
+       << newton.at().residual().norm() << ", most of all " << newton.at().plant().freedom_name(worst)
+       << ", which accelerates by " << newton.at().residual()[worst];
+  throw ComputationError("equilibrium.not-converged", at, what.str(),
+                         newton.is_held(worst)
+                             ? "start nearer to it, by position and eta"
+                             : "nothing holds it: take away the load, or give it a spring or a hinge");
+}
+
+/// Newton's method from the start, when that leads to a state nearby or to a stable one; else that from where the way
+/// downhill ends.
+Newton search(const Balance& start, const SourceLocation& at) {
+  Newton first = run_newton(start);
+  const bool is_found = first.find_restless() < 0;
+  if (is_found && (is_near(first.at()) || is_valley(first.at()))) return first;
+  Newton second = run_newton(descend(start));
+  if (second.find_restless() < 0) return second;
+  if (is_found) return first;
+  fail(second, at);
+}
+
+/// Poles that grow: of what does not only drift.
+void find_unstable(Plant& plant, const SourceLocation& at, Equilibrium& found) {
+  Diagnostics said;
+  LinearizeOptions options;
+  options.check = false;
+  const records::Poles poles = linearize(plant, found.point, options, at, said).poles;
+  const Eigen::ArrayXd size = (poles.real.array().square() + poles.imag.array().square()).sqrt();
+  const double largest = size.size() > 0 ? size.maxCoeff() : 0;
+  for (int k = 0; k < poles.size(); ++k) {
+    if (poles.imag[k] < 0 || size[k] < 1e-7 * largest || poles.real[k] <= 1e-6 * size[k]) continue;
+    found.unstable.push_back({poles.mode[static_cast<size_t>(k)], poles.real[k]});
+  }
+}
 
 }  // namespace
 
 Equilibrium find_equilibrium(Plant& plant, const OperatingPoint& start, const SourceLocation& at) {
-  return Newton(plant, start, at).solve();
+  const Newton newton = search(Balance(plant, start), at);
+  Equilibrium found;
+  found.point = newton.at().point();
+  found.residual = newton.at().residual().norm();
+  found.num_iterations = newton.num_iterations();
+  found.indifferent = newton.name_indifferent();
+  for (int i = 0; i < plant.num_freedoms(); ++i)
+    if (!plant.is_mode(i) && found.point.u[i] != 0) found.spinning.push_back(plant.freedom_name(i));
+  find_unstable(plant, at, found);
+  return found;
 }
 
 }  // namespace bough::solver

@@ -11,12 +11,17 @@ struct Equilibrium {
   int num_iterations = 0;
   std::vector<std::string> indifferent;  ///< freedoms that may stand anywhere: they stay where they were
   std::vector<std::string> spinning;     ///< freedoms with a given rate
+  struct Growth {
+    std::string mode;  ///< the coordinate that takes part most
+    double rate = 0;   ///< of its growth, 1/T
+  };
+  std::vector<Growth> unstable;  ///< poles that grow; empty: the state is stable, as far as first order tells
 };
 
 /// u̇(t, q, u) = 0 for q, from `start`: hinge rates stay as they are there (zero: rest), modal rates become zero.
 /// Newton's method with least-norm steps, damped by the natural monotonicity test (Deuflhard, Newton Methods for
-/// Nonlinear Problems, 2004, 3.3). Throws ComputationError "equilibrium.not-converged" with the residual and where it
-/// is largest.
+/// Nonlinear Problems, 2004, 3.3); where that ends far away in an unstable state, or nowhere, downhill first (descent).
+/// Throws ComputationError "equilibrium.not-converged" with the residual and where it is largest.
 Equilibrium find_equilibrium(Plant& plant, const OperatingPoint& start, const SourceLocation& at);
 
 }  // namespace bough::solver

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <sstream>
 
 #include "solver/linear/difference.hpp"
@@ -28,6 +29,40 @@ struct Jacobian {
   MatrixXd value, error;
 };
 
+/// Dimensions of [u̇; y].
+std::vector<std::string> get_row_dims(const Plant& plant) {
+  std::vector<std::string> dims;
+  for (int i = 0; i < plant.num_freedoms(); ++i) dims.push_back("u_dot " + plant.freedom_dims(i));
+  dims.insert(dims.end(), plant.outputs().dims.begin(), plant.outputs().dims.end());
+  return dims;
+}
+
+/// An output that is a difference of large and equal terms has nothing but their rounding in its rows: all rows with
+/// its dimensions are below their errors, and nothing beside the others. Columns count by the steps of the plant.
+void clear_rounding(const Plant& plant, double rate, Jacobian& jacobian) {
+  const int n = plant.num_freedoms();
+  VectorXd step(2 * n);
+  for (int j = 0; j < 2 * n; ++j) step[j] = plant.step(j % n) * (j < n ? 1 : rate);
+  const auto calc_size = [&step](const MatrixXd& rows) -> VectorXd {
+    return (rows * step.asDiagonal()).cwiseAbs().rowwise().maxCoeff();
+  };
+  if (n == 0) return;
+  const VectorXd value = calc_size(jacobian.value), error = calc_size(jacobian.error);
+  const auto dims = get_row_dims(plant);
+  std::map<std::string, std::pair<double, double>> largest;
+  for (Eigen::Index i = n; i < value.size(); ++i) {
+    auto& [most, least_known] = largest[dims[static_cast<size_t>(i)]];
+    most = std::max(most, value[i]);
+    least_known = std::max(least_known, error[i]);
+  }
+  for (Eigen::Index i = n; i < value.size(); ++i) {
+    const auto& [most, least_known] = largest[dims[static_cast<size_t>(i)]];
+    if (most > least_known || least_known > 1e-9 * value.maxCoeff()) continue;
+    jacobian.value.row(i).setZero();
+    jacobian.error.row(i).setZero();
+  }
+}
+
 Jacobian calc_jacobian(Plant& plant, const OperatingPoint& point, double step_factor) {
   const int n = plant.num_freedoms(), rows = n + plant.outputs().size();
   Jacobian jacobian{MatrixXd::Zero(rows, 2 * n), MatrixXd::Zero(rows, 2 * n)};
@@ -48,6 +83,7 @@ Jacobian calc_jacobian(Plant& plant, const OperatingPoint& point, double step_fa
     // What does not rise above its own error is zero: structure is kept exactly.
     jacobian.value.col(j) = (column.value.array().abs() > column.error.array()).select(column.value, 0.0);
   }
+  clear_rounding(plant, rate, jacobian);
   return jacobian;
 }
 
@@ -83,14 +119,28 @@ std::vector<int> choose(const std::vector<std::string>& wanted, const std::vecto
   return chosen;
 }
 
-/// Largest entry of `difference` relative to the largest of the same row of `value`.
-double calc_relative(const MatrixXd& difference, const MatrixXd& value) {
+/// Largest entry of `difference` relative to the scale of its row.
+double calc_relative(const MatrixXd& difference, const VectorXd& scale) {
   double worst = 0;
-  for (Eigen::Index i = 0; i < value.rows(); ++i) {
-    const double scale = value.cols() > 0 ? value.row(i).cwiseAbs().maxCoeff() : 0;
-    if (scale > 0) worst = std::max(worst, difference.row(i).cwiseAbs().maxCoeff() / scale);
+  for (Eigen::Index i = 0; i < scale.size() && difference.cols() > 0; ++i) {
+    if (scale[i] > 0) worst = std::max(worst, difference.row(i).cwiseAbs().maxCoeff() / scale[i]);
   }
   return worst;
+}
+
+/// The largest entry of each row, or a thousandth of the largest of all rows with the same dimensions where that is
+/// more: a row of zeros has nothing but rounding to be measured by.
+VectorXd calc_row_scales(const MatrixXd& value, const std::vector<std::string>& dims) {
+  VectorXd scale =
+      value.cols() > 0 ? VectorXd(value.rowwise().lpNorm<Eigen::Infinity>()) : VectorXd(VectorXd::Zero(value.rows()));
+  std::map<std::string, double> largest;
+  for (Eigen::Index i = 0; i < scale.size(); ++i) {
+    double& most = largest[dims[static_cast<size_t>(i)]];
+    most = std::max(most, scale[i]);
+  }
+  for (Eigen::Index i = 0; i < scale.size(); ++i)
+    scale[i] = std::max(scale[i], 1e-3 * largest[dims[static_cast<size_t>(i)]]);
+  return scale;
 }
 
 MatrixXd take_rows(const MatrixXd& m, int first, const std::vector<int>& rows) {
@@ -135,7 +185,8 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
   }
   later.q = plant.displace(point.q, delta);
   const MatrixXd there = calc_jacobian(plant, later, 1).value;
-  const double change = calc_relative(there.topRows(n) - here.value.topRows(n), here.value.topRows(n));
+  const VectorXd scale = calc_row_scales(here.value, get_row_dims(plant)).head(n);
+  const double change = calc_relative(there.topRows(n) - here.value.topRows(n), scale);
   if (change < 1e-5) return;
   diagnostics.warning("linear.time-varying", at,
                       "A changes along the motion, by " + short_text(100 * change) + " % while " +
@@ -202,10 +253,11 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   }
 
   note_unsteady(plant, base.head(n), jacobian.value.topRows(n), at, diagnostics);
-  model.error = calc_relative(jacobian.error, jacobian.value);
+  const VectorXd scale = calc_row_scales(jacobian.value, get_row_dims(plant));
+  model.error = calc_relative(jacobian.error, scale);
   if (options.check) {
     const Jacobian other = calc_jacobian(plant, point, kOtherStep);
-    model.difference = calc_relative(other.value - jacobian.value, jacobian.value);
+    model.difference = calc_relative(other.value - jacobian.value, scale);
     check_constancy(plant, point, jacobian, at, diagnostics);
   }
   model.poles = statespace::calc_poles(model.A, model.states.name);

@@ -96,6 +96,61 @@ TEST(Equilibrium, IndifferentFreedomsStay) {
   EXPECT_NEAR(found.point.q[1], 0, 1e-10);
 }
 
+TEST(Equilibrium, APendulumReleasedLevelIsFoundHanging) {
+  // The torque has no slope there: Newton's method has no direction.
+  records::SystemSpec spec;
+  spec.simulation.gravity = {0, 0, -9.81};
+  spec.bodies = {make_point("arm", 2, {0.5, 0, 0})};
+  spec.hinges = {make_hinge_record("pivot", HingeType::Revolute, "ground", "arm")};
+  spec.hinges[0].axis = Vector3d::UnitY();
+  const auto found = find(spec);
+  EXPECT_NEAR(found.point.q[0], M_PI / 2, 1e-9);
+  EXPECT_TRUE(found.unstable.empty());
+  spec.hinges[0].position = {-M_PI / 2 + 0.05};  // upright is what was meant
+  const auto upright = find(spec);
+  EXPECT_NEAR(upright.point.q[0], -M_PI / 2, 1e-9);
+  ASSERT_EQ(upright.unstable.size(), 1U);
+  EXPECT_EQ(upright.unstable[0].mode, "pivot:1");
+  EXPECT_NEAR(upright.unstable[0].rate, std::sqrt(9.81 / 0.5), 1e-6);
+  spec.hinges[0].position = {-1.2};  // far from upright: it falls
+  EXPECT_NEAR(find(spec).point.q[0], M_PI / 2, 1e-9);
+}
+
+TEST(Equilibrium, TwoLinksReleasedLevelHang) {
+  records::SystemSpec spec;
+  spec.simulation.gravity = {0, 0, -9.81};
+  spec.bodies = {make_point("a", 2, {1, 0, 0}), make_point("b", 1, {1, 0, 0})};
+  spec.hinges = {make_hinge_record("p", HingeType::Revolute, "ground", "a"),
+                 make_hinge_record("r", HingeType::Revolute, "a", "b")};
+  for (auto& hinge : spec.hinges) hinge.axis = Vector3d::UnitY();
+  spec.hinges[1].parent_position = {1, 0, 0};
+  const auto found = find(spec);
+  EXPECT_NEAR(std::remainder(found.point.q[0] - M_PI / 2, 2 * M_PI), 0, 1e-8);
+  EXPECT_NEAR(std::remainder(found.point.q[1], 2 * M_PI), 0, 1e-8);
+  EXPECT_TRUE(found.unstable.empty());
+}
+
+TEST(Equilibrium, AChainOfBallJointsHangsFromSprings) {
+  // Against the least potential energy: both mass centres below the attachments, springs stretched by the weights.
+  records::SystemSpec spec;
+  spec.simulation.gravity = {0, 0, -9.81};
+  spec.bodies = {make_point("stone", 2, {0.3, 0, 0}), make_point("arm", 1, {0.5, 0, 0})};
+  spec.bodies[0].inertia = Vector3d(0.1, 0.2, 0.25).asDiagonal();
+  spec.bodies[1].inertia = Vector3d(0.01, 0.1, 0.1).asDiagonal();
+  spec.hinges = {make_hinge_record("fly", HingeType::Free, "ground", "stone"),
+                 make_hinge_record("j", HingeType::Spherical, "stone", "arm")};
+  spec.hinges[0].stiffness = {0, 0, 0, 100, 200, 300};
+  spec.hinges[1].parent_position = {0.5, 0, 0};
+  const auto found = find(spec);
+  EXPECT_TRUE(found.unstable.empty());
+  EXPECT_NEAR(found.point.q[6], -3 * 9.81 / 300, 1e-9);
+  // x of the stone points down, so does that of the arm.
+  const Eigen::Quaterniond stone(found.point.q[3], found.point.q[0], found.point.q[1], found.point.q[2]);
+  const Eigen::Quaterniond arm(found.point.q[10], found.point.q[7], found.point.q[8], found.point.q[9]);
+  EXPECT_NEAR((stone.normalized() * Vector3d::UnitX()).z(), -1, 1e-9);
+  EXPECT_NEAR((stone.normalized() * (arm.normalized() * Vector3d::UnitX())).z(), -1, 1e-9);
+}
+
 TEST(Equilibrium, NoneForAFallingBody) {
   records::SystemSpec spec;
   spec.simulation.gravity = {0, 0, -9.81};

@@ -307,5 +307,32 @@ TEST(Linearize, ExponentialOfAMovesAsTheFullEquationsForSmallMotions) {
   EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-6 * expected.cwiseAbs().maxCoeff());
 }
 
+TEST(Linearize, RowsOfRoundingAreNoErrors) {
+  // The slider cannot turn against its rail: the relative rate is a difference of equal terms.
+  records::SystemSpec spec;
+  records::BodyRecord rail, slider;
+  rail.name = "rail";
+  slider.name = "slider";
+  rail.mass = slider.mass = 1.3;
+  rail.cg = {0.1, 0.2, -0.3};
+  slider.cg = {0.3, -0.1, 0.2};
+  rail.inertia = slider.inertia = Vector3d(0.3, 0.4, 0.5).asDiagonal();
+  spec.bodies = {rail, slider};
+  spec.hinges = {make_hinge_record("ball", HingeType::Spherical, "ground", "rail"),
+                 make_hinge_record("slide", HingeType::Prismatic, "rail", "slider")};
+  spec.hinges[0].rate = {0.3, -1.1, 0.7};
+  spec.hinges[1].position = {0.37};
+  spec.hinges[1].axis = Vector3d(1, 2, 3);
+  spec.hinges[1].stiffness = {3};
+  auto turn = make_sensor("turn", records::SensorType::AngularVelocity, "slider");
+  turn.relative_to = turn.frame = "rail";
+  spec.sensors = {turn, make_sensor("spin", records::SensorType::AngularVelocity, "slider")};
+  const auto model = linearize_initial(spec);
+  EXPECT_LT(model.error, 1e-8);
+  EXPECT_LT(model.difference, 1e-8);
+  EXPECT_LT(model.C.topRows(3).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_GT(model.C.bottomRows(3).cwiseAbs().maxCoeff(), 0.5);
+}
+
 }  // namespace
 }  // namespace bough::solver::testing

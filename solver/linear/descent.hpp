@@ -1,0 +1,17 @@
+#pragma once
+/// \file Downhill to a state of rest.
+#include "solver/linear/balance.hpp"
+
+namespace bough::solver {
+
+/// Follows q̇ = u̇(q), which for conservative loads is the descent of the potential energy in the metric of M, by
+/// implicit steps (σ - ∂u̇) Δ = u̇ (pseudo-transient continuation; Kelley & Keyes, SIAM J. Numer. Anal. 35 (1998) 508),
+/// σ above the largest growth of ∂u̇ so that each step falls. Ends near a state that is stable, or where it gets no
+/// further.
+Balance descend(Balance from);
+
+/// Whether small displacements are not driven further: no eigenvalue of ∂u̇ (m x m of the freedoms that may be
+/// displaced) is positive. After linearize. Gyroscopic forces and dampers are not looked at.
+bool is_valley(const Balance& at);
+
+}  // namespace bough::solver
