@@ -116,7 +116,11 @@ SimulateOutcome Run::go() {
       const auto ends = watch_signals(stop);
       if (!write_outputs(ends ? ends->time : stepper_->time())) return *outcome_;
       if (ends) return finish(*ends);
-      if (is_stop_asked()) return halt(stepper_->time());
+      if (stepper_->time() >= stop.time) break;
+      if (is_stop_asked()) {
+        y_ = stepper_->state();
+        return halt(stepper_->time());
+      }
       save_now_and_then();
     }
     t = stop.time;
@@ -124,6 +128,7 @@ SimulateOutcome Run::go() {
     stepper_->calc_state(t, y_);
     cross_jump();
     if (const auto ends = pass(stop)) return finish(*ends);
+    if (is_stop_asked() && t < timeline_.end()) return halt(t);
   }
   save(timeline_.end());
   return close(timeline_.end(), "");
@@ -139,8 +144,7 @@ double Run::begin() {
   saved_at_ = std::chrono::steady_clock::now();
   if (options_.resume) {
     t = restore(*options_.resume);
-    // A checkpoint at a sample that is an event's time was written before the event.
-    if (t > timeline_.start() && std::abs(passed_ - t) > timeline_.resolution()) fire_due(t);
+    resume_at_stop(t);
     return t;
   }
   checkpoint_.time = t;
@@ -150,6 +154,13 @@ double Run::begin() {
   passed_ = t;
   fire_due(t);
   return t;
+}
+
+void Run::resume_at_stop(double t) {
+  const Stop* stop = timeline_.find_stop_at(t);
+  if (!stop || t <= timeline_.start() || std::abs(passed_ - t) <= timeline_.resolution()) return;
+  stop_ = *stop;
+  if (const auto ends = pass(stop_)) outcome_ = finish(*ends);
 }
 
 void Run::fire_due(double t) {
@@ -203,7 +214,7 @@ bool Run::write_outputs(double t) {
     const bool saves = timeline_.next_index() % kCheckpointEvery == 0;
     write_outputs_at(t_out);
     if (saves) save(t_out);
-    if (!is_stop_asked() || t_out >= timeline_.end()) continue;
+    if (!is_stop_asked() || t_out >= stop_.time) continue;  // what comes at the stop comes before the halt
     outcome_ = halt(t_out);
     return false;
   }

@@ -27,6 +27,8 @@ class Run {
   /// The first sample, or where a checkpoint left off. The time reached; `outcome_` when an event ends the run there.
   double begin();
   void fire_due(double t);
+  /// A checkpoint at a stop is of behind its jump; its events may not have come yet.
+  void resume_at_stop(double t);
   /// Energy of motions too small for the tolerances.
   double calc_noise();
   void take_step(const Stop& stop);
@@ -63,7 +65,7 @@ class Run {
   /// A checkpoint of y_ at t.
   void save(double t);
   void save_now_and_then();
-  /// On request, at the last sample or the end of the last step.
+  /// On request: y_ at t, behind the jumps there.
   SimulateOutcome halt(double t);
 
   // Failures (run_failure.cpp)

@@ -62,7 +62,6 @@ void Run::save_now_and_then() {
 }
 
 SimulateOutcome Run::halt(double t) {
-  if (t == stepper_->time()) y_ = stepper_->state();
   save(t);
   const std::string reason = "stopped on request at t = " + short_text(t);
   sink_.end(false, reason);

@@ -33,7 +33,7 @@ std::optional<Firing> Run::pass(const Stop& stop) {
   std::vector<Firing> firings;
   passed_ = stop.time;
   setup_.triggers.find_due(stop.time, timeline_.resolution(), firings);
-  if (stop.restarts && stop.time < timeline_.end()) {
+  if (stop.restarts && stop.latest < stop.time) {
     observe(stop.time);
     std::vector<size_t> crossed;
     setup_.triggers.find_crossed(calc_gaps(stop.time), crossed);

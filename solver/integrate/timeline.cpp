@@ -56,10 +56,15 @@ void Timeline::skip_outputs(double t) {
   next_ = calc_output(index_);
 }
 
-bool Timeline::is_restart(double t) const {
+const Stop* Timeline::find_stop_at(double t) const {
   const auto at =
       std::lower_bound(stops_.begin(), stops_.end(), t - close_, [](const Stop& s, double x) { return s.time < x; });
-  return at != stops_.end() && at->time <= t + close_ && at->restarts;
+  return at != stops_.end() && at->time <= t + close_ ? &*at : nullptr;
+}
+
+bool Timeline::is_restart(double t) const {
+  const Stop* stop = find_stop_at(t);
+  return stop && stop->restarts;
 }
 
 const Stop& Timeline::find_stop(double t) const {

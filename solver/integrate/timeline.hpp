@@ -44,6 +44,8 @@ class Timeline {
   void skip_outputs(double t);
   /// The first stop past t; the end is one.
   const Stop& find_stop(double t) const;
+  /// The stop at t; nullptr where there is none.
+  const Stop* find_stop_at(double t) const;
   /// Whether a restart is at t.
   bool is_restart(double t) const;
   /// Times that are one.

@@ -5,9 +5,7 @@
 #include <cmath>
 
 #include "solver/integrate/locate.hpp"
-#include "solver/integrate/memory_sink.hpp"
-#include "solver/integrate/simulate.hpp"
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -19,13 +17,7 @@ using ::testing::HasSubstr;
 
 /// 2 ẍ = -18 x on a slide along z: x = cos(3t) / 2.
 records::SystemSpec make_oscillator() {
-  records::SystemSpec spec;
-  records::BodyRecord b;
-  b.name = "body";
-  b.mass = 2;
-  b.inertia = Vector3d(1, 2, 3).asDiagonal();
-  spec.bodies = {b};
-  spec.hinges = {make_hinge_record("slide", HingeType::Prismatic, "ground", "body")};
+  auto spec = make_one_body(HingeType::Prismatic);
   spec.hinges[0].stiffness = {18};
   spec.hinges[0].position = {0.5};
   records::SensorRecord s;
@@ -33,9 +25,7 @@ records::SystemSpec make_oscillator() {
   s.body = "body";
   spec.sensors = {s};
   spec.simulation.duration = 3;
-  spec.simulation.output_step = 0.1;
   spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-10;
-  spec.simulation.at = {"system.toml", 20, 1};
   return spec;
 }
 
@@ -48,19 +38,6 @@ records::TriggerRecord make_trigger(const std::string& name, const std::string& 
   t.direction = direction;
   t.at = {"system.toml", 30, 1};
   return t;
-}
-
-struct RunResult {
-  MemorySink sink;
-  SimulateOutcome outcome;
-  Diagnostics diagnostics;
-};
-
-RunResult run(const records::SystemSpec& spec, SimulateOptions options = {}) {
-  RunResult r;
-  const System system = build(spec);
-  r.outcome = simulate(system, spec, r.sink, options, r.diagnostics);
-  return r;
 }
 
 TEST(Locate, FindsTheFarSideOfARoot) {
@@ -88,7 +65,7 @@ TEST(Events, AreLocatedByEveryIntegrator) {
     spec.simulation.integrator = integrator;
     spec.simulation.step = integrator == "rk4" ? 0.005 : 0;
     spec.events = {make_trigger("through", "place:z", 0.25),
-                   make_trigger("down", "/hinges/slide/q", 0.25, EventDirection::Falling),
+                   make_trigger("down", "/hinges/hinge/q", 0.25, EventDirection::Falling),
                    make_trigger("up", "place:3", 0.25, EventDirection::Rising)};
     const RunResult r = run(spec);
     const double p = std::acos(-1.0), first = p / 9, second = (2 * p - p / 3) / 3, third = (2 * p + p / 3) / 3;
@@ -105,7 +82,7 @@ TEST(Events, AreLocatedByEveryIntegrator) {
                                               DoubleNear(third, tolerance), DoubleNear(third, tolerance)))
         << integrator;
     ASSERT_EQ(names.size(), 6u);
-    EXPECT_THAT(names, ::testing::Contains("event 'down': /hinges/slide/q falls through 0.25").Times(2));
+    EXPECT_THAT(names, ::testing::Contains("event 'down': /hinges/hinge/q falls through 0.25").Times(2));
     EXPECT_THAT(names, ::testing::Contains("event 'up': place:3 rises through 0.25").Times(1));
     EXPECT_THAT(names, ::testing::Contains("event 'through': place:z rises through 0.25").Times(1));
   }
@@ -121,7 +98,7 @@ TEST(Events, LogsDoNotTouchTheMotion) {
     spec.events = {make_trigger("through", "place:z", 0.25)};
     const RunResult with = run(spec);
     EXPECT_EQ(with.sink.events().size(), 3u);
-    EXPECT_EQ(with.sink.get("/hinges/slide/qdot"), without.sink.get("/hinges/slide/qdot")) << integrator;
+    EXPECT_EQ(with.sink.get("/hinges/hinge/qdot"), without.sink.get("/hinges/hinge/qdot")) << integrator;
   }
 }
 
@@ -141,8 +118,8 @@ TEST(Events, StopEndsTheRunThere) {
     ASSERT_EQ(r.sink.num_samples(), 7);
     EXPECT_EQ(r.sink.time()[5], 0.5);
     EXPECT_EQ(r.sink.time()[6], r.outcome.time);
-    EXPECT_NEAR(r.sink.get("/hinges/slide/q")(6, 0), 0, integrator == "bdf" ? 1e-6 : 1e-11) << integrator;
-    EXPECT_LE(r.sink.get("/hinges/slide/q")(6, 0), 0);
+    EXPECT_NEAR(r.sink.get("/hinges/hinge/q")(6, 0), 0, integrator == "bdf" ? 1e-6 : 1e-11) << integrator;
+    EXPECT_LE(r.sink.get("/hinges/hinge/q")(6, 0), 0);
     EXPECT_EQ(r.sink.checkpoints().back().time, r.outcome.time);
     EXPECT_EQ(r.sink.events().size(), 1u);
   }
@@ -162,7 +139,7 @@ TEST(Events, AtATime) {
   const RunResult r = run(spec);
   EXPECT_EQ(r.outcome.time, 1.234);
   EXPECT_EQ(r.sink.time()[r.sink.num_samples() - 1], 1.234);
-  EXPECT_NEAR(r.sink.get("/hinges/slide/q")(r.sink.num_samples() - 1, 0), 0.5 * std::cos(3 * 1.234), 1e-7);
+  EXPECT_NEAR(r.sink.get("/hinges/hinge/q")(r.sink.num_samples() - 1, 0), 0.5 * std::cos(3 * 1.234), 1e-7);
   ASSERT_EQ(r.sink.events().size(), 2u);
   EXPECT_EQ(r.sink.events()[0].time, 0.55);
   EXPECT_EQ(r.sink.events()[0].what, "event 'half way'");
@@ -207,10 +184,10 @@ TEST(Events, GoOnAfterAResume) {
   SimulateOptions options, resume;
   options.stop = &stop;
   options.progress = [&](const Progress& p) { stop = p.time > 1; };
-  const RunResult first = run(spec, options);
+  const RunResult first = run(spec, {}, options);
   EXPECT_EQ(first.sink.events().size(), 1u);
   resume.resume = first.sink.checkpoints().back();
-  const RunResult second = run(spec, resume);
+  const RunResult second = run(spec, {}, resume);
   ASSERT_EQ(second.sink.events().size(), 2u);
   EXPECT_NEAR(second.sink.events()[0].time, std::acos(-1.0) * 5 / 9, 1e-7);
 }
@@ -218,7 +195,7 @@ TEST(Events, GoOnAfterAResume) {
 TEST(Events, FaultsAreReported) {
   auto spec = make_oscillator();
   spec.events = {make_trigger("a", "plaice:z", 1), make_trigger("b", "place", 1), make_trigger("c", "place:w", 1),
-                 make_trigger("d", "/hinges/slide/q:z", 1), make_trigger("e", "place:z", std::nan(""))};
+                 make_trigger("d", "/hinges/hinge/q:z", 1), make_trigger("e", "place:z", std::nan(""))};
   Diagnostics diagnostics;
   const System system = build(spec);
   check_run(system, spec, diagnostics);

@@ -6,30 +6,14 @@
 
 #include "solver/forces/function.hpp"
 #include "solver/integrate/linear_limit.hpp"
-#include "solver/integrate/memory_sink.hpp"
 #include "solver/integrate/run_setup.hpp"
-#include "solver/integrate/simulate.hpp"
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
 namespace {
 
 using records::HingeType;
 using ::testing::HasSubstr;
-
-records::SystemSpec make_one_body(HingeType type) {
-  records::SystemSpec spec;
-  records::BodyRecord b;
-  b.name = "body";
-  b.mass = 2;
-  b.inertia = Vector3d(1, 2, 3).asDiagonal();
-  spec.bodies = {b};
-  spec.hinges = {make_hinge_record("hinge", type, "ground", "body")};
-  spec.simulation.duration = 1;
-  spec.simulation.output_step = 0.1;
-  spec.simulation.at = {"system.toml", 20, 1};
-  return spec;
-}
 
 records::FunctionRecord make_function(const std::string& type, std::map<std::string, double> values) {
   records::FunctionRecord f;
@@ -47,20 +31,6 @@ void push(records::SystemSpec& spec, const records::FunctionRecord& function) {
   force.direction = {1, 0, 0};
   force.function = function.name;
   spec.forces = {force};
-}
-
-struct RunResult {
-  MemorySink sink;
-  SimulateOutcome outcome;
-  Diagnostics diagnostics;
-};
-
-RunResult run(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex = {},
-              SimulateOptions options = {}) {
-  RunResult r;
-  const System system = build(spec, flex);
-  r.outcome = simulate(system, spec, r.sink, options, r.diagnostics);
-  return r;
 }
 
 std::string run_and_fail(const records::SystemSpec& spec, const char* id) {
@@ -301,6 +271,39 @@ TEST(Samples, WindowAndDecimationLeaveTheMotion) {
   check_run(system, spec, diagnostics);
   ASSERT_TRUE(diagnostics.has("run.unknown-group"));
   EXPECT_THAT(format(diagnostics.items()[0]), HasSubstr("did you mean 'hinges'?"));
+}
+
+// The checkpoint at a jump holds the rates before or behind it: either way the impulse comes once.
+TEST(Resume, AtAJumpIsTheUnbrokenRun) {
+  auto spec = make_one_body(HingeType::Prismatic);
+  spec.functions = {make_function("ramp", {{"value", 0.5}, {"from", 0.3}, {"to", 0.7}})};
+  spec.hinges[0].motion = {"f"};
+  spec.hinges[0].axis = Vector3d::UnitX();
+  auto bob = spec.bodies[0];
+  bob.name = "bob";
+  bob.cg = {0, -0.5, 0};
+  spec.bodies.push_back(bob);
+  spec.hinges.push_back(make_hinge_record("pin", HingeType::Revolute, "body", "bob"));
+  spec.simulation.gravity = {0, -9.81, 0};
+  spec.simulation.integrator = "rk4";
+  spec.simulation.step = 0.01;
+  const RunResult whole = run(spec);
+  for (const double at : {0.3, 0.7}) {
+    std::atomic<bool> stop = false;
+    SimulateOptions options, resume;
+    options.stop = &stop;
+    options.progress = [&](const Progress& p) { stop = p.time > at - 1e-9; };
+    const RunResult first = run(spec, {}, options);
+    ASSERT_FALSE(first.outcome.completed);
+    EXPECT_NEAR(first.outcome.time, at, 1e-12);
+    resume.resume = first.sink.checkpoints().back();
+    const RunResult rest = run(spec, {}, resume);
+    const int n = rest.sink.num_samples();
+    EXPECT_EQ(first.sink.num_samples() + n, whole.sink.num_samples());
+    for (const char* path : {"/hinges/pin/q", "/hinges/pin/qdot", "/energy/work"})
+      EXPECT_EQ((rest.sink.get(path) - whole.sink.get(path).bottomRows(n)).cwiseAbs().maxCoeff(), 0) << path << at;
+    EXPECT_EQ(first.sink.events().size() + rest.sink.events().size(), whole.sink.events().size());
+  }
 }
 
 // Warnings once given are not given again after a resume, and the worst error stays.

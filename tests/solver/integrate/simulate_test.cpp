@@ -6,49 +6,26 @@
 
 #include <cmath>
 
-#include "solver/integrate/memory_sink.hpp"
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
 namespace {
 
 using records::HingeType;
 
-records::SystemSpec make_one_body(HingeType type) {
-  records::SystemSpec spec;
-  records::BodyRecord b;
-  b.name = "body";
-  b.mass = 2;
-  b.inertia = Vector3d(1, 2, 3).asDiagonal();
-  spec.bodies = {b};
-  spec.hinges = {make_hinge_record("hinge", type, "ground", "body")};
+records::SystemSpec make_body(HingeType type) {
+  auto spec = make_one_body(type);
   spec.simulation.duration = 3;
-  spec.simulation.output_step = 0.1;
-  spec.simulation.at = {"system.toml", 20, 1};
   return spec;
 }
 
 /// A spring on a slide: 2 ẍ = -18 x - c ẋ, x(0) = 0.5.
 records::SystemSpec make_oscillator(double damping = 0) {
-  auto spec = make_one_body(HingeType::Prismatic);
+  auto spec = make_body(HingeType::Prismatic);
   spec.hinges[0].stiffness = {18};
   spec.hinges[0].damping = {damping};
   spec.hinges[0].position = {0.5};
   return spec;
-}
-
-struct RunResult {
-  MemorySink sink;
-  SimulateOutcome outcome;
-  Diagnostics diagnostics;
-};
-
-RunResult run(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex = {},
-              SimulateOptions options = {}) {
-  RunResult r;
-  const System system = build(spec, flex);
-  r.outcome = simulate(system, spec, r.sink, options, r.diagnostics);
-  return r;
 }
 
 VectorXd calc_energy_balance(const MemorySink& sink) {
@@ -97,7 +74,7 @@ TEST(Simulate, ErrorShrinksWithTheTolerance) {
 
 TEST(Simulate, Rk4HasOrderFourOnASpinningTop) {
   const auto solve = [](double step) {
-    auto spec = make_one_body(HingeType::Free);
+    auto spec = make_body(HingeType::Free);
     spec.hinges[0].rate = {0.3, 2, 0.1, 0, 0, 0};  // angular velocity first
     spec.simulation.integrator = "rk4";
     spec.simulation.step = step;
@@ -110,7 +87,7 @@ TEST(Simulate, Rk4HasOrderFourOnASpinningTop) {
 
 // The quaternion's length is not controlled by the equations; it must not drift with the number of turns.
 TEST(Simulate, OrientationStaysARotation) {
-  auto spec = make_one_body(HingeType::Free);
+  auto spec = make_body(HingeType::Free);
   spec.hinges[0].rate = {0, 0, 5, 0, 0, 0};
   spec.simulation.duration = 40;
   spec.simulation.output_step = 1;
@@ -162,7 +139,7 @@ TEST(Simulate, DampingIsLostWork) {
 // A pulse between two output times: the velocity it leaves is F width / m to rounding, since steps end on both jumps.
 TEST(Simulate, PulseIsHitByEveryIntegrator) {
   for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
-    auto spec = make_one_body(HingeType::Free);
+    auto spec = make_body(HingeType::Free);
     records::FunctionRecord f;
     f.name = "pulse";
     f.type = "pulse";
@@ -298,7 +275,7 @@ TEST(Simulate, SensorFaultsStopARunBeforeItStarts) {
 
 TEST(Simulate, LargeDeflectionIsReportedOncePerBody) {
   const PointBody points = make_point_body(2, 5, 0.01);
-  records::SystemSpec spec = make_one_body(HingeType::Fixed);
+  records::SystemSpec spec = make_body(HingeType::Fixed);
   spec.bodies[0].file = "points.h5";
   spec.bodies[0].eta = {0.8, 0};
   spec.simulation.duration = 1;

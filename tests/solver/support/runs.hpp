@@ -1,0 +1,38 @@
+#pragma once
+/// \file One body on one hinge, and whole runs in memory.
+#include "solver/integrate/memory_sink.hpp"
+#include "solver/integrate/simulate.hpp"
+#include "tests/solver/support/models.hpp"
+
+namespace bough::solver::testing {
+
+/// 2 mass, inertia (1, 2, 3), on a hinge "hinge" to ground; a second in steps of 0.1.
+inline records::SystemSpec make_one_body(records::HingeType type) {
+  records::SystemSpec spec;
+  records::BodyRecord b;
+  b.name = "body";
+  b.mass = 2;
+  b.inertia = Vector3d(1, 2, 3).asDiagonal();
+  spec.bodies = {b};
+  spec.hinges = {make_hinge_record("hinge", type, "ground", "body")};
+  spec.simulation.duration = 1;
+  spec.simulation.output_step = 0.1;
+  spec.simulation.at = {"system.toml", 20, 1};
+  return spec;
+}
+
+struct RunResult {
+  MemorySink sink;
+  SimulateOutcome outcome;
+  Diagnostics diagnostics;
+};
+
+inline RunResult run(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex = {},
+                     const SimulateOptions& options = {}) {
+  RunResult r;
+  const System system = build(spec, flex);
+  r.outcome = simulate(system, spec, r.sink, options, r.diagnostics);
+  return r;
+}
+
+}  // namespace bough::solver::testing
