@@ -1,7 +1,10 @@
 #include "cli/common/start_state.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "cli/common/channels.hpp"
 #include "formats/hdf5/files.hpp"
 
 namespace bough::cli {
@@ -40,10 +43,30 @@ class Starter {
   Diagnostics& diagnostics_;
 };
 
+/// Says which state it is; warns where the run went on past it.
+void report_time(const hdf5::ResultsFile& results, const std::string& path, Diagnostics& diagnostics) {
+  if (results.time.size() == 0) return;  // what is missing is said channel by channel
+  const double t = results.time[results.time.size() - 1];
+  diagnostics.note("cli.start-state", {path}, fmt::format("the start is its state at t = {:g}", t), "");
+  double reached = t;
+  try {
+    reached = hdf5::read_checkpoint(path).time;
+  } catch (const Failure&) {
+    // It has none: the last sample is all there is.
+  }
+  if (reached > t + 1e-12 * std::max(std::abs(reached), std::abs(results.time[0])))
+    diagnostics.warning(
+        "cli.start-earlier", {path},
+        fmt::format("its last sample is of t = {:g}, its run came to t = {:g}: the start is the former", t, reached),
+        "take samples up to the end of that run (output_until, output_every), or resume it");
+}
+
 }  // namespace
 
 void set_start_state(records::SystemSpec& spec, const std::string& path, Diagnostics& diagnostics) {
   const auto results = hdf5::read_results(path);
+  warn_incomplete(path, diagnostics);
+  report_time(results, path, diagnostics);
   Starter starter(results, path, spec.simulation.at, diagnostics);
   for (auto& body : spec.bodies) {
     const auto carries = [&](const records::HingeRecord& hinge) { return hinge.child == body.name; };

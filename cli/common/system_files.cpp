@@ -42,6 +42,7 @@ std::vector<std::string> collect_sources(const std::string& path, const LoadedSy
     if (!function.file.empty() && std::find(files.begin(), files.end(), function.file) == files.end())
       files.push_back(function.file);
   }
+  if (!loaded.start_from.empty()) files.push_back(loaded.start_from);
   return files;
 }
 
@@ -85,7 +86,7 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, cons
   auto system = solver::System::build_as_far(spec, flex, diagnostics);
   solver::check_run(system, spec, diagnostics);
   diagnostics.throw_if_errors();
-  return {std::move(spec), std::move(flex), std::move(flex_path), std::move(system)};
+  return {std::move(spec), std::move(flex), std::move(flex_path), std::move(system), start_from};
 }
 
 }  // namespace bough::cli

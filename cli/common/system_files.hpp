@@ -14,9 +14,10 @@ struct LoadedSystem {
   std::map<std::string, records::FlexBody> flex;  ///< by the file name as written in the system file
   std::map<std::string, std::string> flex_path;   ///< the same names with the path they were read from
   solver::System system;
+  std::string start_from;  ///< results file with the initial state; empty: none
 };
 
-/// Every file that the run reads: the system file first, bodies, tables.
+/// Every file that the run reads: the system file first, bodies, tables, the initial state.
 std::vector<std::string> collect_sources(const std::string& path, const LoadedSystem& loaded);
 
 /// Reads and builds; throws InputError with every error found, all that `run` would refuse among them. Body files are

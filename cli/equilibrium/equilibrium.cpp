@@ -61,8 +61,7 @@ int run_equilibrium(const EquilibriumOptions& o) {
   if (has_suffix(o.file, ".toml")) demand_kind(o.file, toml_files::detect_kind(o.file), "system");
   Diagnostics diagnostics;
   const auto loaded = load_system(o.file, diagnostics);
-  std::vector<std::string> sources{o.file};
-  for (const auto& [name, path] : loaded.flex_path) sources.push_back(path);
+  const auto sources = collect_sources(o.file, loaded);
   if (!o.output.empty()) check_output(o, o.output, sources);
   auto plant = make_plant(loaded, diagnostics);
   const auto start = plant.make_initial_point();

@@ -30,8 +30,7 @@ int run_linearize(const LinearizeVerbOptions& o) {
   if (has_suffix(o.file, ".toml")) demand_kind(o.file, toml_files::detect_kind(o.file), "system");
   Diagnostics diagnostics;
   const auto loaded = load_system(o.file, diagnostics, o.start_from);
-  std::vector<std::string> sources{o.file};
-  for (const auto& [name, path] : loaded.flex_path) sources.push_back(path);
+  const auto sources = collect_sources(o.file, loaded);
   for (const auto& path : {o.output, o.mat})
     if (!path.empty()) check_output(o, path, sources);
   auto plant = make_plant(loaded, diagnostics);

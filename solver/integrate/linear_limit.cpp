@@ -70,18 +70,23 @@ std::vector<LinearLimit::Crossing> LinearLimit::find_crossings(double t, const S
     const std::string& name = system_.body_name(w.body);
     if (!w.deflection_reported && w.size > 0) {
       const auto eta = q.segment(system_.eta_offset(w.body), system_.num_modes(w.body));
+      double largest = 0;
+      int where = 0;
       for (const Node& node : get_body(system_, w.body).body.nodes()) {
         if (!node.moves) continue;
         Vector3d d = Vector3d::Zero();
         for (int j = 0; j < eta.size(); ++j) d += node.phi.col(j) * eta[j];
-        if (d.norm() <= kLinearLimit * w.size) continue;
+        if (d.norm() <= largest) continue;
+        largest = d.norm();
+        where = node.id;
+      }
+      if (largest > kLinearLimit * w.size) {
         w.deflection_reported = true;
         found.push_back({"run.linear-limit",
-                         "body '" + name + "' deflects by " + short_text(d.norm()) + " at node " +
-                             std::to_string(node.id) + " at t = " + short_text(t) + ", more than 10 % of its size " +
+                         "body '" + name + "' deflects by " + short_text(largest) + " at node " +
+                             std::to_string(where) + " at t = " + short_text(t) + ", more than 10 % of its size " +
                              short_text(w.size),
                          "linear modes lose their meaning there; split the body into several"});
-        break;
       }
     }
     const double spin = get_body_state(data, w.body).w_B.norm();

@@ -266,6 +266,35 @@ class Equilibrium(LinearTest):
         self.write("other.toml", PENDULUM.replace('"pin"', '"pen"').replace("POSITION", "0.0"))
         self.fails(1, "run", "other.toml", "--start-from", "rest.h5", says=["/hinges/pen/q"], error="cli.start-mismatch")
 
+    def test_what_the_start_was_is_said(self):
+        text = PENDULUM.replace("POSITION", "0.9")
+        self.write("all.toml", text)
+        self.write("some.toml", text.replace("[simulation]", "[simulation]\noutput_until = 0.3"))
+        for name in ("all", "some"):
+            self.bough("run", f"{name}.toml")
+        run = self.bough("run", "all.toml", "--start-from", "some.h5", "-o", "late.h5")
+        self.assertIn("some.h5: warning: its last sample is of t = 0.3, its run came to t =", run.stderr)
+        self.assertIn("[cli.start-earlier]", run.stderr)
+        run = self.bough("run", "all.toml", "--start-from", "all.h5", "-o", "late.h5")
+        self.assertIn("[cli.start-state]", run.stderr)
+        self.assertNotIn("warning", run.stderr)
+        with h5py.File(self.path("late.h5")) as f:
+            self.assertIn("all.h5", str(f.attrs["source"]))
+        self.fails(1, "run", "all.toml", "--start-from", "late.h5", "-o", "late.h5", error="cli.output-is-input")
+
+    def test_unstable_states_are_named(self):
+        self.write("pendulum.toml", PENDULUM.replace("POSITION", "3.1").replace("force = [1.0", "force = [0.0"))
+        run = self.bough("equilibrium", "pendulum.toml")
+        self.assertIn("unstable equilibrium", run.stdout)
+        self.assertIn("pin:1 leaves it", run.stderr)
+        self.assertIn("[equilibrium.unstable]", run.stderr)
+        data = json.loads(self.bough("equilibrium", "pendulum.toml", "--json").stdout)
+        self.assertFalse(data["stable"])
+        self.write("pendulum.toml", PENDULUM.replace("POSITION", "2.0").replace("force = [1.0", "force = [0.0"))
+        data = json.loads(self.bough("equilibrium", "pendulum.toml", "--json").stdout)
+        self.assertTrue(data["stable"])
+        self.assertAlmostEqual(data["q"][0], 0, places=9)
+
     def test_nothing_holds_a_stone(self):
         self.write("stone.toml", '[[body]]\nname = "stone"\nmass = 1.0\ninertia = [1.0, 1.0, 1.0]\n'
                                  "[simulation]\nduration = 1.0\ngravity = [0.0, 0.0, -9.81]\n")
