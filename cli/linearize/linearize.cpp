@@ -10,7 +10,6 @@
 #include "cli/linearize/operating_point.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/toml/specs.hpp"
-#include "solver/linear/equilibrium.hpp"
 
 namespace bough::cli {
 
@@ -35,7 +34,7 @@ int run_linearize(const LinearizeVerbOptions& o) {
     if (!path.empty()) check_output(o, path, sources);
   auto plant = make_plant(loaded, diagnostics);
   auto point = o.at ? run_to(loaded, plant, *o.at, diagnostics) : plant.make_initial_point();
-  if (o.equilibrium) point = solver::find_equilibrium(plant, point, {o.file}).point;
+  if (o.equilibrium) point = find_rest(plant, std::move(point), o.file);
   auto model = solver::linearize(plant, point, {o.inputs, o.outputs, true}, {o.file}, diagnostics);
   model.source = calc_sources(sources);
   console.print(diagnostics);

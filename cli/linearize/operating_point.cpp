@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "solver/integrate/simulate.hpp"
+#include "solver/linear/equilibrium.hpp"
 
 namespace bough::cli {
 
@@ -46,6 +47,11 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& p
   solver::simulate(loaded.system, spec, sink, {}, diagnostics);
   const auto& state = sink.last().state;
   return {t, state.head(nq), plant.restrict(state.segment(nq, nu))};
+}
+
+solver::OperatingPoint find_rest(solver::Plant& plant, solver::OperatingPoint start, const std::string& file) {
+  start.u = plant.make_initial_point().u;
+  return solver::find_equilibrium(plant, start, {file}).point;
 }
 
 }  // namespace bough::cli

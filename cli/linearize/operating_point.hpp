@@ -12,4 +12,7 @@ solver::Plant make_plant(const LoadedSystem& loaded, Diagnostics& diagnostics);
 solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& plant, double t,
                               Diagnostics& diagnostics);
 
+/// Rest or steady spin near `start`, by the hinge rates of the system file whatever those at `start` are.
+solver::OperatingPoint find_rest(solver::Plant& plant, solver::OperatingPoint start, const std::string& file);
+
 }  // namespace bough::cli

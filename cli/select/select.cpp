@@ -9,18 +9,16 @@
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/linear_verbs.hpp"
-#include "cli/linearize/operating_point.hpp"
+#include "cli/common/usage_text.hpp"
+#include "cli/select/system_plant.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/records/mode_subset.hpp"
 #include "formats/toml/specs.hpp"
-#include "solver/linear/equilibrium.hpp"
-#include "solver/linear/linearize.hpp"
 #include "solver/statespace/cost.hpp"
 #include "solver/statespace/mode_ranking.hpp"
 
 namespace bough::cli {
 
-namespace fs = std::filesystem;
 using statespace::ModeRanking;
 using statespace::NodeDirection;
 
@@ -79,23 +77,28 @@ std::vector<NodeDirection> choose_places(const records::FlexBody& body, const st
   return places;
 }
 
+/// Full model and costs; how the modes kept do instead.
+struct Weighing {
+  ModeRanking ranking;
+  statespace::StateSpace full;
+  std::function<statespace::StateSpace(const std::vector<int>&)> reduce;
+};
+
+Weighing weigh_alone(const SelectOptions& o, const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
+                     const std::vector<NodeDirection>& outputs) {
+  const double damping = o.damping;
+  return {statespace::rank_modes(body, inputs, outputs, damping),
+          statespace::make_state_space(body, inputs, outputs, damping),
+          [&body, inputs, outputs, damping](const std::vector<int>& kept) {
+            return statespace::make_state_space(records::keep_modes(body, kept), inputs, outputs, damping);
+          }};
+}
+
 /// The modes of `file` in the linear model of a whole system; those of several bodies from one file add up.
-ModeRanking rank_in_system(const SelectOptions& o, const records::FlexBody& body, Diagnostics& diagnostics) {
-  const auto loaded = load_system(o.system, diagnostics);
-  std::vector<std::string> users;
-  for (const auto& record : loaded.spec.bodies) {
-    const auto found = loaded.flex_path.find(record.file);
-    std::error_code ignored;
-    if (found != loaded.flex_path.end() && fs::equivalent(found->second, o.body, ignored)) users.push_back(record.name);
-  }
-  if (users.empty()) {
-    throw InputError("select.body-not-in-system", {o.system}, "no body of the system has the file " + o.body,
-                     "name the body file that the system uses");
-  }
-  auto plant = make_plant(loaded, diagnostics);
-  auto point = o.at ? run_to(loaded, plant, *o.at, diagnostics) : plant.make_initial_point();
-  if (o.equilibrium) point = solver::find_equilibrium(plant, point, {o.system}).point;
-  const auto model = solver::linearize(plant, point, {o.inputs, o.outputs, false}, {o.system}, diagnostics);
+Weighing weigh_in_system(const SelectOptions& o, const records::FlexBody& body, Diagnostics& diagnostics) {
+  const auto plant = std::make_shared<SystemPlant>(
+      o.system, o.body, OperatingChoice{o.at, o.equilibrium, o.inputs, o.outputs}, diagnostics);
+  const auto model = plant->linearize(diagnostics);
   if (model.inputs.size() == 0 || model.outputs.size() == 0) {
     throw InputError("select.no-signals", {o.system}, "the system has no [[force]] or no [[sensor]] to weigh modes by",
                      "add them, or name hinges with --inputs");
@@ -103,22 +106,35 @@ ModeRanking rank_in_system(const SelectOptions& o, const records::FlexBody& body
   if (!model.D.isZero(0))
     diagnostics.note("select.feedthrough", {o.system},
                      "an output follows an input at once: only what the states bring to it is counted");
+  for (int k = 0; k < model.poles.size(); ++k) {
+    const double size = std::hypot(model.poles.real[k], model.poles.imag[k]);
+    if (size <= 1e-6 * model.poles.frequency_hz.maxCoeff() * 2 * M_PI || model.poles.real[k] < -1e-11 * size) continue;
+    throw ComputationError(
+        "select.unstable", {o.system},
+        fmt::format("the pole {:.3g} ± {:.4g} i of {} does not decay: the outputs grow without limit "
+                    "and no mode can be ranked",
+                    model.poles.real[k], std::abs(model.poles.imag[k]), model.poles.mode[static_cast<std::size_t>(k)]),
+        "give it damping, or choose a stable state");
+  }
   const auto cost = statespace::calc_component_cost(model.A, model.B, model.C);
-  ModeRanking ranking;
-  ranking.total = ranking.other = cost.total;
-  ranking.modes.resize(static_cast<std::size_t>(body.num_modes()));
+  Weighing w{{}, {model.A, model.B, model.C}, [plant](const std::vector<int>& kept) {
+               const auto reduced = plant->linearize_with(kept);
+               return statespace::StateSpace{reduced.A, reduced.B, reduced.C};
+             }};
+  w.ranking.total = w.ranking.other = cost.total;
+  w.ranking.modes.resize(static_cast<std::size_t>(body.num_modes()));
   for (int i = 0; i < model.states.size(); ++i) {
-    for (const auto& user : users) {
+    for (const auto& user : plant->users()) {
       for (int mode = 0; mode < body.num_modes(); ++mode) {
         const auto name = user + ":eta" + std::to_string(mode + 1);
         const auto& state = model.states.name[static_cast<std::size_t>(i)];
         if (state != name && state != name + "_dot") continue;
-        ranking.modes[static_cast<std::size_t>(mode)].cost += cost.state[i];
-        ranking.other -= cost.state[i];
+        w.ranking.modes[static_cast<std::size_t>(mode)].cost += cost.state[i];
+        w.ranking.other -= cost.state[i];
       }
     }
   }
-  return ranking;
+  return w;
 }
 
 struct Selection {
@@ -126,7 +142,39 @@ struct Selection {
   std::vector<statespace::Choice> choices;
   std::vector<int> kept;
   double dropped = 0, static_error = -1;  ///< dropped: part of V
+  double lost = 0;                        ///< mean square of what the outputs lose, to V
 };
+
+std::vector<int> list_kept(const std::vector<statespace::Choice>& choices) {
+  std::vector<int> kept;
+  for (std::size_t i = 0; i < choices.size(); ++i)
+    if (choices[i].kept) kept.push_back(static_cast<int>(i));
+  return kept;
+}
+
+/// Costs of either sign cancel: the tolerance is held to what the outputs lose.
+void hold_tolerance(const Weighing& w, double tolerance, Selection& s) {
+  const auto calc_lost = [&](const std::vector<int>& kept) {
+    if (kept.size() == s.choices.size() || !(w.ranking.total > 0)) return 0.0;
+    if (kept.empty()) return 1.0;
+    return statespace::calc_mean_square_difference(w.full, w.reduce(kept)) / w.ranking.total;
+  };
+  s.kept = list_kept(s.choices);
+  s.lost = calc_lost(s.kept);
+  std::size_t fits = 0, dropped = 0;
+  for (const auto& choice : s.choices) dropped += choice.within_tolerance ? 1 : 0;
+  if (dropped == 0 || s.lost <= tolerance) return;
+  const auto all = s.choices;
+  for (std::size_t too_many = dropped; too_many - fits > 1;) {
+    const std::size_t middle = fits + (too_many - fits) / 2;
+    auto choices = all;
+    statespace::keep_dearest(w.ranking, middle, choices);
+    (calc_lost(list_kept(choices)) <= tolerance ? fits : too_many) = middle;
+  }
+  statespace::keep_dearest(w.ranking, fits, s.choices);
+  s.kept = list_kept(s.choices);
+  s.lost = calc_lost(s.kept);
+}
 
 nlohmann::json make_json(const records::FlexBody& body, const Selection& s) {
   auto modes = nlohmann::json::array();
@@ -141,8 +189,11 @@ nlohmann::json make_json(const records::FlexBody& body, const Selection& s) {
                      {"kept", s.choices[k].kept},
                      {"reason", s.choices[k].reason}});
   }
-  nlohmann::json json{
-      {"modes", modes}, {"total_cost", s.ranking.total}, {"other_cost", s.ranking.other}, {"dropped_share", s.dropped}};
+  nlohmann::json json{{"modes", modes},
+                      {"total_cost", s.ranking.total},
+                      {"other_cost", s.ranking.other},
+                      {"dropped_share", s.dropped},
+                      {"lost_share", s.lost}};
   if (s.static_error >= 0) json["static_error"] = s.static_error;
   return json;
 }
@@ -161,6 +212,7 @@ std::string format(const records::FlexBody& body, const Selection& s) {
   if (s.ranking.other != 0) text += fmt::format(", of it {:.4g} by the rest of the system", s.ranking.other);
   text += fmt::format("\n{} kept, {} dropped with {:.3g} % of the cost", count(s.kept.size(), "mode"),
                       static_cast<std::size_t>(body.num_modes()) - s.kept.size(), 100 * s.dropped);
+  text += fmt::format("; the outputs lose {:.3g} % (mean square)", 100 * s.lost);
   if (s.static_error >= 0) text += fmt::format(", static response off by {:.3g} %", 100 * s.static_error);
   return text + "\n";
 }
@@ -179,6 +231,7 @@ int run_select(const SelectOptions& o) {
   Diagnostics diagnostics;
   const auto body = hdf5::read_flex_body(o.body);
   Selection s;
+  Weighing weighing;
   std::vector<NodeDirection> inputs, outputs;
   if (o.system.empty()) {
     inputs = choose_places(body, o.inputs, o.body);
@@ -187,19 +240,17 @@ int run_select(const SelectOptions& o) {
       throw InputError("select.no-signals", {o.body}, "no output node of the body moves: nothing to weigh its modes by",
                        "reduce the body with output nodes that its modes move");
     }
-    s.ranking = statespace::rank_modes(body, inputs, outputs, o.damping);
+    weighing = weigh_alone(o, body, inputs, outputs);
   } else {
-    s.ranking = rank_in_system(o, body, diagnostics);
+    weighing = weigh_in_system(o, body, diagnostics);
   }
+  s.ranking = weighing.ranking;
+  const double tolerance = o.tolerance.value_or(kDefaultTolerance);
   const bool by_cost = o.below_hz == 0 || o.number > 0 || o.tolerance;
-  s.choices = statespace::choose_modes(body, s.ranking,
-                                       {o.number, o.tolerance.value_or(kDefaultTolerance), o.below_hz, by_cost});
-  for (std::size_t i = 0; i < s.choices.size(); ++i) {
-    if (s.choices[i].kept)
-      s.kept.push_back(static_cast<int>(i));
-    else if (s.ranking.total > 0)
-      s.dropped += s.ranking.modes[i].cost / s.ranking.total;
-  }
+  s.choices = statespace::choose_modes(body, s.ranking, {o.number, tolerance, o.below_hz, by_cost});
+  hold_tolerance(weighing, tolerance, s);
+  for (std::size_t i = 0; i < s.choices.size(); ++i)
+    if (!s.choices[i].kept && s.ranking.total > 0) s.dropped += s.ranking.modes[i].cost / s.ranking.total;
   if (o.system.empty() && !s.kept.empty())
     s.static_error = statespace::calc_static_error(body, s.kept, inputs, outputs);
   console.print(diagnostics);
@@ -230,9 +281,9 @@ void add_select(CLI::App& app, Action& action) {
       ->delimiter(',');
   verb->add_option("--outputs", o->outputs, "Nodes whose motion counts, as above; of a system: its sensors")
       ->delimiter(',');
-  verb->add_option("-n,--number", o->number, "Keep so many modes")->check(CLI::PositiveNumber);
+  verb->add_option("-n,--number", o->number, "Keep so many modes")->check(make_positive());
   verb->add_option("--tolerance", o->tolerance,
-                   "Drop modes that together have at most this part of the cost (default: 0.01)")
+                   "Drop modes without which the outputs lose at most this part of their mean square (default: 0.01)")
       ->check(CLI::Range(0.0, 1.0));
   verb->add_option("--below", o->below_hz, "Drop modes above this frequency")->check(CLI::PositiveNumber);
   verb->add_option("--damping", o->damping, "Damping ratio of modes that have none (default: 0.01)")

@@ -71,11 +71,15 @@ class Newton {
     row_scale_ = jacobian.cols() > 0 ? VectorXd(jacobian.rowwise().lpNorm<Eigen::Infinity>())
                                      : VectorXd(VectorXd::Zero(jacobian.rows()));
     weight_ = row_scale_.unaryExpr([](double s) { return s > 0 ? 1 / s : 0; });
+    if (jacobian.cols() == 0) return;  // every hinge has a given rate or motion
     factor_.setThreshold(1e-9);
     factor_.compute(weight_.asDiagonal() * jacobian);
   }
 
-  VectorXd solve_step(const VectorXd& residual) const { return -factor_.solve(weight_.asDiagonal() * residual); }
+  VectorXd solve_step(const VectorXd& residual) const {
+    if (at_.free().empty()) return {};
+    return -factor_.solve(weight_.asDiagonal() * residual);
+  }
 
   void take(const VectorXd& step) {
     Balance moved = at_.move(step);
@@ -120,10 +124,14 @@ bool is_near(const Balance& at) { return at.travel().size() == 0 || at.travel().
   what << "no state of rest or steady spin was found: after " << newton.num_iterations() << " iterations |u_dot| is "
        << newton.at().residual().norm() << ", most of all " << newton.at().plant().freedom_name(worst)
        << ", which accelerates by " << newton.at().residual()[worst];
-  throw ComputationError("equilibrium.not-converged", at, what.str(),
-                         newton.is_held(worst)
-                             ? "start nearer to it, by position and eta"
-                             : "nothing holds it: take away the load, or give it a spring or a hinge");
+  const auto& free = newton.at().free();
+  const bool spins = std::find(free.begin(), free.end(), worst) == free.end();
+  throw ComputationError(
+      "equilibrium.not-converged", at, what.str(),
+      spins ? "it has a rate of its own in the system file, which its loads and dampers change: prescribe its motion, "
+              "take them away, or give it the rate 0"
+      : newton.is_held(worst) ? "start nearer to it, by position and eta"
+                              : "nothing holds it: take away the load, or give it a spring or a hinge");
 }
 
 /// Newton's method from the start, when that leads to a state nearby or to a stable one; else that from where the way

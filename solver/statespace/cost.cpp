@@ -1,5 +1,6 @@
 #include "solver/statespace/cost.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 #include "base/diagnostic.hpp"
@@ -93,6 +94,16 @@ ComponentCost calc_component_cost(const MatrixXd& A, const MatrixXd& B, const Ma
   cost.state = (X * seen.transpose()).cwiseProduct(seen.transpose()).rowwise().sum();
   cost.total = (seen * X * seen.transpose()).trace();
   return cost;
+}
+
+double calc_mean_square_difference(const StateSpace& full, const StateSpace& reduced) {
+  const Index n = full.A.rows(), m = reduced.A.rows();
+  MatrixXd A = MatrixXd::Zero(n + m, n + m), B(n + m, full.B.cols()), C(full.C.rows(), n + m);
+  A.topLeftCorner(n, n) = full.A;
+  A.bottomRightCorner(m, m) = reduced.A;
+  B << full.B, reduced.B;
+  C << full.C, -reduced.C;
+  return std::max(0.0, calc_component_cost(A, B, C).total);
 }
 
 double calc_modal_cost(double omega, double zeta, double b_squared, double c_d_squared, double c_r_squared) {

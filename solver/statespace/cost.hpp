@@ -28,6 +28,15 @@ struct ComponentCost {
   int num_rigid = 0;      ///< poles at 0, left out
 };
 
+/// ẋ = A x + B u, y = C x.
+struct StateSpace {
+  Eigen::MatrixXd A, B, C;
+};
+
+/// Mean square of y - y_r of two models with the same inputs and outputs, white noise of unit intensity at the inputs;
+/// poles at 0 of either take no part. Throws ComputationError "select.unstable".
+double calc_mean_square_difference(const StateSpace& full, const StateSpace& reduced);
+
 /// Throws ComputationError "select.unstable" when a pole off 0 does not decay.
 ComponentCost calc_component_cost(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, const Eigen::MatrixXd& C);
 

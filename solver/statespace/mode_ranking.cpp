@@ -46,8 +46,8 @@ std::string percent(double part) {
 
 }  // namespace
 
-ModeRanking rank_modes(const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
-                       const std::vector<NodeDirection>& outputs, double otherwise_damping) {
+StateSpace make_state_space(const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
+                            const std::vector<NodeDirection>& outputs, double otherwise_damping) {
   const Index n = body.num_modes();
   const MatrixXd b = make_rows(body, inputs).transpose(), c = make_rows(body, outputs);
   const MatrixXd D = make_damping(body, otherwise_damping), &M = body.modal_mass, &K = body.modal_stiffness;
@@ -58,6 +58,15 @@ ModeRanking rank_modes(const records::FlexBody& body, const std::vector<NodeDire
   A.bottomRightCorner(n, n) = -factor.solve(D);
   B.bottomRows(n) = factor.solve(b);
   C.leftCols(n) = c;
+  return {std::move(A), std::move(B), std::move(C)};
+}
+
+ModeRanking rank_modes(const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
+                       const std::vector<NodeDirection>& outputs, double otherwise_damping) {
+  const Index n = body.num_modes();
+  const MatrixXd b = make_rows(body, inputs).transpose(), c = make_rows(body, outputs);
+  const MatrixXd D = make_damping(body, otherwise_damping), &M = body.modal_mass, &K = body.modal_stiffness;
+  const auto [A, B, C] = make_state_space(body, inputs, outputs, otherwise_damping);
   const ComponentCost cost = calc_component_cost(A, B, C);
   ModeRanking ranking;
   ranking.total = cost.total;
@@ -110,13 +119,23 @@ std::vector<Choice> choose_modes(const records::FlexBody& body, const ModeRankin
     const bool is_small = rules.number == 0 && dropped + size(i) <= rules.tolerance * sum;
     if (too_many || is_small) {
       dropped += size(i);
-      at(i) = {false, too_many ? "beyond the number" : "within the tolerance: " + percent(dropped / sum) + " gone"};
+      at(i) = {false, too_many ? "beyond the number" : "within the tolerance: " + percent(dropped / sum) + " gone",
+               !too_many};
       --left;
     } else {
       at(i).reason = "cost";
     }
   }
   return choices;
+}
+
+void keep_dearest(const ModeRanking& ranking, std::size_t num_dropped, std::vector<Choice>& choices) {
+  std::vector<std::size_t> gone;
+  for (std::size_t i = 0; i < choices.size(); ++i)
+    if (choices[i].within_tolerance) gone.push_back(i);
+  std::stable_sort(gone.begin(), gone.end(),
+                   [&](auto a, auto b) { return std::abs(ranking.modes[a].cost) < std::abs(ranking.modes[b].cost); });
+  for (std::size_t k = num_dropped; k < gone.size(); ++k) choices[gone[k]] = {true, "cost, with others"};
 }
 
 double calc_static_error(const records::FlexBody& body, const std::vector<int>& kept,

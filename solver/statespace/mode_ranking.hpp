@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "formats/records/flex_body.hpp"
+#include "solver/statespace/cost.hpp"
 
 namespace bough::statespace {
 
@@ -24,8 +25,12 @@ struct ModeRanking {
   double other = 0;             ///< V less the sum over the modes: hinges, other bodies; 0 for a body alone
 };
 
-/// M η̈ + D η̇ + K η = Bᵀu, y = C η of the body held in its frame: white noise at the inputs, the mean square of the
-/// outputs. Modes without damping get `otherwise_damping` as their ratio. Throws ComputationError "select.unstable".
+/// M η̈ + D η̇ + K η = Bᵀu, y = C η of the body held in its frame, x = [η; η̇]. Modes without damping get
+/// `otherwise_damping` as their ratio.
+StateSpace make_state_space(const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
+                            const std::vector<NodeDirection>& outputs, double otherwise_damping);
+
+/// White noise at the inputs of that, the mean square of its outputs. Throws ComputationError "select.unstable".
 ModeRanking rank_modes(const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
                        const std::vector<NodeDirection>& outputs, double otherwise_damping);
 
@@ -39,11 +44,17 @@ struct SelectionRules {
 struct Choice {
   bool kept = true;
   std::string reason;
+  bool within_tolerance = false;  ///< it went, by that rule
 };
 
-/// Modes that are no normal modes (constraint, attachment, residual) and those at zero frequency stay always.
+/// What goes, the cheapest first as far as the rules let it; of a rule by tolerance the caller may take back some
+/// (`keep_dearest`). Modes that are no normal modes (constraint, attachment, residual) and those at zero frequency stay
+/// always.
 std::vector<Choice> choose_modes(const records::FlexBody& body, const ModeRanking& ranking,
                                  const SelectionRules& rules);
+
+/// Takes back all but the `num_dropped` cheapest of those that went within the tolerance.
+void keep_dearest(const ModeRanking& ranking, std::size_t num_dropped, std::vector<Choice>& choices);
 
 /// ‖C (K⁻¹ - K_r⁻¹) Bᵀ‖ / ‖C K⁻¹ Bᵀ‖: what the static response loses with the modes that go.
 double calc_static_error(const records::FlexBody& body, const std::vector<int>& kept,

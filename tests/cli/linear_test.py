@@ -302,20 +302,33 @@ class Equilibrium(LinearTest):
 
 
 class Select(LinearTest):
-    def calc_cost(self, body, nodes):
-        """V_i by scipy's dense Lyapunov solver: forces and displacements at the nodes."""
+    def make_plant(self, body, nodes, kept=slice(None)):
+        """Forces and displacements at the nodes, by some of the modes."""
         with h5py.File(self.path(body)) as f:
             M, D, K = (f["/modal/" + name][:] for name in ["mass", "damping", "stiffness"])
             phi, ids = f["/modes/phi"][:], list(f["/nodes/id"][:])
-        rows = np.vstack([phi[ids.index(node), :3] for node in nodes])
+        rows = np.vstack([phi[ids.index(node), :3] for node in nodes])[:, kept]
+        M, D, K = M[kept][:, kept], D[kept][:, kept], K[kept][:, kept]
         n = len(M)
         D = np.where((np.diag(D) == 0) & np.eye(n, dtype=bool), 2 * 0.01 * np.sqrt(np.diag(K * M)), D)
         A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
         B = np.vstack([np.zeros((n, len(rows))), np.linalg.solve(M, rows.T)])
-        C = np.hstack([rows, np.zeros((len(rows), n))])
+        return A, B, np.hstack([rows, np.zeros((len(rows), n))])
+
+    def calc_cost(self, body, nodes):
+        """V_i by scipy's dense Lyapunov solver."""
+        A, B, C = self.make_plant(body, nodes)
         X = scipy.linalg.solve_continuous_lyapunov(A, -B @ B.T)
         parts = np.diag(X @ C.T @ C)
-        return parts[:n] + parts[n:]
+        return parts[:len(A) // 2] + parts[len(A) // 2:]
+
+    def calc_lost(self, body, nodes, kept):
+        """Mean square of the difference of full and reduced, to that of the full."""
+        A, B, C = self.make_plant(body, nodes)
+        a, b, c = self.make_plant(body, nodes, kept)
+        both = scipy.linalg.block_diag(A, a), np.vstack([B, b]), np.hstack([C, -c])
+        X, Y = (scipy.linalg.solve_continuous_lyapunov(F, -G @ G.T) for F, G in ((A, B), both[:2]))
+        return np.trace(both[2] @ Y @ both[2].T) / np.trace(C @ X @ C.T)
 
     def test_costs_and_the_smaller_body(self):
         self.make_boom(12)
@@ -355,6 +368,9 @@ class Select(LinearTest):
         gone, data = kept("--tolerance", 0.05)
         self.assertLess(len(gone), len(all_))
         self.assertLessEqual(data["dropped_share"], 0.05)
+        self.assertLessEqual(data["lost_share"], 0.05)
+        number = [i for i, mode in enumerate(data["modes"]) if mode["kept"]]
+        self.assertAlmostEqual(data["lost_share"] / self.calc_lost("boom.h5", [41], number), 1, places=8)
         self.fails(1, "select", "boom.h5", "--inputs", "99:y", error="select.unknown-node")
         self.fails(1, "select", "boom.h5", "--inputs", "41:w", error="select.unknown-direction")
         self.fails(1, "select", "boom.h5", "--inputs", "1", "--outputs", "1", "--below", 1e-3, "-o", "x.h5",
@@ -363,11 +379,14 @@ class Select(LinearTest):
     def test_in_a_system(self):
         self.make_boom(12)
         self.write_hub("hub.toml")
-        self.fails(3, "select", "boom.h5", "hub.toml", error="select.unstable")
+        self.fails(3, "select", "boom.h5", "hub.toml", says=["hub.toml: error: the pole", "of boom:eta"],
+                   error="select.unstable")
         self.write_hub("hub.toml", eta="damping = 0.01")
         data = json.loads(self.bough("select", "boom.h5", "hub.toml", "--json").stdout)
         cost = sum(mode["cost"] for mode in data["modes"])
         self.assertAlmostEqual((cost + data["other_cost"]) / data["total_cost"], 1, places=9)
+        self.assertLessEqual(data["lost_share"], 0.01)
+        self.assertGreater(data["lost_share"], 0)
         # The torque about z moves the chord only: flap costs nothing and goes.
         with h5py.File(self.path("boom.h5")) as f:
             phi, ids = f["/modes/phi"][:], list(f["/nodes/id"][:])

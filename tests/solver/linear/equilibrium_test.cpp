@@ -151,6 +151,35 @@ TEST(Equilibrium, AChainOfBallJointsHangsFromSprings) {
   EXPECT_NEAR((stone.normalized() * (arm.normalized() * Vector3d::UnitX())).z(), -1, 1e-9);
 }
 
+TEST(Equilibrium, AnAngleThatSpinsIsNotChosen) {
+  records::SystemSpec spec;
+  spec.simulation.gravity = {0, 0, -9.81};
+  spec.bodies = {make_point("arm", 2, {0.5, 0, 0})};
+  spec.hinges = {make_hinge_record("pivot", HingeType::Revolute, "ground", "arm")};
+  spec.hinges[0].axis = Vector3d::UnitY();
+  spec.hinges[0].rate = {1};
+  try {
+    find(spec);
+    FAIL();
+  } catch (const ComputationError& error) {
+    EXPECT_EQ(error.items()[0].id, "equilibrium.not-converged");
+    EXPECT_NE(error.items()[0].advice.find("prescribe its motion"), std::string::npos);
+  }
+  spec.simulation.gravity.setZero();
+  EXPECT_EQ(find(spec).spinning.size(), 1U);
+  // Nothing to find where all is given.
+  spec.hinges[0].rate.clear();
+  spec.hinges[0].motion = {"f"};
+  records::FunctionRecord f;
+  f.name = "f";
+  f.type = "constant";
+  f.values = {{"value", 0.3}};
+  spec.functions = {f};
+  const auto given = find(spec);
+  EXPECT_EQ(given.residual, 0);
+  EXPECT_TRUE(given.unstable.empty());
+}
+
 TEST(Equilibrium, NoneForAFallingBody) {
   records::SystemSpec spec;
   spec.simulation.gravity = {0, 0, -9.81};

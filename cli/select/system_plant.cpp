@@ -1,0 +1,68 @@
+#include "cli/select/system_plant.hpp"
+
+#include <filesystem>
+
+#include "cli/linearize/operating_point.hpp"
+#include "formats/records/mode_subset.hpp"
+#include "solver/linear/linearize.hpp"
+
+namespace bough::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Of one value a mode, those of the modes kept.
+void keep_values(std::vector<double>& values, const std::vector<int>& kept) {
+  if (values.size() <= 1) return;
+  std::vector<double> some;
+  for (const int mode : kept) some.push_back(values[static_cast<std::size_t>(mode)]);
+  values = std::move(some);
+}
+
+}  // namespace
+
+SystemPlant::SystemPlant(const std::string& system, const std::string& body, OperatingChoice choice,
+                         Diagnostics& diagnostics)
+    : file_(system), choice_(std::move(choice)), loaded_(load_system(system, diagnostics)) {
+  for (const auto& record : loaded_.spec.bodies) {
+    const auto found = loaded_.flex_path.find(record.file);
+    std::error_code ignored;
+    if (found == loaded_.flex_path.end() || !fs::equivalent(found->second, body, ignored)) continue;
+    users_.push_back(record.name);
+    key_ = record.file;
+  }
+  if (users_.empty())
+    throw InputError("select.body-not-in-system", {system}, "no body of the system has the file " + body,
+                     "name the body file that the system uses");
+}
+
+records::LinearModel SystemPlant::linearize(const LoadedSystem& loaded, Diagnostics& diagnostics) const {
+  auto plant = make_plant(loaded, diagnostics);
+  auto point = choice_.at ? run_to(loaded, plant, *choice_.at, diagnostics) : plant.make_initial_point();
+  if (choice_.equilibrium) point = find_rest(plant, std::move(point), file_);
+  return solver::linearize(plant, point, {choice_.inputs, choice_.outputs, false}, {file_}, diagnostics);
+}
+
+records::LinearModel SystemPlant::linearize(Diagnostics& diagnostics) const { return linearize(loaded_, diagnostics); }
+
+records::LinearModel SystemPlant::linearize_with(const std::vector<int>& kept) const {
+  auto spec = loaded_.spec;
+  auto flex = loaded_.flex;
+  const int num_modes = flex.at(key_).num_modes();
+  for (auto& body : spec.bodies) {
+    if (body.file != key_) continue;
+    const int most = body.num_modes < 0 ? num_modes : body.num_modes;
+    std::vector<int> used;
+    for (const int mode : kept)
+      if (mode < most) used.push_back(mode);
+    for (auto* values : {&body.eta, &body.eta_dot, &body.damping_ratios}) keep_values(*values, used);
+    body.num_modes = static_cast<int>(used.size());
+  }
+  flex[key_] = records::keep_modes(flex.at(key_), kept);
+  Diagnostics said;
+  auto system = solver::System::build(spec, flex, said);
+  return linearize({std::move(spec), std::move(flex), loaded_.flex_path, std::move(system), {}}, said);
+}
+
+}  // namespace bough::cli
