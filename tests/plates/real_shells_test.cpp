@@ -20,6 +20,8 @@ struct RealDeck {
   std::size_t num_held;  ///< frequencies that are held to the tolerance
 };
 
+void PrintTo(const RealDeck& deck, std::ostream* out) { *out << deck.path; }
+
 class RealShells : public testing::TestWithParam<RealDeck> {};
 
 TEST_P(RealShells, MassAndFrequencies) {

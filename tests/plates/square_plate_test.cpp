@@ -17,6 +17,8 @@ struct Boundary {
   int num_rigid;
 };
 
+void PrintTo(const Boundary& boundary, std::ostream* out) { *out << boundary.name; }
+
 DeckText make_square(int n, bool triangles, const std::string& name) {
   PlateMesh mesh{n, n, triangles, [](double a, double b) { return Vector3d(a, b, 0); }};
   DeckText text;
@@ -66,6 +68,8 @@ struct Buckling {
   double tolerance;
   int num;  ///< elements along b on the finest mesh
 };
+
+void PrintTo(const Buckling& buckling, std::ostream* out) { *out << buckling.name; }
 
 class PlateBuckling : public testing::TestWithParam<Buckling> {};
 

@@ -15,6 +15,8 @@ struct Case {
   std::function<void(SmallModel&)> fill;
 };
 
+void PrintTo(const Case& test, std::ostream* out) { *out << test.name; }
+
 const Vector3d kA(0.3, -1.2, 0.7), kB(1.9, 0.4, -0.6);
 
 void add_grids(SmallModel& m) {

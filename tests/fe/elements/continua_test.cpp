@@ -44,6 +44,8 @@ struct Case {
   std::function<void(SmallModel&)> fill;
 };
 
+void PrintTo(const Case& test, std::ostream* out) { *out << test.name; }
+
 const std::vector<Vector3d> kFlat = {{0, 0, 0}, {1.2, 0.1, 0}, {1.1, 0.9, 0}, {-0.1, 1.1, 0}};
 const std::vector<Vector3d> kWarped = {{0, 0, 0.03}, {1.2, 0.1, -0.02}, {1.1, 0.9, 0.04}, {-0.1, 1.1, -0.03}};
 

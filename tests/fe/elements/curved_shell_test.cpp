@@ -19,6 +19,8 @@ struct Case {
   bool laminate = false, has_corner_thickness = false, triangle = false;
 };
 
+void PrintTo(const Case& test, std::ostream* out) { *out << test.name; }
+
 const std::vector<Vector3d> kCorners = {{0, 0, 0}, {1.2, 0.1, 0}, {1.1, 0.9, 0}, {-0.1, 1.1, 0}};
 
 void add_isotropic(SmallModel& m, double t) {

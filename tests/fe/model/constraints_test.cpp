@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
+
 #include "base/rotation.hpp"
 #include "fe/linear/factor.hpp"
 #include "fe/statics/statics.hpp"
@@ -254,6 +257,8 @@ struct BadCase {
   void (*spoil)(records::Deck&);
 };
 
+void PrintTo(const BadCase& bad, std::ostream* out) { *out << bad.id; }
+
 class BadConstraints : public ::testing::TestWithParam<BadCase> {};
 
 TEST_P(BadConstraints, is_reported) {
@@ -296,7 +301,13 @@ INSTANTIATE_TEST_SUITE_P(
                 [](records::Deck& k) {
                   k.params.push_back({"WTMASS", "ABC", {}});
                 }},
-        BadCase{"fe.no-grids", [](records::Deck& k) { k.grids.clear(); }}));
+        BadCase{"fe.no-grids", [](records::Deck& k) { k.grids.clear(); }}),
+    [](const auto& bad) {
+      std::string name = std::string(bad.param.id) + "_" + std::to_string(bad.index);
+      std::replace_if(
+          name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
+      return name;
+    });
 
 TEST(Constraints, enforced_displacement_is_zero_with_a_warning_and_thru_ids_may_be_missing) {
   auto deck = make_deck(make_points());

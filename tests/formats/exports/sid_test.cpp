@@ -281,6 +281,8 @@ struct Fault {
   std::string from, to, id;
 };
 
+void PrintTo(const Fault& fault, std::ostream* out) { *out << "'" << fault.from << "' is '" << fault.to << "'"; }
+
 class SidFault : public testing::TestWithParam<Fault> {};
 
 TEST_P(SidFault, IsSaidWithItsLine) {
@@ -309,7 +311,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"nrow                  =     3", "nrow                  =900000000", "export.sid-shape"},
         Fault{"m0( 2, 1)             = 6.0000000000000000D+00", "m0( 2, 1)             = 6.0x", "export.sid-syntax"},
         Fault{"nelastq                         =     1", "nelastq                         =     2", "export.sid-shape"},
-        Fault{"           end frame", "", "export.sid-syntax"}, Fault{" end part", "", "export.sid-syntax"}));
+        Fault{"           end frame", "", "export.sid-syntax"}, Fault{" end part", "", "export.sid-syntax"}),
+    [](const auto& fault) { return "Fault" + std::to_string(fault.index); });
 
 TEST(Sid, ABlockThatIsNotThere) {
   auto text = sid::write_sid(make(make_two_masses()), {});

@@ -46,6 +46,8 @@ struct Flavour {
   Op4Options options;
 };
 
+void PrintTo(const Flavour& flavour, std::ostream* out) { *out << flavour.name; }
+
 std::vector<Flavour> make_flavours() {
   std::vector<Flavour> flavours;
   for (const bool is_single : {false, true})
