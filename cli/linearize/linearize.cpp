@@ -30,8 +30,7 @@ int run_linearize(const LinearizeVerbOptions& o) {
   Diagnostics diagnostics;
   const auto loaded = load_system(o.file, diagnostics, o.start_from);
   const auto sources = collect_sources(o.file, loaded);
-  for (const auto& path : {o.output, o.mat})
-    if (!path.empty()) check_output(o, path, sources);
+  check_outputs(o, {o.output, o.mat}, sources);
   auto plant = make_plant(loaded, diagnostics);
   auto point = o.at ? run_to(loaded, plant, *o.at, diagnostics) : plant.make_initial_point();
   if (o.equilibrium) point = find_rest(plant, std::move(point), o.file);

@@ -30,6 +30,7 @@ struct PlotOptions : CommonOptions {
   std::vector<std::string> points;
   std::string title, x_label = "time", y_label;
   double y_min = 0, y_max = 0;
+  bool has_limits = false;
 };
 
 /// Two numeric columns of a CSV file; lines that start with # or a letter are skipped.
@@ -89,6 +90,9 @@ int run_plot(const PlotOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
   Diagnostics diagnostics;
+  if (o.has_limits && !(o.y_min < o.y_max))
+    throw InputError("cli.bad-range", {}, fmt::format("the axis from {:g} to {:g} is empty", o.y_min, o.y_max),
+                     "give --y-max above --y-min");
   report::Plot plot;
   plot.title = o.title.empty() ? fmt::format("{}", fmt::join(o.sensors, ", ")) : o.title;
   plot.x_label = o.x_label;
@@ -113,6 +117,11 @@ int run_plot(const PlotOptions& o) {
     plot.curves.push_back(read_points(path));
     if (plot.curves.size() <= o.labels.size()) plot.curves.back().label = o.labels[plot.curves.size() - 1];
   }
+  if (o.labels.size() > plot.curves.size())
+    diagnostics.warning("cli.labels-left", {},
+                        fmt::format("there are {} and {}: the last ones are not used", count(o.labels.size(), "label"),
+                                    count(plot.curves.size(), "curve")),
+                        "give one --label a curve, in the order of the files and sensors, then of --points");
   std::string output = o.output;
   if (const auto ending = fs::path(output).extension().string();
       !ending.empty() && !has_suffix(output, ".svg") && !has_suffix(output, ".png") && !has_suffix(output, ".pdf"))
@@ -150,7 +159,7 @@ void add_plot(CLI::App& app, Action& action) {
   verb->add_option("--y-label", o->y_label, "Label of the other axis");
   auto* low = verb->add_option("--y-min", o->y_min, "Lower end of the y axis; curves are clipped");
   auto* high = verb->add_option("--y-max", o->y_max, "Upper end of the y axis");
-  low->needs(high);
+  low->needs(high)->each([o](const std::string&) { o->has_limits = true; });
   high->needs(low);
   add_common_options(*verb, *o, kOutput, "Picture: .svg, .png or .pdf (default: the sensor's name with .svg, here)");
   verb->footer(

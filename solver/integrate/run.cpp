@@ -144,6 +144,10 @@ double Run::begin() {
   saved_at_ = std::chrono::steady_clock::now();
   if (options_.resume) {
     t = restore(*options_.resume);
+    if (!options_.resume->find("energy")) {  // of a state that no run has led to
+      guard([&] { ode_.calc_derivative(t, y_, y_dot_); });
+      monitor_.start(calc_energies(ode_.system(), ode_.data()), calc_noise());
+    }
     resume_at_stop(t);
     return t;
   }

@@ -168,6 +168,10 @@ class BadSystem(ProgramTest):
         self.fails(1, "export", "out.h5", "--to", "csv", "--channel", "/hinges/ha/q:x", error="cli.unknown-channel")
         self.write("points.csv", "1;2\n")
         self.fails(1, "plot", "out.h5", "--sensor", "/hinges/ha/q", "--points", "points.csv", error="cli.bad-points")
+        self.fails(1, "plot", "out.h5", "--sensor", "/hinges/ha/q", "--y-min", 1, "--y-max", 0, error="cli.bad-range")
+        said = self.bough("plot", "out.h5", "--sensor", "/hinges/ha/q", "--label", "a", "--label", "b").stderr
+        self.assertIn("there are 2 labels and 1 curve", said)
+        self.assertIn("[cli.labels-left]", said)
 
 
 class Json(ProgramTest):

@@ -281,6 +281,18 @@ class Equilibrium(LinearTest):
         with h5py.File(self.path("late.h5")) as f:
             self.assertIn("all.h5", str(f.attrs["source"]))
         self.fails(1, "run", "all.toml", "--start-from", "late.h5", "-o", "late.h5", error="cli.output-is-input")
+        self.fails(1, "linearize", "all.toml", "--start-from", "late.h5", "-o", "late.h5", error="cli.output-is-input")
+        self.fails(1, "linearize", "all.toml", "--mat", "a.h5", "-o", "a.h5", error="cli.same-output")
+
+    def test_a_state_of_rest_goes_on(self):
+        """--resume on the file of equilibrium: the energy counts from the state found."""
+        self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.9").replace("value = 0.0", "value = 5.0")
+                   .replace("force = [1.0", 'frame = "inertial"\nforce = [1.0'))
+        self.bough("equilibrium", "pendulum.toml", "-o", "rest.h5")
+        self.bough("run", "pendulum.toml", "--resume", "-o", "rest.h5")
+        with h5py.File(self.path("rest.h5")) as f:
+            self.assertGreater(len(f["/time"]), 2)
+            self.assertLess(np.ptp(f["/hinges/pin/q"][:]), 1e-8)
 
     def test_unstable_states_are_named(self):
         self.write("pendulum.toml", PENDULUM.replace("POSITION", "3.1").replace("force = [1.0", "force = [0.0"))

@@ -6,7 +6,7 @@ import numpy as np
 
 path, nt, completed, reason = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), sys.argv[4]
 with h5py.File(path, "r") as f:
-    assert f.attrs["format"] == "bough-results" and f.attrs["format_version"] == "1.0"
+    assert f.attrs["format"] == "bough-results" and f.attrs["format_version"] == "1.1"
     assert f.attrs["completed"] == completed and f.attrs["reason"] == reason, f.attrs["reason"]
     assert f["/time"].shape == (nt,), f["/time"].shape
     assert np.array_equal(f["/time"][:], 0.1 * np.arange(nt))
