@@ -40,6 +40,18 @@ void flatten(const json& value, const CampaignCollect& wanted, std::vector<doubl
   }
 }
 
+/// What stands below the longest part of the path that exists.
+std::string list_below(const json& printed, json::json_pointer place) {
+  while (!place.empty() && !printed.contains(place)) place.pop_back();
+  const json& found = printed[place];
+  std::string keys;
+  if (found.is_array())
+    return place.to_string() + "/0 to " + place.to_string() + "/" + std::to_string(found.size() - 1);
+  if (!found.is_object()) return place.to_string();
+  for (const auto& item : found.items()) keys += (keys.empty() ? "" : ", ") + (place / item.key()).to_string();
+  return keys;
+}
+
 Eigen::MatrixXd read_printed(const CampaignCollect& wanted, const fs::path& folder) {
   const auto path = folder / ("step-" + std::to_string(wanted.step) + ".out");
   std::ifstream in(path);
@@ -48,9 +60,7 @@ Eigen::MatrixXd read_printed(const CampaignCollect& wanted, const fs::path& fold
     throw fail(wanted, path.filename().string() + " is no JSON", "choose a step that has --json");
   const json::json_pointer place(wanted.json);
   if (!printed.contains(place)) {
-    std::string keys;
-    if (printed.is_object())
-      for (const auto& item : printed.items()) keys += (keys.empty() ? "/" : ", /") + item.key();
+    const std::string keys = list_below(printed, place);
     throw fail(wanted, "the step prints no " + wanted.json, keys.empty() ? "" : "it prints " + keys);
   }
   const auto& found = printed[place];

@@ -97,6 +97,20 @@ bool send_line(int fd, const std::string& text) {
   return true;
 }
 
+/// What can be read is, though another cannot: the first that cannot is the error of the case.
+void collect_all(const BatchPlan& plan, const fs::path& folder, BatchOutcome& outcome) {
+  for (const auto& wanted : plan.get_spec().collect) {
+    try {
+      outcome.outputs.push_back(collect(wanted, folder));
+    } catch (const Failure& failure) {
+      outcome.outputs.emplace_back();
+      if (outcome.exit_code != 0) continue;
+      outcome.exit_code = failure.exit_code();
+      outcome.error = format(failure.items().front());
+    }
+  }
+}
+
 }  // namespace
 
 BatchOutcome run_case(const BatchPlan& plan, const BatchCase& one, const fs::path& folder) {
@@ -112,8 +126,7 @@ BatchOutcome run_case(const BatchPlan& plan, const BatchCase& one, const fs::pat
     plan.write_files(one, here);
     fs::current_path(here);
     run_steps(plan, one, outcome);
-    if (outcome.exit_code == 0)
-      for (const auto& wanted : plan.get_spec().collect) outcome.outputs.push_back(collect(wanted, here));
+    if (outcome.exit_code == 0) collect_all(plan, here, outcome);
   } catch (const Failure& failure) {
     outcome.exit_code = failure.exit_code();
     outcome.error = format(failure.items().front());
