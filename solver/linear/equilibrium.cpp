@@ -158,6 +158,7 @@ class Newton {
 }  // namespace
 
 Equilibrium find_equilibrium(Plant& plant, const OperatingPoint& start, const SourceLocation& at) {
+  plant.demand_tree(at);
   return Newton(plant, start, at).solve();
 }
 
