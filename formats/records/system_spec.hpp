@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/diagnostic.hpp"
+#include "formats/records/constraint_spec.hpp"
 #include "formats/records/flex_body.hpp"
 
 namespace bough::records {
@@ -35,7 +36,18 @@ struct BodyRecord {
   SourceLocation at;
 };
 
-enum class HingeType { Fixed, Revolute, Prismatic, Universal, Cylindrical, Planar, Spherical, Free };
+enum class HingeType {
+  Fixed,
+  Revolute,
+  Prismatic,
+  Universal,
+  Cylindrical,
+  Planar,
+  Spherical,
+  Free,
+  Screw,
+  General
+};
 
 struct HingeRecord {
   std::string name;
@@ -46,11 +58,14 @@ struct HingeRecord {
   Matrix3d parent_rotation = Matrix3d::Identity();  ///< R_PHp (hinge axes in the parent body)
   Vector3d child_position = Vector3d::Zero();
   Matrix3d child_rotation = Matrix3d::Identity();  ///< R_CHc
-  Vector3d axis = Vector3d::UnitZ();               ///< revolute, prismatic, cylindrical; planar: the normal; in Hp
+  Vector3d axis = Vector3d::UnitZ();               ///< revolute, prismatic, cylindrical, screw; planar: the normal; in Hp
   Vector3d axis2 = Vector3d::UnitY();              ///< universal: second axis, in Hp at q = 0
+  double pitch = 0;                                ///< screw: travel per radian
+  std::string rotations, translations;             ///< general: axes in order, as "zxz" (gimbal), "xz"; "q": quaternion
   std::vector<double> stiffness, damping, null_position;  ///< per hinge coordinate; empty = 0
   std::vector<double> position, rate;  ///< initial; spherical/free orientation as quaternion w,x,y,z in position
   std::vector<std::string> motion;     ///< prescribed: function name per coordinate ("" = free)
+  bool is_guess = false;     ///< position: may be moved to close loops as freely as if it were not given
   std::vector<bool> locked;            ///< at the start, per hinge rate; empty: none
   SourceLocation at;
 };
@@ -106,7 +121,7 @@ struct SensorRecord {
 };
 
 enum class EventDirection { Both, Rising, Falling };
-enum class EventAction { Log, Stop };
+enum class EventAction { Log, Stop, Lock, Release, Break, Close };
 
 /// [[event]]: at a time, or where a signal crosses a value.
 struct TriggerRecord {
@@ -117,6 +132,8 @@ struct TriggerRecord {
   EventDirection direction = EventDirection::Both;
   double tolerance = 0;  ///< of the time found; 0: 1e-12 of the duration
   EventAction action = EventAction::Log;
+  std::string target;            ///< lock, release: the hinge; break, close: the constraint
+  std::vector<int> coordinates;  ///< lock, release: 1-based rates of the hinge; empty: all
   SourceLocation at;
 };
 
@@ -143,6 +160,7 @@ struct SystemSpec {
   std::string name;
   std::vector<BodyRecord> bodies;
   std::vector<HingeRecord> hinges;
+  std::vector<ConstraintRecord> constraints;
   std::vector<FunctionRecord> functions;
   std::vector<ForceRecord> forces;
   std::vector<SensorRecord> sensors;

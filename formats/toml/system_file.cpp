@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "formats/toml/detail/constraint_table.hpp"
 #include "formats/toml/detail/fields.hpp"
 #include "formats/toml/detail/hinge_table.hpp"
 #include "formats/toml/detail/references.hpp"
@@ -229,7 +230,25 @@ records::TriggerRecord read_event(const Fields& table, Diagnostics& diagnostics)
   event.direction = direction == "rising"    ? records::EventDirection::Rising
                     : direction == "falling" ? records::EventDirection::Falling
                                              : records::EventDirection::Both;
-  event.action = table.get_string("action", "log") == "stop" ? records::EventAction::Stop : records::EventAction::Log;
+  static const std::map<std::string, records::EventAction> actions{
+      {"log", records::EventAction::Log},         {"stop", records::EventAction::Stop},
+      {"lock", records::EventAction::Lock},       {"release", records::EventAction::Release},
+      {"break", records::EventAction::Break},     {"close", records::EventAction::Close}};
+  const auto action = actions.find(table.get_string("action", "log"));
+  if (action != actions.end()) event.action = action->second;
+  using records::EventAction;
+  const bool of_hinge = event.action == EventAction::Lock || event.action == EventAction::Release;
+  const bool of_constraint = event.action == EventAction::Break || event.action == EventAction::Close;
+  const std::string because = "in event '" + event.name + "' whose action is " + table.get_string("action", "log");
+  if (!of_hinge) refuse_keys(table, {"hinge", "coordinates"}, because, diagnostics);
+  if (!of_constraint) refuse_keys(table, {"constraint"}, because, diagnostics);
+  const char* needed = of_hinge ? "hinge" : "constraint";
+  if (of_hinge || of_constraint) {
+    event.target = table.get_string(needed);
+    if (!table.has(needed))
+      diagnostics.error("toml.missing-key", event.at, "missing key '" + std::string(needed) + "' " + because, "add it");
+  }
+  event.coordinates = table.get_ints("coordinates");
   return event;
 }
 
@@ -272,6 +291,8 @@ records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagn
   spec.name = fields.get_string("name", get_stem(path));
   for (const Fields& table : fields.get_tables("body")) spec.bodies.push_back(read_body(table, path, diagnostics));
   for (const Fields& table : fields.get_tables("hinge")) spec.hinges.push_back(read_hinge(table, diagnostics));
+  for (const Fields& table : fields.get_tables("constraint"))
+    spec.constraints.push_back(read_constraint(table, diagnostics));
   if (const Value* functions = fields.find("function")) {
     for (const Value& table : functions->items) {
       if (table.is_table()) spec.functions.push_back(read_function(Fields(table, path), table, path, diagnostics));

@@ -10,6 +10,13 @@
 namespace bough::solver {
 namespace {
 
+int call_correction(sunrealtype t, N_Vector y, N_Vector correction, sunrealtype, N_Vector, void* user) {
+  N_VScale(1, y, correction);
+  const int flag = static_cast<GuardedOde*>(user)->project(t, N_VGetArrayPointer(correction));
+  N_VLinearSum(1, correction, -1, y, correction);
+  return flag;
+}
+
 class CvodeStepper final : public Stepper {
  public:
   CvodeStepper(Ode& ode, const StepperOptions& options, bool stiff)
@@ -20,6 +27,7 @@ class CvodeStepper final : public Stepper {
         options_(options),
         stiff_(stiff) {
     BOUGH_DEMAND(options.absolute_tolerance.size() == ode.size());
+    BOUGH_DEMAND(stiff || !ode.has_projection());  // CVODE projects with BDF only
     tolerance_.values() = options.absolute_tolerance;
   }
   ~CvodeStepper() override {
@@ -76,6 +84,10 @@ class CvodeStepper final : public Stepper {
     }
     BOUGH_DEMAND(CVodeGetDky(cvode_, t, 0, interpolated_) == CV_SUCCESS);
     y = interpolated_.values();
+    if (ode_.has_projection() && ode_.project(t, y.data()) != 0) {
+      ode_.throw_pending();
+      throw StepFailure{StepFailure::Kind::NonFinite, t_, "the projection is not finite", t};
+    }
   }
   StepStatistics statistics() const override {
     StepStatistics s = before_;
@@ -106,6 +118,10 @@ class CvodeStepper final : public Stepper {
       matrix_ = SUNDenseMatrix(ode_.size(), ode_.size(), context_);
       linear_ = SUNLinSol_Dense(y_, matrix_, context_);
       check(CVodeSetLinearSolver(cvode_, linear_, matrix_));
+      if (ode_.has_projection()) {
+        check(CVodeSetProjFn(cvode_, call_correction));
+        check(CVodeSetProjErrEst(cvode_, SUNFALSE));
+      }
     } else {
       nonlinear_ = SUNNonlinSol_FixedPoint(y_, 0, context_);
       check(CVodeSetNonlinearSolver(cvode_, nonlinear_));

@@ -20,4 +20,17 @@ int GuardedOde::calc(double t, const double* y, double* y_dot) noexcept {
   return 1;
 }
 
+int GuardedOde::project(double t, double* y) noexcept {
+  try {
+    Eigen::Map<VectorXd> state(y, ode_.size());
+    ode_.project(std::min(t, latest_), state);
+    if (state.allFinite()) return 0;
+    non_finite_ = true;
+    bad_time_ = t;
+  } catch (...) {
+    pending_ = std::current_exception();
+  }
+  return 1;
+}
+
 }  // namespace bough::solver

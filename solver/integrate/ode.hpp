@@ -16,6 +16,10 @@ class Ode {
   virtual int size() const = 0;
   /// y, y_dot: size(). May throw; may leave values that are not finite where y has left its domain.
   virtual void calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) = 0;
+  /// Whether each accepted step, and what is interpolated, is to be projected.
+  virtual bool has_projection() const { return false; }
+  /// Brings y onto what the equations keep at zero. May throw.
+  virtual void project(double, Eigen::Ref<VectorXd>) {}
 };
 
 /// What the steppers call. Times are clamped to `latest`, the last moment before the next jump of a function of time,
@@ -28,6 +32,9 @@ class GuardedOde {
   void set_latest(double latest) { latest_ = latest; }
   /// 0: fine; 1: the derivative is not finite or the equations threw (kept for throw_pending).
   int calc(double t, const double* y, double* y_dot) noexcept;
+  bool has_projection() const { return ode_.has_projection(); }
+  /// y, in and out. 0: fine; 1: it threw or is not finite.
+  int project(double t, double* y) noexcept;
   void begin_step() {
     pending_ = nullptr;
     non_finite_ = false;

@@ -36,6 +36,17 @@ Recorder::Recorder(const System& system, Sensors sensors) : system_(system), sen
                 "moment of the parent on the child about the child's hinge frame, in the hinge axes of the parent",
                 "F L");
   }
+  for (int c = 0; c < system.num_constraints(); ++c) {
+    const std::string path = "/constraints/" + system.constraint_name(c) + "/";
+    if (system.is_coupler(c)) {
+      add_channel(path + "force", 1, "generalized force per unit of ratio on the coupled coordinates", "F L or F");
+      continue;
+    }
+    add_channel(path + "reaction_force", 3,
+                "force of the parent on the child at the child's frame, in the axes of the parent's", "F");
+    add_channel(path + "reaction_moment", 3,
+                "moment of the parent on the child about the child's frame, in the axes of the parent's", "F L");
+  }
   for (const auto& entry : sensors_.entries())
     add_channel("/sensors/" + entry.name, entry.size, entry.description, entry.dims);
   add_channel("/energy/kinetic", 1, "kinetic energy", "F L");
@@ -85,7 +96,7 @@ void Recorder::choose(const std::vector<std::string>& groups, const SourceLocati
     if (std::any_of(channels_.begin(), channels_.end(), is_in)) continue;
     const std::string near = find_nearest(group, known);
     diagnostics.error("run.unknown-group", where, "record names '" + group + "', which the results do not hold",
-                      near.empty() ? "name bodies, hinges, sensors, energy, momentum or a part of them, as bodies/NAME"
+                      near.empty() ? "name bodies, hinges, constraints, sensors, energy, momentum or a part of them, as bodies/NAME"
                                    : "did you mean '" + near + "'?");
   }
   chosen_.clear();
@@ -148,6 +159,15 @@ const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Ei
       at += nq + 2 * nu;
     }
     const HingeReaction reaction = get_hinge_reaction(system_, data, b);
+    put(reaction.force);
+    put(reaction.moment);
+  }
+  for (int c = 0; c < system_.num_constraints(); ++c) {
+    const ConstraintReaction reaction = get_constraint_reaction(system_, data, c);
+    if (system_.is_coupler(c)) {
+      sample_[at++] = reaction.multiplier;
+      continue;
+    }
     put(reaction.force);
     put(reaction.moment);
   }

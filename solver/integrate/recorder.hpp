@@ -10,7 +10,7 @@ class Recorder {
  public:
   /// Channels, their order fixed here once: /time; per body position, quaternion, velocity, angular_velocity, and eta,
   /// eta_dot when it has modes; per hinge q, qdot, force when it has coordinates, reaction_force, reaction_moment;
-  /// sensors; energy; momentum; system_mass.
+  /// per constraint its reactions; sensors; energy; momentum; system_mass.
   Recorder(const System& system, Sensors sensors);
 
   /// Of calc_sample.

@@ -82,10 +82,14 @@ class Rk4 final : public Stepper {
     stage_ = y + h * k3_;
     calc(t_end, stage_, k4_);
     y += (h / 6) * (k1_ + 2 * k2_ + 2 * k3_ + k4_);
+    if (ode_.has_projection() && ode_.project(t_end, y.data()) != 0) fail();
   }
 
   void calc(double t, const VectorXd& y, VectorXd& y_dot) {
-    if (ode_.calc(t, y.data(), y_dot.data()) == 0) return;
+    if (ode_.calc(t, y.data(), y_dot.data()) != 0) fail();
+  }
+
+  [[noreturn]] void fail() {
     ode_.throw_pending();
     throw StepFailure{StepFailure::Kind::NonFinite, t_, "the derivative is not finite", ode_.bad_time()};
   }

@@ -64,8 +64,8 @@ StepperOptions make_stepper_options(const SystemOde& ode, const records::Simulat
 }
 
 Timeline make_timeline(const System& system, const RunSetup& setup) {
-  auto restarts = setup.triggers.collect_times(records::EventAction::Stop);
-  auto landmarks = setup.triggers.collect_times(records::EventAction::Log);
+  auto restarts = setup.triggers.collect_times(false);
+  auto landmarks = setup.triggers.collect_times(true);
   restarts.insert(restarts.end(), system.breakpoints().begin(), system.breakpoints().end());
   landmarks.insert(landmarks.end(), system.landmarks().begin(), system.landmarks().end());
   return {setup.plan, std::move(restarts), std::move(landmarks)};
@@ -92,7 +92,8 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
                         {"quaternions", setup_.recorder.quaternions},
                         {"limits", VectorXd::Zero(2 * limit_.num_watched())},
                         {"events", VectorXd::Zero(1 + setup_.triggers.signs.size())},
-                        {"stepper", VectorXd::Zero(4)}};
+                        {"stepper", VectorXd::Zero(4)},
+                        {"discrete", ode_.get_memory()}};
   progress_.start = timeline_.start();
   progress_.end = timeline_.end();
 }
@@ -111,11 +112,18 @@ SimulateOutcome Run::go() {
     } else {
       stepper_->set_stop(stop.time, stop.latest);
     }
-    while (stepper_->time() < stop.time) {
+    has_changed_ = false;
+    while (stepper_->time() < stop.time && !has_changed_) {
       take_step(stop);
-      const auto ends = watch_signals(stop);
-      if (!write_outputs(ends ? ends->time : stepper_->time())) return *outcome_;
-      if (ends) return finish(*ends);
+      const auto turn = watch_signals(stop);
+      if (!write_outputs(turn ? turn->time : stepper_->time())) return *outcome_;
+      if (turn && turn->time < stop.time) {
+        t = turn->time;
+        guard([&] { stepper_->calc_state(t, y_); });
+        if (const auto ends = fire({*turn})) return finish(*ends);
+        continue;
+      }
+      if (turn) waiting_.push_back(*turn);
       if (stepper_->time() >= stop.time) break;
       if (is_stop_asked()) {
         y_ = stepper_->state();
@@ -123,12 +131,14 @@ SimulateOutcome Run::go() {
       }
       save_now_and_then();
     }
+    restarts = true;
+    if (has_changed_) continue;
     t = stop.time;
-    restarts = stop.restarts;
     stepper_->calc_state(t, y_);
     cross_jump();
     if (const auto ends = pass(stop)) return finish(*ends);
     if (is_stop_asked() && t < timeline_.end()) return halt(t);
+    restarts = stop.restarts || has_changed_;
   }
   save(timeline_.end());
   return close(timeline_.end(), "");
@@ -170,7 +180,7 @@ void Run::resume_at_stop(double t) {
 void Run::fire_due(double t) {
   std::vector<Firing> due;
   setup_.triggers.find_due(t, timeline_.resolution(), due);
-  if (const auto ends = fire(due)) outcome_ = finish(*ends);
+  if (const auto ends = fire(std::move(due))) outcome_ = finish(*ends);
 }
 
 double Run::calc_noise() {

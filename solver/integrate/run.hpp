@@ -49,12 +49,16 @@ class Run {
   SimulateOutcome close(double t, const std::string& reason);
 
   // Events (run_events.cpp)
-  /// Signals that crossed their values in the last step: each is located and fires, up to the first that ends the run.
+  /// Signals that crossed their values in the last step: each is located and logged, up to the first that does more,
+  /// which is returned and has not come yet; those after it have not crossed.
   std::optional<Firing> watch_signals(const Stop& stop);
   /// What comes at a stop itself: events at a time, and crossings by the jump.
   std::optional<Firing> pass(const Stop& stop);
-  /// Carries the events out in the order of their times; the one that ends the run, when there is one.
-  std::optional<Firing> fire(std::vector<Firing>& firings);
+  /// Carries out events that come at one time, at which y_ is, and those that they bring about; the one that ends the
+  /// run, when there is one.
+  std::optional<Firing> fire(std::vector<Firing> firings);
+  /// What an event does to hinges and constraints.
+  void change(const Firing& firing);
   /// The end that an event brings: a last sample at its time.
   SimulateOutcome finish(const Firing& firing);
 
@@ -83,6 +87,8 @@ class Run {
   /// `tried`: the time of the evaluation that gave no finite number, in a step from t.
   [[noreturn]] void fail_non_finite(double t, double tried);
   [[noreturn]] void fail_diverged(double t, const std::string& what);
+  /// Events that bring each other about without end.
+  [[noreturn]] void fail_cycle(const Firing& firing);
   [[noreturn]] void fail_stalled(double t, const std::string& detail);
   [[noreturn]] void finish_failed(double t, const char* id, const std::string& what, const std::string& advice);
 
@@ -107,6 +113,10 @@ class Run {
   double passed_ = -std::numeric_limits<double>::infinity();   ///< the last stop whose events have come
   Stop stop_;                                                  ///< the next one, or the one just met
   double crossed_ = -std::numeric_limits<double>::infinity();  ///< the last stop whose jumps are logged
+  std::vector<Firing> waiting_;                                ///< located at the next stop
+  double changed_ = -std::numeric_limits<double>::infinity();  ///< the last time an event changed the system
+  int num_quick_ = 0;                                          ///< changes in quick succession
+  bool has_changed_ = false;                                   ///< the system, since the stepper was started
   bool is_started_ = false;                                    ///< the stepper is
   int num_tiny_ = 0;
 };

@@ -31,6 +31,7 @@ double Run::restore(const records::Checkpoint& c) {
   if (const auto* m = c.find("quaternions")) setup_.recorder.quaternions = *m;
   if (const auto* m = c.find("limits")) limit_.set_memory(*m);
   if (const auto* m = c.find("stepper")) restored_.memory = {{"stepper", *m}};
+  if (const auto* m = c.find("discrete")) ode_.set_memory(*m);
   timeline_.skip_outputs(c.time);
   last_gaps_ = calc_gaps(c.time);
   setup_.triggers.start(last_gaps_);
@@ -50,6 +51,7 @@ void Run::save(double t) {
   checkpoint_.memory[3].second[0] = passed_;
   checkpoint_.memory[3].second.tail(setup_.triggers.signs.size()) = setup_.triggers.signs;
   checkpoint_.memory[4].second = stepper_->memory();
+  checkpoint_.memory[5].second = ode_.get_memory();
   sink_.write_energy_error(monitor_.worst());
   sink_.write_checkpoint(checkpoint_);
   saved_at_ = std::chrono::steady_clock::now();

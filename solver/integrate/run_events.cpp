@@ -4,6 +4,13 @@
 #include "solver/integrate/run.hpp"
 
 namespace bough::solver {
+namespace {
+
+/// Changes at one time, or closer together than a billionth of the run, that are too many.
+constexpr int kMostRounds = 20, kMostQuick = 200;
+constexpr double kQuick = 1e-9;
+
+}  // namespace
 
 std::optional<Firing> Run::watch_signals(const Stop& stop) {
   if (!setup_.triggers.has_signals()) return {};
@@ -11,6 +18,7 @@ std::optional<Firing> Run::watch_signals(const Stop& stop) {
   y_ = stepper_->state();
   calc_gaps(std::min(to, stop.latest));
   std::vector<size_t> crossed;
+  const VectorXd signs = setup_.triggers.signs;
   setup_.triggers.find_crossed(gaps_, crossed);
   std::vector<Firing> firings;
   for (const size_t i : crossed) {
@@ -26,11 +34,25 @@ std::optional<Firing> Run::watch_signals(const Stop& stop) {
          i});
   }
   last_gaps_ = gaps_;
-  return fire(firings);
+  std::stable_sort(firings.begin(), firings.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+  for (auto f = firings.begin(); f != firings.end(); ++f) {
+    if (setup_.triggers.get(f->trigger).action == records::EventAction::Log) {
+      sink_.write_event({f->time, setup_.triggers.describe(f->trigger)});
+      continue;
+    }
+    const Firing turn = *f;
+    for (++f; f != firings.end(); ++f) {
+      const auto row = static_cast<Eigen::Index>(f->trigger);
+      setup_.triggers.signs[row] = signs[row];
+    }
+    return turn;
+  }
+  return {};
 }
 
 std::optional<Firing> Run::pass(const Stop& stop) {
-  std::vector<Firing> firings;
+  std::vector<Firing> firings = std::move(waiting_);
+  waiting_.clear();
   passed_ = stop.time;
   setup_.triggers.find_due(stop.time, timeline_.resolution(), firings);
   if (stop.restarts && stop.latest < stop.time) {
@@ -40,20 +62,45 @@ std::optional<Firing> Run::pass(const Stop& stop) {
     for (const size_t i : crossed) firings.push_back({stop.time, i});
     last_gaps_ = gaps_;
   }
-  return fire(firings);
+  return fire(std::move(firings));
 }
 
-std::optional<Firing> Run::fire(std::vector<Firing>& firings) {
-  std::stable_sort(firings.begin(), firings.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
-  for (const Firing& f : firings) {
-    sink_.write_event({f.time, setup_.triggers.describe(f.trigger)});
-    if (setup_.triggers.get(f.trigger).action == records::EventAction::Stop) return f;
+std::optional<Firing> Run::fire(std::vector<Firing> firings) {
+  for (int round = 0; !firings.empty(); ++round) {
+    bool changes = false;
+    for (const Firing& f : firings) {
+      sink_.write_event({f.time, setup_.triggers.describe(f.trigger)});
+      if (setup_.triggers.get(f.trigger).action == records::EventAction::Stop) return f;
+      if (setup_.triggers.get(f.trigger).action == records::EventAction::Log) continue;
+      change(f);
+      changes = true;
+    }
+    if (!changes) return {};
+    const Firing last = firings.back();
+    if (round > kMostRounds || num_quick_ > kMostQuick) fail_cycle(last);
+    std::vector<size_t> crossed;
+    setup_.triggers.find_crossed(calc_gaps(last.time), crossed);
+    last_gaps_ = gaps_;
+    firings.clear();
+    for (const size_t i : crossed) firings.push_back({last.time, i});
   }
   return {};
 }
 
+void Run::change(const Firing& firing) {
+  guard([&] {
+    ode_.project(firing.time, y_);
+    const Discrete next = setup_.changes.apply(firing.trigger, ode_, firing.time, y_);
+    sink_.write_event({firing.time, setup_.changes.describe(firing.trigger)});
+    for (const auto& what : ode_.change(firing.time, next, y_)) sink_.write_event({firing.time, what});
+  });
+  const bool is_quick = firing.time - changed_ < kQuick * (timeline_.end() - timeline_.start());
+  num_quick_ = is_quick ? num_quick_ + 1 : 0;
+  changed_ = firing.time;
+  has_changed_ = true;
+}
+
 SimulateOutcome Run::finish(const Firing& firing) {
-  if (is_started_) guard([&] { stepper_->calc_state(firing.time, y_); });
   if (last_sample_ < firing.time) {
     observe(firing.time);
     sink_.write_sample(setup_.recorder.keep_sample());

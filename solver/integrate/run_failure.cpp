@@ -58,6 +58,13 @@ void Run::fail_diverged(double t, const std::string& what) {
                 "divergence_limit sets the limit");
 }
 
+void Run::fail_cycle(const Firing& firing) {
+  finish_failed(firing.time, "run.event-cycle",
+                "events follow each other without end at t = " + short_text(firing.time) + ", last " +
+                    setup_.triggers.describe(firing.trigger),
+                "what one event does makes another come at once: give them values that lie apart, or a direction");
+}
+
 void Run::fail_stalled(double t, const std::string& detail) {
   finish_failed(t, "run.stalled", "the integrator makes no progress at t = " + short_text(t) + ": " + detail,
                 setup_.integrator != "bdf"

@@ -14,10 +14,16 @@ RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diag
   const int errors = diagnostics.num_errors();
   Sensors sensors = Sensors::build(system, spec, diagnostics);
   is_sound = is_sound && diagnostics.num_errors() == errors;
-  RunSetup setup{make_run_plan(spec.simulation, diagnostics), Recorder(system, std::move(sensors)), {}, {}};
+  RunSetup setup{make_run_plan(spec.simulation, diagnostics), Recorder(system, std::move(sensors)), {}, {}, {}};
   if (is_sound) setup.recorder.choose(spec.simulation.record, spec.simulation.at, diagnostics);
   setup.triggers = Triggers::build(spec, setup.recorder, is_sound, diagnostics);
+  setup.changes = Changes::build(system, spec, is_sound, diagnostics);
   setup.integrator = spec.simulation.integrator;
+  if (setup.integrator == "adams" && system.num_constraints() > 0) {
+    diagnostics.note("run.integrator-chosen", spec.simulation.at,
+                     "integrator rk is taken: adams does not project onto constraints");
+    setup.integrator = "rk";
+  }
   if (setup.integrator == "auto" && diagnostics.num_errors() == 0)
     setup.integrator = choose_integrator(system, spec.simulation, setup.plan.output_step, diagnostics);
   return setup;
@@ -60,6 +66,10 @@ std::string choose_integrator(const System& system, const records::SimulationRec
     choice = "bdf";
     why << "the fastest mode swings at " << fastest << " rad per unit of time, " << fastest * output_step
         << " rad between samples, which explicit steps would have to follow; bdf damps it out";
+  } else if (system.num_constraints() > 0) {
+    choice = "rk";
+    why << "it projects onto constraints, and steps can follow the fastest mode, " << fastest
+        << " rad per unit of time";
   } else if (simulation.relative_tolerance < 1e-10) {
     choice = "rk";
     why << "relative_tolerance " << simulation.relative_tolerance << " is cheaper to meet at order 8";

@@ -1,5 +1,6 @@
 #pragma once
 /// \file What a run needs beside its system, resolved and checked before it starts.
+#include "solver/integrate/changes.hpp"
 #include "solver/integrate/recorder.hpp"
 #include "solver/integrate/stepper.hpp"
 #include "solver/integrate/timeline.hpp"
@@ -11,6 +12,7 @@ struct RunSetup {
   RunPlan plan;
   Recorder recorder;
   Triggers triggers;
+  Changes changes;  ///< by trigger
   std::string integrator;  ///< never "auto"
 };
 

@@ -44,6 +44,11 @@ inline int call_ode(sunrealtype t, N_Vector y, N_Vector y_dot, void* user) {
   return static_cast<GuardedOde*>(user)->calc(t, N_VGetArrayPointer(y), N_VGetArrayPointer(y_dot));
 }
 
+/// After an accepted step of ARKODE.
+inline int call_projection(sunrealtype t, N_Vector y, void* user) {
+  return static_cast<GuardedOde*>(user)->project(t, N_VGetArrayPointer(y));
+}
+
 /// Messages go into the exception, not to the terminal.
 inline void ignore_message(int, const char*, const char*, char*, void*) {}
 

@@ -28,6 +28,61 @@ std::vector<std::string> SystemOde::cross_jump(double before, double t, Eigen::R
   return events;
 }
 
+void SystemOde::project(double t, Eigen::Ref<VectorXd> y) {
+  solver::project(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
+}
+
+std::vector<std::string> SystemOde::change(double t, const Discrete& next, Eigen::Ref<VectorXd> y) {
+  // What was prescribed goes on from where its function left it.
+  calc_kinematics(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
+  y.head(num_q_) = data_->tree.q;
+  std::vector<std::string> events;
+  solver::cross_jump(system_, *data_, t, t, &next, y.head(num_q_), y.segment(num_q_, num_u_), y[num_coordinates()],
+                     events);
+  return events;
+}
+
+Closing SystemOde::find_closing(double t, const Eigen::Ref<const VectorXd>& y, int constraint) {
+  calc_kinematics(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
+  return solver::find_closing(system_.impl().loops, system_.impl().tree, data_->tree, constraint);
+}
+
+namespace {
+constexpr Eigen::Index kClosing = 22;  // numbers of a Closing: closed, R, p, gap, q
+}
+
+VectorXd SystemOde::get_memory() const {
+  const Discrete d = get_discrete(*data_);
+  VectorXd memory = VectorXd::Zero(num_u_ + kClosing * static_cast<Eigen::Index>(d.closings.size()));
+  for (int row = 0; row < num_u_; ++row) memory[row] = static_cast<double>(d.mode[static_cast<size_t>(row)]);
+  Eigen::Index at = num_u_;
+  for (const Closing& c : d.closings) {
+    memory[at] = c.is_closed ? 1 : 0;
+    memory.segment<9>(at + 1) = c.R.reshaped();
+    memory.segment<3>(at + 10) = c.p;
+    memory.segment<2>(at + 13) = c.gap;
+    memory.segment(at + 15, c.q.size()) = c.q;
+    at += kClosing;
+  }
+  return memory;
+}
+
+void SystemOde::set_memory(const VectorXd& memory) {
+  Discrete d = get_discrete(*data_);
+  for (int row = 0; row < num_u_; ++row)
+    d.mode[static_cast<size_t>(row)] = static_cast<HingeMode>(std::lround(memory[row]));
+  Eigen::Index at = num_u_;
+  for (Closing& c : d.closings) {
+    c.is_closed = memory[at] > 0.5;
+    c.R = memory.segment<9>(at + 1).reshaped(3, 3);
+    c.p = memory.segment<3>(at + 10);
+    c.gap = memory.segment<2>(at + 13);
+    c.q = memory.segment(at + 15, c.q.size());
+    at += kClosing;
+  }
+  set_modes(system_, *data_, d);
+}
+
 VectorXd SystemOde::make_initial_state() const {
   VectorXd y = VectorXd::Zero(size());
   system_.calc_initial_state(y.head(num_q_), y.segment(num_q_, num_u_));

@@ -20,10 +20,19 @@ class SystemOde final : public Ode {
   int num_coordinates() const { return num_q_ + num_u_; }
   /// Also leaves data() at (t, y): kinematics, forces, accelerations. No allocation.
   void calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) override;
+  bool has_projection() const override { return system_.num_constraints() > 0; }
+  void project(double t, Eigen::Ref<VectorXd> y) override;
   const SystemData& data() const { return *data_; }
   VectorXd make_initial_state() const;
   /// Takes y over the jump at t; `before` is the last moment that sees what was. Describes each jump of a rate.
   std::vector<std::string> cross_jump(double before, double t, Eigen::Ref<VectorXd> y);
+  /// Takes y at t from what each coordinate and constraint does to what it does from then on. Describes jumps.
+  std::vector<std::string> change(double t, const Discrete& next, Eigen::Ref<VectorXd> y);
+  /// A constraint closed as it is found at (t, y).
+  Closing find_closing(double t, const Eigen::Ref<const VectorXd>& y, int constraint);
+  /// What each coordinate and constraint does, for a checkpoint.
+  VectorXd get_memory() const;
+  void set_memory(const VectorXd& memory);
   double get_work(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates()]; }
   double get_dissipated(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates() + 1]; }
   /// "body 'boom' (modal rate 2)" for a row of y.

@@ -96,10 +96,10 @@ Triggers Triggers::build(const records::SystemSpec& spec, const Recorder& record
   return made;
 }
 
-std::vector<double> Triggers::collect_times(records::EventAction action) const {
+std::vector<double> Triggers::collect_times(bool log_only) const {
   std::vector<double> times;
   for (const auto& r : records_) {
-    if (r.time && r.action == action) times.push_back(*r.time);
+    if (r.time && (r.action == records::EventAction::Log) == log_only) times.push_back(*r.time);
   }
   return times;
 }

@@ -19,8 +19,8 @@ class Triggers {
   static Triggers build(const records::SystemSpec& spec, const Recorder& recorder, bool system_is_sound,
                         Diagnostics& diagnostics);
 
-  /// Of the events at a time with that action.
-  std::vector<double> collect_times(records::EventAction action) const;
+  /// Of the events at a time; those that only log, or the others.
+  std::vector<double> collect_times(bool log_only) const;
   bool has_signals() const { return num_signals_ > 0; }
   const records::TriggerRecord& get(size_t trigger) const { return records_[trigger]; }
   /// "event 'contact': tip:x rises through 0.1"

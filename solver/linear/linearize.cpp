@@ -199,6 +199,7 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
 
 LinearModel linearize(Plant& plant, const OperatingPoint& point, const LinearizeOptions& options,
                       const SourceLocation& at, Diagnostics& diagnostics) {
+  plant.demand_tree(at);
   const int n = plant.num_freedoms();
   std::vector<std::string> names;
   for (const auto& input : plant.inputs()) names.push_back(input.name);

@@ -96,6 +96,14 @@ void Plant::add_outputs() {
   }
 }
 
+void Plant::demand_tree(const SourceLocation& at) const {
+  if (system_.num_constraints() == 0) return;
+  throw InputError("linear.has-constraints", at,
+                   "the system has constraint '" + system_.constraint_name(0) +
+                       "': equilibria and linear models of closed loops are not in this version",
+                   "run it with dampers to find where it rests, or take the constraint out");
+}
+
 OperatingPoint Plant::make_initial_point() const {
   OperatingPoint point{system_.impl().start, VectorXd::Zero(system_.num_q()), {}};
   VectorXd u = VectorXd::Zero(system_.num_u());

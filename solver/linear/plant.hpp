@@ -61,6 +61,8 @@ class Plant {
   VectorXd evaluate(const OperatingPoint& point, const PlantInput* input = nullptr, double value = 0);
   /// Results of the last evaluate, for a Recorder.
   const SystemData& data() const { return *data_; }
+  /// Throws InputError "linear.has-constraints" where the system has any: freedoms are those of the tree.
+  void demand_tree(const SourceLocation& at) const;
 
  private:
   struct Freedom {

@@ -27,6 +27,11 @@ struct HingeReaction {  ///< what the parent puts on the child across a hinge, a
   Vector3d force = Vector3d::Zero(), moment = Vector3d::Zero();
 };
 
+struct ConstraintReaction {  ///< likewise of a constraint, at the child's frame, components in the parent's
+  Vector3d force = Vector3d::Zero(), moment = Vector3d::Zero();
+  double multiplier = 0;  ///< of a coupler: generalized force per unit of ratio
+};
+
 struct Energies {
   double kinetic = 0, strain = 0, potential = 0;  ///< strain: modal ½ηᵀKη plus hinge springs; potential: gravity
 };

@@ -12,9 +12,19 @@ using Eigen::VectorXd;
 /// What a hinge coordinate does: moves as the equations say; keeps its place (its rate is zero); follows a function.
 enum class HingeMode : unsigned char { Free, Locked, Prescribed };
 
+/// A constraint as it stands: closed or open, and how it was found when it was closed in the run.
+struct Closing {
+  bool is_closed = true;
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  ///< the child's frame that the constraint sees, in Hc
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
+  Eigen::Vector2d gap = Eigen::Vector2d::Zero();  ///< what is kept of the residual of one that is no hinge
+  VectorXd q;                                     ///< coordinates of the closing hinge
+};
+
 /// What changes at instants only.
 struct Discrete {
-  std::vector<HingeMode> mode;  ///< num_u, by row of u; modal rows are Free
+  std::vector<HingeMode> mode;    ///< num_u, by row of u; modal rows are Free
+  std::vector<Closing> closings;  ///< one per constraint; empty: as they were
 };
 
 struct State {

@@ -209,7 +209,9 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
   if (is_complete) check_masses(tree, spec, order, diagnostics);
   tree.finish();
   for (AppliedForce& force : impl.forces) add_force_marker(force, tree);
+  build_constraints(spec, order, impl, diagnostics);
   collect_breakpoints(impl);
+  if (diagnostics.num_errors() == 0 && impl.loops.size() > 0) assemble(spec, order, system, impl, diagnostics);
   return system;
 }
 

@@ -41,6 +41,14 @@ std::optional<AppliedForce> build_force(const records::ForceRecord& record, cons
                                         const records::FlexBody* flex, const FunctionMap& functions,
                                         Diagnostics& diagnostics);
 
+/// Every [[constraint]] and its markers into impl.loops, after the tree is finished.
+void build_constraints(const records::SystemSpec& spec, const TreeOrder& order, System::Impl& impl,
+                       Diagnostics& diagnostics);
+/// Initial positions and rates that close the loops, into impl; `system` owns impl. Reports "system.cannot-assemble";
+/// notes "system.assembled" (what was moved) and "system.redundant-constraint".
+void assemble(const records::SystemSpec& spec, const TreeOrder& order, const System& system, System::Impl& impl,
+              Diagnostics& diagnostics);
+
 /// What acts at a node. A hinge that can pass on a moment takes both.
 struct NodeLoad {
   bool force = false, moment = false;

@@ -46,6 +46,7 @@ TreeOrder order_tree(const records::SystemSpec& spec, Diagnostics& diagnostics) 
   check_names(spec.hinges, "hinges", diagnostics);
   check_names(spec.functions, "functions", diagnostics);
   check_names(spec.forces, "forces", diagnostics);
+  check_names(spec.constraints, "constraints", diagnostics);
 
   std::map<std::string, int> inboard;  // body name -> hinge
   for (int h = 0; h < static_cast<int>(spec.hinges.size()); ++h) {
@@ -72,7 +73,7 @@ TreeOrder order_tree(const records::SystemSpec& spec, Diagnostics& diagnostics) 
                         "hinge " + quote(hinge.name) + " closes a loop: body " + quote(hinge.child) +
                             " already hangs on hinge " + quote(first.name) + " (" + first.parent + " - " + hinge.child +
                             " - " + hinge.parent + ")",
-                        "a tree has one inboard hinge per body");
+                        "a body hangs on one hinge: write one of the two as a [[constraint]]");
     }
   }
   std::set<std::string> placed = {"ground"};
@@ -95,7 +96,7 @@ TreeOrder order_tree(const records::SystemSpec& spec, Diagnostics& diagnostics) 
     const auto& hinge = spec.hinges[static_cast<size_t>(inboard.at(body.name))];
     diagnostics.error("system.loop", hinge.at,
                       "body " + quote(body.name) + " hangs on a loop: " + describe_cycle(spec, inboard, body.name),
-                      "one of them needs a hinge to ground, or none");
+                      "one of them needs a hinge to ground, or none; what closes the loop is a [[constraint]]");
     break;
   }
   return order;

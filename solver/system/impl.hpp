@@ -1,6 +1,7 @@
 #pragma once
 /// \file What stands behind System and SystemData.
 #include "solver/forces/applied.hpp"
+#include "solver/loops/loops.hpp"
 #include "solver/system/system.hpp"
 #include "solver/tree/data.hpp"
 
@@ -10,6 +11,9 @@ struct System::Impl {
   Tree tree;
   std::vector<std::unique_ptr<const TimeFunction>> functions;
   std::vector<AppliedForce> forces;
+  Loops loops;
+  VectorXd initial_q, initial_u;          ///< with closed loops; empty: as the records say
+  std::vector<Closing> initial_closings;  ///< likewise
   Vector3d gravity = Vector3d::Zero();
   std::vector<double> breakpoints, landmarks;
   double start = 0;
@@ -19,6 +23,7 @@ struct System::Impl {
 class SystemData {
  public:
   TreeData tree;
+  LoopData loops;
 };
 
 }  // namespace bough::solver

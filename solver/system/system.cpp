@@ -61,11 +61,19 @@ const std::vector<double>& System::landmarks() const { return impl_->landmarks; 
 std::unique_ptr<SystemData> System::make_data() const {
   auto data = std::make_unique<SystemData>();
   data->tree = make_tree_data(impl_->tree);
+  data->loops = make_loop_data(impl_->loops, impl_->tree);
+  if (!impl_->initial_closings.empty())
+    set_closings(impl_->loops, impl_->tree, impl_->initial_closings, data->loops);
   return data;
 }
 
 void System::calc_initial_state(Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) const {
   BOUGH_DEMAND(q.size() == num_q() && u.size() == num_u());
+  if (impl_->initial_q.size() > 0) {
+    q = impl_->initial_q;
+    u = impl_->initial_u;
+    return;
+  }
   for (const TreeBody& tb : impl_->tree.bodies) {
     const int n = tb.num_modes();
     q.segment(tb.q_offset, tb.num_hinge_q()) = tb.initial_q;
@@ -88,13 +96,16 @@ State System::make_initial_state() const {
   state.q.resize(num_q());
   state.u.resize(num_u());
   calc_initial_state(state.q, state.u);
-  state.discrete.mode = make_tree_data(impl_->tree).mode;
+  state.discrete = get_discrete(*make_data());
   return state;
 }
 
 void set_modes(const System& system, SystemData& data, const Discrete& discrete) {
   set_modes(system.impl().tree, discrete.mode, data.tree);
+  if (!discrete.closings.empty()) set_closings(system.impl().loops, system.impl().tree, discrete.closings, data.loops);
 }
+
+Discrete get_discrete(const SystemData& data) { return {data.tree.mode, get_closings(data.loops)}; }
 
 void calc_q_dot(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                 const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> q_dot) {
@@ -143,11 +154,33 @@ void add_node_wrench(const System& system, SystemData& data, int body, int node_
 }
 
 void calc_accelerations(const System& system, SystemData& data, double, Eigen::Ref<VectorXd> u_dot) {
-  factor_and_solve(system.impl().tree, data.tree, u_dot);
+  const System::Impl& impl = system.impl();
+  factor_and_solve(impl.tree, data.tree, u_dot);
+  close_loops(impl.loops, impl.tree, data.tree, data.loops, u_dot);
 }
 
 void calc_accelerations_dense(const System& system, SystemData& data, double, Eigen::Ref<VectorXd> u_dot) {
-  calc_dense_accelerations(system.impl().tree, data.tree, u_dot);
+  const System::Impl& impl = system.impl();
+  if (data.loops.blocks.empty()) return calc_dense_accelerations(impl.tree, data.tree, u_dot);
+  calc_dense_accelerations(impl.loops, impl.tree, data.tree, data.loops, u_dot);
+}
+
+void project(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) {
+  const System::Impl& impl = system.impl();
+  project(impl.loops, impl.tree, t, q, u, data.tree, data.loops);
+}
+
+int System::num_constraints() const { return impl_->loops.size(); }
+int System::find_constraint(const std::string& name) const { return impl_->loops.find(name); }
+const std::string& System::constraint_name(int c) const { return impl_->loops[c].name; }
+bool System::is_coupler(int c) const { return !impl_->loops[c].closure; }
+
+ConstraintReaction get_constraint_reaction(const System& system, const SystemData& data, int constraint) {
+  const Loops& loops = system.impl().loops;
+  const Vector6d wrench = calc_constraint_wrench(loops, data.loops, constraint);
+  const ConstraintData& d = data.loops[constraint];
+  const bool couples = !loops[constraint].closure && d.closing.is_closed;
+  return {wrench.head<3>(), wrench.tail<3>(), couples ? d.lambda[0] : 0};
 }
 
 const BodyState& get_body_state(const SystemData& data, int body) { return data.tree.bodies[as_index(body)].state; }

@@ -65,6 +65,10 @@ class System {
   int num_dofs() const;                 ///< rows of u that are free at the start
   int eta_offset(int body) const;       ///< in q
   int eta_dot_offset(int body) const;   ///< in u
+  int num_constraints() const;
+  int find_constraint(const std::string& name) const;  ///< -1 when absent
+  const std::string& constraint_name(int constraint) const;
+  bool is_coupler(int constraint) const;
   /// Index of node `id` for calc_node_motion (0: Bo), -1 when the body has none such.
   int find_node(int body, int id) const;
   /// Whether the node carries the second-order (foreshortening) term.
@@ -90,6 +94,7 @@ class System {
 /// What each coordinate does from now on (SystemData starts with the modes of the records). Not within a step:
 /// allocates.
 void set_modes(const System& system, SystemData& data, const Discrete& discrete);
+Discrete get_discrete(const SystemData& data);
 /// The whole chain at a state: position, velocity, forces, factor, acceleration, and both derivatives. No allocation.
 void evaluate(const System& system, const State& state, SystemData& data, Eigen::Ref<VectorXd> q_dot,
               Eigen::Ref<VectorXd> u_dot);
@@ -115,7 +120,9 @@ void add_forces(const System& system, SystemData& data, double t);
 /// Adds a force and moment (components in W) at a node, through its Jacobian φ - K_G2 η. After calc_kinematics.
 void add_node_wrench(const System& system, SystemData& data, int body, int node_index, const Vector3d& f_W,
                      const Vector3d& t_W);
-/// u̇ by the order-n recursion with what was added; body accelerations and hinge forces become available. Order n.
+/// q and u brought onto the closed constraints at t, in the metric of the mass matrix. No allocation.
+void project(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u);
+/// u̇ by the order-n recursion with what was added, loops closed; body accelerations and hinge forces become available. Order n.
 /// No allocation. Throws ComputationError when the articulated inertia of a body is not positive definite.
 void calc_accelerations(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> u_dot);
 /// The same by assembling the dense M(q) and solving: the second route for tests. O(num_u³).
@@ -134,6 +141,8 @@ void calc_node_deflection(const System& system, const SystemData& data, int body
 void get_hinge(const System& system, const SystemData& data, int body, Eigen::Ref<VectorXd> q,
                Eigen::Ref<VectorXd> q_dot, Eigen::Ref<VectorXd> force);
 
+/// What a constraint passes on. After calc_accelerations.
+ConstraintReaction get_constraint_reaction(const System& system, const SystemData& data, int constraint);
 /// The wrench across the inboard hinge of a body, of every type. After calc_accelerations.
 HingeReaction get_hinge_reaction(const System& system, const SystemData& data, int body);
 

@@ -100,7 +100,15 @@ void solve_response(const Tree& tree, TreeData& data, int marker, const Vector6d
 /// are not read) and nothing else acts: momenta along free coordinates hold. After calc_factor.
 void solve_jump(const Tree& tree, TreeData& data, const ConstVectorRef& given, Eigen::Ref<VectorXd> du);
 
-/// The impulse across the hinge of body b along its coordinate i, of the last solve_jump.
+// The same in parts, for loads that act together: start, add what acts, run; the result is in the sweep (u_dot, A).
+Sweep& start_response(TreeData& data);
+/// wrench: at the marker, in the basis of its body.
+void add_response_wrench(const Tree& tree, const TreeData& data, int marker, const Vector6d& wrench, Sweep& s);
+/// given: as solve_jump.
+void add_response_jump(const Tree& tree, const TreeData& data, const ConstVectorRef& given, Sweep& s);
+void run_response(const Tree& tree, const TreeData& data, Sweep& s);
+
+/// The impulse across the hinge of body b along its coordinate i, of the last solve_jump or run_response.
 double calc_jump_impulse(const Tree& tree, const TreeData& data, int b, int i);
 
 /// The wrench that the parent puts on body b across its hinge, about Bo, in B. After solve.

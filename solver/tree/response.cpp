@@ -3,47 +3,31 @@
 
 namespace bough::solver {
 
-namespace {
-
-Sweep& clear(TreeData& data) {
+Sweep& start_response(TreeData& data) {
   data.demand(Stage::Factor);
   Sweep& s = data.response;
   s.beta.setZero();
   s.b.setZero();
   s.tau.setZero();
   s.z.setZero();
+  s.A.setZero();
   s.u_dot.setZero();
   s.ground.setZero();
   return s;
 }
 
-}  // namespace
-
-void solve_response(const Tree& tree, TreeData& data, int marker, const Vector6d& wrench,
-                    const std::vector<int>& bodies, Eigen::Ref<VectorXd> du) {
-  BOUGH_DEMAND(du.size() == tree.num_u);
-  Sweep& s = clear(data);
+void add_response_wrench(const Tree& tree, const TreeData& data, int marker, const Vector6d& wrench, Sweep& s) {
   const Marker& m = tree.markers[static_cast<size_t>(marker)];
-  if (m.body >= 0) {
-    const TreeBody& tb = tree[m.body];
-    const MarkerMotion& motion = data.markers[static_cast<size_t>(marker)];
-    const Vector3d f = wrench.head<3>();
-    s.beta.segment<3>(tb.v_offset) = -f;
-    s.beta.segment<3>(tb.v_offset + 3) = -(motion.r.cross(f) + wrench.tail<3>());
-    for (int j = 0; j < motion.J.cols(); ++j) s.beta[tb.v_offset + 6 + j] = -motion.J.col(j).dot(wrench);
-  }
-  for (int b = m.body; b >= 0; b = tree[b].parent) solve_to_base(tree, b, data, s);
-  if (bodies.empty()) {
-    for (int b = 0; b < tree.size(); ++b) solve_to_tip(tree, b, data, s);
-  } else {
-    for (const int b : bodies) solve_to_tip(tree, b, data, s);
-  }
-  du = s.u_dot;
+  if (m.body < 0) return;
+  const TreeBody& tb = tree[m.body];
+  const MarkerMotion& motion = data.markers[static_cast<size_t>(marker)];
+  const Vector3d f = wrench.head<3>();
+  s.beta.segment<3>(tb.v_offset) -= f;
+  s.beta.segment<3>(tb.v_offset + 3) -= motion.r.cross(f) + wrench.tail<3>();
+  for (int j = 0; j < motion.J.cols(); ++j) s.beta[tb.v_offset + 6 + j] -= motion.J.col(j).dot(wrench);
 }
 
-void solve_jump(const Tree& tree, TreeData& data, const ConstVectorRef& given, Eigen::Ref<VectorXd> du) {
-  BOUGH_DEMAND(given.size() == tree.num_u && du.size() == tree.num_u);
-  Sweep& s = clear(data);
+void add_response_jump(const Tree& tree, const TreeData& data, const ConstVectorRef& given, Sweep& s) {
   for (int b = 0; b < tree.size(); ++b) {
     const TreeBody& tb = tree[b];
     const BodyData& d = data[b];
@@ -59,8 +43,33 @@ void solve_jump(const Tree& tree, TreeData& data, const ConstVectorRef& given, E
       s.u_dot[row] = given[row];
     }
   }
+}
+
+void run_response(const Tree& tree, const TreeData& data, Sweep& s) {
   for (int b = tree.size() - 1; b >= 0; --b) solve_to_base(tree, b, data, s);
   for (int b = 0; b < tree.size(); ++b) solve_to_tip(tree, b, data, s);
+}
+
+void solve_response(const Tree& tree, TreeData& data, int marker, const Vector6d& wrench,
+                    const std::vector<int>& bodies, Eigen::Ref<VectorXd> du) {
+  BOUGH_DEMAND(du.size() == tree.num_u);
+  Sweep& s = start_response(data);
+  add_response_wrench(tree, data, marker, wrench, s);
+  for (int b = tree.markers[static_cast<size_t>(marker)].body; b >= 0; b = tree[b].parent)
+    solve_to_base(tree, b, data, s);
+  if (bodies.empty()) {
+    for (int b = 0; b < tree.size(); ++b) solve_to_tip(tree, b, data, s);
+  } else {
+    for (const int b : bodies) solve_to_tip(tree, b, data, s);
+  }
+  du = s.u_dot;
+}
+
+void solve_jump(const Tree& tree, TreeData& data, const ConstVectorRef& given, Eigen::Ref<VectorXd> du) {
+  BOUGH_DEMAND(given.size() == tree.num_u && du.size() == tree.num_u);
+  Sweep& s = start_response(data);
+  add_response_jump(tree, data, given, s);
+  run_response(tree, data, s);
   du = s.u_dot;
 }
 

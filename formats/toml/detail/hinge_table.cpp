@@ -26,9 +26,23 @@ const Coordinates& get_coordinates(const std::string& type) {
                                                       {"cylindrical", {HingeType::Cylindrical, "al", "al"}},
                                                       {"planar", {HingeType::Planar, "lla", "lla"}},
                                                       {"spherical", {HingeType::Spherical, "qqqq", "aaa"}},
-                                                      {"free", {HingeType::Free, "qqqqlll", "aaalll"}}};
+                                                      {"free", {HingeType::Free, "qqqqlll", "aaalll"}},
+                                                      {"screw", {HingeType::Screw, "a", "a"}}};
   const auto it = all.find(type);
   return it == all.end() ? all.at("fixed") : it->second;
+}
+
+/// Those of a gimbal or a general hinge are in its own keys.
+Coordinates read_coordinates(const Fields& table, const std::string& type) {
+  if (type != "gimbal" && type != "general") return get_coordinates(type);
+  Coordinates c{HingeType::General, "", ""};
+  const std::string rotations = table.get_string("rotations", type == "gimbal" ? "xyz" : "");
+  c.q = rotations == "q" ? "qqqq" : std::string(rotations.size(), 'a');
+  c.u = rotations == "q" ? "aaa" : c.q;
+  const std::string travels(table.get_string("translations").size(), 'l');
+  c.q += travels;
+  c.u += travels;
+  return c;
 }
 
 class HingeReader {
@@ -36,7 +50,7 @@ class HingeReader {
   HingeReader(const Fields& table, Diagnostics& diagnostics)
       : table_(table),
         type_(table.get_string("type")),
-        coordinates_(get_coordinates(type_)),
+        coordinates_(read_coordinates(table, type_)),
         // With an unknown type (reported by the schema) nothing is known of the lengths.
         is_known_(type_ == "fixed" || coordinates_.type != HingeType::Fixed),
         diagnostics_(diagnostics) {}
@@ -64,6 +78,16 @@ class HingeReader {
       if (kinds[i] == 'a') list[i] *= kRadPerDegree;
     }
     return list;
+  }
+
+  std::vector<bool> read_locked() {
+    const Value* v = table_.find("locked");
+    if (!v) return {};
+    if (!v->is_array()) return std::vector<bool>(coordinates_.u.size(), table_.get_bool("locked", false));
+    std::vector<bool> locked;
+    for (const Value& item : v->items) locked.push_back(item.boolean);
+    if (is_known_) check_length("locked", locked.size(), coordinates_.u.size());
+    return locked;
   }
 
   std::vector<std::string> read_motion() {
@@ -99,7 +123,7 @@ class HingeReader {
 
   const Fields& table_;
   std::string type_;
-  const Coordinates& coordinates_;
+  Coordinates coordinates_;
   bool is_known_;
   Diagnostics& diagnostics_;
 };
@@ -122,12 +146,17 @@ records::HingeRecord read_hinge(const Fields& table, Diagnostics& diagnostics) {
   hinge.child_rotation = reader.read_rotation("child_rotation");
   hinge.axis = table.get_vector("axis", hinge.axis);
   hinge.axis2 = table.get_vector("axis2", hinge.axis2);
+  hinge.pitch = table.get_number("pitch", 0);
+  hinge.rotations = table.get_string("rotations", table.get_string("type") == "gimbal" ? "xyz" : "");
+  hinge.translations = table.get_string("translations");
   hinge.stiffness = reader.read_list("stiffness", false, true);
   hinge.damping = reader.read_list("damping", false, true);
   hinge.null_position = reader.read_list("null_position", true, false);
   hinge.position = reader.read_list("position", true, false);
   hinge.rate = reader.read_list("rate", false, false);
   hinge.motion = reader.read_motion();
+  hinge.locked = reader.read_locked();
+  hinge.is_guess = table.get_bool("guess", false);
   return hinge;
 }
 

@@ -49,6 +49,7 @@ class ReferenceChecker {
 void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
   const auto bodies = collect_names(spec.bodies, "body", diagnostics);
   const auto hinges = collect_names(spec.hinges, "hinge", diagnostics);
+  const auto constraints = collect_names(spec.constraints, "constraint", diagnostics);
   const auto functions = collect_names(spec.functions, "function", diagnostics);
   collect_names(spec.forces, "force", diagnostics);
   collect_names(spec.sensors, "sensor", diagnostics);
@@ -71,6 +72,17 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
     checker.check(hinge.parent, with({"ground"}), role, "body", hinge.at);
     checker.check(hinge.child, bodies, role, "body", hinge.at);
     for (const auto& name : hinge.motion) checker.check(name, functions, role, "function", hinge.at);
+  }
+  for (const auto& constraint : spec.constraints) {
+    const std::string role = "constraint '" + constraint.name + "'";
+    checker.check(constraint.parent, with({"ground"}), role, "body", constraint.at);
+    checker.check(constraint.child, with({"ground"}), role, "body", constraint.at);
+    for (const auto& term : constraint.terms) checker.check(term.hinge, hinges, role, "hinge", constraint.at);
+  }
+  for (const auto& event : spec.events) {
+    const bool of_hinge = event.action == records::EventAction::Lock || event.action == records::EventAction::Release;
+    checker.check(event.target, of_hinge ? hinges : constraints, "event '" + event.name + "'",
+                  of_hinge ? "hinge" : "constraint", event.at);
   }
   for (const auto& force : spec.forces) {
     const std::string role = "force '" + force.name + "'";

@@ -143,7 +143,6 @@ std::vector<BadDocument> get_bad_systems() {
       {"toml.unknown-key", "interpolation = \"cubic\"", "interpolate = \"cubic\"", "did you mean 'interpolation'?"},
       {"toml.unknown-table", "[simulation]", "[[hinges]]\nname = \"x\"\n[simulation]", "did you mean 'hinge'?"},
       {"toml.unsupported-table", "[simulation]", "[[actuator]]\nname = \"x\"\n[simulation]", "not in this version"},
-      {"toml.unsupported-table", "[simulation]", "[[constraint]]\nname = \"x\"\n[simulation]", "'constraint'"},
       {"toml.unsupported-table", "[simulation]", "[[controller]]\nname = \"x\"\n[simulation]", "'controller'"},
       {"toml.unsupported-table", "[simulation]", "[[connect]]\nname = \"x\"\n[simulation]", "'connect'"},
       {"toml.unsupported-table", "[simulation]", "[[controller]]\nname = \"x\"\n[simulation]", "'controller'"},

@@ -153,6 +153,7 @@ int count_speeds(records::HingeType type) {
       return 0;
     case HingeType::Revolute:
     case HingeType::Prismatic:
+    case HingeType::Screw:
       return 1;
     case HingeType::Universal:
     case HingeType::Cylindrical:
@@ -161,6 +162,7 @@ int count_speeds(records::HingeType type) {
     case HingeType::Spherical:
       return 3;
     case HingeType::Free:
+    case HingeType::General:  // as the catalogue of the random trees has none
       return 6;
   }
   return 0;

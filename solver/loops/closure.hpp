@@ -1,0 +1,52 @@
+#pragma once
+/// \file What a constraint owes the loops: rows W(X) on the relative motion of two frames, whatever its type.
+///
+/// Hp is fixed at a marker of the parent, Hc at one of the child. X = [R, p]: Hc in Hp; [v; w] and [a; α] its velocity
+/// and acceleration as the hinges have them (solver/hinges/hinge.hpp), components in Hp. A closure demands
+///     gap(X) = 0,   Wᵀ [v; w] = 0,   Wᵀ [a; α] = bias            W: 6 x num_rows
+/// and so passes on the wrench W λ at Hc, in Hp.
+#include <memory>
+
+#include "formats/records/constraint_spec.hpp"
+#include "solver/hinges/hinge.hpp"
+
+namespace bough::solver {
+
+struct ClosureMotion {
+  Matrix6d W = Matrix6d::Zero();  ///< the first num_rows columns
+  Vector6d gap = Vector6d::Zero(), bias = Vector6d::Zero();
+  HingeMotion hinge;                   ///< of a closing hinge at its coordinates
+  Matrix6d H_plus = Matrix6d::Zero();  ///< pseudo-inverse of its H
+};
+
+class Closure {
+ public:
+  Closure(int num_rows, int num_q) : num_rows_(num_rows), num_q_(num_q) {}
+  virtual ~Closure() = default;
+  int num_rows() const { return num_rows_; }
+  /// Coordinates of the closing hinge; 0 where it is none.
+  int num_q() const { return num_q_; }
+
+  /// W and gap. q: num_q, in: near, out: those of the closing hinge that come nearest to X. No allocation.
+  virtual void calc_position(const Matrix3d& R, const Vector3d& p, double* q, ClosureMotion& motion) const = 0;
+  /// The bias, after calc_position.
+  virtual void calc_velocity(const Matrix3d& R, const Vector3d& p, const Vector6d& V, const double* q,
+                             ClosureMotion& motion) const = 0;
+  /// A first q from nowhere near.
+  virtual void find_start(const Matrix3d&, const Vector3d&, double*) const {}
+  virtual bool is_hinge() const { return false; }
+
+ private:
+  int num_rows_, num_q_;
+};
+
+/// W spans what the hinge's H(q) does not, at the q whose pose X(q) is nearest; gap = Wᵀ [p - p(q); log(R R(q)ᵀ)].
+std::unique_ptr<const Closure> make_hinge_closure(std::unique_ptr<const Hinge> hinge);
+/// |p| = length.
+std::unique_ptr<const Closure> make_distance_closure(double length);
+/// p on the line along a unit axis through Hp.
+std::unique_ptr<const Closure> make_line_closure(const Vector3d& axis);
+/// p in the plane through Hp.
+std::unique_ptr<const Closure> make_plane_closure(const Vector3d& normal);
+
+}  // namespace bough::solver

@@ -1,0 +1,234 @@
+#include "solver/loops/loops.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace bough::solver {
+
+int Loops::find(const std::string& name) const {
+  for (int i = 0; i < size(); ++i) {
+    if ((*this)[i].name == name) return i;
+  }
+  return -1;
+}
+
+void finish_loops(const Tree& tree, Loops& loops) {
+  for (Constraint& c : loops.constraints) {
+    std::set<int> path, roots;
+    const auto add = [&](int b) {
+      for (; b >= 0; b = tree[b].parent) {
+        path.insert(b);
+        if (tree[b].parent < 0) roots.insert(b);
+      }
+    };
+    if (c.closure) {
+      add(tree.markers[static_cast<size_t>(c.parent_marker)].body);
+      add(tree.markers[static_cast<size_t>(c.child_marker)].body);
+    }
+    for (const CouplerTerm& term : c.terms) {
+      for (int b = 0; b < tree.size(); ++b) {
+        if (term.u_row >= tree[b].u_offset && term.u_row < tree[b].eta_dot_offset()) add(b);
+      }
+    }
+    c.path.assign(path.begin(), path.end());
+    c.roots.assign(roots.begin(), roots.end());
+  }
+}
+
+LoopData make_loop_data(const Loops& loops, const Tree& tree) {
+  LoopData data;
+  std::vector<Closing> closings;
+  for (const Constraint& c : loops.constraints) {
+    Closing closing;
+    closing.is_closed = c.active;
+    closing.q = VectorXd::Zero(c.num_q());
+    // A quaternion has one row more than the rows that are left to move.
+    if (c.closure && c.num_q() + c.num_rows() == 7) closing.q[3] = 1;
+    closings.push_back(std::move(closing));
+    data.constraints.emplace_back();
+  }
+  set_closings(loops, tree, closings, data);
+  return data;
+}
+
+namespace {
+
+bool meet(const std::vector<int>& a, const std::vector<int>& b) {
+  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
+}
+
+LoopBlock make_block(const Loops& loops, const std::vector<int>& constraints) {
+  LoopBlock block;
+  std::set<int> bodies;
+  int rows = 0;
+  for (const int i : constraints) {
+    block.constraints.push_back(i);
+    block.first.push_back(rows);
+    rows += loops[i].num_rows();
+    bodies.insert(loops[i].path.begin(), loops[i].path.end());
+  }
+  block.bodies.assign(bodies.begin(), bodies.end());
+  block.A = MatrixXd::Zero(rows, rows);
+  block.rows = VectorXd::Zero(rows);
+  block.factor.resize(rows);
+  return block;
+}
+
+}  // namespace
+
+void set_closings(const Loops& loops, const Tree&, const std::vector<Closing>& closings, LoopData& data) {
+  BOUGH_DEMAND(static_cast<int>(closings.size()) == loops.size());
+  data.blocks.clear();
+  std::vector<std::vector<int>> groups;
+  for (int i = 0; i < loops.size(); ++i) {
+    data[i].closing = closings[static_cast<size_t>(i)];
+    data[i].lambda.setZero();
+    if (!data[i].closing.is_closed) continue;
+    std::vector<int> group;
+    const auto touches = [&](const std::vector<int>& other) {
+      return std::any_of(other.begin(), other.end(), [&](int j) { return meet(loops[i].roots, loops[j].roots); });
+    };
+    for (auto& other : groups) {
+      if (!touches(other)) continue;
+      group.insert(group.end(), other.begin(), other.end());
+      other.clear();
+    }
+    group.push_back(i);
+    groups.push_back(std::move(group));
+  }
+  for (const auto& group : groups) {
+    if (!group.empty()) data.blocks.push_back(make_block(loops, group));
+  }
+}
+
+std::vector<Closing> get_closings(const LoopData& data) {
+  std::vector<Closing> closings;
+  for (const ConstraintData& c : data.constraints) closings.push_back(c.closing);
+  return closings;
+}
+
+Closing find_closing(const Loops& loops, const Tree& tree, const TreeData& tree_data, int i) {
+  tree_data.demand(Stage::Position);
+  const Constraint& c = loops[i];
+  Closing closing;
+  closing.q = VectorXd::Zero(c.num_q());
+  if (!c.closure) {
+    closing.gap[0] = -c.offset;
+    for (const CouplerTerm& term : c.terms) closing.gap[0] += term.ratio * tree_data.q[term.q_row];
+    return closing;
+  }
+  RelativeMotion X;
+  ClosureMotion own;
+  calc_relative_position(tree, tree_data, c.parent_marker, c.child_marker, closing, X);
+  c.closure->find_start(X.R, X.p, closing.q.data());
+  c.closure->calc_position(X.R, X.p, closing.q.data(), own);
+  if (c.closure->is_hinge()) {
+    closing.R = X.R.transpose() * own.hinge.R_HpHc;
+    closing.p = X.R.transpose() * (own.hinge.p_HpHc - X.p);
+  } else {
+    closing.gap.head(c.num_rows()) = own.gap.head(c.num_rows());
+  }
+  return closing;
+}
+
+void calc_closure_positions(const Loops& loops, const Tree& tree, const TreeData& tree_data, LoopData& data) {
+  tree_data.demand(Stage::Position);
+  for (const LoopBlock& block : data.blocks) {
+    for (const int i : block.constraints) {
+      const Constraint& c = loops[i];
+      ConstraintData& d = data[i];
+      if (c.closure) {
+        calc_relative_position(tree, tree_data, c.parent_marker, c.child_marker, d.closing, d.relative);
+        c.closure->calc_position(d.relative.R, d.relative.p, d.closing.q.data(), d.own);
+        if (!c.closure->is_hinge()) d.own.gap.head<2>() -= d.closing.gap;
+      } else {
+        d.coupled = -c.offset - d.closing.gap[0];
+        for (const CouplerTerm& term : c.terms) d.coupled += term.ratio * tree_data.q[term.q_row];
+      }
+    }
+  }
+}
+
+void calc_closure_velocities(const Loops& loops, const Tree& tree, const TreeData& tree_data, LoopData& data) {
+  tree_data.demand(Stage::Velocity);
+  for (const LoopBlock& block : data.blocks) {
+    for (const int i : block.constraints) {
+      const Constraint& c = loops[i];
+      ConstraintData& d = data[i];
+      if (!c.closure) continue;
+      calc_relative_velocity(tree, tree_data, c.parent_marker, c.child_marker, d.relative);
+      c.closure->calc_velocity(d.relative.R, d.relative.p, d.relative.V, d.closing.q.data(), d.own);
+    }
+  }
+}
+
+double calc_gap(const Loops& loops, const LoopData& data, int i) {
+  const Constraint& c = loops[i];
+  const ConstraintData& d = data[i];
+  if (!c.closure) {
+    double size = std::abs(c.offset);
+    for (const CouplerTerm& term : c.terms) size = std::max(size, std::abs(term.ratio));
+    return size > 0 ? std::abs(d.coupled) / size : 0;
+  }
+  const Vector6d gap = d.own.W.leftCols(c.num_rows()) * d.own.gap.head(c.num_rows());
+  return std::max(gap.head<3>().norm() / loops.length, gap.tail<3>().norm());
+}
+
+double calc_largest_gap(const Loops& loops, const LoopData& data, int* which) {
+  double largest = 0;
+  for (const LoopBlock& block : data.blocks) {
+    for (const int i : block.constraints) {
+      const double gap = calc_gap(loops, data, i);
+      if (!(gap <= largest)) {  // NaN too
+        largest = gap;
+        if (which) *which = i;
+      }
+    }
+  }
+  return largest;
+}
+
+Vector6d calc_constraint_wrench(const Loops& loops, const LoopData& data, int i) {
+  if (!loops[i].closure || !data[i].closing.is_closed) return Vector6d::Zero();
+  return data[i].own.W.leftCols(loops[i].num_rows()) * data[i].lambda.head(loops[i].num_rows());
+}
+
+double calc_coupler_power(const Loops& loops, const TreeData& tree_data, const LoopData& data) {
+  double power = 0;
+  for (int i = 0; i < loops.size(); ++i) {
+    for (const CouplerTerm& term : loops[i].terms) {
+      if (data[i].closing.is_closed && tree_data.mode[static_cast<size_t>(term.u_row)] == HingeMode::Prescribed)
+        power += data[i].lambda[0] * term.ratio * tree_data.u[term.u_row];
+    }
+  }
+  return power;
+}
+
+VectorXd get_gaps(const Loops& loops, const LoopData& data) {
+  int rows = 0;
+  for (const LoopBlock& block : data.blocks) rows += static_cast<int>(block.rows.size());
+  VectorXd gaps(rows);
+  int at = 0;
+  for (const LoopBlock& block : data.blocks) {
+    for (const int i : block.constraints) {
+      const int n = loops[i].num_rows();
+      if (loops[i].closure)
+        gaps.segment(at, n) = data[i].own.gap.head(n);
+      else
+        gaps[at] = data[i].coupled;
+      at += n;
+    }
+  }
+  return gaps;
+}
+
+void displace(const Tree& tree, const ConstVectorRef& step, Eigen::Ref<VectorXd> q) {
+  double q_dot[7];
+  for (const TreeBody& tb : tree.bodies) {
+    tb.hinge->calc_q_dot(q.data() + tb.q_offset, step.data() + tb.u_offset, q_dot);
+    for (int i = 0; i < tb.num_hinge_q(); ++i) q[tb.q_offset + i] += q_dot[i];
+    for (int j = 0; j < tb.num_modes(); ++j) q[tb.eta_offset() + j] += step[tb.eta_dot_offset() + j];
+  }
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,115 @@
+#pragma once
+/// \file Loops of a tree: constraints, their multipliers, projection, impulses (docs/theory/multibody.md, "Loops").
+///
+/// All constraints together are G(q) u = 0, G u̇ = γ. G is never formed: a row is a wrench on two markers, M⁻¹Gᵀ what
+/// the factored tree answers to it. With a the accelerations of the open tree
+///     (G M⁻¹ Gᵀ) λ = γ - G a,   u̇ = a + M⁻¹ Gᵀ λ
+/// by blocks of constraints that share a tree rooted at ground; least-norm λ where constraints depend on each other.
+#include "solver/loops/closure.hpp"
+#include "solver/loops/relative.hpp"
+#include "solver/loops/semidefinite.hpp"
+
+namespace bough::solver {
+
+/// ratio q of a plain hinge coordinate.
+struct CouplerTerm {
+  int q_row = 0, u_row = 0;
+  double ratio = 1;
+};
+
+struct Constraint {
+  std::string name;
+  SourceLocation at;
+  std::unique_ptr<const Closure> closure;  ///< nullptr: a coupler
+  int parent_marker = 0, child_marker = 0;
+  std::vector<CouplerTerm> terms;  ///< Σ ratio q = offset
+  double offset = 0;
+  bool active = true;      ///< at the start
+  std::vector<int> path;   ///< bodies it acts on and those between them and ground, ascending
+  std::vector<int> roots;  ///< of the trees they belong to
+
+  int num_rows() const { return closure ? closure->num_rows() : 1; }
+  int num_q() const { return closure ? closure->num_q() : 0; }
+};
+
+struct Loops {
+  std::vector<Constraint> constraints;
+  double length = 1;  ///< that gaps are small to
+
+  const Constraint& operator[](int i) const { return constraints[static_cast<size_t>(i)]; }
+  int size() const { return static_cast<int>(constraints.size()); }
+  int find(const std::string& name) const;  ///< -1 when absent
+};
+
+struct ConstraintData {
+  Closing closing;
+  RelativeMotion relative;
+  ClosureMotion own;
+  double coupled = 0;                  ///< coupler: gap
+  Vector6d lambda = Vector6d::Zero();  ///< of its rows
+};
+
+struct LoopBlock {
+  std::vector<int> constraints, first;  ///< which, and the first row of each
+  std::vector<int> bodies;              ///< on their paths, ascending
+  MatrixXd A;                           ///< G M⁻¹ Gᵀ
+  VectorXd rows;                        ///< what the rows are off by; then the multipliers
+  SemidefiniteFactor factor;
+};
+
+struct LoopData {
+  std::vector<ConstraintData> constraints;
+  std::vector<LoopBlock> blocks;  ///< of those that are closed
+
+  const ConstraintData& operator[](int i) const { return constraints[static_cast<size_t>(i)]; }
+  ConstraintData& operator[](int i) { return constraints[static_cast<size_t>(i)]; }
+};
+
+/// Paths of the constraints through the tree.
+void finish_loops(const Tree& tree, Loops& loops);
+LoopData make_loop_data(const Loops& loops, const Tree& tree);
+/// Which are closed from now on. Allocates.
+void set_closings(const Loops& loops, const Tree& tree, const std::vector<Closing>& closings, LoopData& data);
+std::vector<Closing> get_closings(const LoopData& data);
+
+/// Constraint i closed as it is found at the positions of the tree: what it is off by is kept, so that nothing jumps.
+Closing find_closing(const Loops& loops, const Tree& tree, const TreeData& tree_data, int i);
+
+/// Gaps, W (position); relative velocities, biases (velocity). After the same stages of the tree. No allocation.
+void calc_closure_positions(const Loops& loops, const Tree& tree, const TreeData& tree_data, LoopData& data);
+void calc_closure_velocities(const Loops& loops, const Tree& tree, const TreeData& tree_data, LoopData& data);
+/// What is left open of a constraint: relative to Loops::length, and in radians. After calc_closure_positions.
+double calc_gap(const Loops& loops, const LoopData& data, int constraint);
+double calc_largest_gap(const Loops& loops, const LoopData& data, int* which = nullptr);
+
+/// After solve: u̇ with the constraints, by their multipliers and a second solve. Does nothing where none is closed. No
+/// allocation.
+void close_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data,
+                 Eigen::Ref<VectorXd> u_dot);
+/// q and u brought to G(q) = 0, G u = 0 at t in the metric of M: what is taken off is M⁻¹Gᵀ times something. Leaves
+/// tree_data at (t, q, u), factored. No allocation.
+void project(const Loops& loops, const Tree& tree, double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u,
+             TreeData& tree_data, LoopData& data);
+/// λ: the impulses that bring G u to zero from the velocities of the tree. After Stage::Velocity and Stage::Factor.
+void calc_closing_impulses(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data);
+/// Gᵀλ into a response that was started.
+void add_multipliers(const Loops& loops, const Tree& tree, const TreeData& tree_data, const LoopData& data, Sweep& s);
+
+/// The wrench at Hc on the child, in Hp: of the multipliers last found.
+Vector6d calc_constraint_wrench(const Loops& loops, const LoopData& data, int constraint);
+/// Power of couplers along prescribed coordinates, which their motors feel.
+double calc_coupler_power(const Loops& loops, const TreeData& tree_data, const LoopData& data);
+
+/// G of the closed constraints, rows in the order of the blocks, all columns of u, by unit speeds. For assembly and the
+/// second route. After Stage::Position.
+MatrixXd calc_dense_rows(const Loops& loops, const Tree& tree, const TreeData& tree_data, const LoopData& data);
+/// The second route: [M Gᵀ; G 0] by assembly. After close_loops, whose u̇ gives γ.
+void calc_dense_accelerations(const Loops& loops, const Tree& tree, const TreeData& tree_data, const LoopData& data,
+                              Eigen::Ref<VectorXd> u_dot);
+/// The gaps of the rows, in the same order. After calc_closure_positions.
+VectorXd get_gaps(const Loops& loops, const LoopData& data);
+
+/// Moves q by a small step of u.
+void displace(const Tree& tree, const ConstVectorRef& step, Eigen::Ref<VectorXd> q);
+
+}  // namespace bough::solver

@@ -1,0 +1,257 @@
+// Constraints of every type between random bodies of random trees, caught as they are found: the multipliers against
+// the dense [M Gᵀ; G 0], rates along the motion, Newton and Euler of every body.
+#include <gtest/gtest.h>
+
+#include "tests/solver/support/models.hpp"
+
+namespace bough::solver::testing {
+namespace {
+
+using records::ConstraintRecord;
+using records::ConstraintType;
+using records::HingeType;
+
+struct Looped {
+  RandomTree tree;
+  System system;
+  std::unique_ptr<SystemData> data;
+  VectorXd q, u;
+};
+
+ConstraintRecord make_constraint(Random& random, int i, int num_bodies) {
+  static const HingeType hinges[] = {HingeType::Fixed,       HingeType::Revolute, HingeType::Prismatic,
+                                     HingeType::Universal,   HingeType::Planar,   HingeType::Spherical,
+                                     HingeType::Cylindrical, HingeType::Screw,    HingeType::General};
+  ConstraintRecord c;
+  c.name = "c" + std::to_string(i);
+  const int kind = random.integer(0, 4);
+  c.type = kind == 0   ? ConstraintType::Distance
+           : kind == 1 ? ConstraintType::PointOnLine
+           : kind == 2 ? ConstraintType::PointOnPlane
+                       : ConstraintType::Hinge;
+  c.hinge = hinges[random.integer(0, 8)];
+  c.rotations = random.integer(0, 1) ? "xz" : "q";
+  c.translations = random.integer(0, 1) ? "y" : "xz";
+  c.pitch = 0.3;
+  c.length = 1.5;
+  const int child = random.integer(1, num_bodies - 1);
+  c.child = "b" + std::to_string(child);
+  c.parent = random.integer(0, 3) == 0 ? "ground" : "b" + std::to_string(random.integer(0, child - 1));
+  if (c.parent != "ground") c.parent_node = random.integer(0, 1) * 101;
+  c.child_node = random.integer(0, 1) * 102;
+  c.parent_position = random.vector(0.5);
+  c.child_position = random.vector(0.5);
+  c.parent_rotation = random.rotation();
+  c.child_rotation = random.rotation();
+  c.axis = random.vector();
+  c.axis2 = random.vector();
+  c.active = false;
+  return c;
+}
+
+/// Closed where the bodies happen to be, with rates that allow it.
+Looped make_looped(unsigned seed) {
+  Random random(seed + 500);
+  // Rates that are prescribed and rows that do not allow them cannot be reconciled: a distance always can be.
+  RandomTreeOptions options;
+  options.prescribed = seed % 3 == 0;
+  RandomTree tree = make_random_tree(seed, options);
+  for (int i = 0; i < (options.prescribed ? 1 : 3); ++i) tree.spec.constraints.push_back(make_constraint(random, i, 8));
+  if (options.prescribed) tree.spec.constraints[0].type = ConstraintType::Distance;
+  // A gear between two plain coordinates.
+  ConstraintRecord gear;
+  gear.name = "gear";
+  gear.type = ConstraintType::Coupler;
+  gear.active = false;
+  for (const auto& h : tree.spec.hinges) {
+    if (h.type == HingeType::Revolute || h.type == HingeType::Prismatic || h.type == HingeType::Planar)
+      gear.terms.push_back({h.name, 1, 1 + random()});
+  }
+  if (gear.terms.size() > 1 && !options.prescribed) tree.spec.constraints.push_back(gear);
+  System system = build(tree.spec, tree.flex);
+  auto data = system.make_data();
+  VectorXd q, u;
+  make_random_state(system, seed + 1000, q, u);
+  calc_kinematics(system, *data, 0.3, q, u);
+  Discrete discrete = get_discrete(*data);
+  for (int c = 0; c < system.num_constraints(); ++c)
+    discrete.closings[static_cast<size_t>(c)] = find_closing(system.impl().loops, system.impl().tree, data->tree, c);
+  set_modes(system, *data, discrete);
+  project(system, *data, 0.3, q, u);
+  return {std::move(tree), std::move(system), std::move(data), q, u};
+}
+
+VectorXd calc_rates(const System& system, SystemData& data, double t, const VectorXd& q, const VectorXd& u) {
+  const Loops& loops = system.impl().loops;
+  calc_kinematics(system, data, t, q, u);
+  calc_closure_positions(loops, system.impl().tree, data.tree, data.loops);
+  calc_closure_velocities(loops, system.impl().tree, data.tree, data.loops);
+  VectorXd rates = get_gaps(loops, data.loops);
+  int at = 0;
+  for (const LoopBlock& block : data.loops.blocks) {
+    for (const int i : block.constraints) {
+      const ConstraintData& d = data.loops[i];
+      if (loops[i].closure) {
+        for (int k = 0; k < loops[i].num_rows(); ++k) rates[at + k] = d.own.W.col(k).dot(d.relative.V);
+      } else {
+        rates[at] = 0;
+        for (const CouplerTerm& term : loops[i].terms) rates[at] += term.ratio * data.tree.u[term.u_row];
+      }
+      at += loops[i].num_rows();
+    }
+  }
+  return rates;
+}
+
+class RandomLoops : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(RandomLoops, StartClosed) {
+  Looped s = make_looped(GetParam());
+  EXPECT_LT(calc_largest_gap(s.system.impl().loops, s.data->loops), 1e-11);
+  EXPECT_LT(calc_rates(s.system, *s.data, 0.3, s.q, s.u).cwiseAbs().maxCoeff(), 1e-10 * (1 + s.u.cwiseAbs().maxCoeff()));
+}
+
+TEST_P(RandomLoops, MultipliersAgreeWithTheDenseEquations) {
+  Looped s = make_looped(GetParam());
+  const VectorXd u_dot = calc_u_dot(s.system, *s.data, 0.3, s.q, s.u);
+  VectorXd dense(s.system.num_u());
+  calc_accelerations_dense(s.system, *s.data, 0.3, dense);
+  EXPECT_LT((u_dot - dense).norm(), 1e-9 * (1 + dense.norm()));
+  // Again, by the page's own chain, and without a memory of the first time.
+  State state;
+  state.t = 0.3;
+  state.q = s.q;
+  state.u = s.u;
+  VectorXd q_dot(s.system.num_q()), again(s.system.num_u());
+  evaluate(s.system, state, *s.data, q_dot, again);
+  EXPECT_LT((u_dot - again).norm(), 1e-11 * (1 + dense.norm()));
+}
+
+// The responses of the factored tree are M⁻¹Gᵀ of the rows by unit speeds.
+TEST_P(RandomLoops, BlocksAreGMGt) {
+  Looped s = make_looped(GetParam());
+  calc_u_dot(s.system, *s.data, 0.3, s.q, s.u);
+  const System::Impl& impl = s.system.impl();
+  MatrixXd mass;
+  VectorXd force;
+  calc_dense_equations(impl.tree, s.data->tree, mass, force);
+  const MatrixXd G = calc_dense_rows(impl.loops, impl.tree, s.data->tree, s.data->loops);
+  std::vector<int> free;
+  for (int row = 0; row < impl.tree.num_u; ++row) {
+    if (s.data->tree.mode[static_cast<size_t>(row)] == HingeMode::Free) free.push_back(row);
+  }
+  const MatrixXd own = G(Eigen::all, free), M = mass(free, free);
+  const MatrixXd A = own * M.llt().solve(own.transpose());
+  Eigen::Index at = 0;
+  for (const LoopBlock& block : s.data->loops.blocks) {
+    const auto n = block.A.rows();
+    const MatrixXd lower = block.A.triangularView<Eigen::Lower>();
+    const MatrixXd expected = A.block(at, at, n, n).triangularView<Eigen::Lower>();
+    EXPECT_LT((lower - expected).norm(), 1e-10 * (1 + expected.norm()));
+    at += n;
+  }
+}
+
+TEST_P(RandomLoops, RatesStayClosedAlongTheMotion) {
+  Looped s = make_looped(GetParam());
+  const VectorXd u_dot = calc_u_dot(s.system, *s.data, 0.3, s.q, s.u);
+  auto other = s.system.make_data();
+  set_modes(s.system, *other, get_discrete(*s.data));
+  // The rows' basis may turn, their length may not.
+  const auto calc_size = [&](double dt) {
+    return calc_rates(s.system, *other, 0.3 + dt, advance_q(s.system, *other, 0.3, dt, s.q, s.u, u_dot),
+                      s.u + dt * u_dot)
+        .norm();
+  };
+  const double scale = 1 + u_dot.norm() + s.u.squaredNorm();
+  EXPECT_LT(calc_size(1e-4), 1e-6 * scale * scale);  // second order: a wrong term would leave 1e-4
+}
+
+TEST_P(RandomLoops, ReactionsCloseNewtonAndEulerOfEveryBody) {
+  Looped s = make_looped(GetParam());
+  const System& system = s.system;
+  const double t = 0.3, h = 4e-3;
+  const VectorXd u_dot = calc_u_dot(system, *s.data, t, s.q, s.u);
+  const SystemData& data = *s.data;
+  auto other = system.make_data();
+  const auto calc_momenta = [&](double dt) {
+    calc_kinematics(system, *other, t + dt, advance_q(system, *other, t, dt, s.q, s.u, u_dot), s.u + dt * u_dot);
+    Matrix6Xd momenta(6, system.num_bodies());
+    for (int b = 0; b < system.num_bodies(); ++b) {
+      Vector3d p, l;
+      calc_body_momentum(system, *other, b, p, l);
+      momenta.col(b) << p, l;
+    }
+    return momenta;
+  };
+  Matrix6Xd rate = Matrix6Xd::Zero(6, system.num_bodies());
+  const double weight[] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
+  for (int k = 1; k <= 4; ++k) rate += weight[k - 1] / h * (calc_momenta(k * h) - calc_momenta(-k * h));
+  Matrix6Xd loads = Matrix6Xd::Zero(6, system.num_bodies());
+  for (int b = 0; b < system.num_bodies(); ++b) {
+    const TreeBody& tb = system.impl().tree[b];
+    const BodyState& own = data.tree[b].state;
+    const Vector3d S = tb.is_flexible() ? data.tree[b].inertia.S : tb.body.first_moment();
+    const Vector3d f = own.R_WB * data.tree.applied.segment<3>(tb.v_offset);
+    const Vector3d m = own.R_WB * data.tree.applied.segment<3>(tb.v_offset + 3);
+    loads.col(b).head<3>() += f + tb.body.mass() * data.tree.gravity;
+    loads.col(b).tail<3>() +=
+        m + own.p_WBo.cross(f) + (tb.body.mass() * own.p_WBo + own.R_WB * S).cross(data.tree.gravity);
+    const HingeReaction r = get_hinge_reaction(system, data, b);
+    const MarkerMotion& c = data.tree.markers[static_cast<size_t>(tb.child_marker)];
+    const Matrix3d R_WHp = data.tree[tb.parent].state.R_WB * data.tree.markers[static_cast<size_t>(tb.parent_marker)].R;
+    const Vector3d force = R_WHp * r.force;
+    Vector6d wrench;
+    wrench << force, R_WHp * r.moment + (own.p_WBo + own.R_WB * c.r).cross(force);
+    loads.col(b) += wrench;
+    if (tb.parent >= 0) loads.col(tb.parent) -= wrench;
+  }
+  for (int i = 0; i < system.num_constraints(); ++i) {
+    const Constraint& c = system.impl().loops[i];
+    const ConstraintReaction r = get_constraint_reaction(system, data, i);
+    if (!c.closure) {  // a motor across each hinge: in the hinges' reactions already
+      continue;
+    }
+    const RelativeMotion& X = data.loops[i].relative;
+    const Marker& parent = system.impl().tree.markers[static_cast<size_t>(c.parent_marker)];
+    const Marker& child = system.impl().tree.markers[static_cast<size_t>(c.child_marker)];
+    const BodyState& state = data.tree[child.body].state;
+    const Vector3d at = state.p_WBo + state.R_WB * data.tree.markers[static_cast<size_t>(c.child_marker)].r + X.o_W;
+    const Vector3d f = X.R_WHp * r.force;
+    Vector6d wrench;
+    wrench << f, X.R_WHp * r.moment + at.cross(f);
+    loads.col(child.body) += wrench;
+    if (parent.body >= 0) loads.col(parent.body) -= wrench;
+  }
+  const double scale = 1 + loads.cwiseAbs().maxCoeff() + rate.cwiseAbs().maxCoeff();
+  EXPECT_LT((rate - loads).cwiseAbs().maxCoeff(), 1e-10 * scale);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomLoops, ::testing::Range(1u, 25u));
+
+// Least-norm solution of a singular semidefinite system, against the pseudo-inverse of the scaled one.
+TEST(Semidefinite, SolvesByLeastNorm) {
+  Random random(3);
+  for (const int rank : {1, 4, 7, 9}) {
+    const MatrixXd B = MatrixXd::NullaryExpr(9, rank, [&] { return random(); });
+    const MatrixXd A = B * B.transpose();
+    const VectorXd b = A * random.vector_n(9);
+    SemidefiniteFactor factor;
+    factor.resize(9);
+    factor.compute(A);
+    EXPECT_EQ(factor.rank(), rank);
+    VectorXd x = b;
+    factor.solve(x);
+    EXPECT_LT((A * x - b).norm(), 1e-9 * b.norm());
+    const VectorXd s = A.diagonal().cwiseSqrt();
+    const MatrixXd scaled = s.cwiseInverse().asDiagonal() * A * s.cwiseInverse().asDiagonal();
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> cod;
+    cod.setThreshold(1e-8);
+    cod.compute(scaled);
+    const VectorXd expected = s.cwiseInverse().asDiagonal() * VectorXd(cod.solve(VectorXd(s.cwiseInverse().asDiagonal() * b)));
+    EXPECT_LT((x - expected).norm(), 1e-8 * expected.norm());
+  }
+}
+
+}  // namespace
+}  // namespace bough::solver::testing
