@@ -16,6 +16,10 @@ class Ode {
   virtual int size() const = 0;
   /// y, y_dot: size(). May throw; may leave values that are not finite where y has left its domain.
   virtual void calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) = 0;
+  /// One stage of a linearly implicit step, with a matrix A of its own choice in place of ∂f/∂y: solves
+  /// (1 - γh A) k = f(t, y), or after that one, for the second stage, (1 - γh A) x = f(t, y) - 2γh A k.
+  virtual void calc_stage(double /*t*/, const Eigen::Ref<const VectorXd>& /*y*/, double /*gamma_h*/, bool /*is_first*/,
+                          Eigen::Ref<VectorXd> /*k*/);
 };
 
 /// What the steppers call. Times are clamped to `latest`, the last moment before the next jump of a function of time,
@@ -28,6 +32,7 @@ class GuardedOde {
   void set_latest(double latest) { latest_ = latest; }
   /// 0: fine; 1: the derivative is not finite or the equations threw (kept for throw_pending).
   int calc(double t, const double* y, double* y_dot) noexcept;
+  int calc_stage(double t, const double* y, double gamma_h, bool is_first, double* k) noexcept;
   void begin_step() {
     pending_ = nullptr;
     non_finite_ = false;
@@ -43,6 +48,9 @@ class GuardedOde {
   long num_evaluations() const { return num_evaluations_; }
 
  private:
+  template <class Action>
+  int guard(double t, double* result, const Action& action) noexcept;
+
   Ode& ode_;
   double latest_ = std::numeric_limits<double>::infinity();
   std::exception_ptr pending_;

@@ -1,6 +1,7 @@
 #pragma once
 /// \file What stands behind System and SystemData.
 #include "solver/forces/applied.hpp"
+#include "solver/forces/element.hpp"
 #include "solver/system/system.hpp"
 #include "solver/tree/data.hpp"
 
@@ -10,6 +11,7 @@ struct System::Impl {
   Tree tree;
   std::vector<std::unique_ptr<const TimeFunction>> functions;
   std::vector<AppliedForce> forces;
+  std::vector<std::unique_ptr<const ForceElement>> elements;
   Vector3d gravity = Vector3d::Zero();
   std::vector<double> breakpoints, landmarks;
   double start = 0;
@@ -19,6 +21,7 @@ struct System::Impl {
 class SystemData {
  public:
   TreeData tree;
+  std::vector<ForceResult> elements;  ///< of add_forces; zero before it
 };
 
 }  // namespace bough::solver

@@ -61,6 +61,7 @@ const std::vector<double>& System::landmarks() const { return impl_->landmarks; 
 std::unique_ptr<SystemData> System::make_data() const {
   auto data = std::make_unique<SystemData>();
   data->tree = make_tree_data(impl_->tree);
+  data->elements.resize(impl_->elements.size());
   return data;
 }
 
@@ -125,6 +126,7 @@ void get_q_dot(const System& system, const SystemData& data, Eigen::Ref<VectorXd
 void calc_kinematics(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                      const Eigen::Ref<const VectorXd>& u) {
   calc_kinematics(system.impl().tree, t, q, u, data.tree);
+  std::fill(data.elements.begin(), data.elements.end(), ForceResult());
 }
 
 void add_forces(const System& system, SystemData& data, double t) {
@@ -133,6 +135,9 @@ void add_forces(const System& system, SystemData& data, double t) {
   data.tree.gravity = impl.gravity;
   for (const AppliedForce& force : impl.forces) add_applied_force(force, impl.tree, t, data.tree);
   add_hinge_forces(impl.tree, data.tree);
+  Loads loads(impl.tree, data.tree);
+  for (size_t i = 0; i < impl.elements.size(); ++i)
+    data.elements[i] = impl.elements[i]->calc(impl.tree, data.tree, &loads);
 }
 
 void add_node_wrench(const System& system, SystemData& data, int body, int node_index, const Vector3d& f_W,
