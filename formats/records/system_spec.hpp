@@ -13,6 +13,7 @@
 #include "base/diagnostic.hpp"
 #include "formats/records/constraint_spec.hpp"
 #include "formats/records/flex_body.hpp"
+#include "formats/records/force_spec.hpp"
 
 namespace bough::records {
 
@@ -67,6 +68,7 @@ struct HingeRecord {
   std::vector<std::string> motion;     ///< prescribed: function name per coordinate ("" = free)
   bool is_guess = false;     ///< position: may be moved to close loops as freely as if it were not given
   std::vector<bool> locked;            ///< at the start, per hinge rate; empty: none
+  HingeLawRecord law;
   SourceLocation at;
 };
 
@@ -144,8 +146,8 @@ struct SimulationRecord {
   double output_until = std::numeric_limits<double>::infinity();  ///< nor those after it
   int output_every = 1;                                           ///< of the others one in so many
   std::vector<std::string> record;   ///< groups of channels: "bodies", "hinges/root", ...; empty = all
-  std::string integrator = "adams";  ///< adams, bdf (CVODE), rk (adaptive, ARKODE), rk4 (fixed step), auto
-  double step = 0;                   ///< rk4; also the largest step of the others when > 0
+  std::string integrator = "adams";  ///< adams, bdf (CVODE), rk (adaptive, ARKODE), rk4, implicit (fixed step), auto
+  double step = 0;                   ///< rk4, implicit; also the largest step of the others when > 0
   int rk_order = 8;                  ///< rk: 5 or 8
   double relative_tolerance = 1e-8, absolute_tolerance = 1e-10;
   double absolute_tolerance_modes = 0;  ///< of η and η̇; 0: as the others
@@ -163,6 +165,7 @@ struct SystemSpec {
   std::vector<ConstraintRecord> constraints;
   std::vector<FunctionRecord> functions;
   std::vector<ForceRecord> forces;
+  std::vector<ForceElementRecord> force_elements;  ///< [[force]] with a type
   std::vector<SensorRecord> sensors;
   std::vector<TriggerRecord> events;
   SimulationRecord simulation;

@@ -8,6 +8,7 @@
 
 #include "formats/toml/detail/constraint_table.hpp"
 #include "formats/toml/detail/fields.hpp"
+#include "formats/toml/detail/force_table.hpp"
 #include "formats/toml/detail/hinge_table.hpp"
 #include "formats/toml/detail/references.hpp"
 #include "formats/toml/detail/schema.hpp"
@@ -151,26 +152,6 @@ records::FunctionRecord read_function(const Fields& fields, const Value& table, 
   return function;
 }
 
-records::ForceRecord read_force(const Fields& table, Diagnostics& diagnostics) {
-  records::ForceRecord force;
-  force.at = table.locate();
-  force.name = table.get_string("name");
-  force.kind = table.has("moment") ? records::ForceKind::Moment : records::ForceKind::Force;
-  force.body = table.get_string("body");
-  force.node = table.get_int("node", 0);
-  force.direction = table.get_vector(table.has("moment") ? "moment" : "force", force.direction);
-  const std::string frame = table.get_string("frame", "body");
-  force.frame = frame == "inertial" ? records::VectorFrame::Inertial
-                : frame == "node"   ? records::VectorFrame::Node
-                                    : records::VectorFrame::Body;
-  force.function = table.get_string("function");
-  force.locator = table.get_string("locator");
-  if (table.has("locator")) {
-    refuse_keys(table, {"node", "frame"}, "in force '" + force.name + "', which is a load pattern", diagnostics);
-  }
-  return force;
-}
-
 records::SensorRecord read_sensor(const Fields& table, Diagnostics& diagnostics) {
   using records::SensorType;
   static const std::map<std::string, SensorType> types{{"position", SensorType::Position},
@@ -271,9 +252,11 @@ records::SimulationRecord read_simulation(const Fields& table, Diagnostics& diag
   simulation.energy_error_limit = table.get_number("energy_error_limit", simulation.energy_error_limit);
   simulation.gravity = table.get_vector("gravity", simulation.gravity);
   simulation.divergence_limit = table.get_number("divergence_limit", simulation.divergence_limit);
-  if (simulation.integrator == "rk4" && !table.has("step")) {
+  const bool is_fixed = simulation.integrator == "rk4" || simulation.integrator == "implicit";
+  if (is_fixed && !table.has("step")) {
     diagnostics.error("toml.missing-key", table.locate("integrator"),
-                      "missing key 'step' in simulation: the integrator rk4 has a fixed step", "add it");
+                      "missing key 'step' in simulation: the integrator " + simulation.integrator + " has a fixed step",
+                      "add it");
   }
   return simulation;
 }
@@ -298,7 +281,7 @@ records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagn
       if (table.is_table()) spec.functions.push_back(read_function(Fields(table, path), table, path, diagnostics));
     }
   }
-  for (const Fields& table : fields.get_tables("force")) spec.forces.push_back(read_force(table, diagnostics));
+  for (const Fields& table : fields.get_tables("force")) read_force(table, spec, diagnostics);
   for (const Fields& table : fields.get_tables("sensor")) spec.sensors.push_back(read_sensor(table, diagnostics));
   for (const Fields& table : fields.get_tables("event")) spec.events.push_back(read_event(table, diagnostics));
   spec.simulation = read_simulation(fields.get_table("simulation"), diagnostics);

@@ -2,15 +2,22 @@
 
 #include <algorithm>
 
+#include "base/diagnostic.hpp"
+
 namespace bough::solver {
 
-int GuardedOde::calc(double t, const double* y, double* y_dot) noexcept {
+void Ode::calc_stage(double, const Eigen::Ref<const VectorXd>&, double, bool, Eigen::Ref<VectorXd>) {
+  BOUGH_DEMAND(false);
+}
+
+template <class Action>
+int GuardedOde::guard(double t, double* out, const Action& action) noexcept {
   ++num_evaluations_;
   pending_ = nullptr;
   const double time = std::min(t, latest_);
   try {
-    Eigen::Map<VectorXd> result(y_dot, ode_.size());
-    ode_.calc_derivative(time, Eigen::Map<const VectorXd>(y, ode_.size()), result);
+    Eigen::Map<VectorXd> result(out, ode_.size());
+    action(time, result);
     if (result.allFinite()) return 0;
     non_finite_ = true;
     bad_time_ = time;
@@ -31,6 +38,18 @@ int GuardedOde::project(double t, double* y) noexcept {
     pending_ = std::current_exception();
   }
   return 1;
+}
+
+int GuardedOde::calc(double t, const double* y, double* y_dot) noexcept {
+  return guard(t, y_dot, [&](double time, Eigen::Map<VectorXd>& result) {
+    ode_.calc_derivative(time, Eigen::Map<const VectorXd>(y, ode_.size()), result);
+  });
+}
+
+int GuardedOde::calc_stage(double t, const double* y, double gamma_h, bool is_first, double* k) noexcept {
+  return guard(t, k, [&](double time, Eigen::Map<VectorXd>& result) {
+    ode_.calc_stage(time, Eigen::Map<const VectorXd>(y, ode_.size()), gamma_h, is_first, result);
+  });
 }
 
 }  // namespace bough::solver

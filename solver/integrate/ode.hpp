@@ -20,6 +20,10 @@ class Ode {
   virtual bool has_projection() const { return false; }
   /// Brings y onto what the equations keep at zero. May throw.
   virtual void project(double, Eigen::Ref<VectorXd>) {}
+  /// One stage of a linearly implicit step, with a matrix A of its own choice in place of ∂f/∂y: solves
+  /// (1 - γh A) k = f(t, y), or after that one, for the second stage, (1 - γh A) x = f(t, y) - 2γh A k.
+  virtual void calc_stage(double /*t*/, const Eigen::Ref<const VectorXd>& /*y*/, double /*gamma_h*/, bool /*is_first*/,
+                          Eigen::Ref<VectorXd> /*k*/);
 };
 
 /// What the steppers call. Times are clamped to `latest`, the last moment before the next jump of a function of time,
@@ -35,6 +39,7 @@ class GuardedOde {
   bool has_projection() const { return ode_.has_projection(); }
   /// y, in and out. 0: fine; 1: it threw or is not finite.
   int project(double t, double* y) noexcept;
+  int calc_stage(double t, const double* y, double gamma_h, bool is_first, double* k) noexcept;
   void begin_step() {
     pending_ = nullptr;
     non_finite_ = false;
@@ -50,6 +55,9 @@ class GuardedOde {
   long num_evaluations() const { return num_evaluations_; }
 
  private:
+  template <class Action>
+  int guard(double t, double* result, const Action& action) noexcept;
+
   Ode& ode_;
   double latest_ = std::numeric_limits<double>::infinity();
   std::exception_ptr pending_;

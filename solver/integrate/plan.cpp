@@ -12,11 +12,11 @@ constexpr double kMostSteps = 1e11;
 
 bool check_simulation(const records::SimulationRecord& s, Diagnostics& diagnostics) {
   const int errors = diagnostics.num_errors();
-  const std::vector<std::string> known = {"adams", "bdf", "rk", "rk4", "auto"};
+  const std::vector<std::string> known = {"adams", "bdf", "rk", "rk4", "implicit", "auto"};
   if (std::find(known.begin(), known.end(), s.integrator) == known.end()) {
     const std::string near = find_nearest(s.integrator, known);
     diagnostics.error("run.unknown-integrator", s.at, "the integrator '" + s.integrator + "' is unknown",
-                      near.empty() ? "use adams, bdf, rk, rk4 or auto" : "did you mean '" + near + "'?");
+                      near.empty() ? "use adams, bdf, rk, rk4, implicit or auto" : "did you mean '" + near + "'?");
   }
   const auto demand = [&](bool condition, const std::string& what, const std::string& advice) {
     if (!condition) diagnostics.error("run.bad-simulation", s.at, what, advice);
@@ -30,9 +30,10 @@ bool check_simulation(const records::SimulationRecord& s, Diagnostics& diagnosti
   demand(!(s.output_step > 0 && s.duration / s.output_step > 1e8), "output_step asks for more than 1e8 samples",
          "give a longer output_step");
   const bool good_step = demand(std::isfinite(s.step) && s.step >= 0, "step is not a positive number", "give step > 0");
-  demand(s.integrator != "rk4" || s.step > 0, "rk4 has no step", "give step = SECONDS in [simulation]");
+  const bool is_fixed = s.integrator == "rk4" || s.integrator == "implicit";
+  demand(!is_fixed || s.step > 0, s.integrator + " has no step", "give step = SECONDS in [simulation]");
   demand(!(good && good_step && s.step > 0 && s.duration / s.step > kMostSteps), "step asks for more than 1e11 steps",
-         s.integrator == "rk4" ? "give a longer step" : "give a longer largest step, or leave it out");
+         is_fixed ? "give a longer step" : "give a longer largest step, or leave it out");
   // Time has to advance in steps much shorter than what is asked for.
   const double asked = s.output_step > 0 ? s.output_step : s.duration / 1000;
   const double finest =
@@ -40,7 +41,7 @@ bool check_simulation(const records::SimulationRecord& s, Diagnostics& diagnosti
   std::ostringstream far;
   far << "start = " << s.start << " is too far from zero: times there are " << finest << " apart, samples " << asked;
   demand(!good || 1e3 * finest < asked, far.str(), "count time from a nearer start");
-  if (s.integrator != "rk4") {
+  if (!is_fixed) {
     demand(s.relative_tolerance > 0 && s.relative_tolerance < 1, "relative_tolerance is not between 0 and 1",
            "give 1e-6 to 1e-12");
     demand(s.absolute_tolerance > 0 && std::isfinite(s.absolute_tolerance), "absolute_tolerance is not positive",
@@ -67,7 +68,7 @@ RunPlan make_run_plan(const records::SimulationRecord& s, Diagnostics& diagnosti
   plan.end = s.start + s.duration;
   plan.output_step = s.output_step > 0 ? std::min(s.output_step, s.duration) : s.duration / 1000;
   plan.step = s.step;
-  if (s.integrator == "rk4") {
+  if (s.integrator == "rk4" || s.integrator == "implicit") {
     const double steps = std::ceil(plan.output_step / s.step * (1 - 1e-9));
     plan.step = plan.output_step / std::max(1.0, steps);
     if (std::abs(plan.step - s.step) > 1e-9 * s.step) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solver/system/impl.hpp"
+
 namespace bough::solver {
 
 Recorder::Recorder(const System& system, Sensors sensors) : system_(system), sensors_(std::move(sensors)) {
@@ -15,6 +17,7 @@ Recorder::Recorder(const System& system, Sensors sensors) : system_(system), sen
     if (const int n = system.num_modes(b); n > 0) {
       add_channel(path + "eta", n, "modal coordinates", "by normalisation");
       add_channel(path + "eta_dot", n, "rates of the modal coordinates", "by normalisation");
+      add_channel(path + "strain_energy", 1, "strain energy of its modes", "F L");
     }
   }
   for (int b = 0; b < system.num_bodies(); ++b) {
@@ -47,10 +50,14 @@ Recorder::Recorder(const System& system, Sensors sensors) : system_(system), sen
     add_channel(path + "reaction_moment", 3,
                 "moment of the parent on the child about the child's frame, in the axes of the parent's", "F L");
   }
+  for (const auto& element : system.impl().elements) {
+    for (const ForceChannel& c : element->channels())
+      add_channel("/forces/" + element->name() + "/" + c.name, c.size, c.description, c.dims);
+  }
   for (const auto& entry : sensors_.entries())
     add_channel("/sensors/" + entry.name, entry.size, entry.description, entry.dims);
   add_channel("/energy/kinetic", 1, "kinetic energy", "F L");
-  add_channel("/energy/strain", 1, "strain energy of the modes and the hinge springs", "F L");
+  add_channel("/energy/strain", 1, "strain energy of the modes, of springs and of contacts", "F L");
   add_channel("/energy/potential", 1, "potential energy of gravity", "F L");
   add_channel("/energy/work", 1, "work done since the start by applied forces, dampers and prescribed motions", "F L");
   add_channel("/energy/dissipated", 1, "what dampers took since the start; part of work with its minus", "F L");
@@ -60,6 +67,11 @@ Recorder::Recorder(const System& system, Sensors sensors) : system_(system), sen
   add_channel("/system_mass/cg", 3, "centre of mass of the system, in the inertial frame", "L");
   add_channel("/system_mass/inertia", 9,
               "inertia of the system about its centre of mass, in the inertial frame: three rows", "M L^2");
+  for (const auto& element : system.impl().elements) {
+    std::vector<int> sizes;
+    for (const ForceChannel& c : element->channels()) sizes.push_back(c.size);
+    element_sizes_.push_back(std::move(sizes));
+  }
   int size = 0;
   for (const auto& channel : channels_) size += channel.size;
   sample_.setZero(size);
@@ -150,6 +162,7 @@ const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Ei
     put(s.w_B);
     put(q.segment(system_.eta_offset(b), system_.num_modes(b)));
     put(u.segment(system_.eta_dot_offset(b), system_.num_modes(b)));
+    if (system_.num_modes(b) > 0) sample_[at++] = calc_strain_energy(system_, data, b);
   }
   for (int b = 0; b < system_.num_bodies(); ++b) {
     const int nq = system_.num_hinge_q(b), nu = system_.num_hinge_rates(b);
@@ -170,6 +183,11 @@ const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Ei
     }
     put(reaction.force);
     put(reaction.moment);
+  }
+  for (size_t i = 0; i < data.elements.size(); ++i) {
+    size_t first = 0;
+    for (const int size : element_sizes_[i])
+      for (int k = 0; k < size; ++k) sample_[at++] = data.elements[i].values[first++];
   }
   sensors_.calc(system_, data, sample_.segment(at, sensors_.size()));
   at += sensors_.size();

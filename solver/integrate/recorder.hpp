@@ -10,7 +10,7 @@ class Recorder {
  public:
   /// Channels, their order fixed here once: /time; per body position, quaternion, velocity, angular_velocity, and eta,
   /// eta_dot when it has modes; per hinge q, qdot, force when it has coordinates, reaction_force, reaction_moment;
-  /// per constraint its reactions; sensors; energy; momentum; system_mass.
+  /// per constraint its reactions; elements of force; sensors; energy; momentum; system_mass.
   Recorder(const System& system, Sensors sensors);
 
   /// Of calc_sample.
@@ -42,6 +42,7 @@ class Recorder {
   std::vector<records::Channel> channels_, chosen_;
   std::vector<std::pair<int, int>> ranges_;  ///< first and size in sample_ of what is chosen
   std::vector<int> quaternion_at_;
+  std::vector<std::vector<int>> element_sizes_;  ///< of the channels of each element of force
   VectorXd sample_, kept_;
   Energies energies_;
 };

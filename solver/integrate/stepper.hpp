@@ -9,8 +9,8 @@ namespace bough::solver {
 
 struct StepperOptions {
   double relative_tolerance = 1e-8;
-  VectorXd absolute_tolerance;  ///< size(); ignored by rk4
-  double step = 0;              ///< rk4: the step; others: the largest step when > 0
+  VectorXd absolute_tolerance;  ///< size(); ignored by rk4 and implicit
+  double step = 0;              ///< rk4, implicit: the step; others: the largest step when > 0
   int rk_order = 8;             ///< of the adaptive Runge-Kutta pair: 5 or 8
 };
 
@@ -54,7 +54,7 @@ class Stepper {
   virtual void set_memory(const Eigen::Vector4d&) {}
 };
 
-/// integrator: "adams", "bdf", "rk", "rk4". BOUGH_DEMAND on another name. The Ode must outlive the stepper.
+/// integrator: "adams", "bdf", "rk", "rk4", "implicit". BOUGH_DEMAND on another name. The Ode must outlive the stepper.
 std::unique_ptr<Stepper> make_stepper(const std::string& integrator, Ode& ode, const StepperOptions& options);
 
 /// SUNDIALS CVODE: variable order and step; Adams-Moulton (to order 12) by fixed-point iteration, or BDF (to order 5)
@@ -62,8 +62,9 @@ std::unique_ptr<Stepper> make_stepper(const std::string& integrator, Ode& ode, c
 std::unique_ptr<Stepper> make_cvode_stepper(Ode& ode, const StepperOptions& options, bool stiff);
 /// SUNDIALS ARKODE, explicit embedded pair: Dormand-Prince 5(4) or Fehlberg 8(7).
 std::unique_ptr<Stepper> make_erk_stepper(Ode& ode, const StepperOptions& options);
-/// The classical Runge-Kutta method of order 4, each interval to the next target cut into equal steps no longer than
-/// options.step: results depend on the targets only; with memory() not on where a run was interrupted.
+/// The classical Runge-Kutta method of order 4, at fixed step (fixed_step.hpp).
 std::unique_ptr<Stepper> make_rk4_stepper(Ode& ode, const StepperOptions& options);
+/// Linearly implicit of order 2 (ROS2), at fixed step: what Ode::calc_stage takes for stiff does not limit the step.
+std::unique_ptr<Stepper> make_implicit_stepper(Ode& ode, const StepperOptions& options);
 
 }  // namespace bough::solver

@@ -7,7 +7,10 @@
 namespace bough::solver {
 
 SystemOde::SystemOde(const System& system)
-    : system_(system), data_(system.make_data()), num_q_(system.num_q()), num_u_(system.num_u()) {}
+    : system_(system), data_(system.make_data()), num_q_(system.num_q()), num_u_(system.num_u()) {
+  for (const TreeBody& tb : system.impl().tree.bodies) has_motion_ = has_motion_ || !tb.motion.empty();
+  for (VectorXd* v : {&k_, &c_, &first_delta_, &first_u_, &delta_, &extra_}) v->setZero(num_u_);
+}
 
 void SystemOde::calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) {
   const auto q = y.head(num_q_);
@@ -126,6 +129,11 @@ std::string SystemOde::name_first_non_finite(double t, const Eigen::Ref<const Ve
   }
   VectorXd y_dot = VectorXd::Zero(size());
   calc_derivative(t, y, y_dot);
+  for (size_t i = 0; i < data_->elements.size(); ++i) {
+    const ForceResult& r = data_->elements[i];
+    if (!std::isfinite(r.power + r.dissipated + r.strain + r.potential))
+      return "force '" + impl.elements[i]->name() + "'";
+  }
   for (const TreeBody& tb : impl.tree.bodies) {
     if (!data_->tree.applied.segment(tb.v_offset, 6 + tb.num_modes()).allFinite())
       return "the load on body '" + tb.name + "'";

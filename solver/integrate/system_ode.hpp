@@ -22,6 +22,10 @@ class SystemOde final : public Ode {
   void calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) override;
   bool has_projection() const override { return system_.num_constraints() > 0; }
   void project(double t, Eigen::Ref<VectorXd> y) override;
+  /// A takes the stiffness and damping of each body's modes, of hinge springs, dampers, stops and friction for linear
+  /// and nothing else: (M + γh D + γ²h² K) u̇ by the order-n recursion, in which K and D are blocks of one body.
+  void calc_stage(double t, const Eigen::Ref<const VectorXd>& y, double gamma_h, bool is_first,
+                  Eigen::Ref<VectorXd> k) override;
   const SystemData& data() const { return *data_; }
   VectorXd make_initial_state() const;
   /// Takes y over the jump at t; `before` is the last moment that sees what was. Describes each jump of a rate.
@@ -42,9 +46,16 @@ class SystemOde final : public Ode {
   std::string name_first_non_finite(double t, const Eigen::Ref<const VectorXd>& y);
 
  private:
+  void calc_tangent();
+  void add_stage_forces(double gamma_h, bool is_first);
+
   const System& system_;
   std::unique_ptr<SystemData> data_;
   int num_q_, num_u_;
+  bool has_motion_ = false;
+  // Of the stages: stiffness and damping along hinge coordinates, first stage and right-hand side in the tangent of q,
+  // first stage of u, what the stage adds to forces by row of u.
+  VectorXd k_, c_, first_delta_, first_u_, delta_, extra_;
 };
 
 }  // namespace bough::solver

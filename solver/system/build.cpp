@@ -98,11 +98,13 @@ void collect_breakpoints(System::Impl& impl) {
     add(impl.landmarks, f->landmarks());
   };
   for (const TreeBody& tb : impl.tree.bodies) std::for_each(tb.motion.begin(), tb.motion.end(), add_motion);
-  for (const AppliedForce& force : impl.forces) {
-    if (force.function == nullptr) continue;
-    add(impl.breakpoints, force.function->corners());
-    add(impl.landmarks, force.function->landmarks());
-  }
+  const auto add_force = [&](const TimeFunction* f) {
+    if (f == nullptr) return;
+    add(impl.breakpoints, f->corners());
+    add(impl.landmarks, f->landmarks());
+  };
+  for (const AppliedForce& force : impl.forces) add_force(force.function);
+  for (const auto& element : impl.elements) add_force(element->function());
   for (auto* times : {&impl.breakpoints, &impl.landmarks}) {
     std::sort(times->begin(), times->end());
     times->erase(std::unique(times->begin(), times->end()), times->end());
@@ -210,6 +212,15 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
   tree.finish();
   for (AppliedForce& force : impl.forces) add_force_marker(force, tree);
   build_constraints(spec, order, impl, diagnostics);
+  const ElementContext context{spec, order, flex, functions, impl.sound};
+  for (const auto& record : spec.force_elements) {
+    if (auto element = build_element(record, context, tree, diagnostics)) impl.elements.push_back(std::move(element));
+  }
+  for (size_t b = 0; b < tree.bodies.size(); ++b) {
+    if (order.hinge[b] < 0 || !impl.sound[b]) continue;
+    build_hinge_laws(spec.hinges[static_cast<size_t>(order.hinge[b])], context, tree.bodies[b], impl.elements,
+                     diagnostics);
+  }
   collect_breakpoints(impl);
   if (diagnostics.num_errors() == 0 && impl.loops.size() > 0) assemble(spec, order, system, impl, diagnostics);
   return system;

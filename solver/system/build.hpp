@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "solver/forces/curve.hpp"
 #include "solver/system/impl.hpp"
 
 namespace bough::solver {
@@ -48,6 +49,24 @@ void build_constraints(const records::SystemSpec& spec, const TreeOrder& order, 
 /// notes "system.assembled" (what was moved) and "system.redundant-constraint".
 void assemble(const records::SystemSpec& spec, const TreeOrder& order, const System& system, System::Impl& impl,
               Diagnostics& diagnostics);
+/// What elements of force look names up in.
+struct ElementContext {
+  const records::SystemSpec& spec;
+  const TreeOrder& order;
+  const FlexMap& flex;
+  const FunctionMap& functions;
+  const std::vector<bool>& sound;
+  bool is_sound(int body) const { return sound[static_cast<size_t>(body)]; }
+};
+/// The [[function]] of that name as a curve; nullptr for "" and with errors reported.
+std::unique_ptr<const Curve> find_curve(const ElementContext& context, const std::string& name,
+                                        const SourceLocation& where, const std::string& user, Diagnostics& diagnostics);
+/// One [[force]] with a type; its markers go into the finished tree. Reports and returns nullptr on errors.
+std::unique_ptr<const ForceElement> build_element(const records::ForceElementRecord& record,
+                                                  const ElementContext& context, Tree& tree, Diagnostics& diagnostics);
+/// What acts along the coordinates of a body's hinge, and its motors' inertia, of the finished tree.
+void build_hinge_laws(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb,
+                      std::vector<std::unique_ptr<const ForceElement>>& elements, Diagnostics& diagnostics);
 
 /// What acts at a node. A hinge that can pass on a moment takes both.
 struct NodeLoad {

@@ -45,17 +45,30 @@ Energies calc_energies(const System& system, const SystemData& data) {
   for (int b = 0; b < tree.size(); ++b) {
     const TreeBody& tb = tree[b];
     const BodyData& d = data.tree[b];
-    const int n = tb.num_modes();
     e.kinetic += calc_own_momentum(tb, d, data.tree).kinetic;
-    const auto eta = data.tree.q.segment(tb.eta_offset(), n);
-    for (int j = 0; j < n; ++j) e.strain += 0.5 * eta[j] * tb.body.K().col(j).dot(eta);
+    e.strain += calc_strain_energy(system, data, b);
+    for (int i = 0; i < tb.rotor.size(); ++i)
+      e.kinetic += 0.5 * tb.rotor[i] * data.tree.u[tb.u_offset + i] * data.tree.u[tb.u_offset + i];
     double force[6];
     if (tb.stiffness.size() > 0)
       e.strain +=
           tb.hinge->calc_spring(data.tree.q.data() + tb.q_offset, tb.null_position.data(), tb.stiffness.data(), force);
     e.potential -= system.impl().gravity.dot(tb.body.mass() * d.state.p_WBo + d.state.R_WB * first_moment(tb, d));
   }
+  for (const auto& element : system.impl().elements) {
+    const ForceResult result = element->calc(tree, data.tree, nullptr);
+    e.strain += result.strain;
+    e.potential += result.potential;
+  }
   return e;
+}
+
+double calc_strain_energy(const System& system, const SystemData& data, int body) {
+  const TreeBody& tb = system.impl().tree[body];
+  const auto eta = data.tree.q.segment(tb.eta_offset(), tb.num_modes());
+  double twice = 0;
+  for (int j = 0; j < tb.num_modes(); ++j) twice += eta[j] * tb.body.K().col(j).dot(eta);
+  return 0.5 * twice;
 }
 
 Power calc_powers(const System& system, const SystemData& data) {
@@ -82,7 +95,17 @@ Power calc_powers(const System& system, const SystemData& data) {
     }
   }
   power -= calc_coupler_power(system.impl().loops, data.tree, data.loops);
-  return {power - dissipated, dissipated};
+  // What elements along hinges do is not in `applied`.
+  double lost = dissipated;
+  for (size_t i = 0; i < data.elements.size(); ++i) {
+    const ForceResult& result = data.elements[i];
+    dissipated += result.dissipated;
+    if (system.impl().elements[i]->is_along_hinge())
+      lost += result.dissipated;
+    else
+      power -= result.power;
+  }
+  return {power - lost, dissipated};
 }
 
 void calc_body_momentum(const System& system, const SystemData& data, int body, Vector3d& linear, Vector3d& angular) {

@@ -2,6 +2,7 @@
 /// \file What stands behind System and SystemData.
 #include "solver/forces/applied.hpp"
 #include "solver/loops/loops.hpp"
+#include "solver/forces/element.hpp"
 #include "solver/system/system.hpp"
 #include "solver/tree/data.hpp"
 
@@ -14,6 +15,7 @@ struct System::Impl {
   Loops loops;
   VectorXd initial_q, initial_u;          ///< with closed loops; empty: as the records say
   std::vector<Closing> initial_closings;  ///< likewise
+  std::vector<std::unique_ptr<const ForceElement>> elements;
   Vector3d gravity = Vector3d::Zero();
   std::vector<double> breakpoints, landmarks;
   double start = 0;
@@ -24,6 +26,7 @@ class SystemData {
  public:
   TreeData tree;
   LoopData loops;
+  std::vector<ForceResult> elements;  ///< of add_forces; zero before it
 };
 
 }  // namespace bough::solver

@@ -64,6 +64,7 @@ std::unique_ptr<SystemData> System::make_data() const {
   data->loops = make_loop_data(impl_->loops, impl_->tree);
   if (!impl_->initial_closings.empty())
     set_closings(impl_->loops, impl_->tree, impl_->initial_closings, data->loops);
+  data->elements.resize(impl_->elements.size());
   return data;
 }
 
@@ -136,6 +137,7 @@ void get_q_dot(const System& system, const SystemData& data, Eigen::Ref<VectorXd
 void calc_kinematics(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                      const Eigen::Ref<const VectorXd>& u) {
   calc_kinematics(system.impl().tree, t, q, u, data.tree);
+  std::fill(data.elements.begin(), data.elements.end(), ForceResult());
 }
 
 void add_forces(const System& system, SystemData& data, double t) {
@@ -144,6 +146,9 @@ void add_forces(const System& system, SystemData& data, double t) {
   data.tree.gravity = impl.gravity;
   for (const AppliedForce& force : impl.forces) add_applied_force(force, impl.tree, t, data.tree);
   add_hinge_forces(impl.tree, data.tree);
+  Loads loads(impl.tree, data.tree);
+  for (size_t i = 0; i < impl.elements.size(); ++i)
+    data.elements[i] = impl.elements[i]->calc(impl.tree, data.tree, &loads);
 }
 
 void add_node_wrench(const System& system, SystemData& data, int body, int node_index, const Vector3d& f_W,

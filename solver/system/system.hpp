@@ -115,7 +115,7 @@ void get_q_dot(const System& system, const SystemData& data, Eigen::Ref<VectorXd
 /// Positions and velocities of every body; clears the applied forces. Must precede the calls below. O(num_bodies).
 void calc_kinematics(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                      const Eigen::Ref<const VectorXd>& u);
-/// Adds every [[force]] of the spec at time t, hinge springs and dampers, gravity. After calc_kinematics.
+/// Adds every [[force]] of the spec at time t, what acts along hinge coordinates, gravity. After calc_kinematics.
 void add_forces(const System& system, SystemData& data, double t);
 /// Adds a force and moment (components in W) at a node, through its Jacobian φ - K_G2 η. After calc_kinematics.
 void add_node_wrench(const System& system, SystemData& data, int body, int node_index, const Vector3d& f_W,
@@ -147,6 +147,8 @@ ConstraintReaction get_constraint_reaction(const System& system, const SystemDat
 HingeReaction get_hinge_reaction(const System& system, const SystemData& data, int body);
 
 Energies calc_energies(const System& system, const SystemData& data);
+/// Of the modes of one body.
+double calc_strain_energy(const System& system, const SystemData& data, int body);
 struct Power {
   double total = 0;       ///< of applied forces, dampers and prescribed motions: d/dt(kinetic + strain + potential)
   double dissipated = 0;  ///< what dampers take, counted in total with its minus

@@ -19,6 +19,7 @@ TreeData make_tree_data(const Tree& tree) {
   data.q = VectorXd::Zero(tree.num_q);
   data.u = data.given_u = data.given_udot = data.hinge_force = VectorXd::Zero(tree.num_u);
   data.h = data.applied = VectorXd::Zero(tree.num_v);
+  clear_added(tree, data);
   data.motion = make_sweep(tree);
   data.response = make_sweep(tree);
   const Body ground = Body::make_rigid(0, Vector3d::Zero(), Matrix3d::Zero());
@@ -61,6 +62,12 @@ void set_modes(const Tree& tree, const std::vector<HingeMode>& mode, TreeData& d
     d.G = MatrixXd::Zero(nf, 6);
     d.modal_size = VectorXd::Zero(n);
   }
+}
+
+void clear_added(const Tree& tree, TreeData& data) {
+  data.added.setZero(tree.num_u);
+  data.added_K = data.added_D = 0;
+  for (const TreeBody& tb : tree.bodies) data.added.segment(tb.u_offset, tb.rotor.size()) = tb.rotor;
 }
 
 }  // namespace bough::solver

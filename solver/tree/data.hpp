@@ -62,6 +62,9 @@ struct TreeData {
   VectorXd h, applied;   ///< num_v: [f; t about Bo; modal] per body, in B, gravity left out
   VectorXd hinge_force;  ///< num_u: springs and dampers; after solve, where not free, all that crosses the hinge
   Vector3d gravity = Vector3d::Zero();  ///< set by add_forces
+  VectorXd
+      added;  ///< num_u: on the diagonal of ℋᵀ𝒫ℋ along hinge coordinates: inertia of motors, and of an implicit step
+  double added_K = 0, added_D = 0;  ///< of an implicit step: M_ηη + added_D D + added_K K in ℋᵀ𝒫ℋ
   Sweep motion, response;
   BodyData ground;
   std::vector<BodyData> bodies;
@@ -75,6 +78,8 @@ struct TreeData {
 TreeData make_tree_data(const Tree& tree);
 /// What each coordinate does from now on; mode: num_u. Sizes the arrays of flexible bodies anew: allocates.
 void set_modes(const Tree& tree, const std::vector<HingeMode>& mode, TreeData& data);
+/// Leaves in TreeData::added the inertia of motors alone, and no K and D.
+void clear_added(const Tree& tree, TreeData& data);
 
 void calc_position(const Tree& tree, double t, const ConstVectorRef& q, TreeData& data);
 void calc_velocity(const Tree& tree, const ConstVectorRef& u, TreeData& data);

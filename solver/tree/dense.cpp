@@ -58,6 +58,10 @@ void calc_dense_equations(const Tree& tree, const TreeData& data, MatrixXd& mass
     const MatrixXd M = n == 0 ? MatrixXd(tb.body.M6()) : d.inertia.M;
     mass += J.transpose() * M * J;
     force += J.transpose() * (data.applied.segment(tb.v_offset, 6 + n) - data.h.segment(tb.v_offset, 6 + n) - M * bias);
+    mass.diagonal().segment(tb.u_offset, nh) += data.added.segment(tb.u_offset, nh);
+    if (data.added_K != 0)
+      mass.block(tb.eta_dot_offset(), tb.eta_dot_offset(), n, n) +=
+          data.added_K * tb.body.K() + data.added_D * tb.body.D();
     force.segment(tb.u_offset, nh) += data.hinge_force.segment(tb.u_offset, nh);
   }
 }

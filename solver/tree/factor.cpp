@@ -34,8 +34,9 @@ double calc_size(const BodyData& d, const ConstVectorRef& column) {
                                "does: write the file anew with reduce, or keep fewer modes");
 }
 
+// `added`: of the hinge's coordinates, free or not.
 template <int NH>
-void factor_rigid(const TreeBody& tb, BodyData& d, double t, Matrix6d& passed) {
+void factor_rigid(const TreeBody& tb, BodyData& d, const double* added, double t, Matrix6d& passed) {
   if constexpr (NH == 0) {
     passed = d.P6;
   } else {
@@ -43,7 +44,7 @@ void factor_rigid(const TreeBody& tb, BodyData& d, double t, Matrix6d& passed) {
     const Eigen::Matrix<double, 6, NH> W = d.P6 * H;
     Eigen::Matrix<double, NH, NH> D = H.transpose() * W;
     for (int i = 0; i < NH; ++i) {  // Cholesky, so that a bad pivot has a name
-      double pivot = D(i, i);
+      double pivot = D(i, i) + added[d.free[i]];
       for (int k = 0; k < i; ++k) pivot -= D(i, k) * D(i, k);
       if (!(pivot > kLeastPivot * calc_size(d, d.H.col(i)))) fail_indefinite(tb, d, i, t);
       D(i, i) = std::sqrt(pivot);
@@ -67,37 +68,39 @@ void factor_rigid(const TreeBody& tb, BodyData& d, double t, Matrix6d& passed) {
   }
 }
 
-void factor_rigid(const TreeBody& tb, BodyData& d, double t, Matrix6d& passed) {
+void factor_rigid(const TreeBody& tb, BodyData& d, const double* added, double t, Matrix6d& passed) {
   switch (d.num_free) {
     case 0:
-      return factor_rigid<0>(tb, d, t, passed);
+      return factor_rigid<0>(tb, d, added, t, passed);
     case 1:
-      return factor_rigid<1>(tb, d, t, passed);
+      return factor_rigid<1>(tb, d, added, t, passed);
     case 2:
-      return factor_rigid<2>(tb, d, t, passed);
+      return factor_rigid<2>(tb, d, added, t, passed);
     case 3:
-      return factor_rigid<3>(tb, d, t, passed);
+      return factor_rigid<3>(tb, d, added, t, passed);
     case 4:
-      return factor_rigid<4>(tb, d, t, passed);
+      return factor_rigid<4>(tb, d, added, t, passed);
     case 5:
-      return factor_rigid<5>(tb, d, t, passed);
+      return factor_rigid<5>(tb, d, added, t, passed);
     case 6:
-      return factor_rigid<6>(tb, d, t, passed);
+      return factor_rigid<6>(tb, d, added, t, passed);
     default:
       BOUGH_DEMAND(false);
   }
 }
 
-void set_D(const TreeBody& tb, BodyData& d) {
+void set_D(const TreeBody& tb, const TreeData& data, BodyData& d) {
   const int n = tb.num_modes();
   d.D.bottomRows(n) = d.W.bottomRows(n);
   for (int i = 0; i < d.num_free; ++i) d.D.row(i).noalias() = d.H.col(i).transpose() * d.W.topRows<6>();
   if (tb.on_child.moves) d.D.bottomRows(n).noalias() -= d.Jc.transpose() * d.W.topRows<6>();
+  for (int i = 0; i < d.num_free; ++i) d.D(i, i) += data.added[tb.u_offset + d.free[i]];
+  if (data.added_K != 0) d.D.bottomRightCorner(n, n) += data.added_K * tb.body.K() + data.added_D * tb.body.D();
 }
 
 // The first pivot of the flexible body's D that is too small, or -1; after it D holds no factor any more.
-int find_bad_pivot(const TreeBody& tb, BodyData& d) {
-  set_D(tb, d);
+int find_bad_pivot(const TreeBody& tb, const TreeData& data, BodyData& d) {
+  set_D(tb, data, d);
   const auto size = d.D.rows();
   for (Eigen::Index i = 0; i < size; ++i) {
     const double own = i < d.num_free ? calc_size(d, d.H.col(i)) : d.modal_size[i - d.num_free];
@@ -110,7 +113,7 @@ int find_bad_pivot(const TreeBody& tb, BodyData& d) {
   return -1;
 }
 
-void factor_flexible(const TreeBody& tb, BodyData& d, double t, Matrix6d& passed) {
+void factor_flexible(const TreeBody& tb, const TreeData& data, BodyData& d, Matrix6d& passed) {
   const int n = tb.num_modes(), nh = d.num_free;
   d.W.rightCols(n) = d.P.rightCols(n);
   for (int i = 0; i < nh; ++i) d.W.col(i).noalias() = d.P.leftCols<6>() * d.H.col(i);
@@ -121,12 +124,12 @@ void factor_flexible(const TreeBody& tb, BodyData& d, double t, Matrix6d& passed
       d.modal_size[j] = root * root;
     }
   }
-  set_D(tb, d);
+  set_D(tb, data, d);
   const Eigen::LLT<Eigen::Ref<MatrixXd>> factor(d.D);  // in place
   bool good = factor.info() == Eigen::Success;
   for (int i = 0; i < nh && good; ++i) good = d.D(i, i) * d.D(i, i) > kLeastPivot * calc_size(d, d.H.col(i));
   for (int j = 0; j < n && good; ++j) good = d.D(nh + j, nh + j) * d.D(nh + j, nh + j) > kLeastPivot * d.modal_size[j];
-  if (!good) fail_indefinite(tb, d, std::max(0, find_bad_pivot(tb, d)), t);
+  if (!good) fail_indefinite(tb, d, std::max(0, find_bad_pivot(tb, data, d)), data.t);
   d.G = d.W.topRows<6>().transpose();
   d.D.triangularView<Eigen::Lower>().solveInPlace(d.G);
   passed = d.P.topLeftCorner<6, 6>();
@@ -160,9 +163,9 @@ void factor_body(const Tree& tree, int b, TreeData& data) {
   BodyData& d = data[b];
   Matrix6d passed;
   if (tb.is_flexible()) {
-    factor_flexible(tb, d, data.t, passed);
+    factor_flexible(tb, data, d, passed);
   } else {
-    factor_rigid(tb, d, data.t, passed);
+    factor_rigid(tb, d, data.added.data() + tb.u_offset, data.t, passed);
   }
   if (tb.parent < 0) return;
   BodyData& P = data[tb.parent];

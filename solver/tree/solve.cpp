@@ -153,6 +153,7 @@ void finish_solve(const Tree& tree, TreeData& data, Eigen::Ref<VectorXd> u_dot) 
       if (data.mode[static_cast<size_t>(row)] == HingeMode::Free) continue;
       const auto H = data[b].hinge.H.col(i);
       data.hinge_force[row] = H.head<3>().dot(r.force) + H.tail<3>().dot(r.moment);
+      if (tb.rotor.size() > 0) data.hinge_force[row] += tb.rotor[i] * data.given_udot[row];
       s.u_dot[row] = data.given_udot[row];
     }
   }
@@ -221,7 +222,8 @@ double calc_jump_impulse(const Tree& tree, const TreeData& data, int b, int i) {
   data.demand(Stage::Factor);
   const HingeReaction r = move_to_hinge(tree, data, b, calc_sweep_wrench(tree, data, data.response, b));
   const auto H = data[b].hinge.H.col(i);
-  return H.head<3>().dot(r.force) + H.tail<3>().dot(r.moment);
+  const double rotor = tree[b].rotor.size() > 0 ? tree[b].rotor[i] * data.response.u_dot[tree[b].u_offset + i] : 0;
+  return H.head<3>().dot(r.force) + H.tail<3>().dot(r.moment) + rotor;
 }
 
 }  // namespace bough::solver

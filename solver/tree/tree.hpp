@@ -31,6 +31,7 @@ struct TreeBody {
   std::vector<HingeMode> mode;                 ///< at the start, one per hinge coordinate
   std::vector<const TimeFunction*> motion;     ///< one per coordinate, nullptr: none; empty: none at all
   VectorXd stiffness, damping, null_position;  ///< empty: none
+  VectorXd rotor;  ///< inertia of motors as their coordinate feels it, J n², per hinge coordinate; empty: none
   VectorXd initial_q, initial_u, initial_eta, initial_eta_dot;
   /// Hinge columns at Bo, in B, where they are constant: neither end deforms and the hinge says so. Else empty.
   Matrix6Xd constant_H;

@@ -18,6 +18,12 @@ class Fields {
 
   bool has(const std::string& key) const { return table_.find(key) != nullptr; }
   const Value* find(const std::string& key) const { return table_.find(key); }
+  /// In the order of the file.
+  std::vector<std::string> get_keys() const {
+    std::vector<std::string> keys;
+    for (const auto& entry : table_.entries) keys.push_back(entry.key);
+    return keys;
+  }
   SourceLocation locate() const { return {file_, table_.line}; }
   /// Of the key; of the table when the key is absent.
   SourceLocation locate(const std::string& key) const;

@@ -58,22 +58,29 @@ class HingeReader {
   HingeType get_type() const { return coordinates_.type; }
 
   std::vector<double> read_list(const std::string& key, bool of_positions, bool one_for_all) {
+    return read_list(table_, key, of_positions, one_for_all);
+  }
+
+  /// From a table within that of the hinge.
+  std::vector<double> read_list(const Fields& from, const std::string& key, bool of_positions, bool one_for_all) {
     const std::string& kinds = of_positions ? coordinates_.q : coordinates_.u;
     const std::string degrees_key = key + "_deg";
-    const bool in_degrees = !table_.has(key) && table_.has(degrees_key);
+    const bool in_degrees = !from.has(key) && from.has(degrees_key);
     const std::string& used = in_degrees ? degrees_key : key;
-    std::vector<double> list = table_.get_numbers(used);
-    if (!table_.has(used) || !is_known_) return list;
-    if (one_for_all && table_.find(used)->is_number()) return std::vector<double>(kinds.size(), list[0]);
+    std::vector<double> list = from.get_numbers(used);
+    if (!from.has(used) || !is_known_) return list;
     if (in_degrees && kinds.find('a') == std::string::npos) {
-      diagnostics_.error("toml.no-angle", table_.locate(used),
+      diagnostics_.error("toml.no-angle", from.locate(used),
                          "hinge '" + table_.get_string("name") + "' of type " + type_ + " has no angle in " + key,
                          "write " + key + " instead of " + degrees_key);
       return {};
     }
     // Entries of another type were reported; they count.
-    const Value& given = *table_.find(used);
-    check_length(used, given.is_array() ? given.items.size() : list.size(), kinds.size());
+    const Value& given = *from.find(used);
+    if (one_for_all && given.is_number())
+      list.assign(kinds.size(), list[0]);
+    else
+      check_length(from, used, given.is_array() ? given.items.size() : list.size(), kinds.size());
     for (std::size_t i = 0; in_degrees && i < std::min(list.size(), kinds.size()); ++i) {
       if (kinds[i] == 'a') list[i] *= kRadPerDegree;
     }
@@ -86,17 +93,17 @@ class HingeReader {
     if (!v->is_array()) return std::vector<bool>(coordinates_.u.size(), table_.get_bool("locked", false));
     std::vector<bool> locked;
     for (const Value& item : v->items) locked.push_back(item.boolean);
-    if (is_known_) check_length("locked", locked.size(), coordinates_.u.size());
+    if (is_known_) check_length(table_, "locked", locked.size(), coordinates_.u.size());
     return locked;
   }
 
-  std::vector<std::string> read_motion() {
-    const std::vector<std::string> names = table_.get_strings("motion");
+  std::vector<std::string> read_names(const std::string& key) {
+    const std::vector<std::string> names = table_.get_strings(key);
     // A hinge that cannot be prescribed is told so, not how many functions that would take.
     const bool is_plain = coordinates_.q.find('q') == std::string::npos;
-    if (table_.has("motion") && is_known_ && is_plain) {
-      const Value& given = *table_.find("motion");
-      check_length("motion", given.is_array() ? given.items.size() : names.size(), coordinates_.u.size());
+    if (table_.has(key) && is_known_ && is_plain) {
+      const Value& given = *table_.find(key);
+      check_length(table_, key, given.is_array() ? given.items.size() : names.size(), coordinates_.u.size());
     }
     return names;
   }
@@ -113,9 +120,9 @@ class HingeReader {
   }
 
  private:
-  void check_length(const std::string& key, std::size_t found, std::size_t expected) {
+  void check_length(const Fields& table, const std::string& key, std::size_t found, std::size_t expected) {
     if (found == expected) return;
-    diagnostics_.error("toml.wrong-length", table_.locate(key),
+    diagnostics_.error("toml.wrong-length", table.locate(key),
                        "hinge '" + table_.get_string("name") + "': " + key + " has " + std::to_string(found) +
                            " entries, expected " + std::to_string(expected) + " for a " + type_ + " hinge",
                        "give one entry per coordinate");
@@ -127,6 +134,26 @@ class HingeReader {
   bool is_known_;
   Diagnostics& diagnostics_;
 };
+
+/// What acts along the coordinates beside springs and dampers.
+void read_law(const Fields& table, HingeReader& reader, records::HingeLawRecord& law) {
+  law.preload = reader.read_list("preload", false, true);
+  law.spring_table = reader.read_names("spring_table");
+  law.damper_table = reader.read_names("damper_table");
+  law.rotor_inertia = reader.read_list("rotor_inertia", false, true);
+  law.gear_ratio = reader.read_list("gear_ratio", false, true);
+  law.has_stops = table.has("stops");
+  law.has_friction = table.has("friction");
+  const Fields stops = table.get_table("stops"), friction = table.get_table("friction");
+  law.stop_lower = reader.read_list(stops, "lower", true, true);
+  law.stop_upper = reader.read_list(stops, "upper", true, true);
+  law.stop_stiffness = reader.read_list(stops, "stiffness", false, true);
+  law.stop_damping = reader.read_list(stops, "damping", false, true);
+  law.coulomb = reader.read_list(friction, "coulomb", false, true);
+  law.static_friction = reader.read_list(friction, "static", false, true);
+  law.stribeck_velocity = reader.read_list(friction, "stribeck_velocity", false, true);
+  law.smoothing = reader.read_list(friction, "smoothing", false, true);
+}
 
 }  // namespace
 
@@ -154,9 +181,10 @@ records::HingeRecord read_hinge(const Fields& table, Diagnostics& diagnostics) {
   hinge.null_position = reader.read_list("null_position", true, false);
   hinge.position = reader.read_list("position", true, false);
   hinge.rate = reader.read_list("rate", false, false);
-  hinge.motion = reader.read_motion();
+  hinge.motion = reader.read_names("motion");
   hinge.locked = reader.read_locked();
   hinge.is_guess = table.get_bool("guess", false);
+  read_law(table, reader, hinge.law);
   return hinge;
 }
 

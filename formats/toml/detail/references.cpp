@@ -26,6 +26,11 @@ std::vector<std::string> collect_names(const std::vector<Record>& records, const
   return names;
 }
 
+struct NamedForce {
+  std::string name;
+  SourceLocation at;
+};
+
 class ReferenceChecker {
  public:
   explicit ReferenceChecker(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
@@ -51,7 +56,12 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
   const auto hinges = collect_names(spec.hinges, "hinge", diagnostics);
   const auto constraints = collect_names(spec.constraints, "constraint", diagnostics);
   const auto functions = collect_names(spec.functions, "function", diagnostics);
-  collect_names(spec.forces, "force", diagnostics);
+  // Loads and elements share one set of names, in the order of the file.
+  std::vector<NamedForce> forces;
+  for (const auto& force : spec.forces) forces.push_back({force.name, force.at});
+  for (const auto& force : spec.force_elements) forces.push_back({force.name, force.at});
+  std::stable_sort(forces.begin(), forces.end(), [](const auto& a, const auto& b) { return a.at.line < b.at.line; });
+  collect_names(forces, "force", diagnostics);
   collect_names(spec.sensors, "sensor", diagnostics);
   collect_names(spec.events, "event", diagnostics);
 
@@ -71,7 +81,8 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
     const std::string role = "hinge '" + hinge.name + "'";
     checker.check(hinge.parent, with({"ground"}), role, "body", hinge.at);
     checker.check(hinge.child, bodies, role, "body", hinge.at);
-    for (const auto& name : hinge.motion) checker.check(name, functions, role, "function", hinge.at);
+    for (const auto* names : {&hinge.motion, &hinge.law.spring_table, &hinge.law.damper_table})
+      for (const auto& name : *names) checker.check(name, functions, role, "function", hinge.at);
   }
   for (const auto& constraint : spec.constraints) {
     const std::string role = "constraint '" + constraint.name + "'";
@@ -88,6 +99,14 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
     const std::string role = "force '" + force.name + "'";
     checker.check(force.body, bodies, role, "body", force.at);
     checker.check(force.function, functions, role, "function", force.at);
+  }
+  for (const auto& force : spec.force_elements) {
+    const std::string role = "force '" + force.name + "'";
+    checker.check(force.from.body, with({"ground"}), role, "body", force.at);
+    checker.check(force.to.body, with({"ground"}), role, "body", force.at);
+    for (const auto& name : force.bodies) checker.check(name, bodies, role, "body", force.at);
+    for (const auto* name : {&force.spring_table, &force.damper_table, &force.function})
+      checker.check(*name, functions, role, "function", force.at);
   }
   for (const auto& sensor : spec.sensors) {
     const std::string role = "sensor '" + sensor.name + "'";

@@ -462,5 +462,21 @@ TEST(Assembly, ErrorsOfConstraints) {
             "system.bad-constraint ");
 }
 
+TEST(Loops, AreNotForTheImplicitMethod) {
+  records::SystemSpec spec;
+  spec.bodies = {make_rod("a", 1, 1), make_rod("b", 1, 1)};
+  spec.hinges = {make_pin("p", "ground", "a", 0), make_pin("q", "ground", "b", 0)};
+  auto c = make_closing(HingeType::Spherical, "a", 1, "b", 1);
+  c.type = ConstraintType::Hinge;
+  spec.constraints = {c};
+  spec.simulation.duration = 1;
+  spec.simulation.step = 0.01;
+  spec.simulation.integrator = "implicit";
+  Diagnostics diagnostics;
+  const System system = System::build(spec, {}, diagnostics);
+  check_run(system, spec, diagnostics);
+  EXPECT_TRUE(diagnostics.has("run.implicit-constraints"));
+}
+
 }  // namespace
 }  // namespace bough::solver::testing

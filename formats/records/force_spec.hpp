@@ -1,0 +1,59 @@
+#pragma once
+/// \file [[force]] with a type, and what acts along hinge coordinates, as the user wrote them.
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.hpp"
+#include "formats/records/flex_body.hpp"
+
+namespace bough::records {
+
+/// Where a force ends: a frame fixed in a node of a body, or in ground.
+struct EndRecord {
+  std::string body = "ground";
+  int node = 0;
+  Vector3d position = Vector3d::Zero();      ///< from the node, in the body's frame
+  Matrix3d rotation = Matrix3d::Identity();  ///< axes, in the body's frame
+};
+
+enum class ElementType { Spring, Bushing, CentralGravity, Contact, Drag };
+enum class SpringSense { Both, Tension, Compression };  ///< in which it acts
+enum class ContactShape { Plane, Sphere };              ///< of the `to` end
+
+struct ForceElementRecord {
+  std::string name;
+  ElementType type = ElementType::Spring;
+  EndRecord from, to;
+  // Spring: tension = preload + stiffness (l - free_length) + spring_table(l) + damping l̇ + damper_table(l̇) + function
+  double stiffness = 0, damping = 0, free_length = 0, preload = 0;
+  SpringSense sense = SpringSense::Both;
+  std::string spring_table, damper_table, function;
+  // Bushing: 6 x 6 over [x y z rx ry rz] in the axes of `from`
+  Eigen::Matrix<double, 6, 6> stiffness6 = Eigen::Matrix<double, 6, 6>::Zero(), damping6 = stiffness6;
+  // Contact, with stiffness and damping (per unit of approach speed) of Hunt and Crossley
+  ContactShape shape = ContactShape::Plane;
+  double radius = 0, to_radius = 0, exponent = 1.5, friction = 0, slip_velocity = 0;
+  Vector3d normal =
+      Vector3d::Zero();  ///< contact: of the plane, in the frame of to's body; drag: of the plate, or zero
+  // Central gravity
+  double mu = 0, j2 = 0, equator = 0;  ///< equator: radius that J2 goes with
+  Vector3d centre = Vector3d::Zero(), axis = Vector3d::UnitZ();
+  std::vector<std::string> bodies;  ///< empty: all
+  // Drag
+  double area = 0, coefficient = 0, density = 0;
+  Vector3d wind = Vector3d::Zero();  ///< velocity of the air, inertial
+  SourceLocation at;
+};
+
+/// What acts along the coordinates of a hinge beside linear springs and dampers; one entry per coordinate, or empty.
+struct HingeLawRecord {
+  std::vector<double> preload;                          ///< generalized force in the direction of the coordinate
+  std::vector<std::string> spring_table, damper_table;  ///< functions that resist deflection and rate; "": none
+  std::vector<double> stop_lower, stop_upper, stop_stiffness, stop_damping;
+  std::vector<double> coulomb, static_friction, stribeck_velocity, smoothing;
+  std::vector<double> rotor_inertia, gear_ratio;
+  bool has_stops = false, has_friction = false;
+};
+
+}  // namespace bough::records

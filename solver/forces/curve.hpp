@@ -1,0 +1,31 @@
+#pragma once
+/// \file A tabulated y(x) with its integral and slope: forces over a length, a deflection or a speed.
+#include <memory>
+#include <vector>
+
+#include "base/diagnostic.hpp"
+#include "formats/records/system_spec.hpp"
+
+namespace bough::solver {
+
+class Curve {
+ public:
+  struct Value {
+    double y = 0, slope = 0;
+    double integral = 0;  ///< of y from x = 0
+  };
+  /// From a [[function]] of type table, linear or cubic as it says; outside it the end values hold. Reports
+  /// "system.not-a-table" for another type and what make_time_function reports, and returns nullptr then.
+  static std::unique_ptr<const Curve> make(const records::FunctionRecord& record, const SourceLocation& where,
+                                           const std::string& user, Diagnostics& diagnostics);
+  Value calc(double x) const;
+
+ private:
+  Value calc_from_start(double x) const;
+
+  std::vector<double> x_, y_, slope_left_, slope_right_;  ///< of each interval at its two ends
+  std::vector<double> integral_;                          ///< from the first point
+  double at_zero_ = 0;
+};
+
+}  // namespace bough::solver

@@ -1,0 +1,36 @@
+#pragma once
+/// \file Drag: F = -½ ρ C_d A |v| v on a point that moves at v through the air; of a plate with normal n, A is what the
+/// air sees of it, A |n·v|/|v|.
+#include <cmath>
+
+#include "solver/forces/element.hpp"
+
+namespace bough::solver {
+
+class DragElement final : public ForceElement {
+ public:
+  struct Law {
+    double half_density_area = 0;        ///< ½ ρ C_d A
+    Vector3d normal = Vector3d::Zero();  ///< unit, in the frame of the body; zero: none
+    Vector3d wind_W = Vector3d::Zero();
+  };
+  DragElement(std::string name, int marker, Law law) : ForceElement(std::move(name)), marker_(marker), law_(law) {}
+
+  ForceResult calc(const Tree& tree, const TreeData& data, Loads* loads) const override {
+    const MarkerInWorld k = calc_marker_in_world(data, tree, marker_);
+    const Vector3d v = k.v - law_.wind_W;
+    const double seen = law_.normal.isZero(0) ? v.norm() : std::abs((k.R * law_.normal).dot(v));
+    const Vector3d f = -law_.half_density_area * seen * v;
+    if (loads != nullptr) loads->add_wrench(marker_, f, Vector3d::Zero());
+    ForceResult result;
+    for (int i = 0; i < 3; ++i) result.values[static_cast<size_t>(i)] = f[i];
+    return result;
+  }
+  std::vector<ForceChannel> channels() const override { return {{"force", 3, "drag, in the inertial frame", "F"}}; }
+
+ private:
+  int marker_;
+  Law law_;
+};
+
+}  // namespace bough::solver

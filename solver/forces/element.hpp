@@ -1,0 +1,74 @@
+#pragma once
+/// \file One interface for whatever acts between bodies or along hinge coordinates.
+///
+/// An element looks at positions and rates and gives wrenches at markers (or forces along hinge coordinates), the
+/// energy that it stores, the power that it gives back from it and the power that it turns into heat:
+///     power of all its wrenches = stored - dissipated + what is left, which is work done on the system
+#include <array>
+#include <string>
+#include <vector>
+
+#include "solver/forces/function.hpp"
+#include "solver/tree/data.hpp"
+
+namespace bough::solver {
+
+struct ForceResult {
+  double strain = 0, potential = 0;  ///< stored: as a spring does, in a field of gravity
+  double power = 0;                  ///< -d/dt (strain + potential)
+  double dissipated = 0;             ///< power lost
+  std::array<double, 12> values{};   ///< what channels() describe, one after the other
+};
+
+/// What an element records of itself.
+struct ForceChannel {
+  std::string name;
+  int size = 1;
+  std::string description, dims;
+};
+
+/// Position and velocity of a marker, in W.
+struct MarkerInWorld {
+  Vector3d p, v, w;
+  Matrix3d R;
+};
+MarkerInWorld calc_marker_in_world(const TreeData& data, const Tree& tree, int marker);
+
+/// Where an element puts its loads.
+class Loads {
+ public:
+  Loads(const Tree& tree, TreeData& data) : tree_(tree), data_(data) {}
+  /// A force and a moment at a marker, in W.
+  void add_wrench(int marker, const Vector3d& f_W, const Vector3d& t_W);
+  /// A force at Bo and a moment about it, in B.
+  void add_to_body(int body, const Vector3d& f_B, const Vector3d& t_B);
+  void add_to_mode(int body, int mode, double force) { data_.applied[tree_[body].v_offset + 6 + mode] += force; }
+  void add_to_hinge(int row, double force) { data_.hinge_force[row] += force; }
+
+ private:
+  const Tree& tree_;
+  TreeData& data_;
+};
+
+class ForceElement {
+ public:
+  explicit ForceElement(std::string name) : name_(std::move(name)) {}
+  virtual ~ForceElement() = default;
+  const std::string& name() const { return name_; }
+
+  /// After calc_velocity. With `loads` it also acts. No allocation.
+  virtual ForceResult calc(const Tree& tree, const TreeData& data, Loads* loads) const = 0;
+  /// Whether it acts along hinge coordinates, not at markers and bodies.
+  virtual bool is_along_hinge() const { return false; }
+  /// The function of time in it, or nullptr.
+  virtual const TimeFunction* function() const { return nullptr; }
+  virtual std::vector<ForceChannel> channels() const { return {}; }
+  /// Adds -∂force/∂q and -∂force/∂u of the coordinates that it acts along, where they are not negative (num_u).
+  virtual void add_tangent(const Tree&, const TreeData&, Eigen::Ref<VectorXd> /*stiffness*/,
+                           Eigen::Ref<VectorXd> /*damping*/) const {}
+
+ private:
+  std::string name_;
+};
+
+}  // namespace bough::solver

@@ -1,0 +1,39 @@
+#pragma once
+/// \file What acts along one coordinate q of a hinge beside its linear spring and damper:
+///
+///     preload - table(q - q_null) - table(q̇) - friction(q̇) + stops
+///     friction  [F_c + (F_s - F_c) exp(-(q̇/v_s)²)] tanh(q̇/v_0)        Stribeck's, smooth over v_0
+///     stop      k δ (1 + c δ̇), not below zero, for δ past the stop       Hunt & Crossley with exponent 1
+/// Along a prescribed coordinate the motion has it: nothing acts.
+#include <limits>
+
+#include "solver/forces/curve.hpp"
+#include "solver/forces/element.hpp"
+
+namespace bough::solver {
+
+class HingeLaw final : public ForceElement {
+ public:
+  struct Law {
+    double preload = 0, null_position = 0;
+    std::unique_ptr<const Curve> spring, damper;
+    double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
+    double stop_stiffness = 0, stop_damping = 0;
+    double coulomb = 0, static_friction = 0, stribeck_velocity = 1, smoothing = 1;
+  };
+  HingeLaw(std::string name, int q_row, int u_row, Law law)
+      : ForceElement(std::move(name)), q_row_(q_row), u_row_(u_row), law_(std::move(law)) {}
+
+  ForceResult calc(const Tree& tree, const TreeData& data, Loads* loads) const override;
+  bool is_along_hinge() const override { return true; }
+  void add_tangent(const Tree& tree, const TreeData& data, Eigen::Ref<VectorXd> stiffness,
+                   Eigen::Ref<VectorXd> damping) const override;
+
+ private:
+  double calc_friction(double rate) const;
+
+  int q_row_, u_row_;
+  Law law_;
+};
+
+}  // namespace bough::solver

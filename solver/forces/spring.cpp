@@ -1,0 +1,54 @@
+#include "solver/forces/spring.hpp"
+
+#include <algorithm>
+
+namespace bough::solver {
+
+using records::SpringSense;
+
+std::vector<ForceChannel> SpringElement::channels() const {
+  return {{"length", 1, "distance of its two ends", "L"},
+          {"rate", 1, "rate of the length", "L/T"},
+          {"force", 1, "tension: positive pulls its ends together", "F"}};
+}
+
+ForceResult SpringElement::calc(const Tree& tree, const TreeData& data, Loads* loads) const {
+  const MarkerInWorld a = calc_marker_in_world(data, tree, from_), b = calc_marker_in_world(data, tree, to_);
+  const Vector3d d = b.p - a.p;
+  const double length = d.norm();
+  const Vector3d along = length > 0 ? Vector3d(d / length) : Vector3d::Zero();
+  const double rate = along.dot(b.v - a.v);
+
+  const double stretch = length - law_.free_length;
+  double elastic = law_.preload + law_.stiffness * stretch;
+  double stored = (law_.preload + 0.5 * law_.stiffness * stretch) * stretch;
+  if (law_.spring) {
+    const auto table = law_.spring->calc(length);
+    elastic += table.y;
+    stored += table.integral;
+  }
+  double damper = law_.damping * rate;
+  if (law_.damper) damper += law_.damper->calc(rate).y;
+
+  const double sign = law_.sense == SpringSense::Compression ? -1 : 1;
+  if (law_.sense != SpringSense::Both) {
+    // One-sided springs are linear: what they store counts from where they go slack.
+    elastic = sign * std::max(0.0, sign * elastic);
+    stored = law_.stiffness > 0 ? 0.5 * elastic * elastic / law_.stiffness : elastic * stretch;
+    damper = elastic == 0 ? 0 : sign * std::max(-sign * elastic, sign * damper);
+  }
+  const double driven = law_.function ? law_.function->calc(data.t).f : 0;
+  const double tension = elastic + damper + driven;
+  if (loads != nullptr) {
+    loads->add_wrench(from_, tension * along, Vector3d::Zero());
+    loads->add_wrench(to_, -tension * along, Vector3d::Zero());
+  }
+  ForceResult result;
+  result.strain = stored;
+  result.power = -elastic * rate;
+  result.dissipated = damper * rate;
+  result.values = {length, rate, tension};
+  return result;
+}
+
+}  // namespace bough::solver

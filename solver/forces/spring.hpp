@@ -1,0 +1,31 @@
+#pragma once
+/// \file A spring, damper and actuator between two points A and B at the distance l.
+///
+/// Tension T = preload + k (l - l0) + table(l) + c l̇ + table(l̇) + f(t): positive pulls A and B together. One that acts
+/// in tension only is slack where T without dampers is negative and never pushes; in compression only likewise.
+#include "solver/forces/curve.hpp"
+#include "solver/forces/element.hpp"
+
+namespace bough::solver {
+
+class SpringElement final : public ForceElement {
+ public:
+  struct Law {
+    double stiffness = 0, damping = 0, free_length = 0, preload = 0;
+    records::SpringSense sense = records::SpringSense::Both;
+    std::unique_ptr<const Curve> spring, damper;
+    const TimeFunction* function = nullptr;
+  };
+  SpringElement(std::string name, int from, int to, Law law)
+      : ForceElement(std::move(name)), from_(from), to_(to), law_(std::move(law)) {}
+
+  ForceResult calc(const Tree& tree, const TreeData& data, Loads* loads) const override;
+  const TimeFunction* function() const override { return law_.function; }
+  std::vector<ForceChannel> channels() const override;
+
+ private:
+  int from_, to_;  ///< markers
+  Law law_;
+};
+
+}  // namespace bough::solver

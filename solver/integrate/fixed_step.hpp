@@ -1,0 +1,40 @@
+#pragma once
+/// \file What methods of fixed step share: each interval to the next target is cut into equal steps no longer than
+/// options.step, so that results depend on the targets only; with memory() not on where a run was interrupted.
+#include "solver/integrate/stepper.hpp"
+
+namespace bough::solver {
+
+class FixedStepper : public Stepper {
+ public:
+  FixedStepper(Ode& ode, const StepperOptions& options, int order);
+
+  void restart(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double latest) override;
+  void set_stop(double, double latest) override { ode_.set_latest(latest); }
+  void step(double t_target) override;
+  double time() const override { return t_; }
+  double last_time() const override { return last_; }
+  Eigen::Map<const VectorXd> state() const override { return {y_.data(), y_.size()}; }
+  void calc_state(double t, Eigen::Ref<VectorXd> y) override;
+  Eigen::Vector4d memory() const override;
+  void set_memory(const Eigen::Vector4d& memory) override;
+  StepStatistics statistics() const override;
+
+ protected:
+  /// y from t to t_end = t + h.
+  virtual void calc_step(double t, double h, double t_end, VectorXd& y) = 0;
+  /// Throws what was thrown, or StepFailure, where `flag` of an evaluation is not zero.
+  void check(int flag);
+
+  GuardedOde ode_;
+
+ private:
+  double h_max_;
+  int order_;
+  double t_ = 0, last_ = 0, from_ = 0, target_ = 0;
+  long count_ = 1, done_ = 0;
+  VectorXd y_, last_y_, between_;
+  StepStatistics statistics_;
+};
+
+}  // namespace bough::solver
