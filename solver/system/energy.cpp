@@ -81,7 +81,6 @@ Power calc_powers(const System& system, const SystemData& data) {
         dissipated += tb.damping[i] * u[row] * u[row];
     }
   }
-  power -= calc_coupler_power(system.impl().loops, data.tree, data.loops);
   return {power - dissipated, dissipated};
 }
 
