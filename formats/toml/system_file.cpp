@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "formats/toml/detail/constraint_table.hpp"
+#include "formats/toml/detail/event_table.hpp"
 #include "formats/toml/detail/fields.hpp"
 #include "formats/toml/detail/force_table.hpp"
 #include "formats/toml/detail/hinge_table.hpp"
@@ -17,16 +18,6 @@
 namespace bough::toml_files {
 
 namespace {
-
-/// Reports "toml.conflicting-keys" for each key of the list that stands where it has no meaning.
-void refuse_keys(const Fields& table, std::initializer_list<const char*> keys, const std::string& because,
-                 Diagnostics& diagnostics) {
-  for (const char* key : keys) {
-    if (!table.has(key)) continue;
-    diagnostics.error("toml.conflicting-keys", table.locate(key),
-                      "'" + std::string(key) + "' has no meaning " + because, "remove it");
-  }
-}
 
 /// No body has a principal moment above the sum of the two others. A little above is a warning, of whoever runs it;
 /// this far above the numbers stand in the wrong places. One about a single axis, the others zero, is a planar model.
@@ -193,44 +184,6 @@ records::SensorRecord read_sensor(const Fields& table, Diagnostics& diagnostics)
   }
   sensor.from_turning = table.get_string("observer", "turning") != "fixed";
   return sensor;
-}
-
-records::TriggerRecord read_event(const Fields& table, Diagnostics& diagnostics) {
-  records::TriggerRecord event;
-  event.at = table.locate();
-  event.name = table.get_string("name");
-  if (table.has("time")) {
-    event.time = table.get_number("time", 0);
-    refuse_keys(table, {"value", "direction", "tolerance"}, "in event '" + event.name + "', which is at a time",
-                diagnostics);
-  }
-  event.signal = table.get_string("signal");
-  event.value = table.get_number("value", 0);
-  event.tolerance = table.get_number("tolerance", 0);
-  const std::string direction = table.get_string("direction", "both");
-  event.direction = direction == "rising"    ? records::EventDirection::Rising
-                    : direction == "falling" ? records::EventDirection::Falling
-                                             : records::EventDirection::Both;
-  static const std::map<std::string, records::EventAction> actions{
-      {"log", records::EventAction::Log},         {"stop", records::EventAction::Stop},
-      {"lock", records::EventAction::Lock},       {"release", records::EventAction::Release},
-      {"break", records::EventAction::Break},     {"close", records::EventAction::Close}};
-  const auto action = actions.find(table.get_string("action", "log"));
-  if (action != actions.end()) event.action = action->second;
-  using records::EventAction;
-  const bool of_hinge = event.action == EventAction::Lock || event.action == EventAction::Release;
-  const bool of_constraint = event.action == EventAction::Break || event.action == EventAction::Close;
-  const std::string because = "in event '" + event.name + "' whose action is " + table.get_string("action", "log");
-  if (!of_hinge) refuse_keys(table, {"hinge", "coordinates"}, because, diagnostics);
-  if (!of_constraint) refuse_keys(table, {"constraint"}, because, diagnostics);
-  const char* needed = of_hinge ? "hinge" : "constraint";
-  if (of_hinge || of_constraint) {
-    event.target = table.get_string(needed);
-    if (!table.has(needed))
-      diagnostics.error("toml.missing-key", event.at, "missing key '" + std::string(needed) + "' " + because, "add it");
-  }
-  event.coordinates = table.get_ints("coordinates");
-  return event;
 }
 
 records::SimulationRecord read_simulation(const Fields& table, Diagnostics& diagnostics) {

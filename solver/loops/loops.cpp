@@ -1,6 +1,7 @@
 #include "solver/loops/loops.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace bough::solver {
@@ -11,6 +12,18 @@ int Loops::find(const std::string& name) const {
   }
   return -1;
 }
+
+namespace {
+
+bool is_travel(const TreeBody& tb, int coordinate) {
+  VectorXd q(tb.num_hinge_q());
+  tb.hinge->set_neutral(q.data());
+  HingeMotion motion;
+  tb.hinge->calc_position(q.data(), motion);
+  return motion.H.col(coordinate).tail<3>().isZero(0);
+}
+
+}  // namespace
 
 void finish_loops(const Tree& tree, Loops& loops) {
   for (Constraint& c : loops.constraints) {
@@ -25,9 +38,13 @@ void finish_loops(const Tree& tree, Loops& loops) {
       add(tree.markers[static_cast<size_t>(c.parent_marker)].body);
       add(tree.markers[static_cast<size_t>(c.child_marker)].body);
     }
+    c.coupled_size = 0;
     for (const CouplerTerm& term : c.terms) {
       for (int b = 0; b < tree.size(); ++b) {
-        if (term.u_row >= tree[b].u_offset && term.u_row < tree[b].eta_dot_offset()) add(b);
+        if (term.u_row < tree[b].u_offset || term.u_row >= tree[b].eta_dot_offset()) continue;
+        add(b);
+        const double size = is_travel(tree[b], term.u_row - tree[b].u_offset) ? 1 : 1 / loops.length;
+        c.coupled_size += std::pow(size * term.ratio, 2);
       }
     }
     c.path.assign(path.begin(), path.end());
@@ -57,7 +74,7 @@ bool meet(const std::vector<int>& a, const std::vector<int>& b) {
   return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
 }
 
-LoopBlock make_block(const Loops& loops, const std::vector<int>& constraints) {
+LoopBlock make_block(const Loops& loops, const Tree& tree, const std::vector<int>& constraints) {
   LoopBlock block;
   std::set<int> bodies;
   int rows = 0;
@@ -68,6 +85,9 @@ LoopBlock make_block(const Loops& loops, const std::vector<int>& constraints) {
     bodies.insert(loops[i].path.begin(), loops[i].path.end());
   }
   block.bodies.assign(bodies.begin(), bodies.end());
+  double mass = 0;
+  for (const int b : block.bodies) mass += tree[b].body.mass();
+  block.least = mass > 0 ? 1 / mass : 0;
   block.A = MatrixXd::Zero(rows, rows);
   block.rows = VectorXd::Zero(rows);
   block.factor.resize(rows);
@@ -76,7 +96,7 @@ LoopBlock make_block(const Loops& loops, const std::vector<int>& constraints) {
 
 }  // namespace
 
-void set_closings(const Loops& loops, const Tree&, const std::vector<Closing>& closings, LoopData& data) {
+void set_closings(const Loops& loops, const Tree& tree, const std::vector<Closing>& closings, LoopData& data) {
   BOUGH_DEMAND(static_cast<int>(closings.size()) == loops.size());
   data.blocks.clear();
   std::vector<std::vector<int>> groups;
@@ -97,7 +117,7 @@ void set_closings(const Loops& loops, const Tree&, const std::vector<Closing>& c
     groups.push_back(std::move(group));
   }
   for (const auto& group : groups) {
-    if (!group.empty()) data.blocks.push_back(make_block(loops, group));
+    if (!group.empty()) data.blocks.push_back(make_block(loops, tree, group));
   }
 }
 

@@ -25,6 +25,7 @@ struct Constraint {
   std::vector<CouplerTerm> terms;  ///< Σ ratio q = offset
   double offset = 0;
   bool active = true;      ///< at the start
+  double coupled_size = 0;  ///< coupler: sum of squared ratios, of angles over the square of Loops::length
   std::vector<int> path;   ///< bodies it acts on and those between them and ground, ascending
   std::vector<int> roots;  ///< of the trees they belong to
 
@@ -52,6 +53,7 @@ struct ConstraintData {
 struct LoopBlock {
   std::vector<int> constraints, first;  ///< which, and the first row of each
   std::vector<int> bodies;              ///< on their paths, ascending
+  double least = 0;                     ///< acceleration of all of them by a unit force
   MatrixXd A;                           ///< G M⁻¹ Gᵀ
   VectorXd rows;                        ///< what the rows are off by; then the multipliers
   SemidefiniteFactor factor;

@@ -1,5 +1,6 @@
 // G M⁻¹ Gᵀ and what is done with it: accelerations, projections, impulses.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "solver/forces/applied.hpp"
@@ -11,6 +12,7 @@ namespace {
 
 constexpr int kMostProjections = 6;
 constexpr double kClosed = 1e-14;
+constexpr double kVoid = 1e-13;  // of the most that a row of that size moves in its block
 
 // Adds a share of row k of a constraint to a sweep that was started.
 void add_row(const Constraint& c, const ConstraintData& d, int k, double share, const Tree& tree,
@@ -46,6 +48,32 @@ bool meet(const std::vector<int>& a, const std::vector<int>& b) {
   return false;
 }
 
+// Squared size of a row: as a force, lengths over Loops::length.
+double calc_size(const Loops& loops, const Constraint& c, const ConstraintData& d, int k) {
+  if (!c.closure) return c.coupled_size;
+  return d.own.W.col(k).head<3>().squaredNorm() + d.own.W.col(k).tail<3>().squaredNorm() / std::pow(loops.length, 2);
+}
+
+// Rows that move nothing but by rounding are made zero.
+void drop_void_rows(const Loops& loops, const LoopData& data, LoopBlock& block) {
+  double most = block.least;
+  for (const bool drops : {false, true}) {
+    for (size_t j = 0; j < block.constraints.size(); ++j) {
+      const int i = block.constraints[j];
+      for (int k = 0; k < loops[i].num_rows(); ++k) {
+        const int row = block.first[j] + k;
+        const double size = calc_size(loops, loops[i], data[i], k);
+        if (!drops) {
+          most = std::max(most, block.A(row, row) / size);
+        } else if (block.A(row, row) < kVoid * most * size) {
+          block.A.row(row).setZero();
+          block.A.col(row).setZero();
+        }
+      }
+    }
+  }
+}
+
 // A of a block, column by column: the response to a unit row at the rows after it.
 void factor_block(const Loops& loops, const Tree& tree, TreeData& tree_data, const LoopData& data, LoopBlock& block) {
   for (size_t j = 0; j < block.constraints.size(); ++j) {
@@ -66,6 +94,7 @@ void factor_block(const Loops& loops, const Tree& tree, TreeData& tree_data, con
       }
     }
   }
+  drop_void_rows(loops, data, block);
   block.factor.compute(block.A);
 }
 
@@ -81,10 +110,9 @@ void apply(const Loops& loops, const Tree& tree, const LoopData& data, double si
   for (const LoopBlock& block : data.blocks) {
     for (const int i : block.constraints) {
       const Constraint& c = loops[i];
-      for (const CouplerTerm& term : c.terms) {
-        if (tree_data.mode[static_cast<size_t>(term.u_row)] == HingeMode::Free)
-          tree_data.hinge_force[term.u_row] += sign * term.ratio * data[i].lambda[0];
-      }
+      // Taken off again it leaves springs and dampers, and of a driven coordinate what its motor gives.
+      for (const CouplerTerm& term : c.terms)
+        tree_data.hinge_force[term.u_row] += sign * term.ratio * data[i].lambda[0];
       if (!c.closure) continue;
       const MarkerWrenches w =
           calc_marker_wrenches(tree, tree_data, c.parent_marker, c.child_marker, data[i].relative,

@@ -94,7 +94,6 @@ Power calc_powers(const System& system, const SystemData& data) {
         dissipated += tb.damping[i] * u[row] * u[row];
     }
   }
-  power -= calc_coupler_power(system.impl().loops, data.tree, data.loops);
   // What elements along hinges do is not in `applied`.
   double lost = dissipated;
   for (size_t i = 0; i < data.elements.size(); ++i) {

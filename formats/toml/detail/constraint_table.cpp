@@ -17,9 +17,9 @@ struct Keys {
 };
 
 Keys get_keys(ConstraintType type, const std::string& name) {
-  std::vector<std::string> ends = {"parent",          "parent_node",         "child_node",     "parent_position",
-                                   "child_position",  "parent_rotation",     "child_rotation", "parent_rotation_deg",
-                                   "child_rotation_deg"};
+  std::vector<std::string> ends = {"parent",          "parent_node",         "child_node",
+                                   "parent_position", "child_position",      "parent_rotation",
+                                   "child_rotation",  "parent_rotation_deg", "child_rotation_deg"};
   const auto with = [&](std::initializer_list<const char*> more) {
     auto keys = ends;
     keys.insert(keys.end(), more.begin(), more.end());
@@ -47,9 +47,10 @@ Keys get_keys(ConstraintType type, const std::string& name) {
 void check_keys(const Fields& table, const std::string& name, const std::string& type, const Keys& keys,
                 Diagnostics& diagnostics) {
   static const std::vector<std::string> all = {
-      "parent",         "child",     "parent_node", "child_node", "parent_position", "child_position",
-      "parent_rotation", "child_rotation", "parent_rotation_deg", "child_rotation_deg", "axis", "axis2",
-      "rotations",      "translations", "pitch",    "length",     "terms",           "offset"};
+      "parent",         "child",           "parent_node",    "child_node",          "parent_position",
+      "child_position", "parent_rotation", "child_rotation", "parent_rotation_deg", "child_rotation_deg",
+      "axis",           "axis2",           "rotations",      "translations",        "pitch",
+      "length",         "terms",           "offset"};
   const std::string where = "in constraint '" + name + "' of type " + type;
   for (const auto& key : keys.needed) {
     if (!table.has(key))

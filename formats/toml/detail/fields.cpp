@@ -103,6 +103,15 @@ Fields Fields::get_table(const std::string& key) const {
   return Fields(v && v->is_table() ? *v : empty, file_);
 }
 
+void refuse_keys(const Fields& table, std::initializer_list<const char*> keys, const std::string& because,
+                 Diagnostics& diagnostics) {
+  for (const char* key : keys) {
+    if (!table.has(key)) continue;
+    diagnostics.error("toml.conflicting-keys", table.locate(key),
+                      "'" + std::string(key) + "' has no meaning " + because, "remove it");
+  }
+}
+
 std::string resolve_path(const std::string& file, const std::string& path) {
   if (path.empty()) return path;
   return (std::filesystem::absolute(file).parent_path() / path).lexically_normal().string();

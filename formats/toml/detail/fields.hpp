@@ -1,6 +1,7 @@
 #pragma once
 /// \file Reading typed fields from a table. Types were checked against the schema before, and reported there: a field
 /// that is absent or of another type gives the default here, without a second message.
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,6 +49,10 @@ class Fields {
   const Value& table_;
   const std::string& file_;
 };
+
+/// Reports "toml.conflicting-keys" for each key of the list that stands where it has no meaning.
+void refuse_keys(const Fields& table, std::initializer_list<const char*> keys, const std::string& because,
+                 Diagnostics& diagnostics);
 
 /// `path` of a file named in `file`, absolute and normalised: names in a file are relative to its folder.
 std::string resolve_path(const std::string& file, const std::string& path);

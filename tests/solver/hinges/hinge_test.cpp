@@ -9,11 +9,19 @@ namespace {
 
 using records::HingeType;
 
-class HingeTest : public ::testing::TestWithParam<HingeType> {
+struct HingeCase {
+  HingeType type;
+  const char *rotations, *translations;
+};
+
+class HingeTest : public ::testing::TestWithParam<HingeCase> {
  protected:
   HingeTest() {
     Random random(17);
-    auto record = make_hinge_record("h", GetParam(), "ground", "b");
+    auto record = make_hinge_record("h", GetParam().type, "ground", "b");
+    record.rotations = GetParam().rotations;
+    record.translations = GetParam().translations;
+    record.pitch = 0.7;
     record.axis = random.vector();
     record.axis2 = random.vector();
     Diagnostics diagnostics;
@@ -106,7 +114,37 @@ TEST_P(HingeTest, FileOrderRoundTrips) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(AllTypes, HingeTest, ::testing::ValuesIn(kAllHinges));
+std::vector<HingeCase> make_cases() {
+  std::vector<HingeCase> cases;
+  for (const HingeType type : kAllHinges) cases.push_back({type, "", ""});
+  cases.push_back({HingeType::Screw, "", ""});
+  for (const char* rotations : {"", "y", "xz", "xyz", "zxz", "q"}) {
+    for (const char* translations : {"", "y", "zx", "xyz"}) {
+      if (*rotations || *translations) cases.push_back({HingeType::General, rotations, translations});
+    }
+  }
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(AllTypes, HingeTest, ::testing::ValuesIn(make_cases()));
+
+TEST(Hinges, GeneralAxesAreChecked) {
+  const auto is_made = [](const std::string& rotations, const std::string& translations) {
+    auto record = make_hinge_record("h", HingeType::General, "ground", "b");
+    record.rotations = rotations;
+    record.translations = translations;
+    Diagnostics diagnostics;
+    const auto hinge = make_hinge(record, diagnostics);
+    EXPECT_EQ(hinge == nullptr, diagnostics.has("system.bad-axes"));
+    return hinge != nullptr;
+  };
+  EXPECT_TRUE(is_made("zxz", "y"));
+  EXPECT_FALSE(is_made("", ""));
+  EXPECT_FALSE(is_made("xxz", ""));
+  EXPECT_FALSE(is_made("xyzx", ""));
+  EXPECT_FALSE(is_made("q", "xx"));
+  EXPECT_FALSE(is_made("w", ""));
+}
 
 HingeMotion calc(HingeType type, const std::vector<double>& q, const Vector3d& axis) {
   auto record = make_hinge_record("h", type, "ground", "b");

@@ -2,6 +2,7 @@
 // the dense [M Gᵀ; G 0], rates along the motion, Newton and Euler of every body.
 #include <gtest/gtest.h>
 
+#include "tests/solver/support/malloc_count.hpp"
 #include "tests/solver/support/models.hpp"
 
 namespace bough::solver::testing {
@@ -225,6 +226,22 @@ TEST_P(RandomLoops, ReactionsCloseNewtonAndEulerOfEveryBody) {
   }
   const double scale = 1 + loads.cwiseAbs().maxCoeff() + rate.cwiseAbs().maxCoeff();
   EXPECT_LT((rate - loads).cwiseAbs().maxCoeff(), 1e-10 * scale);
+}
+
+TEST_P(RandomLoops, AllocateNothing) {
+  Looped s = make_looped(GetParam());
+  State state;
+  state.t = 0.3;
+  state.q = s.q;
+  state.u = s.u;
+  VectorXd q_dot(s.system.num_q()), u_dot(s.system.num_u());
+  evaluate(s.system, state, *s.data, q_dot, u_dot);
+  state.q += 1e-7 * q_dot;  // off the constraints
+  const long before = get_malloc_count();
+  if (before < 0) GTEST_SKIP() << "this build cannot count";
+  evaluate(s.system, state, *s.data, q_dot, u_dot);
+  project(s.system, *s.data, state.t, state.q, state.u);
+  EXPECT_EQ(get_malloc_count(), before);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomLoops, ::testing::Range(1u, 25u));

@@ -1,0 +1,143 @@
+// An initial state that closes the loops, and what is said of it.
+#include <algorithm>
+#include <sstream>
+
+#include "solver/loops/assemble.hpp"
+#include "solver/system/build.hpp"
+
+namespace bough::solver {
+
+namespace {
+
+using records::ConstraintRecord;
+using records::ConstraintType;
+
+std::string quote(const std::string& s) { return "'" + s + "'"; }
+
+// grip of positions and of rates, by row of u
+void collect_grips(const records::SystemSpec& spec, const TreeOrder& order, const Tree& tree,
+                   std::vector<Grip>& positions, std::vector<Grip>& rates) {
+  positions.assign(static_cast<size_t>(tree.num_u), Grip::Flexible);
+  rates = positions;
+  for (int b = 0; b < tree.size(); ++b) {
+    const TreeBody& tb = tree[b];
+    const int h = order.hinge[static_cast<size_t>(b)];
+    const auto get_grip = [&](bool is_given, HingeMode mode) {
+      return mode != HingeMode::Free ? Grip::Fixed : is_given ? Grip::Given : Grip::Loose;
+    };
+    for (int i = 0; i < tb.num_hinge_u(); ++i) {
+      const auto row = static_cast<size_t>(tb.u_offset + i);
+      const HingeMode mode = tb.mode[static_cast<size_t>(i)];
+      const records::HingeRecord* hinge = h >= 0 ? &spec.hinges[static_cast<size_t>(h)] : nullptr;
+      positions[row] = get_grip(hinge && !hinge->position.empty() && !hinge->is_guess, mode);
+      rates[row] = get_grip(hinge && !hinge->rate.empty(), mode);
+    }
+  }
+}
+
+std::string describe_wrench(const ConstraintRecord& record, const Vector6d& w) {
+  if (record.type == ConstraintType::Coupler) return "its force";
+  std::ostringstream text;
+  const auto describe = [&](const char* kind, const Vector3d& v) {
+    if (v.norm() < 1e-6) return;
+    text << (text.tellp() > 0 ? " with the " : "the ") << kind;
+    for (int a = 0; a < 3; ++a) {
+      if (v.cwiseAbs().sum() - std::abs(v[a]) < 1e-6) {
+        text << " along "
+             << "xyz"[a];
+        return;
+      }
+    }
+    text << " (" << v.x() << ", " << v.y() << ", " << v.z() << ")";
+  };
+  text.precision(4);
+  describe("force", w.head<3>());
+  describe("moment", w.tail<3>());
+  return text.str();
+}
+
+void note_redundancies(const records::SystemSpec& spec, const std::vector<Redundancy>& found, const Loops& loops,
+                       Diagnostics& diagnostics) {
+  for (const Redundancy& r : found) {
+    const Constraint& c = loops[r.constraint];
+    const auto is_own = [&](const ConstraintRecord& record) { return record.name == c.name; };
+    const ConstraintRecord& record = *std::find_if(spec.constraints.begin(), spec.constraints.end(), is_own);
+    std::string list;
+    for (Eigen::Index k = 0; k < r.wrenches.cols(); ++k)
+      list += (list.empty() ? "" : ", ") + describe_wrench(record, r.wrenches.col(k));
+    diagnostics.note("system.redundant-constraint", c.at,
+                     "constraint " + quote(c.name) + " holds " + std::to_string(r.wrenches.cols()) + " of its " +
+                         std::to_string(c.num_rows()) +
+                         " directions twice: what the hinges and constraints before it " + "take as well is " + list +
+                         " (at the child's frame, axes of the parent's)",
+                     "reactions there are the smallest that fit; a type with fewer rows leaves them out");
+  }
+}
+
+void note_moved(const Tree& tree, const VectorXd& q0, const VectorXd& u0, const VectorXd& q, const VectorXd& u,
+                const SourceLocation& at, Diagnostics& diagnostics) {
+  std::ostringstream text;
+  text.precision(6);
+  const auto add = [&](const std::string& what, const auto& before, const auto& after) {
+    const double size = std::max(1e-300, after.cwiseAbs().maxCoeff());
+    if ((after - before).cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, size)) return;
+    text << (text.tellp() > 0 ? "; " : "") << what << " from";
+    for (const double x : before) text << ' ' << x;
+    text << " to";
+    for (const double x : after) text << ' ' << x;
+  };
+  for (const TreeBody& tb : tree.bodies) {
+    const int nq = tb.num_hinge_q(), nu = tb.num_hinge_u(), n = tb.num_modes();
+    if (nq > 0) {
+      VectorXd before(nq), after(nq);
+      tb.hinge->get_for_file(q0.data() + tb.q_offset, before.data());
+      tb.hinge->get_for_file(q.data() + tb.q_offset, after.data());
+      add("hinge " + quote(tb.hinge_name), before, after);
+      add("the rate of hinge " + quote(tb.hinge_name), VectorXd(u0.segment(tb.u_offset, nu)),
+          VectorXd(u.segment(tb.u_offset, nu)));
+    }
+    if (n == 0) continue;
+    add("the modes of body " + quote(tb.name), VectorXd(q0.segment(tb.eta_offset(), n)),
+        VectorXd(q.segment(tb.eta_offset(), n)));
+    add("the modal rates of body " + quote(tb.name), VectorXd(u0.segment(tb.eta_dot_offset(), n)),
+        VectorXd(u.segment(tb.eta_dot_offset(), n)));
+  }
+  if (text.tellp() > 0)
+    diagnostics.note("system.assembled", at, "to close the loops the start was moved: " + text.str(),
+                     "coordinates with a 'position' or 'rate' of their own move last, unless guess = true");
+}
+
+void report_open(const Assembly& assembly, const Loops& loops, const char* of, Diagnostics& diagnostics) {
+  const Constraint& c = loops[std::max(0, assembly.worst)];
+  std::ostringstream what;
+  what << "the loops cannot be closed: " << of << " of constraint " << quote(c.name) << " stay off by " << assembly.gap;
+  diagnostics.error("system.cannot-assemble", c.at, what.str(),
+                    "check its nodes and frames, and what is locked or prescribed; a 'position' nearer to a closed "
+                    "loop helps where there is one");
+}
+
+}  // namespace
+
+void assemble(const records::SystemSpec& spec, const TreeOrder& order, const System& system, System::Impl& impl,
+              Diagnostics& diagnostics) {
+  const Tree& tree = impl.tree;
+  VectorXd q(tree.num_q), u(tree.num_u);
+  system.calc_initial_state(q, u);
+  const VectorXd q0 = q, u0 = u;
+  TreeData data = make_tree_data(tree);
+  LoopData loop_data = make_loop_data(impl.loops, tree);
+  if (loop_data.blocks.empty()) return;
+  std::vector<Grip> positions, rates;
+  collect_grips(spec, order, tree, positions, rates);
+  const Assembly closed = assemble_positions(impl.loops, tree, impl.start, positions, q, data, loop_data);
+  if (!closed.is_closed) return report_open(closed, impl.loops, "the positions", diagnostics);
+  const Assembly moving = assemble_rates(impl.loops, tree, rates, u, data, loop_data);
+  if (!moving.is_closed) return report_open(moving, impl.loops, "the rates", diagnostics);
+  note_redundancies(spec, find_redundancies(impl.loops, tree, positions, data, loop_data), impl.loops, diagnostics);
+  note_moved(tree, q0, u0, q, u, impl.loops[loop_data.blocks[0].constraints[0]].at, diagnostics);
+  impl.initial_q = q;
+  impl.initial_u = u;
+  impl.initial_closings = get_closings(loop_data);
+}
+
+}  // namespace bough::solver

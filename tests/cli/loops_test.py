@@ -1,0 +1,135 @@
+"""Closed loops from the files: a four-bar, stage separation, what is refused."""
+import unittest
+
+import h5py
+import numpy as np
+
+from support import ProgramTest
+
+FOUR_BAR = """
+[[body]]
+name = "crank"
+mass = 1.0
+cg = [0.2, 0.0, 0.0]
+inertia = [0.001, 0.014, 0.014]
+nodes = [{id = 1, position = [0.4, 0.0, 0.0]}]
+[[body]]
+name = "coupler"
+mass = 2.0
+cg = [0.55, 0.0, 0.0]
+inertia = [0.002, 0.2, 0.2]
+nodes = [{id = 1, position = [1.1, 0.0, 0.0]}]
+[[body]]
+name = "rocker"
+mass = 1.5
+cg = [0.45, 0.0, 0.0]
+inertia = [0.002, 0.1, 0.1]
+nodes = [{id = 1, position = [0.9, 0.0, 0.0]}]
+[[hinge]]
+name = "crank"
+type = "revolute"
+child = "crank"
+position_deg = 40.0
+rate = 3.0
+[[hinge]]
+name = "elbow"
+type = "revolute"
+parent = "crank"
+parent_node = 1
+child = "coupler"
+[[hinge]]
+name = "rocker"
+type = "revolute"
+child = "rocker"
+parent_position = [1.0, 0.0, 0.0]
+position_deg = 90.0
+guess = true
+[[constraint]]
+name = "pin"
+type = "revolute"
+parent = "coupler"
+parent_node = 1
+child = "rocker"
+child_node = 1
+[simulation]
+duration = 1.0
+output_step = 0.01
+gravity = [0.0, -9.81, 0.0]
+relative_tolerance = 1e-10
+"""
+
+STAGE = """
+[[body]]
+name = "launcher"
+mass = 5.0
+inertia = [1.0, 2.0, 3.0]
+[[body]]
+name = "stage"
+mass = 2.0
+inertia = [1.0, 1.0, 1.0]
+[[hinge]]
+name = "root"
+type = "free"
+child = "launcher"
+rate = [0.1, 0.2, 0.3, 1.0, 0.0, 0.0]
+[[hinge]]
+name = "joint"
+type = "free"
+parent = "launcher"
+child = "stage"
+locked = true
+stiffness = [0, 0, 0, 10, 10, 10]
+null_position = [1, 0, 0, 0, 0.5, 0, 0]
+[[event]]
+name = "separation"
+time = 0.5
+action = "release"
+hinge = "joint"
+[simulation]
+duration = 1.0
+relative_tolerance = 1e-10
+"""
+
+
+class LoopsTest(ProgramTest):
+    def test_four_bar(self):
+        self.write("bar.toml", FOUR_BAR)
+        done = self.bough("run", "bar.toml", "-o", "bar.h5")
+        for words in ("3 of its 5 directions twice", "to close the loops the start was moved", "integrator rk is taken"):
+            self.assertIn(words, done.stdout + done.stderr)
+        with h5py.File(self.path("bar.h5")) as f:
+            crank, elbow = f["hinges/crank/q"][:, 0], f["hinges/elbow/q"][:, 0]
+            rocker = f["hinges/rocker/q"][:, 0]
+            force = f["constraints/pin/reaction_force"][:]
+        end = 0.4 * np.exp(1j * crank) + 1.1 * np.exp(1j * (crank + elbow))
+        self.assertLess(np.abs(end - 1 - 0.9 * np.exp(1j * rocker)).max(), 1e-12)
+        self.assertAlmostEqual(crank[0], np.radians(40), places=14)
+        self.assertGreater(np.abs(force).max(), 1)
+
+    def test_stage_separation(self):
+        self.write("stage.toml", STAGE)
+        self.bough("run", "stage.toml", "-o", "stage.h5")
+        with h5py.File(self.path("stage.h5")) as f:
+            momentum, rates, time = f["momentum/angular"][:], f["hinges/joint/qdot"][:], f["time"][:]
+        self.assertLess(np.abs(momentum - momentum[0]).max(), 1e-8)
+        self.assertEqual(np.abs(rates[time <= 0.5]).max(), 0)
+        self.assertGreater(np.abs(rates[-1]).max(), 0.1)
+
+    def test_what_is_refused(self):
+        def refused(name, text, *words):
+            self.write(name, text)
+            self.fails(1, "check", name, says=list(words))
+        refused("a.toml", FOUR_BAR.replace('type = "revolute"\nparent = "coupler"', 'type = "free"\nparent = "coupler"'),
+                "a.toml:", "type")
+        refused("b.toml", FOUR_BAR.replace('name = "pin"', 'name = "pin"\nlength = 2.0'), "'length' has no meaning")
+        refused("c.toml", FOUR_BAR.replace("[1.0, 0.0, 0.0]\nposition_deg", "[9.0, 0.0, 0.0]\nposition_deg"),
+                "the loops cannot be closed: the positions of constraint 'pin' stay off by")
+        refused("d.toml", STAGE.replace('hinge = "joint"\n[sim', 'hinge = "jont"\n[sim'), "did you mean 'joint'?")
+        refused("e.toml", STAGE.replace('action = "release"', 'action = "break"'), "missing key 'constraint'")
+        self.write("f.toml", FOUR_BAR)
+        self.fails(1, "linearize", "f.toml", "-o", "f.h5", says=["linear models of closed loops"], error="linear.has-constraints")
+        self.fails(1, "equilibrium", "f.toml", says=["linear models of closed loops"], error="linear.has-constraints")
+
+
+if __name__ == "__main__":
+    unittest.main()
