@@ -100,6 +100,7 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
 SimulateOutcome Run::go() {
   double t = begin();
   if (outcome_) return *outcome_;
+  start_corners(t);
   bool restarts = true;
   while (t < timeline_.end()) {
     const Stop stop = stop_ = timeline_.find_stop(t);
@@ -113,9 +114,14 @@ SimulateOutcome Run::go() {
     }
     while (stepper_->time() < stop.time) {
       take_step(stop);
-      const auto ends = watch_signals(stop);
-      if (!write_outputs(ends ? ends->time : stepper_->time())) return *outcome_;
+      const double reached = find_corner(stop);
+      const auto ends = watch_signals(stop, reached);
+      if (!write_outputs(ends ? ends->time : reached)) return *outcome_;
       if (ends) return finish(*ends);
+      if (reached < stepper_->time()) {  // the rest of the step is void
+        guard([&] { stepper_->calc_state(reached, y_); });
+        stepper_->restart(reached, y_, stop.time, stop.latest);
+      }
       if (is_stop_asked()) return halt(stepper_->time());
       save_now_and_then();
     }

@@ -45,14 +45,21 @@ class Run {
   SimulateOutcome close(double t, const std::string& reason);
 
   // Events (run_events.cpp)
-  /// Signals that crossed their values in the last step: each is located and fires, up to the first that ends the run.
-  std::optional<Firing> watch_signals(const Stop& stop);
+  /// Signals that crossed their values in the last step up to `to`: each is located and fires, up to the first that
+  /// ends the run.
+  std::optional<Firing> watch_signals(const Stop& stop, double to);
   /// What comes at a stop itself: events at a time, and crossings by the jump.
   std::optional<Firing> pass(const Stop& stop);
   /// Carries the events out in the order of their times; the one that ends the run, when there is one.
   std::optional<Firing> fire(std::vector<Firing>& firings);
   /// The end that an event brings: a last sample at its time.
   SimulateOutcome finish(const Firing& firing);
+
+  // Corners of forces (run_corners.cpp)
+  void start_corners(double t);
+  /// Where in the last step the first force has a corner, or its end.
+  double find_corner(const Stop& stop);
+  const VectorXd& calc_corners(double t);
 
   // Checkpoints (run_checkpoint.cpp)
   void check_resume();
@@ -94,6 +101,7 @@ class Run {
   EnergyMonitor monitor_;
   std::unique_ptr<Stepper> stepper_;
   VectorXd y_, y_dot_;
+  VectorXd corners_, last_corners_, corners_at_end_, largest_corners_;
   VectorXd gaps_, last_gaps_, trial_gaps_;  ///< of the signals of events, from their values
   records::Checkpoint checkpoint_, restored_;
   std::chrono::steady_clock::time_point saved_at_;
