@@ -5,6 +5,7 @@
 ///     friction  [F_c + (F_s - F_c) exp(-(q̇/v_s)²)] tanh(q̇/v_0)        Stribeck's, smooth over v_0
 ///     stop      k δ (1 + c δ̇), not below zero, for δ past the stop       Hunt & Crossley with exponent 1
 /// Along a prescribed coordinate the motion has it: nothing acts.
+#include <cmath>
 #include <limits>
 
 #include "solver/forces/curve.hpp"
@@ -25,6 +26,11 @@ class HingeLaw final : public ForceElement {
       : ForceElement(std::move(name)), q_row_(q_row), u_row_(u_row), law_(std::move(law)) {}
 
   ForceResult calc(const Tree& tree, const TreeData& data, Loads* loads) const override;
+  int num_corners() const override { return (std::isfinite(law_.lower) ? 1 : 0) + (std::isfinite(law_.upper) ? 1 : 0); }
+  void calc_corners(const Tree&, const TreeData& data, double* g) const override {
+    if (std::isfinite(law_.lower)) *g++ = data.q[q_row_] - law_.lower;
+    if (std::isfinite(law_.upper)) *g = data.q[q_row_] - law_.upper;
+  }
   bool is_along_hinge() const override { return true; }
   void add_tangent(const Tree& tree, const TreeData& data, Eigen::Ref<VectorXd> stiffness,
                    Eigen::Ref<VectorXd> damping) const override;

@@ -113,6 +113,7 @@ class CvodeStepper final : public Stepper {
     check(CVodeSetUserData(cvode_, &ode_));
     check(CVodeSetErrHandlerFn(cvode_, detail::ignore_message, nullptr));
     check(CVodeSVtolerances(cvode_, options_.relative_tolerance, tolerance_));
+    check(CVodeSetMaxErrTestFails(cvode_, detail::kMostRejections));
     if (options_.step > 0) check(CVodeSetMaxStep(cvode_, options_.step));
     if (stiff_) {
       matrix_ = SUNDenseMatrix(ode_.size(), ode_.size(), context_);

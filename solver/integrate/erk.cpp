@@ -99,6 +99,7 @@ class ErkStepper final : public Stepper {
     check(ERKStepSetErrHandlerFn(arkode, detail::ignore_message, nullptr));
     check(ERKStepSVtolerances(arkode, options_.relative_tolerance, tolerance_));
     check(ERKStepSetTableNum(arkode, options_.rk_order == 5 ? ARKODE_DORMAND_PRINCE_7_4_5 : ARKODE_FEHLBERG_13_7_8));
+    check(ERKStepSetMaxErrTestFails(arkode, detail::kMostRejections));
     if (options_.step > 0) check(ERKStepSetMaxStep(arkode, options_.step));
     // At order 5 the last stage serves as the next first one, from before the projection: off by no more than the step.
     if (ode_.has_projection()) check(ERKStepSetPostprocessStepFn(arkode, detail::call_projection));

@@ -101,6 +101,7 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
 SimulateOutcome Run::go() {
   double t = begin();
   if (outcome_) return *outcome_;
+  start_corners(t);
   bool restarts = true;
   while (t < timeline_.end()) {
     const Stop stop = stop_ = timeline_.find_stop(t);
@@ -115,15 +116,21 @@ SimulateOutcome Run::go() {
     has_changed_ = false;
     while (stepper_->time() < stop.time && !has_changed_) {
       take_step(stop);
-      const auto turn = watch_signals(stop);
-      if (!write_outputs(turn ? turn->time : stepper_->time())) return *outcome_;
+      const double reached = find_corner(stop);
+      const auto turn = watch_signals(stop, reached);
+      if (!write_outputs(turn ? turn->time : reached)) return *outcome_;
       if (turn && turn->time < stop.time) {
         t = turn->time;
         guard([&] { stepper_->calc_state(t, y_); });
         if (const auto ends = fire({*turn})) return finish(*ends);
+        leave_corners(t);
         continue;
       }
       if (turn) waiting_.push_back(*turn);
+      if (reached < stepper_->time()) {  // the rest of the step is void
+        guard([&] { stepper_->calc_state(reached, y_); });
+        stepper_->restart(reached, y_, stop.time, stop.latest);
+      }
       if (stepper_->time() >= stop.time) break;
       if (is_stop_asked()) {
         y_ = stepper_->state();

@@ -49,9 +49,9 @@ class Run {
   SimulateOutcome close(double t, const std::string& reason);
 
   // Events (run_events.cpp)
-  /// Signals that crossed their values in the last step: each is located and logged, up to the first that does more,
-  /// which is returned and has not come yet; those after it have not crossed.
-  std::optional<Firing> watch_signals(const Stop& stop);
+  /// Signals that crossed their values in the last step up to `to`: each is located and logged, up to the first that does
+  /// more, which is returned and has not come yet; those after it have not crossed.
+  std::optional<Firing> watch_signals(const Stop& stop, double to);
   /// What comes at a stop itself: events at a time, and crossings by the jump.
   std::optional<Firing> pass(const Stop& stop);
   /// Carries out events that come at one time, at which y_ is, and those that they bring about; the one that ends the
@@ -61,6 +61,14 @@ class Run {
   void change(const Firing& firing);
   /// The end that an event brings: a last sample at its time.
   SimulateOutcome finish(const Firing& firing);
+
+  // Corners of forces (run_corners.cpp)
+  void start_corners(double t);
+  /// Where in the last step the first force has a corner, or its end.
+  double find_corner(const Stop& stop);
+  const VectorXd& calc_corners(double t);
+  /// From here on at t, where y_ is.
+  void leave_corners(double t);
 
   // Checkpoints (run_checkpoint.cpp)
   void check_resume();
@@ -104,6 +112,7 @@ class Run {
   EnergyMonitor monitor_;
   std::unique_ptr<Stepper> stepper_;
   VectorXd y_, y_dot_;
+  VectorXd corners_, last_corners_, corners_at_end_, largest_corners_;
   VectorXd gaps_, last_gaps_, trial_gaps_;  ///< of the signals of events, from their values
   records::Checkpoint checkpoint_, restored_;
   std::chrono::steady_clock::time_point saved_at_;

@@ -12,10 +12,10 @@ constexpr double kQuick = 1e-9;
 
 }  // namespace
 
-std::optional<Firing> Run::watch_signals(const Stop& stop) {
+std::optional<Firing> Run::watch_signals(const Stop& stop, double to) {
   if (!setup_.triggers.has_signals()) return {};
-  const double from = stepper_->last_time(), to = stepper_->time();
-  y_ = stepper_->state();
+  const double from = stepper_->last_time();
+  guard([&] { stepper_->calc_state(to, y_); });
   calc_gaps(std::min(to, stop.latest));
   std::vector<size_t> crossed;
   const VectorXd signs = setup_.triggers.signs;

@@ -150,7 +150,8 @@ TEST(ForceClassics, HuntAndCrossleyLoseWhatTheirLawSays) {
   spec.hinges[0].position = {0.01};
   spec.hinges[0].rate = {-v0};
   spec.simulation.duration = 0.1;
-  const MemorySink sink = run(spec);
+  spec.simulation.integrator = "adams";  // rk's error estimate does not see that δ^1.5 has no second derivative at 0
+  const MemorySink sink = run(spec, 1e-8);
   const double v1 = last(sink, "/hinges/h/qdot");
   const auto G = [&](double in) { return in / c - std::log(1 + c * in) / (c * c); };
   EXPECT_NEAR(G(v0), G(-v1), 1e-9);
