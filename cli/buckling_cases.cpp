@@ -8,7 +8,6 @@
 #include <set>
 
 #include "fe/matrices/assembly.hpp"
-#include "fe/matrices/wide_links.hpp"
 #include "fe/statics/preload.hpp"
 #include "solution.hpp"
 
@@ -84,7 +83,6 @@ modal::EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases&
   }
   const fe::Model& statics = own ? *own : model;
   const auto load = fe::calc_static_load(statics, deck, cases.statics, diagnostics);
-  fe::report_wide_links(deck, diagnostics);
   diagnostics.throw_if_errors();
   const auto K = fe::assemble_stiffness(statics, fe::DofSet::Free);
   const fe::StaticSolver solver(statics, K);

@@ -1,12 +1,12 @@
 #include "fe/matrices/assembly.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <numeric>
 
 #include "fe/linear/ordering.hpp"
 #include "fe/loads/second_order.hpp"
 #include "fe/matrices/wide_links.hpp"
+#include "fe/matrices/wide_part.hpp"
 #include "fe/model/element_transform.hpp"
 #include "fe/model/temperatures.hpp"
 
@@ -14,9 +14,6 @@ namespace bough::fe {
 namespace {
 
 static_assert(sizeof(PetscInt) == sizeof(int), "rows are handed to PETSc as int");
-
-/// Adds one element's N x N matrix (basic) into zeroed storage.
-using AddElementMatrix = std::function<void(const Element&, Eigen::Ref<MatrixXd>)>;
 
 SparseRows make_identity(int size) {
   SparseRows identity(size, size);
@@ -130,13 +127,10 @@ std::vector<int> find_row_groups(const Rows& rows) {
   return start;
 }
 
-/// Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an entry does not
-/// depend on the number of ranks.
-PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add,
-                  const std::vector<QuadraticForm>& forms = {}) {
-  initialize_petsc();
-  const SparseRows identity = set == DofSet::Global ? make_identity(model.num_gdofs()) : SparseRows{};
-  const SparseRows& T = set == DofSet::Global ? identity : model.T();
+/// TᵀAT, sparse. Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an
+/// entry does not depend on the number of ranks.
+PetscMat assemble_sparse(const Model& model, const SparseRows& T, const AddElementMatrix& add,
+                         const std::vector<QuadraticForm>& forms) {
   const PetscInt size = static_cast<PetscInt>(T.cols());
 
   PetscMat matrix;
@@ -174,6 +168,19 @@ PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add,
   check_petsc(MatSetOption(A, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
   if (initialize_petsc().size == 1) set_row_groups(A, find_row_groups(rows));
   return matrix;
+}
+
+enum class Kind { Stiffness, Other };
+
+PetscMat assemble(const Model& model, DofSet set, Kind kind, const AddElementMatrix& add,
+                  std::vector<QuadraticForm> forms = {}) {
+  initialize_petsc();
+  if (set == DofSet::Global) return assemble_sparse(model, make_identity(model.num_gdofs()), add, forms);
+  const LowRankPart of_forms = take_wide_forms(model, forms);
+  const auto split = split_transform(model, kind == Kind::Stiffness);
+  if (!split) return make_sum(assemble_sparse(model, model.T(), add, forms), of_forms);
+  return make_sum(assemble_sparse(model, split->T, add, forms),
+                  join(calc_wide_part(model, *split, add, forms), 1, of_forms, 1));
 }
 
 VectorXd gather_rows(const VectorXd& x, const std::vector<int>& rows) {
@@ -216,17 +223,19 @@ MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen
 
 PetscMat assemble_stiffness(const Model& model, DofSet set) {
   return assemble(
-      model, set, [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); }, get_forms(model));
+      model, set, Kind::Stiffness, [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); },
+      get_forms(model));
 }
 
 PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind) {
   const double scale = model.wtmass();
-  return assemble(model, set, [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); });
+  return assemble(model, set, Kind::Other,
+                  [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); });
 }
 
 PetscMat assemble_grid_mass(const Model& model, MassKind kind) {
   const double scale = model.wtmass();
-  return assemble(model, DofSet::Global, [&](const Element& e, Eigen::Ref<MatrixXd> M) {
+  return assemble(model, DofSet::Global, Kind::Other, [&](const Element& e, Eigen::Ref<MatrixXd> M) {
     CarriedMass carried(e.num_dofs());
     if (e.carries_turning_mass(kind) && calc_carried(model, e, kind, carried)) return;
     e.add_mass(kind, scale, M);
@@ -234,7 +243,7 @@ PetscMat assemble_grid_mass(const Model& model, MassKind kind) {
 }
 
 PetscMat assemble_damping(const Model& model, DofSet set) {
-  return assemble(model, set, [](const Element& e, Eigen::Ref<MatrixXd> B) { e.add_damping(1, B); });
+  return assemble(model, set, Kind::Other, [](const Element& e, Eigen::Ref<MatrixXd> B) { e.add_damping(1, B); });
 }
 
 PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const AppliedLoad& load, const VectorXd& u_g,
@@ -249,8 +258,9 @@ PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const Appl
   };
   auto forms = calc_second_order(model, make_loads(load), u_g);
   // With the reference's own dofs.
-  std::erase_if(forms, [](const QuadraticForm& form) { return form.gdofs.size() > kMaxLinkDofs + 6; });
-  return assemble(model, set, add, forms);
+  if (set == DofSet::Global)
+    std::erase_if(forms, [](const QuadraticForm& form) { return form.gdofs.size() > kMaxLinkDofs + 6; });
+  return assemble(model, set, Kind::Other, add, std::move(forms));
 }
 
 MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g) {
