@@ -4,14 +4,15 @@
 #include <cmath>
 
 #include "fe/linear/blas.hpp"
-#include "fe/linear/ordering.hpp"
+#include "fe/linear/low_rank_sum.hpp"
 #include "modal/canonical.hpp"
 
 namespace bough::modal::detail {
 namespace {
 
 /// Springs from ground to f-dofs of K, each as stiff as K is there.
-std::vector<std::pair<int, double>> add_springs(const std::vector<int>& dofs, const VectorXd& K_diagonal, Mat K) {
+std::vector<std::pair<int, double>> add_springs(const std::vector<int>& dofs, const VectorXd& K_diagonal, Mat whole) {
+  Mat K = fe::get_sparse(whole);
   std::vector<std::pair<int, double>> springs;
   const double largest = K_diagonal.maxCoeff(), plain = largest > 0 ? largest : 1;
   PetscInt first = 0, last = 0;
@@ -29,8 +30,7 @@ std::vector<std::pair<int, double>> add_springs(const std::vector<int>& dofs, co
 
 void NormalModes::add_supports() {
   if (rigid_.supports.empty()) return;
-  fe::check_petsc(MatDuplicate(pencil_.K.get(), MAT_COPY_VALUES, supported_.out()));
-  fe::copy_row_groups(pencil_.K.get(), supported_.get());
+  supported_ = fe::copy(pencil_.K.get());
   add_springs(rigid_.supports, pencil_.K_diagonal, supported_.get());
 }
 

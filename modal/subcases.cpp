@@ -105,7 +105,6 @@ EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases,
   }
   const fe::Model& statics = own ? *own : model;
   const auto load = fe::calc_static_load(statics, deck, cases.statics, diagnostics);
-  fe::report_wide_links(deck, diagnostics);
   diagnostics.throw_if_errors();
   const auto K = fe::assemble_stiffness(statics, fe::DofSet::Free);
   const fe::StaticSolver solver(statics, K);
