@@ -125,6 +125,18 @@ TEST(Control, BadValues) {
   EXPECT_EQ(r.find("deck.case-control-value")->where.line, 2);
 }
 
+// A slip in brackets took STATSUB(PRELOD) for the load of a buckling subcase.
+TEST(Control, WordsInBracketsAreThoseOfTheCommand) {
+  const auto r =
+      read("SOL 103\nCEND\nSTATSUB(PRELOD) = 1\nTEMP(LAOD) = 2\nMETHOD(FLIUD) = 3\nTEMPERATURE(XYZ) = 4\nBEGIN BULK\n");
+  ASSERT_EQ(r.count("deck.case-control-value"), 4) << r.get_messages();
+  EXPECT_EQ(r.find("deck.case-control-value")->where.line, 3);
+  EXPECT_EQ(r.find("deck.case-control-value")->advice, "did you mean PRELOAD");
+  EXPECT_EQ(read_clean("CEND\nSTATSUB(PREL) = 1\nBEGIN BULK\n").subcases[0].preload, 1);
+  EXPECT_EQ(read_clean("CEND\nTEMP(BOTH) = 5\nMETHOD(STRUC) = 6\nBEGIN BULK\n").subcases[0].temperature, 5);
+  EXPECT_EQ(read_clean("CEND\nMETHOD(FLUID) = 6\nBEGIN BULK\n").subcases[0].method, 0);
+}
+
 TEST(Control, FragmentsAndDecksWithoutExecutive) {
   EXPECT_EQ(read_clean("GRID,1\nGRID,2\n").grids.size(), 2u);
   const auto deck = read_clean("SOL 103\nSPC = 4\nBEGIN BULK\nGRID,1\n");
