@@ -142,5 +142,28 @@ TEST(Prestress, IsTheGeometricStiffnessOfItsLoadWhereverKIs) {
   EXPECT_LT((K_f - expected).norm(), 1e-12 * K_f.norm());
 }
 
+// PARAM,FOLLOWK,YES was taken in silence for loads that do not follow.
+TEST(Prestress, LoadsThatDoNotFollowAreNamed) {
+  const auto count = [](const std::string& cards) {
+    Diagnostics diagnostics;
+    const auto deck = nastran::read_deck_text(kFrame + cards, "deck.bdf", {}, diagnostics);
+    diagnostics.throw_if_errors();
+    ModelOptions options;
+    options.subcase = 1;
+    const auto model = Model::build(deck, options, diagnostics);
+    calc_static_load(model, deck, model.subcase(), diagnostics);
+    std::string what;
+    for (const auto& item : diagnostics.items())
+      if (item.id == "fe.dead-load") what += item.what + "\n";
+    return what;
+  };
+  EXPECT_EQ(count(""), "");
+  EXPECT_EQ(count("PLOAD1,10,1,FY,FR,0.,1.,1.,1.\n"), "");
+  EXPECT_EQ(count("FORCE1,10,5,2.,1,2\nFORCE1,10,3,2.,1,2\nMOMENT2,10,3,2.,1,2,1,4\nPLOAD1,10,1,FYE,FR,0.,1.,1.,1.\n"
+                  "RFORCE,10,1,,.1,0.,0.,1.\nFORCE1,11,5,2.,1,2\n"),
+            "load set 10 keeps its direction where the structure moves, though PARAM,FOLLOWK,YES asks it to follow: "
+            "FORCE1 (2), MOMENT2 (1), PLOAD1 in element axes (1), RFORCE (1)\n");
+}
+
 }  // namespace
 }  // namespace bough::fe
