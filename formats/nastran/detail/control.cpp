@@ -126,6 +126,12 @@ class CaseControl {
   }
 
   void report_unused(const std::string& word) {
+    if (is_command(word, "DEFORM", 4)) {
+      diagnostics_.warning("deck.unused-load", deck_.locate(at_),
+                           "DEFORM selects a load that is not read: enforced deformations of elements",
+                           "give it as temperatures, or leave it out");
+      return;
+    }
     const auto nearest = find_nearest_command(word);
     if (nearest.empty()) return note(word);
     diagnostics_.warning("deck.unknown-case-control", deck_.locate(at_),
@@ -187,12 +193,15 @@ class CaseControl {
       bad_value(c);
   }
 
-  /// (LOAD) or nothing, which is (BOTH): a load. (MATERIAL) and (INITIAL) are for materials that change with it.
+  /// (LOAD) or nothing, which is (BOTH): a load. (INITIAL): where materials without TREF expand from. (MATERIAL) is for
+  /// materials that change with it.
   void read_temperature(const Command& c) {
     const auto kind = read_option(c, {"BOTH", "LOAD", "INITIAL", "MATERIAL"});
     if (!kind) return;
     if (kind->empty() || *kind == "LOAD" || *kind == "BOTH")
       read_set(c, "TEMPERATURE", current().temperature);
+    else if (*kind == "INITIAL")
+      read_set(c, "TEMPERATURE(INITIAL)", current().initial_temperature);
     else
       note("TEMPERATURE(" + *kind + ")");
   }
