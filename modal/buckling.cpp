@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 
+#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/residual.hpp"
 #include "fe/loads/second_order.hpp"
 #include "modal/canonical.hpp"
@@ -61,9 +62,7 @@ void BucklingModes::add_roots(Side side, int number, Roots& roots) {
   // A: -K_G, whose positive θ are positive load factors, or K_G for the negative ones.
   const Side sign = side == Negative ? Negative : Positive;
   if (!signed_K_G_ || signed_as_ != sign) {
-    signed_K_G_ = fe::PetscMat();
-    fe::check_petsc(MatDuplicate(K_G_.get(), MAT_COPY_VALUES, signed_K_G_.out()));
-    fe::check_petsc(MatScale(signed_K_G_.get(), -sign));
+    signed_K_G_ = fe::scale(K_G_.get(), -sign);
     signed_as_ = sign;
   }
   if (!factor_) factor_.emplace(pencil_.K.get(), false);

@@ -1,5 +1,6 @@
 /// \file The inertia of a shifted pencil by MUMPS.
 #include "fe/linear/factor.hpp"
+#include "fe/linear/sum_factor.hpp"
 #include "modal/krylov.hpp"
 
 namespace bough::modal::detail {
@@ -25,7 +26,9 @@ class MumpsOption {
 
 int count_negative(Mat A, double factor, Mat B) {
   initialize_slepc();
-  const fe::PetscMat C = add(A, factor, B);
+  const fe::PetscMat sum = fe::add(A, factor, B);
+  const fe::LowRankPart* part = fe::find_low_rank(sum.get());
+  Mat C = fe::get_sparse(sum.get());
   // Approximate minimum fill: half the time of MUMPS' own choice on plates. PETSc 3.18 loses this one unless it is an
   // option.
   const MumpsOption ordering("-mat_mumps_icntl_7", "2");
@@ -33,13 +36,14 @@ int count_negative(Mat A, double factor, Mat B) {
   check_petsc(MatFactorInfoInitialize(&info));
   for (PetscInt extra_percent : {60, 200, 1000}) {
     fe::PetscMat F;
-    check_petsc(MatGetFactor(C.get(), MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, F.out()));
+    check_petsc(MatGetFactor(C, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, F.out()));
     // The inertia leaves out the root front when ScaLAPACK factors it: keep it sequential.
     check_petsc(MatMumpsSetIcntl(F.get(), 13, 1));
     check_petsc(MatMumpsSetIcntl(F.get(), 14, extra_percent));
-    check_petsc(MatMumpsSetIcntl(F.get(), 31, 1));  // only the signs of the pivots are wanted: the factor is not kept
-    check_petsc(MatCholeskyFactorSymbolic(F.get(), C.get(), nullptr, &info));
-    check_petsc(MatCholeskyFactorNumeric(F.get(), C.get(), &info));
+    if (!part)
+      check_petsc(MatMumpsSetIcntl(F.get(), 31, 1));  // only the signs of the pivots are wanted: the factor is not kept
+    check_petsc(MatCholeskyFactorSymbolic(F.get(), C, nullptr, &info));
+    check_petsc(MatCholeskyFactorNumeric(F.get(), C, &info));
     MatFactorError error = MAT_FACTOR_NOERROR;
     PetscInt status = 0, detail = 0, negative = 0;
     check_petsc(MatFactorGetError(F.get(), &error));
@@ -49,6 +53,7 @@ int count_negative(Mat A, double factor, Mat B) {
     if (state == fe::FactorState::NeedsWorkspace) continue;
     if (state == fe::FactorState::Singular || error != MAT_FACTOR_NOERROR) return -1;
     check_petsc(MatGetInertia(F.get(), &negative, nullptr, nullptr));
+    if (part) negative += fe::count_extra_negative(fe::make_sum_factor(std::move(F), *part).get());
     return static_cast<int>(negative);
   }
   return -1;

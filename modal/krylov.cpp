@@ -11,7 +11,7 @@
 
 #include "base/diagnostic.hpp"
 #include "fe/linear/factor.hpp"
-#include "fe/linear/ordering.hpp"
+#include "fe/linear/sum_factor.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "modal/block_lanczos.hpp"
 
@@ -26,7 +26,10 @@ using SlepcEps = fe::PetscHandle<EPS, EPSDestroy>;
 PetscErrorCode apply_factor(PC pc, Vec b, Vec x) {
   Mat factor = nullptr;
   const PetscErrorCode code = PCShellGetContext(pc, static_cast<void*>(&factor));
-  return code != 0 ? code : MatSolve(factor, b, x);
+  if (code != 0) return code;
+  if (!fe::is_sum_factor(factor)) return MatSolve(factor, b, x);
+  fe::scatter(fe::solve_factored(factor, fe::gather(b)).col(0), x);
+  return 0;
 }
 
 /// Direct solution by a factor that is there already.
@@ -69,14 +72,7 @@ PetscErrorCode report_progress(EPS, PetscInt, PetscInt converged, PetscScalar*, 
 
 }  // namespace
 
-fe::PetscMat add(Mat A, double factor, Mat B) {
-  fe::PetscMat C;
-  check_petsc(MatDuplicate(A, MAT_COPY_VALUES, C.out()));
-  check_petsc(MatAXPY(C.get(), factor, B, DIFFERENT_NONZERO_PATTERN));
-  check_petsc(MatSetOption(C.get(), MAT_SYMMETRIC, PETSC_TRUE));
-  fe::copy_row_groups(A, C.get());
-  return C;
-}
+fe::PetscMat add(Mat A, double factor, Mat B) { return fe::add(A, factor, B); }
 
 void initialize_slepc() {
   fe::initialize_petsc();
@@ -129,11 +125,19 @@ Mat get_factor(EPS eps) {
   return factor;
 }
 
+bool is_sum(const KrylovProblem& problem) { return fe::find_low_rank(problem.A) || fe::find_low_rank(problem.B); }
+
+/// By MUMPS, any signs.
+fe::SymmetricFactor make_pivoted_factor(const KrylovProblem& problem) {
+  const bool is_near = problem.spectrum == Spectrum::NearShift;
+  return {is_near ? fe::add(problem.A, -problem.shift, problem.B).get() : problem.B, false, fe::FactorMethod::Pivoting};
+}
+
 /// A definite factor of the matrix that is factored; empty where it is not definite, or there are several processes.
 fe::PetscMat make_definite_factor(const KrylovProblem& problem) {
   if (problem.spectrum != Spectrum::NearShift) return fe::factor_definite(problem.B);
   if (problem.shift == 0) return fe::factor_definite(problem.A);
-  return fe::factor_definite(add(problem.A, -problem.shift, problem.B).get());
+  return fe::factor_definite(fe::add(problem.A, -problem.shift, problem.B).get());
 }
 
 /// SLEPc, set up with a factor of ours or, without one, with MUMPS; empty when MUMPS finds the matrix singular or SLEPc
@@ -159,6 +163,7 @@ SlepcEps set_up(const KrylovProblem& problem, Mat factor, int wanted, int subspa
     const bool is_signed = problem.spectrum == Spectrum::LargestPositive;
     check_petsc(EPSSetWhichEigenpairs(eps.get(), is_signed ? EPS_LARGEST_REAL : EPS_LARGEST_MAGNITUDE));
   }
+  if (is_sum(problem)) check_petsc(STSetMatMode(st, ST_MATMODE_SHELL));  // the matrix that is factored is ours
   check_petsc(STGetKSP(st, &ksp));
   if (factor)
     set_known_factor(ksp, factor);
@@ -283,31 +288,27 @@ KrylovResult solve_krylov(const KrylovProblem& problem) {
   fe::PetscMat own_factor;
   if (!problem.factor && is_alone) own_factor = make_definite_factor(problem);
   Mat factor = problem.factor ? problem.factor : own_factor.get();
-  if (!factor && is_alone && problem.definite_only) {
+  const auto make_singular = [] {
     KrylovResult result;
     result.is_singular = true;
     return result;
-  }
+  };
+  if (!factor && is_alone && problem.definite_only) return make_singular();
+  std::optional<fe::SymmetricFactor> pivoted;  // not definite, or on several processes
+  const auto is_singular = [&] {
+    if (!factor) factor = pivoted.emplace(make_pivoted_factor(problem)).get();
+    return pivoted && pivoted->is_singular();
+  };
+  if (!factor && is_sum(problem) && is_singular()) return make_singular();  // SLEPc factors sparse matrices alone
   const bool by_blocks = problem.method == KrylovMethod::Blocks ||
                          (problem.method == KrylovMethod::Fastest && n >= kBlockSize && 4 * wanted < room);
-  const bool prefers_blocks = by_blocks && factor && is_alone && problem.spectrum == Spectrum::NearShift;
+  const bool prefers_blocks = by_blocks && factor && !pivoted && is_alone && problem.spectrum == Spectrum::NearShift;
   if (prefers_blocks)
     if (auto result = solve_blocks(problem, factor, wanted)) return std::move(*result);
   if (problem.method != KrylovMethod::Blocks || prefers_blocks)
     if (auto result = solve_one_vector(problem, factor, wanted, room)) return std::move(*result);
   if (!prefers_blocks) {
-    std::optional<fe::SymmetricFactor> other;  // not definite, or on several processes
-    if (!factor) {
-      const bool is_near = problem.spectrum == Spectrum::NearShift;
-      other.emplace(is_near ? add(problem.A, -problem.shift, problem.B).get() : problem.B, false,
-                    fe::FactorMethod::Pivoting);
-      if (other->is_singular()) {
-        KrylovResult result;
-        result.is_singular = true;
-        return result;
-      }
-      factor = other->get();
-    }
+    if (is_singular()) return make_singular();
     if (auto result = solve_blocks(problem, factor, wanted)) return std::move(*result);
   }
   throw ComputationError("modal.no-convergence", {},

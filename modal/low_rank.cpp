@@ -3,6 +3,9 @@
 #include <cmath>
 #include <vector>
 
+#include "fe/linear/factor.hpp"
+#include "fe/linear/low_rank_sum.hpp"
+
 namespace bough::modal::detail {
 namespace {
 
@@ -16,6 +19,15 @@ using Column = std::vector<Entry>;
 
 /// Row i of M on every rank: its column, M being symmetric.
 Column get_column(Mat M, int i) {
+  if (const fe::LowRankPart* part = fe::find_low_rank(M)) {
+    const Eigen::VectorXd t = part->W * Eigen::VectorXd(part->U.transpose().col(i));
+    Eigen::VectorXd full = part->U * t;
+    for (const auto& [row, value] : get_column(fe::get_sparse(M), i)) full(row) += value;
+    Column column;
+    for (Eigen::Index row = 0; row < full.size(); ++row)
+      if (full(row) != 0) column.push_back({static_cast<int>(row), full(row)});
+    return column;
+  }
   PetscInt first = 0, last = 0, num = 0;
   check_petsc(MatGetOwnershipRange(M, &first, &last));
   Column column;
@@ -42,6 +54,9 @@ Column get_column(Mat M, int i) {
 }  // namespace
 
 std::optional<Eigen::SparseMatrix<double>> factor_low_rank(Mat M, const Eigen::VectorXd& diagonal, int max_rank) {
+  // The rank is that of the sparse part at least, which is found from fewer entries.
+  if (fe::find_low_rank(M) && !factor_low_rank(fe::get_sparse(M), fe::get_diagonal(fe::get_sparse(M)), max_rank))
+    return std::nullopt;
   const auto n = static_cast<int>(diagonal.size());
   Eigen::VectorXd root(n), left(n), column = Eigen::VectorXd::Zero(n);
   for (int i = 0; i < n; ++i) {

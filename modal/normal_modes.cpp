@@ -4,14 +4,16 @@
 #include <cmath>
 
 #include "fe/linear/blas.hpp"
-#include "fe/linear/ordering.hpp"
+#include "fe/linear/low_rank_sum.hpp"
+#include "fe/matrices/assembly.hpp"
 #include "modal/canonical.hpp"
 
 namespace bough::modal::detail {
 namespace {
 
 /// Springs from ground to f-dofs of K, each as stiff as K is there.
-std::vector<std::pair<int, double>> add_springs(const std::vector<int>& dofs, const VectorXd& K_diagonal, Mat K) {
+std::vector<std::pair<int, double>> add_springs(const std::vector<int>& dofs, const VectorXd& K_diagonal, Mat whole) {
+  Mat K = fe::get_sparse(whole);
   std::vector<std::pair<int, double>> springs;
   const double largest = K_diagonal.maxCoeff(), plain = largest > 0 ? largest : 1;
   PetscInt first = 0, last = 0;
@@ -29,8 +31,7 @@ std::vector<std::pair<int, double>> add_springs(const std::vector<int>& dofs, co
 
 void NormalModes::add_supports() {
   if (rigid_.supports.empty()) return;
-  fe::check_petsc(MatDuplicate(pencil_.K.get(), MAT_COPY_VALUES, supported_.out()));
-  fe::copy_row_groups(pencil_.K.get(), supported_.get());
+  supported_ = fe::copy(pencil_.K.get());
   add_springs(rigid_.supports, pencil_.K_diagonal, supported_.get());
 }
 
@@ -183,6 +184,11 @@ EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
     X.middleCols(a, b - a) = Y * calc_cluster_rotation(weights, MatrixXd(model.T() * Y));
     lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
   }
+  // Where constraints have large factors, sums over the matrix of the f-set lose digits that those over elements have.
+  const MatrixXd X_g = model.T() * X;
+  MatrixXd G_g(cut, cut);
+  fe::multiply_dense(true, X_g, fe::calc_mass_times(model, model.mass_kind(), X_g), 0, G_g);
+  if ((G_g - MatrixXd::Identity(cut, cut)).cwiseAbs().maxCoeff() > 1e-9) orthonormalize_ascending(G_g, X);
 
   EigenPairs pairs;
   const int first = std::min(range_.first, cut), size = std::clamp(range_.last, first, cut) - first;

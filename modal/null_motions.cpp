@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fe/linear/factor.hpp"
+#include "fe/linear/low_rank_sum.hpp"
 #include "modal/canonical.hpp"
 #include "modal/krylov.hpp"
 #include "modal/roots.hpp"
@@ -55,12 +56,7 @@ MatrixXd iterate(const Pencil& pencil, const VectorXd& D, const fe::SymmetricFac
 
 /// Nothing when they are too many, or the factor fails.
 std::optional<MatrixXd> find_null_space(const Pencil& pencil, const VectorXd& D, int expected) {
-  fe::PetscMat shifted;
-  fe::check_petsc(MatDuplicate(pencil.K.get(), MAT_COPY_VALUES, shifted.out()));
-  fe::PetscVec shift;
-  fe::check_petsc(MatCreateVecs(pencil.K.get(), shift.out(), nullptr));
-  fe::scatter(1e-13 * D, shift.get());
-  fe::check_petsc(MatDiagonalSet(shifted.get(), shift.get(), ADD_VALUES));
+  const fe::PetscMat shifted = fe::add_diagonal(pencil.K.get(), 1e-13 * D);
   const fe::SymmetricFactor factor(shifted.get(), false, fe::FactorMethod::Pivoting);
   if (factor.is_singular()) return std::nullopt;
   constexpr Index most = 400;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/mechanism.hpp"
 #include "modal/canonical.hpp"
 
@@ -40,14 +41,17 @@ MatrixXd calc_range(const MatrixXd& A, double threshold, bool above, VectorXd* v
 /// Unit vectors of the dofs with mass and nothing at all that stiffens them.
 MatrixXd find_loose(const Pencil& pencil) {
   VectorXd loose = VectorXd::Zero(pencil.size());
+  Mat K = fe::get_sparse(pencil.K.get());
+  VectorXd coupled = VectorXd::Zero(pencil.size());  // by the part of low rank
+  if (const auto* part = fe::find_low_rank(pencil.K.get())) coupled = part->U.cwiseAbs() * VectorXd::Ones(part->rank());
   PetscInt first = 0, last = 0, num = 0;
-  fe::check_petsc(MatGetOwnershipRange(pencil.K.get(), &first, &last));
+  fe::check_petsc(MatGetOwnershipRange(K, &first, &last));
   const PetscScalar* values = nullptr;
   for (PetscInt row = first; row < last; ++row) {
-    if (pencil.K_diagonal(row) != 0 || !(pencil.M_diagonal(row) > 0)) continue;
-    fe::check_petsc(MatGetRow(pencil.K.get(), row, &num, nullptr, &values));
+    if (coupled(row) != 0 || pencil.K_diagonal(row) != 0 || !(pencil.M_diagonal(row) > 0)) continue;
+    fe::check_petsc(MatGetRow(K, row, &num, nullptr, &values));
     loose(row) = std::all_of(values, values + num, [](double v) { return v == 0; });
-    fe::check_petsc(MatRestoreRow(pencil.K.get(), row, &num, nullptr, &values));
+    fe::check_petsc(MatRestoreRow(K, row, &num, nullptr, &values));
   }
   fe::sum_over_ranks(loose);
   MatrixXd X = MatrixXd::Zero(pencil.size(), static_cast<Eigen::Index>(loose.sum()));
@@ -112,22 +116,30 @@ double Pencil::calc_relative_energy(const VectorXd& x, double energy) const {
 }
 
 MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor) {
+  Mat K = fe::get_sparse(pencil.K.get());
+  MatrixXd of_part, terms_of_part;
+  if (const auto* part = fe::find_low_rank(pencil.K.get())) {
+    const MatrixXd t = part->U.transpose() * Y;
+    of_part = part->U * (part->W * t);
+    terms_of_part = part->U.cwiseAbs() * (part->W.cwiseAbs() * t.cwiseAbs());
+  }
   PetscInt first = 0, last = 0, num = 0;
-  fe::check_petsc(MatGetOwnershipRange(pencil.K.get(), &first, &last));
+  fe::check_petsc(MatGetOwnershipRange(K, &first, &last));
   const PetscInt* columns = nullptr;
   const PetscScalar* values = nullptr;
   MatrixXd G = MatrixXd::Zero(Y.cols(), Y.cols());
   Eigen::RowVectorXd force(Y.cols()), terms(Y.cols());
   for (PetscInt row = first; row < last; ++row) {
-    fe::check_petsc(MatGetRow(pencil.K.get(), row, &num, &columns, &values));
+    fe::check_petsc(MatGetRow(K, row, &num, &columns, &values));
     force.setZero(), terms.setZero();
+    if (of_part.size() > 0) force = of_part.row(row), terms = terms_of_part.row(row);
     for (PetscInt k = 0; k < num; ++k)
       for (Eigen::Index c = 0; c < Y.cols(); ++c) {
         const double term = values[k] * Y(columns[k], c);
         force(c) += term;
         terms(c) += std::abs(term);
       }
-    fe::check_petsc(MatRestoreRow(pencil.K.get(), row, &num, &columns, &values));
+    fe::check_petsc(MatRestoreRow(K, row, &num, &columns, &values));
     const double scale = terms.maxCoeff() + floor * std::sqrt(pencil.K_diagonal(row));
     if (scale > 0) force /= scale;
     G += force.transpose() * force;
@@ -282,9 +294,7 @@ std::string describe(const fe::Model& model, int fdof) {
 }
 
 void throw_singular(const Pencil& pencil, double shift) {
-  fe::PetscMat A;
-  fe::check_petsc(MatDuplicate(pencil.K.get(), MAT_COPY_VALUES, A.out()));
-  fe::check_petsc(MatAXPY(A.get(), shift, pencil.M.get(), DIFFERENT_NONZERO_PATTERN));
+  const fe::PetscMat A = fe::add(pencil.K.get(), shift, pencil.M.get());
   const MatrixXd motions = fe::find_mechanisms(A.get(), 1);
   std::string where;
   for (Eigen::Index c = 0; c < motions.cols(); ++c) {

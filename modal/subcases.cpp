@@ -5,7 +5,6 @@
 #include <optional>
 #include <set>
 
-#include "fe/loads/wide_links.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/statics/preload.hpp"
 
@@ -104,12 +103,16 @@ EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases,
     own.emplace(fe::Model::build(deck, model_options, diagnostics));
   }
   const fe::Model& statics = own ? *own : model;
-  const auto load = fe::calc_static_load(statics, deck, cases.statics, diagnostics);
-  fe::report_wide_links(deck, diagnostics);
+  auto load = fe::calc_static_load(statics, deck, cases.statics, diagnostics);
   diagnostics.throw_if_errors();
   const auto K = fe::assemble_stiffness(statics, fe::DofSet::Free);
-  const fe::StaticSolver solver(statics, K);
-  const VectorXd u = fe::solve_static_case(statics, solver, load).displacement;
+  const auto relief = fe::read_inertia_relief(deck, diagnostics);
+  auto held = fe::choose_suport(statics, deck, relief, diagnostics);
+  diagnostics.throw_if_errors();
+  const fe::StaticSolver solver(statics, K, held);
+  const auto suport = fe::calc_suport(statics, solver, std::move(held), relief, diagnostics);
+  fe::add_relief(statics, suport, load);
+  const VectorXd u = fe::solve_static_case(statics, solver, load, suport).displacement;
   if (!own) return calc_buckling_modes(model, load, u, eigen, diagnostics, &load.initial);
   const auto initial = fe::calc_thermal(model, deck, cases.statics.temperature, diagnostics);
   return calc_buckling_modes(model, load, u, eigen, diagnostics, &initial);

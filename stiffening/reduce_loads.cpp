@@ -77,6 +77,19 @@ void Reduction::report_partial_rotation(const fe::Model& model) {
                            "interface grid " + std::to_string(id) + " has no stiffness in component(s) " + axes +
                                ": a hinge or moment there finds none either",
                            "tie it by an RBE2 or RBE3 to other grids, or see that nothing turns it so");
+    const int index = model.find_node(id);
+    const auto has_own_drilling = [index](const auto& element) {
+      return (element->card() == "CQUADR" || element->card() == "CTRIAR") &&
+             std::find(element->nodes().begin(), element->nodes().end(), index) != element->nodes().end();
+    };
+    const auto found = std::find_if(model.elements().begin(), model.elements().end(), has_own_drilling);
+    if (found != model.elements().end())
+      diagnostics_.warning("reduce.drilling-moment", where(),
+                           "interface grid " + std::to_string(id) + " is one of " + (*found)->card() + " " +
+                               std::to_string((*found)->id()) +
+                               ": the second order of a moment about its normal is not in K_G2",
+                           "tie the grid by an RBE3 to those around it, use CQUAD4 or CTRIA3 there, or write "
+                           "interface_moments = false");
   }
 }
 

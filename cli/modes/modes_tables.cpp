@@ -51,8 +51,11 @@ std::string format_health(const records::ModesResult& r, const std::string& norm
   const char* what = buckling ? "load factors" : "eigenvalues";
   if (n == 0) return text + fmt::format("no {} in the range asked for\n", what);
   if (r.inertia_count >= 0) {
-    text += fmt::format("Sturm count: {} {} up to the highest, {} in the table: none missed{}\n", r.inertia_count, what,
-                        n, r.inertia_count > n ? " (the others are below the range or copies of the last root)" : "");
+    text +=
+        fmt::format("Sturm count: {} {} up to the highest, {} in the table: none missed{}\n", r.inertia_count, what, n,
+                    r.inertia_count <= n ? ""
+                    : buckling           ? " (the others are farther from zero, below the range or copies of the last)"
+                                         : " (the others are below the range or copies of the last root)");
   } else {
     text += "Sturm count: none, or none to be trusted\n";
   }

@@ -20,6 +20,7 @@ ShellSections::ShellSections(Maker& maker)
       mat8_(maker.deck().mat8) {
   const auto& t = maker.deck().temperatures;
   has_temperatures_ = !t.grids.empty() || !t.defaults.empty() || !t.bars.empty() || !t.plates.empty();
+  for (const auto& subcase : maker.deck().subcases) has_initial_ = has_initial_ || subcase.initial_temperature != 0;
   drilling_factor_ = 1e-6 * records::get_real_param(maker.deck(), "K6ROT", 100, maker.diagnostics());
 }
 
@@ -173,6 +174,28 @@ void ShellSections::set_expansion(const PlaneMaterial& membrane, const PlaneMate
   section.expansion = std::move(e);
 }
 
+/// LAM = SMEAR is the PSHELL of which MID1 = MID2, without MID3 and MID4: no coupling and so no Z0, no transverse
+/// shear.
+void ShellSections::stack_smeared(const records::Pcomp& p, std::vector<LaminateLayer>& layers, double& z0) {
+  if (p.layup == records::Layup::Smeared) {
+    layers = {smear(layers)};
+    layers[0].material.shear_rigid = true;
+    const double centred = -0.5 * layers[0].thickness;
+    if (std::abs(z0 - centred) > 1e-9 * layers[0].thickness)
+      maker_.diagnostics().warning("fe.smeared-offset", maker_.deck().locate(p.at),
+                                   "PCOMP " + std::to_string(p.id) +
+                                       " is smeared, which has no coupling of membrane and bending: its Z0 is not used",
+                                   "give ZOFFS on the elements");
+    z0 = centred;
+  } else if (p.layup == records::Layup::SmearedCore) {
+    const LaminateLayer core = layers.back();
+    layers.pop_back();
+    LaminateLayer face = smear(layers);
+    face.thickness *= 0.5;
+    layers = {face, core, face};
+  }
+}
+
 std::optional<ShellSection> ShellSections::make_pcomp(const records::Pcomp& p) {
   const std::string name = "PCOMP " + std::to_string(p.id);
   std::vector<LaminateLayer> layers;
@@ -186,11 +209,17 @@ std::optional<ShellSection> ShellSections::make_pcomp(const records::Pcomp& p) {
     if (m) layers.push_back({rotate_material(*m, ply.theta_deg * kDegree), ply.t});
   }
   if (!ok) return std::nullopt;
-  ShellSection s = make_laminate_section(layers, p.z0);
+  double z0 = p.z0;
+  stack_smeared(p, layers, z0);
+  ShellSection s = make_laminate_section(layers, z0);
   s.mass += p.nsm;
   s.ge = p.ge;
-  auto expansion = make_laminate_expansion(layers, p.z0);
+  auto expansion = make_laminate_expansion(layers, z0);
   expansion.tref = p.tref;
+  if (has_temperatures_ && has_initial_ && p.tref == 0 && expansion.e_tt > 0)
+    maker_.diagnostics().warning("fe.laminate-tref", maker_.deck().locate(p.at),
+                                 name + " expands from its own TREF, zero, and not from TEMPERATURE(INITIAL)",
+                                 "give TREF on the laminate");
   if (!p.bending || !p.membrane) {
     expansion.M_t.setZero();
     expansion.N_g.setZero();

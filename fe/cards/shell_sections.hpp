@@ -33,6 +33,8 @@ class ShellSections {
   /// Of A, B, D with the expansions of MID1 and MID2.
   void set_expansion(const PlaneMaterial& membrane, const PlaneMaterial& bending, ShellSection& section) const;
   std::optional<ShellSection> make_pcomp(const records::Pcomp& p);
+  /// The layers of LAM = SMEAR and SMCORE.
+  void stack_smeared(const records::Pcomp& p, std::vector<LaminateLayer>& layers, double& z0);
 
   Maker& maker_;
   Index<records::Pshell> pshell_;
@@ -40,7 +42,7 @@ class ShellSections {
   Index<records::Mat1> mat1_;
   Index<records::Mat2> mat2_;
   Index<records::Mat8> mat8_;
-  bool has_temperatures_ = false;  // else no section needs its expansion
+  bool has_temperatures_ = false, has_initial_ = false;  // else no section needs its expansion
   double drilling_factor_ = 1e-4;
   std::map<int, std::optional<PlaneMaterial>> materials_;
   std::map<std::pair<int, double>, std::optional<ShellSection>> made_;

@@ -3,14 +3,16 @@
 
 namespace bough::fe {
 
-/// A section strains freely by α (T - TREF + (y - n_y) dT/dy + (z - n_z) dT/dz): axially, and with κz = -α dT/dy,
-/// κy = α dT/dz. Temperature and gradients are linear along the beam. δ is how end B then moves from end A; the end
-/// forces are G (S u - δ).
-double Beam::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const {
+/// T is the change of temperature. A section strains freely by α (T + (y - n_y) dT/dy + (z - n_z) dT/dz): axially, and
+/// with κz = -α dT/dy, κy = α dT/dz. Temperature and gradients are linear along the beam. δ is how end B then moves
+/// from end A; the end forces are G (S u - δ).
+double Beam::add_thermal(const ElementTemperature& given, Eigen::Ref<VectorXd> load,
+                         Eigen::Ref<VectorXd> initial) const {
   const BeamField field(*property_, geometry_.length);
-  const double L = geometry_.length, alpha = property_->material.alpha, tref = property_->material.tref;
+  const double L = geometry_.length, alpha = property_->material.alpha;
+  const ElementTemperature T = given.calc_change(property_->material.tref);
   const Eigen::Vector2d n_a = property_->calc_section(0).n, n_b = property_->calc_section(1).n;
-  const double at_a = T.node[0] - tref - n_a.dot(T.gradient_a), at_b = T.node[1] - tref - n_b.dot(T.gradient_b);
+  const double at_a = T.node[0] - n_a.dot(T.gradient_a), at_b = T.node[1] - n_b.dot(T.gradient_b);
   const Eigen::Vector2d turn = L / 2 * (T.gradient_a + T.gradient_b),  // ∫ gradient dx
       lift = L * L * (T.gradient_a / 3 + T.gradient_b / 6);            // ∫ gradient (L - x) dx
   Eigen::Matrix<double, 6, 1> delta;

@@ -170,7 +170,7 @@ void Bend::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<
 
 double Bend::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const {
   VectorXd free = VectorXd::Zero(12);
-  free.segment<3>(6) = alpha_ * (T.node.mean() - tref_) * chord_;
+  free.segment<3>(6) = alpha_ * T.calc_change(tref_).node.mean() * chord_;
   const VectorXd f = K_ * free;
   load += f;
   initial -= sections_ * free;

@@ -48,7 +48,8 @@ class Bend final : public Element {
   MatrixXd parts_by_forces_;  ///< 8 parts x 6: internal forces of the parts by the section forces at end B
   MatrixXd K_;
   double mass_scale_ = 1;  ///< arc by chord
-  double alpha_ = 0, tref_ = 0;
+  double alpha_ = 0;
+  std::optional<double> tref_;
   Vector3d chord_;
 };
 

@@ -233,14 +233,21 @@ CurvedShell::Operators CurvedShell::calc_operators(bool with_drilling) const {
     p.shear = p.J_inv * g;
     if (with_drilling) {
       p.drilling = Eigen::RowVectorXd::Zero(num_dofs());
+      p.turn = p.u_x = p.u_y = Eigen::Matrix3Xd::Zero(3, num_dofs());
+      p.spin = Eigen::RowVectorXd::Zero(6 * n);
       const int corners = tying_->num_corners;
       for (int i = 0; i < n; ++i) {
         const Eigen::Vector2d grad = p.J_inv * at.dshape.col(i);
         const Vector3d spin = 0.5 * (grad.x() * R.col(1) - grad.y() * R.col(0));
         p.drilling -= spin.transpose() * map.middleRows(6 * i, 3);
+        p.spin.segment<3>(6 * i) = -spin.transpose();
+        p.u_x += grad.x() * R.transpose() * map.middleRows(6 * i, 3);
+        p.u_y += grad.y() * R.transpose() * map.middleRows(6 * i, 3);
         const bool present = place_[static_cast<std::size_t>(i)] >= 0;
-        for (int end : {present ? i : i - corners, present ? i : (i - corners + 1) % corners})
+        for (int end : {present ? i : i - corners, present ? i : (i - corners + 1) % corners}) {
           p.drilling.segment<3>(find_dof(end, 3)) += 0.5 * at.shape[i] * R.col(2).transpose();
+          p.turn.middleCols<3>(find_dof(end, 3)) += 0.5 * at.shape[i] * R.transpose();
+        }
       }
     }
     o.points.push_back(std::move(p));

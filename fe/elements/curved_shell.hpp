@@ -49,11 +49,14 @@ class CurvedShell final : public Element {
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
   bool carries_turning_mass(MassKind kind) const override;
   bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
-  /// Nx Ny Nxy Mx My Mxy Qx Qy at each point of quadrature, in its frame.
-  int num_internal_forces() const override { return kNumForces * static_cast<int>(tying_->points.size()); }
+  /// Nx Ny Nxy Mx My Mxy Qx Qy at each point of quadrature, in its frame; then what the drilling penalty holds at each,
+  /// a moment per area about the normal, which is not printed.
+  int num_internal_forces() const override { return (kNumForces + 1) * num_points(); }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
   std::vector<std::string> internal_force_names() const override;
-  /// Second order of e, κ, γ (sampled and interpolated as they are) with d_i = exp(θ_i) V_i.
+  std::vector<std::string> printed_force_names() const override;
+  VectorXd calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const override;
+  /// Second order of e, κ, γ (sampled and interpolated as they are) with d_i = exp(θ_i) V_i, and of the drilling.
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
   void add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
@@ -78,6 +81,7 @@ class CurvedShell final : public Element {
     std::vector<Vector3d> normal;
   };
   NodalMasses calc_nodal_masses(MassKind kind) const;
+  int num_points() const { return static_cast<int>(tying_->points.size()); }
   int num_full() const { return tying_->num_nodes; }
   int num_bubbles() const { return tying_->num_corners == 4 ? 4 : 2; }
   Surface calc_surface(int sample) const;

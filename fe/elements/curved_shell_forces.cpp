@@ -82,7 +82,7 @@ MatrixXd CurvedShell::calc_inner_map(const Operators& o) const {
 }
 
 MatrixXd CurvedShell::calc_force_map(const Operators& o, const MatrixXd& inner_map) const {
-  MatrixXd map(num_internal_forces(), inner_map.rows());
+  MatrixXd map(kNumForces * num_points(), inner_map.rows());
   const double area = calc_area();
   for (std::size_t q = 0; q < o.points.size(); ++q) {
     const auto& p = o.points[q];
@@ -92,11 +92,15 @@ MatrixXd CurvedShell::calc_force_map(const Operators& o, const MatrixXd& inner_m
     at.middleRows<3>(3) = c.B.transpose() * p.membrane + c.D * p.bending;
     at.bottomRows<2>() = calc_shear_stiffness(c, area) * p.shear;
   }
-  return map * inner_map;
+  MatrixXd result(num_internal_forces(), inner_map.cols());
+  result.topRows(map.rows()) = map * inner_map;
+  for (int q = 0; q < num_points(); ++q)
+    result.row(map.rows() + q) = calc_section(q).drilling * o.points[static_cast<std::size_t>(q)].drilling;
+  return result;
 }
 
 void CurvedShell::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
-  const Operators o = calc_operators(false);
+  const Operators o = calc_operators(true);
   force = calc_force_map(o, calc_inner_map(o)) * u;
 }
 
@@ -105,7 +109,20 @@ std::vector<std::string> CurvedShell::internal_force_names() const {
   for (std::size_t q = 1; q <= tying_->points.size(); ++q)
     for (const char* c : {"Nx", "Ny", "Nxy", "Mx", "My", "Mxy", "Qx", "Qy"})
       names.push_back(c + std::string("@") + std::to_string(q));
+  for (int q = 1; q <= num_points(); ++q) names.push_back("Mz@" + std::to_string(q));
   return names;
+}
+
+std::vector<std::string> CurvedShell::printed_force_names() const {
+  auto names = internal_force_names();
+  names.resize(static_cast<std::size_t>(kNumForces * num_points()));
+  return names;
+}
+
+VectorXd CurvedShell::calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const {
+  VectorXd force(num_internal_forces());
+  calc_internal_forces(u, force);
+  return force.head(kNumForces * num_points());
 }
 
 void CurvedShell::calc_second_order(const Operators& o, const Eigen::Ref<const VectorXd>& force, MatrixXd& K,
@@ -116,6 +133,7 @@ void CurvedShell::calc_second_order(const Operators& o, const Eigen::Ref<const V
   std::vector<Vector3d> on_e(tying_->samples.size(), Vector3d::Zero()), on_k = on_e, with_bubble = on_e;
   std::vector<Eigen::Vector2d> on_g(tying_->samples.size(), Eigen::Vector2d::Zero());
   VectorXd nodal = VectorXd::Zero(size);
+  std::vector<double> on_drilling;
   Vector3d mean = Vector3d::Zero();  // a quadrilateral's mean strain is not tied
   if (quad) {
     double area = 0;
@@ -139,6 +157,8 @@ void CurvedShell::calc_second_order(const Operators& o, const Eigen::Ref<const V
     on_k[static_cast<std::size_t>(point.sample)] += p.to_local.transpose() * f.segment<3>(3);
     nodal += p.membrane.transpose() * f.head<3>() + p.bending.transpose() * f.segment<3>(3) +
              p.shear.transpose() * f.tail<2>();
+    on_drilling.push_back(p.area * force[kNumForces * num_points() + static_cast<int>(q)]);
+    nodal.head(6 * n) += on_drilling.back() * p.spin.transpose();
   }
   // u,a·u,b; u,a·d,b; u,a·d: scalar weights of the shapes, the bubble last.
   MatrixXd uu = MatrixXd::Zero(n + 1, n + 1), ud = uu;
@@ -185,6 +205,14 @@ void CurvedShell::calc_second_order(const Operators& o, const Eigen::Ref<const V
       add_block(d_j, u_i, ud(i, j) * ab.transpose());
     }
   at_nodes.setZero(num_dofs(), num_dofs());
+  for (std::size_t q = 0; q < o.points.size(); ++q) {  // ½ (θz (u,x + v,y) - θx w,x - θy w,y)
+    if (on_drilling[q] == 0) continue;
+    const auto& p = o.points[q];
+    const MatrixXd half = 0.5 * on_drilling[q] *
+                          (p.turn.row(2).transpose() * (p.u_x.row(0) + p.u_y.row(1)) -
+                           p.turn.row(0).transpose() * p.u_x.row(2) - p.turn.row(1).transpose() * p.u_y.row(2));
+    at_nodes += half + half.transpose();
+  }
   // Second order of d_i = exp(θ_i) V_i, at the ends of the arms too: V → V + θ×V + ½ (θ (θ·V) - V |θ|²).
   VectorXd on_arm = nodal.head(6 * n);
   for (int i = corners; i < n; ++i)
@@ -209,7 +237,7 @@ void CurvedShell::calc_second_order(const Operators& o, const Eigen::Ref<const V
 
 void CurvedShell::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                           Eigen::Ref<MatrixXd> K_G) const {
-  const Operators o = calc_operators(false);
+  const Operators o = calc_operators(true);
   const MatrixXd map = calc_inner_map(o);
   MatrixXd inner, at_nodes;
   calc_second_order(o, force, inner, at_nodes);
@@ -219,7 +247,7 @@ void CurvedShell::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& forc
 void CurvedShell::add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U,
                                                     const Eigen::Ref<const MatrixXd>& Phi,
                                                     GeometricProjection& sums) const {
-  const Operators o = calc_operators(false);
+  const Operators o = calc_operators(true);
   const MatrixXd map = calc_inner_map(o), force = calc_force_map(o, map) * U, inner_Phi = map * Phi;
   MatrixXd inner, at_nodes;
   auto terms = sums.add_terms(U.cols());

@@ -16,10 +16,12 @@ struct CurvedShell::Operators {
   struct Point {
     Eigen::Matrix3Xd membrane, bending;
     Eigen::Matrix2Xd shear;
-    Eigen::RowVectorXd drilling;  ///< θ·n - ½ rot u per dof of the element
-    Eigen::Matrix3d to_local;     ///< (rr, ss, 2 rs) to (xx, yy, 2 xy)
-    Eigen::Matrix2d J_inv;        ///< rows x, y; columns r, s
-    double area = 0;              ///< dA with the weight of the point
+    Eigen::RowVectorXd drilling;      ///< θ·n - ½ rot u per dof of the element
+    Eigen::Matrix3Xd turn, u_x, u_y;  ///< θ, u,x and u,y in the frame of the point per dof of the element
+    Eigen::RowVectorXd spin;          ///< -½ rot u per (u_i, d_i)
+    Eigen::Matrix3d to_local;         ///< (rr, ss, 2 rs) to (xx, yy, 2 xy)
+    Eigen::Matrix2d J_inv;            ///< rows x, y; columns r, s
+    double area = 0;                  ///< dA with the weight of the point
   };
   std::vector<Eigen::Matrix3Xd> membrane;  ///< covariant, per sample
   std::vector<Eigen::Matrix2Xd> shear;

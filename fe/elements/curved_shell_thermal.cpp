@@ -3,9 +3,10 @@
 
 namespace bough::fe {
 
-double CurvedShell::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
+double CurvedShell::add_thermal(const ElementTemperature& given, Eigen::Ref<VectorXd> load,
                                 Eigen::Ref<VectorXd> initial) const {
   const int n = num_full(), corners = tying_->num_corners, m = num_bubbles();
+  const ElementTemperature T = given.calc_change(calc_section(0).expansion->tref);
   VectorXd nodal(n);
   for (int i = 0; i < n; ++i) {
     const int at = place_[static_cast<std::size_t>(i)];
@@ -20,7 +21,7 @@ double CurvedShell::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd
     const ShellSection section = calc_section(static_cast<int>(q));
     const ShellExpansion& e = *section.expansion;
     const auto& at = tying_->samples[static_cast<std::size_t>(tying_->points[q].sample)];
-    const double t = at.shape.head(n).dot(nodal) - e.tref;
+    const double t = at.shape.head(n).dot(nodal);
     N.push_back(e.calc_N(t, T.gradient_z));
     M.push_back(e.calc_M(t, T.gradient_z));
     full += p.area * (p.membrane.transpose() * N.back() + p.bending.transpose() * M.back());

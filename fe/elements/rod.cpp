@@ -49,7 +49,7 @@ void Rod::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<V
 }
 
 double Rod::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const {
-  const double strain = property_.alpha * (T.node.mean() - property_.tref), N = property_.EA * strain;
+  const double strain = property_.alpha * T.calc_change(property_.tref).node.mean(), N = property_.EA * strain;
   load.segment<3>(0) -= N * axis_;
   load.segment<3>(6) += N * axis_;
   initial[0] -= N;

@@ -9,7 +9,8 @@ namespace bough::fe {
 struct RodProperty {
   double EA = 0, GJ = 0;          ///< for a taper: the length over the integrated compliance
   double mass_a = 0, mass_b = 0;  ///< mass per length at the ends, linear between (nsm included)
-  double alpha = 0, tref = 0;     ///< thermal expansion from tref on
+  double alpha = 0;               ///< thermal expansion
+  std::optional<double> tref;     ///< from there on; empty: TEMPERATURE(INITIAL)
   double ge = 0;                  ///< structural damping
 };
 

@@ -194,6 +194,8 @@ Shell::ForceMap<N> Shell::calc_force_map(const ShellFields<N>& fields) const {
       map.template block<3, 1>(kNumForces * q, kPlate<N>[i]) = N_k.col(i);
       map.template block<3, 1>(kNumForces * q + 3, kPlate<N>[i]) = M_k.col(i);
       map.template block<2, 1>(kNumForces * q + 6, kPlate<N>[i]) = fields.plate.force[q].col(i);
+      if (kind_ == MembraneKind::Plain)
+        map(kNumForces * N + q, kMembrane<N>[i]) = c.drilling * fields.membrane.spring[q][i];
     }
   }
   to_nodes<N>(map);
@@ -222,7 +224,20 @@ std::vector<std::string> Shell::internal_force_names() const {
   for (int q = 1; q <= num_points(); ++q)
     for (const char* c : {"Nx", "Ny", "Nxy", "Mx", "My", "Mxy", "Qx", "Qy"})
       names.push_back(c + std::string("@") + std::to_string(q));
+  for (int q = 1; q <= num_points(); ++q) names.push_back("Mz@" + std::to_string(q));
   return names;
+}
+
+std::vector<std::string> Shell::printed_force_names() const {
+  auto names = internal_force_names();
+  names.resize(static_cast<std::size_t>(kNumForces * num_points()));
+  return names;
+}
+
+VectorXd Shell::calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const {
+  VectorXd force(num_internal_forces());
+  calc_internal_forces(u, force);
+  return force.head(kNumForces * num_points());
 }
 
 template ShellFields<3> Shell::calc_fields<3>() const;

@@ -39,11 +39,15 @@ class Shell final : public Element {
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
   bool carries_turning_mass(MassKind kind) const override;
   bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
-  /// Nx Ny Nxy Mx My Mxy Qx Qy at each quadrature point, in element axes: M = ∫σ z dz, Q = ∫τ dz.
-  int num_internal_forces() const override { return kNumForces * num_points(); }
+  /// Nx Ny Nxy Mx My Mxy Qx Qy at each quadrature point, in element axes: M = ∫σ z dz, Q = ∫τ dz. Then what the
+  /// drilling penalty holds at each, a moment per area about the normal, which is not printed.
+  int num_internal_forces() const override { return (kNumForces + 1) * num_points(); }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
   std::vector<std::string> internal_force_names() const override;
-  /// Second order of the element's strains under N, M, Q and of its rigid arms (docs/elements/shell.md).
+  std::vector<std::string> printed_force_names() const override;
+  VectorXd calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const override;
+  /// Second order of the element's strains under N, M, Q, of its drilling and of its rigid arms
+  /// (docs/elements/shell.md).
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
   void add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
@@ -63,7 +67,7 @@ class Shell final : public Element {
   template <int N>
   using Square = Eigen::Matrix<double, 6 * N, 6 * N>;
   template <int N>
-  using ForceMap = Eigen::Matrix<double, 8 * N, 6 * N>;
+  using ForceMap = Eigen::Matrix<double, 9 * N, 6 * N>;
   int num_nodes() const { return num_nodes_; }
   int num_points() const { return num_nodes_; }
   template <int N>

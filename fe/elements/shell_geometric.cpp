@@ -14,6 +14,7 @@ struct Shell::SecondOrder {
   Eigen::Matrix<double, N, N> NN = Eigen::Matrix<double, N, N>::Zero(), MM = NN;
   Eigen::Matrix<double, 3, N> on_slope;                                       ///< Nxx Nyy Nxy dA of each point
   Eigen::Matrix<double, N, 1> on_side = Eigen::Matrix<double, N, 1>::Zero();  ///< T: works on its mean shear
+  Eigen::Matrix<double, N, 1> on_drilling;                                    ///< moment about z of each point
   Eigen::Matrix<double, 2, N> turn = Eigen::Matrix<double, 2, N>::Zero();  ///< factor of (θx, θy) θz / 2 of each node
   Eigen::Matrix<double, N, 1> on_arm = Eigen::Matrix<double, N, 1>::Zero();  ///< factor of -½ (θx² + θy²) of each node
 };
@@ -35,12 +36,16 @@ Shell::SecondOrder<N> Shell::calc_second_order(const ShellFields<N>& fields, con
     s.MM.noalias() += grad.transpose() * m_grad;
     s.turn += m_grad;
     s.on_slope.col(q) = f.template head<3>();
+    s.on_drilling[q] = point.weight * force[kNumForces * N + q];
     for (int k = 0; k < N; ++k)
       s.on_side[k] +=
           plate.side_bending[k][q].dot(f.template segment<3>(3)) + plate.side_shear[k][q].dot(f.template tail<2>());
     if (!has_arms_) continue;
     const Row<N> on_membrane = f.template head<3>().transpose() * fields.membrane.strain[q];
     for (int i = 0; i < N; ++i) arm_force.col(i) += on_membrane.template segment<2>(3 * i);
+    if (kind_ != MembraneKind::Plain) continue;
+    for (int i = 0; i < N; ++i)
+      arm_force.col(i) += s.on_drilling[q] * fields.membrane.spring[q].template segment<2>(3 * i);
   }
   for (int k = 0; k < N; ++k) {
     const auto& side = plate.sides[k];
@@ -88,6 +93,16 @@ void Shell::add_geometric_stiffness_of(const Eigen::Ref<const VectorXd>& force, 
       add(K, 6 * side.i + 1, 6 * m + 3, half);
     }
   }
+  for (int q = 0; q < N; ++q) {  // ½ (θz (u,x + v,y) - θx w,x - θy w,y)
+    const auto& point = fields.points[q];
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j)
+        for (int a = 0; a < 2; ++a) {
+          const double part = 0.5 * s.on_drilling[q] * point.shape[i] * point.dshape(a, j);
+          add(K, 6 * i + 5, 6 * j + a, part);
+          add(K, 6 * i + 3 + a, 6 * j + 2, -part);
+        }
+  }
   for (int i = 0; i < N; ++i)
     for (int a = 0; a < 2; ++a) {
       at_nodes(6 * i + 3 + a, 6 * i + 3 + a) -= s.on_arm[i];
@@ -106,9 +121,9 @@ void Shell::add_projected_of(const Eigen::Ref<const MatrixXd>& U, const Eigen::R
                              GeometricProjection& sums) const {
   constexpr int kNumPairs = N * (N - 1) / 2;
   const ShellFields<N> fields = calc_fields<N>();
-  auto terms = sums.add_terms(2 * kNumPairs + N + 2 * N + 3 * N + (has_arms_ ? N : 0));
+  auto terms = sums.add_terms(2 * kNumPairs + N + N + 2 * N + 3 * N + (has_arms_ ? N : 0));
 
-  MatrixXd force(kNumForces * N, U.cols());
+  MatrixXd force((kNumForces + 1) * N, U.cols());
   multiply_dense(false, calc_force_map<N>(fields), U, 0, force);
   for (Eigen::Index c = 0; c < U.cols(); ++c) {
     const SecondOrder<N> s = calc_second_order<N>(fields, force.col(c).data());
@@ -116,6 +131,7 @@ void Shell::add_projected_of(const Eigen::Ref<const MatrixXd>& U, const Eigen::R
     for (int j = 0; j < N; ++j)
       for (int i = 0; i < j; ++i) *w++ = -s.NN(i, j), *w++ = -s.MM(i, j);
     for (int k = 0; k < N; ++k) *w++ = s.on_side[k];
+    for (int q = 0; q < N; ++q) *w++ = s.on_drilling[q];
     for (int i = 0; i < N; ++i) *w++ = s.turn(0, i), *w++ = s.turn(1, i);
     for (int q = 0; q < N; ++q)
       for (int a = 0; a < 3; ++a) *w++ = s.on_slope(a, q);
@@ -144,6 +160,19 @@ void Shell::add_projected_of(const Eigen::Ref<const MatrixXd>& U, const Eigen::R
     const double half = 0.5 / side.length;
     add_cross(j.col(0) - i.col(0), i.col(4) + j.col(4), half, terms.products.col(term));
     add_cross(j.col(1) - i.col(1), i.col(3) + j.col(3), -half, terms.products.col(term));
+    ++term;
+  }
+  for (const auto& point : fields.points) {
+    Eigen::Matrix<double, Eigen::Dynamic, 3> turn = Eigen::Matrix<double, Eigen::Dynamic, 3>::Zero(Phi.cols(), 3);
+    Eigen::Matrix<double, Eigen::Dynamic, 1> stretch = Eigen::Matrix<double, Eigen::Dynamic, 1>::Zero(Phi.cols());
+    Eigen::Matrix<double, Eigen::Dynamic, 2> slope = Eigen::Matrix<double, Eigen::Dynamic, 2>::Zero(Phi.cols(), 2);
+    for (int i = 0; i < N; ++i) {
+      turn += point.shape[i] * S.template middleCols<3>(6 * i + 3);
+      stretch += point.dshape(0, i) * S.col(6 * i) + point.dshape(1, i) * S.col(6 * i + 1);
+      for (int a = 0; a < 2; ++a) slope.col(a) += point.dshape(a, i) * S.col(6 * i + 2);
+    }
+    add_cross(turn.col(2), stretch, 0.5, terms.products.col(term));
+    for (int a = 0; a < 2; ++a) add_cross(turn.col(a), slope.col(a), -0.5, terms.products.col(term));
     ++term;
   }
   for (int i = 0; i < N; ++i)

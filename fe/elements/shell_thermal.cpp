@@ -11,9 +11,10 @@ using namespace shell;
 /// ∫ Bᵀ (N, M) with the inner modes of the membrane inside B; they move at once by what their own strains do, which is
 /// nothing where the temperature is uniform, since they have no mean.
 template <int N>
-double Shell::add_thermal_of(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
+double Shell::add_thermal_of(const ElementTemperature& given, Eigen::Ref<VectorXd> load,
                              Eigen::Ref<VectorXd> initial) const {
   const ShellExpansion& e = *section_.expansion;
+  const ElementTemperature T = given.calc_change(e.tref);
   const auto fields = calc_fields<N>();
   const auto& membrane = fields.membrane;
   const Eigen::Matrix<double, N, 1> corner = T.node.head<N>();
@@ -21,7 +22,7 @@ double Shell::add_thermal_of(const ElementTemperature& T, Eigen::Ref<VectorXd> l
   Eigen::Vector4d f_a = Eigen::Vector4d::Zero();
   double energy = 0;
   for (int q = 0; q < N; ++q) {
-    const double w = fields.points[q].weight, t = fields.points[q].shape.dot(corner) - e.tref;
+    const double w = fields.points[q].weight, t = fields.points[q].shape.dot(corner);
     const Vector3d normal_force = e.calc_N(t, T.gradient_z), moment = e.calc_M(t, T.gradient_z);
     const Eigen::Matrix<double, 3 * N, 1> m = w * membrane.strain[q].transpose() * normal_force;
     Eigen::Matrix<double, 3 * N, 1> p = w * fields.plate.bending[q].transpose() * moment;

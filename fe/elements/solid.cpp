@@ -154,7 +154,9 @@ void Solid::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref
   force = calc_force_map(calc_fields(false)) * u;
 }
 
-double Solid::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const {
+double Solid::add_thermal(const ElementTemperature& given, Eigen::Ref<VectorXd> load,
+                          Eigen::Ref<VectorXd> initial) const {
+  const ElementTemperature T = given.calc_change(expansion_->tref);
   const auto fields = calc_fields(false);
   const int m = 3 * num_modes();
   MatrixXd Kaa = MatrixXd::Zero(m, m);
@@ -162,7 +164,7 @@ double Solid::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load
   std::vector<Eigen::Matrix<double, 6, 1>> stress;
   double energy = 0;
   for (const auto& f : fields) {
-    const Eigen::Matrix<double, 6, 1> strain = (f.shape.dot(T.node) - expansion_->tref) * expansion_->alpha;
+    const Eigen::Matrix<double, 6, 1> strain = f.shape.dot(T.node) * expansion_->alpha;
     stress.push_back(C_el_ * strain);
     f_u += f.weight * calc_strain_disp(f.gradient).transpose() * stress.back();
     energy += 0.5 * f.weight * strain.dot(stress.back());

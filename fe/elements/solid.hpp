@@ -41,7 +41,7 @@ void turn_round(SolidGeometry& geometry, std::vector<int>& nodes);
 /// Thermal expansion in basic axes, Voigt as the law.
 struct SolidExpansion {
   Eigen::Matrix<double, 6, 1> alpha = Eigen::Matrix<double, 6, 1>::Zero();
-  double tref = 0;
+  std::optional<double> tref;  ///< empty: TEMPERATURE(INITIAL)
 };
 
 class Solid final : public Element {

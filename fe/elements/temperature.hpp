@@ -1,5 +1,7 @@
 #pragma once
 /// \file Temperatures as an element sees them: Element::add_thermal.
+#include <optional>
+
 #include <Eigen/Dense>
 
 namespace bough::fe {
@@ -10,6 +12,22 @@ struct ElementTemperature {
   /// Bars: dT/dy, dT/dz of the section at ends A and B, element axes; about the neutral axis.
   Eigen::Vector2d gradient_a = Eigen::Vector2d::Zero(), gradient_b = Eigen::Vector2d::Zero();
   double gradient_z = 0;  ///< plates: dT/dz along the normal; `node` is the temperature of the reference surface
+  const ElementTemperature* initial = nullptr;  ///< what TEMPERATURE(INITIAL) says; none: zero
+
+  /// What makes a material expand: the change from TREF on or, without one, from the initial temperature.
+  ElementTemperature calc_change(const std::optional<double>& tref) const {
+    ElementTemperature change = *this;
+    change.initial = nullptr;
+    if (tref)
+      change.node.array() -= *tref;
+    else if (initial) {
+      change.node -= initial->node;
+      change.gradient_a -= initial->gradient_a;
+      change.gradient_b -= initial->gradient_b;
+      change.gradient_z -= initial->gradient_z;
+    }
+    return change;
+  }
 };
 
 }  // namespace bough::fe

@@ -4,6 +4,7 @@
 #include "fe/linear/ordering.hpp"
 #include "fe/linear/petsc_message.hpp"
 #include "fe/linear/ranks.hpp"
+#include "fe/linear/sum_factor.hpp"
 
 namespace bough::fe {
 namespace {
@@ -94,6 +95,12 @@ void judge_definite(PetscErrorCode code) {
 
 PetscMat factor_definite(Mat A) {
   if (initialize_petsc().size > 1) return {};
+  if (const LowRankPart* part = find_low_rank(A)) {
+    PetscMat sparse = factor_definite(get_sparse(A));
+    if (!sparse) return {};
+    PetscMat sum = make_sum_factor(std::move(sparse), *part);
+    return count_extra_negative(sum.get()) == 0 ? std::move(sum) : PetscMat();
+  }
   // Without both a small matrix gets an LDLᵀ that takes negative pivots as they come.
   check_petsc(PetscOptionsSetValue(nullptr, "-mat_cholmod_final_asis", "false"));
   check_petsc(PetscOptionsSetValue(nullptr, "-mat_cholmod_final_ll", "true"));
@@ -121,7 +128,10 @@ PetscMat factor_definite(Mat A) {
 SymmetricFactor::SymmetricFactor(Mat A, bool find_null_pivots, FactorMethod method) {
   if (method == FactorMethod::Fastest) factor_ = factor_definite(A);
   is_definite_ = static_cast<bool>(factor_);
-  if (!is_definite_) factor_by_mumps(A, find_null_pivots);
+  if (is_definite_) return;
+  factor_by_mumps(get_sparse(A), find_null_pivots);
+  if (const LowRankPart* part = find_low_rank(A); part && !is_singular_)
+    factor_ = make_sum_factor(std::move(factor_), *part);
 }
 
 void SymmetricFactor::factor_by_mumps(Mat A, bool find_null_pivots) {
@@ -160,6 +170,7 @@ void SymmetricFactor::factor_by_mumps(Mat A, bool find_null_pivots) {
 
 MatrixXd solve_factored(Mat factor, const Eigen::Ref<const MatrixXd>& B) {
   if (B.cols() == 0) return B;
+  if (MatrixXd X; solve_sum(factor, B, X)) return X;
   const PetscMat rhs = make_dense(factor, B);
   if (initialize_petsc().size == 1) {
     MatrixXd X(B.rows(), B.cols());
@@ -175,6 +186,7 @@ MatrixXd solve_factored(Mat factor, const Eigen::Ref<const MatrixXd>& B) {
 MatrixXd SymmetricFactor::solve(const Eigen::Ref<const MatrixXd>& B) const { return solve_factored(factor_.get(), B); }
 
 MatrixXd multiply(Mat A, const Eigen::Ref<const MatrixXd>& X) {
+  if (const LowRankPart* part = find_low_rank(A)) return multiply(get_sparse(A), X) + part->multiply(X);
   const PetscMat dense = make_dense(A, X);
   PetscMat product;
   if (initialize_petsc().size == 1 && X.cols() > 0) {
@@ -189,6 +201,14 @@ MatrixXd multiply(Mat A, const Eigen::Ref<const MatrixXd>& X) {
 
 MatrixXd calc_residual(Mat A, const Eigen::Ref<const MatrixXd>& X, const Eigen::Ref<const MatrixXd>& B) {
   MatrixXd R = MatrixXd::Zero(B.rows(), B.cols());
+  // What cancels between the two parts of a sum has more digits too.
+  Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic> of_part;
+  const LowRankPart* part = find_low_rank(A);
+  if (part) {
+    const Eigen::SparseMatrix<long double> U = part->U.cast<long double>();
+    of_part = U * (part->W.cast<long double>() * (U.transpose() * X.cast<long double>()));
+    A = get_sparse(A);
+  }
   PetscInt first = 0, last = 0, num = 0;
   check_petsc(MatGetOwnershipRange(A, &first, &last));
   const PetscInt* columns = nullptr;
@@ -197,6 +217,7 @@ MatrixXd calc_residual(Mat A, const Eigen::Ref<const MatrixXd>& X, const Eigen::
     check_petsc(MatGetRow(A, row, &num, &columns, &values));
     for (Eigen::Index c = 0; c < B.cols(); ++c) {
       long double sum = B(row, c);
+      if (part) sum -= of_part(row, c);
       const double* x = X.col(c).data();
       for (PetscInt k = 0; k < num; ++k) sum -= static_cast<long double>(values[k]) * x[columns[k]];
       R(row, c) = static_cast<double>(sum);
@@ -208,6 +229,7 @@ MatrixXd calc_residual(Mat A, const Eigen::Ref<const MatrixXd>& X, const Eigen::
 }
 
 Eigen::VectorXd get_diagonal(Mat A) {
+  if (const LowRankPart* part = find_low_rank(A)) return get_diagonal(get_sparse(A)) + part->calc_diagonal();
   PetscVec v;
   check_petsc(MatCreateVecs(A, v.out(), nullptr));
   check_petsc(MatGetDiagonal(A, v.get()));

@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/ranks.hpp"
 
 namespace bough::fe {
@@ -53,12 +54,7 @@ double calc_softest_energy(Mat K, const SymmetricFactor& factor) {
 MatrixXd find_mechanisms(Mat K, int expected, double most) {
   const VectorXd D = get_scale(K);
   const Eigen::Index n = D.size(), m = std::min<Eigen::Index>(n, std::clamp(expected + 2, 6, 24));
-  PetscMat shifted;
-  check_petsc(MatDuplicate(K, MAT_COPY_VALUES, shifted.out()));
-  PetscVec shift;
-  check_petsc(MatCreateVecs(K, shift.out(), nullptr));
-  scatter(1e-13 * D, shift.get());
-  check_petsc(MatDiagonalSet(shifted.get(), shift.get(), ADD_VALUES));
+  const PetscMat shifted = add_diagonal(K, 1e-13 * D);
   const SymmetricFactor factor(shifted.get(), false, FactorMethod::Pivoting);
   if (factor.is_singular()) return MatrixXd(n, 0);
 

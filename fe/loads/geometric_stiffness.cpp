@@ -27,8 +27,9 @@ PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const Appl
   };
   auto forms = calc_second_order(model, make_loads(load), u_g);
   // With the reference's own dofs.
-  std::erase_if(forms, [](const QuadraticForm& form) { return form.gdofs.size() > kMaxLinkDofs + 6; });
-  return assemble(model, set, add, forms);
+  if (set == DofSet::Global)
+    std::erase_if(forms, [](const QuadraticForm& form) { return form.gdofs.size() > kMaxLinkDofs + 6; });
+  return assemble(model, set, MatrixKind::Other, add, std::move(forms));
 }
 
 }  // namespace bough::fe

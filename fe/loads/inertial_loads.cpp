@@ -176,7 +176,7 @@ MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Ph
 
 PetscMat assemble_grid_mass(const Model& model, MassKind kind) {
   const double scale = model.wtmass();
-  return assemble(model, DofSet::Global, [&](const Element& e, Eigen::Ref<MatrixXd> M) {
+  return assemble(model, DofSet::Global, MatrixKind::Other, [&](const Element& e, Eigen::Ref<MatrixXd> M) {
     CarriedMass carried(e.num_dofs());
     if (e.carries_turning_mass(kind) && calc_carried(model, e, kind, carried)) return;
     e.add_mass(kind, scale, M);

@@ -169,6 +169,7 @@ AppliedLoad Model::calc_applied_load(const records::Deck& deck, int set, Diagnos
                             diagnostics, load.A_I, load.arms, load.followers};
     const bool found[] = {add_point_loads(target), add_body_loads(target), add_surface_loads(target),
                           add_beam_loads(target), has_enforced(deck, plain.sid)};
+    report_dead_loads(deck, plain.sid, diagnostics);
     if (std::find(std::begin(found), std::end(found), true) == std::end(found)) missing.push_back(plain);
   }
   // A LOAD card of which something is left loads the structure, as in Nastran.

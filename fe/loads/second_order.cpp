@@ -78,7 +78,8 @@ void add_carried_masses(const Model& model, const MatrixXd& A_I, GridForms& grid
   }
 }
 
-/// F - K u of the dofs that the links need, in the displacement axes.
+/// F - K u of the dofs that the links need, in the displacement axes. K is that of the elements without K_G0 of a
+/// preload, as their internal forces are: what a link passes on is what an offset of the element would.
 MatrixXd calc_residual(const Model& model, const std::vector<int>& ldofs, const MatrixXd& F,
                        const Eigen::Ref<const MatrixXd>& U) {
   std::map<int, const Node*> nodes;  // by first g-dof
@@ -106,11 +107,9 @@ MatrixXd calc_residual(const Model& model, const std::vector<int>& ldofs, const 
     const auto& own = element->gdofs();
     if (std::none_of(own.begin(), own.end(), [&](int g) { return row[static_cast<std::size_t>(g)] >= 0; })) continue;
     K.setZero(element->num_dofs(), element->num_dofs());
-    model.add_stiffness(*element, K);
+    element->add_stiffness(1, K);
     subtract(own, K);
   }
-  if (model.prestress())
-    for (const auto& form : model.prestress()->forms) subtract(form.gdofs, calc_form(form, 0));
   MatrixXd result(ldofs.size(), F.cols());
   for (std::size_t i = 0; i < ldofs.size(); ++i) {
     const Node& node = *std::prev(nodes.upper_bound(ldofs[i]))->second;

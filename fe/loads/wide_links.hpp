@@ -7,8 +7,8 @@
 
 namespace bough::fe {
 
-/// An RBE3 over more g-dofs than this makes a dense block of K_G of that size: assemble_geometric_stiffness() leaves it
-/// out. (Projected on modes it costs a product per row: reduce takes every link.)
+/// An RBE3 over more g-dofs than this makes a dense block of K_G of that size: on the g-set, for files, where nothing
+/// is of low rank (wide_part.hpp), assemble_geometric_stiffness() leaves it out.
 inline constexpr std::size_t kMaxLinkDofs = 3000;
 
 /// Reports fe.wide-link (warning) for every such RBE3.

@@ -1,7 +1,6 @@
 #include "fe/matrices/assembly.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <numeric>
 
 #include "fe/linear/ordering.hpp"
@@ -154,15 +153,10 @@ MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen
   return Y;
 }
 
-}  // namespace
-
-// Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an entry does not
-// depend on the number of ranks.
-PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add,
-                  const std::vector<QuadraticForm>& forms) {
-  initialize_petsc();
-  const SparseRows identity = set == DofSet::Global ? make_identity(model.num_gdofs()) : SparseRows{};
-  const SparseRows& T = set == DofSet::Global ? identity : model.T();
+/// TᵀAT, sparse. Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an
+/// entry does not depend on the number of ranks.
+PetscMat assemble_sparse(const Model& model, const SparseRows& T, const AddElementMatrix& add,
+                         const std::vector<QuadraticForm>& forms) {
   const PetscInt size = static_cast<PetscInt>(T.cols());
 
   PetscMat matrix;
@@ -202,18 +196,33 @@ PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add,
   return matrix;
 }
 
+}  // namespace
+
+PetscMat assemble(const Model& model, DofSet set, MatrixKind kind, const AddElementMatrix& add,
+                  std::vector<QuadraticForm> forms) {
+  initialize_petsc();
+  if (set == DofSet::Global) return assemble_sparse(model, make_identity(model.num_gdofs()), add, forms);
+  const LowRankPart of_forms = take_wide_forms(model, forms);
+  const auto split = split_transform(model, kind == MatrixKind::Stiffness);
+  if (!split) return make_sum(assemble_sparse(model, model.T(), add, forms), of_forms);
+  return make_sum(assemble_sparse(model, split->T, add, forms),
+                  join(calc_wide_part(model, *split, add, forms), 1, of_forms, 1));
+}
+
 PetscMat assemble_stiffness(const Model& model, DofSet set) {
   return assemble(
-      model, set, [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); }, get_forms(model));
+      model, set, MatrixKind::Stiffness,
+      [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); }, get_forms(model));
 }
 
 PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind) {
   const double scale = model.wtmass();
-  return assemble(model, set, [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); });
+  return assemble(model, set, MatrixKind::Other,
+                  [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); });
 }
 
 PetscMat assemble_damping(const Model& model, DofSet set) {
-  return assemble(model, set, [](const Element& e, Eigen::Ref<MatrixXd> B) { e.add_damping(1, B); });
+  return assemble(model, set, MatrixKind::Other, [](const Element& e, Eigen::Ref<MatrixXd> B) { e.add_damping(1, B); });
 }
 
 MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g) {

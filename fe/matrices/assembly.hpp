@@ -1,19 +1,20 @@
 #pragma once
 /// \file Sparse matrices of a model in PETSc, assembled element by element by each rank; nothing dense of size ndof².
 #include "fe/linear/ranks.hpp"
-#include "fe/model/model.hpp"
+#include "fe/matrices/wide_part.hpp"
 
 namespace bough::fe {
 
 enum class DofSet { Free, Global };  ///< f-set (TᵀKT) or g-set
 
-/// Adds one element's N x N matrix (basic) into zeroed storage.
-using AddElementMatrix = std::function<void(const Element&, Eigen::Ref<MatrixXd>)>;
+/// Stiffness is split such that its sparse part is definite where it is, see split_transform().
+enum class MatrixKind { Stiffness, Other };
 
 /// Σ of element matrices and of forms on PETSC_COMM_WORLD; MATAIJ, zeros left out except on the diagonal; the same to
-/// the last bit on any number of ranks. O(elements).
-PetscMat assemble(const Model& model, DofSet set, const AddElementMatrix& add,
-                  const std::vector<QuadraticForm>& forms = {});
+/// the last bit on any number of ranks. A sum of low_rank_sum.hpp where constraints or forms of the f-set are wide
+/// (wide_part.hpp). O(elements).
+PetscMat assemble(const Model& model, DofSet set, MatrixKind kind, const AddElementMatrix& add,
+                  std::vector<QuadraticForm> forms = {});
 
 /// K (with K_G0 of a prestressed model), or M (times WTMASS).
 PetscMat assemble_stiffness(const Model& model, DofSet set);

@@ -56,21 +56,23 @@ NodeBlocks calc_node_blocks(const Model& model, const std::vector<int>& gdof_nod
   ElementTransform transform;
   MatrixXd K_e;
   const auto add = [&](const MatrixXd& K) {
-    const MatrixXd& K_f = transform.project(K);
+    transform.hold(K);
     const auto& columns = transform.columns();
     for (size_t i = 0; i < columns.size(); ++i)
       for (size_t j = i; j < columns.size() && j < i + 6; ++j) {
         if (fdof_block[columns[i]] != fdof_block[columns[j]]) continue;
         Matrix3d& block = blocks[fdof_block[columns[i]]];
         const int a = fdof_slot[columns[i]], b = fdof_slot[columns[j]];
-        block(a, b) += K_f(i, j);
-        if (a != b) block(b, a) += K_f(i, j);
+        const double value = transform.entry(static_cast<int>(i), static_cast<int>(j));
+        block(a, b) += value;
+        if (a != b) block(b, a) += value;
       }
   };
   for (const auto& element : model.elements()) {
     const int n = element->num_dofs();
     K_e.setZero(n, n);
     model.add_stiffness(*element, K_e);
+    if (K_e.isZero(0)) continue;
     transform.set(model.T(), element->gdofs());
     add_noise(calc_sizes(*element, nodes, gdof_node, K_e), transform, fdof_block, result.noise);
     add(K_e);
@@ -188,10 +190,11 @@ std::vector<double> calc_masses(const std::vector<Node>& nodes,
       continue;
     M_e.setZero(element->num_dofs(), element->num_dofs());
     element->add_mass(kind, 1, M_e);
-    const MatrixXd& M_f = transform.project(M_e);
+    if (M_e.isZero(0)) continue;
+    transform.hold(M_e);
     for (std::size_t i = 0; i < columns.size(); ++i)
       if (const int e = entry_of[static_cast<std::size_t>(columns[i])]; e >= 0)
-        mass[static_cast<std::size_t>(e)] += M_f(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i));
+        mass[static_cast<std::size_t>(e)] += transform.entry(static_cast<int>(i), static_cast<int>(i));
   }
   return mass;
 }

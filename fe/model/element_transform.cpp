@@ -49,6 +49,13 @@ const MatrixXd& ElementTransform::project(const Eigen::Ref<const MatrixXd>& K_e)
   return K_f_;
 }
 
+void ElementTransform::hold(const Eigen::Ref<const MatrixXd>& K_e) {
+  if (is_selection_)
+    project(K_e);
+  else
+    K_T_.noalias() = K_e * T_e_;
+}
+
 const VectorXd& ElementTransform::project_diagonal(const Eigen::Ref<const VectorXd>& d) {
   d_f_.setZero(static_cast<int>(columns_.size()));
   if (!is_selection_) {

@@ -22,6 +22,9 @@ class ElementTransform {
   const std::vector<int>& columns() const { return columns_; }
   /// T_eᵀ K_e T_e, columns().size() square; valid until the next call.
   const MatrixXd& project(const Eigen::Ref<const MatrixXd>& K_e);
+  /// Entries of T_eᵀ K_e T_e one by one, for what needs few of them: entry(i, j) after hold(K_e).
+  void hold(const Eigen::Ref<const MatrixXd>& K_e);
+  double entry(int i, int j) const { return is_selection_ ? K_f_(i, j) : T_e_.col(i).dot(K_T_.col(j)); }
   /// The diagonal of T_eᵀ diag(d) T_e, columns().size(): Σ_i T_if² d_i; valid until the next call.
   const VectorXd& project_diagonal(const Eigen::Ref<const VectorXd>& d);
 

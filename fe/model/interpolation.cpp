@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <unordered_map>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -225,16 +226,15 @@ void add_rbe3(const records::Rbe3& record, const NodeTable& nodes, const SourceL
     if (record.ref_c >> c & 1u) ldofs.push_back(reference->first_gdof + c);
   const int num = static_cast<int>(ldofs.size());
   dependent = ldofs;
+  std::unordered_map<int, int> column_of;
+  for (const int ldof : ldofs) column_of.emplace(ldof, static_cast<int>(column_of.size()));
   for (const auto& s : samples)
-    if (std::find(ldofs.begin(), ldofs.end(), s.ldof) == ldofs.end()) ldofs.push_back(s.ldof);
+    if (column_of.emplace(s.ldof, static_cast<int>(column_of.size())).second) ldofs.push_back(s.ldof);
   MatrixXd E = MatrixXd::Zero(num, static_cast<int>(ldofs.size()));
   for (int row = 0; row < num; ++row) {
     E(row, row) = 1;
     const Eigen::Matrix<double, 1, 6> to = R.row(dependent[row] - reference->first_gdof) * inverse;
-    for (const auto& s : samples) {
-      const auto column = std::find(ldofs.begin(), ldofs.end(), s.ldof) - ldofs.begin();
-      E(row, static_cast<int>(column)) -= s.weight * to.dot(s.row);
-    }
+    for (const auto& s : samples) E(row, column_of.at(s.ldof)) -= s.weight * to.dot(s.row);
   }
   if (!record.um.empty()) {
     dependent.clear();

@@ -75,24 +75,36 @@ InitialForces calc_thermal(const Model& model, const records::Deck& deck, int se
                       "correct TEMPERATURE(LOAD) or add its cards");
     return result;
   }
-  int num_missing = 0, first_grid = 0;
+  const int from = model.subcase().initial_temperature;
+  const TemperatureSet initial(deck.temperatures, from);
+  if (from != 0 && initial.is_empty()) {
+    diagnostics.error("fe.missing-load", deck.locate(records::find_selection(deck, "TEMPERATURE(INITIAL)", from)),
+                      "temperature set " + std::to_string(from) + " has no TEMP, TEMPD, TEMPRB or TEMPP1 card",
+                      "correct TEMPERATURE(INITIAL) or add its cards");
+    return result;
+  }
+  int num_missing = 0, first_grid = 0, first_set = set;
   const Element* first_missing = nullptr;
   for (const auto& element : model.elements()) {
     if (!element->has_expansion()) continue;
     int grid = 0;
-    const auto T = temperatures.find(model, *element, grid);
-    if (!T) {
-      if (num_missing++ == 0) first_missing = element.get(), first_grid = grid;
+    auto T = temperatures.find(model, *element, grid);
+    const auto T_0 = T && from != 0 ? initial.find(model, *element, grid) : std::nullopt;
+    if (!T || (from != 0 && !T_0)) {
+      if (num_missing++ == 0) first_missing = element.get(), first_grid = grid, first_set = T ? from : set;
       continue;
     }
+    if (T_0) T->initial = &*T_0;
     InitialForces::Part part{VectorXd::Zero(element->num_internal_forces()), VectorXd::Zero(element->num_dofs()), 0};
     part.energy = element->add_thermal(*T, part.load, part.force);
     result.of.emplace(element.get(), std::move(part));
   }
   if (first_missing)
-    diagnostics.error("fe.missing-temperature", deck.locate(records::find_selection(deck, "TEMPERATURE", set)),
+    diagnostics.error("fe.missing-temperature",
+                      deck.locate(first_set == set ? records::find_selection(deck, "TEMPERATURE", set)
+                                                   : records::find_selection(deck, "TEMPERATURE(INITIAL)", from)),
                       first_missing->card() + " " + std::to_string(first_missing->id()) +
-                          " has no temperature in set " + std::to_string(set) + ": none is given for grid " +
+                          " has no temperature in set " + std::to_string(first_set) + ": none is given for grid " +
                           std::to_string(first_grid) +
                           (num_missing > 1 ? " (and " + std::to_string(num_missing - 1) + " elements more)" : ""),
                       "add TEMP for the grid, or TEMPD for all grids that have none");

@@ -99,6 +99,25 @@ ShellSection make_laminate_section(const std::vector<LaminateLayer>& layers, dou
   return s;
 }
 
+LaminateLayer smear(const std::vector<LaminateLayer>& layers) {
+  LaminateLayer result;
+  auto& m = result.material;
+  Eigen::Vector3d stress = Eigen::Vector3d::Zero();
+  for (const auto& l : layers) {
+    result.thickness += l.thickness;
+    m.Q += l.thickness * l.material.Q;
+    m.G += l.thickness * l.material.G;
+    m.rho += l.thickness * l.material.rho;
+    stress += l.thickness * (l.material.Q * l.material.alpha);
+    m.shear_rigid = m.shear_rigid || l.material.shear_rigid;
+  }
+  if (!stress.isZero(0)) m.alpha = m.Q.ldlt().solve(stress);
+  m.Q /= result.thickness;
+  m.G /= result.thickness;
+  m.rho /= result.thickness;
+  return result;
+}
+
 ShellExpansion make_laminate_expansion(const std::vector<LaminateLayer>& layers, double z0) {
   ShellExpansion e;
   double z = z0;

@@ -1,5 +1,7 @@
 #pragma once
 /// \file Plane-stress laws of ply materials and the stress-resultant law of plates and laminates.
+#include <optional>
+
 #include "fe/sections/shell_section.hpp"
 
 namespace bough::fe {
@@ -11,7 +13,7 @@ struct PlaneMaterial {
   bool shear_rigid = false;                     ///< no transverse shear flexibility (MAT8 without G1Z, G2Z)
   double rho = 0;
   Eigen::Vector3d alpha = Eigen::Vector3d::Zero();  ///< thermal expansion
-  double tref = 0;
+  std::optional<double> tref;
   double ge = 0;  ///< structural damping
 };
 
@@ -35,6 +37,10 @@ struct LaminateLayer {
 /// F(z) = ∫ E (z' - z̄) dz' (MSC Nastran's PCOMP; Whitney, "Shear correction factors for orthotropic laminates", 1973).
 /// One homogeneous layer gives 5/6 G t.
 ShellSection make_laminate_section(const std::vector<LaminateLayer>& layers, double z0);
+/// One layer of the same thickness, stretch and free expansion in the plane as all of them, whatever their order; rigid
+/// in transverse shear where one of them is.
+LaminateLayer smear(const std::vector<LaminateLayer>& layers);
+
 /// The expansion of the same stack; tref is not set.
 ShellExpansion make_laminate_expansion(const std::vector<LaminateLayer>& layers, double z0);
 

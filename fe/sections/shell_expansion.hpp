@@ -1,5 +1,7 @@
 #pragma once
 /// \file What a plate's section does when it is heated: included by shell_section.hpp.
+#include <optional>
+
 #include <Eigen/Dense>
 
 namespace bough::fe {
@@ -11,7 +13,7 @@ struct ShellExpansion {
   Eigen::Vector3d N_t = Eigen::Vector3d::Zero(), M_t = Eigen::Vector3d::Zero();
   Eigen::Vector3d N_g = Eigen::Vector3d::Zero(), M_g = Eigen::Vector3d::Zero();
   double e_tt = 0, e_tg = 0, e_gg = 0;
-  double tref = 0;
+  std::optional<double> tref;  ///< empty: TEMPERATURE(INITIAL)
 
   Eigen::Vector3d calc_N(double t, double g) const { return t * N_t + g * N_g; }
   Eigen::Vector3d calc_M(double t, double g) const { return t * M_t + g * M_g; }

@@ -123,6 +123,22 @@ std::vector<SolidPoint> calc_solid_points(SolidKind kind, bool quadratic, bool m
         points.push_back({{t == 1 ? 2.0 / 3 : 1.0 / 6, t == 2 ? 2.0 / 3 : 1.0 / 6, z.x[k]}, z.w[k] / 6});
     return points;
   }
+  if (kind == SolidKind::Penta && !mass && quadratic) {
+    // Seven points of the triangle, exact to degree five (Radon 1948; Hammer, Marlowe & Stroud, MTAC 10 (1956) 130) and
+    // the same from each corner, so a curved wedge does not depend on where its count begins.
+    const Gauss z = get_gauss(along);
+    const double root = std::sqrt(15.0), a = (6 - root) / 21, b = (6 + root) / 21;
+    const auto add = [&](double r, double s, double weight) {
+      for (std::size_t k = 0; k < z.x.size(); ++k) points.push_back({{r, s, z.x[k]}, weight * z.w[k]});
+    };
+    add(1.0 / 3, 1.0 / 3, 9.0 / 80);
+    for (const auto& [c, weight] : {std::pair{a, (155 - root) / 2400}, std::pair{b, (155 + root) / 2400}}) {
+      add(c, c, weight);
+      add(1 - 2 * c, c, weight);
+      add(c, 1 - 2 * c, weight);
+    }
+    return points;
+  }
   // Products of Gauss rules on the collapsed square or cube (Stroud): exact to degree 2n-3 or better.
   const Gauss g = get_gauss(mass && quadratic ? 4 : 3);
   auto half = [](double x) { return 0.5 * (1 + x); };

@@ -26,8 +26,8 @@ void calc_solid_shape(SolidKind kind, const std::vector<int>& midside, const Eig
                       Eigen::VectorXd& shape, Eigen::Matrix3Xd& dshape);
 
 /// Full integration of the stiffness, or of the mass when `mass` is true. `order` 2 or 3 sets the points of the
-/// stiffness: 2³ or 3³ of a brick, 2 or 3 along the axis of a wedge with three or nine in its triangle; 0: by the
-/// nodes.
+/// stiffness: 2³ or 3³ of a brick, 2 or 3 along the axis of a wedge with three in its triangle, or nine, seven with
+/// midside nodes; 0: by the nodes.
 std::vector<SolidPoint> calc_solid_points(SolidKind kind, bool quadratic, bool mass, int order = 0);
 
 }  // namespace bough::fe

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "fe/linear/mechanism.hpp"
+#include "fe/loads/inertial_loads.hpp"
 #include "fe/model/sets.hpp"
 
 namespace bough::fe {
@@ -106,6 +107,17 @@ Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<i
 
 VectorXd calc_acceleration(const Suport& suport, const VectorXd& F_g) {
   return suport.mass.ldlt().solve(suport.motions.transpose() * F_g);
+}
+
+void add_relief(const Model& model, const Suport& suport, AppliedLoad& load) {
+  if (suport.relief == InertiaRelief::None || suport.fdofs.empty()) return;
+  const VectorXd field = suport.motions * calc_acceleration(suport, load.F);
+  const MatrixXd rigid = model.calc_rigid_modes(Vector3d::Zero());
+  const VectorXd a = rigid.colPivHouseholderQr().solve(field);
+  if ((rigid * a - field).norm() > 1e-6 * field.norm()) return;
+  const Vector12d A_I = calc_load_factors(a.head<3>(), a.tail<3>(), Vector3d::Zero());
+  load.F += calc_inertial_loads(model, model.mass_kind(), A_I);
+  load.A_I += A_I;
 }
 
 void remove_rigid_part(const Suport& suport, VectorXd& u_g) {

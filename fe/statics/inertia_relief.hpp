@@ -36,6 +36,11 @@ Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<i
 /// Accelerations a of the r dofs under the load F (num_gdofs): ΦᵀMΦ a = ΦᵀF. The balanced load is F - MΦ a.
 VectorXd calc_acceleration(const Suport& suport, const VectorXd& F_g);
 
+/// With inertia relief the load of the rigid acceleration of a free body, for what needs to know it as such: K_G of
+/// carried masses and arms. F and A_I of the load are balanced with it; nothing without relief, or where the motions
+/// are not those of one rigid body.
+void add_relief(const Model& model, const Suport& suport, AppliedLoad& load);
+
 /// INREL -2: u less its rigid part in the sense of the mass, so that ΦᵀM u = 0.
 void remove_rigid_part(const Suport& suport, VectorXd& u_g);
 

@@ -78,13 +78,17 @@ std::shared_ptr<const Prestress> calc_prestress(const records::Deck& deck, const
     load.F += calc_inertial_loads(model, model.mass_kind(), A_I);
     load.A_I += A_I;
   }
-  const auto make_solver = [&] {
-    if (model.num_fdofs() == 0) return StaticSolver(model);
-    return StaticSolver(model, assemble_stiffness(model, DofSet::Free),
-                        options.ignore_spc ? choose_determinate_support(model, 0) : std::vector<int>{});
-  };
-  const StaticSolver solver = make_solver();
-  const VectorXd u = solve_static_case(model, solver, load, {}, &own).displacement;
+  // A body without its SPC is reduced free: its SUPORT is another matter.
+  const auto relief = options.ignore_spc ? InertiaRelief::None : read_inertia_relief(deck, own);
+  auto held_fdofs = options.ignore_spc ? choose_determinate_support(model, 0) : choose_suport(model, deck, relief, own);
+  own.throw_if_errors();
+  const StaticSolver solver = model.num_fdofs() == 0
+                                  ? StaticSolver(model)
+                                  : StaticSolver(model, assemble_stiffness(model, DofSet::Free), held_fdofs);
+  Suport suport;
+  if (!options.ignore_spc) suport = calc_suport(model, solver, std::move(held_fdofs), relief, own);
+  add_relief(model, suport, load);
+  const VectorXd u = solve_static_case(model, solver, load, suport, &own).displacement;
 
   auto result = options.prestress ? std::make_shared<Prestress>(*options.prestress) : std::make_shared<Prestress>();
   result->name += (result->name.empty() ? "" : " and ") + preload.name;

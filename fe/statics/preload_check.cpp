@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "fe/linear/factor.hpp"
+#include "fe/linear/sum_factor.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/model/builder.hpp"
 #include "fe/statics/statics.hpp"
@@ -10,7 +11,8 @@ namespace bough::fe {
 namespace {
 
 /// By the inertia of MUMPS, on several ranks.
-bool has_negative_pivot(Mat A) {
+bool has_negative_pivot(Mat whole) {
+  Mat A = get_sparse(whole);
   MatFactorInfo info;
   check_petsc(MatFactorInfoInitialize(&info));
   for (const PetscInt extra_percent : {60, 200, 1000}) {
@@ -27,6 +29,8 @@ bool has_negative_pivot(Mat A) {
     if (state == FactorState::NeedsWorkspace) continue;
     if (state == FactorState::Singular) return false;
     check_petsc(MatGetInertia(F.get(), &negative, nullptr, nullptr));
+    if (const LowRankPart* part = find_low_rank(whole))
+      negative += count_extra_negative(make_sum_factor(std::move(F), *part).get());
     return negative > 0;
   }
   return false;
@@ -35,37 +39,32 @@ bool has_negative_pivot(Mat A) {
 /// Whether A has a negative eigenvalue beyond roundoff; those of motions without stiffness are none.
 bool has_negative(const PetscMat& A) {
   if (factor_definite(A.get())) return false;
-  PetscMat shifted;
-  check_petsc(MatDuplicate(A.get(), MAT_COPY_VALUES, shifted.out()));
   VectorXd shift = 1e-13 * get_diagonal(A.get()).cwiseAbs();
   shift = shift.cwiseMax(1e-6 * shift.maxCoeff());
-  PetscVec v;
-  check_petsc(MatCreateVecs(A.get(), v.out(), nullptr));
-  scatter(shift, v.get());
-  check_petsc(MatDiagonalSet(shifted.get(), v.get(), ADD_VALUES));
+  const PetscMat shifted = add_diagonal(A.get(), shift);
   if (initialize_petsc().size == 1) return !factor_definite(shifted.get());
   return has_negative_pivot(shifted.get());
 }
 
-/// Holds what carries the rigid motions of a free model: where those need no force, the sign of the rest stays.
-void hold_support(const Model& model, const PetscMat& A) {
-  std::vector<int> held;
+/// Takes out what carries the rigid motions of a free model: where those need no force, the sign of the rest stays.
+PetscMat hold_support(const Model& model, PetscMat A) {
+  std::vector<int> held, kept;
   try {
     held = choose_determinate_support(model, 0);
   } catch (const InputError&) {
-    return;
+    return A;
   }
-  const double scale = get_diagonal(A.get()).cwiseAbs().maxCoeff();
-  if (initialize_petsc().rank > 0) held.clear();
-  check_petsc(MatZeroRowsColumns(A.get(), static_cast<PetscInt>(held.size()), held.data(), scale, nullptr, nullptr));
+  for (int f = 0; f < model.num_fdofs(); ++f)
+    if (std::find(held.begin(), held.end(), f) == held.end()) kept.push_back(f);
+  return take_kept(A.get(), kept);
 }
 
 }  // namespace
 
 void ModelBuilder::check_prestress() {
   if (!model_.prestress_ || model_.num_fdofs() == 0) return;
-  const auto K = assemble_stiffness(model_, DofSet::Free);
-  if (options_.ignore_spc) hold_support(model_, K);
+  PetscMat K = assemble_stiffness(model_, DofSet::Free);
+  if (options_.ignore_spc) K = hold_support(model_, std::move(K));
   if (!has_negative(K)) return;
   throw ComputationError("fe.preload-buckles", model_.prestress_->at,
                          "the structure buckles under its preload, " + model_.prestress_->name +

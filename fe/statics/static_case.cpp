@@ -13,7 +13,7 @@ namespace {
 
 VectorXd calc_forces(const Element& element, const VectorXd& u, const InitialForces::Part* initial) {
   VectorXd force = element.calc_printed_forces(u);
-  if (initial) force += initial->force;
+  if (initial) force += initial->force.head(force.size());
   return force;
 }
 

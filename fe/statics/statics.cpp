@@ -4,28 +4,12 @@
 #include <cmath>
 #include <optional>
 
+#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/mechanism.hpp"
-#include "fe/linear/ordering.hpp"
 #include "fe/linear/residual.hpp"
 
 namespace bough::fe {
 namespace {
-
-/// K without the held rows and columns; kept[i] is the f-dof of its row i.
-PetscMat take_kept(Mat K, const std::vector<int>& kept) {
-  PetscInt first = 0, last = 0;
-  check_petsc(MatGetOwnershipRange(K, &first, &last));
-  const auto begin = std::lower_bound(kept.begin(), kept.end(), first);
-  const auto end = std::lower_bound(kept.begin(), kept.end(), last);
-  const std::vector<PetscInt> own(begin, end);
-  PetscIs rows;
-  check_petsc(
-      ISCreateGeneral(PETSC_COMM_WORLD, static_cast<PetscInt>(own.size()), own.data(), PETSC_COPY_VALUES, rows.out()));
-  PetscMat result;
-  check_petsc(MatCreateSubMatrix(K, rows.get(), rows.get(), MAT_INITIAL_MATRIX, result.out()));
-  check_petsc(MatSetOption(result.get(), MAT_SYMMETRIC, PETSC_TRUE));
-  return result;
-}
 
 /// "grid 5 component 4" of the largest entries, a rotation counted with the model's size as its arm.
 std::string describe_motion(const Model& model, const std::vector<int>& kept, const VectorXd& x, double size) {

@@ -53,6 +53,7 @@ void write_selection(const records::Subcase& subcase, std::string& out) {
   add_set("MPC", subcase.mpc);
   add_set("LOAD", subcase.load);
   add_set("TEMPERATURE(LOAD)", subcase.temperature);
+  add_set("TEMPERATURE(INITIAL)", subcase.initial_temperature);
   add_set("METHOD", subcase.method);
   add_set("STATSUB", subcase.statsub);
   add_set("STATSUB(PRELOAD)", subcase.preload);

@@ -49,7 +49,8 @@ struct CoordSystem {
 struct Mat1 {
   int id = 0;
   double E = 0, G = 0, nu = 0;  ///< the missing one of three is already filled from E = 2(1+ν)G
-  double rho = 0, alpha = 0, tref = 0, ge = 0;
+  double rho = 0, alpha = 0, ge = 0;
+  std::optional<double> tref;  ///< empty: TEMPERATURE(INITIAL), or zero
   CardLocation at;
 };
 
@@ -360,7 +361,8 @@ struct Subcase {
   int spc = 0, mpc = 0, load = 0, method = 0, statsub = 0;  ///< 0: none
   int preload = 0;                                          ///< STATSUB(PRELOAD), and STATSUB of modes of any kind
   CardLocation preload_at;
-  int temperature = 0;  ///< TEMPERATURE(LOAD) or (BOTH)
+  int temperature = 0;          ///< TEMPERATURE(LOAD) or (BOTH)
+  int initial_temperature = 0;  ///< TEMPERATURE(INITIAL)
   int suport1 = 0, nsm = 0;
   std::vector<std::pair<double, std::string>> k2gg, m2gg, b2gg;  ///< (scale, DMIG name)
   std::map<std::string, CardLocation> commands;  ///< where "SPC", "LOAD", "METHOD", ... of this subcase stand

@@ -17,15 +17,17 @@ struct Mat2 {
   Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
   double rho = 0;
   Eigen::Vector3d alpha = Eigen::Vector3d::Zero();  ///< thermal expansion xx yy xy
-  double tref = 0, ge = 0;
+  std::optional<double> tref;                       ///< empty: TEMPERATURE(INITIAL), or zero
+  double ge = 0;
   CardLocation at;
 };
 /// MAT8: orthotropic plane-stress law. G1z, G2z zero: no transverse shear flexibility from this material.
 struct Mat8 {
   int id = 0;
   double E1 = 0, E2 = 0, nu12 = 0, G12 = 0, G1z = 0, G2z = 0, rho = 0;
-  double a1 = 0, a2 = 0, tref = 0;  ///< thermal expansion along 1 and 2
-  double ge = 0;                    ///< structural damping
+  double a1 = 0, a2 = 0;       ///< thermal expansion along 1 and 2
+  std::optional<double> tref;  ///< empty: TEMPERATURE(INITIAL), or zero
+  double ge = 0;               ///< structural damping
   CardLocation at;
 };
 /// MAT9: 6 x 6 law of a solid, Voigt xx yy zz xy yz zx.
@@ -34,7 +36,8 @@ struct Mat9 {
   Eigen::Matrix<double, 6, 6> G = Eigen::Matrix<double, 6, 6>::Zero();
   double rho = 0;
   Eigen::Matrix<double, 6, 1> alpha = Eigen::Matrix<double, 6, 1>::Zero();  ///< thermal expansion
-  double tref = 0, ge = 0;
+  std::optional<double> tref;                                               ///< empty: TEMPERATURE(INITIAL), or zero
+  double ge = 0;
   CardLocation at;
 };
 
@@ -52,6 +55,9 @@ struct Ply {
   int mid = 0;
   double t = 0, theta_deg = 0;
 };
+/// How plies make a plate. Smeared (LAM = SMEAR): their order does not count. SmearedCore (SMCORE): the last is a core,
+/// the others, smeared, are half below and half above it.
+enum class Layup { Stacked, Smeared, SmearedCore };
 /// PCOMP and PCOMPG, all plies listed (a symmetric layup is already unfolded).
 struct Pcomp {
   int id = 0;
@@ -61,6 +67,7 @@ struct Pcomp {
   double ge = 0;                         ///< structural damping; those of the materials do not count
   std::vector<Ply> plies;                ///< from the bottom up
   bool bending = true, membrane = true;  ///< LAM = MEM: no bending; BEND: no membrane
+  Layup layup = Layup::Stacked;
   CardLocation at;
 };
 

@@ -4,6 +4,10 @@
 #include <cmath>
 #include <map>
 
+#include "fe/linear/factor.hpp"
+#include "fe/linear/low_rank_sum.hpp"
+#include "fe/matrices/wide_part.hpp"
+
 namespace bough::modal::bases {
 
 namespace {
@@ -170,12 +174,52 @@ fe::PetscMat make_petsc(const SparseRows& S, Mat A) {
   return result;
 }
 
+namespace {
+
+using SparseColumns = Eigen::SparseMatrix<double>;
+
+/// Rows of S with more than max_terms entries, which would couple all their columns.
+std::vector<int> find_wide_rows(const SparseRows& S, int max_terms) {
+  std::vector<int> rows;
+  for (int i = 0; i < S.rows(); ++i)
+    if (S.row(i).nonZeros() > max_terms) rows.push_back(i);
+  return rows;
+}
+
+}  // namespace
+
 fe::PetscMat calc_triple_product(Mat A, const SparseRows& S) {
-  const fe::PetscMat P = make_petsc(S, A);
+  const std::vector<int> wide = find_wide_rows(S, fe::get_max_dense_terms());
+  const auto r = static_cast<Eigen::Index>(wide.size());
+  Mat sparse = fe::get_sparse(A);
+  fe::LowRankPart part;
+  SparseRows S_0 = S;
+  if (r > 0) {
+    // S = S_0 + P H, P the unit vectors of the wide rows.
+    std::vector<char> is_wide(static_cast<std::size_t>(S.rows()), 0);
+    SparseRows H(r, S.cols());
+    MatrixXd P = MatrixXd::Zero(S.rows(), r);
+    for (Eigen::Index w = 0; w < r; ++w) {
+      const int row = wide[static_cast<std::size_t>(w)];
+      is_wide[static_cast<std::size_t>(row)] = 1;
+      H.row(w) = S.row(row);
+      P(row, w) = 1;
+    }
+    S_0.prune([&](Eigen::Index row, Eigen::Index, double) { return !is_wide[static_cast<std::size_t>(row)]; });
+    const MatrixXd AP = fe::multiply(sparse, P);
+    const MatrixXd V = S_0.transpose() * AP;
+    part = fe::make_product_part(SparseColumns(H.transpose()), SparseColumns(V.sparseView(0, 0)), P.transpose() * AP);
+  }
+  if (const auto* of_A = fe::find_low_rank(A)) {
+    fe::LowRankPart projected = *of_A;
+    projected.U = SparseColumns(SparseColumns(S.transpose()) * of_A->U);
+    part = fe::join(part, 1, projected, 1);
+  }
+  const fe::PetscMat P = make_petsc(S_0, sparse);
   fe::PetscMat result;
-  fe::check_petsc(MatPtAP(A, P.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, result.out()));
+  fe::check_petsc(MatPtAP(sparse, P.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, result.out()));
   fe::check_petsc(MatSetOption(result.get(), MAT_SYMMETRIC, PETSC_TRUE));
-  return result;
+  return fe::make_sum(std::move(result), std::move(part));
 }
 
 }  // namespace bough::modal::bases

@@ -146,6 +146,7 @@ SimulateOutcome Run::go() {
     if (const auto ends = pass(stop)) return finish(*ends);
     if (is_stop_asked() && t < timeline_.end()) return halt(t);
     restarts = stop.restarts || has_changed_;
+    if (restarts) leave_corners(t);
   }
   save(timeline_.end());
   return close(timeline_.end(), "");

@@ -54,6 +54,39 @@ class Preload(ProgramTest):
         self.assertIn("[fe.preload]", result.stderr)
         self.assertIn("subcase 1 (LOAD 10)", result.stderr)
 
+    # An arm is an arm: as an offset of the bar or as a rigid element, under preload too.
+    def test_arms_of_offsets_and_links(self):
+        def write(kind):
+            lines = ["SOL 103", "CEND", "SPC = 1", "METHOD = 7", "SUBCASE 1", "STATSUB = 2", "SUBCASE 2", "LOAD = 10",
+                     "BEGIN BULK", "EIGRL,7,,,6", "SPC1,1,123456,1", "MAT1,1,7.+10,2.7+10,,2700.",
+                     "PBAR,1,1,1.-4,2.-9,1.2-9,1.5-9", "CONM2,90,7,,.5,0.,.1,.05", ",.01,,.01,,,.01",
+                     "FORCE,10,7,,20.,1.,.05,-.03", "MOMENT,10,7,,4.,.1,.2,.3"]
+            lines += [f"GRID,{i},,{.3 * i!r},0.,0." for i in range(1, 8)]
+            arms = {3: (None, (.15, .1)), 4: ((-.1, .12), None)}
+            for e in range(1, 7):
+                ends = [e, e + 1]
+                offsets = [(0., 0.), (0., 0.)]
+                for side, arm in enumerate(arms.get(e, (None, None))):
+                    if arm and kind == "offset":
+                        offsets[side] = arm
+                    elif arm:
+                        ends[side] = 100 * (side + 1) + e
+                        lines += [f"GRID,{ends[side]},,{.3 * (e + side)!r},{arm[0]!r},{arm[1]!r}",
+                                  f"RBE2,{500 + ends[side]},{e + side},123456,{ends[side]}"]
+                lines += [f"CBAR,{e},1,{ends[0]},{ends[1]},0.2,1.,0.3",
+                          f",,,0.,{offsets[0][0]!r},{offsets[0][1]!r},0.,{offsets[1][0]!r},{offsets[1][1]!r}"]
+            self.write(f"{kind}.bdf", "\n".join(lines) + "\nENDDATA\n")
+            self.bough("reduce", f"{kind}.bdf", "--modes", "6", "--interface", "7", "-o", f"{kind}.h5")
+            with h5py.File(self.path(f"{kind}.h5")) as f:
+                self.assertGreater(np.abs(f["stiffening/kg_preload"][:]).max(), 0)
+                shapes = f["modes/phi"][:][list(f["nodes/id"][:]).index(7)]
+                sign = np.sign(np.einsum("cn,c->n", shapes, np.arange(1, 7)))
+                return [f[name][:] * sign * sign[:, None]
+                        for name in ("stiffening/kg_preload", "stiffening/kg_inertial", "stiffening/kg_external")]
+        for a, b in zip(write("offset"), write("rbe2")):
+            for x, y in zip(a.reshape(-1, *a.shape[-2:]), b.reshape(-1, *b.shape[-2:])):
+                self.assertLess(np.abs(x - y).max(), 1e-6 * max(np.abs(x).max(), 1e-9 * np.abs(a).max()))
+
     def test_chain_of_static_subcases(self):
         # A force across the taut string deflects it by F L / 4 T; its reactions are half of it.
         self.write("s.bdf", write_line("SPC = 1\nSUBCASE 1\nLOAD = 10\nSUBCASE 2\nLOAD = 20\nSTATSUB(PRELOAD) = 1\n"

@@ -17,7 +17,7 @@ void parse_mat2(Card& card, Reading& r) {
     mat.G(kPlace[i][0], kPlace[i][1]) = mat.G(kPlace[i][1], kPlace[i][0]) = card.read_real(1 + i, "Gij", 0.0);
   mat.rho = card.read_real(7, "RHO", 0.0);
   mat.alpha = card.read_vector(8, "A1 A2 A3");
-  mat.tref = card.read_real(11, "TREF", 0.0);
+  mat.tref = card.read_optional_real(11, "TREF");
   mat.ge = card.read_real(12, "GE", 0.0);
   card.use(13, 17);  // stress limits, MCSID
   mat.at = card.get_location();
@@ -36,7 +36,7 @@ void parse_mat8(Card& card, Reading& r) {
   mat.rho = card.read_real(7, "RHO", 0.0);
   mat.a1 = card.read_real(8, "A1", 0.0);
   mat.a2 = card.read_real(9, "A2", 0.0);
-  mat.tref = card.read_real(10, "TREF", 0.0);
+  mat.tref = card.read_optional_real(10, "TREF");
   mat.ge = card.read_real(16, "GE", 0.0);
   card.use(11, card.get_size());  // strengths, F12, STRN
   mat.at = card.get_location();
@@ -51,7 +51,7 @@ void parse_mat9(Card& card, Reading& r) {
     for (int j = i; j < 6; ++j) mat.G(i, j) = mat.G(j, i) = card.read_real(field++, "Gij", 0.0);
   mat.rho = card.read_real(field++, "RHO", 0.0);
   for (int i = 0; i < 6; ++i) mat.alpha[i] = card.read_real(field++, "Ai", 0.0);
-  mat.tref = card.read_real(field, "TREF", 0.0);
+  mat.tref = card.read_optional_real(field, "TREF");
   mat.ge = card.read_real(field + 1, "GE", 0.0);
   mat.at = card.get_location();
   if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat9.push_back(mat);
@@ -66,7 +66,7 @@ void parse_mat11(Card& card, Reading& r) {
   const std::array<double, 3> shear{card.read_real(7, "G12"), card.read_real(9, "G23"), card.read_real(8, "G13")};
   mat.rho = card.read_real(10, "RHO", 0.0);
   for (int i = 0; i < 3; ++i) mat.alpha[i] = card.read_real(11 + i, "Ai", 0.0);
-  mat.tref = card.read_real(14, "TREF", 0.0);
+  mat.tref = card.read_optional_real(14, "TREF");
   mat.ge = card.read_real(15, "GE", 0.0);
   mat.at = card.get_location();
   if (card.is_ok()) {
@@ -103,6 +103,17 @@ void parse_pshell(Card& card, Reading& r) {
   if (r.claim(IdSpace::ShellProperty, p.id, card)) r.deck.pshell.push_back(p);
 }
 
+void set_layup(const std::string& lam, records::Pcomp& p) {
+  if (lam == "SMEAR") p.layup = records::Layup::Smeared;
+  if (lam == "SMCORE") p.layup = records::Layup::SmearedCore;
+}
+
+void check_core(const records::Pcomp& p, Card& card) {
+  if (p.layup == records::Layup::SmearedCore && p.plies.size() == 1)
+    card.fail("deck.missing-field", 8, "LAM is SMCORE, but there is one ply only",
+              "give the faces first and the core as the last ply");
+}
+
 /// Fields 1..7 of PCOMP and PCOMPG, then plies; `stride` fields a ply, material first after `skip`.
 void parse_laminate(Card& card, Reading& r, int skip, int stride) {
   records::Pcomp p;
@@ -113,10 +124,9 @@ void parse_laminate(Card& card, Reading& r, int skip, int stride) {
   p.ge = card.read_real(6, "GE", 0.0);
   for (const int i : {3, 4}) card.use(i);  // SB, FT
   const std::string lam = card.read_word(7, "LAM", "", {"", "SYM", "MEM", "BEND", "SMEAR", "SMCORE"});
-  if (lam == "SMEAR" || lam == "SMCORE")
-    card.fail("deck.bad-word", 7, "LAM is " + lam + ", expected SYM, MEM, BEND or blank", "write the plies out");
   p.membrane = lam != "BEND";
   p.bending = lam != "MEM";
+  set_layup(lam, p);
   p.at = card.get_location();
   for (int i = 8; i < card.get_size(); i += stride) {
     if (card.is_blank(i, i + stride)) continue;
@@ -129,6 +139,7 @@ void parse_laminate(Card& card, Reading& r, int skip, int stride) {
     p.plies.push_back(ply);
   }
   if (p.plies.empty()) card.fail("deck.missing-field", 8, "the laminate has no ply", "give MID1, T1, THETA1");
+  check_core(p, card);
   if (lam == "SYM") p.plies.insert(p.plies.end(), p.plies.rbegin(), p.plies.rend());
   double total = 0;
   for (const auto& ply : p.plies) total += ply.t;
@@ -149,8 +160,10 @@ void parse_equal_plies(Card& card, Reading& r) {
   records::Ply ply;
   ply.mid = card.read_id(5, "MID");
   if (is_constant) ply.t = card.read_real(6, "T");
-  const std::string lam = card.read_word(7, "LAM", "", {"", "ALL", "SYM", "MEM", "SYMMEM"});
+  const std::string lam = card.read_word(7, "LAM", "", {"", "ALL", "SYM", "MEM", "SYMMEM", "BEND", "SMEAR", "SMCORE"});
   p.bending = lam != "MEM" && lam != "SYMMEM";
+  p.membrane = lam != "BEND";
+  set_layup(lam, p);
   p.at = card.get_location();
   const int stride = is_constant ? 1 : 2;
   for (int i = 8; i < card.get_size(); i += stride) {
@@ -160,6 +173,7 @@ void parse_equal_plies(Card& card, Reading& r) {
     p.plies.push_back(ply);
   }
   if (p.plies.empty()) card.fail("deck.missing-field", 8, "the laminate has no ply", "give its angles");
+  check_core(p, card);
   if (lam == "SYM" || lam == "SYMMEM") p.plies.insert(p.plies.end(), p.plies.rbegin(), p.plies.rend());
   double total = 0;
   for (const auto& each : p.plies) total += each.t;

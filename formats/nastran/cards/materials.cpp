@@ -14,7 +14,7 @@ void parse_mat1(Card& card, Reading& r) {
              nu = card.read_optional_real(3, "NU");
   mat.rho = card.read_real(4, "RHO", 0.0);
   mat.alpha = card.read_real(5, "A", 0.0);
-  mat.tref = card.read_real(6, "TREF", 0.0);
+  mat.tref = card.read_optional_real(6, "TREF");
   mat.ge = card.read_real(7, "GE", 0.0);
   card.use(8, 12);  // stress limits, MCSID
   mat.at = card.get_location();

@@ -1,6 +1,7 @@
 #include "formats/nastran/detail/control.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "formats/nastran/detail/control_words.hpp"
@@ -100,7 +101,8 @@ class CaseControl {
     else if (is_command(c.word, "TEMPERATURE", 4))
       read_temperature(c);
     else if (is_command(c.word, "METHOD", 4)) {
-      if (c.options != "FLUID") read_set(c, "METHOD", current().method);
+      const auto kind = read_option(c, {"STRUCTURE", "FLUID", "BOTH", "COUPLED"});
+      if (kind && *kind != "FLUID") read_set(c, "METHOD", current().method);
     } else if (is_command(c.word, "STATSUB", 4)) {
       read_statsub(c);
     } else if (is_command(c.word, "SUPORT1", 4))
@@ -124,6 +126,12 @@ class CaseControl {
   }
 
   void report_unused(const std::string& word) {
+    if (is_command(word, "DEFORM", 4)) {
+      diagnostics_.warning("deck.unused-load", deck_.locate(at_),
+                           "DEFORM selects a load that is not read: enforced deformations of elements",
+                           "give it as temperatures, or leave it out");
+      return;
+    }
     const auto nearest = find_nearest_command(word);
     if (nearest.empty()) return note(word);
     diagnostics_.warning("deck.unknown-case-control", deck_.locate(at_),
@@ -136,11 +144,28 @@ class CaseControl {
   void read_statsub(const Command& c) {
     static const std::set<std::string> without{"",        "101", "1", "24",      "SESTATIC", "SESTATICS",
                                                "STATICS", "105", "5", "SEBUCKL", "BUCKLING"};
-    const bool is_named = is_command(c.options, "PRELOAD", 1);
+    const auto kind = read_option(c, {"BUCKLING", "PRELOAD"});
+    if (!kind) return;
+    const bool is_named = *kind == "PRELOAD";
     if (!is_named) read_set(c, "STATSUB", current().statsub);
     if (!is_named && without.count(deck_.sol) > 0) return;
     read_set(c, "PRELOAD", current().preload);
     current().preload_at = at_;
+  }
+
+  /// The one of `names` that the word in brackets, which may be cut short, stands for; empty without brackets. Nothing,
+  /// and an error, where it is none of them: a slip would choose another meaning of the command.
+  std::optional<std::string> read_option(const Command& c, const std::vector<std::string>& names) {
+    if (c.options.empty()) return std::string();
+    for (const auto& name : names)
+      if (is_command(c.options, name, 1)) return name;
+    std::string all;
+    for (const auto& name : names) all += (all.empty() ? "" : ", ") + name;
+    const auto nearest = find_nearest(c.options, names);
+    diagnostics_.error("deck.case-control-value", deck_.locate(at_),
+                       c.word + "(" + c.options + "): expected one of " + all,
+                       nearest.empty() ? "write one of them, or leave the brackets out" : "did you mean " + nearest);
+    return {};
   }
 
   void begin_subcase(const Command& c) {
@@ -168,13 +193,17 @@ class CaseControl {
       bad_value(c);
   }
 
-  /// (LOAD) or nothing, which is (BOTH): a load. (MATERIAL) and (INITIAL) are for materials that change with it.
+  /// (LOAD) or nothing, which is (BOTH): a load. (INITIAL): where materials without TREF expand from. (MATERIAL) is for
+  /// materials that change with it.
   void read_temperature(const Command& c) {
-    const std::string kind = c.options.empty() ? "BOTH" : c.options;
-    if (is_command(kind, "LOAD", 1) || is_command(kind, "BOTH", 1))
+    const auto kind = read_option(c, {"BOTH", "LOAD", "INITIAL", "MATERIAL"});
+    if (!kind) return;
+    if (kind->empty() || *kind == "LOAD" || *kind == "BOTH")
       read_set(c, "TEMPERATURE", current().temperature);
+    else if (*kind == "INITIAL")
+      read_set(c, "TEMPERATURE(INITIAL)", current().initial_temperature);
     else
-      note("TEMPERATURE(" + kind + ")");
+      note("TEMPERATURE(" + *kind + ")");
   }
 
   /// Names of DMIG with or without factors: "K1, K2", "1.25*K1, 0.82*K2", or the id of a SET of such a list.

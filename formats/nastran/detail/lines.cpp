@@ -66,12 +66,28 @@ constexpr std::size_t kMostLevels = 100;
 constexpr int kMostIncludes = 20'000;
 constexpr std::size_t kMostRepeated = std::size_t{1} << 30;
 
+/// What the text is that is not lines of bytes; empty where it is.
+std::string find_other_format(std::string_view text) {
+  const auto head = text.substr(0, 4096);
+  const auto nulls = static_cast<std::size_t>(std::count(head.begin(), head.end(), '\0'));
+  const bool has_mark = head.substr(0, 2) == "\xff\xfe" || head.substr(0, 2) == "\xfe\xff";
+  if (has_mark || (head.size() > 1 && nulls > head.size() / 3)) return "text in UTF-16";
+  const bool is_mac =
+      contains(head, '\r') && text.find('\n') == std::string_view::npos && text.find('\r') + 1 < text.size();
+  return is_mac ? "text whose lines end with carriage returns alone" : "";
+}
+
 class Loader {
  public:
   Loader(Source& source, Diagnostics& diagnostics) : source_(source), diagnostics_(diagnostics) {}
 
   void load(std::string_view text, int file, const fs::path& folder) {
     if (depth() == 1) root_ = folder;
+    if (const std::string format = find_other_format(text); !format.empty()) {
+      diagnostics_.error("deck.text-format", {source_.files[static_cast<std::size_t>(file)]}, "the file is " + format,
+                         "save it as plain text (ASCII or UTF-8) with line feeds");
+      return;
+    }
     Cursor cursor(text);
     std::string_view raw;
     bool is_after_empty = false;
@@ -106,6 +122,16 @@ class Loader {
     if (const void* dollar = std::memchr(line.data(), '$', line.size()))
       line = line.substr(0, static_cast<std::size_t>(static_cast<const char*>(dollar) - line.data()));
     while (!line.empty() && (line.back() == ' ' || line.back() == '\t' || line.back() == '\r')) line.remove_suffix(1);
+    // Form feeds and other marks of printers and editors are blanks.
+    const auto is_control = [](unsigned char c) { return (c < ' ' && c != '\t' && c != '\r') || c == 127; };
+    if (std::any_of(line.begin(), line.end(), is_control)) {
+      std::string blank(line);
+      std::replace_if(blank.begin(), blank.end(), is_control, ' ');
+      while (!blank.empty() && blank.back() == ' ') blank.pop_back();
+      if (blank.empty()) return {};
+      source_.storage.push_back(std::move(blank));
+      line = source_.storage.back();
+    }
     if (!line.empty() && contains(line, '\t') && !contains(line, ',')) {
       source_.storage.push_back(expand_tabs(line));
       line = source_.storage.back();

@@ -31,6 +31,8 @@ void write_pcomp(const records::Pcomp& p, CardSink& sink) {
   card.add(p.nsm).add_blank(2).add(p.tref).add(p.ge);
   if (!p.membrane || !p.bending)
     card.add_word(p.membrane ? "MEM" : "BEND");
+  else if (p.layup != records::Layup::Stacked)
+    card.add_word(p.layup == records::Layup::Smeared ? "SMEAR" : "SMCORE");
   else
     card.add_blank();
   for (const auto& ply : p.plies) card.add(ply.mid).add(ply.t).add(ply.theta_deg).add_blank();

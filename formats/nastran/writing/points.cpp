@@ -48,24 +48,29 @@ void write_points(const records::Deck& deck, CardSink& sink) {
   for (const int id : points) sink.put(CardFields("SPOINT").add(id));
 }
 
+/// What is open stays open: TEMPERATURE(INITIAL) may stand for it.
+CardFields& add_tref(CardFields& card, const std::optional<double>& tref) {
+  return tref ? card.add(*tref) : card.add_blank();
+}
+
 void write_materials(const records::Deck& deck, CardSink& sink) {
   for (const auto& mat : deck.mat1) {
     CardFields card("MAT1");
     card.add(mat.id);
     add_moduli(mat, card);
-    sink.put(card.add(mat.rho).add(mat.alpha).add(mat.tref).add(mat.ge));
+    sink.put(add_tref(card.add(mat.rho).add(mat.alpha), mat.tref).add(mat.ge));
   }
   for (const auto& mat : deck.mat2) {
     CardFields card("MAT2");
     card.add(mat.id);
     for (int i = 0; i < 3; ++i)
       for (int j = i; j < 3; ++j) card.add(mat.G(i, j));
-    sink.put(card.add(mat.rho).add(mat.alpha).add(mat.tref).add(mat.ge));
+    sink.put(add_tref(card.add(mat.rho).add(mat.alpha), mat.tref).add(mat.ge));
   }
   for (const auto& mat : deck.mat8) {
     CardFields card("MAT8");
     card.add(mat.id).add(mat.E1).add(mat.E2).add(mat.nu12).add(mat.G12).add(mat.G1z).add(mat.G2z).add(mat.rho);
-    card.add(mat.a1).add(mat.a2).add(mat.tref);
+    add_tref(card.add(mat.a1).add(mat.a2), mat.tref);
     if (mat.ge != 0) card.add_blank(5).add(mat.ge);
     sink.put(card);
   }
@@ -76,7 +81,7 @@ void write_materials(const records::Deck& deck, CardSink& sink) {
       for (int j = i; j < 6; ++j) card.add(mat.G(i, j));
     card.add(mat.rho);
     for (int i = 0; i < 6; ++i) card.add(mat.alpha[i]);
-    sink.put(card.add(mat.tref).add(mat.ge));
+    sink.put(add_tref(card, mat.tref).add(mat.ge));
   }
 }
 

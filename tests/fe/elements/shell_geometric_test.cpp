@@ -8,8 +8,8 @@ namespace {
 
 const std::vector<Vector3d> kCorners = {{0, 0, 0}, {1.2, 0.1, 0}, {1.1, 0.9, 0}, {-0.1, 1.1, 0}};
 
-/// One element in its own plane, in basic axes; PARAM,K6ROT is 0: the penalty's forces are not among the internal ones.
-SmallModel make_element(const char* card, double t, bool shear, double z_offset = 0) {
+/// One element in its own plane, in basic axes.
+SmallModel make_element(const char* card, double t, bool shear, double z_offset = 0, const char* k6rot = "0.") {
   SmallModel m;
   records::Mat1 material;
   material.id = 1, material.E = 3, material.nu = 0.3, material.G = 3 / 2.6;
@@ -24,7 +24,7 @@ SmallModel make_element(const char* card, double t, bool shear, double z_offset 
     e.grids.push_back(i);
   }
   m.deck.shells.push_back(e);
-  m.deck.params.push_back({"K6ROT", "0.", {}});
+  m.deck.params.push_back({"K6ROT", k6rot, {}});
   m.make();
   return m;
 }
@@ -51,17 +51,39 @@ TEST(ShellGeometric, RigidRotationTurnsShearsAndMoments) {
     }
 }
 
-/// Work of given M and T (per side, on its mean shear) on the nonlinear strains of the element at q: curvature
-/// ½(r,a·d,b + r,b·d,a) of directors exp(θ) n between the corners, shear (r_j - r_i)/L·½(d_i + d_j) of the sides with
-/// the curvature of the side's bump; r is the surface, at the end of the arm exp(θ) z n of each corner.
+/// The forces of the drilling penalty turn too, with the arms of an offset surface: a moment about the normal of a
+/// plate is in equilibrium.
+TEST(ShellGeometric, RigidRotationTurnsDrillingMoments) {
+  for (const char* card : {"CQUAD4", "CTRIA3"})
+    for (double z : {0.0, 0.15}) {
+      const SmallModel m = make_element(card, 0.2, true, z, "100.");
+      const int n = m.nodes.num_gdofs();
+      const VectorXd random = make_random(4, n);
+      VectorXd u = VectorXd::Zero(n);
+      for (int i = 5; i < n; i += 6) u[i] = random[i];  // about the normal alone: no strain
+      const VectorXd f = m.calc_stiffness() * u;
+      ASSERT_GT(f.norm(), 0);
+      const MatrixXd K_G = m.calc_geometric_stiffness(u), Phi_R = m.nodes.calc_rigid_modes();
+      for (int axis = 0; axis < 3; ++axis) {
+        const VectorXd expected = turn_forces(Vector3d::Unit(axis), f);
+        EXPECT_LT((K_G * Phi_R.col(3 + axis) - expected).norm(), 1e-11 * f.norm()) << card << z << axis;
+      }
+    }
+}
+
+/// Work of given M, drilling moments and T (per side, on its mean shear) on the nonlinear strains of the element at q:
+/// curvature ½(r,a·d,b + r,b·d,a) of directors exp(θ) n between the corners, shear (r_j - r_i)/L·½(d_i + d_j) of the
+/// sides with the curvature of the side's bump; r is the surface, at the end of the arm exp(θ) z n of each corner.
 template <int N>
 double calc_work(const shell::Points<N>& points, const shell::Plate<N>& plate, const shell::Corners<N>& xy, double z,
                  const VectorXd& force, const VectorXd& q) {
-  Eigen::Matrix<double, 3, N> r, d;
+  Eigen::Matrix<double, 3, N> r, d, d_x, d_y;
   for (int i = 0; i < N; ++i) {
     const Vector3d theta = q.segment<3>(6 * i + 3);
     const double angle = theta.norm();
-    d.col(i) = angle > 0 ? Vector3d(Eigen::AngleAxisd(angle, theta / angle) * Vector3d::UnitZ()) : Vector3d::UnitZ();
+    const Eigen::Matrix3d turn =
+        angle > 0 ? Eigen::Matrix3d(Eigen::AngleAxisd(angle, theta / angle)) : Eigen::Matrix3d::Identity();
+    d_x.col(i) = turn.col(0), d_y.col(i) = turn.col(1), d.col(i) = turn.col(2);
     r.col(i) = Vector3d(xy(0, i), xy(1, i), -z) + q.segment<3>(6 * i) + z * d.col(i);
   }
   double work = 0;
@@ -78,6 +100,9 @@ double calc_work(const shell::Points<N>& points, const shell::Plate<N>& plate, c
     work +=
         points[p].weight * (force[8 * p + 3] * dr.col(0).dot(dd.col(0)) + force[8 * p + 4] * dr.col(1).dot(dd.col(1)) +
                             force[8 * p + 5] * (dr.col(0).dot(dd.col(1)) + dr.col(1).dot(dd.col(0))));
+    // The triads' own axes against the surface's: ½ (x'·r,y - y'·r,x), zero in a rigid rotation.
+    work += points[p].weight * force[8 * N + p] / 2 *
+            ((d_x * points[p].shape).dot(dr.col(1)) - (d_y * points[p].shape).dot(dr.col(0)));
   }
   return work;
 }

@@ -41,6 +41,53 @@ VectorXd calc_forces(const SmallModel& m, const VectorXd& u) {
   return force;
 }
 
+/// LAM = SMEAR is the PSHELL with MID1 = MID2 of the mean of the plies, without MID3 and MID4; LAM = SMCORE has half of
+/// the faces on each side of the core.
+TEST(ShellProperty, SmearedLaminates) {
+  const double E1 = 4, E2 = 0.4, nu = 0.3, G12 = 0.2, c = 1 - nu * nu * E2 / E1;
+  const auto make = [&](records::Layup layup, std::vector<records::Ply> plies, double z0) {
+    SmallModel m = make_quad();
+    records::Mat8 fibre;
+    fibre.id = 5, fibre.E1 = E1, fibre.E2 = E2, fibre.nu12 = nu, fibre.G12 = G12, fibre.rho = 1.5;
+    fibre.G1z = fibre.G2z = 0.1;
+    m.deck.mat8.push_back(fibre);
+    records::Pcomp p;
+    p.id = 2, p.layup = layup, p.plies = std::move(plies), p.z0 = z0;
+    m.deck.pcomp.push_back(p);
+    m.deck.shells[0].pid = 2;
+    m.make();
+    return m;
+  };
+  const auto is_warned = [](const SmallModel& m) {
+    Diagnostics d;
+    make_elements(m.deck, m.nodes, d);
+    return d.has("fe.smeared-offset");
+  };
+  SmallModel mean = make_quad();
+  records::Mat2 law;
+  law.id = 4, law.rho = 1.5;
+  const double Q11 = (E1 + E2) / (2 * c), Q12 = nu * E2 / c;
+  law.G << Q11, Q12, 0, Q12, Q11, 0, 0, 0, G12;
+  mean.deck.mat2.push_back(law);
+  auto& p = mean.deck.pshell[0];
+  p.mid1 = p.mid2 = 4, p.mid3 = 0;
+  mean.make();
+  const auto smeared = records::Layup::Smeared, core = records::Layup::SmearedCore, stacked = records::Layup::Stacked;
+  for (const auto& plies : {std::vector<records::Ply>{{5, 0.1, 0}, {5, 0.1, 90}}, {{5, 0.1, 90}, {5, 0.1, 0}}}) {
+    const SmallModel m = make(smeared, plies, -0.1);
+    EXPECT_LT(calc_distance(m.calc_stiffness(), mean.calc_stiffness()), 1e-12);
+    EXPECT_LT(calc_distance(m.calc_mass(MassKind::Consistent), mean.calc_mass(MassKind::Consistent)), 1e-12);
+    EXPECT_FALSE(is_warned(m));
+  }
+  const SmallModel off = make(smeared, {{5, 0.1, 0}, {5, 0.1, 90}}, 0);
+  EXPECT_LT(calc_distance(off.calc_stiffness(), mean.calc_stiffness()), 1e-12);
+  EXPECT_TRUE(is_warned(off));
+  for (const double z0 : {-0.1, 0.3})
+    EXPECT_LT(calc_distance(make(core, {{1, 0.02, 0}, {1, 0.03, 30}, {5, 0.15, 20}}, z0).calc_stiffness(),
+                            make(stacked, {{1, 0.025, 0}, {5, 0.15, 20}, {1, 0.025, 0}}, z0).calc_stiffness()),
+              1e-12);
+}
+
 /// A plate whose middle is e above the grids, said by MID4, by Z0 of a laminate, and by ZOFFS: the first two are one
 /// element; a pure bending about the grids stretches all three by the same N = Q t e κ.
 TEST(ShellProperty, CouplingByMid4IsAnEccentricPlate) {

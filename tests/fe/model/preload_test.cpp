@@ -142,5 +142,64 @@ TEST(Prestress, IsTheGeometricStiffnessOfItsLoadWhereverKIs) {
   EXPECT_LT((K_f - expected).norm(), 1e-12 * K_f.norm());
 }
 
+/// A free bar with masses on its way and on an arm, pulled at one end; held at the other against the inertia of its
+/// acceleration it has the same stress.
+TEST(Prestress, InertiaReliefIsTheLoadOfItsAcceleration) {
+  const auto calc = [](const std::string& control, const std::string& cards) {
+    std::string text =
+        "SOL 103\nCEND\n" + control + "SUBCASE 1\nLOAD = 5\nSUBCASE 2\nSTATSUB = 1\nMETHOD = 3\nBEGIN BULK\n";
+    for (int i = 1; i <= 6; ++i) text += "GRID," + std::to_string(i) + ",," + std::to_string(0.2 * i) + ",0.,0.\n";
+    for (int i = 1; i <= 5; ++i)
+      text += "CBAR," + std::to_string(i) + ",1," + std::to_string(i) + "," + std::to_string(i + 1) + ",0.,1.,0.\n";
+    text +=
+        "GRID,7,,.6,.3,.1\nRBE2,8,3,123456,7\nCONM2,9,7,,2.,.1,.05,.02\nCONM2,10,3,,2.\n,,,,.1,.1,.1\n"
+        "PBAR,1,1,1.-3,2.-6,3.-6,1.-6\nMAT1,1,7.+10,,.3,2700.\n" +
+        cards;
+    Diagnostics diagnostics;
+    const auto deck = nastran::read_deck_text(text, "deck.bdf", {}, diagnostics);
+    diagnostics.throw_if_errors();
+    ModelOptions options;
+    options.subcase = 2;
+    options.prestress = calc_subcase_prestress(deck, options, deck.subcases[1], diagnostics);
+    return std::pair(Model::build(deck, options, diagnostics), options.prestress->A_I);
+  };
+  const std::string pull = "FORCE,5,6,,900.,1.,.2,-.1\n";
+  const auto [free, A_I] = calc("", "PARAM,INREL,-2\n" + pull);
+  const MatrixXd one = MatrixXd::Identity(free.num_gdofs(), free.num_gdofs());
+  const MatrixXd K0 = calc_prestress_times(free, one);
+  EXPECT_GT(K0.norm(), 1);
+  EXPECT_GT(A_I.head<3>().norm(), 10);
+  for (const char* support : {"SUPORT,1,123456\nPARAM,INREL,-1\n", "SUPORT,6,12346,2,3\nPARAM,INREL,-1\n"}) {
+    const auto supported = calc("", support + pull).first;
+    EXPECT_LT((calc_prestress_times(supported, one) - K0).norm(), 1e-8 * K0.norm()) << support;
+  }
+  // K_G of a balanced load turns it: nothing is left of a shift, and the whole is in balance.
+  const MatrixXd rigid = free.calc_rigid_modes();
+  EXPECT_LT((free.T().transpose() * (K0 * rigid.leftCols<3>())).norm(), 1e-9 * K0.norm());
+}
+
+// PARAM,FOLLOWK,YES was taken in silence for loads that do not follow.
+TEST(Prestress, LoadsThatDoNotFollowAreNamed) {
+  const auto count = [](const std::string& cards) {
+    Diagnostics diagnostics;
+    const auto deck = nastran::read_deck_text(kFrame + cards, "deck.bdf", {}, diagnostics);
+    diagnostics.throw_if_errors();
+    ModelOptions options;
+    options.subcase = 1;
+    const auto model = Model::build(deck, options, diagnostics);
+    calc_static_load(model, deck, model.subcase(), diagnostics);
+    std::string what;
+    for (const auto& item : diagnostics.items())
+      if (item.id == "fe.dead-load") what += item.what + "\n";
+    return what;
+  };
+  EXPECT_EQ(count(""), "");
+  EXPECT_EQ(count("PLOAD1,10,1,FY,FR,0.,1.,1.,1.\n"), "");
+  EXPECT_EQ(count("FORCE1,10,5,2.,1,2\nFORCE1,10,3,2.,1,2\nMOMENT2,10,3,2.,1,2,1,4\nPLOAD1,10,1,FYE,FR,0.,1.,1.,1.\n"
+                  "RFORCE,10,1,,.1,0.,0.,1.\nFORCE1,11,5,2.,1,2\n"),
+            "load set 10 keeps its direction where the structure moves, though PARAM,FOLLOWK,YES asks it to follow: "
+            "FORCE1 (2), MOMENT2 (1), PLOAD1 in element axes (1), RFORCE (1)\n");
+}
+
 }  // namespace
 }  // namespace bough::fe

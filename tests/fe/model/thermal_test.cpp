@@ -87,26 +87,31 @@ TEST(ThermalLoads, FreeExpansionLeavesNoStress) {
        "+,1.+10,,,2.+10,,1.5+10,,1.-5,+\n+,2.-5,3.-5,,,,20.\n",
        1e-5, 2e-5, 3e-5},
   };
-  for (const auto& c : cases) {
-    SCOPED_TRACE(c.name);
-    Heated h("TEMP(LOAD) = 5\nBEGIN BULK\nTEMPD,5,120.\n" + write_grids() + c.cards);
-    const auto load = h.make_load();
-    ASSERT_EQ(h.diagnostics.num_errors(), 0);
-    ASSERT_EQ(load.initial.of.size(), 1u);
-    VectorXd u = VectorXd::Zero(h.model->num_gdofs());
-    const Vector3d strain = 100 * Vector3d(c.alpha_x, c.alpha_y, c.alpha_z);
-    for (const auto& node : h.model->nodes()) u.segment<3>(node.first_gdof) = strain.cwiseProduct(node.x);
-    const VectorXd K_u = calc_stiffness_times(*h.model, u);
-    EXPECT_GT(load.F.norm(), 0);
-    EXPECT_LT((K_u - load.F).norm(), 1e-10 * load.F.norm());
-    const auto forces = calc_element_forces(*h.model, u, h.deck, 0, h.diagnostics, load.initial);
-    ASSERT_EQ(forces.size(), 1u);
-    const double scale = load.initial.of.begin()->second.force.norm();
-    EXPECT_GT(scale, 0);
-    EXPECT_LT(forces[0].force.norm(), 1e-10 * scale);
-    EXPECT_GT(load.initial.of.begin()->second.energy, 0);
-    EXPECT_LT(std::abs(forces[0].strain_energy[0]), 1e-10 * load.initial.of.begin()->second.energy);
-  }
+  // The second time TREF is left to TEMPERATURE(INITIAL), which says the same.
+  for (const bool has_tref : {true, false})
+    for (const auto& c : cases) {
+      SCOPED_TRACE(c.name);
+      std::string cards = c.cards;
+      if (!has_tref) cards.replace(cards.rfind("20.\n"), 3, "");
+      Heated h(std::string(has_tref ? "" : "TEMP(INIT) = 6\n") +
+               "TEMP(LOAD) = 5\nBEGIN BULK\nTEMPD,5,120.\nTEMPD,6,20.\n" + write_grids() + cards);
+      const auto load = h.make_load();
+      ASSERT_EQ(h.diagnostics.num_errors(), 0);
+      ASSERT_EQ(load.initial.of.size(), 1u);
+      VectorXd u = VectorXd::Zero(h.model->num_gdofs());
+      const Vector3d strain = 100 * Vector3d(c.alpha_x, c.alpha_y, c.alpha_z);
+      for (const auto& node : h.model->nodes()) u.segment<3>(node.first_gdof) = strain.cwiseProduct(node.x);
+      const VectorXd K_u = calc_stiffness_times(*h.model, u);
+      EXPECT_GT(load.F.norm(), 0);
+      EXPECT_LT((K_u - load.F).norm(), 1e-10 * load.F.norm());
+      const auto forces = calc_element_forces(*h.model, u, h.deck, 0, h.diagnostics, load.initial);
+      ASSERT_EQ(forces.size(), 1u);
+      const double scale = load.initial.of.begin()->second.force.norm();
+      EXPECT_GT(scale, 0);
+      EXPECT_LT(forces[0].force.norm(), 1e-10 * scale);
+      EXPECT_GT(load.initial.of.begin()->second.energy, 0);
+      EXPECT_LT(std::abs(forces[0].strain_energy[0]), 1e-10 * load.initial.of.begin()->second.energy);
+    }
 }
 
 // ---- Bars: EA = 7e6, EI1 = 700, EI2 = 350, α = 1.2e-5, L = 2.
@@ -131,6 +136,25 @@ TEST(ThermalLoads, BarFreeAndHeld) {
   EXPECT_NEAR(held.strain_energy, 0.5 * kEA * std::pow(kAlpha * 100, 2) * kL, 1e-9);
   // Nastran's OLOAD has the loads of the temperatures.
   EXPECT_NEAR(held.load[6], kEA * kAlpha * 100, 1e-6);
+}
+
+// MSC Nastran takes them where TREF is blank; they were a note, and strains counted from zero.
+TEST(ThermalLoads, InitialTemperatures) {
+  const std::string cards = "TEMP,5,1,50.,2,150.\nTEMP,6,1,30.,2,90.\n";
+  std::string open = kBar;
+  open.replace(open.find(",20.\n"), 4, "");
+  EXPECT_NEAR(Heated("TEMP(INITIAL) = 6\n" + open + cards).solve().displacement[6], kAlpha * 40 * kL, 1e-15);
+  EXPECT_NEAR(Heated(open + cards).solve().displacement[6], kAlpha * 100 * kL, 1e-15);
+  EXPECT_NEAR(Heated("TEMP(INITIAL) = 6\n" + kBar + cards).solve().displacement[6], kAlpha * 80 * kL, 1e-15);
+  // Gradients are differences too.
+  auto gradients = Heated("TEMP(INITIAL) = 6\n" + open + "TEMPRB,5,1,20.,20.,50.,50.\nTEMPRB,6,1,20.,20.,20.,20.\n");
+  EXPECT_NEAR(gradients.solve().displacement[7], -kAlpha * 30 * kL * kL / 2, 1e-15);
+  Heated missing("TEMP(INITIAL) = 6\n" + open + "TEMPD,5,50.\nTEMP,6,1,30.\n");
+  missing.make_load();
+  EXPECT_TRUE(missing.diagnostics.has("fe.missing-temperature"));
+  Heated none("TEMP(INITIAL) = 7\n" + open + "TEMPD,5,50.\n");
+  none.make_load();
+  EXPECT_TRUE(none.diagnostics.has("fe.missing-load"));
 }
 
 TEST(ThermalLoads, BarWithGradients) {

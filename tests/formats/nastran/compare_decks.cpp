@@ -86,7 +86,7 @@ class Content {
   }
   Content& operator()(const Ply& r) { return (*this)(r.mid)(r.t)(r.theta_deg); }
   Content& operator()(const Pcomp& r) {
-    return (*this)(r.id)(r.z0)(r.nsm)(r.tref)(r.ge)(r.plies)(r.bending)(r.membrane);
+    return (*this)(r.id)(r.z0)(r.nsm)(r.tref)(r.ge)(r.plies)(r.bending)(r.membrane)(static_cast<int>(r.layup));
   }
   Content& operator()(const Pshear& r) { return (*this)(r.id)(r.mid)(r.t)(r.nsm)(r.f1)(r.f2); }
   Content& operator()(const ShearPanel& r) { return (*this)(r.id)(r.pid)(r.grids); }
@@ -187,6 +187,7 @@ class Content {
   Content& operator()(const Param& r) { return (*this)(r.name)(r.value); }
   Content& operator()(const Subcase& r) {
     (*this)(r.id)(r.title)(r.subtitle)(r.label)(r.spc)(r.mpc)(r.load)(r.method)(r.statsub)(r.preload)(r.temperature);
+    (*this)(r.initial_temperature);
     return (*this)(r.suport1)(r.nsm)(r.k2gg)(r.m2gg)(r.b2gg);
   }
 

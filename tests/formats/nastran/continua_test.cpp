@@ -71,7 +71,9 @@ TEST(SolidCards, MaterialsAndElements) {
 TEST(ContinuumCards, WhatIsWrong) {
   EXPECT_EQ(read("PSHELL,7,,.1\n").count("deck.missing-field"), 1);
   EXPECT_EQ(read("PCOMP,5\n").count("deck.missing-field"), 1);
-  EXPECT_EQ(read("PCOMP,5,,,,,,,SMEAR\n,1,.1\n").count("deck.bad-word"), 1);
+  EXPECT_EQ(read_clean("PCOMP,5,,,,,,,SMEAR\n,1,.1\n").pcomp[0].layup, records::Layup::Smeared);
+  EXPECT_EQ(read_clean("PCOMP1,5,,,,,1,.1,SMCORE\n,0.,90.\n").pcomp[0].layup, records::Layup::SmearedCore);
+  EXPECT_EQ(read("PCOMP,5,,,,,,,SMCORE\n,1,.1\n").count("deck.missing-field"), 1);
   EXPECT_EQ(
       read("CQUAD4,1,1,1,2,3\n").count("deck.bad-integer") + read("CQUAD4,1,1,1,2,3\n").count("deck.missing-field"), 1);
   EXPECT_EQ(read("CQUAD4,1,1,1,2,3,4\n,,2,.1\n").count("deck.field-range"), 1);

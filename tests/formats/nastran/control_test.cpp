@@ -125,6 +125,35 @@ TEST(Control, BadValues) {
   EXPECT_EQ(r.find("deck.case-control-value")->where.line, 2);
 }
 
+// A slip in brackets took STATSUB(PRELOD) for the load of a buckling subcase.
+TEST(Control, WordsInBracketsAreThoseOfTheCommand) {
+  const auto r =
+      read("SOL 103\nCEND\nSTATSUB(PRELOD) = 1\nTEMP(LAOD) = 2\nMETHOD(FLIUD) = 3\nTEMPERATURE(XYZ) = 4\nBEGIN BULK\n");
+  ASSERT_EQ(r.count("deck.case-control-value"), 4) << r.get_messages();
+  EXPECT_EQ(r.find("deck.case-control-value")->where.line, 3);
+  EXPECT_EQ(r.find("deck.case-control-value")->advice, "did you mean PRELOAD");
+  EXPECT_EQ(read_clean("CEND\nSTATSUB(PREL) = 1\nBEGIN BULK\n").subcases[0].preload, 1);
+  EXPECT_EQ(read_clean("CEND\nTEMP(BOTH) = 5\nMETHOD(STRUC) = 6\nBEGIN BULK\n").subcases[0].temperature, 5);
+  EXPECT_EQ(read_clean("CEND\nMETHOD(FLUID) = 6\nBEGIN BULK\n").subcases[0].method, 0);
+}
+
+TEST(Control, ALoadThatIsNotReadIsAWarning) {
+  const auto r = read("CEND\nDEFORM = 4\nBEGIN BULK\n");
+  EXPECT_EQ(r.count("deck.unused-load"), 1);
+  EXPECT_EQ(r.count("deck.case-control-ignored"), 0);
+}
+
+TEST(Control, OtherKindsOfText) {
+  EXPECT_EQ(read_clean("CEND\n\fBEGIN BULK\n\f\nGRID,1\n \x01 \nGRID,2\x1a\n").grids.size(), 2u);
+  std::string wide;
+  for (const char c : std::string("CEND\nBEGIN BULK\nGRID,1\n")) wide += std::string(1, c) + '\0';
+  for (const std::string& text : {wide, "\xff\xfe" + wide, std::string("CEND\rBEGIN BULK\rGRID,1\r")}) {
+    const auto r = read(text);
+    EXPECT_EQ(r.count("deck.text-format"), 1);
+    EXPECT_LT(r.get_messages().size(), 400u) << r.get_messages();
+  }
+}
+
 TEST(Control, FragmentsAndDecksWithoutExecutive) {
   EXPECT_EQ(read_clean("GRID,1\nGRID,2\n").grids.size(), 2u);
   const auto deck = read_clean("SOL 103\nSPC = 4\nBEGIN BULK\nGRID,1\n");

@@ -41,9 +41,9 @@ TEST(Temperatures, SelectionInTheCaseControl) {
   EXPECT_EQ(r.deck.subcases[0].temperature, 7);
   EXPECT_EQ(r.deck.subcases[1].temperature, 8);
   EXPECT_EQ(r.deck.subcases[2].temperature, 0);
+  EXPECT_EQ(r.deck.subcases[2].initial_temperature, 3);
   ASSERT_NE(r.find("deck.case-control-ignored"), nullptr);
-  EXPECT_NE(r.find("deck.case-control-ignored")->what.find("TEMPERATURE(INIT) (line 3), TEMPERATURE(MATE) (line 9)"),
-            std::string::npos);
+  EXPECT_NE(r.find("deck.case-control-ignored")->what.find("TEMPERATURE(MATERIAL) (line 9)"), std::string::npos);
 }
 
 TEST(Temperatures, ExpansionOfMaterials) {
@@ -59,6 +59,7 @@ TEST(Temperatures, ExpansionOfMaterials) {
   EXPECT_EQ(deck.mat9[0].alpha[5], 6e-5);
   EXPECT_EQ(deck.mat9[0].tref, 25);
   EXPECT_EQ(deck.pcomp[0].tref, 35);
+  EXPECT_FALSE(read_clean("MAT1,1,1.,,.3,1.,1.-5\n").mat1[0].tref);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ class Case(unittest.TestCase):
 
 
 class Seeds(Case):
-    SOUND = range(20)
+    SOUND = (*range(20), 473)  # 473: shapes whose mass the constraints' large factors blur
     SPOILED = range(8)
 
     def test_every_answer_is_that_of_the_dense_equations(self):
