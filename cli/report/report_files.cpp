@@ -1,0 +1,97 @@
+#include "cli/report/report_files.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/common/options.hpp"
+#include "cli/export/export_matrices.hpp"
+#include "formats/hdf5/comparison_file.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/hdf5/linear_file.hpp"
+#include "formats/hdf5/table_file.hpp"
+#include "formats/report/linear_chapter.hpp"
+#include "formats/report/table_chapters.hpp"
+
+namespace bough::cli {
+
+namespace {
+
+constexpr const char* kTakes =
+    "give results, a flexible body, modes, a linear model, a comparison, outcomes.h5, or the JSON of select";
+
+report::Chapter make_selection_chapter(const std::string& file) {
+  std::ifstream in(file);
+  const auto json = nlohmann::json::parse(in, nullptr, false);
+  const auto fail = [&](const std::string& what) { return InputError("cli.no-report", {file}, what, kTakes); };
+  if (!json.is_object() || !json.contains("modes") || !json.contains("total_cost"))
+    throw fail("expected what `bough select --json` prints");
+  std::vector<report::SelectedMode> modes;
+  try {
+    for (const auto& m : json.at("modes"))
+      modes.push_back({m.at("mode").get<int>(), m.at("frequency_hz").get<double>(), m.at("cost").get<double>(),
+                       m.at("share").get<double>(), m.at("kept").get<bool>(), m.at("reason").get<std::string>()});
+    return report::make_chapter(modes, json.at("total_cost").get<double>(), file);
+  } catch (const nlohmann::json::exception& error) {
+    throw fail(std::string("not the list of modes that select prints: ") + error.what());
+  }
+}
+
+report::Chapter make_campaign_chapter(const std::string& file) {
+  const auto outcomes = hdf5::read_outcomes(file);
+  report::CampaignTable table{file, list_facts(file), {}};
+  table.columns.push_back({"case", {outcomes.cases.begin(), outcomes.cases.end()}, {}});
+  for (const auto& column : outcomes.columns) {
+    const auto name = column.path.substr(column.path.rfind('/') + 1);
+    if (column.numbers.size() == 0) {
+      table.columns.push_back({name, {}, column.words});
+      continue;
+    }
+    for (Eigen::Index c = 0; c < column.numbers.cols(); ++c) {
+      const Eigen::VectorXd values = column.numbers.col(c);
+      table.columns.push_back({column.numbers.cols() > 1 ? name + "." + std::to_string(c + 1) : name,
+                               {values.begin(), values.end()},
+                               {}});
+    }
+  }
+  return report::make_chapter(table);
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> list_facts(const std::string& file) {
+  const auto info = hdf5::read_info(file);
+  std::vector<std::pair<std::string, std::string>> facts{{"file", file}};
+  const auto add = [&](const char* attribute, const char* name) {
+    const auto found = info.attributes.find(attribute);
+    if (found != info.attributes.end() && !found->second.empty()) facts.emplace_back(name, found->second);
+  };
+  add("name", "name");
+  add("campaign", "campaign");
+  add("bough_version", "written by Bough");
+  add("format", "format");
+  add("format_version", "version of the format");
+  add("subcase", "subcase");
+  add("frame", "frame");
+  add("source", "made from (file, SHA-256)");
+  add("fingerprint", "SHA-256 of all inputs");
+  for (const auto& object : info.objects)
+    if (object.path.starts_with("/settings@")) facts.emplace_back(object.path.substr(10), object.description);
+  return facts;
+}
+
+report::Chapter make_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics) {
+  if (has_suffix(file, ".json")) return make_selection_chapter(file);
+  const auto format = read_file_format(file);
+  if (format == "bough-results") return make_results_chapter(file, request, diagnostics);
+  if (format == "bough-flexbody") return make_body_chapter(file);
+  if (format == "bough-modes") return make_modes_chapter(file);
+  if (format == "bough-linear") return report::make_chapter(hdf5::read_linear_model(file), file, list_facts(file));
+  if (format == "bough-comparison") return report::make_chapter(hdf5::read_comparison(file), file, list_facts(file));
+  if (format == "bough-outcomes") return make_campaign_chapter(file);
+  throw InputError("cli.no-report", {file}, "no page can be made of a file of format \"" + format + "\"", kTakes);
+}
+
+}  // namespace bough::cli
