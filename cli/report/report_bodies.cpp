@@ -51,7 +51,8 @@ void add_integrals(const records::FlexBody& body, report::ModalModel& m) {
     m.integrals.captured = check.captured[2].fraction;
     m.checks.push_back({"largest difference of lumped and momentum integrals from the exact ones",
                         report::format_percent(worst) + " %", worst > 0.1 ? Verdict::Warning : Verdict::Good,
-                        "a coarse mesh, or masses off their grids, where it is large; the solver takes the " + body.integrals_method + " set"});
+                        "a coarse mesh, or masses off their grids, where it is large; the solver takes the " +
+                            body.integrals_method + " set"});
   }
 }
 
@@ -66,8 +67,10 @@ void add_spin(const records::FlexBody& body, report::ModalModel& m) {
   if (first <= 0) return;
   const std::array<const char*, 3> names{"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {
-    const auto spin = modal::calc_spin_frequencies(body, Eigen::Vector3d::Unit(axis), Eigen::VectorXd::LinSpaced(33, 0, 2 * first));
-    report::SpinCurves curves{names[static_cast<std::size_t>(axis)], spin.rate, spin.frequency_hz, spin.without_hz, -1, spin.has_stiffness};
+    const auto spin =
+        modal::calc_spin_frequencies(body, Eigen::Vector3d::Unit(axis), Eigen::VectorXd::LinSpaced(33, 0, 2 * first));
+    report::SpinCurves curves{
+        names[static_cast<std::size_t>(axis)], spin.rate, spin.frequency_hz, spin.without_hz, -1, spin.has_stiffness};
     for (std::size_t r = 0; r < spin.diverges.size() && curves.diverges_at < 0; ++r)
       if (spin.diverges[r]) curves.diverges_at = spin.rate[static_cast<Eigen::Index>(r)];
     m.spin.push_back(std::move(curves));
@@ -76,7 +79,8 @@ void add_spin(const records::FlexBody& body, report::ModalModel& m) {
 
 /// Largest relative asymmetry of the K_G, and whether K or M have negative eigenvalues.
 void check_matrices(const records::FlexBody& body, report::ModalModel& m) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> mass(body.modal_mass, Eigen::EigenvaluesOnly), stiffness(body.modal_stiffness, Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> mass(body.modal_mass, Eigen::EigenvaluesOnly),
+      stiffness(body.modal_stiffness, Eigen::EigenvaluesOnly);
   if (body.num_modes() == 0) return;
   const double least_mass = mass.eigenvalues()[0] / mass.eigenvalues().maxCoeff();
   m.checks.push_back({"least eigenvalue of the modal mass to the largest", report::format_value(least_mass, 3),
@@ -85,7 +89,10 @@ void check_matrices(const records::FlexBody& body, report::ModalModel& m) {
   m.checks.push_back({"least eigenvalue of the modal stiffness to the largest", report::format_value(least, 3),
                       least > -1e-9 ? Verdict::Good : Verdict::Warning, "not negative"});
   const auto computed = std::count(body.kg_inertial_computed.begin(), body.kg_inertial_computed.end(), true);
-  m.checks.push_back({"geometric stiffness K_G1", fmt::format("{} of 12", computed), computed == 12 ? Verdict::Good : computed > 0 ? Verdict::Warning : Verdict::Warning,
+  m.checks.push_back({"geometric stiffness K_G1", fmt::format("{} of 12", computed),
+                      computed == 12 ? Verdict::Good
+                      : computed > 0 ? Verdict::Warning
+                                     : Verdict::Warning,
                       computed == 12 ? "" : "motions of the others stiffen nothing"});
 }
 
@@ -137,7 +144,9 @@ report::Chapter make_modes_chapter(const std::string& file) {
   m.mass = p.mass;
   m.cg = p.cg;
   // The file has it about its reference; effective masses are about the origin.
-  const auto move = [&](const Eigen::Vector3d& d) { return Eigen::Matrix3d(p.mass * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose())); };
+  const auto move = [&](const Eigen::Vector3d& d) {
+    return Eigen::Matrix3d(p.mass * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose()));
+  };
   m.inertia = p.inertia - move(p.cg - p.reference) + move(p.cg);
   m.frequency_hz = m.is_buckling ? modes.load_factor : modes.frequency_hz;
   m.modal_mass = modes.modal_mass;
@@ -148,12 +157,17 @@ report::Chapter make_modes_chapter(const std::string& file) {
   const auto n = modes.residual.size();
   if (n > 0) {
     const double worst = modes.residual.maxCoeff();
-    m.checks.push_back({"largest residual", report::format_value(worst, 2), worst > 1e-5 ? Verdict::Bad : Verdict::Good, "below 1e-5"});
+    m.checks.push_back({"largest residual", report::format_value(worst, 2), worst > 1e-5 ? Verdict::Bad : Verdict::Good,
+                        "below 1e-5"});
   }
-  m.checks.push_back({"Sturm count up to the highest", modes.inertia_count < 0 ? "not made" : std::to_string(modes.inertia_count),
-                      modes.inertia_count < 0 ? Verdict::None : modes.inertia_count >= n ? Verdict::Good : Verdict::Bad,
-                      modes.inertia_count == n ? "as many as in the table: none missed"
-                      : modes.inertia_count > n ? "the others are below the range or copies of the last root" : ""});
+  m.checks.push_back({"Sturm count up to the highest",
+                      modes.inertia_count < 0 ? "not made" : std::to_string(modes.inertia_count),
+                      modes.inertia_count < 0    ? Verdict::None
+                      : modes.inertia_count >= n ? Verdict::Good
+                                                 : Verdict::Bad,
+                      modes.inertia_count == n  ? "as many as in the table: none missed"
+                      : modes.inertia_count > n ? "the others are below the range or copies of the last root"
+                                                : ""});
   m.checks.push_back({"rigid-body modes", std::to_string(modes.num_rigid_modes), Verdict::None, ""});
   m.drawing = report::make_drawing(modes.mesh, modes.node_id, modes.node_xyz, modes.phi);
   return report::make_chapter(m);

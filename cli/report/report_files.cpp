@@ -51,9 +51,8 @@ report::Chapter make_campaign_chapter(const std::string& file) {
     }
     for (Eigen::Index c = 0; c < column.numbers.cols(); ++c) {
       const Eigen::VectorXd values = column.numbers.col(c);
-      table.columns.push_back({column.numbers.cols() > 1 ? name + "." + std::to_string(c + 1) : name,
-                               {values.begin(), values.end()},
-                               {}});
+      table.columns.push_back(
+          {column.numbers.cols() > 1 ? name + "." + std::to_string(c + 1) : name, {values.begin(), values.end()}, {}});
     }
   }
   return report::make_chapter(table);
@@ -75,11 +74,35 @@ std::vector<std::pair<std::string, std::string>> list_facts(const std::string& f
   add("format_version", "version of the format");
   add("subcase", "subcase");
   add("frame", "frame");
-  add("source", "made from (file, SHA-256)");
   add("fingerprint", "SHA-256 of all inputs");
-  for (const auto& object : info.objects)
-    if (object.path.starts_with("/settings@")) facts.emplace_back(object.path.substr(10), object.description);
+  // Names and hashes in turn; a name may hold a comma itself.
+  const auto source = info.attributes.find("source");
+  if (source == info.attributes.end()) return facts;
+  std::string name;
+  for (std::size_t from = 0; from <= source->second.size();) {
+    const auto to = std::min(source->second.find(", ", from), source->second.size());
+    const std::string word = source->second.substr(from, to - from);
+    from = to + 2;
+    if (word.size() == 64 && word.find_first_not_of("0123456789abcdef") == std::string::npos && !name.empty()) {
+      facts.emplace_back("made from " + name, "SHA-256 " + word);
+      name.clear();
+    } else {
+      name += (name.empty() ? "" : ", ") + word;
+    }
+  }
   return facts;
+}
+
+std::vector<std::pair<std::string, std::string>> list_settings(const std::string& file) {
+  std::vector<std::pair<std::string, std::string>> settings;
+  for (const auto& object : hdf5::read_info(file).objects) {
+    if (!object.path.starts_with("/settings@")) continue;
+    char* end = nullptr;
+    const double number = std::strtod(object.description.c_str(), &end);
+    const bool is_number = !object.description.empty() && *end == '\0';
+    settings.emplace_back(object.path.substr(10), is_number ? fmt::format("{:.12g}", number) : object.description);
+  }
+  return settings;
 }
 
 report::Chapter make_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics) {

@@ -16,8 +16,10 @@ struct ReportRequest {
 /// Of an HDF5 file of Bough or the JSON that `select` printed. Throws InputError "cli.no-report" for another kind.
 report::Chapter make_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics);
 
-/// Name and value of what a file says of itself: format, version of Bough, sources with their SHA-256, settings.
+/// Name and value of what a file says of itself: format, version of Bough, sources with their SHA-256.
 std::vector<std::pair<std::string, std::string>> list_facts(const std::string& file);
+/// The settings of a run.
+std::vector<std::pair<std::string, std::string>> list_settings(const std::string& file);
 
 report::Chapter make_body_chapter(const std::string& file);
 report::Chapter make_modes_chapter(const std::string& file);

@@ -89,7 +89,8 @@ void add_scene(const std::string& file, const hdf5::RunInputs& inputs, const Rep
   }
   for (const auto& hinge : spec.hinges) {
     report::SceneHinge drawn{hinge.name, "", -1, -1, hinge.parent_position, Eigen::Vector3d::Zero()};
-    constexpr const char* names[] = {"fixed", "revolute", "prismatic", "universal", "cylindrical", "planar", "spherical", "free"};
+    constexpr const char* names[] = {"fixed",       "revolute", "prismatic", "universal",
+                                     "cylindrical", "planar",   "spherical", "free"};
     const auto type = static_cast<std::size_t>(hinge.type);
     drawn.type = type < std::size(names) ? names[type] : "";
     if (hinge.type == records::HingeType::Free) continue;
@@ -112,8 +113,9 @@ void add_scene(const std::string& file, const hdf5::RunInputs& inputs, const Rep
 
 /// Channels of the file in its own order of kinds: sensors first, then hinges, bodies and the rest.
 int get_rank(const std::string& path) {
-  static constexpr const char* kOrder[] = {"/sensors/", "/signals/", "/controllers/", "/actuators/", "/hinges/", "/constraints/",
-                                           "/bodies/",  "/energy/",  "/momentum/",    "/system_mass/"};
+  static constexpr const char* kOrder[] = {"/sensors/",  "/signals/",     "/controllers/", "/actuators/",
+                                           "/hinges/",   "/constraints/", "/bodies/",      "/energy/",
+                                           "/momentum/", "/system_mass/"};
   for (std::size_t i = 0; i < std::size(kOrder); ++i)
     if (path.starts_with(kOrder[i])) return static_cast<int>(i);
   return static_cast<int>(std::size(kOrder));
@@ -141,6 +143,7 @@ report::Chapter make_results_chapter(const std::string& file, const ReportReques
   report::History history;
   history.file = file;
   history.facts = list_facts(file);
+  history.settings = list_settings(file);
   history.time = results.time;
   history.events = results.events;
   history.system_text = results.system_text;
@@ -157,7 +160,7 @@ report::Chapter make_results_chapter(const std::string& file, const ReportReques
   history.facts.insert(history.facts.begin() + 1, {"system", history.name});
   history.facts.emplace_back("samples", std::to_string(n));
   if (n > 0) history.facts.emplace_back("time", fmt::format("{:g} to {:g}", results.time[0], results.time[n - 1]));
-  return report::make_chapter(history);
+  return report::make_chapter(std::move(history));
 }
 
 }  // namespace bough::cli

@@ -24,8 +24,7 @@ std::vector<Face> list_faces(const std::string& type) {
   if (type.starts_with("tri")) return {{0, 1, 2, 2}};
   if (type.starts_with("quad")) return {{0, 1, 2, 3}};
   if (type.starts_with("tetra")) return {{0, 2, 1, 1}, {0, 1, 3, 3}, {1, 2, 3, 3}, {0, 3, 2, 2}};
-  if (type.starts_with("penta"))
-    return {{0, 1, 2, 2}, {3, 5, 4, 4}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
+  if (type.starts_with("penta")) return {{0, 1, 2, 2}, {3, 5, 4, 4}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
   if (type.starts_with("hexa"))
     return {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
   return {};
@@ -57,18 +56,18 @@ class DrawingBuilder {
     for (std::size_t i = 0; i < places_.size(); ++i) drawing.xyz.row(static_cast<Eigen::Index>(i)) = places_[i];
   }
 
-  void add_shapes(const std::vector<Eigen::MatrixXd>& shapes) {
+  void add_shapes(const std::vector<Eigen::MatrixXd>& phi) {
+    const Eigen::Index modes = phi.empty() ? 0 : phi.front().cols();
     const double bytes = 6.0 * static_cast<double>(places_.size());
-    const auto most = static_cast<std::size_t>(kMostShapeBytes / std::max(bytes, 1.0));
-    for (const auto& phi : shapes) {
-      if (drawing.shapes.size() >= most) break;
+    const auto most = static_cast<Eigen::Index>(kMostShapeBytes / std::max(bytes, 1.0));
+    for (Eigen::Index j = 0; j < std::min(modes, most); ++j) {
       Eigen::MatrixXd shape = Eigen::MatrixXd::Zero(drawing.xyz.rows(), 3);
       for (std::size_t i = 0; i < shape_of_point_.size(); ++i)
-        if (shape_of_point_[i] >= 0)
-          shape.row(static_cast<Eigen::Index>(i)) = phi.col(shape_of_point_[i]).head<3>().transpose();
+        if (const int k = shape_of_point_[i]; k >= 0)
+          shape.row(static_cast<Eigen::Index>(i)) = phi[static_cast<std::size_t>(k)].col(j).head<3>().transpose();
       drawing.shapes.push_back(std::move(shape));
     }
-    drawing.num_dropped = static_cast<int>(shapes.size() - drawing.shapes.size());
+    drawing.num_dropped = static_cast<int>(modes) - static_cast<int>(drawing.shapes.size());
   }
 
   Drawing drawing;
@@ -82,7 +81,8 @@ class DrawingBuilder {
   }
   std::uint32_t use_grid(int grid) {
     const auto g = static_cast<std::size_t>(grid);
-    if (point_of_grid_[g] < 0) point_of_grid_[g] = add_point(mesh_.grid_id[g], mesh_.grid_xyz.row(grid), shape_of_grid_[g]);
+    if (point_of_grid_[g] < 0)
+      point_of_grid_[g] = add_point(mesh_.grid_id[g], mesh_.grid_xyz.row(grid), shape_of_grid_[g]);
     return static_cast<std::uint32_t>(point_of_grid_[g]);
   }
   bool has_shape(int grid) const { return shape_of_grid_[static_cast<std::size_t>(grid)] >= 0; }
@@ -150,9 +150,9 @@ int Drawing::find(int node) const {
 }
 
 Drawing make_drawing(const records::BodyMesh& mesh, const std::vector<int>& node_id, const Eigen::MatrixXd& node_xyz,
-                     const std::vector<Eigen::MatrixXd>& shapes) {
+                     const std::vector<Eigen::MatrixXd>& phi) {
   DrawingBuilder builder(mesh, node_id, node_xyz);
-  builder.add_shapes(shapes);
+  builder.add_shapes(phi);
   return std::move(builder.drawing);
 }
 
@@ -161,15 +161,14 @@ Drawing make_drawing(const records::FlexBody& body) {
   const auto g = static_cast<Eigen::Index>(body.mesh.grid_id.size());
   std::map<int, Eigen::Index> grid_of;
   for (Eigen::Index i = 0; i < g; ++i) grid_of[body.mesh.grid_id[static_cast<std::size_t>(i)]] = i;
-  std::vector<Eigen::MatrixXd> shapes(static_cast<std::size_t>(body.num_modes()), Eigen::MatrixXd::Zero(6, g));
+  std::vector<Eigen::MatrixXd> phi(body.mesh.grid_id.size(), Eigen::MatrixXd::Zero(6, body.num_modes()));
   for (Eigen::Index row = 0; row < body.dof_map.rows(); ++row) {
     const auto found = grid_of.find(body.dof_map(row, 0));
     const int code = body.dof_map(row, 1);
     if (found == grid_of.end() || code < 1 || code > 6) continue;
-    for (std::size_t j = 0; j < shapes.size(); ++j)
-      shapes[j](code - 1, found->second) = body.full_phi(row, static_cast<Eigen::Index>(j));
+    phi[static_cast<std::size_t>(found->second)].row(code - 1) = body.full_phi.row(row);
   }
-  return make_drawing(body.mesh, body.mesh.grid_id, body.mesh.grid_xyz, shapes);
+  return make_drawing(body.mesh, body.mesh.grid_id, body.mesh.grid_xyz, phi);
 }
 
 Drawing make_box(double mass, const Eigen::Vector3d& cg, const Eigen::Matrix3d& inertia,
@@ -193,8 +192,8 @@ Drawing make_box(double mass, const Eigen::Vector3d& cg, const Eigen::Matrix3d& 
     box.xyz.row(k) = (cg + axes.eigenvectors() * half.cwiseProduct(sign)).transpose();
   }
   if (has_box) {
-    for (const std::uint32_t k : {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                                  2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5})
+    for (const std::uint32_t k :
+         {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5})
       box.triangles.push_back(k);
     for (std::uint32_t a = 0; a < 8; ++a)
       for (const std::uint32_t bit : {1U, 2U, 4U})
@@ -203,8 +202,8 @@ Drawing make_box(double mass, const Eigen::Vector3d& cg, const Eigen::Matrix3d& 
   box.xyz.row(corners) = cg.transpose();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     box.xyz.row(corners + 1 + static_cast<Eigen::Index>(i)) = nodes[i].transpose();
-    box.edges.insert(box.edges.end(),
-                     {static_cast<std::uint32_t>(corners), static_cast<std::uint32_t>(corners) + 1 + static_cast<std::uint32_t>(i)});
+    box.edges.insert(box.edges.end(), {static_cast<std::uint32_t>(corners),
+                                       static_cast<std::uint32_t>(corners) + 1 + static_cast<std::uint32_t>(i)});
   }
   return box;
 }
@@ -214,12 +213,9 @@ std::string to_json_text(const Drawing& drawing) {
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> r = rows;
     return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(r.data(), r.size()));
   };
-  nlohmann::json json{{"xyz", pack_floats(flatten(drawing.xyz))},
-                      {"triangles", pack_indices(drawing.triangles)},
-                      {"edges", pack_indices(drawing.edges)},
-                      {"ghosts", pack_indices(drawing.ghosts)},
-                      {"shapes", nlohmann::json::array()},
-                      {"dropped", drawing.num_dropped}};
+  nlohmann::json json{{"xyz", pack_floats(flatten(drawing.xyz))}, {"triangles", pack_indices(drawing.triangles)},
+                      {"edges", pack_indices(drawing.edges)},     {"ghosts", pack_indices(drawing.ghosts)},
+                      {"shapes", nlohmann::json::array()},        {"dropped", drawing.num_dropped}};
   for (const auto& shape : drawing.shapes) {
     const double largest = shape.size() > 0 ? shape.cwiseAbs().maxCoeff() : 0;
     json["shapes"].push_back({{"largest", largest}, {"data", pack_shorts(flatten(shape), largest)}});

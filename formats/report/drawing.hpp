@@ -10,8 +10,8 @@
 namespace bough::report {
 
 struct Drawing {
-  std::vector<int> id;    ///< node of each point; empty for a rigid body
-  Eigen::MatrixXd xyz;    ///< k x 3
+  std::vector<int> id;                          ///< node of each point; empty for a rigid body
+  Eigen::MatrixXd xyz;                          ///< k x 3
   std::vector<std::uint32_t> triangles, edges;  ///< three and two points each; edges bound the elements
   std::vector<std::uint32_t> ghosts;            ///< edges of elements of which not every grid has a shape
   std::vector<Eigen::MatrixXd> shapes;          ///< [mode] k x 3; may be fewer than the modes (num_dropped)
@@ -21,9 +21,9 @@ struct Drawing {
   int find(int node) const;
 };
 
-/// Faces that two solids share are left out. `shapes`: of the nodes, [mode] 6 x p; grids that are no nodes have none.
+/// Faces that two solids share are left out. phi: [node] 6 x n; grids that are no nodes have no shape.
 Drawing make_drawing(const records::BodyMesh& mesh, const std::vector<int>& node_id, const Eigen::MatrixXd& node_xyz,
-                     const std::vector<Eigen::MatrixXd>& shapes);
+                     const std::vector<Eigen::MatrixXd>& phi);
 /// A body's own: of all grids with `--full`, else of its output nodes.
 Drawing make_drawing(const records::FlexBody& body);
 

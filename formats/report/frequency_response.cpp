@@ -83,7 +83,8 @@ FrequencyResponse calc_frequency_response(const records::LinearModel& model, int
   }
   for (Index k = 0; k < count; ++k) {
     MatrixXcd values = model.D.cast<std::complex<double>>();
-    if (H.rows() > 0) values += C.cast<std::complex<double>>() * solve_hessenberg(H, {0, omegas[static_cast<std::size_t>(k)]}, B);
+    if (H.rows() > 0)
+      values += C.cast<std::complex<double>>() * solve_hessenberg(H, {0, omegas[static_cast<std::size_t>(k)]}, B);
     for (auto& pair : response.pairs) {
       const std::complex<double> h = values(pair.output, pair.input);
       pair.decibel[k] = h == 0.0 ? std::nan("") : 20 * std::log10(std::abs(h));

@@ -32,7 +32,8 @@ struct SceneHinge {
 
 struct History {
   std::string file, name;
-  std::vector<std::pair<std::string, std::string>> facts;  ///< of the file: versions, sources, settings
+  std::vector<std::pair<std::string, std::string>> facts;     ///< of the file: versions, sources
+  std::vector<std::pair<std::string, std::string>> settings;  ///< of the run
   Eigen::VectorXd time;
   std::vector<HistoryChannel> channels;
   std::vector<records::EventRecord> events;
@@ -45,7 +46,7 @@ struct History {
   std::vector<std::string> missing;  ///< why bodies are not drawn
 };
 
-/// `dims_as` is said beside every number: "L/T" of the file, or the user's own units in its place.
-Chapter make_chapter(const History& history);
+/// Adds /energy/balance to the channels where the energies are there: the script could not tell it from packed ones.
+Chapter make_chapter(History history);
 
 }  // namespace bough::report

@@ -12,12 +12,13 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kBudget = 4.1e6;       // characters: 20,000 samples of 50 columns, and the page stays below 5 MB
-constexpr long kFewest = 1500;          // samples of the others, before the first ones are thinned
-constexpr double kCharactersEach = 4;   // of a packed sample
+constexpr double kBudget = 4.1e6;      // characters: 20,000 samples of 50 columns, and the page stays below 5 MB
+constexpr long kFewest = 1500;         // samples of the others, before the first ones are thinned
+constexpr double kCharactersEach = 4;  // of a packed sample
 
 bool is_of_the_others(const std::string& path) {
-  return path.starts_with("/bodies/") || path.starts_with("/system_mass/") || path.find("/reaction_") != std::string::npos;
+  return path.starts_with("/bodies/") || path.starts_with("/system_mass/") ||
+         path.find("/reaction_") != std::string::npos;
 }
 
 Eigen::VectorXd take_every(const Eigen::Ref<const Eigen::VectorXd>& values, long stride) {

@@ -43,8 +43,8 @@ std::string HtmlTable::to_html(std::size_t most) const {
 std::string make_figure(const Plot& plot, const std::string& live) {
   Plot thin = plot;
   for (auto& curve : thin.curves) curve = thin_curve(curve, 600);
-  return std::string("<figure") + (live.empty() ? "" : " class=\"live\" data-view=\"" + escape_xml(live) + "\"") + ">\n" +
-         draw_svg(thin) + "</figure>\n";
+  return std::string("<figure") + (live.empty() ? "" : " class=\"live\" data-view=\"" + escape_xml(live) + "\"") +
+         ">\n" + draw_svg(thin) + "</figure>\n";
 }
 
 std::string make_place(const std::string& live, const std::string& without) {

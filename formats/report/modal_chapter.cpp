@@ -23,9 +23,11 @@ std::string make_mass_panel(const ModalModel& m) {
   };
   add("centre of mass [L]", m.cg);
   const Eigen::Vector3d d = m.cg - m.reference;
-  const Eigen::Matrix3d central = m.inertia - m.mass * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose());
+  const Eigen::Matrix3d central =
+      m.inertia - m.mass * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose());
   const std::array<std::string, 3> rows{"x", "y", "z"};
-  for (int i = 0; i < 3; ++i) add("inertia about the origin, row " + rows[static_cast<std::size_t>(i)] + " [M L²]", m.inertia.row(i));
+  for (int i = 0; i < 3; ++i)
+    add("inertia about the origin, row " + rows[static_cast<std::size_t>(i)] + " [M L²]", m.inertia.row(i));
   for (int i = 0; i < 3; ++i) add("about the centre of mass, row " + rows[static_cast<std::size_t>(i)], central.row(i));
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(central);
   if (central.allFinite()) {
@@ -74,7 +76,8 @@ std::string make_mode_table(const ModalModel& m) {
 }
 
 std::string make_integrals(const ModalModel& m) {
-  std::string html = make_text("Norms of the mass integrals of each mode by three methods, and their difference from the exact set.", "note");
+  std::string html = make_text(
+      "Norms of the mass integrals of each mode by three methods, and their difference from the exact set.", "note");
   for (std::size_t method = 0; method < 3; ++method) {
     const auto& norm = m.integrals.norm[method];
     if (norm.size() == 0) continue;
@@ -96,7 +99,8 @@ std::string make_integrals(const ModalModel& m) {
     html += table.to_html(200);
   }
   if (m.integrals.captured.size() > 0) {
-    HtmlTable table("Captured by the modes so far, % (exact set)", {{"modes"}, {"m x"}, {"m y"}, {"m z"}, {"Jxx"}, {"Jyy"}, {"Jzz"}});
+    HtmlTable table("Captured by the modes so far, % (exact set)",
+                    {{"modes"}, {"m x"}, {"m y"}, {"m z"}, {"Jxx"}, {"Jyy"}, {"Jzz"}});
     for (Eigen::Index j = 0; j < m.integrals.captured.rows(); ++j) {
       std::vector<std::string> row{std::to_string(j + 1)};
       for (Eigen::Index k = 0; k < 6; ++k) row.push_back(format_percent(m.integrals.captured(j, k)));
@@ -109,11 +113,17 @@ std::string make_integrals(const ModalModel& m) {
 
 std::string make_spin(const ModalModel& m) {
   std::string html = make_text(
-      "Frequencies in a frame that spins about an axis through the body's origin: geometric stiffness K_G1, spin softening "
-      "and Coriolis terms of the integrals, about the undeformed body. The first modes; beside them once per turn.", "note");
+      "Frequencies in a frame that spins about an axis through the body's origin: geometric stiffness K_G1, spin "
+      "softening "
+      "and Coriolis terms of the integrals, about the undeformed body. The first modes; beside them once per turn.",
+      "note");
   for (const auto& curves : m.spin) {
-    Plot plot{"Spin about " + curves.axis + (curves.has_stiffness ? "" : " (K_G1 not computed)"), "spin rate [1/T, radians]",
-              "frequency [1/T]", {}, 0, 0};
+    Plot plot{"Spin about " + curves.axis + (curves.has_stiffness ? "" : " (K_G1 not computed)"),
+              "spin rate [1/T, radians]",
+              "frequency [1/T]",
+              {},
+              0,
+              0};
     const Eigen::Index most = std::min<Eigen::Index>(curves.frequency_hz.cols(), 5);
     for (Eigen::Index k = 0; k < most; ++k)
       plot.curves.push_back({fmt::format("mode {}", k + 1), curves.rate, curves.frequency_hz.col(k), false});
@@ -131,7 +141,8 @@ std::string make_spin(const ModalModel& m) {
     }
     html += table.to_html();
     if (curves.diverges_at >= 0)
-      html += make_text(fmt::format("About {} the body buckles or flutters from a rate of {} on.", curves.axis, format_value(curves.diverges_at, 4)));
+      html += make_text(fmt::format("About {} the body buckles or flutters from a rate of {} on.", curves.axis,
+                                    format_value(curves.diverges_at, 4)));
   }
   return html;
 }
@@ -143,28 +154,37 @@ std::string draw_heat_map(const std::string& title, const Eigen::MatrixXd& value
   const Eigen::Index most = 60, rows = std::min(most, values.rows()), cols = std::min(most, values.cols());
   const double cell = std::max(10.0, std::min(34.0, 620.0 / static_cast<double>(std::max<Eigen::Index>(cols, 1))));
   const double left = 64, top = 44;
-  const double width = left + cell * static_cast<double>(cols) + 20, height = top + cell * static_cast<double>(rows) + 34;
+  const double width = std::max(300.0, left + cell * static_cast<double>(cols) + 20),
+               height = top + cell * static_cast<double>(rows) + 34;
   std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" role=\"img\" "
-      "font-family=\"Helvetica, Arial, sans-serif\" font-size=\"12\"><title>{2}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
+      "role=\"img\" "
+      "font-family=\"Helvetica, Arial, sans-serif\" font-size=\"12\"><title>{2}</title>\n<rect width=\"100%\" "
+      "height=\"100%\" fill=\"#ffffff\"/>\n",
       width, height, escape_xml(title));
-  svg += fmt::format("<text x=\"{}\" y=\"16\" fill=\"#111111\" font-size=\"13\">{} (across) against {} (down)</text>\n", 8, escape_xml(column_label), escape_xml(row_label));
+  svg += fmt::format("<text x=\"{}\" y=\"16\" fill=\"#111111\" font-size=\"13\">{} (across) against {} (down)</text>\n",
+                     8, escape_xml(column_label), escape_xml(row_label));
   for (Eigen::Index i = 0; i < rows; ++i) {
     for (Eigen::Index j = 0; j < cols; ++j) {
       const double v = values(i, j);
       const double shade = std::isfinite(v) ? std::min(1.0, std::max(0.0, v)) : 0;
       // White to dark blue, monotone in lightness: read without colour too.
       const auto mix = [&](double end) { return static_cast<int>(std::lround(255 + shade * (end - 255))); };
-      svg += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"#{:02x}{:02x}{:02x}\" stroke=\"#bbbbbb\" stroke-width=\"0.5\"><title>{} {}, {} {}: {}</title></rect>\n",
-                         left + cell * static_cast<double>(j), top + cell * static_cast<double>(i), cell, cell, mix(0), mix(50), mix(110),
-                         escape_xml(row_label), i + 1, escape_xml(column_label), j + 1, format_value(v, 4));
+      svg += fmt::format(
+          "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"#{:02x}{:02x}{:02x}\" "
+          "stroke=\"#bbbbbb\" stroke-width=\"0.5\"><title>{} {}, {} {}: {}</title></rect>\n",
+          left + cell * static_cast<double>(j), top + cell * static_cast<double>(i), cell, cell, mix(0), mix(50),
+          mix(110), escape_xml(row_label), i + 1, escape_xml(column_label), j + 1, format_value(v, 4));
       if (cell >= 30 && std::isfinite(v))
-        svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" font-size=\"10\" fill=\"{}\">{:.2f}</text>\n",
-                           left + cell * (static_cast<double>(j) + 0.5), top + cell * (static_cast<double>(i) + 0.5) + 3.5, shade > 0.5 ? "#ffffff" : "#333333", v);
+        svg += fmt::format(
+            "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" font-size=\"10\" fill=\"{}\">{:.2f}</text>\n",
+            left + cell * (static_cast<double>(j) + 0.5), top + cell * (static_cast<double>(i) + 0.5) + 3.5,
+            shade > 0.5 ? "#ffffff" : "#333333", v);
     }
   }
   const auto label = [&](double x, double y, const char* anchor, Eigen::Index k) {
-    svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"#333333\">{}</text>\n", x, y, anchor, k + 1);
+    svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"#333333\">{}</text>\n", x, y, anchor,
+                       k + 1);
   };
   const Eigen::Index every = cell < 16 ? 5 : 1;
   for (Eigen::Index i = 0; i < rows; ++i)
@@ -173,24 +193,31 @@ std::string draw_heat_map(const std::string& title, const Eigen::MatrixXd& value
     if (every == 1 || (j + 1) % every == 0) label(left + cell * (static_cast<double>(j) + 0.5), top - 8, "middle", j);
   svg += "</svg>\n";
   std::string html = "<figure>" + svg + "</figure>\n";
-  if (rows < values.rows() || cols < values.cols()) html += make_text(fmt::format("The first {} by {} of {} by {}.", rows, cols, values.rows(), values.cols()), "note");
+  if (rows < values.rows() || cols < values.cols())
+    html += make_text(fmt::format("The first {} by {} of {} by {}.", rows, cols, values.rows(), values.cols()), "note");
   return html;
 }
 
 Chapter make_chapter(const ModalModel& m) {
-  Chapter chapter{m.kind, m.file, m.facts, m.checks, {}, {}};
+  Chapter chapter{m.kind, m.file, m.facts, m.checks, {}, {}, {}};
   if (!m.drawing.shapes.empty())
-    chapter.add_panel("shapes", "Mode shapes", make_place("modes", "The shapes are drawn by a script with WebGL 2; this reader runs none."));
+    chapter.add_panel("shapes", "Mode shapes",
+                      make_place("modes", "The shapes are drawn by a script with WebGL 2; this reader runs none."));
   chapter.add_panel("mass", "Mass properties", make_mass_panel(m));
-  if (m.frequency_hz.size() > 0) chapter.add_panel("table", m.is_buckling ? "Load factors" : "Modes and effective mass", make_mode_table(m));
+  if (m.frequency_hz.size() > 0)
+    chapter.add_panel("table", m.is_buckling ? "Load factors" : "Modes and effective mass", make_mode_table(m));
   if (m.integrals.norm[0].size() + m.integrals.norm[1].size() + m.integrals.norm[2].size() > 0)
     chapter.add_panel("integrals", "Mass integrals by three methods", make_integrals(m));
   if (!m.spin.empty()) chapter.add_panel("spin", "Frequency against spin rate", make_spin(m));
   if (m.mac.size() > 0)
-    chapter.add_panel("mac", "MAC", make_text("Modal assurance criterion of the modes among themselves: what is dark beside the diagonal, these nodes do not tell apart.", "note") +
-                                        draw_heat_map("MAC", m.mac, "mode", "mode"));
+    chapter.add_panel("mac", "MAC",
+                      make_text("Modal assurance criterion of the modes among themselves: what is dark beside the "
+                                "diagonal, these nodes do not tell apart.",
+                                "note") +
+                          draw_heat_map("MAC", m.mac, "mode", "mode"));
   auto modes = nlohmann::json::array();
-  for (Eigen::Index j = 0; j < m.frequency_hz.size(); ++j) modes.push_back(std::isfinite(m.frequency_hz[j]) ? nlohmann::json(m.frequency_hz[j]) : nlohmann::json());
+  for (Eigen::Index j = 0; j < m.frequency_hz.size(); ++j)
+    modes.push_back(std::isfinite(m.frequency_hz[j]) ? nlohmann::json(m.frequency_hz[j]) : nlohmann::json());
   if (!m.drawing.shapes.empty())
     chapter.data = nlohmann::json{{"frequency", modes},
                                   {"kinds", m.mode_kind},

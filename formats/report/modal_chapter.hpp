@@ -33,7 +33,8 @@ struct ModalModel {
   double mass = 0;
   Eigen::Vector3d cg = Eigen::Vector3d::Zero(), reference = Eigen::Vector3d::Zero();
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about reference
-  Eigen::VectorXd frequency_hz, modal_mass, damping;  ///< of buckling: load factors in frequency_hz; damping: ratios, may be empty
+  Eigen::VectorXd frequency_hz, modal_mass,
+      damping;  ///< of buckling: load factors in frequency_hz; damping: ratios, may be empty
   std::vector<std::string> mode_kind;
   Eigen::VectorXd residual;        ///< may be empty
   Eigen::MatrixXd effective_mass;  ///< n x 6, may be empty

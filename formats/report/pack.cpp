@@ -45,7 +45,8 @@ PackedColumn pack_column(const Eigen::Ref<const Eigen::VectorXd>& values) {
   bytes.reserve(3 * static_cast<std::size_t>(values.size()));
   for (const double v : values) {
     std::uint32_t code = PackedColumn::kMissing;
-    if (std::isfinite(v)) code = packed.step > 0 ? static_cast<std::uint32_t>(std::lround((v - low) / packed.step)) : 0;
+    if (std::isfinite(v))
+      code = packed.step > 0 ? static_cast<std::uint32_t>(std::lround((v / 2 - low / 2) / packed.step * 2)) : 0;
     for (const int shift : {16, 8, 0}) bytes.push_back(static_cast<unsigned char>(code >> shift));
   }
   packed.data = encode_base64(bytes.data(), bytes.size());

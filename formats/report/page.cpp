@@ -40,17 +40,22 @@ std::string shield(const std::string& json) {
   return text;
 }
 
-std::string make_head(const Chapter& chapter) {
+std::string make_facts(const std::vector<std::pair<std::string, std::string>>& facts) {
   std::string html = "<dl class=\"facts\">\n";
-  for (const auto& [name, value] : chapter.facts)
+  for (const auto& [name, value] : facts)
     html += "<div><dt>" + escape_xml(name) + "</dt><dd>" + escape_xml(value) + "</dd></div>\n";
-  html += "</dl>\n";
+  return html + "</dl>\n";
+}
+
+std::string make_head(const Chapter& chapter) {
+  std::string html = make_facts(chapter.facts);
+  if (!chapter.settings.empty())
+    html += "<details><summary>Settings</summary>\n" + make_facts(chapter.settings) + "</details>\n";
   if (chapter.checks.empty()) return html;
   html += "<div class=\"scroll\"><table class=\"health\"><caption>Health</caption>\n<tbody>\n";
   for (const auto& check : chapter.checks)
-    html += "<tr><td>" + make_badge(check.verdict) + "</td><td class=\"text\">" + escape_xml(check.what) +
-            "</td><td>" + escape_xml(check.value) + "</td><td class=\"text\">" + escape_xml(check.note) +
-            "</td></tr>\n";
+    html += "<tr><td>" + make_badge(check.verdict) + "</td><td class=\"text\">" + escape_xml(check.what) + "</td><td>" +
+            escape_xml(check.value) + "</td><td class=\"text\">" + escape_xml(check.note) + "</td></tr>\n";
   return html + "</tbody></table></div>\n";
 }
 

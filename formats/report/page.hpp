@@ -26,7 +26,8 @@ struct Chapter {
   std::vector<std::pair<std::string, std::string>> facts;  ///< of the head: name, plain text
   std::vector<Check> checks;
   std::vector<Panel> panels;
-  std::string data;  ///< JSON for the script; empty: none
+  std::string data;                                           ///< JSON for the script; empty: none
+  std::vector<std::pair<std::string, std::string>> settings;  ///< more facts, folded away
 
   /// The worst of its checks.
   Verdict get_verdict() const;

@@ -193,7 +193,6 @@ class Page(ProgramTest):
         self.browser.call("Emulation.setScriptExecutionDisabled", value=True)
         self.bough("report", "spinup.h5", "boom.h5", "-o", "page.html")
         self.browser.call("Page.navigate", url="file://" + self.path("page.html"))
-        self.browser.call("Emulation.setScriptExecutionDisabled", value=False)
         self.assertTrue(self.browser.wait_for("document.querySelectorAll('svg').length >= 8 && document.readyState === 'complete'"))
         self.assertFalse(self.browser.run("Boolean(document.documentElement.dataset.ready)"))
         self.assertGreater(self.browser.run("document.querySelector('.live svg').getBoundingClientRect().height"), 100)

@@ -41,19 +41,6 @@ export function make_fixed_chart(run, title, paths) {
   return new Chart({ title, series, marks: run.marks, link: run.link, x_label: "time [T]", y_label: with_dims(title.toLowerCase(), channels[0]?.dims), height: 240 });
 }
 
-// Kinetic + strain + potential - work less its first value.
-export function make_balance_chart(run) {
-  const parts = ["kinetic", "strain", "potential", "work"].map((p) => run.by_path.get("/energy/" + p));
-  const columns = parts.map((c) => run.get_values(c, 0));
-  const y = columns[0].map((_, i) => columns[0][i] + columns[1][i] + columns[2][i] - columns[3][i]);
-  const first = y[0];
-  const quantum = parts.reduce((sum, c) => sum + c.columns[0].step, 0);
-  return new Chart({
-    title: "What the balance lacks", series: [{ name: "kinetic + strain + potential − work", x: run.get_time(parts[0]), y: y.map((v) => v - first) }],
-    marks: run.marks, link: run.link, x_label: "time [T]", y_label: `energy [F L], in steps of ${format_number(quantum, 2)}`, height: 220,
-  });
-}
-
 // Channel tree, charts, spectra, statistics of the window.
 export class HistoryView {
   constructor(run) {

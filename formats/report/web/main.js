@@ -1,4 +1,4 @@
-import { HistoryView, Run, make_balance_chart, make_fixed_chart } from "./history.js";
+import { HistoryView, Run, make_fixed_chart } from "./history.js";
 import { BodeView, ScatterView, make_poles_chart } from "./linear_view.js";
 import { ModesView } from "./modes_view.js";
 import { MotionView } from "./motion_view.js";
@@ -9,7 +9,7 @@ const kViews = {
   history: (chapter) => new HistoryView(chapter.run),
   motion: (chapter) => new MotionView(chapter.run),
   energy: (chapter) => make_fixed_chart(chapter.run, "Energy", ["kinetic", "strain", "potential", "work", "dissipated"].map((p) => "/energy/" + p)),
-  balance: (chapter) => make_balance_chart(chapter.run),
+  balance: (chapter) => make_fixed_chart(chapter.run, "What the balance lacks", ["/energy/balance"]),
   "momentum-linear": (chapter) => make_fixed_chart(chapter.run, "Linear momentum", ["/momentum/linear"]),
   "momentum-angular": (chapter) => make_fixed_chart(chapter.run, "Angular momentum", ["/momentum/angular"]),
   modes: (chapter) => new ModesView(chapter.data),

@@ -37,7 +37,7 @@ export class MotionView {
     this.play_button = make_button("▶ play", "Play or pause", () => this.play(!this.is_playing));
     this.play_button.classList.add("play");
     const tools = el("div", { class: "tools" }, this.play_button,
-      make_slider("lasts", { min: 0.5, max: 2.3, step: 0.05, value: 1.1 }, (v) => { this.seconds = 10 ** v; return format_number(10 ** v, 2) + " s"; }),
+      make_slider("plays in", { min: 0.5, max: 2.3, step: 0.05, value: 1.1 }, (v) => { this.seconds = 10 ** v; return format_number(10 ** v, 2) + " s"; }),
       make_slider("deformation ×", { min: 0, max: 3, step: 0.05, value: 0 }, (v) => { this.scale = 10 ** v; this.draw(); return format_number(10 ** v, 3); }),
       make_select("follow", ["nothing", ...moving.map((b) => b.name)], (i) => { this.follow = i === 0 ? -1 : moving[i - 1].index; this.anchor(); }),
       make_check("frames", true, (on) => { this.has_frames = on; this.draw(); }),
@@ -45,9 +45,10 @@ export class MotionView {
     const names = el("p", { class: "note legend" }, ...moving.map((b) => {
       const mark = el("span", { class: "swatch" });
       mark.style.background = get_style(b.index).color;
-      return el("span", {}, mark, " " + b.name + "  ");
-    }), "Short thick lines: axes of hinges. Frames: orange x, green y, blue z. A click in a chart takes this view there.");
-    this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock), names);
+      return el("span", { class: "entry" }, mark, " " + b.name);
+    }));
+    const help = el("p", { class: "note" }, "Black: hinges and their axes. Frames: orange x, green y, blue z. A click in a chart takes this view there.");
+    this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock), names, help);
     run.link.on("pick", (time) => { this.play(false); this.set_time(time); });
     this.reach = this.find_reach();
     this.viewer.fit(this.find_box());

@@ -21,7 +21,7 @@ void main() {
   at = place;
   gl_Position = view * vec4(place, 1.0);
   gl_Position.z -= lift * gl_Position.w;
-  gl_PointSize = 6.0;
+  gl_PointSize = 5.0;
 }`;
 // Colours of displacement: five stops of viridis (Smith & van der Walt 2015, CC0), read by the colour-blind too.
 const kFragment = `#version 300 es
@@ -59,7 +59,7 @@ export class Viewer {
     this.canvas = el("canvas", { class: "scene", tabindex: "0", role: "img", "aria-label": "three-dimensional view" });
     this.canvas.style.height = height + "px";
     this.element = el("div", { class: "viewer" }, this.canvas);
-    const gl = this.canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
+    const gl = this.canvas.getContext("webgl2", { alpha: false, antialias: true, preserveDrawingBuffer: true });
     if (!gl) throw new Error("WebGL 2 is not there");
     this.gl = gl;
     this.program = this.make_program();
@@ -98,7 +98,7 @@ export class Viewer {
     this.home = box;
     this.target = box.get_middle();
     this.extent = box.get_diagonal();
-    this.distance = 1.25 * this.extent;
+    this.distance = 1.1 * this.extent;
     this.draw();
   }
 
