@@ -74,6 +74,7 @@ std::vector<std::pair<std::string, std::string>> list_facts(const std::string& f
   add("format_version", "version of the format");
   add("subcase", "subcase");
   add("frame", "frame");
+  add("wall_time", "wall time, s");
   add("fingerprint", "SHA-256 of all inputs");
   // Names and hashes in turn; a name may hold a comma itself.
   const auto source = info.attributes.find("source");

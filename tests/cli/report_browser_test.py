@@ -177,10 +177,12 @@ class Page(ProgramTest):
         b.run(WAIT_FRAMES)
         self.assertEqual(b.run("document.querySelectorAll('.plots .chart .legend button[aria-pressed]').length"), 50)
         box = b.show(".plots .chart .overlay")
-        times = []
+        times, windows = [], set()
         for _ in range(3):
-            b.drag((box["x"] + 200, box["y"] + 100), (box["x"] + 700, box["y"] + 102))
+            b.drag((box["x"] + 200, box["y"] + 100), (box["x"] + 600, box["y"] + 102))
             times.append(float(b.run("document.querySelector('.plots .curves').dataset.ms")))
+            windows.add(b.run("document.querySelector('.statistics caption').textContent"))
+        self.assertEqual(len(windows), 3, windows)
         print("ms of a redraw with 50 curves of 20,000 samples:", times)
         self.picture("long")
         self.assertLess(min(times), 100)

@@ -64,7 +64,7 @@ def unpack(column, count):
         return np.full(count, column["low"])
     b = np.frombuffer(base64.b64decode(column["data"]), np.uint8).reshape(-1, 3).astype(np.int64)
     codes = b[:, 0] << 16 | b[:, 1] << 8 | b[:, 2]
-    return np.where(codes == MISSING, np.nan, column["low"] + codes * column["step"])
+    return np.where(codes == MISSING, np.nan, 2 * (column["low"] / 2 + codes * (column["step"] / 2)))
 
 
 def write_results(path, samples, names, values=None, completed=1, extra=()):
@@ -150,6 +150,9 @@ class Report(ProgramTest):
             self.assertAlmostEqual(float(row[3]), f["time"][largest.argmax()], delta=1e-4)
         health = {r[1]: r for r in page.get_table("Health")}
         self.assertEqual(health["run completed"][0], "ok")
+        with h5py.File(self.path("spinup.h5")) as f:
+            self.assertGreater(f.attrs["wall_time"], 0)
+            self.assertLess(f.attrs["wall_time"], 60)
         self.assertEqual(health["worst relative error of the energy balance"][0], "ok")
         # The body was found beside the results, by its SHA-256.
         self.assertEqual(len(data["bodies"][0]["drawing"]["shapes"]), 3)

@@ -339,7 +339,7 @@ export class Chart {
     for (const s of this.get_visible()) {
       if (s.x.length === 0) continue;
       const i = find_nearest(s.x, x);
-      this.values[s.index].textContent = " " + format_number(s.y[i]);
+      this.values[s.index].textContent = " " + format_number(s.y[i], 5);
       g.fillStyle = get_style(s.style ?? s.index).color;
       g.beginPath();
       g.arc(this.map_x(this.to_x(s.x[i])), this.map_y(this.to_y(s.y[i])), 3, 0, 2 * Math.PI);

@@ -12,14 +12,14 @@ export const unpack_doubles = (text) => new Float64Array(to_bytes(text).buffer);
 export const unpack_indices = (text) => new Uint32Array(to_bytes(text).buffer);
 export const unpack_shorts = (text) => new Int16Array(to_bytes(text).buffer);
 
-// 24 bits a sample; the last code stands for no number.
+// 24 bits a sample; the last code stands for no number. Halves: a range may be larger than any number.
 export function unpack_column(column, count) {
   const values = new Float64Array(count).fill(column.low);
   if (column.data === "") return values;
   const bytes = to_bytes(column.data);
   for (let i = 0, at = 0; i < count; ++i, at += 3) {
     const code = (bytes[at] << 16) | (bytes[at + 1] << 8) | bytes[at + 2];
-    values[i] = code === 0xffffff ? NaN : column.low + code * column.step;
+    values[i] = code === 0xffffff ? NaN : 2 * (column.low / 2 + code * (column.step / 2));
   }
   return values;
 }
