@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -40,19 +41,25 @@ report::Chapter make_selection_chapter(const std::string& file) {
 }
 
 report::Chapter make_campaign_chapter(const std::string& file) {
-  const auto outcomes = hdf5::read_outcomes(file);
+  auto outcomes = hdf5::read_outcomes(file);
+  const auto get_rank = [](const hdf5::OutcomeColumn& column) {
+    return column.path.starts_with("/parameters/") ? 0 : column.path.starts_with("/outputs/") ? 1 : 2;
+  };
+  std::stable_sort(outcomes.columns.begin(), outcomes.columns.end(),
+                   [&](const auto& a, const auto& b) { return get_rank(a) < get_rank(b); });
   report::CampaignTable table{file, list_facts(file), {}};
-  table.columns.push_back({"case", {outcomes.cases.begin(), outcomes.cases.end()}, {}});
+  table.columns.push_back({"case", {outcomes.cases.begin(), outcomes.cases.end()}, {}, false});
   for (const auto& column : outcomes.columns) {
     const auto name = column.path.substr(column.path.rfind('/') + 1);
+    const bool is_output = column.path.starts_with("/outputs/");
     if (column.numbers.size() == 0) {
-      table.columns.push_back({name, {}, column.words});
+      table.columns.push_back({name, {}, column.words, is_output});
       continue;
     }
     for (Eigen::Index c = 0; c < column.numbers.cols(); ++c) {
       const Eigen::VectorXd values = column.numbers.col(c);
-      table.columns.push_back(
-          {column.numbers.cols() > 1 ? name + "." + std::to_string(c + 1) : name, {values.begin(), values.end()}, {}});
+      const auto count = column.numbers.cols() > 1 ? "." + std::to_string(c + 1) : "";
+      table.columns.push_back({name + count, {values.begin(), values.end()}, {}, is_output});
     }
   }
   return report::make_chapter(table);
@@ -70,7 +77,6 @@ std::vector<std::pair<std::string, std::string>> list_facts(const std::string& f
   add("name", "name");
   add("campaign", "campaign");
   add("bough_version", "written by Bough");
-  add("format", "format");
   add("format_version", "version of the format");
   add("subcase", "subcase");
   add("frame", "frame");

@@ -23,8 +23,10 @@ std::string make_mass_panel(const ModalModel& m) {
   };
   add("centre of mass [L]", m.cg);
   const Eigen::Vector3d d = m.cg - m.reference;
-  const Eigen::Matrix3d central =
-      m.inertia - m.mass * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose());
+  Eigen::Matrix3d central = m.inertia - m.mass * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose());
+  // What the shift leaves by rounding is not shown.
+  const double noise = 1e-13 * (m.inertia.cwiseAbs().maxCoeff() + m.mass * d.squaredNorm());
+  central = (central.array().abs() < noise).select(0.0, central);
   const std::array<std::string, 3> rows{"x", "y", "z"};
   for (int i = 0; i < 3; ++i)
     add("inertia about the origin, row " + rows[static_cast<std::size_t>(i)] + " [M L²]", m.inertia.row(i));

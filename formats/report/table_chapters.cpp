@@ -141,7 +141,7 @@ Chapter make_chapter(const CampaignTable& table) {
     if (!column.words.empty()) continue;
     auto numbers = nlohmann::json::array();
     for (const double v : column.numbers) numbers.push_back(std::isfinite(v) ? nlohmann::json(v) : nlohmann::json());
-    list.push_back({{"name", column.name}, {"numbers", numbers}});
+    list.push_back({{"name", column.name}, {"numbers", numbers}, {"output", column.is_output}});
   }
   chapter.data = nlohmann::json{{"columns", list}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return chapter;

@@ -19,6 +19,7 @@ struct CampaignColumn {
   std::string name;
   std::vector<double> numbers;     ///< NaN where a case has none
   std::vector<std::string> words;  ///< in place of numbers
+  bool is_output = false;          ///< collected from the case
 };
 struct CampaignTable {
   std::string file;

@@ -275,6 +275,9 @@ class Report(ProgramTest):
         row = next(r for r in page.get_table("Over the cases") if r[0] == "tip")
         self.assertEqual([float(c) for c in row[1:7]], [4, 1, 1.45, 6.5, 22.6, 25])
         self.assertEqual(page.get_table("Health")[0][2], "1 of 5")
+        columns = page.get_data()[0]["columns"]
+        self.assertEqual([(c["name"], c["output"]) for c in columns], [("case", False), ("E", False), ("tip", True), ("exit_code", False)])
+        self.assertIsNone(columns[2]["numbers"][3])
 
     def test_size_and_time(self):
         """20,000 samples of 50 channels: under 5 MB, in under 2 s."""

@@ -37,7 +37,7 @@ const name_column = (channel, i) => short_name(channel.path) + (channel.columns[
 // A chart of whole channels that goes with the run's others.
 export function make_fixed_chart(run, title, paths) {
   const channels = paths.map((p) => run.by_path.get(p)).filter(Boolean);
-  const series = channels.flatMap((c) => c.columns.map((column, i) => run.make_series(c, i, channels.length > 1 ? c.path.split("/").pop() : column.name)));
+  const series = channels.flatMap((c) => c.columns.map((column, i) => run.make_series(c, i, channels.length > 1 || !column.name ? c.path.split("/").pop() : column.name)));
   return new Chart({ title, series, marks: run.marks, link: run.link, x_label: "time [T]", y_label: with_dims(title.toLowerCase(), channels[0]?.dims), height: 240 });
 }
 

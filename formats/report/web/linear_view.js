@@ -43,9 +43,8 @@ export class ScatterView {
   constructor({ columns }) {
     this.columns = columns;
     const names = columns.map((c) => c.name);
-    const outputs = columns.findIndex((c, i) => i > 1 && !["exit_code", "seconds"].includes(c.name));
     this.x = Math.min(1, columns.length - 1);
-    this.y = Math.max(outputs, 0);
+    this.y = Math.max(columns.findIndex((c) => c.output), 0);
     this.chart = new Chart({ series: [], height: 320 });
     const make = (text, key) => {
       const control = make_select(text, names, (i) => { this[key] = i; this.update(); });

@@ -65,7 +65,7 @@ export class ModesView {
     const has_faces = triangles.length > 0;
     const body = { points, size: this.drawing.size, triangles, edges, ghosts, color: get_css("--body"), by_level: this.has_colors, dots: !has_faces };
     const things = [...make_triad([0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]], 0.12 * size), body];
-    if (this.has_overlay) things.unshift({ points: xyz, edges, color: get_css("--ghost"), alpha: 0.7 });
+    if (this.has_overlay) things.unshift({ points: xyz, edges, color: get_css("--ghost"), alpha: 0.7, lift: -1e-3 });
     this.viewer.things = things;
     this.viewer.reach = this.amplitude * size;
     this.viewer.draw();

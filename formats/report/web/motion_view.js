@@ -138,7 +138,7 @@ export class MotionView {
 
   draw() {
     if (!this.viewer.home || !this.clock) return;
-    const size = this.viewer.extent, things = [];
+    const size = this.viewer.extent, things = [], boxes = [];
     const places = this.bodies.map((b) => (b.is_drawn ? this.place(b, this.time) : null));
     if (this.has_frames) things.push(...make_triad([0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]], 0.1 * size));
     this.bodies.forEach((body, k) => {
@@ -148,7 +148,9 @@ export class MotionView {
       body.world ??= new Float32Array(d.points.length);
       for (let i = 0; i < d.points.length; i += 3)
         for (let r = 0; r < 3; ++r) body.world[i + r] = p[r] + R[r][0] * d.points[i] + R[r][1] * d.points[i + 1] + R[r][2] * d.points[i + 2];
-      things.push({ points: body.world, size: d.size, triangles: d.triangles, edges: d.edges, ghosts: d.ghosts, color: get_style(k).color, by_level: this.has_colors && eta.length > 0, dots: d.triangles.length === 0 });
+      // Boxes of rigid bodies are seen through, after what they may hold.
+      const is_box = d.packed.length === 0;
+      (is_box ? boxes : things).push({ alpha: is_box ? 0.4 : 1, points: body.world, size: d.size, triangles: d.triangles, edges: d.edges, ghosts: d.ghosts, color: get_style(k).color, by_level: this.has_colors && eta.length > 0, dots: d.triangles.length === 0 });
       if (this.has_frames) things.push(...make_triad(p, [0, 1, 2].map((c) => R.map((row) => row[c])), 0.06 * size));
     });
     this.add_hinges(things, places, size);
@@ -158,7 +160,7 @@ export class MotionView {
       else this.viewer.target = [...p];
       this.before = p;
     }
-    this.viewer.things = things;
+    this.viewer.things = [...things, ...boxes];
     this.viewer.reach = this.reach * this.scale;
     this.viewer.draw();
   }

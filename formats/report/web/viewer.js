@@ -167,7 +167,7 @@ export class Viewer {
     const has_faces = thing.triangles?.length > 0;
     if (has_faces) draw(gl.TRIANGLES, thing.triangles, color, thing.by_level, true, 0);
     if (thing.edges?.length > 0)
-      draw(gl.LINES, thing.edges, has_faces ? to_rgba(get_css("--edge"), (thing.alpha ?? 1) * 0.6) : color, !has_faces && thing.by_level, false, 1e-4);
+      draw(gl.LINES, thing.edges, has_faces ? to_rgba(get_css("--edge"), (thing.alpha ?? 1) * 0.6) : color, !has_faces && thing.by_level, false, thing.lift ?? 1e-4);
     if (thing.ghosts?.length > 0) draw(gl.LINES, thing.ghosts, to_rgba(get_css("--ghost"), 0.6), false, false, 0);
     if (thing.dots) draw(gl.POINTS, null, color, thing.by_level, false, 2e-4);
   }
