@@ -14,8 +14,8 @@ namespace bough::report {
 
 namespace {
 
-constexpr double kMostShapeBytes = 2.2e6;  // of one body, before base64
-constexpr std::size_t kMostEdges = 150000;
+constexpr double kMostShapeBytes = 2.2e6;     // of one body, before base64
+constexpr std::size_t kMostOutlined = 30000;  // faces; of finer meshes the edges are left out
 
 using Face = std::array<int, 4>;  // a triangle repeats its last corner
 
@@ -116,6 +116,7 @@ class DrawingBuilder {
 
   void add_faces() {
     for (const auto& [unused, face] : solid_faces_) faces_.push_back(face);
+    const bool is_outlined = faces_.size() <= kMostOutlined;
     for (const auto& f : faces_) {
       const bool whole = std::all_of(f.begin(), f.end(), [&](int g) { return has_shape(g); });
       if (whole) {
@@ -123,13 +124,13 @@ class DrawingBuilder {
         if (f[3] != f[2])
           for (const int g : {f[0], f[2], f[3]}) drawing.triangles.push_back(use_grid(g));
       }
-      for (std::size_t k = 0; k < 4; ++k)
+      for (std::size_t k = 0; k < 4 && (is_outlined || !whole); ++k)
         if (f[k] != f[(k + 1) % 4]) add_edge(f[k], f[(k + 1) % 4]);
     }
   }
 
   void add_edge(int a, int b) {
-    if (seen_.size() >= kMostEdges || !seen_.insert(std::minmax(a, b)).second) return;
+    if (!seen_.insert(std::minmax(a, b)).second) return;
     auto& list = has_shape(a) && has_shape(b) ? drawing.edges : drawing.ghosts;
     for (const int g : {a, b}) list.push_back(use_grid(g));
   }

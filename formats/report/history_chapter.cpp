@@ -216,6 +216,11 @@ void add_checks(const History& h, Chapter& chapter) {
          fmt::format("{} of {} at t = {}; linear modes lose their meaning past 10 %", format_value(largest, 4),
                      format_value(body.size, 4), format_value(when, 4))});
   }
+  for (const auto& body : h.bodies)
+    if (body.drawing.num_dropped > 0)
+      chapter.checks.push_back(
+          {"drawn with fewer modes", body.name, Verdict::None,
+           fmt::format("the first {}, to keep the page small; numbers are of all", body.drawing.shapes.size())});
   for (const auto& what : h.missing) chapter.checks.push_back({"not drawn", "", Verdict::None, what});
 }
 

@@ -78,7 +78,7 @@ Chapter make_chapter(const records::LinearModel& model, const std::string& file,
                             unstable > 0 ? "largest real part " + format_value(worst, 4) : ""});
   chapter.checks.push_back({"estimated relative error of A and C", format_value(model.error, 2),
                             model.error > 1e-5 ? Verdict::Warning : Verdict::Good, ""});
-  chapter.checks.push_back({"rate of change at the operating point |u̇|", format_value(model.residual, 3), Verdict::None,
+  chapter.checks.push_back({"rate of change |u̇| at the point", format_value(model.residual, 3), Verdict::None,
                             "0 at rest and in a steady spin"});
   chapter.add_panel("poles", "Poles and zeros", make_poles(model));
   const auto response = calc_frequency_response(model);

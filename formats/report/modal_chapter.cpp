@@ -153,7 +153,7 @@ std::string make_spin(const ModalModel& m) {
 
 std::string draw_heat_map(const std::string& title, const Eigen::MatrixXd& values, const std::string& row_label,
                           const std::string& column_label) {
-  const Eigen::Index most = 60, rows = std::min(most, values.rows()), cols = std::min(most, values.cols());
+  const Eigen::Index most = 40, rows = std::min(most, values.rows()), cols = std::min(most, values.cols());
   const double cell = std::max(10.0, std::min(34.0, 620.0 / static_cast<double>(std::max<Eigen::Index>(cols, 1))));
   const double left = 64, top = 44;
   const double width = std::max(300.0, left + cell * static_cast<double>(cols) + 20),
@@ -202,9 +202,14 @@ std::string draw_heat_map(const std::string& title, const Eigen::MatrixXd& value
 
 Chapter make_chapter(const ModalModel& m) {
   Chapter chapter{m.kind, m.file, m.facts, m.checks, {}, {}, {}};
-  if (!m.drawing.shapes.empty())
-    chapter.add_panel("shapes", "Mode shapes",
-                      make_place("modes", "The shapes are drawn by a script with WebGL 2; this reader runs none."));
+  if (!m.drawing.shapes.empty()) {
+    std::string html = make_place("modes", "The shapes are drawn by a script with WebGL 2; this reader runs none.");
+    if (m.drawing.num_dropped > 0)
+      html += make_text(fmt::format("To keep the page small it has the shapes of the first {} of {} modes.",
+                                    m.drawing.shapes.size(), m.frequency_hz.size()),
+                        "note");
+    chapter.add_panel("shapes", "Mode shapes", html);
+  }
   chapter.add_panel("mass", "Mass properties", make_mass_panel(m));
   if (m.frequency_hz.size() > 0)
     chapter.add_panel("table", m.is_buckling ? "Load factors" : "Modes and effective mass", make_mode_table(m));
