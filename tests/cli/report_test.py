@@ -231,6 +231,49 @@ class Report(ProgramTest):
             raw = np.frombuffer(base64.b64decode(shapes[0]["data"]), "<i2").reshape(-1, 3) * shapes[0]["largest"] / 32767
             np.testing.assert_allclose(raw, f["modes/phi"][:, :3, 0], atol=1e-4 * shapes[0]["largest"])
 
+    def test_drawing_of_solids(self):
+        """Two bricks: ten faces outside, none of the one between; all edges once; the modes of every corner."""
+        grids = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1, 2)]
+        lines = [f"GRID,{k + 1},,{x:.1f},{y:.1f},{z:.1f}" for k, (x, y, z) in enumerate(grids)]
+        at = {g: k + 1 for k, g in enumerate(grids)}
+        for e, x in enumerate((0, 1)):
+            n = [at[c] for c in [(x, 0, 0), (x + 1, 0, 0), (x + 1, 1, 0), (x, 1, 0), (x, 0, 1), (x + 1, 0, 1), (x + 1, 1, 1), (x, 1, 1)]]
+            lines.append(f"CHEXA,{e + 1},1," + ",".join(map(str, n[:6])) + "\n,"  + ",".join(map(str, n[6:])))
+        self.write("bricks.bdf", "SOL 103\nCEND\nSPC = 1\nMETHOD = 1\nBEGIN BULK\nEIGRL,1,,,4\nSPC1,1,123,1,4,7,10\nPSOLID,1,1\n"
+                                 "MAT1,1,7.+10,,.3,2700.\n" + "\n".join(lines) + "\nENDDATA\n")
+        self.bough("modes", "bricks.bdf", "-o", "bricks.h5")
+        drawing = self.report("bricks.h5").get_data()[0]["drawing"]
+        get = lambda key, kind: np.frombuffer(base64.b64decode(drawing[key]), kind)
+        triangles, edges = get("triangles", "<u4").reshape(-1, 3), get("edges", "<u4").reshape(-1, 2)
+        xyz = get("xyz", "<f4").reshape(-1, 3)
+        self.assertEqual((len(xyz), len(triangles), len(edges), len(drawing["shapes"])), (12, 20, 20, 4))
+        area = np.linalg.norm(np.cross(xyz[triangles[:, 1]] - xyz[triangles[:, 0]], xyz[triangles[:, 2]] - xyz[triangles[:, 0]]), axis=1) / 2
+        self.assertAlmostEqual(area.sum(), 10)
+        self.assertEqual({tuple(sorted(e)) for e in edges.tolist()}.__len__(), 20)
+        # A body that keeps the shapes of one end only: the rest is there, undeformed; with --full all of it moves.
+        self.write("bricks.toml", '[body]\nname = "bricks"\ndeck = "bricks.bdf"\nframe = "fixed"\ninterface = [3]\n'
+                                  '[body.modes]\nnumber = 2\n[body.output]\nfile = "body.h5"\nnodes = [3, 6]\n')
+        self.bough("reduce", "bricks.toml")
+        drawing = self.report("body.h5").get_data()[0]["drawing"]
+        self.assertEqual((get("triangles", "<u4").size, get("ghosts", "<u4").size > 0, get("edges", "<u4").size), (0, True, 2))
+        self.bough("reduce", "bricks.toml", "--full")
+        drawing = self.report("body.h5").get_data()[0]["drawing"]
+        self.assertEqual((get("triangles", "<u4").size, get("ghosts", "<u4").size), (60, 0))
+
+    def test_rigid_box(self):
+        """A uniform box of 2 x 3 x 4 is drawn as that box; modes of no body are needed."""
+        mass, size = 6.0, np.array([2.0, 3.0, 4.0])
+        inertia = mass / 12 * (np.sum(size**2) - size**2)
+        text = PENDULUM.replace("POSITION", "0.0").replace(
+            "mass = 2.0\ncg = [0.0, -0.7, 0.0]", f"mass = {mass}\ncg = [1.0, 2.0, 3.0]\ninertia = {inertia.tolist()}")
+        self.write("box.toml", text)
+        self.bough("run", "box.toml", "-o", "box.h5")
+        (data,) = self.report("box.h5").get_data()
+        xyz = np.frombuffer(base64.b64decode(data["bodies"][0]["drawing"]["xyz"]), "<f4").reshape(-1, 3)[:8]
+        np.testing.assert_allclose(np.ptp(xyz, axis=0), size, rtol=1e-6)
+        np.testing.assert_allclose(xyz.mean(axis=0), [1, 2, 3], rtol=1e-6)
+        self.assertEqual([(h["name"], h["type"], h["axis"]) for h in data["hinges"]], [("pin", "revolute", [0, 0, 1])])
+
     def test_linear_model(self):
         self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.0"))
         self.bough("linearize", "pendulum.toml", "-o", "linear.h5")

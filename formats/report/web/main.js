@@ -2,7 +2,7 @@ import { HistoryView, Run, make_fixed_chart } from "./history.js";
 import { BodeView, ScatterView, make_poles_chart } from "./linear_view.js";
 import { ModesView } from "./modes_view.js";
 import { MotionView } from "./motion_view.js";
-import { el, make_theme_button } from "./page_parts.js";
+import { el, make_theme_button, set_theme } from "./page_parts.js";
 
 // What stands in the place of the static picture: data-view of the element -> an object with `element`.
 const kViews = {
@@ -65,12 +65,16 @@ for (const section of document.querySelectorAll(".chapter")) {
     watcher.observe(place);
   }
 }
-// Printed whole.
+// Printed whole, and light.
+let theme;
 addEventListener("beforeprint", () => {
+  theme = document.documentElement.dataset.theme;
   for (const place of places) {
     if (place.classList.contains("built")) continue;
     watcher.unobserve(place);
     build(place, chapters.get(place), failures);
   }
+  set_theme("light");
 });
+addEventListener("afterprint", () => set_theme(theme));
 document.documentElement.dataset.ready = "true";

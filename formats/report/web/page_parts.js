@@ -60,13 +60,16 @@ const repainters = [];
 // What is to be drawn again when the theme changes.
 export const on_theme = (draw) => repainters.push(draw);
 
+// "light", "dark", or undefined: as the reader's system has it.
+export function set_theme(theme) {
+  if (theme) document.documentElement.dataset.theme = theme;
+  else delete document.documentElement.dataset.theme;
+  for (const draw of repainters) draw();
+}
+
 export function make_theme_button() {
-  const set = (theme) => {
-    document.documentElement.dataset.theme = theme;
-    for (const draw of repainters) draw();
-  };
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => repainters.forEach((draw) => draw()));
-  return make_button("Light / dark", "Change the colours of the page", () => set(is_dark() ? "light" : "dark"));
+  return make_button("Light / dark", "Change the colours of the page", () => set_theme(is_dark() ? "light" : "dark"));
 }
 
 export function save_blob(blob, name) {
