@@ -55,6 +55,29 @@ Eigen::Vector3d find_rigid_node(const records::BodyRecord& body, int id) {
   return Eigen::Vector3d::Zero();
 }
 
+std::string name_type(records::HingeType type) {
+  switch (type) {
+    case records::HingeType::Fixed:
+      return "fixed";
+    case records::HingeType::Revolute:
+      return "revolute";
+    case records::HingeType::Prismatic:
+      return "prismatic";
+    case records::HingeType::Universal:
+      return "universal";
+    case records::HingeType::Cylindrical:
+      return "cylindrical";
+    case records::HingeType::Planar:
+      return "planar";
+    case records::HingeType::Spherical:
+      return "spherical";
+    case records::HingeType::Free:
+      return "free";
+    default:
+      return "";
+  }
+}
+
 void add_scene(const std::string& file, const hdf5::RunInputs& inputs, const ReportRequest& request,
                report::History& history) {
   Diagnostics unused;  // the text was run: what is wrong with it was said then
@@ -89,10 +112,7 @@ void add_scene(const std::string& file, const hdf5::RunInputs& inputs, const Rep
   }
   for (const auto& hinge : spec.hinges) {
     report::SceneHinge drawn{hinge.name, "", -1, -1, hinge.parent_position, Eigen::Vector3d::Zero()};
-    constexpr const char* names[] = {"fixed",       "revolute", "prismatic", "universal",
-                                     "cylindrical", "planar",   "spherical", "free"};
-    const auto type = static_cast<std::size_t>(hinge.type);
-    drawn.type = type < std::size(names) ? names[type] : "";
+    drawn.type = name_type(hinge.type);
     if (hinge.type == records::HingeType::Free) continue;
     if (const auto parent = index.find(hinge.parent); parent != index.end()) {
       drawn.parent = parent->second;

@@ -70,6 +70,8 @@ class Page(ProgramTest):
         caption = b.run("document.querySelector('.statistics caption').textContent")
         self.assertNotIn("whole", caption)
         self.assertNotEqual(b.run(HASH % "[data-view=energy] .curves"), before)
+        # Nothing of the box is left.
+        self.assertEqual(b.run("document.querySelector('.plots .overlay').getContext('2d').getImageData(400, 60, 1, 1).data[3]"), 0)
         self.picture("run-zoomed")
         # The linked cursor shows values in other charts.
         b.mouse("mouseMoved", box["x"] + 400, box["y"] + 90)

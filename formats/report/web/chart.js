@@ -397,6 +397,8 @@ export class Chart {
       }
       if (Math.abs(at.y - from.y) >= 20) this.y_window = [this.unmap_y(Math.max(at.y, from.y)), this.unmap_y(Math.min(at.y, from.y))];
       this.link.set_window([this.unmap_x(Math.min(at.x, from.x)), this.unmap_x(Math.max(at.x, from.x))]);
+      // The box has done its work, and the cursors of before stand elsewhere now.
+      this.link.set_cursor(null, this);
     });
     this.overlay.addEventListener("pointerleave", () => {
       this.tip.hidden = true;
