@@ -51,7 +51,9 @@ export class MotionView {
     this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock), names, help);
     run.link.on("pick", (time) => { this.play(false); this.set_time(time); });
     this.reach = this.find_reach();
-    this.viewer.fit(this.find_box());
+    const box = this.find_box();
+    this.viewer.face(box);
+    this.viewer.fit(box);
     this.set_time(this.first);
   }
 
@@ -149,7 +151,7 @@ export class MotionView {
       for (let i = 0; i < d.points.length; i += 3)
         for (let r = 0; r < 3; ++r) body.world[i + r] = p[r] + R[r][0] * d.points[i] + R[r][1] * d.points[i + 1] + R[r][2] * d.points[i + 2];
       // Boxes of rigid bodies are seen through, after what they may hold.
-      const is_box = d.packed.length === 0;
+      const is_box = d.packed.length === 0 && d.triangles.length > 0;
       (is_box ? boxes : things).push({ alpha: is_box ? 0.4 : 1, points: body.world, size: d.size, triangles: d.triangles, edges: d.edges, ghosts: d.ghosts, color: get_style(k).color, by_level: this.has_colors && eta.length > 0, dots: d.triangles.length === 0 });
       if (this.has_frames) things.push(...make_triad(p, [0, 1, 2].map((c) => R.map((row) => row[c])), 0.06 * size));
     });

@@ -102,6 +102,15 @@ export class Viewer {
     this.draw();
   }
 
+  // Looks across what happens in one plane of the axes.
+  face(box) {
+    const thin = box.low.map((low, i) => box.high[i] - low < 0.05 * box.get_diagonal());
+    if (thin.filter(Boolean).length !== 1) return;
+    if (thin[0]) [this.yaw, this.pitch] = [-0.3, 0.2];
+    if (thin[1]) [this.yaw, this.pitch] = [-Math.PI / 2 - 0.3, 0.2];
+    if (thin[2]) [this.yaw, this.pitch] = [-Math.PI / 2, 1.15];
+  }
+
   get_axes() {
     const c = Math.cos(this.pitch);
     const back = [c * Math.cos(this.yaw), c * Math.sin(this.yaw), Math.sin(this.pitch)];
