@@ -30,6 +30,7 @@ void add_verbs(CLI::App& app, cli::Action& action) {
   cli::add_select(app, action);
   cli::add_export(app, action);
   cli::add_plot(app, action);
+  cli::add_report(app, action);
   cli::add_info(app, action);
   cli::add_init(app, action);
   cli::add_batch(app, action);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <optional>
 
@@ -31,6 +32,7 @@ class ResultsWriter final : public records::ResultSink {
   void begin(const records::ResultsHeader& header) override {
     BOUGH_DEMAND(!header.channels.empty() && header.channels.front().path == "/time" &&
                  header.channels.front().size == 1);
+    began_ = std::chrono::steady_clock::now();
     QuietErrors quiet;
     sample_size_ = 0;
     for (const auto& channel : header.channels) {
@@ -95,6 +97,7 @@ class ResultsWriter final : public records::ResultSink {
     BOUGH_DEMAND(file_.is_open());
     QuietErrors quiet;
     flush();
+    add_wall_time(file_, std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count());
     write_state(file_, completed, reason);
     file_.flush();
     file_.check(close(), "the file cannot be written");
@@ -177,6 +180,7 @@ class ResultsWriter final : public records::ResultSink {
   GrowingFile file_;
   std::optional<double> resume_time_, skip_until_;
   int flush_every_ = 1, sample_size_ = 0, num_buffered_ = 0;
+  std::chrono::steady_clock::time_point began_;
   hsize_t num_written_ = 0, num_events_ = 0;
   bool has_count_ = false;
   std::vector<Column> columns_;

@@ -2,11 +2,17 @@
 
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/writer.hpp"
+#include "formats/hdf5/files.hpp"
 
 namespace bough::hdf5 {
 
+namespace {
+constexpr const char* kFormat = "bough-outcomes";
+constexpr const char* kVersion = "1.0";
+}  // namespace
+
 void write_outcomes(const OutcomeTable& table, const std::string& path) {
-  FileWriter file(path, "bough-outcomes", "1.0");
+  FileWriter file(path, kFormat, kVersion);
   file.write_attribute("/", "campaign", table.name);
   file.write_attribute("/", "fingerprint", table.fingerprint);
   file.write_integers("/case", table.cases, {"number of the case; its folder is case-NNNN", "1"});
@@ -19,6 +25,26 @@ void write_outcomes(const OutcomeTable& table, const std::string& path) {
       file.write_matrix(column.path, column.numbers, {column.description, "of the quantity"});
   }
   file.commit();
+}
+
+OutcomeTable read_outcomes(const std::string& path) {
+  FileReader file(path, kFormat, kVersion);
+  OutcomeTable table;
+  table.name = file.read_attribute("/", "campaign");
+  table.fingerprint = file.read_attribute("/", "fingerprint");
+  table.cases = file.read_integers("/case", -1);
+  for (const auto& object : read_info(path).objects) {
+    OutcomeColumn column{object.path, object.description, {}, {}};
+    if (object.type == "string")
+      column.words = file.read_strings(object.path, -1);
+    else if (object.path != "/case" && object.type.starts_with("float"))
+      column.numbers = read_numbers(path, object.path);
+    else
+      continue;
+    table.columns.push_back(std::move(column));
+  }
+  file.throw_if_errors();
+  return table;
 }
 
 Eigen::MatrixXd read_numbers(const std::string& path, const std::string& dataset) {

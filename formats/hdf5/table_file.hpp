@@ -24,6 +24,8 @@ struct OutcomeTable {
 
 /// Throws ComputationError "hdf5.write".
 void write_outcomes(const OutcomeTable& table, const std::string& path);
+/// Columns in the order of their paths. Throws InputError "hdf5.cannot-open", "hdf5.wrong-format", "hdf5.missing".
+OutcomeTable read_outcomes(const std::string& path);
 
 /// A dataset of numbers, reals or integers, of any file and shape: rows along its first dimension, the rest in C order.
 /// A single number is 1 x 1. Throws InputError "hdf5.cannot-open", "hdf5.missing", "hdf5.type".

@@ -10,6 +10,8 @@ records::BodySpec read_body_spec(const std::string& path, Diagnostics& diagnosti
 /// The same of the text of the file `path`, which is not opened.
 records::BodySpec read_body_spec_text(const std::string& text, const std::string& path, Diagnostics& diagnostics);
 records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagnostics);
+/// The same of the text of the file `path`, which is not opened; tables that it names are.
+records::SystemSpec read_system_spec_text(const std::string& text, const std::string& path, Diagnostics& diagnostics);
 /// Reports "toml.changed" for each difference of two texts of a system file that a run cannot go on with: all but its
 /// end, its samples and its limits. `path` names the second.
 void check_same_system(const std::string& before, const std::string& after, const std::string& path,

@@ -219,8 +219,15 @@ records::SimulationRecord read_simulation(const Fields& table, Diagnostics& diag
 records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagnostics) {
   records::SystemSpec spec;
   spec.file = path;
+  return read_text(path, spec.text, diagnostics) ? read_system_spec_text(spec.text, path, diagnostics) : spec;
+}
+
+records::SystemSpec read_system_spec_text(const std::string& text, const std::string& path, Diagnostics& diagnostics) {
+  records::SystemSpec spec;
+  spec.file = path;
+  spec.text = text;
   Value root;
-  if (!read_text(path, spec.text, diagnostics) || !parse_toml(spec.text, path, root, diagnostics)) return spec;
+  if (!parse_toml(spec.text, path, root, diagnostics)) return spec;
   check_schema(root, get_system_schema(), path, diagnostics);
 
   const Fields fields(root, path);

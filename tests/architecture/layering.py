@@ -39,7 +39,7 @@ OUTSIDE = [
     (r"^(hdf5|H5)", ["formats/hdf5", "cli/common/versions.cpp"]),
     (r"^toml\+\+", ["formats/toml"]),
     (r"^matio", ["formats/matrices"]),
-    (r"^nlohmann", ["formats/toml", "cli"]),
+    (r"^nlohmann", ["formats/toml", "formats/report", "cli"]),
     (r"^CLI/", ["cli"]),
     (r"^fmt/", ["cli", "formats"]),
     (r"^(sundials|cvode|arkode|nvector|sunlinsol|sunmatrix|sunnonlinsol)", ["solver/integrate", "cli/common/versions.cpp"]),

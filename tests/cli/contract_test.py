@@ -303,7 +303,7 @@ class Outputs(ProgramTest):
         return [["modes", "panel.bdf"], ["static", "panel.bdf"], ["matrices", "panel.bdf"],
                 ["matrices", "panel.bdf", "--to", "op4"], ["reduce", "panel.bdf", "--modes", 3], ["flx", "panel.h5"],
                 ["flx", "--read", "panel.FLX"], ["compare", "panel.h5"], ["run", "pendulum.toml"],
-                ["plot", "pendulum.h5", "--sensor", "tip"], ["export", "pendulum.h5", "--to", "csv"],
+                ["plot", "pendulum.h5", "--sensor", "tip"], ["export", "pendulum.h5", "--to", "csv"], ["report", "pendulum.h5"],
                 ["export", "panel.bdf", "--to", "bdf"]] + \
                [["export", "panel.h5", "--to", kind] for kind in ["csv", "vtu", "mat", "op4", "uff", "sid", "mbdyn"]]
 

@@ -73,7 +73,7 @@ class Runs(ProgramTest):
         self.stop(self.start_long())
         for words in (["export", "r.h5", "--to", "csv", "-o", "r.csv"], ["export", "r.h5", "--to", "mat", "-o", "r.mat"],
                       ["export", "r.h5", "--to", "uff", "-o", "r.uff"],
-                      ["plot", "r.h5", "--sensor", "tip_deflection:y", "-o", "r.svg"]):
+                      ["plot", "r.h5", "--sensor", "tip_deflection:y", "-o", "r.svg"], ["report", "r.h5", "-o", "r.html"]):
             said = self.bough(*words).stderr
             self.assertIn("r.h5: warning: the run did not complete; these are its results up to t = ", said)
             self.assertIn("[cli.incomplete-run]", said)

@@ -36,8 +36,10 @@ class HostileFiles(ProgramTest):
 
     READ_RESULTS = [["info", "r.h5"], ["check", "r.h5"], ["export", "r.h5", "--to", "csv", "-o", "x.csv"],
                     ["plot", "r.h5", "--sensor", "tip_deflection:y", "-o", "x.svg"],
+                    ["report", "r.h5", "-o", "x.html"],
                     ["run", "spinup.toml", "-o", "r.h5", "--resume"]]
     READ_BODY = [["info", "boom.h5"], ["check", "boom.h5"], ["flx", "boom.h5", "-o", "x.FLX"], ["compare", "boom.h5"],
+                 ["report", "boom.h5", "-o", "x.html"],
                  ["run", "spinup.toml", "-o", "new.h5"]]
 
     def get_bytes(self, name):
@@ -74,7 +76,7 @@ class HostileFiles(ProgramTest):
             for state in ("checkpoint/state", "checkpoint/previous/state"):
                 if state in f:
                     f[state].attrs["checksum"] = numpy.arange(8000)
-        self.refused(self.READ_RESULTS[4:], "hdf5.damaged")
+        self.refused(self.READ_RESULTS[-1:], "hdf5.damaged")
 
     def test_dataset_of_itself(self):
         layout = h5py.VirtualLayout(shape=(100,), dtype="f8")
@@ -119,7 +121,7 @@ class HostileFiles(ProgramTest):
             for k in range(8):
                 f[f"energy/hard{k}"] = f["/"]
                 f[f"energy/soft{k}"] = h5py.SoftLink("/")
-        for words in self.READ_RESULTS[:4]:
+        for words in self.READ_RESULTS[:5]:
             self.assertEqual(self.read(words).returncode, 0, words)
         with h5py.File(self.path("r.h5"), "a") as f:
             f.create_group("/".join("d" * 200))

@@ -12,7 +12,7 @@ class Usage(ProgramTest):
         text = self.bough("--help").stdout
         for verb in VERBS:
             self.assertRegex(text, rf"(?m)^  {verb}\b")
-        for verb in ["report", "edit"]:
+        for verb in ["edit"]:
             self.assertNotRegex(text, rf"(?m)^  {verb}\b")
 
     def test_each_verb_explains_itself_with_an_example(self):

@@ -91,6 +91,23 @@ void write_energy_error(GrowingFile& file, double worst) {
              "the energy error cannot be written");
 }
 
+void add_wall_time(GrowingFile& file, double seconds) {
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const bool is_there = H5Aexists(file.get(), kWallTime) > 0;
+  const Handle attribute(is_there
+                             ? H5Aopen(file.get(), kWallTime, H5P_DEFAULT)
+                             : H5Acreate2(file.get(), kWallTime, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose);
+  double before = 0;
+  if (is_there) {
+    const Handle found(H5Aget_space(attribute.get()), H5Sclose);
+    if (H5Sget_simple_extent_npoints(found.get()) == 1) H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &before);
+  }
+  const double sum = before + seconds;
+  file.check(attribute.is_valid() && H5Awrite(attribute.get(), H5T_NATIVE_DOUBLE, &sum) >= 0,
+             "the wall time cannot be written");
+}
+
 void write_state(GrowingFile& file, bool completed, const std::string& reason) {
   errno = 0;
   file.write_integer(file.get(), "completed", completed ? 1 : 0, H5T_STD_I32LE);

@@ -15,6 +15,8 @@ void write_settings(GrowingFile& file, const records::ResultsHeader& header);
 void write_resumed(GrowingFile& file, const records::ResultsHeader& header, double time);
 /// @energy_error of /energy.
 void write_energy_error(GrowingFile& file, double worst);
+/// Adds to the root's @wall_time, seconds that the run took; a resumed run goes on counting.
+void add_wall_time(GrowingFile& file, double seconds);
 /// Whether the run has come to its end, and why it ended.
 void write_state(GrowingFile& file, bool completed, const std::string& reason);
 

@@ -15,6 +15,8 @@ inline constexpr const char* kNumSamples = "num_samples";
 
 /// Attribute of a checkpoint: events before it; beside kNumSamples.
 inline constexpr const char* kNumEvents = "num_events";
+/// Root attribute: seconds from the start of the run to its end, all its parts.
+inline constexpr const char* kWallTime = "wall_time";
 /// Attribute of /energy.
 inline constexpr const char* kEnergyError = "energy_error";
 

@@ -1,0 +1,28 @@
+#pragma once
+/// \file Chapters of the report page, one from each file.
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.hpp"
+#include "formats/report/page.hpp"
+
+namespace bough::cli {
+
+struct ReportRequest {
+  std::vector<std::string> files;     ///< all of the call: bodies of a run are looked for among them
+  std::vector<std::string> channels;  ///< of results, as for `plot`; empty: all
+};
+
+/// Of an HDF5 file of Bough or the JSON that `select` printed. Throws InputError "cli.no-report" for another kind.
+report::Chapter make_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics);
+
+/// Name and value of what a file says of itself: format, version of Bough, sources with their SHA-256.
+std::vector<std::pair<std::string, std::string>> list_facts(const std::string& file);
+/// The settings of a run.
+std::vector<std::pair<std::string, std::string>> list_settings(const std::string& file);
+
+report::Chapter make_body_chapter(const std::string& file);
+report::Chapter make_modes_chapter(const std::string& file);
+report::Chapter make_results_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics);
+
+}  // namespace bough::cli

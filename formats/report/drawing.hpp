@@ -1,0 +1,38 @@
+#pragma once
+/// \file What the viewer of the page draws of a body: its surface, its lines, its shapes.
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "formats/records/flex_body.hpp"
+
+namespace bough::report {
+
+struct Drawing {
+  std::vector<int> id;                          ///< node of each point; empty for a rigid body
+  Eigen::MatrixXd xyz;                          ///< k x 3
+  std::vector<std::uint32_t> triangles, edges;  ///< three and two points each; edges bound the elements
+  std::vector<std::uint32_t> ghosts;            ///< edges of elements of which not every grid has a shape
+  std::vector<Eigen::MatrixXd> shapes;          ///< [mode] k x 3; may be fewer than the modes (num_dropped)
+  int num_dropped = 0;                          ///< modes whose shapes would make the page too large
+
+  /// Index of a node among the points, -1 without.
+  int find(int node) const;
+};
+
+/// Faces that two solids share are left out. phi: [node] 6 x n; grids that are no nodes have no shape.
+Drawing make_drawing(const records::BodyMesh& mesh, const std::vector<int>& node_id, const Eigen::MatrixXd& node_xyz,
+                     const std::vector<Eigen::MatrixXd>& phi);
+/// A body's own: of all grids with `--full`, else of its output nodes.
+Drawing make_drawing(const records::FlexBody& body);
+
+/// The box of uniform density with this mass and inertia about cg, and a line from cg to each node. A body whose
+/// inertia no box has (a point, a line) gets what is left of one.
+Drawing make_box(double mass, const Eigen::Vector3d& cg, const Eigen::Matrix3d& inertia,
+                 const std::vector<Eigen::Vector3d>& nodes);
+
+/// As JSON text for the script (web/drawing.js).
+std::string to_json_text(const Drawing& drawing);
+
+}  // namespace bough::report

@@ -1,0 +1,82 @@
+#include "formats/report/html.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/diagnostic.hpp"
+#include "base/xml_text.hpp"
+
+namespace bough::report {
+
+std::string format_value(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value == 0 ? 0.0 : value, digits) : "–";
+}
+
+std::string format_percent(double share) { return std::isfinite(share) ? fmt::format("{:.2f}", 100 * share) : "–"; }
+
+HtmlTable::HtmlTable(std::string caption, std::vector<Column> columns)
+    : caption_(std::move(caption)), columns_(std::move(columns)) {}
+
+void HtmlTable::add_row(std::vector<std::string> cells) {
+  BOUGH_DEMAND(cells.size() == columns_.size());
+  rows_.push_back(std::move(cells));
+}
+
+std::string HtmlTable::to_html(std::size_t most) const {
+  const auto open = [&](std::size_t i, const char* tag) {
+    return std::string("<") + tag + (columns_[i].is_text ? " class=\"text\">" : ">");
+  };
+  std::string html = "<div class=\"scroll\"><table><caption>" + escape_xml(caption_) + "</caption>\n<thead><tr>";
+  for (std::size_t i = 0; i < columns_.size(); ++i) html += open(i, "th") + escape_xml(columns_[i].heading) + "</th>";
+  html += "</tr></thead>\n<tbody>\n";
+  for (std::size_t r = 0; r < std::min(most, rows_.size()); ++r) {
+    html += "<tr>";
+    for (std::size_t i = 0; i < columns_.size(); ++i) html += open(i, "td") + escape_xml(rows_[r][i]) + "</td>";
+    html += "</tr>\n";
+  }
+  html += "</tbody></table></div>\n";
+  if (rows_.size() > most) html += make_text(fmt::format("… and {} rows more", rows_.size() - most), "note");
+  return html;
+}
+
+std::string make_figure(const Plot& plot, const std::string& live) {
+  Plot thin = plot;
+  for (auto& curve : thin.curves) curve = thin_curve(curve, 600);
+  return std::string("<figure") + (live.empty() ? "" : " class=\"live\" data-view=\"" + escape_xml(live) + "\"") +
+         ">\n" + draw_svg(thin) + "</figure>\n";
+}
+
+std::string make_place(const std::string& live, const std::string& without) {
+  return "<figure class=\"live\" data-view=\"" + escape_xml(live) + "\"><p class=\"note\">" + escape_xml(without) +
+         "</p></figure>\n";
+}
+
+std::string make_text(const std::string& text, const std::string& css_class) {
+  return std::string("<p") + (css_class.empty() ? "" : " class=\"" + css_class + "\"") + ">" + escape_xml(text) +
+         "</p>\n";
+}
+
+Curve thin_curve(const Curve& curve, Eigen::Index most) {
+  const Eigen::Index n = curve.x.size(), bins = most / 2;
+  if (n <= most || curve.markers_only) return curve;
+  std::vector<Eigen::Index> keep{0};
+  for (Eigen::Index b = 0; b < bins; ++b) {
+    const Eigen::Index first = b * n / bins, last = (b + 1) * n / bins;
+    Eigen::Index low = first, high = first;
+    for (Eigen::Index i = first; i < last; ++i) {
+      if (curve.y[i] < curve.y[low]) low = i;
+      if (curve.y[i] > curve.y[high]) high = i;
+      if (!std::isfinite(curve.y[i])) low = high = i;  // the gap stays
+    }
+    for (const Eigen::Index i : {std::min(low, high), std::max(low, high)})
+      if (i > keep.back()) keep.push_back(i);
+  }
+  if (keep.back() != n - 1) keep.push_back(n - 1);
+  Curve thin = curve;
+  thin.x = curve.x(keep);
+  thin.y = curve.y(keep);
+  return thin;
+}
+
+}  // namespace bough::report

@@ -1,0 +1,44 @@
+#pragma once
+/// \file Small pieces of HTML: numbers, tables, figures. Text that comes from files is escaped here.
+#include <string>
+#include <vector>
+
+#include "formats/report/svg_plot.hpp"
+
+namespace bough::report {
+
+/// Six digits, "–" where it is not finite.
+std::string format_value(double value, int digits = 6);
+/// "27.3 %".
+std::string format_percent(double share);
+
+/// Cells are plain text; columns of numbers are set to the right by `is_text` = false.
+class HtmlTable {
+ public:
+  struct Column {
+    std::string heading;
+    bool is_text = false;
+  };
+  HtmlTable(std::string caption, std::vector<Column> columns);
+  void add_row(std::vector<std::string> cells);
+  bool empty() const { return rows_.empty(); }
+  /// Of more than `most` rows the others are left out, which is said.
+  std::string to_html(std::size_t most = 2000) const;
+
+ private:
+  std::string caption_;
+  std::vector<Column> columns_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// A picture for readers without a script; `live` names what the script puts in its place, empty: nothing.
+std::string make_figure(const Plot& plot, const std::string& live = {});
+/// A place that only the script fills.
+std::string make_place(const std::string& live, const std::string& without);
+/// <p> of plain text.
+std::string make_text(const std::string& text, const std::string& css_class = {});
+
+/// At most about `most` points: of each bin the extremes, so that peaks stay.
+Curve thin_curve(const Curve& curve, Eigen::Index most);
+
+}  // namespace bough::report

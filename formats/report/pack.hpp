@@ -1,0 +1,30 @@
+#pragma once
+/// \file Numbers as text for the report page: base64 that its script unpacks into typed arrays (web/unpack.js).
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+namespace bough::report {
+
+std::string encode_base64(const void* data, std::size_t size);
+
+/// A column of samples in 24 bits each, four characters a sample: value = low + code · step, big-endian codes; code
+/// kMissing stands for what is not finite. The error is at most half a step, the range / 33 554 426.
+struct PackedColumn {
+  static constexpr std::uint32_t kMissing = 0xFFFFFF;
+  double low = 0, step = 0;
+  std::string data;  ///< empty where every sample is `low`
+};
+PackedColumn pack_column(const Eigen::Ref<const Eigen::VectorXd>& values);
+
+/// Little-endian 32-bit floats, 32-bit unsigned integers, 64-bit floats.
+std::string pack_floats(const Eigen::Ref<const Eigen::VectorXd>& values);
+std::string pack_indices(const std::vector<std::uint32_t>& values);
+std::string pack_doubles(const Eigen::Ref<const Eigen::VectorXd>& values);
+/// 16-bit integers that stand for values times 32767 / largest.
+std::string pack_shorts(const Eigen::Ref<const Eigen::VectorXd>& values, double largest);
+
+}  // namespace bough::report

@@ -1,0 +1,453 @@
+import { el, get_css, get_style, make_button, on_theme, save_blob } from "./page_parts.js";
+import { find_index, find_nearest, format_number, make_log_ticks, make_ticks } from "./numbers.js";
+
+// Charts that share their window of x and their cursor.
+export class Link {
+  constructor() {
+    this.charts = [];
+    this.window = null;  // [low, high], or null: all
+    this.listeners = { window: [], cursor: [], pick: [] };
+  }
+  on(event, act) {
+    this.listeners[event].push(act);
+  }
+  set_window(window) {
+    this.window = window;
+    for (const chart of this.charts) chart.draw();
+    for (const act of this.listeners.window) act(window);
+  }
+  set_cursor(x, from) {
+    for (const chart of this.charts) chart.draw_cursor(x, chart === from);
+    for (const act of this.listeners.cursor) act(x, from);
+  }
+  pick(x) {
+    for (const act of this.listeners.pick) act(x);
+  }
+}
+
+const kMargin = { left: 76, right: 14, top: 10, bottom: 42 };
+
+// Curves and points on a canvas. options: series [{ name, x, y, points, tip(i) }] (x ascending for curves), x_label,
+// y_label, x_log, y_log, marks [{ x, label }], link, equal (one scale for both axes), height.
+export class Chart {
+  constructor(options) {
+    Object.assign(this, { series: [], marks: [], x_log: false, y_log: false, equal: false, height: 280 }, options);
+    this.link ??= new Link();
+    this.link.charts.push(this);
+    this.hidden = new Set();
+    this.y_window = null;
+    this.canvas = el("canvas", { class: "curves" });
+    this.overlay = el("canvas", { class: "overlay", tabindex: "0", role: "img", "aria-label": options.title ?? options.y_label });
+    this.tip = el("div", { class: "tip", hidden: true });
+    this.legend = el("div", { class: "legend" });
+    this.stage = el("div", { class: "stage" }, this.canvas, this.overlay, this.tip);
+    this.element = el("div", { class: "chart" }, options.title ? el("h4", {}, options.title) : "", this.legend, this.stage);
+    this.make_legend();
+    this.listen();
+    on_theme(() => this.element.isConnected && this.draw());
+    new ResizeObserver(() => this.draw()).observe(this.stage);
+  }
+
+  set_series(series) {
+    this.series = series;
+    this.hidden.clear();
+    this.make_legend();
+    this.draw();
+  }
+
+  make_legend() {
+    this.values = [];
+    this.legend.replaceChildren();
+    this.series.forEach((s, i) => {
+      const value = el("span", { class: "value" });
+      const entry = el("button", { type: "button", "aria-pressed": "true", title: "Show or hide" }, el("canvas", { width: 28, height: 10 }), " " + (s.name ?? ""), value);
+      entry.addEventListener("click", () => {
+        if (!this.hidden.delete(i)) this.hidden.add(i);
+        entry.setAttribute("aria-pressed", String(!this.hidden.has(i)));
+        this.draw();
+      });
+      this.values.push(value);
+      this.legend.append(entry);
+    });
+    this.legend.append(make_button("PNG", "Save this picture", () => this.save()));
+  }
+
+  // x and y in the coordinates of the axes: logarithms where these are.
+  to_x(v) {
+    return this.x_log ? Math.log10(v) : v;
+  }
+  to_y(v) {
+    return this.y_log ? Math.log10(Math.abs(v)) : v;
+  }
+  get_visible() {
+    return this.series.map((s, i) => ({ ...s, index: i })).filter((s) => !this.hidden.has(s.index));
+  }
+
+  calc_ranges() {
+    const visible = this.get_visible();
+    let [x0, x1] = [Infinity, -Infinity];
+    for (const s of visible) {
+      const ends = s.points || this.x_log ? s.x : [s.x[0], s.x[s.x.length - 1]];
+      for (const v of ends) {
+        const x = this.to_x(v);
+        if (!Number.isFinite(x)) continue;
+        x0 = Math.min(x0, x);
+        x1 = Math.max(x1, x);
+      }
+    }
+    if (!(x0 <= x1)) [x0, x1] = [0, 1];
+    const has_points = visible.some((s) => s.points);
+    if (x0 === x1 || has_points) {
+      const pad = 0.05 * (x1 - x0) || 0.1 * Math.abs(x0) || 1;
+      [x0, x1] = [x0 - pad, x1 + pad];
+    }
+    if (this.link.window) [x0, x1] = this.link.window;
+    let [y0, y1] = [Infinity, -Infinity];
+    for (const s of visible) {
+      const [from, to] = s.points ? [0, s.x.length] : this.find_range(s, x0, x1);
+      for (let i = from; i < to; ++i) {
+        if (s.points && this.link.window && (this.to_x(s.x[i]) < x0 || this.to_x(s.x[i]) > x1)) continue;
+        const y = this.to_y(s.y[i]);
+        if (y < y0 && y > -Infinity) y0 = y;
+        if (y > y1 && y < Infinity) y1 = y;
+      }
+    }
+    if (!(y0 <= y1)) [y0, y1] = [0, 1];
+    if (this.y_log) y0 = Math.max(y0, y1 - 12);
+    const pad = 0.05 * (y1 - y0) || 0.1 * Math.abs(y0) || 1;
+    [y0, y1] = this.y_window ?? [y0 - pad, y1 + pad];
+    return { x0, x1, y0, y1 };
+  }
+
+  // Samples of a curve in the window, and one to each side.
+  find_range(s, x0, x1) {
+    const low = this.x_log ? 10 ** x0 : x0, high = this.x_log ? 10 ** x1 : x1;
+    return [Math.max(0, find_index(s.x, low) - 1), Math.min(s.x.length, find_index(s.x, high) + 1)];
+  }
+
+  draw() {
+    const width = this.stage.clientWidth;
+    if (width < 50) return;
+    const begin = performance.now();
+    const scale = devicePixelRatio || 1;
+    for (const canvas of [this.canvas, this.overlay]) {
+      if (canvas.width !== Math.round(width * scale) || canvas.height !== Math.round(this.height * scale)) {
+        canvas.width = Math.round(width * scale);
+        canvas.height = Math.round(this.height * scale);
+        canvas.style.width = width + "px";
+        canvas.style.height = this.height + "px";
+      }
+    }
+    this.stage.style.height = this.height + "px";
+    const frame = { left: kMargin.left, top: kMargin.top, width: width - kMargin.left - kMargin.right, height: this.height - kMargin.top - kMargin.bottom };
+    this.frame = frame;
+    this.range = this.calc_ranges();
+    if (this.equal && !this.y_window && !this.link.window) this.equalize();
+    const g = this.canvas.getContext("2d");
+    g.setTransform(scale, 0, 0, scale, 0, 0);
+    g.clearRect(0, 0, width, this.height);
+    this.draw_axes(g);
+    g.save();
+    g.beginPath();
+    g.rect(frame.left, frame.top, frame.width, frame.height);
+    g.clip();
+    this.draw_marks(g);
+    for (const s of this.get_visible()) s.points ? this.draw_points(g, s) : this.draw_curve(g, s);
+    g.restore();
+    this.draw_legend_strokes();
+    // What the tests hold against the time a zoom may take.
+    this.canvas.dataset.ms = (performance.now() - begin).toFixed(1);
+  }
+
+  equalize() {
+    const r = this.range, f = this.frame;
+    const unit = Math.max((r.x1 - r.x0) / f.width, (r.y1 - r.y0) / f.height);
+    const grow = (low, high, pixels) => [(low + high - unit * pixels) / 2, (low + high + unit * pixels) / 2];
+    [r.x0, r.x1] = grow(r.x0, r.x1, f.width);
+    [r.y0, r.y1] = grow(r.y0, r.y1, f.height);
+  }
+
+  map_x(x) {
+    return this.frame.left + ((x - this.range.x0) / (this.range.x1 - this.range.x0)) * this.frame.width;
+  }
+  map_y(y) {
+    return this.frame.top + ((this.range.y1 - y) / (this.range.y1 - this.range.y0)) * this.frame.height;
+  }
+
+  draw_axes(g) {
+    const { frame: f, range: r } = this;
+    const text = get_css("--text"), grid = get_css("--grid");
+    const xs = (this.x_log ? make_log_ticks : make_ticks)(r.x0, r.x1, Math.max(3, f.width / 90));
+    const ys = (this.y_log ? make_log_ticks : make_ticks)(r.y0, r.y1, Math.max(3, f.height / 45));
+    g.font = "12px " + get_css("--font");
+    g.lineWidth = 1;
+    g.strokeStyle = grid;
+    g.fillStyle = text;
+    g.textAlign = "center";
+    for (const t of xs) {
+      const x = Math.round(this.map_x(t.value)) + 0.5;
+      g.beginPath();
+      g.moveTo(x, f.top);
+      g.lineTo(x, f.top + f.height);
+      g.stroke();
+      g.fillText(t.label, x, f.top + f.height + 16);
+    }
+    g.textAlign = "right";
+    for (const t of ys) {
+      const y = Math.round(this.map_y(t.value)) + 0.5;
+      g.beginPath();
+      g.moveTo(f.left, y);
+      g.lineTo(f.left + f.width, y);
+      g.stroke();
+      g.fillText(t.label, f.left - 6, y + 4);
+    }
+    g.strokeStyle = get_css("--line");
+    if (!this.y_log && r.y0 < 0 && r.y1 > 0) {
+      g.beginPath();
+      g.moveTo(f.left, this.map_y(0));
+      g.lineTo(f.left + f.width, this.map_y(0));
+      g.stroke();
+    }
+    g.strokeRect(f.left + 0.5, f.top + 0.5, f.width, f.height);
+    g.textAlign = "center";
+    g.fillText(this.x_label ?? "", f.left + f.width / 2, f.top + f.height + 35);
+    g.save();
+    g.translate(13, f.top + f.height / 2);
+    g.rotate(-Math.PI / 2);
+    g.fillText(this.y_label ?? "", 0, 0, f.height + 40);
+    g.restore();
+  }
+
+  draw_marks(g) {
+    g.save();
+    g.strokeStyle = get_css("--mark");
+    g.fillStyle = get_css("--mark");
+    g.setLineDash([3, 3]);
+    g.font = "11px " + get_css("--font");
+    g.textAlign = "left";
+    let free = -Infinity;
+    for (const mark of this.marks) {
+      const x = this.map_x(this.to_x(mark.x));
+      if (!(x >= this.frame.left && x <= this.frame.left + this.frame.width)) continue;
+      g.beginPath();
+      g.moveTo(x, this.frame.top);
+      g.lineTo(x, this.frame.top + this.frame.height);
+      g.stroke();
+      if (x < free) continue;
+      const label = mark.label.length > 40 ? mark.label.slice(0, 39) + "…" : mark.label;
+      g.fillText(label, x + 3, this.frame.top + 11);
+      free = x + 6 + g.measureText(label).width;
+    }
+    g.restore();
+  }
+
+  // Of more samples than pixels the least and the largest of each column are joined: peaks stay.
+  draw_curve(g, s) {
+    const style = get_style(s.style ?? s.index);
+    g.strokeStyle = style.color;
+    g.setLineDash(style.dash);
+    g.lineWidth = 1.6;
+    g.lineJoin = "round";
+    g.beginPath();
+    const [from, to] = this.find_range(s, this.range.x0, this.range.x1);
+    let is_down = false;
+    const put = (x, y) => {
+      if (!Number.isFinite(y)) is_down = false;
+      else if (is_down) g.lineTo(x, y);
+      else {
+        g.moveTo(x, y);
+        is_down = true;
+      }
+    };
+    if (to - from <= 3 * this.frame.width) {
+      for (let i = from; i < to; ++i) put(this.map_x(this.to_x(s.x[i])), this.map_y(this.to_y(s.y[i])));
+    } else {
+      let i = from;
+      while (i < to) {
+        const column = Math.floor(this.map_x(this.to_x(s.x[i])));
+        let low = Infinity, high = -Infinity, first = NaN, last = NaN;
+        for (; i < to && Math.floor(this.map_x(this.to_x(s.x[i]))) === column; ++i) {
+          const y = this.to_y(s.y[i]);
+          if (!Number.isFinite(y)) continue;
+          if (Number.isNaN(first)) first = y;
+          last = y;
+          if (y < low) low = y;
+          if (y > high) high = y;
+        }
+        put(column, this.map_y(first));
+        if (low < high) {
+          put(column, this.map_y(low));
+          put(column, this.map_y(high));
+          put(column, this.map_y(last));
+        }
+      }
+    }
+    g.stroke();
+    g.setLineDash([]);
+  }
+
+  draw_points(g, s) {
+    const style = get_style(s.style ?? s.index);
+    g.strokeStyle = style.color;
+    g.lineWidth = 1.8;
+    for (let i = 0; i < s.x.length; ++i) {
+      const x = this.map_x(this.to_x(s.x[i])), y = this.map_y(this.to_y(s.y[i]));
+      if (!Number.isFinite(x + y)) continue;
+      g.beginPath();
+      if (s.points === "cross") {
+        g.moveTo(x - 4, y - 4);
+        g.lineTo(x + 4, y + 4);
+        g.moveTo(x - 4, y + 4);
+        g.lineTo(x + 4, y - 4);
+      } else g.arc(x, y, 4, 0, 2 * Math.PI);
+      g.stroke();
+    }
+  }
+
+  draw_legend_strokes() {
+    this.legend.querySelectorAll("canvas").forEach((canvas, i) => {
+      const g = canvas.getContext("2d"), style = get_style(this.series[i].style ?? i);
+      g.clearRect(0, 0, 28, 10);
+      g.strokeStyle = style.color;
+      g.lineWidth = 2;
+      g.setLineDash(style.dash);
+      g.beginPath();
+      if (this.series[i].points) g.arc(14, 5, 3.5, 0, 2 * Math.PI);
+      else {
+        g.moveTo(0, 5);
+        g.lineTo(28, 5);
+      }
+      g.stroke();
+    });
+  }
+
+  // x in units of the axis's quantity; null: none.
+  draw_cursor(x, is_mine) {
+    const scale = devicePixelRatio || 1;
+    const g = this.overlay.getContext("2d");
+    g.setTransform(scale, 0, 0, scale, 0, 0);
+    g.clearRect(0, 0, this.overlay.width, this.overlay.height);
+    if (!this.frame || x === null || this.series.some((s) => s.points)) return;
+    const px = this.map_x(this.to_x(x));
+    if (px < this.frame.left || px > this.frame.left + this.frame.width) return;
+    g.strokeStyle = get_css("--text");
+    g.lineWidth = 1;
+    g.beginPath();
+    g.moveTo(px, this.frame.top);
+    g.lineTo(px, this.frame.top + this.frame.height);
+    g.stroke();
+    for (const s of this.get_visible()) {
+      if (s.x.length === 0) continue;
+      const i = find_nearest(s.x, x);
+      this.values[s.index].textContent = " " + format_number(s.y[i], 5);
+      g.fillStyle = get_style(s.style ?? s.index).color;
+      g.beginPath();
+      g.arc(this.map_x(this.to_x(s.x[i])), this.map_y(this.to_y(s.y[i])), 3, 0, 2 * Math.PI);
+      g.fill();
+    }
+    if (is_mine) {
+      g.fillStyle = get_css("--text");
+      g.font = "12px " + get_css("--font");
+      g.textAlign = px > this.frame.left + this.frame.width - 90 ? "right" : "left";
+      g.fillText(format_number(x), px + (g.textAlign === "left" ? 5 : -5), this.frame.top + this.frame.height - 6);
+    }
+  }
+
+  draw_box(a, b) {
+    this.draw_cursor(null);
+    const g = this.overlay.getContext("2d");
+    g.fillStyle = get_css("--select");
+    const is_band = Math.abs(a.y - b.y) < 20;
+    g.fillRect(Math.min(a.x, b.x), is_band ? this.frame.top : Math.min(a.y, b.y), Math.abs(a.x - b.x), is_band ? this.frame.height : Math.abs(a.y - b.y));
+  }
+
+  unmap_x(px) {
+    return this.range.x0 + ((px - this.frame.left) / this.frame.width) * (this.range.x1 - this.range.x0);
+  }
+  unmap_y(py) {
+    return this.range.y1 - ((py - this.frame.top) / this.frame.height) * (this.range.y1 - this.range.y0);
+  }
+
+  listen() {
+    const place = (event) => {
+      const box = this.overlay.getBoundingClientRect();
+      return { x: event.clientX - box.left, y: event.clientY - box.top };
+    };
+    let start = null;
+    this.overlay.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0 || !this.frame) return;
+      start = place(event);
+      this.overlay.setPointerCapture(event.pointerId);
+    });
+    this.overlay.addEventListener("pointermove", (event) => {
+      const at = place(event);
+      if (!this.frame) return;
+      if (start && Math.abs(at.x - start.x) > 4) return this.draw_box(start, at);
+      const x = this.unmap_x(at.x);
+      this.link.set_cursor(this.x_log ? 10 ** x : x, this);
+      this.show_tip(at);
+    });
+    this.overlay.addEventListener("pointerup", (event) => {
+      const at = place(event), from = start;
+      start = null;
+      if (!from) return;
+      if (Math.abs(at.x - from.x) < 5) {
+        const x = this.unmap_x(at.x);
+        return this.link.pick(this.x_log ? 10 ** x : x);
+      }
+      if (Math.abs(at.y - from.y) >= 20) this.y_window = [this.unmap_y(Math.max(at.y, from.y)), this.unmap_y(Math.min(at.y, from.y))];
+      this.link.set_window([this.unmap_x(Math.min(at.x, from.x)), this.unmap_x(Math.max(at.x, from.x))]);
+      // The box has done its work, and the cursors of before stand elsewhere now.
+      this.link.set_cursor(null, this);
+    });
+    this.overlay.addEventListener("pointerleave", () => {
+      this.tip.hidden = true;
+      if (!start) this.link.set_cursor(null, this);
+    });
+    this.overlay.addEventListener("dblclick", () => this.reset());
+    this.overlay.addEventListener("keydown", (event) => {
+      const act = { "+": () => this.zoom(0.5), "-": () => this.zoom(2), 0: () => this.reset(), ArrowLeft: () => this.shift(-0.2), ArrowRight: () => this.shift(0.2) }[event.key];
+      if (!act) return;
+      event.preventDefault();
+      act();
+    });
+  }
+
+  zoom(factor) {
+    const middle = (this.range.x0 + this.range.x1) / 2, half = (factor * (this.range.x1 - this.range.x0)) / 2;
+    this.link.set_window([middle - half, middle + half]);
+  }
+  shift(share) {
+    const by = share * (this.range.x1 - this.range.x0);
+    this.link.set_window([this.range.x0 + by, this.range.x1 + by]);
+  }
+  reset() {
+    for (const chart of this.link.charts) chart.y_window = null;
+    this.link.set_window(null);
+  }
+
+  // Of points: what the nearest one is.
+  show_tip(at) {
+    let best = 12, text = "";
+    for (const s of this.get_visible()) {
+      if (!s.points || !s.tip) continue;
+      for (let i = 0; i < s.x.length; ++i) {
+        const distance = Math.hypot(this.map_x(this.to_x(s.x[i])) - at.x, this.map_y(this.to_y(s.y[i])) - at.y);
+        if (distance < best) [best, text] = [distance, s.tip(i)];
+      }
+    }
+    this.tip.hidden = text === "";
+    this.tip.textContent = text;
+    this.tip.style.left = Math.min(at.x + 12, this.stage.clientWidth - 200) + "px";
+    this.tip.style.top = at.y + 12 + "px";
+  }
+
+  save() {
+    const sheet = el("canvas", { width: this.canvas.width, height: this.canvas.height });
+    const g = sheet.getContext("2d");
+    g.fillStyle = get_css("--back");
+    g.fillRect(0, 0, sheet.width, sheet.height);
+    g.drawImage(this.canvas, 0, 0);
+    sheet.toBlob((blob) => save_blob(blob, "chart.png"));
+  }
+}

@@ -1,0 +1,202 @@
+import { Chart, Link } from "./chart.js";
+import { el, make_button, make_check, make_select } from "./page_parts.js";
+import { find_index, format_number } from "./numbers.js";
+import { calc_spectrum } from "./spectrum.js";
+import { thin_time, unpack_column, unpack_time } from "./unpack.js";
+
+const with_dims = (what, dims) => (dims && dims !== "1" ? `${what} [${dims}]` : what);
+
+// The channels of one run, unpacked when they are first asked for.
+export class Run {
+  constructor(data) {
+    this.data = data;
+    this.time = unpack_time(data.time);
+    this.link = new Link();
+    this.marks = data.events.filter((e) => e.time !== null).map((e) => ({ x: e.time, label: e.what }));
+    this.times = new Map();
+    this.columns = new Map();
+    this.by_path = new Map(data.channels.map((c) => [c.path, c]));
+  }
+  get_time(channel) {
+    if (!this.times.has(channel.stride)) this.times.set(channel.stride, thin_time(this.time, channel.stride));
+    return this.times.get(channel.stride);
+  }
+  get_values(channel, index) {
+    const key = channel.path + ":" + index;
+    if (!this.columns.has(key)) this.columns.set(key, unpack_column(channel.columns[index], this.get_time(channel).length));
+    return this.columns.get(key);
+  }
+  make_series(channel, index, name) {
+    return { name, x: this.get_time(channel), y: this.get_values(channel, index) };
+  }
+}
+
+const short_name = (path) => path.replace(/^\/sensors\//, "").replace(/^\//, "");
+const name_column = (channel, i) => short_name(channel.path) + (channel.columns[i].name ? ":" + channel.columns[i].name : "");
+
+// A chart of whole channels that goes with the run's others.
+export function make_fixed_chart(run, title, paths) {
+  const channels = paths.map((p) => run.by_path.get(p)).filter(Boolean);
+  const series = channels.flatMap((c) => c.columns.map((column, i) => run.make_series(c, i, channels.length > 1 || !column.name ? c.path.split("/").pop() : column.name)));
+  return new Chart({ title, series, marks: run.marks, link: run.link, x_label: "time [T]", y_label: with_dims(title.toLowerCase(), channels[0]?.dims), height: 240 });
+}
+
+// Channel tree, charts, spectra, statistics of the window.
+export class HistoryView {
+  constructor(run) {
+    this.run = run;
+    this.chosen = new Map();  // "path:index" -> [channel, index]
+    this.is_log = this.is_spectrum = this.is_by_dims = false;
+    this.charts_host = el("div", { class: "charts" });
+    this.statistics = el("table", { class: "statistics" });
+    this.spectrum_link = new Link();
+    this.element = el("div", { class: "history" }, this.make_tree(), el("div", { class: "plots" }, this.make_tools(), this.charts_host, el("div", { class: "scroll" }, this.statistics)));
+    run.link.on("window", () => this.update_window());
+    this.choose_first();
+    this.rebuild();
+  }
+
+  choose_first() {
+    const all = this.run.data.channels;
+    let first = all.filter((c) => c.path.startsWith("/sensors/") || c.path.startsWith("/signals/"));
+    if (first.length === 0) first = all.filter((c) => c.path.startsWith("/hinges/") && c.path.endsWith("/q"));
+    if (first.length === 0) first = all.slice(0, 1);
+    let count = 0;
+    for (const channel of first) {
+      if (count > 0 && count + channel.columns.length > 14) break;
+      channel.columns.forEach((_, i) => this.choose(channel, i, true));
+      count += channel.columns.length;
+    }
+  }
+
+  choose(channel, index, is_on) {
+    const key = channel.path + ":" + index;
+    if (is_on) this.chosen.set(key, [channel, index]);
+    else this.chosen.delete(key);
+    const box = this.boxes.get(key);
+    if (box) box.checked = is_on;
+  }
+
+  make_tree() {
+    this.boxes = new Map();
+    const search = el("input", { type: "search", placeholder: "find a channel", "aria-label": "find a channel" });
+    const list = el("div", { class: "tree" });
+    const groups = new Map();
+    for (const channel of this.run.data.channels) {
+      const parts = channel.path.split("/");
+      const name = parts.length > 3 ? parts.slice(1, 3).join("/") : parts[1];
+      if (!groups.has(name)) groups.set(name, el("details", { open: name === "sensors" }, el("summary", {}, name)));
+      const row = el("div", { class: "channel", title: channel.description, "data-path": channel.path.toLowerCase() }, el("span", {}, parts[parts.length - 1]));
+      channel.columns.forEach((column, i) => {
+        const box = el("input", { type: "checkbox", "aria-label": name_column(channel, i) });
+        box.addEventListener("change", () => {
+          this.choose(channel, i, box.checked);
+          this.rebuild();
+        });
+        this.boxes.set(channel.path + ":" + i, box);
+        row.append(el("label", {}, box, column.name));
+      });
+      groups.get(name).append(row);
+    }
+    list.append(...groups.values());
+    search.addEventListener("input", () => {
+      const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
+      for (const group of groups.values()) {
+        let any = false;
+        for (const row of group.querySelectorAll(".channel")) {
+          row.hidden = !words.every((w) => row.dataset.path.includes(w));
+          any ||= !row.hidden;
+        }
+        group.hidden = !any;
+        if (words.length > 0) group.open = any;
+      }
+    });
+    return el("div", { class: "picker" }, search, list);
+  }
+
+  make_tools() {
+    return el("div", { class: "tools" },
+      make_check("log y", false, (on) => { this.is_log = on; this.rebuild(); }),
+      make_check("spectrum of the window", false, (on) => { this.is_spectrum = on; this.rebuild(); }),
+      make_select("one chart for", ["each channel", "each dimension"], (i) => { this.is_by_dims = i === 1; this.rebuild(); }).list,
+      make_button("whole time", "Reset the zoom (double click)", () => this.run.link.charts[0]?.reset()),
+      make_button("none", "Take all curves away", () => { for (const [c, i] of [...this.chosen.values()]) this.choose(c, i, false); this.rebuild(); }),
+      make_button("CSV", "Save the samples in the window", () => this.save_csv()));
+  }
+
+  rebuild() {
+    this.run.link.charts = this.run.link.charts.filter((c) => !this.charts?.includes(c));
+    this.spectrum_link.charts = [];
+    const groups = new Map();
+    for (const [channel, i] of this.chosen.values()) {
+      const key = this.is_by_dims ? channel.dims : channel.path;
+      if (!groups.has(key)) groups.set(key, []);
+      groups.get(key).push([channel, i]);
+    }
+    this.charts = [];
+    this.spectra = [];
+    for (const [, members] of groups) {
+      const same = members.every(([c]) => c === members[0][0]);
+      const title = same ? short_name(members[0][0].path) : "";
+      const series = members.map(([c, i]) => this.run.make_series(c, i, same ? c.columns[i].name || short_name(c.path) : name_column(c, i)));
+      const chart = new Chart({ title, series, marks: this.run.marks, link: this.run.link, y_log: this.is_log, x_label: "time [T]", y_label: with_dims(this.is_log ? "|value|" : "value", members[0][0].dims) });
+      this.charts.push(chart);
+      if (this.is_spectrum)
+        this.spectra.push(new Chart({ title: "spectrum of " + (title || "[" + members[0][0].dims + "]"), link: this.spectrum_link, series: [], x_label: "frequency, cycles [1/T]", y_label: with_dims("amplitude", members[0][0].dims), y_log: this.is_log, height: 220 }));
+    }
+    this.charts_host.replaceChildren(...this.charts.flatMap((c, k) => (this.spectra[k] ? [c.element, this.spectra[k].element] : [c.element])));
+    if (this.charts.length === 0) this.charts_host.append(el("p", { class: "note" }, "Choose channels on the left."));
+    this.update_window();
+  }
+
+  find_window(x) {
+    const window = this.run.link.window;
+    return window ? [find_index(x, window[0]), Math.min(x.length, find_index(x, window[1]) + 1)] : [0, x.length];
+  }
+
+  update_window() {
+    this.charts.forEach((chart, k) => {
+      this.spectra[k]?.set_series(chart.series.map((s) => {
+        const { frequency, amplitude } = calc_spectrum(s.x, s.y, ...this.find_window(s.x));
+        return { name: s.name, x: frequency, y: amplitude };
+      }));
+    });
+    const window = this.run.link.window;
+    const head = el("tr", {}, ...["channel", "min", "max", "max − min", "mean", "rms", "samples"].map((t, i) => el("th", i ? {} : { class: "text" }, t)));
+    const rows = [...this.chosen.values()].map(([channel, i]) => {
+      const x = this.run.get_time(channel), y = this.run.get_values(channel, i);
+      const [from, to] = this.find_window(x);
+      let low = Infinity, high = -Infinity, sum = 0, square = 0, count = 0;
+      for (let k = from; k < to; ++k) {
+        const v = y[k];
+        if (!Number.isFinite(v)) continue;
+        if (v < low) low = v;
+        if (v > high) high = v;
+        sum += v;
+        square += v * v;
+        ++count;
+      }
+      const cells = [low, high, high - low, sum / count, Math.sqrt(square / count)].map((v) => el("td", {}, format_number(v)));
+      return el("tr", {}, el("td", { class: "text" }, name_column(channel, i)), ...cells, el("td", {}, String(count)));
+    });
+    const range = window ? `${format_number(window[0])} to ${format_number(window[1])}` : "the whole time";
+    this.statistics.replaceChildren(el("caption", {}, "In the window: " + range), el("thead", {}, head), el("tbody", {}, ...rows));
+  }
+
+  save_csv() {
+    const members = [...this.chosen.values()];
+    if (members.length === 0) return;
+    const stride = Math.max(...members.map(([c]) => c.stride));
+    const time = thin_time(this.run.time, stride);
+    const [from, to] = this.find_window(time);
+    const lines = ["time," + members.map(([c, i]) => name_column(c, i)).join(",")];
+    for (let k = from; k < to; ++k)
+      lines.push(time[k] + "," + members.map(([c, i]) => this.run.get_values(c, i)[Math.round((k * stride) / c.stride)]).join(","));
+    save_text(lines.join("\n") + "\n", "window.csv");
+  }
+}
+
+function save_text(text, name) {
+  const link = el("a", { href: URL.createObjectURL(new Blob([text], { type: "text/csv" })), download: name });
+  link.click();
+}

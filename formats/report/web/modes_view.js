@@ -1,0 +1,73 @@
+import { Box, Drawing } from "./drawing.js";
+import { format_number } from "./numbers.js";
+import { el, get_css, make_button, make_check, make_select, make_slider } from "./page_parts.js";
+import { Viewer, make_triad } from "./viewer.js";
+
+// One mode at a time, swinging.
+export class ModesView {
+  constructor(data) {
+    this.drawing = new Drawing(data.drawing);
+    this.viewer = new Viewer();
+    this.mode = 0;
+    this.phase = Math.PI / 2;
+    this.turns = 0.5;  // per second
+    this.is_playing = false;
+    this.has_overlay = true;
+    this.has_colors = true;
+    const count = data.drawing.shapes.length;
+    const names = Array.from({ length: count }, (_, j) => `${j + 1}: ${format_number(data.frequency[j] ?? NaN, 5)}${data.kinds[j] && data.kinds[j] !== "normal" ? " " + data.kinds[j] : ""}`);
+    this.picker = make_select(data.buckling ? "load factor" : "mode, frequency [1/T]", names, (j) => this.show(j));
+    this.picker.list.classList.add("mode-picker");
+    const step = (by) => () => this.show((this.mode + by + count) % count);
+    this.box = new Box();
+    this.box.add_points(this.drawing.xyz);
+    this.play_button = make_button("▶ play", "Play or pause", () => this.play(!this.is_playing));
+    this.play_button.classList.add("play");
+    this.note = el("p", { class: "note" });
+    const tools = el("div", { class: "tools" }, this.picker, make_button("◀", "Mode before", step(-1)), make_button("▶", "Next mode", step(1)), this.play_button,
+      make_slider("amplitude", { min: 0, max: 0.4, step: 0.005, value: 0.12 }, (v) => { this.amplitude = v; this.draw(); return Math.round(100 * v) + " %"; }),
+      make_slider("speed", { min: 0.1, max: 3, step: 0.1, value: 0.5 }, (v) => { this.turns = v; return v + " /s"; }),
+      make_check("undeformed", true, (on) => { this.has_overlay = on; this.draw(); }),
+      make_check("colours", true, (on) => { this.has_colors = on; this.draw(); }), this.viewer.make_view_buttons());
+    this.element = el("div", { class: "modes" }, tools, this.viewer.element, el("div", { class: "ramp", "aria-hidden": "true" }), this.note);
+    this.viewer.fit(this.box);
+    this.show(0);
+  }
+
+  show(mode) {
+    this.mode = mode;
+    this.picker.list.value = mode;
+    this.reach = this.drawing.get_reach(mode);
+    this.note.textContent = `Mode ${mode + 1}: largest displacement of its shape ${format_number(this.reach)}, drawn as the amplitude's share of the size of the body. Colours: none (dark) to largest (bright). Orange x, green y, blue z.`;
+    this.draw();
+  }
+
+  play(is_on) {
+    this.is_playing = is_on;
+    this.play_button.textContent = is_on ? "⏸ pause" : "▶ play";
+    let last = performance.now();
+    const step = (now) => {
+      if (!this.is_playing || !this.element.isConnected) return;
+      this.phase += 2 * Math.PI * this.turns * Math.min(0.1, (now - last) / 1000);
+      last = now;
+      this.draw();
+      requestAnimationFrame(step);
+    };
+    if (is_on) requestAnimationFrame(step);
+  }
+
+  draw() {
+    if (!this.reach && this.reach !== 0) return;
+    const size = this.box.get_diagonal();
+    const scale = this.reach > 0 ? (this.amplitude * size) / this.reach : 0;
+    this.drawing.deform(Array.from({ length: this.mode + 1 }, (_, j) => (j === this.mode ? Math.sin(this.phase) : 0)), scale);
+    const { xyz, points, triangles, edges, ghosts } = this.drawing;
+    const has_faces = triangles.length > 0;
+    const body = { points, size: this.drawing.size, triangles, edges, ghosts, color: get_css("--body"), by_level: this.has_colors, dots: !has_faces };
+    const things = [...make_triad([0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]], 0.12 * size), body];
+    if (this.has_overlay) things.unshift({ points: xyz, edges, color: get_css("--ghost"), alpha: 0.7, lift: -1e-3 });
+    this.viewer.things = things;
+    this.viewer.reach = this.amplitude * size;
+    this.viewer.draw();
+  }
+}

@@ -1,0 +1,186 @@
+import { Box, Drawing } from "./drawing.js";
+import { find_index, format_number } from "./numbers.js";
+import { el, get_css, get_style, make_button, make_check, make_select, make_slider } from "./page_parts.js";
+import { Viewer, make_triad } from "./viewer.js";
+
+// Rows of the rotation of a quaternion w x y z, of any length.
+function to_rotation([w, x, y, z]) {
+  const s = 2 / (w * w + x * x + y * y + z * z || 1);
+  return [
+    [1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)],
+    [s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x)],
+    [s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)],
+  ];
+}
+const turn = (R, v) => R.map((row) => row[0] * v[0] + row[1] * v[1] + row[2] * v[2]);
+
+// The moving system of a run.
+export class MotionView {
+  constructor(run) {
+    this.run = run;
+    this.bodies = run.data.bodies
+      .map((b) => ({ name: b.name, drawing: new Drawing(b.drawing), position: run.by_path.get(`/bodies/${b.name}/position`), quaternion: run.by_path.get(`/bodies/${b.name}/quaternion`), eta: run.by_path.get(`/bodies/${b.name}/eta`) }))
+      .map((b, index) => ({ ...b, index, is_drawn: Boolean(b.position && b.quaternion) }));
+    const moving = this.bodies.filter((b) => b.is_drawn);
+    this.first = run.time[0];
+    this.last = run.time[run.time.length - 1];
+    this.time = this.first;
+    this.scale = 1;
+    this.follow = -1;
+    this.has_frames = true;
+    this.has_colors = false;
+    this.is_playing = false;
+    this.viewer = new Viewer(460);
+    this.scrubber = el("input", { type: "range", class: "scrub", min: 0, max: 1000, step: 1, value: 0, "aria-label": "time" });
+    this.scrubber.addEventListener("input", () => this.set_time(this.first + (this.scrubber.value / 1000) * (this.last - this.first)));
+    this.clock = el("output", { class: "clock" });
+    this.play_button = make_button("▶ play", "Play or pause", () => this.play(!this.is_playing));
+    this.play_button.classList.add("play");
+    const tools = el("div", { class: "tools" }, this.play_button,
+      make_slider("plays in", { min: 0.5, max: 2.3, step: 0.05, value: 1.1 }, (v) => { this.seconds = 10 ** v; return format_number(10 ** v, 2) + " s"; }),
+      make_slider("deformation ×", { min: 0, max: 3, step: 0.05, value: 0 }, (v) => { this.scale = 10 ** v; this.draw(); return format_number(10 ** v, 3); }),
+      make_select("follow", ["nothing", ...moving.map((b) => b.name)], (i) => { this.follow = i === 0 ? -1 : moving[i - 1].index; this.anchor(); }),
+      make_check("frames", true, (on) => { this.has_frames = on; this.draw(); }),
+      make_check("colour by displacement", false, (on) => { this.has_colors = on; this.draw(); }), this.viewer.make_view_buttons());
+    const names = el("p", { class: "note legend" }, ...moving.map((b) => {
+      const mark = el("span", { class: "swatch" });
+      mark.style.background = get_style(b.index).color;
+      return el("span", { class: "entry" }, mark, " " + b.name);
+    }));
+    const help = el("p", { class: "note" }, "Black: hinges and their axes. Frames: orange x, green y, blue z. A click in a chart takes this view there.");
+    this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock), names, help);
+    run.link.on("pick", (time) => { this.play(false); this.set_time(time); });
+    this.reach = this.find_reach();
+    const box = this.find_box();
+    this.viewer.face(box);
+    this.viewer.fit(box);
+    this.set_time(this.first);
+  }
+
+  // A channel of several columns between its samples.
+  sample(channel, time) {
+    const x = this.run.get_time(channel);
+    const i = Math.min(Math.max(1, find_index(x, time)), x.length - 1);
+    const share = x.length > 1 ? Math.min(1, Math.max(0, (time - x[i - 1]) / (x[i] - x[i - 1]))) : 0;
+    return channel.columns.map((_, c) => {
+      const y = this.run.get_values(channel, c);
+      return x.length > 1 ? y[i - 1] + share * (y[i] - y[i - 1]) : y[0];
+    });
+  }
+
+  place(body, time) {
+    return { p: this.sample(body.position, time), R: to_rotation(this.sample(body.quaternion, time)), eta: body.eta ? this.sample(body.eta, time) : [] };
+  }
+
+  *list_times(count) {
+    for (let k = 0; k < count; ++k) yield this.first + (k / (count - 1)) * (this.last - this.first);
+  }
+
+  find_box() {
+    const box = new Box();
+    for (const body of this.bodies.filter((b) => b.is_drawn)) {
+      const own = new Box();
+      own.add_points(body.drawing.xyz);
+      for (const time of this.list_times(40)) {
+        const { p, R } = this.place(body, time);
+        for (let corner = 0; corner < 8; ++corner) {
+          const q = turn(R, own.low.map((low, i) => ((corner >> i) & 1 ? own.high[i] : low)));
+          box.add(p[0] + q[0], p[1] + q[1], p[2] + q[2]);
+        }
+      }
+    }
+    return box;
+  }
+
+  // The largest displacement of any point, for the colours.
+  find_reach() {
+    let most = 0;
+    for (const body of this.bodies.filter((b) => b.is_drawn && b.eta)) {
+      for (const time of this.list_times(40)) {
+        body.drawing.deform(this.sample(body.eta, time), 1);
+        for (const s of body.drawing.size) if (s > most) most = s;
+      }
+    }
+    return most;
+  }
+
+  // From now on the camera goes with the body.
+  anchor() {
+    if (this.follow < 0) this.viewer.target = this.viewer.home.get_middle();
+    this.before = null;
+    this.draw();
+  }
+
+  set_time(time) {
+    this.time = Math.min(this.last, Math.max(this.first, time));
+    const span = this.last - this.first || 1;
+    this.scrubber.value = Math.round((1000 * (this.time - this.first)) / span);
+    this.clock.textContent = "t = " + format_number(this.time, 5);
+    this.run.link.set_cursor(this.time, this);
+    this.draw();
+  }
+
+  play(is_on) {
+    if (is_on === this.is_playing) return;
+    this.is_playing = is_on;
+    this.play_button.textContent = is_on ? "⏸ pause" : "▶ play";
+    if (!is_on) return;
+    if (this.time >= this.last) this.time = this.first;
+    let before = performance.now();
+    const step = (now) => {
+      if (!this.is_playing || !this.element.isConnected) return;
+      const time = this.time + (Math.min(0.1, (now - before) / 1000) / this.seconds) * (this.last - this.first);
+      before = now;
+      this.set_time(time);
+      if (time >= this.last) return this.play(false);
+      requestAnimationFrame(step);
+    };
+    requestAnimationFrame(step);
+  }
+
+  draw() {
+    if (!this.viewer.home || !this.clock) return;
+    const size = this.viewer.extent, things = [], boxes = [];
+    const places = this.bodies.map((b) => (b.is_drawn ? this.place(b, this.time) : null));
+    if (this.has_frames) things.push(...make_triad([0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]], 0.1 * size));
+    this.bodies.forEach((body, k) => {
+      if (!body.is_drawn) return;
+      const { p, R, eta } = places[k], d = body.drawing;
+      d.deform(eta, this.scale);
+      body.world ??= new Float32Array(d.points.length);
+      for (let i = 0; i < d.points.length; i += 3)
+        for (let r = 0; r < 3; ++r) body.world[i + r] = p[r] + R[r][0] * d.points[i] + R[r][1] * d.points[i + 1] + R[r][2] * d.points[i + 2];
+      // Boxes of rigid bodies are seen through, after what they may hold.
+      const is_box = d.packed.length === 0 && d.triangles.length > 0;
+      (is_box ? boxes : things).push({ alpha: is_box ? 0.4 : 1, points: body.world, size: d.size, triangles: d.triangles, edges: d.edges, ghosts: d.ghosts, color: get_style(k).color, by_level: this.has_colors && eta.length > 0, dots: d.triangles.length === 0 });
+      if (this.has_frames) things.push(...make_triad(p, [0, 1, 2].map((c) => R.map((row) => row[c])), 0.06 * size));
+    });
+    this.add_hinges(things, places, size);
+    if (this.follow >= 0) {
+      const p = places[this.follow].p;
+      if (this.before) this.viewer.target = this.viewer.target.map((t, i) => t + p[i] - this.before[i]);
+      else this.viewer.target = [...p];
+      this.before = p;
+    }
+    this.viewer.things = [...things, ...boxes];
+    this.viewer.reach = this.reach * this.scale;
+    this.viewer.draw();
+  }
+
+  add_hinges(things, places, size) {
+    for (const hinge of this.run.data.hinges) {
+      const place = hinge.parent >= 0 ? places[hinge.parent] : { p: [0, 0, 0], R: [[1, 0, 0], [0, 1, 0], [0, 0, 1]] };
+      if (!place) continue;
+      let p = hinge.p;
+      if (hinge.point >= 0) {
+        // The point of a flexible parent has moved from its undeformed place.
+        const d = this.bodies[hinge.parent].drawing, k = 3 * hinge.point;
+        p = p.map((v, i) => v + d.points[k + i] - d.xyz[k + i]);
+      }
+      const at = turn(place.R, p).map((v, i) => v + place.p[i]);
+      const axis = turn(place.R, hinge.axis), half = 0.03 * size;
+      const points = Math.hypot(...axis) > 0 ? [...at, ...at.map((v, i) => v - half * axis[i]), ...at.map((v, i) => v + half * axis[i])] : at;
+      things.push({ points: new Float32Array(points), edges: new Uint32Array(points.length > 3 ? [1, 2] : []), color: get_css("--hinge"), dots: true });
+    }
+  }
+}

@@ -1,0 +1,79 @@
+// Elements, controls, colours.
+
+// el("button", { class: "x", onclick: f }, "text", child): attributes, functions as listeners, children.
+export function el(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else if (value === true) element.setAttribute(name, "");
+    else if (value !== false && value !== undefined) element.setAttribute(name, value);
+  }
+  element.append(...children);
+  return element;
+}
+
+export function make_button(text, title, action) {
+  return el("button", { type: "button", title, onclick: action }, text);
+}
+
+export function make_check(text, is_on, action) {
+  const box = el("input", { type: "checkbox", checked: is_on });
+  box.addEventListener("change", () => action(box.checked));
+  return el("label", {}, box, " " + text);
+}
+
+export function make_slider(text, { min, max, step, value }, action) {
+  const slider = el("input", { type: "range", min, max, step, value, "aria-label": text });
+  const shown = el("output");
+  const update = () => {
+    shown.textContent = action(Number(slider.value)) ?? "";
+  };
+  slider.addEventListener("input", update);
+  update();
+  return Object.assign(el("label", { class: "slider" }, text + " ", slider, " ", shown), { slider, update });
+}
+
+export function make_select(text, options, action) {
+  const list = el("select", { "aria-label": text }, ...options.map((name, i) => el("option", { value: i }, name)));
+  list.addEventListener("change", () => action(Number(list.value)));
+  return Object.assign(el("label", {}, text + " ", list), { list });
+}
+
+// Okabe & Ito without yellow; in the dark the black one is white. Each seven curves another dash.
+const kColors = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000"];
+const kDarkColors = ["#4aa8e0", "#f0803c", "#2cc79a", "#e29cc4", "#8fd0f5", "#f2b83a", "#ffffff"];
+const kDashes = [[], [8, 4], [2, 3], [10, 3, 2, 3]];
+
+export const is_dark = () => {
+  const chosen = document.documentElement.dataset.theme;
+  return chosen ? chosen === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+};
+
+export function get_style(index) {
+  const colors = is_dark() ? kDarkColors : kColors;
+  return { color: colors[index % colors.length], dash: kDashes[Math.floor(index / colors.length) % kDashes.length] };
+}
+
+export const get_css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+const repainters = [];
+// What is to be drawn again when the theme changes.
+export const on_theme = (draw) => repainters.push(draw);
+
+// "light", "dark", or undefined: as the reader's system has it.
+export function set_theme(theme) {
+  if (theme) document.documentElement.dataset.theme = theme;
+  else delete document.documentElement.dataset.theme;
+  for (const draw of repainters) draw();
+}
+
+export function make_theme_button() {
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => repainters.forEach((draw) => draw()));
+  return make_button("Light / dark", "Change the colours of the page", () => set_theme(is_dark() ? "light" : "dark"));
+}
+
+export function save_blob(blob, name) {
+  const link = el("a", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}

@@ -1,0 +1,237 @@
+import { el, get_css, make_button, on_theme, save_blob } from "./page_parts.js";
+
+// 4 x 4 matrices, columns first, as WebGL takes them.
+const multiply = (a, b) => {
+  const c = new Float32Array(16);
+  for (let j = 0; j < 4; ++j) for (let i = 0; i < 4; ++i) for (let k = 0; k < 4; ++k) c[4 * j + i] += a[4 * k + i] * b[4 * j + k];
+  return c;
+};
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
+const kVertex = `#version 300 es
+uniform mat4 view;
+uniform float reach, lift;
+in vec3 place;
+in float size;
+out float level;
+out vec3 at;
+void main() {
+  level = reach > 0.0 ? clamp(size / reach, 0.0, 1.0) : 0.0;
+  at = place;
+  gl_Position = view * vec4(place, 1.0);
+  gl_Position.z -= lift * gl_Position.w;
+  gl_PointSize = 5.0;
+}`;
+// Colours of displacement: five stops of viridis (Smith & van der Walt 2015, CC0), read by the colour-blind too.
+const kFragment = `#version 300 es
+precision highp float;
+uniform vec4 color;
+uniform float by_level, lit;
+uniform vec3 eye;
+in float level;
+in vec3 at;
+out vec4 pixel;
+vec3 viridis(float t) {
+  vec3 c[5] = vec3[5](vec3(0.267, 0.005, 0.329), vec3(0.229, 0.322, 0.546), vec3(0.128, 0.567, 0.551), vec3(0.369, 0.789, 0.383), vec3(0.993, 0.906, 0.144));
+  float s = t * 4.0;
+  int i = int(min(floor(s), 3.0));
+  return mix(c[i], c[i + 1], s - float(i));
+}
+void main() {
+  vec3 base = mix(color.rgb, viridis(level), by_level);
+  if (lit > 0.5) {
+    vec3 n = normalize(cross(dFdx(at), dFdy(at)));
+    base *= 0.45 + 0.55 * abs(dot(n, normalize(eye - at)));
+  }
+  pixel = vec4(base, color.a);
+}`;
+
+const to_rgba = (css, alpha = 1) => {
+  const v = parseInt(css.slice(1), 16);
+  return [(v >> 16) / 255, ((v >> 8) & 255) / 255, (v & 255) / 255, alpha];
+};
+
+// A stage on which things are drawn: { points, size, triangles, edges, color, by_level, line_color }. Dragging turns,
+// the right button or shift moves, the wheel comes nearer, a double click shows all.
+export class Viewer {
+  constructor(height = 420) {
+    this.canvas = el("canvas", { class: "scene", tabindex: "0", role: "img", "aria-label": "three-dimensional view" });
+    this.canvas.style.height = height + "px";
+    this.element = el("div", { class: "viewer" }, this.canvas);
+    const gl = this.canvas.getContext("webgl2", { alpha: false, antialias: true, preserveDrawingBuffer: true });
+    if (!gl) throw new Error("WebGL 2 is not there");
+    this.gl = gl;
+    this.program = this.make_program();
+    this.buffers = { place: gl.createBuffer(), size: gl.createBuffer(), index: gl.createBuffer() };
+    this.things = [];
+    this.reach = 0;
+    this.target = [0, 0, 0];
+    this.distance = 5;
+    this.extent = 2;
+    this.yaw = -1.0;
+    this.pitch = 0.45;
+    this.listen();
+    on_theme(() => this.draw());
+    new ResizeObserver(() => this.draw()).observe(this.canvas);
+  }
+
+  make_program() {
+    const gl = this.gl, program = gl.createProgram();
+    for (const [type, text] of [[gl.VERTEX_SHADER, kVertex], [gl.FRAGMENT_SHADER, kFragment]]) {
+      const shader = gl.createShader(type);
+      gl.shaderSource(shader, text);
+      gl.compileShader(shader);
+      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+      gl.attachShader(program, shader);
+    }
+    gl.bindAttribLocation(program, 0, "place");
+    gl.bindAttribLocation(program, 1, "size");
+    gl.linkProgram(program);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
+    this.at = (name) => gl.getUniformLocation(program, name);
+    return program;
+  }
+
+  // Shows all of a box; the camera keeps its direction.
+  fit(box) {
+    this.home = box;
+    this.target = box.get_middle();
+    this.extent = box.get_diagonal();
+    this.distance = 1.1 * this.extent;
+    this.draw();
+  }
+
+  // Looks across what happens in one plane of the axes.
+  face(box) {
+    const thin = box.low.map((low, i) => box.high[i] - low < 0.05 * box.get_diagonal());
+    if (thin.filter(Boolean).length !== 1) return;
+    if (thin[0]) [this.yaw, this.pitch] = [-0.3, 0.2];
+    if (thin[1]) [this.yaw, this.pitch] = [-Math.PI / 2 - 0.3, 0.2];
+    if (thin[2]) [this.yaw, this.pitch] = [-Math.PI / 2, 1.15];
+  }
+
+  get_axes() {
+    const c = Math.cos(this.pitch);
+    const back = [c * Math.cos(this.yaw), c * Math.sin(this.yaw), Math.sin(this.pitch)];
+    const right = [-Math.sin(this.yaw), Math.cos(this.yaw), 0];
+    return { back, right, up: cross(back, right) };
+  }
+
+  make_view() {
+    const { back, right, up } = this.get_axes();
+    const eye = this.target.map((t, i) => t + this.distance * back[i]);
+    this.eye = eye;
+    const look = [right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2], back[2], 0, -dot(right, eye), -dot(up, eye), -dot(back, eye), 1];
+    const aspect = this.canvas.width / this.canvas.height, f = 1 / Math.tan(0.35);
+    // The angle holds for the shorter side.
+    const fx = aspect > 1 ? f / aspect : f, fy = aspect > 1 ? f : f * aspect;
+    const near = Math.max(this.distance - 3 * this.extent, 0.01 * this.distance), far = this.distance + 3 * this.extent;
+    const lens = [fx, 0, 0, 0, 0, fy, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, (2 * far * near) / (near - far), 0];
+    return multiply(lens, look);
+  }
+
+  draw() {
+    const gl = this.gl, scale = devicePixelRatio || 1;
+    const width = Math.round(this.canvas.clientWidth * scale), height = Math.round(this.canvas.clientHeight * scale);
+    if (width < 10 || height < 10) return;
+    if (this.canvas.width !== width || this.canvas.height !== height) [this.canvas.width, this.canvas.height] = [width, height];
+    gl.viewport(0, 0, width, height);
+    gl.clearColor(...to_rgba(get_css("--stage")));
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.DEPTH_TEST);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.useProgram(this.program);
+    gl.uniformMatrix4fv(this.at("view"), false, this.make_view());
+    gl.uniform3fv(this.at("eye"), this.eye);
+    gl.uniform1f(this.at("reach"), this.reach);
+    for (const thing of this.things) this.draw_thing(thing);
+  }
+
+  draw_thing(thing) {
+    const gl = this.gl;
+    const count = thing.points.length / 3;
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers.place);
+    gl.bufferData(gl.ARRAY_BUFFER, thing.points, gl.STREAM_DRAW);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers.size);
+    if (thing.size) {
+      gl.bufferData(gl.ARRAY_BUFFER, thing.size, gl.STREAM_DRAW);
+      gl.enableVertexAttribArray(1);
+      gl.vertexAttribPointer(1, 1, gl.FLOAT, false, 0, 0);
+    } else gl.disableVertexAttribArray(1);
+    const draw = (kind, indices, color, by_level, lit, lift) => {
+      gl.uniform4fv(this.at("color"), color);
+      gl.uniform1f(this.at("by_level"), by_level ? 1 : 0);
+      gl.uniform1f(this.at("lit"), lit ? 1 : 0);
+      gl.uniform1f(this.at("lift"), lift);
+      if (!indices) return gl.drawArrays(kind, 0, count);
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffers.index);
+      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STREAM_DRAW);
+      gl.drawElements(kind, indices.length, gl.UNSIGNED_INT, 0);
+    };
+    const color = to_rgba(thing.color, thing.alpha ?? 1);
+    const has_faces = thing.triangles?.length > 0;
+    if (has_faces) draw(gl.TRIANGLES, thing.triangles, color, thing.by_level, true, 0);
+    if (thing.edges?.length > 0)
+      draw(gl.LINES, thing.edges, has_faces ? to_rgba(get_css("--edge"), (thing.alpha ?? 1) * 0.6) : color, !has_faces && thing.by_level, false, thing.lift ?? 1e-4);
+    if (thing.ghosts?.length > 0) draw(gl.LINES, thing.ghosts, to_rgba(get_css("--ghost"), 0.6), false, false, 0);
+    if (thing.dots) draw(gl.POINTS, null, color, thing.by_level, false, 2e-4);
+  }
+
+  listen() {
+    let last = null;
+    this.canvas.addEventListener("pointerdown", (event) => {
+      last = event;
+      this.canvas.setPointerCapture(event.pointerId);
+    });
+    this.canvas.addEventListener("pointermove", (event) => {
+      if (!last) return;
+      const dx = event.clientX - last.clientX, dy = event.clientY - last.clientY;
+      const is_shift = last.shiftKey || last.buttons === 2;
+      last = { clientX: event.clientX, clientY: event.clientY, shiftKey: event.shiftKey, buttons: event.buttons };
+      if (is_shift) {
+        const { right, up } = this.get_axes(), unit = (0.75 * this.distance) / this.canvas.clientHeight;
+        this.target = this.target.map((t, i) => t - unit * dx * right[i] + unit * dy * up[i]);
+      } else {
+        this.yaw -= 0.008 * dx;
+        this.pitch = Math.max(-1.55, Math.min(1.55, this.pitch + 0.008 * dy));
+      }
+      this.draw();
+    });
+    this.canvas.addEventListener("pointerup", () => (last = null));
+    this.canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    this.canvas.addEventListener("dblclick", () => this.home && this.fit(this.home));
+    this.canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.distance *= Math.exp(0.001 * event.deltaY);
+      this.draw();
+    }, { passive: false });
+  }
+
+  make_view_buttons() {
+    const look = (yaw, pitch) => () => {
+      [this.yaw, this.pitch] = [yaw, pitch];
+      this.draw();
+    };
+    return el("span", { class: "views" }, make_button("x", "Look against the x axis", look(0, 0)), make_button("y", "Look against the y axis", look(-Math.PI / 2, 0)),
+      make_button("z", "Look against the z axis", look(-Math.PI / 2, 1.55)), make_button("all", "Show all (double click)", () => this.home && this.fit(this.home)),
+      make_button("PNG", "Save this picture", () => this.save()));
+  }
+
+  save() {
+    this.draw();
+    this.canvas.toBlob((blob) => save_blob(blob, "view.png"));
+  }
+}
+
+// Three axes of this length at a place, R columns: red, green, blue would not tell the colour-blind; letters do in the
+// legend, lengths here: x is the longest.
+export function make_triad(place, axes, length) {
+  return axes.map((axis, i) => {
+    const tip = place.map((p, k) => p + length * [1, 0.8, 0.6][i] * axis[k]);
+    return { points: new Float32Array([...place, ...tip]), edges: new Uint32Array([0, 1]), color: ["#d55e00", "#009e73", "#0072b2"][i] };
+  });
+}

@@ -1,0 +1,207 @@
+"""The report page in headless Chromium: panels built, no script error, nothing loaded, zoom, picker and play by the
+mouse. Pictures are kept in BOUGH_ARTEFACTS. Skipped, with a message, where chromium is not installed."""
+import os
+import unittest
+
+from browser import Browser, find_chromium
+from linear_test import PENDULUM
+from report_test import write_results
+from support import ProgramTest
+
+WAIT_FRAMES = "new Promise(r => requestAnimationFrame(() => requestAnimationFrame(r)))"
+# Distinct colours in the middle of a canvas: a blank one has one.
+COUNT_COLORS = """(() => { const c = document.querySelector('%s'); const s = document.createElement('canvas');
+  s.width = c.width; s.height = c.height; const g = s.getContext('2d'); g.drawImage(c, 0, 0);
+  const d = g.getImageData(0, 0, s.width, s.height).data; const seen = new Set();
+  for (let i = 0; i < d.length; i += 4) seen.add((d[i] << 16) | (d[i + 1] << 8) | d[i + 2]); return seen.size; })()"""
+HASH = """(() => { const d = document.querySelector('%s').toDataURL(); let h = 0;
+  for (let i = 0; i < d.length; ++i) h = (h * 31 + d.charCodeAt(i)) | 0; return h; })()"""
+
+
+@unittest.skipUnless(find_chromium(), "chromium is not installed (apt install chromium); the page is not tried in a browser")
+class Page(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.browser = Browser()
+        self.addCleanup(self.browser.close)
+        self.artefacts = os.environ.get("BOUGH_ARTEFACTS") or self.folder
+        os.makedirs(self.artefacts, exist_ok=True)
+
+    def open(self, *files):
+        self.bough("report", *files, "-o", "page.html")
+        self.browser.open(self.path("page.html"))
+
+    def build_all(self):
+        """Scrolls through the page so that every view is built."""
+        count = self.browser.run("document.querySelectorAll('.live').length")
+        for k in range(count):
+            self.browser.run(f"document.querySelectorAll('.live')[{k}].scrollIntoView(), {WAIT_FRAMES}")
+            self.assertTrue(self.browser.wait_for(f"document.querySelectorAll('.live')[{k}].classList.contains('built')"),
+                            self.browser.run("document.documentElement.dataset.failures"))
+        return count
+
+    def check_sound(self):
+        self.assertEqual(self.browser.run("document.documentElement.dataset.failures || ''"), "")
+        self.assertEqual(self.browser.list_errors(), [])
+        self.assertEqual([u for u in self.browser.list_requests() if not u.startswith(("file:", "blob:", "data:"))], [])
+
+    def picture(self, name, whole=False):
+        self.browser.screenshot(os.path.join(self.artefacts, name + ".png"), whole)
+
+    def make_boom(self):
+        self.copy_example("ex01-spinup")
+        self.bough("reduce", "boom.toml")
+
+    def test_run(self):
+        self.make_boom()
+        self.bough("run", "spinup.toml", "-o", "spinup.h5")
+        self.open("spinup.h5", "boom.h5")
+        self.picture("run-top")
+        self.assertGreaterEqual(self.build_all(), 6)
+        self.check_sound()
+        b = self.browser
+        overlay = ".plots .chart .overlay"
+        box = b.show(overlay)
+        self.assertGreater(b.run(COUNT_COLORS % ".plots .chart .curves"), 5)
+        # A zoom by dragging: every chart of the run takes the window.
+        before = b.run(HASH % "[data-view=energy] .curves")
+        b.drag((box["x"] + 300, box["y"] + 100), (box["x"] + 500, box["y"] + 104))
+        b.run(WAIT_FRAMES)
+        caption = b.run("document.querySelector('.statistics caption').textContent")
+        self.assertNotIn("whole", caption)
+        self.assertNotEqual(b.run(HASH % "[data-view=energy] .curves"), before)
+        # Nothing of the box is left.
+        self.assertEqual(b.run("document.querySelector('.plots .overlay').getContext('2d').getImageData(400, 60, 1, 1).data[3]"), 0)
+        self.picture("run-zoomed")
+        # The linked cursor shows values in other charts.
+        b.mouse("mouseMoved", box["x"] + 400, box["y"] + 90)
+        self.assertRegex(b.run("document.querySelector('.plots .chart .value').textContent"), r"\d")
+        b.show("[data-view=energy]")
+        self.assertRegex(b.run("document.querySelector('[data-view=energy] .value').textContent"), r"\d")
+        # Double click: whole time.
+        box = b.show(overlay)
+        for count in (1, 2):
+            b.mouse("mousePressed", box["x"] + 200, box["y"] + 80, button="left", buttons=1, clickCount=count)
+            b.mouse("mouseReleased", box["x"] + 200, box["y"] + 80, button="left", clickCount=count)
+        self.assertIn("whole", b.run("document.querySelector('.statistics caption').textContent"))
+        # The channel tree finds, chooses, and makes a chart.
+        charts = b.run("document.querySelectorAll('.plots .chart').length")
+        b.click(".picker input[type=search]")
+        b.call("Input.insertText", text="reaction_mom")
+        shown = b.run("[...document.querySelectorAll('.channel')].filter(c => c.offsetParent).map(c => c.dataset.path)")
+        self.assertTrue(shown and all("reaction_moment" in path for path in shown), shown)
+        b.click(".channel[data-path$=reaction_moment] input")
+        self.assertEqual(b.run("document.querySelectorAll('.plots .chart').length"), charts + 1)
+        # A spectrum.
+        b.click(".plots .tools label:nth-child(2) input")
+        self.assertEqual(b.run("document.querySelectorAll('.plots .chart').length"), 2 * (charts + 1))
+        b.show(".plots .chart:nth-child(2)")
+        self.picture("run-spectrum")
+        self.check_sound()
+
+    def test_motion(self):
+        self.copy_example("ex03-two-link")
+        self.bough("reduce", "link.toml")
+        self.bough("run", "two-link.toml", "-o", "run.h5")
+        self.open("run.h5")
+        self.build_all()
+        b = self.browser
+        b.show(".scene")
+        self.assertGreater(b.run(COUNT_COLORS % ".scene"), 20)
+        clock = b.run("document.querySelector('.clock').textContent")
+        view = b.run(HASH % ".scene")
+        b.click(".motion .play")
+        self.assertTrue(b.wait_for(f"document.querySelector('.clock').textContent !== '{clock}'", 10))
+        b.run("new Promise(r => setTimeout(r, 600))")
+        b.click(".motion .play")
+        self.assertNotEqual(b.run(HASH % ".scene"), view)
+        b.show(".motion")
+        self.picture("motion")
+        # Turning by the mouse changes the view.
+        view, box = b.run(HASH % ".scene"), b.show(".scene")
+        b.drag((box["x"] + 400, box["y"] + 200), (box["x"] + 480, box["y"] + 160))
+        self.assertNotEqual(b.run(HASH % ".scene"), view)
+        # A click in a chart takes the view to its time.
+        clock = b.run("document.querySelector('.clock').textContent")
+        box = b.show(".plots .chart .overlay")
+        b.mouse("mousePressed", box["x"] + 150, box["y"] + 80, button="left", buttons=1, clickCount=1)
+        b.mouse("mouseReleased", box["x"] + 150, box["y"] + 80, button="left", clickCount=1)
+        self.assertNotEqual(b.run("document.querySelector('.clock').textContent"), clock)
+        self.check_sound()
+
+    def test_modes(self):
+        self.copy_example("ex05-plate")
+        self.bough("reduce", "plate.toml")
+        self.open("plate.h5")
+        self.build_all()
+        b = self.browser
+        b.show(".modes")
+        self.assertGreater(b.run(COUNT_COLORS % ".scene"), 50)
+        first = b.run(HASH % ".scene")
+        self.picture("modes")
+        b.click(".modes .tools button[title='Next mode']")
+        self.assertEqual(b.run("document.querySelector('.mode-picker').value"), "1")
+        second = b.run(HASH % ".scene")
+        self.assertNotEqual(second, first)
+        b.click(".modes .play")
+        self.assertTrue(b.wait_for(f"({HASH % '.scene'}) !== {second}", 10))
+        b.click(".modes .play")
+        # Dark colours.
+        b.click("header button")
+        b.run(WAIT_FRAMES)
+        b.show(".modes")
+        self.picture("modes-dark")
+        self.picture("modes-dark-page", whole=True)
+        self.check_sound()
+
+    def test_linear_and_tables(self):
+        self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.0"))
+        self.bough("linearize", "pendulum.toml", "-o", "linear.h5")
+        self.make_boom()
+        self.bough("reduce", "boom.bdf", "--modes", "2", "-o", "small.h5")
+        self.bough("compare", "boom.h5", "small.h5", "-o", "comparison.h5")
+        self.open("linear.h5", "comparison.h5")
+        self.assertEqual(self.build_all(), 2)
+        self.browser.show("[data-view=bode]")
+        self.assertGreater(self.browser.run(COUNT_COLORS % "[data-view=bode] .curves"), 5)
+        self.check_sound()
+        self.picture("linear", whole=True)
+
+    def test_zoom_of_a_long_run(self):
+        """20,000 samples of 50 channels: every chart drawn again within 100 ms of a zoom, as the browser counts it."""
+        write_results(self.path("long.h5"), 20000, [f"s{k}" for k in range(50)])
+        self.open("long.h5")
+        self.build_all()
+        b = self.browser
+        # All 50 at once, in one chart.
+        b.run("(() => { for (const box of document.querySelectorAll('.channel input')) if (!box.checked) box.click(); })()")
+        b.run("(() => { const s = document.querySelector('.plots select'); s.value = 1; s.dispatchEvent(new Event('change')); })()")
+        b.run(WAIT_FRAMES)
+        self.assertEqual(b.run("document.querySelectorAll('.plots .chart .legend button[aria-pressed]').length"), 50)
+        box = b.show(".plots .chart .overlay")
+        times, windows = [], set()
+        for _ in range(3):
+            b.drag((box["x"] + 200, box["y"] + 100), (box["x"] + 600, box["y"] + 102))
+            times.append(float(b.run("document.querySelector('.plots .curves').dataset.ms")))
+            windows.add(b.run("document.querySelector('.statistics caption').textContent"))
+        self.assertEqual(len(windows), 3, windows)
+        print("ms of a redraw with 50 curves of 20,000 samples:", times)
+        self.picture("long")
+        self.assertLess(min(times), 100)
+        self.check_sound()
+
+    def test_without_script(self):
+        """The same page where no script runs: pictures and tables are there."""
+        self.make_boom()
+        self.bough("run", "spinup.toml", "-o", "spinup.h5")
+        self.browser.call("Emulation.setScriptExecutionDisabled", value=True)
+        self.bough("report", "spinup.h5", "boom.h5", "-o", "page.html")
+        self.browser.call("Page.navigate", url="file://" + self.path("page.html"))
+        self.assertTrue(self.browser.wait_for("document.querySelectorAll('svg').length >= 8 && document.readyState === 'complete'"))
+        self.assertFalse(self.browser.run("Boolean(document.documentElement.dataset.ready)"))
+        self.assertGreater(self.browser.run("document.querySelector('.live svg').getBoundingClientRect().height"), 100)
+        self.picture("without-script", whole=True)
+
+
+if __name__ == "__main__":
+    unittest.main()
