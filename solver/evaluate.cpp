@@ -6,9 +6,10 @@ namespace bough::solver {
 void evaluate(const System& system, const State& state, SystemData& data, Eigen::Ref<VectorXd> q_dot,
               Eigen::Ref<VectorXd> u_dot) {
   const Tree& tree = system.impl().tree;
+  set_z(data, state.z);
   calc_position(tree, state.t, state.q, data.tree);  // markers, R_PB, r, X, H, Jc, M(η)
   calc_velocity(tree, state.u, data.tree);           // V = X V_P + H u - Jc η̇,   b, h
-  add_forces(system, data, state.t);                 // applied, springs, dampers, gravity
+  add_forces(system, data, state.t);                 // signals, actuators, applied, springs, dampers, gravity
   calc_factor(tree, data.tree);    // 𝒫 = M + Σ Xᵀ𝒫⁺X,  ℋᵀ𝒫ℋ = LLᵀ      tip to base
   solve(tree, data.tree, u_dot);   // β, then [u̇; η̈] = L⁻ᵀ(z - G X A'_P)    base to tip
   get_q_dot(system, data, q_dot);  // q̇ = N(q) u

@@ -8,8 +8,8 @@
 
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
-#include "cli/linear_verbs.hpp"
 #include "cli/linearize/operating_point.hpp"
+#include "cli/verbs.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/records/mode_subset.hpp"
 #include "formats/toml/specs.hpp"
@@ -27,6 +27,7 @@ using statespace::NodeDirection;
 namespace {
 
 struct SelectOptions : CommonOptions {
+  std::vector<std::string> set;
   std::string body, system;
   std::vector<std::string> inputs, outputs;
   int number = 0;
@@ -81,7 +82,7 @@ std::vector<NodeDirection> choose_places(const records::FlexBody& body, const st
 
 /// The modes of `file` in the linear model of a whole system; those of several bodies from one file add up.
 ModeRanking rank_in_system(const SelectOptions& o, const records::FlexBody& body, Diagnostics& diagnostics) {
-  const auto loaded = load_system(o.system, diagnostics);
+  const auto loaded = load_system(o.system, diagnostics, {}, o.set);
   std::vector<std::string> users;
   for (const auto& record : loaded.spec.bodies) {
     const auto found = loaded.flex_path.find(record.file);
@@ -92,7 +93,7 @@ ModeRanking rank_in_system(const SelectOptions& o, const records::FlexBody& body
     throw InputError("select.body-not-in-system", {o.system}, "no body of the system has the file " + o.body,
                      "name the body file that the system uses");
   }
-  auto plant = make_plant(loaded, diagnostics);
+  auto plant = make_plant(loaded);
   auto point = o.at ? run_to(loaded, plant, *o.at, diagnostics) : plant.make_initial_point();
   if (o.equilibrium) point = solver::find_equilibrium(plant, point, {o.system}).point;
   const auto model = solver::linearize(plant, point, {o.inputs, o.outputs, false}, {o.system}, diagnostics);
@@ -239,6 +240,7 @@ void add_select(CLI::App& app, Action& action) {
       ->check(CLI::PositiveNumber);
   verb->add_option("--at", o->at, "With a system: weigh the modes at this time of its run");
   verb->add_flag("--equilibrium", o->equilibrium, "With a system: at its state of rest or steady spin");
+  add_set_option(*verb, o->set);
   add_common_options(*verb, *o, kOutput | kJson, "Write the body with the modes kept to this HDF5 file");
   verb->footer(
       "Example:\n  bough select panel.h5 --number 12 -o small.h5\n"

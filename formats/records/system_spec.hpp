@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/diagnostic.hpp"
+#include "formats/records/control_spec.hpp"
 #include "formats/records/flex_body.hpp"
 
 namespace bough::records {
@@ -89,7 +90,23 @@ enum class SensorType {
   AngularVelocity,
   AngularAcceleration,
   HingeAngle,
-  HingeRate
+  HingeRate,
+  Quaternion,
+  Euler,
+  DirectionCosines,
+  Gyro,
+  IntegratingGyro,
+  Accelerometer,
+  Resolver,
+  Tachometer,
+  Direction,
+  Horizon,
+  HingeForce,
+  HingeMoment,
+  StrainEnergy,
+  ModalCoordinate,
+  ModalRate,
+  Distance
 };
 
 struct SensorRecord {
@@ -101,7 +118,13 @@ struct SensorRecord {
   std::string relative_to;         ///< all but deflection and rotation: this body's motion is taken off; empty = none
   bool from_turning = true;        ///< relative_to: as an observer who turns with that body sees it
   std::string hinge;               ///< hinge sensors
-  int coordinate = 0;              ///< hinge sensors: 1-based; 0 = all
+  int coordinate = 0;              ///< hinge sensors: 1-based; 0 = all; modal sensors: the mode
+  std::string to_body;             ///< distance: the other end; empty = ground
+  int to_node = 0;
+  std::string sequence = "321";           ///< euler: axes of the three turns, in their order
+  Matrix3d mount = Matrix3d::Identity();  ///< R_KS: the sensor's axes S in those of the node K
+  Vector3d target = Vector3d::UnitX();    ///< direction: in the inertial frame; horizon: the centre's position
+  Settings chain;                         ///< scale, bias, noise, ...: what becomes of the measurement
   SourceLocation at;
 };
 
@@ -147,6 +170,8 @@ struct SystemSpec {
   std::vector<ForceRecord> forces;
   std::vector<SensorRecord> sensors;
   std::vector<TriggerRecord> events;
+  std::vector<ControllerRecord> controllers;
+  std::vector<ActuatorRecord> actuators;
   SimulationRecord simulation;
 };
 

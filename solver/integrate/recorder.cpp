@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "solver/system/impl.hpp"
+
 namespace bough::solver {
 
-Recorder::Recorder(const System& system, Sensors sensors) : system_(system), sensors_(std::move(sensors)) {
+Recorder::Recorder(const System& system) : system_(system) {
   add_channel("/time", 1, "time", "T");
   for (int b = 0; b < system.num_bodies(); ++b) {
     const std::string path = "/bodies/" + system.body_name(b) + "/";
@@ -36,8 +38,8 @@ Recorder::Recorder(const System& system, Sensors sensors) : system_(system), sen
                 "moment of the parent on the child about the child's hinge frame, in the hinge axes of the parent",
                 "F L");
   }
-  for (const auto& entry : sensors_.entries())
-    add_channel("/sensors/" + entry.name, entry.size, entry.description, entry.dims);
+  for (const auto& p : system.impl().signals.places)
+    add_channel(p.block->path, p.block->sizes.outputs, p.block->description, p.block->dims);
   add_channel("/energy/kinetic", 1, "kinetic energy", "F L");
   add_channel("/energy/strain", 1, "strain energy of the modes and the hinge springs", "F L");
   add_channel("/energy/potential", 1, "potential energy of gravity", "F L");
@@ -151,8 +153,7 @@ const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Ei
     put(reaction.force);
     put(reaction.moment);
   }
-  sensors_.calc(system_, data, sample_.segment(at, sensors_.size()));
-  at += sensors_.size();
+  put(data.signals.values);
   energies_ = calc_energies(system_, data);
   put(Eigen::Vector4d(energies_.kinetic, energies_.strain, energies_.potential, work));
   sample_[at++] = dissipated;

@@ -57,7 +57,8 @@ StepperOptions make_stepper_options(const SystemOde& ode, const records::Simulat
   }
   // Work is a quadrature: it follows the motion's accuracy and should not set the step, but where the motion is so
   // plain that any step would do, its own error must.
-  o.absolute_tolerance.tail(ode.size() - ode.num_coordinates()).setConstant(std::sqrt(s.absolute_tolerance));
+  o.absolute_tolerance.tail(ode.size() - ode.num_coordinates() - ode.num_z())
+      .setConstant(std::sqrt(s.absolute_tolerance));
   o.step = plan.step;
   o.rk_order = s.rk_order;
   return o;
@@ -68,7 +69,9 @@ Timeline make_timeline(const System& system, const RunSetup& setup) {
   auto landmarks = setup.triggers.collect_times(records::EventAction::Log);
   restarts.insert(restarts.end(), system.breakpoints().begin(), system.breakpoints().end());
   landmarks.insert(landmarks.end(), system.landmarks().begin(), system.landmarks().end());
-  return {setup.plan, std::move(restarts), std::move(landmarks)};
+  Timeline timeline(setup.plan, std::move(restarts), std::move(landmarks));
+  for (const auto& s : system.impl().signals.collect_samples()) timeline.add_samples(s.first, s.period);
+  return timeline;
 }
 
 }  // namespace
@@ -92,7 +95,9 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
                         {"quaternions", setup_.recorder.quaternions},
                         {"limits", VectorXd::Zero(2 * limit_.num_watched())},
                         {"events", VectorXd::Zero(1 + setup_.triggers.signs.size())},
-                        {"stepper", VectorXd::Zero(4)}};
+                        {"stepper", VectorXd::Zero(4)},
+                        {"control", get_control_memory()}};
+  guards_ = last_guards_ = VectorXd::Zero(system.impl().signals.num_guards);
   progress_.start = timeline_.start();
   progress_.end = timeline_.end();
 }
@@ -111,19 +116,37 @@ SimulateOutcome Run::go() {
     } else {
       stepper_->set_stop(stop.time, stop.latest);
     }
+    bool is_cut = false;
     while (stepper_->time() < stop.time) {
       take_step(stop);
-      const auto ends = watch_signals(stop);
-      if (!write_outputs(ends ? ends->time : stepper_->time())) return *outcome_;
+      const auto switches = find_switch(stop);
+      const double reached = switches.value_or(stepper_->time());
+      const auto ends = watch_signals(stop, reached);
+      if (!write_outputs(ends ? ends->time : reached)) return *outcome_;
       if (ends) return finish(*ends);
+      if (switches && reached < stop.time) {
+        is_cut = true;
+        t = reached;
+        break;
+      }
       if (is_stop_asked()) return halt(stepper_->time());
       save_now_and_then();
     }
+    if (is_cut) {  // a block switches within the step, which ends there
+      guard([&] { stepper_->calc_state(t, y_); });
+      settle_switches(t);
+      has_switched_ = false;
+      restarts = true;
+      continue;
+    }
     t = stop.time;
-    restarts = stop.restarts;
     stepper_->calc_state(t, y_);
     cross_jump();
-    if (const auto ends = pass(stop)) return finish(*ends);
+    settle_control(t);
+    restarts = stop.restarts || has_switched_;
+    const auto ends = pass(stop);
+    has_switched_ = false;
+    if (ends) return finish(*ends);
   }
   save(timeline_.end());
   return close(timeline_.end(), "");
@@ -143,6 +166,7 @@ double Run::begin() {
     if (t > timeline_.start() && std::abs(passed_ - t) > timeline_.resolution()) fire_due(t);
     return t;
   }
+  settle_control(t);
   checkpoint_.time = t;
   write_outputs_at(t);
   setup_.triggers.start(calc_gaps(t));
@@ -199,7 +223,10 @@ bool Run::write_outputs(double t) {
   while (timeline_.next_output() <= t) {
     const double t_out = timeline_.next_output();
     guard([&] { stepper_->calc_state(t_out, y_); });
-    if (t_out == stop_.time) cross_jump();
+    if (t_out == stop_.time) {
+      cross_jump();
+      settle_control(t_out);
+    }
     const bool saves = timeline_.next_index() % kCheckpointEvery == 0;
     write_outputs_at(t_out);
     if (saves) save(t_out);
@@ -246,7 +273,10 @@ void Run::observe(double t) {
 }
 
 const VectorXd& Run::calc_sample(double t, const VectorXd& y) {
-  guard([&] { ode_.calc_derivative(t, y, y_dot_); });
+  guard([&] {
+    ode_.calc_derivative(t, y, y_dot_);
+    calc_signals(ode_.system(), ode_.data());
+  });
   const int num_q = ode_.num_q();
   return setup_.recorder.calc_sample(t, ode_.data(), y.head(num_q), y.segment(num_q, ode_.num_coordinates() - num_q),
                                      ode_.get_work(y), ode_.get_dissipated(y));

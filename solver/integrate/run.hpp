@@ -46,13 +46,23 @@ class Run {
 
   // Events (run_events.cpp)
   /// Signals that crossed their values in the last step: each is located and fires, up to the first that ends the run.
-  std::optional<Firing> watch_signals(const Stop& stop);
+  std::optional<Firing> watch_signals(const Stop& stop, double to);
   /// What comes at a stop itself: events at a time, and crossings by the jump.
   std::optional<Firing> pass(const Stop& stop);
   /// Carries the events out in the order of their times; the one that ends the run, when there is one.
   std::optional<Firing> fire(std::vector<Firing>& firings);
   /// The end that an event brings: a last sample at its time.
   SimulateOutcome finish(const Firing& firing);
+
+  // Controllers (run_control.cpp)
+  /// Samples that are due at t and switches that are open there, once; y_ is the state.
+  void settle_control(double t);
+  /// Switches every block with a positive guard at (t, y_) until there is none.
+  void settle_switches(double t);
+  /// The first time in the last step at which a block switches.
+  std::optional<double> find_switch(const Stop& stop);
+  VectorXd get_control_memory() const;
+  void set_control_memory(const VectorXd& memory);
 
   // Checkpoints (run_checkpoint.cpp)
   void check_resume();
@@ -105,6 +115,9 @@ class Run {
   double crossed_ = -std::numeric_limits<double>::infinity();  ///< the last stop whose jumps are logged
   bool is_started_ = false;                                    ///< the stepper is
   int num_tiny_ = 0;
+  VectorXd guards_, last_guards_;
+  double sampled_ = -std::numeric_limits<double>::infinity();  ///< the last instant whose samples are taken
+  bool has_switched_ = false;  ///< what the motion depends on has changed since the stepper's last start
 };
 
 }  // namespace bough::solver

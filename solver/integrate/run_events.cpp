@@ -5,10 +5,10 @@
 
 namespace bough::solver {
 
-std::optional<Firing> Run::watch_signals(const Stop& stop) {
+std::optional<Firing> Run::watch_signals(const Stop& stop, double to) {
   if (!setup_.triggers.has_signals()) return {};
-  const double from = stepper_->last_time(), to = stepper_->time();
-  y_ = stepper_->state();
+  const double from = stepper_->last_time();
+  guard([&] { stepper_->calc_state(to, y_); });
   calc_gaps(std::min(to, stop.latest));
   std::vector<size_t> crossed;
   setup_.triggers.find_crossed(gaps_, crossed);
@@ -33,7 +33,7 @@ std::optional<Firing> Run::pass(const Stop& stop) {
   std::vector<Firing> firings;
   passed_ = stop.time;
   setup_.triggers.find_due(stop.time, timeline_.resolution(), firings);
-  if (stop.restarts && stop.time < timeline_.end()) {
+  if ((stop.restarts || has_switched_) && stop.time < timeline_.end()) {
     observe(stop.time);
     std::vector<size_t> crossed;
     setup_.triggers.find_crossed(calc_gaps(stop.time), crossed);

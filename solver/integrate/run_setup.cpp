@@ -11,10 +11,8 @@ namespace bough::solver {
 RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics) {
   bool is_sound = true;
   for (int b = 0; b < system.num_bodies(); ++b) is_sound = is_sound && system.is_sound(b);
-  const int errors = diagnostics.num_errors();
-  Sensors sensors = Sensors::build(system, spec, diagnostics);
-  is_sound = is_sound && diagnostics.num_errors() == errors;
-  RunSetup setup{make_run_plan(spec.simulation, diagnostics), Recorder(system, std::move(sensors)), {}, {}};
+  is_sound = is_sound && system.impl().signals_are_sound;
+  RunSetup setup{make_run_plan(spec.simulation, diagnostics), Recorder(system), {}, {}};
   if (is_sound) setup.recorder.choose(spec.simulation.record, spec.simulation.at, diagnostics);
   setup.triggers = Triggers::build(spec, setup.recorder, is_sound, diagnostics);
   setup.integrator = spec.simulation.integrator;

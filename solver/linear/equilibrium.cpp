@@ -16,12 +16,13 @@ class Newton {
   Newton(Plant& plant, OperatingPoint point, const SourceLocation& at)
       : plant_(plant), point_(std::move(point)), at_(at) {
     const int n = plant.num_freedoms();
-    steps_.resize(n);
+    steps_ = VectorXd::Ones(size());
     for (int i = 0; i < n; ++i) {
       steps_[i] = plant.step(i);
       if (plant.is_mode(i)) point_.u[i] = 0;
       if (plant.is_mode(i) || point_.u[i] == 0) free_.push_back(i);
     }
+    for (int i = n; i < size(); ++i) free_.push_back(i);
     residual_ = calc_residual(point_);
   }
 
@@ -46,19 +47,27 @@ class Newton {
   }
 
  private:
-  VectorXd calc_residual(const OperatingPoint& point) { return plant_.evaluate(point).head(plant_.num_freedoms()); }
+  /// Rows and displacements: the freedoms, then the states of controllers and actuators.
+  int size() const { return plant_.num_freedoms() + plant_.num_states(); }
+  std::string name(int i) const {
+    return i < plant_.num_freedoms() ? plant_.freedom_name(i) : plant_.state_name(i - plant_.num_freedoms());
+  }
+  OperatingPoint displace(const VectorXd& delta) const {
+    OperatingPoint moved = point_;
+    const int n = plant_.num_freedoms();
+    moved.q = plant_.displace(point_.q, delta.head(n));
+    for (int i = n; i < size(); ++i) moved.z[plant_.state_row(i - n)] += delta[i];
+    return moved;
+  }
+  VectorXd calc_residual(const OperatingPoint& point) { return plant_.evaluate(point).head(size()); }
 
   /// Displacements are counted in steps of the plant, so that columns are alike; rows are scaled by their largest.
   void linearize() {
-    const int n = plant_.num_freedoms(), m = static_cast<int>(free_.size());
+    const int n = size(), m = static_cast<int>(free_.size());
     jacobian_.setZero(n, m);
     for (int j = 0; j < m; ++j) {
       const int i = free_[static_cast<size_t>(j)];
-      const auto f = [&](double h) {
-        OperatingPoint moved = point_;
-        moved.q = plant_.displace(point_.q, h * steps_[i] * VectorXd::Unit(n, i));
-        return calc_residual(moved);
-      };
+      const auto f = [&](double h) { return calc_residual(displace(h * steps_[i] * VectorXd::Unit(n, i))); };
       const Difference column = differentiate(f, 0.5);
       jacobian_.col(j) = (column.value.array().abs() > column.error.array()).select(column.value, 0.0);
     }
@@ -72,14 +81,12 @@ class Newton {
   VectorXd solve_step(const VectorXd& residual) const { return -factor_.solve(weight_.asDiagonal() * residual); }
 
   OperatingPoint move(const VectorXd& step, double by) const {
-    VectorXd delta = VectorXd::Zero(plant_.num_freedoms());
+    VectorXd delta = VectorXd::Zero(size());
     for (size_t j = 0; j < free_.size(); ++j) {
       const int i = free_[j];
       delta[i] = by * step[static_cast<Eigen::Index>(j)] * steps_[i];
     }
-    OperatingPoint moved = point_;
-    moved.q = plant_.displace(point_.q, delta);
-    return moved;
+    return displace(delta);
   }
 
   void take(const VectorXd& step) {
@@ -111,7 +118,7 @@ class Newton {
 
   /// Each row of u̇ must vanish beside what a small displacement makes of it.
   void demand_rest(int num_iterations) const {
-    const int n = plant_.num_freedoms();
+    const int n = size();
     const double floor = n > 0 ? 1e-9 * row_scale_.maxCoeff() : 0;
     int worst = -1;
     double largest = 1;
@@ -124,8 +131,8 @@ class Newton {
     if (worst < 0) return;
     std::ostringstream what;
     what << "no state of rest or steady spin was found: after " << num_iterations << " iterations |u_dot| is "
-         << residual_.norm() << ", most of all " << plant_.freedom_name(worst) << ", which accelerates by "
-         << residual_[worst];
+         << residual_.norm() << ", most of all " << name(worst)
+         << (worst < plant_.num_freedoms() ? ", which accelerates by " : ", which changes by ") << residual_[worst];
     throw ComputationError("equilibrium.not-converged", at_, what.str(),
                            row_scale_[worst] > 0
                                ? "start nearer to it, by position and eta"
@@ -141,8 +148,7 @@ class Newton {
     for (size_t j = 0; j < free_.size(); ++j) {
       const auto column = static_cast<Eigen::Index>(j);
       const VectorXd effect = weight_.asDiagonal() * jacobian_.col(column);
-      if (effect.size() == 0 || effect.cwiseAbs().maxCoeff() < 1e-9)
-        found.indifferent.push_back(plant_.freedom_name(free_[j]));
+      if (effect.size() == 0 || effect.cwiseAbs().maxCoeff() < 1e-9) found.indifferent.push_back(name(free_[j]));
     }
   }
 

@@ -15,6 +15,7 @@ enum class HingeMode : unsigned char { Free, Locked, Prescribed };
 /// What changes at instants only.
 struct Discrete {
   std::vector<HingeMode> mode;  ///< num_u, by row of u; modal rows are Free
+  VectorXd memory;              ///< of controllers, sensors and actuators: what they hold between samples and switches
 };
 
 struct State {

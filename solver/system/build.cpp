@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solver/signals/build.hpp"
+
 namespace bough::solver {
 
 namespace {
@@ -209,6 +211,7 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
   if (is_complete) check_masses(tree, spec, order, diagnostics);
   tree.finish();
   for (AppliedForce& force : impl.forces) add_force_marker(force, tree);
+  build_signals(spec, system, functions, impl, diagnostics);
   collect_breakpoints(impl);
   return system;
 }

@@ -55,6 +55,7 @@ Energies calc_energies(const System& system, const SystemData& data) {
           tb.hinge->calc_spring(data.tree.q.data() + tb.q_offset, tb.null_position.data(), tb.stiffness.data(), force);
     e.potential -= system.impl().gravity.dot(tb.body.mass() * d.state.p_WBo + d.state.R_WB * first_moment(tb, d));
   }
+  e.kinetic += system.impl().signals.calc_energy(system, data);
   return e;
 }
 
@@ -81,6 +82,7 @@ Power calc_powers(const System& system, const SystemData& data) {
         dissipated += tb.damping[i] * u[row] * u[row];
     }
   }
+  power += system.impl().signals.calc_power(system, data);
   return {power - dissipated, dissipated};
 }
 
@@ -101,6 +103,7 @@ void calc_momentum(const System& system, const SystemData& data, Vector3d& linea
     linear += p;
     angular += l;
   }
+  angular += system.impl().signals.calc_momentum(system, data);
 }
 
 SystemMass calc_system_mass(const System& system, const SystemData& data) {

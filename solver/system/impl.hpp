@@ -1,6 +1,7 @@
 #pragma once
 /// \file What stands behind System and SystemData.
 #include "solver/forces/applied.hpp"
+#include "solver/signals/graph.hpp"
 #include "solver/system/system.hpp"
 #include "solver/tree/data.hpp"
 
@@ -10,6 +11,8 @@ struct System::Impl {
   Tree tree;
   std::vector<std::unique_ptr<const TimeFunction>> functions;
   std::vector<AppliedForce> forces;
+  SignalGraph signals;
+  bool signals_are_sound = true;  ///< sensors, controllers and actuators have no errors
   Vector3d gravity = Vector3d::Zero();
   std::vector<double> breakpoints, landmarks;
   double start = 0;
@@ -19,6 +22,7 @@ struct System::Impl {
 class SystemData {
  public:
   TreeData tree;
+  SignalData signals;
 };
 
 }  // namespace bough::solver

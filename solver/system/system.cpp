@@ -20,6 +20,7 @@ System::System(System&&) noexcept = default;
 int System::num_bodies() const { return static_cast<int>(impl_->tree.bodies.size()); }
 int System::num_q() const { return impl_->tree.num_q; }
 int System::num_u() const { return impl_->tree.num_u; }
+int System::num_z() const { return impl_->signals.num_states; }
 
 int System::find_body(const std::string& name) const {
   for (int b = 0; b < num_bodies(); ++b) {
@@ -61,6 +62,7 @@ const std::vector<double>& System::landmarks() const { return impl_->landmarks; 
 std::unique_ptr<SystemData> System::make_data() const {
   auto data = std::make_unique<SystemData>();
   data->tree = make_tree_data(impl_->tree);
+  data->signals = impl_->signals.make_data();
   return data;
 }
 
@@ -89,6 +91,9 @@ State System::make_initial_state() const {
   state.u.resize(num_u());
   calc_initial_state(state.q, state.u);
   state.discrete.mode = make_tree_data(impl_->tree).mode;
+  const SignalData signals = impl_->signals.make_data();
+  state.z = signals.z;
+  state.discrete.memory = signals.memory;
   return state;
 }
 
@@ -127,12 +132,30 @@ void calc_kinematics(const System& system, SystemData& data, double t, const Eig
   calc_kinematics(system.impl().tree, t, q, u, data.tree);
 }
 
+void set_z(SystemData& data, const Eigen::Ref<const VectorXd>& z) {
+  BOUGH_DEMAND(z.size() == data.signals.z.size());
+  data.signals.z = z;
+}
+
+void calc_z_dot(const System& system, SystemData& data, Eigen::Ref<VectorXd> z_dot) {
+  data.tree.demand(Stage::Acceleration);
+  system.impl().signals.calc_late(system, data);
+  system.impl().signals.calc_rates(system, data, z_dot);
+}
+
+void calc_signals(const System& system, SystemData& data) {
+  data.tree.demand(Stage::Acceleration);
+  system.impl().signals.calc_all(system, data);
+}
+
 void add_forces(const System& system, SystemData& data, double t) {
   const System::Impl& impl = system.impl();
   data.tree.demand(Stage::Velocity);
   data.tree.gravity = impl.gravity;
+  impl.signals.calc_early(system, data);
   for (const AppliedForce& force : impl.forces) add_applied_force(force, impl.tree, t, data.tree);
   add_hinge_forces(impl.tree, data.tree);
+  impl.signals.add_loads(system, data);
 }
 
 void add_node_wrench(const System& system, SystemData& data, int body, int node_index, const Vector3d& f_W,

@@ -51,6 +51,7 @@ class System {
   int num_bodies() const;
   int num_q() const;
   int num_u() const;
+  int num_z() const;                              ///< continuous states of controllers, actuators and sensors
   int find_body(const std::string& name) const;   ///< -1 when absent
   int find_hinge(const std::string& name) const;  ///< hinge h is the inboard hinge of body h
   const std::string& body_name(int body) const;
@@ -110,7 +111,15 @@ void get_q_dot(const System& system, const SystemData& data, Eigen::Ref<VectorXd
 /// Positions and velocities of every body; clears the applied forces. Must precede the calls below. O(num_bodies).
 void calc_kinematics(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                      const Eigen::Ref<const VectorXd>& u);
-/// Adds every [[force]] of the spec at time t, hinge springs and dampers, gravity. After calc_kinematics.
+/// States of controllers, actuators and sensors from now on; those of the start in a new SystemData. z: num_z.
+void set_z(SystemData& data, const Eigen::Ref<const VectorXd>& z);
+/// ż. After calc_accelerations.
+void calc_z_dot(const System& system, SystemData& data, Eigen::Ref<VectorXd> z_dot);
+/// Every signal, those that only the results want too. After calc_accelerations.
+void calc_signals(const System& system, SystemData& data);
+
+/// Computes the signals that the motion needs and adds what actuators do, every [[force]] of the spec at time t, hinge
+/// springs and dampers, gravity. After calc_kinematics.
 void add_forces(const System& system, SystemData& data, double t);
 /// Adds a force and moment (components in W) at a node, through its Jacobian φ - K_G2 η. After calc_kinematics.
 void add_node_wrench(const System& system, SystemData& data, int body, int node_index, const Vector3d& f_W,

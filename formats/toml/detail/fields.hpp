@@ -18,6 +18,7 @@ class Fields {
 
   bool has(const std::string& key) const { return table_.find(key) != nullptr; }
   const Value* find(const std::string& key) const { return table_.find(key); }
+  const std::vector<Entry>& entries() const { return table_.entries; }
   SourceLocation locate() const { return {file_, table_.line}; }
   /// Of the key; of the table when the key is absent.
   SourceLocation locate(const std::string& key) const;
