@@ -41,7 +41,7 @@ OUTSIDE = [
     (r"^matio", ["formats/matrices"]),
     (r"^nlohmann", ["formats/toml", "cli"]),
     (r"^muParser", ["solver/control/expression.cpp"]),
-    (r"^dlfcn", ["solver/control/library.cpp"]),
+    (r"^dlfcn", ["solver/control/library.cpp", "fe/linear/petsc.cpp", "cli/common/memory_limit.cpp"]),
     (r"^CLI/", ["cli"]),
     (r"^fmt/", ["cli", "formats"]),
     (r"^(sundials|cvode|arkode|nvector|sunlinsol|sunmatrix|sunnonlinsol)", ["solver/integrate", "cli/common/versions.cpp"]),

@@ -65,8 +65,9 @@ TEST(Loop, PidFollowsAStepAsItsLinearEquationsSay) {
 TEST(Loop, AWoundUpIntegralIsLetGo) {
   auto spec = make_axis();
   spec.functions = {make_step("target", 3, 0)};
-  spec.controllers = {
-      make_law("law", "pid", {"angle"}, {{"kp", {2}}, {"ki", {0.4}}, {"kd", {4}}, {"upper", {0.5}}, {"lower", {-0.5}}})};
+  spec.controllers = {make_law("law", "pid", {"angle"}, {{"kp", {2}}, {"ki", {0.4}}, {"kd", {4}}})};
+  spec.controllers[0].settings.numbers["upper"] = {0.5};
+  spec.controllers[0].settings.numbers["lower"] = {-0.5};
   spec.controllers[0].reference = "target";
   spec.controllers[0].rate = "rate";
   spec.simulation.duration = 40;
