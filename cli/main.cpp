@@ -8,7 +8,6 @@
 #include "cli/common/memory_limit.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/common/versions.hpp"
-#include "cli/linear_verbs.hpp"
 #include "cli/verbs.hpp"
 
 namespace {

@@ -27,6 +27,9 @@ void add_report(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_init(CLI::App& app, Action& action);
 void add_batch(CLI::App& app, Action& action);
+void add_equilibrium(CLI::App& app, Action& action);
+void add_linearize(CLI::App& app, Action& action);
+void add_select(CLI::App& app, Action& action);
 
 /// Runs one command line in this process, messages and exit code as from the shell. Words without the program's name.
 int run_command(const std::vector<std::string>& words);

@@ -1,6 +1,7 @@
 # Every outside library in one place, so that the install rules and the package config name the same ones.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Threads REQUIRED)
+find_library(MUPARSER_LIBRARY muparser REQUIRED)
 
 # Debian's SUNDIALS config drags in targets of optional packages; the few libraries needed are found by name.
 find_path(SUNDIALS_INCLUDE_DIR cvode/cvode.h REQUIRED)

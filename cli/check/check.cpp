@@ -27,6 +27,7 @@ namespace bough::cli {
 namespace {
 
 struct CheckOptions : CommonOptions {
+  std::vector<std::string> set;
   std::string file;
   DeckModelOptions model;
   std::optional<int> gpwg;  ///< grid of the weight table; 0: the origin
@@ -183,7 +184,7 @@ int check_body(const CheckOptions& options, Console& console) {
 
 int check_system(const CheckOptions& options, const Console& console) {
   Diagnostics diagnostics;
-  const auto loaded = load_system(options.file, diagnostics);
+  const auto loaded = load_system(options.file, diagnostics, {}, options.set);
   const auto& system = loaded.system;
   Table table{{"body", "hinge", "free coordinates", "modes"}, {}};
   auto bodies = nlohmann::json::array();
@@ -320,6 +321,7 @@ void add_check(CLI::App& app, Action& action) {
       ->check(CLI::NonNegativeNumber)
       ->type_name("GRID");
   add_model_options(*verb, o->model);
+  add_set_option(*verb, o->set);
   add_common_options(*verb, *o, kOutput | kJson, "Write the report to this file instead of stdout");
   verb->footer("Example:\n  bough check boom.bdf\n  bough check spinup.toml --json");
   verb->callback([&action, o] { action = [o] { return run_check(*o); }; });

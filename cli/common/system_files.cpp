@@ -1,8 +1,10 @@
 #include "cli/common/system_files.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 
+#include "cli/common/control_files.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/start_state.hpp"
 #include "formats/hdf5/files.hpp"
@@ -38,6 +40,7 @@ std::string name_reducible(const std::string& file) {
 std::vector<std::string> collect_sources(const std::string& path, const LoadedSystem& loaded) {
   std::vector<std::string> files{path};
   for (const auto& [name, file] : loaded.flex_path) files.push_back(file);
+  for (const auto& file : list_controller_files(loaded.spec)) files.push_back(file);
   for (const auto& function : loaded.spec.functions) {
     if (!function.file.empty() && std::find(files.begin(), files.end(), function.file) == files.end())
       files.push_back(function.file);
@@ -46,9 +49,38 @@ std::vector<std::string> collect_sources(const std::string& path, const LoadedSy
   return files;
 }
 
-LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, const std::string& start_from) {
+void add_set_option(CLI::App& verb, std::vector<std::string>& set) {
+  verb.add_option("--set", set, "NAME=VALUE: another number for a parameter of [parameters]; may be repeated")
+      ->allow_extra_args(false);
+}
+
+namespace {
+
+std::vector<std::pair<std::string, std::string>> split_settings(const std::vector<std::string>& set,
+                                                                const std::string& path) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (const auto& text : set) {
+    const auto sign = text.find('=');
+    std::string value = sign == std::string::npos ? "" : text.substr(sign + 1);
+    char* end = nullptr;
+    std::strtod(value.c_str(), &end);
+    if (value.empty() || *end != '\0')
+      throw InputError("cli.bad-setting", {path}, "--set " + text + " is not NAME=NUMBER", "write --set name=1.5");
+    // TOML wants a digit on both sides of a point.
+    if (value.front() == '.') value = "0" + value;
+    if (value.back() == '.') value += "0";
+    pairs.emplace_back(text.substr(0, sign), value);
+  }
+  return pairs;
+}
+
+}  // namespace
+
+LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, const std::string& start_from,
+                         const std::vector<std::string>& set) {
   demand_file(path);
-  auto spec = toml_files::read_system_spec(path, diagnostics);
+  auto spec = toml_files::read_system_spec(path, diagnostics, split_settings(set, path));
+  if (diagnostics.num_errors() == 0) read_controller_files(spec, diagnostics);
   const bool has_errors_of_text = diagnostics.num_errors() > 0;
   std::map<std::string, records::FlexBody> flex;
   std::map<std::string, std::string> flex_path;

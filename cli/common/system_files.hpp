@@ -7,6 +7,10 @@
 #include "formats/records/system_spec.hpp"
 #include "solver/system/system.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace bough::cli {
 
 struct LoadedSystem {
@@ -22,8 +26,13 @@ std::vector<std::string> collect_sources(const std::string& path, const LoadedSy
 
 /// Reads and builds; throws InputError with every error found, all that `run` would refuse among them. Body files are
 /// relative to the system file's folder.
-/// `start_from`: a results file whose last sample is the initial state (start_state.hpp); empty: as the records say.
-LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, const std::string& start_from = {});
+/// `set`: "name=value" of [parameters]. `start_from`: a results file whose last sample is the initial state
+/// (start_state.hpp); empty: as the records say.
+LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, const std::string& start_from = {},
+                         const std::vector<std::string>& set = {});
+
+/// --set name=value, as often as wanted.
+void add_set_option(CLI::App& verb, std::vector<std::string>& set);
 
 /// path itself when absolute or when `from_file` is empty, else relative to the folder of from_file.
 std::string resolve_beside(const std::string& from_file, const std::string& path);

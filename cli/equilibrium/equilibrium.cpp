@@ -9,9 +9,9 @@
 
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
-#include "cli/linear_verbs.hpp"
 #include "cli/linearize/operating_point.hpp"
 #include "cli/run/provenance_sink.hpp"
+#include "cli/verbs.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/toml/specs.hpp"
 #include "solver/integrate/recorder.hpp"
@@ -22,15 +22,16 @@ namespace {
 
 struct EquilibriumOptions : CommonOptions {
   std::string file;
+  std::vector<std::string> set;
 };
 
 /// A results file of one sample: plot, export and --start-from take it as any other.
 void write_equilibrium(const LoadedSystem& loaded, solver::Plant& plant, const solver::Equilibrium& found,
-                       const std::vector<std::string>& sources, const std::string& path, Diagnostics& diagnostics) {
+                       const std::vector<std::string>& sources, const std::string& path) {
   const auto& point = found.point;
   plant.evaluate(point);
   const Eigen::VectorXd u = plant.expand(point.u);
-  solver::Recorder recorder(loaded.system, solver::Sensors::build(loaded.system, loaded.spec, diagnostics));
+  solver::Recorder recorder(loaded.system);
   records::ResultsHeader header;
   header.system_text = loaded.spec.text;
   header.channels = recorder.channels();
@@ -39,8 +40,8 @@ void write_equilibrium(const LoadedSystem& loaded, solver::Plant& plant, const s
   ProvenanceSink sink(*writer, calc_sources(sources));
   sink.begin(header);
   sink.write_sample(recorder.calc_sample(point.t, plant.data(), point.q, u, 0, 0));
-  Eigen::VectorXd state = Eigen::VectorXd::Zero(point.q.size() + u.size() + 2);
-  state.head(point.q.size() + u.size()) << point.q, u;
+  Eigen::VectorXd state = Eigen::VectorXd::Zero(point.q.size() + u.size() + point.z.size() + 2);
+  state.head(state.size() - 2) << point.q, u, point.z;
   records::Checkpoint checkpoint;
   checkpoint.time = point.t;
   checkpoint.state = state;
@@ -60,10 +61,10 @@ int run_equilibrium(const EquilibriumOptions& o) {
   demand_file(o.file);
   if (has_suffix(o.file, ".toml")) demand_kind(o.file, toml_files::detect_kind(o.file), "system");
   Diagnostics diagnostics;
-  const auto loaded = load_system(o.file, diagnostics);
+  const auto loaded = load_system(o.file, diagnostics, {}, o.set);
   const auto sources = collect_sources(o.file, loaded);
   if (!o.output.empty()) check_output(o, o.output, sources);
-  auto plant = make_plant(loaded, diagnostics);
+  auto plant = make_plant(loaded);
   const auto start = plant.make_initial_point();
   const auto found = solver::find_equilibrium(plant, start, {o.file});
   if (!found.unstable.empty())
@@ -105,7 +106,7 @@ int run_equilibrium(const EquilibriumOptions& o) {
     console.print(text);
   }
   if (!o.output.empty()) {
-    write_equilibrium(loaded, plant, found, sources, o.output, diagnostics);
+    write_equilibrium(loaded, plant, found, sources, o.output);
     if (!o.json) console.print("written: " + o.output + "\n");
   }
   return kSuccess;
@@ -117,6 +118,7 @@ void add_equilibrium(CLI::App& app, Action& action) {
   auto o = std::make_shared<EquilibriumOptions>();
   auto* verb = app.add_subcommand("equilibrium", "A state of rest, or of steady spin, of a multibody system");
   verb->add_option("file", o->file, "System file (.toml); hinge rates given there are kept")->required();
+  add_set_option(*verb, o->set);
   add_common_options(*verb, *o, kOutput | kJson, "Write the state to this HDF5 file, for --start-from");
   verb->footer(
       "Example:\n  bough equilibrium arm.toml -o rest.h5\n"

@@ -5,9 +5,9 @@
 
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
-#include "cli/linear_verbs.hpp"
 #include "cli/linearize/linear_model_files.hpp"
 #include "cli/linearize/operating_point.hpp"
+#include "cli/verbs.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/toml/specs.hpp"
 
@@ -18,8 +18,8 @@ namespace {
 struct LinearizeVerbOptions : CommonOptions {
   std::string file, mat, start_from;
   std::optional<double> at;
-  bool equilibrium = false;
-  std::vector<std::string> inputs, outputs;
+  bool equilibrium = false, open = false;
+  std::vector<std::string> inputs, outputs, set;
 };
 
 int run_linearize(const LinearizeVerbOptions& o) {
@@ -28,12 +28,13 @@ int run_linearize(const LinearizeVerbOptions& o) {
   demand_file(o.file);
   if (has_suffix(o.file, ".toml")) demand_kind(o.file, toml_files::detect_kind(o.file), "system");
   Diagnostics diagnostics;
-  const auto loaded = load_system(o.file, diagnostics, o.start_from);
+  const auto loaded = load_system(o.file, diagnostics, o.start_from, o.set);
   const auto sources = collect_sources(o.file, loaded);
   check_outputs(o, {o.output, o.mat}, sources);
-  auto plant = make_plant(loaded, diagnostics);
+  auto plant = make_plant(loaded, o.open);
   auto point = o.at ? run_to(loaded, plant, *o.at, diagnostics) : plant.make_initial_point();
   if (o.equilibrium) point = find_rest(plant, std::move(point), o.file);
+  plant.hold_commands(point);
   auto model = solver::linearize(plant, point, {o.inputs, o.outputs, true}, {o.file}, diagnostics);
   model.source = calc_sources(sources);
   console.print(diagnostics);
@@ -58,10 +59,13 @@ void add_linearize(CLI::App& app, Action& action) {
   verb->add_option("--start-from", o->start_from,
                    "Start from the last state of this results file, of run or equilibrium");
   verb->add_flag("--equilibrium", o->equilibrium, "Linearize about the state of rest or steady spin nearby");
-  verb->add_option("--inputs", o->inputs, "Forces, or hinges, by name, in this order (default: all forces)")
+  verb->add_option("--inputs", o->inputs,
+                   "Actuators, forces, or hinges, by name, in this order (default: all actuators, or all forces)")
       ->delimiter(',');
   verb->add_option("--outputs", o->outputs, "Sensors, or NAME:component, in this order (default: all)")->delimiter(',');
+  verb->add_flag("--open", o->open, "Open the loops: actuators keep the commands they have at the operating point");
   verb->add_option("--mat", o->mat, "Write A B C D and the names to this MATLAB file");
+  add_set_option(*verb, o->set);
   add_common_options(*verb, *o, kOutput | kJson, "Write the model to this HDF5 file");
   verb->footer(
       "Example:\n  bough linearize arm.toml -o arm-linear.h5 --mat arm.mat\n"

@@ -25,11 +25,7 @@ class LastState final : public records::ResultSink {
 
 }  // namespace
 
-solver::Plant make_plant(const LoadedSystem& loaded, Diagnostics& diagnostics) {
-  auto sensors = solver::Sensors::build(loaded.system, loaded.spec, diagnostics);
-  diagnostics.throw_if_errors();
-  return {loaded.system, std::move(sensors)};
-}
+solver::Plant make_plant(const LoadedSystem& loaded, bool is_open) { return solver::Plant(loaded.system, is_open); }
 
 solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& plant, double t,
                               Diagnostics& diagnostics) {
@@ -46,7 +42,11 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& p
   LastState sink;
   solver::simulate(loaded.system, spec, sink, {}, diagnostics);
   const auto& state = sink.last().state;
-  return {t, state.head(nq), plant.restrict(state.segment(nq, nu))};
+  const auto* control = sink.last().find("control");
+  Eigen::VectorXd memory;
+  if (control) memory = control->tail(control->size() - 1);
+  return {t, state.head(nq), plant.restrict(state.segment(nq, nu)), state.segment(nq + nu, loaded.system.num_z()),
+          memory};
 }
 
 solver::OperatingPoint find_rest(solver::Plant& plant, solver::OperatingPoint start, const std::string& file) {

@@ -5,8 +5,8 @@
 
 namespace bough::cli {
 
-/// The plant of a system file; InputError with all errors of its sensors.
-solver::Plant make_plant(const LoadedSystem& loaded, Diagnostics& diagnostics);
+/// `is_open`: without the controllers.
+solver::Plant make_plant(const LoadedSystem& loaded, bool is_open = false);
 
 /// The state at time t, by the run's own integrator. InputError("linear.bad-time") before the start.
 solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& plant, double t,

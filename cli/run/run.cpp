@@ -25,6 +25,7 @@ namespace {
 
 struct RunOptions : CommonOptions {
   std::string file, start_from;
+  std::vector<std::string> set;
   bool resume = false;
 };
 
@@ -149,7 +150,7 @@ int run_run(const RunOptions& o) {
   demand_file(o.file);
   if (has_suffix(o.file, ".toml")) demand_kind(o.file, toml_files::detect_kind(o.file), "system");
   Diagnostics diagnostics;
-  const auto loaded = load_system(o.file, diagnostics, o.start_from);
+  const auto loaded = load_system(o.file, diagnostics, o.start_from, o.set);
   const auto output = choose_output(o);
   demand_other_file(output, loaded, o.file);
 
@@ -211,6 +212,7 @@ void add_run(CLI::App& app, Action& action) {
   verb->add_option("--start-from", o->start_from,
                    "Start from the last state of this results file, of run or equilibrium")
       ->excludes("--resume");
+  add_set_option(*verb, o->set);
   add_common_options(*verb, *o, kOutput | kJson, "Results HDF5 file (default: the system file's name with .h5, here)");
   verb->footer(
       "Example:\n  bough run spinup.toml -o spinup.h5\n  bough run spinup.toml -o spinup.h5 --resume\n"

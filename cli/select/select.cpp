@@ -8,9 +8,9 @@
 
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
-#include "cli/linear_verbs.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/select/system_plant.hpp"
+#include "cli/verbs.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/records/mode_subset.hpp"
 #include "formats/toml/specs.hpp"
@@ -25,6 +25,7 @@ using statespace::NodeDirection;
 namespace {
 
 struct SelectOptions : CommonOptions {
+  std::vector<std::string> set;
   std::string body, system;
   std::vector<std::string> inputs, outputs;
   int number = 0;
@@ -97,7 +98,7 @@ Weighing weigh_alone(const SelectOptions& o, const records::FlexBody& body, cons
 /// The modes of `file` in the linear model of a whole system; those of several bodies from one file add up.
 Weighing weigh_in_system(const SelectOptions& o, const records::FlexBody& body, Diagnostics& diagnostics) {
   const auto plant = std::make_shared<SystemPlant>(
-      o.system, o.body, OperatingChoice{o.at, o.equilibrium, o.inputs, o.outputs}, diagnostics);
+      o.system, o.body, OperatingChoice{o.at, o.equilibrium, o.inputs, o.outputs, o.set}, diagnostics);
   const auto model = plant->linearize(diagnostics);
   if (model.inputs.size() == 0 || model.outputs.size() == 0) {
     throw InputError("select.no-signals", {o.system}, "the system has no [[force]] or no [[sensor]] to weigh modes by",
@@ -290,6 +291,7 @@ void add_select(CLI::App& app, Action& action) {
       ->check(CLI::PositiveNumber);
   verb->add_option("--at", o->at, "With a system: weigh the modes at this time of its run");
   verb->add_flag("--equilibrium", o->equilibrium, "With a system: at its state of rest or steady spin");
+  add_set_option(*verb, o->set);
   add_common_options(*verb, *o, kOutput | kJson, "Write the body with the modes kept to this HDF5 file");
   verb->footer(
       "Example:\n  bough select panel.h5 --number 12 -o small.h5\n"

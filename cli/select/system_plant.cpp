@@ -24,7 +24,7 @@ void keep_values(std::vector<double>& values, const std::vector<int>& kept) {
 
 SystemPlant::SystemPlant(const std::string& system, const std::string& body, OperatingChoice choice,
                          Diagnostics& diagnostics)
-    : file_(system), choice_(std::move(choice)), loaded_(load_system(system, diagnostics)) {
+    : file_(system), choice_(std::move(choice)), loaded_(load_system(system, diagnostics, {}, choice_.set)) {
   for (const auto& record : loaded_.spec.bodies) {
     const auto found = loaded_.flex_path.find(record.file);
     std::error_code ignored;
@@ -38,7 +38,7 @@ SystemPlant::SystemPlant(const std::string& system, const std::string& body, Ope
 }
 
 records::LinearModel SystemPlant::linearize(const LoadedSystem& loaded, Diagnostics& diagnostics) const {
-  auto plant = make_plant(loaded, diagnostics);
+  auto plant = make_plant(loaded);
   auto point = choice_.at ? run_to(loaded, plant, *choice_.at, diagnostics) : plant.make_initial_point();
   if (choice_.equilibrium) point = find_rest(plant, std::move(point), file_);
   return solver::linearize(plant, point, {choice_.inputs, choice_.outputs, false}, {file_}, diagnostics);

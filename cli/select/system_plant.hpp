@@ -12,7 +12,7 @@ namespace bough::cli {
 struct OperatingChoice {
   std::optional<double> at;
   bool equilibrium = false;
-  std::vector<std::string> inputs, outputs;
+  std::vector<std::string> inputs, outputs, set;
 };
 
 class SystemPlant {

@@ -12,6 +12,7 @@
 
 #include "base/diagnostic.hpp"
 #include "formats/records/constraint_spec.hpp"
+#include "formats/records/control_spec.hpp"
 #include "formats/records/flex_body.hpp"
 #include "formats/records/force_spec.hpp"
 
@@ -37,18 +38,7 @@ struct BodyRecord {
   SourceLocation at;
 };
 
-enum class HingeType {
-  Fixed,
-  Revolute,
-  Prismatic,
-  Universal,
-  Cylindrical,
-  Planar,
-  Spherical,
-  Free,
-  Screw,
-  General
-};
+enum class HingeType { Fixed, Revolute, Prismatic, Universal, Cylindrical, Planar, Spherical, Free, Screw, General };
 
 struct HingeRecord {
   std::string name;
@@ -59,14 +49,14 @@ struct HingeRecord {
   Matrix3d parent_rotation = Matrix3d::Identity();  ///< R_PHp (hinge axes in the parent body)
   Vector3d child_position = Vector3d::Zero();
   Matrix3d child_rotation = Matrix3d::Identity();  ///< R_CHc
-  Vector3d axis = Vector3d::UnitZ();               ///< revolute, prismatic, cylindrical, screw; planar: the normal; in Hp
-  Vector3d axis2 = Vector3d::UnitY();              ///< universal: second axis, in Hp at q = 0
-  double pitch = 0;                                ///< screw: travel per radian
-  std::string rotations, translations;             ///< general: axes in order, as "zxz" (gimbal), "xz"; "q": quaternion
+  Vector3d axis = Vector3d::UnitZ();    ///< revolute, prismatic, cylindrical, screw; planar: the normal; in Hp
+  Vector3d axis2 = Vector3d::UnitY();   ///< universal: second axis, in Hp at q = 0
+  double pitch = 0;                     ///< screw: travel per radian
+  std::string rotations, translations;  ///< general: axes in order, as "zxz" (gimbal), "xz"; "q": quaternion
   std::vector<double> stiffness, damping, null_position;  ///< per hinge coordinate; empty = 0
   std::vector<double> position, rate;  ///< initial; spherical/free orientation as quaternion w,x,y,z in position
   std::vector<std::string> motion;     ///< prescribed: function name per coordinate ("" = free)
-  bool is_guess = false;     ///< position: may be moved to close loops as freely as if it were not given
+  bool is_guess = false;               ///< position: may be moved to close loops as freely as if it were not given
   std::vector<bool> locked;            ///< at the start, per hinge rate; empty: none
   HingeLawRecord law;
   SourceLocation at;
@@ -106,7 +96,23 @@ enum class SensorType {
   AngularVelocity,
   AngularAcceleration,
   HingeAngle,
-  HingeRate
+  HingeRate,
+  Quaternion,
+  Euler,
+  DirectionCosines,
+  Gyro,
+  IntegratingGyro,
+  Accelerometer,
+  Resolver,
+  Tachometer,
+  Direction,
+  Horizon,
+  HingeForce,
+  HingeMoment,
+  StrainEnergy,
+  ModalCoordinate,
+  ModalRate,
+  Distance
 };
 
 struct SensorRecord {
@@ -118,7 +124,13 @@ struct SensorRecord {
   std::string relative_to;         ///< all but deflection and rotation: this body's motion is taken off; empty = none
   bool from_turning = true;        ///< relative_to: as an observer who turns with that body sees it
   std::string hinge;               ///< hinge sensors
-  int coordinate = 0;              ///< hinge sensors: 1-based; 0 = all
+  int coordinate = 0;              ///< hinge sensors: 1-based; 0 = all; modal sensors: the mode
+  std::string to_body;             ///< distance: the other end; empty = ground
+  int to_node = 0;
+  std::string sequence = "321";           ///< euler: axes of the three turns, in their order
+  Matrix3d mount = Matrix3d::Identity();  ///< R_KS: the sensor's axes S in those of the node K
+  Vector3d target = Vector3d::UnitX();    ///< direction: in the inertial frame; horizon: the centre's position
+  Settings chain;                         ///< scale, bias, noise, ...: what becomes of the measurement
   SourceLocation at;
 };
 
@@ -168,6 +180,8 @@ struct SystemSpec {
   std::vector<ForceElementRecord> force_elements;  ///< [[force]] with a type
   std::vector<SensorRecord> sensors;
   std::vector<TriggerRecord> events;
+  std::vector<ControllerRecord> controllers;
+  std::vector<ActuatorRecord> actuators;
   SimulationRecord simulation;
 };
 

@@ -9,7 +9,9 @@ namespace bough::toml_files {
 records::BodySpec read_body_spec(const std::string& path, Diagnostics& diagnostics);
 /// The same of the text of the file `path`, which is not opened.
 records::BodySpec read_body_spec_text(const std::string& text, const std::string& path, Diagnostics& diagnostics);
-records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagnostics);
+/// `set`: parameters with other numbers (TOML text) than in the file; its text in the record has them too.
+records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagnostics,
+                                     const std::vector<std::pair<std::string, std::string>>& set = {});
 /// The same of the text of the file `path`, which is not opened; tables that it names are.
 records::SystemSpec read_system_spec_text(const std::string& text, const std::string& path, Diagnostics& diagnostics);
 /// Reports "toml.changed" for each difference of two texts of a system file that a run cannot go on with: all but its

@@ -7,12 +7,15 @@
 #include <Eigen/Eigenvalues>
 
 #include "formats/toml/detail/constraint_table.hpp"
+#include "formats/toml/detail/control_tables.hpp"
 #include "formats/toml/detail/event_table.hpp"
 #include "formats/toml/detail/fields.hpp"
 #include "formats/toml/detail/force_table.hpp"
 #include "formats/toml/detail/hinge_table.hpp"
+#include "formats/toml/detail/parameters.hpp"
 #include "formats/toml/detail/references.hpp"
 #include "formats/toml/detail/schema.hpp"
+#include "formats/toml/key_editor.hpp"
 #include "formats/toml/specs.hpp"
 
 namespace bough::toml_files {
@@ -143,7 +146,7 @@ records::FunctionRecord read_function(const Fields& fields, const Value& table, 
   return function;
 }
 
-records::SensorRecord read_sensor(const Fields& table, Diagnostics& diagnostics) {
+records::SensorRecord read_sensor(const Fields& table, const std::string& path, Diagnostics& diagnostics) {
   using records::SensorType;
   static const std::map<std::string, SensorType> types{{"position", SensorType::Position},
                                                        {"velocity", SensorType::Velocity},
@@ -153,7 +156,23 @@ records::SensorRecord read_sensor(const Fields& table, Diagnostics& diagnostics)
                                                        {"angular_velocity", SensorType::AngularVelocity},
                                                        {"angular_acceleration", SensorType::AngularAcceleration},
                                                        {"hinge_angle", SensorType::HingeAngle},
-                                                       {"hinge_rate", SensorType::HingeRate}};
+                                                       {"hinge_rate", SensorType::HingeRate},
+                                                       {"quaternion", SensorType::Quaternion},
+                                                       {"euler", SensorType::Euler},
+                                                       {"dcm", SensorType::DirectionCosines},
+                                                       {"gyro", SensorType::Gyro},
+                                                       {"integrating_gyro", SensorType::IntegratingGyro},
+                                                       {"accelerometer", SensorType::Accelerometer},
+                                                       {"resolver", SensorType::Resolver},
+                                                       {"tachometer", SensorType::Tachometer},
+                                                       {"direction", SensorType::Direction},
+                                                       {"horizon", SensorType::Horizon},
+                                                       {"hinge_force", SensorType::HingeForce},
+                                                       {"hinge_moment", SensorType::HingeMoment},
+                                                       {"strain_energy", SensorType::StrainEnergy},
+                                                       {"modal_coordinate", SensorType::ModalCoordinate},
+                                                       {"modal_rate", SensorType::ModalRate},
+                                                       {"distance", SensorType::Distance}};
   records::SensorRecord sensor;
   sensor.at = table.locate();
   sensor.name = table.get_string("name");
@@ -168,7 +187,15 @@ records::SensorRecord read_sensor(const Fields& table, Diagnostics& diagnostics)
   const bool is_elastic = sensor.type == SensorType::Deflection || sensor.type == SensorType::Rotation;
   sensor.frame = table.get_string("frame", is_elastic ? "body" : "inertial");
 
-  const bool is_hinge_sensor = sensor.type == SensorType::HingeAngle || sensor.type == SensorType::HingeRate;
+  read_sensor_keys(table, path, it->first, sensor, diagnostics);
+  const bool is_hinge_load = sensor.type == SensorType::HingeForce || sensor.type == SensorType::HingeMoment;
+  const bool is_hinge_sensor = sensor.type == SensorType::HingeAngle || sensor.type == SensorType::HingeRate ||
+                               sensor.type == SensorType::Resolver || sensor.type == SensorType::Tachometer ||
+                               is_hinge_load;
+  const bool is_modal = sensor.type == SensorType::ModalCoordinate || sensor.type == SensorType::ModalRate;
+  const bool is_attitude = sensor.type == SensorType::Quaternion || sensor.type == SensorType::Euler ||
+                           sensor.type == SensorType::DirectionCosines;
+  const bool is_vector = sensor.type <= SensorType::AngularAcceleration;
   const std::string because = "in sensor '" + sensor.name + "' of type " + it->first;
   const char* needed = is_hinge_sensor ? "hinge" : "body";
   if (!table.has(needed)) {
@@ -176,10 +203,15 @@ records::SensorRecord read_sensor(const Fields& table, Diagnostics& diagnostics)
   }
   if (is_hinge_sensor) {
     refuse_keys(table, {"body", "node", "frame", "relative_to", "observer"}, because, diagnostics);
+    if (is_hinge_load) refuse_keys(table, {"coordinate"}, because, diagnostics);
   } else {
-    refuse_keys(table, {"hinge", "coordinate"}, because, diagnostics);
+    refuse_keys(table, {"hinge"}, because, diagnostics);
+    if (!is_modal) refuse_keys(table, {"coordinate"}, because, diagnostics);
+    if (!is_vector) refuse_keys(table, {"frame", "observer"}, because, diagnostics);
+    if (!is_vector && !is_attitude) refuse_keys(table, {"relative_to"}, because, diagnostics);
+    if (is_modal || sensor.type == SensorType::StrainEnergy) refuse_keys(table, {"node"}, because, diagnostics);
     if (is_elastic) refuse_keys(table, {"relative_to", "observer"}, because, diagnostics);
-    if (!is_elastic && !table.has("relative_to"))
+    if (is_vector && !is_elastic && !table.has("relative_to"))
       refuse_keys(table, {"observer"}, because + ", which has no relative_to", diagnostics);
   }
   sensor.from_turning = table.get_string("observer", "turning") != "fixed";
@@ -214,12 +246,34 @@ records::SimulationRecord read_simulation(const Fields& table, Diagnostics& diag
   return simulation;
 }
 
+/// [parameters] of the text with other numbers. Reports "toml.unknown-parameter".
+void set_parameters(std::string& text, const std::string& path,
+                    const std::vector<std::pair<std::string, std::string>>& set, Diagnostics& diagnostics) {
+  Value root;
+  if (set.empty() || !parse_toml(text, path, root, diagnostics)) return;
+  const Value* parameters = root.find("parameters");
+  std::vector<std::string> known;
+  if (parameters)
+    for (const auto& entry : parameters->entries) known.push_back(entry.key);
+  for (const auto& [name, value] : set) {
+    std::string why = "it has no such parameter";
+    if (std::find(known.begin(), known.end(), name) != known.end()) why = set_key(text, "parameters." + name, value);
+    if (why.empty()) continue;
+    const std::string near = find_nearest(name, known);
+    diagnostics.error("toml.unknown-parameter", {path}, "parameter '" + name + "' cannot be set: " + why,
+                      near.empty() || near == name ? "add it to [parameters]" : "did you mean '" + near + "'?");
+  }
+}
+
 }  // namespace
 
-records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagnostics) {
+records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagnostics,
+                                     const std::vector<std::pair<std::string, std::string>>& set) {
   records::SystemSpec spec;
   spec.file = path;
-  return read_text(path, spec.text, diagnostics) ? read_system_spec_text(spec.text, path, diagnostics) : spec;
+  if (!read_text(path, spec.text, diagnostics)) return spec;
+  set_parameters(spec.text, path, set, diagnostics);
+  return read_system_spec_text(spec.text, path, diagnostics);
 }
 
 records::SystemSpec read_system_spec_text(const std::string& text, const std::string& path, Diagnostics& diagnostics) {
@@ -228,6 +282,7 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
   spec.text = text;
   Value root;
   if (!parse_toml(spec.text, path, root, diagnostics)) return spec;
+  insert_parameters(root, path, diagnostics);
   check_schema(root, get_system_schema(), path, diagnostics);
 
   const Fields fields(root, path);
@@ -242,7 +297,11 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
     }
   }
   for (const Fields& table : fields.get_tables("force")) read_force(table, spec, diagnostics);
-  for (const Fields& table : fields.get_tables("sensor")) spec.sensors.push_back(read_sensor(table, diagnostics));
+  for (const Fields& table : fields.get_tables("sensor")) spec.sensors.push_back(read_sensor(table, path, diagnostics));
+  for (const Fields& table : fields.get_tables("controller"))
+    spec.controllers.push_back(read_controller(table, path, diagnostics));
+  for (const Fields& table : fields.get_tables("actuator"))
+    spec.actuators.push_back(read_actuator(table, path, diagnostics));
   for (const Fields& table : fields.get_tables("event")) spec.events.push_back(read_event(table, diagnostics));
   spec.simulation = read_simulation(fields.get_table("simulation"), diagnostics);
   check_names(spec, diagnostics);

@@ -6,7 +6,7 @@
 
 namespace bough::solver {
 
-Recorder::Recorder(const System& system, Sensors sensors) : system_(system), sensors_(std::move(sensors)) {
+Recorder::Recorder(const System& system) : system_(system) {
   add_channel("/time", 1, "time", "T");
   for (int b = 0; b < system.num_bodies(); ++b) {
     const std::string path = "/bodies/" + system.body_name(b) + "/";
@@ -54,8 +54,8 @@ Recorder::Recorder(const System& system, Sensors sensors) : system_(system), sen
     for (const ForceChannel& c : element->channels())
       add_channel("/forces/" + element->name() + "/" + c.name, c.size, c.description, c.dims);
   }
-  for (const auto& entry : sensors_.entries())
-    add_channel("/sensors/" + entry.name, entry.size, entry.description, entry.dims);
+  for (const auto& p : system.impl().signals.places)
+    add_channel(p.block->path, p.block->sizes.outputs, p.block->description, p.block->dims);
   add_channel("/energy/kinetic", 1, "kinetic energy", "F L");
   add_channel("/energy/strain", 1, "strain energy of the modes, of springs and of contacts", "F L");
   add_channel("/energy/potential", 1, "potential energy of gravity", "F L");
@@ -107,9 +107,10 @@ void Recorder::choose(const std::vector<std::string>& groups, const SourceLocati
     const auto is_in = [&](const auto& channel) { return lies_in(channel.path, group); };
     if (std::any_of(channels_.begin(), channels_.end(), is_in)) continue;
     const std::string near = find_nearest(group, known);
-    diagnostics.error("run.unknown-group", where, "record names '" + group + "', which the results do not hold",
-                      near.empty() ? "name bodies, hinges, constraints, sensors, energy, momentum or a part of them, as bodies/NAME"
-                                   : "did you mean '" + near + "'?");
+    diagnostics.error(
+        "run.unknown-group", where, "record names '" + group + "', which the results do not hold",
+        near.empty() ? "name bodies, hinges, constraints, sensors, energy, momentum or a part of them, as bodies/NAME"
+                     : "did you mean '" + near + "'?");
   }
   chosen_.clear();
   ranges_.clear();
@@ -189,8 +190,7 @@ const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Ei
     for (const int size : element_sizes_[i])
       for (int k = 0; k < size; ++k) sample_[at++] = data.elements[i].values[first++];
   }
-  sensors_.calc(system_, data, sample_.segment(at, sensors_.size()));
-  at += sensors_.size();
+  put(data.signals.values);
   energies_ = calc_energies(system_, data);
   put(Eigen::Vector4d(energies_.kinetic, energies_.strain, energies_.potential, work));
   sample_[at++] = dissipated;

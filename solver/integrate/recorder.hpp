@@ -1,7 +1,6 @@
 #pragma once
 /// \file What a run records: the channels of the results file (docs/formats) and one sample of them.
 #include "formats/records/results.hpp"
-#include "solver/sensors/sensor.hpp"
 #include "solver/system/system.hpp"
 
 namespace bough::solver {
@@ -10,14 +9,15 @@ class Recorder {
  public:
   /// Channels, their order fixed here once: /time; per body position, quaternion, velocity, angular_velocity, and eta,
   /// eta_dot when it has modes; per hinge q, qdot, force when it has coordinates, reaction_force, reaction_moment;
-  /// per constraint its reactions; elements of force; sensors; energy; momentum; system_mass.
-  Recorder(const System& system, Sensors sensors);
+  /// per constraint its reactions; elements of force; sensors, controllers, actuators, functions that are signals;
+  /// energy; momentum; system_mass.
+  explicit Recorder(const System& system);
 
   /// Of calc_sample.
   const std::vector<records::Channel>& channels() const { return channels_; }
   /// Index in the sample of component `component` (from 0) of the channel, -1 when there is none such.
   int find(const std::string& path, int component) const;
-  /// The sample at t from `data` after calc_accelerations; q, u as given to calc_kinematics. A quaternion has the sign
+  /// The sample at t from `data` after calc_signals; q, u as given to calc_kinematics. A quaternion has the sign
   /// that is nearer to the one kept last. No allocation.
   const VectorXd& calc_sample(double t, const SystemData& data, const Eigen::Ref<const VectorXd>& q,
                               const Eigen::Ref<const VectorXd>& u, double work, double dissipated);
@@ -38,7 +38,6 @@ class Recorder {
   void add_channel(std::string path, int size, std::string description, std::string dims);
 
   const System& system_;
-  Sensors sensors_;
   std::vector<records::Channel> channels_, chosen_;
   std::vector<std::pair<int, int>> ranges_;  ///< first and size in sample_ of what is chosen
   std::vector<int> quaternion_at_;

@@ -57,7 +57,8 @@ StepperOptions make_stepper_options(const SystemOde& ode, const records::Simulat
   }
   // Work is a quadrature: it follows the motion's accuracy and should not set the step, but where the motion is so
   // plain that any step would do, its own error must.
-  o.absolute_tolerance.tail(ode.size() - ode.num_coordinates()).setConstant(std::sqrt(s.absolute_tolerance));
+  o.absolute_tolerance.tail(ode.size() - ode.num_coordinates() - ode.num_z())
+      .setConstant(std::sqrt(s.absolute_tolerance));
   o.step = plan.step;
   o.rk_order = s.rk_order;
   return o;
@@ -68,7 +69,9 @@ Timeline make_timeline(const System& system, const RunSetup& setup) {
   auto landmarks = setup.triggers.collect_times(true);
   restarts.insert(restarts.end(), system.breakpoints().begin(), system.breakpoints().end());
   landmarks.insert(landmarks.end(), system.landmarks().begin(), system.landmarks().end());
-  return {setup.plan, std::move(restarts), std::move(landmarks)};
+  Timeline timeline(setup.plan, std::move(restarts), std::move(landmarks));
+  for (const auto& s : system.impl().signals.collect_samples()) timeline.add_samples(s.first, s.period);
+  return timeline;
 }
 
 }  // namespace
@@ -93,7 +96,9 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
                         {"limits", VectorXd::Zero(2 * limit_.num_watched())},
                         {"events", VectorXd::Zero(1 + setup_.triggers.signs.size())},
                         {"stepper", VectorXd::Zero(4)},
-                        {"discrete", ode_.get_memory()}};
+                        {"discrete", ode_.get_memory()},
+                        {"control", get_control_memory()}};
+  guards_ = last_guards_ = VectorXd::Zero(system.impl().signals.num_guards);
   progress_.start = timeline_.start();
   progress_.end = timeline_.end();
 }
@@ -113,20 +118,31 @@ SimulateOutcome Run::go() {
     } else {
       stepper_->set_stop(stop.time, stop.latest);
     }
-    has_changed_ = false;
-    while (stepper_->time() < stop.time && !has_changed_) {
+    has_changed_ = has_switched_ = false;
+    bool is_cut = false;  // the step ends before the stop
+    while (stepper_->time() < stop.time && !is_cut) {
       take_step(stop);
-      const double reached = find_corner(stop);
+      const double corner = find_corner(stop);
+      const auto switches = find_switch(stop, corner);
+      const double reached = switches.value_or(corner);
       const auto turn = watch_signals(stop, reached);
       if (!write_outputs(turn ? turn->time : reached)) return *outcome_;
       if (turn && turn->time < stop.time) {
         t = turn->time;
         guard([&] { stepper_->calc_state(t, y_); });
         if (const auto ends = fire({*turn})) return finish(*ends);
-        leave_corners(t);
+        settle_switches(t);
+        is_cut = true;
         continue;
       }
       if (turn) waiting_.push_back(*turn);
+      if (switches && reached < stop.time) {  // a block switches within the step, which ends there
+        t = reached;
+        guard([&] { stepper_->calc_state(t, y_); });
+        settle_switches(t);
+        is_cut = true;
+        continue;
+      }
       if (reached < stepper_->time()) {  // the rest of the step is void
         guard([&] { stepper_->calc_state(reached, y_); });
         stepper_->restart(reached, y_, stop.time, stop.latest);
@@ -139,13 +155,17 @@ SimulateOutcome Run::go() {
       save_now_and_then();
     }
     restarts = true;
-    if (has_changed_) continue;
+    if (is_cut) {
+      leave_corners(t);
+      continue;
+    }
     t = stop.time;
     stepper_->calc_state(t, y_);
     cross_jump();
+    settle_control(t);
     if (const auto ends = pass(stop)) return finish(*ends);
     if (is_stop_asked() && t < timeline_.end()) return halt(t);
-    restarts = stop.restarts || has_changed_;
+    restarts = stop.restarts || has_changed_ || has_switched_;
     if (restarts) leave_corners(t);
   }
   save(timeline_.end());
@@ -169,6 +189,7 @@ double Run::begin() {
     resume_at_stop(t);
     return t;
   }
+  settle_control(t);
   checkpoint_.time = t;
   write_outputs_at(t);
   setup_.triggers.start(calc_gaps(t));
@@ -179,7 +200,7 @@ double Run::begin() {
 }
 
 void Run::resume_at_stop(double t) {
-  const Stop* stop = timeline_.find_stop_at(t);
+  const auto stop = timeline_.find_stop_at(t);
   if (!stop || t <= timeline_.start() || std::abs(passed_ - t) <= timeline_.resolution()) return;
   stop_ = *stop;
   if (const auto ends = pass(stop_)) outcome_ = finish(*ends);
@@ -232,7 +253,10 @@ bool Run::write_outputs(double t) {
   while (timeline_.next_output() <= t) {
     const double t_out = timeline_.next_output();
     guard([&] { stepper_->calc_state(t_out, y_); });
-    if (t_out == stop_.time) cross_jump();
+    if (t_out == stop_.time) {
+      cross_jump();
+      settle_control(t_out);
+    }
     const bool saves = timeline_.next_index() % kCheckpointEvery == 0;
     write_outputs_at(t_out);
     if (saves) save(t_out);
@@ -285,7 +309,10 @@ std::string Run::name_fastest() const {
 }
 
 const VectorXd& Run::calc_sample(double t, const VectorXd& y) {
-  guard([&] { ode_.calc_derivative(t, y, y_dot_); });
+  guard([&] {
+    ode_.calc_derivative(t, y, y_dot_);
+    calc_signals(ode_.system(), ode_.data());
+  });
   const int num_q = ode_.num_q();
   return setup_.recorder.calc_sample(t, ode_.data(), y.head(num_q), y.segment(num_q, ode_.num_coordinates() - num_q),
                                      ode_.get_work(y), ode_.get_dissipated(y));

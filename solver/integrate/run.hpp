@@ -49,8 +49,8 @@ class Run {
   SimulateOutcome close(double t, const std::string& reason);
 
   // Events (run_events.cpp)
-  /// Signals that crossed their values in the last step up to `to`: each is located and logged, up to the first that does
-  /// more, which is returned and has not come yet; those after it have not crossed.
+  /// Signals that crossed their values in the last step up to `to`: each is located and logged, up to the first that
+  /// does more, which is returned and has not come yet; those after it have not crossed.
   std::optional<Firing> watch_signals(const Stop& stop, double to);
   /// What comes at a stop itself: events at a time, and crossings by the jump.
   std::optional<Firing> pass(const Stop& stop);
@@ -69,6 +69,15 @@ class Run {
   const VectorXd& calc_corners(double t);
   /// From here on at t, where y_ is.
   void leave_corners(double t);
+  // Controllers (run_control.cpp)
+  /// Samples that are due at t and switches that are open there, once; y_ is the state.
+  void settle_control(double t);
+  /// Switches every block with a positive guard at (t, y_) until there is none.
+  void settle_switches(double t);
+  /// The first time in the last step up to `to` at which a block switches.
+  std::optional<double> find_switch(const Stop& stop, double to);
+  VectorXd get_control_memory() const;
+  void set_control_memory(const VectorXd& memory);
 
   // Checkpoints (run_checkpoint.cpp)
   void check_resume();
@@ -128,6 +137,9 @@ class Run {
   bool has_changed_ = false;                                   ///< the system, since the stepper was started
   bool is_started_ = false;                                    ///< the stepper is
   int num_tiny_ = 0;
+  VectorXd guards_, last_guards_;
+  double sampled_ = -std::numeric_limits<double>::infinity();  ///< the last instant whose samples are taken
+  bool has_switched_ = false;  ///< what the motion depends on has changed since the stepper's last start
 };
 
 }  // namespace bough::solver

@@ -33,6 +33,8 @@ double Run::restore(const records::Checkpoint& c) {
   if (const auto* m = c.find("stepper")) restored_.memory = {{"stepper", *m}};
   if (const auto* m = c.find("discrete")) ode_.set_memory(*m);
   timeline_.skip_outputs(c.time);
+  if (const auto* m = c.find("control")) set_control_memory(*m);
+  settle_control(c.time);
   last_gaps_ = calc_gaps(c.time);
   setup_.triggers.start(last_gaps_);
   if (const auto* m = c.find("events")) {
@@ -52,6 +54,7 @@ void Run::save(double t) {
   checkpoint_.memory[3].second.tail(setup_.triggers.signs.size()) = setup_.triggers.signs;
   checkpoint_.memory[4].second = stepper_->memory();
   checkpoint_.memory[5].second = ode_.get_memory();
+  checkpoint_.memory[6].second = get_control_memory();
   sink_.write_energy_error(monitor_.worst());
   sink_.write_checkpoint(checkpoint_);
   saved_at_ = std::chrono::steady_clock::now();

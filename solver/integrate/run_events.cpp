@@ -55,7 +55,7 @@ std::optional<Firing> Run::pass(const Stop& stop) {
   waiting_.clear();
   passed_ = stop.time;
   setup_.triggers.find_due(stop.time, timeline_.resolution(), firings);
-  if (stop.restarts && stop.latest < stop.time) {
+  if ((stop.restarts || has_switched_) && (stop.latest < stop.time || stop.time < timeline_.end())) {
     observe(stop.time);
     std::vector<size_t> crossed;
     setup_.triggers.find_crossed(calc_gaps(stop.time), crossed);

@@ -11,10 +11,8 @@ namespace bough::solver {
 RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics) {
   bool is_sound = true;
   for (int b = 0; b < system.num_bodies(); ++b) is_sound = is_sound && system.is_sound(b);
-  const int errors = diagnostics.num_errors();
-  Sensors sensors = Sensors::build(system, spec, diagnostics);
-  is_sound = is_sound && diagnostics.num_errors() == errors;
-  RunSetup setup{make_run_plan(spec.simulation, diagnostics), Recorder(system, std::move(sensors)), {}, {}, {}};
+  is_sound = is_sound && system.impl().signals_are_sound;
+  RunSetup setup{make_run_plan(spec.simulation, diagnostics), Recorder(system), {}, {}, {}};
   if (is_sound) setup.recorder.choose(spec.simulation.record, spec.simulation.at, diagnostics);
   setup.triggers = Triggers::build(spec, setup.recorder, is_sound, diagnostics);
   setup.changes = Changes::build(system, spec, is_sound, diagnostics);
@@ -26,8 +24,8 @@ RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diag
   }
   if (setup.integrator == "implicit" && system.num_constraints() > 0)
     diagnostics.error("run.implicit-constraints", spec.simulation.at,
-                      "integrator implicit steps along the tree of hinges, and constraint '" + system.constraint_name(0) +
-                          "' closes a loop",
+                      "integrator implicit steps along the tree of hinges, and constraint '" +
+                          system.constraint_name(0) + "' closes a loop",
                       "take rk4 for a fixed step, rk or bdf for one that adapts");
   if (setup.integrator == "auto" && diagnostics.num_errors() == 0)
     setup.integrator = choose_integrator(system, spec.simulation, setup.plan.output_step, diagnostics);

@@ -7,7 +7,11 @@
 namespace bough::solver {
 
 SystemOde::SystemOde(const System& system)
-    : system_(system), data_(system.make_data()), num_q_(system.num_q()), num_u_(system.num_u()) {
+    : system_(system),
+      data_(system.make_data()),
+      num_q_(system.num_q()),
+      num_u_(system.num_u()),
+      num_z_(system.num_z()) {
   for (const TreeBody& tb : system.impl().tree.bodies) has_motion_ = has_motion_ || !tb.motion.empty();
   for (VectorXd* v : {&k_, &c_, &first_delta_, &first_u_, &delta_, &extra_}) v->setZero(num_u_);
 }
@@ -16,18 +20,20 @@ void SystemOde::calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, E
   const auto q = y.head(num_q_);
   const auto u = y.segment(num_q_, num_u_);
   calc_kinematics(system_, *data_, t, q, u);
+  set_z(*data_, y.segment(num_coordinates(), num_z_));
   add_forces(system_, *data_, t);
   calc_accelerations(system_, *data_, t, y_dot.segment(num_q_, num_u_));
   get_q_dot(system_, *data_, y_dot.head(num_q_));
+  calc_z_dot(system_, *data_, y_dot.segment(num_coordinates(), num_z_));
   const Power power = calc_powers(system_, *data_);
-  y_dot[num_q_ + num_u_] = power.total;
-  y_dot[num_q_ + num_u_ + 1] = power.dissipated;
+  y_dot[num_coordinates() + num_z_] = power.total;
+  y_dot[num_coordinates() + num_z_ + 1] = power.dissipated;
 }
 
 std::vector<std::string> SystemOde::cross_jump(double before, double t, Eigen::Ref<VectorXd> y) {
   std::vector<std::string> events;
   solver::cross_jump(system_, *data_, before, t, nullptr, y.head(num_q_), y.segment(num_q_, num_u_),
-                     y[num_coordinates()], events);
+                     y[num_coordinates() + num_z_], events);
   return events;
 }
 
@@ -40,8 +46,8 @@ std::vector<std::string> SystemOde::change(double t, const Discrete& next, Eigen
   calc_kinematics(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
   y.head(num_q_) = data_->tree.q;
   std::vector<std::string> events;
-  solver::cross_jump(system_, *data_, t, t, &next, y.head(num_q_), y.segment(num_q_, num_u_), y[num_coordinates()],
-                     events);
+  solver::cross_jump(system_, *data_, t, t, &next, y.head(num_q_), y.segment(num_q_, num_u_),
+                     y[num_coordinates() + num_z_], events);
   return events;
 }
 
@@ -89,6 +95,7 @@ void SystemOde::set_memory(const VectorXd& memory) {
 VectorXd SystemOde::make_initial_state() const {
   VectorXd y = VectorXd::Zero(size());
   system_.calc_initial_state(y.head(num_q_), y.segment(num_q_, num_u_));
+  y.segment(num_coordinates(), num_z_) = system_.impl().signals.make_data().z;
   return y;
 }
 
@@ -105,7 +112,8 @@ std::string SystemOde::name_row(int row) const {
     if (i >= eta && i < eta + system_.num_modes(b))
       return body + (is_rate ? " (modal rate " : " (modal coordinate ") + std::to_string(i - eta + 1) + ")";
   }
-  return i == num_u_ ? "the work done" : "the energy dissipated";
+  if (is_rate && i < num_u_ + num_z_) return system_.impl().signals.name_state(i - num_u_);
+  return i == num_u_ + num_z_ ? "the work done" : "the energy dissipated";
 }
 
 std::string SystemOde::name_first_non_finite(double t, const Eigen::Ref<const VectorXd>& y) {

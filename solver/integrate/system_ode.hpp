@@ -1,5 +1,5 @@
 #pragma once
-/// \file A System as ẏ = f(t, y), y = [q; u; work; dissipated]: work integrates the power of all that is applied,
+/// \file A System as ẏ = f(t, y), y = [q; u; z; work; dissipated]: work integrates the power of all that is applied,
 /// damped or prescribed, so that kinetic + strain + potential - work is constant; dissipated is what dampers took of
 /// it.
 #include <string>
@@ -13,11 +13,12 @@ class SystemOde final : public Ode {
  public:
   explicit SystemOde(const System& system);
 
-  int size() const override { return num_q_ + num_u_ + 2; }
+  int size() const override { return num_q_ + num_u_ + num_z_ + 2; }
   const System& system() const { return system_; }
   int num_q() const { return num_q_; }
   /// Rows of y that are q and u.
   int num_coordinates() const { return num_q_ + num_u_; }
+  int num_z() const { return num_z_; }
   /// Also leaves data() at (t, y): kinematics, forces, accelerations. No allocation.
   void calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) override;
   bool has_projection() const override { return system_.num_constraints() > 0; }
@@ -27,6 +28,7 @@ class SystemOde final : public Ode {
   void calc_stage(double t, const Eigen::Ref<const VectorXd>& y, double gamma_h, bool is_first,
                   Eigen::Ref<VectorXd> k) override;
   const SystemData& data() const { return *data_; }
+  SystemData& data() { return *data_; }
   VectorXd make_initial_state() const;
   /// Takes y over the jump at t; `before` is the last moment that sees what was. Describes each jump of a rate.
   std::vector<std::string> cross_jump(double before, double t, Eigen::Ref<VectorXd> y);
@@ -37,8 +39,8 @@ class SystemOde final : public Ode {
   /// What each coordinate and constraint does, for a checkpoint.
   VectorXd get_memory() const;
   void set_memory(const VectorXd& memory);
-  double get_work(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates()]; }
-  double get_dissipated(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates() + 1]; }
+  double get_work(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates() + num_z_]; }
+  double get_dissipated(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates() + num_z_ + 1]; }
   /// "body 'boom' (modal rate 2)" for a row of y.
   std::string name_row(int row) const;
   /// What is the first not to be a finite number at (t, y): a coordinate, a function of a force or a motion, a load, an
@@ -51,7 +53,7 @@ class SystemOde final : public Ode {
 
   const System& system_;
   std::unique_ptr<SystemData> data_;
-  int num_q_, num_u_;
+  int num_q_, num_u_, num_z_;
   bool has_motion_ = false;
   // Of the stages: stiffness and damping along hinge coordinates, first stage and right-hand side in the tangent of q,
   // first stage of u, what the stage adds to forces by row of u.

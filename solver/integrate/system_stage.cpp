@@ -44,7 +44,8 @@ void SystemOde::calc_stage(double t, const Eigen::Ref<const VectorXd>& y, double
   const Tree& tree = system_.impl().tree;
   TreeData& d = data_->tree;
   Power power;
-  if (has_motion_) {  // what drives it follows from the true accelerations
+  const bool needs_derivative = has_motion_ || num_z_ > 0;
+  if (needs_derivative) {  // what drives motions, and ż, follow from the true accelerations
     calc_derivative(t, y, k);
     power = calc_powers(system_, *data_);
   }
@@ -59,7 +60,7 @@ void SystemOde::calc_stage(double t, const Eigen::Ref<const VectorXd>& y, double
   calc_accelerations(system_, *data_, t, u_dot);
   for (const TreeBody& tb : tree.bodies)
     d.applied.segment(tb.v_offset + 6, tb.num_modes()) -= extra_.segment(tb.eta_dot_offset(), tb.num_modes());
-  if (!has_motion_) power = calc_powers(system_, *data_);
+  if (!needs_derivative) power = calc_powers(system_, *data_);
   for (int row = 0; row < num_u_; ++row) {
     if (d.mode[static_cast<size_t>(row)] == HingeMode::Free)
       delta_[row] += gh * u_dot[row];
@@ -70,8 +71,8 @@ void SystemOde::calc_stage(double t, const Eigen::Ref<const VectorXd>& y, double
     tb.hinge->calc_q_dot(d.q.data() + tb.q_offset, delta_.data() + tb.u_offset, k.data() + tb.q_offset);
     k.segment(tb.eta_offset(), tb.num_modes()) = delta_.segment(tb.eta_dot_offset(), tb.num_modes());
   }
-  k[num_coordinates()] = power.total;
-  k[num_coordinates() + 1] = power.dissipated;
+  k[num_coordinates() + num_z_] = power.total;
+  k[num_coordinates() + num_z_ + 1] = power.dissipated;
   if (is_first) {
     first_delta_ = delta_;
     first_u_ = u_dot;

@@ -24,7 +24,7 @@ Timeline::Timeline(const RunPlan& plan, std::vector<double> restarts, std::vecto
   const auto earlier = [](const Stop& a, const Stop& b) { return a.time < b.time; };
   std::vector<Stop> passed;
   for (const double t : landmarks) {
-    if (is_inside(t) && std::abs(snap(t) - t) == 0) passed.push_back({t, t, false});
+    if (is_inside(t) && std::abs(snap_to_stop(t) - t) == 0) passed.push_back({t, t, false});
   }
   std::sort(passed.begin(), passed.end(), earlier);
   const auto is_jump = [&](const Stop& s) {
@@ -37,6 +37,16 @@ Timeline::Timeline(const RunPlan& plan, std::vector<double> restarts, std::vecto
 }
 
 double Timeline::snap(double t) const {
+  const double at_stop = snap_to_stop(t);
+  if (at_stop != t) return at_stop;
+  for (const auto& s : samples_) {
+    const double at = s.first + std::round((t - s.first) / s.period) * s.period;
+    if (at >= s.first && std::abs(at - t) <= close_) return snap_to_stop(at);
+  }
+  return t;
+}
+
+double Timeline::snap_to_stop(double t) const {
   const auto at =
       std::lower_bound(stops_.begin(), stops_.end(), t - close_, [](const Stop& s, double x) { return s.time < x; });
   return at != stops_.end() && at->time <= t + close_ ? at->time : t;
@@ -56,21 +66,34 @@ void Timeline::skip_outputs(double t) {
   next_ = calc_output(index_);
 }
 
-const Stop* Timeline::find_stop_at(double t) const {
+std::optional<Stop> Timeline::find_stop_at(double t) const {
   const auto at =
       std::lower_bound(stops_.begin(), stops_.end(), t - close_, [](const Stop& s, double x) { return s.time < x; });
-  return at != stops_.end() && at->time <= t + close_ ? &*at : nullptr;
+  if (at != stops_.end() && at->time <= t + close_) return *at;
+  for (const auto& s : samples_) {
+    const double time = s.first + std::round((t - s.first) / s.period) * s.period;
+    if (time >= s.first && std::abs(time - t) <= close_) return Stop{t, t, false};
+  }
+  return {};
 }
 
 bool Timeline::is_restart(double t) const {
-  const Stop* stop = find_stop_at(t);
+  const auto stop = find_stop_at(t);
   return stop && stop->restarts;
 }
 
-const Stop& Timeline::find_stop(double t) const {
+Stop Timeline::find_stop(double t) const {
   const auto at = std::upper_bound(stops_.begin(), stops_.end(), t, [](double x, const Stop& s) { return x < s.time; });
   BOUGH_DEMAND(at != stops_.end());
-  return *at;
+  Stop found = *at;
+  for (const auto& s : samples_) {
+    // The first instant past t that is not t by rounding.
+    double i = std::max(0.0, std::floor((t - s.first) / s.period));
+    double time = snap(s.first + i * s.period);
+    while (time <= t + close_) time = snap(s.first + ++i * s.period);
+    if (time < found.time) found = {time, time, false};
+  }
+  return found;
 }
 
 }  // namespace bough::solver

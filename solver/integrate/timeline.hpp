@@ -1,6 +1,7 @@
 #pragma once
 /// \file What a run meets on its way: samples, jumps, landmarks, events at a time, its end.
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "formats/records/system_spec.hpp"
@@ -32,6 +33,12 @@ class Timeline {
   Timeline(const RunPlan& plan, std::vector<double> restarts, std::vector<double> landmarks);
   explicit Timeline(const RunPlan& plan) : Timeline(plan, {}, {}) {}
 
+  /// Instants of samples from the start on, first + i * period: each becomes a stop without a restart.
+  void add_samples(double first, double period) {
+    samples_.push_back({first, period});
+    next_ = calc_output(index_);
+  }
+
   double start() const { return plan_.start; }
   double end() const { return plan_.end; }
   long num_outputs() const { return num_outputs_; }
@@ -43,9 +50,9 @@ class Timeline {
   /// Passes over the samples up to t, and t itself.
   void skip_outputs(double t);
   /// The first stop past t; the end is one.
-  const Stop& find_stop(double t) const;
-  /// The stop at t; nullptr where there is none.
-  const Stop* find_stop_at(double t) const;
+  Stop find_stop(double t) const;
+  /// The stop at t, an instant of samples too; none where there is none.
+  std::optional<Stop> find_stop_at(double t) const;
   /// Whether a restart is at t.
   bool is_restart(double t) const;
   /// Times that are one.
@@ -53,12 +60,18 @@ class Timeline {
 
  private:
   double snap(double t) const;
+  /// The same to stops alone.
+  double snap_to_stop(double t) const;
 
   RunPlan plan_;
   double close_ = 0;
   long num_outputs_ = 0, index_ = 0;
   double next_ = 0;
   std::vector<Stop> stops_;
+  struct Samples {
+    double first = 0, period = 0;
+  };
+  std::vector<Samples> samples_;
 };
 
 }  // namespace bough::solver

@@ -1,5 +1,6 @@
 #pragma once
-/// \file What equilibrium solves: u̇ as a function of the freedoms that may be displaced, with its Jacobian.
+/// \file What equilibrium solves: u̇ and ż as functions of the freedoms that may be displaced and of the states of
+/// controllers and actuators, with their Jacobian.
 #include "base/diagnostic.hpp"
 #include "solver/linear/plant.hpp"
 
@@ -13,11 +14,17 @@ class Balance {
 
   const Plant& plant() const { return *plant_; }
   const OperatingPoint& point() const { return point_; }
-  /// Freedoms that may be displaced; m of n.
+  /// Rows: the freedoms, then the states.
+  int size() const { return plant_->num_freedoms() + plant_->num_states(); }
+  std::string name(int row) const;
+  /// Rows that may be displaced; m of n.
   const std::vector<int>& free() const { return free_; }
-  const VectorXd& residual() const { return residual_; }  ///< u̇ of all freedoms, n
-  const MatrixXd& jacobian() const { return jacobian_; }  ///< ∂u̇ by steps, n x m, of the last linearize
-  double step(int j) const { return plant_->step(free_[static_cast<size_t>(j)]); }
+  const VectorXd& residual() const { return residual_; }  ///< u̇, then ż; n
+  const MatrixXd& jacobian() const { return jacobian_; }  ///< of the residual by steps, n x m, of the last linearize
+  double step(int j) const {
+    const int i = free_[static_cast<size_t>(j)];
+    return i < plant_->num_freedoms() ? plant_->step(i) : 1;
+  }
 
   void linearize();
   /// The point displaced by `steps` (m); may throw ComputationError.
@@ -26,7 +33,7 @@ class Balance {
   const VectorXd& travel() const { return travel_; }
 
  private:
-  VectorXd calc_residual() const { return plant_->evaluate(point_).head(plant_->num_freedoms()); }
+  VectorXd calc_residual() const { return plant_->evaluate(point_).head(size()); }
 
   Plant* plant_;
   OperatingPoint point_;

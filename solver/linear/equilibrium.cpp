@@ -57,8 +57,7 @@ class Newton {
     std::vector<std::string> names;
     for (size_t j = 0; j < at_.free().size(); ++j) {
       const VectorXd effect = weight_.asDiagonal() * at_.jacobian().col(static_cast<Eigen::Index>(j));
-      if (effect.size() == 0 || effect.cwiseAbs().maxCoeff() < 1e-9)
-        names.push_back(at_.plant().freedom_name(at_.free()[j]));
+      if (effect.size() == 0 || effect.cwiseAbs().maxCoeff() < 1e-9) names.push_back(at_.name(at_.free()[j]));
     }
     return names;
   }
@@ -122,8 +121,9 @@ bool is_near(const Balance& at) { return at.travel().size() == 0 || at.travel().
   const int worst = newton.find_restless();
   std::ostringstream what;
   what << "no state of rest or steady spin was found: after " << newton.num_iterations() << " iterations |u_dot| is "
-       << newton.at().residual().norm() << ", most of all " << newton.at().plant().freedom_name(worst)
-       << ", which accelerates by " << newton.at().residual()[worst];
+       << newton.at().residual().norm() << ", most of all " << newton.at().name(worst)
+       << (worst < newton.at().plant().num_freedoms() ? ", which accelerates by " : ", which changes by ")
+       << newton.at().residual()[worst];
   const auto& free = newton.at().free();
   const bool spins = std::find(free.begin(), free.end(), worst) == free.end();
   throw ComputationError(

@@ -24,7 +24,7 @@ std::string short_text(double value) {
   return text.str();
 }
 
-/// Rows: those of [u̇; y] that were chosen. Columns: δ, then δu.
+/// Rows: those of [u̇; ż; y]. Columns: δ, δu, δz.
 struct Jacobian {
   MatrixXd value, error;
 };
@@ -64,21 +64,26 @@ void clear_rounding(const Plant& plant, double rate, Jacobian& jacobian) {
 }
 
 Jacobian calc_jacobian(Plant& plant, const OperatingPoint& point, double step_factor) {
-  const int n = plant.num_freedoms(), rows = n + plant.outputs().size();
-  Jacobian jacobian{MatrixXd::Zero(rows, 2 * n), MatrixXd::Zero(rows, 2 * n)};
+  const int n = plant.num_freedoms(), nz = plant.num_states(), rows = n + nz + plant.outputs().size();
+  Jacobian jacobian{MatrixXd::Zero(rows, 2 * n + nz), MatrixXd::Zero(rows, 2 * n + nz)};
   // The equations are quadratic in u: any step that is not lost in rounding gives the same.
   const double rate = std::max(1.0, point.u.size() > 0 ? point.u.cwiseAbs().maxCoeff() : 0.0);
-  for (int j = 0; j < 2 * n; ++j) {
-    const int i = j % n;
+  for (int j = 0; j < 2 * n + nz; ++j) {
+    const int i = j < 2 * n ? j % n : j - 2 * n;
     const auto f = [&](double h) {
       OperatingPoint moved = point;
       if (j < n)
         moved.q = plant.displace(point.q, h * VectorXd::Unit(n, i));
-      else
+      else if (j < 2 * n)
         moved.u[i] += h;
+      else
+        moved.z[plant.state_row(i)] += h;
       return plant.evaluate(moved);
     };
-    const Difference column = differentiate(f, step_factor * plant.step(i) * (j < n ? 1 : rate));
+    const double step = j < n       ? plant.step(i)
+                        : j < 2 * n ? plant.step(i) * rate
+                                    : 0.1 * std::max(1.0, std::abs(point.z[plant.state_row(i)]));
+    const Difference column = differentiate(f, step_factor * step);
     jacobian.error.col(j) = column.error;
     // What does not rise above its own error is zero: structure is kept exactly.
     jacobian.value.col(j) = (column.value.array().abs() > column.error.array()).select(column.value, 0.0);
@@ -89,6 +94,10 @@ Jacobian calc_jacobian(Plant& plant, const OperatingPoint& point, double step_fa
 
 /// Exact, f being affine in the input: f(value) - f(0), with a value that brings out the difference.
 VectorXd calc_input_column(Plant& plant, const OperatingPoint& point, const PlantInput& input, const VectorXd& base) {
+  if (input.actuator >= 0) {  // limits, a dead band and friction are not affine
+    const Difference column = differentiate([&](double h) { return plant.evaluate(point, &input, h); }, 1e-2);
+    return (column.value.array().abs() > column.error.array()).select(column.value, 0.0);
+  }
   const double large = base.size() > 0 ? base.cwiseAbs().maxCoeff() : 0;
   VectorXd column = plant.evaluate(point, &input, 1) - base;
   const double own = column.size() > 0 ? column.cwiseAbs().maxCoeff() : 0;
@@ -206,7 +215,8 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   std::vector<std::string> wanted = options.inputs;
   std::vector<int> inputs;
   if (wanted.empty())
-    for (int i = 0; i < plant.num_forces(); ++i) inputs.push_back(i);
+    for (int i = 0; i < (plant.num_actuators() > 0 ? plant.num_actuators() : plant.num_forces()); ++i)
+      inputs.push_back(plant.num_actuators() > 0 ? plant.num_forces() + i : i);
   else
     inputs = choose(wanted, names, "input", "linear.unknown-input", at, diagnostics);
   const auto& known = plant.outputs();
@@ -224,6 +234,18 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
       model.states.dims.push_back(*suffix ? plant.freedom_dims(i) + "/T" : plant.freedom_dims(i));
     }
   }
+  const int nz = plant.num_states(), nx = 2 * n + nz;
+  for (int i = 0; i < nz; ++i) {
+    model.states.name.push_back(plant.state_name(i));
+    model.states.dims.push_back("by the controller");
+  }
+  if (const auto sampled = plant.list_sampled(); !sampled.empty()) {
+    std::string list;
+    for (const auto& name : sampled) list += (list.empty() ? "" : ", ") + name;
+    diagnostics.warning(
+        "linear.sampled", at, "sampled in time, and held as they are in the linear model: " + list,
+        "its poles are those with the loop open there; use a continuous law beside it to see them closed");
+  }
   model.time = point.t;
   model.q = plant.get_for_file(point.q);
   model.u = point.u;
@@ -231,22 +253,22 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   model.residual = base.head(n).norm();
 
   const Jacobian jacobian = calc_jacobian(plant, point, 1);
-  model.A = MatrixXd::Zero(2 * n, 2 * n);
+  model.A = MatrixXd::Zero(nx, nx);
   model.A.topLeftCorner(n, n) = plant.calc_turning(point.u);
-  model.A.topRightCorner(n, n).setIdentity();
-  model.A.bottomRows(n) = jacobian.value.topRows(n);
-  model.C = take_rows(jacobian.value, n, outputs);
+  model.A.block(0, n, n, n).setIdentity();
+  model.A.bottomRows(n + nz) = jacobian.value.topRows(n + nz);
+  model.C = take_rows(jacobian.value, n + nz, outputs);
 
   const auto num_inputs = static_cast<Eigen::Index>(inputs.size());
-  model.B = MatrixXd::Zero(2 * n, num_inputs);
+  model.B = MatrixXd::Zero(nx, num_inputs);
   model.D = MatrixXd::Zero(static_cast<Eigen::Index>(outputs.size()), num_inputs);
   for (Eigen::Index k = 0; k < num_inputs; ++k) {
     const PlantInput& input = plant.inputs()[static_cast<size_t>(inputs[static_cast<size_t>(k)])];
     model.inputs.name.push_back(input.name);
     model.inputs.dims.push_back(input.dims);
     const VectorXd column = calc_input_column(plant, point, input, base);
-    model.B.col(k).tail(n) = column.head(n);
-    model.D.col(k) = take_rows(column, n, outputs);
+    model.B.col(k).tail(n + nz) = column.head(n + nz);
+    model.D.col(k) = take_rows(column, n + nz, outputs);
   }
   for (const int i : outputs) {
     model.outputs.name.push_back(known.name[static_cast<size_t>(i)]);

@@ -1,7 +1,8 @@
 #pragma once
 /// \file A System as ẋ = A x + B u, y = C x + D u about any state (docs/theory/linear.md).
 ///
-/// x = [δ; δu], minimal coordinates: δ the displacement of each freedom (solver/linear/plant.hpp), δu of its speed.
+/// x = [δ; δu; δz], minimal coordinates: δ the displacement of each freedom (solver/linear/plant.hpp), δu of its speed,
+/// δz of the states of controllers, actuators and sensors (those of controllers where the loop is closed).
 #include "base/diagnostic.hpp"
 #include "formats/records/linear_model.hpp"
 #include "solver/linear/plant.hpp"
@@ -9,17 +10,18 @@
 namespace bough::solver {
 
 struct LinearizeOptions {
-  std::vector<std::string> inputs;   ///< forces, or hinges (all their free coordinates) or "hinge:1"; empty: all forces
+  std::vector<std::string> inputs;   ///< forces, actuators, hinges (all their free coordinates) or "hinge:1";
+                                     ///< empty: all actuators, or all forces where there is none
   std::vector<std::string> outputs;  ///< sensors, or components "tip:x"; empty: all sensors
   /// Repeats A and C with other steps (LinearModel::difference), and a little later in the motion: a model that changes
   /// on the way is told ("linear.time-varying").
   bool check = true;
 };
 
-/// B and D are exact: u̇ and y are affine in a force, so two evaluations a column. A and C by extrapolated central
-/// differences with an error estimate. Poles, and zeros where there are as many outputs as inputs.
+/// B and D of forces are exact: u̇ and y are affine in a force, so two evaluations a column. The others, A and C by
+/// extrapolated central differences with an error estimate. Poles, and zeros where there are as many outputs as inputs.
 /// Throws InputError "linear.unknown-input", "linear.unknown-output"; notes
-/// "linear.not-steady".
+/// "linear.not-steady", "linear.sampled".
 records::LinearModel linearize(Plant& plant, const OperatingPoint& point, const LinearizeOptions& options,
                                const SourceLocation& at, Diagnostics& diagnostics);
 

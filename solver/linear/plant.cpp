@@ -33,8 +33,7 @@ bool is_translation(const TreeBody& tb, int coordinate) {
 
 }  // namespace
 
-Plant::Plant(const System& system, Sensors sensors)
-    : system_(system), sensors_(std::move(sensors)), data_(system.make_data()) {
+Plant::Plant(const System& system, bool is_open) : system_(system), data_(system.make_data()), is_open_(is_open) {
   const double size = calc_size(system.impl().tree);
   for (int b = 0; b < system.num_bodies(); ++b) {
     const size_t first = freedoms_.size();
@@ -45,6 +44,11 @@ Plant::Plant(const System& system, Sensors sensors)
     add_modes(b, size);
   }
   BOUGH_DEMAND(num_freedoms() == system.num_dofs());
+  for (const auto& p : system.impl().signals.places) {
+    if (is_open && p.block->path.starts_with("/controllers/")) continue;
+    for (int i = 0; i < p.block->sizes.states; ++i) state_rows_.push_back(p.state + i);
+  }
+  std::sort(state_rows_.begin(), state_rows_.end());
   add_inputs();
   add_outputs();
 }
@@ -77,21 +81,27 @@ void Plant::add_inputs() {
   const auto& forces = system_.impl().forces;
   for (size_t i = 0; i < forces.size(); ++i) {
     const bool is_moment = forces[i].pattern.size() == 0 && forces[i].kind == records::ForceKind::Moment;
-    inputs_.push_back({forces[i].name, is_moment ? "F L" : "F", static_cast<int>(i), -1});
+    inputs_.push_back({forces[i].name, is_moment ? "F L" : "F", static_cast<int>(i), -1, -1});
   }
   num_forces_ = static_cast<int>(inputs_.size());
+  for (const auto& p : system_.impl().signals.places) {
+    if (p.actuator >= 0) inputs_.push_back({p.block->name, "by the controller", -1, p.actuator, -1});
+  }
+  num_actuators_ = static_cast<int>(inputs_.size()) - num_forces_;
   for (size_t i = 0; i < freedoms_.size(); ++i) {
     if (!freedoms_[i].is_mode)
-      inputs_.push_back({freedoms_[i].name, freedoms_[i].dims == "L" ? "F" : "F L", -1, rows_[i]});
+      inputs_.push_back({freedoms_[i].name, freedoms_[i].dims == "L" ? "F" : "F L", -1, -1, rows_[i]});
   }
 }
 
 void Plant::add_outputs() {
-  for (const auto& entry : sensors_.entries()) {
-    for (int i = 0; i < entry.size; ++i) {
-      const std::string component = entry.size == 3 ? std::string(1, "xyz"[i]) : std::to_string(i + 1);
-      outputs_.name.push_back(entry.size == 1 ? entry.name : entry.name + ":" + component);
-      outputs_.dims.push_back(entry.dims);
+  for (const auto& p : system_.impl().signals.places) {
+    if (!p.block->path.starts_with("/sensors/")) continue;
+    const int size = p.block->sizes.outputs;
+    for (int i = 0; i < size; ++i) {
+      const std::string component = size == 3 ? std::string(1, "xyz"[i]) : std::to_string(i + 1);
+      outputs_.name.push_back(size == 1 ? p.block->name : p.block->name + ":" + component);
+      outputs_.dims.push_back(p.block->dims);
     }
   }
 }
@@ -105,11 +115,37 @@ void Plant::demand_tree(const SourceLocation& at) const {
 }
 
 OperatingPoint Plant::make_initial_point() const {
-  OperatingPoint point{system_.impl().start, VectorXd::Zero(system_.num_q()), {}};
+  OperatingPoint point;
+  point.t = system_.impl().start;
+  point.q = VectorXd::Zero(system_.num_q());
   VectorXd u = VectorXd::Zero(system_.num_u());
   system_.calc_initial_state(point.q, u);
   point.u = u(rows_);
+  const SignalData initial = system_.impl().signals.make_data();
+  point.z = initial.z;
+  point.memory = initial.memory;
   return point;
+}
+
+std::string Plant::state_name(int i) const { return system_.impl().signals.name_state(state_row(i)); }
+
+std::vector<std::string> Plant::list_sampled() const {
+  std::vector<std::string> names;
+  for (const auto& p : system_.impl().signals.places) {
+    if (p.is_sampled() && p.is_needed) names.push_back(p.block->name);
+  }
+  return names;
+}
+
+void Plant::hold_commands(const OperatingPoint& point) {
+  SignalData& s = data_->signals;
+  if (!is_open_) return;
+  s.is_open = false;
+  evaluate(point);
+  for (const auto& p : system_.impl().signals.places) {
+    if (p.actuator >= 0) s.command[p.actuator] = s.inputs[p.in];
+  }
+  s.is_open = true;
 }
 
 VectorXd Plant::expand(const VectorXd& free) const {
@@ -162,8 +198,14 @@ VectorXd Plant::get_for_file(const VectorXd& q) const {
 }
 
 VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, double value) {
-  VectorXd out(num_freedoms() + outputs_.size());
+  const int n = num_freedoms(), nz = num_states();
+  const SignalGraph& signals = system_.impl().signals;
+  VectorXd out(n + nz + outputs_.size());
+  data_->signals.memory = point.memory;
+  data_->signals.bias.setZero();
+  if (input && input->actuator >= 0) data_->signals.bias[input->actuator] = value;
   calc_kinematics(system_, *data_, point.t, point.q, expand(point.u));
+  set_z(*data_, point.z);
   add_forces(system_, *data_, point.t);
   if (input && input->force >= 0) {
     AppliedForce one = system_.impl().forces[as_index(input->force)];
@@ -174,13 +216,22 @@ VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, d
     one.pattern_resultant *= value;
     one.pattern_moment *= value;
     add_applied_force(one, system_.impl().tree, point.t, data_->tree);
-  } else if (input) {
+  } else if (input && input->row >= 0) {
     data_->tree.hinge_force[input->row] += value;
   }
   VectorXd u_dot(system_.num_u());
   calc_accelerations(system_, *data_, point.t, u_dot);
-  out.head(num_freedoms()) = u_dot(rows_);
-  sensors_.calc(system_, *data_, out.tail(outputs_.size()));
+  out.head(n) = u_dot(rows_);
+  VectorXd z_dot(system_.num_z());
+  calc_z_dot(system_, *data_, z_dot);
+  calc_signals(system_, *data_);
+  out.segment(n, nz) = z_dot(state_rows_);
+  int at = n + nz;
+  for (const auto& p : signals.places) {
+    if (!p.block->path.starts_with("/sensors/")) continue;
+    signals.calc_ideal(p, system_, *data_, out.data() + at);
+    at += p.block->sizes.outputs;
+  }
   return out;
 }
 

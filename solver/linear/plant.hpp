@@ -10,27 +10,30 @@
 #include <vector>
 
 #include "formats/records/linear_model.hpp"
-#include "solver/sensors/sensor.hpp"
 #include "solver/system/system.hpp"
 
 namespace bough::solver {
 
 struct OperatingPoint {
   double t = 0;
-  VectorXd q, u;  ///< num_q; one rate a freedom
+  VectorXd q, u;       ///< num_q; one rate a freedom
+  VectorXd z, memory;  ///< all of controllers, actuators and sensors
 };
 
-/// A scalar that pushes: the value of a [[force]], or a generalized force on a free hinge coordinate.
+/// A scalar that pushes: the value of a [[force]], the command of an actuator, or a generalized force on a free hinge
+/// coordinate.
 struct PlantInput {
   std::string name, dims;
-  int force = -1;  ///< index into the system's forces
-  int row = -1;    ///< or: row of u of the hinge coordinate
+  int force = -1;     ///< index into the system's forces
+  int actuator = -1;  ///< or: counted in the order of the file
+  int row = -1;       ///< or: row of u of the hinge coordinate
 };
 
 class Plant {
  public:
-  /// `sensors` were built without errors. The system must outlive the plant.
-  Plant(const System& system, Sensors sensors);
+  /// The system was built without errors and must outlive the plant. `is_open`: actuators keep the commands they have
+  /// at the operating point, and controllers' states are none of the plant's.
+  explicit Plant(const System& system, bool is_open = false);
 
   int num_freedoms() const { return static_cast<int>(freedoms_.size()); }
   /// "shoulder:1"; "ball:rx" for rotations, "flyer:x" for translations of a spherical or free hinge; "boom:eta3".
@@ -40,7 +43,17 @@ class Plant {
   /// A displacement that is large but not absurd: 0.1 rad, 5 % of the size of the bodies.
   double step(int i) const { return freedoms_[static_cast<size_t>(i)].step; }
 
+  int num_states() const { return static_cast<int>(state_rows_.size()); }
+  /// "controller 'pid' (state 1)".
+  std::string state_name(int i) const;
+  /// The row of z.
+  int state_row(int i) const { return state_rows_[static_cast<size_t>(i)]; }
+  /// Sampled controllers, which stand still in a linear model.
+  std::vector<std::string> list_sampled() const;
+
   OperatingPoint make_initial_point() const;
+  /// Where is_open: from now on actuators keep the commands they have there.
+  void hold_commands(const OperatingPoint& point);
   /// q ⊕ δ; delta: num_freedoms.
   VectorXd displace(const VectorXd& q, const VectorXd& delta) const;
   /// num_u of the system, zero where a motion is prescribed, of one value a freedom; and back.
@@ -51,13 +64,14 @@ class Plant {
   /// Quaternions as the files have them: w, x, y, z.
   VectorXd get_for_file(const VectorXd& q) const;
 
-  /// Every force, then every free hinge coordinate.
+  /// Every force, then every actuator, then every free hinge coordinate.
   const std::vector<PlantInput>& inputs() const { return inputs_; }
   int num_forces() const { return num_forces_; }
+  int num_actuators() const { return num_actuators_; }
   /// Components of the sensors: "tip:x", or the sensor's name when it is a scalar.
   const records::Signals& outputs() const { return outputs_; }
 
-  /// [u̇; y] with every function of time at its value, and `value` more of one input. May throw ComputationError.
+  /// [u̇; ż; y] with every function of time at its value, and `value` more of one input. May throw ComputationError.
   VectorXd evaluate(const OperatingPoint& point, const PlantInput* input = nullptr, double value = 0);
   /// Results of the last evaluate, for a Recorder.
   const SystemData& data() const { return *data_; }
@@ -76,12 +90,13 @@ class Plant {
   void add_outputs();
 
   const System& system_;
-  Sensors sensors_;
   std::unique_ptr<SystemData> data_;
   std::vector<Freedom> freedoms_;
-  std::vector<int> rows_;  ///< of u, one a freedom
+  bool is_open_ = false;
+  std::vector<int> rows_;        ///< of u, one a freedom
+  std::vector<int> state_rows_;  ///< of z
   std::vector<PlantInput> inputs_;
-  int num_forces_ = 0;
+  int num_forces_ = 0, num_actuators_ = 0;
   records::Signals outputs_;
   VectorXd ones_;
 };

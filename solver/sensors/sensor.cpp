@@ -2,60 +2,14 @@
 
 #include <algorithm>
 
+#include "solver/sensors/kinds.hpp"
+
 namespace bough::solver {
 namespace {
 
 using records::SensorRecord;
 using records::SensorType;
 
-const char* name_of(SensorType type) {
-  switch (type) {
-    case SensorType::Position:
-      return "position";
-    case SensorType::Velocity:
-      return "velocity";
-    case SensorType::Acceleration:
-      return "acceleration";
-    case SensorType::Deflection:
-      return "deflection";
-    case SensorType::Rotation:
-      return "rotation";
-    case SensorType::AngularVelocity:
-      return "angular velocity";
-    case SensorType::AngularAcceleration:
-      return "angular acceleration";
-    case SensorType::HingeAngle:
-      return "hinge coordinates";
-    case SensorType::HingeRate:
-      break;
-  }
-  return "hinge rates";
-}
-
-const char* dims_of(SensorType type) {
-  switch (type) {
-    case SensorType::Position:
-    case SensorType::Deflection:
-      return "L";
-    case SensorType::Velocity:
-      return "L/T";
-    case SensorType::Acceleration:
-      return "L/T^2";
-    case SensorType::Rotation:
-      return "1";
-    case SensorType::AngularVelocity:
-      return "1/T";
-    case SensorType::AngularAcceleration:
-      return "1/T^2";
-    case SensorType::HingeAngle:
-      return "1 or L";
-    case SensorType::HingeRate:
-      break;
-  }
-  return "1/T or L/T";
-}
-
-bool is_hinge_sensor(SensorType type) { return type == SensorType::HingeAngle || type == SensorType::HingeRate; }
 bool is_deflection(SensorType type) { return type == SensorType::Deflection || type == SensorType::Rotation; }
 
 /// "did you mean" or the list.
@@ -78,14 +32,30 @@ class Resolver {
   }
 
   void resolve(const SensorRecord& r, Sensors::Entry& e) {
+    const SensorKind& kind = get_kind(r.type);
     e.name = r.name;
     e.type = r.type;
     e.coordinate = r.coordinate;
-    e.dims = dims_of(r.type);
-    if (is_hinge_sensor(r.type))
-      resolve_hinge(r, e);
-    else
-      resolve_node(r, e);
+    e.dims = kind.dims;
+    e.size = std::max(1, kind.size);
+    e.mount = r.mount;
+    e.target = r.target;
+    switch (kind.of) {
+      case SensorOf::Coordinate:
+      case SensorOf::HingeLoad:
+        return resolve_hinge(r, kind, e);
+      case SensorOf::Modes:
+      case SensorOf::Energy:
+        return resolve_modes(r, kind, e);
+      default:
+        resolve_node(r, e);
+    }
+    if (kind.of == SensorOf::Gap) resolve_other_end(r, e);
+    if (r.type == SensorType::Euler) resolve_sequence(r, e);
+    if (r.type == SensorType::Direction) {
+      if (!(r.target.norm() > 0)) error(r, "sensor.bad-value", "has no direction", "give target three numbers");
+      e.target = r.target.normalized();
+    }
   }
 
  private:
@@ -93,7 +63,7 @@ class Resolver {
     return std::find(names.begin(), names.end(), name) != names.end();
   }
 
-  void resolve_hinge(const SensorRecord& r, Sensors::Entry& e) {
+  void resolve_hinge(const SensorRecord& r, const SensorKind& kind, Sensors::Entry& e) {
     e.body = system_.find_hinge(r.hinge);
     if (e.body < 0) {
       if (is_known(hinges_, r.hinge)) return;  // its own errors were reported
@@ -101,8 +71,9 @@ class Resolver {
             make_advice(r.hinge, hinges_, "hinges"));
       return;
     }
-    if (!system_.is_sound(e.body)) return;
-    const bool angle = r.type == SensorType::HingeAngle;
+    e.description = std::string(kind.name) + " of hinge " + r.hinge;
+    if (!system_.is_sound(e.body) || kind.of == SensorOf::HingeLoad) return;
+    const bool angle = r.type == SensorType::HingeAngle || r.type == SensorType::Resolver;
     const int count = angle ? system_.num_hinge_q(e.body) : system_.num_hinge_rates(e.body);
     if (r.coordinate < 0 || r.coordinate > count || count == 0) {
       error(r, "sensor.bad-coordinate",
@@ -112,8 +83,55 @@ class Resolver {
       return;
     }
     e.size = r.coordinate == 0 ? count : 1;
-    e.description = std::string(name_of(r.type)) + " of hinge " + r.hinge;
     if (r.coordinate > 0) e.description += ", coordinate " + std::to_string(r.coordinate);
+  }
+
+  void resolve_modes(const SensorRecord& r, const SensorKind& kind, Sensors::Entry& e) {
+    e.body = find_body(r.body);
+    if (e.body == kAbsent)
+      error(r, "sensor.unknown-body", "is on the unknown body '" + r.body + "'",
+            make_advice(r.body, bodies_, "bodies"));
+    if (e.body < 0 || !system_.is_sound(e.body)) return;
+    e.description = std::string(kind.name) + " of body " + r.body;
+    const int count = system_.num_modes(e.body);
+    if (count == 0 || r.coordinate < 0 || r.coordinate > count)
+      error(r, "sensor.bad-coordinate",
+            "asks for mode " + std::to_string(r.coordinate) + " of body '" + r.body + "', which has " +
+                std::to_string(count),
+            count == 0 ? "remove the sensor" : "give 1 to " + std::to_string(count) + ", or 0 for all");
+    else if (kind.of == SensorOf::Modes)
+      e.size = r.coordinate == 0 ? count : 1;
+  }
+
+  void resolve_other_end(const SensorRecord& r, Sensors::Entry& e) {
+    e.description += " to ";
+    if (r.to_body.empty() || r.to_body == "ground") {
+      e.to_body = -1;
+      e.description += "a point of ground";
+      return;
+    }
+    e.description += "node " + std::to_string(r.to_node) + " of body " + r.to_body;
+    e.to_body = find_body(r.to_body);
+    if (e.to_body == kAbsent)
+      error(r, "sensor.unknown-body", "looks at the unknown body '" + r.to_body + "'",
+            make_advice(r.to_body, bodies_, "bodies"));
+    if (e.to_body < 0 || !system_.is_sound(e.to_body)) return;
+    e.to_node = system_.find_node(e.to_body, r.to_node);
+    if (e.to_node < 0)
+      error(r, "sensor.unknown-node",
+            "looks at node " + std::to_string(r.to_node) + ", which body '" + r.to_body + "' does not have",
+            "use one of its output nodes, or 0 for its origin");
+  }
+
+  void resolve_sequence(const SensorRecord& r, Sensors::Entry& e) {
+    const std::string& s = r.sequence;
+    const auto is_axis = [](char c) { return c >= '1' && c <= '3'; };
+    if (s.size() != 3 || !std::all_of(s.begin(), s.end(), is_axis) || s[0] == s[1] || s[1] == s[2]) {
+      error(r, "sensor.bad-value", "has the sequence '" + s + "'", "give three axes, as 321, 123 or 313");
+      return;
+    }
+    for (size_t i = 0; i < 3; ++i) e.axes[i] = s[i] - '1';
+    e.description += ", turns about " + s;
   }
 
   void resolve_node(const SensorRecord& r, Sensors::Entry& e) {
@@ -146,7 +164,11 @@ class Resolver {
               make_advice(r.relative_to, bodies_, "bodies"));
     }
     e.from_turning = r.from_turning;
-    e.description = std::string(name_of(r.type)) + " of node " + std::to_string(r.node) + " of body " + r.body;
+    e.description = std::string(get_kind(r.type).name) + " of node " + std::to_string(r.node) + " of body " + r.body;
+    const SensorOf of = get_kind(r.type).of;
+    if (of == SensorOf::Attitude) e.description += e.relative_to >= 0 ? " against body " + r.relative_to : "";
+    if (of == SensorOf::Instrument) e.description += ", in the sensor's axes";
+    if (of != SensorOf::Point && of != SensorOf::Elastic) return;
     if (is_deflection(r.type))
       e.description += " from its undeformed place";
     else if (e.relative_to >= 0)
@@ -172,41 +194,6 @@ class Resolver {
   std::vector<std::string> bodies_, hinges_;
 };
 
-/// Motion of the observer, in W; at rest for the inertial frame.
-struct Observer {
-  Vector3d p = Vector3d::Zero(), v = Vector3d::Zero(), a = Vector3d::Zero();
-  Vector3d w = Vector3d::Zero(), alpha = Vector3d::Zero();
-};
-
-Observer calc_observer(const SystemData& data, int body) {
-  Observer o;
-  if (body < 0) return o;
-  const BodyState& s = get_body_state(data, body);
-  o.p = s.p_WBo;
-  o.v.noalias() = s.R_WB * s.v_B;
-  o.a.noalias() = s.R_WB * s.a_B;
-  o.w.noalias() = s.R_WB * s.w_B;
-  o.alpha.noalias() = s.R_WB * s.alpha_B;
-  return o;
-}
-
-Vector3d calc_relative(SensorType type, bool from_turning, const NodeMotion& k, Observer o) {
-  if (!from_turning) {  // he keeps his axes
-    if (type == SensorType::AngularVelocity) return k.w_WK - o.w;
-    if (type == SensorType::AngularAcceleration) return k.alpha_WK - o.alpha;
-    o.w.setZero();
-    o.alpha.setZero();
-  }
-  const Vector3d p = k.p_WK - o.p;
-  if (type == SensorType::Position) return p;
-  const Vector3d v = k.v_WK - o.v - o.w.cross(p);
-  if (type == SensorType::Velocity) return v;
-  const Vector3d w = k.w_WK - o.w;
-  if (type == SensorType::AngularVelocity) return w;
-  if (type == SensorType::AngularAcceleration) return k.alpha_WK - o.alpha - o.w.cross(w);
-  return k.a_WK - o.a - o.alpha.cross(p) - o.w.cross(o.w.cross(p)) - 2 * o.w.cross(v);
-}
-
 }  // namespace
 
 Sensors Sensors::build(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics) {
@@ -220,38 +207,6 @@ Sensors Sensors::build(const System& system, const records::SystemSpec& spec, Di
     sensors.entries_.push_back(std::move(entry));
   }
   return sensors;
-}
-
-void Sensors::calc(const System& system, const SystemData& data, Eigen::Ref<VectorXd> out) const {
-  BOUGH_DEMAND(out.size() == size_);
-  for (const Entry& e : entries_) {
-    if (is_hinge_sensor(e.type)) {
-      Eigen::Matrix<double, 7, 1> q, q_dot, force;
-      const int nq = system.num_hinge_q(e.body), nu = system.num_hinge_rates(e.body);
-      get_hinge(system, data, e.body, q.head(nq), q_dot.head(nu), force.head(nu));
-      const auto& value = e.type == SensorType::HingeAngle ? q : q_dot;
-      out.segment(e.first, e.size) = value.segment(e.coordinate == 0 ? 0 : e.coordinate - 1, e.size);
-      continue;
-    }
-    Vector3d value_W;
-    if (is_deflection(e.type)) {
-      Vector3d deflection, rotation;
-      calc_node_deflection(system, data, e.body, e.node, deflection, rotation);
-      const Vector3d& value_B = e.type == SensorType::Deflection ? deflection : rotation;
-      if (e.frame == e.body) {
-        out.segment<3>(e.first) = value_B;
-        continue;
-      }
-      value_W.noalias() = get_body_state(data, e.body).R_WB * value_B;
-    } else {
-      value_W = calc_relative(e.type, e.from_turning, calc_node_motion(system, data, e.body, e.node),
-                              calc_observer(data, e.relative_to));
-    }
-    if (e.frame < 0)
-      out.segment<3>(e.first) = value_W;
-    else
-      out.segment<3>(e.first).noalias() = get_body_state(data, e.frame).R_WB.transpose() * value_W;
-  }
 }
 
 }  // namespace bough::solver

@@ -11,10 +11,14 @@
 ///   angular_velocity       Δω (with the rate of the deformation)        Δω
 ///   angular_acceleration   Δα - ω_A × Δω                                Δα
 ///   deflection, rotation   φη + ½[ηᵀg_aη]_a, ψη + ...: from the undeformed place, in B
+///   quaternion, euler, dcm   of R_AS: the axes S of the sensor in A; w >= 0; R_AS = R_i(a) R_j(b) R_k(c)
+///   gyro, accelerometer, direction   ω, a - g, the target's direction in S
+///   horizon                  roll, pitch of S against the direction to the target, its z at zero
 ///   hinge_angle, hinge_rate   coordinates as the user knows them (quaternion w, x, y, z) and rates; one, or all for 0
 ///
 /// With frame = A and relative_to = A, "turning" is what an observer who rides on A writes down. An empty frame means
 /// "body" for deflection and rotation and "inertial" for the others.
+#include <array>
 #include <string>
 #include <vector>
 
@@ -39,7 +43,11 @@ class Sensors {
     int frame = -1;           ///< body index, -1: W
     int relative_to = -1;     ///< body index, -1: W
     bool from_turning = true;
-    int coordinate = 0;  ///< 1-based, 0: all
+    int coordinate = 0;                     ///< 1-based, 0: all
+    Matrix3d mount = Matrix3d::Identity();  ///< R_KS
+    Vector3d target = Vector3d::Zero();     ///< in W: a direction, a centre, the other end on ground
+    std::array<int, 3> axes{2, 1, 0};       ///< euler: from 0
+    int to_body = -1, to_node = 0;          ///< distance; -1: target
   };
   const std::vector<Entry>& entries() const { return entries_; }
   int size() const { return size_; }
@@ -51,5 +59,11 @@ class Sensors {
   std::vector<Entry> entries_;
   int size_ = 0;
 };
+
+/// One sensor's measurement without its imperfections; out: its size. No allocation.
+void measure(const System& system, const SystemData& data, const Sensors::Entry& entry, double* out);
+/// The turns of R = R_i(a) R_j(b) R_k(c) about axes (from 0); the third may be the first. b in [-π/2, π/2] where the
+/// three differ, else in [0, π].
+Vector3d calc_euler_angles(const Matrix3d& R, const std::array<int, 3>& axes);
 
 }  // namespace bough::solver

@@ -25,6 +25,7 @@ struct Closing {
 struct Discrete {
   std::vector<HingeMode> mode;    ///< num_u, by row of u; modal rows are Free
   std::vector<Closing> closings;  ///< one per constraint; empty: as they were
+  VectorXd memory;  ///< of controllers, sensors and actuators: what they hold between samples and switches
 };
 
 struct State {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solver/signals/build.hpp"
+
 namespace bough::solver {
 
 namespace {
@@ -221,6 +223,7 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
     build_hinge_laws(spec.hinges[static_cast<size_t>(order.hinge[b])], context, tree.bodies[b], impl.elements,
                      diagnostics);
   }
+  build_signals(spec, system, functions, impl, diagnostics);
   collect_breakpoints(impl);
   if (diagnostics.num_errors() == 0 && impl.loops.size() > 0) assemble(spec, order, system, impl, diagnostics);
   return system;

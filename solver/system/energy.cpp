@@ -60,6 +60,7 @@ Energies calc_energies(const System& system, const SystemData& data) {
     e.strain += result.strain;
     e.potential += result.potential;
   }
+  e.kinetic += system.impl().signals.calc_energy(system, data);
   return e;
 }
 
@@ -104,6 +105,7 @@ Power calc_powers(const System& system, const SystemData& data) {
     else
       power -= result.power;
   }
+  power += system.impl().signals.calc_power(system, data);
   return {power - lost, dissipated};
 }
 
@@ -124,6 +126,7 @@ void calc_momentum(const System& system, const SystemData& data, Vector3d& linea
     linear += p;
     angular += l;
   }
+  angular += system.impl().signals.calc_momentum(system, data);
 }
 
 SystemMass calc_system_mass(const System& system, const SystemData& data) {

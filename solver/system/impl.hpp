@@ -1,8 +1,9 @@
 #pragma once
 /// \file What stands behind System and SystemData.
 #include "solver/forces/applied.hpp"
-#include "solver/loops/loops.hpp"
 #include "solver/forces/element.hpp"
+#include "solver/loops/loops.hpp"
+#include "solver/signals/graph.hpp"
 #include "solver/system/system.hpp"
 #include "solver/tree/data.hpp"
 
@@ -16,6 +17,8 @@ struct System::Impl {
   VectorXd initial_q, initial_u;          ///< with closed loops; empty: as the records say
   std::vector<Closing> initial_closings;  ///< likewise
   std::vector<std::unique_ptr<const ForceElement>> elements;
+  SignalGraph signals;
+  bool signals_are_sound = true;  ///< sensors, controllers and actuators have no errors
   Vector3d gravity = Vector3d::Zero();
   std::vector<double> breakpoints, landmarks;
   double start = 0;
@@ -27,6 +30,7 @@ class SystemData {
   TreeData tree;
   LoopData loops;
   std::vector<ForceResult> elements;  ///< of add_forces; zero before it
+  SignalData signals;
 };
 
 }  // namespace bough::solver

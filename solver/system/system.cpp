@@ -20,6 +20,7 @@ System::System(System&&) noexcept = default;
 int System::num_bodies() const { return static_cast<int>(impl_->tree.bodies.size()); }
 int System::num_q() const { return impl_->tree.num_q; }
 int System::num_u() const { return impl_->tree.num_u; }
+int System::num_z() const { return impl_->signals.num_states; }
 
 int System::find_body(const std::string& name) const {
   for (int b = 0; b < num_bodies(); ++b) {
@@ -62,9 +63,9 @@ std::unique_ptr<SystemData> System::make_data() const {
   auto data = std::make_unique<SystemData>();
   data->tree = make_tree_data(impl_->tree);
   data->loops = make_loop_data(impl_->loops, impl_->tree);
-  if (!impl_->initial_closings.empty())
-    set_closings(impl_->loops, impl_->tree, impl_->initial_closings, data->loops);
+  if (!impl_->initial_closings.empty()) set_closings(impl_->loops, impl_->tree, impl_->initial_closings, data->loops);
   data->elements.resize(impl_->elements.size());
+  data->signals = impl_->signals.make_data();
   return data;
 }
 
@@ -97,7 +98,10 @@ State System::make_initial_state() const {
   state.q.resize(num_q());
   state.u.resize(num_u());
   calc_initial_state(state.q, state.u);
-  state.discrete = get_discrete(*make_data());
+  const auto data = make_data();
+  state.discrete = get_discrete(*data);
+  state.z = data->signals.z;
+  state.discrete.memory = data->signals.memory;
   return state;
 }
 
@@ -140,15 +144,33 @@ void calc_kinematics(const System& system, SystemData& data, double t, const Eig
   std::fill(data.elements.begin(), data.elements.end(), ForceResult());
 }
 
+void set_z(SystemData& data, const Eigen::Ref<const VectorXd>& z) {
+  BOUGH_DEMAND(z.size() == data.signals.z.size());
+  data.signals.z = z;
+}
+
+void calc_z_dot(const System& system, SystemData& data, Eigen::Ref<VectorXd> z_dot) {
+  data.tree.demand(Stage::Acceleration);
+  system.impl().signals.calc_late(system, data);
+  system.impl().signals.calc_rates(system, data, z_dot);
+}
+
+void calc_signals(const System& system, SystemData& data) {
+  data.tree.demand(Stage::Acceleration);
+  system.impl().signals.calc_all(system, data);
+}
+
 void add_forces(const System& system, SystemData& data, double t) {
   const System::Impl& impl = system.impl();
   data.tree.demand(Stage::Velocity);
   data.tree.gravity = impl.gravity;
+  impl.signals.calc_early(system, data);
   for (const AppliedForce& force : impl.forces) add_applied_force(force, impl.tree, t, data.tree);
   add_hinge_forces(impl.tree, data.tree);
   Loads loads(impl.tree, data.tree);
   for (size_t i = 0; i < impl.elements.size(); ++i)
     data.elements[i] = impl.elements[i]->calc(impl.tree, data.tree, &loads);
+  impl.signals.add_loads(system, data);
 }
 
 void add_node_wrench(const System& system, SystemData& data, int body, int node_index, const Vector3d& f_W,

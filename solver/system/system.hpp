@@ -51,6 +51,7 @@ class System {
   int num_bodies() const;
   int num_q() const;
   int num_u() const;
+  int num_z() const;                              ///< continuous states of controllers, actuators and sensors
   int find_body(const std::string& name) const;   ///< -1 when absent
   int find_hinge(const std::string& name) const;  ///< hinge h is the inboard hinge of body h
   const std::string& body_name(int body) const;
@@ -115,15 +116,23 @@ void get_q_dot(const System& system, const SystemData& data, Eigen::Ref<VectorXd
 /// Positions and velocities of every body; clears the applied forces. Must precede the calls below. O(num_bodies).
 void calc_kinematics(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                      const Eigen::Ref<const VectorXd>& u);
-/// Adds every [[force]] of the spec at time t, what acts along hinge coordinates, gravity. After calc_kinematics.
+/// States of controllers, actuators and sensors from now on; those of the start in a new SystemData. z: num_z.
+void set_z(SystemData& data, const Eigen::Ref<const VectorXd>& z);
+/// ż. After calc_accelerations.
+void calc_z_dot(const System& system, SystemData& data, Eigen::Ref<VectorXd> z_dot);
+/// Every signal, those that only the results want too. After calc_accelerations.
+void calc_signals(const System& system, SystemData& data);
+
+/// Computes the signals that the motion needs and adds what actuators do, every [[force]] of the spec at time t, what
+/// acts along hinge coordinates, gravity. After calc_kinematics.
 void add_forces(const System& system, SystemData& data, double t);
 /// Adds a force and moment (components in W) at a node, through its Jacobian φ - K_G2 η. After calc_kinematics.
 void add_node_wrench(const System& system, SystemData& data, int body, int node_index, const Vector3d& f_W,
                      const Vector3d& t_W);
 /// q and u brought onto the closed constraints at t, in the metric of the mass matrix. No allocation.
 void project(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u);
-/// u̇ by the order-n recursion with what was added, loops closed; body accelerations and hinge forces become available. Order n.
-/// No allocation. Throws ComputationError when the articulated inertia of a body is not positive definite.
+/// u̇ by the order-n recursion with what was added, loops closed; body accelerations and hinge forces become available.
+/// Order n. No allocation. Throws ComputationError when the articulated inertia of a body is not positive definite.
 void calc_accelerations(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> u_dot);
 /// The same by assembling the dense M(q) and solving: the second route for tests. O(num_u³).
 void calc_accelerations_dense(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> u_dot);

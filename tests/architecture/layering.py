@@ -40,6 +40,8 @@ OUTSIDE = [
     (r"^toml\+\+", ["formats/toml"]),
     (r"^matio", ["formats/matrices"]),
     (r"^nlohmann", ["formats/toml", "formats/report", "cli"]),
+    (r"^muParser", ["solver/control/expression.cpp"]),
+    (r"^dlfcn", ["solver/control/library.cpp", "fe/linear/petsc.cpp", "cli/common/memory_limit.cpp"]),
     (r"^CLI/", ["cli"]),
     (r"^fmt/", ["cli", "formats"]),
     (r"^(sundials|cvode|arkode|nvector|sunlinsol|sunmatrix|sunnonlinsol)", ["solver/integrate", "cli/common/versions.cpp"]),

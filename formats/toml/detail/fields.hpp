@@ -25,6 +25,7 @@ class Fields {
     for (const auto& entry : table_.entries) keys.push_back(entry.key);
     return keys;
   }
+  const std::vector<Entry>& entries() const { return table_.entries; }
   SourceLocation locate() const { return {file_, table_.line}; }
   /// Of the key; of the table when the key is absent.
   SourceLocation locate(const std::string& key) const;

@@ -64,6 +64,8 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
   collect_names(forces, "force", diagnostics);
   collect_names(spec.sensors, "sensor", diagnostics);
   collect_names(spec.events, "event", diagnostics);
+  collect_names(spec.controllers, "controller", diagnostics);
+  collect_names(spec.actuators, "actuator", diagnostics);
 
   for (const auto& body : spec.bodies) {
     if (body.name == "ground" || body.name == "inertial" || body.name == "body") {
@@ -114,6 +116,7 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
     checker.check(sensor.frame, with({"inertial", "body", "ground"}), role, "frame", sensor.at);
     checker.check(sensor.relative_to, with({"ground"}), role, "body", sensor.at);
     checker.check(sensor.hinge, hinges, role, "hinge", sensor.at);
+    checker.check(sensor.to_body, with({"ground"}), role, "body", sensor.at);
   }
 }
 

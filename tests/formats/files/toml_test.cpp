@@ -199,7 +199,7 @@ TEST(SystemFile, LinesAreThoseOfTheKeys) {
                                         "type = \"revolut\"\n"  // 7
                                         "child = \"b\"\n"       // hinge of line 5
                                         "axis = [0, 0]\n"       // 9
-                                        "[[actuator]]\n"        // 10
+                                        "[[connect]]\n"         // 10
                                         "name = \"m\"\n"
                                         "[simulation]\n"
                                         "duration = -1\n");  // 13

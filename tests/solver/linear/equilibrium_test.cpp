@@ -21,7 +21,7 @@ records::BodyRecord make_point(const std::string& name, double mass, const Vecto
 Equilibrium find(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex = {}) {
   const System system = build(spec, flex);
   Diagnostics diagnostics;
-  Plant plant(system, Sensors::build(system, spec, diagnostics));
+  Plant plant(system);
   return find_equilibrium(plant, plant.make_initial_point(), {"system.toml"});
 }
 

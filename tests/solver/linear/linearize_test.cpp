@@ -12,7 +12,7 @@ using records::HingeType;
 
 Plant make_plant(const System& system, const records::SystemSpec& spec) {
   Diagnostics diagnostics;
-  Plant plant(system, Sensors::build(system, spec, diagnostics));
+  Plant plant(system);
   diagnostics.throw_if_errors();
   return plant;
 }

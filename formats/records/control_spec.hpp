@@ -1,0 +1,44 @@
+#pragma once
+/// \file [[controller]] and [[actuator]] of a system file, and what all sensors may have beside what they measure.
+#include <map>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "base/diagnostic.hpp"
+
+namespace bough::records {
+
+/// Keys of a table that depend on its type, as they stand there; which are taken is the type's business.
+struct Settings {
+  std::map<std::string, std::vector<double>> numbers;     ///< a number or a list of numbers
+  std::map<std::string, Eigen::MatrixXd> matrices;        ///< a list of rows, or out of `file`
+  std::map<std::string, std::vector<std::string>> words;  ///< a text or a list of texts
+
+  bool has(const std::string& key) const { return numbers.count(key) + matrices.count(key) + words.count(key) > 0; }
+  double get(const std::string& key, double otherwise) const {
+    const auto it = numbers.find(key);
+    return it == numbers.end() || it->second.size() != 1 ? otherwise : it->second[0];
+  }
+};
+
+struct ControllerRecord {
+  std::string name, type;
+  std::vector<std::string> inputs;  ///< signals: "name", "name:component"
+  std::string reference, rate;      ///< pid: signals; empty: none
+  Settings settings;
+  SourceLocation at;
+};
+
+struct ActuatorRecord {
+  std::string name, type;
+  std::string input;  ///< a signal, its command
+  std::string body, hinge;
+  int node = 0, coordinate = 1;
+  std::string frame = "body";
+  Settings settings;
+  SourceLocation at;
+};
+
+}  // namespace bough::records

@@ -1,0 +1,127 @@
+#include "formats/toml/detail/control_tables.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "base/rotation.hpp"
+
+namespace bough::toml_files {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+bool is_known(const std::vector<std::string>& known, const std::string& key) {
+  return std::find(known.begin(), known.end(), key) != known.end();
+}
+
+/// False when the items are not lists of numbers of one length.
+bool read_rows(const Value& value, Eigen::MatrixXd& matrix) {
+  const auto rows = static_cast<Eigen::Index>(value.items.size());
+  const auto columns = static_cast<Eigen::Index>(value.items.front().items.size());
+  matrix.resize(rows, columns);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const auto& row = value.items[static_cast<std::size_t>(i)].items;
+    if (static_cast<Eigen::Index>(row.size()) != columns) return false;
+    for (Eigen::Index j = 0; j < columns; ++j) {
+      if (!row[static_cast<std::size_t>(j)].is_number()) return false;
+      matrix(i, j) = row[static_cast<std::size_t>(j)].number;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+records::Settings read_settings(const Fields& table, const std::string& path, const std::vector<std::string>& known,
+                                Diagnostics& diagnostics) {
+  records::Settings settings;
+  for (const auto& entry : table.entries()) {
+    if (is_known(known, entry.key)) continue;
+    const Value& v = entry.value;
+    const bool in_degrees = entry.key.ends_with("_deg");
+    const std::string key = in_degrees ? entry.key.substr(0, entry.key.size() - 4) : entry.key;
+    if (v.is_string() || (v.is_array() && !v.items.empty() && v.items[0].is_string())) {
+      settings.words[key] = table.get_strings(entry.key);
+    } else if (v.is_array() && !v.items.empty() && v.items[0].is_array()) {
+      Eigen::MatrixXd matrix;
+      if (!read_rows(v, matrix))
+        diagnostics.error("toml.wrong-type", {path, entry.line}, "'" + key + "' is not a list of rows of one length",
+                          "give a list of lists of numbers");
+      settings.matrices[key] = matrix;
+    } else {
+      auto numbers = table.get_numbers(entry.key);
+      for (double& number : numbers) number *= in_degrees ? kDegree : 1;
+      settings.numbers[key] = std::move(numbers);
+    }
+  }
+  return settings;
+}
+
+records::ControllerRecord read_controller(const Fields& table, const std::string& path, Diagnostics& diagnostics) {
+  records::ControllerRecord r;
+  r.at = table.locate();
+  r.name = table.get_string("name");
+  r.type = table.get_string("type");
+  r.inputs = table.get_strings("inputs");
+  r.reference = table.get_string("reference");
+  r.rate = table.get_string("rate");
+  r.settings = read_settings(table, path, {"name", "type", "inputs", "reference", "rate"}, diagnostics);
+  if (const auto file = r.settings.words.find("file"); file != r.settings.words.end() && !file->second.empty())
+    file->second = {resolve_path(path, file->second.front())};
+  return r;
+}
+
+records::ActuatorRecord read_actuator(const Fields& table, const std::string& path, Diagnostics& diagnostics) {
+  records::ActuatorRecord r;
+  r.at = table.locate();
+  r.name = table.get_string("name");
+  r.type = table.get_string("type");
+  r.input = table.get_string("input");
+  r.body = table.get_string("body");
+  r.hinge = table.get_string("hinge");
+  r.node = table.get_int("node", 0);
+  r.coordinate = table.get_int("coordinate", 1);
+  r.frame = table.get_string("frame", "body");
+  r.settings = read_settings(table, path, {"name", "type", "input", "body", "hinge", "node", "coordinate", "frame"},
+                             diagnostics);
+  return r;
+}
+
+void read_sensor_keys(const Fields& table, const std::string& path, const std::string& type,
+                      records::SensorRecord& sensor, Diagnostics& diagnostics) {
+  static const std::vector<std::string> common = {"scale",       "bias", "misalignment", "noise_density",
+                                                  "random_walk", "seed", "quantization", "range",
+                                                  "delay",       "lag",  "sample_time"};
+  static const std::vector<std::string> own = {"rotation", "target", "to_body", "to_node", "sequence"};
+  sensor.to_body = table.get_string("to_body");
+  sensor.to_node = table.get_int("to_node", 0);
+  sensor.sequence = table.get_string("sequence", "321");
+  sensor.target = table.get_vector("target", type == "direction" ? sensor.target : Eigen::Vector3d::Zero());
+  const bool in_degrees = table.has("rotation_deg");
+  const Eigen::Vector3d turn = (in_degrees ? kDegree : 1.0) *
+                               table.get_vector(in_degrees ? "rotation_deg" : "rotation", Eigen::Vector3d::Zero());
+  sensor.mount =
+      (Eigen::AngleAxisd(turn.x(), Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(turn.y(), Eigen::Vector3d::UnitY()) *
+       Eigen::AngleAxisd(turn.z(), Eigen::Vector3d::UnitZ()))
+          .toRotationMatrix();
+  std::vector<std::string> others;
+  for (const auto& entry : table.entries()) {
+    const std::string key = entry.key.ends_with("_deg") ? entry.key.substr(0, entry.key.size() - 4) : entry.key;
+    if (!is_known(common, key)) others.push_back(entry.key);
+    if (!is_known(own, key)) continue;
+    const bool is_mounted = type == "quaternion" || type == "euler" || type == "dcm" || type == "gyro" ||
+                            type == "integrating_gyro" || type == "accelerometer" || type == "direction" ||
+                            type == "horizon";
+    const bool is_taken = key == "rotation"   ? is_mounted
+                          : key == "sequence" ? type == "euler"
+                          : key == "target"   ? type == "direction" || type == "horizon" || type == "distance"
+                                              : type == "distance";
+    if (!is_taken)
+      diagnostics.error("toml.conflicting-keys", {path, entry.line},
+                        "'" + entry.key + "' has no meaning in sensor '" + sensor.name + "' of type " + type,
+                        "remove it");
+  }
+  sensor.chain = read_settings(table, path, others, diagnostics);
+}
+
+}  // namespace bough::toml_files

@@ -1,0 +1,158 @@
+#include "solver/actuators/actuator.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "solver/actuators/makers.hpp"
+#include "solver/system/build.hpp"
+
+namespace bough::solver {
+
+void Actuator::read_shaping(SettingsReader& keys) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  scale_ = keys.get("scale", 1);
+  bias_ = keys.get("bias", 0);
+  deadband_ = keys.get_size("deadband", 0);
+  high_ = keys.get("upper", kInfinite);
+  low_ = keys.get("lower", keys.has("upper") ? -high_ : -kInfinite);
+  keys.demand(low_ < high_, "has a lower limit that is not below the upper one", "give lower < upper");
+  lag_ = keys.get_size("lag", 0);
+  rate_ = keys.has("rate_limit") ? keys.get_positive("rate_limit") : kInfinite;
+  keys.demand(!keys.has("rate_limit") || lag_ > 0, "has a rate_limit and no lag",
+              "give lag = TIME, how quickly it follows while the limit leaves it alone");
+  sizes.states += num_lags();
+  sizes.has_feedthrough = lag_ <= 0;
+}
+
+double Actuator::shape(double command) const {
+  double c = scale_ * command + bias_;
+  c = c > deadband_ ? c - deadband_ : c < -deadband_ ? c + deadband_ : 0;
+  return std::clamp(c, low_, high_);
+}
+
+double Actuator::calc_command(const BlockInput& in) const { return lag_ > 0 ? in.z[0] : shape(in.u[0]); }
+
+void Actuator::calc_rates(const BlockInput& in, double* z_dot) const {
+  if (lag_ > 0) z_dot[0] = std::clamp((shape(in.u[0]) - in.z[0]) / lag_, -rate_, rate_);
+}
+
+namespace {
+
+enum class Where { Hinge, Force, Moment };
+struct Kind {
+  const char* type;
+  int outputs;
+  Where where;
+  std::unique_ptr<Actuator> (*make)(const records::ActuatorRecord&, SettingsReader&, const ActuatorPlace&);
+};
+constexpr Kind kKinds[] = {
+    {"hinge", 1, Where::Hinge, make_hinge_drive}, {"motor", 2, Where::Hinge, make_hinge_drive},
+    {"brake", 1, Where::Hinge, make_hinge_drive}, {"force", 1, Where::Force, make_push},
+    {"moment", 1, Where::Moment, make_push},      {"jet", 2, Where::Force, make_push},
+    {"wheel", 3, Where::Moment, make_rotor},      {"cmg", 2, Where::Moment, make_rotor},
+};
+
+const Kind* find_kind(const std::string& type) {
+  const auto* found = std::find_if(std::begin(kKinds), std::end(kKinds), [&](const Kind& k) { return type == k.type; });
+  return found == std::end(kKinds) ? nullptr : found;
+}
+
+bool find_row(const records::ActuatorRecord& r, const System& system, const Tree& tree, SettingsReader& keys,
+              ActuatorPlace& place) {
+  const int body = system.find_hinge(r.hinge);
+  if (!r.body.empty()) keys.error("control.unknown-key", "takes no body", "its hinge says where it acts");
+  if (r.hinge.empty()) {
+    keys.error("control.missing-key", "has no hinge", "give hinge = \"NAME\"");
+    return false;
+  }
+  if (body < 0) {
+    std::vector<std::string> names;
+    for (int b = 0; b < system.num_bodies(); ++b) names.push_back(system.hinge_name(b));
+    const std::string near = find_nearest(r.hinge, names);
+    keys.error("control.unknown-place", "drives the hinge '" + r.hinge + "', which does not exist",
+               near.empty() ? "declare it" : "did you mean '" + near + "'?");
+    return false;
+  }
+  if (!system.is_sound(body)) return false;
+  const int count = tree[body].num_hinge_u();
+  if (r.coordinate < 1 || r.coordinate > count) {
+    keys.error("control.unknown-place",
+               "drives coordinate " + std::to_string(r.coordinate) + " of hinge '" + r.hinge + "', which has " +
+                   std::to_string(count),
+               "count from 1");
+    return false;
+  }
+  place.row = tree[body].u_offset + r.coordinate - 1;
+  return true;
+}
+
+bool find_marker(const records::ActuatorRecord& r, const System& system, Tree& tree, Where where, SettingsReader& keys,
+                 Diagnostics& diagnostics, ActuatorPlace& place) {
+  if (!r.hinge.empty()) keys.error("control.unknown-key", "takes no hinge", "its body and node say where it acts");
+  const int body = system.find_body(r.body);
+  if (body < 0) {
+    std::vector<std::string> names;
+    for (int b = 0; b < system.num_bodies(); ++b) names.push_back(system.body_name(b));
+    const std::string near = find_nearest(r.body, names);
+    keys.error("control.unknown-place", "is on the body '" + r.body + "', which does not exist",
+               near.empty() ? "declare it" : "did you mean '" + near + "'?");
+    return false;
+  }
+  if (!system.is_sound(body)) return false;
+  Marker at;
+  at.body = body;
+  at.node = find_loaded_node(r.body, tree[body].body, r.node, {where == Where::Force, where == Where::Moment}, r.at,
+                             "actuator '" + r.name + "'", diagnostics);
+  if (at.node < 0) return false;
+  at.moves = tree[body].body.nodes()[static_cast<size_t>(at.node)].moves;
+  place.marker = tree.add_marker(at);
+  return true;
+}
+
+}  // namespace
+
+int find_actuator_outputs(const std::string& type) {
+  const Kind* kind = find_kind(type);
+  return kind ? kind->outputs : 0;
+}
+
+Vector3d read_axis(SettingsReader& keys, const std::string& key) {
+  const VectorXd axis = keys.get_vector(key, 3);
+  if (axis.norm() > 0 && axis.allFinite()) return axis.normalized();
+  keys.error("control.bad-value", "has a " + key + " without direction", "give three numbers, not all zero");
+  return Vector3d::UnitX();
+}
+
+std::unique_ptr<Block> make_actuator(const records::ActuatorRecord& r, const System& system, Tree& tree,
+                                     Diagnostics& diagnostics) {
+  SettingsReader keys(r.settings, "actuator '" + r.name + "' of type " + r.type, r.at, diagnostics);
+  const Kind* kind = find_kind(r.type);
+  if (kind == nullptr) {
+    std::vector<std::string> types;
+    std::string list;
+    for (const Kind& k : kKinds) {
+      types.emplace_back(k.type);
+      list += (list.empty() ? "" : ", ") + types.back();
+    }
+    const std::string near = find_nearest(r.type, types);
+    diagnostics.error("control.unknown-type", r.at, "actuator '" + r.name + "' has the unknown type '" + r.type + "'",
+                      near.empty() ? "use one of: " + list : "did you mean '" + near + "'?");
+    return nullptr;
+  }
+  ActuatorPlace place;
+  const bool is_placed = kind->where == Where::Hinge
+                             ? find_row(r, system, tree, keys, place)
+                             : find_marker(r, system, tree, kind->where, keys, diagnostics, place);
+  auto made = kind->make(r, keys, place);
+  keys.refuse_others();
+  if (!is_placed || keys.has_failed() || !made) return nullptr;
+  made->name = r.name;
+  made->path = "/actuators/" + r.name;
+  made->label = "actuator '" + r.name + "'";
+  made->at = r.at;
+  made->sizes.inputs = 1;
+  made->sizes.outputs = kind->outputs;
+  return made;
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,78 @@
+// Actuators along a hinge coordinate: an ideal force or torque, an electric motor, a brake.
+#include <cmath>
+
+#include "solver/actuators/makers.hpp"
+#include "solver/system/impl.hpp"
+
+namespace bough::solver {
+namespace {
+
+class HingeDrive : public Actuator {
+ public:
+  int row = -1;
+
+  void calc_outputs(const BlockInput& in, double* y) const override { y[0] = calc_command(in); }
+  void add_load(const BlockInput&, const double* y, SystemData& data) const override {
+    data.tree.hinge_force[row] += y[0];
+  }
+  /// Where the coordinate is given, what drives it has the power of the whole force.
+  double calc_power(const BlockInput& in, const double* y) const override {
+    const TreeData& tree = in.data->tree;
+    return tree.mode[static_cast<size_t>(row)] == HingeMode::Free ? y[0] * tree.u[row] : 0;
+  }
+
+ protected:
+  double get_rate(const BlockInput& in) const { return in.data->tree.u[row]; }
+};
+
+/// i = (V - k_b N q̇) / R;  Q = N k_t i - c q̇ - Q_c tanh(q̇ / w)
+class Motor final : public HingeDrive {
+ public:
+  double torque_constant = 0, back_emf = 0, resistance = 1, ratio = 1, viscous = 0, coulomb = 0, width = 1;
+  void calc_outputs(const BlockInput& in, double* y) const override {
+    const double rate = get_rate(in);
+    y[1] = (calc_command(in) - back_emf * ratio * rate) / resistance;
+    y[0] = ratio * torque_constant * y[1] - viscous * rate - coulomb * std::tanh(rate / width);
+  }
+};
+
+/// The command is the largest torque: Q = -|command| tanh(q̇ / w)
+class Brake final : public HingeDrive {
+ public:
+  double width = 1;
+  void calc_outputs(const BlockInput& in, double* y) const override {
+    y[0] = -std::abs(calc_command(in)) * std::tanh(get_rate(in) / width);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Actuator> make_hinge_drive(const records::ActuatorRecord& r, SettingsReader& keys,
+                                           const ActuatorPlace& place) {
+  std::unique_ptr<HingeDrive> made;
+  if (r.type == "motor") {
+    auto motor = std::make_unique<Motor>();
+    motor->torque_constant = keys.get("torque_constant");
+    motor->back_emf = keys.get("back_emf", motor->torque_constant);
+    motor->resistance = keys.get_positive("resistance");
+    motor->ratio = keys.get("ratio", 1);
+    motor->viscous = keys.get_size("viscous", 0);
+    motor->coulomb = keys.get_size("coulomb", 0);
+    if (motor->coulomb > 0) motor->width = keys.get_positive("stick_rate");
+    made = std::move(motor);
+  } else if (r.type == "brake") {
+    auto brake = std::make_unique<Brake>();
+    brake->width = keys.get_positive("stick_rate");
+    made = std::move(brake);
+  } else {
+    made = std::make_unique<HingeDrive>();
+  }
+  made->row = place.row;
+  made->read_shaping(keys);
+  made->description = r.type == "motor" ? "generalized force on the hinge coordinate, current"
+                                        : "generalized force on the hinge coordinate";
+  made->dims = r.type == "motor" ? "F L, current" : "F L or F";
+  return made;
+}
+
+}  // namespace bough::solver

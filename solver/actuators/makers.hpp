@@ -1,0 +1,21 @@
+#pragma once
+/// \file Makers of the actuators' blocks; for actuator.cpp.
+#include "solver/actuators/actuator.hpp"
+
+namespace bough::solver {
+
+/// Where an actuator acts: a row of u, or a marker.
+struct ActuatorPlace {
+  int row = -1, marker = -1;
+};
+
+std::unique_ptr<Actuator> make_hinge_drive(const records::ActuatorRecord& record, SettingsReader& keys,
+                                           const ActuatorPlace& place);
+std::unique_ptr<Actuator> make_push(const records::ActuatorRecord& record, SettingsReader& keys,
+                                    const ActuatorPlace& place);
+std::unique_ptr<Actuator> make_rotor(const records::ActuatorRecord& record, SettingsReader& keys,
+                                     const ActuatorPlace& place);
+/// A unit vector: "axis".
+Vector3d read_axis(SettingsReader& keys, const std::string& key = "axis");
+
+}  // namespace bough::solver

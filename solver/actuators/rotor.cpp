@@ -1,0 +1,148 @@
+// Rotors: reaction wheel and control moment gyroscope (docs/theory/control.md, "Wheels"). A balanced rotor of axial
+// momentum h about the unit vector a in its body puts -ḣ a - h (ω × a + ȧ) on it.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solver/actuators/makers.hpp"
+#include "solver/system/impl.hpp"
+
+namespace bough::solver {
+namespace {
+
+class Rotor : public Actuator {
+ public:
+  int marker = -1;
+
+ protected:
+  const MarkerMotion& get_motion(const BlockInput& in) const {
+    return in.data->tree.markers[static_cast<size_t>(marker)];
+  }
+  int get_body(const BlockInput& in) const { return in.system->impl().tree.markers[static_cast<size_t>(marker)].body; }
+  /// Of the node, in B.
+  Vector3d calc_rate(const BlockInput& in) const { return in.data->tree[get_body(in)].state.w_B + get_motion(in).w; }
+  void add_moment(const BlockInput& in, const Vector3d& moment_B, SystemData& data) const {
+    add_marker_wrench(in.system->impl().tree, marker, Vector3d::Zero(), moment_B, data.tree);
+  }
+};
+
+/// State: h = J (Ω + a·ω), the momentum about the axis. Memory: at its limit (-1, 0, 1).
+class Wheel final : public Rotor {
+ public:
+  Vector3d axis = Vector3d::UnitZ();
+  double inertia = 1, limit = std::numeric_limits<double>::infinity(), initial = 0;
+  double viscous = 0, coulomb = 0, width = 1;
+
+  void start(double* z, double*) const override { z[num_lags()] = initial; }
+  void calc_outputs(const BlockInput& in, double* y) const override {
+    y[1] = get_momentum(in);
+    y[2] = y[1] / inertia - (get_motion(in).R * axis).dot(calc_rate(in));
+    y[0] = calc_torque(in, y[2]);
+  }
+  void calc_rates(const BlockInput& in, double* z_dot) const override {
+    Rotor::calc_rates(in, z_dot);
+    double y[3];
+    calc_outputs(in, y);
+    z_dot[num_lags()] = y[0];
+  }
+  void calc_guards(const BlockInput& in, double* g) const override {
+    const double h = get_momentum(in), torque = calc_command(in);
+    g[0] = in.d[0] == 0 ? std::min(h - limit, torque) : -1;
+    g[1] = in.d[0] == 0 ? std::min(-h - limit, -torque) : -1;
+    g[2] = in.d[0] != 0 ? -in.d[0] * torque : -1;
+  }
+  void switch_over(const BlockInput&, int guard, double* d) const override {
+    d[0] = guard == 0 ? 1 : guard == 1 ? -1 : 0;
+  }
+  void add_load(const BlockInput& in, const double* y, SystemData& data) const override {
+    const Vector3d a = get_motion(in).R * axis;
+    add_moment(in, -y[0] * a - y[1] * calc_rate(in).cross(a), data);
+  }
+  double calc_power(const BlockInput& in, const double* y) const override { return y[0] * get_momentum(in) / inertia; }
+  double calc_energy(const BlockInput& in) const override {
+    const double h = get_momentum(in);
+    return 0.5 * h * h / inertia;
+  }
+  Vector3d calc_momentum(const BlockInput& in) const override {
+    return in.data->tree[get_body(in)].state.R_WB * (get_motion(in).R * axis) * get_momentum(in);
+  }
+
+ private:
+  double get_momentum(const BlockInput& in) const { return in.z[num_lags()]; }
+  double calc_torque(const BlockInput& in, double speed) const {
+    const double motor = calc_command(in);
+    if (in.d[0] * motor > 0) return 0;  // held at its limit
+    return motor - viscous * speed - coulomb * std::tanh(speed / width);
+  }
+};
+
+/// The command is the rate of the gimbal; state: its angle. The spin's momentum is constant.
+class SingleGimbal final : public Rotor {
+ public:
+  Vector3d gimbal = Vector3d::UnitZ(), spin = Vector3d::UnitX();
+  double momentum = 0, initial = 0;
+
+  void start(double* z, double*) const override { z[num_lags()] = initial; }
+  void calc_outputs(const BlockInput& in, double* y) const override {
+    y[0] = calc_command(in);
+    y[1] = in.z[num_lags()];
+  }
+  void calc_rates(const BlockInput& in, double* z_dot) const override {
+    Rotor::calc_rates(in, z_dot);
+    z_dot[num_lags()] = calc_command(in);
+  }
+  void add_load(const BlockInput& in, const double* y, SystemData& data) const override {
+    const Matrix3d& R = get_motion(in).R;
+    const Vector3d h = calc_spin(in);
+    add_moment(in, -(calc_rate(in) + y[0] * (R * gimbal)).cross(h), data);
+  }
+  Vector3d calc_momentum(const BlockInput& in) const override {
+    return in.data->tree[get_body(in)].state.R_WB * calc_spin(in);
+  }
+
+ private:
+  Vector3d calc_spin(const BlockInput& in) const {
+    const double angle = in.z[num_lags()];
+    return momentum * (get_motion(in).R * (std::cos(angle) * spin + std::sin(angle) * gimbal.cross(spin)));
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Actuator> make_rotor(const records::ActuatorRecord& r, SettingsReader& keys,
+                                     const ActuatorPlace& place) {
+  std::unique_ptr<Rotor> made;
+  if (r.type == "wheel") {
+    auto wheel = std::make_unique<Wheel>();
+    wheel->axis = read_axis(keys);
+    wheel->inertia = keys.get_positive("inertia");
+    if (keys.has("momentum_limit")) wheel->limit = keys.get_positive("momentum_limit");
+    wheel->initial = keys.get("momentum", 0);
+    wheel->viscous = keys.get_size("viscous", 0);
+    wheel->coulomb = keys.get_size("coulomb", 0);
+    if (wheel->coulomb > 0) wheel->width = keys.get_positive("stick_rate");
+    keys.demand(std::abs(wheel->initial) <= wheel->limit, "starts beyond its momentum_limit", "give less momentum");
+    wheel->sizes.memory = 1;
+    wheel->sizes.guards = 3;
+    wheel->dims = "F L, F L T, 1/T";
+    made = std::move(wheel);
+  } else {
+    auto cmg = std::make_unique<SingleGimbal>();
+    cmg->gimbal = read_axis(keys, "gimbal_axis");
+    cmg->spin = read_axis(keys, "spin_axis");
+    keys.demand(std::abs(cmg->gimbal.dot(cmg->spin)) < 1e-9, "has a spin_axis that is not normal to its gimbal_axis",
+                "give it at gimbal angle zero");
+    cmg->momentum = keys.get("momentum");
+    cmg->initial = keys.get("angle", 0);
+    cmg->dims = "1/T, 1";
+    made = std::move(cmg);
+  }
+  made->marker = place.marker;
+  made->read_shaping(keys);
+  ++made->sizes.states;
+  made->description = r.type == "wheel" ? "torque on the wheel, its momentum about its axis, its speed against the body"
+                                        : "rate and angle of the gimbal";
+  return made;
+}
+
+}  // namespace bough::solver

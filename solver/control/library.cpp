@@ -1,0 +1,152 @@
+// Controllers of the user: a shared library with the functions of bough_controller.h. Only the file that is named is
+// loaded.
+#include <dlfcn.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "solver/control/bough_controller.h"
+#include "solver/control/makers.hpp"
+
+namespace bough::solver {
+namespace {
+
+struct Functions {
+  decltype(&bough_controller_version) version = nullptr;
+  decltype(&bough_controller_open) open = nullptr;
+  decltype(&bough_controller_outputs) outputs = nullptr;
+  decltype(&bough_controller_start) start = nullptr;
+  decltype(&bough_controller_derivatives) derivatives = nullptr;
+  decltype(&bough_controller_update) update = nullptr;
+  decltype(&bough_controller_close) close = nullptr;
+};
+
+class Library final : public Block {
+ public:
+  Library(void* handle, const Functions& f) : handle_(handle), f_(f) {}
+  ~Library() override {
+    if (is_open && f_.close != nullptr) f_.close(own.instance);
+    dlclose(handle_);
+  }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+
+  bough_controller own{};
+  bool is_open = false;
+
+  void start(double* z, double* d) const override {
+    if (f_.start != nullptr) call(0, "start", [&] { return f_.start(own.instance, z, d); });
+  }
+  void calc_outputs(const BlockInput& in, double* y) const override {
+    call(in.t, "outputs", [&] { return f_.outputs(own.instance, in.t, in.u, in.z, in.d, y); });
+  }
+  void calc_rates(const BlockInput& in, double* z_dot) const override {
+    call(in.t, "derivatives", [&] { return f_.derivatives(own.instance, in.t, in.u, in.z, in.d, z_dot); });
+    demand_finite(in.t, "derivative", z_dot, sizes.states);
+  }
+  void update(const BlockInput& in, double* d) const override {
+    if (f_.update == nullptr) return;
+    call(in.t, "update", [&] { return f_.update(own.instance, in.t, in.u, in.z, in.d, d); });
+    demand_finite(in.t, "memory", d, sizes.memory);
+  }
+
+ private:
+  template <class Call>
+  void call(double t, const char* function, const Call& action) const {
+    std::ostringstream what;
+    what << label << ": bough_controller_" << function << " at t = " << t;
+    int result = 0;
+    try {
+      result = action();
+    } catch (const std::exception& error) {
+      throw ComputationError("control.library-failed", at, what.str() + " threw: " + error.what(), "mend the library");
+    } catch (...) {
+      throw ComputationError("control.library-failed", at, what.str() + " threw an exception", "mend the library");
+    }
+    if (result == 0) return;
+    what << " returned " << result;
+    throw ComputationError("control.library-failed", at, what.str(), "0 stands for success");
+  }
+  void demand_finite(double t, const char* noun, const double* values, int n) const {
+    for (int i = 0; i < n; ++i) {
+      if (std::isfinite(values[i])) continue;
+      std::ostringstream what;
+      what << label << ": " << noun << " " << i + 1 << " is " << values[i] << " at t = " << t;
+      throw ComputationError("control.not-finite", at, what.str(), "mend the library");
+    }
+  }
+
+  void* handle_;
+  Functions f_;
+};
+
+template <class F>
+void find_function(void* handle, const char* name, F& to) {
+  to = reinterpret_cast<F>(dlsym(handle, name));
+}
+
+}  // namespace
+
+std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring& wiring) {
+  const std::string file = keys.get_word("file", "");
+  const std::vector<double> parameters = keys.has("parameters") ? keys.get_list("parameters") : std::vector<double>();
+  const double sample_time = keys.get("sample_time", 0);
+  if (file.empty()) {
+    keys.error("control.missing-key", "has no 'file'", "give the shared library");
+    return nullptr;
+  }
+  void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (handle == nullptr) {
+    const char* why = dlerror();
+    keys.error("control.bad-library", std::string("cannot load its library: ") + (why ? why : file),
+               "check the path, and that it was linked as a shared library");
+    return nullptr;
+  }
+  Functions f;
+  find_function(handle, "bough_controller_version", f.version);
+  find_function(handle, "bough_controller_open", f.open);
+  find_function(handle, "bough_controller_outputs", f.outputs);
+  find_function(handle, "bough_controller_start", f.start);
+  find_function(handle, "bough_controller_derivatives", f.derivatives);
+  find_function(handle, "bough_controller_update", f.update);
+  find_function(handle, "bough_controller_close", f.close);
+  auto made = std::make_unique<Library>(handle, f);
+  const auto refuse = [&](const std::string& what, const std::string& advice) {
+    keys.error("control.bad-library", "has a library " + file + " " + what, advice);
+    return nullptr;
+  };
+  if (f.version == nullptr || f.open == nullptr || f.outputs == nullptr)
+    return refuse("without bough_controller_version, _open or _outputs", "see bough_controller.h");
+  if (const int version = f.version(); version != BOUGH_CONTROLLER_VERSION)
+    return refuse("made for version " + std::to_string(version) + " of the interface, this is " +
+                      std::to_string(BOUGH_CONTROLLER_VERSION),
+                  "compile it again");
+  bough_controller& own = made->own;
+  own.inputs = wiring.size();
+  own.num_parameters = static_cast<int>(parameters.size());
+  own.parameters = parameters.data();
+  own.outputs = own.has_feedthrough = 1;
+  own.sample_time = sample_time;
+  int result = 0;
+  try {
+    result = f.open(&own);
+  } catch (...) {
+    return refuse("whose bough_controller_open threw an exception", "mend the library");
+  }
+  if (result != 0) return refuse("whose bough_controller_open returned " + std::to_string(result), "0 is success");
+  made->is_open = true;
+  if (own.outputs < 1 || own.states < 0 || own.memory < 0)
+    return refuse("that set impossible sizes", "give outputs >= 1, states >= 0, memory >= 0");
+  if (own.states > 0 && f.derivatives == nullptr)
+    return refuse("with states and without bough_controller_derivatives", "export it");
+  if (own.memory > 0 && !(sample_time > 0)) return refuse("with memory and no sample_time", "give sample_time");
+  if (own.memory > 0 && f.update == nullptr)
+    return refuse("with memory and without bough_controller_update", "export it");
+  made->sizes.outputs = own.outputs;
+  made->sizes.states = own.states;
+  made->sizes.memory = own.memory;
+  made->sizes.has_feedthrough = own.has_feedthrough != 0;
+  return made;
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,112 @@
+// u = kp e + ki ∫e + kd ė, component by component; e = reference - input (docs/theory/control.md, "PID").
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solver/control/makers.hpp"
+
+namespace bough::solver {
+namespace {
+
+/// States (memory where sampled): the integral part I, then the filter of the derivative F.
+class Pid final : public Block {
+ public:
+  int n = 1;
+  bool has_reference = false, has_rate = false;
+  double T = 0;  ///< sample time, 0: continuous
+  VectorXd kp, ki, kd, low, high, filter, windup;
+  double setpoint = 0;
+
+  void calc_outputs(const BlockInput& in, double* y) const override {
+    for (int i = 0; i < n; ++i) y[i] = std::clamp(calc(in, i), low[i], high[i]);
+  }
+  void calc_rates(const BlockInput& in, double* z_dot) const override {
+    for (int i = 0; i < n; ++i) {
+      z_dot[i] = calc_windup(in, i);
+      if (has_filter()) z_dot[n + i] = filter[i] > 0 ? (error(in, i) - in.z[n + i]) / filter[i] : 0;
+    }
+  }
+  void update(const BlockInput& in, double* d) const override {
+    // I by Euler's rule, F = kd (e - e₋) / (τ + T) + τ / (τ + T) F₋ by the backward difference.
+    for (int i = 0; i < n; ++i) {
+      d[i] = in.d[i] + T * calc_windup(in, i);
+      if (!has_filter()) continue;
+      d[n + i] = calc_difference(in, i);
+      d[2 * n + i] = error(in, i);
+    }
+    if (has_filter()) d[3 * n] = 1;
+  }
+
+  /// The derivative comes of the error, not of a signal.
+  bool has_filter() const { return !has_rate && !kd.isZero(0); }
+
+ private:
+  double error(const BlockInput& in, int i) const { return (has_reference ? in.u[n + i] : setpoint) - in.u[i]; }
+  double get_integral(const BlockInput& in, int i) const { return T > 0 ? in.d[i] : in.z[i]; }
+  double calc_windup(const BlockInput& in, int i) const {
+    const double u = calc(in, i), held = std::clamp(u, low[i], high[i]);
+    return ki[i] * error(in, i) + (u != held ? (held - u) / windup[i] : 0);
+  }
+  double calc_difference(const BlockInput& in, int i) const {
+    const double e = error(in, i), before = in.d[3 * n] > 0 ? in.d[2 * n + i] : e;
+    return (kd[i] * (e - before) + filter[i] * in.d[n + i]) / (filter[i] + T);
+  }
+  double calc(const BlockInput& in, int i) const {
+    double u = kp[i] * error(in, i) + get_integral(in, i);
+    if (has_rate)
+      u -= kd[i] * in.u[(has_reference ? 2 : 1) * n + i];
+    else if (has_filter())
+      u += T > 0 ? calc_difference(in, i) : filter[i] > 0 ? kd[i] * (error(in, i) - in.z[n + i]) / filter[i] : 0;
+    return u;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Block> make_pid(SettingsReader& keys, const ControllerWiring& wiring, double sample_time) {
+  auto made = std::make_unique<Pid>();
+  Pid& p = *made;
+  int n = 0;
+  for (const int size : wiring.inputs) n += size;
+  p.n = n;
+  p.T = sample_time;
+  p.has_reference = wiring.reference > 0;
+  p.has_rate = wiring.rate > 0;
+  if ((p.has_reference && wiring.reference != n) || (p.has_rate && wiring.rate != n))
+    keys.error("control.bad-size", "has a reference or a rate of another size than its input",
+               "name single components, as tip:x");
+  p.setpoint = keys.get("setpoint", 0);
+  keys.demand(!(p.has_reference && keys.has("setpoint")), "has a reference and a setpoint", "keep one of them");
+  p.kp = keys.get_vector("kp", n, 0);
+  p.ki = keys.get_vector("ki", n, 0);
+  p.kd = keys.get_vector("kd", n, 0);
+  p.filter = keys.get_vector("filter", n, 0);
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  p.low = keys.get_vector("lower", n, -kInfinite);
+  p.high = keys.get_vector("upper", n, kInfinite);
+  keys.demand((p.low.array() < p.high.array()).all(), "has lower limits that are not below the upper ones",
+              "give lower < upper");
+  keys.demand((p.filter.array() >= 0).all(), "has a negative filter", "give a time");
+  for (int i = 0; i < n && sample_time <= 0; ++i)
+    keys.demand(p.kd[i] == 0 || p.has_rate || p.filter[i] > 0, "has kd and nothing to take the derivative from",
+                "give filter = TIME (the derivative becomes kd s / (1 + filter s)), or rate = SIGNAL");
+  // Back-calculation: the integral follows the limited output within this time.
+  VectorXd usual(n);
+  for (int i = 0; i < n; ++i) {
+    const double integral = p.ki[i] != 0 ? std::abs(p.kp[i] / p.ki[i]) : 0;
+    const double derivative = p.kp[i] != 0 ? std::abs(p.kd[i] / p.kp[i]) : 0;
+    usual[i] = derivative > 0 && integral > 0 ? std::sqrt(integral * derivative) : integral > 0 ? integral : 1;
+    if (sample_time > 0) usual[i] = std::max(usual[i], sample_time);
+  }
+  p.windup = keys.has("windup_time") ? keys.get_vector("windup_time", n) : usual;
+  keys.demand((p.windup.array() > 0).all(), "has a windup_time that is not positive", "give a time");
+  p.sizes.inputs = wiring.size();
+  p.sizes.outputs = n;
+  if (sample_time > 0)
+    p.sizes.memory = p.has_filter() ? 3 * n + 1 : n;
+  else
+    p.sizes.states = p.has_filter() ? 2 * n : n;
+  return made;
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,52 @@
+#pragma once
+/// \file Reads the keys of a controller or an actuator by name and reports what is missing, unknown or of a wrong size.
+#include <set>
+#include <string>
+
+#include "formats/records/control_spec.hpp"
+
+namespace bough::solver {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+class SettingsReader {
+ public:
+  /// what: "controller 'pid' of type pid".
+  SettingsReader(const records::Settings& settings, std::string what, const SourceLocation& at,
+                 Diagnostics& diagnostics)
+      : settings_(settings), what_(std::move(what)), at_(at), diagnostics_(diagnostics) {}
+
+  bool has(const std::string& key) const { return settings_.has(key); }
+  bool has_matrix(const std::string& key) const { return settings_.matrices.count(key) > 0; }
+  /// "control.missing-key" without it.
+  double get(const std::string& key);
+  double get(const std::string& key, double otherwise);
+  double get_positive(const std::string& key);
+  /// Not negative.
+  double get_size(const std::string& key, double otherwise);
+  /// Any length; "control.missing-key" when absent.
+  std::vector<double> get_list(const std::string& key);
+  /// One number stands for all; "control.bad-size".
+  VectorXd get_vector(const std::string& key, int size, double otherwise);
+  VectorXd get_vector(const std::string& key, int size);
+  /// -1: any count. A list is a row where `rows` is 1, or open and `columns` not 1; else a column. Absent: 0 x 0.
+  MatrixXd get_matrix(const std::string& key, int rows, int columns);
+  std::string get_word(const std::string& key, const std::string& otherwise);
+  std::vector<std::string> get_words(const std::string& key);
+  void demand(bool condition, const std::string& what, const std::string& advice);
+  void error(const char* id, const std::string& what, const std::string& advice);
+  /// "control.unknown-key" for what nobody asked for.
+  void refuse_others();
+  bool has_failed() const { return has_failed_; }
+
+ private:
+  const records::Settings& settings_;
+  std::string what_;
+  SourceLocation at_;
+  Diagnostics& diagnostics_;
+  std::set<std::string> known_;
+  bool has_failed_ = false;
+};
+
+}  // namespace bough::solver

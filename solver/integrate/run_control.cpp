@@ -1,0 +1,82 @@
+// Samples and switches of controllers, sensors and actuators (docs/theory/control.md).
+#include "solver/integrate/locate.hpp"
+#include "solver/integrate/run.hpp"
+#include "solver/system/impl.hpp"
+
+namespace bough::solver {
+namespace {
+/// Switches at one moment, beyond which they will not end.
+constexpr int kMostSwitches = 100;
+}  // namespace
+
+void Run::settle_control(double t) {
+  const SignalGraph& signals = ode_.system().impl().signals;
+  if (sampled_ == t || signals.places.empty()) return;
+  sampled_ = t;
+  guard([&] {
+    ode_.calc_derivative(t, y_, y_dot_);
+    calc_signals(ode_.system(), ode_.data());
+    if (signals.sample(ode_.system(), ode_.data(), timeline_.resolution())) has_switched_ = true;
+  });
+  settle_switches(t);
+}
+
+void Run::settle_switches(double t) {
+  const SignalGraph& signals = ode_.system().impl().signals;
+  if (signals.num_guards == 0) return;
+  std::string what;
+  for (int i = 0; i < kMostSwitches; ++i) {
+    bool is_open = false;
+    guard([&] {
+      ode_.calc_derivative(t, y_, y_dot_);
+      calc_signals(ode_.system(), ode_.data());
+      signals.calc_guards(ode_.system(), ode_.data(), guards_);
+      is_open = signals.switch_over(ode_.system(), ode_.data(), guards_, what);
+    });
+    last_guards_ = guards_;
+    if (!is_open) return;
+    has_switched_ = true;
+  }
+  finish_failed(t, "control.chatter", what + " switches without end at t = " + short_text(t),
+                "give it a hysteresis, or a lag on the way round its loop");
+}
+
+std::optional<double> Run::find_switch(const Stop& stop, double to) {
+  const SignalGraph& signals = ode_.system().impl().signals;
+  const double from = stepper_->last_time();
+  if (signals.num_guards == 0) return {};
+  const auto calc = [&](double t) -> const VectorXd& {
+    guard([&] {
+      stepper_->calc_state(t, y_);
+      ode_.calc_derivative(std::min(t, stop.latest), y_, y_dot_);
+      calc_signals(ode_.system(), ode_.data());
+      signals.calc_guards(ode_.system(), ode_.data(), guards_);
+    });
+    return guards_;
+  };
+  const VectorXd at_end = calc(to);
+  std::optional<double> first;
+  for (Eigen::Index i = 0; i < at_end.size(); ++i) {
+    if (!(at_end[i] > 0)) continue;
+    const double before = std::min(0.0, last_guards_[i]);
+    const double at =
+        locate_crossing([&](double t) { return calc(t)[i]; }, from, before, to, at_end[i], timeline_.resolution());
+    first = std::min(first.value_or(to), at);
+  }
+  last_guards_ = at_end;
+  return first;
+}
+
+VectorXd Run::get_control_memory() const {
+  const VectorXd& memory = ode_.data().signals.memory;
+  VectorXd all(memory.size() + 1);
+  all << sampled_, memory;
+  return all;
+}
+
+void Run::set_control_memory(const VectorXd& memory) {
+  sampled_ = memory[0];
+  ode_.data().signals.memory = memory.tail(memory.size() - 1);
+}
+
+}  // namespace bough::solver

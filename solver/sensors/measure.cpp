@@ -1,0 +1,172 @@
+// What each kind of sensor measures, without its imperfections.
+#include <cmath>
+
+#include "solver/sensors/kinds.hpp"
+#include "solver/sensors/sensor.hpp"
+#include "solver/system/impl.hpp"
+
+namespace bough::solver {
+namespace {
+
+using Eigen::Map;
+using records::SensorType;
+
+/// Motion of the observer, in W; at rest for the inertial frame.
+struct Observer {
+  Vector3d p = Vector3d::Zero(), v = Vector3d::Zero(), a = Vector3d::Zero();
+  Vector3d w = Vector3d::Zero(), alpha = Vector3d::Zero();
+};
+
+Observer calc_observer(const SystemData& data, int body) {
+  Observer o;
+  if (body < 0) return o;
+  const BodyState& s = get_body_state(data, body);
+  o.p = s.p_WBo;
+  o.v.noalias() = s.R_WB * s.v_B;
+  o.a.noalias() = s.R_WB * s.a_B;
+  o.w.noalias() = s.R_WB * s.w_B;
+  o.alpha.noalias() = s.R_WB * s.alpha_B;
+  return o;
+}
+
+Vector3d calc_relative(SensorType type, bool from_turning, const NodeMotion& k, Observer o) {
+  if (!from_turning) {  // he keeps his axes
+    if (type == SensorType::AngularVelocity) return k.w_WK - o.w;
+    if (type == SensorType::AngularAcceleration) return k.alpha_WK - o.alpha;
+    o.w.setZero();
+    o.alpha.setZero();
+  }
+  const Vector3d p = k.p_WK - o.p;
+  if (type == SensorType::Position) return p;
+  const Vector3d v = k.v_WK - o.v - o.w.cross(p);
+  if (type == SensorType::Velocity) return v;
+  const Vector3d w = k.w_WK - o.w;
+  if (type == SensorType::AngularVelocity) return w;
+  if (type == SensorType::AngularAcceleration) return k.alpha_WK - o.alpha - o.w.cross(w);
+  return k.a_WK - o.a - o.alpha.cross(p) - o.w.cross(o.w.cross(p)) - 2 * o.w.cross(v);
+}
+
+Vector3d turn_into(const SystemData& data, int frame, const Vector3d& value_W) {
+  if (frame < 0) return value_W;
+  return get_body_state(data, frame).R_WB.transpose() * value_W;
+}
+
+void measure_attitude(const Sensors::Entry& e, const Matrix3d& R, double* out) {
+  if (e.type == SensorType::DirectionCosines) {
+    Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>{out} = R;
+  } else if (e.type == SensorType::Euler) {
+    Map<Vector3d>{out} = calc_euler_angles(R, e.axes);
+  } else {
+    Eigen::Quaterniond q(R);
+    q.normalize();
+    const double sign = q.w() < 0 ? -1 : 1;
+    Map<Eigen::Vector4d>{out} = sign * Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
+  }
+}
+
+void measure_instrument(const System& system, const SystemData& data, const Sensors::Entry& e, double* out) {
+  const NodeMotion k = calc_node_motion(system, data, e.body, e.node);
+  const Matrix3d R_SW = (k.R_WK * e.mount).transpose();
+  Map<Vector3d> value(out);
+  if (e.type == SensorType::Gyro || e.type == SensorType::IntegratingGyro) {
+    value.noalias() = R_SW * k.w_WK;
+  } else if (e.type == SensorType::Accelerometer) {
+    value.noalias() = R_SW * (k.a_WK - system.impl().gravity);
+  } else if (e.type == SensorType::Direction) {
+    value.noalias() = R_SW * e.target;
+  } else {
+    const Vector3d n = R_SW * (e.target - k.p_WK);
+    out[0] = std::atan2(n.y(), n.z());
+    out[1] = std::atan2(-n.x(), std::hypot(n.y(), n.z()));
+  }
+}
+
+void measure_coordinate(const System& system, const SystemData& data, const Sensors::Entry& e, double* out) {
+  Eigen::Matrix<double, 7, 1> q, q_dot, force;
+  const int nq = system.num_hinge_q(e.body), nu = system.num_hinge_rates(e.body);
+  get_hinge(system, data, e.body, q.head(nq), q_dot.head(nu), force.head(nu));
+  const bool is_place = e.type == SensorType::HingeAngle || e.type == SensorType::Resolver;
+  const auto& value = is_place ? q : q_dot;
+  Map<VectorXd> result(out, e.size);
+  result = value.segment(e.coordinate == 0 ? 0 : e.coordinate - 1, e.size);
+  if (e.type != SensorType::Resolver) return;
+  for (int i = 0; i < e.size; ++i) result[i] = std::remainder(result[i], 2 * EIGEN_PI);
+}
+
+void measure_modes(const System& system, const SystemData& data, const Sensors::Entry& e, double* out) {
+  const int n = system.num_modes(e.body);
+  const auto eta = data.tree.q.segment(system.eta_offset(e.body), n);
+  if (e.type == SensorType::StrainEnergy) {
+    const MatrixXd& K = system.impl().tree[e.body].body.K();
+    *out = 0;
+    for (int j = 0; j < n; ++j) *out += 0.5 * eta[j] * K.col(j).dot(eta);
+    return;
+  }
+  const int first = e.coordinate == 0 ? 0 : e.coordinate - 1;
+  Map<VectorXd> result(out, e.size);
+  if (e.type == SensorType::ModalCoordinate)
+    result = eta.segment(first, e.size);
+  else
+    result = data.tree.u.segment(system.eta_dot_offset(e.body) + first, e.size);
+}
+
+}  // namespace
+
+Vector3d calc_euler_angles(const Matrix3d& R, const std::array<int, 3>& axes) {
+  const int i = axes[0], j = axes[1], k = axes[2] == i ? 3 - i - j : axes[2];
+  const double s = (j - i + 3) % 3 == 1 ? 1 : -1;  // of (i, j, k) as a permutation
+  if (axes[2] != i)
+    return {std::atan2(-s * R(j, k), R(k, k)), std::asin(std::clamp(s * R(i, k), -1.0, 1.0)),
+            std::atan2(-s * R(i, j), R(i, i))};
+  return {std::atan2(R(j, i), -s * R(k, i)), std::acos(std::clamp(R(i, i), -1.0, 1.0)),
+          std::atan2(R(i, j), s * R(i, k))};
+}
+
+void measure(const System& system, const SystemData& data, const Sensors::Entry& e, double* out) {
+  switch (get_kind(e.type).of) {
+    case SensorOf::Coordinate:
+      return measure_coordinate(system, data, e, out);
+    case SensorOf::Instrument:
+      return measure_instrument(system, data, e, out);
+    case SensorOf::Modes:
+    case SensorOf::Energy:
+      return measure_modes(system, data, e, out);
+    case SensorOf::HingeLoad: {
+      const HingeReaction r = get_hinge_reaction(system, data, e.body);
+      Map<Vector3d>{out} = e.type == SensorType::HingeForce ? r.force : r.moment;
+      return;
+    }
+    case SensorOf::Attitude: {
+      const Matrix3d R_WS = calc_node_motion(system, data, e.body, e.node).R_WK * e.mount;
+      if (e.relative_to < 0) return measure_attitude(e, R_WS, out);
+      return measure_attitude(e, get_body_state(data, e.relative_to).R_WB.transpose() * R_WS, out);
+    }
+    case SensorOf::Gap: {
+      Vector3d other = e.target;
+      if (e.to_body >= 0) other = calc_node_motion(system, data, e.to_body, e.to_node).p_WK;
+      *out = (calc_node_motion(system, data, e.body, e.node).p_WK - other).norm();
+      return;
+    }
+    case SensorOf::Elastic: {
+      Vector3d deflection, rotation;
+      calc_node_deflection(system, data, e.body, e.node, deflection, rotation);
+      const Vector3d& value_B = e.type == SensorType::Deflection ? deflection : rotation;
+      Map<Vector3d>{out} =
+          e.frame == e.body ? value_B : turn_into(data, e.frame, get_body_state(data, e.body).R_WB * value_B);
+      return;
+    }
+    case SensorOf::Point:
+      Map<Vector3d>{out} =
+          turn_into(data, e.frame,
+                    calc_relative(e.type, e.from_turning, calc_node_motion(system, data, e.body, e.node),
+                                  calc_observer(data, e.relative_to)));
+      return;
+  }
+}
+
+void Sensors::calc(const System& system, const SystemData& data, Eigen::Ref<VectorXd> out) const {
+  BOUGH_DEMAND(out.size() == size_);
+  for (const Entry& e : entries_) measure(system, data, e, out.data() + e.first);
+}
+
+}  // namespace bough::solver

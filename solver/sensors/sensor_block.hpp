@@ -1,0 +1,17 @@
+#pragma once
+/// \file A sensor in the signal graph: what it measures, then what becomes of it on the way out.
+///
+///     measurement -> lag -> misalignment -> scale -> + bias + random walk + noise -> range -> quantization -> hold,
+///     delay
+#include <memory>
+
+#include "solver/sensors/sensor.hpp"
+#include "solver/signals/block.hpp"
+
+namespace bough::solver {
+
+/// Reports "sensor.bad-value" and "sensor.needs-sample-time" (noise, random_walk, quantization, delay without it).
+std::unique_ptr<Block> make_sensor_block(const Sensors::Entry& entry, const records::SensorRecord& record,
+                                         Diagnostics& diagnostics);
+
+}  // namespace bough::solver

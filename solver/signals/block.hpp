@@ -1,0 +1,69 @@
+#pragma once
+/// \file One block of the signal graph: sensors, controllers, actuators, functions. The calls are those of the C
+/// interface for controllers of the user (solver/control/bough_controller.h); a Block keeps no state of its own.
+#include <string>
+
+#include "base/diagnostic.hpp"
+#include "base/rotation.hpp"
+
+namespace bough::solver {
+
+class System;
+class SystemData;
+
+using Eigen::Vector3d;
+
+/// What a block computes from. The pointers hold for one call.
+struct BlockInput {
+  double t = 0;
+  const double* u = nullptr;  ///< inputs
+  const double* z = nullptr;  ///< continuous states
+  const double* d = nullptr;  ///< memory: what changes at samples and switches only
+  long sample = 0;            ///< sampled blocks: the number of this sample, 0 at the start of the run
+  const System* system = nullptr;
+  const SystemData* data = nullptr;  ///< the motion at t, for sensors and actuators
+};
+
+struct BlockSizes {
+  int inputs = 0, outputs = 1, states = 0, memory = 0;
+  int guards = 0;                   ///< functions that switch the block where they become positive
+  bool has_feedthrough = true;      ///< the outputs depend on the inputs (or on the motion) at the same moment
+  bool reads_acceleration = false;  ///< sensors: of u̇
+  double sample_time = 0;           ///< > 0: outputs are computed then and held
+  double delay = 0;                 ///< sampled: between the sample and its appearance at the outputs
+};
+
+class Block {
+ public:
+  virtual ~Block() = default;
+
+  std::string name, path;         ///< as "pid", "/controllers/pid"
+  std::string label;              ///< "controller 'pid'", for messages
+  std::string description, dims;  ///< of the outputs, for the results
+  SourceLocation at;
+  BlockSizes sizes;
+
+  /// Initial states and memory; zero on entry.
+  virtual void start(double* z, double* d) const;
+  virtual void calc_outputs(const BlockInput& in, double* y) const = 0;
+  /// Sampled: the outputs as if they were not, without noise; for linear models.
+  virtual void calc_ideal(const BlockInput& in, double* y) const;
+  virtual void calc_rates(const BlockInput& in, double* z_dot) const;
+  /// Sampled: the memory after this sample; d holds what in.d holds. After calc_outputs of the same sample.
+  virtual void update(const BlockInput& in, double* d) const;
+  virtual void calc_guards(const BlockInput& in, double* g) const;
+  /// The memory after guard `guard` has become positive; the guard must not be positive any more.
+  virtual void switch_over(const BlockInput& in, int guard, double* d) const;
+
+  // Actuators
+  virtual bool is_actuator() const { return false; }
+  /// Adds what the actuator does to the bodies; y: its outputs.
+  virtual void add_load(const BlockInput& in, const double* y, SystemData& data) const;
+  /// Power that no wrench on a body has: along hinges, into rotors.
+  virtual double calc_power(const BlockInput& in, const double* y) const;
+  /// Kinetic energy and angular momentum (in W) that the actuator itself holds.
+  virtual double calc_energy(const BlockInput& in) const;
+  virtual Vector3d calc_momentum(const BlockInput& in) const;
+};
+
+}  // namespace bough::solver

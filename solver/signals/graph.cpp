@@ -1,0 +1,222 @@
+#include "solver/signals/graph.hpp"
+
+#include <cmath>
+#include <sstream>
+
+#include "solver/system/impl.hpp"
+
+namespace bough::solver {
+namespace {
+
+/// The number of the instant within `close` of t, -1 when there is none.
+long find_sample(double t, double first, double period, double close) {
+  const long k = std::lround((t - first) / period);
+  return k >= 0 && std::abs(t - (first + static_cast<double>(k) * period)) <= close ? k : -1;
+}
+
+void demand_finite(const BlockPlace& place, const double* y, double t) {
+  for (int i = 0; i < place.block->sizes.outputs; ++i) {
+    if (std::isfinite(y[i])) continue;
+    std::ostringstream what;
+    what << place.block->label << ": output " << i + 1 << " is " << y[i] << " at t = " << t;
+    throw ComputationError("control.not-finite", place.block->at, what.str(),
+                           "look at its inputs (bough plot) and its numbers");
+  }
+}
+
+}  // namespace
+
+SignalData SignalGraph::make_data() const {
+  SignalData s;
+  s.values = VectorXd::Zero(num_values);
+  s.z = VectorXd::Zero(num_states);
+  s.memory = s.scratch = VectorXd::Zero(num_memory);
+  s.fresh = VectorXd::Zero(num_values);
+  s.inputs = VectorXd::Zero(num_inputs);
+  s.bias = s.command = VectorXd::Zero(num_actuators);
+  for (const auto& p : places) p.block->start(s.z.data() + p.state, s.memory.data() + p.memory);
+  return s;
+}
+
+const BlockPlace* SignalGraph::find(const std::string& path) const {
+  for (const auto& p : places) {
+    if (p.block->path == path) return &p;
+  }
+  return nullptr;
+}
+
+BlockInput SignalGraph::look_again(const BlockPlace& p, const System& system, const SystemData& data) const {
+  const SignalData& s = data.signals;
+  return {data.tree.t, s.inputs.data() + p.in, s.z.data() + p.state, s.memory.data() + p.memory, 0, &system, &data};
+}
+
+BlockInput SignalGraph::look(const BlockPlace& p, const System& system, SystemData& data) const {
+  SignalData& s = data.signals;
+  for (size_t i = 0; i < p.sources.size(); ++i) s.inputs[p.in + static_cast<Eigen::Index>(i)] = s.values[p.sources[i]];
+  if (p.actuator >= 0) s.inputs[p.in] = (s.is_open ? s.command[p.actuator] : s.inputs[p.in]) + s.bias[p.actuator];
+  return look_again(p, system, data);
+}
+
+void SignalGraph::calc(const BlockPlace& p, const System& system, SystemData& data) const {
+  SignalData& s = data.signals;
+  double* y = s.values.data() + p.out;
+  if (p.is_sampled()) {
+    s.values.segment(p.out, p.block->sizes.outputs) = s.memory.segment(p.held, p.block->sizes.outputs);
+    return;
+  }
+  p.block->calc_outputs(look(p, system, data), y);
+  demand_finite(p, y, data.tree.t);
+}
+
+void SignalGraph::calc_early(const System& system, SystemData& data) const {
+  for (const int i : order) {
+    const auto& p = places[static_cast<size_t>(i)];
+    if (p.is_needed && !p.is_late) calc(p, system, data);
+  }
+}
+
+void SignalGraph::calc_late(const System& system, SystemData& data) const {
+  for (const int i : order) {
+    const auto& p = places[static_cast<size_t>(i)];
+    if (p.is_needed && p.is_late) calc(p, system, data);
+  }
+}
+
+void SignalGraph::calc_all(const System& system, SystemData& data) const {
+  for (const bool is_late : {false, true}) {
+    for (const int i : order) {
+      const auto& p = places[static_cast<size_t>(i)];
+      if (p.is_late == is_late) calc(p, system, data);
+    }
+  }
+}
+
+void SignalGraph::calc_ideal(const BlockPlace& place, const System& system, SystemData& data, double* y) const {
+  place.block->calc_ideal(look(place, system, data), y);
+}
+
+void SignalGraph::add_loads(const System& system, SystemData& data) const {
+  if (num_actuators == 0) return;
+  for (const auto& p : places) {
+    if (p.actuator >= 0) p.block->add_load(look_again(p, system, data), data.signals.values.data() + p.out, data);
+  }
+}
+
+void SignalGraph::calc_rates(const System& system, SystemData& data, Eigen::Ref<VectorXd> z_dot) const {
+  BOUGH_DEMAND(z_dot.size() == num_states);
+  for (const auto& p : places) {
+    if (p.block->sizes.states > 0) p.block->calc_rates(look(p, system, data), z_dot.data() + p.state);
+  }
+}
+
+double SignalGraph::calc_power(const System& system, const SystemData& data) const {
+  double power = 0;
+  if (num_actuators == 0) return power;
+  for (const auto& p : places) {
+    if (p.actuator >= 0) power += p.block->calc_power(look_again(p, system, data), data.signals.values.data() + p.out);
+  }
+  return power;
+}
+
+double SignalGraph::calc_energy(const System& system, const SystemData& data) const {
+  double energy = 0;
+  if (num_actuators == 0) return energy;
+  for (const auto& p : places) {
+    if (p.actuator >= 0) energy += p.block->calc_energy(look_again(p, system, data));
+  }
+  return energy;
+}
+
+Vector3d SignalGraph::calc_momentum(const System& system, const SystemData& data) const {
+  Vector3d momentum = Vector3d::Zero();
+  if (num_actuators == 0) return momentum;
+  for (const auto& p : places) {
+    if (p.actuator >= 0) momentum += p.block->calc_momentum(look_again(p, system, data));
+  }
+  return momentum;
+}
+
+std::vector<SampleTimes> SignalGraph::collect_samples() const {
+  std::vector<SampleTimes> found;
+  const auto add = [&](double first, double period) {
+    for (const auto& s : found) {
+      if (s.first == first && s.period == period) return;
+    }
+    found.push_back({first, period});
+  };
+  for (const auto& p : places) {
+    if (!p.is_sampled()) continue;
+    add(start, p.block->sizes.sample_time);
+    if (p.queue_length > 0) add(start + p.block->sizes.delay, p.block->sizes.sample_time);
+  }
+  return found;
+}
+
+bool SignalGraph::sample(const System& system, SystemData& data, double close) const {
+  SignalData& s = data.signals;
+  const double t = data.tree.t;
+  bool has_changed = false;
+  for (const int i : order) {
+    const auto& p = places[static_cast<size_t>(i)];
+    if (!p.is_sampled()) {
+      if (!p.is_late) calc(p, system, data);
+      continue;
+    }
+    const int n = p.block->sizes.outputs;
+    const double period = p.block->sizes.sample_time;
+    auto held = s.memory.segment(p.held, n);
+    auto before = s.fresh.segment(p.out, n);
+    before = held;
+    if (const long k = find_sample(t, start, period, close); k >= 0) {
+      BlockInput in = look(p, system, data);
+      in.sample = k;
+      const int slot = p.queue_length > 0 ? p.queue + n * static_cast<int>(k % p.queue_length) : p.held;
+      p.block->calc_outputs(in, s.memory.data() + slot);
+      demand_finite(p, s.memory.data() + slot, t);
+      auto own = s.scratch.segment(p.memory, p.block->sizes.memory);
+      own = s.memory.segment(p.memory, p.block->sizes.memory);
+      p.block->update(in, own.data());
+      s.memory.segment(p.memory, p.block->sizes.memory) = own;
+    }
+    if (p.queue_length > 0) {
+      const long k = find_sample(t, start + p.block->sizes.delay, period, close);
+      if (k >= 0) held = s.memory.segment(p.queue + n * static_cast<int>(k % p.queue_length), n);
+    }
+    has_changed = has_changed || (p.is_needed && before != held);
+    s.values.segment(p.out, n) = held;
+  }
+  return has_changed;
+}
+
+void SignalGraph::calc_guards(const System& system, SystemData& data, Eigen::Ref<VectorXd> g) const {
+  for (const auto& p : places) {
+    if (p.block->sizes.guards > 0) p.block->calc_guards(look(p, system, data), g.data() + p.guard);
+  }
+}
+
+bool SignalGraph::switch_over(const System& system, SystemData& data, const VectorXd& g, std::string& what) const {
+  bool has_switched = false;
+  SignalData& s = data.signals;
+  for (const auto& p : places) {
+    for (int i = 0; i < p.block->sizes.guards; ++i) {
+      if (!(g[p.guard + i] > 0)) continue;
+      s.scratch.segment(p.memory, p.block->sizes.memory) = s.memory.segment(p.memory, p.block->sizes.memory);
+      p.block->switch_over(look(p, system, data), i, s.scratch.data() + p.memory);
+      s.memory.segment(p.memory, p.block->sizes.memory) = s.scratch.segment(p.memory, p.block->sizes.memory);
+      has_switched = true;
+      what = p.block->label;
+      break;  // the others were of the memory before
+    }
+  }
+  return has_switched;
+}
+
+std::string SignalGraph::name_state(int row) const {
+  for (const auto& p : places) {
+    if (row >= p.state && row < p.state + p.block->sizes.states)
+      return p.block->label + " (state " + std::to_string(row - p.state + 1) + ")";
+  }
+  return "a state of the controllers";
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,88 @@
+#pragma once
+/// \file Signals as one vector, computed in topological order: functions, sensors of (q, u), controllers, actuators |
+/// the accelerations | sensors of u̇ and what follows from them (docs/theory/control.md).
+#include <memory>
+#include <vector>
+
+#include "formats/records/system_spec.hpp"
+#include "solver/signals/block.hpp"
+
+namespace bough::solver {
+
+using Eigen::VectorXd;
+
+/// Where a block lies in the vectors of SignalData.
+struct BlockPlace {
+  std::unique_ptr<const Block> block;
+  std::vector<int> sources;  ///< rows of values, one an input
+  int in = 0, out = 0, state = 0, memory = 0, held = 0, queue = 0, guard = 0;
+  int queue_length = 0;    ///< samples on their way, where there is a delay
+  int actuator = -1;       ///< counts actuators
+  bool is_needed = false;  ///< the motion depends on it
+  bool is_late = false;    ///< depends on u̇ at the same moment
+
+  bool is_sampled() const { return block->sizes.sample_time > 0; }
+};
+
+/// Of one system in motion. Part of SystemData.
+struct SignalData {
+  VectorXd values;  ///< every output of every block
+  VectorXd z;       ///< continuous states
+  VectorXd memory;  ///< what blocks keep between samples, and what is held or on its way
+  VectorXd inputs, scratch, fresh;
+  /// Linear models: more on each actuator's command; with is_open that is all, beside what is held here.
+  VectorXd bias, command;
+  bool is_open = false;
+};
+
+/// Instants first, first + period, ...
+struct SampleTimes {
+  double first = 0, period = 0;
+};
+
+class SignalGraph {
+ public:
+  std::vector<BlockPlace> places;  ///< in the order of the file: sensors, controllers, actuators, functions
+  std::vector<int> order;          ///< of evaluation
+  int num_values = 0, num_states = 0, num_memory = 0, num_inputs = 0, num_guards = 0, num_actuators = 0;
+  double start = 0;
+
+  /// The order, what is needed and what is late, from sources and sizes. Reports "control.algebraic-loop".
+  void arrange(Diagnostics& diagnostics);
+  SignalData make_data() const;
+  const BlockPlace* find(const std::string& path) const;
+  /// What the motion needs, but what is late. After kinematics, before loads.
+  void calc_early(const System& system, SystemData& data) const;
+  /// What is late and needed. After accelerations.
+  void calc_late(const System& system, SystemData& data) const;
+  /// Every block. After accelerations.
+  void calc_all(const System& system, SystemData& data) const;
+  /// After calc_all: one sensor as linear models see it; y: its outputs.
+  void calc_ideal(const BlockPlace& place, const System& system, SystemData& data, double* y) const;
+  void add_loads(const System& system, SystemData& data) const;
+  /// After calc_late. z_dot: num_states.
+  void calc_rates(const System& system, SystemData& data, Eigen::Ref<VectorXd> z_dot) const;
+  double calc_power(const System& system, const SystemData& data) const;
+  double calc_energy(const System& system, const SystemData& data) const;
+  Vector3d calc_momentum(const System& system, const SystemData& data) const;
+
+  /// Instants of all sampled blocks, each kind once.
+  std::vector<SampleTimes> collect_samples() const;
+  /// Takes the samples due within `close` of data's time, after calc_all there: each block sees what those before it in
+  /// the order give at this instant, and the accelerations before it. True when what the motion needs has changed.
+  bool sample(const System& system, SystemData& data, double close) const;
+  /// After calc_all. g: num_guards.
+  void calc_guards(const System& system, SystemData& data, Eigen::Ref<VectorXd> g) const;
+  /// Switches every block with a positive guard; false when there is none. "pwpf: guard 1" in `what`.
+  bool switch_over(const System& system, SystemData& data, const VectorXd& g, std::string& what) const;
+  /// "controller 'pid' (state 1)".
+  std::string name_state(int row) const;
+
+ private:
+  BlockInput look(const BlockPlace& place, const System& system, SystemData& data) const;
+  BlockInput look_again(const BlockPlace& place, const System& system, const SystemData& data) const;
+  void calc(const BlockPlace& place, const System& system, SystemData& data) const;
+  void find_needed();
+};
+
+}  // namespace bough::solver

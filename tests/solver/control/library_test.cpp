@@ -1,0 +1,63 @@
+// Laws of the user in C, C++ and Fortran (data/examples/controllers) against the same law of our own blocks.
+#include <filesystem>
+
+#include "tests/solver/control/support.hpp"
+
+namespace bough::solver::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+records::SystemSpec make_library(const std::string& file) {
+  auto spec = make_axis();
+  spec.hinges[0].position = {0.3};
+  spec.controllers = {make_law("law", "library", {"angle", "rate"}, {{"parameters", {8, 1.6, 0.05}}})};
+  spec.controllers[0].settings.words["file"] = {file};
+  return spec;
+}
+
+TEST(Library, LawsInCAndFortranGiveTheHistoryOfOurOwnBlocks) {
+  auto own = make_library("");
+  own.controllers[0] = make_law("law", "state_space", {"angle", "rate"});
+  auto& m = own.controllers[0].settings.matrices;
+  m["A"] = MatrixXd::Constant(1, 1, -20);
+  m["B"] = (MatrixXd(1, 2) << 0, 20).finished();
+  m["C"] = MatrixXd::Constant(1, 1, -1.6);
+  m["D"] = (MatrixXd(1, 2) << -8, 0).finished();
+  const MatrixXd expected = run_system(own).sink.get("/sensors/angle");
+  int found = 0;
+  for (const char* file : {BOUGH_LAW_C, BOUGH_LAW_CPP, BOUGH_LAW_F}) {
+    if (!std::filesystem::exists(file)) continue;
+    ++found;
+    const ControlRun r = run_system(make_library(file));
+    EXPECT_LT((r.sink.get("/sensors/angle") - expected).cwiseAbs().maxCoeff(), 1e-11) << file;
+  }
+  EXPECT_GE(found, 2);
+}
+
+TEST(Library, AnExceptionEndsTheRunByName) {
+  auto spec = make_library(BOUGH_LAW_CPP);
+  spec.hinges[0].rate = {30};
+  const System system = build(spec);
+  MemorySink sink;
+  Diagnostics diagnostics;
+  try {
+    simulate(system, spec, sink, {}, diagnostics);
+    ADD_FAILURE() << "no failure";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.items()[0].id, "control.library-failed");
+    EXPECT_THAT(failure.items()[0].what, HasSubstr("controller 'law': bough_controller_outputs at t = "));
+    EXPECT_THAT(failure.items()[0].what, HasSubstr("beyond this law"));
+  }
+}
+
+TEST(Library, RefusesWrongInputsAtOpening) {
+  auto spec = make_library(BOUGH_LAW_C);
+  spec.controllers[0].inputs = {"angle"};
+  Diagnostics diagnostics;
+  System::build_as_far(spec, {}, diagnostics);
+  EXPECT_TRUE(diagnostics.has("control.bad-library"));
+}
+
+}  // namespace
+}  // namespace bough::solver::testing

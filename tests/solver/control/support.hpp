@@ -1,0 +1,117 @@
+#pragma once
+/// \file Small controlled systems and what they should do: matrix exponentials of their own.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "solver/integrate/memory_sink.hpp"
+#include "solver/integrate/simulate.hpp"
+#include "tests/solver/support/models.hpp"
+
+namespace bough::solver::testing {
+
+inline records::SensorRecord make_sensor(const std::string& name, records::SensorType type, const std::string& body,
+                                         const std::string& hinge = "") {
+  records::SensorRecord s;
+  s.name = name;
+  s.type = type;
+  s.body = body;
+  s.hinge = hinge;
+  s.at = {"system.toml", 30, 1};
+  return s;
+}
+
+inline records::ControllerRecord make_law(const std::string& name, const std::string& type,
+                                          const std::vector<std::string>& inputs,
+                                          const std::map<std::string, std::vector<double>>& numbers = {}) {
+  records::ControllerRecord r;
+  r.name = name;
+  r.type = type;
+  r.inputs = inputs;
+  r.settings.numbers = numbers;
+  r.at = {"system.toml", 40, 1};
+  return r;
+}
+
+inline records::ActuatorRecord make_drive(const std::string& name, const std::string& hinge, const std::string& input) {
+  records::ActuatorRecord r;
+  r.name = name;
+  r.type = "hinge";
+  r.hinge = hinge;
+  r.input = input;
+  r.at = {"system.toml", 50, 1};
+  return r;
+}
+
+inline records::FunctionRecord make_step(const std::string& name, double value, double at) {
+  records::FunctionRecord f;
+  f.name = name;
+  f.type = "step";
+  f.values = {{"value", value}, {"at", at}};
+  return f;
+}
+
+/// A rotor of inertia 2 about z on a hinge, with sensors angle and rate and a drive with the input "law".
+inline records::SystemSpec make_axis() {
+  records::SystemSpec spec;
+  records::BodyRecord b;
+  b.name = "rotor";
+  b.mass = 1;
+  b.inertia = Vector3d(1, 1, 2).asDiagonal();
+  spec.bodies = {b};
+  spec.hinges = {make_hinge_record("axis", records::HingeType::Revolute, "ground", "rotor")};
+  spec.hinges[0].axis = {0, 0, 1};
+  spec.sensors = {make_sensor("angle", records::SensorType::HingeAngle, "", "axis"),
+                  make_sensor("rate", records::SensorType::HingeRate, "", "axis")};
+  spec.actuators = {make_drive("drive", "axis", "law")};
+  spec.simulation.duration = 5;
+  spec.simulation.output_step = 0.05;
+  spec.simulation.integrator = "rk";
+  spec.simulation.relative_tolerance = 1e-11;
+  spec.simulation.absolute_tolerance = 1e-13;
+  spec.simulation.at = {"system.toml", 20, 1};
+  return spec;
+}
+
+struct ControlRun {
+  MemorySink sink;
+  SimulateOutcome outcome;
+  Diagnostics diagnostics;
+};
+
+inline ControlRun run_system(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex = {},
+                             const SimulateOptions& options = {}) {
+  ControlRun r;
+  const System system = build(spec, flex);
+  r.outcome = simulate(system, spec, r.sink, options, r.diagnostics);
+  return r;
+}
+
+/// exp(A) by scaling, Taylor's series and squaring.
+inline MatrixXd calc_exp(const MatrixXd& A) {
+  int halvings = 0;
+  double size = A.cwiseAbs().rowwise().sum().maxCoeff();
+  for (; size > 0.1; size /= 2) ++halvings;
+  const MatrixXd small = A * std::ldexp(1.0, -halvings);
+  MatrixXd term = MatrixXd::Identity(A.rows(), A.cols()), sum = term;
+  for (int k = 1; k < 20; ++k) {
+    term = term * small / k;
+    sum += term;
+  }
+  for (int i = 0; i < halvings; ++i) sum = sum * sum;
+  return sum;
+}
+
+/// x(t) of ẋ = A x + b.
+inline VectorXd propagate(const MatrixXd& A, const VectorXd& b, const VectorXd& x, double t) {
+  const auto n = A.rows();
+  MatrixXd all = MatrixXd::Zero(n + 1, n + 1);
+  all.topLeftCorner(n, n) = A;
+  all.topRightCorner(n, 1) = b;
+  VectorXd start(n + 1);
+  start << x, 1;
+  return (calc_exp(all * t) * start).head(n);
+}
+
+}  // namespace bough::solver::testing
