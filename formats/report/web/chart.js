@@ -12,9 +12,12 @@ export class Link {
     this.listeners[event].push(act);
   }
   set_window(window) {
+    const begin = performance.now();
     this.window = window;
     for (const chart of this.charts) chart.draw();
     for (const act of this.listeners.window) act(window);
+    // What the tests hold against the time that a zoom may take.
+    document.documentElement.dataset.zoomMs = (performance.now() - begin).toFixed(1);
   }
   set_cursor(x, from) {
     for (const chart of this.charts) chart.draw_cursor(x, chart === from);
@@ -24,6 +27,9 @@ export class Link {
     for (const act of this.listeners.pick) act(x);
   }
 }
+
+let is_printing = false;
+export const set_printing = (is_on) => (is_printing = is_on);
 
 const kMargin = { left: 76, right: 14, top: 10, bottom: 42 };
 
@@ -46,6 +52,12 @@ export class Chart {
     this.listen();
     on_theme(() => this.element.isConnected && this.draw());
     new ResizeObserver(() => this.draw()).observe(this.stage);
+    // Charts off the screen wait until they come near.
+    this.is_near = true;
+    new IntersectionObserver(([entry]) => {
+      this.is_near = entry.isIntersecting;
+      if (this.is_near && this.is_late) this.draw();
+    }, { rootMargin: "300px" }).observe(this.stage);
   }
 
   set_series(series) {
@@ -128,7 +140,8 @@ export class Chart {
   draw() {
     const width = this.stage.clientWidth;
     if (width < 50) return;
-    const begin = performance.now();
+    this.is_late = !this.is_near && !is_printing;
+    if (this.is_late) return;
     const scale = devicePixelRatio || 1;
     for (const canvas of [this.canvas, this.overlay]) {
       if (canvas.width !== Math.round(width * scale) || canvas.height !== Math.round(this.height * scale)) {
@@ -155,8 +168,6 @@ export class Chart {
     for (const s of this.get_visible()) s.points ? this.draw_points(g, s) : this.draw_curve(g, s);
     g.restore();
     this.draw_legend_strokes();
-    // What the tests hold against the time a zoom may take.
-    this.canvas.dataset.ms = (performance.now() - begin).toFixed(1);
   }
 
   equalize() {
@@ -262,24 +273,27 @@ export class Chart {
     if (to - from <= 3 * this.frame.width) {
       for (let i = from; i < to; ++i) put(this.map_x(this.to_x(s.x[i])), this.map_y(this.to_y(s.y[i])));
     } else {
+      const y = s.y;
       let i = from;
       while (i < to) {
         const column = Math.floor(this.map_x(this.to_x(s.x[i])));
-        let low = Infinity, high = -Infinity, first = NaN, last = NaN;
-        for (; i < to && Math.floor(this.map_x(this.to_x(s.x[i]))) === column; ++i) {
-          const y = this.to_y(s.y[i]);
-          if (!Number.isFinite(y)) continue;
-          if (Number.isNaN(first)) first = y;
-          last = y;
-          if (y < low) low = y;
-          if (y > high) high = y;
+        const next = this.unmap_x(column + 1);
+        const end = Math.min(to, Math.max(i + 1, find_index(s.x, this.x_log ? 10 ** next : next)));
+        let low = i, high = i, first = -1, last = -1;
+        for (; i < end; ++i) {
+          const v = y[i];
+          if (!Number.isFinite(v)) continue;
+          if (first < 0) first = low = high = i;
+          last = i;
+          if (v < y[low]) low = i;
+          if (v > y[high]) high = i;
         }
-        put(column, this.map_y(first));
-        if (low < high) {
-          put(column, this.map_y(low));
-          put(column, this.map_y(high));
-          put(column, this.map_y(last));
+        if (first < 0) {
+          is_down = false;
+          continue;
         }
+        // On a logarithmic axis of what changes its sign the least size may be lost, never the largest.
+        for (const k of y[low] < y[high] ? [first, low, high, last] : [first]) put(column, this.map_y(this.to_y(y[k])));
       }
     }
     g.stroke();

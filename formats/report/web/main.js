@@ -1,3 +1,4 @@
+import { set_printing } from "./chart.js";
 import { HistoryView, Run, make_fixed_chart } from "./history.js";
 import { BodeView, ScatterView, make_poles_chart } from "./linear_view.js";
 import { ModesView } from "./modes_view.js";
@@ -74,7 +75,11 @@ addEventListener("beforeprint", () => {
     watcher.unobserve(place);
     build(place, chapters.get(place), failures);
   }
+  set_printing(true);
   set_theme("light");
 });
-addEventListener("afterprint", () => set_theme(theme));
+addEventListener("afterprint", () => {
+  set_printing(false);
+  set_theme(theme);
+});
 document.documentElement.dataset.ready = "true";
