@@ -25,7 +25,7 @@ struct ForceElementRecord {
   std::string name;
   ElementType type = ElementType::Spring;
   EndRecord from, to;
-  // Spring: tension = preload + stiffness (l - free_length) + spring_table(l) + damping l̇ + damper_table(l̇) + function
+  // Tension = preload + stiffness (l - free_length) + spring_table(l) + damping l̇ + damper_table(l̇) + function
   double stiffness = 0, damping = 0, free_length = 0, preload = 0;
   SpringSense sense = SpringSense::Both;
   std::string spring_table, damper_table, function;

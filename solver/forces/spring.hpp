@@ -1,7 +1,7 @@
 #pragma once
 /// \file A spring, damper and actuator between two points A and B at the distance l.
 ///
-/// Tension T = preload + k (l - l0) + table(l) + c l̇ + table(l̇) + f(t): positive pulls A and B together. One that acts
+/// T = preload + k (l - l0) + table(l) + c l̇ + table(l̇) + f(t): tension pulls A and B together. One that acts
 /// in tension only is slack where T without dampers is negative and never pushes; in compression only likewise.
 #include "solver/forces/curve.hpp"
 #include "solver/forces/element.hpp"
