@@ -184,11 +184,14 @@ EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
     X.middleCols(a, b - a) = Y * calc_cluster_rotation(weights, MatrixXd(model.T() * Y));
     lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
   }
-  // Where constraints have large factors, sums over the matrix of the f-set lose digits that those over elements have.
-  const MatrixXd X_g = model.T() * X;
-  MatrixXd G_g(cut, cut);
-  fe::multiply_dense(true, X_g, fe::calc_mass_times(model, model.mass_kind(), X_g), 0, G_g);
-  if ((G_g - MatrixXd::Identity(cut, cut)).cwiseAbs().maxCoeff() > 1e-9) orthonormalize_ascending(G_g, X);
+  if (cut > 0) {
+    // Where constraints have large factors, sums over the matrix of the f-set lose digits that those over elements
+    // have.
+    const MatrixXd X_g = model.T() * X;
+    MatrixXd G(cut, cut);
+    fe::multiply_dense(true, X_g, fe::calc_mass_times(model, model.mass_kind(), X_g), 0, G);
+    if ((G - MatrixXd::Identity(cut, cut)).cwiseAbs().maxCoeff() > 1e-9) orthonormalize_ascending(G, X);
+  }
 
   EigenPairs pairs;
   const int first = std::min(range_.first, cut), size = std::clamp(range_.last, first, cut) - first;

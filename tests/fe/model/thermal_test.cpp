@@ -155,6 +155,15 @@ TEST(ThermalLoads, InitialTemperatures) {
   Heated none("TEMP(INITIAL) = 7\n" + open + "TEMPD,5,50.\n");
   none.make_load();
   EXPECT_TRUE(none.diagnostics.has("fe.missing-load"));
+  // TREF of a laminate is its own, zero where it is blank.
+  for (const char* tref : {"", "20."}) {
+    Heated plate(
+        std::string(
+            "TEMP(INITIAL) = 6\nTEMP(LOAD) = 5\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0."
+            "\nCTRIA3,1,1,1,2,3\nMAT1,1,7.+10,,.3,,1.-5\nTEMPD,5,50.\nTEMPD,6,20.\nPCOMP,1,,,,,") +
+        tref + "\n,1,.1\n");
+    EXPECT_EQ(plate.diagnostics.has("fe.laminate-tref"), *tref == 0);
+  }
 }
 
 TEST(ThermalLoads, BarWithGradients) {
