@@ -96,8 +96,8 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
                         {"limits", VectorXd::Zero(2 * limit_.num_watched())},
                         {"events", VectorXd::Zero(1 + setup_.triggers.signs.size())},
                         {"stepper", VectorXd::Zero(4)},
-                        {"discrete", ode_.get_memory()},
-                        {"control", get_control_memory()}};
+                        {"discrete", ode_.make_memory()},
+                        {"control", VectorXd::Zero(1 + ode_.data().signals.memory.size())}};
   guards_ = last_guards_ = VectorXd::Zero(system.impl().signals.num_guards);
   progress_.start = timeline_.start();
   progress_.end = timeline_.end();
@@ -218,7 +218,7 @@ double Run::calc_noise() {
   const VectorXd q = y_.head(ode_.num_q()), u = VectorXd::Constant(system.num_u(), small);
   auto data = system.make_data();
   calc_kinematics(system, *data, timeline_.start(), q, u);
-  double noise = calc_energies(system, *data).kinetic;
+  double noise = calc_energies(system, *data).kinetic - system.impl().signals.calc_energy(system, *data);
   for (const TreeBody& tb : system.impl().tree.bodies) noise += 0.5 * small * small * tb.body.K().trace();
   return noise;
 }

@@ -76,7 +76,7 @@ class Run {
   void settle_switches(double t);
   /// The first time in the last step up to `to` at which a block switches.
   std::optional<double> find_switch(const Stop& stop, double to);
-  VectorXd get_control_memory() const;
+  void get_control_memory(VectorXd& memory) const;
   void set_control_memory(const VectorXd& memory);
 
   // Checkpoints (run_checkpoint.cpp)

@@ -53,8 +53,8 @@ void Run::save(double t) {
   checkpoint_.memory[3].second[0] = passed_;
   checkpoint_.memory[3].second.tail(setup_.triggers.signs.size()) = setup_.triggers.signs;
   checkpoint_.memory[4].second = stepper_->memory();
-  checkpoint_.memory[5].second = ode_.get_memory();
-  checkpoint_.memory[6].second = get_control_memory();
+  ode_.get_memory(checkpoint_.memory[5].second);
+  get_control_memory(checkpoint_.memory[6].second);
   sink_.write_energy_error(monitor_.worst());
   sink_.write_checkpoint(checkpoint_);
   saved_at_ = std::chrono::steady_clock::now();

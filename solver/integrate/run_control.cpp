@@ -67,11 +67,10 @@ std::optional<double> Run::find_switch(const Stop& stop, double to) {
   return first;
 }
 
-VectorXd Run::get_control_memory() const {
-  const VectorXd& memory = ode_.data().signals.memory;
-  VectorXd all(memory.size() + 1);
-  all << sampled_, memory;
-  return all;
+void Run::get_control_memory(VectorXd& memory) const {
+  const VectorXd& own = ode_.data().signals.memory;
+  memory[0] = sampled_;
+  memory.tail(own.size()) = own;
 }
 
 void Run::set_control_memory(const VectorXd& memory) {

@@ -60,12 +60,17 @@ namespace {
 constexpr Eigen::Index kClosing = 22;  // numbers of a Closing: closed, R, p, gap, q
 }
 
-VectorXd SystemOde::get_memory() const {
-  const Discrete d = get_discrete(*data_);
-  VectorXd memory = VectorXd::Zero(num_u_ + kClosing * static_cast<Eigen::Index>(d.closings.size()));
-  for (int row = 0; row < num_u_; ++row) memory[row] = static_cast<double>(d.mode[static_cast<size_t>(row)]);
+VectorXd SystemOde::make_memory() const {
+  VectorXd memory = VectorXd::Zero(num_u_ + kClosing * static_cast<Eigen::Index>(data_->loops.constraints.size()));
+  get_memory(memory);
+  return memory;
+}
+
+void SystemOde::get_memory(VectorXd& memory) const {
+  for (int row = 0; row < num_u_; ++row) memory[row] = static_cast<double>(data_->tree.mode[static_cast<size_t>(row)]);
   Eigen::Index at = num_u_;
-  for (const Closing& c : d.closings) {
+  for (const ConstraintData& constraint : data_->loops.constraints) {
+    const Closing& c = constraint.closing;
     memory[at] = c.is_closed ? 1 : 0;
     memory.segment<9>(at + 1) = c.R.reshaped();
     memory.segment<3>(at + 10) = c.p;
@@ -73,7 +78,6 @@ VectorXd SystemOde::get_memory() const {
     memory.segment(at + 15, c.q.size()) = c.q;
     at += kClosing;
   }
-  return memory;
 }
 
 void SystemOde::set_memory(const VectorXd& memory) {

@@ -37,7 +37,8 @@ class SystemOde final : public Ode {
   /// A constraint closed as it is found at (t, y).
   Closing find_closing(double t, const Eigen::Ref<const VectorXd>& y, int constraint);
   /// What each coordinate and constraint does, for a checkpoint.
-  VectorXd get_memory() const;
+  VectorXd make_memory() const;
+  void get_memory(VectorXd& memory) const;  ///< of that size; no allocation
   void set_memory(const VectorXd& memory);
   double get_work(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates() + num_z_]; }
   double get_dissipated(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates() + num_z_ + 1]; }

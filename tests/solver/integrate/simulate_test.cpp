@@ -266,7 +266,8 @@ TEST(Simulate, SensorFaultsStopARunBeforeItStarts) {
   spec.simulation.integrator = "euler";
   MemorySink sink;
   Diagnostics diagnostics;
-  const System system = build(spec);
+  EXPECT_THROW(build(spec), InputError);
+  const System system = System::build_as_far(spec, {}, diagnostics);
   EXPECT_THROW(simulate(system, spec, sink, {}, diagnostics), InputError);
   EXPECT_TRUE(diagnostics.has("sensor.unknown-body"));
   EXPECT_TRUE(diagnostics.has("run.unknown-integrator"));
