@@ -110,7 +110,9 @@ void set_modes(const System& system, SystemData& data, const Discrete& discrete)
   if (!discrete.closings.empty()) set_closings(system.impl().loops, system.impl().tree, discrete.closings, data.loops);
 }
 
-Discrete get_discrete(const SystemData& data) { return {data.tree.mode, get_closings(data.loops)}; }
+Discrete get_discrete(const SystemData& data) {
+  return {data.tree.mode, get_closings(data.loops), data.signals.memory};
+}
 
 void calc_q_dot(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                 const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> q_dot) {
