@@ -30,7 +30,7 @@ void write_equilibrium(const LoadedSystem& loaded, solver::Plant& plant, const s
                        const std::vector<std::string>& sources, const std::string& path) {
   const auto& point = found.point;
   plant.evaluate(point);
-  const Eigen::VectorXd u = plant.expand(point.u);
+  const Eigen::VectorXd u = plant.calc_speeds(point);
   solver::Recorder recorder(loaded.system);
   records::ResultsHeader header;
   header.system_text = loaded.spec.text;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "solver/integrate/simulate.hpp"
+#include "solver/integrate/system_ode.hpp"
 #include "solver/linear/equilibrium.hpp"
 
 namespace bough::cli {
@@ -42,6 +43,13 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& p
   LastState sink;
   solver::simulate(loaded.system, spec, sink, {}, diagnostics);
   const auto& state = sink.last().state;
+  const auto* discrete = sink.last().find("discrete");
+  if (discrete && *discrete != solver::SystemOde(loaded.system).make_memory())
+    throw InputError("linear.changed-system", s.at,
+                     fmt::format("an event before t = {:g} locked, released, closed or broke something, and the linear "
+                                 "model is of the system as it starts",
+                                 t),
+                     "write the system as it is then, by locked and active");
   const auto* control = sink.last().find("control");
   Eigen::VectorXd memory;
   if (control) memory = control->tail(control->size() - 1);

@@ -163,7 +163,6 @@ void find_unstable(Plant& plant, const SourceLocation& at, Equilibrium& found) {
 }  // namespace
 
 Equilibrium find_equilibrium(Plant& plant, const OperatingPoint& start, const SourceLocation& at) {
-  plant.demand_tree(at);
   const Newton newton = search(Balance(plant, start), at);
   Equilibrium found;
   found.point = newton.at().point();

@@ -208,7 +208,6 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
 
 LinearModel linearize(Plant& plant, const OperatingPoint& point, const LinearizeOptions& options,
                       const SourceLocation& at, Diagnostics& diagnostics) {
-  plant.demand_tree(at);
   const int n = plant.num_freedoms();
   std::vector<std::string> names;
   for (const auto& input : plant.inputs()) names.push_back(input.name);
@@ -254,7 +253,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
 
   const Jacobian jacobian = calc_jacobian(plant, point, 1);
   model.A = MatrixXd::Zero(nx, nx);
-  model.A.topLeftCorner(n, n) = plant.calc_turning(point.u);
+  model.A.topLeftCorner(n, n) = plant.calc_turning(point);
   model.A.block(0, n, n, n).setIdentity();
   model.A.bottomRows(n + nz) = jacobian.value.topRows(n + nz);
   model.C = take_rows(jacobian.value, n + nz, outputs);

@@ -44,6 +44,7 @@ Plant::Plant(const System& system, bool is_open) : system_(system), data_(system
     add_modes(b, size);
   }
   BOUGH_DEMAND(num_freedoms() == system.num_dofs());
+  t_ = system.impl().start;
   for (const auto& p : system.impl().signals.places) {
     if (is_open && p.block->path.starts_with("/controllers/")) continue;
     for (int i = 0; i < p.block->sizes.states; ++i) state_rows_.push_back(p.state + i);
@@ -51,6 +52,7 @@ Plant::Plant(const System& system, bool is_open) : system_(system), data_(system
   std::sort(state_rows_.begin(), state_rows_.end());
   add_inputs();
   add_outputs();
+  choose_independent();
 }
 
 void Plant::add_hinge(int b) {
@@ -106,14 +108,6 @@ void Plant::add_outputs() {
   }
 }
 
-void Plant::demand_tree(const SourceLocation& at) const {
-  if (system_.num_constraints() == 0) return;
-  throw InputError("linear.has-constraints", at,
-                   "the system has constraint '" + system_.constraint_name(0) +
-                       "': equilibria and linear models of closed loops are not in this version",
-                   "run it with dampers to find where it rests, or take the constraint out");
-}
-
 OperatingPoint Plant::make_initial_point() const {
   OperatingPoint point;
   point.t = system_.impl().start;
@@ -155,6 +149,12 @@ VectorXd Plant::expand(const VectorXd& free) const {
 }
 
 VectorXd Plant::displace(const VectorXd& q, const VectorXd& delta) const {
+  VectorXd moved = displace_tree(q, delta);
+  if (has_loops()) close_positions(moved);
+  return moved;
+}
+
+VectorXd Plant::displace_tree(const VectorXd& q, const VectorXd& delta) const {
   BOUGH_DEMAND(q.size() == system_.num_q() && delta.size() == num_freedoms());
   VectorXd moved = q;
   const VectorXd step = expand(delta);
@@ -176,15 +176,25 @@ VectorXd Plant::displace(const VectorXd& q, const VectorXd& delta) const {
   return moved;
 }
 
-MatrixXd Plant::calc_turning(const VectorXd& free) const {
-  const VectorXd u = expand(free);
+MatrixXd Plant::calc_turning(const OperatingPoint& point) const {
+  const VectorXd u = calc_speeds(point);
   MatrixXd turning = MatrixXd::Zero(u.size(), u.size());
   for (int b = 0; b < system_.num_bodies(); ++b) {
     const int row = system_.u_offset(b);
     if (!has_quaternion(system_, b)) continue;
     turning.block<3, 3>(row, row) = -skew(u.segment<3>(row));
   }
-  return turning(rows_, rows_);
+  if (!has_loops()) return turning(rows_, rows_);
+  // What follows is displaced too: the columns of its rates by unit rates of the freedoms.
+  OperatingPoint still = point;
+  still.u.setZero();
+  const VectorXd given = calc_speeds(still);
+  MatrixXd follow(u.size(), num_freedoms());
+  for (int j = 0; j < num_freedoms(); ++j) {
+    still.u = VectorXd::Unit(num_freedoms(), j);
+    follow.col(j) = calc_speeds(still) - given;
+  }
+  return turning(rows_, Eigen::all) * follow;
 }
 
 VectorXd Plant::get_for_file(const VectorXd& q) const {
@@ -204,7 +214,8 @@ VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, d
   data_->signals.memory = point.memory;
   data_->signals.bias.setZero();
   if (input && input->actuator >= 0) data_->signals.bias[input->actuator] = value;
-  calc_kinematics(system_, *data_, point.t, point.q, expand(point.u));
+  t_ = point.t;
+  calc_kinematics(system_, *data_, point.t, point.q, calc_speeds(point));
   set_z(*data_, point.z);
   add_forces(system_, *data_, point.t);
   if (input && input->force >= 0) {

@@ -5,11 +5,15 @@
 /// A freedom is a free hinge coordinate or a mode, in the order of u. Positions near q are q ⊕ δ, with one δ a freedom:
 /// q + δ, and for the orientation of a spherical or free hinge q exp(δ̃) (δ in Hc, as its u). About a motion q(t), u(t)
 /// that gives δ̇ = δu, and δ̇ = δu - ω × δ for an orientation that turns at ω: exact to first order.
+///
+/// Where loops are closed the freedoms are independent ones among these, by pivots of G at the start (Wehage & Haug,
+/// J. Mech. Design 104 (1982) 247); the others follow: q by assembly, u by G u = 0.
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "formats/records/linear_model.hpp"
+#include "solver/loops/assemble.hpp"
 #include "solver/system/system.hpp"
 
 namespace bough::solver {
@@ -54,13 +58,15 @@ class Plant {
   OperatingPoint make_initial_point() const;
   /// Where is_open: from now on actuators keep the commands they have there.
   void hold_commands(const OperatingPoint& point);
-  /// q ⊕ δ; delta: num_freedoms.
+  /// q ⊕ δ; delta: num_freedoms. Throws ComputationError "linear.dead-point" where the loops cannot follow.
   VectorXd displace(const VectorXd& q, const VectorXd& delta) const;
-  /// num_u of the system, zero where a motion is prescribed, of one value a freedom; and back.
+  /// num_u of the system, of one value a freedom: zero where a motion is prescribed or loops are closed; and back.
   VectorXd expand(const VectorXd& free) const;
   VectorXd restrict(const VectorXd& u) const { return u(rows_); }
-  /// ∂δ̇/∂δ about a motion with the speeds u: zero but for orientations that turn. num_freedoms².
-  MatrixXd calc_turning(const VectorXd& u) const;
+  /// All speeds at a point, those that loops give too. Throws ComputationError "linear.dead-point".
+  VectorXd calc_speeds(const OperatingPoint& point) const;
+  /// ∂δ̇/∂δ about a motion: zero but for orientations that turn. num_freedoms².
+  MatrixXd calc_turning(const OperatingPoint& point) const;
   /// Quaternions as the files have them: w, x, y, z.
   VectorXd get_for_file(const VectorXd& q) const;
 
@@ -75,8 +81,6 @@ class Plant {
   VectorXd evaluate(const OperatingPoint& point, const PlantInput* input = nullptr, double value = 0);
   /// Results of the last evaluate, for a Recorder.
   const SystemData& data() const { return *data_; }
-  /// Throws InputError "linear.has-constraints" where the system has any: freedoms are those of the tree.
-  void demand_tree(const SourceLocation& at) const;
 
  private:
   struct Freedom {
@@ -88,6 +92,11 @@ class Plant {
   void add_modes(int body, double size);
   void add_inputs();
   void add_outputs();
+  VectorXd displace_tree(const VectorXd& q, const VectorXd& delta) const;
+  // Loops (plant_loops.cpp)
+  bool has_loops() const { return !grip_.empty(); }
+  void choose_independent();
+  void close_positions(VectorXd& q) const;
 
   const System& system_;
   std::unique_ptr<SystemData> data_;
@@ -98,7 +107,8 @@ class Plant {
   std::vector<PlantInput> inputs_;
   int num_forces_ = 0, num_actuators_ = 0;
   records::Signals outputs_;
-  VectorXd ones_;
+  std::vector<Grip> grip_;  ///< by row of u, where loops are closed: what follows is Loose
+  double t_ = 0;            ///< of the last point
 };
 
 }  // namespace bough::solver

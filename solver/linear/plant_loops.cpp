@@ -1,0 +1,72 @@
+// Minimal coordinates of a plant with closed loops.
+#include <algorithm>
+
+#include "solver/linear/plant.hpp"
+#include "solver/system/impl.hpp"
+
+namespace bough::solver {
+namespace {
+
+constexpr double kDependent = 1e-9;  // of the largest pivot
+/// Modes follow only where no hinge coordinate can.
+constexpr double kModeWeight = 1e-3;
+
+[[noreturn]] void fail_dead(const Loops& loops, const Assembly& found) {
+  const Constraint& c = loops[std::max(0, found.worst)];
+  throw ComputationError("linear.dead-point", c.at,
+                         "the loop of constraint '" + c.name +
+                             "' cannot follow its independent coordinates there: they stand at or near a dead point",
+                         "linearize somewhere else, or start there, so that others are chosen as independent");
+}
+
+}  // namespace
+
+void Plant::choose_independent() {
+  const System::Impl& impl = system_.impl();
+  if (data_->loops.blocks.empty()) return;
+  const OperatingPoint start = make_initial_point();
+  calc_position(impl.tree, start.t, start.q, data_->tree);
+  calc_closure_positions(impl.loops, impl.tree, data_->tree, data_->loops);
+  const MatrixXd G = calc_dense_rows(impl.loops, impl.tree, data_->tree, data_->loops);
+  MatrixXd own(G.rows(), num_freedoms());
+  for (int j = 0; j < num_freedoms(); ++j)
+    own.col(j) = G.col(rows_[static_cast<size_t>(j)]) * step(j) * (is_mode(j) ? kModeWeight : 1);
+  Eigen::ColPivHouseholderQR<MatrixXd> factor;
+  factor.setThreshold(kDependent);
+  factor.compute(own);
+  std::vector<bool> follows(freedoms_.size(), false);
+  for (Eigen::Index k = 0; k < factor.rank(); ++k)
+    follows[static_cast<size_t>(factor.colsPermutation().indices()[k])] = true;
+  grip_.assign(static_cast<size_t>(system_.num_u()), Grip::Fixed);
+  std::vector<Freedom> freedoms;
+  std::vector<int> rows;
+  for (size_t j = 0; j < freedoms_.size(); ++j) {
+    if (follows[j]) {
+      grip_[static_cast<size_t>(rows_[j])] = Grip::Loose;
+      continue;
+    }
+    freedoms.push_back(freedoms_[j]);
+    rows.push_back(rows_[j]);
+  }
+  freedoms_ = std::move(freedoms);
+  rows_ = std::move(rows);
+}
+
+void Plant::close_positions(VectorXd& q) const {
+  const System::Impl& impl = system_.impl();
+  const Assembly found = assemble_positions(impl.loops, impl.tree, t_, grip_, q, data_->tree, data_->loops);
+  if (!found.is_closed) fail_dead(impl.loops, found);
+}
+
+VectorXd Plant::calc_speeds(const OperatingPoint& point) const {
+  if (!has_loops()) return expand(point.u);
+  const System::Impl& impl = system_.impl();
+  calc_kinematics(system_, *data_, point.t, point.q, expand(point.u));
+  calc_closure_positions(impl.loops, impl.tree, data_->tree, data_->loops);
+  VectorXd u = data_->tree.u;
+  const Assembly found = assemble_rates(impl.loops, impl.tree, grip_, u, data_->tree, data_->loops);
+  if (!found.is_closed) fail_dead(impl.loops, found);
+  return u;
+}
+
+}  // namespace bough::solver
