@@ -36,18 +36,7 @@ struct BodyRecord {
   SourceLocation at;
 };
 
-enum class HingeType {
-  Fixed,
-  Revolute,
-  Prismatic,
-  Universal,
-  Cylindrical,
-  Planar,
-  Spherical,
-  Free,
-  Screw,
-  General
-};
+enum class HingeType { Fixed, Revolute, Prismatic, Universal, Cylindrical, Planar, Spherical, Free, Screw, General };
 
 struct HingeRecord {
   std::string name;
@@ -58,14 +47,14 @@ struct HingeRecord {
   Matrix3d parent_rotation = Matrix3d::Identity();  ///< R_PHp (hinge axes in the parent body)
   Vector3d child_position = Vector3d::Zero();
   Matrix3d child_rotation = Matrix3d::Identity();  ///< R_CHc
-  Vector3d axis = Vector3d::UnitZ();               ///< revolute, prismatic, cylindrical, screw; planar: the normal; in Hp
-  Vector3d axis2 = Vector3d::UnitY();              ///< universal: second axis, in Hp at q = 0
-  double pitch = 0;                                ///< screw: travel per radian
-  std::string rotations, translations;             ///< general: axes in order, as "zxz" (gimbal), "xz"; "q": quaternion
+  Vector3d axis = Vector3d::UnitZ();    ///< revolute, prismatic, cylindrical, screw; planar: the normal; in Hp
+  Vector3d axis2 = Vector3d::UnitY();   ///< universal: second axis, in Hp at q = 0
+  double pitch = 0;                     ///< screw: travel per radian
+  std::string rotations, translations;  ///< general: axes in order, as "zxz" (gimbal), "xz"; "q": quaternion
   std::vector<double> stiffness, damping, null_position;  ///< per hinge coordinate; empty = 0
   std::vector<double> position, rate;  ///< initial; spherical/free orientation as quaternion w,x,y,z in position
   std::vector<std::string> motion;     ///< prescribed: function name per coordinate ("" = free)
-  bool is_guess = false;     ///< position: may be moved to close loops as freely as if it were not given
+  bool is_guess = false;               ///< position: may be moved to close loops as freely as if it were not given
   std::vector<bool> locked;            ///< at the start, per hinge rate; empty: none
   SourceLocation at;
 };

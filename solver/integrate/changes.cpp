@@ -50,8 +50,7 @@ std::vector<int> find_rows(const System& system, int body, const records::Trigge
 
 }  // namespace
 
-Changes Changes::build(const System& system, const records::SystemSpec& spec, bool is_sound,
-                       Diagnostics& diagnostics) {
+Changes Changes::build(const System& system, const records::SystemSpec& spec, bool is_sound, Diagnostics& diagnostics) {
   Changes made;
   for (const auto& r : spec.events) {
     Change change;
@@ -90,8 +89,7 @@ Discrete Changes::apply(size_t trigger, SystemOde& ode, double t, const VectorXd
   if (change.constraint < 0) return next;
   Closing& closing = next.closings[static_cast<size_t>(change.constraint)];
   if (change.action == EventAction::Break) closing.is_closed = false;
-  if (change.action == EventAction::Close && !closing.is_closed)
-    closing = ode.find_closing(t, y, change.constraint);
+  if (change.action == EventAction::Close && !closing.is_closed) closing = ode.find_closing(t, y, change.constraint);
   return next;
 }
 

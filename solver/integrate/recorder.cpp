@@ -95,9 +95,10 @@ void Recorder::choose(const std::vector<std::string>& groups, const SourceLocati
     const auto is_in = [&](const auto& channel) { return lies_in(channel.path, group); };
     if (std::any_of(channels_.begin(), channels_.end(), is_in)) continue;
     const std::string near = find_nearest(group, known);
-    diagnostics.error("run.unknown-group", where, "record names '" + group + "', which the results do not hold",
-                      near.empty() ? "name bodies, hinges, constraints, sensors, energy, momentum or a part of them, as bodies/NAME"
-                                   : "did you mean '" + near + "'?");
+    diagnostics.error(
+        "run.unknown-group", where, "record names '" + group + "', which the results do not hold",
+        near.empty() ? "name bodies, hinges, constraints, sensors, energy, momentum or a part of them, as bodies/NAME"
+                     : "did you mean '" + near + "'?");
   }
   chosen_.clear();
   ranges_.clear();

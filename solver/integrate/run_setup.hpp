@@ -12,7 +12,7 @@ struct RunSetup {
   RunPlan plan;
   Recorder recorder;
   Triggers triggers;
-  Changes changes;  ///< by trigger
+  Changes changes;         ///< by trigger
   std::string integrator;  ///< never "auto"
 };
 

@@ -62,8 +62,7 @@ std::unique_ptr<SystemData> System::make_data() const {
   auto data = std::make_unique<SystemData>();
   data->tree = make_tree_data(impl_->tree);
   data->loops = make_loop_data(impl_->loops, impl_->tree);
-  if (!impl_->initial_closings.empty())
-    set_closings(impl_->loops, impl_->tree, impl_->initial_closings, data->loops);
+  if (!impl_->initial_closings.empty()) set_closings(impl_->loops, impl_->tree, impl_->initial_closings, data->loops);
   return data;
 }
 

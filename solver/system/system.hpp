@@ -122,8 +122,8 @@ void add_node_wrench(const System& system, SystemData& data, int body, int node_
                      const Vector3d& t_W);
 /// q and u brought onto the closed constraints at t, in the metric of the mass matrix. No allocation.
 void project(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u);
-/// u̇ by the order-n recursion with what was added, loops closed; body accelerations and hinge forces become available. Order n.
-/// No allocation. Throws ComputationError when the articulated inertia of a body is not positive definite.
+/// u̇ by the order-n recursion with what was added, loops closed; body accelerations and hinge forces become available.
+/// Order n. No allocation. Throws ComputationError when the articulated inertia of a body is not positive definite.
 void calc_accelerations(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> u_dot);
 /// The same by assembling the dense M(q) and solving: the second route for tests. O(num_u³).
 void calc_accelerations_dense(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> u_dot);
