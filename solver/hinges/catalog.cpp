@@ -30,19 +30,18 @@ std::unique_ptr<const Hinge> make_general(const records::HingeRecord& record, Di
   for (size_t i = 1; i < t.size(); ++i) good = good && t.find(t[i]) == i;
   if (good && r == "q") return std::make_unique<OrientedHinge>(t);
   if (good) return std::make_unique<GeneralHinge>(r, t);
-  diagnostics.error("system.bad-axes", record.at,
-                    "hinge '" + record.name + "': rotations '" + r + "' and translations '" + t +
-                        "' are not up to three axes each",
-                    "rotations: x y z in any order, no two alike in a row, as \"zxz\", or \"q\" for a quaternion; "
-                    "translations: each of x y z at most once; a hinge without either is fixed");
+  diagnostics.error(
+      "system.bad-axes", record.at,
+      "hinge '" + record.name + "': rotations '" + r + "' and translations '" + t + "' are not up to three axes each",
+      "rotations: x y z in any order, no two alike in a row, as \"zxz\", or \"q\" for a quaternion; "
+      "translations: each of x y z at most once; a hinge without either is fixed");
   return nullptr;
 }
 }  // namespace
 
 std::unique_ptr<const Hinge> make_hinge(const records::HingeRecord& record, Diagnostics& diagnostics) {
   using records::HingeType;
-  const bool needs_axis =
-      record.type != HingeType::Fixed && record.type != HingeType::Spherical &&
+  const bool needs_axis = record.type != HingeType::Fixed && record.type != HingeType::Spherical &&
                           record.type != HingeType::Free && record.type != HingeType::General;
   if (needs_axis && !check_axis(record.axis, "axis", record, diagnostics)) return nullptr;
   const Vector3d axis = needs_axis ? record.axis.normalized() : Vector3d::UnitZ();

@@ -84,7 +84,8 @@ class Positions {
       const MatrixXd G = calc_dense_rows(loops_, tree_, tree_data_, data_);
       const VectorXd step = solve_least(G, size, -get_gaps(loops_, data_));
       double largest = 0;  // in step sizes
-      for (Eigen::Index r = 0; r < size.size(); ++r) largest = std::max(largest, size[r] > 0 ? std::abs(step[r]) / size[r] : 0);
+      for (Eigen::Index r = 0; r < size.size(); ++r)
+        largest = std::max(largest, size[r] > 0 ? std::abs(step[r]) / size[r] : 0);
       double by = std::min(1.0, largest > 0 ? 0.5 / largest : 1.0);
       const LoopData before = data_;
       bool is_better = false;
@@ -137,7 +138,8 @@ Assembly assemble_positions(const Loops& loops, const Tree& tree, double t, cons
       VectorXd trial = given;
       if (k > 0) {
         const double off = 2.0 * k / kMostStarts;
-        const VectorXd step = VectorXd::NullaryExpr(size.size(), [&](Eigen::Index r) { return off * any(engine) * size[r]; });
+        const VectorXd step =
+            VectorXd::NullaryExpr(size.size(), [&](Eigen::Index r) { return off * any(engine) * size[r]; });
         displace(tree, choose(step, grip, Grip::Given), trial);
         positions.find_starts(trial);
       }

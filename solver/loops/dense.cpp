@@ -18,8 +18,7 @@ MatrixXd calc_dense_rows(const Loops& loops, const Tree& tree, const TreeData& t
       for (const int i : block.constraints) {
         const int n = loops[i].num_rows();
         // W as the multipliers have it: a fit that ends elsewhere in rounding may turn its basis.
-        if (loops[i].closure)
-          G.col(column).segment(at, n) = data[i].own.W.leftCols(n).transpose() * own[i].relative.V;
+        if (loops[i].closure) G.col(column).segment(at, n) = data[i].own.W.leftCols(n).transpose() * own[i].relative.V;
         for (const CouplerTerm& term : loops[i].terms) {
           if (term.u_row == column) G(at, column) += term.ratio;
         }

@@ -213,17 +213,6 @@ Vector6d calc_constraint_wrench(const Loops& loops, const LoopData& data, int i)
   return data[i].own.W.leftCols(loops[i].num_rows()) * data[i].lambda.head(loops[i].num_rows());
 }
 
-double calc_coupler_power(const Loops& loops, const TreeData& tree_data, const LoopData& data) {
-  double power = 0;
-  for (int i = 0; i < loops.size(); ++i) {
-    for (const CouplerTerm& term : loops[i].terms) {
-      if (data[i].closing.is_closed && tree_data.mode[static_cast<size_t>(term.u_row)] == HingeMode::Prescribed)
-        power += data[i].lambda[0] * term.ratio * tree_data.u[term.u_row];
-    }
-  }
-  return power;
-}
-
 VectorXd get_gaps(const Loops& loops, const LoopData& data) {
   int rows = 0;
   for (const LoopBlock& block : data.blocks) rows += static_cast<int>(block.rows.size());

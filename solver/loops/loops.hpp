@@ -24,10 +24,10 @@ struct Constraint {
   int parent_marker = 0, child_marker = 0;
   std::vector<CouplerTerm> terms;  ///< Σ ratio q = offset
   double offset = 0;
-  bool active = true;      ///< at the start
+  bool active = true;       ///< at the start
   double coupled_size = 0;  ///< coupler: sum of squared ratios, of angles over the square of Loops::length
-  std::vector<int> path;   ///< bodies it acts on and those between them and ground, ascending
-  std::vector<int> roots;  ///< of the trees they belong to
+  std::vector<int> path;    ///< bodies it acts on and those between them and ground, ascending
+  std::vector<int> roots;   ///< of the trees they belong to
 
   int num_rows() const { return closure ? closure->num_rows() : 1; }
   int num_q() const { return closure ? closure->num_q() : 0; }
@@ -86,8 +86,7 @@ double calc_largest_gap(const Loops& loops, const LoopData& data, int* which = n
 
 /// After solve: u̇ with the constraints, by their multipliers and a second solve. Does nothing where none is closed. No
 /// allocation.
-void close_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data,
-                 Eigen::Ref<VectorXd> u_dot);
+void close_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data, Eigen::Ref<VectorXd> u_dot);
 /// q and u brought to G(q) = 0, G u = 0 at t in the metric of M: what is taken off is M⁻¹Gᵀ times something. Leaves
 /// tree_data at (t, q, u), factored. No allocation.
 void project(const Loops& loops, const Tree& tree, double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u,
@@ -99,8 +98,6 @@ void add_multipliers(const Loops& loops, const Tree& tree, const TreeData& tree_
 
 /// The wrench at Hc on the child, in Hp: of the multipliers last found.
 Vector6d calc_constraint_wrench(const Loops& loops, const LoopData& data, int constraint);
-/// Power of couplers along prescribed coordinates, which their motors feel.
-double calc_coupler_power(const Loops& loops, const TreeData& tree_data, const LoopData& data);
 
 /// G of the closed constraints, rows in the order of the blocks, all columns of u, by unit speeds. For assembly and the
 /// second route. After Stage::Position.

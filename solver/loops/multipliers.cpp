@@ -35,8 +35,7 @@ Vector6d calc_rows(const Constraint& c, const ConstraintData& d, const Tree& tre
     for (const CouplerTerm& term : c.terms) rows[0] += term.ratio * s.u_dot[term.u_row];
     return rows;
   }
-  const Vector6d A =
-      calc_relative_response(tree, tree_data, c.parent_marker, c.child_marker, d.relative, s);
+  const Vector6d A = calc_relative_response(tree, tree_data, c.parent_marker, c.child_marker, d.relative, s);
   for (int k = 0; k < c.num_rows(); ++k) rows[k] = d.own.W.col(k).dot(A);
   return rows;
 }
@@ -114,9 +113,8 @@ void apply(const Loops& loops, const Tree& tree, const LoopData& data, double si
       for (const CouplerTerm& term : c.terms)
         tree_data.hinge_force[term.u_row] += sign * term.ratio * data[i].lambda[0];
       if (!c.closure) continue;
-      const MarkerWrenches w =
-          calc_marker_wrenches(tree, tree_data, c.parent_marker, c.child_marker, data[i].relative,
-                               Vector6d(sign * calc_constraint_wrench(loops, data, i)));
+      const MarkerWrenches w = calc_marker_wrenches(tree, tree_data, c.parent_marker, c.child_marker, data[i].relative,
+                                                    Vector6d(sign * calc_constraint_wrench(loops, data, i)));
       add_marker_wrench(tree, c.parent_marker, w.on_parent.head<3>(), w.on_parent.tail<3>(), tree_data);
       add_marker_wrench(tree, c.child_marker, w.on_child.head<3>(), w.on_child.tail<3>(), tree_data);
     }

@@ -10,9 +10,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Cholesky's factorization with diagonal pivoting of A scaled to a unit diagonal (Higham, "Accuracy and Stability of
-/// Numerical Algorithms", 10.3): Ã = L Lᵀ, L m x rank; with L = Q R, Ã⁺ = Q R⁻ᵀ R⁻¹ Qᵀ. Rows whose pivot is no more than
-/// kLeastShare of their diagonal depend on the others. Least norm and least squares are those of the scaled unknowns
-/// and rows.
+/// Numerical Algorithms", 10.3): Ã = L Lᵀ, L m x rank; with L = Q R, Ã⁺ = Q R⁻ᵀ R⁻¹ Qᵀ. Rows whose pivot is no more
+/// than kLeastShare of their diagonal depend on the others. Least norm and least squares are those of the scaled
+/// unknowns and rows.
 class SemidefiniteFactor {
  public:
   static constexpr double kLeastShare = 1e-10;

@@ -90,7 +90,7 @@ records::SystemSpec make_four_bar(HingeType closing = HingeType::Revolute) {
   return spec;
 }
 
-struct FourBar {  // at a crank angle, the branch that starts above
+struct FourBar {                   // at a crank angle, the branch that starts above
   double coupler = 0, rocker = 0;  // absolute angles
   double coupler_per_crank = 0, rocker_per_crank = 0;
 };
@@ -120,8 +120,7 @@ double calc_four_bar_energy(double crank, double rate) {
   const double vx = -kCrank * std::sin(crank) * rate - 0.5 * kCoupler * std::sin(f.coupler) * wc;
   const double vy = kCrank * std::cos(crank) * rate + 0.5 * kCoupler * std::cos(f.coupler) * wc;
   const double kinetic = 0.5 * (kCrank * kCrank / 3) * rate * rate + 0.5 * 2 * (vx * vx + vy * vy) +
-                         0.5 * (2 * kCoupler * kCoupler / 12) * wc * wc +
-                         0.5 * (1.5 * kRocker * kRocker / 3) * wr * wr;
+                         0.5 * (2 * kCoupler * kCoupler / 12) * wc * wc + 0.5 * (1.5 * kRocker * kRocker / 3) * wr * wr;
   return kinetic + 9.81 * (0.5 * kCrank * std::sin(crank) +
                            2 * (kCrank * std::sin(crank) + 0.5 * kCoupler * std::sin(f.coupler)) +
                            1.5 * 0.5 * kRocker * std::sin(f.rocker));

@@ -109,7 +109,8 @@ class RandomLoops : public ::testing::TestWithParam<unsigned> {};
 TEST_P(RandomLoops, StartClosed) {
   Looped s = make_looped(GetParam());
   EXPECT_LT(calc_largest_gap(s.system.impl().loops, s.data->loops), 1e-11);
-  EXPECT_LT(calc_rates(s.system, *s.data, 0.3, s.q, s.u).cwiseAbs().maxCoeff(), 1e-10 * (1 + s.u.cwiseAbs().maxCoeff()));
+  EXPECT_LT(calc_rates(s.system, *s.data, 0.3, s.q, s.u).cwiseAbs().maxCoeff(),
+            1e-10 * (1 + s.u.cwiseAbs().maxCoeff()));
 }
 
 TEST_P(RandomLoops, MultipliersAgreeWithTheDenseEquations) {
@@ -265,7 +266,8 @@ TEST(Semidefinite, SolvesByLeastNorm) {
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> cod;
     cod.setThreshold(1e-8);
     cod.compute(scaled);
-    const VectorXd expected = s.cwiseInverse().asDiagonal() * VectorXd(cod.solve(VectorXd(s.cwiseInverse().asDiagonal() * b)));
+    const VectorXd expected =
+        s.cwiseInverse().asDiagonal() * VectorXd(cod.solve(VectorXd(s.cwiseInverse().asDiagonal() * b)));
     EXPECT_LT((x - expected).norm(), 1e-8 * expected.norm());
   }
 }
