@@ -16,7 +16,7 @@ class FourBar(ProgramTest):
         with h5py.File(self.path("four-bar.h5")) as f:
             kinetic = f["/energy/kinetic"][:].ravel()
             total = kinetic + f["/energy/strain"][:].ravel() + f["/energy/potential"][:].ravel()
-            rocker, crank = f["/hinges/pivot/q"][:, 0], f["/hinges/shaft/q"][:, 0]
+            rocker, crank = np.ravel(f["/hinges/pivot/q"]), np.ravel(f["/hinges/shaft/q"])
             bending = f["/sensors/bending"][:]
         self.assertLess(np.abs(total - total[0]).max() / kinetic.max(), 1e-9)
         # At the start the coupler is straight.
