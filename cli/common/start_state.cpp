@@ -44,10 +44,14 @@ class Starter {
 };
 
 /// Says which state it is; warns where the run went on past it.
-void report_time(const hdf5::ResultsFile& results, const std::string& path, Diagnostics& diagnostics) {
+void report_time(const records::SystemSpec& spec, const hdf5::ResultsFile& results, const std::string& path,
+                 Diagnostics& diagnostics) {
   if (results.time.size() == 0) return;  // what is missing is said channel by channel
   const double t = results.time[results.time.size() - 1];
-  diagnostics.note("cli.start-state", {path}, fmt::format("the start is its state at t = {:g}", t), "");
+  diagnostics.note("cli.start-state", {path}, fmt::format("the start is its state at t = {:g}", t),
+                   spec.controllers.empty() && spec.actuators.empty()
+                       ? ""
+                       : "controllers and actuators start as the system file says, from no state of their own");
   double reached = t;
   try {
     reached = hdf5::read_checkpoint(path).time;
@@ -66,7 +70,7 @@ void report_time(const hdf5::ResultsFile& results, const std::string& path, Diag
 void set_start_state(records::SystemSpec& spec, const std::string& path, Diagnostics& diagnostics) {
   const auto results = hdf5::read_results(path);
   warn_incomplete(path, diagnostics);
-  report_time(results, path, diagnostics);
+  report_time(spec, results, path, diagnostics);
   Starter starter(results, path, spec.simulation.at, diagnostics);
   for (auto& body : spec.bodies) {
     const auto carries = [&](const records::HingeRecord& hinge) { return hinge.child == body.name; };

@@ -73,6 +73,10 @@ std::string name_type(records::HingeType type) {
       return "spherical";
     case records::HingeType::Free:
       return "free";
+    case records::HingeType::Screw:
+      return "screw";
+    case records::HingeType::General:
+      return "general";
     default:
       return "";
   }
@@ -125,7 +129,8 @@ void add_scene(const std::string& file, const hdf5::RunInputs& inputs, const Rep
         if (drawn.point >= 0) drawn.p += drawing.xyz.row(drawn.point).transpose();
       }
     }
-    const bool has_axis = hinge.type != records::HingeType::Fixed && hinge.type != records::HingeType::Spherical;
+    const bool has_axis = hinge.type != records::HingeType::Fixed && hinge.type != records::HingeType::Spherical &&
+                          hinge.type != records::HingeType::General;
     if (has_axis) drawn.axis = hinge.parent_rotation * hinge.axis.normalized();
     history.hinges.push_back(std::move(drawn));
   }
