@@ -66,8 +66,8 @@ std::vector<std::pair<std::string, std::string>> calc_sources(const std::vector<
 /// Does `act`; a failure of it is thrown on behind what was `said` before it, so that no word of the reader is lost.
 void say_first(const Diagnostics& said, const std::function<void()>& act);
 
-/// Does `act`; failures that it throws without a place are thrown on as failures of `file`. So are those of fe and modal
-/// about the whole of `innocent`, a file whose numbers were not used.
+/// Does `act`; failures that it throws without a place are thrown on as failures of `file`, so are those of fe and
+/// modal about the whole of `innocent`, a file whose numbers were not used.
 int blame(const std::string& file, const std::function<int()>& act, const std::string& innocent = "");
 
 /// Throws InputError("cli.no-file") when the path is no readable file.
