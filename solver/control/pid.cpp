@@ -44,6 +44,7 @@ class Pid final : public Block {
   double error(const BlockInput& in, int i) const { return (has_reference ? in.u[n + i] : setpoint) - in.u[i]; }
   double get_integral(const BlockInput& in, int i) const { return T > 0 ? in.d[i] : in.z[i]; }
   double calc_windup(const BlockInput& in, int i) const {
+    if (ki[i] == 0) return 0;
     const double u = calc(in, i), held = std::clamp(u, low[i], high[i]);
     return ki[i] * error(in, i) + (u != held ? (held - u) / windup[i] : 0);
   }
@@ -98,6 +99,7 @@ std::unique_ptr<Block> make_pid(SettingsReader& keys, const ControllerWiring& wi
     usual[i] = derivative > 0 && integral > 0 ? std::sqrt(integral * derivative) : integral > 0 ? integral : 1;
     if (sample_time > 0) usual[i] = std::max(usual[i], sample_time);
   }
+  keys.demand(!keys.has("windup_time") || !p.ki.isZero(0), "has a windup_time and no ki", "give ki, or leave it out");
   p.windup = keys.has("windup_time") ? keys.get_vector("windup_time", n) : usual;
   keys.demand((p.windup.array() > 0).all(), "has a windup_time that is not positive", "give a time");
   p.sizes.inputs = wiring.size();

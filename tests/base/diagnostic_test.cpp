@@ -11,7 +11,7 @@ TEST(Diagnostic, FormatIsFileLineKindWhatAdviceId) {
 }
 
 TEST(Diagnostic, NamesThatNoTerminalShouldSeeAreWrittenOut) {
-  const Diagnostic d{Severity::Error, "x.name", {"f", 1, 0}, std::string("body 'a\0\x1b[2J'\n", 12), "rename it"};
+  const Diagnostic d{Severity::Error, "x.name", {"f", 1, 0}, std::string("body 'a\0\x1b[2J'\n", 13), "rename it"};
   EXPECT_EQ(format(d), "f:1: error: body 'a\\x00\\x1b[2J'; rename it [x.name]");
 }
 

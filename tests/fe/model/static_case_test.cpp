@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "fe/linear/petsc.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "formats/nastran/reader.hpp"
 
@@ -68,6 +69,7 @@ std::string write_hanging(const std::string& spring, const std::string& load) {
 
 // The factor takes it, but no digit of the answer is left: what is said is the motion, not its residual.
 TEST(StaticCase, ResidualOfAMotionThatHardlyAnythingHoldsNamesTheMotion) {
+  if (initialize_petsc().size > 1) GTEST_SKIP() << "the factor of several processes keeps digits enough";
   Solved hanging;
   try {
     solve(write_hanging(".6", "FORCE,3,11,,1.,1.,0.,0.\n"), hanging);

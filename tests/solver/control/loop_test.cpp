@@ -62,6 +62,18 @@ TEST(Loop, PidFollowsAStepAsItsLinearEquationsSay) {
 }
 
 // Back-calculation keeps the integral near the limit: the output leaves it soon after the error changes its sign.
+// Limits without ki leave no bias behind.
+TEST(Loop, WithoutKiNothingWindsUp) {
+  auto spec = make_axis();
+  spec.controllers = {make_law("law", "pid", {"angle"},
+                               {{"kp", {8}}, {"kd", {6}}, {"lower", {-1}}, {"upper", {1}}, {"setpoint", {1}}})};
+  spec.controllers[0].rate = "rate";
+  spec.simulation.duration = 60;
+  const ControlRun r = run_system(spec);
+  const VectorXd angle = r.sink.get("/sensors/angle");
+  EXPECT_NEAR(angle[angle.size() - 1], 1, 1e-6);
+}
+
 TEST(Loop, AWoundUpIntegralIsLetGo) {
   auto spec = make_axis();
   spec.functions = {make_step("target", 3, 0)};

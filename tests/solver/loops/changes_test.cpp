@@ -202,6 +202,7 @@ TEST(Lock, KeepsTheMomentumOfTheRest) {
   spec.events = {make_event("stop", EventAction::Lock, "lower"), make_event("go", EventAction::Release, "lower")};
   spec.events[0].signal = "/hinges/lower/q";
   spec.events[0].value = 0.3;
+  spec.events[0].direction = records::EventDirection::Rising;  // it falls back through it when it is free again
   spec.events[1].time = 1.5;
   spec.simulation.duration = 2;
   spec.simulation.output_step = 0.01;
