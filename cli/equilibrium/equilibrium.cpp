@@ -29,8 +29,8 @@ struct EquilibriumOptions : CommonOptions {
 void write_equilibrium(const LoadedSystem& loaded, solver::Plant& plant, const solver::Equilibrium& found,
                        const std::vector<std::string>& sources, const std::string& path) {
   const auto& point = found.point;
-  plant.evaluate(point);
   const Eigen::VectorXd u = plant.calc_speeds(point);
+  plant.evaluate(point);
   solver::Recorder recorder(loaded.system);
   records::ResultsHeader header;
   header.system_text = loaded.spec.text;

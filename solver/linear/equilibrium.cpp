@@ -115,7 +115,8 @@ Newton run_newton(const Balance& start) {
   return newton;
 }
 
-bool is_near(const Balance& at) { return at.travel().size() == 0 || at.travel().cwiseAbs().maxCoeff() <= kNear; }
+/// From the start, in steps of the plant.
+double calc_way(const Balance& at) { return at.travel().size() == 0 ? 0 : at.travel().cwiseAbs().maxCoeff(); }
 
 [[noreturn]] void fail(const Newton& newton, const SourceLocation& at) {
   const int worst = newton.find_restless();
@@ -130,20 +131,26 @@ bool is_near(const Balance& at) { return at.travel().size() == 0 || at.travel().
       "equilibrium.not-converged", at, what.str(),
       spins ? "it has a rate of its own in the system file, which its loads and dampers change: prescribe its motion, "
               "take them away, or give it the rate 0"
+      : worst >= newton.at().plant().num_freedoms()
+          ? "a controller comes to rest only where what it measures can: sampled signals stand still in the search "
+            "(linear.sampled), and an integral wants something that it can move"
       : newton.is_held(worst) ? "start nearer to it, by position and eta"
                               : "nothing holds it: take away the load, or give it a spring or a hinge");
 }
 
-/// Newton's method from the start, when that leads to a state nearby or to a stable one; else that from where the way
-/// downhill ends.
+/// Newton's method from the start, when that leads to a state nearby; else it or that from where the way downhill ends:
+/// a stable one before one that is not, then the nearer.
 Newton search(const Balance& start, const SourceLocation& at) {
   Newton first = run_newton(start);
   const bool is_found = first.find_restless() < 0;
-  if (is_found && (is_near(first.at()) || is_valley(first.at()))) return first;
+  if (is_found && calc_way(first.at()) <= kNear) return first;
   Newton second = run_newton(descend(start));
-  if (second.find_restless() < 0) return second;
-  if (is_found) return first;
-  fail(second, at);
+  const bool is_other = second.find_restless() < 0;
+  if (!is_found && !is_other) fail(second, at);
+  if (!is_found || !is_other) return is_found ? first : second;
+  const bool is_stable = is_valley(first.at()), is_other_stable = is_valley(second.at());
+  if (is_stable != is_other_stable) return is_stable ? first : second;
+  return calc_way(first.at()) <= calc_way(second.at()) ? first : second;
 }
 
 /// Poles that grow: of what does not only drift.

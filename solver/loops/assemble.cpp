@@ -11,6 +11,8 @@ namespace {
 constexpr double kClosed = 1e-12;
 constexpr int kMostSteps = 100, kMostStarts = 24;
 constexpr double kDependent = 1e-8;  // of the largest singular value
+/// What gives way first costs so much less than what gives way with it, that the latter stays where it is if it can.
+constexpr double kPreference = 1e5;
 
 // The size of a step that counts as 1: a radian, the length of the system, a deflection of a hundredth of it.
 VectorXd calc_step_sizes(const Loops& loops, const Tree& tree) {
@@ -32,11 +34,20 @@ VectorXd calc_step_sizes(const Loops& loops, const Tree& tree) {
   return size;
 }
 
-// Step sizes of the coordinates that may move, zero of the others.
-VectorXd choose(const VectorXd& size, const std::vector<Grip>& grip, Grip last) {
+// Of the coordinates that may move; zero of the others.
+VectorXd mask(const VectorXd& size, const std::vector<Grip>& grip, Grip last) {
   VectorXd chosen = size;
   for (size_t row = 0; row < grip.size(); ++row) {
     if (grip[row] > last) chosen[static_cast<Eigen::Index>(row)] = 0;
+  }
+  return chosen;
+}
+
+// Step sizes as weights: larger is cheaper.
+VectorXd weigh(const VectorXd& size, const std::vector<Grip>& grip, Grip last) {
+  VectorXd chosen = mask(size, grip, last);
+  for (size_t row = 0; row < grip.size(); ++row) {
+    if (grip[row] < last) chosen[static_cast<Eigen::Index>(row)] *= kPreference;
   }
   return chosen;
 }
@@ -78,11 +89,12 @@ class Positions {
     }
   }
 
-  bool solve(const VectorXd& size, VectorXd& q) {
+  /// size: of steps; weight: as weigh gives it.
+  bool solve(const VectorXd& size, const VectorXd& weight, VectorXd& q) {
     double gap = calc(q);
     for (int i = 0; i < kMostSteps && gap > 1e-15; ++i) {
       const MatrixXd G = calc_dense_rows(loops_, tree_, tree_data_, data_);
-      const VectorXd step = solve_least(G, size, -get_gaps(loops_, data_));
+      const VectorXd step = solve_least(G, weight, -get_gaps(loops_, data_));
       double largest = 0;  // in step sizes
       for (Eigen::Index r = 0; r < size.size(); ++r)
         largest = std::max(largest, size[r] > 0 ? std::abs(step[r]) / size[r] : 0);
@@ -133,17 +145,17 @@ Assembly assemble_positions(const Loops& loops, const Tree& tree, double t, cons
   for (int k = 0; k < kMostStarts && !found.is_closed; ++k) {
     for (const Grip last : {Grip::Loose, Grip::Given, Grip::Flexible}) {
       if (k > 0 && last == Grip::Flexible) continue;
-      const VectorXd size = choose(sizes, grip, last);
+      const VectorXd size = mask(sizes, grip, last);
       data = start;
       VectorXd trial = given;
       if (k > 0) {
         const double off = 2.0 * k / kMostStarts;
         const VectorXd step =
             VectorXd::NullaryExpr(size.size(), [&](Eigen::Index r) { return off * any(engine) * size[r]; });
-        displace(tree, choose(step, grip, Grip::Given), trial);
+        displace(tree, mask(step, grip, Grip::Given), trial);
         positions.find_starts(trial);
       }
-      found.is_closed = positions.solve(size, trial);
+      found.is_closed = positions.solve(size, weigh(sizes, grip, last), trial);
       const double gap = positions.calc(trial);
       if (gap < least || found.is_closed) {
         least = gap;
@@ -181,7 +193,7 @@ Assembly assemble_rates(const Loops& loops, const Tree& tree, const std::vector<
   judge(u);
   for (const Grip last : {Grip::Loose, Grip::Given, Grip::Flexible}) {
     if (found.is_closed) break;
-    const VectorXd size = choose(sizes, grip, last);
+    const VectorXd size = weigh(sizes, grip, last);
     VectorXd rates = u;
     for (int k = 0; k < 2; ++k) rates += solve_least(G, size, -(G * rates));
     judge(rates);
@@ -212,7 +224,7 @@ void reduce_columns(Matrix6Xd& w) {
 
 std::vector<Redundancy> find_redundancies(const Loops& loops, const Tree& tree, const std::vector<Grip>& grip,
                                           const TreeData& tree_data, const LoopData& data) {
-  const VectorXd size = choose(calc_step_sizes(loops, tree), grip, Grip::Flexible);
+  const VectorXd size = mask(calc_step_sizes(loops, tree), grip, Grip::Flexible);
   const MatrixXd G = calc_dense_rows(loops, tree, tree_data, data) * size.asDiagonal();
   std::vector<Redundancy> found;
   MatrixXd basis(tree.num_u, 0);  // of the rows so far, orthonormal

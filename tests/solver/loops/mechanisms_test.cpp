@@ -461,6 +461,29 @@ TEST(Assembly, ErrorsOfConstraints) {
             "system.bad-constraint ");
 }
 
+// A loop elsewhere that needs given values to give way does not touch one that does not.
+TEST(FourBar, KeepsItsGivenCrankWhateverElseIsAssembled) {
+  auto spec = make_four_bar();
+  auto ball = make_rod("ball", 0.1, 1);
+  spec.bodies.push_back(ball);
+  auto free = make_hinge_record("fly", HingeType::Free, "ground", "ball");
+  free.position = {1, 0, 0, 0, 5, 1, 0};
+  spec.hinges.push_back(free);
+  ConstraintRecord string;
+  string.name = "string";
+  string.type = ConstraintType::Distance;
+  string.child = "ball";
+  string.length = 4.9;
+  spec.constraints.push_back(string);
+  const System system = build(spec);
+  VectorXd q(system.num_q()), u(system.num_u());
+  system.calc_initial_state(q, u);
+  EXPECT_NEAR(q[system.q_offset(system.find_body("crank"))], 0.7, 1e-9);
+  EXPECT_NEAR(u[system.u_offset(system.find_body("crank"))], 3, 1e-8);
+  const int at = system.q_offset(system.find_body("ball")) + 4;
+  EXPECT_NEAR(q.segment<3>(at).norm(), 4.9, 1e-9);
+}
+
 TEST(Loops, AreNotForTheImplicitMethod) {
   records::SystemSpec spec;
   spec.bodies = {make_rod("a", 1, 1), make_rod("b", 1, 1)};
