@@ -26,15 +26,15 @@ extern "C" {
 #endif
 
 struct bough_controller {
-  int inputs;           /* given: numbers in u */
-  int num_parameters;   /* given */
+  int inputs;               /* given: numbers in u */
+  int num_parameters;       /* given */
   const double* parameters; /* given: as in the system file; valid during open only */
-  int outputs;          /* to be set: numbers in y, at least 1 */
-  int states;           /* to be set: numbers in z; 0 on entry; none with sample_time */
-  int memory;           /* to be set: numbers in d; 0 on entry; needs sample_time in the system file */
-  int has_feedthrough;  /* to be set to 0 where y does not depend on u at the same moment; 1 on entry */
-  double sample_time;   /* given: of the system file; 0: continuous */
-  void* instance;       /* yours: the first argument of all other functions */
+  int outputs;              /* to be set: numbers in y, at least 1 */
+  int states;               /* to be set: numbers in z; 0 on entry; none with sample_time */
+  int memory;               /* to be set: numbers in d; 0 on entry; needs sample_time in the system file */
+  int has_feedthrough;      /* to be set to 0 where y does not depend on u at the same moment; 1 on entry */
+  double sample_time;       /* given: of the system file; 0: continuous */
+  void* instance;           /* yours: the first argument of all other functions */
 };
 
 /** Returns BOUGH_CONTROLLER_VERSION, as it was when the library was made. */
