@@ -14,8 +14,8 @@ SignalName parse_signal_name(const std::string& text) {
 
 std::vector<std::string> get_component_names(const std::string& path, int size) {
   if (size == 1) return {""};
-  if (size == 3 && path.find("/eta") == std::string::npos && path.find("/hinges/") == std::string::npos)
-    return {"x", "y", "z"};
+  const auto is_of = [&](const char* kind) { return path.find(kind) != std::string::npos; };
+  if (size == 3 && !is_of("/eta") && !is_of("/hinges/") && !is_of("/actuators/")) return {"x", "y", "z"};
   if (size == 4 && path.ends_with("/quaternion")) return {"w", "x", "y", "z"};
   std::vector<std::string> names;
   for (int i = 1; i <= size; ++i) names.push_back(std::to_string(i));

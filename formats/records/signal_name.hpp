@@ -12,7 +12,8 @@ struct SignalName {
 };
 SignalName parse_signal_name(const std::string& text);
 
-/// Of the channel: x y z, w x y z, or counts from 1; one empty name for a scalar.
+/// Of the channel: x y z, w x y z, or counts from 1 (hinges, modes, actuators); one empty name for a
+/// scalar.
 std::vector<std::string> get_component_names(const std::string& path, int size);
 
 /// Index from 0 of a component by its name or its count, -1 when there is none such; empty: 0 of a scalar.

@@ -116,6 +116,14 @@ std::unique_ptr<Block> make_sensor_block(const Sensors::Entry& entry, const reco
   s.bias = reader.get_list("bias", n);
   s.quantum = reader.get_list("quantization", n);
   s.lag = reader.get_positive("lag");
+  const bool is_attitude =
+      r.type == SensorType::Quaternion || r.type == SensorType::Euler || r.type == SensorType::DirectionCosines;
+  if (s.lag > 0 && (is_attitude || r.type == SensorType::Resolver))
+    reader.error("sensor.bad-value", "has a lag, which would run across the jumps of what it measures",
+                 "give the lag to a sensor of the rate, or to a hinge_angle, or leave it out");
+  if (is_attitude && r.type != SensorType::Euler && (r.chain.has("scale") || r.chain.has("bias")))
+    reader.error("sensor.bad-value", "has a scale or a bias, after which it is no attitude any more",
+                 "leave it out, or measure angles (euler)");
   s.sizes.sample_time = reader.get_positive("sample_time");
   s.sizes.delay = reader.get_positive("delay");
   const double density = reader.get_positive("noise_density"), walk = reader.get_positive("random_walk");

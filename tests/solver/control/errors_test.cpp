@@ -90,6 +90,9 @@ TEST(ControlErrors, OfKeysTypesSizesAndPlaces) {
   EXPECT_THAT(build_and_fail(spec, "sensor.needs-sample-time"), HasSubstr("noise_density"));
   spec.sensors[0].chain.numbers = {{"lag", {-1}}};
   EXPECT_THAT(build_and_fail(spec, "sensor.bad-value"), HasSubstr("lag"));
+  spec.sensors[0] = make_sensor("angle", SensorType::Resolver, "", "axis");
+  spec.sensors[0].chain.numbers = {{"lag", {0.1}}};
+  EXPECT_THAT(build_and_fail(spec, "sensor.bad-value"), HasSubstr("across the jumps"));
 }
 
 TEST(ControlErrors, ANumberThatIsNoneEndsTheRunByName) {
