@@ -119,7 +119,7 @@ int find_actuator_outputs(const std::string& type) {
 Vector3d read_axis(SettingsReader& keys, const std::string& key) {
   const VectorXd axis = keys.get_vector(key, 3);
   if (axis.norm() > 0 && axis.allFinite()) return axis.normalized();
-  keys.error("control.bad-value", "has a " + key + " without direction", "give three numbers, not all zero");
+  keys.error("control.bad-value", "has no direction in " + key, "give three numbers, not all zero");
   return Vector3d::UnitX();
 }
 

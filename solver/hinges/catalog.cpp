@@ -32,7 +32,7 @@ std::unique_ptr<const Hinge> make_general(const records::HingeRecord& record, Di
   if (good) return std::make_unique<GeneralHinge>(r, t);
   diagnostics.error(
       "system.bad-axes", record.at,
-      "hinge '" + record.name + "': rotations '" + r + "' and translations '" + t + "' are not up to three axes each",
+      "hinge '" + record.name + "': rotations '" + r + "' and translations '" + t + "' are not axes of a hinge",
       "rotations: x y z in any order, no two alike in a row, as \"zxz\", or \"q\" for a quaternion; "
       "translations: each of x y z at most once; a hinge without either is fixed");
   return nullptr;

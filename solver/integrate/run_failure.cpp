@@ -66,10 +66,17 @@ void Run::fail_cycle(const Firing& firing) {
 }
 
 void Run::fail_stalled(double t, const std::string& detail) {
+  const System& system = ode_.system();
+  const std::string loops = system.num_constraints() == 0
+                                ? ""
+                                : "look whether a driven or locked hinge takes a loop past its reach (constraint '" +
+                                      system.constraint_name(0) + "'), or ";
+  const std::string usual =
+      setup_.integrator != "bdf"
+          ? "loosen relative_tolerance, or use integrator = \"bdf\" when fast modes are damped out"
+          : "loosen relative_tolerance, or leave out the fastest modes";
   finish_failed(t, "run.stalled", "the integrator makes no progress at t = " + short_text(t) + ": " + detail,
-                setup_.integrator != "bdf"
-                    ? "loosen relative_tolerance, or use integrator = \"bdf\" when fast modes are damped out"
-                    : "loosen relative_tolerance, or leave out the fastest modes");
+                loops + usual);
 }
 
 void Run::finish_failed(double t, const char* id, const std::string& what, const std::string& advice) {

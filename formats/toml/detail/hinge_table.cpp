@@ -173,6 +173,10 @@ records::HingeRecord read_hinge(const Fields& table, Diagnostics& diagnostics) {
   hinge.child_rotation = reader.read_rotation("child_rotation");
   hinge.axis = table.get_vector("axis", hinge.axis);
   hinge.axis2 = table.get_vector("axis2", hinge.axis2);
+  const std::string type = table.get_string("type"), because = "in hinge '" + hinge.name + "' of type " + type;
+  if (type != "screw") refuse_keys(table, {"pitch"}, because, diagnostics);
+  if (type != "general" && type != "gimbal") refuse_keys(table, {"rotations"}, because, diagnostics);
+  if (type != "general") refuse_keys(table, {"translations"}, because, diagnostics);
   hinge.pitch = table.get_number("pitch", 0);
   hinge.rotations = table.get_string("rotations", table.get_string("type") == "gimbal" ? "xyz" : "");
   hinge.translations = table.get_string("translations");
