@@ -53,7 +53,10 @@ BlockInput SignalGraph::look_again(const BlockPlace& p, const System& system, co
 BlockInput SignalGraph::look(const BlockPlace& p, const System& system, SystemData& data) const {
   SignalData& s = data.signals;
   for (size_t i = 0; i < p.sources.size(); ++i) s.inputs[p.in + static_cast<Eigen::Index>(i)] = s.values[p.sources[i]];
-  if (p.actuator >= 0) s.inputs[p.in] = (s.is_open ? s.command[p.actuator] : s.inputs[p.in]) + s.bias[p.actuator];
+  if (p.actuator >= 0) {
+    const double given = s.is_open ? s.command[p.actuator] : p.sources.empty() ? 0 : s.inputs[p.in];
+    s.inputs[p.in] = given + s.bias[p.actuator];
+  }
   return look_again(p, system, data);
 }
 

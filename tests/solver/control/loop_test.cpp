@@ -62,6 +62,20 @@ TEST(Loop, PidFollowsAStepAsItsLinearEquationsSay) {
 }
 
 // Back-calculation keeps the integral near the limit: the output leaves it soon after the error changes its sign.
+// An actuator without an input has its command all the same.
+TEST(Loop, AnActuatorThatNothingCommandsIsAnInputOfTheLinearModel) {
+  auto spec = make_axis();
+  spec.actuators[0].input.clear();
+  const System system = build(spec);
+  for (const bool is_open : {false, true}) {
+    Plant plant(system, is_open);
+    plant.hold_commands(plant.make_initial_point());
+    Diagnostics diagnostics;
+    const auto model = linearize(plant, plant.make_initial_point(), {}, {}, diagnostics);
+    EXPECT_LT((model.B - Eigen::Vector2d(0, 0.5)).norm(), 1e-12) << is_open;
+  }
+}
+
 // Limits without ki leave no bias behind.
 TEST(Loop, WithoutKiNothingWindsUp) {
   auto spec = make_axis();
