@@ -28,7 +28,12 @@ records::HingeRecord make_hinge_record(const ConstraintRecord& r) {
 
 std::unique_ptr<const Closure> build_closure(const ConstraintRecord& r, Diagnostics& diagnostics) {
   if (r.type == ConstraintType::Hinge) {
-    auto hinge = make_hinge(make_hinge_record(r), diagnostics);
+    Diagnostics own;
+    auto hinge = make_hinge(make_hinge_record(r), own);
+    for (Diagnostic item : own.items()) {
+      if (item.what.starts_with("hinge ")) item.what.replace(0, 5, "constraint");
+      diagnostics.add(std::move(item));
+    }
     if (!hinge) return nullptr;
     if (hinge->num_u() == 6) {
       diagnostics.error("system.bad-constraint", r.at, "constraint " + quote(r.name) + " leaves all six motions free",
