@@ -121,9 +121,9 @@ void make_solids(Maker& maker) {
   for (const auto& card : deck.solids) {
     const std::string who = card.card + " " + std::to_string(card.id);
     SolidGeometry geometry;
-    geometry.kind = card.card == "CHEXA"    ? SolidKind::Hexa
-                    : card.card == "CPENTA" ? SolidKind::Penta
-                                            : SolidKind::Tetra;
+    geometry.kind = card.corners.size() == 8 ? SolidKind::Hexa
+                    : card.card == "CPENTA"  ? SolidKind::Penta
+                                             : SolidKind::Tetra;
     std::vector<int> nodes;
     for (int g : card.corners) nodes.push_back(maker.find_grid(g, who, card.at));
     for (int g : card.midsides) {

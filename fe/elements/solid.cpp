@@ -47,6 +47,12 @@ Eigen::Matrix3Xd calc_mode_gradients(SolidKind kind, const Vector3d& at) {
   return g;
 }
 
+/// A cubic brick takes four points a direction, for its mass as for its stiffness.
+std::vector<SolidPoint> list_points(const SolidGeometry& g, bool mass) {
+  if (is_cubic(g.midside)) return calc_solid_points(g.kind, true, false, 4);
+  return calc_solid_points(g.kind, static_cast<int>(g.x.size()) > get_num_corners(g.kind), mass, g.scheme.points);
+}
+
 }  // namespace
 
 Solid::Solid(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, SolidGeometry geometry,
@@ -56,8 +62,7 @@ Solid::Solid(int id, std::string card, std::vector<int> nodes, std::vector<int> 
       C_el_(C_el),
       density_(density),
       expansion_(std::move(expansion)) {
-  num_points_ =
-      static_cast<int>(calc_solid_points(geometry_.kind, is_quadratic(), false, geometry_.scheme.points).size());
+  num_points_ = static_cast<int>(list_points(geometry_, false).size());
 }
 
 ElementShape Solid::shape() const {
@@ -79,7 +84,7 @@ std::vector<Solid::Field> Solid::calc_fields(bool mass) const {
     J0 = dshape * x.transpose();
   }
   std::vector<Field> fields;
-  for (const auto& point : calc_solid_points(geometry_.kind, is_quadratic(), mass, geometry_.scheme.points)) {
+  for (const auto& point : list_points(geometry_, mass)) {
     calc_solid_shape(geometry_.kind, geometry_.midside, point.natural, shape, dshape);
     const Matrix3d J = dshape * x.transpose();  // rows: dx/dξ
     Field f;
@@ -243,9 +248,8 @@ SolidQuality calc_quality(const SolidGeometry& geometry) {
   Eigen::Matrix3Xd x(3, m), dshape(3, m);
   VectorXd shape(m);
   for (int i = 0; i < m; ++i) x.col(i) = geometry.x[static_cast<std::size_t>(i)];
-  const bool quadratic = m > get_num_corners(geometry.kind);
   double volume = 0, reference = 0, least = 1e300, most = -1e300;
-  for (const auto& point : calc_solid_points(geometry.kind, quadratic, false, geometry.scheme.points)) {
+  for (const auto& point : list_points(geometry, false)) {
     calc_solid_shape(geometry.kind, geometry.midside, point.natural, shape, dshape);
     const double J = Matrix3d(dshape * x.transpose()).determinant();
     volume += point.weight * J;
@@ -268,6 +272,12 @@ void turn_round(SolidGeometry& geometry, std::vector<int>& nodes) {
     std::swap(nodes[static_cast<std::size_t>(a)], nodes[static_cast<std::size_t>(b)]);
   }
   if (geometry.midside.empty()) return;
+  if (is_cubic(geometry.midside)) {
+    for (std::size_t e = 0; e < 4; ++e)
+      for (std::size_t k : {0U, 1U}) std::swap(geometry.midside[2 * e + k], geometry.midside[2 * (e + 8) + k]);
+    for (std::size_t e = 4; e < 8; ++e) std::swap(geometry.midside[2 * e], geometry.midside[2 * e + 1]);
+    return;
+  }
   for (const auto& [a, b] : edges[kind])
     std::swap(geometry.midside[static_cast<std::size_t>(a)], geometry.midside[static_cast<std::size_t>(b)]);
 }

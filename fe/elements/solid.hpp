@@ -1,5 +1,6 @@
 #pragma once
-/// \file Solid elements with 4 to 20 nodes (CTETRA, CPENTA, CHEXA): three translations per node, basic axes.
+/// \file Solid elements with 4 to 20 nodes (CTETRA, CPENTA, CHEXA), and 32 (CIHEX3): three translations per node, basic
+/// axes.
 ///
 /// Isoparametric, full quadrature. The brick of eight nodes has in addition the nine incompatible modes of Wilson in
 /// the form of Taylor, Beresford & Wilson, IJNME 10 (1976) 1211-1219, so that one layer of bricks bends without locking
@@ -23,8 +24,9 @@ struct SolidScheme {
 
 struct SolidGeometry {
   SolidKind kind = SolidKind::Hexa;
-  std::vector<int> midside;  ///< per edge: position among the nodes, -1 when absent; empty = none
-  std::vector<Vector3d> x;   ///< nodes in basic
+  std::vector<int>
+      midside;              ///< per edge: position among the nodes, -1 when absent; empty = none; is_cubic: two an edge
+  std::vector<Vector3d> x;  ///< nodes in basic
   SolidScheme scheme;
 };
 

@@ -24,6 +24,7 @@ const FaceTable& get_faces(SolidKind kind) {
 
 /// The face that G1 with G3 or G4 names (Nastran Quick Reference Guide, PLOAD4), begun at G1; empty when none.
 Face find_solid_face(const records::SolidElement& solid, int g1, int g34) {
+  if (is_cubic(solid.midsides)) return {};  // the loads of faces are of corners and one middle a side
   const SolidKind kind = solid.corners.size() == 8   ? SolidKind::Hexa
                          : solid.corners.size() == 6 ? SolidKind::Penta
                                                      : SolidKind::Tetra;

@@ -86,6 +86,36 @@ void calc_solid_shape(SolidKind kind, const std::vector<int>& midside, const Eig
     return t;
   };
   for (int i = 0; i < corners; ++i) set(i, corner(i));
+  if (is_cubic(midside)) {
+    // Bumps at a third and two thirds of an edge from i to j; what is linear has 2/3 and 1/3 there.
+    const auto cubic_bump = [&](int i, int j) -> Term {
+      Term t{1, Eigen::Vector3d::Zero()};
+      for (int a = 0; a < 3; ++a) {
+        const double ci = kHexaCorner[i][a], cj = kHexaCorner[j][a];
+        if (ci == cj) {
+          t = t * factor(a, ci);
+          continue;
+        }
+        Eigen::Vector3d g = Eigen::Vector3d::Zero();
+        g[a] = 3 * ci;  // 1 at the third next to i, and 1 + 3 ξ_i ξ is 2 there
+        t = t * ((9.0 / 16) * (4 * (factor(a, -1) * factor(a, 1)) * linear(1, g[0], g[1], g[2], natural)));
+      }
+      return t;
+    };
+    for (std::size_t e = 0; e < edges.size(); ++e)
+      for (const bool is_near_first : {true, false}) {
+        const auto [first, second] = edges[e];
+        const int near = is_near_first ? first : second, far = is_near_first ? second : first;
+        const int node = midside[2 * e + (is_near_first ? 0 : 1)];
+        const Term t = cubic_bump(near, far);
+        set(node, t);
+        shape[near] -= 2.0 / 3 * t.value;
+        dshape.col(near) -= 2.0 / 3 * t.gradient;
+        shape[far] -= 1.0 / 3 * t.value;
+        dshape.col(far) -= 1.0 / 3 * t.gradient;
+      }
+    return;
+  }
   for (std::size_t e = 0; e < midside.size(); ++e) {
     if (midside[e] < 0) continue;
     const Term t = bump(edges[e].first, edges[e].second);

@@ -20,6 +20,10 @@ int get_num_corners(SolidKind kind);
 /// Edges as corner pairs, in the order of the midside nodes.
 const std::vector<std::pair<int, int>>& get_edges(SolidKind kind);
 
+/// Two nodes on each edge of a brick: 24 entries of midside, edge by edge, the node next to the edge's first corner
+/// first (NASTRAN-95's IHEX3; Zienkiewicz & Taylor, cubic serendipity). None is absent.
+inline bool is_cubic(const std::vector<int>& midside) { return midside.size() == 24; }
+
 /// N (m) and dN/dξ (3 x m) at natural coordinates: m = corners plus the midside nodes present, in deck order.
 /// midside[e]: 0-based position among the m nodes of the node on edge e, or -1.
 void calc_solid_shape(SolidKind kind, const std::vector<int>& midside, const Eigen::Vector3d& natural,

@@ -58,7 +58,7 @@ GRID,99,,1.,5.,0.,,123456
 SPC1,1,123456,1
 ENDDATA
 """
-ONLY_COSMIC = ["CIHEX3", "CTWIST", "CTORDRG", "CTRAPRG"]
+ONLY_COSMIC = ["CTWIST", "CTORDRG", "CTRAPRG"]
 # A plate of one quadrilateral and two triangles, and a block on it, in the cards of both programs.
 PLATE = """SOL 103
 CEND

@@ -47,6 +47,19 @@ void parse_cihex2(Card& card, Reading& r) {
   add_solid(card, r, std::move(e), "CHEXA", "PIHEX");
 }
 
+/// CIHEX3: round the bottom (G1 to G12, corners G1 G4 G7 G10), a third up (G13 to G16), two thirds up (G17 to G20),
+/// round the top (G21 to G32), as in NASTRAN-95's ihexsd.f. Thirds by edge of CHEXA, from its first corner.
+void parse_cihex3(Card& card, Reading& r) {
+  constexpr std::array corners{1, 4, 7, 10, 21, 24, 27, 30};
+  constexpr std::array thirds{2, 3, 5, 6, 8, 9, 11, 12, 13, 17, 14, 18, 15, 19, 16, 20, 22, 23, 25, 26, 28, 29, 31, 32};
+  records::SolidElement e;
+  e.id = card.read_id(0, "EID");
+  e.pid = card.read_id(1, "PID");
+  for (const int i : corners) e.corners.push_back(card.read_id(1 + i, "G1 to G32"));
+  for (const int i : thirds) e.midsides.push_back(card.read_id(1 + i, "G1 to G32"));
+  add_solid(card, r, std::move(e), "CIHEX3", "PIHEX");
+}
+
 /// PID MID CID NIP AR ALPHA BETA.
 void parse_pihex(Card& card, Reading& r) {
   records::Psolid p;
@@ -113,6 +126,7 @@ void add_old_solid_parsers(ParserTable& table) {
   table["CWEDGE"] = parse_by_material<6>;
   table["CIHEX1"] = parse_cihex1;
   table["CIHEX2"] = parse_cihex2;
+  table["CIHEX3"] = parse_cihex3;
   table["PIHEX"] = parse_pihex;
   table["CELBOW"] = parse_celbow;
   table["PELBOW"] = parse_pelbow;

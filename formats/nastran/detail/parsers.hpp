@@ -25,7 +25,7 @@ void add_load_parsers(ParserTable& table);                ///< FORCE, MOMENT, GR
 void add_pressure_parsers(ParserTable& table);            ///< FORCE1/2, MOMENT1/2, PLOAD, 1, 2, 4, RFORCE, SPCD, SLOAD
 void add_old_constraint_parsers(ParserTable& table);      ///< CRIGD1, CRIGD2, CRIGD3, CRIGDR
 void add_old_shell_parsers(ParserTable& table);           ///< CQUAD1, CTRIA1, CQDMEM, CTRPLT ... and their properties
-void add_old_solid_parsers(ParserTable& table);           ///< CHEXA1, CHEXA2, CWEDGE, CIHEX1, CIHEX2, PIHEX, CELBOW
+void add_old_solid_parsers(ParserTable& table);           ///< CHEXA1, CHEXA2, CWEDGE, CIHEX1 to CIHEX3, PIHEX, CELBOW
 void add_temperature_parsers(ParserTable& table);         ///< TEMP, TEMPD, TEMPRB, TEMPP1
 void add_special_element_parsers(ParserTable& table);     ///< PBCOMP, GENEL, CGAP, PGAP, CBEND, PBEND
 void add_special_constraint_parsers(ParserTable& table);  ///< RBAR1, RJOINT, RTRPLT, RTRPLT1, RSPLINE

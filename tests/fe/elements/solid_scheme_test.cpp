@@ -1,4 +1,5 @@
 /// PSOLID's IN and ISOP, and solids that count their grids left-handed.
+#include <algorithm>
 #include <numeric>
 
 #include "fe/elements/solid.hpp"
@@ -23,7 +24,7 @@ SmallModel make_solid(const std::string& card, const std::vector<Vector3d>& x, c
   add_material(m);
   records::SolidElement e;
   e.id = e.pid = 1, e.card = card;
-  const int corners = card == "CHEXA" ? 8 : card == "CPENTA" ? 6 : 4;
+  const int corners = card == "CHEXA" || card == "CIHEX3" ? 8 : card == "CPENTA" ? 6 : 4;
   for (std::size_t i = 0; i < x.size(); ++i) m.nodes.add_grid(static_cast<int>(i) + 1, x[i]);
   for (int i = 1; i <= corners; ++i) e.corners.push_back(i);
   e.midsides = midsides;
@@ -91,6 +92,33 @@ TEST(SolidScheme, PointsOfQuadraticBricks) {
     m.elements.clear();
     m.make();
     EXPECT_EQ(m.elements[0]->num_internal_forces(), 6 * num);
+  }
+}
+
+/// The brick of 32 grids follows cubics, from whichever side its grids are counted.
+TEST(SolidScheme, CubicBricksFollowCubics) {
+  const double C11 = 2 * kG * (1 - kNu) / (1 - 2 * kNu);
+  for (const bool is_left_handed : {false, true}) {
+    auto corners = kBrick;
+    if (is_left_handed) std::rotate(corners.begin(), corners.begin() + 4, corners.end());
+    auto x = corners;
+    std::vector<int> thirds;
+    for (const auto& [i, j] : get_edges(SolidKind::Hexa)) {
+      const Vector3d a = corners[static_cast<std::size_t>(i)], b = corners[static_cast<std::size_t>(j)];
+      for (const double s : {1.0 / 3, 2.0 / 3}) {
+        x.push_back(a + s * (b - a));
+        thirds.push_back(static_cast<int>(x.size()));
+      }
+    }
+    SmallModel m = make_solid("CIHEX3", x, thirds);
+    const auto cube = [](const Vector3d& at) { return at.x() * at.x() * at.x(); };
+    EXPECT_NEAR(calc_energy(m, 0, false, cube), C11 * 72 / 5, 1e-12);  // ∫ C11 (3x²)²
+    const auto mixed = [](const Vector3d& at) { return at.x() * at.x() * at.x() * at.y(); };
+    EXPECT_NEAR(calc_energy(m, 0, false, mixed), C11 * 24 / 5 + kG * 8 / 7, 1e-12);  // and ∫ G x⁶
+    VectorXd one = VectorXd::Zero(m.nodes.num_gdofs());
+    for (int k = 0; k < m.nodes.num_nodes(); ++k) one[6 * k] = 1;
+    EXPECT_NEAR(one.dot(m.calc_mass(MassKind::Consistent) * one), 0.8 * 8, 1e-12);
+    EXPECT_LT((m.calc_stiffness() * one).norm(), 1e-12);
   }
 }
 

@@ -139,7 +139,12 @@ TEST(OldElements, IsoparametricHexahedra) {
   EXPECT_EQ(e.corners, (std::vector<int>{3, 12, 14, 5, 23, 31, 33, 25}));
   EXPECT_EQ(e.midsides, (std::vector<int>{8, 13, 9, 4, 16, 19, 20, 17, 27, 32, 28, 24}));
   EXPECT_EQ(deck.psolid.at(0).mid, 1);
-  EXPECT_EQ(read("CIHEX3,1,1,1,2\nPIHEX,1,1\n").count("deck.unsupported-card"), 1);
+  std::string cubic = "CIHEX3,1,7";
+  for (int g = 1; g <= 32; ++g) cubic += "," + std::to_string(g);
+  const auto third = read_old((cubic + "\nPIHEX,7,1\n").c_str()).deck;
+  EXPECT_EQ(third.solids.at(0).corners, (std::vector<int>{1, 4, 7, 10, 21, 24, 27, 30}));
+  EXPECT_EQ(third.solids.at(0).midsides, (std::vector<int>{2,  3,  5,  6,  8,  9,  11, 12, 13, 17, 14, 18,
+                                                           15, 19, 16, 20, 22, 23, 25, 26, 28, 29, 31, 32}));
 }
 
 TEST(OldElements, Elbow) {
