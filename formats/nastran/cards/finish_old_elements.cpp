@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <tuple>
 
 #include "formats/nastran/detail/parsers.hpp"
 
@@ -106,11 +107,12 @@ class Finisher {
   }
 
   void make_solids() {
-    std::map<std::pair<bool, int>, int> ids;
+    // Cubic bricks get properties of their own: written, they want a PIHEX where the others want a PSOLID.
+    std::map<std::tuple<bool, bool, int>, int> ids;
     for (const auto& use : old_.solids) {
       auto& e = deck_.solids[use.index];
       const bool by_material = use.property.empty();
-      const auto [id, is_new] = ids.emplace(std::pair(by_material, e.pid), 0);
+      const auto [id, is_new] = ids.emplace(std::tuple(by_material, e.card == "CIHEX3", e.pid), 0);
       if (is_new) {
         records::Psolid p;
         p.mid = e.pid;

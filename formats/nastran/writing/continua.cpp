@@ -1,3 +1,5 @@
+#include <set>
+
 #include "formats/nastran/detail/card_sink.hpp"
 
 namespace bough::nastran::detail {
@@ -39,18 +41,53 @@ void write_pcomp(const records::Pcomp& p, CardSink& sink) {
   sink.put(card);
 }
 
+/// CIHEX3 in its own order: rings of corners and thirds, the thirds of the upright edges between them.
+void write_cubic(const records::SolidElement& e, CardSink& sink) {
+  const auto third = [&](int edge, int k) { return e.midsides[static_cast<std::size_t>(2 * edge + k)]; };
+  CardFields card("CIHEX3");
+  card.add(e.id).add(e.pid);
+  const auto add_ring = [&](int first_corner, int first_edge) {
+    for (int i = 0; i < 4; ++i)
+      card.add(e.corners[static_cast<std::size_t>(first_corner + i)])
+          .add(third(first_edge + i, 0))
+          .add(third(first_edge + i, 1));
+  };
+  add_ring(0, 0);
+  for (const int k : {0, 1})
+    for (int edge = 4; edge < 8; ++edge) card.add(third(edge, k));
+  add_ring(4, 8);
+  sink.put(card);
+}
+
+/// Properties that cubic bricks alone have stand as PIHEX, which those want.
+std::set<int> find_cubic_properties(const records::Deck& deck) {
+  std::set<int> cubic;
+  for (const auto& e : deck.solids)
+    if (e.card == "CIHEX3") cubic.insert(e.pid);
+  return cubic;
+}
+
 }  // namespace
 
 void write_continua(const records::Deck& deck, CardSink& sink) {
   for (const auto& p : deck.pshell) write_pshell(p, sink);
   for (const auto& p : deck.pcomp) write_pcomp(p, sink);
+  const auto cubic = find_cubic_properties(deck);
   for (const auto& p : deck.psolid) {
+    if (cubic.count(p.id) > 0) {  // the reader gives no property to both kinds
+      sink.put(CardFields("PIHEX").add(p.id).add(p.mid).add_id(p.cordm));
+      continue;
+    }
     CardFields card("PSOLID");
     card.add(p.id).add(p.mid).add_id(p.cordm).add_id(p.points);
     if (p.is_full || p.is_reduced) card.add_blank().add_word(p.is_full ? "FULL" : "REDUCED");
     sink.put(card);
   }
   for (const auto& e : deck.solids) {
+    if (e.card == "CIHEX3") {
+      write_cubic(e, sink);
+      continue;
+    }
     CardFields card(e.card);
     card.add(e.id).add(e.pid);
     for (const int grid : e.corners) card.add(grid);

@@ -17,7 +17,7 @@ constexpr std::size_t kMostLetters = 1000;
 
 /// Tables of the contract that this version does not have yet.
 const std::vector<std::string>& get_later_tables() {
-  static const std::vector<std::string> names{"connect", "event"};
+  static const std::vector<std::string> names{"connect"};
   return names;
 }
 

@@ -30,7 +30,7 @@ records::SystemSpec make_flyer(const std::string& type) {
 TEST(Wheel, ExchangesMomentumAndKeepsTheWhole) {
   auto spec = make_flyer("wheel");
   spec.actuators[0].settings.numbers = {{"axis", {1, 2, -1}}, {"inertia", {0.05}}, {"momentum", {0.7}}};
-  const ControlRun r = run_system(spec);
+  const RunResult r = run(spec);
   const MatrixXd L = r.sink.get("/momentum/angular"), wheel = r.sink.get("/actuators/drive");
   EXPECT_LT((L.rowwise() - L.row(0)).cwiseAbs().maxCoeff(), 1e-11 * L.row(0).norm() + 1e-11);
   EXPECT_LT(r.outcome.energy_error, 1e-9);
@@ -42,7 +42,7 @@ TEST(Wheel, ExchangesMomentumAndKeepsTheWhole) {
 TEST(Wheel, TakesNoTorqueBeyondItsLimit) {
   auto spec = make_flyer("wheel");
   spec.actuators[0].settings.numbers = {{"axis", {0, 0, 1}}, {"inertia", {0.05}}, {"momentum_limit", {0.15}}};
-  const ControlRun r = run_system(spec);
+  const RunResult r = run(spec);
   const VectorXd h = r.sink.get("/actuators/drive").col(1), t = r.sink.time();
   EXPECT_LT(h.cwiseAbs().maxCoeff(), 0.15 + 1e-9);
   for (int i = 0; i < t.size(); ++i) {  // held from 0.2 (1 - cos 2t) = 0.15 to t = π/2, then driven back
@@ -58,7 +58,7 @@ TEST(Wheel, TakesNoTorqueBeyondItsLimit) {
 TEST(ControlMomentGyro, KeepsTheWholeMomentum) {
   auto spec = make_flyer("cmg");
   spec.actuators[0].settings.numbers = {{"gimbal_axis", {0, 0, 1}}, {"spin_axis", {0, 2, 0}}, {"momentum", {1.5}}};
-  const ControlRun r = run_system(spec);
+  const RunResult r = run(spec);
   const MatrixXd L = r.sink.get("/momentum/angular"), cmg = r.sink.get("/actuators/drive");
   EXPECT_LT((L.rowwise() - L.row(0)).cwiseAbs().maxCoeff(), 1e-10);
   EXPECT_LT(r.outcome.energy_error, 1e-9);
@@ -71,7 +71,7 @@ TEST(Jet, IsOnForItsShortestPulseAtLeast) {
   spec.functions[0].values = {{"value", 1}, {"at", 1}, {"width", 0.02}};
   spec.actuators[0].settings.numbers = {
       {"axis", {0, 0, 1}}, {"thrust", {3}}, {"shortest_pulse", {0.25}}, {"exhaust_velocity", {2}}};
-  const ControlRun r = run_system(spec);
+  const RunResult r = run(spec);
   const MatrixXd jet = r.sink.get("/actuators/drive");
   EXPECT_NEAR(jet(100, 1), 3 * 0.25 / 2, 1e-8);
   const VectorXd p = r.sink.get("/momentum/linear").row(100) - r.sink.get("/momentum/linear").row(0);
@@ -86,7 +86,7 @@ TEST(Motor, RunsUpToItsNoLoadRate) {
   spec.actuators[0].type = "motor";
   spec.actuators[0].settings.numbers = {
       {"torque_constant", {0.5}}, {"resistance", {1.5}}, {"ratio", {3}}, {"back_emf", {0.4}}};
-  const ControlRun r = run_system(spec);
+  const RunResult r = run(spec);
   const double lag = 2 * 1.5 / (3 * 0.5 * 0.4 * 3), top = 12 / (0.4 * 3);
   const VectorXd t = r.sink.time(), rate = r.sink.get("/sensors/rate");
   for (int i = 0; i < t.size(); ++i) EXPECT_NEAR(rate[i], top * (1 - std::exp(-t[i] / lag)), 1e-8);
@@ -99,7 +99,7 @@ TEST(Brake, StopsTheAxisAndHoldsTheBalance) {
   spec.functions = {make_step("law", 0.8, 0.5)};
   spec.actuators[0].type = "brake";
   spec.actuators[0].settings.numbers = {{"stick_rate", {1e-3}}};
-  const ControlRun r = run_system(spec);
+  const RunResult r = run(spec);
   const VectorXd rate = r.sink.get("/sensors/rate");
   EXPECT_NEAR(rate[30], 1 - 0.4 * 1.0, 1e-6);  // at t = 1.5
   EXPECT_NEAR(rate[100], 0, 1e-3);
@@ -115,7 +115,7 @@ TEST(Relay, GoesRoundItsHysteresis) {
       make_law("switch", "relay", {"sum"}, {{"on", {0.2}}, {"off", {-0.2}}, {"value", {0.5}}, {"low", {-0.5}}});
   relay.settings.numbers["outputs"] = {1};
   spec.controllers = {integral, relay, make_law("law", "gain", {"switch"}, {{"gain", {1}}})};
-  const ControlRun r = run_system(spec);
+  const RunResult r = run(spec);
   const VectorXd t = r.sink.time(), y = r.sink.get("/controllers/sum");
   // From 0.05 up at 0.5, then a triangle between -0.2 and 0.2.
   for (int i = 0; i < t.size(); ++i) {
@@ -132,7 +132,7 @@ TEST(Pwpf, PulsesAsItsFilterCharges) {
   spec.controllers = {
       make_law("law", "pwpf", {"u"}, {{"value", {1}}, {"gain", {4}}, {"lag", {0.3}}, {"on", {0.9}}, {"off", {0.3}}})};
   spec.simulation.output_step = 0.01;
-  const ControlRun r = run_system(spec);
+  const RunResult r = run(spec);
   // First pulse: off for τ ln(2 / (2 - 0.9)), on until -2 + 2.9 e^(-s/τ) = 0.3, off until 2 - 1.7 e^(-s/τ) = 0.9.
   const double first = 0.3 * std::log(2 / 1.1), on = 0.3 * std::log(2.9 / 2.3), off = 0.3 * std::log(1.7 / 1.1);
   const VectorXd t = r.sink.time(), y = r.sink.get("/controllers/law");
@@ -167,7 +167,7 @@ TEST(Accelerometer, FeelsTheSpecificForceOfAFlexibleTip) {
   s.relative_tolerance = 1e-12;
   s.absolute_tolerance = 1e-14;
   s.energy_error_limit = 1;
-  const ControlRun r = run_system(tree.spec, tree.flex);
+  const RunResult r = run(tree.spec, tree.flex);
   const MatrixXd p = r.sink.get("/sensors/place"), a = r.sink.get("/sensors/acc"), R = r.sink.get("/sensors/attitude");
   for (int i = 2; i + 2 < p.rows(); i += 7) {
     const Vector3d second =
@@ -222,13 +222,13 @@ records::SystemSpec make_noisy() {
 
 TEST(Noise, AResumedRunDrawsWhatTheUnbrokenOneDraws) {
   auto spec = make_noisy();
-  const ControlRun whole = run_system(spec);
+  const RunResult whole = run(spec);
   spec.simulation.duration = 2.37;
-  const ControlRun first = run_system(spec);
+  const RunResult first = run(spec);
   spec.simulation.duration = 5;
   SimulateOptions options;
   options.resume = first.sink.checkpoints().back();
-  const ControlRun second = run_system(spec, {}, options);
+  const RunResult second = run(spec, {}, options);
   const MatrixXd all = whole.sink.get("/sensors/angle"), rest = second.sink.get("/sensors/angle");
   ASSERT_GT(rest.rows(), 200);
   EXPECT_EQ(all.bottomRows(rest.rows()), rest);
@@ -245,7 +245,7 @@ TEST(Sensor, ImperfectionsComeInTheirOrder) {
   auto gyro = make_sensor("gyro", SensorType::IntegratingGyro, "rotor");
   gyro.chain.numbers = {{"misalignment", {EIGEN_PI / 2, 0, 0}}};
   spec.sensors.push_back(gyro);
-  const ControlRun r = run_system(spec);
+  const RunResult r = run(spec);
   const VectorXd t = r.sink.time();
   const MatrixXd a = r.sink.get("/sensors/angle"), w = r.sink.get("/sensors/rate"), g = r.sink.get("/sensors/gyro");
   for (int i = 0; i < t.size(); ++i) {

@@ -24,12 +24,12 @@ TEST(Library, LawsInCAndFortranGiveTheHistoryOfOurOwnBlocks) {
   m["B"] = (MatrixXd(1, 2) << 0, 20).finished();
   m["C"] = MatrixXd::Constant(1, 1, -1.6);
   m["D"] = (MatrixXd(1, 2) << -8, 0).finished();
-  const MatrixXd expected = run_system(own).sink.get("/sensors/angle");
+  const MatrixXd expected = run(own).sink.get("/sensors/angle");
   int found = 0;
   for (const char* file : {BOUGH_LAW_C, BOUGH_LAW_CPP, BOUGH_LAW_F}) {
     if (!std::filesystem::exists(file)) continue;
     ++found;
-    const ControlRun r = run_system(make_library(file));
+    const RunResult r = run(make_library(file));
     EXPECT_LT((r.sink.get("/sensors/angle") - expected).cwiseAbs().maxCoeff(), 1e-11) << file;
   }
   EXPECT_GE(found, 2);

@@ -12,7 +12,7 @@ TEST(Loop, ProportionalDerivativeAxisHasItsPolesAndItsHistory) {
   spec.hinges[0].position = {0.3};
   spec.controllers = {make_law("law", "pid", {"angle"}, {{"kp", {8}}, {"kd", {1.6}}})};
   spec.controllers[0].rate = "rate";
-  const ControlRun r = run_system(spec);
+  const RunResult r = run(spec);
   const double sigma = 0.4, wd = std::sqrt(4 - 0.16);
   const VectorXd t = r.sink.time(), angle = r.sink.get("/sensors/angle"), torque = r.sink.get("/actuators/drive");
   for (int i = 0; i < t.size(); ++i) {
@@ -47,7 +47,7 @@ TEST(Loop, PidFollowsAStepAsItsLinearEquationsSay) {
   spec.functions = {make_step("target", 0.5, 0.7)};
   spec.controllers = {make_law("law", "pid", {"angle"}, {{"kp", {kp}}, {"ki", {ki}}, {"kd", {kd}}, {"filter", {tau}}})};
   spec.controllers[0].reference = "target";
-  const ControlRun r = run_system(spec);
+  const RunResult r = run(spec);
   MatrixXd A(4, 4);
   A << 0, 1, 0, 0,                                    //
       (-kp - kd / tau) / J, 0, 1 / J, -kd / tau / J,  //
@@ -83,7 +83,7 @@ TEST(Loop, WithoutKiNothingWindsUp) {
                                {{"kp", {8}}, {"kd", {6}}, {"lower", {-1}}, {"upper", {1}}, {"setpoint", {1}}})};
   spec.controllers[0].rate = "rate";
   spec.simulation.duration = 60;
-  const ControlRun r = run_system(spec);
+  const RunResult r = run(spec);
   const VectorXd angle = r.sink.get("/sensors/angle");
   EXPECT_NEAR(angle[angle.size() - 1], 1, 1e-6);
 }
@@ -98,10 +98,10 @@ TEST(Loop, AWoundUpIntegralIsLetGo) {
   spec.controllers[0].rate = "rate";
   spec.simulation.duration = 40;
   spec.simulation.relative_tolerance = 1e-8;
-  const ControlRun kept = run_system(spec);
+  const RunResult kept = run(spec);
   EXPECT_LE(kept.sink.get("/controllers/law").maxCoeff(), 0.5);
   spec.controllers[0].settings.numbers["windup_time"] = {1e9};
-  const ControlRun wound = run_system(spec);
+  const RunResult wound = run(spec);
   const double over = kept.sink.get("/sensors/angle").maxCoeff() - 3;
   EXPECT_GT(wound.sink.get("/sensors/angle").maxCoeff() - 3, 2 * over);
   EXPECT_NEAR(kept.sink.get("/sensors/angle")(kept.sink.num_samples() - 1, 0), 3, 0.02);
@@ -115,7 +115,7 @@ TEST(Loop, ASampledLawWithDelayIsItsRecursion) {
     const double T = 0.1, kp = 4, kd = 3;
     spec.controllers = {make_law("law", "gain", {"angle", "rate"}, {{"sample_time", {T}}, {"delay", {delay}}})};
     spec.controllers[0].settings.matrices["gain"] = (MatrixXd(1, 2) << -kp, -kd).finished();
-    const ControlRun r = run_system(spec);
+    const RunResult r = run(spec);
     const VectorXd t = r.sink.time(), angle = r.sink.get("/sensors/angle"), torque = r.sink.get("/actuators/drive");
     double theta = 0.3, omega = 0, now = 0, held = 0;
     std::vector<double> sent;
@@ -171,7 +171,7 @@ TEST(Loop, TwoLinksMoveAsTheirLinearModelSays) {
   spec.controllers[0].rate = "rate";
   spec.controllers[1].rate = "rate2";
   spec.actuators.push_back(make_drive("drive2", "elbow", "law2"));
-  const ControlRun r = run_system(spec);
+  const RunResult r = run(spec);
   auto level = spec;
   level.hinges[0].position = level.hinges[1].position = {0};
   const System system = build(level);

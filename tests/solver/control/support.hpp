@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "solver/integrate/memory_sink.hpp"
-#include "solver/integrate/simulate.hpp"
-#include "tests/solver/support/models.hpp"
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
 
@@ -74,35 +74,6 @@ inline records::SystemSpec make_axis() {
   return spec;
 }
 
-struct ControlRun {
-  MemorySink sink;
-  SimulateOutcome outcome;
-  Diagnostics diagnostics;
-};
-
-inline ControlRun run_system(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex = {},
-                             const SimulateOptions& options = {}) {
-  ControlRun r;
-  const System system = build(spec, flex);
-  r.outcome = simulate(system, spec, r.sink, options, r.diagnostics);
-  return r;
-}
-
-/// exp(A) by scaling, Taylor's series and squaring.
-inline MatrixXd calc_exp(const MatrixXd& A) {
-  int halvings = 0;
-  double size = A.cwiseAbs().rowwise().sum().maxCoeff();
-  for (; size > 0.1; size /= 2) ++halvings;
-  const MatrixXd small = A * std::ldexp(1.0, -halvings);
-  MatrixXd term = MatrixXd::Identity(A.rows(), A.cols()), sum = term;
-  for (int k = 1; k < 20; ++k) {
-    term = term * small / k;
-    sum += term;
-  }
-  for (int i = 0; i < halvings; ++i) sum = sum * sum;
-  return sum;
-}
-
 /// x(t) of ẋ = A x + b.
 inline VectorXd propagate(const MatrixXd& A, const VectorXd& b, const VectorXd& x, double t) {
   const auto n = A.rows();
@@ -111,7 +82,7 @@ inline VectorXd propagate(const MatrixXd& A, const VectorXd& b, const VectorXd& 
   all.topRightCorner(n, 1) = b;
   VectorXd start(n + 1);
   start << x, 1;
-  return (calc_exp(all * t) * start).head(n);
+  return ((all * t).exp() * start).head(n);
 }
 
 }  // namespace bough::solver::testing

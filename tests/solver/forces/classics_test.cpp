@@ -4,9 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/integrate/memory_sink.hpp"
-#include "solver/integrate/simulate.hpp"
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -38,20 +36,6 @@ records::SystemSpec make_spec(HingeType type, double mass = 2) {
   return spec;
 }
 
-MemorySink run(const records::SystemSpec& spec, double energy_error = 1e-9) {
-  MemorySink sink;
-  Diagnostics diagnostics;
-  const System system = build(spec);
-  const auto outcome = simulate(system, spec, sink, {}, diagnostics);
-  EXPECT_TRUE(outcome.completed);
-  EXPECT_LT(sink.energy_error(), energy_error);
-  return sink;
-}
-
-double last(const MemorySink& sink, const std::string& path, int component = 0) {
-  return sink.get(path)(sink.num_samples() - 1, component);
-}
-
 records::ForceElementRecord make_element(ElementType type, const std::string& body) {
   records::ForceElementRecord e;
   e.name = "e";
@@ -74,7 +58,7 @@ TEST(ForceClassics, TwoBallsOnASpringSwingAtTheReducedMass) {
   e.damping = 2;
   e.free_length = 1;
   spec.force_elements = {e};
-  const MemorySink sink = run(spec);
+  const MemorySink sink = run_kept(spec);
   const double m = 6.0 / 5, decay = e.damping / (2 * m), w = std::sqrt(e.stiffness / m - decay * decay);
   const VectorXd t = sink.time(), length = sink.get("/forces/e/length"), force = sink.get("/forces/e/force");
   const VectorXd rate = sink.get("/forces/e/rate");
@@ -98,12 +82,12 @@ TEST(ForceClassics, ACableOnlyPulls) {
   e.sense = records::SpringSense::Tension;
   spec.force_elements = {e};
   spec.simulation.duration = 0.5;
-  const MemorySink sink = run(spec);
+  const MemorySink sink = run_kept(spec);
   const VectorXd t = sink.time(), q = sink.get("/hinges/h/q");
   for (int i = 0; i < t.size(); ++i) EXPECT_NEAR(q[i], -1 + 3 * t[i] - 9.81 / 2 * t[i] * t[i], 1e-9);
   EXPECT_EQ(sink.get("/forces/e/force").maxCoeff(), 0);
   spec.simulation.duration = 0.7;  // caught at 0.6116 s; half a swing takes 0.0444 s
-  const MemorySink longer = run(spec, 1e-8);
+  const MemorySink longer = run_kept(spec, 1e-8);
   EXPECT_GT(longer.get("/forces/e/force").maxCoeff(), 300);
   EXPECT_GE(longer.get("/forces/e/force").minCoeff(), 0);
 }
@@ -121,7 +105,7 @@ TEST(ForceClassics, HertzImpact) {
   spec.hinges[0].rate = {-v};
   spec.simulation.duration = 0.04;
   spec.simulation.output_step = 1e-5;
-  const MemorySink sink = run(spec);
+  const MemorySink sink = run_kept(spec);
   const VectorXd t = sink.time(), gap = sink.get("/forces/e/gap"), force = sink.get("/forces/e/force");
   const double depth = std::pow(5 * m * v * v / (4 * k), 0.4);
   EXPECT_NEAR(-gap.minCoeff(), depth, 1e-6 * depth);
@@ -135,7 +119,7 @@ TEST(ForceClassics, HertzImpact) {
   }
   EXPECT_NEAR(begins, 0.01, 1e-8);
   EXPECT_NEAR(ends - begins, 2.943275 * depth / v, 2e-6 * depth / v);
-  EXPECT_NEAR(last(sink, "/hinges/h/qdot"), v, 1e-9);
+  EXPECT_NEAR(get_last(sink, "/hinges/h/qdot"), v, 1e-9);
 }
 
 TEST(ForceClassics, HuntAndCrossleyLoseWhatTheirLawSays) {
@@ -151,12 +135,12 @@ TEST(ForceClassics, HuntAndCrossleyLoseWhatTheirLawSays) {
   spec.hinges[0].rate = {-v0};
   spec.simulation.duration = 0.1;
   spec.simulation.integrator = "adams";  // rk's error estimate does not see that δ^1.5 has no second derivative at 0
-  const MemorySink sink = run(spec, 1e-8);
-  const double v1 = last(sink, "/hinges/h/qdot");
+  const MemorySink sink = run_kept(spec, 1e-8);
+  const double v1 = get_last(sink, "/hinges/h/qdot");
   const auto G = [&](double in) { return in / c - std::log(1 + c * in) / (c * c); };
   EXPECT_NEAR(G(v0), G(-v1), 1e-9);
   EXPECT_LT(v1, 0.9 * v0);
-  EXPECT_NEAR(last(sink, "/energy/dissipated"), 0.5 * 2 * (v0 * v0 - v1 * v1), 1e-9);
+  EXPECT_NEAR(get_last(sink, "/energy/dissipated"), 0.5 * 2 * (v0 * v0 - v1 * v1), 1e-9);
 }
 
 TEST(ForceClassics, ASlidingBlockStopsWhereFrictionSays) {
@@ -179,11 +163,11 @@ TEST(ForceClassics, ASlidingBlockStopsWhereFrictionSays) {
   spec.simulation.duration = 0.53;
   spec.simulation.integrator = "bdf";
   spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-10;
-  const MemorySink sink = run(spec, 1e-6);
+  const MemorySink sink = run_kept(spec, 1e-6);
   const double whole = (0.5 * v0 * std::sqrt(v0 * v0 + vs * vs) + 0.5 * vs * vs * std::asinh(v0 / vs)) / (0.3 * 9.81);
-  EXPECT_NEAR(last(sink, "/bodies/ball/position", 0), whole, 2e-6);
-  EXPECT_NEAR(last(sink, "/energy/dissipated"), 0.5 * 2 * v0 * v0, 1e-5);
-  EXPECT_LT(std::abs(last(sink, "/bodies/ball/velocity", 0)), 1e-4);
+  EXPECT_NEAR(get_last(sink, "/bodies/ball/position", 0), whole, 2e-6);
+  EXPECT_NEAR(get_last(sink, "/energy/dissipated"), 0.5 * 2 * v0 * v0, 1e-5);
+  EXPECT_LT(std::abs(get_last(sink, "/bodies/ball/velocity", 0)), 1e-4);
 }
 
 /// Body on a circular orbit of radius 1 with μ = 1: period 2π.
@@ -206,7 +190,7 @@ TEST(ForceClassics, TheNodeOfAnOrbitDriftsByJ2) {
   spec.bodies[0].inertia = 1e-12 * Matrix3d::Identity();
   spec.force_elements[0].j2 = j2;
   spec.force_elements[0].equator = 0.9;
-  const MemorySink sink = run(spec);
+  const MemorySink sink = run_kept(spec);
   const auto h = sink.get("/momentum/angular");
   const Eigen::Index n = h.rows() - 1;
   const double node = std::atan2(h(n, 0), -h(n, 1));  // of the line z × h
@@ -224,7 +208,7 @@ TEST(ForceClassics, ADumbbellLibratesAtRootThree) {
   spec.hinges[0].rate = {0, 0, 1, 0, 1, 0};
   spec.simulation.absolute_tolerance = 1e-14;
   spec.simulation.relative_tolerance = 1e-13;
-  const MemorySink sink = run(spec);
+  const MemorySink sink = run_kept(spec);
   const auto q = sink.get("/bodies/ball/quaternion"), p = sink.get("/bodies/ball/position");
   const VectorXd t = sink.time();
   for (int k = 0; k < t.size(); ++k) {
@@ -243,12 +227,12 @@ TEST(ForceClassics, DragOfAFallingBodyEndsAtItsSpeed) {
   e.density = 1.1;
   spec.force_elements = {e};
   spec.simulation.duration = 3;
-  const MemorySink sink = run(spec);
+  const MemorySink sink = run_kept(spec);
   const double terminal = std::sqrt(2 * 2 * 9.81 / (0.5 * 1.2 * 1.1));
-  EXPECT_NEAR(last(sink, "/hinges/h/qdot"), -terminal * std::tanh(9.81 * 3 / terminal), 1e-9);
+  EXPECT_NEAR(get_last(sink, "/hinges/h/qdot"), -terminal * std::tanh(9.81 * 3 / terminal), 1e-9);
   // A plate edge on feels none; with the wind a body is carried along.
   spec.force_elements[0].normal = {1, 0, 0};
-  EXPECT_NEAR(last(run(spec), "/hinges/h/qdot"), -9.81 * 3, 1e-9);
+  EXPECT_NEAR(get_last(run_kept(spec), "/hinges/h/qdot"), -9.81 * 3, 1e-9);
 }
 
 TEST(ForceClassics, BushingOfOneBodyIsItsFrequencies) {
@@ -260,12 +244,12 @@ TEST(ForceClassics, BushingOfOneBodyIsItsFrequencies) {
   spec.force_elements = {e};
   const double a = 1e-5;
   spec.hinges[0].rate = {2 * a, 3 * a, 4 * a, a, 2 * a, 3 * a};
-  const MemorySink sink = run(spec, 1e-8);
+  const MemorySink sink = run_kept(spec, 1e-8);
   const double t = 1;
   const double w[6] = {1, 2, 3, 2, 3, 4};
   for (int i = 0; i < 3; ++i) {
-    EXPECT_NEAR(last(sink, "/forces/e/displacement", i), -a * (i + 1) * std::sin(w[i] * t) / w[i], 1e-9);
-    EXPECT_NEAR(last(sink, "/forces/e/rotation", i), -a * (i + 2) * std::sin(w[3 + i] * t) / w[3 + i], 1e-9);
+    EXPECT_NEAR(get_last(sink, "/forces/e/displacement", i), -a * (i + 1) * std::sin(w[i] * t) / w[i], 1e-9);
+    EXPECT_NEAR(get_last(sink, "/forces/e/rotation", i), -a * (i + 2) * std::sin(w[3 + i] * t) / w[3 + i], 1e-9);
   }
 }
 

@@ -6,9 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/integrate/memory_sink.hpp"
-#include "solver/integrate/simulate.hpp"
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -37,18 +35,6 @@ records::SystemSpec make_spec(HingeType type, double mass = 2, double J = 1) {
   return spec;
 }
 
-MemorySink run(const records::SystemSpec& spec, double energy_error = 1e-9) {
-  MemorySink sink;
-  Diagnostics diagnostics;
-  const System system = build(spec);
-  const auto outcome = simulate(system, spec, sink, {}, diagnostics);
-  EXPECT_TRUE(outcome.completed);
-  EXPECT_LT(sink.energy_error(), energy_error);
-  return sink;
-}
-
-double last(const MemorySink& sink, const std::string& path) { return sink.get(path)(sink.num_samples() - 1, 0); }
-
 records::FunctionRecord make_table(std::vector<double> x, std::vector<double> y) {
   records::FunctionRecord f;
   f.name = "table";
@@ -70,13 +56,13 @@ TEST(HingeLaw, AStopThrowsBackByItsLaw) {
     spec.hinges[0].law.stop_stiffness = {2e4};
     spec.hinges[0].law.stop_damping = {c};
     spec.simulation.duration = 0.4;
-    const MemorySink sink = run(spec);
-    const double v1 = -side * last(sink, "/hinges/h/qdot");
+    const MemorySink sink = run_kept(spec);
+    const double v1 = -side * get_last(sink, "/hinges/h/qdot");
     // v dv/(1 + c v) is a function of the depth alone.
     const auto G = [&](double in) { return in / c - std::log(1 + c * in) / (c * c); };
     EXPECT_NEAR(G(v0), G(-v1), 1e-10);
     EXPECT_LT(v1, 0.9 * v0);
-    EXPECT_NEAR(last(sink, "/energy/dissipated"), v0 * v0 - v1 * v1, 1e-10);
+    EXPECT_NEAR(get_last(sink, "/energy/dissipated"), v0 * v0 - v1 * v1, 1e-10);
   }
 }
 
@@ -87,9 +73,9 @@ TEST(HingeLaw, AStopWithoutDampingKeepsTheEnergy) {
   spec.hinges[0].law.has_stops = true;
   spec.hinges[0].law.stop_lower = {0};
   spec.hinges[0].law.stop_stiffness = {2e4};
-  const MemorySink sink = run(spec);
+  const MemorySink sink = run_kept(spec);
   EXPECT_GT(sink.get("/energy/strain").maxCoeff(), 1.9);
-  EXPECT_EQ(last(sink, "/energy/dissipated"), 0);
+  EXPECT_EQ(get_last(sink, "/energy/dissipated"), 0);
 }
 
 TEST(HingeLaw, CoulombFrictionBrings) {
@@ -100,7 +86,7 @@ TEST(HingeLaw, CoulombFrictionBrings) {
   spec.hinges[0].law.has_friction = true;
   spec.hinges[0].law.coulomb = {F};
   spec.hinges[0].law.smoothing = {v};
-  const MemorySink sink = run(spec);
+  const MemorySink sink = run_kept(spec);
   const VectorXd t = sink.time(), w = sink.get("/hinges/h/qdot");
   for (int i = 0; i < t.size(); ++i)
     EXPECT_NEAR(w[i], v * std::asinh(std::sinh(w0 / v) * std::exp(-F * t[i] / (1.5 * v))), 1e-10);
@@ -139,7 +125,7 @@ TEST(HingeLaw, ABeltDragsAMassByStickAndSlip) {
   spec.simulation.output_step = 1e-3;
   spec.simulation.integrator = "bdf";
   spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-11;
-  const MemorySink sink = run(spec, 1e-3);  // work is held to the root of the tolerance
+  const MemorySink sink = run_kept(spec, 1e-3);  // work is held to the root of the tolerance
   const VectorXd t = sink.time(), v = sink.get("/bodies/mass/velocity").col(0);
   const VectorXd length = sink.get("/forces/spring/length");
   std::vector<double> falls;  // it moves back from here on
@@ -162,9 +148,9 @@ TEST(HingeLaw, ACubicSpringByTableHasDuffingsPeriod) {
   spec.hinges[0].law.spring_table = {"table"};
   spec.hinges[0].position = {A};
   spec.simulation.duration = 7.416298709205487 / A;
-  const MemorySink sink = run(spec);
-  EXPECT_NEAR(last(sink, "/hinges/h/q"), A, 1e-9);
-  EXPECT_NEAR(last(sink, "/hinges/h/qdot"), 0, 1e-9);
+  const MemorySink sink = run_kept(spec);
+  EXPECT_NEAR(get_last(sink, "/hinges/h/q"), A, 1e-9);
+  EXPECT_NEAR(get_last(sink, "/hinges/h/qdot"), 0, 1e-9);
 }
 
 TEST(HingeLaw, AQuadraticDamperByTableAndAPreload) {
@@ -172,10 +158,10 @@ TEST(HingeLaw, AQuadraticDamperByTableAndAPreload) {
   spec.functions = {make_table({0, 1, 2, 3}, {0, 1, 4, 9})};
   spec.hinges[0].law.damper_table = {"table"};
   spec.hinges[0].rate = {3};
-  EXPECT_NEAR(last(run(spec), "/hinges/h/qdot"), 3 / (1 + 3.0 / 2), 1e-10);
+  EXPECT_NEAR(get_last(run_kept(spec), "/hinges/h/qdot"), 3 / (1 + 3.0 / 2), 1e-10);
   spec.hinges[0].law.damper_table.clear();
   spec.hinges[0].law.preload = {-5};
-  EXPECT_NEAR(last(run(spec), "/hinges/h/q"), 3 - 5.0 / 2 / 2, 1e-10);
+  EXPECT_NEAR(get_last(run_kept(spec), "/hinges/h/q"), 3 - 5.0 / 2 / 2, 1e-10);
 }
 
 TEST(HingeLaw, ARotorIsInertiaOfItsCoordinate) {
@@ -194,16 +180,16 @@ TEST(HingeLaw, ARotorIsInertiaOfItsCoordinate) {
   calc_accelerations_dense(system, *data, 0, dense);
   EXPECT_NEAR(dense[0], -9.81 * std::sin(0.4) / whole, 1e-13);
   spec.hinges[0].position = {0.4};
-  run(spec);
+  run_kept(spec);
   // Driven, the motor turns it too: torque and energy.
   records::FunctionRecord angle = make_table({0, 1, 2, 3}, {0, 0.5, 2, 4.5});
   spec.functions = {angle};
   spec.hinges[0].motion = {"table"};
   spec.hinges[0].position.clear();
   spec.simulation.gravity.setZero();
-  const MemorySink sink = run(spec);
+  const MemorySink sink = run_kept(spec);
   EXPECT_NEAR(sink.get("/hinges/h/force")(50, 0), whole, 1e-9);
-  EXPECT_NEAR(last(sink, "/energy/kinetic"), 0.5 * whole, 1e-9);
+  EXPECT_NEAR(get_last(sink, "/energy/kinetic"), 0.5 * whole, 1e-9);
 }
 
 std::string build_error(const records::SystemSpec& spec) {

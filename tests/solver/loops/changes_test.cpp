@@ -4,9 +4,7 @@
 
 #include <cmath>
 
-#include "solver/integrate/memory_sink.hpp"
-#include "solver/integrate/simulate.hpp"
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -16,20 +14,6 @@ using records::ConstraintType;
 using records::EventAction;
 using records::HingeType;
 using ::testing::HasSubstr;
-
-struct RunResult {
-  MemorySink sink;
-  SimulateOutcome outcome;
-  Diagnostics diagnostics;
-};
-
-RunResult run(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex = {},
-              const SimulateOptions& options = {}) {
-  RunResult r;
-  const System system = System::build(spec, flex, r.diagnostics);
-  r.outcome = simulate(system, spec, r.sink, options, r.diagnostics);
-  return r;
-}
 
 std::string list_events(const MemorySink& sink) {
   std::string text;

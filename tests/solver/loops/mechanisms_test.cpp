@@ -4,9 +4,7 @@
 
 #include <cmath>
 
-#include "solver/integrate/memory_sink.hpp"
-#include "solver/integrate/simulate.hpp"
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -45,20 +43,6 @@ ConstraintRecord make_closing(HingeType type, const std::string& parent, int par
   c.child_node = child_node;
   c.at = {"mechanism.toml", 40, 1};
   return c;
-}
-
-struct RunResult {
-  MemorySink sink;
-  SimulateOutcome outcome;
-  Diagnostics diagnostics;
-};
-
-RunResult run(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex = {},
-              const SimulateOptions& options = {}) {
-  RunResult r;
-  const System system = System::build(spec, flex, r.diagnostics);
-  r.outcome = simulate(system, spec, r.sink, options, r.diagnostics);
-  return r;
 }
 
 double energy_spread(const MemorySink& sink) {

@@ -1,5 +1,7 @@
 #pragma once
 /// \file One body on one hinge, and whole runs in memory.
+#include <gtest/gtest.h>
+
 #include "solver/integrate/memory_sink.hpp"
 #include "solver/integrate/simulate.hpp"
 #include "tests/solver/support/models.hpp"
@@ -30,9 +32,21 @@ struct RunResult {
 inline RunResult run(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex = {},
                      const SimulateOptions& options = {}) {
   RunResult r;
-  const System system = build(spec, flex);
+  const System system = System::build(spec, flex, r.diagnostics);
   r.outcome = simulate(system, spec, r.sink, options, r.diagnostics);
   return r;
+}
+
+/// The samples of a run to its end whose energy balance holds.
+inline MemorySink run_kept(const records::SystemSpec& spec, double energy_error = 1e-9) {
+  const RunResult r = run(spec);
+  EXPECT_TRUE(r.outcome.completed);
+  EXPECT_LT(r.sink.energy_error(), energy_error);
+  return r.sink;
+}
+
+inline double get_last(const MemorySink& sink, const std::string& path, int component = 0) {
+  return sink.get(path)(sink.num_samples() - 1, component);
 }
 
 }  // namespace bough::solver::testing
