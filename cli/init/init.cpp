@@ -97,7 +97,7 @@ void add_init(CLI::App& app, Action& action) {
   auto* verb =
       app.add_subcommand("init", "A ready example to start from, or the files for a deck: spinup, hub, two-link, ...");
   std::string names;
-  for (const auto& known : get_templates()) names += (names.empty() ? "" : ", ") + known.name;
+  for (const auto& known : get_templates()) names += std::string(names.empty() ? "" : ", ") + known.name;
   verb->add_option("template", o->name, names + "; or a Nastran deck")->required();
   verb->add_option("-o,--output", o->output, "Folder to write into (default: the template's name; for a deck, here)");
   verb->add_option("--hinge", o->hinge, "Of a deck: the grid on a revolute hinge to ground; chooses the basis for it")
