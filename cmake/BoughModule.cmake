@@ -2,7 +2,8 @@
 # given folders (default: this one). Headers sit beside their sources; the path in an include is the path in the
 # repository, and below include/bough after installation.
 add_library(bough_flags INTERFACE)
-target_compile_options(bough_flags INTERFACE $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wno-restrict>)
+target_compile_options(bough_flags INTERFACE $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow>
+  $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>>)
 if(BOUGH_SANITIZE)
   # A finding ends the program: a test that only prints one would pass. Eigen makes references to the first entry of
   # empty matrices; null pointers that are used the address sanitizer finds itself.
@@ -30,6 +31,7 @@ function(bough_module name)
     set(scope PUBLIC)
     target_link_libraries(bough_${name} PRIVATE $<BUILD_INTERFACE:bough_flags> ${ARG_PRIVATE_DEPENDS})
     bough_precompile(bough_${name} bough_pch)
+    bough_unity(bough_${name})
   else()
     add_library(bough_${name} INTERFACE)
     set(scope INTERFACE)

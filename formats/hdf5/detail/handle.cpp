@@ -8,6 +8,12 @@
 
 namespace bough::hdf5 {
 
+namespace {
+// Every handle closes itself. What could not be closed, since its disk failed, would be written once more at the exit,
+// and the library does not survive that.
+[[maybe_unused]] const bool g_leaves_in_peace = H5dont_atexit() >= 0;
+}  // namespace
+
 Handle make_string_type() {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.get(), H5T_VARIABLE);

@@ -18,6 +18,13 @@
 
 #include "base/part_file.hpp"
 
+// GCC has the macro, clang the feature; either keeps terabytes of address space.
+#if defined(__has_feature)
+#define BOUGH_HAS_ADDRESS_SANITIZER __has_feature(address_sanitizer)
+#else
+#define BOUGH_HAS_ADDRESS_SANITIZER 0
+#endif
+
 namespace bough::hdf5 {
 
 namespace {
@@ -76,7 +83,7 @@ void write_all(int descriptor, const std::string& text) {
   ::mallopt(M_PERTURB, 0x5A);  // memory that was never set shows here, and not where it matters
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, kSeconds + kSecondsPerByte * size);
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(__SANITIZE_ADDRESS__) && !BOUGH_HAS_ADDRESS_SANITIZER
   limit(RLIMIT_AS, get_memory() + 1e9 + 4 * size);
 #endif
   try {

@@ -61,14 +61,14 @@ class Finisher {
   /// A plate without a membrane has no mass of its own there, but takes that of its bending material here: so it gets a
   /// copy of the material without density.
   int copy_without_mass(int mid) {
-    const auto [known, is_new] = massless_.emplace(mid, mid);
-    if (!is_new) return known->second;
+    if (const auto known = massless_.find(mid); known != massless_.end()) return known->second;
+    int& made = massless_[mid] = mid;
     const auto copy = [&](auto& cards) {
       for (std::size_t i = 0; i < cards.size(); ++i) {
         if (cards[i].id != mid || cards[i].rho == 0) continue;
         auto card = cards[i];
         card.rho = 0;
-        card.id = known->second = take_id(material_ids_, mid);
+        card.id = made = take_id(material_ids_, mid);
         cards.push_back(card);
         return;
       }
@@ -76,7 +76,7 @@ class Finisher {
     copy(deck_.mat1);
     copy(deck_.mat2);
     copy(deck_.mat8);
-    return known->second;
+    return made;
   }
 
   void fail_property(const std::string& what, const records::CardLocation& at) {

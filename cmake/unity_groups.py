@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""Sorts sources into unity groups: neighbours that define no name twice. Reads paths, prints GROUP:PATH.
+
+usage: unity_groups.py ROOT MAX_LINES < paths
+
+Names of anonymous namespaces are those that collide when two files become one translation unit. A function of one
+file may also hide one that another file finds in a header; what the compiler refuses then is renamed, or kept apart
+by SKIP_UNITY_BUILD_INCLUSION.
+"""
+import os
+import re
+import sys
+
+QUOTED = re.compile(r'"(?:[^"\\\n]|\\.)*"|\'(?:[^\'\\\n]|\\.)\'')
+ANONYMOUS = re.compile(r"^namespace \{\n", re.M)
+TYPE = re.compile(r"(?:template\s*<[^>]*>\s*)?(?:struct|class|enum class|enum|union)\s+(\w+)")
+ALIAS = re.compile(r"using\s+(\w+)\s*=")
+NAME = re.compile(r"(\w+)\s*(?:\(|=|\{|;|\[)")
+CONSTANT = re.compile(r"\bk[A-Z]\w*")
+TEST = re.compile(r"^(?:TEST|TEST_F|TEST_P|TYPED_TEST)\((\w+),", re.M)
+
+
+def get_anonymous(text):
+    """The insides of the anonymous namespaces."""
+    text = QUOTED.sub('""', text)
+    for start in ANONYMOUS.finditer(text):
+        depth = 1
+        for brace in re.finditer(r"[{}]", text[start.end():]):
+            depth += 1 if brace.group() == "{" else -1
+            if depth == 0:
+                yield text[start.end():start.end() + brace.start()]
+                break
+
+
+def find_names(text):
+    """The names that the file defines for itself alone."""
+    names = set()
+    for body in get_anonymous(text):
+        for line in body.split("\n"):
+            if not line or line[0] in " }/#)":
+                continue
+            found = TYPE.match(line) or ALIAS.match(line)
+            if not found and line.startswith(("using ", "namespace ")):
+                continue  # the same declaration twice is none the worse
+            found = found or NAME.search(line)
+            if found:
+                names.add(found.group(1))
+            names.update(CONSTANT.findall(line.split("(")[0]))
+    return names - set(TEST.findall(text)) - {"TEST", "TEST_F", "TEST_P", "INSTANTIATE_TEST_SUITE_P", "using"}
+
+
+def sort_into_groups(root, paths, max_lines):
+    """First fit among the groups of the same two upper folders."""
+    groups = []
+    for path in sorted(paths):
+        text = open(path, encoding="utf-8").read()
+        names, lines = find_names(text), text.count("\n")
+        room = "/".join(os.path.relpath(os.path.dirname(path), root).split(os.sep)[:2])
+        for group in groups:
+            if group["room"] == room and group["lines"] + lines <= max_lines and not group["names"] & names:
+                break
+        else:
+            group = {"room": room, "lines": 0, "names": set(), "paths": []}
+            groups.append(group)
+        group["lines"] += lines
+        group["names"] |= names
+        group["paths"].append(path)
+    return groups
+
+
+def main():
+    root, max_lines = sys.argv[1], int(sys.argv[2])
+    paths = [line.strip() for line in sys.stdin if line.strip()]
+    number = {}
+    for group in sort_into_groups(root, paths, max_lines):
+        room = group["room"]
+        number[room] = number.get(room, -1) + 1
+        if len(group["paths"]) > 1:
+            for path in group["paths"]:
+                print(f"{room.replace('/', '_')}_{number[room]}:{path}")
+
+
+if __name__ == "__main__":
+    main()

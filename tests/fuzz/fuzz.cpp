@@ -1,0 +1,41 @@
+// libFuzzer on one reader: BOUGH_FUZZ_TARGET names it. Readers read files, so that each input becomes one.
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include <unistd.h>
+
+#include "tests/fuzz/targets.hpp"
+
+namespace {
+
+const bough::fuzz::Target* g_target = nullptr;
+std::string g_path;
+
+}  // namespace
+
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  const char* name = std::getenv("BOUGH_FUZZ_TARGET");
+  g_target = bough::fuzz::find_target(name ? name : "");
+  if (!g_target) {
+    std::fprintf(stderr, "BOUGH_FUZZ_TARGET is to be one of");
+    for (const auto& target : bough::fuzz::get_targets()) std::fprintf(stderr, " %s", target.name);
+    std::fprintf(stderr, "\n");
+    std::exit(2);
+  }
+  const char* folder = std::getenv("BOUGH_FUZZ_FOLDER");
+  g_path = std::string(folder ? folder : "/tmp") + "/bough-fuzz-" + std::to_string(::getpid());
+  std::atexit([] { ::unlink(g_path.c_str()); });
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  std::FILE* file = std::fopen(g_path.c_str(), "wb");
+  if (!file) std::abort();
+  std::fwrite(data, 1, size, file);
+  std::fclose(file);
+  g_target->read(g_path);
+  return 0;
+}

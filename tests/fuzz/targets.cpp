@@ -1,0 +1,165 @@
+#include "tests/fuzz/targets.hpp"
+
+#include <fstream>
+#include <sstream>
+
+#include "base/diagnostic.hpp"
+#include "formats/flx/flx_file.hpp"
+#include "formats/flx/layout.hpp"
+#include "formats/flx/model_input.hpp"
+#include "formats/hdf5/comparison_file.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/hdf5/grids_file.hpp"
+#include "formats/hdf5/linear_file.hpp"
+#include "formats/hdf5/sparse_file.hpp"
+#include "formats/hdf5/table_file.hpp"
+#include "formats/matrices/matrix_reader.hpp"
+#include "formats/matrices/mode_table.hpp"
+#include "formats/matrices/op4.hpp"
+#include "formats/nastran/reader.hpp"
+#include "formats/nastran/writer.hpp"
+#include "formats/sid/sid.hpp"
+#include "formats/toml/campaign.hpp"
+#include "formats/toml/specs.hpp"
+
+namespace bough::fuzz {
+
+namespace {
+
+template <class Read>
+void survive(const Read& read) {
+  try {
+    read();
+  } catch (const Failure&) {
+  }
+}
+
+std::string read_text(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+void read_deck(const std::string& path) {
+  survive([&] {
+    Diagnostics diagnostics;
+    nastran::read_deck(path, {}, diagnostics);
+  });
+}
+
+void read_body(const std::string& path) {
+  survive([&] {
+    Diagnostics diagnostics;
+    toml_files::read_body_spec(path, diagnostics);
+  });
+}
+
+void read_system(const std::string& path) {
+  survive([&] {
+    Diagnostics diagnostics;
+    toml_files::read_system_spec(path, diagnostics);
+  });
+}
+
+void read_campaign(const std::string& path) {
+  survive([&] {
+    Diagnostics diagnostics;
+    toml_files::detect_kind(path);
+    toml_files::read_campaign(path, diagnostics);
+  });
+}
+
+// One look at the file serves every reader.
+void read_hdf5(const std::string& path) {
+  survive([&] { hdf5::read_info(path); });
+  survive([&] { hdf5::read_format(path); });
+  survive([&] { hdf5::read_flex_body(path); });
+  survive([&] { hdf5::read_modes(path); });
+  survive([&] { hdf5::read_results(path); });
+  survive([&] { hdf5::read_run_inputs(path); });
+  survive([&] { hdf5::read_run_state(path); });
+  survive([&] { hdf5::read_checkpoint(path); });
+  survive([&] { hdf5::read_linear_model(path); });
+  survive([&] { hdf5::read_outcomes(path); });
+  survive([&] { hdf5::read_sparse_file(path); });
+  survive([&] { hdf5::read_grids(path); });
+  survive([&] { hdf5::read_comparison(path); });
+}
+
+void read_op4_text(const std::string& path) {
+  survive([&] { matrices::read_op4_text(path); });
+}
+
+void read_op4_binary(const std::string& path) {
+  survive([&] { matrices::read_op4_binary(path); });
+}
+
+// Every other format of matrices is found by its content.
+void read_matrices(const std::string& path) {
+  survive([&] {
+    Diagnostics diagnostics;
+    matrices::read_matrices(path, diagnostics);
+  });
+}
+
+// OP2 and punch.
+void read_mode_tables(const std::string& path) {
+  survive([&] { matrices::read_mode_tables(path); });
+}
+
+void read_flx(const std::string& path) {
+  survive([&] { flx::read_flx(path); });
+}
+
+void read_layout(const std::string& path) {
+  survive([&] { flx::parse_layout(read_text(path), path); });
+}
+
+void read_sid(const std::string& path) {
+  survive([&] { sid::read_sid(path); });
+}
+
+void read_model_input(const std::string& path) {
+  survive([&] {
+    Diagnostics diagnostics;
+    flx::read_model_input(path, diagnostics);
+  });
+}
+
+// The matrices of a model of two dofs and one mode.
+void read_model_matrices(const std::string& path) {
+  survive([&] {
+    flx::ModelInput model;
+    model.num_nodes = 1;
+    model.num_dofs = 2;
+    model.num_modes_given = 1;
+    model.damping_option = 1;
+    Diagnostics diagnostics;
+    flx::read_model_matrices(path, model, diagnostics);
+  });
+}
+
+}  // namespace
+
+const std::vector<Target>& get_targets() {
+  static const std::vector<Target> targets = {
+      {"nastran", read_deck},          {"body", read_body},
+      {"system", read_system},         {"campaign", read_campaign},
+      {"hdf5", read_hdf5},             {"op4-text", read_op4_text},
+      {"op4-binary", read_op4_binary}, {"matrices", read_matrices},
+      {"mode-tables", read_mode_tables}, {"flx", read_flx},
+      {"layout", read_layout},         {"sid", read_sid},
+      {"model-input", read_model_input}, {"model-matrices", read_model_matrices},
+  };
+  return targets;
+}
+
+const Target* find_target(const std::string& name) {
+  for (const auto& target : get_targets()) {
+    if (name == target.name) return &target;
+  }
+  return nullptr;
+}
+
+}  // namespace bough::fuzz
