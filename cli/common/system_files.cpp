@@ -78,11 +78,21 @@ std::vector<std::pair<std::string, std::string>> split_settings(const std::vecto
 
 LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, const std::string& start_from,
                          const std::vector<std::string>& set) {
-  demand_file(path);
-  auto spec = toml_files::read_system_spec(path, diagnostics, split_settings(set, path));
+  LoadOptions options;
+  options.start_from = start_from;
+  options.set = set;
+  return load_system(path, diagnostics, std::move(options));
+}
+
+LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, LoadOptions options) {
+  const auto& start_from = options.start_from;
+  if (!options.text) demand_file(path);
+  auto spec = options.text ? toml_files::read_system_spec_text(*options.text, path, diagnostics)
+                           : toml_files::read_system_spec(path, diagnostics, split_settings(options.set, path));
+  if (options.change_spec && diagnostics.num_errors() == 0) options.change_spec(spec);
   if (diagnostics.num_errors() == 0) read_controller_files(spec, diagnostics);
   const bool has_errors_of_text = diagnostics.num_errors() > 0;
-  std::map<std::string, records::FlexBody> flex;
+  auto flex = std::move(options.flex);
   std::map<std::string, std::string> flex_path;
   for (auto& body : spec.bodies) {
     if (body.file.empty() || flex.count(body.file)) continue;

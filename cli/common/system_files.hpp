@@ -1,6 +1,8 @@
 #pragma once
 /// \file A system file with the bodies it names, ready to run; shared by check and run.
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,15 @@ std::vector<std::string> collect_sources(const std::string& path, const LoadedSy
 /// (start_state.hpp); empty: as the records say.
 LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, const std::string& start_from = {},
                          const std::vector<std::string>& set = {});
+
+struct LoadOptions {
+  std::string start_from;
+  std::vector<std::string> set;
+  std::optional<std::string> text;                        ///< instead of the file's own; paths are relative to `path`
+  std::map<std::string, records::FlexBody> flex;          ///< bodies that are here already, by the file they stand for
+  std::function<void(records::SystemSpec&)> change_spec;  ///< called before anything is built from it
+};
+LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, LoadOptions options);
 
 /// --set name=value, as often as wanted.
 void add_set_option(CLI::App& verb, std::vector<std::string>& set);

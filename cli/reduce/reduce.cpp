@@ -16,8 +16,7 @@
 #include "cli/common/system_files.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/compare/compare_report.hpp"
-#include "cli/reduce/matrix_files.hpp"
-#include "cli/reduce/point_files.hpp"
+#include "cli/reduce/reduce_body.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/toml/specs.hpp"
 
@@ -184,43 +183,6 @@ Table make_check_table(const records::FlexBody& body, const stiffening::ModeChec
   return table;
 }
 
-struct Reduced {
-  records::FlexBody body;
-  std::vector<std::string> files;
-  std::optional<stiffening::ModeCheck> check;
-};
-
-Reduced reduce_deck(const records::BodySpec& spec, const stiffening::ReduceOptions& options, Diagnostics& diagnostics) {
-  fe::ModelOptions model_options;
-  model_options.subcase = spec.subcase;
-  model_options.ignore_cards = spec.ignore_cards;
-  const auto deck = read_deck_or_throw(spec.deck, model_options, diagnostics);
-  note_solution(deck, diagnostics);
-  Reduced result{{}, deck.files, {}};
-  say_first(diagnostics, [&] { result.body = stiffening::reduce(deck, spec, options, diagnostics); });
-  return result;
-}
-
-Reduced reduce_given(const records::BodySpec& spec, const stiffening::ReduceOptions& options,
-                     Diagnostics& diagnostics) {
-  const auto deck = read_points(spec, diagnostics);
-  Reduced result;
-  result.files = deck.files;
-  const auto given = read_given_matrices(*spec.matrices, deck, result.files, diagnostics);
-  // What is wrong with the numbers is wrong in this file and not in the points.
-  const auto& matrices = *spec.matrices;
-  const auto reduce = [&] {
-    say_first(diagnostics, [&] { result.body = stiffening::reduce_matrices(deck, spec, given, options, diagnostics); });
-    return kSuccess;
-  };
-  blame(matrices.file.empty() ? matrices.stiffness.file : matrices.file, reduce,
-        deck.files.empty() ? "" : deck.files.front());
-  if (spec.matrices->check_modes.empty()) return result;
-  const auto others = read_given_modes(spec.matrices->check_modes, *spec.matrices, deck, diagnostics);
-  result.check = stiffening::compare_modes(result.body, deck, others, diagnostics);
-  return result;
-}
-
 int run_reduce(const ReduceVerbOptions& o) {
   Console console(o.quiet, o.verbosity);
   console.set_subject(o.file);
@@ -240,11 +202,8 @@ int run_reduce(const ReduceVerbOptions& o) {
   console.set_rank(fe::initialize_petsc().rank);
   stiffening::ReduceOptions options;
   options.progress = [&](const std::string& stage) { console.show_progress("reduce: " + stage); };
-  auto [body, files, check] =
-      spec.matrices ? reduce_given(spec, options, diagnostics) : reduce_deck(spec, options, diagnostics);
+  const auto [body, check] = reduce_body(spec, options, diagnostics);
   console.end_progress();
-  if (!spec.file.empty()) files.insert(files.begin(), o.file);
-  body.source = calc_sources(files);
   console.print(diagnostics);
   diagnostics.throw_if_errors();
   do_once([&] { hdf5::write_flex_body(body, output); });

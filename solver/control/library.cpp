@@ -3,30 +3,28 @@
 #include <dlfcn.h>
 
 #include <cmath>
+#include <map>
 #include <sstream>
 
-#include "solver/control/bough_controller.h"
+#include "solver/control/hosted.hpp"
 #include "solver/control/makers.hpp"
 
 namespace bough::solver {
 namespace {
 
-struct Functions {
-  decltype(&bough_controller_version) version = nullptr;
-  decltype(&bough_controller_open) open = nullptr;
-  decltype(&bough_controller_outputs) outputs = nullptr;
-  decltype(&bough_controller_start) start = nullptr;
-  decltype(&bough_controller_derivatives) derivatives = nullptr;
-  decltype(&bough_controller_update) update = nullptr;
-  decltype(&bough_controller_close) close = nullptr;
-};
+std::map<std::string, ControllerFunctions>& get_hosted() {
+  static std::map<std::string, ControllerFunctions> hosted;
+  return hosted;
+}
 
 class Library final : public Block {
  public:
-  Library(void* handle, const Functions& f) : handle_(handle), f_(f) {}
+  /// `handle` of dlopen; null where a host lends the functions.
+  Library(void* handle, ControllerFunctions f) : handle_(handle), f_(std::move(f)) {}
   ~Library() override {
     if (is_open && f_.close != nullptr) f_.close(own.instance);
-    dlclose(handle_);
+    f_ = {};
+    if (handle_ != nullptr) dlclose(handle_);
   }
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
@@ -77,15 +75,37 @@ class Library final : public Block {
   }
 
   void* handle_;
-  Functions f_;
+  ControllerFunctions f_;
 };
 
 template <class F>
-void find_function(void* handle, const char* name, F& to) {
-  to = reinterpret_cast<F>(dlsym(handle, name));
+void find_function(void* handle, const char* name, std::function<F>& to) {
+  to = reinterpret_cast<F*>(dlsym(handle, name));
+}
+
+ControllerFunctions find_functions(void* handle) {
+  ControllerFunctions f;
+  find_function(handle, "bough_controller_version", f.version);
+  find_function(handle, "bough_controller_open", f.open);
+  find_function(handle, "bough_controller_outputs", f.outputs);
+  find_function(handle, "bough_controller_start", f.start);
+  find_function(handle, "bough_controller_derivatives", f.derivatives);
+  find_function(handle, "bough_controller_update", f.update);
+  find_function(handle, "bough_controller_close", f.close);
+  return f;
 }
 
 }  // namespace
+
+HostedController::HostedController(std::string file, ControllerFunctions functions) : file_(std::move(file)) {
+  get_hosted()[file_] = std::move(functions);
+}
+HostedController::~HostedController() { get_hosted().erase(file_); }
+
+const ControllerFunctions* find_hosted_controller(const std::string& file) {
+  const auto found = get_hosted().find(file);
+  return found == get_hosted().end() ? nullptr : &found->second;
+}
 
 std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring& wiring) {
   const std::string file = keys.get_word("file", "");
@@ -95,21 +115,15 @@ std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring
     keys.error("control.missing-key", "has no 'file'", "give the shared library");
     return nullptr;
   }
-  void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (handle == nullptr) {
+  const auto* hosted = find_hosted_controller(file);
+  void* handle = hosted != nullptr ? nullptr : dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (hosted == nullptr && handle == nullptr) {
     const char* why = dlerror();
     keys.error("control.bad-library", std::string("cannot load its library: ") + (why ? why : file),
                "check the path, and that it was linked as a shared library");
     return nullptr;
   }
-  Functions f;
-  find_function(handle, "bough_controller_version", f.version);
-  find_function(handle, "bough_controller_open", f.open);
-  find_function(handle, "bough_controller_outputs", f.outputs);
-  find_function(handle, "bough_controller_start", f.start);
-  find_function(handle, "bough_controller_derivatives", f.derivatives);
-  find_function(handle, "bough_controller_update", f.update);
-  find_function(handle, "bough_controller_close", f.close);
+  const ControllerFunctions f = hosted != nullptr ? *hosted : find_functions(handle);
   auto made = std::make_unique<Library>(handle, f);
   const auto refuse = [&](const std::string& what, const std::string& advice) {
     keys.error("control.bad-library", "has a library " + file + " " + what, advice);
@@ -130,6 +144,8 @@ std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring
   int result = 0;
   try {
     result = f.open(&own);
+  } catch (const std::exception& error) {
+    return refuse(std::string("whose bough_controller_open threw: ") + error.what(), "mend the library");
   } catch (...) {
     return refuse("whose bough_controller_open threw an exception", "mend the library");
   }

@@ -1,0 +1,148 @@
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "base/diagnostic.hpp"
+#include "cli/common/console.hpp"
+#include "cli/common/help_files.hpp"
+#include "cli/common/memory_limit.hpp"
+#include "cli/common/usage_text.hpp"
+#include "cli/common/versions.hpp"
+#include "cli/verbs.hpp"
+
+namespace {
+
+using namespace bough;
+
+void add_verbs(CLI::App& app, cli::Action& action) {
+  cli::add_check(app, action);
+  cli::add_modes(app, action);
+  cli::add_static(app, action);
+  cli::add_matrices(app, action);
+  cli::add_reduce(app, action);
+  cli::add_integrals(app, action);
+  cli::add_flx(app, action);
+  cli::add_compare(app, action);
+  cli::add_run(app, action);
+  cli::add_equilibrium(app, action);
+  cli::add_linearize(app, action);
+  cli::add_select(app, action);
+  cli::add_export(app, action);
+  cli::add_plot(app, action);
+  cli::add_report(app, action);
+  cli::add_info(app, action);
+  cli::add_init(app, action);
+  cli::add_batch(app, action);
+}
+
+std::vector<std::string> get_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const auto* verb : app.get_subcommands(nullptr)) names.push_back(verb->get_name());
+  return names;
+}
+
+/// The first argument that is no option must be a verb; anything else is answered with the nearest one.
+bool check_verb(const CLI::App& app, int argc, const char* const* argv, const cli::Console& console) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (!word.empty() && word[0] == '-') continue;
+    const auto verbs = get_names(app);
+    if (std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return true;
+    const auto nearest = find_nearest(word, verbs);
+    console.print_error("cli.unknown-verb", "unknown verb \"" + word + "\"",
+                        nearest.empty() ? "bough --help lists the verbs" : "did you mean \"" + nearest + "\"");
+    return false;
+  }
+  return true;
+}
+
+/// Prints and gives the exit code: what was asked for is printed whole, or it is a failure.
+int print_checked(const cli::Console& console, const std::function<void()>& print) {
+  try {
+    print();
+    cli::flush_data();
+    return cli::kSuccess;
+  } catch (const Failure& failure) {
+    return cli::report_failure(failure, console);
+  }
+}
+
+int run(int argc, const char* const* argv) {
+  CLI::App app("Bough: from a finite-element model to a flexible multibody simulation", "bough");
+  app.formatter(cli::make_formatter());
+  app.set_help_flag("-h,--help", "Print this help and exit");
+  app.footer(
+      "bough VERB --help explains a verb. Exit codes: 0 success, 1 the input is wrong, 2 usage, 3 the computation "
+      "failed.\n"
+      "Example:\n  bough init spinup && cd spinup && bough reduce boom.toml && bough run spinup.toml -o spinup.h5");
+  bool show_version = false, show_man_page = false, show_completion = false;
+  app.add_flag("--version", show_version, "Print the versions of Bough and of its libraries");
+  app.add_flag("--man-page", show_man_page, "Print the manual page, as installed: bough --man-page | man -l -");
+  app.add_flag("--bash-completion", show_completion, "Print the completion for bash: . <(bough --bash-completion)");
+  app.require_subcommand(0, 1);
+
+  cli::Action action;
+  add_verbs(app, action);
+
+  const cli::Console console(false, 0);
+  if (!check_verb(app, argc, argv, console)) return cli::kUsageError;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    if (!console.is_root()) return cli::kSuccess;
+    return print_checked(console, [&] { app.exit(help); });
+  } catch (const CLI::ParseError& error) {
+    const auto [what, advice] = cli::describe_parse_error(app, error);
+    console.print_error("cli.usage", what, advice);
+    return cli::kUsageError;
+  }
+  if (show_version || show_man_page || show_completion) {
+    return print_checked(console, [&] {
+      console.print_data(show_version    ? cli::describe_versions()
+                         : show_man_page ? cli::make_man_page(app)
+                                         : cli::make_bash_completion(app));
+    });
+  }
+  const auto count_given = [&](const char* name) {
+    std::size_t count = 0;
+    for (const auto* verb : app.get_subcommands())
+      if (const auto* option = verb->get_option_no_throw(name)) count += option->count();
+    return static_cast<int>(count);
+  };
+  if (!action) {
+    console.print_error("cli.usage", "no verb given", "see bough --help");
+    return cli::kUsageError;
+  }
+  try {
+    cli::set_work_space_aside();
+    const int code = action();
+    cli::flush_data();
+    return code;
+  } catch (const Failure& failure) {
+    return cli::report_failure(failure, cli::Console(count_given("--quiet") > 0, count_given("--verbose")));
+  } catch (const std::bad_alloc&) {
+    console.print_error({}, "not enough memory", "use a smaller model or fewer modes");
+    return cli::kComputationFailed;
+  } catch (const std::exception& error) {
+    console.print_error({}, error.what(), "this is a fault in Bough; please report it");
+    return cli::kComputationFailed;
+  }
+}
+
+}  // namespace
+
+namespace bough::cli {
+
+int run_command(const std::vector<std::string>& words) {
+  std::vector<const char*> arguments{"bough"};
+  for (const auto& word : words) arguments.push_back(word.c_str());
+  return run(static_cast<int>(arguments.size()), arguments.data());
+}
+
+std::vector<std::string> list_verbs() {
+  CLI::App app;
+  Action action;
+  add_verbs(app, action);
+  return get_names(app);
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,58 @@
+#pragma once
+/// \file The parts of the module, and what they share.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <Eigen/Dense>
+
+#include "base/diagnostic.hpp"
+
+namespace bough::python {
+
+namespace py = pybind11;
+
+void bind_messages(py::module_& m);
+void bind_bodies(py::module_& m);
+void bind_linear(py::module_& m);
+void bind_systems(py::module_& m);
+
+/// An array that shows the numbers of `data`, which `owner` keeps: nothing is copied, what is written there counts.
+template <class Matrix>
+py::array view(const Matrix& data, py::handle owner) {
+  auto& writable = const_cast<Matrix&>(data);  // the arrays of a record that Python holds are its user's
+  constexpr auto item = static_cast<py::ssize_t>(sizeof(typename Matrix::Scalar));
+  const auto rows = static_cast<py::ssize_t>(data.rows()), cols = static_cast<py::ssize_t>(data.cols());
+  if constexpr (Matrix::IsVectorAtCompileTime) {
+    return py::array(py::dtype::of<typename Matrix::Scalar>(), {static_cast<py::ssize_t>(data.size())}, {item},
+                     writable.data(), owner);
+  } else {
+    constexpr bool is_row_major = Matrix::IsRowMajor;
+    return py::array(py::dtype::of<typename Matrix::Scalar>(), {rows, cols},
+                     {is_row_major ? item * cols : item, is_row_major ? item : item * rows}, writable.data(), owner);
+  }
+}
+
+template <class Matrices>
+py::list view_all(const Matrices& data, py::handle owner) {
+  py::list list;
+  for (const auto& matrix : data) list.append(view(matrix, owner));
+  return list;
+}
+
+/// An array that owns a matrix.
+template <class Matrix>
+py::array give(Matrix&& matrix) {
+  auto* kept = new std::decay_t<Matrix>(std::forward<Matrix>(matrix));
+  const py::capsule owner(kept, [](void* p) { delete static_cast<std::decay_t<Matrix>*>(p); });
+  return view(*kept, owner);
+}
+
+/// Warnings and notes as a list; warnings go to Python's warnings too.
+std::vector<Diagnostic> tell(const Diagnostics& diagnostics);
+
+}  // namespace bough::python

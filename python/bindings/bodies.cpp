@@ -1,0 +1,230 @@
+// Flexible bodies and modes: views of the records' own arrays.
+#include "bindings/bindings.hpp"
+
+#include "cli/common/options.hpp"
+#include "cli/common/system_files.hpp"
+#include "cli/reduce/reduce_body.hpp"
+#include "fe/linear/petsc.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/toml/specs.hpp"
+
+namespace bough::python {
+
+namespace {
+
+using records::FlexBody;
+using records::MassIntegrals;
+using records::ModesResult;
+
+const char* get_word(records::ModeKind kind) {
+  switch (kind) {
+    case records::ModeKind::Normal:
+      return "normal";
+    case records::ModeKind::Constraint:
+      return "constraint";
+    case records::ModeKind::Attachment:
+      return "attachment";
+    default:
+      return "residual";
+  }
+}
+
+std::vector<std::string> get_words(const std::vector<records::ModeKind>& kinds) {
+  std::vector<std::string> words;
+  for (const auto kind : kinds) words.emplace_back(get_word(kind));
+  return words;
+}
+
+/// A property that shows a matrix of the record.
+template <class Record, class Member>
+auto show(Member Record::*member) {
+  return [member](py::object self) { return view(self.cast<Record&>().*member, self); };
+}
+template <class Record, class Member>
+auto show_all(Member Record::*member) {
+  return [member](py::object self) { return view_all(self.cast<Record&>().*member, self); };
+}
+
+struct ReduceCall {
+  std::string file;
+  std::optional<int> modes;
+  std::optional<double> max_hz;
+  std::optional<std::vector<int>> interface;
+  std::optional<bool> free, full;
+  std::optional<std::string> name, mass, integrals;
+  std::optional<std::vector<double>> origin;
+  std::optional<double> damping;
+  std::optional<int> subcase;
+};
+
+records::BodySpec make_spec(const ReduceCall& call, Diagnostics& diagnostics) {
+  records::BodySpec spec;
+  cli::demand_file(call.file);
+  if (cli::has_suffix(call.file, ".toml")) {
+    cli::demand_kind(call.file, toml_files::detect_kind(call.file), "body");
+    spec = toml_files::read_body_spec(call.file, diagnostics);
+    diagnostics.throw_if_errors();
+    if (!spec.deck.empty()) spec.deck = cli::resolve_beside(call.file, spec.deck);
+  } else {
+    cli::demand_deck(call.file);
+    spec.deck = call.file;
+    const auto slash = call.file.rfind('/') + 1;
+    spec.name = call.file.substr(slash, call.file.rfind('.') - slash);
+    if (!call.modes && !call.max_hz)
+      throw InputError("cli.no-modes", {call.file}, "the number of modes is not given", "give modes=N or max_hz=F");
+  }
+  if (call.name) spec.name = *call.name;
+  if (call.modes) spec.num_modes = *call.modes;
+  if (call.max_hz) spec.max_frequency_hz = *call.max_hz;
+  if (call.interface) spec.interface_nodes = *call.interface;
+  if (call.free && *call.free) spec.frame = records::BodyFrame::Free;
+  if (call.full) spec.full = *call.full;
+  if (call.mass) spec.mass = *call.mass;
+  if (call.integrals) spec.integrals = *call.integrals;
+  if (call.origin) {
+    if (call.origin->size() != 3) throw py::value_error("origin has three numbers");
+    spec.origin = Eigen::Vector3d((*call.origin)[0], (*call.origin)[1], (*call.origin)[2]);
+  }
+  if (call.damping) {
+    spec.damping_ratio = *call.damping;
+    spec.damping_ratios.clear();
+  }
+  if (call.subcase) spec.subcase = *call.subcase;
+  return spec;
+}
+
+py::tuple reduce(const ReduceCall& call, const py::object& progress) {
+  Diagnostics diagnostics;
+  FlexBody body;
+  {
+    const py::gil_scoped_release released;
+    fe::initialize_petsc();
+    const auto spec = make_spec(call, diagnostics);
+    stiffening::ReduceOptions options;
+    if (!progress.is_none())
+      options.progress = [&](const std::string& stage) {
+        const py::gil_scoped_acquire acquired;
+        progress(stage);
+      };
+    cli::blame(call.file, [&] {
+      body = cli::reduce_body(spec, options, diagnostics).body;
+      return 0;
+    });
+    diagnostics.throw_if_errors();
+  }
+  auto messages = tell(diagnostics);
+  return py::make_tuple(std::move(body), messages);
+}
+
+void bind_flex_body(py::module_& m) {
+  py::class_<MassIntegrals>(m, "MassIntegrals", "The five mass integrals; column j belongs to mode j.")
+      .def_property_readonly("gamma0", show(&MassIntegrals::gamma0), "3 x n")
+      .def_property_readonly("gamma1", show(&MassIntegrals::gamma1), "3 x n")
+      .def_property_readonly("gamma2", show_all(&MassIntegrals::gamma2), "[j] 3 x n")
+      .def_property_readonly("gamma3", show_all(&MassIntegrals::gamma3), "[j] 3 x 3")
+      .def_property_readonly(
+          "gamma4",
+          [](py::object self) {
+            py::list rows;
+            for (const auto& row : self.cast<MassIntegrals&>().gamma4) rows.append(view_all(row, self));
+            return rows;
+          },
+          "[j][k] 3 x 3")
+      .def("__bool__", [](const MassIntegrals& i) { return !i.empty(); });
+
+  py::class_<records::Locator>(m, "Locator")
+      .def_readonly("name", &records::Locator::name)
+      .def_readonly("node", &records::Locator::node)
+      .def_readonly("direction", &records::Locator::direction);
+
+  py::class_<FlexBody>(m, "FlexBody", "A reduced flexible body; its arrays are views, nothing is copied.")
+      .def_readwrite("name", &FlexBody::name)
+      .def_readonly("source", &FlexBody::source)
+      .def_readwrite("mass", &FlexBody::mass)
+      .def_property_readonly("cg", show(&FlexBody::cg))
+      .def_property_readonly("inertia", show(&FlexBody::inertia), "3 x 3, about the body origin")
+      .def_readonly("node_id", &FlexBody::node_id)
+      .def_property_readonly("node_xyz", show(&FlexBody::node_xyz), "p x 3")
+      .def_readonly("interface_nodes", &FlexBody::interface_nodes)
+      .def_readonly("is_free_free", &FlexBody::is_free_free)
+      .def_property_readonly("frequency_hz", show(&FlexBody::frequency_hz))
+      .def_property_readonly("eigenvalue", show(&FlexBody::eigenvalue))
+      .def_property_readonly("kind", [](const FlexBody& b) { return get_words(b.kind); })
+      .def_property_readonly("phi", show_all(&FlexBody::phi), "[node] 6 x n: translations, rotations")
+      .def_property_readonly("modal_mass", show(&FlexBody::modal_mass))
+      .def_property_readonly("modal_stiffness", show(&FlexBody::modal_stiffness))
+      .def_property_readonly("modal_damping", show(&FlexBody::modal_damping))
+      .def_property_readonly("effective_mass", show(&FlexBody::effective_mass), "n x 6")
+      .def_property_readonly("lumped", [](FlexBody& b) -> MassIntegrals& { return b.lumped; })
+      .def_property_readonly("consistent", [](FlexBody& b) -> MassIntegrals& { return b.consistent; })
+      .def_property_readonly("exact", [](FlexBody& b) -> MassIntegrals& { return b.exact; })
+      .def_readonly("integrals_method", &FlexBody::integrals_method)
+      .def_property_readonly("integrals",
+                             [](FlexBody& b) -> MassIntegrals& {
+                               return b.integrals_method == "exact"        ? b.exact
+                                      : b.integrals_method == "consistent" ? b.consistent
+                                                                           : b.lumped;
+                             })
+      .def_property_readonly("inertial_loads", show(&FlexBody::F_I), "ndof x 12")
+      .def_property_readonly("dof_map", show(&FlexBody::dof_map), "ndof x 2: node, code")
+      .def_property_readonly("kg_inertial", show_all(&FlexBody::kg_inertial), "[load] n x n, 12 of them")
+      .def_readonly("kg_inertial_computed", &FlexBody::kg_inertial_computed)
+      .def_readonly("locators", &FlexBody::locators)
+      .def_property_readonly("kg_external", show_all(&FlexBody::kg_external), "[locator] n x n")
+      .def_property_readonly("external_load", show(&FlexBody::external_load), "n x locators")
+      .def_readonly("preload", &FlexBody::preload)
+      .def_property_readonly("kg_preload", show(&FlexBody::kg_preload))
+      .def_property_readonly("full_phi", show(&FlexBody::full_phi), "ndof x n, with full=True")
+      .def_property_readonly("num_modes", &FlexBody::num_modes)
+      .def_property_readonly("num_nodes", &FlexBody::num_nodes)
+      .def("copy", [](const FlexBody& b) { return FlexBody(b); })
+      .def(
+          "save", [](const FlexBody& b, const std::string& path) { hdf5::write_flex_body(b, path); }, py::arg("path"),
+          "Write the flexible-body HDF5 file.")
+      .def("__repr__", [](const FlexBody& b) {
+        return "<FlexBody '" + b.name + "': " + std::to_string(b.num_modes()) + " modes, " +
+               std::to_string(b.num_nodes()) + " nodes>";
+      });
+}
+
+}  // namespace
+
+void bind_bodies(py::module_& m) {
+  bind_flex_body(m);
+  py::class_<ModesResult>(m, "Modes", "Normal modes or load factors of a deck.")
+      .def_readonly("subcase", &ModesResult::subcase)
+      .def_readonly("node_id", &ModesResult::node_id)
+      .def_property_readonly("node_xyz", show(&ModesResult::node_xyz))
+      .def_property_readonly("eigenvalue", show(&ModesResult::eigenvalue))
+      .def_property_readonly("frequency_hz", show(&ModesResult::frequency_hz))
+      .def_property_readonly("load_factor", show(&ModesResult::load_factor), "buckling")
+      .def_property_readonly("residual", show(&ModesResult::residual))
+      .def_property_readonly("phi", show_all(&ModesResult::phi), "[node] 6 x n")
+      .def_property_readonly("modal_mass", show(&ModesResult::modal_mass))
+      .def_property_readonly("effective_mass", show(&ModesResult::effective_mass), "n x 6")
+      .def_property_readonly("mass", [](const ModesResult& r) { return r.mass_properties.mass; })
+      .def_property_readonly("cg", [](const ModesResult& r) { return give(Eigen::Vector3d(r.mass_properties.cg)); })
+      .def_property_readonly("inertia",
+                             [](const ModesResult& r) { return give(Eigen::Matrix3d(r.mass_properties.inertia)); })
+      .def_readonly("num_rigid_modes", &ModesResult::num_rigid_modes);
+  m.def("read_flex_body", &hdf5::read_flex_body, py::arg("path"), py::call_guard<py::gil_scoped_release>());
+  m.def("read_modes", &hdf5::read_modes, py::arg("path"), py::call_guard<py::gil_scoped_release>());
+  m.def(
+      "reduce",
+      [](std::string file, std::optional<int> modes, std::optional<double> max_hz,
+         std::optional<std::vector<int>> interface, std::optional<bool> free, std::optional<bool> full,
+         std::optional<std::string> name, std::optional<std::string> mass, std::optional<std::string> integrals,
+         std::optional<std::vector<double>> origin, std::optional<double> damping, std::optional<int> subcase,
+         const py::object& progress) {
+        return reduce({std::move(file), modes, max_hz, std::move(interface), free, full, std::move(name),
+                       std::move(mass), std::move(integrals), std::move(origin), damping, subcase},
+                      progress);
+      },
+      py::arg("file"), py::kw_only(), py::arg("modes") = py::none(), py::arg("max_hz") = py::none(),
+      py::arg("interface") = py::none(), py::arg("free") = py::none(), py::arg("full") = py::none(),
+      py::arg("name") = py::none(), py::arg("mass") = py::none(), py::arg("integrals") = py::none(),
+      py::arg("origin") = py::none(), py::arg("damping") = py::none(), py::arg("subcase") = py::none(),
+      py::arg("progress") = py::none());
+}
+
+}  // namespace bough::python

@@ -1,0 +1,28 @@
+#pragma once
+/// \file Controllers written in Python, lent to the solver through the C interface of controllers.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bindings/bindings.hpp"
+#include "formats/records/system_spec.hpp"
+#include "solver/control/hosted.hpp"
+
+namespace bough::python {
+
+/// Lends the functions of Python objects as long as it lives. An object is called as f(t, u) and gives the outputs, or
+/// has methods outputs(t, u, z, d), derivatives(t, u, z, d), update(t, u, z, d), start(), close() and numbers
+/// num_outputs, num_states, num_memory, has_feedthrough, of which only outputs (or the call) must be there.
+class Controllers {
+ public:
+  explicit Controllers(const py::dict& by_name);
+  /// Puts each in the place of the controller of its name, which keeps its inputs and sample time. Throws InputError
+  /// "control.unknown-controller".
+  void put_into(records::SystemSpec& spec) const;
+
+ private:
+  std::vector<std::pair<std::string, std::string>> files_;  ///< name, file it stands under
+  std::vector<std::unique_ptr<solver::HostedController>> hosted_;
+};
+
+}  // namespace bough::python

@@ -1,0 +1,62 @@
+// Linear models: arrays that go straight into python-control and scipy.signal.
+#include "bindings/bindings.hpp"
+
+#include "formats/hdf5/linear_file.hpp"
+
+namespace bough::python {
+
+namespace {
+
+using records::LinearModel;
+
+template <class Member>
+auto show(Member LinearModel::*member) {
+  return [member](py::object self) { return view(self.cast<LinearModel&>().*member, self); };
+}
+
+py::array make_complex(const Eigen::VectorXd& real, const Eigen::VectorXd& imag) {
+  Eigen::VectorXcd values(real.size());
+  values.real() = real;
+  values.imag() = imag;
+  return give(std::move(values));
+}
+
+}  // namespace
+
+void bind_linear(py::module_& m) {
+  py::class_<LinearModel>(m, "LinearModel", "x' = A x + B u, y = C x + D u about an operating point.")
+      .def_property_readonly("A", show(&LinearModel::A))
+      .def_property_readonly("B", show(&LinearModel::B))
+      .def_property_readonly("C", show(&LinearModel::C))
+      .def_property_readonly("D", show(&LinearModel::D))
+      .def_property_readonly("states", [](const LinearModel& l) { return l.states.name; })
+      .def_property_readonly("inputs", [](const LinearModel& l) { return l.inputs.name; })
+      .def_property_readonly("outputs", [](const LinearModel& l) { return l.outputs.name; })
+      .def_readonly("time", &LinearModel::time)
+      .def_property_readonly("q", show(&LinearModel::q))
+      .def_property_readonly("u", show(&LinearModel::u))
+      .def_readonly("residual", &LinearModel::residual, "|u'| at the operating point")
+      .def_readonly("error", &LinearModel::error, "estimated, of A and C, relative to the largest entry of the row")
+      .def_property_readonly("poles",
+                             [](const LinearModel& l) { return make_complex(l.poles.real, l.poles.imag); })
+      .def_property_readonly("pole_frequency_hz",
+                             [](const LinearModel& l) { return give(Eigen::VectorXd(l.poles.frequency_hz)); })
+      .def_property_readonly("pole_damping",
+                             [](const LinearModel& l) { return give(Eigen::VectorXd(l.poles.damping)); })
+      .def_property_readonly("pole_mode", [](const LinearModel& l) { return l.poles.mode; })
+      .def_property_readonly("zeros",
+                             [](const LinearModel& l) -> py::object {
+                               if (!l.has_zeros) return py::none();
+                               return make_complex(l.zeros_real, l.zeros_imag);
+                             })
+      .def(
+          "save", [](const LinearModel& l, const std::string& path) { hdf5::write_linear_model(l, path); },
+          py::arg("path"), "Write the linear-model HDF5 file.")
+      .def("__repr__", [](const LinearModel& l) {
+        return "<LinearModel: " + std::to_string(l.A.rows()) + " states, " + std::to_string(l.B.cols()) + " inputs, " +
+               std::to_string(l.C.rows()) + " outputs>";
+      });
+  m.def("read_linear_model", &hdf5::read_linear_model, py::arg("path"), py::call_guard<py::gil_scoped_release>());
+}
+
+}  // namespace bough::python

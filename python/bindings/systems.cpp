@@ -1,0 +1,273 @@
+// Systems and their runs.
+#include <atomic>
+
+#include "bindings/controllers.hpp"
+#include "cli/common/options.hpp"
+#include "cli/common/system_files.hpp"
+#include "cli/linearize/operating_point.hpp"
+#include "formats/hdf5/files.hpp"
+#include "solver/integrate/memory_sink.hpp"
+#include "solver/integrate/simulate.hpp"
+#include "solver/linear/linearize.hpp"
+
+namespace bough::python {
+
+namespace {
+
+/// Results in memory, with the same paths as in the file.
+struct Results {
+  std::vector<std::string> paths;
+  std::map<std::string, std::string> descriptions;
+  std::map<std::string, Eigen::MatrixXd> channels;
+  std::vector<records::EventRecord> events;
+  bool completed = false;
+  std::string reason;
+  double energy_error = 0;
+  std::vector<Diagnostic> messages;
+
+  std::string find(const std::string& name) const {
+    for (const auto& path : {name, "/" + name, "/sensors/" + name, "/signals/" + name, "/controllers/" + name,
+                             "/actuators/" + name}) {
+      if (channels.count(path)) return path;
+    }
+    const auto nearest = find_nearest(name, paths);
+    throw py::key_error("no channel " + name + (nearest.empty() ? "" : "; did you mean " + nearest));
+  }
+};
+
+/// One sink into memory, perhaps one into a file.
+class Tee final : public records::ResultSink {
+ public:
+  Tee(records::ResultSink& memory, records::ResultSink* file,
+      std::vector<std::pair<std::string, std::string>> source)
+      : memory_(memory), file_(file), source_(std::move(source)) {}
+  void begin(const records::ResultsHeader& header) override {
+    auto own = header;
+    own.source = source_;
+    each([&](auto& sink) { sink.begin(own); });
+  }
+  void write_sample(const Eigen::Ref<const Eigen::VectorXd>& sample) override {
+    each([&](auto& sink) { sink.write_sample(sample); });
+  }
+  void write_event(const records::EventRecord& event) override {
+    each([&](auto& sink) { sink.write_event(event); });
+  }
+  void write_checkpoint(const records::Checkpoint& checkpoint) override {
+    if (file_ != nullptr) file_->write_checkpoint(checkpoint);
+  }
+  void write_energy_error(double worst) override {
+    each([&](auto& sink) { sink.write_energy_error(worst); });
+  }
+  void end(bool completed, const std::string& reason) override {
+    each([&](auto& sink) { sink.end(completed, reason); });
+  }
+
+ private:
+  template <class Act>
+  void each(const Act& act) {
+    act(memory_);
+    if (file_ != nullptr) act(*file_);
+  }
+  records::ResultSink& memory_;
+  records::ResultSink* file_;
+  std::vector<std::pair<std::string, std::string>> source_;
+};
+
+Results collect(const solver::MemorySink& memory) {
+  Results results;
+  for (const auto& channel : memory.header().channels) {
+    results.paths.push_back(channel.path);
+    results.descriptions[channel.path] = channel.description;
+    results.channels[channel.path] = memory.get(channel.path);
+  }
+  results.events = memory.events();
+  results.completed = memory.completed();
+  results.reason = memory.reason();
+  results.energy_error = memory.energy_error();
+  return results;
+}
+
+Results read_results(const std::string& path) {
+  Results results;
+  auto file = hdf5::read_results(path);
+  for (auto& [name, values] : file.channels) {
+    const auto full = name.empty() || name.front() != '/' ? "/" + name : name;
+    results.paths.push_back(full);
+    results.channels[full] = std::move(values);
+    if (const auto found = file.descriptions.find(name); found != file.descriptions.end())
+      results.descriptions[full] = found->second;
+  }
+  if (!results.channels.count("/time")) {
+    results.paths.insert(results.paths.begin(), "/time");
+    results.channels["/time"] = file.time;
+  }
+  results.events = file.events;
+  results.completed = file.completed;
+  results.reason = file.reason;
+  results.energy_error = file.energy_error;
+  return results;
+}
+
+class PySystem {
+ public:
+  PySystem(std::string file, const py::dict& controllers, const std::map<std::string, records::FlexBody>& bodies,
+           std::vector<std::string> set, std::string start_from, std::optional<std::string> text)
+      : file_(std::move(file)), controllers_(controllers) {
+    Diagnostics diagnostics;
+    cli::LoadOptions options;
+    options.start_from = std::move(start_from);
+    options.set = std::move(set);
+    options.text = std::move(text);
+    options.flex = bodies;
+    options.change_spec = [&](records::SystemSpec& spec) { controllers_.put_into(spec); };
+    is_file_ = !options.text;
+    {
+      const py::gil_scoped_release released;
+      loaded_.emplace(cli::load_system(file_, diagnostics, std::move(options)));
+    }
+    messages = tell(diagnostics);
+  }
+
+  std::vector<Diagnostic> messages;
+
+  std::vector<std::string> get_bodies() const {
+    std::vector<std::string> names;
+    for (int b = 0; b < loaded_->system.num_bodies(); ++b) names.push_back(loaded_->system.body_name(b));
+    return names;
+  }
+
+  Results run(const std::string& output, const py::object& progress) {
+    Diagnostics diagnostics;
+    Results results;
+    bool is_interrupted = false;
+    {
+      const py::gil_scoped_release released;
+      std::unique_ptr<records::ResultSink> file;
+      if (!output.empty()) file = hdf5::make_results_writer(output);
+      solver::MemorySink memory;
+      Tee sink(memory, file.get(), calc_sources());
+      std::atomic<bool> stop{false};
+      solver::SimulateOptions options;
+      options.stop = &stop;
+      options.progress = [&](const solver::Progress& p) {
+        const py::gil_scoped_acquire acquired;
+        if (PyErr_CheckSignals() != 0) {
+          PyErr_Clear();
+          is_interrupted = true;
+          stop = true;
+        } else if (!progress.is_none()) {
+          try {
+            const py::object answer = progress(p.time, p.end);
+            if (py::isinstance<py::bool_>(answer) && !answer.cast<bool>()) stop = true;
+          } catch (py::error_already_set& error) {
+            // A call that fails ends the run cleanly and is told after it.
+            raised_ = std::make_unique<py::error_already_set>(std::move(error));
+            stop = true;
+          }
+        }
+      };
+      solver::simulate(loaded_->system, loaded_->spec, sink, options, diagnostics);
+      results = collect(memory);
+    }
+    if (raised_) {
+      const auto raised = std::move(raised_);
+      throw py::error_already_set(*raised);
+    }
+    if (is_interrupted) {
+      PyErr_SetNone(PyExc_KeyboardInterrupt);
+      throw py::error_already_set();
+    }
+    results.messages = tell(diagnostics);
+    return results;
+  }
+
+  py::tuple linearize(std::optional<double> at, bool equilibrium, bool open, std::vector<std::string> inputs,
+                      std::vector<std::string> outputs) {
+    Diagnostics diagnostics;
+    records::LinearModel model;
+    {
+      const py::gil_scoped_release released;
+      auto plant = cli::make_plant(*loaded_, open);
+      auto point = at ? cli::run_to(*loaded_, plant, *at, diagnostics) : plant.make_initial_point();
+      if (equilibrium) point = cli::find_rest(plant, std::move(point), file_);
+      plant.hold_commands(point);
+      model = solver::linearize(plant, point, {std::move(inputs), std::move(outputs), true}, {file_}, diagnostics);
+      model.source = calc_sources();
+    }
+    const auto messages = tell(diagnostics);
+    return py::make_tuple(std::move(model), messages);
+  }
+
+ private:
+  /// Of the files; what is lent by Python has none.
+  std::vector<std::pair<std::string, std::string>> calc_sources() const {
+    auto files = cli::collect_sources(file_, *loaded_);
+    if (!is_file_) files.erase(files.begin());
+    std::erase_if(files, [](const std::string& name) { return name.starts_with("python:"); });
+    return cli::calc_sources(files);
+  }
+
+  std::string file_;
+  bool is_file_ = true;
+  Controllers controllers_;
+  std::optional<cli::LoadedSystem> loaded_;
+  std::unique_ptr<py::error_already_set> raised_;
+};
+
+}  // namespace
+
+void bind_systems(py::module_& m) {
+  py::class_<records::EventRecord>(m, "Event")
+      .def_readonly("time", &records::EventRecord::time)
+      .def_readonly("what", &records::EventRecord::what)
+      .def("__repr__", [](const records::EventRecord& e) { return std::to_string(e.time) + ": " + e.what; });
+
+  py::class_<Results>(m, "Results", "Samples of a run: results[\"/sensors/tip\"] or results[\"tip\"], nt x components.")
+      .def("__getitem__",
+           [](py::object self, const std::string& name) {
+             const auto& results = self.cast<const Results&>();
+             return view(results.channels.at(results.find(name)), self);
+           })
+      .def("__contains__",
+           [](const Results& r, const std::string& name) {
+             try {
+               r.find(name);
+               return true;
+             } catch (const py::key_error&) {
+               return false;
+             }
+           })
+      .def("__iter__",
+           [](py::object self) { return py::iter(py::cast(self.cast<const Results&>().paths)); })
+      .def("__len__", [](const Results& r) { return r.paths.size(); })
+      .def("keys", [](const Results& r) { return r.paths; })
+      .def("describe", [](const Results& r, const std::string& name) { return r.descriptions.at(r.find(name)); })
+      .def_property_readonly("time",
+                             [](py::object self) {
+                               const auto& time = self.cast<const Results&>().channels.at("/time");
+                               return view(time, self).attr("reshape")(-1);
+                             })
+      .def_readonly("events", &Results::events)
+      .def_readonly("completed", &Results::completed)
+      .def_readonly("reason", &Results::reason)
+      .def_readonly("energy_error", &Results::energy_error, "the worst of the run, relative")
+      .def_readonly("messages", &Results::messages)
+      .def("__repr__", [](const Results& r) {
+        return "<Results: " + std::to_string(r.paths.size()) + " channels, " +
+               std::to_string(r.channels.at("/time").rows()) + " samples>";
+      });
+  m.def("read_results", &read_results, py::arg("path"), py::call_guard<py::gil_scoped_release>());
+
+  py::class_<PySystem>(m, "System")
+      .def(py::init<std::string, const py::dict&, const std::map<std::string, records::FlexBody>&,
+                    std::vector<std::string>, std::string, std::optional<std::string>>(),
+           py::arg("file"), py::arg("controllers"), py::arg("bodies"), py::arg("set"), py::arg("start_from"),
+           py::arg("text"))
+      .def_property_readonly("bodies", &PySystem::get_bodies)
+      .def_readonly("messages", &PySystem::messages)
+      .def("run", &PySystem::run, py::arg("output"), py::arg("progress"))
+      .def("linearize", &PySystem::linearize, py::arg("at"), py::arg("equilibrium"), py::arg("open"),
+           py::arg("inputs"), py::arg("outputs"));
+}
+
+}  // namespace bough::python

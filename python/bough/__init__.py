@@ -1,0 +1,169 @@
+"""Bough from Python: Nastran decks to modes and flexible bodies, multibody systems to time histories and linear models.
+
+    import bough
+    body = bough.reduce("boom.toml")            # FlexBody: its arrays are views
+    system = bough.System("spinup.toml", bodies={"boom.h5": body})
+    results = system.run()
+    results.time, results["tip_deflection"]
+
+What is wrong with an input is raised as bough.InputError, a computation that fails as bough.ComputationError; both have
+`messages`, each with file, line, what is wrong and what to do. Warnings are Python warnings (bough.Warning).
+"""
+import contextlib as _contextlib
+import json as _json
+import os as _os
+import sys as _sys
+import tempfile as _tempfile
+
+from . import reader
+
+try:
+    from ._bough import (ComputationError, Event, Failure, FlexBody, InputError, LinearModel, Locator, MassIntegrals,
+                         Message, Modes, Results, Warning, read_flex_body, read_linear_model, read_modes, read_results,
+                         verbs)
+    from . import _bough
+except ImportError as _missing:  # the reader does without
+    _bough = None
+
+    def __getattr__(name):
+        raise AttributeError(f"bough.{name} needs the compiled module, which cannot be loaded ({_missing_text}); "
+                             "bough.reader reads files without it")
+
+    _missing_text = str(_missing)
+
+__all__ = ["ComputationError", "Event", "Failure", "FlexBody", "InputError", "LinearModel", "Locator", "MassIntegrals",
+           "Message", "Modes", "Results", "System", "Warning", "call", "modes", "read_flex_body", "read_linear_model",
+           "read_modes", "read_results", "reader", "reduce", "select", "static", "verbs"]
+
+
+def call(*words):
+    """One command line in this process, as from the shell; the exit code.
+
+    call("modes", "boom.bdf", "-n", 3) prints its table. Messages go to stderr.
+    """
+    _sys.stdout.flush()
+    return _bough.call([str(word) for word in words])
+
+
+@_contextlib.contextmanager
+def _redirected(descriptor, file):
+    kept = _os.dup(descriptor)
+    try:
+        _os.dup2(file.fileno(), descriptor)
+        yield
+    finally:
+        _os.dup2(kept, descriptor)
+        _os.close(kept)
+
+
+def _call_quietly(words):
+    """(stdout, stderr) of a verb; raises what the messages say."""
+    _sys.stdout.flush()
+    _sys.stderr.flush()
+    with _tempfile.TemporaryFile() as out, _tempfile.TemporaryFile() as err:
+        with _redirected(1, out), _redirected(2, err):
+            code = _bough.call([str(word) for word in words])
+        texts = []
+        for file in (out, err):
+            file.seek(0)
+            texts.append(file.read().decode("utf-8", "replace"))
+    if code:
+        raise (InputError if code in (1, 2) else ComputationError)(texts[1].strip())
+    return texts
+
+
+def _make_words(options):
+    words = []
+    for key, value in options.items():
+        if value is None or value is False:
+            continue
+        option = "--" + key.replace("_", "-")
+        for item in value if isinstance(value, (list, tuple)) else [value]:
+            words += [option] if item is True else [option, item]
+    return words
+
+
+def reduce(file, **options):
+    """A body file (.toml) or a Nastran deck becomes a FlexBody, with modes, mass integrals and geometric stiffness.
+
+    Options, each instead of what the file says: modes, max_hz, interface=[node, ...], free, full, name, mass
+    ("deck", "lumped", "consistent"), integrals ("exact", ...), origin, damping, subcase; progress(stage) is called on
+    the way.
+    """
+    body, _ = _bough.reduce(_os.fspath(file), **options)
+    return body
+
+
+def modes(deck, number=None, **options):
+    """Normal modes (or with buckling=True load factors) of a deck as Modes; options as of `bough modes`."""
+    with _tempfile.TemporaryDirectory() as folder:
+        path = _os.path.join(folder, "modes.h5")
+        _call_quietly(["modes", _os.fspath(deck), "-q", "-o", path, *_make_words({"number": number, **options})])
+        return read_modes(path)
+
+
+def static(deck, **options):
+    """Static solutions of a deck, as reader.File in memory: displacements, reactions, element forces by path."""
+    with _tempfile.TemporaryDirectory() as folder:
+        path = _os.path.join(folder, "static.h5")
+        _call_quietly(["static", _os.fspath(deck), "-q", "-o", path, *_make_words(options)])
+        return reader.read(path)
+
+
+def select(body, system=None, **options):
+    """(FlexBody with the modes that count, ranking as a dict); options as of `bough select`. body: FlexBody or file."""
+    with _tempfile.TemporaryDirectory() as folder:
+        output = _os.path.join(folder, "selected.h5")
+        path = body
+        if not isinstance(body, (str, _os.PathLike)):
+            path = _os.path.join(folder, "body.h5")
+            body.save(path)
+        words = ["select", _os.fspath(path), *([_os.fspath(system)] if system else []), "--json", "-o", output]
+        ranking = _call_quietly(words + _make_words(options))[0]
+        return read_flex_body(output), _json.loads(ranking)
+
+
+class System:
+    """A multibody system, of a system file or of its text.
+
+    controllers: {"law": f} puts Python in the place of [[controller]] name = "law", which keeps its inputs and its
+    sample_time. f(t, u) gives the output (num_outputs of them), or f has outputs(t, u, z, d), derivatives(...),
+    update(...), start() with num_outputs, num_states, num_memory, has_feedthrough: see docs/python.md.
+    bodies: {"boom.h5": FlexBody}, instead of reading that file. parameters: {"kp": 4.0}, numbers of [parameters].
+    """
+
+    def __init__(self, file, *, controllers=None, bodies=None, parameters=None, start_from=""):
+        settings = [f"{name}={value!r}" for name, value in (parameters or {}).items()]
+        self._own = _bough.System(_os.fspath(file), controllers or {}, bodies or {}, settings, _os.fspath(start_from),
+                                  None)
+
+    @classmethod
+    def from_text(cls, text, folder=".", *, controllers=None, bodies=None):
+        """The TOML text of a system; files that it names are relative to the folder."""
+        system = cls.__new__(cls)
+        system._own = _bough.System(_os.path.join(_os.fspath(folder), "system.toml"), controllers or {}, bodies or {},
+                                    [], "", text)
+        return system
+
+    @property
+    def bodies(self):
+        """Names of the bodies."""
+        return self._own.bodies
+
+    @property
+    def messages(self):
+        """Notes and warnings of reading it."""
+        return self._own.messages
+
+    def run(self, output=None, progress=None):
+        """The time history as Results, also written to the HDF5 file `output`.
+
+        progress(time, end) is called at each sample; when it returns False the run stops there. Ctrl-C does too. Other
+        Python threads go on meanwhile.
+        """
+        return self._own.run(_os.fspath(output) if output else "", progress)
+
+    def linearize(self, *, at=None, equilibrium=False, open=False, inputs=(), outputs=()):
+        """A B C D, poles and zeros about the start, a time or the equilibrium, as LinearModel."""
+        model, _ = self._own.linearize(at, equilibrium, open, list(inputs), list(outputs))
+        return model

@@ -1,0 +1,37 @@
+#pragma once
+/// \file Controllers of type "library" that live in this process, not in a shared library: a host program (the Python
+/// module) lends the functions of bough_controller.h under the file name that the system file or the host gives.
+#include <functional>
+#include <string>
+
+#include "solver/control/bough_controller.h"
+
+namespace bough::solver {
+
+/// The functions of bough_controller.h; those that may be left out there may be empty.
+struct ControllerFunctions {
+  std::function<int()> version;
+  std::function<int(bough_controller*)> open;
+  std::function<int(void*, double, const double*, const double*, const double*, double*)> outputs;
+  std::function<int(void*, double*, double*)> start;
+  std::function<int(void*, double, const double*, const double*, const double*, double*)> derivatives, update;
+  std::function<void(void*)> close;
+};
+
+/// Lends `functions` to every controller built from now on whose `file` is that name, until the object ends. Systems
+/// built meanwhile keep them.
+class HostedController {
+ public:
+  HostedController(std::string file, ControllerFunctions functions);
+  ~HostedController();
+  HostedController(const HostedController&) = delete;
+  HostedController& operator=(const HostedController&) = delete;
+
+ private:
+  std::string file_;
+};
+
+/// Null where no host lends that file.
+const ControllerFunctions* find_hosted_controller(const std::string& file);
+
+}  // namespace bough::solver
