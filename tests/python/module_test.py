@@ -1,0 +1,356 @@
+"""import bough: views of the records, errors with file and line, runs with controllers in Python, linear models."""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+import warnings
+
+import numpy as np
+
+import bough
+
+EXAMPLES = os.path.join(os.environ["BOUGH_SOURCE_DIR"], "data", "examples")
+PENDULUM = """
+[[body]]
+name = "arm"
+mass = 2.0
+cg = [0.5, 0.0, 0.0]
+inertia = [0.001, 0.17, 0.17]
+
+[[hinge]]
+name = "pivot"
+type = "revolute"
+child = "arm"
+axis = [0.0, 1.0, 0.0]
+position_deg = 30.0
+
+[[sensor]]
+name = "angle"
+type = "hinge_angle"
+hinge = "pivot"
+
+[[sensor]]
+name = "rate"
+type = "hinge_rate"
+hinge = "pivot"
+
+[[controller]]
+name = "law"
+{law}
+
+[[actuator]]
+name = "motor"
+type = "hinge"
+hinge = "pivot"
+input = "law"
+
+[simulation]
+duration = 1.0
+output_step = 0.01
+integrator = "rk"
+relative_tolerance = 1e-10
+gravity = [0.0, 0.0, -9.81]
+"""
+EXPRESSION = 'type = "expression"\ninputs = ["angle", "rate"]\nexpression = "-40*u1 - 3*u2"'
+LIBRARY = 'type = "library"\ninputs = ["angle", "rate"]'
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.before = os.getcwd()
+        self.addCleanup(os.chdir, self.before)
+        os.chdir(self.folder)
+
+    def write(self, name, text):
+        with open(name, "w", encoding="utf-8") as out:
+            out.write(text)
+        return name
+
+
+class Bodies(InFolder):
+    def setUp(self):
+        super().setUp()
+        for name in ("boom.bdf", "boom.toml", "spinup.toml"):
+            shutil.copy(os.path.join(EXAMPLES, "ex01-spinup", name), self.folder)
+
+    def test_reduce_is_the_verb(self):
+        stages = []
+        body = bough.reduce("boom.toml", progress=stages.append)
+        self.assertTrue(stages)
+        subprocess.run([os.environ["BOUGH_PROGRAM"], "reduce", "boom.toml", "-q", "-o", "verb.h5"], check=True)
+        other = bough.read_flex_body("verb.h5")
+        self.assertEqual(body.num_modes, other.num_modes)
+        np.testing.assert_array_equal(body.frequency_hz, other.frequency_hz)
+        for name in ("modal_mass", "modal_stiffness", "effective_mass", "cg", "inertia"):
+            np.testing.assert_array_equal(getattr(body, name), getattr(other, name), err_msg=name)
+        for name in ("kg_inertial", "kg_external", "phi"):
+            for mine, verbs in zip(getattr(body, name), getattr(other, name)):
+                np.testing.assert_array_equal(mine, verbs, err_msg=name)
+        for name in ("gamma0", "gamma1"):
+            np.testing.assert_array_equal(getattr(body.integrals, name), getattr(other.integrals, name))
+        self.assertEqual([l.name for l in body.locators], [l.name for l in other.locators])
+        body.save("saved.h5")
+        np.testing.assert_array_equal(bough.reader.read("saved.h5")["modes/frequency_hz"], body.frequency_hz)
+
+    def test_arrays_are_views(self):
+        body = bough.reduce("boom.bdf", modes=2)
+        K = body.modal_stiffness
+        self.assertTrue(np.shares_memory(K, body.modal_stiffness))
+        self.assertTrue(np.shares_memory(body.exact.gamma4[0][1], body.exact.gamma4[0][1]))
+        K[0, 0] *= 2
+        self.assertEqual(body.modal_stiffness[0, 0], K[0, 0])
+        self.assertNotEqual(body.copy().modal_stiffness.ctypes.data, K.ctypes.data)
+        gamma0 = body.exact.gamma0
+        kept = gamma0.copy()
+        del body  # what is shown stays
+        np.testing.assert_array_equal(gamma0, kept)
+
+    def test_shapes(self):
+        body = bough.reduce("boom.bdf", modes=3, interface=[11], full=True)
+        n, p = body.num_modes, body.num_nodes
+        self.assertEqual((n, len(body.phi), body.phi[0].shape), (3, p, (6, n)))
+        self.assertEqual((body.node_xyz.shape, body.integrals.gamma0.shape), ((p, 3), (3, n)))
+        self.assertEqual(body.full_phi.shape, (len(body.dof_map), n))
+        self.assertEqual(body.inertial_loads.shape[1], 12)
+        self.assertEqual(len(body.kg_inertial), 12)
+        self.assertEqual([l.direction for l in body.locators if l.node == 11], [1, 2, 3, 4, 5, 6])
+
+    def test_modes_and_static(self):
+        modes = bough.modes("boom.bdf", 4)
+        self.assertEqual(len(modes.frequency_hz), 4)
+        self.assertLess(modes.residual.max(), 1e-6)
+        self.assertAlmostEqual(modes.mass, bough.reduce("boom.bdf", modes=1).mass)
+
+    def test_select(self):
+        body = bough.reduce("boom.toml")
+        smaller, ranking = bough.select(body, number=1)
+        self.assertEqual(smaller.num_modes, 1)
+        self.assertIn("total_cost", ranking)
+
+    def test_a_body_that_was_never_written(self):
+        body = bough.reduce("boom.toml")
+        with open("spinup.toml", encoding="utf-8") as f:
+            text = f.read().replace("duration = 20.0", "duration = 0.5")
+        self.write("short.toml", text)
+        ran = bough.System("short.toml", bodies={"boom.h5": body}).run()
+        body.save("boom.h5")
+        again = bough.System("short.toml").run("short.h5")
+        np.testing.assert_array_equal(ran["tip_deflection"], again["tip_deflection"])
+        np.testing.assert_array_equal(bough.read_results("short.h5")["tip_deflection"], ran["tip_deflection"])
+        np.testing.assert_array_equal(bough.reader.read("short.h5")["tip_deflection"], ran["tip_deflection"])
+
+
+class Errors(InFolder):
+    def test_messages_have_file_and_line(self):
+        self.write("bad.bdf", "SOL 103\nBEGIN BULK\nGRID,1,,0.,0.,x\nENDDATA\n")
+        with self.assertRaises(bough.InputError) as raised:
+            bough.reduce("bad.bdf", modes=2)
+        first = raised.exception.messages[0]
+        self.assertEqual((first.severity, first.file, first.line), ("error", "bad.bdf", 3))
+        self.assertTrue(first.what and first.id)
+        self.assertIn("bad.bdf:3: error:", str(raised.exception))
+        self.assertIsInstance(raised.exception, bough.Failure)
+
+    def test_names_that_are_slips(self):
+        with self.assertRaises(bough.InputError):
+            bough.System("nothing.toml")
+        results = bough.System.from_text(PENDULUM.format(law=EXPRESSION)).run()
+        with self.assertRaisesRegex(KeyError, "angel.*did you mean"):
+            results["/sensors/angel"]
+        with self.assertRaisesRegex(bough.InputError, "there is no controller \"lwa\""):
+            bough.System.from_text(PENDULUM.format(law=LIBRARY), controllers={"lwa": lambda t, u: 0})
+        with self.assertRaises(bough.InputError):
+            bough.modes("nothing.bdf")
+
+    def test_computations_that_fail(self):
+        text = PENDULUM.format(law=EXPRESSION).replace("-40*u1", "4e9*u1").replace("3*u2", "9e9*u2")
+        text = text.replace('integrator = "rk"', 'integrator = "rk4"\nstep = 0.01')
+        with self.assertRaises(bough.ComputationError) as raised:
+            bough.System.from_text(text).run()
+        self.assertEqual(raised.exception.exit_code, 3)
+
+
+class Law:
+    """A first-order filter of the rate, and a sum that samples count."""
+    num_states = 1
+
+    def __init__(self, gain):
+        self.gain = gain
+
+    def outputs(self, t, u, z, d):
+        return [-40 * u[0] - self.gain * (u[1] - z[0])]
+
+    def derivatives(self, t, u, z, d):
+        return (u[1] - z[0]) / 0.5
+
+    def start(self):
+        return [0.25], []
+
+
+class Sampled:
+    num_memory = 2
+    closed = 0
+
+    def outputs(self, t, u, z, d):
+        return -40 * u[0] - d[1]
+
+    def update(self, t, u, z, d):
+        return [d[0] + 1, 0.9 * d[1] + 0.1 * u[1]]
+
+    def close(self):
+        Sampled.closed += 1
+
+
+class Controllers(InFolder):
+    def run_with(self, law, more=""):
+        return bough.System.from_text(PENDULUM.format(law=LIBRARY + more), controllers={"law": law}).run()
+
+    def test_a_function_is_the_expression(self):
+        expected = bough.System.from_text(PENDULUM.format(law=EXPRESSION)).run()
+        given = self.run_with(lambda t, u: -40 * u[0] - 3 * u[1])
+        np.testing.assert_allclose(given["angle"], expected["angle"], rtol=0, atol=1e-12)
+        self.assertLess(given.energy_error, 1e-8)
+
+    def test_states(self):
+        matrices = ('type = "state_space"\ninputs = ["angle", "rate"]\nA = [[-2.0]]\nB = [[0.0, 2.0]]\n'
+                    "C = [[3.0]]\nD = [[-40.0, -3.0]]\ninitial = [0.25]")
+        expected = bough.System.from_text(PENDULUM.format(law=matrices)).run()
+        np.testing.assert_allclose(self.run_with(Law(3))["angle"], expected["angle"], rtol=0, atol=1e-9)
+
+    def test_samples(self):
+        before = Sampled.closed
+        given = self.run_with(Sampled(), "\nsample_time = 0.1")
+        law = given["/controllers/law"][:, 0]
+        self.assertLessEqual(len(np.unique(law)), 11)
+        self.assertEqual(Sampled.closed, before + 1)
+
+    def test_what_it_raises_ends_the_run_by_name(self):
+        def law(t, u):
+            if t > 0.5:
+                raise ValueError("no such thing")
+            return 0
+
+        with self.assertRaisesRegex(bough.ComputationError, "law.*t = 0.5.*no such thing"):
+            self.run_with(law)
+        with self.assertRaisesRegex(bough.ComputationError, "2 numbers, expected 1"):
+            self.run_with(lambda t, u: u)
+        with self.assertRaisesRegex(bough.InputError, "neither be called"):
+            self.run_with(3)
+
+    def test_not_a_number_is_named(self):
+        with self.assertRaisesRegex(bough.ComputationError, "law"):
+            self.run_with(lambda t, u: float("nan") if t > 0.2 else 0)
+
+
+class Runs(InFolder):
+    def test_progress_and_stop(self):
+        system = bough.System.from_text(PENDULUM.format(law=EXPRESSION))
+        seen = []
+        system.run(progress=lambda t, end: seen.append((t, end)))
+        self.assertGreaterEqual(len(seen), 100)
+        self.assertEqual(seen[-1][1], 1.0)
+        stopped = system.run(progress=lambda t, end: t < 0.3)
+        self.assertFalse(stopped.completed)
+        self.assertLess(stopped.time[-1], 0.5)
+        with self.assertRaisesRegex(ZeroDivisionError, "division"):
+            system.run(progress=lambda t, end: 1 / 0)
+
+    def test_other_threads_go_on(self):
+        system = bough.System.from_text(PENDULUM.format(law=EXPRESSION).replace("duration = 1.0", "duration = 200.0"))
+        counts = [0]
+        done = threading.Event()
+
+        def count():
+            while not done.is_set():
+                counts[0] += 1
+                done.wait(0.0005)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        system.run()
+        done.set()
+        thread.join()
+        self.assertGreater(counts[0], 3)
+
+    def test_two_systems_at_once(self):
+        expected = bough.System.from_text(PENDULUM.format(law=EXPRESSION)).run()["angle"]
+        found = [None, None]
+
+        def run(k):
+            found[k] = bough.System.from_text(PENDULUM.format(law=LIBRARY), controllers={
+                "law": lambda t, u: -40 * u[0] - 3 * u[1]}).run()["angle"]
+
+        threads = [threading.Thread(target=run, args=(k,)) for k in (0, 1)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for angle in found:
+            np.testing.assert_allclose(angle, expected, rtol=0, atol=1e-12)
+
+    def test_parameters(self):
+        text = "[parameters]\nkp = 40.0\n" + PENDULUM.format(
+            law='type = "pid"\ninputs = "angle"\nkp = "$kp"\nkd = 3.0\nrate = "rate"')
+        self.write("p.toml", text)
+        stiff = bough.System("p.toml", parameters={"kp": 400.0}).run()
+        soft = bough.System("p.toml").run()
+        self.assertLess(np.abs(stiff["angle"][-1, 0]), np.abs(soft["angle"][-1, 0]))
+
+    def test_results_are_arrays_by_name(self):
+        results = bough.System.from_text(PENDULUM.format(law=EXPRESSION)).run()
+        self.assertEqual(results["angle"].shape, (101, 1))
+        self.assertEqual(results.time.shape, (101,))
+        self.assertIn("/energy/kinetic", results)
+        self.assertNotIn("nothing", results)
+        self.assertIn("/sensors/angle", list(results))
+        self.assertTrue(results.completed)
+        self.assertIsInstance(results.describe("angle"), str)
+
+
+class LinearModels(InFolder):
+    def test_into_scipy(self):
+        from scipy import signal
+        system = bough.System.from_text(PENDULUM.format(law=EXPRESSION).replace("gravity = [0.0, 0.0, -9.81]", ""))
+        model = system.linearize(open=True)
+        inertia = 0.17 + 2 * 0.25
+        w = np.array([0.1, 1.0, 10.0])
+        plant = signal.StateSpace(model.A, model.B, model.C[:1], model.D[:1])
+        _, response = signal.freqresp(plant, w)
+        np.testing.assert_allclose(response, -1 / (inertia * w**2), rtol=1e-9)
+        closed = system.linearize()
+        expected = np.roots([inertia, 3, 40])
+        for pole in expected:
+            self.assertLess(np.abs(closed.poles - pole).min(), 1e-6)
+        closed.save("closed.h5")
+        np.testing.assert_array_equal(bough.read_linear_model("closed.h5").A, closed.A)
+        self.assertEqual(model.outputs[0].split(":")[0], "angle")
+
+
+class Verbs(InFolder):
+    def test_call_is_the_shell(self):
+        self.assertIn("reduce", bough.verbs())
+        self.assertEqual(bough.call("modes", "nothing.bdf"), 1)
+        self.assertEqual(bough.call("modes"), 2)
+
+
+class Reader(unittest.TestCase):
+    def test_does_without_the_module(self):
+        code = ("import sys, importlib.util as u; s = u.spec_from_file_location('reader', sys.argv[1]); "
+                "m = u.module_from_spec(s); s.loader.exec_module(m); print(m.File)")
+        path = os.path.join(os.path.dirname(bough.__file__), "reader.py")
+        self.assertIn("File", subprocess.run([sys.executable, "-c", code, path], capture_output=True, text=True,
+                                             check=True).stdout)
+
+    def test_every_public_name_is_said(self):
+        for name in bough.__all__:
+            with self.subTest(name), warnings.catch_warnings():
+                self.assertTrue(getattr(bough, name).__doc__ or name == "Locator")
+
+
+if __name__ == "__main__":
+    unittest.main()
