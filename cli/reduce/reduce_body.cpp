@@ -48,8 +48,8 @@ Reduced reduce_given(const records::BodySpec& spec, const stiffening::ReduceOpti
 
 Reduced reduce_body(const records::BodySpec& spec, const stiffening::ReduceOptions& options, Diagnostics& diagnostics) {
   std::vector<std::string> files;
-  auto result = spec.matrices ? reduce_given(spec, options, files, diagnostics)
-                              : reduce_deck(spec, options, files, diagnostics);
+  auto result =
+      spec.matrices ? reduce_given(spec, options, files, diagnostics) : reduce_deck(spec, options, files, diagnostics);
   if (!spec.file.empty()) files.insert(files.begin(), spec.file);
   result.body.source = calc_sources(files);
   return result;

@@ -1,5 +1,5 @@
 // Flexible bodies and modes: views of the records' own arrays.
-#include "bindings/bindings.hpp"
+#include "python/bindings/bindings.hpp"
 
 #include "cli/common/options.hpp"
 #include "cli/common/system_files.hpp"

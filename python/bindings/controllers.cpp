@@ -1,4 +1,4 @@
-#include "bindings/controllers.hpp"
+#include "python/bindings/controllers.hpp"
 
 #include <atomic>
 #include <stdexcept>
@@ -72,8 +72,8 @@ solver::ControllerFunctions make_functions(const py::object& object) {
   f.outputs = [](void* self, double t, const double* u, const double* z, const double* d, double* y) {
     const auto& law = *static_cast<Law*>(self);
     return call([&] {
-      const py::object given = law.outputs ? law.outputs(*law.make_arguments(t, u, z, d))
-                                           : law.object(t, law.read(u, law.inputs));
+      const py::object given =
+          law.outputs ? law.outputs(*law.make_arguments(t, u, z, d)) : law.object(t, law.read(u, law.inputs));
       Law::copy(given, law.num_outputs, y, "it");
     });
   };

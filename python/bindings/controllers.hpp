@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "bindings/bindings.hpp"
 #include "formats/records/system_spec.hpp"
+#include "python/bindings/bindings.hpp"
 #include "solver/control/hosted.hpp"
 
 namespace bough::python {

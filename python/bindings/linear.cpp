@@ -1,5 +1,5 @@
 // Linear models: arrays that go straight into python-control and scipy.signal.
-#include "bindings/bindings.hpp"
+#include "python/bindings/bindings.hpp"
 
 #include "formats/hdf5/linear_file.hpp"
 
@@ -37,8 +37,7 @@ void bind_linear(py::module_& m) {
       .def_property_readonly("u", show(&LinearModel::u))
       .def_readonly("residual", &LinearModel::residual, "|u'| at the operating point")
       .def_readonly("error", &LinearModel::error, "estimated, of A and C, relative to the largest entry of the row")
-      .def_property_readonly("poles",
-                             [](const LinearModel& l) { return make_complex(l.poles.real, l.poles.imag); })
+      .def_property_readonly("poles", [](const LinearModel& l) { return make_complex(l.poles.real, l.poles.imag); })
       .def_property_readonly("pole_frequency_hz",
                              [](const LinearModel& l) { return give(Eigen::VectorXd(l.poles.frequency_hz)); })
       .def_property_readonly("pole_damping",

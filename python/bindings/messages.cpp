@@ -1,5 +1,5 @@
 // Failures as exceptions with their messages, each with file and line.
-#include "bindings/bindings.hpp"
+#include "python/bindings/bindings.hpp"
 
 namespace bough::python {
 

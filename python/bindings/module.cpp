@@ -1,4 +1,4 @@
-#include "bindings/bindings.hpp"
+#include "python/bindings/bindings.hpp"
 
 #include "cli/verbs.hpp"
 

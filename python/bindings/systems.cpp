@@ -1,11 +1,11 @@
 // Systems and their runs.
 #include <atomic>
 
-#include "bindings/controllers.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/system_files.hpp"
 #include "cli/linearize/operating_point.hpp"
 #include "formats/hdf5/files.hpp"
+#include "python/bindings/controllers.hpp"
 #include "solver/integrate/memory_sink.hpp"
 #include "solver/integrate/simulate.hpp"
 #include "solver/linear/linearize.hpp"
@@ -26,8 +26,8 @@ struct Results {
   std::vector<Diagnostic> messages;
 
   std::string find(const std::string& name) const {
-    for (const auto& path : {name, "/" + name, "/sensors/" + name, "/signals/" + name, "/controllers/" + name,
-                             "/actuators/" + name}) {
+    for (const auto& path :
+         {name, "/" + name, "/sensors/" + name, "/signals/" + name, "/controllers/" + name, "/actuators/" + name}) {
       if (channels.count(path)) return path;
     }
     const auto nearest = find_nearest(name, paths);
@@ -38,8 +38,7 @@ struct Results {
 /// One sink into memory, perhaps one into a file.
 class Tee final : public records::ResultSink {
  public:
-  Tee(records::ResultSink& memory, records::ResultSink* file,
-      std::vector<std::pair<std::string, std::string>> source)
+  Tee(records::ResultSink& memory, records::ResultSink* file, std::vector<std::pair<std::string, std::string>> source)
       : memory_(memory), file_(file), source_(std::move(source)) {}
   void begin(const records::ResultsHeader& header) override {
     auto own = header;
@@ -237,8 +236,7 @@ void bind_systems(py::module_& m) {
                return false;
              }
            })
-      .def("__iter__",
-           [](py::object self) { return py::iter(py::cast(self.cast<const Results&>().paths)); })
+      .def("__iter__", [](py::object self) { return py::iter(py::cast(self.cast<const Results&>().paths)); })
       .def("__len__", [](const Results& r) { return r.paths.size(); })
       .def("keys", [](const Results& r) { return r.paths; })
       .def("describe", [](const Results& r, const std::string& name) { return r.descriptions.at(r.find(name)); })
@@ -266,8 +264,8 @@ void bind_systems(py::module_& m) {
       .def_property_readonly("bodies", &PySystem::get_bodies)
       .def_readonly("messages", &PySystem::messages)
       .def("run", &PySystem::run, py::arg("output"), py::arg("progress"))
-      .def("linearize", &PySystem::linearize, py::arg("at"), py::arg("equilibrium"), py::arg("open"),
-           py::arg("inputs"), py::arg("outputs"));
+      .def("linearize", &PySystem::linearize, py::arg("at"), py::arg("equilibrium"), py::arg("open"), py::arg("inputs"),
+           py::arg("outputs"));
 }
 
 }  // namespace bough::python

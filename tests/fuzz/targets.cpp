@@ -144,13 +144,20 @@ void read_model_matrices(const std::string& path) {
 
 const std::vector<Target>& get_targets() {
   static const std::vector<Target> targets = {
-      {"nastran", read_deck},          {"body", read_body},
-      {"system", read_system},         {"campaign", read_campaign},
-      {"hdf5", read_hdf5},             {"op4-text", read_op4_text},
-      {"op4-binary", read_op4_binary}, {"matrices", read_matrices},
-      {"mode-tables", read_mode_tables}, {"flx", read_flx},
-      {"layout", read_layout},         {"sid", read_sid},
-      {"model-input", read_model_input}, {"model-matrices", read_model_matrices},
+      {"nastran", read_deck},
+      {"body", read_body},
+      {"system", read_system},
+      {"campaign", read_campaign},
+      {"hdf5", read_hdf5},
+      {"op4-text", read_op4_text},
+      {"op4-binary", read_op4_binary},
+      {"matrices", read_matrices},
+      {"mode-tables", read_mode_tables},
+      {"flx", read_flx},
+      {"layout", read_layout},
+      {"sid", read_sid},
+      {"model-input", read_model_input},
+      {"model-matrices", read_model_matrices},
   };
   return targets;
 }

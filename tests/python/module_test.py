@@ -162,7 +162,7 @@ class Errors(InFolder):
         results = bough.System.from_text(PENDULUM.format(law=EXPRESSION)).run()
         with self.assertRaisesRegex(KeyError, "angel.*did you mean"):
             results["/sensors/angel"]
-        with self.assertRaisesRegex(bough.InputError, "there is no controller \"lwa\""):
+        with self.assertRaisesRegex(bough.InputError, 'there is no controller "lwa".*control.unknown-controller'):
             bough.System.from_text(PENDULUM.format(law=LIBRARY), controllers={"lwa": lambda t, u: 0})
         with self.assertRaises(bough.InputError):
             bough.modes("nothing.bdf")
