@@ -9,8 +9,12 @@ SINGULAR = {"modal.singular-shift", "fe.mechanism", "modal.missed-modes"}
 NO_MASS = {"modal.no-mass", "modal.no-dofs", "fe.no-free-dofs"}
 
 
+class BeyondDoubt(Exception):
+    """More is asked for than is certain."""
+
+
 def choose_expected(spectrum, eigrl):
-    """λ that the range and number of the card ask for, ascending, and the position of the first."""
+    """Positions of the λ that the range and number of the card ask for, ascending. Raises BeyondDoubt."""
     _, v1, v2, nd = (list(eigrl) + [None] * 4)[:4]
     lam = np.where(spectrum.is_zero(), 0, spectrum.lam)
     hz = np.sqrt(np.maximum(lam, 0)) / (2 * np.pi)
@@ -22,6 +26,9 @@ def choose_expected(spectrum, eigrl):
     if v2 is None and nd is None:
         nd = 1
     places = np.flatnonzero(inside)
+    has_enough = nd is not None and len(places) >= nd
+    if spectrum.is_cut and not has_enough and not (v2 is not None and len(hz) and hz[-1] > v2):
+        raise BeyondDoubt
     return places if nd is None else places[:nd]
 
 
@@ -40,7 +47,11 @@ def judge(ran, found, truth, spectrum, eigrl):
     if spectrum is None:
         return None
     if spectrum.grey is None:
-        wrong = compare(lam, spectrum, eigrl)
+        try:
+            wrong = compare(lam, spectrum, eigrl)
+        except BeyondDoubt:
+            spectrum.grey = "the rank of the mass"
+            wrong = None
         if wrong:
             return wrong
     return judge_shapes(lam, found, truth)
