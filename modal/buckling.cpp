@@ -21,13 +21,14 @@ using detail::Roots;
 /// -K_G φ = θ K φ by descending |θ|; λ = 1/θ.
 class BucklingModes {
  public:
-  BucklingModes(const fe::Model& model, const fe::AppliedLoad& load, const VectorXd& u_g, const EigenOptions& options,
+  BucklingModes(const fe::System& system, const fe::AppliedLoad& load, const VectorXd& u_g, const EigenOptions& options,
                 Diagnostics& diagnostics, const fe::InitialForces* initial)
-      : model_(model),
+      : model_(system.model),
         options_(options),
         diagnostics_(diagnostics),
-        pencil_(model),
-        K_G_(fe::assemble_geometric_stiffness(model, fe::DofSet::Free, load, u_g, initial)) {}
+        pencil_(system),
+        K_G_(fe::assemble_geometric_stiffness(model_, fe::DofSet::Free, load, u_g, initial)),
+        factor_(options.factor ? options.factor : system.factor) {}
 
   EigenPairs solve();
 
@@ -51,7 +52,8 @@ class BucklingModes {
   detail::Pencil pencil_;
   fe::PetscMat K_G_, signed_K_G_;
   Side signed_as_ = Both;
-  std::optional<fe::SymmetricFactor> factor_;  ///< of K
+  std::optional<fe::SymmetricFactor> own_factor_;
+  const fe::SymmetricFactor* factor_;  ///< of K
   double largest_theta_ = 0;
   int round_ = 0, count_ = -1;
 };
@@ -65,7 +67,7 @@ void BucklingModes::add_roots(Side side, int number, Roots& roots) {
     signed_K_G_ = fe::scale(K_G_.get(), -sign);
     signed_as_ = sign;
   }
-  if (!factor_) factor_.emplace(pencil_.K.get(), false);
+  if (!factor_) factor_ = &own_factor_.emplace(pencil_.K.get(), false);
   if (factor_->is_singular()) detail::throw_singular(pencil_, 0);
   detail::KrylovProblem problem;
   problem.A = signed_K_G_.get();
@@ -208,16 +210,27 @@ EigenPairs BucklingModes::solve() {
   return pairs;
 }
 
+void demand_dofs(const fe::Model& model) {
+  if (model.num_fdofs() == 0)
+    throw ComputationError("modal.no-dofs", {}, "the model has no free dof", "check its SPC sets and rigid elements");
+}
+
 }  // namespace
 
 EigenPairs calc_buckling_modes(const fe::Model& model, const fe::AppliedLoad& load, const VectorXd& u_g,
                                const EigenOptions& options, Diagnostics& diagnostics,
                                const fe::InitialForces* initial) {
-  BOUGH_DEMAND(u_g.size() == model.num_gdofs());
-  if (model.num_fdofs() == 0)
-    throw ComputationError("modal.no-dofs", {}, "the model has no free dof", "check its SPC sets and rigid elements");
+  demand_dofs(model);
+  return calc_buckling_modes(fe::System(model), load, u_g, options, diagnostics, initial);
+}
+
+EigenPairs calc_buckling_modes(const fe::System& system, const fe::AppliedLoad& load, const VectorXd& u_g,
+                               const EigenOptions& options, Diagnostics& diagnostics,
+                               const fe::InitialForces* initial) {
+  BOUGH_DEMAND(u_g.size() == system.model.num_gdofs());
+  demand_dofs(system.model);
   detail::initialize_slepc();
-  return BucklingModes(model, load, u_g, options, diagnostics, initial).solve();
+  return BucklingModes(system, load, u_g, options, diagnostics, initial).solve();
 }
 
 }  // namespace bough::modal

@@ -14,18 +14,18 @@ using detail::NormalModes;
 
 /// From K shifted by a little M; where that leaves a doubt and there are motions without strain, with these known
 /// before and supports in K in their place.
-Answer find_answer(const fe::Model& model, const EigenOptions& options) {
+Answer find_answer(const fe::System& system, const EigenOptions& options) {
   std::optional<Answer> answer;
   std::optional<ComputationError> refusal;
   try {
-    answer = NormalModes(model, options, detail::find_rigid_motions).solve();
+    answer = NormalModes(system, options, detail::find_rigid_motions).solve();
     if (answer->is_clean()) return std::move(*answer);
   } catch (const ComputationError& error) {
     if (error.items().front().id == "modal.no-mass") throw;
     refusal = error;
   }
   try {
-    NormalModes again(model, options, detail::find_null_motions);
+    NormalModes again(system, options, detail::find_null_motions);
     if (again.knows_motions()) {
       Answer other = again.solve();
       const bool is_better = !answer || !answer->is_sound || other.worst() < answer->worst();
@@ -61,17 +61,26 @@ constexpr int most_whole = 1000;
   throw ComputationError("modal.no-dofs", {}, what, advice);
 }
 
-}  // namespace
-
-EigenPairs calc_normal_modes(const fe::Model& model, const EigenOptions& options, Diagnostics& diagnostics) {
+void check_request(const fe::Model& model, const EigenOptions& options) {
   if (model.num_fdofs() == 0) refuse_held_model(model);
   if (model.num_fdofs() > most_whole && options.num_modes > model.num_fdofs() && !options.max_hz)
     throw InputError("modal.more-than-dofs", {},
                      std::to_string(options.num_modes) + " modes are asked for, the model has " +
                          std::to_string(model.num_fdofs()) + " free dofs",
                      "ask for as many as the motion needs: all of them would take a dense matrix of every dof");
+}
+
+}  // namespace
+
+EigenPairs calc_normal_modes(const fe::Model& model, const EigenOptions& options, Diagnostics& diagnostics) {
+  check_request(model, options);
+  return calc_normal_modes(fe::System(model), options, diagnostics);
+}
+
+EigenPairs calc_normal_modes(const fe::System& system, const EigenOptions& options, Diagnostics& diagnostics) {
+  check_request(system.model, options);
   detail::initialize_slepc();
-  auto answer = find_answer(model, options);
+  auto answer = find_answer(system, options);
   for (const auto& item : answer.said.items()) diagnostics.add(item);
   fe::check_residuals(answer.pairs.residual, "mode", diagnostics);
   return std::move(answer.pairs);

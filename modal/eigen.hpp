@@ -3,8 +3,7 @@
 #include <functional>
 #include <optional>
 
-#include "fe/linear/factor.hpp"
-#include "fe/matrices/assembly.hpp"
+#include "fe/matrices/system.hpp"
 #include "fe/model/temperatures.hpp"
 
 namespace bough::modal {
@@ -18,7 +17,7 @@ struct EigenOptions {
   double tolerance = 1e-12;
   bool check_inertia = true;  ///< Sylvester count: no mode missed below the highest
   std::function<void(int converged, int wanted)> progress;
-  const fe::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K on the f-set, where the caller has it: saves one
+  const fe::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K of the system, where the caller has it: saves one
 };
 
 /// K φ = λ M φ, φᵀMφ = 1, ascending λ. Sign rule: the component of largest magnitude (first by g-dof among those
@@ -38,12 +37,18 @@ struct EigenPairs {
 /// Repeated roots get a basis fixed by the model alone (canonical.hpp). Warnings: modal.fewer-modes, modal.cut-root,
 /// modal.massless-motion, modal.empty-range, modal.roundoff. Throws ComputationError modal.no-dofs, modal.no-mass,
 /// modal.singular-shift, modal.missed-modes.
+EigenPairs calc_normal_modes(const fe::System& system, const EigenOptions& options, Diagnostics& diagnostics);
+/// The same with matrices that nobody else needs.
 EigenPairs calc_normal_modes(const fe::Model& model, const EigenOptions& options, Diagnostics& diagnostics);
 
 /// (K + λ K_G) φ = 0, K_G of a load and its static displacement u_g: load factors λ nearest zero, by magnitude; φᵀKφ
 /// = 1. Solved as -K_G φ = θ K φ, λ = 1/θ, with K's factor as inner product. min_hz, max_hz bound the (signed) load
 /// factor here; residual is |Kφ + λK_Gφ| / |Kφ|. `initial`: heated elements, whose forces λ multiplies too. Throws
 /// ComputationError modal.buckling-free when K is singular in a rigid motion.
+EigenPairs calc_buckling_modes(const fe::System& system, const fe::AppliedLoad& load, const VectorXd& u_g,
+                               const EigenOptions& options, Diagnostics& diagnostics,
+                               const fe::InitialForces* initial = nullptr);
+/// The same with matrices that nobody else needs.
 EigenPairs calc_buckling_modes(const fe::Model& model, const fe::AppliedLoad& load, const VectorXd& u_g,
                                const EigenOptions& options, Diagnostics& diagnostics,
                                const fe::InitialForces* initial = nullptr);

@@ -5,7 +5,7 @@
 
 #include "fe/linear/blas.hpp"
 #include "fe/linear/low_rank_sum.hpp"
-#include "fe/matrices/assembly.hpp"
+#include "fe/matrices/system.hpp"
 #include "modal/canonical.hpp"
 
 namespace bough::modal::detail {
@@ -39,6 +39,7 @@ void NormalModes::add_supports() {
 /// much of the motion is in it, so nothing else changes.
 void NormalModes::hold_massless(Diagnostics& said) {
   if (rigid_.held.empty()) return;
+  pencil_.K = fe::copy(pencil_.K.get());  // the system's own stays as it is
   springs_ = add_springs(rigid_.held, pencil_.K_diagonal, pencil_.K.get());
   std::string where;
   for (const int f : rigid_.held) where += (where.empty() ? "" : ", ") + describe(pencil_.model, f);
@@ -67,7 +68,7 @@ void NormalModes::choose_range(KrylovMethod method) {
   problem.supported = supported_.get();
   problem.is_complete = rigid_.is_complete;
   // hold_massless() puts springs into K that the caller's factor has not.
-  if (rigid_.held.empty()) problem.factor = options_.factor;
+  if (rigid_.held.empty()) problem.factor = factor_;
   problem.tolerance = options_.tolerance;
   problem.method = method;
   problem.progress = options_.progress;

@@ -29,8 +29,11 @@ struct Answer {
 class NormalModes {
  public:
   using FindRigid = RigidMotions (*)(const Pencil&);
-  NormalModes(const fe::Model& model, const EigenOptions& options, FindRigid find_rigid)
-      : options_(options), pencil_(model), rigid_(find_rigid(pencil_)) {}
+  NormalModes(const fe::System& system, const EigenOptions& options, FindRigid find_rigid)
+      : options_(options),
+        factor_(options.factor ? options.factor : system.factor),
+        pencil_(system),
+        rigid_(find_rigid(pencil_)) {}
 
   Answer solve();
   bool has_supports() const { return !rigid_.supports.empty(); }
@@ -55,6 +58,7 @@ class NormalModes {
   EigenPairs make_pairs(int cut, int count, Diagnostics& said);
 
   const EigenOptions& options_;
+  const fe::SymmetricFactor* factor_;  ///< LLᵀ of K where there is one
   Pencil pencil_;
   RigidMotions rigid_;
   std::vector<std::pair<int, double>> springs_;  ///< f-dofs of the massless motions, held by them in K

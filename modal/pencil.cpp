@@ -99,12 +99,12 @@ MatrixXd calc_polynomials(const fe::Model& model) {
 
 }  // namespace
 
-Pencil::Pencil(const fe::Model& model_in)
-    : model(model_in),
-      K(fe::assemble_stiffness(model, fe::DofSet::Free)),
-      M(fe::assemble_mass(model, fe::DofSet::Free, model.mass_kind())),
-      K_diagonal(fe::get_diagonal(K.get()).cwiseAbs()),
-      M_diagonal(fe::get_diagonal(M.get())) {}
+Pencil::Pencil(const fe::System& system)
+    : model(system.model),
+      K(fe::share(system.K)),
+      M(fe::share(system.M)),
+      K_diagonal(system.K_diagonal),
+      M_diagonal(system.M_diagonal) {}
 
 MatrixXd Pencil::calc_K_times(const MatrixXd& X) const { return fe::multiply(K.get(), X); }
 

@@ -3,16 +3,17 @@
 #include <string>
 #include <vector>
 
-#include "fe/matrices/assembly.hpp"
+#include "fe/matrices/system.hpp"
 
 namespace bough::modal::detail {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The f-set pencil; products with vectors replicated on every rank.
+/// K and M of a system, shared with it until a copy takes the place of one; products with vectors replicated on every
+/// rank.
 struct Pencil {
-  explicit Pencil(const fe::Model& model_in);
+  explicit Pencil(const fe::System& system);
 
   const fe::Model& model;
   fe::PetscMat K, M;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 
-#include "fe/matrices/assembly.hpp"
+#include "fe/matrices/system.hpp"
 #include "fe/statics/preload.hpp"
 
 namespace bough::modal {
@@ -89,7 +89,7 @@ records::Subcase get_preloaded(const records::Deck& deck, const BucklingCases& c
 }
 
 EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases, fe::ModelOptions model_options,
-                          const fe::Model& model, const EigenOptions& eigen, Diagnostics& diagnostics) {
+                          const fe::Model& model, EigenOptions eigen, Diagnostics& diagnostics) {
   // The static subcase may be held in another way, as for antisymmetric buckling under a symmetric load.
   std::optional<fe::Model> own;
   const auto& b = cases.buckling;
@@ -105,15 +105,19 @@ EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases,
   const fe::Model& statics = own ? *own : model;
   auto load = fe::calc_static_load(statics, deck, cases.statics, diagnostics);
   diagnostics.throw_if_errors();
-  const auto K = fe::assemble_stiffness(statics, fe::DofSet::Free);
   const auto relief = fe::read_inertia_relief(deck, diagnostics);
   auto held = fe::choose_suport(statics, deck, relief, diagnostics);
   diagnostics.throw_if_errors();
-  const fe::StaticSolver solver(statics, K, held);
+  std::optional<fe::System> system;
+  if (!own && model.num_fdofs() > 0) system.emplace(model);
+  const fe::StaticSolver solver(statics, system ? fe::share(system->K) : fe::get_stiffness(statics), held);
   const auto suport = fe::calc_suport(statics, solver, std::move(held), relief, diagnostics);
   fe::add_relief(statics, suport, load);
   const VectorXd u = fe::solve_static_case(statics, solver, load, suport).displacement;
-  if (!own) return calc_buckling_modes(model, load, u, eigen, diagnostics, &load.initial);
+  if (system) {
+    eigen.factor = solver.find_definite_factor();
+    return calc_buckling_modes(*system, load, u, eigen, diagnostics, &load.initial);
+  }
   const auto initial = fe::calc_thermal(model, deck, cases.statics.temperature, diagnostics);
   return calc_buckling_modes(model, load, u, eigen, diagnostics, &initial);
 }

@@ -31,6 +31,6 @@ records::Subcase get_preloaded(const records::Deck& deck, const BucklingCases& c
 /// (and `model_options` too); with V1 and V2 (min_hz,
 /// max_hz of `eigen`) as many between them, though others are nearer to zero.
 EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases, fe::ModelOptions model_options,
-                          const fe::Model& model, const EigenOptions& eigen, Diagnostics& diagnostics);
+                          const fe::Model& model, EigenOptions eigen, Diagnostics& diagnostics);
 
 }  // namespace bough::modal

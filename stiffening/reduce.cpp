@@ -127,14 +127,14 @@ FlexBody Reduction::run() {
 
   // The factor first: of a mechanism it names the dofs, which the modes could not.
   report("static factorization");
-  const fe::PetscMat K = fe::assemble_stiffness(model, fe::DofSet::Free);
-  const auto solve = make_solver(model, K);
+  const fe::System system(model);
+  const auto solve = make_solver(system);
   make_loads(model);
   report("modes");
   if (options_.modes)
-    set_given_modes(model);
+    set_given_modes(system);
   else
-    set_modes(model, solve);
+    set_modes(system, solve);
   set_nodes(model);
   report("mass integrals");
   set_integrals(model);

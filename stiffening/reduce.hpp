@@ -26,8 +26,8 @@ std::vector<MatrixXd> calc_generalized_geometric_stiffness(const fe::Model& mode
 
 struct ReduceOptions {
   std::function<void(const std::string& stage)> progress;
-  fe::ElementFactory elements;                      ///< instead of the deck's own: matrices that are given
-  std::function<MatrixXd(const fe::Model&)> modes;  ///< num_gdofs x n in basic, instead of solving for them
+  fe::ElementFactory elements;                       ///< instead of the deck's own: matrices that are given
+  std::function<MatrixXd(const fe::System&)> modes;  ///< num_gdofs x n in basic, instead of solving for them
 };
 
 /// The whole preprocessing: model, modes, integrals, F_I, K_G1, K_G2 -> FlexBody. Runs on every rank; the record is

@@ -77,19 +77,6 @@ void Reduction::report_partial_rotation(const fe::Model& model) {
                            "interface grid " + std::to_string(id) + " has no stiffness in component(s) " + axes +
                                ": a hinge or moment there finds none either",
                            "tie it by an RBE2 or RBE3 to other grids, or see that nothing turns it so");
-    const int index = model.find_node(id);
-    const auto has_own_drilling = [index](const auto& element) {
-      return (element->card() == "CQUADR" || element->card() == "CTRIAR") &&
-             std::find(element->nodes().begin(), element->nodes().end(), index) != element->nodes().end();
-    };
-    const auto found = std::find_if(model.elements().begin(), model.elements().end(), has_own_drilling);
-    if (found != model.elements().end())
-      diagnostics_.warning("reduce.drilling-moment", where(),
-                           "interface grid " + std::to_string(id) + " is one of " + (*found)->card() + " " +
-                               std::to_string((*found)->id()) +
-                               ": the second order of a moment about its normal is not in K_G2",
-                           "tie the grid by an RBE3 to those around it, use CQUAD4 or CTRIA3 there, or write "
-                           "interface_moments = false");
   }
 }
 
@@ -124,13 +111,14 @@ bool Reduction::is_on_dependent_node(const fe::Model& model) const {
 }
 
 /// A deck that leaves a mechanism is wrong input here: what the factorization says, with what a body needs.
-StaticSolve Reduction::make_solver(const fe::Model& model, const fe::PetscMat& K) {
+StaticSolve Reduction::make_solver(const fe::System& system) {
+  const fe::Model& model = system.model;
   try {
     if (is_on_dependent_node(model)) {
-      const auto fixed = std::make_shared<modal::bases::FixedInterface>(model, spec_.frame_nodes, diagnostics_);
+      const auto fixed = std::make_shared<modal::bases::FixedInterface>(system, spec_.frame_nodes, diagnostics_);
       return [fixed](const MatrixXd& F) { return fixed->solve(F); };
     }
-    const auto solver = std::make_shared<fe::StaticSolver>(model, K, choose_support(model));
+    const auto solver = std::make_shared<fe::StaticSolver>(model, system.K, choose_support(model));
     factor_ = solver->find_definite_factor();
     return [solver](const MatrixXd& F) { return solver->solve(F); };
   } catch (const ComputationError& error) {

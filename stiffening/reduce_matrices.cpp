@@ -55,8 +55,8 @@ class MatrixReduction {
   BodySpec make_spec() const;
   fe::ElementList make_elements(const fe::NodeTable& nodes);
   SparseRows place(const PointTable& points, const GivenMatrix& matrix, SparseRows* placement = nullptr);
-  MatrixXd calc_modes(const fe::Model& model);
-  void warn_of_strangers(const fe::Model& model, const MatrixXd& Phi, const std::vector<int>& elastic);
+  MatrixXd calc_modes(const fe::System& system);
+  void warn_of_strangers(const fe::System& system, const MatrixXd& Phi, const std::vector<int>& elastic);
   void check_integrals();
   void set_geometric(FlexBody& body);
   void add_locator(FlexBody& body, const GivenGeometric& g, const VectorXd& F);
@@ -162,7 +162,8 @@ fe::ElementList MatrixReduction::make_elements(const fe::NodeTable& nodes) {
   return list;
 }
 
-MatrixXd MatrixReduction::calc_modes(const fe::Model& model) {
+MatrixXd MatrixReduction::calc_modes(const fe::System& system) {
+  const fe::Model& model = system.model;
   MatrixXd Phi = P_modes_ * MatrixXd(given_.modes.Phi.values);
   // Rigid motions of a free body leave no strain; its frame has them already.
   const VectorXd diagonal = fe::get_diagonal(fe::assemble_stiffness(model, fe::DofSet::Global).get()).cwiseAbs();
@@ -178,14 +179,16 @@ MatrixXd MatrixReduction::calc_modes(const fe::Model& model) {
                           std::to_string(Phi.cols()) + " modes of " + given_.modes.Phi.label +
                           " have no strain and are left out");
   if (given_.modes.eigenvalue.size() == Phi.cols()) compare_eigenvalues(model, given_.modes, Phi, diagnostics_);
-  warn_of_strangers(model, Phi, elastic);
+  warn_of_strangers(system, Phi, elastic);
   return Phi(Eigen::all, elastic);
 }
 
 /// One step of inverse iteration: x = (λ + σ)(K + σ M)⁻¹ M x of a mode of K and M, λ its Rayleigh quotient. Measured in
 /// M, so that the last digits of printed shapes, which strain a fine mesh as much as the mode itself, do not count.
-void MatrixReduction::warn_of_strangers(const fe::Model& model, const MatrixXd& Phi, const std::vector<int>& elastic) {
+void MatrixReduction::warn_of_strangers(const fe::System& system, const MatrixXd& Phi,
+                                        const std::vector<int>& elastic) {
   constexpr double most = 1e-3;
+  const fe::Model& model = system.model;
   const auto kind = model.mass_kind();
   const MatrixXd X = Phi(Eigen::all, elastic), M_X = fe::calc_mass_times(model, kind, X);
   const VectorXd mass = X.cwiseProduct(M_X).colwise().sum(),
@@ -193,10 +196,8 @@ void MatrixReduction::warn_of_strangers(const fe::Model& model, const MatrixXd& 
   if (X.cols() == 0 || !(mass.minCoeff() > 0) || model.num_fdofs() == 0) return;  // reduce.no-modal-mass says it
   const VectorXd lambda = stiffness.cwiseQuotient(mass);
   const double shift = lambda.minCoeff();
-  const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
-  const auto M = fe::assemble_mass(model, fe::DofSet::Free, kind);
-  fe::check_petsc(MatAXPY(K.get(), shift, M.get(), DIFFERENT_NONZERO_PATTERN));
-  const fe::SymmetricFactor factor(K.get(), true, fe::FactorMethod::Pivoting);
+  const fe::PetscMat shifted = fe::add(system.K.get(), shift, system.M.get());
+  const fe::SymmetricFactor factor(shifted.get(), true, fe::FactorMethod::Pivoting);
   if (factor.is_singular()) return;
   const MatrixXd f = model.T().transpose() * M_X;
   const MatrixXd E = X - model.T() * (factor.solve(f) * (lambda.array() + shift).matrix().asDiagonal());
@@ -310,7 +311,7 @@ FlexBody MatrixReduction::run() {
   check_spec();
   ReduceOptions options = options_;
   options.elements = [this](const Deck&, const fe::NodeTable& nodes, Diagnostics&) { return make_elements(nodes); };
-  if (!given_.modes.Phi.empty()) options.modes = [this](const fe::Model& model) { return calc_modes(model); };
+  if (!given_.modes.Phi.empty()) options.modes = [this](const fe::System& system) { return calc_modes(system); };
   FlexBody body = reduce(keep_points(deck_, given_), make_spec(), options, diagnostics_);
   (is_lumped_ ? body.consistent : body.lumped) = {};
   body.integrals_method = spec_.integrals;

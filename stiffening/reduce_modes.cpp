@@ -42,12 +42,13 @@ void Reduction::check_rigid(const modal::bases::Basis& basis) {
   diagnostics_.throw_if_errors();
 }
 
-void Reduction::set_modes(const fe::Model& model, const StaticSolve& solve) {
+void Reduction::set_modes(const fe::System& system, const StaticSolve& solve) {
+  const fe::Model& model = system.model;
   auto options = make_basis_options(spec_);
   options.factor = factor_;
   std::vector<std::string> names;
   options.residual_loads = collect_residual_loads(model, spec_, loads_, names);
-  auto basis = modal::bases::calc_basis(model, options, solve, diagnostics_);
+  auto basis = modal::bases::calc_basis(system, options, solve, diagnostics_);
   check_rigid(basis);
   std::string unused;
   for (const int i : basis.unused_loads) unused += (unused.empty() ? "" : ", ") + names[static_cast<std::size_t>(i)];
@@ -79,8 +80,9 @@ void Reduction::set_modes(const fe::Model& model, const StaticSolve& solve) {
 }
 
 /// Any basis: what is not diagonal in ΦᵀMΦ and ΦᵀKΦ stays.
-void Reduction::set_given_modes(const fe::Model& model) {
-  Phi_ = options_.modes(model);
+void Reduction::set_given_modes(const fe::System& system) {
+  const fe::Model& model = system.model;
+  Phi_ = options_.modes(system);
   const auto available = static_cast<int>(Phi_.cols());
   auto columns = choose_columns(available, "the file gives ");
   if (spec_.select.empty() && spec_.num_modes > 0 && spec_.num_modes < available)

@@ -32,8 +32,8 @@ class Reduction {
   void set_rigid_part(const fe::Model& model);
   std::vector<int> choose_columns(int available, const std::string& whose);
   void check_rigid(const modal::bases::Basis& basis);
-  void set_modes(const fe::Model& model, const modal::bases::StaticSolve& solve);
-  void set_given_modes(const fe::Model& model);
+  void set_modes(const fe::System& system, const modal::bases::StaticSolve& solve);
+  void set_given_modes(const fe::System& system);
   void set_damping(const fe::Model& model, const modal::bases::Basis& basis);
   void add_dampers(const fe::Model& model);
   void set_nodes(const fe::Model& model);
@@ -47,7 +47,7 @@ class Reduction {
   void set_resultants(const fe::Model& model, const MatrixXd& F_ext);
   std::vector<int> choose_support(const fe::Model& model);
   bool is_on_dependent_node(const fe::Model& model) const;
-  modal::bases::StaticSolve make_solver(const fe::Model& model, const fe::PetscMat& K);
+  modal::bases::StaticSolve make_solver(const fe::System& system);
   fe::Model build_model();
   void add_mechanism_error(const std::string& what);
 

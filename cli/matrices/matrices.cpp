@@ -3,15 +3,18 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "cli/common/console.hpp"
 #include "cli/common/model_options.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/ranks.hpp"
+#include "cli/common/subcase_failures.hpp"
 #include "cli/common/text_file.hpp"
 #include "fe/loads/second_order.hpp"
 #include "fe/loads/wide_links.hpp"
+#include "fe/matrices/system.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/matrices/matrix_market.hpp"
@@ -55,24 +58,44 @@ std::vector<LoadCase> choose_load_cases(const records::Deck& deck, const Matrice
   return cases;
 }
 
-fe::PetscMat calc_geometric(const records::Deck& deck, const MatricesOptions& options, const LoadCase& load_case,
-                            Diagnostics& diagnostics) {
-  auto model_options = make_model_options(options.model);
-  model_options.subcase = load_case.subcase;
-  model_options.uses_enforced = true;
-  say_first(diagnostics, [&] { model_options.prestress = calc_prestress(deck, model_options, diagnostics); });
-  const auto model = fe::Model::build(deck, model_options, diagnostics);
-  records::Subcase subcase;
-  subcase.load = load_case.load;
-  subcase.temperature = load_case.temperature;
-  const auto load = fe::calc_static_load(model, deck, subcase, diagnostics);
-  fe::report_wide_links(deck, diagnostics);
-  diagnostics.throw_if_errors();
-  const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
-  const fe::StaticSolver solver(model, K);
-  return fe::assemble_geometric_stiffness(model, fe::DofSet::Global, load,
-                                          fe::solve_static_case(model, solver, load).displacement, &load.initial);
-}
+/// K_G of one load case after the other; model and factor stay while the subcase does.
+class GeometricStiffness {
+ public:
+  /// `model`: of the subcase that --subcase names, else the first.
+  GeometricStiffness(const records::Deck& deck, const MatricesOptions& options, const fe::Model& model)
+      : deck_(deck), options_(options), model_(&model) {}
+
+  fe::PetscMat calc(const LoadCase& load_case, Diagnostics& diagnostics) {
+    if (load_case.subcase != 0 && load_case.subcase != model_->subcase().id) change_to(load_case.subcase, diagnostics);
+    records::Subcase subcase;
+    subcase.load = load_case.load;
+    subcase.temperature = load_case.temperature;
+    const auto load = fe::calc_static_load(*model_, deck_, subcase, diagnostics);
+    fe::report_wide_links(deck_, diagnostics);
+    diagnostics.throw_if_errors();
+    if (!solver_) solver_.emplace(*model_, fe::get_stiffness(*model_));
+    return fe::assemble_geometric_stiffness(*model_, fe::DofSet::Global, load,
+                                            fe::solve_static_case(*model_, *solver_, load).displacement, &load.initial);
+  }
+
+ private:
+  void change_to(int subcase, Diagnostics& diagnostics) {
+    auto model_options = make_model_options(options_.model);
+    model_options.subcase = subcase;
+    model_options.uses_enforced = true;
+    say_first(diagnostics, [&] { model_options.prestress = calc_prestress(deck_, model_options, diagnostics); });
+    solver_.reset();
+    Diagnostics own;  // what the other model said too is not said again
+    model_ = &own_.emplace(fe::Model::build(deck_, model_options, own));
+    add_new(own, diagnostics);
+  }
+
+  const records::Deck& deck_;
+  const MatricesOptions& options_;
+  const fe::Model* model_;
+  std::optional<fe::Model> own_;
+  std::optional<fe::StaticSolver> solver_;
+};
 
 /// "boom.mtx" for K gives "boom.K.mtx".
 std::string insert_name(const std::string& path, const std::string& name) {
@@ -154,9 +177,9 @@ int run_matrices(const MatricesOptions& options) {
   result.K = fe::gather_sparse(fe::assemble_stiffness(model, fe::DofSet::Global));
   result.M = fe::gather_sparse(fe::assemble_mass(model, fe::DofSet::Global, model.mass_kind()));
   if (fe::has_damping(model)) result.B = fe::gather_sparse(fe::assemble_damping(model, fe::DofSet::Global));
+  GeometricStiffness geometric(deck, options, model);
   for (const auto& load_case : choose_load_cases(deck, options))
-    result.K_G.emplace_back(load_case.get_name(),
-                            fe::gather_sparse(calc_geometric(deck, options, load_case, diagnostics)));
+    result.K_G.emplace_back(load_case.get_name(), fe::gather_sparse(geometric.calc(load_case, diagnostics)));
   console.print(diagnostics);
   if (!console.is_root()) return kSuccess;
 

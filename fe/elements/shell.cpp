@@ -194,9 +194,19 @@ Shell::ForceMap<N> Shell::calc_force_map(const ShellFields<N>& fields) const {
       map.template block<3, 1>(kNumForces * q, kPlate<N>[i]) = N_k.col(i);
       map.template block<3, 1>(kNumForces * q + 3, kPlate<N>[i]) = M_k.col(i);
       map.template block<2, 1>(kNumForces * q + 6, kPlate<N>[i]) = fields.plate.force[q].col(i);
-      if (kind_ == MembraneKind::Plain)
+      if (!fields.membrane.has_rotations)
         map(kNumForces * N + q, kMembrane<N>[i]) = c.drilling * fields.membrane.spring[q][i];
     }
+  }
+  for (int k = 0; k < N && fields.membrane.has_rotations; ++k) {
+    auto row = map.row(kNumForces * N + k);
+    for (int q = 0; q < N; ++q)
+      row += fields.points[q].weight * fields.membrane.strain[q].col(3 * k + 2).transpose() *
+             map.template middleRows<3>(kNumForces * q);
+    for (int s = 0; s < fields.membrane.num_springs; ++s)
+      for (int i = 0; i < 3 * N; ++i)
+        row[kMembrane<N>[i]] +=
+            fields.membrane.spring_weight[s] * fields.membrane.spring[s][3 * k + 2] * fields.membrane.spring[s][i];
   }
   to_nodes<N>(map);
   for (int i = 0; i < 2 * N; ++i)

@@ -39,8 +39,9 @@ class Shell final : public Element {
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
   bool carries_turning_mass(MassKind kind) const override;
   bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
-  /// Nx Ny Nxy Mx My Mxy Qx Qy at each quadrature point, in element axes: M = ∫σ z dz, Q = ∫τ dz. Then what the
-  /// drilling penalty holds at each, a moment per area about the normal, which is not printed.
+  /// Nx Ny Nxy Mx My Mxy Qx Qy at each quadrature point, in element axes: M = ∫σ z dz, Q = ∫τ dz. Then, not printed,
+  /// what the drilling penalty holds at each, a moment per area about the normal; of a membrane with drilling rotations
+  /// the moment about the normal of each corner.
   int num_internal_forces() const override { return (kNumForces + 1) * num_points(); }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
   std::vector<std::string> internal_force_names() const override;

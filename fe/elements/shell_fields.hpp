@@ -61,6 +61,7 @@ enum class MembraneKind { Plain, Drilling };
 template <int N>
 struct Membrane {
   std::array<Strains<N>, N> strain;
+  bool has_rotations = false;                 ///< the corners' θz strain it
   bool coupled = false;                       ///< strain_of_plate counts
   std::array<Strains<N>, N> strain_of_plate;  ///< strain of the inner modes by curvature where the section couples
   /// Strains of the four inner modes, condensed into `strain`, and their own stiffness; only where has_modes.

@@ -14,10 +14,25 @@ struct Shell::SecondOrder {
   Eigen::Matrix<double, N, N> NN = Eigen::Matrix<double, N, N>::Zero(), MM = NN;
   Eigen::Matrix<double, 3, N> on_slope;                                       ///< Nxx Nyy Nxy dA of each point
   Eigen::Matrix<double, N, 1> on_side = Eigen::Matrix<double, N, 1>::Zero();  ///< T: works on its mean shear
-  Eigen::Matrix<double, N, 1> on_drilling;                                    ///< moment about z of each point
+  Eigen::Matrix<double, N, 1> on_drilling;  ///< moments about z of triads against the surface
   Eigen::Matrix<double, 2, N> turn = Eigen::Matrix<double, 2, N>::Zero();  ///< factor of (θx, θy) θz / 2 of each node
   Eigen::Matrix<double, N, 1> on_arm = Eigen::Matrix<double, N, 1>::Zero();  ///< factor of -½ (θx² + θy²) of each node
 };
+
+namespace {
+
+/// Where moments about z act: shape functions of the triad, and where the surface turns. Of the drilling penalty at the
+/// points; of drilling rotations at the corners, against the surface in the middle, which their springs compare.
+template <int N>
+std::array<Point<N>, N> list_drilling(const ShellFields<N>& fields, const Corners<N>& xy) {
+  if (!fields.membrane.has_rotations) return fields.points;
+  std::array<Point<N>, N> result;
+  result.fill(calc_centre<N>(xy));
+  for (int i = 0; i < N; ++i) result[static_cast<std::size_t>(i)].shape = Eigen::Matrix<double, N, 1>::Unit(i);
+  return result;
+}
+
+}  // namespace
 
 template <int N>
 Shell::SecondOrder<N> Shell::calc_second_order(const ShellFields<N>& fields, const double* force) const {
@@ -36,16 +51,21 @@ Shell::SecondOrder<N> Shell::calc_second_order(const ShellFields<N>& fields, con
     s.MM.noalias() += grad.transpose() * m_grad;
     s.turn += m_grad;
     s.on_slope.col(q) = f.template head<3>();
-    s.on_drilling[q] = point.weight * force[kNumForces * N + q];
+    s.on_drilling[q] = (fields.membrane.has_rotations ? 1 : point.weight) * force[kNumForces * N + q];
     for (int k = 0; k < N; ++k)
       s.on_side[k] +=
           plate.side_bending[k][q].dot(f.template segment<3>(3)) + plate.side_shear[k][q].dot(f.template tail<2>());
     if (!has_arms_) continue;
     const Row<N> on_membrane = f.template head<3>().transpose() * fields.membrane.strain[q];
     for (int i = 0; i < N; ++i) arm_force.col(i) += on_membrane.template segment<2>(3 * i);
-    if (kind_ != MembraneKind::Plain) continue;
+    if (fields.membrane.has_rotations) continue;
     for (int i = 0; i < N; ++i)
       arm_force.col(i) += s.on_drilling[q] * fields.membrane.spring[q].template segment<2>(3 * i);
+  }
+  // The springs of CQUADR act on displacements by the turn of the middle alone; all else of its moments sums to zero.
+  if (has_arms_ && fields.membrane.has_rotations && fields.membrane.num_springs > 0) {
+    const Row<N> turning = s.on_drilling.sum() * fields.membrane.spring[0];
+    for (int i = 0; i < N; ++i) arm_force.col(i) += turning.template segment<2>(3 * i);
   }
   for (int k = 0; k < N; ++k) {
     const auto& side = plate.sides[k];
@@ -93,8 +113,9 @@ void Shell::add_geometric_stiffness_of(const Eigen::Ref<const VectorXd>& force, 
       add(K, 6 * side.i + 1, 6 * m + 3, half);
     }
   }
+  const auto drilling = list_drilling<N>(fields, get_corners<N>());
   for (int q = 0; q < N; ++q) {  // ½ (θz (u,x + v,y) - θx w,x - θy w,y)
-    const auto& point = fields.points[q];
+    const auto& point = drilling[static_cast<std::size_t>(q)];
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < N; ++j)
         for (int a = 0; a < 2; ++a) {
@@ -162,7 +183,7 @@ void Shell::add_projected_of(const Eigen::Ref<const MatrixXd>& U, const Eigen::R
     add_cross(j.col(1) - i.col(1), i.col(3) + j.col(3), -half, terms.products.col(term));
     ++term;
   }
-  for (const auto& point : fields.points) {
+  for (const auto& point : list_drilling<N>(fields, get_corners<N>())) {
     Eigen::Matrix<double, Eigen::Dynamic, 3> turn = Eigen::Matrix<double, Eigen::Dynamic, 3>::Zero(Phi.cols(), 3);
     Eigen::Matrix<double, Eigen::Dynamic, 1> stretch = Eigen::Matrix<double, Eigen::Dynamic, 1>::Zero(Phi.cols());
     Eigen::Matrix<double, Eigen::Dynamic, 2> slope = Eigen::Matrix<double, Eigen::Dynamic, 2>::Zero(Phi.cols(), 2);

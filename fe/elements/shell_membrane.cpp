@@ -180,6 +180,7 @@ Membrane<N> calc_membrane(MembraneKind kind, const Corners<N>& xy, const Points<
       set_hybrid(xy, points, section, m);
     else
       set_andes(xy, points, section, m);
+    m.has_rotations = true;
     return m;
   }
   set_bilinear<N>(points, m);

@@ -36,6 +36,7 @@ double Shell::add_thermal_of(const ElementTemperature& given, Eigen::Ref<VectorX
     initial.segment<3>(kNumForces * q) -= normal_force;
     initial.segment<3>(kNumForces * q + 3) -= moment;
   }
+  for (int i = 0; i < N && membrane.has_rotations; ++i) initial[kNumForces * N + i] -= local[kMembrane<N>[3 * i + 2]];
   if (membrane.has_modes) {
     const Eigen::Vector4d a = membrane.mode_stiffness.ldlt().solve(f_a);
     energy -= 0.5 * a.dot(f_a);

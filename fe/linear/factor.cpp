@@ -134,6 +134,14 @@ SymmetricFactor::SymmetricFactor(Mat A, bool find_null_pivots, FactorMethod meth
     factor_ = make_sum_factor(std::move(factor_), *part);
 }
 
+std::optional<SymmetricFactor> SymmetricFactor::try_definite(Mat A) {
+  SymmetricFactor result;
+  result.factor_ = factor_definite(A);
+  if (!result.factor_) return {};
+  result.is_definite_ = true;
+  return result;
+}
+
 void SymmetricFactor::factor_by_mumps(Mat A, bool find_null_pivots) {
   // MUMPS estimates its workspace; where pivoting needs more it says so and is given more.
   for (PetscInt extra_percent : {50, 200, 1000}) {

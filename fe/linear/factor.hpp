@@ -1,5 +1,7 @@
 #pragma once
 /// \file Factors of a sparse symmetric PETSc matrix by CHOLMOD or MUMPS, with many dense right-hand sides at once.
+#include <optional>
+
 #include "fe/linear/petsc.hpp"
 
 namespace bough::fe {
@@ -23,6 +25,8 @@ class SymmetricFactor {
   /// the scaled matrix are set aside and counted by MUMPS (ICNTL(24)) instead of failing; LLᵀ counts none: a singular
   /// matrix whose roundoff is positive passes.
   SymmetricFactor(Mat A, bool find_null_pivots, FactorMethod method = FactorMethod::Fastest);
+  /// LLᵀ of A; empty where factor_definite() has none.
+  static std::optional<SymmetricFactor> try_definite(Mat A);
 
   bool is_singular() const { return is_singular_; }  ///< an exact zero pivot ended the factorization
   bool is_definite() const { return is_definite_; }  ///< LLᵀ: every pivot was above zero, in roundoff
@@ -32,6 +36,7 @@ class SymmetricFactor {
   Eigen::MatrixXd solve(const Eigen::Ref<const Eigen::MatrixXd>& B) const;
 
  private:
+  SymmetricFactor() = default;
   void factor_by_mumps(Mat A, bool find_null_pivots);
 
   PetscMat factor_;

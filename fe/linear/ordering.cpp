@@ -10,6 +10,7 @@ namespace {
 static_assert(std::is_same_v<idx_t, PetscInt>, "graphs are handed to METIS as PetscInt");
 
 constexpr const char* kGroups = "bough_row_groups";
+constexpr const char* kOrder = "bough_elimination_order";
 /// Below this the solver's own order costs less than it could gain.
 constexpr PetscInt kSmall = 3000;
 /// Neighbours of a vertex, on average, of a mesh; of beams in lines there are two. Minimum degree eliminates a line
@@ -51,9 +52,11 @@ void set_row_groups(Mat A, const std::vector<int>& start) {
 }
 
 void copy_row_groups(Mat from, Mat to) {
-  PetscObject groups = nullptr;
-  check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(from), kGroups, &groups));
-  check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(to), kGroups, groups));
+  for (const char* name : {kGroups, kOrder}) {
+    PetscObject object = nullptr;
+    check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(from), name, &object));
+    if (object) check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(to), name, object));
+  }
 }
 
 PetscIs find_elimination_order(Mat A) {
@@ -62,6 +65,12 @@ PetscIs find_elimination_order(Mat A) {
   PetscInt size = 0;
   check_petsc(MatGetSize(A, &size, nullptr));
   if (!object || size < kSmall || initialize_petsc().size > 1) return {};
+  PetscObject known = nullptr;
+  check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(A), kOrder, &known));
+  if (known) {
+    check_petsc(PetscObjectReference(known));
+    return PetscIs(reinterpret_cast<IS>(known));
+  }
 
   const IS groups = reinterpret_cast<IS>(object);
   PetscInt num_groups = 0;
@@ -90,6 +99,8 @@ PetscIs find_elimination_order(Mat A) {
   check_petsc(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(order.size()), order.data(), PETSC_COPY_VALUES,
                               result.out()));
   check_petsc(ISSetPermutation(result.get()));
+  check_petsc(
+      PetscObjectCompose(reinterpret_cast<PetscObject>(A), kOrder, reinterpret_cast<PetscObject>(result.get())));
   return result;
 }
 

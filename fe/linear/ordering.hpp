@@ -18,7 +18,7 @@ void copy_row_groups(Mat from, Mat to);
 /// Nested dissection (METIS; Karypis & Kumar, SIAM J. Sci. Comput. 20 (1998) 359) of the graph of row groups, some
 /// thirty times smaller than the graph of rows (Ashcraft, SIAM J. Sci. Comput. 16 (1995) 1404). Empty, for the solver's
 /// own choice, where A has no groups, is small, is lines rather than a mesh, or lives on several processes. Costs
-/// O(nonzeros).
+/// O(nonzeros) the first time; A keeps it, and copies of its groups take it along.
 PetscIs find_elimination_order(Mat A);
 
 }  // namespace bough::fe

@@ -102,4 +102,9 @@ MpiWorld initialize_petsc() {
   return world;
 }
 
+PetscMat share(const PetscMat& A) {
+  check_petsc(PetscObjectReference(reinterpret_cast<PetscObject>(A.get())));
+  return PetscMat(A.get());
+}
+
 }  // namespace bough::fe

@@ -43,4 +43,7 @@ using PetscMat = PetscHandle<Mat, MatDestroy>;
 using PetscVec = PetscHandle<Vec, VecDestroy>;
 using PetscKsp = PetscHandle<KSP, KSPDestroy>;
 
+/// Another handle of the same matrix, which lives as long as any of them.
+PetscMat share(const PetscMat& A);
+
 }  // namespace bough::fe

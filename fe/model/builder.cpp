@@ -41,6 +41,24 @@ SparseRows rotate_rows(const std::vector<Node>& nodes, const SparseRows& C) {
   return T;
 }
 
+/// Columns of T that belong to `ldofs`, in this order; those of T ascend as `column_ldof` does.
+SparseRows take_columns(const SparseRows& T, const std::vector<int>& column_ldof, const std::vector<int>& ldofs) {
+  std::unordered_map<int, int> place;
+  for (size_t k = 0; k < ldofs.size(); ++k) {
+    const auto at = std::lower_bound(column_ldof.begin(), column_ldof.end(), ldofs[k]);
+    if (at != column_ldof.end() && *at == ldofs[k])
+      place.emplace(static_cast<int>(at - column_ldof.begin()), static_cast<int>(k));
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int row = 0; row < T.outerSize() && !place.empty(); ++row)
+    for (SparseRows::InnerIterator it(T, row); it; ++it)
+      if (const auto found = place.find(it.col()); found != place.end())
+        entries.emplace_back(row, found->second, it.value());
+  SparseRows taken(T.rows(), static_cast<int>(ldofs.size()));
+  taken.setFromTriplets(entries.begin(), entries.end());
+  return taken;
+}
+
 }  // namespace
 
 Model ModelBuilder::build(const ElementFactory& factory) {
@@ -319,7 +337,7 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
   // Without any stiffness at all there is nothing to solve yet.
   if (only_null && model_.autospc_.size() == static_cast<size_t>(model_.T_.cols())) model_.autospc_.clear();
   if (model_.autospc_.empty()) return;
-  bool has_equations = false;
+  std::vector<int> oblique;
   for (const auto& entry : model_.autospc_) {
     const Node& node = model_.nodes_[model_.find_node(entry.node)];
     const int ldof = node.first_gdof + std::max(entry.component - 1, 0);
@@ -331,9 +349,10 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
     for (const auto& [component, factor] : entry.terms)
       equation.terms.emplace_back(node.first_gdof + component - 1, factor);
     equations_.push_back(std::move(equation));
-    has_equations = true;
+    oblique.push_back(ldof);
   }
-  if (has_equations)  // what hangs on these dofs follows too
+  model_.T_oblique_ = take_columns(model_.T_, first.fdof_ldof, oblique);
+  if (!oblique.empty())  // what hangs on these dofs follows too
     equations_ = resolve_chains(
         model_.num_gdofs_, std::move(equations_), [this](int l) { return name_dof(l); }, diagnostics_);
   set_transform();

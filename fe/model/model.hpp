@@ -49,6 +49,7 @@ struct AutospcEntry {
 
 class CoordinateSystems;
 class StaticSolver;
+struct CheckedStiffness;
 
 /// Makes the elements of a deck; make_elements unless a caller brings its own.
 using ElementFactory = std::function<ElementList(const records::Deck&, const NodeTable&, Diagnostics&)>;
@@ -73,6 +74,9 @@ class Model final : public NodeTable {
   /// order of fixed_dofs() (SPC, permanent SPC, AUTOSPC). num_gdofs x num_fixed.
   const SparseRows& T_fixed() const { return T_fixed_; }
   const std::vector<int>& fixed_dofs() const { return fixed_dofs_; }  ///< rows in the numbering of the g-set, ascending
+  /// What moves when an oblique direction that AUTOSPC holds lets go: a column, num_gdofs x 1, for each entry of
+  /// autospc() with terms, in their order.
+  const SparseRows& T_oblique() const { return T_oblique_; }
   MassKind mass_kind() const { return mass_kind_; }
   double wtmass() const { return wtmass_; }
   const std::vector<AutospcEntry>& autospc() const { return autospc_; }
@@ -84,6 +88,9 @@ class Model final : public NodeTable {
   /// K += K_e of an element of this model (N x N, as Element::add_stiffness), with K_G of its part of the prestress.
   void add_stiffness(const Element& element, Eigen::Ref<MatrixXd> K) const;
   const Prestress* prestress() const { return prestress_.get(); }  ///< nullptr: the model starts without stress
+  /// K as the check of the prestress assembled it (fe/matrices/system.hpp); nullptr where there was none, and of an
+  /// a-set.
+  const CheckedStiffness* checked_stiffness() const { return checked_stiffness_.get(); }
 
   /// Rigid links with the second order of their motion (fe/model/links.hpp).
   const Links& links() const { return links_; }
@@ -124,8 +131,9 @@ class Model final : public NodeTable {
   std::set<int> refused_grids_;
   std::vector<std::unique_ptr<const Element>> elements_;
   int num_gdofs_ = 0;
-  SparseRows T_, T_fixed_;
+  SparseRows T_, T_fixed_, T_oblique_;
   std::shared_ptr<const StaticSolver> omitted_;
+  std::shared_ptr<const CheckedStiffness> checked_stiffness_;
   Links links_;
   std::shared_ptr<const Prestress> prestress_;
   std::unordered_map<const Element*, const VectorXd*> prestressed_;  ///< internal forces in prestress_

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "fe/matrices/system.hpp"
 #include "fe/statics/preload.hpp"
 
 namespace bough::fe {
@@ -62,9 +63,8 @@ void CaseSolver::prepare(const records::Subcase& subcase, Diagnostics& diagnosti
     const auto relief = read_inertia_relief(deck_, own);
     auto fdofs = choose_suport(model, deck_, relief, own);
     own.throw_if_errors();
-    auto solver = model.num_fdofs() == 0
-                      ? std::make_unique<StaticSolver>(model)
-                      : std::make_unique<StaticSolver>(model, assemble_stiffness(model, DofSet::Free), fdofs);
+    auto solver = model.num_fdofs() == 0 ? std::make_unique<StaticSolver>(model)
+                                         : std::make_unique<StaticSolver>(model, get_stiffness(model), fdofs);
     suport_ = calc_suport(model, *solver, std::move(fdofs), relief, own);
     model_.emplace(std::move(model));
     solver_ = std::move(solver);

@@ -7,6 +7,7 @@
 /// O(elements (s^2 n_a + s n_a^2)) with s the dofs of an element: meant for a few hundred a-dofs.
 #include <algorithm>
 
+#include "fe/matrices/system.hpp"
 #include "fe/model/builder.hpp"
 #include "fe/statics/statics.hpp"
 
@@ -113,7 +114,7 @@ void ModelBuilder::omit_dofs() {
 
   std::shared_ptr<const StaticSolver> omitted;
   try {
-    omitted = std::make_shared<const StaticSolver>(model_, assemble_stiffness(model_, DofSet::Free), kept);
+    omitted = std::make_shared<const StaticSolver>(model_, get_stiffness(model_), kept);
   } catch (const ComputationError& error) {
     if (error.items().front().id != "fe.mechanism") throw;
     for (const auto& item : error.items())
@@ -123,6 +124,7 @@ void ModelBuilder::omit_dofs() {
     diagnostics_.throw_if_errors();
   }
   model_.T_ = calc_reduced_transform(model_, *omitted, kept);
+  model_.checked_stiffness_ = nullptr;
   model_.omitted_ = std::move(omitted);
   for (auto& slots : model_.node_fdof_) slots.fill(-1);
   std::vector<int> node, component;

@@ -4,6 +4,7 @@
 
 #include "fe/loads/inertial_loads.hpp"
 #include "fe/loads/second_order.hpp"
+#include "fe/matrices/system.hpp"
 #include "fe/statics/static_case.hpp"
 
 namespace bough::fe {
@@ -82,9 +83,8 @@ std::shared_ptr<const Prestress> calc_prestress(const records::Deck& deck, const
   const auto relief = options.ignore_spc ? InertiaRelief::None : read_inertia_relief(deck, own);
   auto held_fdofs = options.ignore_spc ? choose_determinate_support(model, 0) : choose_suport(model, deck, relief, own);
   own.throw_if_errors();
-  const StaticSolver solver = model.num_fdofs() == 0
-                                  ? StaticSolver(model)
-                                  : StaticSolver(model, assemble_stiffness(model, DofSet::Free), held_fdofs);
+  const StaticSolver solver =
+      model.num_fdofs() == 0 ? StaticSolver(model) : StaticSolver(model, get_stiffness(model), held_fdofs);
   Suport suport;
   if (!options.ignore_spc) suport = calc_suport(model, solver, std::move(held_fdofs), relief, own);
   add_relief(model, suport, load);

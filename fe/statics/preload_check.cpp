@@ -3,7 +3,7 @@
 
 #include "fe/linear/factor.hpp"
 #include "fe/linear/sum_factor.hpp"
-#include "fe/matrices/assembly.hpp"
+#include "fe/matrices/system.hpp"
 #include "fe/model/builder.hpp"
 #include "fe/statics/statics.hpp"
 
@@ -36,9 +36,9 @@ bool has_negative_pivot(Mat whole) {
   return false;
 }
 
-/// Whether A has a negative eigenvalue beyond roundoff; those of motions without stiffness are none.
+/// Whether A, which is not positive definite, has a negative eigenvalue beyond roundoff; those of motions without
+/// stiffness are none.
 bool has_negative(const PetscMat& A) {
-  if (factor_definite(A.get())) return false;
   VectorXd shift = 1e-13 * get_diagonal(A.get()).cwiseAbs();
   shift = shift.cwiseMax(1e-6 * shift.maxCoeff());
   const PetscMat shifted = add_diagonal(A.get(), shift);
@@ -47,12 +47,12 @@ bool has_negative(const PetscMat& A) {
 }
 
 /// Takes out what carries the rigid motions of a free model: where those need no force, the sign of the rest stays.
-PetscMat hold_support(const Model& model, PetscMat A) {
+PetscMat hold_support(const Model& model, const PetscMat& A) {
   std::vector<int> held, kept;
   try {
     held = choose_determinate_support(model, 0);
   } catch (const InputError&) {
-    return A;
+    return share(A);
   }
   for (int f = 0; f < model.num_fdofs(); ++f)
     if (std::find(held.begin(), held.end(), f) == held.end()) kept.push_back(f);
@@ -63,9 +63,14 @@ PetscMat hold_support(const Model& model, PetscMat A) {
 
 void ModelBuilder::check_prestress() {
   if (!model_.prestress_ || model_.num_fdofs() == 0) return;
-  PetscMat K = assemble_stiffness(model_, DofSet::Free);
-  if (options_.ignore_spc) K = hold_support(model_, std::move(K));
-  if (!has_negative(K)) return;
+  auto checked = std::make_shared<CheckedStiffness>();
+  checked->K = assemble_stiffness(model_, DofSet::Free);
+  checked->factor = SymmetricFactor::try_definite(checked->K.get());
+  model_.checked_stiffness_ = checked;
+  if (checked->factor) return;
+  const PetscMat held = options_.ignore_spc ? hold_support(model_, checked->K) : PetscMat();
+  if (held && factor_definite(held.get())) return;
+  if (!has_negative(held ? held : checked->K)) return;
   throw ComputationError("fe.preload-buckles", model_.prestress_->at,
                          "the structure buckles under its preload, " + model_.prestress_->name +
                              ": its stiffness with that of the stress is not positive definite",

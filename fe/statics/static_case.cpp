@@ -17,6 +17,21 @@ VectorXd calc_forces(const Element& element, const VectorXd& u, const InitialFor
   return force;
 }
 
+/// Forces (in CD axes) that hold the oblique directions of AUTOSPC, as those of the dofs that it holds: along the
+/// direction, as large as what of the residual acts where nothing else holds.
+void add_oblique_reactions(const Model& model, const VectorXd& residual, VectorXd& reaction) {
+  if (model.T_oblique().cols() == 0) return;
+  const VectorXd held = model.T_oblique().transpose() * residual;
+  Eigen::Index column = 0;
+  for (const auto& entry : model.autospc()) {
+    if (entry.terms.empty()) continue;
+    const double force = held[column++];
+    const int first = model.node(model.find_node(entry.node)).first_gdof - 1;
+    reaction[first + entry.component] += force;
+    for (const auto& [component, factor] : entry.terms) reaction[first + component] -= factor * force;
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> list_lost_loads(const Model& model, const VectorXd& F) {
@@ -118,6 +133,7 @@ records::StaticSubcase solve_static_case(const Model& model, const StaticSolver&
   result.reaction = VectorXd::Zero(model.num_gdofs());
   for (std::size_t i = 0; i < model.fixed_dofs().size(); ++i)
     result.reaction[model.fixed_dofs()[i]] = held[static_cast<Eigen::Index>(i)];
+  add_oblique_reactions(model, residual, result.reaction);
   if (!suport.fdofs.empty()) {
     const VectorXd at_f = model.T().transpose() * residual;
     for (const int fdof : suport.fdofs) {

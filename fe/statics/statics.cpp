@@ -81,8 +81,7 @@ StaticSolver::StaticSolver(const Model& model, const PetscMat& K_f, std::vector<
     throw ComputationError("fe.no-free-dofs", {}, "the model has no free dof left after its constraints",
                            "remove constraints or add stiffness");
   if (held_fdofs.empty()) {
-    check_petsc(PetscObjectReference(reinterpret_cast<PetscObject>(K_f.get())));
-    impl_->K = PetscMat(K_f.get());
+    impl_->K = share(K_f);
   } else {
     impl_->K = take_kept(K_f.get(), kept);
   }

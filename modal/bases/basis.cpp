@@ -71,15 +71,16 @@ void mark_largest(const VectorXd& share, Eigen::Index count, ModeKind kind, std:
 }
 
 /// Normal modes of the model, then the residual vectors of the interface and of the loads.
-Basis calc_free_interface_basis(const fe::Model& model, const BasisOptions& options, const StaticSolve& solve,
+Basis calc_free_interface_basis(const fe::System& system, const BasisOptions& options, const StaticSolve& solve,
                                 Diagnostics& diagnostics) {
+  const fe::Model& model = system.model;
   Basis basis;
   EigenOptions eigen;
   eigen.num_modes = options.num_modes > 0 || !options.max_hz ? options.num_modes + (options.is_free ? 6 : 0) : 0;
   if (!options.max_hz) eigen.num_modes = std::max(eigen.num_modes, 1);
   eigen.max_hz = options.max_hz;
   eigen.factor = options.factor;
-  const auto pairs = calc_normal_modes(model, eigen, diagnostics);
+  const auto pairs = calc_normal_modes(system, eigen, diagnostics);
   basis.num_rigid = pairs.num_rigid;
   basis.num_massless = pairs.num_massless;
   auto kept = pairs.lambda.size() - pairs.num_rigid;
@@ -211,17 +212,18 @@ Basis drop_massless(const Basis& basis, Diagnostics& diagnostics) {
   return static_cast<Eigen::Index>(columns.size()) == mass.size() ? basis : select_columns(basis, columns);
 }
 
-Basis calc_craig_bampton_basis(const fe::Model& model, const BasisOptions& options, Diagnostics& diagnostics) {
+Basis calc_craig_bampton_basis(const fe::System& system, const BasisOptions& options, Diagnostics& diagnostics) {
+  const fe::Model& model = system.model;
   Basis basis;
   MatrixXd rigid(model.num_gdofs(), 0);
   if (options.is_free) {
-    const detail::Pencil pencil(model);
+    const detail::Pencil pencil(system);
     const auto motions = detail::find_rigid_motions(pencil);
     rigid = model.T() * motions.modes;
     basis.num_rigid = static_cast<int>(motions.modes.cols());
     basis.num_massless = static_cast<int>(motions.massless.cols());
   }
-  const FixedInterface fixed(model, options.interface_nodes, diagnostics);
+  const FixedInterface fixed(system, options.interface_nodes, diagnostics);
   basis.boundary = fixed.partition().boundary;
   const auto nb = static_cast<Eigen::Index>(basis.boundary.size());
   const MatrixXd Psi = fixed.calc_constraint_modes();
@@ -265,12 +267,12 @@ Basis calc_craig_bampton_basis(const fe::Model& model, const BasisOptions& optio
 
 }  // namespace
 
-Basis calc_basis(const fe::Model& model, const BasisOptions& options, const StaticSolve& solve,
+Basis calc_basis(const fe::System& system, const BasisOptions& options, const StaticSolve& solve,
                  Diagnostics& diagnostics) {
   if (options.kind != BasisKind::Normal && options.interface_nodes.empty())
     throw InputError("modal.no-interface", {}, "the basis needs interface nodes", "name them in interface");
-  if (options.kind == BasisKind::CraigBampton) return calc_craig_bampton_basis(model, options, diagnostics);
-  return calc_free_interface_basis(model, options, solve, diagnostics);
+  if (options.kind == BasisKind::CraigBampton) return calc_craig_bampton_basis(system, options, diagnostics);
+  return calc_free_interface_basis(system, options, solve, diagnostics);
 }
 
 Basis select_columns(const Basis& basis, const std::vector<int>& columns) {

@@ -20,7 +20,7 @@ struct BasisOptions {
   bool is_free = false;              ///< the six rigid motions of the model are removed
   bool orthogonalize = true;         ///< Craig-Bampton: K^N = M^ND, else the coordinates stay q = [u_b, η_i]
   MatrixXd residual_loads;           ///< num_gdofs x m, in basic
-  const fe::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K on the f-set, where the caller has it
+  const fe::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K of the system, where the caller has it
 };
 
 struct Basis {
@@ -40,7 +40,7 @@ struct Basis {
 /// magnitude of each vector is positive, but of raw constraint modes. Raw constraint modes that move no mass are left
 /// out, warning "modal.massless-constraint". `solve`: static solutions on the model's support (free: any determinate
 /// one). What calc_normal_modes and FixedInterface throw, and InputError "modal.no-interface".
-Basis calc_basis(const fe::Model& model, const BasisOptions& options, const StaticSolve& solve,
+Basis calc_basis(const fe::System& system, const BasisOptions& options, const StaticSolve& solve,
                  Diagnostics& diagnostics);
 
 /// Columns of the basis, in this order.

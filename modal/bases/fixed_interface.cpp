@@ -33,17 +33,15 @@ namespace {
 struct FixedInterface::Impl {
   const fe::Model& model;
   Partition part;
-  fe::PetscMat K, M, K_ii, M_ii;
+  const fe::PetscMat& K;
+  fe::PetscMat K_ii, M_ii;
   std::optional<fe::SymmetricFactor> factor;
 
-  Impl(const fe::Model& model_in, const std::vector<int>& nodes, Diagnostics& diagnostics)
-      : model(model_in),
-        part(make_partition(model, nodes, diagnostics)),
-        K(fe::assemble_stiffness(model, fe::DofSet::Free)),
-        M(fe::assemble_mass(model, fe::DofSet::Free, model.mass_kind())) {
+  Impl(const fe::System& system, const std::vector<int>& nodes, Diagnostics& diagnostics)
+      : model(system.model), part(make_partition(model, nodes, diagnostics)), K(system.K) {
     if (part.interior.empty()) return;
     K_ii = calc_triple_product(K.get(), part.S_i);
-    M_ii = calc_triple_product(M.get(), part.S_i);
+    M_ii = calc_triple_product(system.M.get(), part.S_i);
     const auto is_sound = [&] {
       return !factor->is_singular() && fe::calc_softest_energy(K_ii.get(), *factor) >= fe::kMechanismEnergy;
     };
@@ -65,8 +63,8 @@ struct FixedInterface::Impl {
   void make_canonical(VectorXd& lambda, MatrixXd& X) const;
 };
 
-FixedInterface::FixedInterface(const fe::Model& model, const std::vector<int>& nodes, Diagnostics& diagnostics)
-    : impl_(std::make_unique<Impl>(model, nodes, diagnostics)) {}
+FixedInterface::FixedInterface(const fe::System& system, const std::vector<int>& nodes, Diagnostics& diagnostics)
+    : impl_(std::make_unique<Impl>(system, nodes, diagnostics)) {}
 FixedInterface::~FixedInterface() = default;
 FixedInterface::FixedInterface(FixedInterface&&) noexcept = default;
 

@@ -19,7 +19,9 @@ class FixedInterface {
  public:
   /// One factorization of K_ii; nothing is dense but num_fdofs x nb. Throws ComputationError
   /// "modal.interface-mechanism" where the model still moves without strain with the interface held.
-  FixedInterface(const fe::Model& model, const std::vector<int>& nodes, Diagnostics& diagnostics);
+  /// `system` and its model outlive this.
+  FixedInterface(const fe::System& system, const std::vector<int>& nodes, Diagnostics& diagnostics);
+  FixedInterface(fe::System&&, const std::vector<int>&, Diagnostics&) = delete;
   ~FixedInterface();
   FixedInterface(FixedInterface&&) noexcept;
 

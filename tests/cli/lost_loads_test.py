@@ -44,16 +44,6 @@ class LostLoads(ProgramTest):
         self.assertIn("[reduce.partial-rotation]", result.stderr)
         self.assertIn("interface grid 4 has no stiffness in component(s) 4", result.stderr)
 
-    def test_moments_about_the_normal_of_quadrilaterals_with_drilling(self):
-        for card, warned in (("CQUADR", True), ("CQUAD4", False)):
-            self.write("b.bdf", HEAD.replace("LOAD = 3\n", "") + "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\n"
-                       f"GRID,4,,0.,1.,0.\n{card},7,1,1,2,3,4\nPSHELL,1,1,.1,1,,1\nSPC1,1,123456,1,4\nENDDATA\n")
-            for moments in ("true", "false"):
-                self.write("b.toml", '[body]\nname = "b"\ndeck = "b.bdf"\ninterface = [2]\n'
-                           f'interface_moments = {moments}\n[body.modes]\nnumber = 2\n')
-                found = "[reduce.drilling-moment]" in self.bough("reduce", "b.toml", "-o", "b.h5").stderr
-                self.assertEqual(found, warned and moments == "true", card + moments)
-
     def test_twist_without_mass_in_a_skew_beam(self):
         bar = "".join(f"GRID,{i + 1},,{i / 3!r},{2 * i / 3!r},{2 * i / 3!r}\n" for i in range(7)) + "".join(
             f"CBAR,{i},1,{i},{i + 1},2.,1.,-2.\n" for i in range(1, 7))

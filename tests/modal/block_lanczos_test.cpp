@@ -138,7 +138,8 @@ fe::Model make_pair(bool lumped, bool held, Diagnostics& diagnostics) {
 void expect_like_krylov_schur(bool lumped, double shift, bool held) {
   Diagnostics diagnostics;
   const auto model = make_pair(lumped, held, diagnostics);
-  const modal::detail::Pencil pencil(model);
+  const fe::System system(model);
+  const modal::detail::Pencil pencil(system);
   KrylovProblem problem;
   problem.A = pencil.K.get();
   problem.B = pencil.M.get();

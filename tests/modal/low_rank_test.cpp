@@ -155,7 +155,8 @@ EigenPairs solve(const std::string& text, int number, Diagnostics& diagnostics) 
 TEST(LowRank, FactorIsExactAndStopsAtTheLimit) {
   Diagnostics diagnostics;
   const auto model = build(make_text(Tie::Rbe3, 5, 3), diagnostics);
-  const modal::detail::Pencil pencil(model);
+  const fe::System system(model);
+  const modal::detail::Pencil pencil(system);
   const auto C = modal::detail::factor_low_rank(pencil.M.get(), pencil.M_diagonal, 50);
   ASSERT_TRUE(C);
   EXPECT_EQ(C->cols(), 6);
@@ -196,7 +197,8 @@ TEST(LowRank, LargeMasslessStructure) {
 TEST(LowRank, KrylovEndsAtTheRank) {
   Diagnostics diagnostics;
   const auto model = build(make_text(Tie::Rbe3, 4, 30), diagnostics);
-  const modal::detail::Pencil pencil(model);
+  const fe::System system(model);
+  const modal::detail::Pencil pencil(system);
   const VectorXd expected = calc_expected(Tie::Rbe3, 4);
   for (const auto method : {modal::detail::KrylovMethod::OneVector, modal::detail::KrylovMethod::Blocks}) {
     modal::detail::KrylovProblem problem;
@@ -217,7 +219,8 @@ TEST(LowRank, KrylovThatDoesNotConvergeSaysSo) {
   Diagnostics diagnostics;
   const auto maker = test::make_cantilever({kE, kE / 2.6, 2700, kA, kI1, kI2, kJ}, 1, 100);
   const auto model = fe::Model::build(maker.deck, {}, diagnostics);
-  const modal::detail::Pencil pencil(model);
+  const fe::System system(model);
+  const modal::detail::Pencil pencil(system);
   modal::detail::KrylovProblem problem;
   problem.A = pencil.K.get();
   problem.B = pencil.M.get();
@@ -246,7 +249,8 @@ TEST(LowRank, FreeMasslessStructure) {
 TEST(LowRank, FixedInterfaceModes) {
   Diagnostics diagnostics;
   const auto model = build(make_text(Tie::Mpc, 3, 4), diagnostics);
-  const modal::bases::FixedInterface fixed(model, {10004}, diagnostics);
+  const fe::System system(model);
+  const modal::bases::FixedInterface fixed(system, {10004}, diagnostics);
   const auto modes = fixed.calc_modes(30, std::nullopt, diagnostics);
   // The first top at rest takes x and z of the others with it: y and the rotations of two tops are left.
   const Matrix6 K = calc_leg(), M = (VectorXd(6) << 10, 10, 10, .1, .2, .3).finished().asDiagonal();

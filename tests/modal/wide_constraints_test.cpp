@@ -208,7 +208,8 @@ TEST(WideConstraints, FixedInterfaceIsThatOfTheWholeElimination) {
     for (const int node : {90000, 25}) {
       const auto [expected, found] = calc_both([&] {
         Diagnostics diagnostics;
-        const modal::bases::FixedInterface fixed(model, {node}, diagnostics);
+        const fe::System system(model);
+        const modal::bases::FixedInterface fixed(system, {node}, diagnostics);
         return std::pair{fixed.calc_modes(6, {}, diagnostics).lambda, fixed.calc_constraint_modes()};
       });
       // Stiffness at the reference is on six dofs in the sparse part: digits cancel.

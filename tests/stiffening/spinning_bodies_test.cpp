@@ -108,6 +108,7 @@ TEST(SpinningBodies, BoundaryOfAMassOnALever) {
       "PBAR,2,3,1.-2,1.-4,1.-4,1.-4\nMAT1,3,7.+12,,.3,0.\nCBAR,60,2,9,18,0.,0.,1.\nCBAR,61,2,18,27,0.,0.,1.\n"
       "CBAR,62,2,18,50,0.,0.,1.\n");
   const double links = calc_boundary("RBE2,60,50,123456,9,18,27\n");
+  RecordProperty("links_over_bars", std::to_string(links / bars));
   EXPECT_NEAR(links / bars, 1, 1e-3);
   // The mass as an offset of the edge's middle grid.
   const double chain = calc_boundary("RBE2,60,18,123456,9,27\nRBE2,61,18,123456,50\n");

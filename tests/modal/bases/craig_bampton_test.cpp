@@ -51,7 +51,7 @@ Basis calc_basis(const Model& model, const BasisOptions& options) {
   Diagnostics diagnostics;
   const auto solver = make_solver(model, options.is_free);
   return modal::bases::calc_basis(
-      model, options, [&](const MatrixXd& F) { return solver.solve(F); }, diagnostics);
+      fe::System(model), options, [&](const MatrixXd& F) { return solver.solve(F); }, diagnostics);
 }
 
 MatrixXd make_unit_loads(const Model& model, const std::vector<int>& nodes) {
@@ -125,7 +125,8 @@ TEST(CraigBampton, FixedInterfaceModesAreThoseOfTheHeldModel) {
   auto maker = test::make_cantilever(kSection, 1, 40);  // more dofs than are solved densely
   const auto model = build(maker.deck);
   Diagnostics diagnostics;
-  const auto modes = FixedInterface(model, {41, 21}, diagnostics).calc_modes(10, {}, diagnostics);
+  const fe::System system(model);
+  const auto modes = FixedInterface(system, {41, 21}, diagnostics).calc_modes(10, {}, diagnostics);
   maker.fix(41, 123456);
   maker.fix(21, 123456);
   modal::EigenOptions options;
@@ -135,7 +136,7 @@ TEST(CraigBampton, FixedInterfaceModesAreThoseOfTheHeldModel) {
   for (int j = 0; j < 10; ++j) EXPECT_NEAR(modes.lambda(j) / expected.lambda(j), 1, 1e-9);
   EXPECT_LT((modes.Phi - expected.Phi).cwiseAbs().maxCoeff(), 1e-6 * expected.Phi.cwiseAbs().maxCoeff());
   const double hz = std::sqrt(0.5 * (expected.lambda(5) + expected.lambda(6))) / (2 * M_PI);
-  EXPECT_EQ(FixedInterface(model, {41, 21}, diagnostics).calc_modes(0, hz, diagnostics).lambda.size(), 6);
+  EXPECT_EQ(FixedInterface(system, {41, 21}, diagnostics).calc_modes(0, hz, diagnostics).lambda.size(), 6);
 }
 
 // All modes of the component: the model itself in other coordinates. A free body loses its six rigid motions.
@@ -267,7 +268,8 @@ TEST(CraigBampton, DependentInterfaceDofsAreLeftOut) {
   maker.deck.rbe2.push_back(element);
   const auto model = build(maker.deck);
   Diagnostics diagnostics;
-  const FixedInterface fixed(model, {500, 9, 1}, diagnostics);  // grid 1 is clamped: no coordinates
+  const fe::System system(model);
+  const FixedInterface fixed(system, {500, 9, 1}, diagnostics);  // grid 1 is clamped: no coordinates
   EXPECT_EQ(fixed.partition().num_boundary(), 6);
   EXPECT_TRUE(diagnostics.has("modal.dependent-interface"));
 }
@@ -278,7 +280,8 @@ TEST(CraigBampton, NeedsAnInterfaceThatHolds) {
   const auto model = build(maker.deck);
   Diagnostics diagnostics;
   try {
-    FixedInterface(model, {1}, diagnostics);
+    const fe::System system(model);
+    FixedInterface(system, {1}, diagnostics);
     FAIL();
   } catch (const ComputationError& error) {
     EXPECT_EQ(error.items().front().id, "modal.interface-mechanism");
@@ -287,7 +290,7 @@ TEST(CraigBampton, NeedsAnInterfaceThatHolds) {
   options.kind = BasisKind::CraigChang;
   options.num_modes = 2;
   try {
-    modal::bases::calc_basis(model, options, {}, diagnostics);
+    modal::bases::calc_basis(fe::System(model), options, {}, diagnostics);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(error.items().front().id, "modal.no-interface");
@@ -330,7 +333,7 @@ TEST(CraigBampton, MasslessConstraintModesAreLeftOut) {
   options.num_modes = 2;
   options.orthogonalize = false;
   Diagnostics diagnostics;
-  const auto basis = modal::bases::calc_basis(model, options, {}, diagnostics);
+  const auto basis = modal::bases::calc_basis(fe::System(model), options, {}, diagnostics);
   EXPECT_EQ(basis.lambda.size(), 7);
   EXPECT_TRUE(diagnostics.has("modal.massless-constraint"));
   for (const auto& dof : basis.boundary) EXPECT_NE(dof.second, 4);
@@ -354,7 +357,7 @@ TEST(CraigBampton, MasslessDirectionsFollow) {
     options.interface_nodes = {13};
     options.num_modes = 60;
     Diagnostics diagnostics;
-    const auto basis = modal::bases::calc_basis(model, options, {}, diagnostics);
+    const auto basis = modal::bases::calc_basis(fe::System(model), options, {}, diagnostics);
     modal::EigenOptions eigen;
     eigen.num_modes = 6;
     Diagnostics unheard;
@@ -363,7 +366,7 @@ TEST(CraigBampton, MasslessDirectionsFollow) {
     ASSERT_TRUE(diagnostics.has("modal.massless-interface")) << is_skew;
     options.orthogonalize = false;
     Diagnostics raw;
-    const auto kept = modal::bases::calc_basis(model, options, {}, raw);
+    const auto kept = modal::bases::calc_basis(fe::System(model), options, {}, raw);
     EXPECT_EQ(raw.has("modal.massless-interface"), is_skew);
     EXPECT_EQ(raw.has("modal.massless-constraint"), !is_skew);
     EXPECT_EQ(kept.boundary.size(), is_skew ? 6u : 5u);

@@ -97,6 +97,7 @@ class Examination:
         wrong, code = self.try_verbs(matrices, truth, spectrum, eigrl)
         if wrong:
             return Report("wrong", wrong, text)
+        unclear = unclear or (spectrum and spectrum.grey)
         if unclear:
             return Report("unclear", unclear, text)
         return Report("ok" if code == 0 else "refused", self.refusal, text)

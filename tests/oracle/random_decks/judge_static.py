@@ -14,18 +14,27 @@ def find_live(truth):
     return truth.K.diagonal() > 1e-13 * truth.K_size.diagonal()
 
 
+def calc_softness(truth):
+    """Lowest eigenvalue of K with a unit diagonal, what round-off may do to it, the dofs that have stiffness and the
+    scale of each."""
+    K = 0.5 * (truth.K + truth.K.T)
+    live = find_live(truth)          # with AUTOSPC NO what nothing touches is held all the same
+    if not live.any():
+        return 0.0, 1.0, live, None
+    s = 1 / np.sqrt(K.diagonal()[live])
+    values, vectors = np.linalg.eigh(K[np.ix_(live, live)] * np.outer(s, s))
+    softest = np.abs(vectors[:, 0])
+    return values[0], pencil.EPS * softest @ (truth.K_size[np.ix_(live, live)] * np.outer(s, s)) @ softest, live, s
+
+
 def solve_dense(model, truth):
     """u on the g-set, the energy error that round-off allows, or None for a singular or unclear stiffness."""
     K = 0.5 * (truth.K + truth.K.T)
     f = truth.T.T @ calc_load(model, truth.M_g, truth.index)
-    live = find_live(truth)          # with AUTOSPC NO what nothing touches is held all the same
-    if not live.any():
-        return None, "singular"
-    s = 1 / np.sqrt(K.diagonal()[live])
-    scaled = K[np.ix_(live, live)] * np.outer(s, s)
-    lowest = np.linalg.eigvalsh(scaled)[0]
+    lowest, noise, live, s = calc_softness(truth)
     if lowest < 1e-10:
-        return None, "singular" if abs(lowest) < 1e-14 * len(s) else "unclear"
+        return None, "singular" if abs(lowest) < 10 * noise else "unclear"
+    scaled = K[np.ix_(live, live)] * np.outer(s, s)
     L = pencil.cholesky(scaled)
     x = pencil.solve_upper(L, pencil.solve_lower(L, (s * f[live])[:, None]))[:, 0].astype(float)
     u = np.zeros(len(K))
@@ -84,6 +93,9 @@ def judge_forces(truth, u, load, reaction, mpc):
     own = truth.R.T @ reaction
     loose = own.copy()
     loose[sorted(truth.held_rows)] = 0
+    for row, follows in truth.oblique:
+        for other, factor in follows:
+            loose[other] += factor * own[row]
     loose[[row for row, is_live in zip(truth.free, find_live(truth)) if not is_live]] = 0
     if np.abs(loose).max() > noise:
         return f"static: a reaction of {np.abs(loose).max():.1e} at a dof that nothing holds"

@@ -42,32 +42,36 @@ class Spectrum:
     """lam, X: all finite eigenvalues, ascending, with M-normal vectors; noise: what round-off may do to each.
 
     num_null: motions with neither strain nor mass (left out of X). grey: why ranks are not certain, or None.
+    is_cut: masses near round-off leave in doubt how many there are above these.
     """
 
     def __init__(self):
         self.lam, self.noise, self.X, self.num_null, self.grey = np.zeros(0), np.zeros(0), None, 0, None
+        self.is_cut = False
 
     def is_zero(self):
         return np.abs(self.lam) <= 10 * self.noise
 
 
-def split_null(A):
-    """Orthonormal bases of range and null space of a scaled, semi-definite A; and whether there is a gap."""
+def split_null(A, size):
+    """Orthonormal bases of range and null space of a scaled, semi-definite A; and whether a gap lacks between what
+    round-off of the terms (`size`) may leave of each vector's energy and what is more."""
     values, vectors = np.linalg.eigh(A)
-    null = np.abs(values) < 1e-12
-    is_grey = bool(np.any((np.abs(values) >= 1e-14 * len(A)) & (np.abs(values) < 1e-10)))
+    noise = EPS * (np.abs(vectors) * (size @ np.abs(vectors))).sum(0)
+    null = np.abs(values) < 30 * noise
+    is_grey = bool(np.any((np.abs(values) >= 10 * noise) & (np.abs(values) < 1000 * noise)))
     return vectors[:, ~null], vectors[:, null], is_grey, bool(np.any(values < -1e-11))
 
 
 def count_rank(M, M_size, with_mass, found):
-    """Finite eigenvalues are as many as M has rank, K and M being semi-definite."""
+    """Finite eigenvalues are as many as M has rank, K and M being semi-definite; those that are certain."""
     B = M[np.ix_(with_mass, with_mass)]
     s = 1 / np.sqrt(B.diagonal())
     values = np.linalg.eigvalsh(B * np.outer(s, s))
     noise = EPS * len(s) * (M_size.diagonal()[with_mass] * s * s).max()
-    if np.any((values > 10 * noise) & (values < max(1e-9, 1e4 * noise))):
-        found.grey = found.grey or "the rank of the mass"
-    return int((values > max(1e-11, 100 * noise)).sum())
+    certain = max(1e-9, 1e4 * noise)
+    found.is_cut = bool(np.any((values > 10 * noise) & (values < certain)))
+    return int((values > (certain if found.is_cut else max(1e-11, 100 * noise))).sum())
 
 
 def invert(K, M, shift):
@@ -107,7 +111,9 @@ def solve(K, M, K_size, M_size):
     if np.any(ad[alive] < 1e-11 * (K_size.diagonal() + big * M_size.diagonal())[alive]):
         found.grey = "a diagonal near round-off"
     s = np.where(alive, 1 / np.sqrt(np.where(alive, ad, 1)), 0)
-    Q, N, is_grey, is_indefinite = split_null((A * np.outer(s, s))[np.ix_(alive, alive)])
+    scaled, size = (B[np.ix_(alive, alive)] * np.outer(s, s)[np.ix_(alive, alive)]
+                    for B in (A, K_size + big * M_size))
+    Q, N, is_grey, is_indefinite = split_null(scaled, size)
     found.num_null = dead + N.shape[1]
     if is_grey:
         found.grey = "the rank of the pencil"
@@ -158,7 +164,10 @@ def refine_high(K, M, K_size, M_size, lam, noise, X, shift, big):
         solved = invert(*(0.5 * (P + P.T) for P in (high.T @ B.astype(LONG) @ high for B in (K, M))), LONG(0))
         if solved is None:
             break
-        high_lam, high_noise, high = measure(K, M, K_size, M_size, (high @ solved[1][:, np.argsort(-solved[0])]))
+        high = high @ solved[1][:, np.argsort(-solved[0])]
+        if not np.all((high * (M.astype(LONG) @ high)).sum(0) > 0):      # roundoff: what was measured before stands
+            break
+        high_lam, high_noise, high = measure(K, M, K_size, M_size, high)
         if high_lam[0] < lam[first - 1]:
             break
         lam, noise = np.r_[lam[:first], high_lam], np.r_[noise[:first], high_noise + 1e-26 * big]

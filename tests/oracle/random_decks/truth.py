@@ -171,6 +171,7 @@ class Truth:
         self.T_all = self.R @ eliminate(model, self.index, set())[0]
         C, free = eliminate(model, self.index, held)
         T = self.R @ C
+        self.oblique = []      # row that AUTOSPC holds, and rows and factors that it follows: held along that direction
         if model.params.get("AUTOSPC") != "NO":
             size = np.abs(T)
             K_f = T.T @ K @ T
@@ -178,6 +179,8 @@ class Truth:
                             accept_autospc(K_f, size.T @ np.abs(K) @ size, free, self.index,
                                            [(g, c) for g, c, _ in reported]))
             T = follow_directions(K_f, T, free, self.index, reported or [])
+            self.oblique = [(self.index[g, c], [(self.index[g, o], factor) for o, factor in dict(follows).items()])
+                            for g, c, follows in reported or [] if follows]
             T = np.delete(T, self.autospc, axis=1)
             held |= {free[k] for k in self.autospc}
             free = [row for k, row in enumerate(free) if k not in set(self.autospc)]
