@@ -25,6 +25,7 @@ void add_verbs(CLI::App& app, cli::Action& action) {
   cli::add_run(app, action);
   cli::add_equilibrium(app, action);
   cli::add_linearize(app, action);
+  cli::add_response(app, action);
   cli::add_select(app, action);
   cli::add_export(app, action);
   cli::add_plot(app, action);

@@ -29,6 +29,7 @@ void add_init(CLI::App& app, Action& action);
 void add_batch(CLI::App& app, Action& action);
 void add_equilibrium(CLI::App& app, Action& action);
 void add_linearize(CLI::App& app, Action& action);
+void add_response(CLI::App& app, Action& action);
 void add_select(CLI::App& app, Action& action);
 
 /// Runs one command line in this process, messages and exit code as from the shell. Words without the program's name.

@@ -11,8 +11,12 @@
 #include "cli/common/vtu_file.hpp"
 #include "cli/export/export_bodies.hpp"
 #include "cli/export/export_matrices.hpp"
+#include "cli/linearize/linear_model_files.hpp"
+#include "cli/linearize/sweep.hpp"
 #include "formats/export/uff.hpp"
 #include "formats/export/vtu.hpp"
+#include "formats/hdf5/linear_file.hpp"
+#include "formats/hdf5/sweep_file.hpp"
 #include "formats/nastran/reader.hpp"
 #include "formats/nastran/writer.hpp"
 
@@ -49,6 +53,8 @@ std::vector<exports::CsvColumn> read_columns(const ExportOptions& o) {
 std::string make_csv(const ExportOptions& o) {
   std::ostringstream text;
   const auto format = o.channels.empty() ? read_file_format(o.file) : "";
+  if (format == "bough-linear") return make_linear_csv(hdf5::read_linear_model(o.file));
+  if (format == "bough-sweep") return make_sweep_csv(hdf5::read_sweep(o.file));
   exports::write_csv(text, has_shapes(format) ? read_shape_columns(o.file, format) : read_columns(o));
   return text.str();
 }
@@ -124,10 +130,11 @@ void add_export(CLI::App& app, Action& action) {
   auto o = std::make_shared<ExportOptions>();
   auto* verb =
       app.add_subcommand("export", "Bodies, modes, matrices, results or a deck in the format of another program");
-  verb->add_option("file", o->file,
-                   "csv: results file, modes file or flexible body; vtu: modes file or flexible body; bdf: Nastran "
-                   "deck; sid, mbdyn: flexible body; mat, "
-                   "op4, uff: any HDF5 file of Bough that has such arrays")
+  verb->add_option(
+          "file", o->file,
+          "csv: results, modes, flexible body, linear model or sweep; vtu: modes file or flexible body; bdf: Nastran "
+          "deck; sid, mbdyn: flexible body; mat, "
+          "op4, uff: any HDF5 file of Bough that has such arrays")
       ->required();
   verb->add_option("--to", o->format,
                    "Format: csv, vtu (mode shapes for ParaView), bdf (the deck as Bough reads it), mat (MATLAB), "

@@ -1,9 +1,13 @@
 #include "cli/linearize/linear_model_files.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "cli/common/console.hpp"
 #include "formats/matrices/mat_file.hpp"
+#include "solver/statespace/hankel.hpp"
 
 namespace bough::cli {
 
@@ -38,13 +42,160 @@ void write_linear_mat(const LinearModel& model, const std::string& path) {
                              {"output_name", make_cells(model.outputs.name)}});
 }
 
+std::string format_hankel(const records::Hankel& hankel) {
+  if (hankel.value.size() == 0) return "";
+  std::string text = "\nHankel singular values:";
+  const Eigen::Index shown = std::min<Eigen::Index>(hankel.value.size(), 12);
+  for (Eigen::Index i = 0; i < shown; ++i) text += fmt::format(" {:.4g}", hankel.value[i]);
+  if (shown < hankel.value.size()) text += fmt::format(" ... ({})", hankel.value.size());
+  text += "\n";
+  if (hankel.num_left_out > 0)
+    text += fmt::format("of what decays; left out: {} that {}\n",
+                        count(static_cast<std::size_t>(hankel.num_left_out), "pole"),
+                        hankel.num_left_out == 1 ? "does not" : "do not");
+  return text;
+}
+
+namespace {
+
+std::string format_operating_point(const LinearModel& model) {
+  if (model.q_names.size() == 0) return "";
+  Table table{{"coordinate", "position", "speed", "dims", ""}, {}};
+  const auto is_in = [](const std::vector<std::string>& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  std::size_t num_zero = 0;
+  for (int i = 0; i < model.q_names.size(); ++i) {
+    const auto& name = model.q_names.name[static_cast<std::size_t>(i)];
+    const auto& speeds = model.u_names.name;
+    const auto speed = std::find(speeds.begin(), speeds.end(), name);
+    const double rate = speed == speeds.end() ? 0 : model.u[speed - speeds.begin()];
+    if (model.q[i] == 0 && rate == 0 && name.find(":eta") != std::string::npos) {
+      ++num_zero;
+      continue;
+    }
+    table.rows.push_back({name, fmt::format("{:.6g}", model.q[i]),
+                          speed == speeds.end() ? "-" : fmt::format("{:.6g}", rate),
+                          model.q_names.dims[static_cast<std::size_t>(i)],
+                          !is_in(model.periodic, name) ? ""
+                          : rate != 0                  ? "periodic, turns"
+                                                       : "periodic"});
+  }
+  for (int i = 0; i < model.u_names.size(); ++i) {  // rates that are no coordinate's
+    const auto& name = model.u_names.name[static_cast<std::size_t>(i)];
+    if (!is_in(model.q_names.name, name))
+      table.rows.push_back(
+          {name, "-", fmt::format("{:.6g}", model.u[i]), model.u_names.dims[static_cast<std::size_t>(i)], ""});
+  }
+  std::string text = table.rows.empty() ? "" : table.to_text();
+  if (num_zero > 0) text += fmt::format("{} at rest at 0\n", count(num_zero, "modal coordinate"));
+  return text + "\n";
+}
+
+/// Beside the coordinate that takes part most: the mode of a body or the hinge that does.
+std::string name_partner(const records::Poles& poles, std::size_t i) {
+  if (i >= poles.hinge.size()) return "";
+  const auto& mode = poles.mode[i];
+  if (mode == poles.hinge[i]) return poles.body_mode[i];
+  if (mode == poles.body_mode[i]) return poles.hinge[i];
+  return poles.hinge[i] + (poles.hinge[i].empty() || poles.body_mode[i].empty() ? "" : ", ") + poles.body_mode[i];
+}
+
+std::string format_multipliers(const records::Multipliers& m) {
+  if (m.period == 0) return "";
+  std::string text = fmt::format("\nmultipliers of a period of the samples, {:g} ({})\n", m.period,
+                                 count(static_cast<std::size_t>(m.num_samples), "instant"));
+  Table table{{"real", "imag", "size", "decay 1/T", "frequency Hz", "mode"}, {}};
+  std::size_t num_small = 0;
+  for (Eigen::Index i = 0; i < m.real.size(); ++i) {
+    const double size = std::hypot(m.real[i], m.imag[i]);
+    if (size < 1e-9) ++num_small;
+    if (size < 1e-9 || m.imag[i] < 0) continue;
+    table.rows.push_back({format_number(m.real[i], 1), m.imag[i] > 0 ? "±" + format_number(m.imag[i], 1) : "0",
+                          fmt::format("{:.6g}", size), fmt::format("{:.5g}", m.decay[i]),
+                          fmt::format("{:.5g}", m.frequency_hz[i]), m.mode[static_cast<std::size_t>(i)]});
+  }
+  text += table.to_text();
+  if (num_small > 0) text += fmt::format("and {} at 0: gone within a period\n", num_small);
+  return text + "frequencies up to multiples of 1 over the period\n";
+}
+
+}  // namespace
+
+std::string make_linear_csv(const LinearModel& model) {
+  const auto quote = [](const std::string& name) {
+    return name.find_first_of(",\"") == std::string::npos ? name : "\"" + name + "\"";
+  };
+  std::string text = "row";
+  for (const auto* signals : {&model.states, &model.inputs})
+    for (const auto& name : signals->name) text += "," + quote(name);
+  text += "\n";
+  const auto add = [&](const std::string& name, const Eigen::RowVectorXd& left, const Eigen::RowVectorXd& right) {
+    text += name;
+    for (const double v : left) text += fmt::format(",{:.17g}", v);
+    for (const double v : right) text += fmt::format(",{:.17g}", v);
+    text += "\n";
+  };
+  for (int i = 0; i < model.states.size(); ++i)
+    add("d/dt " + quote(model.states.name[static_cast<std::size_t>(i)]), model.A.row(i), model.B.row(i));
+  for (int i = 0; i < model.outputs.size(); ++i)
+    add(quote(model.outputs.name[static_cast<std::size_t>(i)]), model.C.row(i), model.D.row(i));
+  return text;
+}
+
+LinearModel choose_channels(LinearModel model, const std::vector<std::string>& inputs,
+                            const std::vector<std::string>& outputs, const std::string& file) {
+  Diagnostics diagnostics;
+  const auto choose = [&](const std::vector<std::string>& wanted, const records::Signals& known, const char* noun,
+                          const char* id) {
+    std::vector<int> chosen;
+    for (int i = 0; wanted.empty() && i < known.size(); ++i) chosen.push_back(i);
+    for (const auto& name : wanted) {
+      const auto size = chosen.size();
+      for (int i = 0; i < known.size(); ++i) {
+        const auto& one = known.name[static_cast<std::size_t>(i)];
+        if (one == name || one.starts_with(name + ":")) chosen.push_back(i);
+      }
+      if (chosen.size() > size) continue;
+      const auto near = find_nearest(name, known.name);
+      diagnostics.error(id, {file}, fmt::format("there is no {} '{}'", noun, name),
+                        !near.empty() ? "did you mean '" + near + "'?"
+                                      : fmt::format("the model has {}", fmt::join(known.name, ", ")));
+    }
+    return chosen;
+  };
+  const auto in = choose(inputs, model.inputs, "input", "linear.unknown-input");
+  const auto out = choose(outputs, model.outputs, "output", "linear.unknown-output");
+  diagnostics.throw_if_errors();
+  const auto take = [](const records::Signals& all, const std::vector<int>& some) {
+    records::Signals taken;
+    for (const int i : some) {
+      taken.name.push_back(all.name[static_cast<std::size_t>(i)]);
+      taken.dims.push_back(all.dims[static_cast<std::size_t>(i)]);
+    }
+    return taken;
+  };
+  const bool is_all = inputs.empty() && outputs.empty();
+  model.inputs = take(model.inputs, in);
+  model.outputs = take(model.outputs, out);
+  model.B = Eigen::MatrixXd(model.B(Eigen::all, in));
+  model.C = Eigen::MatrixXd(model.C(out, Eigen::all));
+  model.D = Eigen::MatrixXd(model.D(out, in));
+  if (!is_all) {
+    model.has_zeros = false;
+    model.hankel = statespace::calc_hankel(model.A, model.B, model.C);
+  }
+  return model;
+}
+
 std::string format_linear_model(const LinearModel& model) {
   std::string text = fmt::format(
       "{} states, {} inputs, {} outputs at t = {:g}, |u_dot| {:.1e}\n"
       "A, C by differences: error {:.1e}, another step differs by {:.1e}; B, D exact\n\n",
       model.states.size(), model.inputs.size(), model.outputs.size(), model.time, model.residual, model.error,
       model.difference);
-  Table table{{"pole", "real", "imag", "frequency Hz", "damping", "mode"}, {}};
+  text += format_operating_point(model);
+  Table table{{"pole", "real", "imag", "frequency Hz", "damping", "mode", "with"}, {}};
   const auto& poles = model.poles;
   const double scale = poles.size() > 0 ? poles.frequency_hz.maxCoeff() * 6.28 : 0;
   for (int i = 0; i < poles.size(); ++i) {
@@ -52,17 +203,18 @@ std::string format_linear_model(const LinearModel& model) {
     table.rows.push_back({std::to_string(i + 1), format_number(poles.real[i], scale),
                           poles.imag[i] > 0 ? "±" + format_number(poles.imag[i], scale) : "0",
                           format_number(poles.frequency_hz[i], scale), format_number(poles.damping[i], 1),
-                          poles.mode[static_cast<std::size_t>(i)]});
+                          poles.mode[static_cast<std::size_t>(i)], name_partner(poles, static_cast<std::size_t>(i))});
   }
   if (!table.rows.empty()) text += table.to_text();
-  if (!model.has_zeros) return text;
+  const std::string tail = format_multipliers(model.multipliers) + format_hankel(model.hankel);
+  if (!model.has_zeros) return text + tail;
   text += model.zeros_real.size() == 0 ? "\nno finite zeros\n" : "\nzeros\n";
   for (Eigen::Index i = 0; i < model.zeros_real.size(); ++i) {
     if (model.zeros_imag[i] < 0) continue;
     text += fmt::format("  {:.6g}{}\n", model.zeros_real[i],
                         model.zeros_imag[i] > 0 ? fmt::format(" ± {:.6g} i", model.zeros_imag[i]) : "");
   }
-  return text;
+  return text + tail;
 }
 
 nlohmann::json make_json(const LinearModel& model) {
@@ -83,7 +235,20 @@ nlohmann::json make_json(const LinearModel& model) {
         {"imag", to_list(model.poles.imag)},
         {"frequency_hz", to_list(model.poles.frequency_hz)},
         {"damping", to_list(model.poles.damping)},
-        {"mode", model.poles.mode}}}};
+        {"mode", model.poles.mode},
+        {"body_mode", model.poles.body_mode},
+        {"hinge", model.poles.hinge}}}};
+  json["operating_point"]["q_name"] = model.q_names.name;
+  json["operating_point"]["q_dims"] = model.q_names.dims;
+  json["operating_point"]["u_name"] = model.u_names.name;
+  json["operating_point"]["u_dims"] = model.u_names.dims;
+  json["operating_point"]["periodic"] = model.periodic;
+  if (model.multipliers.period > 0)
+    json["multipliers"] = {{"period", model.multipliers.period},
+                           {"real", to_list(model.multipliers.real)},
+                           {"imag", to_list(model.multipliers.imag)},
+                           {"mode", model.multipliers.mode}};
+  json["hankel"] = {{"value", to_list(model.hankel.value)}, {"left_out", model.hankel.num_left_out}};
   if (model.has_zeros) json["zeros"] = {{"real", to_list(model.zeros_real)}, {"imag", to_list(model.zeros_imag)}};
   return json;
 }

@@ -2,6 +2,7 @@
 /// \file A linear model as a .mat file and as tables.
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "formats/records/linear_model.hpp"
 
@@ -9,8 +10,16 @@ namespace bough::cli {
 
 /// A B C D, state_name, input_name, output_name; nothing else.
 void write_linear_mat(const records::LinearModel& model, const std::string& path);
-/// Size, operating point, accuracy, poles and zeros.
+/// Size, operating point, accuracy, poles and zeros, multipliers, Hankel values.
 std::string format_linear_model(const records::LinearModel& model);
+/// The largest Hankel singular values and what they leave out; "" where there are none.
+std::string format_hankel(const records::Hankel& hankel);
+/// [A B; C D] as one table: a row for each state's rate, then for each output; the first column names it.
+std::string make_linear_csv(const records::LinearModel& model);
+/// The model with these inputs and outputs only, by name ("tip" is all its components); empty lists: all. InputError
+/// "linear.unknown-input", "linear.unknown-output".
+records::LinearModel choose_channels(records::LinearModel model, const std::vector<std::string>& inputs,
+                                     const std::vector<std::string>& outputs, const std::string& file);
 nlohmann::json make_json(const records::LinearModel& model);
 
 }  // namespace bough::cli

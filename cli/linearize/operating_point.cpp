@@ -29,7 +29,7 @@ class LastState final : public records::ResultSink {
 solver::Plant make_plant(const LoadedSystem& loaded, bool is_open) { return solver::Plant(loaded.system, is_open); }
 
 solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& plant, double t,
-                              Diagnostics& diagnostics) {
+                              Diagnostics& diagnostics, std::optional<records::Checkpoint>* last) {
   auto spec = loaded.spec;
   auto& s = spec.simulation;
   const int nq = loaded.system.num_q(), nu = loaded.system.num_u();
@@ -41,7 +41,10 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& p
   if (t == s.start) return plant.make_initial_point();
   s.duration = s.output_step = t - s.start;
   LastState sink;
-  solver::simulate(loaded.system, spec, sink, {}, diagnostics);
+  solver::SimulateOptions options;
+  if (last) options.resume = *last;
+  solver::simulate(loaded.system, spec, sink, options, diagnostics);
+  if (last) *last = sink.last();
   const auto& state = sink.last().state;
   const auto* discrete = sink.last().find("discrete");
   if (discrete && *discrete != solver::SystemOde(loaded.system).make_memory())

@@ -1,6 +1,9 @@
 #pragma once
 /// \file The state to linearize about: the start, a later time of the run, or an equilibrium.
+#include <optional>
+
 #include "cli/common/system_files.hpp"
+#include "formats/records/results.hpp"
 #include "solver/linear/plant.hpp"
 
 namespace bough::cli {
@@ -8,9 +11,11 @@ namespace bough::cli {
 /// `is_open`: without the controllers.
 solver::Plant make_plant(const LoadedSystem& loaded, bool is_open = false);
 
-/// The state at time t, by the run's own integrator. InputError("linear.bad-time") before the start.
+/// The state at time t, by the run's own integrator; `last`: where the run has come, goes on from there and holds where
+/// it has come then. InputError("linear.bad-time") before the start; "linear.changed-system" where an event has changed
+/// the system before t.
 solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& plant, double t,
-                              Diagnostics& diagnostics);
+                              Diagnostics& diagnostics, std::optional<records::Checkpoint>* last = nullptr);
 
 /// Rest or steady spin near `start`, by the hinge rates of the system file whatever those at `start` are.
 solver::OperatingPoint find_rest(solver::Plant& plant, solver::OperatingPoint start, const std::string& file);

@@ -15,6 +15,7 @@
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
+#include "cli/plot/linear_plots.hpp"
 #include "formats/report/svg_plot.hpp"
 
 namespace bough::cli {
@@ -31,6 +32,7 @@ struct PlotOptions : CommonOptions {
   std::string title, x_label = "time", y_label;
   double y_min = 0, y_max = 0;
   bool has_limits = false;
+  LinearPlotChoice linear;
 };
 
 /// Two numeric columns of a CSV file; lines that start with # or a letter are skipped.
@@ -86,6 +88,37 @@ void write_picture(const std::string& path, const std::string& svg) {
   throw fail("rsvg-convert could not write the picture", look + ", or write .svg");
 }
 
+/// The file to write: as given, or `otherwise` with .svg.
+std::string choose_picture(const PlotOptions& o, std::string otherwise) {
+  if (const auto ending = fs::path(o.output).extension().string(); !ending.empty() && !has_suffix(o.output, ".svg") &&
+                                                                   !has_suffix(o.output, ".png") &&
+                                                                   !has_suffix(o.output, ".pdf"))
+    throw InputError("cli.picture-format", {o.output}, "no picture format " + ending, "choose .svg, .png or .pdf");
+  if (!o.output.empty()) return o.output;
+  for (char& c : otherwise)
+    if (c == '/' || c == ':') c = '_';
+  return otherwise + ".svg";
+}
+
+int run_linear_plot(const PlotOptions& o, const Console& console) {
+  auto plots = make_linear_plots(o.files, o.linear);
+  plots.front().title = o.title;
+  for (auto& plot : plots) {
+    for (std::size_t i = 0; i < std::min(o.labels.size(), plot.curves.size()); ++i)
+      if (&plot == &plots.front()) plot.curves[i].label = o.labels[i];
+    if (&plot == &plots.front() && o.has_limits) plot.y_min = o.y_min, plot.y_max = o.y_max;
+  }
+  if (!o.y_label.empty()) plots.front().y_label = o.y_label;
+  for (const auto& path : o.points) plots.front().curves.push_back(read_points(path));
+  const auto output = choose_picture(o, fs::path(o.files.front()).stem().string() + "-" + o.linear.kind);
+  auto inputs = o.files;
+  inputs.insert(inputs.end(), o.points.begin(), o.points.end());
+  check_output(o, output, inputs);
+  write_picture(output, plots.size() == 1 ? report::draw_svg(plots.front()) : report::draw_svg(plots));
+  console.print("written: " + output + "\n");
+  return kSuccess;
+}
+
 int run_plot(const PlotOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
@@ -93,6 +126,10 @@ int run_plot(const PlotOptions& o) {
   if (o.has_limits && !(o.y_min < o.y_max))
     throw InputError("cli.bad-range", {}, fmt::format("the axis from {:g} to {:g} is empty", o.y_min, o.y_max),
                      "give --y-max above --y-min");
+  if (!o.linear.kind.empty()) return run_linear_plot(o, console);
+  if (o.sensors.empty())
+    throw InputError("cli.nothing-to-plot", {}, "neither --sensor nor --kind says what to draw",
+                     "give --sensor NAME of results, or --kind bode of a linear model");
   report::Plot plot;
   plot.title = o.title.empty() ? fmt::format("{}", fmt::join(o.sensors, ", ")) : o.title;
   plot.x_label = o.x_label;
@@ -122,15 +159,7 @@ int run_plot(const PlotOptions& o) {
                         fmt::format("there are {} and {}: the last ones are not used", count(o.labels.size(), "label"),
                                     count(plot.curves.size(), "curve")),
                         "give one --label a curve, in the order of the files and sensors, then of --points");
-  std::string output = o.output;
-  if (const auto ending = fs::path(output).extension().string();
-      !ending.empty() && !has_suffix(output, ".svg") && !has_suffix(output, ".png") && !has_suffix(output, ".pdf"))
-    throw InputError("cli.picture-format", {output}, "no picture format " + ending, "choose .svg, .png or .pdf");
-  if (output.empty()) {
-    output = o.sensors.front() + ".svg";
-    for (char& c : output)
-      if (c == '/' || c == ':') c = '_';
-  }
+  const std::string output = choose_picture(o, o.sensors.front());
   auto inputs = o.files;
   inputs.insert(inputs.end(), o.points.begin(), o.points.end());
   check_output(o, output, inputs);
@@ -144,12 +173,18 @@ int run_plot(const PlotOptions& o) {
 
 void add_plot(CLI::App& app, Action& action) {
   auto o = std::make_shared<PlotOptions>();
-  auto* verb = app.add_subcommand("plot", "Curves of one or several results files against time, as a picture");
-  verb->add_option("files", o->files, "Results HDF5 files")->required();
+  auto* verb = app.add_subcommand("plot", "Curves of results against time, or a linear model, as a picture");
+  verb->add_option("files", o->files, "HDF5 files: results, or with --kind linear models or sweeps")->required();
   verb->add_option("--sensor", o->sensors,
                    "Sensor NAME or NAME:component, or a path such as /energy/strain; may be repeated")
-      ->required()
       ->allow_extra_args(false);
+  verb->add_option("--kind", o->linear.kind,
+                   "Of linear models: bode, nichols, sigma (singular values) or poles; of what linearize --sweep or "
+                   "--each wrote: campbell (frequencies over the parameter) or locus")
+      ->check(CLI::IsMember(list_plot_kinds()))
+      ->excludes("--sensor");
+  verb->add_option("--inputs", o->linear.inputs, "With --kind: only these inputs")->delimiter(',')->needs("--kind");
+  verb->add_option("--outputs", o->linear.outputs, "With --kind: only these outputs")->delimiter(',')->needs("--kind");
   verb->add_option("--points", o->points, "CSV file of x,y drawn as markers: reference points; may be repeated")
       ->allow_extra_args(false);
   verb->add_option("--label", o->labels, "Label of each curve in turn, then of each --points; may be repeated")
@@ -164,7 +199,9 @@ void add_plot(CLI::App& app, Action& action) {
   add_common_options(*verb, *o, kOutput, "Picture: .svg, .png or .pdf (default: the sensor's name with .svg, here)");
   verb->footer(
       "Example:\n  bough plot spinup.h5 --sensor tip_deflection:y -o tip.svg\n"
-      "  bough plot spinup.h5 spinup-no-kg.h5 --sensor tip_deflection:y --y-min -1.2 --y-max 0.2 -o tip.svg");
+      "  bough plot spinup.h5 spinup-no-kg.h5 --sensor tip_deflection:y --y-min -1.2 --y-max 0.2 -o tip.svg\n"
+      "  bough plot arm-linear.h5 --kind bode --outputs tip:y -o bode.svg\n"
+      "  bough plot campbell.h5 --kind campbell -o campbell.svg");
   verb->callback([&action, o] { action = [o] { return run_plot(*o); }; });
 }
 

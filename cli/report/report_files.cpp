@@ -15,6 +15,7 @@
 #include "formats/hdf5/table_file.hpp"
 #include "formats/report/linear_chapter.hpp"
 #include "formats/report/table_chapters.hpp"
+#include "solver/statespace/frequency_response.hpp"
 
 namespace bough::cli {
 
@@ -38,6 +39,18 @@ report::Chapter make_selection_chapter(const std::string& file) {
   } catch (const nlohmann::json::exception& error) {
     throw fail(std::string("not the list of modes that select prints: ") + error.what());
   }
+}
+
+report::Chapter make_linear_chapter(const std::string& file) {
+  const auto model = hdf5::read_linear_model(file);
+  report::LinearFindings findings{{}, {}, {}, model.inputs.size() == 1 && model.outputs.size() == 1};
+  if (model.inputs.size() > 0 && model.outputs.size() > 0) {
+    findings.response = statespace::calc_frequency_response(model, {0, 0, 300, 2000});
+    findings.peak = statespace::calc_peak_gain(model, findings.response);
+    findings.has_margins = findings.has_margins && model.outputs.name.front().ends_with(":return");
+    if (findings.has_margins) findings.margins = statespace::calc_margins(model, findings.response);
+  }
+  return report::make_chapter(model, findings, file, list_facts(file));
 }
 
 report::Chapter make_campaign_chapter(const std::string& file) {
@@ -118,7 +131,7 @@ report::Chapter make_chapter(const std::string& file, const ReportRequest& reque
   if (format == "bough-results") return make_results_chapter(file, request, diagnostics);
   if (format == "bough-flexbody") return make_body_chapter(file);
   if (format == "bough-modes") return make_modes_chapter(file);
-  if (format == "bough-linear") return report::make_chapter(hdf5::read_linear_model(file), file, list_facts(file));
+  if (format == "bough-linear") return make_linear_chapter(file);
   if (format == "bough-comparison") return report::make_chapter(hdf5::read_comparison(file), file, list_facts(file));
   if (format == "bough-outcomes") return make_campaign_chapter(file);
   throw InputError("cli.no-report", {file}, "no page can be made of a file of format \"" + format + "\"", kTakes);

@@ -38,10 +38,11 @@ SystemPlant::SystemPlant(const std::string& system, const std::string& body, Ope
 }
 
 records::LinearModel SystemPlant::linearize(const LoadedSystem& loaded, Diagnostics& diagnostics) const {
-  auto plant = make_plant(loaded);
+  auto plant = make_plant(loaded, choice_.open);
   auto point = choice_.at ? run_to(loaded, plant, *choice_.at, diagnostics) : plant.make_initial_point();
   if (choice_.equilibrium) point = find_rest(plant, std::move(point), file_);
-  return solver::linearize(plant, point, {choice_.inputs, choice_.outputs, false}, {file_}, diagnostics);
+  plant.hold_commands(point);
+  return solver::linearize(plant, point, {choice_.inputs, choice_.outputs, false, {}}, {file_}, diagnostics);
 }
 
 records::LinearModel SystemPlant::linearize(Diagnostics& diagnostics) const { return linearize(loaded_, diagnostics); }

@@ -11,7 +11,7 @@ namespace bough::cli {
 
 struct OperatingChoice {
   std::optional<double> at;
-  bool equilibrium = false;
+  bool equilibrium = false, open = false;
   std::vector<std::string> inputs, outputs, set;
 };
 

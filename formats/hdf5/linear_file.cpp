@@ -28,6 +28,28 @@ void write_poles(FileWriter& file, const records::Poles& poles) {
   file.write_vector("/poles/frequency_hz", poles.frequency_hz, {"|pole| / 2 pi", "1/T"});
   file.write_vector("/poles/damping", poles.damping, {"-real / |pole|; 0 for a pole at 0", "1"});
   file.write_strings("/poles/mode", poles.mode, {"the coordinate that takes part most", "1"});
+  file.write_strings("/poles/body_mode", poles.body_mode, {"the mode of a body that does; empty: none", "1"});
+  file.write_strings("/poles/hinge", poles.hinge, {"the hinge coordinate that does; empty: none", "1"});
+}
+
+void write_multipliers(FileWriter& file, const records::Multipliers& m) {
+  file.write_number("/multipliers/period", m.period, {"of all samples together", "T"});
+  file.write_vector("/multipliers/real", m.real, {"what a period makes of a departure, eigenvalues, real part", "1"});
+  file.write_vector("/multipliers/imag", m.imag, {"likewise, imaginary part", "1"});
+  file.write_vector("/multipliers/decay", m.decay.cwiseMax(-1e300), {"ln |multiplier| / period", "1/T"});
+  file.write_vector("/multipliers/frequency_hz", m.frequency_hz,
+                    {"|arg| / 2 pi period, up to multiples of 1 / period", "1/T"});
+  file.write_strings("/multipliers/mode", m.mode, {"the coordinate or memory that takes part most", "1"});
+}
+
+void write_hankel(FileWriter& file, const records::Hankel& hankel) {
+  file.write_vector("/hankel/value", hankel.value,
+                    {"Hankel singular values of the part that decays, descending", "as the names' dims say"});
+  file.write_matrix("/hankel/controllability", hankel.controllability,
+                    {"Gramian: A X + X A^T + B B^T = 0 on the part that decays", "as the names' dims say"});
+  file.write_matrix("/hankel/observability", hankel.observability,
+                    {"Gramian: A^T X + X A + C^T C = 0 on the part that decays", "as the names' dims say"});
+  file.write_integers("/hankel/left_out", std::vector<int>{hankel.num_left_out}, {"poles that do not decay", "1"});
 }
 
 }  // namespace
@@ -47,6 +69,10 @@ void write_linear_model(const LinearModel& model, const std::string& path) {
   file.write_vector("/operating_point/q", model.q,
                     {"hinge coordinates (quaternions w, x, y, z), then modal coordinates, body by body", "1 or L"});
   file.write_vector("/operating_point/u", model.u, {"hinge rates, then modal rates, body by body", "1/T or L/T"});
+  write_signals(file, "/operating_point/positions", model.q_names, "entries of q");
+  write_signals(file, "/operating_point/speeds", model.u_names, "entries of u");
+  file.write_strings("/operating_point/periodic", model.periodic,
+                     {"coordinates that are angles, the same again after 2 pi", "1"});
   file.write_number("/operating_point/residual", model.residual,
                     {"norm of u_dot: 0 at rest and in a steady motion", "1/T^2 or L/T^2"});
   file.write_number("/accuracy/error", model.error,
@@ -58,6 +84,8 @@ void write_linear_model(const LinearModel& model, const std::string& path) {
     file.write_vector("/zeros/real", model.zeros_real, {"finite transmission zeros, real part", "1/T"});
     file.write_vector("/zeros/imag", model.zeros_imag, {"finite transmission zeros, imaginary part", "1/T"});
   }
+  if (model.multipliers.period > 0) write_multipliers(file, model.multipliers);
+  if (model.hankel.value.size() > 0) write_hankel(file, model.hankel);
   file.commit();
 }
 
@@ -86,6 +114,30 @@ LinearModel read_linear_model(const std::string& path) {
   model.poles.frequency_hz = file.read_vector("/poles/frequency_hz", nx);
   model.poles.damping = file.read_vector("/poles/damping", nx);
   model.poles.mode = file.read_strings("/poles/mode", nx);
+  if (file.has("/poles/hinge")) {
+    model.poles.body_mode = file.read_strings("/poles/body_mode", nx);
+    model.poles.hinge = file.read_strings("/poles/hinge", nx);
+  }
+  if (file.has("/operating_point/positions/name")) {
+    model.q_names = read_signals(file, "/operating_point/positions");
+    model.u_names = read_signals(file, "/operating_point/speeds");
+    model.periodic = file.read_strings("/operating_point/periodic", -1);
+  }
+  if (file.has("/multipliers/period")) {
+    auto& m = model.multipliers;
+    m.period = file.read_number("/multipliers/period");
+    m.real = file.read_vector("/multipliers/real", -1);
+    m.imag = file.read_vector("/multipliers/imag", m.real.size());
+    m.decay = file.read_vector("/multipliers/decay", m.real.size());
+    m.frequency_hz = file.read_vector("/multipliers/frequency_hz", m.real.size());
+    m.mode = file.read_strings("/multipliers/mode", m.real.size());
+  }
+  if (file.has("/hankel/value")) {
+    model.hankel.value = file.read_vector("/hankel/value", -1);
+    model.hankel.controllability = file.read_matrix("/hankel/controllability", nx, nx);
+    model.hankel.observability = file.read_matrix("/hankel/observability", nx, nx);
+    model.hankel.num_left_out = file.read_integers("/hankel/left_out", 1).front();
+  }
   model.has_zeros = file.has("/zeros/real");
   if (model.has_zeros) {
     model.zeros_real = file.read_vector("/zeros/real", -1);

@@ -6,7 +6,7 @@
 
 namespace bough::hdf5 {
 
-inline constexpr const char* kLinearFormatVersion = "1.0";
+inline constexpr const char* kLinearFormatVersion = "1.1";
 
 /// Throw as the functions of formats/hdf5/files.hpp.
 void write_linear_model(const records::LinearModel& model, const std::string& path);

@@ -17,10 +17,29 @@ struct Signals {
 /// Eigenvalues of A: complex pairs together, by distance from zero.
 struct Poles {
   Eigen::VectorXd real, imag;
-  Eigen::VectorXd frequency_hz;   ///< |λ| / 2π
-  Eigen::VectorXd damping;        ///< -Re λ / |λ|; 0 for λ = 0
-  std::vector<std::string> mode;  ///< the coordinate that takes part most
+  Eigen::VectorXd frequency_hz;               ///< |λ| / 2π
+  Eigen::VectorXd damping;                    ///< -Re λ / |λ|; 0 for λ = 0
+  std::vector<std::string> mode;              ///< the coordinate that takes part most
+  std::vector<std::string> body_mode, hinge;  ///< the mode and the hinge coordinate that do; "" where none does
   int size() const { return static_cast<int>(real.size()); }
+};
+
+/// Of a system with sampled controllers: eigenvalues of what one period makes of a departure.
+struct Multipliers {
+  double period = 0;    ///< of all samples together; 0: nothing is sampled
+  int num_samples = 0;  ///< instants in it
+  Eigen::VectorXd real, imag;
+  Eigen::VectorXd decay;         ///< ln |z| / period: negative where it dies out
+  Eigen::VectorXd frequency_hz;  ///< |arg z| / (2π period), up to multiples of 1 / period
+  std::vector<std::string> mode;
+};
+
+/// Of the part of the model that decays.
+struct Hankel {
+  Eigen::VectorXd value;  ///< singular values, descending
+  Eigen::MatrixXd controllability,
+      observability;     ///< Gramians, of all states: X with A X + X Aᵀ + B Bᵀ = 0, and its dual
+  int num_left_out = 0;  ///< poles that do not decay
 };
 
 struct LinearModel {
@@ -28,15 +47,20 @@ struct LinearModel {
   Eigen::MatrixXd A, B, C, D;
   Signals states, inputs, outputs;
 
-  double time = 0;        ///< of the operating point
-  Eigen::VectorXd q, u;   ///< generalized positions (quaternions w, x, y, z) and speeds there
-  double residual = 0;    ///< |u̇| there: 0 at rest and in a steady spin
+  double time = 0;       ///< of the operating point
+  Eigen::VectorXd q, u;  ///< generalized positions (quaternions w, x, y, z) and speeds there
+  Signals q_names, u_names;
+  std::vector<std::string> periodic;  ///< coordinates that are angles, the same again after 2π
+  double residual = 0;                ///< |u̇| there: 0 at rest and in a steady spin
   double error = 0;       ///< estimated, of A and C, relative to the largest entry of the row (docs/formats/linear.md)
   double difference = 0;  ///< between A and C by one step size and by another, likewise
 
   Poles poles;
   bool has_zeros = false;  ///< there are as many outputs as inputs
   Eigen::VectorXd zeros_real, zeros_imag;
+
+  Multipliers multipliers;
+  Hankel hankel;
 };
 
 }  // namespace bough::records

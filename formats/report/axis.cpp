@@ -50,4 +50,23 @@ Axis make_axis(double min, double max, int wanted, bool widen) {
   return axis;
 }
 
+Axis make_log_axis(double min, double max) {
+  if (!(max > min)) min -= 0.5, max += 0.5;
+  Axis axis;
+  axis.min = min;
+  axis.max = max;
+  const bool is_fine = max - min<3, has_many = max - min> 9;
+  for (int power = static_cast<int>(std::floor(min)); power <= max; ++power) {
+    for (const int digit : {1, 2, 5}) {
+      const double at = power + std::log10(digit);
+      if (at < min - 1e-9 || at > max + 1e-9 || (digit > 1 && !is_fine) || (has_many && power % 2 != 0)) continue;
+      axis.ticks.push_back(at);
+      char buffer[40];
+      std::snprintf(buffer, sizeof buffer, "%g", digit * std::pow(10.0, power));
+      axis.labels.push_back(buffer);
+    }
+  }
+  return axis;
+}
+
 }  // namespace bough::report

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <complex>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "formats/report/html.hpp"
 #include "formats/report/pack.hpp"
@@ -14,7 +16,33 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostPictures = 6;
+constexpr std::size_t kMostPictures = 6, kMostPairs = 24;
+
+/// |H| in dB (of the units of y over u) and the phase, unwrapped.
+struct Pair {
+  Eigen::Index output = 0, input = 0;
+  Eigen::VectorXd decibel, degrees;
+};
+
+std::vector<Pair> make_pairs(const records::FrequencyResponse& response) {
+  std::vector<Pair> pairs;
+  if (response.value.empty()) return pairs;
+  const auto& first = response.value.front();
+  const auto count = static_cast<Eigen::Index>(response.value.size());
+  for (Eigen::Index j = 0; j < first.cols(); ++j)
+    for (Eigen::Index i = 0; i < first.rows() && pairs.size() < kMostPairs; ++i) {
+      Pair pair{i, j, Eigen::VectorXd(count), Eigen::VectorXd(count)};
+      for (Eigen::Index k = 0; k < count; ++k) {
+        const std::complex<double> h = response.value[static_cast<std::size_t>(k)](i, j);
+        pair.decibel[k] = h == 0.0 ? std::nan("") : 20 * std::log10(std::abs(h));
+        double phase = h == 0.0 ? std::nan("") : std::arg(h) * 180 / std::numbers::pi;
+        if (k > 0 && std::isfinite(pair.degrees[k - 1])) phase -= 360 * std::round((phase - pair.degrees[k - 1]) / 360);
+        pair.degrees[k] = phase;
+      }
+      pairs.push_back(std::move(pair));
+    }
+  return pairs;
+}
 
 std::string make_poles(const records::LinearModel& model) {
   Plot plot{"Poles and zeros", "real part [1/T]", "imaginary part [1/T]", {}, 0, 0};
@@ -35,12 +63,13 @@ std::string make_poles(const records::LinearModel& model) {
   return html;
 }
 
-std::string make_bode(const records::LinearModel& model, const FrequencyResponse& response) {
+std::string make_bode(const records::LinearModel& model, const Eigen::VectorXd& frequency,
+                      const std::vector<Pair>& pairs) {
   std::string html = "<div class=\"live\" data-view=\"bode\">\n";
   // The axes of static pictures are linear: the logarithm is drawn.
-  const Eigen::VectorXd decades = response.frequency.array().log10();
-  for (std::size_t p = 0; p < std::min(kMostPictures, response.pairs.size()); ++p) {
-    const auto& pair = response.pairs[p];
+  const Eigen::VectorXd decades = frequency.array().log10();
+  for (std::size_t p = 0; p < std::min(kMostPictures, pairs.size()); ++p) {
+    const auto& pair = pairs[p];
     const std::string name = model.outputs.name[static_cast<std::size_t>(pair.output)] + " over " +
                              model.inputs.name[static_cast<std::size_t>(pair.input)];
     html += make_figure(
@@ -48,8 +77,40 @@ std::string make_bode(const records::LinearModel& model, const FrequencyResponse
   }
   html += "</div>\n";
   const auto all = static_cast<std::size_t>(model.inputs.size()) * static_cast<std::size_t>(model.outputs.size());
-  if (all > response.pairs.size())
-    html += make_text(fmt::format("The first {} of {} pairs.", response.pairs.size(), all), "note");
+  if (all > pairs.size()) html += make_text(fmt::format("The first {} of {} pairs.", pairs.size(), all), "note");
+  return html;
+}
+
+std::string make_singular_values(const LinearFindings& findings) {
+  const auto& values = findings.response.singular_values;
+  const Eigen::VectorXd decades = findings.response.frequency_hz.array().log10();
+  Plot plot{"Singular values of the transfer matrix", "log10 of the frequency [1/T]", "dB", {}, 0, 0};
+  for (Eigen::Index i = 0; i < std::min<Eigen::Index>(values.cols(), 6); ++i) {
+    const Eigen::VectorXd decibel = 20 * values.col(i).array().max(1e-300).log10();
+    plot.curves.push_back({std::to_string(i + 1), decades, decibel, false});
+  }
+  return make_figure(plot, "singular values");
+}
+
+std::string make_margins(const records::Margins& m) {
+  HtmlTable table("The loop, with negative feedback",
+                  {{"margin", true}, {"frequency [1/T]"}, {"dB or degrees"}, {"delay [T]"}});
+  for (const auto& c : m.gain)
+    table.add_row({"gain", format_value(c.frequency_hz), format_value(20 * std::log10(c.margin), 5), ""});
+  for (const auto& c : m.phase)
+    table.add_row({"phase", format_value(c.frequency_hz), format_value(c.margin * 180 / std::numbers::pi, 5),
+                   format_value(c.delay, 5)});
+  return table.to_html(400);
+}
+
+std::string make_hankel(const records::Hankel& hankel) {
+  HtmlTable table("", {{"number"}, {"Hankel singular value"}});
+  for (Eigen::Index i = 0; i < hankel.value.size(); ++i)
+    table.add_row({std::to_string(i + 1), format_value(hankel.value[i])});
+  std::string html =
+      "<details><summary>" + std::to_string(hankel.value.size()) + "</summary>\n" + table.to_html(400) + "</details>\n";
+  if (hankel.num_left_out > 0)
+    html += make_text(fmt::format("Of what decays; {} poles that do not are left out.", hankel.num_left_out), "note");
   return html;
 }
 
@@ -61,7 +122,7 @@ json to_list(const Eigen::VectorXd& values) {
 
 }  // namespace
 
-Chapter make_chapter(const records::LinearModel& model, const std::string& file,
+Chapter make_chapter(const records::LinearModel& model, const LinearFindings& findings, const std::string& file,
                      const std::vector<std::pair<std::string, std::string>>& facts) {
   Chapter chapter{"linear model", file, facts, {}, {}, {}, {}};
   int unstable = 0;
@@ -81,8 +142,20 @@ Chapter make_chapter(const records::LinearModel& model, const std::string& file,
   chapter.checks.push_back({"rate of change |u̇| at the point", format_value(model.residual, 3), Verdict::None,
                             "0 at rest and in a steady spin"});
   chapter.add_panel("poles", "Poles and zeros", make_poles(model));
-  const auto response = calc_frequency_response(model);
-  if (!response.pairs.empty()) chapter.add_panel("bode", "Bode", make_bode(model, response));
+  if (findings.has_margins)
+    chapter.checks.push_back({"with the loop closed", findings.margins.is_stable ? "stable" : "unstable",
+                              findings.margins.is_stable ? Verdict::Good : Verdict::Warning,
+                              "largest real part " + format_value(findings.margins.largest_real, 4)});
+  const auto pairs_of = make_pairs(findings.response);
+  if (!pairs_of.empty()) {
+    chapter.checks.push_back(
+        {"largest gain", findings.peak.is_finite ? format_value(findings.peak.value) : "infinite", Verdict::None,
+         findings.peak.is_finite ? "at " + format_value(findings.peak.frequency_hz) + " [1/T]" : findings.peak.why});
+    chapter.add_panel("bode", "Bode", make_bode(model, findings.response.frequency_hz, pairs_of));
+    chapter.add_panel("sigma", "Singular values", make_singular_values(findings));
+  }
+  if (findings.has_margins) chapter.add_panel("margins", "Margins", make_margins(findings.margins));
+  if (model.hankel.value.size() > 0) chapter.add_panel("hankel", "Hankel", make_hankel(model.hankel));
   for (const auto& [id, title, signals] :
        {std::tuple("states", "States", &model.states), std::tuple("inputs", "Inputs", &model.inputs),
         std::tuple("outputs", "Outputs", &model.outputs)}) {
@@ -95,7 +168,7 @@ Chapter make_chapter(const records::LinearModel& model, const std::string& file,
         "<details><summary>" + std::to_string(signals->size()) + "</summary>\n" + table.to_html(400) + "</details>\n");
   }
   json pairs = json::array();
-  for (const auto& pair : response.pairs)
+  for (const auto& pair : pairs_of)
     pairs.push_back({{"output", model.outputs.name[static_cast<std::size_t>(pair.output)]},
                      {"input", model.inputs.name[static_cast<std::size_t>(pair.input)]},
                      {"decibel", pack_doubles(pair.decibel)},
@@ -108,7 +181,7 @@ Chapter make_chapter(const records::LinearModel& model, const std::string& file,
         {"damping", to_list(model.poles.damping)},
         {"mode", model.poles.mode}}},
       {"zeros", {{"real", to_list(model.zeros_real)}, {"imag", to_list(model.zeros_imag)}}},
-      {"frequency", pack_doubles(response.frequency)},
+      {"frequency", pack_doubles(findings.response.frequency_hz)},
       {"pairs",
        pairs}}.dump(-1, ' ', false, json::error_handler_t::replace);
   return chapter;

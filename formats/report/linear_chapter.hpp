@@ -1,29 +1,24 @@
 #pragma once
-/// \file The chapter of a linear model: poles and zeros, Bode diagrams.
+/// \file The chapter of a linear model: poles and zeros, Bode diagrams, singular values, margins.
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "formats/records/linear_model.hpp"
+#include "formats/records/frequency_response.hpp"
 #include "formats/report/page.hpp"
 
 namespace bough::report {
 
-/// H(jω) of chosen pairs of input and output at frequencies in cycles per unit of time.
-struct FrequencyResponse {
-  struct Pair {
-    int output = 0, input = 0;
-    Eigen::VectorXd decibel, degrees;  ///< |H| in dB (of the units of y over u), phase unwrapped
-  };
-  Eigen::VectorXd frequency;
-  std::vector<Pair> pairs;
+/// What was calculated of the model beside what its file holds.
+struct LinearFindings {
+  records::FrequencyResponse response;
+  records::PeakGain peak;
+  records::Margins margins;  ///< of a model with one input and one output
+  bool has_margins = false;
 };
 
-/// C (jω - A)⁻¹ B + D by Hessenberg's form of A, at most `most_pairs` pairs; frequencies a decade beyond the poles,
-/// dense about those that are lightly damped.
-FrequencyResponse calc_frequency_response(const records::LinearModel& model, int most_pairs = 24);
-
-Chapter make_chapter(const records::LinearModel& model, const std::string& file,
+/// Poles and zeros, Bode diagrams of at most 24 pairs of input and output, singular values, Hankel values.
+Chapter make_chapter(const records::LinearModel& model, const LinearFindings& findings, const std::string& file,
                      const std::vector<std::pair<std::string, std::string>>& facts);
 
 }  // namespace bough::report

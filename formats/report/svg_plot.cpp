@@ -203,7 +203,12 @@ double draw_legend(const Plot& plot, double top, std::string& svg) {
 
 }  // namespace
 
-std::string draw_svg(const Plot& plot) {
+std::string draw_svg(const Plot& given) {
+  Plot plot = given;
+  if (plot.has_log_x) {
+    for (auto& curve : plot.curves)
+      curve.x = curve.x.unaryExpr([](double v) { return v > 0 ? std::log10(v) : std::nan(""); });
+  }
   Range x, y;
   for (const auto& curve : plot.curves) {
     BOUGH_DEMAND(curve.x.size() == curve.y.size());
@@ -218,7 +223,7 @@ std::string draw_svg(const Plot& plot) {
   const double title_bottom = plot.title.empty() ? 20 : 44;
   const double legend_height = draw_legend(plot, title_bottom + 14, legend);
   Frame f{kLeft, title_bottom + legend_height + 8, kWidth - kLeft - kRight, kPlotHeight, {}, {}};
-  f.x = make_axis(x.min, x.max, 9, false);
+  f.x = plot.has_log_x ? make_log_axis(x.min, x.max) : make_axis(x.min, x.max, 9, false);
   f.y = is_given ? make_axis(plot.y_min, plot.y_max, 7, false) : make_axis(y.min, y.max, 7, true);
 
   const double height = f.top + f.height + kBottom;
@@ -247,6 +252,24 @@ std::string draw_svg(const Plot& plot) {
   svg += "<rect x=\"" + number(f.left) + "\" y=\"" + number(f.top) + "\" width=\"" + number(f.width) + "\" height=\"" +
          number(f.height) + "\" fill=\"none\" stroke=\"#333333\" stroke-width=\"1.2\"/>\n</svg>\n";
   return svg;
+}
+
+std::string draw_svg(const std::vector<Plot>& plots) {
+  std::string inner;
+  double height = 0;
+  for (const auto& plot : plots) {
+    std::string one = draw_svg(plot);
+    const auto find_number = [&](const std::string& name) {
+      const auto at = one.find(" " + name + "=\"") + name.size() + 3;
+      return std::strtod(one.c_str() + at, nullptr);
+    };
+    const double own = find_number("height");
+    one.insert(4, " y=\"" + number(height) + "\"");
+    inner += one;
+    height += own;
+  }
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(height) +
+         "\" width=\"" + number(kWidth) + "\" height=\"" + number(height) + "\" role=\"img\">\n" + inner + "</svg>\n";
 }
 
 }  // namespace bough::report

@@ -16,7 +16,10 @@ struct Plot {
   std::string title, x_label, y_label;
   std::vector<Curve> curves;
   double y_min = 0, y_max = 0;  ///< equal: automatic; curves are clipped to the frame
+  bool has_log_x = false;       ///< decades; values that are not positive are left out
 };
 std::string draw_svg(const Plot& plot);
+/// One above the other, in one picture.
+std::string draw_svg(const std::vector<Plot>& plots);
 
 }  // namespace bough::report

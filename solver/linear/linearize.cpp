@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <sstream>
 
 #include "solver/linear/difference.hpp"
+#include "solver/linear/ports.hpp"
+#include "solver/linear/sampled.hpp"
+#include "solver/statespace/hankel.hpp"
 #include "solver/statespace/poles.hpp"
 #include "solver/statespace/zeros.hpp"
 
@@ -107,27 +111,6 @@ VectorXd calc_input_column(Plant& plant, const OperatingPoint& point, const Plan
   return (column.array().abs() > rounding.array()).select(column, 0.0);
 }
 
-/// Index of each wanted name; a name before ":" stands for all of its components.
-std::vector<int> choose(const std::vector<std::string>& wanted, const std::vector<std::string>& known,
-                        const std::string& noun, const char* id, const SourceLocation& at, Diagnostics& diagnostics) {
-  std::vector<int> chosen;
-  for (const auto& name : wanted) {
-    const auto size = chosen.size();
-    for (size_t i = 0; i < known.size(); ++i) {
-      if (known[i] == name || known[i].rfind(name + ":", 0) == 0) chosen.push_back(static_cast<int>(i));
-    }
-    if (chosen.size() > size) continue;
-    const std::string near = find_nearest(name, known);
-    std::string list;
-    for (const auto& word : known) list += (list.empty() ? "" : ", ") + word;
-    diagnostics.error(id, at, "there is no " + noun + " '" + name + "'",
-                      !near.empty()  ? "did you mean '" + near + "'?"
-                      : list.empty() ? "the system has none"
-                                     : "choose among: " + list);
-  }
-  return chosen;
-}
-
 /// Largest entry of `difference` relative to the scale of its row.
 double calc_relative(const MatrixXd& difference, const VectorXd& scale) {
   double worst = 0;
@@ -156,6 +139,18 @@ MatrixXd take_rows(const MatrixXd& m, int first, const std::vector<int>& rows) {
   MatrixXd taken(static_cast<Eigen::Index>(rows.size()), m.cols());
   for (size_t i = 0; i < rows.size(); ++i) taken.row(static_cast<Eigen::Index>(i)) = m.row(first + rows[i]);
   return taken;
+}
+
+/// d behind the cut is u in place of what comes back, c = C x + D d: d = u, y = -c. What comes back at once would be
+/// an algebraic loop when closed, which no system has: D is rounding.
+void open_cut(LinearModel& model, const std::string& name) {
+  const double back = 1 + model.D(0, 0);
+  const MatrixXd B = model.B / back, C = model.C / back;
+  model.A -= B * model.C;
+  model.B = B;
+  model.C = -C;
+  model.D /= -back;
+  model.outputs.name = {name + ":return"};
 }
 
 /// At rest or in a steady motion u̇ is small beside what small displacements make of it.
@@ -214,22 +209,9 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
 LinearModel linearize(Plant& plant, const OperatingPoint& point, const LinearizeOptions& options,
                       const SourceLocation& at, Diagnostics& diagnostics) {
   const int n = plant.num_freedoms();
-  std::vector<std::string> names;
-  for (const auto& input : plant.inputs()) names.push_back(input.name);
-  std::vector<std::string> wanted = options.inputs;
-  std::vector<int> inputs;
-  if (wanted.empty())
-    for (int i = 0; i < (plant.num_actuators() > 0 ? plant.num_actuators() : plant.num_forces()); ++i)
-      inputs.push_back(plant.num_actuators() > 0 ? plant.num_forces() + i : i);
-  else
-    inputs = choose(wanted, names, "input", "linear.unknown-input", at, diagnostics);
+  const Ports ports = choose_ports(plant, options, at, diagnostics);
+  const std::vector<int>&inputs = ports.inputs, &outputs = ports.outputs;
   const auto& known = plant.outputs();
-  std::vector<int> outputs;
-  if (options.outputs.empty())
-    for (int i = 0; i < known.size(); ++i) outputs.push_back(i);
-  else
-    outputs = choose(options.outputs, known.name, "output", "linear.unknown-output", at, diagnostics);
-  diagnostics.throw_if_errors();
 
   LinearModel model;
   for (const char* suffix : {"", "_dot"}) {
@@ -248,11 +230,17 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
     for (const auto& name : sampled) list += (list.empty() ? "" : ", ") + name;
     diagnostics.warning(
         "linear.sampled", at, "sampled in time, and held as they are in the linear model: " + list,
-        "its poles are those with the loop open there; use a continuous law beside it to see them closed");
+        "its poles are those with the loop open there; the multipliers of a period of the samples have it closed");
   }
   model.time = point.t;
   model.q = plant.get_for_file(point.q);
+  model.q_names = plant.name_positions();
   model.u = point.u;
+  for (int i = 0; i < n; ++i) {
+    model.u_names.name.push_back(plant.freedom_name(i));
+    model.u_names.dims.push_back(plant.freedom_dims(i) + "/T");
+    if (plant.is_periodic(i)) model.periodic.push_back(plant.freedom_name(i));
+  }
   const VectorXd base = plant.evaluate(point);
   model.residual = base.head(n).norm();
 
@@ -280,13 +268,20 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   }
 
   note_unsteady(plant, base.head(n), jacobian.value.topRows(n), at, diagnostics);
-  const VectorXd scale = calc_row_scales(jacobian.value, get_row_dims(plant));
-  model.error = calc_relative(jacobian.error, scale);
+  std::vector<int> rows(static_cast<size_t>(n + nz));
+  std::iota(rows.begin(), rows.end(), 0);
+  for (const int i : outputs) rows.push_back(n + nz + i);
+  const VectorXd scale = calc_row_scales(jacobian.value, get_row_dims(plant))(rows);
+  model.error = calc_relative(take_rows(jacobian.error, 0, rows), scale);
   if (options.check) {
     const Jacobian other = calc_jacobian(plant, point, kOtherStep);
-    model.difference = calc_relative(other.value - jacobian.value, scale);
+    model.difference = calc_relative(take_rows(other.value - jacobian.value, 0, rows), scale);
     check_constancy(plant, point, jacobian, at, diagnostics);
   }
+  if (options.check && options.cut.empty() && !plant.is_open())
+    model.multipliers = calc_multipliers(plant, point, model.A, at, diagnostics);
+  if (!options.cut.empty()) open_cut(model, options.cut);
+  if (options.check) model.hankel = statespace::calc_hankel(model.A, model.B, model.C);
   model.poles = statespace::calc_poles(model.A, model.states.name);
   if (num_inputs == static_cast<Eigen::Index>(outputs.size()) && num_inputs > 0) {
     const Eigen::VectorXcd zeros = statespace::calc_zeros(model.A, model.B, model.C, model.D);

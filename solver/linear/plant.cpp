@@ -31,6 +31,16 @@ bool is_translation(const TreeBody& tb, int coordinate) {
   return motion.H.col(coordinate).tail<3>().isZero(0);
 }
 
+/// Turns without moving: back where it was after 2 pi. Orientations of quaternions have small rotations, not angles.
+bool is_angle(const TreeBody& tb, int coordinate) {
+  if (tb.hinge->num_q() != tb.hinge->num_u()) return false;
+  VectorXd q(tb.hinge->num_q()), u = VectorXd::Zero(tb.hinge->num_u());
+  tb.hinge->set_neutral(q.data());
+  HingeMotion motion;
+  tb.hinge->calc_motion(q.data(), u.data(), motion);
+  return motion.H.col(coordinate).head<3>().isZero(0) && !motion.H.col(coordinate).tail<3>().isZero(0);
+}
+
 }  // namespace
 
 Plant::Plant(const System& system, bool is_open) : system_(system), data_(system.make_data()), is_open_(is_open) {
@@ -52,6 +62,7 @@ Plant::Plant(const System& system, bool is_open) : system_(system), data_(system
   std::sort(state_rows_.begin(), state_rows_.end());
   add_inputs();
   add_outputs();
+  add_sampled();
   choose_independent();
 }
 
@@ -63,7 +74,8 @@ void Plant::add_hinge(int b) {
     if (data_->tree.mode[as_index(row)] != HingeMode::Free) continue;
     rows_.push_back(row);
     const std::string coordinate = has_quaternion(system_, b) ? kNames[i] : std::to_string(i + 1);
-    freedoms_.push_back({system_.hinge_name(b) + ":" + coordinate, is_translation(tb, i) ? "L" : "1", false, 0.1});
+    freedoms_.push_back(
+        {system_.hinge_name(b) + ":" + coordinate, is_translation(tb, i) ? "L" : "1", false, 0.1, is_angle(tb, i)});
   }
 }
 
@@ -79,33 +91,26 @@ void Plant::add_modes(int b, double size) {
   }
 }
 
-void Plant::add_inputs() {
-  const auto& forces = system_.impl().forces;
-  for (size_t i = 0; i < forces.size(); ++i) {
-    const bool is_moment = forces[i].pattern.size() == 0 && forces[i].kind == records::ForceKind::Moment;
-    inputs_.push_back({forces[i].name, is_moment ? "F L" : "F", static_cast<int>(i), -1, -1});
-  }
-  num_forces_ = static_cast<int>(inputs_.size());
-  for (const auto& p : system_.impl().signals.places) {
-    if (p.actuator >= 0) inputs_.push_back({p.block->name, "by the controller", -1, p.actuator, -1});
-  }
-  num_actuators_ = static_cast<int>(inputs_.size()) - num_forces_;
-  for (size_t i = 0; i < freedoms_.size(); ++i) {
-    if (!freedoms_[i].is_mode)
-      inputs_.push_back({freedoms_[i].name, freedoms_[i].dims == "L" ? "F" : "F L", -1, -1, rows_[i]});
-  }
-}
-
-void Plant::add_outputs() {
-  for (const auto& p : system_.impl().signals.places) {
-    if (!p.block->path.starts_with("/sensors/")) continue;
-    const int size = p.block->sizes.outputs;
-    for (int i = 0; i < size; ++i) {
-      const std::string component = size == 3 ? std::string(1, "xyz"[i]) : std::to_string(i + 1);
-      outputs_.name.push_back(size == 1 ? p.block->name : p.block->name + ":" + component);
-      outputs_.dims.push_back(p.block->dims);
+records::Signals Plant::name_positions() const {
+  records::Signals names;
+  const auto add = [&](const std::string& name, const std::string& dims) {
+    names.name.push_back(name);
+    names.dims.push_back(dims);
+  };
+  for (int b = 0; b < system_.num_bodies(); ++b) {
+    const auto& hinge = system_.hinge_name(b);
+    const bool is_free = has_quaternion(system_, b);
+    for (int i = 0; i < system_.num_hinge_q(b); ++i) {
+      static const char* const kNames[] = {"qw", "qx", "qy", "qz", "x", "y", "z"};
+      const TreeBody& tb = system_.impl().tree.bodies[as_index(b)];
+      const std::string coordinate = is_free ? kNames[i] : std::to_string(i + 1);
+      const int rate = is_free ? i - 1 : i;
+      add(hinge + ":" + coordinate, (is_free && i < 4) || !is_translation(tb, rate) ? "1" : "L");
     }
+    for (int i = 0; i < system_.num_modes(b); ++i)
+      add(system_.body_name(b) + ":eta" + std::to_string(i + 1), "by normalisation");
   }
+  return names;
 }
 
 OperatingPoint Plant::make_initial_point() const {
@@ -205,45 +210,6 @@ VectorXd Plant::get_for_file(const VectorXd& q) const {
     for (int i = 0; i < 4; ++i) file[row + (i + 1) % 4] = q[row + i];
   }
   return file;
-}
-
-VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, double value) {
-  const int n = num_freedoms(), nz = num_states();
-  const SignalGraph& signals = system_.impl().signals;
-  VectorXd out(n + nz + outputs_.size());
-  data_->signals.memory = point.memory;
-  data_->signals.bias.setZero();
-  if (input && input->actuator >= 0) data_->signals.bias[input->actuator] = value;
-  t_ = point.t;
-  calc_kinematics(system_, *data_, point.t, point.q, calc_speeds(point));
-  set_z(*data_, point.z);
-  add_forces(system_, *data_, point.t);
-  if (input && input->force >= 0) {
-    AppliedForce one = system_.impl().forces[as_index(input->force)];
-    one.function = nullptr;
-    one.direction *= value;
-    one.pattern *= value;
-    one.pattern_K2 *= value;
-    one.pattern_resultant *= value;
-    one.pattern_moment *= value;
-    add_applied_force(one, system_.impl().tree, point.t, data_->tree);
-  } else if (input && input->row >= 0) {
-    data_->tree.hinge_force[input->row] += value;
-  }
-  VectorXd u_dot(system_.num_u());
-  calc_accelerations(system_, *data_, point.t, u_dot);
-  out.head(n) = u_dot(rows_);
-  VectorXd z_dot(system_.num_z());
-  calc_z_dot(system_, *data_, z_dot);
-  calc_signals(system_, *data_);
-  out.segment(n, nz) = z_dot(state_rows_);
-  int at = n + nz;
-  for (const auto& p : signals.places) {
-    if (!p.block->path.starts_with("/sensors/")) continue;
-    signals.calc_ideal(p, system_, *data_, out.data() + at);
-    at += p.block->sizes.outputs;
-  }
-  return out;
 }
 
 }  // namespace bough::solver

@@ -18,19 +18,22 @@
 
 namespace bough::solver {
 
+struct SampleTimes;
+
 struct OperatingPoint {
   double t = 0;
   VectorXd q, u;       ///< num_q; one rate a freedom
   VectorXd z, memory;  ///< all of controllers, actuators and sensors
 };
 
-/// A scalar that pushes: the value of a [[force]], the command of an actuator, or a generalized force on a free hinge
-/// coordinate.
+/// A scalar that pushes: the value of a [[force]], the command of an actuator, a generalized force on a free hinge
+/// coordinate, or what is added to a signal on its way to those that read it.
 struct PlantInput {
   std::string name, dims;
   int force = -1;     ///< index into the system's forces
   int actuator = -1;  ///< or: counted in the order of the file
   int row = -1;       ///< or: row of u of the hinge coordinate
+  int signal = -1;    ///< or: row of the values of signals
 };
 
 class Plant {
@@ -39,6 +42,7 @@ class Plant {
   /// at the operating point, and controllers' states are none of the plant's.
   explicit Plant(const System& system, bool is_open = false);
 
+  bool is_open() const { return is_open_; }
   int num_freedoms() const { return static_cast<int>(freedoms_.size()); }
   /// "shoulder:1"; "ball:rx" for rotations, "flyer:x" for translations of a spherical or free hinge; "boom:eta3".
   const std::string& freedom_name(int i) const { return freedoms_[static_cast<size_t>(i)].name; }
@@ -70,15 +74,39 @@ class Plant {
   /// Quaternions as the files have them: w, x, y, z.
   VectorXd get_for_file(const VectorXd& q) const;
 
-  /// Every force, then every actuator, then every free hinge coordinate.
+  /// Every force, then every actuator, then every free hinge coordinate, then components of sensors and controllers
+  /// (by their path, "/sensors/tip:x", where the name alone is taken).
   const std::vector<PlantInput>& inputs() const { return inputs_; }
   int num_forces() const { return num_forces_; }
   int num_actuators() const { return num_actuators_; }
-  /// Components of the sensors: "tip:x", or the sensor's name when it is a scalar.
+  /// Components of the sensors: "tip:x", or the sensor's name when it is a scalar; then those of controllers and
+  /// actuators; then what each actuator is told to do, "motor:command".
   const records::Signals& outputs() const { return outputs_; }
+  int num_sensor_outputs() const { return num_sensor_outputs_; }
+  /// Where a loop may be cut: the output before, and the input behind the cut. Throws nothing; -1: no such name. Of a
+  /// signal the value without what the input adds, of an actuator its command likewise.
+  struct Cut {
+    int output = -1, input = -1;
+  };
+  Cut find_cut(const std::string& name) const;
+  std::vector<std::string> list_cuts() const;
 
   /// [u̇; ż; y] with every function of time at its value, and `value` more of one input. May throw ComputationError.
   VectorXd evaluate(const OperatingPoint& point, const PlantInput* input = nullptr, double value = 0);
+  /// What changes at samples: rows of the memory of sampled blocks, with what is held and on its way.
+  const std::vector<int>& sampled_rows() const { return sampled_rows_; }
+  /// "controller 'law' (memory 1)".
+  std::string sampled_name(int i) const { return sampled_names_[static_cast<size_t>(i)]; }
+  /// Instants of samples of all blocks.
+  std::vector<SampleTimes> collect_samples() const;
+  /// Samples on their way of the longest queue of each period, for the length of a cycle: (period, queue).
+  std::vector<std::pair<double, int>> list_cycles() const;
+  /// All memory after the samples due at point.t, sensors without noise and quantization. May throw ComputationError.
+  VectorXd sample(const OperatingPoint& point);
+  /// Coordinates of q as the files have them, and dims: "pin:1", "ball:qw", "boom:eta1".
+  records::Signals name_positions() const;
+  /// Whether the freedom is an angle that comes back after 2 pi.
+  bool is_periodic(int i) const { return freedoms_[static_cast<size_t>(i)].is_periodic; }
   /// Results of the last evaluate, for a Recorder.
   const SystemData& data() const { return *data_; }
 
@@ -87,11 +115,15 @@ class Plant {
     std::string name, dims;
     bool is_mode = false;
     double step = 0.1;
+    bool is_periodic = false;
   };
   void add_hinge(int body);
   void add_modes(int body, double size);
   void add_inputs();
   void add_outputs();
+  void add_sampled();
+  /// Kinematics to accelerations and signals, as they are at the point.
+  void compute(const OperatingPoint& point, const PlantInput* input, double value, VectorXd& u_dot);
   VectorXd displace_tree(const VectorXd& q, const VectorXd& delta) const;
   // Loops (plant_loops.cpp)
   bool has_loops() const { return !grip_.empty(); }
@@ -107,6 +139,9 @@ class Plant {
   std::vector<PlantInput> inputs_;
   int num_forces_ = 0, num_actuators_ = 0;
   records::Signals outputs_;
+  int num_sensor_outputs_ = 0;
+  std::vector<int> sampled_rows_;
+  std::vector<std::string> sampled_names_;
   std::vector<Grip> grip_;  ///< by row of u, where loops are closed: what follows is Loose
   double t_ = 0;            ///< of the last point
 };

@@ -24,6 +24,11 @@ void demand_finite(const BlockPlace& place, const double* y, double t) {
   }
 }
 
+void add_shift(const BlockPlace& p, SignalData& s) {
+  if (s.shift.size() > 0)
+    s.values.segment(p.out, p.block->sizes.outputs) += s.shift.segment(p.out, p.block->sizes.outputs);
+}
+
 }  // namespace
 
 SignalData SignalGraph::make_data() const {
@@ -65,10 +70,11 @@ void SignalGraph::calc(const BlockPlace& p, const System& system, SystemData& da
   double* y = s.values.data() + p.out;
   if (p.is_sampled()) {
     s.values.segment(p.out, p.block->sizes.outputs) = s.memory.segment(p.held, p.block->sizes.outputs);
-    return;
+  } else {
+    p.block->calc_outputs(look(p, system, data), y);
+    demand_finite(p, y, data.tree.t);
   }
-  p.block->calc_outputs(look(p, system, data), y);
-  demand_finite(p, y, data.tree.t);
+  add_shift(p, s);
 }
 
 void SignalGraph::calc_early(const System& system, SystemData& data) const {
@@ -174,7 +180,10 @@ bool SignalGraph::sample(const System& system, SystemData& data, double close) c
       BlockInput in = look(p, system, data);
       in.sample = k;
       const int slot = p.queue_length > 0 ? p.queue + n * static_cast<int>(k % p.queue_length) : p.held;
-      p.block->calc_outputs(in, s.memory.data() + slot);
+      if (s.is_ideal && p.block->path.starts_with("/sensors/"))
+        p.block->calc_ideal(in, s.memory.data() + slot);
+      else
+        p.block->calc_outputs(in, s.memory.data() + slot);
       demand_finite(p, s.memory.data() + slot, t);
       auto own = s.scratch.segment(p.memory, p.block->sizes.memory);
       own = s.memory.segment(p.memory, p.block->sizes.memory);
@@ -187,6 +196,7 @@ bool SignalGraph::sample(const System& system, SystemData& data, double close) c
     }
     has_changed = has_changed || (p.is_needed && before != held);
     s.values.segment(p.out, n) = held;
+    add_shift(p, s);
   }
   return has_changed;
 }

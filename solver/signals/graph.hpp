@@ -33,6 +33,8 @@ struct SignalData {
   /// Linear models: more on each actuator's command; with is_open that is all, beside what is held here.
   VectorXd bias, command;
   bool is_open = false;
+  VectorXd shift;         ///< likewise: more on each value, as all that read it see it; empty: none
+  bool is_ideal = false;  ///< likewise: samples of sensors are those of calc_ideal
 };
 
 /// Instants first, first + period, ...

@@ -5,6 +5,7 @@
 
 #include "base/diagnostic.hpp"
 #include "solver/statespace/blocks.hpp"
+#include "solver/statespace/spectrum.hpp"
 
 namespace bough::statespace {
 namespace {
@@ -36,7 +37,7 @@ MatrixXcd solve_sylvester(const MatrixXcd& T1, const MatrixXcd& T2, const Matrix
 
 }  // namespace
 
-StablePart split_stable(const MatrixXd& A) {
+StablePart split_stable(const MatrixXd& A, bool leave_unstable) {
   StablePart part;
   const Index n = A.rows();
   BOUGH_DEMAND(A.cols() == n);
@@ -50,7 +51,10 @@ StablePart split_stable(const MatrixXd& A) {
   for (Index i = 0; i < n; ++i) {
     const std::complex<double> pole = T(i, i);
     if (std::abs(pole) <= 1e-6 * largest) continue;
-    if (pole.real() > -1e-11 * std::abs(pole)) part.unstable = pole;
+    if (pole.real() > -1e-11 * std::abs(pole)) {
+      part.unstable = pole;
+      if (leave_unstable) continue;
+    }
     for (Index k = i; k > kept; --k) exchange(T, U, k - 1);
     ++kept;
   }
@@ -97,13 +101,8 @@ ComponentCost calc_component_cost(const MatrixXd& A, const MatrixXd& B, const Ma
 }
 
 double calc_mean_square_difference(const StateSpace& full, const StateSpace& reduced) {
-  const Index n = full.A.rows(), m = reduced.A.rows();
-  MatrixXd A = MatrixXd::Zero(n + m, n + m), B(n + m, full.B.cols()), C(full.C.rows(), n + m);
-  A.topLeftCorner(n, n) = full.A;
-  A.bottomRightCorner(m, m) = reduced.A;
-  B << full.B, reduced.B;
-  C << full.C, -reduced.C;
-  return std::max(0.0, calc_component_cost(A, B, C).total);
+  const StateSpace both = subtract(full, reduced);
+  return std::max(0.0, calc_component_cost(both.A, both.B, both.C).total);
 }
 
 double calc_modal_cost(double omega, double zeta, double b_squared, double c_d_squared, double c_r_squared) {

@@ -7,13 +7,14 @@ namespace bough::statespace {
 /// The part of ẋ = A x that decays: z = L x, ż = T z, and what z means to x is U z. T is upper triangular.
 struct StablePart {
   Eigen::MatrixXcd T, U, L;
-  int num_rigid = 0;                  ///< states left out: poles at 0
+  int num_rigid = 0;                  ///< states left out: poles at 0, or all that do not decay
   std::complex<double> unstable = 0;  ///< a pole that neither decays nor is at 0; 0: there is none
   bool is_stable() const { return unstable == std::complex<double>(0); }
 };
 
-/// Schur's form with the poles at 0 (below 1e-6 of the largest) moved behind the others and decoupled.
-StablePart split_stable(const Eigen::MatrixXd& A);
+/// Schur's form with the poles at 0 (below 1e-6 of the largest) moved behind the others and decoupled; with
+/// `leave_unstable` all that do not decay.
+StablePart split_stable(const Eigen::MatrixXd& A, bool leave_unstable = false);
 
 /// X of A X + X Aᵀ + Q = 0 on the stable part, Q symmetric: X = U Y Uᴴ with T Y + Y Tᴴ + L Q Lᴴ = 0 (Bartels & Stewart,
 /// CACM 15 (1972) 820). Poles at 0 take no part.

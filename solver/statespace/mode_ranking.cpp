@@ -22,7 +22,8 @@ MatrixXd make_rows(const records::FlexBody& body, const std::vector<NodeDirectio
   for (std::size_t i = 0; i < places.size(); ++i) {
     const int node = body.find_node(places[i].node);
     BOUGH_DEMAND(node >= 0 && places[i].direction >= 1 && places[i].direction <= 6);
-    rows.row(static_cast<Index>(i)) = body.phi[static_cast<std::size_t>(node)].row(places[i].direction - 1);
+    rows.row(static_cast<Index>(i)) =
+        places[i].weight * body.phi[static_cast<std::size_t>(node)].row(places[i].direction - 1);
   }
   return rows;
 }
@@ -57,30 +58,131 @@ StateSpace make_state_space(const records::FlexBody& body, const std::vector<Nod
   A.bottomLeftCorner(n, n) = -factor.solve(K);
   A.bottomRightCorner(n, n) = -factor.solve(D);
   B.bottomRows(n) = factor.solve(b);
-  C.leftCols(n) = c;
+  for (Index i = 0; i < c.rows(); ++i)
+    C.row(i).segment(outputs[static_cast<std::size_t>(i)].is_rate ? n : 0, n) = c.row(i);
   return {std::move(A), std::move(B), std::move(C)};
 }
 
-ModeRanking rank_modes(const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
-                       const std::vector<NodeDirection>& outputs, double otherwise_damping) {
-  const Index n = body.num_modes();
+namespace {
+
+/// A mode by itself.
+struct Alone {
+  double omega = 0, zeta = 0, b_squared = 0, c_d_squared = 0, c_r_squared = 0;
+};
+
+std::vector<Alone> list_alone(const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
+                              const std::vector<NodeDirection>& outputs, double otherwise_damping) {
   const MatrixXd b = make_rows(body, inputs).transpose(), c = make_rows(body, outputs);
   const MatrixXd D = make_damping(body, otherwise_damping), &M = body.modal_mass, &K = body.modal_stiffness;
-  const auto [A, B, C] = make_state_space(body, inputs, outputs, otherwise_damping);
-  const ComponentCost cost = calc_component_cost(A, B, C);
+  std::vector<Alone> all;
+  for (Index i = 0; i < body.num_modes(); ++i) {
+    Alone alone;
+    const double m = M(i, i);
+    alone.omega = std::sqrt(std::max(0.0, K(i, i) / m));
+    if (alone.omega > 0) alone.zeta = D(i, i) / (2 * m * alone.omega);
+    alone.b_squared = b.row(i).squaredNorm() / (m * m);
+    for (Index o = 0; o < c.rows(); ++o)
+      (outputs[static_cast<std::size_t>(o)].is_rate ? alone.c_r_squared : alone.c_d_squared) += c(o, i) * c(o, i);
+    all.push_back(alone);
+  }
+  return all;
+}
+
+}  // namespace
+
+ModeRanking rank_modes(const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
+                       const std::vector<NodeDirection>& outputs, double otherwise_damping, const Spectrum* spectrum) {
+  const Index n = body.num_modes();
+  const StateSpace s = make_state_space(body, inputs, outputs, otherwise_damping);
+  const ComponentCost cost = spectrum ? calc_component_cost(s, *spectrum) : calc_component_cost(s.A, s.B, s.C);
   ModeRanking ranking;
   ranking.total = cost.total;
-  for (Index i = 0; i < n; ++i) {
+  for (const Alone& alone : list_alone(body, inputs, outputs, otherwise_damping)) {
+    const Index i = static_cast<Index>(ranking.modes.size());
     ModeCost mode{cost.state[i] + cost.state[n + i], 0};
-    const double m = M(i, i), omega = std::sqrt(std::max(0.0, K(i, i) / m));
-    const double zeta = omega > 0 ? D(i, i) / (2 * m * omega) : 0;
-    if (zeta > 0)
-      mode.closed_form = calc_modal_cost(omega, zeta, b.row(i).squaredNorm() / (m * m), c.col(i).squaredNorm(), 0);
+    if (alone.zeta > 0 && !spectrum)
+      mode.closed_form =
+          calc_modal_cost(alone.omega, alone.zeta, alone.b_squared, alone.c_d_squared, alone.c_r_squared);
     ranking.modes.push_back(mode);
   }
   ranking.other = 0;
   return ranking;
 }
+
+Eigen::VectorXd calc_modal_hankel(const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
+                                  const std::vector<NodeDirection>& outputs, double otherwise_damping) {
+  VectorXd values = VectorXd::Zero(body.num_modes());
+  Index i = 0;
+  for (const Alone& a : list_alone(body, inputs, outputs, otherwise_damping)) {
+    const double squared = a.b_squared * (a.c_d_squared + a.omega * a.omega * a.c_r_squared);
+    if (a.zeta > 0) values[i] = std::sqrt(squared) / (4 * a.zeta * a.omega * a.omega);
+    ++i;
+  }
+  return values;
+}
+
+std::vector<int> group_modes(const records::FlexBody& body, const ModeRanking& ranking, double closeness) {
+  const int n = body.num_modes();
+  std::vector<int> groups(static_cast<std::size_t>(n));
+  const auto is_normal = [&](int i) { return body.kind[static_cast<std::size_t>(i)] == records::ModeKind::Normal; };
+  const auto cost = [&](int i) { return std::abs(ranking.modes[static_cast<std::size_t>(i)].cost); };
+  for (int first = 0, last = 0; first < n; first = last) {
+    double largest = cost(first);
+    for (last = first + 1;
+         last < n && is_normal(last) && is_normal(last - 1) &&
+         std::abs(body.frequency_hz[last] - body.frequency_hz[last - 1]) <= closeness * body.frequency_hz[last];
+         ++last)
+      largest = std::max(largest, cost(last));
+    int group = -1;
+    for (int i = first; i < last; ++i) {
+      const bool is_coupled = cost(i) > 1e-3 * largest;
+      if (is_coupled && group < 0) group = i;
+      groups[static_cast<std::size_t>(i)] = is_coupled ? group : i;
+    }
+  }
+  return groups;
+}
+
+std::vector<double> calc_modified_costs(const ModeRanking& ranking, const std::vector<int>& groups) {
+  std::vector<double> sum(groups.size(), 0), costs;
+  std::vector<int> count(groups.size(), 0);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    sum[static_cast<std::size_t>(groups[i])] += ranking.modes[i].cost;
+    ++count[static_cast<std::size_t>(groups[i])];
+  }
+  for (const int group : groups)
+    costs.push_back(sum[static_cast<std::size_t>(group)] / count[static_cast<std::size_t>(group)]);
+  return costs;
+}
+
+ModeRanking combine_worst(const std::vector<ModeRanking>& rankings) {
+  BOUGH_DEMAND(!rankings.empty());
+  if (rankings.size() == 1) return rankings.front();
+  ModeRanking worst;
+  worst.total = 1;
+  worst.modes.resize(rankings.front().modes.size());
+  for (const auto& ranking : rankings) {
+    if (!(std::abs(ranking.total) > 0)) continue;
+    for (std::size_t i = 0; i < worst.modes.size(); ++i) {
+      const double share = ranking.modes[i].cost / ranking.total;
+      if (std::abs(share) > std::abs(worst.modes[i].cost)) worst.modes[i].cost = share;
+    }
+  }
+  return worst;
+}
+
+namespace {
+
+/// The cheapest first; of equal ones (of one frequency) by their own.
+void sort_by_cost(const ModeRanking& ranking, const std::vector<double>& costs, std::vector<int>& modes) {
+  const auto key = [&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    return std::pair(std::abs(costs[k]), std::abs(ranking.modes[k].cost));
+  };
+  std::stable_sort(modes.begin(), modes.end(), [&](int a, int b) { return key(a) < key(b); });
+}
+
+}  // namespace
 
 std::vector<Choice> choose_modes(const records::FlexBody& body, const ModeRanking& ranking,
                                  const SelectionRules& rules) {
@@ -88,7 +190,12 @@ std::vector<Choice> choose_modes(const records::FlexBody& body, const ModeRankin
   BOUGH_DEMAND(static_cast<int>(ranking.modes.size()) == n);
   std::vector<Choice> choices(static_cast<std::size_t>(n));
   const auto at = [&](int i) -> Choice& { return choices[static_cast<std::size_t>(i)]; };
-  const auto size = [&](int i) { return std::abs(ranking.modes[static_cast<std::size_t>(i)].cost); };
+  const auto groups = group_modes(body, ranking);
+  const auto costs = calc_modified_costs(ranking, groups);
+  const auto size = [&](int i) { return std::abs(costs[static_cast<std::size_t>(i)]); };
+  const auto is_pinned = [&](int i) {
+    return std::find(rules.pinned.begin(), rules.pinned.end(), i) != rules.pinned.end();
+  };
   std::vector<int> open;  // to be decided by cost
   int num_kept = 0;
   for (int i = 0; i < n; ++i) {
@@ -101,6 +208,9 @@ std::vector<Choice> choose_modes(const records::FlexBody& body, const ModeRankin
     } else if (body.eigenvalue[i] <= 1e-12 * body.eigenvalue.cwiseAbs().maxCoeff()) {
       at(i).reason = "rigid";
       ++num_kept;
+    } else if (is_pinned(i)) {
+      at(i).reason = "pinned";
+      ++num_kept;
     } else if (rules.below_hz > 0 && body.frequency_hz[i] > rules.below_hz) {
       at(i) = {false, "above the frequency"};
     } else if (!rules.by_cost) {
@@ -110,13 +220,20 @@ std::vector<Choice> choose_modes(const records::FlexBody& body, const ModeRankin
       open.push_back(i);
     }
   }
-  std::stable_sort(open.begin(), open.end(), [&](int a, int b) { return size(a) < size(b); });
+  sort_by_cost(ranking, costs, open);
   const double sum = std::abs(ranking.total);
   double dropped = 0;
   int left = static_cast<int>(open.size());
-  for (const int i : open) {
+  int last_kept = -1;  // its group
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    const int i = open[k], group = groups[static_cast<std::size_t>(i)];
+    double together = size(i);  // with those of one frequency that come next
+    for (std::size_t next = k + 1; next < open.size() && groups[static_cast<std::size_t>(open[next])] == group; ++next)
+      together += size(open[next]);
     const bool too_many = rules.number > 0 && num_kept + left > rules.number;
-    const bool is_small = rules.number == 0 && dropped + size(i) <= rules.tolerance * sum;
+    const bool is_small =
+        rules.number == 0 && group != last_kept && dropped + together <= rules.tolerance * sum * (1 + 1e-12);
+    if (!too_many && !is_small) last_kept = group;
     if (too_many || is_small) {
       dropped += size(i);
       at(i) = {false, too_many ? "beyond the number" : "within the tolerance: " + percent(dropped / sum) + " gone",
@@ -129,13 +246,20 @@ std::vector<Choice> choose_modes(const records::FlexBody& body, const ModeRankin
   return choices;
 }
 
-void keep_dearest(const ModeRanking& ranking, std::size_t num_dropped, std::vector<Choice>& choices) {
-  std::vector<std::size_t> gone;
+void keep_dearest(const records::FlexBody& body, const ModeRanking& ranking, std::size_t num_dropped,
+                  std::vector<Choice>& choices) {
+  std::vector<int> gone;
   for (std::size_t i = 0; i < choices.size(); ++i)
-    if (choices[i].within_tolerance) gone.push_back(i);
-  std::stable_sort(gone.begin(), gone.end(),
-                   [&](auto a, auto b) { return std::abs(ranking.modes[a].cost) < std::abs(ranking.modes[b].cost); });
-  for (std::size_t k = num_dropped; k < gone.size(); ++k) choices[gone[k]] = {true, "cost, with others"};
+    if (choices[i].within_tolerance) gone.push_back(static_cast<int>(i));
+  const auto groups = group_modes(body, ranking);
+  sort_by_cost(ranking, calc_modified_costs(ranking, groups), gone);
+  std::vector<int> back;  // groups
+  for (std::size_t k = num_dropped; k < gone.size(); ++k) back.push_back(groups[static_cast<std::size_t>(gone[k])]);
+  for (const int i : gone) {
+    const int group = groups[static_cast<std::size_t>(i)];
+    if (std::find(back.begin(), back.end(), group) != back.end())
+      choices[static_cast<std::size_t>(i)] = {true, "cost, with others"};
+  }
 }
 
 double calc_static_error(const records::FlexBody& body, const std::vector<int>& kept,

@@ -5,13 +5,16 @@
 
 #include "formats/records/flex_body.hpp"
 #include "solver/statespace/cost.hpp"
+#include "solver/statespace/spectrum.hpp"
 
 namespace bough::statespace {
 
-/// A unit force (1..3) or moment (4..6) at an output node, or the displacement or rotation there.
+/// A unit force (1..3) or moment (4..6) at an output node, or the displacement or rotation there, or its rate.
 struct NodeDirection {
-  int node = 0;       ///< id
-  int direction = 0;  ///< 1..6, body axes
+  int node = 0;          ///< id
+  int direction = 0;     ///< 1..6, body axes
+  bool is_rate = false;  ///< of outputs
+  double weight = 1;     ///< of the output, or of the amplitude of the input
 };
 
 struct ModeCost {
@@ -25,20 +28,38 @@ struct ModeRanking {
   double other = 0;             ///< V less the sum over the modes: hinges, other bodies; 0 for a body alone
 };
 
-/// M η̈ + D η̇ + K η = Bᵀu, y = C η of the body held in its frame, x = [η; η̇]. Modes without damping get
+/// M η̈ + D η̇ + K η = Bᵀu, y = C_d η + C_r η̇ of the body held in its frame, x = [η; η̇]. Modes without damping get
 /// `otherwise_damping` as their ratio.
 StateSpace make_state_space(const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
                             const std::vector<NodeDirection>& outputs, double otherwise_damping);
 
-/// White noise at the inputs of that, the mean square of its outputs. Throws ComputationError "select.unstable".
+/// White noise at the inputs of that, or noise of a spectrum, and the mean square of its outputs. Throws
+/// ComputationError "select.unstable".
 ModeRanking rank_modes(const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
-                       const std::vector<NodeDirection>& outputs, double otherwise_damping);
+                       const std::vector<NodeDirection>& outputs, double otherwise_damping,
+                       const Spectrum* spectrum = nullptr);
+
+/// The Hankel singular value of each mode alone, lightly damped (two states have it each):
+/// |b| sqrt(|c_d|² + ω² |c_r|²) / (4 ζ ω²). 0 where it has no damping or stiffness.
+Eigen::VectorXd calc_modal_hankel(const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
+                                  const std::vector<NodeDirection>& outputs, double otherwise_damping);
+
+/// The number of each mode's group: those of one frequency (to `closeness` of it) that share their cost. How the solver
+/// of a deck turns such modes among each other is chance, and so is which of them costs what. One with less than a
+/// thousandth of the group's largest cost stands by itself: the others move without it.
+std::vector<int> group_modes(const records::FlexBody& body, const ModeRanking& ranking, double closeness = 1e-3);
+/// Each mode's cost, of a group the mean of its costs.
+std::vector<double> calc_modified_costs(const ModeRanking& ranking, const std::vector<int>& groups);
+
+/// Of several configurations the worst for each mode: costs as parts of each V, the largest of them. total 1.
+ModeRanking combine_worst(const std::vector<ModeRanking>& rankings);
 
 struct SelectionRules {
-  int number = 0;        ///< keep so many, 0: no such rule
-  double tolerance = 0;  ///< drop modes that together cost at most this part of V
-  double below_hz = 0;   ///< drop modes above it, 0: no such rule
-  bool by_cost = true;   ///< false: only below_hz counts
+  int number = 0;                ///< keep so many, 0: no such rule
+  double tolerance = 0;          ///< drop modes that together cost at most this part of V
+  double below_hz = 0;           ///< drop modes above it, 0: no such rule
+  bool by_cost = true;           ///< false: only below_hz counts
+  std::vector<int> pinned = {};  ///< modes, from 0, that stay
 };
 
 struct Choice {
@@ -49,12 +70,15 @@ struct Choice {
 
 /// What goes, the cheapest first as far as the rules let it; of a rule by tolerance the caller may take back some
 /// (`keep_dearest`). Modes that are no normal modes (constraint, attachment, residual) and those at zero frequency stay
-/// always.
+/// always, and those that are pinned. Modes of one frequency are ranked by their mean cost, and within the tolerance
+/// they go together or not at all.
 std::vector<Choice> choose_modes(const records::FlexBody& body, const ModeRanking& ranking,
                                  const SelectionRules& rules);
 
-/// Takes back all but the `num_dropped` cheapest of those that went within the tolerance.
-void keep_dearest(const ModeRanking& ranking, std::size_t num_dropped, std::vector<Choice>& choices);
+/// Takes back all but the `num_dropped` cheapest of those that went within the tolerance, and with one of one frequency
+/// the others.
+void keep_dearest(const records::FlexBody& body, const ModeRanking& ranking, std::size_t num_dropped,
+                  std::vector<Choice>& choices);
 
 /// ‖C (K⁻¹ - K_r⁻¹) Bᵀ‖ / ‖C K⁻¹ Bᵀ‖: what the static response loses with the modes that go.
 double calc_static_error(const records::FlexBody& body, const std::vector<int>& kept,

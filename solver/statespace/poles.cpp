@@ -15,7 +15,7 @@ using Eigen::MatrixXd;
 
 struct Pole {
   std::complex<double> value;
-  std::string mode;
+  std::string mode, body_mode, hinge;
 };
 
 std::string get_coordinate(const std::string& state) {
@@ -23,10 +23,36 @@ std::string get_coordinate(const std::string& state) {
   return end != std::string::npos && end + 4 == state.size() ? state.substr(0, end) : state;
 }
 
+/// "boom:eta3".
+bool is_body_mode(const std::string& coordinate) {
+  const auto at = coordinate.rfind(":eta");
+  return at != std::string::npos && at + 4 < coordinate.size() &&
+         coordinate.find_first_not_of("0123456789", at + 4) == std::string::npos;
+}
+
+/// "controller 'pid' (state 1)".
+bool is_state(const std::string& coordinate) { return coordinate.ends_with(')'); }
+
+/// From the share of each coordinate.
+Pole name_pole(std::complex<double> value, const std::map<std::string, double>& share) {
+  Pole pole{value, "", "", ""};
+  double most = -1, most_modal = 0, most_hinge = 0;
+  for (const auto& [coordinate, part] : share) {
+    if (part > most) most = part, pole.mode = coordinate;
+    if (is_state(coordinate)) continue;
+    double& best = is_body_mode(coordinate) ? most_modal : most_hinge;
+    if (part > best) best = part, (is_body_mode(coordinate) ? pole.body_mode : pole.hinge) = coordinate;
+  }
+  // What only rounding couples takes no part.
+  if (most_modal < 1e-9 * most) pole.body_mode.clear();
+  if (most_hinge < 1e-9 * most) pole.hinge.clear();
+  return pole;
+}
+
 void add_poles(const MatrixXd& A, const std::vector<int>& block, const std::vector<std::string>& names,
                std::vector<Pole>& poles) {
   if (block.size() == 1) {
-    poles.push_back({A(block[0], block[0]), get_coordinate(names[static_cast<std::size_t>(block[0])])});
+    poles.push_back(name_pole(A(block[0], block[0]), {{get_coordinate(names[static_cast<std::size_t>(block[0])]), 1}}));
     return;
   }
   const auto fail = [] {
@@ -46,9 +72,7 @@ void add_poles(const MatrixXd& A, const std::vector<int>& block, const std::vect
       const auto row = static_cast<Eigen::Index>(k);
       share[get_coordinate(names[static_cast<std::size_t>(block[k])])] += std::abs(right(row, p) * left(p, row));
     }
-    const auto most =
-        std::max_element(share.begin(), share.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-    poles.push_back({solver.eigenvalues()[p], most->first});
+    poles.push_back(name_pole(solver.eigenvalues()[p], share));
   }
 }
 
@@ -76,6 +100,8 @@ records::Poles calc_poles(const MatrixXd& A, const std::vector<std::string>& nam
     out.frequency_hz[i] = size / (2 * std::numbers::pi);
     out.damping[i] = size > 0 ? -pole.value.real() / size + 0.0 : 0;
     out.mode.push_back(pole.mode);
+    out.body_mode.push_back(pole.body_mode);
+    out.hinge.push_back(pole.hinge);
   }
   return out;
 }

@@ -350,7 +350,8 @@ class Select(LinearTest):
         np.testing.assert_allclose(cost, expected, atol=1e-10 * expected.sum())
         self.assertAlmostEqual(cost.sum() / data["total_cost"], 1, places=12)
         for mode in data["modes"]:
-            self.assertEqual(sorted(mode), ["closed_form", "cost", "frequency_hz", "kept", "mode", "reason", "share"])
+            self.assertEqual(sorted(mode), ["closed_form", "cost", "effective_mass", "frequency_hz", "hankel", "kept",
+                                            "mode", "reason", "share"])
         kept = [i for i, mode in enumerate(data["modes"]) if mode["kept"]]
         self.assertEqual(len(kept), 5)
         self.assertEqual(sorted(np.argsort(cost)[-5:]), kept)

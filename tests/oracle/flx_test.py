@@ -3,6 +3,7 @@
 import itertools
 import json
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -10,10 +11,14 @@ import unittest
 
 import h5py
 import numpy as np
+import scipy.io
 import scipy.sparse
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../cli"))
 from support import PROGRAM, SOURCE, ProgramTest  # noqa: E402
+
+sys.path.insert(0, os.path.join(SOURCE, "data/python"))
+import treeflx  # noqa: E402
 
 TOLERANCE = 1e-12
 
@@ -279,6 +284,31 @@ class OfMatrices(OracleTest):
         table = np.loadtxt(self.path("t.fi"))
         np.testing.assert_array_equal(table[:, :2], self.dof_map)
         self.assert_equal(table[:, 2:], inertial_loads(self.M, self.dof_map, p), "F_I")
+        # The functions for scripts say the same as the program.
+        self.assert_equal(treeflx.fimake5(self.M, self.dof_map, self.xyz, offset), table[:, 2:], "fimake5")
+        own = treeflx.modall(self.M, self.K, Phi, self.dof_map, self.xyz, 2.5, offset,
+                             self.D if zeta is None else None, zeta)
+        for name in ["mass", "stiffness", "damping"]:
+            self.assert_equal(own[name], flx["generalized_" + name], "modall " + name)
+        for name in ["alpha", "gamma0", "gamma1", "gamma2", "gamma3", "gamma4"]:
+            if name in flx:
+                self.assert_equal(own[name], flx[name], "modall " + name)
+
+    @unittest.skipUnless(shutil.which("octave"), "Octave is not installed")
+    def test_functions_for_octave(self):
+        write_input(self, "t", self.M, self.K, self.D, self.Phi, self.dof_map, self.xyz, (0.5, -0.25, 2.0), mass=2.5)
+        self.bough("integrals", "t.inp", "t.mat", "--digits", "17", "--fi", "t.fi", "-o", "t.FLX")
+        scipy.io.savemat(self.path("in.mat"), {"M": self.M, "K": self.K, "Phi": self.Phi, "xyz": self.xyz,
+                                               "dof_map": self.dof_map.astype(float)})
+        folder = os.path.join(SOURCE, "data/matlab")
+        self.write("run.m", f"addpath('{folder}'); load in.mat; R = [0.5 -0.25 2];\n"
+                            "F = fimake5(M, dof_map, xyz, R); out = modall(M, K, Phi, dof_map, xyz, 2.5, R);\n"
+                            "save -v7 out.mat F out\n")
+        subprocess.run(["octave", "--no-gui", "--quiet", "run.m"], cwd=self.folder, check=True)
+        found, flx = scipy.io.loadmat(self.path("out.mat")), self.read_flx("t.FLX")
+        self.assert_equal(found["F"], np.loadtxt(self.path("t.fi"))[:, 2:], "fimake5")
+        for name in ["alpha", "gamma0", "gamma1", "gamma2", "gamma3", "gamma4"]:
+            self.assert_equal(found["out"][name][0, 0], flx[name], name)
 
     def test_exact_set(self):
         write_input(self, "t", self.M, self.K, self.D, self.Phi, self.dof_map, self.xyz, nodes=(1,))

@@ -1,0 +1,149 @@
+#include "cli/linearize/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "cli/common/console.hpp"
+#include "formats/export/csv.hpp"
+#include "solver/statespace/track.hpp"
+
+namespace bough::cli {
+
+using Eigen::Index;
+using records::LinearSweep;
+
+namespace {
+
+/// Two motions that turn into two others by halves have 0.5 each.
+constexpr double kRecognized = 0.6;
+
+std::string name_branch(const LinearSweep& sweep, Index b) {
+  const auto k = static_cast<std::size_t>(b);
+  const auto &first = sweep.mode.front()[k], &last = sweep.mode.back()[k];
+  return first == last ? first : first + " -> " + last;
+}
+
+/// Of a pair the one above, and what has no frequency all along.
+bool is_shown(const LinearSweep& sweep, Index b) { return sweep.imag.col(b).sum() >= 0; }
+
+void warn_jumps(const LinearSweep& sweep, const std::string& file, Diagnostics& diagnostics) {
+  for (Index k = 1; k < sweep.value.size(); ++k) {
+    for (Index b = 0; b < sweep.correlation.cols(); ++b) {
+      // Poles at 0 and real poles that meet have no vectors of their own.
+      if (sweep.correlation(k, b) > kRecognized || !(sweep.imag(k, b) > 0) || !(sweep.imag(k - 1, b) > 0)) continue;
+      diagnostics.warning(
+          "linear.sweep-jump", {file},
+          fmt::format("from {} = {:g} to {:g} a motion of {} changes too much to be recognized (correlation {:.2f})",
+                      sweep.parameter, sweep.value[k - 1], sweep.value[k],
+                      sweep.mode[static_cast<std::size_t>(k)][static_cast<std::size_t>(b)], sweep.correlation(k, b)),
+          "take more values between them");
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+SweepRange parse_sweep(const std::string& text) {
+  const auto fail = [&] {
+    return InputError("cli.bad-sweep", {}, "--sweep " + text + " is not NAME=FROM:TO:N",
+                      "write --sweep rate=0:6:25, or with :log behind it for even ratios");
+  };
+  const auto sign = text.find('=');
+  if (sign == std::string::npos || sign == 0) throw fail();
+  std::vector<std::string> words;
+  std::stringstream rest(text.substr(sign + 1));
+  for (std::string word; std::getline(rest, word, ':');) words.push_back(word);
+  const bool is_log = words.size() == 4 && words[3] == "log";
+  if (words.size() != 3 && !is_log) throw fail();
+  double numbers[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    char* end = nullptr;
+    numbers[i] = std::strtod(words[i].c_str(), &end);
+    if (words[i].empty() || *end != '\0' || !std::isfinite(numbers[i])) throw fail();
+  }
+  const double from = numbers[0], to = numbers[1];
+  if (numbers[2] != std::floor(numbers[2]) || numbers[2] < 2 || numbers[2] > 10000) throw fail();
+  if (is_log && !(from > 0 && to > 0)) throw fail();
+  SweepRange range{text.substr(0, sign), {}};
+  const int n = static_cast<int>(numbers[2]);
+  for (int i = 0; i < n; ++i) {
+    const double part = static_cast<double>(i) / (n - 1);
+    range.values.push_back(i == n - 1 ? to : is_log ? from * std::pow(to / from, part) : from + part * (to - from));
+  }
+  return range;
+}
+
+LinearSweep make_sweep(const std::string& name, const std::vector<double>& values,
+                       const std::function<records::LinearModel(double)>& linearize, const std::string& file,
+                       Diagnostics& diagnostics) {
+  LinearSweep sweep;
+  sweep.parameter = name;
+  sweep.value = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Index>(values.size()));
+  for (const double value : values) {
+    sweep.models.push_back(linearize(value));
+    if (sweep.models.back().states.name != sweep.models.front().states.name)
+      throw ComputationError("linear.sweep-states", {file},
+                             fmt::format("the model at {} = {:g} has other states than the first", name, value),
+                             "sweep where the system stays the same");
+  }
+  statespace::track_poles(sweep);
+  warn_jumps(sweep, file, diagnostics);
+  return sweep;
+}
+
+nlohmann::json make_json(const LinearSweep& sweep) {
+  const auto to_rows = [](const Eigen::MatrixXd& m) {
+    auto rows = nlohmann::json::array();
+    for (Index i = 0; i < m.rows(); ++i) rows.push_back(std::vector<double>(m.row(i).begin(), m.row(i).end()));
+    return rows;
+  };
+  return {{"parameter", sweep.parameter},
+          {"value", std::vector<double>(sweep.value.begin(), sweep.value.end())},
+          {"states", sweep.models.front().states.name},
+          {"poles",
+           {{"real", to_rows(sweep.real)},
+            {"imag", to_rows(sweep.imag)},
+            {"frequency_hz", to_rows(sweep.frequency_hz)},
+            {"damping", to_rows(sweep.damping)},
+            {"correlation", to_rows(sweep.correlation)},
+            {"mode", sweep.mode}}}};
+}
+
+std::string format_sweep(const LinearSweep& sweep) {
+  const auto &first = sweep.models.front(), &last = sweep.models.back();
+  std::string text =
+      fmt::format("{} of {} from {:g} to {:g}: {} states, {} inputs, {} outputs\n\n",
+                  count(sweep.models.size(), "model"), sweep.parameter, sweep.value[0],
+                  sweep.value[sweep.value.size() - 1], first.states.size(), first.inputs.size(), last.outputs.size());
+  Table table{{"branch", "from Hz", "to Hz", "damping from", "to", "largest real", "mode"}, {}};
+  const Index end = sweep.value.size() - 1;
+  for (Index b = 0; b < sweep.real.cols(); ++b) {
+    if (!is_shown(sweep, b)) continue;
+    Index worst = 0;
+    const double most = sweep.real.col(b).maxCoeff(&worst);
+    table.rows.push_back({std::to_string(b + 1), fmt::format("{:.6g}", sweep.frequency_hz(0, b)),
+                          fmt::format("{:.6g}", sweep.frequency_hz(end, b)), fmt::format("{:.4g}", sweep.damping(0, b)),
+                          fmt::format("{:.4g}", sweep.damping(end, b)),
+                          fmt::format("{:.3g} at {:g}", most, sweep.value[worst]), name_branch(sweep, b)});
+  }
+  return text + table.to_text();
+}
+
+std::string make_sweep_csv(const LinearSweep& sweep) {
+  std::vector<exports::CsvColumn> columns{{sweep.parameter, sweep.value}};
+  for (Index b = 0; b < sweep.real.cols(); ++b) {
+    const std::string name = std::to_string(b + 1) + " " + sweep.mode.front()[static_cast<std::size_t>(b)];
+    columns.push_back({name + ":real", sweep.real.col(b)});
+    columns.push_back({name + ":imag", sweep.imag.col(b)});
+    columns.push_back({name + ":frequency_hz", sweep.frequency_hz.col(b)});
+    columns.push_back({name + ":damping", sweep.damping.col(b)});
+  }
+  std::ostringstream text;
+  exports::write_csv(text, columns);
+  return text.str();
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,144 @@
+#include "cli/plot/linear_plots.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <complex>
+#include <filesystem>
+#include <numbers>
+
+#include "cli/common/options.hpp"
+#include "cli/export/export_matrices.hpp"
+#include "cli/linearize/linear_model_files.hpp"
+#include "formats/hdf5/linear_file.hpp"
+#include "formats/hdf5/sweep_file.hpp"
+#include "solver/statespace/frequency_response.hpp"
+
+namespace bough::cli {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using records::FrequencyResponse;
+using report::Plot;
+
+bool is_of_sweeps(const std::string& kind) { return kind == "campbell" || kind == "locus"; }
+
+struct Curves {
+  std::string name;
+  VectorXd decibel, degrees;
+};
+
+std::vector<Curves> make_curves(const FrequencyResponse& response, const std::string& prefix) {
+  std::vector<Curves> all;
+  const Index count = response.frequency_hz.size();
+  for (int j = 0; j < response.inputs.size(); ++j)
+    for (int i = 0; i < response.outputs.size(); ++i) {
+      Curves c{prefix + response.outputs.name[static_cast<std::size_t>(i)] + " / " +
+                   response.inputs.name[static_cast<std::size_t>(j)],
+               VectorXd(count), VectorXd(count)};
+      for (Index k = 0; k < count; ++k) {
+        const std::complex<double> h = response.value[static_cast<std::size_t>(k)](i, j);
+        c.decibel[k] = h == 0.0 ? std::nan("") : 20 * std::log10(std::abs(h));
+        double phase = h == 0.0 ? std::nan("") : std::arg(h) * 180 / std::numbers::pi;
+        if (k > 0 && std::isfinite(c.degrees[k - 1])) phase -= 360 * std::round((phase - c.degrees[k - 1]) / 360);
+        c.degrees[k] = phase;
+      }
+      all.push_back(std::move(c));
+    }
+  return all;
+}
+
+void add_response(const FrequencyResponse& response, const std::string& kind, const std::string& prefix,
+                  std::vector<Plot>& plots) {
+  if (kind == "sigma") {
+    for (Index s = 0; s < response.singular_values.cols(); ++s) {
+      const VectorXd decibel = 20 * response.singular_values.col(s).array().max(1e-300).log10();
+      plots[0].curves.push_back({prefix + "sigma " + std::to_string(s + 1), response.frequency_hz, decibel});
+    }
+    return;
+  }
+  for (const auto& c : make_curves(response, prefix)) {
+    if (kind == "nichols") {
+      plots[0].curves.push_back({c.name, c.degrees, c.decibel});
+      continue;
+    }
+    plots[0].curves.push_back({c.name, response.frequency_hz, c.decibel});
+    plots[1].curves.push_back({"", response.frequency_hz, c.degrees});
+  }
+}
+
+void add_poles(const records::LinearModel& model, const std::string& prefix, Plot& plot) {
+  plot.curves.push_back({prefix + "poles", model.poles.real, model.poles.imag, true});
+  if (model.zeros_real.size() > 0) plot.curves.push_back({prefix + "zeros", model.zeros_real, model.zeros_imag, true});
+}
+
+void add_sweep(const records::LinearSweep& sweep, const std::string& kind, const std::string& prefix, Plot& plot) {
+  if (kind == "campbell") plot.x_label = sweep.parameter;
+  const double largest = sweep.frequency_hz.size() > 0 ? sweep.frequency_hz.maxCoeff() : 0;
+  VectorXd first_real(0), first_imag(0);
+  for (Index b = 0; b < sweep.real.cols(); ++b) {
+    const auto k = static_cast<std::size_t>(b);
+    const auto &from = sweep.mode.front()[k], &to = sweep.mode.back()[k];
+    const std::string name = prefix + (from == to ? from : from + " -> " + to);
+    if (kind == "campbell") {
+      // Of a pair one; what stands at 0 all along is no line.
+      if (sweep.imag.col(b).sum() < 0 || sweep.frequency_hz.col(b).maxCoeff() <= 1e-9 * largest) continue;
+      plot.curves.push_back({name, sweep.value, sweep.frequency_hz.col(b)});
+    } else {
+      plot.curves.push_back({sweep.imag.col(b).sum() < 0 ? "" : name, sweep.real.col(b), sweep.imag.col(b)});
+    }
+  }
+  if (kind != "locus") return;
+  plot.curves.push_back({fmt::format("{}{} = {:g}", prefix, sweep.parameter, sweep.value[0]), sweep.real.row(0),
+                         sweep.imag.row(0), true});
+}
+
+}  // namespace
+
+const std::vector<std::string>& list_plot_kinds() {
+  static const std::vector<std::string> kKinds{"bode", "nichols", "sigma", "poles", "campbell", "locus"};
+  return kKinds;
+}
+
+std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const LinearPlotChoice& choice) {
+  const auto& kind = choice.kind;
+  std::vector<Plot> plots(kind == "bode" ? 2 : 1);
+  const bool is_over_frequency = kind == "bode" || kind == "sigma";
+  for (auto& plot : plots) {
+    plot.has_log_x = is_over_frequency;
+    plot.x_label = is_over_frequency ? "frequency [1/T]" : kind == "nichols" ? "phase [degrees]" : "real part [1/T]";
+    plot.y_label = kind == "campbell"                   ? "frequency [1/T]"
+                   : kind == "poles" || kind == "locus" ? "imaginary part [1/T]"
+                                                        : "magnitude [dB]";
+  }
+  if (kind == "bode") plots[1].y_label = "phase [degrees]", plots[0].x_label.clear();
+  for (const auto& file : files) {
+    demand_file(file);
+    const std::string prefix = files.size() > 1 ? std::filesystem::path(file).stem().string() + " " : "";
+    const auto format = read_file_format(file);
+    const std::string wanted = is_of_sweeps(kind) ? "bough-sweep" : "bough-linear";
+    if (format != wanted)
+      throw InputError("cli.plot-kind", {file}, fmt::format("--kind {} draws no file of format \"{}\"", kind, format),
+                       is_of_sweeps(kind) ? "give what bough linearize --sweep or --each wrote"
+                                          : "give a linear model of bough linearize");
+    if (is_of_sweeps(kind)) {
+      add_sweep(hdf5::read_sweep(file), kind, prefix, plots[0]);
+      continue;
+    }
+    const auto all = hdf5::read_linear_model(file);
+    if (kind == "poles") {
+      add_poles(all, prefix, plots[0]);
+      continue;
+    }
+    const auto model = choose_channels(all, choice.inputs, choice.outputs, file);
+    if (model.inputs.size() == 0 || model.outputs.size() == 0)
+      throw InputError("linear.no-channels", {file}, "the model has no input or no output",
+                       "name some with --inputs and --outputs of bough linearize");
+    add_response(statespace::calc_frequency_response(model), kind, prefix, plots);
+  }
+  return plots;
+}
+
+}  // namespace bough::cli

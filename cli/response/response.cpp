@@ -1,0 +1,215 @@
+#include "solver/statespace/frequency_response.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+
+#include "cli/common/console.hpp"
+#include "cli/common/options.hpp"
+#include "cli/common/text_file.hpp"
+#include "cli/linearize/linear_model_files.hpp"
+#include "cli/verbs.hpp"
+#include "formats/export/csv.hpp"
+#include "formats/hdf5/linear_file.hpp"
+#include "formats/hdf5/sweep_file.hpp"
+
+namespace bough::cli {
+
+namespace {
+
+using Eigen::Index;
+using records::FrequencyResponse;
+using records::LinearModel;
+
+struct ResponseOptions : CommonOptions {
+  std::string file, csv;
+  std::vector<std::string> inputs, outputs;
+  statespace::FrequencyRange range;
+  bool is_loop = false;
+};
+
+constexpr std::size_t kMostRows = 24;
+
+double to_decibel(double gain) { return 20 * std::log10(gain); }
+double to_degrees(double angle) { return angle * 180 / std::numbers::pi; }
+
+std::string make_csv(const FrequencyResponse& response) {
+  std::vector<exports::CsvColumn> columns{{"frequency_hz", response.frequency_hz}};
+  const Index count = response.frequency_hz.size();
+  for (int j = 0; j < response.inputs.size(); ++j)
+    for (int i = 0; i < response.outputs.size(); ++i) {
+      const std::string name =
+          response.outputs.name[static_cast<std::size_t>(i)] + "/" + response.inputs.name[static_cast<std::size_t>(j)];
+      Eigen::VectorXd real(count), imag(count);
+      for (Index k = 0; k < count; ++k) {
+        const auto h = response.value[static_cast<std::size_t>(k)](i, j);
+        real[k] = h.real(), imag[k] = h.imag();
+      }
+      columns.push_back({name + ":real", std::move(real)});
+      columns.push_back({name + ":imag", std::move(imag)});
+    }
+  for (Index s = 0; s < response.singular_values.cols(); ++s)
+    columns.push_back({"sigma" + std::to_string(s + 1), response.singular_values.col(s)});
+  std::ostringstream text;
+  exports::write_csv(text, columns);
+  return text.str();
+}
+
+struct Summit {
+  std::string name;
+  double gain = 0, frequency_hz = 0, first = 0;
+};
+
+std::vector<Summit> find_summits(const FrequencyResponse& response) {
+  std::vector<Summit> summits;
+  for (int j = 0; j < response.inputs.size(); ++j)
+    for (int i = 0; i < response.outputs.size(); ++i) {
+      Summit summit{response.outputs.name[static_cast<std::size_t>(i)] + " over " +
+                        response.inputs.name[static_cast<std::size_t>(j)],
+                    0, 0, std::abs(response.value.front()(i, j))};
+      for (std::size_t k = 0; k < response.value.size(); ++k) {
+        const double gain = std::abs(response.value[k](i, j));
+        if (!(gain > summit.gain)) continue;
+        summit.gain = gain;
+        summit.frequency_hz = response.frequency_hz[static_cast<Index>(k)];
+      }
+      summits.push_back(summit);
+    }
+  return summits;
+}
+
+std::string format_margins(const records::Margins& m) {
+  Table table{{"margin", "frequency Hz", "value", "delay"}, {}};
+  for (const auto& c : m.gain)
+    table.rows.push_back({c.margin >= 1 ? "gain, up" : "gain, down", fmt::format("{:.6g}", c.frequency_hz),
+                          fmt::format("{:.4g} dB", to_decibel(c.margin)), ""});
+  for (const auto& c : m.phase)
+    table.rows.push_back({"phase", fmt::format("{:.6g}", c.frequency_hz),
+                          fmt::format("{:.4g} deg", to_degrees(c.margin)), fmt::format("{:.4g}", c.delay)});
+  std::string text = fmt::format("\nthe loop with negative feedback: {} when closed (largest real part {:.3g})\n",
+                                 m.is_stable ? "stable" : "unstable", m.largest_real);
+  text += table.rows.empty() ? "no crossing: neither |L| = 1 nor L real and negative\n" : table.to_text();
+  return text + fmt::format("nearest to -1: {:.4g} at {:.6g} Hz\n", m.distance, m.distance_hz);
+}
+
+std::string format(const LinearModel& model, const FrequencyResponse& response, const records::PeakGain& peak,
+                   const records::Margins* margins) {
+  std::string text = fmt::format("{}, {:.4g} to {:.4g} Hz\n", count(response.value.size(), "frequency"),
+                                 response.frequency_hz[0], response.frequency_hz[response.frequency_hz.size() - 1]);
+  if (!peak.is_finite)
+    text += "largest gain: infinite, " + peak.why + "\n";
+  else
+    text += fmt::format("largest gain (H-infinity norm): {:.6g}, {:.4g} dB, {}{}\n", peak.value, to_decibel(peak.value),
+                        std::isfinite(peak.frequency_hz) ? fmt::format("at {:.6g} Hz", peak.frequency_hz)
+                                                         : std::string("beyond all poles"),
+                        peak.is_certified ? "" : "; of the frequencies looked at");
+  Table table{{"output over input", "lowest dB", "largest dB", "at Hz"}, {}};
+  const auto summits = find_summits(response);
+  for (std::size_t k = 0; k < std::min(kMostRows, summits.size()); ++k) {
+    const auto& s = summits[k];
+    table.rows.push_back({s.name, s.first > 0 ? fmt::format("{:.4g}", to_decibel(s.first)) : "-",
+                          s.gain > 0 ? fmt::format("{:.4g}", to_decibel(s.gain)) : "-",
+                          fmt::format("{:.6g}", s.frequency_hz)});
+  }
+  text += "\n" + table.to_text();
+  if (summits.size() > kMostRows) text += fmt::format("and {} more\n", summits.size() - kMostRows);
+  if (margins) text += format_margins(*margins);
+  return text + format_hankel(model.hankel);
+}
+
+nlohmann::json make_json(const FrequencyResponse& response, const records::PeakGain& peak,
+                         const records::Margins* margins) {
+  nlohmann::json json{{"inputs", response.inputs.name},
+                      {"outputs", response.outputs.name},
+                      {"num_frequencies", response.value.size()},
+                      {"peak", {{"finite", peak.is_finite}, {"certified", peak.is_certified}}}};
+  if (peak.is_finite) json["peak"]["value"] = peak.value;
+  if (std::isfinite(peak.frequency_hz)) json["peak"]["frequency_hz"] = peak.frequency_hz;
+  auto pairs = nlohmann::json::array();
+  for (const auto& s : find_summits(response))
+    pairs.push_back({{"name", s.name}, {"largest", s.gain}, {"frequency_hz", s.frequency_hz}});
+  json["pairs"] = pairs;
+  if (!margins) return json;
+  auto gain = nlohmann::json::array(), phase = nlohmann::json::array();
+  for (const auto& c : margins->gain) gain.push_back({{"frequency_hz", c.frequency_hz}, {"factor", c.margin}});
+  for (const auto& c : margins->phase)
+    phase.push_back({{"frequency_hz", c.frequency_hz}, {"degrees", to_degrees(c.margin)}, {"delay", c.delay}});
+  json["margins"] = {{"gain", gain},
+                     {"phase", phase},
+                     {"stable", margins->is_stable},
+                     {"largest_real", margins->largest_real},
+                     {"distance", margins->distance},
+                     {"distance_hz", margins->distance_hz}};
+  return json;
+}
+
+int run_response(const ResponseOptions& o) {
+  Console console(o.quiet, o.verbosity);
+  if (!console.is_root()) return kSuccess;
+  demand_file(o.file);
+  check_outputs(o, {o.output, o.csv}, {o.file});
+  if (o.range.to_hz > 0 && o.range.to_hz <= o.range.from_hz)
+    throw InputError("cli.bad-range", {},
+                     fmt::format("frequencies from {:g} to {:g} are none", o.range.from_hz, o.range.to_hz),
+                     "give --to above --from");
+  auto model = hdf5::read_linear_model(o.file);
+  model = choose_channels(std::move(model), o.inputs, o.outputs, o.file);
+  if (model.inputs.size() == 0 || model.outputs.size() == 0)
+    throw InputError("linear.no-channels", {o.file}, "the model has no input or no output",
+                     "name some with --inputs and --outputs of bough linearize");
+  const bool is_single = model.inputs.size() == 1 && model.outputs.size() == 1;
+  if (o.is_loop && !is_single)
+    throw InputError("linear.no-loop", {o.file},
+                     fmt::format("a loop has one input and one output, this model has {} and {}", model.inputs.size(),
+                                 model.outputs.size()),
+                     "choose them with --inputs and --outputs");
+  auto response = statespace::calc_frequency_response(model, o.range);
+  response.source = calc_sources({o.file});
+  const auto peak = statespace::calc_peak_gain(model, response);
+  records::Margins margins;
+  const bool is_loop = is_single && (o.is_loop || model.outputs.name.front().ends_with(":return"));
+  if (is_loop) margins = statespace::calc_margins(model, response);
+  const records::Margins* given = is_loop ? &margins : nullptr;
+  if (o.json)
+    console.print_data(make_json(response, peak, given).dump(2) + "\n");
+  else
+    console.print(format(model, response, peak, given));
+  if (!o.output.empty()) hdf5::write_response(response, peak, given, o.output);
+  if (!o.csv.empty()) write_text_file(o.csv, make_csv(response));
+  for (const auto& path : {o.output, o.csv})
+    if (!path.empty() && !o.json) console.print("written: " + path + "\n");
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_response(CLI::App& app, Action& action) {
+  auto o = std::make_shared<ResponseOptions>();
+  auto* verb = app.add_subcommand("response", "Frequency response, largest gain and margins of a linear model");
+  verb->add_option("file", o->file, "Linear model (.h5) of bough linearize")->required();
+  verb->add_option("--inputs", o->inputs, "Only these inputs (default: all)")->delimiter(',');
+  verb->add_option("--outputs", o->outputs, "Only these outputs (default: all)")->delimiter(',');
+  verb->add_option("--from", o->range.from_hz, "Lowest frequency (default: a decade below the poles)")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--to", o->range.to_hz, "Highest frequency (default: a decade above the poles)")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--points", o->range.points, "Frequencies at least; resonances and notches get more")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  verb->add_flag("--loop", o->is_loop,
+                 "Margins of the one input and output as a loop with negative feedback (always of linearize --break)");
+  verb->add_option("--csv", o->csv, "Write the response to this CSV file");
+  add_common_options(*verb, *o, kOutput | kJson, "Write the response to this HDF5 file");
+  verb->footer(
+      "Example:\n  bough linearize arm.toml --break motor -o loop.h5 && bough response loop.h5\n"
+      "  bough response arm-linear.h5 --outputs tip:y --csv tip.csv\n"
+      "bough plot arm-linear.h5 --kind bode draws it.");
+  verb->callback([&action, o] { action = [o] { return blame(o->file, [&] { return run_response(*o); }); }; });
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,267 @@
+#include "cli/select/selection.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "cli/common/console.hpp"
+#include "cli/common/text_file.hpp"
+#include "formats/export/csv.hpp"
+#include "formats/report/svg_plot.hpp"
+#include "solver/statespace/frequency_response.hpp"
+#include "solver/statespace/hankel.hpp"
+#include "solver/statespace/poles.hpp"
+
+namespace bough::cli {
+
+using Eigen::Index;
+using statespace::StateSpace;
+
+namespace {
+
+constexpr double kDefaultTolerance = 0.01;
+
+std::vector<int> list_kept(const std::vector<statespace::Choice>& choices) {
+  std::vector<int> kept;
+  for (std::size_t i = 0; i < choices.size(); ++i)
+    if (choices[i].kept) kept.push_back(static_cast<int>(i));
+  return kept;
+}
+
+/// Costs of either sign cancel: the tolerance is held to what the outputs lose, in every configuration.
+void hold_tolerance(const records::FlexBody& body, const std::vector<Weighing>& weighings, double tolerance,
+                    Selection& s) {
+  const auto calc_lost = [&](const std::vector<int>& kept) {
+    double worst = 0;
+    for (const auto& w : weighings) worst = std::max(worst, w.calc_lost(kept));
+    return worst;
+  };
+  s.kept = list_kept(s.choices);
+  s.lost = calc_lost(s.kept);
+  std::size_t fits = 0, dropped = 0;
+  for (const auto& choice : s.choices) dropped += choice.within_tolerance ? 1 : 0;
+  if (dropped == 0 || s.lost <= tolerance) return;
+  const auto all = s.choices;
+  for (std::size_t too_many = dropped; too_many - fits > 1;) {
+    const std::size_t middle = fits + (too_many - fits) / 2;
+    auto choices = all;
+    statespace::keep_dearest(body, s.ranking, middle, choices);
+    (calc_lost(list_kept(choices)) <= tolerance ? fits : too_many) = middle;
+  }
+  statespace::keep_dearest(body, s.ranking, fits, s.choices);
+  s.kept = list_kept(s.choices);
+  s.lost = calc_lost(s.kept);
+}
+
+/// The part that decays: poles at 0 and what grows left out, so that gains are finite.
+records::LinearModel make_decaying(const StateSpace& s) {
+  const auto part = statespace::split_stable(s.A, true);
+  const Eigen::MatrixXd P = (part.U * part.L).real();
+  records::LinearModel model;
+  model.A = s.A;
+  model.B = P * s.B;
+  model.C = s.C * P;
+  model.D = Eigen::MatrixXd::Zero(s.C.rows(), s.B.cols());
+  for (Index i = 0; i < s.A.rows(); ++i) model.states.name.push_back(std::to_string(i));
+  for (Index i = 0; i < s.B.cols(); ++i) model.inputs.name.push_back(std::to_string(i));
+  for (Index i = 0; i < s.C.rows(); ++i) model.outputs.name.push_back(std::to_string(i));
+  model.poles = statespace::calc_poles(model.A, model.states.name);
+  return model;
+}
+
+double calc_norm_at_rest(const records::LinearModel& model) {
+  const statespace::TransferMatrix transfer(model.A, model.B, model.C, model.D);
+  // What decays is finite at 0; poles there are passed by a little beside them.
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (Index i = 0; i < model.poles.size(); ++i)
+    high = std::max(high, std::hypot(model.poles.real[i], model.poles.imag[i]));
+  for (Index i = 0; i < model.poles.size(); ++i) {
+    const double size = std::hypot(model.poles.real[i], model.poles.imag[i]);
+    if (size > 1e-6 * high) low = std::min(low, size);
+  }
+  return transfer.calc({0, std::isfinite(low) ? 1e-3 * low : 1}).norm();
+}
+
+Loss weigh_loss(const Weighing& w, const std::vector<int>& kept) {
+  Loss loss;
+  loss.name = w.name;
+  loss.total = w.ranking.total;
+  loss.other = w.ranking.other;
+  loss.lost = w.calc_lost(kept);
+  const auto full = make_decaying(w.full);
+  const auto response = statespace::calc_frequency_response(full, {0, 0, 200, 1500});
+  loss.peak = statespace::calc_peak_gain(full, response).value;
+  if (kept.empty()) return loss;
+  const auto reduced = w.reduce(kept);
+  const auto difference = make_decaying(statespace::subtract(w.full, reduced));
+  const auto peak =
+      statespace::calc_peak_gain(difference, statespace::calc_frequency_response(difference, {0, 0, 200, 1500}));
+  loss.error = peak.value;
+  loss.error_hz = peak.frequency_hz;
+  const auto hankel = statespace::calc_hankel(w.full.A, w.full.B, w.full.C);
+  loss.balanced_bound =
+      statespace::calc_truncation_bound(hankel.value, static_cast<int>(reduced.A.rows()) - hankel.num_left_out);
+  const double size = calc_norm_at_rest(full);
+  loss.steady_error = size > 0 ? calc_norm_at_rest(difference) / size : 0;
+  const auto small = make_decaying(reduced);
+  const statespace::TransferMatrix after(small.A, small.B, small.C, small.D),
+      apart(difference.A, difference.B, difference.C, difference.D);
+  const Index count = response.frequency_hz.size();
+  loss.frequency_hz = response.frequency_hz;
+  loss.before = response.singular_values.col(0);
+  loss.after.resize(count);
+  loss.difference.resize(count);
+  for (Index k = 0; k < count; ++k) {
+    const std::complex<double> s(0, 2 * M_PI * response.frequency_hz[k]);
+    loss.after[k] = Eigen::JacobiSVD<Eigen::MatrixXcd>(after.calc(s)).singularValues()[0];
+    loss.difference[k] = Eigen::JacobiSVD<Eigen::MatrixXcd>(apart.calc(s)).singularValues()[0];
+  }
+  return loss;
+}
+
+}  // namespace
+
+Selection select_modes(const SelectOptions& o, const records::FlexBody& body, const std::vector<Weighing>& weighings) {
+  Selection s;
+  std::vector<statespace::ModeRanking> rankings;
+  for (const auto& w : weighings) rankings.push_back(w.ranking);
+  s.ranking = statespace::combine_worst(rankings);
+  const double tolerance = o.tolerance.value_or(kDefaultTolerance);
+  const bool by_cost = o.below_hz == 0 || o.number > 0 || o.tolerance;
+  std::vector<int> pinned;
+  for (const int mode : o.pinned) {
+    if (mode < 1 || mode > body.num_modes())
+      throw InputError("select.unknown-mode", {o.body},
+                       fmt::format("--keep {}: the body has modes 1 to {}", mode, body.num_modes()),
+                       "name modes as select numbers them");
+    pinned.push_back(mode - 1);
+  }
+  s.choices = statespace::choose_modes(body, s.ranking, {o.number, tolerance, o.below_hz, by_cost, pinned});
+  hold_tolerance(body, weighings, tolerance, s);
+  for (std::size_t i = 0; i < s.choices.size(); ++i)
+    if (!s.choices[i].kept && s.ranking.total > 0) s.dropped += s.ranking.modes[i].cost / s.ranking.total;
+  return s;
+}
+
+void weigh_losses(const std::vector<Weighing>& weighings, Selection& s) {
+  for (const auto& w : weighings) s.losses.push_back(weigh_loss(w, s.kept));
+}
+
+nlohmann::json make_json(const records::FlexBody& body, const Selection& s) {
+  auto modes = nlohmann::json::array();
+  for (int i = 0; i < body.num_modes(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto& mode = s.ranking.modes[k];
+    nlohmann::json one{{"mode", i + 1},
+                       {"frequency_hz", body.frequency_hz[i]},
+                       {"cost", mode.cost},
+                       {"share", s.ranking.total > 0 ? mode.cost / s.ranking.total : 0},
+                       {"closed_form", mode.closed_form},
+                       {"kept", s.choices[k].kept},
+                       {"reason", s.choices[k].reason}};
+    if (s.modal_hankel.size() > 0) one["hankel"] = s.modal_hankel[i];
+    if (body.effective_mass.rows() == body.num_modes()) {
+      const Eigen::VectorXd row = body.effective_mass.row(i);
+      one["effective_mass"] = std::vector<double>(row.begin(), row.end());
+    }
+    modes.push_back(std::move(one));
+  }
+  auto losses = nlohmann::json::array();
+  for (const auto& loss : s.losses)
+    losses.push_back({{"name", loss.name},
+                      {"total_cost", loss.total},
+                      {"lost_share", loss.lost},
+                      {"peak_gain", loss.peak},
+                      {"peak_error", loss.error},
+                      {"peak_error_hz", loss.error_hz},
+                      {"balanced_bound", loss.balanced_bound},
+                      {"steady_error", loss.steady_error}});
+  nlohmann::json json{{"modes", modes},
+                      {"total_cost", s.ranking.total},
+                      {"other_cost", s.ranking.other},
+                      {"dropped_share", s.dropped},
+                      {"lost_share", s.lost},
+                      {"configurations", losses}};
+  if (s.static_error >= 0) json["static_error"] = s.static_error;
+  return json;
+}
+
+std::string format(const records::FlexBody& body, const Selection& s, int inertial_load) {
+  Table table{{"mode", "frequency Hz", "cost", "share %"}, {}};
+  const bool has_hankel = s.modal_hankel.size() > 0, has_mass = body.effective_mass.rows() == body.num_modes();
+  if (has_hankel) table.headings.push_back("Hankel");
+  if (has_mass) table.headings.push_back("eff. mass %");
+  if (inertial_load > 0) table.headings.push_back("K_G");
+  for (const char* heading : {"kept", "reason"}) table.headings.push_back(heading);
+  for (int i = 0; i < body.num_modes(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double cost = s.ranking.modes[k].cost;
+    std::vector<std::string> row{std::to_string(i + 1), fmt::format("{:.6g}", body.frequency_hz[i]),
+                                 fmt::format("{:.4g}", cost),
+                                 fmt::format("{:.3g}", s.ranking.total > 0 ? 100 * cost / s.ranking.total : 0)};
+    if (has_hankel) row.push_back(fmt::format("{:.3g}", s.modal_hankel[i]));
+    if (has_mass)
+      row.push_back(fmt::format("{:.3g}", 100 * body.effective_mass.row(i).head<3>().maxCoeff() / body.mass));
+    if (inertial_load > 0) {
+      const auto& kg = body.kg_inertial[static_cast<std::size_t>(inertial_load - 1)];
+      const double stiffness = body.modal_stiffness(i, i);
+      row.push_back(kg.size() > 0 && stiffness > 0 ? fmt::format("{:.3g}", kg(i, i) / stiffness) : "-");
+    }
+    row.push_back(s.choices[k].kept ? "yes" : "no");
+    row.push_back(s.choices[k].reason);
+    table.rows.push_back(std::move(row));
+  }
+  auto text = table.to_text();
+  if (s.losses.size() == 1) {
+    text += fmt::format("\ntotal cost {:.6g}", s.ranking.total);
+    if (s.ranking.other != 0) text += fmt::format(", of it {:.4g} by the rest of the system", s.ranking.other);
+  } else {
+    text += fmt::format("\nshares are the largest of {}", count(s.losses.size(), "configuration"));
+  }
+  text += fmt::format("\n{} kept, {} dropped with {:.3g} % of the cost", count(s.kept.size(), "mode"),
+                      static_cast<std::size_t>(body.num_modes()) - s.kept.size(), 100 * s.dropped);
+  text += fmt::format("; the outputs lose {:.3g} % (mean square)", 100 * s.lost);
+  if (s.static_error >= 0) text += fmt::format(", static response off by {:.3g} %", 100 * s.static_error);
+  text += "\n";
+  for (const auto& loss : s.losses) {
+    if (s.losses.size() > 1)
+      text += fmt::format("{}: total cost {:.6g}, loses {:.3g} %\n", loss.name, loss.total, 100 * loss.lost);
+    text += fmt::format(
+        "largest gain {:.4g}, of what is lost {:.4g} at {:.4g} Hz (a balanced model of as many states: at most "
+        "{:.4g}), "
+        "steady gain off by {:.3g} %\n",
+        loss.peak, loss.error, loss.error_hz, loss.balanced_bound, 100 * loss.steady_error);
+  }
+  return text;
+}
+
+void write_response(const Selection& s, const std::string& path) {
+  if (s.losses.empty() || s.losses.front().frequency_hz.size() == 0) return;
+  const Loss& loss = s.losses.front();
+  if (has_suffix(path, ".svg")) {
+    const auto decibel = [](const Eigen::VectorXd& gain) {
+      return Eigen::VectorXd(20 * gain.array().max(1e-300).log10());
+    };
+    report::Plot plot;
+    plot.title = loss.name;
+    plot.x_label = "frequency [1/T]";
+    plot.y_label = "largest singular value [dB]";
+    plot.has_log_x = true;
+    plot.curves = {{"all modes", loss.frequency_hz, decibel(loss.before)},
+                   {"modes kept", loss.frequency_hz, decibel(loss.after)},
+                   {"difference", loss.frequency_hz, decibel(loss.difference)}};
+    write_text_file(path, report::draw_svg(plot));
+    return;
+  }
+  std::ostringstream text;
+  exports::write_csv(text, {{"frequency_hz", loss.frequency_hz},
+                            {"before", loss.before},
+                            {"after", loss.after},
+                            {"difference", loss.difference}});
+  write_text_file(path, text.str());
+}
+
+}  // namespace bough::cli

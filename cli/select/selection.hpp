@@ -1,0 +1,44 @@
+#pragma once
+/// \file Which modes stay, what that costs, and the tables of both.
+#include <nlohmann/json.hpp>
+
+#include "cli/select/weighing.hpp"
+
+namespace bough::cli {
+
+/// What one configuration loses.
+struct Loss {
+  std::string name;
+  double total = 0;           ///< V
+  double other = 0;           ///< of it by the rest of the system
+  double lost = 0;            ///< mean square of the difference of the outputs, to V
+  double peak = 0;            ///< largest gain of the full model, of what decays
+  double error = 0;           ///< largest gain of the difference: its H-infinity norm
+  double error_hz = 0;        ///< where
+  double balanced_bound = 0;  ///< 2 Σ of the Hankel singular values that a balanced model of as many states loses
+  double steady_error = 0;    ///< of the gain at frequency 0 of what decays, relative
+  Eigen::VectorXd frequency_hz, before, after, difference;  ///< largest singular values
+};
+
+struct Selection {
+  statespace::ModeRanking ranking;  ///< of the worst configuration for each mode
+  std::vector<statespace::Choice> choices;
+  std::vector<int> kept;
+  double dropped = 0;        ///< part of V
+  double lost = 0;           ///< the worst of the configurations
+  double static_error = -1;  ///< of a body alone
+  Eigen::VectorXd modal_hankel;
+  std::vector<Loss> losses;
+};
+
+/// The modes by the rules; of a rule by tolerance as many as every configuration allows.
+Selection select_modes(const SelectOptions& o, const records::FlexBody& body, const std::vector<Weighing>& weighings);
+/// Fills losses.
+void weigh_losses(const std::vector<Weighing>& weighings, Selection& selection);
+
+nlohmann::json make_json(const records::FlexBody& body, const Selection& selection);
+std::string format(const records::FlexBody& body, const Selection& selection, int inertial_load);
+/// Frequency response before and after, of the first configuration: .svg is drawn, else CSV.
+void write_response(const Selection& selection, const std::string& path);
+
+}  // namespace bough::cli

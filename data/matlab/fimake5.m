@@ -1,0 +1,25 @@
+function F = fimake5(M, dof_map, xyz, R)
+% FIMAKE5  The twelve inertial loads of NASA-CR-202063, eqs. 3-12: ndof x 12.
+%   F = FIMAKE5(M, dof_map, xyz) or (..., R): per unit of ax ay az, alx aly alz, wx2 wy2 wz2, wxwy wxwz wywz, about the
+%   point R (default: the origin). dof_map: ndof x 2, node (from 1) and code 1 to 6, else a generalized dof, where
+%   columns 7 to 12 are zero. xyz: nodes x 3. `bough integrals --fi` calculates the same.
+if nargin < 4, R = [0 0 0]; end
+P = full(M * treeflx_rigid(dof_map, xyz, R));
+nodes = treeflx_split(dof_map, size(xyz, 1), P);
+F = zeros(size(dof_map, 1), 12);
+F(:, 1:6) = -P;
+pairs = [1 1; 2 2; 3 3; 1 2; 1 3; 2 3];
+one = eye(3);
+for i = 1:size(dof_map, 1)
+  code = dof_map(i, 2);
+  if code < 1 || code > 6, continue, end
+  rows = 3 * (code > 3) + (1:3);
+  axis_of = mod(code - 1, 3) + 1;
+  for c = 1:6
+    r = pairs(c, 1); s = pairs(c, 2);
+    turned = cross(one(r, :), nodes(rows, 3 + s, dof_map(i, 1))');
+    if r ~= s, turned = turned + cross(one(s, :), nodes(rows, 3 + r, dof_map(i, 1))'); end
+    F(i, 6 + c) = -turned(axis_of);
+  end
+end
+end

@@ -1,0 +1,176 @@
+#include "formats/hdf5/sweep_file.hpp"
+
+#include "formats/hdf5/detail/reader.hpp"
+#include "formats/hdf5/detail/writer.hpp"
+
+namespace bough::hdf5 {
+namespace {
+
+constexpr const char* kSweepFormat = "bough-sweep";
+constexpr const char* kResponseFormat = "bough-response";
+constexpr const char* kVersion = "1.0";
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using records::LinearModel;
+using records::Signals;
+
+void write_signals(FileWriter& file, const std::string& group, const Signals& signals, const std::string& what) {
+  file.write_strings(group + "/name", signals.name, {"names of the " + what, "1"});
+  file.write_strings(group + "/dims", signals.dims, {"their dimensions in M L T F", "1"});
+}
+
+Signals read_signals(FileReader& file, const std::string& group) {
+  Signals signals;
+  signals.name = file.read_strings(group + "/name", -1);
+  signals.dims = file.read_strings(group + "/dims", static_cast<long>(signals.name.size()));
+  return signals;
+}
+
+/// One matrix a point, behind each other in C order.
+void write_stack(FileWriter& file, const std::string& path, const std::vector<LinearModel>& models,
+                 MatrixXd LinearModel::*part, const std::string& what) {
+  const MatrixXd& first = models.front().*part;
+  std::vector<double> data;
+  for (const auto& model : models) {
+    const MatrixXd& m = model.*part;
+    for (Index i = 0; i < m.rows(); ++i) data.insert(data.end(), m.row(i).begin(), m.row(i).end());
+  }
+  file.write_numbers(path, {models.size(), static_cast<hsize_t>(first.rows()), static_cast<hsize_t>(first.cols())},
+                     data.data(), {what + " of each point", "as the names' dims say"});
+}
+
+void read_stack(FileReader& file, const std::string& path, std::vector<LinearModel>& models,
+                MatrixXd LinearModel::*part, long rows, long cols) {
+  const auto count = static_cast<long>(models.size());
+  const NumberArray array = file.read_array(path, {count, rows, cols});
+  const auto size = static_cast<std::size_t>(rows * cols);
+  for (std::size_t k = 0; k < models.size(); ++k) {
+    MatrixXd& m = models[k].*part;
+    m.setZero(rows, cols);
+    if (array.data.size() < size * models.size()) continue;
+    for (Index i = 0; i < rows; ++i)
+      for (Index j = 0; j < cols; ++j) m(i, j) = array.data[k * size + static_cast<std::size_t>(i * cols + j)];
+  }
+}
+
+}  // namespace
+
+void write_sweep(const records::LinearSweep& sweep, const std::string& path) {
+  FileWriter file(path, kSweepFormat, kVersion);
+  file.write_source(sweep.source);
+  file.write_strings("/parameter/name", {sweep.parameter}, {"of the system file, or time", "1"});
+  file.write_vector("/parameter/value", sweep.value, {"one a point", "as the parameter's"});
+  const auto& first = sweep.models.front();
+  write_signals(file, "/states", first.states, "states: displacements of the freedoms, then their rates");
+  write_signals(file, "/inputs", first.inputs, "inputs");
+  write_signals(file, "/outputs", first.outputs, "outputs");
+  write_stack(file, "/A", sweep.models, &LinearModel::A, "x_dot = A x + B u");
+  write_stack(file, "/B", sweep.models, &LinearModel::B, "x_dot = A x + B u");
+  write_stack(file, "/C", sweep.models, &LinearModel::C, "y = C x + D u");
+  write_stack(file, "/D", sweep.models, &LinearModel::D, "y = C x + D u");
+  const auto np = static_cast<Index>(sweep.models.size());
+  MatrixXd q(np, first.q.size()), u(np, first.u.size());
+  Eigen::VectorXd time(np), residual(np);
+  for (Index k = 0; k < np; ++k) {
+    const auto& model = sweep.models[static_cast<std::size_t>(k)];
+    q.row(k) = model.q.transpose();
+    u.row(k) = model.u.transpose();
+    time[k] = model.time;
+    residual[k] = model.residual;
+  }
+  file.write_vector("/operating_point/time", time, {"time of each point", "T"});
+  file.write_matrix("/operating_point/q", q, {"point, position (quaternions w, x, y, z)", "1 or L"});
+  file.write_matrix("/operating_point/u", u, {"point, speed", "1/T or L/T"});
+  file.write_vector("/operating_point/residual", residual, {"norm of u_dot", "1/T^2 or L/T^2"});
+  write_signals(file, "/operating_point/positions", first.q_names, "columns of q");
+  write_signals(file, "/operating_point/speeds", first.u_names, "columns of u");
+  file.write_matrix("/poles/real", sweep.real, {"point, branch: a column is one motion all along", "1/T"});
+  file.write_matrix("/poles/imag", sweep.imag, {"point, branch", "1/T"});
+  file.write_matrix("/poles/frequency_hz", sweep.frequency_hz, {"|pole| / 2 pi", "1/T"});
+  file.write_matrix("/poles/damping", sweep.damping, {"-real / |pole|; 0 for a pole at 0", "1"});
+  file.write_matrix("/poles/correlation", sweep.correlation, {"with the motion at the point before", "1"});
+  std::vector<std::string> start, end;
+  if (!sweep.mode.empty()) start = sweep.mode.front(), end = sweep.mode.back();
+  file.write_strings("/poles/mode_first", start,
+                     {"branch: the coordinate that takes part most at the first point", "1"});
+  file.write_strings("/poles/mode_last", end, {"branch: at the last point", "1"});
+  file.commit();
+}
+
+records::LinearSweep read_sweep(const std::string& path) {
+  FileReader file(path, kSweepFormat, kVersion);
+  records::LinearSweep sweep;
+  sweep.source = file.read_source();
+  const auto names = file.read_strings("/parameter/name", 1);
+  sweep.parameter = names.empty() ? "" : names.front();
+  sweep.value = file.read_vector("/parameter/value", -1);
+  const long np = sweep.value.size();
+  LinearModel first;
+  first.states = read_signals(file, "/states");
+  first.inputs = read_signals(file, "/inputs");
+  first.outputs = read_signals(file, "/outputs");
+  const long nx = first.states.size(), nu = first.inputs.size(), ny = first.outputs.size();
+  sweep.models.assign(static_cast<std::size_t>(np), first);
+  read_stack(file, "/A", sweep.models, &LinearModel::A, nx, nx);
+  read_stack(file, "/B", sweep.models, &LinearModel::B, nx, nu);
+  read_stack(file, "/C", sweep.models, &LinearModel::C, ny, nx);
+  read_stack(file, "/D", sweep.models, &LinearModel::D, ny, nu);
+  sweep.real = file.read_matrix("/poles/real", np, nx);
+  sweep.imag = file.read_matrix("/poles/imag", np, nx);
+  sweep.frequency_hz = file.read_matrix("/poles/frequency_hz", np, nx);
+  sweep.damping = file.read_matrix("/poles/damping", np, nx);
+  sweep.correlation = file.read_matrix("/poles/correlation", np, nx);
+  const auto start = file.read_strings("/poles/mode_first", nx), end = file.read_strings("/poles/mode_last", nx);
+  file.throw_if_errors();
+  sweep.mode.assign(static_cast<std::size_t>(np), start);
+  if (np > 1) sweep.mode.back() = end;
+  return sweep;
+}
+
+void write_response(const records::FrequencyResponse& response, const records::PeakGain& peak,
+                    const records::Margins* margins, const std::string& path) {
+  FileWriter file(path, kResponseFormat, kVersion);
+  file.write_source(response.source);
+  write_signals(file, "/inputs", response.inputs, "inputs");
+  write_signals(file, "/outputs", response.outputs, "outputs");
+  file.write_vector("/frequency_hz", response.frequency_hz, {"frequencies", "1/T"});
+  std::vector<double> real, imag;
+  for (const auto& value : response.value)
+    for (Index i = 0; i < value.rows(); ++i)
+      for (Index j = 0; j < value.cols(); ++j) {
+        real.push_back(value(i, j).real());
+        imag.push_back(value(i, j).imag());
+      }
+  const Dims shape{response.value.size(), static_cast<hsize_t>(response.outputs.size()),
+                   static_cast<hsize_t>(response.inputs.size())};
+  file.write_numbers("/real", shape, real.data(),
+                     {"C (jw - A)^-1 B + D: frequency, output, input; real part", "as the names' dims say"});
+  file.write_numbers("/imag", shape, imag.data(), {"likewise, imaginary part", "as the names' dims say"});
+  file.write_matrix("/singular_values", response.singular_values, {"frequency, descending", "as the names' dims say"});
+  file.write_number("/peak/value", peak.is_finite ? peak.value : -1,
+                    {"largest singular value of all frequencies; -1: it is infinite", "as the names' dims say"});
+  file.write_number("/peak/frequency_hz", std::isfinite(peak.frequency_hz) ? peak.frequency_hz : -1,
+                    {"where; -1: beyond all poles", "1/T"});
+  if (margins) {
+    const auto write = [&](const std::string& group, const std::vector<records::Crossing>& crossings, bool is_phase) {
+      Eigen::VectorXd frequency(static_cast<Index>(crossings.size())), margin = frequency, delay = frequency;
+      for (Index k = 0; k < frequency.size(); ++k) {
+        const auto& c = crossings[static_cast<std::size_t>(k)];
+        frequency[k] = c.frequency_hz, margin[k] = c.margin, delay[k] = c.delay;
+      }
+      file.write_vector(group + "/frequency_hz", frequency, {"of the crossing", "1/T"});
+      file.write_vector(group + "/margin", margin,
+                        {is_phase ? "lag that brings L to -1, rad" : "factor that brings L to -1", "1"});
+      if (is_phase) file.write_vector(group + "/delay", delay, {"delay that does", "T"});
+    };
+    write("/margins/gain", margins->gain, false);
+    write("/margins/phase", margins->phase, true);
+    file.write_number("/margins/distance", margins->distance, {"least |1 + L|", "1"});
+    file.write_number("/margins/distance_hz", margins->distance_hz, {"where", "1/T"});
+    file.write_number("/margins/largest_real", margins->largest_real, {"of the poles with the loop closed", "1/T"});
+  }
+  file.commit();
+}
+
+}  // namespace bough::hdf5

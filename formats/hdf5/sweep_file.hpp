@@ -1,0 +1,19 @@
+#pragma once
+/// \file Linear models along a parameter, and frequency responses (docs/formats/linear.md).
+#include <string>
+
+#include "formats/records/frequency_response.hpp"
+#include "formats/records/linear_sweep.hpp"
+
+namespace bough::hdf5 {
+
+/// Throw as the functions of formats/hdf5/files.hpp.
+void write_sweep(const records::LinearSweep& sweep, const std::string& path);
+/// All but the models' Hankel values and multipliers.
+records::LinearSweep read_sweep(const std::string& path);
+
+/// `margins`: of a loop, or nullptr.
+void write_response(const records::FrequencyResponse& response, const records::PeakGain& peak,
+                    const records::Margins* margins, const std::string& path);
+
+}  // namespace bough::hdf5

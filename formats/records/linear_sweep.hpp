@@ -1,0 +1,18 @@
+#pragma once
+/// \file Linear models along a parameter or along the time of a run, their poles followed from one to the next.
+#include "formats/records/linear_model.hpp"
+
+namespace bough::records {
+
+struct LinearSweep {
+  std::vector<std::pair<std::string, std::string>> source;  ///< (file name, SHA-256)
+  std::string parameter;                                    ///< its name, or "time"
+  Eigen::VectorXd value;                                    ///< np
+  std::vector<LinearModel> models;                          ///< np, all with the same states, inputs and outputs
+  /// np x nx, column b the same motion all along: poles of each model in that order.
+  Eigen::MatrixXd real, imag, frequency_hz, damping;
+  Eigen::MatrixXd correlation;                 ///< np x nx, with the motion at the value before; 1 in the first row
+  std::vector<std::vector<std::string>> mode;  ///< np of nx: the coordinate that takes part most
+};
+
+}  // namespace bough::records

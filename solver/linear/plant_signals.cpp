@@ -1,0 +1,192 @@
+// A plant's inputs and outputs, and what of it changes at samples.
+#include <algorithm>
+
+#include "solver/linear/plant.hpp"
+#include "solver/system/impl.hpp"
+
+namespace bough::solver {
+namespace {
+
+bool is_of(const Block& block, const char* kind) { return block.path.starts_with(kind); }
+
+std::string name_component(const std::string& name, int i, int size) {
+  if (size == 1) return name;
+  return name + ":" + (size == 3 ? std::string(1, "xyz"[i]) : std::to_string(i + 1));
+}
+
+}  // namespace
+
+void Plant::add_inputs() {
+  const auto& forces = system_.impl().forces;
+  for (size_t i = 0; i < forces.size(); ++i) {
+    const bool is_moment = forces[i].pattern.size() == 0 && forces[i].kind == records::ForceKind::Moment;
+    inputs_.push_back({forces[i].name, is_moment ? "F L" : "F", static_cast<int>(i)});
+  }
+  num_forces_ = static_cast<int>(inputs_.size());
+  for (const auto& p : system_.impl().signals.places) {
+    if (p.actuator >= 0) inputs_.push_back({p.block->name, "by the controller", -1, p.actuator});
+  }
+  num_actuators_ = static_cast<int>(inputs_.size()) - num_forces_;
+  for (size_t i = 0; i < freedoms_.size(); ++i) {
+    if (!freedoms_[i].is_mode)
+      inputs_.push_back({freedoms_[i].name, freedoms_[i].dims == "L" ? "F" : "F L", -1, -1, rows_[i]});
+  }
+  const auto is_taken = [&](const std::string& name) {
+    return std::any_of(inputs_.begin(), inputs_.end(), [&](const PlantInput& input) {
+      return input.name == name || input.name.starts_with(name + ":");
+    });
+  };
+  std::vector<PlantInput> more;
+  for (const auto& p : system_.impl().signals.places) {
+    if (p.actuator >= 0 || (!is_of(*p.block, "/sensors/") && !is_of(*p.block, "/controllers/"))) continue;
+    const std::string name = is_taken(p.block->name) ? p.block->path : p.block->name;
+    const int size = p.block->sizes.outputs;
+    for (int i = 0; i < size; ++i)
+      more.push_back({name_component(name, i, size), p.block->dims, -1, -1, -1, p.out + i});
+  }
+  inputs_.insert(inputs_.end(), more.begin(), more.end());
+}
+
+void Plant::add_outputs() {
+  for (const char* kind : {"/sensors/", "/controllers/", "/actuators/"}) {
+    for (const auto& p : system_.impl().signals.places) {
+      if (!is_of(*p.block, kind)) continue;
+      const int size = p.block->sizes.outputs;
+      for (int i = 0; i < size; ++i) {
+        outputs_.name.push_back(name_component(p.block->name, i, size));
+        outputs_.dims.push_back(p.block->dims);
+      }
+    }
+    if (std::string_view(kind) == "/sensors/") num_sensor_outputs_ = outputs_.size();
+  }
+  for (const auto& p : system_.impl().signals.places) {
+    if (p.actuator < 0) continue;
+    outputs_.name.push_back(p.block->name + ":command");
+    outputs_.dims.push_back("by the controller");
+  }
+}
+
+VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, double value) {
+  const int n = num_freedoms(), nz = num_states();
+  const SignalGraph& signals = system_.impl().signals;
+  VectorXd out(n + nz + outputs_.size()), u_dot(system_.num_u());
+  compute(point, input, value, u_dot);
+  out.head(n) = u_dot(rows_);
+  VectorXd z_dot(system_.num_z());
+  calc_z_dot(system_, *data_, z_dot);
+  calc_signals(system_, *data_);
+  out.segment(n, nz) = z_dot(state_rows_);
+  const SignalData& s = data_->signals;
+  int at = n + nz;
+  for (const auto& p : signals.places) {
+    if (!is_of(*p.block, "/sensors/")) continue;
+    signals.calc_ideal(p, system_, *data_, out.data() + at);
+    at += p.block->sizes.outputs;
+  }
+  for (const char* kind : {"/controllers/", "/actuators/"}) {
+    for (const auto& p : signals.places) {
+      if (!is_of(*p.block, kind)) continue;
+      for (int i = 0; i < p.block->sizes.outputs; ++i)
+        out[at++] = s.values[p.out + i] - (s.shift.size() > 0 ? s.shift[p.out + i] : 0);
+    }
+  }
+  for (const auto& p : signals.places) {
+    if (p.actuator >= 0) out[at++] = s.inputs[p.in] - s.bias[p.actuator];
+  }
+  return out;
+}
+
+void Plant::compute(const OperatingPoint& point, const PlantInput* input, double value, VectorXd& u_dot) {
+  SignalData& s = data_->signals;
+  s.memory = point.memory;
+  s.bias.setZero();
+  s.shift.resize(0);
+  if (input && input->actuator >= 0) s.bias[input->actuator] = value;
+  if (input && input->signal >= 0) s.shift = value * VectorXd::Unit(s.values.size(), input->signal);
+  t_ = point.t;
+  calc_kinematics(system_, *data_, point.t, point.q, calc_speeds(point));
+  set_z(*data_, point.z);
+  add_forces(system_, *data_, point.t);
+  if (input && input->force >= 0) {
+    AppliedForce one = system_.impl().forces[static_cast<size_t>(input->force)];
+    one.function = nullptr;
+    one.direction *= value;
+    one.pattern *= value;
+    one.pattern_K2 *= value;
+    one.pattern_resultant *= value;
+    one.pattern_moment *= value;
+    add_applied_force(one, system_.impl().tree, point.t, data_->tree);
+  } else if (input && input->row >= 0) {
+    data_->tree.hinge_force[input->row] += value;
+  }
+  calc_accelerations(system_, *data_, point.t, u_dot);
+}
+
+std::vector<std::string> Plant::list_cuts() const {
+  std::vector<std::string> names;
+  for (const auto& input : inputs_)
+    if (input.actuator >= 0 || input.signal >= 0) names.push_back(input.name);
+  return names;
+}
+
+Plant::Cut Plant::find_cut(const std::string& name) const {
+  Cut cut;
+  for (size_t i = 0; i < inputs_.size(); ++i) {
+    if (inputs_[i].name != name || (inputs_[i].actuator < 0 && inputs_[i].signal < 0)) continue;
+    cut.input = static_cast<int>(i);
+    break;
+  }
+  if (cut.input < 0) return cut;
+  const PlantInput& input = inputs_[static_cast<size_t>(cut.input)];
+  // Sensors, controllers and actuators each in the order of the file, as add_outputs has them.
+  int at = 0;
+  for (const char* kind : {"/sensors/", "/controllers/", "/actuators/"}) {
+    for (const auto& p : system_.impl().signals.places) {
+      if (!is_of(*p.block, kind)) continue;
+      if (input.signal >= p.out && input.signal < p.out + p.block->sizes.outputs)
+        cut.output = at + input.signal - p.out;
+      at += p.block->sizes.outputs;
+    }
+  }
+  if (input.actuator >= 0) cut.output = at + input.actuator;
+  return cut;
+}
+
+void Plant::add_sampled() {
+  for (const auto& p : system_.impl().signals.places) {
+    if (!p.is_sampled() || !p.is_needed) continue;
+    const auto add = [&](int first, int size, const char* what) {
+      for (int i = 0; i < size; ++i) {
+        sampled_rows_.push_back(first + i);
+        sampled_names_.push_back(p.block->label + " (" + what + " " + std::to_string(i + 1) + ")");
+      }
+    };
+    add(p.memory, p.block->sizes.memory, "memory");
+    add(p.held, p.block->sizes.outputs, "held");
+    add(p.queue, p.block->sizes.outputs * p.queue_length, "on its way");
+  }
+}
+
+std::vector<SampleTimes> Plant::collect_samples() const { return system_.impl().signals.collect_samples(); }
+
+std::vector<std::pair<double, int>> Plant::list_cycles() const {
+  std::vector<std::pair<double, int>> cycles;
+  for (const auto& p : system_.impl().signals.places) {
+    if (p.is_sampled() && p.is_needed) cycles.emplace_back(p.block->sizes.sample_time, std::max(1, p.queue_length));
+  }
+  return cycles;
+}
+
+VectorXd Plant::sample(const OperatingPoint& point) {
+  VectorXd u_dot(system_.num_u());
+  compute(point, nullptr, 0, u_dot);
+  calc_signals(system_, *data_);
+  data_->signals.is_ideal = true;
+  double shortest = 0;
+  for (const auto& [period, queue] : list_cycles()) shortest = shortest > 0 ? std::min(shortest, period) : period;
+  system_.impl().signals.sample(system_, *data_, 1e-9 * shortest);
+  data_->signals.is_ideal = false;
+  return data_->signals.memory;
+}
+
+}  // namespace bough::solver

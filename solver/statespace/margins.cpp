@@ -1,0 +1,208 @@
+// Margins of a loop, and the largest gain of a model.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <sstream>
+
+#include "base/diagnostic.hpp"
+#include "solver/statespace/blocks.hpp"
+#include "solver/statespace/cost.hpp"
+#include "solver/statespace/frequency_response.hpp"
+#include "solver/statespace/poles.hpp"
+
+namespace bough::statespace {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Complex = std::complex<double>;
+
+constexpr double kTwoPi = 2 * std::numbers::pi;
+constexpr int kBisections = 80;
+constexpr double kCertified = 1e-6;
+constexpr Index kMostStates = 300;
+
+/// A root of f between a and b, where its signs differ.
+double bisect(const std::function<double(double)>& f, double a, double b) {
+  const bool is_positive = f(a) > 0;
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = 0.5 * (a + b);
+    if (middle == a || middle == b) break;
+    (f(middle) > 0) == is_positive ? a = middle : b = middle;
+  }
+  return 0.5 * (a + b);
+}
+
+/// The least f near x between a and b (golden section).
+double minimize(const std::function<double(double)>& f, double a, double b) {
+  const double golden = 0.5 * (std::sqrt(5.0) - 1);
+  double left = b - golden * (b - a), right = a + golden * (b - a), f_left = f(left), f_right = f(right);
+  for (int i = 0; i < kBisections && b - a > 1e-12 * b; ++i) {
+    if (f_left < f_right) {
+      b = right, right = left, f_right = f_left;
+      left = b - golden * (b - a), f_left = f(left);
+    } else {
+      a = left, left = right, f_left = f_right;
+      right = a + golden * (b - a), f_right = f(right);
+    }
+  }
+  return f_left < f_right ? left : right;
+}
+
+double calc_sigma(const MatrixXcd& value) {
+  if (!value.allFinite()) return std::numeric_limits<double>::infinity();
+  return value.size() == 0 ? 0 : Eigen::JacobiSVD<MatrixXcd>(value).singularValues()[0];
+}
+
+/// Whether poles that part leaves out come through from inputs to outputs: C Aᵏ (1 - U L) B beside |C| |Aᵏ B|.
+bool is_seen(const records::LinearModel& model, const StablePart& part) {
+  const Index n = model.A.rows();
+  MatrixXd A = model.A;
+  const Eigen::VectorXd scale = balance(A);
+  const MatrixXd inverse = scale.cwiseInverse().asDiagonal(), C = model.C * scale.asDiagonal();
+  const MatrixXd decays = inverse * (part.U * part.L).real() * scale.asDiagonal();
+  MatrixXd all = inverse * model.B, rest = all - decays * all;
+  for (Index k = 0; k < std::min<Index>(n, 4); ++k) {
+    if ((C * rest).norm() > 1e-9 * C.norm() * all.norm()) return true;
+    all = A * all;
+    rest = A * rest;
+  }
+  return false;
+}
+
+/// Frequencies at which a singular value of G is gamma: eigenvalues of the Hamiltonian matrix on the imaginary axis.
+std::vector<double> find_level(const StateSpace& s, const MatrixXd& D, double gamma) {
+  const Index n = s.A.rows(), nu = s.B.cols();
+  const MatrixXd R = gamma * gamma * MatrixXd::Identity(nu, nu) - D.transpose() * D;
+  const Eigen::LDLT<MatrixXd> factor(R);
+  const MatrixXd F = s.A + s.B * factor.solve(D.transpose() * s.C);
+  MatrixXd H(2 * n, 2 * n);
+  H << F, gamma * s.B * factor.solve(s.B.transpose()),
+      -s.C.transpose() * (s.C + D * factor.solve(D.transpose() * s.C)) / gamma, -F.transpose();
+  balance(H);
+  const auto values = MatrixXd(H).eigenvalues();
+  std::vector<double> omegas;
+  const double tiny = 1e-8 * std::max(values.cwiseAbs().maxCoeff() * 1e-6, 1e-300);
+  for (const Complex& v : values)
+    if (v.imag() > 0 && std::abs(v.real()) <= 1e-8 * std::abs(v) + tiny) omegas.push_back(v.imag());
+  std::sort(omegas.begin(), omegas.end());
+  return omegas;
+}
+
+}  // namespace
+
+records::Margins calc_margins(const records::LinearModel& loop, const records::FrequencyResponse& response) {
+  BOUGH_DEMAND(loop.B.cols() == 1 && loop.C.rows() == 1);
+  records::Margins m;
+  const TransferMatrix transfer(loop.A, loop.B, loop.C, loop.D);
+  const auto L = [&](double omega) { return transfer.calc({0, omega})(0, 0); };
+  const auto count = static_cast<Index>(response.value.size());
+  const auto get = [&](Index k) { return response.value[static_cast<std::size_t>(k)](0, 0); };
+  Index nearest = 0;
+  for (Index k = 0; k < count; ++k) {
+    if (std::abs(1.0 + get(k)) < std::abs(1.0 + get(nearest))) nearest = k;
+    if (k + 1 == count) break;
+    const double a = kTwoPi * response.frequency_hz[k], b = kTwoPi * response.frequency_hz[k + 1];
+    const Complex here = get(k), next = get(k + 1);
+    if ((std::abs(here) > 1) != (std::abs(next) > 1)) {
+      const double omega = bisect([&](double w) { return std::abs(L(w)) - 1; }, a, b);
+      double lag = std::arg(L(omega)) + std::numbers::pi;  // in (0, 2π]
+      m.phase.push_back({omega / kTwoPi, lag > std::numbers::pi ? lag - kTwoPi : lag, lag / omega});
+    }
+    if ((here.imag() > 0) != (next.imag() > 0) && (here.real() < 0 || next.real() < 0)) {
+      const double omega = bisect([&](double w) { return L(w).imag(); }, a, b);
+      const Complex there = L(omega);
+      // A jump through infinity changes the sign too.
+      if (there.real() < 0 && std::abs(there.imag()) < 1e-6 * std::abs(there))
+        m.gain.push_back({omega / kTwoPi, -1 / there.real(), 0});
+    }
+  }
+  if (count > 0) {
+    const Index before = std::max<Index>(0, nearest - 1), after = std::min(count - 1, nearest + 1);
+    const double omega = minimize([&](double w) { return std::abs(1.0 + L(w)); },
+                                  kTwoPi * response.frequency_hz[before], kTwoPi * response.frequency_hz[after]);
+    m.distance = std::min(std::abs(1.0 + L(omega)), std::abs(1.0 + get(nearest)));
+    m.distance_hz = omega / kTwoPi;
+  }
+  const double back = 1 + loop.D(0, 0);
+  if (back == 0) return m;
+  const auto poles = calc_poles(loop.A - loop.B * loop.C / back, loop.states.name);
+  double size = 0;
+  for (Index i = 0; i < poles.size(); ++i) size = std::max(size, std::hypot(poles.real[i], poles.imag[i]));
+  m.largest_real = poles.size() > 0 ? poles.real.maxCoeff() : 0;
+  m.is_stable = m.largest_real <= 1e-9 * size;
+  return m;
+}
+
+records::PeakGain calc_peak_gain(const records::LinearModel& model, const records::FrequencyResponse& response) {
+  records::PeakGain peak;
+  if (model.B.cols() == 0 || model.C.rows() == 0) return peak;
+  const StablePart part = split_stable(model.A);
+  if (!part.is_stable()) {
+    std::ostringstream why;
+    why << "the pole " << part.unstable.real() << " ± " << std::abs(part.unstable.imag()) << " i does not decay";
+    peak.why = why.str();
+  } else if (part.num_rigid > 0 && is_seen(model, part)) {
+    peak.why = "poles at 0 come through to the outputs";
+  }
+  if (!peak.why.empty()) {
+    peak.is_finite = false;
+    peak.value = std::numeric_limits<double>::infinity();
+    return peak;
+  }
+  // What decays: z = L x has complex coordinates; their real span will do.
+  const Index kept = part.T.rows();
+  StateSpace s{MatrixXd(0, 0), MatrixXd(0, model.B.cols()), MatrixXd(model.C.rows(), 0)};
+  if (kept > 0) {
+    const MatrixXd P = (part.U * part.L).real();
+    const Eigen::JacobiSVD<MatrixXd> svd(P, Eigen::ComputeThinU);
+    const MatrixXd V = svd.matrixU().leftCols(kept);
+    if (part.num_rigid == 0)
+      s = {model.A, model.B, model.C};
+    else
+      s = {V.transpose() * model.A * V, V.transpose() * P * model.B, model.C * V};
+  }
+  Eigen::VectorXd scale = Eigen::VectorXd::Ones(kept);
+  MatrixXd balanced = s.A;
+  if (kept > 0) scale = balance(balanced);
+  s = {balanced, scale.cwiseInverse().asDiagonal() * s.B, s.C * scale.asDiagonal()};
+  const TransferMatrix transfer(s.A, s.B, s.C, model.D);
+  const auto sigma = [&](double omega) { return calc_sigma(transfer.calc({0, omega})); };
+  double at = 0;
+  peak.value = sigma(0);
+  if (const double far = calc_sigma(model.D.cast<Complex>()); far > peak.value)
+    peak.value = far, at = std::numeric_limits<double>::infinity();
+  const auto climb = [&](double from, double to) {
+    const double omega = minimize([&](double w) { return -sigma(w); }, from, to), value = sigma(omega);
+    if (value > peak.value) peak.value = value, at = omega;
+  };
+  Index best = 0;
+  for (Index k = 0; k < response.frequency_hz.size(); ++k)
+    if (response.singular_values(k, 0) > response.singular_values(best, 0)) best = k;
+  if (response.frequency_hz.size() > 0) {
+    const Index before = std::max<Index>(0, best - 1), after = std::min(response.frequency_hz.size() - 1, best + 1);
+    climb(kTwoPi * response.frequency_hz[before], kTwoPi * response.frequency_hz[after]);
+  }
+  for (int i = 0; i < 30 && kept <= kMostStates && peak.value > 0; ++i) {
+    const auto omegas = find_level(s, model.D, peak.value * (1 + kCertified));
+    if (omegas.empty()) {
+      peak.is_certified = true;
+      break;
+    }
+    const double before = peak.value;
+    for (std::size_t k = 0; k + 1 < omegas.size(); ++k) climb(omegas[k], omegas[k + 1]);
+    if (omegas.size() == 1) climb(0.5 * omegas[0], omegas[0]);
+    if (peak.value <= before * (1 + kCertified)) {
+      // Eigenvalues that touch the axis at the peak itself: nothing above it.
+      peak.is_certified = true;
+      break;
+    }
+  }
+  peak.frequency_hz = at / kTwoPi;
+  return peak;
+}
+
+}  // namespace bough::statespace

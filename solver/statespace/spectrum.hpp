@@ -1,0 +1,26 @@
+#pragma once
+/// \file Component cost where the inputs have spectra in place of white noise.
+#include "solver/statespace/cost.hpp"
+
+namespace bough::statespace {
+
+/// One-sided power spectral densities of independent inputs: the mean square of input j is ∫ density(·, j) df. Linear
+/// between the frequencies, 0 outside of them.
+struct Spectrum {
+  Eigen::VectorXd frequency_hz;  ///< ascending, >= 0
+  Eigen::MatrixXd density;       ///< a row a frequency; a column an input, or one column for all
+};
+
+/// V = ∫ Σ_j S_j |y_j|² df and V_i = ∫ Σ_j S_j Re(x_ij (Cᵀȳ_j)_i) df, Σ V_i = V: Gauss' rule of eight points on
+/// intervals between the frequencies given and, twice as long from one to the next, away from each pole. White noise of
+/// unit intensity is a density of 2 at all frequencies. Poles at 0 take no part; throws ComputationError
+/// "select.unstable" as calc_component_cost does.
+ComponentCost calc_component_cost(const StateSpace& model, const Spectrum& spectrum);
+
+/// As calc_mean_square_difference of white noise.
+double calc_mean_square_difference(const StateSpace& full, const StateSpace& reduced, const Spectrum& spectrum);
+
+/// Both side by side: the same inputs, the difference of the outputs.
+StateSpace subtract(const StateSpace& full, const StateSpace& reduced);
+
+}  // namespace bough::statespace

@@ -1,0 +1,117 @@
+#include "solver/statespace/track.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/diagnostic.hpp"
+#include "solver/statespace/blocks.hpp"
+
+namespace bough::statespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+EigenSystem calc_eigen_system(const MatrixXd& A) {
+  if (A.rows() == 0) return {};
+  MatrixXd a = A;
+  const Eigen::VectorXd scale = balance(a);
+  const Eigen::EigenSolver<MatrixXd> solver(a);
+  if (!a.allFinite() || solver.info() != Eigen::Success)
+    throw ComputationError("linear.no-poles", {}, "the eigenvalues of A were not found", "look at A for huge entries");
+  EigenSystem s;
+  s.value = solver.eigenvalues();
+  const Eigen::MatrixXcd right = solver.eigenvectors();
+  // Least norm where several eigenvectors are one.
+  s.left = right.completeOrthogonalDecomposition().pseudoInverse() * scale.cwiseInverse().asDiagonal();
+  s.right = scale.asDiagonal() * right;
+  return s;
+}
+
+std::vector<int> follow(const EigenSystem& before, const EigenSystem& next, Eigen::VectorXd& correlation) {
+  const Index n = before.value.size();
+  BOUGH_DEMAND(next.value.size() == n);
+  Eigen::MatrixXd both = (before.left * next.right).cwiseProduct((next.left * before.right).transpose()).cwiseAbs();
+  const double size = std::max(1e-300, std::max(before.value.cwiseAbs().maxCoeff(), next.value.cwiseAbs().maxCoeff()));
+  for (Index i = 0; i < n; ++i) {
+    for (Index j = 0; j < n; ++j) {
+      // A vector of displacements and rates is another one at another frequency: the shape is what counts.
+      const double a = std::abs(before.value[i]), b = std::abs(next.value[j]);
+      if (std::max(a, b) > 1e-9 * size) both(i, j) *= 4 * a * b / ((a + b) * (a + b));
+    }
+  }
+  both = both.cwiseMin(1.0);
+  struct Pair {
+    double score;
+    int from, to;
+  };
+  std::vector<Pair> pairs;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      pairs.push_back({both(i, j) - 1e-2 * std::abs(before.value[i] - next.value[j]) / size, i, j});
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.score > b.score; });
+  std::vector<int> order(static_cast<std::size_t>(n), -1);
+  std::vector<bool> is_taken(static_cast<std::size_t>(n), false);
+  correlation.setZero(n);
+  for (const auto& pair : pairs) {
+    if (order[static_cast<std::size_t>(pair.from)] >= 0 || is_taken[static_cast<std::size_t>(pair.to)]) continue;
+    order[static_cast<std::size_t>(pair.from)] = pair.to;
+    is_taken[static_cast<std::size_t>(pair.to)] = true;
+    correlation[pair.from] = both(pair.from, pair.to);
+  }
+  return order;
+}
+
+void track_poles(records::LinearSweep& sweep) {
+  const auto np = static_cast<Index>(sweep.models.size());
+  if (np == 0) return;
+  const Index nx = sweep.models.front().A.rows();
+  for (auto* m : {&sweep.real, &sweep.imag, &sweep.frequency_hz, &sweep.damping}) m->setZero(np, nx);
+  sweep.correlation.setOnes(np, nx);
+  sweep.mode.assign(static_cast<std::size_t>(np), std::vector<std::string>(static_cast<std::size_t>(nx)));
+  EigenSystem before;
+  std::vector<int> order(static_cast<std::size_t>(nx));
+  for (Index k = 0; k < np; ++k) {
+    const auto& model = sweep.models[static_cast<std::size_t>(k)];
+    BOUGH_DEMAND(model.A.rows() == nx);
+    EigenSystem here = calc_eigen_system(model.A);
+    if (k == 0) {
+      for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+      // As the table of poles has them: by distance from zero, pairs together.
+      std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+        const auto key = [&](int i) {
+          const std::complex<double> v = here.value[i];
+          return std::tuple(std::abs(v), v.real(), std::abs(v.imag()), -v.imag());
+        };
+        return key(a) < key(b);
+      });
+    } else {
+      Eigen::VectorXd correlation;
+      order = follow(before, here, correlation);
+      sweep.correlation.row(k) = correlation.transpose();
+    }
+    EigenSystem sorted{here.value(order), here.right(Eigen::all, order), here.left(order, Eigen::all)};
+    before = std::move(sorted);
+    std::vector<bool> is_used(static_cast<std::size_t>(nx), false);
+    for (Index b = 0; b < nx; ++b) {
+      // The poles of the model come block by block: exact zeros; the nearest is the one meant.
+      const std::complex<double> rough = before.value[b];
+      Index best = -1;
+      double least = 0;
+      for (Index i = 0; i < nx; ++i) {
+        const double far = std::abs(rough - std::complex<double>(model.poles.real[i], model.poles.imag[i]));
+        if (is_used[static_cast<std::size_t>(i)] || (best >= 0 && far >= least)) continue;
+        best = i, least = far;
+      }
+      is_used[static_cast<std::size_t>(best)] = true;
+      sweep.real(k, b) = model.poles.real[best];
+      sweep.imag(k, b) = model.poles.imag[best];
+      sweep.frequency_hz(k, b) = model.poles.frequency_hz[best];
+      sweep.damping(k, b) = model.poles.damping[best];
+      sweep.mode[static_cast<std::size_t>(k)][static_cast<std::size_t>(b)] =
+          model.poles.mode[static_cast<std::size_t>(best)];
+    }
+  }
+}
+
+}  // namespace bough::statespace

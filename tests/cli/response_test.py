@@ -1,0 +1,514 @@
+"""response, linearize --break, --sweep, --each, plots of linear models and the tables of select, against scipy and
+closed forms."""
+import json
+import math
+import os
+import shutil
+import subprocess
+import unittest
+
+import h5py
+import numpy as np
+import scipy.integrate
+import scipy.linalg
+
+from linear_test import HUB, PENDULUM, LinearTest
+
+AXIS = """[parameters]
+kp = 8.0
+kd = 1.6
+
+[[body]]
+name = "rotor"
+mass = 1.0
+cg = [0.0, 0.0, 0.0]
+inertia = [1.0, 1.0, 2.0]
+
+[[hinge]]
+name = "axis"
+type = "revolute"
+child = "rotor"
+axis = [0.0, 0.0, 1.0]
+
+[[sensor]]
+name = "angle"
+type = "hinge_angle"
+hinge = "axis"
+
+[[sensor]]
+name = "rate"
+type = "hinge_rate"
+hinge = "axis"
+
+[[controller]]
+name = "law"
+type = "pid"
+inputs = ["angle"]
+rate = "rate"
+kp = "$kp"
+kd = "$kd"
+
+[[actuator]]
+name = "drive"
+type = "hinge"
+hinge = "axis"
+input = "law"
+
+[simulation]
+duration = 2.0
+output_step = 0.5
+"""
+
+TOP = """[parameters]
+spin = 3.0
+
+[[body]]
+name = "top"
+mass = 1.0
+cg = [0.0, 0.0, 0.0]
+inertia = [2.0, 2.0, 3.0]
+
+[[hinge]]
+name = "gimbal"
+type = "universal"
+child = "cage"
+axis = [1.0, 0.0, 0.0]
+stiffness = [5.0, 5.0]
+
+[[body]]
+name = "cage"
+mass = 1e-6
+inertia = [1e-9, 1e-9, 1e-9]
+
+[[hinge]]
+name = "wheel"
+type = "revolute"
+parent = "cage"
+child = "top"
+axis = [0.0, 0.0, 1.0]
+rate = ["$spin"]
+
+[simulation]
+duration = 1.0
+"""
+
+
+class Response(LinearTest):
+    def read(self, name):
+        with h5py.File(self.path(name)) as f:
+            return {key: f[key][()] for key in ["frequency_hz", "real", "imag", "singular_values"]}
+
+    def test_of_a_flexible_hub_is_scipys(self):
+        self.make_boom(6)
+        self.write_hub("hub.toml", eta="damping = 0.01")
+        model = self.linearize("hub.toml")
+        self.bough("response", "model.h5", "-o", "r.h5", "--csv", "r.csv")
+        r = self.read("r.h5")
+        w = 2 * math.pi * r["frequency_hz"]
+        H = r["real"] + 1j * r["imag"]
+        A, B, C, D = (model[k] for k in "ABCD")
+        eye = np.eye(len(A))
+        for k in range(0, len(w), 17):
+            exact = C @ np.linalg.solve(1j * w[k] * eye - A, B) + D
+            self.assertLess(np.abs(H[k] - exact).max(), 1e-9 * max(np.abs(exact).max(), 1e-12))
+            np.testing.assert_allclose(r["singular_values"][k], np.linalg.svd(exact, compute_uv=False), rtol=1e-8,
+                                       atol=1e-12)
+        # Every lightly damped pole that is seen has frequencies within its half-power width.
+        for re, im in zip(model["poles/real"], model["poles/imag"]):
+            if im > 0:
+                self.assertLess(np.abs(w - im).min(), 0.6 * abs(re))
+        table = np.genfromtxt(self.path("r.csv"), delimiter=",", skip_header=1)
+        np.testing.assert_allclose(table[:, 0], r["frequency_hz"], rtol=1e-15)
+        np.testing.assert_allclose(table[:, 1], r["real"][:, 0, 0], rtol=1e-15)
+        self.assertIn("infinite", self.bough("response", "model.h5").stdout)  # the hub turns freely
+
+    def test_margins_of_a_loop_and_its_closed_form(self):
+        self.write("axis.toml", AXIS)
+        self.bough("linearize", "axis.toml", "--break", "drive", "-o", "loop.h5")
+        data = json.loads(self.bough("response", "loop.h5", "--json").stdout)
+        kp, kd, J = 8.0, 1.6, 2.0
+        # |kp + kd s| = J w²
+        w = math.sqrt((kd**2 + math.sqrt(kd**4 + 4 * J**2 * kp**2)) / (2 * J**2))
+        phase = math.atan2(kd * w, kp)
+        (crossing,) = data["margins"]["phase"]
+        self.assertAlmostEqual(crossing["frequency_hz"], w / 2 / math.pi, places=10)
+        self.assertAlmostEqual(crossing["degrees"], math.degrees(phase), places=8)
+        self.assertAlmostEqual(crossing["delay"], phase / w, places=9)
+        self.assertEqual(data["margins"]["gain"], [])
+        self.assertTrue(data["margins"]["stable"])
+        text = self.bough("response", "loop.h5").stdout
+        self.assertIn("stable when closed", text)
+        self.assertIn("deg", text)
+        self.fails(1, "linearize", "axis.toml", "--break", "drove", says=["did you mean 'drive'"],
+                   error="linear.unknown-signal")
+        self.bough("linearize", "axis.toml", "-o", "closed.h5")
+        self.fails(1, "response", "closed.h5", "--loop", error="linear.no-loop")
+        self.fails(1, "response", "closed.h5", "--outputs", "angel", says=["'angle'"], error="linear.unknown-output")
+        self.bough("linearize", "axis.toml", "--outputs", "rate", "-o", "one.h5")
+        self.bough("response", "one.h5", "--loop", "--from", 0.01, "--to", 10)
+        self.fails(1, "response", "one.h5", "--from", 1, "--to", 0.1, error="cli.bad-range")
+        self.write("bob.toml", PENDULUM.replace("POSITION", "0.0").split("[[sensor]]")[0] + "[simulation]\nduration = 1.0\n")
+        self.bough("linearize", "bob.toml", "-o", "bob.h5")
+        self.fails(1, "response", "bob.h5", error="linear.no-channels")
+
+    def test_the_norm_is_the_peak(self):
+        self.write("axis.toml", AXIS)
+        self.bough("linearize", "axis.toml", "--outputs", "angle", "-o", "closed.h5")
+        data = json.loads(self.bough("response", "closed.h5", "--json").stdout)
+        zeta = 1.6 / (2 * math.sqrt(8 * 2))
+        # The integral of the law, with ki = 0, is a pole at 0 that no one sees.
+        self.assertTrue(data["peak"]["finite"])
+        self.assertAlmostEqual(data["peak"]["value"], 1 / 8 / (2 * zeta * math.sqrt(1 - zeta**2)), places=7)
+        self.assertTrue(data["peak"]["certified"])
+
+    def test_pictures(self):
+        self.write("axis.toml", AXIS)
+        self.bough("linearize", "axis.toml", "-o", "closed.h5")
+        for kind in ["bode", "nichols", "sigma", "poles"]:
+            self.bough("plot", "closed.h5", "--kind", kind, "-o", f"{kind}.svg")
+            with open(self.path(f"{kind}.svg")) as f:
+                text = f.read()
+            self.assertIn("</svg>", text)
+            self.assertNotIn("nan", text)
+        with open(self.path("bode.svg")) as f:
+            text = f.read()
+        self.assertIn("angle / drive", text)
+        self.assertEqual(text.count("<svg"), 3)  # magnitude above phase
+        self.bough("plot", "closed.h5", "--kind", "bode", "--outputs", "rate")
+        self.assertTrue(os.path.exists(self.path("closed-bode.svg")))
+        self.fails(1, "plot", "closed.h5", "--kind", "campbell", error="cli.plot-kind")
+        self.fails(1, "plot", "closed.h5", error="cli.nothing-to-plot")
+
+
+class Sweep(LinearTest):
+    def read(self, name="sweep.h5"):
+        with h5py.File(self.path(name)) as f:
+            return {key: f[key][()] for key in ["parameter/value", "poles/real", "poles/imag", "poles/frequency_hz",
+                                                "poles/correlation", "A"]}
+
+    def test_root_locus_over_a_gain(self):
+        self.write("axis.toml", AXIS)
+        self.bough("linearize", "axis.toml", "--sweep", "kd=0.5:12:23", "-o", "sweep.h5", "--csv", "locus.csv")
+        s = self.read()
+        for kd, real, imag in zip(s["parameter/value"], s["poles/real"], s["poles/imag"]):
+            exact = np.roots([2, kd, 8])
+            found = real + 1j * imag
+            found = found[np.argsort(np.abs(found))][1:]  # the integral of the law at 0
+            self.assertLess(np.abs(np.sort_complex(found) - np.sort_complex(exact)).max(), 1e-8)
+        self.bough("plot", "sweep.h5", "--kind", "locus", "-o", "locus.svg")
+        table = np.genfromtxt(self.path("locus.csv"), delimiter=",", skip_header=1)
+        np.testing.assert_allclose(table[:, 0], s["parameter/value"])
+        text = self.bough("export", "sweep.h5", "--to", "csv").stdout
+        self.assertTrue(text.startswith("kd,"))
+        log = json.loads(self.bough("linearize", "axis.toml", "--sweep", "kd=1:100:3:log", "--json").stdout)
+        np.testing.assert_allclose(log["value"], [1, 10, 100])
+        for bad in ["kd", "kd=1:2", "kd=1:2:1", "kd=0:2:3:log", "kd=a:2:3"]:
+            self.fails(1, "linearize", "axis.toml", "--sweep", bad, error="cli.bad-sweep")
+        self.fails(2, "linearize", "axis.toml", "--sweep", "kd=1:2:3", "--each", 2, error="cli.usage")
+
+    def test_campbell_diagram_of_a_spinning_beam(self):
+        # Wright, Smith, Thresher & Wang, J. Appl. Mech. 49 (1982) 197: first flap and chord, hub radius 0.
+        self.make_boom(12)
+        text = HUB.replace("INERTIA", "1.0").replace("MOTION", 'motion = "angle"').replace("ETA", "")
+        self.write("spin.toml", "[parameters]\nrate = 1.0\n" + text.replace("RATE", '"$rate"'))
+        self.bough("linearize", "spin.toml", "--sweep", "rate=0:6:7", "-o", "sweep.h5")
+        s = self.read()
+        omega = 2 * math.pi * s["poles/frequency_hz"]
+        wright = {2: (4.13732, 3.62180), 6: (7.36037, 4.26323)}
+        for rate, (flap, chord) in wright.items():
+            row = omega[int(rate)]
+            for exact in (flap, chord):
+                self.assertLess(np.abs(row / exact - 1).min(), 1e-3)
+        # Each column is one motion: flap rises by sqrt(chord² + rate²) all along, without a jump to another.
+        k = np.argmin(np.abs(omega[6] - 7.36037))
+        chord = np.argmin(np.abs(omega[6] - 4.26323))
+        for rate in range(1, 7):
+            self.assertAlmostEqual(omega[rate, k]**2, omega[rate, chord]**2 + rate**2, delta=2e-3 * omega[rate, k]**2)
+        self.bough("plot", "sweep.h5", "--kind", "campbell", "-o", "campbell.svg")
+
+    def test_nutation(self):
+        # A wheel in a light gimbal on springs: J_t² q'' ± Ω J_a cross terms.
+        self.write("top.toml", TOP)
+        self.bough("linearize", "top.toml", "--sweep", "spin=0:10:21", "-o", "sweep.h5")
+        s = self.read()
+        Jt, Ja, k = 2.0, 3.0, 5.0
+        for spin, freq in zip(s["parameter/value"], s["poles/frequency_hz"]):
+            root = np.roots([Jt**2, 0, -(2 * Jt * k + (Ja * spin)**2), 0, k**2])
+            exact = np.sort(np.unique(np.round(np.abs(root.real), 12)))
+            found = np.sort(2 * math.pi * freq)
+            found = found[found > 1e-3]
+            for w in exact:
+                self.assertLess(np.abs(found / w - 1).min(), 2e-5, spin)
+        # Followed: one branch falls (precession), one rises (nutation) monotonously.
+        f = s["poles/frequency_hz"]
+        moving = [b for b in range(f.shape[1]) if f[0, b] > 1e-6]
+        self.assertEqual(len(moving), 4)
+        for b in moving:
+            steps = np.diff(f[:, b])
+            self.assertTrue((steps > 0).all() or (steps < 0).all())
+
+    def test_what_a_sweep_cannot_follow(self):
+        self.make_boom(4)
+        self.write("count.toml", '[parameters]\nn = 2\n[[body]]\nname = "boom"\nfile = "boom.h5"\nmodes = "$n"\n'
+                   '[[hinge]]\nname = "clamp"\ntype = "fixed"\nchild = "boom"\n[simulation]\nduration = 1.0\n')
+        self.fails(3, "linearize", "count.toml", "--sweep", "n=2:4:3", error="linear.sweep-states")
+        # Two rotors on springs, one spring as stiff as the other is soft: far apart values turn their motions around.
+        self.write("two.toml", "\n".join(
+            ['[parameters]\nk = 1.0'] +
+            [f'[[body]]\nname = "{name}"\nmass = 1.0\ncg = [0.0, 0.0, 0.0]\ninertia = [1.0, 1.0, {inertia}]'
+             for name, inertia in [("one", 1.0), ("two", 1.0)]] +
+            ['[[hinge]]\nname = "root"\ntype = "revolute"\nchild = "one"\naxis = [0.0, 0.0, 1.0]\nstiffness = ["$k"]',
+             '[[hinge]]\nname = "joint"\ntype = "revolute"\nparent = "one"\nchild = "two"\naxis = [0.0, 0.0, 1.0]\n'
+             'stiffness = [1.0]\n[simulation]\nduration = 1.0\n']))
+        result = self.bough("linearize", "two.toml", "--sweep", "k=0.001:1000:2")
+        self.assertIn("[linear.sweep-jump]", result.stderr)
+        result = self.bough("linearize", "two.toml", "--sweep", "k=0.1:10:40:log")
+        self.assertNotIn("sweep-jump", result.stderr)
+
+    def test_each_sample_of_a_run(self):
+        self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.9").replace("duration = 1.0",
+                                                                             "duration = 1.0\noutput_step = 0.125"))
+        self.bough("linearize", "pendulum.toml", "--each", 2, "--outputs", "angle", "-o", "sweep.h5")
+        self.bough("run", "pendulum.toml", "-o", "run.h5")
+        with h5py.File(self.path("run.h5")) as f:
+            angle = np.ravel(f["/hinges/pin/q"][:])[::2]
+            time = f["/time"][:][::2]
+        s = self.read()
+        np.testing.assert_allclose(s["parameter/value"], time, atol=1e-12)
+        np.testing.assert_allclose(s["A"][:, 1, 0], -9.81 / 0.7 * np.cos(angle), rtol=1e-5)
+
+
+class Zeros(LinearTest):
+    def test_of_a_beam_from_its_root_to_its_tip(self):
+        # Torque at the root, place of the tip: at a zero the tip stands still without force or moment on it, so that
+        # sinh b + sin b = 0 over the length: b = c (1 + i), tan c = -tanh c, s = +-2 c² (L = EI = rho A = 1). Real:
+        # the tip starts the wrong way. The inertia of the hub has no part in it.
+        self.make_boom(20)
+        c = scipy.optimize.brentq(lambda c: math.tan(c) + math.tanh(c), math.pi / 2 + 1e-6, math.pi)
+        for inertia in (0.1, 10.0):
+            name = self.write_hub("hub.toml", inertia=inertia)
+            with open(self.path(name), "a") as f:
+                f.write('[[sensor]]\nname = "place"\ntype = "position"\nbody = "boom"\nnode = 41\n')
+            model = self.linearize("hub.toml", "--outputs", "place:y")
+            zeros = model["zeros/real"] + 1j * model["zeros/imag"]
+            for exact in (2 * c * c, -2 * c * c):
+                self.assertLess(np.abs(zeros / exact - 1).min(), 5e-3, zeros)
+            # Torque to angle, at one place: zeros and poles take turns on the imaginary axis.
+            model = self.linearize("hub.toml", "--outputs", "angle")
+            both = sorted([(w, 1) for w in model["zeros/imag"] if w > 1e-6] +
+                          [(w, -1) for w in model["poles/imag"] if w > 1e-6])
+            seen, last = [], 0
+            for w, sign in both:  # flap, which the torque does not reach, has a pole on a zero
+                seen = seen[:-1] + [seen[-1] + sign] if seen and w < last * (1 + 1e-6) else seen + [sign]
+                last = w
+            seen = ["zero" if sign > 0 else "pole" for sign in seen if sign != 0]
+            self.assertEqual(seen, ["zero", "pole"] * (len(seen) // 2))
+            self.assertGreaterEqual(len(seen), 8)
+
+
+class Tables(LinearTest):
+    def test_csv_and_operating_point(self):
+        self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.0"))
+        model = self.linearize("pendulum.toml", "--outputs", "angle", "--csv", "model.csv")
+        with open(self.path("model.csv")) as f:
+            rows = [line.strip().split(",") for line in f]
+        self.assertEqual(rows[0], ["row", "pin:1", "pin:1_dot", "push"])
+        self.assertEqual([row[0] for row in rows[1:]], ["d/dt pin:1", "d/dt pin:1_dot", "angle"])
+        found = np.array([[float(v) for v in row[1:]] for row in rows[1:]])
+        np.testing.assert_array_equal(found, np.block([[model["A"], model["B"]], [model["C"], model["D"]]]))
+        self.assertEqual(self.bough("export", "model.h5", "--to", "csv").stdout.split("\n")[0], "row,pin:1,pin:1_dot,push")
+        self.assertEqual(model["operating_point/positions/name"], ["pin:1"])
+        self.assertEqual([w.decode() for w in model["operating_point/periodic"]], ["pin:1"])
+        self.assertEqual([w.decode() for w in model["poles/hinge"]], ["pin:1", "pin:1"])
+        text = self.bough("linearize", "pendulum.toml").stdout
+        self.assertIn("periodic", text)
+        self.assertIn("Hankel singular values", text)
+
+    def test_hankel_values_are_scipys(self):
+        self.make_boom(5)
+        self.write_hub("hub.toml", eta="damping = 0.01", motion="stiffness = [3.0]\ndamping = [0.1]")
+        model = self.linearize("hub.toml")
+        A, B, C = model["A"], model["B"], model["C"]
+        P = scipy.linalg.solve_continuous_lyapunov(A, -B @ B.T)
+        Q = scipy.linalg.solve_continuous_lyapunov(A.T, -C.T @ C)
+        np.testing.assert_allclose(model["hankel/controllability"], P, atol=1e-9 * np.abs(P).max())
+        np.testing.assert_allclose(model["hankel/observability"], Q, atol=1e-9 * np.abs(Q).max())
+
+    def test_body_mode_and_hinge_of_a_pole(self):
+        self.make_boom(6)
+        self.write_hub("hub.toml")
+        model = self.linearize("hub.toml")
+        for mode, hinge, frequency in zip(model["poles/body_mode"], model["poles/hinge"], model["poles/frequency_hz"]):
+            if frequency > 0:
+                self.assertTrue(mode.startswith("boom:eta"))
+            if frequency == 0:
+                self.assertEqual(hinge.decode(), "spin:1")
+
+    @unittest.skipUnless(shutil.which("octave"), "Octave is not installed")
+    def test_mat_in_octave(self):
+        self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.0"))
+        self.bough("linearize", "pendulum.toml", "--outputs", "angle", "--mat", "m.mat")
+        self.write("t.m", "load m.mat; assert(size(A), [2 2]); assert(strcmp(state_name{1}, 'pin:1'));\n"
+                          "if ~isempty(pkg('list', 'control')), pkg load control; s = ss(A, B, C, D); pole(s), end\n")
+        subprocess.run(["octave", "--no-gui", "--quiet", "t.m"], cwd=self.folder, check=True)
+
+
+class SelectMore(LinearTest):
+    def body(self, name="boom.h5"):
+        with h5py.File(self.path(name)) as f:
+            ids = list(f["/nodes/id"][:])
+            return (*(f["/modal/" + key][:] for key in ["mass", "damping", "stiffness"]), f["/modes/phi"][:], ids)
+
+    def plant(self, rows_in, rows_out, rates=False):
+        M, D, K, _, _ = self.body()
+        n = len(M)
+        D = np.where((np.diag(D) == 0) & np.eye(n, dtype=bool), 2 * 0.01 * np.sqrt(np.diag(K * M)), D)
+        A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
+        B = np.vstack([np.zeros((n, len(rows_in))), np.linalg.solve(M, rows_in.T)])
+        zero = np.zeros_like(rows_out)
+        return A, B, np.hstack([zero, rows_out] if rates else [rows_out, zero])
+
+    def costs(self, A, B, C):
+        X = scipy.linalg.solve_continuous_lyapunov(A, -B @ B.T)
+        parts = np.diag(X @ C.T @ C)
+        return parts[:len(A) // 2] + parts[len(A) // 2:]
+
+    def test_rates_weights_and_pinned_modes(self):
+        self.make_boom(8)
+        _, _, _, phi, ids = self.body()
+        tip = phi[ids.index(41)]
+        data = json.loads(self.bough("select", "boom.h5", "--json", "--outputs", "41:vy,41:z", "--inputs", "41:y,41:z",
+                                     "--weight", "41:z=3", "--keep", "8", "--number", 3).stdout)
+        # The weight counts for the input 41:z and for the output.
+        rows_in = np.vstack([tip[1], 3 * tip[2]])
+        A, B, C = self.plant(rows_in, tip[2:3] * 3)
+        C = np.vstack([self.plant(rows_in, tip[1:2], rates=True)[2], C])
+        expected = self.costs(A, B, C)
+        cost = np.array([mode["cost"] for mode in data["modes"]])
+        np.testing.assert_allclose(cost, expected, atol=1e-10 * expected.sum())
+        self.assertAlmostEqual(cost.sum() / data["total_cost"], 1, places=12)
+        self.assertEqual(data["modes"][7]["reason"], "pinned")
+        self.assertEqual(sum(mode["kept"] for mode in data["modes"]), 3)
+        for mode in data["modes"]:
+            self.assertLess(abs(mode["closed_form"] - mode["cost"]), 0.02 * abs(mode["cost"]) + 1e-4 * data["total_cost"])
+        self.fails(1, "select", "boom.h5", "--keep", "9", error="select.unknown-mode")
+        self.fails(1, "select", "boom.h5", "--weight", "41:z", error="select.bad-weight")
+        self.fails(1, "select", "boom.h5", "--weight", "nothing=2", error="select.bad-weight")
+
+    def test_what_it_costs(self):
+        self.make_boom(8)
+        data = json.loads(self.bough("select", "boom.h5", "--json", "--outputs", "41:y", "--inputs", "41:y",
+                                     "--number", 2, "--response", "loss.csv").stdout)
+        _, _, _, phi, ids = self.body()
+        row = phi[ids.index(41)][1:2]
+        A, B, C = self.plant(row, row)
+        kept = [i for i, mode in enumerate(data["modes"]) if mode["kept"]]
+        n = len(A) // 2
+        both = kept + [n + i for i in kept]
+        a, b, c = A[np.ix_(both, both)], B[both], C[:, both]
+        def gain(w):
+            full = C @ np.linalg.solve(1j * w * np.eye(len(A)) - A, B)
+            return abs((full - c @ np.linalg.solve(1j * w * np.eye(len(a)) - a, b))[0, 0]), abs(full[0, 0])
+        (loss,) = data["configurations"]
+        poles = np.linalg.eigvals(A)
+        grid = np.concatenate([abs(p.imag) + abs(p.real) * np.linspace(-2, 2, 401) for p in poles])
+        peak = max(gain(w)[0] for w in grid)
+        self.assertAlmostEqual(loss["peak_error"] / peak, 1, delta=1e-4)
+        self.assertAlmostEqual(loss["peak_gain"] / max(gain(w)[1] for w in grid), 1, delta=1e-4)
+        self.assertAlmostEqual(loss["steady_error"], gain(1e-3 * np.abs(poles).min())[0] /
+                               gain(1e-3 * np.abs(poles).min())[1], delta=1e-6)
+        P = scipy.linalg.solve_continuous_lyapunov(A, -B @ B.T)
+        Q = scipy.linalg.solve_continuous_lyapunov(A.T, -C.T @ C)
+        values = np.sort(np.sqrt(np.abs(np.linalg.eigvals(P @ Q))))[::-1]
+        self.assertAlmostEqual(loss["balanced_bound"] / (2 * values[len(both):].sum()), 1, delta=1e-3)
+        table = np.genfromtxt(self.path("loss.csv"), delimiter=",", names=True)
+        for k in range(0, len(table), 50):
+            error, full = gain(2 * math.pi * table["frequency_hz"][k])
+            self.assertAlmostEqual(table["before"][k] / full, 1, places=6)
+            self.assertAlmostEqual(table["difference"][k], error, delta=1e-6 * full)
+        self.bough("select", "boom.h5", "--number", 4, "--response", "loss.svg", "--stiffening", 7)
+        with open(self.path("loss.svg")) as f:
+            self.assertIn("</svg>", f.read())
+
+    def test_spectra(self):
+        self.make_boom(4)
+        arguments = ["select", "boom.h5", "--json", "--outputs", "41:y", "--inputs", "41:y"]
+        white = json.loads(self.bough(*arguments).stdout)
+        self.write("white.csv", "frequency_hz,density\n0,2\n1e5,2\n")
+        same = json.loads(self.bough(*arguments, "--spectrum", "white.csv").stdout)
+        for a, b in zip(white["modes"], same["modes"]):
+            self.assertAlmostEqual(a["cost"], b["cost"], delta=1e-6 * white["total_cost"])
+        # A band about the second bending pair only: by quadrature of |G|².
+        _, _, _, phi, ids = self.body()
+        row = phi[ids.index(41)][1:2]
+        A, B, C = self.plant(row, row)
+        self.write("band.csv", "frequency_hz,41:y\n3,0\n3.2,5\n4,1\n")
+        data = json.loads(self.bough(*arguments, "--spectrum", "band.csv").stdout)
+        poles = np.sort(np.abs(np.linalg.eigvals(A).imag)) / 2 / math.pi
+        def density(f):
+            return np.interp(f, [3, 3.2, 4], [0, 5, 1])
+        def square(f):
+            return density(f) * abs((C @ np.linalg.solve(2j * math.pi * f * np.eye(len(A)) - A, B))[0, 0])**2
+        points = sorted({3.2, *(p for p in poles if 3 < p < 4)})
+        exact = scipy.integrate.quad(square, 3, 4, points=points, limit=400, epsabs=0, epsrel=1e-10)[0]
+        self.assertAlmostEqual(data["total_cost"] / exact, 1, delta=1e-7)
+        for text in ["frequency_hz,41:q\n1,2\n2,3\n", "1,2\n1,2\n", "1,2\n", "1,a\n2,3\n", "1,-2\n2,3\n"]:
+            self.write("bad.csv", text)
+            result = self.bough(*arguments, "--spectrum", "bad.csv", code=0 if "41:q" in text else 1)
+            if "41:q" not in text:
+                self.assertIn("[select.bad-spectrum]", result.stderr)
+
+    def test_modes_of_one_frequency_go_together(self):
+        # Outputs and inputs at 45 degrees to the two planes of bending: how the pair is turned does not matter.
+        self.make_boom(8)
+        with h5py.File(self.path("boom.h5"), "r+") as f:
+            phi, angle = f["/modes/phi"][:], 0.4
+            turn = np.eye(8)
+            for i in range(0, 8, 2):
+                self.assertAlmostEqual(f["/modes/frequency_hz"][i + 1] / f["/modes/frequency_hz"][i], 1, places=6)
+                turn[i:i + 2, i:i + 2] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
+            f["/modes/phi"][...] = phi @ turn
+        data = json.loads(self.bough("select", "boom.h5", "--json", "--outputs", "41:y", "--inputs", "41:y",
+                                     "--tolerance", 0.02).stdout)
+        kept = [mode["kept"] for mode in data["modes"]]
+        self.assertEqual(kept[0::2], kept[1::2])
+        self.assertIn(False, kept)
+        self.assertLessEqual(data["lost_share"], 0.02)
+
+    def test_closed_loop_and_several_configurations(self):
+        self.make_boom(8)
+        hub = HUB.replace("INERTIA", "1.0").replace("MOTION", "").replace("RATE", "0.0").replace("ETA", "damping = 0.01")
+        law = ('[[sensor]]\nname = "speed"\ntype = "hinge_rate"\nhinge = "spin"\n'
+               '[[controller]]\nname = "law"\ntype = "pid"\ninputs = ["/sensors/angle"]\nrate = "speed"\nkp = KP\nkd = KD\n'
+               '[[actuator]]\nname = "motor"\ntype = "hinge"\nhinge = "spin"\ninput = "law"\n')
+        for name, kp, kd in [("soft.toml", 0.5, 1.0), ("stiff.toml", 200.0, 25.0)]:
+            self.write(name, hub + law.replace("KP", str(kp)).replace("KD", str(kd)))
+        one = {}
+        for name in ["soft.toml", "stiff.toml"]:
+            one[name] = json.loads(self.bough("select", "boom.h5", name, "--json", "--outputs", "angle,tip:y").stdout)
+            model = self.linearize(name, "--outputs", "angle,tip:y")
+            A, B, C = model["A"], model["B"], model["C"]
+            keep = [i for i, s in enumerate(model["states/name"]) if "controller" not in s]  # its integral: ki = 0
+            A, B, C = A[np.ix_(keep, keep)], B[keep], C[:, keep]
+            X = scipy.linalg.solve_continuous_lyapunov(A, -B @ B.T)
+            parts = np.diag(X @ C.T @ C)
+            names = [model["states/name"][i] for i in keep]
+            for mode in one[name]["modes"]:
+                own = sum(p for p, s in zip(parts, names) if s.split("_dot")[0] == f"boom:eta{mode['mode']}")
+                self.assertAlmostEqual(mode["cost"], own, delta=1e-8 * parts.sum())
+            self.assertAlmostEqual(one[name]["total_cost"] / parts.sum(), 1, places=8)
+        both = json.loads(self.bough("select", "boom.h5", "soft.toml", "stiff.toml", "--json", "--outputs", "angle,tip:y",
+                                     "--tolerance", 0.01).stdout)
+        self.assertEqual([c["name"] for c in both["configurations"]], ["soft.toml", "stiff.toml"])
+        for k, mode in enumerate(both["modes"]):
+            shares = [one[name]["modes"][k]["share"] for name in one]
+            self.assertAlmostEqual(abs(mode["share"]), max(map(abs, shares)), places=9)
+        for loss in both["configurations"]:
+            self.assertLessEqual(loss["lost_share"], 0.01)
+        # Without the law the hub turns freely: nothing of it decays, and the tip is weighed without it.
+        free = json.loads(self.bough("select", "boom.h5", "soft.toml", "--open", "--json", "--outputs", "tip:y").stdout)
+        self.assertNotAlmostEqual(free["total_cost"] / one["soft.toml"]["total_cost"], 1, places=3)
+
+
+if __name__ == "__main__":
+    unittest.main()
