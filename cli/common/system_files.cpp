@@ -80,7 +80,10 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, cons
                          const std::vector<std::string>& set) {
   demand_file(path);
   auto spec = toml_files::read_system_spec(path, diagnostics, split_settings(set, path));
-  if (diagnostics.num_errors() == 0) read_controller_files(spec, diagnostics);
+  if (diagnostics.num_errors() == 0) {
+    read_controller_files(spec, diagnostics);
+    read_function_files(spec, diagnostics);
+  }
   const bool has_errors_of_text = diagnostics.num_errors() > 0;
   std::map<std::string, records::FlexBody> flex;
   std::map<std::string, std::string> flex_path;

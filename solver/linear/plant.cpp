@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/system/impl.hpp"
+#include "solver/tree/coordinates.hpp"
 
 namespace bough::solver {
 namespace {
@@ -20,15 +21,6 @@ double calc_size(const Tree& tree) {
     size = std::max({size, tb.on_parent.p_KM.norm(), tb.on_child.p_KM.norm()});
   }
   return size > 0 ? size : 1;
-}
-
-/// Translations move without turning.
-bool is_translation(const TreeBody& tb, int coordinate) {
-  VectorXd q(tb.hinge->num_q()), u = VectorXd::Zero(tb.hinge->num_u());
-  tb.hinge->set_neutral(q.data());
-  HingeMotion motion;
-  tb.hinge->calc_motion(q.data(), u.data(), motion);
-  return motion.H.col(coordinate).tail<3>().isZero(0);
 }
 
 }  // namespace
@@ -87,7 +79,10 @@ void Plant::add_inputs() {
   }
   num_forces_ = static_cast<int>(inputs_.size());
   for (const auto& p : system_.impl().signals.places) {
-    if (p.actuator >= 0) inputs_.push_back({p.block->name, "by the controller", -1, p.actuator, -1});
+    const int n = p.actuator >= 0 ? p.block->sizes.inputs : 0;
+    for (int i = 0; i < n; ++i)
+      inputs_.push_back({n == 1 ? p.block->name : p.block->name + ":" + std::to_string(i + 1), "by the controller", -1,
+                         p.actuator + i, -1});
   }
   num_actuators_ = static_cast<int>(inputs_.size()) - num_forces_;
   for (size_t i = 0; i < freedoms_.size(); ++i) {
@@ -137,7 +132,8 @@ void Plant::hold_commands(const OperatingPoint& point) {
   s.is_open = false;
   evaluate(point);
   for (const auto& p : system_.impl().signals.places) {
-    if (p.actuator >= 0) s.command[p.actuator] = s.inputs[p.in];
+    const int n = p.actuator >= 0 ? p.block->sizes.inputs : 0;
+    s.command.segment(std::max(0, p.actuator), n) = s.inputs.segment(p.in, n);
   }
   s.is_open = true;
 }
