@@ -122,7 +122,7 @@ class Folder {
                   "choose another folder with -o, or move it away");
     };
     if (!may_write_state) report(path_ / "campaign.json");
-    for (const char* table : {"outcomes.csv", "outcomes.h5"})
+    for (const char* table : {"outcomes.csv", "outcomes.h5", "statistics.csv"})
       if (!is_own && fs::exists(path_ / table)) report(path_ / table);
     for (const auto& one : plan_.get_cases())
       if (!is_case_folder(get_case(one.number))) report(get_case(one.number));
@@ -210,8 +210,27 @@ std::string format_failed(const BatchPlan& plan, const std::vector<BatchOutcome>
   return text;
 }
 
+std::string format_statistics(const std::vector<Statistics>& statistics) {
+  Table table{{"output", "cases", "mean", "deviation", "min", "5 %", "median", "95 %", "max"}, {}};
+  for (const auto& s : statistics) {
+    table.rows.push_back({s.name, std::to_string(s.count)});
+    for (const double x : {s.mean, s.deviation, s.least, s.p5, s.median, s.p95, s.most})
+      table.rows.back().push_back(fmt::format("{:.6g}", x));
+  }
+  return statistics.empty() ? "" : table.to_text();
+}
+
+json to_json(const std::vector<Statistics>& statistics) {
+  json all = json::object();
+  for (const auto& s : statistics)
+    all[s.name] = {{"count", s.count}, {"mean", s.mean}, {"deviation", s.deviation},
+                   {"min", s.least},   {"p5", s.p5},     {"median", s.median},
+                   {"p95", s.p95},     {"max", s.most}};
+  return all;
+}
+
 int report(const BatchOptions& o, const BatchPlan& plan, const Tally& tally, int num_wanted, int num_in_table,
-           const fs::path& folder, const Console& console) {
+           const std::vector<Statistics>& statistics, const fs::path& folder, const Console& console) {
   const auto table = (folder / "outcomes.csv").string();
   if (o.json) {
     json failed = json::array();
@@ -225,10 +244,13 @@ int report(const BatchOptions& o, const BatchPlan& plan, const Tally& tally, int
                             {"failed", failed},
                             {"completed", tally.completed},
                             {"seconds", tally.seconds},
+                            {"statistics", to_json(statistics)},
                             {"table", table}}
                            .dump(2) +
                        "\n");
   } else {
+    constexpr std::size_t most = 40;
+    if (num_in_table > 1 && statistics.size() <= most) console.print(format_statistics(statistics));
     console.print(fmt::format("{}: {} of {} cases done{}, {} failed, {:.2f} s\nwritten: {} and .h5, {} cases\n",
                               plan.get_spec().name, tally.num_before + tally.num_done, num_wanted,
                               tally.num_before > 0 ? fmt::format(" ({} before)", tally.num_before) : "",
@@ -305,8 +327,9 @@ int run_batch(const BatchOptions& o) {
   std::vector<BatchOutcome> outcomes;  // of all shards, as far as they are
   for (const auto& one : plan.get_cases())
     if (auto outcome = read_outcome(state.get_case(one.number))) outcomes.push_back(std::move(*outcome));
-  write_tables(plan, outcomes, state.get_fingerprint(), folder);
-  return report(o, plan, tally, static_cast<int>(wanted.size()), static_cast<int>(outcomes.size()), folder, console);
+  const auto statistics = write_tables(plan, outcomes, state.get_fingerprint(), folder);
+  return report(o, plan, tally, static_cast<int>(wanted.size()), static_cast<int>(outcomes.size()), statistics, folder,
+                console);
 }
 
 }  // namespace

@@ -146,6 +146,16 @@ std::string make_csv(const hdf5::OutcomeTable& table) {
   return text;
 }
 
+std::string make_csv(const std::vector<Statistics>& statistics) {
+  std::string text = "output,count,mean,deviation,min,p5,median,p95,max\n";
+  for (const auto& s : statistics) {
+    text += quote_cell(s.name) + "," + std::to_string(s.count);
+    for (const double x : {s.mean, s.deviation, s.least, s.p5, s.median, s.p95, s.most}) text += "," + format_number(x);
+    text += "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string to_text(const BatchOutcome& outcome) {
@@ -262,8 +272,8 @@ std::vector<double> collect(const CampaignCollect& wanted, const fs::path& case_
   return numbers;
 }
 
-void write_tables(const BatchPlan& plan, const std::vector<BatchOutcome>& outcomes, const std::string& fingerprint,
-                  const fs::path& folder) {
+std::vector<Statistics> write_tables(const BatchPlan& plan, const std::vector<BatchOutcome>& outcomes,
+                                     const std::string& fingerprint, const fs::path& folder) {
   const auto& spec = plan.get_spec();
   hdf5::OutcomeTable table{spec.name, fingerprint, {}, {}};
   for (const auto& outcome : outcomes) table.cases.push_back(outcome.number);
@@ -285,6 +295,9 @@ void write_tables(const BatchPlan& plan, const std::vector<BatchOutcome>& outcom
   table.columns.push_back(error);
   write_text_file((folder / "outcomes.csv").string(), make_csv(table));
   hdf5::write_outcomes(table, (folder / "outcomes.h5").string());
+  auto statistics = calc_statistics(table);
+  if (!spec.collect.empty()) write_text_file((folder / "statistics.csv").string(), make_csv(statistics));
+  return statistics;
 }
 
 }  // namespace bough::cli

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/batch/batch_plan.hpp"
+#include "cli/batch/batch_statistics.hpp"
 
 namespace bough::cli {
 
@@ -36,8 +37,8 @@ void write_outcome(const BatchOutcome& outcome, const std::filesystem::path& cas
 /// The numbers that a [[collect]] asks for, from the case's folder. Throws InputError "batch.collect".
 std::vector<double> collect(const toml_files::CampaignCollect& wanted, const std::filesystem::path& case_folder);
 
-/// Writes outcomes.csv and outcomes.h5: a row for each outcome there is.
-void write_tables(const BatchPlan& plan, const std::vector<BatchOutcome>& outcomes, const std::string& fingerprint,
-                  const std::filesystem::path& folder);
+/// Writes outcomes.csv and outcomes.h5: a row for each outcome there is; statistics.csv of them, which are returned.
+std::vector<Statistics> write_tables(const BatchPlan& plan, const std::vector<BatchOutcome>& outcomes,
+                                     const std::string& fingerprint, const std::filesystem::path& folder);
 
 }  // namespace bough::cli

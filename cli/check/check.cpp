@@ -6,6 +6,7 @@
 
 #include "cli/check/check_solutions.hpp"
 #include "cli/check/check_subcases.hpp"
+#include "cli/check/diagram.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/deck_tables.hpp"
 #include "cli/common/model_options.hpp"
@@ -28,7 +29,7 @@ namespace {
 
 struct CheckOptions : CommonOptions {
   std::vector<std::string> set;
-  std::string file;
+  std::string file, diagram;
   DeckModelOptions model;
   std::optional<int> gpwg;  ///< grid of the weight table; 0: the origin
 };
@@ -202,6 +203,7 @@ int check_system(const CheckOptions& options, const Console& console) {
       count(spec.hinges.size(), "hinge"), count(spec.forces.size(), "force"), count(spec.sensors.size(), "sensor"),
       count(spec.functions.size(), "function"), count(static_cast<std::size_t>(system.num_dofs()), "generalized speed"),
       table.to_text(), spec.simulation.integrator, spec.simulation.duration);
+  if (!options.diagram.empty() && console.is_root()) write_diagram(spec, options.diagram);
   return finish(options, console, text, {{"kind", "system"}, {"bodies", bodies}, {"num_speeds", system.num_dofs()}},
                 diagnostics);
 }
@@ -285,6 +287,13 @@ int check_hdf5(const CheckOptions& options, const Console& console) {
 
 int check_file(const CheckOptions& options, Console& console) {
   do_once([&] { demand_file(options.file); });
+  if (!options.diagram.empty()) {
+    const bool is_toml = has_suffix(options.file, ".toml");
+    demand_kind(options.file, is_toml ? toml_files::detect_kind(options.file) : "", "system");
+    if (!is_toml)
+      throw InputError("cli.bad-diagram", {options.file}, "--diagram draws the blocks of a system file",
+                       "name a system.toml");
+  }
   if (has_suffix(options.file, ".h5") || has_suffix(options.file, ".hdf5")) return check_hdf5(options, console);
   if (has_suffix(options.file, ".toml")) {
     const auto kind = share([&] { return toml_files::detect_kind(options.file); });
@@ -297,7 +306,7 @@ int check_file(const CheckOptions& options, Console& console) {
 
 int run_check(const CheckOptions& options) {
   Console console(options.quiet, options.verbosity);
-  if (!options.output.empty()) do_once([&] { check_output(options, options.output, {options.file}); });
+  do_once([&] { check_outputs(options, {options.output, options.diagram}, {options.file}); });
   try {
     return check_file(options, console);
   } catch (const InputError& failure) {
@@ -320,6 +329,10 @@ void add_check(CLI::App& app, Action& action) {
                    "(default: PARAM,GRDPNT)")
       ->check(CLI::NonNegativeNumber)
       ->type_name("GRID");
+  verb->add_option("--diagram", o->diagram,
+                   "System file: draw its sensors, controllers, actuators, functions and bodies to FILE.dot, or by "
+                   "graphviz to FILE.svg, .png or .pdf")
+      ->type_name("FILE");
   add_model_options(*verb, o->model);
   add_set_option(*verb, o->set);
   add_common_options(*verb, *o, kOutput | kJson, "Write the report to this file instead of stdout");

@@ -90,7 +90,10 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, Load
   auto spec = options.text ? toml_files::read_system_spec_text(*options.text, path, diagnostics)
                            : toml_files::read_system_spec(path, diagnostics, split_settings(options.set, path));
   if (options.change_spec && diagnostics.num_errors() == 0) options.change_spec(spec);
-  if (diagnostics.num_errors() == 0) read_controller_files(spec, diagnostics);
+  if (diagnostics.num_errors() == 0) {
+    read_controller_files(spec, diagnostics);
+    read_function_files(spec, diagnostics);
+  }
   const bool has_errors_of_text = diagnostics.num_errors() > 0;
   auto flex = std::move(options.flex);
   std::map<std::string, std::string> flex_path;

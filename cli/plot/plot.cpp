@@ -1,7 +1,4 @@
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdlib>
@@ -10,9 +7,9 @@
 #include <memory>
 #include <sstream>
 
-#include "base/part_file.hpp"
 #include "cli/common/channels.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/converter.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/plot/linear_plots.hpp"
@@ -63,29 +60,12 @@ report::Curve read_points(const std::string& path) {
 void write_picture(const std::string& path, const std::string& svg) {
   const std::string format = has_suffix(path, ".png") ? "png" : has_suffix(path, ".pdf") ? "pdf" : "svg";
   if (format == "svg") return write_text_file(path, svg);
-  PartFile source(path), part(path);
-  const auto fail = [&](const std::string& what, const std::string& advice) {
-    return ComputationError("cli.write", {path}, what, advice);
-  };
-  const std::string look = "check the folder, its permissions and the space left";
-  if (part.error() || !source.write(svg.data(), svg.size()))
-    throw fail("the file could not be written: " + (part.error() ? part : source).error().message(), look);
-  const std::string words[] = {
-      "rsvg-convert", "--zoom=2",       "--background-color=white", "--format=" + format, "--output=" + part.get_name(),
-      "--",           source.get_name()};
-  std::vector<char*> arguments;
-  for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  pid_t child = 0;
-  int status = 0;
-  const int failed = posix_spawnp(&child, words[0].c_str(), nullptr, nullptr, arguments.data(), environ);
-  const bool is_drawn = failed == 0 && waitpid(child, &status, 0) == child && WIFEXITED(status);
-  if (is_drawn && WEXITSTATUS(status) == 0 && part.commit()) return;
-  // 127: some systems report a missing program only through the child.
-  if (failed != 0 || !is_drawn || WEXITSTATUS(status) == 127)
-    throw ComputationError("cli.no-converter", {path}, "the program rsvg-convert is not there, or does not start",
-                           "install librsvg2-bin, or write .svg");
-  throw fail("rsvg-convert could not write the picture", look + ", or write .svg");
+  write_converted(path, svg,
+                  {"rsvg-convert", "librsvg2-bin", "write .svg",
+                   [&](const std::string& source, const std::string& output) -> std::vector<std::string> {
+                     return {"--zoom=2", "--background-color=white", "--format=" + format, "--output=" + output, "--",
+                             source};
+                   }});
 }
 
 /// The file to write: as given, or `otherwise` with .svg.

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
@@ -113,11 +114,13 @@ class ProgressLine {
   Clock::time_point begin_, shown_;
 };
 
+/// `resumed`: the time at which it went on; none: from the start.
 int report(const RunOptions& o, const Console& console, const solver::SimulateOutcome& outcome,
-           const std::string& output, double seconds) {
+           const std::string& output, double seconds, const std::optional<double>& resumed) {
   const auto& last = outcome.last;
   if (o.json) {
-    console.print_data(nlohmann::json{{"output", output},
+    console.print_data(nlohmann::json{{"resumed_from", resumed ? nlohmann::json(*resumed) : nlohmann::json()},
+                                      {"output", output},
                                       {"completed", outcome.completed},
                                       {"time", outcome.time},
                                       {"reason", outcome.reason},
@@ -130,8 +133,9 @@ int report(const RunOptions& o, const Console& console, const solver::SimulateOu
                        "\n");
   } else {
     console.print(fmt::format(
-        "{} at t = {:g} after {} steps ({} rejected, {} evaluations), worst energy error {:.1e}, {:.2f} s\nwritten: "
+        "{}{} at t = {:g} after {} steps ({} rejected, {} evaluations), worst energy error {:.1e}, {:.2f} s\nwritten: "
         "{}\n",
+        resumed ? fmt::format("resumed at t = {:g}, ", *resumed) : "",
         !outcome.completed       ? "stopped"
         : outcome.reason.empty() ? "completed"
                                  : outcome.reason.substr(0, outcome.reason.rfind(" at t =")),
@@ -199,7 +203,9 @@ int run_run(const RunOptions& o) {
       if (item.severity == Severity::Error) console.print(item);
     }
   }
-  return report(o, console, outcome, output, progress.get_seconds());
+  std::optional<double> resumed;
+  if (options.resume) resumed = options.resume->time;
+  return report(o, console, outcome, output, progress.get_seconds(), resumed);
 }
 
 }  // namespace

@@ -27,6 +27,7 @@ struct ControllerRecord {
   std::string name, type;
   std::vector<std::string> inputs;  ///< signals: "name", "name:component"
   std::string reference, rate;      ///< pid: signals; empty: none
+  bool active = true;               ///< from the start, until an event disables it
   Settings settings;
   SourceLocation at;
 };
@@ -38,6 +39,14 @@ struct ActuatorRecord {
   int node = 0, coordinate = 1;
   std::string frame = "body";
   Settings settings;
+  SourceLocation at;
+};
+
+/// [[connect]]: a signal into an input that does not name one.
+struct ConnectRecord {
+  std::string from;  ///< a signal: "name", "name:component"
+  std::string to;    ///< a controller, actuator or force; "law:2", "law:reference", "law:rate": which input
+  double gain = 1;
   SourceLocation at;
 };
 

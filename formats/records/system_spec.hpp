@@ -5,7 +5,6 @@
 /// flexible body is an output node id of its file; node 0 is the body origin Bo. Angles are in radians here.
 #include <array>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "formats/records/control_spec.hpp"
 #include "formats/records/flex_body.hpp"
 #include "formats/records/force_spec.hpp"
+#include "formats/records/function_spec.hpp"
 
 namespace bough::records {
 
@@ -62,16 +62,6 @@ struct HingeRecord {
   SourceLocation at;
 };
 
-struct FunctionRecord {
-  std::string name;
-  std::string type;                      ///< constant step ramp pulse sine table spinup
-  std::map<std::string, double> values;  ///< parameters by key, after defaults
-  std::vector<double> x, y;              ///< table
-  std::string file;                      ///< table: where x and y come from; empty: from the system file
-  std::string interpolation = "linear";  ///< table: linear or cubic
-  SourceLocation at;
-};
-
 enum class ForceKind { Force, Moment };
 enum class VectorFrame { Inertial, Body, Node };  ///< node: follows the node's own rotation (follower load)
 
@@ -83,6 +73,7 @@ struct ForceRecord {
   Vector3d direction = Vector3d::Zero();  ///< times the function's value
   VectorFrame frame = VectorFrame::Body;
   std::string function;  ///< empty = constant 1
+  std::string signal;    ///< instead of a function: a signal of one component
   std::string locator;   ///< or: a load pattern of the body file, then node and direction are unused
   SourceLocation at;
 };
@@ -135,7 +126,7 @@ struct SensorRecord {
 };
 
 enum class EventDirection { Both, Rising, Falling };
-enum class EventAction { Log, Stop, Lock, Release, Break, Close };
+enum class EventAction { Log, Stop, Lock, Release, Break, Close, Enable, Disable, Switch };
 
 /// [[event]]: at a time, or where a signal crosses a value.
 struct TriggerRecord {
@@ -146,7 +137,8 @@ struct TriggerRecord {
   EventDirection direction = EventDirection::Both;
   double tolerance = 0;  ///< of the time found; 0: 1e-12 of the duration
   EventAction action = EventAction::Log;
-  std::string target;            ///< lock, release: the hinge; break, close: the constraint
+  std::string target;  ///< lock, release: hinge; break, close: constraint; enable, disable, switch: controller
+  int choice = 0;      ///< switch: the input that the controller passes on, 1-based
   std::vector<int> coordinates;  ///< lock, release: 1-based rates of the hinge; empty: all
   SourceLocation at;
 };
@@ -166,6 +158,8 @@ struct SimulationRecord {
   Vector3d gravity = Vector3d::Zero();  ///< inertial
   double divergence_limit = 1e6;        ///< of a deflection to the body's size, of √(kinetic energy / energy put in)
   double energy_error_limit = 1e-2;     ///< relative; a run past it is told to have failed
+  std::string stiffening = "consistent";  ///< or lagged: K_G1 A_I + K_G2 FCONI of the last step
+  double stiffening_step = 0;             ///< lagged: how often they are measured; 0: `step`
   SourceLocation at;
 };
 
@@ -182,6 +176,7 @@ struct SystemSpec {
   std::vector<TriggerRecord> events;
   std::vector<ControllerRecord> controllers;
   std::vector<ActuatorRecord> actuators;
+  std::vector<ConnectRecord> connects;
   SimulationRecord simulation;
 };
 

@@ -32,6 +32,10 @@ bool read_rows(const Value& value, Eigen::MatrixXd& matrix) {
 
 }  // namespace
 
+records::ConnectRecord read_connect(const Fields& table) {
+  return {table.get_string("from"), table.get_string("to"), table.get_number("gain", 1), table.locate()};
+}
+
 records::Settings read_settings(const Fields& table, const std::string& path, const std::vector<std::string>& known,
                                 Diagnostics& diagnostics) {
   records::Settings settings;
@@ -65,7 +69,8 @@ records::ControllerRecord read_controller(const Fields& table, const std::string
   r.inputs = table.get_strings("inputs");
   r.reference = table.get_string("reference");
   r.rate = table.get_string("rate");
-  r.settings = read_settings(table, path, {"name", "type", "inputs", "reference", "rate"}, diagnostics);
+  r.active = table.get_bool("active", true);
+  r.settings = read_settings(table, path, {"name", "type", "inputs", "reference", "rate", "active"}, diagnostics);
   if (const auto file = r.settings.words.find("file"); file != r.settings.words.end() && !file->second.empty())
     file->second = {resolve_path(path, file->second.front())};
   return r;
@@ -91,7 +96,7 @@ void read_sensor_keys(const Fields& table, const std::string& path, const std::s
                       records::SensorRecord& sensor, Diagnostics& diagnostics) {
   static const std::vector<std::string> common = {"scale",       "bias", "misalignment", "noise_density",
                                                   "random_walk", "seed", "quantization", "range",
-                                                  "delay",       "lag",  "sample_time"};
+                                                  "delay",       "lag",  "sample_time",  "initial"};
   static const std::vector<std::string> own = {"rotation", "target", "to_body", "to_node", "sequence"};
   sensor.to_body = table.get_string("to_body");
   sensor.to_node = table.get_int("to_node", 0);

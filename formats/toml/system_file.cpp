@@ -11,6 +11,7 @@
 #include "formats/toml/detail/event_table.hpp"
 #include "formats/toml/detail/fields.hpp"
 #include "formats/toml/detail/force_table.hpp"
+#include "formats/toml/detail/function_table.hpp"
 #include "formats/toml/detail/hinge_table.hpp"
 #include "formats/toml/detail/parameters.hpp"
 #include "formats/toml/detail/references.hpp"
@@ -93,57 +94,6 @@ records::BodyRecord read_body(const Fields& table, const std::string& path, Diag
                 "in body '" + body.name + "', which is rigid", diagnostics);
   }
   return body;
-}
-
-records::FunctionRecord read_function(const Fields& fields, const Value& table, const std::string& path,
-                                      Diagnostics& diagnostics) {
-  records::FunctionRecord function;
-  function.at = fields.locate();
-  function.name = fields.get_string("name");
-  function.type = fields.get_string("type");
-  function.interpolation = fields.get_string("interpolation", "linear");
-  function.x = fields.get_numbers("x");
-  function.y = fields.get_numbers("y");
-  for (const auto& entry : table.entries) {
-    if (!entry.value.is_number()) continue;
-    const std::string suffix = "_deg";
-    const bool in_degrees = entry.key.size() > suffix.size() && entry.key.ends_with(suffix);
-    const std::string key = in_degrees ? entry.key.substr(0, entry.key.size() - suffix.size()) : entry.key;
-    const bool is_new =
-        function.values.emplace(key, entry.value.number * (in_degrees ? std::numbers::pi / 180 : 1)).second;
-    if (!is_new) {
-      diagnostics.error("toml.conflicting-keys", {path, entry.line},
-                        "'" + key + "' and '" + key + "_deg' stand together in function '" + function.name + "'",
-                        "keep one of them");
-    }
-  }
-  if (function.type != "table") {
-    refuse_keys(fields, {"x", "y", "file", "interpolation"},
-                "in function '" + function.name + "', which is not a table", diagnostics);
-    return function;
-  }
-  if (fields.has("file")) {
-    refuse_keys(fields, {"x", "y"}, "in function '" + function.name + "', which is read from a file", diagnostics);
-    if (!fields.get_string("file").empty()) {
-      function.x.clear();
-      function.y.clear();
-      function.file = resolve_path(path, fields.get_string("file"));
-      read_two_columns(function.file, fields.locate("file"), function.x, function.y, diagnostics);
-    }
-    return function;
-  }
-  for (const char* key : {"x", "y"}) {
-    if (fields.has(key)) continue;
-    diagnostics.error("toml.missing-key", function.at,
-                      "missing key '" + std::string(key) + "' in function '" + function.name + "'",
-                      "give x and y, or file");
-  }
-  if (fields.has("x") && fields.has("y") && function.x.size() != function.y.size()) {
-    diagnostics.error("toml.wrong-length", fields.locate("y"),
-                      "function '" + function.name + "': y has " + std::to_string(function.y.size()) +
-                          " entries, expected " + std::to_string(function.x.size()) + " as x");
-  }
-  return function;
 }
 
 records::SensorRecord read_sensor(const Fields& table, const std::string& path, Diagnostics& diagnostics) {
@@ -229,6 +179,8 @@ records::SimulationRecord read_simulation(const Fields& table, Diagnostics& diag
   simulation.output_every = table.get_int("output_every", simulation.output_every);
   simulation.record = table.get_strings("record");
   simulation.integrator = table.get_string("integrator", simulation.integrator);
+  simulation.stiffening = table.get_string("stiffening", simulation.stiffening);
+  simulation.stiffening_step = table.get_number("stiffening_step", 0);
   simulation.rk_order = table.get_int("rk_order", simulation.rk_order);
   simulation.step = table.get_number("step", simulation.step);
   simulation.relative_tolerance = table.get_number("relative_tolerance", simulation.relative_tolerance);
@@ -237,6 +189,12 @@ records::SimulationRecord read_simulation(const Fields& table, Diagnostics& diag
   simulation.energy_error_limit = table.get_number("energy_error_limit", simulation.energy_error_limit);
   simulation.gravity = table.get_vector("gravity", simulation.gravity);
   simulation.divergence_limit = table.get_number("divergence_limit", simulation.divergence_limit);
+  if (simulation.stiffening != "lagged")
+    refuse_keys(table, {"stiffening_step"}, "in simulation, whose stiffening is not lagged", diagnostics);
+  else if (!table.has("stiffening_step") && !table.has("step"))
+    diagnostics.error("toml.missing-key", table.locate("stiffening"),
+                      "missing key 'stiffening_step' in simulation, whose stiffening is lagged",
+                      "give it, or the step of a fixed-step integrator");
   const bool is_fixed = simulation.integrator == "rk4" || simulation.integrator == "implicit";
   if (is_fixed && !table.has("step")) {
     diagnostics.error("toml.missing-key", table.locate("integrator"),
@@ -295,7 +253,7 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
     spec.constraints.push_back(read_constraint(table, diagnostics));
   if (const Value* functions = fields.find("function")) {
     for (const Value& table : functions->items) {
-      if (table.is_table()) spec.functions.push_back(read_function(Fields(table, path), table, path, diagnostics));
+      if (table.is_table()) spec.functions.push_back(read_function(Fields(table, path), path, diagnostics));
     }
   }
   for (const Fields& table : fields.get_tables("force")) read_force(table, spec, diagnostics);
@@ -304,6 +262,7 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
     spec.controllers.push_back(read_controller(table, path, diagnostics));
   for (const Fields& table : fields.get_tables("actuator"))
     spec.actuators.push_back(read_actuator(table, path, diagnostics));
+  for (const Fields& table : fields.get_tables("connect")) spec.connects.push_back(read_connect(table));
   for (const Fields& table : fields.get_tables("event")) spec.events.push_back(read_event(table, diagnostics));
   spec.simulation = read_simulation(fields.get_table("simulation"), diagnostics);
   check_names(spec, diagnostics);

@@ -8,7 +8,8 @@
 
 namespace bough::solver {
 
-void Actuator::read_shaping(SettingsReader& keys) {
+void Actuator::read_shaping(SettingsReader& keys, int commands) {
+  sizes.inputs = commands;
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   scale_ = keys.get("scale", 1);
   bias_ = keys.get("bias", 0);
@@ -20,6 +21,11 @@ void Actuator::read_shaping(SettingsReader& keys) {
   rate_ = keys.has("rate_limit") ? keys.get_positive("rate_limit") : kInfinite;
   keys.demand(!keys.has("rate_limit") || lag_ > 0, "has a rate_limit and no lag",
               "give lag = TIME, how quickly it follows while the limit leaves it alone");
+  is_steady_ = keys.get_word("initial", "") == "steady";
+  keys.demand(is_steady_ || keys.get_word("initial", "").empty(), "has an initial that is neither a number nor steady",
+              "give a number, or initial = \"steady\"");
+  initial_ = keys.has_number("initial") ? keys.get("initial") : 0;
+  keys.demand(!keys.has("initial") || lag_ > 0, "has an initial and no lag", "give lag = TIME, or leave it out");
   sizes.states += num_lags();
   sizes.has_feedthrough = lag_ <= 0;
 }
@@ -30,10 +36,17 @@ double Actuator::shape(double command) const {
   return std::clamp(c, low_, high_);
 }
 
-double Actuator::calc_command(const BlockInput& in) const { return lag_ > 0 ? in.z[0] : shape(in.u[0]); }
+double Actuator::calc_command(const BlockInput& in, int i) const { return lag_ > 0 ? in.z[i] : shape(in.u[i]); }
+
+void Actuator::start(double* z, double*) const { std::fill_n(z, num_lags(), initial_); }
+
+bool Actuator::settle(const BlockInput& in, double* z) const {
+  for (int i = 0; is_steady_ && i < num_lags(); ++i) z[i] = shape(in.u[i]);
+  return is_steady_;
+}
 
 void Actuator::calc_rates(const BlockInput& in, double* z_dot) const {
-  if (lag_ > 0) z_dot[0] = std::clamp((shape(in.u[0]) - in.z[0]) / lag_, -rate_, rate_);
+  for (int i = 0; i < num_lags(); ++i) z_dot[i] = std::clamp((shape(in.u[i]) - in.z[i]) / lag_, -rate_, rate_);
 }
 
 namespace {
@@ -43,13 +56,19 @@ struct Kind {
   const char* type;
   int outputs;
   Where where;
+  const char* takes;  ///< dimension of the command; empty: any, or by the hinge
   std::unique_ptr<Actuator> (*make)(const records::ActuatorRecord&, SettingsReader&, const ActuatorPlace&);
 };
 constexpr Kind kKinds[] = {
-    {"hinge", 1, Where::Hinge, make_hinge_drive}, {"motor", 2, Where::Hinge, make_hinge_drive},
-    {"brake", 1, Where::Hinge, make_hinge_drive}, {"force", 1, Where::Force, make_push},
-    {"moment", 1, Where::Moment, make_push},      {"jet", 2, Where::Force, make_push},
-    {"wheel", 3, Where::Moment, make_rotor},      {"cmg", 2, Where::Moment, make_rotor},
+    {"hinge", 1, Where::Hinge, "", make_hinge_drive},
+    {"motor", 2, Where::Hinge, "", make_hinge_drive},
+    {"brake", 1, Where::Hinge, "", make_hinge_drive},
+    {"force", 1, Where::Force, "F", make_push},
+    {"moment", 1, Where::Moment, "F L", make_push},
+    {"jet", 2, Where::Force, "", make_push},
+    {"wheel", 3, Where::Moment, "F L", make_rotor},
+    {"cmg", 2, Where::Moment, "1/T", make_rotor},
+    {"double_gimbal_cmg", 4, Where::Moment, "1/T", make_rotor},
 };
 
 const Kind* find_kind(const std::string& type) {
@@ -150,7 +169,7 @@ std::unique_ptr<Block> make_actuator(const records::ActuatorRecord& r, const Sys
   made->path = "/actuators/" + r.name;
   made->label = "actuator '" + r.name + "'";
   made->at = r.at;
-  made->sizes.inputs = 1;
+  if (r.settings.get("scale", 1) == 1) made->input_dims = kind->takes;
   made->sizes.outputs = kind->outputs;
   return made;
 }

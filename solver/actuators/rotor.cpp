@@ -33,7 +33,10 @@ class Wheel final : public Rotor {
   double inertia = 1, limit = std::numeric_limits<double>::infinity(), initial = 0;
   double viscous = 0, coulomb = 0, width = 1;
 
-  void start(double* z, double*) const override { z[num_lags()] = initial; }
+  void start(double* z, double* d) const override {
+    Rotor::start(z, d);
+    z[num_lags()] = initial;
+  }
   void calc_outputs(const BlockInput& in, double* y) const override {
     y[1] = get_momentum(in);
     y[2] = y[1] / inertia - (get_motion(in).R * axis).dot(calc_rate(in));
@@ -82,7 +85,10 @@ class SingleGimbal final : public Rotor {
   Vector3d gimbal = Vector3d::UnitZ(), spin = Vector3d::UnitX();
   double momentum = 0, initial = 0;
 
-  void start(double* z, double*) const override { z[num_lags()] = initial; }
+  void start(double* z, double* d) const override {
+    Rotor::start(z, d);
+    z[num_lags()] = initial;
+  }
   void calc_outputs(const BlockInput& in, double* y) const override {
     y[0] = calc_command(in);
     y[1] = in.z[num_lags()];
@@ -107,6 +113,67 @@ class SingleGimbal final : public Rotor {
   }
 };
 
+/// Commands: the rates of the outer gimbal, about o in its body, and of the inner one, about i, which the outer
+/// carries. States: their angles α and β; h = h₀ R_o(α) R_i(β) s, and the gimbals turn h at α̇ o + β̇ R_o(α) i.
+class DoubleGimbal final : public Rotor {
+ public:
+  Vector3d outer = Vector3d::UnitZ(), inner = Vector3d::UnitX(), spin = Vector3d::UnitY();
+  double momentum = 0, initial[2] = {};
+
+  void start(double* z, double* d) const override {
+    Rotor::start(z, d);
+    std::copy_n(initial, 2, z + num_lags());
+  }
+  void calc_outputs(const BlockInput& in, double* y) const override {
+    for (int i = 0; i < 2; ++i) {
+      y[i] = calc_command(in, i);
+      y[2 + i] = in.z[num_lags() + i];
+    }
+  }
+  void calc_rates(const BlockInput& in, double* z_dot) const override {
+    Rotor::calc_rates(in, z_dot);
+    for (int i = 0; i < 2; ++i) z_dot[num_lags() + i] = calc_command(in, i);
+  }
+  void add_load(const BlockInput& in, const double* y, SystemData& data) const override {
+    const Matrix3d& R = get_motion(in).R;
+    const Matrix3d R_o = calc_outer(in);
+    const Vector3d turn = R * (y[0] * outer + y[1] * (R_o * inner));
+    add_moment(in, -(calc_rate(in) + turn).cross(calc_spin(in)), data);
+  }
+  Vector3d calc_momentum(const BlockInput& in) const override {
+    return in.data->tree[get_body(in)].state.R_WB * calc_spin(in);
+  }
+
+ private:
+  Matrix3d calc_outer(const BlockInput& in) const {
+    return Eigen::AngleAxisd(in.z[num_lags()], outer).toRotationMatrix();
+  }
+  Vector3d calc_spin(const BlockInput& in) const {
+    const Vector3d in_outer = Eigen::AngleAxisd(in.z[num_lags() + 1], inner) * spin;
+    return momentum * (get_motion(in).R * (calc_outer(in) * in_outer));
+  }
+};
+
+std::unique_ptr<Rotor> make_double_gimbal(SettingsReader& keys) {
+  auto cmg = std::make_unique<DoubleGimbal>();
+  cmg->outer = read_axis(keys, "gimbal_axis");
+  cmg->inner = read_axis(keys, "inner_axis");
+  cmg->spin = read_axis(keys, "spin_axis");
+  keys.demand(std::abs(cmg->outer.dot(cmg->inner)) < 1e-9, "has an inner_axis that is not normal to its gimbal_axis",
+              "give it at angle zero of the outer gimbal");
+  keys.demand(std::abs(cmg->inner.dot(cmg->spin)) < 1e-9, "has a spin_axis that is not normal to its inner_axis",
+              "give it at gimbal angles zero");
+  cmg->momentum = keys.get("momentum");
+  const VectorXd angles = keys.get_vector("angle", 2, 0);
+  cmg->initial[0] = angles[0];
+  cmg->initial[1] = angles[1];
+  cmg->dims = "1/T, 1/T, 1, 1";
+  cmg->description = "rates of the outer and the inner gimbal, their angles";
+  cmg->read_shaping(keys, 2);
+  cmg->sizes.states += 2;
+  return cmg;
+}
+
 }  // namespace
 
 std::unique_ptr<Actuator> make_rotor(const records::ActuatorRecord& r, SettingsReader& keys,
@@ -126,6 +193,10 @@ std::unique_ptr<Actuator> make_rotor(const records::ActuatorRecord& r, SettingsR
     wheel->sizes.guards = 3;
     wheel->dims = "F L, F L T, 1/T";
     made = std::move(wheel);
+  } else if (r.type == "double_gimbal_cmg") {
+    made = make_double_gimbal(keys);
+    made->marker = place.marker;
+    return made;
   } else {
     auto cmg = std::make_unique<SingleGimbal>();
     cmg->gimbal = read_axis(keys, "gimbal_axis");

@@ -18,6 +18,7 @@ class SettingsReader {
       : settings_(settings), what_(std::move(what)), at_(at), diagnostics_(diagnostics) {}
 
   bool has(const std::string& key) const { return settings_.has(key); }
+  bool has_number(const std::string& key) const { return settings_.numbers.count(key) > 0; }
   bool has_matrix(const std::string& key) const { return settings_.matrices.count(key) > 0; }
   /// "control.missing-key" without it.
   double get(const std::string& key);

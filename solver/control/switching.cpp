@@ -61,7 +61,7 @@ class Pwpf final : public Trigger {
   double get_drive(const BlockInput& in, int i) const override { return in.z[i]; }
 };
 
-/// The first input below the threshold of the last one, the second above.
+/// The first input below the threshold of the last one, the second above; of two inputs the one that events choose.
 class Switch final : public Block {
  public:
   double threshold = 0, hysteresis = 0;
@@ -69,6 +69,8 @@ class Switch final : public Block {
     const int first = in.d[0] > 0 ? sizes.outputs : 0;
     for (int i = 0; i < sizes.outputs; ++i) y[i] = in.u[first + i];
   }
+  int num_choices() const override { return sizes.guards == 0 ? 2 : 0; }
+  void choose(int choice, double* d) const override { d[0] = choice; }
   void calc_guards(const BlockInput& in, double* g) const override {
     const double selector = in.u[sizes.inputs - 1];
     g[0] = in.d[0] > 0 ? -1 : selector - threshold - hysteresis;
@@ -112,15 +114,19 @@ std::unique_ptr<Block> make_pwpf(SettingsReader& keys, const ControllerWiring& w
 
 std::unique_ptr<Block> make_switch(SettingsReader& keys, const ControllerWiring& wiring) {
   auto made = std::make_unique<Switch>();
+  const auto& in = wiring.inputs;
+  made->sizes.memory = 1;
+  if (in.size() == 2 && in[0] == in[1]) {
+    made->sizes.outputs = in[0];
+    return made;
+  }
   made->threshold = keys.get("threshold", 0);
   made->hysteresis = keys.get_size("hysteresis", 0);
-  const auto& in = wiring.inputs;
   if (in.size() != 3 || in[0] != in[1] || in[2] != 1)
     keys.error("control.bad-size", "does not have two alike inputs and a scalar that selects",
-               "give inputs = [\"below\", \"above\", \"selector\"]");
+               "give inputs = [\"below\", \"above\", \"selector\"], or two that events choose among");
   else
     made->sizes.outputs = in[0];
-  made->sizes.memory = 1;
   made->sizes.guards = 2;
   return made;
 }

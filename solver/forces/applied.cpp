@@ -40,8 +40,11 @@ void add_wrench_in_body(const TreeBody& tb, int node_index, const Vector3d& f, c
 }
 
 void add_applied_force(const AppliedForce& force, const Tree& tree, double t, TreeData& data) {
+  add_applied_load(force, tree, force.function ? force.function->calc(t).f : 1.0, data);
+}
+
+void add_applied_load(const AppliedForce& force, const Tree& tree, double value, TreeData& data) {
   const TreeBody& tb = tree[force.body];
-  const double value = force.function ? force.function->calc(t).f : 1.0;
   if (force.pattern.size() > 0) {
     const int n = tb.num_modes();
     const auto eta = data.q.segment(tb.eta_offset(), n);

@@ -25,6 +25,8 @@ void add_wrench_in_body(const TreeBody& body, int node, const Vector3d& f_B, con
 /// Adds a force at time t: body-fixed, inertial, or turning with its node. A pattern keeps its direction in B and puts
 /// [Σf; Σ p×f + t + (Σ φ×f) η; ΦᵀF - K_G2 η] times the function on the body: all to first order in η. No allocation.
 void add_applied_force(const AppliedForce& force, const Tree& tree, double t, TreeData& data);
+/// The same with a value in place of the function's.
+void add_applied_load(const AppliedForce& force, const Tree& tree, double value, TreeData& data);
 /// Springs and dampers of every free hinge: hinge_force. No allocation.
 void add_hinge_forces(const Tree& tree, TreeData& data);
 

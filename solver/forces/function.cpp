@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 #include <sstream>
 
+#include "solver/forces/function_parameters.hpp"
 #include "solver/forces/table.hpp"
 
 namespace bough::solver {
@@ -95,61 +95,8 @@ class Spinup final : public TimeFunction {
   double rate_, duration_;
 };
 
-/// Reads parameters by name and reports what is missing, unknown or not finite.
-class Parameters {
- public:
-  Parameters(const FunctionRecord& record, Diagnostics& diagnostics) : record_(record), diagnostics_(diagnostics) {}
-
-  bool has(const std::string& key) const { return record_.values.count(key) > 0; }
-  double get(const std::string& key) {
-    known_.insert(key);
-    const auto it = record_.values.find(key);
-    if (it == record_.values.end()) {
-      error("function.missing-parameter", "has no '" + key + "'", "give " + key + " = NUMBER");
-      return 0;
-    }
-    return check(key, it->second);
-  }
-  double get(const std::string& key, double otherwise) {
-    known_.insert(key);
-    const auto it = record_.values.find(key);
-    return it == record_.values.end() ? otherwise : check(key, it->second);
-  }
-  void refuse_others() {
-    for (const auto& [key, value] : record_.values) {
-      if (known_.count(key)) continue;
-      const std::vector<std::string> names(known_.begin(), known_.end());
-      const std::string near = find_nearest(key, names);
-      std::string list;
-      for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
-      error("function.unknown-parameter", "has the parameter '" + key + "', which " + record_.type + " does not take",
-            near.empty() ? "it takes: " + (list.empty() ? "none" : list) : "did you mean '" + near + "'?");
-    }
-  }
-  void demand(bool condition, const std::string& what, const std::string& advice) {
-    if (!condition && !failed_) error("function.bad-value", what, advice);
-  }
-  void error(const char* id, const std::string& what, const std::string& advice) {
-    failed_ = true;
-    diagnostics_.error(id, record_.at, "function '" + record_.name + "' of type " + record_.type + " " + what, advice);
-  }
-  bool failed() const { return failed_; }
-
- private:
-  double check(const std::string& key, double value) {
-    if (!std::isfinite(value))
-      error("function.nan", "has a " + key + " that is not a finite number", "give a finite value");
-    return value;
-  }
-
-  const FunctionRecord& record_;
-  Diagnostics& diagnostics_;
-  std::set<std::string> known_;
-  bool failed_ = false;
-};
-
 /// Checks the points of a table, each fault reported once with the first place it occurs at.
-bool check_table(const FunctionRecord& r, Parameters& p) {
+bool check_table(const FunctionRecord& r, FunctionParameters& p) {
   if (r.x.size() != r.y.size() || r.x.size() < 2) {
     std::ostringstream what;
     what << "has " << r.x.size() << " x and " << r.y.size() << " y values";
@@ -179,10 +126,13 @@ bool check_table(const FunctionRecord& r, Parameters& p) {
 
 }  // namespace
 
-std::unique_ptr<const TimeFunction> make_time_function(const FunctionRecord& r, Diagnostics& diagnostics) {
-  static const std::vector<std::string> types = {"constant", "step", "ramp", "pulse", "sine", "table", "spinup"};
+std::unique_ptr<const TimeFunction> make_time_function(const FunctionRecord& r, Diagnostics& diagnostics,
+                                                       const TimeSpan& run, const FunctionMap& others) {
+  static const std::vector<std::string> types = {"constant", "step",       "ramp",     "pulse",   "sine",
+                                                 "table",    "spinup",     "sawtooth", "doublet", "chirp",
+                                                 "sweep",    "expression", "sum",      "product"};
   std::unique_ptr<const TimeFunction> made;
-  Parameters p(r, diagnostics);
+  FunctionParameters p(r, diagnostics);
   if (r.type == "constant") {
     made = std::make_unique<Constant>(p.get("value"));
   } else if (r.type == "step") {
@@ -227,6 +177,12 @@ std::unique_ptr<const TimeFunction> make_time_function(const FunctionRecord& r, 
       else
         made = std::make_unique<CubicTable>(r.x, r.y);
     }
+  } else if (r.type == "sawtooth" || r.type == "doublet" || r.type == "chirp" || r.type == "sweep") {
+    made = make_wave(r, run, p);
+  } else if (r.type == "expression") {
+    made = make_time_expression(r, run, p);
+  } else if (r.type == "sum" || r.type == "product") {
+    made = make_combination(r, others, p);
   } else {
     const std::string near = find_nearest(r.type, types);
     std::string list;

@@ -1,5 +1,7 @@
 #pragma once
 /// \file Functions of time: [[function]] of a system file.
+#include <limits>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -22,14 +24,28 @@ class TimeFunction {
   virtual std::vector<double> corners() const { return breakpoints(); }
   /// Times that no step may pass over, so that none misses a short event in a long rest. No restarts. Ascending.
   virtual std::vector<double> landmarks() const { return {}; }
+  /// Whether f_dot and f_ddot are known; else they are not numbers, and f is no motion.
+  virtual bool has_derivatives() const { return true; }
+};
+
+/// Functions by name; one that failed maps to nullptr.
+using FunctionMap = std::map<std::string, const TimeFunction*>;
+
+/// Of the run, for functions that jump again and again.
+struct TimeSpan {
+  double start = 0, end = 0;
 };
 
 /// Types: constant(value) | step(value, at = 0, before = 0) | ramp(value, from = 0, to): 0 before, linear, value after
-/// | pulse(value, at = 0, width) | sine(amplitude, frequency_hz or omega, phase = 0, offset = 0) | table(x, y,
-/// interpolation): linear, or a cubic spline (not-a-knot); the end values hold outside | spinup(rate,
-/// duration): θ(t) of NASA-CR-202063, 4.1.4.1. At a jump the value after it holds (right-continuous). Reports unknown
-/// types, missing or unknown parameters (with the nearest match), NaN or unsorted tables. Returns nullptr when it
-/// reported an error.
-std::unique_ptr<const TimeFunction> make_time_function(const records::FunctionRecord& record, Diagnostics& diagnostics);
+/// | pulse(value, at = 0, width) | doublet(value, at = 0, width): value, then -value, each for width |
+/// sine(amplitude, frequency_hz or omega, phase = 0, offset = 0) | sawtooth(amplitude, frequency_hz, rise = 1, at = 0,
+/// offset = 0) | chirp, sweep(amplitude, from_hz, to_hz, at = 0, duration, phase = 0, offset = 0; law of the sweep) |
+/// table(x, y, interpolation): linear, or a cubic spline (not-a-knot); the end values hold outside | spinup(rate,
+/// duration): θ(t) of NASA-CR-202063, 4.1.4.1 | expression(expression, rate, acceleration: formulas of t; x: times of
+/// its jumps and corners) | sum(of, weights) | product(of, gain = 1), of `others`. At a jump the value after it holds
+/// (right-continuous). Reports unknown types, missing or unknown parameters (with the nearest match), NaN or unsorted
+/// tables. Returns nullptr when it reported an error.
+std::unique_ptr<const TimeFunction> make_time_function(const records::FunctionRecord& record, Diagnostics& diagnostics,
+                                                       const TimeSpan& run = {}, const FunctionMap& others = {});
 
 }  // namespace bough::solver

@@ -48,6 +48,31 @@ std::vector<int> find_rows(const System& system, int body, const records::Trigge
   return rows;
 }
 
+/// Place of a controller in the signal graph; -1 with errors reported.
+int find_controller(const System& system, const records::TriggerRecord& r, Diagnostics& diagnostics) {
+  const auto& places = system.impl().signals.places;
+  const std::string folder = "/controllers/";
+  std::vector<std::string> names;
+  for (size_t i = 0; i < places.size(); ++i) {
+    const Block& block = *places[i].block;
+    if (!block.path.starts_with(folder)) continue;
+    names.push_back(block.name);
+    if (block.name != r.target) continue;
+    if (r.action != EventAction::Switch) return static_cast<int>(i);
+    if (r.choice >= 1 && r.choice <= block.num_choices()) return static_cast<int>(i);
+    report(r, "run.bad-event",
+           block.num_choices() == 0 ? "switches controller '" + r.target + "', whose input no event chooses"
+                                    : "names input " + std::to_string(r.choice) + " of controller '" + r.target +
+                                          "', which has " + std::to_string(block.num_choices()),
+           "a controller of type switch with two inputs is switched by events; they count from 1", diagnostics);
+    return -1;
+  }
+  report(r, "run.unknown-target", "names controller '" + r.target + "', which does not exist",
+         find_near(r.target, static_cast<int>(names.size()), [&](int i) { return names[static_cast<size_t>(i)]; }),
+         diagnostics);
+  return -1;
+}
+
 }  // namespace
 
 Changes Changes::build(const System& system, const records::SystemSpec& spec, bool is_sound, Diagnostics& diagnostics) {
@@ -75,6 +100,13 @@ Changes Changes::build(const System& system, const records::SystemSpec& spec, bo
                find_near(r.target, system.num_constraints(), [&](int i) { return system.constraint_name(i); }),
                diagnostics);
       change.text = "constraint '" + r.target + (r.action == EventAction::Break ? "' is broken" : "' is to close");
+    } else if (r.action == EventAction::Enable || r.action == EventAction::Disable || r.action == EventAction::Switch) {
+      if (is_sound) change.place = find_controller(system, r, diagnostics);
+      change.choice = r.choice - 1;
+      change.text = "controller '" + r.target + "'" +
+                    (r.action == EventAction::Enable    ? " is enabled"
+                     : r.action == EventAction::Disable ? " is disabled"
+                                                        : " passes on its input " + std::to_string(r.choice));
     }
     made.changes_.push_back(std::move(change));
   }
@@ -83,6 +115,14 @@ Changes Changes::build(const System& system, const records::SystemSpec& spec, bo
 
 Discrete Changes::apply(size_t trigger, SystemOde& ode, double t, const VectorXd& y) const {
   const Change& change = changes_[trigger];
+  if (change.place >= 0) {
+    const BlockPlace& p = ode.system().impl().signals.places[static_cast<size_t>(change.place)];
+    VectorXd& memory = ode.data().signals.memory;
+    if (change.action == EventAction::Switch)
+      p.block->choose(change.choice, memory.data() + p.memory);
+    else
+      memory[p.activity] = change.action == EventAction::Enable ? 1 : 0;
+  }
   Discrete next = get_discrete(ode.data());
   for (const int row : change.rows)
     next.mode[static_cast<size_t>(row)] = change.action == EventAction::Lock ? HingeMode::Locked : HingeMode::Free;

@@ -1,5 +1,6 @@
 #pragma once
-/// \file What events do to the system: hinges locked and released, constraints broken and closed.
+/// \file What events do to the system: hinges locked and released, constraints broken and closed, controllers
+/// enabled, disabled and switched.
 #include "solver/integrate/system_ode.hpp"
 
 namespace bough::solver {
@@ -11,7 +12,8 @@ class Changes {
   static Changes build(const System& system, const records::SystemSpec& spec, bool system_is_sound,
                        Diagnostics& diagnostics);
 
-  /// What each coordinate and constraint does from now on; a constraint that closes keeps what it is found off by.
+  /// Enables, disables, switches at once; what each coordinate and constraint does from now on; a constraint that
+  /// closes keeps what it is found off by.
   Discrete apply(size_t trigger, SystemOde& ode, double t, const VectorXd& y) const;
   /// "hinge 'root' is released", of the last build.
   const std::string& describe(size_t trigger) const { return changes_[trigger].text; }
@@ -21,6 +23,8 @@ class Changes {
     records::EventAction action = records::EventAction::Log;
     std::vector<int> rows;  ///< of u: lock, release
     int constraint = -1;    ///< break, close
+    int place = -1;         ///< of the controller, in the signal graph
+    int choice = 0;         ///< switch: from 0
     std::string text;
   };
   std::vector<Change> changes_;

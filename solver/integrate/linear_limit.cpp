@@ -58,7 +58,7 @@ double calc_first_frequency(const System& system, int b) {
 LinearLimit::LinearLimit(const System& system) : system_(system) {
   for (int b = 0; b < system.num_bodies(); ++b) {
     if (system.num_modes(b) == 0) continue;
-    const bool is_stiffened = get_body(system, b).body.stiffened();
+    const bool is_stiffened = get_body(system, b).body.stiffened() || system.impl().is_lagged;
     watched_.push_back({b, calc_body_size(system, b), is_stiffened ? 0 : calc_first_frequency(system, b)});
   }
 }

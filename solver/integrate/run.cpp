@@ -189,7 +189,9 @@ double Run::begin() {
     resume_at_stop(t);
     return t;
   }
+  settle_lags(t);
   settle_control(t);
+  settle_lags(t);  // those that follow samples
   checkpoint_.time = t;
   write_outputs_at(t);
   setup_.triggers.start(calc_gaps(t));

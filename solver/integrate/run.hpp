@@ -2,6 +2,7 @@
 /// \file One run: the state of its loop and what it writes to. For simulate.cpp.
 #include <chrono>
 #include <limits>
+#include <map>
 
 #include "solver/integrate/energy_monitor.hpp"
 #include "solver/integrate/linear_limit.hpp"
@@ -72,8 +73,12 @@ class Run {
   // Controllers (run_control.cpp)
   /// Samples that are due at t and switches that are open there, once; y_ is the state.
   void settle_control(double t);
+  /// At the start: lags that are to start at rest.
+  void settle_lags(double t);
   /// Switches every block with a positive guard at (t, y_) until there is none.
   void settle_switches(double t);
+  /// Counts a switch of a block; warns once ("control.sliding") where it switches without rest.
+  void count_switch(const std::string& label, double t);
   /// The first time in the last step up to `to` at which a block switches.
   std::optional<double> find_switch(const Stop& stop, double to);
   void get_control_memory(VectorXd& memory) const;
@@ -138,6 +143,13 @@ class Run {
   bool is_started_ = false;                                    ///< the stepper is
   int num_tiny_ = 0;
   VectorXd guards_, last_guards_;
+  /// Of a block that switches: since when the last hundreds of switches are counted.
+  struct Switching {
+    double since = 0;
+    int count = 0;
+    bool is_told = false;
+  };
+  std::map<std::string, Switching> switching_;                 ///< by label
   double sampled_ = -std::numeric_limits<double>::infinity();  ///< the last instant whose samples are taken
   bool has_switched_ = false;  ///< what the motion depends on has changed since the stepper's last start
 };

@@ -1,4 +1,6 @@
 // Samples and switches of controllers, sensors and actuators (docs/theory/control.md).
+#include <algorithm>
+
 #include "solver/integrate/locate.hpp"
 #include "solver/integrate/run.hpp"
 #include "solver/system/impl.hpp"
@@ -7,6 +9,11 @@ namespace bough::solver {
 namespace {
 /// Switches at one moment, beyond which they will not end.
 constexpr int kMostSwitches = 100;
+/// So many switches of one block within this share of the run are no regular working of it.
+constexpr int kManySwitches = 500;
+constexpr double kShortTime = 1e-2;
+/// Lags behind lags at the start: as many passes as there are in a row.
+constexpr int kMostLags = 50;
 }  // namespace
 
 void Run::settle_control(double t) {
@@ -19,6 +26,23 @@ void Run::settle_control(double t) {
     if (signals.sample(ode_.system(), ode_.data(), timeline_.resolution())) has_switched_ = true;
   });
   settle_switches(t);
+}
+
+void Run::settle_lags(double t) {
+  const SignalGraph& signals = ode_.system().impl().signals;
+  if (signals.num_states == 0) return;
+  VectorXd before;
+  for (int i = 0; i < kMostLags; ++i) {
+    bool is_done = true;
+    guard([&] {
+      ode_.calc_derivative(t, y_, y_dot_);
+      calc_signals(ode_.system(), ode_.data());
+      before = ode_.data().signals.z;
+      is_done = !signals.settle(ode_.system(), ode_.data()) || ode_.data().signals.z == before;
+    });
+    y_.segment(ode_.num_coordinates(), ode_.num_z()) = ode_.data().signals.z;
+    if (is_done) return;
+  }
 }
 
 void Run::settle_switches(double t) {
@@ -36,9 +60,27 @@ void Run::settle_switches(double t) {
     last_guards_ = guards_;
     if (!is_open) return;
     has_switched_ = true;
+    count_switch(what, t);
   }
   finish_failed(t, "control.chatter", what + " switches without end at t = " + short_text(t),
                 "give it a hysteresis, or a lag on the way round its loop");
+}
+
+void Run::count_switch(const std::string& label, double t) {
+  Switching& s = switching_[label];
+  const double window = kShortTime * (timeline_.end() - timeline_.start());
+  if (s.count++ == 0) s.since = t;
+  if (s.count < kManySwitches) return;
+  s.count = 0;
+  if (s.is_told || t - s.since > window) return;
+  s.is_told = true;
+  const auto& places = ode_.system().impl().signals.places;
+  const auto place = std::find_if(places.begin(), places.end(), [&](const auto& p) { return p.block->label == label; });
+  diagnostics_.warning("control.sliding", place == places.end() ? SourceLocation{} : place->block->at,
+                       label + " has switched " + std::to_string(kManySwitches) + " times from t = " +
+                           short_text(s.since) + " to " + short_text(t) + ": it slides along its switching line",
+                       "give it more hysteresis (relay: on and off further apart), or sample its inputs by a gain of 1 "
+                       "with sample_time");
 }
 
 std::optional<double> Run::find_switch(const Stop& stop, double to) {

@@ -23,7 +23,8 @@ void Run::fail_as_thrown() {
     auto items = failure.items();
     for (Diagnostic& item : items) {
       if (item.where.file.empty()) item.where = spec_.simulation.at;
-      item.what += " at t = " + short_text(is_started_ ? stepper_->time() : timeline_.start());
+      if (item.what.find(" at t = ") == std::string::npos)
+        item.what += " at t = " + short_text(is_started_ ? stepper_->time() : timeline_.start());
     }
     throw ComputationError(std::move(items));
   } catch (const Failure& failure) {

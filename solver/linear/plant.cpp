@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/system/impl.hpp"
+#include "solver/tree/coordinates.hpp"
 
 namespace bough::solver {
 namespace {
@@ -20,15 +21,6 @@ double calc_size(const Tree& tree) {
     size = std::max({size, tb.on_parent.p_KM.norm(), tb.on_child.p_KM.norm()});
   }
   return size > 0 ? size : 1;
-}
-
-/// Translations move without turning.
-bool is_translation(const TreeBody& tb, int coordinate) {
-  VectorXd q(tb.hinge->num_q()), u = VectorXd::Zero(tb.hinge->num_u());
-  tb.hinge->set_neutral(q.data());
-  HingeMotion motion;
-  tb.hinge->calc_motion(q.data(), u.data(), motion);
-  return motion.H.col(coordinate).tail<3>().isZero(0);
 }
 
 /// Turns without moving: back where it was after 2 pi. Orientations of quaternions have small rotations, not angles.
@@ -142,7 +134,8 @@ void Plant::hold_commands(const OperatingPoint& point) {
   s.is_open = false;
   evaluate(point);
   for (const auto& p : system_.impl().signals.places) {
-    if (p.actuator >= 0) s.command[p.actuator] = s.inputs[p.in];
+    const int n = p.actuator >= 0 ? p.block->sizes.inputs : 0;
+    s.command.segment(std::max(0, p.actuator), n) = s.inputs.segment(p.in, n);
   }
   s.is_open = true;
 }

@@ -24,7 +24,10 @@ void Plant::add_inputs() {
   }
   num_forces_ = static_cast<int>(inputs_.size());
   for (const auto& p : system_.impl().signals.places) {
-    if (p.actuator >= 0) inputs_.push_back({p.block->name, "by the controller", -1, p.actuator});
+    const int n = p.actuator >= 0 ? p.block->sizes.inputs : 0;
+    for (int i = 0; i < n; ++i)
+      inputs_.push_back({n == 1 ? p.block->name : p.block->name + ":" + std::to_string(i + 1), "by the controller", -1,
+                         p.actuator + i});
   }
   num_actuators_ = static_cast<int>(inputs_.size()) - num_forces_;
   for (size_t i = 0; i < freedoms_.size(); ++i) {
@@ -60,9 +63,11 @@ void Plant::add_outputs() {
     if (std::string_view(kind) == "/sensors/") num_sensor_outputs_ = outputs_.size();
   }
   for (const auto& p : system_.impl().signals.places) {
-    if (p.actuator < 0) continue;
-    outputs_.name.push_back(p.block->name + ":command");
-    outputs_.dims.push_back("by the controller");
+    const int n = p.actuator >= 0 ? p.block->sizes.inputs : 0;
+    for (int i = 0; i < n; ++i) {
+      outputs_.name.push_back(p.block->name + ":command" + (n == 1 ? "" : std::to_string(i + 1)));
+      outputs_.dims.push_back("by the controller");
+    }
   }
 }
 
@@ -91,7 +96,8 @@ VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, d
     }
   }
   for (const auto& p : signals.places) {
-    if (p.actuator >= 0) out[at++] = s.inputs[p.in] - s.bias[p.actuator];
+    const int n = p.actuator >= 0 ? p.block->sizes.inputs : 0;
+    for (int i = 0; i < n; ++i) out[at++] = s.inputs[p.in + i] - s.bias[p.actuator + i];
   }
   return out;
 }

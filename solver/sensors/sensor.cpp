@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "solver/sensors/kinds.hpp"
+#include "solver/system/impl.hpp"
+#include "solver/tree/coordinates.hpp"
 
 namespace bough::solver {
 namespace {
@@ -84,6 +86,19 @@ class Resolver {
     }
     e.size = r.coordinate == 0 ? count : 1;
     if (r.coordinate > 0) e.description += ", coordinate " + std::to_string(r.coordinate);
+    set_dims(r, e);
+  }
+
+  /// Of coordinates that are all angles or all travels.
+  void set_dims(const SensorRecord& r, Sensors::Entry& e) {
+    const TreeBody& tb = system_.impl().tree[e.body];
+    if (!tb.hinge->has_plain_coordinates()) return;
+    const int first = r.coordinate == 0 ? 0 : r.coordinate - 1;
+    int travels = 0;
+    for (int i = 0; i < e.size; ++i) travels += is_translation(tb, first + i) ? 1 : 0;
+    if (travels != 0 && travels != e.size) return;
+    const bool is_rate = r.type == SensorType::HingeRate || r.type == SensorType::Tachometer;
+    e.dims = std::string(travels > 0 ? "L" : "1") + (is_rate ? "/T" : "");
   }
 
   void resolve_modes(const SensorRecord& r, const SensorKind& kind, Sensors::Entry& e) {

@@ -17,12 +17,25 @@ class SensorBlock final : public Block {
   VectorXd scale, bias, low, high, quantum;  ///< as many as outputs, or empty
   Matrix3d misalignment = Matrix3d::Identity();
   bool is_misaligned = false;
+  VectorXd initial;                     ///< of the lag
+  bool is_steady = false;               ///< it starts at what is measured first
   double lag = 0, noise = 0, walk = 0;  ///< noise, walk: deviation of a sample, of a step
   std::uint64_t seed = 0, stream = 0;
 
   // States: those of the lag, after the integral of an integrating gyro. Memory: the random walk.
   void calc_outputs(const BlockInput& in, double* y) const override { calc_sample(in, true, y); }
   void calc_ideal(const BlockInput& in, double* y) const override { calc_sample(in, false, y); }
+  void start(double* z, double*) const override {
+    if (lag > 0) Eigen::Map<VectorXd>(z + num_integrals(), sizes.outputs) = initial;
+  }
+  bool settle(const BlockInput& in, double* z) const override {
+    if (!is_steady || lag <= 0) return false;
+    if (is_integrating())
+      std::copy_n(in.z, 3, z + 3);
+    else
+      measure(*in.system, *in.data, entry, z);
+    return true;
+  }
   void calc_sample(const BlockInput& in, bool is_real, double* y) const {
     const int n = sizes.outputs;
     Eigen::Map<VectorXd> value(y, n);
@@ -58,6 +71,7 @@ class SensorBlock final : public Block {
     for (int i = 0; i < sizes.memory; ++i) d[i] += walk * draw(in.sample, sizes.outputs + i);
   }
 
+  int num_integrals() const { return is_integrating() ? 3 : 0; }
   bool is_integrating() const { return entry.type == SensorType::IntegratingGyro; }
 
  private:
@@ -116,6 +130,16 @@ std::unique_ptr<Block> make_sensor_block(const Sensors::Entry& entry, const reco
   s.bias = reader.get_list("bias", n);
   s.quantum = reader.get_list("quantization", n);
   s.lag = reader.get_positive("lag");
+  s.initial = reader.get_list("initial", n);
+  if (s.initial.size() == 0) s.initial = VectorXd::Zero(n);
+  if (const auto word = r.chain.words.find("initial"); word != r.chain.words.end()) {
+    s.is_steady = word->second == std::vector<std::string>{"steady"};
+    if (!s.is_steady)
+      reader.error("sensor.bad-value", "has an initial that is neither numbers nor steady",
+                   "give numbers, or initial = \"steady\"");
+  }
+  if (r.chain.has("initial") && s.lag <= 0)
+    reader.error("sensor.bad-value", "has an initial and no lag", "give lag = TIME, or leave it out");
   const bool is_attitude =
       r.type == SensorType::Quaternion || r.type == SensorType::Euler || r.type == SensorType::DirectionCosines;
   if (s.lag > 0 && (is_attitude || r.type == SensorType::Resolver))

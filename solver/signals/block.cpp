@@ -3,11 +3,13 @@
 namespace bough::solver {
 
 void Block::start(double*, double*) const {}
+bool Block::settle(const BlockInput&, double*) const { return false; }
 void Block::calc_ideal(const BlockInput& in, double* y) const { calc_outputs(in, y); }
 void Block::calc_rates(const BlockInput&, double*) const {}
 void Block::update(const BlockInput&, double*) const {}
 void Block::calc_guards(const BlockInput&, double*) const {}
 void Block::switch_over(const BlockInput&, int, double*) const {}
+void Block::choose(int, double*) const {}
 void Block::add_load(const BlockInput&, const double*, SystemData&) const {}
 double Block::calc_power(const BlockInput&, const double*) const { return 0; }
 double Block::calc_energy(const BlockInput&) const { return 0; }

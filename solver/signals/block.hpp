@@ -40,11 +40,14 @@ class Block {
   std::string name, path;         ///< as "pid", "/controllers/pid"
   std::string label;              ///< "controller 'pid'", for messages
   std::string description, dims;  ///< of the outputs, for the results
+  std::string input_dims;         ///< what the first input is expected to have; empty: anything
   SourceLocation at;
   BlockSizes sizes;
 
   /// Initial states and memory; zero on entry.
   virtual void start(double* z, double* d) const;
+  /// At the start of a run: lags that are to start at rest take the value of what they follow. False without any.
+  virtual bool settle(const BlockInput& in, double* z) const;
   virtual void calc_outputs(const BlockInput& in, double* y) const = 0;
   /// Sampled: the outputs as if they were not, without noise; for linear models.
   virtual void calc_ideal(const BlockInput& in, double* y) const;
@@ -54,6 +57,11 @@ class Block {
   virtual void calc_guards(const BlockInput& in, double* g) const;
   /// The memory after guard `guard` has become positive; the guard must not be positive any more.
   virtual void switch_over(const BlockInput& in, int guard, double* d) const;
+
+  /// How many of its inputs an event may choose among; 0: none.
+  virtual int num_choices() const { return 0; }
+  /// The memory with input `choice` (from 0) passed on.
+  virtual void choose(int choice, double* d) const;
 
   // Actuators
   virtual bool is_actuator() const { return false; }

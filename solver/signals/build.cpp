@@ -4,8 +4,11 @@
 
 #include "formats/records/signal_name.hpp"
 #include "solver/actuators/actuator.hpp"
+#include "solver/actuators/lagged_stiffening.hpp"
 #include "solver/control/controller.hpp"
 #include "solver/sensors/sensor_block.hpp"
+#include "solver/signals/sources.hpp"
+#include "solver/signals/units.hpp"
 
 namespace bough::solver {
 namespace {
@@ -19,37 +22,27 @@ class FunctionBlock final : public Block {
   const TimeFunction* f_;
 };
 
-/// Whatever may be named as an input.
-struct Source {
-  std::string name, path;
-  int size = 0;  ///< 0: not known yet
-  int place = -1;
-};
-
-/// One component of a source, or all of it.
-struct Wire {
-  size_t source = 0;
-  int component = -1;  ///< -1: all
-  std::string text;    ///< the component as written
-};
-
 class Builder {
  public:
   Builder(const records::SystemSpec& spec, const System& system, const FunctionMap& functions, System::Impl& impl,
           Diagnostics& diagnostics)
       : spec_(spec), system_(system), functions_(functions), impl_(impl), diagnostics_(diagnostics) {}
 
-  void build() {
+  void build(const SignalUses& uses, const FlexMap& flex) {
     const int errors = diagnostics_.num_errors();
     impl_.signals.start = impl_.start;
     add_sensors();
     declare();
-    wire_controllers();
-    add_actuators();
+    wire_controllers(uses);
+    add_actuators(uses);
+    add_forces(uses);
+    add_stiffening(flex);
+    set_activities();
     impl_.signals_are_sound = diagnostics_.num_errors() == errors;
     if (impl_.signals_are_sound) {
       lay_out();
       if (diagnostics_.num_errors() == errors) impl_.signals.arrange(diagnostics_);
+      if (diagnostics_.num_errors() == errors) check_units();
     }
     impl_.signals_are_sound = diagnostics_.num_errors() == errors;
     if (!impl_.signals_are_sound) impl_.signals = SignalGraph();
@@ -60,75 +53,43 @@ class Builder {
     const Sensors sensors = Sensors::build(system_, spec_, diagnostics_);
     for (size_t i = 0; i < sensors.entries().size(); ++i) {
       const auto& entry = sensors.entries()[i];
-      sources_.push_back({entry.name, "/sensors/" + entry.name, entry.size,
-                          add(make_sensor_block(entry, spec_.sensors[i], diagnostics_))});
-      wires_.emplace_back();
+      sources_.list.push_back({entry.name, "/sensors/" + entry.name, entry.size,
+                               add(make_sensor_block(entry, spec_.sensors[i], diagnostics_), {})});
     }
   }
 
   void declare() {
-    for (const auto& r : spec_.controllers) sources_.push_back({r.name, "/controllers/" + r.name, find_outputs(r), -1});
+    for (const auto& r : spec_.controllers)
+      sources_.list.push_back({r.name, "/controllers/" + r.name, find_outputs(r), -1});
     for (const auto& r : spec_.actuators)
-      sources_.push_back({r.name, "/actuators/" + r.name, find_actuator_outputs(r.type), -1});
-    for (const auto& r : spec_.functions) sources_.push_back({r.name, "/signals/" + r.name, 1, -1});
+      sources_.list.push_back({r.name, "/actuators/" + r.name, find_actuator_outputs(r.type), -1});
+    for (const auto& r : spec_.functions) sources_.list.push_back({r.name, "/signals/" + r.name, 1, -1});
   }
 
-  int add(std::unique_ptr<const Block> block) {
+  int add(std::unique_ptr<const Block> block, std::vector<Wire> wires) {
     BlockPlace place;
     place.block = std::move(block);
     impl_.signals.places.push_back(std::move(place));
+    wires_.push_back(std::move(wires));
     return static_cast<int>(impl_.signals.places.size()) - 1;
   }
 
-  /// Of "name", "name:component", "/path:component". Reports what is wrong and returns false.
-  bool find(const std::string& text, const std::string& user, const SourceLocation& at, Wire& wire) {
-    const auto colon = text.rfind(':');
-    std::string name = text, component;
-    const auto matches = [&](const Source& s) { return s.name == name || s.path == name; };
-    if (std::none_of(sources_.begin(), sources_.end(), matches) && colon != std::string::npos) {
-      name = text.substr(0, colon);
-      component = text.substr(colon + 1);
-    }
-    const auto first = std::find_if(sources_.begin(), sources_.end(), matches);
-    if (first == sources_.end()) {
-      std::vector<std::string> known;
-      for (const auto& s : sources_) known.push_back(s.name);
-      const std::string near = find_nearest(name, known);
-      diagnostics_.error("control.unknown-signal", at, user + " names the signal '" + text + "', which does not exist",
-                         near.empty() ? "name a sensor, controller, actuator or function, as pid or tip:x"
-                                      : "did you mean '" + near + "'?");
-      return false;
-    }
-    if (const auto second = std::find_if(first + 1, sources_.end(), matches); second != sources_.end()) {
-      diagnostics_.error("control.unknown-signal", at,
-                         user + " names the signal '" + text + "', which may be " + first->path + " or " + second->path,
-                         "write the one you mean");
-      return false;
-    }
-    wire.source = static_cast<size_t>(first - sources_.begin());
-    wire.text = component;
-    wire.component = component.empty() ? -1 : 0;
-    return true;
-  }
-
-  int size_of(const Wire& wire) const { return wire.component >= 0 ? 1 : sources_[wire.source].size; }
-
-  void wire_controllers() {
+  void wire_controllers(const SignalUses& uses) {
     struct Pending {
       const records::ControllerRecord* record;
+      const ControllerUses* uses;
       std::vector<Wire> wires;  // inputs, then reference and rate
       bool is_good = true;
     };
     std::vector<Pending> pending;
     for (const auto& r : spec_.controllers) {
-      Pending p{&r, {}, true};
-      std::vector<std::string> texts = r.inputs;
-      if (!r.reference.empty()) texts.push_back(r.reference);
-      if (!r.rate.empty()) texts.push_back(r.rate);
-      for (const auto& text : texts) {
-        Wire wire;
-        p.is_good = find(text, "controller '" + r.name + "'", r.at, wire) && p.is_good;
-        p.wires.push_back(wire);
+      Pending p{&r, &uses.controllers.at(r.name), {}, true};
+      for (const auto* list : {&p.uses->inputs, &p.uses->reference, &p.uses->rate}) {
+        for (const auto& use : *list) {
+          Wire wire;
+          p.is_good = sources_.find(use, "controller '" + r.name + "'", wire, diagnostics_) && p.is_good;
+          p.wires.push_back(wire);
+        }
       }
       if (p.is_good) pending.push_back(std::move(p));
     }
@@ -136,12 +97,12 @@ class Builder {
     for (bool is_new = true; is_new;) {
       is_new = false;
       for (size_t i = 0; i < pending.size();) {
-        const auto is_known = [&](const Wire& w) { return size_of(w) > 0; };
+        const auto is_known = [&](const Wire& w) { return sources_.size_of(w) > 0; };
         if (!std::all_of(pending[i].wires.begin(), pending[i].wires.end(), is_known)) {
           ++i;
           continue;
         }
-        place_controller(*pending[i].record, pending[i].wires);
+        place_controller(*pending[i].record, *pending[i].uses, pending[i].wires);
         pending.erase(pending.begin() + static_cast<std::ptrdiff_t>(i));
         is_new = true;
       }
@@ -153,39 +114,88 @@ class Builder {
                          "give outputs = NUMBER, or name single components");
   }
 
-  void place_controller(const records::ControllerRecord& r, const std::vector<Wire>& wires) {
+  void place_controller(const records::ControllerRecord& record, const ControllerUses& uses,
+                        const std::vector<Wire>& wires) {
+    records::ControllerRecord r = record;
     ControllerWiring wiring;
-    for (size_t i = 0; i < r.inputs.size(); ++i) wiring.inputs.push_back(size_of(wires[i]));
-    if (!r.reference.empty()) wiring.reference = size_of(wires[r.inputs.size()]);
-    if (!r.rate.empty()) wiring.rate = size_of(wires.back());
+    for (size_t i = 0; i < uses.inputs.size(); ++i) wiring.inputs.push_back(sources_.size_of(wires[i]));
+    if (!uses.reference.empty()) {
+      wiring.reference = sources_.size_of(wires[uses.inputs.size()]);
+      r.reference = uses.reference.front().text;
+    }
+    if (!uses.rate.empty()) {
+      wiring.rate = sources_.size_of(wires.back());
+      r.rate = uses.rate.front().text;
+    }
     auto block = make_controller(r, wiring, diagnostics_);
     if (!block) return;
-    const auto source = std::find_if(sources_.begin(), sources_.end(),
-                                     [&](const Source& s) { return s.path == "/controllers/" + r.name; });
-    source->size = block->sizes.outputs;
-    source->place = add(std::move(block));
-    wires_.push_back(wires);
+    Source& source = sources_.at_path("/controllers/" + r.name);
+    source.size = block->sizes.outputs;
+    source.place = add(std::move(block), wires);
+    records_.resize(wires_.size(), nullptr);
+    records_.back() = &record;
   }
 
-  void add_actuators() {
+  void add_actuators(const SignalUses& uses) {
     for (const auto& r : spec_.actuators) {
-      Wire wire;
-      bool is_good = true;
-      if (!r.input.empty()) is_good = find(r.input, "actuator '" + r.name + "'", r.at, wire);
-      if (is_good && !r.input.empty() && size_of(wire) > 1) {
-        diagnostics_.error(
-            "control.bad-size", r.at,
-            "actuator '" + r.name + "' takes one number, '" + r.input + "' has " + std::to_string(size_of(wire)),
-            "name a component, as " + r.input + ":1");
-        is_good = false;
-      }
+      const std::string user = "actuator '" + r.name + "'";
       auto block = make_actuator(r, system_, impl_.tree, diagnostics_);
-      if (!block || !is_good) continue;
-      const auto source = std::find_if(sources_.begin(), sources_.end(),
-                                       [&](const Source& s) { return s.path == "/actuators/" + r.name; });
-      source->place = add(std::move(block));
-      wires_.push_back(r.input.empty() ? std::vector<Wire>() : std::vector<Wire>{wire});
-      impl_.signals.places.back().actuator = impl_.signals.num_actuators++;
+      const int takes = block ? block->sizes.inputs : 1;
+      std::vector<Wire> wires;
+      const auto use = uses.actuators.find(r.name);
+      if (use != uses.actuators.end() && !wire_scalar(use->second, user, takes, wires)) continue;
+      if (block) sources_.at_path("/actuators/" + r.name).place = add_driver(std::move(block), std::move(wires));
+    }
+  }
+
+  /// Of something that takes `takes` numbers.
+  bool wire_scalar(const SignalUse& use, const std::string& user, int takes, std::vector<Wire>& wires) {
+    Wire wire;
+    if (!sources_.find(use, user, wire, diagnostics_)) return false;
+    wires.push_back(wire);
+    const int size = sources_.size_of(wire);
+    if (size == takes || size == 0) return true;
+    diagnostics_.error("control.bad-size", use.at,
+                       user + " takes " + (takes == 1 ? "one number" : std::to_string(takes) + " numbers") + ", '" +
+                           use.text + "' has " + std::to_string(size),
+                       takes == 1 ? "name a component, as " + use.text + ":1" : "put them together, by a gain of 1");
+    return false;
+  }
+
+  int add_driver(std::unique_ptr<const Block> block, std::vector<Wire> wires) {
+    const int place = add(std::move(block), std::move(wires));
+    SignalGraph& g = impl_.signals;
+    g.places.back().actuator = g.num_actuators;
+    g.num_actuators += g.places.back().block->sizes.inputs;
+    return place;
+  }
+
+  void add_forces(const SignalUses& uses) {
+    for (const AppliedForce& force : impl_.driven) {
+      std::vector<Wire> wires;
+      const SignalUse& use = uses.forces.at(force.name);
+      if (!wire_scalar(use, "force '" + force.name + "'", 1, wires)) continue;
+      add_driver(make_driven_force(force, use.at), std::move(wires));
+    }
+  }
+
+  void add_stiffening(const FlexMap& flex) {
+    if (spec_.simulation.stiffening != "lagged") return;
+    for (auto& block : make_lagged_stiffening(spec_, system_, flex, diagnostics_)) add_driver(std::move(block), {});
+  }
+
+  /// What events switch on and off, or chooses the input of.
+  void set_activities() {
+    for (const auto& r : spec_.controllers) {
+      const auto switches = [&](const records::TriggerRecord& e) {
+        using records::EventAction;
+        return e.target == r.name && (e.action == EventAction::Enable || e.action == EventAction::Disable);
+      };
+      const int place = sources_.at_path("/controllers/" + r.name).place;
+      if (place < 0 || (r.active && std::none_of(spec_.events.begin(), spec_.events.end(), switches))) continue;
+      BlockPlace& p = impl_.signals.places[static_cast<size_t>(place)];
+      p.activity = 0;  // a row, once they are laid out
+      p.is_active = r.active;
     }
   }
 
@@ -205,15 +215,14 @@ class Builder {
     };
     add_times(impl_.breakpoints, f->corners());
     add_times(impl_.landmarks, f->landmarks());
-    wires_.emplace_back();
-    return source.place = add(std::move(block));
+    return source.place = add(std::move(block), {});
   }
 
   void lay_out() {
     SignalGraph& g = impl_.signals;
     for (size_t i = 0; i < wires_.size(); ++i) {  // grows by functions, which have no wires
       for (size_t k = 0; k < wires_[i].size(); ++k) {
-        if (get_place(sources_[wires_[i][k].source]) < 0) return;
+        if (get_place(sources_.list[wires_[i][k].source]) < 0) return;
       }
     }
     for (BlockPlace& p : g.places) {
@@ -228,6 +237,7 @@ class Builder {
       g.num_states += s.states;
       g.num_memory += s.memory;
       g.num_guards += s.guards;
+      if (p.activity >= 0) p.activity = g.num_memory++;
       if (!p.is_sampled()) continue;
       p.held = g.num_memory;
       g.num_memory += s.outputs;
@@ -242,24 +252,33 @@ class Builder {
   }
 
   void connect(BlockPlace& to, const Wire& wire) {
-    const Source& source = sources_[wire.source];
+    const Source& source = sources_.list[wire.source];
     const BlockPlace& from = impl_.signals.places[static_cast<size_t>(source.place)];
+    const auto add_row = [&](int row) {
+      to.sources.push_back(row);
+      to.gains.push_back(wire.gain);
+    };
     if (wire.component < 0) {
-      for (int i = 0; i < from.block->sizes.outputs; ++i) to.sources.push_back(from.out + i);
+      for (int i = 0; i < from.block->sizes.outputs; ++i) add_row(from.out + i);
       return;
     }
     const int n = from.block->sizes.outputs;
     const int component = records::find_component({source.path, wire.text}, n);
     if (component >= 0) {
-      to.sources.push_back(from.out + component);
+      add_row(from.out + component);
       return;
     }
     std::string list;
     for (const auto& name : records::get_component_names(source.path, n)) list += (list.empty() ? "" : ", ") + name;
     diagnostics_.error(
-        "control.unknown-signal", to.block->at,
+        "control.unknown-signal", wire.at,
         to.block->label + " names component '" + wire.text + "' of '" + source.name + "', which does not exist",
         list.empty() ? "it is a scalar: leave the component out" : "its components are " + list);
+  }
+
+  void check_units() {
+    records_.resize(wires_.size(), nullptr);
+    check_signal_units(impl_.signals, records_, diagnostics_);
   }
 
   const records::SystemSpec& spec_;
@@ -267,15 +286,16 @@ class Builder {
   const FunctionMap& functions_;
   System::Impl& impl_;
   Diagnostics& diagnostics_;
-  std::vector<Source> sources_;
-  std::vector<std::vector<Wire>> wires_;  ///< by place
+  Sources sources_;
+  std::vector<std::vector<Wire>> wires_;                   ///< by place
+  std::vector<const records::ControllerRecord*> records_;  ///< by place; nullptr: no controller
 };
 
 }  // namespace
 
-void build_signals(const records::SystemSpec& spec, const System& system, const FunctionMap& functions,
-                   System::Impl& impl, Diagnostics& diagnostics) {
-  Builder(spec, system, functions, impl, diagnostics).build();
+void build_signals(const records::SystemSpec& spec, const System& system, const FlexMap& flex,
+                   const FunctionMap& functions, const SignalUses& uses, System::Impl& impl, Diagnostics& diagnostics) {
+  Builder(spec, system, functions, impl, diagnostics).build(uses, flex);
 }
 
 }  // namespace bough::solver

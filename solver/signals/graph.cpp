@@ -39,7 +39,10 @@ SignalData SignalGraph::make_data() const {
   s.fresh = VectorXd::Zero(num_values);
   s.inputs = VectorXd::Zero(num_inputs);
   s.bias = s.command = VectorXd::Zero(num_actuators);
-  for (const auto& p : places) p.block->start(s.z.data() + p.state, s.memory.data() + p.memory);
+  for (const auto& p : places) {
+    p.block->start(s.z.data() + p.state, s.memory.data() + p.memory);
+    if (p.activity >= 0) s.memory[p.activity] = p.is_active ? 1 : 0;
+  }
   return s;
 }
 
@@ -57,10 +60,16 @@ BlockInput SignalGraph::look_again(const BlockPlace& p, const System& system, co
 
 BlockInput SignalGraph::look(const BlockPlace& p, const System& system, SystemData& data) const {
   SignalData& s = data.signals;
-  for (size_t i = 0; i < p.sources.size(); ++i) s.inputs[p.in + static_cast<Eigen::Index>(i)] = s.values[p.sources[i]];
+  for (size_t i = 0; i < p.sources.size(); ++i)
+    s.inputs[p.in + static_cast<Eigen::Index>(i)] = p.gains[i] * s.values[p.sources[i]];
   if (p.actuator >= 0) {
-    const double given = s.is_open ? s.command[p.actuator] : p.sources.empty() ? 0 : s.inputs[p.in];
-    s.inputs[p.in] = given + s.bias[p.actuator];
+    const int n = p.block->sizes.inputs;
+    auto given = s.inputs.segment(p.in, n);
+    if (s.is_open)
+      given = s.command.segment(p.actuator, n);
+    else if (p.sources.empty())
+      given.setZero();
+    given += s.bias.segment(p.actuator, n);
   }
   return look_again(p, system, data);
 }
@@ -68,6 +77,10 @@ BlockInput SignalGraph::look(const BlockPlace& p, const System& system, SystemDa
 void SignalGraph::calc(const BlockPlace& p, const System& system, SystemData& data) const {
   SignalData& s = data.signals;
   double* y = s.values.data() + p.out;
+  if (is_off(p, s)) {
+    s.values.segment(p.out, p.block->sizes.outputs).setZero();
+    return;
+  }
   if (p.is_sampled()) {
     s.values.segment(p.out, p.block->sizes.outputs) = s.memory.segment(p.held, p.block->sizes.outputs);
   } else {
@@ -104,6 +117,16 @@ void SignalGraph::calc_ideal(const BlockPlace& place, const System& system, Syst
   place.block->calc_ideal(look(place, system, data), y);
 }
 
+bool SignalGraph::settle(const System& system, SystemData& data) const {
+  bool has_any = false;
+  for (const auto& p : places) {
+    if (p.block->sizes.states == 0) continue;
+    const BlockInput in = look(p, system, data);
+    has_any = p.block->settle(in, data.signals.z.data() + p.state) || has_any;
+  }
+  return has_any;
+}
+
 void SignalGraph::add_loads(const System& system, SystemData& data) const {
   if (num_actuators == 0) return;
   for (const auto& p : places) {
@@ -114,7 +137,11 @@ void SignalGraph::add_loads(const System& system, SystemData& data) const {
 void SignalGraph::calc_rates(const System& system, SystemData& data, Eigen::Ref<VectorXd> z_dot) const {
   BOUGH_DEMAND(z_dot.size() == num_states);
   for (const auto& p : places) {
-    if (p.block->sizes.states > 0) p.block->calc_rates(look(p, system, data), z_dot.data() + p.state);
+    if (p.block->sizes.states == 0) continue;
+    if (is_off(p, data.signals))
+      z_dot.segment(p.state, p.block->sizes.states).setZero();
+    else
+      p.block->calc_rates(look(p, system, data), z_dot.data() + p.state);
   }
 }
 
@@ -176,6 +203,13 @@ bool SignalGraph::sample(const System& system, SystemData& data, double close) c
     auto held = s.memory.segment(p.held, n);
     auto before = s.fresh.segment(p.out, n);
     before = held;
+    if (is_off(p, s)) {
+      held.setZero();
+      s.memory.segment(p.queue, n * p.queue_length).setZero();
+      has_changed = has_changed || (p.is_needed && before != held);
+      s.values.segment(p.out, n) = held;
+      continue;
+    }
     if (const long k = find_sample(t, start, period, close); k >= 0) {
       BlockInput in = look(p, system, data);
       in.sample = k;
@@ -203,7 +237,11 @@ bool SignalGraph::sample(const System& system, SystemData& data, double close) c
 
 void SignalGraph::calc_guards(const System& system, SystemData& data, Eigen::Ref<VectorXd> g) const {
   for (const auto& p : places) {
-    if (p.block->sizes.guards > 0) p.block->calc_guards(look(p, system, data), g.data() + p.guard);
+    if (p.block->sizes.guards == 0) continue;
+    if (is_off(p, data.signals))
+      g.segment(p.guard, p.block->sizes.guards).setConstant(-1);
+    else
+      p.block->calc_guards(look(p, system, data), g.data() + p.guard);
   }
 }
 

@@ -14,10 +14,13 @@ using Eigen::VectorXd;
 /// Where a block lies in the vectors of SignalData.
 struct BlockPlace {
   std::unique_ptr<const Block> block;
-  std::vector<int> sources;  ///< rows of values, one an input
+  std::vector<int> sources;   ///< rows of values, one an input
+  std::vector<double> gains;  ///< of the sources
   int in = 0, out = 0, state = 0, memory = 0, held = 0, queue = 0, guard = 0;
   int queue_length = 0;    ///< samples on their way, where there is a delay
-  int actuator = -1;       ///< counts actuators
+  int actuator = -1;       ///< counts commands of actuators; -1: none
+  int activity = -1;       ///< row of the memory: 1 while it works, 0 while it is off; -1: it always works
+  bool is_active = true;   ///< at the start
   bool is_needed = false;  ///< the motion depends on it
   bool is_late = false;    ///< depends on u̇ at the same moment
 
@@ -46,12 +49,15 @@ class SignalGraph {
  public:
   std::vector<BlockPlace> places;  ///< in the order of the file: sensors, controllers, actuators, functions
   std::vector<int> order;          ///< of evaluation
-  int num_values = 0, num_states = 0, num_memory = 0, num_inputs = 0, num_guards = 0, num_actuators = 0;
+  int num_values = 0, num_states = 0, num_memory = 0, num_inputs = 0, num_guards = 0;
+  int num_actuators = 0;  ///< their commands
   double start = 0;
 
   /// The order, what is needed and what is late, from sources and sizes. Reports "control.algebraic-loop".
   void arrange(Diagnostics& diagnostics);
   SignalData make_data() const;
+  /// After calc_all, at the start of a run: lags that are to start at rest follow what is there. False without any.
+  bool settle(const System& system, SystemData& data) const;
   const BlockPlace* find(const std::string& path) const;
   /// What the motion needs, but what is late. After kinematics, before loads.
   void calc_early(const System& system, SystemData& data) const;
@@ -81,6 +87,10 @@ class SignalGraph {
   std::string name_state(int row) const;
 
  private:
+  /// A controller that an event has switched off.
+  static bool is_off(const BlockPlace& place, const SignalData& signals) {
+    return place.activity >= 0 && signals.memory[place.activity] == 0;
+  }
   BlockInput look(const BlockPlace& place, const System& system, SystemData& data) const;
   BlockInput look_again(const BlockPlace& place, const System& system, const SystemData& data) const;
   void calc(const BlockPlace& place, const System& system, SystemData& data) const;

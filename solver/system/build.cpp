@@ -10,14 +10,48 @@ namespace {
 
 std::string quote(const std::string& s) { return "'" + s + "'"; }
 
-FunctionMap build_functions(const records::SystemSpec& spec, System::Impl& impl, Diagnostics& diagnostics) {
-  FunctionMap functions;
-  for (const auto& record : spec.functions) {
-    impl.functions.push_back(make_time_function(record, diagnostics));
-    functions.emplace(record.name, impl.functions.back().get());
+/// Each after those that it is made of. Reports "function.loop".
+class FunctionBuilder {
+ public:
+  FunctionBuilder(const records::SystemSpec& spec, System::Impl& impl, Diagnostics& diagnostics)
+      : spec_(spec), impl_(impl), diagnostics_(diagnostics) {
+    for (const auto& record : spec.functions) records_.emplace(record.name, &record);
   }
-  return functions;
-}
+  FunctionMap build() {
+    for (const auto& record : spec_.functions) add(record);
+    return std::move(made_);
+  }
+
+ private:
+  void add(const records::FunctionRecord& record) {
+    if (made_.count(record.name)) return;
+    path_.push_back(record.name);
+    for (const auto& name : record.of) {
+      const auto found = records_.find(name);
+      if (found == records_.end()) continue;
+      if (const auto seen = std::find(path_.begin(), path_.end(), name); seen != path_.end()) {
+        std::string loop;
+        for (auto it = seen; it != path_.end(); ++it) loop += *it + " of ";
+        diagnostics_.error("function.loop", record.at, "functions are made of themselves: " + loop + name,
+                           "take one of them out of the other");
+        made_.emplace(name, nullptr);
+      } else {
+        add(*found->second);
+      }
+    }
+    path_.pop_back();
+    const auto& run = spec_.simulation;
+    impl_.functions.push_back(make_time_function(record, diagnostics_, {run.start, run.start + run.duration}, made_));
+    made_.emplace(record.name, impl_.functions.back().get());
+  }
+
+  const records::SystemSpec& spec_;
+  System::Impl& impl_;
+  Diagnostics& diagnostics_;
+  std::map<std::string, const records::FunctionRecord*> records_;
+  std::vector<std::string> path_;
+  FunctionMap made_;
+};
 
 records::HingeRecord make_free_hinge(const records::SystemSpec& spec, const records::BodyRecord& body,
                                      Diagnostics& diagnostics) {
@@ -136,7 +170,9 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
   Tree& tree = impl.tree;
   impl.gravity = spec.simulation.gravity;
   impl.start = spec.simulation.start;
-  const FunctionMap functions = build_functions(spec, impl, diagnostics);
+  impl.is_lagged = spec.simulation.stiffening == "lagged";
+  const SignalUses uses = collect_uses(spec, diagnostics);
+  const FunctionMap functions = FunctionBuilder(spec, impl, diagnostics).build();
   const TreeOrder order = order_tree(spec, diagnostics);
   for (const auto& record : spec.bodies) {
     if (!order.tree_index.count(record.name)) build_body(record, flex, diagnostics);  // for its own errors
@@ -151,7 +187,7 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
     tb.hinge_at = hinge.at;
     tb.parent = hinge.parent == "ground" ? -1 : order.tree_index.at(hinge.parent);
     tb.hinge = make_hinge(hinge, diagnostics);
-    auto body = build_body(record, flex, diagnostics);
+    auto body = build_body(record, flex, diagnostics, impl.is_lagged);
     const bool rotations_good = check_rotations(hinge, diagnostics);
     if (tb.hinge) build_hinge_coordinates(hinge, functions, tb, diagnostics);
     check_motion(hinge, spec.simulation, tb, diagnostics);
@@ -204,7 +240,7 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
     const auto flex_record = flex.find(file);
     auto force = build_force(record, tree, found->second, flex_record == flex.end() ? nullptr : &flex_record->second,
                              functions, diagnostics);
-    if (force) impl.forces.push_back(std::move(*force));
+    if (force) (uses.forces.count(record.name) ? impl.driven : impl.forces).push_back(std::move(*force));
   }
   if (!impl.gravity.allFinite()) {
     diagnostics.error("system.bad-gravity", spec.simulation.at, "gravity is not three finite numbers");
@@ -212,7 +248,8 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
   const bool is_complete = std::find(impl.sound.begin(), impl.sound.end(), false) == impl.sound.end();
   if (is_complete) check_masses(tree, spec, order, diagnostics);
   tree.finish();
-  for (AppliedForce& force : impl.forces) add_force_marker(force, tree);
+  for (auto* forces : {&impl.forces, &impl.driven})
+    for (AppliedForce& force : *forces) add_force_marker(force, tree);
   build_constraints(spec, order, impl, diagnostics);
   const ElementContext context{spec, order, flex, functions, impl.sound};
   for (const auto& record : spec.force_elements) {
@@ -223,7 +260,7 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
     build_hinge_laws(spec.hinges[static_cast<size_t>(order.hinge[b])], context, tree.bodies[b], impl.elements,
                      diagnostics);
   }
-  build_signals(spec, system, functions, impl, diagnostics);
+  build_signals(spec, system, flex, functions, uses, impl, diagnostics);
   collect_breakpoints(impl);
   if (diagnostics.num_errors() == 0 && impl.loops.size() > 0) assemble(spec, order, system, impl, diagnostics);
   return system;

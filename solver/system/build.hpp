@@ -11,8 +11,9 @@ namespace bough::solver {
 
 using FlexMap = std::map<std::string, records::FlexBody>;
 
-/// A body of the system, or nothing when its record has errors.
-std::optional<Body> build_body(const records::BodyRecord& record, const FlexMap& flex, Diagnostics& diagnostics);
+/// A body of the system, or nothing when its record has errors. `is_lagged`: its stiffening is a matter of others.
+std::optional<Body> build_body(const records::BodyRecord& record, const FlexMap& flex, Diagnostics& diagnostics,
+                               bool is_lagged = false);
 
 /// Which hinge carries which body, parents first; errors for loops and unknown names.
 struct TreeOrder {
@@ -21,9 +22,6 @@ struct TreeOrder {
   std::map<std::string, int> tree_index;
 };
 TreeOrder order_tree(const records::SystemSpec& spec, Diagnostics& diagnostics);
-
-/// The functions of the spec by name; one that failed maps to nullptr.
-using FunctionMap = std::map<std::string, const TimeFunction*>;
 
 /// Springs, dampers, motion and initial coordinates of one hinge into `tb` (tb.hinge is set).
 void build_hinge_coordinates(const records::HingeRecord& record, const FunctionMap& functions, TreeBody& tb,

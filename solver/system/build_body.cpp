@@ -88,7 +88,8 @@ bool check_flexible(const records::BodyRecord& r, const records::FlexBody& flex,
 
 }  // namespace
 
-std::optional<Body> build_body(const records::BodyRecord& r, const FlexMap& flex, Diagnostics& diagnostics) {
+std::optional<Body> build_body(const records::BodyRecord& r, const FlexMap& flex, Diagnostics& diagnostics,
+                               bool is_lagged) {
   if (!r.file.empty()) {
     const auto found = flex.find(r.file);
     if (found == flex.end()) {
@@ -98,7 +99,7 @@ std::optional<Body> build_body(const records::BodyRecord& r, const FlexMap& flex
       return std::nullopt;
     }
     if (!check_flexible(r, found->second, diagnostics)) return std::nullopt;
-    return Body::make_flexible(found->second, r.num_modes, r.stiffening, r.damping_ratios);
+    return Body::make_flexible(found->second, r.num_modes, r.stiffening && !is_lagged, r.damping_ratios);
   }
   if (!check_rigid(r, diagnostics)) return std::nullopt;
   if (!r.eta.empty() || !r.eta_dot.empty()) {

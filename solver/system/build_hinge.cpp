@@ -59,6 +59,14 @@ void build_motion(const records::HingeRecord& r, const FunctionMap& functions, T
     tb.motion.push_back(r.motion[i].empty()
                             ? nullptr
                             : find_function(functions, r.motion[i], r.at, "hinge " + quote(r.name), diagnostics));
+    if (tb.motion[i] != nullptr && !tb.motion[i]->has_derivatives()) {
+      diagnostics.error("system.motion-without-rate", r.at,
+                        "hinge " + quote(r.name) + ": function " + quote(r.motion[i]) +
+                            ", its prescribed motion, has no known rate and acceleration",
+                        "give the expression 'rate' and 'acceleration', its derivatives, or use a cubic table");
+      tb.motion[i] = nullptr;
+      continue;
+    }
     if (tb.motion[i] != nullptr) tb.mode[i] = HingeMode::Prescribed;
   }
   if (given == nu && (!r.stiffness.empty() || !r.damping.empty())) {

@@ -21,22 +21,35 @@ records::TriggerRecord read_event(const Fields& table, Diagnostics& diagnostics)
                     : direction == "falling" ? records::EventDirection::Falling
                                              : records::EventDirection::Both;
   static const std::map<std::string, records::EventAction> actions{
-      {"log", records::EventAction::Log},     {"stop", records::EventAction::Stop},
-      {"lock", records::EventAction::Lock},   {"release", records::EventAction::Release},
-      {"break", records::EventAction::Break}, {"close", records::EventAction::Close}};
+      {"log", records::EventAction::Log},       {"stop", records::EventAction::Stop},
+      {"lock", records::EventAction::Lock},     {"release", records::EventAction::Release},
+      {"break", records::EventAction::Break},   {"close", records::EventAction::Close},
+      {"enable", records::EventAction::Enable}, {"disable", records::EventAction::Disable},
+      {"switch", records::EventAction::Switch}};
   const auto action = actions.find(table.get_string("action", "log"));
   if (action != actions.end()) event.action = action->second;
   using records::EventAction;
   const bool of_hinge = event.action == EventAction::Lock || event.action == EventAction::Release;
   const bool of_constraint = event.action == EventAction::Break || event.action == EventAction::Close;
+  const bool of_controller = event.action == EventAction::Enable || event.action == EventAction::Disable ||
+                             event.action == EventAction::Switch;
   const std::string because = "in event '" + event.name + "' whose action is " + table.get_string("action", "log");
   if (!of_hinge) refuse_keys(table, {"hinge", "coordinates"}, because, diagnostics);
   if (!of_constraint) refuse_keys(table, {"constraint"}, because, diagnostics);
-  const char* needed = of_hinge ? "hinge" : "constraint";
-  if (of_hinge || of_constraint) {
+  if (!of_controller) refuse_keys(table, {"controller"}, because, diagnostics);
+  if (event.action != EventAction::Switch) refuse_keys(table, {"input"}, because, diagnostics);
+  const auto demand = [&](const char* key) {
+    if (!table.has(key))
+      diagnostics.error("toml.missing-key", event.at, "missing key '" + std::string(key) + "' " + because, "add it");
+  };
+  const char* needed = of_hinge ? "hinge" : of_constraint ? "constraint" : "controller";
+  if (of_hinge || of_constraint || of_controller) {
     event.target = table.get_string(needed);
-    if (!table.has(needed))
-      diagnostics.error("toml.missing-key", event.at, "missing key '" + std::string(needed) + "' " + because, "add it");
+    demand(needed);
+  }
+  if (event.action == EventAction::Switch) {
+    event.choice = table.get_int("input", 0);
+    demand("input");
   }
   event.coordinates = table.get_ints("coordinates");
   return event;

@@ -61,9 +61,4 @@ std::string resolve_path(const std::string& file, const std::string& path);
 /// File name without folder and extension.
 std::string get_stem(const std::string& file);
 
-/// Text of two columns (comma, semicolon, tab or spaces between; # comments; one heading line allowed) into x and y.
-/// Reports "toml.table-file" (cannot be read, not two numbers) and "toml.nan" with the line of that file.
-void read_two_columns(const std::string& path, const SourceLocation& asked_at, std::vector<double>& x,
-                      std::vector<double>& y, Diagnostics& diagnostics);
-
 }  // namespace bough::toml_files

@@ -152,7 +152,8 @@ void read_typed(const Fields& table, const std::string& type, records::SystemSpe
     const auto is_in = [&](const auto& list) { return std::find(list.begin(), list.end(), key) != list.end(); };
     const bool is_known = is_in(keys.needed) || is_in(keys.other) || key == "name" || key == "type";
     // Others that a force has none of, and two kinds at once, the schema reports.
-    if (!is_known && (is_key_of_any(key) || key == "frame")) refuse(table, key, because, diagnostics);
+    if (!is_known && (is_key_of_any(key) || key == "frame" || key == "signal"))
+      refuse(table, key, because, diagnostics);
   }
   if (table.get_bool("tension_only", false) && table.get_bool("compression_only", false))
     refuse(table, "compression_only", because + ", which is tension_only", diagnostics);
@@ -175,7 +176,10 @@ records::ForceRecord read_load(const Fields& table, Diagnostics& diagnostics) {
                 : frame == "node"   ? records::VectorFrame::Node
                                     : records::VectorFrame::Body;
   force.function = table.get_string("function");
+  force.signal = table.get_string("signal");
   force.locator = table.get_string("locator");
+  if (table.has("function") && table.has("signal"))
+    refuse(table, "signal", because + ", which has a function", diagnostics);
   for (const auto& key : table.get_keys()) {
     if (key != "body" && key != "node" && key != "function" && is_key_of_any(key))
       refuse(table, key, because + ", which has no type", diagnostics);

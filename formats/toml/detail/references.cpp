@@ -64,8 +64,12 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
   collect_names(forces, "force", diagnostics);
   collect_names(spec.sensors, "sensor", diagnostics);
   collect_names(spec.events, "event", diagnostics);
-  collect_names(spec.controllers, "controller", diagnostics);
+  const auto controllers = collect_names(spec.controllers, "controller", diagnostics);
   collect_names(spec.actuators, "actuator", diagnostics);
+
+  std::vector<std::string> signals = controllers;
+  for (const auto& sensor : spec.sensors) signals.push_back(sensor.name);
+  for (const auto& actuator : spec.actuators) signals.push_back(actuator.name);
 
   for (const auto& body : spec.bodies) {
     if (body.name == "ground" || body.name == "inertial" || body.name == "body") {
@@ -83,9 +87,24 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
     const std::string role = "hinge '" + hinge.name + "'";
     checker.check(hinge.parent, with({"ground"}), role, "body", hinge.at);
     checker.check(hinge.child, bodies, role, "body", hinge.at);
-    for (const auto* names : {&hinge.motion, &hinge.law.spring_table, &hinge.law.damper_table})
+    for (const auto& name : hinge.motion) {
+      const bool is_signal = std::find(functions.begin(), functions.end(), name) == functions.end() &&
+                             std::find(signals.begin(), signals.end(), name.substr(0, name.find(':'))) != signals.end();
+      if (is_signal)
+        diagnostics.error("toml.motion-of-signal", hinge.at,
+                          role + " has the signal '" + name +
+                              "' for its motion, and a signal has no known rate and "
+                              "acceleration",
+                          "drive the hinge by an actuator, or prescribe a function");
+      else
+        checker.check(name, functions, role, "function", hinge.at);
+    }
+    for (const auto* names : {&hinge.law.spring_table, &hinge.law.damper_table})
       for (const auto& name : *names) checker.check(name, functions, role, "function", hinge.at);
   }
+  for (const auto& function : spec.functions)
+    for (const auto& name : function.of)
+      checker.check(name, functions, "function '" + function.name + "'", "function", function.at);
   for (const auto& constraint : spec.constraints) {
     const std::string role = "constraint '" + constraint.name + "'";
     checker.check(constraint.parent, with({"ground"}), role, "body", constraint.at);
@@ -93,9 +112,18 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
     for (const auto& term : constraint.terms) checker.check(term.hinge, hinges, role, "hinge", constraint.at);
   }
   for (const auto& event : spec.events) {
-    const bool of_hinge = event.action == records::EventAction::Lock || event.action == records::EventAction::Release;
-    checker.check(event.target, of_hinge ? hinges : constraints, "event '" + event.name + "'",
-                  of_hinge ? "hinge" : "constraint", event.at);
+    using records::EventAction;
+    const bool of_hinge = event.action == EventAction::Lock || event.action == EventAction::Release;
+    const bool of_constraint = event.action == EventAction::Break || event.action == EventAction::Close;
+    checker.check(event.target,
+                  of_hinge        ? hinges
+                  : of_constraint ? constraints
+                                  : controllers,
+                  "event '" + event.name + "'",
+                  of_hinge        ? "hinge"
+                  : of_constraint ? "constraint"
+                                  : "controller",
+                  event.at);
   }
   for (const auto& force : spec.forces) {
     const std::string role = "force '" + force.name + "'";

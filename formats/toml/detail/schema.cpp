@@ -15,12 +15,6 @@ using Kind = Value::Kind;
 constexpr const char* kNamePattern = R"(^(?!\.{1,2}$)[^/\x00-\x1f\x7f]{1,1000}$)";
 constexpr std::size_t kMostLetters = 1000;
 
-/// Tables of the contract that this version does not have yet.
-const std::vector<std::string>& get_later_tables() {
-  static const std::vector<std::string> names{"connect"};
-  return names;
-}
-
 /// What a message shows of a text.
 constexpr std::size_t kMostShown = 80;
 std::string quote(const std::string& s) {
@@ -218,14 +212,6 @@ class Checker {
     std::string advice = nearest.empty() ? "known here: " + join(known) : "did you mean " + quote(nearest) + "?";
     const bool is_table = entry.value.is_table() ||
                           (entry.value.is_array() && !entry.value.items.empty() && entry.value.items[0].is_table());
-    if (path.empty()) {
-      const auto& later = get_later_tables();
-      if (std::find(later.begin(), later.end(), entry.key) != later.end()) {
-        error("toml.unsupported-table", entry.line, "table " + quote(entry.key) + " is not in this version of Bough",
-              "remove it; known here: " + join(known));
-        return;
-      }
-    }
     if (is_table) {
       error("toml.unknown-table", entry.line, "unknown table " + quote(entry.key) + (path.empty() ? "" : " in " + path),
             advice);

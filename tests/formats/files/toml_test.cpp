@@ -200,7 +200,7 @@ TEST(SystemFile, LinesAreThoseOfTheKeys) {
                                         "child = \"b\"\n"       // hinge of line 5
                                         "axis = [0, 0]\n"       // 9
                                         "[[connect]]\n"         // 10
-                                        "name = \"m\"\n"
+                                        "from = \"m\"\n"
                                         "[simulation]\n"
                                         "duration = -1\n");  // 13
   Diagnostics diagnostics;
@@ -210,7 +210,7 @@ TEST(SystemFile, LinesAreThoseOfTheKeys) {
   EXPECT_THAT(found,
               testing::UnorderedElementsAre(std::pair{"toml.wrong-type", 3}, std::pair{"toml.unknown-key", 4},
                                             std::pair{"toml.bad-value", 7}, std::pair{"toml.unknown-name", 5},
-                                            std::pair{"toml.wrong-length", 9}, std::pair{"toml.unsupported-table", 10},
+                                            std::pair{"toml.wrong-length", 9}, std::pair{"toml.missing-key", 10},
                                             std::pair{"toml.out-of-range", 13}))
       << join(diagnostics);
 }

@@ -65,6 +65,40 @@ TEST(ControlMomentGyro, KeepsTheWholeMomentum) {
   EXPECT_NEAR(cmg(100, 1), 0.2 * (1 - std::cos(10)), 1e-9);
 }
 
+// Rates of both gimbals from one signal of two numbers; the reaction on the body is that of turning momentum.
+TEST(DoubleGimbal, KeepsTheWholeMomentum) {
+  auto spec = make_flyer("double_gimbal_cmg");
+  spec.controllers = {make_law("rates", "expression", {"law"})};
+  spec.controllers[0].settings.words["expression"] = {"u1", "0.3 - 2*u1"};
+  spec.actuators[0].input = "rates";
+  spec.actuators[0].settings.numbers = {{"gimbal_axis", {0, 0, 1}},
+                                        {"inner_axis", {1, 0, 0}},
+                                        {"spin_axis", {0, 2, 0}},
+                                        {"momentum", {1.5}},
+                                        {"angle", {0.2, -0.4}}};
+  const RunResult r = run(spec);
+  const MatrixXd L = r.sink.get("/momentum/angular"), cmg = r.sink.get("/actuators/drive");
+  EXPECT_LT((L.rowwise() - L.row(0)).cwiseAbs().maxCoeff(), 1e-10);
+  EXPECT_LT(r.outcome.energy_error, 1e-9);
+  EXPECT_NEAR(cmg(100, 2), 0.2 + 0.2 * (1 - std::cos(10)), 1e-9);
+  EXPECT_NEAR(cmg(100, 3), -0.4 + 1.5 - 0.4 * (1 - std::cos(10)), 1e-9);
+}
+
+// With one gimbal at rest it is the other device.
+TEST(DoubleGimbal, IsASingleOneWhereOneStandsStill) {
+  auto spec = make_flyer("cmg");
+  spec.actuators[0].settings.numbers = {{"gimbal_axis", {0, 0, 1}}, {"spin_axis", {0, 2, 0}}, {"momentum", {1.5}}};
+  const RunResult single = run(spec);
+  spec.controllers = {make_law("rates", "expression", {"law"})};
+  spec.controllers[0].settings.words["expression"] = {"u1", "0"};
+  spec.actuators[0].type = "double_gimbal_cmg";
+  spec.actuators[0].input = "rates";
+  spec.actuators[0].settings.numbers["inner_axis"] = {1, 0, 0};
+  const RunResult both = run(spec);
+  const MatrixXd difference = single.sink.get("/bodies/rotor/quaternion") - both.sink.get("/bodies/rotor/quaternion");
+  EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-9);
+}
+
 TEST(Jet, IsOnForItsShortestPulseAtLeast) {
   auto spec = make_flyer("jet");
   spec.functions[0].type = "pulse";

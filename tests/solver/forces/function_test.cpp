@@ -172,6 +172,120 @@ TEST(TimeFunction, CubicTableConvergesWithOrderFour) {
   EXPECT_NEAR(std::log2(error(80) / error(160)), 4, 0.2);
 }
 
+TEST(TimeFunction, DoubletHasNoMean) {
+  const auto f = make(make_record("doublet", {{"value", 2}, {"at", 1}, {"width", 0.5}}));
+  EXPECT_EQ(f->calc(std::nextafter(1, 0)).f, 0);
+  EXPECT_EQ(f->calc(1).f, 2);
+  EXPECT_EQ(f->calc(1.5).f, -2);
+  EXPECT_EQ(f->calc(2).f, 0);
+  EXPECT_THAT(f->breakpoints(), testing::ElementsAre(1, 1.5, 2));
+}
+
+std::unique_ptr<const TimeFunction> make_in(const FunctionRecord& r, double start, double end,
+                                            const FunctionMap& others = {}) {
+  Diagnostics diagnostics;
+  auto f = make_time_function(r, diagnostics, {start, end}, others);
+  EXPECT_EQ(diagnostics.num_errors(), 0) << format(diagnostics.items().empty() ? Diagnostic{} : diagnostics.items()[0]);
+  return f;
+}
+
+TEST(TimeFunction, SawtoothFallsAtItsBreakpoints) {
+  const auto f =
+      make_in(make_record("sawtooth", {{"amplitude", 3}, {"frequency_hz", 10}, {"at", 0.02}, {"offset", 1}}), -0.3, 1);
+  for (const double t : f->breakpoints()) {
+    EXPECT_EQ(f->calc(t).f, 1 - 3) << t;  // to the last bit at each jump, whatever t / period rounds to
+    EXPECT_NEAR(f->calc(std::nextafter(t, -1)).f, 1 + 3, 1e-12) << t;
+  }
+  EXPECT_EQ(f->breakpoints().size(), 14u);  // -0.38, -0.28, ... 0.92
+  EXPECT_NEAR(f->calc(0.07).f, 1, 1e-12);
+  EXPECT_NEAR(f->calc(0.07).f_dot, 60, 1e-9);
+}
+
+TEST(TimeFunction, TriangleIsContinuous) {
+  const auto f = make_in(make_record("sawtooth", {{"amplitude", 2}, {"frequency_hz", 0.5}, {"rise", 0.25}}), 0, 6);
+  EXPECT_NEAR(f->calc(0.25).f, 0, 1e-15);
+  EXPECT_EQ(f->calc(0.25).f_dot, 8);
+  EXPECT_NEAR(f->calc(0.5).f, 2, 1e-15);
+  EXPECT_NEAR(f->calc(1.25).f, 0, 1e-15);
+  for (const double t : f->breakpoints()) EXPECT_NEAR(f->calc(t).f, f->calc(std::nextafter(t, -1)).f, 1e-12) << t;
+  EXPECT_THAT(f->breakpoints(), testing::ElementsAre(0, 0.5, 2, 2.5, 4, 4.5, 6, 6.5));
+}
+
+TEST(TimeFunction, SweepsFromOneFrequencyToTheOther) {
+  const std::map<std::string, double> values = {{"amplitude", 1.5}, {"from_hz", 0.2}, {"to_hz", 1.6}, {"at", 1},
+                                                {"duration", 6},    {"phase", 0.3},   {"offset", 2}};
+  const double pi = std::acos(-1.0);
+  auto linear = make_record("sweep", values);
+  linear.law = "linear";
+  for (const auto& r : {make_record("chirp", values), make_record("sweep", values), linear}) {
+    const auto f = make(r);
+    for (const double t : {1.5, 3.0, 6.2}) check_derivatives(*f, t);
+    EXPECT_NEAR(f->calc(1).f_dot, 1.5 * 2 * pi * 0.2 * std::cos(0.3), 1e-12);
+    EXPECT_EQ(f->calc(0.9).f, 2);
+    EXPECT_EQ(f->calc(7).f, 2);
+    EXPECT_THAT(f->breakpoints(), testing::ElementsAre(1, 7));
+    // Cycles by closed form: T (f0 + f1) / 2, and T (f1 - f0) / ln(f1 / f0) by octaves.
+    const bool is_log = r.type == "sweep" && r.law == "logarithmic";
+    const double cycles = is_log ? 6 * 1.4 / std::log(8) : 6 * 0.9;
+    EXPECT_NEAR(f->calc(std::nextafter(7, 0)).f, 2 + 1.5 * std::sin(2 * pi * cycles + 0.3), 1e-11);
+  }
+}
+
+FunctionRecord make_formula(const std::string& f, const std::string& first = "", const std::string& second = "") {
+  FunctionRecord r = make_record("expression");
+  r.expression = f;
+  r.first = first;
+  r.second = second;
+  return r;
+}
+
+TEST(TimeFunction, ExpressionIsAFormula) {
+  const auto f = make(make_formula("2*sin(3*t) + t^2", "6*cos(3*t) + 2*t", "2 - 18*sin(3*t)"));
+  EXPECT_DOUBLE_EQ(f->calc(0.7).f, 2 * std::sin(2.1) + 0.49);
+  check_derivatives(*f, 0.7);
+  EXPECT_TRUE(f->has_derivatives());
+  auto jumps = make_formula("step(t - 1) * pi");
+  jumps.x = {1};
+  const auto g = make(jumps);
+  EXPECT_FALSE(g->has_derivatives());
+  EXPECT_EQ(g->calc(1).f, std::acos(-1.0));
+  EXPECT_EQ(g->calc(std::nextafter(1, 0)).f, 0);
+  EXPECT_THAT(g->breakpoints(), testing::ElementsAre(1));
+}
+
+TEST(TimeFunction, DerivativesOfAnExpressionAreChecked) {
+  Diagnostics diagnostics;
+  EXPECT_EQ(make_time_function(make_formula("sin(t)", "cos(t)", "sin(t)"), diagnostics, {0, 10}), nullptr);
+  ASSERT_EQ(diagnostics.num_errors(), 1);
+  EXPECT_EQ(diagnostics.items()[0].id, "function.bad-value");
+  EXPECT_THAT(format(diagnostics.items()[0]), testing::HasSubstr("acceleration"));
+  // Of different scales, with a corner that is told, and stiff ones.
+  auto corner = make_formula("t < 2 ? t^3 : 8 + 100*(t - 2)", "t < 2 ? 3*t^2 : 100", "t < 2 ? 6*t : 0");
+  corner.x = {2};
+  make_in(corner, 0, 5);
+  make_in(make_formula("1e6 + 1e-3*sin(200*t)", "0.2*cos(200*t)", "-40*sin(200*t)"), 0, 20);
+  make_in(make_formula("exp(-50*t)", "-50*exp(-50*t)", "2500*exp(-50*t)"), 0, 10);
+}
+
+TEST(TimeFunction, SumAndProduct) {
+  const auto a = make(make_record("sine", {{"amplitude", 2}, {"omega", 3}}));
+  const auto b = make(make_record("sine", {{"amplitude", 1}, {"omega", 0.7}, {"phase", 1}}));
+  const auto c = make(make_record("step", {{"value", 1}, {"at", 2}}));
+  const FunctionMap others = {{"a", a.get()}, {"b", b.get()}, {"c", c.get()}};
+  auto sum = make_record("sum"), product = make_record("product", {{"gain", -2}});
+  sum.of = {"a", "b", "c"};
+  sum.weights = {1, -3, 0.5};
+  product.of = {"a", "b", "a"};
+  const auto s = make_in(sum, 0, 5, others), p = make_in(product, 0, 5, others);
+  EXPECT_DOUBLE_EQ(s->calc(1).f, a->calc(1).f - 3 * b->calc(1).f);
+  EXPECT_DOUBLE_EQ(p->calc(1).f, -2 * a->calc(1).f * a->calc(1).f * b->calc(1).f);
+  for (const double t : {0.4, 1.1, 3.3}) {
+    check_derivatives(*s, t);
+    check_derivatives(*p, t);
+  }
+  EXPECT_THAT(s->breakpoints(), testing::ElementsAre(2));
+}
+
 struct Fault {
   FunctionRecord record;
   std::string id, text;
@@ -195,6 +309,14 @@ TEST(TimeFunction, FaultsAreReported) {
       {make_record("spinup", {{"rate", 1}, {"duration", 0}}), "function.bad-value", "duration"},
       {make_record("pulse", {{"value", 1}, {"width", -1}}), "function.bad-value", "width"},
       {make_record("ramp", {{"value", 1}, {"from", 2}, {"to", 2}}), "function.bad-value", "ends"},
+      {make_record("doublet", {{"value", 1}, {"width", 0}}), "function.bad-value", "width"},
+      {make_record("sawtooth", {{"amplitude", 1}, {"frequency_hz", 1}, {"rise", 1.5}}), "function.bad-value", "rise"},
+      {make_record("sweep", {{"amplitude", 1}, {"from_hz", 0}, {"to_hz", 1}, {"duration", 1}}), "function.bad-value",
+       "octaves"},
+      {make_record("expression"), "function.missing-parameter", "expression"},
+      {make_formula("sin(t", "", ""), "control.bad-expression", "sin(t"},
+      {make_formula("sin(t)", "cos(t)", ""), "function.missing-parameter", "acceleration"},
+      {make_record("sum"), "function.missing-parameter", "has no 'of'"},
   };
   for (const Fault& fault : faults) {
     Diagnostics diagnostics;

@@ -1,0 +1,20 @@
+#pragma once
+/// \file Pictures by another program: rsvg-convert, dot.
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace bough::cli {
+
+struct Converter {
+  std::string program, package;
+  std::string otherwise;  ///< what to do without it: "write .svg"
+  /// Arguments for a source file and the file to write.
+  std::function<std::vector<std::string>(const std::string& source, const std::string& output)> make_arguments;
+};
+
+/// Writes `source` beside, lets the program make `path` of it, and renames: the file appears whole or not at all.
+/// Throws ComputationError "cli.write" or "cli.no-converter".
+void write_converted(const std::string& path, const std::string& source, const Converter& converter);
+
+}  // namespace bough::cli

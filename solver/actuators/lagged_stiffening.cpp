@@ -1,0 +1,179 @@
+#include "solver/actuators/lagged_stiffening.hpp"
+
+#include <array>
+
+namespace bough::solver {
+namespace {
+
+class DrivenForce final : public Block {
+ public:
+  explicit DrivenForce(const AppliedForce& force) : force_(&force) { sizes.inputs = 1; }
+  bool is_actuator() const override { return true; }
+  void calc_outputs(const BlockInput& in, double* y) const override { y[0] = in.u[0]; }
+  void add_load(const BlockInput& in, const double* y, SystemData& data) const override {
+    add_applied_load(*force_, in.system->impl().tree, y[0], data.tree);
+  }
+
+ private:
+  const AppliedForce* force_;
+};
+
+/// A load that a hinge or a [[force]] puts on a node, and K_G2 of its six components (empty: no locator).
+struct NodeSource {
+  int node = 0;
+  int hinge = -1;          ///< the body whose inboard hinge it is
+  bool is_parent = false;  ///< the node carries that hinge, else it hangs on it
+  const AppliedForce* force = nullptr;
+  std::array<MatrixXd, 6> K2 = {};
+};
+
+class LaggedStiffening final : public Block {
+ public:
+  int body = 0, n = 0;
+  std::array<MatrixXd, records::kNumInertialLoads> K1;  ///< empty: not computed
+  std::vector<NodeSource> sources;
+
+  bool is_actuator() const override { return true; }
+
+  // A_I, then force and moment of each source, in B.
+  void calc_outputs(const BlockInput& in, double* y) const override {
+    const Tree& tree = in.system->impl().tree;
+    const TreeData& data = in.data->tree;
+    const BodyState& s = data[body].state;
+    const Vector3d a = s.a_B - s.R_WB.transpose() * in.system->impl().gravity;
+    const Vector3d& w = s.w_B;
+    Eigen::Map<Eigen::Matrix<double, 12, 1>>(y) << a, s.alpha_B, w.cwiseAbs2(), w.x() * w.y(), w.x() * w.z(),
+        w.y() * w.z();
+    for (size_t i = 0; i < sources.size(); ++i)
+      Eigen::Map<Vector6d>(y + 12 + 6 * i) = measure_load(sources[i], *in.system, tree, *in.data);
+  }
+  void add_load(const BlockInput& in, const double* y, SystemData& data) const override {
+    const TreeBody& tb = in.system->impl().tree[body];
+    const auto eta = data.tree.q.segment(tb.eta_offset(), n);
+    auto modal = data.tree.applied.segment(tb.v_offset + 6, n);
+    for (size_t i = 0; i < K1.size(); ++i)
+      if (K1[i].size() > 0 && y[i] != 0) modal.noalias() -= y[i] * (K1[i] * eta);
+    for (size_t i = 0; i < sources.size(); ++i) {
+      for (size_t c = 0; c < 6; ++c) {
+        const double value = y[12 + 6 * i + c];
+        const MatrixXd& K = sources[i].K2[c];
+        if (K.size() > 0 && value != 0) modal.noalias() -= value * (K * eta);
+      }
+    }
+  }
+
+ private:
+  Vector6d measure_load(const NodeSource& source, const System& system, const Tree& tree,
+                        const SystemData& data) const {
+    const Matrix3d& R_WB = data.tree[body].state.R_WB;
+    Vector6d load = Vector6d::Zero();
+    if (source.force != nullptr) {
+      const AppliedForce& f = *source.force;
+      Vector3d v = (f.function ? f.function->calc(data.tree.t).f : 1.0) * f.direction;
+      if (f.frame == records::VectorFrame::Inertial) v = R_WB.transpose() * v;
+      if (f.frame == records::VectorFrame::Node) v = data.tree.markers[static_cast<size_t>(f.marker)].R * v;
+      load.segment<3>(f.kind == records::ForceKind::Force ? 0 : 3) = v;
+      return load;
+    }
+    // On the child at Hc's origin, in Hp.
+    const HingeReaction r = get_hinge_reaction(system, data, source.hinge);
+    const TreeBody& tb = tree[source.hinge];
+    Matrix3d R_WH = tb.on_parent.R_KM;
+    if (tb.parent >= 0)
+      R_WH = data.tree[tb.parent].state.R_WB * data.tree.markers[static_cast<size_t>(tb.parent_marker)].R;
+    const Matrix3d R_BH = R_WB.transpose() * R_WH;
+    const double sign = source.is_parent ? -1 : 1;
+    const Vector3d force = sign * (R_BH * r.force);
+    const NodeMotion node = calc_node_motion(system, data, body, source.node);
+    const BodyState& child = data.tree[source.hinge].state;
+    const Vector3d at = child.p_WBo + child.R_WB * data.tree.markers[static_cast<size_t>(tb.child_marker)].r;
+    const Vector3d arm = R_WB.transpose() * (at - node.p_WK);
+    load << force, sign * (R_BH * r.moment) + arm.cross(force);
+    return load;
+  }
+};
+
+/// K_G2 of the unit loads at a node; false without any.
+bool find_locators(const records::FlexBody& flex, int node_id, int n, NodeSource& source) {
+  bool has_any = false;
+  for (size_t e = 0; e < flex.locators.size(); ++e) {
+    const auto& locator = flex.locators[e];
+    if (locator.node != node_id || locator.direction < 1 || e >= flex.kg_external.size()) continue;
+    source.K2[static_cast<size_t>(locator.direction) - 1] = flex.kg_external[e].topLeftCorner(n, n);
+    has_any = true;
+  }
+  return has_any;
+}
+
+}  // namespace
+
+std::unique_ptr<Block> make_driven_force(const AppliedForce& force, const SourceLocation& at) {
+  auto made = std::make_unique<DrivenForce>(force);
+  made->name = force.name;
+  made->path = "/forces/" + force.name;
+  made->label = "force '" + force.name + "'";
+  made->description = "what the force is multiplied by";
+  made->dims = "by the signal";
+  made->at = at;
+  return made;
+}
+
+std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::SystemSpec& spec, const System& system,
+                                                           const FlexMap& flex, Diagnostics& diagnostics) {
+  std::vector<std::unique_ptr<Block>> all;
+  const System::Impl& impl = system.impl();
+  const auto& simulation = spec.simulation;
+  std::string others;
+  for (const auto& r : spec.bodies) {
+    const int b = system.find_body(r.name);
+    const auto record = flex.find(r.file);
+    if (b < 0 || !system.is_sound(b) || record == flex.end() || !r.stiffening || system.num_modes(b) == 0) continue;
+    auto made = std::make_unique<LaggedStiffening>();
+    made->body = b;
+    made->n = system.num_modes(b);
+    for (size_t i = 0; i < made->K1.size(); ++i)
+      if (record->second.kg_inertial_computed[i])
+        made->K1[i] = record->second.kg_inertial[i].topLeftCorner(made->n, made->n);
+    const auto& nodes = impl.tree[b].body.nodes();
+    const auto add = [&](NodeSource source) {
+      const int id = nodes[static_cast<size_t>(source.node)].id;
+      if (find_locators(record->second, id, made->n, source)) made->sources.push_back(source);
+    };
+    for (int c = 0; c < system.num_bodies(); ++c) {
+      const TreeBody& tb = impl.tree[c];
+      if (tb.parent == b) add({tb.on_parent.node, c, true, nullptr, {}});
+      if (c == b) add({tb.on_child.node, c, false, nullptr, {}});
+    }
+    for (const AppliedForce& force : impl.forces) {
+      if (force.body != b) continue;
+      if (force.pattern.size() == 0)
+        add({force.node, -1, false, &force, {}});
+      else
+        others += (others.empty() ? "" : ", ") + force.name;
+    }
+    made->name = r.name;
+    made->path = "/stiffening/" + r.name;
+    made->label = "lagged stiffening of body '" + r.name + "'";
+    made->description =
+        "A_I (12), then force and moment at each node with locators (FCONI), as the step before had them";
+    made->dims = "as A_I and FCONI";
+    made->at = simulation.at;
+    made->sizes.outputs = 12 + 6 * static_cast<int>(made->sources.size());
+    made->sizes.sample_time = simulation.stiffening_step > 0 ? simulation.stiffening_step : simulation.step;
+    made->sizes.reads_acceleration = true;
+    all.push_back(std::move(made));
+  }
+  for (const auto& r : spec.actuators)
+    if (!r.body.empty()) others += (others.empty() ? "" : ", ") + r.name;
+  for (const auto& r : spec.force_elements) others += (others.empty() ? "" : ", ") + r.name;
+  for (const auto& force : impl.driven) others += (others.empty() ? "" : ", ") + force.name;
+  for (const auto& r : spec.constraints) others += (others.empty() ? "" : ", ") + r.name;
+  if (!all.empty() && !others.empty())
+    diagnostics.warning(
+        "system.lagged-loads", simulation.at,
+        "lagged stiffening knows the loads of hinges and of forces without a type only, not of: " + others,
+        "take stiffening = \"consistent\", which sees them all");
+  return all;
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,110 @@
+// A formula of t, by muParser, with its derivatives where they are given.
+#include <muParser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "solver/forces/function_parameters.hpp"
+
+namespace bough::solver {
+namespace {
+
+double calc_step(double x) { return x >= 0 ? 1 : 0; }
+
+/// A parser reads its variable where it is: t is copied there.
+class TimeExpression final : public TimeFunction {
+ public:
+  std::vector<mu::Parser> parsers;  ///< f; or f, its rate and its acceleration
+  std::unique_ptr<double> t = std::make_unique<double>(0);
+  std::vector<double> jumps;
+
+  Value calc(double at) const override {
+    *t = at;
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    if (!has_derivatives()) return {parsers[0].Eval(), nan, nan};
+    return {parsers[0].Eval(), parsers[1].Eval(), parsers[2].Eval()};
+  }
+  std::vector<double> breakpoints() const override { return jumps; }
+  bool has_derivatives() const override { return parsers.size() == 3; }
+};
+
+/// df/dt at t by differences of the fourth order.
+template <class Function>
+double calc_slope(const Function& f, double t, double h) {
+  return (8 * (f(t + h) - f(t - h)) - (f(t + 2 * h) - f(t - 2 * h))) / (12 * h);
+}
+
+/// The derivatives that were given are those of the formula, at some times of each stretch between its jumps.
+void check_derivatives(const TimeExpression& made, const TimeSpan& run, FunctionParameters& p) {
+  std::vector<double> ends = {run.start, run.end};
+  for (const double t : made.jumps)
+    if (t > run.start && t < run.end) ends.push_back(t);
+  std::sort(ends.begin(), ends.end());
+  constexpr int kPlaces = 7;
+  constexpr double kClose = 1e-4;
+  for (size_t i = 1; i < ends.size(); ++i) {
+    const double length = ends[i] - ends[i - 1], h = 1e-4 * length;
+    if (!(length > 0)) continue;
+    for (int k = 0; k < kPlaces; ++k) {
+      const double t = ends[i - 1] + (k + 0.5) / kPlaces * length;
+      const auto value = [&](double at) { return made.calc(at).f; };
+      const auto rate = [&](double at) { return made.calc(at).f_dot; };
+      const auto here = made.calc(t);
+      const double slopes[] = {calc_slope(value, t, h), calc_slope(rate, t, h)};
+      // What half the step finds tells whether differences can tell.
+      const double again[] = {calc_slope(value, t, h / 2), calc_slope(rate, t, h / 2)};
+      const double given[] = {here.f_dot, here.f_ddot};
+      for (int d = 0; d < 2; ++d) {
+        const double scale = std::max(std::abs(slopes[d]), std::abs(given[d]));
+        const double blur = 10 * std::abs(slopes[d] - again[d]) + 1e-9 * std::abs(d == 0 ? here.f : here.f_dot) / h;
+        if (!(std::abs(again[d] - given[d]) > kClose * scale + blur)) continue;
+        std::ostringstream what;
+        what << "has a " << (d == 0 ? "rate" : "acceleration") << " of " << given[d] << " at t = " << t
+             << ", where differences of its " << (d == 0 ? "expression" : "rate") << " give " << again[d];
+        p.error("function.bad-value", what.str(), "give the derivatives of the expression; its jumps and corners in x");
+        return;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<const TimeFunction> make_time_expression(const records::FunctionRecord& r, const TimeSpan& run,
+                                                         FunctionParameters& p) {
+  auto made = std::make_unique<TimeExpression>();
+  made->jumps = r.x;
+  if (r.expression.empty()) {
+    p.error("function.missing-parameter", "has no 'expression'", "give a formula of t");
+    return nullptr;
+  }
+  if (r.first.empty() != r.second.empty()) {
+    p.error("function.missing-parameter", r.first.empty() ? "has no 'rate'" : "has no 'acceleration'",
+            "give both formulas or none");
+    return nullptr;
+  }
+  if (std::adjacent_find(r.x.begin(), r.x.end(), std::greater_equal<>()) != r.x.end())
+    p.error("function.unsorted", "has times in x that do not ascend", "give them in order, each once");
+  for (const auto* text : {&r.expression, &r.first, &r.second}) {
+    if (text->empty()) continue;
+    try {
+      mu::Parser parser;
+      parser.DefineVar("t", made->t.get());
+      parser.DefineConst("pi", std::numbers::pi);
+      parser.DefineFun("step", &calc_step);
+      parser.SetExpr(*text);
+      parser.Eval();
+      made->parsers.push_back(std::move(parser));
+    } catch (const mu::Parser::exception_type& error) {
+      p.error("control.bad-expression", "has the expression \"" + *text + "\": " + error.GetMsg(),
+              "write it of t, pi and functions as sin, sqrt, abs, min, step");
+      return nullptr;
+    }
+  }
+  if (!p.failed() && made->has_derivatives()) check_derivatives(*made, run, p);
+  return made;
+}
+
+}  // namespace bough::solver

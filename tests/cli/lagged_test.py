@@ -1,0 +1,75 @@
+"""stiffening = "lagged", the report's own scheme, against the consistent one on the report's models."""
+import unittest
+
+import h5py
+import numpy as np
+
+from support import ProgramTest
+
+
+class Lagged(ProgramTest):
+    def run_one(self, name, changes=(), code=0):
+        """Runs NAME.toml with texts replaced; the results."""
+        text = open(self.path(name + ".toml")).read()
+        for old, new in changes:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        self.write("run.toml", text)
+        self.bough("run", "run.toml", "-o", "run.h5", code=code)
+        return h5py.File(self.path("run.h5"))
+
+    def lag(self, step, duration):
+        return [("[simulation]", f'[simulation]\nstiffening = "lagged"\nstep = {step}'),
+                ('integrator = "adams"', 'integrator = "rk4"'), duration]
+
+    def test_spinup_converges_with_the_lag(self):
+        """The error of the tip is of the first order in the step; consistent stiffening has none of it."""
+        self.copy_example("ex01-spinup")
+        self.bough("reduce", "boom.toml")
+        until = ("duration = 20.0", "duration = 8.0")
+        with self.run_one("spinup", [until]) as f:
+            consistent = f["sensors/tip_deflection"][:, 1]
+        tips = {}
+        for step in (0.01, 0.005, 0.0025):
+            with self.run_one("spinup", self.lag(step, until)) as f:
+                tips[step] = f["sensors/tip_deflection"][:, 1]
+                recorded = f["stiffening/boom"][:] if "stiffening/boom" in f else f["stiffening"]
+        differences = [np.abs(tips[0.01] - tips[0.005]).max(), np.abs(tips[0.005] - tips[0.0025]).max()]
+        self.assertLess(abs(differences[0] / differences[1] - 2), 0.3, differences)
+        # Another linear theory, not the consistent one: near, to a few per cent of half a metre.
+        self.assertLess(np.abs(tips[0.0025] - consistent).max(), 0.03)
+        self.assertGreater(np.abs(tips[0.0025]).max(), 0.5)
+        # A_I as measured: ωz² and αz of the shaft.
+        self.assertGreater(recorded[-1, 8], 1)
+
+    def test_loads_of_a_hinge_are_measured(self):
+        """FCONI of the upper link is what the lower one hangs on it with."""
+        self.copy_example("ex03-two-link")
+        self.bough("reduce", "link.toml")
+        with self.run_one("two-link", self.lag(0.0005, ("duration = 3.0", "duration = 0.5"))) as f:
+            lagged = f["sensors/tip_position"][:]
+            names = sorted(f["stiffening"])
+            fconi = {name: f["stiffening/" + name][:] for name in names}
+            reactions = {h: f[f"hinges/{h}/reaction_force"][:] for h in f["hinges"]}
+        with self.run_one("two-link", [("duration = 3.0", "duration = 0.5")]) as f:
+            consistent = f["sensors/tip_position"][:]
+        self.assertLess(np.abs(lagged - consistent).max(), 0.01)
+        outer = [r for h, r in reactions.items() if h == "elbow"][0]
+        upper = [v for v in fconi.values() if v.shape[1] > 12]
+        self.assertTrue(upper)
+        size = min(np.abs(np.linalg.norm(v[20:, 12:15], axis=1) - np.linalg.norm(outer[20:], axis=1)).max() for v in upper)
+        self.assertLess(size, 0.02 * np.linalg.norm(outer, axis=1).max())
+
+    def test_what_it_does_not_measure_is_told(self):
+        self.copy_example("ex02-hub")
+        self.bough("reduce", "boom.toml")
+        text = open(self.path("hub-2.18.toml")).read()
+        text = text.replace("[simulation]", '[simulation]\nstiffening = "lagged"\nstiffening_step = 0.01')
+        self.write("jet.toml", text + '\n[[actuator]]\nname = "jet"\ntype = "force"\nbody = "hub"\naxis = [1.0, 0.0, 0.0]\n')
+        said = self.bough("check", "jet.toml").stderr
+        self.assertIn("[system.lagged-loads]", said)
+        self.assertIn("not of: jet", said)
+
+
+if __name__ == "__main__":
+    unittest.main()

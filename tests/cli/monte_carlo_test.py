@@ -1,0 +1,134 @@
+"""A campaign over the seeds of a controlled system: statistics from seeds, resumed, memory flat."""
+import csv
+import json
+import unittest
+
+import h5py
+import numpy as np
+
+from support import ProgramTest
+
+SYSTEM = """
+[parameters]
+seed = 1
+kp = 4.0
+
+[[body]]
+name = "rotor"
+mass = 1.0
+inertia = [1.0, 1.0, 2.0]
+
+[[hinge]]
+name = "axis"
+type = "revolute"
+child = "rotor"
+position = 0.1
+
+[[sensor]]
+name = "angle"
+type = "hinge_angle"
+hinge = "axis"
+sample_time = 0.1
+noise_density = 3e-3
+seed = "$seed"
+
+[[controller]]
+name = "law"
+type = "pid"
+inputs = ["angle"]
+kp = "$kp"
+kd = 4.0
+sample_time = 0.1
+
+[[actuator]]
+name = "drive"
+type = "hinge"
+hinge = "axis"
+input = "law"
+
+[simulation]
+duration = 2.0
+output_step = 0.1
+integrator = "rk4"
+step = 0.05
+"""
+
+CAMPAIGN = """
+[campaign]
+steps = ["run axis.toml -o axis.h5 --set seed={seed}"]
+
+[[parameter]]
+name = "seed"
+range = [1, COUNT]
+number = COUNT
+integer = true
+
+[[collect]]
+name = "angle"
+file = "axis.h5"
+dataset = "/hinges/axis/q"
+take = "last"
+
+[[collect]]
+name = "noise"
+file = "axis.h5"
+dataset = "/sensors/angle"
+take = "last"
+"""
+
+
+class MonteCarlo(ProgramTest):
+    def test_statistics_over_seeds(self):
+        count = 120
+        self.write("axis.toml", SYSTEM)
+        self.write("mc.toml", CAMPAIGN.replace("COUNT", str(count)))
+        # Part of it, then the rest: the table is the same as of one go.
+        self.bough("batch", "mc.toml", "-j", "1", "-o", "mc", "--shard", "1/2")
+        said = json.loads(self.bough("batch", "mc.toml", "-j", "1", "-o", "mc", "--json").stdout)
+        self.assertEqual((said["done_before"], said["done"]), (60, 60))
+        self.bough("batch", "mc.toml", "-j", "2", "-o", "again")
+        with h5py.File(self.path("mc/outcomes.h5")) as a, h5py.File(self.path("again/outcomes.h5")) as b:
+            angles = a["outputs/angle"][:].ravel()
+            np.testing.assert_array_equal(angles, b["outputs/angle"][:].ravel())
+            np.testing.assert_array_equal(a["parameters/seed"][:].ravel(), np.arange(1, count + 1))
+        self.assertEqual(len(set(angles)), count)
+        with open(self.path("mc/statistics.csv")) as file:
+            rows = {row["output"]: {k: float(v) for k, v in row.items() if k != "output"} for row in csv.DictReader(file)}
+        expected = {"count": count, "mean": angles.mean(), "deviation": angles.std(ddof=1), "min": angles.min(),
+                    "p5": np.percentile(angles, 5), "median": np.median(angles), "p95": np.percentile(angles, 95),
+                    "max": angles.max()}
+        for key, value in expected.items():
+            self.assertAlmostEqual(rows["angle"][key], value, delta=1e-12 * max(1, abs(value)), msg=key)
+            self.assertAlmostEqual(said["statistics"]["angle"][key], value, delta=1e-12 * max(1, abs(value)))
+        # One of them by itself is the case of that seed.
+        self.bough("run", "axis.toml", "-o", "seven.h5", "--set", "seed=7")
+        with h5py.File(self.path("seven.h5")) as one:
+            self.assertEqual(one["hinges/axis/q"][-1, 0], angles[6])
+        # The memory of the one worker after the first tenth of the cases is that after the last.
+        memory = [json.load(open(self.path(f"mc/case-{i:04d}/outcome.json")))["memory_kb"] for i in range(1, count, 2)]
+        self.assertLess(memory[-1], memory[6] + 4000, memory)
+
+    def test_deviation_follows_the_noise(self):
+        """Lyapunov's equation of the sampled loop gives the variance of the angle."""
+        self.write("axis.toml", SYSTEM.replace("position = 0.1", "position = 0.0").replace("duration = 2.0", "duration = 12.0"))
+        self.write("mc.toml", CAMPAIGN.replace("COUNT", "200"))
+        said = json.loads(self.bough("batch", "mc.toml", "-j", "2", "-o", "mc", "--json").stdout)
+        T, J, kp, kd, sigma = 0.1, 2.0, 4.0, 4.0, 3e-3 / np.sqrt(0.1)
+        # x = [angle, rate, the sample before]: torque -kp y - kd (y - y₋) / T, y = angle + noise.
+        b = np.array([T * T / 2, T]) / J
+        A = np.array([[1, T, 0], [0, 1, 0], [0, 0, 0]], dtype=float)
+        A[:2, 0] -= (kp + kd / T) * b
+        A[:2, 2] += kd / T * b
+        A[2, 0] = 1
+        N = np.array([*(-(kp + kd / T) * b), 1]) * sigma
+        P = np.outer(N, N)
+        for _ in range(5000):
+            P = A @ P @ A.T + np.outer(N, N)
+        deviation = np.sqrt(P[0, 0])
+        # Of 200 cases the deviation is known to 5 % (one in three); four times that.
+        self.assertLess(abs(said["statistics"]["angle"]["deviation"] / deviation - 1), 0.2)
+        self.assertLess(abs(said["statistics"]["angle"]["mean"]), 4 * deviation / np.sqrt(200))
+
+
+if __name__ == "__main__":
+    unittest.main()
