@@ -35,6 +35,7 @@ int run_linearize(const LinearizeVerbOptions& o) {
   auto point = o.at ? run_to(loaded, plant, *o.at, diagnostics) : plant.make_initial_point();
   if (o.equilibrium) point = find_rest(plant, std::move(point), o.file);
   plant.hold_commands(point);
+  solver::warn_of_latches(loaded.system, {o.file}, diagnostics);
   auto model = solver::linearize(plant, point, {o.inputs, o.outputs, true}, {o.file}, diagnostics);
   model.source = calc_sources(sources);
   console.print(diagnostics);
