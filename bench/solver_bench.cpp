@@ -110,6 +110,45 @@ void BM_RigidChain(benchmark::State& state) {
 }
 BENCHMARK(BM_RigidChain)->Arg(10)->Arg(50)->Arg(100)->Unit(benchmark::kMicrosecond);
 
+/// N four-bars in a chain (IFToMM A02): N + 1 rockers joined by N couplers, a closing hinge each, at 60 degrees.
+void BM_NFourBar(benchmark::State& state) {
+  const int N = static_cast<int>(state.range(0));
+  records::SystemSpec spec;
+  spec.simulation.gravity = {0, -9.81, 0};
+  const auto add = [&](const std::string& name, const std::string& parent, int node, double x, double angle) {
+    records::BodyRecord body;
+    body.name = name;
+    body.mass = 1;
+    body.cg = {0.5, 0, 0};
+    body.inertia = Vector3d(1e-3, 1.0 / 12, 1.0 / 12).asDiagonal();
+    body.nodes = {{1, {1, 0, 0}}};
+    spec.bodies.push_back(body);
+    records::HingeRecord hinge;
+    hinge.name = hinge.child = name;
+    hinge.type = records::HingeType::Revolute;
+    hinge.parent = parent;
+    hinge.parent_node = node;
+    hinge.parent_position = {x, 0, 0};
+    hinge.position = {angle};
+    spec.hinges.push_back(hinge);
+  };
+  for (int k = 0; k <= N; ++k) {
+    const std::string id = std::to_string(k);
+    add("rocker" + id, "ground", 0, k, 1);
+    if (k == N) break;
+    add("coupler" + id, "rocker" + id, 1, 0, -1);
+    records::ConstraintRecord pin;
+    pin.name = "pin" + id;
+    pin.hinge = records::HingeType::Revolute;
+    pin.parent = "coupler" + id;
+    pin.child = "rocker" + std::to_string(k + 1);
+    pin.parent_node = pin.child_node = 1;
+    spec.constraints.push_back(pin);
+  }
+  evaluate(state, build(spec), N);
+}
+BENCHMARK(BM_NFourBar)->Arg(5)->Arg(10)->Arg(20)->Arg(40)->Arg(80)->Arg(160)->Unit(benchmark::kMicrosecond);
+
 records::SystemSpec make_pendulum() {
   auto spec = make_chain(1);
   spec.bodies[0].nodes.clear();

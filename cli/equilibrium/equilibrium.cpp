@@ -15,6 +15,7 @@
 #include "formats/hdf5/files.hpp"
 #include "formats/toml/specs.hpp"
 #include "solver/integrate/recorder.hpp"
+#include "solver/linear/linearize.hpp"
 
 namespace bough::cli {
 
@@ -64,6 +65,7 @@ int run_equilibrium(const EquilibriumOptions& o) {
   const auto loaded = load_system(o.file, diagnostics, {}, o.set);
   const auto sources = collect_sources(o.file, loaded);
   if (!o.output.empty()) check_output(o, o.output, sources);
+  solver::warn_of_latches(loaded.system, {o.file}, diagnostics);
   auto plant = make_plant(loaded);
   const auto start = plant.make_initial_point();
   const auto found = solver::find_equilibrium(plant, start, {o.file});

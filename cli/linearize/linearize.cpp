@@ -115,6 +115,7 @@ int run_linearize(const LinearizeVerbOptions& o) {
   }
   auto plant = make_plant(loaded, o.open);
   auto point = o.at ? run_to(loaded, plant, *o.at, diagnostics) : plant.make_initial_point();
+  solver::warn_of_latches(loaded.system, {o.file}, diagnostics);
   auto model = linearize_at(o, plant, std::move(point), true, diagnostics);
   model.source = calc_sources(sources);
   console.print(diagnostics);

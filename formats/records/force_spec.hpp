@@ -51,6 +51,7 @@ struct HingeLawRecord {
   std::vector<double> preload;                          ///< generalized force in the direction of the coordinate
   std::vector<std::string> spring_table, damper_table;  ///< functions that resist deflection and rate; "": none
   std::vector<double> stop_lower, stop_upper, stop_stiffness, stop_damping;
+  std::vector<double> stop_restitution;  ///< of rigid stops, which have no stiffness; empty: springs
   std::vector<double> coulomb, static_friction, stribeck_velocity, smoothing;
   std::vector<double> rotor_inertia, gear_ratio;
   bool has_stops = false, has_friction = false;

@@ -5,17 +5,18 @@
 
 namespace bough::solver {
 
-double HingeLaw::calc_friction(double rate) const {
+double HingeLaw::calc_friction(double rate, double slide) const {
   if (law_.coulomb == 0 && law_.static_friction == 0) return 0;
   const double s = rate / law_.stribeck_velocity;
-  return (law_.coulomb + (law_.static_friction - law_.coulomb) * std::exp(-s * s)) * std::tanh(rate / law_.smoothing);
+  return (law_.coulomb + (law_.static_friction - law_.coulomb) * std::exp(-s * s)) *
+         (law_.is_dry ? slide : std::tanh(rate / law_.smoothing));
 }
 
 ForceResult HingeLaw::calc(const Tree&, const TreeData& data, Loads* loads) const {
   ForceResult result;
   if (data.mode[static_cast<size_t>(u_row_)] == HingeMode::Prescribed) return result;
   const double q = data.q[q_row_], rate = data.u[u_row_], deflection = q - law_.null_position;
-  double elastic = law_.preload, damper = -calc_friction(rate);
+  double elastic = law_.preload, damper = -calc_friction(rate, data.slide[u_row_]);
   result.strain = -law_.preload * deflection;
   if (law_.spring) {
     const auto table = law_.spring->calc(deflection);
@@ -50,9 +51,9 @@ void HingeLaw::add_tangent(const Tree&, const TreeData& data, Eigen::Ref<VectorX
     c += law_.stop_stiffness * past * law_.stop_damping;
   }
   // Of the chord: smooth friction turns within one step.
-  if (law_.coulomb != 0 || law_.static_friction != 0) {
+  if (!law_.is_dry && (law_.coulomb != 0 || law_.static_friction != 0)) {
     const double v = std::max(std::abs(rate), 1e-3 * law_.smoothing);
-    c += std::max(0.0, calc_friction(v) / v);
+    c += std::max(0.0, calc_friction(v, 0) / v);
   }
   stiffness[u_row_] += k;
   damping[u_row_] += c;

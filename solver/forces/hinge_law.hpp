@@ -3,6 +3,7 @@
 ///
 ///     preload - table(q - q_null) - table(q̇) - friction(q̇) + stops
 ///     friction  [F_c + (F_s - F_c) exp(-(q̇/v_s)²)] tanh(q̇/v_0)        Stribeck's, smooth over v_0
+///               the same times the direction of sliding                  dry: solver/forces/latch.hpp
 ///     stop      k δ (1 + c δ̇), not below zero, for δ past the stop       Hunt & Crossley with exponent 1
 /// Along a prescribed coordinate the motion has it: nothing acts.
 #include <cmath>
@@ -21,6 +22,7 @@ class HingeLaw final : public ForceElement {
     double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
     double stop_stiffness = 0, stop_damping = 0;
     double coulomb = 0, static_friction = 0, stribeck_velocity = 1, smoothing = 1;
+    bool is_dry = false;  ///< friction by TreeData::slide in place of tanh(q̇/v_0)
   };
   HingeLaw(std::string name, int q_row, int u_row, Law law)
       : ForceElement(std::move(name)), q_row_(q_row), u_row_(u_row), law_(std::move(law)) {}
@@ -36,7 +38,7 @@ class HingeLaw final : public ForceElement {
                    Eigen::Ref<VectorXd> damping) const override;
 
  private:
-  double calc_friction(double rate) const;
+  double calc_friction(double rate, double slide) const;
 
   int q_row_, u_row_;
   Law law_;

@@ -68,7 +68,8 @@ class CvodeStepper final : public Stepper {
     ode_.begin_step();
     const int flag = CVode(cvode_, t_stop_, y_, &t_, CV_ONE_STEP);
     if (flag >= 0) return;
-    detail::throw_failure(ode_, t_, "CVODE", CVodeGetReturnFlagName(flag));
+    const int row = find_worst();
+    detail::throw_failure(ode_, t_, "CVODE", CVodeGetReturnFlagName(flag), row);
   }
 
   double time() const override { return t_; }
@@ -105,6 +106,17 @@ class CvodeStepper final : public Stepper {
   }
 
  private:
+  // The state whose estimated error is most in its tolerance.
+  int find_worst() {
+    detail::Vector weights(ode_.size(), context_);
+    if (CVodeGetEstLocalErrors(cvode_, interpolated_) != CV_SUCCESS) return -1;
+    if (CVodeGetErrWeights(cvode_, weights) != CV_SUCCESS) return -1;
+    int row = -1;
+    const VectorXd error = interpolated_.values().cwiseProduct(weights.values()).cwiseAbs();
+    if (error.size() == 0 || !error.allFinite() || error.maxCoeff(&row) <= 0) return -1;
+    return row;
+  }
+
   void create(double t) {
     cvode_ = CVodeCreate(stiff_ ? CV_BDF : CV_ADAMS, context_);
     BOUGH_DEMAND(cvode_ != nullptr);

@@ -1,130 +1,212 @@
-#include <arkode/arkode_erkstep.h>
-
+// Explicit embedded pairs by ARKODE's tables of coefficients. The step is Bough's own, for the sake of constraints: the
+// error is the difference of both solutions along them. What a stage that is off the constraints adds across them is
+// projected away and is no error; near a change point it is all there is.
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 
+#include "solver/integrate/dormand_prince.hpp"
 #include "solver/integrate/sundials.hpp"
 
 namespace bough::solver {
 namespace {
 
+constexpr double kSafety = 0.9, kMostGrowth = 6, kLeastShare = 0.2;
+constexpr double kAfterFailure = 0.25;  // of the step, where a stage could not be evaluated
+
 class ErkStepper final : public Stepper {
  public:
   ErkStepper(Ode& ode, const StepperOptions& options)
       : ode_(ode),
-        y_(ode.size(), context_),
-        last_y_(ode.size(), context_),
-        between_(ode.size(), context_),
-        tolerance_(ode.size(), context_),
-        options_(options) {
+        options_(options),
+        table_(options.rk_order == 5 ? ButcherTable(ARKodeButcherTable_LoadERK(ARKODE_DORMAND_PRINCE_7_4_5))
+                                     : make_dormand_prince_87()),
+        k_(Eigen::MatrixXd::Zero(ode.size(), table_->stages)) {
     BOUGH_DEMAND(options.absolute_tolerance.size() == ode.size());
     BOUGH_DEMAND(options.rk_order == 5 || options.rk_order == 8);
-    tolerance_.values() = options.absolute_tolerance;
-  }
-  ~ErkStepper() override {
-    ERKStepFree(&arkode_);
-    if (inner_) ERKStepFree(&inner_);
+    for (VectorXd* v : {&y_, &last_y_, &trial_, &other_, &stage_, &next_first_}) v->setZero(ode.size());
+    for (int j = 0; j < table_->stages; ++j)
+      is_fsal_ = is_fsal_ && table_->A[table_->stages - 1][j] == (j + 1 < table_->stages ? table_->b[j] : 0);
   }
 
   void restart(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double latest) override {
-    y_.values() = y;
+    y_ = last_y_ = y;
     t_ = last_ = t;
-    if (!arkode_) {
-      arkode_ = create(t, y_);
-    } else {
-      before_ = statistics();  // ERKStepReInit sets the counters to zero
-      BOUGH_DEMAND(ERKStepReInit(arkode_, detail::call_ode, t, y_) == ARK_SUCCESS);
-    }
+    h_ = 0;
+    has_first_ = false;
     set_stop(t_stop, latest);
   }
 
   void set_stop(double t_stop, double latest) override {
     ode_.set_latest(latest);
-    double smallest = detail::kSmallestStep * (t_stop - t_);
-    if (options_.step > 0) smallest = std::min(smallest, 1e-3 * options_.step);
-    BOUGH_DEMAND(ERKStepSetMinStep(arkode_, smallest) == ARK_SUCCESS);
+    t_stop_ = t_stop;
+    smallest_ = detail::kSmallestStep * (t_stop - t_);
+    if (options_.step > 0) smallest_ = std::min(smallest_, 1e-3 * options_.step);
   }
 
   void step(double t_target) override {
     last_ = t_;
+    last_y_ = y_;
     ode_.begin_step();
-    last_y_.values() = y_.values();
-    // Steps end on the targets: the interpolant is of lower order than the method.
-    BOUGH_DEMAND(ERKStepSetStopTime(arkode_, t_target) == ARK_SUCCESS);
-    double t = t_;
-    const int flag = ERKStepEvolve(arkode_, t_target, y_, &t, ARK_ONE_STEP);
-    if (flag >= 0) {
-      t_ = t;
-      return;
+    if (has_first_)
+      k_.col(0) = next_first_;
+    else if (ode_.calc(t_, y_.data(), k_.col(0).data()) != 0)
+      fail("the derivative cannot be evaluated");
+    if (h_ == 0) h_ = std::min(guess_first_step(), t_stop_ - t_);
+    if (options_.step > 0) h_ = std::min(h_, options_.step);
+    double h = h_;
+    bool may_grow = true;
+    for (int rejected = 0;; ++rejected) {
+      const bool is_cut = t_ + h >= t_target - smallest_;
+      if (is_cut) h = t_target - t_;
+      const double t_end = is_cut ? t_target : t_ + h;
+      const bool is_good = calc_step(t_, t_end, h, true);
+      const double error = is_good ? calc_error() : 0;
+      if (is_good && error <= 1) {
+        const double growth = kSafety * std::pow(std::max(error, 1e-16), -1.0 / table_->q);
+        const double next = h * std::clamp(growth, kLeastShare, may_grow ? kMostGrowth : 1.0);
+        h_ = is_cut ? std::max(next, h_) : next;  // what was cut short does not say that the next must be
+        return accept(t_end, h);
+      }
+      may_grow = false;
+      ++statistics_.num_rejected;
+      const double shrink = is_good ? kSafety * std::pow(error, -1.0 / table_->q) : kAfterFailure;
+      h *= std::clamp(shrink, kLeastShare, kSafety);
+      h_ = h;
+      if (rejected + 1 >= detail::kMostRejections || h < smallest_ || t_ + h == t_) {
+        h_ = 0;
+        fail("steps of " + short_number(h) + " err by " + short_number(error) + " tolerances");
+      }
     }
-    // A failed step leaves the time of the stage it failed at.
-    detail::throw_failure(ode_, t_, "ARKODE", ERKStepGetReturnFlagName(flag));
   }
 
   double time() const override { return t_; }
   double last_time() const override { return last_; }
-  Eigen::Map<const VectorXd> state() const override {
-    const auto y = y_.values();
-    return {y.data(), y.size()};
-  }
+  Eigen::Map<const VectorXd> state() const override { return {y_.data(), y_.size()}; }
+
+  /// The last step again, but to t only.
   void calc_state(double t, Eigen::Ref<VectorXd> y) override {
     if (t == t_) {
-      y = y_.values();
+      y = y_;
       return;
     }
     BOUGH_DEMAND(t >= last_ && t < t_);
-    between_.values() = last_y_.values();
-    if (t > last_) step_between(t);
-    y = between_.values();
+    if (t == last_) {
+      y = last_y_;
+      return;
+    }
+    ode_.begin_step();
+    if (!calc_step(last_, t, t - last_, false)) fail("the derivative cannot be evaluated");
+    y = trial_;
   }
+
   StepStatistics statistics() const override {
-    StepStatistics s = before_;
-    if (!arkode_) return s;
-    long steps = 0, rejected = 0;
-    ERKStepGetNumSteps(arkode_, &steps);
-    ERKStepGetNumErrTestFails(arkode_, &rejected);
-    ERKStepGetLastStep(arkode_, &s.step);
+    StepStatistics s = statistics_;
     s.order = options_.rk_order;
-    s.num_steps += steps;
-    s.num_rejected += rejected;
     s.num_evaluations = ode_.num_evaluations();
     return s;
   }
 
  private:
-  void* create(double t, const detail::Vector& y) {
-    void* arkode = ERKStepCreate(detail::call_ode, t, y, context_);
-    BOUGH_DEMAND(arkode != nullptr);
-    const auto check = [](int flag) { BOUGH_DEMAND(flag == 0); };
-    check(ERKStepSetUserData(arkode, &ode_));
-    check(ERKStepSetErrHandlerFn(arkode, detail::ignore_message, nullptr));
-    check(ERKStepSVtolerances(arkode, options_.relative_tolerance, tolerance_));
-    check(ERKStepSetTableNum(arkode, options_.rk_order == 5 ? ARKODE_DORMAND_PRINCE_7_4_5 : ARKODE_FEHLBERG_13_7_8));
-    check(ERKStepSetMaxErrTestFails(arkode, detail::kMostRejections));
-    if (options_.step > 0) check(ERKStepSetMaxStep(arkode, options_.step));
-    // At order 5 the last stage serves as the next first one, from before the projection: off by no more than the step.
-    if (ode_.has_projection()) check(ERKStepSetPostprocessStepFn(arkode, detail::call_projection));
-    return arkode;
+  // trial_ and, where the error is wanted, other_ from last_y_ and the first stage; both projected.
+  bool calc_step(double t, double t_end, double h, bool with_error) {
+    const int s = table_->stages;
+    for (int i = 1; i < s; ++i) {
+      stage_ = last_y_;
+      for (int j = 0; j < i; ++j) {
+        if (table_->A[i][j] != 0) stage_ += h * table_->A[i][j] * k_.col(j);
+      }
+      if (ode_.calc(table_->c[i] == 1 ? t_end : t + table_->c[i] * h, stage_.data(), k_.col(i).data()) != 0)
+        return false;
+    }
+    trial_ = last_y_;
+    for (int i = 0; i < s; ++i) {
+      if (table_->b[i] != 0) trial_ += h * table_->b[i] * k_.col(i);
+    }
+    if (with_error) {
+      other_ = last_y_;
+      for (int i = 0; i < s; ++i) {
+        if (table_->d[i] != 0) other_ += h * table_->d[i] * k_.col(i);
+      }
+    }
+    has_moved_ = false;
+    if (!ode_.has_projection()) return true;
+    stage_ = trial_;
+    if (ode_.project(t_end, trial_.data()) != 0) return false;
+    has_moved_ = trial_ != stage_;
+    if (!with_error) return true;
+    other_ -= stage_;
+    if (ode_.project_error(other_.data()) != 0) return false;
+    other_ += trial_;
+    return true;
   }
 
-  /// The last step again, but to t only.
-  void step_between(double t) {
-    ode_.begin_step();
-    if (!inner_) inner_ = create(last_, between_);
-    BOUGH_DEMAND(ERKStepReInit(inner_, detail::call_ode, last_, between_) == ARK_SUCCESS);
-    BOUGH_DEMAND(ERKStepSetInitStep(inner_, t - last_) == ARK_SUCCESS);
-    BOUGH_DEMAND(ERKStepSetStopTime(inner_, t) == ARK_SUCCESS);
-    double reached = last_;
-    const int flag = ERKStepEvolve(inner_, t, between_, &reached, ARK_NORMAL);
-    if (flag < 0) detail::throw_failure(ode_, last_, "ARKODE", ERKStepGetReturnFlagName(flag));
+  /// In tolerances; remembers the state that errs most.
+  double calc_error() {
+    double sum = 0, most = -1;
+    for (Eigen::Index i = 0; i < trial_.size(); ++i) {
+      const double e = (trial_[i] - other_[i]) / calc_weight(i);
+      sum += e * e;
+      if (std::abs(e) > most) {
+        most = std::abs(e);
+        worst_ = static_cast<int>(i);
+      }
+    }
+    return std::sqrt(sum / static_cast<double>(std::max<Eigen::Index>(1, trial_.size())));
+  }
+  double calc_weight(Eigen::Index i) const {
+    return std::max(options_.relative_tolerance * std::abs(last_y_[i]) + options_.absolute_tolerance[i], 1e-300);
   }
 
-  detail::Context context_;
+  void accept(double t_end, double h) {
+    // The last stage serves as the next first one where the projection has left its state alone.
+    has_first_ = is_fsal_ && !has_moved_;
+    if (has_first_) next_first_ = k_.col(table_->stages - 1);
+    y_ = trial_;
+    t_ = t_end;
+    statistics_.step = h;
+    ++statistics_.num_steps;
+  }
+
+  /// Hairer, Nørsett and Wanner, "Solving Ordinary Differential Equations I", II.4: by the size of the first and second
+  /// derivatives.
+  double guess_first_step() {
+    const auto norm = [&](const auto& v) {
+      double sum = 0;
+      for (Eigen::Index i = 0; i < v.size(); ++i) sum += std::pow(v[i] / calc_weight(i), 2);
+      return std::sqrt(sum / static_cast<double>(std::max<Eigen::Index>(1, v.size())));
+    };
+    const double d0 = norm(last_y_), d1 = norm(k_.col(0));
+    double h = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
+    h = std::clamp(h, smallest_, std::max(smallest_, t_stop_ - t_));
+    stage_ = last_y_ + h * k_.col(0);
+    if (ode_.calc(t_ + h, stage_.data(), next_first_.data()) != 0) return h;
+    const double d2 = norm(next_first_ - k_.col(0)) / h, most = std::max(d1, d2);
+    const double other = most <= 1e-15 ? std::max(1e-6, 1e-3 * h) : std::pow(0.01 / most, 1.0 / table_->q);
+    return std::max(smallest_, std::min(100 * h, other));
+  }
+
+  static std::string short_number(double x) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", x);
+    return text;
+  }
+
+  [[noreturn]] void fail(const std::string& detail) {
+    ode_.throw_pending();
+    throw StepFailure{ode_.was_non_finite() ? StepFailure::Kind::NonFinite : StepFailure::Kind::Stalled, t_, detail,
+                      ode_.bad_time(), worst_};
+  }
+
   GuardedOde ode_;
-  detail::Vector y_, last_y_, between_, tolerance_;
   StepperOptions options_;
-  void *arkode_ = nullptr, *inner_ = nullptr;
-  double t_ = 0, last_ = 0;
-  StepStatistics before_;
+  ButcherTable table_;
+  Eigen::MatrixXd k_;  // a stage per column
+  VectorXd y_, last_y_, trial_, other_, stage_, next_first_;
+  double t_ = 0, last_ = 0, t_stop_ = 0, h_ = 0, smallest_ = 0;
+  bool is_fsal_ = true, has_first_ = false, has_moved_ = false;
+  int worst_ = -1;
+  StepStatistics statistics_;
 };
 
 }  // namespace

@@ -40,6 +40,17 @@ int GuardedOde::project(double t, double* y) noexcept {
   return 1;
 }
 
+int GuardedOde::project_error(double* error) noexcept {
+  try {
+    Eigen::Map<VectorXd> e(error, ode_.size());
+    ode_.project_error(e);
+    return e.allFinite() ? 0 : 1;
+  } catch (...) {
+    pending_ = std::current_exception();
+  }
+  return 1;
+}
+
 int GuardedOde::calc(double t, const double* y, double* y_dot) noexcept {
   return guard(t, y_dot, [&](double time, Eigen::Map<VectorXd>& result) {
     ode_.calc_derivative(time, Eigen::Map<const VectorXd>(y, ode_.size()), result);

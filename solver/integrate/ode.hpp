@@ -20,6 +20,8 @@ class Ode {
   virtual bool has_projection() const { return false; }
   /// Brings y onto what the equations keep at zero. May throw.
   virtual void project(double, Eigen::Ref<VectorXd>) {}
+  /// Takes off a small difference of states what the last projection would take off it. May throw.
+  virtual void project_error(Eigen::Ref<VectorXd>) {}
   /// One stage of a linearly implicit step, with a matrix A of its own choice in place of ∂f/∂y: solves
   /// (1 - γh A) k = f(t, y), or after that one, for the second stage, (1 - γh A) x = f(t, y) - 2γh A k.
   virtual void calc_stage(double /*t*/, const Eigen::Ref<const VectorXd>& /*y*/, double /*gamma_h*/, bool /*is_first*/,
@@ -39,6 +41,7 @@ class GuardedOde {
   bool has_projection() const { return ode_.has_projection(); }
   /// y, in and out. 0: fine; 1: it threw or is not finite.
   int project(double t, double* y) noexcept;
+  int project_error(double* error) noexcept;
   int calc_stage(double t, const double* y, double gamma_h, bool is_first, double* k) noexcept;
   void begin_step() {
     pending_ = nullptr;

@@ -13,6 +13,8 @@ namespace {
 constexpr int kCheckpointEvery = 100;
 /// Of energy_error_limit: an error worth a warning.
 constexpr double kEnergyWarning = 1e-2;
+/// Relative gap of a constraint that projections do not close.
+constexpr double kOpen = 1e-6;
 /// Motions of so many absolute tolerances have an energy below which nothing is judged.
 constexpr double kNoise = 100;
 
@@ -86,7 +88,8 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
       timeline_(make_timeline(system, setup_)),
       ode_(system),
       limit_(system),
-      reach_(limit_.calc_reach()) {
+      reach_(limit_.calc_reach()),
+      latches_(system) {
   stepper_ = make_stepper(setup_.integrator, ode_, make_stepper_options(ode_, spec.simulation, setup_.plan));
   y_ = y_dot_ = VectorXd::Zero(ode_.size());
   gaps_ = last_gaps_ = trial_gaps_ = setup_.triggers.make_gaps();
@@ -97,7 +100,9 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
                         {"events", VectorXd::Zero(1 + setup_.triggers.signs.size())},
                         {"stepper", VectorXd::Zero(4)},
                         {"discrete", ode_.make_memory()},
-                        {"control", VectorXd::Zero(1 + ode_.data().signals.memory.size())}};
+                        {"control", VectorXd::Zero(1 + ode_.data().signals.memory.size())},
+                        {"latches", latches_.make_memory()}};
+  latch_guards_ = last_latch_guards_ = latches_.make_guards();
   guards_ = last_guards_ = VectorXd::Zero(system.impl().signals.num_guards);
   progress_.start = timeline_.start();
   progress_.end = timeline_.end();
@@ -124,7 +129,8 @@ SimulateOutcome Run::go() {
       take_step(stop);
       const double corner = find_corner(stop);
       const auto switches = find_switch(stop, corner);
-      const double reached = switches.value_or(corner);
+      const auto latch = find_latch(stop, switches.value_or(corner));
+      const double reached = latch.value_or(switches.value_or(corner));
       const auto turn = watch_signals(stop, reached);
       if (!write_outputs(turn ? turn->time : reached)) return *outcome_;
       if (turn && turn->time < stop.time) {
@@ -132,14 +138,16 @@ SimulateOutcome Run::go() {
         guard([&] { stepper_->calc_state(t, y_); });
         if (const auto ends = fire({*turn})) return finish(*ends);
         settle_switches(t);
+        settle_latches(t);
         is_cut = true;
         continue;
       }
       if (turn) waiting_.push_back(*turn);
-      if (switches && reached < stop.time) {  // a block switches within the step, which ends there
+      if ((switches || latch) && reached < stop.time) {  // something switches within the step, which ends there
         t = reached;
         guard([&] { stepper_->calc_state(t, y_); });
         settle_switches(t);
+        settle_latches(t);
         is_cut = true;
         continue;
       }
@@ -164,6 +172,7 @@ SimulateOutcome Run::go() {
     cross_jump();
     settle_control(t);
     if (const auto ends = pass(stop)) return finish(*ends);
+    settle_latches(t);
     if (is_stop_asked() && t < timeline_.end()) return halt(t);
     restarts = stop.restarts || has_changed_ || has_switched_;
     if (restarts) leave_corners(t);
@@ -192,6 +201,7 @@ double Run::begin() {
   settle_lags(t);
   settle_control(t);
   settle_lags(t);  // those that follow samples
+  settle_latches(t);
   checkpoint_.time = t;
   write_outputs_at(t);
   setup_.triggers.start(calc_gaps(t));
@@ -287,6 +297,12 @@ void Run::observe(double t) {
   const double work = ode_.get_work(y_), dissipated = ode_.get_dissipated(y_);
   if (!std::isfinite(e.kinetic + e.strain + e.potential + work))
     fail_diverged(t, name_fastest() + ", and the energy is no finite number any more");
+  const Loops& loops = ode_.system().impl().loops;
+  int open = -1;
+  if (const double gap = calc_largest_gap(loops, ode_.data().loops, &open); gap > kOpen)
+    finish_failed(t, "run.open-constraint",
+                  "constraint '" + loops[open].name + "' stands open by " + short_text(gap) + " at t = " + short_text(t),
+                  "look whether driven or locked hinges leave it no way to close, or drive against each other");
   monitor_.add(t, e, work);
   monitor_.add_feed(e, work, dissipated);
   // What a motion that jumps gives or takes is no growth.

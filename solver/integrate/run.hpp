@@ -5,6 +5,7 @@
 #include <map>
 
 #include "solver/integrate/energy_monitor.hpp"
+#include "solver/integrate/latches.hpp"
 #include "solver/integrate/linear_limit.hpp"
 #include "solver/integrate/run_setup.hpp"
 #include "solver/integrate/simulate.hpp"
@@ -81,6 +82,12 @@ class Run {
   void count_switch(const std::string& label, double t);
   /// The first time in the last step up to `to` at which a block switches.
   std::optional<double> find_switch(const Stop& stop, double to);
+  // Dry friction and rigid stops (run_latches.cpp)
+  /// What rests, slides and strikes at (t, y_), from here on.
+  void settle_latches(double t);
+  /// The first time in the last step up to `to` at which that changes.
+  std::optional<double> find_latch(const Stop& stop, double to);
+
   void get_control_memory(VectorXd& memory) const;
   void set_control_memory(const VectorXd& memory);
 
@@ -111,7 +118,8 @@ class Run {
   [[noreturn]] void fail_diverged(double t, const std::string& what);
   /// Events that bring each other about without end.
   [[noreturn]] void fail_cycle(const Firing& firing);
-  [[noreturn]] void fail_stalled(double t, const std::string& detail);
+  /// row: of the state that asks for the short steps; -1: not known.
+  [[noreturn]] void fail_stalled(double t, const std::string& detail, int row = -1);
   [[noreturn]] void finish_failed(double t, const char* id, const std::string& what, const std::string& advice);
 
   const records::SystemSpec& spec_;
@@ -150,6 +158,10 @@ class Run {
     bool is_told = false;
   };
   std::map<std::string, Switching> switching_;                 ///< by label
+  Latches latches_;
+  VectorXd latch_guards_, last_latch_guards_;
+  double settled_ = -std::numeric_limits<double>::infinity();
+  int num_settled_ = 0;
   double sampled_ = -std::numeric_limits<double>::infinity();  ///< the last instant whose samples are taken
   bool has_switched_ = false;  ///< what the motion depends on has changed since the stepper's last start
 };

@@ -32,9 +32,11 @@ double Run::restore(const records::Checkpoint& c) {
   if (const auto* m = c.find("limits")) limit_.set_memory(*m);
   if (const auto* m = c.find("stepper")) restored_.memory = {{"stepper", *m}};
   if (const auto* m = c.find("discrete")) ode_.set_memory(*m);
+  if (const auto* m = c.find("latches")) latches_.set_memory(*m, ode_);
   timeline_.skip_outputs(c.time);
   if (const auto* m = c.find("control")) set_control_memory(*m);
   settle_control(c.time);
+  settle_latches(c.time);
   last_gaps_ = calc_gaps(c.time);
   setup_.triggers.start(last_gaps_);
   if (const auto* m = c.find("events")) {
@@ -55,6 +57,7 @@ void Run::save(double t) {
   checkpoint_.memory[4].second = stepper_->memory();
   ode_.get_memory(checkpoint_.memory[5].second);
   get_control_memory(checkpoint_.memory[6].second);
+  latches_.get_memory(checkpoint_.memory[7].second);
   sink_.write_energy_error(monitor_.worst());
   sink_.write_checkpoint(checkpoint_);
   saved_at_ = std::chrono::steady_clock::now();

@@ -10,6 +10,11 @@ namespace {
 constexpr int kMostRounds = 20, kMostQuick = 200;
 constexpr double kQuick = 1e-9;
 
+bool is_same(const Discrete& a, const Discrete& b) {
+  const auto closes_alike = [](const Closing& x, const Closing& y) { return x.is_closed == y.is_closed; };
+  return a.mode == b.mode && std::equal(a.closings.begin(), a.closings.end(), b.closings.begin(), closes_alike);
+}
+
 }  // namespace
 
 std::optional<Firing> Run::watch_signals(const Stop& stop, double to) {
@@ -91,7 +96,8 @@ void Run::change(const Firing& firing) {
   guard([&] {
     ode_.project(firing.time, y_);
     const Discrete next = setup_.changes.apply(firing.trigger, ode_, firing.time, y_);
-    sink_.write_event({firing.time, setup_.changes.describe(firing.trigger)});
+    sink_.write_event({firing.time, setup_.changes.describe(firing.trigger) +
+                                        (is_same(next, get_discrete(ode_.data())) ? ": it was so already" : "")});
     for (const auto& what : ode_.change(firing.time, next, y_)) sink_.write_event({firing.time, what});
   });
   const bool is_quick = firing.time - changed_ < kQuick * (timeline_.end() - timeline_.start());

@@ -16,7 +16,7 @@ void Run::fail_as_thrown() {
   try {
     throw;
   } catch (const StepFailure& failure) {
-    if (failure.kind == StepFailure::Kind::Stalled) fail_stalled(failure.time, failure.detail);
+    if (failure.kind == StepFailure::Kind::Stalled) fail_stalled(failure.time, failure.detail, failure.row);
     fail_non_finite(failure.time, failure.tried);
   } catch (const ComputationError& failure) {
     sink_.end(false, failure.what());
@@ -66,7 +66,7 @@ void Run::fail_cycle(const Firing& firing) {
                 "what one event does makes another come at once: give them values that lie apart, or a direction");
 }
 
-void Run::fail_stalled(double t, const std::string& detail) {
+void Run::fail_stalled(double t, const std::string& detail, int row) {
   const System& system = ode_.system();
   const std::string loops = system.num_constraints() == 0
                                 ? ""
@@ -76,7 +76,8 @@ void Run::fail_stalled(double t, const std::string& detail) {
       setup_.integrator != "bdf"
           ? "loosen relative_tolerance, or use integrator = \"bdf\" when fast modes are damped out"
           : "loosen relative_tolerance, or leave out the fastest modes";
-  finish_failed(t, "run.stalled", "the integrator makes no progress at t = " + short_text(t) + ": " + detail,
+  const std::string state = row < 0 ? "" : "; it is " + ode_.name_row(row) + " that asks for them most";
+  finish_failed(t, "run.stalled", "the integrator makes no progress at t = " + short_text(t) + ": " + detail + state,
                 loops + usual);
 }
 

@@ -27,6 +27,7 @@ struct StepFailure {
   double time = 0;
   std::string detail;
   double tried = 0;  ///< NonFinite: time of the evaluation
+  int row = -1;      ///< Stalled: of the state that errs most in its tolerance; -1: not known
 };
 
 class Stepper {
@@ -60,7 +61,7 @@ std::unique_ptr<Stepper> make_stepper(const std::string& integrator, Ode& ode, c
 /// SUNDIALS CVODE: variable order and step; Adams-Moulton (to order 12) by fixed-point iteration, or BDF (to order 5)
 /// by Newton with a dense difference-quotient Jacobian (Hindmarsh et al., ACM TOMS 31 (2005) 363).
 std::unique_ptr<Stepper> make_cvode_stepper(Ode& ode, const StepperOptions& options, bool stiff);
-/// SUNDIALS ARKODE, explicit embedded pair: Dormand-Prince 5(4) or Fehlberg 8(7).
+/// Explicit embedded pair: Dormand and Prince's 5(4) or 8(7); the error is judged after the projection.
 std::unique_ptr<Stepper> make_erk_stepper(Ode& ode, const StepperOptions& options);
 /// The classical Runge-Kutta method of order 4, at fixed step (fixed_step.hpp).
 std::unique_ptr<Stepper> make_rk4_stepper(Ode& ode, const StepperOptions& options);

@@ -46,21 +46,17 @@ inline int call_ode(sunrealtype t, N_Vector y, N_Vector y_dot, void* user) {
   return static_cast<GuardedOde*>(user)->calc(t, N_VGetArrayPointer(y), N_VGetArrayPointer(y_dot));
 }
 
-/// After an accepted step of ARKODE.
-inline int call_projection(sunrealtype t, N_Vector y, void* user) {
-  return static_cast<GuardedOde*>(user)->project(t, N_VGetArrayPointer(y));
-}
-
 /// Messages go into the exception, not to the terminal.
 inline void ignore_message(int, const char*, const char*, char*, void*) {}
 
 /// After a failed step: what the equations threw, or a StepFailure.
-[[noreturn]] inline void throw_failure(GuardedOde& ode, double t, const char* method, char* flag_name) {
+/// row: StepFailure::row.
+[[noreturn]] inline void throw_failure(GuardedOde& ode, double t, const char* method, char* flag_name, int row) {
   std::string detail = std::string(method) + " returned " + flag_name;
   std::free(flag_name);
   ode.throw_pending();
   throw StepFailure{ode.was_non_finite() ? StepFailure::Kind::NonFinite : StepFailure::Kind::Stalled, t,
-                    std::move(detail), ode.bad_time()};
+                    std::move(detail), ode.bad_time(), row};
 }
 
 }  // namespace bough::solver::detail

@@ -1,5 +1,6 @@
 #include "solver/integrate/system_ode.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "solver/system/impl.hpp"
@@ -39,6 +40,18 @@ std::vector<std::string> SystemOde::cross_jump(double before, double t, Eigen::R
 
 void SystemOde::project(double t, Eigen::Ref<VectorXd> y) {
   solver::project(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
+}
+
+void SystemOde::project_error(Eigen::Ref<VectorXd> error) {
+  solver::remove_normal(system_, *data_, error.head(num_q_), error.segment(num_q_, num_u_));
+}
+
+double SystemOde::strike(double t, int row, double rate, Eigen::Ref<VectorXd> y) {
+  const double before = get_work(y);
+  const double impulse = solver::strike(system_, *data_, t, y.head(num_q_), row, rate, y.segment(num_q_, num_u_),
+                                        y[num_coordinates() + num_z_]);
+  y[num_coordinates() + num_z_ + 1] += std::max(0.0, before - get_work(y));
+  return impulse;
 }
 
 std::vector<std::string> SystemOde::change(double t, const Discrete& next, Eigen::Ref<VectorXd> y) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <set>
 
 namespace bough::solver {
@@ -49,6 +51,9 @@ void finish_loops(const Tree& tree, Loops& loops) {
     }
     c.path.assign(path.begin(), path.end());
     c.roots.assign(roots.begin(), roots.end());
+    double mass = 0;
+    for (const int b : c.path) mass += tree[b].body.mass();
+    c.least = mass > 0 ? 1 / mass : 0;
   }
 }
 
@@ -70,27 +75,45 @@ LoopData make_loop_data(const Loops& loops, const Tree& tree) {
 
 namespace {
 
-bool meet(const std::vector<int>& a, const std::vector<int>& b) {
-  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
-}
-
 LoopBlock make_block(const Loops& loops, const Tree& tree, const std::vector<int>& constraints) {
   LoopBlock block;
-  std::set<int> bodies;
+  const auto num = static_cast<int>(constraints.size());
+  std::vector<int> sizes, root(static_cast<size_t>(tree.size()));
+  std::map<int, std::vector<int>> by_root;
+  for (int b = 0; b < tree.size(); ++b)
+    root[static_cast<size_t>(b)] = tree[b].parent < 0 ? b : root[static_cast<size_t>(tree[b].parent)];
   int rows = 0;
-  for (const int i : constraints) {
+  for (int k = 0; k < num; ++k) {
+    const int i = constraints[static_cast<size_t>(k)];
     block.constraints.push_back(i);
     block.first.push_back(rows);
-    rows += loops[i].num_rows();
-    bodies.insert(loops[i].path.begin(), loops[i].path.end());
+    sizes.push_back(loops[i].num_rows());
+    rows += sizes.back();
+    for (const int r : loops[i].roots) by_root[r].push_back(k);
   }
-  block.bodies.assign(bodies.begin(), bodies.end());
-  double mass = 0;
-  for (const int b : block.bodies) mass += tree[b].body.mass();
-  block.least = mass > 0 ? 1 / mass : 0;
-  block.A = MatrixXd::Zero(rows, rows);
+  std::set<std::pair<int, int>> meets;  // the later one second
+  for (const auto& [r, group] : by_root) {
+    for (size_t a = 0; a < group.size(); ++a) {
+      for (size_t b = a + 1; b < group.size(); ++b) meets.insert({group[a], group[b]});
+    }
+  }
+  block.factor.arrange(sizes, {meets.begin(), meets.end()});
   block.rows = VectorXd::Zero(rows);
-  block.factor.resize(rows);
+  block.reach.resize(static_cast<size_t>(num));
+  for (const auto& pair : block.factor.pairs) {
+    auto& reach = block.reach[static_cast<size_t>(pair.j)];
+    const auto& path = loops[block.constraints[static_cast<size_t>(pair.i)]].path;
+    reach.read.insert(reach.read.end(), path.begin(), path.end());
+  }
+  for (int k = 0; k < num; ++k) {
+    auto& reach = block.reach[static_cast<size_t>(k)];
+    std::sort(reach.read.begin(), reach.read.end());
+    reach.read.erase(std::unique(reach.read.begin(), reach.read.end()), reach.read.end());
+    const auto& own = loops[block.constraints[static_cast<size_t>(k)]].roots;
+    for (const int b : reach.read) {
+      if (std::binary_search(own.begin(), own.end(), root[static_cast<size_t>(b)])) reach.moved.push_back(b);
+    }
+  }
   return block;
 }
 
@@ -99,22 +122,26 @@ LoopBlock make_block(const Loops& loops, const Tree& tree, const std::vector<int
 void set_closings(const Loops& loops, const Tree& tree, const std::vector<Closing>& closings, LoopData& data) {
   BOUGH_DEMAND(static_cast<int>(closings.size()) == loops.size());
   data.blocks.clear();
-  std::vector<std::vector<int>> groups;
+  std::vector<int> leader(static_cast<size_t>(tree.size()));  // of the trees that constraints join
+  std::iota(leader.begin(), leader.end(), 0);
+  const auto find = [&](int r) {
+    while (leader[static_cast<size_t>(r)] != r) r = leader[static_cast<size_t>(r)];
+    return r;
+  };
   for (int i = 0; i < loops.size(); ++i) {
     data[i].closing = closings[static_cast<size_t>(i)];
     data[i].lambda.setZero();
     if (!data[i].closing.is_closed) continue;
-    std::vector<int> group;
-    const auto touches = [&](const std::vector<int>& other) {
-      return std::any_of(other.begin(), other.end(), [&](int j) { return meet(loops[i].roots, loops[j].roots); });
-    };
-    for (auto& other : groups) {
-      if (!touches(other)) continue;
-      group.insert(group.end(), other.begin(), other.end());
-      other.clear();
+    for (const int r : loops[i].roots) {
+      const int a = find(loops[i].roots[0]), b = find(r);
+      leader[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
     }
-    group.push_back(i);
-    groups.push_back(std::move(group));
+  }
+  std::vector<std::vector<int>> groups(static_cast<size_t>(tree.size()) + 1);
+  for (int i = 0; i < loops.size(); ++i) {
+    if (!data[i].closing.is_closed) continue;
+    const size_t group = loops[i].roots.empty() ? groups.size() - 1 : static_cast<size_t>(find(loops[i].roots[0]));
+    groups[group].push_back(i);
   }
   for (const auto& group : groups) {
     if (!group.empty()) data.blocks.push_back(make_block(loops, tree, group));

@@ -4,7 +4,8 @@
 /// All constraints together are G(q) u = 0, G u̇ = γ. G is never formed: a row is a wrench on two markers, M⁻¹Gᵀ what
 /// the factored tree answers to it. With a the accelerations of the open tree
 ///     (G M⁻¹ Gᵀ) λ = γ - G a,   u̇ = a + M⁻¹ Gᵀ λ
-/// by blocks of constraints that share a tree rooted at ground; least-norm λ where constraints depend on each other.
+/// by blocks of constraints that share trees rooted at ground, each sparse by who shares one; least-norm λ where
+/// constraints depend on each other. Rows along which next to nothing can move are void (change points).
 #include "solver/loops/closure.hpp"
 #include "solver/loops/relative.hpp"
 #include "solver/loops/semidefinite.hpp"
@@ -26,6 +27,7 @@ struct Constraint {
   double offset = 0;
   bool active = true;       ///< at the start
   double coupled_size = 0;  ///< coupler: sum of squared ratios, of angles over the square of Loops::length
+  double least = 0;         ///< acceleration of all on its path by a unit force
   std::vector<int> path;    ///< bodies it acts on and those between them and ground, ascending
   std::vector<int> roots;   ///< of the trees they belong to
 
@@ -51,12 +53,16 @@ struct ConstraintData {
 };
 
 struct LoopBlock {
+  /// Where a unit row of a constraint is felt: by constraints that share a tree with it, and by the bodies on their
+  /// paths.
+  struct Reach {
+    std::vector<int> read;   ///< bodies on the paths of those constraints, ascending
+    std::vector<int> moved;  ///< those of them in its own trees
+  };
   std::vector<int> constraints, first;  ///< which, and the first row of each
-  std::vector<int> bodies;              ///< on their paths, ascending
-  double least = 0;                     ///< acceleration of all of them by a unit force
-  MatrixXd A;                           ///< G M⁻¹ Gᵀ
+  std::vector<Reach> reach;             ///< of each
   VectorXd rows;                        ///< what the rows are off by; then the multipliers
-  SemidefiniteFactor factor;
+  SemidefiniteFactor factor;            ///< of A = G M⁻¹ Gᵀ
 };
 
 struct LoopData {
@@ -91,6 +97,12 @@ void close_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, Loop
 /// tree_data at (t, q, u), factored. No allocation.
 void project(const Loops& loops, const Tree& tree, double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u,
              TreeData& tree_data, LoopData& data);
+/// Takes off du (num_u) what a projection would: M⁻¹Gᵀ(G M⁻¹Gᵀ)⁺G du, by the factors of the last project or
+/// factor_loops. No allocation.
+void remove_normal(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data,
+                   Eigen::Ref<VectorXd> du);
+/// G M⁻¹ Gᵀ of every block. After calc_closure_positions and calc_factor. No allocation.
+void factor_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data);
 /// λ: the impulses that bring G u to zero from the velocities of the tree. After Stage::Velocity and Stage::Factor.
 void calc_closing_impulses(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data);
 /// Gᵀλ into a response that was started.

@@ -12,7 +12,10 @@ namespace {
 
 constexpr int kMostProjections = 6;
 constexpr double kClosed = 1e-14;
-constexpr double kVoid = 1e-13;  // of the most that a row of that size moves in its block
+/// Of the most that a row of that size moves in its constraint. Near a change point a row gets to move as the square of
+/// the distance θ from it, and rounding of the gap makes an acceleration of 1e-15/θ³ across it: at θ = 1e-5 that grows
+/// past what the row is for.
+constexpr double kVoid = 1e-10;
 
 // Adds a share of row k of a constraint to a sweep that was started.
 void add_row(const Constraint& c, const ConstraintData& d, int k, double share, const Tree& tree,
@@ -40,61 +43,41 @@ Vector6d calc_rows(const Constraint& c, const ConstraintData& d, const Tree& tre
   return rows;
 }
 
-bool meet(const std::vector<int>& a, const std::vector<int>& b) {
-  for (const int x : a) {
-    if (std::binary_search(b.begin(), b.end(), x)) return true;
-  }
-  return false;
-}
-
 // Squared size of a row: as a force, lengths over Loops::length.
 double calc_size(const Loops& loops, const Constraint& c, const ConstraintData& d, int k) {
   if (!c.closure) return c.coupled_size;
   return d.own.W.col(k).head<3>().squaredNorm() + d.own.W.col(k).tail<3>().squaredNorm() / std::pow(loops.length, 2);
 }
 
-// Rows that move nothing but by rounding are made zero.
-void drop_void_rows(const Loops& loops, const LoopData& data, LoopBlock& block) {
-  double most = block.least;
-  for (const bool drops : {false, true}) {
-    for (size_t j = 0; j < block.constraints.size(); ++j) {
-      const int i = block.constraints[j];
-      for (int k = 0; k < loops[i].num_rows(); ++k) {
-        const int row = block.first[j] + k;
-        const double size = calc_size(loops, loops[i], data[i], k);
-        if (!drops) {
-          most = std::max(most, block.A(row, row) / size);
-        } else if (block.A(row, row) < kVoid * most * size) {
-          block.A.row(row).setZero();
-          block.A.col(row).setZero();
-        }
-      }
-    }
-  }
+// Rows that move nothing but by rounding, or so little that rounding decides how they move (near a change point), are
+// left out.
+void drop_void_rows(const Loops& loops, const Constraint& c, const ConstraintData& d, int first, const MatrixXd& A,
+                    SemidefiniteFactor& factor) {
+  double most = c.least;
+  for (int k = 0; k < c.num_rows(); ++k) most = std::max(most, A(k, k) / calc_size(loops, c, d, k));
+  for (int k = 0; k < c.num_rows(); ++k) factor.set_void(first + k, A(k, k) < kVoid * most * calc_size(loops, c, d, k));
 }
 
-// A of a block, column by column: the response to a unit row at the rows after it.
+// A of a block, column by column: what a unit row does to the rows that share a tree with it.
 void factor_block(const Loops& loops, const Tree& tree, TreeData& tree_data, const LoopData& data, LoopBlock& block) {
+  auto pair = block.factor.pairs.begin();
   for (size_t j = 0; j < block.constraints.size(); ++j) {
     const Constraint& own = loops[block.constraints[j]];
+    const auto diagonal = pair;
+    while (pair != block.factor.pairs.end() && pair->j == static_cast<int>(j)) ++pair;
     for (int k = 0; k < own.num_rows(); ++k) {
-      Sweep& s = start_response(tree_data);
+      Sweep& s = start_response(tree, tree_data, block.reach[j].read);
       add_row(own, data[block.constraints[j]], k, 1, tree, tree_data, s);
       for (auto b = own.path.rbegin(); b != own.path.rend(); ++b) solve_to_base(tree, *b, tree_data, s);
-      for (const int b : block.bodies) solve_to_tip(tree, b, tree_data, s);
-      for (size_t i = j; i < block.constraints.size(); ++i) {
-        const Constraint& other = loops[block.constraints[i]];
-        const int n = other.num_rows();
-        const bool is_met = i == j || meet(own.roots, other.roots);
-        block.A.block(block.first[i], block.first[j] + k, n, 1).setZero();
-        if (!is_met) continue;
-        const Vector6d rows = calc_rows(other, data[block.constraints[i]], tree, tree_data, s);
-        for (int r = 0; r < n; ++r) block.A(block.first[i] + r, block.first[j] + k) = rows[r];
+      for (const int b : block.reach[j].moved) solve_to_tip(tree, b, tree_data, s);
+      for (auto p = diagonal; p != pair; ++p) {
+        const int i = block.constraints[static_cast<size_t>(p->i)];
+        p->A.col(k) = calc_rows(loops[i], data[i], tree, tree_data, s).head(loops[i].num_rows());
       }
     }
+    drop_void_rows(loops, own, data[block.constraints[j]], block.first[j], diagonal->A, block.factor);
   }
-  drop_void_rows(loops, data, block);
-  block.factor.compute(block.A);
+  block.factor.compute();
 }
 
 void keep_lambda(const Loops& loops, const LoopBlock& block, LoopData& data) {
@@ -189,6 +172,31 @@ void calc_closing_impulses(const Loops& loops, const Tree& tree, TreeData& tree_
   calc_closure_positions(loops, tree, tree_data, data);
   calc_closure_velocities(loops, tree, tree_data, data);
   solve_gaps(loops, tree, tree_data, data, true);
+}
+
+void factor_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data) {
+  for (LoopBlock& block : data.blocks) factor_block(loops, tree, tree_data, data, block);
+}
+
+void remove_normal(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data,
+                   Eigen::Ref<VectorXd> du) {
+  if (data.blocks.empty()) return;
+  Sweep& s = tree_data.response;
+  run_rates(tree, tree_data, du, s);
+  for (LoopBlock& block : data.blocks) {
+    for (size_t j = 0; j < block.constraints.size(); ++j) {
+      const int i = block.constraints[j], n = loops[i].num_rows();
+      block.rows.segment(block.first[j], n) = -calc_rows(loops[i], data[i], tree, tree_data, s).head(n);
+    }
+    block.factor.solve(block.rows);
+    keep_lambda(loops, block, data);
+  }
+  start_response(tree_data);
+  add_multipliers(loops, tree, tree_data, data, s);
+  run_response(tree, tree_data, s);
+  for (Eigen::Index row = 0; row < du.size(); ++row) {
+    if (tree_data.mode[static_cast<size_t>(row)] == HingeMode::Free) du[row] += s.u_dot[row];
+  }
 }
 
 void project(const Loops& loops, const Tree& tree, double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u,

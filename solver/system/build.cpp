@@ -258,7 +258,7 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
   for (size_t b = 0; b < tree.bodies.size(); ++b) {
     if (order.hinge[b] < 0 || !impl.sound[b]) continue;
     build_hinge_laws(spec.hinges[static_cast<size_t>(order.hinge[b])], context, tree.bodies[b], impl.elements,
-                     diagnostics);
+                     impl.latches, diagnostics);
   }
   build_signals(spec, system, flex, functions, uses, impl, diagnostics);
   collect_breakpoints(impl);

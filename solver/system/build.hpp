@@ -64,7 +64,8 @@ std::unique_ptr<const ForceElement> build_element(const records::ForceElementRec
                                                   const ElementContext& context, Tree& tree, Diagnostics& diagnostics);
 /// What acts along the coordinates of a body's hinge, and its motors' inertia, of the finished tree.
 void build_hinge_laws(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb,
-                      std::vector<std::unique_ptr<const ForceElement>>& elements, Diagnostics& diagnostics);
+                      std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<Latch>& latches,
+                      Diagnostics& diagnostics);
 
 /// What acts at a node. A hinge that can pass on a moment takes both.
 struct NodeLoad {

@@ -15,7 +15,7 @@ class LawBuilder {
   LawBuilder(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb, Diagnostics& diagnostics)
       : r_(record), context_(context), tb_(tb), diagnostics_(diagnostics), user_("hinge " + quote(record.name)) {}
 
-  void build(std::vector<std::unique_ptr<const ForceElement>>& elements) {
+  void build(std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<Latch>& latches) {
     const auto& law = r_.law;
     bool is_given = law.has_stops || law.has_friction;
     for (const auto* list : {&law.preload, &law.rotor_inertia}) is_given = is_given || !list->empty();
@@ -33,7 +33,7 @@ class LawBuilder {
     int ignored = 0;
     for (int i = 0; i < tb_.num_hinge_u(); ++i) {
       if (tb_.mode[static_cast<size_t>(i)] == HingeMode::Prescribed) ++ignored;
-      add(i, elements);
+      add(i, elements, latches);
     }
     if (ignored == tb_.num_hinge_u() && ignored > 0) {
       diagnostics_.warning("system.ignored-spring", r_.at,
@@ -72,6 +72,7 @@ class LawBuilder {
     check_count(law.stop_upper, "upper of stops");
     check_positive(law.stop_stiffness, "stiffness of stops");
     check_positive(law.stop_damping, "damping of stops");
+    check_positive(law.stop_restitution, "restitution of stops");
     check_positive(law.coulomb, "coulomb friction");
     check_positive(law.static_friction, "static friction");
     check_positive(law.stribeck_velocity, "stribeck_velocity");
@@ -98,7 +99,18 @@ class LawBuilder {
     return find_curve(context_, names[static_cast<size_t>(i)], r_.at, user_, diagnostics_);
   }
 
-  void add(int i, std::vector<std::unique_ptr<const ForceElement>>& elements) {
+  void check_stops(const HingeLaw::Law& law, double restitution, bool is_rigid, const std::string& which) {
+    if (!(law.lower < law.upper))
+      refuse("has stops of coordinate " + which + " with lower above upper", "exchange them");
+    if (!is_rigid && !(law.stop_stiffness > 0))
+      refuse("has stops without stiffness", "give stops a stiffness > 0, or a restitution for rigid ones");
+    if (is_rigid && restitution > 1)
+      refuse("has stops with a restitution above 1", "give the speed after over the speed before, 0 .. 1");
+    if (is_rigid && (law.stop_stiffness > 0 || law.stop_damping > 0))
+      refuse("has stops with a restitution and a spring", "give stops a stiffness and damping, or a restitution");
+  }
+
+  void add(int i, std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<Latch>& latches) {
     const auto& r = r_.law;
     HingeLaw::Law law;
     law.preload = at(r.preload, i);
@@ -116,18 +128,27 @@ class LawBuilder {
     law.smoothing = at(r.smoothing, i);
     const std::string which = std::to_string(i + 1);
     const bool has_stop = std::isfinite(law.lower) || std::isfinite(law.upper);
-    if (!(law.lower < law.upper))
-      refuse("has stops of coordinate " + which + " with lower above upper", "exchange them");
-    if (has_stop && !(law.stop_stiffness > 0)) refuse("has stops without stiffness", "give stops a stiffness > 0");
+    const bool is_rigid = has_stop && !r.stop_restitution.empty();
+    if (has_stop) check_stops(law, at(r.stop_restitution, i), is_rigid, which);
     const bool has_friction = law.coulomb > 0 || law.static_friction > 0;
-    if (has_friction && !(law.smoothing > 0))
-      refuse("has friction without smoothing", "give the rate over which friction turns round, as 1e-3");
+    law.is_dry = has_friction && !(law.smoothing > 0);
     if (law.static_friction < law.coulomb)
       refuse("has static friction below coulomb friction", "give static at least as much");
-    if (law.static_friction > law.coulomb && !(law.stribeck_velocity > 0))
+    if (law.static_friction > law.coulomb && !(law.stribeck_velocity > 0) && !law.is_dry)
       refuse("has static friction without stribeck_velocity", "give the rate over which it falls to coulomb's");
-    if (!(law.stribeck_velocity > 0)) law.stribeck_velocity = 1;
-    const bool acts = law.preload != 0 || law.spring || law.damper || has_stop || has_friction;
+    if (is_rigid || law.is_dry)
+      latches.push_back({"coordinate " + which + " of hinge " + quote(tb_.hinge_name), tb_.q_offset + i,
+                         tb_.u_offset + i, is_rigid ? law.lower : -free, is_rigid ? law.upper : free,
+                         at(r.stop_restitution, i), law.is_dry ? law.static_friction : 0});
+    if (!(law.stribeck_velocity > 0)) {
+      if (law.is_dry) law.static_friction = law.coulomb;  // as soon as it slides
+      law.stribeck_velocity = 1;
+    }
+    if (is_rigid) {
+      law.lower = -free;
+      law.upper = free;
+    }
+    const bool acts = law.preload != 0 || law.spring || law.damper || (has_stop && !is_rigid) || has_friction;
     if (acts) {
       elements.push_back(
           std::make_unique<HingeLaw>(tb_.hinge_name + ":" + which, tb_.q_offset + i, tb_.u_offset + i, std::move(law)));
@@ -144,8 +165,9 @@ class LawBuilder {
 }  // namespace
 
 void build_hinge_laws(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb,
-                      std::vector<std::unique_ptr<const ForceElement>>& elements, Diagnostics& diagnostics) {
-  LawBuilder(record, context, tb, diagnostics).build(elements);
+                      std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<Latch>& latches,
+                      Diagnostics& diagnostics) {
+  LawBuilder(record, context, tb, diagnostics).build(elements, latches);
 }
 
 }  // namespace bough::solver

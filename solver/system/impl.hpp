@@ -2,6 +2,7 @@
 /// \file What stands behind System and SystemData.
 #include "solver/forces/applied.hpp"
 #include "solver/forces/element.hpp"
+#include "solver/forces/latch.hpp"
 #include "solver/loops/loops.hpp"
 #include "solver/signals/graph.hpp"
 #include "solver/system/system.hpp"
@@ -18,6 +19,7 @@ struct System::Impl {
   VectorXd initial_q, initial_u;          ///< with closed loops; empty: as the records say
   std::vector<Closing> initial_closings;  ///< likewise
   std::vector<std::unique_ptr<const ForceElement>> elements;
+  std::vector<Latch> latches;
   SignalGraph signals;
   bool signals_are_sound = true;  ///< sensors, controllers and actuators have no errors
   Vector3d gravity = Vector3d::Zero();
@@ -33,6 +35,7 @@ class SystemData {
   LoopData loops;
   std::vector<ForceResult> elements;  ///< of add_forces; zero before it
   SignalData signals;
+  VectorXd tangent;  ///< num_u, scratch
 };
 
 }  // namespace bough::solver

@@ -65,6 +65,7 @@ std::unique_ptr<SystemData> System::make_data() const {
   data->loops = make_loop_data(impl_->loops, impl_->tree);
   if (!impl_->initial_closings.empty()) set_closings(impl_->loops, impl_->tree, impl_->initial_closings, data->loops);
   data->elements.resize(impl_->elements.size());
+  data->tangent = VectorXd::Zero(impl_->tree.num_u);
   data->signals = impl_->signals.make_data();
   return data;
 }
@@ -197,6 +198,37 @@ void calc_accelerations_dense(const System& system, SystemData& data, double, Ei
 void project(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) {
   const System::Impl& impl = system.impl();
   project(impl.loops, impl.tree, t, q, u, data.tree, data.loops);
+}
+
+void remove_normal(const System& system, SystemData& data, Eigen::Ref<VectorXd> dq, Eigen::Ref<VectorXd> du) {
+  const System::Impl& impl = system.impl();
+  if (data.loops.blocks.empty()) return;
+  // q's in the tangent: N⁺ by columns of N, which are orthogonal to each other.
+  VectorXd& tangent = data.tangent;
+  for (const TreeBody& tb : impl.tree.bodies) {
+    const int nq = tb.num_hinge_q(), nu = tb.num_hinge_u(), n = tb.num_modes();
+    tangent.segment(tb.eta_dot_offset(), n) = dq.segment(tb.eta_offset(), n);
+    if (tb.hinge->has_plain_coordinates()) {
+      tangent.segment(tb.u_offset, nu) = dq.segment(tb.q_offset, nq);
+      continue;
+    }
+    for (int i = 0; i < nu; ++i) {
+      double unit[6] = {}, column[7];
+      unit[i] = 1;
+      tb.hinge->calc_q_dot(data.tree.q.data() + tb.q_offset, unit, column);
+      const Eigen::Map<const VectorXd> N(column, nq);
+      tangent[tb.u_offset + i] = N.dot(dq.segment(tb.q_offset, nq)) / N.squaredNorm();
+    }
+  }
+  remove_normal(impl.loops, impl.tree, data.tree, data.loops, tangent);
+  for (const TreeBody& tb : impl.tree.bodies) {
+    const int n = tb.num_modes();
+    double column[7];
+    tb.hinge->calc_q_dot(data.tree.q.data() + tb.q_offset, tangent.data() + tb.u_offset, column);
+    dq.segment(tb.q_offset, tb.num_hinge_q()) = Eigen::Map<const VectorXd>(column, tb.num_hinge_q());
+    dq.segment(tb.eta_offset(), n) = tangent.segment(tb.eta_dot_offset(), n);
+  }
+  remove_normal(impl.loops, impl.tree, data.tree, data.loops, du);
 }
 
 int System::num_constraints() const { return impl_->loops.size(); }

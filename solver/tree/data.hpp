@@ -60,6 +60,7 @@ struct TreeData {
   VectorXd given_u, given_udot;  ///< num_u: rates and accelerations of the prescribed ones
   std::vector<MarkerMotion> markers;
   VectorXd h, applied;   ///< num_v: [f; t about Bo; modal] per body, in B, gravity left out
+  VectorXd slide;        ///< num_u: which way a coordinate with dry friction slides, 1 or -1; 0: it has none, or rests
   VectorXd hinge_force;  ///< num_u: springs and dampers; after solve, where not free, all that crosses the hinge
   Vector3d gravity = Vector3d::Zero();  ///< set by add_forces
   VectorXd
@@ -107,11 +108,16 @@ void solve_jump(const Tree& tree, TreeData& data, const ConstVectorRef& given, E
 
 // The same in parts, for loads that act together: start, add what acts, run; the result is in the sweep (u_dot, A).
 Sweep& start_response(TreeData& data);
+/// The same, of the rows of these bodies only: what other bodies would answer is not to be read.
+Sweep& start_response(const Tree& tree, TreeData& data, const std::vector<int>& bodies);
 /// wrench: at the marker, in the basis of its body.
 void add_response_wrench(const Tree& tree, const TreeData& data, int marker, const Vector6d& wrench, Sweep& s);
 /// given: as solve_jump.
 void add_response_jump(const Tree& tree, const TreeData& data, const ConstVectorRef& given, Sweep& s);
 void run_response(const Tree& tree, const TreeData& data, Sweep& s);
+/// Base to tip: the velocities (A) of all bodies at rates u (num_u), less those of given rates; or small turns and
+/// travels. No load, no mass. After Stage::Position.
+void run_rates(const Tree& tree, const TreeData& data, const ConstVectorRef& u, Sweep& s);
 
 /// The impulse across the hinge of body b along its coordinate i, of the last solve_jump or run_response.
 double calc_jump_impulse(const Tree& tree, const TreeData& data, int b, int i);

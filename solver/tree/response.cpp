@@ -16,6 +16,21 @@ Sweep& start_response(TreeData& data) {
   return s;
 }
 
+Sweep& start_response(const Tree& tree, TreeData& data, const std::vector<int>& bodies) {
+  data.demand(Stage::Factor);
+  Sweep& s = data.response;
+  for (const int b : bodies) {
+    const TreeBody& tb = tree[b];
+    const int rows = tb.num_hinge_u() + tb.num_modes();
+    s.beta.segment(tb.v_offset, 6 + tb.num_modes()).setZero();
+    s.b.col(b).setZero();
+    s.A.col(b).setZero();
+    for (VectorXd* v : {&s.tau, &s.z, &s.u_dot}) v->segment(tb.u_offset, rows).setZero();
+  }
+  s.ground.setZero();
+  return s;
+}
+
 void add_response_wrench(const Tree& tree, const TreeData& data, int marker, const Vector6d& wrench, Sweep& s) {
   const Marker& m = tree.markers[static_cast<size_t>(marker)];
   if (m.body < 0) return;
@@ -48,6 +63,34 @@ void add_response_jump(const Tree& tree, const TreeData& data, const ConstVector
 void run_response(const Tree& tree, const TreeData& data, Sweep& s) {
   for (int b = tree.size() - 1; b >= 0; --b) solve_to_base(tree, b, data, s);
   for (int b = 0; b < tree.size(); ++b) solve_to_tip(tree, b, data, s);
+}
+
+void run_rates(const Tree& tree, const TreeData& data, const ConstVectorRef& u, Sweep& s) {
+  data.demand(Stage::Position);
+  s.ground.setZero();
+  s.u_dot = u;
+  for (int b = 0; b < tree.size(); ++b) {
+    const TreeBody& tb = tree[b];
+    const BodyData& d = data[b];
+    const int n = tb.num_modes();
+    for (int i = 0; i < tb.num_hinge_u(); ++i) {
+      const auto row = static_cast<size_t>(tb.u_offset + i);
+      if (data.mode[row] != HingeMode::Free) s.u_dot[tb.u_offset + i] = 0;
+    }
+    const Vector6d A_P = tb.parent < 0 ? s.ground : Vector6d(s.A.col(tb.parent));
+    Vector6d A;
+    if (tb.on_parent.moves) {
+      const TreeBody& parent = tree[tb.parent];
+      A.noalias() = d.X.leftCols<6>() * A_P;
+      A.noalias() += d.X.rightCols(parent.num_modes()) * s.u_dot.segment(parent.eta_dot_offset(), parent.num_modes());
+    } else {
+      const Vector3d w = A_P.tail<3>();
+      A << d.R_PB.transpose() * (A_P.head<3>() + w.cross(d.r_PoBo)), d.R_PB.transpose() * w;
+    }
+    for (int i = 0; i < d.num_free; ++i) A += d.H.col(i) * s.u_dot[tb.u_offset + d.free[i]];
+    if (n > 0 && tb.on_child.moves) A.noalias() -= d.Jc * s.u_dot.segment(tb.eta_dot_offset(), n);
+    s.A.col(b) = A;
+  }
 }
 
 void solve_response(const Tree& tree, TreeData& data, int marker, const Vector6d& wrench,

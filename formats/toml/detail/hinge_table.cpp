@@ -149,6 +149,7 @@ void read_law(const Fields& table, HingeReader& reader, records::HingeLawRecord&
   law.stop_upper = reader.read_list(stops, "upper", true, true);
   law.stop_stiffness = reader.read_list(stops, "stiffness", false, true);
   law.stop_damping = reader.read_list(stops, "damping", false, true);
+  law.stop_restitution = reader.read_list(stops, "restitution", false, true);
   law.coulomb = reader.read_list(friction, "coulomb", false, true);
   law.static_friction = reader.read_list(friction, "static", false, true);
   law.stribeck_velocity = reader.read_list(friction, "stribeck_velocity", false, true);
@@ -177,6 +178,9 @@ records::HingeRecord read_hinge(const Fields& table, Diagnostics& diagnostics) {
   if (type != "screw") refuse_keys(table, {"pitch"}, because, diagnostics);
   if (type != "general" && type != "gimbal") refuse_keys(table, {"rotations"}, because, diagnostics);
   if (type != "general") refuse_keys(table, {"translations"}, because, diagnostics);
+  if (type == "screw" && !table.has("pitch"))
+    diagnostics.error("toml.missing-key", table.locate(), "missing key 'pitch' " + because,
+                      "give the travel along the axis per radian");
   hinge.pitch = table.get_number("pitch", 0);
   hinge.rotations = table.get_string("rotations", table.get_string("type") == "gimbal" ? "xyz" : "");
   hinge.translations = table.get_string("translations");

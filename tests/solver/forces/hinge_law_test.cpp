@@ -218,7 +218,16 @@ TEST(HingeLaw, WhatMakesNoSenseIsRefused) {
               h.law.has_stops = true, h.law.stop_upper = {-1}, h.law.stop_lower = {1}, h.law.stop_stiffness = {1};
             }),
             "system.bad-hinge-law ");
-  EXPECT_EQ(error_of([](auto& h) { h.law.has_friction = true, h.law.coulomb = {1}; }), "system.bad-hinge-law ");
+  EXPECT_EQ(error_of([](auto& h) { h.law.has_friction = true, h.law.coulomb = {1}; }), "");  // dry
+  EXPECT_EQ(error_of([](auto& h) {
+              h.law.has_stops = true, h.law.stop_upper = {1}, h.law.stop_restitution = {1.5};
+            }),
+            "system.bad-hinge-law ");
+  EXPECT_EQ(error_of([](auto& h) {
+              h.law.has_stops = true, h.law.stop_upper = {1}, h.law.stop_restitution = {0.5};
+              h.law.stop_stiffness = {1};
+            }),
+            "system.bad-hinge-law ");
   EXPECT_EQ(error_of([](auto& h) { h.law.preload = {1, 2}; }), "system.bad-count ");
   EXPECT_EQ(error_of([](auto& h) { h.law.spring_table = {"tabel"}; }), "system.unknown-function ");
   auto spec = plain;

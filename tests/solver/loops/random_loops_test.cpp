@@ -146,8 +146,12 @@ TEST_P(RandomLoops, BlocksAreGMGt) {
   const MatrixXd A = own * M.llt().solve(own.transpose());
   Eigen::Index at = 0;
   for (const LoopBlock& block : s.data->loops.blocks) {
-    const auto n = block.A.rows();
-    const MatrixXd lower = block.A.triangularView<Eigen::Lower>();
+    const auto n = block.rows.size();
+    MatrixXd own_A = MatrixXd::Zero(n, n);
+    for (const auto& pair : block.factor.pairs)
+      own_A.block(block.first[static_cast<size_t>(pair.i)], block.first[static_cast<size_t>(pair.j)], pair.A.rows(),
+                  pair.A.cols()) = pair.A;
+    const MatrixXd lower = own_A.triangularView<Eigen::Lower>();
     const MatrixXd expected = A.block(at, at, n, n).triangularView<Eigen::Lower>();
     EXPECT_LT((lower - expected).norm(), 1e-10 * (1 + expected.norm()));
     at += n;
@@ -255,8 +259,9 @@ TEST(Semidefinite, SolvesByLeastNorm) {
     const MatrixXd A = B * B.transpose();
     const VectorXd b = A * random.vector_n(9);
     SemidefiniteFactor factor;
-    factor.resize(9);
-    factor.compute(A);
+    factor.arrange(9);
+    factor.pairs[0].A = A;
+    factor.compute();
     EXPECT_EQ(factor.rank(), rank);
     VectorXd x = b;
     factor.solve(x);

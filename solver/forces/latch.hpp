@@ -1,0 +1,16 @@
+#pragma once
+/// \file What holds a hinge coordinate until a force is too much for it: dry friction, and stops that do not give.
+#include <limits>
+#include <string>
+
+namespace bough::solver {
+
+struct Latch {
+  std::string name;  ///< "coordinate 1 of hinge 'slide'"
+  int q_row = 0, u_row = 0;
+  double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
+  double restitution = 0;      ///< of its stops: speed after over speed before
+  double static_friction = 0;  ///< that holds it at rest; 0: none
+};
+
+}  // namespace bough::solver

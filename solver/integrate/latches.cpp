@@ -1,0 +1,201 @@
+#include "solver/integrate/latches.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/integrate/run.hpp"
+#include "solver/system/impl.hpp"
+
+namespace bough::solver {
+namespace {
+
+constexpr int kMostStrikes = 200;
+constexpr double kTouch = 1e-11;  // of where a stop is: what is no farther from it touches it
+
+int sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
+
+}  // namespace
+
+Latches::Latches(const System& system) : system_(system) {
+  for (const Latch& latch : system.impl().latches) {
+    Watched w;
+    w.latch = latch;
+    latches_.push_back(std::move(w));
+  }
+}
+
+// Of what rests: all that crosses the hinge but for what acts along the coordinate by itself.
+double Latches::calc_holding_force(const SystemData& data, const Watched& w) const {
+  const int row = w.latch.u_row;
+  double applied = data.tree.motion.tau[row];
+  const Loops& loops = system_.impl().loops;
+  for (int i = 0; i < loops.size(); ++i) {
+    if (!data.loops[i].closing.is_closed) continue;
+    for (const CouplerTerm& term : loops[i].terms) {
+      if (term.u_row == row) applied -= term.ratio * data.loops[i].lambda[0];
+    }
+  }
+  return data.tree.hinge_force[row] - applied;
+}
+
+void Latches::calc_guards(const SystemData& data, VectorXd& guards) const {
+  guards.setConstant(-1);
+  for (size_t i = 0; i < latches_.size(); ++i) {
+    const Watched& w = latches_[i];
+    auto own = guards.segment<kGuards>(kGuards * static_cast<Eigen::Index>(i));
+    const HingeMode mode = data.tree.mode[static_cast<size_t>(w.latch.u_row)];
+    const double q = data.tree.q[w.latch.q_row], rate = data.tree.u[w.latch.u_row];
+    if (mode == HingeMode::Locked && w.rests) {
+      const double force = calc_holding_force(data, w);
+      if (std::isfinite(w.high())) own[0] = force - w.high();
+      if (std::isfinite(w.low())) own[1] = w.low() - force;
+    } else if (mode == HingeMode::Free) {
+      if (std::isfinite(w.latch.lower)) own[0] = w.latch.lower - q;
+      if (std::isfinite(w.latch.upper)) own[1] = q - w.latch.upper;
+      if (w.slide != 0) own[2] = -w.slide * rate;
+    }
+  }
+}
+
+void Latches::find_stops(const SystemOde& ode, double resolution, const VectorXd& y) {
+  for (Watched& w : latches_) {
+    const double q = y[w.latch.q_row], rate = y[ode.num_q() + w.latch.u_row];
+    const auto touches = [&](double past, double at) {
+      return std::isfinite(at) && past > -(kTouch * std::max(std::abs(at), std::abs(q)) + 4 * resolution * std::abs(rate));
+    };
+    if (w.rests && w.stop != 0) continue;
+    const bool is_low = touches(w.latch.lower - q, w.latch.lower), is_high = touches(q - w.latch.upper, w.latch.upper);
+    w.stop = is_low && is_high ? (rate < 0 ? -1 : 1) : is_low ? -1 : is_high ? 1 : 0;
+  }
+}
+
+void Latches::lock(SystemOde& ode, double t, const std::vector<bool>& rests, VectorXd& y) const {
+  Discrete next = get_discrete(ode.data());
+  for (size_t i = 0; i < latches_.size(); ++i) {
+    HingeMode& mode = next.mode[static_cast<size_t>(latches_[i].latch.u_row)];
+    if (mode == HingeMode::Prescribed || (mode == HingeMode::Locked && !latches_[i].rests)) continue;
+    mode = rests[i] ? HingeMode::Locked : HingeMode::Free;
+  }
+  ode.change(t, next, y);
+}
+
+bool Latches::strike_stops(SystemOde& ode, double t, double shortest, VectorXd& y, std::vector<std::string>& what) {
+  bool has_struck = false;
+  for (int round = 0; round < kMostStrikes; ++round) {
+    Watched* hardest = nullptr;
+    double speed = 0;
+    for (Watched& w : latches_) {
+      if (w.stop == 0 || ode.data().tree.mode[static_cast<size_t>(w.latch.u_row)] != HingeMode::Free) continue;
+      const double into = w.stop * y[ode.num_q() + w.latch.u_row];
+      const double slowest = std::abs(y_dot_[ode.num_q() + w.latch.u_row]) * shortest;
+      if (into > std::max(speed, slowest)) {
+        speed = into;
+        hardest = &w;
+      }
+    }
+    if (!hardest) return has_struck;
+    if (!has_struck) {  // an impulse overcomes whatever holds
+      lock(ode, t, std::vector<bool>(latches_.size(), false), y);
+      for (Watched& w : latches_) w.rests = false;
+      has_struck = true;
+    }
+    const int row = hardest->latch.u_row;
+    const double after = -hardest->latch.restitution * hardest->stop * speed;
+    const double impulse = ode.strike(t, row, after, y);
+    what.push_back(hardest->latch.name + " meets its stop at " +
+                   short_text(hardest->stop < 0 ? hardest->latch.lower : hardest->latch.upper) + ": its rate turns from " +
+                   short_text(hardest->stop * speed) + " to " + short_text(after) + " by an impulse of " +
+                   short_text(impulse));
+  }
+  throw ComputationError("run.endless-impacts", system_.impl().tree.bodies.front().hinge_at,
+                         "stops that throw each other back do not come to an end, last " + what.back(),
+                         "give them a restitution below 1, or a stiffness in its place");
+}
+
+// What moves slowly enough may rest: all of it is held, and what is not held by what may hold it comes loose.
+void Latches::find_rest(SystemOde& ode, double t, double shortest, VectorXd& y, std::vector<std::string>& what) {
+  const int u = ode.num_q();
+  std::vector<bool> rests(latches_.size(), false), before(latches_.size(), false);
+  std::vector<int> slide(latches_.size(), 0);
+  for (size_t i = 0; i < latches_.size(); ++i) {
+    const Watched& w = latches_[i];
+    const HingeMode mode = ode.data().tree.mode[static_cast<size_t>(w.latch.u_row)];
+    before[i] = w.rests && mode == HingeMode::Locked;
+    if (mode == HingeMode::Prescribed || (mode == HingeMode::Locked && !w.rests)) continue;
+    double& rate = y[u + w.latch.u_row];
+    slide[i] = w.latch.static_friction > 0 ? sign(rate) : 0;
+    const bool is_held = w.latch.static_friction > 0 || w.stop != 0;
+    const bool is_slow = std::abs(rate) <= std::abs(y_dot_[u + w.latch.u_row]) * shortest;
+    // What slides on its way, and has not turned, goes on.
+    const bool turns = w.latch.static_friction == 0 || w.slide == 0 || w.slide * rate <= 0;
+    if (!is_held || !is_slow || !turns) continue;
+    rate = 0;
+    rests[i] = true;
+  }
+  for (size_t left = latches_.size() + 1; left > 0; --left) {
+    lock(ode, t, rests, y);
+    for (size_t i = 0; i < latches_.size(); ++i) {
+      latches_[i].rests = rests[i];
+      latches_[i].slide = rests[i] ? 0 : slide[i];
+      ode.data().tree.slide[latches_[i].latch.u_row] = latches_[i].slide;
+    }
+    ode.calc_derivative(t, y, y_dot_);
+    double most = 0;
+    size_t loosest = latches_.size();
+    for (size_t i = 0; i < latches_.size(); ++i) {
+      if (!rests[i]) continue;
+      const double force = calc_holding_force(ode.data(), latches_[i]);
+      const double excess = std::max(force - latches_[i].high(), latches_[i].low() - force);
+      if (!(excess > most)) continue;
+      most = excess;
+      loosest = i;
+    }
+    if (loosest == latches_.size()) break;
+    rests[loosest] = false;
+    if (latches_[loosest].latch.static_friction > 0)
+      slide[loosest] = calc_holding_force(ode.data(), latches_[loosest]) > 0 ? -1 : 1;
+  }
+  for (size_t i = 0; i < latches_.size(); ++i) {
+    const Watched& w = latches_[i];
+    if (rests[i] && !before[i]) what.push_back(w.latch.name + (w.stop != 0 ? " comes to rest at its stop" : " sticks"));
+    if (!rests[i] && before[i]) what.push_back(w.latch.name + (w.stop != 0 ? " leaves its stop" : " slips"));
+  }
+}
+
+std::vector<std::string> Latches::settle(SystemOde& ode, double t, double shortest, VectorXd& y) {
+  std::vector<std::string> what;
+  if (y_dot_.size() == 0) y_dot_ = VectorXd::Zero(ode.size());
+  for (Watched& w : latches_) ode.data().tree.slide[w.latch.u_row] = w.slide;
+  ode.calc_derivative(t, y, y_dot_);
+  find_stops(ode, shortest, y);
+  if (strike_stops(ode, t, shortest, y, what)) {
+    for (Watched& w : latches_) {
+      w.slide = w.latch.static_friction > 0 ? sign(y[ode.num_q() + w.latch.u_row]) : 0;
+      ode.data().tree.slide[w.latch.u_row] = w.slide;
+    }
+    ode.calc_derivative(t, y, y_dot_);
+  }
+  find_rest(ode, t, shortest, y, what);
+  return what;
+}
+
+void Latches::get_memory(VectorXd& memory) const {
+  for (size_t i = 0; i < latches_.size(); ++i) {
+    const auto at = 2 * static_cast<Eigen::Index>(i);
+    memory[at] = latches_[i].rests ? 2 : latches_[i].slide;
+    memory[at + 1] = latches_[i].stop;
+  }
+}
+
+void Latches::set_memory(const VectorXd& memory, SystemOde& ode) {
+  for (size_t i = 0; i < latches_.size(); ++i) {
+    const auto at = 2 * static_cast<Eigen::Index>(i);
+    Watched& w = latches_[i];
+    w.rests = memory[at] == 2;
+    w.slide = w.rests ? 0 : static_cast<int>(memory[at]);
+    w.stop = static_cast<int>(memory[at + 1]);
+    ode.data().tree.slide[w.latch.u_row] = w.slide;
+  }
+}
+
+}  // namespace bough::solver

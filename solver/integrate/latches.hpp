@@ -1,0 +1,56 @@
+#pragma once
+/// \file Dry friction and rigid stops in a run: what rests, what slides and which way, what strikes a stop.
+///
+/// A coordinate at rest is locked, and held by what it takes to keep it there (friction up to its static value either
+/// way, a stop as far as it pushes). Guards, positive where something changes:
+///     resting    holding force past what can be held
+///     moving     a stop is passed; the rate has turned against the direction of sliding
+#include <string>
+#include <vector>
+
+#include "solver/forces/latch.hpp"
+#include "solver/integrate/system_ode.hpp"
+
+namespace bough::solver {
+
+class Latches {
+ public:
+  explicit Latches(const System& system);
+  bool empty() const { return latches_.empty(); }
+  static constexpr int kGuards = 3;  ///< of each latch
+  VectorXd make_guards() const { return VectorXd::Zero(kGuards * static_cast<Eigen::Index>(latches_.size())); }
+  /// At the state of the last SystemOde::calc_derivative.
+  void calc_guards(const SystemData& data, VectorXd& guards) const;
+
+  /// At (t, y), where y may have reached or passed what the guards watch: strikes, comes to rest, comes loose, as long
+  /// as anything changes. A bounce shorter than `shortest` comes to rest. What happened, in words; y and what is locked
+  /// change with it. Allocates.
+  std::vector<std::string> settle(SystemOde& ode, double t, double shortest, VectorXd& y);
+
+  VectorXd make_memory() const { return VectorXd::Zero(2 * static_cast<Eigen::Index>(latches_.size())); }
+  void get_memory(VectorXd& memory) const;
+  void set_memory(const VectorXd& memory, SystemOde& ode);
+
+ private:
+  struct Watched {
+    Latch latch;
+    bool rests = false;
+    int stop = 0;   ///< -1, 1: at the lower, upper stop
+    int slide = 0;  ///< with friction and moving: which way
+    double low() const { return stop > 0 ? -kFree : -latch.static_friction; }
+    double high() const { return stop < 0 ? kFree : latch.static_friction; }
+  };
+  static constexpr double kFree = std::numeric_limits<double>::infinity();
+
+  void find_stops(const SystemOde& ode, double resolution, const VectorXd& y);
+  bool strike_stops(SystemOde& ode, double t, double shortest, VectorXd& y, std::vector<std::string>& what);
+  void find_rest(SystemOde& ode, double t, double shortest, VectorXd& y, std::vector<std::string>& what);
+  void lock(SystemOde& ode, double t, const std::vector<bool>& rests, VectorXd& y) const;
+  double calc_holding_force(const SystemData& data, const Watched& w) const;
+
+  const System& system_;
+  std::vector<Watched> latches_;
+  VectorXd y_dot_;
+};
+
+}  // namespace bough::solver

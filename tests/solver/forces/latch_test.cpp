@@ -1,0 +1,339 @@
+// Rigid stops and dry friction against closed forms: bounces, rest, sticking and slipping at located times.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "solver/linear/linearize.hpp"
+#include "tests/solver/support/runs.hpp"
+
+namespace bough::solver::testing {
+namespace {
+
+using records::HingeType;
+using ::testing::HasSubstr;
+
+records::SystemSpec make_slider(double mass = 2) {
+  auto spec = make_one_body(HingeType::Prismatic);
+  spec.bodies[0].mass = mass;
+  spec.hinges[0].axis = {1, 0, 0};
+  spec.simulation.output_step = 0.01;
+  spec.simulation.integrator = "rk";
+  spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-12;
+  return spec;
+}
+
+void add_friction(records::HingeRecord& hinge, double coulomb, double static_friction = 0) {
+  hinge.law.has_friction = true;
+  hinge.law.coulomb = {coulomb};
+  if (static_friction > 0) hinge.law.static_friction = {static_friction};
+}
+
+void add_stop(records::HingeRecord& hinge, double lower, double restitution) {
+  hinge.law.has_stops = true;
+  hinge.law.stop_lower = {lower};
+  hinge.law.stop_restitution = {restitution};
+}
+
+int count_events(const MemorySink& sink, const std::string& part) {
+  return static_cast<int>(std::count_if(sink.events().begin(), sink.events().end(), [&](const auto& e) {
+    return e.what.find(part) != std::string::npos;
+  }));
+}
+
+double find_event(const MemorySink& sink, const std::string& part) {
+  for (const auto& e : sink.events()) {
+    if (e.what.find(part) != std::string::npos) return e.time;
+  }
+  return -1;
+}
+
+// v = v0 - μg t until it stops at v0/μg, and it stays there: by every method.
+TEST(DryFriction, ABlockStopsAndStays) {
+  for (const std::string integrator : {"rk", "adams", "bdf", "rk4", "implicit"}) {
+    auto spec = make_slider();
+    const double v0 = 1.3, force = 5.3, a = force / 2;
+    spec.hinges[0].rate = {v0};
+    add_friction(spec.hinges[0], force);
+    spec.simulation.integrator = integrator;
+    spec.simulation.step = integrator == "rk4" || integrator == "implicit" ? 7e-3 : 0;
+    const double tolerance = integrator == "bdf" ? 1e-8 : 1e-10;
+    if (integrator == "bdf") spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-11;
+    const RunResult r = run(spec);
+    EXPECT_NEAR(find_event(r.sink, "sticks"), v0 / a, tolerance) << integrator;
+    EXPECT_NEAR(get_last(r.sink, "/hinges/hinge/q"), v0 * v0 / (2 * a), tolerance) << integrator;
+    EXPECT_EQ(get_last(r.sink, "/hinges/hinge/qdot"), 0) << integrator;
+    // Of the adaptive multistep methods the quadrature of the work is held to the root of the tolerance.
+    const double quadrature = integrator == "bdf" || integrator == "adams" ? 1e-5 : 1e-9;
+    EXPECT_NEAR(get_last(r.sink, "/energy/dissipated"), 0.5 * 2 * v0 * v0, quadrature) << integrator;
+    EXPECT_LT(r.sink.energy_error(), quadrature) << integrator;
+  }
+}
+
+// A slope holds a block up to tan of its angle; past it the block goes with g (sin - μ cos).
+TEST(DryFriction, ASlopeHoldsUpToItsAngle) {
+  for (const double angle : {0.19, 0.21}) {
+    auto spec = make_slider(1);
+    spec.simulation.gravity = {9.81 * std::sin(angle), 0, -9.81 * std::cos(angle)};
+    const double hold = 0.2 * 9.81 * std::cos(angle);
+    add_friction(spec.hinges[0], hold);
+    const MemorySink sink = run(spec).sink;
+    const double force = 9.81 * std::sin(angle) - hold;
+    if (angle < 0.2) {
+      EXPECT_EQ(get_last(sink, "/hinges/hinge/q"), 0);
+      EXPECT_NEAR(get_last(sink, "/hinges/hinge/force"), -9.81 * std::sin(angle), 1e-12);
+    } else {
+      EXPECT_NEAR(get_last(sink, "/hinges/hinge/q"), 0.5 * force, 1e-10);
+    }
+  }
+}
+
+// An oscillator with dry friction loses 2 F/k of its amplitude each half swing and stops where the spring is too weak.
+TEST(DryFriction, AnOscillatorLosesTheSameEachHalfSwing) {
+  auto spec = make_slider(2);
+  const double k = 50, F = 3, x0 = 0.73;
+  spec.hinges[0].stiffness = {k};
+  spec.hinges[0].position = {x0};
+  add_friction(spec.hinges[0], F);
+  spec.simulation.duration = 6;
+  const MemorySink sink = run(spec).sink;
+  double x = x0;
+  int swings = 0;
+  while (std::abs(x) > F / k) {
+    x = -(x - std::copysign(2 * F / k, x));
+    ++swings;
+  }
+  EXPECT_GT(swings, 4);
+  EXPECT_NEAR(get_last(sink, "/hinges/hinge/q"), x, 1e-9);
+  EXPECT_NEAR(find_event(sink, "sticks"), swings * std::numbers::pi / std::sqrt(k / 2), 1e-9);
+}
+
+// A mass on a belt: sticks until k x = F_s, slips with F_c about it, sticks again where the speeds agree.
+TEST(DryFriction, ABeltDragsAMassByStickAndSlip) {
+  auto spec = make_slider(1);
+  const double k = 100, belt = 0.1, Fs = 4, Fc = 2, w = 10;
+  spec.bodies.push_back(spec.bodies[0]);
+  spec.bodies[1].name = "mass";
+  spec.hinges.push_back(spec.hinges[0]);
+  spec.hinges[1].name = "on_belt";
+  spec.hinges[1].parent = "body";
+  spec.hinges[1].child = "mass";
+  records::FunctionRecord motion;
+  motion.name = "belt";
+  motion.type = "table";
+  motion.x = {0, 100};
+  motion.y = {0, 100 * belt};
+  spec.functions = {motion};
+  spec.hinges[0].motion = {"belt"};
+  add_friction(spec.hinges[1], Fc, Fs);
+  records::ForceElementRecord spring;
+  spring.name = "spring";
+  spring.type = records::ElementType::Spring;
+  spring.from.body = "mass";
+  spring.to.position = {-10, 0, 0};
+  spring.stiffness = k;
+  spring.free_length = 10;
+  spec.force_elements = {spring};
+  spec.simulation.duration = 4;
+  for (const std::string integrator : {"rk", "rk4"}) {
+    spec.simulation.integrator = integrator;
+    spec.simulation.step = integrator == "rk4" ? 1e-3 : 0;
+    const MemorySink sink = run(spec).sink;
+    std::vector<double> slips;
+    for (const auto& e : sink.events()) {
+      if (e.what.find("slips") != std::string::npos) slips.push_back(e.time);
+    }
+    ASSERT_GE(slips.size(), 4u) << integrator;
+    const double jump = (Fs - Fc) / k;
+    const double period = 2 * jump / belt + 2 / w * (std::numbers::pi - std::atan(w * jump / belt));
+    EXPECT_NEAR(slips[0], Fs / k / belt, 1e-9) << integrator;
+    for (size_t i = 1; i < slips.size(); ++i) EXPECT_NEAR(slips[i] - slips[i - 1], period, 1e-6) << integrator;
+  }
+}
+
+// Drops from h: times between impacts 2 e^n sqrt(2h/g), all of them over at sqrt(2h/g) (1 + e)/(1 - e): then rest.
+TEST(RigidStop, ABallBouncesAndComesToRest) {
+  for (const std::string integrator : {"rk", "bdf", "rk4"}) {
+    auto spec = make_slider(3);
+    const double h = 0.4, g = 9.81, e = 0.6, first = std::sqrt(2 * h / g);
+    spec.simulation.gravity = {-g, 0, 0};
+    spec.hinges[0].position = {0.1 + h};
+    add_stop(spec.hinges[0], 0.1, e);
+    spec.simulation.duration = 2;
+    spec.simulation.integrator = integrator;
+    spec.simulation.step = integrator == "rk4" ? 0.01 : 0;
+    if (integrator == "bdf") spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-10;
+    const double tolerance = integrator == "bdf" ? 1e-6 : 1e-9;
+    const RunResult r = run(spec);
+    std::vector<double> hits;
+    for (const auto& event : r.sink.events()) {
+      if (event.what.find("meets its stop") != std::string::npos) hits.push_back(event.time);
+    }
+    ASSERT_GT(hits.size(), 10u) << integrator;
+    double at = first;
+    for (int n = 0; n < 8; ++n) {
+      EXPECT_NEAR(hits[static_cast<size_t>(n)], at, tolerance) << integrator << n;
+      at += 2 * std::pow(e, n + 1) * first;
+    }
+    EXPECT_NEAR(find_event(r.sink, "comes to rest at its stop"), first * (1 + e) / (1 - e), 1e-6) << integrator;
+    EXPECT_NEAR(get_last(r.sink, "/hinges/hinge/q"), 0.1, 1e-9) << integrator;
+    EXPECT_EQ(get_last(r.sink, "/hinges/hinge/qdot"), 0) << integrator;
+    EXPECT_NEAR(get_last(r.sink, "/hinges/hinge/force"), 3 * g, 1e-9) << integrator;  // the stop carries it
+    EXPECT_NEAR(get_last(r.sink, "/energy/dissipated"), 3 * g * h, 1e-6) << integrator;
+  }
+}
+
+// What rests at its stop leaves it when it is pulled away.
+TEST(RigidStop, ABallIsLiftedOff) {
+  auto spec = make_slider(1);
+  spec.simulation.gravity = {-10, 0, 0};
+  spec.hinges[0].position = {0.0};
+  add_stop(spec.hinges[0], 0, 0.5);
+  records::FunctionRecord f;
+  f.name = "lift";
+  f.type = "ramp";
+  f.values = {{"value", 20}, {"from", 0}, {"to", 1}};
+  spec.functions = {f};
+  records::ForceRecord force;
+  force.name = "lift";
+  force.body = "body";
+  force.direction = {1, 0, 0};
+  force.function = "lift";
+  spec.forces = {force};
+  const MemorySink sink = run(spec).sink;
+  EXPECT_NEAR(find_event(sink, "leaves its stop"), 0.5, 1e-9);
+  EXPECT_NEAR(get_last(sink, "/hinges/hinge/q"), 20 * std::pow(0.5, 3) / 6, 1e-9);
+}
+
+// A rod on a slide strikes a stop of the slide: the impulse goes along that coordinate alone, the momentum of the free
+// angle holds. M = [m + M, m c cos; ., J + m c²].
+TEST(RigidStop, TheRestOfTheSystemFollows) {
+  auto spec = make_slider(2);
+  records::BodyRecord rod;
+  rod.name = "rod";
+  rod.mass = 1.5;
+  rod.cg = {0, 0.7, 0};
+  rod.inertia = Vector3d(0.1, 0.1, 0.1).asDiagonal();
+  spec.bodies.push_back(rod);
+  auto pin = make_hinge_record("pin", HingeType::Revolute, "body", "rod");
+  pin.axis = {0, 0, 1};
+  spec.hinges.push_back(pin);
+  spec.hinges[0].rate = {-2};
+  spec.hinges[0].position = {0.5};
+  spec.hinges[1].rate = {0};
+  add_stop(spec.hinges[0], 0, 0.25);
+  spec.simulation.duration = 0.251;
+  const RunResult r = run(spec);
+  ASSERT_EQ(count_events(r.sink, "meets its stop"), 1);
+  // At rest relative to the slide until then: x' = -2, angle 0.
+  const double coupling = -1.5 * 0.7, J = 0.1 + 1.5 * 0.49;
+  const double x = 0.5, angle = -coupling * (x + 2) / J;
+  const int n = r.sink.num_samples() - 1;
+  EXPECT_NEAR(r.sink.get("/hinges/hinge/qdot")(n, 0), x, 2e-2);
+  EXPECT_NEAR(r.sink.get("/hinges/pin/qdot")(n, 0), angle, 2e-2);
+  EXPECT_NEAR(get_last(r.sink, "/energy/kinetic"),
+              0.5 * (3.5 * x * x + 2 * coupling * x * angle + J * angle * angle), 1e-8);
+  EXPECT_LT(r.sink.energy_error(), 1e-9);
+}
+
+// In a loop the constraint answers too: a parallelogram's crank against a stop throws back all of it.
+TEST(RigidStop, ALoopIsThrownBackWhole) {
+  records::SystemSpec spec;
+  for (const std::string name : {"a", "b", "bar"}) {
+    records::BodyRecord rod;
+    rod.name = name;
+    rod.mass = 1;
+    rod.cg = {0.5, 0, 0};
+    rod.inertia = Vector3d(1e-3, 1.0 / 12, 1.0 / 12).asDiagonal();
+    rod.nodes = {{1, {1, 0, 0}}};
+    spec.bodies.push_back(rod);
+    auto hinge = make_hinge_record(name, HingeType::Revolute, "ground", name);
+    spec.hinges.push_back(hinge);
+  }
+  spec.hinges[1].parent_position = {1, 0, 0};
+  spec.hinges[2].parent = "a";
+  spec.hinges[2].parent_node = 1;
+  spec.hinges[0].position = spec.hinges[1].position = {1.0};
+  spec.hinges[2].position = {-1.0};
+  spec.hinges[0].rate = spec.hinges[1].rate = {-2};
+  spec.hinges[2].rate = {2};
+  add_stop(spec.hinges[0], 0.5, 0.5);
+  records::ConstraintRecord c;
+  c.name = "pin";
+  c.hinge = HingeType::Revolute;
+  c.parent = "bar";
+  c.parent_node = 1;
+  c.child = "b";
+  c.child_node = 1;
+  spec.constraints = {c};
+  spec.simulation.duration = 0.4;
+  spec.simulation.output_step = 0.1;
+  spec.simulation.integrator = "rk";
+  const RunResult r = run(spec);
+  EXPECT_NEAR(find_event(r.sink, "meets its stop"), 0.25, 1e-9);
+  for (const std::string name : {"a", "b"}) {
+    EXPECT_NEAR(get_last(r.sink, "/hinges/" + name + "/qdot"), 1, 1e-9);
+    EXPECT_NEAR(get_last(r.sink, "/hinges/" + name + "/q"), 0.65, 1e-9);
+  }
+  EXPECT_NEAR(get_last(r.sink, "/energy/kinetic"), 0.5 * (5.0 / 3) * 1, 1e-9);
+}
+
+// A block slides into a stop and rests there by friction; and by friction alone where it stops before.
+TEST(Latches, StopAndFrictionOfOneCoordinate) {
+  auto spec = make_slider(1);
+  spec.hinges[0].position = {1};
+  spec.hinges[0].rate = {-2};
+  add_friction(spec.hinges[0], 1);
+  add_stop(spec.hinges[0], 0, 0.5);
+  spec.simulation.duration = 3;
+  const MemorySink sink = run(spec).sink;
+  const double v = std::sqrt(4 - 2), back = 0.5 * v;  // at the stop; from it
+  EXPECT_NEAR(get_last(sink, "/hinges/hinge/q"), back * back / 2, 1e-9);
+  EXPECT_NEAR(find_event(sink, "sticks"), (2 - v) + back, 1e-9);
+}
+
+TEST(Latches, AStopWithoutARoomIsAnErrorNotAHang) {
+  auto spec = make_slider(1);
+  spec.hinges[0].rate = {1};
+  add_stop(spec.hinges[0], -1e-15, 1);
+  spec.hinges[0].law.stop_upper = {1e-15};
+  try {
+    run(spec);
+    FAIL();
+  } catch (const ComputationError& error) {
+    EXPECT_EQ(error.items().at(0).id, "run.endless-impacts");
+  }
+}
+
+TEST(Latches, LinearModelsSayThatTheyLeaveThemOut) {
+  auto spec = make_slider(1);
+  add_friction(spec.hinges[0], 1);
+  Diagnostics diagnostics;
+  warn_of_latches(build(spec), {}, diagnostics);
+  EXPECT_TRUE(diagnostics.has("linear.latches-left-out"));
+  spec.hinges[0].law.smoothing = {1e-3};
+  Diagnostics none;
+  warn_of_latches(build(spec), {}, none);
+  EXPECT_TRUE(none.items().empty());
+}
+
+TEST(Latches, AResumedRunGoesOn) {
+  auto spec = make_slider(1);
+  spec.simulation.gravity = {-10, 0, 0};
+  spec.hinges[0].position = {0.5};
+  add_stop(spec.hinges[0], 0, 0.5);
+  spec.simulation.integrator = "rk4";
+  spec.simulation.step = 0.01;
+  spec.simulation.duration = 2;
+  const RunResult whole = run(spec);
+  ASSERT_FALSE(whole.sink.checkpoints().empty());
+  SimulateOptions options;
+  options.resume = whole.sink.checkpoints().front();
+  const RunResult rest = run(spec, {}, options);
+  EXPECT_EQ(get_last(rest.sink, "/hinges/hinge/q"), get_last(whole.sink, "/hinges/hinge/q"));
+  EXPECT_EQ(get_last(rest.sink, "/hinges/hinge/force"), get_last(whole.sink, "/hinges/hinge/force"));
+}
+
+}  // namespace
+}  // namespace bough::solver::testing
