@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <complex>
 #include <sstream>
 
 #include "cli/common/console.hpp"
@@ -28,11 +29,22 @@ std::string name_branch(const LinearSweep& sweep, Index b) {
 /// Of a pair the one above, and what has no frequency all along.
 bool is_shown(const LinearSweep& sweep, Index b) { return sweep.imag.col(b).sum() >= 0; }
 
+/// Whether another pole is the same: which vectors belong to such is chance.
+bool is_repeated(const LinearSweep& sweep, Index k, Index b) {
+  const std::complex<double> own(sweep.real(k, b), sweep.imag(k, b));
+  for (Index other = 0; other < sweep.real.cols(); ++other) {
+    const std::complex<double> pole(sweep.real(k, other), sweep.imag(k, other));
+    if (other != b && std::abs(pole - own) <= 1e-6 * std::abs(own)) return true;
+  }
+  return false;
+}
+
 void warn_jumps(const LinearSweep& sweep, const std::string& file, Diagnostics& diagnostics) {
   for (Index k = 1; k < sweep.value.size(); ++k) {
     for (Index b = 0; b < sweep.correlation.cols(); ++b) {
       // Poles at 0 and real poles that meet have no vectors of their own.
       if (sweep.correlation(k, b) > kRecognized || !(sweep.imag(k, b) > 0) || !(sweep.imag(k - 1, b) > 0)) continue;
+      if (is_repeated(sweep, k, b) || is_repeated(sweep, k - 1, b)) continue;
       diagnostics.warning(
           "linear.sweep-jump", {file},
           fmt::format("from {} = {:g} to {:g} a motion of {} changes too much to be recognized (correlation {:.2f})",

@@ -45,9 +45,11 @@ report::Chapter make_linear_chapter(const std::string& file) {
   const auto model = hdf5::read_linear_model(file);
   report::LinearFindings findings{{}, {}, {}, model.inputs.size() == 1 && model.outputs.size() == 1};
   if (model.inputs.size() > 0 && model.outputs.size() > 0) {
-    findings.response = statespace::calc_frequency_response(model, {0, 0, 300, 2000});
-    findings.peak = statespace::calc_peak_gain(model, findings.response);
     findings.has_margins = findings.has_margins && model.outputs.name.front().ends_with(":return");
+    statespace::FrequencyRange range{0, 0, 300, 2000};
+    if (findings.has_margins) range = statespace::widen_for_loop(model, range);
+    findings.response = statespace::calc_frequency_response(model, range);
+    findings.peak = statespace::calc_peak_gain(model, findings.response);
     if (findings.has_margins) findings.margins = statespace::calc_margins(model, findings.response);
   }
   return report::make_chapter(model, findings, file, list_facts(file));

@@ -168,11 +168,12 @@ int run_response(const ResponseOptions& o) {
                      fmt::format("a loop has one input and one output, this model has {} and {}", model.inputs.size(),
                                  model.outputs.size()),
                      "choose them with --inputs and --outputs");
-  auto response = statespace::calc_frequency_response(model, o.range);
+  const bool is_loop = is_single && (o.is_loop || model.outputs.name.front().ends_with(":return"));
+  auto response =
+      statespace::calc_frequency_response(model, is_loop ? statespace::widen_for_loop(model, o.range) : o.range);
   response.source = calc_sources({o.file});
   const auto peak = statespace::calc_peak_gain(model, response);
   records::Margins margins;
-  const bool is_loop = is_single && (o.is_loop || model.outputs.name.front().ends_with(":return"));
   if (is_loop) margins = statespace::calc_margins(model, response);
   const records::Margins* given = is_loop ? &margins : nullptr;
   if (o.json)

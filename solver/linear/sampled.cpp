@@ -123,12 +123,16 @@ records::Multipliers calc_multipliers(Plant& plant, const OperatingPoint& point,
   MatrixXd flow = MatrixXd::Zero(nx + nm, nx + nm);
   flow.topLeftCorner(nx, nx) = A;
   flow.topRightCorner(nx, nm) = departures.calc_held();
-  // From an instant at which everything has its first sample: the numbers of samples count from there.
+  // Numbers of samples count from the start, and the queues are full a whole number of periods later.
   const double start = plant.make_initial_point().t;
-  const auto instants = list_instants(plant.collect_samples(), start, period);
+  const auto samples = plant.collect_samples();
+  double latest = 0;
+  for (const auto& s : samples) latest = std::max(latest, s.first - start);
+  const double base = start + period * (std::floor(latest / period) + 1);
+  const auto instants = list_instants(samples, start, period);
   MatrixXd map = MatrixXd::Identity(nx + nm, nx + nm);
   for (size_t k = 0; k < instants.size(); ++k) {
-    departures.set_time(start + instants[k]);
+    departures.set_time(base + instants[k]);
     MatrixXd sample = MatrixXd::Identity(nx + nm, nx + nm);
     sample.bottomRows(nm) = departures.calc_sample();
     const double to = k + 1 < instants.size() ? instants[k + 1] : period;

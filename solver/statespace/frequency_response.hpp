@@ -23,7 +23,7 @@ class TransferMatrix {
 };
 
 struct FrequencyRange {
-  double from_hz = 0, to_hz = 0;  ///< 0: a decade beyond the poles
+  double from_hz = 0, to_hz = 0;  ///< 0: a decade beyond the poles, and the zeros near them
   int points = 300;               ///< even on a logarithmic scale; more where a resonance or a notch wants them
   int most = 6000;                ///< in all
 };
@@ -31,6 +31,10 @@ struct FrequencyRange {
 /// Frequencies: even on a logarithmic scale, about the lightly damped poles, and between them until no entry changes by
 /// more than a third of its size from one to the next.
 records::FrequencyResponse calc_frequency_response(const records::LinearModel& model, const FrequencyRange& range = {});
+
+/// The range, and where its ends are open as much further as |L| > 1 there at the upper end, or |L| < 1 at the lower
+/// end of a loop with poles at 0: to where |L| = 1, by decades, eight at most.
+FrequencyRange widen_for_loop(const records::LinearModel& loop, const FrequencyRange& range);
 
 /// Of a model with one input and one output, L; crossings are located to rounding. Throws nothing.
 records::Margins calc_margins(const records::LinearModel& loop, const records::FrequencyResponse& response);

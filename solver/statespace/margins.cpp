@@ -94,6 +94,19 @@ std::vector<double> find_level(const StateSpace& s, const MatrixXd& D, double ga
 
 }  // namespace
 
+FrequencyRange widen_for_loop(const records::LinearModel& loop, const FrequencyRange& range) {
+  constexpr int kDecades = 8;
+  FrequencyRange wide = range;
+  const auto ends = calc_frequency_response(loop, {range.from_hz, range.to_hz, 1, 2}).frequency_hz;
+  const TransferMatrix transfer(loop.A, loop.B, loop.C, loop.D);
+  const auto gain = [&](double hz) { return std::abs(transfer.calc({0, kTwoPi * hz})(0, 0)); };
+  double low = ends[0], high = ends[ends.size() - 1];
+  for (int i = 0; range.to_hz == 0 && i < kDecades && gain(high) > 1; ++i) wide.to_hz = high *= 10;
+  const bool has_rigid = loop.poles.size() > 0 && loop.poles.frequency_hz.minCoeff() <= 1e-6 * low;
+  for (int i = 0; range.from_hz == 0 && has_rigid && i < kDecades && gain(low) < 1; ++i) wide.from_hz = low /= 10;
+  return wide;
+}
+
 records::Margins calc_margins(const records::LinearModel& loop, const records::FrequencyResponse& response) {
   BOUGH_DEMAND(loop.B.cols() == 1 && loop.C.rows() == 1);
   records::Margins m;

@@ -16,8 +16,8 @@ EigenSystem calc_eigen_system(const Eigen::MatrixXd& A);
 
 /// order[i]: which of `next` is what `before` i has become. The correlation of i and j is |w_i v'_j w'_j v_i| over
 /// (|λ_i| + |λ'_j|)² / (4 |λ_i| |λ'_j|), w and v the left and right eigenvectors with w_i v_i = 1: 1 where they are the
-/// same motion, whatever the units of the states and however its frequency has changed; pairs are taken from the largest
-/// down, of equal ones the nearer poles first. correlation: of each pair, at most 1.
+/// same motion, whatever the units of the states and however its frequency has changed; pairs are taken from the
+/// largest down, of equal ones the nearer poles first. correlation: of each pair, at most 1.
 std::vector<int> follow(const EigenSystem& before, const EigenSystem& next, Eigen::VectorXd& correlation);
 
 /// Fills real to mode of a sweep from its models.
