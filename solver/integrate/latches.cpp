@@ -50,8 +50,9 @@ void Latches::calc_guards(const SystemData& data, VectorXd& guards) const {
       if (std::isfinite(w.high())) own[0] = force - w.high();
       if (std::isfinite(w.low())) own[1] = w.low() - force;
     } else if (mode == HingeMode::Free) {
-      if (std::isfinite(w.latch.lower)) own[0] = w.latch.lower - q;
-      if (std::isfinite(w.latch.upper)) own[1] = q - w.latch.upper;
+      // Past it and on its way further: what has just been thrown back may still be behind by rounding.
+      if (std::isfinite(w.latch.lower)) own[0] = std::min(w.latch.lower - q, -rate * shortest_);
+      if (std::isfinite(w.latch.upper)) own[1] = std::min(q - w.latch.upper, rate * shortest_);
       if (w.slide != 0) own[2] = -w.slide * rate;
     }
   }
@@ -164,6 +165,7 @@ void Latches::find_rest(SystemOde& ode, double t, double shortest, VectorXd& y, 
 
 std::vector<std::string> Latches::settle(SystemOde& ode, double t, double shortest, VectorXd& y) {
   std::vector<std::string> what;
+  shortest_ = shortest;
   if (y_dot_.size() == 0) y_dot_ = VectorXd::Zero(ode.size());
   for (Watched& w : latches_) ode.data().tree.slide[w.latch.u_row] = w.slide;
   ode.calc_derivative(t, y, y_dot_);

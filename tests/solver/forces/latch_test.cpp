@@ -176,7 +176,9 @@ TEST(RigidStop, ABallBouncesAndComesToRest) {
       EXPECT_NEAR(hits[static_cast<size_t>(n)], at, tolerance) << integrator << n;
       at += 2 * std::pow(e, n + 1) * first;
     }
-    EXPECT_NEAR(find_event(r.sink, "comes to rest at its stop"), first * (1 + e) / (1 - e), 1e-6) << integrator;
+    EXPECT_NEAR(find_event(r.sink, "comes to rest at its stop"), first * (1 + e) / (1 - e),
+                integrator == "bdf" ? 1e-4 : 1e-6)  // its tolerance is a bounce of 1e-5 s
+        << integrator;
     EXPECT_NEAR(get_last(r.sink, "/hinges/hinge/q"), 0.1, 1e-9) << integrator;
     EXPECT_EQ(get_last(r.sink, "/hinges/hinge/qdot"), 0) << integrator;
     EXPECT_NEAR(get_last(r.sink, "/hinges/hinge/force"), 3 * g, 1e-9) << integrator;  // the stop carries it
