@@ -62,7 +62,8 @@ void Latches::find_stops(const SystemOde& ode, double resolution, const VectorXd
   for (Watched& w : latches_) {
     const double q = y[w.latch.q_row], rate = y[ode.num_q() + w.latch.u_row];
     const auto touches = [&](double past, double at) {
-      return std::isfinite(at) && past > -(kTouch * std::max(std::abs(at), std::abs(q)) + 4 * resolution * std::abs(rate));
+      return std::isfinite(at) &&
+             past > -(kTouch * std::max(std::abs(at), std::abs(q)) + 4 * resolution * std::abs(rate));
     };
     if (w.rests && w.stop != 0) continue;
     const bool is_low = touches(w.latch.lower - q, w.latch.lower), is_high = touches(q - w.latch.upper, w.latch.upper);
@@ -104,9 +105,9 @@ bool Latches::strike_stops(SystemOde& ode, double t, double shortest, VectorXd& 
     const double after = -hardest->latch.restitution * hardest->stop * speed;
     const double impulse = ode.strike(t, row, after, y);
     what.push_back(hardest->latch.name + " meets its stop at " +
-                   short_text(hardest->stop < 0 ? hardest->latch.lower : hardest->latch.upper) + ": its rate turns from " +
-                   short_text(hardest->stop * speed) + " to " + short_text(after) + " by an impulse of " +
-                   short_text(impulse));
+                   short_text(hardest->stop < 0 ? hardest->latch.lower : hardest->latch.upper) +
+                   ": its rate turns from " + short_text(hardest->stop * speed) + " to " + short_text(after) +
+                   " by an impulse of " + short_text(impulse));
   }
   throw ComputationError("run.endless-impacts", system_.impl().tree.bodies.front().hinge_at,
                          "stops that throw each other back do not come to an end, last " + what.back(),

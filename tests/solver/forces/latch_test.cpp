@@ -37,9 +37,8 @@ void add_stop(records::HingeRecord& hinge, double lower, double restitution) {
 }
 
 int count_events(const MemorySink& sink, const std::string& part) {
-  return static_cast<int>(std::count_if(sink.events().begin(), sink.events().end(), [&](const auto& e) {
-    return e.what.find(part) != std::string::npos;
-  }));
+  return static_cast<int>(std::count_if(sink.events().begin(), sink.events().end(),
+                                        [&](const auto& e) { return e.what.find(part) != std::string::npos; }));
 }
 
 double find_event(const MemorySink& sink, const std::string& part) {
@@ -234,8 +233,8 @@ TEST(RigidStop, TheRestOfTheSystemFollows) {
   const int n = r.sink.num_samples() - 1;
   EXPECT_NEAR(r.sink.get("/hinges/hinge/qdot")(n, 0), x, 2e-2);
   EXPECT_NEAR(r.sink.get("/hinges/pin/qdot")(n, 0), angle, 2e-2);
-  EXPECT_NEAR(get_last(r.sink, "/energy/kinetic"),
-              0.5 * (3.5 * x * x + 2 * coupling * x * angle + J * angle * angle), 1e-8);
+  EXPECT_NEAR(get_last(r.sink, "/energy/kinetic"), 0.5 * (3.5 * x * x + 2 * coupling * x * angle + J * angle * angle),
+              1e-8);
   EXPECT_LT(r.sink.energy_error(), 1e-9);
 }
 

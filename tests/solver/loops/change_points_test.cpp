@@ -73,8 +73,9 @@ Errors calc_errors(const records::SystemSpec& spec, int N, bool is_even) {
   const MatrixXd q = r.sink.get("/hinges/rocker0/q"), rate = r.sink.get("/hinges/rocker0/qdot");
   Errors e;
   for (int k = 0; k < r.sink.num_samples(); ++k)
-    e.energy = std::max(e.energy, std::abs(0.5 * inertia * rate(k, 0) * rate(k, 0) +
-                                           9.81 * weight * std::sin(q(k, 0)) - energy) / energy);
+    e.energy = std::max(
+        e.energy,
+        std::abs(0.5 * inertia * rate(k, 0) * rate(k, 0) + 9.81 * weight * std::sin(q(k, 0)) - energy) / energy);
   for (int i = 1; i <= N; ++i) {
     const MatrixXd other = r.sink.get("/hinges/rocker" + std::to_string(i) + "/q");
     for (int k = 0; k < r.sink.num_samples(); ++k)
