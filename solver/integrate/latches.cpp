@@ -50,8 +50,9 @@ void Latches::calc_guards(const SystemData& data, VectorXd& guards) const {
       if (std::isfinite(w.high())) own[0] = force - w.high();
       if (std::isfinite(w.low())) own[1] = w.low() - force;
     } else if (mode == HingeMode::Free) {
-      if (std::isfinite(w.latch.lower)) own[0] = w.latch.lower - q;
-      if (std::isfinite(w.latch.upper)) own[1] = q - w.latch.upper;
+      // Past it and on its way further: what has just been thrown back may still be behind by rounding.
+      if (std::isfinite(w.latch.lower)) own[0] = std::min(w.latch.lower - q, -rate * shortest_);
+      if (std::isfinite(w.latch.upper)) own[1] = std::min(q - w.latch.upper, rate * shortest_);
       if (w.slide != 0) own[2] = -w.slide * rate;
     }
   }
@@ -61,7 +62,8 @@ void Latches::find_stops(const SystemOde& ode, double resolution, const VectorXd
   for (Watched& w : latches_) {
     const double q = y[w.latch.q_row], rate = y[ode.num_q() + w.latch.u_row];
     const auto touches = [&](double past, double at) {
-      return std::isfinite(at) && past > -(kTouch * std::max(std::abs(at), std::abs(q)) + 4 * resolution * std::abs(rate));
+      return std::isfinite(at) &&
+             past > -(kTouch * std::max(std::abs(at), std::abs(q)) + 4 * resolution * std::abs(rate));
     };
     if (w.rests && w.stop != 0) continue;
     const bool is_low = touches(w.latch.lower - q, w.latch.lower), is_high = touches(q - w.latch.upper, w.latch.upper);
@@ -103,9 +105,9 @@ bool Latches::strike_stops(SystemOde& ode, double t, double shortest, VectorXd& 
     const double after = -hardest->latch.restitution * hardest->stop * speed;
     const double impulse = ode.strike(t, row, after, y);
     what.push_back(hardest->latch.name + " meets its stop at " +
-                   short_text(hardest->stop < 0 ? hardest->latch.lower : hardest->latch.upper) + ": its rate turns from " +
-                   short_text(hardest->stop * speed) + " to " + short_text(after) + " by an impulse of " +
-                   short_text(impulse));
+                   short_text(hardest->stop < 0 ? hardest->latch.lower : hardest->latch.upper) +
+                   ": its rate turns from " + short_text(hardest->stop * speed) + " to " + short_text(after) +
+                   " by an impulse of " + short_text(impulse));
   }
   throw ComputationError("run.endless-impacts", system_.impl().tree.bodies.front().hinge_at,
                          "stops that throw each other back do not come to an end, last " + what.back(),
@@ -164,6 +166,7 @@ void Latches::find_rest(SystemOde& ode, double t, double shortest, VectorXd& y, 
 
 std::vector<std::string> Latches::settle(SystemOde& ode, double t, double shortest, VectorXd& y) {
   std::vector<std::string> what;
+  shortest_ = shortest;
   if (y_dot_.size() == 0) y_dot_ = VectorXd::Zero(ode.size());
   for (Watched& w : latches_) ode.data().tree.slide[w.latch.u_row] = w.slide;
   ode.calc_derivative(t, y, y_dot_);

@@ -51,6 +51,7 @@ class Latches {
   const System& system_;
   std::vector<Watched> latches_;
   VectorXd y_dot_;
+  double shortest_ = 0;
 };
 
 }  // namespace bough::solver

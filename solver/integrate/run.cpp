@@ -300,9 +300,10 @@ void Run::observe(double t) {
   const Loops& loops = ode_.system().impl().loops;
   int open = -1;
   if (const double gap = calc_largest_gap(loops, ode_.data().loops, &open); gap > kOpen)
-    finish_failed(t, "run.open-constraint",
-                  "constraint '" + loops[open].name + "' stands open by " + short_text(gap) + " at t = " + short_text(t),
-                  "look whether driven or locked hinges leave it no way to close, or drive against each other");
+    finish_failed(
+        t, "run.open-constraint",
+        "constraint '" + loops[open].name + "' stands open by " + short_text(gap) + " at t = " + short_text(t),
+        "look whether driven or locked hinges leave it no way to close, or drive against each other");
   monitor_.add(t, e, work);
   monitor_.add_feed(e, work, dissipated);
   // What a motion that jumps gives or takes is no growth.

@@ -1,4 +1,5 @@
-// Dry friction and rigid stops (docs/theory/forces.md): steps of every method end where something sticks or comes loose.
+// Dry friction and rigid stops (docs/theory/forces.md): steps of every method end where something sticks or comes
+// loose.
 #include "solver/integrate/locate.hpp"
 #include "solver/integrate/run.hpp"
 

@@ -99,8 +99,7 @@ void project(const Loops& loops, const Tree& tree, double t, Eigen::Ref<VectorXd
              TreeData& tree_data, LoopData& data);
 /// Takes off du (num_u) what a projection would: M⁻¹Gᵀ(G M⁻¹Gᵀ)⁺G du, by the factors of the last project or
 /// factor_loops. No allocation.
-void remove_normal(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data,
-                   Eigen::Ref<VectorXd> du);
+void remove_normal(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data, Eigen::Ref<VectorXd> du);
 /// G M⁻¹ Gᵀ of every block. After calc_closure_positions and calc_factor. No allocation.
 void factor_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data);
 /// λ: the impulses that bring G u to zero from the velocities of the tree. After Stage::Velocity and Stage::Factor.

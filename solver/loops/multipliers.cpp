@@ -178,8 +178,7 @@ void factor_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, Loo
   for (LoopBlock& block : data.blocks) factor_block(loops, tree, tree_data, data, block);
 }
 
-void remove_normal(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data,
-                   Eigen::Ref<VectorXd> du) {
+void remove_normal(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data, Eigen::Ref<VectorXd> du) {
   if (data.blocks.empty()) return;
   Sweep& s = tree_data.response;
   run_rates(tree, tree_data, du, s);

@@ -15,7 +15,8 @@ struct Node {  // of the elimination: what is left of a group of blocks
   std::set<int> others;
 };
 
-/// Blocks in an order of least fill (Tinney's scheme 2: the fewest rows first), those with the same rows below together.
+/// Blocks in an order of least fill (Tinney's scheme 2: the fewest rows first), those with the same rows below
+/// together.
 std::vector<Node> eliminate_symbolically(const std::vector<int>& sizes, std::vector<std::set<int>> meets) {
   const int n = static_cast<int>(sizes.size());
   std::vector<Node> nodes;
@@ -88,15 +89,15 @@ void SemidefiniteFactor::arrange(const std::vector<int>& sizes, const std::vecto
     Front& front = fronts_[f];
     const auto add = [&](int i) {
       local[f][static_cast<size_t>(i)] = static_cast<int>(front.rows.size());
-      for (int k = 0; k < sizes[static_cast<size_t>(i)]; ++k)
-        front.rows.push_back(first_[static_cast<size_t>(i)] + k);
+      for (int k = 0; k < sizes[static_cast<size_t>(i)]; ++k) front.rows.push_back(first_[static_cast<size_t>(i)] + k);
     };
     std::vector<int> own = nodes[f].own;
     std::sort(own.begin(), own.end());
     for (const int i : own) add(i);
     front.num_own = static_cast<int>(front.rows.size());
     for (const int i : nodes[f].others) add(i);
-    front.F = MatrixXd::Zero(static_cast<Eigen::Index>(front.rows.size()), static_cast<Eigen::Index>(front.rows.size()));
+    front.F =
+        MatrixXd::Zero(static_cast<Eigen::Index>(front.rows.size()), static_cast<Eigen::Index>(front.rows.size()));
     for (const int i : nodes[f].others) {
       const int at = owner[static_cast<size_t>(i)];
       front.parent = front.parent < 0 ? at : std::min(front.parent, at);
@@ -223,7 +224,8 @@ void SemidefiniteFactor::find_null_vectors() {
       const Front& front = fronts_[static_cast<size_t>(s)];
       for (int k = front.rank - 1; k >= 0; --k) {
         double sum = 0;
-        for (Eigen::Index i = k + 1; i < front.F.rows(); ++i) sum += front.F(i, k) * x[front.rows[static_cast<size_t>(i)]];
+        for (Eigen::Index i = k + 1; i < front.F.rows(); ++i)
+          sum += front.F(i, k) * x[front.rows[static_cast<size_t>(i)]];
         x[front.rows[static_cast<size_t>(k)]] = -sum / front.F(k, k);
       }
     }

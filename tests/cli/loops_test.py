@@ -115,6 +115,50 @@ class LoopsTest(ProgramTest):
         self.assertEqual(np.abs(rates[time <= 0.5]).max(), 0)
         self.assertGreater(np.abs(rates[-1]).max(), 0.1)
 
+    def test_bounces_sticks_and_says_what_was_so_already(self):
+        self.write("ball.toml", """
+[[body]]
+name = "ball"
+mass = 2.0
+inertia = [1.0, 1.0, 1.0]
+[[hinge]]
+name = "fall"
+type = "prismatic"
+child = "ball"
+position = [0.5]
+stops = {lower = 0.0, restitution = 0.5}
+[[body]]
+name = "block"
+mass = 1.0
+inertia = [1.0, 1.0, 1.0]
+[[hinge]]
+name = "slide"
+type = "prismatic"
+child = "block"
+axis = [1.0, 0.0, 0.0]
+rate = [1.0]
+friction = {coulomb = 2.0}
+[[event]]
+name = "again"
+time = 0.1
+action = "release"
+hinge = "fall"
+[simulation]
+duration = 2.0
+gravity = [0.0, 0.0, -10.0]
+""")
+        self.bough("run", "ball.toml", "-o", "ball.h5")
+        with h5py.File(self.path("ball.h5")) as f:
+            fall, slide = np.ravel(f["hinges/fall/q"]), np.ravel(f["hinges/slide/q"])
+            held = np.ravel(f["hinges/fall/force"])[-1]
+            events = "\n".join(line.decode() for line in f["events/what"][:])
+        self.assertLess(abs(fall[-1]), 1e-8)
+        self.assertAlmostEqual(held, 20.0, places=6)
+        self.assertAlmostEqual(slide[-1], 0.25, places=7)
+        for words in ("meets its stop", "comes to rest at its stop", "coordinate 1 of hinge 'slide' sticks",
+                      "hinge 'fall' is released: it was so already"):
+            self.assertIn(words, events)
+
     def test_what_is_refused(self):
         def refused(name, text, *words):
             self.write(name, text)
@@ -126,6 +170,11 @@ class LoopsTest(ProgramTest):
                 "the loops cannot be closed: the positions of constraint 'pin' stay off by")
         refused("d.toml", STAGE.replace('hinge = "joint"\n[sim', 'hinge = "jont"\n[sim'), "did you mean 'joint'?")
         refused("e.toml", STAGE.replace('action = "release"', 'action = "break"'), "missing key 'constraint'")
+        refused("h.toml", FOUR_BAR.replace('name = "crank"\ntype = "revolute"', 'name = "crank"\ntype = "screw"'),
+                "h.toml:", "missing key 'pitch'")
+        refused("i.toml", FOUR_BAR.replace('name = "crank"\ntype = "revolute"',
+                                           'name = "crank"\nstops = {lower = 0.0}\ntype = "revolute"'),
+                "missing key 'stiffness'")
         self.write("f.toml", FOUR_BAR)
         self.bough("linearize", "f.toml", "-o", "f.h5")
         with h5py.File(self.path("f.h5")) as f:

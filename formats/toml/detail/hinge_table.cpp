@@ -136,7 +136,7 @@ class HingeReader {
 };
 
 /// What acts along the coordinates beside springs and dampers.
-void read_law(const Fields& table, HingeReader& reader, records::HingeLawRecord& law) {
+void read_law(const Fields& table, HingeReader& reader, records::HingeLawRecord& law, Diagnostics& diagnostics) {
   law.preload = reader.read_list("preload", false, true);
   law.spring_table = reader.read_names("spring_table");
   law.damper_table = reader.read_names("damper_table");
@@ -145,6 +145,10 @@ void read_law(const Fields& table, HingeReader& reader, records::HingeLawRecord&
   law.has_stops = table.has("stops");
   law.has_friction = table.has("friction");
   const Fields stops = table.get_table("stops"), friction = table.get_table("friction");
+  if (law.has_stops && !stops.has("stiffness") && !stops.has("restitution"))
+    diagnostics.error("toml.missing-key", table.locate("stops"),
+                      "missing key 'stiffness' in the stops of hinge '" + table.get_string("name") + "'",
+                      "add it, or restitution for rigid stops");
   law.stop_lower = reader.read_list(stops, "lower", true, true);
   law.stop_upper = reader.read_list(stops, "upper", true, true);
   law.stop_stiffness = reader.read_list(stops, "stiffness", false, true);
@@ -192,7 +196,7 @@ records::HingeRecord read_hinge(const Fields& table, Diagnostics& diagnostics) {
   hinge.motion = reader.read_names("motion");
   hinge.locked = reader.read_locked();
   hinge.is_guess = table.get_bool("guess", false);
-  read_law(table, reader, hinge.law);
+  read_law(table, reader, hinge.law, diagnostics);
   return hinge;
 }
 

@@ -219,9 +219,7 @@ TEST(HingeLaw, WhatMakesNoSenseIsRefused) {
             }),
             "system.bad-hinge-law ");
   EXPECT_EQ(error_of([](auto& h) { h.law.has_friction = true, h.law.coulomb = {1}; }), "");  // dry
-  EXPECT_EQ(error_of([](auto& h) {
-              h.law.has_stops = true, h.law.stop_upper = {1}, h.law.stop_restitution = {1.5};
-            }),
+  EXPECT_EQ(error_of([](auto& h) { h.law.has_stops = true, h.law.stop_upper = {1}, h.law.stop_restitution = {1.5}; }),
             "system.bad-hinge-law ");
   EXPECT_EQ(error_of([](auto& h) {
               h.law.has_stops = true, h.law.stop_upper = {1}, h.law.stop_restitution = {0.5};

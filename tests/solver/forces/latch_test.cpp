@@ -37,9 +37,8 @@ void add_stop(records::HingeRecord& hinge, double lower, double restitution) {
 }
 
 int count_events(const MemorySink& sink, const std::string& part) {
-  return static_cast<int>(std::count_if(sink.events().begin(), sink.events().end(), [&](const auto& e) {
-    return e.what.find(part) != std::string::npos;
-  }));
+  return static_cast<int>(std::count_if(sink.events().begin(), sink.events().end(),
+                                        [&](const auto& e) { return e.what.find(part) != std::string::npos; }));
 }
 
 double find_event(const MemorySink& sink, const std::string& part) {
@@ -176,7 +175,9 @@ TEST(RigidStop, ABallBouncesAndComesToRest) {
       EXPECT_NEAR(hits[static_cast<size_t>(n)], at, tolerance) << integrator << n;
       at += 2 * std::pow(e, n + 1) * first;
     }
-    EXPECT_NEAR(find_event(r.sink, "comes to rest at its stop"), first * (1 + e) / (1 - e), 1e-6) << integrator;
+    EXPECT_NEAR(find_event(r.sink, "comes to rest at its stop"), first * (1 + e) / (1 - e),
+                integrator == "bdf" ? 1e-4 : 1e-6)  // its tolerance is a bounce of 1e-5 s
+        << integrator;
     EXPECT_NEAR(get_last(r.sink, "/hinges/hinge/q"), 0.1, 1e-9) << integrator;
     EXPECT_EQ(get_last(r.sink, "/hinges/hinge/qdot"), 0) << integrator;
     EXPECT_NEAR(get_last(r.sink, "/hinges/hinge/force"), 3 * g, 1e-9) << integrator;  // the stop carries it
@@ -232,8 +233,8 @@ TEST(RigidStop, TheRestOfTheSystemFollows) {
   const int n = r.sink.num_samples() - 1;
   EXPECT_NEAR(r.sink.get("/hinges/hinge/qdot")(n, 0), x, 2e-2);
   EXPECT_NEAR(r.sink.get("/hinges/pin/qdot")(n, 0), angle, 2e-2);
-  EXPECT_NEAR(get_last(r.sink, "/energy/kinetic"),
-              0.5 * (3.5 * x * x + 2 * coupling * x * angle + J * angle * angle), 1e-8);
+  EXPECT_NEAR(get_last(r.sink, "/energy/kinetic"), 0.5 * (3.5 * x * x + 2 * coupling * x * angle + J * angle * angle),
+              1e-8);
   EXPECT_LT(r.sink.energy_error(), 1e-9);
 }
 

@@ -30,7 +30,8 @@ std::vector<std::vector<RootedTree>> make_trees(const MatrixXd& A, int most) {
   all.reserve(1000);
   for (int order = 1; order <= most; ++order) {
     const std::size_t known = all.size();
-    const auto grow = [&](const auto& self, int left, std::size_t last, const VectorXd& product, double density) -> void {
+    const auto grow = [&](const auto& self, int left, std::size_t last, const VectorXd& product,
+                          double density) -> void {
       if (left == 0) {
         RootedTree tree{order, density * order, product};
         trees[static_cast<size_t>(order)].push_back(tree);

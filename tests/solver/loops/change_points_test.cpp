@@ -73,8 +73,9 @@ Errors calc_errors(const records::SystemSpec& spec, int N, bool is_even) {
   const MatrixXd q = r.sink.get("/hinges/rocker0/q"), rate = r.sink.get("/hinges/rocker0/qdot");
   Errors e;
   for (int k = 0; k < r.sink.num_samples(); ++k)
-    e.energy = std::max(e.energy, std::abs(0.5 * inertia * rate(k, 0) * rate(k, 0) +
-                                           9.81 * weight * std::sin(q(k, 0)) - energy) / energy);
+    e.energy = std::max(
+        e.energy,
+        std::abs(0.5 * inertia * rate(k, 0) * rate(k, 0) + 9.81 * weight * std::sin(q(k, 0)) - energy) / energy);
   for (int i = 1; i <= N; ++i) {
     const MatrixXd other = r.sink.get("/hinges/rocker" + std::to_string(i) + "/q");
     for (int k = 0; k < r.sink.num_samples(); ++k)
@@ -111,7 +112,8 @@ TEST(ChangePoints, NFourBarAtFixedSteps) {
   }
 }
 
-// It starts flat, and samples are taken just when it is flat again.
+// It starts flat, and every other sample is taken just when it is flat again: there rounding of the gap, 1e-15, leaves
+// rates across the constraints open by 5e-15/θ² (1e-4 at the edge of what is left out); they go as it leaves.
 TEST(ChangePoints, StartsFlat) {
   for (const double off : {0.0, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4}) {
     auto spec = make_n_four_bar(2);
@@ -125,13 +127,15 @@ TEST(ChangePoints, StartsFlat) {
     }
     spec.simulation.duration = 2;
     spec.simulation.gravity.setZero();  // flat again at k π/5
-    spec.simulation.output_step = std::acos(-1.0) / 5;
+    spec.simulation.output_step = std::acos(-1.0) / 10;
     spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-10;
     const RunResult r = run(spec);
     EXPECT_TRUE(r.outcome.completed) << off;
     const MatrixXd rate = r.sink.get("/hinges/rocker0/qdot"), last = r.sink.get("/hinges/rocker2/qdot");
-    EXPECT_LT((rate.array() + 5).abs().maxCoeff(), 1e-7) << off;
-    EXPECT_LT((last.array() + 5).abs().maxCoeff(), 1e-7) << off;
+    for (int k = 0; k + 1 < r.sink.num_samples(); ++k) {
+      EXPECT_NEAR(rate(k, 0), -5, k % 2 == 0 ? 1e-3 : 1e-7) << off << " " << k;
+      EXPECT_NEAR(last(k, 0), -5, k % 2 == 0 ? 1e-3 : 1e-7) << off << " " << k;
+    }
   }
 }
 
@@ -179,11 +183,15 @@ TEST(ChangePoints, FortyLoopsInOneChain) {
   const Errors e = calc_errors(spec, 40, true);
   EXPECT_LT(e.energy, 1e-7);
   EXPECT_LT(e.spread, 1e-8);
-  // Against the second route, off the start.
-  VectorXd q(system.num_q()), u(system.num_u()), dense(system.num_u());
-  system.calc_initial_state(q, u);
-  const VectorXd u_dot = calc_u_dot(system, *data, 0, q, u);
-  calc_accelerations_dense(system, *data, 0, dense);
+  // Against the second route, where it falls.
+  for (auto& hinge : spec.hinges) hinge.position[0] *= 0.6;
+  const System leaning = build(spec);
+  data = leaning.make_data();
+  VectorXd q(leaning.num_q()), u(leaning.num_u()), dense(leaning.num_u());
+  leaning.calc_initial_state(q, u);
+  const VectorXd u_dot = calc_u_dot(leaning, *data, 0, q, u);
+  calc_accelerations_dense(leaning, *data, 0, dense);
+  EXPECT_GT(dense.norm(), 1);
   EXPECT_LT((u_dot - dense).norm(), 1e-9 * dense.norm());
 }
 

@@ -1,5 +1,5 @@
-// IFToMM's library of computational benchmark problems, A01, A03 and A05 (A02: change_points_test, A04: mechanisms_test):
-// parameters of the library, or of the literature named, our own references.
+// IFToMM's library of computational benchmark problems, A01, A03 and A05 (A02: change_points_test, A04:
+// mechanisms_test): parameters of the library, or of the literature named, our own references.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -74,8 +74,8 @@ TEST(Iftomm, A01SimplePendulum) {
   EXPECT_LT((energy.array() - energy[0]).abs().maxCoeff(), 1e-10);
 }
 
-// A03: Andrews' squeezing mechanism. Parameters and the state at 0.03 s: Hairer & Wanner, "Solving Ordinary Differential
-// Equations II", VII.7, and the test set for IVP solvers of Bari (its reference solution).
+// A03: Andrews' squeezing mechanism. Parameters and the state at 0.03 s: Hairer & Wanner, "Solving Ordinary
+// Differential Equations II", VII.7, and the test set for IVP solvers of Bari (its reference solution).
 TEST(Iftomm, A03AndrewsSqueezer) {
   const double d = 0.028, da = 0.0115, e = 0.02, ea = 0.01421, rr = 0.007, ra = 0.00092, ss = 0.035, sa = 0.01874,
                sb = 0.01043, sc = 0.018, sd = 0.02, zt = 0.04, ta = 0.02308, tb = 0.00916, u = 0.04, ua = 0.01228,
@@ -84,10 +84,11 @@ TEST(Iftomm, A03AndrewsSqueezer) {
   records::SystemSpec spec;
   // 1 the crank, 2 on it, 3 at B, 4 on 5, 5 at A, 6 on 7, 7 at A. There is no gravity, so that of what is pinned to
   // ground only the distance of the mass centre counts.
-  spec.bodies = {make_body("k1", 0.04325, {ra, 0, 0}, 2.194e-6),  make_body("k2", 0.00365, {-da, 0, 0}, 4.410e-7),
-                 make_body("k3", 0.02373, {sb, -sa, 0}, 5.255e-6), make_body("k5", 0.07050, {ta, tb, 0}, 1.169e-5),
-                 make_body("k4", 0.00706, {0, -(e - ea), 0}, 5.667e-7), make_body("k7", 0.05498, {ub, -ua, 0}, 1.912e-5),
-                 make_body("k6", 0.00706, {zf - fa, 0, 0}, 5.667e-7)};
+  spec.bodies = {
+      make_body("k1", 0.04325, {ra, 0, 0}, 2.194e-6),        make_body("k2", 0.00365, {-da, 0, 0}, 4.410e-7),
+      make_body("k3", 0.02373, {sb, -sa, 0}, 5.255e-6),      make_body("k5", 0.07050, {ta, tb, 0}, 1.169e-5),
+      make_body("k4", 0.00706, {0, -(e - ea), 0}, 5.667e-7), make_body("k7", 0.05498, {ub, -ua, 0}, 1.912e-5),
+      make_body("k6", 0.00706, {zf - fa, 0, 0}, 5.667e-7)};
   spec.bodies[1].nodes = {{1, {-d, 0, 0}}};
   spec.bodies[2].nodes = {{1, {0, -ss, 0}}, {2, {sd, -sc, 0}}};
   spec.bodies[4].nodes = {{1, {0, -e, 0}}};
@@ -131,10 +132,11 @@ TEST(Iftomm, A03AndrewsSqueezer) {
   const struct {
     const char* name;
     double angle, rate;
-  } expected[] = {{"k1", 0.1581077119629904e2, 0.1139920302151208e4}, {"k2", -0.1575637105984298e2, -0.1424379294994111e4},
-                  {"k3", 0.4082224013073101e-1, 0.1103291221937134e2}, {"k4", -0.5347301163226948, 0.1929337464421385e2},
-                  {"k5", 0.5244099658805304, 0.5735699284790808},      {"k6", 0.5347301163226948, -0.1929337464421385e2},
-                  {"k7", 0.1048080741042263e1, 0.3231791658026955}};
+  } expected[] = {
+      {"k1", 0.1581077119629904e2, 0.1139920302151208e4},  {"k2", -0.1575637105984298e2, -0.1424379294994111e4},
+      {"k3", 0.4082224013073101e-1, 0.1103291221937134e2}, {"k4", -0.5347301163226948, 0.1929337464421385e2},
+      {"k5", 0.5244099658805304, 0.5735699284790808},      {"k6", 0.5347301163226948, -0.1929337464421385e2},
+      {"k7", 0.1048080741042263e1, 0.3231791658026955}};
   for (const auto& x : expected) {
     EXPECT_NEAR(get_last(r.sink, std::string("/hinges/") + x.name + "/q"), x.angle, 1e-7 * std::abs(x.angle)) << x.name;
     EXPECT_NEAR(get_last(r.sink, std::string("/hinges/") + x.name + "/qdot"), x.rate, 1e-6 * 1e3) << x.name;
@@ -154,8 +156,9 @@ class Governor {
   static double calc_inertia(double a) {
     return kFixed + 2 * (kAcross * std::pow(std::sin(a), 2) + kAlong * std::pow(std::cos(a), 2));
   }
-  explicit Governor(double a, double spin) : y_(a, 0, 0.5 * std::cos(a) + std::sqrt(0.25 - std::pow(0.5 * std::sin(a), 2)), 0),
-                                             momentum_(calc_inertia(a) * spin) {}
+  explicit Governor(double a, double spin)
+      : y_(a, 0, 0.5 * std::cos(a) + std::sqrt(0.25 - std::pow(0.5 * std::sin(a), 2)), 0),
+        momentum_(calc_inertia(a) * spin) {}
   void step(double h) {
     const Eigen::Vector4d k1 = f(y_), k2 = f(y_ + h / 2 * k1), k3 = f(y_ + h / 2 * k2), k4 = f(y_ + h * k3);
     y_ += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
@@ -170,8 +173,8 @@ class Governor {
     const double x = 0.5 * std::sin(a), z = s - 0.5 * std::cos(a), l = std::hypot(x, z);
     const double l_a = (x * 0.5 * std::cos(a) + z * 0.5 * std::sin(a)) / l, l_s = z / l;
     const double tension = kK * (l - kLength) + kC * (l_a * y[1] + l_s * y[3]);
-    const double torque = std::sin(a) * std::cos(a) * (kAcross - kAlong) * spin * spin - kG * kMoment * std::sin(a) -
-                          tension * l_a;
+    const double torque =
+        std::sin(a) * std::cos(a) * (kAcross - kAlong) * spin * spin - kG * kMoment * std::sin(a) - tension * l_a;
     return {y[1], torque / kAcross, y[3], (kSlider * kG - 2 * tension * l_s) / kSlider};
   }
   Eigen::Vector4d y_;
@@ -181,7 +184,8 @@ class Governor {
 TEST(Iftomm, A05FlyballGovernor) {
   const double a0 = std::numbers::pi / 6, spin = 2 * std::numbers::pi;
   records::SystemSpec spec;
-  auto shaft = make_body("shaft", 0.3, {0, 0, 0}, 1e-2), slider = make_body("slider", Governor::kSlider, {0, 0, 0}, 5e-3);
+  auto shaft = make_body("shaft", 0.3, {0, 0, 0}, 1e-2),
+       slider = make_body("slider", Governor::kSlider, {0, 0, 0}, 5e-3);
   spec.bodies = {shaft, slider};
   auto axis = make_hinge_record("shaft", HingeType::Revolute, "ground", "shaft");
   axis.rate = {spin};
