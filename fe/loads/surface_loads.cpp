@@ -82,6 +82,10 @@ class SurfaceLoads {
     if (shell != shells_.end()) {
       face.corners = shell->second->grids;
       face.midside = shell->second->midsides;
+    } else if (solid != solids_.end() && solid->second->card == "CIHEX3") {
+      t_.diagnostics.error("fe.bad-face", t_.deck.locate(load.at), card + ": the faces of CIHEX3 take no pressure",
+                           "give the forces of its grids by FORCE cards");
+      return;
     } else if (solid != solids_.end()) {
       face = find_solid_face(*solid->second, load.g1, load.g34);
       sign = -1;  // inward

@@ -1,6 +1,8 @@
 /// The last step of a model that is built with a prestress: it is solved whether the structure stands.
 #include <algorithm>
 
+#include <Eigen/Eigenvalues>
+
 #include "fe/linear/factor.hpp"
 #include "fe/linear/sum_factor.hpp"
 #include "fe/matrices/system.hpp"
@@ -10,8 +12,8 @@
 namespace bough::fe {
 namespace {
 
-/// By the inertia of MUMPS, on several ranks.
-bool has_negative_pivot(Mat whole) {
+/// By the inertia of MUMPS; -1 where a pivot is zero.
+int count_negative_pivots(Mat whole) {
   Mat A = get_sparse(whole);
   MatFactorInfo info;
   check_petsc(MatFactorInfoInitialize(&info));
@@ -27,23 +29,47 @@ bool has_negative_pivot(Mat whole) {
     check_petsc(MatMumpsGetInfog(F.get(), 2, &detail));
     const auto state = judge_factorization(status, detail);
     if (state == FactorState::NeedsWorkspace) continue;
-    if (state == FactorState::Singular) return false;
+    if (state == FactorState::Singular) return -1;
     check_petsc(MatGetInertia(F.get(), &negative, nullptr, nullptr));
     if (const LowRankPart* part = find_low_rank(whole))
       negative += count_extra_negative(make_sum_factor(std::move(F), *part).get());
-    return negative > 0;
+    return static_cast<int>(negative);
   }
-  return false;
+  return -1;
+}
+
+/// A and a little of its diagonal, so that motions without stiffness are not negative by roundoff.
+PetscMat lift(const PetscMat& A) {
+  VectorXd shift = 1e-13 * get_diagonal(A.get()).cwiseAbs();
+  shift = shift.cwiseMax(1e-6 * shift.maxCoeff());
+  return add_diagonal(A.get(), shift);
 }
 
 /// Whether A, which is not positive definite, has a negative eigenvalue beyond roundoff; those of motions without
 /// stiffness are none.
 bool has_negative(const PetscMat& A) {
-  VectorXd shift = 1e-13 * get_diagonal(A.get()).cwiseAbs();
-  shift = shift.cwiseMax(1e-6 * shift.maxCoeff());
-  const PetscMat shifted = add_diagonal(A.get(), shift);
-  if (initialize_petsc().size == 1) return !factor_definite(shifted.get());
-  return has_negative_pivot(shifted.get());
+  const PetscMat lifted = lift(A);
+  if (initialize_petsc().size == 1) return !factor_definite(lifted.get());
+  return count_negative_pivots(lifted.get()) > 0;
+}
+
+/// Negative directions of the stress among the rigid motions of a model that nothing holds; 0 where it is held.
+int count_tipping(const Model& model, const PetscMat& K) {
+  for (const int dof : model.fixed_dofs()) {
+    const auto is_it = [&](const AutospcEntry& entry) {
+      return model.node(model.find_node(entry.node)).first_gdof + std::max(entry.component - 1, 0) == dof;
+    };
+    if (std::none_of(model.autospc().begin(), model.autospc().end(), is_it)) return 0;
+  }
+  Vector3d centre = Vector3d::Zero();
+  for (const Node& node : model.nodes()) centre += node.x / static_cast<double>(model.nodes().size());
+  const MatrixXd R = model.calc_rigid_modes(centre), K_G_R = calc_prestress_times(model, R);
+  const Eigen::Matrix<double, 6, 6> G = R.transpose() * K_G_R,
+                                    elastic = R.transpose() * calc_stiffness_times(model, R) - G;
+  const double roundoff = 1e-14 * get_diagonal(K.get()).cwiseAbs().sum() * R.cwiseAbs2().maxCoeff();
+  if (!(elastic.norm() < 1e-6 * G.norm() + roundoff)) return 0;  // springs to ground
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(0.5 * (G + G.transpose()));
+  return static_cast<int>((solver.eigenvalues().array() < -1e-9 * solver.eigenvalues().cwiseAbs().maxCoeff()).count());
 }
 
 /// Takes out what carries the rigid motions of a free model: where those need no force, the sign of the rest stays.
@@ -71,6 +97,17 @@ void ModelBuilder::check_prestress() {
   const PetscMat held = options_.ignore_spc ? hold_support(model_, checked->K) : PetscMat();
   if (held && factor_definite(held.get())) return;
   if (!has_negative(held ? held : checked->K)) return;
+  // With as many negative directions in all as among the rigid motions, what the others strain is positive
+  // (Haynsworth).
+  if (const int tipping = held ? 0 : count_tipping(model_, checked->K);
+      tipping > 0 && count_negative_pivots(lift(checked->K).get()) == tipping)
+    throw ComputationError("fe.preload-buckles", model_.prestress_->at,
+                           "the loads of the preload, " + model_.prestress_->name +
+                               ", keep their direction and tip the free body over: " + std::to_string(tipping) +
+                               " of its rigid motions have negative stiffness, however small the load; the structure "
+                               "itself does not buckle",
+                           "hold the body in a statically determinate way by SPC in place of SUPORT and take its "
+                           "inertia as a load (GRAV), or preload it by temperatures");
   throw ComputationError("fe.preload-buckles", model_.prestress_->at,
                          "the structure buckles under its preload, " + model_.prestress_->name +
                              ": its stiffness with that of the stress is not positive definite",

@@ -29,9 +29,10 @@ class Finisher {
     std::string what;
     for (const auto& [names, count] : old_.counts)
       what += (what.empty() ? "" : ", ") + std::to_string(count) + " " + names.first + " as " + names.second;
-    r_.diagnostics.note("deck.old-element", deck_.locate(old_.first),
-                        "elements of NASTRAN-95 are read as those of today: " + what,
-                        "they are of the same grids and properties but stiffer or softer than the old formulations");
+    r_.diagnostics.note(
+        "deck.old-element", deck_.locate(old_.first), "elements of NASTRAN-95 are read as those of today: " + what,
+        "CIHEX2 and CIHEX3 (of 4 points a direction, not NIP of PIHEX) are the old formulations; the others have "
+        "the same grids and properties but are stiffer or softer");
   }
 
  private:
