@@ -122,6 +122,9 @@ Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<i
   Eigen::Index j = 0;
   solver_of_mass.eigenvectors().col(0).cwiseAbs().maxCoeff(&j);
   const auto [grid, component] = model.describe_fdof(suport.fdofs[static_cast<std::size_t>(j)]);
+  diagnostics.note("fe.inertia-massless", where,
+                   "a rigid motion of the model has no mass, that of " + name_suport(grid, component),
+                   "it stays at rest, as long as the load does not drive it");
   suport.refusal = InputError("fe.inertia-massless", where,
                               "the load drives a rigid motion of the model that has no mass, that of " +
                                   name_suport(grid, component) + ": nothing balances it",
