@@ -173,8 +173,9 @@ EigenPairs BucklingModes::make_pairs(Roots roots, int number) {
   pairs.Phi = model_.T() * X;
   detail::fix_signs(pairs.Phi);
   pairs.inertia_count = std::max(count_, -1);
-  pairs.residual = fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, fe::get_diagonal(K_G_.get()), lambda),
-                                      X, pencil_.calc_K_times(X), -fe::multiply(K_G_.get(), X) * lambda.asDiagonal());
+  pairs.residual =
+      fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, fe::get_diagonal(K_G_.get()), lambda), X,
+                         pencil_.calc_K_times(X), -fe::multiply(K_G_.get(), X) * lambda.asDiagonal(), pencil_.kinds);
   fe::check_residuals(pairs.residual, "load factor", diagnostics_);
   return pairs;
 }

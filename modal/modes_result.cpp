@@ -1,6 +1,8 @@
 #include "modal/modes_result.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/checks.hpp"
@@ -9,8 +11,24 @@ namespace bough::modal {
 
 using Eigen::Vector3d;
 
-records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs& pairs, bool buckling) {
+namespace {
+
+/// What is below zero first (fe.preload-tips), then as found.
+EigenPairs sort_negative(EigenPairs pairs) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(pairs.lambda.size()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::stable_partition(order.begin(), order.end(), [&](Eigen::Index i) { return pairs.lambda(i) < 0; });
+  pairs.lambda = pairs.lambda(order).eval();
+  pairs.residual = pairs.residual(order).eval();
+  pairs.Phi = pairs.Phi(Eigen::all, order).eval();
+  return pairs;
+}
+
+}  // namespace
+
+records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs& found, bool buckling) {
   records::ModesResult result;
+  const EigenPairs pairs = buckling ? found : sort_negative(found);
   result.subcase = model.subcase().id;
   result.mass_properties = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
   const int n = static_cast<int>(pairs.lambda.size());

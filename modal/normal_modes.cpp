@@ -64,6 +64,7 @@ void NormalModes::choose_range(KrylovMethod method) {
   problem.K = pencil_.K.get();
   problem.M = pencil_.M.get();
   problem.M_diagonal = pencil_.M_diagonal;
+  problem.kinds = pencil_.kinds;
   problem.rigid = rigid_.modes;
   problem.supported = supported_.get();
   problem.is_complete = rigid_.is_complete;
@@ -110,9 +111,22 @@ void NormalModes::find_first() {
     for (int i = 0; i < found_.size(); ++i)
       if (pencil_.calc_relative_energy(found_.X.col(i), energy(i)) > 1e-12 && (lowest == 0 || energy(i) < lowest))
         lowest = energy(i);
-    if (!(lowest > 0) || (shift_ <= 10 * lowest && shift_ >= 1e-5 * lowest)) return;
+    if (!(lowest > 0) || (shift_ <= 10 * lowest && shift_ >= 1e-5 * lowest)) break;
     shift_ = 0.1 * lowest;
   }
+  find_negative();
+}
+
+/// Stress may leave a free body roots below zero (fe.preload-tips): the shift goes below the lowest of them.
+void NormalModes::find_negative() {
+  if (!pencil_.model.prestress()) return;
+  const auto is_above = [&](double shift) { return count_roots_below(pencil_.K.get(), pencil_.M.get(), -shift) == 0; };
+  double shift = shift_;
+  for (int attempt = 0; attempt < 30 && !is_above(shift); ++attempt) shift *= 4;
+  if (shift == shift_ || !is_above(shift)) return;
+  shift_ = shift;
+  found_ = {VectorXd(0), MatrixXd(pencil_.size(), 0)};
+  add_roots(found_, std::max(0, range_.last - num_rigid()) + 2, 2);
 }
 
 RootSearchResult NormalModes::search() {
@@ -120,7 +134,7 @@ RootSearchResult NormalModes::search() {
   search.wanted = std::min(range_.last - num_rigid(), solver_->num_available());
   search.num_available = solver_->num_available();
   search.counts = options_.check_inertia;
-  search.lowest = num_rigid() > 0 ? 0 : -shift_;
+  search.lowest = num_rigid() > 0 && !(found_.size() > 0 && found_.value(0) < 0) ? 0 : -shift_;
   search.shift = shift_;
   search.solve = [&](Roots& roots, int number) { add_roots(roots, number, 0); };
   search.closeness = [&](const Roots& roots, int i) {
@@ -149,9 +163,9 @@ bool NormalModes::has_every_root() {
   if (!solver_->knows_rank()) return false;
   add_roots(found_, solver_->num_available() - found_.size(), 0);
   if (found_.size() < solver_->num_available()) return false;
-  const VectorXd residual =
-      fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, pencil_.M_diagonal, found_.value), found_.X,
-                         pencil_.calc_K_times(found_.X), pencil_.calc_M_times(found_.X) * found_.value.asDiagonal());
+  const VectorXd residual = fe::calc_residuals(
+      fe::calc_residual_scale(pencil_.K_diagonal, pencil_.M_diagonal, found_.value), found_.X,
+      pencil_.calc_K_times(found_.X), pencil_.calc_M_times(found_.X) * found_.value.asDiagonal(), pencil_.kinds);
   return residual.size() > 0 && residual.maxCoeff() <= fe::kResidualError;
 }
 
@@ -208,7 +222,7 @@ EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
   MatrixXd KX = pencil_.calc_K_times(X);
   for (const auto& [f, stiffness] : springs_) KX.row(f) -= stiffness * X.row(f);  // rigid motions move them
   pairs.residual = fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, pencil_.M_diagonal, pairs.lambda), X,
-                                      KX, pencil_.calc_M_times(X) * pairs.lambda.asDiagonal());
+                                      KX, pencil_.calc_M_times(X) * pairs.lambda.asDiagonal(), pencil_.kinds);
   pairs.Phi = model.T() * X;
   fix_signs(pairs.Phi);
   return pairs;

@@ -50,6 +50,7 @@ class NormalModes {
   /// False when `definite_only` and the shifted stiffness is not definite.
   bool add_roots(Roots& roots, int number, int guard, bool definite_only = false);
   void find_first();
+  void find_negative();
   RootSearchResult search();
   bool fit_range(int cut);
   bool has_every_root();

@@ -18,15 +18,14 @@ using Eigen::Index;
 
 /// diag K; where nothing stiffens a dof what is in keeping with its mass.
 VectorXd calc_scale(const Pencil& pencil) {
-  VectorXd D = pencil.K_diagonal;
-  const VectorXd& M = pencil.M_diagonal;
-  const double largest = D.maxCoeff();
+  const VectorXd &D = pencil.K_diagonal, &M = pencil.M_diagonal;
+  VectorXd scale = fe::fill_diagonal(D, pencil.kinds);
   double mass = 0;  // per stiffness
   for (Index i = 0; i < D.size(); ++i)
-    if (D(i) > 1e-14 * largest) mass = std::max(mass, M(i) / D(i));
+    if (D(i) == scale(i)) mass = std::max(mass, M(i) / D(i));
   for (Index i = 0; i < D.size(); ++i)
-    if (D(i) <= 1e-14 * largest) D(i) = mass > 0 && M(i) > 0 ? M(i) / mass : largest > 0 ? largest : 1;
-  return D;
+    if (D(i) != scale(i) && mass > 0 && M(i) > 0) scale(i) = M(i) / mass;
+  return scale;
 }
 
 /// The D-orthonormal motions of K whose forces are roundoff, by inverse iteration of K + 1e-13 D on `m` vectors; all of

@@ -5,6 +5,7 @@
 
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/mechanism.hpp"
+#include "fe/model/row_kinds.hpp"
 #include "modal/canonical.hpp"
 
 namespace bough::modal::detail {
@@ -104,7 +105,8 @@ Pencil::Pencil(const fe::System& system)
       K(fe::share(system.K)),
       M(fe::share(system.M)),
       K_diagonal(system.K_diagonal),
-      M_diagonal(system.M_diagonal) {}
+      M_diagonal(system.M_diagonal),
+      kinds(fe::list_row_kinds(model)) {}
 
 MatrixXd Pencil::calc_K_times(const MatrixXd& X) const { return fe::multiply(K.get(), X); }
 
@@ -295,7 +297,7 @@ std::string describe(const fe::Model& model, int fdof) {
 
 void throw_singular(const Pencil& pencil, double shift) {
   const fe::PetscMat A = fe::add(pencil.K.get(), shift, pencil.M.get());
-  const MatrixXd motions = fe::find_mechanisms(A.get(), 1);
+  const MatrixXd motions = fe::find_mechanisms(A.get(), pencil.kinds, 1);
   std::string where;
   for (Eigen::Index c = 0; c < motions.cols(); ++c) {
     Eigen::Index largest = 0;

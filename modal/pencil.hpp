@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "fe/linear/row_kinds.hpp"
 #include "fe/matrices/system.hpp"
 
 namespace bough::modal::detail {
@@ -18,6 +19,7 @@ struct Pencil {
   const fe::Model& model;
   fe::PetscMat K, M;
   VectorXd K_diagonal, M_diagonal;  ///< |K_ii| and M_ii, num_fdofs, replicated
+  fe::RowKinds kinds;               ///< of the f-dofs
 
   int size() const { return model.num_fdofs(); }
   MatrixXd calc_K_times(const MatrixXd& X) const;

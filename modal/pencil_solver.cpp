@@ -53,7 +53,7 @@ bool PencilSolver::solve_whole(double shift, int number, bool definite_only, Roo
   if (definite_only && fe::initialize_petsc().size == 1 && !factor->is_definite()) return false;
   // With a shift, mechanisms have the energy of their mass: little, but not roundoff.
   if (k == 0 && !problem_.is_complete &&
-      fe::calc_softest_energy(A, *factor) < (shift == 0 ? fe::kMechanismEnergy : 3e-16))
+      fe::calc_softest_energy(A, problem_.kinds, *factor) < (shift == 0 ? fe::kMechanismEnergy : 3e-16))
     return false;
 
   // In stages: beside values a million times as large roundoff is all that G has of the small ones.

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "fe/linear/factor.hpp"
+#include "fe/linear/row_kinds.hpp"
 #include "modal/krylov.hpp"
 #include "modal/low_rank.hpp"
 #include "modal/roots.hpp"
@@ -12,6 +13,7 @@ namespace bough::modal::detail {
 struct PencilProblem {
   Mat K = nullptr, M = nullptr;
   VectorXd M_diagonal;                          ///< replicated
+  fe::RowKinds kinds;                           ///< of the rows
   MatrixXd rigid;                               ///< n x k, M-orthonormal motions without strain, known; kept out
   Mat supported = nullptr;                      ///< K with a spring for each rigid motion, statically determinate
   bool is_complete = false;                     ///< every motion without strain is in `rigid`: no look for another

@@ -93,7 +93,8 @@ EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases,
   // The static subcase may be held in another way, as for antisymmetric buckling under a symmetric load.
   std::optional<fe::Model> own;
   const auto& b = cases.buckling;
-  const bool is_same = (b.spc == 0 && b.mpc == 0) || (b.spc == cases.statics.spc && b.mpc == cases.statics.mpc);
+  const bool is_same = ((b.spc == 0 && b.mpc == 0) || (b.spc == cases.statics.spc && b.mpc == cases.statics.mpc)) &&
+                       model.subcase().initial_temperature == cases.statics.initial_temperature;
   // The load to scale acts on the preloaded structure, unless its subcase names a preload of its own.
   const int preload = cases.statics.preload;
   const bool is_own = preload != 0 && preload != get_preloaded(deck, cases).preload;
@@ -111,7 +112,8 @@ EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases,
   std::optional<fe::System> system;
   if (!own && model.num_fdofs() > 0) system.emplace(model);
   const fe::StaticSolver solver(statics, system ? fe::share(system->K) : fe::get_stiffness(statics), held);
-  const auto suport = fe::calc_suport(statics, solver, std::move(held), relief, diagnostics);
+  const auto suport =
+      fe::calc_suport(statics, solver, std::move(held), relief, fe::locate_relief(statics, deck), diagnostics);
   fe::add_relief(statics, suport, load);
   const VectorXd u = fe::solve_static_case(statics, solver, load, suport).displacement;
   if (system) {

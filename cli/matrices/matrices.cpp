@@ -70,12 +70,21 @@ class GeometricStiffness {
     records::Subcase subcase;
     subcase.load = load_case.load;
     subcase.temperature = load_case.temperature;
-    const auto load = fe::calc_static_load(*model_, deck_, subcase, diagnostics);
+    auto load = fe::calc_static_load(*model_, deck_, subcase, diagnostics);
     fe::report_wide_links(deck_, diagnostics);
     diagnostics.throw_if_errors();
-    if (!solver_) solver_.emplace(*model_, fe::get_stiffness(*model_));
+    if (!solver_) {
+      const auto relief = fe::read_inertia_relief(deck_, diagnostics);
+      auto held = fe::choose_suport(*model_, deck_, relief, diagnostics);
+      diagnostics.throw_if_errors();
+      solver_.emplace(*model_, fe::get_stiffness(*model_), held);
+      suport_ =
+          fe::calc_suport(*model_, *solver_, std::move(held), relief, fe::locate_relief(*model_, deck_), diagnostics);
+    }
+    fe::add_relief(*model_, suport_, load);
     return fe::assemble_geometric_stiffness(*model_, fe::DofSet::Global, load,
-                                            fe::solve_static_case(*model_, *solver_, load).displacement, &load.initial);
+                                            fe::solve_static_case(*model_, *solver_, load, suport_).displacement,
+                                            &load.initial);
   }
 
  private:
@@ -95,6 +104,7 @@ class GeometricStiffness {
   const fe::Model* model_;
   std::optional<fe::Model> own_;
   std::optional<fe::StaticSolver> solver_;
+  fe::Suport suport_;
 };
 
 /// "boom.mtx" for K gives "boom.K.mtx".

@@ -47,9 +47,10 @@ Eigen::Matrix3Xd calc_mode_gradients(SolidKind kind, const Vector3d& at) {
   return g;
 }
 
-/// A cubic brick takes four points a direction, for its mass as for its stiffness.
+/// A cubic brick takes four points a direction unless the scheme says otherwise, for its mass always.
 std::vector<SolidPoint> list_points(const SolidGeometry& g, bool mass) {
-  if (is_cubic(g.midside)) return calc_solid_points(g.kind, true, false, 4);
+  if (is_cubic(g.midside))
+    return calc_solid_points(g.kind, true, false, mass || g.scheme.points == 0 ? 4 : g.scheme.points);
   return calc_solid_points(g.kind, static_cast<int>(g.x.size()) > get_num_corners(g.kind), mass, g.scheme.points);
 }
 

@@ -18,7 +18,7 @@ namespace bough::fe {
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 struct SolidScheme {
-  int points = 0;         ///< 2 or 3 Gauss points a direction (CHEXA; CPENTA along its axis); 0: by the number of nodes
+  int points = 0;         ///< 2 or 3 Gauss points a direction (CHEXA; CPENTA along its axis; cubic bricks also 4, as 0)
   bool is_plain = false;  ///< isoparametric without inner modes
 };
 

@@ -20,15 +20,6 @@ MatrixXd make_random(Eigen::Index rows, Eigen::Index cols) {
   return MatrixXd::NullaryExpr(rows, cols, [&] { return uniform(generator); });
 }
 
-/// D = diag K, with a plain value where a dof has no stiffness at all.
-VectorXd get_scale(Mat K) {
-  VectorXd D = get_diagonal(K).cwiseAbs();
-  const double largest = D.size() ? D.maxCoeff() : 0;
-  for (double& d : D)
-    if (d <= 1e-14 * largest) d = largest > 0 ? largest : 1;
-  return D;
-}
-
 void reduce_columns(MatrixXd& X) {
   for (Eigen::Index c = 0; c < X.cols(); ++c) {
     Eigen::Index row = 0, column = 0;
@@ -42,8 +33,8 @@ void reduce_columns(MatrixXd& X) {
 
 }  // namespace
 
-double calc_softest_energy(Mat K, const SymmetricFactor& factor) {
-  const VectorXd D = get_scale(K);
+double calc_softest_energy(Mat K, const RowKinds& kinds, const SymmetricFactor& factor) {
+  const VectorXd D = fill_diagonal(get_diagonal(K), kinds);
   VectorXd x = factor.solve(D.cwiseProduct(make_random(D.size(), 1).col(0)));
   const double size = x.dot(D.cwiseProduct(x));
   if (!(size > 0) || !std::isfinite(size)) return 0;
@@ -51,8 +42,8 @@ double calc_softest_energy(Mat K, const SymmetricFactor& factor) {
   return std::abs(x.dot(multiply(K, x).col(0)));
 }
 
-MatrixXd find_mechanisms(Mat K, int expected, double most) {
-  const VectorXd D = get_scale(K);
+MatrixXd find_mechanisms(Mat K, const RowKinds& kinds, int expected, double most) {
+  const VectorXd D = fill_diagonal(get_diagonal(K), kinds);
   const Eigen::Index n = D.size(), m = std::min<Eigen::Index>(n, std::clamp(expected + 2, 6, 24));
   const PetscMat shifted = add_diagonal(K, 1e-13 * D);
   const SymmetricFactor factor(shifted.get(), false, FactorMethod::Pivoting);

@@ -11,18 +11,17 @@ namespace bough::fe {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-VectorXd calc_residuals(const MatrixXd& D, const MatrixXd& X, const MatrixXd& Y, const MatrixXd& F) {
+VectorXd calc_residuals(const MatrixXd& D, const MatrixXd& X, const MatrixXd& Y, const MatrixXd& F,
+                        const RowKinds& kinds) {
   BOUGH_DEMAND(D.rows() == X.rows() && Y.cols() == X.cols() && F.cols() == X.cols());
   VectorXd residual = VectorXd::Zero(X.cols());
   for (Eigen::Index j = 0; j < X.cols(); ++j) {
     const auto d = D.col(D.cols() == 1 ? 0 : j);
-    const double largest = d.size() > 0 ? d.maxCoeff() : 0;
+    const VectorXd scale = fill_diagonal(d, kinds);
     double wrong = 0, force = 0, entries = 0;
     for (Eigen::Index i = 0; i < d.size(); ++i) {
-      const double scale = d(i) > 1e-14 * largest ? d(i) : largest;  // a dof that nothing stiffens
-      if (scale <= 0) continue;
-      wrong += (Y(i, j) - F(i, j)) * (Y(i, j) - F(i, j)) / scale;
-      force += Y(i, j) * Y(i, j) / scale;
+      wrong += (Y(i, j) - F(i, j)) * (Y(i, j) - F(i, j)) / scale(i);
+      force += Y(i, j) * Y(i, j) / scale(i);
       entries += d(i) * X(i, j) * X(i, j);
     }
     const double size = std::sqrt(force) + 1e-6 * std::sqrt(entries);
@@ -31,8 +30,9 @@ VectorXd calc_residuals(const MatrixXd& D, const MatrixXd& X, const MatrixXd& Y,
   return residual;
 }
 
-VectorXd calc_static_residuals(const VectorXd& K_diagonal, const MatrixXd& X, const MatrixXd& Y, const MatrixXd& F) {
-  VectorXd residual = calc_residuals(K_diagonal.cwiseAbs(), X, Y, F);
+VectorXd calc_static_residuals(const VectorXd& K_diagonal, const MatrixXd& X, const MatrixXd& Y, const MatrixXd& F,
+                               const RowKinds& kinds) {
+  VectorXd residual = calc_residuals(K_diagonal.cwiseAbs(), X, Y, F, kinds);
   for (Eigen::Index j = 0; j < X.cols(); ++j) {
     const double work = std::abs(X.col(j).dot(F.col(j)));
     if (work > 0) residual(j) = std::max(residual(j), std::abs(X.col(j).dot(Y.col(j) - F.col(j))) / work);

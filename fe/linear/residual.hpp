@@ -5,6 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include "fe/linear/row_kinds.hpp"
+
 namespace bough {
 class Diagnostics;
 }
@@ -18,14 +20,14 @@ inline constexpr double kResidualWarning = 1e-8, kResidualError = 1e-5;
 /// balance (λ M x, or the load) and D > 0 the diagonal of K (and of |λ| M). Free of units and of how stiff single parts
 /// are. The second term of the denominator is what the entries of K alone could bring about: where Y is a difference
 /// of forces a million times larger, rounding them to sixteen digits leaves less than that of it
-/// (docs/theory/modes.md).
+/// (docs/theory/modes.md). `kinds`: of the rows, for those that nothing stiffens (fill_diagonal).
 Eigen::VectorXd calc_residuals(const Eigen::MatrixXd& D, const Eigen::MatrixXd& X, const Eigen::MatrixXd& Y,
-                               const Eigen::MatrixXd& F);
+                               const Eigen::MatrixXd& F, const RowKinds& kinds = {});
 
 /// Of static solutions, K X = F with Y = K X: the above, or the work of what is not balanced over the work of the load
 /// (Nastran's epsilon) where that is larger: a motion that nothing holds hides in the former behind its own size.
 Eigen::VectorXd calc_static_residuals(const Eigen::VectorXd& K_diagonal, const Eigen::MatrixXd& X,
-                                      const Eigen::MatrixXd& Y, const Eigen::MatrixXd& F);
+                                      const Eigen::MatrixXd& Y, const Eigen::MatrixXd& F, const RowKinds& kinds = {});
 
 /// D of eigenpairs: |K_ii| + |λ_j| |B_ii|, n x m.
 Eigen::MatrixXd calc_residual_scale(const Eigen::VectorXd& K_diagonal, const Eigen::VectorXd& B_diagonal,

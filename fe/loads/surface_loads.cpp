@@ -8,7 +8,8 @@
 namespace bough::fe {
 namespace {
 
-/// A face as grid ids: corners in the order of its normal, the midside grid after each corner (0: none).
+/// A face as grid ids: corners in the order of its normal, the midside grid after each corner (0: none), or the two
+/// grids of each side of a cubic brick.
 struct Face {
   std::vector<int> corners, midside;
 };
@@ -22,9 +23,24 @@ const FaceTable& get_faces(SolidKind kind) {
   return kind == SolidKind::Hexa ? hexa : kind == SolidKind::Penta ? penta : tetra;
 }
 
+/// The grids between corners i and j, on the way from i to j.
+void add_side(const records::SolidElement& solid, SolidKind kind, int i, int j, std::vector<int>& midside) {
+  const bool is_third = is_cubic(solid.midsides);
+  const auto& edges = get_edges(kind);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const bool is_along = edges[e].first == i && edges[e].second == j;
+    if (!is_along && !(edges[e].first == j && edges[e].second == i)) continue;
+    if (is_third) {
+      midside.push_back(solid.midsides[2 * e + (is_along ? 0 : 1)]);
+      midside.push_back(solid.midsides[2 * e + (is_along ? 1 : 0)]);
+    } else {
+      midside.push_back(e < solid.midsides.size() ? solid.midsides[e] : 0);
+    }
+  }
+}
+
 /// The face that G1 with G3 or G4 names (Nastran Quick Reference Guide, PLOAD4), begun at G1; empty when none.
 Face find_solid_face(const records::SolidElement& solid, int g1, int g34) {
-  if (is_cubic(solid.midsides)) return {};  // the loads of faces are of corners and one middle a side
   const SolidKind kind = solid.corners.size() == 8   ? SolidKind::Hexa
                          : solid.corners.size() == 6 ? SolidKind::Penta
                                                      : SolidKind::Tetra;
@@ -46,12 +62,7 @@ Face find_solid_face(const records::SolidElement& solid, int g1, int g34) {
       const int i = face[static_cast<std::size_t>((first + k) % n)],
                 j = face[static_cast<std::size_t>((first + k + 1) % n)];
       result.corners.push_back(solid.corners[static_cast<std::size_t>(i)]);
-      int middle = 0;
-      const auto& edges = get_edges(kind);
-      for (std::size_t e = 0; e < solid.midsides.size() && e < edges.size(); ++e)
-        if ((edges[e].first == i && edges[e].second == j) || (edges[e].first == j && edges[e].second == i))
-          middle = solid.midsides[e];
-      result.midside.push_back(middle);
+      add_side(solid, kind, i, j, result.midside);
     }
     return result;
   }
@@ -87,9 +98,15 @@ class SurfaceLoads {
       sign = -1;  // inward
       if (face.corners.empty()) {
         t_.diagnostics.error("fe.bad-face", t_.deck.locate(load.at),
-                             card + " names grids " + std::to_string(load.g1) + " and " + std::to_string(load.g34) +
-                                 ", which are no face of the " + solid->second->card,
-                             "give G1 at a corner, with G3 diagonally opposite on the face (CTETRA: G4 off the face)");
+                             card +
+                                 (load.g1 == 0 ? std::string(" names no face of the ")
+                                               : " names grids " + std::to_string(load.g1) + " and " +
+                                                     std::to_string(load.g34) + ", which are no face of the ") +
+                                 solid->second->card,
+                             load.g1 == 0
+                                 ? "solids take PLOAD4 with G1 at a corner of the face and G3 diagonally opposite on it"
+                                 : "give G1 at a corner, with G3 diagonally opposite on the face (CTETRA: G4 "
+                                   "off the face)");
         return;
       }
     } else {

@@ -12,8 +12,9 @@ using Traction = std::function<Eigen::Vector3d(double p, const Eigen::Vector3d& 
 
 /// f_i = ∫ N_i t dA over a face of three or four corners (3 x m), its normal by the order of the corners.
 /// corners: positions; midside[k]: position of the node on edge k -> k+1; `has_midside[k]` tells whether it is there
-/// (both empty: none). p: intensity at the corners, interpolated linearly between them. Columns: the corners, then the
-/// midside nodes present. The vector area n dA = x,r × x,s dr ds of a warped face is integrated exactly.
+/// (both empty: none), eight each on a face of a cubic brick, two a side. p: intensity at the corners, interpolated
+/// linearly between them. Columns: the corners, then the midside nodes present. The vector area n dA = x,r × x,s dr ds
+/// of a warped face is integrated exactly.
 Eigen::Matrix3Xd calc_face_load(const std::vector<Eigen::Vector3d>& corners,
                                 const std::vector<Eigen::Vector3d>& midside, const std::vector<char>& has_midside,
                                 const std::vector<double>& p, const Traction& traction);

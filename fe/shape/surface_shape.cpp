@@ -36,6 +36,19 @@ Term calc_bump(int num_corners, int k, double r, double s) {
   return Term{0.5 * (1 + a * r), {0.5 * a, 0}} * Term{1 - s * s, {0, -2 * s}};
 }
 
+/// One at the third of edge a -> b next to a, zero at the other grids of the edges of the square: (9/16) (1 - t²)
+/// (1 + 3 t_a t) (1 + s_a s) / 2 with t along the edge.
+Term calc_cubic_bump(int a, int b, double r, double s) {
+  const auto sign_r = [](int k) { return k == 1 || k == 2 ? 1. : -1.; };
+  const auto sign_s = [](int k) { return k >= 2 ? 1. : -1.; };
+  const bool is_along_r = sign_r(a) != sign_r(b);
+  const double t = is_along_r ? r : s, at = is_along_r ? sign_r(a) : sign_s(a);
+  const double across = is_along_r ? s : r, side = is_along_r ? sign_s(a) : sign_r(a);
+  const Vector2d along = is_along_r ? Vector2d(1, 0) : Vector2d(0, 1);
+  return Term{9. / 16 * (1 - t * t), 9. / 16 * -2 * t * along} * Term{1 + 3 * at * t, 3 * at * along} *
+         Term{0.5 * (1 + side * across), 0.5 * side * (Vector2d(1, 1) - along)};
+}
+
 }  // namespace
 
 SurfaceShapes calc_surface_shapes(int n, const std::vector<char>& has_midside, double r, double s) {
@@ -48,6 +61,21 @@ SurfaceShapes calc_surface_shapes(int n, const std::vector<char>& has_midside, d
     result.dall.col(k) = t.gradient;
   }
   int next = n;
+  if (n == 4 && has_midside.size() == 8) {
+    for (int k = 0; k < 4; ++k)
+      for (const bool is_near : {true, false}) {
+        const int near = is_near ? k : (k + 1) % 4, far = is_near ? (k + 1) % 4 : k;
+        const Term t = calc_cubic_bump(near, far, r, s);
+        result.all[next] = t.value;
+        result.dall.col(next++) = t.gradient;
+        // What is linear has 2/3 and 1/3 there.
+        result.all[near] -= 2. / 3 * t.value;
+        result.dall.col(near) -= 2. / 3 * t.gradient;
+        result.all[far] -= 1. / 3 * t.value;
+        result.dall.col(far) -= 1. / 3 * t.gradient;
+      }
+    return result;
+  }
   for (int k = 0; k < static_cast<int>(has_midside.size()); ++k) {
     if (!has_midside[static_cast<std::size_t>(k)]) continue;
     const Term t = calc_bump(n, k, r, s);

@@ -14,7 +14,9 @@ struct SurfaceShapes {
   Eigen::Matrix2Xd dall;
 };
 
-/// num_corners: 3 or 4. has_midside[k]: the node on side k -> k+1 is there (empty: none).
+/// num_corners: 3 or 4. has_midside[k]: the node on side k -> k+1 is there (empty: none). Eight of them on four
+/// corners: two on each side, at a third and at two thirds of it from corner k, as on a face of a cubic brick; all are
+/// there.
 SurfaceShapes calc_surface_shapes(int num_corners, const std::vector<char>& has_midside, double r, double s);
 
 }  // namespace bough::fe

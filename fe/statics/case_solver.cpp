@@ -46,7 +46,8 @@ records::StaticSubcase CaseSolver::solve(const records::Subcase& subcase, Diagno
 }
 
 void CaseSolver::prepare(const records::Subcase& subcase, Diagnostics& diagnostics) {
-  const std::array<int, 4> held{subcase.spc, subcase.mpc, subcase.suport1, subcase.preload};
+  const std::array<int, 5> held{subcase.spc, subcase.mpc, subcase.suport1, subcase.preload,
+                                subcase.initial_temperature};
   if (held_ == held && (!model_ || model_->is_held_for(deck_, subcase.load))) {
     if (failure_) std::rethrow_exception(failure_);
     return;
@@ -65,7 +66,7 @@ void CaseSolver::prepare(const records::Subcase& subcase, Diagnostics& diagnosti
     own.throw_if_errors();
     auto solver = model.num_fdofs() == 0 ? std::make_unique<StaticSolver>(model)
                                          : std::make_unique<StaticSolver>(model, get_stiffness(model), fdofs);
-    suport_ = calc_suport(model, *solver, std::move(fdofs), relief, own);
+    suport_ = calc_suport(model, *solver, std::move(fdofs), relief, locate_relief(model, deck_), own);
     model_.emplace(std::move(model));
     solver_ = std::move(solver);
     for (const auto& item : own.items()) diagnostics.add(item);

@@ -26,7 +26,7 @@ class CaseSolver {
 
   const records::Deck& deck_;
   ModelOptions options_;
-  std::optional<std::array<int, 4>> held_;  ///< SPC, MPC, SUPORT1 and preload of what is kept
+  std::optional<std::array<int, 5>> held_;  ///< SPC, MPC, SUPORT1, preload, TEMPERATURE(INITIAL) of what is kept
   std::exception_ptr failure_;              ///< what came of them
   std::optional<Model> model_;
   std::unique_ptr<StaticSolver> solver_;

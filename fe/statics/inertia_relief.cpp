@@ -1,6 +1,9 @@
 #include "fe/statics/inertia_relief.hpp"
 
+#include <cmath>
 #include <cstdio>
+
+#include <Eigen/Eigenvalues>
 
 #include "fe/linear/mechanism.hpp"
 #include "fe/loads/inertial_loads.hpp"
@@ -16,6 +19,14 @@ std::string show(double value) {
 }
 
 }  // namespace
+
+SourceLocation locate_relief(const Model& model, const records::Deck& deck) {
+  if (!deck.suport.empty()) return deck.locate(deck.suport[0].at);
+  if (const auto set = deck.suport1.find(model.subcase().suport1); set != deck.suport1.end() && !set->second.empty())
+    return deck.locate(set->second[0].at);
+  const auto* param = deck.find_param("INREL");
+  return param ? deck.locate(param->at) : SourceLocation{};
+}
 
 InertiaRelief read_inertia_relief(const records::Deck& deck, Diagnostics& diagnostics) {
   // SOL 2 of the first Nastrans is static with inertia relief.
@@ -47,7 +58,7 @@ std::vector<int> choose_suport(const Model& model, const records::Deck& deck, In
 }
 
 Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<int> fdofs, InertiaRelief relief,
-                   Diagnostics& diagnostics) {
+                   const SourceLocation& where, Diagnostics& diagnostics) {
   Suport suport;
   suport.relief = relief;
   suport.fdofs = std::move(fdofs);
@@ -83,30 +94,53 @@ Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<i
     const std::string advice =
         "SUPORT must hold a free body in a statically determinate way; look for SPC, grounded "
         "springs or too many dofs";
-    if (relief != InertiaRelief::None) throw ComputationError("fe.suport-strained", {}, what, advice);
+    if (relief == InertiaRelief::Free)
+      throw InputError(
+          "fe.suport-strained", where,
+          "PARAM,INREL,-2 is for a free body, this one is held: a rigid motion, at " + name_suport(grid, component) +
+              ", strains it with energy " + show(suport.strain_energy[j]) + " for a unit",
+          model.subcase().spc != 0
+              ? "take out SPC = " + std::to_string(model.subcase().spc) + " and grounded springs, or leave out INREL"
+              : "look for grounded springs, or leave out INREL");
+    if (relief != InertiaRelief::None) throw InputError("fe.suport-strained", where, what, advice);
     diagnostics.warning("fe.suport-strained", {}, what, advice);
     break;
   }
   if (relief == InertiaRelief::None) return suport;
   suport.M_motions = calc_mass_times(model, model.mass_kind(), suport.motions);
-  suport.mass = suport.motions.transpose() * suport.M_motions;
+  const MatrixXd mass = suport.motions.transpose() * suport.M_motions;
   // Judged with a unit diagonal: translations and rotations side by side.
-  const VectorXd size = suport.mass.diagonal().cwiseMax(0).cwiseSqrt();
-  const bool has_mass = size.minCoeff() > 0;
-  Eigen::FullPivLU<MatrixXd> lu;
-  if (has_mass) {
-    lu.setThreshold(1e-12);
-    lu.compute(size.cwiseInverse().asDiagonal() * suport.mass * size.cwiseInverse().asDiagonal());
-  }
-  if (!has_mass || lu.rank() < num)
-    throw ComputationError("fe.inertia-massless", {},
-                           "a rigid motion of the model has no mass: loads along it cannot be balanced",
-                           "give the model mass and inertia in all directions, e.g. by density or CONM2");
+  const VectorXd size = mass.diagonal().unaryExpr([](double m) { return m > 0 ? 1 / std::sqrt(m) : 1.0; });
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver_of_mass(size.asDiagonal() * mass * size.asDiagonal());
+  const VectorXd& values = solver_of_mass.eigenvalues();
+  const MatrixXd vectors = size.asDiagonal() * solver_of_mass.eigenvectors();
+  const auto num_massless = (values.array() <= 1e-12 * std::max(values.maxCoeff(), 0.0)).count();
+  suport.massless = vectors.leftCols(num_massless);
+  const auto kept = vectors.rightCols(num - num_massless);
+  suport.mass_inverse = kept * values.tail(num - num_massless).cwiseInverse().asDiagonal() * kept.transpose();
+  if (num_massless == 0) return suport;
+  Eigen::Index j = 0;
+  solver_of_mass.eigenvectors().col(0).cwiseAbs().maxCoeff(&j);
+  const auto [grid, component] = model.describe_fdof(suport.fdofs[static_cast<std::size_t>(j)]);
+  diagnostics.note("fe.inertia-massless", where,
+                   "a rigid motion of the model has no mass, that of " + name_suport(grid, component),
+                   "it stays at rest, as long as the load does not drive it");
+  suport.refusal = InputError("fe.inertia-massless", where,
+                              "the load drives a rigid motion of the model that has no mass, that of " +
+                                  name_suport(grid, component) + ": nothing balances it",
+                              "give the model mass and inertia in all directions, e.g. by density or CONM2")
+                       .items();
   return suport;
 }
 
 VectorXd calc_acceleration(const Suport& suport, const VectorXd& F_g) {
-  return suport.mass.ldlt().solve(suport.motions.transpose() * F_g);
+  const VectorXd f = suport.motions.transpose() * F_g;
+  for (Eigen::Index k = 0; k < suport.massless.cols(); ++k) {
+    const VectorXd& x = suport.massless.col(k);
+    const double work = x.dot(f), size = (suport.motions * x).cwiseAbs().dot(F_g.cwiseAbs());
+    if (std::abs(work) > 1e-9 * size) throw InputError(suport.refusal);
+  }
+  return suport.mass_inverse * f;
 }
 
 void add_relief(const Model& model, const Suport& suport, AppliedLoad& load) {
@@ -121,7 +155,7 @@ void add_relief(const Model& model, const Suport& suport, AppliedLoad& load) {
 }
 
 void remove_rigid_part(const Suport& suport, VectorXd& u_g) {
-  const VectorXd rigid = suport.mass.ldlt().solve(suport.M_motions.transpose() * u_g);
+  const VectorXd rigid = suport.mass_inverse * (suport.M_motions.transpose() * u_g);
   u_g -= suport.motions * rigid;
 }
 

@@ -19,7 +19,9 @@ struct Suport {
   VectorXd strain_energy;  ///< r: ½ Φᵀ K Φ; none if the motion is rigid
   double epsilon = 0;      ///< |K_rr - K_rl K_ll⁻¹ K_lr| / |K_rr|, as Nastran prints it
   MatrixXd M_motions;      ///< M Φ, with inertia relief
-  MatrixXd mass;           ///< Φᵀ M Φ, r x r, with inertia relief
+  MatrixXd mass_inverse;   ///< of Φᵀ M Φ, r x r, with inertia relief; zero along `massless`
+  MatrixXd massless;       ///< r x k: combinations of the motions without mass, as a line of bars turns about itself
+  std::vector<Diagnostic> refusal;  ///< of a load that drives one of these
 };
 
 /// f-dofs to hold: find_suport(), or for INREL -2 a determinate support of Bough's choice. Reports fe.missing-suport
@@ -29,11 +31,14 @@ std::vector<int> choose_suport(const Model& model, const records::Deck& deck, In
 
 /// `solver` holds `fdofs`. A motion that strains the model (more than kMechanismEnergy of the diagonal's energy) means
 /// that SUPORT holds more than a rigid body, or that the model is held elsewhere too: fe.suport-strained (warning),
-/// with inertia relief ComputationError. One without mass is ComputationError fe.inertia-massless with inertia relief.
+/// with inertia relief InputError, at `where` (locate_relief()).
 Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<int> fdofs, InertiaRelief relief,
-                   Diagnostics& diagnostics);
+                   const SourceLocation& where, Diagnostics& diagnostics);
+/// The card that asks for it: SUPORT, else PARAM,INREL.
+SourceLocation locate_relief(const Model& model, const records::Deck& deck);
 
-/// Accelerations a of the r dofs under the load F (num_gdofs): ΦᵀMΦ a = ΦᵀF. The balanced load is F - MΦ a.
+/// Accelerations a of the r dofs under the load F (num_gdofs): ΦᵀMΦ a = ΦᵀF, none along what has no mass. The balanced
+/// load is F - MΦ a. Throws InputError fe.inertia-massless where F drives a motion without mass.
 VectorXd calc_acceleration(const Suport& suport, const VectorXd& F_g);
 
 /// With inertia relief the load of the rigid acceleration of a free body, for what needs to know it as such: K_G of

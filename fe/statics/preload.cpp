@@ -86,7 +86,8 @@ std::shared_ptr<const Prestress> calc_prestress(const records::Deck& deck, const
   const StaticSolver solver =
       model.num_fdofs() == 0 ? StaticSolver(model) : StaticSolver(model, get_stiffness(model), held_fdofs);
   Suport suport;
-  if (!options.ignore_spc) suport = calc_suport(model, solver, std::move(held_fdofs), relief, own);
+  if (!options.ignore_spc)
+    suport = calc_suport(model, solver, std::move(held_fdofs), relief, locate_relief(model, deck), own);
   add_relief(model, suport, load);
   const VectorXd u = solve_static_case(model, solver, load, suport, &own).displacement;
 

@@ -1,17 +1,20 @@
 /// The last step of a model that is built with a prestress: it is solved whether the structure stands.
 #include <algorithm>
 
+#include <Eigen/Eigenvalues>
+
 #include "fe/linear/factor.hpp"
 #include "fe/linear/sum_factor.hpp"
 #include "fe/matrices/system.hpp"
 #include "fe/model/builder.hpp"
+#include "fe/model/row_kinds.hpp"
 #include "fe/statics/statics.hpp"
 
 namespace bough::fe {
 namespace {
 
-/// By the inertia of MUMPS, on several ranks.
-bool has_negative_pivot(Mat whole) {
+/// By the inertia of MUMPS; -1 where a pivot is zero.
+int count_negative_pivots(Mat whole) {
   Mat A = get_sparse(whole);
   MatFactorInfo info;
   check_petsc(MatFactorInfoInitialize(&info));
@@ -27,27 +30,58 @@ bool has_negative_pivot(Mat whole) {
     check_petsc(MatMumpsGetInfog(F.get(), 2, &detail));
     const auto state = judge_factorization(status, detail);
     if (state == FactorState::NeedsWorkspace) continue;
-    if (state == FactorState::Singular) return false;
+    if (state == FactorState::Singular) return -1;
     check_petsc(MatGetInertia(F.get(), &negative, nullptr, nullptr));
     if (const LowRankPart* part = find_low_rank(whole))
       negative += count_extra_negative(make_sum_factor(std::move(F), *part).get());
-    return negative > 0;
+    return static_cast<int>(negative);
   }
-  return false;
+  return -1;
+}
+
+/// A with rows of these kinds, and a little of its diagonal, so that motions without stiffness are not negative by
+/// roundoff.
+PetscMat lift(const PetscMat& A, const RowKinds& kinds) {
+  return add_diagonal(A.get(), 1e-13 * raise_diagonal(get_diagonal(A.get()).cwiseAbs(), kinds, 1e-6));
 }
 
 /// Whether A, which is not positive definite, has a negative eigenvalue beyond roundoff; those of motions without
 /// stiffness are none.
-bool has_negative(const PetscMat& A) {
-  VectorXd shift = 1e-13 * get_diagonal(A.get()).cwiseAbs();
-  shift = shift.cwiseMax(1e-6 * shift.maxCoeff());
-  const PetscMat shifted = add_diagonal(A.get(), shift);
-  if (initialize_petsc().size == 1) return !factor_definite(shifted.get());
-  return has_negative_pivot(shifted.get());
+bool has_negative(const PetscMat& A, const RowKinds& kinds) {
+  const PetscMat lifted = lift(A, kinds);
+  if (initialize_petsc().size == 1) return !factor_definite(lifted.get());
+  return count_negative_pivots(lifted.get()) > 0;
+}
+
+/// Negative directions of the stress among the rigid motions of a model that nothing holds; 0 where it is held. A
+/// motion on which the stress does no work, but whose forces strain the body, is one of second order.
+int count_tipping(const Model& model, const PetscMat& K) {
+  for (const int dof : model.fixed_dofs()) {
+    const auto is_it = [&](const AutospcEntry& entry) {
+      return model.node(model.find_node(entry.node)).first_gdof + std::max(entry.component - 1, 0) == dof;
+    };
+    if (std::none_of(model.autospc().begin(), model.autospc().end(), is_it)) return 0;
+  }
+  Vector3d centre = Vector3d::Zero();
+  for (const Node& node : model.nodes()) centre += node.x / static_cast<double>(model.nodes().size());
+  const MatrixXd R = model.calc_rigid_modes(centre), K_G_R = calc_prestress_times(model, R);
+  const Eigen::Matrix<double, 6, 6> G = R.transpose() * K_G_R,
+                                    elastic = R.transpose() * calc_stiffness_times(model, R) - G;
+  const double roundoff = 1e-14 * get_diagonal(K.get()).cwiseAbs().sum() * R.cwiseAbs2().maxCoeff();
+  if (!(elastic.norm() < 1e-6 * G.norm() + roundoff)) return 0;  // springs to ground
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(0.5 * (G + G.transpose()));
+  const double most = solver.eigenvalues().cwiseAbs().maxCoeff();
+  const VectorXd force = (MatrixXd(model.T().transpose() * K_G_R) * solver.eigenvectors()).colwise().norm();
+  int count = 0;
+  for (int i = 0; i < 6; ++i) {
+    const double g = solver.eigenvalues()[i];
+    count += g < -1e-9 * most || (g <= 1e-9 * most && force[i] > 1e-6 * force.maxCoeff()) ? 1 : 0;
+  }
+  return count;
 }
 
 /// Takes out what carries the rigid motions of a free model: where those need no force, the sign of the rest stays.
-PetscMat hold_support(const Model& model, const PetscMat& A) {
+PetscMat hold_support(const Model& model, const PetscMat& A, RowKinds& kinds) {
   std::vector<int> held, kept;
   try {
     held = choose_determinate_support(model, 0);
@@ -56,6 +90,7 @@ PetscMat hold_support(const Model& model, const PetscMat& A) {
   }
   for (int f = 0; f < model.num_fdofs(); ++f)
     if (std::find(held.begin(), held.end(), f) == held.end()) kept.push_back(f);
+  kinds = list_row_kinds(model, kept);
   return take_kept(A.get(), kept);
 }
 
@@ -68,9 +103,22 @@ void ModelBuilder::check_prestress() {
   checked->factor = SymmetricFactor::try_definite(checked->K.get());
   model_.checked_stiffness_ = checked;
   if (checked->factor) return;
-  const PetscMat held = options_.ignore_spc ? hold_support(model_, checked->K) : PetscMat();
+  RowKinds kinds = list_row_kinds(model_);
+  const PetscMat held = options_.ignore_spc ? hold_support(model_, checked->K, kinds) : PetscMat();
   if (held && factor_definite(held.get())) return;
-  if (!has_negative(held ? held : checked->K)) return;
+  if (!has_negative(held ? held : checked->K, kinds)) return;
+  // With as many negative directions in all as among the rigid motions, what the others strain is positive
+  // (Haynsworth): Nastran has such modes too, with negative eigenvalues.
+  const int tipping = held ? 0 : count_tipping(model_, checked->K);
+  if (const int negative = tipping > 0 ? count_negative_pivots(lift(checked->K, kinds).get()) : 0;
+      negative > 0 && negative <= tipping) {
+    diagnostics_.warning("fe.preload-tips", model_.prestress_->at,
+                         "the loads of the preload, " + model_.prestress_->name +
+                             ", keep their direction and tip the free body over: " + std::to_string(negative) +
+                             " of its rigid motions have negative stiffness, however small the load",
+                         "the structure itself does not buckle; modes prints these motions with negative eigenvalues");
+    return;
+  }
   throw ComputationError("fe.preload-buckles", model_.prestress_->at,
                          "the structure buckles under its preload, " + model_.prestress_->name +
                              ": its stiffness with that of the stress is not positive definite",

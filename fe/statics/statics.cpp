@@ -7,6 +7,7 @@
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/mechanism.hpp"
 #include "fe/linear/residual.hpp"
+#include "fe/model/row_kinds.hpp"
 
 namespace bough::fe {
 namespace {
@@ -50,7 +51,12 @@ double calc_model_size(const Model& model) {
                 std::to_string(motions.cols()) + " moves most at " + describe_motion(model, kept, motions.col(c), size);
     item.advice = "hold or stiffen these dofs (components in the displacement axes of the grids)";
     const auto& subcase = model.subcase();
-    if (c == 0 && subcase.spc == 0 && model.fixed_dofs().size() <= model.autospc().size())
+    const auto num_held = model.num_fdofs() - static_cast<int>(kept.size());
+    if (c == 0 && num_held > 0)
+      item.advice = "the " + std::to_string(num_held) +
+                    " dof(s) that SUPORT or the support of a free body holds leave " +
+                    "these motions: name dofs there that hold them too";
+    else if (c == 0 && subcase.spc == 0 && model.fixed_dofs().size() <= model.autospc().size())
       item.advice = (subcase.id > 0 ? "subcase " + std::to_string(subcase.id) : std::string("the case control")) +
                     " selects no SPC set and nothing is held: write SPC = n, or hold these dofs";
     items.push_back(std::move(item));
@@ -65,7 +71,8 @@ struct StaticSolver::Impl {
   std::shared_ptr<const StaticSolver> omitted;  ///< of the model
   std::vector<int> kept;                        ///< f-dofs that are not held, ascending
   std::optional<SymmetricFactor> factor;
-  PetscMat K;  ///< what was factored, for residuals
+  RowKinds kinds;  ///< of `kept`
+  PetscMat K;      ///< what was factored, for residuals
 };
 
 StaticSolver::StaticSolver(const Model& model, const PetscMat& K_f, std::vector<int> held_fdofs)
@@ -80,6 +87,7 @@ StaticSolver::StaticSolver(const Model& model, const PetscMat& K_f, std::vector<
   if (kept.empty())
     throw ComputationError("fe.no-free-dofs", {}, "the model has no free dof left after its constraints",
                            "remove constraints or add stiffness");
+  impl_->kinds = list_row_kinds(model, kept);
   if (held_fdofs.empty()) {
     impl_->K = share(K_f);
   } else {
@@ -91,7 +99,7 @@ StaticSolver::StaticSolver(const Model& model, const PetscMat& K_f, std::vector<
   // by LLᵀ, which is quicker, always without: then it is pivoted to see how many motions there are.
   impl_->factor.emplace(K, true);
   const auto is_sound = [&] {
-    return !impl_->factor->is_singular() && calc_softest_energy(K, *impl_->factor) >= kMechanismEnergy;
+    return !impl_->factor->is_singular() && calc_softest_energy(K, impl_->kinds, *impl_->factor) >= kMechanismEnergy;
   };
   if (impl_->factor->is_definite()) {
     if (is_sound()) return;
@@ -99,7 +107,7 @@ StaticSolver::StaticSolver(const Model& model, const PetscMat& K_f, std::vector<
   }
   const int suspects = impl_->factor->is_singular() ? 1 : impl_->factor->num_null_pivots();
   if (suspects == 0 && is_sound()) return;
-  const MatrixXd motions = find_mechanisms(K, suspects);
+  const MatrixXd motions = find_mechanisms(K, impl_->kinds, suspects);
   if (motions.cols() > 0) throw_mechanisms(model, kept, motions);
   impl_->factor.emplace(K, false, FactorMethod::Pivoting);
   if (!is_sound())
@@ -121,7 +129,7 @@ const SymmetricFactor* StaticSolver::find_definite_factor() const {
 
 void StaticSolver::demand_no_mechanism(const Model& model) const {
   if (impl_->kept.empty()) return;
-  const MatrixXd motions = find_mechanisms(impl_->K.get(), 1, kSoftMotionEnergy);
+  const MatrixXd motions = find_mechanisms(impl_->K.get(), impl_->kinds, 1, kSoftMotionEnergy);
   if (motions.cols() > 0) throw_mechanisms(model, impl_->kept, motions);
 }
 
@@ -137,7 +145,8 @@ MatrixXd StaticSolver::solve(const Eigen::Ref<const MatrixXd>& F_g, Diagnostics*
   // Stability of Numerical Algorithms, 2nd ed., ch. 12).
   u_kept += impl_->factor->solve(calc_residual(impl_->K.get(), u_kept, F_kept));
   Diagnostics unheard;
-  check_residuals(calc_static_residuals(get_diagonal(impl_->K.get()), u_kept, multiply(impl_->K.get(), u_kept), F_kept),
+  check_residuals(calc_static_residuals(get_diagonal(impl_->K.get()), u_kept, multiply(impl_->K.get(), u_kept), F_kept,
+                                        impl_->kinds),
                   "load case", diagnostics ? *diagnostics : unheard);
   u_f(impl_->kept, Eigen::all) = u_kept;
   MatrixXd u_g = T * u_f;

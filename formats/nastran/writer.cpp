@@ -27,9 +27,9 @@ constexpr std::array written_cards{
     // Those of NASTRAN-95 stand as what they became.
     "CELBOW", "CHEXA1", "CHEXA2", "CIHEX1", "CIHEX2", "CIHEX3", "CIS2D8", "CQDMEM", "CQDMEM1", "CQDMEM2", "CQDPLT",
     "CQUAD1", "CQUAD2", "CRBAR", "CRBE1", "CRBE2", "CRBE3", "CRIGD3", "CRROD", "CRSPLINE", "CRTRPLT", "CTRBSC",
-    "CTRIA1", "CTRIA2", "CTRIM6", "CTRMEM", "CTRPLT", "CTRPLT1", "CTRSHL", "CWEDGE", "PCOMP1", "PCOMP2", "PELBOW",
-    "PIHEX", "PIS2D8", "PQDMEM", "PQDMEM1", "PQDMEM2", "PQDPLT", "PQUAD1", "PQUAD2", "PTRBSC", "PTRIA1", "PTRIA2",
-    "PTRIM6", "PTRMEM", "PTRPLT", "PTRPLT1", "PTRSHL", "QSET", "QSET1"};
+    "CTRIA1", "CTRIA2", "CTRIM6", "CTRMEM", "CTRPLT", "CTRPLT1", "CTRSHL", "CWEDGE", "MAT6", "PCOMP1", "PCOMP2",
+    "PELBOW", "PIHEX", "PIS2D8", "PLOAD3", "PQDMEM", "PQDMEM1", "PQDMEM2", "PQDPLT", "PQUAD1", "PQUAD2", "PTRBSC",
+    "PTRIA1", "PTRIA2", "PTRIM6", "PTRMEM", "PTRPLT", "PTRPLT1", "PTRSHL", "QSET", "QSET1"};
 
 /// "1.5*K1, 1.*K2": a line for each, so that none grows beyond 72 columns.
 std::string join_matrices(const std::vector<std::pair<double, std::string>>& matrices) {

@@ -6,6 +6,7 @@
 
 #include "fe/linear/mechanism.hpp"
 #include "fe/linear/residual.hpp"
+#include "fe/model/row_kinds.hpp"
 #include "fe/statics/statics.hpp"
 #include "modal/canonical.hpp"
 #include "modal/pencil.hpp"
@@ -16,7 +17,7 @@ namespace bough::modal::bases {
 namespace {
 
 [[noreturn]] void throw_mechanism(const fe::Model& model, const Partition& part, Mat K_ii) {
-  const MatrixXd motions = fe::find_mechanisms(K_ii, 1);
+  const MatrixXd motions = fe::find_mechanisms(K_ii, fe::list_row_kinds(model, part.interior), 1);
   std::string where;
   for (Eigen::Index c = 0; c < motions.cols(); ++c) {
     Eigen::Index largest = 0;
@@ -33,17 +34,21 @@ namespace {
 struct FixedInterface::Impl {
   const fe::Model& model;
   Partition part;
+  fe::RowKinds kinds;  ///< of the interior
   const fe::PetscMat& K;
   fe::PetscMat K_ii, M_ii;
   std::optional<fe::SymmetricFactor> factor;
 
   Impl(const fe::System& system, const std::vector<int>& nodes, Diagnostics& diagnostics)
-      : model(system.model), part(make_partition(model, nodes, diagnostics)), K(system.K) {
+      : model(system.model),
+        part(make_partition(model, nodes, diagnostics)),
+        kinds(fe::list_row_kinds(model, part.interior)),
+        K(system.K) {
     if (part.interior.empty()) return;
     K_ii = calc_triple_product(K.get(), part.S_i);
     M_ii = calc_triple_product(system.M.get(), part.S_i);
     const auto is_sound = [&] {
-      return !factor->is_singular() && fe::calc_softest_energy(K_ii.get(), *factor) >= fe::kMechanismEnergy;
+      return !factor->is_singular() && fe::calc_softest_energy(K_ii.get(), kinds, *factor) >= fe::kMechanismEnergy;
     };
     factor.emplace(K_ii.get(), false);
     if (!is_sound()) throw_mechanism(model, part, K_ii.get());
@@ -53,8 +58,9 @@ struct FixedInterface::Impl {
     MatrixXd X = factor->solve(F_i);
     X += factor->solve(fe::calc_residual(K_ii.get(), X, F_i));
     Diagnostics unheard;
-    fe::check_residuals(fe::calc_static_residuals(fe::get_diagonal(K_ii.get()), X, fe::multiply(K_ii.get(), X), F_i),
-                        "load case with the interface held", unheard);
+    fe::check_residuals(
+        fe::calc_static_residuals(fe::get_diagonal(K_ii.get()), X, fe::multiply(K_ii.get(), X), F_i, kinds),
+        "load case with the interface held", unheard);
     return X;
   }
   MatrixXd expand(const MatrixXd& X_i) const { return model.T() * MatrixXd(part.S_i * X_i); }
@@ -137,6 +143,7 @@ ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Dia
   problem.K = in.K_ii.get();
   problem.M = in.M_ii.get();
   problem.M_diagonal = fe::get_diagonal(in.M_ii.get());
+  problem.kinds = in.kinds;
   problem.rigid.resize(size, 0);
   problem.factor = &*in.factor;
   detail::PencilSolver solver(problem, wanted);
@@ -154,7 +161,7 @@ ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Dia
   roots.keep(std::min(wanted, result.cut));
   fe::check_residuals(fe::calc_residuals(fe::calc_residual_scale(K_diagonal, problem.M_diagonal, roots.value), roots.X,
                                          fe::multiply(in.K_ii.get(), roots.X),
-                                         fe::multiply(in.M_ii.get(), roots.X) * roots.value.asDiagonal()),
+                                         fe::multiply(in.M_ii.get(), roots.X) * roots.value.asDiagonal(), in.kinds),
                       "mode with the interface held", diagnostics);
   set.lambda = roots.value;
   set.Phi = in.expand(roots.X);

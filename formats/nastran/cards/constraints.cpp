@@ -1,6 +1,7 @@
 #include <bit>
 
 #include "formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/rigid_expansion.hpp"
 
 namespace bough::nastran::detail {
 namespace {
@@ -14,7 +15,10 @@ void parse_rbe2(Card& card, Reading& r) {
   e.gn = card.read_id(1, "GN");
   e.cm = card.read_components(2, "CM");
   int last = card.get_size();
-  for (int count = 0; count < 2 && last > 4 && is_real(card, last - 1); ++count) card.read_real(--last, "ALPHA TREF");
+  double alpha = 0;
+  for (int count = 0; count < 2 && last > 4 && is_real(card, last - 1); ++count)
+    alpha = card.read_real(--last, "ALPHA TREF");
+  note_expansion(card, r, alpha);
   e.gm = read_ids(card, 3, last, "GM");
   if (e.gm.empty() && card.is_ok())
     card.fail("deck.missing-field", 3, "GM is blank, expected a dependent grid at least");
@@ -62,7 +66,7 @@ void parse_rbe3(Card& card, Reading& r) {
     }
   if (card.is_word(i, "ALPHA")) {
     card.use(i);
-    card.read_real(i + 1, "ALPHA");
+    note_expansion(card, r, card.read_real(i + 1, "ALPHA"));
     card.use(i + 2);  // TREF
   }
   if (e.groups.empty() && card.is_ok()) card.fail("deck.missing-field", 4, "WT1 is blank, expected a weight and grids");
@@ -76,7 +80,7 @@ void parse_rbe1(Card& card, Reading& r) {
   e.id = card.read_id(0, "EID");
   e.at = card.get_location();
   const int size = card.get_size();
-  bool has_um = false;
+  bool has_um = false, has_alpha = false;
   for (int i = 1; i < size;) {
     if (card.is_blank(i)) {
       ++i;
@@ -84,7 +88,9 @@ void parse_rbe1(Card& card, Reading& r) {
       has_um = true;
       card.use(i++);
     } else if (i >= size - 2 && is_real(card, i)) {
-      card.read_real(i++, "ALPHA TREF");
+      const double value = card.read_real(i++, "ALPHA TREF");
+      if (!has_alpha) note_expansion(card, r, value);
+      has_alpha = true;
     } else {
       const int g = card.read_id(i, has_um ? "GM" : "GN");
       (has_um ? e.dependent : e.independent).push_back({g, card.read_components(i + 1, has_um ? "CM" : "CN"), e.at});
@@ -108,7 +114,8 @@ void parse_rrod(Card& card, Reading& r) {
   e.gb = card.read_id(2, "GB");
   e.cma = card.read_component(3, "CMA");
   e.cmb = card.read_component(4, "CMB");
-  card.use(5, 7);  // ALPHA, TREF
+  note_expansion(card, r, card.read_real(5, "ALPHA", 0.0));
+  card.use(6);  // TREF
   if (card.is_ok() && ((e.cma == 0) == (e.cmb == 0) || e.cma > 3 || e.cmb > 3))
     card.fail("deck.field-range", 3,
               "CMA and CMB name " + std::to_string(e.cma) + " and " + std::to_string(e.cmb) +
@@ -128,7 +135,8 @@ void parse_rbar(Card& card, Reading& r) {
   e.cnb = card.read_components(4, "CNB", 0);
   e.cma = card.read_components(5, "CMA", 0);
   e.cmb = card.read_components(6, "CMB", 0);
-  card.use(7, 9);  // ALPHA, TREF
+  note_expansion(card, r, card.read_real(7, "ALPHA", 0.0));
+  card.use(8);  // TREF
   if (e.cna == 0 && e.cnb == 0) e.cna = all;
   const int num = std::popcount(e.cna) + std::popcount(e.cnb);
   // Fewer than six on one grid alone: the model completes them.

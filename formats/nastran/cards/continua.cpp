@@ -123,9 +123,9 @@ void parse_laminate(Card& card, Reading& r, int skip, int stride) {
   p.tref = card.read_real(5, "TREF", 0.0);
   p.ge = card.read_real(6, "GE", 0.0);
   for (const int i : {3, 4}) card.use(i);  // SB, FT
-  const std::string lam = card.read_word(7, "LAM", "", {"", "SYM", "MEM", "BEND", "SMEAR", "SMCORE"});
+  const std::string lam = card.read_word(7, "LAM", "", {"", "ALL", "SYM", "MEM", "SYMMEM", "BEND", "SMEAR", "SMCORE"});
   p.membrane = lam != "BEND";
-  p.bending = lam != "MEM";
+  p.bending = lam != "MEM" && lam != "SYMMEM";
   set_layup(lam, p);
   p.at = card.get_location();
   for (int i = 8; i < card.get_size(); i += stride) {
@@ -140,7 +140,7 @@ void parse_laminate(Card& card, Reading& r, int skip, int stride) {
   }
   if (p.plies.empty()) card.fail("deck.missing-field", 8, "the laminate has no ply", "give MID1, T1, THETA1");
   check_core(p, card);
-  if (lam == "SYM") p.plies.insert(p.plies.end(), p.plies.rbegin(), p.plies.rend());
+  if (lam == "SYM" || lam == "SYMMEM") p.plies.insert(p.plies.end(), p.plies.rbegin(), p.plies.rend());
   double total = 0;
   for (const auto& ply : p.plies) total += ply.t;
   p.z0 = z0.value_or(-0.5 * total);
@@ -241,6 +241,7 @@ void add_continuum_parsers(ParserTable& table) {
   table["MAT2"] = parse_mat2;
   table["MAT8"] = parse_mat8;
   table["MAT9"] = parse_mat9;
+  table["MAT6"] = parse_mat9;  // NASTRAN-95
   table["MAT11"] = parse_mat11;
   table["PSHELL"] = parse_pshell;
   table["PCOMP"] = parse_pcomp;

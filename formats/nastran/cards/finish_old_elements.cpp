@@ -27,11 +27,16 @@ class Finisher {
     make_solids();
     if (old_.counts.empty()) return;
     std::string what;
-    for (const auto& [names, count] : old_.counts)
+    bool is_same = true;
+    for (const auto& [names, count] : old_.counts) {
       what += (what.empty() ? "" : ", ") + std::to_string(count) + " " + names.first + " as " + names.second;
+      is_same = is_same && (names.first == "CIHEX2" || names.first == "CIHEX3");
+    }
     r_.diagnostics.note("deck.old-element", deck_.locate(old_.first),
                         "elements of NASTRAN-95 are read as those of today: " + what,
-                        "they are of the same grids and properties but stiffer or softer than the old formulations");
+                        is_same ? "their shapes are those of the old formulation"
+                                : "they are of the same grids and properties but stiffer or softer than the old "
+                                  "formulations (CIHEX2 and CIHEX3 are the same)");
   }
 
  private:
@@ -106,13 +111,31 @@ class Finisher {
     }
   }
 
+  /// NIP of PIHEX; blank is 2 for CIHEX1, 3 for CIHEX2 and CIHEX3 (User's Manual, PIHEX, remark 2).
+  void choose_points(int order, records::Psolid& p) {
+    const int asked = p.points;
+    if (order == 3 && asked == 0) p.points = 3;
+    if (order == 2 && asked == 4) p.points = 3;
+    if (order == 1) p.points = 0;
+    if (p.points == asked || asked == 0 || (order == 1 && asked == 2)) return;
+    r_.diagnostics.note("deck.old-points", deck_.locate(p.at),
+                        "PIHEX " + std::to_string(p.id) + " has NIP = " + std::to_string(asked) +
+                            (order == 1 ? ", CIHEX1 is integrated with its inner modes at 2 points a direction"
+                                        : ", CIHEX2 is integrated at 3 points a direction"),
+                        "leave NIP blank");
+  }
+
   void make_solids() {
-    // Cubic bricks get properties of their own: written, they want a PIHEX where the others want a PSOLID.
-    std::map<std::tuple<bool, bool, int>, int> ids;
+    // Cubic bricks get properties of their own: written, they want a PIHEX where the others want a PSOLID. So do those
+    // of 8 and of 20 grids where NIP makes a difference.
+    std::map<std::tuple<bool, int, int>, int> ids;
     for (const auto& use : old_.solids) {
       auto& e = deck_.solids[use.index];
       const bool by_material = use.property.empty();
-      const auto [id, is_new] = ids.emplace(std::tuple(by_material, e.card == "CIHEX3", e.pid), 0);
+      const auto known = old_.solid_properties.find(e.pid);
+      const bool has_points = !by_material && known != old_.solid_properties.end() && known->second.points > 0;
+      const int order = e.card == "CIHEX3" ? 3 : has_points && !e.midsides.empty() ? 2 : 1;
+      const auto [id, is_new] = ids.emplace(std::tuple(by_material, order, e.pid), 0);
       if (is_new) {
         records::Psolid p;
         p.mid = e.pid;
@@ -125,6 +148,7 @@ class Finisher {
             continue;
           }
           p = card->second;
+          choose_points(order, p);
         }
         p.id = id->second = take_id(solid_ids_, e.pid);
         deck_.psolid.push_back(p);

@@ -60,13 +60,15 @@ void parse_cihex3(Card& card, Reading& r) {
   add_solid(card, r, std::move(e), "CIHEX3", "PIHEX");
 }
 
-/// PID MID CID NIP AR ALPHA BETA.
+/// PID MID CID NIP AR ALPHA BETA. NIP stays zero where it is blank: what that means is the element's.
 void parse_pihex(Card& card, Reading& r) {
   records::Psolid p;
   p.id = card.read_id(0, "PID");
   p.mid = card.read_id(1, "MID");
   p.cordm = card.read_reference(2, "CID");
-  card.use(3, 7);  // points of integration, limits of the shape
+  p.points = card.read_int(3, "NIP", 0);
+  card.demand(p.points == 0 || (p.points >= 2 && p.points <= 4), 3, "NIP", "2, 3 or 4");
+  card.use(4, 7);  // limits of the shape
   p.at = card.get_location();
   if (r.claim(IdSpace::OldSolidProperty, p.id, card)) r.old_elements.solid_properties.emplace(p.id, p);
 }

@@ -126,6 +126,22 @@ void parse_pload4(Card& card, Reading& r) {
     r.deck.load_cards.pressures.push_back(load);
 }
 
+/// PLOAD3 of NASTRAN-95: SID P EID1 G11 G12 EID2 G21 G22, positive outward on the face with the corners G11 and G12
+/// (User's Manual, PLOAD3, remark 4).
+void parse_pload3(Card& card, Reading& r) {
+  records::ElementPressure load;
+  load.sid = card.read_id(0, "SID");
+  load.p.fill(-card.read_real(1, "P"));
+  load.at = card.get_location();
+  for (const int i : {2, 5}) {
+    if (i > 2 && card.is_blank(i, i + 3)) break;
+    load.element = card.read_id(i, "EID");
+    load.g1 = card.read_id(i + 1, "G1");
+    load.g34 = card.read_id(i + 2, "G2");
+    if (card.is_ok()) r.deck.load_cards.pressures.push_back(load);
+  }
+}
+
 /// SID G CID A R1 R2 R3 METHOD, RACC.
 void parse_rforce(Card& card, Reading& r) {
   records::Rotation load;
@@ -179,6 +195,7 @@ void add_pressure_parsers(ParserTable& table) {
   table["PLOAD"] = parse_pload;
   table["PLOAD1"] = parse_pload1;
   table["PLOAD2"] = parse_pload2;
+  table["PLOAD3"] = parse_pload3;
   table["PLOAD4"] = parse_pload4;
   table["RFORCE"] = parse_rforce;
   table["SPCD"] = parse_spcd;

@@ -2,6 +2,7 @@
 #include <bit>
 
 #include "formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/rigid_expansion.hpp"
 
 namespace bough::nastran::detail {
 namespace {
@@ -15,7 +16,10 @@ void parse_one_follower(Card& card, Reading& r) {
   e.gn = card.read_id(1, "GA");
   e.gm = {card.read_id(2, "GB")};
   e.cm = card.read_components(3, "CB", kAll);
-  if (card.get_name() == "RBAR1") card.use(4, 6);  // ALPHA, TREF
+  if (card.get_name() == "RBAR1") {
+    note_expansion(card, r, card.read_real(4, "ALPHA", 0.0));
+    card.use(5);  // TREF
+  }
   e.at = card.get_location();
   if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe2.push_back(std::move(e));
 }
@@ -43,7 +47,8 @@ void parse_rtrplt(Card& card, Reading& r) {
     e.independent.push_back({g, cn, e.at});
     e.dependent.push_back({g, has_dependent ? card.read_components(8 + k, "CM", 0) : kAll & ~cn, e.at});
   }
-  card.use(11, 13);  // ALPHA, TREF
+  note_expansion(card, r, card.read_real(11, "ALPHA", 0.0));
+  card.use(12);  // TREF
   claim_plate(card, r, std::move(e));
 }
 
@@ -55,7 +60,8 @@ void parse_rtrplt1(Card& card, Reading& r) {
   e.independent.push_back({card.read_id(1, "GA"), kAll, e.at});
   for (int k = 0; k < 2; ++k)
     e.dependent.push_back({card.read_id(2 + k, "G"), card.read_components(4 + k, "CM", kAll), e.at});
-  card.use(6, 9);  // ALPHA, TREF
+  note_expansion(card, r, card.read_real(6, "ALPHA", 0.0));
+  card.use(7, 9);  // TREF
   claim_plate(card, r, std::move(e));
 }
 

@@ -192,6 +192,7 @@ void split_free(std::string_view text, SplitLine& line) {
   line.is_large = !line.name.empty() && (line.name.front() == '*' || line.name.back() == '*');
   if (line.is_large && line.name.front() != '*') line.name = trim(line.name.substr(0, line.name.size() - 1));
   std::size_t per_line = line.is_large ? 4 : 8;
+  bool goes_on = false;  // field 10 is data already: so is a last number there
   for (std::size_t i = 1, place = 0; i < tokens.size(); ++i, ++place) {
     const auto token = tokens[i];
     if (place == per_line) {
@@ -205,7 +206,7 @@ void split_free(std::string_view text, SplitLine& line) {
         continue;
       }
       const bool is_last = !has_data(tokens, i + 1);
-      if (is_mark(token) || is_last) {
+      if (is_mark(token) || (is_last && !(goes_on && is_number_like(token)))) {
         line.tag = token;
         // A bare number in field 10 is data that Nastran would not read.
         line.has_number_tag = !is_mark(token) && is_number_like(token);
@@ -213,6 +214,7 @@ void split_free(std::string_view text, SplitLine& line) {
         break;
       }
       place = 0;
+      goes_on = true;
     }
     line.data.push_back(token);
   }

@@ -75,7 +75,7 @@ void write_continua(const records::Deck& deck, CardSink& sink) {
   const auto cubic = find_cubic_properties(deck);
   for (const auto& p : deck.psolid) {
     if (cubic.count(p.id) > 0) {  // the reader gives no property to both kinds
-      sink.put(CardFields("PIHEX").add(p.id).add(p.mid).add_id(p.cordm));
+      sink.put(CardFields("PIHEX").add(p.id).add(p.mid).add_id(p.cordm).add(p.points > 0 ? p.points : 4));
       continue;
     }
     CardFields card("PSOLID");

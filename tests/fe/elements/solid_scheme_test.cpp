@@ -119,6 +119,16 @@ TEST(SolidScheme, CubicBricksFollowCubics) {
     for (int k = 0; k < m.nodes.num_nodes(); ++k) one[6 * k] = 1;
     EXPECT_NEAR(one.dot(m.calc_mass(MassKind::Consistent) * one), 0.8 * 8, 1e-12);
     EXPECT_LT((m.calc_stiffness() * one).norm(), 1e-12);
+    // Points a direction; x³y under two: Σ w (3x²y)² = 4 · 2 (x² = y² = 1/3), and G x⁶ = 8/27.
+    for (const auto& [points, num] : {std::pair{0, 64}, {2, 8}, {3, 27}, {4, 64}}) {
+      m.deck.psolid[0].points = points;
+      m.elements.clear();
+      m.make();
+      EXPECT_EQ(m.elements[0]->num_internal_forces(), 6 * num);
+    }
+    EXPECT_NEAR(calc_energy(m, 2, false, mixed), C11 * 8 / 3 + kG * 8 / 27, 1e-12);
+    EXPECT_NEAR(calc_energy(m, 4, false, mixed), C11 * 24 / 5 + kG * 8 / 7, 1e-12);
+    EXPECT_NEAR(one.dot(m.calc_mass(MassKind::Consistent) * one), 0.8 * 8, 1e-12);
   }
 }
 

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <functional>
 
 #include "base/rotation.hpp"
 #include "fe/elements/beam.hpp"
@@ -228,6 +230,60 @@ TEST(Pressure, ClosedBrickIsInBalanceAndEachFacePushesInward) {
   EXPECT_GT(std::abs(F[6 * 6 + 2]), 2 * std::abs(F[6 * 4 + 2]));
 }
 
+/// CIHEX3 in its own order; `place` maps the cube [0, 1]³.
+std::string make_cubic(const std::function<Vector3d(const Vector3d&)>& place) {
+  std::string grids, card = "CIHEX3,1,7";
+  int id = 0;
+  const auto add = [&](double x, double y, double z) {
+    const Vector3d p = place({x, y, z});
+    char text[120];
+    std::snprintf(text, sizeof text, "GRID,%d,,%.15f,%.15f,%.15f\n", ++id, p.x(), p.y(), p.z());
+    grids += text;
+    card += "," + std::to_string(id);
+  };
+  const double corners[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
+  for (int z = 0; z <= 3; ++z)
+    for (int k = 0; k < 4; ++k)
+      for (int third = 0; third < (z == 0 || z == 3 ? 3 : 1); ++third) {
+        const double s = third / 3.0, *a = corners[k], *b = corners[k + 1];
+        add(a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), z / 3.0);
+      }
+  return grids + card + "\nPIHEX,7,1\nMAT1,1,7.+10,,.3\n";
+}
+
+// Faces of CIHEX3 by PLOAD4 (inward) and PLOAD3 (outward): the work of a pressure on cubic displacements is exact.
+TEST(Pressure, CubicBrick) {
+  Diagnostics d;
+  const std::string straight = make_cubic([](const Vector3d& x) { return x; });
+  for (const char* card : {"PLOAD4,4,1,3.,,,,1,7\n", "PLOAD4,4,1,3.,,,,10,4\n", "PLOAD3,4,-3.,1,7,1\n"}) {
+    const auto l = make_loaded(straight + card, d);
+    const VectorXd F = l.model.calc_load(l.deck, 4, d);
+    double total = 0, cube = 0, mixed = 0, above = 0;
+    for (const Node& node : l.model.nodes()) {
+      const double f = F[node.first_gdof + 2];
+      const Vector3d& x = node.x;
+      total += f, cube += f * std::pow(x.x(), 3), mixed += f * std::pow(x.x(), 3) * x.y();
+      above += std::abs(f) * x.z() + F.segment<2>(node.first_gdof).norm();
+    }
+    EXPECT_NEAR(total, 3, 1e-13);
+    EXPECT_NEAR(cube, 3 / 4.0, 1e-13);
+    EXPECT_NEAR(mixed, 3 / 8.0, 1e-13);
+    EXPECT_NEAR(above, 0, 1e-13);
+  }
+  const auto bent = [](const Vector3d& x) {
+    return Vector3d(x.x() + .1 * x.y() * x.y(), x.y() - .2 * x.z() * x.x() * x.x(), 1.3 * x.z() + .1 * x.x() * x.y());
+  };
+  // A closed surface has no resultant, whichever way the grids are counted.
+  for (const double sign : {1.0, -1.0}) {
+    std::string bulk = make_cubic([&](const Vector3d& x) { return Vector3d(bent({x.x(), x.y(), sign * x.z()})); });
+    for (const char* face : {"1,7", "21,27", "1,24", "4,27", "7,30", "10,21"})
+      bulk += std::string("PLOAD4,4,1,3.,,,,") + face + "\n";
+    const auto l = make_loaded(bulk + "PLOAD4,5,1,3.,,,,21,27\n", d);
+    EXPECT_LT(calc_resultant(l.model, l.model.calc_load(l.deck, 4, d)).norm(), 1e-13);
+    EXPECT_LT(sign * calc_resultant(l.model, l.model.calc_load(l.deck, 5, d))[2], -2);
+  }
+}
+
 TEST(Pressure, WedgeAndTetrahedronWithMidsideNodes) {
   Diagnostics d;
   std::string bulk =
@@ -366,6 +422,12 @@ TEST(LoadErrors, AreReportedWithTheirIds) {
              4)
           .find("fe.bad-face"),
       std::string::npos);
+  // PLOAD2 names no face of a solid.
+  Diagnostics d;
+  const auto l = make_loaded(make_cubic([](const Vector3d& x) { return x; }) + "PLOAD2,4,1.,1\n", d);
+  l.model.calc_load(l.deck, 4, d);
+  ASSERT_TRUE(d.has("fe.bad-face"));
+  EXPECT_NE(d.items().back().what.find("names no face of the CIHEX3"), std::string::npos);
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ Solved solve(const std::string& text) {
   const auto held = choose_suport(model, deck, relief, s.diagnostics);
   s.diagnostics.throw_if_errors();
   const StaticSolver solver(model, assemble_stiffness(model, DofSet::Free), held);
-  const Suport suport = calc_suport(model, solver, held, relief, s.diagnostics);
+  const Suport suport = calc_suport(model, solver, held, relief, locate_relief(model, deck), s.diagnostics);
   s.result = solve_static_case(model, solver, calc_static_load(model, deck, -1, s.diagnostics), suport);
   s.rigid_momentum =
       model.calc_rigid_modes().transpose() * calc_mass_times(model, model.mass_kind(), s.result.displacement);

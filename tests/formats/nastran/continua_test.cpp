@@ -72,6 +72,14 @@ TEST(ContinuumCards, WhatIsWrong) {
   EXPECT_EQ(read("PSHELL,7,,.1\n").count("deck.missing-field"), 1);
   EXPECT_EQ(read("PCOMP,5\n").count("deck.missing-field"), 1);
   EXPECT_EQ(read_clean("PCOMP,5,,,,,,,SMEAR\n,1,.1\n").pcomp[0].layup, records::Layup::Smeared);
+  const auto old = read_clean("PCOMP,5,,,,,,,SYMMEM\n,1,.1,0.,,2,.2,90.\nPCOMP,6,,,,,,,ALL\n,1,.1,0.\n").pcomp;
+  ASSERT_EQ(old.size(), 2u);
+  EXPECT_EQ(old[0].plies.size(), 4u);
+  EXPECT_TRUE(old[0].membrane && !old[0].bending && old[1].membrane && old[1].bending);
+  const std::string law = ",4,1.,2.,3.,4.,5.,6.,7.\n,8.,9.,10.,11.,12.,13.,14.,15.\n,16.,17.,18.,19.,20.,21.,.5,.1\n";
+  const auto six = read_clean("MAT6" + law).mat9, nine = read_clean("MAT9" + law).mat9;
+  ASSERT_EQ(six.size(), 1u);
+  EXPECT_TRUE(six[0].id == 4 && six[0].G == nine[0].G && six[0].rho == 0.5 && six[0].alpha == nine[0].alpha);
   EXPECT_EQ(read_clean("PCOMP1,5,,,,,1,.1,SMCORE\n,0.,90.\n").pcomp[0].layup, records::Layup::SmearedCore);
   EXPECT_EQ(read("PCOMP,5,,,,,,,SMCORE\n,1,.1\n").count("deck.missing-field"), 1);
   EXPECT_EQ(

@@ -139,6 +139,12 @@ TEST(Fields, DataBeyondFieldNineGoesOn) {
   EXPECT_EQ(read_clean("SPC1,1,123456,1,2,3,4,5,6,7,8,9\n").spc.size(), 9u);
   EXPECT_EQ(read_clean("SPC1,1,123456,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16\n").spc.size(), 16u);
   EXPECT_EQ(read_clean("SPC1,1,123456,1,2,3,4,5,6,+A\n+A,7\n").spc.size(), 7u);
+  // Once a line has more than ten fields its field 10 is data, and so is a last number that starts another eight.
+  for (const std::size_t num : {14u, 15u, 22u, 23u, 30u}) {
+    std::string line = "SPC1,1,123456";
+    for (std::size_t g = 1; g <= num; ++g) line += "," + std::to_string(g);
+    EXPECT_EQ(read_clean(line + "\n").spc.size(), num) << line;
+  }
 }
 
 TEST(Replication, CopiesAndIncrements) {

@@ -147,6 +147,45 @@ TEST(OldElements, IsoparametricHexahedra) {
                                                            15, 19, 16, 20, 22, 23, 25, 26, 28, 29, 31, 32}));
 }
 
+// Points a direction: blank is 3 for CIHEX3 (User's Manual, PIHEX, remark 2), and CIHEX1 has its inner modes.
+TEST(OldElements, PointsOfPihex) {
+  std::string cubic = "CIHEX3,1,7", quadratic = "CIHEX2,2,7", linear = "CIHEX1,3,7";
+  for (int g = 1; g <= 32; ++g) cubic += "," + std::to_string(g);
+  for (int g = 1; g <= 20; ++g) quadratic += "," + std::to_string(g);
+  for (int g = 1; g <= 8; ++g) linear += "," + std::to_string(g);
+  const auto find_points = [&](const records::Deck& deck, std::size_t i) {
+    for (const auto& p : deck.psolid)
+      if (p.id == deck.solids.at(i).pid) return p.points;
+    return -1;
+  };
+  const std::string all = cubic + "\n" + quadratic + "\n" + linear + "\n";
+  const auto check = [&](const char* pihex, int of_cubic, int of_quadratic, int num_notes) {
+    const auto r = read_old(all + pihex);
+    EXPECT_EQ(find_points(r.deck, 0), of_cubic) << pihex;
+    EXPECT_EQ(find_points(r.deck, 1), of_quadratic) << pihex;
+    EXPECT_EQ(find_points(r.deck, 2), 0) << pihex;
+    EXPECT_EQ(r.count("deck.old-points"), num_notes) << pihex;
+  };
+  check("PIHEX,7,1\n", 3, 0, 0);
+  check("PIHEX,7,1,,2\n", 2, 2, 0);
+  check("PIHEX,7,1,,3\n", 3, 3, 1);
+  check("PIHEX,7,1,,4\n", 4, 3, 2);
+  EXPECT_EQ(read(all + "PIHEX,7,1,,5\n").count("deck.field-range"), 1);
+  const auto same = read_old(cubic + "\nPIHEX,7,1\n");
+  EXPECT_NE(same.find("deck.old-element")->advice.find("old formulation"), std::string::npos);
+  EXPECT_EQ(same.find("deck.old-element")->advice.find("stiffer"), std::string::npos);
+}
+
+// Outward pressure on faces by two opposite corners (User's Manual, PLOAD3): PLOAD4 of the other sign.
+TEST(OldElements, Pload3) {
+  const auto deck = read_old("PLOAD3,3,-15.1,15,7,25,16,117,135\n").deck;
+  ASSERT_EQ(deck.load_cards.pressures.size(), 2u);
+  const auto& second = deck.load_cards.pressures[1];
+  EXPECT_TRUE(second.sid == 3 && second.element == 16 && second.g1 == 117 && second.g34 == 135);
+  for (const double p : second.p) EXPECT_EQ(p, 15.1);
+  EXPECT_GE(read("PLOAD3,3,1.\n").diagnostics.num_errors(), 1);
+}
+
 TEST(OldElements, Elbow) {
   const auto deck =
       read_old(
@@ -162,6 +201,21 @@ TEST(OldElements, Elbow) {
   EXPECT_EQ(p.k1, .5);
   EXPECT_EQ(p.rb, 15.0);
   EXPECT_EQ(p.theta_b_deg, 90.0);
+}
+
+// One note a deck, and none for a zero.
+TEST(RigidElements, AlphaIsNamed) {
+  EXPECT_EQ(read("RBE2,9,8,12,10,12\nRBAR,5,1,2,123456\nRBAR,6,1,2,123456,,,,0.\n").count("deck.rigid-expansion"), 0);
+  for (const char* card :
+       {"RBE2,9,8,12,10,12,1.-5\n", "RBE2,9,8,12,10,12,1.-5,20.\n", "RBAR,5,1,2,123456,,,,1.-5\n",
+        "RROD,14,1,2,2,,1.-5\n", "RBE3,15,,100,123,1.,123,1,2\n,ALPHA,1.-5\n", "RBAR1,6,1,2,123,1.-5\n",
+        "RBE1,104,11,123,12,23,13,3\n+,UM,21,123,1.-5\n", "RTRPLT,7,1,2,3,1236,3,3\n,,,,1.-5\n"}) {
+    const auto r = read(card);
+    EXPECT_EQ(r.count("deck.rigid-expansion"), 1) << card;
+    EXPECT_EQ(r.diagnostics.num_errors(), 0) << card << r.get_messages();
+  }
+  const auto both = read("RBE2,9,8,12,10,12,1.-5\nRBAR,5,1,2,123456,,,,1.-5\n");
+  EXPECT_EQ(both.count("deck.rigid-expansion"), 1);
 }
 
 TEST(OldElements, RigidOnesUnderTheirOldNames) {
