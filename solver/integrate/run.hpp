@@ -157,7 +157,7 @@ class Run {
     int count = 0;
     bool is_told = false;
   };
-  std::map<std::string, Switching> switching_;                 ///< by label
+  std::map<std::string, Switching> switching_;  ///< by label
   Latches latches_;
   VectorXd latch_guards_, last_latch_guards_;
   double settled_ = -std::numeric_limits<double>::infinity();

@@ -207,11 +207,10 @@ TEST(SystemFile, LinesAreThoseOfTheKeys) {
   read_system_spec(path, diagnostics);
   std::vector<std::pair<std::string, int>> found;
   for (const auto& d : diagnostics.items()) found.emplace_back(d.id, d.where.line);
-  EXPECT_THAT(found,
-              testing::UnorderedElementsAre(std::pair{"toml.wrong-type", 3}, std::pair{"toml.unknown-key", 4},
-                                            std::pair{"toml.bad-value", 7}, std::pair{"toml.unknown-name", 5},
-                                            std::pair{"toml.wrong-length", 9}, std::pair{"toml.missing-key", 10},
-                                            std::pair{"toml.out-of-range", 13}))
+  EXPECT_THAT(found, testing::UnorderedElementsAre(std::pair{"toml.wrong-type", 3}, std::pair{"toml.unknown-key", 4},
+                                                   std::pair{"toml.bad-value", 7}, std::pair{"toml.unknown-name", 5},
+                                                   std::pair{"toml.wrong-length", 9}, std::pair{"toml.missing-key", 10},
+                                                   std::pair{"toml.out-of-range", 13}))
       << join(diagnostics);
 }
 
