@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 
+#include "solver/integrate/run.hpp"
 #include "solver/system/impl.hpp"
 
 namespace bough::solver {
@@ -11,12 +11,6 @@ namespace {
 
 const TreeBody& get_body(const System& system, int body) {
   return system.impl().tree.bodies[static_cast<size_t>(body)];
-}
-
-std::string short_text(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
 }
 
 }  // namespace
