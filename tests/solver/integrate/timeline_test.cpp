@@ -126,7 +126,7 @@ TEST(RunPlan, TimesThatCannotBeToldApartAreRefused) {
   s.start = 1e18;
   make_run_plan(s, d);
   ASSERT_EQ(d.num_errors(), 1);
-  EXPECT_THAT(d.items()[0].what, testing::HasSubstr("start = 1e+18 is too far from zero: times there are"));
+  EXPECT_THAT(d.items()[0].what, ::testing::HasSubstr("start = 1e+18 is too far from zero: times there are"));
   Diagnostics near;
   s.start = 1e9;
   make_run_plan(s, near);
@@ -139,7 +139,7 @@ TEST(RunPlan, StepsWithoutEndAreRefused) {
   s.step = 1e-12;
   make_run_plan(s, d);
   ASSERT_EQ(d.num_errors(), 1);
-  EXPECT_THAT(d.items()[0].what, testing::HasSubstr("more than 1e11 steps"));
+  EXPECT_THAT(d.items()[0].what, ::testing::HasSubstr("more than 1e11 steps"));
 }
 
 }  // namespace
