@@ -31,20 +31,20 @@ records::SystemSpec make_servo() {
   return spec;
 }
 
-std::vector<Diagnostic> build_told(const records::SystemSpec& spec) {
+std::vector<Diagnostic> collect_messages(const records::SystemSpec& spec) {
   Diagnostics diagnostics;
   System::build_as_far(spec, {}, diagnostics);
   return diagnostics.items();
 }
 
 std::string find_message(const records::SystemSpec& spec, const std::string& id, int line = 60) {
-  for (const auto& item : build_told(spec)) {
+  for (const auto& item : collect_messages(spec)) {
     if (item.id != id) continue;
     EXPECT_EQ(item.where.line, line) << item.what;
     return item.what + "; " + item.advice;
   }
   ADD_FAILURE() << "no " << id;
-  for (const auto& item : build_told(spec)) ADD_FAILURE() << item.id << " " << item.what;
+  for (const auto& item : collect_messages(spec)) ADD_FAILURE() << item.id << " " << item.what;
   return {};
 }
 
@@ -278,7 +278,7 @@ TEST(Units, OfWhatIsAddedAndDrivenAreCompared) {
   // A gain makes another quantity of it.
   spec.controllers.back().inputs = {"angle"};
   spec.connects = {make_wire("rate", "error", 3)};
-  EXPECT_THAT(build_told(spec), ::testing::IsEmpty());
+  EXPECT_THAT(collect_messages(spec), ::testing::IsEmpty());
   spec = make_servo();
   spec.controllers[0].rate = "angle";
   EXPECT_THAT(find_message(spec, "control.units", 40), HasSubstr("takes angle (1) for the rate of angle (1)"));
@@ -290,7 +290,7 @@ TEST(Units, OfWhatIsAddedAndDrivenAreCompared) {
   spec.actuators[0].settings.numbers["axis"] = {0, 0, 1};
   EXPECT_THAT(find_message(spec, "control.units", 50), HasSubstr("takes F L and gets rate (1/T)"));
   spec.actuators[0].settings.numbers["scale"] = {-2};
-  EXPECT_THAT(build_told(spec), ::testing::IsEmpty());
+  EXPECT_THAT(collect_messages(spec), ::testing::IsEmpty());
 }
 
 }  // namespace
