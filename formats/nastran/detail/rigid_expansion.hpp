@@ -6,11 +6,16 @@
 
 namespace bough::nastran::detail {
 
-/// Says once a deck that rigid elements do not expand (as with RIGID = LINEAR, Nastran's default).
+/// Says once a deck with TEMPERATURE(LOAD) that rigid elements do not expand (as with RIGID = LINEAR, Nastran's
+/// default).
 inline void note_expansion(const Card& card, Reading& r, double alpha) {
   const auto is_said = [](const Diagnostic& item) { return item.id == "deck.rigid-expansion"; };
+  const auto is_heated = [](const records::Subcase& subcase) { return subcase.temperature != 0; };
   const auto& said = r.diagnostics.items();
-  if (alpha == 0 || std::any_of(said.begin(), said.end(), is_said)) return;
+  const auto& subcases = r.deck.subcases;
+  if (alpha == 0 || std::none_of(subcases.begin(), subcases.end(), is_heated) ||
+      std::any_of(said.begin(), said.end(), is_said))
+    return;
   r.diagnostics.note("deck.rigid-expansion", r.deck.locate(card.get_location()),
                      std::string(card.get_name()) + " has ALPHA, which is not used: rigid elements do not expand",
                      "as with RIGID = LINEAR; where the link should grow with its temperature, use a stiff bar");

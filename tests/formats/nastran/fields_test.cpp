@@ -142,7 +142,7 @@ TEST(Fields, DataBeyondFieldNineGoesOn) {
   // Once a line has more than ten fields its field 10 is data, and so is a last number that starts another eight.
   for (const std::size_t num : {14u, 15u, 22u, 23u, 30u}) {
     std::string line = "SPC1,1,123456";
-    for (std::size_t g = 1; g <= num; ++g) line += "," + std::to_string(g);
+    for (std::size_t g = 1; g <= num; ++g) line.append(",").append(std::to_string(g));
     EXPECT_EQ(read_clean(line + "\n").spc.size(), num) << line;
   }
 }

@@ -203,19 +203,22 @@ TEST(OldElements, Elbow) {
   EXPECT_EQ(p.theta_b_deg, 90.0);
 }
 
-// One note a deck, and none for a zero.
+// One note a deck that is heated, and none for a zero.
 TEST(RigidElements, AlphaIsNamed) {
-  EXPECT_EQ(read("RBE2,9,8,12,10,12\nRBAR,5,1,2,123456\nRBAR,6,1,2,123456,,,,0.\n").count("deck.rigid-expansion"), 0);
+  const std::string head = "TEMP(LOAD) = 5\nBEGIN BULK\n";
+  EXPECT_EQ(
+      read(head + "RBE2,9,8,12,10,12\nRBAR,5,1,2,123456\nRBAR,6,1,2,123456,,,,0.\n").count("deck.rigid-expansion"), 0);
   for (const char* card :
        {"RBE2,9,8,12,10,12,1.-5\n", "RBE2,9,8,12,10,12,1.-5,20.\n", "RBAR,5,1,2,123456,,,,1.-5\n",
         "RROD,14,1,2,2,,1.-5\n", "RBE3,15,,100,123,1.,123,1,2\n,ALPHA,1.-5\n", "RBAR1,6,1,2,123,1.-5\n",
         "RBE1,104,11,123,12,23,13,3\n+,UM,21,123,1.-5\n", "RTRPLT,7,1,2,3,1236,3,3\n,,,,1.-5\n"}) {
-    const auto r = read(card);
+    const auto r = read(head + card);
     EXPECT_EQ(r.count("deck.rigid-expansion"), 1) << card;
     EXPECT_EQ(r.diagnostics.num_errors(), 0) << card << r.get_messages();
   }
-  const auto both = read("RBE2,9,8,12,10,12,1.-5\nRBAR,5,1,2,123456,,,,1.-5\n");
+  const auto both = read(head + "RBE2,9,8,12,10,12,1.-5\nRBAR,5,1,2,123456,,,,1.-5\n");
   EXPECT_EQ(both.count("deck.rigid-expansion"), 1);
+  EXPECT_EQ(read("RBE2,9,8,12,10,12,1.-5\n").count("deck.rigid-expansion"), 0);
 }
 
 TEST(OldElements, RigidOnesUnderTheirOldNames) {
