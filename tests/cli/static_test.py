@@ -48,6 +48,18 @@ def read_csr(group):
 
 
 class Static(ProgramTest):
+    def test_oblique_directions_of_autospc_react(self):
+        # A mass at the end of an oblique rod: the direction across the rod is held, as a whole.
+        self.write("r.bdf", "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,1.,0.\n"
+                   "CROD,1,1,1,2\nPROD,1,1,1.-4\nMAT1,1,7.+10,,.3\nCONM2,9,2,,3.\nSPC1,1,123456,1\n"
+                   "FORCE,2,2,,10.,0.,1.,0.\nENDDATA\n")
+        result = self.bough("static", "r.bdf", "-o", "r.h5")
+        self.assertIn("[fe.load-autospc]", result.stderr)
+        with h5py.File(self.path("r.h5")) as f:
+            case = f["subcases"][list(f["subcases"])[0]]
+            np.testing.assert_allclose(case["reaction"][:].reshape(2, 6)[:, :3], [[-5, -5, 0], [5, -5, 0]], atol=1e-9)
+            self.assertLess(np.abs(case["mpc_force"][:]).max(), 1e-9)
+
     def test_cantilever_against_theory(self):
         self.write("frame.bdf", FRAME)
         cases = json.loads(self.bough("static", "frame.bdf", "--json", "--full", "-o", "s.h5").stdout)["subcases"]

@@ -151,6 +151,26 @@ TEST(BeamModes, FreeFreeBeamHasSixZerosAndThePairs) {
   EXPECT_LT((gram - MatrixXd::Identity(12, 12)).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+// One system for several solutions: what is held of a motion without mass is held in a copy, and every number stays.
+TEST(System, StaysAsItIs) {
+  DeckMaker maker(true);
+  maker.add_section(1, {70e9, 27e9, 2700, 1e-4, 1e-9, 1e-9, 2e-9});
+  maker.add_line(1, 1, Vector3d::Zero(), Vector3d::UnitX(), 12, Vector3d::UnitY());
+  Diagnostics diagnostics;
+  const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+  const fe::System system(model);
+  modal::EigenOptions options;
+  options.num_modes = 8;
+  const auto own = calc_normal_modes(model, options, diagnostics);
+  for (int i = 0; i < 2; ++i) {
+    const auto pairs = calc_normal_modes(system, options, diagnostics);
+    EXPECT_TRUE(pairs.lambda == own.lambda && pairs.Phi == own.Phi);
+  }
+  EXPECT_EQ(own.num_massless, 1);
+  EXPECT_EQ(fe::get_diagonal(system.K.get()).cwiseAbs(), system.K_diagonal);
+  EXPECT_EQ(fe::get_diagonal(system.M.get()), system.M_diagonal);
+}
+
 // A straight line of bars has no inertia about itself: five zeros and one massless motion, and the same bending.
 TEST(BeamModes, MasslessTurnOfAFreeBarIsReported) {
   DeckMaker maker(true);

@@ -54,7 +54,7 @@ TEST(ShellGeometric, RigidRotationTurnsShearsAndMoments) {
 /// The forces of the drilling penalty turn too, with the arms of an offset surface: a moment about the normal of a
 /// plate is in equilibrium.
 TEST(ShellGeometric, RigidRotationTurnsDrillingMoments) {
-  for (const char* card : {"CQUAD4", "CTRIA3", "CQUADR"})  // CTRIAR has linear N too, which act on DKMT's slopes
+  for (const char* card : {"CQUAD4", "CTRIA3"})
     for (double z : {0.0, 0.15}) {
       const SmallModel m = make_element(card, 0.2, true, z, "100.");
       const int n = m.nodes.num_gdofs();
@@ -69,6 +69,33 @@ TEST(ShellGeometric, RigidRotationTurnsDrillingMoments) {
         EXPECT_LT((K_G * Phi_R.col(3 + axis) - expected).norm(), 1e-11 * f.norm()) << card << z << axis;
       }
     }
+}
+
+/// With drilling rotations each corner has its own moment about the normal, that of K u, and a rigid rotation turns it
+/// by half. (The forces in the plane vary then, and the bending slopes share them out: RigidRotationsUnderAnyState.)
+TEST(ShellGeometric, RigidRotationTurnsMomentsOfDrillingRotations) {
+  for (const char* card : {"CQUADR", "CTRIAR"}) {
+    const SmallModel m = make_element(card, 0.2, true);
+    const auto& element = *m.elements[0];
+    const int n = m.nodes.num_gdofs(), num_points = n / 6;
+    VectorXd u = make_random(5, n);
+    for (int i = 0; i < n; i += 6) u.segment<3>(i + 2).setZero();
+    const VectorXd f = m.calc_stiffness() * u;
+    VectorXd force = VectorXd::Zero(element.num_internal_forces());
+    element.calc_internal_forces(u, force);
+    for (int i = 0; i < num_points; ++i) EXPECT_NEAR(force[8 * num_points + i], f[6 * i + 5], 1e-12 * f.norm()) << card;
+    force.head(8 * num_points).setZero();
+    MatrixXd K_G = MatrixXd::Zero(n, n);
+    element.add_geometric_stiffness(force, 1, K_G);
+    const MatrixXd Phi_R = m.nodes.calc_rigid_modes();
+    for (int axis = 0; axis < 3; ++axis) {
+      const VectorXd turned = K_G * Phi_R.col(3 + axis);
+      for (int i = 0; i < num_points; ++i) {
+        const Vector3d expected = 0.5 * f[6 * i + 5] * Vector3d::Unit(axis).cross(Vector3d::UnitZ());
+        EXPECT_LT((turned.segment<3>(6 * i + 3) - expected).norm(), 1e-12 * f.norm()) << card << axis;
+      }
+    }
+  }
 }
 
 /// Work of given M, drilling moments and T (per side, on its mean shear) on the nonlinear strains of the element at q:
