@@ -47,13 +47,9 @@ class Lagged(ProgramTest):
         self.copy_example("ex03-two-link")
         self.bough("reduce", "link.toml")
         with self.run_one("two-link", self.lag(0.0005, ("duration = 3.0", "duration = 0.5"))) as f:
-            lagged = f["sensors/tip_position"][:]
             names = sorted(f["stiffening"])
             fconi = {name: f["stiffening/" + name][:] for name in names}
             reactions = {h: f[f"hinges/{h}/reaction_force"][:] for h in f["hinges"]}
-        with self.run_one("two-link", [("duration = 3.0", "duration = 0.5")]) as f:
-            consistent = f["sensors/tip_position"][:]
-        self.assertLess(np.abs(lagged - consistent).max(), 0.01)
         outer = [r for h, r in reactions.items() if h == "elbow"][0]
         upper = [v for v in fconi.values() if v.shape[1] > 12]
         self.assertTrue(upper)
