@@ -128,7 +128,7 @@ bool SignalGraph::settle(const System& system, SystemData& data) const {
 }
 
 void SignalGraph::add_loads(const System& system, SystemData& data) const {
-  if (num_actuators == 0) return;
+  if (places.empty()) return;
   for (const auto& p : places) {
     if (p.actuator >= 0) p.block->add_load(look_again(p, system, data), data.signals.values.data() + p.out, data);
   }
@@ -147,7 +147,7 @@ void SignalGraph::calc_rates(const System& system, SystemData& data, Eigen::Ref<
 
 double SignalGraph::calc_power(const System& system, const SystemData& data) const {
   double power = 0;
-  if (num_actuators == 0) return power;
+  if (places.empty()) return power;
   for (const auto& p : places) {
     if (p.actuator >= 0) power += p.block->calc_power(look_again(p, system, data), data.signals.values.data() + p.out);
   }
@@ -156,7 +156,7 @@ double SignalGraph::calc_power(const System& system, const SystemData& data) con
 
 double SignalGraph::calc_energy(const System& system, const SystemData& data) const {
   double energy = 0;
-  if (num_actuators == 0) return energy;
+  if (places.empty()) return energy;
   for (const auto& p : places) {
     if (p.actuator >= 0) energy += p.block->calc_energy(look_again(p, system, data));
   }
@@ -165,7 +165,7 @@ double SignalGraph::calc_energy(const System& system, const SystemData& data) co
 
 Vector3d SignalGraph::calc_momentum(const System& system, const SystemData& data) const {
   Vector3d momentum = Vector3d::Zero();
-  if (num_actuators == 0) return momentum;
+  if (places.empty()) return momentum;
   for (const auto& p : places) {
     if (p.actuator >= 0) momentum += p.block->calc_momentum(look_again(p, system, data));
   }

@@ -91,14 +91,16 @@ class Satellite(ProgramTest):
         self.assertLess(np.abs(momentum[before] - momentum[0]).max(), 1e-9 * np.abs(momentum[0]).max())
         self.assertLess(np.abs(attitude[(time > 55) & before] - [5, 0, 0]).max(), 0.05)
         self.assertLess(np.abs(attitude[time > 110] - [5, 0, 0]).max(), 0.05)
-        self.assertLess(abs(wheel[-1]), 1.2)
+        # At rest what is left is the wheel's: 1 N m s at the event, and what hub and wings still turned with.
+        self.assertLess(abs(wheel[-1]), 3.0)
+        self.assertLess(abs(wheel[-1] - momentum[-1, 2]), 0.02 * wheel[0])
         self.assertLess(np.abs(attitude[time > 60] - [5, 0, 0]).max(), 0.6)
         # What the jets gave: propellant times exhaust velocity is their impulse, arm 1 m each, about -z.
         impulse = sum(j[-1, 1] for j in jets) * 2200.0
         change = momentum[-1] - momentum[0]
         self.assertLess(abs(change[2] + impulse), 0.01 * impulse)
         self.assertLess(np.abs(change[:2]).max(), 0.02 * impulse)
-        self.assertGreater(impulse, 10.0)
+        self.assertLess(abs(impulse - (wheel[0] - wheel[-1])), 0.02 * wheel[0])
         for what in ("enabled", "disabled"):
             self.assertIn(f"controller 'dump' is {what}", events)
 
