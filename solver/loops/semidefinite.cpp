@@ -10,16 +10,16 @@ namespace {
 
 constexpr double kNoCoupling = 1e-13;
 
-struct Front {  // of the elimination: what is left of a group of blocks
+struct Elimination {  // of the elimination: what is left of a group of blocks
   std::vector<int> own;
   std::set<int> others;
 };
 
 /// Blocks in an order of least fill (Tinney's scheme 2: the fewest rows first), those with the same rows below
 /// together.
-std::vector<Front> eliminate_symbolically(const std::vector<int>& sizes, std::vector<std::set<int>> meets) {
+std::vector<Elimination> eliminate_symbolically(const std::vector<int>& sizes, std::vector<std::set<int>> meets) {
   const int n = static_cast<int>(sizes.size());
-  std::vector<Front> nodes;
+  std::vector<Elimination> nodes;
   std::vector<int> position(static_cast<size_t>(n), -1);
   const auto count = [&](int i) {
     int rows = 0;
@@ -48,7 +48,7 @@ std::vector<Front> eliminate_symbolically(const std::vector<int>& sizes, std::ve
     if (nodes[a].others.empty()) continue;
     int next = n;
     for (const int k : nodes[a].others) next = std::min(next, position[static_cast<size_t>(k)]);
-    Front& parent = nodes[static_cast<size_t>(next)];
+    Elimination& parent = nodes[static_cast<size_t>(next)];
     std::set<int> rest = nodes[a].others;
     for (const int k : parent.own) rest.erase(k);
     if (rest != parent.others || nodes[a].others.size() != rest.size() + parent.own.size()) continue;
@@ -56,7 +56,7 @@ std::vector<Front> eliminate_symbolically(const std::vector<int>& sizes, std::ve
     for (const int k : nodes[a].own) position[static_cast<size_t>(k)] = next;
     nodes[a].own.clear();
   }
-  std::erase_if(nodes, [](const Front& node) { return node.own.empty(); });
+  std::erase_if(nodes, [](const Elimination& node) { return node.own.empty(); });
   return nodes;
 }
 
@@ -78,7 +78,7 @@ void SemidefiniteFactor::arrange(const std::vector<int>& sizes, const std::vecto
       if (i > j) pairs.push_back({i, j, MatrixXd::Zero(sizes[static_cast<size_t>(i)], sizes[static_cast<size_t>(j)])});
     }
   }
-  const std::vector<Front> nodes = eliminate_symbolically(sizes, graph);
+  const std::vector<Elimination> nodes = eliminate_symbolically(sizes, graph);
   std::vector<int> owner(n);
   for (size_t f = 0; f < nodes.size(); ++f) {
     for (const int i : nodes[f].own) owner[static_cast<size_t>(i)] = static_cast<int>(f);
