@@ -1,5 +1,6 @@
 #include "solver/actuators/lagged_stiffening.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace bough::solver {
@@ -123,7 +124,7 @@ std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::System
   std::vector<std::unique_ptr<Block>> all;
   const System::Impl& impl = system.impl();
   const auto& simulation = spec.simulation;
-  std::string others;
+  std::string others, with_hinges;
   for (const auto& r : spec.bodies) {
     const int b = system.find_body(r.name);
     const auto record = flex.find(r.file);
@@ -151,6 +152,8 @@ std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::System
       else
         others += (others.empty() ? "" : ", ") + force.name;
     }
+    if (std::any_of(made->sources.begin(), made->sources.end(), [](const auto& source) { return source.hinge >= 0; }))
+      with_hinges += (with_hinges.empty() ? "" : ", ") + r.name;
     made->name = r.name;
     made->path = "/stiffening/" + r.name;
     made->label = "lagged stiffening of body '" + r.name + "'";
@@ -173,6 +176,11 @@ std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::System
         "system.lagged-loads", simulation.at,
         "lagged stiffening knows the loads of hinges and of forces without a type only, not of: " + others,
         "take stiffening = \"consistent\", which sees them all");
+  if (!with_hinges.empty())
+    diagnostics.warning("system.lagged-hinges", simulation.at,
+                        "lagged stiffening feeds back what crosses the hinges of: " + with_hinges +
+                            "; no reference has confirmed that part yet",
+                        "compare with stiffening = \"consistent\"");
   return all;
 }
 

@@ -52,6 +52,13 @@ class Lagged(ProgramTest):
         self.assertIn("[system.lagged-loads]", said)
         self.assertIn("not of: jet", said)
 
+    def test_hinges_that_it_feeds_back_are_told(self):
+        self.copy_example("ex03-two-link")
+        self.bough("reduce", "link.toml")
+        text = open(self.path("two-link.toml")).read()
+        self.write("lagged.toml", text.replace("[simulation]", '[simulation]\nstiffening = "lagged"\nstiffening_step = 0.01'))
+        self.assertIn("[system.lagged-hinges]", self.bough("check", "lagged.toml").stderr)
+
 
 if __name__ == "__main__":
     unittest.main()
