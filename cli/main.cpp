@@ -2,6 +2,14 @@
 #include "cli/common/memory_limit.hpp"
 #include "cli/verbs.hpp"
 
+namespace {
+
+/// As soon as the program is loaded: its many libraries start for longer than some verbs work. Not in the library of
+/// the verbs, since a Python that loads it keeps its own signals.
+__attribute__((section(".preinit_array"), used)) void (*const begin)() = bough::cli::end_cleanly_on_signals;
+
+}  // namespace
+
 int main(int argc, char** argv) {
   bough::cli::prepare_for_memory_limit(argv);
   bough::cli::secure_streams();

@@ -22,9 +22,6 @@ void end_on_signal(int signal) {
   ::_exit(kComputationFailed);
 }
 
-/// As soon as the program is loaded: its many libraries start for longer than some verbs work.
-__attribute__((section(".preinit_array"), used)) void (*const begin)() = end_cleanly_on_signals;
-
 }  // namespace
 
 void end_cleanly_on_signals() {

@@ -193,8 +193,7 @@ class PySystem {
       model = solver::linearize(plant, point, {std::move(inputs), std::move(outputs), true}, {file_}, diagnostics);
       model.source = calc_sources();
     }
-    const auto messages = tell(diagnostics);
-    return py::make_tuple(std::move(model), messages);
+    return py::make_tuple(std::move(model), tell(diagnostics));
   }
 
  private:
