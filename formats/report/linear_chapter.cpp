@@ -89,7 +89,7 @@ std::string make_singular_values(const LinearFindings& findings) {
     const Eigen::VectorXd decibel = 20 * values.col(i).array().max(1e-300).log10();
     plot.curves.push_back({std::to_string(i + 1), decades, decibel, false});
   }
-  return make_figure(plot, "singular values");
+  return make_figure(plot);
 }
 
 std::string make_margins(const records::Margins& m) {

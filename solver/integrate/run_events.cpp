@@ -12,7 +12,8 @@ constexpr double kQuick = 1e-9;
 
 bool is_same(const Discrete& a, const Discrete& b) {
   const auto closes_alike = [](const Closing& x, const Closing& y) { return x.is_closed == y.is_closed; };
-  return a.mode == b.mode && std::equal(a.closings.begin(), a.closings.end(), b.closings.begin(), closes_alike);
+  return a.mode == b.mode && a.memory.size() == b.memory.size() && a.memory == b.memory &&
+         std::equal(a.closings.begin(), a.closings.end(), b.closings.begin(), closes_alike);
 }
 
 }  // namespace
@@ -95,9 +96,10 @@ std::optional<Firing> Run::fire(std::vector<Firing> firings) {
 void Run::change(const Firing& firing) {
   guard([&] {
     ode_.project(firing.time, y_);
+    const Discrete before = get_discrete(ode_.data());
     const Discrete next = setup_.changes.apply(firing.trigger, ode_, firing.time, y_);
-    sink_.write_event({firing.time, setup_.changes.describe(firing.trigger) +
-                                        (is_same(next, get_discrete(ode_.data())) ? ": it was so already" : "")});
+    sink_.write_event(
+        {firing.time, setup_.changes.describe(firing.trigger) + (is_same(next, before) ? ": it was so already" : "")});
     for (const auto& what : ode_.change(firing.time, next, y_)) sink_.write_event({firing.time, what});
   });
   const bool is_quick = firing.time - changed_ < kQuick * (timeline_.end() - timeline_.start());

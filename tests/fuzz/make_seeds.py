@@ -8,6 +8,7 @@ What fuzzing found is kept beside them under the hash that libFuzzer gave it.
 import os
 import re
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -87,6 +88,13 @@ def shrink(path):
     os.replace(path + ".small", path)
 
 
+def make_op4():
+    """A 2 x 2 matrix of OUTPUT4 as Fortran writes it: a header, a column a record, one after the last."""
+    records = [struct.pack("=4i8s", 2, 2, 6, 2, b"K       "), struct.pack("=3i2d", 1, 1, 4, 2.5, -1.0),
+               struct.pack("=3i2d", 2, 1, 4, -1.0, 3.0), struct.pack("=3id", 3, 1, 2, 1.0)]
+    return b"".join(struct.pack("=i", len(r)) + r + struct.pack("=i", len(r)) for r in records)
+
+
 def main():
     program = os.path.abspath(sys.argv[1])
     corpus = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else os.path.join(HERE, "corpus")
@@ -135,6 +143,9 @@ def main():
             put("op4-text", name, os.path.join(folder, name))
         if name.endswith(".mtx"):
             put("matrices", name, os.path.join(folder, name))
+    with open(os.path.join(folder, "binary.op4"), "wb") as out:
+        out.write(make_op4())
+    put("op4-binary", "two", os.path.join(folder, "binary.op4"))
     run("export", "rod.h5", "--to", "mat", "-o", "rod.mat")
     put("matrices", "mat", os.path.join(folder, "rod.mat"))
     put("matrices", "dmig", write("dmig", "DMIG,K,0,6,2,0\nDMIG,K,1,1,,1,1,2.5D0\n,1,2,-1.\nDMIG,K,1,2,,1,2,3.\n"))
