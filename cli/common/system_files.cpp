@@ -95,10 +95,18 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, Load
     read_function_files(spec, diagnostics);
   }
   const bool has_errors_of_text = diagnostics.num_errors() > 0;
-  auto flex = std::move(options.flex);
+  const auto place = [&](const std::string& name) {
+    return fs::absolute(resolve_beside(path, name)).lexically_normal().string();
+  };
+  std::map<std::string, records::FlexBody> given, flex;
+  for (auto& [name, body] : options.flex) given[place(name)] = std::move(body);
   std::map<std::string, std::string> flex_path;
   for (auto& body : spec.bodies) {
     if (body.file.empty() || flex.count(body.file)) continue;
+    if (const auto found = given.find(place(body.file)); found != given.end()) {
+      flex[body.file] = found->second;
+      continue;
+    }
     const auto file = resolve_beside(path, body.file);
     body.is_unreadable = true;
     if (!fs::exists(file)) {

@@ -132,7 +132,7 @@ void bind_flex_body(py::module_& m) {
           "[j][k] 3 x 3")
       .def("__bool__", [](const MassIntegrals& i) { return !i.empty(); });
 
-  py::class_<records::Locator>(m, "Locator")
+  py::class_<records::Locator>(m, "Locator", "A unit load whose geometric stiffness the body has.")
       .def_readonly("name", &records::Locator::name)
       .def_readonly("node", &records::Locator::node)
       .def_readonly("direction", &records::Locator::direction);

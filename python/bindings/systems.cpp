@@ -215,7 +215,7 @@ class PySystem {
 }  // namespace
 
 void bind_systems(py::module_& m) {
-  py::class_<records::EventRecord>(m, "Event")
+  py::class_<records::EventRecord>(m, "Event", "A line of /events: what happened, and when.")
       .def_readonly("time", &records::EventRecord::time)
       .def_readonly("what", &records::EventRecord::what)
       .def("__repr__", [](const records::EventRecord& e) { return std::to_string(e.time) + ": " + e.what; });

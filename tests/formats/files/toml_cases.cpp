@@ -149,7 +149,7 @@ std::vector<BadDocument> get_bad_systems() {
       {"toml.conflicting-keys", "duration = 10.0", "duration = 10.0\nstiffening_step = 0.1", "is not lagged", false},
       {"toml.motion-of-signal", "rate = [0.0, 0.1]", "motion = [\"angle\", \"\"]", "drive the hinge by an actuator",
        false},
-      {"toml.missing-key", "[simulation]", "[[event]]\nname = \"x\"\ntime = 1\naction = \"switch\"\ninput = \"a\"\n[simulation]",
+      {"toml.missing-key", "[simulation]", "[[event]]\nname = \"x\"\ntime = 1\naction = \"switch\"\ninput = 1\n[simulation]",
        "'controller'", false},
       {"toml.conflicting-keys", "[simulation]", "[[event]]\nname = \"x\"\ntime = 1\ncontroller = \"law\"\n[simulation]",
        "'controller' has no meaning", false},
