@@ -1,6 +1,11 @@
+#include <unistd.h>
+
+#include <cstdio>
+
 #include "cli/common/interrupt.hpp"
 #include "cli/common/memory_limit.hpp"
 #include "cli/verbs.hpp"
+#include "formats/hdf5/lost_file.hpp"
 
 namespace {
 
@@ -13,5 +18,10 @@ __attribute__((section(".preinit_array"), used)) void (*const begin)() = bough::
 int main(int argc, char** argv) {
   bough::cli::prepare_for_memory_limit(argv);
   bough::cli::secure_streams();
-  return bough::cli::run_command({argv + 1, argv + argc});
+  const int code = bough::cli::run_command({argv + 1, argv + argc});
+  if (bough::hdf5::has_lost_file()) {
+    std::fflush(nullptr);
+    ::_exit(code);
+  }
+  return code;
 }

@@ -29,17 +29,19 @@ def make_dictionary(reader, path):
         with open(os.path.join(ROOT, "data", "schema", reader + ".schema.json"), encoding="utf-8") as schema:
             words.update(re.findall(r'"([a-z_0-9]{2,30})"', schema.read()))
         words.update(["[[", "]]", " = ", '"$'])
+    if not words:
+        return []
     with open(path, "w", encoding="ascii") as out:
         for word in sorted(words):
             out.write('"' + word.replace("\\", "\\\\").replace('"', '\\"') + '"\n')
+    return ["-dict=" + path]
 
 
 def fuzz(program, reader, options):
     own = os.path.join(options.keep, "corpus", reader)
     found = os.path.join(options.keep, reader + "-")
     os.makedirs(own, exist_ok=True)
-    dictionary = os.path.join(options.keep, reader + ".dict")
-    make_dictionary(reader, dictionary)
+    dictionary = make_dictionary(reader, os.path.join(options.keep, reader + ".dict"))
     environment = dict(os.environ, BOUGH_FUZZ_TARGET=reader,
                        BOUGH_FUZZ_FOLDER="/dev/shm" if os.access("/dev/shm", os.W_OK) else "/tmp",
                        ASAN_OPTIONS="detect_leaks=0:allocator_may_return_null=1", UBSAN_OPTIONS="print_stacktrace=1")
@@ -47,7 +49,7 @@ def fuzz(program, reader, options):
     before = set(glob.glob(found + "*"))
     ran = subprocess.run([program, own, os.path.join(CORPUS, reader), f"-artifact_prefix={found}", "-timeout=25",
                           "-rss_limit_mb=3000", "-malloc_limit_mb=1500", f"-max_len={LONGEST.get(reader, 4096)}",
-                          f"-dict={dictionary}", "-print_final_stats=1", "-reload=0", *limit], env=environment,
+                          *dictionary, "-print_final_stats=1", "-reload=0", *limit], env=environment,
                          cwd=options.keep, capture_output=True, text=True, errors="replace")
     new = sorted(set(glob.glob(found + "*")) - before)
     executed = re.findall(r"number_of_executed_units: (\d+)", ran.stderr) or re.findall(r"^#(\d+)", ran.stderr, re.M)

@@ -176,6 +176,8 @@ def read_all(path):
 
 
 def is_equal(a, b):
+    if not hasattr(a, "dtype"):
+        return a == b
     return a.dtype == b.dtype and a.shape == b.shape and (
         np.array_equal(a, b, equal_nan=True) if a.dtype.kind == "f" else np.array_equal(a, b))
 

@@ -3,9 +3,10 @@ import glob
 import os
 import signal
 import subprocess
+import sys
 import time
 
-from support import BEAM, PROGRAM, ProgramTest, unittest
+from support import BEAM, PROGRAM, SOURCE, ProgramTest, unittest
 
 PARTS = "*.bough-part-*"
 
@@ -18,6 +19,33 @@ def make_plate(n):
     held = [f"SPC1,1,123456,{1 + i}" for i in range(n + 1)]
     return "\n".join(["SOL 103", "CEND", "SPC = 1", "BEGIN BULK", "MAT1,1,7.+10,,.3,2700.", "PSHELL,1,1,.01,1,,1",
                       *grids, *shells, *held, "ENDDATA", ""])
+
+
+class Disks(ProgramTest):
+    def test_a_disk_that_fails_at_any_write(self):
+        """Every one of the last writes of a file: exit 3 with words, no signal, nothing left."""
+        sys.path.insert(0, os.path.join(SOURCE, "tools"))
+        from trials import PRELOAD
+        self.write("preload.c", PRELOAD)
+        subprocess.run(["cc", "-O1", "-w", "-shared", "-fPIC", "-o", self.path("preload.so"), self.path("preload.c"),
+                        "-ldl"], check=True)
+        self.write("beam.bdf", BEAM)
+
+        def call(**more):
+            environment = dict(os.environ, LD_PRELOAD=self.path("preload.so"), **more)
+            return subprocess.run([PROGRAM, "reduce", "beam.bdf", "--modes", "2", "-o", "b.h5"], cwd=self.folder,
+                                  env=environment, capture_output=True, text=True)
+
+        self.assertEqual(call(TRIAL_LOG=self.path("count")).returncode, 0)
+        os.remove(self.path("b.h5"))
+        with open(self.path("count"), encoding="ascii") as f:
+            writes = int(f.read())
+        for at in range(max(1, writes - 12), writes + 1):
+            result = call(TRIAL_AT=str(at), TRIAL_ERROR="5")
+            self.assertEqual(result.returncode, 3, f"write {at} of {writes}: {result.stderr}")
+            self.assertIn("error:", result.stderr)
+            self.assertFalse(os.path.exists(self.path("b.h5")))
+            self.assertEqual(glob.glob(self.path(PARTS)), [])
 
 
 class Runs(ProgramTest):

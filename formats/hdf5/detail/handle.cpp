@@ -6,13 +6,18 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "formats/hdf5/lost_file.hpp"
+
 namespace bough::hdf5 {
 
 namespace {
-// Every handle closes itself. What could not be closed, since its disk failed, would be written once more at the exit,
-// and the library does not survive that.
+bool g_has_lost_file = false;
+// Every handle closes itself; what could not be closed would be written once more at the exit.
 [[maybe_unused]] const bool g_leaves_in_peace = H5dont_atexit() >= 0;
 }  // namespace
+
+bool has_lost_file() { return g_has_lost_file; }
+void note_lost_file() { g_has_lost_file = true; }
 
 Handle make_string_type() {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);

@@ -6,6 +6,8 @@
 
 #include <hdf5.h>
 
+#include "formats/hdf5/lost_file.hpp"
+
 namespace bough::hdf5 {
 
 using Dims = std::vector<hsize_t>;
@@ -32,7 +34,9 @@ class Handle {
   /// Closes now; false when closing failed (a full disk shows here).
   bool reset() {
     const hid_t id = std::exchange(id_, -1);
-    return id < 0 || close_(id) >= 0;
+    if (id < 0 || close_(id) >= 0) return true;
+    if (close_ == &H5Fclose) note_lost_file();
+    return false;
   }
 
  private:
