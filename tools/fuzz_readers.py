@@ -69,7 +69,7 @@ def main():
     parser.add_argument("--minutes", type=float, default=1)
     parser.add_argument("--runs", type=int, default=0, help="executions a reader instead of minutes")
     parser.add_argument("--keep", default="fuzz-found")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     options.keep = os.path.abspath(options.keep)
     os.makedirs(options.keep, exist_ok=True)
     readers = options.readers or sorted(os.listdir(CORPUS))
