@@ -6,6 +6,7 @@
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/sparse_file.hpp"
 #include "formats/matrices/mat_file.hpp"
+#include "formats/records/mode_kind.hpp"
 
 namespace bough::cli {
 
@@ -23,10 +24,7 @@ MatValue make_ids(const std::vector<int>& ids) {
 
 MatValue make_kinds(const std::vector<records::ModeKind>& kinds) {
   MatCells cells;
-  for (const auto kind : kinds)
-    cells.emplace_back(kind == records::ModeKind::Constraint   ? "constraint"
-                       : kind == records::ModeKind::Attachment ? "attachment"
-                                                               : "normal");
+  for (const auto kind : kinds) cells.emplace_back(records::get_name(kind));
   return cells;
 }
 

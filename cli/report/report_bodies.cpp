@@ -5,6 +5,7 @@
 
 #include "cli/report/report_files.hpp"
 #include "formats/hdf5/files.hpp"
+#include "formats/records/mode_kind.hpp"
 #include "formats/report/html.hpp"
 #include "formats/report/modal_chapter.hpp"
 #include "modal/compare/integrals_check.hpp"
@@ -16,20 +17,6 @@ namespace bough::cli {
 using report::Verdict;
 
 namespace {
-
-std::string name_kind(records::ModeKind kind) {
-  switch (kind) {
-    case records::ModeKind::Normal:
-      return "normal";
-    case records::ModeKind::Constraint:
-      return "constraint";
-    case records::ModeKind::Attachment:
-      return "attachment";
-    case records::ModeKind::Residual:
-      return "residual";
-  }
-  return "";
-}
 
 Eigen::MatrixXd calc_own_mac(const modal::ModalModel& model) {
   const auto match = modal::match_nodes(model, model);
@@ -120,7 +107,7 @@ report::Chapter make_body_chapter(const std::string& file) {
     const double critical = 2 * std::sqrt(std::max(0.0, body.modal_mass(j, j) * body.modal_stiffness(j, j)));
     m.damping[j] = critical > 0 ? body.modal_damping(j, j) / critical : 0;
   }
-  for (const auto kind : body.kind) m.mode_kind.push_back(name_kind(kind));
+  for (const auto kind : body.kind) m.mode_kind.push_back(records::get_name(kind));
   m.effective_mass = body.effective_mass;
   m.mac = calc_own_mac(modal::ModalModel::from(body));
   check_matrices(body, m);
@@ -150,7 +137,7 @@ report::Chapter make_modes_chapter(const std::string& file) {
   m.inertia = p.inertia - move(p.cg - p.reference) + move(p.cg);
   m.frequency_hz = m.is_buckling ? modes.load_factor : modes.frequency_hz;
   m.modal_mass = modes.modal_mass;
-  for (const auto kind : modes.kind) m.mode_kind.push_back(name_kind(kind));
+  for (const auto kind : modes.kind) m.mode_kind.push_back(records::get_name(kind));
   m.residual = modes.residual;
   m.effective_mass = modes.effective_mass;
   m.mac = calc_own_mac(modal::ModalModel::from(modes));

@@ -1,6 +1,7 @@
 #include "formats/hdf5/linear_file.hpp"
 
 #include "formats/hdf5/detail/reader.hpp"
+#include "formats/hdf5/detail/signals.hpp"
 #include "formats/hdf5/detail/writer.hpp"
 
 namespace bough::hdf5 {
@@ -8,19 +9,6 @@ namespace {
 
 constexpr const char* kFormat = "bough-linear";
 using records::LinearModel;
-using records::Signals;
-
-void write_signals(FileWriter& file, const std::string& group, const Signals& signals, const std::string& what) {
-  file.write_strings(group + "/name", signals.name, {"names of the " + what, "1"});
-  file.write_strings(group + "/dims", signals.dims, {"their dimensions in M L T F", "1"});
-}
-
-Signals read_signals(FileReader& file, const std::string& group) {
-  Signals signals;
-  signals.name = file.read_strings(group + "/name", -1);
-  signals.dims = file.read_strings(group + "/dims", static_cast<long>(signals.name.size()));
-  return signals;
-}
 
 void write_poles(FileWriter& file, const records::Poles& poles) {
   file.write_vector("/poles/real", poles.real, {"eigenvalues of A, real part", "1/T"});

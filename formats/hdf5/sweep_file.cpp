@@ -1,6 +1,7 @@
 #include "formats/hdf5/sweep_file.hpp"
 
 #include "formats/hdf5/detail/reader.hpp"
+#include "formats/hdf5/detail/signals.hpp"
 #include "formats/hdf5/detail/writer.hpp"
 
 namespace bough::hdf5 {
@@ -13,19 +14,6 @@ constexpr const char* kVersion = "1.0";
 using Eigen::Index;
 using Eigen::MatrixXd;
 using records::LinearModel;
-using records::Signals;
-
-void write_signals(FileWriter& file, const std::string& group, const Signals& signals, const std::string& what) {
-  file.write_strings(group + "/name", signals.name, {"names of the " + what, "1"});
-  file.write_strings(group + "/dims", signals.dims, {"their dimensions in M L T F", "1"});
-}
-
-Signals read_signals(FileReader& file, const std::string& group) {
-  Signals signals;
-  signals.name = file.read_strings(group + "/name", -1);
-  signals.dims = file.read_strings(group + "/dims", static_cast<long>(signals.name.size()));
-  return signals;
-}
 
 /// One matrix a point, behind each other in C order.
 void write_stack(FileWriter& file, const std::string& path, const std::vector<LinearModel>& models,

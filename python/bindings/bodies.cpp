@@ -6,6 +6,7 @@
 #include "cli/reduce/reduce_body.hpp"
 #include "fe/linear/petsc.hpp"
 #include "formats/hdf5/files.hpp"
+#include "formats/records/mode_kind.hpp"
 #include "formats/toml/specs.hpp"
 
 namespace bough::python {
@@ -16,22 +17,9 @@ using records::FlexBody;
 using records::MassIntegrals;
 using records::ModesResult;
 
-const char* get_word(records::ModeKind kind) {
-  switch (kind) {
-    case records::ModeKind::Normal:
-      return "normal";
-    case records::ModeKind::Constraint:
-      return "constraint";
-    case records::ModeKind::Attachment:
-      return "attachment";
-    default:
-      return "residual";
-  }
-}
-
 std::vector<std::string> get_words(const std::vector<records::ModeKind>& kinds) {
   std::vector<std::string> words;
-  for (const auto kind : kinds) words.emplace_back(get_word(kind));
+  for (const auto kind : kinds) words.emplace_back(records::get_name(kind));
   return words;
 }
 

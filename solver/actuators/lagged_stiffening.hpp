@@ -1,6 +1,5 @@
 #pragma once
-/// \file Forces of the signal graph that no [[actuator]] makes: what follows a signal, and the stiffening of the step
-/// before (docs/theory/control.md, "Lagged stiffening").
+/// \file The stiffening of the step before, as the report has it (docs/theory/control.md, "Lagged stiffening").
 #include <memory>
 #include <vector>
 
@@ -9,13 +8,10 @@
 
 namespace bough::solver {
 
-/// A [[force]] whose value is a signal. `force` outlives it.
-std::unique_ptr<Block> make_driven_force(const AppliedForce& force, const SourceLocation& at);
-
 /// The scheme of NASA-CR-202063, eq. 18, for each flexible body that is to be stiffened: every stiffening_step it
 /// measures A_I at the body's origin (12 outputs) and the loads FCONI at its nodes with locators, and until the next
 /// time puts -(Σ K_G1 A_I + Σ K_G2 FCONI) η on the modes. Loads are those of hinges and of [[force]] without a type;
-/// warns "system.lagged-loads" of others.
+/// warns "system.lagged-loads" of others, and "system.lagged-hinges" where there are hinges among them.
 std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::SystemSpec& spec, const System& system,
                                                            const FlexMap& flex, Diagnostics& diagnostics);
 

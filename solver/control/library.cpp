@@ -51,19 +51,20 @@ class Library final : public Block {
  private:
   template <class Call>
   void call(double t, const char* function, const Call& action) const {
-    std::ostringstream what;
-    what << label << ": bough_controller_" << function << " at t = " << t;
+    const auto fail = [&](const std::string& how, const char* advice) -> ComputationError {
+      std::ostringstream what;
+      what << label << ": bough_controller_" << function << " at t = " << t << how;
+      return {"control.library-failed", at, what.str(), advice};
+    };
     int result = 0;
     try {
       result = action();
     } catch (const std::exception& error) {
-      throw ComputationError("control.library-failed", at, what.str() + " threw: " + error.what(), "mend the library");
+      throw fail(std::string(" threw: ") + error.what(), "mend the library");
     } catch (...) {
-      throw ComputationError("control.library-failed", at, what.str() + " threw an exception", "mend the library");
+      throw fail(" threw an exception", "mend the library");
     }
-    if (result == 0) return;
-    what << " returned " << result;
-    throw ComputationError("control.library-failed", at, what.str(), "0 stands for success");
+    if (result != 0) throw fail(" returned " + std::to_string(result), "0 stands for success");
   }
   void demand_finite(double t, const char* noun, const double* values, int n) const {
     for (int i = 0; i < n; ++i) {

@@ -4,6 +4,7 @@
 
 #include "formats/records/signal_name.hpp"
 #include "solver/actuators/actuator.hpp"
+#include "solver/actuators/driven_force.hpp"
 #include "solver/actuators/lagged_stiffening.hpp"
 #include "solver/control/controller.hpp"
 #include "solver/sensors/sensor_block.hpp"

@@ -1,4 +1,5 @@
 #include "formats/hdf5/detail/writer.hpp"
+#include "formats/records/mode_kind.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -223,12 +224,7 @@ void write_mode_shapes(FileWriter& file, const std::vector<Eigen::MatrixXd>& phi
 
 void write_mode_kinds(FileWriter& file, const std::vector<records::ModeKind>& kinds) {
   std::vector<std::string> words;
-  for (const auto kind : kinds) {
-    words.push_back(kind == records::ModeKind::Normal       ? "normal"
-                    : kind == records::ModeKind::Constraint ? "constraint"
-                    : kind == records::ModeKind::Attachment ? "attachment"
-                                                            : "residual");
-  }
+  for (const auto kind : kinds) words.emplace_back(records::get_name(kind));
   file.write_strings("/modes/kind", words, {"normal, constraint, attachment or residual mode", "1"});
 }
 

@@ -1,0 +1,24 @@
+#pragma once
+/// \file Names and dimensions of states, inputs and outputs, as every file of linear models has them.
+#include <string>
+
+#include "formats/hdf5/detail/reader.hpp"
+#include "formats/hdf5/detail/writer.hpp"
+#include "formats/records/linear_model.hpp"
+
+namespace bough::hdf5 {
+
+inline void write_signals(FileWriter& file, const std::string& group, const records::Signals& signals,
+                          const std::string& what) {
+  file.write_strings(group + "/name", signals.name, {"names of the " + what, "1"});
+  file.write_strings(group + "/dims", signals.dims, {"their dimensions in M L T F", "1"});
+}
+
+inline records::Signals read_signals(FileReader& file, const std::string& group) {
+  records::Signals signals;
+  signals.name = file.read_strings(group + "/name", -1);
+  signals.dims = file.read_strings(group + "/dims", static_cast<long>(signals.name.size()));
+  return signals;
+}
+
+}  // namespace bough::hdf5
