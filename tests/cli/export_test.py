@@ -87,6 +87,15 @@ class Export(ProgramTest):
             self.compare(m["dof_map"], f["dof_map"], "dof_map")
         self.assertGreater(seen, 25)
 
+    def test_kinds_of_modes(self):
+        self.write("beam.bdf", BEAM)
+        self.write("body.toml", (BODY % 2).replace("[body.output]", 'residual = ["interface"]\n[body.output]'))
+        self.bough("reduce", "body.toml", "-o", "body.h5")
+        self.bough("export", "body.h5", "--to", "mat", "-o", "body.mat")
+        with h5py.File(self.path("body.h5")) as f:
+            self.assertIn(b"residual", list(f["modes/kind"]))
+            self.compare(load(self.path("body.mat"))["modes"][0, 0]["kind"], f["modes/kind"], "modes/kind")
+
     def test_body_to_op4(self):
         self.reduce()
         self.bough("export", "body.h5", "--to", "op4", "-o", "body.op4")
