@@ -6,9 +6,11 @@
 
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/checks.hpp"
+#include "modal/mode_energies.hpp"
 
 namespace bough::modal {
 
+using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
 namespace {
@@ -26,7 +28,8 @@ EigenPairs sort_negative(EigenPairs pairs) {
 
 }  // namespace
 
-records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs& found, bool buckling) {
+records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs& found, bool buckling,
+                                       const ModesExtras& extras) {
   records::ModesResult result;
   const EigenPairs pairs = buckling ? found : sort_negative(found);
   result.subcase = model.subcase().id;
@@ -52,9 +55,23 @@ records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs&
   result.eigenvalue = pairs.lambda;
   result.frequency_hz = pairs.lambda.cwiseMax(0.0).cwiseSqrt() / (2 * M_PI);
   result.kind.assign(n, records::ModeKind::Normal);
-  const Eigen::MatrixXd M_Phi = fe::calc_mass_times(model, model.mass_kind(), pairs.Phi);
+  const MatrixXd M_Phi = fe::calc_mass_times(model, model.mass_kind(), pairs.Phi);
   result.modal_mass = pairs.Phi.cwiseProduct(M_Phi).colwise().sum();
   result.effective_mass = calc_effective_mass(model, pairs.Phi, M_Phi);
+  if (extras.energies_of != nullptr) result.energies = calc_mode_energies(model, *extras.energies_of, pairs.Phi);
+  if (extras.about_grid != 0) {
+    const int node = model.find_node(extras.about_grid);
+    if (node < 0 || model.node(node).num_dofs != 6)
+      throw InputError("modal.unknown-grid", {},
+                       "effective masses are asked for about grid " + std::to_string(extras.about_grid) +
+                           ", which the deck does not have",
+                       "name a GRID of the deck");
+    auto& about = result.effective_mass_about;
+    about.grid = extras.about_grid;
+    const MatrixXd Phi_R = model.calc_rigid_modes(model.node(node).x);
+    about.mass = result.modal_mass.cwiseInverse().asDiagonal() * (M_Phi.transpose() * Phi_R).cwiseAbs2();
+    about.rigid = fe::calc_mass_properties(model, model.mass_kind(), model.node(node).x).rigid_mass;
+  }
   return result;
 }
 

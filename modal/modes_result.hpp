@@ -6,8 +6,15 @@
 
 namespace bough::modal {
 
+/// What else of normal modes is asked for.
+struct ModesExtras {
+  const records::Deck* energies_of = nullptr;  ///< energies of the elements, whose properties this deck names
+  int about_grid = 0;  ///< effective masses about this grid; InputError modal.unknown-grid where the model has it not
+};
+
 /// Mass properties about the origin, shapes at the grids, residuals; of normal modes (not of buckling) frequencies,
 /// modal and effective masses too, with the shapes' own lengths.
-records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs& pairs, bool buckling);
+records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs& pairs, bool buckling,
+                                       const ModesExtras& extras = {});
 
 }  // namespace bough::modal

@@ -16,6 +16,7 @@ struct BodyLoad {
   records::Locator locator;
   fe::AppliedLoad load;
   fe::InitialForces initial;  ///< of a temperature set
+  int load_set = 0;           ///< whose loads along beams the forces of elements hold; 0: none
 };
 
 /// Reports reduce.no-modes, reduce.bad-basis, reduce.unknown-load.

@@ -39,7 +39,7 @@ void Reduction::make_loads(const fe::Model& model) {
       BodyLoad& pattern = loads_.emplace_back();
       pattern.group = pattern.locator.name = name;
       records::Subcase sets;
-      sets.load = load.load_set;
+      sets.load = pattern.load_set = load.load_set;
       sets.temperature = load.temperature_set;
       auto both = fe::calc_static_load(model, deck_, sets, diagnostics_);
       pattern.initial = std::move(both.initial);
@@ -172,6 +172,7 @@ void Reduction::set_stiffening(const fe::Model& model, const StaticSolve& solve)
   }
 
   const MatrixXd U = solve(all.F);
+  set_recovery(model, U, all.F, inertial);
   report("geometric stiffness");
   auto K_G = calc_generalized_geometric_stiffness(model, all, U, Phi_);
   body_.kg_inertial.fill(MatrixXd::Zero(n, n));

@@ -1,5 +1,7 @@
 #pragma once
 /// \file The stages of reduce(): one deck, one spec, one body. Internal.
+#include <map>
+
 #include "fe/statics/statics.hpp"
 #include "stiffening/body_basis.hpp"
 #include "stiffening/reduce.hpp"
@@ -38,6 +40,8 @@ class Reduction {
   void add_dampers(const fe::Model& model);
   void set_nodes(const fe::Model& model);
   void set_integrals(const fe::Model& model);  ///< and effective masses, F_I
+  std::map<std::pair<std::string, std::vector<std::string>>, std::vector<int>> choose_recovered(const fe::Model& model);
+  void set_recovery(const fe::Model& model, const MatrixXd& U, const MatrixXd& F, const std::vector<int>& inertial);
   void set_stiffening(const fe::Model& model, const modal::bases::StaticSolve& solve);
   void make_loads(const fe::Model& model);
   /// Moves without turning: a grid of solids or rods alone. What a frame takes off its rows is no rotation of it.

@@ -12,7 +12,7 @@ std::string make_vtu_text(const exports::Picture& picture, exports::VtuEncoding 
                             " grids, the others are not drawn",
                         "reduce with --full, or without a list of output nodes");
   }
-  return exports::make_vtu(picture.mesh, picture.arrays, encoding);
+  return exports::make_vtu(picture.mesh, picture.arrays, encoding, picture.cells);
 }
 
 }  // namespace bough::cli

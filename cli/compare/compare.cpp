@@ -72,14 +72,7 @@ MatrixXd calc_mass_mac(const CompareOptions& o, const PairReport& r) {
 
 PairReport compare_two(const CompareOptions& o) {
   const auto a = load(o.files[0]), b = load(o.files[1]);
-  PairReport r{o.files[0], o.files[1], a.model, b.model, {}, {}, {}, {}, {}};
-  r.match = modal::match_nodes(r.a, r.b);
-  if (r.match.pairs.empty())
-    throw InputError("cli.no-common-nodes", {o.files[1]},
-                     "no node has the id and place, or the place, of a node of " + o.files[0],
-                     "compare models of one geometry in the same units");
-  r.mac = modal::calc_mac(r.a, r.b, r.match);
-  r.pairs = modal::pair_modes(r.a, r.b, r.match, r.mac);
+  auto r = compare_models(o.files[0], a.model, o.files[1], b.model);
   if (!o.mass.empty()) r.mass_mac = calc_mass_mac(o, r);
   if (a.body && b.body) r.bodies = modal::compare_bodies(*a.body, *b.body, r.pairs, r.match.offset);
   return r;
@@ -141,6 +134,21 @@ int run_compare(const CompareOptions& o) {
 }
 
 }  // namespace
+
+PairReport compare_models(const std::string& file_a, modal::ModalModel a, const std::string& file_b,
+                          modal::ModalModel b) {
+  PairReport r{file_a, file_b, std::move(a), std::move(b), {}, {}, {}, {}, {}};
+  r.match = modal::match_nodes(r.a, r.b);
+  if (r.match.pairs.empty())
+    throw InputError("cli.no-common-nodes", {file_b},
+                     "no node has the id and place, or the place, of a node of " + file_a,
+                     "compare models of one geometry in the same units");
+  r.mac = modal::calc_mac(r.a, r.b, r.match);
+  r.pairs = modal::pair_modes(r.a, r.b, r.match, r.mac);
+  return r;
+}
+
+modal::ModalModel load_model(const std::string& file) { return load(file).model; }
 
 void add_compare(CLI::App& app, Action& action) {
   auto o = std::make_shared<CompareOptions>();

@@ -17,7 +17,9 @@ struct ModesOptions : CommonOptions {
   std::optional<double> min_hz, max_hz;
   bool buckling = false;
   bool no_check = false;
-  std::string vtu;
+  std::string vtu, compare;
+  bool energies = false;
+  int about_grid = 0;
 };
 
 /// The deck's EIGRL/EIGR of the subcase, overruled by the command line; 10 modes when neither says.

@@ -15,6 +15,7 @@
 #include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/common/vtu_file.hpp"
+#include "cli/compare/compare_report.hpp"
 #include "cli/modes/eigen_choices.hpp"
 #include "cli/modes/modes_tables.hpp"
 #include "fe/matrices/assembly.hpp"
@@ -98,7 +99,8 @@ Solved solve_task(const ModesOptions& options, const records::Deck& deck, const 
   if (!options.buckling)
     fe::report_mass(model, deck, fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero()), diagnostics);
   modal::normalize(model, norm, pairs.Phi, diagnostics);
-  return {modal::make_modes_result(model, pairs, options.buckling), norm.kind};
+  const modal::ModesExtras extras{options.energies ? &deck : nullptr, options.about_grid};
+  return {modal::make_modes_result(model, pairs, options.buckling, extras), norm.kind};
 }
 
 int run_modes(const ModesOptions& options) {
@@ -106,7 +108,8 @@ int run_modes(const ModesOptions& options) {
   console.set_subject(options.deck);
   do_once([&] {
     demand_deck(options.deck);
-    check_outputs(options, {options.output, options.vtu}, {options.deck});
+    check_outputs(options, {options.output, options.vtu}, {options.deck, options.compare});
+    if (!options.compare.empty()) demand_file(options.compare);
   });
   console.set_rank(fe::initialize_petsc().rank);
 
@@ -149,8 +152,16 @@ int run_modes(const ModesOptions& options) {
     if (task.buckling) text += modal::describe_load(task.buckling->statics) + "\n\n";
     text += (options.buckling ? format_buckling(result) : format_modes(result)) + "\n" +
             format_health(result, norm, options.buckling);
-    if (is_first) json = make_json(result, norm, options.buckling);
-    if (tasks.size() > 1) json["subcases"].push_back(make_json(result, norm, options.buckling));
+    text += format_effective_mass_about(result) + format_energies(result);
+    auto one = make_json(result, norm, options.buckling);
+    if (!options.compare.empty() && console.is_root()) {
+      const auto pair =
+          compare_models(options.deck, modal::ModalModel::from(result), options.compare, load_model(options.compare));
+      text += "\n" + format_report(pair);
+      one["comparison"] = make_json(pair);
+    }
+    if (is_first) json = one;
+    if (tasks.size() > 1) json["subcases"].push_back(one);
     const auto output = name_output(options.output, result.subcase, is_first);
     is_first = false;
     if (output.empty()) continue;
@@ -190,6 +201,11 @@ void add_modes(CLI::App& app, Action& action) {
   verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted (with --buckling: load factor)");
   verb->add_flag("--buckling", o->buckling, "Load factors of the static subcase instead of normal modes");
   verb->add_flag("--no-check", o->no_check, "Leave out the count of eigenvalues that proves that no mode was missed");
+  verb->add_flag("--ese,--energies", o->energies,
+                 "Strain and kinetic energy of elements and properties in each mode: table, HDF5, VTU");
+  verb->add_option("--meffmass", o->about_grid, "Effective masses in units of mass, about this grid")
+      ->check(make_positive());
+  verb->add_option("--compare", o->compare, "Modes file or flexible body: the modes side by side with it, with MAC");
   verb->add_option("--vtu", o->vtu, "Write the mode shapes to this file for ParaView");
   add_model_options(*verb, o->model);
   add_common_options(*verb, *o, kOutput | kJson, "Write the modes to this HDF5 file");

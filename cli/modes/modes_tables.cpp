@@ -78,6 +78,17 @@ nlohmann::json make_json(const records::ModesResult& r, const std::string& norm,
   json["frequency_hz"] = to_json_list(r.frequency_hz);
   json["modal_mass"] = to_json_list(r.modal_mass);
   json["effective_mass"] = to_json(r.effective_mass);
+  if (const auto& about = r.effective_mass_about; about.grid != 0)
+    json["effective_mass_about"] = {
+        {"grid", about.grid}, {"mass", to_json(about.mass)}, {"rigid", to_json_list(about.rigid.diagonal())}};
+  if (const auto& e = r.energies; !e.empty())
+    json["energies"] = {{"id", e.id},
+                        {"card", e.card},
+                        {"property", e.property},
+                        {"strain", to_json(e.strain)},
+                        {"kinetic", to_json(e.kinetic)},
+                        {"total_strain", to_json_list(e.total_strain)},
+                        {"total_kinetic", to_json_list(e.total_kinetic)}};
   return json;
 }
 

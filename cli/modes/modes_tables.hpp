@@ -9,6 +9,9 @@ namespace bough::cli {
 
 std::string format_modes(const records::ModesResult& result);
 std::string format_buckling(const records::ModesResult& result);
+/// Of properties, then of the elements that hold most; empty without.
+std::string format_energies(const records::ModesResult& result);
+std::string format_effective_mass_about(const records::ModesResult& result);
 /// Rigid-body modes, the norm, the Sturm count, the largest residual.
 std::string format_health(const records::ModesResult& result, const std::string& norm, bool buckling);
 nlohmann::json make_json(const records::ModesResult& result, const std::string& norm, bool buckling);

@@ -35,6 +35,7 @@ struct ReduceVerbOptions : CommonOptions {
   std::vector<int> interface_nodes;
   std::vector<std::string> loads;
   bool full = false;
+  std::vector<std::string> recover;
   bool integrals_report = false;
   std::string mass, integrals;
   std::vector<double> origin;
@@ -119,6 +120,7 @@ records::BodySpec make_spec(const ReduceVerbOptions& o, Diagnostics& diagnostics
   if (!o.interface_nodes.empty()) spec.interface_nodes = o.interface_nodes;
   for (const auto& load : o.loads) spec.loads.push_back(parse_load(load));
   if (o.full) spec.full = true;
+  if (!o.recover.empty()) spec.recover = o.recover;
   if (!o.mass.empty()) spec.mass = o.mass;
   if (!o.integrals.empty()) spec.integrals = o.integrals;
   if (!o.origin.empty()) spec.origin = Vector3d(o.origin[0], o.origin[1], o.origin[2]);
@@ -264,6 +266,10 @@ void add_reduce(CLI::App& app, Action& action) {
                  "Print the mass integrals by three methods side by side, as bough compare BODY.h5 does");
   verb->add_flag("--force-outside", o->force_outside,
                  "Write to [body.output] file also outside the body file's folder");
+  verb->add_option("--recover", o->recover,
+                   "Elements whose forces and stresses the body recovers: ALL, ids, ranges 17-25, property:3, "
+                   "card:CBAR; e.g. 17,20-25")
+      ->delimiter(',');
   verb->add_flag("--full", o->full, "Write the modes and inertial loads of every dof too");
   add_common_options(*verb, *o, kOutput | kJson, "Flexible-body HDF5 file (default: the body file's, else NAME.h5)");
   verb->footer(

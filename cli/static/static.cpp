@@ -26,6 +26,7 @@ namespace {
 struct StaticOptions : CommonOptions {
   std::string deck, vtu;
   DeckModelOptions model;
+  std::vector<std::string> grid_forces;
   bool full = false, in_cd = false, is_linear = false;
 };
 
@@ -39,6 +40,19 @@ records::StaticResult turn_to_cd(const fe::Model& model, records::StaticResult r
           part = (node.R_basic_cd.transpose() * part).eval();
         }
   return result;
+}
+
+/// Ids, or "all": none.
+std::vector<int> read_grids(const std::vector<std::string>& words) {
+  std::vector<int> grids;
+  for (const auto& word : words) {
+    if (word == "all" || word == "ALL") return {};
+    const bool is_id = !word.empty() && word.size() < 9 && word.find_first_not_of("0123456789") == std::string::npos;
+    if (!is_id)
+      throw InputError("cli.bad-grids", {}, "cannot read --grid-forces \"" + word + "\"", "write all, or ids: 1,41");
+    grids.push_back(std::stoi(word));
+  }
+  return grids;
 }
 
 int run_static(const StaticOptions& options) {
@@ -63,6 +77,7 @@ int run_static(const StaticOptions& options) {
   }
   records::StaticResult result;
   fe::CaseSolver solver(deck, make_model_options(options.model));
+  if (!options.grid_forces.empty()) solver.ask_grid_forces(read_grids(options.grid_forces));
   SubcaseFailures failures(subcases.size(), deck.subcases.size());
   for (const auto& subcase : subcases) {
     Diagnostics own;
@@ -111,6 +126,8 @@ void add_static(CLI::App& app, Action& action) {
   verb->add_flag("--cd", o->in_cd, "Print vectors in the displacement (CD) axes of each grid, not in basic");
   verb->add_flag("--linear", o->is_linear, "Solve the cards linearly though SOL is nonlinear (106, 129, 400, ...)");
   verb->add_option("--vtu", o->vtu, "Write the displacements of every subcase to this file for ParaView");
+  verb->add_option("--grid-forces", o->grid_forces, "List every force on these grids, or on all: elements, loads, SPC")
+      ->delimiter(',');
   add_model_options(*verb, o->model);
   add_common_options(*verb, *o, kOutput | kJson, "Write displacements, reactions and forces to this HDF5 file");
   verb->footer("Example:\n  bough static frame.bdf -o frame-static.h5\n  bough static frame.bdf --subcase 2 --full");

@@ -84,43 +84,92 @@ std::string format_vector(const std::string& name, const Eigen::MatrixXi& dof_ma
   return table.to_text();
 }
 
-std::string format_elements(const records::ElementForces& block, bool full) {
-  if (full) {
-    Table table{{block.card}, {}};
-    table.headings.insert(table.headings.end(), block.components.begin(), block.components.end());
-    table.headings.push_back("strain energy");
-    for (Eigen::Index e = 0; e < block.force.rows(); ++e) {
-      std::vector<std::string> row{std::to_string(block.id[static_cast<std::size_t>(e)])};
-      for (Eigen::Index c = 0; c < block.force.cols(); ++c) row.push_back(fmt::format("{:.6e}", block.force(e, c)));
-      row.push_back(fmt::format("{:.6e}", block.strain_energy[e]));
-      table.rows.push_back(std::move(row));
-    }
-    return table.to_text();
+/// Every element, a row each.
+std::string format_all(const std::string& title, const std::vector<int>& id, const std::vector<std::string>& names,
+                       const Eigen::MatrixXd& values) {
+  Table table{{title}, {}};
+  table.headings.insert(table.headings.end(), names.begin(), names.end());
+  for (Eigen::Index e = 0; e < values.rows(); ++e) {
+    std::vector<std::string> row{std::to_string(id[static_cast<std::size_t>(e)])};
+    for (Eigen::Index c = 0; c < values.cols(); ++c) row.push_back(fmt::format("{:.6e}", values(e, c)));
+    table.rows.push_back(std::move(row));
   }
-  // One row per component: those of several points (Nx@1, Nx@2, ...) share the row of their name.
-  Table table{{block.card, "smallest", "element", "largest", "element"}, {}};
-  const auto add = [&](const std::string& name, const Eigen::Ref<const Eigen::MatrixXd>& values) {
-    Eigen::Index low = 0, high = 0, column = 0;
-    const double least = values.minCoeff(&low, &column), most = values.maxCoeff(&high, &column);
-    table.rows.push_back({name, fmt::format("{:.6e}", least), std::to_string(block.id[static_cast<std::size_t>(low)]),
-                          fmt::format("{:.6e}", most), std::to_string(block.id[static_cast<std::size_t>(high)])});
-  };
+  return table.to_text();
+}
+
+/// One row per component: those of several points (Nx@1, Nx@2, ...) share the row of their name.
+std::string format_extremes(const std::string& title, const std::vector<int>& id, const std::vector<std::string>& names,
+                            const Eigen::MatrixXd& values) {
+  Table table{{title, "smallest", "element", "largest", "element"}, {}};
   std::vector<std::pair<std::string, std::vector<Eigen::Index>>> groups;
-  for (std::size_t c = 0; c < block.components.size(); ++c) {
-    const std::string name = block.components[c].substr(0, block.components[c].find('@'));
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const std::string name = names[c].substr(0, names[c].find('@'));
     const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == name; });
     auto& columns = same == groups.end() ? groups.emplace_back(name, std::vector<Eigen::Index>{}).second : same->second;
     columns.push_back(static_cast<Eigen::Index>(c));
   }
-  for (const auto& [name, columns] : groups) add(name, block.force(Eigen::all, columns));
-  add("strain energy", block.strain_energy);
+  for (const auto& [name, columns] : groups) {
+    const Eigen::MatrixXd part = values(Eigen::all, columns);
+    Eigen::Index low = 0, high = 0, column = 0;
+    const double least = part.minCoeff(&low, &column), most = part.maxCoeff(&high, &column);
+    table.rows.push_back({name, fmt::format("{:.6e}", least), std::to_string(id[static_cast<std::size_t>(low)]),
+                          fmt::format("{:.6e}", most), std::to_string(id[static_cast<std::size_t>(high)])});
+  }
   return table.to_text();
+}
+
+std::string format_elements(const records::ElementForces& block, bool full) {
+  Eigen::MatrixXd values(block.force.rows(), block.force.cols() + 1);
+  values << block.force, block.strain_energy;
+  auto names = block.components;
+  names.emplace_back("strain energy");
+  return full ? format_all(block.card, block.id, names, values) : format_extremes(block.card, block.id, names, values);
+}
+
+std::string format_stresses(const records::ElementStresses& block, bool full) {
+  const std::string title = block.card + " stress";
+  return full ? format_all(title, block.id, block.components, block.stress)
+              : format_extremes(title, block.id, block.components, block.stress);
+}
+
+/// Grid by grid, with the sum.
+std::string format_grid_forces(const std::vector<records::GridForce>& forces) {
+  if (forces.empty()) return {};
+  Table table{{"grid", "source", "x", "y", "z", "rx", "ry", "rz"}, {}};
+  Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
+  const auto add = [&](int node, const std::string& source, const Eigen::Matrix<double, 6, 1>& f) {
+    std::vector<std::string> row{std::to_string(node), source};
+    for (int c = 0; c < 6; ++c) row.push_back(fmt::format("{:.6e}", f[c] + 0.0));
+    table.rows.push_back(std::move(row));
+  };
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const auto& f = forces[i];
+    add(f.node, f.element > 0 ? fmt::format("{} {}", f.source, f.element) : f.source, f.force);
+    sum += f.force;
+    if (i + 1 < forces.size() && forces[i + 1].node == f.node) continue;
+    add(f.node, "sum", sum);
+    sum.setZero();
+  }
+  return "forces on grids\n" + table.to_text() + "\n";
 }
 
 nlohmann::json list_maxima(const std::vector<Extreme>& maxima) {
   auto list = nlohmann::json::array();
   for (std::size_t c = 0; c < maxima.size(); ++c)
     list.push_back({{"component", kComponents[c]}, {"value", maxima[c].value}, {"grid", maxima[c].id}});
+  return list;
+}
+
+/// The largest magnitude of each component over the elements.
+nlohmann::json list_stress_maxima(const records::ElementStresses& block) {
+  auto list = nlohmann::json::array();
+  for (std::size_t c = 0; c < block.components.size(); ++c) {
+    Eigen::Index e = 0;
+    const auto column = block.stress.col(static_cast<Eigen::Index>(c));
+    column.cwiseAbs().maxCoeff(&e);
+    list.push_back(
+        {{"component", block.components[c]}, {"value", column[e]}, {"element", block.id[static_cast<std::size_t>(e)]}});
+  }
   return list;
 }
 
@@ -137,7 +186,8 @@ std::string format_static(const records::StaticResult& result, const records::St
     text += format_vector("reaction", result.dof_map, s.reaction) + "\n";
   }
   for (const auto& block : s.elements) text += format_elements(block, full) + "\n";
-  return text;
+  for (const auto& block : s.stresses) text += format_stresses(block, full) + "\n";
+  return text + format_grid_forces(s.grid_forces);
 }
 
 nlohmann::json to_json(const records::StaticResult& result, const records::StaticSubcase& s, bool full) {
@@ -162,6 +212,10 @@ nlohmann::json to_json(const records::StaticResult& result, const records::Stati
                                {"acceleration", row.acceleration}});
   if (!s.support.empty()) json["support_epsilon"] = s.support_epsilon;
   if (s.inertia.size() > 0) json["resultants"]["inertia"] = to_json_list(s.inertia_resultant);
+  for (const auto& f : s.grid_forces)
+    json["grid_forces"].push_back(
+        {{"grid", f.node}, {"source", f.source}, {"element", f.element}, {"force", to_json_list(f.force)}});
+  for (const auto& block : s.stresses) json["max_stress"][block.card] = list_stress_maxima(block);
   if (!full) return json;
   if (s.inertia.size() > 0) json["inertia"] = to_json_list(s.inertia);
   json["dof_map"] = nlohmann::json::array();
@@ -176,6 +230,9 @@ nlohmann::json to_json(const records::StaticResult& result, const records::Stati
                                     {"components", block.components},
                                     {"force", to_json(block.force)},
                                     {"strain_energy", to_json_list(block.strain_energy)}};
+  for (const auto& block : s.stresses)
+    json["stresses"][block.card] = {
+        {"id", block.id}, {"components", block.components}, {"stress", to_json(block.stress)}};
   return json;
 }
 

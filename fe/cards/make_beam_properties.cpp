@@ -1,6 +1,7 @@
 #include "fe/cards/make_beam_properties.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 
 #include "fe/sections/section_library.hpp"
@@ -23,6 +24,15 @@ void simplify(BeamProperty* property) {
   auto& stations = property->stations;
   if (std::all_of(stations.begin(), stations.end(), [&](const auto& s) { return is_same(s, stations.front()); }))
     stations.resize(1);
+}
+
+/// C to F as the deck has them; none where all are zero.
+void set_points(const std::array<Eigen::Vector2d, 4>& a, const std::array<Eigen::Vector2d, 4>& b,
+                BeamProperty& property) {
+  const auto is_zero = [](const Eigen::Vector2d& p) { return p.isZero(0); };
+  if (std::all_of(a.begin(), a.end(), is_zero) && std::all_of(b.begin(), b.end(), is_zero)) return;
+  property.points_a.assign(a.begin(), a.end());
+  property.points_b.assign(b.begin(), b.end());
 }
 
 /// NASTRAN BARMASS = n, n > 0 (Quick Reference Guide, nastran command: system cells).
@@ -82,6 +92,7 @@ std::shared_ptr<BeamProperty> BeamProperties::make(const records::Pbar& card) {
   BeamSection s;
   s.A = card.A, s.I1 = card.I1, s.I2 = card.I2, s.I12 = card.I12, s.J = card.J, s.nsm = card.nsm;
   property->stations = {s};
+  set_points(card.recovery, card.recovery, *property);
   property->k1 = card.k1.value_or(0);
   property->k2 = card.k2.value_or(0);
   if (card.I12 != 0 && (property->k1 != 0 || property->k2 != 0)) {
@@ -108,6 +119,7 @@ std::shared_ptr<BeamProperty> BeamProperties::make(const records::Pbarl& card) {
   BeamSection s;
   s.A = section->A, s.I1 = section->I1, s.I2 = section->I2, s.I12 = section->I12, s.J = section->J, s.nsm = card.nsm;
   property->stations = {s};
+  property->points_a = property->points_b = section->points;
   property->material = make_isotropic(*material);
   // As for a PBAR, I12 rules the shear factors out. The bar's axis is its centroid: n stays zero.
   property->k1 = s.I12 == 0 ? section->k1 : 0;
@@ -131,6 +143,7 @@ std::shared_ptr<BeamProperty> BeamProperties::make(const records::Pbeam& card) {
     s.m = (1 - t) * m_a + t * m_b;
     property->stations.push_back(s);
   }
+  set_points(card.stations.front().recovery, card.stations.back().recovery, *property);
   property->k1 = card.k1.value_or(1);
   property->k2 = card.k2.value_or(1);
   property->has_section_inertia = true;
@@ -167,10 +180,15 @@ std::shared_ptr<BeamProperty> BeamProperties::make(const records::Pbeaml& card) 
     s.A = section->A, s.I1 = section->I1, s.I2 = section->I2, s.I12 = section->I12, s.J = section->J;
     s.nsm = station.nsm;
     s.n = s.m = section->n;
+    auto& points = property->stations.empty() ? property->points_a : property->points_b;
+    points = section->points;
+    for (auto& point : points) point += s.n;
     property->stations.push_back(s);
     if (property->stations.size() == 1) property->k1 = section->k1, property->k2 = section->k2;
   }
   if (!material || !ok || !check(*property, who, card.at)) return nullptr;
+  if (property->stations.size() == 1) property->points_b = property->points_a;
+  if (property->points_a.size() != property->points_b.size()) property->points_a.clear(), property->points_b.clear();
   property->material = make_isotropic(*material);
   simplify(property.get());
   return property;

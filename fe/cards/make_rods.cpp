@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -33,9 +34,9 @@ bool check_section(Maker& maker, const std::string& who, double A, double J, dou
   return false;
 }
 
-RodProperty make_property(const records::Mat1& material, double A, double J, double nsm) {
+RodProperty make_property(const records::Mat1& material, double A, double J, double c, double nsm) {
   const double mass = material.rho * A + nsm;
-  return {material.E * A, material.G * J, mass, mass, material.alpha, material.tref, material.ge};
+  return {material.E * A, material.G * J, mass, mass, material.alpha, material.tref, material.ge, A, J > 0 ? c / J : 0};
 }
 
 /// Hollow or solid circular tube, diameter linear from od to od2, constant wall t (t = 0: solid). Axial and torsional
@@ -56,13 +57,16 @@ RodProperty make_tube(const records::Mat1& material, const records::Ptube& tube)
     per_A += g.weight / area(od);
     per_J += g.weight / polar(od);
   }
+  const double least = std::min(tube.od, od2);
   return {material.E / per_A,
           material.G / per_J,
           material.rho * area(tube.od) + tube.nsm,
           material.rho * area(od2) + tube.nsm,
           material.alpha,
           material.tref,
-          material.ge};
+          material.ge,
+          area(least),
+          least / 2 / polar(least)};
 }
 
 }  // namespace
@@ -81,7 +85,8 @@ void make_rods(Maker& maker) {
         const std::string name = "PROD " + std::to_string(p->id);
         const records::Mat1* material = maker.find_material(p->mid, name, p->at);
         const bool ok = check_section(maker, name, p->A, p->J, p->nsm, p->at);
-        made[card.pid] = material && ok ? std::optional(make_property(*material, p->A, p->J, p->nsm)) : std::nullopt;
+        made[card.pid] =
+            material && ok ? std::optional(make_property(*material, p->A, p->J, p->c, p->nsm)) : std::nullopt;
       }
     }
     const auto it = made.find(card.pid);
@@ -93,7 +98,7 @@ void make_rods(Maker& maker) {
     const records::Mat1* material = maker.find_material(card.mid, who, card.at);
     const bool ok = check_section(maker, who, card.A, card.J, card.nsm, card.at);
     RodProperty property;
-    if (material && ok) property = make_property(*material, card.A, card.J, card.nsm);
+    if (material && ok) property = make_property(*material, card.A, card.J, card.c, card.nsm);
     make_rod(maker, "CONROD", card.id, card.ga, card.gb, card.at, material && ok ? &property : nullptr);
   }
   made.clear();

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fe/sections/shell_stress.hpp"
 #include "formats/records/params.hpp"
 
 namespace bough::fe {
@@ -156,6 +157,12 @@ std::optional<ShellSection> ShellSections::make_pshell(const records::Pshell& p,
   s.rotary_inertia = rho * t * t * t / 12;
   if (!ok) return std::nullopt;
   set_expansion(membrane, bending, s);
+  auto stress = std::make_shared<ShellStress>();
+  if (p.mid1 > 0) stress->t = t;
+  if (p.mid2 > 0) stress->inertia = p.bending_ratio * t * t * t / 12;
+  stress->z1 = p.z1.value_or(-0.5 * t);
+  stress->z2 = p.z2.value_or(0.5 * t);
+  s.stress = std::move(stress);
   return s;
 }
 
@@ -196,6 +203,48 @@ void ShellSections::stack_smeared(const records::Pcomp& p, std::vector<LaminateL
   }
 }
 
+/// Of LAM = SMEAR as of a PSHELL; of SMCORE its three layers, which have no limits of their own.
+void ShellSections::set_stress(const records::Pcomp& p, const std::vector<LaminateLayer>& layers, double z0,
+                               ShellSection& section) const {
+  static const std::map<std::string, FailureTheory> theories{{"HILL", FailureTheory::Hill},
+                                                             {"HOFF", FailureTheory::Hoffman},
+                                                             {"TSAI", FailureTheory::TsaiWu},
+                                                             {"STRN", FailureTheory::Strain}};
+  auto stress = std::make_shared<ShellStress>();
+  double thickness = 0;
+  for (const auto& layer : layers) thickness += layer.thickness;
+  if (p.layup == records::Layup::Smeared) {
+    stress->t = thickness;
+    stress->inertia = thickness * thickness * thickness / 12;
+    stress->z1 = -0.5 * thickness;
+    stress->z2 = 0.5 * thickness;
+    section.stress = std::move(stress);
+    return;
+  }
+  double z = z0;
+  const auto theory = theories.find(p.failure);
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    auto& layer = stress->layers.emplace_back();
+    layer.z = z + 0.5 * layers[k].thickness;
+    z += layers[k].thickness;
+    const bool is_ply = p.layup == records::Layup::Stacked;
+    layer.angle = is_ply ? p.plies[k].theta_deg * kDegree : 0;
+    const PlaneMaterial own = rotate_material(layers[k].material, -layer.angle);
+    layer.Q = own.Q;
+    layer.alpha = own.alpha;
+    if (!is_ply || theory == theories.end()) continue;
+    layer.theory = theory->second;
+    if (const auto* m = mat8_.find(p.plies[k].mid)) {
+      layer.strength = m->strength;
+    } else if (const auto* i = mat1_.find(p.plies[k].mid)) {
+      layer.strength.Xt = layer.strength.Yt = i->st;
+      layer.strength.Xc = layer.strength.Yc = std::abs(i->sc);
+      layer.strength.S = i->ss;
+    }
+  }
+  section.stress = std::move(stress);
+}
+
 std::optional<ShellSection> ShellSections::make_pcomp(const records::Pcomp& p) {
   const std::string name = "PCOMP " + std::to_string(p.id);
   std::vector<LaminateLayer> layers;
@@ -212,6 +261,7 @@ std::optional<ShellSection> ShellSections::make_pcomp(const records::Pcomp& p) {
   double z0 = p.z0;
   stack_smeared(p, layers, z0);
   ShellSection s = make_laminate_section(layers, z0);
+  set_stress(p, layers, z0, s);
   s.mass += p.nsm;
   s.ge = p.ge;
   auto expansion = make_laminate_expansion(layers, z0);

@@ -33,6 +33,9 @@ class ShellSections {
   /// Of A, B, D with the expansions of MID1 and MID2.
   void set_expansion(const PlaneMaterial& membrane, const PlaneMaterial& bending, ShellSection& section) const;
   std::optional<ShellSection> make_pcomp(const records::Pcomp& p);
+  /// The plies, or the layers that stand for them, as stresses are given of them.
+  void set_stress(const records::Pcomp& p, const std::vector<LaminateLayer>& layers, double z0,
+                  ShellSection& section) const;
   /// The layers of LAM = SMEAR and SMCORE.
   void stack_smeared(const records::Pcomp& p, std::vector<LaminateLayer>& layers, double& z0);
 

@@ -53,6 +53,9 @@ class Beam final : public Element {
   int num_internal_forces() const override { return 8; }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
   std::vector<std::string> internal_force_names() const override;
+  /// At the points of the property (C_a, D_a, ... at end A, C_b, ... at end B): of axial force and bending.
+  std::vector<StressPoint> stress_points() const override;
+  MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
 

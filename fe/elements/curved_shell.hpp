@@ -56,6 +56,11 @@ class CurvedShell final : public Element {
   std::vector<std::string> internal_force_names() const override;
   std::vector<std::string> printed_force_names() const override;
   VectorXd calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const override;
+  /// Of the section, from the mean of N and M over the element: top and bottom in the axes of the points, or every ply
+  /// in its own.
+  std::vector<StressPoint> stress_points() const override;
+  MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
+  VectorXd calc_initial_stresses(const ElementTemperature& T) const override;
   /// Second order of e, κ, γ (sampled and interpolated as they are) with d_i = exp(θ_i) V_i, and of the drilling.
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;

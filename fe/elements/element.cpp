@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "fe/elements/geometric_projection.hpp"
+#include "fe/sections/stress.hpp"
 
 namespace bough::fe {
 
@@ -20,6 +21,9 @@ VectorXd Element::calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const
   calc_internal_forces(u, force);
   return force;
 }
+std::vector<StressPoint> Element::stress_points() const { return {}; }
+MatrixXd Element::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const { return MatrixXd(0, forces.cols()); }
+VectorXd Element::calc_initial_stresses(const ElementTemperature&) const { return {}; }
 double Element::add_thermal(const ElementTemperature&, Eigen::Ref<VectorXd>, Eigen::Ref<VectorXd>) const { return 0; }
 void Element::add_geometric_stiffness(const Eigen::Ref<const VectorXd>&, double, Eigen::Ref<MatrixXd>) const {}
 

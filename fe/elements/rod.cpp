@@ -4,6 +4,7 @@
 
 #include "base/rotation.hpp"
 #include "fe/elements/temperature.hpp"
+#include "fe/sections/stress.hpp"
 
 namespace bough::fe {
 namespace {
@@ -46,6 +47,21 @@ void Rod::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const {
 void Rod::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
   force[0] = property_.EA / length_ * axis_.dot(u.segment<3>(6) - u.segment<3>(0));
   force[1] = property_.GJ / length_ * axis_.dot(u.segment<3>(9) - u.segment<3>(3));
+}
+
+std::vector<StressPoint> Rod::stress_points() const {
+  if (!(property_.area > 0)) return {};
+  StressPoint point;
+  point.kind = StressKind::Rod;
+  return {point};
+}
+
+MatrixXd Rod::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
+  if (!(property_.area > 0)) return MatrixXd(0, forces.cols());
+  MatrixXd stress(2, forces.cols());
+  stress.row(0) = forces.row(0) / property_.area;
+  stress.row(1) = forces.row(1) * property_.torsion;
+  return stress;
 }
 
 double Rod::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const {

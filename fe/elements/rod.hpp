@@ -12,6 +12,8 @@ struct RodProperty {
   double alpha = 0;               ///< thermal expansion
   std::optional<double> tref;     ///< from there on; empty: TEMPERATURE(INITIAL)
   double ge = 0;                  ///< structural damping
+  double area = 0;                ///< the smallest, for stresses; 0: none
+  double torsion = 0;             ///< largest shear stress per torque (C/J); 0: none
 };
 
 /// Rod between two grids. Mass: translations only; consistent is Nastran's: along the axis the mean of lumped and
@@ -28,6 +30,8 @@ class Rod final : public Element {
   int num_internal_forces() const override { return 2; }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
   std::vector<std::string> internal_force_names() const override { return {"axial", "torque"}; }
+  std::vector<StressPoint> stress_points() const override;
+  MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
   bool has_expansion() const override { return property_.alpha != 0; }

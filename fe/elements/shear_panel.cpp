@@ -1,5 +1,6 @@
 #include "fe/elements/shear_panel.hpp"
 
+#include "fe/sections/stress.hpp"
 #include "fe/shape/gauss.hpp"
 
 namespace bough::fe {
@@ -133,6 +134,19 @@ void ShearPanel::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen
 
 std::vector<std::string> ShearPanel::internal_force_names() const {
   return {"q12", "q23", "q34", "q41", "N12", "N23", "N34", "N41"};
+}
+
+std::vector<StressPoint> ShearPanel::stress_points() const {
+  std::vector<StressPoint> points;
+  for (const char* side : {"12", "23", "34", "41"}) {
+    points.emplace_back().name = side;
+    points.back().kind = StressKind::Shear;
+  }
+  return points;
+}
+
+MatrixXd ShearPanel::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
+  return forces.topRows(4) / property_.t;
 }
 
 void ShearPanel::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,

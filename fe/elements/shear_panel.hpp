@@ -42,6 +42,9 @@ class ShearPanel final : public Element {
   int num_internal_forces() const override { return 8; }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
   std::vector<std::string> internal_force_names() const override;
+  /// Shear flow over thickness along each side.
+  std::vector<StressPoint> stress_points() const override;
+  MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
   /// ∫ N_ab u,a·u,b of the panel's stress field with the shapes w_i N_i / w, which hold x; rods N/L across.
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;

@@ -47,6 +47,10 @@ class Shell final : public Element {
   std::vector<std::string> internal_force_names() const override;
   std::vector<std::string> printed_force_names() const override;
   VectorXd calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const override;
+  /// Of the section, from the mean of N and M over the element: top and bottom in its axes, or every ply in its own.
+  std::vector<StressPoint> stress_points() const override;
+  MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
+  VectorXd calc_initial_stresses(const ElementTemperature& T) const override;
   /// Second order of the element's strains under N, M, Q, of its drilling and of its rigid arms
   /// (docs/elements/shell.md).
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,

@@ -6,6 +6,7 @@
 #include "fe/elements/geometric_projection.hpp"
 #include "fe/elements/temperature.hpp"
 #include "fe/linear/blas.hpp"
+#include "fe/sections/stress.hpp"
 
 namespace bough::fe {
 
@@ -201,6 +202,23 @@ std::vector<std::string> Solid::internal_force_names() const {
     for (const char* c : {"sxx", "syy", "szz", "sxy", "syz", "szx"})
       names.push_back(c + std::string("@") + std::to_string(q));
   return names;
+}
+
+std::vector<StressPoint> Solid::stress_points() const {
+  StressPoint point;
+  point.kind = StressKind::Solid;
+  return {point};
+}
+
+MatrixXd Solid::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
+  MatrixXd mean = MatrixXd::Zero(6, forces.cols());
+  double volume = 0;
+  const auto fields = calc_fields(false);
+  for (std::size_t q = 0; q < fields.size(); ++q) {
+    mean += fields[q].weight * forces.middleRows<6>(6 * static_cast<int>(q));
+    volume += fields[q].weight;
+  }
+  return mean / volume;
 }
 
 void Solid::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,

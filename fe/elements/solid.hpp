@@ -60,6 +60,9 @@ class Solid final : public Element {
   int num_internal_forces() const override { return 6 * num_points_; }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
   std::vector<std::string> internal_force_names() const override;
+  /// The mean of the stresses over the volume, in basic axes: that at the centre where they are linear.
+  std::vector<StressPoint> stress_points() const override;
+  MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
   void add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,

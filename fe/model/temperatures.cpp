@@ -95,7 +95,8 @@ InitialForces calc_thermal(const Model& model, const records::Deck& deck, int se
       continue;
     }
     if (T_0) T->initial = &*T_0;
-    InitialForces::Part part{VectorXd::Zero(element->num_internal_forces()), VectorXd::Zero(element->num_dofs()), 0};
+    InitialForces::Part part{VectorXd::Zero(element->num_internal_forces()), VectorXd::Zero(element->num_dofs()), 0,
+                             element->calc_initial_stresses(*T)};
     part.energy = element->add_thermal(*T, part.load, part.force);
     result.of.emplace(element.get(), std::move(part));
   }

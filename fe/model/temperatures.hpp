@@ -13,6 +13,7 @@ struct InitialForces {
     VectorXd force;  ///< internal forces
     VectorXd load;   ///< at the nodes, among those of the static load
     double energy = 0;
+    VectorXd stress;  ///< beside those of `force`: Element::calc_initial_stresses
   };
   std::unordered_map<const Element*, Part> of;  ///< all elements, on every rank
 

@@ -26,6 +26,9 @@ struct BeamProperty {
   bool has_section_inertia = false;    ///< mass carries the inertia of the section (CBEAM), not CBAR
   bool has_torsional_inertia = false;  ///< CBAR with NASTRAN BARMASS: ρ (I1 + I2) about the axis
 
+  /// Where stresses are given at ends A and B, (y, z) from the shear centre, as many at both; empty: on the axis.
+  std::vector<Eigen::Vector2d> points_a, points_b;
+
   bool is_uniform() const { return stations.size() == 1; }
   /// Linear between stations (as PBEAM defines it).
   BeamSection calc_section(double x_over_L) const;

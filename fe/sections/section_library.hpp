@@ -15,6 +15,9 @@ struct LibrarySection {
   double A = 0, I1 = 0, I2 = 0, I12 = 0, J = 0;
   double k1 = 0, k2 = 0;
   Eigen::Vector2d n = Eigen::Vector2d::Zero();
+  /// Where stresses are given, from the centroid: the corners of the convex hull, where bending is largest; of round
+  /// sections the ends of both axes.
+  std::vector<Eigen::Vector2d> points;
 };
 
 /// Every shape name known, sorted.

@@ -31,6 +31,44 @@ double calc_rectangle_torsion(double p, double q) {
   return a * b * b * b * (16.0 / 3 - 3.36 * b / a * (1 - std::pow(b / a, 4) / 12));
 }
 
+/// Corners of the convex hull of rectangles, counterclockwise from the one farthest up and to the right (Andrew's
+/// monotone chain).
+std::vector<Vector2d> list_hull(const std::vector<Rectangle>& rectangles) {
+  std::vector<Vector2d> all;
+  for (const Rectangle& r : rectangles)
+    for (const double x : {r.x0, r.x1})
+      for (const double y : {r.y0, r.y1}) all.emplace_back(x, y);
+  std::sort(all.begin(), all.end(),
+            [](const Vector2d& a, const Vector2d& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
+  double size = 0;
+  for (const auto& p : all) size = std::max(size, p.cwiseAbs().maxCoeff());
+  const auto chain = [&](auto begin, auto end) {
+    std::vector<Vector2d> hull;
+    for (auto it = begin; it != end; ++it) {
+      const auto turns_left = [&] {
+        const Vector2d u = hull.back() - hull[hull.size() - 2], v = *it - hull.back();
+        return u.x() * v.y() - u.y() * v.x() > 1e-12 * size * size;
+      };
+      while (hull.size() > 1 && !turns_left()) hull.pop_back();
+      if (hull.empty() || (*it - hull.back()).norm() > 1e-9 * size) hull.push_back(*it);
+    }
+    return hull;
+  };
+  std::vector<Vector2d> hull = chain(all.begin(), all.end()), upper = chain(all.rbegin(), all.rend());
+  hull.pop_back();
+  upper.pop_back();
+  hull.insert(hull.end(), upper.begin(), upper.end());
+  const auto farthest = std::max_element(
+      hull.begin(), hull.end(), [](const Vector2d& a, const Vector2d& b) { return a.x() + a.y() < b.x() + b.y(); });
+  std::rotate(hull.begin(), farthest, hull.end());
+  return hull;
+}
+
+/// Figure axes (x to the right, y up) to element axes.
+Vector2d turn(double x, double y) { return {y, -x}; }
+
+std::vector<Vector2d> list_round(double radius) { return {{radius, 0}, {0, radius}, {-radius, 0}, {0, -radius}}; }
+
 LibrarySection calc_from_outline(const Outline& outline) {
   LibrarySection s;
   double sx = 0, sy = 0;
@@ -49,6 +87,7 @@ LibrarySection calc_from_outline(const Outline& outline) {
     s.I12 -= area * x * y;  // z points to the left in the figures
   }
   if (std::abs(s.I12) < 1e-14 * (s.I1 + s.I2)) s.I12 = 0;
+  for (const Vector2d& p : list_hull(outline.rectangles)) s.points.push_back(turn(p.x() - cx, p.y() - cy));
   std::vector<Wall> walls;
   for (const Wall& w : outline.walls) walls.push_back({{w.a[1], -w.a[0]}, {w.b[1], -w.b[0]}, w.t});
   const ThinWallResult thin = calc_thin_wall(walls);
@@ -70,6 +109,7 @@ LibrarySection calc_rod(const Dims& d) {
   s.I1 = s.I2 = kPi * std::pow(d[0], 4) / 4;
   s.J = 2 * s.I1;
   s.k1 = s.k2 = 0.9;
+  s.points = list_round(d[0]);
   return s;
 }
 
@@ -79,6 +119,7 @@ LibrarySection calc_annulus(double outer, double inner) {
   s.I1 = s.I2 = kPi / 4 * (std::pow(outer, 4) - std::pow(inner, 4));
   s.J = 2 * s.I1;
   s.k1 = s.k2 = inner > 0 ? 0.5 : 0.9;
+  s.points = list_round(outer);
   return s;
 }
 
@@ -89,6 +130,8 @@ LibrarySection calc_bar(const Dims& d) {
   s.I2 = d[1] * std::pow(d[0], 3) / 12;
   s.J = calc_rectangle_torsion(d[0], d[1]);
   s.k1 = s.k2 = 5.0 / 6;
+  const double x = d[0] / 2, y = d[1] / 2;
+  s.points = {turn(x, y), turn(-x, y), turn(-x, -y), turn(x, -y)};
   return s;
 }
 
@@ -101,6 +144,8 @@ LibrarySection calc_hexa(const Dims& d) {
   s.I2 = h * std::pow(w, 3) / 12 + 2 * (h * std::pow(e, 3) / 36 + h * e / 2 * x * x);
   s.J = std::pow(s.A, 4) / (40 * (s.I1 + s.I2));
   s.k1 = s.k2 = 5.0 / 6;
+  const double a = w / 2, b = d[1] / 2, y = h / 2;
+  s.points = {turn(a, y), turn(-a, y), turn(-b, 0), turn(-a, -y), turn(a, -y), turn(b, 0)};
   return s;
 }
 

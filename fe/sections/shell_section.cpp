@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "fe/sections/shell_stress.hpp"
+
 namespace bough::fe {
 
 ShellSection rotate_section(const ShellSection& section, double angle) {
@@ -20,6 +22,11 @@ ShellSection rotate_section(const ShellSection& section, double angle) {
     auto e = std::make_shared<ShellExpansion>(*section.expansion);
     for (auto* v : {&e->N_t, &e->M_t, &e->N_g, &e->M_g}) *v = (t.transpose() * *v).eval();
     turned.expansion = std::move(e);
+  }
+  if (section.stress && !section.stress->layers.empty()) {
+    auto turned_stress = std::make_shared<ShellStress>(*section.stress);
+    for (auto& layer : turned_stress->layers) layer.angle += angle;
+    turned.stress = std::move(turned_stress);
   }
   return turned;
 }

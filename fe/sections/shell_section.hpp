@@ -8,6 +8,8 @@
 
 namespace bough::fe {
 
+struct ShellStress;
+
 /// [N; M] = [A B; B D] [ε; κ], Q = S γ, in the element's x-y axes about its reference surface. Voigt order xx, yy, xy.
 /// (Jones, "Mechanics of composite materials", 2nd ed., eqs. 4.22-4.23.)
 struct ShellSection {
@@ -22,6 +24,7 @@ struct ShellSection {
   double drilling = 0;                              ///< stiffness per area against θz - ½(v,x - u,y): 1e-6 K6ROT G t
   double ge = 0;                                    ///< structural damping, of MID1 (MID2 without it) or of the PCOMP
   std::shared_ptr<const ShellExpansion> expansion;  ///< empty: no temperatures in the deck, or no expansion
+  std::shared_ptr<const ShellStress> stress;        ///< where its stresses are given; empty: nowhere
 };
 
 /// The same section seen from axes turned by `angle` (radians) about z from its own: the element's x-axis lies at

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "fe/matrices/system.hpp"
+#include "fe/statics/element_results.hpp"
 #include "fe/statics/preload.hpp"
 
 namespace bough::fe {
@@ -41,6 +42,8 @@ records::StaticSubcase CaseSolver::solve(const records::Subcase& subcase, Diagno
   solved.spc_set = subcase.spc;
   solved.mpc_set = subcase.mpc;
   solved.elements = calc_element_forces(*model_, solved.displacement, deck_, subcase.load, own, load.initial);
+  solved.stresses = calc_element_stresses(*model_, solved.displacement, deck_, subcase.load, load.initial);
+  if (grids_) solved.grid_forces = calc_grid_forces(*model_, solved, load.initial, *grids_);
   for (const auto& item : own.items()) diagnostics.add(item);
   return solved;
 }

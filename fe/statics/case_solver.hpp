@@ -16,6 +16,8 @@ std::vector<records::Subcase> choose_static_subcases(const records::Deck& deck, 
 class CaseSolver {
  public:
   CaseSolver(const records::Deck& deck, ModelOptions options);
+  /// The forces on these grids are listed one by one; empty: on all.
+  void ask_grid_forces(std::vector<int> grids) { grids_ = std::move(grids); }
 
   /// Throws what is wrong with this subcase alone.
   records::StaticSubcase solve(const records::Subcase& subcase, Diagnostics& diagnostics);
@@ -26,6 +28,7 @@ class CaseSolver {
 
   const records::Deck& deck_;
   ModelOptions options_;
+  std::optional<std::vector<int>> grids_;
   std::optional<std::array<int, 5>> held_;  ///< SPC, MPC, SUPORT1, preload, TEMPERATURE(INITIAL) of what is kept
   std::exception_ptr failure_;              ///< what came of them
   std::optional<Model> model_;

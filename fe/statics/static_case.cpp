@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 
+#include "fe/cards/element_properties.hpp"
 #include "fe/elements/beam.hpp"
 #include "fe/loads/load_sets.hpp"
 
@@ -169,6 +170,7 @@ std::vector<records::ElementForces> calc_element_forces(const Model& model, cons
     if (count > 0) groups[{elements[e]->card(), count}].push_back(static_cast<int>(e));
   }
   const auto [begin, end] = calc_element_range(model);
+  const auto properties = list_element_properties(deck);
   std::vector<records::ElementForces> result;
   for (const auto& [key, members] : groups) {
     records::ElementForces block;
@@ -182,6 +184,8 @@ std::vector<records::ElementForces> calc_element_forces(const Model& model, cons
       const int e = members[static_cast<std::size_t>(r)];
       const Element& element = *elements[static_cast<std::size_t>(e)];
       block.id.push_back(element.id());
+      const auto property = properties.find(element.id());
+      block.property.push_back(property == properties.end() ? 0 : property->second);
       if (e < begin || e >= end) continue;
       VectorXd u(element.num_dofs());
       for (int i = 0; i < u.size(); ++i) u[i] = u_g[element.gdofs()[static_cast<std::size_t>(i)]];

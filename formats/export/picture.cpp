@@ -128,6 +128,38 @@ BodyMesh choose_mesh(const BodyMesh& mesh, const std::vector<int>& ids, const Ma
   return cut_mesh(nodes, all);
 }
 
+/// Shares of the whole, an array a mode.
+void add_energies(const std::vector<std::string>& names, const records::ModeEnergies& energies, Picture& picture) {
+  const auto add = [&](const std::string& name, const Eigen::VectorXd& part, double whole) {
+    auto& array = picture.cells.emplace_back();
+    array.name = name;
+    for (std::size_t e = 0; e < energies.id.size(); ++e)
+      array.by_element[energies.id[e]] = whole > 0 ? part[static_cast<Eigen::Index>(e)] / whole : 0;
+  };
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    add(names[j] + "_strain_energy", energies.strain.col(column), energies.total_strain[column]);
+    add(names[j] + "_kinetic_energy", energies.kinetic.col(column), energies.total_kinetic[column]);
+  }
+}
+
+void add_stresses(const std::string& stem, const records::StaticSubcase& subcase, Picture& picture) {
+  auto& energy = picture.cells.emplace_back();
+  energy.name = stem + "_strain_energy";
+  for (const auto& block : subcase.elements)
+    for (std::size_t e = 0; e < block.id.size(); ++e)
+      energy.by_element[block.id[e]] = block.strain_energy[static_cast<Eigen::Index>(e)];
+  for (const std::string name : {"von_mises", "failure", "max", "min"}) {
+    CellArray array;
+    array.name = stem + "_" + name;
+    for (const auto& block : subcase.stresses)
+      for (std::size_t c = 0; c < block.components.size(); ++c)
+        for (std::size_t e = 0; block.components[c] == name && e < block.id.size(); ++e)
+          array.by_element[block.id[e]] = block.stress(static_cast<Eigen::Index>(e), static_cast<Eigen::Index>(c));
+    if (!array.by_element.empty()) picture.cells.push_back(std::move(array));
+  }
+}
+
 }  // namespace
 
 Picture make_picture(const records::ModesResult& modes) {
@@ -138,8 +170,10 @@ Picture make_picture(const records::ModesResult& modes) {
   } else {
     names = make_names(modes.frequency_hz);
   }
-  return make_picture(choose_mesh(modes.mesh, modes.node_id, modes.node_xyz), map_shapes(modes.node_id, modes.phi),
-                      names);
+  auto picture =
+      make_picture(choose_mesh(modes.mesh, modes.node_id, modes.node_xyz), map_shapes(modes.node_id, modes.phi), names);
+  if (!modes.energies.empty()) add_energies(names, modes.energies, picture);
+  return picture;
 }
 
 Picture make_picture(const records::FlexBody& body) {
@@ -161,7 +195,13 @@ Picture make_picture(const records::StaticResult& result) {
     std::snprintf(name, sizeof name, "subcase_%03d_displacement", subcase.id);
     names.emplace_back(name);
   }
-  return make_picture(result.mesh, map_shapes(result.dof_map, U), names);
+  auto picture = make_picture(result.mesh, map_shapes(result.dof_map, U), names);
+  for (const auto& subcase : result.subcases) {
+    char stem[40];
+    std::snprintf(stem, sizeof stem, "subcase_%03d", subcase.id);
+    add_stresses(stem, subcase, picture);
+  }
+  return picture;
 }
 
 }  // namespace bough::exports

@@ -146,7 +146,8 @@ class VtuText {
 
 }  // namespace
 
-std::string make_vtu(const records::BodyMesh& mesh, const std::vector<PointArray>& arrays, VtuEncoding encoding) {
+std::string make_vtu(const records::BodyMesh& mesh, const std::vector<PointArray>& arrays, VtuEncoding encoding,
+                     const std::vector<CellArray>& cell_arrays) {
   const auto num_points = static_cast<Eigen::Index>(mesh.grid_id.size());
   BOUGH_DEMAND(mesh.grid_xyz.rows() == num_points);
   const auto cells = collect_cells(mesh);
@@ -171,6 +172,14 @@ std::string make_vtu(const records::BodyMesh& mesh, const std::vector<PointArray
   }
   text.add_line("</PointData>\n<CellData>");
   text.add_array("Int32", "element_id", 1, cells.ids);
+  for (const auto& array : cell_arrays) {
+    std::vector<double> values;
+    for (const auto id : cells.ids) {
+      const auto found = array.by_element.find(id);
+      values.push_back(found == array.by_element.end() ? 0 : found->second);
+    }
+    text.add_array("Float64", array.name, 1, values);
+  }
   text.add_line("</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>");
   return text.take();
 }

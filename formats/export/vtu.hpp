@@ -1,6 +1,7 @@
 #pragma once
 /// \file VTK's XML file of an unstructured grid (.vtu): a mesh with values at its points, for ParaView and meshio.
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "formats/records/flex_body.hpp"
@@ -15,6 +16,12 @@ struct PointArray {
   Eigen::MatrixXd values;
 };
 
+/// Values at the cells, by element id; 0 where an element has none.
+struct CellArray {
+  std::string name;
+  std::unordered_map<int, double> by_element;
+};
+
 enum class VtuEncoding {
   Base64,  ///< inline binary, 8 bytes a number
   Ascii    ///< text that reads back bit for bit
@@ -24,21 +31,25 @@ enum class VtuEncoding {
 struct Picture {
   records::BodyMesh mesh;
   std::vector<PointArray> arrays;
+  std::vector<CellArray> cells;
   int num_missing = 0;
 };
 
-/// The file's text: points in the mesh's frame, point data grid_id and the arrays, cell data element_id. Block types
-/// line2, tri3, quad4, tetra4, penta6, hexa8, vertex, and line3, tri6, quad8, tetra10, penta15, hexa20 with the midside
-/// nodes in Nastran's order. A cell with a node that is no grid (index -1) is left out. Throws InputError
+/// The file's text: points in the mesh's frame, point data grid_id and the arrays, cell data element_id and `cells`.
+/// Block types line2, tri3, quad4, tetra4, penta6, hexa8, vertex, and line3, tri6, quad8, tetra10, penta15, hexa20 with
+/// the midside nodes in Nastran's order. A cell with a node that is no grid (index -1) is left out. Throws InputError
 /// "export.unknown-cell" for another type of block. Layout: VTK User's Guide, "XML File Formats".
-std::string make_vtu(const records::BodyMesh& mesh, const std::vector<PointArray>& arrays, VtuEncoding encoding);
+std::string make_vtu(const records::BodyMesh& mesh, const std::vector<PointArray>& arrays, VtuEncoding encoding,
+                     const std::vector<CellArray>& cells = {});
 
 /// Mode shapes as arrays mode_001_0.463Hz (translations) and mode_001_0.463Hz_rotation, basic frame; for buckling
-/// buckling_001_factor_4.32 and its _rotation.
+/// buckling_001_factor_4.32 and its _rotation. With energies of elements mode_001_0.463Hz_strain_energy and
+/// _kinetic_energy on the cells, as shares of the mode's.
 Picture make_picture(const records::ModesResult& modes);
 /// The same of a body, in its frame B: of all grids when full_phi is there, else of the output nodes only.
 Picture make_picture(const records::FlexBody& body);
-/// Static solutions as arrays subcase_001_displacement and subcase_001_displacement_rotation, basic frame.
+/// Static solutions as arrays subcase_001_displacement and subcase_001_displacement_rotation, basic frame; on the cells
+/// subcase_001_strain_energy, and subcase_001_von_mises, _failure, _max, _min where elements have them.
 Picture make_picture(const records::StaticResult& result);
 
 }  // namespace bough::exports

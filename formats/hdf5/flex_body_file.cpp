@@ -2,6 +2,7 @@
 
 #include "base/version.hpp"
 #include "formats/hdf5/detail/reader.hpp"
+#include "formats/hdf5/detail/recovery.hpp"
 #include "formats/hdf5/detail/writer.hpp"
 #include "formats/hdf5/files.hpp"
 
@@ -250,6 +251,7 @@ void write_flex_body(const FlexBody& body, const std::string& path) {
   }
   write_stiffening(file, body);
   write_preload(file, body);
+  write_recovery(file, body);
   if (body.full_phi.size() > 0) {
     file.write_matrix("/full/phi", body.full_phi,
                       {"mode shapes at every degree of freedom: rows as /dof_map", "L/E, 1/E"});
@@ -300,6 +302,7 @@ FlexBody read_flex_body(const std::string& path) {
   if (has_full) body.full_phi = file.read_matrix("/full/phi", body.dof_map.rows(), n);
   read_stiffening(file, body);
   read_preload(file, body);
+  read_recovery(file, body);
   body.mesh = read_mesh(file);
   file.throw_if_errors();
   return body;

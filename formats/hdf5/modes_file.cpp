@@ -10,6 +10,33 @@ namespace bough::hdf5 {
 namespace {
 constexpr const char* kFormat = "bough-modes";
 using records::ModesResult;
+
+void write_energies(FileWriter& file, const records::ModeEnergies& energies) {
+  if (energies.empty()) return;
+  file.write_integers("/energies/id", energies.id, {"element ids", "1"});
+  file.write_integers("/energies/property", energies.property, {"property ids; 0: none", "1"});
+  file.write_strings("/energies/card", energies.card, {"their cards", "1"});
+  file.write_matrix("/energies/strain", energies.strain,
+                    {"strain energy of each element in each mode, half phi K_e phi: element, mode", "F L/E^2"});
+  file.write_matrix("/energies/kinetic", energies.kinetic,
+                    {"half phi M_e phi, which times omega^2 is the kinetic energy: element, mode", "M L^2/E^2"});
+  file.write_vector("/energies/total_strain", energies.total_strain, {"of the whole stiffness", "F L/E^2"});
+  file.write_vector("/energies/total_kinetic", energies.total_kinetic, {"of the whole mass", "M L^2/E^2"});
+}
+
+records::ModeEnergies read_energies(FileReader& file, long num_modes) {
+  records::ModeEnergies energies;
+  if (!file.has("/energies")) return energies;
+  energies.id = file.read_integers("/energies/id", -1);
+  const auto count = static_cast<long>(energies.id.size());
+  energies.property = file.read_integers("/energies/property", count);
+  energies.card = file.read_strings("/energies/card", count);
+  energies.strain = file.read_matrix("/energies/strain", count, num_modes);
+  energies.kinetic = file.read_matrix("/energies/kinetic", count, num_modes);
+  energies.total_strain = file.read_vector("/energies/total_strain", num_modes);
+  energies.total_kinetic = file.read_vector("/energies/total_kinetic", num_modes);
+  return energies;
+}
 }  // namespace
 
 void write_modes(const ModesResult& modes, const std::string& path) {
@@ -46,6 +73,15 @@ void write_modes(const ModesResult& modes, const std::string& path) {
                        "singular",
                        "1"});
   }
+  write_energies(file, modes.energies);
+  if (const auto& about = modes.effective_mass_about; about.grid != 0) {
+    file.write_matrix(
+        "/effective_mass_about/mass", about.mass,
+        {"modal effective mass: mode, translations x y z and rotations x y z about the grid", "M, M L^2"});
+    file.write_matrix("/effective_mass_about/rigid", about.rigid,
+                      {"rigid-body mass matrix about the grid, translations first", "M, M L, M L^2"});
+    file.write_attribute("/effective_mass_about", "grid", about.grid);
+  }
   write_mesh(file, modes.mesh);
   file.commit();
 }
@@ -75,6 +111,7 @@ ModesResult read_modes(const std::string& path) {
   modes.effective_mass = file.read_matrix("/effective_mass", -1, 6);
   if (file.has("/buckling/load_factor")) modes.load_factor = file.read_vector("/buckling/load_factor", -1);
   modes.phi = read_mode_shapes(file, p, std::max(n, static_cast<long>(modes.load_factor.size())));
+  modes.energies = read_energies(file, n);
   modes.mesh = read_mesh(file);
   file.throw_if_errors();
   return modes;

@@ -5,6 +5,23 @@
 namespace bough::hdf5 {
 namespace {
 
+void write_grid_forces(FileWriter& file, const std::string& path, const std::vector<records::GridForce>& forces) {
+  if (forces.empty()) return;
+  std::vector<int> grids, elements;
+  std::vector<std::string> sources;
+  Eigen::MatrixXd values(static_cast<Eigen::Index>(forces.size()), 6);
+  for (const auto& f : forces) {
+    values.row(static_cast<Eigen::Index>(grids.size())) = f.force.transpose();
+    grids.push_back(f.node);
+    elements.push_back(f.element);
+    sources.push_back(f.source);
+  }
+  file.write_integers(path + "/grid", grids, {"grid that the force acts on", "1"});
+  file.write_strings(path + "/source", sources, {"card of the element, or LOAD, SPC, MPC, INERTIA", "1"});
+  file.write_integers(path + "/element", elements, {"element id; 0: none", "1"});
+  file.write_matrix(path + "/force", values, {"force x y z and moment x y z, basic axes", "F, F L"});
+}
+
 void write_subcase(FileWriter& file, const records::StaticSubcase& subcase) {
   const std::string path = "/subcases/" + std::to_string(subcase.id);
   file.make_group("/subcases");
@@ -51,11 +68,21 @@ void write_subcase(FileWriter& file, const records::StaticSubcase& subcase) {
   for (const auto& block : subcase.elements) {
     const std::string group = path + "/elements/" + block.card;
     file.write_integers(group + "/id", block.id, {"element ids", "1"});
+    file.write_integers(group + "/property", block.property, {"property ids; 0: none", "1"});
     file.write_matrix(group + "/force", block.force,
                       {"a row per element: the forces that `components` names", "F, F L"});
     file.write_vector(group + "/strain_energy", block.strain_energy, {"strain energy of each element", "F L"});
     file.write_attribute(group, "components", block.components);
   }
+  for (const auto& block : subcase.stresses) {
+    const std::string group = path + "/stresses/" + block.card;
+    file.write_integers(group + "/id", block.id, {"element ids", "1"});
+    file.write_integers(group + "/property", block.property, {"property ids; 0: none", "1"});
+    file.write_matrix(group + "/stress", block.stress,
+                      {"a row per element: what `components` names, as component@point", "F/L^2, 1"});
+    file.write_attribute(group, "components", block.components);
+  }
+  write_grid_forces(file, path + "/grid_forces", subcase.grid_forces);
 }
 
 void write_sparse(FileWriter& file, const std::string& path, const records::SparseMatrix& matrix,

@@ -81,6 +81,7 @@ struct BodySpec {
   std::vector<int> output_nodes;  ///< empty = all grids
   std::string output_file;        ///< empty = NAME.h5
   bool full = false;
+  std::vector<std::string> recover;  ///< elements with /recovery: ALL, ids, ranges "A-B", "property:ID", "card:CBAR"
   std::vector<std::string> ignore_cards;
 
   std::optional<MatricesSpec> matrices;  ///< instead of the deck's elements

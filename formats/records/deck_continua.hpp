@@ -21,6 +21,14 @@ struct Mat2 {
   double ge = 0;
   CardLocation at;
 };
+/// Limits of a ply in its own axes, all positive; 0: not given. Of strain with `is_strain` (STRN), else of stress.
+struct PlyStrength {
+  double Xt = 0, Xc = 0, Yt = 0, Yc = 0;  ///< tension and compression along 1 and 2
+  double S = 0;                           ///< shear
+  double F12 = 0;                         ///< of the Tsai-Wu criterion
+  bool is_strain = false;
+};
+
 /// MAT8: orthotropic plane-stress law. G1z, G2z zero: no transverse shear flexibility from this material.
 struct Mat8 {
   int id = 0;
@@ -28,6 +36,7 @@ struct Mat8 {
   double a1 = 0, a2 = 0;       ///< thermal expansion along 1 and 2
   std::optional<double> tref;  ///< empty: TEMPERATURE(INITIAL), or zero
   double ge = 0;               ///< structural damping
+  PlyStrength strength;
   CardLocation at;
 };
 /// MAT9: 6 x 6 law of a solid, Voigt xx yy zz xy yz zx.
@@ -48,6 +57,7 @@ struct Pshell {
   double bending_ratio = 1;                    ///< 12 I / T³
   double shear_ratio = 5.0 / 6;                ///< TS / T
   double nsm = 0;
+  std::optional<double> z1, z2;  ///< where stresses are given; empty: at -T/2 and T/2
   CardLocation at;
 };
 
@@ -65,6 +75,8 @@ struct Pcomp {
   double nsm = 0;
   double tref = 0;                       ///< of all plies; those of their materials do not count
   double ge = 0;                         ///< structural damping; those of the materials do not count
+  double sb = 0;                         ///< shear strength of the bond; 0: none
+  std::string failure;                   ///< FT: HILL, HOFF, TSAI, STRN; empty: none
   std::vector<Ply> plies;                ///< from the bottom up
   bool bending = true, membrane = true;  ///< LAM = MEM: no bending; BEND: no membrane
   Layup layup = Layup::Stacked;

@@ -8,6 +8,8 @@
 
 #include <Eigen/Dense>
 
+#include "formats/records/recovery.hpp"
+
 namespace bough::records {
 
 using Eigen::Matrix3d;
@@ -87,6 +89,9 @@ struct FlexBody {
   std::string preload;   ///< what stresses the body before anything else does; empty: nothing
   MatrixXd kg_preload;   ///< n x n: its geometric stiffness, part of modal_stiffness; empty without
   VectorXd preload_A_I;  ///< 12: the inertial load factors among it, which a motion with them does not add again
+
+  std::vector<RecoveryBlock> recovery;  ///< forces and stresses of elements; empty: not asked for
+  MatrixXd inertial_load;               ///< n x 12: ΦᵀF_I, zero where K_G1 was not computed; with recovery alone
 
   MatrixXd full_phi;  ///< ndof x n, only with --full
   BodyMesh mesh;

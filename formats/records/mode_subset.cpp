@@ -1,5 +1,7 @@
 #include "formats/records/mode_subset.hpp"
 
+#include <Eigen/Cholesky>
+
 #include "base/diagnostic.hpp"
 
 namespace bough::records {
@@ -61,6 +63,18 @@ FlexBody keep_modes(const FlexBody& body, const std::vector<int>& kept) {
   for (auto& moment : small.load_moment) cut.cols(moment);
   cut.both(small.kg_preload);
   cut.cols(small.full_phi);
+  // What the modes left out of the static answers was left out by all of them: it grows by what those that go held.
+  for (auto& block : small.recovery) {
+    const MatrixXd all = block.matrix;
+    cut.cols(block.matrix);
+    const auto gap = [&](const MatrixXd& loads) -> MatrixXd {  // n x k: generalized loads
+      const MatrixXd kept_part = block.matrix * small.modal_stiffness.ldlt().solve(MatrixXd(loads(kept, Eigen::all)));
+      return all * body.modal_stiffness.ldlt().solve(loads) - kept_part;
+    };
+    if (body.inertial_load.size() > 0) block.inertial += gap(body.inertial_load);
+    if (block.external.cols() > 0) block.external += gap(body.external_load);
+  }
+  cut.rows(small.inertial_load);
   return small;
 }
 

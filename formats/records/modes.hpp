@@ -13,6 +13,23 @@ struct MassProperties {
   Eigen::Matrix<double, 6, 6> rigid_mass = Eigen::Matrix<double, 6, 6>::Zero();  ///< Φ_Rᵀ M Φ_R about reference
 };
 
+/// Energies of the elements in each mode. Mode j: ½ φᵀK_eφ, and ½ φᵀM_eφ, which times ω² is the kinetic energy. Their
+/// sums are ½ ω² and ½ of the modal mass. What no element holds (preload of links) is the difference to `total`.
+struct ModeEnergies {
+  std::vector<int> id, property;         ///< elements with stiffness or mass; PID, 0 without one
+  std::vector<std::string> card;         ///< of each
+  MatrixXd strain, kinetic;              ///< elements x n
+  VectorXd total_strain, total_kinetic;  ///< n: of the whole matrices
+  bool empty() const { return strain.size() == 0; }
+};
+
+/// Modal effective mass about a grid, in units of mass.
+struct EffectiveMass {
+  int grid = 0;                                                             ///< 0: not asked for
+  MatrixXd mass;                                                            ///< n x 6
+  Eigen::Matrix<double, 6, 6> rigid = Eigen::Matrix<double, 6, 6>::Zero();  ///< rigid-body mass about that grid
+};
+
 struct ModesResult {
   std::vector<std::pair<std::string, std::string>> source;
   int subcase = 0;
@@ -29,6 +46,8 @@ struct ModesResult {
   MatrixXd effective_mass;    ///< n x 6, about the origin
   VectorXd load_factor;       ///< buckling only
   BodyMesh mesh;
+  ModeEnergies energies;  ///< where asked for
+  EffectiveMass effective_mass_about;
 };
 
 }  // namespace bough::records

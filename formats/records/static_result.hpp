@@ -8,9 +8,26 @@ namespace bough::records {
 struct ElementForces {
   std::string card;
   std::vector<std::string> components;
-  std::vector<int> id;
-  MatrixXd force;          ///< elements x components
-  VectorXd strain_energy;  ///< elements
+  std::vector<int> id, property;  ///< property: PID, 0 without one
+  MatrixXd force;                 ///< elements x components
+  VectorXd strain_energy;         ///< elements
+};
+
+/// Stresses of the elements of one card that have the same points. "xx@top": component and point; derived ones
+/// (von_mises, max, min, max_shear, failure, ...) are among them.
+struct ElementStresses {
+  std::string card;
+  std::vector<std::string> components;
+  std::vector<int> id, property;
+  MatrixXd stress;  ///< elements x components
+};
+
+/// A force that acts on a grid: of an element ("CBAR", its id), or of LOAD, SPC, MPC, INERTIA (id 0). Basic axes.
+struct GridForce {
+  int node = 0;
+  std::string source;
+  int element = 0;
+  Eigen::Matrix<double, 6, 1> force = Eigen::Matrix<double, 6, 1>::Zero();
 };
 
 /// One subcase: vectors on the g-set in basic axes.
@@ -37,6 +54,8 @@ struct StaticSubcase {
   VectorXd inertia;            ///< inertia relief: the forces of the mass that balance the load; empty without
   Eigen::Matrix<double, 6, 1> inertia_resultant = Eigen::Matrix<double, 6, 1>::Zero();
   std::vector<ElementForces> elements;
+  std::vector<ElementStresses> stresses;
+  std::vector<GridForce> grid_forces;  ///< where asked for: by grid, then elements, then the others
 };
 
 struct StaticResult {

@@ -35,6 +35,8 @@ struct BodyRecord {
   std::vector<double> eta, eta_dot;    ///< initial; empty = zero
   std::vector<double> damping_ratios;  ///< overrides the file's modal damping when not empty (one = uniform)
   int num_modes = -1;                  ///< keep the first so many; -1 = all
+  bool recover_all = false;            ///< every element of the file's /recovery is among the results
+  std::vector<int> recover;            ///< or these
   SourceLocation at;
 };
 
@@ -103,7 +105,8 @@ enum class SensorType {
   StrainEnergy,
   ModalCoordinate,
   ModalRate,
-  Distance
+  Distance,
+  Element
 };
 
 struct SensorRecord {
@@ -116,6 +119,8 @@ struct SensorRecord {
   bool from_turning = true;        ///< relative_to: as an observer who turns with that body sees it
   std::string hinge;               ///< hinge sensors
   int coordinate = 0;              ///< hinge sensors: 1-based; 0 = all; modal sensors: the mode
+  int element = 0;                 ///< element sensors: its id in the body's file
+  std::string component;           ///< element sensors: one of its rows; empty = all
   std::string to_body;             ///< distance: the other end; empty = ground
   int to_node = 0;
   std::string sequence = "321";           ///< euler: axes of the three turns, in their order

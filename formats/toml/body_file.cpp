@@ -222,6 +222,11 @@ records::BodySpec read_body_spec_text(const std::string& text, const std::string
   spec.output_file = resolve_path(path, output.get_string("file"));
   spec.output_nodes = output.get_ints("nodes");
   spec.full = output.get_bool("full", false);
+  if (const Value* recover = output.find("recover")) {
+    if (recover->is_string()) spec.recover.push_back(recover->text);
+    for (const Value& item : recover->items)
+      spec.recover.push_back(item.is_string() ? item.text : std::to_string(item.integer));
+  }
   if (const Value* nodes = output.find("nodes"); nodes && nodes->is_string() && nodes->text != "all") {
     diagnostics.error("toml.bad-value", output.locate("nodes"),
                       "nodes is '" + nodes->text + "', expected \"all\" or a list of node ids");

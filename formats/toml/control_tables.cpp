@@ -97,9 +97,12 @@ void read_sensor_keys(const Fields& table, const std::string& path, const std::s
   static const std::vector<std::string> common = {"scale",       "bias", "misalignment", "noise_density",
                                                   "random_walk", "seed", "quantization", "range",
                                                   "delay",       "lag",  "sample_time",  "initial"};
-  static const std::vector<std::string> own = {"rotation", "target", "to_body", "to_node", "sequence"};
+  static const std::vector<std::string> own = {"rotation", "target",  "to_body",  "to_node",
+                                               "sequence", "element", "component"};
   sensor.to_body = table.get_string("to_body");
   sensor.to_node = table.get_int("to_node", 0);
+  sensor.element = table.get_int("element", 0);
+  sensor.component = table.get_string("component");
   sensor.sequence = table.get_string("sequence", "321");
   sensor.target = table.get_vector("target", type == "direction" ? sensor.target : Eigen::Vector3d::Zero());
   const bool in_degrees = table.has("rotation_deg");
@@ -117,10 +120,11 @@ void read_sensor_keys(const Fields& table, const std::string& path, const std::s
     const bool is_mounted = type == "quaternion" || type == "euler" || type == "dcm" || type == "gyro" ||
                             type == "integrating_gyro" || type == "accelerometer" || type == "direction" ||
                             type == "horizon";
-    const bool is_taken = key == "rotation"   ? is_mounted
-                          : key == "sequence" ? type == "euler"
-                          : key == "target"   ? type == "direction" || type == "horizon" || type == "distance"
-                                              : type == "distance";
+    const bool is_taken = key == "rotation"                        ? is_mounted
+                          : key == "sequence"                      ? type == "euler"
+                          : key == "element" || key == "component" ? type == "element"
+                          : key == "target" ? type == "direction" || type == "horizon" || type == "distance"
+                                            : type == "distance";
     if (!is_taken)
       diagnostics.error("toml.conflicting-keys", {path, entry.line},
                         "'" + entry.key + "' has no meaning in sensor '" + sensor.name + "' of type " + type,

@@ -87,10 +87,12 @@ records::BodyRecord read_body(const Fields& table, const std::string& path, Diag
   body.eta_dot = table.get_numbers("eta_dot");
   body.damping_ratios = table.get_numbers("damping");
   body.num_modes = table.get_int("modes", -1);
+  body.recover_all = table.get_bool("recover", false);
+  body.recover = table.get_ints("recover");
   if (table.has("file")) {
     refuse_keys(table, {"cg", "inertia", "nodes"}, "in body '" + body.name + "', which comes from a file", diagnostics);
   } else {
-    refuse_keys(table, {"stiffening", "eta", "eta_dot", "damping", "modes"},
+    refuse_keys(table, {"stiffening", "eta", "eta_dot", "damping", "modes", "recover"},
                 "in body '" + body.name + "', which is rigid", diagnostics);
   }
   return body;
@@ -122,7 +124,8 @@ records::SensorRecord read_sensor(const Fields& table, const std::string& path, 
                                                        {"strain_energy", SensorType::StrainEnergy},
                                                        {"modal_coordinate", SensorType::ModalCoordinate},
                                                        {"modal_rate", SensorType::ModalRate},
-                                                       {"distance", SensorType::Distance}};
+                                                       {"distance", SensorType::Distance},
+                                                       {"element", SensorType::Element}};
   records::SensorRecord sensor;
   sensor.at = table.locate();
   sensor.name = table.get_string("name");
@@ -159,7 +162,11 @@ records::SensorRecord read_sensor(const Fields& table, const std::string& path, 
     if (!is_modal) refuse_keys(table, {"coordinate"}, because, diagnostics);
     if (!is_vector) refuse_keys(table, {"frame", "observer"}, because, diagnostics);
     if (!is_vector && !is_attitude) refuse_keys(table, {"relative_to"}, because, diagnostics);
-    if (is_modal || sensor.type == SensorType::StrainEnergy) refuse_keys(table, {"node"}, because, diagnostics);
+    const bool is_element = sensor.type == SensorType::Element;
+    if (is_element && !table.has("element"))
+      diagnostics.error("toml.missing-key", sensor.at, "missing key 'element' " + because, "add it");
+    if (is_modal || is_element || sensor.type == SensorType::StrainEnergy)
+      refuse_keys(table, {"node"}, because, diagnostics);
     if (is_elastic) refuse_keys(table, {"relative_to", "observer"}, because, diagnostics);
     if (is_vector && !is_elastic && !table.has("relative_to"))
       refuse_keys(table, {"observer"}, because + ", which has no relative_to", diagnostics);

@@ -3,37 +3,34 @@
 #include <algorithm>
 #include <array>
 
+#include "solver/system/node_load.hpp"
+
 namespace bough::solver {
 namespace {
 
-/// A load that a hinge or a [[force]] puts on a node, and K_G2 of its six components (empty: no locator).
-struct NodeSource {
-  int node = 0;
-  int hinge = -1;          ///< the body whose inboard hinge it is
-  bool is_parent = false;  ///< the node carries that hinge, else it hangs on it
-  const AppliedForce* force = nullptr;
+/// What loads a node, and K_G2 of its six components (empty: no locator).
+struct StiffeningSource {
+  NodeSource source;
   std::array<MatrixXd, 6> K2 = {};
 };
 
+/// A_I, then force and moment of each source, in B.
 class LaggedStiffening final : public Block {
  public:
   int body = 0, n = 0;
   std::array<MatrixXd, records::kNumInertialLoads> K1;  ///< empty: not computed
-  std::vector<NodeSource> sources;
+  std::vector<StiffeningSource> sources;
 
   bool is_actuator() const override { return true; }
 
-  // A_I, then force and moment of each source, in B.
   void calc_outputs(const BlockInput& in, double* y) const override {
-    const Tree& tree = in.system->impl().tree;
-    const TreeData& data = in.data->tree;
-    const BodyState& s = data[body].state;
+    const BodyState& s = in.data->tree[body].state;
     const Vector3d a = s.a_B - s.R_WB.transpose() * in.system->impl().gravity;
     const Vector3d& w = s.w_B;
     Eigen::Map<Eigen::Matrix<double, 12, 1>>(y) << a, s.alpha_B, w.cwiseAbs2(), w.x() * w.y(), w.x() * w.z(),
         w.y() * w.z();
     for (size_t i = 0; i < sources.size(); ++i)
-      Eigen::Map<Vector6d>(y + 12 + 6 * i) = measure_load(sources[i], *in.system, tree, *in.data);
+      Eigen::Map<Vector6d>(y + 12 + 6 * i) = calc_node_load(sources[i].source, body, *in.system, *in.data);
   }
   void add_load(const BlockInput& in, const double* y, SystemData& data) const override {
     const TreeBody& tb = in.system->impl().tree[body];
@@ -49,40 +46,10 @@ class LaggedStiffening final : public Block {
       }
     }
   }
-
- private:
-  Vector6d measure_load(const NodeSource& source, const System& system, const Tree& tree,
-                        const SystemData& data) const {
-    const Matrix3d& R_WB = data.tree[body].state.R_WB;
-    Vector6d load = Vector6d::Zero();
-    if (source.force != nullptr) {
-      const AppliedForce& f = *source.force;
-      Vector3d v = (f.function ? f.function->calc(data.tree.t).f : 1.0) * f.direction;
-      if (f.frame == records::VectorFrame::Inertial) v = R_WB.transpose() * v;
-      if (f.frame == records::VectorFrame::Node) v = data.tree.markers[static_cast<size_t>(f.marker)].R * v;
-      load.segment<3>(f.kind == records::ForceKind::Force ? 0 : 3) = v;
-      return load;
-    }
-    // On the child at Hc's origin, in Hp.
-    const HingeReaction r = get_hinge_reaction(system, data, source.hinge);
-    const TreeBody& tb = tree[source.hinge];
-    Matrix3d R_WH = tb.on_parent.R_KM;
-    if (tb.parent >= 0)
-      R_WH = data.tree[tb.parent].state.R_WB * data.tree.markers[static_cast<size_t>(tb.parent_marker)].R;
-    const Matrix3d R_BH = R_WB.transpose() * R_WH;
-    const double sign = source.is_parent ? -1 : 1;
-    const Vector3d force = sign * (R_BH * r.force);
-    const NodeMotion node = calc_node_motion(system, data, body, source.node);
-    const BodyState& child = data.tree[source.hinge].state;
-    const Vector3d at = child.p_WBo + child.R_WB * data.tree.markers[static_cast<size_t>(tb.child_marker)].r;
-    const Vector3d arm = R_WB.transpose() * (at - node.p_WK);
-    load << force, sign * (R_BH * r.moment) + arm.cross(force);
-    return load;
-  }
 };
 
 /// K_G2 of the unit loads at a node; false without any.
-bool find_locators(const records::FlexBody& flex, int node_id, int n, NodeSource& source) {
+bool find_locators(const records::FlexBody& flex, int node_id, int n, StiffeningSource& source) {
   bool has_any = false;
   for (size_t e = 0; e < flex.locators.size(); ++e) {
     const auto& locator = flex.locators[e];
@@ -112,23 +79,17 @@ std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::System
       if (record->second.kg_inertial_computed[i])
         made->K1[i] = record->second.kg_inertial[i].topLeftCorner(made->n, made->n);
     const auto& nodes = impl.tree[b].body.nodes();
-    const auto add = [&](NodeSource source) {
+    for (const auto& source : list_node_sources(system, b)) {
+      if (source.constraint >= 0) continue;
+      StiffeningSource stiffening{source};
       const int id = nodes[static_cast<size_t>(source.node)].id;
-      if (find_locators(record->second, id, made->n, source)) made->sources.push_back(source);
-    };
-    for (int c = 0; c < system.num_bodies(); ++c) {
-      const TreeBody& tb = impl.tree[c];
-      if (tb.parent == b) add({tb.on_parent.node, c, true, nullptr, {}});
-      if (c == b) add({tb.on_child.node, c, false, nullptr, {}});
+      if (find_locators(record->second, id, made->n, stiffening)) made->sources.push_back(std::move(stiffening));
     }
     for (const AppliedForce& force : impl.forces) {
-      if (force.body != b) continue;
-      if (force.pattern.size() == 0)
-        add({force.node, -1, false, &force, {}});
-      else
-        others += (others.empty() ? "" : ", ") + force.name;
+      if (force.body != b || force.pattern.size() == 0) continue;
+      others += (others.empty() ? "" : ", ") + force.name;
     }
-    if (std::any_of(made->sources.begin(), made->sources.end(), [](const auto& source) { return source.hinge >= 0; }))
+    if (std::any_of(made->sources.begin(), made->sources.end(), [](const auto& s) { return s.source.hinge >= 0; }))
       with_hinges += (with_hinges.empty() ? "" : ", ") + r.name;
     made->name = r.name;
     made->path = "/stiffening/" + r.name;

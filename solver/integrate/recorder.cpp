@@ -19,6 +19,7 @@ Recorder::Recorder(const System& system) : system_(system) {
       add_channel(path + "eta_dot", n, "rates of the modal coordinates", "by normalisation");
       add_channel(path + "strain_energy", 1, "strain energy of its modes", "F L");
     }
+    add_recovery(path, b);
   }
   for (int b = 0; b < system.num_bodies(); ++b) {
     const std::string path = "/hinges/" + system.hinge_name(b) + "/";
@@ -138,6 +139,17 @@ const VectorXd& Recorder::keep_sample() {
   return kept_;
 }
 
+void Recorder::add_recovery(const std::string& path, int body) {
+  const auto& recovery = system_.impl().recoveries[static_cast<size_t>(body)];
+  if (!recovery) return;
+  for (const auto& element : recovery->elements()) {
+    if (!element.is_recorded) continue;
+    std::string names;
+    for (const auto& name : element.components) names += (names.empty() ? "" : ", ") + name;
+    add_channel(path + "recovery/" + element.path, element.size(), names, "F, F L, F/L, F/L^2");
+  }
+}
+
 void Recorder::add_channel(std::string path, int size, std::string description, std::string dims) {
   channels_.push_back({std::move(path), size, std::move(description), std::move(dims)});
 }
@@ -164,6 +176,13 @@ const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Ei
     put(q.segment(system_.eta_offset(b), system_.num_modes(b)));
     put(u.segment(system_.eta_dot_offset(b), system_.num_modes(b)));
     if (system_.num_modes(b) > 0) sample_[at++] = calc_strain_energy(system_, data, b);
+    if (const auto& recovery = system_.impl().recoveries[static_cast<size_t>(b)]; recovery) {
+      for (const auto& element : recovery->elements()) {
+        if (!element.is_recorded) continue;
+        recovery->calc(system_, data, element.first, element.size(), sample_.data() + at);
+        at += element.size();
+      }
+    }
   }
   for (int b = 0; b < system_.num_bodies(); ++b) {
     const int nq = system_.num_hinge_q(b), nu = system_.num_hinge_rates(b);

@@ -8,9 +8,9 @@ namespace bough::solver {
 class Recorder {
  public:
   /// Channels, their order fixed here once: /time; per body position, quaternion, velocity, angular_velocity, and eta,
-  /// eta_dot when it has modes; per hinge q, qdot, force when it has coordinates, reaction_force, reaction_moment;
-  /// per constraint its reactions; elements of force; sensors, controllers, actuators, functions that are signals;
-  /// energy; momentum; system_mass.
+  /// eta_dot when it has modes, recovery; per hinge q, qdot, force when it has coordinates, reaction_force,
+  /// reaction_moment; per constraint its reactions; elements of force; sensors, controllers, actuators, functions that
+  /// are signals; energy; momentum; system_mass.
   explicit Recorder(const System& system);
 
   /// Of calc_sample.
@@ -35,6 +35,7 @@ class Recorder {
   VectorXd quaternions;
 
  private:
+  void add_recovery(const std::string& path, int body);
   void add_channel(std::string path, int size, std::string description, std::string dims);
 
   const System& system_;

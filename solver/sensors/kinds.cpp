@@ -33,6 +33,7 @@ const SensorKind& get_kind(records::SensorType type) {
       {T::ModalCoordinate, "modal coordinates", "by normalisation", SensorOf::Modes, 0, false},
       {T::ModalRate, "modal rates", "by normalisation", SensorOf::Modes, 0, false},
       {T::Distance, "distance", "L", SensorOf::Gap, 1, false},
+      {T::Element, "element", "F, F L, F/L^2", SensorOf::Element, 0, true},
   };
   const auto found = std::find_if(std::begin(kinds), std::end(kinds), [&](const auto& k) { return k.type == type; });
   BOUGH_DEMAND(found != std::end(kinds));

@@ -13,7 +13,8 @@ enum class SensorOf {
   HingeLoad,   ///< hinge
   Modes,       ///< body, coordinate
   Energy,      ///< body
-  Gap          ///< body, node, to_body, to_node
+  Gap,         ///< body, node, to_body, to_node
+  Element      ///< body, element, component
 };
 
 struct SensorKind {

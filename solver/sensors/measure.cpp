@@ -141,6 +141,8 @@ void measure(const System& system, const SystemData& data, const Sensors::Entry&
       if (e.relative_to < 0) return measure_attitude(e, R_WS, out);
       return measure_attitude(e, get_body_state(data, e.relative_to).R_WB.transpose() * R_WS, out);
     }
+    case SensorOf::Element:
+      return system.impl().recoveries[static_cast<size_t>(e.body)]->calc(system, data, e.row, e.size, out);
     case SensorOf::Gap: {
       Vector3d other = e.target;
       if (e.to_body >= 0) other = calc_node_motion(system, data, e.to_body, e.to_node).p_WK;

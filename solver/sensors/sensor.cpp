@@ -49,6 +49,8 @@ class Resolver {
       case SensorOf::Modes:
       case SensorOf::Energy:
         return resolve_modes(r, kind, e);
+      case SensorOf::Element:
+        return resolve_element(r, e);
       default:
         resolve_node(r, e);
     }
@@ -116,6 +118,41 @@ class Resolver {
             count == 0 ? "remove the sensor" : "give 1 to " + std::to_string(count) + ", or 0 for all");
     else if (kind.of == SensorOf::Modes)
       e.size = r.coordinate == 0 ? count : 1;
+  }
+
+  void resolve_element(const SensorRecord& r, Sensors::Entry& e) {
+    e.body = find_body(r.body);
+    if (e.body == kAbsent)
+      error(r, "sensor.unknown-body", "is on the unknown body '" + r.body + "'",
+            make_advice(r.body, bodies_, "bodies"));
+    if (e.body < 0 || !system_.is_sound(e.body)) return;
+    const auto& recovery = system_.impl().recoveries[static_cast<size_t>(e.body)];
+    const Recovery::Element* element = recovery ? recovery->find(r.element) : nullptr;
+    if (element == nullptr) {
+      error(
+          r, "sensor.unknown-element",
+          "asks for element " + std::to_string(r.element) + ", which is not in the /recovery of body '" + r.body + "'",
+          "reduce the body with that element in recover");
+      return;
+    }
+    const auto& names = element->components;
+    e.row = element->first;
+    e.size = element->size();
+    e.description = element->path + " of body " + r.body + ": ";
+    if (r.component.empty()) {
+      for (const auto& name : names) e.description += (name == names.front() ? "" : ", ") + name;
+      return;
+    }
+    const auto at = std::find(names.begin(), names.end(), r.component);
+    if (at == names.end()) {
+      error(r, "sensor.unknown-element",
+            "asks for '" + r.component + "' of element " + std::to_string(r.element) + ", which has none such",
+            make_advice(r.component, names, "components"));
+      return;
+    }
+    e.row += static_cast<int>(at - names.begin());
+    e.size = 1;
+    e.description += r.component;
   }
 
   void resolve_other_end(const SensorRecord& r, Sensors::Entry& e) {

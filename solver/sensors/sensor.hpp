@@ -14,6 +14,7 @@
 ///   quaternion, euler, dcm   of R_AS: the axes S of the sensor in A; w >= 0; R_AS = R_i(a) R_j(b) R_k(c)
 ///   gyro, accelerometer, direction   ω, a - g, the target's direction in S
 ///   horizon                  roll, pitch of S against the direction to the target, its z at zero
+///   element                  forces and stresses of an element (solver/system/recovery.hpp)
 ///   hinge_angle, hinge_rate   coordinates as the user knows them (quaternion w, x, y, z) and rates; one, or all for 0
 ///
 /// With frame = A and relative_to = A, "turning" is what an observer who rides on A writes down. An empty frame means
@@ -30,7 +31,7 @@ namespace bough::solver {
 class Sensors {
  public:
   /// Names to indices. Reports every error: "sensor.unknown-body", "sensor.unknown-node", "sensor.unknown-hinge",
-  /// "sensor.bad-frame", "sensor.bad-coordinate". Evaluate only when it reported none.
+  /// "sensor.bad-frame", "sensor.bad-coordinate", "sensor.unknown-element". Evaluate only when it reported none.
   static Sensors build(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics);
 
   struct Entry {
@@ -44,6 +45,7 @@ class Sensors {
     int relative_to = -1;     ///< body index, -1: W
     bool from_turning = true;
     int coordinate = 0;                     ///< 1-based, 0: all
+    int row = 0;                            ///< element: first row of the body's Recovery
     Matrix3d mount = Matrix3d::Identity();  ///< R_KS
     Vector3d target = Vector3d::Zero();     ///< in W: a direction, a centre, the other end on ground
     std::array<int, 3> axes{2, 1, 0};       ///< euler: from 0

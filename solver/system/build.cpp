@@ -260,6 +260,7 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
     build_hinge_laws(spec.hinges[static_cast<size_t>(order.hinge[b])], context, tree.bodies[b], impl.elements,
                      impl.latches, diagnostics);
   }
+  build_recoveries(spec, system, flex, impl, diagnostics);
   build_signals(spec, system, flex, functions, uses, impl, diagnostics);
   collect_breakpoints(impl);
   if (diagnostics.num_errors() == 0 && impl.loops.size() > 0) assemble(spec, order, system, impl, diagnostics);

@@ -43,6 +43,10 @@ std::optional<AppliedForce> build_force(const records::ForceRecord& record, cons
 /// Every [[constraint]] and its markers into impl.loops, after the tree is finished.
 void build_constraints(const records::SystemSpec& spec, const TreeOrder& order, System::Impl& impl,
                        Diagnostics& diagnostics);
+/// What of each flexible body is recovered, for the results and for sensors, after constraints and forces. Reports
+/// "system.no-recovery", "system.unknown-element"; notes "system.recovery-loads".
+void build_recoveries(const records::SystemSpec& spec, const System& system, const FlexMap& flex, System::Impl& impl,
+                      Diagnostics& diagnostics);
 /// Initial positions and rates that close the loops, into impl; `system` owns impl. Reports "system.cannot-assemble";
 /// notes "system.assembled" (what was moved) and "system.redundant-constraint".
 void assemble(const records::SystemSpec& spec, const TreeOrder& order, const System& system, System::Impl& impl,

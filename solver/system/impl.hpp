@@ -5,6 +5,7 @@
 #include "solver/forces/latch.hpp"
 #include "solver/loops/loops.hpp"
 #include "solver/signals/graph.hpp"
+#include "solver/system/recovery.hpp"
 #include "solver/system/system.hpp"
 #include "solver/tree/data.hpp"
 
@@ -16,8 +17,9 @@ struct System::Impl {
   std::vector<AppliedForce> forces;
   std::vector<AppliedForce> driven;  ///< whose value is a signal: see signals
   Loops loops;
-  VectorXd initial_q, initial_u;          ///< with closed loops; empty: as the records say
-  std::vector<Closing> initial_closings;  ///< likewise
+  std::vector<std::unique_ptr<Recovery>> recoveries;  ///< by body; nullptr: nothing is recovered of it
+  VectorXd initial_q, initial_u;                      ///< with closed loops; empty: as the records say
+  std::vector<Closing> initial_closings;              ///< likewise
   std::vector<std::unique_ptr<const ForceElement>> elements;
   std::vector<Latch> latches;
   SignalGraph signals;

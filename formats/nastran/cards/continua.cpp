@@ -1,4 +1,5 @@
 #include <array>
+#include <cmath>
 #include <string>
 
 #include <Eigen/Cholesky>
@@ -38,7 +39,15 @@ void parse_mat8(Card& card, Reading& r) {
   mat.a2 = card.read_real(9, "A2", 0.0);
   mat.tref = card.read_optional_real(10, "TREF");
   mat.ge = card.read_real(16, "GE", 0.0);
-  card.use(11, card.get_size());  // strengths, F12, STRN
+  auto& s = mat.strength;
+  s.Xt = card.read_real(11, "Xt", 0.0);
+  s.Xc = std::abs(card.read_real(12, "Xc", s.Xt));
+  s.Yt = card.read_real(13, "Yt", 0.0);
+  s.Yc = std::abs(card.read_real(14, "Yc", s.Yt));
+  s.S = card.read_real(15, "S", 0.0);
+  s.F12 = card.read_real(17, "F12", 0.0);
+  s.is_strain = card.read_real(18, "STRN", 0.0) == 1;
+  card.use(19, card.get_size());
   mat.at = card.get_location();
   if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat8.push_back(mat);
 }
@@ -95,7 +104,8 @@ void parse_pshell(Card& card, Reading& r) {
   p.shear_ratio = card.read_real(6, "TS/T", 5.0 / 6);
   p.nsm = card.read_real(7, "NSM", 0.0);
   p.mid4 = card.read_id(10, "MID4", 0);
-  card.use(8, 10);  // Z1, Z2
+  p.z1 = card.read_optional_real(8, "Z1");
+  p.z2 = card.read_optional_real(9, "Z2");
   p.at = card.get_location();
   card.demand(p.mid2 >= -1, 3, "MID2", "a material id, blank or -1");
   if (p.mid1 == 0 && p.mid2 <= 0)
@@ -114,6 +124,18 @@ void check_core(const records::Pcomp& p, Card& card) {
               "give the faces first and the core as the last ply");
 }
 
+/// SB and FT. A criterion that Bough does not know is left out, which is said.
+void read_failure(Card& card, records::Pcomp& p) {
+  p.sb = card.read_real(3, "SB", 0.0);
+  p.failure = card.get_upper(4);
+  card.use(4);
+  if (p.failure.empty() || p.failure == "HILL" || p.failure == "HOFF" || p.failure == "TSAI" || p.failure == "STRN")
+    return;
+  card.warn("deck.failure-theory", 4, "FT is '" + p.failure + "': no failure index of that kind is computed",
+            "HILL, HOFF, TSAI and STRN are");
+  p.failure.clear();
+}
+
 /// Fields 1..7 of PCOMP and PCOMPG, then plies; `stride` fields a ply, material first after `skip`.
 void parse_laminate(Card& card, Reading& r, int skip, int stride) {
   records::Pcomp p;
@@ -122,7 +144,7 @@ void parse_laminate(Card& card, Reading& r, int skip, int stride) {
   p.nsm = card.read_real(2, "NSM", 0.0);
   p.tref = card.read_real(5, "TREF", 0.0);
   p.ge = card.read_real(6, "GE", 0.0);
-  for (const int i : {3, 4}) card.use(i);  // SB, FT
+  read_failure(card, p);
   const std::string lam = card.read_word(7, "LAM", "", {"", "ALL", "SYM", "MEM", "SYMMEM", "BEND", "SMEAR", "SMCORE"});
   p.membrane = lam != "BEND";
   p.bending = lam != "MEM" && lam != "SYMMEM";
@@ -156,7 +178,7 @@ void parse_equal_plies(Card& card, Reading& r) {
   p.id = card.read_id(0, "PID");
   const auto z0 = card.read_optional_real(1, "Z0");
   p.nsm = card.read_real(2, "NSM", 0.0);
-  card.use(3, 5);  // SB, FT
+  read_failure(card, p);
   records::Ply ply;
   ply.mid = card.read_id(5, "MID");
   if (is_constant) ply.t = card.read_real(6, "T");

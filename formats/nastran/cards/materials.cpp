@@ -16,7 +16,10 @@ void parse_mat1(Card& card, Reading& r) {
   mat.alpha = card.read_real(5, "A", 0.0);
   mat.tref = card.read_optional_real(6, "TREF");
   mat.ge = card.read_real(7, "GE", 0.0);
-  card.use(8, 12);  // stress limits, MCSID
+  mat.st = card.read_real(8, "ST", 0.0);
+  mat.sc = card.read_real(9, "SC", 0.0);
+  mat.ss = card.read_real(10, "SS", 0.0);
+  card.use(11);  // MCSID
   mat.at = card.get_location();
   card.demand(!E || *E >= 0, 1, "E", "a modulus that is not negative");
   card.demand(!G || *G >= 0, 2, "G", "a modulus that is not negative");

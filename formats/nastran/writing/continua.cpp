@@ -18,7 +18,9 @@ void write_pshell(const records::Pshell& p, CardSink& sink) {
     card.add_blank();
   else
     card.add(p.shear_ratio);
-  sink.put(card.add(p.nsm).add_blank(2).add_id(p.mid4));
+  card.add(p.nsm);
+  for (const auto& z : {p.z1, p.z2}) z ? card.add(*z) : card.add_blank();
+  sink.put(card.add_id(p.mid4));
 }
 
 void write_pcomp(const records::Pcomp& p, CardSink& sink) {
@@ -30,7 +32,10 @@ void write_pcomp(const records::Pcomp& p, CardSink& sink) {
     card.add_blank();
   else
     card.add(p.z0);
-  card.add(p.nsm).add_blank(2).add(p.tref).add(p.ge);
+  card.add(p.nsm);
+  p.sb != 0 ? card.add(p.sb) : card.add_blank();
+  p.failure.empty() ? card.add_blank() : card.add_word(p.failure);
+  card.add(p.tref).add(p.ge);
   if (!p.membrane || !p.bending)
     card.add_word(p.membrane ? "MEM" : "BEND");
   else if (p.layup != records::Layup::Stacked)

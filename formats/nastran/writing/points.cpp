@@ -58,7 +58,9 @@ void write_materials(const records::Deck& deck, CardSink& sink) {
     CardFields card("MAT1");
     card.add(mat.id);
     add_moduli(mat, card);
-    sink.put(add_tref(card.add(mat.rho).add(mat.alpha), mat.tref).add(mat.ge));
+    add_tref(card.add(mat.rho).add(mat.alpha), mat.tref).add(mat.ge);
+    if (mat.st != 0 || mat.sc != 0 || mat.ss != 0) card.add(mat.st).add(mat.sc).add(mat.ss);
+    sink.put(card);
   }
   for (const auto& mat : deck.mat2) {
     CardFields card("MAT2");
@@ -71,7 +73,13 @@ void write_materials(const records::Deck& deck, CardSink& sink) {
     CardFields card("MAT8");
     card.add(mat.id).add(mat.E1).add(mat.E2).add(mat.nu12).add(mat.G12).add(mat.G1z).add(mat.G2z).add(mat.rho);
     add_tref(card.add(mat.a1).add(mat.a2), mat.tref);
-    if (mat.ge != 0) card.add_blank(5).add(mat.ge);
+    const auto& s = mat.strength;
+    const bool is_strong = s.Xt != 0 || s.Xc != 0 || s.Yt != 0 || s.Yc != 0 || s.S != 0;
+    if (is_strong)
+      card.add(s.Xt).add(s.Xc).add(s.Yt).add(s.Yc).add(s.S).add(mat.ge).add(s.F12);
+    else if (mat.ge != 0)
+      card.add_blank(5).add(mat.ge);
+    if (is_strong && s.is_strain) card.add(1.0);
     sink.put(card);
   }
   for (const auto& mat : deck.mat9) {

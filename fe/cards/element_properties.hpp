@@ -1,0 +1,12 @@
+#pragma once
+/// \file Which property an element has.
+#include <unordered_map>
+
+#include "formats/records/deck.hpp"
+
+namespace bough::fe {
+
+/// PID by element id; elements without a property (CELAS2, CONROD, CONM2) are not in it.
+std::unordered_map<int, int> list_element_properties(const records::Deck& deck);
+
+}  // namespace bough::fe

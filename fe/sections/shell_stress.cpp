@@ -1,0 +1,98 @@
+#include "fe/sections/shell_stress.hpp"
+
+#include <cmath>
+
+#include <Eigen/QR>
+
+namespace bough::fe {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Matrix3x6d = Eigen::Matrix<double, 3, 6>;
+
+/// Strains in axes at `angle` from those given (Jones, eq. 2.75).
+Matrix3d calc_turn(double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  Matrix3d t;
+  t << c * c, s * s, c * s, s * s, c * c, -c * s, -2 * c * s, 2 * c * s, c * c - s * s;
+  return t;
+}
+
+/// [ε; κ] per [N; M]; a laminate without bending (LAM = MEM) or membrane has no strain of that kind.
+Matrix6d calc_compliance(const ShellSection& section) {
+  Matrix6d law;
+  law << section.A, section.B, section.B.transpose(), section.D;
+  // Membrane and bending scaled to one size, so that the rank is found.
+  const double a = std::sqrt(section.A.norm()), d = std::sqrt(section.D.norm());
+  Eigen::Matrix<double, 6, 1> scale;
+  scale << Vector3d::Constant(a > 0 ? 1 / a : 1), Vector3d::Constant(d > 0 ? 1 / d : 1);
+  const Matrix6d scaled = scale.asDiagonal() * law * scale.asDiagonal();
+  return scale.asDiagonal() * Matrix6d(scaled.completeOrthogonalDecomposition().pseudoInverse()) * scale.asDiagonal();
+}
+
+Matrix3x6d calc_layer_strain(const ShellStress::Layer& layer) {
+  const Matrix3d turn = calc_turn(layer.angle);
+  Matrix3x6d strain;
+  strain << turn, layer.z * turn;
+  return strain;
+}
+
+}  // namespace
+
+std::vector<StressPoint> list_stress_points(const ShellSection& section) {
+  std::vector<StressPoint> points;
+  if (!section.stress) return points;
+  if (section.stress->layers.empty()) {
+    points.resize(2);
+    points[0].name = "bottom";
+    points[1].name = "top";
+    return points;
+  }
+  for (const auto& layer : section.stress->layers) {
+    auto& point = points.emplace_back();
+    point.name = "ply" + std::to_string(points.size());
+    point.kind = StressKind::Ply;
+    point.theory = layer.theory;
+    point.strength = layer.strength;
+    if (layer.theory == FailureTheory::Strain) point.compliance = layer.Q.inverse();
+  }
+  return points;
+}
+
+Eigen::Matrix<double, Eigen::Dynamic, 6> calc_stress_map(const ShellSection& section) {
+  Eigen::Matrix<double, Eigen::Dynamic, 6> map(0, 6);
+  if (!section.stress) return map;
+  const ShellStress& stress = *section.stress;
+  if (stress.layers.empty()) {
+    map.setZero(6, 6);
+    for (int k = 0; k < 2; ++k) {
+      if (stress.t > 0) map.block<3, 3>(3 * k, 0) = Matrix3d::Identity() / stress.t;
+      const double z = k == 0 ? stress.z1 : stress.z2;
+      if (stress.inertia > 0) map.block<3, 3>(3 * k, 3) = z / stress.inertia * Matrix3d::Identity();
+    }
+    return map;
+  }
+  const Matrix6d compliance = calc_compliance(section);
+  map.resize(3 * static_cast<Eigen::Index>(stress.layers.size()), 6);
+  for (std::size_t k = 0; k < stress.layers.size(); ++k)
+    map.middleRows<3>(3 * static_cast<Eigen::Index>(k)) =
+        stress.layers[k].Q * calc_layer_strain(stress.layers[k]) * compliance;
+  return map;
+}
+
+Eigen::VectorXd calc_ply_expansion(const ShellSection& section, double t, double g) {
+  if (!section.stress || section.stress->layers.empty() || !section.expansion) return {};
+  const auto& layers = section.stress->layers;
+  Eigen::Matrix<double, 6, 1> held;
+  held << section.expansion->calc_N(t, g), section.expansion->calc_M(t, g);
+  const Eigen::Matrix<double, 6, 1> free = calc_compliance(section) * held;
+  Eigen::VectorXd result(3 * static_cast<Eigen::Index>(layers.size()));
+  for (std::size_t k = 0; k < layers.size(); ++k)
+    result.segment<3>(3 * static_cast<Eigen::Index>(k)) =
+        layers[k].Q * (calc_layer_strain(layers[k]) * free - (t + layers[k].z * g) * layers[k].alpha);
+  return result;
+}
+
+}  // namespace bough::fe

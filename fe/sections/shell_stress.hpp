@@ -1,0 +1,33 @@
+#pragma once
+/// \file Stresses in a plate's section from its stress resultants: the two surfaces of a PSHELL, every ply of a PCOMP.
+#include "fe/sections/shell_section.hpp"
+#include "fe/sections/stress.hpp"
+
+namespace bough::fe {
+
+/// Homogeneous: N/t + z M/I at z1 and z2, the linear distribution that has the resultants N and M. Laminate: strains
+/// [ε; κ] of the resultants by the section's own law, in the middle of each ply, in its axes 1 and 2 (Jones, "Mechanics
+/// of composite materials", 2nd ed., 4.2).
+struct ShellStress {
+  struct Layer {
+    double z = 0;                                 ///< of its middle, above the reference surface
+    double angle = 0;                             ///< from the x-axis of the section to its 1-axis
+    Eigen::Matrix3d Q = Eigen::Matrix3d::Zero();  ///< in its own axes
+    Eigen::Vector3d alpha = Eigen::Vector3d::Zero();
+    FailureTheory theory = FailureTheory::None;
+    records::PlyStrength strength;
+  };
+  double t = 0;        ///< homogeneous: N/t; 0: no membrane
+  double inertia = 0;  ///< I per width; 0: no bending
+  double z1 = 0, z2 = 0;
+  std::vector<Layer> layers;  ///< from the bottom up; empty: homogeneous
+};
+
+/// "bottom" and "top" in the axes of the section, or "ply1", "ply2", ...; none without section.stress.
+std::vector<StressPoint> list_stress_points(const ShellSection& section);
+/// Stresses there per [N; M], rows as list_stress_names().
+Eigen::Matrix<double, Eigen::Dynamic, 6> calc_stress_map(const ShellSection& section);
+/// What the temperature t + z g adds in the plies; empty for one material.
+Eigen::VectorXd calc_ply_expansion(const ShellSection& section, double t, double g);
+
+}  // namespace bough::fe

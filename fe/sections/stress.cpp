@@ -1,0 +1,159 @@
+#include "fe/sections/stress.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+#include "base/diagnostic.hpp"
+
+namespace bough::fe {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+std::string add_point(const std::string& component, const StressPoint& point) {
+  return point.name.empty() ? component : component + "@" + point.name;
+}
+
+/// What a point adds to its components.
+std::vector<std::string> list_derived(const StressPoint& point) {
+  switch (point.kind) {
+    case StressKind::Plane:
+    case StressKind::Solid:
+      return {"von_mises", "major", "minor"};
+    case StressKind::Rod:
+      return {"von_mises"};
+    case StressKind::Ply:
+      if (point.theory != FailureTheory::None) return {"failure"};
+      return {};
+    default:
+      return {};
+  }
+}
+
+void calc_derived(const StressPoint& point, const Eigen::Ref<const VectorXd>& s, double* out) {
+  if (point.kind == StressKind::Plane) {
+    const double mean = 0.5 * (s[0] + s[1]), radius = std::hypot(0.5 * (s[0] - s[1]), s[2]);
+    out[0] = calc_plane_von_mises(s);
+    out[1] = mean + radius;
+    out[2] = mean - radius;
+  } else if (point.kind == StressKind::Solid) {
+    Eigen::Matrix3d sigma;
+    sigma << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
+    const Vector3d principal =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sigma, Eigen::EigenvaluesOnly).eigenvalues();
+    out[0] = calc_solid_von_mises(s);
+    out[1] = principal[2];
+    out[2] = principal[0];
+  } else if (point.kind == StressKind::Rod) {
+    out[0] = std::sqrt(s[0] * s[0] + 3 * s[1] * s[1]);
+  } else if (point.kind == StressKind::Ply && point.theory != FailureTheory::None) {
+    out[0] = calc_failure_index(point, s);
+  }
+}
+
+/// Over several points: axial stress its extremes, the others the largest of what a point derives first.
+std::vector<std::string> list_extremes(const std::vector<StressPoint>& points) {
+  if (points.size() < 2) return {};
+  const auto& first = points.front();
+  if (first.kind == StressKind::Axial) return {"max", "min"};
+  const auto derived = list_derived(first);
+  return derived.empty() ? std::vector<std::string>{} : std::vector<std::string>{derived.front()};
+}
+
+}  // namespace
+
+const std::vector<std::string>& list_components(StressKind kind) {
+  static const std::vector<std::string> axial{"xx"}, rod{"xx", "torsion"}, shear{"xy"}, plane{"xx", "yy", "xy"},
+      ply{"11", "22", "12"}, solid{"xx", "yy", "zz", "xy", "yz", "zx"};
+  switch (kind) {
+    case StressKind::Axial:
+      return axial;
+    case StressKind::Rod:
+      return rod;
+    case StressKind::Shear:
+      return shear;
+    case StressKind::Plane:
+      return plane;
+    case StressKind::Ply:
+      return ply;
+    default:
+      return solid;
+  }
+}
+
+std::vector<std::string> list_stress_names(const std::vector<StressPoint>& points) {
+  std::vector<std::string> names;
+  for (const auto& point : points)
+    for (const auto& component : list_components(point.kind)) names.push_back(add_point("stress_" + component, point));
+  return names;
+}
+
+std::vector<std::string> list_result_names(const std::vector<StressPoint>& points) {
+  std::vector<std::string> names;
+  for (const auto& point : points) {
+    for (const auto& component : list_components(point.kind)) names.push_back(add_point(component, point));
+    for (const auto& derived : list_derived(point)) names.push_back(add_point(derived, point));
+  }
+  for (const auto& extreme : list_extremes(points)) names.push_back(extreme);
+  return names;
+}
+
+VectorXd calc_stress_results(const std::vector<StressPoint>& points, const Eigen::Ref<const VectorXd>& stress) {
+  VectorXd out(static_cast<Eigen::Index>(list_result_names(points).size()));
+  Eigen::Index from = 0, to = 0;
+  double most = -HUGE_VAL, least = HUGE_VAL;
+  for (const auto& point : points) {
+    const auto n = static_cast<Eigen::Index>(list_components(point.kind).size());
+    const auto d = static_cast<Eigen::Index>(list_derived(point).size());
+    out.segment(to, n) = stress.segment(from, n);
+    calc_derived(point, stress.segment(from, n), out.data() + to + n);
+    const double value = d > 0 ? out[to + n] : stress[from];
+    most = std::max(most, value);
+    least = std::min(least, value);
+    from += n;
+    to += n + d;
+  }
+  BOUGH_DEMAND(from == stress.size());
+  const auto extremes = out.size() - to;
+  if (extremes > 0) out[to] = most;
+  if (extremes > 1) out[to + 1] = least;
+  return out;
+}
+
+double calc_plane_von_mises(const Vector3d& s) {
+  return std::sqrt(std::max(0.0, s[0] * s[0] - s[0] * s[1] + s[1] * s[1] + 3 * s[2] * s[2]));
+}
+
+double calc_solid_von_mises(const Vector6d& s) {
+  const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
+  return std::sqrt(0.5 * (a * a + b * b + c * c) + 3 * s.tail<3>().squaredNorm());
+}
+
+double calc_failure_index(const StressPoint& ply, const Vector3d& s) {
+  const auto& p = ply.strength;
+  if (ply.theory == FailureTheory::None || !(p.Xt > 0 && p.Yt > 0 && p.S > 0)) return 0;
+  const double Xc = p.Xc > 0 ? p.Xc : p.Xt, Yc = p.Yc > 0 ? p.Yc : p.Yt;
+  if (ply.theory == FailureTheory::Strain) {
+    // Limits of stress become those of strain by the moduli, as for a single stress.
+    const Vector3d e = ply.compliance * s;
+    const Vector3d unit = p.is_strain ? Vector3d::Ones() : Vector3d(ply.compliance.diagonal());
+    return std::max({std::abs(e[0]) / (unit[0] * (e[0] >= 0 ? p.Xt : Xc)),
+                     std::abs(e[1]) / (unit[1] * (e[1] >= 0 ? p.Yt : Yc)), std::abs(e[2]) / (unit[2] * p.S)});
+  }
+  const double shear = s[2] * s[2] / (p.S * p.S);
+  if (ply.theory == FailureTheory::Hill) {
+    const double X = s[0] >= 0 ? p.Xt : Xc, Y = s[1] >= 0 ? p.Yt : Yc;
+    const double X12 = s[0] * s[1] >= 0 ? p.Xt : Xc;
+    return s[0] * s[0] / (X * X) - s[0] * s[1] / (X12 * X12) + s[1] * s[1] / (Y * Y) + shear;
+  }
+  const double linear = (1 / p.Xt - 1 / Xc) * s[0] + (1 / p.Yt - 1 / Yc) * s[1];
+  const double squares = s[0] * s[0] / (p.Xt * Xc) + s[1] * s[1] / (p.Yt * Yc) + shear;
+  const double cross = ply.theory == FailureTheory::Hoffman ? -s[0] * s[1] / (p.Xt * Xc) : 2 * p.F12 * s[0] * s[1];
+  return linear + squares + cross;
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,55 @@
+#pragma once
+/// \file Points at which elements give stresses, and what is derived from those: von Mises, principal, failure indices.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "formats/records/deck_continua.hpp"
+
+namespace bough::fe {
+
+enum class StressKind {
+  Axial,  ///< xx
+  Rod,    ///< xx, and the shear of torsion
+  Shear,  ///< xy alone
+  Plane,  ///< xx yy xy
+  Ply,    ///< 11 22 12, in the axes of the ply
+  Solid   ///< xx yy zz xy yz zx
+};
+
+/// The criterion of a ply (FT of PCOMP).
+enum class FailureTheory { None, Hill, Hoffman, TsaiWu, Strain };
+
+struct StressPoint {
+  std::string name;  ///< "top", "C_a", "ply3"; empty: the element has this one alone
+  StressKind kind = StressKind::Plane;
+  FailureTheory theory = FailureTheory::None;
+  records::PlyStrength strength;                         ///< with a theory
+  Eigen::Matrix3d compliance = Eigen::Matrix3d::Zero();  ///< Strain: ply strains of ply stresses
+};
+
+/// Names of the components of a kind: "xx", "yy", ...
+const std::vector<std::string>& list_components(StressKind kind);
+/// "stress_xx@top" for every component of every point: the rows of Element::calc_stresses.
+std::vector<std::string> list_stress_names(const std::vector<StressPoint>& points);
+
+/// With what is derived: "xx@top", "yy@top", "xy@top", "von_mises@top", ... , and over all axial points of an end or
+/// all plies the extremes: "max", "min", "von_mises", "failure".
+std::vector<std::string> list_result_names(const std::vector<StressPoint>& points);
+/// The values under those names.
+Eigen::VectorXd calc_stress_results(const std::vector<StressPoint>& points,
+                                    const Eigen::Ref<const Eigen::VectorXd>& stress);
+
+/// √(σx² - σxσy + σy² + 3τ²).
+double calc_plane_von_mises(const Eigen::Vector3d& stress);
+/// Of xx yy zz xy yz zx.
+double calc_solid_von_mises(const Eigen::Matrix<double, 6, 1>& stress);
+
+/// Failure index of a ply for stresses 11 22 12: 1 on the limit. Hill: σ1²/X² - σ1σ2/X² + σ2²/Y² + τ²/S²; Hoffman and
+/// Tsai-Wu: quadratic with linear terms (MSC Nastran Quick Reference Guide, PCOMP; Jones, "Mechanics of composite
+/// materials", 2nd ed., 2.9); Strain: the largest strain over its limit. 0 where a limit that it needs is not given.
+double calc_failure_index(const StressPoint& ply, const Eigen::Vector3d& stress);
+
+}  // namespace bough::fe

@@ -1,0 +1,63 @@
+#include "formats/hdf5/detail/recovery.hpp"
+
+namespace bough::hdf5 {
+namespace {
+
+using Eigen::MatrixXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Rows of elements x components as three dimensions.
+void write_rows(FileWriter& file, const std::string& path, const records::RecoveryBlock& block, const MatrixXd& rows,
+                const Meaning& meaning) {
+  const RowMajor data = rows;
+  file.write_numbers(path, {block.id.size(), block.components.size(), static_cast<hsize_t>(data.cols())}, data.data(),
+                     meaning);
+}
+
+MatrixXd read_rows(FileReader& file, const std::string& path, const records::RecoveryBlock& block, long columns) {
+  const auto e = static_cast<long>(block.id.size()), c = static_cast<long>(block.components.size());
+  const NumberArray data = file.read_array(path, {e, c, columns});
+  return Eigen::Map<const RowMajor>(data.data.data(), e * c, columns);
+}
+
+}  // namespace
+
+void write_recovery(FileWriter& file, const records::FlexBody& body) {
+  if (body.recovery.empty()) return;
+  file.write_matrix("/recovery/inertial_load", body.inertial_load,
+                    {"generalized load of each inertial load, as kg_inertial has them: mode, load",
+                     "M L/E per L/T^2, M L^2/E per 1/T^2"});
+  file.make_group("/recovery/elements");
+  for (const auto& block : body.recovery) {
+    const std::string path = "/recovery/elements/" + block.name;
+    file.write_integers(path + "/id", block.id, {"element ids", "1"});
+    file.write_strings(path + "/component", block.components,
+                       {"what the rows of each element are: forces, then stresses as stress_xx@point", "1"});
+    write_rows(file, path + "/matrix", block, block.matrix, {"per modal coordinate: element, component, mode", "F/E"});
+    write_rows(file, path + "/inertial", block, block.inertial,
+               {"what the modes leave out of the static answer to each inertial load: element, component, load",
+                "F per L/T^2, 1/T^2"});
+    write_rows(file, path + "/external", block, block.external,
+               {"the same of each locator's load: element, component, locator", "F per load"});
+    write_rows(file, path + "/offset", block, block.offset, {"of the preload, at rest: element, component, 1", "F"});
+  }
+}
+
+void read_recovery(FileReader& file, records::FlexBody& body) {
+  if (!file.has("/recovery/elements")) return;
+  const long n = body.num_modes(), ne = static_cast<long>(body.locators.size());
+  body.inertial_load = file.read_matrix("/recovery/inertial_load", n, records::kNumInertialLoads);
+  for (const auto& name : file.get_children("/recovery/elements")) {
+    const std::string path = "/recovery/elements/" + name;
+    auto& block = body.recovery.emplace_back();
+    block.name = name;
+    block.id = file.read_integers(path + "/id", -1);
+    block.components = file.read_strings(path + "/component", -1);
+    block.matrix = read_rows(file, path + "/matrix", block, n);
+    block.inertial = read_rows(file, path + "/inertial", block, records::kNumInertialLoads);
+    block.external = read_rows(file, path + "/external", block, ne);
+    block.offset = read_rows(file, path + "/offset", block, 1);
+  }
+}
+
+}  // namespace bough::hdf5

@@ -1,0 +1,21 @@
+#pragma once
+/// \file What a hinge, a constraint or a [[force]] puts on a node of a body, measured.
+#include "solver/system/impl.hpp"
+
+namespace bough::solver {
+
+/// One of hinge, constraint, force.
+struct NodeSource {
+  int node = 0;                         ///< index into Body::nodes()
+  int hinge = -1;                       ///< the body whose inboard hinge it is
+  int constraint = -1;                  ///< no coupler
+  bool is_parent = false;               ///< the node carries that hinge or constraint, else it hangs on it
+  const AppliedForce* force = nullptr;  ///< with a function, or constant
+};
+
+/// Hinges, constraints and forces at the nodes of `body`, in this order; load patterns are none.
+std::vector<NodeSource> list_node_sources(const System& system, int body);
+/// Force and moment about the node, components in the frame of the body. After calc_accelerations. No allocation.
+Vector6d calc_node_load(const NodeSource& source, int body, const System& system, const SystemData& data);
+
+}  // namespace bough::solver

@@ -1,0 +1,57 @@
+#pragma once
+/// \file Forces and stresses of elements of a flexible body in motion (docs/theory/recovery.md).
+///
+/// Rows = offset + matrix η + inertial (A_I - A_I of the preload) + Σ external f: A_I as the body's origin moves, less
+/// gravity; f of hinges, constraints, [[force]]s without a type and load patterns at the body's locators. What the rows
+/// mean the body's file says; here they have names.
+#include <array>
+
+#include "formats/records/flex_body.hpp"
+#include "solver/forces/applied.hpp"
+#include "solver/system/system.hpp"
+
+namespace bough::solver {
+
+struct NodeSource;
+
+class Recovery {
+ public:
+  struct Element {
+    std::string path;  ///< "CBAR/17"
+    int id = 0;
+    int first = 0;  ///< row
+    std::vector<std::string> components;
+    bool is_recorded = false;
+    int size() const { return static_cast<int>(components.size()); }
+  };
+
+  Recovery(const records::FlexBody& flex, int body);
+  ~Recovery();
+
+  const std::vector<Element>& elements() const { return elements_; }
+  /// nullptr when absent.
+  const Element* find(int id) const;
+  void record(int id);  ///< among the results
+  /// What loads the body at its locators; names of nodes whose loads the file has no answer to.
+  std::vector<int> connect(const System& system, const records::FlexBody& flex);
+
+  /// Rows first ... first + count. After calc_accelerations. No allocation.
+  void calc(const System& system, const SystemData& data, int first, int count, double* out) const;
+
+ private:
+  struct Loaded;
+  struct Pattern {
+    const AppliedForce* force = nullptr;
+    VectorXd rows;
+  };
+  int body_;
+  std::vector<Element> elements_;
+  MatrixXd matrix_, inertial_;  ///< rows x n, rows x 12
+  MatrixXd external_;           ///< rows x locators
+  VectorXd offset_;
+  Eigen::Matrix<double, 12, 1> preload_ = Eigen::Matrix<double, 12, 1>::Zero();
+  std::vector<Loaded> loaded_;
+  std::vector<Pattern> patterns_;
+};
+
+}  // namespace bough::solver
