@@ -129,9 +129,10 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, Load
     body.is_unreadable = true;
     if (!fs::exists(get_body_path(file))) {
       diagnostics.error("cli.no-body-file", body.at.file.empty() ? SourceLocation{path} : body.at,
-                        "body \"" + body.name + "\": there is no file " + shorten(file),
-                        "make it with bough reduce " + name_reducible(shorten(file)) + " -o " + shorten(file) +
-                            ", or correct the name");
+                        "body \"" + body.name + "\": there is no file " + shorten(get_body_path(file)),
+                        "make it with bough " +
+                            (is_flx(file) ? "flx BODY.h5" : "reduce " + name_reducible(shorten(file))) + " -o " +
+                            shorten(get_body_path(file)) + ", or correct the name");
       continue;
     }
     try {
