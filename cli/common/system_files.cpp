@@ -79,7 +79,7 @@ std::optional<RigidPart> find_rigid_part(const records::SystemSpec& spec, const 
                                          Diagnostics& diagnostics) {
   const records::BodyRecord* found = nullptr;
   for (const auto& body : spec.bodies) {
-    if (body.file != file || body.inertia.isZero(0)) continue;
+    if (body.file != file || (body.inertia.isZero(0) && body.cg.isZero(0))) continue;
     if (found && (body.inertia != found->inertia || body.cg != found->cg))
       diagnostics.error("flx.two-inertias", body.at,
                         "body \"" + body.name + "\" gives the body of " + file + " another inertia or cg than body \"" +

@@ -105,10 +105,12 @@ bool FlxReader::read_extension(const std::string& label, const std::string& line
   if (label == "!+KIND") return read_kind();
   if (label == "!+LOCATOR") return read_locator();
   if (label == "!+NLOCATOR") {
-    if (file_.has_stiffening || words_.size() != 2 || !parse_value(words_[1], num_locators_)) return false;
-    file_.has_stiffening = true;
+    int count = 0;
+    if (file_.has_stiffening || words_.size() != 2 || !parse_value(words_[1], count)) return false;
     const double n = num_modes_;
-    if (num_locators_ < 0 || num_locators_ * n * n > bytes_ || num_locators_ > bytes_) return false;
+    if (count < 0 || count * n * n > bytes_ || count > bytes_) return false;
+    num_locators_ = count;
+    file_.has_stiffening = true;
     size_locators();
     return true;
   }
