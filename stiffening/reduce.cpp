@@ -113,6 +113,7 @@ fe::Model Reduction::build_model() {
   else if (spec_.origin_at_mass_centre)
     options.origin = fe::calc_mass_properties(model, model.mass_kind(), Eigen::Vector3d::Zero()).cg;
   options.prestress = calc_prestress(options);
+  model_options_ = options;
   if (!options.origin && !options.prestress) return model;
   Diagnostics reported;
   return fe::Model::build(deck_, options, elements, reported);

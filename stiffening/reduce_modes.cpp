@@ -48,7 +48,8 @@ void Reduction::set_modes(const fe::System& system, const StaticSolve& solve) {
   options.factor = factor_;
   std::vector<std::string> names;
   options.residual_loads = collect_residual_loads(model, spec_, loads_, names);
-  auto basis = modal::bases::calc_basis(system, options, solve, diagnostics_);
+  const auto augmented = augment(model);
+  auto basis = modal::bases::calc_basis(augmented ? augmented->system : system, options, solve, diagnostics_);
   check_rigid(basis);
   std::string unused;
   for (const int i : basis.unused_loads) unused += (unused.empty() ? "" : ", ") + names[static_cast<std::size_t>(i)];
@@ -68,6 +69,7 @@ void Reduction::set_modes(const fe::System& system, const StaticSolve& solve) {
     diagnostics_.warning("reduce.rigid", where(), "no elastic mode is in the range: the body is rigid",
                          "raise max_frequency or the number of modes");
   basis = modal::bases::select_columns(basis, columns);
+  if (augmented) take_off_augmentation(model, basis);
   set_damping(model, basis);
   if (!basis.is_raw && is_moved) modal::bases::move_to_frame(model, make_frame_spec(spec_), basis);
   Phi_ = basis.Phi;

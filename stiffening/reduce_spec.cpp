@@ -58,6 +58,10 @@ void Reduction::check_spec() {
     diagnostics_.error("reduce.bad-preload", spec_.preload->at,
                        "a preload is given with the matrices of another program, which do not tell their stress",
                        "let that program add the geometric stiffness of the preload to K");
+  if (!spec_.augments.empty() && options_.modes)
+    diagnostics_.error("reduce.bad-augment", spec_.augments.front().at,
+                       "masses are to augment the modes, but the modes are given",
+                       "take [[body.augment]] out, or [body.matrices] modes, so that they are solved for");
   diagnostics_.throw_if_errors();
 }
 
@@ -86,6 +90,7 @@ void Reduction::check_nodes(const fe::Model& model) {
   for (const int id : spec_.output_nodes) check_node(model, id, "output", {});
   for (const int id : spec_.support) check_node(model, id, "support", {});
   for (const int id : spec_.frame_nodes) check_node(model, id, "frame_nodes", {});
+  for (const auto& augment : spec_.augments) check_node(model, augment.node, "augment", augment.at);
   for (const auto& load : spec_.loads) {
     if (load.load_set > 0 || load.temperature_set > 0) continue;
     check_node(model, load.node, "load \"" + load.name + "\"", load.at);

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "fe/statics/statics.hpp"
+#include "stiffening/augment.hpp"
 #include "stiffening/body_basis.hpp"
 #include "stiffening/reduce.hpp"
 
@@ -53,6 +54,10 @@ class Reduction {
   bool is_on_dependent_node(const fe::Model& model) const;
   modal::bases::StaticSolve make_solver(const fe::System& system);
   fe::Model build_model();
+  /// The model with the masses of [[body.augment]]; empty without.
+  std::unique_ptr<const Augmented> augment(const fe::Model& model) const;
+  /// Mass, mean axes and, by `orthogonalize`, modes of the body itself in the space of its augmented modes.
+  void take_off_augmentation(const fe::Model& model, modal::bases::Basis& basis) const;
   void add_mechanism_error(const std::string& what);
 
   bool is_free() const { return spec_.frame != records::BodyFrame::Fixed; }
@@ -63,6 +68,7 @@ class Reduction {
   Diagnostics& diagnostics_;
   records::FlexBody body_;
   MatrixXd Phi_;
+  fe::ModelOptions model_options_;  ///< that the model was built with
   std::vector<BodyLoad> loads_;
   const fe::SymmetricFactor* factor_ = nullptr;  // of K, kept by the static solver
 };

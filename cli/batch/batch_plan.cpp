@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "cli/batch/batch_steps.hpp"
+#include "cli/common/body_files.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
 #include "formats/hdf5/files.hpp"
@@ -128,13 +129,15 @@ void BatchPlan::carry_all() {
 void BatchPlan::resolve_paths(const std::string& file, Carried& carried) {
   const auto local_folder = fs::path(carried.local).parent_path();
   toml_files::change_file_keys(carried.text, [&](const std::string& path) -> std::string {
-    const auto target = make_absolute(fs::path(file).parent_path().string(), path);
+    const auto alone = get_body_path(path), of_body = path.substr(alone.size());  // "panels.FLX" ":2"
+    const auto target = make_absolute(fs::path(file).parent_path().string(), alone);
     if (const auto own = carried_.find(target); own != carried_.end())
-      return fs::path(own->second.local).lexically_relative(local_folder.empty() ? "." : local_folder).string();
+      return fs::path(own->second.local).lexically_relative(local_folder.empty() ? "." : local_folder).string() +
+             of_body;
     if (std::find(outputs_.begin(), outputs_.end(), target) != outputs_.end() || !fs::is_regular_file(target))
       return path;
     others_.push_back(target);
-    return target;
+    return target + of_body;
   });
 }
 

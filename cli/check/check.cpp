@@ -7,6 +7,7 @@
 #include "cli/check/check_solutions.hpp"
 #include "cli/check/check_subcases.hpp"
 #include "cli/check/diagram.hpp"
+#include "cli/common/body_files.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/deck_tables.hpp"
 #include "cli/common/model_options.hpp"
@@ -18,6 +19,7 @@
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/mass_directions.hpp"
 #include "fe/statics/preload.hpp"
+#include "formats/flx/flx_file.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/nastran/reader.hpp"
 #include "formats/records/params.hpp"
@@ -209,7 +211,7 @@ int check_system(const CheckOptions& options, const Console& console) {
 }
 
 void check_flex_body(const std::string& path, std::string& text, nlohmann::json& json, Diagnostics& diagnostics) {
-  const auto body = hdf5::read_flex_body(path);
+  const auto body = read_body(path, diagnostics);
   int computed = 0;
   for (bool flag : body.kg_inertial_computed) computed += flag ? 1 : 0;
   double worst = 0;
@@ -285,8 +287,24 @@ int check_hdf5(const CheckOptions& options, const Console& console) {
   return finish(options, console, text, json, diagnostics);
 }
 
+/// Every body of the file, or the one that its name chooses.
+int check_flx(const CheckOptions& options, const Console& console) {
+  Diagnostics diagnostics;
+  std::string text;
+  auto bodies = nlohmann::json::array();
+  const auto name = flx::parse_flx_name(options.file).value_or(flx::FlxName{});
+  for (const auto& file : flx::read_flx_bodies(name.path)) {
+    if (name.body_id > 0 && name.body_id != file.body_id) continue;
+    bodies.emplace_back();
+    check_flex_body(name.path + ":" + std::to_string(file.body_id), text, bodies.back(), diagnostics);
+    bodies.back()["body_id"] = file.body_id;
+  }
+  if (bodies.empty()) flx::read_flx(name.path, name.body_id);  // says which there are
+  return finish(options, console, text, {{"kind", "flx"}, {"bodies", bodies}}, diagnostics);
+}
+
 int check_file(const CheckOptions& options, Console& console) {
-  do_once([&] { demand_file(options.file); });
+  do_once([&] { demand_body_file(options.file); });
   if (!options.diagram.empty()) {
     const bool is_toml = has_suffix(options.file, ".toml");
     demand_kind(options.file, is_toml ? toml_files::detect_kind(options.file) : "", "system");
@@ -294,6 +312,7 @@ int check_file(const CheckOptions& options, Console& console) {
       throw InputError("cli.bad-diagram", {options.file}, "--diagram draws the blocks of a system file",
                        "name a system.toml");
   }
+  if (is_flx(options.file)) return check_flx(options, console);
   if (has_suffix(options.file, ".h5") || has_suffix(options.file, ".hdf5")) return check_hdf5(options, console);
   if (has_suffix(options.file, ".toml")) {
     const auto kind = share([&] { return toml_files::detect_kind(options.file); });
@@ -306,7 +325,7 @@ int check_file(const CheckOptions& options, Console& console) {
 
 int run_check(const CheckOptions& options) {
   Console console(options.quiet, options.verbosity);
-  do_once([&] { check_outputs(options, {options.output, options.diagram}, {options.file}); });
+  do_once([&] { check_outputs(options, {options.output, options.diagram}, {get_body_path(options.file)}); });
   try {
     return check_file(options, console);
   } catch (const InputError& failure) {
@@ -323,7 +342,7 @@ void add_check(CLI::App& app, Action& action) {
   auto o = std::make_shared<CheckOptions>();
   auto* verb =
       app.add_subcommand("check", "Read a deck, body, system or HDF5 file; print what it holds and every error");
-  verb->add_option("file", o->file, "Nastran deck, body.toml, system.toml or .h5")->required();
+  verb->add_option("file", o->file, "Nastran deck, body.toml, system.toml, .h5 or .FLX")->required();
   verb->add_option("--gpwg", o->gpwg,
                    "Weights about this grid (0: the origin) as the grid point weight generator of Nastran prints them "
                    "(default: PARAM,GRDPNT)")

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "cli/common/body_files.hpp"
 #include "cli/common/control_files.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/start_state.hpp"
-#include "formats/hdf5/files.hpp"
 #include "formats/toml/specs.hpp"
 #include "solver/integrate/simulate.hpp"
 
@@ -74,6 +74,23 @@ std::vector<std::pair<std::string, std::string>> split_settings(const std::vecto
   return pairs;
 }
 
+/// cg and inertia that the bodies of a .FLX give; of several with this file they are the same.
+std::optional<RigidPart> find_rigid_part(const records::SystemSpec& spec, const std::string& file,
+                                         Diagnostics& diagnostics) {
+  const records::BodyRecord* found = nullptr;
+  for (const auto& body : spec.bodies) {
+    if (body.file != file || (body.inertia.isZero(0) && body.cg.isZero(0))) continue;
+    if (found && (body.inertia != found->inertia || body.cg != found->cg))
+      diagnostics.error("flx.two-inertias", body.at,
+                        "body \"" + body.name + "\" gives the body of " + file + " another inertia or cg than body \"" +
+                            found->name + "\"",
+                        "one body of a .FLX has one inertia: correct one of them");
+    if (!found) found = &body;
+  }
+  if (!found) return std::nullopt;
+  return RigidPart{found->cg, found->inertia};
+}
+
 }  // namespace
 
 LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, const std::string& start_from,
@@ -103,22 +120,24 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, Load
   std::map<std::string, std::string> flex_path;
   for (auto& body : spec.bodies) {
     if (body.file.empty() || flex.count(body.file)) continue;
+    const auto given_rigid = find_rigid_part(spec, body.file, diagnostics);
     if (const auto found = given.find(place(body.file)); found != given.end()) {
       flex[body.file] = found->second;
       continue;
     }
     const auto file = resolve_beside(path, body.file);
     body.is_unreadable = true;
-    if (!fs::exists(file)) {
+    if (!fs::exists(get_body_path(file))) {
       diagnostics.error("cli.no-body-file", body.at.file.empty() ? SourceLocation{path} : body.at,
-                        "body \"" + body.name + "\": there is no file " + shorten(file),
-                        "make it with bough reduce " + name_reducible(shorten(file)) + " -o " + shorten(file) +
-                            ", or correct the name");
+                        "body \"" + body.name + "\": there is no file " + shorten(get_body_path(file)),
+                        "make it with bough " +
+                            (is_flx(file) ? "flx BODY.h5" : "reduce " + name_reducible(shorten(file))) + " -o " +
+                            shorten(get_body_path(file)) + ", or correct the name");
       continue;
     }
     try {
-      flex[body.file] = hdf5::read_flex_body(file);
-      flex_path[body.file] = file;
+      flex[body.file] = read_moving_body(file, diagnostics, given_rigid);
+      flex_path[body.file] = get_body_path(file);
       body.is_unreadable = false;
     } catch (const InputError& error) {
       for (auto item : error.items()) {

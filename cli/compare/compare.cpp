@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "cli/common/body_files.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/compare/compare_report.hpp"
@@ -27,11 +28,11 @@ struct Loaded {
   std::optional<records::FlexBody> body;
 };
 
-Loaded load(const std::string& file) {
-  demand_file(file);
+Loaded load(const std::string& file, Diagnostics& diagnostics) {
+  demand_body_file(file);
   const auto format = read_file_format(file);
   if (format == "bough-flexbody") {
-    auto body = hdf5::read_flex_body(file);
+    auto body = read_body(file, diagnostics);
     auto model = modal::ModalModel::from(body);
     return {std::move(model), std::move(body)};
   }
@@ -41,8 +42,8 @@ Loaded load(const std::string& file) {
                    "give files that bough reduce or bough modes wrote");
 }
 
-records::FlexBody load_body(const std::string& file) {
-  auto loaded = load(file);
+records::FlexBody load_body(const std::string& file, Diagnostics& diagnostics) {
+  auto loaded = load(file, diagnostics);
   if (!loaded.body)
     throw InputError("cli.not-a-body", {file}, "expected a flexible body, found a modes file", "reduce the deck");
   return std::move(*loaded.body);
@@ -70,19 +71,19 @@ MatrixXd calc_mass_mac(const CompareOptions& o, const PairReport& r) {
                    "give a file that bough matrices wrote");
 }
 
-PairReport compare_two(const CompareOptions& o) {
-  const auto a = load(o.files[0]), b = load(o.files[1]);
+PairReport compare_two(const CompareOptions& o, Diagnostics& diagnostics) {
+  const auto a = load(o.files[0], diagnostics), b = load(o.files[1], diagnostics);
   auto r = compare_models(o.files[0], a.model, o.files[1], b.model);
   if (!o.mass.empty()) r.mass_mac = calc_mass_mac(o, r);
   if (a.body && b.body) r.bodies = modal::compare_bodies(*a.body, *b.body, r.pairs, r.match.offset);
   return r;
 }
 
-RefinementReport compare_meshes(const CompareOptions& o) {
+RefinementReport compare_meshes(const CompareOptions& o, Diagnostics& diagnostics) {
   std::array<records::FlexBody, 3> bodies;
   RefinementReport report{o.files, {}, {}};
   for (std::size_t i = 0; i < 3; ++i) {
-    bodies[i] = load_body(o.files[i]);
+    bodies[i] = load_body(o.files[i], diagnostics);
     report.element_size[i] = modal::calc_element_size(bodies[i].mesh);
     if (report.element_size[i] <= 0 || (i > 0 && report.element_size[i] >= 0.999 * report.element_size[i - 1]))
       throw InputError(
@@ -98,7 +99,9 @@ template <class Report>
 void put_out(const Report& report, const CompareOptions& o, const Console& console) {
   if (!o.output.empty()) {
     records::Comparison file;
-    file.source = calc_sources(o.files);
+    std::vector<std::string> files;
+    for (const auto& name : o.files) files.push_back(get_body_path(name));
+    file.source = calc_sources(files);
     add_arrays(report, file);
     hdf5::write_comparison(file, o.output);
   }
@@ -118,18 +121,20 @@ int run_compare(const CompareOptions& o) {
     return kUsageError;
   }
   if (!o.output.empty()) {
-    auto inputs = o.files;
-    inputs.push_back(o.mass);
+    std::vector<std::string> inputs{o.mass};
+    for (const auto& name : o.files) inputs.push_back(get_body_path(name));
     check_output(o, o.output, inputs);
   }
+  Diagnostics diagnostics;
   if (o.refinement) {
-    put_out(compare_meshes(o), o, console);
+    put_out(compare_meshes(o, diagnostics), o, console);
   } else if (o.files.size() == 2) {
-    put_out(compare_two(o), o, console);
+    put_out(compare_two(o, diagnostics), o, console);
   } else {
-    const auto body = load_body(o.files[0]);
+    const auto body = load_body(o.files[0], diagnostics);
     put_out(compare_with_itself(body, o.files[0]), o, console);
   }
+  console.print(diagnostics);
   return kSuccess;
 }
 

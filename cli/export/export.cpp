@@ -4,6 +4,7 @@
 #include <memory>
 #include <sstream>
 
+#include "cli/common/body_files.hpp"
 #include "cli/common/channels.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
@@ -50,19 +51,19 @@ std::vector<exports::CsvColumn> read_columns(const ExportOptions& o) {
   return columns;
 }
 
-std::string make_csv(const ExportOptions& o) {
+std::string make_csv(const ExportOptions& o, Diagnostics& diagnostics) {
   std::ostringstream text;
   const auto format = o.channels.empty() ? read_file_format(o.file) : "";
   if (format == "bough-linear") return make_linear_csv(hdf5::read_linear_model(o.file));
   if (format == "bough-sweep") return make_sweep_csv(hdf5::read_sweep(o.file));
-  exports::write_csv(text, has_shapes(format) ? read_shape_columns(o.file, format) : read_columns(o));
+  exports::write_csv(text, has_shapes(format) ? read_shape_columns(o.file, format, diagnostics) : read_columns(o));
   return text.str();
 }
 
-std::string make_universal(const ExportOptions& o) {
+std::string make_universal(const ExportOptions& o, Diagnostics& diagnostics) {
   const auto format = read_file_format(o.file);
   if (format == "bough-modes") return exports::make_uff(hdf5::read_modes(o.file));
-  if (format == "bough-flexbody") return exports::make_uff(hdf5::read_flex_body(o.file));
+  if (format == "bough-flexbody") return exports::make_uff(read_body(o.file, diagnostics));
   if (format == "bough-results") return exports::make_uff(read_columns(o));
   refuse_export(o.file, "uff", "a flexible body, or what bough modes or run wrote");
 }
@@ -74,7 +75,7 @@ std::string make_shapes(const ExportOptions& o, Diagnostics& diagnostics) {
   if (format == "bough-modes")
     return make_vtu_text(exports::make_picture(hdf5::read_modes(o.file)), encoding, o.file, diagnostics);
   if (format == "bough-flexbody")
-    return make_vtu_text(exports::make_picture(hdf5::read_flex_body(o.file)), encoding, o.file, diagnostics);
+    return make_vtu_text(exports::make_picture(read_body(o.file, diagnostics)), encoding, o.file, diagnostics);
   throw InputError("cli.no-shapes", {o.file}, "the file holds no mode shapes, found format \"" + format + "\"",
                    "give a file that bough modes or bough reduce wrote");
 }
@@ -94,8 +95,8 @@ std::string make_bdf(const ExportOptions& o, Diagnostics& diagnostics) {
 int run_export(const ExportOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  demand_file(o.file);
-  if (!o.output.empty()) check_output(o, o.output, {o.file});
+  demand_body_file(o.file);
+  if (!o.output.empty()) check_output(o, o.output, {get_body_path(o.file)});
   Diagnostics diagnostics;
   if (o.format != "bdf") warn_incomplete(o.file, diagnostics);
   if (o.format == "mat") {
@@ -111,9 +112,9 @@ int run_export(const ExportOptions& o) {
   const auto text = o.format == "vtu"          ? make_shapes(o, diagnostics)
                     : o.format == "bdf"        ? make_bdf(o, diagnostics)
                     : o.format == "op4"        ? make_op4(o.file, diagnostics)
-                    : o.format == "uff"        ? make_universal(o)
+                    : o.format == "uff"        ? make_universal(o, diagnostics)
                     : is_body_format(o.format) ? make_body_text(o.file, o.format, o.body, diagnostics)
-                                               : make_csv(o);
+                                               : make_csv(o, diagnostics);
   console.print(diagnostics);
   if (o.output.empty()) {
     console.print_data(text);

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/common/body_files.hpp"
 #include "cli/export/export_matrices.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/mbdyn/fem_file.hpp"
@@ -27,7 +28,7 @@ bool is_body_format(const std::string& format) { return format == "sid" || forma
 std::string make_body_text(const std::string& file, const std::string& format, const BodyExportOptions& o,
                            Diagnostics& diagnostics) {
   if (read_file_format(file) != "bough-flexbody") refuse_export(file, format, "a flexible body, from bough reduce");
-  const auto body = hdf5::read_flex_body(file);
+  const auto body = read_moving_body(file, diagnostics);
   if (format == "mbdyn") return mbdyn::make_fem(body, {file}, diagnostics);
   sid::Layout layout;
   layout.is_full_inertia = o.inertia == "3x3";
@@ -38,7 +39,8 @@ std::string make_body_text(const std::string& file, const std::string& format, c
 
 bool has_shapes(const std::string& format) { return format == "bough-flexbody" || format == "bough-modes"; }
 
-std::vector<exports::CsvColumn> read_shape_columns(const std::string& file, const std::string& format) {
+std::vector<exports::CsvColumn> read_shape_columns(const std::string& file, const std::string& format,
+                                                   Diagnostics& diagnostics) {
   const auto make = [](const std::vector<int>& id, const Eigen::MatrixXd& xyz,
                        const std::vector<Eigen::MatrixXd>& phi) {
     static constexpr const char* kDirections[] = {"x", "y", "z", "rx", "ry", "rz"};
@@ -56,7 +58,7 @@ std::vector<exports::CsvColumn> read_shape_columns(const std::string& file, cons
     const auto modes = hdf5::read_modes(file);
     return make(modes.node_id, modes.node_xyz, modes.phi);
   }
-  const auto body = hdf5::read_flex_body(file);
+  const auto body = read_body(file, diagnostics);
   return make(body.node_id, body.node_xyz, body.phi);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "cli/common/body_files.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/sparse_file.hpp"
 #include "formats/matrices/mat_file.hpp"
@@ -175,7 +176,7 @@ void export_mat(const std::string& file, const std::string& output, Diagnostics&
   const auto format = read_file_format(file);
   MatFields variables;
   if (format == "bough-flexbody") {
-    const auto body = hdf5::read_flex_body(file);
+    const auto body = read_body(file, diagnostics);
     variables = make_variables(body);
     if (const auto solid = find_solid(body, file, diagnostics); solid) {
       variables.emplace_back("P", solid->P);

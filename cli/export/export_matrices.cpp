@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "cli/common/body_files.hpp"
 #include "formats/hdf5/files.hpp"
 
 namespace bough::cli {
 
 std::string read_file_format(const std::string& file) {
+  if (is_flx(file)) return "bough-flexbody";
   const auto attributes = hdf5::read_info(file).attributes;
   const auto found = attributes.find("format");
   return found == attributes.end() ? std::string{} : found->second;

@@ -2,6 +2,7 @@
 #include <cctype>
 #include <sstream>
 
+#include "cli/common/body_files.hpp"
 #include "cli/export/export_matrices.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/sparse_file.hpp"
@@ -137,7 +138,7 @@ std::string make_op4(const std::string& file, Diagnostics& diagnostics) {
   const auto format = read_file_format(file);
   Op4Text out;
   if (format == "bough-flexbody") {
-    const auto body = hdf5::read_flex_body(file);
+    const auto body = read_body(file, diagnostics);
     put_body(out, body, find_solid(body, file, diagnostics));
   } else if (format == "bough-modes") {
     const auto modes = hdf5::read_modes(file);

@@ -1,12 +1,18 @@
 #include "formats/flx/flx_file.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <set>
 
+#include "cli/common/body_files.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/text_file.hpp"
+#include "cli/common/usage_text.hpp"
 #include "cli/flx/flx_output.hpp"
+#include "formats/flx/fragment.hpp"
 #include "formats/hdf5/files.hpp"
 
 namespace bough::cli {
@@ -14,53 +20,99 @@ namespace bough::cli {
 namespace {
 
 struct FlxVerbOptions : FlxOptions {
-  std::string body, read, integrals;
-  int body_id = 1, modopt = 0;
-  bool special_nodes = false;
+  std::vector<std::string> bodies;
+  std::string read, integrals, fragment;
+  std::vector<int> body_ids{1};
+  int modopt = 0, first_id = 1;
+  bool special_nodes = false, stiffening = false;
   bool digits_given = false;
 };
 
+void print_written(const FlxVerbOptions& o, const std::string& output, const Console& console) {
+  const std::string both = output.empty() || o.fragment.empty() ? "" : " and ";
+  console.print("written: " + output + both + o.fragment + "\n");
+}
+
 int run_read(const FlxVerbOptions& o, const Console& console) {
-  demand_file(o.read);
-  const auto file = flx::read_flx(o.read);
-  if (!o.output.empty()) {
-    check_output(o, o.output, {o.read, o.layout});
-    write_text_file(o.output, flx::write_flx(file, choose_layout(o, o.digits_given ? o.digits : file.digits)));
-  }
-  if (o.json)
-    console.print_data(format_flx_json(file));
-  else if (o.output.empty())
-    console.print_data(format_flx_text(file));
+  demand_body_file(o.read);
+  const auto name = flx::parse_flx_name(o.read).value_or(flx::FlxName{o.read, 0});
+  std::vector<flx::FlxFile> files;
+  if (name.body_id > 0)
+    files.push_back(flx::read_flx(name.path, name.body_id));
   else
-    console.print("written: " + o.output + "\n");
+    files = flx::read_flx_bodies(name.path);
+  check_outputs(o, {o.output, o.fragment}, {name.path, o.layout});
+  if (!o.output.empty()) {
+    std::string text;
+    for (const auto& file : files)
+      text += flx::write_flx(file, choose_layout(o, o.digits_given ? o.digits : file.digits));
+    write_text_file(o.output, text);
+  }
+  if (!o.fragment.empty()) write_text_file(o.fragment, flx::make_fragment(files, o.first_id));
+  if (o.json) {
+    console.print_data(format_flx_json(files));
+  } else if (o.output.empty() && o.fragment.empty()) {
+    for (const auto& file : files) console.print_data(format_flx_text(file));
+  } else {
+    print_written(o, o.output, console);
+  }
   return kSuccess;
+}
+
+/// The ids as they were given, or counted on from the only one.
+std::vector<int> choose_ids(const FlxVerbOptions& o) {
+  auto ids = o.body_ids;
+  while (o.body_ids.size() == 1 && ids.size() < o.bodies.size()) ids.push_back(ids.back() + 1);
+  if (ids.size() != o.bodies.size())
+    throw InputError("cli.body-ids", {}, fmt::format("{} body ids for {} bodies", ids.size(), o.bodies.size()),
+                     "give the first one, or one a body: --body-id 3,7");
+  if (std::set<int>(ids.begin(), ids.end()).size() != ids.size())
+    throw InputError("cli.body-ids", {}, "one body id is given twice", "give each body an id of its own");
+  return ids;
 }
 
 int run_flx(const FlxVerbOptions& o) {
   const Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  if (o.body.empty() == o.read.empty()) {
+  if (o.bodies.empty() == o.read.empty()) {
     console.print_error("cli.usage", "give either a flexible body to write or --read FILE", "see bough flx --help");
     return kUsageError;
   }
   if (!o.read.empty()) return run_read(o, console);
-  demand_file(o.body);
+  if (o.bodies.size() > 1 && o.output.empty()) {
+    console.print_error("cli.usage", "several bodies go into one file: give it with -o", "see bough flx --help");
+    return kUsageError;
+  }
+  const auto ids = choose_ids(o);
+  auto inputs = o.bodies;
+  for (const auto& name : o.bodies) demand_file(name);
+  const std::string output =
+      o.output.empty() ? std::filesystem::path(o.bodies.front()).stem().string() + ".FLX" : o.output;
+  inputs.push_back(o.layout);
+  check_outputs(o, {output, o.fragment}, inputs);
   const auto layout = choose_layout(o, o.digits);
-  const auto body = hdf5::read_flex_body(o.body);
   flx::MakeOptions options;
-  options.body_id = o.body_id;
   options.modopt = o.modopt;
   options.method = o.integrals;
   options.has_special_nodes = o.special_nodes;
+  options.has_stiffening = o.stiffening;
   options.digits = o.digits;
-  const auto file = flx::make_flx(body, options);
-  const std::string output = o.output.empty() ? std::filesystem::path(o.body).stem().string() + ".FLX" : o.output;
-  check_output(o, output, {o.body, o.layout});
-  write_text_file(output, flx::write_flx(file, layout));
+  std::vector<flx::FlxFile> files;
+  std::string text;
+  for (std::size_t b = 0; b < ids.size(); ++b) {
+    options.body_id = ids[b];
+    blame(o.bodies[b], [&] {
+      files.push_back(flx::make_flx(hdf5::read_flex_body(o.bodies[b]), options));
+      return kSuccess;
+    });
+    text += flx::write_flx(files.back(), layout);
+  }
+  write_text_file(output, text);
+  if (!o.fragment.empty()) write_text_file(o.fragment, flx::make_fragment(files, o.first_id));
   if (o.json)
-    console.print_data(format_flx_json(file));
+    console.print_data(format_flx_json(files));
   else
-    console.print("written: " + output + "\n");
+    print_written(o, output, console);
   return kSuccess;
 }
 
@@ -68,9 +120,10 @@ int run_flx(const FlxVerbOptions& o) {
 
 void add_flx(CLI::App& app, Action& action) {
   auto o = std::make_shared<FlxVerbOptions>();
-  auto* verb = app.add_subcommand("flx", "A flexible body becomes a .FLX file for TREETOPS, or such a file is read");
-  verb->add_option("body", o->body, "Flexible-body file that bough reduce wrote");
-  verb->add_option("--read", o->read, "Print this .FLX file block by block; with -o write it again");
+  auto* verb = app.add_subcommand("flx", "Flexible bodies become a .FLX file for TREETOPS, or such a file is read");
+  verb->add_option("body", o->bodies, "Flexible-body files that bough reduce wrote; several stand in one .FLX");
+  verb->add_option("--read", o->read,
+                   "Print this .FLX file block by block, of FILE.FLX:2 the body with the id 2; with -o write it again");
   verb->add_flag("--special-nodes", o->special_nodes,
                  "Add the nmode + 1 nodes through which a controller applies the geometric stiffness");
   verb->add_option("--integrals", o->integrals,
@@ -79,12 +132,26 @@ void add_flx(CLI::App& app, Action& action) {
   verb->add_option("--modopt", o->modopt, "0 all integrals, 1 zero and first order, 2 zero order only")
       ->check(CLI::Range(0, 2))
       ->capture_default_str();
-  verb->add_option("--body-id", o->body_id, "Number of the body in the multibody model")->capture_default_str();
+  verb->add_option("--body-id", o->body_ids,
+                   "Number of the body in the multibody model; of several the first, or one each: 3,7 (default: 1)")
+      ->delimiter(',')
+      ->check(make_positive());
+  verb->add_flag("--stiffening", o->stiffening,
+                 "Write K_G1, K_G2 and the preload too, in lines that readers of version 1.0 pass over: a run of Bough "
+                 "then stiffens as from the HDF5 file");
+  verb->add_option("--int", o->fragment,
+                   "Also write what the .INT of TREETOPS needs for geometric stiffening, as a list to type in: special "
+                   "nodes, jets, sensors, user controller");
+  verb->add_option("--int-first", o->first_id, "--int: first number of the actuators, sensors and controllers")
+      ->check(make_positive())
+      ->capture_default_str();
   add_flx_options(*verb, *o);
   add_common_options(*verb, *o, kOutput | kJson, ".FLX file to write (default: the body file's name with .FLX, here)");
   verb->footer(
       "Example:\n  bough flx boom.h5 --special-nodes -o boom.FLX\n  bough flx boom.h5 --layout site.layout -o "
       "boom.FLX\n"
+      "  bough flx left.h5 right.h5 --stiffening -o panels.FLX\n"
+      "  bough flx boom.h5 --special-nodes --int boom.int.txt -o boom.FLX\n"
       "  bough flx --read boom.FLX --json");
   verb->callback([&action, o, verb] {
     o->digits_given = verb->count("--digits") > 0;

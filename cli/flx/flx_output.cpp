@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "formats/records/mode_kind.hpp"
+
 namespace bough::cli {
 
 namespace {
@@ -44,7 +46,38 @@ flx::Layout choose_layout(const FlxOptions& options, int digits) {
   return flx::read_layout(options.layout);
 }
 
-std::string format_flx_json(const flx::FlxFile& file) {
+namespace {
+
+/// What only the extension has.
+void add_extension(const flx::FlxFile& file, json& out) {
+  const auto& more = file.more;
+  if (file.has_rigid) {
+    out["cg"] = std::vector<double>(more.cg.begin(), more.cg.end());
+    out["inertia"] = to_rows(more.inertia);
+    out["frame"] = more.is_free_free ? "free" : "fixed";
+    out["kind"] = json::array();
+    for (const auto kind : more.kind) out["kind"].push_back(records::get_name(kind));
+  }
+  if (!file.has_stiffening) return;
+  out["interface"] = more.interface_nodes;
+  out["kg_inertial"] = to_gains({more.kg_inertial.begin(), more.kg_inertial.end()});
+  out["kg_inertial_computed"] = more.kg_inertial_computed;
+  out["locators"] = json::array();
+  for (const auto& locator : more.locators)
+    out["locators"].push_back({{"name", locator.name}, {"node", locator.node}, {"direction", locator.direction}});
+  out["kg_external"] = to_gains(more.kg_external);
+  out["external_load"] = to_rows(more.external_load);
+  if (more.load_resultant.size() > 0) {
+    out["load_resultant"] = to_rows(more.load_resultant);
+    out["load_moment"] = to_gains(more.load_moment);
+  }
+  if (more.preload.empty()) return;
+  out["preload"] = more.preload;
+  out["kg_preload"] = to_rows(more.kg_preload);
+  out["preload_factors"] = std::vector<double>(more.preload_A_I.begin(), more.preload_A_I.end());
+}
+
+json make_json(const flx::FlxFile& file) {
   const auto& g = file.integrals;
   json out{{"body_id", file.body_id},
            {"name", file.name},
@@ -76,7 +109,17 @@ std::string format_flx_json(const flx::FlxFile& file) {
       out["gamma4"].push_back(std::move(blocks));
     }
   }
-  return out.dump(2) + "\n";
+  add_extension(file, out);
+  return out;
+}
+
+}  // namespace
+
+std::string format_flx_json(const std::vector<flx::FlxFile>& files) {
+  if (files.size() == 1) return make_json(files.front()).dump(2) + "\n";
+  json bodies = json::array();
+  for (const auto& file : files) bodies.push_back(make_json(file));
+  return json{{"bodies", bodies}}.dump(2) + "\n";
 }
 
 std::string format_flx_text(const flx::FlxFile& file) {
@@ -98,6 +141,22 @@ block gamma4 heading="gamma4: mode, mode, row, x y z" label="{j:%4d}{k:%4d}{a:%4
 block node_xyz nodes=output heading="output nodes: id, x y z" label="{node:%8d}"
 block gains nodes=output heading="gains: node, mode, translations, rotations" label="{node:%8d}{j:%4d}"
 block gains nodes=special heading="special nodes: node, mode, translations, rotations" label="{node:%8d}{j:%4d}"
+when rigid
+block cg heading="mass centre:"
+block inertia heading="inertia about the origin:"
+text "frame: {frame}"
+end
+when stiffening
+text "locators: {num_locators}, interface nodes: {interface}"
+for e
+text "locator {e:%4d}: node {locator_node} direction {locator_direction}, {locator}"
+end
+block kg_inertial per_line=6 heading="K_G1: inertial load, mode" label="{l:%4d}{j:%4d}" continue="        "
+block kg_external per_line=6 heading="K_G2: locator, mode" label="{e:%4d}{j:%4d}" continue="        "
+end
+when preload
+text "preload, part of the stiffness: {preload}"
+end
 )";
   return flx::write_flx(file, flx::parse_layout(kText, "text of flx --read"));
 }

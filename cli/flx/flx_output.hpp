@@ -16,8 +16,9 @@ void add_flx_options(CLI::App& verb, FlxOptions& options);
 /// The template of --layout, or Bough's own with so many digits.
 flx::Layout choose_layout(const FlxOptions& options, int digits);
 
-/// Every block by name, as `flx --read --json` prints it; arrays as in the flexible-body file.
-std::string format_flx_json(const flx::FlxFile& file);
+/// Every block by name, as `flx --read --json` prints it; arrays as in the flexible-body file. Of several bodies a list
+/// named bodies.
+std::string format_flx_json(const std::vector<flx::FlxFile>& files);
 /// The same as tables for a reader.
 std::string format_flx_text(const flx::FlxFile& file);
 

@@ -106,7 +106,7 @@ int run_integrals(const IntegralsOptions& o) {
   write_text_file(output, text);
   console.print(diagnostics);
   if (o.json)
-    console.print_data(format_flx_json(file));
+    console.print_data(format_flx_json({file}));
   else
     console.print("written: " + output + (o.fi.empty() ? "" : " and " + o.fi) + "\n");
   return kSuccess;

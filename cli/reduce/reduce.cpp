@@ -14,10 +14,12 @@
 #include "cli/common/ranks.hpp"
 #include "cli/common/solution.hpp"
 #include "cli/common/system_files.hpp"
+#include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/compare/compare_report.hpp"
 #include "cli/reduce/reduce_body.hpp"
 #include "formats/hdf5/files.hpp"
+#include "formats/nastran/loads_deck.hpp"
 #include "formats/toml/specs.hpp"
 
 namespace bough::cli {
@@ -44,6 +46,8 @@ struct ReduceVerbOptions : CommonOptions {
   double damping = -1;
   std::vector<std::string> matrices;
   bool force_outside = false;
+  std::string loads_deck;
+  int loads_set = nastran::kFirstInertialSet;
 };
 
 /// "[NAME=]NODE:DIRECTIONS", "[NAME=]set:ID" or "[NAME=]temperature:ID".
@@ -199,7 +203,7 @@ int run_reduce(const ReduceVerbOptions& o) {
       throw InputError("cli.output-outside", {o.file},
                        "[body.output] file = \"" + output + "\" does not lie in the folder of the body file",
                        "name the file with -o, or give --force-outside");
-    check_output(o, output, {o.file, spec.deck});
+    check_outputs(o, {output, o.loads_deck}, {o.file, spec.deck});
   });
   console.set_rank(fe::initialize_petsc().rank);
   stiffening::ReduceOptions options;
@@ -208,7 +212,10 @@ int run_reduce(const ReduceVerbOptions& o) {
   console.end_progress();
   console.print(diagnostics);
   diagnostics.throw_if_errors();
-  do_once([&] { hdf5::write_flex_body(body, output); });
+  do_once([&] {
+    hdf5::write_flex_body(body, output);
+    if (!o.loads_deck.empty()) write_text_file(o.loads_deck, nastran::write_loads_deck(body, o.loads_set));
+  });
   if (o.json) {
     nlohmann::json json{{"name", body.name},
                         {"output", output},
@@ -223,6 +230,7 @@ int run_reduce(const ReduceVerbOptions& o) {
     console.print_data(json.dump(2) + "\n");
   } else {
     console.print(format_summary(body, output));
+    if (!o.loads_deck.empty()) console.print("written: " + o.loads_deck + "\n");
     if (o.integrals_report) console.print("\n" + format_report(SingleReport{body, modal::check_integrals(body)}));
     if (check) console.print("compared with other modes:\n" + make_check_table(body, *check).to_text());
   }
@@ -270,6 +278,12 @@ void add_reduce(CLI::App& app, Action& action) {
                    "Elements whose forces and stresses the body recovers: ALL, ids, ranges 17-25, property:3, "
                    "card:CBAR; e.g. 17,20-25")
       ->delimiter(',');
+  verb->add_option("--loads-deck", o->loads_deck,
+                   "Also write the twelve inertial loads F_I to this file, as FORCE and MOMENT cards for another FE "
+                   "program");
+  verb->add_option("--loads-set", o->loads_set, "First of the twelve load sets of --loads-deck")
+      ->check(CLI::Range(1, 99999988))
+      ->capture_default_str();
   verb->add_flag("--full", o->full, "Write the modes and inertial loads of every dof too");
   add_common_options(*verb, *o, kOutput | kJson, "Flexible-body HDF5 file (default: the body file's, else NAME.h5)");
   verb->footer(

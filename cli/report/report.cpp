@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "base/version.hpp"
+#include "cli/common/body_files.hpp"
 #include "cli/common/channels.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
@@ -26,12 +27,16 @@ int run_report(const ReportOptions& o) {
   const Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
   const auto& files = o.request.files;
-  for (const auto& file : files) demand_file(file);
-  const std::string output = o.output.empty() ? fs::path(files.front()).stem().string() + ".html" : o.output;
-  check_output(o, output, files);
+  std::vector<std::string> paths;
+  for (const auto& file : files) {
+    demand_body_file(file);
+    paths.push_back(get_body_path(file));
+  }
+  const std::string output = o.output.empty() ? fs::path(paths.front()).stem().string() + ".html" : o.output;
+  check_output(o, output, paths);
   Diagnostics diagnostics;
   report::Page page{
-      o.title.empty() ? fs::path(files.front()).stem().string() : o.title, std::string("Bough ") + get_version(), {}};
+      o.title.empty() ? fs::path(paths.front()).stem().string() : o.title, std::string("Bough ") + get_version(), {}};
   for (const auto& file : files) {
     if (!has_suffix(file, ".json")) warn_incomplete(file, diagnostics);
     page.chapters.push_back(make_chapter(file, o.request, diagnostics));

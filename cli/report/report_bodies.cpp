@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "cli/common/body_files.hpp"
 #include "cli/report/report_files.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/records/mode_kind.hpp"
@@ -85,8 +86,8 @@ void check_matrices(const records::FlexBody& body, report::ModalModel& m) {
 
 }  // namespace
 
-report::Chapter make_body_chapter(const std::string& file) {
-  const auto body = hdf5::read_flex_body(file);
+report::Chapter make_body_chapter(const std::string& file, Diagnostics& diagnostics) {
+  const auto body = read_body(file, diagnostics);
   report::ModalModel m;
   m.kind = "flexible body";
   m.file = file;

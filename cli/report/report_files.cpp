@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "cli/common/body_files.hpp"
 #include "cli/common/options.hpp"
 #include "cli/export/export_matrices.hpp"
 #include "formats/hdf5/comparison_file.hpp"
@@ -83,6 +84,7 @@ report::Chapter make_campaign_chapter(const std::string& file) {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> list_facts(const std::string& file) {
+  if (is_flx(file)) return {{"file", file}, {"format", ".FLX"}};
   const auto info = hdf5::read_info(file);
   std::vector<std::pair<std::string, std::string>> facts{{"file", file}};
   const auto add = [&](const char* attribute, const char* name) {
@@ -131,7 +133,7 @@ report::Chapter make_chapter(const std::string& file, const ReportRequest& reque
   if (has_suffix(file, ".json")) return make_selection_chapter(file);
   const auto format = read_file_format(file);
   if (format == "bough-results") return make_results_chapter(file, request, diagnostics);
-  if (format == "bough-flexbody") return make_body_chapter(file);
+  if (format == "bough-flexbody") return make_body_chapter(file, diagnostics);
   if (format == "bough-modes") return make_modes_chapter(file);
   if (format == "bough-linear") return make_linear_chapter(file);
   if (format == "bough-comparison") return report::make_chapter(hdf5::read_comparison(file), file, list_facts(file));

@@ -21,7 +21,7 @@ std::vector<std::pair<std::string, std::string>> list_facts(const std::string& f
 /// The settings of a run.
 std::vector<std::pair<std::string, std::string>> list_settings(const std::string& file);
 
-report::Chapter make_body_chapter(const std::string& file);
+report::Chapter make_body_chapter(const std::string& file, Diagnostics& diagnostics);
 report::Chapter make_modes_chapter(const std::string& file);
 report::Chapter make_results_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics);
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 
+#include "cli/common/body_files.hpp"
 #include "cli/common/channels.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/system_files.hpp"
@@ -102,11 +103,12 @@ void add_scene(const std::string& file, const hdf5::RunInputs& inputs, const Rep
       drawn.drawing = report::make_box(body.mass, body.cg, body.inertia, nodes);
     } else {
       std::string why;
-      const auto place = find_body_file(body.file, file, request, inputs.source, why);
+      const auto written = get_body_path(body.file);
+      const auto place = find_body_file(written, file, request, inputs.source, why);
       if (place.empty()) {
         history.missing.push_back("body " + body.name + ": " + why);
       } else {
-        const auto flex = hdf5::read_flex_body(place);
+        const auto flex = read_body(place + body.file.substr(written.size()), unused);
         drawn.drawing = report::make_drawing(flex);
         drawn.size = calc_size(flex.node_xyz);
       }

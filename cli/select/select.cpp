@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "cli/common/body_files.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/system_files.hpp"
 #include "cli/common/usage_text.hpp"
@@ -17,8 +18,8 @@ namespace {
 int run_select(const SelectOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  demand_file(o.body);
-  std::vector<std::string> sources{o.body};
+  demand_body_file(o.body);
+  std::vector<std::string> sources{get_body_path(o.body)};
   for (const auto& system : o.systems) {
     demand_file(system);
     demand_kind(system, toml_files::detect_kind(system), "system");
@@ -27,7 +28,7 @@ int run_select(const SelectOptions& o) {
   if (!o.spectrum.empty()) sources.push_back(o.spectrum);
   check_outputs(o, {o.output, o.response}, sources);
   Diagnostics diagnostics;
-  const auto body = hdf5::read_flex_body(o.body);
+  const auto body = o.output.empty() ? read_body(o.body, diagnostics) : read_moving_body(o.body, diagnostics);
   std::vector<Weighing> weighings;
   std::vector<statespace::NodeDirection> inputs, outputs;
   if (o.systems.empty()) {
@@ -70,7 +71,7 @@ int run_select(const SelectOptions& o) {
 void add_select(CLI::App& app, Action& action) {
   auto o = std::make_shared<SelectOptions>();
   auto* verb = app.add_subcommand("select", "Ranks the modes of a body by component cost and picks those to keep");
-  verb->add_option("body", o->body, "Flexible-body HDF5 file")->required();
+  verb->add_option("body", o->body, "Flexible-body HDF5 file, or .FLX (panels.FLX:2: its body 2)")->required();
   verb->add_option("system", o->systems,
                    "System files (.toml) with their forces, actuators, sensors, in closed loop; of several the worst "
                    "counts; without, the body alone");

@@ -1,14 +1,11 @@
 #include "cli/select/system_plant.hpp"
 
-#include <filesystem>
-
+#include "cli/common/body_files.hpp"
 #include "cli/linearize/operating_point.hpp"
 #include "formats/records/mode_subset.hpp"
 #include "solver/linear/linearize.hpp"
 
 namespace bough::cli {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -26,9 +23,7 @@ SystemPlant::SystemPlant(const std::string& system, const std::string& body, Ope
                          Diagnostics& diagnostics)
     : file_(system), choice_(std::move(choice)), loaded_(load_system(system, diagnostics, {}, choice_.set)) {
   for (const auto& record : loaded_.spec.bodies) {
-    const auto found = loaded_.flex_path.find(record.file);
-    std::error_code ignored;
-    if (found == loaded_.flex_path.end() || !fs::equivalent(found->second, body, ignored)) continue;
+    if (loaded_.flex_path.count(record.file) == 0 || !is_same_body(resolve_beside(system, record.file), body)) continue;
     users_.push_back(record.name);
     key_ = record.file;
   }

@@ -1,6 +1,7 @@
 #pragma once
 /// \file What a .FLX file holds (NASA-CR-202063 4.1.3, 4.2.3; docs/formats/flx.md), how it is made from a flexible
 /// body, written and read.
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,12 @@ struct FlxFile {
   std::vector<int> special_id;  ///< numbers after the largest output node
   std::vector<MatrixXd> special_gains;
 
+  /// What only the extension of version 1.1 holds (docs/formats/flx.md), in the fields of a flexible body: with
+  /// has_rigid gamma0 (else from alpha), cg, inertia, is_free_free, kind; with has_stiffening interface_nodes, K_G1,
+  /// locators with K_G2 and what their loads do, the preload.
+  bool has_rigid = false, has_stiffening = false;
+  records::FlexBody more;
+
   int num_modes() const { return static_cast<int>(modes.size()); }
   bool has_gamma4() const { return modopt == 0; }
   bool has_gamma23() const { return modopt <= 1; }
@@ -39,6 +46,7 @@ struct MakeOptions {
   int modopt = 0;
   std::string method;  ///< empty: the set that the body names
   bool has_special_nodes = false;
+  bool has_stiffening = false;  ///< K_G1, K_G2 and the preload
   int digits = 9;
   std::vector<int> modes;  ///< their numbers in the source; empty: 1..n
 };
@@ -47,12 +55,28 @@ struct MakeOptions {
 /// Throws InputError("flx.no-integrals") when the body does not hold the set, "flx.bad-value" without a mass.
 FlxFile make_flx(const records::FlexBody& body, const MakeOptions& options);
 
-/// The text of the file. Bough's own layout is make_native_layout(digits). Throws
+/// The text of one body. Bough's own layout is make_native_layout(digits). Throws
 /// InputError("flx.number-too-wide"), "flx.layout-index" or "flx.not-finite".
 std::string write_flx(const FlxFile& file, const Layout& layout);
 
-/// Reads Bough's own layout. Throws InputError with all of "flx.not-flx", "flx.version", "flx.bad-line",
-/// "flx.missing-block".
-FlxFile read_flx(const std::string& path);
+/// Reads Bough's own layout, one body after the other. Throws InputError with all of "flx.not-flx", "flx.version",
+/// "flx.bad-line", "flx.missing-block", "flx.same-body" (one id twice).
+std::vector<FlxFile> read_flx_bodies(const std::string& path);
+/// The body with this id; 0: the only one. Throws "flx.which-body", "flx.no-body" besides.
+FlxFile read_flx(const std::string& path, int body_id = 0);
+
+/// "panels.FLX:2" is the body with the id 2 of panels.FLX; body_id 0: none was named.
+struct FlxName {
+  std::string path;
+  int body_id = 0;
+};
+/// Empty where the name does not end in .FLX, in any case, with or without the id of a body.
+std::optional<FlxName> parse_flx_name(const std::string& name);
+
+/// The record that the solver and the other verbs take. What the file cannot say is empty (mesh, F_I, other sets of
+/// integrals) or follows from what it says: eigenvalue j is K_jj / M_jj, the effective masses are Γ0² and Γ1² over M_jj
+/// about Bo. Integrals that modopt leaves out are zero. Without `has_rigid` cg and inertia are zero: the caller knows
+/// them, as TREETOPS takes them from its .INT. `lacking`: each thing that is not there, in words.
+records::FlexBody make_flex_body(const FlxFile& file, std::vector<std::string>& lacking);
 
 }  // namespace bough::flx

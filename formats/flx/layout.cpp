@@ -14,7 +14,8 @@ namespace {
 
 using namespace detail;
 
-const std::string kIndices = "ijkabd";
+const std::string kIndices = "ijkabdle";
+const std::vector<std::string> kConditions{"rigid", "stiffening", "resultants", "preload"};
 
 class LayoutParser {
  public:
@@ -30,7 +31,8 @@ class LayoutParser {
   void syntax(const std::string& what, const std::string& advice) {
     diagnostics_.error("flx.layout-syntax", {layout_.file, line_}, what, advice);
   }
-  void unknown(const std::string& what, const std::string& word, const std::vector<BlockInfo>& known) {
+  template <class Info>
+  void unknown(const std::string& what, const std::string& word, const std::vector<Info>& known) {
     std::vector<std::string> names;
     for (const auto& info : known) names.push_back(info.name);
     const std::string nearest = find_nearest(word, names);
@@ -61,15 +63,17 @@ class LayoutParser {
         parse_block(words, scope, statements);
       } else if (verb == "for") {
         parse_loop(words, scope, statements);
+      } else if (verb == "when") {
+        parse_condition(words, scope, statements);
       } else if (verb == "end" && opened > 0) {
         return;
       } else {
-        syntax("unknown statement \"" + verb + "\"", "expected number, integer, text, block, for or end");
+        syntax("unknown statement \"" + verb + "\"", "expected number, integer, text, block, for, when or end");
       }
     }
     if (opened > 0) {
       line_ = opened;
-      syntax("the loop is not closed", "add a line with end");
+      syntax("the loop or condition is not closed", "add a line with end");
     }
   }
 
@@ -144,7 +148,7 @@ class LayoutParser {
     if (colon != std::string::npos) {
       NumberFormat format;
       if (!parse_format(text.substr(colon + 1), piece.field != "mass", format)) return;
-      if (piece.field == "name" || piece.field == "method") {
+      if (field->is_text) {
         syntax("{" + piece.field + "} is a text and takes no format", "leave the format out");
         return;
       }
@@ -165,7 +169,7 @@ class LayoutParser {
     const int opened = line_;
     if (words.size() < 2 || words[1].size() != 1 || kIndices.find(words[1]) == std::string::npos ||
         scope.find(words[1]) != std::string::npos) {
-      syntax("for takes an index that has no value yet", "write for j (indices: i j k a b d)");
+      syntax("for takes an index that has no value yet", "write for j (indices: i j k a b d l e)");
       s.name = "j";
     } else {
       s.name = words[1];
@@ -176,6 +180,17 @@ class LayoutParser {
       if (nodes) s.nodes = *nodes;
     }
     parse_body(s.body, scope + s.name, opened);
+    statements.push_back(std::move(s));
+  }
+
+  void parse_condition(const std::vector<std::string>& words, const std::string& scope,
+                       std::vector<Statement>& statements) {
+    Statement s = start(Statement::Kind::When);
+    const int opened = line_;
+    if (words.size() == 2) s.name = words[1];
+    if (std::find(kConditions.begin(), kConditions.end(), s.name) == kConditions.end())
+      syntax("when takes what the body must have", "write when rigid, stiffening, resultants or preload");
+    parse_body(s.body, scope, opened);
     statements.push_back(std::move(s));
   }
 
@@ -220,7 +235,10 @@ class LayoutParser {
 
   static std::string list(const std::string& letters) {
     std::string text;
-    for (char c : letters) text += (text.empty() ? "" : ",") + std::string(1, c);
+    for (const char c : letters) {
+      if (!text.empty()) text += ',';
+      text += c;
+    }
     return text;
   }
 

@@ -20,9 +20,9 @@ enum class NodeSet { Output, Special, All };
 
 /// One line of a layout.
 struct Statement {
-  enum class Kind { Text, Block, For } kind = Kind::Text;
+  enum class Kind { Text, Block, For, When } kind = Kind::Text;
   int line = 0;
-  std::string name;        ///< of the block, or the index of a loop
+  std::string name;        ///< of the block, the index of a loop, or what the file must have
   TextTemplate text;       ///< of a text; the label of a block
   TextTemplate continued;  ///< label of the further lines of a record
   bool has_continued = false, has_heading = false;
@@ -35,7 +35,7 @@ struct Statement {
   NodeSet nodes = NodeSet::All;
   std::string separator;
   NumberFormat number, integer;
-  std::vector<Statement> body;  ///< of a loop
+  std::vector<Statement> body;  ///< of a loop or a condition
 };
 
 struct Layout {
@@ -49,10 +49,11 @@ Layout parse_layout(const std::string& text, const std::string& file);
 /// Throws "flx.cannot-read" besides.
 Layout read_layout(const std::string& path);
 
-/// Bough's own, version 1.0, that read_flx reads; 2 to 17 significant digits.
+/// Bough's own, version 1.1, that read_flx reads; 2 to 17 significant digits.
 Layout make_native_layout(int digits);
 
-/// A block that a layout may name, and its indices: i nodes, j k modes, a b axes, d the six gains.
+/// A block that a layout may name, and its indices: i nodes, j k modes, a b axes, d the six gains, l the twelve
+/// inertial loads, e the locators.
 struct BlockInfo {
   std::string name, indices;
 };

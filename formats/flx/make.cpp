@@ -34,14 +34,45 @@ void add_special_nodes(FlxFile& file) {
   }
 }
 
+/// A text that stays on its line.
+std::string make_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
+  return text;
+}
+
+void add_rigid(FlxFile& file, const records::FlexBody& body) {
+  file.has_rigid = true;
+  file.more.cg = body.cg;
+  file.more.inertia = body.inertia;
+  file.more.is_free_free = body.is_free_free;
+  file.more.kind = body.kind;
+  file.more.kind.resize(static_cast<std::size_t>(file.num_modes()), records::ModeKind::Normal);
+}
+
+void add_stiffening(FlxFile& file, const records::FlexBody& body) {
+  file.has_stiffening = true;
+  auto& more = file.more;
+  more.interface_nodes = body.interface_nodes;
+  more.kg_inertial = body.kg_inertial;
+  more.kg_inertial_computed = body.kg_inertial_computed;
+  more.locators = body.locators;
+  for (auto& locator : more.locators) locator.name = make_line(locator.name);
+  more.kg_external = body.kg_external;
+  more.external_load = body.external_load;
+  more.load_resultant = body.load_resultant;
+  more.load_moment = body.load_moment;
+  more.preload = make_line(body.preload);
+  more.kg_preload = body.kg_preload;
+  more.preload_A_I = body.preload_A_I;
+}
+
 }  // namespace
 
 FlxFile make_flx(const records::FlexBody& body, const MakeOptions& options) {
   FlxFile file;
   file.body_id = options.body_id;
-  file.name = body.name;
-  std::replace_if(
-      file.name.begin(), file.name.end(), [](unsigned char c) { return c < ' '; }, ' ');
+  file.name = make_line(body.name);
   file.modopt = options.modopt;
   file.method = options.method.empty() ? body.integrals_method : options.method;
   file.digits = options.digits;
@@ -63,6 +94,8 @@ FlxFile make_flx(const records::FlexBody& body, const MakeOptions& options) {
   file.node_xyz = body.node_xyz;
   file.gains = body.phi;
   if (options.has_special_nodes) add_special_nodes(file);
+  if (!body.inertia.isZero(0)) add_rigid(file, body);
+  if (options.has_stiffening) add_stiffening(file, body);
   return file;
 }
 

@@ -10,7 +10,7 @@ namespace {
 /// Every line starts with its label and the indices of its first value (docs/formats/flx.md). The reader knows the
 /// labels, not the columns.
 constexpr const char* kNative = R"layout(
-text "FLX 1.0 Bough flexible body, see docs/formats/flx.md"
+text "FLX {version} Bough flexible body, see docs/formats/flx.md"
 text "BODY {body_id}"
 text "NAME {name}"
 text "MODOPT {modopt}"
@@ -35,6 +35,34 @@ block psi nodes=output label="PSI {node:%8d} {j:%4d}"
 block node_id nodes=special record=i label="SNODE" heading="! special nodes: without gains, then unit x in mode j"
 block phi nodes=special label="SPHI {node:%8d} {j:%4d}"
 block psi nodes=special label="SPSI {node:%8d} {j:%4d}"
+when rigid
+text "! extension of version 1.1, which readers of 1.0 pass over: mass centre, inertia about the origin"
+block cg label="!+ CG"
+block inertia label="!+ INERTIA {a:%1d}"
+text "!+ FRAME {frame}"
+for j
+text "!+ KIND {j:%4d} {kind}"
+end
+block gamma0 label="!+ GAMMA0 {j:%4d}" heading="! of which alpha is a part that lost its last digit"
+end
+when stiffening
+text "! geometric stiffness: l, j, k, values k, k+1, ... of each inertial load; of each locator"
+text "!+ NLOCATOR {num_locators}"
+text "!+ INTERFACE {interface}"
+for e
+text "!+ LOCATOR {e:%4d} {locator_node} {locator_direction} {locator}"
+end
+block kg_inertial per_line=5 label="!+ KG1 {l:%2d} {j:%4d} {k:%4d}"
+block kg_external per_line=5 label="!+ KG2 {e:%4d} {j:%4d} {k:%4d}"
+block external_load per_line=5 label="!+ LOAD {e:%4d} {j:%4d}"
+block load_resultant label="!+ RESULTANT {e:%4d}"
+block load_moment per_line=5 label="!+ MOMENT {e:%4d} {a:%1d} {j:%4d}"
+end
+when preload
+text "!+ PRELOAD {preload}"
+block kg_preload per_line=5 label="!+ KGP {j:%4d} {k:%4d}"
+block preload_factor per_line=1 label="!+ FACTOR {l:%2d}"
+end
 text "END"
 )layout";
 

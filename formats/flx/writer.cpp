@@ -3,14 +3,15 @@
 
 #include "base/diagnostic.hpp"
 #include "formats/flx/flx_file.hpp"
+#include "formats/records/mode_kind.hpp"
 
 namespace bough::flx {
 
 namespace {
 
-/// Values of the indices i j k a b d, 0-based.
+/// Values of the indices i j k a b d l e, 0-based.
 struct Indices {
-  int i = 0, j = 0, k = 0, a = 0, b = 0, d = 0;
+  int i = 0, j = 0, k = 0, a = 0, b = 0, d = 0, l = 0, e = 0;
   int& operator[](char name) {
     switch (name) {
       case 'i':
@@ -23,6 +24,10 @@ struct Indices {
         return a;
       case 'b':
         return b;
+      case 'l':
+        return l;
+      case 'e':
+        return e;
       default:
         return d;
     }
@@ -41,6 +46,7 @@ class FlxWriter {
  private:
   int num_output() const { return static_cast<int>(file_.node_id.size()); }
   int num_special() const { return static_cast<int>(file_.special_id.size()); }
+  int num_locators() const { return static_cast<int>(file_.more.locators.size()); }
 
   /// First and last + 1 of an index; nodes count through output and special ones.
   std::pair<int, int> get_range(char index, NodeSet nodes) const {
@@ -53,6 +59,10 @@ class FlxWriter {
         return {0, file_.num_modes()};
       case 'd':
         return {0, 6};
+      case 'l':
+        return {0, file_.has_stiffening ? records::kNumInertialLoads : 0};
+      case 'e':
+        return {0, num_locators()};
       default:
         return {0, 3};
     }
@@ -67,11 +77,24 @@ class FlxWriter {
                             : file_.special_gains[static_cast<std::size_t>(i - num_output())];
   }
 
-  /// Integrals that modopt leaves out, and positions of special nodes, which have none, are not written.
+  /// Integrals that modopt leaves out, and what the extension of this body lacks, are not written.
   bool has(const Statement& s) const {
     if (s.name == "gamma2" || s.name == "gamma3") return file_.has_gamma23();
     if (s.name == "gamma4") return file_.has_gamma4();
+    if (s.name == "cg" || s.name == "inertia") return meets("rigid");
+    if (s.name == "kg_inertial" || s.name == "kg_external" || s.name == "external_load") return meets("stiffening");
+    if (s.name == "load_resultant" || s.name == "load_moment") return meets("resultants");
+    if (s.name == "kg_preload" || s.name == "preload_factor") return meets("preload");
     return true;
+  }
+
+  /// The condition of a `when`.
+  bool meets(const std::string& condition) const {
+    if (condition == "rigid") return file_.has_rigid;
+    if (condition == "stiffening") return file_.has_stiffening;
+    if (condition == "resultants") return file_.has_stiffening && file_.more.load_resultant.size() > 0;
+    BOUGH_DEMAND(condition == "preload");
+    return file_.has_stiffening && !file_.more.preload.empty();
   }
 
   double get_value(const std::string& name, const Indices& at) const {
@@ -92,8 +115,23 @@ class FlxWriter {
     if (name == "node_xyz") return file_.node_xyz(at.i, at.a);
     if (name == "phi") return get_gains(at.i)(at.a, at.j);
     if (name == "psi") return get_gains(at.i)(3 + at.a, at.j);
-    BOUGH_DEMAND(name == "gains");
-    return get_gains(at.i)(at.d, at.j);
+    if (name == "gains") return get_gains(at.i)(at.d, at.j);
+    return get_extension_value(name, at);
+  }
+
+  double get_extension_value(const std::string& name, const Indices& at) const {
+    const auto& more = file_.more;
+    const auto e = static_cast<std::size_t>(at.e);
+    if (name == "cg") return more.cg[at.a];
+    if (name == "inertia") return more.inertia(at.a, at.b);
+    if (name == "kg_inertial") return more.kg_inertial[static_cast<std::size_t>(at.l)](at.j, at.k);
+    if (name == "kg_external") return more.kg_external[e](at.j, at.k);
+    if (name == "external_load") return more.external_load(at.j, at.e);
+    if (name == "load_resultant") return more.load_resultant(at.d, at.e);
+    if (name == "load_moment") return more.load_moment[e](at.a, at.j);
+    if (name == "kg_preload") return more.kg_preload(at.j, at.k);
+    BOUGH_DEMAND(name == "preload_factor");
+    return more.preload_A_I[at.l];
   }
 
   [[noreturn]] void fail_width(const Statement& s, const std::string& what, double value) const {
@@ -123,10 +161,29 @@ class FlxWriter {
     if (field == "num_modes") return file_.num_modes();
     if (field == "num_nodes") return num_output();
     if (field == "num_special") return num_special();
+    if (field == "num_locators") return num_locators();
+    if (field == "locator_node") return file_.more.locators[static_cast<std::size_t>(at_.e)].node;
+    if (field == "locator_direction") return file_.more.locators[static_cast<std::size_t>(at_.e)].direction;
     if (field == "node") return get_node(at_.i);
     if (field == "mode") return file_.modes[static_cast<std::size_t>(at_.j)];
     BOUGH_DEMAND(field == "mode_k");
     return file_.modes[static_cast<std::size_t>(at_.k)];
+  }
+
+  /// Of a field that is no number; empty for the others.
+  std::optional<std::string> get_words(const std::string& field) {
+    if (field == "name") return file_.name;
+    if (field == "method") return file_.method;
+    if (field == "version") return file_.has_rigid || file_.has_stiffening ? "1.1" : "1.0";
+    if (field == "frame") return file_.more.is_free_free ? "free" : "fixed";
+    if (field == "preload") return file_.more.preload;
+    if (field == "locator") return file_.more.locators[static_cast<std::size_t>(at_.e)].name;
+    if (field == "kind")
+      return file_.has_rigid ? records::get_name(file_.more.kind[static_cast<std::size_t>(at_.j)]) : "normal";
+    if (field != "interface") return std::nullopt;
+    std::string ids;
+    for (const int id : file_.more.interface_nodes) ids += (ids.empty() ? "" : " ") + std::to_string(id);
+    return ids;
   }
 
   std::string fill(const Statement& s, const TextTemplate& text) {
@@ -134,10 +191,8 @@ class FlxWriter {
     for (const auto& piece : text.pieces) {
       filled += piece.plain;
       if (piece.field.empty()) continue;
-      if (piece.field == "name") {
-        filled += file_.name;
-      } else if (piece.field == "method") {
-        filled += file_.method;
+      if (const auto words = get_words(piece.field)) {
+        filled += *words;
       } else if (piece.field == "mass") {
         filled += print(s, piece.format ? *piece.format : s.number, file_.mass);
       } else {
@@ -158,6 +213,8 @@ class FlxWriter {
           at_[s.name[0]] = value;
           write_statements(s.body);
         }
+      } else if (s.kind == Statement::Kind::When) {
+        if (meets(s.name)) write_statements(s.body);
       } else if (has(s)) {
         write_block(s);
       }
@@ -206,7 +263,8 @@ class FlxWriter {
 
   void write_value(const Statement& s) {
     if ((s.triangle == 'u' && at_.k < at_.j) || (s.triangle == 'l' && at_.k > at_.j)) return;
-    if (s.name == "node_xyz" && at_.i >= num_output()) return;
+    if (s.name == "node_xyz" && at_.i >= num_output()) return;  // special nodes have none
+    if (s.name == "kg_inertial" && !file_.more.kg_inertial_computed[static_cast<std::size_t>(at_.l)]) return;
     if (is_first_ && s.has_heading) text_ += fill(s, s.heading) + "\n";
     is_first_ = false;
     if (s.per_line > 0 && in_line_ == s.per_line) end_line();

@@ -36,6 +36,15 @@ struct ExternalLoadSpec {
   SourceLocation at;
 };
 
+/// Mass and inertia of what hangs on a node, in the modes of the body and then taken off again.
+struct AugmentSpec {
+  int node = 0;
+  double mass = 0;                      ///< as the body's: with WTMASS
+  Vector3d cg = Vector3d::Zero();       ///< its mass centre from the node, body axes
+  Matrix3d inertia = Matrix3d::Zero();  ///< about its mass centre, body axes
+  SourceLocation at;
+};
+
 /// The state of stress that the body starts from: a subcase, or sets of loads and a spin together.
 struct PreloadSpec {
   int subcase = 0, load_set = 0, temperature_set = 0;
@@ -58,7 +67,7 @@ struct BodySpec {
   bool origin_at_mass_centre = false;
 
   BodyBasis basis = BodyBasis::Normal;
-  bool orthogonalize = true;          ///< Craig-Bampton: modes of K^N = M^ND, else its own coordinates
+  bool orthogonalize = true;          ///< Craig-Bampton, augmented: modes of K^N = M^ND, else its own coordinates
   std::vector<std::string> residual;  ///< loads with a residual vector: names, "inertial", "interface"
   int num_modes = 0;
   std::optional<double> max_frequency_hz;
@@ -69,6 +78,7 @@ struct BodySpec {
   std::vector<InertialLoad> inertial_loads;  ///< empty = all twelve
   std::vector<ExternalLoadSpec> loads;
   std::optional<PreloadSpec> preload;
+  std::vector<AugmentSpec> augments;
 
   double damping_ratio = 0;            ///< uniform
   std::vector<double> damping_ratios;  ///< or per mode

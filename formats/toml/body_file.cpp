@@ -3,6 +3,7 @@
 #include <map>
 
 #include "formats/toml/detail/fields.hpp"
+#include "formats/toml/detail/inertia.hpp"
 #include "formats/toml/detail/matrices_table.hpp"
 #include "formats/toml/detail/schema.hpp"
 #include "formats/toml/specs.hpp"
@@ -86,6 +87,18 @@ void read_loads(const Fields& body, records::BodySpec& spec, Diagnostics& diagno
                         "rename one of them");
     }
     spec.loads.push_back(std::move(load));
+  }
+}
+
+void read_augments(const Fields& body, records::BodySpec& spec, Diagnostics& diagnostics) {
+  for (const Fields& table : body.get_tables("augment")) {
+    records::AugmentSpec augment;
+    augment.at = table.locate();
+    augment.node = table.get_int("node", 0);
+    augment.mass = table.get_number("mass", 0);
+    augment.cg = table.get_vector("cg", augment.cg);
+    augment.inertia = read_inertia(table, diagnostics);
+    spec.augments.push_back(augment);
   }
 }
 
@@ -203,6 +216,7 @@ records::BodySpec read_body_spec_text(const std::string& text, const std::string
 
   spec.inertial_loads = read_inertial(body.get_table("stiffening"), diagnostics);
   read_loads(body, spec, diagnostics);
+  read_augments(body, spec, diagnostics);
   for (const Fields& parent : {body, Fields(root, path)})
     if (parent.has("preload")) {
       if (spec.preload)

@@ -1,6 +1,7 @@
 // Flexible bodies and modes: views of the records' own arrays.
 #include "python/bindings/bindings.hpp"
 
+#include "cli/common/body_files.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/system_files.hpp"
 #include "cli/reduce/reduce_body.hpp"
@@ -195,7 +196,13 @@ void bind_bodies(py::module_& m) {
       .def_property_readonly("inertia",
                              [](const ModesResult& r) { return give(Eigen::Matrix3d(r.mass_properties.inertia)); })
       .def_readonly("num_rigid_modes", &ModesResult::num_rigid_modes);
-  m.def("read_flex_body", &hdf5::read_flex_body, py::arg("path"), py::call_guard<py::gil_scoped_release>());
+  m.def(
+      "read_flex_body",
+      [](const std::string& path) {
+        Diagnostics notes;  // of what a .FLX leaves out: docs/formats/flx.md
+        return cli::read_body(path, notes);
+      },
+      py::arg("path"), py::call_guard<py::gil_scoped_release>());
   m.def("read_modes", &hdf5::read_modes, py::arg("path"), py::call_guard<py::gil_scoped_release>());
   m.def(
       "reduce",

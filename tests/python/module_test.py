@@ -84,6 +84,8 @@ class Bodies(InFolder):
         self.assertTrue(stages)
         subprocess.run([os.environ["BOUGH_PROGRAM"], "reduce", "boom.toml", "-q", "-o", "verb.h5"], check=True)
         other = bough.read_flex_body("verb.h5")
+        bough.call("flx", "verb.h5", "--digits", "17", "-o", "verb.FLX")
+        self.assertTrue(np.array_equal(bough.read_flex_body("verb.FLX").modal_stiffness, other.modal_stiffness))
         self.assertEqual(body.num_modes, other.num_modes)
         np.testing.assert_array_equal(body.frequency_hz, other.frequency_hz)
         for name in ("modal_mass", "modal_stiffness", "effective_mass", "cg", "inertia"):

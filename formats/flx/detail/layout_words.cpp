@@ -1,7 +1,5 @@
 #include "formats/flx/detail/layout_words.hpp"
 
-#include <algorithm>
-
 namespace bough::flx {
 
 const std::vector<BlockInfo>& get_blocks() {
@@ -22,23 +20,52 @@ const std::vector<BlockInfo>& get_blocks() {
                                              {"node_xyz", "ia"},
                                              {"phi", "ija"},
                                              {"psi", "ija"},
-                                             {"gains", "ijd"}};
+                                             {"gains", "ijd"},
+                                             {"cg", "a"},
+                                             {"inertia", "ab"},
+                                             {"kg_inertial", "ljk"},
+                                             {"kg_external", "ejk"},
+                                             {"external_load", "ej"},
+                                             {"load_resultant", "ed"},
+                                             {"load_moment", "eaj"},
+                                             {"kg_preload", "jk"},
+                                             {"preload_factor", "l"}};
   return blocks;
 }
 
 namespace detail {
 
-const std::vector<BlockInfo>& get_fields() {
-  static const std::vector<BlockInfo> fields{
-      {"body_id", ""},   {"name", ""},      {"modopt", ""},      {"method", ""}, {"mass", ""},  {"digits", ""},
-      {"num_modes", ""}, {"num_nodes", ""}, {"num_special", ""}, {"i", "i"},     {"j", "j"},    {"k", "k"},
-      {"a", "a"},        {"b", "b"},        {"d", "d"},          {"node", "i"},  {"mode", "j"}, {"mode_k", "k"}};
+const std::vector<FieldInfo>& get_fields() {
+  static const std::vector<FieldInfo> fields{{"body_id", ""},
+                                             {"name", "", true},
+                                             {"modopt", ""},
+                                             {"method", "", true},
+                                             {"mass", ""},
+                                             {"digits", ""},
+                                             {"num_modes", ""},
+                                             {"num_nodes", ""},
+                                             {"num_special", ""},
+                                             {"num_locators", ""},
+                                             {"version", "", true},
+                                             {"frame", "", true},
+                                             {"interface", "", true},
+                                             {"preload", "", true},
+                                             {"i", "i"},
+                                             {"j", "j"},
+                                             {"k", "k"},
+                                             {"a", "a"},
+                                             {"b", "b"},
+                                             {"d", "d"},
+                                             {"l", "l"},
+                                             {"e", "e"},
+                                             {"node", "i"},
+                                             {"mode", "j"},
+                                             {"mode_k", "k"},
+                                             {"kind", "j", true},
+                                             {"locator", "e", true},
+                                             {"locator_node", "e"},
+                                             {"locator_direction", "e"}};
   return fields;
-}
-
-const BlockInfo* find(const std::vector<BlockInfo>& list, const std::string& name) {
-  const auto found = std::find_if(list.begin(), list.end(), [&](const auto& info) { return info.name == name; });
-  return found == list.end() ? nullptr : &*found;
 }
 
 bool split(const std::string& line, std::vector<std::string>& words) {

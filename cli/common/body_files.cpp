@@ -1,0 +1,93 @@
+#include "cli/common/body_files.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+
+#include "base/diagnostic.hpp"
+#include "cli/common/options.hpp"
+#include "formats/flx/flx_file.hpp"
+#include "formats/hdf5/files.hpp"
+
+namespace bough::cli {
+
+namespace fs = std::filesystem;
+
+bool is_flx(const std::string& name) { return flx::parse_flx_name(name).has_value(); }
+
+std::string get_body_path(const std::string& name) {
+  const auto parsed = flx::parse_flx_name(name);
+  return parsed ? parsed->path : name;
+}
+
+bool is_same_body(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  if (!fs::equivalent(get_body_path(a), get_body_path(b), ignored)) return false;
+  const auto first = flx::parse_flx_name(a), second = flx::parse_flx_name(b);
+  if (!first || !second || first->body_id == second->body_id) return true;
+  // Of a file with one body its id may be left out.
+  return (first->body_id == 0 || second->body_id == 0) && flx::read_flx_bodies(first->path).size() == 1;
+}
+
+void demand_body_file(const std::string& name) { demand_file(get_body_path(name)); }
+
+namespace {
+
+void add_note(const flx::FlxFile& file, const std::string& path, std::vector<std::string> lacking,
+              Diagnostics& diagnostics) {
+  if (!file.has_rigid) lacking.insert(lacking.begin(), "mass centre and inertia");
+  std::string what =
+      fmt::format("the file does not hold {}; its values have {} digits", fmt::join(lacking, ", "), file.digits);
+  if (!file.special_id.empty()) what += "; its special nodes are passed over: a run stiffens without them";
+  for (const auto& item : diagnostics.items())
+    if (item.id == "flx.not-carried" && item.what == what) return;
+  diagnostics.note("flx.not-carried", {path}, what,
+                   "the HDF5 file of bough reduce holds all of it; flx --digits 17 keeps every bit");
+}
+
+struct Read {
+  records::FlexBody body;
+  bool has_rigid = true;
+};
+
+Read read_any(const std::string& name, Diagnostics& diagnostics) {
+  const auto parsed = flx::parse_flx_name(name);
+  if (!parsed) return {hdf5::read_flex_body(name), true};
+  const auto file = flx::read_flx(parsed->path, parsed->body_id);
+  std::vector<std::string> lacking;
+  Read read{flx::make_flex_body(file, lacking), file.has_rigid};
+  read.body.source = calc_sources({parsed->path});
+  add_note(file, parsed->path, std::move(lacking), diagnostics);
+  return read;
+}
+
+}  // namespace
+
+records::FlexBody read_body(const std::string& name, Diagnostics& diagnostics) {
+  return read_any(name, diagnostics).body;
+}
+
+records::FlexBody read_moving_body(const std::string& name, Diagnostics& diagnostics,
+                                   const std::optional<RigidPart>& given) {
+  auto [body, has_rigid] = read_any(name, diagnostics);
+  const std::string path = get_body_path(name);
+  if (!has_rigid && !given)
+    throw InputError("flx.no-inertia", {path},
+                     "the file does not say the mass centre and the inertia of body \"" + body.name + "\"",
+                     "give cg and inertia in the [[body]] of the system, or write the file with bough flx from a body "
+                     "that has them");
+  if (has_rigid && given)
+    throw InputError("flx.two-inertias", {path},
+                     "the file says the mass centre and the inertia of body \"" + body.name + "\" itself",
+                     "take cg and inertia out of the [[body]]");
+  if (given) {
+    body.cg = given->cg;
+    const Eigen::Matrix3d apart =
+        given->cg.squaredNorm() * Eigen::Matrix3d::Identity() - given->cg * given->cg.transpose();
+    body.inertia = given->inertia + body.mass * apart;
+  }
+  return std::move(body);
+}
+
+}  // namespace bough::cli

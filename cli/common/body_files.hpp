@@ -1,0 +1,38 @@
+#pragma once
+/// \file A flexible body from any file that holds one: HDF5 of `reduce`, or .FLX, of which "panels.FLX:2" is body 2.
+#include <optional>
+#include <string>
+
+#include "formats/records/flex_body.hpp"
+
+namespace bough {
+class Diagnostics;
+struct SourceLocation;
+}  // namespace bough
+
+namespace bough::cli {
+
+/// Whether the name is one of a .FLX file, with or without the id of a body.
+bool is_flx(const std::string& name);
+/// The file alone, without the id of a body.
+std::string get_body_path(const std::string& name);
+/// Whether both names mean one body of one file.
+bool is_same_body(const std::string& a, const std::string& b);
+/// demand_file() of the file alone.
+void demand_body_file(const std::string& name);
+
+/// What TREETOPS takes from its .INT: a .FLX without the extension of version 1.1 does not say it.
+struct RigidPart {
+  records::Vector3d cg;       ///< in B
+  records::Matrix3d inertia;  ///< about the mass centre, in B
+};
+
+/// Adds the note "flx.not-carried" with what a .FLX leaves out, once a file. Throws what the readers throw. A body
+/// whose file does not say its mass centre and inertia has none.
+records::FlexBody read_body(const std::string& name, Diagnostics& diagnostics);
+/// The same for what moves it. Throws InputError "flx.no-inertia" where neither the file nor `given` has the rigid
+/// part, "flx.two-inertias" where both have.
+records::FlexBody read_moving_body(const std::string& name, Diagnostics& diagnostics,
+                                   const std::optional<RigidPart>& given = {});
+
+}  // namespace bough::cli
