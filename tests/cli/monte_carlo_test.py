@@ -1,12 +1,16 @@
 """A campaign over the seeds of a controlled system: statistics from seeds, resumed, memory flat."""
 import csv
 import json
+import os
+import signal
+import subprocess
+import time
 import unittest
 
 import h5py
 import numpy as np
 
-from support import ProgramTest
+from support import PROGRAM, ProgramTest
 
 SYSTEM = """
 [parameters]
@@ -107,6 +111,44 @@ class MonteCarlo(ProgramTest):
         # The memory of the one worker after the first tenth of the cases is that after the last.
         memory = [json.load(open(self.path(f"mc/case-{i:04d}/outcome.json")))["memory_kb"] for i in range(1, count, 2)]
         self.assertLess(memory[-1], memory[6] + 4000, memory)
+
+    def test_killed_and_called_again(self):
+        """A campaign that was killed has, called again, the statistics of one that was not, byte by byte; the memory of
+        `batch` itself does not grow with its cases."""
+        count = 100
+        self.write("axis.toml", SYSTEM)
+        self.write("mc.toml", CAMPAIGN.replace("COUNT", str(count)))
+        self.bough("batch", "mc.toml", "-j", "1", "-o", "whole")
+
+        def read_memory(pid):
+            with open(f"/proc/{pid}/status") as f:
+                return next((int(line.split()[1]) for line in f if line.startswith("VmRSS")), 0)
+
+        def call(until):
+            """Memory of the program after each case that was seen to be done; killed once case `until` is."""
+            process = subprocess.Popen([PROGRAM, "batch", "mc.toml", "-j", "1", "-o", "parts", "-q"], cwd=self.folder)
+            seen, case = [], 1
+            while process.poll() is None:
+                while os.path.exists(self.path(f"parts/case-{case:04d}/outcome.json")):
+                    case += 1
+                try:
+                    seen.append((case, read_memory(process.pid)))
+                except OSError:
+                    pass
+                if case > until:
+                    process.send_signal(signal.SIGKILL)
+                time.sleep(0.002)
+            return process.wait(), [memory for c, memory in seen if memory > 0 and c <= count]
+
+        code, _ = call(until=count // 3)
+        self.assertEqual(code, -signal.SIGKILL)
+        self.assertFalse(os.path.exists(self.path("parts/statistics.csv")))
+        code, memory = call(until=count + 1)
+        self.assertEqual(code, 0)
+        with open(self.path("whole/statistics.csv"), "rb") as a, open(self.path("parts/statistics.csv"), "rb") as b:
+            self.assertEqual(a.read(), b.read())
+        early = max(memory[:len(memory) // 4])  # the tables at the end are not among them
+        self.assertLess(max(memory), early + 1000)
 
     def test_deviation_follows_the_noise(self):
         """Lyapunov's equation of the sampled loop gives the variance of the angle."""
