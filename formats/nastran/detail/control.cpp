@@ -5,6 +5,7 @@
 #include <set>
 
 #include "formats/nastran/detail/control_words.hpp"
+#include "formats/nastran/detail/dynamic_control.hpp"
 #include "formats/nastran/detail/matrix_selection.hpp"
 #include "formats/nastran/detail/text.hpp"
 
@@ -121,8 +122,19 @@ class CaseControl {
       read_param(c);
     else if (with_executive && is_command(c.word, "SOL", 3))
       deck_.sol = make_upper(c.value.substr(0, c.value.find_first_of(" ,")));
-    else if (!is_plain_command(c.word))
-      report_unused(c.word);
+    else
+      read_dynamic(c);
+  }
+
+  void read_dynamic(const Command& c) {
+    switch (read_dynamic_command({c.word, c.options, c.value, at_}, current())) {
+      case DynamicCommand::Read:
+        return;
+      case DynamicCommand::BadValue:
+        return bad_value(c);
+      case DynamicCommand::Other:
+        if (!is_plain_command(c.word)) report_unused(c.word);
+    }
   }
 
   void report_unused(const std::string& word) {
@@ -218,10 +230,12 @@ class CaseControl {
       bad_value(c, "the name of a DMIG, or FACTOR*NAME, and more between commas");
   }
 
-  /// Only sets of names matter here; those of ids are output requests.
+  /// Names of matrices, or ids and numbers of output requests.
   void read_named_set(const Command& c) {
     const auto equals = c.value.find('=');
     const auto id = parse_int(trim(c.value.substr(0, equals)));
+    if (id && equals != std::string_view::npos)
+      if (auto set = read_case_set(c.value.substr(equals + 1))) current().dynamics.sets[*id] = std::move(*set);
     MatrixList names;
     if (id && equals != std::string_view::npos && read_matrix_names(trim(c.value.substr(equals + 1)), names))
       sets_[std::to_string(*id)] = std::move(names);

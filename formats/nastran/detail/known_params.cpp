@@ -48,15 +48,23 @@ const std::vector<Rule>& get_rules() {
        }},
       {"EPZERO", "a number, 0 or above", [](const std::string& v) { return parse_real(v).value_or(-1) >= 0; }},
       {"FOLLOWK", "YES or NO", is_answer},
+      {"DFREQ", "a number", is_real},
       {"G", "a number", is_real},
       {"GRDPNT", "an integer", is_integer, round_real},
+      {"HFREQ", "a number", is_real},
       {"INREL", "0, -1 or -2", [](const std::string& v) { return v == "0" || v == "-1" || v == "-2"; },
        [](const std::string& v) {
          const auto whole = round_real(v);
          return whole == "0" || whole == "-1" || whole == "-2" ? whole : std::string();
        }},
+      {"KDAMP", "1 or -1", is_integer},
       {"K6ROT", "a number, 0 or above", [](const std::string& v) { return parse_real(v).value_or(-1) >= 0; }},
+      {"LFREQ", "a number", is_real},
+      {"LMODES", "an integer", is_integer},
+      {"RESVEC", "YES or NO", is_answer},
       {"SNORM", "a number", is_real},
+      {"W3", "a number", is_real},
+      {"W4", "a number", is_real},
       {"WTMASS", "a number above 0", [](const std::string& v) { return parse_real(v).value_or(0) > 0; }}};
   return rules;
 }

@@ -55,6 +55,10 @@ enum class IdSpace {
   Bend,
   BendProperty,
   OldSolidProperty,
+  DynamicLoad,
+  DynamicTable,
+  DampingTable,
+  TimeSteps,
   Count
 };
 
