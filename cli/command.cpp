@@ -7,6 +7,7 @@
 #include "cli/common/memory_limit.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/common/versions.hpp"
+#include "cli/frequency/frequency.hpp"
 #include "cli/verbs.hpp"
 
 namespace {

@@ -15,8 +15,6 @@ using Action = std::function<int()>;
 void add_check(CLI::App& app, Action& action);
 void add_modes(CLI::App& app, Action& action);
 void add_static(CLI::App& app, Action& action);
-void add_frequency(CLI::App& app, Action& action);
-void add_transient(CLI::App& app, Action& action);
 void add_matrices(CLI::App& app, Action& action);
 void add_reduce(CLI::App& app, Action& action);
 void add_integrals(CLI::App& app, Action& action);

@@ -13,11 +13,14 @@
 #include "cli/common/solution.hpp"
 #include "cli/common/subcase_failures.hpp"
 #include "cli/common/text_file.hpp"
+#include "cli/common/usage_text.hpp"
+#include "cli/frequency/frequency.hpp"
 #include "cli/frequency/response_tables.hpp"
 #include "cli/modes/eigen_choices.hpp"
 #include "fe/statics/preload.hpp"
 #include "formats/export/response_text.hpp"
 #include "formats/hdf5/response_file.hpp"
+#include "formats/nastran/dynamic_reader.hpp"
 #include "modal/response/deck_response.hpp"
 
 namespace bough::cli {
@@ -30,8 +33,8 @@ struct DeckResponseOptions : ModesOptions {
 };
 
 /// The deck's EIGRL with the command line; where neither says how many modes, those up to twice the highest frequency.
-modal::EigenOptions choose_eigen(const DeckResponseOptions& options, const records::Deck& deck,
-                                 const records::Subcase& subcase, Diagnostics& diagnostics) {
+modal::EigenOptions choose_eigen(const DeckResponseOptions& options, const records::DynamicDeck& deck,
+                                 const records::DynamicSubcase& subcase, Diagnostics& diagnostics) {
   auto eigen = choose_eigen_options(options, deck, subcase.method, diagnostics);
   const bool is_said = options.number > 0 || options.max_hz || !deck.eigen_methods.empty();
   const double highest = modal::response::find_highest(deck, subcase.dynamics.frequency);
@@ -42,7 +45,7 @@ modal::EigenOptions choose_eigen(const DeckResponseOptions& options, const recor
   return eigen;
 }
 
-void demand_grids(const DeckResponseOptions& options, const records::Deck& deck) {
+void demand_grids(const DeckResponseOptions& options, const records::DynamicDeck& deck) {
   for (const int id : options.grids) {
     const bool is_grid = std::any_of(deck.grids.begin(), deck.grids.end(), [id](const auto& g) { return g.id == id; });
     const auto& points = deck.scalar_points;
@@ -52,8 +55,19 @@ void demand_grids(const DeckResponseOptions& options, const records::Deck& deck)
   }
 }
 
+/// As read_deck_or_throw.
+records::DynamicDeck read_dynamic_deck_or_throw(const std::string& path, const fe::ModelOptions& options,
+                                                Diagnostics& diagnostics) {
+  auto deck = is_one_of_many() ? nastran::read_packed_dynamic_deck(share([&] { return nastran::pack_deck(path); }),
+                                                                   {options.ignore_cards}, diagnostics)
+                               : nastran::read_dynamic_deck(path, {options.ignore_cards}, diagnostics);
+  if (diagnostics.num_errors() > 0) fe::Model::build(deck, options, diagnostics);
+  diagnostics.throw_if_errors();
+  return deck;
+}
+
 /// SOL 108 and 109 solve without modes.
-void note_direct(const records::Deck& deck, Diagnostics& diagnostics) {
+void note_direct(const records::DynamicDeck& deck, Diagnostics& diagnostics) {
   static const std::array direct{"108", "109", "26", "27", "SEDFREQ", "SEDTRAN", "DFREQ", "DTRAN"};
   if (std::find(direct.begin(), direct.end(), deck.sol) != direct.end())
     diagnostics.note("cli.by-modes", deck.locate({}),
@@ -85,8 +99,8 @@ int run_deck_response(const DeckResponseOptions& options) {
   console.set_rank(fe::initialize_petsc().rank);
   Diagnostics diagnostics;
   const auto model_options = make_model_options(options.model);
-  const auto deck = read_deck_or_throw(options.deck, model_options, diagnostics);
-  std::vector<records::Subcase> subcases;
+  const auto deck = read_dynamic_deck_or_throw(options.deck, model_options, diagnostics);
+  std::vector<records::DynamicSubcase> subcases;
   say_first(diagnostics, [&] {
     demand_grids(options, deck);
     subcases = modal::response::choose_response_subcases(deck, options.model.subcase);
@@ -101,10 +115,10 @@ int run_deck_response(const DeckResponseOptions& options) {
   response_options.is_over_time = options.is_over_time;
   if (options.no_residuals) response_options.residual_vectors = false;
   response_options.grids = options.grids;
-  response_options.choose_eigen = [&](const records::Subcase& subcase, Diagnostics& own) {
+  response_options.choose_eigen = [&](const records::DynamicSubcase& subcase, Diagnostics& own) {
     return choose_eigen(options, deck, subcase, own);
   };
-  response_options.choose_prestress = [&](const fe::ModelOptions& of, const records::Subcase& subcase,
+  response_options.choose_prestress = [&](const fe::ModelOptions& of, const records::DynamicSubcase& subcase,
                                           Diagnostics& own) {
     return fe::calc_subcase_prestress(deck, of, subcase, own);
   };

@@ -88,10 +88,6 @@ Solved solve_task(const ModesOptions& options, const records::Deck& deck, const 
     diagnostics.note("fe.damping-unused", deck.locate({}),
                      "the dampers of the deck do not act on its modes, as in SOL 103",
                      "bough reduce adds them to the modal damping");
-  if (model.subcase().dynamics.resvec.value_or(false))
-    diagnostics.note("cli.residual-vectors", deck.locate({}),
-                     "RESVEC: the residual vectors are not listed with the modes",
-                     "bough frequency and bough transient use them; so does a body with [body.modes] residual");
   const auto norm = choose_norm(deck, task.buckling ? task.buckling->buckling.method : model.subcase().method, model);
   auto pairs = task.buckling
                    ? modal::solve_buckling(

@@ -41,9 +41,6 @@ struct PlainLoadSet {
 /// plain set; one that is a LOAD card only stands for the terms of that.
 std::vector<PlainLoadSet> list_plain_sets(const records::Deck& deck, int set);
 
-/// Whether the deck has cards of static loads under this id, SPCD aside, or a LOAD card.
-bool has_load_set(const records::Deck& deck, int set);
-
 /// Warns of the cards of one plain set that keep their direction although PARAM,FOLLOWK,YES would have them follow
 /// (fe.dead-load).
 void report_dead_loads(const records::Deck& deck, int set, Diagnostics& diagnostics);

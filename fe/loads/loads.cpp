@@ -80,16 +80,14 @@ bool has_enforced(const records::Deck& deck, int set) {
   return std::any_of(spcd.begin(), spcd.end(), [set](const auto& s) { return s.sid == set; });
 }
 
-bool has_force_cards(const records::Deck& deck, int set) {
+bool has_cards(const records::Deck& deck, int set) {
   const auto in = [set](const auto& cards) {
     return std::any_of(cards.begin(), cards.end(), [set](const auto& card) { return card.sid == set; });
   };
   const auto& c = deck.load_cards;
   return in(deck.point_loads) || in(deck.gravity) || in(c.directed) || in(c.beams) || in(c.grid_pressures) ||
-         in(c.pressures) || in(c.rotations) || in(c.scalar);
+         in(c.pressures) || in(c.rotations) || in(c.spcd) || in(c.scalar);
 }
-
-bool has_cards(const records::Deck& deck, int set) { return has_force_cards(deck, set) || has_enforced(deck, set); }
 
 const records::LoadCombination* find_combination(const records::Deck& deck, int set) {
   const auto found = std::find_if(deck.loads.begin(), deck.loads.end(), [set](const auto& l) { return l.sid == set; });
@@ -122,12 +120,6 @@ void report_terms(const records::Deck& deck, const records::LoadCombination& car
 }
 
 }  // namespace
-
-bool has_load_set(const records::Deck& deck, int set) {
-  const auto& accelerations = deck.special.accelerations;
-  return find_combination(deck, set) || has_force_cards(deck, set) ||
-         std::any_of(accelerations.begin(), accelerations.end(), [set](const auto& a) { return a.sid == set; });
-}
 
 std::vector<PlainLoadSet> list_plain_sets(const records::Deck& deck, int set) {
   const auto* card = find_combination(deck, set);

@@ -29,10 +29,7 @@ constexpr std::array written_cards{
     "CQUAD1", "CQUAD2", "CRBAR", "CRBE1", "CRBE2", "CRBE3", "CRIGD3", "CRROD", "CRSPLINE", "CRTRPLT", "CTRBSC",
     "CTRIA1", "CTRIA2", "CTRIM6", "CTRMEM", "CTRPLT", "CTRPLT1", "CTRSHL", "CWEDGE", "MAT6", "PCOMP1", "PCOMP2",
     "PELBOW", "PIHEX", "PIS2D8", "PLOAD3", "PQDMEM", "PQDMEM1", "PQDMEM2", "PQDPLT", "PQUAD1", "PQUAD2", "PTRBSC",
-    "PTRIA1", "PTRIA2", "PTRIM6", "PTRMEM", "PTRPLT", "PTRPLT1", "PTRSHL", "QSET", "QSET1",
-    // Of responses.
-    "DAREA", "DELAY", "DLOAD", "DPHASE", "FREQ", "FREQ1", "FREQ2", "FREQ3", "FREQ4", "FREQ5", "LSEQ", "RLOAD1",
-    "RLOAD2", "TABDMP1", "TABLED1", "TABLED2", "TABLED3", "TABLED4", "TIC", "TLOAD1", "TLOAD2", "TSTEP"};
+    "PTRIA1", "PTRIA2", "PTRIM6", "PTRMEM", "PTRPLT", "PTRPLT1", "PTRSHL", "QSET", "QSET1"};
 
 /// "1.5*K1, 1.*K2": a line for each, so that none grows beyond 72 columns.
 std::string join_matrices(const std::vector<std::pair<double, std::string>>& matrices) {
@@ -40,45 +37,6 @@ std::string join_matrices(const std::vector<std::pair<double, std::string>>& mat
   for (const auto& [factor, name] : matrices)
     text += (text.empty() ? "" : ",\n  ") + (factor == 1 ? "1." : detail::format_exact_real(factor)) + "*" + name;
   return text;
-}
-
-void write_dynamic_selection(const records::DynamicSelection& selection, std::string& out) {
-  const auto add = [&](const char* word, int set) {
-    if (set != 0) out += std::string(word) + " = " + std::to_string(set) + "\n";
-  };
-  for (const auto& [id, set] : selection.sets) {
-    std::string text = "SET " + std::to_string(id) + " = ";
-    if (set.is_all) text += "ALL";
-    bool in_except = false;
-    for (const auto& range : set.ranges) {
-      if (range.is_excluded && !in_except)
-        text += " EXCEPT ";
-      else if (text.back() != ' ')
-        text += text.size() - text.rfind('\n') > 50 ? ",\n  " : ", ";
-      in_except = range.is_excluded;
-      const bool is_whole = range.first == static_cast<int>(range.first);
-      text += is_whole ? std::to_string(static_cast<int>(range.first)) : detail::format_exact_real(range.first);
-      if (range.last != range.first) text += " THRU " + std::to_string(static_cast<int>(range.last));
-    }
-    out += text + "\n";
-  }
-  add("DLOAD", selection.dload);
-  add("LOADSET", selection.loadset);
-  add("FREQUENCY", selection.frequency);
-  add("TSTEP", selection.tstep);
-  add("IC", selection.ic);
-  add("SDAMPING", selection.sdamping);
-  add("OFREQ", selection.ofreq);
-  if (selection.resvec) out += std::string("RESVEC = ") + (*selection.resvec ? "YES" : "NO") + "\n";
-  for (const auto& [name, request] : selection.outputs) {
-    std::string options = request.is_phase ? "PHASE" : "";
-    if (request.is_punched) options += options.empty() ? "PUNCH" : ",PUNCH";
-    out += name + (options.empty() ? "" : "(" + options + ")") + " = " +
-           (request.is_all    ? "ALL"
-            : request.is_none ? "NONE"
-                              : std::to_string(request.set)) +
-           "\n";
-  }
 }
 
 void write_selection(const records::Subcase& subcase, std::string& out) {
@@ -101,7 +59,6 @@ void write_selection(const records::Subcase& subcase, std::string& out) {
   add_set("STATSUB(PRELOAD)", subcase.preload);
   add_set("SUPORT1", subcase.suport1);
   add_set("NSM", subcase.nsm);
-  write_dynamic_selection(subcase.dynamics, out);
   add("K2GG", join_matrices(subcase.k2gg));
   add("M2GG", join_matrices(subcase.m2gg));
   add("B2GG", join_matrices(subcase.b2gg));
@@ -161,7 +118,6 @@ std::string write_deck(const Deck& deck, const WriteOptions& options, Diagnostic
   detail::write_loads(deck, sink);
   detail::write_temperatures(deck, sink);
   detail::write_special(deck, sink);
-  detail::write_dynamics(deck, sink);
   sink.out += "ENDDATA\n";
   return std::move(sink.out);
 }

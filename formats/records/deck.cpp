@@ -19,16 +19,6 @@ bool Deck::is_refused(int id, const std::vector<std::string>& cards) const {
   return false;
 }
 
-bool CaseSet::contains(int id) const {
-  bool is_in = is_all;
-  for (const auto& range : ranges)
-    if (id >= range.first && id <= range.last) {
-      if (range.is_excluded) return false;
-      is_in = true;
-    }
-  return is_in;
-}
-
 SourceLocation Deck::locate(const CardLocation& at) const {
   const bool known = at.file >= 0 && at.file < static_cast<int>(files.size());
   return {known ? files[at.file] : std::string{}, at.line, 0};

@@ -16,7 +16,6 @@
 #include "base/diagnostic.hpp"
 #include "formats/records/card_location.hpp"
 #include "formats/records/deck_continua.hpp"
-#include "formats/records/deck_dynamics.hpp"
 #include "formats/records/deck_loads.hpp"
 #include "formats/records/deck_special.hpp"
 #include "formats/records/deck_temperatures.hpp"
@@ -366,7 +365,6 @@ struct Subcase {
   int initial_temperature = 0;  ///< TEMPERATURE(INITIAL)
   int suport1 = 0, nsm = 0;
   std::vector<std::pair<double, std::string>> k2gg, m2gg, b2gg;  ///< (scale, DMIG name)
-  DynamicSelection dynamics;
   std::map<std::string, CardLocation> commands;  ///< where "SPC", "LOAD", "METHOD", ... of this subcase stand
 
   /// Where `command` selects something for this subcase; line 0 where none does.
@@ -447,7 +445,6 @@ struct Deck {
   std::vector<LoadCombination> loads;
   TemperatureCards temperatures;
   LoadCards load_cards;  ///< PLOADx, RFORCE, SPCD, SLOAD, FORCE1 ...
-  DynamicCards dynamics;
   SpecialCards special;  ///< PBCOMP, GENEL, CBEND, NSM, RSPLINE, CGAP, ACCEL
   std::vector<EigenMethod> eigen_methods;
   std::vector<Param> params;

@@ -1,13 +1,13 @@
 #pragma once
-/// \file Dynamic loads, tables, frequencies and times, and what the case control asks of a response: included by
-/// deck.hpp.
+/// \file A deck with what drives it: loads over frequency and time, tables, damping, and what its case control asks of
+/// a response. Apart from deck.hpp, which most of Bough is compiled with and which needs none of it.
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "formats/records/card_location.hpp"
+#include "formats/records/deck.hpp"
 
 namespace bough::records {
 
@@ -111,7 +111,15 @@ struct CaseSet {
   };
   bool is_all = false;
   std::vector<Range> ranges;
-  bool contains(int id) const;
+  bool contains(int id) const {
+    bool is_in = is_all;
+    for (const auto& range : ranges) {
+      if (id < range.first || id > range.last) continue;
+      if (range.is_excluded) return false;
+      is_in = true;
+    }
+    return is_in;
+  }
 };
 
 /// DISPLACEMENT(PHASE, PUNCH) = 12 and the like.
@@ -131,6 +139,18 @@ struct DynamicSelection {
   /// By what is asked for: DISPLACEMENT, VELOCITY, ACCELERATION, SPCFORCES, FORCE.
   std::map<std::string, OutputRequest> outputs;
   std::map<int, CaseSet> sets;
+};
+
+struct DynamicSubcase : Subcase {
+  DynamicSubcase() = default;
+  DynamicSubcase(const Subcase& subcase, DynamicSelection selection)
+      : Subcase(subcase), dynamics(std::move(selection)) {}
+  DynamicSelection dynamics;
+};
+
+struct DynamicDeck : Deck {
+  DynamicCards dynamics;
+  std::map<int, DynamicSelection> selections;  ///< by subcase
 };
 
 }  // namespace bough::records

@@ -16,7 +16,7 @@ double to_hz(double lambda) { return std::sqrt(std::max(lambda, 0.0)) / (2 * std
 
 /// The modes that EIGRL asks for, and below V1 those that go before them: what they would have given statically is
 /// not given back by residual vectors.
-ModeBasis calc_modes(const fe::System& system, const EigenOptions& options, const records::Deck& deck,
+ModeBasis calc_modes(const fe::System& system, const EigenOptions& options, const records::DynamicDeck& deck,
                      int& num_massless, Diagnostics& diagnostics) {
   EigenPairs low;
   const double lowest = std::max(options.min_hz.value_or(0), records::get_real_param(deck, "LFREQ", 0, diagnostics));
@@ -58,8 +58,8 @@ ModeBasis calc_modes(const fe::System& system, const EigenOptions& options, cons
   return basis;
 }
 
-DampingChoice choose_damping(const records::Deck& deck, const records::Subcase& subcase, bool is_over_time,
-                             const fe::Model& model, Diagnostics& diagnostics) {
+DampingChoice choose_damping(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+                             bool is_over_time, const fe::Model& model, Diagnostics& diagnostics) {
   DampingChoice damping;
   damping.is_over_time = is_over_time;
   damping.g = records::get_real_param(deck, "G", 0, diagnostics);
@@ -70,7 +70,7 @@ DampingChoice choose_damping(const records::Deck& deck, const records::Subcase& 
   const auto& curves = deck.dynamics.damping;
   const auto curve = std::find_if(curves.begin(), curves.end(), [set](const auto& c) { return c.id == set; });
   if (curve != curves.end()) damping.curve = &*curve;
-  if (set != 0 && !damping.curve && !deck.is_refused(set, {"TABDMP1"}))
+  if (set != 0 && !damping.curve)
     diagnostics.error("modal.missing-table", deck.locate(subcase.find_command("SDAMPING")),
                       "SDAMPING = " + std::to_string(set) + " names no TABDMP1 card of the deck",
                       "add the table or correct the id");
@@ -90,10 +90,14 @@ DampingChoice choose_damping(const records::Deck& deck, const records::Subcase& 
 
 }  // namespace
 
-std::vector<records::Subcase> choose_response_subcases(const records::Deck& deck, int asked) {
-  std::vector<records::Subcase> chosen;
-  for (const auto& subcase : deck.subcases)
-    if (asked != 0 ? subcase.id == asked : subcase.dynamics.dload != 0) chosen.push_back(subcase);
+std::vector<records::DynamicSubcase> choose_response_subcases(const records::DynamicDeck& deck, int asked) {
+  std::vector<records::DynamicSubcase> chosen;
+  for (const auto& subcase : deck.subcases) {
+    const auto selection = deck.selections.find(subcase.id);
+    const bool has_load = selection != deck.selections.end() && selection->second.dload != 0;
+    if (asked != 0 ? subcase.id == asked : has_load)
+      chosen.emplace_back(subcase, has_load ? selection->second : records::DynamicSelection{});
+  }
   if (!chosen.empty() || asked != 0) return chosen;
   throw InputError("modal.no-dynamic-load", deck.locate({}), "no subcase selects a DLOAD",
                    "write DLOAD = n in the case control, with RLOAD or TLOAD cards");
@@ -108,12 +112,12 @@ struct DeckResponseSolver::Prepared {
   std::unique_ptr<fe::StaticSolver> statics;
 };
 
-DeckResponseSolver::DeckResponseSolver(const records::Deck& deck, fe::ModelOptions model_options,
+DeckResponseSolver::DeckResponseSolver(const records::DynamicDeck& deck, fe::ModelOptions model_options,
                                        ResponseOptions options)
     : deck_(deck), model_options_(std::move(model_options)), options_(std::move(options)) {}
 DeckResponseSolver::~DeckResponseSolver() = default;
 
-void DeckResponseSolver::prepare(const records::Subcase& subcase, Diagnostics& diagnostics) {
+void DeckResponseSolver::prepare(const records::DynamicSubcase& subcase, Diagnostics& diagnostics) {
   const std::array<int, 6> held{subcase.spc,     subcase.mpc,    subcase.suport1,
                                 subcase.preload, subcase.method, subcase.initial_temperature};
   if (prepared_ && held_ == held) return;
@@ -141,7 +145,7 @@ void DeckResponseSolver::prepare(const records::Subcase& subcase, Diagnostics& d
   prepared_ = std::move(prepared);
 }
 
-records::ResponseSubcase DeckResponseSolver::solve(const records::Subcase& subcase, Diagnostics& diagnostics) {
+records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase& subcase, Diagnostics& diagnostics) {
   prepare(subcase, diagnostics);
   const auto& model = prepared_->model;
   Diagnostics own;

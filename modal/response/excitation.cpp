@@ -5,7 +5,6 @@
 #include <map>
 #include <numbers>
 
-#include "fe/loads/load_sets.hpp"
 #include "fe/statics/static_case.hpp"
 
 namespace bough::modal::response {
@@ -28,6 +27,15 @@ bool has_set(const Cards& cards, int sid) {
   return std::any_of(cards.begin(), cards.end(), [sid](const auto& card) { return card.sid == sid; });
 }
 
+/// Static loads under this id, SPCD aside.
+bool has_load_cards(const records::Deck& deck, int set) {
+  const auto& c = deck.load_cards;
+  return has_set(deck.point_loads, set) || has_set(deck.gravity, set) || has_set(c.directed, set) ||
+         has_set(c.beams, set) || has_set(c.grid_pressures, set) || has_set(c.pressures, set) ||
+         has_set(c.rotations, set) || has_set(c.scalar, set) || has_set(deck.loads, set) ||
+         has_set(deck.special.accelerations, set);
+}
+
 /// One pattern of a card, and the delay and phase of its dofs.
 struct Part {
   VectorXd pattern;
@@ -36,8 +44,8 @@ struct Part {
 
 class Collector {
  public:
-  Collector(const fe::Model& model, const records::Deck& deck, const records::Subcase& subcase, bool over_time,
-            Diagnostics& diagnostics)
+  Collector(const fe::Model& model, const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+            bool over_time, Diagnostics& diagnostics)
       : model_(model), deck_(deck), subcase_(subcase), over_time_(over_time), diagnostics_(diagnostics) {}
 
   Excitation collect() {
@@ -86,7 +94,7 @@ class Collector {
   const records::DynamicTable* get_table(const DynamicLoad& load, int id) {
     if (id == 0) return nullptr;
     const auto* table = find_table(deck_, id);
-    if (!table && !deck_.is_refused(id, {"TABLED1", "TABLED2", "TABLED3", "TABLED4"}))
+    if (!table)
       diagnostics_.error("modal.missing-table", deck_.locate(load.at),
                          describe_load(load) + " names table " + std::to_string(id) +
                              ", which no TABLED1 to TABLED4 card of the deck has",
@@ -144,7 +152,7 @@ class Collector {
                                std::to_string(s.temperature) + "), which load no response here",
                            "leave TID out, or give the loads as forces");
     }
-    if (set != 0 && fe::has_load_set(deck_, set)) {
+    if (set != 0 && has_load_cards(deck_, set)) {
       is_found = true;
       F += model_.calc_load(deck_, set, diagnostics_);
     }
@@ -239,8 +247,8 @@ class Collector {
   }
 
   const fe::Model& model_;
-  const records::Deck& deck_;
-  const records::Subcase& subcase_;
+  const records::DynamicDeck& deck_;
+  const records::DynamicSubcase& subcase_;
   bool over_time_;
   Diagnostics& diagnostics_;
   std::vector<VectorXd> forces_, motions_;
@@ -249,7 +257,7 @@ class Collector {
 
 }  // namespace
 
-int find_dof(const fe::Model& model, const records::Deck& deck, int g, int c, const std::string& card,
+int find_dof(const fe::Model& model, const records::DynamicDeck& deck, int g, int c, const std::string& card,
              const records::CardLocation& at, Diagnostics& diagnostics) {
   const int index = model.find_node(g);
   if (index < 0) {
@@ -282,8 +290,8 @@ void turn_to_cd(const fe::Model& model, Eigen::Ref<VectorXd> u) {
           (node.R_basic_cd.transpose() * u.segment<3>(node.first_gdof + 3 * i)).eval();
 }
 
-Excitation calc_excitation(const fe::Model& model, const records::Deck& deck, const records::Subcase& subcase,
-                           bool over_time, Diagnostics& diagnostics) {
+Excitation calc_excitation(const fe::Model& model, const records::DynamicDeck& deck,
+                           const records::DynamicSubcase& subcase, bool over_time, Diagnostics& diagnostics) {
   return Collector(model, deck, subcase, over_time, diagnostics).collect();
 }
 

@@ -30,16 +30,17 @@ struct Excitation {
 /// Of DLOAD of the subcase, over time or over frequency. Reports modal.no-dynamic-load, modal.missing-load,
 /// modal.wrong-load, modal.missing-table, modal.unsupported-load, fe.missing-grid, fe.bad-component,
 /// fe.spcd-not-fixed, fe.load-autospc (warning) and what is wrong with static loads.
-Excitation calc_excitation(const fe::Model& model, const records::Deck& deck, const records::Subcase& subcase,
-                           bool is_over_time, Diagnostics& diagnostics);
+Excitation calc_excitation(const fe::Model& model, const records::DynamicDeck& deck,
+                           const records::DynamicSubcase& subcase, bool is_over_time, Diagnostics& diagnostics);
 
 /// scale A (C + i D) exp i(θ - 2π f τ), or with B exp iφ; e^{iωt} throughout.
 std::complex<double> calc_amplitude(const ExcitationTerm& term, double hz);
-/// scale F(t - τ), or TLOAD2's t̃^B exp(C t̃) cos(2π F t̃ + P) between T1 and T2. Jumps within `reach` of t count as at t.
+/// scale F(t - τ), or TLOAD2's t̃^B exp(C t̃) cos(2π F t̃ + P) between T1 and T2. Jumps within `reach` of t count as at
+/// t.
 double calc_history(const ExcitationTerm& term, double t, Side side, double reach);
 
 /// Row of the g-set numbering, in CD axes, of a component (0: scalar point); -1 after reporting what is wrong.
-int find_dof(const fe::Model& model, const records::Deck& deck, int g, int c, const std::string& card,
+int find_dof(const fe::Model& model, const records::DynamicDeck& deck, int g, int c, const std::string& card,
              const records::CardLocation& at, Diagnostics& diagnostics);
 /// A vector on the g-set from CD axes to basic, or back.
 void turn_to_basic(const fe::Model& model, Eigen::Ref<VectorXd> u);

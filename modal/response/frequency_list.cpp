@@ -57,7 +57,7 @@ void add_frequencies(const FrequencyList& list, const VectorXd& natural_hz, std:
 }
 
 /// OFREQ: of each frequency of its SET the nearest.
-std::vector<double> choose_shown(const records::Deck& deck, const records::Subcase& subcase,
+std::vector<double> choose_shown(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
                                  const std::vector<double>& hz, Diagnostics& diagnostics) {
   const auto& sets = subcase.dynamics.sets;
   const auto set = sets.find(subcase.dynamics.ofreq);
@@ -81,7 +81,7 @@ std::vector<double> choose_shown(const records::Deck& deck, const records::Subca
 
 }  // namespace
 
-double find_highest(const records::Deck& deck, int set) {
+double find_highest(const records::DynamicDeck& deck, int set) {
   double highest = 0;
   for (const auto& list : deck.dynamics.frequencies) {
     if (list.sid != set) continue;
@@ -92,8 +92,8 @@ double find_highest(const records::Deck& deck, int set) {
   return highest;
 }
 
-VectorXd make_frequencies(const records::Deck& deck, const records::Subcase& subcase, const VectorXd& natural_hz,
-                          Diagnostics& diagnostics) {
+VectorXd make_frequencies(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+                          const VectorXd& natural_hz, Diagnostics& diagnostics) {
   const int set = subcase.dynamics.frequency;
   const auto where = deck.locate(subcase.find_command("FREQUENCY"));
   std::vector<double> hz;
@@ -125,7 +125,8 @@ VectorXd make_frequencies(const records::Deck& deck, const records::Subcase& sub
   return Eigen::Map<const VectorXd>(kept.data(), static_cast<Eigen::Index>(kept.size()));
 }
 
-TimeGrid make_times(const records::Deck& deck, const records::Subcase& subcase, Diagnostics& diagnostics) {
+TimeGrid make_times(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+                    Diagnostics& diagnostics) {
   const int set = subcase.dynamics.tstep;
   const auto& all = deck.dynamics.steps;
   const auto card = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.sid == set; });

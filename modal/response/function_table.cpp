@@ -64,7 +64,7 @@ double calc_damping_ratio(const records::DampingCurve& curve, double hz) {
   return curve.type == "Q" ? 0.5 / value : 0.5 * value;
 }
 
-const records::DynamicTable* find_table(const records::Deck& deck, int id) {
+const records::DynamicTable* find_table(const records::DynamicDeck& deck, int id) {
   for (const auto& table : deck.dynamics.tables)
     if (table.id == id) return &table;
   return nullptr;

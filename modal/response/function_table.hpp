@@ -1,7 +1,7 @@
 #pragma once
 /// \file Functions of frequency and time that the deck gives as tables. Source: MSC Nastran Quick Reference Guide,
 /// TABLED1 to TABLED4, TABDMP1.
-#include "formats/records/deck.hpp"
+#include "formats/records/deck_dynamics.hpp"
 
 namespace bough::modal::response {
 
@@ -16,6 +16,6 @@ double evaluate(const records::DynamicTable& table, double x, Side side = Side::
 double calc_damping_ratio(const records::DampingCurve& curve, double hz);
 
 /// The card with this id; nullptr where there is none.
-const records::DynamicTable* find_table(const records::Deck& deck, int id);
+const records::DynamicTable* find_table(const records::DynamicDeck& deck, int id);
 
 }  // namespace bough::modal::response

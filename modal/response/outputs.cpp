@@ -28,8 +28,8 @@ std::vector<int> list_driven_grids(const fe::Model& model, const Excitation& exc
 
 }  // namespace
 
-std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::Deck& deck,
-                                         const records::Subcase& subcase, const Excitation& excitation,
+std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::DynamicDeck& deck,
+                                         const records::DynamicSubcase& subcase, const Excitation& excitation,
                                          const std::vector<int>& extra_grids, Diagnostics& diagnostics) {
   std::vector<OutputChoice> outputs;
   const auto& selection = subcase.dynamics;

@@ -72,8 +72,8 @@ struct ElementShapes {
   MatrixXd forces;  ///< (elements x components) x columns
 };
 
-std::vector<ElementShapes> calc_element_shapes(const fe::Model& model, const records::Deck& deck, const MatrixXd& W,
-                                               const std::vector<int>& chosen) {
+std::vector<ElementShapes> calc_element_shapes(const fe::Model& model, const records::DynamicDeck& deck,
+                                               const MatrixXd& W, const std::vector<int>& chosen) {
   const std::set<int> wanted(chosen.begin(), chosen.end());
   std::vector<ElementShapes> all;
   Diagnostics unsaid;  // without loads along beams there is nothing to say
@@ -111,7 +111,7 @@ MatrixXcd add_structural(const MatrixXcd& force, const MatrixXd& S, const Matrix
 MatrixXd add_structural(const MatrixXd& force, const MatrixXd&, const MatrixXd&) { return force; }
 
 template <class Values>
-void recover_series(const fe::Model& model, const records::Deck& deck, const ResponseModel& response,
+void recover_series(const fe::Model& model, const records::DynamicDeck& deck, const ResponseModel& response,
                     const Excitation& excitation, const DampingChoice& damping,
                     const std::vector<OutputChoice>& outputs, const Series<Values>& s,
                     records::ResponseSubcase& result) {
@@ -151,7 +151,7 @@ Values stack(const Values& q, const Values& d, const Values& a, Eigen::Index num
 
 }  // namespace
 
-void recover(const fe::Model& model, const records::Deck& deck, const ResponseModel& response,
+void recover(const fe::Model& model, const records::DynamicDeck& deck, const ResponseModel& response,
              const Excitation& excitation, const DampingChoice& damping, const std::vector<OutputChoice>& outputs,
              const Spectrum& spectrum, records::ResponseSubcase& result) {
   Series<MatrixXcd> s;
@@ -164,7 +164,7 @@ void recover(const fe::Model& model, const records::Deck& deck, const ResponseMo
   recover_series(model, deck, response, excitation, damping, outputs, s, result);
 }
 
-void recover(const fe::Model& model, const records::Deck& deck, const ResponseModel& response,
+void recover(const fe::Model& model, const records::DynamicDeck& deck, const ResponseModel& response,
              const Excitation& excitation, const DampingChoice& damping, const std::vector<OutputChoice>& outputs,
              const History& history, records::ResponseSubcase& result) {
   Series<MatrixXd> s;

@@ -15,14 +15,14 @@ struct OutputChoice {
 /// What the subcase asks for. Reports modal.missing-set. `extra_grids`: displacement, velocity and acceleration of
 /// these besides; with no request at all the displacements of the grids that are loaded or moved (note
 /// modal.default-output).
-std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::Deck& deck,
-                                         const records::Subcase& subcase, const Excitation& excitation,
+std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::DynamicDeck& deck,
+                                         const records::DynamicSubcase& subcase, const Excitation& excitation,
                                          const std::vector<int>& extra_grids, Diagnostics& diagnostics);
 
-void recover(const fe::Model& model, const records::Deck& deck, const ResponseModel& response,
+void recover(const fe::Model& model, const records::DynamicDeck& deck, const ResponseModel& response,
              const Excitation& excitation, const DampingChoice& damping, const std::vector<OutputChoice>& outputs,
              const Spectrum& spectrum, records::ResponseSubcase& result);
-void recover(const fe::Model& model, const records::Deck& deck, const ResponseModel& response,
+void recover(const fe::Model& model, const records::DynamicDeck& deck, const ResponseModel& response,
              const Excitation& excitation, const DampingChoice& damping, const std::vector<OutputChoice>& outputs,
              const History& history, records::ResponseSubcase& result);
 

@@ -240,7 +240,7 @@ MatrixXd times_structural(const fe::Model& model, const DampingChoice& damping, 
   return fe::calc_structural_damping_times(model, 0, X) + damping.g * fe::calc_stiffness_times(model, X);
 }
 
-StartMotion calc_start(const fe::Model& model, const records::Deck& deck, const records::Subcase& subcase,
+StartMotion calc_start(const fe::Model& model, const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
                        Diagnostics& diagnostics) {
   StartMotion start;
   const int set = subcase.dynamics.ic;

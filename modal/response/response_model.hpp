@@ -46,7 +46,7 @@ struct StartMotion {
   VectorXd u, v;  ///< g-set, basic; empty: at rest
 };
 /// IC of the subcase. Reports modal.missing-initial, fe.missing-grid, fe.bad-component, modal.initial-held.
-StartMotion calc_start(const fe::Model& model, const records::Deck& deck, const records::Subcase& subcase,
+StartMotion calc_start(const fe::Model& model, const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
                        Diagnostics& diagnostics);
 
 /// B X and K_s X on the g-set: over time K_s is in B, at the rates W3 and W4.

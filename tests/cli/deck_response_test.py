@@ -99,7 +99,7 @@ CBAR,3,2,3,4,0.,0.,1.
 CBAR,4,2,4,5,0.,0.,1.
 CONM2,9,5,,.3
 PBUSH,8,K,2.+3,,,,,
-,B,40.,20.
+,,B,40.,20.
 CBUSH,26,8,5,,,,,0
 SPC1,1,123456,1
 RLOAD2,9,10,.01,30.,3,4
@@ -585,20 +585,6 @@ class Files(DeckResponse):
         self.assertEqual(sorted(r), [1, 2])
         self.near(r[2]["displacement"][1, 1], 2 * r[1]["displacement"][1, 1])
 
-    def test_written_again(self):
-        """The deck as `bough export` writes it gives the same response."""
-        deck = FRAME.format(modes=5, cd="7").replace("DISPLACEMENT = ALL", "SET 4 = 1 THRU 9 EXCEPT 3,4\nDISP(PUNCH) = 4").replace(
-            "ENDDATA", "TABDMP1,6,CRIT\n,1.,.02,200.,.03,ENDT\nDPHASE,31,4,3,10.\nDELAY,32,4,3,.1\nENDDATA").replace(
-            "METHOD = 1", "METHOD = 1\nSDAMPING = 6").replace("9,10,.01,30.", "9,10,32,31")
-        first = self.solve("frequency", deck)[1]
-        self.bough("export", "d.bdf", "--to", "bdf", "-o", "e.bdf")
-        self.bough("frequency", "e.bdf", "-o", "e.h5")
-        again = read(self.path("e.h5"))[1]
-        self.assertEqual(sorted(again["displacement"]), sorted(first["displacement"]))
-        for dof, values in first["displacement"].items():
-            if np.abs(values).max() > 0:
-                self.near(again["displacement"][dof], values, 1e-9)
-
 
 class Refusals(ProgramTest):
     def refuse(self, error, deck, verb="frequency", says=(), code=1):
@@ -653,8 +639,8 @@ class Refusals(ProgramTest):
         text = self.bough("frequency", "d.bdf").stderr
         for said in ["cli.by-modes", "modal.response-range", "modal.negative-damping"]:
             self.assertIn(f"[{said}]", text)
-        self.write("d.bdf", self.deck("RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ,5,.1").replace("METHOD = 1", "METHOD = 1\nRESVEC = YES"))
-        self.assertIn("[cli.residual-vectors]", self.bough("modes", "d.bdf").stderr)
+        self.write("d.bdf", self.deck("RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ,5,.1"))
+        self.assertRegex(self.bough("modes", "d.bdf").stderr, "RLOAD1 is not read")
 
 
 if __name__ == "__main__":

@@ -2,12 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/dynamic_cards.hpp"
 #include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 namespace {
 
+using records::DynamicCards;
 using records::DynamicLoad;
 
 /// A set where the field is an integer, else a number.
@@ -29,6 +30,18 @@ DynamicLoad::Excitation read_excitation(Card& card, int i) {
   return DynamicLoad::Excitation::Force;
 }
 
+/// An id stands once, as in Nastran.
+template <class Record>
+void add_unique(Card& card, std::vector<Record>& all, Record record, int Record::*id) {
+  if (!card.is_ok()) return;
+  if (std::any_of(all.begin(), all.end(), [&](const auto& other) { return other.*id == record.*id; })) {
+    card.fail("deck.duplicate-id", 0, "id " + std::to_string(record.*id) + " is used twice",
+              "give one of them another id");
+    return;
+  }
+  all.push_back(std::move(record));
+}
+
 DynamicLoad read_head(Card& card, DynamicLoad::Kind kind) {
   DynamicLoad load;
   load.kind = kind;
@@ -39,12 +52,12 @@ DynamicLoad read_head(Card& card, DynamicLoad::Kind kind) {
   return load;
 }
 
-void add_load(Card& card, Reading& r, DynamicLoad load) {
-  if (r.claim(IdSpace::DynamicLoad, load.sid, card)) r.deck.dynamics.loads.push_back(load);
+void add_load(Card& card, DynamicCards& r, DynamicLoad load) {
+  add_unique(card, r.loads, load, &std::remove_reference_t<decltype(load)>::sid);
 }
 
 /// SID EXCITEID DELAY DPHASE TC TD TYPE.
-void parse_rload1(Card& card, Reading& r) {
+void parse_rload1(Card& card, DynamicCards& r) {
   auto load = read_head(card, DynamicLoad::Kind::Rload1);
   read_set_or_number(card, 3, "DPHASE", load.phase_set, load.phase_deg);
   read_set_or_number(card, 4, "TC", load.table_a, load.a);
@@ -56,7 +69,7 @@ void parse_rload1(Card& card, Reading& r) {
 }
 
 /// SID EXCITEID DELAY DPHASE TB TP TYPE.
-void parse_rload2(Card& card, Reading& r) {
+void parse_rload2(Card& card, DynamicCards& r) {
   auto load = read_head(card, DynamicLoad::Kind::Rload2);
   read_set_or_number(card, 3, "DPHASE", load.phase_set, load.phase_deg);
   read_set_or_number(card, 4, "TB", load.table_a, load.a);
@@ -67,7 +80,7 @@ void parse_rload2(Card& card, Reading& r) {
 }
 
 /// SID EXCITEID DELAY TYPE TID US0 VS0.
-void parse_tload1(Card& card, Reading& r) {
+void parse_tload1(Card& card, DynamicCards& r) {
   auto load = read_head(card, DynamicLoad::Kind::Tload1);
   load.excitation = read_excitation(card, 3);
   read_set_or_number(card, 4, "TID", load.table_a, load.a);
@@ -76,7 +89,7 @@ void parse_tload1(Card& card, Reading& r) {
 }
 
 /// SID EXCITEID DELAY TYPE T1 T2 F P, C B US0 VS0.
-void parse_tload2(Card& card, Reading& r) {
+void parse_tload2(Card& card, DynamicCards& r) {
   auto load = read_head(card, DynamicLoad::Kind::Tload2);
   load.excitation = read_excitation(card, 3);
   load.t1 = card.read_real(4, "T1", 0.0);
@@ -90,7 +103,7 @@ void parse_tload2(Card& card, Reading& r) {
   add_load(card, r, load);
 }
 
-void parse_dload(Card& card, Reading& r) {
+void parse_dload(Card& card, DynamicCards& r) {
   records::DynamicLoadSum sum;
   sum.sid = card.read_id(0, "SID");
   sum.s = card.read_real(1, "S");
@@ -101,7 +114,7 @@ void parse_dload(Card& card, Reading& r) {
   }
   if (sum.terms.empty() && card.is_ok()) card.fail("deck.missing-field", 2, "S1 L1 are blank, expected a set at least");
   sum.at = card.get_location();
-  if (r.claim(IdSpace::DynamicLoad, sum.sid, card)) r.deck.dynamics.sums.push_back(std::move(sum));
+  add_unique(card, r.sums, std::move(sum), &std::remove_reference_t<decltype(sum)>::sid);
 }
 
 /// SID P1 C1 A1 P2 C2 A2.
@@ -118,21 +131,21 @@ void parse_values(Card& card, std::vector<records::DofValue>& values, const char
     if (card.is_ok()) values.push_back(v);
   }
 }
-void parse_darea(Card& card, Reading& r) { parse_values(card, r.deck.dynamics.areas, "A"); }
-void parse_delay(Card& card, Reading& r) { parse_values(card, r.deck.dynamics.delays, "T"); }
-void parse_dphase(Card& card, Reading& r) { parse_values(card, r.deck.dynamics.phases, "TH"); }
+void parse_darea(Card& card, DynamicCards& r) { parse_values(card, r.areas, "A"); }
+void parse_delay(Card& card, DynamicCards& r) { parse_values(card, r.delays, "T"); }
+void parse_dphase(Card& card, DynamicCards& r) { parse_values(card, r.phases, "TH"); }
 
-void parse_lseq(Card& card, Reading& r) {
+void parse_lseq(Card& card, DynamicCards& r) {
   records::StaticExcitation s;
   s.sid = card.read_id(0, "SID");
   s.excite = card.read_id(1, "EXCITEID");
   s.load = card.read_reference(2, "LID");
   s.temperature = card.read_reference(3, "TID");
   s.at = card.get_location();
-  if (card.is_ok()) r.deck.dynamics.lseq.push_back(s);
+  if (card.is_ok()) r.lseq.push_back(s);
 }
 
-void parse_tic(Card& card, Reading& r) {
+void parse_tic(Card& card, DynamicCards& r) {
   records::InitialMotion m;
   m.sid = card.read_id(0, "SID");
   m.g = card.read_id(1, "G");
@@ -140,7 +153,7 @@ void parse_tic(Card& card, Reading& r) {
   m.u0 = card.read_real(3, "U0", 0.0);
   m.v0 = card.read_real(4, "V0", 0.0);
   m.at = card.get_location();
-  if (card.is_ok()) r.deck.dynamics.initial.push_back(m);
+  if (card.is_ok()) r.initial.push_back(m);
 }
 
 /// Pairs from field `first` on, up to ENDT; ascending, as they stand or the other way round.
@@ -177,12 +190,12 @@ records::DynamicTable read_table_head(Card& card, int kind) {
   t.at = card.get_location();
   return t;
 }
-void add_table(Card& card, Reading& r, records::DynamicTable table) {
-  if (r.claim(IdSpace::DynamicTable, table.id, card)) r.deck.dynamics.tables.push_back(std::move(table));
+void add_table(Card& card, DynamicCards& r, records::DynamicTable table) {
+  add_unique(card, r.tables, std::move(table), &std::remove_reference_t<decltype(table)>::id);
 }
 
 /// TID XAXIS YAXIS, pairs from the second line on.
-void parse_tabled1(Card& card, Reading& r) {
+void parse_tabled1(Card& card, DynamicCards& r) {
   auto t = read_table_head(card, 1);
   t.is_log_x = card.read_word(1, "XAXIS", "LINEAR", {"LINEAR", "LOG"}) == "LOG";
   t.is_log_y = card.read_word(2, "YAXIS", "LINEAR", {"LINEAR", "LOG"}) == "LOG";
@@ -192,13 +205,13 @@ void parse_tabled1(Card& card, Reading& r) {
       card.fail("deck.field-range", 8, "a LOG axis has a value that is not above 0");
   add_table(card, r, std::move(t));
 }
-void parse_tabled2(Card& card, Reading& r) {
+void parse_tabled2(Card& card, DynamicCards& r) {
   auto t = read_table_head(card, 2);
   t.x1 = card.read_real(1, "X1", 0.0);
   t.points = read_points(card, 8);
   add_table(card, r, std::move(t));
 }
-void parse_tabled3(Card& card, Reading& r) {
+void parse_tabled3(Card& card, DynamicCards& r) {
   auto t = read_table_head(card, 3);
   t.x1 = card.read_real(1, "X1", 0.0);
   t.x2 = card.read_real(2, "X2");
@@ -206,7 +219,7 @@ void parse_tabled3(Card& card, Reading& r) {
   t.points = read_points(card, 8);
   add_table(card, r, std::move(t));
 }
-void parse_tabled4(Card& card, Reading& r) {
+void parse_tabled4(Card& card, DynamicCards& r) {
   auto t = read_table_head(card, 4);
   t.x1 = card.read_real(1, "X1", 0.0);
   t.x2 = card.read_real(2, "X2");
@@ -225,7 +238,7 @@ void parse_tabled4(Card& card, Reading& r) {
   add_table(card, r, std::move(t));
 }
 
-void parse_tabdmp1(Card& card, Reading& r) {
+void parse_tabdmp1(Card& card, DynamicCards& r) {
   records::DampingCurve t;
   t.id = card.read_id(0, "TID");
   t.type = card.read_word(1, "TYPE", "G", {"G", "CRIT", "Q"});
@@ -233,7 +246,7 @@ void parse_tabdmp1(Card& card, Reading& r) {
   t.points = read_points(card, 8);
   for (const auto& [hz, value] : t.points)
     if (card.is_ok() && t.type == "Q" && value <= 0) card.fail("deck.field-range", 8, "a quality Q is not above 0");
-  if (r.claim(IdSpace::DampingTable, t.id, card)) r.deck.dynamics.damping.push_back(std::move(t));
+  add_unique(card, r.damping, std::move(t), &std::remove_reference_t<decltype(t)>::id);
 }
 
 records::FrequencyList read_list_head(Card& card, int kind) {
@@ -243,11 +256,11 @@ records::FrequencyList read_list_head(Card& card, int kind) {
   list.at = card.get_location();
   return list;
 }
-void add_list(Card& card, Reading& r, records::FrequencyList list) {
-  if (card.is_ok()) r.deck.dynamics.frequencies.push_back(std::move(list));
+void add_list(Card& card, DynamicCards& r, records::FrequencyList list) {
+  if (card.is_ok()) r.frequencies.push_back(std::move(list));
 }
 
-void parse_freq(Card& card, Reading& r) {
+void parse_freq(Card& card, DynamicCards& r) {
   auto list = read_list_head(card, 0);
   for (int i = 1; i < card.get_size(); ++i) {
     if (card.is_blank(i)) continue;
@@ -258,7 +271,7 @@ void parse_freq(Card& card, Reading& r) {
   add_list(card, r, std::move(list));
 }
 /// SID F1 DF NDF.
-void parse_freq1(Card& card, Reading& r) {
+void parse_freq1(Card& card, DynamicCards& r) {
   auto list = read_list_head(card, 1);
   list.f1 = card.read_real(1, "F1");
   list.f2 = card.read_real(2, "DF");
@@ -278,13 +291,13 @@ records::FrequencyList read_range(Card& card, int kind, bool starts_above_zero) 
   if (card.is_ok()) card.demand(list.f2 >= list.f1 && list.f2 > 0, 2, "F2", "a number above 0, not below F1");
   return list;
 }
-void parse_freq2(Card& card, Reading& r) {
+void parse_freq2(Card& card, DynamicCards& r) {
   auto list = read_range(card, 2, true);
   list.count = card.read_int(3, "NF", 1);
   if (card.is_ok()) card.demand(list.count > 0 && list.count <= 1'000'000, 3, "NF", "1 to 1000000");
   add_list(card, r, std::move(list));
 }
-void parse_freq3(Card& card, Reading& r) {
+void parse_freq3(Card& card, DynamicCards& r) {
   const bool is_log = card.read_word(3, "TYPE", "LINEAR", {"LINEAR", "LOG"}) == "LOG";
   auto list = read_range(card, 3, is_log);
   list.is_log = is_log;
@@ -294,7 +307,7 @@ void parse_freq3(Card& card, Reading& r) {
   if (card.is_ok()) card.demand(list.spread > 0, 5, "CLUSTER", "a number above 0");
   add_list(card, r, std::move(list));
 }
-void parse_freq4(Card& card, Reading& r) {
+void parse_freq4(Card& card, DynamicCards& r) {
   auto list = read_range(card, 4, false);
   list.spread = card.read_real(3, "FSPD", 0.1);
   list.count = card.read_int(4, "NFM", 3);
@@ -303,7 +316,7 @@ void parse_freq4(Card& card, Reading& r) {
   add_list(card, r, std::move(list));
 }
 /// SID F1 F2 FR1 FR2 ...
-void parse_freq5(Card& card, Reading& r) {
+void parse_freq5(Card& card, DynamicCards& r) {
   auto list = read_list_head(card, 5);
   list.f1 = card.read_real(1, "F1", 0.0);
   list.f2 = card.read_real(2, "F2", 1e20);
@@ -318,7 +331,7 @@ void parse_freq5(Card& card, Reading& r) {
 }
 
 /// SID N1 DT1 NO1; from the second line on in the same fields.
-void parse_tstep(Card& card, Reading& r) {
+void parse_tstep(Card& card, DynamicCards& r) {
   records::TimeSteps steps;
   steps.sid = card.read_id(0, "SID");
   steps.at = card.get_location();
@@ -332,34 +345,20 @@ void parse_tstep(Card& card, Reading& r) {
     if (card.is_ok()) card.demand(part.count <= 10'000'000, i, "N", "1 to 10000000");
     steps.parts.push_back(part);
   }
-  if (r.claim(IdSpace::TimeSteps, steps.sid, card)) r.deck.dynamics.steps.push_back(std::move(steps));
+  add_unique(card, r.steps, std::move(steps), &std::remove_reference_t<decltype(steps)>::sid);
 }
 
 }  // namespace
 
-void add_dynamic_parsers(ParserTable& table) {
-  table["RLOAD1"] = parse_rload1;
-  table["RLOAD2"] = parse_rload2;
-  table["TLOAD1"] = parse_tload1;
-  table["TLOAD2"] = parse_tload2;
-  table["DLOAD"] = parse_dload;
-  table["DAREA"] = parse_darea;
-  table["DELAY"] = parse_delay;
-  table["DPHASE"] = parse_dphase;
-  table["LSEQ"] = parse_lseq;
-  table["TIC"] = parse_tic;
-  table["TABLED1"] = parse_tabled1;
-  table["TABLED2"] = parse_tabled2;
-  table["TABLED3"] = parse_tabled3;
-  table["TABLED4"] = parse_tabled4;
-  table["TABDMP1"] = parse_tabdmp1;
-  table["FREQ"] = parse_freq;
-  table["FREQ1"] = parse_freq1;
-  table["FREQ2"] = parse_freq2;
-  table["FREQ3"] = parse_freq3;
-  table["FREQ4"] = parse_freq4;
-  table["FREQ5"] = parse_freq5;
-  table["TSTEP"] = parse_tstep;
+const DynamicParserTable& get_dynamic_parsers() {
+  static const DynamicParserTable table{
+      {"RLOAD1", parse_rload1},   {"RLOAD2", parse_rload2},   {"TLOAD1", parse_tload1},   {"TLOAD2", parse_tload2},
+      {"DLOAD", parse_dload},     {"DAREA", parse_darea},     {"DELAY", parse_delay},     {"DPHASE", parse_dphase},
+      {"LSEQ", parse_lseq},       {"TIC", parse_tic},         {"TABLED1", parse_tabled1}, {"TABLED2", parse_tabled2},
+      {"TABLED3", parse_tabled3}, {"TABLED4", parse_tabled4}, {"TABDMP1", parse_tabdmp1}, {"FREQ", parse_freq},
+      {"FREQ1", parse_freq1},     {"FREQ2", parse_freq2},     {"FREQ3", parse_freq3},     {"FREQ4", parse_freq4},
+      {"FREQ5", parse_freq5},     {"TSTEP", parse_tstep}};
+  return table;
 }
 
 }  // namespace bough::nastran::detail

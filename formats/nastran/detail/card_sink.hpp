@@ -28,7 +28,6 @@ void write_loads(const records::Deck& deck,
                  CardSink& sink);  ///< FORCEi, MOMENTi, PLOADi, GRAV, RFORCE, SPCD, SLOAD, LOAD
 void write_temperatures(const records::Deck& deck, CardSink& sink);  ///< TEMP, TEMPD, TEMPRB, TEMPP1
 void write_special(const records::Deck& deck, CardSink& sink);       ///< PBCOMP, GENEL, CGAP, NSM, RSPLINE, ACCEL
-void write_dynamics(const records::Deck& deck, CardSink& sink);      ///< xLOADn, DLOAD, DAREA, TABLEDn, FREQn, TSTEP
 void write_solution(const records::Deck& deck, CardSink& sink);      ///< EIGRL, EIGR, PARAM
 
 }  // namespace bough::nastran::detail

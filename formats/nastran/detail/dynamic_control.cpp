@@ -51,7 +51,7 @@ DynamicCommand read_selection(const CommandText& c, const char* name, int& set, 
   return DynamicCommand::Read;
 }
 
-DynamicCommand read_request(const CommandText& c, const char* name, records::Subcase& subcase) {
+DynamicCommand read_request(const CommandText& c, const char* name, DynamicSelection& selected) {
   records::OutputRequest request;
   const auto value = make_upper(c.value);
   const auto id = parse_int(c.value);
@@ -64,15 +64,14 @@ DynamicCommand read_request(const CommandText& c, const char* name, records::Sub
   request.is_phase = has_option(c.options, "PHASE");
   request.is_punched = has_option(c.options, "PUNCH");
   request.at = c.at;
-  subcase.dynamics.outputs[name] = request;
+  selected.outputs[name] = request;
   return DynamicCommand::Read;
 }
 
 }  // namespace
 
-DynamicCommand read_dynamic_command(const CommandText& c, records::Subcase& subcase) {
+DynamicCommand read_dynamic_command(const CommandText& c, records::Subcase& subcase, DynamicSelection& selected) {
   const auto letters = std::string_view(c.word).substr(0, 4);
-  auto& selected = subcase.dynamics;
   for (const auto& s : selections)
     if (letters == s.letters && (letters != "SDAM" || c.options.empty() || c.options.starts_with("STR")))
       return read_selection(c, s.name, selected.*s.set, subcase);
@@ -85,7 +84,7 @@ DynamicCommand read_dynamic_command(const CommandText& c, records::Subcase& subc
     return DynamicCommand::Read;
   }
   for (const auto& r : requests)
-    if (letters == r.letters) return read_request(c, r.name, subcase);
+    if (letters == r.letters) return read_request(c, r.name, selected);
   return DynamicCommand::Other;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "formats/records/deck.hpp"
+#include "formats/records/deck_dynamics.hpp"
 
 namespace bough::nastran::detail {
 
@@ -17,8 +17,10 @@ struct CommandText {
   records::CardLocation at;
 };
 
-/// Into `subcase`; Other: the command is none of these. Requests with a value that is none are Other too.
-DynamicCommand read_dynamic_command(const CommandText& command, records::Subcase& subcase);
+/// Into `selected`, its place into `subcase`; Other: the command is none of these. Requests with a value that is none
+/// are Other too.
+DynamicCommand read_dynamic_command(const CommandText& command, records::Subcase& subcase,
+                                    records::DynamicSelection& selected);
 
 /// "1, 3, 5 THRU 9 EXCEPT 7, 20.5", "ALL"; empty for anything else.
 std::optional<records::CaseSet> read_case_set(std::string_view text);

@@ -48,24 +48,25 @@ const std::vector<Rule>& get_rules() {
        }},
       {"EPZERO", "a number, 0 or above", [](const std::string& v) { return parse_real(v).value_or(-1) >= 0; }},
       {"FOLLOWK", "YES or NO", is_answer},
-      {"DFREQ", "a number", is_real},
       {"G", "a number", is_real},
       {"GRDPNT", "an integer", is_integer, round_real},
-      {"HFREQ", "a number", is_real},
       {"INREL", "0, -1 or -2", [](const std::string& v) { return v == "0" || v == "-1" || v == "-2"; },
        [](const std::string& v) {
          const auto whole = round_real(v);
          return whole == "0" || whole == "-1" || whole == "-2" ? whole : std::string();
        }},
-      {"KDAMP", "1 or -1", is_integer},
       {"K6ROT", "a number, 0 or above", [](const std::string& v) { return parse_real(v).value_or(-1) >= 0; }},
-      {"LFREQ", "a number", is_real},
-      {"LMODES", "an integer", is_integer},
-      {"RESVEC", "YES or NO", is_answer},
       {"SNORM", "a number", is_real},
-      {"W3", "a number", is_real},
-      {"W4", "a number", is_real},
       {"WTMASS", "a number above 0", [](const std::string& v) { return parse_real(v).value_or(0) > 0; }}};
+  return rules;
+}
+
+/// Those that responses use besides.
+const std::vector<Rule>& get_response_rules() {
+  static const std::vector<Rule> rules{{"DFREQ", "a number", is_real},       {"HFREQ", "a number", is_real},
+                                       {"KDAMP", "1 or -1", is_integer},     {"LFREQ", "a number", is_real},
+                                       {"LMODES", "an integer", is_integer}, {"RESVEC", "YES or NO", is_answer},
+                                       {"W3", "a number", is_real},          {"W4", "a number", is_real}};
   return rules;
 }
 
@@ -154,10 +155,11 @@ bool is_known(const Names& names, const std::string& name) {
 }
 
 /// Values that are none of their kind: fe.bad-param, and the card is taken as the message says or left out.
-void check_values(records::Deck& deck, Diagnostics& diagnostics) {
+void check_values(records::Deck& deck, Diagnostics& diagnostics, bool of_responses) {
+  auto rules = get_rules();
+  if (of_responses) rules.insert(rules.end(), get_response_rules().begin(), get_response_rules().end());
   std::vector<records::Param> good;
   for (auto& param : deck.params) {
-    const auto& rules = get_rules();
     const auto rule = std::find_if(rules.begin(), rules.end(), [&](const Rule& r) { return r.name == param.name; });
     if (rule != rules.end() && !rule->accepts(param.value)) {
       const auto mended = rule->mend(param.value);
@@ -179,8 +181,8 @@ void check_values(records::Deck& deck, Diagnostics& diagnostics) {
 
 }  // namespace
 
-void report_params(records::Deck& deck, Diagnostics& diagnostics) {
-  check_values(deck, diagnostics);
+void report_params(records::Deck& deck, Diagnostics& diagnostics, bool of_responses) {
+  check_values(deck, diagnostics, of_responses);
   static const Names names;
   std::string list;
   records::CardLocation first;
@@ -188,6 +190,9 @@ void report_params(records::Deck& deck, Diagnostics& diagnostics) {
   for (const auto& param : deck.params) {
     if (std::find(names.used.begin(), names.used.end(), param.name) != names.used.end()) continue;
     if (!seen.insert(param.name).second) continue;
+    const auto& more = get_response_rules();
+    if (of_responses && std::any_of(more.begin(), more.end(), [&](const Rule& r) { return r.name == param.name; }))
+      continue;
     if (!is_known(names, param.name)) {
       auto nearest = find_nearest(param.name, names.used);
       if (nearest.empty()) nearest = find_nearest(param.name, names.all);

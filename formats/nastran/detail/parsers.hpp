@@ -30,7 +30,6 @@ void add_temperature_parsers(ParserTable& table);         ///< TEMP, TEMPD, TEMP
 void add_special_element_parsers(ParserTable& table);     ///< PBCOMP, GENEL, CGAP, PGAP, CBEND, PBEND
 void add_special_constraint_parsers(ParserTable& table);  ///< RBAR1, RJOINT, RTRPLT, RTRPLT1, RSPLINE
 void add_nonstructural_parsers(ParserTable& table);       ///< NSM, NSM1, NSML, NSML1, NSMADD, ACCEL, ACCEL1
-void add_dynamic_parsers(ParserTable& table);               ///< xLOADn, DLOAD, DAREA, TABLEDn, FREQn, TSTEP, TIC
 void add_solution_parsers(ParserTable& table);            ///< EIGRL, EIGR, PARAM
 
 /// After the last card: lists of SPC1, ASET1, OMIT1, QSET1 with THRU mean the grids and scalar points that exist. Adds

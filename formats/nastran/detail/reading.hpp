@@ -55,10 +55,6 @@ enum class IdSpace {
   Bend,
   BendProperty,
   OldSolidProperty,
-  DynamicLoad,
-  DynamicTable,
-  DampingTable,
-  TimeSteps,
   Count
 };
 
