@@ -211,6 +211,18 @@ class OneMass(DeckResponse):
                               "RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.5")
         self.near(r["displacement"][1, 1], 4.0 * H(w))
 
+    def test_tables(self):
+        """LOG axes, TABLED3, a jump (its mean), what goes on beyond the ends."""
+        H = lambda w: 2.5 / (K - M * w**2 + 1j * C * w)
+        load = "CDAMP2,3,2.4,1,1,2,1\nRLOAD2,9,10,,,3\nDAREA,10,1,1,2.5\n"
+        for table, exact in [("TABLED1,3,LOG,LOG\n,.1,2.,1.,20.,ENDT", lambda f: 20 * f),
+                             ("TABLED1,3,LOG\n,.1,2.,1.,3.,ENDT", lambda f: 3 + np.log10(f)),
+                             ("TABLED3,3,.1,2.\n,0.,1.,.1,2.,ENDT", lambda f: 1 + 5 * (f - .1)),
+                             ("TABLED1,3\n,0.,1.,.2,1.,.2,3.,.4,3.,ENDT", lambda f: np.select([f < .19, f < .21], [1, 2], 3)),
+                             ("TABLED1,3\n,1.,1.,.5,2.,SKIP,SKIP,0.,4.,ENDT", lambda f: np.where(f < .5, 4 - 4 * f, 3 - 2 * f))]:
+            r, w = self.frequency(table, load=load, lists="FREQ,5,.05,.1,.2,.3,.7,1.4")
+            self.near(r["displacement"][1, 1], exact(r["x"]) * H(w))
+
     def test_frequency_lists(self):
         hz = 3 / 2 / np.pi
         x = lambda lists: self.frequency("CDAMP2,3,2.4,1,1,2,1", lists=lists)[0]["x"]
@@ -509,10 +521,9 @@ class Structures(DeckResponse):
             f.write(deck.replace("SOL 111", "SOL 101").replace("DLOAD = 9", "LOAD = 11").replace(
                 "DAREA,11,4,3,2.5", "FORCE,11,4,0,2.5,0.,0.,1.").replace("DAREA,11,2,2,-1.", "FORCE,11,2,0,-1.,0.,1.,0."))
         static = json.loads(self.bough("static", "s.bdf", "--cd", "--json", "--full").stdout)["subcases"][0]
-        for row in static["displacement"]:
-            for c in range(6):
-                found = r["displacement"][row["grid"], c + 1][0]
-                self.assertLess(abs(found - row["value"][c]), 1e-10 * 1e-2, (row, c))
+        u = np.array(static["displacement"])
+        found = np.array([r["displacement"][tuple(dof)][0] for dof in static["dof_map"]])
+        self.near(found, u, 1e-10)
 
 
 class Files(DeckResponse):
@@ -557,6 +568,20 @@ class Files(DeckResponse):
         self.assertAlmostEqual(curve["largest"], np.abs(u).max())
         self.assertAlmostEqual(curve["at"], one["frequency_hz"][np.abs(u).argmax()])
         self.assertNotIn("real", json.loads(self.bough("frequency", "d.bdf", "--json").stdout)["subcases"][0]["curves"][0])
+
+    def test_plot(self):
+        self.write("d.bdf", self.DECK)
+        self.bough("frequency", "d.bdf", "-o", "d.h5")
+        self.bough("plot", "d.h5", "--sensor", "displacement:1:1", "-o", "d.svg")
+        with open(self.path("d.svg")) as f:
+            text = f.read()
+        for words in ["displacement:1:1", "magnitude [dB]", "phase [degrees]"]:
+            self.assertIn(words, text)
+        self.fails(1, "plot", "d.h5", "--sensor", "displacement:1:7", "-o", "e.svg", error="cli.unknown-channel")
+        self.write("t.bdf", ONE.format(sol=112, case="DLOAD = 9\nTSTEP = 5", bulk="TLOAD2,9,10,,,0.,9.\nDAREA,10,1,1,2.5\nTSTEP,5,40,.1"))
+        self.bough("transient", "t.bdf", "-o", "t.h5")
+        self.bough("plot", "t.h5", "--sensor", "velocity:1", "-o", "t.svg")
+        self.assertIn("/subcases/1/displacement/value", self.bough("info", "t.h5").stdout)
 
     def test_choice_of_output(self):
         """--grid adds; no request at all gives the loaded grids; OFREQ and EXCEPT; SET that is missing."""
