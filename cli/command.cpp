@@ -7,6 +7,7 @@
 #include "cli/common/memory_limit.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/common/versions.hpp"
+#include "cli/frequency/frequency.hpp"
 #include "cli/verbs.hpp"
 
 namespace {
@@ -17,6 +18,8 @@ void add_verbs(CLI::App& app, cli::Action& action) {
   cli::add_check(app, action);
   cli::add_modes(app, action);
   cli::add_static(app, action);
+  cli::add_frequency(app, action);
+  cli::add_transient(app, action);
   cli::add_matrices(app, action);
   cli::add_reduce(app, action);
   cli::add_integrals(app, action);

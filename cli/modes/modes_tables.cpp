@@ -63,12 +63,35 @@ std::string format_health(const records::ModesResult& r, const std::string& norm
   return text;
 }
 
+namespace {
+
+/// One object a mode: what the rows of the tables say.
+nlohmann::json list_modes(const records::ModesResult& r, bool buckling) {
+  auto modes = nlohmann::json::array();
+  for (Eigen::Index j = 0; j < r.residual.size(); ++j) {
+    nlohmann::json mode{{"mode", j + 1}, {"residual", r.residual(j)}};
+    if (buckling) {
+      mode["load_factor"] = r.load_factor(j);
+    } else {
+      mode["eigenvalue"] = r.eigenvalue(j);
+      mode["frequency_hz"] = r.frequency_hz(j);
+      mode["modal_mass"] = r.modal_mass(j);
+      mode["effective_mass"] = to_json_list(r.effective_mass.row(j).transpose());
+    }
+    modes.push_back(std::move(mode));
+  }
+  return modes;
+}
+
+}  // namespace
+
 nlohmann::json make_json(const records::ModesResult& r, const std::string& norm, bool buckling) {
   nlohmann::json json{{"subcase", r.subcase},
                       {"mass_properties", to_json(r.mass_properties)},
                       {"num_rigid_modes", r.num_rigid_modes},
                       {"inertia_count", r.inertia_count},
                       {"norm", norm},
+                      {"modes", list_modes(r, buckling)},
                       {"residual", to_json_list(r.residual)}};
   if (buckling) {
     json["load_factor"] = to_json_list(r.load_factor);

@@ -13,6 +13,7 @@
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/plot/linear_plots.hpp"
+#include "cli/plot/response_plots.hpp"
 #include "formats/report/svg_plot.hpp"
 
 namespace bough::cli {
@@ -80,8 +81,9 @@ std::string choose_picture(const PlotOptions& o, std::string otherwise) {
   return otherwise + ".svg";
 }
 
-int run_linear_plot(const PlotOptions& o, const Console& console) {
-  auto plots = make_linear_plots(o.files, o.linear);
+/// Stacked plots of linear models, and of responses of decks.
+int draw_plots(const PlotOptions& o, std::vector<report::Plot> plots, const std::string& otherwise,
+               const Console& console) {
   plots.front().title = o.title;
   for (auto& plot : plots) {
     for (std::size_t i = 0; i < std::min(o.labels.size(), plot.curves.size()); ++i)
@@ -90,7 +92,7 @@ int run_linear_plot(const PlotOptions& o, const Console& console) {
   }
   if (!o.y_label.empty()) plots.front().y_label = o.y_label;
   for (const auto& path : o.points) plots.front().curves.push_back(read_points(path));
-  const auto output = choose_picture(o, fs::path(o.files.front()).stem().string() + "-" + o.linear.kind);
+  const auto output = choose_picture(o, otherwise);
   auto inputs = o.files;
   inputs.insert(inputs.end(), o.points.begin(), o.points.end());
   check_output(o, output, inputs);
@@ -106,10 +108,14 @@ int run_plot(const PlotOptions& o) {
   if (o.has_limits && !(o.y_min < o.y_max))
     throw InputError("cli.bad-range", {}, fmt::format("the axis from {:g} to {:g} is empty", o.y_min, o.y_max),
                      "give --y-max above --y-min");
-  if (!o.linear.kind.empty()) return run_linear_plot(o, console);
+  if (!o.linear.kind.empty())
+    return draw_plots(o, make_linear_plots(o.files, o.linear),
+                      fs::path(o.files.front()).stem().string() + "-" + o.linear.kind, console);
   if (o.sensors.empty())
     throw InputError("cli.nothing-to-plot", {}, "neither --sensor nor --kind says what to draw",
                      "give --sensor NAME of results, or --kind bode of a linear model");
+  if (is_deck_response(o.files))
+    return draw_plots(o, make_response_plots(o.files, o.sensors), o.sensors.front(), console);
   report::Plot plot;
   plot.title = o.title.empty() ? fmt::format("{}", fmt::join(o.sensors, ", ")) : o.title;
   plot.x_label = o.x_label;
@@ -156,7 +162,8 @@ void add_plot(CLI::App& app, Action& action) {
   auto* verb = app.add_subcommand("plot", "Curves of results against time, or a linear model, as a picture");
   verb->add_option("files", o->files, "HDF5 files: results, or with --kind linear models or sweeps")->required();
   verb->add_option("--sensor", o->sensors,
-                   "Sensor NAME or NAME:component, or a path such as /energy/strain; may be repeated")
+                   "Sensor NAME or NAME:component, or a path such as /energy/strain; of responses of decks "
+                   "displacement:12:3; may be repeated")
       ->allow_extra_args(false);
   verb->add_option("--kind", o->linear.kind,
                    "Of linear models: bode, nichols, sigma (singular values) or poles; of what linearize --sweep or "

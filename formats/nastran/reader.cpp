@@ -1,4 +1,4 @@
-#include "formats/nastran/reader.hpp"
+#include "formats/nastran/dynamic_reader.hpp"
 
 #include "formats/nastran/detail/builder.hpp"
 #include "formats/nastran/detail/control.hpp"
@@ -6,17 +6,29 @@
 #include "formats/nastran/detail/known_params.hpp"
 #include "formats/nastran/detail/lines.hpp"
 #include "formats/nastran/detail/packing.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough::nastran {
 namespace {
 
-records::Deck make_deck(const detail::Source& source, const ReadOptions& options, Diagnostics& diagnostics) {
-  records::Deck deck;
+void fill_deck(const detail::Source& source, const ReadOptions& options, records::Deck& deck,
+               records::DynamicDeck* dynamics, Diagnostics& diagnostics) {
   deck.files = source.files;
   detail::read_system_cells(source, deck);
-  const auto first_line = detail::read_control(source, deck, diagnostics);
-  detail::read_bulk(source, first_line, options, deck, diagnostics);
-  detail::report_params(deck, diagnostics);
+  const auto first_line = detail::read_control(source, deck, diagnostics, dynamics);
+  detail::read_bulk(source, first_line, options, deck, diagnostics, dynamics ? &dynamics->dynamics : nullptr);
+  detail::report_params(deck, diagnostics, dynamics != nullptr);
+}
+
+records::Deck make_deck(const detail::Source& source, const ReadOptions& options, Diagnostics& diagnostics) {
+  records::Deck deck;
+  fill_deck(source, options, deck, nullptr, diagnostics);
+  return deck;
+}
+records::DynamicDeck make_dynamic_deck(const detail::Source& source, const ReadOptions& options,
+                                       Diagnostics& diagnostics) {
+  records::DynamicDeck deck;
+  fill_deck(source, options, deck, &deck, diagnostics);
   return deck;
 }
 
@@ -39,6 +51,17 @@ std::string pack_deck(const std::string& path) {
 
 records::Deck read_packed_deck(std::string bytes, const ReadOptions& options, Diagnostics& diagnostics) {
   return make_deck(detail::unpack(std::move(bytes), diagnostics), options, diagnostics);
+}
+
+records::DynamicDeck read_dynamic_deck(const std::string& path, const ReadOptions& options, Diagnostics& diagnostics) {
+  return make_dynamic_deck(detail::read_source(path, diagnostics), options, diagnostics);
+}
+records::DynamicDeck read_dynamic_deck_text(std::string_view text, const std::string& name, const ReadOptions& options,
+                                            Diagnostics& diagnostics) {
+  return make_dynamic_deck(detail::read_source_text(text, name, diagnostics), options, diagnostics);
+}
+records::DynamicDeck read_packed_dynamic_deck(std::string bytes, const ReadOptions& options, Diagnostics& diagnostics) {
+  return make_dynamic_deck(detail::unpack(std::move(bytes), diagnostics), options, diagnostics);
 }
 
 }  // namespace bough::nastran

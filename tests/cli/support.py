@@ -7,7 +7,7 @@ import unittest
 
 PROGRAM = os.environ["BOUGH_PROGRAM"]
 SOURCE = os.environ["BOUGH_SOURCE_DIR"]
-VERBS = ["check", "modes", "static", "matrices", "reduce", "integrals", "flx", "compare", "run",
+VERBS = ["check", "modes", "static", "frequency", "transient", "matrices", "reduce", "integrals", "flx", "compare", "run",
          "equilibrium", "linearize", "response", "select", "export", "plot", "report", "info", "init", "batch"]
 
 

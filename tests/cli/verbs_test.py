@@ -118,6 +118,11 @@ class Modes(ProgramTest):
         for words in ["eigenvalue", "modal mass", "effective mass", "residual", "rigid-body modes: 0", "none missed"]:
             self.assertIn(words, text)
         data = json.loads(self.bough("modes", "beam.bdf", "--mass", "consistent", "--json").stdout)
+        for j, mode in enumerate(data["modes"]):
+            self.assertEqual(mode["mode"], j + 1)
+            for key in ["eigenvalue", "frequency_hz", "modal_mass", "residual", "effective_mass"]:
+                self.assertEqual(mode[key], data[key][j])
+        self.assertEqual(len(data["modes"]), len(data["eigenvalue"]))
         with h5py.File(self.path("m.h5")) as f:
             np.testing.assert_allclose(f["/modes/frequency_hz"][:], data["frequency_hz"], rtol=1e-12)
             self.assertEqual(f["/modes/phi"].shape, (3, 6, 3))
@@ -135,6 +140,7 @@ class Modes(ProgramTest):
     def test_buckling_load_of_a_column(self):
         self.write("column.bdf", make_column())
         data = json.loads(self.bough("modes", "column.bdf", "--buckling", "--json").stdout)
+        self.assertEqual([mode["load_factor"] for mode in data["modes"]], data["load_factor"])
         euler = math.pi**2 * 700 / 10**2
         self.assertAlmostEqual(data["load_factor"][0] / euler, 1, delta=1e-5)
 

@@ -6,6 +6,7 @@
 #include <unordered_set>
 
 #include "formats/nastran/detail/design.hpp"
+#include "formats/nastran/detail/dynamic_cards.hpp"
 #include "formats/nastran/detail/known_cards.hpp"
 #include "formats/nastran/detail/leftovers.hpp"
 #include "formats/nastran/detail/parsers.hpp"
@@ -23,7 +24,8 @@ constexpr long max_all_repeats = 2'000'000;
 
 /// How one card name is treated, and how often it came.
 struct NameEntry {
-  CardParser parser = nullptr;  ///< nullptr: counted only
+  CardParser parser = nullptr;      ///< nullptr: counted only
+  DynamicParser dynamic = nullptr;  ///< of responses, in place of it
   int count = 0;
   records::CardLocation first;
 };
@@ -36,9 +38,10 @@ bool is_card_name(std::string_view name) {
 class Builder {
  public:
   Builder(const Source& source, std::size_t first_line, const ReadOptions& options, records::Deck& deck,
-          Diagnostics& diagnostics)
+          Diagnostics& diagnostics, records::DynamicCards* dynamics)
       : source_(source),
         deck_(deck),
+        dynamics_(dynamics),
         diagnostics_(diagnostics),
         images_(make_card_images(source, first_line, diagnostics)),
         reading_(deck, diagnostics) {
@@ -187,7 +190,8 @@ class Builder {
   }
 
   bool is_read(const std::string& name) const {
-    return ignored_.count(name) == 0 && get_card_parsers().count(name) > 0;
+    return ignored_.count(name) == 0 &&
+           (get_card_parsers().count(name) > 0 || (dynamics_ && get_dynamic_parsers().count(name) > 0));
   }
 
   /// Lines that are no cards and change nothing here: a deletion, which belongs to a restart, and a second BEGIN BULK.
@@ -237,10 +241,13 @@ class Builder {
       last_name_ = text_.name;
     }
     if (entry->count++ == 0) entry->first = text_.lines.front().at;
-    if (entry->parser == nullptr || is_default_card(text_.name)) return;
+    if ((entry->parser == nullptr && entry->dynamic == nullptr) || is_default_card(text_.name)) return;
     design_.apply(text_);
     Card card(text_, deck_.files, diagnostics_);
-    entry->parser(card, reading_);
+    if (entry->dynamic != nullptr)
+      entry->dynamic(card, *dynamics_);
+    else
+      entry->parser(card, reading_);
     if (card.is_ok()) leftovers_.add(card);
   }
 
@@ -249,6 +256,9 @@ class Builder {
     if (is_new && ignored_.count(text_.name) == 0) {
       const auto& parsers = get_card_parsers();
       if (const auto parser = parsers.find(text_.name); parser != parsers.end()) found->second.parser = parser->second;
+      const auto& responses = get_dynamic_parsers();
+      if (const auto parser = responses.find(text_.name); dynamics_ && parser != responses.end())
+        found->second.dynamic = parser->second;
     }
     return found->second;
   }
@@ -274,7 +284,8 @@ class Builder {
     std::vector<const std::pair<const std::string, NameEntry>*> unread;
     for (const auto& entry : names_) {
       deck_.card_counts[entry.first] = entry.second.count;
-      if (entry.second.parser == nullptr || find_loss(entry.first) != nullptr) unread.push_back(&entry);
+      const bool is_read = entry.second.parser != nullptr || entry.second.dynamic != nullptr;
+      if (!is_read || find_loss(entry.first) != nullptr) unread.push_back(&entry);
     }
     std::sort(unread.begin(), unread.end(), [](const auto* a, const auto* b) {
       const auto &x = a->second.first, &y = b->second.first;
@@ -323,6 +334,7 @@ class Builder {
 
   const Source& source_;
   records::Deck& deck_;
+  records::DynamicCards* dynamics_;
   Diagnostics& diagnostics_;
   CardImages images_;
   Reading reading_;
@@ -346,8 +358,8 @@ class Builder {
 }  // namespace
 
 void read_bulk(const Source& source, std::size_t first_line, const ReadOptions& options, records::Deck& deck,
-               Diagnostics& diagnostics) {
-  Builder(source, first_line, options, deck, diagnostics).read();
+               Diagnostics& diagnostics, records::DynamicCards* dynamics) {
+  Builder(source, first_line, options, deck, diagnostics, dynamics).read();
 }
 
 }  // namespace bough::nastran::detail

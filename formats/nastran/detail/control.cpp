@@ -5,6 +5,7 @@
 #include <set>
 
 #include "formats/nastran/detail/control_words.hpp"
+#include "formats/nastran/detail/dynamic_control.hpp"
 #include "formats/nastran/detail/matrix_selection.hpp"
 #include "formats/nastran/detail/text.hpp"
 
@@ -42,8 +43,8 @@ Command split_command(std::string_view text) {
 
 class CaseControl {
  public:
-  CaseControl(const Source& source, records::Deck& deck, Diagnostics& diagnostics)
-      : source_(source), deck_(deck), diagnostics_(diagnostics) {}
+  CaseControl(const Source& source, records::Deck& deck, Diagnostics& diagnostics, records::DynamicDeck* dynamics)
+      : source_(source), deck_(deck), diagnostics_(diagnostics), dynamics_(dynamics) {}
 
   void read(std::size_t first, std::size_t last, bool with_executive) {
     for (std::size_t i = first; i < last; ++i) {
@@ -67,6 +68,9 @@ class CaseControl {
   }
 
   Subcase& current() { return in_subcase_ ? deck_.subcases.back() : above_; }
+  records::DynamicSelection& current_selection() {
+    return in_subcase_ ? dynamics_->selections[deck_.subcases.back().id] : selection_above_;
+  }
 
   void read_command(const Command& c, bool with_executive) {
     if (c.word.empty()) return;
@@ -121,8 +125,16 @@ class CaseControl {
       read_param(c);
     else if (with_executive && is_command(c.word, "SOL", 3))
       deck_.sol = make_upper(c.value.substr(0, c.value.find_first_of(" ,")));
-    else if (!is_plain_command(c.word))
-      report_unused(c.word);
+    else
+      read_dynamic(c);
+  }
+
+  void read_dynamic(const Command& c) {
+    const auto read = dynamics_
+                          ? read_dynamic_command({c.word, c.options, c.value, at_}, current(), current_selection())
+                          : DynamicCommand::Other;
+    if (read == DynamicCommand::BadValue) return bad_value(c);
+    if (read == DynamicCommand::Other && !is_plain_command(c.word)) report_unused(c.word);
   }
 
   void report_unused(const std::string& word) {
@@ -182,6 +194,7 @@ class CaseControl {
     deck_.subcases.push_back(above_);
     deck_.subcases.back().id = *id;
     in_subcase_ = true;
+    if (dynamics_) dynamics_->selections[*id] = selection_above_;
   }
 
   void read_set(const Command& c, const char* name, int& set) {
@@ -218,10 +231,12 @@ class CaseControl {
       bad_value(c, "the name of a DMIG, or FACTOR*NAME, and more between commas");
   }
 
-  /// Only sets of names matter here; those of ids are output requests.
+  /// Names of matrices; ids and numbers of output requests.
   void read_named_set(const Command& c) {
     const auto equals = c.value.find('=');
     const auto id = parse_int(trim(c.value.substr(0, equals)));
+    if (dynamics_ && id && equals != std::string_view::npos)
+      if (auto set = read_case_set(c.value.substr(equals + 1))) current_selection().sets[*id] = std::move(*set);
     MatrixList names;
     if (id && equals != std::string_view::npos && read_matrix_names(trim(c.value.substr(equals + 1)), names))
       sets_[std::to_string(*id)] = std::move(names);
@@ -250,6 +265,7 @@ class CaseControl {
 
   void finish() {
     if (deck_.subcases.empty()) deck_.subcases.push_back(above_);
+    if (dynamics_ && !in_subcase_) dynamics_->selections[0] = selection_above_;
     choose_matrices(deck_, sets_, at_, diagnostics_);
     if (ignored_.empty()) return;
     std::string words;
@@ -262,7 +278,9 @@ class CaseControl {
   const Source& source_;
   records::Deck& deck_;
   Diagnostics& diagnostics_;
+  records::DynamicDeck* dynamics_;
   Subcase above_;
+  records::DynamicSelection selection_above_;
   bool in_subcase_ = false, in_plot_section_ = false, skipping_ = false;
   records::CardLocation at_;
   std::vector<std::pair<std::string, records::CardLocation>> ignored_;
@@ -279,7 +297,8 @@ void read_executive(const Source& source, std::size_t last, records::Deck& deck)
 
 }  // namespace
 
-std::size_t read_control(const Source& source, records::Deck& deck, Diagnostics& diagnostics) {
+std::size_t read_control(const Source& source, records::Deck& deck, Diagnostics& diagnostics,
+                         records::DynamicDeck* dynamics) {
   constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::size_t cend = none, begin = none;
   for (std::size_t i = 0; i < source.lines.size() && begin == none; ++i) {
@@ -306,11 +325,11 @@ std::size_t read_control(const Source& source, records::Deck& deck, Diagnostics&
                       "write BEGIN BULK before the bulk data");
     begin = source.lines.size();
     read_executive(source, cend, deck);
-    CaseControl(source, deck, diagnostics).read(cend + 1, begin, false);
+    CaseControl(source, deck, diagnostics, dynamics).read(cend + 1, begin, false);
     return begin;
   }
   if (cend != none) read_executive(source, cend, deck);
-  CaseControl(source, deck, diagnostics).read(cend == none ? 0 : cend + 1, begin, cend == none);
+  CaseControl(source, deck, diagnostics, dynamics).read(cend == none ? 0 : cend + 1, begin, cend == none);
   return begin + 1;
 }
 

@@ -3,12 +3,15 @@
 #include <cstddef>
 
 #include "formats/nastran/detail/lines.hpp"
+#include "formats/records/deck_dynamics.hpp"
 
 namespace bough::nastran::detail {
 
 /// Reads what stands before the bulk data into deck.sol, deck.subcases and (PARAM in case control) deck.params.
 /// Returns the index of the first bulk data line. A text without CEND and BEGIN BULK is bulk data from its first line.
 /// Adds deck.no-begin-bulk, deck.unsupported-section, deck.case-control-value, deck.case-control-ignored.
-std::size_t read_control(const Source& source, records::Deck& deck, Diagnostics& diagnostics);
+/// `dynamics`: where what concerns responses goes; without it those commands are named as not used.
+std::size_t read_control(const Source& source, records::Deck& deck, Diagnostics& diagnostics,
+                         records::DynamicDeck* dynamics = nullptr);
 
 }  // namespace bough::nastran::detail

@@ -61,6 +61,15 @@ const std::vector<Rule>& get_rules() {
   return rules;
 }
 
+/// Those that responses use besides.
+const std::vector<Rule>& get_response_rules() {
+  static const std::vector<Rule> rules{{"DFREQ", "a number", is_real},       {"HFREQ", "a number", is_real},
+                                       {"KDAMP", "1 or -1", is_integer},     {"LFREQ", "a number", is_real},
+                                       {"LMODES", "an integer", is_integer}, {"RESVEC", "YES or NO", is_answer},
+                                       {"W3", "a number", is_real},          {"W4", "a number", is_real}};
+  return rules;
+}
+
 /// The others of the quick reference guides (MSC, NX, COSMIC, Autodesk).
 constexpr std::string_view known_params =
     "ACEXTMTD ACEXTSET ACOUT ACOWEAK ACSYM ADJFRQ ADJMETH ADMPOST ADPCON ADSTAT AERODOF AESDISC AESMAXIT AESMETH "
@@ -146,10 +155,11 @@ bool is_known(const Names& names, const std::string& name) {
 }
 
 /// Values that are none of their kind: fe.bad-param, and the card is taken as the message says or left out.
-void check_values(records::Deck& deck, Diagnostics& diagnostics) {
+void check_values(records::Deck& deck, Diagnostics& diagnostics, bool of_responses) {
+  auto rules = get_rules();
+  if (of_responses) rules.insert(rules.end(), get_response_rules().begin(), get_response_rules().end());
   std::vector<records::Param> good;
   for (auto& param : deck.params) {
-    const auto& rules = get_rules();
     const auto rule = std::find_if(rules.begin(), rules.end(), [&](const Rule& r) { return r.name == param.name; });
     if (rule != rules.end() && !rule->accepts(param.value)) {
       const auto mended = rule->mend(param.value);
@@ -171,8 +181,8 @@ void check_values(records::Deck& deck, Diagnostics& diagnostics) {
 
 }  // namespace
 
-void report_params(records::Deck& deck, Diagnostics& diagnostics) {
-  check_values(deck, diagnostics);
+void report_params(records::Deck& deck, Diagnostics& diagnostics, bool of_responses) {
+  check_values(deck, diagnostics, of_responses);
   static const Names names;
   std::string list;
   records::CardLocation first;
@@ -180,6 +190,9 @@ void report_params(records::Deck& deck, Diagnostics& diagnostics) {
   for (const auto& param : deck.params) {
     if (std::find(names.used.begin(), names.used.end(), param.name) != names.used.end()) continue;
     if (!seen.insert(param.name).second) continue;
+    const auto& more = get_response_rules();
+    if (of_responses && std::any_of(more.begin(), more.end(), [&](const Rule& r) { return r.name == param.name; }))
+      continue;
     if (!is_known(names, param.name)) {
       auto nearest = find_nearest(param.name, names.used);
       if (nearest.empty()) nearest = find_nearest(param.name, names.all);

@@ -8,6 +8,7 @@ namespace bough::nastran::detail {
 /// left out of the deck, or a warning with what it is taken as. One note with every PARAM that has no effect here, by
 /// line (deck.unused-params), and a warning for each name that no Nastran knows, with the nearest that one does
 /// (deck.unknown-param).
-void report_params(records::Deck& deck, Diagnostics& diagnostics);
+/// `of_responses`: those of responses have an effect too.
+void report_params(records::Deck& deck, Diagnostics& diagnostics, bool of_responses = false);
 
 }  // namespace bough::nastran::detail

@@ -1,0 +1,202 @@
+/// The verbs `frequency` and `transient`.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/common/console.hpp"
+#include "cli/common/ranks.hpp"
+#include "cli/common/solution.hpp"
+#include "cli/common/subcase_failures.hpp"
+#include "cli/common/text_file.hpp"
+#include "cli/common/usage_text.hpp"
+#include "cli/frequency/frequency.hpp"
+#include "cli/frequency/response_tables.hpp"
+#include "cli/modes/eigen_choices.hpp"
+#include "fe/statics/preload.hpp"
+#include "formats/export/response_text.hpp"
+#include "formats/hdf5/response_file.hpp"
+#include "formats/nastran/dynamic_reader.hpp"
+#include "modal/response/deck_response.hpp"
+
+namespace bough::cli {
+namespace {
+
+struct DeckResponseOptions : ModesOptions {
+  bool is_over_time = false, no_residuals = false, full = false;
+  std::vector<int> grids;
+  std::string csv, punch;
+};
+
+/// The deck's EIGRL with the command line; where neither says how many modes, those up to twice the highest frequency.
+modal::EigenOptions choose_eigen(const DeckResponseOptions& options, const records::DynamicDeck& deck,
+                                 const records::DynamicSubcase& subcase, Diagnostics& diagnostics) {
+  auto eigen = choose_eigen_options(options, deck, subcase.method, diagnostics);
+  const bool is_said = options.number > 0 || options.max_hz || !deck.eigen_methods.empty();
+  const double highest = modal::response::find_highest(deck, subcase.dynamics.frequency);
+  if (!is_said && !options.is_over_time && highest > 0) {
+    eigen.num_modes = 0;
+    eigen.max_hz = 2 * highest;
+  }
+  return eigen;
+}
+
+void demand_grids(const DeckResponseOptions& options, const records::DynamicDeck& deck) {
+  for (const int id : options.grids) {
+    const bool is_grid = std::any_of(deck.grids.begin(), deck.grids.end(), [id](const auto& g) { return g.id == id; });
+    const auto& points = deck.scalar_points;
+    if (!is_grid && std::find(points.begin(), points.end(), id) == points.end())
+      throw InputError("fe.missing-grid", deck.locate({}),
+                       fmt::format("--grid names {}, which the deck does not define", id), "name a GRID or SPOINT");
+  }
+}
+
+/// As read_deck_or_throw.
+records::DynamicDeck read_dynamic_deck_or_throw(const std::string& path, const fe::ModelOptions& options,
+                                                Diagnostics& diagnostics) {
+  auto deck = is_one_of_many() ? nastran::read_packed_dynamic_deck(share([&] { return nastran::pack_deck(path); }),
+                                                                   {options.ignore_cards}, diagnostics)
+                               : nastran::read_dynamic_deck(path, {options.ignore_cards}, diagnostics);
+  if (diagnostics.num_errors() > 0) fe::Model::build(deck, options, diagnostics);
+  diagnostics.throw_if_errors();
+  return deck;
+}
+
+/// SOL 108 and 109 solve without modes.
+void note_direct(const records::DynamicDeck& deck, Diagnostics& diagnostics) {
+  static const std::array direct{"108", "109", "26", "27", "SEDFREQ", "SEDTRAN", "DFREQ", "DTRAN"};
+  if (std::find(direct.begin(), direct.end(), deck.sol) != direct.end())
+    diagnostics.note("cli.by-modes", deck.locate({}),
+                     "SOL " + deck.sol + " solves directly; this is the solution by modes",
+                     "take modes well beyond the highest frequency of the excitation (--modes, --max-hz)");
+}
+
+void write_csv(const records::DeckResponse& response, const std::string& path) {
+  std::ostringstream text;
+  for (const auto& subcase : response.subcases) {
+    auto columns = exports::make_response_columns(subcase);
+    if (response.subcases.size() > 1) {
+      if (&subcase != &response.subcases.front()) text << "\n";
+      const auto rows = columns.front().values.size();
+      columns.insert(columns.begin(), {"subcase", Eigen::VectorXd::Constant(rows, subcase.id)});
+    }
+    exports::write_csv(text, columns);
+  }
+  write_text_file(path, text.str());
+}
+
+int run_deck_response(const DeckResponseOptions& options) {
+  Console console(options.quiet, options.verbosity);
+  console.set_subject(options.deck);
+  do_once([&] {
+    demand_deck(options.deck);
+    check_outputs(options, {options.output, options.csv, options.punch}, {options.deck});
+  });
+  console.set_rank(fe::initialize_petsc().rank);
+  Diagnostics diagnostics;
+  const auto model_options = make_model_options(options.model);
+  const auto deck = read_dynamic_deck_or_throw(options.deck, model_options, diagnostics);
+  std::vector<records::DynamicSubcase> subcases;
+  say_first(diagnostics, [&] {
+    demand_grids(options, deck);
+    subcases = modal::response::choose_response_subcases(deck, options.model.subcase);
+  });
+  note_solution(deck, diagnostics);
+  note_direct(deck, diagnostics);
+  if (subcases.empty()) {  // Model::build reports it
+    subcases.emplace_back();
+    subcases.back().id = options.model.subcase;
+  }
+  modal::response::ResponseOptions response_options;
+  response_options.is_over_time = options.is_over_time;
+  if (options.no_residuals) response_options.residual_vectors = false;
+  response_options.grids = options.grids;
+  response_options.choose_eigen = [&](const records::DynamicSubcase& subcase, Diagnostics& own) {
+    return choose_eigen(options, deck, subcase, own);
+  };
+  response_options.choose_prestress = [&](const fe::ModelOptions& of, const records::DynamicSubcase& subcase,
+                                          Diagnostics& own) {
+    return fe::calc_subcase_prestress(deck, of, subcase, own);
+  };
+  modal::response::DeckResponseSolver solver(deck, model_options, response_options);
+  records::DeckResponse response;
+  response.is_over_time = options.is_over_time;
+  SubcaseFailures failures(subcases.size(), deck.subcases.size());
+  for (const auto& subcase : subcases) {
+    Diagnostics own;
+    try {
+      console.show_progress(fmt::format("subcase {}", subcase.id));
+      response.subcases.push_back(solver.solve(subcase, own));
+    } catch (const Failure& failure) {
+      failures.add(subcase.id, failure);
+    }
+    console.end_progress();
+    add_new(own, diagnostics);
+  }
+  if (response.subcases.empty()) failures.throw_all(diagnostics);
+  response.source = calc_sources(deck.files);
+  console.print(diagnostics);
+  console.print(failures.get_items(diagnostics));
+  if (console.is_root()) {
+    if (!options.output.empty()) hdf5::write_response(response, options.output);
+    if (!options.csv.empty()) write_csv(response, options.csv);
+    if (!options.punch.empty()) write_text_file(options.punch, exports::make_punch_text(response));
+  }
+  if (options.json) {
+    nlohmann::json json{{"subcases", nlohmann::json::array()}};
+    for (const auto& subcase : response.subcases)
+      json["subcases"].push_back(to_json(subcase, options.is_over_time, options.full));
+    if (!failures.is_empty()) json["failed"] = failures.to_json();
+    console.print_data(json.dump(2) + "\n");
+  } else {
+    for (const auto& subcase : response.subcases)
+      console.print((&subcase == &response.subcases.front() ? "" : "\n") +
+                    format_response(subcase, options.is_over_time, options.full ? 1u << 30 : 20));
+    for (const auto& path : {options.output, options.csv, options.punch})
+      if (!path.empty()) console.print("written: " + path + "\n");
+  }
+  do_once([] { flush_data(); });
+  return failures.get_exit_code();
+}
+
+void add_verb(CLI::App& app, Action& action, bool is_over_time, const char* name, const char* what,
+              const std::string& footer) {
+  auto o = std::make_shared<DeckResponseOptions>();
+  o->is_over_time = is_over_time;
+  auto* verb = app.add_subcommand(name, what);
+  verb->add_option("deck", o->deck, "Nastran deck")->required();
+  verb->add_option("--grid", o->grids, "Displacement, velocity and acceleration of this grid too; may be repeated")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  verb->add_option("-n,--number,--modes", o->number, "Number of modes (default: the deck's EIGRL)")
+      ->check(make_positive());
+  verb->add_option("--max-hz", o->max_hz, "Modes up to this frequency");
+  verb->add_flag("--no-residuals", o->no_residuals, "Modes alone, without residual vectors of what drives them");
+  verb->add_flag("--full", o->full, "Every curve in the table, their samples in --json");
+  verb->add_option("--csv", o->csv, "Write the curves to this file of comma-separated values");
+  verb->add_option("--punch", o->punch, "Write the curves to this Nastran punch file");
+  add_model_options(*verb, o->model);
+  add_common_options(*verb, *o, kOutput | kJson, "Write the curves to this HDF5 file");
+  verb->footer(footer);
+  verb->callback([&action, o] { action = [o] { return blame(o->deck, [&] { return run_deck_response(*o); }); }; });
+}
+
+}  // namespace
+
+void add_frequency(CLI::App& app, Action& action) {
+  add_verb(app, action, false, "frequency", "Frequency response of a deck (SOL 111) by modes with residual vectors",
+           "Example:\n  bough frequency bracket.bdf -o bracket.h5 --csv bracket.csv\n"
+           "  bough frequency bracket.bdf --grid 12 --max-hz 500 --punch bracket.pch");
+}
+
+void add_transient(CLI::App& app, Action& action) {
+  add_verb(app, action, true, "transient", "Transient response of a deck (SOL 112) by modes with residual vectors",
+           "Example:\n  bough transient bracket.bdf -o bracket.h5 --csv bracket.csv\n"
+           "  bough transient bracket.bdf --grid 12 --json --full");
+}
+
+}  // namespace bough::cli

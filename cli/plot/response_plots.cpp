@@ -1,0 +1,85 @@
+#include "cli/plot/response_plots.hpp"
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/diagnostic.hpp"
+#include "cli/common/options.hpp"
+#include "cli/export/export_matrices.hpp"
+#include "formats/export/response_text.hpp"
+#include "formats/hdf5/response_file.hpp"
+
+namespace bough::cli {
+namespace {
+
+using exports::NamedCurve;
+
+void add_response_curve(const NamedCurve& curve, const Eigen::VectorXd& x, const std::string& label,
+                        std::vector<report::Plot>& plots) {
+  if (curve.imag.size() == 0) {
+    plots[0].curves.push_back({label, x, curve.real});
+    return;
+  }
+  Eigen::VectorXd decibel(x.size()), degrees(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const auto [size, phase] = exports::to_polar(curve.real(i), curve.imag(i));
+    decibel(i) = size > 0 ? 20 * std::log10(size) : std::nan("");
+    degrees(i) = size > 0 ? phase : std::nan("");
+    if (i > 0 && std::isfinite(degrees(i - 1))) degrees(i) -= 360 * std::round((degrees(i) - degrees(i - 1)) / 360);
+  }
+  plots[0].curves.push_back({label, x, decibel});
+  plots[1].curves.push_back({"", x, degrees});
+}
+
+bool has_name(const NamedCurve& curve, const std::string& name) {
+  return curve.name == name || curve.name.substr(0, curve.name.rfind(':')) == name;
+}
+
+}  // namespace
+
+bool is_deck_response(const std::vector<std::string>& files) {
+  if (files.empty() || !has_suffix(files.front(), ".h5")) return false;
+  demand_file(files.front());
+  const auto format = read_file_format(files.front());
+  return format == "bough-frequency" || format == "bough-transient";
+}
+
+std::vector<report::Plot> make_response_plots(const std::vector<std::string>& files,
+                                              const std::vector<std::string>& names) {
+  std::vector<report::Plot> plots(1);
+  for (const auto& file : files) {
+    demand_file(file);
+    const auto response = hdf5::read_response(file);
+    const bool is_over_time = response.is_over_time;
+    plots.resize(is_over_time ? 1 : 2);
+    for (auto& plot : plots) plot.x_label = is_over_time ? "time" : "frequency [1/T]";
+    plots[0].y_label = is_over_time ? "" : "magnitude [dB]";
+    if (!is_over_time) plots[1].y_label = "phase [degrees]", plots[0].x_label.clear();
+    for (const auto& subcase : response.subcases) {
+      const auto curves = exports::list_curves(subcase);
+      const auto& x = subcase.x;
+      const bool has_decades = !is_over_time && x.size() > 1 && x(0) > 0 && x(x.size() - 1) > 30 * x(0);
+      for (auto& plot : plots) plot.has_log_x = has_decades;
+      for (const auto& name : names) {
+        bool is_found = false;
+        std::vector<std::string> known;
+        for (const auto& curve : curves) {
+          known.push_back(curve.name);
+          if (!has_name(curve, name)) continue;
+          is_found = true;
+          std::string label = files.size() > 1 ? std::filesystem::path(file).stem().string() + " " : "";
+          if (response.subcases.size() > 1) label += "subcase " + std::to_string(subcase.id) + " ";
+          add_response_curve(curve, x, label + curve.name, plots);
+        }
+        const auto nearest = find_nearest(name, known);
+        if (!is_found)
+          throw InputError("cli.unknown-channel", {file}, "no curve \"" + name + "\"",
+                           nearest.empty() ? "write displacement:12:3: quantity, grid, component"
+                                           : "did you mean \"" + nearest + "\"");
+      }
+    }
+  }
+  return plots;
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,364 @@
+/// Loads over frequency and time. Source of the fields: MSC Nastran Quick Reference Guide, the entries named.
+#include <algorithm>
+#include <cmath>
+
+#include "formats/nastran/detail/dynamic_cards.hpp"
+#include "formats/nastran/detail/text.hpp"
+
+namespace bough::nastran::detail {
+namespace {
+
+using records::DynamicCards;
+using records::DynamicLoad;
+
+/// A set where the field is an integer, else a number.
+void read_set_or_number(Card& card, int i, const char* what, int& set, double& value) {
+  if (card.is_integer(i))
+    set = card.read_reference(i, what);
+  else
+    value = card.read_real(i, what, 0.0);
+}
+
+/// TYPE: 0 to 3, or the first letters of LOAD, DISP, VELO, ACCE.
+DynamicLoad::Excitation read_excitation(Card& card, int i) {
+  static const std::vector<std::string> words{"LOAD", "DISP", "VELO", "ACCE"};
+  const auto word = card.get_upper(i);
+  for (int kind = 0; kind < 4; ++kind)
+    if (word == std::to_string(kind) || (!word.empty() && words[static_cast<std::size_t>(kind)].starts_with(word)))
+      return static_cast<DynamicLoad::Excitation>(kind);
+  if (!word.empty()) card.read_word(i, "TYPE", "LOAD", words);
+  return DynamicLoad::Excitation::Force;
+}
+
+/// An id stands once, as in Nastran.
+template <class Record>
+void add_unique(Card& card, std::vector<Record>& all, Record record, int Record::*id) {
+  if (!card.is_ok()) return;
+  if (std::any_of(all.begin(), all.end(), [&](const auto& other) { return other.*id == record.*id; })) {
+    card.fail("deck.duplicate-id", 0, "id " + std::to_string(record.*id) + " is used twice",
+              "give one of them another id");
+    return;
+  }
+  all.push_back(std::move(record));
+}
+
+DynamicLoad read_head(Card& card, DynamicLoad::Kind kind) {
+  DynamicLoad load;
+  load.kind = kind;
+  load.sid = card.read_id(0, "SID");
+  load.excite = card.read_id(1, "EXCITEID");
+  read_set_or_number(card, 2, "DELAY", load.delay_set, load.delay);
+  load.at = card.get_location();
+  return load;
+}
+
+void add_load(Card& card, DynamicCards& r, DynamicLoad load) {
+  add_unique(card, r.loads, load, &std::remove_reference_t<decltype(load)>::sid);
+}
+
+/// SID EXCITEID DELAY DPHASE TC TD TYPE.
+void parse_rload1(Card& card, DynamicCards& r) {
+  auto load = read_head(card, DynamicLoad::Kind::Rload1);
+  read_set_or_number(card, 3, "DPHASE", load.phase_set, load.phase_deg);
+  read_set_or_number(card, 4, "TC", load.table_a, load.a);
+  read_set_or_number(card, 5, "TD", load.table_b, load.b);
+  load.excitation = read_excitation(card, 6);
+  if (card.is_ok() && card.is_blank(4, 6))
+    card.fail("deck.missing-field", 4, "TC and TD are blank, expected a table or a number at least");
+  add_load(card, r, load);
+}
+
+/// SID EXCITEID DELAY DPHASE TB TP TYPE.
+void parse_rload2(Card& card, DynamicCards& r) {
+  auto load = read_head(card, DynamicLoad::Kind::Rload2);
+  read_set_or_number(card, 3, "DPHASE", load.phase_set, load.phase_deg);
+  read_set_or_number(card, 4, "TB", load.table_a, load.a);
+  read_set_or_number(card, 5, "TP", load.table_b, load.b);
+  load.excitation = read_excitation(card, 6);
+  card.demand(!card.is_blank(4), 4, "TB", "a table or a number");
+  add_load(card, r, load);
+}
+
+/// SID EXCITEID DELAY TYPE TID US0 VS0.
+void parse_tload1(Card& card, DynamicCards& r) {
+  auto load = read_head(card, DynamicLoad::Kind::Tload1);
+  load.excitation = read_excitation(card, 3);
+  read_set_or_number(card, 4, "TID", load.table_a, load.a);
+  card.demand(!card.is_blank(4), 4, "TID", "a table or a number");
+  add_load(card, r, load);
+}
+
+/// SID EXCITEID DELAY TYPE T1 T2 F P, C B US0 VS0.
+void parse_tload2(Card& card, DynamicCards& r) {
+  auto load = read_head(card, DynamicLoad::Kind::Tload2);
+  load.excitation = read_excitation(card, 3);
+  load.t1 = card.read_real(4, "T1", 0.0);
+  load.t2 = card.read_real(5, "T2");
+  load.frequency_hz = card.read_real(6, "F", 0.0);
+  load.phase_deg = card.read_real(7, "P", 0.0);
+  load.growth = card.read_real(8, "C", 0.0);
+  load.power = card.read_real(9, "B", 0.0);
+  if (card.is_ok()) card.demand(load.t2 > load.t1, 5, "T2", "a time after T1");
+  if (card.is_ok()) card.demand(load.power >= 0, 9, "B", "zero or above");
+  add_load(card, r, load);
+}
+
+void parse_dload(Card& card, DynamicCards& r) {
+  records::DynamicLoadSum sum;
+  sum.sid = card.read_id(0, "SID");
+  sum.s = card.read_real(1, "S");
+  for (int i = 2; i < card.get_size(); i += 2) {
+    if (card.is_blank(i, i + 2)) continue;
+    const double scale = card.read_real(i, "Si");
+    sum.terms.emplace_back(scale, card.read_id(i + 1, "Li"));
+  }
+  if (sum.terms.empty() && card.is_ok()) card.fail("deck.missing-field", 2, "S1 L1 are blank, expected a set at least");
+  sum.at = card.get_location();
+  add_unique(card, r.sums, std::move(sum), &std::remove_reference_t<decltype(sum)>::sid);
+}
+
+/// SID P1 C1 A1 P2 C2 A2.
+void parse_values(Card& card, std::vector<records::DofValue>& values, const char* what) {
+  const int sid = card.read_id(0, "SID");
+  for (const int i : {1, 4}) {
+    if (i > 1 && card.is_blank(i, i + 3)) break;
+    records::DofValue v;
+    v.sid = sid;
+    v.g = card.read_id(i, "P");
+    v.c = card.read_component(i + 1, "C");
+    v.value = card.read_real(i + 2, what, 0.0);
+    v.at = card.get_location();
+    if (card.is_ok()) values.push_back(v);
+  }
+}
+void parse_darea(Card& card, DynamicCards& r) { parse_values(card, r.areas, "A"); }
+void parse_delay(Card& card, DynamicCards& r) { parse_values(card, r.delays, "T"); }
+void parse_dphase(Card& card, DynamicCards& r) { parse_values(card, r.phases, "TH"); }
+
+void parse_lseq(Card& card, DynamicCards& r) {
+  records::StaticExcitation s;
+  s.sid = card.read_id(0, "SID");
+  s.excite = card.read_id(1, "EXCITEID");
+  s.load = card.read_reference(2, "LID");
+  s.temperature = card.read_reference(3, "TID");
+  s.at = card.get_location();
+  if (card.is_ok()) r.lseq.push_back(s);
+}
+
+void parse_tic(Card& card, DynamicCards& r) {
+  records::InitialMotion m;
+  m.sid = card.read_id(0, "SID");
+  m.g = card.read_id(1, "G");
+  m.c = card.read_component(2, "C");
+  m.u0 = card.read_real(3, "U0", 0.0);
+  m.v0 = card.read_real(4, "V0", 0.0);
+  m.at = card.get_location();
+  if (card.is_ok()) r.initial.push_back(m);
+}
+
+/// Pairs from field `first` on, up to ENDT; ascending, as they stand or the other way round.
+std::vector<std::pair<double, double>> read_points(Card& card, int first) {
+  std::vector<std::pair<double, double>> points;
+  bool has_end = false;
+  for (int i = first; i < card.get_size() && card.is_ok(); i += 2) {
+    card.use(i, i + 2);
+    if (card.is_word(i, "ENDT") || card.is_word(i + 1, "ENDT")) {
+      if (!card.is_word(i, "ENDT"))
+        card.fail("deck.missing-field", i + 1, "ENDT stands in place of y, expected the end after a pair x y");
+      card.use(i, card.get_size());
+      has_end = true;
+      break;
+    }
+    if (card.is_blank(i, i + 2) || card.is_word(i, "SKIP") || card.is_word(i + 1, "SKIP")) continue;
+    const double x = card.read_real(i, "x");
+    points.emplace_back(x, card.read_real(i + 1, "y"));
+  }
+  if (!card.is_ok()) return points;
+  if (points.empty()) card.fail("deck.missing-field", first, "no pair x y is given, expected one at least");
+  if (!has_end && card.is_ok()) card.fail("deck.missing-field", first, "the table does not end with ENDT");
+  if (points.size() > 1 && points.front().first > points.back().first) std::reverse(points.begin(), points.end());
+  for (std::size_t i = 1; i < points.size() && card.is_ok(); ++i)
+    if (points[i].first < points[i - 1].first || (i > 1 && points[i].first == points[i - 2].first))
+      card.fail("deck.field-range", first, "x does not go in one direction, or stands more than twice");
+  return points;
+}
+
+records::DynamicTable read_table_head(Card& card, int kind) {
+  records::DynamicTable t;
+  t.id = card.read_id(0, "TID");
+  t.kind = kind;
+  t.at = card.get_location();
+  return t;
+}
+void add_table(Card& card, DynamicCards& r, records::DynamicTable table) {
+  add_unique(card, r.tables, std::move(table), &std::remove_reference_t<decltype(table)>::id);
+}
+
+/// TID XAXIS YAXIS, pairs from the second line on.
+void parse_tabled1(Card& card, DynamicCards& r) {
+  auto t = read_table_head(card, 1);
+  t.is_log_x = card.read_word(1, "XAXIS", "LINEAR", {"LINEAR", "LOG"}) == "LOG";
+  t.is_log_y = card.read_word(2, "YAXIS", "LINEAR", {"LINEAR", "LOG"}) == "LOG";
+  t.points = read_points(card, 8);
+  for (const auto& [x, y] : t.points)
+    if (card.is_ok() && ((t.is_log_x && x <= 0) || (t.is_log_y && y <= 0)))
+      card.fail("deck.field-range", 8, "a LOG axis has a value that is not above 0");
+  add_table(card, r, std::move(t));
+}
+void parse_tabled2(Card& card, DynamicCards& r) {
+  auto t = read_table_head(card, 2);
+  t.x1 = card.read_real(1, "X1", 0.0);
+  t.points = read_points(card, 8);
+  add_table(card, r, std::move(t));
+}
+void parse_tabled3(Card& card, DynamicCards& r) {
+  auto t = read_table_head(card, 3);
+  t.x1 = card.read_real(1, "X1", 0.0);
+  t.x2 = card.read_real(2, "X2");
+  if (card.is_ok()) card.demand(t.x2 != 0, 2, "X2", "another number than 0");
+  t.points = read_points(card, 8);
+  add_table(card, r, std::move(t));
+}
+void parse_tabled4(Card& card, DynamicCards& r) {
+  auto t = read_table_head(card, 4);
+  t.x1 = card.read_real(1, "X1", 0.0);
+  t.x2 = card.read_real(2, "X2");
+  t.x3 = card.read_real(3, "X3");
+  t.x4 = card.read_real(4, "X4");
+  if (card.is_ok()) card.demand(t.x2 != 0, 2, "X2", "another number than 0");
+  if (card.is_ok()) card.demand(t.x4 > t.x3, 4, "X4", "a number above X3");
+  for (int i = 8; i < card.get_size() && card.is_ok(); ++i) {
+    if (card.is_word(i, "ENDT")) {
+      card.use(i, card.get_size());
+      break;
+    }
+    t.coefficients.push_back(card.read_real(i, "Ai", 0.0));
+  }
+  if (card.is_ok() && t.coefficients.empty()) card.fail("deck.missing-field", 8, "no coefficient is given");
+  add_table(card, r, std::move(t));
+}
+
+void parse_tabdmp1(Card& card, DynamicCards& r) {
+  records::DampingCurve t;
+  t.id = card.read_id(0, "TID");
+  t.type = card.read_word(1, "TYPE", "G", {"G", "CRIT", "Q"});
+  t.at = card.get_location();
+  t.points = read_points(card, 8);
+  for (const auto& [hz, value] : t.points)
+    if (card.is_ok() && t.type == "Q" && value <= 0) card.fail("deck.field-range", 8, "a quality Q is not above 0");
+  add_unique(card, r.damping, std::move(t), &std::remove_reference_t<decltype(t)>::id);
+}
+
+records::FrequencyList read_list_head(Card& card, int kind) {
+  records::FrequencyList list;
+  list.sid = card.read_id(0, "SID");
+  list.kind = kind;
+  list.at = card.get_location();
+  return list;
+}
+void add_list(Card& card, DynamicCards& r, records::FrequencyList list) {
+  if (card.is_ok()) r.frequencies.push_back(std::move(list));
+}
+
+void parse_freq(Card& card, DynamicCards& r) {
+  auto list = read_list_head(card, 0);
+  for (int i = 1; i < card.get_size(); ++i) {
+    if (card.is_blank(i)) continue;
+    list.values.push_back(card.read_real(i, "F"));
+    if (card.is_ok()) card.demand(list.values.back() >= 0, i, "F", "zero or above");
+  }
+  if (card.is_ok() && list.values.empty()) card.fail("deck.missing-field", 1, "no frequency is given");
+  add_list(card, r, std::move(list));
+}
+/// SID F1 DF NDF.
+void parse_freq1(Card& card, DynamicCards& r) {
+  auto list = read_list_head(card, 1);
+  list.f1 = card.read_real(1, "F1");
+  list.f2 = card.read_real(2, "DF");
+  list.count = card.read_int(3, "NDF", 1);
+  if (card.is_ok()) card.demand(list.f1 >= 0, 1, "F1", "zero or above");
+  if (card.is_ok()) card.demand(list.f2 > 0, 2, "DF", "a number above 0");
+  if (card.is_ok()) card.demand(list.count > 0 && list.count <= 1'000'000, 3, "NDF", "1 to 1000000");
+  add_list(card, r, std::move(list));
+}
+/// SID F1 F2, and what each of FREQ2 to FREQ4 has besides.
+records::FrequencyList read_range(Card& card, int kind, bool starts_above_zero) {
+  auto list = read_list_head(card, kind);
+  list.f1 = kind == 4 ? card.read_real(1, "F1", 0.0) : card.read_real(1, "F1");
+  list.f2 = card.read_real(2, "F2", list.f1);
+  if (card.is_ok() && starts_above_zero) card.demand(list.f1 > 0, 1, "F1", "a number above 0");
+  if (card.is_ok()) card.demand(list.f1 >= 0, 1, "F1", "zero or above");
+  if (card.is_ok()) card.demand(list.f2 >= list.f1 && list.f2 > 0, 2, "F2", "a number above 0, not below F1");
+  return list;
+}
+void parse_freq2(Card& card, DynamicCards& r) {
+  auto list = read_range(card, 2, true);
+  list.count = card.read_int(3, "NF", 1);
+  if (card.is_ok()) card.demand(list.count > 0 && list.count <= 1'000'000, 3, "NF", "1 to 1000000");
+  add_list(card, r, std::move(list));
+}
+void parse_freq3(Card& card, DynamicCards& r) {
+  const bool is_log = card.read_word(3, "TYPE", "LINEAR", {"LINEAR", "LOG"}) == "LOG";
+  auto list = read_range(card, 3, is_log);
+  list.is_log = is_log;
+  list.count = card.read_int(4, "NEF", 10);
+  list.spread = card.read_real(5, "CLUSTER", 1.0);
+  if (card.is_ok()) card.demand(list.count > 1 && list.count <= 100'000, 4, "NEF", "2 to 100000");
+  if (card.is_ok()) card.demand(list.spread > 0, 5, "CLUSTER", "a number above 0");
+  add_list(card, r, std::move(list));
+}
+void parse_freq4(Card& card, DynamicCards& r) {
+  auto list = read_range(card, 4, false);
+  list.spread = card.read_real(3, "FSPD", 0.1);
+  list.count = card.read_int(4, "NFM", 3);
+  if (card.is_ok()) card.demand(list.spread > 0 && list.spread < 1, 3, "FSPD", "a number between 0 and 1");
+  if (card.is_ok()) card.demand(list.count > 0 && list.count <= 100'000, 4, "NFM", "1 to 100000");
+  add_list(card, r, std::move(list));
+}
+/// SID F1 F2 FR1 FR2 ...
+void parse_freq5(Card& card, DynamicCards& r) {
+  auto list = read_list_head(card, 5);
+  list.f1 = card.read_real(1, "F1", 0.0);
+  list.f2 = card.read_real(2, "F2", 1e20);
+  for (int i = 3; i < card.get_size(); ++i) {
+    if (card.is_blank(i)) continue;
+    list.values.push_back(card.read_real(i, "FR"));
+    if (card.is_ok()) card.demand(list.values.back() > 0, i, "FR", "a number above 0");
+  }
+  if (card.is_ok() && list.values.empty()) card.fail("deck.missing-field", 3, "no fraction is given");
+  if (card.is_ok()) card.demand(list.f2 >= list.f1, 2, "F2", "a number not below F1");
+  add_list(card, r, std::move(list));
+}
+
+/// SID N1 DT1 NO1; from the second line on in the same fields.
+void parse_tstep(Card& card, DynamicCards& r) {
+  records::TimeSteps steps;
+  steps.sid = card.read_id(0, "SID");
+  steps.at = card.get_location();
+  for (int i = 1; i < std::max(card.get_size(), 4); i += 8) {
+    if (i > 1 && card.is_blank(i, i + 3)) continue;
+    records::TimeSteps::Part part;
+    part.count = card.read_id(i, "N");
+    part.step = card.read_real(i + 1, "DT");
+    part.every = card.read_id(i + 2, "NO", 1);
+    if (card.is_ok()) card.demand(part.step > 0, i + 1, "DT", "a number above 0");
+    if (card.is_ok()) card.demand(part.count <= 10'000'000, i, "N", "1 to 10000000");
+    steps.parts.push_back(part);
+  }
+  add_unique(card, r.steps, std::move(steps), &std::remove_reference_t<decltype(steps)>::sid);
+}
+
+}  // namespace
+
+const DynamicParserTable& get_dynamic_parsers() {
+  static const DynamicParserTable table{
+      {"RLOAD1", parse_rload1},   {"RLOAD2", parse_rload2},   {"TLOAD1", parse_tload1},   {"TLOAD2", parse_tload2},
+      {"DLOAD", parse_dload},     {"DAREA", parse_darea},     {"DELAY", parse_delay},     {"DPHASE", parse_dphase},
+      {"LSEQ", parse_lseq},       {"TIC", parse_tic},         {"TABLED1", parse_tabled1}, {"TABLED2", parse_tabled2},
+      {"TABLED3", parse_tabled3}, {"TABLED4", parse_tabled4}, {"TABDMP1", parse_tabdmp1}, {"FREQ", parse_freq},
+      {"FREQ1", parse_freq1},     {"FREQ2", parse_freq2},     {"FREQ3", parse_freq3},     {"FREQ4", parse_freq4},
+      {"FREQ5", parse_freq5},     {"TSTEP", parse_tstep}};
+  return table;
+}
+
+}  // namespace bough::nastran::detail

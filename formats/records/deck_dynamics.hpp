@@ -1,0 +1,156 @@
+#pragma once
+/// \file A deck with what drives it: loads over frequency and time, tables, damping, and what its case control asks of
+/// a response. Apart from deck.hpp, which most of Bough is compiled with and which needs none of it.
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "formats/records/deck.hpp"
+
+namespace bough::records {
+
+/// RLOAD1, RLOAD2 (over frequency), TLOAD1, TLOAD2 (over time).
+struct DynamicLoad {
+  enum class Kind { Rload1, Rload2, Tload1, Tload2 };
+  enum class Excitation { Force, Displacement, Velocity, Acceleration };
+  Kind kind = Kind::Rload1;
+  Excitation excitation = Excitation::Force;
+  int sid = 0, excite = 0;  ///< EXCITEID: DAREA, static loads, or SPCD of this set
+  int delay_set = 0, phase_set = 0;
+  double delay = 0, phase_deg = 0;  ///< where they are numbers
+  int table_a = 0, table_b = 0;     ///< TC and TD, TB and TP, TID; 0: the number beside it
+  double a = 0, b = 0;              ///< TLOAD1: a is F where it is a number
+  double t1 = 0, t2 = 0;            ///< TLOAD2, as those below: phase in phase_deg
+  double frequency_hz = 0, growth = 0, power = 0;
+  CardLocation at;
+};
+
+struct DynamicLoadSum {  ///< DLOAD
+  int sid = 0;
+  double s = 1;
+  std::vector<std::pair<double, int>> terms;  ///< (scale, set)
+  CardLocation at;
+};
+
+/// DAREA, DELAY, DPHASE: a value for a component; c = 0 for a scalar point.
+struct DofValue {
+  int sid = 0, g = 0, c = 0;
+  double value = 0;
+  CardLocation at;
+};
+
+struct StaticExcitation {  ///< LSEQ
+  int sid = 0, excite = 0, load = 0, temperature = 0;
+  CardLocation at;
+};
+
+struct InitialMotion {  ///< TIC
+  int sid = 0, g = 0, c = 0;
+  double u0 = 0, v0 = 0;
+  CardLocation at;
+};
+
+/// TABLED1 to TABLED4.
+struct DynamicTable {
+  int id = 0, kind = 1;
+  bool is_log_x = false, is_log_y = false;        ///< TABLED1
+  double x1 = 0, x2 = 1, x3 = 0, x4 = 0;          ///< TABLED2 (x1), TABLED3 (x1, x2), TABLED4
+  std::vector<std::pair<double, double>> points;  ///< ascending x; equal ones are a jump
+  std::vector<double> coefficients;               ///< TABLED4
+  CardLocation at;
+};
+
+struct DampingCurve {  ///< TABDMP1
+  int id = 0;
+  std::string type = "G";                         ///< G, CRIT or Q
+  std::vector<std::pair<double, double>> points;  ///< Hz, value
+  CardLocation at;
+};
+
+/// FREQ (kind 0) and FREQ1 to FREQ5.
+struct FrequencyList {
+  int sid = 0, kind = 0;
+  std::vector<double> values;  ///< FREQ: Hz; FREQ5: fractions of the natural frequencies
+  double f1 = 0, f2 = 0;       ///< Hz; FREQ1: first, increment
+  int count = 1;               ///< NDF, NF, NEF, NFM
+  bool is_log = false;         ///< FREQ3
+  double spread = 0.1;         ///< FREQ3: CLUSTER; FREQ4: FSPD
+  CardLocation at;
+};
+
+struct TimeSteps {  ///< TSTEP
+  struct Part {
+    int count = 0;
+    double step = 0;
+    int every = 1;
+  };
+  int sid = 0;
+  std::vector<Part> parts;
+  CardLocation at;
+};
+
+struct DynamicCards {
+  std::vector<DynamicLoad> loads;
+  std::vector<DynamicLoadSum> sums;
+  std::vector<DofValue> areas, delays, phases;
+  std::vector<StaticExcitation> lseq;
+  std::vector<InitialMotion> initial;
+  std::vector<DynamicTable> tables;
+  std::vector<DampingCurve> damping;
+  std::vector<FrequencyList> frequencies;
+  std::vector<TimeSteps> steps;
+};
+
+/// SET of the case control: ids, or numbers such as frequencies.
+struct CaseSet {
+  struct Range {
+    double first = 0, last = 0;  ///< equal for a single one
+    bool is_excluded = false;    ///< EXCEPT
+  };
+  bool is_all = false;
+  std::vector<Range> ranges;
+  bool contains(int id) const {
+    bool is_in = is_all;
+    for (const auto& range : ranges) {
+      if (id < range.first || id > range.last) continue;
+      if (range.is_excluded) return false;
+      is_in = true;
+    }
+    return is_in;
+  }
+};
+
+/// DISPLACEMENT(PHASE, PUNCH) = 12 and the like.
+struct OutputRequest {
+  bool is_all = false, is_none = false;
+  int set = 0;
+  bool is_phase = false;  ///< magnitude and phase, else real and imaginary parts
+  bool is_punched = false;
+  CardLocation at;
+};
+
+/// What a subcase says of its response.
+struct DynamicSelection {
+  int dload = 0, loadset = 0, frequency = 0, tstep = 0, ic = 0, sdamping = 0;
+  int ofreq = 0;               ///< a SET; 0: all
+  std::optional<bool> resvec;  ///< RESVEC = YES, NO
+  /// By what is asked for: DISPLACEMENT, VELOCITY, ACCELERATION, SPCFORCES, FORCE.
+  std::map<std::string, OutputRequest> outputs;
+  std::map<int, CaseSet> sets;
+};
+
+struct DynamicSubcase : Subcase {
+  DynamicSubcase() = default;
+  DynamicSubcase(const Subcase& subcase, DynamicSelection selection)
+      : Subcase(subcase), dynamics(std::move(selection)) {}
+  DynamicSelection dynamics;
+};
+
+struct DynamicDeck : Deck {
+  DynamicCards dynamics;
+  std::map<int, DynamicSelection> selections;  ///< by subcase
+};
+
+}  // namespace bough::records

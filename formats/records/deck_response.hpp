@@ -1,0 +1,41 @@
+#pragma once
+/// \file What `frequency` and `transient` write: curves over frequency or time at chosen grids and elements.
+#include "formats/records/flex_body.hpp"
+
+namespace bough::records {
+
+/// Samples x dofs, in the displacement (CD) axes of each grid. Over time `imag` is empty.
+struct ResponseCurves {
+  std::string quantity;                   ///< displacement, velocity, acceleration, spc_force
+  std::vector<std::pair<int, int>> dofs;  ///< grid and component 1..6, 0 for a scalar point
+  MatrixXd real, imag;
+  bool is_phase = false, is_punched = false;  ///< how the deck asks for them
+};
+
+/// Samples x (elements x components), element after element.
+struct ElementCurves {
+  std::string card;
+  std::vector<std::string> components;
+  std::vector<int> ids;
+  MatrixXd real, imag;
+  bool is_phase = false, is_punched = false;
+};
+
+struct ResponseSubcase {
+  int id = 0;
+  std::string title, subtitle, label;
+  VectorXd x;  ///< Hz, or time
+  std::vector<ResponseCurves> curves;
+  std::vector<ElementCurves> elements;
+  VectorXd mode_hz, damping_ratio;  ///< of the coordinates
+  std::vector<ModeKind> kind;
+  int num_rigid = 0;
+};
+
+struct DeckResponse {
+  std::vector<std::pair<std::string, std::string>> source;
+  bool is_over_time = false;
+  std::vector<ResponseSubcase> subcases;
+};
+
+}  // namespace bough::records

@@ -1,0 +1,34 @@
+#pragma once
+/// \file The coordinates of a driven model over frequency and over time.
+#include "modal/response/frequency_list.hpp"
+#include "modal/response/response_model.hpp"
+
+namespace bough::modal::response {
+
+using Eigen::MatrixXcd;
+
+/// A column per frequency; e^{iωt}.
+struct Spectrum {
+  VectorXd hz;
+  MatrixXcd q;  ///< n x nf
+  MatrixXcd d;  ///< k x nf: motion of the supports
+  MatrixXcd a;  ///< (m + 3k) x nf: amplitudes of the loads
+};
+/// (Λ - ω² + iωD + iS) q = P a. Throws ComputationError modal.unbounded-response at a frequency of an undamped mode,
+/// and at 0 Hz where the model is free or its supports move by a velocity or an acceleration.
+Spectrum calc_spectrum(const ResponseModel& model, const Excitation& excitation, const VectorXd& hz);
+
+/// A column per time that is shown.
+struct History {
+  VectorXd time;
+  MatrixXd q, q_dot, q_ddot;  ///< n x nt
+  MatrixXd d, d_dot, d_ddot;  ///< k x nt
+  MatrixXd a;                 ///< (m + 3k) x nt
+};
+/// Exact for loads and motions that are lines between the steps: x' = A x + b f by the exponential of A and of the two
+/// integrals with it (Van Loan, IEEE Trans. Autom. Control 23 (1978) 395), each coordinate for itself where damping
+/// does not couple them. Jumps at steps are jumps. A displacement of the supports given by a table is a broken line:
+/// its corners are impulses of their inertia.
+History calc_history(const ResponseModel& model, const Excitation& excitation, const TimeGrid& grid);
+
+}  // namespace bough::modal::response

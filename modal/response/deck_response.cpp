@@ -1,0 +1,196 @@
+#include "modal/response/deck_response.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "fe/statics/statics.hpp"
+#include "formats/records/params.hpp"
+#include "formats/records/selection.hpp"
+#include "modal/null_motions.hpp"
+
+namespace bough::modal::response {
+namespace {
+
+double to_hz(double lambda) { return std::sqrt(std::max(lambda, 0.0)) / (2 * std::numbers::pi); }
+
+/// The modes that EIGRL asks for, and below V1 those that go before them: what they would have given statically is
+/// not given back by residual vectors.
+ModeBasis calc_modes(const fe::System& system, const EigenOptions& options, const records::DynamicDeck& deck,
+                     int& num_massless, Diagnostics& diagnostics) {
+  EigenPairs low;
+  const double lowest = std::max(options.min_hz.value_or(0), records::get_real_param(deck, "LFREQ", 0, diagnostics));
+  EigenOptions wanted = options;
+  ModeBasis basis;
+  if (options.min_hz && *options.min_hz > 0) {
+    EigenOptions below = options;
+    below.num_modes = 0;
+    below.min_hz.reset();
+    below.max_hz = options.min_hz;
+    Diagnostics unsaid;
+    low = calc_normal_modes(system, below, unsaid);
+  } else {
+    wanted.min_hz.reset();
+  }
+  const auto pairs = calc_normal_modes(system, wanted, diagnostics);
+  num_massless = std::max(pairs.num_massless, low.num_massless);
+  const auto num_low = low.lambda.size();
+  std::vector<int> kept;
+  const double highest = records::get_real_param(deck, "HFREQ", 1e30, diagnostics);
+  const double most = records::get_real_param(deck, "LMODES", 0, diagnostics);
+  for (int j = 0; j < pairs.lambda.size(); ++j) {
+    // A root at V1 itself is in both.
+    if (num_low > 0 && pairs.lambda(j) <= low.lambda(num_low - 1) * (1 + 1e-9)) continue;
+    if (to_hz(pairs.lambda(j)) > highest || (most > 0 && static_cast<double>(kept.size()) >= most)) break;
+    kept.push_back(j);
+  }
+  const auto num = num_low + static_cast<Eigen::Index>(kept.size());
+  basis.lambda.resize(num);
+  basis.Phi.resize(system.model.num_gdofs(), num);
+  if (num_low > 0) basis.lambda.head(num_low) = low.lambda;
+  if (num_low > 0) basis.Phi.leftCols(num_low) = low.Phi;
+  basis.lambda.tail(num - num_low) = pairs.lambda(kept);
+  basis.Phi.rightCols(num - num_low) = pairs.Phi(Eigen::all, kept);
+  basis.num_rigid = num_low > 0 ? low.num_rigid : std::min<int>(pairs.num_rigid, static_cast<int>(num));
+  basis.num_left_out = static_cast<int>(num_low);
+  while (basis.num_left_out < num && lowest > 0 && to_hz(basis.lambda(basis.num_left_out)) < lowest)
+    ++basis.num_left_out;
+  return basis;
+}
+
+DampingChoice choose_damping(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+                             bool is_over_time, const fe::Model& model, Diagnostics& diagnostics) {
+  DampingChoice damping;
+  damping.is_over_time = is_over_time;
+  damping.g = records::get_real_param(deck, "G", 0, diagnostics);
+  damping.w3 = records::get_real_param(deck, "W3", 0, diagnostics);
+  damping.w4 = records::get_real_param(deck, "W4", 0, diagnostics);
+  damping.is_stiffness = records::get_real_param(deck, "KDAMP", 1, diagnostics) < 0;
+  const int set = subcase.dynamics.sdamping;
+  const auto& curves = deck.dynamics.damping;
+  const auto curve = std::find_if(curves.begin(), curves.end(), [set](const auto& c) { return c.id == set; });
+  if (curve != curves.end()) damping.curve = &*curve;
+  if (set != 0 && !damping.curve)
+    diagnostics.error("modal.missing-table", deck.locate(subcase.find_command("SDAMPING")),
+                      "SDAMPING = " + std::to_string(set) + " names no TABDMP1 card of the deck",
+                      "add the table or correct the id");
+  if (!is_over_time) return damping;
+  const auto& elements = model.elements();
+  const bool has_ge = std::any_of(elements.begin(), elements.end(),
+                                  [](const auto& element) { return element->structural_damping() != 0; });
+  const bool lacks_w3 = damping.g != 0 && damping.w3 <= 0, lacks_w4 = has_ge && damping.w4 <= 0;
+  if (lacks_w3 || lacks_w4)
+    diagnostics.note("modal.no-w3", deck.locate({}),
+                     std::string(lacks_w3 ? "PARAM,G" : "GE of the materials") +
+                         (lacks_w3 && lacks_w4 ? " and GE" : "") + " does not act over time without PARAM," +
+                         (lacks_w3 ? "W3" : "W4") + ", as in Nastran",
+                     "give the circular frequency at which structural damping is to be viscous");
+  return damping;
+}
+
+}  // namespace
+
+std::vector<records::DynamicSubcase> choose_response_subcases(const records::DynamicDeck& deck, int asked) {
+  std::vector<records::DynamicSubcase> chosen;
+  for (const auto& subcase : deck.subcases) {
+    const auto selection = deck.selections.find(subcase.id);
+    const bool has_load = selection != deck.selections.end() && selection->second.dload != 0;
+    if (asked != 0 ? subcase.id == asked : has_load)
+      chosen.emplace_back(subcase, has_load ? selection->second : records::DynamicSelection{});
+  }
+  if (!chosen.empty() || asked != 0) return chosen;
+  throw InputError("modal.no-dynamic-load", deck.locate({}), "no subcase selects a DLOAD",
+                   "write DLOAD = n in the case control, with RLOAD or TLOAD cards");
+}
+
+/// What does not depend on the loads.
+struct DeckResponseSolver::Prepared {
+  Prepared(fe::Model&& built) : model(std::move(built)), system(model) {}
+  const fe::Model model;
+  const fe::System system;
+  ModeBasis modes;
+  std::unique_ptr<fe::StaticSolver> statics;
+};
+
+DeckResponseSolver::DeckResponseSolver(const records::DynamicDeck& deck, fe::ModelOptions model_options,
+                                       ResponseOptions options)
+    : deck_(deck), model_options_(std::move(model_options)), options_(std::move(options)) {}
+DeckResponseSolver::~DeckResponseSolver() = default;
+
+void DeckResponseSolver::prepare(const records::DynamicSubcase& subcase, Diagnostics& diagnostics) {
+  const std::array<int, 6> held{subcase.spc,     subcase.mpc,    subcase.suport1,
+                                subcase.preload, subcase.method, subcase.initial_temperature};
+  if (prepared_ && held_ == held) return;
+  prepared_.reset();
+  held_ = held;
+  Diagnostics own;
+  model_options_.subcase = subcase.id;
+  model_options_.prestress = nullptr;
+  if (options_.choose_prestress) model_options_.prestress = options_.choose_prestress(model_options_, subcase, own);
+  auto prepared = std::make_unique<Prepared>(fe::Model::build(deck_, model_options_, own));
+  own.throw_if_errors();
+  int num_massless = 0;
+  prepared->modes = calc_modes(prepared->system, options_.choose_eigen(subcase, own), deck_, num_massless, own);
+  std::vector<int> supports;
+  if (prepared->modes.num_rigid > 0 || num_massless > 0) {
+    const auto motions = detail::find_null_motions(detail::Pencil(prepared->system));
+    supports = motions.held;
+    supports.insert(supports.end(), motions.supports.begin(), motions.supports.end());
+    std::sort(supports.begin(), supports.end());
+    supports.erase(std::unique(supports.begin(), supports.end()), supports.end());
+  }
+  prepared->statics = std::make_unique<fe::StaticSolver>(prepared->model, prepared->system.K, std::move(supports));
+  own.throw_if_errors();
+  for (const auto& item : own.items()) diagnostics.add(item);
+  prepared_ = std::move(prepared);
+}
+
+records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase& subcase, Diagnostics& diagnostics) {
+  prepare(subcase, diagnostics);
+  const auto& model = prepared_->model;
+  Diagnostics own;
+  const auto excitation = calc_excitation(model, deck_, subcase, options_.is_over_time, own);
+  const auto start = options_.is_over_time ? calc_start(model, deck_, subcase, own) : StartMotion{};
+  const auto damping = choose_damping(deck_, subcase, options_.is_over_time, model, own);
+  const auto grid = options_.is_over_time ? make_times(deck_, subcase, own) : TimeGrid{};
+  VectorXd natural(prepared_->modes.lambda.size());
+  for (Eigen::Index j = 0; j < natural.size(); ++j) natural(j) = to_hz(prepared_->modes.lambda(j));
+  VectorXd hz;
+  if (!options_.is_over_time)
+    hz = make_frequencies(deck_, subcase, natural.tail(natural.size() - prepared_->modes.num_left_out), own);
+  own.throw_if_errors();
+  const auto outputs = choose_outputs(model, deck_, subcase, excitation, options_.grids, own);
+  own.throw_if_errors();
+  const bool with_residuals = options_.residual_vectors.value_or(subcase.dynamics.resvec.value_or(
+      deck_.find_param("RESVEC") == nullptr || deck_.find_param("RESVEC")->value[0] != 'N'));
+  const auto solve_static = [&](const MatrixXd& F) { return prepared_->statics->solve(F, &own); };
+  const auto response =
+      make_response_model(model, prepared_->modes, solve_static, excitation, start, damping, with_residuals, own);
+  records::ResponseSubcase result;
+  result.id = subcase.id;
+  result.title = subcase.title;
+  result.subtitle = subcase.subtitle;
+  result.label = subcase.label;
+  result.num_rigid = response.num_rigid;
+  result.mode_hz.resize(response.lambda.size());
+  for (Eigen::Index j = 0; j < response.lambda.size(); ++j) {
+    result.mode_hz(j) = to_hz(response.lambda(j));
+    result.kind.push_back(j < response.num_normal ? records::ModeKind::Normal : records::ModeKind::Residual);
+  }
+  result.damping_ratio = response.damping_ratio;
+  if (options_.is_over_time) {
+    recover(model, deck_, response, excitation, damping, outputs, calc_history(response, excitation, grid), result);
+  } else {
+    const double highest = natural.size() > 0 ? natural(natural.size() - 1) : 0;
+    if (response.num_normal < model.num_fdofs() && hz(hz.size() - 1) > highest)
+      own.warning("modal.response-range", deck_.locate(subcase.find_command("FREQUENCY")),
+                  "the model is driven up to " + std::to_string(hz(hz.size() - 1)) + " Hz, its modes end at " +
+                      std::to_string(highest) + " Hz",
+                  "take more modes: beyond them there are residual vectors only");
+    recover(model, deck_, response, excitation, damping, outputs, calc_spectrum(response, excitation, hz), result);
+  }
+  for (const auto& item : own.items()) diagnostics.add(item);
+  return result;
+}
+
+}  // namespace bough::modal::response

@@ -1,0 +1,48 @@
+#pragma once
+/// \file Frequency and transient response of a deck, subcase by subcase (SOL 111, 112; 108 and 109 by modes).
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "modal/response/recovery.hpp"
+
+namespace bough::modal::response {
+
+struct ResponseOptions {
+  bool is_over_time = false;
+  std::optional<bool> residual_vectors;  ///< overrules RESVEC of the deck (default: yes)
+  std::vector<int> grids;                ///< displacement, velocity, acceleration of these besides
+  /// EIGRL or EIGR of the subcase, with the command line.
+  std::function<EigenOptions(const records::DynamicSubcase&, Diagnostics&)> choose_eigen;
+  /// Of the subcase's STATSUB; may be empty.
+  std::function<std::shared_ptr<const fe::Prestress>(const fe::ModelOptions&, const records::DynamicSubcase&,
+                                                     Diagnostics&)>
+      choose_prestress;
+};
+
+/// The subcases with DLOAD; the one asked for in any case. Throws InputError modal.no-dynamic-load.
+std::vector<records::DynamicSubcase> choose_response_subcases(const records::DynamicDeck& deck, int asked);
+
+/// Model and modes are kept while constraints and METHOD stay the same.
+class DeckResponseSolver {
+ public:
+  DeckResponseSolver(const records::DynamicDeck& deck, fe::ModelOptions model_options, ResponseOptions options);
+  ~DeckResponseSolver();
+
+  /// Throws what is wrong with this subcase. Notes modal.no-w3 (PARAM,G or GE over time without W3 or W4), warnings
+  /// modal.response-range (driven above the highest mode).
+  records::ResponseSubcase solve(const records::DynamicSubcase& subcase, Diagnostics& diagnostics);
+
+ private:
+  struct Prepared;
+  void prepare(const records::DynamicSubcase& subcase, Diagnostics& diagnostics);
+
+  const records::DynamicDeck& deck_;
+  fe::ModelOptions model_options_;
+  ResponseOptions options_;
+  std::optional<std::array<int, 6>> held_;
+  std::unique_ptr<Prepared> prepared_;
+};
+
+}  // namespace bough::modal::response

@@ -1,0 +1,213 @@
+#include <cmath>
+#include <map>
+
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "modal/response/coordinates.hpp"
+
+namespace bough::modal::response {
+namespace {
+
+/// x_1 = E x_0 + P0 f_0 + P1 (f_1 - f_0) over a step, x = [ω0 q; q̇] of the coordinates `part`.
+struct Step {
+  MatrixXd E, P0, P1;
+};
+
+/// ω0 keeps the entries of A of one size.
+VectorXd calc_scale(const VectorXd& lambda, double h) { return lambda.cwiseAbs().cwiseSqrt().cwiseMax(1 / h); }
+
+Step make_step(const VectorXd& lambda, const MatrixXd& D, double h) {
+  const auto n = lambda.size();
+  const VectorXd scale = calc_scale(lambda, h);
+  MatrixXd A = MatrixXd::Zero(4 * n, 4 * n);
+  A.block(0, n, n, n) = (h * scale).asDiagonal();
+  A.block(n, 0, n, n) = (-h * lambda.cwiseQuotient(scale)).asDiagonal();
+  A.block(n, n, n, n) = -h * D;
+  // Forces in units of a unit rate over the step, so that they do not govern the scaling of the exponential.
+  A.block(n, 2 * n, n, n).setIdentity();
+  A.block(2 * n, 3 * n, n, n).setIdentity();
+  const MatrixXd e = A.exp();
+  return {e.topLeftCorner(2 * n, 2 * n), h * e.block(0, 2 * n, 2 * n, n), h * e.block(0, 3 * n, 2 * n, n)};
+}
+
+/// Loads at a step: just before it and just after.
+struct Sides {
+  MatrixXd before, after;  ///< rows x nt
+};
+
+class Motion {
+ public:
+  Motion(const ResponseModel& model, const Excitation& excitation, const TimeGrid& grid)
+      : model_(model), excitation_(excitation), grid_(grid), n_(model.lambda.size()) {
+    sample();
+  }
+
+  History run() {
+    const auto num = static_cast<Eigen::Index>(grid_.shown.size());
+    History h;
+    h.time = grid_.time(grid_.shown);
+    for (auto* m : {&h.q, &h.q_dot, &h.q_ddot}) m->resize(n_, num);
+    const Eigen::Index k = excitation_.D.cols();
+    for (auto* m : {&h.d, &h.d_dot, &h.d_ddot}) m->resize(k, num);
+    h.a.resize(model_.P.cols(), num);
+    q_ = model_.u0.size() > 0 ? model_.u0 : VectorXd::Zero(n_);
+    v_ = model_.v0.size() > 0 ? model_.v0 : VectorXd::Zero(n_);
+    Eigen::Index next = 0;
+    for (Eigen::Index i = 0; i < grid_.time.size(); ++i) {
+      if (i > 0) advance(i);
+      jump(i);
+      if (next < num && grid_.shown[static_cast<std::size_t>(next)] == i) put(i, next++, h);
+    }
+    return h;
+  }
+
+ private:
+  double step_before(Eigen::Index i) const { return i > 0 ? grid_.time(i) - grid_.time(i - 1) : step_before(1); }
+  double step_after(Eigen::Index i) const {
+    return i + 1 < grid_.time.size() ? grid_.time(i + 1) - grid_.time(i) : step_before(i);
+  }
+
+  /// Loads, and d, ḋ, d̈ of the supports, on both sides of every step.
+  void sample() {
+    const auto nt = grid_.time.size(), m = excitation_.F.cols(), k = excitation_.D.cols();
+    p_.before = p_.after = MatrixXd::Zero(m, nt);
+    for (auto* s : {&d_, &d_dot_, &d_ddot_}) s->before = s->after = MatrixXd::Zero(k, nt);
+    for (Eigen::Index i = 0; i < nt; ++i)
+      for (const auto& term : excitation_.forces) {
+        const auto [before, after] = evaluate_sides(term, i);
+        p_.before(term.column, i) += before;
+        p_.after(term.column, i) += after;
+      }
+    for (const auto& term : excitation_.motions) sample_motion(term);
+  }
+
+  std::pair<double, double> evaluate_sides(const ExcitationTerm& term, Eigen::Index i) const {
+    const double t = grid_.time(i), reach = 1e-6 * std::min(step_before(i), step_after(i));
+    return {i > 0 ? response::calc_history(term, t, Side::Before, reach) : 0,
+            response::calc_history(term, t, Side::After, reach)};
+  }
+
+  /// Of what is given, lines between the steps; the others are its integrals and slopes. The structure is at rest
+  /// before the first step: what the supports have then, they have by a jump.
+  void sample_motion(const ExcitationTerm& term) {
+    using Type = records::DynamicLoad::Excitation;
+    const auto type = term.card->excitation;
+    const auto c = term.column;
+    double d = 0, v = 0, before = 0, after = 0;
+    for (Eigen::Index i = 0; i < grid_.time.size(); ++i) {
+      const auto [now_before, now_after] = evaluate_sides(term, i);
+      const double h = step_before(i), slope = i > 0 ? (now_before - after) / h : 0;
+      if (i > 0 && type == Type::Acceleration) {
+        d += h * v + h * h * (after / 3 + now_before / 6);
+        v += 0.5 * h * (after + now_before);
+      }
+      if (i > 0 && type == Type::Velocity) d += 0.5 * h * (after + now_before);
+      before = now_before;
+      if (type == Type::Acceleration) {
+        add(d_, c, i, d, d);
+        add(d_dot_, c, i, v, v);
+        add(d_ddot_, c, i, before, now_after);
+      } else if (type == Type::Velocity) {
+        add(d_, c, i, d, d);
+        add(d_dot_, c, i, before, now_after);
+        add_slope(d_ddot_, c, i, slope);
+      } else {
+        add(d_, c, i, before, now_after);
+        add_slope(d_dot_, c, i, slope);
+      }
+      after = now_after;
+    }
+  }
+  static void add(Sides& s, Eigen::Index c, Eigen::Index i, double before, double after) {
+    s.before(c, i) += before;
+    s.after(c, i) += after;
+  }
+  /// A value that holds from step i - 1 to step i.
+  static void add_slope(Sides& s, Eigen::Index c, Eigen::Index i, double slope) {
+    if (i == 0) return;
+    s.after(c, i - 1) += slope;
+    s.before(c, i) += slope;
+    if (i + 1 == s.after.cols()) s.after(c, i) += slope;
+  }
+
+  VectorXd collect(Eigen::Index i, bool is_after) const {
+    const auto pick = [&](const Sides& s) -> VectorXd { return is_after ? s.after.col(i) : s.before.col(i); };
+    VectorXd a(model_.P.cols());
+    a << pick(p_), -pick(d_ddot_), -pick(d_dot_), VectorXd::Zero(excitation_.D.cols());
+    return a;
+  }
+
+  const std::vector<Step>& find_steps(double h) {
+    const auto [found, is_new] = steps_.try_emplace(std::llround(std::log(h) * 1e9));
+    if (!is_new) return found->second;
+    if (model_.is_coupled) {
+      found->second.push_back(make_step(model_.lambda, model_.D, h));
+    } else {
+      for (Eigen::Index j = 0; j < n_; ++j)
+        found->second.push_back(make_step(model_.lambda.segment(j, 1), model_.D.block(j, j, 1, 1), h));
+    }
+    return found->second;
+  }
+
+  void advance(Eigen::Index i) {
+    const double h = step_before(i);
+    const auto& steps = find_steps(h);
+    const VectorXd f0 = model_.P * collect(i - 1, true), f1 = model_.P * collect(i, false);
+    const Eigen::Index size = model_.is_coupled ? n_ : 1;
+    for (std::size_t part = 0; part < steps.size(); ++part) {
+      const auto first = static_cast<Eigen::Index>(part) * size;
+      const auto& s = steps[part];
+      const VectorXd scale = calc_scale(model_.lambda.segment(first, size), h);
+      VectorXd x(2 * size);
+      x << scale.cwiseProduct(q_.segment(first, size)), v_.segment(first, size);
+      const VectorXd y =
+          s.E * x + s.P0 * f0.segment(first, size) + s.P1 * (f1.segment(first, size) - f0.segment(first, size));
+      q_.segment(first, size) = y.head(size).cwiseQuotient(scale);
+      v_.segment(first, size) = y.tail(size);
+    }
+  }
+
+  /// What the supports do at once, the structure does not: Φ q jumps against Ψ d.
+  void jump(Eigen::Index i) {
+    const auto m = excitation_.F.cols(), k = excitation_.D.cols();
+    if (k == 0) return;
+    const VectorXd d = d_.after.col(i) - d_.before.col(i), v = d_dot_.after.col(i) - d_dot_.before.col(i);
+    const auto P_M = model_.P.middleCols(m, k), P_B = model_.P.middleCols(m + k, k);
+    q_ -= P_M * d;
+    v_ -= P_M * v + P_B * d - model_.D * (P_M * d);
+  }
+
+  /// Where something jumps, the mean of before and after.
+  void put(Eigen::Index i, Eigen::Index column, History& h) const {
+    const auto m = excitation_.F.cols(), k = excitation_.D.cols();
+    const bool is_first = i == 0;
+    VectorXd jump_v = VectorXd::Zero(k);
+    if (!is_first) jump_v = d_dot_.after.col(i) - d_dot_.before.col(i);
+    const VectorXd v = v_ + 0.5 * (model_.P.middleCols(m, k) * jump_v);
+    h.a.col(column) = is_first ? collect(i, true) : VectorXd(0.5 * (collect(i, true) + collect(i, false)));
+    // An impulse of the supports counts as spread over the step.
+    h.a.block(m, column, k, 1) -= jump_v / (0.5 * (step_before(i) + step_after(i)));
+    h.q.col(column) = q_;
+    h.q_dot.col(column) = v;
+    h.q_ddot.col(column) = model_.P * h.a.col(column) - model_.D * v - model_.lambda.cwiseProduct(q_);
+    h.d.col(column) = d_.after.col(i);
+    h.d_dot.col(column) = d_dot_.after.col(i) - 0.5 * jump_v;
+    h.d_ddot.col(column) = -h.a.block(m, column, k, 1);
+  }
+
+  const ResponseModel& model_;
+  const Excitation& excitation_;
+  const TimeGrid& grid_;
+  Eigen::Index n_;
+  Sides p_, d_, d_dot_, d_ddot_;
+  std::map<long long, std::vector<Step>> steps_;
+  VectorXd q_, v_;
+};
+
+}  // namespace
+
+History calc_history(const ResponseModel& model, const Excitation& excitation, const TimeGrid& grid) {
+  return Motion(model, excitation, grid).run();
+}
+
+}  // namespace bough::modal::response

@@ -1,0 +1,29 @@
+#pragma once
+/// \file From coordinates to curves at grids and elements.
+#include "formats/records/deck_response.hpp"
+#include "modal/response/coordinates.hpp"
+
+namespace bough::modal::response {
+
+/// One quantity at chosen grids or elements.
+struct OutputChoice {
+  std::string quantity;  ///< displacement, velocity, acceleration, spc_force, force
+  std::vector<int> ids;  ///< grids, or elements
+  bool is_phase = false, is_punched = false;
+};
+
+/// What the subcase asks for. Reports modal.missing-set. `extra_grids`: displacement, velocity and acceleration of
+/// these besides; with no request at all the displacements of the grids that are loaded or moved (note
+/// modal.default-output).
+std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::DynamicDeck& deck,
+                                         const records::DynamicSubcase& subcase, const Excitation& excitation,
+                                         const std::vector<int>& extra_grids, Diagnostics& diagnostics);
+
+void recover(const fe::Model& model, const records::DynamicDeck& deck, const ResponseModel& response,
+             const Excitation& excitation, const DampingChoice& damping, const std::vector<OutputChoice>& outputs,
+             const Spectrum& spectrum, records::ResponseSubcase& result);
+void recover(const fe::Model& model, const records::DynamicDeck& deck, const ResponseModel& response,
+             const Excitation& excitation, const DampingChoice& damping, const std::vector<OutputChoice>& outputs,
+             const History& history, records::ResponseSubcase& result);
+
+}  // namespace bough::modal::response

@@ -1,0 +1,282 @@
+#include "modal/response/response_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "fe/matrices/assembly.hpp"
+#include "fe/statics/static_case.hpp"
+
+namespace bough::modal::response {
+namespace {
+
+/// Most directions of dampers that become residual vectors of their own.
+constexpr int kMostDamperDirections = 60;
+
+MatrixXd join_columns(const MatrixXd& A, const MatrixXd& B) {
+  MatrixXd C(A.rows(), A.cols() + B.cols());
+  C << A, B;
+  return C;
+}
+
+MatrixXd times_mass(const fe::Model& model, const MatrixXd& X) {
+  return fe::calc_mass_times(model, model.mass_kind(), X);
+}
+MatrixXd make_symmetric(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
+
+/// Forces of the viscous dampers, in directions that span them; of the modes where the dampers are many.
+MatrixXd calc_damper_loads(const fe::Model& model, const MatrixXd& Phi) {
+  const auto none = MatrixXd(model.num_gdofs(), 0);
+  if (!fe::has_damping(model)) return none;
+  const auto B = fe::gather_sparse(fe::assemble_damping(model, fe::DofSet::Global));
+  std::vector<int> rows;
+  for (int i = 0; i < B.num_rows; ++i) {
+    const auto first = B.data.begin() + B.indptr[static_cast<std::size_t>(i)];
+    const auto last = B.data.begin() + B.indptr[static_cast<std::size_t>(i) + 1];
+    if (std::any_of(first, last, [](double b) { return b != 0; })) rows.push_back(i);
+  }
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  if (n == 0) return none;
+  if (n > 6 * kMostDamperDirections) return fe::calc_damping_times(model, Phi);
+  MatrixXd dense = MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto row = static_cast<std::size_t>(rows[static_cast<std::size_t>(i)]);
+    for (int k = B.indptr[row]; k < B.indptr[row + 1]; ++k) {
+      const auto at = std::lower_bound(rows.begin(), rows.end(), B.indices[static_cast<std::size_t>(k)]);
+      if (at != rows.end() && *at == B.indices[static_cast<std::size_t>(k)])
+        dense(i, at - rows.begin()) = B.data[static_cast<std::size_t>(k)];
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(make_symmetric(dense));
+  const VectorXd size = solver.eigenvalues().cwiseAbs();
+  MatrixXd loads = none;
+  for (Eigen::Index c = 0; c < n; ++c) {
+    if (!(size(c) > 1e-12 * size.maxCoeff())) continue;
+    VectorXd load = VectorXd::Zero(model.num_gdofs());
+    load(rows) = solver.eigenvectors().col(c);
+    loads = join_columns(loads, load);
+  }
+  return loads.cols() > kMostDamperDirections ? fe::calc_damping_times(model, Phi) : loads;
+}
+
+bool is_off_diagonal(const MatrixXd& A) {
+  for (Eigen::Index j = 0; j < A.cols(); ++j)
+    for (Eigen::Index i = 0; i < A.rows(); ++i)
+      if (i != j && std::abs(A(i, j)) > 1e-13 * std::sqrt(std::abs(A(i, i) * A(j, j)))) return true;
+  return false;
+}
+
+/// Columns of A that are not zero.
+MatrixXd take_nonzero(const MatrixXd& A) {
+  std::vector<int> kept;
+  for (Eigen::Index c = 0; c < A.cols(); ++c)
+    if (!A.col(c).isZero(0)) kept.push_back(static_cast<int>(c));
+  return A(Eigen::all, kept);
+}
+
+/// Loads K u0 and K v0, of which the start is the static solution.
+MatrixXd calc_start_loads(const fe::Model& model, const StartMotion& start) {
+  MatrixXd loads(model.num_gdofs(), 0);
+  for (const auto* u : {&start.u, &start.v})
+    if (u->size() > 0) loads = join_columns(loads, fe::calc_stiffness_times(model, *u));
+  return loads;
+}
+
+class Maker {
+ public:
+  Maker(const fe::Model& model, const ModeBasis& modes, const bases::StaticSolve& solve, const DampingChoice& damping,
+        Diagnostics& diagnostics)
+      : model_(model), modes_(modes), solve_(solve), damping_(damping), diagnostics_(diagnostics) {}
+
+  ResponseModel make(const Excitation& excitation, const StartMotion& start, bool with_residuals) {
+    ResponseModel r;
+    const auto k = excitation.D.cols();
+    r.Psi = MatrixXd(model_.num_gdofs(), k);
+    if (k > 0) {
+      const MatrixXd moved = model_.T_fixed() * excitation.D;
+      r.Psi = moved + solve_(-fe::calc_stiffness_times(model_, moved));
+    }
+    MatrixXd loads = excitation.F;
+    for (const auto& more :
+         {times_mass(model_, r.Psi), times_damping(model_, damping_, r.Psi), times_structural(model_, damping_, r.Psi)})
+      loads = join_columns(loads, more);
+    choose_shapes(loads, start, with_residuals, r);
+    r.P = r.Phi.transpose() * loads;
+    r.R = with_residuals ? calc_static_rest(loads, r) : MatrixXd::Zero(model_.num_gdofs(), 0);
+    damp(r);
+    if (start.u.size() > 0) r.u0 = r.Phi.transpose() * times_mass(model_, start.u);
+    if (start.v.size() > 0) r.v0 = r.Phi.transpose() * times_mass(model_, start.v);
+    return r;
+  }
+
+ private:
+  Eigen::Index num_elastic() const { return modes_.lambda.size() - modes_.num_rigid; }
+  MatrixXd rigid() const { return modes_.Phi.leftCols(modes_.num_rigid); }
+  MatrixXd elastic() const { return modes_.Phi.rightCols(num_elastic()); }
+
+  void choose_shapes(const MatrixXd& loads, const StartMotion& start, bool with_residuals, ResponseModel& r) {
+    MatrixXd kept = elastic();
+    VectorXd lambda = modes_.lambda.tail(num_elastic());
+    if (with_residuals) {
+      // B Ψ lies in the loads of the dampers; K_s Ψ is next to nothing.
+      const auto k = r.Psi.cols(), m = loads.cols() - 3 * k;
+      const MatrixXd F = take_nonzero(join_columns(join_columns(loads.leftCols(m + k), calc_damper_loads(model_, kept)),
+                                                   calc_start_loads(model_, start)));
+      const auto residual = bases::calc_residual_vectors(model_, solve_, rigid(), kept, F);
+      if (residual.modes.lambda.size() > 0) {
+        kept = join_columns(kept, residual.modes.Phi);
+        const auto pairs =
+            bases::calc_ritz_pairs(make_symmetric(kept.transpose() * times_mass(model_, kept)),
+                                   make_symmetric(kept.transpose() * fe::calc_stiffness_times(model_, kept)));
+        kept = kept * pairs.N;
+        lambda = pairs.lambda;
+      }
+    }
+    r.num_rigid = modes_.num_rigid;
+    r.num_normal = static_cast<int>(modes_.lambda.size());
+    r.Phi = join_columns(rigid(), kept);
+    r.lambda = VectorXd::Zero(r.Phi.cols());
+    r.lambda.tail(lambda.size()) = lambda;
+    const int out = modes_.num_left_out;
+    if (out == 0) return;
+    left_out_ = r.Phi.leftCols(out);
+    left_out_lambda_ = r.lambda.head(out);
+    r.Phi = r.Phi.rightCols(r.Phi.cols() - out).eval();
+    r.lambda = r.lambda.tail(r.Phi.cols()).eval();
+    r.num_rigid = std::max(0, r.num_rigid - out);
+    r.num_normal -= out;
+  }
+
+  /// G F - Φ Λ⁻¹ Φᵀ F of each load; zero where it is round-off of the work G F does.
+  MatrixXd calc_static_rest(const MatrixXd& loads, const ResponseModel& r) const {
+    MatrixXd F = loads;
+    const MatrixXd Phi_r = rigid();
+    if (Phi_r.cols() > 0) F -= times_mass(model_, Phi_r) * (Phi_r.transpose() * loads);
+    MatrixXd rest = solve_(F);
+    if (Phi_r.cols() > 0) rest -= Phi_r * (Phi_r.transpose() * times_mass(model_, rest));
+    const VectorXd work = rest.cwiseProduct(F).colwise().sum();
+    const auto take = [&](const MatrixXd& Phi, const VectorXd& lambda) {
+      for (Eigen::Index j = 0; j < lambda.size(); ++j)
+        if (lambda(j) > 0) rest -= Phi.col(j) * (Phi.col(j).transpose() * F) / lambda(j);
+    };
+    take(r.Phi.rightCols(r.lambda.size() - r.num_rigid), r.lambda.tail(r.lambda.size() - r.num_rigid));
+    take(left_out_, left_out_lambda_);
+    bool is_needed = false;
+    for (Eigen::Index c = 0; c < rest.cols(); ++c) {
+      const bool counts = work(c) > 0 && std::abs(rest.col(c).dot(F.col(c))) > 1e-13 * work(c);
+      if (!counts) rest.col(c).setZero();
+      is_needed = is_needed || counts;
+    }
+    return is_needed ? rest : MatrixXd(rest.rows(), 0);
+  }
+
+  double calc_ratio(const ResponseModel& r, Eigen::Index j) const {
+    double hz = std::sqrt(std::max(r.lambda(j), 0.0)) / (2 * std::numbers::pi);
+    // Residual vectors lie far above the modes: there the curve keeps its end value.
+    if (j >= r.num_normal) hz = std::min(hz, damping_.curve->points.back().first);
+    return calc_damping_ratio(*damping_.curve, hz);
+  }
+
+  void damp(ResponseModel& r) const {
+    const auto n = r.lambda.size();
+    r.D = make_symmetric(r.Phi.transpose() * fe::calc_damping_times(model_, r.Phi));
+    r.S = MatrixXd::Zero(n, n);
+    const MatrixXd K_e = make_symmetric(r.Phi.transpose() * fe::calc_structural_damping_times(model_, 0, r.Phi));
+    const MatrixXd K_g = damping_.g * MatrixXd(r.lambda.asDiagonal());
+    if (damping_.is_over_time) {
+      if (damping_.w4 > 0) r.D += K_e / damping_.w4;
+      if (damping_.w3 > 0) r.D += K_g / damping_.w3;
+    } else {
+      r.S = K_e + K_g;
+    }
+    if (damping_.curve) add_curve(r);
+    r.is_coupled = is_off_diagonal(r.D) || is_off_diagonal(r.S);
+    r.damping_ratio = VectorXd::Zero(n);
+    for (Eigen::Index j = 0; j < n; ++j)
+      if (r.lambda(j) > 0)
+        r.damping_ratio(j) = r.D(j, j) / (2 * std::sqrt(r.lambda(j))) + r.S(j, j) / (2 * r.lambda(j));
+  }
+
+  void add_curve(ResponseModel& r) const {
+    for (Eigen::Index j = 0; j < r.lambda.size(); ++j) {
+      if (!(r.lambda(j) > 0)) continue;
+      const double ratio = calc_ratio(r, j), omega = std::sqrt(r.lambda(j));
+      if (ratio < 0 && !diagnostics_.has("modal.negative-damping")) {
+        char text[96];
+        std::snprintf(text, sizeof text, "the damping of %.6g at %.6g Hz is below 0", ratio,
+                      omega / (2 * std::numbers::pi));
+        diagnostics_.warning("modal.negative-damping", {},
+                             "TABDMP1 " + std::to_string(damping_.curve->id) + ": " + text,
+                             "the table goes on along its last line; give it a point beyond the highest mode");
+      }
+      if (damping_.is_stiffness && !damping_.is_over_time)
+        r.S(j, j) += 2 * ratio * r.lambda(j);
+      else
+        r.D(j, j) += 2 * ratio * omega;
+    }
+  }
+
+  const fe::Model& model_;
+  const ModeBasis& modes_;
+  const bases::StaticSolve& solve_;
+  const DampingChoice& damping_;
+  Diagnostics& diagnostics_;
+  MatrixXd left_out_;  ///< modes below V1 or LFREQ
+  VectorXd left_out_lambda_;
+};
+
+}  // namespace
+
+MatrixXd times_damping(const fe::Model& model, const DampingChoice& damping, const MatrixXd& X) {
+  MatrixXd Y = fe::calc_damping_times(model, X);
+  if (!damping.is_over_time) return Y;
+  if (damping.w4 > 0) Y += fe::calc_structural_damping_times(model, 0, X) / damping.w4;
+  if (damping.w3 > 0) Y += damping.g / damping.w3 * fe::calc_stiffness_times(model, X);
+  return Y;
+}
+MatrixXd times_structural(const fe::Model& model, const DampingChoice& damping, const MatrixXd& X) {
+  if (damping.is_over_time) return MatrixXd::Zero(X.rows(), X.cols());
+  return fe::calc_structural_damping_times(model, 0, X) + damping.g * fe::calc_stiffness_times(model, X);
+}
+
+StartMotion calc_start(const fe::Model& model, const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+                       Diagnostics& diagnostics) {
+  StartMotion start;
+  const int set = subcase.dynamics.ic;
+  if (set == 0) return start;
+  VectorXd u = VectorXd::Zero(model.num_fdofs()), v = u;
+  bool is_found = false;
+  for (const auto& card : deck.dynamics.initial) {
+    if (card.sid != set) continue;
+    is_found = true;
+    const int row = find_dof(model, deck, card.g, card.c, "TIC", card.at, diagnostics);
+    if (row < 0) continue;
+    const int index = model.find_node(card.g);
+    const int f = model.find_fdof(index, model.node(index).num_dofs == 1 ? 0 : card.c);
+    if (f < 0) {
+      diagnostics.error("modal.initial-held", deck.locate(card.at),
+                        "TIC moves grid " + std::to_string(card.g) + " component " + std::to_string(card.c) +
+                            ", which is fixed or follows other dofs",
+                        "give the start of the dofs that it follows, or leave it out");
+      continue;
+    }
+    u[f] = card.u0;
+    v[f] = card.v0;
+  }
+  if (!is_found)
+    diagnostics.error("modal.missing-initial", deck.locate(subcase.find_command("IC")),
+                      "IC = " + std::to_string(set) + " names no TIC card of the deck",
+                      "add the cards or correct the id");
+  if (!u.isZero(0)) start.u = model.T() * u;
+  if (!v.isZero(0)) start.v = model.T() * v;
+  return start;
+}
+
+ResponseModel make_response_model(const fe::Model& model, const ModeBasis& modes, const bases::StaticSolve& solve,
+                                  const Excitation& excitation, const StartMotion& start, const DampingChoice& damping,
+                                  bool with_residuals, Diagnostics& diagnostics) {
+  return Maker(model, modes, solve, damping, diagnostics).make(excitation, start, with_residuals);
+}
+
+}  // namespace bough::modal::response

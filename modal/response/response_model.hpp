@@ -1,0 +1,62 @@
+#pragma once
+/// \file A driven model in few coordinates (docs/theory/response.md): normal modes, residual vectors of what drives it,
+/// the motion of its supports.
+#include <optional>
+
+#include "modal/bases/ritz.hpp"
+#include "modal/eigen.hpp"
+#include "modal/response/excitation.hpp"
+
+namespace bough::modal::response {
+
+/// Modes of the model from the lowest up, unit generalized mass.
+struct ModeBasis {
+  VectorXd lambda;
+  MatrixXd Phi;
+  int num_rigid = 0;     ///< first
+  int num_left_out = 0;  ///< of them, the first: below V1 of EIGRL or PARAM,LFREQ; they take no part
+};
+
+struct DampingChoice {
+  double g = 0;           ///< PARAM,G
+  double w3 = 0, w4 = 0;  ///< over time: where g and GE become viscous; 0: they do not act
+  bool is_over_time = false;
+  bool is_stiffness = false;                     ///< PARAM,KDAMP,-1: the curve is structural damping
+  const records::DampingCurve* curve = nullptr;  ///< SDAMPING
+};
+
+/// u = Φ q + Ψ d + R a on the g-set, basic axes, with
+///   q̈ + D q̇ + (Λ + i S) q = P a.
+/// d: motions of the supports (columns of Excitation::D), Ψ: what follows them statically. Loads a, m + 3 k of them:
+/// forces of F, then of M Ψ (amplitude -d̈), B Ψ (-ḋ), K_s Ψ (-i d). R: what of their static solutions the shapes leave
+/// out, where that is more than round-off.
+struct ResponseModel {
+  MatrixXd Phi;
+  VectorXd lambda;
+  int num_rigid = 0, num_normal = 0;  ///< rigid ones first; the others behind num_normal are residual vectors
+  MatrixXd Psi, R;
+  MatrixXd P;               ///< n x (m + 3k)
+  MatrixXd D, S;            ///< n x n, viscous and structural
+  bool is_coupled = false;  ///< D or S has terms off the diagonal
+  VectorXd damping_ratio;   ///< n, of each coordinate: D_jj / 2ω + S_jj / 2λ; 0 for rigid ones
+  VectorXd u0, v0;          ///< start, n each: M-projection of TIC; empty without
+};
+
+struct StartMotion {
+  VectorXd u, v;  ///< g-set, basic; empty: at rest
+};
+/// IC of the subcase. Reports modal.missing-initial, fe.missing-grid, fe.bad-component, modal.initial-held.
+StartMotion calc_start(const fe::Model& model, const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+                       Diagnostics& diagnostics);
+
+/// B X and K_s X on the g-set: over time K_s is in B, at the rates W3 and W4.
+MatrixXd times_damping(const fe::Model& model, const DampingChoice& damping, const MatrixXd& X);
+MatrixXd times_structural(const fe::Model& model, const DampingChoice& damping, const MatrixXd& X);
+
+/// `solve`: static solutions on the supports (with rigid modes: any determinate ones). `with_residuals`: RESVEC.
+/// Warnings: modal.negative-damping.
+ResponseModel make_response_model(const fe::Model& model, const ModeBasis& modes, const bases::StaticSolve& solve,
+                                  const Excitation& excitation, const StartMotion& start, const DampingChoice& damping,
+                                  bool with_residuals, Diagnostics& diagnostics);
+
+}  // namespace bough::modal::response

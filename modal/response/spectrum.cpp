@@ -1,0 +1,88 @@
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "modal/response/coordinates.hpp"
+
+namespace bough::modal::response {
+namespace {
+
+using namespace std::complex_literals;
+using Eigen::VectorXcd;
+
+[[noreturn]] void throw_unbounded(double hz, const std::string& why) {
+  char text[64];
+  std::snprintf(text, sizeof text, "the response at %.8g Hz has no bound: ", hz);
+  throw ComputationError("modal.unbounded-response", {}, text + why,
+                         "give damping (SDAMPING, PARAM,G, GE, dampers), or leave this frequency out");
+}
+
+VectorXcd calc_amplitudes(const Excitation& excitation, double hz, VectorXcd& d) {
+  const auto m = excitation.F.cols(), k = excitation.D.cols();
+  const double omega = 2 * std::numbers::pi * hz;
+  VectorXcd a = VectorXcd::Zero(m + 3 * k);
+  for (const auto& term : excitation.forces) a(term.column) += calc_amplitude(term, hz);
+  d = VectorXcd::Zero(k);
+  for (const auto& term : excitation.motions) {
+    using Type = records::DynamicLoad::Excitation;
+    auto amplitude = calc_amplitude(term, hz);
+    const auto type = term.card->excitation;
+    if (type != Type::Displacement && hz == 0)
+      throw_unbounded(hz, "a steady velocity or acceleration of the supports goes on and on");
+    if (type == Type::Velocity) amplitude /= 1i * omega;
+    if (type == Type::Acceleration) amplitude /= -omega * omega;
+    d(term.column) += amplitude;
+  }
+  a.segment(m, k) = omega * omega * d;
+  a.segment(m + k, k) = -1i * omega * d;
+  a.tail(k) = -1i * d;
+  return a;
+}
+
+std::string describe(const ResponseModel& model, Eigen::Index j) {
+  char text[64];
+  if (j < model.num_rigid) return "the model moves freely";
+  std::snprintf(text, sizeof text, "the mode at %.8g Hz is not damped",
+                std::sqrt(model.lambda(j)) / (2 * std::numbers::pi));
+  return text;
+}
+
+}  // namespace
+
+Spectrum calc_spectrum(const ResponseModel& model, const Excitation& excitation, const VectorXd& hz) {
+  const auto n = model.lambda.size();
+  Spectrum s;
+  s.hz = hz;
+  s.q.resize(n, hz.size());
+  s.d.resize(excitation.D.cols(), hz.size());
+  s.a.resize(model.P.cols(), hz.size());
+  for (Eigen::Index i = 0; i < hz.size(); ++i) {
+    const double omega = 2 * std::numbers::pi * hz(i);
+    VectorXcd d;
+    s.a.col(i) = calc_amplitudes(excitation, hz(i), d);
+    s.d.col(i) = d;
+    const VectorXcd force = model.P * s.a.col(i);
+    const VectorXd real = (model.lambda.array() - omega * omega).matrix();
+    const VectorXcd diagonal = real.cast<std::complex<double>>() +
+                               1i * (omega * model.D.diagonal() + model.S.diagonal()).cast<std::complex<double>>();
+    for (Eigen::Index j = 0; j < n; ++j)
+      if (!model.is_coupled && std::abs(diagonal(j)) <= 1e-14 * std::max(model.lambda(j), omega * omega))
+        throw_unbounded(hz(i), describe(model, j));
+    if (!model.is_coupled) {
+      s.q.col(i) = force.cwiseQuotient(diagonal);
+      continue;
+    }
+    MatrixXcd Z = 1i * (omega * model.D + model.S).cast<std::complex<double>>();
+    Z.diagonal() = diagonal;
+    // Residual vectors lie many orders above the modes: rows and columns of one size.
+    const VectorXd scale = model.lambda.cwiseAbs().cwiseMax(omega * omega).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::PartialPivLU<MatrixXcd> lu(scale.asDiagonal() * Z * scale.asDiagonal());
+    const VectorXcd pivots = lu.matrixLU().diagonal();
+    if (n > 0 && !(pivots.cwiseAbs().minCoeff() > 1e-14))
+      throw_unbounded(hz(i), model.num_rigid > 0 && hz(i) == 0 ? "the model moves freely" : "a mode is not damped");
+    s.q.col(i) = scale.asDiagonal() * lu.solve(scale.asDiagonal() * force).eval();
+  }
+  return s;
+}
+
+}  // namespace bough::modal::response
