@@ -21,7 +21,7 @@ struct AffineField {
 
   Amplitudes A0 = Amplitudes::Zero();
   Columns L;                ///< 12 x n: ∫ρ φ_j fᵀ; its first column is Γ0_j/√m
-  Columns B;                ///< 12 x r, r = 4, 8 or 12; orthonormal, the identity when r = 12, zero without K_G1
+  Columns B;                ///< 12 x r; orthonormal; r = 0 without K_G1
   std::vector<MatrixXd> c;  ///< [q] n x n, symmetric
   Matrix3d Q = Matrix3d::Zero();
   Amplitudes W = Amplitudes::Zero();  ///< its first column is zero
