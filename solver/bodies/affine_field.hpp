@@ -29,8 +29,11 @@ struct AffineField {
 
   /// Q (a bᵀ + b aᵀ) W: the part of x that is bilinear in a, twice.
   Amplitudes calc_correction(const Amplitudes& a, const Amplitudes& b) const {
-    const Matrix3d ab = a * b.transpose();
-    return Q * ((ab + ab.transpose()) * W);
+    const Matrix3d ab = a * b.transpose(), both = (ab + ab.transpose()) * W.rightCols<3>();
+    Amplitudes x;
+    x.col(0).setZero();
+    x.rightCols<3>().noalias() = Q * both;
+    return x;
   }
   int rank() const { return static_cast<int>(c.size()); }
   /// From mass, inertia, Γ0, Γ1, Γ3 and those of the twelve K_G1 that were computed. The first n modes.

@@ -117,6 +117,10 @@ void Body::add_second_order(const records::FlexBody& flex) {
     }
   }
   const double size = std::max(J.rowwise().norm().maxCoeff(), C.rowwise().norm().maxCoeff());
+  bool is_rounding = true;  // next to √(J0 M_jj), which bounds what J gains by η_j
+  for (int j = 0; j < n; ++j)
+    is_rounding = is_rounding && J1_rest_t_.row(j).norm() <= 4e-15 * std::sqrt(J0_.norm() * std::abs(M_(j, j)));
+  if (is_rounding) J1_rest_t_.resize(rows, 0);
   const RowBasis of_J = find_row_basis(J, size), of_C = find_row_basis(C, size), of_A2 = find_row_basis(A2, size),
                  of_C_dot = find_row_basis(C_dot, size);
   E_J_ = of_J.E;

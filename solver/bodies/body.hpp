@@ -93,7 +93,7 @@ class Body {
   MatrixXd E_J_, E_C_, E_A2_, E_pair_;           ///< columns: 6, 3, 3, 3
   Eigen::Matrix<double, 12, Eigen::Dynamic> B_;  ///< the field's B
   // What the affine functions do not hold of Γ1, J0 and J's linear part: functions without mass, rounding.
-  MatrixXd gamma1_rest_t_, J1_rest_t_;  ///< n x 3, n x 6
+  MatrixXd gamma1_rest_t_, J1_rest_t_;  ///< n x 3, n x 6 (or 0: rounding alone)
   Vector6d J0_rest_;
   MatrixXd M_, K_, D_;
   VectorXd K_diagonal_, D_diagonal_;  ///< empty where there is more than it

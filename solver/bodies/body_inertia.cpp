@@ -70,18 +70,18 @@ void Body::calc_flexible_mass(const ConstVectorRef& eta, BodyInertia& x) const {
   for (Eigen::Index q = 0; q < num_y; ++q) turned.col(q) = turn(field_, x.a, B_.col(q));
   const Factors of_L = make_factors(x.A), of_Y = make_factors(x.P);
   Eigen::Matrix<double, Eigen::Dynamic, 12, 0, 12, 12> to_V = turned.transpose();
-  x.V = L_t_;
+  x.V.noalias() = L_t_;
   add_product(y, rows, num_y, to_V.data(), 12, x.V.data());
   const Eigen::Matrix<double, 12, 3> from_L = of_L.transpose();
   Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 15, 3> from_y(num_y + num_C, 3);
   from_y.topRows(num_y).noalias() = (of_Y * turned).transpose();
   from_y.bottomRows(num_C) = E_C_;
-  x.C = gamma1_rest_t_;
+  x.C.noalias() = gamma1_rest_t_;
   add_product(L_t_.data(), rows, 12, from_L.data(), 3, x.C.data());
   add_product(y, rows, num_y + num_C, from_y.data(), 3, x.C.data());
 
-  Vector6d J_rest;
-  multiply_transposed(J1_rest_t_.data(), rows, 6, x.eta.data(), J_rest.data());
+  Vector6d J_rest = Vector6d::Zero();
+  multiply_transposed(J1_rest_t_.data(), rows, J1_rest_t_.cols(), x.eta.data(), J_rest.data());
   Vector6d J6 = J0_rest_ + pack_inertia(x.A * (x.A + 2 * l_34).transpose()) + J_rest;
   J6.noalias() += E_J_.transpose() * sums.head(num_J);
 
@@ -143,15 +143,15 @@ void Body::calc_flexible_bias(const Vector3d& w, const ConstVectorRef& eta, cons
   x.h_modal.setZero();
   add_product(x.V.data(), rows, 12, U_Y.data(), 1, h);
   add_product(L_t_.data(), rows, 12, U_l.data(), 1, h);
-  add_product(J1_rest_t_.data(), rows, 6, minus_half.data(), 1, h);
+  add_product(J1_rest_t_.data(), rows, J1_rest_t_.cols(), minus_half.data(), 1, h);
   add_product(x.by_eta.data(), rows, num_J, of_J.data(), 1, h);
   add_product(x.A2.data(), rows, num_A2, of_A2.data(), 1, h);
   x.h.tail(n) = x.h_modal.head(n);
   add_modal(K_, K_diagonal_, eta, x.h.data() + 6);
   add_modal(D_, D_diagonal_, eta_dot, x.h.data() + 6);
 
-  Vector6d J_rest;
-  multiply_transposed(J1_rest_t_.data(), rows, 6, x.eta.data(), J_rest.data());
+  Vector6d J_rest = Vector6d::Zero();
+  multiply_transposed(J1_rest_t_.data(), rows, J1_rest_t_.cols(), x.eta.data(), J_rest.data());
   Vector6d J6_dot = pack_inertia(2 * (A_dot * x.P.transpose() + l_dot_34 * x.A.transpose())) + J_rest;
   J6_dot.noalias() += E_J_.transpose() * (2 * sums.head(num_J));
   const Matrix3d J = x.M.block<3, 3>(3, 3), J_dot = unpack_tensor(J6_dot);

@@ -174,7 +174,8 @@ struct Kernels {
 
   static BOUGH_INLINE void add_product(const double* A, Index rows, Index r, const double* B, Index m, double* C) {
     Index k = 0;
-    for (; k + 4 <= m; k += 4) accumulate_rows<W, 4>(A, rows, B + k * r, 1, r, r, 1, C + k * rows, rows, rows);
+    for (; k + 3 < m; k += 4) accumulate_rows<W, 4>(A, rows, B + k * r, 1, r, r, 1, C + k * rows, rows, rows);
+    for (; k + 2 < m; k += 3) accumulate_rows<W, 3>(A, rows, B + k * r, 1, r, r, 1, C + k * rows, rows, rows);
     for (; k < m; ++k) accumulate_rows<W, 1>(A, rows, B + k * r, 1, r, r, 1, C + k * rows, rows, rows);
   }
 
