@@ -73,8 +73,7 @@ AffineField AffineField::fit(const records::FlexBody& flex, int n, bool stiffeni
   field.W.rightCols<3>() = basis.damped;
   field.Q = Matrix3d::Identity() - 0.5 * basis.A0.rightCols<3>() * basis.damped.transpose();
   field.L = Columns::Zero(12, n);
-  field.B = Columns::Zero(12, 4);
-  field.c.assign(4, MatrixXd::Zero(n, n));
+  field.B = Columns::Zero(12, 0);
   for (int j = 0; j < n; ++j) {
     const Vector3d gamma0 = integrals.gamma0.col(j);
     Eigen::Map<Amplitudes> L(field.L.col(j).data());
@@ -116,14 +115,12 @@ AffineField AffineField::fit(const records::FlexBody& flex, int n, bool stiffeni
   MatrixXd C = solver.solve(weight.asDiagonal() * K);  // 12 x pairs
   field.lost = (X * C - K).cwiseAbs().maxCoeff() / largest;
 
-  // The 12 x 12 identity costs less than turning to a basis of nearly as many.
   const Eigen::SelfAdjointEigenSolver<MatrixXd> span(C * C.transpose());
   const Eigen::Index rank = (span.eigenvalues().array() > kSameSpan * span.eigenvalues()[11]).count();
-  const Eigen::Index padded = rank <= 4 ? 4 : rank <= 8 ? 8 : 12;
-  field.B = padded < 12 ? Columns(span.eigenvectors().rightCols(padded)) : Columns(Columns::Identity(12, 12));
+  field.B = span.eigenvectors().rightCols(rank);
   C = field.B.transpose() * C;
-  field.c.assign(static_cast<size_t>(padded), MatrixXd(n, n));
-  for (Eigen::Index q = 0; q < padded; ++q) {
+  field.c.assign(static_cast<size_t>(rank), MatrixXd(n, n));
+  for (Eigen::Index q = 0; q < rank; ++q) {
     MatrixXd& c = field.c[static_cast<size_t>(q)];
     Eigen::Index pair = 0;
     for (int l = 0; l < n; ++l) {

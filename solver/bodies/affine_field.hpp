@@ -21,7 +21,7 @@ struct AffineField {
 
   Amplitudes A0 = Amplitudes::Zero();
   Columns L;                ///< 12 x n: ∫ρ φ_j fᵀ; its first column is Γ0_j/√m
-  Columns B;                ///< 12 x r, r = 4, 8 or 12; orthonormal, the identity when r = 12, zero without K_G1
+  Columns B;                ///< 12 x r; orthonormal; r = 0 without K_G1
   std::vector<MatrixXd> c;  ///< [q] n x n, symmetric
   Matrix3d Q = Matrix3d::Zero();
   Amplitudes W = Amplitudes::Zero();  ///< its first column is zero
@@ -29,8 +29,11 @@ struct AffineField {
 
   /// Q (a bᵀ + b aᵀ) W: the part of x that is bilinear in a, twice.
   Amplitudes calc_correction(const Amplitudes& a, const Amplitudes& b) const {
-    const Matrix3d ab = a * b.transpose();
-    return Q * ((ab + ab.transpose()) * W);
+    const Matrix3d ab = a * b.transpose(), both = (ab + ab.transpose()) * W.rightCols<3>();
+    Amplitudes x;
+    x.col(0).setZero();
+    x.rightCols<3>().noalias() = Q * both;
+    return x;
   }
   int rank() const { return static_cast<int>(c.size()); }
   /// From mass, inertia, Γ0, Γ1, Γ3 and those of the twelve K_G1 that were computed. The first n modes.

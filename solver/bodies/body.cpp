@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "base/diagnostic.hpp"
+#include "solver/bodies/kernels.hpp"
+#include "solver/bodies/row_basis.hpp"
 #include "solver/bodies/tensor.hpp"
 
 namespace bough::solver {
@@ -70,8 +72,8 @@ Body Body::make_flexible(const records::FlexBody& flex, int num_modes, bool stif
   } else if (flex.modal_damping.size() > 0) {
     body.D_ = flex.modal_damping.topLeftCorner(n, n);
   }
-  body.K_is_diagonal_ = body.K_.isDiagonal(0);
-  body.D_is_diagonal_ = body.D_.isDiagonal(0);
+  if (body.K_.isDiagonal(0)) body.K_diagonal_ = body.K_.diagonal();
+  if (body.D_.isDiagonal(0)) body.D_diagonal_ = body.D_.diagonal();
   body.add_second_order(flex);
   body.add_flexible_nodes(flex);
   return body;
@@ -82,35 +84,63 @@ void Body::add_second_order(const records::FlexBody& flex) {
   const int n = n_;
   field_ = AffineField::fit(flex, n, stiffened_);
   const int r = field_.rank();
-  M_rest_ = M_ - field_.L.transpose() * field_.L;
-  by_eta_ = MatrixXd::Zero((9 + r) * n, n);
-  A2_ = MatrixXd::Zero(3 * n, n);
-  by_pair_ = MatrixXd::Zero(3 + r, n * (n + 1) / 2);
-  gamma1_rest_ = integrals.gamma1.leftCols(n);
-  J1_rest_ = Matrix6Xd::Zero(6, n);
+  const auto rows = pad(n);
+  M_rest_ = MatrixXd::Zero(rows, rows);
+  M_rest_.topLeftCorner(n, n) = M_ - field_.L.transpose() * field_.L;
+  L_t_ = MatrixXd::Zero(rows, 12);
+  L_t_.topRows(n) = field_.L.transpose();
+  B_ = field_.B;
+  gamma1_rest_t_ = MatrixXd::Zero(rows, 3);
+  gamma1_rest_t_.topRows(n) = integrals.gamma1.leftCols(n).transpose();
+  J1_rest_t_ = MatrixXd::Zero(rows, 6);
   J0_rest_ = J0_ - pack_inertia(field_.A0 * field_.A0.transpose());
-  for (int j = 0; j < n; ++j) {
-    const Matrix3d& g3 = integrals.gamma3[static_cast<size_t>(j)];
-    const Amplitudes L = Amplitudes(Eigen::Map<const Amplitudes>(field_.L.col(j).data()));
-    const Matrix3d E1 = L * field_.A0.transpose();
-    J1_rest_.col(j) = pack_tensor(g3 + g3.transpose()) - pack_inertia(E1 + E1.transpose());
-    for (int b = 0; b < 4; ++b) gamma1_rest_.col(j) -= Vector3d(field_.A0.col(b)).cross(Vector3d(L.col(b)));
-  }
+  MatrixXd J(6, n * n), C(3, n * n), A2(3, n * n), C_dot(3, n * (n + 1) / 2);
+  MatrixXd y_dot(r, n * (n + 1) / 2);
   for (int j = 0, pair = 0; j < n; ++j) {
     const auto sj = static_cast<size_t>(j);
+    const Matrix3d& g3 = integrals.gamma3[sj];
+    const Amplitudes L = Amplitudes(Eigen::Map<const Amplitudes>(field_.L.col(j).data()));
+    const Matrix3d E1 = L * field_.A0.transpose();
+    J1_rest_t_.row(j) = pack_tensor(g3 + g3.transpose()) - pack_inertia(E1 + E1.transpose());
+    for (int b = 0; b < 4; ++b)
+      gamma1_rest_t_.row(j) -= Vector3d(field_.A0.col(b)).cross(Vector3d(L.col(b))).transpose();
     for (int k = 0; k < n; ++k) {
       const auto sk = static_cast<size_t>(k);
       const Vector3d g2_kj = integrals.gamma2[sk].col(j), g2_jk = integrals.gamma2[sj].col(k);
-      auto column = by_eta_.block((9 + r) * j, k, 9 + r, 1);
-      column.topRows<6>() = 0.5 * (pack_tensor(integrals.gamma4[sj][sk]) + pack_tensor(integrals.gamma4[sk][sj]));
-      column.block<3, 1>(6, 0) = g2_kj;
-      A2_.block<3, 1>(3 * j, k) = g2_kj - g2_jk;
-      for (int q = 0; q < r; ++q) column(9 + q, 0) = field_.c[static_cast<size_t>(q)](j, k);
+      J.col(k * n + j) = 0.5 * (pack_tensor(integrals.gamma4[sj][sk]) + pack_tensor(integrals.gamma4[sk][sj]));
+      C.col(k * n + j) = g2_kj;
+      A2.col(k * n + j) = g2_kj - g2_jk;
       if (k > j) continue;
-      by_pair_.col(pair) = (k < j ? 2.0 : 1.0) * column.bottomRows(3 + r);
-      by_pair_.col(pair++).head<3>() = (k < j ? 1.0 : 0.5) * (g2_kj + g2_jk);
+      C_dot.col(pair) = (k < j ? 1.0 : 0.5) * (g2_kj + g2_jk);
+      for (int q = 0; q < r; ++q) y_dot(q, pair) = (k < j ? 2.0 : 1.0) * field_.c[static_cast<size_t>(q)](j, k);
+      ++pair;
     }
   }
+  const double size = std::max(J.rowwise().norm().maxCoeff(), C.rowwise().norm().maxCoeff());
+  bool is_rounding = true;  // next to √(J0 M_jj), which bounds what J gains by η_j
+  for (int j = 0; j < n; ++j)
+    is_rounding = is_rounding && J1_rest_t_.row(j).norm() <= 4e-15 * std::sqrt(J0_.norm() * std::abs(M_(j, j)));
+  if (is_rounding) J1_rest_t_.resize(rows, 0);
+  const RowBasis of_J = find_row_basis(J, size), of_C = find_row_basis(C, size), of_A2 = find_row_basis(A2, size),
+                 of_C_dot = find_row_basis(C_dot, size);
+  E_J_ = of_J.E;
+  E_C_ = of_C.E;
+  E_A2_ = of_A2.E;
+  E_pair_ = of_C_dot.E;
+  by_eta_ = MatrixXd::Zero((E_J_.rows() + r + E_C_.rows()) * rows, n);
+  const auto place = [&](const MatrixXd& kinds, MatrixXd& tables, Eigen::Index first) {
+    for (Eigen::Index i = 0; i < kinds.rows(); ++i)
+      for (int k = 0; k < n; ++k)
+        tables.block((first + i) * rows, k, n, 1) = kinds.row(i).segment(k * n, n).transpose();
+  };
+  place(of_J.rows, by_eta_, 0);
+  for (int q = 0; q < r; ++q) by_eta_.middleRows((E_J_.rows() + q) * rows, n) = field_.c[static_cast<size_t>(q)];
+  place(of_C.rows, by_eta_, E_J_.rows() + r);
+  A2_ = MatrixXd::Zero(E_A2_.rows() * rows, n);
+  place(of_A2.rows, A2_, 0);
+  by_pair_ = MatrixXd::Zero(pad(y_dot.cols()), E_pair_.rows() + r);
+  by_pair_.topLeftCorner(y_dot.cols(), E_pair_.rows()) = of_C_dot.rows.transpose();
+  by_pair_.topRightCorner(y_dot.cols(), r) = y_dot.transpose();
 }
 
 void Body::add_flexible_nodes(const records::FlexBody& flex) {
@@ -181,12 +211,15 @@ BodyInertia Body::make_inertia() const {
   inertia.M = MatrixXd::Zero(6 + n_, 6 + n_);
   inertia.M.topLeftCorner<6, 6>() = M6_;
   inertia.M.bottomRightCorner(n_, n_) = M_;
-  const int r = field_.rank();
-  inertia.by_eta = VectorXd::Zero((9 + r) * n_);
-  inertia.A2 = VectorXd::Zero(3 * n_);
-  inertia.pairs = VectorXd::Zero(n_ * (n_ + 1) / 2);
-  inertia.by_pair = VectorXd::Zero(3 + r);
-  inertia.V = AffineField::Columns::Zero(12, n_);
+  const auto rows = pad(n_);
+  inertia.by_eta = MatrixXd::Zero(rows, by_eta_.rows() / rows);
+  inertia.A2 = MatrixXd::Zero(rows, E_A2_.rows());
+  inertia.pairs = VectorXd::Zero(by_pair_.rows());
+  inertia.by_pair = VectorXd::Zero(by_pair_.cols());
+  inertia.V = MatrixXd::Zero(rows, 12);
+  inertia.C = MatrixXd::Zero(rows, 3);
+  inertia.M_modal = MatrixXd::Zero(rows, rows);
+  inertia.h_modal = inertia.eta = VectorXd::Zero(rows);
   return inertia;
 }
 

@@ -20,13 +20,16 @@
 
 namespace bough::solver {
 
-/// M(η), h and scratch for one body; every array is sized once.
+/// M(η), h and scratch for one body; every array is sized once. But for M and h rows are padded (kernels.hpp).
 struct BodyInertia {
-  MatrixXd M;                           ///< (6+n)², flexible bodies only (a rigid one has Body::M6)
-  VectorXd h;                           ///< 6+n
-  Vector3d S = Vector3d::Zero();        ///< first moment of mass about Bo
-  VectorXd by_eta, A2, pairs, by_pair;  ///< (9+r)n, 3n, n(n+1)/2, 3+r; r = rank of the affine field
-  AffineField::Columns V;               ///< 12 x n: ∫ρ ∂r/∂η_j fᵀ
+  MatrixXd M;                     ///< (6+n)², flexible bodies only (a rigid one has Body::M6)
+  VectorXd h;                     ///< 6+n
+  Vector3d S = Vector3d::Zero();  ///< first moment of mass about Bo
+  MatrixXd by_eta, A2;            ///< a column (n) per kind of product: of by_eta J's, then y's, then C's
+  VectorXd pairs, by_pair;        ///< n(n+1)/2; one per kind of product
+  MatrixXd V, C;                  ///< n x 12: ∫ρ ∂r/∂η_j fᵀ; n x 3: C_j
+  MatrixXd M_modal;               ///< lower triangle of M_ηη
+  VectorXd h_modal, eta;          ///< η, then η̇
   AffineField::Amplitudes a = AffineField::Amplitudes::Zero(), A = a, P = a;  ///< of the field; P = ∫ρ r fᵀ
 };
 
@@ -67,9 +70,7 @@ class Body {
 
  private:
   void add_second_order(const records::FlexBody& flex);
-  template <int R>
   void calc_flexible_mass(const ConstVectorRef& eta, BodyInertia& inertia) const;
-  template <int R>
   void calc_flexible_bias(const Vector3d& w_B, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
                           BodyInertia& inertia) const;
   void add_flexible_nodes(const records::FlexBody& flex);
@@ -81,16 +82,21 @@ class Body {
   Vector6d J0_ = Vector6d::Zero();  ///< xx yy zz xy xz yz (tensor components) about Bo
   Matrix6d M6_ = Matrix6d::Zero();
   AffineField field_;
-  MatrixXd M_rest_;   ///< n x n: M - LᵀL
-  MatrixXd by_eta_;   ///< (9+r)n x n: per mode j, column k: Γ4 as components of J, Γ2_kj, (c_q)_jk
-  MatrixXd A2_;       ///< 3n x n: per mode j, column k: Γ2_kj - Γ2_jk
-  MatrixXd by_pair_;  ///< (3+r) x n(n+1)/2: Ċη̇ of Γ2, η̇ᵀc_qη̇ per product η̇_j η̇_k, k ≤ j
+  // Rows of all that follow are padded with zeros (kernels.hpp).
+  MatrixXd M_rest_;  ///< n x n: M - LᵀL
+  MatrixXd L_t_;     ///< n x 12
+  // Integrals of products of two modes, one n x n table per kind, stacked; what tables are zero or follow from others
+  // (RowBasis) is left to E: J = E_J_ᵀ(tables).
+  MatrixXd by_eta_;  ///< of Γ4 as components of J; of y (c_q of the field); of Γ2 as C_jk = Γ2_kj
+  MatrixXd A2_;      ///< Γ2_kj - Γ2_jk
+  MatrixXd by_pair_;  ///< a column per kind, a row per product η̇_j η̇_k, k ≤ j: Ċη̇ of Γ2, then η̇ᵀc_qη̇
+  MatrixXd E_J_, E_C_, E_A2_, E_pair_;           ///< columns: 6, 3, 3, 3
+  Eigen::Matrix<double, 12, Eigen::Dynamic> B_;  ///< the field's B
   // What the affine functions do not hold of Γ1, J0 and J's linear part: functions without mass, rounding.
-  Matrix3Xd gamma1_rest_;
-  Vector6d J0_rest_ = Vector6d::Zero();
-  Matrix6Xd J1_rest_;
+  MatrixXd gamma1_rest_t_, J1_rest_t_;  ///< n x 3, n x 6 (or 0: rounding alone)
+  Vector6d J0_rest_;
   MatrixXd M_, K_, D_;
-  bool K_is_diagonal_ = false, D_is_diagonal_ = false;
+  VectorXd K_diagonal_, D_diagonal_;  ///< empty where there is more than it
   std::vector<Node> nodes_;
 };
 

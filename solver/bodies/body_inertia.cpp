@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "base/diagnostic.hpp"
+#include "solver/bodies/kernels.hpp"
 #include "solver/bodies/tensor.hpp"
 
 namespace bough::solver {
@@ -14,17 +14,8 @@ namespace {
 using Amplitudes = AffineField::Amplitudes;
 using Vector12d = Eigen::Matrix<double, 12, 1>;
 using Factors = Eigen::Matrix<double, 3, 12>;
-
-template <int R>
-Amplitudes expand(const AffineField::Columns& B, const Eigen::Matrix<double, R, 1>& a) {
-  Vector12d x = Vector12d::Zero();
-  if constexpr (R == 12) {
-    x = a;
-  } else {
-    for (int q = 0; q < R; ++q) x += B.col(q) * a[q];
-  }
-  return Eigen::Map<const Amplitudes>(x.data());
-}
+using Turned = Eigen::Matrix<double, 12, Eigen::Dynamic, 0, 12, 12>;
+using Sums = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 18, 1>;  // one per kind of product, J's and y's
 
 // ∂A/∂a b.
 Vector12d turn(const AffineField& field, const Amplitudes& a, const Vector12d& b) {
@@ -45,92 +36,86 @@ Factors make_factors(const Amplitudes& P) {
   return f;
 }
 
-void add_modal(const MatrixXd& K, bool is_diagonal, const ConstVectorRef& x, double* f) {
-  const Eigen::Index n = x.size();
-  if (is_diagonal) {
-    for (Eigen::Index j = 0; j < n; ++j) f[j] += K(j, j) * x[j];
+// diagonal: of K where it has nothing else, or empty.
+void add_modal(const MatrixXd& K, const VectorXd& diagonal, const ConstVectorRef& x, double* f) {
+  Eigen::Map<VectorXd> sum(f, x.size());
+  if (diagonal.size() > 0) {
+    sum += diagonal.cwiseProduct(x);
   } else {
-    Eigen::Map<VectorXd>(f, n).noalias() += K * x;
+    sum.noalias() += K * x;
   }
 }
 
 }  // namespace
 
-template <int R>
 void Body::calc_flexible_mass(const ConstVectorRef& eta, BodyInertia& x) const {
-  using VectorR = Eigen::Matrix<double, R, 1>;
-  const int n = n_, stride = 9 + R;
-  const auto& L = field_.L;
-  x.by_eta.noalias() = by_eta_ * eta;  // per mode: J of Γ4 (6), C of Γ2 (3), y (R)
-  const auto J_of = [&](int j) { return Eigen::Map<const Vector6d>(x.by_eta.data() + stride * j); };
-  const auto C_of = [&](int j) { return Eigen::Map<const Vector3d>(x.by_eta.data() + stride * j + 6); };
-  const auto y_of = [&](int j) { return Eigen::Map<const VectorR>(x.by_eta.data() + stride * j + 9); };
+  const Eigen::Index n = n_, rows = pad(n), num_J = E_J_.rows(), num_y = B_.cols(), num_C = E_C_.rows();
+  x.eta.head(n) = eta;
+  multiply(by_eta_.data(), by_eta_.rows(), n, eta.data(), x.by_eta.data());
+  const double* y = x.by_eta.data() + num_J * rows;
+  Sums sums(num_J + num_y);
+  multiply_transposed(x.by_eta.data(), rows, num_J + num_y, x.eta.data(), sums.data());
 
-  Vector12d l = Vector12d::Zero();
-  VectorR a = VectorR::Zero();
-  for (int j = 0; j < n; ++j) {
-    l += L.col(j) * eta[j];
-    a += y_of(j) * (0.5 * eta[j]);
-  }
+  Vector12d l, a;
+  multiply(field_.L.data(), 12, n, eta.data(), l.data());
+  a.noalias() = B_ * (0.5 * sums.tail(num_y));
   const Eigen::Map<const Amplitudes> l_34(l.data());
-  x.a = expand<R>(field_.B, a);
+  x.a = Eigen::Map<const Amplitudes>(a.data());
   x.A = field_.A0 + x.a - 0.5 * field_.calc_correction(x.a, x.a);
   x.P = x.A + l_34;
   const double root = std::sqrt(mass_);
   x.S = root * x.P.col(0);
 
+  Turned turned(12, num_y);  // ∂A/∂a B
+  for (Eigen::Index q = 0; q < num_y; ++q) turned.col(q) = turn(field_, x.a, B_.col(q));
   const Factors of_L = make_factors(x.A), of_Y = make_factors(x.P);
-  Eigen::Matrix<double, 12, R> turned;  // ∂A/∂a B
-  if constexpr (R < 12) {
-    for (int q = 0; q < R; ++q) turned.col(q) = turn(field_, x.a, field_.B.col(q));
+  Eigen::Matrix<double, Eigen::Dynamic, 12, 0, 12, 12> to_V = turned.transpose();
+  x.V.noalias() = L_t_;
+  add_product(y, rows, num_y, to_V.data(), 12, x.V.data());
+  const Eigen::Matrix<double, 12, 3> from_L = of_L.transpose();
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 15, 3> from_y(num_y + num_C, 3);
+  from_y.topRows(num_y).noalias() = (of_Y * turned).transpose();
+  from_y.bottomRows(num_C) = E_C_;
+  x.C.noalias() = gamma1_rest_t_;
+  add_product(L_t_.data(), rows, 12, from_L.data(), 3, x.C.data());
+  add_product(y, rows, num_y + num_C, from_y.data(), 3, x.C.data());
+
+  Vector6d J_rest = Vector6d::Zero();
+  multiply_transposed(J1_rest_t_.data(), rows, J1_rest_t_.cols(), x.eta.data(), J_rest.data());
+  Vector6d J6 = J0_rest_ + pack_inertia(x.A * (x.A + 2 * l_34).transpose()) + J_rest;
+  J6.noalias() += E_J_.transpose() * sums.head(num_J);
+
+  // M_ηη is the constant remainder and a square.
+  add_square(M_rest_.data(), x.V.data(), rows, x.M_modal.data());
+  for (Eigen::Index j = 0; j < n; ++j) {
+    double *column = x.M.data() + (6 + j) * (6 + n), *row = x.M.data() + 6 + j;
+    for (int i = 0; i < 3; ++i) column[i] = row[i * (6 + n)] = root * x.V(j, i);
+    for (int i = 0; i < 3; ++i) column[3 + i] = row[(3 + i) * (6 + n)] = x.C(j, i);
+    const double* from = x.M_modal.data() + j * rows;
+    for (Eigen::Index k = j; k < n; ++k) column[6 + k] = row[(6 + k) * (6 + n)] = from[k];
   }
-  const Matrix3d E = x.A * (x.A + 2 * l_34).transpose();
-  Vector6d J6 = J0_rest_ + pack_inertia(E);
-  for (int j = 0; j < n; ++j) {
-    Vector12d Y = Vector12d::Zero();
-    if constexpr (R == 12) {
-      Y = turn(field_, x.a, y_of(j));
-    } else {
-      for (int q = 0; q < R; ++q) Y += turned.col(q) * y_of(j)[q];
-    }
-    x.V.col(j) = Y + L.col(j);
-    Vector3d C_j = gamma1_rest_.col(j) + C_of(j);
-    for (int q = 0; q < 12; ++q) C_j += of_L.col(q) * L(q, j) + of_Y.col(q) * Y[q];
-    x.M.col(6 + j).template head<3>() = root * x.V.col(j).template head<3>();
-    x.M.col(6 + j).template segment<3>(3) = C_j;
-    J6 += (J1_rest_.col(j) + J_of(j)) * eta[j];
-  }
-  for (int j = 0; j < n; ++j) {  // M_ηη is the constant remainder and a square
-    for (int k = 0; k <= j; ++k) {
-      x.M(6 + j, 6 + k) = x.M(6 + k, 6 + j) = M_rest_(k, j) + x.V.col(j).dot(x.V.col(k));
-    }
-  }
-  x.M.block(6, 0, n, 6) = x.M.block(0, 6, 6, n).transpose();
-  x.M.template block<3, 3>(0, 3) = -skew(x.S);
-  x.M.template block<3, 3>(3, 0) = skew(x.S);
-  x.M.template block<3, 3>(3, 3) = unpack_tensor(J6);
+  x.M.block<3, 3>(0, 3) = -skew(x.S);
+  x.M.block<3, 3>(3, 0) = skew(x.S);
+  x.M.block<3, 3>(3, 3) = unpack_tensor(J6);
 }
 
-template <int R>
 void Body::calc_flexible_bias(const Vector3d& w, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
                               BodyInertia& x) const {
-  using VectorR = Eigen::Matrix<double, R, 1>;
-  const int n = n_, stride = 9 + R;
-  const auto& L = field_.L;
-  x.A2.noalias() = A2_ * eta_dot;
-  const auto J_of = [&](int j) { return Eigen::Map<const Vector6d>(x.by_eta.data() + stride * j); };
-  const auto y_of = [&](int j) { return Eigen::Map<const VectorR>(x.by_eta.data() + stride * j + 9); };
-  Vector12d l_dot = Vector12d::Zero();
-  VectorR a_dot = VectorR::Zero();
-  for (int j = 0, pair = 0; j < n; ++j) {
-    l_dot += L.col(j) * eta_dot[j];
-    a_dot += y_of(j) * eta_dot[j];
-    for (int k = 0; k <= j; ++k) x.pairs[pair++] = eta_dot[j] * eta_dot[k];
+  const Eigen::Index n = n_, rows = pad(n), num_J = E_J_.rows(), num_y = B_.cols(), num_A2 = E_A2_.rows();
+  x.eta.head(n) = eta_dot;
+  multiply(A2_.data(), A2_.rows(), n, eta_dot.data(), x.A2.data());
+  Sums sums(num_J + num_y);
+  multiply_transposed(x.by_eta.data(), rows, num_J + num_y, x.eta.data(), sums.data());
+  double* pair = x.pairs.data();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index k = 0; k <= j; ++k) *pair++ = eta_dot[j] * eta_dot[k];
   }
-  x.by_pair.noalias() = by_pair_ * x.pairs;
-  const Eigen::Map<const Amplitudes> l_dot_34(l_dot.data());
-  const Amplitudes a_dot_34 = expand<R>(field_.B, a_dot),
-                   a_ddot_34 = expand<R>(field_.B, x.by_pair.template tail<R>());  // at η̈ = 0
+  multiply_transposed(by_pair_.data(), by_pair_.rows(), by_pair_.cols(), x.pairs.data(), x.by_pair.data());
+  Vector12d l_dot, a_dot, a_ddot;
+  multiply(field_.L.data(), 12, n, eta_dot.data(), l_dot.data());
+  a_dot.noalias() = B_ * sums.tail(num_y);
+  a_ddot.noalias() = B_ * x.by_pair.tail(num_y);  // at η̈ = 0
+  const Eigen::Map<const Amplitudes> l_dot_34(l_dot.data()), a_dot_34(a_dot.data()), a_ddot_34(a_ddot.data());
   const Amplitudes A_dot = a_dot_34 - field_.calc_correction(x.a, a_dot_34);
   const Amplitudes A_ddot =
       a_ddot_34 - field_.calc_correction(x.a, a_ddot_34) - field_.calc_correction(a_dot_34, a_dot_34);
@@ -142,26 +127,39 @@ void Body::calc_flexible_bias(const Vector3d& w, const ConstVectorRef& eta, cons
   ww_tilde.diagonal().array() -= w.squaredNorm();
   const Matrix3d w2_tilde = skew(Vector3d(2 * w));
   const Amplitudes U_Y = ww_tilde * x.P + w2_tilde * P_dot + A_ddot;
-  const Amplitudes U_l = ww_tilde * (x.P - x.A) + w2_tilde * l_dot_34;
-  const Eigen::Map<const Vector12d> of_V(U_Y.data()), of_L(U_l.data());
-  const Vector6d ww(w.x() * w.x(), w.y() * w.y(), w.z() * w.z(), 2 * w.x() * w.y(), 2 * w.x() * w.z(),
-                    2 * w.y() * w.z());
-  Vector6d J6_dot = pack_inertia(2 * (A_dot * x.P.transpose() + l_dot_34 * x.A.transpose()));
-  Vector3d C_eta_dot = Vector3d::Zero();
-  for (int j = 0; j < n; ++j) {
-    const Vector6d dJ = J1_rest_.col(j) + 2 * J_of(j);
-    x.h[6 + j] = of_V.dot(x.V.col(j)) - of_L.dot(L.col(j)) + w.dot(x.A2.template segment<3>(3 * j)) - 0.5 * ww.dot(dJ);
-    C_eta_dot += x.M.col(6 + j).template segment<3>(3) * eta_dot[j];
-    J6_dot += dJ * eta_dot[j];
-  }
-  add_modal(K_, K_is_diagonal_, eta, x.h.data() + 6);
-  add_modal(D_, D_is_diagonal_, eta_dot, x.h.data() + 6);
+  const Amplitudes U_l = -ww_tilde * (x.P - x.A) - w2_tilde * l_dot_34;
+  const Vector6d half_ww(0.5 * w.x() * w.x(), 0.5 * w.y() * w.y(), 0.5 * w.z() * w.z(), w.x() * w.y(), w.x() * w.z(),
+                         w.y() * w.z());
+  const Vector6d minus_half = -half_ww;
+  const Vector3d C_eta_dot = [&] {
+    Vector3d sum;
+    multiply_transposed(x.C.data(), rows, 3, x.eta.data(), sum.data());
+    return sum;
+  }();
+  Sums of_J(num_J), of_A2(num_A2);
+  of_J.noalias() = E_J_ * (-2 * half_ww);
+  of_A2.noalias() = E_A2_ * w;
+  double* h = x.h_modal.data();
+  x.h_modal.setZero();
+  add_product(x.V.data(), rows, 12, U_Y.data(), 1, h);
+  add_product(L_t_.data(), rows, 12, U_l.data(), 1, h);
+  add_product(J1_rest_t_.data(), rows, J1_rest_t_.cols(), minus_half.data(), 1, h);
+  add_product(x.by_eta.data(), rows, num_J, of_J.data(), 1, h);
+  add_product(x.A2.data(), rows, num_A2, of_A2.data(), 1, h);
+  x.h.tail(n) = x.h_modal.head(n);
+  add_modal(K_, K_diagonal_, eta, x.h.data() + 6);
+  add_modal(D_, D_diagonal_, eta_dot, x.h.data() + 6);
 
-  const Matrix3d J = x.M.template block<3, 3>(3, 3), J_dot = unpack_tensor(J6_dot);
-  x.h.template head<3>() = w.cross(w.cross(x.S)) + 2 * root * w.cross(Vector3d(P_dot.col(0))) + root * A_ddot.col(0);
-  Vector3d moment = J_dot * w + x.by_pair.template head<3>() + w.cross(Vector3d(J * w + C_eta_dot));
+  Vector6d J_rest = Vector6d::Zero();
+  multiply_transposed(J1_rest_t_.data(), rows, J1_rest_t_.cols(), x.eta.data(), J_rest.data());
+  Vector6d J6_dot = pack_inertia(2 * (A_dot * x.P.transpose() + l_dot_34 * x.A.transpose())) + J_rest;
+  J6_dot.noalias() += E_J_.transpose() * (2 * sums.head(num_J));
+  const Matrix3d J = x.M.block<3, 3>(3, 3), J_dot = unpack_tensor(J6_dot);
+  x.h.head<3>() = w.cross(w.cross(x.S)) + 2 * root * w.cross(Vector3d(P_dot.col(0))) + root * A_ddot.col(0);
+  Vector3d moment = J_dot * w + w.cross(Vector3d(J * w + C_eta_dot));
+  moment.noalias() += E_pair_.transpose() * x.by_pair.head(E_pair_.rows());
   for (int b = 0; b < 4; ++b) moment += Vector3d(x.P.col(b)).cross(Vector3d(A_ddot.col(b)));
-  x.h.template segment<3>(3) = moment;
+  x.h.segment<3>(3) = moment;
 }
 
 void Body::calc_rigid_bias(const Vector3d& w, double* h) const {
@@ -171,34 +169,13 @@ void Body::calc_rigid_bias(const Vector3d& w, double* h) const {
 }
 
 void Body::calc_mass(const ConstVectorRef& eta, BodyInertia& x) const {
-  switch (n_ == 0 ? 0 : field_.rank()) {
-    case 0:
-      return;
-    case 4:
-      return calc_flexible_mass<4>(eta, x);
-    case 8:
-      return calc_flexible_mass<8>(eta, x);
-    case 12:
-      return calc_flexible_mass<12>(eta, x);
-    default:
-      BOUGH_DEMAND(false);
-  }
+  if (n_ > 0) calc_flexible_mass(eta, x);
 }
 
 void Body::calc_bias(const Vector3d& w, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
                      BodyInertia& x) const {
-  switch (n_ == 0 ? 0 : field_.rank()) {
-    case 0:
-      return calc_rigid_bias(w, x.h.data());
-    case 4:
-      return calc_flexible_bias<4>(w, eta, eta_dot, x);
-    case 8:
-      return calc_flexible_bias<8>(w, eta, eta_dot, x);
-    case 12:
-      return calc_flexible_bias<12>(w, eta, eta_dot, x);
-    default:
-      BOUGH_DEMAND(false);
-  }
+  if (n_ == 0) return calc_rigid_bias(w, x.h.data());
+  calc_flexible_bias(w, eta, eta_dot, x);
 }
 
 }  // namespace bough::solver

@@ -1,5 +1,7 @@
 #include "solver/tree/data.hpp"
 
+#include "solver/bodies/kernels.hpp"
+
 namespace bough::solver {
 
 namespace {
@@ -57,9 +59,7 @@ void set_modes(const Tree& tree, const std::vector<HingeMode>& mode, TreeData& d
     const int n = tb.num_modes(), nf = d.num_free + n;
     if (n == 0) continue;
     d.P = MatrixXd::Zero(6 + n, 6 + n);
-    d.W = MatrixXd::Zero(6 + n, nf);
-    d.D = MatrixXd::Identity(nf, nf);
-    d.G = MatrixXd::Zero(nf, 6);
+    d.D = MatrixXd::Identity(pad(nf + 6), nf);
     d.modal_size = VectorXd::Zero(n);
   }
 }

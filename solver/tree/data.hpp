@@ -33,8 +33,8 @@ struct BodyData {
   Matrix6d G6 = Matrix6d::Zero();  ///< rigid: D⁻¹ Wᵀ, nh x 6
   Matrix6d D6 = Matrix6d::Zero();  ///< rigid: 1/D (nh = 1) or its factor L
   MatrixXd P;                      ///< flexible: 𝒫, (6+n)²
-  MatrixXd W, D, G;                ///< flexible: 𝒫ℋ (6+n)x(nh+n), L of ℋᵀ𝒫ℋ, L⁻¹W_topᵀ (nh+n)x6
-  Matrix6Xd PX;                    ///< 6 x (6+m), scratch
+  MatrixXd D;    ///< flexible: L of ℋᵀ𝒫ℋ (its lower triangle), Gᵀ = (L⁻¹W_topᵀ)ᵀ below it, padding
+  Matrix6Xd PX;  ///< 6 x (6+m), scratch
   // What the terms of a pivot may add up to
   double mass_carried = 0;   ///< of the body and all that hangs on it
   double second_moment = 0;  ///< bound of ∫ρ|p|² of them about Bo

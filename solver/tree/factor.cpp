@@ -2,10 +2,11 @@
 // as extra mobilizer coordinates: Jain & Rodriguez, JGCD 15(6) 1992. With ℋ = [H -Jc; 0 1] over [u_h; η̇], H the free
 // columns:
 //   W = 𝒫ℋ, D = ℋᵀW, G = D⁻¹ W_topᵀ, 𝒫⁺ = 𝒫_66 - W_top G;   parent: 𝒫 += Xᵀ𝒫⁺X.
-// With D = LLᵀ a flexible body stops halfway: G = L⁻¹W_topᵀ, 𝒫⁺ = 𝒫_66 - GᵀG.
+// With D = LLᵀ a flexible body stops halfway: G = L⁻¹W_topᵀ, 𝒫⁺ = 𝒫_66 - GᵀG; [D; W_top] becomes [L; Gᵀ] in place.
 #include <cmath>
 #include <sstream>
 
+#include "solver/bodies/kernels.hpp"
 #include "solver/tree/data.hpp"
 
 namespace bough::solver {
@@ -89,19 +90,32 @@ void factor_rigid(const TreeBody& tb, BodyData& d, const double* added, double t
   }
 }
 
+// [D; W_top]; of D the lower triangle counts.
 void set_D(const TreeBody& tb, const TreeData& data, BodyData& d) {
-  const int n = tb.num_modes();
-  d.D.bottomRows(n) = d.W.bottomRows(n);
-  for (int i = 0; i < d.num_free; ++i) d.D.row(i).noalias() = d.H.col(i).transpose() * d.W.topRows<6>();
-  if (tb.on_child.moves) d.D.bottomRows(n).noalias() -= d.Jc.transpose() * d.W.topRows<6>();
-  for (int i = 0; i < d.num_free; ++i) d.D(i, i) += data.added[tb.u_offset + d.free[i]];
-  if (data.added_K != 0) d.D.bottomRightCorner(n, n) += data.added_K * tb.body.K() + data.added_D * tb.body.D();
+  const Eigen::Index n = tb.num_modes(), nh = d.num_free;
+  auto W = d.D.middleRows<6>(nh + n);
+  auto modal = d.D.block(nh, nh, n, n);
+  W.rightCols(n) = d.P.topRightCorner(6, n);
+  modal = d.P.bottomRightCorner(n, n);
+  for (Eigen::Index i = 0; i < nh; ++i) {
+    W.col(i).noalias() = d.P.topLeftCorner<6, 6>() * d.H.col(i);
+    d.D.col(i).segment(nh, n).noalias() = d.P.bottomLeftCorner(n, 6) * d.H.col(i);
+    for (Eigen::Index k = i; k < nh; ++k) d.D(k, i) = d.H.col(k).dot(W.col(i));
+  }
+  if (tb.on_child.moves) {
+    modal.noalias() -= d.P.bottomLeftCorner(n, 6) * d.Jc;
+    W.rightCols(n).noalias() -= d.P.topLeftCorner<6, 6>() * d.Jc;
+    modal.noalias() -= d.Jc.transpose() * W.rightCols(n);
+    for (Eigen::Index i = 0; i < nh; ++i) d.D.col(i).segment(nh, n).noalias() -= d.Jc.transpose() * W.col(i);
+  }
+  for (Eigen::Index i = 0; i < nh; ++i) d.D(i, i) += data.added[tb.u_offset + d.free[i]];
+  if (data.added_K != 0) modal += data.added_K * tb.body.K() + data.added_D * tb.body.D();
 }
 
 // The first pivot of the flexible body's D that is too small, or -1; after it D holds no factor any more.
 int find_bad_pivot(const TreeBody& tb, const TreeData& data, BodyData& d) {
   set_D(tb, data, d);
-  const auto size = d.D.rows();
+  const auto size = d.D.cols();
   for (Eigen::Index i = 0; i < size; ++i) {
     const double own = i < d.num_free ? calc_size(d, d.H.col(i)) : d.modal_size[i - d.num_free];
     const double pivot = d.D(i, i) - d.D.row(i).head(i).squaredNorm();
@@ -114,26 +128,27 @@ int find_bad_pivot(const TreeBody& tb, const TreeData& data, BodyData& d) {
 }
 
 void factor_flexible(const TreeBody& tb, const TreeData& data, BodyData& d, Matrix6d& passed) {
-  const int n = tb.num_modes(), nh = d.num_free;
-  d.W.rightCols(n) = d.P.rightCols(n);
-  for (int i = 0; i < nh; ++i) d.W.col(i).noalias() = d.P.leftCols<6>() * d.H.col(i);
+  const Eigen::Index n = tb.num_modes(), nh = d.num_free;
   if (tb.on_child.moves) {
-    d.W.rightCols(n).noalias() -= d.P.leftCols<6>() * d.Jc;
-    for (int j = 0; j < n; ++j) {
+    for (Eigen::Index j = 0; j < n; ++j) {
       const double root = std::sqrt(d.modal_size[j]) + std::sqrt(calc_size(d, d.Jc.col(j)));
       d.modal_size[j] = root * root;
     }
   }
   set_D(tb, data, d);
-  const Eigen::LLT<Eigen::Ref<MatrixXd>> factor(d.D);  // in place
-  bool good = factor.info() == Eigen::Success;
-  for (int i = 0; i < nh && good; ++i) good = d.D(i, i) * d.D(i, i) > kLeastPivot * calc_size(d, d.H.col(i));
-  for (int j = 0; j < n && good; ++j) good = d.D(nh + j, nh + j) * d.D(nh + j, nh + j) > kLeastPivot * d.modal_size[j];
+  factor_trapezoid(d.D.data(), d.D.rows(), nh + n);
+  bool good = true;
+  for (Eigen::Index i = 0; i < nh && good; ++i) good = d.D(i, i) * d.D(i, i) > kLeastPivot * calc_size(d, d.H.col(i));
+  for (Eigen::Index j = 0; j < n && good; ++j)
+    good = d.D(nh + j, nh + j) * d.D(nh + j, nh + j) > kLeastPivot * d.modal_size[j];
   if (!good) fail_indefinite(tb, d, std::max(0, find_bad_pivot(tb, data, d)), data.t);
-  d.G = d.W.topRows<6>().transpose();
-  d.D.triangularView<Eigen::Lower>().solveInPlace(d.G);
   passed = d.P.topLeftCorner<6, 6>();
-  passed.noalias() -= d.G.transpose() * d.G;
+  const double* column = d.D.data() + nh + n;
+  for (Eigen::Index j = 0; j < nh + n; ++j, column += d.D.rows()) {
+    for (int c = 0; c < 6; ++c) {
+      for (int r = 0; r < 6; ++r) passed(r, c) -= column[r] * column[c];
+    }
+  }
 }
 
 // S(r)ᵀR P Rᵀ S(r), R = R_PB, of a symmetric P.

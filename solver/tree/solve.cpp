@@ -1,6 +1,7 @@
 // Forces to accelerations over the factored tree (see factor.cpp). Tip to base
 //   β += 𝒫b,   e = τ - ℋᵀβ,   β⁺ = β_6 + W_top D⁻¹e;   parent: β += Xᵀβ⁺
 // and base to tip u̇ = D⁻¹e - G X [A'_P; η̈_P]. A flexible body stops halfway at z = L⁻¹e.
+#include "solver/bodies/kernels.hpp"
 #include "solver/tree/data.hpp"
 
 namespace bough::solver {
@@ -51,9 +52,9 @@ void solve_flexible(const TreeBody& tb, const BodyData& d, const double* tau, co
   z.tail(n) = -beta.tail(n);
   for (int i = 0; i < d.num_free; ++i) z[i] = tau[d.free[i]] - d.H.col(i).dot(beta.head<6>());
   if (tb.on_child.moves) z.tail(n).noalias() += d.Jc.transpose() * beta.head<6>();
-  d.D.triangularView<Eigen::Lower>().solveInPlace(z);
+  solve_lower(d.D.data(), d.D.rows(), z.size(), z.data());
   passed = beta.head<6>();
-  passed.noalias() += d.G.transpose() * z;
+  passed.noalias() += d.D.middleRows<6>(z.size()) * z;
 }
 
 }  // namespace
@@ -111,8 +112,8 @@ void solve_to_tip(const Tree& tree, int b, const TreeData& data, Sweep& s) {
     }
   } else {
     auto z = s.z.segment(tb.u_offset, nh + n);
-    z.noalias() -= d.G * A;
-    d.D.transpose().triangularView<Eigen::Upper>().solveInPlace(z);
+    z.noalias() -= d.D.middleRows<6>(z.size()).transpose() * A;
+    solve_lower_transposed(d.D.data(), d.D.rows(), z.size(), z.data());
     A += s.b.col(b);
     for (int i = 0; i < nh; ++i) {
       A += d.H.col(i) * z[i];

@@ -1,0 +1,32 @@
+#pragma once
+/// \file The few dense loops that an evaluation of flexible bodies lives in, for matrices of 5 to 100 rows: there a
+/// library's packing and blocking cost more than the product (ADR 0017). Columns are contiguous, `ld` apart; where it
+/// says padded, rows are a multiple of four, with zeros (or anything, where said) below the last. Compiled for
+/// processors with AVX2 and without; which is used is found at the start of the program. No allocation.
+#include <Eigen/Core>
+
+namespace bough::solver {
+
+inline Eigen::Index pad(Eigen::Index n) { return (n + 3) / 4 * 4; }
+
+/// y = A x; A: rows (padded) x cols.
+void multiply(const double* A, Eigen::Index rows, Eigen::Index cols, const double* x, double* y);
+
+/// y = Aᵀ x; A: rows (padded) x cols, x: rows.
+void multiply_transposed(const double* A, Eigen::Index rows, Eigen::Index cols, const double* x, double* y);
+
+/// C += A B; A: rows (padded) x r, B: r x m, C: rows x m.
+void add_product(const double* A, Eigen::Index rows, Eigen::Index r, const double* B, Eigen::Index m, double* C);
+
+/// Lower triangle of C = A + V Vᵀ and some of what is above; A, C: rows x rows, V: rows x 12, all padded.
+void add_square(const double* A, const double* V, Eigen::Index rows, double* C);
+
+/// Of [D; Wᵀ], D n x n (its lower triangle), Wᵀ below it, `rows` (padded, with anything) in all: L of D = LLᵀ and below
+/// it (L⁻¹W)ᵀ, in place. A pivot that is not positive leaves NaN there and in what follows.
+void factor_trapezoid(double* A, Eigen::Index rows, Eigen::Index n);
+
+/// z = L⁻¹z and z = L⁻ᵀz; L: n x n, its lower triangle is read.
+void solve_lower(const double* L, Eigen::Index ld, Eigen::Index n, double* z);
+void solve_lower_transposed(const double* L, Eigen::Index ld, Eigen::Index n, double* z);
+
+}  // namespace bough::solver
