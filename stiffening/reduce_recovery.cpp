@@ -1,6 +1,10 @@
 /// Forces and stresses of the elements that the body file names, per mode and per unit load.
+#include <cctype>
 #include <charconv>
+#include <functional>
 #include <map>
+#include <optional>
+#include <string_view>
 #include <unordered_set>
 
 #include "fe/cards/element_properties.hpp"
@@ -134,7 +138,8 @@ void Reduction::set_recovery(const fe::Model& model, const MatrixXd& U, const Ma
       end_loads[e] = fe::calc_beam_end_loads(model, deck_, loads_[e].load_set, said);
     }
   MatrixXd all(U.rows(), n + F.cols());
-  all << Phi_, left;
+  all.leftCols(n) = Phi_;
+  all.rightCols(F.cols()) = left;
   const auto [begin, end] = fe::calc_element_range(model);
   std::map<std::string, int> count;
   for (const auto& [key, members] : groups) {

@@ -199,11 +199,14 @@ void add_modes(CLI::App& app, Action& action) {
       ->check(make_positive());
   verb->add_option("--min-hz", o->min_hz, "Lowest frequency wanted (with --buckling: load factor)");
   verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted (with --buckling: load factor)");
-  verb->add_flag("--buckling", o->buckling, "Load factors of the static subcase instead of normal modes");
+  auto* buckling =
+      verb->add_flag("--buckling", o->buckling, "Load factors of the static subcase instead of normal modes");
   verb->add_flag("--no-check", o->no_check, "Leave out the count of eigenvalues that proves that no mode was missed");
   verb->add_flag("--ese,--energies", o->energies,
-                 "Strain and kinetic energy of elements and properties in each mode: table, HDF5, VTU");
+                 "Strain and kinetic energy of elements and properties in each mode: table, HDF5, VTU")
+      ->excludes(buckling);
   verb->add_option("--meffmass", o->about_grid, "Effective masses in units of mass, about this grid")
+      ->excludes(buckling)
       ->check(make_positive());
   verb->add_option("--compare", o->compare, "Modes file or flexible body: the modes side by side with it, with MAC");
   verb->add_option("--vtu", o->vtu, "Write the mode shapes to this file for ParaView");
@@ -211,7 +214,7 @@ void add_modes(CLI::App& app, Action& action) {
   add_common_options(*verb, *o, kOutput | kJson, "Write the modes to this HDF5 file");
   verb->footer(
       "Example:\n  bough modes boom.bdf --number 6 -o boom-modes.h5 --vtu boom.vtu\n"
-      "  bough modes column.bdf --buckling\n"
+      "  bough modes column.bdf --buckling\n  bough modes boom.bdf --ese --compare boom.h5\n"
       "  mpirun -n 2 bough modes boom.bdf");
   verb->callback([&action, o] { action = [o] { return blame(o->deck, [&] { return run_modes(*o); }); }; });
 }

@@ -288,6 +288,7 @@ void add_reduce(CLI::App& app, Action& action) {
   add_common_options(*verb, *o, kOutput | kJson, "Flexible-body HDF5 file (default: the body file's, else NAME.h5)");
   verb->footer(
       "Example:\n  bough reduce boom.toml\n  bough reduce boom.bdf --modes 3 --interface 41 -o boom.h5\n"
+      "  bough reduce boom.bdf --modes 3 --interface 41 --recover 1,20-25 -o boom.h5\n"
       "  bough reduce boom.bdf --matrices boom.op4 --modes 3\n  mpirun -n 2 bough reduce boom.toml");
   verb->callback([&action, o] {
     if (o->file.empty() && o->matrices.empty()) throw CLI::RequiredError("file");

@@ -88,14 +88,6 @@ class Element {
   /// What static solutions print of an element: its internal forces, or those of a spring, which no K_G asks for.
   virtual std::vector<std::string> printed_force_names() const { return internal_force_names(); }
   virtual VectorXd calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const;
-  /// Where and in which components the element gives stresses (fe/sections/stress.hpp); empty: none.
-  virtual std::vector<StressPoint> stress_points() const;
-  /// Those stresses, a column per column of `forces` (internal forces, s x m) and linear in it: all components of the
-  /// first point, then those of the next.
-  virtual MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const;
-  /// What temperatures T add to the stresses beside those of the internal forces, which hold what add_thermal() gives:
-  /// between the plies of a laminate. Empty: nothing.
-  virtual VectorXd calc_initial_stresses(const ElementTemperature& T) const;
   /// The beam that takes loads along its length (PLOAD1) and has a length between its offset ends.
   virtual const Beam* as_beam() const { return nullptr; }
   /// K_G += scale K_G(force), N x N, symmetric and linear in force.
@@ -114,6 +106,15 @@ class Element {
   /// Returns the strain energy at u = 0.
   virtual double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
                              Eigen::Ref<VectorXd> initial) const;
+
+  /// Where and in which components the element gives stresses (fe/sections/stress.hpp); empty: none.
+  virtual std::vector<StressPoint> stress_points() const;
+  /// Those stresses, a column per column of `forces` (internal forces, s x m) and linear in it: all components of the
+  /// first point, then those of the next.
+  virtual MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const;
+  /// What temperatures T add to the stresses beside those of the internal forces, which hold what add_thermal() gives:
+  /// between the plies of a laminate. Empty: nothing.
+  virtual VectorXd calc_initial_stresses(const ElementTemperature& T) const;
 
  private:
   int id_;

@@ -1,5 +1,6 @@
 #include "fe/statics/element_results.hpp"
 
+#include <algorithm>
 #include <map>
 #include <set>
 

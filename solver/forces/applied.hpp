@@ -6,7 +6,6 @@ namespace bough::solver {
 
 struct AppliedForce {
   std::string name;
-  std::string locator;  ///< of a pattern: its name in the body's file
   records::ForceKind kind = records::ForceKind::Force;
   records::VectorFrame frame = records::VectorFrame::Body;
   int body = 0, node = 0;

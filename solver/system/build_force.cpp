@@ -23,7 +23,6 @@ bool set_locator(const records::ForceRecord& r, const Body& body, const records:
       return force.node >= 0;
     }
     const int n = body.num_modes();
-    force.locator = locator.name;
     force.pattern = flex->external_load.col(static_cast<Eigen::Index>(e)).head(n);
     force.pattern_K2 = MatrixXd::Zero(n, n);
     if (body.stiffened()) force.pattern_K2 = flex->kg_external[e].topLeftCorner(n, n);

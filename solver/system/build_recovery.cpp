@@ -63,7 +63,7 @@ void build_recoveries(const records::SystemSpec& spec, const System& system, con
                           "reduce the body with that element in recover");
       recovery->record(id);
     }
-    const auto nodes = recovery->connect(system, body);
+    const auto nodes = recovery->connect(system, body, spec.forces);
     auto others = list_unknown_loads(spec, impl, b, r.name);
     for (const int id : nodes) others.push_back("what acts at node " + std::to_string(id));
     if (!others.empty())

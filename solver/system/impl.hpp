@@ -17,7 +17,6 @@ struct System::Impl {
   std::vector<AppliedForce> forces;
   std::vector<AppliedForce> driven;  ///< whose value is a signal: see signals
   Loops loops;
-  std::vector<std::unique_ptr<Recovery>> recoveries;  ///< by body; nullptr: nothing is recovered of it
   VectorXd initial_q, initial_u;                      ///< with closed loops; empty: as the records say
   std::vector<Closing> initial_closings;              ///< likewise
   std::vector<std::unique_ptr<const ForceElement>> elements;
@@ -29,6 +28,7 @@ struct System::Impl {
   double start = 0;
   bool is_lagged = false;   ///< bodies are stiffened by blocks of signals, not by themselves
   std::vector<bool> sound;  ///< by body: its record and its hinge have no errors
+  std::vector<std::unique_ptr<Recovery>> recoveries;  ///< by body; nullptr: nothing is recovered of it
 };
 
 class SystemData {

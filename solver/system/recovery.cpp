@@ -46,7 +46,8 @@ void Recovery::record(int id) {
     if (element.id == id) element.is_recorded = true;
 }
 
-std::vector<int> Recovery::connect(const System& system, const records::FlexBody& flex) {
+std::vector<int> Recovery::connect(const System& system, const records::FlexBody& flex,
+                                   const std::vector<records::ForceRecord>& forces) {
   const auto& nodes = system.impl().tree[body_].body.nodes();
   std::set<int> unknown;
   for (const auto& source : list_node_sources(system, body_)) {
@@ -62,9 +63,10 @@ std::vector<int> Recovery::connect(const System& system, const records::FlexBody
   }
   for (const auto& force : system.impl().forces) {
     if (force.body != body_ || force.pattern.size() == 0) continue;
-    for (size_t e = 0; e < flex.locators.size(); ++e)
-      if (flex.locators[e].name == force.locator)
-        patterns_.push_back({&force, external_.col(static_cast<Eigen::Index>(e))});
+    for (const auto& record : forces)
+      for (size_t e = 0; record.name == force.name && e < flex.locators.size(); ++e)
+        if (flex.locators[e].name == record.locator)
+          patterns_.push_back({&force, external_.col(static_cast<Eigen::Index>(e))});
   }
   return {unknown.begin(), unknown.end()};
 }

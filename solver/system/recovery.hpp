@@ -32,8 +32,9 @@ class Recovery {
   /// nullptr when absent.
   const Element* find(int id) const;
   void record(int id);  ///< among the results
-  /// What loads the body at its locators; names of nodes whose loads the file has no answer to.
-  std::vector<int> connect(const System& system, const records::FlexBody& flex);
+  /// What loads the body at its locators; ids of nodes whose loads the file has no answer to.
+  std::vector<int> connect(const System& system, const records::FlexBody& flex,
+                           const std::vector<records::ForceRecord>& forces);
 
   /// Rows first ... first + count. After calc_accelerations. No allocation.
   void calc(const System& system, const SystemData& data, int first, int count, double* out) const;

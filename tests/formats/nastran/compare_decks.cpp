@@ -51,10 +51,13 @@ class Content {
   Content& operator()(const CoordSystem& r) {
     return (*this)(r.id)(static_cast<int>(r.kind))(r.by_grids)(r.grids)(r.rid)(r.a)(r.b)(r.c);
   }
-  Content& operator()(const Mat1& r) { return (*this)(r.id)(r.E)(r.G)(r.nu)(r.rho)(r.alpha)(r.tref)(r.ge); }
+  Content& operator()(const Mat1& r) { return (*this)(r.id)(r.E)(r.G)(r.nu)(r.rho)(r.alpha)(r.tref)(r.ge)(r.st)(r.sc)(r.ss); }
   Content& operator()(const Mat2& r) { return (*this)(r.id)(r.G)(r.rho)(r.alpha)(r.tref)(r.ge); }
+  Content& operator()(const PlyStrength& r) {
+    return (*this)(r.Xt)(r.Xc)(r.Yt)(r.Yc)(r.S)(r.F12)(r.is_strain);
+  }
   Content& operator()(const Mat8& r) {
-    return (*this)(r.id)(r.E1)(r.E2)(r.nu12)(r.G12)(r.G1z)(r.G2z)(r.rho)(r.a1)(r.a2)(r.tref)(r.ge);
+    return (*this)(r.id)(r.E1)(r.E2)(r.nu12)(r.G12)(r.G1z)(r.G2z)(r.rho)(r.a1)(r.a2)(r.tref)(r.ge)(r.strength);
   }
   Content& operator()(const Mat9& r) { return (*this)(r.id)(r.G)(r.rho)(r.alpha)(r.tref)(r.ge); }
   Content& operator()(const GridTemperature& r) { return (*this)(r.sid)(r.g)(r.t); }
@@ -82,11 +85,11 @@ class Content {
   Content& operator()(const Pbush& r) { return (*this)(r.id)(r.k)(r.b)(r.ge)(r.mass); }
   Content& operator()(const Pmass& r) { return (*this)(r.id)(r.m); }
   Content& operator()(const Pshell& r) {
-    return (*this)(r.id)(r.mid1)(r.mid2)(r.mid3)(r.mid4)(r.t)(r.bending_ratio)(r.shear_ratio)(r.nsm);
+    return (*this)(r.id)(r.mid1)(r.mid2)(r.mid3)(r.mid4)(r.t)(r.bending_ratio)(r.shear_ratio)(r.nsm)(r.z1)(r.z2);
   }
   Content& operator()(const Ply& r) { return (*this)(r.mid)(r.t)(r.theta_deg); }
   Content& operator()(const Pcomp& r) {
-    return (*this)(r.id)(r.z0)(r.nsm)(r.tref)(r.ge)(r.plies)(r.bending)(r.membrane)(static_cast<int>(r.layup));
+    return (*this)(r.id)(r.z0)(r.nsm)(r.tref)(r.ge)(r.plies)(r.bending)(r.membrane)(static_cast<int>(r.layup))(r.sb)(r.failure);
   }
   Content& operator()(const Pshear& r) { return (*this)(r.id)(r.mid)(r.t)(r.nsm)(r.f1)(r.f2); }
   Content& operator()(const ShearPanel& r) { return (*this)(r.id)(r.pid)(r.grids); }
