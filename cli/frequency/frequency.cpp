@@ -141,11 +141,11 @@ int run_deck_response(const DeckResponseOptions& options) {
   response.source = calc_sources(deck.files);
   console.print(diagnostics);
   console.print(failures.get_items(diagnostics));
-  if (console.is_root()) {
+  do_once([&] {
     if (!options.output.empty()) hdf5::write_response(response, options.output);
     if (!options.csv.empty()) write_csv(response, options.csv);
     if (!options.punch.empty()) write_text_file(options.punch, exports::make_punch_text(response));
-  }
+  });
   if (options.json) {
     nlohmann::json json{{"subcases", nlohmann::json::array()}};
     for (const auto& subcase : response.subcases)

@@ -172,12 +172,12 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
   result.subtitle = subcase.subtitle;
   result.label = subcase.label;
   result.num_rigid = response.num_rigid;
-  result.mode_hz.resize(response.lambda.size());
-  for (Eigen::Index j = 0; j < response.lambda.size(); ++j) {
+  result.mode_hz.resize(response.num_dynamic());
+  for (Eigen::Index j = 0; j < response.num_dynamic(); ++j) {
     result.mode_hz(j) = to_hz(response.lambda(j));
     result.kind.push_back(j < response.num_normal ? records::ModeKind::Normal : records::ModeKind::Residual);
   }
-  result.damping_ratio = response.damping_ratio;
+  result.damping_ratio = response.damping_ratio.head(response.num_dynamic());
   if (options_.is_over_time) {
     recover(model, deck_, response, excitation, damping, outputs, calc_history(response, excitation, grid), result);
   } else {

@@ -38,7 +38,12 @@ struct Sides {
 class Motion {
  public:
   Motion(const ResponseModel& model, const Excitation& excitation, const TimeGrid& grid)
-      : model_(model), excitation_(excitation), grid_(grid), n_(model.lambda.size()) {
+      : model_(model),
+        excitation_(excitation),
+        grid_(grid),
+        n_(model.num_dynamic()),
+        P_(model.P.topRows(n_)),
+        D_(model.D.topLeftCorner(n_, n_)) {
     sample();
   }
 
@@ -46,7 +51,7 @@ class Motion {
     const auto num = static_cast<Eigen::Index>(grid_.shown.size());
     History h;
     h.time = grid_.time(grid_.shown);
-    for (auto* m : {&h.q, &h.q_dot, &h.q_ddot}) m->resize(n_, num);
+    for (auto* m : {&h.q, &h.q_dot, &h.q_ddot}) m->setZero(model_.lambda.size(), num);
     const Eigen::Index k = excitation_.D.cols();
     for (auto* m : {&h.d, &h.d_dot, &h.d_ddot}) m->resize(k, num);
     h.a.resize(model_.P.cols(), num);
@@ -141,10 +146,10 @@ class Motion {
     const auto [found, is_new] = steps_.try_emplace(std::llround(std::log(h) * 1e9));
     if (!is_new) return found->second;
     if (model_.is_coupled) {
-      found->second.push_back(make_step(model_.lambda, model_.D, h));
+      found->second.push_back(make_step(model_.lambda.head(n_), D_, h));
     } else {
       for (Eigen::Index j = 0; j < n_; ++j)
-        found->second.push_back(make_step(model_.lambda.segment(j, 1), model_.D.block(j, j, 1, 1), h));
+        found->second.push_back(make_step(model_.lambda.segment(j, 1), D_.block(j, j, 1, 1), h));
     }
     return found->second;
   }
@@ -152,7 +157,7 @@ class Motion {
   void advance(Eigen::Index i) {
     const double h = step_before(i);
     const auto& steps = find_steps(h);
-    const VectorXd f0 = model_.P * collect(i - 1, true), f1 = model_.P * collect(i, false);
+    const VectorXd f0 = P_ * collect(i - 1, true), f1 = P_ * collect(i, false);
     const Eigen::Index size = model_.is_coupled ? n_ : 1;
     for (std::size_t part = 0; part < steps.size(); ++part) {
       const auto first = static_cast<Eigen::Index>(part) * size;
@@ -172,9 +177,9 @@ class Motion {
     const auto m = excitation_.F.cols(), k = excitation_.D.cols();
     if (k == 0) return;
     const VectorXd d = d_.after.col(i) - d_.before.col(i), v = d_dot_.after.col(i) - d_dot_.before.col(i);
-    const auto P_M = model_.P.middleCols(m, k), P_B = model_.P.middleCols(m + k, k);
+    const auto P_M = P_.middleCols(m, k), P_B = P_.middleCols(m + k, k);
     q_ -= P_M * d;
-    v_ -= P_M * v + P_B * d - model_.D * (P_M * d);
+    v_ -= P_M * v + P_B * d - D_ * (P_M * d);
   }
 
   /// Where something jumps, the mean of before and after.
@@ -183,13 +188,15 @@ class Motion {
     const bool is_first = i == 0;
     VectorXd jump_v = VectorXd::Zero(k);
     if (!is_first) jump_v = d_dot_.after.col(i) - d_dot_.before.col(i);
-    const VectorXd v = v_ + 0.5 * (model_.P.middleCols(m, k) * jump_v);
+    const VectorXd v = v_ + 0.5 * (P_.middleCols(m, k) * jump_v);
     h.a.col(column) = is_first ? collect(i, true) : VectorXd(0.5 * (collect(i, true) + collect(i, false)));
     // An impulse of the supports counts as spread over the step.
     h.a.block(m, column, k, 1) -= jump_v / (0.5 * (step_before(i) + step_after(i)));
-    h.q.col(column) = q_;
-    h.q_dot.col(column) = v;
-    h.q_ddot.col(column) = model_.P * h.a.col(column) - model_.D * v - model_.lambda.cwiseProduct(q_);
+    h.q.col(column).head(n_) = q_;
+    // What has no mass follows its loads at once.
+    h.q.col(column).tail(model_.num_massless) = model_.P.bottomRows(model_.num_massless) * h.a.col(column);
+    h.q_dot.col(column).head(n_) = v;
+    h.q_ddot.col(column).head(n_) = P_ * h.a.col(column) - D_ * v - model_.lambda.head(n_).cwiseProduct(q_);
     h.d.col(column) = d_.after.col(i);
     h.d_dot.col(column) = d_dot_.after.col(i) - 0.5 * jump_v;
     h.d_ddot.col(column) = -h.a.block(m, column, k, 1);
@@ -198,7 +205,8 @@ class Motion {
   const ResponseModel& model_;
   const Excitation& excitation_;
   const TimeGrid& grid_;
-  Eigen::Index n_;
+  Eigen::Index n_;  ///< coordinates with mass
+  MatrixXd P_, D_;  ///< their rows
   Sides p_, d_, d_dot_, d_ddot_;
   std::map<long long, std::vector<Step>> steps_;
   VectorXd q_, v_;

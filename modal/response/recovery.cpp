@@ -13,10 +13,10 @@ namespace {
 
 using namespace std::complex_literals;
 
-/// u = W z with z = [q; d; a].
+/// u = W z with z = [q; d].
 MatrixXd join_shapes(const ResponseModel& r) {
-  MatrixXd W(r.Phi.rows(), r.Phi.cols() + r.Psi.cols() + r.R.cols());
-  W << r.Phi, r.Psi, r.R;
+  MatrixXd W(r.Phi.rows(), r.Phi.cols() + r.Psi.cols());
+  W << r.Phi, r.Psi;
   return W;
 }
 
@@ -141,11 +141,10 @@ void recover_series(const fe::Model& model, const records::DynamicDeck& deck, co
   }
 }
 
-/// a as far as there are columns of R.
 template <class Values>
-Values stack(const Values& q, const Values& d, const Values& a, Eigen::Index num_rest) {
-  Values z(q.rows() + d.rows() + num_rest, q.cols());
-  z << q, d, a.topRows(num_rest);
+Values stack(const Values& q, const Values& d) {
+  Values z(q.rows() + d.rows(), q.cols());
+  z << q, d;
   return z;
 }
 
@@ -156,7 +155,7 @@ void recover(const fe::Model& model, const records::DynamicDeck& deck, const Res
              const Spectrum& spectrum, records::ResponseSubcase& result) {
   Series<MatrixXcd> s;
   const Eigen::RowVectorXcd rate = 2i * std::numbers::pi * spectrum.hz.transpose().cast<std::complex<double>>();
-  s.z = stack<MatrixXcd>(spectrum.q, spectrum.d, spectrum.a, response.R.cols());
+  s.z = stack<MatrixXcd>(spectrum.q, spectrum.d);
   s.z_dot = s.z * rate.asDiagonal();
   s.z_ddot = s.z_dot * rate.asDiagonal();
   s.p = spectrum.a.topRows(excitation.F.cols());
@@ -168,11 +167,9 @@ void recover(const fe::Model& model, const records::DynamicDeck& deck, const Res
              const Excitation& excitation, const DampingChoice& damping, const std::vector<OutputChoice>& outputs,
              const History& history, records::ResponseSubcase& result) {
   Series<MatrixXd> s;
-  const Eigen::Index rest = response.R.cols();
-  const MatrixXd still = MatrixXd::Zero(history.a.rows(), history.a.cols());
-  s.z = stack<MatrixXd>(history.q, history.d, history.a, rest);
-  s.z_dot = stack<MatrixXd>(history.q_dot, history.d_dot, still, rest);
-  s.z_ddot = stack<MatrixXd>(history.q_ddot, history.d_ddot, still, rest);
+  s.z = stack<MatrixXd>(history.q, history.d);
+  s.z_dot = stack<MatrixXd>(history.q_dot, history.d_dot);
+  s.z_ddot = stack<MatrixXd>(history.q_ddot, history.d_ddot);
   s.p = history.a.topRows(excitation.F.cols());
   result.x = history.time;
   recover_series(model, deck, response, excitation, damping, outputs, s, result);

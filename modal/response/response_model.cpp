@@ -102,11 +102,13 @@ class Maker {
          {times_mass(model_, r.Psi), times_damping(model_, damping_, r.Psi), times_structural(model_, damping_, r.Psi)})
       loads = join_columns(loads, more);
     choose_shapes(loads, start, with_residuals, r);
+    const auto num_dynamic = r.Phi.cols();
+    if (with_residuals) add_massless(join_columns(loads, calc_damper_loads(model_, elastic())), r);
     r.P = r.Phi.transpose() * loads;
-    r.R = with_residuals ? calc_static_rest(loads, r) : MatrixXd::Zero(model_.num_gdofs(), 0);
     damp(r);
-    if (start.u.size() > 0) r.u0 = r.Phi.transpose() * times_mass(model_, start.u);
-    if (start.v.size() > 0) r.v0 = r.Phi.transpose() * times_mass(model_, start.v);
+    const auto Phi = r.Phi.leftCols(num_dynamic);
+    if (start.u.size() > 0) r.u0 = Phi.transpose() * times_mass(model_, start.u);
+    if (start.v.size() > 0) r.v0 = Phi.transpose() * times_mass(model_, start.v);
     return r;
   }
 
@@ -148,8 +150,9 @@ class Maker {
     r.num_normal -= out;
   }
 
-  /// G F - Φ Λ⁻¹ Φᵀ F of each load; zero where it is round-off of the work G F does.
-  MatrixXd calc_static_rest(const MatrixXd& loads, const ResponseModel& r) const {
+  /// What the shapes leave out of the static solutions where that does more than 1e-10 of the work of the load: there
+  /// is next to no mass in it, or a residual vector would have it. Orthonormal in K.
+  void add_massless(const MatrixXd& loads, ResponseModel& r) const {
     MatrixXd F = loads;
     const MatrixXd Phi_r = rigid();
     if (Phi_r.cols() > 0) F -= times_mass(model_, Phi_r) * (Phi_r.transpose() * loads);
@@ -160,15 +163,26 @@ class Maker {
       for (Eigen::Index j = 0; j < lambda.size(); ++j)
         if (lambda(j) > 0) rest -= Phi.col(j) * (Phi.col(j).transpose() * F) / lambda(j);
     };
-    take(r.Phi.rightCols(r.lambda.size() - r.num_rigid), r.lambda.tail(r.lambda.size() - r.num_rigid));
+    take(r.Phi, r.lambda);
     take(left_out_, left_out_lambda_);
-    bool is_needed = false;
+    std::vector<int> kept;
     for (Eigen::Index c = 0; c < rest.cols(); ++c) {
-      const bool counts = work(c) > 0 && std::abs(rest.col(c).dot(F.col(c))) > 1e-13 * work(c);
-      if (!counts) rest.col(c).setZero();
-      is_needed = is_needed || counts;
+      const double left = rest.col(c).dot(F.col(c));
+      if (!(work(c) > 0) || !(left > 1e-10 * work(c))) continue;
+      rest.col(c) /= std::sqrt(left);
+      kept.push_back(static_cast<int>(c));
     }
-    return is_needed ? rest : MatrixXd(rest.rows(), 0);
+    if (kept.empty()) return;
+    const MatrixXd X = rest(Eigen::all, kept);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(
+        make_symmetric(X.transpose() * fe::calc_stiffness_times(model_, X)));
+    const auto num = (gram.eigenvalues().array() > 1e-8).count();
+    const MatrixXd Z =
+        X * gram.eigenvectors().rightCols(num) * gram.eigenvalues().tail(num).cwiseSqrt().cwiseInverse().asDiagonal();
+    r.num_massless = static_cast<int>(num);
+    r.Phi = join_columns(r.Phi, Z);
+    r.lambda.conservativeResize(r.lambda.size() + num);
+    r.lambda.tail(num).setOnes();
   }
 
   double calc_ratio(const ResponseModel& r, Eigen::Index j) const {
@@ -184,6 +198,7 @@ class Maker {
     r.S = MatrixXd::Zero(n, n);
     const MatrixXd K_e = make_symmetric(r.Phi.transpose() * fe::calc_structural_damping_times(model_, 0, r.Phi));
     const MatrixXd K_g = damping_.g * MatrixXd(r.lambda.asDiagonal());
+    const auto num = r.num_dynamic();
     if (damping_.is_over_time) {
       if (damping_.w4 > 0) r.D += K_e / damping_.w4;
       if (damping_.w3 > 0) r.D += K_g / damping_.w3;
@@ -192,14 +207,21 @@ class Maker {
     }
     if (damping_.curve) add_curve(r);
     r.is_coupled = is_off_diagonal(r.D) || is_off_diagonal(r.S);
+    if (damping_.is_over_time && r.num_massless > 0) {
+      if (r.D.bottomRows(r.num_massless).cwiseAbs().maxCoeff() > 1e-9 * r.D.cwiseAbs().maxCoeff())
+        diagnostics_.warning("modal.massless-damper", {},
+                             "damping acts on motions without mass: over time they follow their loads at once",
+                             "give the grids of these dampers some mass; bough frequency has no such limit");
+      r.is_coupled = is_off_diagonal(r.D.topLeftCorner(num, num));
+    }
     r.damping_ratio = VectorXd::Zero(n);
-    for (Eigen::Index j = 0; j < n; ++j)
+    for (Eigen::Index j = 0; j < num; ++j)
       if (r.lambda(j) > 0)
         r.damping_ratio(j) = r.D(j, j) / (2 * std::sqrt(r.lambda(j))) + r.S(j, j) / (2 * r.lambda(j));
   }
 
   void add_curve(ResponseModel& r) const {
-    for (Eigen::Index j = 0; j < r.lambda.size(); ++j) {
+    for (Eigen::Index j = 0; j < r.num_dynamic(); ++j) {
       if (!(r.lambda(j) > 0)) continue;
       const double ratio = calc_ratio(r, j), omega = std::sqrt(r.lambda(j));
       if (ratio < 0 && !diagnostics_.has("modal.negative-damping")) {

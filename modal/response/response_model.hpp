@@ -25,21 +25,23 @@ struct DampingChoice {
   const records::DampingCurve* curve = nullptr;  ///< SDAMPING
 };
 
-/// u = Φ q + Ψ d + R a on the g-set, basic axes, with
-///   q̈ + D q̇ + (Λ + i S) q = P a.
+/// u = Φ q + Ψ d on the g-set, basic axes, with
+///   m q̈ + D q̇ + (Λ + i S) q = P a, m = 1 or 0.
 /// d: motions of the supports (columns of Excitation::D), Ψ: what follows them statically. Loads a, m + 3 k of them:
-/// forces of F, then of M Ψ (amplitude -d̈), B Ψ (-ḋ), K_s Ψ (-i d). R: what of their static solutions the shapes leave
-/// out, where that is more than round-off.
+/// forces of F, then of M Ψ (amplitude -d̈), B Ψ (-ḋ), K_s Ψ (-i d).
 struct ResponseModel {
-  MatrixXd Phi;
+  MatrixXd Phi;  ///< rigid motions, normal modes, residual vectors; then what has no mass, of unit stiffness
   VectorXd lambda;
-  int num_rigid = 0, num_normal = 0;  ///< rigid ones first; the others behind num_normal are residual vectors
-  MatrixXd Psi, R;
+  int num_rigid = 0, num_normal = 0;  ///< what is behind num_normal are residual vectors
+  int num_massless = 0;               ///< the last ones
+  MatrixXd Psi;
   MatrixXd P;               ///< n x (m + 3k)
   MatrixXd D, S;            ///< n x n, viscous and structural
   bool is_coupled = false;  ///< D or S has terms off the diagonal
-  VectorXd damping_ratio;   ///< n, of each coordinate: D_jj / 2ω + S_jj / 2λ; 0 for rigid ones
-  VectorXd u0, v0;          ///< start, n each: M-projection of TIC; empty without
+  VectorXd damping_ratio;   ///< n, of each coordinate: D_jj / 2ω + S_jj / 2λ; 0 for rigid and massless ones
+  VectorXd u0, v0;          ///< start of those with mass: M-projection of TIC; empty without
+
+  Eigen::Index num_dynamic() const { return lambda.size() - num_massless; }
 };
 
 struct StartMotion {
@@ -54,7 +56,7 @@ MatrixXd times_damping(const fe::Model& model, const DampingChoice& damping, con
 MatrixXd times_structural(const fe::Model& model, const DampingChoice& damping, const MatrixXd& X);
 
 /// `solve`: static solutions on the supports (with rigid modes: any determinate ones). `with_residuals`: RESVEC.
-/// Warnings: modal.negative-damping.
+/// Warnings: modal.negative-damping, modal.massless-damper (over time).
 ResponseModel make_response_model(const fe::Model& model, const ModeBasis& modes, const bases::StaticSolve& solve,
                                   const Excitation& excitation, const StartMotion& start, const DampingChoice& damping,
                                   bool with_residuals, Diagnostics& diagnostics);

@@ -62,11 +62,13 @@ Spectrum calc_spectrum(const ResponseModel& model, const Excitation& excitation,
     s.a.col(i) = calc_amplitudes(excitation, hz(i), d);
     s.d.col(i) = d;
     const VectorXcd force = model.P * s.a.col(i);
-    const VectorXd real = (model.lambda.array() - omega * omega).matrix();
+    VectorXd inertia = VectorXd::Constant(n, omega * omega);
+    inertia.tail(model.num_massless).setZero();
+    const VectorXd real = model.lambda - inertia;
     const VectorXcd diagonal = real.cast<std::complex<double>>() +
                                1i * (omega * model.D.diagonal() + model.S.diagonal()).cast<std::complex<double>>();
     for (Eigen::Index j = 0; j < n; ++j)
-      if (!model.is_coupled && std::abs(diagonal(j)) <= 1e-14 * std::max(model.lambda(j), omega * omega))
+      if (!model.is_coupled && std::abs(diagonal(j)) <= 1e-14 * std::max(model.lambda(j), inertia(j)))
         throw_unbounded(hz(i), describe(model, j));
     if (!model.is_coupled) {
       s.q.col(i) = force.cwiseQuotient(diagonal);
@@ -75,7 +77,7 @@ Spectrum calc_spectrum(const ResponseModel& model, const Excitation& excitation,
     MatrixXcd Z = 1i * (omega * model.D + model.S).cast<std::complex<double>>();
     Z.diagonal() = diagonal;
     // Residual vectors lie many orders above the modes: rows and columns of one size.
-    const VectorXd scale = model.lambda.cwiseAbs().cwiseMax(omega * omega).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const VectorXd scale = model.lambda.cwiseAbs().cwiseMax(inertia).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::PartialPivLU<MatrixXcd> lu(scale.asDiagonal() * Z * scale.asDiagonal());
     const VectorXcd pivots = lu.matrixLU().diagonal();
     if (n > 0 && !(pivots.cwiseAbs().minCoeff() > 1e-14))

@@ -417,6 +417,32 @@ class Chain(DeckResponse):
             self.near(r["displacement"][g, 1], exact[i], 1e-8)
 
 
+class NoMass(DeckResponse):
+    """A mass, a spring, a point without mass, a damper and a spring beside it to ground; a load on the point."""
+    DECK = ("SOL {sol}\nCEND\nSPC = 1\nMETHOD = 1\nDLOAD = 9\n{case}\nDISPLACEMENT = ALL\nBEGIN BULK\nEIGRL,1,,,1\n"
+            "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCONM2,1,1,,4.0\nCELAS2,2,36.0,1,1,2,1\nCELAS2,3,20.0,2,1\n"
+            "SPC1,1,23456,1,2\nDAREA,10,2,1,2.5\n{bulk}\nENDDATA\n")
+
+    def test_frequency(self):
+        r = self.solve("frequency", self.DECK.format(sol=111, case="FREQUENCY = 5",
+                                                     bulk="CDAMP2,4,3.,2,1\nRLOAD1,9,10,,,1.\nFREQ1,5,0.,.1,20\nPARAM,G,.1"))[1]
+        for i, f in enumerate(r["x"]):
+            w = 2 * np.pi * f
+            Z = np.array([[36 * (1 + .1j) - 4 * w**2, -36 * (1 + .1j)], [-36 * (1 + .1j), 56 * (1 + .1j) + 3j * w]])
+            u = np.linalg.solve(Z, [0, 2.5])
+            self.near([r["displacement"][g, 1][i] for g in (1, 2)], u, 1e-11)
+
+    def test_transient(self):
+        bulk = "TLOAD2,9,10,,,0.,9.\nTSTEP,5,200,.02\n"
+        r = self.solve("transient", self.DECK.format(sol=112, case="TSTEP = 5", bulk=bulk))[1]
+        k = 36 * 20 / 56
+        u1 = 2.5 * 36 / 56 / k * (1 - np.cos(np.sqrt(k / 4) * r["x"]))
+        self.near(r["displacement"][1, 1], u1, 1e-11)
+        self.near(r["displacement"][2, 1], (2.5 + 36 * u1) / 56, 1e-11)
+        self.write("d.bdf", self.DECK.format(sol=112, case="TSTEP = 5", bulk=bulk + "CDAMP2,4,3.,2,1"))
+        self.assertIn("[modal.massless-damper]", self.bough("transient", "d.bdf").stderr)
+
+
 class Structures(DeckResponse):
     def direct(self, deck, hz, load, g):
         """SciPy on K, M, B of the deck, all in basic; structural damping from a second deck without GE."""
