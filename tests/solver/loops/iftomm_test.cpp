@@ -6,6 +6,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "tests/solver/support/jacobi.hpp"
 #include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
@@ -30,21 +31,6 @@ records::HingeRecord make_pin(const std::string& parent, const std::string& chil
   return pin;
 }
 
-/// sn and dn by descending Landen transformations (Abramowitz & Stegun 16.4): of k = sin α.
-void calc_jacobi(double u, double k, double& sn, double& dn) {
-  double a[16] = {1}, c[16] = {k}, b = std::sqrt(1 - k * k);
-  int n = 0;
-  for (; n < 14 && std::abs(c[n]) > 1e-17; ++n) {
-    a[n + 1] = 0.5 * (a[n] + b);
-    c[n + 1] = 0.5 * (a[n] - b);
-    b = std::sqrt(a[n] * b);
-  }
-  double phi = std::ldexp(a[n] * u, n);
-  for (; n > 0; --n) phi = 0.5 * (phi + std::asin(c[n] / a[n] * std::sin(phi)));
-  sn = std::sin(phi);
-  dn = std::sqrt(1 - k * k * sn * sn);
-}
-
 // A01: 1 kg at 1 m, let go level, 10 s. The library's measure: position and energy.
 TEST(Iftomm, A01SimplePendulum) {
   records::SystemSpec spec;
@@ -64,9 +50,7 @@ TEST(Iftomm, A01SimplePendulum) {
   const VectorXd t = r.sink.time(), q = r.sink.get("/hinges/rod/q").col(0);
   double worst = 0;
   for (int i = 0; i < t.size(); ++i) {
-    double sn = 0, dn = 0;
-    calc_jacobi(w * t[i] + K, k, sn, dn);
-    const double theta = -2 * std::asin(k * sn);  // of the side it starts on
+    const double theta = -2 * std::asin(k * calc_jacobi(w * t[i] + K, k).sn);  // of the side it starts on
     worst = std::max(worst, std::abs(std::sin(theta) - std::cos(q[i])));
   }
   EXPECT_LT(worst, 1e-10);
