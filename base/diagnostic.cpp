@@ -1,6 +1,7 @@
 #include "base/diagnostic.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
@@ -88,32 +89,41 @@ ComputationError::ComputationError(std::string_view id, SourceLocation where, st
     : ComputationError({make(Severity::Error, id, std::move(where), std::move(what), std::move(advice))}) {}
 
 namespace {
-/// Letters to change, add, leave out or swap with their neighbour to make one word of the other; case aside.
-std::size_t calc_distance(std::string_view a, std::string_view b) {
-  const auto same = [](char x, char y) {
-    return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
-  };
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) {
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-      if (i == 0 || j == 0) {
-        d[i][j] = i + j;
-        continue;
-      }
-      d[i][j] = std::min({d[i - 1][j - 1] + (same(a[i - 1], b[j - 1]) ? 0 : 1), d[i - 1][j] + 1, d[i][j - 1] + 1});
-      if (i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1]))
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-    }
-  }
-  return d[a.size()][b.size()];
+bool is_same_letter(char x, char y) {
+  return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
 }
+
+/// Letters to change, add, leave out or swap with their neighbour to make one word of the other; case aside. Three rows
+/// of the table are enough, and are kept between the calls.
+class Distance {
+ public:
+  std::size_t calc(std::string_view a, std::string_view b) {
+    for (auto& row : rows_) row.resize(b.size() + 1);
+    for (std::size_t i = 0; i <= a.size(); ++i) {
+      auto &row = rows_[i % 3], &above = rows_[(i + 2) % 3], &second = rows_[(i + 1) % 3];
+      for (std::size_t j = 0; j <= b.size(); ++j) {
+        if (i == 0 || j == 0) {
+          row[j] = i + j;
+          continue;
+        }
+        row[j] = std::min({above[j - 1] + (is_same_letter(a[i - 1], b[j - 1]) ? 0 : 1), above[j] + 1, row[j - 1] + 1});
+        if (i > 1 && j > 1 && is_same_letter(a[i - 1], b[j - 2]) && is_same_letter(a[i - 2], b[j - 1]))
+          row[j] = std::min(row[j], second[j - 2] + 1);
+      }
+    }
+    return rows_[a.size() % 3][b.size()];
+  }
+
+ private:
+  std::array<std::vector<std::size_t>, 3> rows_;
+};
 
 /// The one candidate that begins with the word, of three letters at least; empty when there are none or several.
 std::string find_completion(std::string_view word, const std::vector<std::string>& candidates) {
   std::string found;
   for (const auto& candidate : candidates) {
     if (word.size() < 3 || candidate.size() < word.size()) continue;
-    if (calc_distance(word, std::string_view(candidate).substr(0, word.size())) != 0) continue;
+    if (!std::equal(word.begin(), word.end(), candidate.begin(), is_same_letter)) continue;
     if (!found.empty()) return {};
     found = candidate;
   }
@@ -124,8 +134,11 @@ std::string find_completion(std::string_view word, const std::vector<std::string
 std::string find_nearest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
+  Distance table;
   for (const auto& candidate : candidates) {
-    const auto distance = calc_distance(word, candidate);
+    const auto longer = std::max(word.size(), candidate.size()), shorter = std::min(word.size(), candidate.size());
+    if (longer - shorter >= best_distance) continue;  // as many letters to add at least
+    const auto distance = table.calc(word, candidate);
     if (distance < best_distance) {
       best_distance = distance;
       best = candidate;

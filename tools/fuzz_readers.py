@@ -1,34 +1,59 @@
 """Runs libFuzzer on each reader with its corpus; what breaks a reader is kept, made smaller.
 
-    /usr/bin/python3 tools/fuzz_readers.py build-fuzz/bin/fuzz_readers [--minutes 1] [--runs N] [--keep FOLDER] [READER ...]
+    /usr/bin/python3 tools/fuzz_readers.py build-fuzz/bin/fuzz_readers [--minutes 1] [--runs N] [--keep FOLDER] [--write]
+                                           [READER ...]
 
 Inputs that reach new code are kept in FOLDER/corpus for the next time; those of tests/fuzz/corpus are the seeds. Prints
-one row a reader: executions, coverage, findings. Exit 1 when there was one.
+one row a reader: executions, their rate, coverage, findings; FOLDER/executed.json adds them up over all calls, and
+--write puts those sums into docs/verification/robustness.md. Exit 1 when something was found.
 """
 import argparse
 import glob
+import json
 import os
 import re
 import subprocess
 import sys
+import time
+
+from robustness_page import write_table
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 CORPUS = os.path.join(ROOT, "tests", "fuzz", "corpus")
+# Memory that is freed is kept for later use in small measure only: the process stays small, and is forked for each HDF5
+# file. Stacks of allocations, which cost more than the reader itself, are for what is found: run it again without.
+SANITIZER = ("detect_leaks=0:allocator_may_return_null=1:malloc_context_size=1:quarantine_size_mb=16:"
+             "thread_local_quarantine_size_kb=64:detect_stack_use_after_return=0")
 # Longest input, and seconds that one may take: HDF5 files are looked through in a process of their own.
 LONGEST = {"hdf5": 150000, "matrices": 16384, "mode-tables": 16384, "nastran": 12288}
+
+
+WORDS = {"matrices": ["%%MatrixMarket matrix ", "coordinate ", "array ", "real ", "complex ", "symmetric", "hermitian",
+                      "skew-symmetric", "pattern", "DMIG,", "DMIG*", "MATLAB 5.0 MAT-file", "1 1 ", "D+00"],
+         "op4-text": ["1P,5E16.9", "1P,3D23.16", "65537", "-1", "(1P,3E23.16)"],
+         "mode-tables": ["$TITLE", "$EIGENVALUE = ", "$MODE = ", "$REAL OUTPUT", "$EIGENVECTOR", "-CONT-", "OUGV1", "LAMA"],
+         "sid": ["part", "new modal", "end modal", "frame", "new frame = ", "end frame", "refmod", "mass ", "nelastq",
+                 "ielastq", "origin", "phi", "psi", "AP", "mdCM", "J", "Ct", "Cr", "Me", "Gr", "Ge", "Oe", "ksigma", "Ke",
+                 "De", "order ", "nrow ", "ncol ", "nq ", "nqn ", "structure ", "m0(", "m1("],
+         "layout": ["E16.8", "I5", "%.9g", "for j", "end", "text ", "block ", "record=none", "order=k,a", "label=", "{mode:I5}",
+                    "gamma4", "gains", "nodes=output"], "table": ["time", "nan", "inf", '"'],
+         "model-matrices": ["2*", "1.D0", "/", "!", ",,"], "model-input": ["2*", "1.D0", "/", "!", ",,"],
+         "flx": ["GMASS", "GSTIF", "GDAMP", "ALPHA", "GAMMA1", "GAMMA4", "NODE", "GAIN", "SPECIAL", "!"]}
 
 
 def make_dictionary(reader, path):
     """Words of the format: names of cards, keys of the schemas."""
     words = set()
-    if reader == "nastran":
+    if reader in ("nastran", "packed-deck", "deck-editor"):
         with open(os.path.join(ROOT, "tests", "formats", "nastran", "every_card.hpp"), encoding="utf-8") as deck:
             words.update(re.findall(r"^([A-Z][A-Z0-9]{2,7})[,* ]", deck.read(), re.M))
         words.update(["INCLUDE '", "BEGIN BULK", "ENDDATA", "SUBCASE ", "THRU", "*(1)", "=(9)", "SET 1 = "])
-    elif reader in ("body", "system", "campaign"):
-        with open(os.path.join(ROOT, "data", "schema", reader + ".schema.json"), encoding="utf-8") as schema:
-            words.update(re.findall(r'"([a-z_0-9]{2,30})"', schema.read()))
+    elif reader in ("body", "system", "campaign", "key-editor"):
+        for kind in ("body", "system") if reader == "key-editor" else (reader,):
+            with open(os.path.join(ROOT, "data", "schema", kind + ".schema.json"), encoding="utf-8") as schema:
+                words.update(re.findall(r'"([a-z_0-9]{2,30})"', schema.read()))
         words.update(["[[", "]]", " = ", '"$'])
+    words.update(WORDS.get(reader, ()))
     if not words:
         return []
     with open(path, "w", encoding="ascii") as out:
@@ -44,9 +69,10 @@ def fuzz(program, reader, options):
     dictionary = make_dictionary(reader, os.path.join(options.keep, reader + ".dict"))
     environment = dict(os.environ, BOUGH_FUZZ_TARGET=reader,
                        BOUGH_FUZZ_FOLDER="/dev/shm" if os.access("/dev/shm", os.W_OK) else "/tmp",
-                       ASAN_OPTIONS="detect_leaks=0:allocator_may_return_null=1", UBSAN_OPTIONS="print_stacktrace=1")
+                       ASAN_OPTIONS=SANITIZER, UBSAN_OPTIONS="print_stacktrace=1")
     limit = [f"-runs={options.runs}"] if options.runs else [f"-max_total_time={round(60 * options.minutes)}"]
     before = set(glob.glob(found + "*"))
+    begin = time.monotonic()
     ran = subprocess.run([program, own, os.path.join(CORPUS, reader), f"-artifact_prefix={found}", "-timeout=25",
                           "-rss_limit_mb=3000", "-malloc_limit_mb=1500", f"-max_len={LONGEST.get(reader, 4096)}",
                           *dictionary, "-print_final_stats=1", "-reload=0", *limit], env=environment,
@@ -54,12 +80,29 @@ def fuzz(program, reader, options):
     new = sorted(set(glob.glob(found + "*")) - before)
     executed = re.findall(r"number_of_executed_units: (\d+)", ran.stderr) or re.findall(r"^#(\d+)", ran.stderr, re.M)
     covered = re.findall(r"cov: (\d+)", ran.stderr)
-    print(f"{reader:15} {int(executed[-1]) if executed else 0:10} {covered[-1] if covered else '-':>8}   "
+    number, took = int(executed[-1]) if executed else 0, time.monotonic() - begin
+    count(options.keep, reader, number, took, int(covered[-1]) if covered else 0, len(new))
+    print(f"{reader:15} {number:10} {number / took:8.0f} {covered[-1] if covered else '-':>8}   "
           f"{'exit %d: ' % ran.returncode if ran.returncode else ''}{', '.join(new) or 'nothing'}", flush=True)
     if ran.returncode:
         report = re.search(r"(==\d+==ERROR|runtime error|terminate called|libFuzzer: ).*", ran.stderr, re.S)
         print("    " + (report.group(0) if report else ran.stderr[-1500:])[:1500].replace("\n", "\n    "), flush=True)
     return ran.returncode != 0
+
+
+def count(folder, reader, number, seconds, coverage, found):
+    """Adds to what FOLDER/executed.json has; returns all of it."""
+    path = os.path.join(folder, "executed.json")
+    known = {}
+    if os.path.exists(path):
+        with open(path, encoding="ascii") as f:
+            known = json.load(f)
+    if number:
+        before = known.get(reader, [0, 0.0, 0, 0])
+        known[reader] = [before[0] + number, before[1] + seconds, coverage, before[3] + found]
+        with open(path, "w", encoding="ascii") as out:
+            json.dump(known, out)
+    return known
 
 
 def main():
@@ -69,12 +112,18 @@ def main():
     parser.add_argument("--minutes", type=float, default=1)
     parser.add_argument("--runs", type=int, default=0, help="executions a reader instead of minutes")
     parser.add_argument("--keep", default="fuzz-found")
+    parser.add_argument("--write", action="store_true", help="the sums into docs/verification/robustness.md")
     options = parser.parse_intermixed_args()
     options.keep = os.path.abspath(options.keep)
     os.makedirs(options.keep, exist_ok=True)
     readers = options.readers or sorted(os.listdir(CORPUS))
-    print(f"{'reader':15} {'executed':>10} {'coverage':>8}   found")
-    sys.exit(1 if sum([fuzz(os.path.abspath(options.program), reader, options) for reader in readers]) else 0)
+    print(f"{'reader':15} {'executed':>10} {'a second':>8} {'coverage':>8}   found")
+    found = sum([fuzz(os.path.abspath(options.program), reader, options) for reader in readers])
+    if options.write:
+        known = count(options.keep, "", 0, 0, 0, 0)
+        write_table("fuzz", ["reader", "executions", "a second", "coverage"],
+                    [(f"`{reader}`", f"{n:,}", f"{n / t:.0f}", edges) for reader, (n, t, edges, _) in sorted(known.items())])
+    sys.exit(1 if found else 0)
 
 
 if __name__ == "__main__":

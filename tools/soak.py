@@ -1,10 +1,11 @@
-"""Random systems, end to end: bodies, hinges, loops, forces, events, controllers, each run two ways.
+"""Random systems, end to end: decks, bodies, hinges, loops, forces, events, controllers, each run two ways.
 
     /usr/bin/python3 tools/soak.py build/bin/bough [--minutes 5] [--seed 1] [--keep FOLDER]
 
-A system is run by an explicit and by an implicit integrator at tight tolerances. Both must end alike (exit 0, or 1 or 3
-with an error that is named), the sensors must agree, the energy balance must close, momenta of a free system must stay.
-A system that fails is made smaller as long as it fails the same way, and kept with its seed. Exit 1 when there was one.
+Each seed has three structures of its own, reduced from their decks, beside two rods. Its system is run by an explicit
+and by an implicit integrator at tight tolerances. Both must end alike (exit 0, or 1 or 3 with an error that is named),
+the sensors must agree, the energy balance must close. A system that fails is made smaller as long as it fails the same
+way, and kept with its seed. Exit 1 when there was one. --write puts the counts into docs/verification/robustness.md.
 """
 import argparse
 import collections
@@ -21,8 +22,11 @@ import time
 import h5py
 import numpy as np
 
+from robustness_page import write_table
+
 HINGES = {"fixed": 0, "revolute": 1, "prismatic": 1, "universal": 2, "cylindrical": 2, "planar": 3, "spherical": 3,
           "free": 6, "screw": 1, "gimbal": 3, "general": 3}
+ERRORS = re.compile(r"error: .*\[([a-z]+\.[a-z0-9-]+)\]")
 ROD = """SOL 103
 CEND
 BEGIN BULK
@@ -39,6 +43,49 @@ PBAR,1,1,1.-3,2.-7,3.-7,4.-7
 MAT1,1,7.+10,,.3,2700.
 ENDDATA
 """
+
+
+def make_deck(seed):
+    """A small structure of bars, some with a plate, masses on arms, rigid links and springs, and grids to hold it by:
+    text, its grids, whether it is clamped."""
+    r = random.Random(f"deck {seed}")
+    cards, number = [], 100
+    points = [(0.0, 0.0, 0.0)]
+    for k in range(r.randint(2, 5)):
+        a = r.randrange(len(points))
+        step = [r.uniform(-0.5, 0.5) for _ in range(3)]
+        size = sum(x * x for x in step) ** 0.5
+        points.append(tuple(round(p + x * r.uniform(0.2, 0.5) / size, 4) for p, x in zip(points[a], step)))
+        roll = sorted(range(3), key=lambda i: abs(step[i]))[0]
+        axis = ["0.", "0.", "0."]
+        axis[roll] = "1."
+        cards.append(f"{r.choice(['CBAR', 'CBEAM'])},{k + 1},1,{a + 1},{len(points)},{','.join(axis)}")
+    beams = any(c.startswith("CBEAM") for c in cards)
+    bars = any(c.startswith("CBAR") for c in cards)
+    i1, i2 = round(r.uniform(1, 5), 2), round(r.uniform(1, 5), 2)
+    if beams and bars:  # one property serves one kind
+        cards, beams = [c.replace("CBEAM", "CBAR") for c in cards], False
+    cards.append(f"PBEAM,1,1,1.-4,{i1}-8,{i2}-8,,4.-8" if beams else f"PBAR,1,1,1.-4,{i1}-8,{i2}-8,4.-8")
+    if r.random() < 0.3:
+        at, n = points[-1], len(points)
+        points += [(at[0] + 0.2, at[1], at[2]), (at[0] + 0.2, at[1] + 0.2, at[2]), (at[0], at[1] + 0.2, at[2])]
+        cards += [f"CQUAD4,80,2,{n},{n + 1},{n + 2},{n + 3}", "PSHELL,2,1,.003,1,,1"]
+    if r.random() < 0.4:
+        cards.append(f"CONM2,90,{r.randint(1, len(points))},,{r.uniform(0.05, 0.5):.3f},{r.uniform(-0.1, 0.1):.3f},"
+                     f"{r.uniform(-0.1, 0.1):.3f},0.05\n,1.-4,,1.2-4,,,1.3-4")
+    if r.random() < 0.4:
+        at = points[-1]
+        points.append(tuple(round(x + r.uniform(0.05, 0.2), 4) for x in at))
+        cards += [f"{r.choice(['RBE2,91,%d,123456,%d', 'RBAR,91,%d,%d,123456'])}" % (len(points) - 1, len(points)),
+                  f"CONM2,92,{len(points)},,0.2\n,1.-4,,1.-4,,,1.-4"]
+    if r.random() < 0.2:
+        number = len(points)
+        cards.append(f"CELAS2,93,{r.uniform(100, 1000):.1f},{number},{r.randint(1, 3)},1,{r.randint(1, 3)}")
+    clamped = r.random() < 0.5
+    grids = [f"GRID,{k + 1},,{x:.4f},{y:.4f},{z:.4f},,{'123456' if clamped and k == 0 else ''}"
+             for k, (x, y, z) in enumerate(points)]
+    text = "\n".join(["SOL 103", "CEND", "BEGIN BULK", *grids, *cards, "MAT1,1,7.+10,,.3,2700.", "ENDDATA", ""])
+    return text, sorted(r.sample(range(2, len(points) + 1), min(2, len(points) - 1))), clamped
 
 
 class Draw:
@@ -70,7 +117,7 @@ def make_system(seed, bodies_of):
         if d.chance(0.35):
             kind = r.choice(list(bodies_of))
             body = {"name": name, "file": kind, "damping": round(r.uniform(0, 0.02), 4)}
-            nodes = [0, 3, 5] if "free" not in kind else [3, 5]
+            nodes = bodies_of[kind]
         else:
             a, b, c = (r.uniform(0.1, 1) for _ in range(3))  # second moments of a body that can exist
             m = round(r.uniform(0.2, 3), 3)
@@ -186,18 +233,37 @@ def to_toml(system, integrator):
 class Soak:
     def __init__(self, options):
         self.program, self.keep = os.path.abspath(options.program), options.keep
-        self.timeout = options.timeout
+        self.timeout, self.write_page = options.timeout, options.write
         self.folder = tempfile.mkdtemp(prefix="soak-")
         self.bodies = {}
         for name, held in (("clamped", "123456"), ("free", "")):
-            with open(os.path.join(self.folder, name + ".bdf"), "w", encoding="ascii") as out:
-                out.write(ROD.format(held=held))
-            with open(os.path.join(self.folder, name + ".toml"), "w", encoding="ascii") as out:
-                out.write(f'[body]\nname = "{name}"\ndeck = "{name}.bdf"\ninterface = [1, 3, 5]\n' +
-                          ('frame = "free"\n' if name == "free" else "") + '[body.modes]\nnumber = 4\n'
-                          "[body.output]\nnodes = [1, 3, 5]\n")
-            subprocess.run([self.program, "reduce", name + ".toml", "-q", "-o", name + ".h5"], cwd=self.folder, check=True)
-            self.bodies[name + ".h5"] = name
+            self.add_body(name, ROD.format(held=held), [1, 3, 5], [3, 5], bool(held))
+        self.known, self.decks = dict(self.bodies), collections.Counter()
+
+    def add_body(self, name, deck, held, nodes, clamped):
+        with open(os.path.join(self.folder, name + ".bdf"), "w", encoding="ascii") as out:
+            out.write(deck)
+        with open(os.path.join(self.folder, name + ".toml"), "w", encoding="ascii") as out:
+            out.write(f'[body]\nname = "{name}"\ndeck = "{name}.bdf"\ninterface = {held}\n' +
+                      ("" if clamped else 'frame = "free"\n') + "[body.modes]\nnumber = 4\n"
+                      f"[body.output]\nnodes = {held}\n")
+        ran = subprocess.run([self.program, "reduce", name + ".toml", "-q", "-o", name + ".h5"], cwd=self.folder,
+                             capture_output=True, text=True)
+        if ran.returncode == 0:
+            self.bodies[name + ".h5"] = [0, *nodes] if clamped else nodes
+        return ran
+
+    def renew_bodies(self, seed):
+        """The two rods and three structures of their own; what is wrong with one that no body was made of."""
+        self.bodies = dict(self.known)
+        for k in range(3):
+            deck, nodes, clamped = make_deck(3 * seed + k)
+            ran = self.add_body(f"deck{k}", deck, sorted({1, *nodes}) if clamped else nodes, nodes, clamped)
+            errors = ERRORS.findall(ran.stderr)
+            self.decks["reduced" if ran.returncode == 0 else errors[0] if errors else "unnamed"] += 1
+            if ran.returncode not in (0, 1, 3) or (ran.returncode and not errors):
+                return f"deck {3 * seed + k}: reduce: exit {ran.returncode}: {ran.stderr.strip()[-300:]}"
+        return None
 
     def run(self, system, integrator):
         path = os.path.join(self.folder, integrator + ".toml")
@@ -211,7 +277,7 @@ class Soak:
                                  text=True, timeout=self.timeout)
         except subprocess.TimeoutExpired:
             return "slow", [], None, ""
-        errors = re.findall(r"error: .*\[([a-z]+\.[a-z0-9-]+)\]", ran.stderr)
+        errors = ERRORS.findall(ran.stderr)
         return ran.returncode, errors, results if os.path.exists(results) else None, ran.stderr
 
     def judge(self, system):
@@ -274,6 +340,10 @@ class Soak:
     def soak(self, minutes, seed):
         end, number, found, outcomes = time.monotonic() + 60 * minutes, 0, 0, collections.Counter()
         while time.monotonic() < end:
+            wrong = self.renew_bodies(seed + number)
+            if wrong:
+                found += 1
+                print(f"seed {seed + number}: {wrong}", flush=True)
             system = make_system(seed + number, self.bodies)
             what = self.judge(system)
             outcomes[what or self.outcome] += 1
@@ -283,15 +353,23 @@ class Soak:
                 if self.keep:
                     system = self.shrink(system, what)
                     os.makedirs(self.keep, exist_ok=True)
+                    place = os.path.join(self.keep, f"seed{seed + number}")
+                    os.makedirs(place, exist_ok=True)
                     for file in self.bodies:
-                        shutil.copy(os.path.join(self.folder, file), self.keep)
-                    with open(os.path.join(self.keep, f"seed{seed + number}.toml"), "w", encoding="utf-8") as out:
+                        for end in (".h5", ".bdf", ".toml"):
+                            shutil.copy(os.path.join(self.folder, file[:-3] + end), place)
+                    with open(os.path.join(place, "system.toml"), "w", encoding="utf-8") as out:
                         out.write(f"# {what}\n" + to_toml(system, "rk"))
             number += 1
         shutil.rmtree(self.folder)
+        if self.write_page:
+            write_table("soak", ["outcome", "how often"],
+                        [(f"`{what}`" if "." in what else what, count) for what, count in outcomes.most_common()],
+                        f"{number} systems of the seeds {seed} to {seed + number - 1}, {found} found.")
         print(f"{number} systems, {found} found")
         for what, count in outcomes.most_common():
             print(f"  {count:5}  {what}")
+        print("decks: " + ", ".join(f"{n} {what}" for what, n in self.decks.most_common()))
         return 1 if found else 0
 
 
@@ -302,6 +380,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--timeout", type=float, default=60)
     parser.add_argument("--keep")
+    parser.add_argument("--write", action="store_true", help="the counts into docs/verification/robustness.md")
     options = parser.parse_args()
     sys.exit(Soak(options).soak(options.minutes, options.seed))
 

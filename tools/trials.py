@@ -1,17 +1,21 @@
 """Ends verbs at random moments, in their n-th write, on disks that fail, and looks at what is left.
 
-    /usr/bin/python3 tools/trials.py build/bin/bough [--times 20] [--seed 1] [--verbs modes,run] [--keep FOLDER]
+    /usr/bin/python3 tools/trials.py build/bin/bough [--times 20] [--disks 20] [--seed 1] [--verbs modes,run]
+                                     [--keep FOLDER] [--write]
 
 For each verb an unbroken call is the reference. A call that is ended must leave its output as it was, or whole, with
 the same numbers; results of `run` may be a beginning of them, and `--resume` must reach the same end: bit for bit at
-fixed step, to tolerance otherwise. Signals that can be caught and failing disks leave no temporary file and exit code 3;
-those that SIGKILL leaves go with the next call. Prints one row a verb and kind; exit 1 when something was found.
+fixed step, to tolerance otherwise; `batch` again must end a campaign as if it had never been ended. Signals that can be
+caught, failing disks, folders that may not be written and limits of memory leave no temporary file and exit code 3 with
+words; what SIGKILL leaves goes with the next call. --times: of each signal; --disks: of each other way. Prints one row
+a verb and kind; exit 1 when something was found. --write puts the table into docs/verification/robustness.md.
 """
 import argparse
 import collections
 import glob
 import os
 import random
+import resource
 import shutil
 import signal
 import subprocess
@@ -22,94 +26,13 @@ import time
 import h5py
 import numpy as np
 
-# Counts what goes to regular files; in the n-th the process dies, or from it on the disk fails.
-PRELOAD = r"""
-#define _GNU_SOURCE
-#include <dlfcn.h>
-#include <errno.h>
-#include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <sys/uio.h>
-#include <unistd.h>
-static long count = 0;
-/* Files of the disk, not those that live in memory. */
-static int is_file(int fd) {
-  struct stat s;
-  char link[40], name[16];
-  if (fstat(fd, &s) != 0 || !S_ISREG(s.st_mode)) return 0;
-  snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
-  const ssize_t n = readlink(link, name, sizeof name);
-  return !(n >= 7 && !strncmp(name, "/memfd:", 7));
-}
-/* 1: fail; 2: write half, then die */
-static int check(void) {
-  const char* at = getenv("TRIAL_AT");
-  const char* log = getenv("TRIAL_LOG");
-  const long n = at ? atol(at) : 0;
-  ++count;
-  if (log) { FILE* f = fopen(log, "w"); if (f) { fprintf(f, "%ld", count); fflush(NULL); } }
-  if (n == 0 || count < n) return 0;
-  const char* error = getenv("TRIAL_ERROR");
-  if (error) { errno = atoi(error); return 1; }
-  return count == n ? 2 : 0;
-}
-#define NEXT(name) static __typeof__(name)* next; if (!next) next = dlsym(RTLD_NEXT, #name)
-#define DIE(signal) do { kill(getpid(), SIGKILL); pause(); } while (0)
-static int in_log = 0;
-static int judge(int fd) {
-  if (in_log || !is_file(fd)) return 0;
-  in_log = 1;
-  const int j = check();
-  in_log = 0;
-  return j;
-}
-ssize_t write(int fd, const void* b, size_t n) {
-  NEXT(write);
-  const int j = judge(fd);
-  if (j == 1) return -1;
-  if (j == 2) { next(fd, b, n / 2); DIE(); }
-  return next(fd, b, n);
-}
-ssize_t pwrite(int fd, const void* b, size_t n, off_t o) {
-  NEXT(pwrite);
-  const int j = judge(fd);
-  if (j == 1) return -1;
-  if (j == 2) { next(fd, b, n / 2, o); DIE(); }
-  return next(fd, b, n, o);
-}
-ssize_t pwrite64(int fd, const void* b, size_t n, off64_t o) {
-  NEXT(pwrite64);
-  const int j = judge(fd);
-  if (j == 1) return -1;
-  if (j == 2) { next(fd, b, n / 2, o); DIE(); }
-  return next(fd, b, n, o);
-}
-ssize_t writev(int fd, const struct iovec* v, int n) {
-  NEXT(writev);
-  const int j = judge(fd);
-  if (j == 1) return -1;
-  if (j == 2) DIE();
-  return next(fd, v, n);
-}
-int fsync(int fd) {
-  NEXT(fsync);
-  const int j = judge(fd);
-  if (j == 1) return -1;
-  if (j == 2) DIE();
-  return next(fd);
-}
-int rename(const char* a, const char* b) {
-  NEXT(rename);
-  const int j = in_log ? 0 : check();
-  if (j == 1) return -1;
-  if (j == 2) DIE();
-  return next(a, b);
-}
-"""
+from robustness_page import write_table
 
+# Counts what goes to regular files; in the n-th the process dies, or from it on the disk fails.
+with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "failing_disk.c"), encoding="ascii") as c_source:
+    PRELOAD = c_source.read()
+# Nobody in particular: who may not write where root may.
+ORDINARY_USER = 65534
 SYSTEM = """[[body]]
 name = "plate"
 file = "plate.h5"
@@ -157,6 +80,22 @@ integrator = "{integrator}"
 {more}
 """
 
+CAMPAIGN = """[campaign]
+steps = ["modes small.bdf -o modes.h5"]
+[[parameter]]
+name = "E"
+file = "small.bdf"
+card = "MAT1"
+id = 1
+field = "E"
+values = [6e10, 7e10, 8e10]
+[[collect]]
+name = "f"
+file = "modes.h5"
+dataset = "/frequency_hz"
+take = "first"
+"""
+
 
 def make_plate(n):
     grids = [f"GRID,{1 + i + j * (n + 1)},,{i / n},{j / n},0." for j in range(n + 1) for i in range(n + 1)]
@@ -182,12 +121,19 @@ def is_equal(a, b):
         np.array_equal(a, b, equal_nan=True) if a.dtype.kind == "f" else np.array_equal(a, b))
 
 
+def calc_difference(a, b):
+    """The largest, relative to the largest value."""
+    if is_equal(a, b):
+        return 0.0
+    return float(np.abs(a - b).max() / (np.abs(a).max() or 1.0)) if a.shape == b.shape else np.inf
+
+
 class Trials:
     def __init__(self, options):
         self.program = os.path.abspath(options.program)
-        self.times, self.random = options.times, random.Random(options.seed)
+        self.times, self.disks, self.random = options.times, options.disks, random.Random(options.seed)
         self.folder = tempfile.mkdtemp(prefix="trials-")
-        self.keep = options.keep
+        self.keep, self.write_page = options.keep, options.write
         self.rows = collections.OrderedDict()
         self.found = 0
         self.preload = os.path.join(self.folder, "preload.so")
@@ -201,7 +147,9 @@ class Trials:
         self.call("reduce", "plate.toml", "-o", "plate.h5")
         self.write("fixed.toml", SYSTEM.format(node=169, duration=4.0, integrator="rk4", more="step = 0.0005"))
         self.write("free.toml", SYSTEM.format(node=169, duration=40.0, integrator="rk", more=""))
-        self.write("campaign.toml", '[campaign]\nverb = "modes"\ninput = "plate.bdf"\n')
+        self.write("small.bdf", make_plate(2))
+        self.write("campaign.toml", CAMPAIGN)
+        self.worst = {}  # of runs that were resumed: largest difference, relative to the largest value
 
     def write(self, name, text):
         with open(os.path.join(self.folder, name), "w", encoding="utf-8") as out:
@@ -210,14 +158,16 @@ class Trials:
     def path(self, name):
         return os.path.join(self.folder, name)
 
-    def start(self, *arguments, **more):
+    def start(self, *arguments, user=None, memory=None, **more):
         environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
         for key, value in more.items():
             environment[key] = str(value)
         if more:
             environment["LD_PRELOAD"] = self.preload
+        limit = None if memory is None else lambda: resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+        ids = {} if user is None else {"user": user, "group": user, "extra_groups": []}
         return subprocess.Popen([self.program, *arguments], cwd=self.folder, stdout=subprocess.DEVNULL,
-                                stderr=subprocess.PIPE, text=True, env=environment)
+                                stderr=subprocess.PIPE, text=True, env=environment, preexec_fn=limit, **ids)
 
     def call(self, *arguments, **more):
         process = self.start(*arguments, **more)
@@ -249,34 +199,47 @@ class Trials:
         self.call(*arguments, "-o", output, TRIAL_LOG=self.path("count"))
         with open(self.path("count"), encoding="ascii") as f:
             writes = int(f.read())
-        for kind in ("KILL", "TERM", "INT", "n-th write", "disk full", "disk error"):
+        for kind in ("KILL", "TERM", "INT"):
             for _ in range(self.times):
                 self.try_once(verb, kind, arguments, output, reference, took, writes)
+        for kind in ("n-th write", "disk full", "disk error", "memory", "read-only"):
+            for _ in range(self.disks if kind != "read-only" else 3):
+                self.try_once(verb, kind, arguments, output, reference, took, writes)
+
+    def end(self, kind, call, took, writes):
+        """The call, ended in one way: its process and what it said."""
+        if kind in ("KILL", "TERM", "INT"):
+            process = self.start(*call)
+            try:
+                return process, process.communicate(timeout=self.random.uniform(0, 1.1 * took))[1]
+            except subprocess.TimeoutExpired:
+                process.send_signal(getattr(signal, "SIG" + kind))
+        elif kind == "memory":
+            process = self.start(*call, memory=self.random.randint(150, 500) << 20)
+        elif kind == "read-only":
+            process = self.start(*call, user=ORDINARY_USER if os.getuid() == 0 else None)
+        else:
+            error = {"disk full": {"TRIAL_ERROR": 28}, "disk error": {"TRIAL_ERROR": 5}}.get(kind, {})
+            process = self.start(*call, TRIAL_AT=self.random.randint(1, writes), **error)
+        return process, process.communicate(timeout=120)[1]
 
     def try_once(self, verb, kind, arguments, output, reference, took, writes):
         path = self.path(output)
         for old in self.get_parts() + [path]:
             if os.path.exists(old):
                 os.remove(old)
-        was_there = verb != "run" and self.random.random() < 0.5
+        was_there = not verb.startswith("run") and self.random.random() < 0.5
         if was_there:
             shutil.copyfile(self.path("old"), path)
-        said = ""
-        if kind in ("KILL", "TERM", "INT"):
-            process = self.start(*arguments, "-o", output)
-            try:
-                said = process.communicate(timeout=self.random.uniform(0, 1.1 * took))[1]
-            except subprocess.TimeoutExpired:
-                process.send_signal(getattr(signal, "SIG" + kind))
-                said = process.communicate(timeout=120)[1]
-        else:
-            error = {"disk full": {"TRIAL_ERROR": 28}, "disk error": {"TRIAL_ERROR": 5}}.get(kind, {})
-            process = self.start(*arguments, "-o", output, TRIAL_AT=self.random.randint(1, writes), **error)
-            said = process.communicate(timeout=120)[1]
+        os.chmod(self.folder, 0o555 if kind == "read-only" else 0o755)
+        process, said = self.end(kind, [*arguments, "-o", output], took, writes)
+        os.chmod(self.folder, 0o755)
         code = process.returncode
+        if kind == "memory" and code == 127:
+            return self.note(verb, kind, "before it began")  # its libraries find no room
         died = kind in ("KILL", "n-th write")
         allowed = (0, -9) if died else (0, 3) + ((-getattr(signal, "SIG" + kind),) if kind in ("TERM", "INT") else ())
-        if code not in allowed:
+        if code not in allowed or (kind == "read-only" and code == 0):
             return self.accuse(verb, kind, f"exit {code}", said)
         if code == 3 and not said.strip():
             return self.accuse(verb, kind, "exit 3 without a word", said)
@@ -289,11 +252,46 @@ class Trials:
             return self.accuse(verb, kind, f"exit 0, and the output is {state}", said)
         if code < 0 and kind in ("TERM", "INT"):
             state = "before it began"
-        if verb == "run" and state == "beginning":
-            state = self.resume(arguments, output, reference)
+        if verb.startswith("run") and state == "beginning":
+            state = self.resume(verb, arguments, output, reference)
             if state.startswith("!"):
                 return self.accuse(verb, kind, state[1:], said)
         return self.note(verb, kind, state)
+
+    def read_campaign(self, folder):
+        """What a campaign found, but for the time that it took."""
+        found = read_all(self.path(folder + "/outcomes.h5"))
+        with open(self.path(folder + "/outcomes.csv"), encoding="utf-8") as f:
+            heads, *rows = [line.rstrip("\n").split(",") for line in f if not line.startswith("#")]
+        timed = [k for k, head in enumerate(heads) if "seconds" in head]
+        table = [[x for k, x in enumerate(row) if k not in timed] for row in rows]
+        return {k: v for k, v in found.items() if "seconds" not in k}, table
+
+    def try_batch(self):
+        """A campaign that is ended and called again is one that was never ended."""
+        begin = time.monotonic()
+        self.call("batch", "campaign.toml", "-j", "1", "-o", "whole-campaign")
+        took, (numbers, table) = time.monotonic() - begin, self.read_campaign("whole-campaign")
+        for kind in ("KILL", "TERM", "INT"):
+            for _ in range(self.times):
+                shutil.rmtree(self.path("campaign"), ignore_errors=True)
+                process, said = self.end(kind, ["batch", "campaign.toml", "-j", "1", "-o", "campaign"], took, 0)
+                code = process.returncode
+                if code not in (0, 3, -getattr(signal, "SIG" + kind)):
+                    self.accuse("batch", kind, f"exit {code}", said)
+                    continue
+                process = self.start("batch", "campaign.toml", "-j", "1", "-o", "campaign")
+                said = process.communicate(timeout=600)[1]
+                if process.returncode:
+                    self.accuse("batch", kind, f"again: exit {process.returncode}", said)
+                    continue
+                now, rows = self.read_campaign("campaign")
+                parts = glob.glob(self.path("campaign/**/*bough-part*"), recursive=True)
+                if rows != table or now.keys() != numbers.keys() or parts or not all(
+                        is_equal(now[k], numbers[k]) for k in numbers):
+                    self.accuse("batch", kind, f"again: another outcome {parts}", said)
+                    continue
+                self.note("batch", kind, "whole" if code == 0 else "ended, called again")
 
     def look(self, verb, output, reference, was_there):
         path = self.path(output)
@@ -308,12 +306,13 @@ class Trials:
         try:
             now = read_all(path)
         except (OSError, RuntimeError):
-            return "as before" if verb == "run" and self.is_refused(output) else "not readable"
+            return "as before" if verb.startswith("run") and self.is_refused(output) else "not readable"
         if now.keys() == reference.keys() and all(is_equal(now[k], reference[k]) for k in reference):
             return "whole"
-        if verb != "run":
+        if not verb.startswith("run"):
             return "half"
-        n = len(now.get("time", ()))
+        with h5py.File(path, "r") as f:  # datasets grow one by one; this number is the last to change
+            n = int(f.attrs["num_samples"])
         same = all(is_equal(now[k][:n], reference[k][:n]) for k in ("time", "sensors/edge") if k in now)
         return "beginning" if same else "not a beginning of the unbroken run"
 
@@ -321,7 +320,7 @@ class Trials:
         """Whether the program itself says that the file is none."""
         return subprocess.run([self.program, "info", output], cwd=self.folder, capture_output=True).returncode == 1
 
-    def resume(self, arguments, output, reference):
+    def resume(self, verb, arguments, output, reference):
         process = self.start(*arguments, "-o", output, "--resume")
         said = process.communicate(timeout=600)[1]
         if process.returncode == 1 and "checkpoint" in said:
@@ -331,12 +330,32 @@ class Trials:
         if self.get_parts():
             return f"!after resume: {self.get_parts()}"
         now = read_all(self.path(output))
-        if len(now["time"]) != len(reference["time"]):
-            return f"!resume: {len(now['time'])} samples, unbroken {len(reference['time'])}"
-        worst = np.abs(now["sensors/edge"] - reference["sensors/edge"]).max() / np.abs(reference["sensors/edge"]).max()
-        if "fixed.toml" in arguments and worst != 0:
-            return f"!resume: differs by {worst:.1e} at fixed step"
-        return f"!resume: differs by {worst:.1e}" if worst > 1e-3 else "resumed"
+        n = len(reference["time"])
+        if len(now["time"]) != n:
+            return f"!resume: {len(now['time'])} samples, unbroken {n}"
+        # What is the same in each sample; the counters of the integrator begin anew.
+        names = [k for k, v in reference.items() if getattr(v, "shape", ())[:1] == (n,) and v.dtype.kind == "f" and
+                 k.split("/")[0] in ("time", "sensors", "bodies", "hinges", "energy", "signals")]
+        differences = {name: calc_difference(reference[name], now[name]) for name in names}
+        worst = max((difference, name) for name, difference in differences.items())
+        self.worst[verb] = max(self.worst.get(verb, worst), worst)
+        if "fixed.toml" in arguments:
+            return f"!resume: {worst[1]} differs by {worst[0]:.1e} at fixed step" if worst[0] else "resumed"
+        # As near to the unbroken run as that is to one of tolerances a hundred times narrower.
+        narrow = read_all(self.get_narrow(arguments))
+        for name, difference in differences.items():
+            allowed = 1e-7 + 5 * calc_difference(reference[name], narrow[name])
+            if difference > allowed:
+                return f"!resume: {name} differs by {difference:.1e}, allowed {allowed:.1e}"
+        return "resumed"
+
+    def get_narrow(self, arguments):
+        path = self.path("narrow.h5")
+        if not os.path.exists(path):
+            with open(self.path(arguments[1]), encoding="utf-8") as f:
+                self.write("narrow.toml", f.read() + "relative_tolerance = 1e-10\nabsolute_tolerance = 1e-14\n")
+            self.call("run", "narrow.toml", "-o", "narrow.h5")
+        return path
 
     def run(self, verbs):
         self.call("modes", "plate.bdf", "-n", "2", "-o", "old")
@@ -351,23 +370,42 @@ class Trials:
             "run": (["run", "fixed.toml"], "out.h5"),
             "run (adaptive)": (["run", "free.toml"], "out.h5"),
         }
-        for verb in verbs or calls:
-            if calls.get(verb):
-                self.try_verb(verb.split()[0], *calls[verb])
-        print(f"{'verb':10} {'ended by':11} what was left")
-        for (verb, kind), outcomes in self.rows.items():
-            print(f"{verb:10} {kind:11} " + ", ".join(f"{n} {what}" for what, n in outcomes.most_common()))
+        for verb in verbs or [*calls, "batch"]:
+            if verb == "batch":
+                self.try_batch()
+            elif calls.get(verb):
+                self.try_verb(verb, *calls[verb])
+            self.write_rows()
+        rows = [(verb, kind, ", ".join(f"{n} {what}" for what, n in outcomes.most_common()))
+                for (verb, kind), outcomes in self.rows.items()]
+        print(f"{'verb':14} {'ended by':11} what was left")
+        for verb, kind, outcome in rows:
+            print(f"{verb:14} {kind:11} {outcome}")
+        for verb, (worst, name) in self.worst.items():
+            print(f"{verb}: resumed and unbroken differ by {worst:.1e} at most ({name})")
         shutil.rmtree(self.folder)
         return 1 if self.found else 0
+
+    def write_rows(self):
+        if self.write_page:
+            rows = [(verb, kind, ", ".join(f"{n} {what}" for what, n in outcomes.most_common()))
+                    for (verb, kind), outcomes in self.rows.items()]
+            differ = "\n".join(f"`{verb}`, resumed and unbroken, differ by {worst:.1e} of the largest value at most."
+                               for verb, (worst, _) in self.worst.items())
+            write_table("trials", ["verb", "ended by", "how often", "what was left"],
+                        [(f"`{verb}`", kind, sum(self.rows[verb, kind].values()), outcome)
+                         for verb, kind, outcome in rows], differ)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("program")
     parser.add_argument("--times", type=int, default=20)
+    parser.add_argument("--disks", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--verbs", type=lambda text: text.split(","), default=[])
     parser.add_argument("--keep")
+    parser.add_argument("--write", action="store_true", help="the table into docs/verification/robustness.md")
     options = parser.parse_args()
     sys.exit(Trials(options).run(options.verbs))
 

@@ -1,5 +1,7 @@
 #include "cli/common/deck_tables.hpp"
 
+#include <map>
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -222,16 +224,13 @@ std::string format_autospc(const fe::Model& model) {
 }
 
 std::string format_card_counts(const records::Deck& deck) {
-  Table table{{"card", "count", ""}, {}};
-  for (const auto& [name, count] : deck.card_counts) {
-    std::string remark;
-    for (const auto& card : deck.unused) {
-      if (card.name != name) continue;
-      const auto at = deck.locate(card.first);
-      remark = fmt::format("skipped, first at {}:{}", at.file, at.line);
-    }
-    table.rows.push_back({name, std::to_string(count), remark});
+  std::map<std::string, std::string> remarks;
+  for (const auto& card : deck.unused) {
+    const auto at = deck.locate(card.first);
+    remarks[card.name] = fmt::format("skipped, first at {}:{}", at.file, at.line);
   }
+  Table table{{"card", "count", ""}, {}};
+  for (const auto& [name, count] : deck.card_counts) table.rows.push_back({name, std::to_string(count), remarks[name]});
   return table.to_text();
 }
 

@@ -103,6 +103,7 @@ records::Deck read_deck_of_points(const records::BodySpec& spec, Diagnostics& di
 }  // namespace
 
 bool is_hdf5(const std::string& path) {
+  demand_file(path);
   std::ifstream in(path, std::ios::binary);
   char head[8] = {};
   in.read(head, 8);

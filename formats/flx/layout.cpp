@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -303,7 +304,9 @@ class LayoutParser {
 Layout parse_layout(const std::string& text, const std::string& file) { return LayoutParser(text, file).parse(); }
 
 Layout read_layout(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
+  std::error_code failed;
+  std::ifstream in;
+  if (std::filesystem::is_regular_file(path, failed)) in.open(path, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
   if (!in)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -69,7 +70,9 @@ ListReader::ListReader(std::string text, std::string file, Diagnostics& diagnost
     : text_(std::move(text)), file_(std::move(file)), diagnostics_(diagnostics) {}
 
 ListReader ListReader::open(const std::string& path, Diagnostics& diagnostics) {
-  std::ifstream in(path, std::ios::binary);
+  std::error_code failed;
+  std::ifstream in;
+  if (std::filesystem::is_regular_file(path, failed)) in.open(path, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
   if (!in || text.fail())

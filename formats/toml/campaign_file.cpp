@@ -151,8 +151,9 @@ class Reader {
       diagnostics_.error("batch.bad-table", line > 0 ? SourceLocation{spec_.table, line} : asked_at, what, advice);
     };
     std::error_code failed;
-    std::ifstream in(spec_.table);
-    if (!in || std::filesystem::is_directory(spec_.table, failed))
+    std::ifstream in;
+    if (std::filesystem::is_regular_file(spec_.table, failed)) in.open(spec_.table);
+    if (!in.is_open())
       return bad(0, "the table " + spec_.table + " cannot be opened", "check its path, relative to this file");
     std::vector<std::size_t> columns;
     std::string line;

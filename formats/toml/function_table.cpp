@@ -1,6 +1,7 @@
 #include "formats/toml/detail/function_table.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <numbers>
@@ -12,6 +13,8 @@ namespace {
 
 /// MATLAB and HDF5 files are known by their first bytes; they are read where the libraries for them are.
 bool is_binary_table(const std::string& path) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed)) return false;
   std::ifstream in(path, std::ios::binary);
   char start[8] = {};
   in.read(start, sizeof start);

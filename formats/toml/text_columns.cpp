@@ -132,9 +132,11 @@ class Reader {
 
 void read_columns(const std::string& path, const SourceLocation& asked_at, const ColumnChoice& choice,
                   std::vector<double>& x, std::vector<double>& y, Diagnostics& diagnostics) {
+  // A pipe would be waited for, a device has no end.
   std::error_code error;
-  std::ifstream in(path);
-  if (!in || std::filesystem::is_directory(path, error)) {
+  std::ifstream in;
+  if (std::filesystem::is_regular_file(path, error)) in.open(path);
+  if (!in.is_open()) {
     diagnostics.error("toml.table-file", asked_at, "the table file " + path + " cannot be opened",
                       "check its path, relative to this file");
     return;

@@ -1,4 +1,6 @@
 """Input without end or measure is told in a moment: names, includes, repeats, numbers, signs."""
+import os
+import time
 import unittest
 import xml.dom.minidom
 
@@ -46,6 +48,57 @@ class Limits(ProgramTest):
         many = "".join(lines.format(k * 1000000, 700000) for k in (1, 2, 3))
         self.write("repeat.bdf", BEAM.replace("GRID,3", many + "GRID,3"))
         self.fails(1, "check", "repeat.bdf", says=["more than 2000000 cards"], error="deck.bad-replication")
+
+    def read_soon(self, code, name, says):
+        """Time that grows with the square of the lines would be minutes."""
+        begin = time.monotonic()
+        said = self.bough("check", name, code=code).stderr
+        self.assertLess(time.monotonic() - begin, 30)
+        self.assertIn(says, said)
+        self.assertLess(len(said), 20000)
+
+    def test_words_without_end(self):
+        def make_word(k):
+            return "Q" + "".join(chr(65 + k // 26**i % 26) for i in range(5))
+
+        words = [make_word(k) for k in range(60000)]
+        self.write("cards.bdf", BEAM.replace("ENDDATA", "\n".join(w + ",1,2" for w in words) + "\nENDDATA"))
+        self.read_soon(1, "cards.bdf", "[deck.unknown-card]")
+        self.write("params.bdf", BEAM.replace("ENDDATA", "\n".join(f"PARAM,{w},2" for w in words[:20000]) + "\nENDDATA"))
+        self.read_soon(0, "params.bdf", "[deck.unknown-param]")
+        self.write("control.bdf", BEAM.replace("BEGIN BULK", "\n".join(words) + "\nBEGIN BULK"))
+        self.read_soon(0, "control.bdf", "more")
+        self.write("subcases.bdf", BEAM.replace("BEGIN BULK", "SUBCASE 7\n" * 20000 + "BEGIN BULK"))
+        self.read_soon(1, "subcases.bdf", "subcase 7 is defined twice")
+
+    def test_includes_that_are_missing(self):
+        lines = [f"GRID,{k + 100},,{k}.,0.,0.\nINCLUDE 'n{k}.bdf'" for k in range(30000)]
+        self.write("missing.bdf", BEAM.replace("ENDDATA", "\n".join(lines) + "\nENDDATA"))
+        self.read_soon(1, "missing.bdf", "more than 20000 files")
+
+    def test_continuations_that_all_look_for_one_line(self):
+        n = 60000
+        lines = ["GRID,7,,1.,0.,0.,,,,+C"] + ["+A,,,,,,,,,+B"] * n + ["+B,,,,,,,,,+A"] * n
+        self.write("tags.bdf", BEAM.replace("ENDDATA", "\n".join(lines) + "\nENDDATA"))
+        begin = time.monotonic()
+        self.bough("check", "tags.bdf", code=1)
+        self.assertLess(time.monotonic() - begin, 30)
+
+    def test_pipes_and_devices_are_no_tables(self):
+        """A pipe is waited for, a device has no end: what a file of a stranger names is a file or nothing."""
+        os.mkfifo(self.path("pipe"))
+        self.write("beam.bdf", BEAM)
+        for place in ("pipe", "/dev/zero"):
+            self.write("top.toml", '[[body]]\nname = "top"\nmass = 1.0\ninertia = [1.0, 1.0, 1.0]\n'
+                       '[[hinge]]\nname = "h"\ntype = "revolute"\nchild = "top"\nmotion = "f"\n'
+                       f'[[function]]\nname = "f"\ntype = "table"\nfile = "{place}"\n'
+                       '[simulation]\nduration = 1.0\noutput_step = 0.1\n')
+            self.fails(1, "check", "top.toml", says=["cannot be opened"], error="toml.table-file")
+            self.write("study.toml", f'[campaign]\nmethod = "list"\ntable = "{place}"\nsteps = ["check beam.bdf"]\n'
+                       '[[parameter]]\nname = "E"\nfile = "beam.bdf"\ncard = "MAT1"\nid = 1\nfield = "E"\n')
+            self.fails(1, "batch", "study.toml", says=["cannot be opened"], error="batch.bad-table")
+            for verb in ("check", "modes", "reduce", "run", "flx", "info", "batch"):
+                self.fails(1, verb, place)
 
     def test_negative_spring_is_named(self):
         self.write("y.bdf", "SOL 103\nCEND\nSPC=1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,0.,0.,0.\n"

@@ -7,6 +7,7 @@
 
 #include <unistd.h>
 
+#include "base/part_file.hpp"
 #include "formats/hdf5/detail/inspect.hpp"
 
 namespace bough::hdf5 {
@@ -76,6 +77,8 @@ Handle open_file(const std::string& path, bool to_write) {
     if (to_write && H5Fis_hdf5(path.c_str()) > 0 && ::access(path.c_str(), W_OK) != 0) {
       throw InputError("hdf5.cannot-open", {path}, "the file cannot be written to", "check its permissions");
     }
+    if (is_file_locked(path))
+      throw InputError("hdf5.busy", {path}, "another process writes this file", "wait until it ends, or choose another");
     throw InputError(
         "hdf5.truncated", {path},
         "the file ends early or is damaged: " + std::to_string(std::filesystem::file_size(path, ignored)) + " bytes",

@@ -19,6 +19,8 @@ namespace {
 /// Beyond this many lines that are no cards the file is not a deck.
 constexpr int max_unreadable = 20;
 constexpr int max_repeats = 1'000'000;
+/// Unknown names for which the nearest known one is looked for.
+constexpr int max_proposals = 20;
 /// Of all repeat lines of a deck together.
 constexpr long max_all_repeats = 2'000'000;
 
@@ -306,7 +308,8 @@ class Builder {
       deck_.unused.push_back({name, effect.value_or(records::CardEffect::None), entry.count, entry.first});
     const std::string times = entry.count == 1 ? "1 card" : std::to_string(entry.count) + " cards, the first here";
     if (!effect) {
-      const auto nearest = find_nearest_card(name);
+      // A file of words that is no deck has no end of them.
+      const auto nearest = ++num_unknown_ > max_proposals ? std::string{} : find_nearest_card(name);
       const std::string what = name + " is not the name of a Nastran card (" + times + ")";
       if (is_ignored)
         diagnostics_.warning("deck.ignored-card", where, what, "ignored as asked");
@@ -351,6 +354,7 @@ class Builder {
   bool last_is_plain_ = false;
   int last_card_ = -1;
   int num_unreadable_ = 0;
+  int num_unknown_ = 0;  ///< names that are those of no card
   long num_repeats_ = 0;  ///< cards made by repeat lines
   bool stopped_ = false;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <unordered_set>
 
 #include "formats/nastran/detail/control_words.hpp"
 #include "formats/nastran/detail/dynamic_control.hpp"
@@ -13,6 +14,9 @@ namespace bough::nastran::detail {
 namespace {
 
 using records::Subcase;
+
+/// Words of one note.
+constexpr std::size_t most_words = 100;
 
 /// Exact word, or an abbreviation of at least `shortest` letters.
 bool is_command(std::string_view word, std::string_view command, std::size_t shortest) {
@@ -187,10 +191,9 @@ class CaseControl {
       bad_value(c);
       return;
     }
-    for (const auto& other : deck_.subcases)
-      if (other.id == *id)
-        diagnostics_.error("deck.case-control-value", deck_.locate(at_),
-                           "subcase " + std::to_string(*id) + " is defined twice", "number the subcases differently");
+    if (!subcase_ids_.insert(*id).second)
+      diagnostics_.error("deck.case-control-value", deck_.locate(at_),
+                         "subcase " + std::to_string(*id) + " is defined twice", "number the subcases differently");
     deck_.subcases.push_back(above_);
     deck_.subcases.back().id = *id;
     in_subcase_ = true;
@@ -259,8 +262,7 @@ class CaseControl {
   }
 
   void note(const std::string& word) {
-    const bool is_new = std::none_of(ignored_.begin(), ignored_.end(), [&](const auto& i) { return i.first == word; });
-    if (is_new) ignored_.emplace_back(word, at_);
+    if (noted_.insert(word).second) ignored_.emplace_back(word, at_);
   }
 
   void finish() {
@@ -269,8 +271,10 @@ class CaseControl {
     choose_matrices(deck_, sets_, at_, diagnostics_);
     if (ignored_.empty()) return;
     std::string words;
-    for (const auto& [word, at] : ignored_)
-      words += (words.empty() ? "" : ", ") + word + " (line " + std::to_string(at.line) + ")";
+    const auto num_shown = std::min(ignored_.size(), most_words);
+    for (std::size_t i = 0; i < num_shown; ++i)
+      words += (i == 0 ? "" : ", ") + ignored_[i].first + " (line " + std::to_string(ignored_[i].second.line) + ")";
+    if (num_shown < ignored_.size()) words += " and " + std::to_string(ignored_.size() - num_shown) + " more";
     diagnostics_.note("deck.case-control-ignored", deck_.locate(ignored_.front().second),
                       "case control not used: " + words, "nothing to do, unless one of them should matter");
   }
@@ -284,6 +288,8 @@ class CaseControl {
   bool in_subcase_ = false, in_plot_section_ = false, skipping_ = false;
   records::CardLocation at_;
   std::vector<std::pair<std::string, records::CardLocation>> ignored_;
+  std::unordered_set<std::string> noted_;  ///< the words of ignored_
+  std::unordered_set<int> subcase_ids_;
   NamedSets sets_;
 };
 

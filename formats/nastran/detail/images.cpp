@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
+#include <set>
 #include <unordered_map>
 
 #include "formats/nastran/detail/text.hpp"
@@ -97,16 +99,23 @@ class Grouper {
                          "write '+' in the empty line if it stands for eight blank fields, or remove it");
   }
 
-  using Tails = std::unordered_map<std::string, std::vector<int>>;
+  using Tails = std::unordered_map<std::string, std::set<int>>;
 
-  /// The nearest parent before the fragment that nothing continues yet, else the first one after it; or -1.
-  int find_parent(const Tails& tails, const std::string& tag, int fragment) {
+  /// The nearest parent before the fragment that nothing continues yet, else the first one after it; or -1. Those that
+  /// are continued already are of no use to any other, and leave.
+  int find_parent(Tails& tails, const std::string& tag, int fragment) {
     const auto found = tails.find(tag);
     if (found == tails.end()) return -1;
-    int parent = -1;
-    for (const int i : found->second)
-      if (i != fragment && image(i).next < 0 && (i < fragment || parent < 0)) parent = i;
-    return parent;
+    auto& ends = found->second;
+    auto after = ends.lower_bound(fragment);
+    while (after != ends.begin()) {
+      const auto before = std::prev(after);
+      if (image(*before).next < 0) return *before;
+      after = ends.erase(before);
+    }
+    if (after != ends.end() && *after == fragment) ++after;
+    while (after != ends.end() && image(*after).next >= 0) after = ends.erase(after);
+    return after == ends.end() ? -1 : *after;
   }
 
   /// Tags first, over the whole deck, those that are equal to the letter before those that differ by marks; then what
@@ -116,9 +125,9 @@ class Grouper {
     for (int i = 0; i < static_cast<int>(result_.images.size()); ++i) {
       const auto tag = tail_tag(i);
       if (tag.empty()) continue;
-      tails[make_upper(strip_mark(tag))].push_back(i);
-      if (!is_mark(tag) && tag.size() > 1) tails[make_upper(trim(tag.substr(1)))].push_back(i);
-      bare_tails[make_upper(strip_marks(tag))].push_back(i);
+      tails[make_upper(strip_mark(tag))].insert(i);
+      if (!is_mark(tag) && tag.size() > 1) tails[make_upper(trim(tag.substr(1)))].insert(i);
+      bare_tails[make_upper(strip_marks(tag))].insert(i);
     }
     for (const auto& fragment : fragments_) {
       const auto tag = strip_mark(get_first_field(text(image(fragment.image).first_line)));

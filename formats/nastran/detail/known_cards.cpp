@@ -152,13 +152,15 @@ std::optional<CardEffect> find_effect(std::string_view name) {
 }
 
 std::string find_nearest_card(std::string_view name) {
-  std::vector<std::string> read, known;
-  for (const auto& [card, parser] : get_card_parsers()) read.emplace_back(card);
-  std::sort(read.begin(), read.end());
-  if (auto nearest = find_nearest(name, read); !nearest.empty()) return nearest;
-  for (const auto& [card, effect] : get_effects()) known.emplace_back(card);
-  std::sort(known.begin(), known.end());
-  return find_nearest(name, known);
+  const auto sort_names = [](const auto& table) {
+    std::vector<std::string> names;
+    for (const auto& entry : table) names.emplace_back(entry.first);
+    std::sort(names.begin(), names.end());
+    return names;
+  };
+  static const auto read = sort_names(get_card_parsers()), known = sort_names(get_effects());
+  const auto nearest = find_nearest(name, read);
+  return nearest.empty() ? find_nearest(name, known) : nearest;
 }
 
 const char* find_loss(std::string_view name) {

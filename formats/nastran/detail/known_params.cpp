@@ -115,6 +115,9 @@ constexpr std::string_view known_params =
     "VUELJUMP VUENEXT VUEXIST VUGJUMP VUGNEXT VUHEXA VUPENTA VUQUAD4 VUTETRA VUTRIA3 W3 W3FL W4 W4FL WMODAL WR3 WR4 "
     "WRBEAMB WRN WVLQ XFACX XFACY XFLAG XUPFAC XYUNIT ZROCMAS ZROVEC";
 
+/// Unknown names for which the nearest known one is looked for.
+constexpr int max_proposals_of_params = 20;
+
 /// How those of SOL 600 and SOL 700 begin, hundreds of them.
 constexpr std::array<std::string_view, 3> known_prefixes{"MAR", "MR", "DY"};
 
@@ -187,6 +190,7 @@ void report_params(records::Deck& deck, Diagnostics& diagnostics, bool of_respon
   std::string list;
   records::CardLocation first;
   std::unordered_set<std::string> seen;
+  int num_unknown = 0;
   for (const auto& param : deck.params) {
     if (std::find(names.used.begin(), names.used.end(), param.name) != names.used.end()) continue;
     if (!seen.insert(param.name).second) continue;
@@ -194,8 +198,9 @@ void report_params(records::Deck& deck, Diagnostics& diagnostics, bool of_respon
     if (of_responses && std::any_of(more.begin(), more.end(), [&](const Rule& r) { return r.name == param.name; }))
       continue;
     if (!is_known(names, param.name)) {
-      auto nearest = find_nearest(param.name, names.used);
-      if (nearest.empty()) nearest = find_nearest(param.name, names.all);
+      const bool is_looked_for = ++num_unknown <= max_proposals_of_params;
+      auto nearest = is_looked_for ? find_nearest(param.name, names.used) : std::string{};
+      if (is_looked_for && nearest.empty()) nearest = find_nearest(param.name, names.all);
       diagnostics.warning("deck.unknown-param", deck.locate(param.at),
                           "PARAM," + param.name + " is no parameter that Nastran knows; it is not used",
                           nearest.empty() ? "correct the name, or remove the card" : "did you mean " + nearest);

@@ -61,7 +61,7 @@ class Cursor {
 
 /// Files that include files: more than this is no deck of a user.
 constexpr std::size_t kMostLevels = 100;
-/// INCLUDE statements followed, and bytes of files read again, all in all: files that include a file twice, which does
+/// INCLUDE statements, and bytes of files read again, all in all: files that include a file twice, which does
 /// the same, double with each level.
 constexpr int kMostIncludes = 20'000;
 constexpr std::size_t kMostRepeated = std::size_t{1} << 30;
@@ -225,18 +225,26 @@ class Loader {
     return std::nullopt;
   }
 
-  /// Between SOL and CEND.
-  bool is_executive() const {
-    bool has_sol = false;
-    for (const auto& line : source_.lines) {
-      const auto word = find_first_word(line.text);
-      has_sol = has_sol || is_word(word, "SOL");
-      if (is_word(word, "CEND") || is_word(word, "BEGIN")) return false;
+  /// Between SOL and CEND. Each line is looked at once, however many files are missing.
+  bool is_executive() {
+    for (; num_looked_at_ < source_.lines.size(); ++num_looked_at_) {
+      const auto word = find_first_word(source_.lines[num_looked_at_].text);
+      has_sol_ = has_sol_ || is_word(word, "SOL");
+      is_past_executive_ = is_past_executive_ || is_word(word, "CEND") || is_word(word, "BEGIN");
     }
-    return has_sol;
+    return has_sol_ && !is_past_executive_;
+  }
+
+  void fail_many(const std::string& what, const SourceLocation& where) {
+    diagnostics_.error("deck.include-many", where, what, "let the deck include each part once");
+    done_ = true;
   }
 
   void include(const std::string& name, const fs::path& folder, const SourceLocation& where, IncludeLine statement) {
+    if (++num_includes_ > kMostIncludes) {
+      fail_many("INCLUDE reads more than " + std::to_string(kMostIncludes) + " files", where);
+      return;
+    }
     auto path = find_file(name, folder);
     const std::string symbol = get_symbol(name);
     const auto value = find_symbol(symbol);
@@ -285,14 +293,11 @@ class Loader {
     }
     const std::string_view text = source_.texts[static_cast<std::size_t>(known - source_.files.begin())];
     if (!is_new) repeated_ += text.size();
-    if (depth() > kMostLevels || ++num_includes_ > kMostIncludes || repeated_ > kMostRepeated) {
-      diagnostics_.error("deck.include-many", where,
-                         depth() > kMostLevels
-                             ? "files include files over more than " + std::to_string(kMostLevels) + " levels"
-                             : "INCLUDE reads more than " + std::to_string(kMostIncludes) +
-                                   " files, or a gigabyte of files that were read before",
-                         "let the deck include each part once");
-      done_ = true;
+    if (depth() > kMostLevels || repeated_ > kMostRepeated) {
+      fail_many(depth() > kMostLevels
+                    ? "files include files over more than " + std::to_string(kMostLevels) + " levels"
+                    : std::string("INCLUDE reads a gigabyte of files that were read before"),
+                where);
       return;
     }
     statement.target = static_cast<int>(known - source_.files.begin());
@@ -306,6 +311,8 @@ class Loader {
   Diagnostics& diagnostics_;
   std::vector<std::string> chain_;  ///< canonical paths of the files open now
   fs::path root_;
+  std::size_t num_looked_at_ = 0;  ///< lines, by is_executive
+  bool has_sol_ = false, is_past_executive_ = false;
   int num_includes_ = 0;
   std::size_t repeated_ = 0;  ///< bytes of files that were included before
   bool done_ = false;

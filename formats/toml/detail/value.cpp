@@ -83,8 +83,9 @@ const char* describe_kind(Value::Kind kind) {
 
 bool read_text(const std::string& path, std::string& text, Diagnostics& diagnostics) {
   std::error_code error;
-  std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path, error)) {
+  std::ifstream in;
+  if (std::filesystem::is_regular_file(path, error)) in.open(path, std::ios::binary);
+  if (!in.is_open()) {
     diagnostics.error("toml.cannot-open", {path}, "the file cannot be opened", "check its path and permissions");
     return false;
   }
