@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(BOUGH_NARROW)
 #define BOUGH_WIDE __attribute__((target("avx2,fma")))
 #endif
 #define BOUGH_INLINE inline __attribute__((always_inline))
