@@ -17,6 +17,7 @@
 #include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/compare/compare_report.hpp"
+#include "cli/reduce/matrix_files.hpp"
 #include "cli/reduce/reduce_body.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/nastran/loads_deck.hpp"

@@ -17,8 +17,8 @@ struct System::Impl {
   std::vector<AppliedForce> forces;
   std::vector<AppliedForce> driven;  ///< whose value is a signal: see signals
   Loops loops;
-  VectorXd initial_q, initial_u;                      ///< with closed loops; empty: as the records say
-  std::vector<Closing> initial_closings;              ///< likewise
+  VectorXd initial_q, initial_u;          ///< with closed loops; empty: as the records say
+  std::vector<Closing> initial_closings;  ///< likewise
   std::vector<std::unique_ptr<const ForceElement>> elements;
   std::vector<Latch> latches;
   SignalGraph signals;
@@ -26,8 +26,8 @@ struct System::Impl {
   Vector3d gravity = Vector3d::Zero();
   std::vector<double> breakpoints, landmarks;
   double start = 0;
-  bool is_lagged = false;   ///< bodies are stiffened by blocks of signals, not by themselves
-  std::vector<bool> sound;  ///< by body: its record and its hinge have no errors
+  bool is_lagged = false;                             ///< bodies are stiffened by blocks of signals, not by themselves
+  std::vector<bool> sound;                            ///< by body: its record and its hinge have no errors
   std::vector<std::unique_ptr<Recovery>> recoveries;  ///< by body; nullptr: nothing is recovered of it
 };
 

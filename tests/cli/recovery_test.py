@@ -14,13 +14,13 @@ MASS = RHO * A * H  # of an element; lumped, half of it at each grid
 
 
 def make_deck(load="FORCE,2,9,,1.,300.,40.,-25.\n", preload=""):
-    text = f"SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nMAT1,1,{E:.6g},,.3,{RHO}\n"
+    text = f"SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nMAT1,1,7.+10,,.3,{RHO}\n"
     for i in range(N + 1):
         text += f"GRID,{i + 1},,{i * H},0.,0.\n"
     for i in range(N):
         text += f"CBAR,{i + 1},{7 if i < 4 else 8},{i + 1},{i + 2},0.,1.,0.\n"
     for pid in (7, 8):
-        text += f"PBAR,{pid},1,{A},{I1},{I2},5.-8\n,.02,.03,-.02,.03,-.02,-.03,.02,-.03\n"
+        text += f"PBAR,{pid},1,1.-3,4.-8,9.-8,5.-8\n,.02,.03,-.02,.03,-.02,-.03,.02,-.03\n"
     return text + load + preload + "CONM2,99,9,,1.5\nSPC1,1,123456,1\nENDDATA\n"
 
 
@@ -101,7 +101,7 @@ class Recovery(ProgramTest):
         static = self.read_static(make_deck())
         load = np.array([300., 40., -25., 0, 0, 0])
         errors = []
-        for modes in (3, 12, 40):  # 8 free grids, six dofs each; torsion carries no lumped inertia
+        for modes in (3, 12, 24):  # lumped: three of each of 8 free grids
             self.reduce(modes)
             names, modal, whole = self.solve_static_modes(load)
             for c, name in enumerate(names):

@@ -65,7 +65,7 @@ class Stress(ProgramTest):
         # PBAR with its own points: C at (.02, .03), D at (-.02, .01). Tip loads P along x, F along y, G along z.
         A, I1, I2, L = 1e-3, 4e-8, 9e-8, 2.0
         P, F, G = 500.0, 10.0, -7.0
-        pbar = f"PBAR,1,1,{A},{I1},{I2},1.-8\n,.02,.03,-.02,.01\n"
+        pbar = "PBAR,1,1,1.-3,4.-8,9.-8,1.-8\n,.02,.03,-.02,.01\n"
         case = self.solve(make_beam(4, pbar, f"FORCE,2,5,,1.,{P},{F},{G}\n"))
         # At x the moment about z is F (L - x), about y is -G (L - x); u = u0 - y θz + z θy.
         for element, x in [(1, 0.0), (3, 1.0)]:

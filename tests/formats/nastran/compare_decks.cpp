@@ -51,11 +51,11 @@ class Content {
   Content& operator()(const CoordSystem& r) {
     return (*this)(r.id)(static_cast<int>(r.kind))(r.by_grids)(r.grids)(r.rid)(r.a)(r.b)(r.c);
   }
-  Content& operator()(const Mat1& r) { return (*this)(r.id)(r.E)(r.G)(r.nu)(r.rho)(r.alpha)(r.tref)(r.ge)(r.st)(r.sc)(r.ss); }
-  Content& operator()(const Mat2& r) { return (*this)(r.id)(r.G)(r.rho)(r.alpha)(r.tref)(r.ge); }
-  Content& operator()(const PlyStrength& r) {
-    return (*this)(r.Xt)(r.Xc)(r.Yt)(r.Yc)(r.S)(r.F12)(r.is_strain);
+  Content& operator()(const Mat1& r) {
+    return (*this)(r.id)(r.E)(r.G)(r.nu)(r.rho)(r.alpha)(r.tref)(r.ge)(r.st)(r.sc)(r.ss);
   }
+  Content& operator()(const Mat2& r) { return (*this)(r.id)(r.G)(r.rho)(r.alpha)(r.tref)(r.ge); }
+  Content& operator()(const PlyStrength& r) { return (*this)(r.Xt)(r.Xc)(r.Yt)(r.Yc)(r.S)(r.F12)(r.is_strain); }
   Content& operator()(const Mat8& r) {
     return (*this)(r.id)(r.E1)(r.E2)(r.nu12)(r.G12)(r.G1z)(r.G2z)(r.rho)(r.a1)(r.a2)(r.tref)(r.ge)(r.strength);
   }
@@ -89,7 +89,8 @@ class Content {
   }
   Content& operator()(const Ply& r) { return (*this)(r.mid)(r.t)(r.theta_deg); }
   Content& operator()(const Pcomp& r) {
-    return (*this)(r.id)(r.z0)(r.nsm)(r.tref)(r.ge)(r.plies)(r.bending)(r.membrane)(static_cast<int>(r.layup))(r.sb)(r.failure);
+    return (*this)(r.id)(r.z0)(r.nsm)(r.tref)(r.ge)(r.plies)(r.bending)(r.membrane)(static_cast<int>(r.layup))(r.sb)(
+        r.failure);
   }
   Content& operator()(const Pshear& r) { return (*this)(r.id)(r.mid)(r.t)(r.nsm)(r.f1)(r.f2); }
   Content& operator()(const ShearPanel& r) { return (*this)(r.id)(r.pid)(r.grids); }
