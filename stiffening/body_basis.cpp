@@ -23,10 +23,12 @@ void check_basis(const BodySpec& spec, bool needs_modes, const SourceLocation& w
                       "give [body.modes] number, max_frequency or select");
   if (spec.basis != BodyBasis::Normal && spec.interface_nodes.empty())
     diagnostics.error("reduce.bad-basis", where, "the basis needs interface nodes", "name them in interface");
-  if (!spec.orthogonalize && spec.basis != BodyBasis::CraigBampton)
-    diagnostics.error("reduce.bad-basis", where, "orthogonalize = false has a meaning for craig-bampton only",
+  const bool is_craig_bampton = spec.basis == BodyBasis::CraigBampton;
+  if (!spec.orthogonalize && !is_craig_bampton && spec.augments.empty())
+    diagnostics.error("reduce.bad-basis", where,
+                      "orthogonalize = false has a meaning for craig-bampton and augmented modes only",
                       "remove it, or set basis = \"craig-bampton\"");
-  if (!spec.orthogonalize && spec.frame != BodyFrame::Fixed && spec.frame != BodyFrame::Node)
+  if (!spec.orthogonalize && is_craig_bampton && spec.frame != BodyFrame::Fixed && spec.frame != BodyFrame::Node)
     diagnostics.error("reduce.bad-basis", where,
                       "orthogonalize = false keeps the rigid motions of the interface, which this frame removes",
                       "use frame = \"fixed\", or \"node\" with one of the interface nodes");
