@@ -6,7 +6,8 @@
 namespace bough::solver {
 namespace {
 
-/// A load that a hinge or a [[force]] puts on a node, and K_G2 of its six components (empty: no locator).
+/// A load that a hinge or a [[force]] puts on a node, and K_G2 of its six components (empty: no locator). Of a pattern
+/// the first component is its value.
 struct NodeSource {
   int node = 0;
   int hinge = -1;          ///< the body whose inboard hinge it is
@@ -57,7 +58,12 @@ class LaggedStiffening final : public Block {
     Vector6d load = Vector6d::Zero();
     if (source.force != nullptr) {
       const AppliedForce& f = *source.force;
-      Vector3d v = (f.function ? f.function->calc(data.tree.t).f : 1.0) * f.direction;
+      const double value = f.function ? f.function->calc(data.tree.t).f : 1.0;
+      if (f.pattern.size() > 0) {
+        load[0] = value;
+        return load;
+      }
+      Vector3d v = value * f.direction;
       if (f.frame == records::VectorFrame::Inertial) v = R_WB.transpose() * v;
       if (f.frame == records::VectorFrame::Node) v = data.tree.markers[static_cast<size_t>(f.marker)].R * v;
       load.segment<3>(f.kind == records::ForceKind::Force ? 0 : 3) = v;
@@ -93,6 +99,20 @@ bool find_locators(const records::FlexBody& flex, int node_id, int n, NodeSource
   return has_any;
 }
 
+/// K_G2 of a load pattern by its name; false without.
+bool find_pattern(const records::FlexBody& flex, const records::SystemSpec& spec, const AppliedForce& force, int n,
+                  NodeSource& source) {
+  for (const auto& r : spec.forces) {
+    if (r.name != force.name) continue;
+    for (size_t e = 0; e < flex.locators.size(); ++e) {
+      if (flex.locators[e].name != r.locator || e >= flex.kg_external.size()) continue;
+      source.K2[0] = flex.kg_external[e].topLeftCorner(n, n);
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::SystemSpec& spec, const System& system,
@@ -123,10 +143,12 @@ std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::System
     }
     for (const AppliedForce& force : impl.forces) {
       if (force.body != b) continue;
-      if (force.pattern.size() == 0)
+      if (force.pattern.size() == 0) {
         add({force.node, -1, false, &force, {}});
-      else
-        others += (others.empty() ? "" : ", ") + force.name;
+      } else if (NodeSource source{0, -1, false, &force, {}};
+                 find_pattern(record->second, spec, force, made->n, source)) {
+        made->sources.push_back(source);
+      }
     }
     if (std::any_of(made->sources.begin(), made->sources.end(), [](const auto& source) { return source.hinge >= 0; }))
       with_hinges += (with_hinges.empty() ? "" : ", ") + r.name;
@@ -134,7 +156,9 @@ std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::System
     made->path = "/stiffening/" + r.name;
     made->label = "lagged stiffening of body '" + r.name + "'";
     made->description =
-        "A_I (12), then force and moment at each node with locators (FCONI), as the step before had them";
+        "A_I (12), then FCONI, as the step before had them: force and moment at each node with locators, or a "
+        "pattern's "
+        "value and five zeros";
     made->dims = "as A_I and FCONI";
     made->at = simulation.at;
     made->sizes.outputs = 12 + 6 * static_cast<int>(made->sources.size());
@@ -154,9 +178,9 @@ std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::System
         "take stiffening = \"consistent\", which sees them all");
   if (!with_hinges.empty())
     diagnostics.warning("system.lagged-hinges", simulation.at,
-                        "lagged stiffening feeds back what crosses the hinges of: " + with_hinges +
-                            "; no reference has confirmed that part yet",
-                        "compare with stiffening = \"consistent\"");
+                        "what crosses the hinges of " + with_hinges +
+                            " is fed back a step late: where it accelerates light modes it may go to and fro and grow",
+                        "compare with stiffening = \"consistent\"; keep fewer modes, or damp them");
   return all;
 }
 
