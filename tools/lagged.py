@@ -104,7 +104,7 @@ def main():
             low = plate.run("plate-0.165", kind, step)["sensors/deflection"][:, 2]
             high = plate.run("plate-0.170", kind, step)
             t, w = high["time"].ravel(), np.abs(high["sensors/quarter"][:, 2])
-            rate = np.polyfit(t[(t > 8) & (t < 12)], np.log(w[(t > 8) & (t < 12)]), 1)[0]
+            rate = np.polyfit(t[(t > 4) & (t < 8)], np.log(w[(t > 4) & (t < 8)]), 1)[0]
             rows.append(row + [f"{np.abs(low).max():.4g}", f"{rate:.4f}"])
         print_table(["", "0.165 lb/in: most in 40 s", "0.170 lb/in: growth, 1/s"], rows)
 

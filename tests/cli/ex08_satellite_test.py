@@ -1,4 +1,5 @@
 """ex08-satellite: momentum, pointing, the poles of the law in continuous and in sampled time against the histories."""
+import json
 import unittest
 
 import h5py
@@ -105,9 +106,21 @@ class Satellite(ProgramTest):
             self.assertIn(f"controller 'dump' is {what}", events)
 
     def test_select_keeps_what_the_loop_sees(self):
-        said = self.bough("select", "wing.h5", "pointing.toml", "--number", 3, "-o", "small.h5").stdout
-        kept = [line.split()[0] for line in said.splitlines() if " yes " in line]
-        self.assertEqual(len(kept), 3)
+        result = self.bough("select", "wing.h5", "pointing.toml", "--outputs", "tip", "--number", 3, "-o", "small.h5")
+        rows = [line.split() for line in result.stdout.splitlines() if " yes " in line or " no " in line]
+        self.assertEqual([row[0] for row in rows if "yes" in row], ["1", "2", "3"])
+        np.testing.assert_allclose([float(row[3]) for row in rows[:3]], [75.7, 22.8, 1.54], rtol=5e-3)  # README
+        self.assertNotIn("select.unseen", result.stderr)
+        # The hub's instruments see no mode of a wing at once.
+        said = self.bough("select", "wing.h5", "pointing.toml", "--outputs", "gyro", "--number", 3).stderr
+        self.assertIn("[select.unseen]", said)
+
+    def test_margins_of_the_sampled_law(self):
+        self.bough("linearize", "satellite.toml", "--break", "wheel_z", "-o", "loop.h5")
+        margins = json.loads(self.bough("response", "loop.h5", "--json").stdout)["margins"]
+        self.assertTrue(margins["stable"])
+        found = [(c["frequency_hz"], c["degrees"]) for c in margins["phase"]]
+        np.testing.assert_allclose(found, [(0.0628, 59.2), (1.558, -161.6), (1.681, 41.2)], rtol=2e-3)  # README
 
 
 if __name__ == "__main__":
