@@ -366,9 +366,31 @@ class Tables(LinearTest):
     def test_mat_in_octave(self):
         self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.0"))
         self.bough("linearize", "pendulum.toml", "--outputs", "angle", "--mat", "m.mat")
-        self.write("t.m", "load m.mat; assert(size(A), [2 2]); assert(strcmp(state_name{1}, 'pin:1'));\n"
-                          "if ~isempty(pkg('list', 'control')), pkg load control; s = ss(A, B, C, D); pole(s), end\n")
+        self.write("t.m", "load m.mat; assert(size(A), [2 2]); assert(strcmp(state_name{1}, 'pin:1'));\n")
         subprocess.run(["octave", "--no-gui", "--quiet", "t.m"], cwd=self.folder, check=True)
+        # Its control package, where it is installed: poles and response of a continuous and of a sampled model.
+        self.write("axis.toml", AXIS.replace('kd = "$kd"\n', 'kd = "$kd"\nsample_time = 0.1\ndelay = 0.04\n'))
+        self.bough("linearize", "axis.toml", "--break", "drive", "-o", "loop.h5", "--mat", "loop.mat")
+        self.bough("linearize", "pendulum.toml", "--outputs", "angle", "-o", "m.h5")
+        self.write("c.m", "if isempty(pkg('list', 'control')), fclose(fopen('absent', 'w')); exit, end\npkg load control\n"
+                          "function w = read(name), w = dlmread(name, ',', 1, 0); end\n"
+                          "load m.mat; s = ss(A, B, C, D); r = read('m.csv');\n"
+                          "H = squeeze(freqresp(s, 2 * pi * r(:, 1)))(:);\n"
+                          "assert(H, r(:, 2) + 1i * r(:, 3), 1e-9 * max(abs(H)));\n"
+                          "p = read('poles.csv'); assert(cplxpair(pole(s)), cplxpair(p(:, 1) + 1i * p(:, 2)), 1e-9);\n"
+                          "load loop.mat; s = ss(A, B, C, D, sample_time); r = read('loop.csv');\n"
+                          "H = squeeze(freqresp(s, 2 * pi * r(:, 1)))(:);\n"
+                          "assert(H, r(:, 2) + 1i * r(:, 3), 1e-6 * abs(H));\n"
+                          "fclose(fopen('done', 'w'));\n")
+        for name in ("m", "loop"):
+            self.bough("response", name + ".h5", "--csv", name + ".csv")
+        with h5py.File(self.path("m.h5")) as f:
+            np.savetxt(self.path("poles.csv"), np.column_stack([np.ravel(f["poles/" + k]) for k in ("real", "imag")]),
+                       delimiter=",", header="real,imag", fmt="%.17g")
+        subprocess.run(["octave", "--no-gui", "--quiet", "c.m"], cwd=self.folder, check=True)
+        if os.path.exists(self.path("absent")):
+            self.skipTest("the control package of Octave is not installed")
+        self.assertTrue(os.path.exists(self.path("done")))
 
 
 class SampledLoop(LinearTest):
