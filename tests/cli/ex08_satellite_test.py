@@ -121,6 +121,28 @@ class Satellite(ProgramTest):
         self.assertTrue(margins["stable"])
         found = [(c["frequency_hz"], c["degrees"]) for c in margins["phase"]]
         np.testing.assert_allclose(found, [(0.0628, 59.2), (1.558, -161.6), (1.681, 41.2)], rtol=2e-3)  # README
+        # The same in numpy: the plant of `linearize --open`, laws of x and y closed, torques new 0.05 s after a sample.
+        self.bough("linearize", "satellite.toml", "--open", "-o", "plant.h5")
+        self.bough("response", "loop.h5", "-o", "response.h5")
+        with h5py.File(self.path("plant.h5")) as f:
+            A, B, C = (f[name][:] for name in "ABC")
+            names = {kind: [n.decode() for n in f[kind + "/name"][:]] for kind in ("inputs", "outputs")}
+        n = len(A)
+        block = np.zeros((n + 3, n + 3))
+        block[:n, :n], block[:n, n:] = A, B[:, [names["inputs"].index(f"wheel_{x}") for x in "xyz"]]
+        half = expm(0.05 * block)
+        F, G = half[:n, :n], half[:n, n:]
+        outputs = names["outputs"]
+        K = np.array([kp * C[outputs.index("attitude:" + angle)] + kd * C[outputs.index("gyro:" + axis)]
+                      for kp, kd, angle, axis in ((113, 528, "z", "x"), (33, 154, "y", "y"), (132, 616, "x", "z"))])
+        K[2:] = 0
+        step = np.block([[F @ F - G @ K, F @ G], [-K, np.zeros((3, 3))]])
+        push = np.concatenate([G[:, 2], [0, 0, 1]])
+        K_z = np.concatenate([132 * C[outputs.index("attitude:x")] + 616 * C[outputs.index("gyro:z")], np.zeros(3)])
+        with h5py.File(self.path("response.h5")) as f:
+            omega, L = 2 * np.pi * f["frequency_hz"][:], (f["real"][:] + 1j * f["imag"][:]).ravel()
+        exact = np.array([K_z @ np.linalg.solve(np.exp(0.1j * w) * np.eye(n + 3) - step, push) for w in omega])
+        self.assertLess(np.abs(L / exact - 1).max(), 1e-8)
 
 
 if __name__ == "__main__":
