@@ -33,13 +33,15 @@ nlohmann::json to_rows(const Eigen::MatrixXd& m) {
 }  // namespace
 
 void write_linear_mat(const LinearModel& model, const std::string& path) {
-  matrices::write_mat(path, {{"A", model.A},
+  matrices::MatFields fields{{"A", model.A},
                              {"B", model.B},
                              {"C", model.C},
                              {"D", model.D},
                              {"state_name", make_cells(model.states.name)},
                              {"input_name", make_cells(model.inputs.name)},
-                             {"output_name", make_cells(model.outputs.name)}});
+                             {"output_name", make_cells(model.outputs.name)}};
+  if (model.sample_time > 0) fields.emplace_back("sample_time", Eigen::MatrixXd::Constant(1, 1, model.sample_time));
+  matrices::write_mat(path, fields);
 }
 
 std::string format_hankel(const records::Hankel& hankel) {
@@ -137,7 +139,8 @@ std::string make_linear_csv(const LinearModel& model) {
     text += "\n";
   };
   for (int i = 0; i < model.states.size(); ++i)
-    add("d/dt " + quote(model.states.name[static_cast<std::size_t>(i)]), model.A.row(i), model.B.row(i));
+    add((model.sample_time > 0 ? "next " : "d/dt ") + quote(model.states.name[static_cast<std::size_t>(i)]),
+        model.A.row(i), model.B.row(i));
   for (int i = 0; i < model.outputs.size(); ++i)
     add(quote(model.outputs.name[static_cast<std::size_t>(i)]), model.C.row(i), model.D.row(i));
   return text;
@@ -183,7 +186,7 @@ LinearModel choose_channels(LinearModel model, const std::vector<std::string>& i
   model.D = Eigen::MatrixXd(model.D(out, in));
   if (!is_all) {
     model.has_zeros = false;
-    model.hankel = statespace::calc_hankel(model.A, model.B, model.C);
+    if (model.sample_time == 0) model.hankel = statespace::calc_hankel(model.A, model.B, model.C);
   }
   return model;
 }
@@ -194,6 +197,9 @@ std::string format_linear_model(const LinearModel& model) {
       "A, C by differences: error {:.1e}, another step differs by {:.1e}; B, D exact\n\n",
       model.states.size(), model.inputs.size(), model.outputs.size(), model.time, model.residual, model.error,
       model.difference);
+  if (model.sample_time > 0)
+    text += fmt::format("from sample to sample, every {:g}: x+ = A x + B u; of a pole z there is ln z / {:g}\n\n",
+                        model.sample_time, model.sample_time);
   text += format_operating_point(model);
   Table table{{"pole", "real", "imag", "frequency Hz", "damping", "mode", "with"}, {}};
   const auto& poles = model.poles;
@@ -238,6 +244,7 @@ nlohmann::json make_json(const LinearModel& model) {
         {"mode", model.poles.mode},
         {"body_mode", model.poles.body_mode},
         {"hinge", model.poles.hinge}}}};
+  if (model.sample_time > 0) json["sample_time"] = model.sample_time;
   json["operating_point"]["q_name"] = model.q_names.name;
   json["operating_point"]["q_dims"] = model.q_names.dims;
   json["operating_point"]["u_name"] = model.u_names.name;

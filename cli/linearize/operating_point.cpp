@@ -47,7 +47,7 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& p
   if (last) *last = sink.last();
   const auto& state = sink.last().state;
   const auto* discrete = sink.last().find("discrete");
-  if (discrete && *discrete != solver::SystemOde(loaded.system).make_memory())
+  if (discrete && !solver::SystemOde(loaded.system).is_alike(*discrete))
     throw InputError("linear.changed-system", s.at,
                      fmt::format("an event before t = {:g} locked, released, closed or broke something, and the linear "
                                  "model is of the system as it starts",

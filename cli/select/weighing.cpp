@@ -157,6 +157,9 @@ void scale_by_weights(const SelectOptions& o, const std::string& file, records::
   }
 }
 
+/// Share of the modes in the mean square below which it is rounding.
+constexpr double kSeen = 1e-12;
+
 /// The modes of `file` in the linear model of a whole system; those of several bodies from one file add up.
 Weighing weigh_in_system(const SelectOptions& o, const std::string& file, std::optional<double> at,
                          const records::FlexBody& body, Diagnostics& diagnostics) {
@@ -207,6 +210,12 @@ Weighing weigh_in_system(const SelectOptions& o, const std::string& file, std::o
       }
     }
   }
+  double seen = 0;
+  for (const auto& mode : w.ranking.modes) seen += std::abs(mode.cost);
+  if (!(seen > kSeen * w.ranking.total))
+    diagnostics.warning("select.unseen", {file},
+                        "no output sees the modes of the body at once: their costs are rounding, and so is their order",
+                        "add outputs that move with the modes, as a deflection; what the outputs lose still holds");
   return w;
 }
 

@@ -45,6 +45,8 @@ void write_hankel(FileWriter& file, const records::Hankel& hankel) {
 void write_linear_model(const LinearModel& model, const std::string& path) {
   FileWriter file(path, kFormat, kLinearFormatVersion);
   file.write_source(model.source);
+  if (model.sample_time > 0)
+    file.write_number("/sample_time", model.sample_time, {"x+ = A x + B u, y = C x + D u", "T"});
   const char* const dims = "as the names' dims say";
   file.write_matrix("/A", model.A, {"x_dot = A x + B u: state, state", dims});
   file.write_matrix("/B", model.B, {"x_dot = A x + B u: state, input", dims});
@@ -81,6 +83,7 @@ LinearModel read_linear_model(const std::string& path) {
   FileReader file(path, kFormat, kLinearFormatVersion);
   LinearModel model;
   model.source = file.read_source();
+  if (file.has("/sample_time")) model.sample_time = file.read_number("/sample_time");
   model.states = read_signals(file, "/states");
   model.inputs = read_signals(file, "/inputs");
   model.outputs = read_signals(file, "/outputs");

@@ -42,8 +42,10 @@ struct Hankel {
   int num_left_out = 0;  ///< poles that do not decay
 };
 
+/// With a sample_time: x, u and y from sample to sample, x⁺ = A x + B u; poles are those of ln z / sample_time.
 struct LinearModel {
   std::vector<std::pair<std::string, std::string>> source;  ///< (file name, SHA-256)
+  double sample_time = 0;                                   ///< 0: continuous
   Eigen::MatrixXd A, B, C, D;
   Signals states, inputs, outputs;
 

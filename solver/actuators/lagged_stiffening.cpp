@@ -8,7 +8,7 @@
 namespace bough::solver {
 namespace {
 
-/// What loads a node, and K_G2 of its six components (empty: no locator).
+/// What loads a node, and K_G2 of its six components (empty: no locator). Of a load pattern the first is its value.
 struct StiffeningSource {
   NodeSource source;
   std::array<MatrixXd, 6> K2 = {};
@@ -29,8 +29,15 @@ class LaggedStiffening final : public Block {
     const Vector3d& w = s.w_B;
     Eigen::Map<Eigen::Matrix<double, 12, 1>>(y) << a, s.alpha_B, w.cwiseAbs2(), w.x() * w.y(), w.x() * w.z(),
         w.y() * w.z();
-    for (size_t i = 0; i < sources.size(); ++i)
-      Eigen::Map<Vector6d>(y + 12 + 6 * i) = calc_node_load(sources[i].source, body, *in.system, *in.data);
+    for (size_t i = 0; i < sources.size(); ++i) {
+      Eigen::Map<Vector6d> load(y + 12 + 6 * i);
+      const AppliedForce* f = sources[i].source.force;
+      if (f != nullptr && f->pattern.size() > 0) {
+        load << (f->function ? f->function->calc(in.data->tree.t).f : 1.0), 0, 0, 0, 0, 0;
+      } else {
+        load = calc_node_load(sources[i].source, body, *in.system, *in.data);
+      }
+    }
   }
   void add_load(const BlockInput& in, const double* y, SystemData& data) const override {
     const TreeBody& tb = in.system->impl().tree[body];
@@ -60,6 +67,20 @@ bool find_locators(const records::FlexBody& flex, int node_id, int n, Stiffening
   return has_any;
 }
 
+/// K_G2 of a load pattern by its name; false without.
+bool find_pattern(const records::FlexBody& flex, const records::SystemSpec& spec, const AppliedForce& force, int n,
+                  StiffeningSource& source) {
+  for (const auto& r : spec.forces) {
+    if (r.name != force.name) continue;
+    for (size_t e = 0; e < flex.locators.size(); ++e) {
+      if (flex.locators[e].name != r.locator || e >= flex.kg_external.size()) continue;
+      source.K2[0] = flex.kg_external[e].topLeftCorner(n, n);
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::SystemSpec& spec, const System& system,
@@ -87,7 +108,9 @@ std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::System
     }
     for (const AppliedForce& force : impl.forces) {
       if (force.body != b || force.pattern.size() == 0) continue;
-      others += (others.empty() ? "" : ", ") + force.name;
+      StiffeningSource stiffening{{0, -1, -1, false, &force}};
+      if (find_pattern(record->second, spec, force, made->n, stiffening))
+        made->sources.push_back(std::move(stiffening));
     }
     if (std::any_of(made->sources.begin(), made->sources.end(), [](const auto& s) { return s.source.hinge >= 0; }))
       with_hinges += (with_hinges.empty() ? "" : ", ") + r.name;
@@ -95,7 +118,8 @@ std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::System
     made->path = "/stiffening/" + r.name;
     made->label = "lagged stiffening of body '" + r.name + "'";
     made->description =
-        "A_I (12), then force and moment at each node with locators (FCONI), as the step before had them";
+        "A_I (12), then FCONI, as the step before had them: force and moment at each node with locators, or a "
+        "pattern's value and five zeros";
     made->dims = "as A_I and FCONI";
     made->at = simulation.at;
     made->sizes.outputs = 12 + 6 * static_cast<int>(made->sources.size());
@@ -115,9 +139,9 @@ std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::System
         "take stiffening = \"consistent\", which sees them all");
   if (!with_hinges.empty())
     diagnostics.warning("system.lagged-hinges", simulation.at,
-                        "lagged stiffening feeds back what crosses the hinges of: " + with_hinges +
-                            "; no reference has confirmed that part yet",
-                        "compare with stiffening = \"consistent\"");
+                        "what crosses the hinges of " + with_hinges +
+                            " is fed back a step late: where it accelerates light modes it may go to and fro and grow",
+                        "compare with stiffening = \"consistent\"; keep fewer modes, or damp them");
   return all;
 }
 

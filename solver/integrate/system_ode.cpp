@@ -70,13 +70,22 @@ Closing SystemOde::find_closing(double t, const Eigen::Ref<const VectorXd>& y, i
 }
 
 namespace {
-constexpr Eigen::Index kClosing = 22;  // numbers of a Closing: closed, R, p, gap, q
-}
+constexpr Eigen::Index kClosing = 22;       // numbers of a Closing: closed, R, p, gap, q
+constexpr Eigen::Index kClosingFrame = 15;  // without q
+}  // namespace
 
 VectorXd SystemOde::make_memory() const {
   VectorXd memory = VectorXd::Zero(num_u_ + kClosing * static_cast<Eigen::Index>(data_->loops.constraints.size()));
   get_memory(memory);
   return memory;
+}
+
+bool SystemOde::is_alike(const VectorXd& memory) const {
+  VectorXd other = memory, own = make_memory();
+  if (other.size() != own.size()) return false;
+  for (Eigen::Index at = num_u_ + kClosingFrame; at < own.size(); at += kClosing)
+    other.segment(at, kClosing - kClosingFrame) = own.segment(at, kClosing - kClosingFrame);
+  return other == own;
 }
 
 void SystemOde::get_memory(VectorXd& memory) const {

@@ -42,6 +42,9 @@ class SystemOde final : public Ode {
   Closing find_closing(double t, const Eigen::Ref<const VectorXd>& y, int constraint);
   /// What each coordinate and constraint does, for a checkpoint.
   VectorXd make_memory() const;
+  /// Whether what may lock, release, close and break is as it is now; the coordinates of closing hinges, which follow
+  /// the motion, do not count.
+  bool is_alike(const VectorXd& memory) const;
   void get_memory(VectorXd& memory) const;  ///< of that size; no allocation
   void set_memory(const VectorXd& memory);
   double get_work(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates() + num_z_]; }

@@ -5,10 +5,12 @@
 #include <map>
 #include <numeric>
 #include <sstream>
+#include <tuple>
 
 #include "solver/linear/difference.hpp"
 #include "solver/linear/ports.hpp"
 #include "solver/linear/sampled.hpp"
+#include "solver/linear/sampled_loop.hpp"
 #include "solver/statespace/hankel.hpp"
 #include "solver/statespace/poles.hpp"
 #include "solver/statespace/zeros.hpp"
@@ -226,7 +228,9 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
     model.states.name.push_back(plant.state_name(i));
     model.states.dims.push_back("by the controller");
   }
-  if (const auto sampled = plant.list_sampled(); !sampled.empty()) {
+  const PlantInput* const cut = options.cut.empty() ? nullptr : &plant.inputs()[static_cast<size_t>(inputs.front())];
+  const bool is_held = cut != nullptr && plant.find_hold(*cut).period > 0;
+  if (const auto sampled = plant.list_sampled(); !sampled.empty() && !is_held) {
     std::string list;
     for (const auto& name : sampled) list += (list.empty() ? "" : ", ") + name;
     diagnostics.warning(
@@ -281,7 +285,17 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   }
   if (options.check && options.cut.empty() && !plant.is_open())
     model.multipliers = calc_multipliers(plant, point, model.A, at, diagnostics);
+  if (is_held) {
+    const auto loop = calc_sampled_loop(plant, point, *cut, model.A, model.B.col(0), at);
+    model.sample_time = loop.sample_time;
+    model.states = loop.states;
+    std::tie(model.A, model.B, model.C, model.D) = std::tie(loop.A, loop.B, loop.C, loop.D);
+  }
   if (!options.cut.empty()) open_cut(model, options.cut);
+  if (is_held) {
+    model.poles = calc_sampled_poles(model);
+    return model;
+  }
   if (options.check) model.hankel = statespace::calc_hankel(model.A, model.B, model.C);
   model.poles = statespace::calc_poles(model.A, model.states.name);
   if (num_inputs == static_cast<Eigen::Index>(outputs.size()) && num_inputs > 0) {

@@ -101,8 +101,20 @@ class Plant {
   std::vector<SampleTimes> collect_samples() const;
   /// Samples on their way of the longest queue of each period, for the length of a cycle: (period, queue).
   std::vector<std::pair<double, int>> list_cycles() const;
-  /// All memory after the samples due at point.t, sensors without noise and quantization. May throw ComputationError.
-  VectorXd sample(const OperatingPoint& point);
+  /// All memory after the samples due at point.t, sensors without noise and quantization. `input` has `before` more
+  /// when they begin, and `value` more for what follows it. May throw ComputationError.
+  VectorXd sample(const OperatingPoint& point, const PlantInput* input = nullptr, double before = 0, double value = 0);
+  /// Where a signal or a command that is cut changes at samples only: when it does. It has period 0 where it moves
+  /// between samples too.
+  SampleTimes find_hold(const PlantInput& input) const;
+  /// What comes back to the cut, as find_cut's output but held where it is sampled. May throw ComputationError.
+  double calc_return(const OperatingPoint& point, const PlantInput& input, double value);
+  /// Samples on their way: rows `first` to first + size * length of sampled_rows, the sample k at k mod length.
+  struct Queue {
+    int first = 0, size = 0, length = 0;
+    double period = 0;
+  };
+  const std::vector<Queue>& list_queues() const { return queues_; }
   /// Coordinates of q as the files have them, and dims: "pin:1", "ball:qw", "boom:eta1".
   records::Signals name_positions() const;
   /// Whether the freedom is an angle that comes back after 2 pi.
@@ -142,6 +154,7 @@ class Plant {
   int num_sensor_outputs_ = 0;
   std::vector<int> sampled_rows_;
   std::vector<std::string> sampled_names_;
+  std::vector<Queue> queues_;
   std::vector<Grip> grip_;  ///< by row of u, where loops are closed: what follows is Loose
   double t_ = 0;            ///< of the last point
 };

@@ -1,5 +1,6 @@
 // A plant's inputs and outputs, and what of it changes at samples.
 #include <algorithm>
+#include <functional>
 
 #include "solver/linear/plant.hpp"
 #include "solver/system/impl.hpp"
@@ -169,6 +170,9 @@ void Plant::add_sampled() {
     };
     add(p.memory, p.block->sizes.memory, "memory");
     add(p.held, p.block->sizes.outputs, "held");
+    if (p.queue_length > 0)
+      queues_.push_back(
+          {static_cast<int>(sampled_rows_.size()), p.block->sizes.outputs, p.queue_length, p.block->sizes.sample_time});
     add(p.queue, p.block->sizes.outputs * p.queue_length, "on its way");
   }
 }
@@ -183,16 +187,72 @@ std::vector<std::pair<double, int>> Plant::list_cycles() const {
   return cycles;
 }
 
-VectorXd Plant::sample(const OperatingPoint& point) {
+VectorXd Plant::sample(const OperatingPoint& point, const PlantInput* input, double before, double value) {
   VectorXd u_dot(system_.num_u());
-  compute(point, nullptr, 0, u_dot);
+  compute(point, input, before, u_dot);
   calc_signals(system_, *data_);
-  data_->signals.is_ideal = true;
+  SignalData& s = data_->signals;
+  if (input && input->actuator >= 0) s.bias[input->actuator] = value;
+  if (input && input->signal >= 0) s.shift[input->signal] = value;
+  s.is_ideal = true;
   double shortest = 0;
   for (const auto& [period, queue] : list_cycles()) shortest = shortest > 0 ? std::min(shortest, period) : period;
   system_.impl().signals.sample(system_, *data_, 1e-9 * shortest);
-  data_->signals.is_ideal = false;
-  return data_->signals.memory;
+  s.is_ideal = false;
+  return s.memory;
+}
+
+SampleTimes Plant::find_hold(const PlantInput& input) const {
+  const SignalGraph& signals = system_.impl().signals;
+  const auto find_place = [&](int row) -> const BlockPlace* {
+    for (const auto& p : signals.places)
+      if (row >= p.out && row < p.out + p.block->sizes.outputs) return &p;
+    return nullptr;
+  };
+  const auto is_same = [](const SampleTimes& a, const SampleTimes& b) {
+    return a.first == b.first && a.period == b.period;
+  };
+  // Of what each row follows at once: nothing that moves, one rhythm, or (period < 0) more than that.
+  const std::function<SampleTimes(int)> look = [&](int row) -> SampleTimes {
+    const BlockPlace* p = find_place(row);
+    if (p == nullptr) return {0, -1};
+    const BlockSizes& sizes = p->block->sizes;
+    if (p->is_sampled()) return {signals.start + sizes.delay, sizes.sample_time};
+    if (is_of(*p->block, "/signals/")) return {};
+    if (is_of(*p->block, "/sensors/") || is_of(*p->block, "/actuators/") || sizes.states > 0) return {0, -1};
+    SampleTimes all;
+    for (const int source : p->sources) {
+      const SampleTimes one = look(source);
+      if (one.period == 0) continue;
+      if (one.period < 0 || (all.period > 0 && !is_same(all, one))) return {0, -1};
+      all = one;
+    }
+    return all;
+  };
+  SampleTimes found;
+  if (input.signal >= 0) {
+    found = look(input.signal);
+  } else {
+    for (const auto& p : signals.places) {
+      const int i = input.actuator - p.actuator;
+      if (p.actuator < 0 || i < 0 || i >= p.block->sizes.inputs || i >= static_cast<int>(p.sources.size())) continue;
+      found = look(p.sources[static_cast<size_t>(i)]);
+    }
+  }
+  return found.period > 0 ? found : SampleTimes{};
+}
+
+double Plant::calc_return(const OperatingPoint& point, const PlantInput& input, double value) {
+  VectorXd u_dot(system_.num_u());
+  compute(point, &input, value, u_dot);
+  calc_signals(system_, *data_);
+  const SignalData& s = data_->signals;
+  if (input.signal >= 0) return s.values[input.signal] - s.shift[input.signal];
+  for (const auto& p : system_.impl().signals.places) {
+    const int i = input.actuator - p.actuator;
+    if (p.actuator >= 0 && i >= 0 && i < p.block->sizes.inputs) return s.inputs[p.in + i] - value;
+  }
+  return 0;
 }
 
 }  // namespace bough::solver

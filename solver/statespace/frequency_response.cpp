@@ -39,10 +39,16 @@ std::vector<double> choose_frequencies(const records::LinearModel& model, const 
   low /= 10, high *= 10;
   if (range.from_hz > 0) low = 2 * std::numbers::pi * range.from_hz;
   if (range.to_hz > 0) high = 2 * std::numbers::pi * range.to_hz;
+  if (model.sample_time > 0) {
+    const double most = std::numbers::pi / model.sample_time;
+    if (range.to_hz <= 0 || high > most) high = most;
+    low = std::min(low, 0.1 * high);
+  }
   if (high < low) std::swap(low, high);
   std::set<double> chosen;
   const double from = std::log(low), to = std::log(high);
   for (int i = 0; i <= range.points; ++i) chosen.insert(std::exp(from + (to - from) * i / std::max(1, range.points)));
+  if (model.sample_time > 0) chosen.erase(std::prev(chosen.end())), chosen.insert(high);  // that one to the last bit
   const auto most = static_cast<std::size_t>(range.most / 2);
   for (Index i = 0; i < poles.size() && chosen.size() < most; ++i) {
     const double re = poles.real[i], im = poles.imag[i];
@@ -65,6 +71,10 @@ bool is_far(const MatrixXcd& a, const MatrixXcd& b) {
 }
 
 }  // namespace
+
+Complex calc_argument(const records::LinearModel& model, double omega) {
+  return model.sample_time > 0 ? std::polar(1.0, omega * model.sample_time) : Complex(0, omega);
+}
 
 TransferMatrix::TransferMatrix(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C, const MatrixXd& D)
     : H_(A), B_(B), C_(C), D_(D), back_(MatrixXd::Identity(A.rows(), A.rows())) {
@@ -114,7 +124,7 @@ records::FrequencyResponse calc_frequency_response(const records::LinearModel& m
   const TransferMatrix transfer(model.A, model.B, model.C, model.D);
   std::vector<double> omegas = choose_frequencies(model, range);
   std::vector<MatrixXcd> values;
-  for (const double omega : omegas) values.push_back(transfer.calc({0, omega}));
+  for (const double omega : omegas) values.push_back(transfer.calc(calc_argument(model, omega)));
   for (bool is_new = true; is_new && static_cast<int>(omegas.size()) < range.most;) {
     std::vector<double> finer;
     std::vector<MatrixXcd> with;
@@ -126,7 +136,7 @@ records::FrequencyResponse calc_frequency_response(const records::LinearModel& m
       const double between = std::sqrt(omegas[k] * omegas[k + 1]);
       if (!(between > omegas[k] * (1 + 1e-9) && between < omegas[k + 1])) continue;
       finer.push_back(between);
-      with.push_back(transfer.calc({0, between}));
+      with.push_back(transfer.calc(calc_argument(model, between)));
     }
     is_new = finer.size() > omegas.size();
     omegas = std::move(finer);

@@ -22,6 +22,9 @@ class TransferMatrix {
   Eigen::MatrixXd H_, B_, C_, D_, back_;
 };
 
+/// Where G is taken at that frequency: iω, of a sampled model exp(iωT).
+std::complex<double> calc_argument(const records::LinearModel& model, double omega);
+
 struct FrequencyRange {
   double from_hz = 0, to_hz = 0;  ///< 0: a decade beyond the poles, and the zeros near them
   int points = 300;               ///< even on a logarithmic scale; more where a resonance or a notch wants them

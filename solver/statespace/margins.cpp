@@ -24,6 +24,8 @@ constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr int kBisections = 80;
 constexpr double kCertified = 1e-6;
 constexpr Index kMostStates = 300;
+/// Two poles at 1 are found that far from it.
+constexpr double kOnCircle = 1e-7;
 
 /// A root of f between a and b, where its signs differ.
 double bisect(const std::function<double(double)>& f, double a, double b) {
@@ -99,9 +101,10 @@ FrequencyRange widen_for_loop(const records::LinearModel& loop, const FrequencyR
   FrequencyRange wide = range;
   const auto ends = calc_frequency_response(loop, {range.from_hz, range.to_hz, 1, 2}).frequency_hz;
   const TransferMatrix transfer(loop.A, loop.B, loop.C, loop.D);
-  const auto gain = [&](double hz) { return std::abs(transfer.calc({0, kTwoPi * hz})(0, 0)); };
+  const auto gain = [&](double hz) { return std::abs(transfer.calc(calc_argument(loop, kTwoPi * hz))(0, 0)); };
   double low = ends[0], high = ends[ends.size() - 1];
-  for (int i = 0; range.to_hz == 0 && i < kDecades && gain(high) > 1; ++i) wide.to_hz = high *= 10;
+  for (int i = 0; range.to_hz == 0 && loop.sample_time == 0 && i < kDecades && gain(high) > 1; ++i)
+    wide.to_hz = high *= 10;
   const bool has_rigid = loop.poles.size() > 0 && loop.poles.frequency_hz.minCoeff() <= 1e-6 * low;
   for (int i = 0; range.from_hz == 0 && has_rigid && i < kDecades && gain(low) < 1; ++i) wide.from_hz = low /= 10;
   return wide;
@@ -111,7 +114,7 @@ records::Margins calc_margins(const records::LinearModel& loop, const records::F
   BOUGH_DEMAND(loop.B.cols() == 1 && loop.C.rows() == 1);
   records::Margins m;
   const TransferMatrix transfer(loop.A, loop.B, loop.C, loop.D);
-  const auto L = [&](double omega) { return transfer.calc({0, omega})(0, 0); };
+  const auto L = [&](double omega) { return transfer.calc(calc_argument(loop, omega))(0, 0); };
   const auto count = static_cast<Index>(response.value.size());
   const auto get = [&](Index k) { return response.value[static_cast<std::size_t>(k)](0, 0); };
   Index nearest = 0;
@@ -124,6 +127,11 @@ records::Margins calc_margins(const records::LinearModel& loop, const records::F
       const double omega = bisect([&](double w) { return std::abs(L(w)) - 1; }, a, b);
       double lag = std::arg(L(omega)) + std::numbers::pi;  // in (0, 2π]
       m.phase.push_back({omega / kTwoPi, lag > std::numbers::pi ? lag - kTwoPi : lag, lag / omega});
+    }
+    if (k + 2 == count && loop.sample_time > 0 && b * loop.sample_time > std::numbers::pi * (1 - 1e-9)) {
+      const double there = L(std::numbers::pi / loop.sample_time).real();  // real, whatever rounding says
+      if (there < 0) m.gain.push_back({0.5 / loop.sample_time, -1 / there, 0});
+      if ((here.imag() > 0) == (next.imag() > 0) || std::abs(next.imag()) < 1e-9 * std::abs(next)) continue;
     }
     if ((here.imag() > 0) != (next.imag() > 0) && (here.real() < 0 || next.real() < 0)) {
       const double omega = bisect([&](double w) { return L(w).imag(); }, a, b);
@@ -143,6 +151,13 @@ records::Margins calc_margins(const records::LinearModel& loop, const records::F
   const double back = 1 + loop.D(0, 0);
   if (back == 0) return m;
   const auto poles = calc_poles(loop.A - loop.B * loop.C / back, loop.states.name);
+  if (loop.sample_time > 0) {
+    double most = 0;
+    for (Index i = 0; i < poles.size(); ++i) most = std::max(most, std::hypot(poles.real[i], poles.imag[i]));
+    m.largest_real = std::log(std::max(most, 1e-16)) / loop.sample_time;
+    m.is_stable = most <= 1 + kOnCircle;
+    return m;
+  }
   double size = 0;
   for (Index i = 0; i < poles.size(); ++i) size = std::max(size, std::hypot(poles.real[i], poles.imag[i]));
   m.largest_real = poles.size() > 0 ? poles.real.maxCoeff() : 0;
@@ -153,6 +168,14 @@ records::Margins calc_margins(const records::LinearModel& loop, const records::F
 records::PeakGain calc_peak_gain(const records::LinearModel& model, const records::FrequencyResponse& response) {
   records::PeakGain peak;
   if (model.B.cols() == 0 || model.C.rows() == 0) return peak;
+  if (model.sample_time > 0) {
+    for (Index k = 0; k < response.frequency_hz.size(); ++k)
+      if (response.singular_values(k, 0) > peak.value)
+        peak.value = response.singular_values(k, 0), peak.frequency_hz = response.frequency_hz[k];
+    peak.is_finite = model.poles.size() == 0 || model.poles.real.maxCoeff() * model.sample_time < -kOnCircle;
+    if (!peak.is_finite) peak.why = "poles do not decay";
+    return peak;
+  }
   const StablePart part = split_stable(model.A);
   if (!part.is_stable()) {
     std::ostringstream why;

@@ -1,4 +1,5 @@
 """ex08-satellite: momentum, pointing, the poles of the law in continuous and in sampled time against the histories."""
+import json
 import unittest
 
 import h5py
@@ -105,9 +106,43 @@ class Satellite(ProgramTest):
             self.assertIn(f"controller 'dump' is {what}", events)
 
     def test_select_keeps_what_the_loop_sees(self):
-        said = self.bough("select", "wing.h5", "pointing.toml", "--number", 3, "-o", "small.h5").stdout
-        kept = [line.split()[0] for line in said.splitlines() if " yes " in line]
-        self.assertEqual(len(kept), 3)
+        result = self.bough("select", "wing.h5", "pointing.toml", "--outputs", "tip", "--number", 3, "-o", "small.h5")
+        rows = [line.split() for line in result.stdout.splitlines() if " yes " in line or " no " in line]
+        self.assertEqual([row[0] for row in rows if "yes" in row], ["1", "2", "3"])
+        np.testing.assert_allclose([float(row[3]) for row in rows[:3]], [75.7, 22.8, 1.54], rtol=5e-3)  # README
+        self.assertNotIn("select.unseen", result.stderr)
+        # The hub's instruments see no mode of a wing at once.
+        said = self.bough("select", "wing.h5", "pointing.toml", "--outputs", "gyro", "--number", 3).stderr
+        self.assertIn("[select.unseen]", said)
+
+    def test_margins_of_the_sampled_law(self):
+        self.bough("linearize", "satellite.toml", "--break", "wheel_z", "-o", "loop.h5")
+        margins = json.loads(self.bough("response", "loop.h5", "--json").stdout)["margins"]
+        self.assertTrue(margins["stable"])
+        found = [(c["frequency_hz"], c["degrees"]) for c in margins["phase"]]
+        np.testing.assert_allclose(found, [(0.0628, 59.2), (1.558, -161.6), (1.681, 41.2)], rtol=2e-3)  # README
+        # The same in numpy: the plant of `linearize --open`, laws of x and y closed, torques new 0.05 s after a sample.
+        self.bough("linearize", "satellite.toml", "--open", "-o", "plant.h5")
+        self.bough("response", "loop.h5", "-o", "response.h5")
+        with h5py.File(self.path("plant.h5")) as f:
+            A, B, C = (f[name][:] for name in "ABC")
+            names = {kind: [n.decode() for n in f[kind + "/name"][:]] for kind in ("inputs", "outputs")}
+        n = len(A)
+        block = np.zeros((n + 3, n + 3))
+        block[:n, :n], block[:n, n:] = A, B[:, [names["inputs"].index(f"wheel_{x}") for x in "xyz"]]
+        half = expm(0.05 * block)
+        F, G = half[:n, :n], half[:n, n:]
+        outputs = names["outputs"]
+        K = np.array([kp * C[outputs.index("attitude:" + angle)] + kd * C[outputs.index("gyro:" + axis)]
+                      for kp, kd, angle, axis in ((113, 528, "z", "x"), (33, 154, "y", "y"), (132, 616, "x", "z"))])
+        K[2:] = 0
+        step = np.block([[F @ F - G @ K, F @ G], [-K, np.zeros((3, 3))]])
+        push = np.concatenate([G[:, 2], [0, 0, 1]])
+        K_z = np.concatenate([132 * C[outputs.index("attitude:x")] + 616 * C[outputs.index("gyro:z")], np.zeros(3)])
+        with h5py.File(self.path("response.h5")) as f:
+            omega, L = 2 * np.pi * f["frequency_hz"][:], (f["real"][:] + 1j * f["imag"][:]).ravel()
+        exact = np.array([K_z @ np.linalg.solve(np.exp(0.1j * w) * np.eye(n + 3) - step, push) for w in omega])
+        self.assertLess(np.abs(L / exact - 1).max(), 1e-8)
 
 
 if __name__ == "__main__":

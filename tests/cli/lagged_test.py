@@ -3,6 +3,7 @@ import unittest
 
 import h5py
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from support import ProgramTest
 
@@ -51,6 +52,105 @@ class Lagged(ProgramTest):
         said = self.bough("check", "jet.toml").stderr
         self.assertIn("[system.lagged-loads]", said)
         self.assertIn("not of: jet", said)
+
+    def test_pattern_is_fed_back(self):
+        """Of 4.1.4.3: the plate's swing under 0.165 lb/in; without K_G2 of the running load it would be 13 times as stiff."""
+        self.copy_example("ex05-plate")
+        self.bough("reduce", "plate.toml")
+        until = ("duration = 40.0", "duration = 6.0")
+        with self.run_one("plate-0.165", [until]) as f:
+            consistent = f["sensors/deflection"][:, 2]
+        with self.run_one("plate-0.165", self.lag(0.01, until)) as f:
+            lagged = f["sensors/deflection"][:, 2]
+            self.assertAlmostEqual(f["stiffening/plate"][-1, 12], 0.165, places=12)
+        # The load is steady: nothing of the lag but the half second of its ramp, before the tap.
+        self.assertLess(np.abs(lagged - consistent).max(), 2e-3 * np.abs(consistent).max())
+
+    def test_loads_of_a_hinge_are_its_reaction(self):
+        """FCONI of the upper link is what the lower one pulls it with, to the order of the lag."""
+        self.copy_example("ex03-two-link")
+        self.bough("reduce", "link.toml")
+        off = []
+        for step in (0.001, 0.0005, 0.00025):
+            changes = [*self.lag(step, ("duration = 3.0", "duration = 0.5")), ('file = "link.h5"', 'file = "link.h5"\nmodes = 2')]
+            with self.run_one("two-link", changes) as f:
+                fconi, reaction = f["stiffening/upper"][:, 12:15], f["hinges/elbow/reaction_force"][:]
+            sizes = np.linalg.norm(fconi[20:], axis=1), np.linalg.norm(reaction[20:], axis=1)
+            off.append(np.abs(sizes[0] - sizes[1]).max() / sizes[1].max())
+        self.assertLess(off[-1], 1e-3)
+        for coarse, fine in zip(off, off[1:]):
+            self.assertLess(abs(coarse / fine - 2), 0.1, off)
+
+    def test_force_and_moment_are_newtons_and_eulers(self):
+        """Of a rigid load on a turned and shifted clamp at the tip: m (a - g) and J α + ω × J ω + r × m (a - g), about
+        the node and in the link's frame."""
+        self.copy_example("ex03-two-link")
+        self.bough("reduce", "link.toml")
+        sensors = ""
+        for body, node, types in (("load", 0, ("acceleration", "angular_velocity", "angular_acceleration", "position")),
+                                  ("upper", 11, ("position",))):
+            for kind in types:
+                sensors += f'[[sensor]]\nname = "{body}_{kind}"\ntype = "{kind}"\nbody = "{body}"\nnode = {node}\n'
+        off = []
+        for step in (0.0005, 0.00025):
+            self.write("run.toml", f"""
+[[body]]
+name = "upper"
+file = "link.h5"
+modes = 2
+
+[[body]]
+name = "load"
+mass = 0.5
+inertia = [0.002, 0.003, 0.004, 0.0003, -0.0002, 0.0001]
+
+[[hinge]]
+name = "shoulder"
+type = "revolute"
+child = "upper"
+position = 0.3
+
+[[hinge]]
+name = "clamp"
+type = "fixed"
+parent = "upper"
+parent_node = 11
+parent_position = [0.03, 0.02, 0.01]
+parent_rotation_deg = [20.0, 35.0, -50.0]
+child = "load"
+
+{sensors}
+[simulation]
+duration = 0.4
+output_step = 0.01
+gravity = [0.0, -9.81, 0.0]
+integrator = "rk4"
+step = {step}
+stiffening = "lagged"
+""")
+            self.bough("run", "run.toml", "-o", "run.h5")
+            with h5py.File(self.path("run.h5")) as f:
+                fconi = f["stiffening/upper"][5:, 12:]
+                a, w, alpha, p = (f["sensors/load_" + kind][5:] for kind in (
+                    "acceleration", "angular_velocity", "angular_acceleration", "position"))
+                arm = p - f["sensors/upper_position"][5:]
+                frames = {}
+                for body in ("upper", "load"):
+                    q = f[f"bodies/{body}/quaternion"][5:]
+                    frames[body] = np.array([Rotation.from_quat([*x[1:], x[0]]).as_matrix() for x in q])
+            J = np.array([[2, 0.3, -0.2], [0.3, 3, 0.1], [-0.2, 0.1, 4]]) * 1e-3
+            expected = []
+            for k in range(len(a)):
+                J_W = frames["load"][k] @ J @ frames["load"][k].T
+                force = 0.5 * (a[k] - [0, -9.81, 0])
+                moment = J_W @ alpha[k] + np.cross(w[k], J_W @ w[k]) + np.cross(arm[k], force)
+                expected.append(-np.concatenate([frames["upper"][k].T @ force, frames["upper"][k].T @ moment]))
+            expected = np.array(expected)
+            off.append([np.abs(fconi - expected)[:, part].max() / np.abs(expected[:, part]).max()
+                        for part in (slice(0, 3), slice(3, 6))])
+        self.assertLess(max(off[1]), 5e-3, off)
+        for coarse, fine in zip(*off):
+            self.assertLess(abs(coarse / fine - 2), 0.2, off)
 
     def test_hinges_that_it_feeds_back_are_told(self):
         self.copy_example("ex03-two-link")

@@ -10,7 +10,10 @@ import unittest
 import h5py
 import numpy as np
 import scipy.integrate
+import scipy.io
 import scipy.linalg
+import scipy.optimize
+import scipy.signal
 
 from linear_test import HUB, PENDULUM, LinearTest
 
@@ -363,9 +366,117 @@ class Tables(LinearTest):
     def test_mat_in_octave(self):
         self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.0"))
         self.bough("linearize", "pendulum.toml", "--outputs", "angle", "--mat", "m.mat")
-        self.write("t.m", "load m.mat; assert(size(A), [2 2]); assert(strcmp(state_name{1}, 'pin:1'));\n"
-                          "if ~isempty(pkg('list', 'control')), pkg load control; s = ss(A, B, C, D); pole(s), end\n")
+        self.write("t.m", "load m.mat; assert(size(A), [2 2]); assert(strcmp(state_name{1}, 'pin:1'));\n")
         subprocess.run(["octave", "--no-gui", "--quiet", "t.m"], cwd=self.folder, check=True)
+        # Its control package, where it is installed: poles and response of a continuous and of a sampled model.
+        self.write("axis.toml", AXIS.replace('kd = "$kd"\n', 'kd = "$kd"\nsample_time = 0.1\ndelay = 0.04\n'))
+        self.bough("linearize", "axis.toml", "--break", "drive", "-o", "loop.h5", "--mat", "loop.mat")
+        self.bough("linearize", "pendulum.toml", "--outputs", "angle", "-o", "m.h5")
+        self.write("c.m", "if isempty(pkg('list', 'control')), fclose(fopen('absent', 'w')); exit, end\npkg load control\n"
+                          "function w = read(name), w = dlmread(name, ',', 1, 0); end\n"
+                          "load m.mat; s = ss(A, B, C, D); r = read('m.csv');\n"
+                          "H = squeeze(freqresp(s, 2 * pi * r(:, 1)))(:);\n"
+                          "assert(H, r(:, 2) + 1i * r(:, 3), 1e-9 * max(abs(H)));\n"
+                          "p = read('poles.csv'); assert(cplxpair(pole(s)), cplxpair(p(:, 1) + 1i * p(:, 2)), 1e-9);\n"
+                          "load loop.mat; s = ss(A, B, C, D, sample_time); r = read('loop.csv');\n"
+                          "H = squeeze(freqresp(s, 2 * pi * r(:, 1)))(:);\n"
+                          "assert(H, r(:, 2) + 1i * r(:, 3), 1e-6 * abs(H));\n"
+                          "fclose(fopen('done', 'w'));\n")
+        for name in ("m", "loop"):
+            self.bough("response", name + ".h5", "--csv", name + ".csv")
+        with h5py.File(self.path("m.h5")) as f:
+            np.savetxt(self.path("poles.csv"), np.column_stack([np.ravel(f["poles/" + k]) for k in ("real", "imag")]),
+                       delimiter=",", header="real,imag", fmt="%.17g")
+        subprocess.run(["octave", "--no-gui", "--quiet", "c.m"], cwd=self.folder, check=True)
+        if os.path.exists(self.path("absent")):
+            self.skipTest("the control package of Octave is not installed")
+        self.assertTrue(os.path.exists(self.path("done")))
+
+
+class SampledLoop(LinearTest):
+    """L(z) of a double integrator under a sampled law, z = exp(iωT): zero-order hold by scipy, delays by hand."""
+    T, J, kp, kd = 0.1, 2.0, 8.0, 4.0
+
+    def write_axis(self, delay=0.0, more="", **numbers):
+        law = f'kd = "$kd"\nsample_time = {self.T}\n' + (f"delay = {delay}\n" if delay else "") + more
+        text = AXIS.replace('kd = "$kd"\n', law).replace("kp = 8.0", f"kp = {numbers.get('kp', self.kp)!r}")
+        self.write("axis.toml", text.replace("kd = 1.6", f"kd = {numbers.get('kd', self.kd)!r}"))
+
+    def calc(self, delay, omega):
+        """What is added from t_m = m T + (delay mod T) on comes back with the sample of the instant before t_m."""
+        late, rest = divmod(delay, self.T)
+
+        def hold(h):
+            if h == 0:
+                return np.eye(2), np.zeros((2, 1))
+            system = (np.array([[0, 1], [0, 0.0]]), np.array([[0], [1 / self.J]]), np.eye(2), np.zeros((2, 1)))
+            return scipy.signal.cont2discrete(system, h)[:2]
+        (whole, gain), (early, gain_early) = hold(self.T), hold(self.T - rest)
+        K = np.array([[self.kp, self.kd]])
+        z = np.exp(1j * omega * self.T)
+        L = K @ (early @ np.linalg.solve(z * np.eye(2) - whole, gain) + gain_early)
+        return L[0, 0] * z**-(1 + round(late))
+
+    def test_is_scipys_with_hold_and_delay(self):
+        for delay in (0.0, 0.04, 0.25):
+            self.write_axis(delay)
+            for cut in ("drive", "law"):
+                said = self.bough("linearize", "axis.toml", "--break", cut, "-o", "loop.h5", "--mat", "loop.mat").stderr
+                self.assertNotIn("linear.sampled", said)
+                self.bough("response", "loop.h5", "-o", "r.h5")
+                with h5py.File(self.path("r.h5")) as f:
+                    omega, L = 2 * math.pi * f["frequency_hz"][:], (f["real"][:] + 1j * f["imag"][:]).ravel()
+                self.assertAlmostEqual(omega[-1] * self.T, math.pi, places=12)
+                exact = np.array([self.calc(delay, w) for w in omega])
+                self.assertLess(np.abs(L / exact - 1).max(), 1e-8, (delay, cut))
+            self.assertEqual(scipy.io.loadmat(self.path("loop.mat"))["sample_time"], self.T)
+            with h5py.File(self.path("loop.h5")) as f:
+                self.assertEqual(float(np.squeeze(f["sample_time"][()])), self.T)
+
+    def test_margins_are_where_the_closed_loop_turns(self):
+        delay = 0.04
+        self.write_axis(delay)
+        self.bough("linearize", "axis.toml", "--break", "drive", "-o", "loop.h5")
+        m = json.loads(self.bough("response", "loop.h5", "--json").stdout)["margins"]
+        self.assertTrue(m["stable"])
+        turn = scipy.optimize.brentq(lambda w: abs(self.calc(delay, w)) - 1, 0.5, 25)
+        (crossing,) = m["phase"]
+        self.assertAlmostEqual(crossing["frequency_hz"], turn / 2 / math.pi, places=8)
+        self.assertAlmostEqual(crossing["degrees"], math.degrees(np.angle(self.calc(delay, turn)) + math.pi), places=6)
+        # With that much more gain a multiplier of the closed loop, calculated elsewhere, lies on the unit circle.
+        gain = min((c for c in m["gain"] if c["factor"] > 1), key=lambda c: c["factor"])
+        for factor, sign in ((1.0, 0), (0.98, -1), (1.02, 1)):
+            self.write_axis(delay, kp=self.kp * gain["factor"] * factor, kd=self.kd * gain["factor"] * factor)
+            self.bough("linearize", "axis.toml", "-o", "closed.h5")
+            with h5py.File(self.path("closed.h5")) as f:
+                z = f["multipliers/real"][:].ravel() + 1j * f["multipliers/imag"][:].ravel()
+            most = np.abs(z[np.abs(z - 1) > 1e-9]).max()  # the integral of the law, with ki = 0, stays at 1
+            if sign == 0:
+                self.assertAlmostEqual(most, 1, places=6)
+            else:
+                self.assertGreater(sign * (most - 1), 1e-4)
+
+    def test_two_rates(self):
+        """A sensor that is read twice as often; cut there the loop would be another one at every second sample."""
+        self.write_axis(0.04)
+        with open(self.path("axis.toml")) as f:
+            text = f.read()
+        text = text.replace('hinge = "axis"\n\n[[sensor]]',
+                            'hinge = "axis"\nsample_time = 0.05\n\n[[sensor]]', 1)
+        self.write("axis.toml", text)
+        self.bough("linearize", "axis.toml", "--break", "law", "-o", "loop.h5")
+        self.bough("response", "loop.h5", "-o", "r.h5")
+        with h5py.File(self.path("r.h5")) as f:
+            omega, L = 2 * math.pi * f["frequency_hz"][:], (f["real"][:] + 1j * f["imag"][:]).ravel()
+        exact = np.array([self.calc(0.04, w) for w in omega])  # at the instants of the law it is the same angle
+        self.assertLess(np.abs(L / exact - 1).max(), 1e-8)
+        self.fails(1, "linearize", "axis.toml", "--break", "angle", says=["0.05", "0.1"], error="linear.slower-samples")
+        self.fails(1, "linearize", "axis.toml", "--break", "law", "--sweep", "kp=1:2:3", error="linear.sampled-sweep")
+
+    def test_a_cut_that_moves_between_samples_is_told(self):
+        self.write_axis()
+        said = self.bough("linearize", "axis.toml", "--break", "angle", "-o", "loop.h5").stderr
+        self.assertIn("linear.sampled", said)
 
 
 class SelectMore(LinearTest):

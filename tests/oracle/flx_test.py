@@ -301,10 +301,10 @@ class OfMatrices(OracleTest):
         scipy.io.savemat(self.path("in.mat"), {"M": self.M, "K": self.K, "Phi": self.Phi, "xyz": self.xyz,
                                                "dof_map": self.dof_map.astype(float)})
         folder = os.path.join(SOURCE, "data/matlab")
-        self.write("run.m", f"addpath('{folder}'); load in.mat; R = [0.5 -0.25 2];\n"
+        self.write("main.m", f"addpath('{folder}'); load in.mat; R = [0.5 -0.25 2];\n"
                             "F = fimake5(M, dof_map, xyz, R); out = modall(M, K, Phi, dof_map, xyz, 2.5, R);\n"
                             "save -v7 out.mat F out\n")
-        subprocess.run(["octave", "--no-gui", "--quiet", "run.m"], cwd=self.folder, check=True)
+        subprocess.run(["octave", "--no-gui", "--quiet", "main.m"], cwd=self.folder, check=True)
         found, flx = scipy.io.loadmat(self.path("out.mat")), self.read_flx("t.FLX")
         self.assert_equal(found["F"], np.loadtxt(self.path("t.fi"))[:, 2:], "fimake5")
         for name in ["alpha", "gamma0", "gamma1", "gamma2", "gamma3", "gamma4"]:
