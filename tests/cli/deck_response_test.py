@@ -218,7 +218,7 @@ class OneMass(DeckResponse):
         for table, exact in [("TABLED1,3,LOG,LOG\n,.1,2.,1.,20.,ENDT", lambda f: 20 * f),
                              ("TABLED1,3,LOG\n,.1,2.,1.,3.,ENDT", lambda f: 3 + np.log10(f)),
                              ("TABLED3,3,.1,2.\n,0.,1.,.1,2.,ENDT", lambda f: 1 + 5 * (f - .1)),
-                             ("TABLED1,3\n,0.,1.,.2,1.,.2,3.,.4,3.,ENDT", lambda f: np.select([f < .19, f < .21], [1, 2], 3)),
+                             ("TABLED1,3\n,0.,1.,.2,1.,.2,3.,.4,3.\n,ENDT", lambda f: np.select([f < .19, f < .21], [1, 2], 3)),
                              ("TABLED1,3\n,1.,1.,.5,2.,SKIP,SKIP,0.,4.\n,ENDT", lambda f: np.where(f < .5, 4 - 4 * f, 3 - 2 * f))]:
             r, w = self.frequency(table, load=load, lists="FREQ,5,.05,.1,.2,.3,.7,1.4")
             self.near(r["displacement"][1, 1], exact(r["x"]) * H(w))
