@@ -60,7 +60,7 @@ void add_block(const ResponseSubcase& s, const Block& block, const Eigen::Matrix
   lines.add(std::string("$") + block.title);
   lines.add(is_over_time ? "$REAL OUTPUT" : block.is_phase ? "$MAGNITUDE-PHASE OUTPUT" : "$REAL-IMAGINARY OUTPUT");
   char text[96];
-  std::snprintf(text, sizeof text, "$SUBCASE ID = %11d", s.id);
+  std::snprintf(text, sizeof text, "$SUBCASE ID = %11d", std::max(s.id, 1));
   lines.add(text);
   std::snprintf(text, sizeof text, "$%s = %11d  IDENTIFIED BY %s", block.who.c_str(), block.id,
                 is_over_time ? "TIME" : "FREQUENCY");

@@ -117,15 +117,14 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
     used = rest;
   }
 
+  if (used.empty()) return result;
   const MatrixXd K = X.transpose() * fe::calc_stiffness_times(model, X);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(symmetrize(K));
-  if (!used.empty()) {
-    result.modes.lambda = ritz.eigenvalues();
-    result.modes.Phi = X * ritz.eigenvectors();
-    detail::fix_signs(result.modes.Phi);
-    result.share = MatrixXd::Zero(m, static_cast<Eigen::Index>(used.size()));
-    result.share(used, Eigen::all) = ritz.eigenvectors().cwiseAbs2();
-  }
+  result.modes.lambda = ritz.eigenvalues();
+  result.modes.Phi = X * ritz.eigenvectors();
+  detail::fix_signs(result.modes.Phi);
+  result.share = MatrixXd::Zero(m, static_cast<Eigen::Index>(used.size()));
+  result.share(used, Eigen::all) = ritz.eigenvectors().cwiseAbs2();
   return result;
 }
 

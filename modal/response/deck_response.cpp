@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "fe/statics/statics.hpp"
@@ -182,11 +183,13 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
     recover(model, deck_, response, excitation, damping, outputs, calc_history(response, excitation, grid), result);
   } else {
     const double highest = natural.size() > 0 ? natural(natural.size() - 1) : 0;
-    if (response.num_normal < model.num_fdofs() && hz(hz.size() - 1) > highest)
-      own.warning("modal.response-range", deck_.locate(subcase.find_command("FREQUENCY")),
-                  "the model is driven up to " + std::to_string(hz(hz.size() - 1)) + " Hz, its modes end at " +
-                      std::to_string(highest) + " Hz",
+    if (response.num_normal < model.num_fdofs() && hz(hz.size() - 1) > highest) {
+      char text[112];
+      std::snprintf(text, sizeof text, "the model is driven up to %.6g Hz, its modes end at %.6g Hz", hz(hz.size() - 1),
+                    highest);
+      own.warning("modal.response-range", deck_.locate(subcase.find_command("FREQUENCY")), text,
                   "take more modes: beyond them there are residual vectors only");
+    }
     recover(model, deck_, response, excitation, damping, outputs, calc_spectrum(response, excitation, hz), result);
   }
   for (const auto& item : own.items()) diagnostics.add(item);

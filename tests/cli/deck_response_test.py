@@ -68,7 +68,7 @@ SPC1,1,123456,4
 ENDDATA
 """
 
-# A bent frame of consistent mass, one grid in axes of its own, with a bush that damps.
+# A bent frame of consistent mass, one grid in axes of its own (in which v of CBAR 3 is (0, 0, 1)), a bush that damps.
 FRAME = """SOL 111
 CEND
 SPC = 1
@@ -95,7 +95,7 @@ PBAR,1,1,1.-4,2.-8,1.-8,1.5-8
 PBAR,2,2,1.-4,1.-8,3.-8,1.5-8
 CBAR,1,1,1,2,0.,0.,1.
 CBAR,2,1,2,3,0.,0.,1.
-CBAR,3,2,3,4,0.,0.,1.
+CBAR,3,2,3,4,{v}
 CBAR,4,2,4,5,0.,0.,1.
 CONM2,9,5,,.3
 PBUSH,8,K,2.+3,,,,,
@@ -115,11 +115,11 @@ ENDDATA
 
 
 def read(path):
-    """Subcase -> quantity -> (grid, component) -> samples, complex over frequency; x under "x"."""
+    """Subcase (1 where the deck numbers none) -> quantity -> (grid, component) -> samples, complex over frequency; x under "x"."""
     found = {}
     with h5py.File(path) as f:
         for name, group in f["subcases"].items():
-            one = found[int(name)] = {"x": (group["frequency_hz"] if "frequency_hz" in group else group["time"])[()]}
+            one = found[int(name) or 1] = {"x": (group["frequency_hz"] if "frequency_hz" in group else group["time"])[()]}
             for quantity in ["displacement", "velocity", "acceleration", "spc_force"]:
                 if quantity not in group:
                     continue
@@ -218,8 +218,8 @@ class OneMass(DeckResponse):
         for table, exact in [("TABLED1,3,LOG,LOG\n,.1,2.,1.,20.,ENDT", lambda f: 20 * f),
                              ("TABLED1,3,LOG\n,.1,2.,1.,3.,ENDT", lambda f: 3 + np.log10(f)),
                              ("TABLED3,3,.1,2.\n,0.,1.,.1,2.,ENDT", lambda f: 1 + 5 * (f - .1)),
-                             ("TABLED1,3\n,0.,1.,.2,1.,.2,3.,.4,3.,ENDT", lambda f: np.select([f < .19, f < .21], [1, 2], 3)),
-                             ("TABLED1,3\n,1.,1.,.5,2.,SKIP,SKIP,0.,4.,ENDT", lambda f: np.where(f < .5, 4 - 4 * f, 3 - 2 * f))]:
+                             ("TABLED1,3\n,0.,1.,.2,1.,.2,3.,.4,3.\n,ENDT", lambda f: np.select([f < .19, f < .21], [1, 2], 3)),
+                             ("TABLED1,3\n,1.,1.,.5,2.,SKIP,SKIP,0.,4.\n,ENDT", lambda f: np.where(f < .5, 4 - 4 * f, 3 - 2 * f))]:
             r, w = self.frequency(table, load=load, lists="FREQ,5,.05,.1,.2,.3,.7,1.4")
             self.near(r["displacement"][1, 1], exact(r["x"]) * H(w))
 
@@ -282,7 +282,7 @@ class OneMass(DeckResponse):
             exact = 2.5 / (K - M * p**2) * (np.sin(p * t) - p / w * np.sin(w * t))
             self.assertEqual(len(t), 101)
             errors.append(np.abs(r["displacement"][1, 1] - exact).max() / np.abs(exact).max())
-        self.assertLess(errors[1], 2e-4)
+        self.assertLess(errors[1], 4e-4)  # (p h)² / 12
         self.assertAlmostEqual(errors[0] / errors[1], 4, delta=.1)
 
     def test_growth(self):
@@ -317,8 +317,8 @@ class OneMass(DeckResponse):
         self.near(r["acceleration"][2, 1], a(t), 1e-11)
         self.near(r["velocity"][2, 1], v(t), 1e-11)
         self.near(r["displacement"][2, 1], d(t), 1e-11)
-        exact = solve_ivp(lambda x, y: [y[1], (K * (d(x) - y[0]) + C * (v(x) - y[1])) / M], (0, 4), [0, 0], t_eval=t,
-                          rtol=1e-12, atol=1e-14, max_step=.01).y[0]
+        exact, rate = solve_ivp(lambda x, y: [y[1], (K * (d(x) - y[0]) + C * (v(x) - y[1])) / M], (0, 4), [0, 0],
+                                t_eval=t, rtol=1e-12, atol=1e-14, max_step=.01).y
         self.near(r["displacement"][1, 1], exact, 1e-8)
         self.near(r["spc_force"][2, 1], M * r["acceleration"][1, 1], 1e-9)
         table = lambda y: "TABLED1,3\n" + "".join(f",{x!r},{y(x)!r}\n" for x in np.arange(401) * .01) + ",ENDT"
@@ -327,7 +327,8 @@ class OneMass(DeckResponse):
                                   load=f"TLOAD1,9,10,,{kind},3\nSPCD,10,2,1,1.")
             self.near(r["displacement"][1, 1], exact, 2e-5)
             self.near(r["displacement"][2, 1], d(t), 2e-5)
-            self.near(r["acceleration"][1, 1], -np.gradient(np.gradient(-exact, t), t), 2e-2)
+            self.near(r["velocity"][1, 1], rate, 2e-5)
+            self.near(r["acceleration"][1, 1], (K * (d(t) - exact) + C * (v(t) - rate)) / M, 3e-3)
 
     def test_broken_line(self):
         """A base displacement that is a ramp: exact."""
@@ -478,9 +479,9 @@ class Structures(DeckResponse):
 
     def test_frame(self):
         """All modes against SciPy; then few modes with residual vectors; a grid in axes of its own."""
-        r = self.solve("frequency", FRAME.format(modes=30, cd=""))[1]
-        with_cd = self.solve("frequency", FRAME.format(modes=30, cd="7"))[1]
-        self.write("m.bdf", FRAME.format(modes=30, cd=""))
+        r = self.solve("frequency", FRAME.format(modes=30, cd="", v="0.,0.,1."))[1]
+        with_cd = self.solve("frequency", FRAME.format(modes=30, cd="7", v="2.,2.,1."))[1]
+        self.write("m.bdf", FRAME.format(modes=30, cd="", v="0.,0.,1."))
         self.bough("matrices", "m.bdf", "-o", "m.h5")
         with h5py.File(self.path("m.h5")) as f:
             dofs = f["dof_map"][()]
@@ -488,7 +489,7 @@ class Structures(DeckResponse):
         def load(f, w):
             amplitude = 1 + f / 100 if f < 100 else 2.0
             return F * amplitude * np.exp(1j * (np.radians(10 + 20 * min(f, 200) / 100 + 30) - w * .01))
-        dofs, exact = self.direct(FRAME.format(modes=30, cd=""), r["x"], load, .02)
+        dofs, exact = self.direct(FRAME.format(modes=30, cd="", v="0.,0.,1."), r["x"], load, .02)
         for i, (u, reaction) in enumerate(exact):
             found = np.array([r["displacement"][tuple(dof)][i] for dof in dofs])
             self.near(found, u, 1e-8)
@@ -500,7 +501,7 @@ class Structures(DeckResponse):
             cd = np.array([with_cd["displacement"][3, half + c] for c in range(3)])
             basic = np.array([r["displacement"][3, half + c] for c in range(3)])
             self.near(R @ cd, basic, 1e-8)
-        few = self.solve("frequency", FRAME.format(modes=6, cd=""))[1]
+        few = self.solve("frequency", FRAME.format(modes=6, cd="", v="0.,0.,1."))[1]
         low = r["x"] < few["modes"]["frequency_hz"][4] / 2
         self.near(few["displacement"][5, 1][low], r["displacement"][5, 1][low], 1e-3)
 
@@ -539,7 +540,7 @@ class Structures(DeckResponse):
 
     def test_static_limit(self):
         """At 0 Hz the response with one mode is that of SOL 101."""
-        deck = FRAME.format(modes=1, cd="7").replace("FREQ1,5,3.,17.3,9", "FREQ,5,0.").replace("PARAM,G,.02\n", "").replace(
+        deck = FRAME.format(modes=1, cd="7", v="2.,2.,1.").replace("FREQ1,5,3.,17.3,9", "FREQ,5,0.").replace("PARAM,G,.02\n", "").replace(
             "2700.,,,.05", "2700.").replace("RLOAD2,9,10,.01,30.,3,4", "RLOAD1,9,11,,,1.").replace("DAREA,10", "DAREA,11").replace(
             "FORCE,10", "FORCE,11")
         r = self.solve("frequency", deck)[1]
@@ -607,7 +608,7 @@ class Files(DeckResponse):
         self.write("t.bdf", ONE.format(sol=112, case="DLOAD = 9\nTSTEP = 5", bulk="TLOAD2,9,10,,,0.,9.\nDAREA,10,1,1,2.5\nTSTEP,5,40,.1"))
         self.bough("transient", "t.bdf", "-o", "t.h5")
         self.bough("plot", "t.h5", "--sensor", "velocity:1", "-o", "t.svg")
-        self.assertIn("/subcases/1/displacement/value", self.bough("info", "t.h5").stdout)
+        self.assertIn("/subcases/0/displacement/value", self.bough("info", "t.h5").stdout)
 
     def test_choice_of_output(self):
         """--grid adds; no request at all gives the loaded grids; OFREQ and EXCEPT; SET that is missing."""

@@ -25,6 +25,22 @@ class Ranks(ProgramTest):
         np.testing.assert_allclose(found[1]["eigenvalue"], found[0]["eigenvalue"], rtol=1e-9)
         np.testing.assert_allclose(found[1]["effective_mass"], found[0]["effective_mass"], atol=1e-8)
 
+    def test_frequency(self):
+        """A beam with a damper, residual vectors of its load and of the damper."""
+        with open(self.path("boom.bdf")) as f:
+            deck = f.read()
+        self.write("driven.bdf", deck.replace("BEGIN BULK", "DLOAD = 901\nFREQUENCY = 902\nDISPLACEMENT = ALL\nBEGIN BULK\n"
+                                              "RLOAD1,901,903,,,1.\nDAREA,903,11,2,1.\nFREQ1,902,0.,.5,10\nPARAM,G,.02\n"
+                                              "CDAMP2,99001,.5,11,3"))
+        found = []
+        for n in (1, 2):
+            self.bough("frequency", "driven.bdf", "-n", 6, "-o", f"r{n}.h5", launcher=launch(n))
+            with h5py.File(self.path(f"r{n}.h5")) as f:
+                subcase = next(iter(f["subcases"].values()))
+                found.append(subcase["displacement/real"][()] + 1j * subcase["displacement/imag"][()])
+        self.assertGreater(np.abs(found[0]).max(), 0)
+        np.testing.assert_allclose(found[1], found[0], atol=1e-8 * np.abs(found[0]).max())
+
     def test_reduce(self):
         for n in (1, 2):
             self.bough("reduce", "boom.toml", "-o", f"boom{n}.h5", launcher=launch(n))
