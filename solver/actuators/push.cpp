@@ -43,6 +43,10 @@ class Jet final : public Push {
     Push::calc_rates(in, z_dot);
     if (exhaust > 0) z_dot[sizes.states - 1] = in.d[0] * thrust / exhaust;
   }
+  void add_consumption(const BlockInput& in, Eigen::Ref<Eigen::VectorXd> by_body) const override {
+    if (exhaust > 0)
+      by_body[in.system->impl().tree.markers[static_cast<size_t>(marker)].body] += in.z[sizes.states - 1];
+  }
   void calc_guards(const BlockInput& in, double* g) const override {
     const double command = calc_command(in);
     g[0] = in.d[0] > 0 ? std::min(off - command, in.t - in.d[1] - shortest) : command - on;

@@ -9,8 +9,9 @@
 namespace bough::solver {
 namespace {
 
-constexpr int kMostStrikes = 200;
-constexpr double kTouch = 1e-11;  // of where a stop is: what is no farther from it touches it
+constexpr int kMostRounds = 200;
+constexpr double kFaint = 1e-9;   // of the hardest blow of a moment: what is slower stays together
+constexpr double kTouch = 1e-11;  // of where a stop is, or how far it was: what is no farther from it touches it
 
 int sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
 
@@ -61,9 +62,10 @@ void Latches::calc_guards(const SystemData& data, VectorXd& guards) const {
 void Latches::find_stops(const SystemOde& ode, double resolution, const VectorXd& y) {
   for (Watched& w : latches_) {
     const double q = y[w.latch.q_row], rate = y[ode.num_q() + w.latch.u_row];
+    w.farthest = std::max(w.farthest, std::abs(q));
     const auto touches = [&](double past, double at) {
       return std::isfinite(at) &&
-             past > -(kTouch * std::max(std::abs(at), std::abs(q)) + 4 * resolution * std::abs(rate));
+             past > -(kTouch * std::max(std::abs(at), w.farthest) + 4 * resolution * std::abs(rate));
     };
     if (w.rests && w.stop != 0) continue;
     const bool is_low = touches(w.latch.lower - q, w.latch.lower), is_high = touches(q - w.latch.upper, w.latch.upper);
@@ -81,34 +83,61 @@ void Latches::lock(SystemOde& ode, double t, const std::vector<bool>& rests, Vec
   ode.change(t, next, y);
 }
 
+// What comes at its stop at one moment is thrown back at once; what that drives at other stops is the next round, so
+// that a blow travels along a row of bodies that touch. Without restitution what touches is one with what strikes it.
 bool Latches::strike_stops(SystemOde& ode, double t, double shortest, VectorXd& y, std::vector<std::string>& what) {
-  bool has_struck = false;
-  for (int round = 0; round < kMostStrikes; ++round) {
-    Watched* hardest = nullptr;
-    double speed = 0;
-    for (Watched& w : latches_) {
-      if (w.stop == 0 || ode.data().tree.mode[static_cast<size_t>(w.latch.u_row)] != HingeMode::Free) continue;
-      const double into = w.stop * y[ode.num_q() + w.latch.u_row];
-      const double slowest = std::abs(y_dot_[ode.num_q() + w.latch.u_row]) * shortest;
-      if (into > std::max(speed, slowest)) {
-        speed = into;
-        hardest = &w;
-      }
+  const int u = ode.num_q();
+  double first = 0;
+  for (int round = 0;; ++round) {
+    double hardest = 0;
+    for (const Watched& w : latches_) {
+      if (!can_strike(ode, w)) continue;
+      const double into = w.stop * y[u + w.latch.u_row];
+      if (into > calc_slowest(w, u, shortest)) hardest = std::max(hardest, into);
     }
-    if (!hardest) return has_struck;
-    if (!has_struck) {  // an impulse overcomes whatever holds
+    if (hardest == 0) return round > 0;
+    if (round == 0) {  // an impulse overcomes whatever holds
       lock(ode, t, std::vector<bool>(latches_.size(), false), y);
       for (Watched& w : latches_) w.rests = false;
-      has_struck = true;
+      first = hardest;
     }
-    const int row = hardest->latch.u_row;
-    const double after = -hardest->latch.restitution * hardest->stop * speed;
-    const double impulse = ode.strike(t, row, after, y);
-    what.push_back(hardest->latch.name + " meets its stop at " +
-                   short_text(hardest->stop < 0 ? hardest->latch.lower : hardest->latch.upper) +
-                   ": its rate turns from " + short_text(hardest->stop * speed) + " to " + short_text(after) +
-                   " by an impulse of " + short_text(impulse));
+    const bool is_last = hardest <= kFaint * first || round == kMostRounds;
+    std::vector<Blow> blows;
+    std::vector<const Watched*> struck;
+    for (Watched& w : latches_) {
+      if (!can_strike(ode, w)) continue;
+      const double into = w.stop * y[u + w.latch.u_row];
+      const bool comes = into > std::max(calc_slowest(w, u, shortest), kFaint * first), stays = into >= -kFaint * first;
+      if (round == kMostRounds && comes && w.latch.restitution >= 1) fail_endless(what);
+      if (!comes && !(stays && (is_last || w.latch.restitution == 0))) continue;
+      blows.push_back({w.latch.u_row, w.stop, is_last ? 0 : w.latch.restitution});
+      struck.push_back(&w);
+      w.hardest = std::max(w.hardest, into);
+    }
+    const VectorXd before = y.segment(u, ode.num_coordinates() - u);
+    ode.strike(t, blows, y);
+    for (size_t i = 0; i < blows.size(); ++i) {
+      const double from = before[blows[i].row], to = y[u + blows[i].row];
+      if (blows[i].impulse == 0 || std::abs(from) <= kFaint * first) continue;
+      what.push_back(struck[i]->latch.name + " meets its stop at " +
+                     short_text(struck[i]->stop < 0 ? struck[i]->latch.lower : struck[i]->latch.upper) +
+                     ": its rate turns from " + short_text(from) + " to " + short_text(to) + " by an impulse of " +
+                     short_text(blows[i].impulse));
+    }
+    if (is_last) return true;
   }
+}
+
+double Latches::calc_slowest(const Watched& w, int u, double shortest) const {
+  // By what drives it there; where nothing does (a box that rocks on two of its feet) by how it once came.
+  return std::max(std::abs(y_dot_[u + w.latch.u_row]) * shortest, w.stop != 0 ? kFaint * w.hardest : 0);
+}
+
+bool Latches::can_strike(const SystemOde& ode, const Watched& w) const {
+  return w.stop != 0 && ode.data().tree.mode[static_cast<size_t>(w.latch.u_row)] == HingeMode::Free;
+}
+
+void Latches::fail_endless(const std::vector<std::string>& what) const {
   throw ComputationError("run.endless-impacts", system_.impl().tree.bodies.front().hinge_at,
                          "stops that throw each other back do not come to an end, last " + what.back(),
                          "give them a restitution below 1, or a stiffness in its place");
@@ -124,15 +153,13 @@ void Latches::find_rest(SystemOde& ode, double t, double shortest, VectorXd& y, 
     const HingeMode mode = ode.data().tree.mode[static_cast<size_t>(w.latch.u_row)];
     before[i] = w.rests && mode == HingeMode::Locked;
     if (mode == HingeMode::Prescribed || (mode == HingeMode::Locked && !w.rests)) continue;
-    double& rate = y[u + w.latch.u_row];
+    const double rate = y[u + w.latch.u_row];
     slide[i] = w.latch.static_friction > 0 ? sign(rate) : 0;
     const bool is_held = w.latch.static_friction > 0 || w.stop != 0;
-    const bool is_slow = std::abs(rate) <= std::abs(y_dot_[u + w.latch.u_row]) * shortest;
+    const bool is_slow = std::abs(rate) <= calc_slowest(w, u, shortest);
     // What slides on its way, and has not turned, goes on.
     const bool turns = w.latch.static_friction == 0 || w.slide == 0 || w.slide * rate <= 0;
-    if (!is_held || !is_slow || !turns) continue;
-    rate = 0;
-    rests[i] = true;
+    if (is_held && is_slow && turns) rests[i] = true;  // what is left of its rate goes by the impulse of locking it
   }
   for (size_t left = latches_.size() + 1; left > 0; --left) {
     lock(ode, t, rests, y);
@@ -184,19 +211,23 @@ std::vector<std::string> Latches::settle(SystemOde& ode, double t, double shorte
 
 void Latches::get_memory(VectorXd& memory) const {
   for (size_t i = 0; i < latches_.size(); ++i) {
-    const auto at = 2 * static_cast<Eigen::Index>(i);
+    const auto at = kMemory * static_cast<Eigen::Index>(i);
     memory[at] = latches_[i].rests ? 2 : latches_[i].slide;
     memory[at + 1] = latches_[i].stop;
+    memory[at + 2] = latches_[i].hardest;
+    memory[at + 3] = latches_[i].farthest;
   }
 }
 
 void Latches::set_memory(const VectorXd& memory, SystemOde& ode) {
   for (size_t i = 0; i < latches_.size(); ++i) {
-    const auto at = 2 * static_cast<Eigen::Index>(i);
+    const auto at = kMemory * static_cast<Eigen::Index>(i);
     Watched& w = latches_[i];
     w.rests = memory[at] == 2;
     w.slide = w.rests ? 0 : static_cast<int>(memory[at]);
     w.stop = static_cast<int>(memory[at + 1]);
+    w.hardest = memory[at + 2];
+    w.farthest = memory[at + 3];
     ode.data().tree.slide[w.latch.u_row] = w.slide;
   }
 }

@@ -27,7 +27,7 @@ class Latches {
   /// change with it. Allocates.
   std::vector<std::string> settle(SystemOde& ode, double t, double shortest, VectorXd& y);
 
-  VectorXd make_memory() const { return VectorXd::Zero(2 * static_cast<Eigen::Index>(latches_.size())); }
+  VectorXd make_memory() const { return VectorXd::Zero(kMemory * static_cast<Eigen::Index>(latches_.size())); }
   void get_memory(VectorXd& memory) const;
   void set_memory(const VectorXd& memory, SystemOde& ode);
 
@@ -35,15 +35,22 @@ class Latches {
   struct Watched {
     Latch latch;
     bool rests = false;
-    int stop = 0;   ///< -1, 1: at the lower, upper stop
-    int slide = 0;  ///< with friction and moving: which way
+    int stop = 0;         ///< -1, 1: at the lower, upper stop
+    int slide = 0;        ///< with friction and moving: which way
+    double hardest = 0;   ///< the fastest that it came at its stops
+    double farthest = 0;  ///< from zero, where it was looked at
     double low() const { return stop > 0 ? -kFree : -latch.static_friction; }
     double high() const { return stop < 0 ? kFree : latch.static_friction; }
   };
+  static constexpr int kMemory = 4;  ///< numbers of each latch in a checkpoint
   static constexpr double kFree = std::numeric_limits<double>::infinity();
 
   void find_stops(const SystemOde& ode, double resolution, const VectorXd& y);
   bool strike_stops(SystemOde& ode, double t, double shortest, VectorXd& y, std::vector<std::string>& what);
+  bool can_strike(const SystemOde& ode, const Watched& w) const;
+  /// A rate below which it comes to rest at what may hold it.
+  double calc_slowest(const Watched& w, int u, double shortest) const;
+  [[noreturn]] void fail_endless(const std::vector<std::string>& what) const;
   void find_rest(SystemOde& ode, double t, double shortest, VectorXd& y, std::vector<std::string>& what);
   void lock(SystemOde& ode, double t, const std::vector<bool>& rests, VectorXd& y) const;
   double calc_holding_force(const SystemData& data, const Watched& w) const;

@@ -17,6 +17,8 @@ constexpr double kEnergyWarning = 1e-2;
 constexpr double kOpen = 1e-6;
 /// Motions of so many absolute tolerances have an energy below which nothing is judged.
 constexpr double kNoise = 100;
+/// Share of a body's mass that its jets may use up before it is told that the mass stays as it is.
+constexpr double kMuchPropellant = 0.01;
 
 std::string text_of(double value) {
   std::ostringstream text;
@@ -353,8 +355,25 @@ void Run::update_progress(double t) {
   progress_.energy_error = monitor_.latest();
 }
 
+void Run::tell_consumption() {
+  const System& system = ode_.system();
+  set_z(ode_.data(), y_.segment(ode_.num_coordinates(), ode_.num_z()));
+  const VectorXd used = system.impl().signals.calc_consumption(system, ode_.data());
+  for (int b = 0; b < system.num_bodies(); ++b) {
+    const double mass = system.impl().tree[b].body.mass();
+    if (used[b] > kMuchPropellant * mass)
+      diagnostics_.warning(
+          "run.propellant", spec_.simulation.at,
+          "the jets of body '" + system.body_name(b) + "' have used " + short_text(used[b]) + " of propellant, " +
+              short_text(100 * used[b] / mass) + " % of its mass " + short_text(mass) +
+              ", which stays as it is: its last accelerations are too small",
+          "run the mission in parts (run --start-from), each with the mass, cg and inertia of its middle");
+  }
+}
+
 SimulateOutcome Run::close(double t, const std::string& reason) {
   sink_.end(true, reason);
+  tell_consumption();
   const double worst = monitor_.worst(), limit = spec_.simulation.energy_error_limit;
   const bool is_kept = worst <= limit;
   if (worst > kEnergyWarning * limit) {

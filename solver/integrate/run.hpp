@@ -47,6 +47,8 @@ class Run {
   const VectorXd& calc_sample(double t, const VectorXd& y);
   const VectorXd& calc_gaps(double t);
   void update_progress(double t);
+  /// Warns where jets have used up much of their body.
+  void tell_consumption();
   /// The regular end, with the judgement of the energy.
   SimulateOutcome close(double t, const std::string& reason);
 

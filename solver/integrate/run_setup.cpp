@@ -8,6 +8,42 @@
 
 namespace bough::solver {
 
+namespace {
+
+// Largest frequency of a body's modes with its frame held; 0 without modes.
+double calc_largest_frequency(const Body& body) {
+  const int n = body.num_modes();
+  if (n == 0) return 0;
+  const MatrixXd M = body.make_inertia().M.bottomRightCorner(n, n), K = 0.5 * (body.K() + body.K().transpose());
+  if (Eigen::LLT<MatrixXd>(M).info() != Eigen::Success) return 0;
+  const VectorXd values =
+      Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(K, M, Eigen::EigenvaluesOnly).eigenvalues();
+  return std::sqrt(std::max(0.0, values[n - 1]));
+}
+
+// Explicit steps follow every mode, wanted or not.
+void hint_at_fast_modes(const System& system, const RunSetup& setup, const SourceLocation& at,
+                        Diagnostics& diagnostics) {
+  double fastest = 0;
+  int where = 0;
+  for (int b = 0; b < system.num_bodies(); ++b) {
+    const double own = calc_largest_frequency(system.impl().tree[b].body);
+    if (own <= fastest) continue;
+    fastest = own;
+    where = b;
+  }
+  const double turned = fastest * setup.plan.output_step;
+  if (turned <= kFastMode) return;
+  std::ostringstream what;
+  what << "integrator " << setup.integrator << " follows the fastest mode of body '" << system.body_name(where) << "', "
+       << fastest << " rad per unit of time, " << turned << " rad between samples";
+  diagnostics.note(
+      "run.fast-modes", at, what.str(),
+      "integrator = \"auto\" or \"bdf\" damps such modes out, \"implicit\" at a fixed step; or keep fewer modes");
+}
+
+}  // namespace
+
 RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics) {
   bool is_sound = true;
   for (int b = 0; b < system.num_bodies(); ++b) is_sound = is_sound && system.is_sound(b);
@@ -29,6 +65,8 @@ RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diag
                       "take rk4 for a fixed step, rk or bdf for one that adapts");
   if (setup.integrator == "auto" && diagnostics.num_errors() == 0)
     setup.integrator = choose_integrator(system, spec.simulation, setup.plan.output_step, diagnostics);
+  else if ((setup.integrator == "adams" || setup.integrator == "rk") && is_sound && diagnostics.num_errors() == 0)
+    hint_at_fast_modes(system, setup, spec.simulation.at, diagnostics);
   return setup;
 }
 

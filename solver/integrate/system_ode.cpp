@@ -46,12 +46,10 @@ void SystemOde::project_error(Eigen::Ref<VectorXd> error) {
   solver::remove_normal(system_, *data_, error.head(num_q_), error.segment(num_q_, num_u_));
 }
 
-double SystemOde::strike(double t, int row, double rate, Eigen::Ref<VectorXd> y) {
+void SystemOde::strike(double t, std::vector<Blow>& blows, Eigen::Ref<VectorXd> y) {
   const double before = get_work(y);
-  const double impulse = solver::strike(system_, *data_, t, y.head(num_q_), row, rate, y.segment(num_q_, num_u_),
-                                        y[num_coordinates() + num_z_]);
+  solver::strike(system_, *data_, t, y.head(num_q_), blows, y.segment(num_q_, num_u_), y[num_coordinates() + num_z_]);
   y[num_coordinates() + num_z_ + 1] += std::max(0.0, before - get_work(y));
-  return impulse;
 }
 
 std::vector<std::string> SystemOde::change(double t, const Discrete& next, Eigen::Ref<VectorXd> y) {

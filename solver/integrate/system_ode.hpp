@@ -5,7 +5,7 @@
 #include <string>
 
 #include "solver/integrate/ode.hpp"
-#include "solver/system/system.hpp"
+#include "solver/system/impact.hpp"
 
 namespace bough::solver {
 
@@ -24,9 +24,8 @@ class SystemOde final : public Ode {
   bool has_projection() const override { return system_.num_constraints() > 0; }
   void project(double t, Eigen::Ref<VectorXd> y) override;
   void project_error(Eigen::Ref<VectorXd> error) override;
-  /// The rate of one coordinate (row of u) becomes `rate` at (t, y) by an impulse along it, which is returned; all that
-  /// is free follows. Books its work, and what it takes as dissipated.
-  double strike(double t, int row, double rate, Eigen::Ref<VectorXd> y);
+  /// Stops that are met at (t, y), all at once; what is free follows. Books what they take as dissipated.
+  void strike(double t, std::vector<Blow>& blows, Eigen::Ref<VectorXd> y);
   /// A takes the stiffness and damping of each body's modes, of hinge springs, dampers, stops and friction for linear
   /// and nothing else: (M + γh D + γ²h² K) u̇ by the order-n recursion, in which K and D are blocks of one body.
   void calc_stage(double t, const Eigen::Ref<const VectorXd>& y, double gamma_h, bool is_first,

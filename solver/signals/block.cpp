@@ -14,5 +14,6 @@ void Block::add_load(const BlockInput&, const double*, SystemData&) const {}
 double Block::calc_power(const BlockInput&, const double*) const { return 0; }
 double Block::calc_energy(const BlockInput&) const { return 0; }
 Vector3d Block::calc_momentum(const BlockInput&) const { return Vector3d::Zero(); }
+void Block::add_consumption(const BlockInput&, Eigen::Ref<Eigen::VectorXd>) const {}
 
 }  // namespace bough::solver

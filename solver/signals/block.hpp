@@ -72,6 +72,8 @@ class Block {
   /// Kinetic energy and angular momentum (in W) that the actuator itself holds.
   virtual double calc_energy(const BlockInput& in) const;
   virtual Vector3d calc_momentum(const BlockInput& in) const;
+  /// Propellant used up, by body.
+  virtual void add_consumption(const BlockInput& in, Eigen::Ref<Eigen::VectorXd> by_body) const;
 };
 
 }  // namespace bough::solver

@@ -172,6 +172,14 @@ Vector3d SignalGraph::calc_momentum(const System& system, const SystemData& data
   return momentum;
 }
 
+VectorXd SignalGraph::calc_consumption(const System& system, const SystemData& data) const {
+  VectorXd used = VectorXd::Zero(system.num_bodies());
+  for (const auto& p : places) {
+    if (p.actuator >= 0) p.block->add_consumption(look_again(p, system, data), used);
+  }
+  return used;
+}
+
 std::vector<SampleTimes> SignalGraph::collect_samples() const {
   std::vector<SampleTimes> found;
   const auto add = [&](double first, double period) {

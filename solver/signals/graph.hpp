@@ -73,6 +73,8 @@ class SignalGraph {
   double calc_power(const System& system, const SystemData& data) const;
   double calc_energy(const System& system, const SystemData& data) const;
   Vector3d calc_momentum(const System& system, const SystemData& data) const;
+  /// Propellant used up on each body.
+  VectorXd calc_consumption(const System& system, const SystemData& data) const;
 
   /// Instants of all sampled blocks, each kind once.
   std::vector<SampleTimes> collect_samples() const;

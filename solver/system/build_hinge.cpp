@@ -46,7 +46,7 @@ void build_motion(const records::HingeRecord& r, const FunctionMap& functions, T
   if (!tb.hinge->has_plain_coordinates()) {
     diagnostics.error("system.prescribed-rotation", r.at,
                       "hinge " + quote(r.name) + ": the motion of a spherical or free hinge cannot be prescribed",
-                      "use fixed, revolute, universal, prismatic, cylindrical or planar hinges");
+                      "use hinges of angles and travels: gimbal and general (without q) among them");
     return;
   }
   if (static_cast<int>(r.motion.size()) != nu) {

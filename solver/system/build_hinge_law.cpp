@@ -23,7 +23,7 @@ class LawBuilder {
     if (!is_given) return;
     if (!tb_.hinge->has_plain_coordinates()) {
       refuse("is of a type without single coordinates: it takes no preload, tables, stops, friction or motor inertia",
-             "use revolute, universal, prismatic, cylindrical or planar hinges");
+             "use hinges of angles and travels: gimbal and general (without q) among them");
       return;
     }
     const int errors = diagnostics_.num_errors();

@@ -119,31 +119,4 @@ bool cross_jump(const System& system, SystemData& system_data, double before, do
   return true;
 }
 
-double strike(const System& system, SystemData& system_data, double t, const Eigen::Ref<const VectorXd>& q, int row,
-              double rate, Eigen::Ref<VectorXd> u, double& work) {
-  const System::Impl& impl = system.impl();
-  TreeData& data = system_data.tree;
-  BOUGH_DEMAND(data.mode[static_cast<size_t>(row)] == HingeMode::Free);
-  calc_kinematics(impl.tree, t, q, u, data);
-  const double before = calc_energies(system, system_data).kinetic;
-  calc_factor(impl.tree, data);
-  Sweep& s = start_response(data);
-  s.tau[row] = 1;
-  run_response(impl.tree, data, s);
-  VectorXd du = s.u_dot;
-  if (!system_data.loops.blocks.empty()) {
-    calc_closure_positions(impl.loops, impl.tree, data, system_data.loops);
-    factor_loops(impl.loops, impl.tree, data, system_data.loops);
-    remove_normal(impl.loops, impl.tree, data, system_data.loops, du);
-  }
-  if (!(du[row] > 0)) return 0;  // constraints hold it
-  const double impulse = (rate - data.u[row]) / du[row];
-  u = data.u;
-  add_free(data, impulse * du, u);
-  u[row] = rate;
-  calc_velocity(impl.tree, u, data);
-  work += calc_energies(system, system_data).kinetic - before;
-  return impulse;
-}
-
 }  // namespace bough::solver

@@ -134,10 +134,6 @@ void project(const System& system, SystemData& data, double t, Eigen::Ref<Vector
 /// Takes off small differences of q and u what that projection would take off, to first order. After project. No
 /// allocation.
 void remove_normal(const System& system, SystemData& data, Eigen::Ref<VectorXd> dq, Eigen::Ref<VectorXd> du);
-/// The rate of row `row` of u, free, becomes `rate` by an impulse along it, which is returned; momenta along all other
-/// free coordinates hold. work grows by what it does.
-double strike(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q, int row,
-              double rate, Eigen::Ref<VectorXd> u, double& work);
 /// u̇ by the order-n recursion with what was added, loops closed; body accelerations and hinge forces become available.
 /// Order n. No allocation. Throws ComputationError when the articulated inertia of a body is not positive definite.
 void calc_accelerations(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> u_dot);

@@ -20,8 +20,28 @@ double calc_size(const BodyData& d, const ConstVectorRef& column) {
   return root * root;
 }
 
+constexpr double kAligned = 1e-5;  // its square is a pivot of 1e-10
+
+// The free column before `pivot` that turns about its axis, or -1: where a gimbal's outer and inner axes meet.
+int find_aligned(const BodyData& d, int pivot) {
+  const Vector3d axis = d.hinge.H.col(d.free[pivot]).tail<3>();
+  for (int k = 0; k < pivot && axis.norm() > 0; ++k) {
+    const Vector3d other = d.hinge.H.col(d.free[k]).tail<3>();
+    if (other.norm() > 0 && axis.cross(other).norm() < kAligned * axis.norm() * other.norm()) return k;
+  }
+  return -1;
+}
+
 [[noreturn]] void fail_indefinite(const TreeBody& tb, const BodyData& d, int pivot, double t) {
   std::ostringstream what;
+  if (const int other = pivot < d.num_free ? find_aligned(d, pivot) : -1; other >= 0) {
+    what << "coordinates " << d.free[other] + 1 << " and " << d.free[pivot] + 1 << " of hinge '" << tb.hinge_name
+         << "' turn about one axis at t = " << t << ": a gimbal lock";
+    throw ComputationError(
+        "solver.gimbal-lock", tb.hinge_at, what.str(),
+        "start elsewhere, take the axes in another order, or a quaternion (rotations = \"q\"), which "
+        "has no such place");
+  }
   what << "the articulated mass matrix of body '" << tb.name << "' is not positive definite at t = " << t << ": ";
   if (pivot < d.num_free) {
     what << "next to nothing moves along coordinate " << d.free[pivot] + 1 << " of its hinge '" << tb.hinge_name << "'";

@@ -23,7 +23,7 @@ frame = "fixed"
 interface = [{outer}]
 [body.modes]
 basis = "craig-bampton"
-number = 2
+number = 6
 [body.output]
 file = "part.h5"
 """
@@ -72,7 +72,7 @@ class Princeton(ProgramTest):
     def make_chain(self, parts):
         bars = BARS // parts
         length = LENGTH / parts
-        deck = ["SOL 103", "CEND", "SPC = 1", "METHOD = 1", "BEGIN BULK", "PARAM,COUPMASS,1", "EIGRL,1,,,2",
+        deck = ["SOL 103", "CEND", "SPC = 1", "METHOD = 1", "BEGIN BULK", "PARAM,COUPMASS,1", "EIGRL,1,,,6",
                 "SPC1,1,123456,1", f"MAT1,1,{E:.6g},,{NU},{RHO}",
                 f"PBEAM,1,1,{AREA:.6e},{STRONG:.6e},{WEAK:.6e},,{J:.6e}"]
         deck += [f"GRID,{i + 1},,{i * length / bars:.10g},0.,0." for i in range(bars + 1)]

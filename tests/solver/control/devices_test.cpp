@@ -113,6 +113,24 @@ TEST(Jet, IsOnForItsShortestPulseAtLeast) {
   EXPECT_LT(p.norm(), 0.75 + 1e-9);  // of thrust x time, turning with the body
 }
 
+// The body keeps its mass; from a hundredth of it on a run says so. Two jets count together.
+TEST(Jet, PropellantThatIsMuchOfTheBodyIsAnnounced) {
+  auto spec = make_flyer("jet");
+  spec.functions = {make_step("law", 1, -1)};
+  const double mass = spec.bodies[0].mass, end = spec.simulation.duration, flow = 0.006 * mass / end;
+  spec.actuators[0].settings.numbers = {{"axis", {0, 0, 1}}, {"thrust", {2 * flow}}, {"exhaust_velocity", {2}}};
+  const RunResult one = run(spec);
+  EXPECT_FALSE(one.diagnostics.has("run.propellant"));
+  spec.actuators.push_back(spec.actuators[0]);
+  spec.actuators[1].name = "other";
+  const RunResult two = run(spec);
+  ASSERT_TRUE(two.diagnostics.has("run.propellant"));
+  for (const auto& d : two.diagnostics.items()) {
+    if (d.id == "run.propellant") EXPECT_NE(d.what.find("1.2 % of its mass"), std::string::npos) << d.what;
+  }
+  EXPECT_EQ(get_last(two.sink, "/system_mass/mass"), mass);
+}
+
 // q̈ = (N kt (V - kb N q̇) / R) / J: a lag towards the no-load rate.
 TEST(Motor, RunsUpToItsNoLoadRate) {
   auto spec = make_axis();

@@ -419,6 +419,31 @@ TEST(Advice, SpinWithoutStiffening) {
   EXPECT_FALSE(run(spec, flex).diagnostics.has("run.unstiffened-spin"));
 }
 
+TEST(Advice, FastModesThatExplicitStepsFollow) {
+  records::FlexBody flex = make_point_body(2, 4).make_record("boom");
+  flex.modal_mass.setIdentity();
+  records::SystemSpec spec;
+  records::BodyRecord boom;
+  boom.name = "boom";
+  boom.file = "boom.h5";
+  spec.bodies = {boom};
+  spec.simulation.duration = 1;
+  spec.simulation.output_step = 0.1;
+  for (const double frequency : {2000.0, 4000.0}) {
+    flex.modal_stiffness = frequency * frequency * flex.modal_mass;
+    for (const std::string integrator : {"adams", "rk", "bdf"}) {
+      spec.simulation.integrator = integrator;
+      Diagnostics diagnostics;
+      const System system = System::build_as_far(spec, {{"boom.h5", flex}}, diagnostics);
+      check_run(system, spec, diagnostics);
+      EXPECT_EQ(diagnostics.has("run.fast-modes"), frequency > 3000 && integrator != "bdf") << integrator << frequency;
+      for (const auto& d : diagnostics.items()) {
+        if (d.id == "run.fast-modes") EXPECT_THAT(d.what, HasSubstr("fastest mode of body 'boom'"));
+      }
+    }
+  }
+}
+
 TEST(Advice, AutoChoosesByTheFastestMode) {
   auto spec = make_one_body(HingeType::Prismatic);
   spec.hinges[0].stiffness = {2 * 5000.0 * 5000.0};

@@ -12,6 +12,7 @@ namespace bough::solver::testing {
 namespace {
 
 using records::HingeType;
+using ::testing::HasSubstr;
 
 records::SystemSpec make_body(HingeType type) {
   auto spec = make_one_body(type);
@@ -255,6 +256,38 @@ TEST(Simulate, UnreachableToleranceStalls) {
     EXPECT_EQ(e.items()[0].id, "run.stalled");
   }
   EXPECT_FALSE(sink.completed());
+}
+
+// The message says how short the steps are, what asks for them, and what to do.
+TEST(Simulate, AStallNamesTheStateThatStiffens) {
+  for (const std::string integrator : {"rk", "adams", "bdf"}) {
+    auto spec = make_oscillator();
+    spec.bodies.push_back(spec.bodies[0]);
+    spec.bodies[1].name = "quick";
+    spec.hinges.push_back(spec.hinges[0]);
+    spec.hinges[1].name = "spring";
+    spec.hinges[1].child = "quick";
+    spec.hinges[1].stiffness = {1e8};
+    spec.simulation.integrator = integrator;
+    spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-30;
+    try {
+      run(spec);
+      ADD_FAILURE() << integrator;
+    } catch (const ComputationError& e) {
+      const Diagnostic& d = e.items().at(0);
+      EXPECT_EQ(d.id, "run.stalled");
+      EXPECT_THAT(d.what, HasSubstr("the integrator makes no progress at t = ")) << integrator;
+      EXPECT_THAT(d.what,
+                  ::testing::MatchesRegex(".*; it is body 'quick' .hinge (rate|coordinate) 1. that asks for them most"))
+          << integrator;
+      if (integrator == "rk") {
+        EXPECT_THAT(d.what, HasSubstr(": steps of "));
+        EXPECT_THAT(d.what, HasSubstr(" tolerances; it is"));
+      }
+      EXPECT_THAT(d.advice, HasSubstr(integrator == "bdf" ? "leave out the fastest modes" : "integrator = \"bdf\""));
+      EXPECT_EQ(d.where.file, "system.toml");
+    }
+  }
 }
 
 TEST(Simulate, SensorFaultsStopARunBeforeItStarts) {

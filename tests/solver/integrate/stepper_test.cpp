@@ -89,6 +89,77 @@ TEST(Stepper, ErrorFollowsTheTolerance) {
   EXPECT_LT(calc_oscillator_error("rk", 1e-9, 0, 5), 3e-7);
 }
 
+/// A point that runs round the unit circle, ẏ = 2 ẑ × y, held there by projection when asked.
+class Circle final : public Ode {
+ public:
+  explicit Circle(bool is_projected) : is_projected_(is_projected) {}
+  int size() const override { return 2; }
+  void calc_derivative(double, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) override {
+    y_dot = Vector2d(-2 * y[1], 2 * y[0]);
+  }
+  bool has_projection() const override { return is_projected_; }
+  void project(double, Eigen::Ref<VectorXd> y) override { y.normalize(); }
+
+ private:
+  bool is_projected_;
+};
+
+// Order 5: the last stage is the next first one, so that a step costs six evaluations and the start two (one for the
+// first step's length), unless a projection has moved the state away from under it. Order 8 always takes thirteen.
+TEST(Stepper, OrderFiveTakesItsLastStageOver) {
+  for (const bool is_projected : {false, true}) {
+    for (const int order : {5, 8}) {
+      Circle ode(is_projected);
+      auto options = make_options(2, 1e-9);
+      options.rk_order = order;
+      const auto stepper = make_stepper("rk", ode, options);
+      const VectorXd y = integrate(*stepper, Vector2d(1, 0), 10);
+      EXPECT_LT((y - Vector2d(std::cos(20.0), std::sin(20.0))).norm(), 3e-7);
+      const StepStatistics s = stepper->statistics();
+      EXPECT_GT(s.num_steps, 20);
+      EXPECT_EQ(s.order, order);
+      const long later = order == 5 ? 6 : 12, trials = s.num_steps + s.num_rejected;
+      const long first = order == 5 && !is_projected ? 1 : s.num_steps;
+      EXPECT_EQ(s.num_evaluations, 1 + first + later * trials) << order << is_projected;
+    }
+  }
+}
+
+// What was taken over is of the old equations after a jump, and of the last step after a look back into it.
+TEST(Stepper, OrderFiveForgetsItsLastStageWhereItStartsAfresh) {
+  auto options = make_options(1, 1e-6, 0.3);
+  options.rk_order = 5;
+  TestOde jump(1, [](double t, const auto&, auto y_dot) { y_dot[0] = t < 1 ? 0 : 1; });
+  const auto stepper = make_stepper("rk", jump, options);
+  stepper->restart(0, VectorXd::Zero(1), 1, std::nextafter(1.0, 0.0));
+  while (stepper->time() < 1) stepper->step(1);
+  stepper->restart(1, VectorXd(stepper->state()), 2, 2);
+  while (stepper->time() < 2) stepper->step(2);
+  EXPECT_NEAR(stepper->state()[0], 1, 1e-14);
+
+  const auto walk = [](bool looks_back) {
+    TestOde ode = make_oscillator();
+    auto own = make_options(2, 1e-9);
+    own.rk_order = 5;
+    const auto walker = make_stepper("rk", ode, own);
+    walker->restart(0, Vector2d(1, 0), 10, 10);
+    VectorXd between(2);
+    while (walker->time() < 10) {
+      walker->step(10);
+      if (looks_back) walker->calc_state(0.5 * (walker->last_time() + walker->time()), between);
+    }
+    return VectorXd(walker->state());
+  };
+  EXPECT_EQ(walk(true), walk(false));
+}
+
+// At a largest step that the tolerance does not shorten: 2^5, and 2^8 at least (of the pair's own error of order 8 an
+// oscillator shows little).
+TEST(Stepper, PairsHaveTheirOrders) {
+  EXPECT_NEAR(std::log2(calc_oscillator_error("rk", 1, 0.1, 5) / calc_oscillator_error("rk", 1, 0.05, 5)), 5, 0.3);
+  EXPECT_GT(std::log2(calc_oscillator_error("rk", 1, 0.4, 8) / calc_oscillator_error("rk", 1, 0.2, 8)), 7.7);
+}
+
 TEST(Stepper, BdfTakesLongStepsOnAStiffEquation) {
   // ẏ = -1e6 (y - cos t) - sin t: y = cos t.
   const auto f = [](double t, const auto& y, auto y_dot) { y_dot[0] = -1e6 * (y[0] - std::cos(t)) - std::sin(t); };

@@ -1,6 +1,12 @@
 // Textbook motions against hand equations.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "solver/integrate/memory_sink.hpp"
+#include "solver/integrate/simulate.hpp"
 #include "tests/solver/support/models.hpp"
 
 namespace bough::solver::testing {
@@ -65,6 +71,55 @@ TEST(Classics, DoublePendulumOfPointMasses) {
   const Eigen::Vector2d expected = M.inverse() * f;
   EXPECT_NEAR(u_dot[0], expected[0], 1e-12);
   EXPECT_NEAR(u_dot[0] + u_dot[1], expected[1], 1e-12);
+}
+
+// The same in motion, 5 s, against its equations in long double by the classical Runge-Kutta method.
+TEST(Classics, DoublePendulumSwingsTo1em10) {
+  using Real = long double;
+  using State = Eigen::Matrix<Real, 4, 1>;  // angles, rates
+  const Real l1 = 1.2L, l2 = 0.7L, m1 = 2, m2 = 1.5L, g = 9.81L;
+  records::SystemSpec spec;
+  spec.simulation.gravity = {0, -9.81, 0};
+  for (const auto& [name, m, l] : {std::tuple{"a", 2.0, 1.2}, std::tuple{"b", 1.5, 0.7}}) {
+    records::BodyRecord body;
+    body.name = name;
+    body.mass = m;
+    body.cg = {0, -l, 0};
+    spec.bodies.push_back(body);
+  }
+  spec.hinges = {make_hinge_record("p", HingeType::Revolute, "ground", "a"),
+                 make_hinge_record("r", HingeType::Revolute, "a", "b")};
+  spec.hinges[1].parent_position = {0, -1.2, 0};
+  spec.hinges[0].position = {1.1};
+  spec.hinges[1].position = {0.5};
+  spec.simulation.duration = 5;
+  spec.simulation.output_step = 0.5;
+  spec.simulation.integrator = "rk";
+  spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-13;
+  MemorySink sink;
+  Diagnostics diagnostics;
+  simulate(build(spec), spec, sink, {}, diagnostics);
+  const auto rate = [&](const State& y) {
+    const Real c = std::cos(y[0] - y[1]), s = std::sin(y[0] - y[1]);
+    const Real a = (m1 + m2) * l1 * l1, b = m2 * l1 * l2 * c, d = m2 * l2 * l2;
+    const Real f = -m2 * l1 * l2 * y[3] * y[3] * s - (m1 + m2) * g * l1 * std::sin(y[0]),
+               h = m2 * l1 * l2 * y[2] * y[2] * s - m2 * g * l2 * std::sin(y[1]);
+    const Real det = a * d - b * b;
+    return State(y[2], y[3], (d * f - b * h) / det, (a * h - b * f) / det);
+  };
+  State y(1.1L, 1.6L, 0, 0);
+  const int steps = 5000;  // a sample
+  const Real h = 0.5L / steps;
+  double worst = 0;
+  for (int i = 0; i <= 10; ++i) {
+    worst = std::max({worst, std::abs(sink.get("/hinges/p/q")(i, 0) - static_cast<double>(y[0])),
+                      std::abs(sink.get("/hinges/r/q")(i, 0) - static_cast<double>(y[1] - y[0]))});
+    for (int k = 0; k < steps; ++k) {
+      const State k1 = rate(y), k2 = rate(y + h / 2 * k1), k3 = rate(y + h / 2 * k2), k4 = rate(y + h * k3);
+      y += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    }
+  }
+  EXPECT_LT(worst, 1e-10);
 }
 
 TEST(Classics, TorqueFreeSymmetricTopPrecesses) {

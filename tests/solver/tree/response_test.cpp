@@ -217,5 +217,31 @@ TEST(Pivots, FurtherOutAndOfSeveralCoordinates) {
   }
 }
 
+// Inner and outer axis of a gimbal meet: there is mass enough, and the message does not ask for more.
+TEST(Pivots, AGimbalLockIsNamed) {
+  for (const auto& [axes, middle] : {std::pair{"zxz", 0.0}, {"xyz", 1.5707963267948966}}) {
+    Random random(3);
+    records::SystemSpec spec;
+    spec.bodies = {make_rigid_record("b", random)};
+    spec.hinges = {make_hinge_record("wrist", records::HingeType::General, "ground", "b")};
+    spec.hinges[0].rotations = axes;
+    const System system = build(spec);
+    auto data = system.make_data();
+    const Vector3d q(0.4, middle, 0.7);
+    try {
+      calc_u_dot(system, *data, 0.25, q, VectorXd::Zero(3));
+      ADD_FAILURE() << axes;
+    } catch (const ComputationError& e) {
+      EXPECT_EQ(e.items()[0].id, "solver.gimbal-lock");
+      EXPECT_NE(std::string(e.what()).find(
+                    "coordinates 1 and 3 of hinge 'wrist' turn about one axis at t = 0.25: a gimbal lock"),
+                std::string::npos)
+          << e.what();
+    }
+    const VectorXd next = calc_u_dot(system, *data, 0.25, q + Vector3d(0, 0.3, 0), VectorXd::Zero(3));
+    EXPECT_TRUE(next.allFinite());
+  }
+}
+
 }  // namespace
 }  // namespace bough::solver::testing

@@ -1,0 +1,116 @@
+#include "solver/system/impact.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/system/impl.hpp"
+
+namespace bough::solver {
+namespace {
+
+constexpr double kRounding = 1e-12;  // of the rates before
+constexpr double kTwice = 1e-10;     // of the largest pivot: what is less is held by others already
+constexpr int kMostExchanges = 2000;
+
+VectorXd solve_active(const MatrixXd& A, const VectorXd& wanted, const std::vector<int>& active) {
+  VectorXd p = VectorXd::Zero(wanted.size());
+  if (active.empty()) return p;
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> factor;
+  factor.setThreshold(kTwice);
+  factor.compute(A(active, active));
+  p(active) = VectorXd(factor.solve(VectorXd(wanted(active))));
+  return p;
+}
+
+// M⁻¹ of a unit impulse along each row, loops closed: num_u x blows.
+MatrixXd calc_responses(const System::Impl& impl, SystemData& system_data, const std::vector<Blow>& blows) {
+  TreeData& data = system_data.tree;
+  MatrixXd D(impl.tree.num_u, static_cast<Eigen::Index>(blows.size()));
+  calc_factor(impl.tree, data);
+  const bool has_loops = !system_data.loops.blocks.empty();
+  if (has_loops) {
+    calc_closure_positions(impl.loops, impl.tree, data, system_data.loops);
+    factor_loops(impl.loops, impl.tree, data, system_data.loops);
+  }
+  for (size_t j = 0; j < blows.size(); ++j) {
+    Sweep& s = start_response(data);
+    s.tau[blows[j].row] = 1;
+    run_response(impl.tree, data, s);
+    VectorXd du = s.u_dot;
+    if (has_loops) remove_normal(impl.loops, impl.tree, data, system_data.loops, du);
+    D.col(static_cast<Eigen::Index>(j)) = du;
+  }
+  for (int row = 0; row < impl.tree.num_u; ++row) {
+    if (data.mode[static_cast<size_t>(row)] != HingeMode::Free) D.row(row).setZero();
+  }
+  return D;
+}
+
+}  // namespace
+
+VectorXd solve_blows(const MatrixXd& A, const VectorXd& v, const VectorXd& e) {
+  const auto n = v.size();
+  const VectorXd wanted = -(1 + e.array()) * v.array();
+  const double slow = kRounding * v.cwiseAbs().maxCoeff();
+  const double weak = slow / std::max(A.diagonal().maxCoeff(), std::numeric_limits<double>::min());
+  std::vector<bool> is_active(static_cast<size_t>(n), true);
+  VectorXd p;
+  for (int round = 0; round < kMostExchanges; ++round) {
+    std::vector<int> active;
+    for (int i = 0; i < n; ++i) {
+      if (is_active[static_cast<size_t>(i)]) active.push_back(i);
+    }
+    p = solve_active(A, wanted, active);
+    const VectorXd short_of = wanted - A * p;
+    int wrong = 0;
+    while (wrong < n && !(is_active[static_cast<size_t>(wrong)] ? p[wrong] < -weak : short_of[wrong] > slow)) ++wrong;
+    if (wrong == n) return p.cwiseMax(0);
+    is_active[static_cast<size_t>(wrong)] = !is_active[static_cast<size_t>(wrong)];
+  }
+  // Not reached where A is definite: the hardest blow alone.
+  int hardest = 0;
+  v.minCoeff(&hardest);
+  return solve_active(A, wanted, {hardest}).cwiseMax(0);
+}
+
+void strike(const System& system, SystemData& system_data, double t, const Eigen::Ref<const VectorXd>& q,
+            std::vector<Blow>& blows, Eigen::Ref<VectorXd> u, double& work) {
+  const System::Impl& impl = system.impl();
+  TreeData& data = system_data.tree;
+  const auto n = static_cast<Eigen::Index>(blows.size());
+  calc_kinematics(impl.tree, t, q, u, data);
+  const double before = calc_energies(system, system_data).kinetic;
+  const MatrixXd D = calc_responses(impl, system_data, blows);
+  MatrixXd A(n, n);
+  VectorXd v(n), e(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Blow& own = blows[static_cast<size_t>(i)];
+    BOUGH_DEMAND(data.mode[static_cast<size_t>(own.row)] == HingeMode::Free);
+    v[i] = -own.side * data.u[own.row];
+    e[i] = own.restitution;
+    for (Eigen::Index j = 0; j < n; ++j) A(i, j) = own.side * blows[static_cast<size_t>(j)].side * D(own.row, j);
+  }
+  A = (0.5 * (A + A.transpose())).eval();
+  VectorXd p = solve_blows(A, v, e);
+  if (p.dot(2 * v + A * p) > kRounding * std::abs(p.dot(v))) {  // twice what it gives
+    e.setConstant(e.minCoeff());
+    p = solve_blows(A, v, e);
+  }
+  u = data.u;
+  const VectorXd after = v + A * p;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    Blow& own = blows[static_cast<size_t>(i)];
+    own.impulse = -own.side * p[i];
+    u += own.impulse * D.col(i);
+  }
+  // What is thrown back has its rate without rounding.
+  const double close = 1e-9 * v.cwiseAbs().maxCoeff();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Blow& own = blows[static_cast<size_t>(i)];
+    if (p[i] > 0 && std::abs(after[i] + e[i] * v[i]) <= close) u[own.row] = own.side * e[i] * v[i] + 0.0;  // no -0
+  }
+  calc_velocity(impl.tree, u, data);
+  work += calc_energies(system, system_data).kinetic - before;
+}
+
+}  // namespace bough::solver
