@@ -92,8 +92,8 @@ def fuzz(program, reader, options):
     limit = [f"-runs={options.runs}"] if options.runs else [f"-max_total_time={round(60 * options.minutes)}"]
     before = set(glob.glob(found + "*"))
     begin = get_seconds()
-    ran = subprocess.run([program, own, os.path.join(CORPUS, reader), f"-artifact_prefix={found}", "-timeout=25",
-                          "-rss_limit_mb=3000", "-malloc_limit_mb=1500", f"-max_len={LONGEST.get(reader, 4096)}",
+    ran = subprocess.run([program, own, os.path.join(CORPUS, reader), f"-artifact_prefix={found}", "-timeout=100",
+                          "-report_slow_units=1000", "-rss_limit_mb=3000", "-malloc_limit_mb=1500", f"-max_len={LONGEST.get(reader, 4096)}",
                           *dictionary, "-print_final_stats=1", "-reload=0", *limit], env=environment,
                          cwd=options.keep, capture_output=True, text=True, errors="replace")
     new = sorted(set(glob.glob(found + "*")) - before)
