@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cctype>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 
@@ -93,6 +95,13 @@ bool is_same_letter(char x, char y) {
   return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
 }
 
+/// A bit for each letter that stands in the word, case aside; some share one.
+std::uint32_t find_letters(std::string_view word) {
+  std::uint32_t bits = 0;
+  for (const char c : word) bits |= std::uint32_t{1} << (std::tolower(static_cast<unsigned char>(c)) & 31);
+  return bits;
+}
+
 /// Letters to change, add, leave out or swap with their neighbour to make one word of the other; case aside. Three rows
 /// of the table are enough, and are kept between the calls.
 class Distance {
@@ -135,9 +144,14 @@ std::string find_nearest(std::string_view word, const std::vector<std::string>& 
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
   Distance table;
+  const auto letters = find_letters(word);
   for (const auto& candidate : candidates) {
     const auto longer = std::max(word.size(), candidate.size()), shorter = std::min(word.size(), candidate.size());
     if (longer - shorter >= best_distance) continue;  // as many letters to add at least
+    const auto others = find_letters(candidate);      // and each that only one of them has is to change
+    if (static_cast<std::size_t>(std::max(std::popcount(letters & ~others), std::popcount(others & ~letters))) >=
+        best_distance)
+      continue;
     const auto distance = table.calc(word, candidate);
     if (distance < best_distance) {
       best_distance = distance;

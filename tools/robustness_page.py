@@ -6,15 +6,29 @@ PAGE = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))),
                     "robustness.md")
 
 
-def write_table(mark, heads, rows, below=""):
-    """Rows of words and numbers between <!-- mark --> and <!-- end of mark -->; `below`: lines behind the table."""
-    lines = [heads, ["---"] * len(heads), *rows]
-    text = "\n".join("| " + " | ".join(str(x) for x in row) + " |" for row in lines) + ("\n\n" + below if below else "")
-    with open(PAGE, encoding="utf-8") as f:
-        page = f.read()
+def write_table(mark, heads, rows, notes=(), num_keys=1):
+    """Rows of words and numbers between <!-- mark --> and <!-- end of mark -->, `notes` below, one a line. What stands
+    there of others, by the first cells of a row and the first word of a note, stays."""
     begin, end = f"<!-- {mark} -->", f"<!-- end of {mark} -->"
-    if begin not in page or end not in page:
+    with open(PAGE, encoding="utf-8") as f:
+        before, found, rest = f.read().partition(begin)
+    old, found, after = rest.partition(end)
+    if not found:
         raise SystemExit(f"error: {PAGE} has no marks {begin} and {end}")
-    page = re.sub(re.escape(begin) + ".*?" + re.escape(end), lambda _: f"{begin}\n{text}\n{end}", page, flags=re.S)
+    new = ["| " + " | ".join(str(x) for x in row) + " |" for row in rows]
+
+    def find_first(line):
+        if line.startswith("|"):
+            return tuple(line.split(" | ")[:num_keys])
+        return re.match("`[^`]*`|[^ ]*", line).group(0)
+
+    def keep(lines, others):
+        return [line for line in lines if find_first(line) not in {find_first(other) for other in others}]
+
+    kept = [line for line in old.splitlines() if line.startswith("| ") and not line.startswith(("| ---", f"| {heads[0]} "))]
+    kept_notes = [line for line in old.splitlines() if line and not line.startswith("|")]
+    table = ["| " + " | ".join(heads) + " |", "| " + " | ".join("---" for _ in heads) + " |", *keep(kept, new), *new]
+    below = [*keep(kept_notes, notes), *notes]
+    text = "\n".join([begin, *table, *(["", *below] if below else []), end])
     with open(PAGE, "w", encoding="utf-8") as f:
-        f.write(page)
+        f.write(before + text + after)

@@ -356,8 +356,8 @@ class Soak:
                     place = os.path.join(self.keep, f"seed{seed + number}")
                     os.makedirs(place, exist_ok=True)
                     for file in self.bodies:
-                        for end in (".h5", ".bdf", ".toml"):
-                            shutil.copy(os.path.join(self.folder, file[:-3] + end), place)
+                        for ending in (".h5", ".bdf", ".toml"):
+                            shutil.copy(os.path.join(self.folder, file[:-3] + ending), place)
                     with open(os.path.join(place, "system.toml"), "w", encoding="utf-8") as out:
                         out.write(f"# {what}\n" + to_toml(system, "rk"))
             number += 1
@@ -365,7 +365,7 @@ class Soak:
         if self.write_page:
             write_table("soak", ["outcome", "how often"],
                         [(f"`{what}`" if "." in what else what, count) for what, count in outcomes.most_common()],
-                        f"{number} systems of the seeds {seed} to {seed + number - 1}, {found} found.")
+                        [f"{number} systems of the seeds {seed} to {seed + number - 1}, {found} found."])
         print(f"{number} systems, {found} found")
         for what, count in outcomes.most_common():
             print(f"  {count:5}  {what}")

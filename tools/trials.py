@@ -92,7 +92,7 @@ values = [6e10, 7e10, 8e10]
 [[collect]]
 name = "f"
 file = "modes.h5"
-dataset = "/frequency_hz"
+dataset = "/modes/frequency_hz"
 take = "first"
 """
 
@@ -133,6 +133,7 @@ class Trials:
         self.program = os.path.abspath(options.program)
         self.times, self.disks, self.random = options.times, options.disks, random.Random(options.seed)
         self.folder = tempfile.mkdtemp(prefix="trials-")
+        self.signals = options.signals
         self.keep, self.write_page = options.keep, options.write
         self.rows = collections.OrderedDict()
         self.found = 0
@@ -164,10 +165,15 @@ class Trials:
             environment[key] = str(value)
         if more:
             environment["LD_PRELOAD"] = self.preload
-        limit = None if memory is None else lambda: resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+
+        def prepare():
+            signal.signal(signal.SIGINT, signal.SIG_DFL)  # a shell ignores it for what runs behind it
+            if memory is not None:
+                resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+
         ids = {} if user is None else {"user": user, "group": user, "extra_groups": []}
         return subprocess.Popen([self.program, *arguments], cwd=self.folder, stdout=subprocess.DEVNULL,
-                                stderr=subprocess.PIPE, text=True, env=environment, preexec_fn=limit, **ids)
+                                stderr=subprocess.PIPE, text=True, env=environment, preexec_fn=prepare, **ids)
 
     def call(self, *arguments, **more):
         process = self.start(*arguments, **more)
@@ -199,11 +205,11 @@ class Trials:
         self.call(*arguments, "-o", output, TRIAL_LOG=self.path("count"))
         with open(self.path("count"), encoding="ascii") as f:
             writes = int(f.read())
-        for kind in ("KILL", "TERM", "INT"):
+        for kind in self.signals:
             for _ in range(self.times):
                 self.try_once(verb, kind, arguments, output, reference, took, writes)
         for kind in ("n-th write", "disk full", "disk error", "memory", "read-only"):
-            for _ in range(self.disks if kind != "read-only" else 3):
+            for _ in range(min(self.disks, 3) if kind == "read-only" else self.disks):
                 self.try_once(verb, kind, arguments, output, reference, took, writes)
 
     def end(self, kind, call, took, writes):
@@ -272,7 +278,7 @@ class Trials:
         begin = time.monotonic()
         self.call("batch", "campaign.toml", "-j", "1", "-o", "whole-campaign")
         took, (numbers, table) = time.monotonic() - begin, self.read_campaign("whole-campaign")
-        for kind in ("KILL", "TERM", "INT"):
+        for kind in self.signals:
             for _ in range(self.times):
                 shutil.rmtree(self.path("campaign"), ignore_errors=True)
                 process, said = self.end(kind, ["batch", "campaign.toml", "-j", "1", "-o", "campaign"], took, 0)
@@ -390,11 +396,11 @@ class Trials:
         if self.write_page:
             rows = [(verb, kind, ", ".join(f"{n} {what}" for what, n in outcomes.most_common()))
                     for (verb, kind), outcomes in self.rows.items()]
-            differ = "\n".join(f"`{verb}`, resumed and unbroken, differ by {worst:.1e} of the largest value at most."
-                               for verb, (worst, _) in self.worst.items())
+            differ = [f"`{verb}`, resumed and unbroken, differ by {worst:.1e} of the largest value at most."
+                      for verb, (worst, _) in self.worst.items()]
             write_table("trials", ["verb", "ended by", "how often", "what was left"],
                         [(f"`{verb}`", kind, sum(self.rows[verb, kind].values()), outcome)
-                         for verb, kind, outcome in rows], differ)
+                         for verb, kind, outcome in rows], differ, num_keys=2)
 
 
 def main():
@@ -402,6 +408,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--times", type=int, default=20)
     parser.add_argument("--disks", type=int, default=20)
+    parser.add_argument("--signals", type=lambda text: text.split(","), default=["KILL", "TERM", "INT"])
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--verbs", type=lambda text: text.split(","), default=[])
     parser.add_argument("--keep")

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -151,6 +153,26 @@ int check_deck(const CheckOptions& options, Console& console) {
   return finish(options, console, text, json, diagnostics);
 }
 
+/// What `reduce` would refuse after its factorizations, as far as rigid motions tell it: a free body that is held, a
+/// fixed one that nothing holds. Internal mechanisms are found by `reduce` alone.
+void check_support(const CheckOptions& options, bool is_free, const nlohmann::json& json, Diagnostics& diagnostics) {
+  const auto calc_largest = [&](const char* set) {
+    double largest = 0;
+    for (const double x : json.at(set)) largest = std::max(largest, std::isfinite(x) ? x : 0.0);
+    return largest;
+  };
+  if (is_free && calc_largest("ground_check_n") > 1e-8)
+    diagnostics.error("reduce.grounded", {options.file},
+                      fmt::format("a free body must have 6 rigid motions, this model strains in them: {:.1e} of what "
+                                  "its stiffness allows",
+                                  calc_largest("ground_check_n")),
+                      "remove springs and bushes to ground, or use frame = \"fixed\"");
+  if (!is_free && json.at("num_free_dofs").get<int>() > 0 && calc_largest("ground_check_f") < 1e-12)
+    diagnostics.error("reduce.mechanism", {options.file},
+                      "the constraints do not hold the fixed body: no rigid motion of it strains it",
+                      "complete the SPC set and select it in the case control, or use frame = \"free\" (--free)");
+}
+
 int check_body(const CheckOptions& options, Console& console) {
   console.set_rank(fe::initialize_petsc().rank);
   Diagnostics diagnostics;
@@ -173,6 +195,7 @@ int check_body(const CheckOptions& options, Console& console) {
     model_options.origin = spec.origin;
     model_options.ignore_cards = spec.ignore_cards;
     check_model(options, deck, model_options, text, json, diagnostics);
+    if (diagnostics.num_errors() == 0) check_support(options, model_options.ignore_spc, json, diagnostics);
     for (int id : spec.interface_nodes) {
       const bool found = std::any_of(deck.grids.begin(), deck.grids.end(), [&](const auto& g) { return g.id == id; });
       if (!found && diagnostics.num_errors() == 0) {

@@ -166,7 +166,8 @@ int run_run(const RunOptions& o) {
     demand_file(output);
     check_place(output);
     if (is_file_locked(output))  // before it is read: it changes all the time
-      throw InputError("hdf5.busy", {output}, "another process writes this file", "wait until it ends, or choose another");
+      throw InputError("hdf5.busy", {output}, "another process writes this file",
+                       "wait until it ends, or choose another");
     if (!check_resume(console, output, o.file, loaded.spec, sources)) return kSuccess;
     options.resume = hdf5::read_checkpoint(output);
     const double end = loaded.spec.simulation.start + loaded.spec.simulation.duration;

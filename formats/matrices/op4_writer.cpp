@@ -103,9 +103,14 @@ class TextWriter {
   void write_reals(const std::vector<double>& reals) {
     char text[64];
     for (std::size_t i = 0; i < reals.size(); ++i) {
-      std::snprintf(text, sizeof text, "%*.*E", width_, options_.digits, reals[i]);
-      if (options_.exponent != 'E') *std::strrchr(text, 'E') = options_.exponent;
-      out_ << text << ((i + 1) % static_cast<std::size_t>(per_line_) == 0 || i + 1 == reals.size() ? "\n" : "");
+      std::snprintf(text, sizeof text, "%.*E", options_.digits, reals[i]);
+      char* letter = std::strrchr(text, 'E');
+      if (letter && std::strlen(letter) > 4)
+        std::memmove(letter, letter + 1, std::strlen(letter));  // "-1.5-300", as Fortran writes three digits
+      else if (letter)
+        *letter = options_.exponent;
+      print("%*s", width_, text);
+      out_ << ((i + 1) % static_cast<std::size_t>(per_line_) == 0 || i + 1 == reals.size() ? "\n" : "");
     }
   }
 

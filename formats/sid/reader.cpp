@@ -127,6 +127,10 @@ class Reader {
     Taylor taylor;
     const auto allocate = [&] {
       const int rows = head["nrow"], columns = head["ncol"];
+      if (head["structure"] == 2 && rows != columns)
+        fail("block " + name + " is symmetric (structure 2) with " + std::to_string(rows) + " rows and " +
+                 std::to_string(columns) + " columns",
+             "export.sid-shape");
       constexpr double kMost = 1e8;
       if (static_cast<double>(rows) * columns * std::max(1, head["nq"]) > kMost)
         fail("block " + name + " would have more than 1e8 entries", "export.sid-shape");

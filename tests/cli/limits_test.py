@@ -100,6 +100,21 @@ class Limits(ProgramTest):
             for verb in ("check", "modes", "reduce", "run", "flx", "info", "batch"):
                 self.fails(1, verb, place)
 
+    def test_check_sees_what_reduce_refuses(self):
+        body = '[body]\nname = "b"\ndeck = "b.bdf"\n{}[body.modes]\nnumber = 2\n'
+        for spc, spring, frame, error in (("SPC1", "", "", None), ("$SPC1", "", "", "reduce.mechanism"),
+                                          ("SPC1", "", 'frame = "free"\n', None),
+                                          ("SPC1", "CELAS2,9,100.,3,1\n", 'frame = "free"\n', "reduce.grounded"),
+                                          ("SPC1", "CELAS2,9,100.,3,1,2,1\n", 'frame = "free"\n', None)):
+            self.write("b.bdf", BEAM.replace("SPC1,1,", spc + ",1,").replace("SPC = 1\n", "SPC = 1\n" * (spc == "SPC1"))
+                       .replace("ENDDATA", spring + "ENDDATA"))
+            self.write("b.toml", body.format(frame))
+            for verb, more in (("check", []), ("reduce", ["-o", "b.h5"])):
+                if error:
+                    self.fails(1, verb, "b.toml", *more, error=error)
+                else:
+                    self.bough(verb, "b.toml", *more)
+
     def test_negative_spring_is_named(self):
         self.write("y.bdf", "SOL 103\nCEND\nSPC=1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,0.,0.,0.\n"
                    "CELAS2,7,-1.,1,1,2,1\nCONM2,5,2,,1.\nSPC1,1,123456,1\nSPC1,1,23456,2\nENDDATA\n")

@@ -16,21 +16,27 @@
 #include "formats/matrices/matrix_reader.hpp"
 #include "formats/matrices/mode_table.hpp"
 #include "formats/matrices/op4.hpp"
+#include "formats/nastran/field_editor.hpp"
 #include "formats/nastran/reader.hpp"
 #include "formats/nastran/writer.hpp"
 #include "formats/sid/sid.hpp"
 #include "formats/toml/campaign.hpp"
+#include "formats/toml/detail/text_columns.hpp"
+#include "formats/toml/key_editor.hpp"
 #include "formats/toml/specs.hpp"
 
 namespace bough::fuzz {
 
 namespace {
 
+/// Whether it was read.
 template <class Read>
-void survive(const Read& read) {
+bool survive(const Read& read) {
   try {
     read();
+    return true;
   } catch (const Failure&) {
+    return false;
   }
 }
 
@@ -46,6 +52,58 @@ void read_deck(const std::string& path) {
     Diagnostics diagnostics;
     nastran::read_deck(path, {}, diagnostics);
   });
+}
+
+// What is packed for other ranks unpacks to the same deck.
+void read_packed(const std::string& path) {
+  survive([&] {
+    Diagnostics plain, packed;
+    const auto deck = nastran::read_deck(path, {}, plain);
+    const auto again = nastran::read_packed_deck(nastran::pack_deck(path), {}, packed);
+    BOUGH_DEMAND(deck.grids.size() == again.grids.size() && deck.card_counts == again.card_counts);
+  });
+}
+
+void edit_deck(const std::string& path) {
+  survive([&] {
+    Diagnostics diagnostics;
+    const nastran::DeckEditor editor(path, diagnostics);
+    std::vector<nastran::FieldEdit> edits;
+    for (const auto& [card, number] : {std::pair("GRID", 4), std::pair("MAT1", 3), std::pair("SPC1", 12)})
+      for (const char* id : {"1", "2"}) {
+        nastran::FieldAddress address;
+        address.card = card;
+        address.id = id;
+        address.occurrence = 1;
+        address.number = number;
+        if (const auto place = editor.find(address, {path}, diagnostics))
+          edits.push_back({*place, "1.2345678901234+10"});
+      }
+    editor.write(path, edits);
+  });
+}
+
+void edit_keys(const std::string& path) {
+  survive([&] {
+    std::string text = read_text(path);
+    for (const char* key :
+         {"body.name", "body.modes.number", "hinge.1.rate.1", "simulation.duration", "body.1.nodes.1"})
+      toml_files::set_key(text, key, "7");
+    toml_files::change_file_keys(text, [](const std::string& file) { return "x/" + file; });
+    Diagnostics diagnostics;
+    toml_files::check_text(text, path, diagnostics);
+  });
+}
+
+// Two columns of a text file.
+void read_table(const std::string& path) {
+  for (const toml_files::ColumnChoice& choice : {toml_files::ColumnChoice{}, toml_files::ColumnChoice{"time", "3"}})
+    survive([&] {
+      Diagnostics diagnostics;
+      std::vector<double> x, y;
+      toml_files::read_columns(path, {path}, choice, x, y, diagnostics);
+      BOUGH_DEMAND(x.size() == y.size());
+    });
 }
 
 void read_body(const std::string& path) {
@@ -70,9 +128,9 @@ void read_campaign(const std::string& path) {
   });
 }
 
-// One look at the file serves every reader.
+// One look at the file serves every reader, and a file that does not stand it reaches none of them.
 void read_hdf5(const std::string& path) {
-  survive([&] { hdf5::read_info(path); });
+  if (!survive([&] { hdf5::read_info(path); })) return;
   survive([&] { hdf5::read_format(path); });
   survive([&] { hdf5::read_flex_body(path); });
   survive([&] { hdf5::read_modes(path); });
@@ -145,6 +203,10 @@ void read_model_matrices(const std::string& path) {
 const std::vector<Target>& get_targets() {
   static const std::vector<Target> targets = {
       {"nastran", read_deck},
+      {"packed-deck", read_packed},
+      {"deck-editor", edit_deck},
+      {"key-editor", edit_keys},
+      {"table", read_table},
       {"body", read_body},
       {"system", read_system},
       {"campaign", read_campaign},

@@ -78,7 +78,8 @@ Handle open_file(const std::string& path, bool to_write) {
       throw InputError("hdf5.cannot-open", {path}, "the file cannot be written to", "check its permissions");
     }
     if (is_file_locked(path))
-      throw InputError("hdf5.busy", {path}, "another process writes this file", "wait until it ends, or choose another");
+      throw InputError("hdf5.busy", {path}, "another process writes this file",
+                       "wait until it ends, or choose another");
     throw InputError(
         "hdf5.truncated", {path},
         "the file ends early or is damaged: " + std::to_string(std::filesystem::file_size(path, ignored)) + " bytes",

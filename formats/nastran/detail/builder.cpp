@@ -354,7 +354,7 @@ class Builder {
   bool last_is_plain_ = false;
   int last_card_ = -1;
   int num_unreadable_ = 0;
-  int num_unknown_ = 0;  ///< names that are those of no card
+  int num_unknown_ = 0;   ///< names that are those of no card
   long num_repeats_ = 0;  ///< cards made by repeat lines
   bool stopped_ = false;
 };

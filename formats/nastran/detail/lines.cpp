@@ -294,9 +294,8 @@ class Loader {
     const std::string_view text = source_.texts[static_cast<std::size_t>(known - source_.files.begin())];
     if (!is_new) repeated_ += text.size();
     if (depth() > kMostLevels || repeated_ > kMostRepeated) {
-      fail_many(depth() > kMostLevels
-                    ? "files include files over more than " + std::to_string(kMostLevels) + " levels"
-                    : std::string("INCLUDE reads a gigabyte of files that were read before"),
+      fail_many(depth() > kMostLevels ? "files include files over more than " + std::to_string(kMostLevels) + " levels"
+                                      : std::string("INCLUDE reads a gigabyte of files that were read before"),
                 where);
       return;
     }

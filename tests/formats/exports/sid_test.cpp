@@ -309,6 +309,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"structure             =", "structure             =x", "export.sid-syntax"},
         Fault{"m1( 1, 1, 1)", "m1( 1, 1)   ", "export.sid-syntax"}, Fault{"m0( 2, 1)", "m0( 9, 1)", "export.sid-shape"},
         Fault{"nrow                  =     3", "nrow                  =900000000", "export.sid-shape"},
+        // Written beyond its end once: found by fuzzing.
+        Fault{"structure             =     3", "structure             =     2", "export.sid-shape"},
         Fault{"m0( 2, 1)             = 6.0000000000000000D+00", "m0( 2, 1)             = 6.0x", "export.sid-syntax"},
         Fault{"nelastq                         =     1", "nelastq                         =     2", "export.sid-shape"},
         Fault{"           end frame", "", "export.sid-syntax"}, Fault{" end part", "", "export.sid-syntax"}),
