@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/forces/latch_slack.hpp"
 #include "solver/integrate/run.hpp"
 #include "solver/system/impl.hpp"
 
@@ -78,7 +79,7 @@ void Latches::lock(SystemOde& ode, double t, const std::vector<bool>& rests, Vec
     if (mode == HingeMode::Prescribed || (mode == HingeMode::Locked && !latches_[i].rests)) continue;
     mode = rests[i] ? HingeMode::Locked : HingeMode::Free;
   }
-  ode.change(t, next, y);
+  ode.bring_to_rest(t, next, y);
 }
 
 bool Latches::strike_stops(SystemOde& ode, double t, double shortest, VectorXd& y, std::vector<std::string>& what) {
@@ -124,14 +125,13 @@ void Latches::find_rest(SystemOde& ode, double t, double shortest, VectorXd& y, 
     const HingeMode mode = ode.data().tree.mode[static_cast<size_t>(w.latch.u_row)];
     before[i] = w.rests && mode == HingeMode::Locked;
     if (mode == HingeMode::Prescribed || (mode == HingeMode::Locked && !w.rests)) continue;
-    double& rate = y[u + w.latch.u_row];
+    const double rate = y[u + w.latch.u_row];
     slide[i] = w.latch.static_friction > 0 ? sign(rate) : 0;
     const bool is_held = w.latch.static_friction > 0 || w.stop != 0;
     const bool is_slow = std::abs(rate) <= std::abs(y_dot_[u + w.latch.u_row]) * shortest;
     // What slides on its way, and has not turned, goes on.
     const bool turns = w.latch.static_friction == 0 || w.slide == 0 || w.slide * rate <= 0;
     if (!is_held || !is_slow || !turns) continue;
-    rate = 0;
     rests[i] = true;
   }
   for (size_t left = latches_.size() + 1; left > 0; --left) {
@@ -180,6 +180,18 @@ std::vector<std::string> Latches::settle(SystemOde& ode, double t, double shorte
   }
   find_rest(ode, t, shortest, y, what);
   return what;
+}
+
+void Latches::demand_inside(const SystemOde& ode, double t, double slack, const VectorXd& y) const {
+  for (const Watched& w : latches_) {
+    if (ode.data().tree.mode[static_cast<size_t>(w.latch.u_row)] != HingeMode::Free) continue;
+    const double q = y[w.latch.q_row], stop = std::clamp(q, w.latch.lower, w.latch.upper);
+    if (std::abs(q - stop) <= calc_slack(stop) + slack * std::abs(y[ode.num_q() + w.latch.u_row])) continue;
+    throw ComputationError("run.beyond-stop", {},
+                           w.latch.name + " comes free at " + short_text(q) + ", beyond its stop at " +
+                               short_text(stop) + ", at t = " + short_text(t),
+                           "keep its motion within its stops, or release it where it is");
+  }
 }
 
 void Latches::get_memory(VectorXd& memory) const {

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <sstream>
 
-#include "solver/tree/data.hpp"
+#include "solver/tree/gimbal_lock.hpp"
 
 namespace bough::solver {
 
 namespace {
+
+constexpr double kLocked = 1e-3;  // axes as near as that: for want of a direction, not of mass
 
 // Bound of (Hᵀ 𝒫 H)_ii before anything of it cancels.
 double calc_size(const BodyData& d, const ConstVectorRef& column) {
@@ -20,6 +22,7 @@ double calc_size(const BodyData& d, const ConstVectorRef& column) {
 }
 
 [[noreturn]] void fail_indefinite(const TreeBody& tb, const BodyData& d, int pivot, double t) {
+  const std::string lock = pivot < d.num_free ? describe_gimbal_lock(tb, d, kLocked) : "";
   std::ostringstream what;
   what << "the articulated mass matrix of body '" << tb.name << "' is not positive definite at t = " << t << ": ";
   if (pivot < d.num_free) {
@@ -27,8 +30,10 @@ double calc_size(const BodyData& d, const ConstVectorRef& column) {
   } else {
     what << "next to nothing moves with its modal coordinate " << pivot - d.num_free + 1;
   }
+  if (!lock.empty()) what << "; " << lock;
   throw ComputationError("solver.indefinite-mass", tb.hinge_at, what.str(),
-                         pivot < d.num_free
+                         !lock.empty() ? kGimbalAdvice
+                         : pivot < d.num_free
                              ? "give the body, or one that it carries, mass and inertia along that coordinate"
                              : "its mass integrals do not belong to one mass matrix, or its modes do what its hinge "
                                "does: write the file anew with reduce, or keep fewer modes");
