@@ -9,6 +9,7 @@
 #include "cli/common/options.hpp"
 #include "cli/common/start_state.hpp"
 #include "formats/toml/specs.hpp"
+#include "formats/toml/system_text.hpp"
 #include "solver/integrate/simulate.hpp"
 
 namespace bough::cli {
@@ -104,8 +105,9 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, cons
 LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, LoadOptions options) {
   const auto& start_from = options.start_from;
   if (!options.text) demand_file(path);
-  auto spec = options.text ? toml_files::read_system_spec_text(*options.text, path, diagnostics)
-                           : toml_files::read_system_spec(path, diagnostics, split_settings(options.set, path));
+  const auto set = split_settings(options.set, path);
+  auto spec = options.text ? toml_files::read_system_spec_text(*options.text, path, set, diagnostics)
+                           : toml_files::read_system_spec(path, diagnostics, set);
   if (options.change_spec && diagnostics.num_errors() == 0) options.change_spec(spec);
   if (diagnostics.num_errors() == 0) {
     read_controller_files(spec, diagnostics);

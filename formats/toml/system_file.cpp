@@ -19,6 +19,7 @@
 #include "formats/toml/detail/schema.hpp"
 #include "formats/toml/key_editor.hpp"
 #include "formats/toml/specs.hpp"
+#include "formats/toml/system_text.hpp"
 
 namespace bough::toml_files {
 
@@ -199,8 +200,14 @@ records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagn
   records::SystemSpec spec;
   spec.file = path;
   if (!read_text(path, spec.text, diagnostics)) return spec;
-  set_parameters(spec.text, path, set, diagnostics);
-  return read_system_spec_text(spec.text, path, diagnostics);
+  return read_system_spec_text(std::move(spec.text), path, set, diagnostics);
+}
+
+records::SystemSpec read_system_spec_text(std::string text, const std::string& path,
+                                          const std::vector<std::pair<std::string, std::string>>& set,
+                                          Diagnostics& diagnostics) {
+  set_parameters(text, path, set, diagnostics);
+  return read_system_spec_text(text, path, diagnostics);
 }
 
 records::SystemSpec read_system_spec_text(const std::string& text, const std::string& path, Diagnostics& diagnostics) {

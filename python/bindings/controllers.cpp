@@ -33,6 +33,9 @@ struct Law {
     return py::make_tuple(t, read(u, inputs), read(z, states), read(d, memory));
   }
   static void copy(const py::object& from, int n, double* to, const char* what) {
+    if (from.is_none())
+      throw std::runtime_error(std::string(what) + " gave None, expected " + std::to_string(n) +
+                               (n == 1 ? " number" : " numbers") + "; is a return missing?");
     const Array values(from);
     if (values.size() != n)
       throw std::runtime_error(std::string(what) + " gave " + std::to_string(values.size()) + " numbers, expected " +
@@ -67,6 +70,7 @@ void open(const py::object& object, bough_controller* c) {
 solver::ControllerFunctions make_functions(const py::object& object) {
   const auto kept = std::make_shared<py::object>(object);
   solver::ControllerFunctions f;
+  f.language = "Python";
   f.version = [] { return BOUGH_CONTROLLER_VERSION; };
   f.open = [kept](bough_controller* c) { return call([&] { open(*kept, c); }); };
   f.outputs = [](void* self, double t, const double* u, const double* z, const double* d, double* y) {

@@ -123,6 +123,11 @@ def select(body, system=None, **options):
         return read_flex_body(output), _json.loads(ranking)
 
 
+def _make_settings(parameters):
+    numbers = {name: value if isinstance(value, int) else float(value) for name, value in (parameters or {}).items()}
+    return [f"{name}={value!r}" for name, value in numbers.items()]
+
+
 class System:
     """A multibody system, of a system file or of its text.
 
@@ -133,16 +138,17 @@ class System:
     """
 
     def __init__(self, file, *, controllers=None, bodies=None, parameters=None, start_from=""):
-        settings = [f"{name}={value!r}" for name, value in (parameters or {}).items()]
-        self._own = _bough.System(_os.fspath(file), controllers or {}, bodies or {}, settings, _os.fspath(start_from),
-                                  None)
+        self._own = _bough.System(_os.fspath(file), controllers or {}, bodies or {}, _make_settings(parameters),
+                                  _os.fspath(start_from), None)
 
     @classmethod
-    def from_text(cls, text, folder=".", *, controllers=None, bodies=None):
-        """The TOML text of a system; files that it names are relative to the folder."""
+    def from_text(cls, text, folder=".", *, name="<text>", controllers=None, bodies=None, parameters=None,
+                  start_from=""):
+        """The TOML text of a system; files that it names are relative to the folder. Messages call it `name`."""
+        folder = _os.fspath(folder)
         system = cls.__new__(cls)
-        system._own = _bough.System(_os.path.join(_os.fspath(folder), "system.toml"), controllers or {}, bodies or {},
-                                    [], "", text)
+        system._own = _bough.System(name if folder in ("", ".") else _os.path.join(folder, name), controllers or {},
+                                    bodies or {}, _make_settings(parameters), _os.fspath(start_from), text)
         return system
 
     @property

@@ -10,6 +10,7 @@ namespace bough::solver {
 
 /// The functions of bough_controller.h; those that may be left out there may be empty.
 struct ControllerFunctions {
+  std::string language;  ///< of the host, for messages: "Python"; empty: a shared library
   std::function<int()> version;
   std::function<int(bough_controller*)> open;
   std::function<int(void*, double, const double*, const double*, const double*, double*)> outputs;

@@ -49,20 +49,26 @@ class Library final : public Block {
   }
 
  private:
+  std::string describe_mending() const {
+    return "mend the " + (f_.language.empty() ? "library" : f_.language + " law");
+  }
   template <class Call>
   void call(double t, const char* function, const Call& action) const {
-    const auto fail = [&](const std::string& how, const char* advice) -> ComputationError {
+    const auto fail = [&](const std::string& how, const std::string& advice) -> ComputationError {
       std::ostringstream what;
-      what << label << ": bough_controller_" << function << " at t = " << t << how;
+      if (f_.language.empty())
+        what << label << ": bough_controller_" << function << " at t = " << t << how;
+      else
+        what << label << ": " << function << " of its " << f_.language << " law at t = " << t << how;
       return {"control.library-failed", at, what.str(), advice};
     };
     int result = 0;
     try {
       result = action();
     } catch (const std::exception& error) {
-      throw fail(std::string(" threw: ") + error.what(), "mend the library");
+      throw fail((f_.language.empty() ? " threw: " : " raised ") + std::string(error.what()), describe_mending());
     } catch (...) {
-      throw fail(" threw an exception", "mend the library");
+      throw fail(" threw an exception", describe_mending());
     }
     if (result != 0) throw fail(" returned " + std::to_string(result), "0 stands for success");
   }
@@ -71,7 +77,7 @@ class Library final : public Block {
       if (std::isfinite(values[i])) continue;
       std::ostringstream what;
       what << label << ": " << noun << " " << i + 1 << " is " << values[i] << " at t = " << t;
-      throw ComputationError("control.not-finite", at, what.str(), "mend the library");
+      throw ComputationError("control.not-finite", at, what.str(), describe_mending());
     }
   }
 
@@ -127,7 +133,8 @@ std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring
   const ControllerFunctions f = hosted != nullptr ? *hosted : find_functions(handle);
   auto made = std::make_unique<Library>(handle, f);
   const auto refuse = [&](const std::string& what, const std::string& advice) {
-    keys.error("control.bad-library", "has a library " + file + " " + what, advice);
+    const std::string of = f.language.empty() ? "library " + file : f.language + " law";
+    keys.error("control.bad-library", "has a " + of + " " + what, advice);
     return nullptr;
   };
   if (f.version == nullptr || f.open == nullptr || f.outputs == nullptr)
@@ -146,6 +153,7 @@ std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring
   try {
     result = f.open(&own);
   } catch (const std::exception& error) {
+    if (!f.language.empty()) return refuse("of no use: " + std::string(error.what()), "see bough.System");
     return refuse(std::string("whose bough_controller_open threw: ") + error.what(), "mend the library");
   } catch (...) {
     return refuse("whose bough_controller_open threw an exception", "mend the library");

@@ -5,14 +5,14 @@
 
 namespace bough::solver {
 
-void EnergyMonitor::add(double t, const Energies& e, double work) {
+void EnergyMonitor::add(double t, const Energies& e, double work, double flow) {
   for (const double part : {e.kinetic, e.strain, e.potential - potential_, work})
     scale_ = std::max(scale_, std::abs(part));
   latest_ = e.kinetic + e.strain + e.potential - work - start_;
   // What the sum itself loses to rounding is no error of the motion.
   const double rounding =
       8 * std::numeric_limits<double>::epsilon() *
-      (std::abs(e.kinetic) + std::abs(e.strain) + std::abs(e.potential) + std::abs(work) + std::abs(potential_));
+      (std::abs(e.kinetic) + std::abs(e.strain) + std::abs(e.potential) + std::abs(work) + std::abs(potential_) + flow);
   if (std::abs(latest_) - rounding <= worst_) return;
   worst_ = std::abs(latest_) - rounding;
   time_ = t;

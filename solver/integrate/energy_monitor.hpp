@@ -16,7 +16,8 @@ class EnergyMonitor {
     potential_ = e.potential;
     noise_ = noise;
   }
-  void add(double t, const Energies& e, double work);
+  /// `flow`: what forces would do along the size of the system; motions are known to that times rounding.
+  void add(double t, const Energies& e, double work, double flow);
 
   /// Of the last moment added, with its sign; relative.
   double latest() const { return latest_ / scale(); }

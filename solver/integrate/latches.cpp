@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/forces/latch_slack.hpp"
 #include "solver/integrate/run.hpp"
 #include "solver/system/impl.hpp"
 
@@ -80,7 +81,7 @@ void Latches::lock(SystemOde& ode, double t, const std::vector<bool>& rests, Vec
     if (mode == HingeMode::Prescribed || (mode == HingeMode::Locked && !latches_[i].rests)) continue;
     mode = rests[i] ? HingeMode::Locked : HingeMode::Free;
   }
-  ode.change(t, next, y);
+  ode.bring_to_rest(t, next, y);
 }
 
 // What comes at its stop at one moment is thrown back at once; what that drives at other stops is the next round, so
@@ -207,6 +208,18 @@ std::vector<std::string> Latches::settle(SystemOde& ode, double t, double shorte
   }
   find_rest(ode, t, shortest, y, what);
   return what;
+}
+
+void Latches::demand_inside(const SystemOde& ode, double t, double slack, const VectorXd& y) const {
+  for (const Watched& w : latches_) {
+    if (ode.data().tree.mode[static_cast<size_t>(w.latch.u_row)] != HingeMode::Free) continue;
+    const double q = y[w.latch.q_row], stop = std::clamp(q, w.latch.lower, w.latch.upper);
+    if (std::abs(q - stop) <= calc_slack(stop) + slack * std::abs(y[ode.num_q() + w.latch.u_row])) continue;
+    throw ComputationError("run.beyond-stop", {},
+                           w.latch.name + " comes free at " + short_text(q) + ", beyond its stop at " +
+                               short_text(stop) + ", at t = " + short_text(t),
+                           "keep its motion within its stops, or release it where it is");
+  }
 }
 
 void Latches::get_memory(VectorXd& memory) const {

@@ -27,6 +27,10 @@ class Latches {
   /// change with it. Allocates.
   std::vector<std::string> settle(SystemOde& ode, double t, double shortest, VectorXd& y);
 
+  /// After a change from outside: a free coordinate beyond its stop is a ComputationError "run.beyond-stop". `slack`:
+  /// of the time.
+  void demand_inside(const SystemOde& ode, double t, double slack, const VectorXd& y) const;
+
   VectorXd make_memory() const { return VectorXd::Zero(kMemory * static_cast<Eigen::Index>(latches_.size())); }
   void get_memory(VectorXd& memory) const;
   void set_memory(const VectorXd& memory, SystemOde& ode);

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "solver/system/impl.hpp"
+#include "solver/tree/gimbal_lock.hpp"
 
 namespace bough::solver {
 namespace {
@@ -15,6 +16,8 @@ constexpr int kCheckpointEvery = 100;
 constexpr double kEnergyWarning = 1e-2;
 /// Relative gap of a constraint that projections do not close.
 constexpr double kOpen = 1e-6;
+/// Sine between two axes of a gimbal: nearer ones are worth a warning.
+constexpr double kNearLock = 0.01;
 /// Motions of so many absolute tolerances have an energy below which nothing is judged.
 constexpr double kNoise = 100;
 /// Share of a body's mass that its jets may use up before it is told that the mass stays as it is.
@@ -106,6 +109,10 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
                         {"latches", latches_.make_memory()}};
   latch_guards_ = last_latch_guards_ = latches_.make_guards();
   guards_ = last_guards_ = VectorXd::Zero(system.impl().signals.num_guards);
+  for (int b = 0; b < system.num_bodies(); ++b) {
+    const TreeBody& tb = system.impl().tree[b];
+    if (tb.hinge->has_plain_coordinates() && tb.num_hinge_u() > 2) gimbals_.push_back(b);
+  }
   progress_.start = timeline_.start();
   progress_.end = timeline_.end();
 }
@@ -237,6 +244,21 @@ double Run::calc_noise() {
   return noise;
 }
 
+double Run::calc_flow() const {
+  const System::Impl& impl = ode_.system().impl();
+  const TreeData& data = ode_.data().tree;
+  double force = 0, moment = 0, size = 0;
+  for (int b = 0; b < impl.tree.size(); ++b) {
+    const Body& body = impl.tree[b].body;
+    const auto applied = data.applied.segment<6>(impl.tree[b].v_offset);
+    force += body.mass() * impl.gravity.norm() + applied.head<3>().norm();
+    moment += applied.tail<3>().norm();
+    size =
+        std::max(size, data[b].state.p_WBo.norm() + (body.mass() > 0 ? body.first_moment().norm() / body.mass() : 0));
+  }
+  return force * size + moment;
+}
+
 void Run::cross_jump() {
   if (!stop_.restarts || stop_.latest >= stop_.time) return;  // at the end there may be no jump
   guard([&] {
@@ -258,9 +280,22 @@ void Run::take_step(const Stop& stop) {
                                           short_text(std::abs(y[row]) / reach_[row]) +
                                           " times what deflects the body by its own size");
   }
+  watch_axes(stepper_->time());
   const double taken = stepper_->time() - before;
   num_tiny_ = taken < 1e-11 * (progress_.end - progress_.start) ? num_tiny_ + 1 : 0;
   if (num_tiny_ > 1000) fail_stalled(before, "1000 steps in a row were shorter than " + short_text(taken));
+}
+
+void Run::watch_axes(double t) {
+  const Tree& tree = ode_.system().impl().tree;
+  for (size_t i = 0; i < gimbals_.size(); ++i) {
+    const int b = gimbals_[i];
+    if (find_nearest_axes(tree[b], ode_.data().tree[b]).sine > kNearLock) continue;
+    const std::string what = describe_gimbal_lock(tree[b], ode_.data().tree[b], kNearLock) + " at t = " + short_text(t);
+    gimbals_.erase(gimbals_.begin() + static_cast<std::ptrdiff_t>(i--));
+    sink_.write_event({t, what});
+    diagnostics_.warning("run.gimbal-lock", tree[b].hinge_at, what, kGimbalAdvice);
+  }
 }
 
 bool Run::write_outputs(double t) {
@@ -306,7 +341,7 @@ void Run::observe(double t) {
         t, "run.open-constraint",
         "constraint '" + loops[open].name + "' stands open by " + short_text(gap) + " at t = " + short_text(t),
         "look whether driven or locked hinges leave it no way to close, or drive against each other");
-  monitor_.add(t, e, work);
+  monitor_.add(t, e, work, calc_flow());
   monitor_.add_feed(e, work, dissipated);
   // What a motion that jumps gives or takes is no growth.
   if (timeline_.is_restart(t)) monitor_.add_feed(e.kinetic);

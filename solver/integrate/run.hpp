@@ -33,7 +33,11 @@ class Run {
   void resume_at_stop(double t);
   /// Energy of motions too small for the tolerances.
   double calc_noise();
+  /// Weight and applied forces times the size of the system, at the last sample.
+  double calc_flow() const;
   void take_step(const Stop& stop);
+  /// Warns once of each hinge whose axes nearly fall together.
+  void watch_axes(double t);
   /// Takes y_ over the jumps of given rates at stop_, after calc_state at its time; logs them once.
   void cross_jump();
   /// The samples of the last step up to t; false when the run was asked to stop at one, and did.
@@ -160,6 +164,7 @@ class Run {
     bool is_told = false;
   };
   std::map<std::string, Switching> switching_;  ///< by label
+  std::vector<int> gimbals_;                    ///< bodies on three angles or more, of which no warning was given
   Latches latches_;
   VectorXd latch_guards_, last_latch_guards_;
   double settled_ = -std::numeric_limits<double>::infinity();

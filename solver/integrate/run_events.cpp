@@ -101,6 +101,7 @@ void Run::change(const Firing& firing) {
     sink_.write_event(
         {firing.time, setup_.changes.describe(firing.trigger) + (is_same(next, before) ? ": it was so already" : "")});
     for (const auto& what : ode_.change(firing.time, next, y_)) sink_.write_event({firing.time, what});
+    latches_.demand_inside(ode_, firing.time, 4 * timeline_.resolution(), y_);
   });
   const bool is_quick = firing.time - changed_ < kQuick * (timeline_.end() - timeline_.start());
   num_quick_ = is_quick ? num_quick_ + 1 : 0;

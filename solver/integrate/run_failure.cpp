@@ -2,8 +2,13 @@
 #include <sstream>
 
 #include "solver/integrate/run.hpp"
+#include "solver/system/impl.hpp"
+#include "solver/tree/gimbal_lock.hpp"
 
 namespace bough::solver {
+namespace {
+constexpr double kLocked = 0.05;  // sine between axes of a hinge: nearer ones are why a run stalls
+}
 
 std::string short_text(double value) {
   std::ostringstream text;
@@ -68,6 +73,10 @@ void Run::fail_cycle(const Firing& firing) {
 
 void Run::fail_stalled(double t, const std::string& detail, int row) {
   const System& system = ode_.system();
+  if (const auto found = find_gimbal_lock(system.impl().tree, ode_.data().tree, kLocked); found.body >= 0)
+    finish_failed(t, "run.stalled",
+                  "the integrator makes no progress at t = " + short_text(t) + ": " + detail + "; " + found.lock,
+                  kGimbalAdvice);
   const std::string loops = system.num_constraints() == 0
                                 ? ""
                                 : "look whether a driven or locked hinge takes a loop past its reach (constraint '" +

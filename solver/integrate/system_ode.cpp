@@ -62,6 +62,12 @@ std::vector<std::string> SystemOde::change(double t, const Discrete& next, Eigen
   return events;
 }
 
+void SystemOde::bring_to_rest(double t, const Discrete& next, Eigen::Ref<VectorXd> y) {
+  const double before = get_work(y);
+  change(t, next, y);
+  y[num_coordinates() + num_z_ + 1] += std::max(0.0, before - get_work(y));
+}
+
 Closing SystemOde::find_closing(double t, const Eigen::Ref<const VectorXd>& y, int constraint) {
   calc_kinematics(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
   return solver::find_closing(system_.impl().loops, system_.impl().tree, data_->tree, constraint);

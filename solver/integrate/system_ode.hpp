@@ -37,6 +37,9 @@ class SystemOde final : public Ode {
   std::vector<std::string> cross_jump(double before, double t, Eigen::Ref<VectorXd> y);
   /// Takes y at t from what each coordinate and constraint does to what it does from then on. Describes jumps.
   std::vector<std::string> change(double t, const Discrete& next, Eigen::Ref<VectorXd> y);
+  /// The same of what comes to rest by itself: what it loses is dissipated. Rates that are left count: with them goes
+  /// what the modes of the body have of its momentum.
+  void bring_to_rest(double t, const Discrete& next, Eigen::Ref<VectorXd> y);
   /// A constraint closed as it is found at (t, y).
   Closing find_closing(double t, const Eigen::Ref<const VectorXd>& y, int constraint);
   /// What each coordinate and constraint does, for a checkpoint.

@@ -71,6 +71,9 @@ void build_hinge_laws(const records::HingeRecord& record, const ElementContext& 
                       std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<Latch>& latches,
                       Diagnostics& diagnostics);
 
+/// What starts beyond a rigid stop is an error ("system.beyond-stop"); by less than calc_slack it is put on it.
+void check_stops(const System& system, System::Impl& impl, Diagnostics& diagnostics);
+
 /// What acts at a node. A hinge that can pass on a moment takes both.
 struct NodeLoad {
   bool force = false, moment = false;

@@ -1,7 +1,10 @@
 // Preload, tables, stops, friction and motors of the coordinates of a hinge.
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "solver/forces/hinge_law.hpp"
+#include "solver/forces/latch_slack.hpp"
 #include "solver/system/build.hpp"
 
 namespace bough::solver {
@@ -168,6 +171,32 @@ void build_hinge_laws(const records::HingeRecord& record, const ElementContext& 
                       std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<Latch>& latches,
                       Diagnostics& diagnostics) {
   LawBuilder(record, context, tb, diagnostics).build(elements, latches);
+}
+
+void check_stops(const System& system, System::Impl& impl, Diagnostics& diagnostics) {
+  VectorXd q(impl.tree.num_q), u(impl.tree.num_u);
+  system.calc_initial_state(q, u);
+  for (const Latch& latch : impl.latches) {
+    const auto carries = [&](const TreeBody& b) {
+      return latch.u_row >= b.u_offset && latch.u_row < b.u_offset + b.num_hinge_u();
+    };
+    TreeBody& tb = *std::find_if(impl.tree.bodies.begin(), impl.tree.bodies.end(), carries);
+    const int i = latch.u_row - tb.u_offset;
+    if (tb.mode[static_cast<size_t>(i)] == HingeMode::Prescribed) continue;
+    const double at = q[latch.q_row], inside = std::clamp(at, latch.lower, latch.upper);
+    if (at == inside) continue;
+    if (std::abs(at - inside) > calc_slack(inside)) {
+      std::ostringstream what;
+      what << latch.name << " starts at " << at << ", beyond its " << (at < inside ? "lower" : "upper") << " stop at "
+           << inside;
+      diagnostics.error("system.beyond-stop", tb.hinge_at, what.str(),
+                        impl.initial_q.size() > 0 ? "give the hinge a position within its stops, or close the loops so"
+                                                  : "give the hinge a position within its stops");
+      continue;
+    }
+    tb.initial_q[i] = inside;
+    if (impl.initial_q.size() > 0) impl.initial_q[latch.q_row] = inside;
+  }
 }
 
 }  // namespace bough::solver

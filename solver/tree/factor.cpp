@@ -7,11 +7,13 @@
 #include <sstream>
 
 #include "solver/bodies/kernels.hpp"
-#include "solver/tree/data.hpp"
+#include "solver/tree/gimbal_lock.hpp"
 
 namespace bough::solver {
 
 namespace {
+
+constexpr double kLocked = 1e-3;  // axes as near as that: for want of a direction, not of mass
 
 // Bound of (Hᵀ 𝒫 H)_ii before anything of it cancels.
 double calc_size(const BodyData& d, const ConstVectorRef& column) {
@@ -33,14 +35,12 @@ int find_aligned(const BodyData& d, int pivot) {
 }
 
 [[noreturn]] void fail_indefinite(const TreeBody& tb, const BodyData& d, int pivot, double t) {
+  const std::string lock = pivot < d.num_free ? describe_gimbal_lock(tb, d, kLocked) : "";
   std::ostringstream what;
   if (const int other = pivot < d.num_free ? find_aligned(d, pivot) : -1; other >= 0) {
     what << "coordinates " << d.free[other] + 1 << " and " << d.free[pivot] + 1 << " of hinge '" << tb.hinge_name
          << "' turn about one axis at t = " << t << ": a gimbal lock";
-    throw ComputationError(
-        "solver.gimbal-lock", tb.hinge_at, what.str(),
-        "start elsewhere, take the axes in another order, or a quaternion (rotations = \"q\"), which "
-        "has no such place");
+    throw ComputationError("solver.gimbal-lock", tb.hinge_at, what.str(), kGimbalAdvice);
   }
   what << "the articulated mass matrix of body '" << tb.name << "' is not positive definite at t = " << t << ": ";
   if (pivot < d.num_free) {
@@ -48,8 +48,10 @@ int find_aligned(const BodyData& d, int pivot) {
   } else {
     what << "next to nothing moves with its modal coordinate " << pivot - d.num_free + 1;
   }
+  if (!lock.empty()) what << "; " << lock;
   throw ComputationError("solver.indefinite-mass", tb.hinge_at, what.str(),
-                         pivot < d.num_free
+                         !lock.empty() ? kGimbalAdvice
+                         : pivot < d.num_free
                              ? "give the body, or one that it carries, mass and inertia along that coordinate"
                              : "its mass integrals do not belong to one mass matrix, or its modes do what its hinge "
                                "does: write the file anew with reduce, or keep fewer modes");

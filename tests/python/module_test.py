@@ -241,8 +241,20 @@ class Controllers(InFolder):
             self.run_with(law)
         with self.assertRaisesRegex(bough.ComputationError, "2 numbers, expected 1"):
             self.run_with(lambda t, u: u)
-        with self.assertRaisesRegex(bough.InputError, "neither be called"):
+        with self.assertRaisesRegex(bough.InputError, "Python law .*neither be called"):
             self.run_with(3)
+
+    def test_words_are_of_python(self):
+        def law(t, u):
+            raise ValueError("sorry")
+
+        with self.assertRaises(bough.ComputationError) as raised:
+            self.run_with(law)
+        message = raised.exception.messages[0]
+        self.assertIn("outputs of its Python law at t = 0 raised: ValueError: sorry", message.what)
+        self.assertEqual(message.advice, "mend the Python law")
+        with self.assertRaisesRegex(bough.ComputationError, "gave None, expected 1 number; is a return missing"):
+            self.run_with(lambda t, u: None)
 
     def test_not_a_number_is_named(self):
         with self.assertRaisesRegex(bough.ComputationError, "law"):
@@ -302,6 +314,25 @@ class Runs(InFolder):
         stiff = bough.System("p.toml", parameters={"kp": 400.0}).run()
         soft = bough.System("p.toml").run()
         self.assertLess(np.abs(stiff["angle"][-1, 0]), np.abs(soft["angle"][-1, 0]))
+
+    def test_a_text_takes_what_a_file_takes(self):
+        text = "[parameters]\nkp = 40.0\n" + PENDULUM.format(
+            law='type = "pid"\ninputs = "angle"\nkp = "$kp"\nkd = 3.0\nrate = "rate"')
+        self.write("p.toml", text)
+        of_file = bough.System("p.toml", parameters={"kp": np.float64(400.0)}).run("whole.h5")
+        of_text = bough.System.from_text(text, parameters={"kp": 400}).run()
+        np.testing.assert_array_equal(of_file["angle"], of_text["angle"])
+        again = bough.System.from_text(text, parameters={"kp": 400.0}, start_from="whole.h5").run()
+        self.assertAlmostEqual(again["angle"][0, 0], of_file["angle"][-1, 0], delta=1e-12)
+        with self.assertRaisesRegex(bough.InputError, "kq"):
+            bough.System.from_text(text, parameters={"kq": 1.0})
+
+    def test_messages_name_the_text(self):
+        text = PENDULUM.format(law=EXPRESSION).replace("mass = 2.0", 'mass = "heavy"')
+        for given, file in (({}, "<text>"), ({"name": "arm"}, "arm"), ({"folder": "models"}, "models/<text>")):
+            with self.assertRaises(bough.InputError) as raised:
+                bough.System.from_text(text, **given)
+            self.assertEqual((raised.exception.messages[0].file, raised.exception.messages[0].line), (file, 4))
 
     def test_results_are_arrays_by_name(self):
         results = bough.System.from_text(PENDULUM.format(law=EXPRESSION)).run()

@@ -294,6 +294,85 @@ TEST(Latches, StopAndFrictionOfOneCoordinate) {
   EXPECT_NEAR(find_event(sink, "sticks"), (2 - v) + back, 1e-9);
 }
 
+// Beyond a rigid stop there is nowhere to go: said before the run, with the hinge's line; rounding is put on the stop.
+TEST(RigidStop, AStartBeyondItIsAnError) {
+  for (const double position : {-0.3, 1.3}) {
+    auto spec = make_slider(1);
+    spec.hinges[0].at = {"slider.toml", 12};
+    spec.hinges[0].position = {position};
+    add_stop(spec.hinges[0], 0, 0.5);
+    spec.hinges[0].law.stop_upper = {1};
+    Diagnostics diagnostics;
+    System::build_as_far(spec, {}, diagnostics);
+    ASSERT_TRUE(diagnostics.has("system.beyond-stop")) << position;
+    EXPECT_THAT(format(diagnostics.items()[0]),
+                HasSubstr(position < 0 ? "slider.toml:12: error: coordinate 1 of hinge 'hinge' starts at -0.3, beyond "
+                                         "its lower stop at 0"
+                                       : "starts at 1.3, beyond its upper stop at 1"));
+  }
+}
+
+TEST(RigidStop, AStartBeyondItByRoundingIsAtIt) {
+  auto spec = make_slider(1);
+  spec.simulation.gravity = {-10, 0, 0};
+  spec.hinges[0].position = {0.5 * (1 - 1e-7)};
+  add_stop(spec.hinges[0], 0.5, 0.5);
+  const RunResult r = run(spec);
+  EXPECT_EQ(r.diagnostics.num_errors(), 0);
+  EXPECT_EQ(r.sink.get("/hinges/hinge/q")(0, 0), 0.5);
+  EXPECT_EQ(get_last(r.sink, "/hinges/hinge/q"), 0.5);
+}
+
+// A prescribed motion may pass a stop, but nothing comes free behind one.
+TEST(RigidStop, AReleaseBeyondItIsAnError) {
+  auto spec = make_slider(1);
+  records::FunctionRecord f;
+  f.name = "ramp";
+  f.type = "ramp";
+  f.values = {{"value", 1}, {"from", 0}, {"to", 0.5}};
+  spec.functions = {f};
+  spec.hinges[0].motion = {"ramp"};
+  add_stop(spec.hinges[0], -1, 0.5);
+  spec.hinges[0].law.stop_upper = {0.25};
+  records::TriggerRecord release;
+  release.name = "free";
+  release.time = 0.75;
+  release.action = records::EventAction::Release;
+  release.target = "hinge";
+  spec.events = {release};
+  try {
+    run(spec);
+    FAIL();
+  } catch (const ComputationError& error) {
+    EXPECT_EQ(error.items().at(0).id, "run.beyond-stop");
+    EXPECT_THAT(error.items().at(0).what, HasSubstr("beyond its stop at 0.25"));
+  }
+}
+
+// What comes to rest with a last rate takes along what other coordinates have of the momentum: a pendulum swings on a
+// slide while its bounces die out, and no energy is lost without being booked.
+TEST(RigidStop, TheLastBouncesKeepTheEnergy) {
+  auto spec = make_slider(2);
+  records::BodyRecord rod;
+  rod.name = "rod";
+  rod.mass = 1.5;
+  rod.cg = {0, 0.7, 0};
+  rod.inertia = Vector3d(0.1, 0.1, 0.1).asDiagonal();
+  spec.bodies.push_back(rod);
+  auto pin = make_hinge_record("pin", HingeType::Revolute, "body", "rod");
+  pin.axis = {0, 0, 1};
+  pin.rate = {1.5};
+  spec.hinges.push_back(pin);
+  spec.hinges[0].position = {0.2};
+  spec.simulation.gravity = {-9.81, 0, 0};
+  add_stop(spec.hinges[0], 0, 0.4);
+  spec.simulation.duration = 1;
+  const RunResult r = run(spec);
+  const double rest = find_event(r.sink, "comes to rest at its stop");
+  ASSERT_GT(rest, 0);
+  EXPECT_LT(r.sink.energy_error(), 1e-11);
+}
+
 TEST(Latches, AStopWithoutARoomIsAnErrorNotAHang) {
   auto spec = make_slider(1);
   spec.hinges[0].rate = {1};

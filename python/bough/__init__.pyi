@@ -1,0 +1,62 @@
+# Types of the package; what each does is said in __init__.py and docs/python.md.
+from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import reader as reader
+from ._bough import ComputationError as ComputationError
+from ._bough import Event as Event
+from ._bough import Failure as Failure
+from ._bough import FlexBody as FlexBody
+from ._bough import InputError as InputError
+from ._bough import LinearModel as LinearModel
+from ._bough import Locator as Locator
+from ._bough import MassIntegrals as MassIntegrals
+from ._bough import Message as Message
+from ._bough import Modes as Modes
+from ._bough import Results as Results
+from ._bough import Warning as Warning
+from ._bough import read_flex_body as read_flex_body
+from ._bough import read_linear_model as read_linear_model
+from ._bough import read_modes as read_modes
+from ._bough import read_results as read_results
+from ._bough import verbs as verbs
+
+_Path = str | PathLike[str]
+_Array = NDArray[np.float64]
+_Numbers = float | Sequence[float] | _Array
+
+class _Law(Protocol):
+    """A controller with states or memory; only outputs must be there."""
+    def outputs(self, t: float, u: _Array, z: _Array, d: _Array) -> _Numbers: ...
+
+_Controller = Callable[[float, _Array], _Numbers] | _Law
+
+def call(*words: object) -> int: ...
+def reduce(file: _Path, *, modes: int | None = ..., max_hz: float | None = ..., interface: Sequence[int] | None = ...,
+           free: bool | None = ..., full: bool | None = ..., name: str | None = ..., mass: str | None = ...,
+           integrals: str | None = ..., origin: Sequence[float] | None = ..., damping: float | None = ...,
+           subcase: int | None = ..., progress: Callable[[str], object] | None = ...) -> FlexBody: ...
+def modes(deck: _Path, number: int | None = None, **options: Any) -> Modes: ...
+def static(deck: _Path, **options: Any) -> reader.File: ...
+def select(body: FlexBody | _Path, system: _Path | None = None, **options: Any) -> tuple[FlexBody, dict[str, Any]]: ...
+
+class System:
+    def __init__(self, file: _Path, *, controllers: dict[str, _Controller] | None = None,
+                 bodies: dict[str, FlexBody] | None = None, parameters: Mapping[str, float] | None = None,
+                 start_from: _Path = "") -> None: ...
+    @classmethod
+    def from_text(cls, text: str, folder: _Path = ".", *, name: str = "<text>",
+                  controllers: dict[str, _Controller] | None = None, bodies: dict[str, FlexBody] | None = None,
+                  parameters: Mapping[str, float] | None = None, start_from: _Path = "") -> System: ...
+    @property
+    def bodies(self) -> list[str]: ...
+    @property
+    def messages(self) -> list[Message]: ...
+    def run(self, output: _Path | None = None,
+            progress: Callable[[float, float], bool | None] | None = None) -> Results: ...
+    def linearize(self, *, at: float | None = None, equilibrium: bool = False, open: bool = False,
+                  inputs: Sequence[str] = (), outputs: Sequence[str] = ()) -> LinearModel: ...
