@@ -8,7 +8,7 @@
 namespace bough::solver {
 namespace {
 
-/// States (memory where sampled): the integral part I, then the filter of the derivative F.
+/// States (memory where sampled): the integral part I, where there is a ki, then the filter of the derivative F.
 class Pid final : public Block {
  public:
   int n = 1;
@@ -22,42 +22,45 @@ class Pid final : public Block {
   }
   void calc_rates(const BlockInput& in, double* z_dot) const override {
     for (int i = 0; i < n; ++i) {
-      z_dot[i] = calc_windup(in, i);
-      if (has_filter()) z_dot[n + i] = filter[i] > 0 ? (error(in, i) - in.z[n + i]) / filter[i] : 0;
+      if (has_integral()) z_dot[i] = calc_windup(in, i);
+      if (has_filter()) z_dot[F() + i] = filter[i] > 0 ? (error(in, i) - in.z[F() + i]) / filter[i] : 0;
     }
   }
   void update(const BlockInput& in, double* d) const override {
     // I by Euler's rule, F = kd (e - e₋) / (τ + T) + τ / (τ + T) F₋ by the backward difference.
     for (int i = 0; i < n; ++i) {
-      d[i] = in.d[i] + T * calc_windup(in, i);
+      if (has_integral()) d[i] = in.d[i] + T * calc_windup(in, i);
       if (!has_filter()) continue;
-      d[n + i] = calc_difference(in, i);
-      d[2 * n + i] = error(in, i);
+      d[F() + i] = calc_difference(in, i);
+      d[F() + n + i] = error(in, i);
     }
-    if (has_filter()) d[3 * n] = 1;
+    if (has_filter()) d[F() + 2 * n] = 1;
   }
 
   /// The derivative comes of the error, not of a signal.
   bool has_filter() const { return !has_rate && !kd.isZero(0); }
+  bool has_integral() const { return !ki.isZero(0); }
+  /// Where F begins.
+  int F() const { return has_integral() ? n : 0; }
 
  private:
   double error(const BlockInput& in, int i) const { return (has_reference ? in.u[n + i] : setpoint) - in.u[i]; }
-  double get_integral(const BlockInput& in, int i) const { return T > 0 ? in.d[i] : in.z[i]; }
+  double get_integral(const BlockInput& in, int i) const { return !has_integral() ? 0 : T > 0 ? in.d[i] : in.z[i]; }
   double calc_windup(const BlockInput& in, int i) const {
     if (ki[i] == 0) return 0;
     const double u = calc(in, i), held = std::clamp(u, low[i], high[i]);
     return ki[i] * error(in, i) + (u != held ? (held - u) / windup[i] : 0);
   }
   double calc_difference(const BlockInput& in, int i) const {
-    const double e = error(in, i), before = in.d[3 * n] > 0 ? in.d[2 * n + i] : e;
-    return (kd[i] * (e - before) + filter[i] * in.d[n + i]) / (filter[i] + T);
+    const double e = error(in, i), before = in.d[F() + 2 * n] > 0 ? in.d[F() + n + i] : e;
+    return (kd[i] * (e - before) + filter[i] * in.d[F() + i]) / (filter[i] + T);
   }
   double calc(const BlockInput& in, int i) const {
     double u = kp[i] * error(in, i) + get_integral(in, i);
     if (has_rate)
       u -= kd[i] * in.u[(has_reference ? 2 : 1) * n + i];
     else if (has_filter())
-      u += T > 0 ? calc_difference(in, i) : filter[i] > 0 ? kd[i] * (error(in, i) - in.z[n + i]) / filter[i] : 0;
+      u += T > 0 ? calc_difference(in, i) : filter[i] > 0 ? kd[i] * (error(in, i) - in.z[F() + i]) / filter[i] : 0;
     return u;
   }
 };
@@ -105,9 +108,9 @@ std::unique_ptr<Block> make_pid(SettingsReader& keys, const ControllerWiring& wi
   p.sizes.inputs = wiring.size();
   p.sizes.outputs = n;
   if (sample_time > 0)
-    p.sizes.memory = p.has_filter() ? 3 * n + 1 : n;
+    p.sizes.memory = p.F() + (p.has_filter() ? 2 * n + 1 : 0);
   else
-    p.sizes.states = p.has_filter() ? 2 * n : n;
+    p.sizes.states = p.F() + (p.has_filter() ? n : 0);
   return made;
 }
 

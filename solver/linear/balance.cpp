@@ -10,6 +10,11 @@ Balance::Balance(Plant& plant, const OperatingPoint& start) : plant_(&plant), po
     if (plant.is_mode(i) || point_.u[i] == 0) free_.push_back(i);
   }
   for (int i = plant.num_freedoms(); i < size(); ++i) free_.push_back(i);
+  // The first sample, as a run takes it.
+  if (!plant.steady_rows().empty()) {
+    point_.memory = plant.resample(point_);
+    plant.fill_queues(point_.memory);
+  }
   travel_.setZero(static_cast<Eigen::Index>(free_.size()));
   residual_ = calc_residual();
 }
@@ -24,19 +29,65 @@ void Balance::linearize() {
   }
 }
 
+VectorXd Balance::calc_residual() const {
+  VectorXd residual(size());
+  residual << plant_->evaluate(point_).head(plant_->num_freedoms() + plant_->num_states()),
+      plant_->calc_sample_rates(point_);
+  return residual;
+}
+
+MatrixXd Balance::calc_conserved() const {
+  const int n = plant_->num_freedoms(), rows = size() - n;
+  const auto m = static_cast<Eigen::Index>(free_.size());
+  if (rows == 0) return MatrixXd::Zero(0, m);
+  // b with b · ∂ż = 0: left null space, each row by its largest entry.
+  MatrixXd rates = jacobian_.bottomRows(rows);
+  VectorXd scale = m > 0 ? VectorXd(rates.rowwise().lpNorm<Eigen::Infinity>()) : VectorXd(VectorXd::Zero(rows));
+  scale = scale.unaryExpr([](double s) { return s > 0 ? 1 / s : 1; });
+  Eigen::FullPivLU<MatrixXd> factor((scale.asDiagonal() * rates).transpose());
+  factor.setThreshold(1e-9);
+  const MatrixXd b =
+      m > 0 ? MatrixXd(factor.kernel().transpose() * scale.asDiagonal()) : MatrixXd(MatrixXd::Identity(rows, rows));
+  if (b.isZero(0)) return MatrixXd::Zero(0, m);  // kernel: one column of zeros
+  // b · (z - z₀) = (b · ∂ż/∂u) (δ - δ₀), since δ̇ = δu.
+  MatrixXd conserved(b.rows(), m);
+  for (Eigen::Index j = 0; j < m; ++j) {
+    const int i = free_[static_cast<size_t>(j)];
+    if (i >= n) {
+      conserved.col(j) = b.col(i - n);
+      continue;
+    }
+    const auto f = [&](double h) -> VectorXd {
+      Balance moved = *this;
+      moved.point_.u[i] += h;
+      return moved.calc_residual().tail(rows);
+    };
+    const Difference column = differentiate(f, step(static_cast<int>(j)));
+    const VectorXd by_rate = (column.value.array().abs() > column.error.array()).select(column.value, 0.0);
+    conserved.col(j) = -step(static_cast<int>(j)) * (b * by_rate);
+  }
+  return conserved;
+}
+
 std::string Balance::name(int row) const {
-  const int n = plant_->num_freedoms();
-  return row < n ? plant_->freedom_name(row) : plant_->state_name(row - n);
+  const int n = plant_->num_freedoms(), nz = plant_->num_states();
+  return row < n        ? plant_->freedom_name(row)
+         : row < n + nz ? plant_->state_name(row - n)
+                        : plant_->steady_name(row - n - nz);
 }
 
 Balance Balance::move(const VectorXd& steps) const {
-  const int n = plant_->num_freedoms();
+  const int n = plant_->num_freedoms(), nz = plant_->num_states();
   VectorXd delta = VectorXd::Zero(size());
   for (size_t j = 0; j < free_.size(); ++j)
     delta[free_[j]] = steps[static_cast<Eigen::Index>(j)] * step(static_cast<int>(j));
   Balance moved = *this;
   moved.point_.q = plant_->displace(point_.q, delta.head(n));
-  for (int i = n; i < size(); ++i) moved.point_.z[plant_->state_row(i - n)] += delta[i];
+  for (int i = n; i < n + nz; ++i) moved.point_.z[plant_->state_row(i - n)] += delta[i];
+  if (size() > n + nz) {
+    moved.point_.memory(plant_->steady_rows()) += delta.tail(size() - n - nz);
+    plant_->fill_queues(moved.point_.memory);
+  }
   moved.travel_ += steps;
   moved.residual_ = moved.calc_residual();
   return moved;

@@ -1,6 +1,6 @@
 #pragma once
-/// \file What equilibrium solves: u̇ and ż as functions of the freedoms that may be displaced and of the states of
-/// controllers and actuators, with their Jacobian.
+/// \file What equilibrium solves: u̇, ż and what samples change, as functions of the freedoms that may be displaced, of
+/// the states of controllers and actuators and of what sampled blocks keep and hold, with their Jacobian.
 #include "base/diagnostic.hpp"
 #include "solver/linear/plant.hpp"
 
@@ -14,12 +14,14 @@ class Balance {
 
   const Plant& plant() const { return *plant_; }
   const OperatingPoint& point() const { return point_; }
-  /// Rows: the freedoms, then the states.
-  int size() const { return plant_->num_freedoms() + plant_->num_states(); }
+  /// Rows: the freedoms, then the states, then the steady rows of the memory.
+  int size() const {
+    return plant_->num_freedoms() + plant_->num_states() + static_cast<int>(plant_->steady_rows().size());
+  }
   std::string name(int row) const;
   /// Rows that may be displaced; m of n.
   const std::vector<int>& free() const { return free_; }
-  const VectorXd& residual() const { return residual_; }  ///< u̇, then ż; n
+  const VectorXd& residual() const { return residual_; }  ///< u̇, ż, change of the memory a sample time; n
   const MatrixXd& jacobian() const { return jacobian_; }  ///< of the residual by steps, n x m, of the last linearize
   double step(int j) const {
     const int i = free_[static_cast<size_t>(j)];
@@ -27,13 +29,16 @@ class Balance {
   }
 
   void linearize();
+  /// Rows c (k x m) with c · travel = const on every motion, to first order: of what no displacement and no state
+  /// changes the rate of, as the integral of a rate, or two integrals of one error. At the last linearize.
+  MatrixXd calc_conserved() const;
   /// The point displaced by `steps` (m); may throw ComputationError.
   Balance move(const VectorXd& steps) const;
   /// All moves from the start, m, in steps.
   const VectorXd& travel() const { return travel_; }
 
  private:
-  VectorXd calc_residual() const { return plant_->evaluate(point_).head(size()); }
+  VectorXd calc_residual() const;
 
   Plant* plant_;
   OperatingPoint point_;

@@ -6,6 +6,7 @@
 
 #include "solver/linear/descent.hpp"
 #include "solver/linear/linearize.hpp"
+#include "solver/linear/sampled.hpp"
 
 namespace bough::solver {
 namespace {
@@ -14,6 +15,17 @@ constexpr int kMostIterations = 60;
 /// Travel in steps of the plant within which the state found is the one that was meant, stable or not.
 constexpr double kNear = 1;
 
+/// The largest of what freedoms move by, in steps of the plant; the size of a state or of a signal says nothing.
+double calc_way(const Balance& at, const VectorXd& steps) {
+  double way = 0;
+  for (size_t j = 0; j < at.free().size(); ++j)
+    if (at.free()[j] < at.plant().num_freedoms()) way = std::max(way, std::abs(steps[static_cast<Eigen::Index>(j)]));
+  return way;
+}
+
+/// From the start.
+double calc_way(const Balance& at) { return calc_way(at, at.travel()); }
+
 class Newton {
  public:
   explicit Newton(Balance at) : at_(std::move(at)) {}
@@ -21,7 +33,7 @@ class Newton {
   void solve() {
     for (; num_iterations_ < kMostIterations; ++num_iterations_) {
       linearize();
-      const VectorXd step = solve_step(at_.residual());
+      const VectorXd step = solve_step(at_);
       const double size = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
       if (size < 1e-9) {
         // The last step is free: the Jacobian is there.
@@ -56,13 +68,29 @@ class Newton {
   std::vector<std::string> name_indifferent() const {
     std::vector<std::string> names;
     for (size_t j = 0; j < at_.free().size(); ++j) {
-      const VectorXd effect = weight_.asDiagonal() * at_.jacobian().col(static_cast<Eigen::Index>(j));
-      if (effect.size() == 0 || effect.cwiseAbs().maxCoeff() < 1e-9) names.push_back(at_.name(at_.free()[j]));
+      if (at_.free()[j] < at_.plant().num_freedoms() && !has_effect(j)) names.push_back(at_.name(at_.free()[j]));
+    }
+    return names;
+  }
+
+  /// States with an effect that no displacement changes: they are what they start from.
+  std::vector<std::string> name_kept() const {
+    std::vector<std::string> names;
+    for (size_t j = 0; j < at_.free().size(); ++j) {
+      const int i = at_.free()[j];
+      const bool is_state = i >= at_.plant().num_freedoms();
+      if (is_state && has_kept_ && has_effect(j) && ways_.row(static_cast<Eigen::Index>(j)).norm() < 1e-12)
+        names.push_back(at_.name(i));
     }
     return names;
   }
 
  private:
+  bool has_effect(size_t j) const {
+    const VectorXd effect = weight_.asDiagonal() * at_.jacobian().col(static_cast<Eigen::Index>(j));
+    return effect.size() > 0 && effect.cwiseAbs().maxCoeff() >= 1e-9;
+  }
+
   /// Rows are scaled by their largest entry.
   void linearize() {
     at_.linearize();
@@ -71,13 +99,33 @@ class Newton {
                                      : VectorXd(VectorXd::Zero(jacobian.rows()));
     weight_ = row_scale_.unaryExpr([](double s) { return s > 0 ? 1 / s : 0; });
     if (jacobian.cols() == 0) return;  // every hinge has a given rate or motion
+    MatrixXd conserved = at_.calc_conserved();
+    for (Eigen::Index i = 0; i < conserved.rows(); ++i) conserved.row(i) /= conserved.row(i).norm();
+    keep_.setThreshold(1e-9);
+    has_kept_ = conserved.rows() > 0;
+    ways_ = MatrixXd::Identity(jacobian.cols(), jacobian.cols());
+    if (has_kept_) {
+      conserved_ = conserved;
+      keep_.compute(conserved);
+      // Columns of Q of Cᵀ P = Q R past its rank.
+      Eigen::ColPivHouseholderQR<MatrixXd> qr(conserved.transpose());
+      qr.setThreshold(1e-9);
+      ways_ = MatrixXd(qr.householderQ()).rightCols(jacobian.cols() - qr.rank());
+    }
     factor_.setThreshold(1e-9);
-    factor_.compute(weight_.asDiagonal() * jacobian);
+    if (ways_.cols() > 0) factor_.compute(weight_.asDiagonal() * jacobian * ways_);
   }
 
-  VectorXd solve_step(const VectorXd& residual) const {
+  /// Of least norm among those that keep what every motion from the start keeps.
+  VectorXd solve_step(const Balance& at) const {
     if (at_.free().empty()) return {};
-    return -factor_.solve(weight_.asDiagonal() * residual);
+    VectorXd residual = at.residual(), step = VectorXd::Zero(at.travel().size());
+    if (has_kept_) {
+      step = -keep_.solve(conserved_ * at.travel());
+      residual += at_.jacobian() * step;
+    }
+    if (ways_.cols() > 0) step -= ways_ * factor_.solve(weight_.asDiagonal() * residual);
+    return step;
   }
 
   void take(const VectorXd& step) {
@@ -89,11 +137,11 @@ class Newton {
   /// Half the step until the next correction, by the same Jacobian, is smaller.
   bool search(const VectorXd& step) {
     // No more than a radian or the size of the bodies at once.
-    double by = std::min(1.0, 10 / step.cwiseAbs().maxCoeff());
+    double by = std::min(1.0, 10 / std::max(10.0, calc_way(at_, step)));
     for (; by > 1e-6; by /= 2) {
       try {
         Balance moved = at_.move(by * step);
-        if (!moved.residual().allFinite() || solve_step(moved.residual()).norm() > (1 - by / 4) * step.norm()) continue;
+        if (!moved.residual().allFinite() || solve_step(moved).norm() > (1 - by / 4) * step.norm()) continue;
         at_ = std::move(moved);
         return true;
       } catch (const ComputationError&) {
@@ -106,7 +154,9 @@ class Newton {
   Balance at_;
   int num_iterations_ = 0;
   VectorXd row_scale_, weight_;
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> factor_;
+  bool has_kept_ = false;
+  MatrixXd conserved_, ways_;  ///< k x m; m x (m - k), orthonormal
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> factor_, keep_;
 };
 
 Newton run_newton(const Balance& start) {
@@ -114,9 +164,6 @@ Newton run_newton(const Balance& start) {
   newton.solve();
   return newton;
 }
-
-/// From the start, in steps of the plant.
-double calc_way(const Balance& at) { return at.travel().size() == 0 ? 0 : at.travel().cwiseAbs().maxCoeff(); }
 
 [[noreturn]] void fail(const Newton& newton, const SourceLocation& at) {
   const int worst = newton.find_restless();
@@ -132,8 +179,7 @@ double calc_way(const Balance& at) { return at.travel().size() == 0 ? 0 : at.tra
       spins ? "it has a rate of its own in the system file, which its loads and dampers change: prescribe its motion, "
               "take them away, or give it the rate 0"
       : worst >= newton.at().plant().num_freedoms()
-          ? "a controller comes to rest only where what it measures can: sampled signals stand still in the search "
-            "(linear.sampled), and an integral wants something that it can move"
+          ? "a controller comes to rest only where what it measures can: an integral wants something that it can move"
       : newton.is_held(worst) ? "start nearer to it, by position and eta"
                               : "nothing holds it: take away the load, or give it a spring or a hinge");
 }
@@ -158,7 +204,18 @@ void find_unstable(Plant& plant, const SourceLocation& at, Equilibrium& found) {
   Diagnostics said;
   LinearizeOptions options;
   options.check = false;
-  const records::Poles poles = linearize(plant, found.point, options, at, said).poles;
+  const records::LinearModel model = linearize(plant, found.point, options, at, said);
+  // Sampled laws hold what they hold between samples: whether they hold the state, the multipliers tell.
+  records::Multipliers m;
+  if (!plant.is_open()) m = calc_multipliers(plant, found.point, model.A, at, said);
+  if (m.period > 0) {
+    for (Eigen::Index k = 0; k < m.real.size(); ++k) {
+      if (m.imag[k] < 0 || m.decay[k] * m.period <= 1e-6) continue;
+      found.unstable.push_back({m.mode[static_cast<size_t>(k)], m.decay[k]});
+    }
+    return;
+  }
+  const records::Poles& poles = model.poles;
   const Eigen::ArrayXd size = (poles.real.array().square() + poles.imag.array().square()).sqrt();
   const double largest = size.size() > 0 ? size.maxCoeff() : 0;
   for (int k = 0; k < poles.size(); ++k) {
@@ -176,6 +233,7 @@ Equilibrium find_equilibrium(Plant& plant, const OperatingPoint& start, const So
   found.residual = newton.at().residual().norm();
   found.num_iterations = newton.num_iterations();
   found.indifferent = newton.name_indifferent();
+  found.kept = newton.name_kept();
   for (int i = 0; i < plant.num_freedoms(); ++i)
     if (!plant.is_mode(i) && found.point.u[i] != 0) found.spinning.push_back(plant.freedom_name(i));
   find_unstable(plant, at, found);

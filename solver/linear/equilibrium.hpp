@@ -10,6 +10,7 @@ struct Equilibrium {
   double residual = 0;  ///< |[u̇; ż]|
   int num_iterations = 0;
   std::vector<std::string> indifferent;  ///< freedoms that may stand anywhere: they stay where they were
+  std::vector<std::string> kept;         ///< states that nothing restores: they are what they start from
   std::vector<std::string> spinning;     ///< freedoms with a given rate
   struct Growth {
     std::string mode;  ///< the coordinate that takes part most
@@ -19,7 +20,9 @@ struct Equilibrium {
 };
 
 /// u̇(t, q, u, z) = 0 and ż = 0 for q and the states z of controllers and actuators, from `start`: hinge rates stay as
-/// they are there (zero: rest), modal rates become zero. Newton's method with least-norm steps, damped by the natural
+/// they are there (zero: rest), modal rates become zero. Of sampled blocks too: their samples repeat themselves, what
+/// is delayed has arrived. What no displacement restores (b with b · ∂ż/∂(q, z) = 0) is what every motion from the
+/// start leaves it: b · (z - z₀) = (b · ∂ż/∂u) (q - q₀). Newton's method with least-norm steps, damped by the natural
 /// monotonicity test (Deuflhard, Newton Methods for Nonlinear Problems, 2004, 3.3); where that ends far away in an
 /// unstable state, or nowhere, downhill first (descent). Throws ComputationError "equilibrium.not-converged" with the
 /// residual and where it is largest.

@@ -285,6 +285,9 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   }
   if (options.check && options.cut.empty() && !plant.is_open())
     model.multipliers = calc_multipliers(plant, point, model.A, at, diagnostics);
+  if (!options.cut.empty() && model.B.isZero(0) && model.D.isZero(0) && plant.list_sampled().empty())
+    diagnostics.warning("linear.nothing-cut", at, "nothing reads '" + options.cut + "': the loop cut there is 0",
+                        "cut it where the motion depends on it, at an actuator or at what a controller reads");
   if (is_held) {
     const auto loop = calc_sampled_loop(plant, point, *cut, model.A, model.B.col(0), at);
     model.sample_time = loop.sample_time;

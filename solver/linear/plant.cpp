@@ -122,8 +122,9 @@ std::string Plant::state_name(int i) const { return system_.impl().signals.name_
 
 std::vector<std::string> Plant::list_sampled() const {
   std::vector<std::string> names;
-  for (const auto& p : system_.impl().signals.places) {
-    if (p.is_sampled() && p.is_needed) names.push_back(p.block->name);
+  const auto& places = system_.impl().signals.places;
+  for (size_t k = 0; k < places.size(); ++k) {
+    if (places[k].is_sampled() && is_felt_[k]) names.push_back(places[k].block->name);
   }
   return names;
 }

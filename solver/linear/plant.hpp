@@ -56,7 +56,7 @@ class Plant {
   std::string state_name(int i) const;
   /// The row of z.
   int state_row(int i) const { return state_rows_[static_cast<size_t>(i)]; }
-  /// Sampled controllers, which stand still in a linear model.
+  /// Sampled controllers and sensors, which stand still in a linear model.
   std::vector<std::string> list_sampled() const;
 
   OperatingPoint make_initial_point() const;
@@ -115,6 +115,15 @@ class Plant {
     double period = 0;
   };
   const std::vector<Queue>& list_queues() const { return queues_; }
+  /// Rows of the memory that a steady state has to find: what sampled blocks keep and hold. Empty where is_open.
+  const std::vector<int>& steady_rows() const { return steady_rows_; }
+  const std::string& steady_name(int i) const { return steady_names_[static_cast<size_t>(i)]; }
+  /// All memory after one sample of every block, nothing delayed, sensors as in `sample`. May throw ComputationError.
+  VectorXd resample(const OperatingPoint& point);
+  /// (resample - memory) / sample time, of the steady rows: zero where the samples repeat themselves.
+  VectorXd calc_sample_rates(const OperatingPoint& point);
+  /// What is on its way becomes what is held.
+  void fill_queues(VectorXd& memory) const;
   /// Coordinates of q as the files have them, and dims: "pin:1", "ball:qw", "boom:eta1".
   records::Signals name_positions() const;
   /// Whether the freedom is an angle that comes back after 2 pi.
@@ -134,6 +143,7 @@ class Plant {
   void add_inputs();
   void add_outputs();
   void add_sampled();
+  std::vector<bool> find_felt() const;
   /// Kinematics to accelerations and signals, as they are at the point.
   void compute(const OperatingPoint& point, const PlantInput* input, double value, VectorXd& u_dot);
   VectorXd displace_tree(const VectorXd& q, const VectorXd& delta) const;
@@ -155,6 +165,10 @@ class Plant {
   std::vector<int> sampled_rows_;
   std::vector<std::string> sampled_names_;
   std::vector<Queue> queues_;
+  std::vector<bool> is_felt_;  ///< by place: the motion depends on it, now or after samples
+  std::vector<int> steady_rows_;
+  std::vector<std::string> steady_names_;
+  std::vector<double> steady_period_;
   std::vector<Grip> grip_;  ///< by row of u, where loops are closed: what follows is Loose
   double t_ = 0;            ///< of the last point
 };

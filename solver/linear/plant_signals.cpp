@@ -159,9 +159,34 @@ Plant::Cut Plant::find_cut(const std::string& name) const {
   return cut;
 }
 
+/// Behind a sampled block stands what it samples, which is_needed leaves out.
+std::vector<bool> Plant::find_felt() const {
+  const auto& places = system_.impl().signals.places;
+  std::vector<size_t> block_of;
+  for (size_t i = 0; i < places.size(); ++i) {
+    const auto end = static_cast<size_t>(places[i].out + places[i].block->sizes.outputs);
+    block_of.resize(std::max(block_of.size(), end), i);
+  }
+  std::vector<bool> is_felt(places.size(), false);
+  std::vector<size_t> open;
+  for (size_t i = 0; i < places.size(); ++i)
+    if (places[i].is_needed) open.push_back(i);
+  while (!open.empty()) {
+    const size_t i = open.back();
+    open.pop_back();
+    if (is_felt[i]) continue;
+    is_felt[i] = true;
+    for (const int row : places[i].sources) open.push_back(block_of[static_cast<size_t>(row)]);
+  }
+  return is_felt;
+}
+
 void Plant::add_sampled() {
-  for (const auto& p : system_.impl().signals.places) {
-    if (!p.is_sampled() || !p.is_needed) continue;
+  is_felt_ = find_felt();
+  const auto& places = system_.impl().signals.places;
+  for (size_t k = 0; k < places.size(); ++k) {
+    const auto& p = places[k];
+    if (!p.is_sampled() || !is_felt_[k]) continue;
     const auto add = [&](int first, int size, const char* what) {
       for (int i = 0; i < size; ++i) {
         sampled_rows_.push_back(first + i);
@@ -173,6 +198,14 @@ void Plant::add_sampled() {
     if (p.queue_length > 0)
       queues_.push_back(
           {static_cast<int>(sampled_rows_.size()), p.block->sizes.outputs, p.queue_length, p.block->sizes.sample_time});
+    if (!is_open_) {
+      const auto rows = static_cast<size_t>(p.block->sizes.memory + p.block->sizes.outputs);
+      steady_rows_.insert(steady_rows_.end(), sampled_rows_.end() - static_cast<std::ptrdiff_t>(rows),
+                          sampled_rows_.end());
+      steady_names_.insert(steady_names_.end(), sampled_names_.end() - static_cast<std::ptrdiff_t>(rows),
+                           sampled_names_.end());
+      steady_period_.insert(steady_period_.end(), rows, p.block->sizes.sample_time);
+    }
     add(p.queue, p.block->sizes.outputs * p.queue_length, "on its way");
   }
 }
@@ -181,8 +214,10 @@ std::vector<SampleTimes> Plant::collect_samples() const { return system_.impl().
 
 std::vector<std::pair<double, int>> Plant::list_cycles() const {
   std::vector<std::pair<double, int>> cycles;
-  for (const auto& p : system_.impl().signals.places) {
-    if (p.is_sampled() && p.is_needed) cycles.emplace_back(p.block->sizes.sample_time, std::max(1, p.queue_length));
+  const auto& places = system_.impl().signals.places;
+  for (size_t k = 0; k < places.size(); ++k) {
+    const auto& p = places[k];
+    if (p.is_sampled() && is_felt_[k]) cycles.emplace_back(p.block->sizes.sample_time, std::max(1, p.queue_length));
   }
   return cycles;
 }
@@ -253,6 +288,27 @@ double Plant::calc_return(const OperatingPoint& point, const PlantInput& input, 
     if (p.actuator >= 0 && i >= 0 && i < p.block->sizes.inputs) return s.inputs[p.in + i] - value;
   }
   return 0;
+}
+
+VectorXd Plant::resample(const OperatingPoint& point) {
+  VectorXd u_dot(system_.num_u());
+  compute(point, nullptr, 0, u_dot);
+  calc_signals(system_, *data_);
+  system_.impl().signals.resample(system_, *data_);
+  return data_->signals.memory;
+}
+
+VectorXd Plant::calc_sample_rates(const OperatingPoint& point) {
+  if (steady_rows_.empty()) return {};
+  const VectorXd change = (resample(point) - point.memory)(steady_rows_);
+  return change.cwiseQuotient(Eigen::Map<const VectorXd>(steady_period_.data(), change.size()));
+}
+
+void Plant::fill_queues(VectorXd& memory) const {
+  for (const auto& p : system_.impl().signals.places) {
+    const int n = p.block->sizes.outputs;
+    for (int k = 0; k < p.queue_length; ++k) memory.segment(p.queue + n * k, n) = memory.segment(p.held, n);
+  }
 }
 
 }  // namespace bough::solver

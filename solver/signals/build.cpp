@@ -41,11 +41,12 @@ class Builder {
     set_activities();
     impl_.signals_are_sound = diagnostics_.num_errors() == errors;
     if (impl_.signals_are_sound) {
-      lay_out();
-      if (diagnostics_.num_errors() == errors) impl_.signals.arrange(diagnostics_);
-      if (diagnostics_.num_errors() == errors) check_units();
+      const bool is_whole = lay_out();
+      if (is_whole && diagnostics_.num_errors() == errors) impl_.signals.arrange(diagnostics_);
+      if (is_whole && diagnostics_.num_errors() == errors) check_units();
+      impl_.signals_are_sound = is_whole;
     }
-    impl_.signals_are_sound = diagnostics_.num_errors() == errors;
+    impl_.signals_are_sound = impl_.signals_are_sound && diagnostics_.num_errors() == errors;
     if (!impl_.signals_are_sound) impl_.signals = SignalGraph();
   }
 
@@ -219,11 +220,12 @@ class Builder {
     return source.place = add(std::move(block), {});
   }
 
-  void lay_out() {
+  /// False where a function that is named has failed, which has been said.
+  bool lay_out() {
     SignalGraph& g = impl_.signals;
     for (size_t i = 0; i < wires_.size(); ++i) {  // grows by functions, which have no wires
       for (size_t k = 0; k < wires_[i].size(); ++k) {
-        if (get_place(sources_.list[wires_[i][k].source]) < 0) return;
+        if (get_place(sources_.list[wires_[i][k].source]) < 0) return false;
       }
     }
     for (BlockPlace& p : g.places) {
@@ -250,6 +252,7 @@ class Builder {
     for (size_t i = 0; i < g.places.size(); ++i) {
       for (const Wire& wire : wires_[i]) connect(g.places[i], wire);
     }
+    return true;
   }
 
   void connect(BlockPlace& to, const Wire& wire) {

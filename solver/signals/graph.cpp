@@ -243,6 +243,34 @@ bool SignalGraph::sample(const System& system, SystemData& data, double close) c
   return has_changed;
 }
 
+void SignalGraph::resample(const System& system, SystemData& data) const {
+  SignalData& s = data.signals;
+  for (const int i : order) {
+    const auto& p = places[static_cast<size_t>(i)];
+    if (!p.is_sampled()) {
+      if (!p.is_late) calc(p, system, data);
+      continue;
+    }
+    auto held = s.memory.segment(p.held, p.block->sizes.outputs);
+    if (is_off(p, s)) {
+      held.setZero();
+    } else {
+      BlockInput in = look(p, system, data);
+      in.sample = std::lround((data.tree.t - start) / p.block->sizes.sample_time);
+      if (p.block->path.starts_with("/sensors/")) {
+        p.block->calc_ideal(in, held.data());  // its walk is noise
+      } else {
+        p.block->calc_outputs(in, held.data());
+        auto own = s.scratch.segment(p.memory, p.block->sizes.memory);
+        own = s.memory.segment(p.memory, p.block->sizes.memory);
+        p.block->update(in, own.data());
+        s.memory.segment(p.memory, p.block->sizes.memory) = own;
+      }
+    }
+    s.values.segment(p.out, p.block->sizes.outputs) = held;
+  }
+}
+
 void SignalGraph::calc_guards(const System& system, SystemData& data, Eigen::Ref<VectorXd> g) const {
   for (const auto& p : places) {
     if (p.block->sizes.guards == 0) continue;

@@ -81,6 +81,8 @@ class SignalGraph {
   /// Takes the samples due within `close` of data's time, after calc_all there: each block sees what those before it in
   /// the order give at this instant, and the accelerations before it. True when what the motion needs has changed.
   bool sample(const System& system, SystemData& data, double close) const;
+  /// After calc_all: one sample of every sampled block whatever the time, nothing delayed, sensors without noise.
+  void resample(const System& system, SystemData& data) const;
   /// After calc_all. g: num_guards.
   void calc_guards(const System& system, SystemData& data, Eigen::Ref<VectorXd> g) const;
   /// Switches every block with a positive guard; false when there is none. "pwpf: guard 1" in `what`.

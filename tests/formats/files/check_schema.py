@@ -7,6 +7,7 @@ check_schema.py SCHEMAS --keywords DOCS     the schemas use only the keywords th
 """
 import json
 import pathlib
+import re
 import sys
 import tomllib
 
@@ -88,10 +89,41 @@ def collect_keys(node):
     return keys
 
 
+def collect_choices(node, key=""):
+    """(key, choices) of every enum."""
+    found = []
+    if isinstance(node, dict):
+        if isinstance(node.get("enum"), list):
+            found.append((key, tuple(map(str, node["enum"]))))
+        for inner, value in node.items():
+            found += collect_choices(value, key if inner in ("items", "oneOf", "anyOf") else inner)
+    elif isinstance(node, list):
+        found += [pair for value in node for pair in collect_choices(value, key)]
+    return found
+
+
+def check_rows(kind, schema, text):
+    """What a page promises: its keys and its choices are those of the schema."""
+    faults, known, choices = [], set(collect_keys(schema)), collect_choices(schema)
+    tables = "".join(re.findall(r"^\| key \| type \|.*\n((?:\|.*\n)+)", text, re.M))
+    for keys, type_, last in re.findall(r"^\| (`[a-z_`, 0-9]+`) \| ([^|]+) \| [^|]* \| ([^|]*) \|$", tables, re.M):
+        for key in re.findall(r"`([a-z_0-9]+)`", keys):
+            if key not in known:
+                faults.append(f"{kind}-toml.md promises the key {key}, which the schema refuses")
+            listed = re.match(r"((?:`[^`]+` ?)+)\.", last)
+            if type_ != "choice" or not listed:
+                continue
+            words = re.findall(r"`([^`]+)`", listed[1])
+            if not any(name == key and set(of) == set(words) for name, of in choices):
+                faults.append(f"{kind}-toml.md: {key}: no list of choices of the schema is {words}")
+    return faults
+
+
 def check_docs(validators, folder):
     faults = []
     for kind, validator in validators.items():
         text = (folder / f"{kind}-toml.md").read_text()
+        faults += check_rows(kind, validator.schema, text)
         faults += [f"{kind}-toml.md does not have the key {k}" for k in collect_keys(validator.schema)
                    if f"`{k}`" not in text and f"{k} =" not in text and f"[{k}]" not in text and f".{k}]" not in text]
     return faults
