@@ -31,13 +31,14 @@ void Plant::choose_independent() {
   MatrixXd own(G.rows(), num_freedoms());
   for (int j = 0; j < num_freedoms(); ++j)
     own.col(j) = G.col(rows_[static_cast<size_t>(j)]) * step(j) * (is_mode(j) ? kModeWeight : 1);
+  grip_.assign(static_cast<size_t>(system_.num_u()), Grip::Fixed);
+  if (own.cols() == 0) return;
   Eigen::ColPivHouseholderQR<MatrixXd> factor;
   factor.setThreshold(kDependent);
   factor.compute(own);
   std::vector<bool> follows(freedoms_.size(), false);
   for (Eigen::Index k = 0; k < factor.rank(); ++k)
     follows[static_cast<size_t>(factor.colsPermutation().indices()[k])] = true;
-  grip_.assign(static_cast<size_t>(system_.num_u()), Grip::Fixed);
   std::vector<Freedom> freedoms;
   std::vector<int> rows;
   for (size_t j = 0; j < freedoms_.size(); ++j) {

@@ -54,6 +54,7 @@ VectorXd weigh(const VectorXd& size, const std::vector<Grip>& grip, Grip last) {
 
 // x = size · (G size)⁺ b
 VectorXd solve_least(const MatrixXd& G, const VectorXd& size, const VectorXd& b) {
+  if (G.size() == 0) return VectorXd::Zero(size.size());  // nothing can move, or nothing is asked for
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> factor;
   factor.setThreshold(kDependent);
   factor.compute(G * size.asDiagonal());
@@ -175,7 +176,7 @@ Assembly assemble_rates(const Loops& loops, const Tree& tree, const std::vector<
   const MatrixXd G = calc_dense_rows(loops, tree, tree_data, data);
   const VectorXd sizes = calc_step_sizes(loops, tree);
   Assembly found;
-  const double scale = G.rows() > 0 ? G.cwiseAbs().maxCoeff() * std::max(u.cwiseAbs().maxCoeff(), 1e-300) : 1;
+  const double scale = G.size() > 0 ? G.cwiseAbs().maxCoeff() * std::max(u.cwiseAbs().maxCoeff(), 1e-300) : 1;
   const auto judge = [&](const VectorXd& rates) {
     const VectorXd rows = G * rates;
     found.gap = rows.size() > 0 ? rows.cwiseAbs().maxCoeff() / scale : 0;
@@ -236,12 +237,14 @@ std::vector<Redundancy> find_redundancies(const Loops& loops, const Tree& tree, 
       at += n;
       MatrixXd rest = own - (own * basis) * basis.transpose();
       rest -= (rest * basis) * basis.transpose();
-      const Eigen::JacobiSVD<MatrixXd> svd(rest, Eigen::ComputeFullU | Eigen::ComputeThinV);
+      Eigen::JacobiSVD<MatrixXd> svd;
+      if (rest.cols() == 0) rest = MatrixXd::Zero(n, 1);  // nothing moves: every row is redundant
+      svd.compute(rest, Eigen::ComputeFullU | Eigen::ComputeThinV);
       const double largest = own.norm();
       int rank = 0;
       while (rank < svd.singularValues().size() && svd.singularValues()[rank] > kDependent * largest) ++rank;
       basis.conservativeResize(Eigen::NoChange, basis.cols() + rank);
-      basis.rightCols(rank) = svd.matrixV().leftCols(rank);
+      if (rank > 0) basis.rightCols(rank) = svd.matrixV().leftCols(rank);
       if (rank == n) continue;
       Redundancy r;
       r.constraint = i;

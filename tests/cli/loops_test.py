@@ -159,6 +159,24 @@ gravity = [0.0, 0.0, -10.0]
                       "hinge 'fall' is released: it was so already"):
             self.assertIn(words, events)
 
+    def test_a_loop_where_nothing_moves(self):
+        """Found by ./dev soak, seed 5046: no coordinates, and a constraint."""
+        text = ('[[body]]\nname = "b"\nmass = 1.0\ninertia = [1.0, 1.0, 1.0]\nnodes = [{{id = 2, position = [1.0, 0.0, 0.0]}}]\n'
+                '[[hinge]]\nname = "h"\ntype = "fixed"\nparent = "ground"\nchild = "b"\n'
+                '[[constraint]]\nname = "loop"\ntype = "{0}"\nparent = "ground"\nchild = "b"\nchild_node = 2\n'
+                'parent_position = [{1}, 0.0, 0.0]\n{2}[simulation]\nduration = 0.1\n')
+        for kind, more in (("spherical", ""), ("point_on_line", "axis = [0.0, 0.0, 1.0]\n")):
+            self.write("open.toml", text.format(kind, 0.5, more))
+            for verb in ("check", "run", "linearize", "equilibrium"):
+                self.fails(1, verb, "open.toml", says=["'loop'"])
+            self.write("closed.toml", text.format(kind, 1.0, more))
+            for verb in ("check", "equilibrium", "linearize"):
+                self.bough(verb, "closed.toml")
+            for integrator in ("adams", "bdf", "rk", "rk4"):
+                step = 'step = 0.01\n' if integrator == "rk4" else ""
+                self.write("moves.toml", text.format(kind, 1.0, more) + f'integrator = "{integrator}"\n{step}')
+                self.bough("run", "moves.toml")
+
     def test_what_is_refused(self):
         def refused(name, text, *words):
             self.write(name, text)
