@@ -251,7 +251,7 @@ class Controllers(InFolder):
         with self.assertRaises(bough.ComputationError) as raised:
             self.run_with(law)
         message = raised.exception.messages[0]
-        self.assertIn("outputs of its Python law at t = 0 raised: ValueError: sorry", message.what)
+        self.assertIn("outputs of its Python law at t = 0 raised ValueError: sorry", message.what)
         self.assertEqual(message.advice, "mend the Python law")
         with self.assertRaisesRegex(bough.ComputationError, "gave None, expected 1 number; is a return missing"):
             self.run_with(lambda t, u: None)
