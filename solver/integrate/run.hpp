@@ -33,6 +33,8 @@ class Run {
   void resume_at_stop(double t);
   /// Energy of motions too small for the tolerances.
   double calc_noise();
+  /// Work to as much of the energies as the states, so that the balance tells of the motion, not of itself.
+  void hold_work();
   void take_step(const Stop& stop);
   /// Takes y_ over the jumps of given rates at stop_, after calc_state at its time; logs them once.
   void cross_jump();
