@@ -6,6 +6,7 @@
 
 #include "cli/common/channels.hpp"
 #include "formats/hdf5/files.hpp"
+#include "solver/linear/plant.hpp"
 
 namespace bough::cli {
 namespace {
@@ -43,21 +44,27 @@ class Starter {
   Diagnostics& diagnostics_;
 };
 
+/// A run writes how its energy stands; equilibrium has none.
+bool is_of_run(const records::Checkpoint& checkpoint) { return checkpoint.find("energy") != nullptr; }
+
 /// Says which state it is; warns where the run went on past it.
 void report_time(const records::SystemSpec& spec, const hdf5::ResultsFile& results, const std::string& path,
                  Diagnostics& diagnostics) {
   if (results.time.size() == 0) return;  // what is missing is said channel by channel
   const double t = results.time[results.time.size() - 1];
-  diagnostics.note("cli.start-state", {path}, fmt::format("the start is its state at t = {:g}", t),
-                   spec.controllers.empty() && spec.actuators.empty()
-                       ? ""
-                       : "controllers and actuators start as the system file says, from no state of their own");
   double reached = t;
+  bool is_run = true;
   try {
-    reached = hdf5::read_checkpoint(path).time;
+    const auto checkpoint = hdf5::read_checkpoint(path);
+    reached = checkpoint.time;
+    is_run = is_of_run(checkpoint);
   } catch (const Failure&) {
     // It has none: the last sample is all there is.
   }
+  diagnostics.note("cli.start-state", {path}, fmt::format("the start is its state at t = {:g}", t),
+                   spec.controllers.empty() && spec.actuators.empty() ? ""
+                   : is_run ? "controllers and actuators start as the system file says, from no state of their own"
+                            : "controllers and actuators start from the states in which they rest there");
   if (reached > t + 1e-12 * std::max(std::abs(reached), std::abs(results.time[0])))
     diagnostics.warning(
         "cli.start-earlier", {path},
@@ -92,6 +99,34 @@ void set_start_state(records::SystemSpec& spec, const std::string& path, Diagnos
     hinge.position = starter.read("/hinges/" + hinge.name + "/q", 0);
     hinge.rate = starter.read("/hinges/" + hinge.name + "/qdot", 0);
   }
+}
+
+std::optional<records::Checkpoint> find_start_control(const std::string& path, const solver::System& system,
+                                                      double time, Diagnostics& diagnostics) {
+  if (path.empty()) return {};
+  records::Checkpoint found;
+  try {
+    found = hdf5::read_checkpoint(path);
+  } catch (const Failure&) {
+    return {};
+  }
+  if (is_of_run(found)) return {};
+  const int nq = system.num_q(), nu = system.num_u(), nz = system.num_z();
+  const auto* control = found.find("control");
+  const Eigen::Index held = solver::Plant(system).make_initial_point().memory.size();
+  if (found.state.size() != nq + nu + nz + 2 || (control ? control->size() - 1 : 0) != held) {
+    diagnostics.note("cli.start-state", {path}, "it has other controllers or actuators than this system",
+                     "they start as the system file says");
+    return {};
+  }
+  records::Checkpoint start;
+  start.time = time;
+  start.state = Eigen::VectorXd::Zero(found.state.size());
+  system.calc_initial_state(start.state.head(nq), start.state.segment(nq, nu));
+  start.state.segment(nq + nu, nz) = found.state.segment(nq + nu, nz);
+  start.memory.emplace_back("start", Eigen::VectorXd::Zero(1));
+  if (control) start.memory.emplace_back("control", *control);
+  return start;
 }
 
 }  // namespace bough::cli

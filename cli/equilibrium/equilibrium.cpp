@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -46,6 +47,10 @@ void write_equilibrium(const LoadedSystem& loaded, solver::Plant& plant, const s
   records::Checkpoint checkpoint;
   checkpoint.time = point.t;
   checkpoint.state = state;
+  // As a run writes it: the time of the last samples, before any, then the memory.
+  Eigen::VectorXd control(1 + point.memory.size());
+  control << std::numeric_limits<double>::lowest(), point.memory;
+  checkpoint.memory = {{"control", control}};
   sink.write_checkpoint(checkpoint);
   sink.end(true, "");
 }
@@ -88,6 +93,7 @@ int run_equilibrium(const EquilibriumOptions& o) {
                                       {"stable", found.unstable.empty()},
                                       {"unstable", unstable},
                                       {"indifferent", found.indifferent},
+                                      {"kept", found.kept},
                                       {"spinning", found.spinning}}
                            .dump(2) +
                        "\n");
@@ -105,6 +111,7 @@ int run_equilibrium(const EquilibriumOptions& o) {
     if (!table.rows.empty()) text += table.to_text();
     if (!found.spinning.empty()) text += "at a given rate: " + join(found.spinning) + "\n";
     if (!found.indifferent.empty()) text += "indifferent, left where they were: " + join(found.indifferent) + "\n";
+    if (!found.kept.empty()) text += "as they start, nothing changes them: " + join(found.kept) + "\n";
     console.print(text);
   }
   if (!o.output.empty()) {

@@ -58,7 +58,7 @@ records::LinearSweep sweep_parameter(const LinearizeVerbOptions& o, Diagnostics&
     Diagnostics said;
     const auto loaded = load_system(o.file, said, o.start_from, set);
     auto plant = make_plant(loaded, o.open);
-    auto point = o.at ? run_to(loaded, plant, *o.at, said) : plant.make_initial_point();
+    auto point = o.at ? run_to(loaded, plant, *o.at, said) : make_start(loaded, plant, said);
     auto model = linearize_at(o, plant, std::move(point), false, said);
     keep_new(said, diagnostics);
     return model;
@@ -105,9 +105,14 @@ int run_linearize(const LinearizeVerbOptions& o) {
   if (has_suffix(o.file, ".toml")) demand_kind(o.file, toml_files::detect_kind(o.file), "system");
   Diagnostics diagnostics;
   auto set = o.set;
-  if (!o.sweep.empty()) {  // a parameter without a value of its own has one from the sweep
-    const auto range = parse_sweep(o.sweep);
-    set.push_back(fmt::format("{}={:.17g}", range.name, range.values.front()));
+  try {
+    if (!o.sweep.empty()) {  // a parameter without a value of its own has one from the sweep
+      const auto range = parse_sweep(o.sweep);
+      set.push_back(fmt::format("{}={:.17g}", range.name, range.values.front()));
+    }
+  } catch (const InputError& error) {  // of the command line, not of a file
+    report_failure(error, console);
+    return kUsageError;
   }
   const auto loaded = load_system(o.file, diagnostics, o.start_from, set);
   const auto sources = collect_sources(o.file, loaded);
@@ -119,7 +124,7 @@ int run_linearize(const LinearizeVerbOptions& o) {
     return code;
   }
   auto plant = make_plant(loaded, o.open);
-  auto point = o.at ? run_to(loaded, plant, *o.at, diagnostics) : plant.make_initial_point();
+  auto point = o.at ? run_to(loaded, plant, *o.at, diagnostics) : make_start(loaded, plant, diagnostics);
   solver::warn_of_latches(loaded.system, {o.file}, diagnostics);
   auto model = linearize_at(o, plant, std::move(point), true, diagnostics);
   model.source = calc_sources(sources);

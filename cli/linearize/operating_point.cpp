@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/common/start_state.hpp"
 #include "solver/integrate/simulate.hpp"
 #include "solver/integrate/system_ode.hpp"
 #include "solver/linear/equilibrium.hpp"
@@ -28,6 +29,15 @@ class LastState final : public records::ResultSink {
 
 solver::Plant make_plant(const LoadedSystem& loaded, bool is_open) { return solver::Plant(loaded.system, is_open); }
 
+solver::OperatingPoint make_start(const LoadedSystem& loaded, const solver::Plant& plant, Diagnostics& diagnostics) {
+  auto point = plant.make_initial_point();
+  const auto start = find_start_control(loaded.start_from, loaded.system, point.t, diagnostics);
+  if (!start) return point;
+  point.z = start->state.segment(loaded.system.num_q() + loaded.system.num_u(), loaded.system.num_z());
+  if (const auto* control = start->find("control")) point.memory = control->tail(control->size() - 1);
+  return point;
+}
+
 solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& plant, double t,
                               Diagnostics& diagnostics, std::optional<records::Checkpoint>* last) {
   auto spec = loaded.spec;
@@ -38,11 +48,12 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& p
                      fmt::format("time {:g} lies before the start of the run, {:g}", t, s.start),
                      "give a later time with --at");
   }
-  if (t == s.start) return plant.make_initial_point();
+  if (t == s.start) return make_start(loaded, plant, diagnostics);
   s.duration = s.output_step = t - s.start;
   LastState sink;
   solver::SimulateOptions options;
   if (last) options.resume = *last;
+  if (!options.resume) options.resume = find_start_control(loaded.start_from, loaded.system, s.start, diagnostics);
   solver::simulate(loaded.system, spec, sink, options, diagnostics);
   if (last) *last = sink.last();
   const auto& state = sink.last().state;

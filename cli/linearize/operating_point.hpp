@@ -11,6 +11,9 @@ namespace bough::cli {
 /// `is_open`: without the controllers.
 solver::Plant make_plant(const LoadedSystem& loaded, bool is_open = false);
 
+/// The initial state; with --start-from a file of equilibrium the states of controllers and actuators are its own.
+solver::OperatingPoint make_start(const LoadedSystem& loaded, const solver::Plant& plant, Diagnostics& diagnostics);
+
 /// The state at time t, by the run's own integrator; `last`: where the run has come, goes on from there and holds where
 /// it has come then. InputError("linear.bad-time") before the start; "linear.changed-system" where an event has changed
 /// the system before t.

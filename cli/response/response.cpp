@@ -103,6 +103,8 @@ std::string format(const LinearModel& model, const FrequencyResponse& response, 
                                  response.frequency_hz[0], response.frequency_hz[response.frequency_hz.size() - 1]);
   if (!peak.is_finite)
     text += "largest gain: infinite, " + peak.why + "\n";
+  else if (peak.value == 0)
+    text += "the response is 0: no way leads from any of these inputs to any of these outputs\n";
   else
     text += fmt::format("largest gain (H-infinity norm): {:.6g}, {:.4g} dB, {}{}\n", peak.value, to_decibel(peak.value),
                         std::isfinite(peak.frequency_hz) ? fmt::format("at {:.6g} Hz", peak.frequency_hz)

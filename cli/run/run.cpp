@@ -13,6 +13,7 @@
 #include "base/part_file.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
+#include "cli/common/start_state.hpp"
 #include "cli/common/system_files.hpp"
 #include "cli/run/provenance_sink.hpp"
 #include "formats/hdf5/files.hpp"
@@ -178,6 +179,7 @@ int run_run(const RunOptions& o) {
     writer = hdf5::make_results_appender(output, options.resume->time);
   } else {
     check_output(o, output);
+    options.resume = find_start_control(o.start_from, loaded.system, loaded.spec.simulation.start, diagnostics);
     writer = hdf5::make_results_writer(output);
   }
   ProvenanceSink sink(*writer, sources);

@@ -31,6 +31,44 @@ std::vector<std::string> split(const std::string& line) {
   return words;
 }
 
+/// Of a heading: where tabs, semicolons or commas separate, blanks belong to the names ("time (s),thrust (N)").
+std::vector<std::string> split_names(const std::string& line) {
+  std::string bare;  // without what stands in quotation marks
+  bool is_quoted = false;
+  for (const char c : line) {
+    is_quoted = is_quoted != (c == '"');
+    bare += is_quoted ? '"' : c;
+  }
+  const std::size_t kind = bare.find('\t') != std::string::npos ? 0 : bare.find(';') != std::string::npos ? 1 : 2;
+  const char separator = "\t;,"[kind];
+  if (bare.find(separator) == std::string::npos) return split(line);
+  std::vector<std::string> names;
+  for (std::size_t from = 0; from <= line.size();) {
+    const std::size_t to = std::min(bare.find(separator, from), line.size());
+    const std::string word = line.substr(from, to - from);
+    from = to + 1;
+    const std::size_t first = word.find_first_not_of(" \t\r");
+    if (first == std::string::npos) continue;
+    std::string name = word.substr(first, word.find_last_not_of(" \t\r") - first + 1);
+    if (name.size() > 1 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
+    names.push_back(name);
+  }
+  return names;
+}
+
+/// "1,5;2,5": the first word between semicolons, tabs or blanks that has a comma between digits; empty: none.
+std::string find_decimal_comma(const std::string& line) {
+  if (line.find_first_of(";\t ") == std::string::npos) return "";
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  for (std::size_t i = 1; i + 1 < line.size(); ++i) {
+    if (line[i] != ',' || !is_digit(line[i - 1]) || !is_digit(line[i + 1])) continue;
+    const std::size_t from = line.find_last_of(";\t ", i);
+    const std::size_t first = from == std::string::npos ? 0 : from + 1;
+    return line.substr(first, std::min(line.find_first_of(";\t \r", i), line.size()) - first);
+  }
+  return "";
+}
+
 bool read_numbers(const std::vector<std::string>& words, std::vector<double>& numbers) {
   numbers.clear();
   for (const auto& word : words) {
@@ -47,20 +85,28 @@ class Reader {
       : path_(path), choice_(choice), diagnostics_(diagnostics) {}
 
   void read(std::ifstream& in, std::vector<double>& x, std::vector<double>& y) {
-    std::string line;
+    std::string line, heading;
     bool is_first = true;
+    int heading_line = 0;
+    const int errors = diagnostics_.num_errors();
     for (int number = 1; std::getline(in, line); ++number) {
+      if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // "CSV UTF-8"
       line.erase(std::find(line.begin(), line.end(), '#'), line.end());
       const auto words = split(line);
       if (words.empty()) continue;
       std::vector<double> numbers;
       const bool all_numbers = read_numbers(words, numbers);
+      if (is_first && heading_line == 0 && !all_numbers) {
+        heading = line;
+        heading_line = number;
+        continue;
+      }
       if (is_first) {
         is_first = false;
-        const std::vector<std::string> none;
-        if (!choose(all_numbers ? none : words, words.size(), number)) return;
-        if (!all_numbers) continue;
+        if (!choose_by(heading, heading_line, words.size(), number)) return;
       }
+      if (const std::string comma = find_decimal_comma(line); numbers.size() != count_ && !comma.empty())
+        return error(number, "the line has a decimal comma, '" + comma + "'", "write decimal points");
       if (!all_numbers || numbers.size() != count_) {
         error(number,
               all_numbers
@@ -78,13 +124,22 @@ class Reader {
       x.push_back(a);
       y.push_back(b);
     }
-    if (x.empty())
+    if (is_first && heading_line > 0 && !choose_by(heading, heading_line, 0, heading_line)) return;
+    if (x.empty() && diagnostics_.num_errors() == errors)
       diagnostics_.error("toml.table-file", {path_}, "the table file has no pair of numbers", "give one pair per line");
   }
 
  private:
   void error(int line, const std::string& what, const std::string& advice) {
     diagnostics_.error("toml.table-file", {path_, line}, what, advice);
+  }
+
+  /// By a heading, if there is one: of its two readings the one with as many names as the first line has numbers.
+  bool choose_by(const std::string& heading, int heading_line, std::size_t count, int line) {
+    if (heading_line == 0) return choose({}, count, line);
+    const auto names = split_names(heading), words = split(heading);
+    const auto& taken = names.size() != count && words.size() == count ? words : names;
+    return choose(taken, taken.size(), heading_line);
   }
 
   bool choose(const std::vector<std::string>& names, std::size_t count, int line) {

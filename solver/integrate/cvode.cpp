@@ -17,18 +17,31 @@ int call_correction(sunrealtype t, N_Vector y, N_Vector correction, sunrealtype,
   return flag;
 }
 
+/// With the tolerances beside it, which may change between steps; CVODE's own may not.
+struct WeighedOde : GuardedOde {
+  using GuardedOde::GuardedOde;
+  double relative = 0;
+  VectorXd absolute;
+};
+
+int weigh(N_Vector y, N_Vector weights, void* user) {
+  const auto& ode = *static_cast<const WeighedOde*>(static_cast<GuardedOde*>(user));
+  const Eigen::Map<const VectorXd> value(N_VGetArrayPointer(y), N_VGetLength(y));
+  Eigen::Map<VectorXd> weight(N_VGetArrayPointer(weights), N_VGetLength(weights));
+  weight = ode.relative * value.cwiseAbs() + ode.absolute;
+  if ((weight.array() <= 0).any()) return -1;
+  weight = weight.cwiseInverse();
+  return 0;
+}
+
 class CvodeStepper final : public Stepper {
  public:
   CvodeStepper(Ode& ode, const StepperOptions& options, bool stiff)
-      : ode_(ode),
-        y_(ode.size(), context_),
-        tolerance_(ode.size(), context_),
-        interpolated_(ode.size(), context_),
-        options_(options),
-        stiff_(stiff) {
+      : ode_(ode), y_(ode.size(), context_), interpolated_(ode.size(), context_), options_(options), stiff_(stiff) {
     BOUGH_DEMAND(options.absolute_tolerance.size() == ode.size());
     BOUGH_DEMAND(stiff || !ode.has_projection());  // CVODE projects with BDF only
-    tolerance_.values() = options.absolute_tolerance;
+    ode_.relative = options.relative_tolerance;
+    ode_.absolute = options.absolute_tolerance;
   }
   ~CvodeStepper() override {
     CVodeFree(&cvode_);
@@ -90,6 +103,7 @@ class CvodeStepper final : public Stepper {
       throw StepFailure{StepFailure::Kind::NonFinite, t_, "the projection is not finite", t};
     }
   }
+  void set_last_tolerances(int count, double tolerance) override { ode_.absolute.tail(count).setConstant(tolerance); }
   StepStatistics statistics() const override {
     StepStatistics s = before_;
     if (!cvode_) return s;
@@ -122,9 +136,9 @@ class CvodeStepper final : public Stepper {
     BOUGH_DEMAND(cvode_ != nullptr);
     const auto check = [](int flag) { BOUGH_DEMAND(flag == 0); };
     check(CVodeInit(cvode_, detail::call_ode, t, y_));
-    check(CVodeSetUserData(cvode_, &ode_));
+    check(CVodeSetUserData(cvode_, static_cast<GuardedOde*>(&ode_)));
     check(CVodeSetErrHandlerFn(cvode_, detail::ignore_message, nullptr));
-    check(CVodeSVtolerances(cvode_, options_.relative_tolerance, tolerance_));
+    check(CVodeWFtolerances(cvode_, weigh));
     check(CVodeSetMaxErrTestFails(cvode_, detail::kMostRejections));
     if (options_.step > 0) check(CVodeSetMaxStep(cvode_, options_.step));
     if (stiff_) {
@@ -142,8 +156,8 @@ class CvodeStepper final : public Stepper {
   }
 
   detail::Context context_;
-  GuardedOde ode_;
-  detail::Vector y_, tolerance_, interpolated_;
+  WeighedOde ode_;
+  detail::Vector y_, interpolated_;
   StepperOptions options_;
   bool stiff_;
   void* cvode_ = nullptr;

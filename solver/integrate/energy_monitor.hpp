@@ -19,6 +19,8 @@ class EnergyMonitor {
   /// `flow`: what forces would do along the size of the system; motions are known to that times rounding.
   void add(double t, const Energies& e, double work, double flow);
 
+  /// The largest energy so far: what the balance is measured by, without the noise.
+  double size() const { return std::max(scale_, std::abs(start_ - potential_)); }
   /// Of the last moment added, with its sign; relative.
   double latest() const { return latest_ / scale(); }
   /// The largest of all moments added, without sign; relative.

@@ -100,6 +100,9 @@ class ErkStepper final : public Stepper {
     y = trial_;
   }
 
+  void set_last_tolerances(int count, double tolerance) override {
+    options_.absolute_tolerance.tail(count).setConstant(tolerance);
+  }
   StepStatistics statistics() const override {
     StepStatistics s = statistics_;
     s.order = options_.rk_order;

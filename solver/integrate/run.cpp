@@ -195,10 +195,16 @@ double Run::begin() {
   double t = timeline_.start();
   if (options_.resume) check_resume();
   sink_.begin(make_header(spec_, setup_));
+  // "start": what controllers start from, of a state that was found; the run begins there as any.
+  const bool goes_on = options_.resume && !options_.resume->find("start");
+  if (options_.resume && !goes_on) {
+    y_ = options_.resume->state;
+    if (const auto* m = options_.resume->find("control")) set_control_memory(*m);
+  }
   guard([&] { ode_.calc_derivative(t, y_, y_dot_); });
   monitor_.start(calc_energies(ode_.system(), ode_.data()), calc_noise());
   saved_at_ = std::chrono::steady_clock::now();
-  if (options_.resume) {
+  if (goes_on) {
     t = restore(*options_.resume);
     if (!options_.resume->find("energy")) {  // of a state that no run has led to
       guard([&] { ode_.calc_derivative(t, y_, y_dot_); });
@@ -269,8 +275,15 @@ void Run::cross_jump() {
   });
 }
 
+void Run::hold_work() {
+  const double root = std::sqrt(spec_.simulation.absolute_tolerance);
+  const int first = ode_.num_coordinates() + ode_.num_z();
+  stepper_->set_last_tolerances(ode_.size() - first, root * std::clamp(monitor_.size(), root, 1.0));
+}
+
 void Run::take_step(const Stop& stop) {
   const double before = stepper_->time();
+  hold_work();
   guard([&] { stepper_->step(std::min(stop.time, timeline_.next_output())); });
   const auto y = stepper_->state();
   if (!y.allFinite()) fail_non_finite(stepper_->time(), stepper_->time());
@@ -414,8 +427,10 @@ SimulateOutcome Run::close(double t, const std::string& reason) {
   if (worst > kEnergyWarning * limit) {
     const std::string what = "the energy balance is off by " + short_text(worst) +
                              " of the energy at t = " + short_text(monitor_.time_of_worst());
-    const std::string advice = std::string(setup_.integrator == "rk4" ? "shorten step" : "tighten relative_tolerance") +
-                               ", look for a motion whose position or rate jumps, or raise energy_error_limit";
+    const bool is_fixed = setup_.integrator == "rk4" || setup_.integrator == "implicit";
+    const std::string advice =
+        std::string(is_fixed ? "shorten step" : "tighten relative_tolerance and absolute_tolerance") +
+        ", look for a motion whose position or rate jumps, or raise energy_error_limit";
     if (is_kept)
       diagnostics_.warning("run.energy-drift", spec_.simulation.at, what, advice);
     else

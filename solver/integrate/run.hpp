@@ -35,6 +35,8 @@ class Run {
   double calc_noise();
   /// Weight and applied forces times the size of the system, at the last sample.
   double calc_flow() const;
+  /// Work to as much of the energies as the states, so that the balance tells of the motion, not of itself.
+  void hold_work();
   void take_step(const Stop& stop);
   /// Warns once of each hinge whose axes nearly fall together.
   void watch_axes(double t);

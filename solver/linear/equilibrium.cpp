@@ -68,7 +68,10 @@ class Newton {
   std::vector<std::string> name_indifferent() const {
     std::vector<std::string> names;
     for (size_t j = 0; j < at_.free().size(); ++j) {
-      if (at_.free()[j] < at_.plant().num_freedoms() && !has_effect(j)) names.push_back(at_.name(at_.free()[j]));
+      if (at_.free()[j] >= at_.plant().num_freedoms() || has_effect(j)) continue;
+      // The integral of its rate may have one.
+      const bool is_carried = has_kept_ && conserved_.col(static_cast<Eigen::Index>(j)).norm() > 1e-9;
+      if (!is_carried) names.push_back(at_.name(at_.free()[j]));
     }
     return names;
   }

@@ -125,6 +125,213 @@ duration = 2.0
 """
 
 
+AXIS = """
+[[body]]
+name = "cart"
+mass = 1.5
+
+[[hinge]]
+name = "rail"
+type = "prismatic"
+child = "cart"
+axis = [1.0, 0.0, 0.0]
+damping = 2.0
+
+[[sensor]]
+name = "x"
+type = "hinge_angle"
+hinge = "rail"
+
+[[controller]]
+name = "law"
+type = "pid"
+inputs = "x"
+LAW
+
+[[actuator]]
+name = "drive"
+type = "hinge"
+hinge = "rail"
+input = "law"
+
+[simulation]
+duration = 3.0
+gravity = [-4.0, 0.0, 0.0]
+"""
+
+
+class BadFunctions(ProgramTest):
+    """A function that failed is said once, whatever names it."""
+    bad = {"sine": 'type = "sine"\namplitude = 1.0', "pulse": 'type = "pulse"\nvalue = 1.0\nat = 0.0\nwidth = -1.0',
+           "expression": 'type = "expression"\nexpression = "t+*2"', "self": 'type = "sum"\nof = ["f"]'}
+    users = {"controller": '[[controller]]\nname = "c"\ntype = "gain"\ngain = 1.0\ninputs = "f"',
+             "actuator": '[[actuator]]\nname = "d"\ntype = "hinge"\nhinge = "rail"\ninput = "f"',
+             "force": '[[force]]\nname = "p"\nbody = "cart"\nforce = [1.0, 0.0, 0.0]\nsignal = "f"',
+             "connect": '[[actuator]]\nname = "d"\ntype = "hinge"\nhinge = "rail"\n[[connect]]\nfrom = "f"\nto = "d"'}
+
+    def test_messages(self):
+        text = AXIS.replace("LAW", "kp = 25.0")
+        for function in self.bad.values():
+            for user in self.users.values():
+                self.write("bad.toml", text.replace("[simulation]", f'[[function]]\nname = "f"\n{function}\n\n{user}\n\n'
+                                                    "[simulation]"))
+                self.fails(1, "check", "bad.toml", says=["bad.toml:"])
+
+    def test_a_missing_input_is_said_once(self):
+        self.write("bad.toml", AXIS.replace("LAW", "kp = 25.0").replace("[simulation]", """
+[[controller]]
+name = "c"
+type = "sum"
+
+[[connect]]
+from = "x"
+to = "c:3"
+
+[simulation]"""))
+        said = self.fails(1, "check", "bad.toml", error="control.bad-connect", says=["has no input 1, and one after it"])
+        self.assertNotIn("''", said.stderr)
+
+
+class Rest(ProgramTest):
+    def test_a_run_from_an_equilibrium_stays_there(self):
+        """Integral states and what samples hold go with the state."""
+        for law in ("kp = 25.0\nki = 10.0\nsetpoint = 0.3",
+                    "kp = 25.0\nki = 10.0\nsetpoint = 0.3\nsample_time = 0.02\ndelay = 0.03"):
+            self.write("axis.toml", AXIS.replace("LAW", law))
+            found = json.loads(self.bough("equilibrium", "axis.toml", "--json").stdout)
+            self.assertAlmostEqual(found["q"][0], 0.3, places=9)
+            self.bough("equilibrium", "axis.toml", "-o", "rest.h5")
+            run = self.bough("run", "axis.toml", "--start-from", "rest.h5", "-o", "still.h5")
+            self.assertIn("start from the states in which they rest there", run.stderr)
+            with h5py.File(self.path("still.h5")) as f:
+                self.assertLess(np.abs(f["/hinges/rail/q"][:] - 0.3).max(), 1e-7)
+                np.testing.assert_allclose(f["/controllers/law"][:].ravel(), 6.0, atol=1e-6)
+                self.assertEqual(f["time"][0], 0)
+            self.assertNotIn("linear.not-steady", self.bough("linearize", "axis.toml", "--start-from", "rest.h5").stderr)
+        # Another law than the one of the file.
+        self.write("other.toml", AXIS.replace("LAW", "kp = 25.0"))
+        run = self.bough("run", "other.toml", "--start-from", "rest.h5", "-o", "moves.h5")
+        self.assertIn("it has other controllers or actuators than this system", run.stderr)
+
+    def test_a_cut_that_opens_nothing_is_said(self):
+        text = AXIS.replace("LAW", "kp = 25.0").replace("[[controller]]", """[[sensor]]
+name = "spare"
+type = "hinge_rate"
+hinge = "rail"
+
+[[controller]]""", 1)
+        self.write("axis.toml", text)
+        self.assertIn("[linear.nothing-cut]", self.bough("linearize", "axis.toml", "--break", "spare").stderr)
+        self.assertNotIn("linear.nothing-cut", self.bough("linearize", "axis.toml", "--break", "x", "-o", "l.h5").stderr)
+
+    def test_no_way_from_an_input_to_an_output_is_said(self):
+        self.write("two.toml", AXIS.replace("LAW", "kp = 25.0").replace("[[sensor]]", """[[body]]
+name = "other"
+mass = 1.0
+
+[[hinge]]
+name = "aside"
+type = "prismatic"
+child = "other"
+axis = [0.0, 1.0, 0.0]
+stiffness = 5.0
+damping = 1.0
+
+[[sensor]]
+name = "y"
+type = "hinge_angle"
+hinge = "aside"
+
+[[sensor]]""", 1))
+        self.bough("linearize", "two.toml", "--outputs", "y", "-o", "l.h5")
+        self.assertIn("no way leads from", self.bough("response", "l.h5").stdout)
+
+
+class Kinks(ProgramTest):
+    def test_the_balance_of_a_small_energy_under_a_force_with_corners(self):
+        """A free mass under a triangle wave, all defaults: the motion is right, and so is its balance."""
+        self.write("wave.toml", """
+[[body]]
+name = "cart"
+mass = 1.0
+
+[[hinge]]
+name = "rail"
+type = "prismatic"
+child = "cart"
+axis = [1.0, 0.0, 0.0]
+
+[[function]]
+name = "f"
+type = "sawtooth"
+amplitude = 0.4
+frequency_hz = 1.6
+rise = 0.5
+
+[[force]]
+name = "push"
+body = "cart"
+force = [1.0, 0.0, 0.0]
+function = "f"
+
+[simulation]
+duration = 4.0
+""")
+        with open(self.path("wave.toml")) as file:
+            text = file.read()
+        # The backward differences leave the rate itself 1e-3 of its energy.
+        for integrator, share in (("adams", 1e-4), ("bdf", 1e-2)):
+            self.write("w.toml", text + f'integrator = "{integrator}"\n')
+            run = self.bough("run", "w.toml", "-o", "w.h5")
+            if integrator == "adams":
+                self.assertNotIn("run.energy", run.stderr)
+            with h5py.File(self.path("w.h5")) as f:
+                v, work = f["/hinges/rail/qdot"][:].ravel(), f["/energy/work"][:].ravel()
+                self.assertLess(np.abs(work - v**2 / 2).max(), share * (v**2 / 2).max())
+
+
+class DoubleGimbal(ProgramTest):
+    def test_keeps_the_momentum(self):
+        self.write("flyer.toml", """
+[[body]]
+name = "craft"
+mass = 5.0
+inertia = [2.0, 3.0, 4.0]
+
+[[function]]
+name = "f"
+type = "sine"
+amplitude = 0.4
+frequency_hz = 0.3
+
+[[controller]]
+name = "rates"
+type = "expression"
+inputs = ["f"]
+expression = ["u1", "0.2 - u1"]
+
+[[actuator]]
+name = "gimbals"
+type = "double_gimbal_cmg"
+body = "craft"
+momentum = 1.5
+gimbal_axis = [0.0, 0.0, 1.0]
+inner_axis = [1.0, 0.0, 0.0]
+spin_axis = [0.0, 1.0, 0.0]
+angle_deg = [10.0, -20.0]
+input = "rates"
+
+[simulation]
+duration = 3.0
+integrator = "rk"
+""")
+        self.bough("run", "flyer.toml", "-o", "flyer.h5")
+        with h5py.File(self.path("flyer.h5")) as f:
+            momentum = f["/momentum/angular"][:]
+            self.assertLess(np.abs(momentum - momentum[0]).max(), 1e-7)
+            np.testing.assert_allclose(f["/actuators/gimbals"][0, 2:], np.radians([10.0, -20.0]), atol=1e-12)
+
+
 class Functions(ProgramTest):
     t = np.linspace(0, 2, 21)
     f = np.sin(3 * t) + 0.2 * t
@@ -152,6 +359,27 @@ class Functions(ProgramTest):
         self.fails(1, "check", "bad.toml", error="toml.table-file", says=["there is no column '4'"])
         self.write("bad.toml", text.replace("COLUMNS", ""))
         self.fails(1, "check", "bad.toml", error="toml.table-file", says=["the line has 3 numbers, expected 2"])
+
+    def test_headings_as_other_programs_write_them(self):
+        t, f = self.t, self.f
+        for separator in (",", ";", "\t"):
+            head = separator.join(("time (s)", "rest", "thrust (N)"))
+            rows = [separator.join(map(repr, (a, 0.0, b))) for a, b in zip(t.tolist(), f.tolist())]
+            with open(self.path("wind.csv"), "w", encoding="utf-8-sig", newline="\r\n") as file:
+                file.write(head + "\n" + "\n".join(rows) + "\n")
+            found = self.run_cart("wind.csv", 'time_column = "time (s)"\ncolumn = "thrust (N)"')
+            np.testing.assert_allclose(found, self.expected(), atol=1e-9)
+        # Blanks that separate, and a comma beside them.
+        self.write("wind.csv", "time, push rest\n" + "\n".join(f"{a!r} {b!r} 0" for a, b in zip(t.tolist(), f.tolist())))
+        np.testing.assert_allclose(self.run_cart("wind.csv", 'time_column = "time"\ncolumn = "push"'),
+                                   self.expected(), atol=1e-9)
+
+    def test_decimal_commas_are_named(self):
+        self.write("wind.csv", "t;a;b\n0,0;1,5;2,5\n2,0;1,0;2,0\n")
+        self.write("bad.toml", CART.replace("FILE", "wind.csv").replace("INTERPOLATION", "linear")
+                   .replace("COLUMNS", 'time_column = "t"\ncolumn = "b"'))
+        said = self.fails(1, "check", "bad.toml", error="toml.table-file", says=["wind.csv:2: error", "decimal comma, '0,0'"])
+        self.assertNotIn("no pair", said.stderr)
 
     def test_columns_of_matlab_and_hdf5_files(self):
         both = np.column_stack([self.f * 0, self.f])

@@ -70,8 +70,9 @@ TEST(EquilibriumOfLaws, AnIntegralOfARateIsADisplacement) {
   spec.controllers = {make_law("law", "transfer_function", {"v"}, {{"numerator", {-25}}, {"denominator", {1, 0}}})};
   const auto found = find(spec);
   EXPECT_NEAR(found.point.q[0], 0.2 - kWeight / 25, 1e-9);
-  EXPECT_NEAR(found.point.z.norm() > 0, 1, 0);
+  EXPECT_NE(found.point.z[0], 0);
   EXPECT_TRUE(found.kept.empty());
+  EXPECT_TRUE(found.indifferent.empty());
   EXPECT_NEAR(run_to_rest(spec), found.point.q[0], 1e-6);
 }
 
@@ -114,7 +115,7 @@ TEST(EquilibriumOfLaws, ASampledLawThatIsTooSlowIsToldToBeUnstable) {
   spec.controllers = {make_law("law", "gain", {"x"}, {{"gain", {-60}}, {"sample_time", {0.4}}})};
   const auto found = find(spec);
   EXPECT_NEAR(found.point.q[0], -kWeight / 72, 1e-10);
-  EXPECT_EQ(found.unstable.empty(), false);
+  EXPECT_FALSE(found.unstable.empty());
 }
 
 /// [x; v] over a time with a force held: the last column is what the force does.
