@@ -153,7 +153,9 @@ PairReport compare_models(const std::string& file_a, modal::ModalModel a, const 
   return r;
 }
 
-modal::ModalModel load_model(const std::string& file) { return load(file).model; }
+modal::ModalModel load_model(const std::string& file, Diagnostics& diagnostics) {
+  return load(file, diagnostics).model;
+}
 
 void add_compare(CLI::App& app, Action& action) {
   auto o = std::make_shared<CompareOptions>();

@@ -36,7 +36,7 @@ struct PairReport {
 PairReport compare_models(const std::string& file_a, modal::ModalModel a, const std::string& file_b,
                           modal::ModalModel b);
 /// Of a flexible body or a modes file; throws InputError cli.not-comparable for another.
-modal::ModalModel load_model(const std::string& file);
+modal::ModalModel load_model(const std::string& file, Diagnostics& diagnostics);
 std::string format_report(const PairReport& report);
 nlohmann::json make_json(const PairReport& report);
 void add_arrays(const PairReport& report, records::Comparison& file);

@@ -155,8 +155,10 @@ int run_modes(const ModesOptions& options) {
     text += format_effective_mass_about(result) + format_energies(result);
     auto one = make_json(result, norm, options.buckling);
     if (!options.compare.empty() && console.is_root()) {
-      const auto pair =
-          compare_models(options.deck, modal::ModalModel::from(result), options.compare, load_model(options.compare));
+      Diagnostics of_other;
+      const auto pair = compare_models(options.deck, modal::ModalModel::from(result), options.compare,
+                                       load_model(options.compare, of_other));
+      if (is_first) console.print(of_other);
       text += "\n" + format_report(pair);
       one["comparison"] = make_json(pair);
     }
