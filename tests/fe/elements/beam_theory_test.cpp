@@ -164,7 +164,7 @@ TEST(BeamBuckling, EngesserColumn) {
 
 SmallModel make_cbeam_chain(const records::Pbeam& property, int num_elements, double length) {
   SmallModel model;
-  model.deck.mat1.push_back({1, 7e10, 2.7e10, 0.3, 2700, 0, 0, 0, {}});
+  model.deck.mat1.push_back({1, 7e10, 2.7e10, 0.3, 2700, 0, 0, 0, 0, 0, 0, {}});
   model.deck.pbeam.push_back(property);
   model.deck.pbeam.back().id = model.deck.pbeam.back().mid = 1;
   for (int k = 0; k <= num_elements; ++k) model.nodes.add_grid(k + 1, Vector3d(length * k / num_elements, 0, 0));
@@ -392,7 +392,7 @@ TEST(BeamFrequencies, TimoshenkoWithRotaryInertia) {
   VectorXd omega[2];
   for (int mesh = 0; mesh < 2; ++mesh) {
     SmallModel model = make_cbeam_chain(p, 20 << mesh, L);
-    model.deck.mat1[0] = {1, E, G, 0.3, rho, 0, 0, 0, {}};
+    model.deck.mat1[0] = {1, E, G, 0.3, rho, 0, 0, 0, 0, 0, 0, {}};
     model.make();
     const MatrixXd K = model.calc_stiffness();
     const int n = static_cast<int>(K.rows());

@@ -14,7 +14,7 @@ SmallModel make_sound() {
   m.nodes.add_grid(1, Vector3d(0, 0, 0));
   m.nodes.add_grid(2, Vector3d(2, 0, 0));
   m.nodes.add_scalar_point(90);
-  m.deck.mat1.push_back({1, 3, 1, 0.3, 1, 0, 0, 0, {0, 10}});
+  m.deck.mat1.push_back({1, 3, 1, 0.3, 1, 0, 0, 0, 0, 0, 0, {0, 10}});
   records::Pbar p;
   p.id = p.mid = 1, p.A = p.I1 = p.I2 = p.J = 1, p.at = {0, 11};
   m.deck.pbar.push_back(p);
