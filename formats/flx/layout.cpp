@@ -309,7 +309,7 @@ Layout read_layout(const std::string& path) {
   if (std::filesystem::is_regular_file(path, failed)) in.open(path, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
-  if (!in)
+  if (!in.is_open() || text.fail())
     throw InputError("flx.cannot-read", {path}, "the file cannot be read or is empty", "check its path and contents");
   return parse_layout(text.str(), path);
 }

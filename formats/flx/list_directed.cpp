@@ -75,7 +75,7 @@ ListReader ListReader::open(const std::string& path, Diagnostics& diagnostics) {
   if (std::filesystem::is_regular_file(path, failed)) in.open(path, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
-  if (!in || text.fail())
+  if (!in.is_open() || text.fail())
     throw InputError("flx.cannot-read", {path}, "the file cannot be read or is empty", "check its path and contents");
   return {text.str(), path, diagnostics};
 }

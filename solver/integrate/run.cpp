@@ -267,6 +267,7 @@ double Run::calc_flow() const {
 
 void Run::cross_jump() {
   if (!stop_.restarts || stop_.latest >= stop_.time) return;  // at the end there may be no jump
+  coming_at_ = -std::numeric_limits<double>::infinity();
   guard([&] {
     const auto jumps = ode_.cross_jump(stop_.latest, stop_.time, y_);
     if (crossed_ == stop_.time) return;
@@ -278,7 +279,23 @@ void Run::cross_jump() {
 void Run::hold_work() {
   const double root = std::sqrt(spec_.simulation.absolute_tolerance);
   const int first = ode_.num_coordinates() + ode_.num_z();
-  stepper_->set_last_tolerances(ode_.size() - first, root * std::clamp(monitor_.size(), root, 1.0));
+  // From rest the energies are yet to come.
+  const double size = monitor_.size() > root ? monitor_.size() : std::max(monitor_.size(), calc_coming_energy());
+  stepper_->set_last_tolerances(ode_.size() - first, root * std::clamp(size, root, 1.0));
+}
+
+double Run::calc_coming_energy() {
+  const double t = stepper_->time();
+  if (std::abs(t - coming_at_) < 0.1 * spec_.simulation.output_step) return coming_;
+  coming_at_ = t;
+  const System& system = ode_.system();
+  VectorXd y_dot(ode_.size());
+  guard([&] { ode_.calc_derivative(t, stepper_->state(), y_dot); });
+  const VectorXd q = stepper_->state().head(ode_.num_q()),
+                 u = y_dot.segment(ode_.num_q(), system.num_u()) * spec_.simulation.output_step;
+  auto data = system.make_data();
+  calc_kinematics(system, *data, t, q, u);
+  return coming_ = calc_energies(system, *data).kinetic - system.impl().signals.calc_energy(system, *data);
 }
 
 void Run::take_step(const Stop& stop) {

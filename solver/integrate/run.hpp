@@ -37,6 +37,8 @@ class Run {
   double calc_flow() const;
   /// Work to as much of the energies as the states, so that the balance tells of the motion, not of itself.
   void hold_work();
+  /// Kinetic, of what the present accelerations do within an output step. Allocates, once in a tenth of that.
+  double calc_coming_energy();
   void take_step(const Stop& stop);
   /// Warns once of each hinge whose axes nearly fall together.
   void watch_axes(double t);
@@ -140,6 +142,7 @@ class Run {
   LinearLimit limit_;
   VectorXd reach_;
   EnergyMonitor monitor_;
+  double coming_ = 0, coming_at_ = -std::numeric_limits<double>::infinity();
   std::unique_ptr<Stepper> stepper_;
   VectorXd y_, y_dot_;
   VectorXd corners_, last_corners_, corners_at_end_, largest_corners_;

@@ -204,8 +204,9 @@ class Builder {
   /// The function's block, made when it is first named.
   int get_place(Source& source) {
     if (source.place >= 0) return source.place;
-    const TimeFunction* f = functions_.at(source.name);
-    if (f == nullptr) return -1;
+    const auto found = functions_.find(source.name);
+    if (found == functions_.end() || found->second == nullptr) return -1;  // or a controller that could not be made
+    const TimeFunction* f = found->second;
     auto block = std::make_unique<FunctionBlock>(f);
     block->name = source.name;
     block->path = source.path;

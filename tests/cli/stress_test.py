@@ -244,7 +244,7 @@ class Stress(ProgramTest):
 
     def test_forces_on_grids_balance(self):
         text = make_beam(2, "PBAR,1,1,1.-3,1.-8,1.-8,1.-8\n", "FORCE,2,3,,1.,0.,10.,0.\nFORCE,2,2,,1.,3.,0.,0.\n")
-        text = text.replace("SPC1,1,123456,1\n", "SPC1,1,123456,1\nGRID,9,,2.,.5,0.\nRBE2,7,3,123456,9\nCONM2,8,9,1.\n")
+        text = text.replace("SPC1,1,123456,1\n", "SPC1,1,123456,1\nGRID,9,,2.,.5,0.\nRBE2,7,3,123456,9\nCONM2,8,9,,1.\n")
         case = self.solve(text, "--grid-forces", "1,2,3")
         sums = {}
         for grid, source, element, force in case.grid_forces:

@@ -229,9 +229,8 @@ TEST(Bases, ErrorsOfTheSpec) {
   spec.orthogonalize = false;
   spec.residual = {"pusch"};
   spec.damping_table.points = {{2, 0.1}, {1, 0.1}};
-  EXPECT_EQ(get_errors(maker.deck, spec),
-            (std::vector<std::string>{"reduce.bad-basis", "reduce.bad-basis", "reduce.bad-basis", "reduce.unknown-load",
-                                      "reduce.bad-damping"}));
+  EXPECT_EQ(get_errors(maker.deck, spec), (std::vector<std::string>{"reduce.bad-basis", "reduce.bad-basis",
+                                                                    "reduce.unknown-load", "reduce.bad-damping"}));
   spec = make_spec(BodyFrame::Node);
   EXPECT_EQ(get_errors(maker.deck, spec), std::vector<std::string>{"modal.bad-frame"});
   spec.frame_nodes = {77};

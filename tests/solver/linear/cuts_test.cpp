@@ -64,10 +64,10 @@ TEST(Cut, SignalsAreInputsAndOutputs) {
   spec.controllers[0].rate = "rate";
   const auto m = linearize_initial(spec, {{"angle", "rate"}, {"law", "drive", "drive:command", "angle"}});
   // What is added to the measured angle acts by kp, to the rate by kd; the angle itself is the true one.
-  MatrixXd B(3, 2), D(4, 2), C(4, 3);
-  B << 0, 0, -4, -0.8, 0, 0;
+  MatrixXd B(2, 2), D(4, 2), C(4, 2);
+  B << 0, 0, -4, -0.8;
   D << -8, -1.6, -8, -1.6, -8, -1.6, 0, 0;
-  C << -8, -1.6, 1, -8, -1.6, 1, -8, -1.6, 1, 1, 0, 0;
+  C << -8, -1.6, -8, -1.6, -8, -1.6, 1, 0;
   EXPECT_LT((m.B - B).norm(), 1e-9) << m.B;
   EXPECT_LT((m.D - D).norm(), 1e-9) << m.D;
   EXPECT_LT((m.C - C).norm(), 1e-9) << m.C;
