@@ -13,7 +13,7 @@ namespace bough::solver {
 
 namespace {
 
-constexpr double kLocked = 1e-3;  // axes as near as that: for want of a direction, not of mass
+constexpr double kLocked = 1e-5;  // its square, next to kLeastPivot, is for want of a direction, not of mass
 
 // Bound of (Hᵀ 𝒫 H)_ii before anything of it cancels.
 double calc_size(const BodyData& d, const ConstVectorRef& column) {
@@ -22,24 +22,10 @@ double calc_size(const BodyData& d, const ConstVectorRef& column) {
   return root * root;
 }
 
-constexpr double kAligned = 1e-5;  // its square is a pivot of 1e-10
-
-// The free column before `pivot` that turns about its axis, or -1: where a gimbal's outer and inner axes meet.
-int find_aligned(const BodyData& d, int pivot) {
-  const Vector3d axis = d.hinge.H.col(d.free[pivot]).tail<3>();
-  for (int k = 0; k < pivot && axis.norm() > 0; ++k) {
-    const Vector3d other = d.hinge.H.col(d.free[k]).tail<3>();
-    if (other.norm() > 0 && axis.cross(other).norm() < kAligned * axis.norm() * other.norm()) return k;
-  }
-  return -1;
-}
-
 [[noreturn]] void fail_indefinite(const TreeBody& tb, const BodyData& d, int pivot, double t) {
-  const std::string lock = pivot < d.num_free ? describe_gimbal_lock(tb, d, kLocked) : "";
   std::ostringstream what;
-  if (const int other = pivot < d.num_free ? find_aligned(d, pivot) : -1; other >= 0) {
-    what << "coordinates " << d.free[other] + 1 << " and " << d.free[pivot] + 1 << " of hinge '" << tb.hinge_name
-         << "' turn about one axis at t = " << t << ": a gimbal lock";
+  if (const std::string lock = describe_gimbal_lock(tb, d, kLocked); pivot < d.num_free && !lock.empty()) {
+    what << lock << ", at t = " << t;
     throw ComputationError("solver.gimbal-lock", tb.hinge_at, what.str(), kGimbalAdvice);
   }
   what << "the articulated mass matrix of body '" << tb.name << "' is not positive definite at t = " << t << ": ";
@@ -48,10 +34,8 @@ int find_aligned(const BodyData& d, int pivot) {
   } else {
     what << "next to nothing moves with its modal coordinate " << pivot - d.num_free + 1;
   }
-  if (!lock.empty()) what << "; " << lock;
   throw ComputationError("solver.indefinite-mass", tb.hinge_at, what.str(),
-                         !lock.empty() ? kGimbalAdvice
-                         : pivot < d.num_free
+                         pivot < d.num_free
                              ? "give the body, or one that it carries, mass and inertia along that coordinate"
                              : "its mass integrals do not belong to one mass matrix, or its modes do what its hinge "
                                "does: write the file anew with reduce, or keep fewer modes");

@@ -177,7 +177,7 @@ TEST(GimbalLock, IsNoWantOfMass) {
     ADD_FAILURE() << "no failure";
   } catch (const ComputationError& failure) {
     EXPECT_EQ(failure.items()[0].id, "solver.gimbal-lock");
-    EXPECT_THAT(failure.items()[0].what, HasSubstr("coordinates 1 and 3 of hinge 'hinge' turn about one axis"));
+    EXPECT_THAT(failure.items()[0].what, HasSubstr("gimbal lock: the axes of coordinates 1 and 3 of hinge 'hinge'"));
     EXPECT_THAT(failure.items()[0].advice, HasSubstr("quaternion"));
   }
 }

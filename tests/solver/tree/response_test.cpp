@@ -233,9 +233,9 @@ TEST(Pivots, AGimbalLockIsNamed) {
       ADD_FAILURE() << axes;
     } catch (const ComputationError& e) {
       EXPECT_EQ(e.items()[0].id, "solver.gimbal-lock");
-      EXPECT_NE(std::string(e.what()).find(
-                    "coordinates 1 and 3 of hinge 'wrist' turn about one axis at t = 0.25: a gimbal lock"),
-                std::string::npos)
+      EXPECT_NE(
+          std::string(e.what()).find("gimbal lock: the axes of coordinates 1 and 3 of hinge 'wrist' have come within"),
+          std::string::npos)
           << e.what();
     }
     const VectorXd next = calc_u_dot(system, *data, 0.25, q + Vector3d(0, 0.3, 0), VectorXd::Zero(3));
