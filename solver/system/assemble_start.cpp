@@ -107,10 +107,48 @@ void note_moved(const Tree& tree, const VectorXd& q0, const VectorXd& u0, const 
                      "coordinates with a 'position' or 'rate' of their own move last, unless guess = true");
 }
 
-void report_open(const Assembly& assembly, const Loops& loops, const char* of, Diagnostics& diagnostics) {
+// The hinges that a loop runs through: 'b' (locked), 'c'.
+std::string describe_hinges(const Constraint& c, const Tree& tree, const std::vector<Grip>& grips) {
+  const auto climb = [&](int marker) {
+    std::vector<int> bodies;
+    for (int b = tree.markers[static_cast<size_t>(marker)].body; b >= 0; b = tree[b].parent) bodies.push_back(b);
+    return bodies;
+  };
+  std::vector<int> bodies;
+  if (c.closure) {
+    std::vector<int> up = climb(c.parent_marker), down = climb(c.child_marker);
+    for (; !up.empty() && !down.empty() && up.back() == down.back(); up.pop_back()) down.pop_back();
+    bodies = up;
+    bodies.insert(bodies.end(), down.rbegin(), down.rend());
+  } else {
+    for (const int b : c.path) {
+      const auto is_own = [&](const CouplerTerm& term) {
+        return term.u_row >= tree[b].u_offset && term.u_row < tree[b].u_offset + tree[b].num_hinge_u();
+      };
+      if (std::any_of(c.terms.begin(), c.terms.end(), is_own)) bodies.push_back(b);
+    }
+  }
+  constexpr size_t kMost = 8;
+  std::string list;
+  for (size_t k = 0; k < bodies.size(); ++k) {
+    if (k == kMost) return list + " and " + std::to_string(bodies.size() - kMost) + " more";
+    const TreeBody& tb = tree[bodies[k]];
+    list += (list.empty() ? "" : ", ") + quote(tb.hinge_name);
+    const Grip* grip = grips.data() + tb.u_offset;
+    const auto held = std::count(grip, grip + tb.num_hinge_u(), Grip::Fixed);
+    if (tb.num_hinge_u() > 0 && held > 0)
+      list += held == tb.num_hinge_u() ? " (locked or prescribed)" : " (locked or prescribed in part)";
+  }
+  return list;
+}
+
+void report_open(const Assembly& assembly, const Loops& loops, const Tree& tree, const std::vector<Grip>& grips,
+                 const char* of, Diagnostics& diagnostics) {
   const Constraint& c = loops[std::max(0, assembly.worst)];
   std::ostringstream what;
   what << "the loops cannot be closed: " << of << " of constraint " << quote(c.name) << " stay off by " << assembly.gap;
+  const std::string hinges = describe_hinges(c, tree, grips);
+  if (!hinges.empty()) what << "; its loop runs through hinge " << hinges;
   diagnostics.error("system.cannot-assemble", c.at, what.str(),
                     "check its nodes and frames, and what is locked or prescribed; a 'position' nearer to a closed "
                     "loop helps where there is one");
@@ -130,9 +168,9 @@ void assemble(const records::SystemSpec& spec, const TreeOrder& order, const Sys
   std::vector<Grip> positions, rates;
   collect_grips(spec, order, tree, positions, rates);
   const Assembly closed = assemble_positions(impl.loops, tree, impl.start, positions, q, data, loop_data);
-  if (!closed.is_closed) return report_open(closed, impl.loops, "the positions", diagnostics);
+  if (!closed.is_closed) return report_open(closed, impl.loops, tree, positions, "the positions", diagnostics);
   const Assembly moving = assemble_rates(impl.loops, tree, rates, u, data, loop_data);
-  if (!moving.is_closed) return report_open(moving, impl.loops, "the rates", diagnostics);
+  if (!moving.is_closed) return report_open(moving, impl.loops, tree, rates, "the rates", diagnostics);
   note_redundancies(spec, find_redundancies(impl.loops, tree, positions, data, loop_data), impl.loops, diagnostics);
   note_moved(tree, q0, u0, q, u, impl.loops[loop_data.blocks[0].constraints[0]].at, diagnostics);
   impl.initial_q = q;

@@ -390,12 +390,15 @@ TEST(Distance, IsAPendulum) {
 TEST(Assembly, SaysWhatCannotBeClosed) {
   auto spec = make_four_bar();
   spec.hinges[2].parent_position = {9, 0, 0};
+  spec.hinges[0].locked = {true};
+  spec.hinges[0].rate.clear();
   Diagnostics diagnostics;
   System::build_as_far(spec, {}, diagnostics);
   ASSERT_TRUE(diagnostics.has("system.cannot-assemble"));
   for (const auto& d : diagnostics.items()) {
     if (d.id != "system.cannot-assemble") continue;
     EXPECT_THAT(d.what, HasSubstr("the positions of constraint 'closing' stay off by"));
+    EXPECT_THAT(d.what, HasSubstr("runs through hinge 'coupler', 'crank' (locked or prescribed), 'rocker'"));
     EXPECT_EQ(d.where.line, 40);
   }
 }
