@@ -203,14 +203,23 @@ void Body::add_rigid_node(int id, const Vector3d& p) {
   nodes_.push_back(std::move(node));
 }
 
+MatrixXd BodyInertia::make_M() const {
+  const Eigen::Index n = M_top.cols();
+  MatrixXd M(6 + n, 6 + n);
+  M.topLeftCorner<6, 6>() = M6;
+  M.topRightCorner(6, n) = M_top;
+  M.bottomLeftCorner(n, 6) = M_top.transpose();
+  M.bottomRightCorner(n, n) = M_modal.topLeftCorner(n, n).selfadjointView<Eigen::Lower>();
+  return M;
+}
+
 BodyInertia Body::make_inertia() const {
   BodyInertia inertia;
   inertia.h = VectorXd::Zero(6 + n_);
   inertia.S = S0_;
   if (n_ == 0) return inertia;
-  inertia.M = MatrixXd::Zero(6 + n_, 6 + n_);
-  inertia.M.topLeftCorner<6, 6>() = M6_;
-  inertia.M.bottomRightCorner(n_, n_) = M_;
+  inertia.M6 = M6_;
+  inertia.M_top = Matrix6Xd::Zero(6, n_);
   const auto rows = pad(n_);
   inertia.by_eta = MatrixXd::Zero(rows, by_eta_.rows() / rows);
   inertia.A2 = MatrixXd::Zero(rows, E_A2_.rows());
@@ -219,6 +228,7 @@ BodyInertia Body::make_inertia() const {
   inertia.V = MatrixXd::Zero(rows, 12);
   inertia.C = MatrixXd::Zero(rows, 3);
   inertia.M_modal = MatrixXd::Zero(rows, rows);
+  inertia.M_modal.topLeftCorner(n_, n_) = M_;
   inertia.h_modal = inertia.eta = VectorXd::Zero(rows);
   return inertia;
 }

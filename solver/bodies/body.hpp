@@ -20,17 +20,20 @@
 
 namespace bough::solver {
 
-/// M(η), h and scratch for one body; every array is sized once. But for M and h rows are padded (kernels.hpp).
+/// M(η), h and scratch for one body; every array is sized once. But for M6, M_top and h rows are padded (kernels.hpp).
 struct BodyInertia {
-  MatrixXd M;                     ///< (6+n)², flexible bodies only (a rigid one has Body::M6)
-  VectorXd h;                     ///< 6+n
-  Vector3d S = Vector3d::Zero();  ///< first moment of mass about Bo
-  MatrixXd by_eta, A2;            ///< a column (n) per kind of product: of by_eta J's, then y's, then C's
-  VectorXd pairs, by_pair;        ///< n(n+1)/2; one per kind of product
-  MatrixXd V, C;                  ///< n x 12: ∫ρ ∂r/∂η_j fᵀ; n x 3: C_j
-  MatrixXd M_modal;               ///< lower triangle of M_ηη
-  VectorXd h_modal, eta;          ///< η, then η̇
+  Matrix6d M6 = Matrix6d::Zero();  ///< M(η) of a flexible body (a rigid one has Body::M6) in three parts
+  Matrix6Xd M_top;                 ///< 6 x n
+  MatrixXd M_modal;                ///< lower triangle of M_ηη, and some of what is above
+  VectorXd h;                      ///< 6+n
+  Vector3d S = Vector3d::Zero();   ///< first moment of mass about Bo
+  MatrixXd by_eta, A2;             ///< a column (n) per kind of product: of by_eta J's, then y's, then C's
+  VectorXd pairs, by_pair;         ///< n(n+1)/2; one per kind of product
+  MatrixXd V, C;                   ///< n x 12: ∫ρ ∂r/∂η_j fᵀ; n x 3: C_j
+  VectorXd h_modal, eta;           ///< η, then η̇
   AffineField::Amplitudes a = AffineField::Amplitudes::Zero(), A = a, P = a;  ///< of the field; P = ∫ρ r fᵀ
+
+  MatrixXd make_M() const;  ///< (6+n)²
 };
 
 class Body {

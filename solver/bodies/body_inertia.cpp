@@ -88,15 +88,14 @@ void Body::calc_flexible_mass(const ConstVectorRef& eta, BodyInertia& x) const {
   // M_ηη is the constant remainder and a square.
   add_square(M_rest_.data(), x.V.data(), rows, x.M_modal.data());
   for (Eigen::Index j = 0; j < n; ++j) {
-    double *column = x.M.data() + (6 + j) * (6 + n), *row = x.M.data() + 6 + j;
-    for (int i = 0; i < 3; ++i) column[i] = row[i * (6 + n)] = root * x.V(j, i);
-    for (int i = 0; i < 3; ++i) column[3 + i] = row[(3 + i) * (6 + n)] = x.C(j, i);
-    const double* from = x.M_modal.data() + j * rows;
-    for (Eigen::Index k = j; k < n; ++k) column[6 + k] = row[(6 + k) * (6 + n)] = from[k];
+    for (int i = 0; i < 3; ++i) {
+      x.M_top(i, j) = root * x.V(j, i);
+      x.M_top(3 + i, j) = x.C(j, i);
+    }
   }
-  x.M.block<3, 3>(0, 3) = -skew(x.S);
-  x.M.block<3, 3>(3, 0) = skew(x.S);
-  x.M.block<3, 3>(3, 3) = unpack_tensor(J6);
+  x.M6.topRightCorner<3, 3>() = -skew(x.S);
+  x.M6.bottomLeftCorner<3, 3>() = skew(x.S);
+  x.M6.bottomRightCorner<3, 3>() = unpack_tensor(J6);
 }
 
 void Body::calc_flexible_bias(const Vector3d& w, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
@@ -154,7 +153,7 @@ void Body::calc_flexible_bias(const Vector3d& w, const ConstVectorRef& eta, cons
   multiply_transposed(J1_rest_t_.data(), rows, J1_rest_t_.cols(), x.eta.data(), J_rest.data());
   Vector6d J6_dot = pack_inertia(2 * (A_dot * x.P.transpose() + l_dot_34 * x.A.transpose())) + J_rest;
   J6_dot.noalias() += E_J_.transpose() * (2 * sums.head(num_J));
-  const Matrix3d J = x.M.block<3, 3>(3, 3), J_dot = unpack_tensor(J6_dot);
+  const Matrix3d J = x.M6.bottomRightCorner<3, 3>(), J_dot = unpack_tensor(J6_dot);
   x.h.head<3>() = w.cross(w.cross(x.S)) + 2 * root * w.cross(Vector3d(P_dot.col(0))) + root * A_ddot.col(0);
   Vector3d moment = J_dot * w + w.cross(Vector3d(J * w + C_eta_dot));
   moment.noalias() += E_pair_.transpose() * x.by_pair.head(E_pair_.rows());

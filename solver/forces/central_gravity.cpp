@@ -40,7 +40,7 @@ ForceResult CentralGravity::calc(const Tree& tree, const TreeData& data, Loads* 
     const Vector3d about_Bo = torque + c.cross(f);
     if (loads != nullptr) loads->add_to_body(one.body, f, about_Bo);
     for (int j = 0; j < n; ++j) {
-      const Vector3d S_j = d.inertia.M.block<3, 1>(0, 6 + j);
+      const Vector3d S_j = d.inertia.M_top.col(j).head<3>();
       const Matrix3d P_j = one.P1[static_cast<size_t>(j)] - S_j * c.transpose() - c * S_j.transpose();
       const double on_mode = f.dot(S_j) / m + 0.5 * mu * (3 * R.dot(P_j * R) / r5 - P_j.trace() / r3);
       result.power += on_mode * data.u[tb.eta_dot_offset() + j];

@@ -39,7 +39,7 @@ double calc_first_frequency(const System& system, int b) {
   const Body& body = get_body(system, b).body;
   const int n = body.num_modes();
   if (n == 0) return 0;
-  const MatrixXd M = body.make_inertia().M.bottomRightCorner(n, n);
+  const MatrixXd M = body.make_inertia().M_modal.topLeftCorner(n, n);
   if (Eigen::LLT<MatrixXd>(M).info() != Eigen::Success) return 0;
   const MatrixXd K = 0.5 * (body.K() + body.K().transpose());
   const VectorXd values = Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(K, M).eigenvalues();

@@ -14,7 +14,7 @@ namespace {
 double calc_largest_frequency(const Body& body) {
   const int n = body.num_modes();
   if (n == 0) return 0;
-  const MatrixXd M = body.make_inertia().M.bottomRightCorner(n, n), K = 0.5 * (body.K() + body.K().transpose());
+  const MatrixXd M = body.make_inertia().M_modal.topLeftCorner(n, n), K = 0.5 * (body.K() + body.K().transpose());
   if (Eigen::LLT<MatrixXd>(M).info() != Eigen::Success) return 0;
   const VectorXd values =
       Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(K, M, Eigen::EigenvaluesOnly).eigenvalues();

@@ -34,9 +34,9 @@ void check_hinge(const TreeBody& tb, const records::BodyRecord& record, Diagnost
   const int n = tb.body.num_modes();
   BodyInertia x = tb.body.make_inertia();
   tb.body.calc_inertia(Vector3d::Zero(), VectorXd::Zero(n), VectorXd::Zero(n), x);
-  const MatrixXd H = calc_hinge_columns(tb), coupling = H.transpose() * x.M.topRightCorner(6, n);
-  const MatrixXd rigid = H.transpose() * x.M.topLeftCorner<6, 6>() * H;
-  const Eigen::LLT<MatrixXd> modes(x.M.bottomRightCorner(n, n));
+  const MatrixXd H = calc_hinge_columns(tb), coupling = H.transpose() * x.M_top;
+  const MatrixXd rigid = H.transpose() * x.M6 * H;
+  const Eigen::LLT<MatrixXd> modes(x.M_modal.topLeftCorner(n, n));
   if (modes.info() != Eigen::Success || Eigen::LLT<MatrixXd>(rigid).info() != Eigen::Success) return;
   const MatrixXd left = rigid - coupling * modes.solve(coupling.transpose());
   const double least = Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(left, rigid).eigenvalues()[0];

@@ -22,12 +22,13 @@ BodyMomentum calc_own_momentum(const TreeBody& tb, const BodyData& d, const Tree
     return m;
   }
   const auto eta_dot = data.u.segment(tb.eta_dot_offset(), n);
-  const MatrixXd& M = d.inertia.M;
-  m.p = M.topLeftCorner<6, 6>() * V;
-  for (int j = 0; j < n; ++j) m.p += M.block<6, 1>(0, 6 + j) * eta_dot[j];
-  m.kinetic = 0.5 * V.dot(m.p);
+  const BodyInertia& x = d.inertia;
+  const Vector6d moved = x.M_top * eta_dot;
+  m.p = x.M6 * V + moved;
+  m.kinetic = 0.5 * V.dot(m.p) + 0.5 * V.dot(moved);
   for (int j = 0; j < n; ++j) {
-    m.kinetic += 0.5 * eta_dot[j] * (M.block<6, 1>(0, 6 + j).dot(V) + M.col(6 + j).tail(n).dot(eta_dot));
+    const auto below = x.M_modal.col(j).segment(j + 1, n - 1 - j);
+    m.kinetic += eta_dot[j] * (0.5 * x.M_modal(j, j) * eta_dot[j] + below.dot(eta_dot.tail(n - 1 - j)));
   }
   return m;
 }
@@ -145,7 +146,7 @@ SystemMass calc_system_mass(const System& system, const SystemData& data) {
     const TreeBody& tb = tree[b];
     const BodyData& d = data.tree[b];
     const Matrix3d J =
-        tb.is_flexible() ? Matrix3d(d.inertia.M.block<3, 3>(3, 3)) : Matrix3d(tb.body.M6().bottomRightCorner<3, 3>());
+        tb.is_flexible() ? Matrix3d(d.inertia.M6.bottomRightCorner<3, 3>()) : Matrix3d(tb.body.M6().bottomRightCorner<3, 3>());
     // ∫ρ -(r + x)~(r + x)~ with r from cg to Bo, x from Bo.
     const Matrix3d r = skew(Vector3d(d.state.p_WBo - total.cg_W)),
                    S = skew(Vector3d(d.state.R_WB * first_moment(tb, d)));

@@ -58,7 +58,8 @@ void set_modes(const Tree& tree, const std::vector<HingeMode>& mode, TreeData& d
     for (int i = 0; i < d.num_free && tb.constant_H.size() > 0; ++i) d.H.col(i) = tb.constant_H.col(d.free[i]);
     const int n = tb.num_modes(), nf = d.num_free + n;
     if (n == 0) continue;
-    d.P = MatrixXd::Zero(6 + n, 6 + n);
+    d.P_top = Matrix6Xd::Zero(6, tb.carries_on_modes ? n : 0);
+    d.P_modal = MatrixXd::Zero(d.P_top.cols(), d.P_top.cols());
     d.D = MatrixXd::Identity(pad(nf + 6), nf);
     d.modal_size = VectorXd::Zero(n);
   }

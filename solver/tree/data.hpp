@@ -29,10 +29,11 @@ struct BodyData {
   BodyInertia inertia;                 ///< flexible only
   BodyState state;                     ///< its parts by stage
   // Factor
-  Matrix6d P6 = Matrix6d::Zero();  ///< rigid: articulated inertia 𝒫
+  Matrix6d P6 = Matrix6d::Zero();  ///< articulated inertia 𝒫, its 6 x 6
   Matrix6d G6 = Matrix6d::Zero();  ///< rigid: D⁻¹ Wᵀ, nh x 6
   Matrix6d D6 = Matrix6d::Zero();  ///< rigid: 1/D (nh = 1) or its factor L
-  MatrixXd P;                      ///< flexible: 𝒫, (6+n)²
+  Matrix6Xd P_top;                 ///< 6 x n: where children hang on modes, the rest of 𝒫 (else BodyInertia has it)
+  MatrixXd P_modal;                ///< n x n: its lower triangle
   MatrixXd D;    ///< flexible: L of ℋᵀ𝒫ℋ (its lower triangle), Gᵀ = (L⁻¹W_topᵀ)ᵀ below it, padding
   Matrix6Xd PX;  ///< 6 x (6+m), scratch
   // What the terms of a pivot may add up to
@@ -75,6 +76,11 @@ struct TreeData {
   const BodyData& operator[](int b) const { return b < 0 ? ground : bodies[static_cast<size_t>(b)]; }
   BodyData& operator[](int b) { return bodies[static_cast<size_t>(b)]; }
 };
+
+/// 6 x n of 𝒫 of a flexible body.
+inline const Matrix6Xd& get_P_top(const TreeBody& tb, const BodyData& d) {
+  return tb.carries_on_modes ? d.P_top : d.inertia.M_top;
+}
 
 TreeData make_tree_data(const Tree& tree);
 /// What each coordinate does from now on; mode: num_u. Sizes the arrays of flexible bodies anew: allocates.

@@ -101,16 +101,22 @@ void set_D(const TreeBody& tb, const TreeData& data, BodyData& d) {
   const Eigen::Index n = tb.num_modes(), nh = d.num_free;
   auto W = d.D.middleRows<6>(nh + n);
   auto modal = d.D.block(nh, nh, n, n);
-  W.rightCols(n) = d.P.topRightCorner(6, n);
-  modal = d.P.bottomRightCorner(n, n);
+  const Matrix6Xd& P_top = get_P_top(tb, d);
+  const MatrixXd& P_modal = tb.carries_on_modes ? d.P_modal : d.inertia.M_modal;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double *from = P_modal.col(j).data(), *top = P_top.col(j).data();
+    double* to = d.D.col(nh + j).data() + nh;
+    for (Eigen::Index k = j; k < n; ++k) to[k] = from[k];
+    for (int k = 0; k < 6; ++k) to[n + k] = top[k];
+  }
   for (Eigen::Index i = 0; i < nh; ++i) {
-    W.col(i).noalias() = d.P.topLeftCorner<6, 6>() * d.H.col(i);
-    d.D.col(i).segment(nh, n).noalias() = d.P.bottomLeftCorner(n, 6) * d.H.col(i);
+    W.col(i).noalias() = d.P6 * d.H.col(i);
+    d.D.col(i).segment(nh, n) = P_top.transpose().lazyProduct(d.H.col(i));
     for (Eigen::Index k = i; k < nh; ++k) d.D(k, i) = d.H.col(k).dot(W.col(i));
   }
   if (tb.on_child.moves) {
-    modal.noalias() -= d.P.bottomLeftCorner(n, 6) * d.Jc;
-    W.rightCols(n).noalias() -= d.P.topLeftCorner<6, 6>() * d.Jc;
+    modal.noalias() -= P_top.transpose() * d.Jc;
+    W.rightCols(n).noalias() -= d.P6 * d.Jc;
     modal.noalias() -= d.Jc.transpose() * W.rightCols(n);
     for (Eigen::Index i = 0; i < nh; ++i) d.D.col(i).segment(nh, n).noalias() -= d.Jc.transpose() * W.col(i);
   }
@@ -148,7 +154,7 @@ void factor_flexible(const TreeBody& tb, const TreeData& data, BodyData& d, Matr
   for (Eigen::Index j = 0; j < n && good; ++j)
     good = d.D(nh + j, nh + j) * d.D(nh + j, nh + j) > kLeastPivot * d.modal_size[j];
   if (!good) fail_indefinite(tb, d, std::max(0, find_bad_pivot(tb, data, d)), data.t);
-  passed = d.P.topLeftCorner<6, 6>();
+  passed = d.P6;
   const double* column = d.D.data() + nh + n;
   for (Eigen::Index j = 0; j < nh + n; ++j, column += d.D.rows()) {
     for (int c = 0; c < 6; ++c) {
@@ -158,7 +164,7 @@ void factor_flexible(const TreeBody& tb, const TreeData& data, BodyData& d, Matr
 }
 
 // S(r)ᵀR P Rᵀ S(r), R = R_PB, of a symmetric P.
-void add_moved(const BodyData& d, const Matrix6d& from, Eigen::Ref<Matrix6d, 0, Eigen::OuterStride<>> to) {
+void add_moved(const BodyData& d, const Matrix6d& from, Matrix6d& to) {
   const Matrix3d& R = d.R_PB;
   const Matrix3d R_BP = R.transpose(), r = skew(d.r_PoBo);
   const Matrix3d M = R * from.topLeftCorner<3, 3>() * R_BP;
@@ -192,10 +198,11 @@ void factor_body(const Tree& tree, int b, TreeData& data) {
   BodyData& P = data[tb.parent];
   if (tb.on_parent.moves) {
     d.PX.noalias() = passed * d.X;
-    P.P.noalias() += d.X.transpose() * d.PX;
+    const auto X_modal = d.X.rightCols(P.P_top.cols()), PX_modal = d.PX.rightCols(P.P_top.cols());
+    P.P6.noalias() += d.X.leftCols<6>().transpose() * d.PX.leftCols<6>();
+    P.P_top.noalias() += d.X.leftCols<6>().transpose() * PX_modal;
+    P.P_modal.noalias() += X_modal.transpose() * PX_modal;
     for (int j = 0; j < P.modal_size.size(); ++j) P.modal_size[j] += calc_size(d, d.X.col(6 + j));
-  } else if (tree[tb.parent].is_flexible()) {
-    add_moved(d, passed, P.P.topLeftCorner<6, 6>());
   } else {
     add_moved(d, passed, P.P6);
   }

@@ -60,13 +60,16 @@ void calc_body_position(const Tree& tree, int b, TreeData& data) {
   }
   if (tb.is_flexible()) {
     tb.body.calc_mass(data.q.segment(tb.eta_offset(), tb.num_modes()), d.inertia);
-    d.P = d.inertia.M;  // children add to it
-    d.modal_size = d.P.diagonal().tail(tb.num_modes());
-    d.second_moment = 0.5 * d.P.diagonal().segment<3>(3).sum();
+    d.P6 = d.inertia.M6;  // children add to it
+    if (tb.carries_on_modes) {
+      d.P_top = d.inertia.M_top;
+      d.P_modal = d.inertia.M_modal.topLeftCorner(tb.num_modes(), tb.num_modes());
+    }
+    d.modal_size = d.inertia.M_modal.diagonal().head(tb.num_modes());
   } else {
     d.P6 = tb.body.M6();
-    d.second_moment = 0.5 * d.P6.diagonal().tail<3>().sum();
   }
+  d.second_moment = 0.5 * d.P6.diagonal().tail<3>().sum();
   d.mass_carried = tb.body.mass();
 }
 

@@ -65,7 +65,8 @@ void solve_to_base(const Tree& tree, int b, const TreeData& data, Sweep& s) {
   Vector6d passed;
   if (tb.is_flexible()) {
     auto beta = s.beta.segment(tb.v_offset, 6 + tb.num_modes());
-    beta.noalias() += d.P.leftCols<6>() * s.b.col(b);
+    beta.head<6>().noalias() += d.P6 * s.b.col(b);
+    beta.tail(tb.num_modes()) += get_P_top(tb, d).transpose().lazyProduct(s.b.col(b));
     solve_flexible(tb, d, s.tau.data() + tb.u_offset, beta, s.z.segment(tb.u_offset, d.num_free + tb.num_modes()),
                    passed);
   } else {
@@ -193,8 +194,8 @@ Vector6d calc_sweep_wrench(const Tree& tree, const TreeData& data, const Sweep& 
   Vector6d wrench = s.beta.segment<6>(tb.v_offset);
   if (!tb.is_flexible()) return wrench + d.P6 * A;
   const int n = tb.num_modes();
-  wrench.noalias() += d.P.topLeftCorner<6, 6>() * A;
-  wrench.noalias() += d.P.topRightCorner(6, n) * s.u_dot.segment(tb.eta_dot_offset(), n);
+  wrench.noalias() += d.P6 * A;
+  wrench.noalias() += get_P_top(tb, d) * s.u_dot.segment(tb.eta_dot_offset(), n);
   return wrench;
 }
 

@@ -35,6 +35,10 @@ void Tree::finish() {
   num_q = num_u = num_v = 0;
   markers.assign(1, Marker());
   moving.clear();
+  for (TreeBody& tb : bodies) tb.carries_on_modes = false;
+  for (const TreeBody& tb : bodies) {
+    if (tb.on_parent.moves) bodies[static_cast<size_t>(tb.parent)].carries_on_modes = true;
+  }
   for (int b = 0; b < size(); ++b) {
     TreeBody& tb = bodies[static_cast<size_t>(b)];
     const int n = tb.num_modes();

@@ -28,6 +28,7 @@ struct TreeBody {
   int parent_marker = 0, child_marker = 0;     ///< the same in Tree::markers
   int q_offset = 0, u_offset = 0;              ///< hinge rows, then modal rows
   int v_offset = 0;                            ///< rows of [v; ω; η̇] among those of all bodies
+  bool carries_on_modes = false;               ///< a child hangs where it deforms
   std::vector<HingeMode> mode;                 ///< at the start, one per hinge coordinate
   std::vector<const TimeFunction*> motion;     ///< one per coordinate, nullptr: none; empty: none at all
   VectorXd stiffness, damping, null_position;  ///< empty: none

@@ -215,7 +215,7 @@ Motion calc_motion(const Sid& s, const Vector3d& w, const VectorXd& q, const Vec
 Motion calc_solver_motion(const solver::Body& body, const Vector3d& w, const VectorXd& q, const VectorXd& q_dot) {
   auto x = body.make_inertia();
   body.calc_inertia(w, q, q_dot, x);
-  return {x.M, x.h};
+  return {x.make_M(), x.h};
 }
 
 // The format ends at first order in (q, q̇), the solver's energy goes on. Its derivative at rest along (q, q̇): the
