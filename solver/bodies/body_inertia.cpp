@@ -58,7 +58,7 @@ void Body::calc_flexible_mass(const ConstVectorRef& eta, BodyInertia& x) const {
 
   Vector12d l, a;
   multiply(field_.L.data(), 12, n, eta.data(), l.data());
-  a.noalias() = B_ * (0.5 * sums.tail(num_y));
+  a = 0.5 * B_.lazyProduct(sums.tail(num_y));
   const Eigen::Map<const Amplitudes> l_34(l.data());
   x.a = Eigen::Map<const Amplitudes>(a.data());
   x.A = field_.A0 + x.a - 0.5 * field_.calc_correction(x.a, x.a);
@@ -83,7 +83,7 @@ void Body::calc_flexible_mass(const ConstVectorRef& eta, BodyInertia& x) const {
   Vector6d J_rest = Vector6d::Zero();
   multiply_transposed(J1_rest_t_.data(), rows, J1_rest_t_.cols(), x.eta.data(), J_rest.data());
   Vector6d J6 = J0_rest_ + pack_inertia(x.A * (x.A + 2 * l_34).transpose()) + J_rest;
-  J6.noalias() += E_J_.transpose() * sums.head(num_J);
+  J6 += E_J_.transpose().lazyProduct(sums.head(num_J));
 
   // M_ηη is the constant remainder and a square.
   add_square(M_rest_.data(), x.V.data(), rows, x.M_modal.data());
@@ -112,8 +112,8 @@ void Body::calc_flexible_bias(const Vector3d& w, const ConstVectorRef& eta, cons
   multiply_transposed(by_pair_.data(), by_pair_.rows(), by_pair_.cols(), x.pairs.data(), x.by_pair.data());
   Vector12d l_dot, a_dot, a_ddot;
   multiply(field_.L.data(), 12, n, eta_dot.data(), l_dot.data());
-  a_dot.noalias() = B_ * sums.tail(num_y);
-  a_ddot.noalias() = B_ * x.by_pair.tail(num_y);  // at η̈ = 0
+  a_dot = B_.lazyProduct(sums.tail(num_y));
+  a_ddot = B_.lazyProduct(x.by_pair.tail(num_y));  // at η̈ = 0
   const Eigen::Map<const Amplitudes> l_dot_34(l_dot.data()), a_dot_34(a_dot.data()), a_ddot_34(a_ddot.data());
   const Amplitudes A_dot = a_dot_34 - field_.calc_correction(x.a, a_dot_34);
   const Amplitudes A_ddot =
@@ -136,8 +136,8 @@ void Body::calc_flexible_bias(const Vector3d& w, const ConstVectorRef& eta, cons
     return sum;
   }();
   Sums of_J(num_J), of_A2(num_A2);
-  of_J.noalias() = E_J_ * (-2 * half_ww);
-  of_A2.noalias() = E_A2_ * w;
+  of_J = -2 * E_J_.lazyProduct(half_ww);
+  of_A2 = E_A2_.lazyProduct(w);
   double* h = x.h_modal.data();
   x.h_modal.setZero();
   add_product(x.V.data(), rows, 12, U_Y.data(), 1, h);
@@ -152,11 +152,11 @@ void Body::calc_flexible_bias(const Vector3d& w, const ConstVectorRef& eta, cons
   Vector6d J_rest = Vector6d::Zero();
   multiply_transposed(J1_rest_t_.data(), rows, J1_rest_t_.cols(), x.eta.data(), J_rest.data());
   Vector6d J6_dot = pack_inertia(2 * (A_dot * x.P.transpose() + l_dot_34 * x.A.transpose())) + J_rest;
-  J6_dot.noalias() += E_J_.transpose() * (2 * sums.head(num_J));
+  J6_dot += 2 * E_J_.transpose().lazyProduct(sums.head(num_J));
   const Matrix3d J = x.M6.bottomRightCorner<3, 3>(), J_dot = unpack_tensor(J6_dot);
   x.h.head<3>() = w.cross(w.cross(x.S)) + 2 * root * w.cross(Vector3d(P_dot.col(0))) + root * A_ddot.col(0);
   Vector3d moment = J_dot * w + w.cross(Vector3d(J * w + C_eta_dot));
-  moment.noalias() += E_pair_.transpose() * x.by_pair.head(E_pair_.rows());
+  moment += E_pair_.transpose().lazyProduct(x.by_pair.head(E_pair_.rows()));
   for (int b = 0; b < 4; ++b) moment += Vector3d(x.P.col(b)).cross(Vector3d(A_ddot.col(b)));
   x.h.segment<3>(3) = moment;
 }
