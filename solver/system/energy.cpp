@@ -145,8 +145,8 @@ SystemMass calc_system_mass(const System& system, const SystemData& data) {
   for (int b = 0; b < tree.size(); ++b) {
     const TreeBody& tb = tree[b];
     const BodyData& d = data.tree[b];
-    const Matrix3d J =
-        tb.is_flexible() ? Matrix3d(d.inertia.M6.bottomRightCorner<3, 3>()) : Matrix3d(tb.body.M6().bottomRightCorner<3, 3>());
+    const Matrix3d J = tb.is_flexible() ? Matrix3d(d.inertia.M6.bottomRightCorner<3, 3>())
+                                        : Matrix3d(tb.body.M6().bottomRightCorner<3, 3>());
     // ∫ρ -(r + x)~(r + x)~ with r from cg to Bo, x from Bo.
     const Matrix3d r = skew(Vector3d(d.state.p_WBo - total.cg_W)),
                    S = skew(Vector3d(d.state.R_WB * first_moment(tb, d)));
