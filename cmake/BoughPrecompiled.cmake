@@ -8,7 +8,7 @@ if(BOUGH_PCH)
 endif()
 set(BOUGH_PCH_COMMON <Eigen/Dense> <algorithm> <array> <charconv> <cmath> <filesystem> <fstream> <functional> <limits>
   <map> <memory> <numbers> <numeric> <optional> <random> <set> <sstream> <string> <string_view> <unordered_map>
-  <utility> <vector>)
+  <utility> <vector> "$<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/base/decompositions.hpp>")
 
 # bough_precompile(TARGET OWNER HEADERS header... [LINK target...]): the precompiled headers of OWNER, made at its first use.
 function(bough_precompile target owner)
@@ -26,6 +26,7 @@ function(bough_precompile target owner)
       add_library(${owner} STATIC EXCLUDE_FROM_ALL ${source})
     endif()
     target_link_libraries(${owner} PRIVATE bough_flags Eigen3::Eigen ${ARG_LINK})
+    target_include_directories(${owner} PRIVATE ${CMAKE_SOURCE_DIR})
     target_precompile_headers(${owner} PRIVATE ${BOUGH_PCH_COMMON} ${ARG_HEADERS})
   endif()
   target_precompile_headers(${target} REUSE_FROM ${owner})

@@ -1,0 +1,3 @@
+#define BOUGH_INSTANCE
+#define BOUGH_INSTANCES_OF 1
+#include "base/decompositions.hpp"
