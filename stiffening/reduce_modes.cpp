@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "formats/records/params.hpp"
@@ -57,6 +58,16 @@ void Reduction::set_modes(const fe::System& system, const StaticSolve& solve) {
     diagnostics_.note("reduce.residual-unused", where(),
                       "no residual vector for " + unused + ": the modes and the loads before hold its deflection",
                       "nothing to do");
+  std::string massless;
+  for (const auto& [i, part] : basis.massless_loads) {
+    char percent[32];
+    std::snprintf(percent, sizeof percent, " (%.3g %%)", 100 * part);
+    massless += (massless.empty() ? "" : ", ") + names[static_cast<std::size_t>(i)] + percent;
+  }
+  if (!massless.empty())
+    diagnostics_.warning("reduce.residual-massless", where(),
+                         "what moves no mass has no residual vector; lost of the flexibility under " + massless,
+                         "what acts there meets a stiffer body; give the model inertia there if it should not");
 
   const bool is_moved = is_free() && spec_.frame != BodyFrame::Free;
   // Raw coordinates lose those of the frame's node first, so that select counts what is left.

@@ -70,6 +70,12 @@ void mark_largest(const VectorXd& share, Eigen::Index count, ModeKind kind, std:
     kinds[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])] = kind;
 }
 
+std::string format_percent(double part) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g %%", 100 * part);
+  return text;
+}
+
 /// Normal modes of the model, then the residual vectors of the interface and of the loads.
 Basis calc_free_interface_basis(const fe::System& system, const BasisOptions& options, const StaticSolve& solve,
                                 Diagnostics& diagnostics) {
@@ -94,16 +100,20 @@ Basis calc_free_interface_basis(const fe::System& system, const BasisOptions& op
   MatrixXd F = options.residual_loads;
   if (F.rows() == 0) F.resize(model.num_gdofs(), 0);
   Eigen::Index num_attachments = 0;
+  std::vector<std::pair<int, int>> boundary;
   if (options.kind == BasisKind::CraigChang) {
     const auto part = make_partition(model, options.interface_nodes, diagnostics);
     F = join(calc_interface_loads(model, part), F);
     num_attachments = part.num_boundary();
+    boundary = part.boundary;
   }
   const auto residual = calc_residual_vectors(model, solve, pairs.Phi.leftCols(pairs.num_rigid), basis.Phi, F);
   basis.Phi = join(basis.Phi, residual.modes.Phi);
   basis.lambda = join(basis.lambda, residual.modes.lambda);
   const auto num_unused =
-      std::count_if(residual.unused.begin(), residual.unused.end(), [&](int i) { return i < num_attachments; });
+      std::count_if(residual.unused.begin(), residual.unused.end(), [&](int i) { return i < num_attachments; }) +
+      std::count_if(residual.massless.begin(), residual.massless.end(),
+                    [&](const auto& lost) { return lost.first < num_attachments; });
   std::vector<ModeKind> kinds(static_cast<std::size_t>(residual.modes.lambda.size()), ModeKind::Residual);
   mark_largest(residual.share.topRows(num_attachments).colwise().sum(), num_attachments - num_unused,
                ModeKind::Attachment, kinds);
@@ -116,6 +126,21 @@ Basis calc_free_interface_basis(const fe::System& system, const BasisOptions& op
     basis.lambda = pairs_all.lambda;
     make_canonical(model, basis.lambda, basis.Phi);
   }
+  std::string lost;
+  for (const auto& [i, part] : residual.massless) {
+    if (i >= num_attachments) {
+      basis.massless_loads.emplace_back(i - static_cast<int>(num_attachments), part);
+      continue;
+    }
+    const auto [id, component] = boundary[static_cast<std::size_t>(i)];
+    lost += (lost.empty() ? "" : ", ") + std::string(component > 3 ? "turning" : "motion") + " of grid " +
+            std::to_string(id) + (component > 3 ? " about " : " along ") + "xyz"[(component - 1) % 3] + " (" +
+            format_percent(part) + ")";
+  }
+  if (!lost.empty())
+    diagnostics.warning("modal.massless-interface", {},
+                        "what moves no mass has no attachment mode; lost of the flexibility in " + lost,
+                        "a hinge there meets a stiffer body; give the model inertia there if it should not");
   for (const int i : residual.unused)
     if (i >= num_attachments) basis.unused_loads.push_back(i - static_cast<int>(num_attachments));
   const auto n = basis.lambda.size();
@@ -240,6 +265,7 @@ Basis calc_craig_bampton_basis(const fe::System& system, const BasisOptions& opt
   const auto residual = calc_residual_vectors(
       model, [&](const MatrixXd& loads) { return fixed.solve(loads); }, MatrixXd(model.num_gdofs(), 0), modes.Phi, F);
   basis.unused_loads = residual.unused;
+  basis.massless_loads = residual.massless;
 
   const VectorXd lambda = join(modes.lambda, residual.modes.lambda);
   basis.Phi = join(Psi, join(modes.Phi, residual.modes.Phi));

@@ -28,10 +28,11 @@ struct Basis {
   VectorXd lambda;  ///< n, φᵀKφ / φᵀMφ
   MatrixXd M, K;    ///< n x n: ΦᵀMΦ and ΦᵀKΦ
   std::vector<records::ModeKind> kind;
-  int num_rigid = 0, num_massless = 0;        ///< rigid motions of the model with and without mass
-  std::vector<std::pair<int, int>> boundary;  ///< Craig-Bampton: node, component of each constraint mode
-  bool is_raw = false;                        ///< Craig-Bampton coordinates kept as they are
-  std::vector<int> unused_loads;              ///< residual loads that the basis holds already
+  int num_rigid = 0, num_massless = 0;                 ///< rigid motions of the model with and without mass
+  std::vector<std::pair<int, int>> boundary;           ///< Craig-Bampton: node, component of each constraint mode
+  bool is_raw = false;                                 ///< Craig-Bampton coordinates kept as they are
+  std::vector<int> unused_loads;                       ///< residual loads that the basis holds already
+  std::vector<std::pair<int, double>> massless_loads;  ///< residual loads: part of their flexibility that is lost
 };
 
 /// Order: normal modes, then attachment and residual vectors; Craig-Bampton re-orthogonalized: ascending frequency, the

@@ -1,5 +1,6 @@
 #include "modal/bases/ritz.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "modal/canonical.hpp"
@@ -68,6 +69,24 @@ RitzPairs calc_ritz_pairs(const MatrixXd& M, const MatrixXd& K) {
   return pairs;
 }
 
+namespace {
+
+constexpr double kLost = 1e-6;  // part of a flexibility
+
+/// Part of FᵀX = FᵀK⁻¹F that the shapes Y leave out, per column.
+VectorXd calc_lost_flexibility(const fe::Model& model, const MatrixXd& Y, const MatrixXd& F, const MatrixXd& X) {
+  VectorXd held = VectorXd::Zero(F.cols());
+  if (Y.cols() > 0) {
+    const MatrixXd YF = Y.transpose() * F;
+    const Eigen::LDLT<MatrixXd> K(symmetrize(Y.transpose() * fe::calc_stiffness_times(model, Y)));
+    held = YF.cwiseProduct(K.solve(YF)).colwise().sum();
+  }
+  const VectorXd whole = F.cwiseProduct(X).colwise().sum();
+  return (whole.array() > 0).select(1 - held.array() / whole.array(), 0.0);
+}
+
+}  // namespace
+
 ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve& solve, const MatrixXd& rigid,
                                       const MatrixXd& kept, const MatrixXd& F) {
   const auto times_M = [&](const MatrixXd& X) { return fe::calc_mass_times(model, model.mass_kind(), X); };
@@ -81,11 +100,12 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
   if (rigid.cols() > 0) F_e -= times_M(rigid) * (rigid.transpose() * F);
   MatrixXd X = solve(F_e);
   if (rigid.cols() > 0) X -= rigid * (rigid.transpose() * times_M(X));
+  const MatrixXd X_static = X;
   const VectorXd before = X.cwiseProduct(times_M(X)).colwise().sum().cwiseMax(0).cwiseSqrt();
 
   MatrixXd Q(F.rows(), rigid.cols() + kept.cols());
   Q << rigid, kept;
-  std::vector<int> used;
+  std::vector<int> used, balanced;
   for (int i = 0; i < m; ++i) used.push_back(i);
   for (int pass = 0; pass < 2; ++pass) {
     if (Q.cols() > 0) X -= Q * (times_M(Q).transpose() * X).eval();
@@ -103,7 +123,7 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
       if (pass == 0 && (is_balanced || !(norm > 1e-6 * before(used[i])))) {
         X.col(c).setZero();
         MX.col(c).setZero();
-        result.unused.push_back(used[i]);
+        (is_balanced ? balanced : result.unused).push_back(used[i]);
         continue;
       }
       X.col(c) /= norm;
@@ -116,6 +136,25 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
     X = X(Eigen::all, rest).eval();
     used = rest;
   }
+
+  if (!result.unused.empty()) {
+    MatrixXd Y(F.rows(), kept.cols() + X.cols());
+    Y << kept, X;
+    const VectorXd lost =
+        calc_lost_flexibility(model, Y, F_e(Eigen::all, result.unused), X_static(Eigen::all, result.unused));
+    std::vector<int> held = balanced;
+    for (std::size_t i = 0; i < result.unused.size(); ++i) {
+      const double part = lost(static_cast<Eigen::Index>(i));
+      if (part > kLost)
+        result.massless.emplace_back(result.unused[i], part);
+      else
+        held.push_back(result.unused[i]);
+    }
+    result.unused = held;
+  } else {
+    result.unused = balanced;
+  }
+  std::sort(result.unused.begin(), result.unused.end());
 
   if (used.empty()) return result;
   const MatrixXd K = X.transpose() * fe::calc_stiffness_times(model, X);

@@ -25,6 +25,9 @@ struct ResidualVectors {
   ModeSet modes;            ///< pseudo-modes: unit generalized mass, orthogonal to `rigid` and `kept`
   MatrixXd share;           ///< m x n: part of mode j that load i brought, columns sum to one
   std::vector<int> unused;  ///< loads whose static solution the kept modes and the loads before hold already
+  /// Loads without a vector whose static solution moves next to no mass and is held by nothing: the part that is lost,
+  /// by flexibility (0 to 1).
+  std::vector<std::pair<int, double>> massless;
 };
 
 /// The part of the static solutions for F that the kept modes leave out: X = K⁻¹F - ΦΛ⁻¹ΦᵀF, and for a free body

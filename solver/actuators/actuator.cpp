@@ -138,8 +138,8 @@ int find_actuator_outputs(const std::string& type) {
 Vector3d read_axis(SettingsReader& keys, const std::string& key) {
   const VectorXd axis = keys.get_vector(key, 3);
   if (axis.norm() > 0 && axis.allFinite()) return axis.normalized();
-  keys.error("control.bad-value", "has no direction in " + key, "give three numbers, not all zero");
-  return Vector3d::UnitX();
+  if (keys.has(key)) keys.error("control.bad-value", "has no direction in " + key, "give three numbers, not all zero");
+  return Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());  // what is compared with it has failed already
 }
 
 std::unique_ptr<Block> make_actuator(const records::ActuatorRecord& r, const System& system, Tree& tree,

@@ -159,9 +159,9 @@ std::unique_ptr<Rotor> make_double_gimbal(SettingsReader& keys) {
   cmg->outer = read_axis(keys, "gimbal_axis");
   cmg->inner = read_axis(keys, "inner_axis");
   cmg->spin = read_axis(keys, "spin_axis");
-  keys.demand(std::abs(cmg->outer.dot(cmg->inner)) < 1e-9, "has an inner_axis that is not normal to its gimbal_axis",
-              "give it at angle zero of the outer gimbal");
-  keys.demand(std::abs(cmg->inner.dot(cmg->spin)) < 1e-9, "has a spin_axis that is not normal to its inner_axis",
+  keys.demand(!(std::abs(cmg->outer.dot(cmg->inner)) >= 1e-9),
+              "has an inner_axis that is not normal to its gimbal_axis", "give it at angle zero of the outer gimbal");
+  keys.demand(!(std::abs(cmg->inner.dot(cmg->spin)) >= 1e-9), "has a spin_axis that is not normal to its inner_axis",
               "give it at gimbal angles zero");
   cmg->momentum = keys.get("momentum");
   const VectorXd angles = keys.get_vector("angle", 2, 0);
@@ -201,8 +201,8 @@ std::unique_ptr<Actuator> make_rotor(const records::ActuatorRecord& r, SettingsR
     auto cmg = std::make_unique<SingleGimbal>();
     cmg->gimbal = read_axis(keys, "gimbal_axis");
     cmg->spin = read_axis(keys, "spin_axis");
-    keys.demand(std::abs(cmg->gimbal.dot(cmg->spin)) < 1e-9, "has a spin_axis that is not normal to its gimbal_axis",
-                "give it at gimbal angle zero");
+    keys.demand(!(std::abs(cmg->gimbal.dot(cmg->spin)) >= 1e-9),
+                "has a spin_axis that is not normal to its gimbal_axis", "give it at gimbal angle zero");
     cmg->momentum = keys.get("momentum");
     cmg->initial = keys.get("angle", 0);
     cmg->dims = "1/T, 1";

@@ -142,7 +142,7 @@ class Builder {
     for (const auto& r : spec_.actuators) {
       const std::string user = "actuator '" + r.name + "'";
       auto block = make_actuator(r, system_, impl_.tree, diagnostics_);
-      const int takes = block ? block->sizes.inputs : 1;
+      const int takes = block ? block->sizes.inputs : 0;  // 0: it has failed, and nobody knows
       std::vector<Wire> wires;
       const auto use = uses.actuators.find(r.name);
       if (use != uses.actuators.end() && !wire_scalar(use->second, user, takes, wires)) continue;
@@ -156,7 +156,7 @@ class Builder {
     if (!sources_.find(use, user, wire, diagnostics_)) return false;
     wires.push_back(wire);
     const int size = sources_.size_of(wire);
-    if (size == takes || size == 0) return true;
+    if (size == takes || size == 0 || takes == 0) return true;
     diagnostics_.error("control.bad-size", use.at,
                        user + " takes " + (takes == 1 ? "one number" : std::to_string(takes) + " numbers") + ", '" +
                            use.text + "' has " + std::to_string(size),

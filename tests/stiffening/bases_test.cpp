@@ -250,5 +250,30 @@ TEST(Bases, Warnings) {
   EXPECT_TRUE(diagnostics.has("reduce.residual-unused"));
 }
 
+// A straight line of bars has no inertia about itself: its twist under a moment at the end is no mode.
+TEST(Bases, FlexibilityWithoutMassIsTold) {
+  test::DeckMaker line;
+  line.add_section(1, kSection, true);
+  line.add_line(1, 1, {0, 0, 0}, {1, 0, 0}, 8, Vector3d::UnitY());
+  line.fix(1, 123456);
+  for (const bool is_bent : {false, true}) {
+    for (const auto basis : {BodyBasis::Normal, BodyBasis::CraigChang}) {
+      const auto maker = is_bent ? make_frame() : line;
+      auto spec = make_spec(BodyFrame::Fixed, 4);
+      spec.interface_nodes = {9};
+      spec.basis = basis;
+      if (basis == BodyBasis::Normal) spec.residual = {"interface"};
+      Diagnostics diagnostics;
+      stiffening::reduce(maker.deck, spec, {}, diagnostics);
+      const auto* id = basis == BodyBasis::Normal ? "reduce.residual-massless" : "modal.massless-interface";
+      EXPECT_EQ(diagnostics.has(id), !is_bent);
+      EXPECT_FALSE(diagnostics.has("reduce.residual-unused"));
+      for (const auto& d : diagnostics.items()) {
+        if (d.id == id) EXPECT_NE(d.what.find("100 %"), std::string::npos) << d.what;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bough

@@ -99,6 +99,18 @@ TEST(DoubleGimbal, IsASingleOneWhereOneStandsStill) {
   EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-9);
 }
 
+// One missing axis is one error: nothing is compared with it, and the size of its command is not known.
+TEST(DoubleGimbal, OneMissingAxisIsOneError) {
+  auto spec = make_flyer("double_gimbal_cmg");
+  spec.controllers = {make_law("rates", "expression", {"law"})};
+  spec.controllers[0].settings.words["expression"] = {"u1", "0"};
+  spec.actuators[0].input = "rates";
+  spec.actuators[0].settings.numbers = {{"gimbal_axis", {0, 0, 1}}, {"inner_axis", {1, 0, 0}}, {"momentum", {1.5}}};
+  Diagnostics diagnostics;
+  System::build_as_far(spec, {}, diagnostics);
+  EXPECT_EQ(diagnostics.num_errors(), 1);
+}
+
 TEST(Jet, IsOnForItsShortestPulseAtLeast) {
   auto spec = make_flyer("jet");
   spec.functions[0].type = "pulse";

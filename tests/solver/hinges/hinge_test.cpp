@@ -14,6 +14,14 @@ struct HingeCase {
   const char *rotations, *translations;
 };
 
+// The name of a test in the list of ctest; else the bytes of the structure.
+void PrintTo(const HingeCase& c, std::ostream* out) {
+  constexpr const char* kNames[] = {"fixed",  "revolute",  "prismatic", "universal", "cylindrical",
+                                    "planar", "spherical", "free",      "screw",     "general"};
+  *out << kNames[static_cast<int>(c.type)];
+  for (const char* more : {c.rotations, c.translations}) *out << (*more != 0 ? "_" : "") << more;
+}
+
 class HingeTest : public ::testing::TestWithParam<HingeCase> {
  protected:
   HingeTest() {
