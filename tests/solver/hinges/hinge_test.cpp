@@ -19,7 +19,8 @@ void PrintTo(const HingeCase& c, std::ostream* out) {
   constexpr const char* kNames[] = {"fixed",  "revolute",  "prismatic", "universal", "cylindrical",
                                     "planar", "spherical", "free",      "screw",     "general"};
   *out << kNames[static_cast<int>(c.type)];
-  for (const char* more : {c.rotations, c.translations}) *out << (*more != 0 ? "_" : "") << more;
+  if (*c.rotations != 0) *out << "_turns_" << c.rotations;
+  if (*c.translations != 0) *out << "_moves_" << c.translations;
 }
 
 class HingeTest : public ::testing::TestWithParam<HingeCase> {
