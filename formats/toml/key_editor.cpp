@@ -1,64 +1,17 @@
 #include "formats/toml/key_editor.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <vector>
 
 #include <toml++/toml.h>
 
+#include "formats/toml/detail/parameters.hpp"
 #include "formats/toml/detail/schema.hpp"
+#include "formats/toml/detail/source_text.hpp"
 
 namespace bough::toml_files {
 
 namespace {
-
-/// "a.\"b.c\".2" -> a, b.c, 2
-std::vector<std::string> split_path(const std::string& path) {
-  std::vector<std::string> parts(1);
-  bool quoted = false;
-  for (const char c : path) {
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == '.' && !quoted)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
-}
-
-std::string quote_key(const std::string& key) {
-  const bool is_bare = !key.empty() && std::all_of(key.begin(), key.end(), [](unsigned char c) {
-    return std::isalnum(c) || c == '_' || c == '-';
-  });
-  return is_bare ? key : quote_text(key);
-}
-
-/// Byte of a place; the parser counts characters, not bytes, in a line.
-std::size_t find_byte(const std::string& text, const toml::source_position& at) {
-  std::size_t byte = 0;
-  for (toml::source_index line = 1; line < at.line; ++line) byte = text.find('\n', byte) + 1;
-  for (toml::source_index column = 1; column < at.column && byte < text.size(); ++column) {
-    ++byte;
-    while (byte < text.size() && (static_cast<unsigned char>(text[byte]) & 0xC0) == 0x80) ++byte;
-  }
-  return byte;
-}
-
-bool is_number(const std::string& s) {
-  return !s.empty() && s.size() < 7 && std::all_of(s.begin(), s.end(), [](unsigned char c) { return std::isdigit(c); });
-}
-
-toml::node* find_item(toml::array& list, const std::string& part) {
-  if (is_number(part)) {
-    const auto i = static_cast<std::size_t>(std::stoul(part));
-    return i >= 1 && i <= list.size() ? list.get(i - 1) : nullptr;
-  }
-  for (auto& item : list)
-    if (auto* table = item.as_table())
-      if (const auto name = (*table)["name"].value<std::string>(); name && *name == part) return &item;
-  return nullptr;
-}
 
 /// Where a new key of this table can be written, and what has to stand around it.
 std::string add_key(std::string& text, const toml::table& table, bool is_root, const std::string& line) {
@@ -118,7 +71,12 @@ void check_text(const std::string& text, const std::string& file, Diagnostics& d
   Value root;
   if (!parse_toml(text, file, root, diagnostics)) return;
   const Value* body = root.find("body");
-  check_schema(root, body && body->is_table() ? get_body_schema() : get_system_schema(), file, diagnostics);
+  const bool is_body_file = body && body->is_table();
+  Diagnostics of_parameters;
+  if (!is_body_file) insert_parameters(root, file, of_parameters);
+  for (const auto& item : of_parameters.items())
+    if (item.severity == Severity::Error) diagnostics.add(item);
+  check_schema(root, is_body_file ? get_body_schema() : get_system_schema(), file, diagnostics);
 }
 
 std::string set_key(std::string& text, const std::string& path, const std::string& value) {

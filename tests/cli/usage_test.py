@@ -12,8 +12,6 @@ class Usage(ProgramTest):
         text = self.bough("--help").stdout
         for verb in VERBS:
             self.assertRegex(text, rf"(?m)^  {verb}\b")
-        for verb in ["edit"]:
-            self.assertNotRegex(text, rf"(?m)^  {verb}\b")
 
     def test_each_verb_explains_itself_with_an_example(self):
         for verb in VERBS:
@@ -25,7 +23,6 @@ class Usage(ProgramTest):
 
     def test_unknown_verb_is_a_usage_error_with_the_nearest_match(self):
         self.fails(2, "reduse", "x.toml", says=['did you mean "reduce"'], error="cli.unknown-verb")
-        self.fails(2, "edit", "x.toml", error="cli.unknown-verb")
 
     def test_usage_errors(self):
         self.fails(2, error="cli.usage")

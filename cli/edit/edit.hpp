@@ -1,0 +1,8 @@
+#pragma once
+#include "cli/verbs.hpp"
+
+namespace bough::cli {
+
+void add_edit(CLI::App& app, Action& action);
+
+}  // namespace bough::cli

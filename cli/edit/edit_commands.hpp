@@ -1,0 +1,15 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace bough::cli {
+
+struct EditCommand {
+  std::string name, usage, description;
+};
+
+/// The commands of `bough edit`, as `help` lists them.
+const std::vector<EditCommand>& get_edit_commands();
+const EditCommand& get_edit_command(const std::string& name);
+
+}  // namespace bough::cli

@@ -1,0 +1,56 @@
+#pragma once
+/// \file The commands of `bough edit`.
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/common/console.hpp"
+#include "cli/edit/edit_text.hpp"
+
+namespace bough::cli {
+
+class EditSession {
+ public:
+  /// Asks the person at the terminal; nothing at the end of the input. Empty function: nobody is there, as in a script.
+  using Ask = std::function<std::optional<std::string>(const std::string& prompt)>;
+
+  EditSession(EditText text, const Console& console, Ask ask);
+
+  /// Does one line; false when the session is to end. Throws InputError and ComputationError.
+  bool execute(const std::string& line);
+  /// Whether the end of the input may end it; says what was not saved.
+  void finish() const;
+  /// What may stand in place of the last word of the line.
+  std::vector<std::string> complete(const std::string& line) const;
+
+  /// The commands in the order of `help`.
+  static std::vector<std::string> list_commands();
+
+ private:
+  using Words = std::vector<std::string>;
+
+  void list(const Words& words);
+  void show(const Words& words);
+  void add(const Words& words);
+  void set(const Words& words);
+  void unset(const Words& words);
+  void remove(const Words& words);
+  void rename(const Words& words);
+  void copy(const Words& words);
+  void check() const;
+  void run_verb(const std::string& verb, const Words& words) const;
+  void save(const Words& words);
+  void help(const Words& words) const;
+  bool quit();
+
+  toml_files::KeyValues ask_for_keys(const toml_files::KindHelp& kind, toml_files::KeyValues given) const;
+  EditTarget find_item(const Words& words, std::size_t first, std::size_t num_after) const;
+  std::vector<toml_files::NameUse> find_uses_of(const EditTarget& target, const std::string& text) const;
+
+  EditText text_;
+  const Console& console_;
+  Ask ask_;
+};
+
+}  // namespace bough::cli

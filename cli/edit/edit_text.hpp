@@ -1,0 +1,58 @@
+#pragma once
+/// \file The text that `bough edit` changes, with what was before (undo) and what the schema says about it.
+#include <string>
+#include <vector>
+
+#include "formats/toml/schema_help.hpp"
+#include "formats/toml/system_editor.hpp"
+
+namespace bough::cli {
+
+/// An item and what stands behind its name in a path: "boom.modes.2" is the body boom and modes.2.
+struct EditTarget {
+  toml_files::TableItem item;
+  std::string rest;
+  /// As set_value takes it.
+  std::string path() const {
+    if (item.kind.empty()) return rest;
+    return rest.empty() ? item.path() : item.path() + "." + rest;
+  }
+};
+
+class EditText {
+ public:
+  EditText(std::string file, std::string text, bool is_body_file);
+
+  const std::string& get_file() const { return file_; }
+  const std::string& get_text() const { return text_; }
+  const std::string& get_saved() const { return saved_; }
+  const std::vector<toml_files::KindHelp>& get_kinds() const { return kinds_; }
+  bool is_body_file() const { return is_body_file_; }
+  bool is_changed() const { return text_ != saved_; }
+  void set_saved() { saved_ = text_; }
+
+  /// Takes the new text unless it has toml.* errors that the old one has not; these are thrown. `allows_missing`: keys
+  /// that are missing are no errors yet.
+  void change(const std::string& text, bool allows_missing = false);
+  /// Throws InputError "cli.edit-command" when there is nothing to take back, or to do again.
+  void undo();
+  void redo();
+
+  /// The table kind by its name; throws "cli.edit-name" with the nearest.
+  const toml_files::KindHelp& find_kind(const std::string& name) const;
+  /// "boom", "hinge.root", "hinge.2", "simulation", with a key behind it when `wants_key`; throws "cli.edit-name" where
+  /// there is none or more than one.
+  EditTarget find_target(const std::string& words, bool wants_key) const;
+  /// The text of a value as TOML takes it: quoted where the schema wants a string.
+  std::string make_value(const toml_files::KindHelp* kind, const std::string& key, const std::string& text) const;
+
+ private:
+  const toml_files::KindHelp* find_kind_or_null(const std::string& name) const;
+
+  std::string file_, text_, saved_;
+  bool is_body_file_;
+  std::vector<toml_files::KindHelp> kinds_;
+  std::vector<std::string> before_, after_;
+};
+
+}  // namespace bough::cli

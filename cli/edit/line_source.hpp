@@ -1,0 +1,19 @@
+#pragma once
+/// \file Lines of standard input: at a terminal with history and completion where Bough was built with libedit.
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace bough::cli {
+
+/// Whether both standard input and output are terminals.
+bool is_at_terminal();
+
+/// The words that may stand in place of the last one of a line.
+using Complete = std::function<std::vector<std::string>(const std::string& line)>;
+
+/// The next line without its end; nothing at the end of the input. The prompt is printed at a terminal only.
+std::optional<std::string> read_line(const std::string& prompt, const Complete& complete = {});
+
+}  // namespace bough::cli

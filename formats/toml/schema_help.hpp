@@ -1,0 +1,38 @@
+#pragma once
+/// \file What the schemas of data/schema say about tables and keys, for people who edit.
+#include <string>
+#include <vector>
+
+namespace bough::toml_files {
+
+struct KeyHelp {
+  std::string name;
+  std::string type;                  ///< "number or array"
+  std::vector<std::string> choices;  ///< of an enum
+  std::string range;                 ///< "more than 0"; may be empty
+  std::string default_value;         ///< JSON; may be empty
+  std::string description;
+  bool is_required = false;
+  bool takes_text = false, takes_other = false;  ///< whether a string may stand there, and something else
+};
+
+struct KindHelp {
+  std::string kind;  ///< "hinge", "simulation", "body.modes"
+  std::string description;
+  bool is_list = false;  ///< [[kind]]
+  bool is_open = false;  ///< takes keys of any name (parameters)
+  std::vector<KeyHelp> keys;
+  /// "one of file, mass": what the schema wants besides the required keys.
+  std::vector<std::string> wanted;
+
+  const KeyHelp* find(const std::string& key) const;
+};
+
+/// The tables of a body or system file, in alphabetical order.
+std::vector<KindHelp> describe_kinds(bool is_body_file);
+
+/// All of it as text, with a line for each key.
+std::string format_help(const KindHelp& kind);
+std::string format_help(const KeyHelp& key);
+
+}  // namespace bough::toml_files
