@@ -13,9 +13,6 @@ namespace bough::modal {
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
-namespace {
-
-/// What is below zero first (fe.preload-tips), then as found.
 EigenPairs sort_negative(EigenPairs pairs) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(pairs.lambda.size()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
@@ -25,8 +22,6 @@ EigenPairs sort_negative(EigenPairs pairs) {
   pairs.Phi = pairs.Phi(Eigen::all, order).eval();
   return pairs;
 }
-
-}  // namespace
 
 records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs& found, bool buckling,
                                        const ModesExtras& extras) {

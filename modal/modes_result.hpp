@@ -12,6 +12,9 @@ struct ModesExtras {
   int about_grid = 0;  ///< effective masses about this grid; InputError modal.unknown-grid where the model has it not
 };
 
+/// What is below zero first (fe.preload-tips), then as found: the order of the record.
+EigenPairs sort_negative(EigenPairs pairs);
+
 /// Mass properties about the origin, shapes at the grids, residuals; of normal modes (not of buckling) frequencies,
 /// modal and effective masses too, with the shapes' own lengths.
 records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs& pairs, bool buckling,

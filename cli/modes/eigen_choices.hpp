@@ -5,6 +5,7 @@
 
 #include "cli/common/model_options.hpp"
 #include "cli/common/options.hpp"
+#include "cli/listing/listing.hpp"
 #include "modal/eigen.hpp"
 #include "modal/normalize.hpp"
 
@@ -20,6 +21,7 @@ struct ModesOptions : CommonOptions {
   std::string vtu, compare;
   bool energies = false;
   int about_grid = 0;
+  ListingOptions listing;
 };
 
 /// The deck's EIGRL/EIGR of the subcase, overruled by the command line; 10 modes when neither says.

@@ -78,7 +78,8 @@ struct Solved {
 };
 
 Solved solve_task(const ModesOptions& options, const records::Deck& deck, const Task& task,
-                  fe::ModelOptions model_options, Console& console, Diagnostics& diagnostics) {
+                  fe::ModelOptions model_options, ListingMaker* listing, Console& console,
+                  Diagnostics& diagnostics) {
   model_options.prestress =
       task.buckling
           ? fe::calc_subcase_prestress(deck, model_options, modal::get_preloaded(deck, *task.buckling), diagnostics)
@@ -99,6 +100,11 @@ Solved solve_task(const ModesOptions& options, const records::Deck& deck, const 
   if (!options.buckling)
     fe::report_mass(model, deck, fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero()), diagnostics);
   modal::normalize(model, norm, pairs.Phi, diagnostics);
+  if (!task.buckling) pairs = modal::sort_negative(std::move(pairs));
+  if (listing) {
+    listing->add_weight(model);
+    listing->add_modes(model, pairs, diagnostics);
+  }
   const modal::ModesExtras extras{options.energies ? &deck : nullptr, options.about_grid};
   return {modal::make_modes_result(model, pairs, options.buckling, extras), norm.kind};
 }
@@ -108,7 +114,8 @@ int run_modes(const ModesOptions& options) {
   console.set_subject(options.deck);
   do_once([&] {
     demand_deck(options.deck);
-    check_outputs(options, {options.output, options.vtu}, {options.deck, options.compare});
+    check_outputs(options, {options.output, options.vtu, options.listing.f06, options.listing.op2},
+                  {options.deck, options.compare});
     if (!options.compare.empty()) demand_file(options.compare);
   });
   console.set_rank(fe::initialize_petsc().rank);
@@ -129,12 +136,15 @@ int run_modes(const ModesOptions& options) {
   std::vector<std::pair<std::string, std::string>> pictures;
   SubcaseFailures failures(tasks.size(), deck.subcases.size());
   bool is_first = true;
+  std::optional<ListingMaker> listing;
+  if (!options.listing.empty()) listing.emplace(deck, diagnostics);
+  diagnostics.throw_if_errors();
   for (const auto& task : tasks) {
     Diagnostics own;
     Solved solved;
     try {
       model_options.subcase = task.subcase;
-      solved = solve_task(options, deck, task, model_options, console, own);
+      solved = solve_task(options, deck, task, model_options, listing ? &*listing : nullptr, console, own);
     } catch (const Failure& failure) {
       console.end_progress();
       failures.add(task.buckling ? task.buckling->buckling.id : task.subcase, failure);
@@ -183,7 +193,10 @@ int run_modes(const ModesOptions& options) {
     console.print(text);
   do_once([&] {
     for (const auto& [path, picture] : pictures) write_text_file(path, picture);
+    if (listing) write_listings(options.listing, listing->get());
   });
+  for (const auto& path : {options.listing.f06, options.listing.op2})
+    if (!path.empty()) written += "written: " + path + "\n";
   for (const auto& [path, picture] : pictures) written += "written: " + path + "\n";
   if (!options.json) console.print(written);
   // A rank that ends with an error ends the others: the first one must be through.
@@ -212,6 +225,9 @@ void add_modes(CLI::App& app, Action& action) {
       ->check(make_positive());
   verb->add_option("--compare", o->compare, "Modes file or flexible body: the modes side by side with it, with MAC");
   verb->add_option("--vtu", o->vtu, "Write the mode shapes to this file for ParaView");
+  add_listing_options(*verb, o->listing);
+  verb->get_option("--f06")->excludes(buckling);
+  verb->get_option("--op2")->excludes(buckling);
   add_model_options(*verb, o->model);
   add_common_options(*verb, *o, kOutput | kJson, "Write the modes to this HDF5 file");
   verb->footer(

@@ -13,6 +13,7 @@
 #include "cli/common/subcase_failures.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/vtu_file.hpp"
+#include "cli/listing/listing.hpp"
 #include "cli/static/static_tables.hpp"
 #include "fe/statics/case_solver.hpp"
 #include "formats/hdf5/files.hpp"
@@ -28,6 +29,7 @@ struct StaticOptions : CommonOptions {
   DeckModelOptions model;
   std::vector<std::string> grid_forces;
   bool full = false, in_cd = false, is_linear = false;
+  ListingOptions listing;
 };
 
 /// Vectors in the displacement axes of their grids, as other programs print them.
@@ -60,7 +62,7 @@ int run_static(const StaticOptions& options) {
   console.set_subject(options.deck);
   do_once([&] {
     demand_deck(options.deck);
-    check_outputs(options, {options.output, options.vtu}, {options.deck});
+    check_outputs(options, {options.output, options.vtu, options.listing.f06, options.listing.op2}, {options.deck});
   });
   console.set_rank(fe::initialize_petsc().rank);
 
@@ -79,10 +81,17 @@ int run_static(const StaticOptions& options) {
   fe::CaseSolver solver(deck, make_model_options(options.model));
   if (!options.grid_forces.empty()) solver.ask_grid_forces(read_grids(options.grid_forces));
   SubcaseFailures failures(subcases.size(), deck.subcases.size());
+  std::optional<ListingMaker> listing;
+  if (!options.listing.empty()) listing.emplace(deck, diagnostics);
+  diagnostics.throw_if_errors();
   for (const auto& subcase : subcases) {
     Diagnostics own;
     try {
       result.subcases.push_back(solver.solve(subcase, own));
+      if (listing) {
+        listing->add_weight(solver.model());
+        listing->add_static(solver.model(), result.subcases.back(), own);
+      }
     } catch (const Failure& failure) {
       failures.add(subcase.id, failure);
     }
@@ -109,7 +118,8 @@ int run_static(const StaticOptions& options) {
     for (const auto& subcase : result.subcases) console.print(format_static(result, subcase, options.full));
   }
   if (!picture.empty()) write_text_file(options.vtu, picture);
-  for (const auto& path : {options.output, options.vtu})
+  if (listing) do_once([&] { write_listings(options.listing, listing->get()); });
+  for (const auto& path : {options.output, options.vtu, options.listing.f06, options.listing.op2})
     if (!path.empty() && !options.json) console.print("written: " + path + "\n");
   // A rank that ends with an error ends the others: the first one must be through.
   do_once([] { flush_data(); });
@@ -128,6 +138,7 @@ void add_static(CLI::App& app, Action& action) {
   verb->add_option("--vtu", o->vtu, "Write the displacements of every subcase to this file for ParaView");
   verb->add_option("--grid-forces", o->grid_forces, "List every force on these grids, or on all: elements, loads, SPC")
       ->delimiter(',');
+  add_listing_options(*verb, o->listing);
   add_model_options(*verb, o->model);
   add_common_options(*verb, *o, kOutput | kJson, "Write displacements, reactions and forces to this HDF5 file");
   verb->footer("Example:\n  bough static frame.bdf -o frame-static.h5\n  bough static frame.bdf --subcase 2 --full");

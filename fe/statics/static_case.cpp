@@ -33,7 +33,33 @@ void add_oblique_reactions(const Model& model, const VectorXd& residual, VectorX
   }
 }
 
+/// Reactions in CD axes.
+VectorXd calc_cd_reactions(const Model& model, const VectorXd& residual) {
+  const VectorXd held = model.T_fixed().transpose() * residual;
+  VectorXd reaction = VectorXd::Zero(model.num_gdofs());
+  for (std::size_t i = 0; i < model.fixed_dofs().size(); ++i)
+    reaction[model.fixed_dofs()[i]] = held[static_cast<Eigen::Index>(i)];
+  add_oblique_reactions(model, residual, reaction);
+  return reaction;
+}
+
+void turn_to_basic(const Model& model, VectorXd& values) {
+  for (const Node& node : model.nodes()) {
+    if (node.num_dofs != 6) continue;
+    for (const int part : {0, 3}) {
+      auto f = values.segment<3>(node.first_gdof + part);
+      f = (node.R_basic_cd * f).eval();
+    }
+  }
+}
+
 }  // namespace
+
+VectorXd calc_reactions(const Model& model, const VectorXd& residual) {
+  VectorXd reaction = calc_cd_reactions(model, residual);
+  turn_to_basic(model, reaction);
+  return reaction;
+}
 
 std::vector<std::string> list_lost_loads(const Model& model, const VectorXd& F) {
   std::vector<std::pair<double, const AutospcEntry*>> found;
@@ -130,11 +156,7 @@ records::StaticSubcase solve_static_case(const Model& model, const StaticSolver&
       if (const auto* part = load.initial.find(*element)) result.strain_energy += part->energy;
   }
 
-  const VectorXd held = model.T_fixed().transpose() * residual;
-  result.reaction = VectorXd::Zero(model.num_gdofs());
-  for (std::size_t i = 0; i < model.fixed_dofs().size(); ++i)
-    result.reaction[model.fixed_dofs()[i]] = held[static_cast<Eigen::Index>(i)];
-  add_oblique_reactions(model, residual, result.reaction);
+  result.reaction = calc_cd_reactions(model, residual);
   if (!suport.fdofs.empty()) {
     const VectorXd at_f = model.T().transpose() * residual;
     for (const int fdof : suport.fdofs) {
@@ -142,13 +164,7 @@ records::StaticSubcase solve_static_case(const Model& model, const StaticSolver&
       result.reaction[model.node(model.find_node(node)).first_gdof + std::max(component - 1, 0)] = at_f[fdof];
     }
   }
-  for (const Node& node : model.nodes()) {
-    if (node.num_dofs != 6) continue;
-    for (const int part : {0, 3}) {
-      auto f = result.reaction.segment<3>(node.first_gdof + part);
-      f = (node.R_basic_cd * f).eval();
-    }
-  }
+  turn_to_basic(model, result.reaction);
   result.mpc_force = residual - result.reaction;
   result.load_resultant = calc_resultant(model, result.load);
   result.reaction_resultant = calc_resultant(model, result.reaction);

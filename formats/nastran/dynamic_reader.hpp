@@ -14,4 +14,9 @@ records::DynamicDeck read_dynamic_deck_text(std::string_view text, const std::st
 /// Of what pack_deck() gave.
 records::DynamicDeck read_packed_dynamic_deck(std::string bytes, const ReadOptions& options, Diagnostics& diagnostics);
 
+/// What the subcases of a deck ask for, by their ids (0: without SUBCASE). No card is read, nothing is reported.
+std::map<int, records::DynamicSelection> read_requests(const std::string& path);
+/// Of what pack_deck() gave.
+std::map<int, records::DynamicSelection> read_packed_requests(std::string bytes);
+
 }  // namespace bough::nastran

@@ -32,6 +32,14 @@ records::DynamicDeck make_dynamic_deck(const detail::Source& source, const ReadO
   return deck;
 }
 
+std::map<int, records::DynamicSelection> make_requests(const detail::Source& source) {
+  records::DynamicDeck deck;
+  Diagnostics said;  // by whoever reads the deck
+  deck.files = source.files;
+  detail::read_control(source, deck, said, &deck);
+  return std::move(deck.selections);
+}
+
 }  // namespace
 
 records::Deck read_deck(const std::string& path, const ReadOptions& options, Diagnostics& diagnostics) {
@@ -62,6 +70,15 @@ records::DynamicDeck read_dynamic_deck_text(std::string_view text, const std::st
 }
 records::DynamicDeck read_packed_dynamic_deck(std::string bytes, const ReadOptions& options, Diagnostics& diagnostics) {
   return make_dynamic_deck(detail::unpack(std::move(bytes), diagnostics), options, diagnostics);
+}
+
+std::map<int, records::DynamicSelection> read_requests(const std::string& path) {
+  Diagnostics said;
+  return make_requests(detail::read_source(path, said));
+}
+std::map<int, records::DynamicSelection> read_packed_requests(std::string bytes) {
+  Diagnostics said;
+  return make_requests(detail::unpack(std::move(bytes), said));
 }
 
 }  // namespace bough::nastran

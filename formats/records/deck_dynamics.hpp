@@ -128,6 +128,7 @@ struct OutputRequest {
   int set = 0;
   bool is_phase = false;  ///< magnitude and phase, else real and imaginary parts
   bool is_punched = false;
+  bool is_printed = true;  ///< PRINT, or neither it nor PLOT and PUNCH
   CardLocation at;
 };
 
@@ -136,7 +137,10 @@ struct DynamicSelection {
   int dload = 0, loadset = 0, frequency = 0, tstep = 0, ic = 0, sdamping = 0;
   int ofreq = 0;               ///< a SET; 0: all
   std::optional<bool> resvec;  ///< RESVEC = YES, NO
-  /// By what is asked for: DISPLACEMENT, VELOCITY, ACCELERATION, SPCFORCES, FORCE.
+  /// MEFFMASS: the grid of its GRID option (0: the origin); none where it is not asked for.
+  std::optional<int> effective_mass_grid;
+  /// By what is asked for: DISPLACEMENT, VELOCITY, ACCELERATION, SPCFORCES, FORCE; for listings OLOAD, MPCFORCES,
+  /// STRESS, STRAIN too.
   std::map<std::string, OutputRequest> outputs;
   std::map<int, CaseSet> sets;
 };

@@ -73,7 +73,9 @@ std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::
     }
     if (!output.ids.empty()) outputs.push_back(std::move(output));
   }
-  if (!outputs.empty() || !selection.outputs.empty()) return outputs;
+  const bool is_said = std::any_of(kQuantities.begin(), kQuantities.end(),
+                                   [&](const auto& q) { return selection.outputs.count(q.first) > 0; });
+  if (!outputs.empty() || is_said) return outputs;
   outputs.push_back({"displacement", list_driven_grids(model, excitation), false, false});
   diagnostics.note("modal.default-output", deck.locate({}),
                    "the deck asks for no result: the displacements of the grids that are driven are given",

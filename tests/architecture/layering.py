@@ -16,6 +16,7 @@ MAY_INCLUDE = [
     ("formats/toml", RECORDS),
     ("formats/export", RECORDS),
     ("formats/report", RECORDS),
+    ("formats/listing", RECORDS),
     ("formats/matrices", RECORDS + ["formats/nastran/reader.hpp", "formats/hdf5/sparse_file.hpp"]),
     ("formats/flx", RECORDS),
     ("formats/sid", RECORDS),

@@ -81,7 +81,7 @@ class Many(ProgramTest):
 
 class Unused(ProgramTest):
     def test_params_and_case_control(self):
-        deck = BEAM.replace("SPC = 1\n", "SPC = 1\nRESVEC = YES\nMEFFMASS(ALL) = YES\nMPCC = 7\n").replace(
+        deck = BEAM.replace("SPC = 1\n", "SPC = 1\nAUTOSPC(NOPRINT) = YES\nMODTRAK = 4\nMPCC = 7\n").replace(
             "EIGRL", "PARAM,WTMAS,.00259\nPARAM,K6R0T,1.\nPARAM,RESVEC,NO\nPARAM,GRDPNT,0\nPARAM,OWNDMAPX,1\nPARAM,G,.01\nEIGRL")
         self.write("beam.bdf", deck)
         text = self.bough("modes", "beam.bdf").stderr
@@ -89,7 +89,7 @@ class Unused(ProgramTest):
         self.assertRegex(text, r"beam.bdf:10: warning: PARAM,K6R0T is no .*did you mean K6ROT \[deck.unknown-param\]")
         self.assertRegex(text, r"beam.bdf:13: warning: PARAM,OWNDMAPX is no .*\[deck.unknown-param\]")
         self.assertRegex(text, r"beam.bdf:11: note: PARAM not used: RESVEC \(line 11\), GRDPNT \(line 12, .*\[deck.unused-params\]")
-        self.assertRegex(text, r"beam.bdf:4: note: case control not used: RESVEC \(line 4\), MEFFMASS \(line 5\); .*ignored\]")
+        self.assertRegex(text, r"beam.bdf:4: note: case control not used: AUTOSPC \(line 4\), MODTRAK \(line 5\); .*ignored\]")
         self.assertRegex(text, r"beam.bdf:6: warning: MPCC is no command .*did you mean MPC \[deck.unknown-case-control\]")
 
     def test_clean_deck_says_nothing(self):

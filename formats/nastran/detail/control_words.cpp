@@ -8,7 +8,7 @@ namespace bough::nastran::detail {
 namespace {
 
 constexpr std::string_view plain_commands =
-    "ACCE BOUT DISP ECHO ELFO ELST FORC GROU HOUT LINE MAXL MPCF NOUT OLOA OUTP PAGE POST PRES SACC SDIS SET SETS "
+    "ACCE BOUT DISP ECHO ELFO ELST FORC GROU HOUT LINE MAXL MEFF MPCF NOUT OLOA OUTP PAGE POST PRES SACC SDIS SET SETS "
     "SKIP SORT SPCF STRA STRE SURF SVEC SVEL VECT VELO VOLU";
 
 /// The other commands of the quick reference guides.

@@ -28,7 +28,10 @@ struct Request {
 constexpr std::array requests{Request{"DISP", "DISPLACEMENT"}, Request{"VECT", "DISPLACEMENT"},
                               Request{"PRES", "DISPLACEMENT"}, Request{"VELO", "VELOCITY"},
                               Request{"ACCE", "ACCELERATION"}, Request{"SPCF", "SPCFORCES"},
-                              Request{"FORC", "FORCE"},        Request{"ELFO", "FORCE"}};
+                              Request{"FORC", "FORCE"},        Request{"ELFO", "FORCE"},
+                              Request{"OLOA", "OLOAD"},        Request{"MPCF", "MPCFORCES"},
+                              Request{"STRE", "STRESS"},       Request{"ELST", "STRESS"},
+                              Request{"STRA", "STRAIN"}};
 
 bool has_option(std::string_view options, std::string_view option) {
   while (!options.empty()) {
@@ -63,8 +66,28 @@ DynamicCommand read_request(const CommandText& c, const char* name, DynamicSelec
   }
   request.is_phase = has_option(c.options, "PHASE");
   request.is_punched = has_option(c.options, "PUNCH");
+  request.is_printed =
+      has_option(c.options, "PRINT") || (!request.is_punched && !has_option(c.options, "PLOT"));
   request.at = c.at;
   selected.outputs[name] = request;
+  return DynamicCommand::Read;
+}
+
+/// MEFFMASS(GRID = 12, SUMMARY, ...) = YES, NO or a set.
+DynamicCommand read_effective_mass(const CommandText& c, DynamicSelection& selected) {
+  selected.effective_mass_grid.reset();
+  if (make_upper(c.value) == "NO" || make_upper(c.value) == "NONE") return DynamicCommand::Read;
+  int grid = 0;
+  if (const auto at = c.options.find("GRID"); at != std::string::npos) {
+    const auto rest = std::string_view(c.options).substr(at + 4);
+    const auto equals = rest.find('=');
+    const auto id = equals == std::string_view::npos
+                        ? std::nullopt
+                        : parse_int(trim(rest.substr(equals + 1, rest.find(',') - equals - 1)));
+    if (!id || *id < 0) return DynamicCommand::BadValue;
+    grid = *id;
+  }
+  selected.effective_mass_grid = grid;
   return DynamicCommand::Read;
 }
 
@@ -83,6 +106,7 @@ DynamicCommand read_dynamic_command(const CommandText& c, records::Subcase& subc
     selected.resvec = value != "NO" && value != "COMPONENT";
     return DynamicCommand::Read;
   }
+  if (letters == "MEFF") return read_effective_mass(c, selected);
   for (const auto& r : requests)
     if (letters == r.letters) return read_request(c, r.name, selected);
   return DynamicCommand::Other;

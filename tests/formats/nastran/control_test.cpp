@@ -83,11 +83,11 @@ TEST(Control, WhatIsNotRecognizedIsOneNote) {
 }
 
 TEST(Control, MisspelledAndUnusedCommands) {
-  const auto r = read("SOL 103\nCEND\nRESVEC = YES\nMETOD = 3\nMEFFMASS(ALL) = YES\nMPCC = 2\nBEGIN BULK\n");
+  const auto r = read("SOL 103\nCEND\nRESVEC = YES\nMETOD = 3\nMODTRAK = 4\nMPCC = 2\nBEGIN BULK\n");
   ASSERT_EQ(r.count("deck.unknown-case-control"), 2) << r.get_messages();
   EXPECT_EQ(r.find("deck.unknown-case-control")->where.line, 4);
   EXPECT_EQ(r.find("deck.unknown-case-control")->advice, "did you mean METHOD");
-  EXPECT_EQ(r.find("deck.case-control-ignored")->what, "case control not used: RESVEC (line 3), MEFFMASS (line 5)");
+  EXPECT_EQ(r.find("deck.case-control-ignored")->what, "case control not used: RESVEC (line 3), MODTRAK (line 5)");
 }
 
 TEST(Control, PreloadAndScaledLoad) {

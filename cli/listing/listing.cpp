@@ -1,0 +1,216 @@
+#include "cli/listing/listing.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "cli/common/ranks.hpp"
+#include "cli/common/text_file.hpp"
+#include "cli/listing/element_columns.hpp"
+#include "fe/matrices/assembly.hpp"
+#include "fe/matrices/grid_point_weight.hpp"
+#include "fe/statics/reactions.hpp"
+#include "fe/statics/static_case.hpp"
+#include "formats/listing/f06.hpp"
+#include "formats/listing/op2.hpp"
+#include "formats/nastran/dynamic_reader.hpp"
+#include "formats/records/params.hpp"
+
+namespace bough::cli {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using records::ListedKind;
+using records::ListedStep;
+
+void add_listing_options(CLI::App& verb, ListingOptions& options) {
+  verb.add_option("--f06", options.f06, "Write a listing in Nastran's order, as the output requests of the deck say");
+  verb.add_option("--op2", options.op2, "Write the same as a Nastran OUTPUT2 file");
+}
+
+std::map<int, records::DynamicSelection> read_requests_once(const std::string& path) {
+  return is_one_of_many() ? nastran::read_packed_requests(share([&] { return nastran::pack_deck(path); }))
+                          : nastran::read_requests(path);
+}
+
+ListingMaker::ListingMaker(const records::Deck& deck, Diagnostics& diagnostics)
+    : deck_(deck), requests_(read_requests_once(deck.files.front())) {
+  for (const auto& [id, selection] : requests_) lists_all_ = lists_all_ && selection.outputs.empty();
+  if (lists_all_)
+    diagnostics.note("cli.listing-default", deck.locate({}), "the deck asks for no result: the listing has all of them",
+                     "write DISPLACEMENT = ALL, SPCFORCES = ALL, FORCE = ALL in the case control");
+  report_sets(diagnostics);
+}
+
+void ListingMaker::report_sets(Diagnostics& diagnostics) const {
+  std::set<std::string> said;
+  for (const auto& [id, selection] : requests_)
+    for (const auto& [command, request] : selection.outputs) {
+      if (request.is_all || request.is_none || selection.sets.count(request.set) > 0) continue;
+      const auto text = fmt::format("{} = {} names a SET that the case control does not define", command, request.set);
+      if (said.insert(text).second)
+        diagnostics.error("cli.missing-set", deck_.locate(request.at), text,
+                          fmt::format("write SET {} = ids, or {} = ALL", request.set, command));
+    }
+}
+
+std::optional<int> ListingMaker::find_effective_mass_grid(int subcase) const {
+  const auto found = requests_.find(requests_.count(0) > 0 ? 0 : subcase);
+  return found == requests_.end() ? std::nullopt : found->second.effective_mass_grid;
+}
+
+std::optional<ListingMaker::Choice> ListingMaker::choose(int subcase, const std::string& command) const {
+  if (lists_all_) return Choice{};
+  const auto selection = requests_.find(requests_.count(0) > 0 ? 0 : subcase);  // 0: a deck without SUBCASE
+  if (selection == requests_.end()) return std::nullopt;
+  const auto request = selection->second.outputs.find(command);
+  if (request == selection->second.outputs.end() || request->second.is_none) return std::nullopt;
+  if (request->second.is_all) return Choice{nullptr, request->second.is_printed};
+  const auto set = selection->second.sets.find(request->second.set);
+  if (set == selection->second.sets.end()) return std::nullopt;
+  return Choice{&set->second, request->second.is_printed};
+}
+
+ListedStep ListingMaker::make_step(int subcase) const {
+  ListedStep step;
+  step.subcase = subcase;
+  for (const auto& s : deck_.subcases)
+    if (s.id == subcase) {
+      step.title = s.title;
+      step.subtitle = s.subtitle;
+      step.label = s.label;
+    }
+  // Without SUBCASE there is one, of number 1 in what Nastran writes.
+  step.subcase = std::max(subcase, 1);
+  return step;
+}
+
+void ListingMaker::add_weight(const fe::Model& model) {
+  if (listing_.weight) return;
+  int grid = 0;
+  if (deck_.find_param("GRDPNT")) {
+    Diagnostics said;  // of PARAM, by whoever read the deck
+    grid = static_cast<int>(std::min(records::get_real_param(deck_, "GRDPNT", 0, said), 1e9));
+  }
+  if (grid < 0) return;
+  if (grid > 0 && model.find_node(grid) < 0) grid = 0;
+  const auto w = fe::calc_grid_point_weight(model, grid);
+  listing_.weight = records::ListedWeight{w.grid, w.MO, w.S, w.cg, w.I_S, w.Q, w.mass, w.I_Q};
+}
+
+void ListingMaker::add_vector(const fe::Model& model, const std::string& command, ListedKind kind,
+                              const Eigen::Ref<const VectorXd>& u_g, ListedStep& step) const {
+  const auto choice = choose(step.subcase, command);
+  if (!choice || u_g.size() == 0) return;
+  std::vector<const fe::Node*> nodes;
+  for (const auto& node : model.nodes())
+    if (choice->contains(node.id)) nodes.push_back(&node);
+  std::sort(nodes.begin(), nodes.end(), [](const auto* a, const auto* b) { return a->id < b->id; });
+  records::ListedVector vector;
+  vector.kind = kind;
+  vector.is_printed = choice->is_printed;
+  vector.real = Eigen::MatrixXd::Zero(static_cast<Index>(nodes.size()), 6);
+  for (const auto* node : nodes) {
+    const auto row = static_cast<Index>(vector.id.size());
+    vector.id.push_back(node->id);
+    vector.is_scalar.push_back(node->num_dofs == 1);
+    if (node->num_dofs == 1) {
+      vector.real(row, 0) = u_g[node->first_gdof];
+      continue;
+    }
+    for (const int part : {0, 3})
+      vector.real.row(row).segment<3>(part) =
+          (node->R_basic_cd.transpose() * u_g.segment<3>(node->first_gdof + part)).transpose();
+  }
+  if (!vector.id.empty()) step.vectors.push_back(std::move(vector));
+}
+
+void ListingMaker::add_elements(const fe::Model& model, const std::vector<records::ElementForces>& forces,
+                                ListedStep& step, Diagnostics& diagnostics) {
+  const auto choice = choose(step.subcase, "FORCE");
+  if (!choice) return;
+  for (const auto& of_card : forces) {
+    auto block = make_listed_forces(model, of_card, [&](int id) { return choice->contains(id); });
+    if (!block) {
+      if (left_out_.insert(of_card.card).second)
+        diagnostics.note("cli.unlisted-elements", deck_.locate({}),
+                         fmt::format("the listing has no forces of {}", of_card.card),
+                         "bough static --full and its HDF5 file have them");
+      continue;
+    }
+    block->is_printed = choice->is_printed;
+    if (!block->id.empty()) step.forces.push_back(std::move(*block));
+  }
+}
+
+void ListingMaker::add_static(const fe::Model& model, const records::StaticSubcase& solved, Diagnostics& diagnostics) {
+  auto step = make_step(solved.id);
+  step.load_set = solved.load_set;
+  add_vector(model, "DISPLACEMENT", ListedKind::Displacement, solved.displacement, step);
+  add_vector(model, "OLOAD", ListedKind::Load, solved.load, step);
+  add_vector(model, "SPCFORCES", ListedKind::SpcForce, solved.reaction, step);
+  add_vector(model, "MPCFORCES", ListedKind::MpcForce, solved.mpc_force, step);
+  add_elements(model, solved.elements, step, diagnostics);
+  listing_.steps.push_back(std::move(step));
+}
+
+void ListingMaker::add_modes(const fe::Model& model, const modal::EigenPairs& pairs, Diagnostics& diagnostics) {
+  const int subcase = model.subcase().id;
+  const Eigen::MatrixXd M_Phi = fe::calc_mass_times(model, model.mass_kind(), pairs.Phi);
+  const auto step = make_step(subcase);
+  records::ListedRoots roots;
+  roots.subcase = step.subcase;
+  roots.title = step.title;
+  roots.subtitle = step.subtitle;
+  roots.label = step.label;
+  roots.eigenvalue = pairs.lambda;
+  roots.mass = pairs.Phi.cwiseProduct(M_Phi).colwise().sum();
+  roots.stiffness = roots.mass.cwiseProduct(pairs.lambda);
+  const auto grid = lists_all_ ? std::optional<int>(0) : find_effective_mass_grid(subcase);
+  if (grid) {
+    records::ListedEffectiveMass mass;
+    mass.subcase = step.subcase;
+    mass.grid = *grid;
+    const int node = *grid > 0 ? model.find_node(*grid) : -1;
+    if (*grid > 0 && (node < 0 || model.node(node).num_dofs != 6))
+      throw InputError("modal.unknown-grid", deck_.locate({}),
+                       fmt::format("MEFFMASS(GRID={}) names a grid that the deck does not have", *grid),
+                       "name a GRID of the deck");
+    const fe::Vector3d point = node < 0 ? fe::Vector3d::Zero() : model.node(node).x;
+    mass.participation = M_Phi.transpose() * model.calc_rigid_modes(point);
+    mass.mass = roots.mass.cwiseInverse().asDiagonal() * mass.participation.cwiseAbs2();
+    mass.participation = (roots.mass.cwiseInverse().asDiagonal() * mass.participation).eval();
+    mass.whole = fe::calc_mass_properties(model, model.mass_kind(), point).rigid_mass.diagonal();
+    mass.cycles = pairs.lambda.cwiseAbs().cwiseSqrt() / (2 * M_PI);
+    listing_.effective_mass.push_back(std::move(mass));
+  }
+  const bool has_reactions = choose(subcase, "SPCFORCES").has_value();
+  const bool has_forces = choose(subcase, "FORCE").has_value();
+  for (Index j = 0; j < pairs.lambda.size(); ++j) {
+    ListedStep mode = step;
+    mode.kind = ListedStep::Kind::Mode;
+    mode.mode = static_cast<int>(j) + 1;
+    mode.eigenvalue = pairs.lambda(j);
+    mode.cycles = std::sqrt(std::abs(pairs.lambda(j))) / (2 * M_PI);
+    add_vector(model, "DISPLACEMENT", ListedKind::Eigenvector, pairs.Phi.col(j), mode);
+    if (has_reactions) {
+      const VectorXd residual = fe::calc_stiffness_times(model, pairs.Phi.col(j)) - pairs.lambda(j) * M_Phi.col(j);
+      VectorXd reaction = fe::calc_reactions(model, residual);
+      add_vector(model, "SPCFORCES", ListedKind::SpcForce, reaction, mode);
+    }
+    if (has_forces)
+      add_elements(model, fe::calc_element_forces(model, pairs.Phi.col(j), deck_, 0, diagnostics), mode, diagnostics);
+    listing_.steps.push_back(std::move(mode));
+  }
+  listing_.roots.push_back(std::move(roots));
+}
+
+void write_listings(const ListingOptions& options, const records::Listing& listing) {
+  if (!options.f06.empty()) write_text_file(options.f06, listing::make_f06(listing));
+  if (!options.op2.empty()) write_text_file(options.op2, listing::make_op2(listing));
+}
+
+}  // namespace bough::cli

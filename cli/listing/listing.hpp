@@ -1,0 +1,71 @@
+#pragma once
+/// \file --f06 and --op2: results in Nastran's order and axes, as the output requests of the case control say.
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "fe/model/model.hpp"
+#include "formats/records/deck_dynamics.hpp"
+#include "formats/records/listing.hpp"
+#include "formats/records/static_result.hpp"
+#include "modal/eigen.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace bough::cli {
+
+struct ListingOptions {
+  std::string f06, op2;
+  bool empty() const { return f06.empty() && op2.empty(); }
+};
+
+void add_listing_options(CLI::App& verb, ListingOptions& options);
+
+/// What the case control of a deck asks for, read on the first rank. Collective.
+std::map<int, records::DynamicSelection> read_requests_once(const std::string& path);
+
+/// Collects what is listed, subcase after subcase. A deck without any output request is listed as a whole.
+class ListingMaker {
+ public:
+  /// Reads the requests. Reports cli.listing-default, cli.missing-set. Collective.
+  ListingMaker(const records::Deck& deck, Diagnostics& diagnostics);
+
+  /// About the grid of PARAM,GRDPNT, else about the origin; not with a negative one. Once.
+  void add_weight(const fe::Model& model);
+  /// `pairs` in their order of the record; masses of modes: φᵀMφ. Collective.
+  void add_modes(const fe::Model& model, const modal::EigenPairs& pairs, Diagnostics& diagnostics);
+  void add_static(const fe::Model& model, const records::StaticSubcase& solved, Diagnostics& diagnostics);
+
+  const records::Listing& get() const { return listing_; }
+  /// Grid of MEFFMASS(GRID = ...) of a subcase; 0: the origin; none where it is not asked for.
+  std::optional<int> find_effective_mass_grid(int subcase) const;
+
+ private:
+  /// Which ids a command of the case control wants.
+  struct Choice {
+    const records::CaseSet* set = nullptr;  ///< nullptr: all
+    bool is_printed = true;
+    bool contains(int id) const { return set == nullptr || set->contains(id); }
+  };
+  std::optional<Choice> choose(int subcase, const std::string& command) const;
+  records::ListedStep make_step(int subcase) const;
+  void add_vector(const fe::Model& model, const std::string& command, records::ListedKind kind,
+                  const Eigen::Ref<const Eigen::VectorXd>& u_g, records::ListedStep& step) const;
+  void add_elements(const fe::Model& model, const std::vector<records::ElementForces>& forces,
+                    records::ListedStep& step, Diagnostics& diagnostics);
+  void report_sets(Diagnostics& diagnostics) const;
+
+  const records::Deck& deck_;
+  std::map<int, records::DynamicSelection> requests_;
+  bool lists_all_ = true;
+  std::set<std::string> left_out_;  ///< cards of cli.unlisted-elements
+  records::Listing listing_;
+};
+
+/// On the first rank.
+void write_listings(const ListingOptions& options, const records::Listing& listing);
+
+}  // namespace bough::cli

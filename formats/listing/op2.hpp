@@ -1,0 +1,12 @@
+#pragma once
+/// \file OUTPUT2 files as PARAM,POST,-1 writes them (docs/formats/op2.md).
+#include <string>
+
+#include "formats/records/listing.hpp"
+
+namespace bough::listing {
+
+/// OGPWG, LAMA, OUGV1, OPG1, OQG1, OQMG1, OEF1, OES1: little endian, words of 4 bytes, reals of single precision.
+std::string make_op2(const records::Listing& listing);
+
+}  // namespace bough::listing

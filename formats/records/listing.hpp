@@ -1,0 +1,87 @@
+#pragma once
+/// \file What listings (f06) and OUTPUT2 files say, in the order, the axes and the signs of Nastran.
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+namespace bough::records {
+
+/// The numbers are Nastran's table codes.
+enum class ListedKind {
+  Displacement = 1,
+  Load = 2,
+  SpcForce = 3,
+  Eigenvector = 7,
+  Velocity = 10,
+  Acceleration = 11,
+  MpcForce = 39
+};
+
+/// Vectors at points in ascending order of their ids, in displacement (CD) axes.
+struct ListedVector {
+  ListedKind kind = ListedKind::Displacement;
+  std::vector<int> id;
+  std::vector<bool> is_scalar;
+  Eigen::MatrixXd real, imag;  ///< points x 6, of a scalar point the first column; without imag: real
+  bool is_phase = false;       ///< imag not empty: they are magnitude and phase in degrees
+  bool is_printed = true;      ///< in the f06 too
+};
+
+/// Forces or stresses of the elements of one card, in ascending order, in Nastran's columns (docs/formats/op2.md).
+struct ListedElements {
+  std::string card;
+  int type = 0;  ///< Nastran's element type
+  std::vector<int> id;
+  std::vector<std::array<int, 2>> ends;  ///< CBEAM: grids of the ends
+  Eigen::MatrixXd real;                  ///< elements x columns
+  bool is_printed = true;
+};
+
+/// Everything of one subcase, mode, frequency or time.
+struct ListedStep {
+  enum class Kind { Static, Mode, Frequency, Time };
+  Kind kind = Kind::Static;
+  int subcase = 0;  ///< 1 for a deck without SUBCASE
+  std::string title, subtitle, label;
+  int load_set = 0;
+  int mode = 0;
+  double eigenvalue = 0, cycles = 0;
+  double at = 0;  ///< Hz or time
+  std::vector<ListedVector> vectors;
+  std::vector<ListedElements> forces, stresses;
+};
+
+struct ListedRoots {
+  int subcase = 0;
+  std::string title, subtitle, label;
+  Eigen::VectorXd eigenvalue, mass, stiffness;
+};
+
+/// Modal effective masses: fractions of the whole, or masses about a grid.
+struct ListedEffectiveMass {
+  int subcase = 0, grid = 0;
+  Eigen::VectorXd cycles;
+  Eigen::MatrixXd mass;               ///< n x 6
+  Eigen::Matrix<double, 6, 1> whole;  ///< of the rigid body about the grid
+  Eigen::MatrixXd participation;      ///< n x 6: φᵀ M Φ_R
+};
+
+/// Grid point weight generator.
+struct ListedWeight {
+  int grid = 0;
+  Eigen::Matrix<double, 6, 6> MO;
+  Eigen::Matrix3d S, cg, I_S, Q;
+  Eigen::Vector3d mass, I_Q;
+};
+
+struct Listing {
+  std::optional<ListedWeight> weight;
+  std::vector<ListedRoots> roots;
+  std::vector<ListedEffectiveMass> effective_mass;
+  std::vector<ListedStep> steps;
+};
+
+}  // namespace bough::records
