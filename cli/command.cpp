@@ -80,10 +80,20 @@ int run(int argc, const char* const* argv) {
       "bough VERB --help explains a verb. Exit codes: 0 success, 1 the input is wrong, 2 usage, 3 the computation "
       "failed.\n"
       "Example:\n  bough init spinup && cd spinup && bough reduce boom.toml && bough run spinup.toml -o spinup.h5");
-  bool show_version = false, show_man_page = false, show_completion = false;
+  bool show_version = false;
+  std::string man_page, shell;
   app.add_flag("--version", show_version, "Print the versions of Bough and of its libraries");
-  app.add_flag("--man-page", show_man_page, "Print the manual page, as installed: bough --man-page | man -l -");
-  app.add_flag("--bash-completion", show_completion, "Print the completion for bash: . <(bough --bash-completion)");
+  auto* const show_man_page = app.add_option("--man-page", man_page,
+                                             "Print the manual page, as installed: bough --man-page | man -l -; "
+                                             "--man-page=VERB: that of a verb")
+                                  ->expected(0, 1)
+                                  ->type_name("[=VERB]");
+  app.add_flag_callback(
+      "--bash-completion", [&] { shell = "bash"; }, "Print the completion for bash: . <(bough --bash-completion)");
+  app.add_flag_callback(
+      "--zsh-completion", [&] { shell = "zsh"; }, "Print the completion for zsh, a file _bough on its fpath");
+  app.add_flag_callback(
+      "--fish-completion", [&] { shell = "fish"; }, "Print the completion for fish: bough --fish-completion | source");
   app.require_subcommand(0, 1);
 
   cli::Action action;
@@ -101,11 +111,18 @@ int run(int argc, const char* const* argv) {
     console.print_error("cli.usage", what, advice);
     return cli::kUsageError;
   }
-  if (show_version || show_man_page || show_completion) {
+  if (!man_page.empty() && cli::make_verb_man_page(app, man_page).empty()) {
+    console.print_error("cli.usage", "no verb '" + man_page + "' has a manual page", "see bough --help for the verbs");
+    return cli::kUsageError;
+  }
+  if (show_version || show_man_page->count() > 0 || !shell.empty()) {
     return print_checked(console, [&] {
-      console.print_data(show_version    ? cli::describe_versions()
-                         : show_man_page ? cli::make_man_page(app)
-                                         : cli::make_bash_completion(app));
+      console.print_data(show_version                 ? cli::describe_versions()
+                         : !man_page.empty()          ? cli::make_verb_man_page(app, man_page)
+                         : show_man_page->count() > 0 ? cli::make_man_page(app)
+                         : shell == "bash"            ? cli::make_bash_completion(app)
+                         : shell == "zsh"             ? cli::make_zsh_completion(app)
+                                                      : cli::make_fish_completion(app));
     });
   }
   const auto count_given = [&](const char* name) {

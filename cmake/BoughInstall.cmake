@@ -1,28 +1,37 @@
+# What is installed, in the four components that ./dev package makes Debian packages of:
+# bough (the program), libbough-dev, python3-bough (python/CMakeLists.txt), bough-doc.
 include(CMakePackageConfigHelpers)
 get_property(modules GLOBAL PROPERTY BOUGH_MODULES)
 install(TARGETS ${modules} EXPORT BoughTargets
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT libbough-dev
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT libbough-dev)
 if(TARGET bough)
-  install(TARGETS bough RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  # The program writes its manual page and its completion itself, so that they say what --help says.
+  install(TARGETS bough RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT bough)
+  # The program writes its manual pages and completions itself, so that they say what --help says.
+  set(help ${CMAKE_BINARY_DIR}/help)
   install(CODE "
-    execute_process(COMMAND \"$<TARGET_FILE:bough>\" --man-page
-      OUTPUT_FILE \"${CMAKE_BINARY_DIR}/bough.1\" COMMAND_ERROR_IS_FATAL ANY)
-    execute_process(COMMAND \"$<TARGET_FILE:bough>\" --bash-completion
-      OUTPUT_FILE \"${CMAKE_BINARY_DIR}/bough.bash\" COMMAND_ERROR_IS_FATAL ANY)")
-  install(FILES ${CMAKE_BINARY_DIR}/bough.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-  install(FILES ${CMAKE_BINARY_DIR}/bough.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
-    RENAME bough)
+    execute_process(COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:bough> -DOUTPUT=${help}
+      -P ${CMAKE_SOURCE_DIR}/packaging/write_help.cmake COMMAND_ERROR_IS_FATAL ANY)" COMPONENT bough)
+  install(DIRECTORY ${help}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT bough)
+  install(FILES ${help}/bough.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME bough
+    COMPONENT bough)
+  install(FILES ${help}/bough.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _bough
+    COMPONENT bough)
+  install(FILES ${help}/bough.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT bough)
 endif()
 foreach(room base formats fe modal stiffening solver)
-  install(DIRECTORY ${CMAKE_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bough
-    FILES_MATCHING PATTERN "*.hpp" PATTERN "detail" EXCLUDE)
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bough COMPONENT libbough-dev
+    FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h" PATTERN "detail" EXCLUDE)
 endforeach()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/data/schema ${CMAKE_SOURCE_DIR}/data/examples
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/bough)
-install(EXPORT BoughTargets NAMESPACE bough:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Bough)
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/bough COMPONENT bough)
+install(EXPORT BoughTargets NAMESPACE bough:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Bough COMPONENT libbough-dev)
 configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/BoughConfig.cmake.in ${CMAKE_BINARY_DIR}/BoughConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Bough)
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/BoughConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/BoughConfig.cmake ${CMAKE_BINARY_DIR}/BoughConfigVersion.cmake
-  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Bough)
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Bough COMPONENT libbough-dev)
+# The manual, where ./dev docs has built it.
+install(DIRECTORY ${CMAKE_BINARY_DIR}/html/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/bough-doc/html COMPONENT bough-doc OPTIONAL
+  PATTERN ".buildinfo" EXCLUDE PATTERN ".doctrees" EXCLUDE)
+include(${CMAKE_SOURCE_DIR}/packaging/debian.cmake)

@@ -11,8 +11,15 @@ namespace bough::cli {
 /// The manual page bough(1), in the man macros of roff.
 std::string make_man_page(const CLI::App& app);
 
+/// The page bough-VERB(1) of one verb; empty where there is no such verb.
+std::string make_verb_man_page(const CLI::App& app, const std::string& verb);
+
 /// The completion script for bash: verbs, the options of each verb, the values of options that take a few words; else
 /// file names.
 std::string make_bash_completion(const CLI::App& app);
+
+/// The same for zsh and fish, with a line about each verb and option.
+std::string make_zsh_completion(const CLI::App& app);
+std::string make_fish_completion(const CLI::App& app);
 
 }  // namespace bough::cli

@@ -86,7 +86,26 @@ std::string make_man_page(const CLI::App& app) {
     out += ".SS bough " + verb->get_name() + "\n" + escape(verb->get_description()) + "\n" + format_options(*verb);
     out += format_footer(verb->get_footer());
   }
+  out += ".SH SEE ALSO\n";
+  for (const auto* verb : verbs)
+    out += ".BR bough\\-" + verb->get_name() + " (1)" + (verb == verbs.back() ? "\n" : ",\n");
   return out;
+}
+
+std::string make_verb_man_page(const CLI::App& app, const std::string& name) {
+  const CLI::App* verb = nullptr;
+  for (const auto* each : app.get_subcommands(nullptr))
+    if (each->get_name() == name) verb = each;
+  if (!verb) return {};
+  std::string upper = name;
+  for (auto& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  auto about = verb->get_description();
+  for (auto& c : about)
+    if (c == '\n') c = ' ';
+  return ".TH BOUGH\\-" + upper + " 1 \"\" \"Bough " + std::string(get_version()) + "\" \"User Commands\"\n.SH NAME\n" +
+         "bough\\-" + name + " \\- " + escape(about) + "\n.SH SYNOPSIS\n" + format_synopsis(*verb) + ".SH OPTIONS\n" +
+         format_options(*verb) + ".SH DESCRIPTION\n" + format_footer(verb->get_footer()) +
+         ".SH SEE ALSO\n.BR bough (1)\n";
 }
 
 }  // namespace bough::cli

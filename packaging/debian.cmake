@@ -1,0 +1,67 @@
+# Debian packages by cpack, one a component. ./dev package builds, makes and tries them.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME bough)
+set(CPACK_PACKAGE_VENDOR "The Bough authors")
+set(CPACK_PACKAGE_CONTACT "The Bough authors <bough@localhost.localdomain>")
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL bough libbough-dev)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+if(TARGET bough_python)
+  list(APPEND CPACK_COMPONENTS_ALL python3-bough)
+endif()
+if(EXISTS ${CMAKE_BINARY_DIR}/html/index.html)
+  list(APPEND CPACK_COMPONENTS_ALL bough-doc)
+endif()
+
+set(what " From a Nastran deck to finite elements, modes, mass integrals and geometric
+ stiffness, and on to the motion of rigid and flexible bodies with contacts,
+ sensors, controllers and actuators.\n .\n")
+macro(describe component name section brief text)
+  string(TOUPPER ${component} upper)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name})
+  set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${section})
+  string(REPLACE "\n " "\n" plain "${what} ${text}")
+  string(REGEX REPLACE "^ " "" plain "${plain}")
+  set(CPACK_COMPONENT_${upper}_DESCRIPTION "${brief}\n${plain}")
+endmacro()
+describe(bough bough science "flexible multibody simulation from finite-element models"
+  "This package has the program, its manual pages, completions, schemas and\n examples.")
+describe(libbough-dev libbough-dev libdevel "flexible multibody simulation from finite-element models (C++)"
+  "This package has the static libraries, headers and the CMake package Bough.")
+describe(python3-bough python3-bough python "flexible multibody simulation from finite-element models (Python)"
+  "This package has the Python module bough.")
+describe(bough-doc bough-doc doc "flexible multibody simulation from finite-element models (manual)"
+  "This package has the manual as web pages that can be searched.")
+
+set(CPACK_DEBIAN_BOUGH_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_BOUGH_PACKAGE_SUGGESTS "bough-doc, librsvg2-bin, python3-bough")
+set(CPACK_DEBIAN_PYTHON3-BOUGH_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PYTHON3-BOUGH_PACKAGE_RECOMMENDS "python3-h5py, python3-matplotlib")
+if(Python3_VERSION_MAJOR)
+  math(EXPR next "${Python3_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON3-BOUGH_PACKAGE_DEPENDS
+    "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next}), python3-numpy")
+endif()
+set(CPACK_DEBIAN_BOUGH-DOC_PACKAGE_ARCHITECTURE all)
+# What BoughConfig.cmake looks for and the headers include.
+set(CPACK_DEBIAN_LIBBOUGH-DEV_PACKAGE_DEPENDS "libeigen3-dev, libsundials-dev, libmuparser-dev")
+if(NOT BOUGH_SOLVER_ONLY)
+  string(APPEND CPACK_DEBIAN_LIBBOUGH-DEV_PACKAGE_DEPENDS ", libpetsc-real-dev, libslepc-real-dev, \
+libhdf5-openmpi-dev, libopenmpi-dev, libmatio-dev, libmetis-dev, libblas-dev | libblas.so, libtomlplusplus-dev, \
+nlohmann-json3-dev, libfmt-dev, pkg-config | pkgconf")
+endif()
+
+# Policy: copyright and changelogs of each package, pages compressed. Only for packages, so it goes by cpack's own run.
+configure_file(${CMAKE_SOURCE_DIR}/packaging/finish.cmake.in ${CMAKE_BINARY_DIR}/packaging-finish.cmake @ONLY)
+set(CPACK_INSTALL_SCRIPTS ${CMAKE_BINARY_DIR}/packaging-finish.cmake)
+set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_BINARY_DIR}/packaging-finish.cmake)
+unset(CPACK_INSTALL_SCRIPTS)
+include(CPack)
