@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "modal/element_strain.hpp"
 #include "modal/normal_modes.hpp"
 #include "modal/null_motions.hpp"
 
@@ -82,6 +83,7 @@ EigenPairs calc_normal_modes(const fe::System& system, const EigenOptions& optio
   detail::initialize_slepc();
   auto answer = find_answer(system, options);
   for (const auto& item : answer.said.items()) diagnostics.add(item);
+  detail::restore_digits(system, answer.pairs, diagnostics);
   fe::check_residuals(answer.pairs.residual, "mode", diagnostics);
   return std::move(answer.pairs);
 }

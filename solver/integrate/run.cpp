@@ -117,6 +117,11 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
   progress_.end = timeline_.end();
 }
 
+void Run::start() {
+  const double t = begin();
+  if (!outcome_) start_corners(t);
+}
+
 SimulateOutcome Run::go() {
   double t = begin();
   if (outcome_) return *outcome_;
