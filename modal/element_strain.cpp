@@ -22,6 +22,8 @@ constexpr double kNoMotion = 1e-13;  // scaled principal stiffness of an element
 constexpr double kNoStrain = 1e-22;  // energy over its parts: what vectors of sixteen digits leave of zero
 constexpr double kSoft = 1e-9;       // below this share of their parts, energies of K are looked at
 constexpr double kSame = 1e-6;       // relative, of eigenvalues
+constexpr double kShift = 1e-13;     // of diag K, which makes K definite
+constexpr double kSure = 1e-3;       // relative error up to which an eigenvalue is good
 
 void add_element(const MatrixXd& K, const MatrixXd& u, int most_dofs, MatrixXd& forces, ElementStrain& strain) {
   const VectorXd diagonal = K.diagonal().cwiseAbs();
@@ -65,9 +67,9 @@ MatrixXd take_fdofs(const fe::Model& model, const MatrixXd& U) {
   return X;
 }
 
-std::string number(double value) {
+std::string number_text(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
+  std::snprintf(text, sizeof text, "%.4g", value);
   return text;
 }
 
@@ -86,10 +88,11 @@ class SoftModes {
       const MatrixXd r = forces_ - M_X_ * theta_.asDiagonal();
       const MatrixXd correction = factor_.solve(r);
       eta_ = r.cwiseProduct(correction).colwise().sum().transpose().cwiseMax(0.0).cwiseSqrt();
-      for (Index j = 0; j < eta_.size(); ++j) eta_(j) = theta_(j) > 0 ? eta_(j) / std::sqrt(theta_(j)) : 0;
+      for (Index j = 0; j < eta_.size(); ++j)
+        eta_(j) = theta_(j) > 0 ? eta_(j) * std::sqrt((1 + kShift * parts_(j) / theta_(j)) / theta_(j)) : 0;
       if (!eta_.allFinite() || !theta_.allFinite()) return false;
       const double worst = eta_.maxCoeff();
-      if (worst < 1e-9 || worst > 0.5 * before) return true;
+      if (worst < 1e-12 || (step > 2 && worst > 0.9 * before)) return true;
       before = worst;
       X_ -= correction;
     }
@@ -101,11 +104,12 @@ class SoftModes {
   const MatrixXd& M_X() const { return M_X_; }
   const MatrixXd& forces() const { return forces_; }  ///< of the f-set
   const VectorXd& theta() const { return theta_; }    ///< exactly zero without strain
-  const VectorXd& eta() const { return eta_; }
+  /// Relative: η, or the roundoff of elements that are not taken apart.
+  double calc_error(Index j) const { return std::max(eta_(j), theta_(j) > 0 ? 1e-15 * whole_(j) / theta_(j) : 0); }
 
  private:
   Mat shift(const fe::System& system) {
-    shifted_ = fe::add_diagonal(system.K.get(), 1e-13 * fe::fill_diagonal(system.K_diagonal, pencil_.kinds));
+    shifted_ = fe::add_diagonal(system.K.get(), kShift * fe::fill_diagonal(system.K_diagonal, pencil_.kinds));
     return shifted_.get();
   }
 
@@ -116,11 +120,14 @@ class SoftModes {
     theta_ = calc_graded_eigenvalues(strain.energy, V);
     std::vector<Index> order(static_cast<std::size_t>(theta_.size()));
     std::iota(order.begin(), order.end(), Index{0});
-    const VectorXd parts = V.cwiseAbs2().transpose() * strain.parts;
+    parts_ = V.cwiseAbs2().transpose() * strain.parts;
+    whole_ = V.cwiseAbs2().transpose() * strain.whole;
     for (Index j = 0; j < theta_.size(); ++j)
-      if (theta_(j) <= kNoStrain * parts(j)) theta_(j) = 0;
+      if (theta_(j) <= kNoStrain * parts_(j)) theta_(j) = 0;
     std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return theta_(a) < theta_(b); });
     theta_ = theta_(order).eval();
+    parts_ = parts_(order).eval();
+    whole_ = whole_(order).eval();
     V = V(Eigen::all, order).eval();
     X_ = (X_ * V).eval();
     M_X_ = pencil_.calc_M_times(X_);
@@ -131,7 +138,7 @@ class SoftModes {
   fe::PetscMat shifted_;
   fe::SymmetricFactor factor_;
   MatrixXd X_, M_X_, forces_;
-  VectorXd theta_, eta_;
+  VectorXd theta_, eta_, parts_, whole_;
 };
 
 /// Puts the improved modes in the place of the `soft` ones and sorts all.
@@ -208,15 +215,15 @@ VectorXd calc_graded_eigenvalues(MatrixXd G, MatrixXd& V) {
   return G.diagonal();
 }
 
-void restore_digits(const fe::System& system, EigenPairs& pairs, Diagnostics& diagnostics) {
+Restored restore_digits(const fe::System& system, int number, EigenPairs& pairs) {
   const fe::Model& model = system.model;
-  if (model.prestress() || model.omitted() || pairs.lambda.size() == 0) return;
+  if (model.prestress() || model.omitted() || pairs.lambda.size() == 0) return {};
   const Pencil pencil(system);
   const MatrixXd X = take_fdofs(model, pairs.Phi);
   std::vector<Index> soft;
   for (Index j = 0; j < X.cols(); ++j)
     if (std::abs(pencil.calc_relative_energy(X.col(j), pairs.lambda(j))) < kSoft) soft.push_back(j);
-  if (soft.empty()) return;
+  if (soft.empty()) return {};
   const bool has_values = std::any_of(soft.begin(), soft.end(), [&](Index j) { return pairs.lambda(j) != 0; });
   const auto strain = calc_element_strain(model, pairs.Phi(Eigen::all, soft), has_values);
   const auto is_same = [&](std::size_t i) {
@@ -227,35 +234,39 @@ void restore_digits(const fe::System& system, EigenPairs& pairs, Diagnostics& di
   };
   bool is_all_same = true;
   for (std::size_t i = 0; i < soft.size(); ++i) is_all_same = is_all_same && is_same(i);
-  if (is_all_same) return;
+  if (is_all_same) return {};
 
   const VectorXd before = pairs.lambda;
   SoftModes better(system, pencil, X(Eigen::all, soft));
-  if (!better.improve()) return;
-  std::string what;
-  double worst = 0;
+  if (!better.improve()) return {};
+  Restored result;
+  result.is_done = true;
   int num_changed = 0;
-  for (std::size_t i = 0; i < soft.size(); ++i) {
+  for (std::size_t i = 0; i < soft.size() && soft[i] < number; ++i) {
     const auto c = static_cast<Index>(i);
     const double old = before(soft[i]), now = better.theta()(c);
     if (now == 0 && old == 0) continue;
-    worst = std::max(worst, better.eta()(c));
-    if (std::abs(now - old) <= kSame * now) continue;
-    if (++num_changed <= 3)
-      what += (num_changed > 1 ? ", " : "") + std::string("mode ") + std::to_string(soft[i] + 1) + " from " +
-              number(std::sqrt(std::max(0.0, old)) / (2 * M_PI)) + " to " + number(std::sqrt(now) / (2 * M_PI)) + " Hz";
+    result.error = std::max(result.error, better.calc_error(c));
+    if (std::abs(now - old) > kSame * now && ++num_changed <= 3)
+      result.changes += (num_changed > 1 ? ", " : "") + std::string("mode ") + std::to_string(soft[i] + 1) + " from " +
+                        number_text(std::sqrt(std::max(0.0, old)) / (2 * M_PI)) + " to " +
+                        number_text(std::sqrt(now) / (2 * M_PI)) + " Hz";
   }
+  if (num_changed > 3) result.changes += " and " + std::to_string(num_changed - 3) + " more";
   replace(pencil, better, soft, pairs);
-  if (num_changed == 0 && worst < 1e-3) return;
-  if (num_changed > 3) what += " and " + std::to_string(num_changed - 3) + " more";
-  if (num_changed == 0) what = "none moves";
-  diagnostics.warning("modal.lost-digits", {},
-                      "stiffness over so many orders that the sums in the stiffness matrix have lost the soft parts; "
-                      "by the energies of "
-                      "the elements: " +
-                          what + (worst < 1e-3 ? "; each is right to about " : "; NOT reliable, an error of ") +
-                          number(std::min(1.0, worst)) + (worst < 1e-3 ? "" : " is possible"),
-                      "replace the stiffest elements by rigid ones; forces in them are roundoff");
+  return result;
+}
+
+void warn_of_lost_digits(const Restored& restored, Diagnostics& diagnostics) {
+  const bool is_sure = restored.error < kSure;
+  if (!restored.is_done || (restored.changes.empty() && is_sure)) return;
+  diagnostics.warning(
+      "modal.lost-digits", {},
+      "stiffness spans so many orders that its sums have lost the soft parts; by the strain of the elements " +
+          (restored.changes.empty() ? "no mode changes" : restored.changes) +
+          (is_sure ? ", right to about " + number_text(std::max(1e-15, restored.error))
+                   : ", not reliable: they may be off by " + number_text(std::min(1.0, restored.error)) + " and more"),
+      "replace the stiffest elements by rigid ones; forces in them are roundoff");
 }
 
 }  // namespace bough::modal::detail

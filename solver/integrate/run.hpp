@@ -21,7 +21,7 @@ class Run {
   Run(const System& system, const records::SystemSpec& spec, RunSetup setup, records::ResultSink& sink,
       const SimulateOptions& options, Diagnostics& diagnostics);
   SimulateOutcome go();
-  /// What go() does before its first step.
+  /// The beginning of go(), through its first step.
   void start();
 
  private:
