@@ -9,6 +9,7 @@
 #include "cli/check/check_solutions.hpp"
 #include "cli/check/check_subcases.hpp"
 #include "cli/check/diagram.hpp"
+#include "cli/check/try_reduction.hpp"
 #include "cli/common/body_files.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/deck_tables.hpp"
@@ -26,6 +27,7 @@
 #include "formats/nastran/reader.hpp"
 #include "formats/records/params.hpp"
 #include "formats/toml/specs.hpp"
+#include "solver/integrate/simulate.hpp"
 
 namespace bough::cli {
 
@@ -205,6 +207,7 @@ int check_body(const CheckOptions& options, Console& console) {
       }
     }
   }
+  if (diagnostics.num_errors() == 0) try_reduction(options.file, spec, json.value("num_free_dofs", 0), diagnostics);
   return finish(options, console, text, json, diagnostics);
 }
 
@@ -212,6 +215,7 @@ int check_system(const CheckOptions& options, const Console& console) {
   Diagnostics diagnostics;
   const auto loaded = load_system(options.file, diagnostics, {}, options.set);
   const auto& system = loaded.system;
+  solver::check_start(system, loaded.spec, diagnostics);
   Table table{{"body", "hinge", "free coordinates", "modes"}, {}};
   auto bodies = nlohmann::json::array();
   for (int b = 0; b < system.num_bodies(); ++b) {

@@ -117,6 +117,16 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
   progress_.end = timeline_.end();
 }
 
+void Run::start() {
+  const double t = begin();
+  if (outcome_ || t >= timeline_.end()) return;
+  start_corners(t);
+  const Stop stop = stop_ = timeline_.find_stop(t);
+  stepper_->restart(t, y_, stop.time, stop.latest);
+  is_started_ = true;
+  take_step(stop);
+}
+
 SimulateOutcome Run::go() {
   double t = begin();
   if (outcome_) return *outcome_;

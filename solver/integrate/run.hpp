@@ -21,6 +21,8 @@ class Run {
   Run(const System& system, const records::SystemSpec& spec, RunSetup setup, records::ResultSink& sink,
       const SimulateOptions& options, Diagnostics& diagnostics);
   SimulateOutcome go();
+  /// The beginning of go(), through its first step.
+  void start();
 
  private:
   bool is_stop_asked() const { return options_.stop && options_.stop->load(std::memory_order_relaxed); }

@@ -36,6 +36,10 @@ struct SimulateOutcome {
 /// Reports what simulate would refuse in the spec. The system may have come from System::build_as_far.
 void check_run(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics);
 
+/// The same with the start of the run itself: loops closed, masses factored, controllers sampled, the first sample
+/// made, the events of its time come. What would end it there is reported, a failed computation too; nothing is thrown.
+void check_start(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics);
+
 /// Integrates spec.simulation and streams samples. A run that diverges (non-finite state, or past the limit) ends the
 /// sink with what it had and throws ComputationError("run.diverged") with the time and the body. An energy error past
 /// energy_error_limit is an error in `diagnostics` ("run.energy-error"), one past a hundredth of the limit a warning

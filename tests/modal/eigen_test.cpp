@@ -1,5 +1,6 @@
 /// The eigenvalue solver itself: repeated roots, ranges, small and singular problems, messages.
 #include "modal/eigen.hpp"
+#include "modal/roundoff.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -180,13 +181,31 @@ TEST(Eigen, FineMeshWithHeavyTip) {
   EXPECT_NEAR(pairs.lambda(1) / w2, 1, 1e-5);
 }
 
-// 2500 elements where 25 would do: the first root is lost in roundoff by a visible part, and the user is told.
-TEST(Eigen, WarnsOfRoundoffOnAMeshTooFine) {
-  Diagnostics fine, normal;
-  EXPECT_EQ(solve(test::make_cantilever(kSection, 1, 2500).deck, make_options(2), fine).inertia_count, 2);
-  EXPECT_TRUE(fine.has("modal.roundoff"));
-  solve(test::make_cantilever(kSection, 1, 100).deck, make_options(2), normal);
+// 2500 elements where 25 would do: K has lost a visible part of the first root in roundoff, its elements have not.
+TEST(Eigen, RestoresTheRootOfAMeshTooFine) {
+  Diagnostics fine, normal, of_K;
+  const auto pairs = solve(test::make_cantilever(kSection, 1, 2500).deck, make_options(2), fine);
+  EXPECT_EQ(pairs.inertia_count, 2);
+  EXPECT_TRUE(fine.has("modal.lost-digits"));
+  const auto coarse = solve(test::make_cantilever(kSection, 1, 100).deck, make_options(2), normal);
   EXPECT_FALSE(normal.has("modal.roundoff"));
+  EXPECT_FALSE(normal.has("modal.lost-digits"));
+  for (int j = 0; j < 2; ++j) EXPECT_NEAR(pairs.lambda(j) / coarse.lambda(j), 1, 1e-6) << j;
+}
+
+// What the measure by K alone says of such a mode, where elements are too large to be taken apart.
+TEST(Eigen, WarnsOfRoundoff) {
+  Diagnostics d;
+  const auto maker = test::make_cantilever(kSection, 1, 4);
+  const auto model = fe::Model::build(maker.deck, {}, d);
+  const fe::System system(model);
+  const modal::detail::Pencil pencil(system);
+  MatrixXd X = MatrixXd::Ones(pencil.size(), 1);
+  const double parts = pencil.K_diagonal.sum();
+  modal::detail::warn_of_roundoff(pencil, VectorXd::Constant(1, 1e-8 * parts), X, 0, d);
+  EXPECT_FALSE(d.has("modal.roundoff"));
+  modal::detail::warn_of_roundoff(pencil, VectorXd::Constant(1, 1e-15 * parts), X, 0, d);
+  EXPECT_TRUE(d.has("modal.roundoff"));
 }
 
 template <class Function>

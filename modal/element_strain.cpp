@@ -1,0 +1,272 @@
+#include "modal/element_strain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "base/diagnostic.hpp"
+#include "fe/linear/low_rank_sum.hpp"
+#include "fe/linear/residual.hpp"
+#include "modal/canonical.hpp"
+#include "modal/pencil.hpp"
+
+namespace bough::modal::detail {
+namespace {
+
+using Eigen::Index;
+
+constexpr int kMostDofs = 24;        // of an element taken apart
+constexpr double kRoundoff = 1e-13;  // of uᵀK_e u, over its parts
+constexpr double kNoMotion = 1e-13;  // scaled principal stiffness of an element's rigid motions
+constexpr double kNoStrain = 1e-22;  // energy over its parts: what vectors of sixteen digits leave of zero
+constexpr double kSoft = 1e-9;       // below this share of their parts, energies of K are looked at
+constexpr double kSame = 1e-6;       // relative, of eigenvalues
+constexpr double kShift = 1e-13;     // of diag K, which makes K definite
+constexpr double kSure = 1e-3;       // relative error up to which an eigenvalue is good
+
+void add_element(const MatrixXd& K, const MatrixXd& u, int most_dofs, MatrixXd& forces, ElementStrain& strain) {
+  const VectorXd diagonal = K.diagonal().cwiseAbs();
+  const VectorXd parts = u.cwiseAbs2().transpose() * diagonal;
+  strain.parts += parts;
+  if (K.rows() > most_dofs) {
+    forces = K * u;
+    for (Index j = 0; j < u.cols(); ++j) {
+      if (std::abs(u.col(j).dot(forces.col(j))) < kRoundoff * parts(j))
+        forces.col(j).setZero();
+      else
+        strain.whole(j) += parts(j);
+    }
+    const MatrixXd energy = u.transpose() * forces;
+    strain.energy += 0.5 * (energy + energy.transpose());
+    return;
+  }
+  const VectorXd root = diagonal.cwiseSqrt();
+  const VectorXd inverse = root.unaryExpr([](double r) { return r > 0 ? 1 / r : 0; });
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(MatrixXd(inverse.asDiagonal() * K * inverse.asDiagonal()));
+  VectorXd kappa = solver.eigenvalues();
+  for (double& k : kappa)
+    if (std::abs(k) < kNoMotion) k = 0;
+  const MatrixXd z = solver.eigenvectors().transpose() * (root.asDiagonal() * u);
+  forces = root.asDiagonal() * (solver.eigenvectors() * (kappa.asDiagonal() * z));
+  strain.energy += z.transpose() * (kappa.asDiagonal() * z);
+}
+
+/// Rows of the f-dofs of a g-set field: the components along their CD axes.
+MatrixXd take_fdofs(const fe::Model& model, const MatrixXd& U) {
+  MatrixXd X(model.num_fdofs(), U.cols());
+  for (int f = 0; f < model.num_fdofs(); ++f) {
+    const auto [id, component] = model.describe_fdof(f);
+    const auto& node = model.node(model.find_node(id));
+    const int c = component - 1;
+    if (node.num_dofs == 6)
+      X.row(f) = node.R_basic_cd.col(c % 3).transpose() * U.middleRows(node.first_gdof + 3 * (c / 3), 3);
+    else
+      X.row(f) = U.row(node.first_gdof);
+  }
+  return X;
+}
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+/// Some modes of a system, made better by the strain of its elements.
+class SoftModes {
+ public:
+  SoftModes(const fe::System& system, const Pencil& pencil, MatrixXd X)
+      : pencil_(pencil), factor_(shift(system), false, fe::FactorMethod::Pivoting), X_(std::move(X)) {}
+
+  /// False where nothing came of it.
+  bool improve() {
+    if (factor_.is_singular()) return false;
+    double before = std::numeric_limits<double>::infinity();
+    for (int step = 0; step < 12; ++step) {
+      find_ritz();
+      const MatrixXd r = forces_ - M_X_ * theta_.asDiagonal();
+      const MatrixXd correction = factor_.solve(r);
+      eta_ = r.cwiseProduct(correction).colwise().sum().transpose().cwiseMax(0.0).cwiseSqrt();
+      for (Index j = 0; j < eta_.size(); ++j)
+        eta_(j) = theta_(j) > 0 ? eta_(j) * std::sqrt((1 + kShift * parts_(j) / theta_(j)) / theta_(j)) : 0;
+      if (!eta_.allFinite() || !theta_.allFinite()) return false;
+      const double worst = eta_.maxCoeff();
+      if (worst < 1e-12 || (step > 2 && worst > 0.9 * before)) return true;
+      before = worst;
+      X_ -= correction;
+    }
+    find_ritz();
+    return true;
+  }
+
+  const MatrixXd& X() const { return X_; }
+  const MatrixXd& M_X() const { return M_X_; }
+  const MatrixXd& forces() const { return forces_; }  ///< of the f-set
+  const VectorXd& theta() const { return theta_; }    ///< exactly zero without strain
+  /// Relative: η, or the roundoff of elements that are not taken apart.
+  double calc_error(Index j) const { return std::max(eta_(j), theta_(j) > 0 ? 1e-15 * whole_(j) / theta_(j) : 0); }
+
+ private:
+  Mat shift(const fe::System& system) {
+    shifted_ = fe::add_diagonal(system.K.get(), kShift * fe::fill_diagonal(system.K_diagonal, pencil_.kinds));
+    return shifted_.get();
+  }
+
+  void find_ritz() {
+    orthonormalize_ascending(X_.transpose() * pencil_.calc_M_times(X_), X_);
+    const auto strain = calc_element_strain(pencil_.model, pencil_.model.T() * X_, true);
+    MatrixXd V;
+    theta_ = calc_graded_eigenvalues(strain.energy, V);
+    std::vector<Index> order(static_cast<std::size_t>(theta_.size()));
+    std::iota(order.begin(), order.end(), Index{0});
+    parts_ = V.cwiseAbs2().transpose() * strain.parts;
+    whole_ = V.cwiseAbs2().transpose() * strain.whole;
+    for (Index j = 0; j < theta_.size(); ++j)
+      if (theta_(j) <= kNoStrain * parts_(j)) theta_(j) = 0;
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return theta_(a) < theta_(b); });
+    theta_ = theta_(order).eval();
+    parts_ = parts_(order).eval();
+    whole_ = whole_(order).eval();
+    V = V(Eigen::all, order).eval();
+    X_ = (X_ * V).eval();
+    M_X_ = pencil_.calc_M_times(X_);
+    forces_ = pencil_.model.T().transpose() * (strain.forces * V);
+  }
+
+  const Pencil& pencil_;
+  fe::PetscMat shifted_;
+  fe::SymmetricFactor factor_;
+  MatrixXd X_, M_X_, forces_;
+  VectorXd theta_, eta_, parts_, whole_;
+};
+
+/// Puts the improved modes in the place of the `soft` ones and sorts all.
+void replace(const Pencil& pencil, const SoftModes& better, const std::vector<Index>& soft, EigenPairs& pairs) {
+  const VectorXd residual =
+      fe::calc_residuals(fe::calc_residual_scale(pencil.K_diagonal, pencil.M_diagonal, better.theta()), better.X(),
+                         better.forces(), better.M_X() * better.theta().asDiagonal(), pencil.kinds);
+  for (std::size_t i = 0; i < soft.size(); ++i) {
+    const auto c = static_cast<Index>(i);
+    pairs.lambda(soft[i]) = better.theta()(c);
+    pairs.residual(soft[i]) = residual(c);
+    pairs.Phi.col(soft[i]) = pencil.model.T() * better.X().col(c);
+  }
+  std::vector<Index> order(static_cast<std::size_t>(pairs.lambda.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return pairs.lambda(a) < pairs.lambda(b); });
+  pairs.lambda = pairs.lambda(order).eval();
+  pairs.residual = pairs.residual(order).eval();
+  pairs.Phi = pairs.Phi(Eigen::all, order).eval();
+  pairs.num_rigid = static_cast<int>((pairs.lambda.array() == 0).count());
+  fix_signs(pairs.Phi);
+}
+
+}  // namespace
+
+ElementStrain calc_element_strain(const fe::Model& model, const MatrixXd& X_g, bool is_fine) {
+  const Index m = X_g.cols();
+  ElementStrain strain{MatrixXd::Zero(X_g.rows(), m), MatrixXd::Zero(m, m), VectorXd::Zero(m), VectorXd::Zero(m)};
+  const auto [begin, end] = fe::calc_element_range(model);
+  MatrixXd K, u, forces;
+  for (int e = begin; e < end; ++e) {
+    const fe::Element& element = *model.elements()[static_cast<std::size_t>(e)];
+    K.setZero(element.num_dofs(), element.num_dofs());
+    model.add_stiffness(element, K);
+    if (K.isZero(0)) continue;
+    u = X_g(element.gdofs(), Eigen::all);
+    add_element(K, u, is_fine ? kMostDofs : 0, forces, strain);
+    for (int i = 0; i < element.num_dofs(); ++i) strain.forces.row(element.gdofs()[i]) += forces.row(i);
+  }
+  fe::sum_over_ranks(strain.forces);
+  fe::sum_over_ranks(strain.energy);
+  MatrixXd parts(m, 2);
+  parts << strain.parts, strain.whole;
+  fe::sum_over_ranks(parts);
+  strain.parts = parts.col(0);
+  strain.whole = parts.col(1);
+  return strain;
+}
+
+VectorXd calc_graded_eigenvalues(MatrixXd G, MatrixXd& V) {
+  const Index n = G.rows();
+  V = MatrixXd::Identity(n, n);
+  for (int sweep = 0; sweep < 40; ++sweep) {
+    bool is_diagonal = true;
+    for (Index p = 0; p < n; ++p)
+      for (Index q = p + 1; q < n; ++q) {
+        const double g = G(p, q);
+        if (!(std::abs(g) > 1e-15 * std::sqrt(std::abs(G(p, p) * G(q, q))))) continue;
+        is_diagonal = false;
+        const double ratio = (G(q, q) - G(p, p)) / (2 * g);
+        const double t = (ratio < 0 ? -1 : 1) / (std::abs(ratio) + std::hypot(1.0, ratio));
+        const double c = 1 / std::hypot(1.0, t);
+        const double low = G(p, p) - t * g, high = G(q, q) + t * g;
+        Eigen::JacobiRotation<double> J(c, c * t);
+        G.applyOnTheLeft(p, q, J.adjoint());
+        G.applyOnTheRight(p, q, J);
+        V.applyOnTheRight(p, q, J);
+        G(p, p) = low;
+        G(q, q) = high;
+        G(p, q) = G(q, p) = 0;
+      }
+    if (is_diagonal) break;
+  }
+  return G.diagonal();
+}
+
+Restored restore_digits(const fe::System& system, int number, EigenPairs& pairs) {
+  const fe::Model& model = system.model;
+  if (model.prestress() || model.omitted() || pairs.lambda.size() == 0) return {};
+  const Pencil pencil(system);
+  const MatrixXd X = take_fdofs(model, pairs.Phi);
+  std::vector<Index> soft;
+  for (Index j = 0; j < X.cols(); ++j)
+    if (std::abs(pencil.calc_relative_energy(X.col(j), pairs.lambda(j))) < kSoft) soft.push_back(j);
+  if (soft.empty()) return {};
+  const bool has_values = std::any_of(soft.begin(), soft.end(), [&](Index j) { return pairs.lambda(j) != 0; });
+  const auto strain = calc_element_strain(model, pairs.Phi(Eigen::all, soft), has_values);
+  const auto is_same = [&](std::size_t i) {
+    const auto c = static_cast<Index>(i);
+    const double lambda = pairs.lambda(soft[i]), energy = strain.energy(c, c);
+    return lambda == 0 ? energy <= kNoStrain * strain.parts(c)
+                       : std::abs(energy - lambda) <= kSame * std::abs(lambda) + 1e-15 * strain.whole(c);
+  };
+  bool is_all_same = true;
+  for (std::size_t i = 0; i < soft.size(); ++i) is_all_same = is_all_same && is_same(i);
+  if (is_all_same) return {};
+
+  const VectorXd before = pairs.lambda;
+  SoftModes better(system, pencil, X(Eigen::all, soft));
+  if (!better.improve()) return {};
+  Restored result;
+  result.is_done = true;
+  int num_changed = 0;
+  for (std::size_t i = 0; i < soft.size() && soft[i] < number; ++i) {
+    const auto c = static_cast<Index>(i);
+    const double old = before(soft[i]), now = better.theta()(c);
+    if (now == 0 && old == 0) continue;
+    result.error = std::max(result.error, better.calc_error(c));
+    if (std::abs(now - old) > kSame * now && ++num_changed <= 3)
+      result.changes += (num_changed > 1 ? ", " : "") + std::string("mode ") + std::to_string(soft[i] + 1) + " from " +
+                        number_text(std::sqrt(std::max(0.0, old)) / (2 * M_PI)) + " to " +
+                        number_text(std::sqrt(now) / (2 * M_PI)) + " Hz";
+  }
+  if (num_changed > 3) result.changes += " and " + std::to_string(num_changed - 3) + " more";
+  replace(pencil, better, soft, pairs);
+  return result;
+}
+
+void warn_of_lost_digits(const Restored& restored, Diagnostics& diagnostics) {
+  const bool is_sure = restored.error < kSure;
+  if (!restored.is_done || (restored.changes.empty() && is_sure)) return;
+  diagnostics.warning(
+      "modal.lost-digits", {},
+      "stiffness spans so many orders that its sums have lost the soft parts; by the strain of the elements " +
+          (restored.changes.empty() ? "no mode changes" : restored.changes) +
+          (is_sure ? ", right to about " + number_text(std::max(1e-15, restored.error))
+                   : ", not reliable: they may be off by " + number_text(std::min(1.0, restored.error)) + " and more"),
+      "replace the stiffest elements by rigid ones; forces in them are roundoff");
+}
+
+}  // namespace bough::modal::detail

@@ -1,0 +1,90 @@
+"""What `check` passes `reduce` and `run` begin: it reduces small bodies and takes the first step of a run."""
+import re
+import subprocess
+import unittest
+
+from support import BEAM, PROGRAM, ProgramTest
+
+BODY = """[body]
+name = "rod"
+deck = "rod.bdf"
+{more}
+[body.modes]
+number = {modes}
+"""
+SYSTEM = """[[body]]
+name = "rod"
+mass = 1.0
+cg = [0.5, 0.0, 0.0]
+inertia = [{spin}, 0.1, 0.1]
+[[hinge]]
+name = "pin"
+type = "{hinge}"
+parent = "ground"
+child = "rod"
+{position}
+[simulation]
+duration = 0.1
+output_step = 0.05
+{more}
+"""
+
+
+class CheckRefuses(ProgramTest):
+    def both(self, verb, file, error):
+        """The verb fails with `error`, and check says so too."""
+        ids = [re.findall(r"error: .*\[([a-z]+\.[a-z0-9-]+)\]", run.stderr)
+               for run in (self.run_any(verb, file, "-o", "out.h5"), self.run_any("check", file))]
+        self.assertIn(error, ids[0])
+        self.assertLessEqual(set(ids[0]), set(ids[1]))
+        self.bough("check", file, code=1)
+
+    def run_any(self, *call):
+        return subprocess.run([PROGRAM, *call], cwd=self.folder, capture_output=True, text=True, timeout=200)
+
+    def body(self, deck=BEAM, more="", modes=2, after=""):
+        self.write("rod.bdf", deck)
+        return self.write("rod.toml", BODY.format(more=more, modes=modes) + after)
+
+    def test_bodies_that_cannot_be_reduced(self):
+        pinned = BEAM.replace("CBAR,2,1,2,3,0.,1.,0.", "CBAR,2,1,2,3,0.,1.,0.\n,456")
+        for name, error, file in [
+                ("an arm that folds", "reduce.mechanism", {"deck": pinned}),
+                ("an element that is not there", "reduce.unknown-element",
+                 {"after": "[body.output]\nrecover = [\"99\"]\n"}),
+                ("a node that is not there", "reduce.unknown-node", {"after": "[body.output]\nnodes = [99]\n"}),
+                ("no mass", "reduce.no-mass", {"deck": BEAM.replace("2700.", "0.")}),
+                ("a spring to ground", "reduce.grounded",
+                 {"deck": BEAM.replace("ENDDATA", "CELAS2,9,100.,3,1\nENDDATA"), "more": 'frame = "free"'})]:
+            with self.subTest(name):
+                self.both("reduce", self.body(**file), error)
+        self.bough("check", self.body())
+
+    def test_a_large_body_is_not_reduced_and_that_is_said(self):
+        grids = "".join(f"GRID,{k},,{0.01 * k:.2f},0.,0.\nCBAR,{k},1,{k - 1},{k},0.,1.,0.\n" for k in range(4, 1020))
+        said = self.bough("check", self.body(BEAM.replace("ENDDATA", grids + "ENDDATA"))).stderr
+        self.assertIn("[cli.not-reduced]", said)
+
+    def test_systems_that_cannot_begin(self):
+        for name, error, values in [
+                ("a rod that turns about its line", "solver.indefinite-mass", {"hinge": "spherical"}),
+                ("gimbal lock", "solver.gimbal-lock",
+                 {"hinge": "gimbal", "spin": 0.1, "position": "position = [0.0, 1.5707963267948966, 0.0]"}),
+                ("a rate past all bounds", "run.diverged",
+                 {"hinge": "gimbal", "spin": 0.1, "position": "rate = [0.0, 1e200, 0.0]"}),
+                ("a force that is no number", "run.diverged", {
+                    "hinge": "gimbal", "spin": 0.1, "more": '[[function]]\nname = "f"\ntype = "expression"\n'
+                    'expression = "sqrt(-1-t)"\n[[force]]\nname = "push"\nbody = "rod"\nforce = [1, 0, 0]\n'
+                    'function = "f"\n'}),
+                ("a tolerance that nothing meets", "run.stalled", {
+                    "hinge": "gimbal", "spin": 0.1, "position": "rate = [0.1, 1.0, 0.0]",
+                    "more": "relative_tolerance = 1e-300\nabsolute_tolerance = 1e-300"})]:
+            with self.subTest(name):
+                text = SYSTEM.format(**{"spin": 0.0, "position": "", "more": "", **values})
+                self.both("run", self.write("rod.toml", text), error)
+        self.write("rod.toml", SYSTEM.format(hinge="gimbal", spin=0.1, position="", more=""))
+        self.bough("check", "rod.toml")
+
+
+if __name__ == "__main__":
+    unittest.main()
