@@ -1,4 +1,5 @@
 #pragma once
+/// \file `bough edit`: a session over a system or a body file.
 #include "cli/verbs.hpp"
 
 namespace bough::cli {
