@@ -12,11 +12,14 @@
 #include "cli/common/vtu_file.hpp"
 #include "cli/export/export_bodies.hpp"
 #include "cli/export/export_matrices.hpp"
+#include "cli/export/moving_system.hpp"
 #include "cli/linearize/linear_model_files.hpp"
 #include "cli/linearize/sweep.hpp"
+#include "formats/export/response_text.hpp"
 #include "formats/export/uff.hpp"
 #include "formats/export/vtu.hpp"
 #include "formats/hdf5/linear_file.hpp"
+#include "formats/hdf5/response_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
 #include "formats/nastran/reader.hpp"
 #include "formats/nastran/writer.hpp"
@@ -32,8 +35,11 @@ struct ExportOptions : CommonOptions {
   bool ascii = false;
   std::string fields = "large";
   BodyExportOptions body;
+  MovingOptions moving;
   std::vector<std::string> ignore_cards;
 };
+
+bool is_response(const std::string& format) { return format == "bough-frequency" || format == "bough-transient"; }
 
 /// The time and the channels chosen, all by default.
 std::vector<exports::CsvColumn> read_columns(const ExportOptions& o) {
@@ -56,6 +62,7 @@ std::string make_csv(const ExportOptions& o, Diagnostics& diagnostics) {
   const auto format = o.channels.empty() ? read_file_format(o.file) : "";
   if (format == "bough-linear") return make_linear_csv(hdf5::read_linear_model(o.file));
   if (format == "bough-sweep") return make_sweep_csv(hdf5::read_sweep(o.file));
+  if (is_response(format)) return exports::make_response_csv(hdf5::read_response(o.file));
   exports::write_csv(text, has_shapes(format) ? read_shape_columns(o.file, format, diagnostics) : read_columns(o));
   return text.str();
 }
@@ -65,7 +72,8 @@ std::string make_universal(const ExportOptions& o, Diagnostics& diagnostics) {
   if (format == "bough-modes") return exports::make_uff(hdf5::read_modes(o.file));
   if (format == "bough-flexbody") return exports::make_uff(read_body(o.file, diagnostics));
   if (format == "bough-results") return exports::make_uff(read_columns(o));
-  refuse_export(o.file, "uff", "a flexible body, or what bough modes or run wrote");
+  if (is_response(format)) return exports::make_uff(hdf5::read_response(o.file));
+  refuse_export(o.file, "uff", "a flexible body, or what bough modes, run, frequency or transient wrote");
 }
 
 /// The mode shapes of a modes file or a flexible body.
@@ -92,6 +100,18 @@ std::string make_bdf(const ExportOptions& o, Diagnostics& diagnostics) {
   return text;
 }
 
+int export_pvd(const ExportOptions& o, const Console& console, Diagnostics& diagnostics) {
+  if (o.output.empty()) {
+    console.print_error("cli.usage", "--to pvd writes several files: give the .pvd with -o", "see bough export --help");
+    return kUsageError;
+  }
+  const auto system = read_moving_system(o.file, o.moving, diagnostics);
+  const int frames = write_pvd(system, o.moving.scale, o.ascii, o.output, diagnostics);
+  console.print(diagnostics);
+  console.print("written: " + o.output + " of " + count(static_cast<std::size_t>(frames), "frame") + "\n");
+  return kSuccess;
+}
+
 int run_export(const ExportOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
@@ -109,7 +129,9 @@ int run_export(const ExportOptions& o) {
     console.print("written: " + o.output + "\n");
     return kSuccess;
   }
+  if (o.format == "pvd") return export_pvd(o, console, diagnostics);
   const auto text = o.format == "vtu"          ? make_shapes(o, diagnostics)
+                    : o.format == "gltf"       ? make_glb(o.file, o.moving, diagnostics)
                     : o.format == "bdf"        ? make_bdf(o, diagnostics)
                     : o.format == "op4"        ? make_op4(o.file, diagnostics)
                     : o.format == "uff"        ? make_universal(o, diagnostics)
@@ -133,31 +155,36 @@ void add_export(CLI::App& app, Action& action) {
       app.add_subcommand("export", "Bodies, modes, matrices, results or a deck in the format of another program");
   verb->add_option(
           "file", o->file,
-          "csv: results, modes, flexible body, linear model or sweep; vtu: modes file or flexible body; bdf: Nastran "
-          "deck; sid, mbdyn: flexible body; mat, "
+          "csv: results, modes, flexible body, linear model, sweep or response of a deck; vtu: modes file or flexible "
+          "body; pvd: results; gltf: results, modes file or flexible body; bdf: Nastran deck; sid, mbdyn: flexible "
+          "body; mat, "
           "op4, uff: any HDF5 file of Bough that has such arrays")
       ->required();
   verb->add_option("--to", o->format,
-                   "Format: csv, vtu (mode shapes for ParaView), bdf (the deck as Bough reads it), mat (MATLAB), "
+                   "Format: csv, vtu (mode shapes for ParaView), pvd (the moving system for ParaView), gltf "
+                   "(.glb: the moving system or modes), bdf (the deck as Bough reads it), mat (MATLAB), "
                    "op4 (Nastran OUTPUT4), uff (universal file), sid (Standard Input Data), mbdyn (.fem)")
       ->required()
-      ->check(CLI::IsMember({"csv", "vtu", "bdf", "mat", "op4", "uff", "sid", "mbdyn"}));
+      ->check(CLI::IsMember({"csv", "vtu", "pvd", "gltf", "bdf", "mat", "op4", "uff", "sid", "mbdyn"}));
   verb->add_option("--channel", o->channels,
                    "csv, uff: only these: a path or folder of the file, or a sensor; with :component; may be repeated "
                    "(default: all)")
       ->allow_extra_args(false);
-  verb->add_flag("--ascii", o->ascii, "vtu: numbers as text instead of base64");
+  verb->add_flag("--ascii", o->ascii, "vtu, pvd: numbers as text instead of base64");
   verb->add_option("--fields", o->fields,
                    "bdf: large (16 columns where 8 lose digits), small (always 8) or free (commas, every digit)")
       ->check(CLI::IsMember({"large", "small", "free"}))
       ->capture_default_str();
   verb->add_option("--ignore", o->ignore_cards, "bdf: leave this card out; may be repeated")->allow_extra_args(false);
   add_body_export_options(*verb, o->body);
+  add_moving_options(*verb, o->moving);
   add_common_options(*verb, *o, kOutput, "Write to this file instead of stdout");
   verb->footer(
       "Example:\n  bough export spinup.h5 --to csv -o spinup.csv\n"
       "  bough export spinup.h5 --to csv --channel tip_deflection:y --channel /bodies/boom/eta\n"
-      "  bough export boom-modes.h5 --to vtu -o boom.vtu\n  bough export boom.h5 --to mat -o boom.mat\n"
+      "  bough export boom-modes.h5 --to vtu -o boom.vtu\n"
+      "  bough export spinup.h5 --to pvd --every 10 -o spinup.pvd\n  bough export spinup.h5 --to gltf -o spinup.glb\n"
+      "  bough export boom.h5 --to mat -o boom.mat\n"
       "  bough export boom-modes.h5 --to uff -o boom.uff\n  bough export boom.h5 --to sid -o boom.SID_FEM\n"
       "  bough export boom.h5 --to mbdyn -o boom.fem\n  bough export boom.bdf --to bdf -o plain.bdf");
   verb->callback([&action, o] { action = [o] { return run_export(*o); }; });

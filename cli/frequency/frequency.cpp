@@ -75,20 +75,6 @@ void note_direct(const records::DynamicDeck& deck, Diagnostics& diagnostics) {
                      "take modes well beyond the highest frequency of the excitation (--modes, --max-hz)");
 }
 
-void write_csv(const records::DeckResponse& response, const std::string& path) {
-  std::ostringstream text;
-  for (const auto& subcase : response.subcases) {
-    auto columns = exports::make_response_columns(subcase);
-    if (response.subcases.size() > 1) {
-      if (&subcase != &response.subcases.front()) text << "\n";
-      const auto rows = columns.front().values.size();
-      columns.insert(columns.begin(), {"subcase", Eigen::VectorXd::Constant(rows, subcase.id)});
-    }
-    exports::write_csv(text, columns);
-  }
-  write_text_file(path, text.str());
-}
-
 int run_deck_response(const DeckResponseOptions& options) {
   Console console(options.quiet, options.verbosity);
   console.set_subject(options.deck);
@@ -143,7 +129,7 @@ int run_deck_response(const DeckResponseOptions& options) {
   console.print(failures.get_items(diagnostics));
   do_once([&] {
     if (!options.output.empty()) hdf5::write_response(response, options.output);
-    if (!options.csv.empty()) write_csv(response, options.csv);
+    if (!options.csv.empty()) write_text_file(options.csv, exports::make_response_csv(response));
     if (!options.punch.empty()) write_text_file(options.punch, exports::make_punch_text(response));
   });
   if (options.json) {

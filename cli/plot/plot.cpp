@@ -7,14 +7,16 @@
 #include <memory>
 #include <sstream>
 
-#include "cli/common/channels.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/converter.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
+#include "cli/export/export_matrices.hpp"
+#include "cli/plot/history_plots.hpp"
 #include "cli/plot/linear_plots.hpp"
 #include "cli/plot/response_plots.hpp"
 #include "formats/report/svg_plot.hpp"
+#include "formats/report/terminal_plot.hpp"
 
 namespace bough::cli {
 
@@ -27,10 +29,13 @@ struct PlotOptions : CommonOptions {
   std::vector<std::string> sensors;
   std::vector<std::string> labels;
   std::vector<std::string> points;
-  std::string title, x_label = "time", y_label;
+  std::string title, x_label, y_label;
   double y_min = 0, y_max = 0;
   bool has_limits = false;
   LinearPlotChoice linear;
+  CurveChoice curves;
+  bool term = false;
+  std::string csv;
 };
 
 /// Two numeric columns of a CSV file; lines that start with # or a letter are skipped.
@@ -81,78 +86,126 @@ std::string choose_picture(const PlotOptions& o, std::string otherwise) {
   return otherwise + ".svg";
 }
 
-/// Stacked plots of linear models, and of responses of decks.
+/// Columns of the terminal; of a pipe as COLUMNS says, or 80.
+int choose_width() {
+  if (const auto width = get_terminal_width(); width > 0) return static_cast<int>(width);
+  const char* columns = std::getenv("COLUMNS");
+  const int width = columns != nullptr ? std::atoi(columns) : 0;
+  return width > 0 ? std::min(width, 1000) : 80;
+}
+
+void print_plots(const std::vector<report::Plot>& plots, const Console& console) {
+  const bool has_color = get_terminal_width() > 0 && std::getenv("NO_COLOR") == nullptr;
+  const int height = plots.size() > 1 ? 10 : 16;
+  std::string text;
+  for (const auto& plot : plots) {
+    auto named = plot;
+    if (named.title.empty()) named.title = named.y_label;
+    text += report::draw_text(named, choose_width(), height, has_color);
+  }
+  console.print_data(text);
+}
+
+/// curve,x,y: the points of every curve as it is drawn, all digits.
+std::string make_curves_csv(const std::vector<report::Plot>& plots) {
+  std::string text = "curve,x,y\n";
+  int number = 0;
+  for (const auto& plot : plots)
+    for (const auto& curve : plot.curves) {
+      ++number;
+      for (Eigen::Index i = 0; i < curve.x.size(); ++i)
+        text += fmt::format("{},{:.17g},{:.17g}\n", number, curve.x[i], curve.y[i]);
+    }
+  return text;
+}
+
+/// What the options say of the first plot, and the reference points; then the picture.
 int draw_plots(const PlotOptions& o, std::vector<report::Plot> plots, const std::string& otherwise,
-               const Console& console) {
-  plots.front().title = o.title;
+               const Diagnostics& diagnostics, const Console& console) {
+  if (!o.title.empty()) plots.front().title = o.title;
+  std::size_t number = 0;
   for (auto& plot : plots) {
-    for (std::size_t i = 0; i < std::min(o.labels.size(), plot.curves.size()); ++i)
-      if (&plot == &plots.front()) plot.curves[i].label = o.labels[i];
-    if (&plot == &plots.front() && o.has_limits) plot.y_min = o.y_min, plot.y_max = o.y_max;
+    for (auto& curve : plot.curves)
+      if (number < o.labels.size() && (&plot == &plots.front() || o.curves.subplots)) {
+        (o.curves.subplots ? plot.y_label : curve.label) = o.labels[number++];
+      }
+    if (o.has_limits && &plot == &plots.front()) plot.y_min = o.y_min, plot.y_max = o.y_max;
   }
   if (!o.y_label.empty()) plots.front().y_label = o.y_label;
-  for (const auto& path : o.points) plots.front().curves.push_back(read_points(path));
-  const auto output = choose_picture(o, otherwise);
+  if (!o.x_label.empty()) plots.back().x_label = o.x_label;
+  for (const auto& path : o.points) {
+    plots.front().curves.push_back(read_points(path));
+    if (number < o.labels.size()) plots.front().curves.back().label = o.labels[number++];
+  }
+  Diagnostics said = diagnostics;
+  if (number < o.labels.size())
+    said.warning("cli.labels-left", {},
+                 fmt::format("there are {} and {}: the last ones are not used", count(o.labels.size(), "label"),
+                             count(number, "curve")),
+                 "give one --label a curve, in the order of the files and sensors, then of --points");
+  const bool has_picture = !o.output.empty() || (!o.term && o.csv.empty());
+  const auto output = has_picture ? choose_picture(o, otherwise) : "";
   auto inputs = o.files;
   inputs.insert(inputs.end(), o.points.begin(), o.points.end());
-  check_output(o, output, inputs);
+  check_outputs(o, {output, o.csv}, inputs);
+  if (o.term) {
+    console.print(said);
+    print_plots(plots, console);
+  }
+  if (!o.csv.empty()) {
+    write_text_file(o.csv, make_curves_csv(plots));
+    console.print("written: " + o.csv + "\n");
+  }
+  if (!has_picture) {
+    if (!o.term) console.print(said);
+    return kSuccess;
+  }
   write_picture(output, plots.size() == 1 ? report::draw_svg(plots.front()) : report::draw_svg(plots));
+  if (!o.term) console.print(said);
   console.print("written: " + output + "\n");
   return kSuccess;
+}
+
+void check_choices(const PlotOptions& o) {
+  if (o.has_limits && !(o.y_min < o.y_max))
+    throw InputError("cli.bad-range", {}, fmt::format("the axis from {:g} to {:g} is empty", o.y_min, o.y_max),
+                     "give --y-max above --y-min");
+  const auto& c = o.curves;
+  if (!c.window.empty() && !(c.window[0] < c.window[1]))
+    throw InputError("cli.bad-range", {},
+                     fmt::format("the window from {:g} to {:g} is empty", c.window[0], c.window[1]),
+                     "give --window T0,T1 with T1 above T0");
+  if (c.difference && o.files.size() < 2)
+    throw InputError("cli.nothing-to-plot", {}, "--difference takes two files", "name the run to take off first");
 }
 
 int run_plot(const PlotOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
   Diagnostics diagnostics;
-  if (o.has_limits && !(o.y_min < o.y_max))
-    throw InputError("cli.bad-range", {}, fmt::format("the axis from {:g} to {:g} is empty", o.y_min, o.y_max),
-                     "give --y-max above --y-min");
+  check_choices(o);
   if (!o.linear.kind.empty())
     return draw_plots(o, make_linear_plots(o.files, o.linear),
-                      fs::path(o.files.front()).stem().string() + "-" + o.linear.kind, console);
+                      fs::path(o.files.front()).stem().string() + "-" + o.linear.kind, diagnostics, console);
   if (o.sensors.empty())
     throw InputError("cli.nothing-to-plot", {}, "neither --sensor nor --kind says what to draw",
                      "give --sensor NAME of results, or --kind bode of a linear model");
-  if (is_deck_response(o.files))
-    return draw_plots(o, make_response_plots(o.files, o.sensors), o.sensors.front(), console);
-  report::Plot plot;
-  plot.title = o.title.empty() ? fmt::format("{}", fmt::join(o.sensors, ", ")) : o.title;
-  plot.x_label = o.x_label;
-  plot.y_label = o.y_label.empty() && o.sensors.size() == 1 ? o.sensors.front() : o.y_label;
-  plot.y_min = o.y_min;
-  plot.y_max = o.y_max;
-  for (const auto& file : o.files) {
-    demand_file(file);
-    warn_incomplete(file, diagnostics);
-    const auto results = hdf5::read_results(file);
-    for (const auto& sensor : o.sensors) {
-      for (auto& column : choose_columns(results, file, sensor)) {
-        const bool one_curve_a_file = o.sensors.size() == 1 && sensor.find(':') != std::string::npos;
-        std::string label = o.files.size() > 1 ? fs::path(file).stem().string() : "";
-        if (o.files.size() == 1 || !one_curve_a_file) label += (label.empty() ? "" : " ") + column.name;
-        if (plot.curves.size() < o.labels.size()) label = o.labels[plot.curves.size()];
-        plot.curves.push_back({label, results.time, std::move(column.values), false});
-      }
-    }
+  if (is_deck_response(o.files)) {
+    auto plots = make_response_plots(o.files, o.sensors, o.curves.window);
+    const bool is_over_time = plots.size() == 1;
+    return draw_plots(o, shape_plots(std::move(plots), o.curves, is_over_time), o.sensors.front(), diagnostics,
+                      console);
   }
-  for (const auto& path : o.points) {
-    plot.curves.push_back(read_points(path));
-    if (plot.curves.size() <= o.labels.size()) plot.curves.back().label = o.labels[plot.curves.size() - 1];
-  }
-  if (o.labels.size() > plot.curves.size())
-    diagnostics.warning("cli.labels-left", {},
-                        fmt::format("there are {} and {}: the last ones are not used", count(o.labels.size(), "label"),
-                                    count(plot.curves.size(), "curve")),
-                        "give one --label a curve, in the order of the files and sensors, then of --points");
-  const std::string output = choose_picture(o, o.sensors.front());
-  auto inputs = o.files;
-  inputs.insert(inputs.end(), o.points.begin(), o.points.end());
-  check_output(o, output, inputs);
-  write_picture(output, report::draw_svg(plot));
-  console.print(diagnostics);
-  console.print("written: " + output + "\n");
-  return kSuccess;
+  demand_file(o.files.front());
+  const bool is_campaign = read_file_format(o.files.front()) == "bough-outcomes";
+  auto plot = is_campaign ? make_campaign_plot(o.files, o.sensors, o.curves)
+                          : make_history_plot(o.files, o.sensors, o.curves, diagnostics);
+  plot.title = fmt::format("{}", fmt::join(o.sensors, ", "));
+  if (plot.x_label.empty()) plot.x_label = "time";
+  if (o.sensors.size() == 1) plot.y_label = o.sensors.front();
+  const bool is_over_time = !is_campaign && o.curves.x.empty();
+  if (is_over_time && o.curves.psd) plot.y_label += plot.y_label.empty() ? "PSD" : ", PSD";
+  return draw_plots(o, shape_plots({std::move(plot)}, o.curves, is_over_time), o.sensors.front(), diagnostics, console);
 }
 
 }  // namespace
@@ -161,9 +214,9 @@ void add_plot(CLI::App& app, Action& action) {
   auto o = std::make_shared<PlotOptions>();
   auto* verb = app.add_subcommand("plot", "Curves of results against time, or a linear model, as a picture");
   verb->add_option("files", o->files, "HDF5 files: results, or with --kind linear models or sweeps")->required();
-  verb->add_option("--sensor", o->sensors,
+  verb->add_option("--sensor,--channel", o->sensors,
                    "Sensor NAME or NAME:component, or a path such as /energy/strain; of responses of decks "
-                   "displacement:12:3; may be repeated")
+                   "displacement:12:3; of outcomes.h5 a column; may be repeated")
       ->allow_extra_args(false);
   verb->add_option("--kind", o->linear.kind,
                    "Of linear models: bode, nichols, sigma (singular values) or poles; of what linearize --sweep or "
@@ -172,12 +225,31 @@ void add_plot(CLI::App& app, Action& action) {
       ->excludes("--sensor");
   verb->add_option("--inputs", o->linear.inputs, "With --kind: only these inputs")->delimiter(',')->needs("--kind");
   verb->add_option("--outputs", o->linear.outputs, "With --kind: only these outputs")->delimiter(',')->needs("--kind");
+  auto& c = o->curves;
+  verb->add_option("--x", c.x, "Against this channel instead of the time; of outcomes.h5 a point a case")
+      ->excludes("--kind");
+  verb->add_option("--window", c.window, "Only times from T0 to T1, as T0,T1")->delimiter(',')->expected(2);
+  auto* psd = verb->add_flag("--psd", c.psd, "Power spectral density (Welch, Hann's window, overlap of a half)");
+  verb->add_flag("--spectrum", c.spectrum, "Amplitudes over frequency (Hann's window, straight line taken off)")
+      ->excludes(psd)
+      ->excludes("--x");
+  psd->excludes("--x");
+  verb->add_option("--segment", c.segment, "--psd: samples of a segment")
+      ->check(CLI::Range(2, 1 << 30))
+      ->needs(psd)
+      ->capture_default_str();
+  verb->add_flag("--difference", c.difference, "Each further file less the first one")->excludes("--x");
+  verb->add_flag("--subplots", c.subplots, "Each curve in a plot of its own, one above the other");
+  verb->add_flag("--log-x", c.log_x, "Decades below");
+  verb->add_flag("--log-y", c.log_y, "Decades upward; --psd has them");
+  verb->add_flag("--term", o->term, "Print the curves in the terminal; a picture too only with -o");
+  verb->add_option("--csv", o->csv, "Write the points of the curves, as curve,x,y; a picture too only with -o");
   verb->add_option("--points", o->points, "CSV file of x,y drawn as markers: reference points; may be repeated")
       ->allow_extra_args(false);
   verb->add_option("--label", o->labels, "Label of each curve in turn, then of each --points; may be repeated")
       ->allow_extra_args(false);
   verb->add_option("--title", o->title, "Title");
-  verb->add_option("--x-label", o->x_label, "Label of the time axis")->capture_default_str();
+  verb->add_option("--x-label", o->x_label, "Label of the axis below");
   verb->add_option("--y-label", o->y_label, "Label of the other axis");
   auto* low = verb->add_option("--y-min", o->y_min, "Lower end of the y axis; curves are clipped");
   auto* high = verb->add_option("--y-max", o->y_max, "Upper end of the y axis");
@@ -187,6 +259,9 @@ void add_plot(CLI::App& app, Action& action) {
   verb->footer(
       "Example:\n  bough plot spinup.h5 --sensor tip_deflection:y -o tip.svg\n"
       "  bough plot spinup.h5 spinup-no-kg.h5 --sensor tip_deflection:y --y-min -1.2 --y-max 0.2 -o tip.svg\n"
+      "  bough plot spinup.h5 --sensor /bodies/boom/eta:1 --psd --term\n"
+      "  bough plot a.h5 b.h5 --sensor tip:y --difference --window 0,10 -o difference.svg\n"
+      "  bough plot outcomes.h5 --sensor tip_max --x density -o scatter.svg\n"
       "  bough plot arm-linear.h5 --kind bode --outputs tip:y -o bode.svg\n"
       "  bough plot campbell.h5 --kind campbell -o campbell.svg");
   verb->callback([&action, o] { action = [o] { return run_plot(*o); }; });

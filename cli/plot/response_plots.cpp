@@ -45,7 +45,8 @@ bool is_deck_response(const std::vector<std::string>& files) {
 }
 
 std::vector<report::Plot> make_response_plots(const std::vector<std::string>& files,
-                                              const std::vector<std::string>& names) {
+                                              const std::vector<std::string>& names,
+                                              const std::vector<double>& window) {
   std::vector<report::Plot> plots(1);
   for (const auto& file : files) {
     demand_file(file);
@@ -79,6 +80,18 @@ std::vector<report::Plot> make_response_plots(const std::vector<std::string>& fi
       }
     }
   }
+  if (window.empty()) return plots;
+  for (auto& plot : plots)
+    for (auto& curve : plot.curves) {
+      const auto inside = (curve.x.array() >= window[0] && curve.x.array() <= window[1]).eval();
+      if (!inside.any())
+        throw InputError("cli.bad-range", {files.front()}, "no sample lies in the window", "give another --window");
+      Eigen::Index first = 0, last = curve.x.size() - 1;  // x ascends
+      while (!inside[first]) ++first;
+      while (!inside[last]) --last;
+      curve.x = curve.x.segment(first, last - first + 1).eval();
+      curve.y = curve.y.segment(first, last - first + 1).eval();
+    }
   return plots;
 }
 

@@ -23,7 +23,8 @@ namespace bough::cli {
 namespace {
 
 constexpr const char* kTakes =
-    "give results, a flexible body, modes, a linear model, a comparison, outcomes.h5, or the JSON of select";
+    "give results, a flexible body, modes, a response, a linear model, a comparison, outcomes.h5, or the JSON of "
+    "select";
 
 report::Chapter make_selection_chapter(const std::string& file) {
   std::ifstream in(file);
@@ -135,6 +136,7 @@ report::Chapter make_chapter(const std::string& file, const ReportRequest& reque
   if (format == "bough-results") return make_results_chapter(file, request, diagnostics);
   if (format == "bough-flexbody") return make_body_chapter(file, diagnostics);
   if (format == "bough-modes") return make_modes_chapter(file);
+  if (format == "bough-frequency" || format == "bough-transient") return make_response_chapter(file);
   if (format == "bough-linear") return make_linear_chapter(file);
   if (format == "bough-comparison") return report::make_chapter(hdf5::read_comparison(file), file, list_facts(file));
   if (format == "bough-outcomes") return make_campaign_chapter(file);

@@ -23,6 +23,8 @@ std::vector<std::pair<std::string, std::string>> list_settings(const std::string
 
 report::Chapter make_body_chapter(const std::string& file, Diagnostics& diagnostics);
 report::Chapter make_modes_chapter(const std::string& file);
+/// Of `frequency` or `transient`: the largest curves of each quantity, their peaks, the modes.
+report::Chapter make_response_chapter(const std::string& file);
 report::Chapter make_results_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics);
 
 }  // namespace bough::cli

@@ -6,6 +6,7 @@
 #include "cli/common/body_files.hpp"
 #include "cli/common/channels.hpp"
 #include "cli/common/options.hpp"
+#include "cli/common/run_bodies.hpp"
 #include "cli/common/system_files.hpp"
 #include "cli/report/report_files.hpp"
 #include "formats/hdf5/files.hpp"
@@ -19,42 +20,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The file of that name and SHA-256 among those of the call, beside the results or here; empty, and why, without.
-std::string find_body_file(const std::string& written, const std::string& results, const ReportRequest& request,
-                           const std::vector<std::pair<std::string, std::string>>& source, std::string& why) {
-  std::string expected;
-  for (const auto& [name, hash] : source)
-    if (fs::path(name).filename() == fs::path(written).filename()) expected = hash;
-  std::vector<std::string> places = request.files;
-  std::string folder;
-  if (!source.empty()) folder = fs::path(source.front().first).parent_path().string();
-  for (const auto& place : {resolve_beside(results, written), (fs::path(folder) / written).string(),
-                            resolve_beside(results, (fs::path(folder) / written).string()),
-                            resolve_beside(results, fs::path(written).filename().string()), written})
-    places.push_back(place);
-  bool is_other = false;
-  for (const auto& place : places) {
-    std::error_code failed;
-    if (!fs::is_regular_file(place, failed) || place == results) continue;
-    if (!expected.empty() && hdf5::calc_sha256(place) != expected) {
-      is_other = is_other || fs::path(place).filename() == fs::path(written).filename();
-      continue;
-    }
-    if (!expected.empty() || fs::path(place).filename() == fs::path(written).filename()) return place;
-  }
-  why = is_other ? written + " is not the file that the run was started with"
-                 : written + " is not here; name it after the results file";
-  return {};
-}
-
 /// Size as the warning of a run takes it, without its care for far origins: the largest distance of a point from Bo.
 double calc_size(const Eigen::MatrixXd& xyz) { return xyz.rows() > 0 ? xyz.rowwise().norm().maxCoeff() : 0; }
-
-Eigen::Vector3d find_rigid_node(const records::BodyRecord& body, int id) {
-  for (const auto& node : body.nodes)
-    if (node.id == id) return node.p;
-  return Eigen::Vector3d::Zero();
-}
 
 std::string name_type(records::HingeType type) {
   switch (type) {
@@ -92,19 +59,12 @@ void add_scene(const std::string& file, const hdf5::RunInputs& inputs, const Rep
   std::map<std::string, int> index;
   for (const auto& body : spec.bodies) {
     report::SceneBody drawn{body.name, {}, 0};
-    // What hinges hold on to is part of a rigid body's picture.
-    std::vector<Eigen::Vector3d> nodes;
-    for (const auto& node : body.nodes) nodes.push_back(node.p);
-    for (const auto& hinge : spec.hinges) {
-      if (hinge.parent == body.name) nodes.push_back(find_rigid_node(body, hinge.parent_node) + hinge.parent_position);
-      if (hinge.child == body.name) nodes.push_back(find_rigid_node(body, hinge.child_node) + hinge.child_position);
-    }
     if (body.file.empty()) {
-      drawn.drawing = report::make_box(body.mass, body.cg, body.inertia, nodes);
+      drawn.drawing = report::make_box(body.mass, body.cg, body.inertia, list_rigid_points(spec, body));
     } else {
       std::string why;
       const auto written = get_body_path(body.file);
-      const auto place = find_body_file(written, file, request, inputs.source, why);
+      const auto place = find_body_file(written, file, request.files, inputs.source, why);
       if (place.empty()) {
         history.missing.push_back("body " + body.name + ": " + why);
       } else {

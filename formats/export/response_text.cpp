@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <sstream>
 #include <tuple>
 
 namespace bough::exports {
@@ -143,6 +144,20 @@ std::vector<CsvColumn> make_response_columns(const ResponseSubcase& s) {
     columns.push_back(std::move(second));
   }
   return columns;
+}
+
+std::string make_response_csv(const records::DeckResponse& response) {
+  std::ostringstream text;
+  for (const auto& subcase : response.subcases) {
+    auto columns = make_response_columns(subcase);
+    if (response.subcases.size() > 1) {
+      if (&subcase != &response.subcases.front()) text << "\n";
+      const auto rows = columns.front().values.size();
+      columns.insert(columns.begin(), {"subcase", Eigen::VectorXd::Constant(rows, subcase.id)});
+    }
+    write_csv(text, columns);
+  }
+  return text.str();
 }
 
 std::string make_punch_text(const records::DeckResponse& response) {

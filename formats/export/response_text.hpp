@@ -19,6 +19,9 @@ struct NamedCurve {
 };
 std::vector<NamedCurve> list_curves(const records::ResponseSubcase& subcase);
 
+/// The columns below of every subcase as text.
+std::string make_response_csv(const records::DeckResponse& response);
+
 /// frequency_hz or time, then a column per curve and part: real and imag, or magnitude and phase (degrees, -180 to 180)
 /// as the deck asks; over time one. Of several subcases the curves of each stand below each other, with the column
 /// `subcase` first; all have the columns of the first.

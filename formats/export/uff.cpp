@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/diagnostic.hpp"
+#include "formats/export/response_text.hpp"
 
 namespace bough::exports {
 namespace {
@@ -153,23 +154,37 @@ bool is_even(const Eigen::VectorXd& time, double step) {
   return true;
 }
 
-void put_function(UffText& out, int number, const Eigen::VectorXd& time, const CsvColumn& column) {
-  const auto n = time.size();
+/// A function over x: real, or complex where `imag` has values.
+struct UffFunction {
+  std::string name;
+  const Eigen::VectorXd& x;
+  Eigen::VectorXd real, imag;
+  bool is_over_time = true;
+  int load_case = 0;
+};
+
+void put_function(UffText& out, int number, const UffFunction& f) {
+  const auto n = f.x.size();
+  const bool is_complex = f.imag.size() > 0;
   // The mean step, with the digits that would be written.
-  const double step = n > 1 ? round_to_five((time(n - 1) - time(0)) / static_cast<double>(n - 1)) : 0;
-  const bool even = is_even(time, step);
+  const double step = n > 1 ? round_to_five((f.x(n - 1) - f.x(0)) / static_cast<double>(n - 1)) : 0;
+  const bool even = is_even(f.x, step);
   out.begin(58);
-  out.put_id(column.name);
+  out.put_id(f.name);
   for (int i = 0; i < 4; ++i) out.put_id("");
-  out.print("%5d%10d%5d%10d %-10s%10d%4d %-10s%10d%4d\n", 1, number, 0, 0, "NONE", 0, 0, "NONE", 0, 0);
-  out.print("%10d%10d%10d%13.5E%13.5E%13.5E\n", 4, static_cast<int>(n), even ? 1 : 0, even ? time(0) : 0.0,
-            even ? step : 0.0, 0.0);
-  for (const auto& [type, label] : {std::pair{17, "Time"}, {0, "NONE"}, {0, "NONE"}, {0, "NONE"}})
+  out.print("%5d%10d%5d%10d %-10s%10d%4d %-10s%10d%4d\n", f.is_over_time ? 1 : 12, number, 0, f.load_case, "NONE", 0, 0,
+            "NONE", 0, 0);
+  out.print("%10d%10d%10d%13.5E%13.5E%13.5E\n", is_complex ? 6 : 4, static_cast<int>(n), even ? 1 : 0,
+            even ? f.x(0) : 0.0, even ? step : 0.0, 0.0);
+  const std::pair<int, const char*> abscissa{f.is_over_time ? 17 : 18, f.is_over_time ? "Time" : "Frequency"};
+  for (const auto& [type, label] : {abscissa, {0, "NONE"}, {0, "NONE"}, {0, "NONE"}})
     out.print("%10d%5d%5d%5d %-20s %-20s\n", type, 0, 0, 0, label, "NONE");
-  const Eigen::Index per_line = even ? 4 : 2;
+  const Eigen::Index per_line = is_complex ? (even ? 2 : 1) : (even ? 4 : 2);
   for (Eigen::Index i = 0; i < n; ++i) {
-    if (!even) out.print("%13.5E", time(i));
-    out.print("%20.12E%s", column.values(i), (i + 1) % per_line == 0 || i + 1 == n ? "\n" : "");
+    if (!even) out.print("%13.5E", f.x(i));
+    out.print("%20.12E", f.real(i));
+    if (is_complex) out.print("%20.12E", f.imag(i));
+    if ((i + 1) % per_line == 0 || i + 1 == n) out.print("\n");
   }
   out.end();
 }
@@ -206,7 +221,17 @@ std::string make_uff(const std::vector<CsvColumn>& columns) {
   BOUGH_DEMAND(!columns.empty());
   UffText out;
   for (std::size_t c = 1; c < columns.size(); ++c)
-    put_function(out, static_cast<int>(c), columns.front().values, columns[c]);
+    put_function(out, static_cast<int>(c), {columns[c].name, columns.front().values, columns[c].values, {}, true, 0});
+  return out.take();
+}
+
+std::string make_uff(const records::DeckResponse& response) {
+  UffText out;
+  int number = 0;
+  for (const auto& subcase : response.subcases)
+    for (const auto& curve : list_curves(subcase))
+      put_function(out, ++number,
+                   {curve.name, subcase.x, curve.real, curve.imag, response.is_over_time, std::max(subcase.id, 0)});
   return out.take();
 }
 

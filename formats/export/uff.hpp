@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "formats/export/csv.hpp"
+#include "formats/records/deck_response.hpp"
 #include "formats/records/flex_body.hpp"
 #include "formats/records/modes.hpp"
 
@@ -15,5 +16,8 @@ std::string make_uff(const records::ModesResult& modes);
 std::string make_uff(const records::FlexBody& body);
 /// Dataset 58 for every column after the first, which is the time.
 std::string make_uff(const std::vector<CsvColumn>& columns);
+
+/// Curves of a deck's response as functions (58): over frequency complex spectra, over time real.
+std::string make_uff(const records::DeckResponse& response);
 
 }  // namespace bough::exports

@@ -56,11 +56,11 @@ class DrawingBuilder {
     for (std::size_t i = 0; i < places_.size(); ++i) drawing.xyz.row(static_cast<Eigen::Index>(i)) = places_[i];
   }
 
-  void add_shapes(const std::vector<Eigen::MatrixXd>& phi) {
+  void add_shapes(const std::vector<Eigen::MatrixXd>& phi, bool all_shapes) {
     const Eigen::Index modes = phi.empty() ? 0 : phi.front().cols();
     const double bytes = 6.0 * static_cast<double>(places_.size());
     const auto most = static_cast<Eigen::Index>(kMostShapeBytes / std::max(bytes, 1.0));
-    for (Eigen::Index j = 0; j < std::min(modes, most); ++j) {
+    for (Eigen::Index j = 0; j < (all_shapes ? modes : std::min(modes, most)); ++j) {
       Eigen::MatrixXd shape = Eigen::MatrixXd::Zero(drawing.xyz.rows(), 3);
       for (std::size_t i = 0; i < shape_of_point_.size(); ++i)
         if (const int k = shape_of_point_[i]; k >= 0)
@@ -151,14 +151,14 @@ int Drawing::find(int node) const {
 }
 
 Drawing make_drawing(const records::BodyMesh& mesh, const std::vector<int>& node_id, const Eigen::MatrixXd& node_xyz,
-                     const std::vector<Eigen::MatrixXd>& phi) {
+                     const std::vector<Eigen::MatrixXd>& phi, bool all_shapes) {
   DrawingBuilder builder(mesh, node_id, node_xyz);
-  builder.add_shapes(phi);
+  builder.add_shapes(phi, all_shapes);
   return std::move(builder.drawing);
 }
 
-Drawing make_drawing(const records::FlexBody& body) {
-  if (body.full_phi.size() == 0) return make_drawing(body.mesh, body.node_id, body.node_xyz, body.phi);
+Drawing make_drawing(const records::FlexBody& body, bool all_shapes) {
+  if (body.full_phi.size() == 0) return make_drawing(body.mesh, body.node_id, body.node_xyz, body.phi, all_shapes);
   const auto g = static_cast<Eigen::Index>(body.mesh.grid_id.size());
   std::map<int, Eigen::Index> grid_of;
   for (Eigen::Index i = 0; i < g; ++i) grid_of[body.mesh.grid_id[static_cast<std::size_t>(i)]] = i;
@@ -169,7 +169,7 @@ Drawing make_drawing(const records::FlexBody& body) {
     if (found == grid_of.end() || code < 1 || code > 6) continue;
     phi[static_cast<std::size_t>(found->second)].row(code - 1) = body.full_phi.row(row);
   }
-  return make_drawing(body.mesh, body.mesh.grid_id, body.mesh.grid_xyz, phi);
+  return make_drawing(body.mesh, body.mesh.grid_id, body.mesh.grid_xyz, phi, all_shapes);
 }
 
 Drawing make_box(double mass, const Eigen::Vector3d& cg, const Eigen::Matrix3d& inertia,

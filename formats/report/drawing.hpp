@@ -22,10 +22,11 @@ struct Drawing {
 };
 
 /// Faces that two solids share are left out. phi: [node] 6 x n; grids that are no nodes have no shape.
+/// Shapes that would make a page too large are dropped, unless all_shapes.
 Drawing make_drawing(const records::BodyMesh& mesh, const std::vector<int>& node_id, const Eigen::MatrixXd& node_xyz,
-                     const std::vector<Eigen::MatrixXd>& phi);
+                     const std::vector<Eigen::MatrixXd>& phi, bool all_shapes = false);
 /// A body's own: of all grids with `--full`, else of its output nodes.
-Drawing make_drawing(const records::FlexBody& body);
+Drawing make_drawing(const records::FlexBody& body, bool all_shapes = false);
 
 /// The box of uniform density with this mass and inertia about cg, and a line from cg to each node. A body whose
 /// inertia no box has (a point, a line) gets what is left of one.

@@ -28,10 +28,10 @@ std::string make_badge(Verdict verdict) {
 }
 
 /// JSON inside an element: no "<" may end it.
-std::string shield(const std::string& json) {
+std::string shield(const std::string& data) {
   std::string text;
-  text.reserve(json.size());
-  for (const char c : json) {
+  text.reserve(data.size());
+  for (const char c : data) {
     if (c == '<')
       text += "\\u003c";
     else

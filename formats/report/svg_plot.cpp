@@ -139,7 +139,7 @@ std::string draw_axes(const Plot& plot, const Frame& f) {
     svg += "<path d=\"M" + number(f.left) + " " + number(f.map_y(t)) + "H" + number(f.left + f.width) + "\"/>\n";
   }
   svg += "</g>\n";
-  if (f.y.min < 0 && f.y.max > 0) {
+  if (!plot.has_log_y && f.y.min < 0 && f.y.max > 0) {
     svg += "<path d=\"M" + number(f.left) + " " + number(f.map_y(0)) + "H" + number(f.left + f.width) +
            "\" stroke=\"#888888\" stroke-width=\"1\"/>\n";
   }
@@ -203,12 +203,21 @@ double draw_legend(const Plot& plot, double top, std::string& svg) {
 
 }  // namespace
 
-std::string draw_svg(const Plot& given) {
-  Plot plot = given;
-  if (plot.has_log_x) {
-    for (auto& curve : plot.curves)
-      curve.x = curve.x.unaryExpr([](double v) { return v > 0 ? std::log10(v) : std::nan(""); });
+Plot take_logarithms(Plot plot) {
+  const auto take = [](double v) { return v > 0 ? std::log10(v) : std::nan(""); };
+  for (auto& curve : plot.curves) {
+    if (plot.has_log_x) curve.x = curve.x.unaryExpr(take).eval();
+    if (plot.has_log_y) curve.y = curve.y.unaryExpr(take).eval();
   }
+  if (plot.has_log_y && plot.y_max > plot.y_min) {
+    plot.y_min = take(plot.y_min);
+    plot.y_max = take(plot.y_max);
+  }
+  return plot;
+}
+
+std::string draw_svg(const Plot& given) {
+  const Plot plot = take_logarithms(given);
   Range x, y;
   for (const auto& curve : plot.curves) {
     BOUGH_DEMAND(curve.x.size() == curve.y.size());
@@ -224,7 +233,9 @@ std::string draw_svg(const Plot& given) {
   const double legend_height = draw_legend(plot, title_bottom + 14, legend);
   Frame f{kLeft, title_bottom + legend_height + 8, kWidth - kLeft - kRight, kPlotHeight, {}, {}};
   f.x = plot.has_log_x ? make_log_axis(x.min, x.max) : make_axis(x.min, x.max, 9, false);
-  f.y = is_given ? make_axis(plot.y_min, plot.y_max, 7, false) : make_axis(y.min, y.max, 7, true);
+  f.y = plot.has_log_y ? (is_given ? make_log_axis(plot.y_min, plot.y_max) : make_log_axis(y.min, y.max))
+        : is_given     ? make_axis(plot.y_min, plot.y_max, 7, false)
+                       : make_axis(y.min, y.max, 7, true);
 
   const double height = f.top + f.height + kBottom;
   std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(height) +

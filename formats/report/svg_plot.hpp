@@ -17,7 +17,10 @@ struct Plot {
   std::vector<Curve> curves;
   double y_min = 0, y_max = 0;  ///< equal: automatic; curves are clipped to the frame
   bool has_log_x = false;       ///< decades; values that are not positive are left out
+  bool has_log_y = false;
 };
+/// log10 of what is drawn in decades, ends of the axis too; NaN where there is none.
+Plot take_logarithms(Plot plot);
 std::string draw_svg(const Plot& plot);
 /// One above the other, in one picture.
 std::string draw_svg(const std::vector<Plot>& plots);

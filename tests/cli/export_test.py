@@ -234,6 +234,39 @@ class Export(ProgramTest):
                 np.testing.assert_allclose(s["values"], f["sensors/tip_deflection"][:, j], rtol=1e-12, atol=0)
                 np.testing.assert_allclose(s["time"], f["time"][:], rtol=1e-5)
 
+    def test_responses_of_decks(self):
+        """CSV as --csv writes it, functions as in the HDF5 file, and a page, of even and uneven samples."""
+        for verb, sol, case, cards, abscissa, even in [
+                ("frequency", 111, "FREQUENCY = 5", "FREQ1,5,1.,.5,20\nRLOAD1,9,10,,,3\nTABLED1,3,,,,,,,,+\n"
+                 "+,0.,1.,100.,1.,ENDT", "frequency_hz", True),
+                ("frequency", 111, "FREQUENCY = 5", "FREQ2,5,.5,20.,12\nRLOAD1,9,10,,,3\nTABLED1,3,,,,,,,,+\n"
+                 "+,0.,1.,100.,1.,ENDT", "frequency_hz", False),
+                ("transient", 112, "TSTEP = 5", "TSTEP,5,100,.01\nTLOAD1,9,10,,,3\nTABLED1,3,,,,,,,,+\n"
+                 "+,0.,1.,100.,1.,ENDT", "time", True)]:
+            with self.subTest(verb + cards):
+                self.write("r.bdf", BEAM.replace("SOL 103", f"SOL {sol}").replace(
+                    "METHOD = 1", f"METHOD = 1\n{case}\nDLOAD = 9\nSDAMPING = 6\nDISPLACEMENT = ALL").replace(
+                    "ENDDATA", f"TABDMP1,6,CRIT,,,,,,,+\n+,0.,.02,1000.,.02,ENDT\nDAREA,10,3,3,1.\n{cards}\nENDDATA"))
+                self.bough(verb, "r.bdf", "-o", "r.h5", "--csv", "r.csv", "-q")
+                self.assertEqual(self.bough("export", "r.h5", "--to", "csv").stdout, open(self.path("r.csv")).read())
+                self.bough("export", "r.h5", "--to", "uff", "-o", "r.uff")
+                functions = {f["name"]: f for f in uff_reader.read(self.path("r.uff"))}
+                with h5py.File(self.path("r.h5")) as f:
+                    (group,) = f["subcases"].values()
+                    part = group["displacement"]
+                    values = part["value"][:] if verb == "transient" else part["real"][:] + 1j * part["imag"][:]
+                    for (grid, component), column in zip(part["dofs"][:], values.T):
+                        found = functions[f"displacement:{grid}:{component}"]
+                        np.testing.assert_allclose(found["values"], column, rtol=1e-12, atol=1e-300)
+                        np.testing.assert_allclose(found["time"], group[abscissa][:], rtol=1e-12 if even else 1e-5)
+                    largest = np.abs(values).max()
+                self.assertGreater(largest, 0)
+                self.bough("report", "r.h5", "-o", "r.html", "-q")
+                page = open(self.path("r.html")).read()
+                self.assertIn(f"{verb} response", page)
+                self.assertIn("displacement:3:3", page)
+                self.assertIn(f"{largest:.6g}", page)
+
     def test_what_cannot_be_exported(self):
         self.write("beam.bdf", re.sub("METHOD = 1", "LOAD = 4", BEAM).replace("SOL 103", "SOL 101")
                    .replace("ENDDATA", "FORCE,4,3,,1.,1.,0.,0.\nENDDATA"))

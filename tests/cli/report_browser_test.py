@@ -129,6 +129,18 @@ class Page(ProgramTest):
         b.mouse("mousePressed", box["x"] + 150, box["y"] + 80, button="left", buttons=1, clickCount=1)
         b.mouse("mouseReleased", box["x"] + 150, box["y"] + 80, button="left", clickCount=1)
         self.assertNotEqual(b.run("document.querySelector('.clock').textContent"), clock)
+        # A film of the whole run: what is saved is kept here and looked at. EBML's mark begins a WebM file (RFC 8794).
+        b.run("""(() => { window.films = []; const make = URL.createObjectURL.bind(URL);
+          URL.createObjectURL = (blob) => { films.push(blob); return make(blob); };
+          const slider = document.querySelector('.motion .slider input'); slider.value = 0.5;
+          slider.dispatchEvent(new Event('input'));
+          [...document.querySelectorAll('.motion button')].find((one) => one.textContent === 'WebM').click(); })()""")
+        self.assertTrue(b.wait_for("films.length === 1", 60))
+        self.assertEqual(b.run("films[0].type"), "video/webm")
+        self.assertGreater(b.run("films[0].size"), 5000)
+        head = b.run("films[0].slice(0, 4).arrayBuffer().then((b) => [...new Uint8Array(b)].join(' '))")
+        self.assertEqual(head, "26 69 223 163")
+        self.assertEqual(b.run("Number(document.querySelector('.motion .scrub').value)"), 1000)
         self.check_sound()
 
     def test_modes(self):

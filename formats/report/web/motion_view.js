@@ -1,6 +1,6 @@
 import { Box, Drawing } from "./drawing.js";
 import { find_index, format_number } from "./numbers.js";
-import { el, get_css, get_style, make_button, make_check, make_select, make_slider } from "./page_parts.js";
+import { el, get_css, get_style, make_button, make_check, make_select, make_slider, save_blob } from "./page_parts.js";
 import { Viewer, make_triad } from "./viewer.js";
 
 // Rows of the rotation of a quaternion w x y z, of any length.
@@ -42,6 +42,7 @@ export class MotionView {
       make_select("follow", ["nothing", ...moving.map((b) => b.name)], (i) => { this.follow = i === 0 ? -1 : moving[i - 1].index; this.anchor(); }),
       make_check("frames", true, (on) => { this.has_frames = on; this.draw(); }),
       make_check("colour by displacement", false, (on) => { this.has_colors = on; this.draw(); }), this.viewer.make_view_buttons());
+    if (globalThis.MediaRecorder) tools.append(make_button("WebM", "Play once from the start and save it as a film", () => this.film()));
     const names = el("p", { class: "note legend" }, ...moving.map((b) => {
       const mark = el("span", { class: "swatch" });
       mark.style.background = get_style(b.index).color;
@@ -124,7 +125,7 @@ export class MotionView {
     if (is_on === this.is_playing) return;
     this.is_playing = is_on;
     this.play_button.textContent = is_on ? "⏸ pause" : "▶ play";
-    if (!is_on) return;
+    if (!is_on) return this.recorder?.stop();
     if (this.time >= this.last) this.time = this.first;
     let before = performance.now();
     const step = (now) => {
@@ -136,6 +137,24 @@ export class MotionView {
       requestAnimationFrame(step);
     };
     requestAnimationFrame(step);
+  }
+
+  // Plays once and saves what the canvas showed. A pause, or a click in a chart, ends the film there.
+  film() {
+    if (this.recorder) return;
+    this.play(false);
+    this.set_time(this.first);
+    const type = ["video/webm;codecs=vp9", "video/webm"].find((t) => MediaRecorder.isTypeSupported(t));
+    const parts = [], recorder = new MediaRecorder(this.viewer.canvas.captureStream(30), { mimeType: type, videoBitsPerSecond: 8e6 });
+    recorder.addEventListener("dataavailable", (event) => parts.push(event.data));
+    recorder.addEventListener("stop", () => {
+      this.recorder = null;
+      this.saved = new Blob(parts, { type: "video/webm" });
+      save_blob(this.saved, "motion.webm");
+    });
+    this.recorder = recorder;
+    recorder.start();
+    this.play(true);
   }
 
   draw() {

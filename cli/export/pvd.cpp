@@ -1,0 +1,166 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "base/xml_text.hpp"
+#include "cli/common/options.hpp"
+#include "cli/common/text_file.hpp"
+#include "cli/export/moving_system.hpp"
+#include "formats/export/vtu.hpp"
+
+namespace bough::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Eigen::MatrixXd;
+
+/// A body in its frame B: the mesh, and of each mode the displacements of its points (g x 3).
+struct Part {
+  records::BodyMesh mesh;
+  std::vector<MatrixXd> modes;
+};
+
+/// The box of a rigid body with its lines, and a point where nothing else is.
+Part make_rigid_part(const report::Drawing& drawing) {
+  Part part;
+  part.mesh.grid_xyz = drawing.xyz;
+  part.mesh.grid_id.assign(static_cast<std::size_t>(drawing.xyz.rows()), 0);
+  const auto add = [&](const char* type, const std::vector<std::uint32_t>& nodes, Eigen::Index width) {
+    records::BodyMesh::Block block;
+    block.type = type;
+    block.connectivity.resize(static_cast<Eigen::Index>(nodes.size()) / width, width);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      block.connectivity(static_cast<Eigen::Index>(i) / width, static_cast<Eigen::Index>(i) % width) =
+          static_cast<int>(nodes[i]);
+    block.element_id.assign(static_cast<std::size_t>(block.connectivity.rows()), 0);
+    part.mesh.blocks.push_back(std::move(block));
+  };
+  add("tri3", drawing.triangles, 3);
+  add("line2", drawing.edges, 2);
+  if (drawing.triangles.empty() && drawing.edges.empty()) add("vertex", {0}, 1);
+  return part;
+}
+
+Part make_part(const MovingBody& body, Diagnostics& diagnostics) {
+  if (!body.flex) return make_rigid_part(body.drawing);
+  auto picture = exports::make_picture(*body.flex);
+  if (picture.num_missing > 0)
+    diagnostics.warning("export.partial-shapes", {},
+                        fmt::format("body {}: mode shapes at {} of {} grids, the others are not drawn", body.name,
+                                    picture.mesh.grid_id.size(),
+                                    picture.mesh.grid_id.size() + static_cast<std::size_t>(picture.num_missing)),
+                        "reduce with --full, or without a list of output nodes");
+  Part part{std::move(picture.mesh), {}};
+  // Translations and rotations take turns.
+  for (std::size_t j = 0; j < picture.arrays.size(); j += 2) part.modes.push_back(std::move(picture.arrays[j].values));
+  return part;
+}
+
+MatrixXd sum_modes(const Part& part, const MatrixXd& eta, Eigen::Index sample) {
+  MatrixXd u = MatrixXd::Zero(part.mesh.grid_xyz.rows(), 3);
+  for (Eigen::Index j = 0; j < std::min(eta.cols(), static_cast<Eigen::Index>(part.modes.size())); ++j)
+    u += eta(sample, j) * part.modes[static_cast<std::size_t>(j)];
+  return u;
+}
+
+/// ½ ηᵀ K η with the stiffness of the body file: what its modes store, without geometric stiffness of the motion.
+double calc_strain_energy(const MovingBody& body, Eigen::Index sample) {
+  if (!body.flex || body.eta.cols() == 0) return 0;
+  const auto n = std::min(body.eta.cols(), body.flex->modal_stiffness.rows());
+  const Eigen::VectorXd eta = body.eta.row(sample).head(n).transpose();
+  return 0.5 * eta.dot(body.flex->modal_stiffness.topLeftCorner(n, n) * eta);
+}
+
+/// The mesh of all bodies as one; what moves is filled in for each frame.
+class Frames {
+ public:
+  Frames(const MovingSystem& system, double scale, Diagnostics& diagnostics) : system_(system), scale_(scale) {
+    for (const auto& body : system.bodies) parts_.push_back(make_part(body, diagnostics));
+    for (const auto& part : parts_) {
+      const auto first = static_cast<int>(mesh_.grid_id.size());
+      mesh_.grid_id.insert(mesh_.grid_id.end(), part.mesh.grid_id.begin(), part.mesh.grid_id.end());
+      for (auto block : part.mesh.blocks) {
+        block.connectivity = block.connectivity.unaryExpr([&](int k) { return k < 0 ? k : k + first; });
+        mesh_.blocks.push_back(std::move(block));
+      }
+    }
+    const auto g = static_cast<Eigen::Index>(mesh_.grid_id.size());
+    mesh_.grid_xyz.resize(g, 3);
+    arrays_ = {{"body", MatrixXd(g, 1)},
+               {"displacement", MatrixXd(g, 3)},
+               {"displacement_magnitude", MatrixXd(g, 1)},
+               {"velocity", MatrixXd(g, 3)},
+               {"strain_energy", MatrixXd(g, 1)}};
+  }
+
+  /// x = r + R (p + s Φη), v = ṙ + R (ω × (p + Φη) + Φη̇) with ω in B.
+  std::string make(Eigen::Index sample, exports::VtuEncoding encoding) {
+    Eigen::Index first = 0;
+    for (std::size_t b = 0; b < parts_.size(); ++b) {
+      const auto& body = system_.bodies[b];
+      const auto& part = parts_[b];
+      const auto g = part.mesh.grid_xyz.rows();
+      const Eigen::Matrix3d R = to_rotation(body.quaternion.row(sample));
+      const MatrixXd u = sum_modes(part, body.eta, sample);
+      const auto rows = Eigen::seqN(first, g);
+      mesh_.grid_xyz(rows, Eigen::all) =
+          ((part.mesh.grid_xyz + scale_ * u) * R.transpose()).rowwise() + body.position.row(sample);
+      arrays_[0].values(rows, 0).setConstant(static_cast<double>(b + 1));
+      arrays_[1].values(rows, Eigen::all) = u * R.transpose();
+      arrays_[2].values(rows, 0) = u.rowwise().norm();
+      MatrixXd v = sum_modes(part, body.eta_dot, sample);
+      if (body.angular_velocity.cols() == 3) {
+        const Eigen::Vector3d w = body.angular_velocity.row(sample).transpose();
+        for (Eigen::Index k = 0; k < g; ++k)
+          v.row(k) += w.cross(Eigen::Vector3d((part.mesh.grid_xyz.row(k) + u.row(k)).transpose())).transpose();
+      }
+      v = v * R.transpose();
+      if (body.velocity.cols() == 3) v.rowwise() += body.velocity.row(sample);
+      arrays_[3].values(rows, Eigen::all) = v;
+      arrays_[4].values(rows, 0).setConstant(calc_strain_energy(body, sample));
+      first += g;
+    }
+    return exports::make_vtu(mesh_, arrays_, encoding);
+  }
+
+ private:
+  const MovingSystem& system_;
+  double scale_;
+  std::vector<Part> parts_;
+  records::BodyMesh mesh_;
+  std::vector<exports::PointArray> arrays_;
+};
+
+}  // namespace
+
+int write_pvd(const MovingSystem& system, double scale, bool is_ascii, const std::string& output,
+              Diagnostics& diagnostics) {
+  const fs::path collection(output);
+  const std::string folder = collection.stem().string() + "-frames";
+  const auto place = collection.parent_path() / folder;
+  check_place(place.string());
+  std::error_code failed;
+  fs::create_directories(place, failed);
+  if (failed)
+    throw ComputationError("cli.write", {place.string()}, "the folder cannot be made: " + failed.message(),
+                           "choose another place with -o");
+  Frames frames(system, scale, diagnostics);
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n<Collection>\n";
+  const auto count = static_cast<int>(system.time.size());
+  for (int i = 0; i < count; ++i) {
+    const auto name = fmt::format("{:06}.vtu", i);
+    write_text_file((place / name).string(),
+                    frames.make(i, is_ascii ? exports::VtuEncoding::Ascii : exports::VtuEncoding::Base64));
+    text += fmt::format("<DataSet timestep=\"{:.17g}\" group=\"\" part=\"0\" file=\"{}\"/>\n", system.time[i],
+                        escape_xml(folder + "/" + name));
+  }
+  // Last: a collection that is there names whole files.
+  write_text_file(output, text + "</Collection>\n</VTKFile>\n");
+  return count;
+}
+
+}  // namespace bough::cli

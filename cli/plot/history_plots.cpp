@@ -1,0 +1,207 @@
+#include "cli/plot/history_plots.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "cli/common/channels.hpp"
+#include "cli/common/options.hpp"
+#include "formats/hdf5/table_file.hpp"
+#include "formats/report/spectrum.hpp"
+
+namespace bough::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Eigen::VectorXd;
+
+void cut_to_window(report::Curve& curve, const VectorXd& time, const std::vector<double>& window) {
+  std::vector<Eigen::Index> inside;
+  for (Eigen::Index i = 0; i < time.size(); ++i)
+    if (time[i] >= window[0] && time[i] <= window[1]) inside.push_back(i);
+  if (inside.empty())
+    throw InputError("cli.bad-range", {},
+                     fmt::format("no sample of {} lies between {:g} and {:g}",
+                                 curve.label.empty() ? "the curve" : curve.label, window[0], window[1]),
+                     "give another --window");
+  curve.x = curve.x(inside).eval();
+  curve.y = curve.y(inside).eval();
+}
+
+VectorXd read_abscissa(const hdf5::ResultsFile& results, const std::string& file, const std::string& name) {
+  const auto columns = choose_columns(results, file, name);
+  if (columns.size() != 1)
+    throw InputError("cli.one-channel", {file}, fmt::format("--x {} names {} curves", name, columns.size()),
+                     "name one component, as " + columns.front().name);
+  return columns.front().values;
+}
+
+/// Linear between samples; x ascends, and every `at` lies within.
+VectorXd interpolate(const VectorXd& x, const VectorXd& y, const VectorXd& at) {
+  VectorXd values(at.size());
+  for (Eigen::Index i = 0; i < at.size(); ++i) {
+    const auto k = std::clamp<Eigen::Index>(std::upper_bound(x.begin(), x.end(), at[i]) - x.begin(), 1, x.size() - 1);
+    const double width = x[k] - x[k - 1];
+    values[i] = width > 0 ? y[k - 1] + (y[k] - y[k - 1]) * (at[i] - x[k - 1]) / width : y[k];
+  }
+  return values;
+}
+
+/// The curve less the one of the first file; returns whether it was interpolated.
+bool subtract(const report::Curve& first, report::Curve& curve, const std::string& file) {
+  if (curve.x.size() == first.x.size() && curve.x == first.x) {
+    curve.y -= first.y;
+    return false;
+  }
+  std::vector<Eigen::Index> common;
+  for (Eigen::Index i = 0; curve.x.size() > 1 && i < first.x.size(); ++i)
+    if (first.x[i] >= curve.x[0] && first.x[i] <= curve.x[curve.x.size() - 1]) common.push_back(i);
+  if (common.empty())
+    throw InputError("cli.bad-range", {file}, "the two runs have no time in common", "compare runs that overlap");
+  const VectorXd time = first.x(common);
+  curve.y = (interpolate(curve.x, curve.y, time) - VectorXd(first.y(common))).eval();
+  curve.x = time;
+  return true;
+}
+
+double find_step(const VectorXd& time, const std::string& name) {
+  const auto n = time.size();
+  const double step = n > 1 ? (time[n - 1] - time[0]) / static_cast<double>(n - 1) : 0;
+  double least = step, largest = step;
+  for (Eigen::Index i = 1; i < n; ++i) {
+    least = std::min(least, time[i] - time[i - 1]);
+    largest = std::max(largest, time[i] - time[i - 1]);
+  }
+  if (!(step > 0) || largest - least > 1e-6 * step)
+    throw InputError("cli.uneven-samples", {},
+                     n < 2 ? "a spectrum needs two samples"
+                           : fmt::format("a spectrum of {} needs even samples, their steps go from {:g} to {:g}",
+                                         name.empty() ? "the curve" : name, least, largest),
+                     "choose a --window of even samples, or run with an output_step");
+  return step;
+}
+
+void take_spectrum(report::Curve& curve, const CurveChoice& choice) {
+  const double step = find_step(curve.x, curve.label);
+  auto spectrum = choice.psd ? report::calc_psd(curve.y, step, choice.segment) : report::calc_amplitudes(curve.y, step);
+  curve.x = std::move(spectrum.frequency);
+  curve.y = std::move(spectrum.value);
+}
+
+/// Of "name" or "name:2" in a campaign's table.
+VectorXd find_outcome(const hdf5::OutcomeTable& table, const std::string& file, const std::string& name) {
+  std::vector<std::string> known;
+  for (const auto& column : table.columns) {
+    const auto last = column.path.substr(column.path.rfind('/') + 1);
+    for (Eigen::Index c = 0; c < column.numbers.cols(); ++c) {
+      const auto own = column.numbers.cols() > 1 ? last + ":" + std::to_string(c + 1) : last;
+      known.push_back(own);
+      if (name == own || name == column.path + own.substr(last.size())) return column.numbers.col(c);
+    }
+  }
+  if (name == "case")
+    return Eigen::Map<const Eigen::VectorXi>(table.cases.data(), std::ssize(table.cases)).cast<double>();
+  const auto nearest = find_nearest(name, known);
+  throw InputError("cli.unknown-channel", {file}, "no column of numbers \"" + name + "\"",
+                   !nearest.empty() ? "did you mean \"" + nearest + "\""
+                                    : fmt::format("the columns are {}", fmt::join(known, ", ")));
+}
+
+}  // namespace
+
+report::Plot make_history_plot(const std::vector<std::string>& files, const std::vector<std::string>& sensors,
+                               const CurveChoice& choice, Diagnostics& diagnostics) {
+  report::Plot plot;
+  plot.x_label = choice.x.empty() ? "" : choice.x;
+  std::vector<report::Curve> first;
+  for (std::size_t f = 0; f < files.size(); ++f) {
+    const auto& file = files[f];
+    demand_file(file);
+    warn_incomplete(file, diagnostics);
+    const auto results = hdf5::read_results(file);
+    const VectorXd x = choice.x.empty() ? results.time : read_abscissa(results, file, choice.x);
+    std::size_t number = 0;
+    bool is_interpolated = false;
+    for (const auto& sensor : sensors) {
+      for (auto& column : choose_columns(results, file, sensor)) {
+        const bool one_curve_a_file = sensors.size() == 1 && sensor.find(':') != std::string::npos;
+        std::string label = files.size() > 1 ? fs::path(file).stem().string() : "";
+        if (files.size() == 1 || !one_curve_a_file) label += (label.empty() ? "" : " ") + column.name;
+        report::Curve curve{label, x, std::move(column.values), false};
+        if (!choice.window.empty()) cut_to_window(curve, results.time, choice.window);
+        if (!choice.difference) {
+          plot.curves.push_back(std::move(curve));
+        } else if (f == 0) {
+          first.push_back(std::move(curve));
+        } else if (number < first.size()) {
+          is_interpolated = subtract(first[number++], curve, file) || is_interpolated;
+          curve.label += " less " + fs::path(files.front()).stem().string();
+          plot.curves.push_back(std::move(curve));
+        }
+      }
+    }
+    if (is_interpolated)
+      diagnostics.note("cli.interpolated", {file},
+                       "its samples are at other times than those of " + files.front() +
+                           ": the difference is taken at the times of that one, linear between samples",
+                       "run both with one output_step");
+  }
+  return plot;
+}
+
+report::Plot make_campaign_plot(const std::vector<std::string>& files, const std::vector<std::string>& names,
+                                const CurveChoice& choice) {
+  report::Plot plot;
+  plot.x_label = choice.x.empty() ? "cases below, %" : choice.x;
+  for (const auto& file : files) {
+    demand_file(file);
+    const auto table = hdf5::read_outcomes(file);
+    for (const auto& name : names) {
+      VectorXd y = find_outcome(table, file, name);
+      const std::string label = (files.size() > 1 ? fs::path(file).stem().string() + " " : "") +
+                                (names.size() > 1 || files.size() == 1 ? name : "");
+      if (!choice.x.empty()) {
+        plot.curves.push_back({label, find_outcome(table, file, choice.x), std::move(y), true});
+        continue;
+      }
+      std::vector<double> values;
+      std::copy_if(y.begin(), y.end(), std::back_inserter(values), [](double v) { return std::isfinite(v); });
+      std::sort(values.begin(), values.end());
+      const auto n = std::ssize(values);
+      plot.curves.push_back({label,
+                             n > 1 ? VectorXd(VectorXd::LinSpaced(n, 0, 100)) : VectorXd(VectorXd::Constant(n, 50)),
+                             Eigen::Map<VectorXd>(values.data(), n), n == 1});
+    }
+  }
+  return plot;
+}
+
+std::vector<report::Plot> shape_plots(std::vector<report::Plot> plots, const CurveChoice& choice, bool is_over_time) {
+  for (auto& plot : plots) {
+    for (auto& curve : plot.curves) {
+      if (is_over_time && (choice.psd || choice.spectrum)) take_spectrum(curve, choice);
+    }
+    if (is_over_time && (choice.psd || choice.spectrum)) plot.x_label = "frequency [1/T]";
+    plot.has_log_x = plot.has_log_x || choice.log_x;
+    plot.has_log_y = choice.log_y || (is_over_time && choice.psd);
+  }
+  if (!choice.subplots) return plots;
+  std::vector<report::Plot> single;
+  for (auto& plot : plots)
+    for (auto& curve : plot.curves) {
+      auto one = plot;
+      one.y_label = curve.label;
+      one.curves = {std::move(curve)};
+      one.curves.front().label.clear();
+      one.x_label.clear();
+      single.push_back(std::move(one));
+    }
+  if (!single.empty()) single.back().x_label = plots.back().x_label;
+  return single;
+}
+
+}  // namespace bough::cli

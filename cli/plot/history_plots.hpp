@@ -1,0 +1,34 @@
+#pragma once
+/// \file Pictures of results, of campaigns, and what is done to curves over time before they are drawn.
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.hpp"
+#include "formats/report/svg_plot.hpp"
+
+namespace bough::cli {
+
+struct CurveChoice {
+  std::string x;               ///< channel or column instead of the time
+  std::vector<double> window;  ///< from and until; empty: all
+  bool psd = false, spectrum = false, difference = false, subplots = false, log_x = false, log_y = false;
+  int segment = 256;  ///< psd: samples
+};
+
+/// Channels of results files against time, or against the channel `x`. Throws InputError "cli.unknown-channel",
+/// "cli.one-channel" when `x` names several. With `difference` each further file less the first one, at its samples
+/// that lie in the time of both; where their times differ, linear between samples, with the note "cli.interpolated".
+report::Plot make_history_plot(const std::vector<std::string>& files, const std::vector<std::string>& sensors,
+                               const CurveChoice& choice, Diagnostics& diagnostics);
+
+/// Columns of outcomes.h5: a point a case against the column `x`; without it the values in order against the percentage
+/// of the cases that lie below.
+report::Plot make_campaign_plot(const std::vector<std::string>& files, const std::vector<std::string>& names,
+                                const CurveChoice& choice);
+
+/// Cuts to the window, takes spectra, sets logarithmic axes, and with `subplots` gives each curve a plot of its own.
+/// Throws InputError "cli.bad-range" for a window without samples, "cli.uneven-samples" where a spectrum is asked of
+/// samples that are not evenly spaced.
+std::vector<report::Plot> shape_plots(std::vector<report::Plot> plots, const CurveChoice& choice, bool is_over_time);
+
+}  // namespace bough::cli
