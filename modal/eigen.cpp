@@ -49,7 +49,7 @@ detail::Restored find_soft(const fe::System& system, const EigenOptions& options
   constexpr double sure = 1e-6;
   constexpr int most = 400;
   const auto number = static_cast<int>(pairs.lambda.size());
-  auto restored = detail::restore_digits(system, number, pairs);
+  auto restored = detail::restore_digits(system, number, !options.min_hz, pairs);
   if (options.min_hz || options.max_hz) return restored;
   for (int more = 2 * number + 10; more < most; more = 2 * more + 10) {
     if (!restored.is_done || restored.error <= sure) break;
@@ -57,7 +57,7 @@ detail::Restored find_soft(const fe::System& system, const EigenOptions& options
     wider.num_modes = std::min(more, system.model.num_fdofs());
     try {
       auto others = find_answer(system, wider).pairs;
-      const auto again = detail::restore_digits(system, number, others);
+      const auto again = detail::restore_digits(system, number, true, others);
       if (again.is_done && again.error < restored.error && others.lambda.size() >= number) {
         restored = again;
         pairs.lambda = others.lambda.head(number);

@@ -23,6 +23,7 @@ constexpr double kNoStrain = 1e-22;  // energy over its parts: what vectors of s
 constexpr double kSoft = 1e-9;       // below this share of their parts, energies of K are looked at
 constexpr double kSame = 1e-6;       // relative, of eigenvalues
 constexpr double kShift = 1e-13;     // of diag K, which makes K definite
+constexpr double kNoDigits = 1e16;   // parts over energy
 constexpr double kSure = 1e-3;       // relative error up to which an eigenvalue is good
 
 void add_element(const MatrixXd& K, const MatrixXd& u, int most_dofs, MatrixXd& forces, ElementStrain& strain) {
@@ -104,8 +105,12 @@ class SoftModes {
   const MatrixXd& M_X() const { return M_X_; }
   const MatrixXd& forces() const { return forces_; }  ///< of the f-set
   const VectorXd& theta() const { return theta_; }    ///< exactly zero without strain
-  /// Relative: η, or the roundoff of elements that are not taken apart.
-  double calc_error(Index j) const { return std::max(eta_(j), theta_(j) > 0 ? 1e-15 * whole_(j) / theta_(j) : 0); }
+  /// Relative: η, or the roundoff of elements that are not taken apart; 1 where K has no digit of the mode left, by
+  /// which others may be missing.
+  double calc_error(Index j) const {
+    if (theta_(j) <= 0) return 0;
+    return parts_(j) > kNoDigits * theta_(j) ? 1 : std::max(eta_(j), 1e-15 * whole_(j) / theta_(j));
+  }
 
  private:
   Mat shift(const fe::System& system) {
@@ -215,15 +220,18 @@ VectorXd calc_graded_eigenvalues(MatrixXd G, MatrixXd& V) {
   return G.diagonal();
 }
 
-Restored restore_digits(const fe::System& system, int number, EigenPairs& pairs) {
+Restored restore_digits(const fe::System& system, int number, bool is_from_first, EigenPairs& pairs) {
   const fe::Model& model = system.model;
   if (model.prestress() || model.omitted() || pairs.lambda.size() == 0) return {};
   const Pencil pencil(system);
   const MatrixXd X = take_fdofs(model, pairs.Phi);
-  std::vector<Index> soft;
+  // Those below the last soft one too: what is left out of them would grow by the ratio of the eigenvalues.
+  Index num_soft = 0;
   for (Index j = 0; j < X.cols(); ++j)
-    if (std::abs(pencil.calc_relative_energy(X.col(j), pairs.lambda(j))) < kSoft) soft.push_back(j);
-  if (soft.empty()) return {};
+    if (std::abs(pencil.calc_relative_energy(X.col(j), pairs.lambda(j))) < kSoft) num_soft = j + 1;
+  if (num_soft == 0) return {};
+  std::vector<Index> soft(static_cast<std::size_t>(num_soft));
+  std::iota(soft.begin(), soft.end(), Index{0});
   const bool has_values = std::any_of(soft.begin(), soft.end(), [&](Index j) { return pairs.lambda(j) != 0; });
   const auto strain = calc_element_strain(model, pairs.Phi(Eigen::all, soft), has_values);
   const auto is_same = [&](std::size_t i) {
@@ -235,6 +243,7 @@ Restored restore_digits(const fe::System& system, int number, EigenPairs& pairs)
   bool is_all_same = true;
   for (std::size_t i = 0; i < soft.size(); ++i) is_all_same = is_all_same && is_same(i);
   if (is_all_same) return {};
+  if (!is_from_first) return {true, 1, {}};
 
   const VectorXd before = pairs.lambda;
   SoftModes better(system, pencil, X(Eigen::all, soft));
@@ -263,9 +272,11 @@ void warn_of_lost_digits(const Restored& restored, Diagnostics& diagnostics) {
   diagnostics.warning(
       "modal.lost-digits", {},
       "stiffness spans so many orders that its sums have lost the soft parts; by the strain of the elements " +
-          (restored.changes.empty() ? "no mode changes" : restored.changes) +
+          (restored.changes.empty() ? "the modes are as they were" : restored.changes) +
           (is_sure ? ", right to about " + number_text(std::max(1e-15, restored.error))
-                   : ", not reliable: they may be off by " + number_text(std::min(1.0, restored.error)) + " and more"),
+           : restored.error < 1
+               ? ", not reliable: they may be off by " + number_text(restored.error) + " and more"
+               : ", not reliable: K has no digit of them, and others may be missing"),
       "replace the stiffest elements by rigid ones; forces in them are roundoff");
 }
 

@@ -37,8 +37,9 @@ struct Restored {
 /// K, the modes are improved by them: X - A⁻¹(K X - M X Θ), A = K + 1e-13 diag K, and Rayleigh-Ritz, until
 /// η = |K⁻¹ᐟ²(K x - θ M x)| / √θ falls no more, which bounds the relative error (Knyazev, Neymeyr, Linear Algebra Appl.
 /// 358, 2003); of K⁻¹ the factor of A tells but for 1 + 1e-13 parts / θ. They are better the more of the soft modes are
-/// among them: what is left out mixes with them. Exact zeros stay as they are.
-Restored restore_digits(const fe::System& system, int number, EigenPairs& pairs);
+/// among them: what is left out mixes with them; where they do not begin with the first mode, their error is only said
+/// to be 1. Exact zeros stay as they are.
+Restored restore_digits(const fe::System& system, int number, bool is_from_first, EigenPairs& pairs);
 /// Warning "modal.lost-digits" of what changed and how sure it is.
 void warn_of_lost_digits(const Restored& restored, Diagnostics& diagnostics);
 
