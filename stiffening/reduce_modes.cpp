@@ -31,13 +31,15 @@ std::vector<int> Reduction::choose_columns(int available, const std::string& who
 void Reduction::check_rigid(const modal::bases::Basis& basis) {
   const int num_rigid = is_free() ? 6 : 0, found_rigid = basis.num_rigid + basis.num_massless;
   if (is_free() && found_rigid < 6)
-    diagnostics_.error("reduce.grounded", where(),
-                       "a free body must have 6 rigid motions, this model has " + std::to_string(found_rigid) +
-                           (body_.preload.empty() ? "" : " under its preload, " + body_.preload),
-                       body_.preload.empty()
-                           ? "remove springs and bushes to ground, or use frame = \"fixed\""
-                           : "a free body may be preloaded by temperatures; loads do not turn with it: use frame = "
-                             "\"fixed\"");
+    diagnostics_.error(
+        "reduce.grounded", where(),
+        "a free body must have 6 rigid motions, this model has " + std::to_string(found_rigid) +
+            (body_.preload.empty() ? "" : " under its preload, " + body_.preload),
+        body_.preload.empty()
+            ? "remove springs and bushes to ground, and CELASi between grids that lie apart (they hold rotations), "
+              "or use frame = \"fixed\""
+            : "a free body may be preloaded by temperatures; loads do not turn with it: use frame = "
+              "\"fixed\"");
   if (found_rigid > num_rigid)
     add_mechanism_error(std::to_string(found_rigid - num_rigid) + " motion(s) have no strain");
   diagnostics_.throw_if_errors();

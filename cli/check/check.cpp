@@ -164,11 +164,13 @@ void check_support(const CheckOptions& options, bool is_free, const nlohmann::js
     return largest;
   };
   if (is_free && calc_largest("ground_check_n") > 1e-8)
-    diagnostics.error("reduce.grounded", {options.file},
-                      fmt::format("a free body must have 6 rigid motions, this model strains in them: {:.1e} of what "
-                                  "its stiffness allows",
-                                  calc_largest("ground_check_n")),
-                      "remove springs and bushes to ground, or use frame = \"fixed\"");
+    diagnostics.error(
+        "reduce.grounded", {options.file},
+        fmt::format("a free body must have 6 rigid motions, this model strains in them: {:.1e} of what "
+                    "its stiffness allows",
+                    calc_largest("ground_check_n")),
+        "remove springs and bushes to ground, and CELASi between grids that lie apart (they hold rotations), "
+        "or use frame = \"fixed\"");
   if (!is_free && json.at("num_free_dofs").get<int>() > 0 && calc_largest("ground_check_f") < 1e-12)
     diagnostics.error("reduce.mechanism", {options.file},
                       "the constraints do not hold the fixed body: no rigid motion of it strains it",

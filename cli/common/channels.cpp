@@ -11,9 +11,9 @@
 namespace bough::cli {
 
 namespace {
-void add_columns(const std::string& path, const Eigen::MatrixXd& values, const std::string& component,
-                 const std::string& file, std::vector<exports::CsvColumn>& columns) {
-  const auto names = records::get_component_names(path, static_cast<int>(values.cols()));
+void add_columns(const std::string& path, const Eigen::MatrixXd& values, const std::string& description,
+                 const std::string& component, const std::string& file, std::vector<exports::CsvColumn>& columns) {
+  const auto names = records::get_component_names(path, static_cast<int>(values.cols()), description);
   bool found = false;
   for (int c = 0; c < values.cols(); ++c) {
     if (!component.empty() && component != names[c] && component != std::to_string(c + 1)) continue;
@@ -62,7 +62,11 @@ std::vector<exports::CsvColumn> choose_columns(const hdf5::ResultsFile& results,
   std::vector<exports::CsvColumn> columns;
   const std::string path = name.starts_with('/') ? name : "/sensors/" + name;
   for (const auto& [channel, values] : results.channels) {
-    if (channel == path || channel.starts_with(path + "/")) add_columns(channel, values, component, file, columns);
+    if (channel == path || channel.starts_with(path + "/")) {
+      const auto described = results.descriptions.find(channel);
+      add_columns(channel, values, described == results.descriptions.end() ? "" : described->second, component, file,
+                  columns);
+    }
   }
   if (columns.empty()) {
     std::vector<std::string> known;

@@ -68,7 +68,7 @@ records::DynamicDeck read_dynamic_deck_or_throw(const std::string& path, const f
 
 /// SOL 108 and 109 solve without modes.
 void note_direct(const records::DynamicDeck& deck, Diagnostics& diagnostics) {
-  static const std::array direct{"108", "109", "26", "27", "SEDFREQ", "SEDTRAN", "DFREQ", "DTRAN"};
+  static const std::array direct{"108", "109", "26", "27", "SEDFREQ", "SEDTRAN", "DFREQ", "DTRAN", "DIRECT"};
   if (std::find(direct.begin(), direct.end(), deck.sol) != direct.end())
     diagnostics.note("cli.by-modes", deck.locate({}),
                      "SOL " + deck.sol + " solves directly; this is the solution by modes",
@@ -89,7 +89,7 @@ int run_deck_response(const DeckResponseOptions& options) {
   std::vector<records::DynamicSubcase> subcases;
   say_first(diagnostics, [&] {
     demand_grids(options, deck);
-    subcases = modal::response::choose_response_subcases(deck, options.model.subcase);
+    subcases = modal::response::choose_response_subcases(deck, options.model.subcase, options.is_over_time);
   });
   note_solution(deck, diagnostics);
   note_direct(deck, diagnostics);

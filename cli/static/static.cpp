@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -57,6 +58,18 @@ std::vector<int> read_grids(const std::vector<std::string>& words) {
   return grids;
 }
 
+/// --grid-forces names grids of the deck.
+void check_forces_grids(const std::vector<int>& ids, const records::Deck& deck) {
+  for (const int id : ids) {
+    const bool is_grid = std::any_of(deck.grids.begin(), deck.grids.end(), [id](const auto& g) { return g.id == id; });
+    const auto& points = deck.scalar_points;
+    if (!is_grid && std::find(points.begin(), points.end(), id) == points.end())
+      throw InputError("fe.missing-grid", deck.locate({}),
+                       fmt::format("--grid-forces names {}, which the deck does not define", id),
+                       "name a GRID or SPOINT");
+  }
+}
+
 int run_static(const StaticOptions& options) {
   Console console(options.quiet, options.verbosity);
   console.set_subject(options.deck);
@@ -72,6 +85,7 @@ int run_static(const StaticOptions& options) {
   say_first(diagnostics, [&] {
     subcases = fe::choose_static_subcases(deck, options.model.subcase);
     demand_static_solution(deck, options.is_linear, diagnostics);
+    check_forces_grids(read_grids(options.grid_forces), deck);
   });
   if (subcases.empty()) {  // Model::build reports it
     subcases.emplace_back();

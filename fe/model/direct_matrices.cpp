@@ -113,15 +113,20 @@ ElementList make_direct(const records::Deck& deck, const records::Subcase& subca
   ElementList list;
   Maker maker(deck, nodes, diagnostics, list);
   std::set<std::string> used;
-  const auto make = [&](const char* command, DirectKind kind, const auto& names, double factor) {
+  const auto make = [&](std::string command, DirectKind kind, const auto& names, double factor) {
     Blocks blocks;
+    // In a response K2PP is one with K2GG.
+    std::string direct = command;
+    direct.replace(2, 2, "PP");
+    if (subcase.commands.count(direct) > 0)
+      command = subcase.commands.count(command) > 0 ? command + " or " + direct : direct;
     for (const auto& [scale, name] : names) {
       used.insert(name);
       const auto found = std::find_if(deck.direct_matrices.begin(), deck.direct_matrices.end(),
                                       [&, &n = name](const auto& matrix) { return matrix.name == n; });
       if (found == deck.direct_matrices.end()) {
-        maker.error("fe.missing-direct", subcase.find_command(command),
-                    std::string(command) + " selects " + name + ", but the deck has no DMIG of that name",
+        maker.error("fe.missing-direct", subcase.find_command(command.substr(0, 4)),
+                    command + " selects " + name + ", but the deck has no DMIG of that name",
                     "correct the name or add the DMIG");
         continue;
       }
@@ -147,9 +152,10 @@ ElementList make_direct(const records::Deck& deck, const records::Subcase& subca
   demand_one("CB1", !subcase.b2gg.empty());
   for (const auto& matrix : deck.direct_matrices)
     if (used.count(matrix.name) == 0)
-      diagnostics.warning("fe.direct-unused", deck.locate(matrix.at),
-                          "DMIG " + matrix.name + " is not selected and adds nothing",
-                          "select it with K2GG, M2GG or B2GG in the case control");
+      diagnostics.warning(
+          "fe.direct-unused", deck.locate(matrix.at), "DMIG " + matrix.name + " is not selected and adds nothing",
+          "select it with K2GG, M2GG or B2GG in the case control, for a response also with K2PP, M2PP or "
+          "B2PP");
   return list;
 }
 

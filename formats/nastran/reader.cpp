@@ -15,7 +15,7 @@ void fill_deck(const detail::Source& source, const ReadOptions& options, records
                records::DynamicDeck* dynamics, Diagnostics& diagnostics) {
   deck.files = source.files;
   detail::read_system_cells(source, deck);
-  const auto first_line = detail::read_control(source, deck, diagnostics, dynamics);
+  const auto first_line = detail::read_control(source, deck, diagnostics, dynamics, options);
   detail::read_bulk(source, first_line, options, deck, diagnostics, dynamics ? &dynamics->dynamics : nullptr);
   detail::report_params(deck, diagnostics, dynamics != nullptr);
 }

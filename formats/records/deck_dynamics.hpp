@@ -56,6 +56,7 @@ struct InitialMotion {  ///< TIC
 struct DynamicTable {
   int id = 0, kind = 1;
   bool is_log_x = false, is_log_y = false;        ///< TABLED1
+  bool is_flat = false;                           ///< TABLED1: beyond its ends it keeps its end values
   double x1 = 0, x2 = 1, x3 = 0, x4 = 0;          ///< TABLED2 (x1), TABLED3 (x1, x2), TABLED4
   std::vector<std::pair<double, double>> points;  ///< ascending x; equal ones are a jump
   std::vector<double> coefficients;               ///< TABLED4
@@ -135,7 +136,9 @@ struct OutputRequest {
 /// What a subcase says of its response.
 struct DynamicSelection {
   int dload = 0, loadset = 0, frequency = 0, tstep = 0, ic = 0, sdamping = 0;
-  int ofreq = 0;               ///< a SET; 0: all
+  int ofreq = 0;  ///< a SET; 0: all
+  /// (scale, DMIG name) of K2PP, M2PP, B2PP: they are in k2gg, m2gg and b2gg of the subcase too.
+  std::vector<std::pair<double, std::string>> k2pp, m2pp, b2pp;
   std::optional<bool> resvec;  ///< RESVEC = YES, NO
   /// MEFFMASS: the grid of its GRID option (0: the origin); none where it is not asked for.
   std::optional<int> effective_mass_grid;

@@ -1,5 +1,7 @@
 #include "formats/records/signal_name.hpp"
 
+#include <algorithm>
+
 namespace bough::records {
 
 SignalName parse_signal_name(const std::string& text) {
@@ -20,6 +22,19 @@ std::vector<std::string> get_component_names(const std::string& path, int size) 
   std::vector<std::string> names;
   for (int i = 1; i <= size; ++i) names.push_back(std::to_string(i));
   return names;
+}
+
+std::vector<std::string> get_component_names(const std::string& path, int size, const std::string& description) {
+  const auto colon = description.rfind(": ");
+  const bool is_sensor = description.find(" of body ") < colon && colon != std::string::npos;
+  if (size == 1 || !(is_sensor || path.find("/recovery/") != std::string::npos)) return get_component_names(path, size);
+  std::vector<std::string> names;
+  for (std::size_t at = is_sensor ? colon + 2 : 0; at <= description.size();) {
+    const auto end = std::min(description.find(", ", at), description.size());
+    names.push_back(description.substr(at, end - at));
+    at = end + 2;
+  }
+  return static_cast<int>(names.size()) == size ? names : get_component_names(path, size);
 }
 
 int find_component(const SignalName& name, int size) {

@@ -16,6 +16,10 @@ SignalName parse_signal_name(const std::string& text);
 /// scalar.
 std::vector<std::string> get_component_names(const std::string& path, int size);
 
+/// The same, where the channel's description lists names of its own, as rows of elements have them: "axial, shear_y" of
+/// /bodies/B/recovery/..., "CBEAM/101 of body frame: axial, shear_y" of a sensor.
+std::vector<std::string> get_component_names(const std::string& path, int size, const std::string& description);
+
 /// Index from 0 of a component by its name or its count, -1 when there is none such; empty: 0 of a scalar.
 int find_component(const SignalName& name, int size);
 

@@ -27,8 +27,8 @@ struct History {
 };
 /// Exact for loads and motions that are lines between the steps: x' = A x + b f by the exponential of A and of the two
 /// integrals with it (Van Loan, IEEE Trans. Autom. Control 23 (1978) 395), each coordinate for itself where damping
-/// does not couple them. Jumps at steps are jumps. A displacement of the supports given by a table is a broken line:
-/// its corners are impulses of their inertia.
+/// does not couple them. Jumps at steps are jumps. Displacements and velocities of the supports are splines, corners
+/// of displacements impulses of their inertia (sampled_curve.hpp).
 History calc_history(const ResponseModel& model, const Excitation& excitation, const TimeGrid& grid);
 
 }  // namespace bough::modal::response

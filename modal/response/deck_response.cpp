@@ -9,9 +9,13 @@
 #include "formats/records/params.hpp"
 #include "formats/records/selection.hpp"
 #include "modal/null_motions.hpp"
+#include "modal/response/load_steps.hpp"
 
 namespace bough::modal::response {
 namespace {
+
+/// Steps at corners of loads: each has a matrix exponential of its own.
+constexpr int kMostCorners = 2000, kMostCoupled = 50;
 
 double to_hz(double lambda) { return std::sqrt(std::max(lambda, 0.0)) / (2 * std::numbers::pi); }
 
@@ -59,6 +63,47 @@ ModeBasis calc_modes(const fe::System& system, const EigenOptions& options, cons
   return basis;
 }
 
+/// K2PP X; a symmetric matrix (IFO 6) gives each term once.
+MatrixXd times_direct(const fe::Model& model, const records::DynamicDeck& deck,
+                      const std::vector<std::pair<double, std::string>>& names, MatrixXd X) {
+  MatrixXd Y = MatrixXd::Zero(X.rows(), X.cols());
+  Diagnostics unsaid;  // the model has reported what is wrong
+  for (Eigen::Index c = 0; c < X.cols(); ++c) turn_to_cd(model, X.col(c));
+  for (const auto& [scale, name] : names)
+    for (const auto& matrix : deck.direct_matrices) {
+      if (matrix.name != name) continue;
+      for (const auto& e : matrix.entries) {
+        const int i = find_dof(model, deck, e.gi, e.ci, name, matrix.at, unsaid);
+        const int j = find_dof(model, deck, e.gj, e.cj, name, matrix.at, unsaid);
+        if (i < 0 || j < 0) continue;
+        Y.row(i) += scale * e.value * X.row(j);
+        if (matrix.form == 6 && i != j) Y.row(j) += scale * e.value * X.row(i);
+      }
+    }
+  for (Eigen::Index c = 0; c < Y.cols(); ++c) turn_to_basic(model, Y.col(c));
+  return Y;
+}
+
+/// K2PP, M2PP and B2PP are taken with K2GG, M2GG and B2GG: where these mean more, it is an error.
+void check_direct_input(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+                        Diagnostics& diagnostics) {
+  const auto& d = subcase.dynamics;
+  const auto demand = [&](bool is_wrong, const char* command, const char* why) {
+    if (is_wrong)
+      diagnostics.error("modal.direct-input", deck.locate(subcase.find_command(command)),
+                        std::string(command) + " is taken as part of the model, on which " + why + " acts too",
+                        std::string("write ") + command[0] + "2GG if it should, or leave " + why + " out");
+  };
+  const auto is_scaled = [&](const char* param) { return records::get_real_param(deck, param, 1, diagnostics) != 1; };
+  demand(!d.k2pp.empty() && is_scaled("CK2"), "K2PP", "PARAM,CK2");
+  demand(!d.m2pp.empty() && is_scaled("CM2"), "M2PP", "PARAM,CM2");
+  demand(!d.b2pp.empty() && is_scaled("CB2"), "B2PP", "PARAM,CB2");
+  demand(!d.m2pp.empty() && records::get_real_param(deck, "ALPHA1", 0, diagnostics) != 0, "M2PP", "PARAM,ALPHA1");
+  demand(!d.m2pp.empty() &&
+             (!deck.gravity.empty() || !deck.load_cards.rotations.empty() || !deck.special.accelerations.empty()),
+         "M2PP", "a load by GRAV, RFORCE or ACCEL");
+}
+
 DampingChoice choose_damping(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
                              bool is_over_time, const fe::Model& model, Diagnostics& diagnostics) {
   DampingChoice damping;
@@ -66,6 +111,13 @@ DampingChoice choose_damping(const records::DynamicDeck& deck, const records::Dy
   damping.g = records::get_real_param(deck, "G", 0, diagnostics);
   damping.w3 = records::get_real_param(deck, "W3", 0, diagnostics);
   damping.w4 = records::get_real_param(deck, "W4", 0, diagnostics);
+  damping.alpha1 = records::get_real_param(deck, "ALPHA1", 0, diagnostics);
+  damping.alpha2 = records::get_real_param(deck, "ALPHA2", 0, diagnostics);
+  if (!subcase.dynamics.k2pp.empty())
+    damping.times_direct = [&model, &deck, names = subcase.dynamics.k2pp](const MatrixXd& X) {
+      return times_direct(model, deck, names, X);
+    };
+  check_direct_input(deck, subcase, diagnostics);
   damping.is_stiffness = records::get_real_param(deck, "KDAMP", 1, diagnostics) < 0;
   const int set = subcase.dynamics.sdamping;
   const auto& curves = deck.dynamics.damping;
@@ -91,16 +143,20 @@ DampingChoice choose_damping(const records::DynamicDeck& deck, const records::Dy
 
 }  // namespace
 
-std::vector<records::DynamicSubcase> choose_response_subcases(const records::DynamicDeck& deck, int asked) {
+std::vector<records::DynamicSubcase> choose_response_subcases(const records::DynamicDeck& deck, int asked,
+                                                              bool is_over_time) {
   std::vector<records::DynamicSubcase> chosen;
   for (const auto& subcase : deck.subcases) {
     const auto selection = deck.selections.find(subcase.id);
-    const bool has_load = selection != deck.selections.end() && selection->second.dload != 0;
+    const bool has_load = selection != deck.selections.end() &&
+                          (selection->second.dload != 0 || (is_over_time && selection->second.ic != 0));
     if (asked != 0 ? subcase.id == asked : has_load)
-      chosen.emplace_back(subcase, has_load ? selection->second : records::DynamicSelection{});
+      chosen.emplace_back(subcase,
+                          selection != deck.selections.end() ? selection->second : records::DynamicSelection{});
   }
   if (!chosen.empty() || asked != 0) return chosen;
-  throw InputError("modal.no-dynamic-load", deck.locate({}), "no subcase selects a DLOAD",
+  throw InputError("modal.no-dynamic-load", deck.locate({}),
+                   std::string("no subcase selects a DLOAD") + (is_over_time ? " or IC" : ""),
                    "write DLOAD = n in the case control, with RLOAD or TLOAD cards");
 }
 
@@ -168,7 +224,7 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
   const auto response =
       make_response_model(model, prepared_->modes, solve_static, excitation, start, damping, with_residuals, own);
   records::ResponseSubcase result;
-  result.id = subcase.id;
+  result.id = std::max(subcase.id, 1);  // what stands above all subcases is the first, as in Nastran
   result.title = subcase.title;
   result.subtitle = subcase.subtitle;
   result.label = subcase.label;
@@ -180,7 +236,8 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
   }
   result.damping_ratio = response.damping_ratio.head(response.num_dynamic());
   if (options_.is_over_time) {
-    recover(model, deck_, response, excitation, damping, outputs, calc_history(response, excitation, grid), result);
+    const auto steps = refine_times(deck_, excitation, grid, response.is_coupled ? kMostCoupled : kMostCorners, own);
+    recover(model, deck_, response, excitation, damping, outputs, calc_history(response, excitation, steps), result);
   } else {
     const double highest = natural.size() > 0 ? natural(natural.size() - 1) : 0;
     if (response.num_normal < model.num_fdofs() && hz(hz.size() - 1) > highest) {

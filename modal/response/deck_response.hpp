@@ -21,8 +21,10 @@ struct ResponseOptions {
       choose_prestress;
 };
 
-/// The subcases with DLOAD; the one asked for in any case. Throws InputError modal.no-dynamic-load.
-std::vector<records::DynamicSubcase> choose_response_subcases(const records::DynamicDeck& deck, int asked);
+/// The subcases with DLOAD, over time also those with IC; the one asked for in any case. Throws InputError
+/// modal.no-dynamic-load.
+std::vector<records::DynamicSubcase> choose_response_subcases(const records::DynamicDeck& deck, int asked,
+                                                              bool is_over_time = false);
 
 /// Model and modes are kept while constraints and METHOD stay the same.
 class DeckResponseSolver {

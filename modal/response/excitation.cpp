@@ -51,6 +51,11 @@ class Collector {
   Excitation collect() {
     const int set = subcase_.dynamics.dload;
     const auto& d = deck_.dynamics;
+    if (set == 0 && over_time_ && subcase_.dynamics.ic != 0) {  // an initial motion is a cause by itself
+      result_.F.resize(model_.num_gdofs(), 0);
+      result_.D.resize(static_cast<Eigen::Index>(model_.fixed_dofs().size()), 0);
+      return std::move(result_);
+    }
     if (!has_set(d.loads, set) && !has_set(d.sums, set)) {
       diagnostics_.error("modal.no-dynamic-load", deck_.locate(subcase_.find_command("DLOAD")),
                          set == 0
@@ -59,6 +64,13 @@ class Collector {
                          "write DLOAD = n in the case control and add the cards");
       return {};
     }
+    for (const auto& sum : d.sums)
+      if (sum.sid == set && has_set(d.loads, set))
+        diagnostics_.error("modal.wrong-load", deck_.locate(sum.at),
+                           "DLOAD " + std::to_string(set) + " has the id of a load card, " +
+                               describe_load(*std::find_if(d.loads.begin(), d.loads.end(),
+                                                           [set](const auto& l) { return l.sid == set; })),
+                           "give the DLOAD card an id of its own");
     for (const auto& load : d.loads)
       if (load.sid == set) add(load, 1);
     for (const auto& sum : d.sums)
@@ -235,8 +247,14 @@ class Collector {
     if (set == 0) return values;
     for (const auto& card : cards) {
       if (card.sid != set) continue;
-      if (const int row = find_dof(model_, deck_, card.g, card.c, name, card.at, diagnostics_); row >= 0)
-        values[row] = card.value;
+      if (const int row = find_dof(model_, deck_, card.g, card.c, name, card.at, diagnostics_); row >= 0) {
+        const auto [found, is_new] = values.emplace(row, card.value);
+        if (!is_new && found->second != card.value)
+          diagnostics_.error("modal.wrong-load", deck_.locate(card.at),
+                             std::string(name) + " " + std::to_string(set) + " gives grid " + std::to_string(card.g) +
+                                 " component " + std::to_string(card.c) + " two values",
+                             "keep one of them");
+      }
     }
     if (!has_set(cards, set))
       diagnostics_.error(
@@ -268,7 +286,14 @@ int find_dof(const fe::Model& model, const records::DynamicDeck& deck, int g, in
     return -1;
   }
   const auto& node = model.node(index);
-  if (node.num_dofs == 1) return node.first_gdof;
+  if (node.num_dofs == 1) {
+    if (c <= 1) return node.first_gdof;
+    diagnostics.error(
+        "fe.bad-component", deck.locate(at),
+        card + " has component " + std::to_string(c) + " at scalar point " + std::to_string(g) + ", expected 0 or 1",
+        "correct the component");
+    return -1;
+  }
   if (c == 0) {
     diagnostics.error("fe.bad-component", deck.locate(at),
                       card + " names grid " + std::to_string(g) + " without a component, expected 1 to 6",

@@ -19,6 +19,8 @@ double interpolate(const Point& a, const Point& b, double x, bool is_log_x, bool
 double evaluate_points(const records::DynamicTable& table, double x, Side side, double reach) {
   const auto& p = table.points;
   if (p.size() == 1) return p.front().second;
+  if (table.is_flat && x < p.front().first - reach) return p.front().second;
+  if (table.is_flat && x > p.back().first + reach) return p.back().second;
   const auto is_jump = [&](std::size_t i) { return i + 1 < p.size() && p[i].first == p[i + 1].first; };
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (std::abs(p[i].first - x) > reach) continue;

@@ -1,9 +1,11 @@
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "modal/response/coordinates.hpp"
+#include "modal/response/sampled_curve.hpp"
 
 namespace bough::modal::response {
 namespace {
@@ -92,47 +94,41 @@ class Motion {
             response::calc_history(term, t, Side::After, reach)};
   }
 
-  /// Of what is given, lines between the steps; the others are its integrals and slopes. The structure is at rest
-  /// before the first step: what the supports have then, they have by a jump.
+  /// The structure is at rest before the first step: what the supports have then, they have by a jump.
   void sample_motion(const ExcitationTerm& term) {
     using Type = records::DynamicLoad::Excitation;
     const auto type = term.card->excitation;
-    const auto c = term.column;
-    double d = 0, v = 0, before = 0, after = 0;
-    for (Eigen::Index i = 0; i < grid_.time.size(); ++i) {
-      const auto [now_before, now_after] = evaluate_sides(term, i);
-      const double h = step_before(i), slope = i > 0 ? (now_before - after) / h : 0;
+    const auto nt = grid_.time.size();
+    VectorXd before(nt), after(nt);
+    for (Eigen::Index i = 0; i < nt; ++i) std::tie(before(i), after(i)) = evaluate_sides(term, i);
+    const auto curve = type == Type::Acceleration ? SampledCurve{} : make_curve(grid_.time, before, after);
+    double d = 0, v = 0;
+    for (Eigen::Index i = 0; i < nt; ++i) {
+      const double h = step_before(i);
       if (i > 0 && type == Type::Acceleration) {
-        d += h * v + h * h * (after / 3 + now_before / 6);
-        v += 0.5 * h * (after + now_before);
+        d += h * v + h * h * (after(i - 1) / 3 + before(i) / 6);
+        v += 0.5 * h * (after(i - 1) + before(i));
       }
-      if (i > 0 && type == Type::Velocity) d += 0.5 * h * (after + now_before);
-      before = now_before;
+      if (i > 0 && type == Type::Velocity)
+        d += 0.5 * h * (after(i - 1) + before(i)) + h * h / 12 * (curve.slope_after(i - 1) - curve.slope_before(i));
       if (type == Type::Acceleration) {
-        add(d_, c, i, d, d);
-        add(d_dot_, c, i, v, v);
-        add(d_ddot_, c, i, before, now_after);
+        add(d_, term, i, d, d);
+        add(d_dot_, term, i, v, v);
+        add(d_ddot_, term, i, before(i), after(i));
       } else if (type == Type::Velocity) {
-        add(d_, c, i, d, d);
-        add(d_dot_, c, i, before, now_after);
-        add_slope(d_ddot_, c, i, slope);
+        add(d_, term, i, d, d);
+        add(d_dot_, term, i, before(i), after(i));
+        add(d_ddot_, term, i, curve.slope_before(i), curve.slope_after(i));
       } else {
-        add(d_, c, i, before, now_after);
-        add_slope(d_dot_, c, i, slope);
+        add(d_, term, i, before(i), after(i));
+        add(d_dot_, term, i, curve.slope_before(i), curve.slope_after(i));
+        add(d_ddot_, term, i, curve.curvature_before(i), curve.curvature_after(i));
       }
-      after = now_after;
     }
   }
-  static void add(Sides& s, Eigen::Index c, Eigen::Index i, double before, double after) {
-    s.before(c, i) += before;
-    s.after(c, i) += after;
-  }
-  /// A value that holds from step i - 1 to step i.
-  static void add_slope(Sides& s, Eigen::Index c, Eigen::Index i, double slope) {
-    if (i == 0) return;
-    s.after(c, i - 1) += slope;
-    s.before(c, i) += slope;
-    if (i + 1 == s.after.cols()) s.after(c, i) += slope;
+  static void add(Sides& s, const ExcitationTerm& term, Eigen::Index i, double before, double after) {
+    s.before(term.column, i) += before;
+    s.after(term.column, i) += after;
   }
 
   VectorXd collect(Eigen::Index i, bool is_after) const {

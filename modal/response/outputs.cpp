@@ -13,15 +13,21 @@ constexpr std::array<std::pair<const char*, const char*>, 5> kQuantities{{{"DISP
                                                                           {"SPCFORCES", "spc_force"},
                                                                           {"FORCE", "force"}}};
 
-/// Grids that the excitation loads or moves.
-std::vector<int> list_driven_grids(const fe::Model& model, const Excitation& excitation) {
+/// Grids that the excitation loads or moves, or that TIC gives a start.
+std::vector<int> list_driven_grids(const fe::Model& model, const records::DynamicDeck& deck,
+                                   const records::DynamicSubcase& subcase, const Excitation& excitation) {
   std::vector<int> grids;
   const MatrixXd moved = model.T_fixed() * excitation.D;
   for (const auto& node : model.nodes()) {
     const auto is_driven = [&](const MatrixXd& A) {
       return A.cols() > 0 && !A.middleRows(node.first_gdof, node.num_dofs).isZero(0);
     };
-    if (is_driven(excitation.F) || is_driven(moved)) grids.push_back(node.id);
+    const auto& starts = deck.dynamics.initial;
+    const bool starts_here = subcase.dynamics.ic != 0 && excitation.F.cols() + moved.cols() == 0 &&
+                             std::any_of(starts.begin(), starts.end(), [&](const auto& start) {
+                               return start.sid == subcase.dynamics.ic && start.g == node.id;
+                             });
+    if (starts_here || is_driven(excitation.F) || is_driven(moved)) grids.push_back(node.id);
   }
   return grids;
 }
@@ -76,7 +82,7 @@ std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::
   const bool is_said = std::any_of(kQuantities.begin(), kQuantities.end(),
                                    [&](const auto& q) { return selection.outputs.count(q.first) > 0; });
   if (!outputs.empty() || is_said) return outputs;
-  outputs.push_back({"displacement", list_driven_grids(model, excitation), false, false});
+  outputs.push_back({"displacement", list_driven_grids(model, deck, subcase, excitation), false, false});
   diagnostics.note("modal.default-output", deck.locate({}),
                    "the deck asks for no result: the displacements of the grids that are driven are given",
                    "write DISPLACEMENT = n and SET n = ids in the case control, or --grid");

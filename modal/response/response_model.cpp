@@ -67,6 +67,13 @@ bool is_off_diagonal(const MatrixXd& A) {
   return false;
 }
 
+/// K X without K2PP.
+MatrixXd times_structure(const fe::Model& model, const DampingChoice& damping, const MatrixXd& X) {
+  MatrixXd Y = fe::calc_stiffness_times(model, X);
+  if (damping.times_direct) Y -= damping.times_direct(X);
+  return Y;
+}
+
 /// Columns of A that are not zero.
 MatrixXd take_nonzero(const MatrixXd& A) {
   std::vector<int> kept;
@@ -103,7 +110,7 @@ class Maker {
       loads = join_columns(loads, more);
     choose_shapes(loads, start, with_residuals, r);
     const auto num_dynamic = r.Phi.cols();
-    if (with_residuals) add_massless(join_columns(loads, calc_damper_loads(model_, elastic())), r);
+    if (with_residuals) add_massless(join_columns(loads, calc_inner_loads(elastic())), r);
     r.P = r.Phi.transpose() * loads;
     damp(r);
     const auto Phi = r.Phi.leftCols(num_dynamic);
@@ -117,14 +124,27 @@ class Maker {
   MatrixXd rigid() const { return modes_.Phi.leftCols(modes_.num_rigid); }
   MatrixXd elastic() const { return modes_.Phi.rightCols(num_elastic()); }
 
+  /// Forces of dampers, and of structural damping where that is not of one measure throughout: then it is no K.
+  MatrixXd calc_inner_loads(const MatrixXd& Phi) const {
+    const MatrixXd loads = calc_damper_loads(model_, Phi);
+    if (damping_.is_over_time && damping_.w4 <= 0) return loads;
+    const MatrixXd X = Phi.leftCols(std::min<Eigen::Index>(Phi.cols(), kMostDamperDirections));
+    MatrixXd S = fe::calc_structural_damping_times(model_, 0, X);
+    if (S.size() == 0 || S.isZero(0)) return loads;
+    const MatrixXd K = fe::calc_stiffness_times(model_, X);
+    const double even = S.cwiseProduct(K).sum() / K.squaredNorm();
+    if ((S - even * K).norm() < 1e-9 * S.norm()) return loads;
+    return join_columns(loads, S);
+  }
+
   void choose_shapes(const MatrixXd& loads, const StartMotion& start, bool with_residuals, ResponseModel& r) {
     MatrixXd kept = elastic();
     VectorXd lambda = modes_.lambda.tail(num_elastic());
     if (with_residuals) {
       // B Ψ lies in the loads of the dampers; K_s Ψ is next to nothing.
       const auto k = r.Psi.cols(), m = loads.cols() - 3 * k;
-      const MatrixXd F = take_nonzero(join_columns(join_columns(loads.leftCols(m + k), calc_damper_loads(model_, kept)),
-                                                   calc_start_loads(model_, start)));
+      const MatrixXd F = take_nonzero(
+          join_columns(join_columns(loads.leftCols(m + k), calc_inner_loads(kept)), calc_start_loads(model_, start)));
       const auto residual = bases::calc_residual_vectors(model_, solve_, rigid(), kept, F);
       if (residual.modes.lambda.size() > 0) {
         kept = join_columns(kept, residual.modes.Phi);
@@ -197,8 +217,12 @@ class Maker {
     r.D = make_symmetric(r.Phi.transpose() * fe::calc_damping_times(model_, r.Phi));
     r.S = MatrixXd::Zero(n, n);
     const MatrixXd K_e = make_symmetric(r.Phi.transpose() * fe::calc_structural_damping_times(model_, 0, r.Phi));
-    const MatrixXd K_g = damping_.g * MatrixXd(r.lambda.asDiagonal());
+    MatrixXd K = r.lambda.asDiagonal();
+    if (damping_.times_direct) K -= make_symmetric(r.Phi.transpose() * damping_.times_direct(r.Phi));
+    const MatrixXd K_g = damping_.g * K;
     const auto num = r.num_dynamic();
+    r.D += damping_.alpha2 * K;
+    r.D.diagonal().head(num).array() += damping_.alpha1;
     if (damping_.is_over_time) {
       if (damping_.w4 > 0) r.D += K_e / damping_.w4;
       if (damping_.w3 > 0) r.D += K_g / damping_.w3;
@@ -252,14 +276,16 @@ class Maker {
 
 MatrixXd times_damping(const fe::Model& model, const DampingChoice& damping, const MatrixXd& X) {
   MatrixXd Y = fe::calc_damping_times(model, X);
+  if (damping.alpha1 != 0) Y += damping.alpha1 * times_mass(model, X);
+  if (damping.alpha2 != 0) Y += damping.alpha2 * times_structure(model, damping, X);
   if (!damping.is_over_time) return Y;
   if (damping.w4 > 0) Y += fe::calc_structural_damping_times(model, 0, X) / damping.w4;
-  if (damping.w3 > 0) Y += damping.g / damping.w3 * fe::calc_stiffness_times(model, X);
+  if (damping.w3 > 0) Y += damping.g / damping.w3 * times_structure(model, damping, X);
   return Y;
 }
 MatrixXd times_structural(const fe::Model& model, const DampingChoice& damping, const MatrixXd& X) {
   if (damping.is_over_time) return MatrixXd::Zero(X.rows(), X.cols());
-  return fe::calc_structural_damping_times(model, 0, X) + damping.g * fe::calc_stiffness_times(model, X);
+  return fe::calc_structural_damping_times(model, 0, X) + damping.g * times_structure(model, damping, X);
 }
 
 StartMotion calc_start(const fe::Model& model, const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "formats/records/signal_name.hpp"
 #include "solver/linear/plant.hpp"
 #include "solver/system/impl.hpp"
 
@@ -56,8 +57,12 @@ void Plant::add_outputs() {
     for (const auto& p : system_.impl().signals.places) {
       if (!is_of(*p.block, kind)) continue;
       const int size = p.block->sizes.outputs;
+      // Rows of an element by their names.
+      const auto names = records::get_component_names(p.block->path, size, p.block->description);
       for (int i = 0; i < size; ++i) {
-        outputs_.name.push_back(name_component(p.block->name, i, size));
+        const bool is_named = size > 1 && names != records::get_component_names(p.block->path, size);
+        outputs_.name.push_back(is_named ? p.block->name + ":" + names[static_cast<std::size_t>(i)]
+                                         : name_component(p.block->name, i, size));
         outputs_.dims.push_back(p.block->dims);
       }
     }

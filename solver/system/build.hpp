@@ -44,7 +44,8 @@ std::optional<AppliedForce> build_force(const records::ForceRecord& record, cons
 void build_constraints(const records::SystemSpec& spec, const TreeOrder& order, System::Impl& impl,
                        Diagnostics& diagnostics);
 /// What of each flexible body is recovered, for the results and for sensors, after constraints and forces. Reports
-/// "system.no-recovery", "system.unknown-element"; notes "system.recovery-loads".
+/// "system.no-recovery", "system.unknown-element"; notes "system.recovery-loads"; warns
+/// "system.recovery-constraint".
 void build_recoveries(const records::SystemSpec& spec, const System& system, const FlexMap& flex, System::Impl& impl,
                       Diagnostics& diagnostics);
 /// Initial positions and rates that close the loops, into impl; `system` owns impl. Reports "system.cannot-assemble";

@@ -29,6 +29,29 @@ std::vector<std::string> list_unknown_loads(const records::SystemSpec& spec, con
   return names;
 }
 
+/// Constraints hold a node in the directions in which its modes give way; where none of these is the static answer to a
+/// force there, the force of the constraint itself is that of a body too stiff.
+void report_held_nodes(const records::SystemSpec& spec, const records::BodyRecord& r, const records::FlexBody& body,
+                       Diagnostics& diagnostics) {
+  const bool has_static =
+      std::any_of(body.kind.begin(), body.kind.end(), [](auto kind) { return kind != records::ModeKind::Normal; });
+  const auto& known = body.interface_nodes;
+  for (const auto& c : spec.constraints)
+    for (const auto& [name, node] : {std::pair(c.parent, c.parent_node), std::pair(c.child, c.child_node)}) {
+      if (name != r.name || node == 0) continue;
+      const bool is_interface = std::find(known.begin(), known.end(), node) != known.end();
+      if (has_static && is_interface) continue;
+      diagnostics.warning(
+          "system.recovery-constraint", c.at,
+          "constraint '" + c.name + "' holds node " + std::to_string(node) + " of body '" + r.name +
+              "', which has no attachment, constraint or residual mode for a force there: where its normal modes give "
+              "way too little, the reaction and the forces in elements are wrong",
+          is_interface
+              ? "reduce the body with residual = [\"interface\"]"
+              : "reduce the body with interface = [" + std::to_string(node) + "] and residual = [\"interface\"]");
+    }
+}
+
 }  // namespace
 
 void build_recoveries(const records::SystemSpec& spec, const System& system, const FlexMap& flex, System::Impl& impl,
@@ -73,7 +96,11 @@ void build_recoveries(const records::SystemSpec& spec, const System& system, con
       diagnostics.note("system.recovery-loads", r.at,
                        "the forces in elements of body '" + r.name +
                            "' follow from its modes alone where they answer to: " + list_names(others),
-                       "add the node to [body] interface, or modes (attachment, residual) that hold the deflection");
+                       nodes.empty() ? "take modes (attachment, residual) that hold the deflection; [body] interface "
+                                       "alone does not give the values of these loads"
+                                     : "add the node to [body] interface, or modes (attachment, residual) that hold "
+                                       "the deflection; for other loads only the modes help");
+    report_held_nodes(spec, r, body, diagnostics);
     impl.recoveries[static_cast<size_t>(b)] = std::move(recovery);
   }
 }

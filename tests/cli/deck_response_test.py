@@ -608,7 +608,7 @@ class Files(DeckResponse):
         self.write("t.bdf", ONE.format(sol=112, case="DLOAD = 9\nTSTEP = 5", bulk="TLOAD2,9,10,,,0.,9.\nDAREA,10,1,1,2.5\nTSTEP,5,40,.1"))
         self.bough("transient", "t.bdf", "-o", "t.h5")
         self.bough("plot", "t.h5", "--sensor", "velocity:1", "-o", "t.svg")
-        self.assertIn("/subcases/0/displacement/value", self.bough("info", "t.h5").stdout)
+        self.assertIn("/subcases/1/displacement/value", self.bough("info", "t.h5").stdout)
 
     def test_choice_of_output(self):
         """--grid adds; no request at all gives the loaded grids; OFREQ and EXCEPT; SET that is missing."""

@@ -240,6 +240,58 @@ class Recovery(ProgramTest):
         force = '[[force]]\nname = "tip"\nbody = "boom"\nnode = 5\nforce = [0.0, 1.0, 0.0]\n'
         self.write("s.toml", SYSTEM.format(**{**base, "body": "recover = true\n", "more": force}))
         self.assertIn("[system.recovery-loads]", self.bough("run", "s.toml", "-o", "r.h5", "-v").stderr)
+        # Of an actuator the interface does not help.
+        self.reduce(2, recover="[1]")
+        actuator = '[[actuator]]\nname = "fx"\ntype = "force"\nbody = "boom"\nnode = 9\naxis = [0.0, 1.0, 0.0]\n'
+        self.write("s.toml", SYSTEM.format(**{**base, "body": "recover = true\n", "more": actuator}))
+        said = self.bough("check", "s.toml", "-v").stderr
+        self.assertIn("answer to: fx", said)
+        self.assertNotIn("add the node to [body] interface", said)
+
+    def test_rows_have_their_names(self):
+        self.reduce(3)
+        sensor = '[[sensor]]\nname = "root"\ntype = "element"\nbody = "boom"\nelement = 1\n'
+        self.run_system(more=sensor).close()
+        self.bough("plot", "r.h5", "--sensor", "root:moment_y_a", "-o", "a.svg")
+        self.bough("plot", "r.h5", "--sensor", "/bodies/boom/recovery/CBAR/1:axial", "-o", "a.svg")
+        self.bough("plot", "r.h5", "--sensor", "root:5", "-o", "a.svg")
+        self.fails(1, "plot", "r.h5", "--sensor", "root:moment", "-o", "a.svg", error="cli.unknown-channel",
+                   says=["its components are axial shear_y"])
+        self.bough("export", "r.h5", "--to", "csv", "--channel", "root", "-o", "a.csv")
+        with open(self.path("a.csv"), encoding="utf-8") as f:
+            self.assertIn("sensors/root:axial,sensors/root:shear_y,", f.readline())
+        linear = self.bough("linearize", "s.toml", "-o", "l.h5").stdout
+        with h5py.File(self.path("l.h5")) as f:
+            found = []
+            f.visititems(lambda name, item: found.extend(item.asstr()[()].ravel().tolist())
+                         if isinstance(item, h5py.Dataset) and item.dtype.kind == "O" else None)
+        self.assertIn("root:moment_y_a", found, linear)
+
+    def test_pinned_tip_needs_a_residual_mode(self):
+        """Clamped and pinned under its weight: with normal modes alone the pin is too stiff, which is said."""
+        static = self.read_static(make_deck(load="GRAV,2,,9.81,0.,.6,-.8\nSPC1,1,123,9\n"))
+        pin = (f'[[constraint]]\nname = "pin"\ntype = "spherical"\nparent = "ground"\nparent_position = [{L}, 0.0, 0.0]\n'
+               'child = "boom"\nchild_node = 9\n')
+        deck = make_deck()
+        errors = []
+        for more in ["", 'residual = ["interface"]\n']:
+            self.write("boom.bdf", deck)
+            self.write("boom.toml", BODY.format(modes=2, recover='"all"').replace("[body.output]", more + "[body.output]"))
+            self.bough("reduce", "boom.toml", "-o", "boom.h5")
+            text = SYSTEM.format(body="recover = true\n", more=pin, duration=.1, hinge='type = "fixed"')
+            self.write("s.toml", text + "gravity = [0.0, 5.886, -7.848]\n")
+            said = self.bough("equilibrium", "s.toml", "-o", "e.h5").stderr
+            with h5py.File(self.path("e.h5")) as f:
+                g = f["bodies/boom/recovery/CBAR/1"]
+                names = g.attrs["description"]
+                names = (names.decode() if isinstance(names, bytes) else names).split(", ")
+                found = g[()].ravel()[names.index("moment_z_a")]
+            errors.append(abs(found / static["moment_z_a"][0] - 1))
+            for verb in ("check", "equilibrium"):
+                said = self.bough(verb, "s.toml").stderr
+                self.assertEqual("[system.recovery-constraint]" in said, more == "", said)
+        self.assertGreater(errors[0], .05)
+        self.assertLess(errors[1], 1e-6)
 
 
 def expected_root(mass, x, omega):

@@ -259,6 +259,7 @@ class Stress(ProgramTest):
         listing = self.bough("static", "d.bdf", "--grid-forces", "all").stdout
         self.assertIn("forces on grids", listing)
         self.fails(1, "static", "d.bdf", "--grid-forces", "1,x", error="cli.bad-grids")
+        self.fails(1, "static", "d.bdf", "--grid-forces", "1,77", error="fe.missing-grid", says=["--grid-forces names 77"])
 
 
 class Energies(ProgramTest):

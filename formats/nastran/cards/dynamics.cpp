@@ -79,12 +79,27 @@ void parse_rload2(Card& card, DynamicCards& r) {
   add_load(card, r, load);
 }
 
+/// US0 and VS0: where a motion of supports by VELO or ACCE begins.
+void refuse_start(Card& card, int first, DynamicLoad::Excitation excitation) {
+  for (int i = first; i < first + 2; ++i) {
+    const char* name = i == first ? "US0" : "VS0";
+    if (card.read_real(i, name, 0.0) == 0 || !card.is_ok()) continue;
+    if (excitation == DynamicLoad::Excitation::Force)
+      card.warn("deck.unused-field", i, std::string(name) + " is not used: the card gives forces",
+                "leave it blank, or write TYPE DISP, VELO or ACCE");
+    else
+      card.fail("deck.unsupported-start", i, std::string(name) + " is not supported: motions of supports begin at 0",
+                "add a TLOAD2 of TYPE DISP for it, or leave it blank");
+  }
+}
+
 /// SID EXCITEID DELAY TYPE TID US0 VS0.
 void parse_tload1(Card& card, DynamicCards& r) {
   auto load = read_head(card, DynamicLoad::Kind::Tload1);
   load.excitation = read_excitation(card, 3);
   read_set_or_number(card, 4, "TID", load.table_a, load.a);
   card.demand(!card.is_blank(4), 4, "TID", "a table or a number");
+  refuse_start(card, 5, load.excitation);
   add_load(card, r, load);
 }
 
@@ -100,6 +115,7 @@ void parse_tload2(Card& card, DynamicCards& r) {
   load.power = card.read_real(9, "B", 0.0);
   if (card.is_ok()) card.demand(load.t2 > load.t1, 5, "T2", "a time after T1");
   if (card.is_ok()) card.demand(load.power >= 0, 9, "B", "zero or above");
+  refuse_start(card, 10, load.excitation);
   add_load(card, r, load);
 }
 
@@ -199,6 +215,9 @@ void parse_tabled1(Card& card, DynamicCards& r) {
   auto t = read_table_head(card, 1);
   t.is_log_x = card.read_word(1, "XAXIS", "LINEAR", {"LINEAR", "LOG"}) == "LOG";
   t.is_log_y = card.read_word(2, "YAXIS", "LINEAR", {"LINEAR", "LOG"}) == "LOG";
+  const int beyond = card.read_int(3, "EXTRAP", 0);
+  if (card.is_ok()) card.demand(beyond == 0 || beyond == 1, 3, "EXTRAP", "0 (the last line goes on) or 1 (end values)");
+  t.is_flat = beyond == 1;
   t.points = read_points(card, 8);
   for (const auto& [x, y] : t.points)
     if (card.is_ok() && ((t.is_log_x && x <= 0) || (t.is_log_y && y <= 0)))

@@ -323,7 +323,9 @@ class Builder {
                             *effect == records::CardEffect::Constraint;
     if (is_ignored)
       diagnostics_.warning("deck.ignored-card", where, name + " is ignored (" + times + ")",
-                           std::string("it would carry ") + get_effect_name(*effect));
+                           ignored_loss(name, *effect));
+    else if (dynamics_ && find_response_effect(name))
+      report_response_card(name, *find_response_effect(name), times, where);
     else if (has_effect)
       diagnostics_.error("deck.unsupported-card", where,
                          name + " is not supported and carries " + get_effect_name(*effect) + " (" + times + ")",
@@ -333,6 +335,23 @@ class Builder {
           "deck.unused-card", where,
           name + (entry.parser == nullptr ? " is not read (" : " is not used (") + times + ")",
           find_loss(name) != nullptr ? find_loss(name) : std::string("it carries ") + get_effect_name(*effect));
+  }
+
+  std::string ignored_loss(const std::string& name, records::CardEffect effect) const {
+    const auto in_response = dynamics_ ? find_response_effect(name) : std::nullopt;
+    if (in_response && !in_response->needs_command) return std::string("in a response it ") + in_response->what;
+    return std::string("it would carry ") + get_effect_name(effect);
+  }
+
+  void report_response_card(const std::string& name, const ResponseEffect& effect, const std::string& times,
+                            const SourceLocation& where) {
+    if (effect.needs_command)
+      diagnostics_.warning("deck.unused-card", where, name + " is not read (" + times + ")",
+                           std::string("it acts where ") + effect.what + " selects it, which is an error");
+    else
+      diagnostics_.error("deck.unsupported-card", where,
+                         name + " is not supported and " + effect.what + " (" + times + ")",
+                         "take it out, or --ignore " + name + effect.without);
   }
 
   const Source& source_;

@@ -47,8 +47,11 @@ Command split_command(std::string_view text) {
 
 class CaseControl {
  public:
-  CaseControl(const Source& source, records::Deck& deck, Diagnostics& diagnostics, records::DynamicDeck* dynamics)
-      : source_(source), deck_(deck), diagnostics_(diagnostics), dynamics_(dynamics) {}
+  CaseControl(const Source& source, records::Deck& deck, Diagnostics& diagnostics, records::DynamicDeck* dynamics,
+              const ReadOptions& options)
+      : source_(source), deck_(deck), diagnostics_(diagnostics), dynamics_(dynamics) {
+    for (const auto& name : options.ignore_cards) asked_to_ignore_.insert(make_upper(trim(name)));
+  }
 
   void read(std::size_t first, std::size_t last, bool with_executive) {
     for (std::size_t i = first; i < last; ++i) {
@@ -134,11 +137,33 @@ class CaseControl {
   }
 
   void read_dynamic(const Command& c) {
+    if (dynamics_ && read_direct_input(c)) return;
+    if (const auto* acts = dynamics_ ? find_unsupported_command(c.word) : nullptr) return refuse(*acts);
     const auto read = dynamics_
                           ? read_dynamic_command({c.word, c.options, c.value, at_}, current(), current_selection())
                           : DynamicCommand::Other;
     if (read == DynamicCommand::BadValue) return bad_value(c);
     if (read == DynamicCommand::Other && !is_plain_command(c.word)) report_unused(c.word);
+  }
+
+  /// K2PP, M2PP, B2PP.
+  bool read_direct_input(const Command& c) {
+    for (const auto& input : direct_inputs) {
+      if (c.word != input.name) continue;
+      read_matrices(c, input.name, current_selection().*input.list);
+      return true;
+    }
+    return false;
+  }
+
+  /// What acts in a response, and Bough does not compute.
+  void refuse(const UnsupportedCommand& command) {
+    const std::string what = std::string(command.name) + " is not supported: it selects " + command.what;
+    if (asked_to_ignore_.count(command.name) > 0 || asked_to_ignore_.count(command.card) > 0)
+      diagnostics_.warning("deck.unsupported-command", deck_.locate(at_), what, "ignored as asked");
+    else
+      diagnostics_.error("deck.unsupported-command", deck_.locate(at_), what,
+                         std::string("take it out, or --ignore ") + command.name + " to compute without it");
   }
 
   void report_unused(const std::string& word) {
@@ -269,6 +294,7 @@ class CaseControl {
     if (deck_.subcases.empty()) deck_.subcases.push_back(above_);
     if (dynamics_ && !in_subcase_) dynamics_->selections[0] = selection_above_;
     choose_matrices(deck_, sets_, at_, diagnostics_);
+    if (dynamics_) add_direct_input(*dynamics_, sets_, at_, diagnostics_);
     if (ignored_.empty()) return;
     std::string words;
     const auto num_shown = std::min(ignored_.size(), most_words);
@@ -290,6 +316,7 @@ class CaseControl {
   std::vector<std::pair<std::string, records::CardLocation>> ignored_;
   std::unordered_set<std::string> noted_;  ///< the words of ignored_
   std::unordered_set<int> subcase_ids_;
+  std::unordered_set<std::string> asked_to_ignore_;
   NamedSets sets_;
 };
 
@@ -304,7 +331,7 @@ void read_executive(const Source& source, std::size_t last, records::Deck& deck)
 }  // namespace
 
 std::size_t read_control(const Source& source, records::Deck& deck, Diagnostics& diagnostics,
-                         records::DynamicDeck* dynamics) {
+                         records::DynamicDeck* dynamics, const ReadOptions& options) {
   constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::size_t cend = none, begin = none;
   for (std::size_t i = 0; i < source.lines.size() && begin == none; ++i) {
@@ -331,11 +358,11 @@ std::size_t read_control(const Source& source, records::Deck& deck, Diagnostics&
                       "write BEGIN BULK before the bulk data");
     begin = source.lines.size();
     read_executive(source, cend, deck);
-    CaseControl(source, deck, diagnostics, dynamics).read(cend + 1, begin, false);
+    CaseControl(source, deck, diagnostics, dynamics, options).read(cend + 1, begin, false);
     return begin;
   }
   if (cend != none) read_executive(source, cend, deck);
-  CaseControl(source, deck, diagnostics, dynamics).read(cend == none ? 0 : cend + 1, begin, cend == none);
+  CaseControl(source, deck, diagnostics, dynamics, options).read(cend == none ? 0 : cend + 1, begin, cend == none);
   return begin + 1;
 }
 

@@ -1,5 +1,6 @@
 #include "formats/nastran/detail/control_words.hpp"
 
+#include <array>
 #include <vector>
 
 #include "base/diagnostic.hpp"
@@ -49,6 +50,16 @@ std::string find_nearest_command(std::string_view word) {
   // Of the words that begin as LOAD does only LOADSET is another command; LOADS is a slip.
   const bool is_known = word.substr(0, 4) == "LOAD" ? is_loadset : is_among(known_commands, word);
   return is_known ? std::string{} : find_nearest(word, used);
+}
+
+const UnsupportedCommand* find_unsupported_command(std::string_view word) {
+  static constexpr std::array commands{
+      UnsupportedCommand{"TFL", "TF", "transfer functions: stiffness, damping and mass of the response"},
+      UnsupportedCommand{"NONLINEAR", "NOLIN1", "loads that depend on the motion"},
+      UnsupportedCommand{"K42GG", "DMIG", "structural damping given as a matrix"}};
+  for (const auto& command : commands)
+    if (word.substr(0, 4) == std::string_view(command.name).substr(0, 4)) return &command;
+  return nullptr;
 }
 
 }  // namespace bough::nastran::detail

@@ -13,4 +13,12 @@ bool is_plain_command(std::string_view word);
 /// is near.
 std::string find_nearest_command(std::string_view word);
 
+/// Commands that act in a response and that Bough does not honour there.
+struct UnsupportedCommand {
+  const char *name, *card;  ///< upper case; card: of those that it selects
+  const char* what;         ///< what these are
+};
+/// nullptr for all others.
+const UnsupportedCommand* find_unsupported_command(std::string_view word);
+
 }  // namespace bough::nastran::detail

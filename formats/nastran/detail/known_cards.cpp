@@ -180,6 +180,17 @@ const char* find_loss(std::string_view name) {
   return nullptr;
 }
 
+std::optional<ResponseEffect> find_response_effect(std::string_view name) {
+  if (name == "PBUSHT" || name == "PELAST")
+    return ResponseEffect{"gives stiffness and damping over frequency", false, " computes with the nominal values"};
+  if (name == "PDAMPT")
+    return ResponseEffect{"gives damping over frequency", false, " computes with the nominal values"};
+  if (name == "EPOINT") return ResponseEffect{"adds dofs to a response", false, " computes without them"};
+  if (name == "TF") return ResponseEffect{"TFL", true, ""};
+  if (name.substr(0, 5) == "NOLIN") return ResponseEffect{"NONLINEAR", true, ""};
+  return std::nullopt;
+}
+
 const char* get_effect_name(CardEffect effect) {
   switch (effect) {
     case CardEffect::Stiffness:

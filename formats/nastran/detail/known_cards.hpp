@@ -14,6 +14,13 @@ std::optional<records::CardEffect> find_effect(std::string_view name);
 std::string find_nearest_card(std::string_view name);
 /// What is lost with a set of dofs that is not used, or nullptr for other cards.
 const char* find_loss(std::string_view name);
+/// Cards that act in responses alone. Those that a command selects, which is refused itself, are no error.
+struct ResponseEffect {
+  const char* what;  ///< "gives ...", or the command that selects the card
+  bool needs_command;
+  const char* without;  ///< what is computed with --ignore
+};
+std::optional<ResponseEffect> find_response_effect(std::string_view name);
 const char* get_effect_name(records::CardEffect effect);
 
 }  // namespace bough::nastran::detail

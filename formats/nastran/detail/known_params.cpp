@@ -63,7 +63,8 @@ const std::vector<Rule>& get_rules() {
 
 /// Those that responses use besides.
 const std::vector<Rule>& get_response_rules() {
-  static const std::vector<Rule> rules{{"DFREQ", "a number", is_real},       {"HFREQ", "a number", is_real},
+  static const std::vector<Rule> rules{{"ALPHA1", "a number", is_real},      {"ALPHA2", "a number", is_real},
+                                       {"DFREQ", "a number", is_real},       {"HFREQ", "a number", is_real},
                                        {"KDAMP", "1 or -1", is_integer},     {"LFREQ", "a number", is_real},
                                        {"LMODES", "an integer", is_integer}, {"RESVEC", "YES or NO", is_answer},
                                        {"W3", "a number", is_real},          {"W4", "a number", is_real}};

@@ -40,6 +40,22 @@ bool read_matrix_names(std::string_view text, MatrixList& matrices) {
   return !matrices.empty();
 }
 
+namespace {
+
+void report_no_set(const records::Deck& deck, const records::CardLocation& at, const std::string& commands,
+                   const std::string& id, Diagnostics& diagnostics) {
+  diagnostics.error("deck.case-control-value", deck.locate(at),
+                    commands + " selects " + id + ", which no SET of names defines",
+                    "write SET " + id + " = NAME, NAME");
+}
+void report_later(const records::Deck& deck, const records::CardLocation& at, const std::string& commands,
+                  Diagnostics& diagnostics) {
+  diagnostics.warning("deck.case-control-later", deck.locate(at), commands + " of a later subcase is not used",
+                      "those above the first subcase or in it hold for all");
+}
+
+}  // namespace
+
 void choose_matrices(records::Deck& deck, const NamedSets& sets, const records::CardLocation& at,
                      Diagnostics& diagnostics) {
   auto& first = deck.subcases.front();
@@ -47,9 +63,7 @@ void choose_matrices(records::Deck& deck, const NamedSets& sets, const records::
   for (const auto member : {&records::Subcase::k2gg, &records::Subcase::m2gg, &records::Subcase::b2gg}) {
     auto& chosen = first.*member;
     if (!expand_set(sets, chosen)) {
-      diagnostics.error("deck.case-control-value", deck.locate(at),
-                        "K2GG, M2GG or B2GG selects " + chosen.front().second + ", which no SET of names defines",
-                        "write SET " + chosen.front().second + " = NAME, NAME");
+      report_no_set(deck, at, "K2GG, M2GG or B2GG", chosen.front().second, diagnostics);
       chosen.clear();
     }
     for (auto& subcase : deck.subcases) {
@@ -58,9 +72,27 @@ void choose_matrices(records::Deck& deck, const NamedSets& sets, const records::
       subcase.*member = chosen;
     }
   }
-  if (differs)
-    diagnostics.warning("deck.case-control-later", deck.locate(at), "K2GG, M2GG or B2GG of a later subcase is not used",
-                        "those above the first subcase or in it hold for all");
+  if (differs) report_later(deck, at, "K2GG, M2GG or B2GG", diagnostics);
+}
+
+void add_direct_input(records::DynamicDeck& deck, const NamedSets& sets, const records::CardLocation& at,
+                      Diagnostics& diagnostics) {
+  bool differs = false;
+  for (const auto& input : direct_inputs) {
+    auto chosen = deck.selections[deck.subcases.front().id].*input.list;
+    if (!expand_set(sets, chosen)) {
+      report_no_set(deck, at, input.name, chosen.front().second, diagnostics);
+      chosen.clear();
+    }
+    for (auto& subcase : deck.subcases) {
+      auto& own = deck.selections[subcase.id].*input.list;
+      differs = differs || !expand_set(sets, own) || (!own.empty() && own != chosen);
+      own = chosen;
+      auto& all = subcase.*input.model;
+      all.insert(all.end(), chosen.begin(), chosen.end());
+    }
+  }
+  if (differs) report_later(deck, at, "K2PP, M2PP or B2PP", diagnostics);
 }
 
 }  // namespace bough::nastran::detail

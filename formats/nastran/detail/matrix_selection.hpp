@@ -1,12 +1,13 @@
 #pragma once
 /// \file K2GG, M2GG, B2GG of the case control: lists of names of DMIG with factors.
+#include <array>
 #include <map>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "formats/records/deck.hpp"
+#include "formats/records/deck_dynamics.hpp"
 
 namespace bough::nastran::detail {
 
@@ -19,5 +20,19 @@ bool read_matrix_names(std::string_view text, MatrixList& matrices);
 /// belong to the model (Quick Reference Guide, M2GG). Adds deck.case-control-value, deck.case-control-later.
 void choose_matrices(records::Deck& deck, const NamedSets& sets, const records::CardLocation& at,
                      Diagnostics& diagnostics);
+
+/// K2PP, M2PP, B2PP: direct input of responses alone.
+struct DirectInput {
+  const char* name;
+  MatrixList records::DynamicSelection::*list;
+  MatrixList records::Subcase::*model;  ///< the list of the model that they add to
+};
+inline constexpr std::array direct_inputs{
+    DirectInput{"K2PP", &records::DynamicSelection::k2pp, &records::Subcase::k2gg},
+    DirectInput{"M2PP", &records::DynamicSelection::m2pp, &records::Subcase::m2gg},
+    DirectInput{"B2PP", &records::DynamicSelection::b2pp, &records::Subcase::b2gg}};
+/// As choose_matrices; what they select is added to K2GG, M2GG and B2GG of every subcase.
+void add_direct_input(records::DynamicDeck& deck, const NamedSets& sets, const records::CardLocation& at,
+                      Diagnostics& diagnostics);
 
 }  // namespace bough::nastran::detail
