@@ -67,12 +67,13 @@ class DirectInput(base.DeckResponse):
         """GE .3 of one of three springs: with one mode and residual vectors the response at low frequency is right."""
         deck = CHAIN.format(sol=111, modes=1, case=CASE, bulk="RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ,5,.01,.1\n")
         deck = deck.replace("3,1,4,1\nCDAMP", "3,1,4,1,.3\nCDAMP").replace("1,1,2,1,0.05", "1,1,2,1")
+        deck = "\n".join(line for line in deck.split("\n") if not line.startswith("CDAMP2"))
         r = self.solve("frequency", deck)[1]
         S = np.diag([0, 0, .3 * 300])
         for i, f in enumerate(r["x"]):
             w = 2 * np.pi * f
-            u = np.linalg.solve(self.K + 1j * S + 1j * w * self.B - w * w * self.M, [2, 0, 0])
-            self.near([r["displacement"][g, 1][i] for g in (1, 2, 3)], u, 1e-6 if f < .05 else 1e-3)
+            u = np.linalg.solve(self.K + 1j * S - w * w * self.M, [2, 0, 0])
+            self.near([r["displacement"][g, 1][i] for g in (1, 2, 3)], u, 1e-6)
 
     def test_refused(self):
         deck = lambda case, bulk: CHAIN.format(sol=111, modes=3, case=CASE + case, bulk=DRIVEN + "FREQ,5,1.\n" + bulk)
