@@ -1,4 +1,5 @@
 #pragma once
+/// \file The verb `edit`, as in cli/verbs.hpp.
 #include "cli/verbs.hpp"
 
 namespace bough::cli {
