@@ -94,7 +94,8 @@ class InitFromDeck(ProgramTest):
 
     def test_modes_and_interface_come_from_the_deck(self):
         self.write("boom.bdf", BEAM.replace("EIGRL,1,,,3", "EIGRL,1,,1.+6,4").replace(
-            "ENDDATA", "GRID,4,,2.,.1,0.\nGRID,5,,2.,-.1,0.\nRBE2,7,3,123456,4,5\nENDDATA"))
+            "ENDDATA", "GRID,4,,2.,.1,0.\nGRID,5,,2.,-.1,0.\nRBE2,7,3,123456,4,5\n"
+            "CONM2,8,4,,1.,,,,,1.,,1.,,,1.\nENDDATA"))
         body, _ = self.start()
         self.assertIn("number = 4 ", body)
         self.assertIn("max_frequency = 1000000 ", body)
