@@ -7,6 +7,7 @@
 #include "cli/common/memory_limit.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/common/versions.hpp"
+#include "cli/convert/convert.hpp"
 #include "cli/edit/edit.hpp"
 #include "cli/frequency/frequency.hpp"
 #include "cli/verbs.hpp"
@@ -38,6 +39,7 @@ void add_verbs(CLI::App& app, cli::Action& action) {
   cli::add_init(app, action);
   cli::add_batch(app, action);
   cli::add_edit(app, action);
+  cli::add_convert(app, action);
 }
 
 std::vector<std::string> get_names(const CLI::App& app) {

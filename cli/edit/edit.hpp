@@ -1,5 +1,5 @@
 #pragma once
-/// \file `bough edit`: a session over a system or a body file.
+/// \file The verb `edit`, as in cli/verbs.hpp.
 #include "cli/verbs.hpp"
 
 namespace bough::cli {

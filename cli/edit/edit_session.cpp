@@ -139,9 +139,16 @@ KeyValues EditSession::ask_for_keys(const KindHelp& kind, KeyValues given) const
   for (const auto& key : kind.keys)
     while (key.is_required && !has(key.name)) ask(key);
   for (const auto& wanted : kind.wanted) {
-    console_.print("  it needs " + wanted + "\n");
+    const auto is_wanted = [&](const toml_files::KeyHelp& key) {
+      return (wanted + ",").find(" " + key.name + ",") != std::string::npos;
+    };
+    const auto is_met = [&] {
+      return std::any_of(kind.keys.begin(), kind.keys.end(),
+                         [&](const auto& k) { return is_wanted(k) && has(k.name); });
+    };
+    if (!is_met()) console_.print("  it needs " + wanted + "\n");
     for (const auto& key : kind.keys)
-      if ((wanted + ",").find(" " + key.name + ",") != std::string::npos && given.size() < 2) ask(key);
+      if (is_wanted(key) && !is_met()) ask(key);
   }
   return given;
 }

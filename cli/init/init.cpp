@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -61,9 +62,34 @@ Files make_files(const InitOptions& o, Diagnostics& diagnostics) {
   return made;
 }
 
+/// The heading of the template's README: "# ex01: spin-up of a boom" -> "spin-up of a boom".
+std::string describe(const Template& chosen) {
+  for (const auto& file : chosen.files) {
+    if (std::string(file.name) != "README.md") continue;
+    const std::string text = file.text;
+    const auto heading = text.substr(0, text.find('\n'));
+    const auto colon = heading.find(": ");
+    return colon == std::string::npos ? heading : heading.substr(colon + 2);
+  }
+  return {};
+}
+
+int list_templates(const Console& console) {
+  std::size_t width = 0;
+  for (const auto& known : get_templates()) width = std::max(width, std::string(known.name).size());
+  for (const auto& known : get_templates()) {
+    std::string name = known.name;
+    name.resize(width + 2, ' ');
+    console.print_data(name + describe(known) + "\n");
+  }
+  console.print("bough init NAME copies one; bough init DECK.bdf begins from a deck\n");
+  return kSuccess;
+}
+
 int run_init(const InitOptions& o) {
   const Console console(o.quiet, 0);
   if (!console.is_root()) return kSuccess;
+  if (o.name.empty()) return list_templates(console);
   Diagnostics diagnostics;
   const Files chosen = make_files(o, diagnostics);
   console.print(diagnostics);
@@ -98,14 +124,15 @@ void add_init(CLI::App& app, Action& action) {
       app.add_subcommand("init", "A ready example to start from, or the files for a deck: spinup, hub, two-link, ...");
   std::string names;
   for (const auto& known : get_templates()) names += std::string(names.empty() ? "" : ", ") + known.name;
-  verb->add_option("template", o->name, names + "; or a Nastran deck")->required();
+  verb->add_option("template", o->name, names + "; or a Nastran deck. Default: lists them");
   verb->add_option("-o,--output", o->output, "Folder to write into (default: the template's name; for a deck, here)");
   verb->add_option("--hinge", o->hinge, "Of a deck: the grid on a revolute hinge to ground; chooses the basis for it")
       ->check(CLI::PositiveNumber);
   verb->add_flag("--force", o->force, "Overwrite files that are there already");
   verb->add_flag("-q,--quiet", o->quiet, "Print errors only");
   verb->add_flag("-v,--verbose")->description("Accepted as by every verb; init has nothing more to tell");
-  verb->footer("Example:\n  bough init spinup\n  bough init hub -o my-hub\n  bough init arm.bdf --hinge 1");
+  verb->footer(
+      "Example:\n  bough init\n  bough init spinup\n  bough init hub -o my-hub\n  bough init arm.bdf --hinge 1");
   verb->callback([&action, o] { action = [o] { return run_init(*o); }; });
 }
 

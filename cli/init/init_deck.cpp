@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "base/diagnostic.hpp"
 
@@ -13,6 +14,47 @@ namespace {
 bool has_constraints(const records::Deck& deck) {
   return std::any_of(deck.subcases.begin(), deck.subcases.end(), [](const auto& s) { return s.spc > 0; }) ||
          std::any_of(deck.grids.begin(), deck.grids.end(), [](const auto& g) { return g.ps != 0; });
+}
+
+/// Grids at which other structures hang: independent grids of RBE2, reference grids of RBE3, SUPORT. Without those that
+/// a constraint holds.
+std::vector<int> find_interface(const records::Deck& deck) {
+  std::set<int> grids, held;
+  for (const auto& rigid : deck.rbe2)
+    if (rigid.gm.size() > 1) grids.insert(rigid.gn);
+  for (const auto& mean : deck.rbe3) grids.insert(mean.ref_grid);
+  for (const auto& support : deck.suport) grids.insert(support.g);
+  for (const auto& [set, supports] : deck.suport1)
+    for (const auto& support : supports) grids.insert(support.g);
+  for (const auto& constraint : deck.spc) held.insert(constraint.g);
+  std::vector<int> found;
+  for (const auto& grid : deck.grids)
+    if (grids.count(grid.id) != 0 && held.count(grid.id) == 0 && grid.ps == 0) found.push_back(grid.id);
+  return found;
+}
+
+std::string join_ids(const std::vector<int>& ids) { return fmt::format("{}", fmt::join(ids, ", ")); }
+
+/// More are written as a comment: each costs six static solutions.
+constexpr std::size_t kMostInterfaceGrids = 12;
+
+/// [body.modes] as the first subcase's METHOD says.
+std::string make_modes_table(const records::Deck& deck, bool is_fixed) {
+  const int wanted = deck.subcases.empty() ? 0 : deck.subcases.front().method;
+  const auto at = std::find_if(deck.eigen_methods.begin(), deck.eigen_methods.end(),
+                               [&](const auto& method) { return method.sid == wanted; });
+  if (at == deck.eigen_methods.end()) return "number = 10              # the deck selects no METHOD\n";
+  const auto card = fmt::format("{} {} of the deck", at->is_eigrl ? "EIGRL" : "EIGR", at->sid);
+  std::string text;
+  // The deck counts the rigid modes, the body file does not.
+  const int num_rigid = is_fixed ? 0 : 6;
+  if (at->num_modes > num_rigid)
+    text += fmt::format("{:<25}# as {}{}\n", fmt::format("number = {}", at->num_modes - num_rigid), card,
+                        is_fixed ? "" : ", without six rigid modes");
+  const bool is_buckling = deck.sol == "105" || deck.sol == "SEBUCKL";
+  if (at->f2 && *at->f2 > 0 && !is_buckling)
+    text += fmt::format("{:<25}# Hz, as {}\n", fmt::format("max_frequency = {}", *at->f2), card);
+  return text.empty() ? fmt::format("number = 10              # {} gives no number\n", card) : text;
 }
 
 // TOML: a literal string as long as the path has no quote.
@@ -32,6 +74,12 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
                      fmt::format("interface node {} is not a grid of {}", grid, start.path), "name a GRID of the deck");
   const bool is_fixed = grid == 0 && has_constraints(deck);
   const auto& name = start.name;
+  auto interface = find_interface(deck);
+  if (grid > 0) {
+    std::erase(interface, grid);
+    if (interface.size() >= kMostInterfaceGrids) interface.clear();
+    interface.insert(interface.begin(), grid);
+  }
   std::string frame = "frame = \"free\"           # no constraints in the deck: free-free modes\n";
   if (is_fixed) frame = "frame = \"fixed\"          # the deck's constraints hold the body frame\n";
   if (grid > 0)
@@ -39,11 +87,18 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
         "frame = \"mean\"           # not \"fixed\": modes clamped at a free hinge take nearly all inertia away from "
         "it\n"
         "interface = [{}]          # the hinge; add each grid that a hinge, force or moment loads\n",
-        grid);
+        join_ids(interface));
+  else if (!interface.empty())
+    frame += fmt::format(
+        "{}interface = [{}]          # centres of RBE2 and RBE3, SUPORT: where other bodies, forces and moments may "
+        "be\n",
+        interface.size() > kMostInterfaceGrids ? "# " : "", join_ids(interface));
+  else
+    frame += "# interface = [1]        # each grid that a hinge, force or moment loads\n";
   const std::string body = fmt::format(
-      "# bough reduce {0}.toml\n[body]\nname = \"{0}\"\ndeck = {1}\n{2}\n[body.modes]\nnumber = 10\n\n"
+      "# bough reduce {0}.toml\n[body]\nname = \"{0}\"\ndeck = {1}\n{2}\n[body.modes]\n{3}\n"
       "[body.output]\nfile = \"{0}.h5\"\n",
-      name, quote(start.path), frame);
+      name, quote(start.path), frame, make_modes_table(deck, is_fixed));
   std::string hinge = fmt::format("type = \"{}\"\nparent = \"ground\"\nchild = \"{}\"\n",
                                   grid > 0   ? "revolute"
                                   : is_fixed ? "fixed"

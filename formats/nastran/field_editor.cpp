@@ -105,6 +105,19 @@ DeckEditor::DeckEditor(DeckEditor&&) noexcept = default;
 
 const std::vector<std::string>& DeckEditor::get_files() const { return contents_->source.files; }
 
+std::vector<DeckCard> DeckEditor::list_cards() const {
+  const auto& c = *contents_;
+  std::vector<DeckCard> cards;
+  CardText text;
+  for (int card = 0; card < c.num_cards(); ++card) {
+    c.list_lines(card, text);
+    DeckCard found{card, std::string(text.name), {}, c.locate(card), c.is_relative(card)};
+    for (const auto& field : text.fields) found.fields.emplace_back(field);
+    cards.push_back(found);
+  }
+  return cards;
+}
+
 std::optional<FieldPlace> DeckEditor::find(const FieldAddress& address, const SourceLocation& asked_at,
                                            Diagnostics& diagnostics) const {
   const auto& c = *contents_;

@@ -35,6 +35,15 @@ struct EditedFile {
   std::string text;
 };
 
+/// A card of the deck as it stands.
+struct DeckCard {
+  int card = 0;      ///< of FieldPlace
+  std::string name;  ///< upper case
+  std::vector<std::string> fields;
+  SourceLocation at;
+  bool is_replicated = false;  ///< written or copied by replication
+};
+
 /// "2.5+10": the shortest text that reads back as this number.
 std::string format_field(double value);
 
@@ -47,6 +56,8 @@ class DeckEditor {
 
   /// The deck and what it includes.
   const std::vector<std::string>& get_files() const;
+  /// All cards of the bulk data.
+  std::vector<DeckCard> list_cards() const;
   /// Adds, at `asked_at`, batch.unknown-card, batch.ambiguous-card, batch.unknown-field, batch.replicated-card.
   std::optional<FieldPlace> find(const FieldAddress& address, const SourceLocation& asked_at,
                                  Diagnostics& diagnostics) const;

@@ -8,7 +8,7 @@ import unittest
 PROGRAM = os.environ["BOUGH_PROGRAM"]
 SOURCE = os.environ["BOUGH_SOURCE_DIR"]
 VERBS = ["check", "modes", "static", "frequency", "transient", "matrices", "reduce", "integrals", "flx", "compare", "run",
-         "equilibrium", "linearize", "response", "select", "export", "plot", "report", "info", "init", "batch", "edit"]
+         "equilibrium", "linearize", "response", "select", "export", "plot", "report", "info", "init", "batch", "edit", "convert"]
 
 
 class ProgramTest(unittest.TestCase):

@@ -4,7 +4,7 @@ import os
 import subprocess
 import unittest
 
-from support import BEAM, PROGRAM, VERBS, ProgramTest
+from support import BEAM, PROGRAM, SOURCE, VERBS, ProgramTest
 
 
 class Usage(ProgramTest):
@@ -90,6 +90,33 @@ class InitFromDeck(ProgramTest):
         self.assertIn("system.spanned-hinge", said.stdout + said.stderr)
         self.assertIn('frame = "mean"', said.stdout + said.stderr)
         self.fails(1, "init", "boom.bdf", "--hinge", "99", "--force", error="cli.unknown-interface")
+
+
+    def test_modes_and_interface_come_from_the_deck(self):
+        self.write("boom.bdf", BEAM.replace("EIGRL,1,,,3", "EIGRL,1,,1.+6,4").replace(
+            "ENDDATA", "GRID,4,,2.,.1,0.\nGRID,5,,2.,-.1,0.\nRBE2,7,3,123456,4,5\n"
+            "CONM2,8,4,,1.,,,,,1.,,1.,,,1.\nENDDATA"))
+        body, _ = self.start()
+        self.assertIn("number = 4 ", body)
+        self.assertIn("max_frequency = 1000000 ", body)
+        self.assertIn("EIGRL 1 of the deck", body)
+        self.assertIn("\ninterface = [3] ", body)
+        for file in ["boom.toml", "boom-run.toml"]:
+            self.bough("check", file)
+        # Free: the deck's number holds six rigid modes.
+        with open(self.path("boom.bdf")) as f:
+            self.write("boom.bdf", f.read().replace("SPC = 1\n", "").replace("SPC1,1,123456,1\n", "").replace(
+                "1.+6,4", ",9"))
+        body, _ = self.start()
+        self.assertIn('frame = "free"', body)
+        self.assertIn("number = 3 ", body)
+
+    def test_without_a_name_the_templates_are_listed(self):
+        said = self.bough("init").stdout
+        for name in sorted(os.listdir(os.path.join(SOURCE, "data/examples"))):
+            if name.startswith("ex"):
+                self.assertRegex(said, rf"(?m)^{name[5:]} +[a-z]")
+        self.assertRegex(said, "spinup +spin-up of a boom")
 
 
 class Output(ProgramTest):
