@@ -198,6 +198,7 @@ std::vector<report::Plot> shape_plots(std::vector<report::Plot> plots, const Cur
       one.curves = {std::move(curve)};
       one.curves.front().label.clear();
       one.x_label.clear();
+      if (!single.empty()) one.title.clear();
       single.push_back(std::move(one));
     }
   if (!single.empty()) single.back().x_label = plots.back().x_label;

@@ -44,7 +44,7 @@ std::string make_vtu(const records::BodyMesh& mesh, const std::vector<PointArray
 
 /// Mode shapes as arrays mode_001_0.463Hz (translations) and mode_001_0.463Hz_rotation, basic frame; for buckling
 /// buckling_001_factor_4.32 and its _rotation. With energies of elements mode_001_0.463Hz_strain_energy and
-/// _kinetic_energy on the cells, as shares of the mode's.
+/// _kinetic_energy on the cells, as shares of the mode's, and _strain_energy_density.
 Picture make_picture(const records::ModesResult& modes);
 /// The same of a body, in its frame B: of all grids when full_phi is there, else of the output nodes only.
 Picture make_picture(const records::FlexBody& body);

@@ -233,7 +233,8 @@ std::string draw_svg(const Plot& given) {
   const double legend_height = draw_legend(plot, title_bottom + 14, legend);
   Frame f{kLeft, title_bottom + legend_height + 8, kWidth - kLeft - kRight, kPlotHeight, {}, {}};
   f.x = plot.has_log_x ? make_log_axis(x.min, x.max) : make_axis(x.min, x.max, 9, false);
-  f.y = plot.has_log_y ? (is_given ? make_log_axis(plot.y_min, plot.y_max) : make_log_axis(y.min, y.max))
+  f.y = plot.has_log_y ? (is_given ? make_log_axis(plot.y_min, plot.y_max)
+                                   : make_log_axis(y.min - 0.03 * (y.max - y.min), y.max + 0.03 * (y.max - y.min)))
         : is_given     ? make_axis(plot.y_min, plot.y_max, 7, false)
                        : make_axis(y.min, y.max, 7, true);
 

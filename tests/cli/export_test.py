@@ -248,7 +248,8 @@ class Export(ProgramTest):
                     "METHOD = 1", f"METHOD = 1\n{case}\nDLOAD = 9\nSDAMPING = 6\nDISPLACEMENT = ALL").replace(
                     "ENDDATA", f"TABDMP1,6,CRIT,,,,,,,+\n+,0.,.02,1000.,.02,ENDT\nDAREA,10,3,3,1.\n{cards}\nENDDATA"))
                 self.bough(verb, "r.bdf", "-o", "r.h5", "--csv", "r.csv", "-q")
-                self.assertEqual(self.bough("export", "r.h5", "--to", "csv").stdout, open(self.path("r.csv")).read())
+                with open(self.path("r.csv")) as f:
+                    self.assertEqual(self.bough("export", "r.h5", "--to", "csv").stdout, f.read())
                 self.bough("export", "r.h5", "--to", "uff", "-o", "r.uff")
                 functions = {f["name"]: f for f in uff_reader.read(self.path("r.uff"))}
                 with h5py.File(self.path("r.h5")) as f:
@@ -262,7 +263,8 @@ class Export(ProgramTest):
                     largest = np.abs(values).max()
                 self.assertGreater(largest, 0)
                 self.bough("report", "r.h5", "-o", "r.html", "-q")
-                page = open(self.path("r.html")).read()
+                with open(self.path("r.html")) as f:
+                    page = f.read()
                 self.assertIn(f"{verb} response", page)
                 self.assertIn("displacement:3:3", page)
                 self.assertIn(f"{largest:.6g}", page)

@@ -254,6 +254,24 @@ class Deck(ProgramTest):
         cells["tetra"] = [cells.pop("tetra10")[0][:4]]  # a picture shows the corners
         self.assertEqual(cells, drawn)
 
+    def test_strain_energy_density(self):
+        """Energies of /energies over lengths, areas and volumes known by hand."""
+        extent = {1: 1.0, 2: 1.0, 3: 0.5, 4: 1.0, 5: 0.5, 6: 1 / 6}
+        self.write("solids.bdf", SHAPES)
+        self.bough("modes", "solids.bdf", "-n", "2", "--ese", "-o", "m.h5", "--vtu", "m.vtu", "-q")
+        mesh = meshio.read(self.path("m.vtu"))
+        with h5py.File(self.path("m.h5")) as f:
+            ids, strain, hertz = f["energies/id"][:], f["energies/strain"][:], f["modes/frequency_hz"][:]
+        for j in range(2):
+            wanted = {i: strain[e, j] / extent[i] for e, i in enumerate(ids)}
+            self.assertGreater(max(wanted.values()), 0)
+            name = f"mode_{j + 1:03d}_{hertz[j]:.4g}Hz_strain_energy_density"
+            found = {i: v for block, numbers in zip(mesh.cell_data[name], mesh.cell_data["element_id"])
+                     for i, v in zip(np.ravel(numbers), np.ravel(block))}
+            self.assertEqual(sorted(found), sorted(extent))
+            for i in extent:
+                self.assertAlmostEqual(found[i], wanted[i], delta=1e-12 * max(wanted.values()))
+
     def test_fields(self):
         self.write("beam.bdf", MIXED.replace("GRID,2,,1.,0.,0.", "GRID,2,,1.01234567890123456,.1,.2"))
         expected = {"small": 1.012346, "large": 1.01234567890123, "free": 1.0123456789012346}
