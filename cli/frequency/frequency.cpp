@@ -16,6 +16,8 @@
 #include "cli/common/usage_text.hpp"
 #include "cli/frequency/frequency.hpp"
 #include "cli/frequency/response_tables.hpp"
+#include "cli/listing/listing.hpp"
+#include "cli/listing/response_listing.hpp"
 #include "cli/modes/eigen_choices.hpp"
 #include "fe/statics/preload.hpp"
 #include "formats/export/response_text.hpp"
@@ -55,17 +57,6 @@ void demand_grids(const DeckResponseOptions& options, const records::DynamicDeck
   }
 }
 
-/// As read_deck_or_throw.
-records::DynamicDeck read_dynamic_deck_or_throw(const std::string& path, const fe::ModelOptions& options,
-                                                Diagnostics& diagnostics) {
-  auto deck = is_one_of_many() ? nastran::read_packed_dynamic_deck(share([&] { return nastran::pack_deck(path); }),
-                                                                   {options.ignore_cards}, diagnostics)
-                               : nastran::read_dynamic_deck(path, {options.ignore_cards}, diagnostics);
-  if (diagnostics.num_errors() > 0) fe::Model::build(deck, options, diagnostics);
-  diagnostics.throw_if_errors();
-  return deck;
-}
-
 /// SOL 108 and 109 solve without modes.
 void note_direct(const records::DynamicDeck& deck, Diagnostics& diagnostics) {
   static const std::array direct{"108", "109", "26", "27", "SEDFREQ", "SEDTRAN", "DFREQ", "DTRAN", "DIRECT"};
@@ -80,12 +71,13 @@ int run_deck_response(const DeckResponseOptions& options) {
   console.set_subject(options.deck);
   do_once([&] {
     demand_deck(options.deck);
-    check_outputs(options, {options.output, options.csv, options.punch}, {options.deck});
+    check_outputs(options, {options.output, options.csv, options.punch, options.listing.f06, options.listing.op2},
+                  {options.deck});
   });
   console.set_rank(fe::initialize_petsc().rank);
   Diagnostics diagnostics;
   const auto model_options = make_model_options(options.model);
-  const auto deck = read_dynamic_deck_or_throw(options.deck, model_options, diagnostics);
+  const auto deck = read_loads_deck_or_throw(options.deck, model_options, diagnostics);
   std::vector<records::DynamicSubcase> subcases;
   say_first(diagnostics, [&] {
     demand_grids(options, deck);
@@ -125,12 +117,17 @@ int run_deck_response(const DeckResponseOptions& options) {
   }
   if (response.subcases.empty()) failures.throw_all(diagnostics);
   response.source = calc_sources(deck.files);
+  const auto has_elements = [](const auto& subcase) { return !subcase.elements.empty(); };
+  if (!options.listing.empty() && std::any_of(response.subcases.begin(), response.subcases.end(), has_elements))
+    diagnostics.note("cli.unlisted-elements", deck.locate({}), "the listing has no forces of elements",
+                     "the HDF5, CSV and punch files have them");
   console.print(diagnostics);
   console.print(failures.get_items(diagnostics));
   do_once([&] {
     if (!options.output.empty()) hdf5::write_response(response, options.output);
     if (!options.csv.empty()) write_text_file(options.csv, exports::make_response_csv(response));
     if (!options.punch.empty()) write_text_file(options.punch, exports::make_punch_text(response));
+    if (!options.listing.empty()) write_listings(options.listing, make_response_listing(response));
   });
   if (options.json) {
     nlohmann::json json{{"subcases", nlohmann::json::array()}};
@@ -142,7 +139,7 @@ int run_deck_response(const DeckResponseOptions& options) {
     for (const auto& subcase : response.subcases)
       console.print((&subcase == &response.subcases.front() ? "" : "\n") +
                     format_response(subcase, options.is_over_time, options.full ? 1u << 30 : 20));
-    for (const auto& path : {options.output, options.csv, options.punch})
+    for (const auto& path : {options.output, options.csv, options.punch, options.listing.f06, options.listing.op2})
       if (!path.empty()) console.print("written: " + path + "\n");
   }
   do_once([] { flush_data(); });
@@ -165,6 +162,7 @@ void add_verb(CLI::App& app, Action& action, bool is_over_time, const char* name
   verb->add_flag("--full", o->full, "Every curve in the table, their samples in --json");
   verb->add_option("--csv", o->csv, "Write the curves to this file of comma-separated values");
   verb->add_option("--punch", o->punch, "Write the curves to this Nastran punch file");
+  add_listing_options(*verb, o->listing);
   add_model_options(*verb, o->model);
   add_common_options(*verb, *o, kOutput | kJson, "Write the curves to this HDF5 file");
   verb->footer(footer);

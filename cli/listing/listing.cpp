@@ -31,14 +31,32 @@ void add_listing_options(CLI::App& verb, ListingOptions& options) {
   verb.add_option("--op2", options.op2, "Write the same as a Nastran OUTPUT2 file");
 }
 
-std::map<int, records::DynamicSelection> read_requests_once(const std::string& path) {
-  return is_one_of_many() ? nastran::read_packed_requests(share([&] { return nastran::pack_deck(path); }))
-                          : nastran::read_requests(path);
+records::CaseRequests read_requests_once(const std::string& path, Diagnostics& diagnostics) {
+  return is_one_of_many() ? nastran::read_packed_requests(share([&] { return nastran::pack_deck(path); }), diagnostics)
+                          : nastran::read_requests(path, diagnostics);
 }
 
-ListingMaker::ListingMaker(const records::Deck& deck, Diagnostics& diagnostics)
-    : deck_(deck), requests_(read_requests_once(deck.files.front())) {
-  for (const auto& [id, selection] : requests_) lists_all_ = lists_all_ && selection.outputs.empty();
+const records::DynamicSelection* find_selection(const records::CaseRequests& requests, int subcase) {
+  const auto& all = requests.selections;
+  for (const auto& combination : requests.combinations)
+    if (combination.control.id == subcase) return &combination.selection;
+  const auto found = all.find(all.count(0) > 0 ? 0 : subcase);
+  return found == all.end() ? nullptr : &found->second;
+}
+
+records::DynamicDeck read_loads_deck_or_throw(const std::string& path, const fe::ModelOptions& options,
+                                              Diagnostics& diagnostics) {
+  auto deck = is_one_of_many() ? nastran::read_packed_dynamic_deck(share([&] { return nastran::pack_deck(path); }),
+                                                                   {options.ignore_cards}, diagnostics)
+                               : nastran::read_dynamic_deck(path, {options.ignore_cards}, diagnostics);
+  if (diagnostics.num_errors() > 0) fe::Model::build(deck, options, diagnostics);
+  diagnostics.throw_if_errors();
+  return deck;
+}
+
+ListingMaker::ListingMaker(const records::Deck& deck, const records::CaseRequests& requests, Diagnostics& diagnostics)
+    : deck_(deck), requests_(requests) {
+  for (const auto& [id, selection] : requests_.selections) lists_all_ = lists_all_ && selection.outputs.empty();
   if (lists_all_)
     diagnostics.note("cli.listing-default", deck.locate({}), "the deck asks for no result: the listing has all of them",
                      "write DISPLACEMENT = ALL, SPCFORCES = ALL, FORCE = ALL in the case control");
@@ -47,7 +65,7 @@ ListingMaker::ListingMaker(const records::Deck& deck, Diagnostics& diagnostics)
 
 void ListingMaker::report_sets(Diagnostics& diagnostics) const {
   std::set<std::string> said;
-  for (const auto& [id, selection] : requests_)
+  for (const auto& [id, selection] : requests_.selections)
     for (const auto& [command, request] : selection.outputs) {
       if (request.is_all || request.is_none || selection.sets.count(request.set) > 0) continue;
       const auto text = fmt::format("{} = {} names a SET that the case control does not define", command, request.set);
@@ -58,31 +76,33 @@ void ListingMaker::report_sets(Diagnostics& diagnostics) const {
 }
 
 std::optional<int> ListingMaker::find_effective_mass_grid(int subcase) const {
-  const auto found = requests_.find(requests_.count(0) > 0 ? 0 : subcase);
-  return found == requests_.end() ? std::nullopt : found->second.effective_mass_grid;
+  const auto* found = find_selection(requests_, subcase);
+  return found == nullptr ? std::nullopt : found->effective_mass_grid;
 }
 
 std::optional<ListingMaker::Choice> ListingMaker::choose(int subcase, const std::string& command) const {
   if (lists_all_) return Choice{};
-  const auto selection = requests_.find(requests_.count(0) > 0 ? 0 : subcase);  // 0: a deck without SUBCASE
-  if (selection == requests_.end()) return std::nullopt;
-  const auto request = selection->second.outputs.find(command);
-  if (request == selection->second.outputs.end() || request->second.is_none) return std::nullopt;
+  const auto* selection = find_selection(requests_, subcase);
+  if (selection == nullptr) return std::nullopt;
+  const auto request = selection->outputs.find(command);
+  if (request == selection->outputs.end() || request->second.is_none) return std::nullopt;
   if (request->second.is_all) return Choice{nullptr, request->second.is_printed};
-  const auto set = selection->second.sets.find(request->second.set);
-  if (set == selection->second.sets.end()) return std::nullopt;
+  const auto set = selection->sets.find(request->second.set);
+  if (set == selection->sets.end()) return std::nullopt;
   return Choice{&set->second, request->second.is_printed};
 }
 
 ListedStep ListingMaker::make_step(int subcase) const {
   ListedStep step;
   step.subcase = subcase;
-  for (const auto& s : deck_.subcases)
-    if (s.id == subcase) {
-      step.title = s.title;
-      step.subtitle = s.subtitle;
-      step.label = s.label;
-    }
+  const auto take = [&](const records::Subcase& s) {
+    if (s.id != subcase) return;
+    step.title = s.title;
+    step.subtitle = s.subtitle;
+    step.label = s.label;
+  };
+  for (const auto& s : deck_.subcases) take(s);
+  for (const auto& combination : requests_.combinations) take(combination.control);
   // Without SUBCASE there is one, of number 1 in what Nastran writes.
   step.subcase = std::max(subcase, 1);
   return step;
@@ -157,7 +177,8 @@ void ListingMaker::add_static(const fe::Model& model, const records::StaticSubca
   listing_.steps.push_back(std::move(step));
 }
 
-void ListingMaker::add_modes(const fe::Model& model, const modal::EigenPairs& pairs, Diagnostics& diagnostics) {
+void ListingMaker::add_modes(const fe::Model& model, const modal::EigenPairs& pairs, int num_residual,
+                             Diagnostics& diagnostics) {
   const int subcase = model.subcase().id;
   const Eigen::MatrixXd M_Phi = fe::calc_mass_times(model, model.mass_kind(), pairs.Phi);
   const auto step = make_step(subcase);
@@ -167,6 +188,7 @@ void ListingMaker::add_modes(const fe::Model& model, const modal::EigenPairs& pa
   roots.subtitle = step.subtitle;
   roots.label = step.label;
   roots.eigenvalue = pairs.lambda;
+  roots.num_residual = num_residual;
   roots.mass = pairs.Phi.cwiseProduct(M_Phi).colwise().sum();
   roots.stiffness = roots.mass.cwiseProduct(pairs.lambda);
   const auto grid = lists_all_ ? std::optional<int>(0) : find_effective_mass_grid(subcase);

@@ -24,19 +24,24 @@ struct ListingOptions {
 
 void add_listing_options(CLI::App& verb, ListingOptions& options);
 
-/// What the case control of a deck asks for, read on the first rank. Collective.
-std::map<int, records::DynamicSelection> read_requests_once(const std::string& path);
+/// What the case control of a deck asks for, read on the first rank. Reports deck.combination. Collective.
+records::CaseRequests read_requests_once(const std::string& path, Diagnostics& diagnostics);
+/// Of a subcase; a deck without SUBCASE has one. nullptr: none.
+const records::DynamicSelection* find_selection(const records::CaseRequests& requests, int subcase);
+/// read_deck_or_throw with the cards of loads over frequency and time (nastran/dynamic_reader.hpp). Collective.
+records::DynamicDeck read_loads_deck_or_throw(const std::string& path, const fe::ModelOptions& options,
+                                              Diagnostics& diagnostics);
 
 /// Collects what is listed, subcase after subcase. A deck without any output request is listed as a whole.
 class ListingMaker {
  public:
-  /// Reads the requests. Reports cli.listing-default, cli.missing-set. Collective.
-  ListingMaker(const records::Deck& deck, Diagnostics& diagnostics);
+  /// Reports cli.listing-default, cli.missing-set.
+  ListingMaker(const records::Deck& deck, const records::CaseRequests& requests, Diagnostics& diagnostics);
 
   /// About the grid of PARAM,GRDPNT, else about the origin; not with a negative one. Once.
   void add_weight(const fe::Model& model);
-  /// `pairs` in their order of the record; masses of modes: φᵀMφ. Collective.
-  void add_modes(const fe::Model& model, const modal::EigenPairs& pairs, Diagnostics& diagnostics);
+  /// `pairs` in their order of the record, residual vectors last; masses of modes: φᵀMφ. Collective.
+  void add_modes(const fe::Model& model, const modal::EigenPairs& pairs, int num_residual, Diagnostics& diagnostics);
   void add_static(const fe::Model& model, const records::StaticSubcase& solved, Diagnostics& diagnostics);
 
   const records::Listing& get() const { return listing_; }
@@ -59,7 +64,7 @@ class ListingMaker {
   void report_sets(Diagnostics& diagnostics) const;
 
   const records::Deck& deck_;
-  std::map<int, records::DynamicSelection> requests_;
+  const records::CaseRequests& requests_;
   bool lists_all_ = true;
   std::set<std::string> left_out_;  ///< cards of cli.unlisted-elements
   records::Listing listing_;

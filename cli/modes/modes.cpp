@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -27,6 +28,7 @@
 #include "modal/eigen.hpp"
 #include "modal/modes_result.hpp"
 #include "modal/normalize.hpp"
+#include "modal/response/residual_modes.hpp"
 #include "modal/subcases.hpp"
 
 namespace bough::cli {
@@ -75,10 +77,31 @@ std::string name_output(const std::string& path, int subcase, bool is_first) {
 struct Solved {
   records::ModesResult result;
   std::string norm;
+  std::vector<std::string> loads, unused;  ///< of the residual vectors; loads that brought none
 };
 
-Solved solve_task(const ModesOptions& options, const records::Deck& deck, const Task& task,
-                  fe::ModelOptions model_options, ListingMaker* listing, Console& console,
+/// The modes of `model`; with `selection` the residual vectors of the loads behind them.
+modal::EigenPairs solve_with_residuals(const ModesOptions& options, const records::DynamicDeck& deck,
+                                       const records::DynamicSelection& selection, fe::Model& model, Solved& solved,
+                                       int& num_residual, Console& console, Diagnostics& diagnostics) {
+  const fe::System system(model);
+  auto eigen = choose_eigen_options(options, deck, model.subcase().method, diagnostics);
+  eigen.progress = [&](int converged, int wanted) {
+    console.show_progress(fmt::format("modes: {} of {} converged", converged, wanted));
+  };
+  auto pairs = modal::calc_normal_modes(system, eigen, diagnostics);
+  const auto loads = modal::response::collect_residual_loads(
+      model, deck, records::DynamicSubcase(model.subcase(), selection), diagnostics);
+  diagnostics.throw_if_errors();
+  const auto before = pairs.lambda.size();
+  solved.unused = modal::response::append_residual_vectors(system, loads, pairs);
+  solved.loads = loads.name;
+  num_residual = static_cast<int>(pairs.lambda.size() - before);
+  return pairs;
+}
+
+Solved solve_task(const ModesOptions& options, const records::DynamicDeck& deck, const records::CaseRequests& requests,
+                  const Task& task, fe::ModelOptions model_options, ListingMaker* listing, Console& console,
                   Diagnostics& diagnostics) {
   model_options.prestress =
       task.buckling
@@ -91,11 +114,17 @@ Solved solve_task(const ModesOptions& options, const records::Deck& deck, const 
                      "the dampers of the deck do not act on its modes, as in SOL 103",
                      "bough reduce adds them to the modal damping");
   const auto norm = choose_norm(deck, task.buckling ? task.buckling->buckling.method : model.subcase().method, model);
-  auto pairs = task.buckling
-                   ? modal::solve_buckling(
-                         deck, *task.buckling, model_options, model,
-                         choose_eigen_options(options, deck, task.buckling->buckling.method, diagnostics), diagnostics)
-                   : solve(options, deck, model, console, diagnostics);
+  Solved solved;
+  int num_residual = 0;
+  const auto* selection = find_selection(requests, model.subcase().id);
+  const bool has_residuals = !task.buckling && selection && modal::response::asks_residual_vectors(deck, *selection);
+  auto pairs =
+      has_residuals ? solve_with_residuals(options, deck, *selection, model, solved, num_residual, console, diagnostics)
+      : task.buckling
+          ? modal::solve_buckling(deck, *task.buckling, model_options, model,
+                                  choose_eigen_options(options, deck, task.buckling->buckling.method, diagnostics),
+                                  diagnostics)
+          : solve(options, deck, model, console, diagnostics);
   console.end_progress();
   if (!options.buckling)
     fe::report_mass(model, deck, fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero()), diagnostics);
@@ -103,10 +132,29 @@ Solved solve_task(const ModesOptions& options, const records::Deck& deck, const 
   if (!task.buckling) pairs = modal::sort_negative(std::move(pairs));
   if (listing) {
     listing->add_weight(model);
-    listing->add_modes(model, pairs, diagnostics);
+    listing->add_modes(model, pairs, num_residual, diagnostics);
   }
-  const modal::ModesExtras extras{options.energies ? &deck : nullptr, options.about_grid};
-  return {modal::make_modes_result(model, pairs, options.buckling, extras), norm.kind};
+  modal::ModesExtras extras{options.energies ? &deck : nullptr, options.about_grid};
+  if (extras.about_grid == 0 && !options.buckling && selection)
+    extras.about_grid = selection->effective_mass_grid.value_or(0);
+  solved.result = modal::make_modes_result(model, pairs, options.buckling, extras);
+  solved.norm = norm.kind;
+  std::fill_n(solved.result.kind.end() - num_residual, num_residual, records::ModeKind::Residual);
+  return solved;
+}
+
+/// The cards of loads over frequency and time, too, where residual vectors are asked for.
+records::DynamicDeck read_modes_deck(const ModesOptions& options, const records::CaseRequests& requests,
+                                     const fe::ModelOptions& model_options, Diagnostics& diagnostics) {
+  Diagnostics own;
+  records::DynamicDeck deck;
+  static_cast<records::Deck&>(deck) = read_deck_or_throw(options.deck, model_options, own);
+  const bool has_residuals = std::any_of(
+      requests.selections.begin(), requests.selections.end(),
+      [&](const auto& selection) { return modal::response::asks_residual_vectors(deck, selection.second); });
+  if (has_residuals && !options.buckling) return read_loads_deck_or_throw(options.deck, model_options, diagnostics);
+  for (const auto& item : own.items()) diagnostics.add(item);
+  return deck;
 }
 
 int run_modes(const ModesOptions& options) {
@@ -123,7 +171,9 @@ int run_modes(const ModesOptions& options) {
   Diagnostics diagnostics;
   auto model_options = make_model_options(options.model);
   model_options.uses_enforced = options.buckling;
-  const auto deck = read_deck_or_throw(options.deck, model_options, diagnostics);
+  Diagnostics of_combinations;  // of static results, which are not made here
+  const auto requests = read_requests_once(options.deck, of_combinations);
+  const auto deck = read_modes_deck(options, requests, model_options, diagnostics);
   const auto sources = calc_sources(deck.files);
   std::vector<Task> tasks;
   say_first(diagnostics, [&] { tasks = choose_tasks(options, deck); });
@@ -137,20 +187,21 @@ int run_modes(const ModesOptions& options) {
   SubcaseFailures failures(tasks.size(), deck.subcases.size());
   bool is_first = true;
   std::optional<ListingMaker> listing;
-  if (!options.listing.empty()) listing.emplace(deck, diagnostics);
+  if (!options.listing.empty()) listing.emplace(deck, requests, diagnostics);
   diagnostics.throw_if_errors();
   for (const auto& task : tasks) {
     Diagnostics own;
     Solved solved;
     try {
       model_options.subcase = task.subcase;
-      solved = solve_task(options, deck, task, model_options, listing ? &*listing : nullptr, console, own);
+      solved = solve_task(options, deck, requests, task, model_options, listing ? &*listing : nullptr, console, own);
     } catch (const Failure& failure) {
       console.end_progress();
       failures.add(task.buckling ? task.buckling->buckling.id : task.subcase, failure);
       continue;
     }
-    auto& [result, norm] = solved;
+    auto& result = solved.result;
+    const auto& norm = solved.norm;
     result.source = sources;
     if (task.buckling && tasks.size() > 1) result.subcase = task.buckling->buckling.id;
     const auto vtu = name_output(options.vtu, result.subcase, is_first);
@@ -161,9 +212,11 @@ int run_modes(const ModesOptions& options) {
     if (tasks.size() > 1) text += fmt::format("{}subcase {}\n\n", is_first ? "" : "\n", result.subcase);
     if (task.buckling) text += modal::describe_load(task.buckling->statics) + "\n\n";
     text += (options.buckling ? format_buckling(result) : format_modes(result)) + "\n" +
-            format_health(result, norm, options.buckling);
+            format_health(result, norm, options.buckling) +
+            format_residual_vectors(result, solved.loads, solved.unused);
     text += format_effective_mass_about(result) + format_energies(result);
     auto one = make_json(result, norm, options.buckling);
+    if (!solved.loads.empty()) one["residual_vectors"] = {{"loads", solved.loads}, {"unused", solved.unused}};
     if (!options.compare.empty() && console.is_root()) {
       Diagnostics of_other;
       const auto pair = compare_models(options.deck, modal::ModalModel::from(result), options.compare,

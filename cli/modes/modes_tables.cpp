@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -9,6 +10,15 @@
 #include "cli/common/deck_tables.hpp"
 
 namespace bough::cli {
+namespace {
+
+/// Those that are no residual vectors: the first ones.
+Eigen::Index count_eigenpairs(const records::ModesResult& r) {
+  if (r.kind.empty()) return r.residual.size();
+  return std::count(r.kind.begin(), r.kind.end(), records::ModeKind::Normal);
+}
+
+}  // namespace
 
 std::string format_modes(const records::ModesResult& r) {
   Table roots{{"mode", "eigenvalue", "rad/s", "Hz", "modal mass", "residual"}, {}};
@@ -18,7 +28,8 @@ std::string format_modes(const records::ModesResult& r) {
     const std::string number = std::to_string(j + 1);
     roots.rows.push_back({number, fmt::format("{:.8g}", r.eigenvalue[j]),
                           fmt::format("{:.7g}", 2 * M_PI * r.frequency_hz[j]), fmt::format("{:.7g}", r.frequency_hz[j]),
-                          fmt::format("{:.6g}", r.modal_mass[j]), fmt::format("{:.1e}", r.residual[j])});
+                          fmt::format("{:.6g}", r.modal_mass[j]),
+                          j < count_eigenpairs(r) ? fmt::format("{:.1e}", r.residual[j]) : "residual vector"});
     std::vector<std::string> row{number};
     for (int a = 0; a < 6; ++a) {
       const double total = r.mass_properties.rigid_mass(a, a);
@@ -41,7 +52,7 @@ std::string format_buckling(const records::ModesResult& r) {
 }
 
 std::string format_health(const records::ModesResult& r, const std::string& norm, bool buckling) {
-  const auto n = r.residual.size();
+  const auto n = count_eigenpairs(r);
   std::string text = buckling ? "" : fmt::format("rigid-body modes: {}\n", r.num_rigid_modes);
   if (norm == "MAX" || norm == "POINT")
     text += fmt::format("shapes: {} (NORM = {} of the deck){}\n",
@@ -59,7 +70,17 @@ std::string format_health(const records::ModesResult& r, const std::string& norm
   } else {
     text += "Sturm count: none, or none to be trusted\n";
   }
-  if (n > 0) text += fmt::format("largest residual: {:.1e}\n", r.residual.maxCoeff());
+  if (n > 0) text += fmt::format("largest residual: {:.1e}\n", r.residual.head(n).maxCoeff());
+  return text;
+}
+
+std::string format_residual_vectors(const records::ModesResult& r, const std::vector<std::string>& loads,
+                                    const std::vector<std::string>& unused) {
+  if (loads.empty()) return {};
+  const auto n = r.residual.size() - count_eigenpairs(r);
+  auto text = fmt::format("residual vectors: {}, the last in the table, of {}\n", n, fmt::join(loads, ", "));
+  if (!unused.empty())
+    text += fmt::format("no residual vector of {}: the modes hold its answer\n", fmt::join(unused, ", "));
   return text;
 }
 
@@ -70,6 +91,7 @@ nlohmann::json list_modes(const records::ModesResult& r, bool buckling) {
   auto modes = nlohmann::json::array();
   for (Eigen::Index j = 0; j < r.residual.size(); ++j) {
     nlohmann::json mode{{"mode", j + 1}, {"residual", r.residual(j)}};
+    if (j >= count_eigenpairs(r)) mode["kind"] = "residual";
     if (buckling) {
       mode["load_factor"] = r.load_factor(j);
     } else {

@@ -15,9 +15,11 @@
 #include "cli/common/text_file.hpp"
 #include "cli/common/vtu_file.hpp"
 #include "cli/listing/listing.hpp"
+#include "cli/static/combinations.hpp"
 #include "cli/static/static_tables.hpp"
 #include "fe/statics/case_solver.hpp"
 #include "formats/hdf5/files.hpp"
+#include "formats/nastran/dynamic_reader.hpp"
 
 namespace bough::cli {
 
@@ -70,6 +72,33 @@ void check_forces_grids(const std::vector<int>& ids, const records::Deck& deck) 
   }
 }
 
+/// SUBCOM, SYMCOM and REPCASE behind the subcases.
+void add_combinations(const records::Deck& deck, const records::CaseRequests& requests, const fe::Model& model,
+                      records::StaticResult& result, SubcaseFailures& failures, ListingMaker* listing,
+                      Diagnostics& diagnostics) {
+  for (const auto& combination : requests.combinations) {
+    try {
+      result.subcases.push_back(combine(model, deck, combination, result.subcases));
+      if (listing) listing->add_static(model, result.subcases.back(), diagnostics);
+    } catch (const Failure& failure) {
+      failures.add(combination.control.id, failure);
+    }
+  }
+}
+
+/// As read_deck_or_throw; without --subcase this verb makes the combinations.
+records::Deck read_static_deck(const StaticOptions& options, Diagnostics& diagnostics) {
+  const auto model_options = make_model_options(options.model);
+  if (options.model.subcase != 0) return read_deck_or_throw(options.deck, model_options, diagnostics);
+  const nastran::ReadOptions read{model_options.ignore_cards};
+  auto deck = is_one_of_many() ? nastran::read_packed_combined_deck(
+                                     share([&] { return nastran::pack_deck(options.deck); }), read, diagnostics)
+                               : nastran::read_combined_deck(options.deck, read, diagnostics);
+  if (diagnostics.num_errors() > 0) fe::Model::build(deck, model_options, diagnostics);
+  diagnostics.throw_if_errors();
+  return deck;
+}
+
 int run_static(const StaticOptions& options) {
   Console console(options.quiet, options.verbosity);
   console.set_subject(options.deck);
@@ -80,7 +109,7 @@ int run_static(const StaticOptions& options) {
   console.set_rank(fe::initialize_petsc().rank);
 
   Diagnostics diagnostics;
-  const auto deck = read_deck_or_throw(options.deck, make_model_options(options.model), diagnostics);
+  const auto deck = read_static_deck(options, diagnostics);
   std::vector<records::Subcase> subcases;
   say_first(diagnostics, [&] {
     subcases = fe::choose_static_subcases(deck, options.model.subcase);
@@ -96,7 +125,8 @@ int run_static(const StaticOptions& options) {
   if (!options.grid_forces.empty()) solver.ask_grid_forces(read_grids(options.grid_forces));
   SubcaseFailures failures(subcases.size(), deck.subcases.size());
   std::optional<ListingMaker> listing;
-  if (!options.listing.empty()) listing.emplace(deck, diagnostics);
+  const auto requests = read_requests_once(options.deck, diagnostics);
+  if (!options.listing.empty()) listing.emplace(deck, requests, diagnostics);
   diagnostics.throw_if_errors();
   for (const auto& subcase : subcases) {
     Diagnostics own;
@@ -112,6 +142,8 @@ int run_static(const StaticOptions& options) {
     add_new(own, diagnostics);
   }
   if (result.subcases.empty()) failures.throw_all(diagnostics);
+  if (options.model.subcase == 0)
+    add_combinations(deck, requests, solver.model(), result, failures, listing ? &*listing : nullptr, diagnostics);
   result.dof_map = solver.model().calc_dof_map();
   result.mesh = solver.model().calc_mesh();
   result.source = calc_sources(deck.files);

@@ -62,6 +62,7 @@ void add_roots(const records::ListedRoots& r, Pages& pages) {
                               show_real(r.eigenvalue(j)), show_real(omega), show_real(omega / (2 * M_PI)),
                               show_real(r.mass(j)), show_real(r.stiffness(j))));
   }
+  if (r.num_residual > 0) pages.add_row(fmt::format("\n     THE LAST {} ARE RESIDUAL VECTORS", r.num_residual), 2);
 }
 
 /// FRACTION and SUM of three directions a table.

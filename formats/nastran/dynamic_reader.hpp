@@ -14,9 +14,15 @@ records::DynamicDeck read_dynamic_deck_text(std::string_view text, const std::st
 /// Of what pack_deck() gave.
 records::DynamicDeck read_packed_dynamic_deck(std::string bytes, const ReadOptions& options, Diagnostics& diagnostics);
 
-/// What the subcases of a deck ask for, by their ids (0: without SUBCASE). No card is read, nothing is reported.
-std::map<int, records::DynamicSelection> read_requests(const std::string& path);
+/// read_deck and read_packed_deck for who makes the combinations of the case control (SUBCOM, SYMCOM, REPCASE): they
+/// are not among what is not used.
+records::Deck read_combined_deck(const std::string& path, const ReadOptions& options, Diagnostics& diagnostics);
+records::Deck read_packed_combined_deck(std::string bytes, const ReadOptions& options, Diagnostics& diagnostics);
+
+/// What the subcases of a deck ask for, and how SUBCOM, SYMCOM and REPCASE combine them. No card is read; reported is
+/// what is wrong with the combinations alone (deck.combination).
+records::CaseRequests read_requests(const std::string& path, Diagnostics& diagnostics);
 /// Of what pack_deck() gave.
-std::map<int, records::DynamicSelection> read_packed_requests(std::string bytes);
+records::CaseRequests read_packed_requests(std::string bytes, Diagnostics& diagnostics);
 
 }  // namespace bough::nastran

@@ -12,32 +12,40 @@ namespace bough::nastran {
 namespace {
 
 void fill_deck(const detail::Source& source, const ReadOptions& options, records::Deck& deck,
-               records::DynamicDeck* dynamics, Diagnostics& diagnostics) {
+               const detail::ControlOptions& control, Diagnostics& diagnostics) {
+  auto* const dynamics = control.dynamics;
   deck.files = source.files;
   detail::read_system_cells(source, deck);
-  const auto first_line = detail::read_control(source, deck, diagnostics, dynamics, options);
+  auto asked = control;
+  asked.ignore_cards = options.ignore_cards;
+  const auto first_line = detail::read_control(source, deck, diagnostics, asked);
   detail::read_bulk(source, first_line, options, deck, diagnostics, dynamics ? &dynamics->dynamics : nullptr);
   detail::report_params(deck, diagnostics, dynamics != nullptr);
 }
 
-records::Deck make_deck(const detail::Source& source, const ReadOptions& options, Diagnostics& diagnostics) {
+records::Deck make_deck(const detail::Source& source, const ReadOptions& options, Diagnostics& diagnostics,
+                        bool notes_combinations = true) {
   records::Deck deck;
-  fill_deck(source, options, deck, nullptr, diagnostics);
+  fill_deck(source, options, deck, {.notes_combinations = notes_combinations}, diagnostics);
   return deck;
 }
 records::DynamicDeck make_dynamic_deck(const detail::Source& source, const ReadOptions& options,
                                        Diagnostics& diagnostics) {
   records::DynamicDeck deck;
-  fill_deck(source, options, deck, &deck, diagnostics);
+  fill_deck(source, options, deck, {.dynamics = &deck}, diagnostics);
   return deck;
 }
 
-std::map<int, records::DynamicSelection> make_requests(const detail::Source& source) {
+records::CaseRequests make_requests(const detail::Source& source, Diagnostics& diagnostics) {
   records::DynamicDeck deck;
+  records::CaseRequests requests;
   Diagnostics said;  // by whoever reads the deck
   deck.files = source.files;
-  detail::read_control(source, deck, said, &deck);
-  return std::move(deck.selections);
+  detail::read_control(
+      source, deck, said,
+      {.dynamics = &deck, .combinations = &requests.combinations, .combination_diagnostics = &diagnostics});
+  requests.selections = std::move(deck.selections);
+  return requests;
 }
 
 }  // namespace
@@ -72,13 +80,20 @@ records::DynamicDeck read_packed_dynamic_deck(std::string bytes, const ReadOptio
   return make_dynamic_deck(detail::unpack(std::move(bytes), diagnostics), options, diagnostics);
 }
 
-std::map<int, records::DynamicSelection> read_requests(const std::string& path) {
-  Diagnostics said;
-  return make_requests(detail::read_source(path, said));
+records::Deck read_combined_deck(const std::string& path, const ReadOptions& options, Diagnostics& diagnostics) {
+  return make_deck(detail::read_source(path, diagnostics), options, diagnostics, false);
 }
-std::map<int, records::DynamicSelection> read_packed_requests(std::string bytes) {
+records::Deck read_packed_combined_deck(std::string bytes, const ReadOptions& options, Diagnostics& diagnostics) {
+  return make_deck(detail::unpack(std::move(bytes), diagnostics), options, diagnostics, false);
+}
+
+records::CaseRequests read_requests(const std::string& path, Diagnostics& diagnostics) {
   Diagnostics said;
-  return make_requests(detail::unpack(std::move(bytes), said));
+  return make_requests(detail::read_source(path, said), diagnostics);
+}
+records::CaseRequests read_packed_requests(std::string bytes, Diagnostics& diagnostics) {
+  Diagnostics said;
+  return make_requests(detail::unpack(std::move(bytes), said), diagnostics);
 }
 
 }  // namespace bough::nastran

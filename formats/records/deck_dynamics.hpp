@@ -92,6 +92,13 @@ struct TimeSteps {  ///< TSTEP
   CardLocation at;
 };
 
+/// USET and USET1 with U6, RVDOF, RVDOF1: unit forces whose residual vectors join the modes.
+struct ResidualDofs {
+  int first = 0, last = 0;  ///< grids; of a range those that exist
+  std::string components;   ///< "13"; empty: a scalar point
+  CardLocation at;
+};
+
 struct DynamicCards {
   std::vector<DynamicLoad> loads;
   std::vector<DynamicLoadSum> sums;
@@ -102,6 +109,7 @@ struct DynamicCards {
   std::vector<DampingCurve> damping;
   std::vector<FrequencyList> frequencies;
   std::vector<TimeSteps> steps;
+  std::vector<ResidualDofs> residual_dofs;
 };
 
 /// SET of the case control: ids, or numbers such as frequencies.
@@ -153,6 +161,21 @@ struct DynamicSubcase : Subcase {
   DynamicSubcase(const Subcase& subcase, DynamicSelection selection)
       : Subcase(subcase), dynamics(std::move(selection)) {}
   DynamicSelection dynamics;
+};
+
+/// SUBCOM, SYMCOM, REPCASE: results made of those of subcases before.
+struct CaseCombination {
+  Subcase control;  ///< id and titles
+  DynamicSelection selection;
+  std::string command;
+  std::vector<std::pair<double, int>> terms;  ///< (factor, subcase)
+  CardLocation at;
+};
+
+/// What the case control asks for beside loads and constraints.
+struct CaseRequests {
+  std::map<int, DynamicSelection> selections;  ///< by subcase; 0: a deck without SUBCASE
+  std::vector<CaseCombination> combinations;
 };
 
 struct DynamicDeck : Deck {

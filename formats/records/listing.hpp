@@ -58,6 +58,7 @@ struct ListedRoots {
   int subcase = 0;
   std::string title, subtitle, label;
   Eigen::VectorXd eigenvalue, mass, stiffness;
+  int num_residual = 0;  ///< the last ones: residual vectors
 };
 
 /// Modal effective masses: fractions of the whole, or masses about a grid.

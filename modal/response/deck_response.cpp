@@ -10,6 +10,7 @@
 #include "formats/records/selection.hpp"
 #include "modal/null_motions.hpp"
 #include "modal/response/load_steps.hpp"
+#include "modal/response/residual_modes.hpp"
 
 namespace bough::modal::response {
 namespace {
@@ -206,7 +207,8 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
   prepare(subcase, diagnostics);
   const auto& model = prepared_->model;
   Diagnostics own;
-  const auto excitation = calc_excitation(model, deck_, subcase, options_.is_over_time, own);
+  auto excitation = calc_excitation(model, deck_, subcase, options_.is_over_time, own);
+  excitation.residual = collect_unit_loads(model, deck_, own).F;
   const auto start = options_.is_over_time ? calc_start(model, deck_, subcase, own) : StartMotion{};
   const auto damping = choose_damping(deck_, subcase, options_.is_over_time, model, own);
   const auto grid = options_.is_over_time ? make_times(deck_, subcase, own) : TimeGrid{};

@@ -25,6 +25,7 @@ struct Excitation {
   MatrixXd F;  ///< num_gdofs x m, basic: patterns of forces
   MatrixXd D;  ///< fixed dofs x k, in the order of Model::fixed_dofs(): patterns of motions
   std::vector<ExcitationTerm> forces, motions;
+  MatrixXd residual = {};  ///< num_gdofs x n: loads that get residual vectors and drive nothing; empty without
 };
 
 /// Of DLOAD of the subcase, over time or over frequency. Reports modal.no-dynamic-load, modal.missing-load,

@@ -108,6 +108,7 @@ class Maker {
     for (const auto& more :
          {times_mass(model_, r.Psi), times_damping(model_, damping_, r.Psi), times_structural(model_, damping_, r.Psi)})
       loads = join_columns(loads, more);
+    more_loads_ = excitation.residual;
     choose_shapes(loads, start, with_residuals, r);
     const auto num_dynamic = r.Phi.cols();
     if (with_residuals) add_massless(join_columns(loads, calc_inner_loads(elastic())), r);
@@ -143,8 +144,9 @@ class Maker {
     if (with_residuals) {
       // B Ψ lies in the loads of the dampers; K_s Ψ is next to nothing.
       const auto k = r.Psi.cols(), m = loads.cols() - 3 * k;
-      const MatrixXd F = take_nonzero(
+      MatrixXd F = take_nonzero(
           join_columns(join_columns(loads.leftCols(m + k), calc_inner_loads(kept)), calc_start_loads(model_, start)));
+      if (more_loads_.cols() > 0) F = join_columns(F, more_loads_);
       const auto residual = bases::calc_residual_vectors(model_, solve_, rigid(), kept, F);
       if (residual.modes.lambda.size() > 0) {
         kept = join_columns(kept, residual.modes.Phi);
@@ -268,7 +270,8 @@ class Maker {
   const bases::StaticSolve& solve_;
   const DampingChoice& damping_;
   Diagnostics& diagnostics_;
-  MatrixXd left_out_;  ///< modes below V1 or LFREQ
+  MatrixXd more_loads_;  ///< Excitation::residual
+  MatrixXd left_out_;    ///< modes below V1 or LFREQ
   VectorXd left_out_lambda_;
 };
 

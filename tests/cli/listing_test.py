@@ -213,5 +213,168 @@ class Listing(ProgramTest):
         self.assertTrue(any(any(values) for _, values in reaction.values()))
 
 
+class Combinations(ProgramTest):
+    CASES = ("SOL 101\nCEND\nSPC = 1\nDISP = ALL\nFORCE = ALL\nSUBCASE 1\nLOAD = 2\nSUBCASE 2\nLOAD = 3\nSUBCOM 10\n"
+             "LABEL = difference\nSUBSEQ = 2.0, -1.0\nREPCASE 11\nDISP = NONE\nSPCF = ALL\n"
+             "BEGIN BULK\nMAT1,1,7.+10,,.3,2700.\nGRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nPBAR,1,1,1.-3,1.-6,2.-6,3.-6\n"
+             ",.1,.2,-.1,-.2\nCBAR,1,1,1,2,0.,1.,0.\nFORCE,2,2,,1.,5.,10.,0.\nFORCE,3,2,,1.,1.,0.,4.\n"
+             "SPC1,1,123456,1\nENDDATA\n")
+
+    def test_subcom_is_linear(self):
+        self.write("d.bdf", self.CASES)
+        result = self.bough("static", "d.bdf", "-o", "d.h5", "--op2", "d.op2", "--f06", "d.f06")
+        self.assertNotIn("SUBCOM", result.stderr)
+        with h5py.File(self.path("d.h5")) as f:
+            one, two, sum_, again = (f["subcases"][n] for n in ("1", "2", "10", "11"))
+            for name in ("displacement", "load", "reaction", "elements/CBAR/force"):
+                np.testing.assert_allclose(sum_[name][:], 2 * one[name][:] - two[name][:], rtol=1e-12, atol=1e-12)
+                np.testing.assert_array_equal(again[name][:], two[name][:])
+            # Energy and extremes are no sums: 1/2 F u, and of the stresses at the points.
+            self.assertAlmostEqual(np.ravel(sum_["strain_energy"][()])[0], 0.5 * sum_["load"][:] @ sum_["displacement"][:],
+                                   delta=1e-9)
+            stress = sum_["stresses/CBAR"]
+            names = [n.decode() if isinstance(n, bytes) else n for n in stress.attrs["components"]]
+            values = stress["stress"][0]
+            points = [v for n, v in zip(names, values) if n.startswith("xx")]
+            self.assertEqual((values[names.index("max")], values[names.index("min")]), (max(points), min(points)))
+        op2 = Op2(self.path("d.op2"))
+        self.assertEqual([r[2] for r in op2.vectors("OUGV1")], [1, 2, 10])
+        self.assertEqual([r[2] for r in op2.vectors("OQG1")], [11])
+        self.assertEqual(op2.tables["OUGV1"][2].ident[1][2], "difference")
+
+    def test_symcom(self):
+        text = self.CASES.replace("SUBCASE 1", "SYM 1").replace("SUBCASE 2", "SYM 2")
+        text = text.replace("SUBCOM 10", "SYMCOM 10").replace("SUBSEQ = 2.0, -1.0\n", "")
+        self.write("d.bdf", text)
+        self.bough("static", "d.bdf", "-o", "d.h5")
+        with h5py.File(self.path("d.h5")) as f:
+            u = [f["subcases"][n]["displacement"][:] for n in ("1", "2", "10")]
+            np.testing.assert_allclose(u[2], u[0] + u[1], rtol=1e-12, atol=1e-15)
+
+    def test_what_is_wrong(self):
+        self.write("d.bdf", self.CASES.replace("SUBSEQ = 2.0, -1.0", "SUBSEQ = 1., 2., 3."))
+        self.fails(1, "static", "d.bdf", says=["d.bdf:12", "3 factors", "2 subcases"], error="deck.combination")
+        self.write("d.bdf", self.CASES.replace("SUBSEQ = 2.0, -1.0\n", ""))
+        self.fails(1, "static", "d.bdf", says=["d.bdf:10", "SUBCOM has no factors"], error="deck.combination")
+        # A subcase that cannot be solved: the others are given, the sum is not.
+        self.write("d.bdf", self.CASES.replace("LOAD = 3", "LOAD = 77"))
+        result = self.bough("static", "d.bdf", code=1)
+        self.assertIn("[cli.combination-missing]", result.stderr)
+        self.assertIn("subcase 1", result.stdout)
+        # One subcase alone: the combination is named as not used.
+        self.write("d.bdf", self.CASES)
+        self.assertIn("SUBCOM (line 10)", self.bough("static", "d.bdf", "--subcase", "1").stderr)
+
+
+class ResidualVectors(ProgramTest):
+    DECK = ("SOL 103\nCEND\nSPC = 1\nMETHOD = 3\nLOAD = 2\nRESVEC = YES\nBEGIN BULK\nEIGRL,3,,,2\nMAT1,1,7.+10,,.3,2700.\n"
+            "PBAR,1,1,1.-3,1.-6,2.-6,3.-6\n" +
+            "".join(f"GRID,{i},,{i - 1}.,0.,0.\n" for i in range(1, 7)) +
+            "".join(f"CBAR,{i},1,{i},{i + 1},0.,1.,0.\n" for i in range(1, 6)) +
+            "FORCE,2,4,,1.,0.,0.,1.\nSPC1,1,123456,1\nUSET,U6,6,2\nRVDOF1,3,5,THRU,6\nENDDATA\n")
+
+    def solve(self, text, *extra):
+        self.write("d.bdf", text)
+        result = self.bough("modes", "d.bdf", "-o", "d.h5", "--json", *extra)
+        with h5py.File(self.path("d.h5")) as f:
+            return result, json.loads(result.stdout), f["modes/eigenvalue"][:], f["modes/phi"][:], list(f["modes/kind"][:])
+
+    def test_static_answers_are_held(self):
+        result, data, eigenvalue, phi, _ = self.solve(self.DECK)
+        self.assertNotIn("deck.unused", result.stderr)
+        loads = ["LOAD 2", "grid 6 component 2", "grid 5 component 3", "grid 6 component 3"]
+        self.assertEqual(data["residual_vectors"], {"loads": loads, "unused": []})
+        kinds = [m.get("kind", "normal") for m in data["modes"]]
+        self.assertEqual(kinds, ["normal"] * 2 + ["residual"] * 4)
+        np.testing.assert_allclose([m["modal_mass"] for m in data["modes"]], 1, rtol=1e-9)
+        # Σ φ (φᵀF) / λ is the static answer of each load: that of a cantilever, P a² (3x - a) / 6EI beyond its place a.
+        for point, component, inertia in [(4, 2, 2e-6), (6, 1, 1e-6), (5, 2, 2e-6), (6, 2, 2e-6)]:
+            a = point - 1.0
+            f = phi[point - 1, component, :]
+            u = (phi[:, component, :] * (f / eigenvalue)).sum(axis=1)
+            x = np.arange(6.0)
+            low, high = np.minimum(x, a), np.maximum(x, a)
+            np.testing.assert_allclose(u, low ** 2 * (3 * high - low) / (6 * 7e10 * inertia), rtol=1e-8, atol=1e-16)
+
+    def test_not_asked_for(self):
+        for text in (self.DECK.replace("RESVEC = YES\n", ""), self.DECK.replace("RESVEC = YES", "RESVEC = NO")):
+            result, data, eigenvalue, _, _ = self.solve(text)
+            self.assertEqual(len(eigenvalue), 2)
+            self.assertIn("RVDOF1", result.stderr)
+        text = self.DECK.replace("RESVEC = YES\n", "").replace("BEGIN BULK\n", "BEGIN BULK\nPARAM,RESVEC,YES\n")
+        self.assertEqual(len(self.solve(text)[2]), 6)
+
+    def test_wrong_dofs(self):
+        result, data, *_ = self.solve(self.DECK.replace("USET,U6,6,2", "USET,U6,1,2,6,2\nUSET,U3,2,2"))
+        for error in ("modal.residual-dof", "deck.user-set"):
+            self.assertIn(f"[{error}]", result.stderr)
+        self.assertEqual(len(data["modes"]), 6)
+        self.write("d.bdf", self.DECK.replace("USET,U6,6,2", "USET,U6,66,2"))
+        self.fails(1, "modes", "d.bdf", says=["66"], error="fe.missing-grid")
+
+    def test_told_which(self):
+        self.write("d.bdf", self.DECK)
+        text = self.bough("modes", "d.bdf", "--f06", "d.f06").stdout
+        self.assertIn("residual vectors: 4, the last in the table, of LOAD 2, grid 6", text)
+        self.assertIn("none missed", text)
+        with open(self.path("d.f06")) as f:
+            self.assertIn("THE LAST 4 ARE RESIDUAL VECTORS", f.read())
+
+    def test_meffmass_of_the_case_control(self):
+        self.write("d.bdf", self.DECK.replace("RESVEC = YES", "MEFFMASS(GRID=4,SUMMARY) = YES"))
+        data = json.loads(self.bough("modes", "d.bdf", "--json").stdout)
+        self.assertEqual(data["effective_mass_about"]["grid"], 4)
+        other = json.loads(self.bough("modes", "d.bdf", "--json", "--meffmass", "4").stdout)
+        self.assertEqual(data["effective_mass_about"], other["effective_mass_about"])
+
+class Responses(ProgramTest):
+    """m = 4 on a spring k = 36 to ground, driven by 2: closed forms."""
+
+    def deck(self, sol, case, bulk):
+        self.write("d.bdf", f"SOL {sol}\nCEND\nSPC = 1\nMETHOD = 1\nDLOAD = 5\n{case}BEGIN BULK\nEIGRL,1,,,1\n"
+                            "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCONM2,1,1,,4.0\nCELAS2,2,36.0,1,1,2,1,0.1\nSPC1,1,23456,1\n"
+                            f"SPC1,1,123456,2\nDAREA,6,1,1,2.\nTABLED1,7\n,0.,1.,100.,1.,ENDT\n{bulk}ENDDATA\n")
+
+    def test_frequency(self):
+        bulk = "RLOAD1,5,6,,,7\nFREQ1,8,.1,.2,4\n"
+        request = "FREQ = 8\nDISP{0} = ALL\nACCE{0} = ALL\nSPCF{0} = ALL\n"
+        for form, option in [(2, ""), (3, "(PHASE)")]:
+            self.deck(111, request.format(option), bulk)
+            self.bough("frequency", "d.bdf", "--op2", "d.op2", "--f06", "d.f06")
+            op2 = Op2(self.path("d.op2"))
+            self.assertEqual(op2.order, ["OUGV1", "OQG1"])
+            self.assertEqual(len(op2.tables["OUGV1"]), 10)  # five frequencies, two quantities
+            for name in op2.order:
+                for (ident, _), (approach, code, subcase, *_, rows) in zip(op2.tables[name], op2.vectors(name)):
+                    hz = op2.real(ident, 5)
+                    omega = 2 * math.pi * hz
+                    stiffness = 36 * (1 + 0.1j)
+                    u = 2 / (stiffness - 4 * omega ** 2)
+                    expected = {1: u, 11: -omega ** 2 * u, 3: -stiffness * u}[code]
+                    self.assertEqual((approach, subcase, ident[0][8]), (5, 1, form))
+                    kind, values = rows[2 if code == 3 else 1]
+                    found = complex(values[0], values[6])
+                    if form == 3:
+                        self.assertTrue(0 <= values[6] < 360)
+                        found = values[0] * np.exp(1j * math.radians(values[6]))
+                    self.assertLess(abs(found - expected), 1e-5 * abs(expected))
+            with open(self.path("d.f06")) as f:
+                text = f.read()
+            self.assertIn("C O M P L E X   D I S P L A C E M E N T   V E C T O R", text)
+            self.assertIn("(MAGNITUDE/PHASE)" if option else "(REAL/IMAGINARY)", text)
+            self.assertEqual(text.count("FREQUENCY = "), 15)
+
+    def test_transient(self):
+        self.deck(112, "TSTEP = 8\nDISP = ALL\n", "TLOAD1,5,6,,,7\nTSTEP,8,20,.05\n")
+        self.bough("transient", "d.bdf", "--op2", "d.op2", "--f06", "d.f06")
+        op2 = Op2(self.path("d.op2"))
+        self.assertEqual(len(op2.tables["OUGV1"]), 21)
+        for (ident, _), (approach, code, _, _, _, _, rows) in zip(op2.tables["OUGV1"], op2.vectors("OUGV1")):
+            t = op2.real(ident, 5)
+            self.assertEqual((approach, code), (6, 1))
+            self.assertAlmostEqual(rows[1][1][0], 2 / 36 * (1 - math.cos(3 * t)), delta=1e-7)
+
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -367,6 +367,51 @@ void parse_tstep(Card& card, DynamicCards& r) {
   add_unique(card, r.steps, std::move(steps), &std::remove_reference_t<decltype(steps)>::sid);
 }
 
+/// Digits of the components, none for a scalar point; ascending.
+std::string read_digits(Card& card, int i) {
+  const unsigned bits = card.read_components(i, "C", 0);
+  std::string digits;
+  for (int c = 1; c <= 6; ++c)
+    if (bits & 1U << static_cast<unsigned>(c - 1)) digits += static_cast<char>('0' + c);
+  return digits;
+}
+
+/// Pairs ID C from field `first` of the line on.
+void read_residual_pairs(Card& card, int first, DynamicCards& r) {
+  std::vector<records::ResidualDofs> read;
+  for (int i = first; i + 1 < std::max(card.get_size() + 1, 8); i += 2) {
+    if (card.is_blank(i, i + 2)) continue;
+    const int g = card.read_id(i, "ID");
+    read.push_back({g, g, read_digits(card, i + 1), card.get_location()});
+  }
+  if (read.empty() && card.is_ok()) card.fail("deck.missing-field", first, "ID is blank, expected a grid at least");
+  if (card.is_ok()) r.residual_dofs.insert(r.residual_dofs.end(), read.begin(), read.end());
+}
+/// C ID1 ID2 ... or C ID1 THRU ID2.
+void read_residual_list(Card& card, int first, DynamicCards& r) {
+  const auto digits = read_digits(card, first);
+  for (const auto& range : read_id_list(card, first + 1, card.get_size(), "ID"))
+    if (card.is_ok())
+      r.residual_dofs.push_back({range.first, range.is_thru ? range.last : range.first, digits, card.get_location()});
+}
+
+/// U6 of USET and USET1 asks for residual vectors; other sets belong to DMAP of the user.
+bool is_residual_set(Card& card) {
+  const auto set = card.get_upper(0);
+  if (set == "U6") return true;
+  card.use(0, card.get_size());
+  card.warn("deck.user-set", 0, "the set " + set + " is not used", "U6 alone counts: residual vectors of its dofs");
+  return false;
+}
+void parse_uset(Card& card, DynamicCards& r) {
+  if (is_residual_set(card)) read_residual_pairs(card, 1, r);
+}
+void parse_uset1(Card& card, DynamicCards& r) {
+  if (is_residual_set(card)) read_residual_list(card, 1, r);
+}
+void parse_rvdof(Card& card, DynamicCards& r) { read_residual_pairs(card, 0, r); }
+void parse_rvdof1(Card& card, DynamicCards& r) { read_residual_list(card, 0, r); }
+
 }  // namespace
 
 const DynamicParserTable& get_dynamic_parsers() {
@@ -376,7 +421,8 @@ const DynamicParserTable& get_dynamic_parsers() {
       {"LSEQ", parse_lseq},       {"TIC", parse_tic},         {"TABLED1", parse_tabled1}, {"TABLED2", parse_tabled2},
       {"TABLED3", parse_tabled3}, {"TABLED4", parse_tabled4}, {"TABDMP1", parse_tabdmp1}, {"FREQ", parse_freq},
       {"FREQ1", parse_freq1},     {"FREQ2", parse_freq2},     {"FREQ3", parse_freq3},     {"FREQ4", parse_freq4},
-      {"FREQ5", parse_freq5},     {"TSTEP", parse_tstep}};
+      {"FREQ5", parse_freq5},     {"TSTEP", parse_tstep},     {"USET", parse_uset},       {"USET1", parse_uset1},
+      {"RVDOF", parse_rvdof},     {"RVDOF1", parse_rvdof1}};
   return table;
 }
 

@@ -287,7 +287,8 @@ class Builder {
     for (const auto& entry : names_) {
       deck_.card_counts[entry.first] = entry.second.count;
       const bool is_read = entry.second.parser != nullptr || entry.second.dynamic != nullptr;
-      if (!is_read || find_loss(entry.first) != nullptr) unread.push_back(&entry);
+      const bool is_lost = find_loss(entry.first) != nullptr && entry.second.dynamic == nullptr;
+      if (!is_read || is_lost) unread.push_back(&entry);
     }
     std::sort(unread.begin(), unread.end(), [](const auto* a, const auto* b) {
       const auto &x = a->second.first, &y = b->second.first;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <unordered_set>
+#include <utility>
 
 #include "formats/nastran/detail/control_words.hpp"
 #include "formats/nastran/detail/dynamic_control.hpp"
@@ -47,9 +48,8 @@ Command split_command(std::string_view text) {
 
 class CaseControl {
  public:
-  CaseControl(const Source& source, records::Deck& deck, Diagnostics& diagnostics, records::DynamicDeck* dynamics,
-              const ReadOptions& options)
-      : source_(source), deck_(deck), diagnostics_(diagnostics), dynamics_(dynamics) {
+  CaseControl(const Source& source, records::Deck& deck, Diagnostics& diagnostics, const ControlOptions& options)
+      : source_(source), deck_(deck), diagnostics_(diagnostics), dynamics_(options.dynamics), options_(options) {
     for (const auto& name : options.ignore_cards) asked_to_ignore_.insert(make_upper(trim(name)));
   }
 
@@ -74,8 +74,12 @@ class CaseControl {
     return is_command(word, "TITLE", 4) || is_command(word, "SUBTITLE", 4) || is_command(word, "LABEL", 4);
   }
 
-  Subcase& current() { return in_subcase_ ? deck_.subcases.back() : above_; }
+  Subcase& current() {
+    if (in_combination_) return combinations().back().control;
+    return in_subcase_ ? deck_.subcases.back() : above_;
+  }
   records::DynamicSelection& current_selection() {
+    if (in_combination_) return combinations().back().selection;
     return in_subcase_ ? dynamics_->selections[deck_.subcases.back().id] : selection_above_;
   }
 
@@ -92,11 +96,13 @@ class CaseControl {
     if (in_plot_section_) return;
     if (c.word == "SUBCOM" || c.word == "SYMCOM" || c.word == "REPCASE") {
       // Combinations of results: what follows belongs to them, not to the subcase before.
+      if (options_.combinations) return begin_combination(c);
       skipping_ = true;
-      note(c.word);
+      if (options_.notes_combinations) note(c.word);
       return;
     }
     if (skipping_) return;
+    if (in_combination_ && (c.word == "SUBSEQ" || c.word == "SYMSEQ")) return read_sequence(c);
     if (is_command(c.word, "TITLE", 4))
       current().title = c.value;
     else if (is_command(c.word, "SUBTITLE", 4))
@@ -209,7 +215,73 @@ class CaseControl {
     return {};
   }
 
+  std::vector<records::CaseCombination>& combinations() { return *options_.combinations; }
+  void fail_combination(const std::string& what, const std::string& advice) {
+    options_.combination_diagnostics->error("deck.combination", deck_.locate(at_), what, advice);
+  }
+
+  /// SUBCOM n, SYMCOM n, REPCASE n: what follows is of them alone.
+  void begin_combination(const Command& c) {
+    end_combination();
+    in_plot_section_ = skipping_ = false;
+    const auto id = parse_int(c.value.substr(0, c.value.find_first_of(" ,")));
+    records::CaseCombination combination;
+    combination.control = above_;
+    combination.selection = selection_above_;
+    combination.control.id = id.value_or(0);
+    combination.command = c.word;
+    combination.at = at_;
+    if (!id || *id <= 0 || !subcase_ids_.insert(*id).second)
+      fail_combination(c.word + " is '" + std::string(c.value) + "', expected a number that no subcase has",
+                       "number the subcases differently");
+    if (c.word == "REPCASE") {
+      if (real_ids_.empty())
+        fail_combination("REPCASE has no subcase before it", "write it behind the subcase that it repeats");
+      else
+        combination.terms = {{1.0, real_ids_.back()}};
+    } else if (c.word == "SYMCOM") {
+      for (const int of : sym_ids_) combination.terms.emplace_back(1.0, of);
+      is_symcom_over_ = true;  // the next SYM begins another structure
+    }
+    combinations().push_back(std::move(combination));
+    in_combination_ = true;
+  }
+
+  /// Factors of the subcases (SYM of SYMCOM) before, the last one of the last.
+  void read_sequence(const Command& c) {
+    auto& combination = combinations().back();
+    const auto& of = combination.command == "SYMCOM" ? sym_ids_ : real_ids_;
+    std::vector<double> factors;
+    for (std::string_view rest = c.value; !trim(rest).empty();) {
+      const auto comma = std::min(rest.find(','), rest.size());
+      const auto factor = parse_real(trim(rest.substr(0, comma)));
+      if (!factor)
+        return fail_combination(c.word + " has '" + std::string(rest) + "', expected numbers", "write 1.0, -1.0");
+      factors.push_back(*factor);
+      rest.remove_prefix(std::min(comma + 1, rest.size()));
+    }
+    if (factors.empty() || factors.size() > of.size())
+      return fail_combination(c.word + " has " + std::to_string(factors.size()) + " factors, " +
+                                  std::to_string(of.size()) + " subcases stand before it",
+                              "give a factor for each of the last subcases");
+    combination.terms.clear();
+    for (std::size_t i = 0; i < factors.size(); ++i)
+      combination.terms.emplace_back(factors[i], of[of.size() - factors.size() + i]);
+  }
+
+  void end_combination() {
+    if (in_combination_ && combinations().back().terms.empty() && options_.combination_diagnostics->num_errors() == 0) {
+      const auto here = std::exchange(at_, combinations().back().at);
+      fail_combination(combinations().back().command + " has no factors", combinations().back().command == "SYMCOM"
+                                                                              ? "write it behind SYM subcases"
+                                                                              : "write SUBSEQ = 1.0, 1.0");
+      at_ = here;
+    }
+    in_combination_ = false;
+  }
+
   void begin_subcase(const Command& c) {
+    end_combination();
     in_plot_section_ = skipping_ = false;
     const auto id = parse_int(c.value.substr(0, c.value.find_first_of(" ,")));
     if (!id || *id <= 0) {
@@ -222,6 +294,12 @@ class CaseControl {
     deck_.subcases.push_back(above_);
     deck_.subcases.back().id = *id;
     in_subcase_ = true;
+    real_ids_.push_back(*id);
+    if (c.word == "SYM") {
+      if (is_symcom_over_) sym_ids_.clear();
+      is_symcom_over_ = false;
+      sym_ids_.push_back(*id);
+    }
     if (dynamics_) dynamics_->selections[*id] = selection_above_;
   }
 
@@ -291,6 +369,7 @@ class CaseControl {
   }
 
   void finish() {
+    end_combination();
     if (deck_.subcases.empty()) deck_.subcases.push_back(above_);
     if (dynamics_ && !in_subcase_) dynamics_->selections[0] = selection_above_;
     choose_matrices(deck_, sets_, at_, diagnostics_);
@@ -309,9 +388,12 @@ class CaseControl {
   records::Deck& deck_;
   Diagnostics& diagnostics_;
   records::DynamicDeck* dynamics_;
+  ControlOptions options_;
   Subcase above_;
   records::DynamicSelection selection_above_;
-  bool in_subcase_ = false, in_plot_section_ = false, skipping_ = false;
+  bool in_subcase_ = false, in_plot_section_ = false, skipping_ = false, in_combination_ = false;
+  std::vector<int> real_ids_, sym_ids_;
+  bool is_symcom_over_ = false;
   records::CardLocation at_;
   std::vector<std::pair<std::string, records::CardLocation>> ignored_;
   std::unordered_set<std::string> noted_;  ///< the words of ignored_
@@ -331,7 +413,7 @@ void read_executive(const Source& source, std::size_t last, records::Deck& deck)
 }  // namespace
 
 std::size_t read_control(const Source& source, records::Deck& deck, Diagnostics& diagnostics,
-                         records::DynamicDeck* dynamics, const ReadOptions& options) {
+                         const ControlOptions& options) {
   constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::size_t cend = none, begin = none;
   for (std::size_t i = 0; i < source.lines.size() && begin == none; ++i) {
@@ -358,11 +440,11 @@ std::size_t read_control(const Source& source, records::Deck& deck, Diagnostics&
                       "write BEGIN BULK before the bulk data");
     begin = source.lines.size();
     read_executive(source, cend, deck);
-    CaseControl(source, deck, diagnostics, dynamics, options).read(cend + 1, begin, false);
+    CaseControl(source, deck, diagnostics, options).read(cend + 1, begin, false);
     return begin;
   }
   if (cend != none) read_executive(source, cend, deck);
-  CaseControl(source, deck, diagnostics, dynamics, options).read(cend == none ? 0 : cend + 1, begin, cend == none);
+  CaseControl(source, deck, diagnostics, options).read(cend == none ? 0 : cend + 1, begin, cend == none);
   return begin + 1;
 }
 

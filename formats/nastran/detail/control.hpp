@@ -1,6 +1,8 @@
 #pragma once
 /// \file Executive and case control: which solution, which sets.
 #include <cstddef>
+#include <string>
+#include <vector>
 
 #include "formats/nastran/detail/lines.hpp"
 #include "formats/nastran/reader.hpp"
@@ -8,12 +10,22 @@
 
 namespace bough::nastran::detail {
 
+struct ControlOptions {
+  /// Where what concerns responses goes; without it those commands are named as not used.
+  records::DynamicDeck* dynamics = nullptr;
+  /// Where SUBCOM, SYMCOM and REPCASE go, and what is wrong with them (deck.combination). Both or none; with dynamics.
+  std::vector<records::CaseCombination>* combinations = nullptr;
+  Diagnostics* combination_diagnostics = nullptr;
+  bool notes_combinations = true;  ///< without `combinations`: they are named as not used
+  /// With dynamics: commands that are only warned of (deck.unsupported-command); of ReadOptions.
+  std::vector<std::string> ignore_cards = {};
+};
+
 /// Reads what stands before the bulk data into deck.sol, deck.subcases and (PARAM in case control) deck.params.
 /// Returns the index of the first bulk data line. A text without CEND and BEGIN BULK is bulk data from its first line.
-/// Adds deck.no-begin-bulk, deck.unsupported-section, deck.case-control-value, deck.case-control-ignored.
-/// `dynamics`: where what concerns responses goes; without it those commands are named as not used. With it
-/// deck.unsupported-command, a warning for what `options` ignores.
+/// Adds deck.no-begin-bulk, deck.unsupported-section, deck.case-control-value, deck.case-control-ignored,
+/// deck.unsupported-command.
 std::size_t read_control(const Source& source, records::Deck& deck, Diagnostics& diagnostics,
-                         records::DynamicDeck* dynamics = nullptr, const ReadOptions& options = {});
+                         const ControlOptions& options = {});
 
 }  // namespace bough::nastran::detail
