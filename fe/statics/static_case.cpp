@@ -8,6 +8,7 @@
 #include "fe/cards/element_properties.hpp"
 #include "fe/elements/beam.hpp"
 #include "fe/loads/load_sets.hpp"
+#include "fe/statics/reactions.hpp"
 
 namespace bough::fe {
 namespace {
