@@ -272,7 +272,8 @@ double Run::calc_flow() const {
     size =
         std::max(size, data[b].state.p_WBo.norm() + (body.mass() > 0 ? body.first_moment().norm() / body.mass() : 0));
   }
-  return force * size + moment;
+  // Springs, dampers and actuators of hinges: a force along the size, or a moment through one radian.
+  return force * size + moment + data.hinge_force.cwiseAbs().sum() * std::max(size, 1.0);
 }
 
 void Run::cross_jump() {

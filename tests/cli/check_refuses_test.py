@@ -85,6 +85,58 @@ class CheckRefuses(ProgramTest):
         self.write("rod.toml", SYSTEM.format(hinge="gimbal", spin=0.1, position="", more=""))
         self.bough("check", "rod.toml")
 
+    def test_a_motor_that_pushes_at_what_a_loop_holds(self):
+        """Nothing moves: the rounding of the motor's work is no error of the energy."""
+        self.write("held.toml", """[[body]]
+name = "b0"
+mass = 0.582
+cg = [-0.1029, -0.3049, -0.2477]
+inertia = [0.91918, 0.96942, 1.04554]
+[[hinge]]
+name = "h0"
+type = "screw"
+parent = "ground"
+child = "b0"
+parent_position = [0.3224, -1.475, 0.3501]
+parent_rotation = [0.0317, -0.0679, 0.0949]
+axis = [-0.8425, 0.7196, -0.9203]
+pitch = 0.083
+rate = [-0.4]
+position = [0.393]
+[[constraint]]
+name = "loop"
+type = "point_on_plane"
+parent = "ground"
+child = "b0"
+parent_position = [-0.3988, 0.5532, 0.2047]
+axis = [-0.7736, 0.0496, 0.1502]
+[[sensor]]
+name = "angle"
+type = "hinge_angle"
+hinge = "h0"
+coordinate = 1
+[[controller]]
+name = "law"
+type = "pid"
+inputs = "angle"
+kp = 1.63
+kd = 0.24
+filter = 0.05
+setpoint = 0.09
+[[actuator]]
+name = "motor"
+type = "hinge"
+hinge = "h0"
+input = "law"
+[simulation]
+duration = 0.6
+output_step = 0.02
+relative_tolerance = 1e-9
+absolute_tolerance = 1e-11
+integrator = "rk"
+""")
+        self.bough("run", "held.toml", "-o", "held.h5")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -47,7 +47,8 @@ TEST(ElementStrain, TwoSpringsInLine) {
     ASSERT_EQ(pairs.lambda.size(), 2) << k;
     const double high = (1 + 2 * k + std::sqrt(1 + 4 * k * k)) / 2;
     EXPECT_EQ(pairs.num_rigid, 0) << k;
-    EXPECT_NEAR(pairs.lambda(0) / (k / high), 1, k < 1e9 ? 1e-6 : 1e-10) << k;
+    // Below 1e-6 the roundoff of K is left as it is; it depends on the number of ranks.
+    EXPECT_NEAR(pairs.lambda(0) / (k / high), 1, d.has("modal.lost-digits") ? 1e-10 : 1e-6) << k;
     EXPECT_NEAR(pairs.lambda(1) / high, 1, 1e-10) << k;
     EXPECT_TRUE(k < 1e13 || d.has("modal.lost-digits")) << k;
   }
