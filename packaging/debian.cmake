@@ -46,11 +46,11 @@ describe(bough-doc bough-doc doc "flexible multibody simulation from finite-elem
 set(CPACK_DEBIAN_BOUGH_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_BOUGH_PACKAGE_SUGGESTS "bough-doc, librsvg2-bin, python3-bough")
 set(CPACK_DEBIAN_PYTHON3-BOUGH_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PYTHON3-BOUGH_PACKAGE_RECOMMENDS "python3-h5py, python3-matplotlib")
+set(CPACK_DEBIAN_PYTHON3-BOUGH_PACKAGE_RECOMMENDS "python3-matplotlib")
 if(Python3_VERSION_MAJOR)
   math(EXPR next "${Python3_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON3-BOUGH_PACKAGE_DEPENDS
-    "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next}), python3-numpy")
+    "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next}), python3-numpy, python3-h5py")
 endif()
 set(CPACK_DEBIAN_BOUGH-DOC_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_BOUGH-DOC_PACKAGE_DEPENDS libjs-sphinxdoc)   # finish.cmake links to its scripts
