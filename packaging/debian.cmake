@@ -2,7 +2,9 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME bough)
 set(CPACK_PACKAGE_VENDOR "The Bough authors")
-set(CPACK_PACKAGE_CONTACT "The Bough authors <bough@localhost.localdomain>")
+set(BOUGH_MAINTAINER "The Bough authors <bough@bough.invalid>" CACHE STRING "Who makes the packages: name and address")
+set(CPACK_PACKAGE_CONTACT ${BOUGH_MAINTAINER})
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
@@ -30,7 +32,7 @@ macro(describe component name section brief text)
   set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${section})
   string(REPLACE "\n " "\n" plain "${what} ${text}")
   string(REGEX REPLACE "^ " "" plain "${plain}")
-  set(CPACK_COMPONENT_${upper}_DESCRIPTION "${brief}\n${plain}")
+  set(CPACK_COMPONENT_${upper}_DESCRIPTION "${brief}\n${plain}")   # its first line is the summary
 endmacro()
 describe(bough bough science "flexible multibody simulation from finite-element models"
   "This package has the program, its manual pages, completions, schemas and\n examples.")
@@ -44,13 +46,14 @@ describe(bough-doc bough-doc doc "flexible multibody simulation from finite-elem
 set(CPACK_DEBIAN_BOUGH_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_BOUGH_PACKAGE_SUGGESTS "bough-doc, librsvg2-bin, python3-bough")
 set(CPACK_DEBIAN_PYTHON3-BOUGH_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PYTHON3-BOUGH_PACKAGE_RECOMMENDS "python3-h5py, python3-matplotlib")
+set(CPACK_DEBIAN_PYTHON3-BOUGH_PACKAGE_RECOMMENDS "python3-matplotlib")
 if(Python3_VERSION_MAJOR)
   math(EXPR next "${Python3_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON3-BOUGH_PACKAGE_DEPENDS
-    "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next}), python3-numpy")
+    "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next}), python3-numpy, python3-h5py")
 endif()
 set(CPACK_DEBIAN_BOUGH-DOC_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_BOUGH-DOC_PACKAGE_DEPENDS libjs-sphinxdoc)   # finish.cmake links to its scripts
 # What BoughConfig.cmake looks for and the headers include.
 set(CPACK_DEBIAN_LIBBOUGH-DEV_PACKAGE_DEPENDS "libeigen3-dev, libsundials-dev, libmuparser-dev")
 if(NOT BOUGH_SOLVER_ONLY)
@@ -61,7 +64,5 @@ endif()
 
 # Policy: copyright and changelogs of each package, pages compressed. Only for packages, so it goes by cpack's own run.
 configure_file(${CMAKE_SOURCE_DIR}/packaging/finish.cmake.in ${CMAKE_BINARY_DIR}/packaging-finish.cmake @ONLY)
-set(CPACK_INSTALL_SCRIPTS ${CMAKE_BINARY_DIR}/packaging-finish.cmake)
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_BINARY_DIR}/packaging-finish.cmake)
-unset(CPACK_INSTALL_SCRIPTS)
 include(CPack)

@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
 
 namespace bough::cli {
 
@@ -52,10 +53,22 @@ void clear_launch() {
   setenv("OPENBLAS_NUM_THREADS", "1", 0);
   auto words = options.command;
   words.push_back(std::to_string(fd));
+  // In a Python process /proc/self/exe is the interpreter; the module says how to come here again, a word a line.
+  std::string program = "/proc/self/exe";
+  if (const char* launcher = std::getenv("BOUGH_WORKER_LAUNCHER")) {
+    std::vector<std::string> launch;
+    std::istringstream lines(launcher);
+    for (std::string line; std::getline(lines, line);) launch.push_back(line);
+    if (!launch.empty()) {
+      program = launch.front();
+      launch.insert(launch.end(), words.begin() + 1, words.end());
+      words = launch;
+    }
+  }
   std::vector<char*> arguments;
   for (auto& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  execv("/proc/self/exe", arguments.data());
+  execv(program.c_str(), arguments.data());
   _exit(127);
 }
 

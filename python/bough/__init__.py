@@ -42,7 +42,24 @@ def call(*words):
     call("modes", "boom.bdf", "-n", 3) prints its table. Messages go to stderr.
     """
     _sys.stdout.flush()
-    return _bough.call([str(word) for word in words])
+    with _worker_launcher():
+        return _bough.call([str(word) for word in words])
+
+
+@_contextlib.contextmanager
+def _worker_launcher():
+    """Workers of `batch` are processes of their own: how each comes into this module again, a word a line."""
+    name, before = "BOUGH_WORKER_LAUNCHER", _os.environ.get("BOUGH_WORKER_LAUNCHER")
+    code = "import sys; sys.path.insert(0, sys.argv[1]); import bough; sys.exit(bough.call(*sys.argv[2:]))"
+    folder = _os.path.dirname(_os.path.dirname(_os.path.abspath(__file__)))
+    _os.environ[name] = "\n".join([_sys.executable, "-c", code, folder])
+    try:
+        yield
+    finally:
+        if before is None:
+            del _os.environ[name]
+        else:
+            _os.environ[name] = before
 
 
 @_contextlib.contextmanager

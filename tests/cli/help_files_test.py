@@ -1,4 +1,5 @@
 """The manual page and the completion for bash say what --help says: every verb, option and example."""
+import os
 import re
 import shutil
 import subprocess
@@ -77,6 +78,49 @@ class HelpFiles(ProgramTest):
         self.assertEqual(self.complete("export", "--to", "=", "v"), ["vtu"])
         self.assertIn("csv", self.complete("export", "--to", "="))
         self.assertEqual(self.complete("check", "boo"), [])  # file names: bash's own
+
+    def test_each_verb_has_a_page_of_its_own(self):
+        whole = self.bough("--man-page").stdout
+        for verb in VERBS:
+            with self.subTest(verb):
+                page = self.bough(f"--man-page={verb}").stdout
+                self.assertIn(f".SH NAME\nbough\\-{verb} \\- ", page)
+                self.assertIn(f".BR bough\\-{verb} (1)", whole)
+                entries = re.findall(r"(?m)^\.TP\n(.*)\n", page)
+                section = whole.split(f".SS bough {verb}\n")[1].split(".SS ")[0].split(".SH ")[0]
+                self.assertEqual(entries, re.findall(r"(?m)^\.TP\n(.*)\n", section))
+        self.fails(2, "--man-page=nothing", says=["nothing"], error="cli.usage")
+
+    def test_fish_offers_every_verb_and_option(self):
+        if not shutil.which("fish"):
+            self.skipTest("no fish here")
+        self.write("bough.fish", self.bough("--fish-completion").stdout)
+
+        def offer(line):
+            result = subprocess.run(["fish", "--no-config", "-c", f"source bough.fish; complete -C '{line}'"], text=True,
+                                    cwd=self.folder, capture_output=True, env={**os.environ, "HOME": self.folder})
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            return [row.split("\t")[0] for row in result.stdout.splitlines()]
+
+        self.assertEqual(sorted(offer("bough ")), sorted(VERBS))
+        self.assertEqual(offer("bough exp"), ["export"])
+        self.assertEqual(offer("bough export --to mb"), ["mbdyn"])
+        for verb, text in self.get_helps().items():
+            with self.subTest(verb):
+                names = [name for option in list_options(text) for name in option if name.startswith("--")]
+                self.assertEqual(sorted(word for word in offer(f"bough {verb} --")), sorted(names))
+
+    def test_zsh_reads_the_completion_and_it_names_every_option(self):
+        script = self.bough("--zsh-completion").stdout
+        self.write("_bough", script)
+        if shutil.which("zsh"):
+            self.assertEqual(subprocess.run(["zsh", "-n", self.path("_bough")], capture_output=True).stderr, b"")
+        for verb, text in self.get_helps().items():
+            line = re.search(rf"(?m)^    {verb}\) _arguments (.*)$", script) if verb else re.search(
+                r"_arguments (.*)\n +else", script)
+            with self.subTest(verb):
+                names = [name for option in list_options(text) for name in option]
+                self.assertEqual(sorted(re.findall(r"'\*(-{1,2}[\w-]+)=?\[", line.group(1))), sorted(names))
 
 
 if __name__ == "__main__":

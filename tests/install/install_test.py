@@ -28,7 +28,10 @@ with tempfile.TemporaryDirectory() as folder:
     assert abs(angle - 0.1) < 1e-4, angle
     bough = os.path.join(prefix, "bin", "bough")
     assert "bough" in run(bough, "--version", stdout=subprocess.PIPE).stdout
-    for name, words in [("man/man1/bough.1", ".SS bough reduce"), ("bash-completion/completions/bough", "complete ")]:
+    for name, words in [("man/man1/bough.1", ".SS bough reduce"), ("man/man1/bough-reduce.1", ".SH OPTIONS"),
+                        ("bash-completion/completions/bough", "complete "),
+                        ("zsh/vendor-completions/_bough", "#compdef bough"),
+                        ("fish/vendor_completions.d/bough.fish", "complete -c bough")]:
         with open(os.path.join(prefix, "share", name)) as f:
             assert words in f.read(), name
     share = os.path.join(prefix, "share", "bough")
