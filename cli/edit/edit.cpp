@@ -51,7 +51,8 @@ int run_edit(const EditOptions& o) {
   const bool is_interactive = is_at_terminal();
   EditSession::Ask ask;
   if (is_interactive) ask = [](const std::string& prompt) { return read_line(prompt); };
-  EditSession session(read_edit_text(o.file), console, ask);
+  if (!o.output.empty()) check_output(o, o.output);
+  EditSession session(read_edit_text(o.file), console, ask, o.output);
   const auto prompt = fs::path(o.file).filename().string() + "> ";
   if (is_interactive) console.print("'help' lists the commands\n");
   const Complete complete = [&](const std::string& line) { return session.complete(line); };
@@ -78,7 +79,7 @@ void add_edit(CLI::App& app, Action& action) {
   auto o = std::make_shared<EditOptions>();
   auto* verb = app.add_subcommand("edit", "Change a system or body file by commands, at a terminal or from a script");
   verb->add_option("file", o->file, "system.toml or body.toml; a new system file where there is none")->required();
-  add_common_options(*verb, *o, 0);
+  add_common_options(*verb, *o, kOutput, "Where save writes (default: the file itself)");
   verb->footer(
       "Commands: list, show, add, set, unset, delete, rename, copy, undo, redo, check, run, reduce, plot, diff, save, "
       "quit; 'help' in the session explains them, and every key. A script comes on standard input and ends at its "

@@ -43,8 +43,11 @@ std::string get_item_path(const std::string& path, const std::vector<toml_files:
 
 }  // namespace
 
-EditSession::EditSession(EditText text, const Console& console, Ask ask)
-    : text_(std::move(text)), console_(console), ask_(std::move(ask)) {}
+EditSession::EditSession(EditText text, const Console& console, Ask ask, std::string output)
+    : text_(std::move(text)),
+      console_(console),
+      ask_(std::move(ask)),
+      target_(output.empty() ? text_.get_file() : std::move(output)) {}
 
 std::vector<std::string> EditSession::list_commands() {
   std::vector<std::string> names;
@@ -297,7 +300,7 @@ void EditSession::run_verb(const std::string& verb, const Words& words) const {
   if (verb != "plot" && text_.is_changed())
     throw InputError("cli.edit-unsaved", {}, verb + " reads the file, which has not all changes", "save first");
   Words call{verb};
-  if (verb != "plot") call.push_back(text_.get_file());
+  if (verb != "plot") call.push_back(is_saved_ ? target_ : text_.get_file());
   for (std::size_t i = 1; i < words.size(); ++i) call.push_back(strip_quotes(words[i]));
   const int code = run_command(call);
   if (code != kSuccess)
@@ -308,7 +311,7 @@ void EditSession::save(const Words& given) {
   auto words = given;
   const bool is_forced = std::erase(words, "--force") > 0;
   if (words.size() > 2) throw_usage("save");
-  const auto path = words.size() > 1 ? strip_quotes(words[1]) : text_.get_file();
+  const auto path = words.size() > 1 ? strip_quotes(words[1]) : target_;
   std::error_code failed;
   if (path == text_.get_file()) {
     std::ifstream in(path, std::ios::binary);
@@ -316,7 +319,7 @@ void EditSession::save(const Words& given) {
     if (now != text_.get_saved() && !is_forced)
       throw InputError("cli.edit-changed", {path}, "the file has changed since it was read",
                        "save under another name, or save --force over it");
-  } else if (std::filesystem::exists(path, failed) && !is_forced) {
+  } else if (path != target_ && std::filesystem::exists(path, failed) && !is_forced) {
     throw InputError("cli.output-exists", {path}, "the file exists", "choose another name, or save NAME --force");
   }
   check_output({}, path);
@@ -324,7 +327,10 @@ void EditSession::save(const Words& given) {
   toml_files::check_text(text_.get_text(), path, diagnostics);
   console_.print(diagnostics);
   write_text_file(path, text_.get_text());
-  if (path == text_.get_file()) text_.set_saved();
+  if (path == target_) {
+    text_.set_saved();
+    is_saved_ = true;
+  }
   console_.print("written: " + path + "\n");
 }
 

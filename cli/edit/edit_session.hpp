@@ -15,7 +15,8 @@ class EditSession {
   /// Asks the person at the terminal; nothing at the end of the input. Empty function: nobody is there, as in a script.
   using Ask = std::function<std::optional<std::string>(const std::string& prompt)>;
 
-  EditSession(EditText text, const Console& console, Ask ask);
+  /// `output`: where `save` writes; empty: the file itself.
+  EditSession(EditText text, const Console& console, Ask ask, std::string output);
 
   /// Does one line; false when the session is to end. Throws InputError and ComputationError.
   bool execute(const std::string& line);
@@ -51,6 +52,8 @@ class EditSession {
   EditText text_;
   const Console& console_;
   Ask ask_;
+  std::string target_;
+  bool is_saved_ = false;
 };
 
 }  // namespace bough::cli

@@ -114,6 +114,16 @@ class Edit(ProgramTest):
         self.assertIn("[cli.edit-changed]", said)
         self.assertTrue(self.read().endswith("# by another\n"))
 
+    def test_output_leaves_the_file_alone(self):
+        self.bough("edit", "p.toml", "-o", "q.toml")
+        self.assertFalse(os.path.exists(self.path("q.toml")))
+        subprocess.run([PROGRAM, "edit", "p.toml", "-o", "q.toml"], cwd=self.folder, text=True, check=True,
+                       input="set bob.mass=3.0\nsave\nset bob.mass=4.0\nsave\nrun -o q.h5\n", capture_output=True)
+        self.assertEqual(self.read(), SYSTEM)
+        self.assertIn("mass = 4.0", self.read("q.toml"))
+        self.assertTrue(os.path.exists(self.path("q.h5")))
+        self.fails(1, "edit", "p.toml", "-o", "q.toml", "--no-clobber", error="cli.output-exists")
+
     def test_run_reads_the_saved_file(self):
         self.assertIn("[cli.edit-unsaved]", self.edit("set bob.mass=3.0", "run", code=1).stderr)
 
