@@ -146,15 +146,11 @@ class SoftModes {
   VectorXd theta_, eta_, parts_, whole_;
 };
 
-constexpr double kGood = 1e-6;  // residual of a mode
-
-/// Puts the improved modes in the place of the `soft` ones and sorts all; false, and nothing, where they balance worse
-/// than those that were there (matrices given in blocks, none of which is a structure of its own).
-bool replace(const Pencil& pencil, const SoftModes& better, const std::vector<Index>& soft, EigenPairs& pairs) {
+/// Puts the improved modes in the place of the `soft` ones and sorts all.
+void replace(const Pencil& pencil, const SoftModes& better, const std::vector<Index>& soft, EigenPairs& pairs) {
   const VectorXd residual =
       fe::calc_residuals(fe::calc_residual_scale(pencil.K_diagonal, pencil.M_diagonal, better.theta()), better.X(),
                          better.forces(), better.M_X() * better.theta().asDiagonal(), pencil.kinds);
-  if (!(residual.maxCoeff() <= std::max(kGood, pairs.residual(soft).maxCoeff()))) return false;
   for (std::size_t i = 0; i < soft.size(); ++i) {
     const auto c = static_cast<Index>(i);
     pairs.lambda(soft[i]) = better.theta()(c);
@@ -169,7 +165,6 @@ bool replace(const Pencil& pencil, const SoftModes& better, const std::vector<In
   pairs.Phi = pairs.Phi(Eigen::all, order).eval();
   pairs.num_rigid = static_cast<int>((pairs.lambda.array() == 0).count());
   fix_signs(pairs.Phi);
-  return true;
 }
 
 }  // namespace
@@ -267,7 +262,7 @@ Restored restore_digits(const fe::System& system, int number, bool is_from_first
                         number_text(std::sqrt(now) / (2 * M_PI)) + " Hz";
   }
   if (num_changed > 3) result.changes += " and " + std::to_string(num_changed - 3) + " more";
-  if (!replace(pencil, better, soft, pairs)) return {};
+  replace(pencil, better, soft, pairs);
   return result;
 }
 
@@ -278,9 +273,10 @@ void warn_of_lost_digits(const Restored& restored, Diagnostics& diagnostics) {
       "modal.lost-digits", {},
       "stiffness spans so many orders that its sums have lost the soft parts; by the strain of the elements " +
           (restored.changes.empty() ? "the modes are as they were" : restored.changes) +
-          (is_sure              ? ", right to about " + number_text(std::max(1e-15, restored.error))
-           : restored.error < 1 ? ", not reliable: they may be off by " + number_text(restored.error) + " and more"
-                                : ", not reliable: K has no digit of them, and others may be missing"),
+          (is_sure ? ", right to about " + number_text(std::max(1e-15, restored.error))
+           : restored.error < 1
+               ? ", not reliable: they may be off by " + number_text(restored.error) + " and more"
+               : ", not reliable: K has no digit of them, and others may be missing"),
       "replace the stiffest elements by rigid ones; forces in them are roundoff");
 }
 
