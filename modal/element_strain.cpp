@@ -220,8 +220,19 @@ VectorXd calc_graded_eigenvalues(MatrixXd G, MatrixXd& V) {
   return G.diagonal();
 }
 
+namespace {
+
+/// Blocks of given matrices are no structures of their own: their energies are no strain.
+bool has_given_blocks(const fe::Model& model) {
+  return std::any_of(model.elements().begin(), model.elements().end(),
+                     [](const auto& element) { return element->card() == "DMIG"; });
+}
+
+}  // namespace
+
 Restored restore_digits(const fe::System& system, int number, bool is_from_first, EigenPairs& pairs) {
   const fe::Model& model = system.model;
+  if (has_given_blocks(model)) return {};
   if (model.prestress() || model.omitted() || pairs.lambda.size() == 0) return {};
   const Pencil pencil(system);
   const MatrixXd X = take_fdofs(model, pairs.Phi);
@@ -273,10 +284,9 @@ void warn_of_lost_digits(const Restored& restored, Diagnostics& diagnostics) {
       "modal.lost-digits", {},
       "stiffness spans so many orders that its sums have lost the soft parts; by the strain of the elements " +
           (restored.changes.empty() ? "the modes are as they were" : restored.changes) +
-          (is_sure ? ", right to about " + number_text(std::max(1e-15, restored.error))
-           : restored.error < 1
-               ? ", not reliable: they may be off by " + number_text(restored.error) + " and more"
-               : ", not reliable: K has no digit of them, and others may be missing"),
+          (is_sure              ? ", right to about " + number_text(std::max(1e-15, restored.error))
+           : restored.error < 1 ? ", not reliable: they may be off by " + number_text(restored.error) + " and more"
+                                : ", not reliable: K has no digit of them, and others may be missing"),
       "replace the stiffest elements by rigid ones; forces in them are roundoff");
 }
 
