@@ -4,6 +4,8 @@
 option(BOUGH_PCH "Precompiled headers" OFF)
 if(BOUGH_PCH)
   target_compile_options(bough_flags INTERFACE $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>>)  # ccache
+  target_compile_options(bough_flags INTERFACE
+    "$<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>>")  # ccache
   target_compile_definitions(bough_flags INTERFACE $<BUILD_INTERFACE:$<$<CONFIG:Release>:_FORTIFY_SOURCE=2>>)
 endif()
 set(BOUGH_PCH_COMMON <Eigen/Dense> <algorithm> <array> <charconv> <cmath> <filesystem> <fstream> <functional> <limits>

@@ -213,7 +213,7 @@ int run_reduce(const ReduceVerbOptions& o) {
   console.end_progress();
   console.print(diagnostics);
   diagnostics.throw_if_errors();
-  do_once([&] {
+  do_once([&, &body = body] {
     hdf5::write_flex_body(body, output);
     if (!o.loads_deck.empty()) write_text_file(o.loads_deck, nastran::write_loads_deck(body, o.loads_set));
   });

@@ -81,8 +81,8 @@ bool check_resume(const Console& console, const std::string& output, const std::
   toml_files::check_same_system(inputs.system_text, spec.text, file, diagnostics);
   for (const auto& [name, hash] : sources) {
     if (name == sources.front().first) continue;  // compared above, key by key
-    const auto has_name = [&](const auto& s) { return s.first == name; };
-    const auto is_same = [&](const auto& s) { return s.first == name && s.second == hash; };
+    const auto has_name = [&name = name](const auto& s) { return s.first == name; };
+    const auto is_same = [&name = name, &hash = hash](const auto& s) { return s.first == name && s.second == hash; };
     const auto& begun = inputs.source;
     if (std::any_of(begun.begin(), begun.end(), has_name) && std::none_of(begun.begin(), begun.end(), is_same))
       diagnostics.error("cli.changed-input", {name}, "the file is not the one that the run was started with",

@@ -19,7 +19,10 @@ class UffText {
   template <class... T>
   void print(const char* format, T... values) {
     char line[256];
-    std::snprintf(line, sizeof line, format, values...);
+    if constexpr (sizeof...(values) == 0)
+      std::snprintf(line, sizeof line, "%s", format);
+    else
+      std::snprintf(line, sizeof line, format, values...);
     text_ += line;
   }
   void begin(int dataset) { print("%6d\n%6d%74s\n", -1, dataset, ""); }

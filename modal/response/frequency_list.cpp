@@ -45,14 +45,19 @@ void add_frequencies(const FrequencyList& list, const VectorXd& natural_hz, std:
     default:
       break;
   }
+  // What lies between F1 and F2 counts, whatever mode it is of (MSC Quick Reference Guide, FREQ4, FREQ5).
+  const double slack = 1e-12;
+  const auto add = [&](double f) {
+    if (f >= list.f1 * (1 - slack) && f <= list.f2 * (1 + slack)) hz.push_back(f);
+  };
   for (const double f : natural_hz) {
-    if (!(f > 0) || f < list.f1 || f > list.f2) continue;
+    if (!(f > 0)) continue;
     if (list.kind == 5) {
-      for (const double fraction : list.values) hz.push_back(fraction * f);
+      for (const double fraction : list.values) add(fraction * f);
       continue;
     }
     const int half = list.count / 2;  // an even NFM is one more
-    for (int k = -half; k <= half; ++k) hz.push_back(f * (1 + (half > 0 ? list.spread * k / half : 0)));
+    for (int k = -half; k <= half; ++k) add(f * (1 + (half > 0 ? list.spread * k / half : 0)));
   }
 }
 
@@ -87,7 +92,11 @@ double find_highest(const records::DynamicDeck& deck, int set) {
     if (list.sid != set) continue;
     for (const double f : list.values) highest = std::max(highest, list.kind == 0 ? f : 0.0);
     if (list.kind == 1) highest = std::max(highest, list.f1 + list.count * list.f2);
-    if (list.kind > 1 && list.f2 < 1e19) highest = std::max(highest, list.f2);
+    if (list.kind <= 1 || list.f2 >= 1e19) continue;
+    // The lowest that a mode gives may be the one between F1 and F2.
+    double share = list.kind == 4 && list.count > 1 ? 1 - list.spread : 1;
+    if (list.kind == 5) share = *std::min_element(list.values.begin(), list.values.end());
+    highest = std::max(highest, share > 0 && share < 1 ? list.f2 / share : list.f2);
   }
   return highest;
 }

@@ -13,9 +13,8 @@ using Eigen::Index;
 
 namespace {
 
-// Some doubles anywhere in memory, as a register holds them.
-using Two = double __attribute__((vector_size(16), aligned(8), may_alias));
-using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
+using Two = double __attribute__((vector_size(16)));
+using Four = double __attribute__((vector_size(32)));
 
 template <int W>
 struct Register {
@@ -25,13 +24,16 @@ template <>
 struct Register<2> {
   using type = Two;
 };
+// Doubles anywhere in memory: compilers differ in what alignment they remember of a vector behind a reference.
 template <int W>
-BOUGH_INLINE const typename Register<W>::type& at(const double* p) {
-  return *reinterpret_cast<const typename Register<W>::type*>(p);
+BOUGH_INLINE typename Register<W>::type load(const double* p) {
+  typename Register<W>::type v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
 }
 template <int W>
-BOUGH_INLINE typename Register<W>::type& at(double* p) {
-  return *reinterpret_cast<typename Register<W>::type*>(p);
+BOUGH_INLINE void store(double* p, const typename Register<W>::type& v) {
+  __builtin_memcpy(p, &v, sizeof v);
 }
 BOUGH_INLINE double sum(const Two& x) { return x[0] + x[1]; }
 BOUGH_INLINE double sum(const Four& x) { return (x[0] + x[1]) + (x[2] + x[3]); }
@@ -49,11 +51,14 @@ BOUGH_INLINE void accumulate(const double* A, Index lda, const double* B, Index 
     const double* a = A + k * lda;
     for (int c = 0; c < C; ++c) {
       const double b = B[k * next_k + c * next_column];
-      for (int r = 0; r < R; ++r) acc[c][r] += at<W>(a + W * r) * b;
+      for (int r = 0; r < R; ++r) acc[c][r] += load<W>(a + W * r) * b;
     }
   }
   for (int c = 0; c < C; ++c) {
-    for (int r = 0; r < R; ++r) at<W>(out + c * ldo + W * r) += sign * acc[c][r];
+    for (int r = 0; r < R; ++r) {
+      double* to = out + c * ldo + W * r;
+      store<W>(to, load<W>(to) + sign * acc[c][r]);
+    }
   }
 }
 
@@ -92,10 +97,10 @@ BOUGH_INLINE void factor_panel(double* A, Index ld, Index rows) {
   for (; i < rows; i += W) {
     V x[C];
     for (int c = 0; c < C; ++c) {
-      x[c] = at<W>(A + i + c * ld);
+      x[c] = load<W>(A + i + c * ld);
       for (int k = 0; k < c; ++k) x[c] -= x[k] * A[c + k * ld];
       x[c] *= inverse[c];
-      at<W>(A + i + c * ld) = x[c];
+      store<W>(A + i + c * ld, x[c]);
     }
   }
 }
@@ -119,9 +124,9 @@ BOUGH_INLINE void solve_columns(const double* L, Index ld, Index n, Index j, dou
   Index i = j + C;
   using V = typename Register<W>::type;
   for (; i + W <= n; i += W) {
-    V out = at<W>(z + i);
-    for (int c = 0; c < C; ++c) out -= at<W>(L + i + (j + c) * ld) * x[c];
-    at<W>(z + i) = out;
+    V out = load<W>(z + i);
+    for (int c = 0; c < C; ++c) out -= load<W>(L + i + (j + c) * ld) * x[c];
+    store<W>(z + i, out);
   }
   for (; i < n; ++i) {
     for (int c = 0; c < C; ++c) z[i] -= L[i + (j + c) * ld] * x[c];
@@ -137,7 +142,7 @@ BOUGH_INLINE void solve_columns_transposed(const double* L, Index ld, Index n, I
   for (int c = 0; c < C; ++c) sums[c] = V{};
   Index i = j + C;
   for (; i + W <= n; i += W) {
-    for (int c = 0; c < C; ++c) sums[c] += at<W>(L + i + (j + c) * ld) * at<W>(z + i);
+    for (int c = 0; c < C; ++c) sums[c] += load<W>(L + i + (j + c) * ld) * load<W>(z + i);
   }
   double x[C];
   for (int c = 0; c < C; ++c) {
@@ -164,10 +169,10 @@ struct Kernels {
       V s = V{}, t = V{};
       Index i = 0;
       for (; i + 2 * W <= rows; i += 2 * W) {
-        s += at<W>(a + i) * at<W>(x + i);
-        t += at<W>(a + i + W) * at<W>(x + i + W);
+        s += load<W>(a + i) * load<W>(x + i);
+        t += load<W>(a + i + W) * load<W>(x + i + W);
       }
-      if (i < rows) s += at<W>(a + i) * at<W>(x + i);
+      if (i < rows) s += load<W>(a + i) * load<W>(x + i);
       y[k] = sum(V(s + t));
     }
   }
@@ -182,7 +187,7 @@ struct Kernels {
   static BOUGH_INLINE void add_square(const double* A, const double* V0, Index rows, double* C) {
     for (Index k = 0; k < rows; k += 4) {
       for (int c = 0; c < 4; ++c) {
-        for (Index i = k; i < rows; i += W) at<W>(C + (k + c) * rows + i) = at<W>(A + (k + c) * rows + i);
+        for (Index i = k; i < rows; i += W) store<W>(C + (k + c) * rows + i, load<W>(A + (k + c) * rows + i));
       }
       accumulate_rows<W, 4>(V0 + k, rows, V0 + k, rows, 1, 12, 1, C + k * rows + k, rows, rows - k);
     }

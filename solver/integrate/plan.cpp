@@ -22,11 +22,12 @@ bool check_simulation(const records::SimulationRecord& s, Diagnostics& diagnosti
     if (!condition) diagnostics.error("run.bad-simulation", s.at, what, advice);
     return condition;
   };
-  const bool good =
-      demand(std::isfinite(s.start), "start is not a finite number", "give start = 0 or another time") &
-      demand(std::isfinite(s.duration) && s.duration > 0, "duration is not a positive number", "give duration > 0") &
-      demand(std::isfinite(s.output_step) && s.output_step >= 0, "output_step is not a positive number",
-             "give output_step > 0, or leave it out for a thousandth of the duration");
+  const bool starts = demand(std::isfinite(s.start), "start is not a finite number", "give start = 0 or another time");
+  const bool lasts =
+      demand(std::isfinite(s.duration) && s.duration > 0, "duration is not a positive number", "give duration > 0");
+  const bool steps = demand(std::isfinite(s.output_step) && s.output_step >= 0, "output_step is not a positive number",
+                            "give output_step > 0, or leave it out for a thousandth of the duration");
+  const bool good = starts && lasts && steps;
   demand(!(s.output_step > 0 && s.duration / s.output_step > 1e8), "output_step asks for more than 1e8 samples",
          "give a longer output_step");
   const bool good_step = demand(std::isfinite(s.step) && s.step >= 0, "step is not a positive number", "give step > 0");

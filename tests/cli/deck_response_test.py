@@ -236,6 +236,10 @@ class OneMass(DeckResponse):
                                    rtol=1e-12)
         np.testing.assert_allclose(x("FREQ4,5,.1,1.,.2,5"), hz * np.array([.8, .9, 1, 1.1, 1.2]), rtol=1e-12)
         np.testing.assert_allclose(x("FREQ5,5,.1,1.,.5,1.,1.5"), hz * np.array([.5, 1, 1.5]), rtol=1e-12)
+        # Between F1 and F2 counts what comes out, not the mode it comes from (MSC Quick Reference Guide).
+        np.testing.assert_allclose(x(f"FREQ5,5,.01,{1.2 * hz:.6f},.5,1.,1.5"), hz * np.array([.5, 1]), rtol=1e-12)
+        np.testing.assert_allclose(x(f"FREQ5,5,.01,{.8 * hz:.6f},.5,1."), [.5 * hz], rtol=1e-12)
+        np.testing.assert_allclose(x(f"FREQ4,5,{1.05 * hz:.6f},1.,.2,5"), hz * np.array([1.1, 1.2]), rtol=1e-12)
         np.testing.assert_allclose(x("FREQ,5,.1,.4\nFREQ1,5,.4,.1,1"), [.1, .4, .5], rtol=1e-12)
 
     def test_transmissibility(self):
@@ -673,6 +677,8 @@ class Refusals(ProgramTest):
     def test_fields(self):
         good = "RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ,5,1.\n"
         for card, says in [("TABLED1,3\n,0.,1.,2.,1.", "ENDT"), ("TABLED1,3\n,0.,1.,2.,1.,1.,1.,ENDT", "one direction"),
+                           ("TABLED1,3\n,0.,1.,1.,1.,1.,0.,ENDT", "jumps at its first or last"),
+                           ("TABLED2,3,1.\n,0.,0.,0.,1.,1.,1.,ENDT", "jumps at its first or last"),
                            ("TABLED1,3,LOG\n,0.,1.,2.,1.,ENDT", "LOG axis"), ("TABLED3,3,0.,0.\n,0.,1.,2.,1.,ENDT", "X2"),
                            ("TLOAD2,3,10,,,1.,1.", "T2"), ("RLOAD1,3,10", "TC and TD"), ("RLOAD2,3,10", "TB"), ("TSTEP,3,10", "DT"),
                            ("FREQ1,3,1.", "DF"), ("FREQ2,3,0.,1.", "F1"), ("FREQ3,3,1.,2.,,1", "NEF"), ("FREQ4,3,1.,2.,2.", "FSPD"),

@@ -199,6 +199,15 @@ std::vector<std::pair<double, double>> read_points(Card& card, int first) {
   return points;
 }
 
+/// Beyond its ends a table goes on along the line of its last two points, which a jump there does not have.
+void refuse_jumps_at_ends(Card& card, const std::vector<std::pair<double, double>>& points) {
+  const std::size_t n = points.size();
+  if (n < 2 || !card.is_ok()) return;
+  if (points[0].first == points[1].first || points[n - 2].first == points[n - 1].first)
+    card.fail("deck.field-range", 8, "the table jumps at its first or last two points, between which it is to go on beyond "
+              "its ends; one point more before or behind the jump says how");
+}
+
 records::DynamicTable read_table_head(Card& card, int kind) {
   records::DynamicTable t;
   t.id = card.read_id(0, "TID");
@@ -219,6 +228,7 @@ void parse_tabled1(Card& card, DynamicCards& r) {
   if (card.is_ok()) card.demand(beyond == 0 || beyond == 1, 3, "EXTRAP", "0 (the last line goes on) or 1 (end values)");
   t.is_flat = beyond == 1;
   t.points = read_points(card, 8);
+  if (!t.is_flat) refuse_jumps_at_ends(card, t.points);
   for (const auto& [x, y] : t.points)
     if (card.is_ok() && ((t.is_log_x && x <= 0) || (t.is_log_y && y <= 0)))
       card.fail("deck.field-range", 8, "a LOG axis has a value that is not above 0");
@@ -228,6 +238,7 @@ void parse_tabled2(Card& card, DynamicCards& r) {
   auto t = read_table_head(card, 2);
   t.x1 = card.read_real(1, "X1", 0.0);
   t.points = read_points(card, 8);
+  refuse_jumps_at_ends(card, t.points);
   add_table(card, r, std::move(t));
 }
 void parse_tabled3(Card& card, DynamicCards& r) {
@@ -236,6 +247,7 @@ void parse_tabled3(Card& card, DynamicCards& r) {
   t.x2 = card.read_real(2, "X2");
   if (card.is_ok()) card.demand(t.x2 != 0, 2, "X2", "another number than 0");
   t.points = read_points(card, 8);
+  refuse_jumps_at_ends(card, t.points);
   add_table(card, r, std::move(t));
 }
 void parse_tabled4(Card& card, DynamicCards& r) {
@@ -263,6 +275,7 @@ void parse_tabdmp1(Card& card, DynamicCards& r) {
   t.type = card.read_word(1, "TYPE", "G", {"G", "CRIT", "Q"});
   t.at = card.get_location();
   t.points = read_points(card, 8);
+  refuse_jumps_at_ends(card, t.points);
   for (const auto& [hz, value] : t.points)
     if (card.is_ok() && t.type == "Q" && value <= 0) card.fail("deck.field-range", 8, "a quality Q is not above 0");
   add_unique(card, r.damping, std::move(t), &std::remove_reference_t<decltype(t)>::id);

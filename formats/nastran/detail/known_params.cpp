@@ -209,7 +209,7 @@ void report_params(records::Deck& deck, Diagnostics& diagnostics, bool of_respon
     }
     if (list.empty()) first = param.at;
     list += (list.empty() ? "" : ", ") + param.name + " (line " + std::to_string(param.at.line) +
-            (param.name == "GRDPNT" ? ", by bough check only)" : ")");
+            (param.name == "GRDPNT" ? ", by check, --f06 and --op2 only)" : ")");
   }
   if (!list.empty())
     diagnostics.note("deck.unused-params", deck.locate(first), "PARAM not used: " + list,

@@ -10,7 +10,7 @@ namespace {
 
 using records::HingeType;
 
-Plant make_plant(const System& system, const records::SystemSpec& spec) {
+Plant make_plant(const System& system) {
   Diagnostics diagnostics;
   Plant plant(system);
   diagnostics.throw_if_errors();
@@ -20,7 +20,7 @@ Plant make_plant(const System& system, const records::SystemSpec& spec) {
 records::LinearModel linearize_initial(const records::SystemSpec& spec, const LinearizeOptions& options = {},
                                        const std::map<std::string, records::FlexBody>& flex = {}) {
   const System system = build(spec, flex);
-  Plant plant = make_plant(system, spec);
+  Plant plant = make_plant(system);
   Diagnostics diagnostics;
   return linearize(plant, plant.make_initial_point(), options, {}, diagnostics);
 }
@@ -104,7 +104,7 @@ TEST(Linearize, InvertedPendulumIsUnstable) {
 TEST(Linearize, NamesThatAreNotThere) {
   const auto spec = make_pendulum();
   const System system = build(spec);
-  Plant plant = make_plant(system, spec);
+  Plant plant = make_plant(system);
   Diagnostics diagnostics;
   try {
     linearize(plant, plant.make_initial_point(), {{"pun"}, {"engle"}, true}, {}, diagnostics);
@@ -122,7 +122,7 @@ TEST(Linearize, APointOffBalanceIsTold) {
   spec.hinges[0].position = {0.5};
   spec.hinges[0].rate = {2};
   const System system = build(spec);
-  Plant plant = make_plant(system, spec);
+  Plant plant = make_plant(system);
   Diagnostics diagnostics;
   const auto model = linearize(plant, plant.make_initial_point(), {{"pin"}, {}, true}, {}, diagnostics);
   EXPECT_TRUE(diagnostics.has("linear.not-steady"));
@@ -154,7 +154,7 @@ TEST(Linearize, NutationOfASpinningFreeBody) {
   spec.hinges[0].position = {std::cos(0.3), std::sin(0.3), 0, 0, 1, 2, 3};
   spec.hinges[0].rate = {0, 0, 5, 0, 0, 0};
   const System system = build(spec);
-  Plant plant = make_plant(system, spec);
+  Plant plant = make_plant(system);
   Diagnostics diagnostics;
   const auto model = linearize(plant, plant.make_initial_point(), {}, {}, diagnostics);
   EXPECT_FALSE(diagnostics.has("linear.time-varying"));
@@ -199,7 +199,7 @@ TEST(Linearize, NeighboursOfAMotionDepartAsASays) {
     const RandomTree tree = make_random_tree(seed, o);
     const System system = build(tree.spec, tree.flex);
     auto data = system.make_data();
-    Plant plant = make_plant(system, tree.spec);
+    Plant plant = make_plant(system);
     OperatingPoint point = plant.make_initial_point();
     VectorXd rates;
     make_random_state(system, seed + 10, point.q, rates);
@@ -246,7 +246,7 @@ TEST(Linearize, InputsAndOutputsOfARandomTree) {
     }
   }
   const System system = build(tree.spec, tree.flex);
-  Plant plant = make_plant(system, tree.spec);
+  Plant plant = make_plant(system);
   OperatingPoint point = plant.make_initial_point();
   VectorXd rates;
   make_random_state(system, 8, point.q, rates);
@@ -287,7 +287,7 @@ TEST(Linearize, ExponentialOfAMovesAsTheFullEquationsForSmallMotions) {
   tree.spec.simulation.gravity.setZero();
   const System system = build(tree.spec, tree.flex);
   auto data = system.make_data();
-  Plant plant = make_plant(system, tree.spec);
+  Plant plant = make_plant(system);
   const OperatingPoint point = plant.make_initial_point();
   Diagnostics diagnostics;
   const auto model = linearize(plant, point, {}, {}, diagnostics);
