@@ -148,7 +148,8 @@ TEST(WideConstraints, ModesAreThoseOfTheWholeElimination) {
       return fe::multiply(matrix.get(), one);
     });
     expect_near(M_wide, M, 1e-12);
-    const auto [expected, found] = calc_both([&, &plate = plate] { return calc_modes(model, plate.density == "0." ? 4 : 12); });
+    const auto [expected, found] =
+        calc_both([&, &plate = plate] { return calc_modes(model, plate.density == "0." ? 4 : 12); });
     ASSERT_EQ(found.lambda.size(), expected.lambda.size());
     EXPECT_EQ(found.inertia_count, expected.inertia_count);
     ASSERT_EQ(found.num_rigid, expected.num_rigid);

@@ -116,7 +116,8 @@ TEST(Params, WhatIsNotUsedIsOneNoteAndWhatNobodyKnowsAWarning) {
   EXPECT_EQ(r.find("deck.unknown-param")->advice, "did you mean WTMASS");
   ASSERT_EQ(r.count("deck.unused-params"), 1);
   EXPECT_EQ(r.find("deck.unused-params")->what,
-            "PARAM not used: POST (line 2), GRDPNT (line 6, by check, --f06 and --op2 only), MARCPOS (line 9), FCTC3 (line 10)");
+            "PARAM not used: POST (line 2), GRDPNT (line 6, by check, --f06 and --op2 only), MARCPOS (line 9), "
+            "FCTC3 (line 10)");
 }
 
 TEST(Control, BadValues) {
