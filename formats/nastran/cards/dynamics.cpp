@@ -205,7 +205,7 @@ void refuse_jumps_at_ends(Card& card, const std::vector<std::pair<double, double
   if (n < 2 || !card.is_ok()) return;
   if (points[0].first == points[1].first || points[n - 2].first == points[n - 1].first)
     card.fail("deck.field-range", 8,
-              "the table jumps at its first or last two points, between which it is to go on beyond its ends; one point "
+              "the table jumps at its first or last two points, between which it goes on beyond its ends; one point "
               "more before or behind the jump says how");
 }
 
