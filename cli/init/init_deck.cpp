@@ -54,7 +54,9 @@ std::string make_modes_table(const records::Deck& deck, bool is_fixed) {
   const bool is_buckling = deck.sol == "105" || deck.sol == "SEBUCKL";
   if (at->f2 && *at->f2 > 0 && !is_buckling)
     text += fmt::format("{:<25}# Hz, as {}\n", fmt::format("max_frequency = {}", *at->f2), card);
-  return text.empty() ? fmt::format("number = 10              # {} gives no number\n", card) : text;
+  if (!text.empty()) return text;
+  return fmt::format("number = 10              # {} {}\n", card,
+                     at->num_modes > 0 ? "gives no more than the six rigid modes" : "gives no number");
 }
 
 // TOML: a literal string as long as the path has no quote.
