@@ -55,7 +55,7 @@ class Folder:
 
     def plot(self, name, *words):
         self.run("plot", *words, "-o", name + ".png")
-        keep(name, os.path.join(self.path, name + ".png"), 32, 900)
+        keep(name, os.path.join(self.path, name + ".png"), 192, 900)
 
     def page(self, name, selector, *files, width=1180, height=760, before="", wait=2.0):
         """What the window shows when `selector` stands at its top."""
