@@ -31,6 +31,7 @@ class Page:
     stands_for: dict = dataclasses.field(default_factory=dict)  # what the page writes: what is meant here
     left_out: tuple = ()     # commands with these words are not run here
     output: bool = False     # every line shown must come
+    python: str = ""         # run before the ```python blocks, which then are one script
 
 
 
@@ -136,6 +137,7 @@ class Pages(ProgramTest):
         text, printed = read(name), []
         for shown, meant in page.stands_for.items():
             text = re.sub(rf"(?<![\w./-]){re.escape(shown)}(?![\w./-])", meant, text)
+        script = page.python
         for kind, lines in list_blocks(text):
             if kind == "toml":
                 named = re.match(r"# ([\w.-]+\.toml)", lines[0])
@@ -143,7 +145,9 @@ class Pages(ProgramTest):
                     with open(os.path.join(self.where, named.group(1)), "w", encoding="utf-8") as f:
                         f.write("\n".join(lines) + "\n")
             if kind == "python":
-                self.run_python(name, "\n".join(lines))
+                script = (script + "\n" if page.python else "") + "\n".join(lines)
+                if not page.python:
+                    self.run_python(name, script)
             if kind != "lines":
                 continue
             commands, others = split_lines(lines)
@@ -156,6 +160,8 @@ class Pages(ProgramTest):
                 for line in others:
                     if line.strip() != "...":
                         self.assertIn(plain(line), came, f"{name}: is not printed")
+        if page.python:
+            self.run_python(name, script)
 
 
 def add_page(name, page):
@@ -211,6 +217,36 @@ TABLED1,8
 ,0.,1.,100.,1.,ENDT
 ENDDATA
 """
+ARM = """[[body]]
+name = "rotor"
+mass = 1.0
+inertia = [1.0, 1.0, 2.0]
+[[hinge]]
+name = "axis"
+type = "revolute"
+child = "rotor"
+position = 0.1
+[[sensor]]
+name = "angle"
+type = "hinge_angle"
+hinge = "axis"
+[[sensor]]
+name = "rate"
+type = "hinge_rate"
+hinge = "axis"
+[[controller]]
+name = "law"
+type = "expression"
+inputs = ["angle", "rate"]
+expression = "-8*u1 - 1.6*u2"
+[[actuator]]
+name = "drive"
+type = "hinge"
+hinge = "axis"
+input = "law"
+[simulation]
+duration = 1.0
+"""
 SAME = {name: "boom.h5" for name in ("A.h5", "B.h5", "C.h5", "BODY.h5")}
 
 
@@ -218,6 +254,7 @@ def boom(files=None, before=(), **more):
     return Page(("ex01-spinup",), (*BOOM, *before), {**SHORT, **(files or {})}, **more)
 
 
+READER = os.path.join(SOURCE, "python/bough")   # the reader alone, as the page has it
 PAGES = {
     "README.md": Page(files={"your.bdf": read("data/decks/free-free.bdf")}),
     "docs/guide.md": Page(output=True),
@@ -228,6 +265,8 @@ PAGES = {
     "docs/tutorials/stage-separation.md": Page(output=True),
     "docs/tutorials/flx-batch.md": Page(output=True),
     "docs/tutorials/rotor-blade.md": Page(output=True),
+    "docs/python.md": boom({"arm.toml": ARM}, python=f"import sys\nsys.path.insert(0, {READER!r})",
+                           stands_for={"spinup.toml": "short.toml", "spinup.h5": "run.h5"}),
     "docs/report.md": boom(stands_for={"spinup.h5": "run.h5"}),
     "docs/command-line.md": boom({**TIP, "density.toml": DENSITY}, ("batch density.toml -q",), left_out=("VERB",), stands_for={
         "a.h5": "run.h5", "b.h5": "run.h5", "outcomes.h5": "density/outcomes.h5"}),
