@@ -38,6 +38,16 @@ class Terminal(ProgramTest):
         self.assertNotIn("\x1b[", said)
         self.assertNotIn("\x1b", self.bough("check", "bad.bdf", code=1).stderr)
 
+    def test_the_line_that_is_meant(self):
+        self.write("bad.bdf", "SOL 103\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\x1b[31m\nCBAR,1,1,1,2,0.,1.,0.\nENDDATA\n")
+        said = self.at_terminal("check", "bad.bdf", NO_COLOR="1")[1].replace("\r\n", "\n")
+        self.assertRegex(said, r"bad.bdf:5: error: .*\n    CBAR,1,1,1,2,0.,1.,0.\n")
+        self.assertNotIn("\x1b", said.replace("\\x1b", ""))  # a file does not steer the terminal
+        self.write("bad.toml", "[simulation]\nduration = 1.0\n  durration = 2.0 # " + "é" * 100 + "\n")
+        said = self.at_terminal("check", "bad.toml", NO_COLOR="1")[1].replace("\r\n", "\n")
+        self.assertRegex(said, r"bad.toml:3: error: .*durration.*\n      durration = 2.0 # é+ \.\.\.\n")
+        self.assertNotIn("\n      durration", self.bough("check", "bad.toml", code=1).stderr)
+
     def test_progress(self):
         self.copy_example("ex01-spinup")
         self.bough("reduce", "boom.toml")
