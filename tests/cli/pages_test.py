@@ -314,6 +314,15 @@ class Others(ProgramTest):
         for name, test in ELSEWHERE.items():
             self.assertIn(name.split("/")[-2 if "examples" in name else -1], read("tests/cli/" + test))
 
+    def test_pictures_are_small_and_shown(self):
+        pages = "".join(read(os.path.relpath(path, SOURCE)) for path in
+                        glob.glob(os.path.join(SOURCE, "docs/**/*.md"), recursive=True) + [os.path.join(SOURCE, "README.md")])
+        pictures = glob.glob(os.path.join(SOURCE, "docs/**/*.png"), recursive=True)
+        self.assertTrue(pictures)
+        for path in pictures:
+            self.assertLess(os.path.getsize(path), 150_000, path)
+            self.assertIn(os.path.basename(path), pages)
+
     def test_commands_are_told_from_output(self):
         text = "x\n\n    bough a -o b.h5 \\\n      --c   a remark\n    out 1\n\ny\n\n    ./dev bough d    (so)\n\n```toml\n    bough e\n```\n"
         self.assertEqual(list_commands(text), ["bough a -o b.h5 --c", "./dev bough d"])
