@@ -8,18 +8,24 @@ find_path(SUNDIALS_INCLUDE_DIR cvode/cvode.h REQUIRED)
 foreach(lib cvode arkode nvecserial)
   find_library(SUNDIALS_${lib}_LIBRARY sundials_${lib} REQUIRED)
 endforeach()
+find_library(SUNDIALS_core_LIBRARY sundials_core)   # from version 7 on
+if(NOT SUNDIALS_core_LIBRARY)
+  set(SUNDIALS_core_LIBRARY "")
+endif()
 add_library(bough_sundials INTERFACE)
 target_include_directories(bough_sundials SYSTEM INTERFACE $<BUILD_INTERFACE:${SUNDIALS_INCLUDE_DIR}>)
 target_link_libraries(bough_sundials INTERFACE
-  ${SUNDIALS_cvode_LIBRARY} ${SUNDIALS_arkode_LIBRARY} ${SUNDIALS_nvecserial_LIBRARY})
+  ${SUNDIALS_cvode_LIBRARY} ${SUNDIALS_arkode_LIBRARY} ${SUNDIALS_nvecserial_LIBRARY}
+  ${SUNDIALS_core_LIBRARY})
 
 if(NOT BOUGH_SOLVER_ONLY)
   find_package(PkgConfig REQUIRED)
   pkg_check_modules(PETSC REQUIRED IMPORTED_TARGET GLOBAL PETSc)
   pkg_check_modules(SLEPC REQUIRED IMPORTED_TARGET GLOBAL SLEPc)
   # The openmpi flavour is the one PETSc links; the serial one in the same process would clash with it.
-  pkg_check_modules(MPI REQUIRED IMPORTED_TARGET GLOBAL ompi-c)   # PETSc.pc names it for static links only
-  pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET GLOBAL hdf5-openmpi)
+  # Debian's names come first. PETSc.pc names MPI for static links only.
+  pkg_search_module(MPI REQUIRED IMPORTED_TARGET GLOBAL ompi-c mpich mpi)
+  pkg_search_module(HDF5 REQUIRED IMPORTED_TARGET GLOBAL hdf5-openmpi hdf5-mpi hdf5)
   # By name, not by its .pc: that links the serial HDF5, which the openmpi flavour's symbols could then bind to. The
   # library's own use of it stays apart, since Debian gives the symbols of the two flavours different versions.
   find_path(MATIO_INCLUDE_DIR matio.h REQUIRED)

@@ -27,10 +27,16 @@ html_theme = "classic"
 html_theme_options = {{"body_max_width": "60em", "collapsiblesidebar": "true"}}
 html_copy_source = html_show_sourcelink = False
 html_title = "Bough {version}"
+html_static_path = ["_static"]
+html_css_files = ["tables.css"]
 # Python, TOML and C++ blocks are coloured where they parse; shell sessions and output stay as they are.
 highlight_language = "none"
 suppress_warnings = ["myst.header", "toc.not_readable", "misc.highlighting_failure"]
 """
+
+
+# Narrow cells are not stretched to both sides, pictures not wider than their page.
+CSS = "div.body td, div.body td p, div.body th p { text-align: left; }\ndiv.body img { max-width: 100%; }\n"
 
 
 def list_files():
@@ -121,6 +127,9 @@ def stage(files):
             os.makedirs(os.path.dirname(os.path.join(STAGE, path)), exist_ok=True)
             shutil.copy(os.path.join(ROOT, path), os.path.join(STAGE, path))
     version = re.search(r"project\(Bough VERSION ([\d.]+)", open(os.path.join(ROOT, "CMakeLists.txt")).read()).group(1)
+    os.makedirs(os.path.join(STAGE, "_static"), exist_ok=True)
+    with open(os.path.join(STAGE, "_static/tables.css"), "w") as f:
+        f.write(CSS)
     with open(os.path.join(STAGE, "conf.py"), "w") as f:
         f.write(CONF.format(version=version))
     return version

@@ -2,7 +2,9 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#ifdef __linux__
 #include <sys/prctl.h>
+#endif
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -41,8 +43,10 @@ void clear_launch() {
 }
 
 [[noreturn]] void become_worker(const PoolOptions& options, int fd) {
+#ifdef __linux__
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // whatever ends this program, no worker is left behind
-  setpgid(0, 0);                     // Ctrl-C is for the parent to act on
+#endif
+  setpgid(0, 0);  // Ctrl-C is for the parent to act on
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
   fcntl(fd, F_SETFD, 0);

@@ -229,11 +229,21 @@ int check_system(const CheckOptions& options, const Console& console) {
                       {"num_modes", system.num_modes(b)}});
   }
   const auto& spec = loaded.spec;
-  const auto text = fmt::format(
-      "system file: {}, {}, {}, {}, {}; {}\n{}integrator {}, duration {:g}\n", count(spec.bodies.size(), "body"),
-      count(spec.hinges.size(), "hinge"), count(spec.forces.size(), "force"), count(spec.sensors.size(), "sensor"),
-      count(spec.functions.size(), "function"), count(static_cast<std::size_t>(system.num_dofs()), "generalized speed"),
-      table.to_text(), spec.simulation.integrator, spec.simulation.duration);
+  std::string what;
+  for (const auto& [number, name] : std::initializer_list<std::pair<std::size_t, const char*>>{
+           {spec.bodies.size(), "body"},
+           {spec.hinges.size(), "hinge"},
+           {spec.constraints.size(), "constraint"},
+           {spec.forces.size() + spec.force_elements.size(), "force"},
+           {spec.sensors.size(), "sensor"},
+           {spec.controllers.size(), "controller"},
+           {spec.actuators.size(), "actuator"},
+           {spec.functions.size(), "function"},
+           {spec.events.size(), "event"}})
+    if (number != 0) what += (what.empty() ? "" : ", ") + count(number, name);
+  const auto text = fmt::format("system file: {}; {}\n{}integrator {}, duration {:g}\n", what,
+                                count(static_cast<std::size_t>(system.num_dofs()), "generalized speed"),
+                                table.to_text(), spec.simulation.integrator, spec.simulation.duration);
   if (!options.diagram.empty() && console.is_root()) write_diagram(spec, options.diagram);
   return finish(options, console, text, {{"kind", "system"}, {"bodies", bodies}, {"num_speeds", system.num_dofs()}},
                 diagnostics);

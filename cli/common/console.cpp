@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <sstream>
 #include <tuple>
@@ -35,6 +37,32 @@ ComputationError fail_to_print() {
           {"standard output"},
           "not everything could be printed" + (cause != 0 ? std::string(": ") + std::strerror(cause) : std::string()),
           "check where the output goes, and the space left there"};
+}
+
+/// The line that a message is about, and a mark under its column where that is known; nothing where it cannot be read.
+std::string show_source_line(const SourceLocation& where) {
+  constexpr std::size_t kLongest = 100;
+  std::error_code ignored;
+  if (where.line <= 0 || !std::filesystem::is_regular_file(where.file, ignored)) return "";
+  std::ifstream in(where.file);
+  std::string line;
+  for (int k = 0; k < where.line; ++k)
+    if (!std::getline(in, line)) return "";
+  // What would steer the terminal is not passed on.
+  for (char& c : line)
+    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = ' ';
+  line.erase(line.find_last_not_of(' ') + 1);
+  if (line.empty()) return "";
+  if (line.size() > kLongest) {
+    auto end = kLongest;
+    while ((static_cast<unsigned char>(line[end]) & 0xC0) == 0x80) --end;  // not inside a letter
+    line.resize(end);
+    line += " ...";
+  }
+  auto text = "    " + line + "\n";
+  const auto column = static_cast<std::size_t>(std::max(where.column, 0));
+  if (column > 0 && column <= kLongest) text += std::string(3 + column, ' ') + "^\n";
+  return text;
 }
 }  // namespace
 
@@ -116,7 +144,8 @@ void Console::print_detail(const std::string& text) const {
 
 void Console::print(const Diagnostic& diagnostic) const {
   if (!is_root_) return;
-  std::string text = format(locate(diagnostic, subject_));
+  const auto located = locate(diagnostic, subject_);
+  std::string text = format(located);
   if (colors_) {
     const bool is_error = diagnostic.severity == Severity::Error;
     const std::string word = is_error ? "error:" : diagnostic.severity == Severity::Warning ? "warning:" : "note:";
@@ -124,7 +153,9 @@ void Console::print(const Diagnostic& diagnostic) const {
       text.replace(at, word.size(), (is_error ? "\033[1;31m" : "\033[1;33m") + word + "\033[0m");
     }
   }
-  std::fprintf(stderr, "%s\n", text.c_str());
+  text += '\n';
+  if (stderr_is_terminal_ && diagnostic.severity != Severity::Note) text += show_source_line(located.where);
+  std::fputs(text.c_str(), stderr);
 }
 
 void Console::print_error(const std::string& id, const std::string& what, const std::string& advice) const {

@@ -58,6 +58,6 @@ print("poles on the spring [rad/s]", rates, "closed form", hinged)
 
 figure, axes = plt.subplots()
 axes.plot(poles.real, poles.imag, "x")
-axes.set(xlabel="real [1/s]", ylabel="imaginary [rad/s]")
+axes.set(xlabel="real [1/s]", ylabel="imaginary [rad/s]", xlim=(-1, 1))    # undamped
 figure.savefig("poles.png")
 assert np.abs(rates / hinged[0] - 1).min() < 2e-3

@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include <nvector/nvector_serial.h>
+#include <sundials/sundials_config.h>
 #include <sundials/sundials_context.h>
 
 #include "base/diagnostic.hpp"
@@ -18,7 +19,11 @@ inline constexpr int kMostRejections = 40;
 
 class Context {
  public:
+#if SUNDIALS_VERSION_MAJOR >= 7
+  Context() { BOUGH_DEMAND(SUNContext_Create(SUN_COMM_NULL, &context_) == 0); }
+#else
   Context() { BOUGH_DEMAND(SUNContext_Create(nullptr, &context_) == 0); }
+#endif
   ~Context() { SUNContext_Free(&context_); }
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
