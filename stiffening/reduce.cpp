@@ -5,6 +5,7 @@
 #include "fe/linear/factor.hpp"
 #include "fe/matrices/mass_directions.hpp"
 #include "modal/integrals.hpp"
+#include "stiffening/basis_check.hpp"
 
 namespace bough::stiffening {
 
@@ -99,6 +100,12 @@ void Reduction::add_mechanism_error(const std::string& what) {
                        "complete the SPC set and select it in the case control, or use frame = \"free\" (--free)");
 }
 
+void Reduction::check_modal_matrices(const fe::Model& model) {
+  const auto check = check_basis(model, Phi_, body_.modal_mass, body_.modal_stiffness);
+  if (options_.check) *options_.check = check;
+  report_basis(check, where(), diagnostics_);
+}
+
 /// Twice where the origin is a node or the mass centre, which the first model knows, and for a preload.
 fe::Model Reduction::build_model() {
   const auto& elements = options_.elements ? options_.elements : fe::make_elements;
@@ -136,6 +143,7 @@ FlexBody Reduction::run() {
     set_given_modes(system);
   else
     set_modes(system, solve);
+  check_modal_matrices(model);
   set_nodes(model);
   report("mass integrals");
   set_integrals(model);

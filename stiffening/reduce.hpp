@@ -24,10 +24,13 @@ MatrixXd calc_inertial_loads(const modal::NodalDofs& dofs, const MatrixXd& P);
 std::vector<MatrixXd> calc_generalized_geometric_stiffness(const fe::Model& model, const fe::AppliedLoads& loads,
                                                            const MatrixXd& U, const MatrixXd& Phi);
 
+struct BasisCheck;
+
 struct ReduceOptions {
   std::function<void(const std::string& stage)> progress;
   fe::ElementFactory elements;                       ///< instead of the deck's own: matrices that are given
   std::function<MatrixXd(const fe::System&)> modes;  ///< num_gdofs x n in basic, instead of solving for them
+  BasisCheck* check = nullptr;                       ///< gets what check_basis() finds (basis_check.hpp)
 };
 
 /// The whole preprocessing: model, modes, integrals, F_I, K_G1, K_G2 -> FlexBody. Runs on every rank; the record is

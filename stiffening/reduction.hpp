@@ -39,6 +39,7 @@ class Reduction {
   void set_given_modes(const fe::System& system);
   void set_damping(const fe::Model& model, const modal::bases::Basis& basis);
   void add_dampers(const fe::Model& model);
+  void check_modal_matrices(const fe::Model& model);
   void set_nodes(const fe::Model& model);
   void set_integrals(const fe::Model& model);  ///< and effective masses, F_I
   std::map<std::pair<std::string, std::vector<std::string>>, std::vector<int>> choose_recovered(const fe::Model& model);

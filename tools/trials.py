@@ -1,27 +1,32 @@
 """Ends verbs at random moments, in their n-th write, on disks that fail, and looks at what is left.
 
-    /usr/bin/python3 tools/trials.py build/bin/bough [--times 20] [--disks 20] [--seed 1] [--verbs modes,run]
+    /usr/bin/python3 tools/trials.py build/bin/bough [--times 20] [--disks 20] [--seed 1] [--verbs modes,run] [--jobs 2]
                                      [--keep FOLDER] [--write]
 
 For each verb an unbroken call is the reference. A call that is ended must leave its output as it was, or whole, with
 the same numbers; results of `run` may be a beginning of them, and `--resume` must reach the same end: bit for bit at
 fixed step, to tolerance otherwise; `batch` again must end a campaign as if it had never been ended. Signals that can be
 caught, failing disks, folders that may not be written and limits of memory leave no temporary file and exit code 3 with
-words; what SIGKILL leaves goes with the next call. --times: of each signal; --disks: of each other way. Prints one row
-a verb and kind; exit 1 when something was found. --write puts the table into docs/verification/robustness.md.
+words; what SIGKILL leaves goes with the next call. --times: of each signal, at a moment drawn over the time that the
+unbroken call took; --disks: of each other way. --jobs verbs and ways at once. Prints one row a verb and way as soon as
+it is done; exit 1 when something was found. --write puts the table into docs/verification/robustness.md.
 """
 import argparse
 import collections
+import concurrent.futures
 import glob
+import multiprocessing.util
 import os
 import random
 import resource
 import shutil
 import signal
+import statistics
 import subprocess
 import sys
 import tempfile
 import time
+import traceback
 
 import h5py
 import numpy as np
@@ -33,6 +38,19 @@ with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "failing_disk
     PRELOAD = c_source.read()
 # Nobody in particular: who may not write where root may.
 ORDINARY_USER = 65534
+WAYS = ("n-th write", "disk full", "disk error", "memory", "read-only")
+# What each verb is called with, and what it writes.
+CALLS = {
+    "modes": (["modes", "plate.bdf"], "out.h5"),
+    "reduce": (["reduce", "plate.toml"], "out.h5"),
+    "matrices": (["matrices", "plate.bdf", "--no-kg"], "out.h5"),
+    "export": (["export", "plate.h5", "--to", "sid"], "out.sid"),
+    "flx": (["flx", "plate.h5"], "out.flx"),
+    "select": (["select", "plate.h5", "-n", "3"], "out.h5"),
+    "linearize": (["linearize", "fixed.toml"], "out.h5"),
+    "run": (["run", "fixed.toml"], "out.h5"),
+    "run (adaptive)": (["run", "free.toml"], "out.h5"),
+}
 SYSTEM = """[[body]]
 name = "plate"
 file = "plate.h5"
@@ -129,14 +147,12 @@ def calc_difference(a, b):
 
 
 class Trials:
-    def __init__(self, options):
-        self.program = os.path.abspath(options.program)
-        self.times, self.disks, self.random = options.times, options.disks, random.Random(options.seed)
+    def __init__(self, program, keep, seed):
+        self.program = os.path.abspath(program)
+        self.keep, self.random = keep, random.Random(seed)
         self.folder = tempfile.mkdtemp(prefix="trials-")
-        self.signals = options.signals
-        self.keep, self.write_page = options.keep, options.write
-        self.rows = collections.OrderedDict()
-        self.found = 0
+        self.outcomes = collections.Counter()  # of the verb and way that are tried now
+        self.unbroken = {}                     # by verb: see measure, measure_batch
         self.preload = os.path.join(self.folder, "preload.so")
         source = os.path.join(self.folder, "preload.c")
         with open(source, "w", encoding="ascii") as out:
@@ -147,10 +163,12 @@ class Trials:
                    '[body.output]\nnodes = [1, 13, 169]\n')
         self.call("reduce", "plate.toml", "-o", "plate.h5")
         self.write("fixed.toml", SYSTEM.format(node=169, duration=4.0, integrator="rk4", more="step = 0.0005"))
-        self.write("free.toml", SYSTEM.format(node=169, duration=40.0, integrator="rk", more=""))
+        self.write("free.toml", SYSTEM.format(node=169, duration=6.0, integrator="rk", more=""))
         self.write("small.bdf", make_plate(2))
         self.write("campaign.toml", CAMPAIGN)
-        self.worst = {}  # of runs that were resumed: largest difference, relative to the largest value
+        self.worst = None  # of runs that were resumed: largest difference, relative to the largest value
+        self.call("modes", "plate.bdf", "-n", "2", "-o", "old")
+        self.startup = self.time("--version")  # libraries are loaded until then
 
     def write(self, name, text):
         with open(os.path.join(self.folder, name), "w", encoding="utf-8") as out:
@@ -181,43 +199,56 @@ class Trials:
         if process.returncode:
             sys.exit(f"bough {' '.join(arguments)}: {said}")
 
-    def note(self, verb, kind, outcome):
-        self.rows.setdefault((verb, kind), collections.Counter())[outcome] += 1
+    def time(self, *arguments, **more):
+        """Seconds of a call: the middle of three."""
+        seconds = []
+        for _ in range(3):
+            begin = time.monotonic()
+            self.call(*arguments, **more)
+            seconds.append(time.monotonic() - begin)
+        return statistics.median(seconds)
+
+    def note(self, outcome):
+        self.outcomes[outcome] += 1
 
     def accuse(self, verb, kind, what, said):
-        self.found += 1
-        self.note(verb, kind, "FOUND")
+        self.note("FOUND")
         print(f"{verb}: {kind}: {what}\n    {said.strip()[-400:]}", flush=True)
         if self.keep:
-            place = os.path.join(self.keep, f"{verb}-{self.found}")
+            place = os.path.join(self.keep, f"{verb}-{kind}-{os.getpid()}-{self.outcomes['FOUND']}".replace(" ", "-"))
             shutil.copytree(self.folder, place, dirs_exist_ok=True)
 
     def get_parts(self):
         return glob.glob(self.path("*bough-part*")) + glob.glob(self.path("*/*bough-part*"))
 
-    def try_verb(self, verb, arguments, output):
-        """`arguments` write `output`; each way of ending it, `times` times."""
-        begin = time.monotonic()
-        self.call(*arguments, "-o", "whole.h5" if output.endswith(".h5") else "whole")
-        took = time.monotonic() - begin
-        whole = self.path("whole.h5" if output.endswith(".h5") else "whole")
-        reference = read_all(whole) if output.endswith(".h5") else open(whole, "rb").read()
-        self.call(*arguments, "-o", output, TRIAL_LOG=self.path("count"))
-        with open(self.path("count"), encoding="ascii") as f:
-            writes = int(f.read())
-        for kind in self.signals:
-            for _ in range(self.times):
-                self.try_once(verb, kind, arguments, output, reference, took, writes)
-        for kind in ("n-th write", "disk full", "disk error", "memory", "read-only"):
-            for _ in range(min(self.disks, 3) if kind == "read-only" else self.disks):
-                self.try_once(verb, kind, arguments, output, reference, took, writes)
+    def measure(self, verb):
+        """The unbroken call: its output, its seconds, its writes."""
+        if verb not in self.unbroken:
+            arguments, output = CALLS[verb]
+            whole = "whole" + os.path.splitext(output)[1]
+            took = self.time(*arguments, "-o", whole)
+            if output.endswith(".h5"):
+                reference = read_all(self.path(whole))
+            else:
+                with open(self.path(whole), "rb") as f:
+                    reference = f.read()
+            self.call(*arguments, "-o", output, TRIAL_LOG=self.path("count"))
+            with open(self.path("count"), encoding="ascii") as f:
+                self.unbroken[verb] = reference, took, int(f.read())
+        return self.unbroken[verb]
+
+    def try_verb(self, verb, kind, times):
+        """One way of ending it, `times` times."""
+        reference, took, writes = self.measure(verb)
+        for _ in range(times):
+            self.try_once(verb, kind, *CALLS[verb], reference, took, writes)
 
     def end(self, kind, call, took, writes):
         """The call, ended in one way: its process and what it said."""
         if kind in ("KILL", "TERM", "INT"):
             process = self.start(*call)
             try:
-                return process, process.communicate(timeout=self.random.uniform(0, 1.1 * took))[1]
+                return process, process.communicate(timeout=self.random.uniform(min(self.startup, took) / 2, took))[1]
             except subprocess.TimeoutExpired:
                 process.send_signal(getattr(signal, "SIG" + kind))
         elif kind == "memory":
@@ -242,7 +273,7 @@ class Trials:
         os.chmod(self.folder, 0o755)
         code = process.returncode
         if kind == "memory" and code == 127:
-            return self.note(verb, kind, "before it began")  # its libraries find no room
+            return self.note("before it began")  # its libraries find no room
         died = kind in ("KILL", "n-th write")
         allowed = (0, -9) if died else (0, 3) + ((-getattr(signal, "SIG" + kind),) if kind in ("TERM", "INT") else ())
         if code not in allowed or (kind == "read-only" and code == 0):
@@ -262,7 +293,7 @@ class Trials:
             state = self.resume(verb, arguments, output, reference)
             if state.startswith("!"):
                 return self.accuse(verb, kind, state[1:], said)
-        return self.note(verb, kind, state)
+        return self.note(state)
 
     def read_campaign(self, folder):
         """What a campaign found, but for the time that it took."""
@@ -273,31 +304,49 @@ class Trials:
         table = [[x for k, x in enumerate(row) if k not in timed] for row in rows]
         return {k: v for k, v in found.items() if "seconds" not in k}, table
 
-    def try_batch(self):
-        """A campaign that is ended and called again is one that was never ended."""
-        begin = time.monotonic()
-        self.call("batch", "campaign.toml", "-j", "1", "-o", "whole-campaign")
-        took, (numbers, table) = time.monotonic() - begin, self.read_campaign("whole-campaign")
-        for kind in self.signals:
-            for _ in range(self.times):
-                shutil.rmtree(self.path("campaign"), ignore_errors=True)
-                process, said = self.end(kind, ["batch", "campaign.toml", "-j", "1", "-o", "campaign"], took, 0)
-                code = process.returncode
-                if code not in (0, 3, -getattr(signal, "SIG" + kind)):
-                    self.accuse("batch", kind, f"exit {code}", said)
-                    continue
-                process = self.start("batch", "campaign.toml", "-j", "1", "-o", "campaign")
-                said = process.communicate(timeout=600)[1]
-                if process.returncode:
-                    self.accuse("batch", kind, f"again: exit {process.returncode}", said)
-                    continue
-                now, rows = self.read_campaign("campaign")
-                parts = glob.glob(self.path("campaign/**/*bough-part*"), recursive=True)
-                if rows != table or now.keys() != numbers.keys() or parts or not all(
-                        is_equal(now[k], numbers[k]) for k in numbers):
-                    self.accuse("batch", kind, f"again: another outcome {parts}", said)
-                    continue
-                self.note("batch", kind, "whole" if code == 0 else "ended, called again")
+    def measure_batch(self):
+        if "batch" not in self.unbroken:
+            took = self.time("batch", "campaign.toml", "-j", "1", "--restart", "-o", "whole-campaign")
+            shutil.rmtree(self.path("campaign"), ignore_errors=True)
+            self.call("batch", "campaign.toml", "-j", "1", "-o", "campaign", TRIAL_LOG=self.path("count"))
+            with open(self.path("count"), encoding="ascii") as f:
+                self.unbroken["batch"] = self.read_campaign("whole-campaign"), took, int(f.read())
+        return self.unbroken["batch"]
+
+    def try_batch(self, kind, times):
+        """A campaign that is ended and called again is one that was never ended. Its workers fail as it does."""
+        (numbers, table), took, writes = self.measure_batch()
+        call = ["batch", "campaign.toml", "-j", "1", "-o", "campaign"]
+        for _ in range(times):
+            shutil.rmtree(self.path("campaign"), ignore_errors=True)
+            os.chmod(self.folder, 0o555 if kind == "read-only" else 0o755)
+            process, said = self.end(kind, call, took, writes)
+            os.chmod(self.folder, 0o755)
+            code = process.returncode
+            if kind == "memory" and code == 127:
+                self.note("before it began")  # its libraries find no room
+                continue
+            allowed = (0, 3, -9) if kind in ("KILL", "n-th write") else (0, 3)
+            allowed += (-getattr(signal, "SIG" + kind),) if kind in ("TERM", "INT") else ()
+            if code not in allowed or (kind == "read-only" and code == 0):
+                self.accuse("batch", kind, f"exit {code}", said)
+                continue
+            if code == 3 and not said.strip():
+                self.accuse("batch", kind, "exit 3 without a word", said)
+                continue
+            # What a failing disk does to a case is that case's failure, told, and done again when asked for.
+            process = self.start(*call, *([] if kind in ("KILL", "TERM", "INT") else ["--retry"]))
+            said = process.communicate(timeout=600)[1]
+            if process.returncode:
+                self.accuse("batch", kind, f"again: exit {process.returncode}", said)
+                continue
+            now, rows = self.read_campaign("campaign")
+            parts = glob.glob(self.path("campaign/**/*bough-part*"), recursive=True)
+            if rows != table or now.keys() != numbers.keys() or parts or not all(
+                    is_equal(now[k], numbers[k]) for k in numbers):
+                self.accuse("batch", kind, f"again: another outcome {parts}", said)
+                continue
+            self.note("whole" if code == 0 else "ended, called again")
 
     def look(self, verb, output, reference, was_there):
         path = self.path(output)
@@ -318,7 +367,9 @@ class Trials:
         if not verb.startswith("run"):
             return "half"
         with h5py.File(path, "r") as f:  # datasets grow one by one; this number is the last to change
-            n = int(f.attrs["num_samples"])
+            if f.attrs.get("completed", 0):
+                return "half, and says that it is whole"
+            n = int(f.attrs.get("num_samples", 0))  # none yet where the disk failed as the file was begun
         same = all(is_equal(now[k][:n], reference[k][:n]) for k in ("time", "sensors/edge") if k in now)
         return "beginning" if same else "not a beginning of the unbroken run"
 
@@ -344,7 +395,7 @@ class Trials:
                  k.split("/")[0] in ("time", "sensors", "bodies", "hinges", "energy", "signals")]
         differences = {name: calc_difference(reference[name], now[name]) for name in names}
         worst = max((difference, name) for name, difference in differences.items())
-        self.worst[verb] = max(self.worst.get(verb, worst), worst)
+        self.worst = max(self.worst or worst, worst)
         if "fixed.toml" in arguments:
             return f"!resume: {worst[1]} differs by {worst[0]:.1e} at fixed step" if worst[0] else "resumed"
         # As near to the unbroken run as that is to one of tolerances a hundred times narrower.
@@ -363,44 +414,65 @@ class Trials:
             self.call("run", "narrow.toml", "-o", "narrow.h5")
         return path
 
-    def run(self, verbs):
-        self.call("modes", "plate.bdf", "-n", "2", "-o", "old")
-        calls = {
-            "modes": (["modes", "plate.bdf"], "out.h5"),
-            "reduce": (["reduce", "plate.toml"], "out.h5"),
-            "matrices": (["matrices", "plate.bdf", "--no-kg"], "out.h5"),
-            "export": (["export", "plate.h5", "--to", "sid"], "out.sid"),
-            "flx": (["flx", "plate.h5"], "out.flx"),
-            "select": (["select", "plate.h5", "-n", "3"], "out.h5"),
-            "linearize": (["linearize", "fixed.toml"], "out.h5"),
-            "run": (["run", "fixed.toml"], "out.h5"),
-            "run (adaptive)": (["run", "free.toml"], "out.h5"),
-        }
-        for verb in verbs or [*calls, "batch"]:
-            if verb == "batch":
-                self.try_batch()
-            elif calls.get(verb):
-                self.try_verb(verb, *calls[verb])
-            self.write_rows()
-        rows = [(verb, kind, ", ".join(f"{n} {what}" for what, n in outcomes.most_common()))
-                for (verb, kind), outcomes in self.rows.items()]
-        print(f"{'verb':14} {'ended by':11} what was left")
-        for verb, kind, outcome in rows:
-            print(f"{verb:14} {kind:11} {outcome}")
-        for verb, (worst, name) in self.worst.items():
-            print(f"{verb}: resumed and unbroken differ by {worst:.1e} at most ({name})")
-        shutil.rmtree(self.folder)
-        return 1 if self.found else 0
 
-    def write_rows(self):
-        if self.write_page:
-            rows = [(verb, kind, ", ".join(f"{n} {what}" for what, n in outcomes.most_common()))
-                    for (verb, kind), outcomes in self.rows.items()]
-            differ = [f"`{verb}`, resumed and unbroken, differ by {worst:.1e} of the largest value at most."
-                      for verb, (worst, _) in self.worst.items()]
-            write_table("trials", ["verb", "ended by", "how often", "what was left"],
-                        [(f"`{verb}`", kind, sum(self.rows[verb, kind].values()), outcome)
-                         for verb, kind, outcome in rows], differ, num_keys=2)
+def try_task(program, keep, seed, verb, kind, times):
+    """In a process of its own, whose folder and unbroken calls serve each task that it gets."""
+    trials = try_task.__dict__.get("trials")
+    if trials is None:
+        trials = try_task.trials = Trials(program, keep, 0)
+        # Ends without a word when the pool does: the folder goes as well.
+        multiprocessing.util.Finalize(None, shutil.rmtree, args=(trials.folder, True), exitpriority=1)
+    trials.random.seed(f"{seed} {verb} {kind}")
+    trials.outcomes, trials.worst = collections.Counter(), None
+    begin = time.monotonic()
+    if verb == "batch":
+        trials.try_batch(kind, times)
+    else:
+        trials.try_verb(verb, kind, times)
+    return trials.outcomes, trials.worst, time.monotonic() - begin
+
+
+def describe(outcomes):
+    return ", ".join(f"{n} {what}" for what, n in outcomes.most_common())
+
+
+def write_rows(rows, worst):
+    differ = [f"`{verb}`, resumed and unbroken, differ by {difference:.1e} of the largest value at most."
+              for verb, (difference, _) in worst.items()]
+    write_table("trials", ["verb", "ended by", "how often", "what was left"],
+                [(f"`{verb}`", kind, sum(outcomes.values()), describe(outcomes))
+                 for (verb, kind), outcomes in rows.items()], differ, num_keys=2)
+
+
+def run(options):
+    tasks = [(verb, kind, times) for verb in options.verbs or [*CALLS, "batch"]
+             for kinds, times in ((options.signals, options.times), (WAYS, options.disks)) for kind in kinds]
+    rows, worst, found = {}, {}, 0
+    print(f"{'verb':14} {'ended by':11} {'seconds':>7} what was left", flush=True)
+    with concurrent.futures.ProcessPoolExecutor(max_workers=options.jobs) as pool:
+        waiting = {}
+        for verb, kind, times in tasks:
+            times = min(times, 3) if kind == "read-only" else times
+            if times:
+                waiting[pool.submit(try_task, options.program, options.keep, options.seed, verb, kind, times)] = verb, kind
+        for done in concurrent.futures.as_completed(waiting):
+            verb, kind = waiting[done]
+            try:
+                outcomes, differ, seconds = done.result()
+            except Exception:  # pylint: disable=broad-exception-caught  # the others go on
+                traceback.print_exc()
+                outcomes, differ, seconds = collections.Counter({"FOUND": 1}), None, 0
+            rows[verb, kind] = outcomes
+            found += outcomes["FOUND"]
+            if differ:
+                worst[verb] = max(worst.get(verb, differ), differ)
+            print(f"{verb:14} {kind:11} {seconds:7.0f} {describe(outcomes)}", flush=True)
+            if options.write:
+                order = {task[:2]: k for k, task in enumerate(tasks)}
+                write_rows(dict(sorted(rows.items(), key=lambda row: order[row[0]])), worst)
+    for verb, (difference, name) in worst.items():
+        print(f"{verb}: resumed and unbroken differ by {difference:.1e} at most ({name})")
+    return 1 if found else 0
 
 
 def main():
@@ -408,13 +480,13 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--times", type=int, default=20)
     parser.add_argument("--disks", type=int, default=20)
+    parser.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1))
     parser.add_argument("--signals", type=lambda text: text.split(","), default=["KILL", "TERM", "INT"])
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--verbs", type=lambda text: text.split(","), default=[])
     parser.add_argument("--keep")
     parser.add_argument("--write", action="store_true", help="the table into docs/verification/robustness.md")
-    options = parser.parse_args()
-    sys.exit(Trials(options).run(options.verbs))
+    sys.exit(run(parser.parse_args()))
 
 
 if __name__ == "__main__":

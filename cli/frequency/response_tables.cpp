@@ -51,6 +51,8 @@ std::string format_response(const records::ResponseSubcase& s, bool is_over_time
                                  is_over_time ? "" : " Hz", count(s.kind.size() - num_residual, "mode"),
                                  s.num_rigid > 0 ? fmt::format(" ({} rigid)", s.num_rigid) : "",
                                  count(num_residual, "residual vector"));
+  text += fmt::format("orthogonality {:.1e}, {} {:.1e}\n", s.basis_error,
+                      is_over_time ? "a step against two halves" : "residual of the response", s.solution_error);
   const auto curves = exports::list_curves(s);
   const auto peaks = list_peaks(curves, s.x);
   for (std::size_t first = 0, last = 0; first < peaks.size(); first = last) {
@@ -81,6 +83,7 @@ nlohmann::json to_json(const records::ResponseSubcase& s, bool is_over_time, boo
   nlohmann::json json{{"id", s.id}, {"num_rigid", s.num_rigid}, {"curves", nlohmann::json::array()}};
   json[is_over_time ? "time" : "frequency_hz"] = to_json_list(s.x);
   json["modes"] = {{"frequency_hz", to_json_list(s.mode_hz)}, {"damping_ratio", to_json_list(s.damping_ratio)}};
+  json["accuracy"] = {{"basis", s.basis_error}, {"solution", s.solution_error}};
   auto residual = nlohmann::json::array();
   for (const auto kind : s.kind) residual.push_back(kind == records::ModeKind::Residual);
   json["modes"]["is_residual"] = residual;

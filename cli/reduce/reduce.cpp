@@ -19,9 +19,10 @@
 #include "cli/compare/compare_report.hpp"
 #include "cli/reduce/matrix_files.hpp"
 #include "cli/reduce/reduce_body.hpp"
-#include "formats/hdf5/files.hpp"
+#include "formats/hdf5/body_accuracy.hpp"
 #include "formats/nastran/loads_deck.hpp"
 #include "formats/toml/specs.hpp"
+#include "stiffening/basis_check.hpp"
 
 namespace bough::cli {
 
@@ -154,7 +155,8 @@ Vector3d calc_masses(const records::FlexBody& body) {
   return masses;
 }
 
-std::string format_summary(const records::FlexBody& body, const std::string& output) {
+std::string format_summary(const records::FlexBody& body, const stiffening::BasisCheck& basis,
+                           const std::string& output) {
   const Vector3d masses = calc_masses(body);
   Table table{{"mode", "Hz", "rad/s", "mx %", "my %", "mz %"}, {}};
   for (int j = 0; j < body.num_modes(); ++j) {
@@ -169,10 +171,11 @@ std::string format_summary(const records::FlexBody& body, const std::string& out
   }
   return fmt::format(
       "body \"{}\": mass {:.8g}, centre of mass ({:.6g}, {:.6g}, {:.6g}), {} nodes\n{}{} locators, "
-      "interface nodes: {}\nwritten: {}\n",
+      "interface nodes: {}\nmodal matrices against the shapes: mass {:.1e}, stiffness {:.1e}\nwritten: {}\n",
       body.name, body.mass, body.cg.x() + 0.0, body.cg.y() + 0.0, body.cg.z() + 0.0, body.num_nodes(), table.to_text(),
       body.locators.size(),
-      body.interface_nodes.empty() ? "none" : fmt::format("{}", fmt::join(body.interface_nodes, " ")), output);
+      body.interface_nodes.empty() ? "none" : fmt::format("{}", fmt::join(body.interface_nodes, " ")), basis.mass,
+      basis.stiffness, output);
 }
 
 /// Each mode of the body with the most similar one of the others.
@@ -209,12 +212,14 @@ int run_reduce(const ReduceVerbOptions& o) {
   console.set_rank(fe::initialize_petsc().rank);
   stiffening::ReduceOptions options;
   options.progress = [&](const std::string& stage) { console.show_progress("reduce: " + stage); };
+  stiffening::BasisCheck basis;
+  options.check = &basis;
   const auto [body, check] = reduce_body(spec, options, diagnostics);
   console.end_progress();
   console.print(diagnostics);
   diagnostics.throw_if_errors();
-  do_once([&, &body = body] {
-    hdf5::write_flex_body(body, output);
+  do_once([&, &body = body, &basis = basis] {
+    hdf5::write_flex_body(body, hdf5::BodyAccuracy{basis.mass, basis.stiffness}, output);
     if (!o.loads_deck.empty()) write_text_file(o.loads_deck, nastran::write_loads_deck(body, o.loads_set));
   });
   if (o.json) {
@@ -226,11 +231,12 @@ int run_reduce(const ReduceVerbOptions& o) {
                         {"eigenvalue", to_json_list(body.eigenvalue)},
                         {"effective_mass", to_json(body.effective_mass)},
                         {"interface_nodes", body.interface_nodes},
-                        {"num_locators", body.locators.size()}};
+                        {"num_locators", body.locators.size()},
+                        {"accuracy", {{"mass", basis.mass}, {"stiffness", basis.stiffness}}}};
     if (check) json["check"] = {{"frequency_hz", to_json_list(check->frequency_hz)}, {"mac", to_json(check->mac)}};
     console.print_data(json.dump(2) + "\n");
   } else {
-    console.print(format_summary(body, output));
+    console.print(format_summary(body, basis, output));
     if (!o.loads_deck.empty()) console.print("written: " + o.loads_deck + "\n");
     if (o.integrals_report) console.print("\n" + format_report(SingleReport{body, modal::check_integrals(body)}));
     if (check) console.print("compared with other modes:\n" + make_check_table(body, *check).to_text());

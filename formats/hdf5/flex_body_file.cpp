@@ -4,6 +4,7 @@
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/recovery.hpp"
 #include "formats/hdf5/detail/writer.hpp"
+#include "formats/hdf5/body_accuracy.hpp"
 #include "formats/hdf5/files.hpp"
 
 namespace bough::hdf5 {
@@ -202,7 +203,9 @@ void read_method(FileReader& file, FlexBody& body) {
 
 }  // namespace
 
-void write_flex_body(const FlexBody& body, const std::string& path) {
+void write_flex_body(const FlexBody& body, const std::string& path) { write_flex_body(body, {}, path); }
+
+void write_flex_body(const FlexBody& body, const BodyAccuracy& accuracy, const std::string& path) {
   FileWriter file(path, kFormat, kFlexBodyFormatVersion);
   file.write_source(body.source);
   file.write_attribute("/", "name", body.name);
@@ -227,6 +230,11 @@ void write_flex_body(const FlexBody& body, const std::string& path) {
   file.write_matrix("/modal/mass", body.modal_mass, {"modal mass", "M L^2/E^2"});
   file.write_matrix("/modal/stiffness", body.modal_stiffness, {"modal stiffness", "M L^2/(T^2 E^2)"});
   file.write_matrix("/modal/damping", body.modal_damping, {"modal damping", "M L^2/(T E^2)"});
+  if (accuracy.mass >= 0) {
+    file.write_number("/accuracy/mass", accuracy.mass, {"what modal/mass differs by from that of the shapes", "1"});
+    file.write_number("/accuracy/stiffness", accuracy.stiffness,
+                      {"what modal/stiffness differs by from that of the shapes", "1"});
+  }
   file.write_matrix(
       "/effective_mass", body.effective_mass,
       {"modal effective mass: mode, translations x y z and rotations x y z about the body origin", "M, M L^2"});

@@ -24,6 +24,7 @@ struct History {
   MatrixXd q, q_dot, q_ddot;  ///< n x nt
   MatrixXd d, d_dot, d_ddot;  ///< k x nt
   MatrixXd a;                 ///< (m + 3k) x nt
+  double step_error = 0;      ///< what one step and two halves of it differ by, relative to what a step does
 };
 /// Exact for loads and motions that are lines between the steps: x' = A x + b f by the exponential of A and of the two
 /// integrals with it (Van Loan, IEEE Trans. Autom. Control 23 (1978) 395), each coordinate for itself where damping

@@ -9,6 +9,7 @@
 #include "formats/records/params.hpp"
 #include "formats/records/selection.hpp"
 #include "modal/null_motions.hpp"
+#include "modal/response/accuracy.hpp"
 #include "modal/response/load_steps.hpp"
 #include "modal/response/residual_modes.hpp"
 
@@ -239,7 +240,9 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
   result.damping_ratio = response.damping_ratio.head(response.num_dynamic());
   if (options_.is_over_time) {
     const auto steps = refine_times(deck_, excitation, grid, response.is_coupled ? kMostCoupled : kMostCorners, own);
-    recover(model, deck_, response, excitation, damping, outputs, calc_history(response, excitation, steps), result);
+    const auto history = calc_history(response, excitation, steps);
+    result.solution_error = history.step_error;
+    recover(model, deck_, response, excitation, damping, outputs, history, result);
   } else {
     const double highest = natural.size() > 0 ? natural(natural.size() - 1) : 0;
     if (response.num_normal < model.num_fdofs() && hz(hz.size() - 1) > highest) {
@@ -249,8 +252,12 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
       own.warning("modal.response-range", deck_.locate(subcase.find_command("FREQUENCY")), text,
                   "take more modes: beyond them there are residual vectors only");
     }
-    recover(model, deck_, response, excitation, damping, outputs, calc_spectrum(response, excitation, hz), result);
+    const auto spectrum = calc_spectrum(response, excitation, hz);
+    result.solution_error = calc_solution_error(response, spectrum);
+    recover(model, deck_, response, excitation, damping, outputs, spectrum, result);
   }
+  result.basis_error = calc_basis_error(model, response);
+  report_accuracy(result.basis_error, result.solution_error, deck_.locate({}), own);
   for (const auto& item : own.items()) diagnostics.add(item);
   return result;
 }

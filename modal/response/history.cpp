@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -57,6 +58,7 @@ class Motion {
     const Eigen::Index k = excitation_.D.cols();
     for (auto* m : {&h.d, &h.d_dot, &h.d_ddot}) m->resize(k, num);
     h.a.resize(model_.P.cols(), num);
+    if (grid_.time.size() > 1) h.step_error = calc_step_error(step_before(1));
     q_ = model_.u0.size() > 0 ? model_.u0 : VectorXd::Zero(n_);
     v_ = model_.v0.size() > 0 ? model_.v0 : VectorXd::Zero(n_);
     Eigen::Index next = 0;
@@ -148,6 +150,27 @@ class Motion {
         found->second.push_back(make_step(model_.lambda.segment(j, 1), D_.block(j, j, 1, 1), h));
     }
     return found->second;
+  }
+
+  /// Two halves of a step are the step: of the exponentials, their scaling and the integrals of the loads.
+  double calc_step_error(double h) {
+    const Eigen::Index size = model_.is_coupled ? n_ : 1;
+    const auto whole = find_steps(h), half = find_steps(h / 2);
+    double worst = 0;
+    for (std::size_t part = 0; part < whole.size(); ++part) {
+      const auto first = static_cast<Eigen::Index>(part) * size;
+      const VectorXd lambda = model_.lambda.segment(first, size);
+      VectorXd turn = VectorXd::Ones(2 * size);  // from the scale of the half to that of the whole
+      turn.head(size) = calc_scale(lambda, h).cwiseQuotient(calc_scale(lambda, h / 2));
+      const MatrixXd E = turn.asDiagonal() * half[part].E * turn.cwiseInverse().asDiagonal();
+      const MatrixXd P0 = turn.asDiagonal() * half[part].P0, P1 = turn.asDiagonal() * half[part].P1;
+      // Loads f0, then f1 as well: the middle has their mean.
+      const MatrixXd E_off = E * E - whole[part].E, P0_off = E * P0 + P0 - whole[part].P0;
+      const MatrixXd P1_off = 0.5 * (E * P1 + P0 + P1) - whole[part].P1;
+      worst = std::max({worst, E_off.norm() / std::max(1.0, whole[part].E.norm()),
+                        std::max(P0_off.norm(), P1_off.norm()) / (whole[part].P0.norm() + whole[part].P1.norm())});
+    }
+    return worst;
   }
 
   void advance(Eigen::Index i) {

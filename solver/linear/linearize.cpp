@@ -23,6 +23,8 @@ using records::LinearModel;
 
 /// The second step, for comparison; no power of two of the first.
 constexpr double kOtherStep = 0.7;
+/// A and C that are known worse than this, relative to their rows, are told.
+constexpr double kInaccurate = 1e-4;
 
 std::string short_text(double value) {
   std::ostringstream text;
@@ -69,6 +71,26 @@ void clear_rounding(const Plant& plant, const VectorXd& step, Jacobian& jacobian
   }
 }
 
+/// The j-th of displacements, rates and states of controllers moved by h.
+VectorXd evaluate_beside(Plant& plant, const OperatingPoint& point, int j, double h) {
+  const int n = plant.num_freedoms();
+  OperatingPoint moved = point;
+  if (j < n)
+    moved.q = plant.displace(point.q, h * VectorXd::Unit(n, j));
+  else if (j < 2 * n)
+    moved.u[j - n] += h;
+  else
+    moved.z[plant.state_row(j - 2 * n)] += h;
+  return plant.evaluate(moved);
+}
+
+double choose_step(const Plant& plant, const OperatingPoint& point, double rate, int j) {
+  const int n = plant.num_freedoms();
+  if (j < n) return plant.step(j);
+  if (j < 2 * n) return plant.step(j - n) * rate;
+  return 0.1 * std::max(1.0, std::abs(point.z[plant.state_row(j - 2 * n)]));
+}
+
 Jacobian calc_jacobian(Plant& plant, const OperatingPoint& point, double step_factor) {
   const int n = plant.num_freedoms(), nz = plant.num_states(), rows = n + nz + plant.outputs().size();
   Jacobian jacobian{MatrixXd::Zero(rows, 2 * n + nz), MatrixXd::Zero(rows, 2 * n + nz)};
@@ -76,20 +98,8 @@ Jacobian calc_jacobian(Plant& plant, const OperatingPoint& point, double step_fa
   const double rate = std::max(1.0, point.u.size() > 0 ? point.u.cwiseAbs().maxCoeff() : 0.0);
   VectorXd steps(2 * n + nz);
   for (int j = 0; j < 2 * n + nz; ++j) {
-    const int i = j < 2 * n ? j % n : j - 2 * n;
-    const auto f = [&](double h) {
-      OperatingPoint moved = point;
-      if (j < n)
-        moved.q = plant.displace(point.q, h * VectorXd::Unit(n, i));
-      else if (j < 2 * n)
-        moved.u[i] += h;
-      else
-        moved.z[plant.state_row(i)] += h;
-      return plant.evaluate(moved);
-    };
-    steps[j] = j < n       ? plant.step(i)
-               : j < 2 * n ? plant.step(i) * rate
-                           : 0.1 * std::max(1.0, std::abs(point.z[plant.state_row(i)]));
+    const auto f = [&](double h) { return evaluate_beside(plant, point, j, h); };
+    steps[j] = choose_step(plant, point, rate, j);
     const Difference column = differentiate(f, step_factor * steps[j]);
     jacobian.error.col(j) = column.error;
     // What does not rise above its own error is zero: structure is kept exactly.
@@ -119,6 +129,30 @@ double calc_relative(const MatrixXd& difference, const VectorXd& scale) {
   double worst = 0;
   for (Eigen::Index i = 0; i < scale.size() && difference.cols() > 0; ++i) {
     if (scale[i] > 0) worst = std::max(worst, difference.row(i).cwiseAbs().maxCoeff() / scale[i]);
+  }
+  return worst;
+}
+
+/// A motion with a corner in this very state has two slopes, of which central differences give the mean and no error:
+/// the second difference over its step stays as it is when the step shrinks, where that of a smooth one shrinks too.
+/// Relative to the rows; 0 without.
+double find_corner(Plant& plant, const OperatingPoint& point, const VectorXd& base, const VectorXd& scale) {
+  const double rate = std::max(1.0, point.u.size() > 0 ? point.u.cwiseAbs().maxCoeff() : 0.0);
+  double worst = 0;
+  for (int j = 0; j < 2 * plant.num_freedoms() + plant.num_states(); ++j) {
+    const double step = choose_step(plant, point, rate, j);
+    const auto calc_bend = [&](double h) -> VectorXd {
+      return (evaluate_beside(plant, point, j, h) + evaluate_beside(plant, point, j, -h) - 2 * base).cwiseAbs() / h;
+    };
+    VectorXd wide, narrow;
+    try {
+      wide = calc_bend(1e-2 * step), narrow = calc_bend(1e-3 * step);
+    } catch (const ComputationError&) {
+      continue;  // a loop that does not reach as far
+    }
+    for (Eigen::Index i = 0; i < scale.size(); ++i)
+      if (scale[i] > 0 && narrow[i] > 0.5 * wide[i] && narrow[i] < 2 * wide[i])
+        worst = std::max(worst, narrow[i] / (2 * scale[i]));
   }
   return worst;
 }
@@ -281,6 +315,13 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   if (options.check) {
     const Jacobian other = calc_jacobian(plant, point, kOtherStep);
     model.difference = calc_relative(take_rows(other.value - jacobian.value, 0, rows), scale);
+    const double corner = find_corner(plant, point, base, calc_row_scales(jacobian.value, get_row_dims(plant)));
+    if (const double worst = std::max({model.error, model.difference, corner}); !(worst <= kInaccurate))
+      diagnostics.warning("linear.inaccurate", at,
+                          "A and C are known to " + short_text(worst) + " of their rows only, expected below " +
+                              short_text(kInaccurate),
+                          "the motion has a corner near this state (a gap, a limit, a table of lines): linearize "
+                          "beside it, or give it a smooth law");
     check_constancy(plant, point, jacobian, at, diagnostics);
   }
   if (options.check && options.cut.empty() && !plant.is_open())

@@ -177,6 +177,17 @@ class Linearize(LinearTest):
         text = self.bough("linearize", "pendulum.toml").stdout
         self.assertIn("0.595", text)
 
+    def test_a_corner_in_the_state_itself_is_told(self):
+        """A spring of two slopes: beside the corner either one, at it neither; central differences see no error."""
+        law = "spring_table = \"law\"\n\n[[function]]\nname = \"law\"\ntype = \"table\"\nx = [-1.0, 0.2, 1.0]\ny = Y\n"
+        for y, position, is_told in (("[0.0, 0.0, 40.0]", "0.2", True), ("[0.0, 0.0, 40.0]", "0.1", False),
+                                     ("[-60.0, 0.0, 40.0]", "0.2", False)):
+            text = PENDULUM.replace("POSITION", position).replace("damping = 0.05\n", "", 1)
+            self.write("corner.toml", text.replace(f"position = [{position}]\n", f"position = [{position}]\n" + law, 1)
+                       .replace("y = Y", "y = " + y))
+            said = self.bough("linearize", "corner.toml").stderr
+            self.assertEqual("[linear.inaccurate]" in said, is_told, (y, position, said))
+
     def test_at_a_time_it_is_the_state_of_the_run(self):
         self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.9"))
         self.bough("run", "pendulum.toml", "-o", "run.h5")

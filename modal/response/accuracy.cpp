@@ -1,0 +1,60 @@
+#include "modal/response/accuracy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "fe/matrices/assembly.hpp"
+
+namespace bough::modal::response {
+
+using namespace std::complex_literals;
+
+double calc_basis_error(const fe::Model& model, const ResponseModel& response) {
+  const auto n = response.lambda.size(), num = response.num_dynamic();
+  const MatrixXd M = response.Phi.transpose() * fe::calc_mass_times(model, model.mass_kind(), response.Phi);
+  const MatrixXd K = response.Phi.transpose() * fe::calc_stiffness_times(model, response.Phi);
+  double worst = 0;
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (i < num && j < num) worst = std::max(worst, std::abs(M(i, j) - (i == j ? 1 : 0)));
+      if (i < response.num_rigid || j < response.num_rigid) continue;  // no strain to measure by
+      const double size = std::sqrt(std::abs(response.lambda(i) * response.lambda(j)));
+      if (size > 0) worst = std::max(worst, std::abs(K(i, j) - (i == j ? response.lambda(i) : 0)) / size);
+    }
+  return worst;
+}
+
+double calc_solution_error(const ResponseModel& response, const Spectrum& spectrum) {
+  const auto n = response.lambda.size();
+  VectorXd mass = VectorXd::Ones(n);
+  mass.tail(response.num_massless).setZero();
+  double worst = 0;
+  for (Eigen::Index i = 0; i < spectrum.hz.size(); ++i) {
+    const double omega = 2 * std::numbers::pi * spectrum.hz(i);
+    const VectorXd inertia = omega * omega * mass;
+    const Eigen::VectorXcd q = spectrum.q.col(i), force = response.P * spectrum.a.col(i);
+    const Eigen::VectorXcd damped = 1i * (omega * (response.D * q) + response.S * q);
+    const Eigen::VectorXcd rest = (response.lambda - inertia).cwiseProduct(q) + damped - force;
+    const VectorXd scale = response.lambda.cwiseAbs().cwiseMax(inertia).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const double size = scale.cwiseProduct(force).norm(), off = scale.cwiseProduct(rest).norm();
+    if (off > 0) worst = std::max(worst, size > 0 ? off / size : 1.0);
+  }
+  return worst;
+}
+
+void report_accuracy(double basis_error, double solution_error, const SourceLocation& at, Diagnostics& diagnostics) {
+  const auto is_within = [&](double limit) { return basis_error <= limit && solution_error <= limit; };  // no NaN is
+  if (is_within(kAccuracyWarning)) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the modes fulfil their orthogonality to %.1e and the response its equation to %.1e, expected below %.0e",
+                basis_error, solution_error, kAccuracyWarning);
+  const char* advice = "look for very soft beside very stiff parts, and for a mode that next to nothing damps";
+  // Beside parts 1e12 times as stiff the product with K has no more digits, and the modes may be right all the same.
+  if (solution_error <= kAccuracyError && std::isfinite(basis_error)) return diagnostics.warning("modal.response-accuracy", at, text, advice);
+  throw ComputationError("modal.response-accuracy", at, text, advice);
+}
+
+}  // namespace bough::modal::response

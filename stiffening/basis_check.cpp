@@ -1,0 +1,47 @@
+#include "stiffening/basis_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "fe/matrices/assembly.hpp"
+
+namespace bough::stiffening {
+
+namespace {
+
+/// Shapes without strain, or mass, have nothing to be measured by.
+double find_largest_difference(const Eigen::MatrixXd& A, const Eigen::MatrixXd& expected) {
+  double worst = 0;
+  for (Eigen::Index j = 0; j < A.cols(); ++j)
+    for (Eigen::Index i = 0; i < A.rows(); ++i) {
+      const double size = std::sqrt(std::abs(expected(i, i) * expected(j, j)));
+      const double off = std::abs(A(i, j) - expected(i, j));
+      if (!std::isfinite(off)) return off;
+      if (size > 0) worst = std::max(worst, off / size);
+    }
+  return worst;
+}
+
+}  // namespace
+
+BasisCheck check_basis(const fe::Model& model, const Eigen::MatrixXd& Phi, const Eigen::MatrixXd& modal_mass,
+                       const Eigen::MatrixXd& modal_stiffness) {
+  if (Phi.cols() == 0) return {};
+  const Eigen::MatrixXd M = Phi.transpose() * fe::calc_mass_times(model, model.mass_kind(), Phi);
+  const Eigen::MatrixXd K = Phi.transpose() * fe::calc_stiffness_times(model, Phi);
+  return {find_largest_difference(M, modal_mass), find_largest_difference(K, modal_stiffness)};
+}
+
+void report_basis(const BasisCheck& check, const SourceLocation& at, Diagnostics& diagnostics) {
+  if (check.mass <= kBasisWarning && check.stiffness <= kBasisWarning) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the modal matrices are off from those of the mode shapes: mass %.1e, stiffness %.1e, expected below %.0e",
+                check.mass, check.stiffness, kBasisWarning);
+  const char* advice = "look for very soft beside very stiff parts: replace the stiffest by rigid elements";
+  if (!std::isfinite(check.mass + check.stiffness)) throw ComputationError("reduce.basis-off", at, text, advice);
+  diagnostics.warning("reduce.basis-off", at, text, advice);
+}
+
+}  // namespace bough::stiffening

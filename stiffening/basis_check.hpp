@@ -1,0 +1,21 @@
+#pragma once
+/// \file The modal matrices of a body against its shapes.
+#include "base/diagnostic.hpp"
+#include "fe/model/model.hpp"
+
+namespace bough::stiffening {
+
+/// What the modal matrices differ by from ΦᵀMΦ and ΦᵀKΦ, both made anew from the elements: largest entry over
+/// √(M_ii M_jj) and √(K_ii K_jj).
+struct BasisCheck {
+  double mass = 0, stiffness = 0;
+};
+inline constexpr double kBasisWarning = 1e-5;
+
+BasisCheck check_basis(const fe::Model& model, const Eigen::MatrixXd& Phi, const Eigen::MatrixXd& modal_mass,
+                       const Eigen::MatrixXd& modal_stiffness);
+
+/// Warning reduce.basis-off; ComputationError of this id where one is no number.
+void report_basis(const BasisCheck& check, const SourceLocation& at, Diagnostics& diagnostics);
+
+}  // namespace bough::stiffening
