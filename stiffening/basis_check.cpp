@@ -37,7 +37,8 @@ void report_basis(const BasisCheck& check, const SourceLocation& at, Diagnostics
   if (check.mass <= kBasisWarning && check.stiffness <= kBasisWarning) return;
   char text[160];
   std::snprintf(text, sizeof text,
-                "the modal matrices are off from those of the mode shapes: mass %.1e, stiffness %.1e, expected below %.0e",
+                "the modal matrices are off from those of the mode shapes: mass %.1e, stiffness %.1e, expected below "
+                "%.0e",
                 check.mass, check.stiffness, kBasisWarning);
   const char* advice = "look for very soft beside very stiff parts: replace the stiffest by rigid elements";
   if (!std::isfinite(check.mass + check.stiffness)) throw ComputationError("reduce.basis-off", at, text, advice);

@@ -49,11 +49,13 @@ void report_accuracy(double basis_error, double solution_error, const SourceLoca
   if (is_within(kAccuracyWarning)) return;
   char text[160];
   std::snprintf(text, sizeof text,
-                "the modes fulfil their orthogonality to %.1e and the response its equation to %.1e, expected below %.0e",
+                "the modes fulfil their orthogonality to %.1e and the response its equation to %.1e, expected below "
+                "%.0e",
                 basis_error, solution_error, kAccuracyWarning);
   const char* advice = "look for very soft beside very stiff parts, and for a mode that next to nothing damps";
   // Beside parts 1e12 times as stiff the product with K has no more digits, and the modes may be right all the same.
-  if (solution_error <= kAccuracyError && std::isfinite(basis_error)) return diagnostics.warning("modal.response-accuracy", at, text, advice);
+  if (solution_error <= kAccuracyError && std::isfinite(basis_error))
+    return diagnostics.warning("modal.response-accuracy", at, text, advice);
   throw ComputationError("modal.response-accuracy", at, text, advice);
 }
 
