@@ -28,6 +28,8 @@ struct ReduceOptions {
   std::function<void(const std::string& stage)> progress;
   fe::ElementFactory elements;                       ///< instead of the deck's own: matrices that are given
   std::function<MatrixXd(const fe::System&)> modes;  ///< num_gdofs x n in basic, instead of solving for them
+  /// Loads (num_gdofs x m, basic) that get residual vectors beside those of the spec; adds their names.
+  std::function<MatrixXd(const fe::Model&, std::vector<std::string>& names)> residual_loads;
 };
 
 /// The whole preprocessing: model, modes, integrals, F_I, K_G1, K_G2 -> FlexBody. Runs on every rank; the record is

@@ -68,7 +68,7 @@ void demand_held(const fe::SymmetricFactor& factor, const VectorXd& D) {
   if (is_free)
     throw ComputationError("modal.unbounded-response", {},
                            "the model has a motion with neither mass nor stiffness nor damping",
-                           "hold it, or give it mass (bough modes lists it); a solution by modes (--modal) leaves it out");
+                           "hold it, or give it mass (bough modes lists it); one by modes (--modal) leaves it out");
 }
 
 /// The factors of one size of step: s² M + s B + K.
