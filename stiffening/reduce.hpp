@@ -31,6 +31,8 @@ struct ReduceOptions {
   fe::ElementFactory elements;                       ///< instead of the deck's own: matrices that are given
   std::function<MatrixXd(const fe::System&)> modes;  ///< num_gdofs x n in basic, instead of solving for them
   BasisCheck* check = nullptr;                       ///< gets what check_basis() finds (basis_check.hpp)
+  /// Loads (num_gdofs x m, basic) that get residual vectors beside those of the spec; adds their names.
+  std::function<MatrixXd(const fe::Model&, std::vector<std::string>& names)> residual_loads;
 };
 
 /// The whole preprocessing: model, modes, integrals, F_I, K_G1, K_G2 -> FlexBody. Runs on every rank; the record is

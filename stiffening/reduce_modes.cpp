@@ -51,6 +51,11 @@ void Reduction::set_modes(const fe::System& system, const StaticSolve& solve) {
   options.factor = factor_;
   std::vector<std::string> names;
   options.residual_loads = collect_residual_loads(model, spec_, loads_, names);
+  if (options_.residual_loads) {
+    const MatrixXd own = options.residual_loads, more = options_.residual_loads(model, names);
+    options.residual_loads.resize(own.rows(), own.cols() + more.cols());
+    options.residual_loads << own, more;
+  }
   const auto augmented = augment(model);
   auto basis = modal::bases::calc_basis(augmented ? augmented->system : system, options, solve, diagnostics_);
   check_rigid(basis);

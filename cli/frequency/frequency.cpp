@@ -29,7 +29,7 @@ namespace bough::cli {
 namespace {
 
 struct DeckResponseOptions : ModesOptions {
-  bool is_over_time = false, no_residuals = false, full = false;
+  bool is_over_time = false, is_direct = false, is_modal = false, no_residuals = false, full = false;
   std::vector<int> grids;
   std::string csv, punch;
 };
@@ -57,13 +57,17 @@ void demand_grids(const DeckResponseOptions& options, const records::DynamicDeck
   }
 }
 
-/// SOL 108 and 109 solve without modes.
-void note_direct(const records::DynamicDeck& deck, Diagnostics& diagnostics) {
+/// SOL 108 and 109 solve without modes, unless the command line says how many it wants.
+bool choose_direct(const DeckResponseOptions& options, const records::DynamicDeck& deck, Diagnostics& diagnostics) {
   static const std::array direct{"108", "109", "26", "27", "SEDFREQ", "SEDTRAN", "DFREQ", "DTRAN", "DIRECT"};
-  if (std::find(direct.begin(), direct.end(), deck.sol) != direct.end())
+  const bool is_asked = std::find(direct.begin(), direct.end(), deck.sol) != direct.end();
+  const bool wants_modes = options.is_modal || options.number > 0 || options.max_hz || options.no_residuals;
+  if (options.is_direct || (is_asked && !wants_modes)) return true;
+  if (is_asked)
     diagnostics.note("cli.by-modes", deck.locate({}),
                      "SOL " + deck.sol + " solves directly; this is the solution by modes",
-                     "take modes well beyond the highest frequency of the excitation (--modes, --max-hz)");
+                     "take modes well beyond the highest frequency of the excitation (--modes, --max-hz), or --direct");
+  return false;
 }
 
 int run_deck_response(const DeckResponseOptions& options) {
@@ -84,13 +88,13 @@ int run_deck_response(const DeckResponseOptions& options) {
     subcases = modal::response::choose_response_subcases(deck, options.model.subcase, options.is_over_time);
   });
   note_solution(deck, diagnostics);
-  note_direct(deck, diagnostics);
   if (subcases.empty()) {  // Model::build reports it
     subcases.emplace_back();
     subcases.back().id = options.model.subcase;
   }
   modal::response::ResponseOptions response_options;
   response_options.is_over_time = options.is_over_time;
+  response_options.is_direct = choose_direct(options, deck, diagnostics);
   if (options.no_residuals) response_options.residual_vectors = false;
   response_options.grids = options.grids;
   response_options.choose_eigen = [&](const records::DynamicSubcase& subcase, Diagnostics& own) {
@@ -155,10 +159,14 @@ void add_verb(CLI::App& app, Action& action, bool is_over_time, const char* name
   verb->add_option("--grid", o->grids, "Displacement, velocity and acceleration of this grid too; may be repeated")
       ->delimiter(',')
       ->allow_extra_args(false);
-  verb->add_option("-n,--number,--modes", o->number, "Number of modes (default: the deck's EIGRL)")
-      ->check(make_positive());
-  verb->add_option("--max-hz", o->max_hz, "Modes up to this frequency");
-  verb->add_flag("--no-residuals", o->no_residuals, "Modes alone, without residual vectors of what drives them");
+  auto* direct = verb->add_flag("--direct", o->is_direct, "Without modes, whatever SOL of the deck");
+  const auto add_modal = [&](CLI::Option* option) { option->excludes(direct); };
+  add_modal(verb->add_flag("--modal", o->is_modal, "By modes, whatever SOL of the deck"));
+  add_modal(verb->add_option("-n,--number,--modes", o->number, "Number of modes (default: the deck's EIGRL)")
+                ->check(make_positive()));
+  add_modal(verb->add_option("--max-hz", o->max_hz, "Modes up to this frequency"));
+  add_modal(verb->add_flag("--no-residuals", o->no_residuals,
+                           "Modes alone, without residual vectors of what drives them"));
   verb->add_flag("--full", o->full, "Every curve in the table, their samples in --json");
   verb->add_option("--csv", o->csv, "Write the curves to this file of comma-separated values");
   verb->add_option("--punch", o->punch, "Write the curves to this Nastran punch file");
@@ -172,13 +180,15 @@ void add_verb(CLI::App& app, Action& action, bool is_over_time, const char* name
 }  // namespace
 
 void add_frequency(CLI::App& app, Action& action) {
-  add_verb(app, action, false, "frequency", "Frequency response of a deck (SOL 111) by modes with residual vectors",
+  add_verb(app, action, false, "frequency",
+           "Frequency response of a deck, by modes with residual vectors (SOL 111) or directly (SOL 108)",
            "Example:\n  bough frequency bracket.bdf -o bracket.h5 --csv bracket.csv\n"
            "  bough frequency bracket.bdf --grid 12 --max-hz 500 --punch bracket.pch");
 }
 
 void add_transient(CLI::App& app, Action& action) {
-  add_verb(app, action, true, "transient", "Transient response of a deck (SOL 112) by modes with residual vectors",
+  add_verb(app, action, true, "transient",
+           "Transient response of a deck, by modes with residual vectors (SOL 112) or directly (SOL 109)",
            "Example:\n  bough transient bracket.bdf -o bracket.h5 --csv bracket.csv\n"
            "  bough transient bracket.bdf --grid 12 --json --full");
 }

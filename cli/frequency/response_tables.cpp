@@ -43,16 +43,20 @@ std::string format_response(const records::ResponseSubcase& s, bool is_over_time
   const auto num_residual =
       static_cast<std::size_t>(std::count(s.kind.begin(), s.kind.end(), records::ModeKind::Residual));
   const auto num = static_cast<std::size_t>(s.x.size());
-  std::string text = fmt::format("subcase {}: {} from {:.6g} to {:.6g}{}; {}{} and {}\n", s.id,
+  const std::string how =
+      s.is_direct ? "direct"
+                  : fmt::format("{}{} and {}", count(s.kind.size() - num_residual, "mode"),
+                                s.num_rigid > 0 ? fmt::format(" ({} rigid)", s.num_rigid) : "",
+                                count(num_residual, "residual vector"));
+  std::string text = fmt::format("subcase {}: {} from {:.6g} to {:.6g}{}; {}\n", s.id,
                                  is_over_time ? count(num, "time")
                                  : num == 1   ? "1 frequency"
                                               : fmt::format("{} frequencies", num),
                                  s.x.size() > 0 ? s.x(0) : 0, s.x.size() > 0 ? s.x(s.x.size() - 1) : 0,
-                                 is_over_time ? "" : " Hz", count(s.kind.size() - num_residual, "mode"),
-                                 s.num_rigid > 0 ? fmt::format(" ({} rigid)", s.num_rigid) : "",
-                                 count(num_residual, "residual vector"));
-  text += fmt::format("orthogonality {:.1e}, {} {:.1e}\n", s.basis_error,
-                      is_over_time ? "a step against two halves" : "residual of the response", s.solution_error);
+                                 is_over_time ? "" : " Hz", how);
+  if (!s.is_direct)
+    text += fmt::format("orthogonality {:.1e}, {} {:.1e}\n", s.basis_error,
+                        is_over_time ? "a step against two halves" : "residual of the response", s.solution_error);
   const auto curves = exports::list_curves(s);
   const auto peaks = list_peaks(curves, s.x);
   for (std::size_t first = 0, last = 0; first < peaks.size(); first = last) {
@@ -72,7 +76,8 @@ std::string format_response(const records::ResponseSubcase& s, bool is_over_time
                             fmt::format("{:.6g}", p.at)});
       if (!is_over_time) table.rows.back().push_back(fmt::format("{:.2f}", p.phase_deg));
     }
-    text += fmt::format("\n{}{}\n", peaks[first].curve->quantity, of_element ? " forces" : "");
+    const bool of_stress = peaks[first].curve->quantity.find(':') != std::string::npos;
+    text += fmt::format("\n{}{}\n", peaks[first].curve->quantity, of_element && !of_stress ? " forces" : "");
     text += group.empty() ? "zero throughout\n" : table.to_text();
     if (left > 0) text += fmt::format("and {} smaller; -o, --csv or --full has them\n", count(left, "curve"));
   }
@@ -82,8 +87,9 @@ std::string format_response(const records::ResponseSubcase& s, bool is_over_time
 nlohmann::json to_json(const records::ResponseSubcase& s, bool is_over_time, bool full) {
   nlohmann::json json{{"id", s.id}, {"num_rigid", s.num_rigid}, {"curves", nlohmann::json::array()}};
   json[is_over_time ? "time" : "frequency_hz"] = to_json_list(s.x);
+  json["method"] = s.is_direct ? "direct" : "modal";
   json["modes"] = {{"frequency_hz", to_json_list(s.mode_hz)}, {"damping_ratio", to_json_list(s.damping_ratio)}};
-  json["accuracy"] = {{"basis", s.basis_error}, {"solution", s.solution_error}};
+  if (!s.is_direct) json["accuracy"] = {{"basis", s.basis_error}, {"solution", s.solution_error}};
   auto residual = nlohmann::json::array();
   for (const auto kind : s.kind) residual.push_back(kind == records::ModeKind::Residual);
   json["modes"]["is_residual"] = residual;

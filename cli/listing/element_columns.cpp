@@ -33,17 +33,10 @@ double calc_mean(const records::ElementForces& forces, Index row, const std::str
   return count > 0 ? sum / count : 0;
 }
 
-/// Components xx yy xy in axes turned by `angle`.
-Eigen::Vector3d turn(const Eigen::Vector3d& s, double angle) {
-  const double c = std::cos(angle), n = std::sin(angle);
-  return {c * c * s(0) + n * n * s(1) + 2 * c * n * s(2), n * n * s(0) + c * c * s(1) - 2 * c * n * s(2),
-          -c * n * s(0) + c * n * s(1) + (c * c - n * n) * s(2)};
-}
-
 VectorXd make_shell_row(const records::ElementForces& forces, Index row, double angle) {
   const auto mean = [&](const char* name) { return calc_mean(forces, row, name); };
-  const Eigen::Vector3d N = turn({mean("Nx"), mean("Ny"), mean("Nxy")}, angle);
-  const Eigen::Vector3d M = turn({mean("Mx"), mean("My"), mean("Mxy")}, angle);
+  const Eigen::Vector3d N = turn_plane({mean("Nx"), mean("Ny"), mean("Nxy")}, angle);
+  const Eigen::Vector3d M = turn_plane({mean("Mx"), mean("My"), mean("Mxy")}, angle);
   const double Qx = mean("Qx"), Qy = mean("Qy"), c = std::cos(angle), s = std::sin(angle);
   VectorXd values(8);
   values << N, -M, c * Qx + s * Qy, -s * Qx + c * Qy;
@@ -57,15 +50,22 @@ VectorXd make_bar_row(const Eigen::Ref<const Eigen::RowVectorXd>& f) {
   return values;
 }
 
-/// Both ends: M1 M2 V1 V2 axial torque, and the torque of warping, which this element has not. Shears, axial force and
-/// torque are those of end A.
-VectorXd make_beam_row(const Eigen::Ref<const Eigen::RowVectorXd>& f) {
+/// Both ends: M1 M2 V1 V2 axial torque, and the torque of warping, which this element has not. `loads`: along the beam,
+/// forces x y z and moment x, by which those at end B are less.
+VectorXd make_beam_row(const Eigen::Ref<const Eigen::RowVectorXd>& f, const Eigen::Vector4d& loads) {
   VectorXd values(14);
-  values << f(5), -f(4), f(1), f(2), f(0), f(3), 0, f(7), -f(6), f(1), f(2), f(0), f(3), 0;
+  values << f(5), -f(4), f(1), f(2), f(0), f(3), 0,  //
+      f(7), -f(6), f(1) - loads(1), f(2) - loads(2), f(0) - loads(0), f(3) - loads(3), 0;
   return values;
 }
 
 }  // namespace
+
+Eigen::Vector3d turn_plane(const Eigen::Vector3d& s, double angle) {
+  const double c = std::cos(angle), n = std::sin(angle);
+  return {c * c * s(0) + n * n * s(1) + 2 * c * n * s(2), n * n * s(0) + c * c * s(1) - 2 * c * n * s(2),
+          -c * n * s(0) + c * n * s(1) + (c * c - n * n) * s(2)};
+}
 
 double calc_quad_angle(const std::array<Eigen::Vector3d, 4>& x) {
   const Eigen::Vector3d d13 = (x[2] - x[0]).normalized(), d42 = (x[1] - x[3]).normalized();
@@ -77,6 +77,7 @@ double calc_quad_angle(const std::array<Eigen::Vector3d, 4>& x) {
 }
 
 std::optional<records::ListedElements> make_listed_forces(const fe::Model& model, const records::ElementForces& forces,
+                                                          const BeamLoads& loads,
                                                           const std::function<bool(int)>& is_wanted) {
   const auto type = list_types().find(forces.card);
   if (type == list_types().end()) return std::nullopt;
@@ -99,7 +100,8 @@ std::optional<records::ListedElements> make_listed_forces(const fe::Model& model
     if (block.card == "CBAR") {
       values = make_bar_row(forces.force.row(row));
     } else if (block.card == "CBEAM") {
-      values = make_beam_row(forces.force.row(row));
+      const auto own = loads.find(id);
+      values = make_beam_row(forces.force.row(row), own == loads.end() ? Eigen::Vector4d::Zero() : own->second);
       const auto& nodes = elements.at(id)->shape().nodes;
       block.ends.push_back({model.node(nodes[0]).id, model.node(nodes[1]).id});
     } else if (block.card == "CTRIA3") {

@@ -10,8 +10,10 @@
 #include "cli/common/ranks.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/listing/element_columns.hpp"
+#include "fe/loads/load_sets.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/grid_point_weight.hpp"
+#include "fe/statics/element_results.hpp"
 #include "fe/statics/reactions.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/listing/f06.hpp"
@@ -55,11 +57,11 @@ records::DynamicDeck read_loads_deck_or_throw(const std::string& path, const fe:
 }
 
 ListingMaker::ListingMaker(const records::Deck& deck, const records::CaseRequests& requests, Diagnostics& diagnostics)
-    : deck_(deck), requests_(requests) {
+    : deck_(deck), requests_(requests), limits_(list_stress_limits(deck)) {
   for (const auto& [id, selection] : requests_.selections) lists_all_ = lists_all_ && selection.outputs.empty();
   if (lists_all_)
     diagnostics.note("cli.listing-default", deck.locate({}), "the deck asks for no result: the listing has all of them",
-                     "write DISPLACEMENT = ALL, SPCFORCES = ALL, FORCE = ALL in the case control");
+                     "write DISPLACEMENT = ALL, SPCFORCES = ALL, FORCE = ALL, STRESS = ALL in the case control");
   report_sets(diagnostics);
 }
 
@@ -149,13 +151,13 @@ void ListingMaker::add_vector(const fe::Model& model, const std::string& command
 }
 
 void ListingMaker::add_elements(const fe::Model& model, const std::vector<records::ElementForces>& forces,
-                                ListedStep& step, Diagnostics& diagnostics) {
+                                const BeamLoads& loads, ListedStep& step, Diagnostics& diagnostics) {
   const auto choice = choose(step.subcase, "FORCE");
   if (!choice) return;
   for (const auto& of_card : forces) {
-    auto block = make_listed_forces(model, of_card, [&](int id) { return choice->contains(id); });
+    auto block = make_listed_forces(model, of_card, loads, [&](int id) { return choice->contains(id); });
     if (!block) {
-      if (left_out_.insert(of_card.card).second)
+      if (left_out_.insert("forces of " + of_card.card).second)
         diagnostics.note("cli.unlisted-elements", deck_.locate({}),
                          fmt::format("the listing has no forces of {}", of_card.card),
                          "bough static --full and its HDF5 file have them");
@@ -166,6 +168,45 @@ void ListingMaker::add_elements(const fe::Model& model, const std::vector<record
   }
 }
 
+BeamLoads ListingMaker::sum_beam_loads(const fe::Model& model, const records::StaticSubcase& solved) const {
+  std::vector<std::pair<double, int>> sets{{1, solved.load_set}};
+  for (const auto& combination : requests_.combinations) {
+    if (combination.control.id != solved.id) continue;
+    sets.clear();
+    for (const auto& [factor, id] : combination.terms)
+      for (const auto& subcase : deck_.subcases)
+        if (subcase.id == id) sets.emplace_back(factor, subcase.load);
+  }
+  BeamLoads sums;
+  Diagnostics said;  // by the solution
+  for (const auto& [factor, set] : sets)
+    for (const auto& [e, load] : fe::calc_beam_end_loads(model, deck_, set, said)) {
+      const int id = model.elements()[static_cast<std::size_t>(e)]->id();
+      sums.try_emplace(id, Eigen::Vector4d::Zero()).first->second += factor * (load.head<4>() + load.segment<4>(6));
+    }
+  return sums;
+}
+
+void ListingMaker::add_stresses(const fe::Model& model, const std::vector<records::ElementStresses>& stresses,
+                                const std::vector<records::ElementForces>& forces, ListedStep& step,
+                                Diagnostics& diagnostics) {
+  const auto choice = choose(step.subcase, "STRESS");
+  if (!choice) return;
+  for (const auto& of_card : stresses) {
+    auto block =
+        make_listed_stresses(model, deck_, of_card, forces, limits_, [&](int id) { return choice->contains(id); });
+    if (!block) {
+      if (left_out_.insert("stresses of " + of_card.card).second)
+        diagnostics.note("cli.unlisted-elements", deck_.locate({}),
+                         fmt::format("the listing has no stresses of {}", of_card.card),
+                         "bough static --full and its HDF5 file have them");
+      continue;
+    }
+    block->is_printed = choice->is_printed;
+    if (!block->id.empty()) step.stresses.push_back(std::move(*block));
+  }
+}
+
 void ListingMaker::add_static(const fe::Model& model, const records::StaticSubcase& solved, Diagnostics& diagnostics) {
   auto step = make_step(solved.id);
   step.load_set = solved.load_set;
@@ -173,7 +214,8 @@ void ListingMaker::add_static(const fe::Model& model, const records::StaticSubca
   add_vector(model, "OLOAD", ListedKind::Load, solved.load, step);
   add_vector(model, "SPCFORCES", ListedKind::SpcForce, solved.reaction, step);
   add_vector(model, "MPCFORCES", ListedKind::MpcForce, solved.mpc_force, step);
-  add_elements(model, solved.elements, step, diagnostics);
+  add_elements(model, solved.elements, sum_beam_loads(model, solved), step, diagnostics);
+  add_stresses(model, solved.stresses, solved.elements, step, diagnostics);
   listing_.steps.push_back(std::move(step));
 }
 
@@ -210,7 +252,7 @@ void ListingMaker::add_modes(const fe::Model& model, const modal::EigenPairs& pa
     listing_.effective_mass.push_back(std::move(mass));
   }
   const bool has_reactions = choose(subcase, "SPCFORCES").has_value();
-  const bool has_forces = choose(subcase, "FORCE").has_value();
+  const bool has_forces = choose(subcase, "FORCE").has_value(), has_stresses = choose(subcase, "STRESS").has_value();
   for (Index j = 0; j < pairs.lambda.size(); ++j) {
     ListedStep mode = step;
     mode.kind = ListedStep::Kind::Mode;
@@ -223,8 +265,12 @@ void ListingMaker::add_modes(const fe::Model& model, const modal::EigenPairs& pa
       VectorXd reaction = fe::calc_reactions(model, residual);
       add_vector(model, "SPCFORCES", ListedKind::SpcForce, reaction, mode);
     }
-    if (has_forces)
-      add_elements(model, fe::calc_element_forces(model, pairs.Phi.col(j), deck_, 0, diagnostics), mode, diagnostics);
+    if (has_forces || has_stresses) {
+      const auto forces = fe::calc_element_forces(model, pairs.Phi.col(j), deck_, 0, diagnostics);
+      add_elements(model, forces, {}, mode, diagnostics);
+      if (has_stresses)
+        add_stresses(model, fe::calc_element_stresses(model, pairs.Phi.col(j), deck_, 0), forces, mode, diagnostics);
+    }
     listing_.steps.push_back(std::move(mode));
   }
   listing_.roots.push_back(std::move(roots));

@@ -5,6 +5,8 @@
 #include <set>
 #include <string>
 
+#include "cli/listing/element_columns.hpp"
+#include "cli/listing/stress_columns.hpp"
 #include "fe/model/model.hpp"
 #include "formats/records/deck_dynamics.hpp"
 #include "formats/records/listing.hpp"
@@ -60,13 +62,19 @@ class ListingMaker {
   void add_vector(const fe::Model& model, const std::string& command, records::ListedKind kind,
                   const Eigen::Ref<const Eigen::VectorXd>& u_g, records::ListedStep& step) const;
   void add_elements(const fe::Model& model, const std::vector<records::ElementForces>& forces,
-                    records::ListedStep& step, Diagnostics& diagnostics);
+                    const BeamLoads& loads, records::ListedStep& step, Diagnostics& diagnostics);
+  /// Of a subcase, or of what it is combined of.
+  BeamLoads sum_beam_loads(const fe::Model& model, const records::StaticSubcase& solved) const;
+  void add_stresses(const fe::Model& model, const std::vector<records::ElementStresses>& stresses,
+                    const std::vector<records::ElementForces>& forces, records::ListedStep& step,
+                    Diagnostics& diagnostics);
   void report_sets(Diagnostics& diagnostics) const;
 
   const records::Deck& deck_;
   const records::CaseRequests& requests_;
   bool lists_all_ = true;
-  std::set<std::string> left_out_;  ///< cards of cli.unlisted-elements
+  std::map<int, StressLimits> limits_;
+  std::set<std::string> left_out_;  ///< forces and stresses of cli.unlisted-elements
   records::Listing listing_;
 };
 

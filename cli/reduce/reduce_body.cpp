@@ -1,15 +1,34 @@
 #include "cli/reduce/reduce_body.hpp"
 
+#include <optional>
+
 #include "cli/common/options.hpp"
 #include "cli/common/solution.hpp"
+#include "cli/listing/listing.hpp"
 #include "cli/reduce/matrix_files.hpp"
 #include "cli/reduce/point_files.hpp"
 #include "cli/verbs.hpp"
 #include "fe/model/model.hpp"
+#include "modal/response/residual_modes.hpp"
 
 namespace bough::cli {
 
 namespace {
+
+/// RESVEC of the deck, as `modes` has it: loads of the subcase, unit forces of USETi and RVDOFi. Only for a deck on the
+/// command line, a body file says itself what is in the body. Empty where the deck does not ask for them.
+std::optional<records::DynamicDeck> read_residuals(const records::BodySpec& spec, const fe::ModelOptions& model_options,
+                                                   const records::Deck& deck, records::DynamicSelection& selection,
+                                                   Diagnostics& diagnostics) {
+  if (!spec.file.empty() || spec.basis != records::BodyBasis::Normal || !spec.residual.empty()) return {};
+  Diagnostics said;  // about output requests, of which reduce has none
+  const auto requests = read_requests_once(spec.deck, said);
+  const int first = deck.subcases.empty() ? 0 : deck.subcases.front().id;
+  const auto* found = find_selection(requests, spec.subcase != 0 ? spec.subcase : first);
+  if (!found || !modal::response::asks_residual_vectors(deck, *found)) return {};
+  selection = *found;
+  return read_loads_deck_or_throw(spec.deck, model_options, diagnostics);
+}
 
 Reduced reduce_deck(const records::BodySpec& spec, const stiffening::ReduceOptions& options,
                     std::vector<std::string>& files, Diagnostics& diagnostics) {
@@ -18,9 +37,21 @@ Reduced reduce_deck(const records::BodySpec& spec, const stiffening::ReduceOptio
   model_options.ignore_cards = spec.ignore_cards;
   const auto deck = read_deck_or_throw(spec.deck, model_options, diagnostics);
   note_solution(deck, diagnostics);
+  records::DynamicSelection selection;
+  Diagnostics loads_said;  // the cards of the model are reported above
+  const auto loads_deck = read_residuals(spec, model_options, deck, selection, loads_said);
+  auto own = options;
+  if (loads_deck)
+    own.residual_loads = [&](const fe::Model& model, std::vector<std::string>& names) {
+      auto loads = modal::response::collect_residual_loads(
+          model, *loads_deck, records::DynamicSubcase(model.subcase(), selection), diagnostics);
+      diagnostics.throw_if_errors();
+      names.insert(names.end(), loads.name.begin(), loads.name.end());
+      return std::move(loads.F);
+    };
   Reduced result;
   files = deck.files;
-  say_first(diagnostics, [&] { result.body = stiffening::reduce(deck, spec, options, diagnostics); });
+  say_first(diagnostics, [&] { result.body = stiffening::reduce(deck, spec, own, diagnostics); });
   return result;
 }
 

@@ -221,6 +221,22 @@ MatrixXd Solid::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
   return mean / volume;
 }
 
+MatrixXd Solid::calc_corner_stresses(const Eigen::Ref<const VectorXd>& force) const {
+  const auto points = list_points(geometry_, false);
+  const int num = get_num_corners(geometry_.kind);
+  const auto count = static_cast<Eigen::Index>(points.size());
+  if (count < num) return VectorXd(calc_stresses(force)).replicate(1, num);
+  MatrixXd L(count, num);
+  VectorXd shape(num);
+  Eigen::Matrix3Xd dshape(3, num);
+  for (Eigen::Index q = 0; q < count; ++q) {
+    calc_solid_shape(geometry_.kind, {}, points[static_cast<std::size_t>(q)].natural, shape, dshape);
+    L.row(q) = shape.transpose();
+  }
+  const MatrixXd values = Eigen::Map<const MatrixXd>(force.data(), 6, count).transpose();
+  return L.colPivHouseholderQr().solve(values).transpose();
+}
+
 void Solid::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                     Eigen::Ref<MatrixXd> K_G) const {
   const auto fields = calc_fields(false);

@@ -63,6 +63,10 @@ class Solid final : public Element {
   /// The mean of the stresses over the volume, in basic axes: that at the centre where they are linear.
   std::vector<StressPoint> stress_points() const override;
   MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
+  /// Stresses at the corners (6 x corners, basic axes) of internal forces (6 points): the field that is linear along
+  /// each natural coordinate through those of the quadrature points, by least squares where they are more; the mean
+  /// where they are fewer than the corners.
+  MatrixXd calc_corner_stresses(const Eigen::Ref<const VectorXd>& force) const;
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
   void add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,

@@ -34,6 +34,7 @@ void write_subcase(FileWriter& file, const records::ResponseSubcase& s, bool is_
   file.write_attribute(path, "title", s.title);
   file.write_attribute(path, "subtitle", s.subtitle);
   file.write_attribute(path, "label", s.label);
+  file.write_attribute(path, "method", s.is_direct ? "direct" : "modal");
   if (is_over_time)
     file.write_vector(path + "/time", s.x, {"time of each row", "T"});
   else
@@ -54,24 +55,28 @@ void write_subcase(FileWriter& file, const records::ResponseSubcase& s, bool is_
     file.write_attribute(group, "punch", curves.is_punched ? 1 : 0);
   }
   for (const auto& curves : s.elements) {
-    const std::string group = path + "/elements/" + curves.card;
+    const std::string group = path + (curves.is_stress ? "/stresses/" : "/elements/") + curves.card;
     file.write_integers(group + "/id", curves.ids, {"element ids", "1"});
     write_samples(file, group, curves.real, curves.imag,
                   {rows, static_cast<hsize_t>(curves.ids.size()), static_cast<hsize_t>(curves.components.size())},
-                  "forces by element and component", "F, F L");
+                  curves.is_stress ? "stresses by element and component" : "forces by element and component",
+                  curves.is_stress ? "F/L^2" : "F, F L");
     file.write_attribute(group, "components", curves.components);
     file.write_attribute(group, "phase", curves.is_phase ? 1 : 0);
     file.write_attribute(group, "punch", curves.is_punched ? 1 : 0);
   }
+  if (s.is_direct) return;
   file.write_vector(path + "/modes/frequency_hz", s.mode_hz,
                     {"of each coordinate: rigid motions (0), normal modes, residual vectors", "1/T"});
   file.write_vector(path + "/modes/damping_ratio", s.damping_ratio, {"its share of the critical damping", "1"});
-  file.write_number(path + "/accuracy/basis", s.basis_error,
-                    {"of the orthogonality of the coordinates to M and K", "1"});
-  file.write_number(path + "/accuracy/solution", s.solution_error,
-                    {is_over_time ? "what a step and two halves of it differ by, relative"
-                                  : "residual of the equation of the coordinates over its loads, worst frequency",
-                     "1"});
+  if (!s.is_direct) {
+    file.write_number(path + "/accuracy/basis", s.basis_error,
+                      {"of the orthogonality of the coordinates to M and K", "1"});
+    file.write_number(path + "/accuracy/solution", s.solution_error,
+                      {is_over_time ? "what a step and two halves of it differ by, relative"
+                                    : "residual of the equation of the coordinates over its loads, worst frequency",
+                       "1"});
+  }
   std::vector<int> residual;
   for (const auto kind : s.kind) residual.push_back(kind == records::ModeKind::Residual);
   file.write_integers(path + "/modes/is_residual", residual, {"1: a residual vector", "1"});
@@ -129,6 +134,11 @@ records::DeckResponse read_response(const std::string& path) {
       for (Eigen::Index i = 0; i < dofs.rows(); ++i) curves.dofs.emplace_back(dofs(i, 0), dofs(i, 1));
       read_samples(file, at, rows, {static_cast<long>(dofs.rows())}, response.is_over_time, curves.real, curves.imag);
       s.curves.push_back(std::move(curves));
+    }
+    s.is_direct = !file.has(group + "/modes");
+    if (s.is_direct) {
+      response.subcases.push_back(std::move(s));
+      continue;
     }
     s.mode_hz = file.read_vector(group + "/modes/frequency_hz", -1);
     s.damping_ratio = file.read_vector(group + "/modes/damping_ratio", s.mode_hz.size());

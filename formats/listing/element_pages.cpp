@@ -8,26 +8,6 @@ namespace {
 using records::ListedElements;
 using records::ListedStep;
 
-/// Letters with blanks between: "R O D".
-std::string space_out(const std::string& word) {
-  std::string text;
-  for (const char c : word) text += (text.empty() ? "" : " ") + std::string(1, c);
-  return text;
-}
-
-std::vector<std::string> make_step_lines(const ListedStep& step) {
-  switch (step.kind) {
-    case ListedStep::Kind::Mode:
-      return {fmt::format("      EIGENVALUE = {:13.6E}", step.eigenvalue), fmt::format("      MODE = {}", step.mode)};
-    case ListedStep::Kind::Frequency:
-      return {fmt::format("      FREQUENCY = {:13.6E}", step.at)};
-    case ListedStep::Kind::Time:
-      return {fmt::format("      TIME = {:13.6E}", step.at)};
-    default:
-      return {};
-  }
-}
-
 /// Several elements a line.
 void add_columns(const ListedElements& block, std::size_t of_line, Pages& pages) {
   for (std::size_t k = 0; k < block.id.size(); k += of_line) {
@@ -64,6 +44,25 @@ void add_beams(const ListedElements& block, Pages& pages) {
 }
 
 }  // namespace
+
+std::string space_out(const std::string& word) {
+  std::string text;
+  for (const char c : word) text += (text.empty() ? "" : " ") + std::string(1, c);
+  return text;
+}
+
+std::vector<std::string> make_step_lines(const ListedStep& step) {
+  switch (step.kind) {
+    case ListedStep::Kind::Mode:
+      return {fmt::format("      EIGENVALUE = {:13.6E}", step.eigenvalue), fmt::format("      MODE = {}", step.mode)};
+    case ListedStep::Kind::Frequency:
+      return {fmt::format("      FREQUENCY = {:13.6E}", step.at)};
+    case ListedStep::Kind::Time:
+      return {fmt::format("      TIME = {:13.6E}", step.at)};
+    default:
+      return {};
+  }
+}
 
 void add_force_pages(const ListedStep& step, const ListedElements& block, Pages& pages) {
   auto headings = make_step_lines(step);
@@ -122,7 +121,5 @@ void add_force_pages(const ListedStep& step, const ListedElements& block, Pages&
       return add_columns(block, 4, pages);
   }
 }
-
-void add_stress_pages(const ListedStep&, const ListedElements&, Pages&) {}
 
 }  // namespace bough::listing::detail

@@ -1,6 +1,7 @@
 #include "formats/listing/op2.hpp"
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -19,7 +20,10 @@ constexpr int kIdentWords = 146, kDevice = 1;
 class Words {
  public:
   void add(int value) { add_bits(static_cast<std::uint32_t>(value)); }
-  void add(double value) { add_bits(std::bit_cast<std::uint32_t>(static_cast<float>(value))); }
+  /// No number: 1 as an integer, as Nastran has it.
+  void add(double value) {
+    add_bits(std::isnan(value) ? 1U : std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+  }
   void add(const std::string& text, std::size_t size) {
     std::string padded = text.substr(0, size);
     for (char& c : padded)
@@ -238,6 +242,60 @@ void add_beam_row(const records::ListedElements& block, std::size_t k, Words& da
   }
 }
 
+/// Eleven stations of grid, x/L, SXC to SXF, largest, smallest, two margins.
+void add_beam_stresses(const records::ListedElements& block, std::size_t k, Words& data) {
+  for (int station = 0; station < kBeamStations; ++station) {
+    const bool is_a = station == 0, is_b = station == kBeamStations - 1;
+    data.add(is_a ? block.ends[k][0] : is_b ? block.ends[k][1] : 0);
+    data.add(is_b ? 1.0 : 0.0);
+    for (int c = 0; c < 8; ++c) data.add(is_a || is_b ? block.real(static_cast<Eigen::Index>(k), c + 8 * is_b) : 0.0);
+  }
+}
+
+bool is_solid(int type) { return type == 39 || type == 67 || type == 68; }
+bool is_layered(int type) { return type == 95 || type == 97; }
+
+/// A solid is one entry: its head, then the centre and each corner.
+void add_solid_row(const records::ListedElements& block, std::size_t k, Words& data) {
+  if (block.point[k] == 0) {
+    int corners = 0;
+    for (auto i = k + 1; i < block.id.size() && block.point[i] != 0; ++i) ++corners;
+    data.add(10 * block.id[k] + kDevice);
+    data.add(0);
+    data.add("GRID", 4);
+    data.add(corners);
+  }
+  data.add(block.point[k]);
+  for (Eigen::Index c = 0; c < block.real.cols(); ++c) data.add(block.real(static_cast<Eigen::Index>(k), c));
+}
+
+/// Stresses: by element, layer or corner (docs/formats/op2.md).
+void add_stresses(const ListedStep& step, const records::ListedElements& block, Op2Writer& file) {
+  Words ident = make_ident(make_head(step, 5)), data;
+  set_step(step, ident);
+  ident.set(2, block.type);
+  ident.set(8, 1);
+  ident.set(10, is_layered(block.type) ? 0 : 1);  // largest shear, or von Mises
+  int count = 0;
+  for (std::size_t k = 0; k < block.id.size(); ++k) {
+    if (is_solid(block.type)) {
+      add_solid_row(block, k, data);
+      count += block.point[k] == 0;
+      continue;
+    }
+    ++count;
+    data.add(10 * block.id[k] + kDevice);
+    if (is_layered(block.type)) data.add(block.point[k]);
+    if (block.type == kBeam)
+      add_beam_stresses(block, k, data);
+    else
+      for (Eigen::Index c = 0; c < block.real.cols(); ++c) data.add(block.real(static_cast<Eigen::Index>(k), c));
+  }
+  ident.set(9, count == 0 ? 0 : data.count() / count);
+  file.add_record(ident);
+  file.add_record(data);
+}
+
 void add_elements(const ListedStep& step, const records::ListedElements& block, int table, Op2Writer& file) {
   Words ident = make_ident(make_head(step, table)), data;
   set_step(step, ident);
@@ -268,15 +326,17 @@ void add_vectors(const records::Listing& listing, const char* name, const char* 
   if (is_open) file.end_table();
 }
 
-void add_blocks(const records::Listing& listing, const char* name, int table,
-                std::vector<records::ListedElements> ListedStep::*blocks, Op2Writer& file) {
+template <class Add>
+void add_blocks(const records::Listing& listing, const char* name,
+                std::vector<records::ListedElements> ListedStep::*blocks, const std::function<bool(int)>& is_of,
+                const Add& add, Op2Writer& file) {
   bool is_open = false;
   for (const auto& step : listing.steps)
     for (const auto& block : step.*blocks) {
-      if (block.id.empty()) continue;
+      if (block.id.empty() || !is_of(block.type)) continue;
       if (!is_open) file.begin_table(name, name);
       is_open = true;
-      add_elements(step, block, table, file);
+      add(step, block, file);
     }
   if (is_open) file.end_table();
 }
@@ -305,8 +365,14 @@ std::string make_op2(const records::Listing& listing) {
       listing, "OQG1", "OQG1", [](ListedKind k) { return k == ListedKind::SpcForce; }, file);
   add_vectors(
       listing, "OQMG1", "OQMG1", [](ListedKind k) { return k == ListedKind::MpcForce; }, file);
-  add_blocks(listing, "OEF1", 4, &ListedStep::forces, file);
-  add_blocks(listing, "OES1", 5, &ListedStep::stresses, file);
+  const auto add_forces = [](const ListedStep& step, const records::ListedElements& block, Op2Writer& to) {
+    add_elements(step, block, 4, to);
+  };
+  add_blocks(
+      listing, "OEF1", &ListedStep::forces, [](int) { return true; }, add_forces, file);
+  add_blocks(
+      listing, "OES1", &ListedStep::stresses, [](int type) { return !is_layered(type); }, add_stresses, file);
+  add_blocks(listing, "OES1C", &ListedStep::stresses, is_layered, add_stresses, file);
   return file.finish();
 }
 

@@ -19,6 +19,7 @@ struct ElementCurves {
   std::vector<int> ids;
   MatrixXd real, imag;
   bool is_phase = false, is_punched = false;
+  bool is_stress = false;  ///< else forces
 };
 
 struct ResponseSubcase {
@@ -27,6 +28,7 @@ struct ResponseSubcase {
   VectorXd x;  ///< Hz, or time
   std::vector<ResponseCurves> curves;
   std::vector<ElementCurves> elements;
+  bool is_direct = false;           ///< solved without modes
   VectorXd mode_hz, damping_ratio;  ///< of the coordinates
   std::vector<ModeKind> kind;
   int num_rigid = 0;

@@ -34,9 +34,10 @@ struct ListedVector {
 struct ListedElements {
   std::string card;
   int type = 0;  ///< Nastran's element type
-  std::vector<int> id;
+  std::vector<int> id;                   ///< of each row
   std::vector<std::array<int, 2>> ends;  ///< CBEAM: grids of the ends
-  Eigen::MatrixXd real;                  ///< elements x columns
+  std::vector<int> point;                ///< of each row: the ply, or the corner's grid of a solid (0: the centre)
+  Eigen::MatrixXd real;                  ///< rows x columns; no number: left blank
   bool is_printed = true;
 };
 

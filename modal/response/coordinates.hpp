@@ -14,6 +14,10 @@ struct Spectrum {
   MatrixXcd d;  ///< k x nf: motion of the supports
   MatrixXcd a;  ///< (m + 3k) x nf: amplitudes of the loads
 };
+/// Amplitudes of the loads ((m + 3k): of F, M Ψ, B Ψ, K_s Ψ) and of the motions d of the supports (k).
+Eigen::VectorXcd calc_amplitudes(const Excitation& excitation, double hz, Eigen::VectorXcd& d);
+[[noreturn]] void throw_unbounded(double hz, const std::string& why);
+
 /// (Λ - ω² + iωD + iS) q = P a. Throws ComputationError modal.unbounded-response at a frequency of an undamped mode,
 /// and at 0 Hz where the model is free or its supports move by a velocity or an acceleration.
 Spectrum calc_spectrum(const ResponseModel& model, const Excitation& excitation, const VectorXd& hz);

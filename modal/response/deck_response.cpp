@@ -18,6 +18,8 @@ namespace {
 
 /// Steps at corners of loads: each has a matrix exponential of its own.
 constexpr int kMostCorners = 2000, kMostCoupled = 50;
+/// Solved directly: each has two factorizations of its own.
+constexpr int kMostFactored = 20;
 
 double to_hz(double lambda) { return std::sqrt(std::max(lambda, 0.0)) / (2 * std::numbers::pi); }
 
@@ -143,6 +145,21 @@ DampingChoice choose_damping(const records::DynamicDeck& deck, const records::Dy
   return damping;
 }
 
+/// What a solution without modes has no use for.
+void report_modal(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase, Diagnostics& diagnostics) {
+  if (subcase.dynamics.sdamping != 0)
+    diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("SDAMPING")),
+                        "SDAMPING damps modes: the direct solution leaves it out, as in Nastran",
+                        "damp by PARAM,G, GE or dampers, or solve by modes (--modal)");
+  const int set = subcase.dynamics.frequency;
+  for (const auto& list : deck.dynamics.frequencies)
+    if (list.sid == set && list.kind >= 3)
+      diagnostics.error("modal.no-modes", deck.locate(subcase.find_command("FREQUENCY")),
+                        "FREQUENCY = " + std::to_string(set) + " has a FREQ" + std::to_string(list.kind) +
+                            " card, which lies about natural frequencies: a direct solution finds none",
+                        "give FREQ, FREQ1 or FREQ2, or solve by modes (--modal)");
+}
+
 }  // namespace
 
 std::vector<records::DynamicSubcase> choose_response_subcases(const records::DynamicDeck& deck, int asked,
@@ -169,6 +186,30 @@ struct DeckResponseSolver::Prepared {
   const fe::System system;
   ModeBasis modes;
   std::unique_ptr<fe::StaticSolver> statics;
+
+  void find_modes(const EigenOptions& options, const records::DynamicDeck& deck, Diagnostics& diagnostics) {
+    int num_massless = 0;
+    modes = calc_modes(system, options, deck, num_massless, diagnostics);
+    std::vector<int> supports;
+    if (modes.num_rigid > 0 || num_massless > 0) {
+      const auto motions = detail::find_null_motions(detail::Pencil(system));
+      supports = motions.held;
+      supports.insert(supports.end(), motions.supports.begin(), motions.supports.end());
+      std::sort(supports.begin(), supports.end());
+      supports.erase(std::unique(supports.begin(), supports.end()), supports.end());
+    }
+    statics = std::make_unique<fe::StaticSolver>(model, system.K, std::move(supports));
+  }
+};
+
+struct DeckResponseSolver::Task {
+  Excitation excitation;
+  StartMotion start;
+  DampingChoice damping;
+  TimeGrid grid;  ///< over time
+  VectorXd hz;    ///< over frequency
+  VectorXd natural;
+  std::vector<OutputChoice> outputs;
 };
 
 DeckResponseSolver::DeckResponseSolver(const records::DynamicDeck& deck, fe::ModelOptions model_options,
@@ -188,17 +229,7 @@ void DeckResponseSolver::prepare(const records::DynamicSubcase& subcase, Diagnos
   if (options_.choose_prestress) model_options_.prestress = options_.choose_prestress(model_options_, subcase, own);
   auto prepared = std::make_unique<Prepared>(fe::Model::build(deck_, model_options_, own));
   own.throw_if_errors();
-  int num_massless = 0;
-  prepared->modes = calc_modes(prepared->system, options_.choose_eigen(subcase, own), deck_, num_massless, own);
-  std::vector<int> supports;
-  if (prepared->modes.num_rigid > 0 || num_massless > 0) {
-    const auto motions = detail::find_null_motions(detail::Pencil(prepared->system));
-    supports = motions.held;
-    supports.insert(supports.end(), motions.supports.begin(), motions.supports.end());
-    std::sort(supports.begin(), supports.end());
-    supports.erase(std::unique(supports.begin(), supports.end()), supports.end());
-  }
-  prepared->statics = std::make_unique<fe::StaticSolver>(prepared->model, prepared->system.K, std::move(supports));
+  if (!options_.is_direct) prepared->find_modes(options_.choose_eigen(subcase, own), deck_, own);
   own.throw_if_errors();
   for (const auto& item : own.items()) diagnostics.add(item);
   prepared_ = std::move(prepared);
@@ -208,29 +239,47 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
   prepare(subcase, diagnostics);
   const auto& model = prepared_->model;
   Diagnostics own;
-  auto excitation = calc_excitation(model, deck_, subcase, options_.is_over_time, own);
-  excitation.residual = collect_unit_loads(model, deck_, own).F;
-  const auto start = options_.is_over_time ? calc_start(model, deck_, subcase, own) : StartMotion{};
-  const auto damping = choose_damping(deck_, subcase, options_.is_over_time, model, own);
-  const auto grid = options_.is_over_time ? make_times(deck_, subcase, own) : TimeGrid{};
-  VectorXd natural(prepared_->modes.lambda.size());
-  for (Eigen::Index j = 0; j < natural.size(); ++j) natural(j) = to_hz(prepared_->modes.lambda(j));
-  VectorXd hz;
+  Task task;
+  task.excitation = calc_excitation(model, deck_, subcase, options_.is_over_time, own);
+  if (options_.is_over_time) task.start = calc_start(model, deck_, subcase, own);
+  task.damping = choose_damping(deck_, subcase, options_.is_over_time, model, own);
+  if (options_.is_over_time) task.grid = make_times(deck_, subcase, own);
+  if (options_.is_direct) report_modal(deck_, subcase, own);
+  task.natural.resize(prepared_->modes.lambda.size());
+  for (Eigen::Index j = 0; j < task.natural.size(); ++j) task.natural(j) = to_hz(prepared_->modes.lambda(j));
+  if (options_.is_direct) own.throw_if_errors();
   if (!options_.is_over_time)
-    hz = make_frequencies(deck_, subcase, natural.tail(natural.size() - prepared_->modes.num_left_out), own);
+    task.hz =
+        make_frequencies(deck_, subcase, task.natural.tail(task.natural.size() - prepared_->modes.num_left_out), own);
   own.throw_if_errors();
-  const auto outputs = choose_outputs(model, deck_, subcase, excitation, options_.grids, own);
+  task.outputs = choose_outputs(model, deck_, subcase, task.excitation, options_.grids, own);
   own.throw_if_errors();
-  const bool with_residuals = options_.residual_vectors.value_or(subcase.dynamics.resvec.value_or(
-      deck_.find_param("RESVEC") == nullptr || deck_.find_param("RESVEC")->value[0] != 'N'));
-  const auto solve_static = [&](const MatrixXd& F) { return prepared_->statics->solve(F, &own); };
-  const auto response =
-      make_response_model(model, prepared_->modes, solve_static, excitation, start, damping, with_residuals, own);
   records::ResponseSubcase result;
   result.id = std::max(subcase.id, 1);  // what stands above all subcases is the first, as in Nastran
   result.title = subcase.title;
   result.subtitle = subcase.subtitle;
   result.label = subcase.label;
+  result.is_direct = options_.is_direct;
+  if (options_.is_direct)
+    solve_directly(task, subcase, result, own);
+  else
+    solve_by_modes(task, subcase, result, own);
+  for (const auto& item : own.items()) diagnostics.add(item);
+  return result;
+}
+
+void DeckResponseSolver::solve_by_modes(const Task& task, const records::DynamicSubcase& subcase,
+                                        records::ResponseSubcase& result, Diagnostics& diagnostics) const {
+  const auto& model = prepared_->model;
+  const auto& [_, start, damping, grid, hz, natural, outputs] = task;
+  Excitation excitation = task.excitation;
+  excitation.residual = collect_unit_loads(model, deck_, diagnostics).F;
+  diagnostics.throw_if_errors();
+  const bool with_residuals = options_.residual_vectors.value_or(subcase.dynamics.resvec.value_or(
+      deck_.find_param("RESVEC") == nullptr || deck_.find_param("RESVEC")->value[0] != 'N'));
+  const auto solve_static = [&](const MatrixXd& F) { return prepared_->statics->solve(F, &diagnostics); };
+  const auto response = make_response_model(model, prepared_->modes, solve_static, excitation, start, damping,
+                                            with_residuals, diagnostics);
   result.num_rigid = response.num_rigid;
   result.mode_hz.resize(response.num_dynamic());
   for (Eigen::Index j = 0; j < response.num_dynamic(); ++j) {
@@ -239,27 +288,41 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
   }
   result.damping_ratio = response.damping_ratio.head(response.num_dynamic());
   if (options_.is_over_time) {
-    const auto steps = refine_times(deck_, excitation, grid, response.is_coupled ? kMostCoupled : kMostCorners, own);
+    const auto steps =
+        refine_times(deck_, excitation, grid, response.is_coupled ? kMostCoupled : kMostCorners, diagnostics);
     const auto history = calc_history(response, excitation, steps);
     result.solution_error = history.step_error;
-    recover(model, deck_, response, excitation, damping, outputs, history, result);
+    recover(model, response, excitation, damping, outputs, history, result);
   } else {
     const double highest = natural.size() > 0 ? natural(natural.size() - 1) : 0;
     if (response.num_normal < model.num_fdofs() && hz(hz.size() - 1) > highest) {
       char text[112];
       std::snprintf(text, sizeof text, "the model is driven up to %.6g Hz, its modes end at %.6g Hz", hz(hz.size() - 1),
                     highest);
-      own.warning("modal.response-range", deck_.locate(subcase.find_command("FREQUENCY")), text,
-                  "take more modes: beyond them there are residual vectors only");
+      diagnostics.warning("modal.response-range", deck_.locate(subcase.find_command("FREQUENCY")), text,
+                          "take more modes: beyond them there are residual vectors only");
     }
     const auto spectrum = calc_spectrum(response, excitation, hz);
     result.solution_error = calc_solution_error(response, spectrum);
-    recover(model, deck_, response, excitation, damping, outputs, spectrum, result);
+    recover(model, response, excitation, damping, outputs, spectrum, result);
   }
   result.basis_error = calc_basis_error(model, response);
-  report_accuracy(result.basis_error, result.solution_error, deck_.locate({}), own);
-  for (const auto& item : own.items()) diagnostics.add(item);
-  return result;
+  report_accuracy(result.basis_error, result.solution_error, deck_.locate({}), diagnostics);
+}
+
+void DeckResponseSolver::solve_directly(const Task& task, const records::DynamicSubcase& subcase,
+                                        records::ResponseSubcase& result, Diagnostics& diagnostics) const {
+  const auto& model = prepared_->model;
+  const auto& [excitation, start, damping, grid, hz, natural, outputs] = task;
+  const auto direct = make_direct_model(prepared_->system, deck_, subcase, excitation, damping);
+  const auto take = [&, &e = excitation, &d = damping, &o = outputs](const auto& motion) {
+    recover(model, e, d, o, motion, result);
+  };
+  if (options_.is_over_time)
+    solve_history(model, direct, excitation, start, refine_times(deck_, excitation, grid, kMostFactored, diagnostics),
+                  take);
+  else
+    solve_spectrum(model, direct, excitation, hz, take);
 }
 
 }  // namespace bough::modal::response

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Frequency and transient response of a deck, subcase by subcase (SOL 111, 112; 108 and 109 by modes).
+/// \file Frequency and transient response of a deck, by subcases: by modes (SOL 111, 112) or directly (108, 109).
 #include <array>
 #include <functional>
 #include <memory>
@@ -11,6 +11,7 @@ namespace bough::modal::response {
 
 struct ResponseOptions {
   bool is_over_time = false;
+  bool is_direct = false;                ///< without modes
   std::optional<bool> residual_vectors;  ///< overrules RESVEC of the deck (default: yes)
   std::vector<int> grids;                ///< displacement, velocity, acceleration of these besides
   /// EIGRL or EIGR of the subcase, with the command line.
@@ -33,12 +34,17 @@ class DeckResponseSolver {
   ~DeckResponseSolver();
 
   /// Throws what is wrong with this subcase. Notes modal.no-w3 (PARAM,G or GE over time without W3 or W4), warnings
-  /// modal.response-range (driven above the highest mode).
+  /// modal.response-range (driven above the highest mode), modal.no-modes (SDAMPING without modes).
   records::ResponseSubcase solve(const records::DynamicSubcase& subcase, Diagnostics& diagnostics);
 
  private:
   struct Prepared;
   void prepare(const records::DynamicSubcase& subcase, Diagnostics& diagnostics);
+  struct Task;
+  void solve_by_modes(const Task& task, const records::DynamicSubcase& subcase, records::ResponseSubcase& result,
+                      Diagnostics& diagnostics) const;
+  void solve_directly(const Task& task, const records::DynamicSubcase& subcase, records::ResponseSubcase& result,
+                      Diagnostics& diagnostics) const;
 
   const records::DynamicDeck& deck_;
   fe::ModelOptions model_options_;

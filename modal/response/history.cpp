@@ -1,12 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
 
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "modal/response/coordinates.hpp"
-#include "modal/response/sampled_curve.hpp"
+#include "modal/response/support_motion.hpp"
 
 namespace bough::modal::response {
 namespace {
@@ -33,11 +32,6 @@ Step make_step(const VectorXd& lambda, const MatrixXd& D, double h) {
   return {e.topLeftCorner(2 * n, 2 * n), h * e.block(0, 2 * n, 2 * n, n), h * e.block(0, 3 * n, 2 * n, n)};
 }
 
-/// Loads at a step: just before it and just after.
-struct Sides {
-  MatrixXd before, after;  ///< rows x nt
-};
-
 class Motion {
  public:
   Motion(const ResponseModel& model, const Excitation& excitation, const TimeGrid& grid)
@@ -46,8 +40,12 @@ class Motion {
         grid_(grid),
         n_(model.num_dynamic()),
         P_(model.P.topRows(n_)),
-        D_(model.D.topLeftCorner(n_, n_)) {
-    sample();
+        D_(model.D.topLeftCorner(n_, n_)),
+        p_(sample_forces(excitation, grid)) {
+    auto supports = sample_support_motion(excitation, grid);
+    d_ = std::move(supports.d);
+    d_dot_ = std::move(supports.d_dot);
+    d_ddot_ = std::move(supports.d_ddot);
   }
 
   History run() {
@@ -71,67 +69,8 @@ class Motion {
   }
 
  private:
-  double step_before(Eigen::Index i) const { return i > 0 ? grid_.time(i) - grid_.time(i - 1) : step_before(1); }
-  double step_after(Eigen::Index i) const {
-    return i + 1 < grid_.time.size() ? grid_.time(i + 1) - grid_.time(i) : step_before(i);
-  }
-
-  /// Loads, and d, ḋ, d̈ of the supports, on both sides of every step.
-  void sample() {
-    const auto nt = grid_.time.size(), m = excitation_.F.cols(), k = excitation_.D.cols();
-    p_.before = p_.after = MatrixXd::Zero(m, nt);
-    for (auto* s : {&d_, &d_dot_, &d_ddot_}) s->before = s->after = MatrixXd::Zero(k, nt);
-    for (Eigen::Index i = 0; i < nt; ++i)
-      for (const auto& term : excitation_.forces) {
-        const auto [before, after] = evaluate_sides(term, i);
-        p_.before(term.column, i) += before;
-        p_.after(term.column, i) += after;
-      }
-    for (const auto& term : excitation_.motions) sample_motion(term);
-  }
-
-  std::pair<double, double> evaluate_sides(const ExcitationTerm& term, Eigen::Index i) const {
-    const double t = grid_.time(i), reach = 1e-6 * std::min(step_before(i), step_after(i));
-    return {i > 0 ? response::calc_history(term, t, Side::Before, reach) : 0,
-            response::calc_history(term, t, Side::After, reach)};
-  }
-
-  /// The structure is at rest before the first step: what the supports have then, they have by a jump.
-  void sample_motion(const ExcitationTerm& term) {
-    using Type = records::DynamicLoad::Excitation;
-    const auto type = term.card->excitation;
-    const auto nt = grid_.time.size();
-    VectorXd before(nt), after(nt);
-    for (Eigen::Index i = 0; i < nt; ++i) std::tie(before(i), after(i)) = evaluate_sides(term, i);
-    const auto curve = type == Type::Acceleration ? SampledCurve{} : make_curve(grid_.time, before, after);
-    double d = 0, v = 0;
-    for (Eigen::Index i = 0; i < nt; ++i) {
-      const double h = step_before(i);
-      if (i > 0 && type == Type::Acceleration) {
-        d += h * v + h * h * (after(i - 1) / 3 + before(i) / 6);
-        v += 0.5 * h * (after(i - 1) + before(i));
-      }
-      if (i > 0 && type == Type::Velocity)
-        d += 0.5 * h * (after(i - 1) + before(i)) + h * h / 12 * (curve.slope_after(i - 1) - curve.slope_before(i));
-      if (type == Type::Acceleration) {
-        add(d_, term, i, d, d);
-        add(d_dot_, term, i, v, v);
-        add(d_ddot_, term, i, before(i), after(i));
-      } else if (type == Type::Velocity) {
-        add(d_, term, i, d, d);
-        add(d_dot_, term, i, before(i), after(i));
-        add(d_ddot_, term, i, curve.slope_before(i), curve.slope_after(i));
-      } else {
-        add(d_, term, i, before(i), after(i));
-        add(d_dot_, term, i, curve.slope_before(i), curve.slope_after(i));
-        add(d_ddot_, term, i, curve.curvature_before(i), curve.curvature_after(i));
-      }
-    }
-  }
-  static void add(Sides& s, const ExcitationTerm& term, Eigen::Index i, double before, double after) {
-    s.before(term.column, i) += before;
-    s.after(term.column, i) += after;
-  }
+  double step_before(Eigen::Index i) const { return calc_step_before(grid_, i); }
+  double step_after(Eigen::Index i) const { return calc_step_after(grid_, i); }
 
   VectorXd collect(Eigen::Index i, bool is_after) const {
     const auto pick = [&](const Sides& s) -> VectorXd { return is_after ? s.after.col(i) : s.before.col(i); };

@@ -7,11 +7,12 @@
 namespace bough::modal::response {
 namespace {
 
-constexpr std::array<std::pair<const char*, const char*>, 5> kQuantities{{{"DISPLACEMENT", "displacement"},
+constexpr std::array<std::pair<const char*, const char*>, 6> kQuantities{{{"DISPLACEMENT", "displacement"},
                                                                           {"VELOCITY", "velocity"},
                                                                           {"ACCELERATION", "acceleration"},
                                                                           {"SPCFORCES", "spc_force"},
-                                                                          {"FORCE", "force"}}};
+                                                                          {"FORCE", "force"},
+                                                                          {"STRESS", "stress"}}};
 
 /// Grids that the excitation loads or moves, or that TIC gives a start.
 std::vector<int> list_driven_grids(const fe::Model& model, const records::DynamicDeck& deck,
@@ -43,7 +44,7 @@ std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::
     const auto found = selection.outputs.find(command);
     const bool is_asked = found != selection.outputs.end() && !found->second.is_none;
     OutputChoice output{quantity, {}, false, false};
-    const bool of_elements = output.quantity == "force";
+    const bool of_elements = output.quantity == "force" || output.quantity == "stress";
     if (is_asked) {
       const auto& request = found->second;
       const auto set = selection.sets.find(request.set);

@@ -1,12 +1,15 @@
 #include "modal/response/recovery.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <numbers>
 #include <set>
 
 #include "fe/matrices/assembly.hpp"
-#include "fe/statics/static_case.hpp"
+#include "fe/statics/element_results.hpp"
 
 namespace bough::modal::response {
 namespace {
@@ -43,63 +46,99 @@ MatrixXd pick_rows(const fe::Model& model, const std::vector<int>& gdofs, Matrix
   return U(gdofs, Eigen::all);
 }
 
-/// Forces of the supports at rows (CD axes) per unit of z, ż, z̈ and p.
-struct SupportForces {
-  MatrixXd K, S, B, M, F;
-};
-
-SupportForces calc_support_forces(const fe::Model& model, const DampingChoice& damping, const Excitation& excitation,
-                                  const MatrixXd& W, const std::vector<int>& gdofs) {
+/// Forces Y (g-set) on the supports at rows (CD axes); 0 where nothing holds.
+MatrixXd pick_held(const fe::Model& model, const MatrixXd& Y, const std::vector<int>& gdofs) {
   const auto& fixed = model.fixed_dofs();
-  const auto pick = [&](const MatrixXd& Y) {
-    const MatrixXd held = model.T_fixed().transpose() * Y;
-    MatrixXd rows = MatrixXd::Zero(static_cast<Eigen::Index>(gdofs.size()), Y.cols());
-    for (std::size_t i = 0; i < gdofs.size(); ++i)
-      if (const auto at = std::lower_bound(fixed.begin(), fixed.end(), gdofs[i]); at != fixed.end() && *at == gdofs[i])
-        rows.row(static_cast<Eigen::Index>(i)) = held.row(at - fixed.begin());
-    return rows;
-  };
-  return {pick(fe::calc_stiffness_times(model, W)), pick(times_structural(model, damping, W)),
-          pick(times_damping(model, damping, W)), pick(fe::calc_mass_times(model, model.mass_kind(), W)),
-          pick(excitation.F)};
+  const MatrixXd held = model.T_fixed().transpose() * Y;
+  MatrixXd rows = MatrixXd::Zero(static_cast<Eigen::Index>(gdofs.size()), Y.cols());
+  for (std::size_t i = 0; i < gdofs.size(); ++i)
+    if (const auto at = std::lower_bound(fixed.begin(), fixed.end(), gdofs[i]); at != fixed.end() && *at == gdofs[i])
+      rows.row(static_cast<Eigen::Index>(i)) = held.row(at - fixed.begin());
+  return rows;
 }
 
-/// Shapes of what elements carry, by card: components of all chosen elements, one column of W each.
-struct ElementShapes {
+/// What the chosen elements of one card give, all components of one after the other.
+struct ElementGroup {
   std::string card;
   std::vector<std::string> components;
-  std::vector<int> ids;
-  MatrixXd forces;  ///< (elements x components) x columns
+  std::vector<const fe::Element*> elements;
+  bool of_stress = false;
+  bool is_derived = false;  ///< stresses over time: with von Mises and the like
+
+  /// Rows: (elements x components), of motions U (g-set, basic).
+  MatrixXd calc(const MatrixXd& U) const {
+    const auto num = count_linear();
+    MatrixXd values(num * static_cast<Eigen::Index>(elements.size()), U.cols());
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      auto rows = values.middleRows(num * static_cast<Eigen::Index>(e), num);
+      if (of_stress) {
+        rows = elements[e]->calc_stresses(fe::calc_internal_forces(*elements[e], U));
+        continue;
+      }
+      const MatrixXd U_e = U(elements[e]->gdofs(), Eigen::all);
+      for (Eigen::Index c = 0; c < U.cols(); ++c) rows.col(c) = elements[e]->calc_printed_forces(U_e.col(c));
+    }
+    return values;
+  }
+
+  MatrixXd derive(const MatrixXd& values) const {
+    if (!is_derived) return values;
+    const auto from = count_linear(), to = static_cast<Eigen::Index>(components.size());
+    MatrixXd results(to * static_cast<Eigen::Index>(elements.size()), values.cols());
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      const auto points = elements[e]->stress_points();
+      const auto at = static_cast<Eigen::Index>(e);
+      for (Eigen::Index c = 0; c < values.cols(); ++c)
+        results.col(c).segment(at * to, to) = fe::calc_stress_results(points, values.col(c).segment(at * from, from));
+    }
+    return results;
+  }
+  static MatrixXcd derive(const MatrixXcd& values) { return values; }
+
+ private:
+  Eigen::Index count_linear() const {
+    if (!is_derived) return static_cast<Eigen::Index>(components.size());
+    return static_cast<Eigen::Index>(fe::list_stress_names(elements.front()->stress_points()).size());
+  }
 };
 
-std::vector<ElementShapes> calc_element_shapes(const fe::Model& model, const records::DynamicDeck& deck,
-                                               const MatrixXd& W, const std::vector<int>& chosen) {
-  const std::set<int> wanted(chosen.begin(), chosen.end());
-  std::vector<ElementShapes> all;
-  Diagnostics unsaid;  // without loads along beams there is nothing to say
-  for (Eigen::Index c = 0; c < W.cols(); ++c) {
-    std::size_t at = 0;
-    for (const auto& block : fe::calc_element_forces(model, W.col(c), deck, 0, unsaid)) {
-      std::vector<int> rows;
-      for (std::size_t i = 0; i < block.id.size(); ++i)
-        if (wanted.count(block.id[i]) > 0) rows.push_back(static_cast<int>(i));
-      if (rows.empty() || block.components.empty()) continue;
-      if (c == 0) {
-        all.push_back({block.card, block.components, {}, {}});
-        for (const int i : rows) all.back().ids.push_back(block.id[static_cast<std::size_t>(i)]);
-        all.back().forces.resize(static_cast<Eigen::Index>(rows.size()) * block.force.cols(), W.cols());
-      }
-      const MatrixXd values = block.force(rows, Eigen::all).transpose();
-      all[at++].forces.col(c) = Eigen::Map<const VectorXd>(values.data(), values.size());
-    }
-  }
-  return all;
+std::vector<std::string> list_stress_components(const fe::Element& element, bool is_derived) {
+  const auto points = element.stress_points();
+  if (is_derived) return fe::list_result_names(points);
+  std::vector<std::string> names;
+  for (const auto& name : fe::list_stress_names(points)) names.push_back(name.substr(std::string("stress_").size()));
+  return names;
 }
 
+/// By card in alphabetical order; elements of one card with other components are another group: "CTETRA-24".
+std::vector<ElementGroup> list_groups(const fe::Model& model, const std::vector<int>& chosen, bool of_stress,
+                                      bool is_over_time) {
+  const std::set<int> wanted(chosen.begin(), chosen.end());
+  std::map<std::pair<std::string, std::vector<std::string>>, ElementGroup> groups;
+  for (const auto& element : model.elements()) {
+    if (wanted.count(element->id()) == 0) continue;
+    const auto names =
+        of_stress ? list_stress_components(*element, is_over_time) : element->printed_force_names();
+    if (names.empty()) continue;
+    groups[{element->card(), names}].elements.push_back(element.get());
+  }
+  std::vector<ElementGroup> result;
+  std::string last;
+  for (auto& [key, group] : groups) {
+    group.card = key.first == last ? key.first + "-" + std::to_string(key.second.size()) : key.first;
+    group.components = key.second;
+    group.of_stress = of_stress;
+    group.is_derived = of_stress && is_over_time;
+    last = key.first;
+    result.push_back(std::move(group));
+  }
+  return result;
+}
+
+using LinearMap = std::function<MatrixXd(const MatrixXd&)>;
+/// A linear map of the motion u (order 0), of u̇ or ü; motions are on the g-set, basic.
 template <class Values>
-struct Series {
-  Values z, z_dot, z_ddot, p;
-};
+using Apply = std::function<Values(const LinearMap& map, int order)>;
 
 void store(const MatrixXcd& values, MatrixXd& real, MatrixXd& imag) {
   real = values.real().transpose();
@@ -107,39 +146,91 @@ void store(const MatrixXcd& values, MatrixXd& real, MatrixXd& imag) {
 }
 void store(const MatrixXd& values, MatrixXd& real, MatrixXd&) { real = values.transpose(); }
 
-MatrixXcd add_structural(const MatrixXcd& force, const MatrixXd& S, const MatrixXcd& z) { return force + 1i * (S * z); }
-MatrixXd add_structural(const MatrixXd& force, const MatrixXd&, const MatrixXd&) { return force; }
+MatrixXcd times_i(const MatrixXcd& values) { return 1i * values; }
+MatrixXd times_i(const MatrixXd& values) { return MatrixXd::Zero(values.rows(), values.cols()); }
 
-template <class Values>
-void recover_series(const fe::Model& model, const records::DynamicDeck& deck, const ResponseModel& response,
-                    const Excitation& excitation, const DampingChoice& damping,
-                    const std::vector<OutputChoice>& outputs, const Series<Values>& s,
-                    records::ResponseSubcase& result) {
-  const MatrixXd W = join_shapes(response);
-  for (const auto& output : outputs) {
-    if (output.quantity == "force") {
-      for (auto& shapes : calc_element_shapes(model, deck, W, output.ids)) {
-        records::ElementCurves curves{shapes.card, shapes.components, shapes.ids,       {},
-                                      {},          output.is_phase,   output.is_punched};
-        store(Values(shapes.forces * s.z), curves.real, curves.imag);
-        result.elements.push_back(std::move(curves));
-      }
-      continue;
-    }
-    const auto rows = list_rows(model, output.ids);
-    records::ResponseCurves curves{output.quantity, rows.dofs, {}, {}, output.is_phase, output.is_punched};
-    if (output.quantity == "spc_force") {
-      const auto f = calc_support_forces(model, damping, excitation, W, rows.gdofs);
-      const Values force = f.K * s.z + f.B * s.z_dot + f.M * s.z_ddot - f.F * s.p;
-      store(add_structural(force, f.S, s.z), curves.real, curves.imag);
-    } else {
-      const MatrixXd U = pick_rows(model, rows.gdofs, W);
-      const auto& z = output.quantity == "velocity" ? s.z_dot : output.quantity == "acceleration" ? s.z_ddot : s.z;
-      store(Values(U * z), curves.real, curves.imag);
-    }
-    result.curves.push_back(std::move(curves));
+/// Rows of `more` below those of `all`; the first time all of it.
+void append_rows(const MatrixXd& more, MatrixXd& all) {
+  if (all.size() == 0) {
+    all = more;
+    return;
   }
+  all.conservativeResize(all.rows() + more.rows(), Eigen::NoChange);
+  all.bottomRows(more.rows()) = more;
 }
+
+/// Samples of one call stand below those of the calls before.
+class Recovery {
+ public:
+  Recovery(const fe::Model& model, const Excitation& excitation, const DampingChoice& damping,
+           const std::vector<OutputChoice>& outputs)
+      : model_(model), excitation_(excitation), damping_(damping), outputs_(outputs) {}
+
+  template <class Values>
+  void add(const VectorXd& x, const Apply<Values>& apply, const Values& p, records::ResponseSubcase& result) const {
+    const auto before = result.x.size();
+    result.x.conservativeResize(before + x.size());
+    result.x.tail(x.size()) = x;
+    const bool is_first = before == 0;
+    std::size_t at = 0, at_element = 0;
+    for (const auto& output : outputs_) {
+      const bool of_stress = output.quantity == "stress";
+      if (of_stress || output.quantity == "force") {
+        for (const auto& group : list_groups(model_, output.ids, of_stress, damping_.is_over_time)) {
+          if (is_first) result.elements.push_back(begin_curves(group, output));
+          const Values values = apply([&](const MatrixXd& U) { return group.calc(U); }, 0);
+          append(Values(group.derive(values)), result.elements[at_element++]);
+        }
+        continue;
+      }
+      const auto rows = list_rows(model_, output.ids);
+      if (is_first)
+        result.curves.push_back({output.quantity, rows.dofs, {}, {}, output.is_phase, output.is_punched});
+      append(calc<Values>(output.quantity, rows, apply, p), result.curves[at++]);
+    }
+  }
+
+ private:
+  static records::ElementCurves begin_curves(const ElementGroup& group, const OutputChoice& output) {
+    records::ElementCurves curves;
+    curves.card = group.card;
+    curves.components = group.components;
+    for (const auto* element : group.elements) curves.ids.push_back(element->id());
+    curves.is_phase = output.is_phase;
+    curves.is_punched = output.is_punched;
+    curves.is_stress = group.of_stress;
+    return curves;
+  }
+
+  template <class Values, class Curves>
+  static void append(const Values& values, Curves& curves) {
+    MatrixXd real, imag;
+    store(values, real, imag);
+    append_rows(real, curves.real);
+    append_rows(imag, curves.imag);
+  }
+
+  template <class Values>
+  Values calc(const std::string& quantity, const Rows& rows, const Apply<Values>& apply, const Values& p) const {
+    if (quantity != "spc_force") {
+      const int order = quantity == "velocity" ? 1 : quantity == "acceleration" ? 2 : 0;
+      return apply([&](const MatrixXd& U) { return pick_rows(model_, rows.gdofs, U); }, order);
+    }
+    const auto pick = [&](const MatrixXd& Y) { return pick_held(model_, Y, rows.gdofs); };
+    const auto K = [&](const MatrixXd& U) { return pick(fe::calc_stiffness_times(model_, U)); };
+    const auto S = [&](const MatrixXd& U) { return pick(times_structural(model_, damping_, U)); };
+    const auto B = [&](const MatrixXd& U) { return pick(times_damping(model_, damping_, U)); };
+    const auto M = [&](const MatrixXd& U) { return pick(fe::calc_mass_times(model_, model_.mass_kind(), U)); };
+    Values force = apply(K, 0) + apply(B, 1) + apply(M, 2) - pick(excitation_.F) * p;
+    if (!damping_.is_over_time) force += times_i(apply(S, 0));
+    return force;
+  }
+
+  const fe::Model& model_;
+  const Excitation& excitation_;
+  const DampingChoice& damping_;
+  const std::vector<OutputChoice>& outputs_;
+};
 
 template <class Values>
 Values stack(const Values& q, const Values& d) {
@@ -148,31 +239,63 @@ Values stack(const Values& q, const Values& d) {
   return z;
 }
 
-}  // namespace
-
-void recover(const fe::Model& model, const records::DynamicDeck& deck, const ResponseModel& response,
-             const Excitation& excitation, const DampingChoice& damping, const std::vector<OutputChoice>& outputs,
-             const Spectrum& spectrum, records::ResponseSubcase& result) {
-  Series<MatrixXcd> s;
-  const Eigen::RowVectorXcd rate = 2i * std::numbers::pi * spectrum.hz.transpose().cast<std::complex<double>>();
-  s.z = stack<MatrixXcd>(spectrum.q, spectrum.d);
-  s.z_dot = s.z * rate.asDiagonal();
-  s.z_ddot = s.z_dot * rate.asDiagonal();
-  s.p = spectrum.a.topRows(excitation.F.cols());
-  result.x = spectrum.hz;
-  recover_series(model, deck, response, excitation, damping, outputs, s, result);
+/// By modes: u = W z.
+template <class Values>
+Apply<Values> make_apply(const MatrixXd& W, const std::array<Values, 3>& z) {
+  return [&](const LinearMap& map, int order) -> Values { return map(W) * z[static_cast<std::size_t>(order)]; };
 }
 
-void recover(const fe::Model& model, const records::DynamicDeck& deck, const ResponseModel& response,
-             const Excitation& excitation, const DampingChoice& damping, const std::vector<OutputChoice>& outputs,
-             const History& history, records::ResponseSubcase& result) {
-  Series<MatrixXd> s;
-  s.z = stack<MatrixXd>(history.q, history.d);
-  s.z_dot = stack<MatrixXd>(history.q_dot, history.d_dot);
-  s.z_ddot = stack<MatrixXd>(history.q_ddot, history.d_ddot);
-  s.p = history.a.topRows(excitation.F.cols());
-  result.x = history.time;
-  recover_series(model, deck, response, excitation, damping, outputs, s, result);
+MatrixXd apply_to(const LinearMap& map, const MatrixXd& u) { return map(u); }
+MatrixXcd apply_to(const LinearMap& map, const MatrixXcd& u) {
+  MatrixXcd values = map(u.real()).cast<std::complex<double>>();
+  values.imag() = map(u.imag());
+  return values;
+}
+
+template <class Values>
+void add_motion(const Recovery& recovery, const MotionBlock<Values>& motion, records::ResponseSubcase& result) {
+  const std::array<const Values*, 3> of{&motion.u, &motion.u_dot, &motion.u_ddot};
+  const Apply<Values> apply = [&](const LinearMap& map, int order) {
+    return apply_to(map, *of[static_cast<std::size_t>(order)]);
+  };
+  recovery.add<Values>(motion.x, apply, motion.p, result);
+}
+
+}  // namespace
+
+void recover(const fe::Model& model, const ResponseModel& response, const Excitation& excitation,
+             const DampingChoice& damping, const std::vector<OutputChoice>& outputs, const Spectrum& spectrum,
+             records::ResponseSubcase& result) {
+  const MatrixXd W = join_shapes(response);
+  const Eigen::RowVectorXcd rate = 2i * std::numbers::pi * spectrum.hz.transpose().cast<std::complex<double>>();
+  std::array<MatrixXcd, 3> z;
+  z[0] = stack<MatrixXcd>(spectrum.q, spectrum.d);
+  z[1] = z[0] * rate.asDiagonal();
+  z[2] = z[1] * rate.asDiagonal();
+  const MatrixXcd p = spectrum.a.topRows(excitation.F.cols());
+  Recovery(model, excitation, damping, outputs).add<MatrixXcd>(spectrum.hz, make_apply(W, z), p, result);
+}
+
+void recover(const fe::Model& model, const ResponseModel& response, const Excitation& excitation,
+             const DampingChoice& damping, const std::vector<OutputChoice>& outputs, const History& history,
+             records::ResponseSubcase& result) {
+  const MatrixXd W = join_shapes(response);
+  const std::array<MatrixXd, 3> z{stack<MatrixXd>(history.q, history.d), stack<MatrixXd>(history.q_dot, history.d_dot),
+                                  stack<MatrixXd>(history.q_ddot, history.d_ddot)};
+  const MatrixXd p = history.a.topRows(excitation.F.cols());
+  Recovery(model, excitation, damping, outputs).add<MatrixXd>(history.time, make_apply(W, z), p, result);
+}
+
+void recover(const fe::Model& model, const Excitation& excitation, const DampingChoice& damping,
+             const std::vector<OutputChoice>& outputs, const MotionBlock<MatrixXcd>& motion,
+             records::ResponseSubcase& result) {
+  add_motion(Recovery(model, excitation, damping, outputs), motion, result);
+}
+
+void recover(const fe::Model& model, const Excitation& excitation, const DampingChoice& damping,
+             const std::vector<OutputChoice>& outputs, const MotionBlock<MatrixXd>& motion,
+             records::ResponseSubcase& result) {
+  add_motion(Recovery(model, excitation, damping, outputs), motion, result);
 }
 
 }  // namespace bough::modal::response

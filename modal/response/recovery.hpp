@@ -2,12 +2,13 @@
 /// \file From coordinates to curves at grids and elements.
 #include "formats/records/deck_response.hpp"
 #include "modal/response/coordinates.hpp"
+#include "modal/response/direct_model.hpp"
 
 namespace bough::modal::response {
 
 /// One quantity at chosen grids or elements.
 struct OutputChoice {
-  std::string quantity;  ///< displacement, velocity, acceleration, spc_force, force
+  std::string quantity;  ///< displacement, velocity, acceleration, spc_force, force, stress
   std::vector<int> ids;  ///< grids, or elements
   bool is_phase = false, is_punched = false;
 };
@@ -19,11 +20,19 @@ std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::
                                          const records::DynamicSubcase& subcase, const Excitation& excitation,
                                          const std::vector<int>& extra_grids, Diagnostics& diagnostics);
 
-void recover(const fe::Model& model, const records::DynamicDeck& deck, const ResponseModel& response,
-             const Excitation& excitation, const DampingChoice& damping, const std::vector<OutputChoice>& outputs,
-             const Spectrum& spectrum, records::ResponseSubcase& result);
-void recover(const fe::Model& model, const records::DynamicDeck& deck, const ResponseModel& response,
-             const Excitation& excitation, const DampingChoice& damping, const std::vector<OutputChoice>& outputs,
-             const History& history, records::ResponseSubcase& result);
+/// Solved by modes.
+void recover(const fe::Model& model, const ResponseModel& response, const Excitation& excitation,
+             const DampingChoice& damping, const std::vector<OutputChoice>& outputs, const Spectrum& spectrum,
+             records::ResponseSubcase& result);
+void recover(const fe::Model& model, const ResponseModel& response, const Excitation& excitation,
+             const DampingChoice& damping, const std::vector<OutputChoice>& outputs, const History& history,
+             records::ResponseSubcase& result);
+/// Solved directly: the samples of `motion` behind those that `result` has.
+void recover(const fe::Model& model, const Excitation& excitation, const DampingChoice& damping,
+             const std::vector<OutputChoice>& outputs, const MotionBlock<MatrixXcd>& motion,
+             records::ResponseSubcase& result);
+void recover(const fe::Model& model, const Excitation& excitation, const DampingChoice& damping,
+             const std::vector<OutputChoice>& outputs, const MotionBlock<MatrixXd>& motion,
+             records::ResponseSubcase& result);
 
 }  // namespace bough::modal::response

@@ -321,6 +321,8 @@ StartMotion calc_start(const fe::Model& model, const records::DynamicDeck& deck,
                       "add the cards or correct the id");
   if (!u.isZero(0)) start.u = model.T() * u;
   if (!v.isZero(0)) start.v = model.T() * v;
+  start.u_free = std::move(u);
+  start.v_free = std::move(v);
   return start;
 }
 

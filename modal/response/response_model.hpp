@@ -49,7 +49,8 @@ struct ResponseModel {
 };
 
 struct StartMotion {
-  VectorXd u, v;  ///< g-set, basic; empty: at rest
+  VectorXd u, v;            ///< g-set, basic; empty: at rest
+  VectorXd u_free, v_free;  ///< the same on the f-set
 };
 /// IC of the subcase. Reports modal.missing-initial, fe.missing-grid, fe.bad-component, modal.initial-held.
 StartMotion calc_start(const fe::Model& model, const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,

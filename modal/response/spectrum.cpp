@@ -10,7 +10,17 @@ namespace {
 using namespace std::complex_literals;
 using Eigen::VectorXcd;
 
-[[noreturn]] void throw_unbounded(double hz, const std::string& why) {
+std::string describe(const ResponseModel& model, Eigen::Index j) {
+  char text[64];
+  if (j < model.num_rigid) return "the model moves freely";
+  std::snprintf(text, sizeof text, "the mode at %.8g Hz is not damped",
+                std::sqrt(model.lambda(j)) / (2 * std::numbers::pi));
+  return text;
+}
+
+}  // namespace
+
+void throw_unbounded(double hz, const std::string& why) {
   char text[64];
   std::snprintf(text, sizeof text, "the response at %.8g Hz has no bound: ", hz);
   throw ComputationError("modal.unbounded-response", {}, text + why,
@@ -38,16 +48,6 @@ VectorXcd calc_amplitudes(const Excitation& excitation, double hz, VectorXcd& d)
   a.tail(k) = -1i * d;
   return a;
 }
-
-std::string describe(const ResponseModel& model, Eigen::Index j) {
-  char text[64];
-  if (j < model.num_rigid) return "the model moves freely";
-  std::snprintf(text, sizeof text, "the mode at %.8g Hz is not damped",
-                std::sqrt(model.lambda(j)) / (2 * std::numbers::pi));
-  return text;
-}
-
-}  // namespace
 
 Spectrum calc_spectrum(const ResponseModel& model, const Excitation& excitation, const VectorXd& hz) {
   const auto n = model.lambda.size();

@@ -131,7 +131,7 @@ def read(path):
                 for card, part in group["elements"].items():
                     values = part["value"][()] if "value" in part else part["real"][()] + 1j * part["imag"][()]
                     one["elements"][card] = (list(part["id"][()]), values)
-            one["modes"] = {key: value[()] for key, value in group["modes"].items()}
+            one["modes"] = {key: value[()] for key, value in group.get("modes", {}).items()}
     return found
 
 
@@ -694,7 +694,7 @@ class Refusals(ProgramTest):
     def test_warnings(self):
         self.write("d.bdf", CHAIN.format(sol=108, modes=1, case="DLOAD = 9\nFREQUENCY = 5\nSDAMPING = 6",
                                          bulk="RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ,5,.1,50.\nTABDMP1,6,CRIT\n,.01,.02,.02,.01,ENDT"))
-        text = self.bough("frequency", "d.bdf").stderr
+        text = self.bough("frequency", "d.bdf", "--modal").stderr
         for said in ["cli.by-modes", "modal.response-range", "modal.negative-damping"]:
             self.assertIn(f"[{said}]", text)
         self.write("d.bdf", self.deck("RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ,5,.1"))

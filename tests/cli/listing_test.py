@@ -78,7 +78,7 @@ class Listing(ProgramTest):
     def test_static_vectors(self):
         self.solve()
         op2 = Op2(self.path("d.op2"))
-        self.assertEqual(op2.order, ["OGPWG", "OUGV1", "OPG1", "OQG1", "OQMG1", "OEF1"])
+        self.assertEqual(op2.order, ["OGPWG", "OUGV1", "OPG1", "OQG1", "OQMG1", "OEF1", "OES1"])
         with h5py.File(self.path("d.h5")) as f:
             dofs = f["dof_map"][:]
             case = f["subcases/0"]
@@ -152,7 +152,7 @@ class Listing(ProgramTest):
     def test_other_elements_are_named(self):
         result = self.solve(bulk=ELEMENTS + "GRID,33,,1.,7.,0.\nGRID,34,,0.,7.,0.\nPSHEAR,9,1,.01\nCSHEAR,99,9,31,32,33,34\n"
                             "SPC1,1,123456,33,34\n" + HOLD)
-        self.assertEqual(result.stderr.count("cli.unlisted-elements"), 1)
+        self.assertEqual(result.stderr.count("cli.unlisted-elements"), 2)  # forces, stresses
         self.assertIn("CSHEAR", result.stderr)
 
     def test_plates(self):
@@ -184,7 +184,7 @@ class Listing(ProgramTest):
     def test_modes(self):
         self.solve(sol="103", verb="modes", bulk="EIGRL,3,,,4\n" + ELEMENTS + HOLD, extra=["--json"])
         op2 = Op2(self.path("d.op2"))
-        self.assertEqual(op2.order, ["OGPWG", "LAMA", "OUGV1", "OQG1", "OEF1"])
+        self.assertEqual(op2.order, ["OGPWG", "LAMA", "OUGV1", "OQG1", "OEF1", "OES1"])
         ((subcase, roots),) = op2.roots()
         vectors = op2.vectors("OUGV1")
         with h5py.File(self.path("d.h5")) as f:
@@ -303,6 +303,33 @@ class ResidualVectors(ProgramTest):
             self.assertIn("RVDOF1", result.stderr)
         text = self.DECK.replace("RESVEC = YES\n", "").replace("BEGIN BULK\n", "BEGIN BULK\nPARAM,RESVEC,YES\n")
         self.assertEqual(len(self.solve(text)[2]), 6)
+
+    def test_reduce(self):
+        """The same vectors in a body; none for RESVEC = NO, where the deck does not say, or with a body file."""
+        _, _, eigenvalue, phi, _ = self.solve(self.DECK)
+        def reduce(text, *arguments):
+            self.write("r.bdf", text)
+            self.bough("reduce", *(arguments or ["r.bdf", "--modes", "2"]), "-o", "r.h5")
+            with h5py.File(self.path("r.h5")) as f:
+                return f["modes/eigenvalue"][:], f["modes/phi"][:], list(f["modes/kind"][:])
+        found, shapes, kinds = reduce(self.DECK)
+        np.testing.assert_allclose(found, eigenvalue, rtol=1e-8)
+        self.assertEqual(kinds[2:], [kinds[2]] * 4)
+        self.assertNotEqual(kinds[0], kinds[2])
+        # The flexibility of the tip in y: L³ / 3EI.
+        tip = (shapes[5, 1, :] ** 2 / found).sum()
+        np.testing.assert_allclose(tip, 125 / (3 * 7e10 * 1e-6), rtol=1e-8)
+        self.assertEqual(len(reduce(self.DECK.replace("RESVEC = YES", "RESVEC = NO"))[0]), 2)
+        self.assertEqual(len(reduce(self.DECK.replace("RESVEC = YES\n", ""))[0]), 2)
+        self.write("b.toml", "[body]\ndeck = \"r.bdf\"\n[body.modes]\nnumber = 2\n")
+        self.assertEqual(len(reduce(self.DECK, "b.toml")[0]), 2)
+
+    def test_lists(self):
+        """BY and EXCEPT of THRU."""
+        for text, grids in [("RVDOF1,3,2,THRU,6,BY,2", [2, 4, 6]), ("RVDOF1,3,2,THRU,6,EXCEPT,4", [2, 3, 5, 6]),
+                            ("USET1,U6,3,2,THRU,5,EXCEPT,2,3", [4, 5]), ("RVDOF1,3,2,THRU,9", [2, 3, 4, 5, 6])]:
+            data = self.solve(self.DECK.replace("RVDOF1,3,5,THRU,6", text))[1]["residual_vectors"]
+            self.assertEqual(data["loads"][2:], [f"grid {g} component 3" for g in grids])
 
     def test_wrong_dofs(self):
         result, data, *_ = self.solve(self.DECK.replace("USET,U6,6,2", "USET,U6,1,2,6,2\nUSET,U3,2,2"))

@@ -5,6 +5,11 @@
 
 namespace bough::listing::detail {
 
+/// Letters with blanks between: "R O D".
+std::string space_out(const std::string& word);
+/// What stands above the title of a table: of which mode, frequency or time it is.
+std::vector<std::string> make_step_lines(const records::ListedStep& step);
+
 void add_force_pages(const records::ListedStep& step, const records::ListedElements& block, Pages& pages);
 void add_stress_pages(const records::ListedStep& step, const records::ListedElements& block, Pages& pages);
 

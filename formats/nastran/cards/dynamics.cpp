@@ -401,12 +401,29 @@ void read_residual_pairs(Card& card, int first, DynamicCards& r) {
   if (read.empty() && card.is_ok()) card.fail("deck.missing-field", first, "ID is blank, expected a grid at least");
   if (card.is_ok()) r.residual_dofs.insert(r.residual_dofs.end(), read.begin(), read.end());
 }
-/// C ID1 ID2 ... or C ID1 THRU ID2.
+/// C ID1 ID2 ... or C ID1 THRU ID2, with BY and EXCEPT; an id alone between exceptions must exist.
 void read_residual_list(Card& card, int first, DynamicCards& r) {
   const auto digits = read_digits(card, first);
-  for (const auto& range : read_id_list(card, first + 1, card.get_size(), "ID"))
-    if (card.is_ok())
-      r.residual_dofs.push_back({range.first, range.is_thru ? range.last : range.first, digits, card.get_location()});
+  const auto list = read_id_list(card, first + 1, card.get_size(), "ID");
+  if (!card.is_ok()) return;
+  if (list.empty()) card.fail("deck.missing-field", first + 1, "ID is blank, expected a grid at least");
+  for (const auto& range : list) {
+    // Each piece between the exceptions is a range.
+    auto except = range.except;
+    if (range.step > 1)
+      for (long id = range.first; id <= range.last; ++id)
+        if ((id - range.first) % range.step != 0) except.push_back(static_cast<int>(id));
+    std::sort(except.begin(), except.end());
+    int from = range.first;
+    const auto add = [&](int to) {
+      if (from <= to) r.residual_dofs.push_back({from, to, digits, card.get_location()});
+    };
+    for (const int id : except) {
+      add(id - 1);
+      from = std::max(from, id + 1);
+    }
+    add(range.last);
+  }
 }
 
 /// U6 of USET and USET1 asks for residual vectors; other sets belong to DMAP of the user.

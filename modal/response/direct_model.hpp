@@ -1,0 +1,51 @@
+#pragma once
+/// \file A driven model in all its free dofs: solved directly, without modes (docs/theory/response.md).
+#include <functional>
+
+#include "fe/linear/factor.hpp"
+#include "fe/matrices/system.hpp"
+#include "modal/response/frequency_list.hpp"
+#include "modal/response/response_model.hpp"
+
+namespace bough::modal::response {
+
+using Eigen::MatrixXcd;
+
+/// u = T q + X d with X = T_fixed D, on the f-set
+///   M q̈ + B q̇ + (K + i S) q = Tᵀ (F p - M X d̈ - B X ḋ - (K + i S) X d).
+/// Over time S is in B, at the rates W3 and W4.
+struct DirectModel {
+  fe::PetscMat K, M, B, S;           ///< B, S: empty where nothing damps
+  VectorXd K_diagonal, M_diagonal;   ///< |K_ii|, M_ii
+  MatrixXd X;                        ///< num_gdofs x k
+  MatrixXd F, K_X, M_X, B_X, S_X;    ///< Tᵀ of the patterns, num_fdofs x m or k
+};
+DirectModel make_direct_model(const fe::System& system, const records::DynamicDeck& deck,
+                              const records::DynamicSubcase& subcase, const Excitation& excitation,
+                              const DampingChoice& damping);
+
+/// A load that leaves no motion out: shows what a matrix does not hold. Of a fixed seed.
+VectorXd make_probe(Eigen::Index n);
+
+/// Motion on the g-set (basic), a column per sample, and the amplitudes p of the forces.
+template <class Values>
+struct MotionBlock {
+  VectorXd x;  ///< Hz, or time
+  Values u, u_dot, u_ddot, p;
+};
+
+/// One factorization of K + iS + iωB - ω²M for each frequency; `take` gets the solutions some at a time. Throws
+/// ComputationError modal.unbounded-response where the matrix is singular to working precision, and at 0 Hz where
+/// supports move by a velocity or an acceleration.
+void solve_spectrum(const fe::Model& model, const DirectModel& direct, const Excitation& excitation, const VectorXd& hz,
+                    const std::function<void(const MotionBlock<MatrixXcd>&)>& take);
+
+/// Radau IIA of three stages (Hairer & Wanner, "Solving ordinary differential equations II", 2nd ed., IV.5): of order
+/// 5, without bound of the step, and what has no mass or is far too quick for the step follows its loads at once. Loads
+/// are taken at the stages, motions of the supports are those of the modal solution (sampled_curve.hpp). For each size
+/// of step one real and one complex factorization.
+void solve_history(const fe::Model& model, const DirectModel& direct, const Excitation& excitation,
+                   const StartMotion& start, const TimeGrid& grid,
+                   const std::function<void(const MotionBlock<MatrixXd>&)>& take);
+
+}  // namespace bough::modal::response

@@ -1,0 +1,93 @@
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "fe/linear/complex_factor.hpp"
+#include "fe/linear/low_rank_sum.hpp"
+#include "fe/linear/mechanism.hpp"
+#include "modal/response/coordinates.hpp"
+#include "modal/response/direct_model.hpp"
+
+namespace bough::modal::response {
+namespace {
+
+using namespace std::complex_literals;
+using Eigen::Index;
+using Eigen::VectorXcd;
+
+/// Frequencies whose solutions are held at a time.
+constexpr Index kHeldFrequencies = 32;
+
+class DirectSpectrum {
+ public:
+  DirectSpectrum(const DirectModel& direct, Index n) : direct_(direct), n_(n), probe_(make_probe(n)) {}
+
+  /// The f-set's motion for loads p and motions d of the supports.
+  VectorXcd solve(double hz, const VectorXcd& p, const VectorXcd& d) const {
+    const double omega = 2 * std::numbers::pi * hz;
+    const auto& m = direct_;
+    const fe::PetscMat A = omega == 0 ? share(m.K) : fe::add(m.K.get(), -omega * omega, m.M.get());
+    const fe::PetscMat imaginary = make_imaginary(omega);
+    VectorXd D = m.K_diagonal + omega * omega * m.M_diagonal;
+    const double largest = D.maxCoeff();
+    D = (D.array() > 1e-14 * largest).select(D, largest > 0 ? largest : 1.0);
+    MatrixXcd sides(n_, 2);
+    sides.col(0) = m.F * p - (m.K_X - omega * omega * m.M_X) * d - 1i * ((omega * m.B_X + m.S_X) * d);
+    sides.col(1) = D.cwiseSqrt().cwiseProduct(probe_).cast<std::complex<double>>();
+    const fe::ComplexFactor factor(A, imaginary.get());
+    if (factor.is_singular()) throw_unbounded(hz, kWhy);
+    const MatrixXcd x = factor.solve(sides);
+    // Along a motion that next to nothing resists, the answer to any load is round-off.
+    const double energy = std::abs(x.col(1).dot(sides.col(1))), size = D.dot(x.col(1).cwiseAbs2());
+    if (!(energy > fe::kMechanismEnergy * size)) throw_unbounded(hz, kWhy);
+    return x.col(0);
+  }
+
+ private:
+  static constexpr const char* kWhy = "the model moves freely, or a mode at this frequency is not damped";
+
+  fe::PetscMat make_imaginary(double omega) const {
+    const auto& m = direct_;
+    if (!m.B || omega == 0) return m.S ? share(m.S) : fe::PetscMat();
+    return m.S ? fe::add(m.S.get(), omega, m.B.get()) : fe::scale(m.B.get(), omega);
+  }
+
+  const DirectModel& direct_;
+  Index n_;
+  VectorXd probe_;
+};
+
+}  // namespace
+
+VectorXd make_probe(Index n) {
+  std::mt19937 random(20);
+  VectorXd probe(n);
+  for (double& value : probe) value = 0.5 + static_cast<double>(random()) / 4294967296.0;
+  for (Index i = 1; i < n; i += 2) probe(i) = (random() & 1U) ? probe(i) : -probe(i);
+  return probe;
+}
+
+void solve_spectrum(const fe::Model& model, const DirectModel& direct, const Excitation& excitation, const VectorXd& hz,
+                    const std::function<void(const MotionBlock<MatrixXcd>&)>& take) {
+  const Index n = model.num_fdofs();
+  const DirectSpectrum solver(direct, n);
+  for (Index first = 0; first < hz.size(); first += kHeldFrequencies) {
+    const Index count = std::min(kHeldFrequencies, hz.size() - first);
+    MotionBlock<MatrixXcd> block;
+    block.x = hz.segment(first, count);
+    block.u.resize(model.num_gdofs(), count);
+    block.p.resize(excitation.F.cols(), count);
+    for (Index i = 0; i < count; ++i) {
+      VectorXcd d;
+      block.p.col(i) = calc_amplitudes(excitation, block.x(i), d).head(excitation.F.cols());
+      block.u.col(i) = direct.X * d;
+      if (n > 0) block.u.col(i) += model.T() * solver.solve(block.x(i), block.p.col(i), d);
+    }
+    const Eigen::RowVectorXcd rate = 2i * std::numbers::pi * block.x.transpose().cast<std::complex<double>>();
+    block.u_dot = block.u * rate.asDiagonal();
+    block.u_ddot = block.u_dot * rate.asDiagonal();
+    take(block);
+  }
+}
+
+}  // namespace bough::modal::response
