@@ -1,14 +1,24 @@
 #include "cli/convert/convert.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
 #include <memory>
 
+#include "cli/common/body_files.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/convert/unit_system.hpp"
+#include "formats/hdf5/files.hpp"
 #include "formats/nastran/unit_conversion.hpp"
+#include "formats/records/flex_body_units.hpp"
+#include "formats/toml/key_editor.hpp"
+#include "formats/toml/specs.hpp"
+#include "formats/toml/unit_change.hpp"
 
 namespace bough::cli {
 
@@ -18,22 +28,16 @@ namespace {
 
 struct ConvertOptions : CommonOptions {
   std::string file, units, from, to;
+  bool to_radians = false;
 };
 
-int run_convert(const ConvertOptions& o) {
-  const Console console(o.quiet, o.verbosity);
-  if (!console.is_root()) return kSuccess;
-  demand_deck(o.file);
-  if (o.units.empty() && o.from.empty())
-    throw InputError("cli.bad-units", {}, "the units are not given", "write --units mm-N-tonne:m-kg-s");
-  const auto [from_name, to_name] = o.units.empty() ? std::pair{o.from, o.to} : split_units(o.units);
-  const auto from = parse_units(from_name), to = parse_units(to_name);
+void convert_deck(const ConvertOptions& o, const records::UnitChange& change, const std::string& names,
+                  const Console& console) {
   Diagnostics diagnostics;
   const nastran::DeckEditor deck(o.file, diagnostics);
   diagnostics.throw_if_errors();
   check_output(o, o.output, deck.get_files());
-  const auto edits =
-      nastran::convert_units(deck, {from.mass / to.mass, from.length / to.length, from.time / to.time}, diagnostics);
+  const auto edits = nastran::convert_units(deck, {change.mass, change.length, change.time}, diagnostics);
   diagnostics.throw_if_errors();
   const fs::path output = o.output;
   const auto written = deck.write(output.filename().string(), edits);
@@ -45,7 +49,110 @@ int run_convert(const ConvertOptions& o) {
     write_text_file(places[i], written[i].text);
     console.print("written: " + places[i] + "\n");
   }
-  console.print(count(edits.size(), "field") + " converted from " + from_name + " to " + to_name + "\n");
+  console.print(count(edits.size(), "field") + names);
+}
+
+/// What the flexible bodies of a system file say of their loads and elements; a body whose file is not there says
+/// nothing.
+class FileFacts {
+ public:
+  explicit FileFacts(const std::string& system) {
+    Diagnostics quiet;
+    const auto spec = toml_files::read_system_spec(system, quiet);
+    for (const auto& body : spec.bodies)
+      if (!body.file.empty()) files_.emplace(body.name, (fs::path(system).parent_path() / body.file).string());
+  }
+
+  const records::FlexBody* find(const std::string& name) {
+    const auto file = files_.find(name);
+    if (file == files_.end()) return nullptr;
+    if (const auto known = bodies_.find(name); known != bodies_.end()) return known->second.get();
+    std::unique_ptr<records::FlexBody> body;
+    try {
+      Diagnostics quiet;
+      body = std::make_unique<records::FlexBody>(read_body(file->second, quiet));
+    } catch (const InputError&) {  // whoever needs it says so
+    }
+    return bodies_.emplace(name, std::move(body)).first->second.get();
+  }
+
+  int find_direction(const std::string& name, const std::string& locator) {
+    if (const auto* body = find(name))
+      for (const auto& l : body->locators)
+        if (l.name == locator) return l.direction;
+    return -1;
+  }
+
+  std::vector<std::string> find_components(const std::string& name, int element) {
+    if (const auto* body = find(name))
+      for (const auto& block : body->recovery)
+        if (std::find(block.id.begin(), block.id.end(), element) != block.id.end()) return block.components;
+    return {};
+  }
+
+ private:
+  std::map<std::string, std::string> files_;
+  std::map<std::string, std::unique_ptr<records::FlexBody>> bodies_;
+};
+
+void convert_toml(const ConvertOptions& o, const records::UnitChange& change, const std::string& names,
+                  const Console& console) {
+  check_output(o, o.output, {o.file});
+  Diagnostics diagnostics;
+  std::ifstream in(o.file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  toml_files::check_text(text, o.file, diagnostics);
+  diagnostics.throw_if_errors();
+  FileFacts facts(o.file);
+  const toml_files::BodyFacts asked{
+      [&](const std::string& body, const std::string& locator) { return facts.find_direction(body, locator); },
+      [&](const std::string& body, int element) { return facts.find_components(body, element); }};
+  int num_changed = 0;
+  const auto changed =
+      toml_files::change_units(text, o.file, change, o.to_radians, asked, diagnostics, num_changed);
+  diagnostics.throw_if_errors();
+  console.print(diagnostics);
+  write_text_file(o.output, changed);
+  console.print("written: " + o.output + "\n");
+  console.print(count(static_cast<std::size_t>(num_changed), "value") + names);
+}
+
+void convert_body(const ConvertOptions& o, const records::UnitChange& change, const std::string& names,
+                  const Console& console) {
+  check_output(o, o.output, {o.file});
+  auto body = hdf5::read_flex_body(o.file);
+  records::change_units(body, change);
+  hdf5::write_flex_body(body, o.output);
+  console.print("written: " + o.output + "\nflexible body" + names);
+}
+
+bool is_hdf5(const std::string& path) {
+  std::string begin(8, '\0');
+  std::ifstream(path, std::ios::binary).read(begin.data(), 8);
+  return begin == "\x89HDF\r\n\x1a\n";
+}
+
+int run_convert(const ConvertOptions& o) {
+  const Console console(o.quiet, o.verbosity);
+  if (!console.is_root()) return kSuccess;
+  demand_file(o.file);
+  const bool is_toml = fs::path(o.file).extension() == ".toml", has_units = !(o.units.empty() && o.from.empty());
+  if (!has_units && !(is_toml && o.to_radians))
+    throw InputError("cli.bad-units", {}, "the units are not given", "write --units mm-N-tonne:m-kg-s");
+  records::UnitChange change;
+  std::string names = " converted\n";
+  if (has_units) {
+    const auto [from_name, to_name] = o.units.empty() ? std::pair{o.from, o.to} : split_units(o.units);
+    const auto from = parse_units(from_name), to = parse_units(to_name);
+    change = {from.mass / to.mass, from.length / to.length, from.time / to.time};
+    names = " converted from " + from_name + " to " + to_name + "\n";
+  }
+  if (is_toml)
+    convert_toml(o, change, names, console);
+  else if (is_hdf5(o.file))
+    convert_body(o, change, names, console);
+  else
+    convert_deck(o, change, names, console);
   return kSuccess;
 }
 
@@ -53,19 +160,23 @@ int run_convert(const ConvertOptions& o) {
 
 void add_convert(CLI::App& app, Action& action) {
   auto o = std::make_shared<ConvertOptions>();
-  auto* verb = app.add_subcommand("convert", "A Nastran deck in other units; comments and order are kept");
-  verb->add_option("deck", o->file, "Nastran deck, with its INCLUDE files")->required();
+  auto* verb = app.add_subcommand(
+      "convert", "A deck, system, body or flexible-body file in other units; comments and order are kept");
+  verb->add_option("file", o->file, "Nastran deck with its INCLUDE files, system or body file, flexible body")
+      ->required();
   auto* units = verb->add_option("--units", o->units, "FROM:TO, as mm-N-tonne:m-kg-s")->type_name("FROM:TO");
-  auto* from = verb->add_option("--from", o->from, "The deck's units, as mm-N-tonne or in-lbf-s")->excludes(units);
+  auto* from = verb->add_option("--from", o->from, "The file's units, as mm-N-tonne or in-lbf-s")->excludes(units);
   auto* to = verb->add_option("--to", o->to, "The units wanted")->excludes(units);
   from->needs(to);
   to->needs(from);
-  add_common_options(*verb, *o, kOutput, "The deck to write");
+  verb->add_flag("--radians", o->to_radians, "System file: keys in degrees (_deg) become radians");
+  add_common_options(*verb, *o, kOutput, "The file to write");
   verb->get_option("--output")->required();
   verb->footer(
       "Units: m mm cm um km in ft, kg g mg t tonne lbm slug slinch, N mN kN MN lbf kgf, s ms min h; of mass, length, "
       "force and time three give the fourth.\n"
-      "Example:\n  bough convert wing.bdf --units mm-N-tonne:m-kg-s -o wing-si.bdf");
+      "Example:\n  bough convert wing.bdf --units mm-N-tonne:m-kg-s -o wing-si.bdf\n"
+      "  bough convert spinup.toml --units m-kg-s:mm-N-tonne --radians -o mm/spinup.toml");
   verb->callback([&action, o] { action = [o] { return run_convert(*o); }; });
 }
 

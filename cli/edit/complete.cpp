@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "cli/edit/body_nodes.hpp"
 #include "cli/edit/edit_session.hpp"
 
 namespace bough::cli {
@@ -19,6 +20,13 @@ std::vector<std::string> list_values(const KindHelp& kind, const std::string& ke
   if (help == nullptr) return {};
   if (help->type == "boolean") return {"true", "false"};
   return help->choices;
+}
+
+/// The key whose body a key of nodes is of: "node" -> "body", "parent_node" -> "parent"; empty for other keys.
+std::string get_body_key(const std::string& key) {
+  if (key == "node") return "body";
+  if (key == "to_node") return "to_body";
+  return key == "parent_node" || key == "child_node" ? key.substr(0, key.find('_')) : "";
 }
 
 }  // namespace
@@ -58,12 +66,25 @@ std::vector<std::string> EditSession::complete(const std::string& line) const {
       if ((is_name || is_signal) && !item.name.empty()) offered.push_back(before + item.name);
     }
   };
+  const auto add_nodes = [&](const std::string& before, const std::string& body) {
+    for (const auto& id : list_body_nodes(text_.get_text(), text_.get_file(), body)) offered.push_back(before + id);
+  };
+  // What the line says of a key before the word: "... body=boom node=".
+  const auto find_given = [&](const std::string& key) -> std::string {
+    const auto at = line.find(" " + key + "=");
+    if (at == std::string::npos) return {};
+    const auto from = at + key.size() + 2;
+    return line.substr(from, line.find_first_of(" \t", from) - from);
+  };
   const auto equals = word.find('=');
   if (command == "list" || (command == "add" && is_second)) {
     add_kinds();
   } else if (command == "add") {
     if (const auto* kind = find(kinds, argument)) {
-      if (equals != std::string::npos)
+      const auto body_key = equals == std::string::npos ? "" : get_body_key(word.substr(0, equals));
+      if (!body_key.empty())
+        add_nodes(word.substr(0, equals + 1), find_given(body_key));
+      else if (equals != std::string::npos)
         add_values(*kind, word.substr(0, equals + 1), word.substr(0, equals));
       else
         for (const auto& key : kind->keys) offered.push_back(key.name + "=");
@@ -75,7 +96,10 @@ std::vector<std::string> EditSession::complete(const std::string& line) const {
       for (const auto& name : {item.name, item.path(), item.kind + "." + item.name}) {
         if (kind == nullptr || name.empty() || !path.starts_with(name + ".")) continue;
         const auto key = path.substr(name.size() + 1);
-        if (equals != std::string::npos) {
+        if (const auto body_key = get_body_key(key); equals != std::string::npos && !body_key.empty()) {
+          const auto body = toml_files::get_value_text(text_.get_text(), item.path() + "." + body_key);
+          if (body.size() > 2) add_nodes(word.substr(0, equals + 1), body.substr(1, body.size() - 2));
+        } else if (equals != std::string::npos) {
           add_values(*kind, word.substr(0, equals + 1), key);
         } else if (command == "set" || command == "change") {
           for (const auto& help : kind->keys) offered.push_back(name + "." + help.name + "=");

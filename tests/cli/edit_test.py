@@ -156,6 +156,16 @@ class Edit(ProgramTest):
         self.assertIn("one of fixed, revolute", said)
         self.assertIn("rename NAME NEW", said)
 
+    def test_completion_of_nodes(self):
+        self.copy_example("ex01-spinup")
+        self.bough("reduce", "boom.toml", "-q")
+        said = self.edit("complete add sensor s type=position body=boom node=4", "complete set tip_deflection.node=39",
+                         "complete add sensor s body=nobody node=", file="spinup.toml").stdout.split()
+        self.assertEqual(said, ["node=4", "node=40", "node=41", "tip_deflection.node=39"])
+        self.write("p.toml", SYSTEM.replace("mass = 2.0", "mass = 2.0\nnodes = [{id = 7, position = [0, 0, -1]}]"))
+        self.assertEqual(self.edit("complete add hinge h parent=bob parent_node=").stdout.split(),
+                         ["parent_node=0", "parent_node=7"])
+
     def test_each_example_is_kept_byte_for_byte(self):
         for folder in sorted(os.listdir(os.path.join(SOURCE, "data/examples"))):
             path = os.path.join(SOURCE, "data/examples", folder)

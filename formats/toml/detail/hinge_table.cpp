@@ -9,14 +9,8 @@ namespace bough::toml_files {
 namespace {
 
 using records::HingeType;
+using Coordinates = HingeCoordinates;
 constexpr double kRadPerDegree = std::numbers::pi / 180;
-
-/// Which coordinates (q) and rates (u) of a hinge are angles, in the order of the file: 'a' angle, 'l' length,
-/// 'q' quaternion component.
-struct Coordinates {
-  HingeType type;
-  std::string q, u;
-};
 
 const Coordinates& get_coordinates(const std::string& type) {
   static const std::map<std::string, Coordinates> all{{"fixed", {HingeType::Fixed, "", ""}},
@@ -32,17 +26,24 @@ const Coordinates& get_coordinates(const std::string& type) {
   return it == all.end() ? all.at("fixed") : it->second;
 }
 
-/// Those of a gimbal or a general hinge are in its own keys.
-Coordinates read_coordinates(const Fields& table, const std::string& type) {
+}  // namespace
+
+HingeCoordinates list_coordinates(const std::string& type, const std::string& given, const std::string& translations) {
   if (type != "gimbal" && type != "general") return get_coordinates(type);
-  Coordinates c{HingeType::General, "", ""};
-  const std::string rotations = table.get_string("rotations", type == "gimbal" ? "xyz" : "");
+  HingeCoordinates c{HingeType::General, "", ""};
+  const std::string rotations = given.empty() && type == "gimbal" ? "xyz" : given;
   c.q = rotations == "q" ? "qqqq" : std::string(rotations.size(), 'a');
   c.u = rotations == "q" ? "aaa" : c.q;
-  const std::string travels(table.get_string("translations").size(), 'l');
+  const std::string travels(translations.size(), 'l');
   c.q += travels;
   c.u += travels;
   return c;
+}
+
+namespace {
+
+Coordinates read_coordinates(const Fields& table, const std::string& type) {
+  return list_coordinates(type, table.get_string("rotations"), table.get_string("translations"));
 }
 
 class HingeReader {

@@ -5,6 +5,16 @@
 
 namespace bough::toml_files {
 
+/// Which coordinates (q) and rates (u) of a hinge are angles, in the order of the file: 'a' angle, 'l' length,
+/// 'q' quaternion component.
+struct HingeCoordinates {
+  records::HingeType type;
+  std::string q, u;
+};
+/// Of a type; those of a gimbal or a general hinge are in its own keys. An unknown type has none.
+HingeCoordinates list_coordinates(const std::string& type, const std::string& rotations,
+                                  const std::string& translations);
+
 /// One hinge. Lists have as many entries as the hinge has coordinates ("toml.wrong-length"), one number of stiffness or
 /// damping stands for all; degrees become radians ("toml.no-angle" where the hinge has no angle).
 records::HingeRecord read_hinge(const Fields& table, Diagnostics& diagnostics);

@@ -1,0 +1,79 @@
+#pragma once
+/// \file Units of the signals of a system file: of sensors and actuators by what they are, of functions and
+/// controllers by what takes them.
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <toml++/toml.h>
+
+#include "formats/toml/detail/hinge_table.hpp"
+#include "formats/toml/unit_change.hpp"
+
+namespace bough::toml_files {
+
+/// A wire: what arrives at an input, and the [[connect]] that it comes by.
+struct Wire {
+  std::string from;
+  const toml::node* node = nullptr;
+};
+
+class SignalUnits {
+ public:
+  SignalUnits(const toml::table& root, const records::UnitChange& change, const BodyFacts& facts);
+
+  /// Units of a hinge's coordinates as they stand in lists of positions and of rates, and of the efforts along them.
+  std::vector<double> list_positions(const std::string& hinge) const;
+  std::vector<double> list_rates(const std::string& hinge) const;
+  std::vector<double> list_efforts(const std::string& hinge) const;
+  bool is_angle(const std::string& hinge, bool of_positions, std::size_t i) const;
+  /// Of one coordinate, counted from 1.
+  double get_rate_unit(const std::string& hinge, long coordinate) const;
+  double get_effort_unit(const std::string& hinge, long coordinate) const;
+
+  /// What arrives at "law", "law:reference" or "law:rate", by its own keys and by [[connect]].
+  std::vector<Wire> list_wires(const toml::table& block, const std::string& key, const std::string& port) const;
+  /// Units of a signal's components; empty where they cannot be told.
+  std::vector<double> list_units(const std::string& signal);
+  /// The unit of one component or of all alike; nothing where it cannot be told.
+  std::optional<double> find_unit(const std::string& signal);
+  /// The unit of what a controller gives out; of a function's values.
+  double get_output_unit(const toml::table& controller);
+  double get_function_unit(const std::string& name);
+  /// What each hinge, force and actuator that takes this function expects of it; of a controller, each force.
+  std::vector<double> list_demands(const std::string& name) const;
+  /// Of what a force is multiplied by.
+  double get_multiplier_unit(const toml::table& force) const;
+  /// That an actuator takes.
+  double get_command_unit(const toml::table& actuator) const;
+
+  const toml::table* find(const char* kind, const std::string& name) const;
+  const records::UnitChange& change() const { return c_; }
+  const toml::table& root() const { return root_; }
+  double force() const { return c_.calc_force(); }
+
+  /// Whether a controller gives out what it takes in, so that its output has the unit of its first input.
+  static bool is_passing(const toml::table& controller);
+
+ private:
+  HingeCoordinates get_coordinates(const std::string& hinge) const;
+  std::vector<double> list_sensor_units(const toml::table& sensor) const;
+  std::vector<double> list_actuator_units(const toml::table& actuator) const;
+  std::optional<double> find_channel_unit(const std::string& channel) const;
+  /// What the takers of this function or controller expect of it.
+  std::optional<double> find_demand(const std::string& name);
+  std::optional<double> find_taken(const std::string& name, const toml::table& taker, const std::string& kind);
+
+  const toml::table& root_;
+  const records::UnitChange& c_;
+  const BodyFacts& facts_;
+  std::map<std::string, double> known_;
+  std::vector<std::string> asked_;
+};
+
+/// The entries of a list of tables.
+std::vector<const toml::table*> list_tables(const toml::table& root, const char* kind);
+std::string get_text(const toml::table& table, const char* key, const std::string& otherwise = {});
+
+}  // namespace bough::toml_files
