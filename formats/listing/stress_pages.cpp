@@ -13,7 +13,9 @@ using records::ListedStep;
 /// 13 columns; blank where there is no number.
 std::string show_value(double value) { return std::isnan(value) ? std::string(13, ' ') : show_real(value); }
 /// A margin of safety: two digits and a power.
-std::string show_margin(double value) { return std::isnan(value) ? std::string(8, ' ') : fmt::format("{:8.1E}", value); }
+std::string show_margin(double value) {
+  return std::isnan(value) ? std::string(8, ' ') : fmt::format("{:8.1E}", value);
+}
 
 std::string show_columns(const ListedElements& block, std::size_t k, int first, int last, const char* gap) {
   std::string text;
@@ -25,8 +27,8 @@ std::string show_columns(const ListedElements& block, std::size_t k, int first, 
 void add_bar_stresses(const ListedElements& block, Pages& pages) {
   for (std::size_t k = 0; k < block.id.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(k);
-    std::string text = fmt::format("0{:>8}   {} {}", block.id[k], show_columns(block, k, 0, 7, "  "),
-                                   show_margin(block.real(row, 7)));
+    std::string text =
+        fmt::format("0{:>8}   {} {}", block.id[k], show_columns(block, k, 0, 7, "  "), show_margin(block.real(row, 7)));
     text += fmt::format("\n{:12}{}{:17}{} {}", "", show_columns(block, k, 8, 12, "  "), "",
                         show_columns(block, k, 12, 14, "  "), show_margin(block.real(row, 14)));
     pages.add_row(text, 2);
@@ -50,9 +52,9 @@ void add_rod_stresses(const ListedElements& block, Pages& pages) {
     std::string text;
     for (std::size_t i = k; i < std::min(k + 2, block.id.size()); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      text += fmt::format("{:>14}  {} {}  {} {}", block.id[i], show_value(block.real(row, 0)),
-                          show_margin(block.real(row, 1)), show_value(block.real(row, 2)),
-                          show_margin(block.real(row, 3)));
+      text +=
+          fmt::format("{:>14}  {} {}  {} {}", block.id[i], show_value(block.real(row, 0)),
+                      show_margin(block.real(row, 1)), show_value(block.real(row, 2)), show_margin(block.real(row, 3)));
     }
     pages.add_row(text);
   }
@@ -120,43 +122,48 @@ void add_stress_pages(const ListedStep& step, const ListedElements& block, Pages
   };
   switch (block.type) {
     case 34:
-      begin("S T R E S S E S   I N   B A R   E L E M E N T S          ( C B A R )",
-            {"  ELEMENT        SA1            SA2            SA3            SA4           AXIAL          SA-MAX         "
-             "SA-MIN     M.S.-T",
-             "    ID.          SB1            SB2            SB3            SB4           STRESS         SB-MAX         "
-             "SB-MIN     M.S.-C"});
+      begin(
+          "S T R E S S E S   I N   B A R   E L E M E N T S          ( C B A R )",
+          {"  ELEMENT        SA1            SA2            SA3            SA4           AXIAL          SA-MAX         "
+           "SA-MIN     M.S.-T",
+           "    ID.          SB1            SB2            SB3            SB4           STRESS         SB-MAX         "
+           "SB-MIN     M.S.-C"});
       return add_bar_stresses(block, pages);
     case 2:
       begin("S T R E S S E S   I N   B E A M   E L E M E N T S        ( C B E A M )",
             {"                    STAT DIST/",
-             "   ELEMENT-ID  GRID   LENGTH    SXC           SXD           SXE           SXF           S-MAX         S-MIN "
+             "   ELEMENT-ID  GRID   LENGTH    SXC           SXD           SXE           SXF           S-MAX         "
+             "S-MIN "
              "        M.S.-T   M.S.-C"});
       return add_beam_stresses(block, pages);
     case 33:
     case 74:
-      begin((block.type == 33 ? "S T R E S S E S   I N   Q U A D R I L A T E R A L   E L E M E N T S   ( "
-                              : "S T R E S S E S   I N   T R I A N G U L A R   E L E M E N T S   ( ") +
-                name_plate(block.type) + " )",
-            {"  ELEMENT      FIBER               STRESSES IN ELEMENT COORD SYSTEM             PRINCIPAL STRESSES (ZERO "
-             "SHEAR)",
-             "    ID.       DISTANCE           NORMAL-X       NORMAL-Y      SHEAR-XY       ANGLE         MAJOR           "
-             "MINOR        VON MISES"});
+      begin(
+          (block.type == 33 ? "S T R E S S E S   I N   Q U A D R I L A T E R A L   E L E M E N T S   ( "
+                            : "S T R E S S E S   I N   T R I A N G U L A R   E L E M E N T S   ( ") +
+              name_plate(block.type) + " )",
+          {"  ELEMENT      FIBER               STRESSES IN ELEMENT COORD SYSTEM             PRINCIPAL STRESSES (ZERO "
+           "SHEAR)",
+           "    ID.       DISTANCE           NORMAL-X       NORMAL-Y      SHEAR-XY       ANGLE         MAJOR           "
+           "MINOR        VON MISES"});
       return add_plate_stresses(block, pages);
     case 95:
     case 97:
-      begin("S T R E S S E S   I N   L A Y E R E D   C O M P O S I T E   E L E M E N T S   ( " + name_plate(block.type) +
-                " )",
-            {"   ELEMENT  PLY   STRESSES IN FIBER AND MATRIX DIRECTIONS      INTER-LAMINAR  STRESSES   PRINCIPAL "
-             "STRESSES (ZERO SHEAR)      MAX",
-             "     ID      ID     NORMAL-1      NORMAL-2      SHEAR-12      SHEAR XZ-MAT  SHEAR YZ-MAT   ANGLE    MAJOR "
-             "        MINOR        SHEAR"});
+      begin(
+          "S T R E S S E S   I N   L A Y E R E D   C O M P O S I T E   E L E M E N T S   ( " + name_plate(block.type) +
+              " )",
+          {"   ELEMENT  PLY   STRESSES IN FIBER AND MATRIX DIRECTIONS      INTER-LAMINAR  STRESSES   PRINCIPAL "
+           "STRESSES (ZERO SHEAR)      MAX",
+           "     ID      ID     NORMAL-1      NORMAL-2      SHEAR-12      SHEAR XZ-MAT  SHEAR YZ-MAT   ANGLE    MAJOR "
+           "        MINOR        SHEAR"});
       return add_ply_stresses(block, pages);
     case 39:
     case 67:
     case 68:
-      begin(block.type == 67   ? "S T R E S S E S   I N   H E X A H E D R O N   S O L I D   E L E M E N T S   ( H E X A )"
-            : block.type == 68 ? "S T R E S S E S   I N   P E N T A H E D R O N   S O L I D   E L E M E N T S   ( P E N T A )"
-                               : "S T R E S S E S   I N   T E T R A H E D R O N   S O L I D   E L E M E N T S   ( C T E T R A )",
+      begin(block.type == 67 ? "S T R E S S E S   I N   H E X A H E D R O N   S O L I D   E L E M E N T S   ( H E X A )"
+            : block.type == 68
+                ? "S T R E S S E S   I N   P E N T A H E D R O N   S O L I D   E L E M E N T S   ( P E N T A )"
+                : "S T R E S S E S   I N   T E T R A H E D R O N   S O L I D   E L E M E N T S   ( C T E T R A )",
             {"0                CORNER        ------CENTER AND CORNER POINT STRESSES---------       DIR.  COSINES       "
              "MEAN",
              "  ELEMENT-ID    GRID-ID        NORMAL              SHEAR             PRINCIPAL       -A-  -B-  -C-     "
@@ -164,9 +171,11 @@ void add_stress_pages(const ListedStep& step, const ListedElements& block, Pages
       return add_solid_stresses(block, pages);
     default:
       begin("S T R E S S E S   I N   R O D   E L E M E N T S      ( " + space_out(block.card) + " )",
-            {"       ELEMENT       AXIAL       SAFETY      TORSIONAL     SAFETY       ELEMENT       AXIAL       SAFETY     "
+            {"       ELEMENT       AXIAL       SAFETY      TORSIONAL     SAFETY       ELEMENT       AXIAL       SAFETY "
+             "    "
              " TORSIONAL     SAFETY",
-             "         ID.        STRESS       MARGIN        STRESS      MARGIN         ID.        STRESS       MARGIN     "
+             "         ID.        STRESS       MARGIN        STRESS      MARGIN         ID.        STRESS       MARGIN "
+             "    "
              "   STRESS      MARGIN"});
       return add_rod_stresses(block, pages);
   }
