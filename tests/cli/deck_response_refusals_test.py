@@ -1,0 +1,68 @@
+"""What `frequency` and `transient` refuse, and what they warn of: each with its id, its line, its words."""
+import unittest
+
+from deck_response_test import CHAIN, ONE
+from support import ProgramTest
+
+
+class Refusals(ProgramTest):
+    def refuse(self, error, deck, verb="frequency", says=(), code=1):
+        self.write("d.bdf", deck)
+        self.fails(code, verb, "d.bdf", error=error, says=says)
+
+    def deck(self, bulk, case="DLOAD = 9\nFREQUENCY = 5", sol=111):
+        return ONE.format(sol=sol, case=case, bulk=bulk)
+
+    def test_what_is_missing(self):
+        good = "RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ,5,1.\n"
+        self.refuse("modal.no-dynamic-load", self.deck(good, "FREQUENCY = 5"))
+        self.refuse("modal.no-dynamic-load", self.deck(good, "DLOAD = 8\nFREQUENCY = 5"), says=["d.bdf:5"])
+        self.refuse("modal.no-frequencies", self.deck(good, "DLOAD = 9"))
+        self.refuse("modal.no-frequencies", self.deck(good, "DLOAD = 9\nFREQUENCY = 6"))
+        self.refuse("modal.no-frequencies", self.deck(good.replace("FREQ,5,1.", "FREQ4,5,7.,8."), "DLOAD = 9\nFREQUENCY = 5"))
+        self.refuse("modal.missing-load", self.deck(good.replace("DAREA,10", "DAREA,11")), says=["EXCITEID 10"])
+        self.refuse("modal.missing-load", self.deck(good.replace("DAREA,10,1,1,2.", "SPCD,10,2,1,1.")), says=["TYPE DISP"])
+        self.refuse("modal.missing-load", self.deck(good + "DLOAD,19,1.,1.,77", "DLOAD = 19\nFREQUENCY = 5"))
+        self.refuse("modal.missing-load", self.deck(good.replace("10,,,1.", "10,77,,1.")), says=["DELAY 77"])
+        self.refuse("modal.missing-table", self.deck(good.replace("1.\nDAREA", "3\nDAREA")), says=["table 3"])
+        self.refuse("modal.missing-table", self.deck(good, "DLOAD = 9\nFREQUENCY = 5\nSDAMPING = 4"))
+        self.refuse("modal.wrong-load", self.deck(good.replace("RLOAD1,9,10,,,1.", "TLOAD2,9,10,,,0.,1.")))
+        self.refuse("modal.unsupported-load", self.deck(good + "LSEQ,40,10,,3", "DLOAD = 9\nFREQUENCY = 5\nLOADSET = 40"))
+        self.refuse("fe.spcd-not-fixed", self.deck("RLOAD1,9,10,,,1.,,ACCE\nSPCD,10,1,1,2.\nFREQ,5,1."))
+        self.refuse("fe.missing-grid", self.deck(good.replace("DAREA,10,1,", "DAREA,10,5,")))
+        self.refuse("fe.bad-component", self.deck(good.replace("10,1,1,2.", "10,1,,2.")))
+        time = "TLOAD2,9,10,,,0.,1.\nDAREA,10,1,1,2.\n"
+        self.refuse("modal.no-time-steps", self.deck(time, "DLOAD = 9"), "transient")
+        self.refuse("modal.no-time-steps", self.deck(time, "DLOAD = 9\nTSTEP = 3"), "transient")
+        self.refuse("modal.missing-initial", self.deck(time + "TSTEP,3,5,.1", "DLOAD = 9\nTSTEP = 3\nIC = 4"), "transient")
+        self.refuse("modal.initial-held", self.deck(time + "TSTEP,3,5,.1\nTIC,4,2,1,1.", "DLOAD = 9\nTSTEP = 3\nIC = 4"), "transient")
+
+    def test_fields(self):
+        good = "RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ,5,1.\n"
+        for card, says in [("TABLED1,3\n,0.,1.,2.,1.", "ENDT"), ("TABLED1,3\n,0.,1.,2.,1.,1.,1.,ENDT", "one direction"),
+                           ("TABLED1,3\n,0.,1.,1.,1.,1.,0.,ENDT", "jumps at its first or last"),
+                           ("TABLED2,3,1.\n,0.,0.,0.,1.,1.,1.,ENDT", "jumps at its first or last"),
+                           ("TABLED1,3,LOG\n,0.,1.,2.,1.,ENDT", "LOG axis"), ("TABLED3,3,0.,0.\n,0.,1.,2.,1.,ENDT", "X2"),
+                           ("TLOAD2,3,10,,,1.,1.", "T2"), ("RLOAD1,3,10", "TC and TD"), ("RLOAD2,3,10", "TB"), ("TSTEP,3,10", "DT"),
+                           ("FREQ1,3,1.", "DF"), ("FREQ2,3,0.,1.", "F1"), ("FREQ3,3,1.,2.,,1", "NEF"), ("FREQ4,3,1.,2.,2.", "FSPD"),
+                           ("RLOAD1,3,10,,,1.,,FORCE", "TYPE"), ("TABDMP1,3,Q\n,0.,1.,2.,0.,ENDT", "quality"), ("DLOAD,3,1.", "S1")]:
+            self.write("d.bdf", self.deck(good + card))
+            self.fails(1, "frequency", "d.bdf", says=[says, "d.bdf:2"])
+
+    def test_unbounded(self):
+        self.refuse("modal.unbounded-response", self.deck(f"RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ4,5,.1,1.,.1,1"), code=3,
+                    says=["is not damped"])
+        self.refuse("modal.unbounded-response", self.deck("RLOAD1,9,10,,,1.,,ACCE\nSPCD,10,2,1,2.\nFREQ,5,0.,1."), code=3)
+
+    def test_warnings(self):
+        self.write("d.bdf", CHAIN.format(sol=108, modes=1, case="DLOAD = 9\nFREQUENCY = 5\nSDAMPING = 6",
+                                         bulk="RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ,5,.1,50.\nTABDMP1,6,CRIT\n,.01,.02,.02,.01,ENDT"))
+        text = self.bough("frequency", "d.bdf", "--modal").stderr
+        for said in ["cli.by-modes", "modal.response-range", "modal.negative-damping"]:
+            self.assertIn(f"[{said}]", text)
+        self.write("d.bdf", self.deck("RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ,5,.1"))
+        self.assertRegex(self.bough("modes", "d.bdf").stderr, "RLOAD1 is not read")
+
+
+if __name__ == "__main__":
+    unittest.main()
