@@ -5,6 +5,7 @@ import unittest
 import h5py
 import numpy as np
 
+import deck_response_refusals_test as refusals
 import deck_response_test as base
 from deck_response_test import CHAIN, ONE
 
@@ -226,7 +227,7 @@ class BetweenSteps(base.OneMass):
         self.near(r["displacement"][1, 1], .1 * np.cos(3 * t) - .2 / 3 * np.sin(3 * t), 1e-10)
 
 
-class Refused(base.Refusals):
+class Refused(refusals.Refusals):
     def test_loads(self):
         good = "RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ,5,1.\n"
         self.refuse("modal.wrong-load", self.deck(good + "DLOAD,9,2.,1.,9"), says=["RLOAD1 9", "d.bdf:"])

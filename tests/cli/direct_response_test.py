@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 from scipy.integrate import solve_ivp
 
+import deck_response_refusals_test as refusals
 import deck_response_test as modal
 from deck_response_test import CHAIN, FRAME, ONE, C, K, M
 
@@ -253,7 +254,7 @@ class Stresses(modal.DeckResponse):
             self.near(s["von_mises@top"], np.sqrt(x * x - x * y + y * y + 3 * xy * xy), 1e-12)
 
 
-class Choices(modal.Refusals):
+class Choices(refusals.Refusals):
     def test_which_solution(self):
         good = "RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ,5,1.\n"
         for sol, options, is_direct in [(108, (), True), (111, (), False), (111, ("--direct",), True),
@@ -283,7 +284,7 @@ class Choices(modal.Refusals):
             "MAT1,1,7.,,.3,2.\nPBAR,1,1,1.,1.,1.,1.\nCBAR,9,1,3,4,0.,1.,0."), "transient", code=3, says=["neither mass nor"])
 
 
-for name in dir(modal.Refusals):
+for name in dir(refusals.Refusals):
     if name.startswith("test_") and name not in vars(Choices):
         setattr(Choices, name, None)
 del name
