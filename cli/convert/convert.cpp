@@ -13,6 +13,7 @@
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/convert/unit_system.hpp"
+#include "formats/hdf5/body_accuracy.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/nastran/unit_conversion.hpp"
 #include "formats/records/flex_body_units.hpp"
@@ -122,7 +123,7 @@ void convert_body(const ConvertOptions& o, const records::UnitChange& change, co
   check_output(o, o.output, {o.file});
   auto body = hdf5::read_flex_body(o.file);
   records::change_units(body, change);
-  hdf5::write_flex_body(body, o.output);
+  hdf5::write_flex_body(body, hdf5::read_body_accuracy(o.file), o.output);
   console.print("written: " + o.output + "\nflexible body" + names);
 }
 

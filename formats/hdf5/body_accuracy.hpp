@@ -14,4 +14,7 @@ struct BodyAccuracy {
 /// As write_flex_body of files.hpp.
 void write_flex_body(const records::FlexBody& body, const BodyAccuracy& accuracy, const std::string& path);
 
+/// What the file says of itself. As read_flex_body of files.hpp.
+BodyAccuracy read_body_accuracy(const std::string& path);
+
 }  // namespace bough::hdf5

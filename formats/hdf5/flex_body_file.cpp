@@ -268,6 +268,12 @@ void write_flex_body(const FlexBody& body, const BodyAccuracy& accuracy, const s
   file.commit();
 }
 
+BodyAccuracy read_body_accuracy(const std::string& path) {
+  FileReader file(path, kFormat, kFlexBodyFormatVersion);
+  if (!file.has("/accuracy")) return {};
+  return {file.read_number("/accuracy/mass"), file.read_number("/accuracy/stiffness")};
+}
+
 FlexBody read_flex_body(const std::string& path) {
   FileReader file(path, kFormat, kFlexBodyFormatVersion);
   FlexBody body;
