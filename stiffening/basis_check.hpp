@@ -2,6 +2,7 @@
 /// \file The modal matrices of a body against its shapes.
 #include "base/diagnostic.hpp"
 #include "fe/model/model.hpp"
+#include "modal/bases/fixed_interface.hpp"
 
 namespace bough::stiffening {
 
@@ -9,6 +10,7 @@ namespace bough::stiffening {
 /// √(M_ii M_jj) and √(K_ii K_jj).
 struct BasisCheck {
   double mass = 0, stiffness = 0;
+  modal::bases::ModesCheck modes;  ///< of the normal modes; none found: none were solved for
 };
 inline constexpr double kBasisWarning = 1e-5;
 

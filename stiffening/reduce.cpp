@@ -101,7 +101,8 @@ void Reduction::add_mechanism_error(const std::string& what) {
 }
 
 void Reduction::check_modal_matrices(const fe::Model& model) {
-  const auto check = check_basis(model, Phi_, body_.modal_mass, body_.modal_stiffness);
+  auto check = check_basis(model, Phi_, body_.modal_mass, body_.modal_stiffness);
+  check.modes = modes_check_;
   if (options_.check) *options_.check = check;
   report_basis(check, where(), diagnostics_);
 }

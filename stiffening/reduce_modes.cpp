@@ -59,6 +59,7 @@ void Reduction::set_modes(const fe::System& system, const StaticSolve& solve) {
   const auto augmented = augment(model);
   auto basis = modal::bases::calc_basis(augmented ? augmented->system : system, options, solve, diagnostics_);
   check_rigid(basis);
+  modes_check_ = basis.check;
   std::string unused;
   for (const int i : basis.unused_loads) unused += (unused.empty() ? "" : ", ") + names[static_cast<std::size_t>(i)];
   if (!unused.empty())

@@ -69,6 +69,7 @@ class Reduction {
   Diagnostics& diagnostics_;
   records::FlexBody body_;
   MatrixXd Phi_;
+  modal::bases::ModesCheck modes_check_;
   fe::ModelOptions model_options_;  ///< that the model was built with
   std::vector<BodyLoad> loads_;
   const fe::SymmetricFactor* factor_ = nullptr;  // of K, kept by the static solver

@@ -155,6 +155,19 @@ Vector3d calc_masses(const records::FlexBody& body) {
   return masses;
 }
 
+/// What proves that no normal mode is missing and that each is one.
+std::string format_modes_check(const records::FlexBody& body, const modal::bases::ModesCheck& check) {
+  if (check.num_found == 0) return {};
+  const bool is_held = std::find(body.kind.begin(), body.kind.end(), records::ModeKind::Constraint) != body.kind.end();
+  const std::string count =
+      check.inertia_count < 0
+          ? "none, or none to be trusted"
+          : fmt::format("{} eigenvalues up to the highest{}, {} found: none missed{}", check.inertia_count,
+                        is_held ? " with the interface held" : "", check.num_found,
+                        check.inertia_count > check.num_found ? " (the others are copies of the last root)" : "");
+  return fmt::format("Sturm count: {}\nlargest residual of a mode: {:.1e}\n", count, check.residual);
+}
+
 std::string format_summary(const records::FlexBody& body, const stiffening::BasisCheck& basis,
                            const std::string& output) {
   const Vector3d masses = calc_masses(body);
@@ -171,11 +184,11 @@ std::string format_summary(const records::FlexBody& body, const stiffening::Basi
   }
   return fmt::format(
       "body \"{}\": mass {:.8g}, centre of mass ({:.6g}, {:.6g}, {:.6g}), {} nodes\n{}{} locators, "
-      "interface nodes: {}\nmodal matrices against the shapes: mass {:.1e}, stiffness {:.1e}\nwritten: {}\n",
+      "interface nodes: {}\n{}modal matrices against the shapes: mass {:.1e}, stiffness {:.1e}\nwritten: {}\n",
       body.name, body.mass, body.cg.x() + 0.0, body.cg.y() + 0.0, body.cg.z() + 0.0, body.num_nodes(), table.to_text(),
       body.locators.size(),
-      body.interface_nodes.empty() ? "none" : fmt::format("{}", fmt::join(body.interface_nodes, " ")), basis.mass,
-      basis.stiffness, output);
+      body.interface_nodes.empty() ? "none" : fmt::format("{}", fmt::join(body.interface_nodes, " ")),
+      format_modes_check(body, basis.modes), basis.mass, basis.stiffness, output);
 }
 
 /// Each mode of the body with the most similar one of the others.
@@ -233,6 +246,10 @@ int run_reduce(const ReduceVerbOptions& o) {
                         {"interface_nodes", body.interface_nodes},
                         {"num_locators", body.locators.size()},
                         {"accuracy", {{"mass", basis.mass}, {"stiffness", basis.stiffness}}}};
+    if (basis.modes.num_found > 0)
+      json["modes_check"] = {{"found", basis.modes.num_found},
+                             {"inertia_count", basis.modes.inertia_count},
+                             {"residual", basis.modes.residual}};
     if (check) json["check"] = {{"frequency_hz", to_json_list(check->frequency_hz)}, {"mac", to_json(check->mac)}};
     console.print_data(json.dump(2) + "\n");
   } else {

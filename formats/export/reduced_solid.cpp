@@ -66,7 +66,8 @@ std::optional<ReducedSolid> calc_reduced_solid(const records::FlexBody& body, st
     return {};
   }
   MatrixXd a(num_frame_dofs, num_frame_dofs + B.cols());
-  a << lu.inverse(), -lu.solve(B);
+  a.leftCols(num_frame_dofs) = lu.inverse();
+  if (B.cols() > 0) a.rightCols(B.cols()) = -lu.solve(B);
   MatrixXd T = MatrixXd::Zero(6 + n, a.cols());
   T.topRows(6) = a.topRows(6);
   for (Index j = 0; j < num_constraint; ++j) T.row(6 + constraint[static_cast<std::size_t>(j)]) = a.row(6 + j);

@@ -89,6 +89,9 @@ Basis calc_free_interface_basis(const fe::System& system, const BasisOptions& op
   const auto pairs = calc_normal_modes(system, eigen, diagnostics);
   basis.num_rigid = pairs.num_rigid;
   basis.num_massless = pairs.num_massless;
+  const auto num_pairs = static_cast<int>(pairs.lambda.size());
+  if (num_pairs > 0)
+    basis.check = {num_pairs, pairs.inertia_count, pairs.residual.maxCoeff()};
   auto kept = pairs.lambda.size() - pairs.num_rigid;
   if (options.num_modes == 0 && !options.max_hz) kept = 0;
   // A massless rigid motion takes none of the modes asked for: what came in its place is cut again.
@@ -253,6 +256,7 @@ Basis calc_craig_bampton_basis(const fe::System& system, const BasisOptions& opt
   const auto nb = static_cast<Eigen::Index>(basis.boundary.size());
   const MatrixXd Psi = fixed.calc_constraint_modes();
   const auto modes = fixed.calc_modes(options.num_modes, options.max_hz, diagnostics);
+  basis.check = modes.check;
   // A load is carried by the interface, which the constraint modes hold exactly, and by the interior with it held.
   MatrixXd F = options.residual_loads.rows() == 0 ? MatrixXd(model.num_gdofs(), 0) : options.residual_loads;
   if (options.is_free && F.cols() > 0) {

@@ -31,6 +31,7 @@ struct Basis {
   int num_rigid = 0, num_massless = 0;                 ///< rigid motions of the model with and without mass
   std::vector<std::pair<int, int>> boundary;           ///< Craig-Bampton: node, component of each constraint mode
   bool is_raw = false;                                 ///< Craig-Bampton coordinates kept as they are
+  ModesCheck check;                                    ///< of the normal modes, free or with the interface held
   std::vector<int> unused_loads;                       ///< residual loads that the basis holds already
   std::vector<std::pair<int, double>> massless_loads;  ///< residual loads: part of their flexibility that is lost
 };

@@ -132,7 +132,7 @@ detail::RootSearchResult FixedInterface::Impl::find_roots(int wanted, detail::Pe
 ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Diagnostics& diagnostics) const {
   const Impl& in = *impl_;
   const auto size = static_cast<int>(in.part.interior.size());
-  ModeSet set{VectorXd(0), MatrixXd(in.model.num_gdofs(), 0)};
+  ModeSet set{VectorXd(0), MatrixXd(in.model.num_gdofs(), 0), {}};
   if (size == 0) return set;
   int wanted = number > 0 ? number : (max_hz ? size : 0);
   if (max_hz) wanted = std::min(wanted, in.count_below(*max_hz));
@@ -159,10 +159,11 @@ ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Dia
   if (result.cut == 0) return set;
   in.make_canonical(roots.value, roots.X);
   roots.keep(std::min(wanted, result.cut));
-  fe::check_residuals(fe::calc_residuals(fe::calc_residual_scale(K_diagonal, problem.M_diagonal, roots.value), roots.X,
-                                         fe::multiply(in.K_ii.get(), roots.X),
-                                         fe::multiply(in.M_ii.get(), roots.X) * roots.value.asDiagonal(), in.kinds),
-                      "mode with the interface held", diagnostics);
+  const VectorXd residual = fe::calc_residuals(
+      fe::calc_residual_scale(K_diagonal, problem.M_diagonal, roots.value), roots.X,
+      fe::multiply(in.K_ii.get(), roots.X), fe::multiply(in.M_ii.get(), roots.X) * roots.value.asDiagonal(), in.kinds);
+  fe::check_residuals(residual, "mode with the interface held", diagnostics);
+  set.check = {result.cut, result.count, residual.maxCoeff()};
   set.lambda = roots.value;
   set.Phi = in.expand(roots.X);
   detail::fix_signs(set.Phi);

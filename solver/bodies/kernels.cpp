@@ -245,6 +245,7 @@ void multiply_transposed(const double* A, Index rows, Index cols, const double* 
   BOUGH_CALL(multiply_transposed, (A, rows, cols, x, y));
 }
 void add_product(const double* A, Index rows, Index r, const double* B, Index m, double* C) {
+  if (r == 0) return;  // nothing is added, and there may be no A and B
   BOUGH_CALL(add_product, (A, rows, r, B, m, C));
 }
 void add_square(const double* A, const double* V, Index rows, double* C) { BOUGH_CALL(add_square, (A, V, rows, C)); }

@@ -33,7 +33,7 @@ void reduce(Quadruple& s, double tolerance) {
   for (;;) {
     MatrixXd U;
     const Index sigma = compress_rows(s.D, tolerance, U), p = s.D.rows(), n = s.A.rows();
-    if (sigma == p) return;
+    if (sigma == p || n == 0) return;
     const MatrixXd C = U.transpose() * s.C, D = U.transpose() * s.D;
     MatrixXd V;
     const Index rho = compress_rows(C.bottomRows(p - sigma).transpose(), tolerance, V), left = n - rho;

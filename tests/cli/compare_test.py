@@ -242,6 +242,23 @@ class Compare(ProgramTest):
         # --json gives the table of modes alone.
         json.loads(self.bough("reduce", "a.bdf", "--modes", 4, "--integrals-report", "--json", "-o", "b.h5").stdout)
 
+    def test_reduce_tells_how_its_modes_were_checked(self):
+        self.body("a", 8)
+        text = self.bough("reduce", "a.bdf", "--modes", 4, "-o", "b.h5").stdout
+        count = "Sturm count: 4 eigenvalues up to the highest"
+        self.assertIn(count + ", 4 found: none missed\n", text)
+        residual = float(text.split("largest residual of a mode:")[1].split()[0])
+        self.assertTrue(0 < residual < 1e-8, residual)
+        # With its end held the beam is another one, whose modes are counted.
+        self.write("c.toml", '[body]\nname = "c"\ndeck = "a.bdf"\ninterface = [65]\n[body.modes]\nnumber = 3\n'
+                   'basis = "craig-bampton"\n')
+        held = ["reduce", "c.toml", "-o", "c.h5"]
+        self.assertIn("Sturm count: 3 eigenvalues up to the highest with the interface held, 3 found",
+                      self.bough(*held).stdout)
+        check = json.loads(self.bough(*held, "--json").stdout)["modes_check"]
+        self.assertEqual((check["found"], check["inertia_count"]), (3, 3))
+        self.assertLess(check["residual"], 1e-8)
+
     def test_what_cannot_be_compared(self):
         self.body("a", 8)
         self.bough("modes", "a.bdf", "-o", "m.h5", "-q")

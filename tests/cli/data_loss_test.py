@@ -189,7 +189,7 @@ class Files(ProgramTest):
         self.fails(3, "modes", "beam.bdf", "-o", "round.h5", error="cli.write")
 
     def test_signal_ends_with_exit_3_and_no_parts(self):
-        self.write("plate.bdf", make_plate(40))
+        self.write("plate.bdf", make_plate(80))
         for at in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             for words in (["modes", "plate.bdf", "-n", "60", "-o", "x.h5"],
                           ["reduce", "plate.bdf", "-n", "60", "-o", "x.h5"]):

@@ -4,7 +4,14 @@
 #include <cstddef>
 #include <cstdlib>
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+// GCC has macros for the sanitizers, which have a malloc of their own, Clang features.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define BOUGH_HAS_MALLOC_OF_ITS_OWN
+#endif
+#endif
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
+    !defined(BOUGH_HAS_MALLOC_OF_ITS_OWN)
 #define BOUGH_COUNTS_MALLOC
 extern "C" void* __libc_malloc(size_t size);
 
