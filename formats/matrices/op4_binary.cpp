@@ -49,7 +49,8 @@ class BinaryReader {
                false};
     for (const char c : trim(record.substr(4 * in_.get_word_size())))
       if (c > ' ' && c <= '~') header_.name += c;
-    settle_header(header_, [this](const char* id, const std::string& what) { fail(id, what); });
+    settle_header(header_, in_.get_size(), claimed_,
+                  [this](const char* id, const std::string& what) { fail(id, what); });
     words_per_real_ = header_.is_double() && !in_.is_64_bit() ? 2 : 1;
     Triplets entries;
     for (;;) {
@@ -120,6 +121,7 @@ class BinaryReader {
 
   BinaryInput in_;
   Op4Header header_;
+  double claimed_ = 0;
   long words_per_real_ = 1;
   std::size_t record_at_ = 0;
 };

@@ -56,7 +56,8 @@ class TextReader {
       *fields[i] = *value;
     }
     header_.name = line.size() > 32 ? std::string(trim(line.substr(32, 8))) : "";
-    settle_header(header_, [this](const char* id, const std::string& what) { in_.fail(id, what); });
+    settle_header(header_, in_.count_most(1), claimed_,
+                  [this](const char* id, const std::string& what) { in_.fail(id, what); });
     format_ = line.size() > 40 && !trim(line.substr(40)).empty() ? parse_format(line.substr(40)) : NumberFormat{};
   }
 
@@ -143,6 +144,7 @@ class TextReader {
 
   TextInput in_;
   Op4Header header_;
+  double claimed_ = 0;
   NumberFormat format_;
 };
 

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "tests/fuzz/looker.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace {
@@ -30,6 +31,7 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
   }
   const char* folder = std::getenv("BOUGH_FUZZ_FOLDER");
   g_path = std::string(folder ? folder : "/tmp") + "/bough-fuzz-" + std::to_string(::getpid());
+  bough::hdf5::set_looker(bough::fuzz::look_by_one_process);
   std::atexit([] { ::unlink(g_path.c_str()); });
   return 0;
 }

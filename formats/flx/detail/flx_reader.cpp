@@ -122,10 +122,13 @@ bool FlxReader::read_line() {
                                              {"DIGITS", &file_.digits}, {"NMODE", &num_modes_},
                                              {"NNODE", &num_nodes_},    {"NSPECIAL", &num_special_}};
   const auto integer = integers.find(label);
-  if (integer == integers.end() || words_.size() != 2 || !parse_value(words_[1], *integer->second)) return false;
-  if (label == "MODOPT") return file_.modopt >= 0 && file_.modopt <= 2 && !is_sized_;
+  int value = 0;
+  if (integer == integers.end() || words_.size() != 2 || !parse_value(words_[1], value)) return false;
+  if (is_sized_ && label != "BODY" && label != "DIGITS") return false;  // what has its room keeps its counts
+  *integer->second = value;
+  if (label == "MODOPT") return file_.modopt >= 0 && file_.modopt <= 2;
   if (label == "DIGITS") return file_.digits >= 2 && file_.digits <= 17;
-  if (label != "BODY") return *integer->second >= 0 && *integer->second <= kMostCount && !is_sized_;
+  if (label != "BODY") return *integer->second >= 0 && *integer->second <= kMostCount;
   return true;
 }
 

@@ -31,7 +31,7 @@ namespace {
 
 constexpr char kBetween = '\x1f', kEnd = '\x1e';
 /// Seconds of computing that a file may take, and those it may take more for each of its bytes.
-constexpr double kSeconds = 20, kSecondsPerByte = 1e-7;
+constexpr double kSeconds = 5, kSecondsPerByte = 1e-7;
 
 /// Exit code of a child that ran out of memory.
 constexpr int kNoMemory = 9;
@@ -57,7 +57,7 @@ void limit(decltype(RLIMIT_CPU) resource, double most) {
   setrlimit(resource, &now);
 }
 
-double get_memory() {
+[[maybe_unused]] double get_memory() {
   std::ifstream in("/proc/self/statm");
   double pages = 0;
   in >> pages;
@@ -87,9 +87,7 @@ void write_all(int descriptor, const std::string& text) {
   limit(RLIMIT_AS, get_memory() + 1e9 + 4 * size);
 #endif
   try {
-    std::string text;
-    for (const auto& d : find_faults(path)) text += d.id + kBetween + d.what + kBetween + d.advice + kEnd;
-    write_all(descriptor, text);
+    write_all(descriptor, write_faults(path));
   } catch (const std::bad_alloc&) {
     ::_exit(kNoMemory);
   } catch (const std::exception&) {
@@ -119,7 +117,47 @@ std::string describe_end(int status) {
   return std::string("the HDF5 library does not survive reading it (") + strsignal(WTERMSIG(status)) + ")";
 }
 
+Look look_in_a_process(const std::string& path, double size) {
+  int ends[2];
+  pid_t child = -1;
+  const bool has_pipe = ::pipe2(ends, O_CLOEXEC) == 0;
+  if (has_pipe) child = ::fork();
+  if (child == 0) become_reader(path, size, ends[1]);
+  if (child < 0) {
+    // No process to be had: better looked at here than not.
+    if (has_pipe) {
+      ::close(ends[0]);
+      ::close(ends[1]);
+    }
+    return {write_faults(path), {}};
+  }
+  ::close(ends[1]);
+  Look look;
+  char buffer[4096];
+  for (ssize_t n = 1; n != 0;) {
+    n = ::read(ends[0], buffer, sizeof buffer);
+    if (n > 0) look.faults.append(buffer, static_cast<std::size_t>(n));
+    if (n < 0 && errno != EINTR) break;
+  }
+  ::close(ends[0]);
+  int status = 0;
+  pid_t ended = 0;
+  while ((ended = ::waitpid(child, &status, 0)) < 0 && errno == EINTR) continue;
+  if (ended == child) look.end = describe_end(status);
+  return look;
+}
+
+Looker g_looker = look_in_a_process;
+
 }  // namespace
+
+std::string write_faults(const std::string& path) {
+  std::string text;
+  for (const auto& d : find_faults(path)) text += d.id + kBetween + d.what + kBetween + d.advice + kEnd;
+  return text;
+}
+
+void set_looker(Looker looker) { g_looker = looker; }
 
 void inspect_file(const std::string& path) {
   struct stat state {};
@@ -129,35 +167,10 @@ void inspect_file(const std::string& path) {
   if (const auto known = get_inspected().find(path); known != get_inspected().end() && known->second == stamp) return;
 
   Diagnostics found;
-  int ends[2];
-  pid_t child = -1;
-  const bool has_pipe = ::pipe2(ends, O_CLOEXEC) == 0;
-  if (has_pipe) child = ::fork();
-  if (child == 0) become_reader(path, static_cast<double>(state.st_size), ends[1]);
-  if (child < 0) {
-    // No process to be had: better looked at here than not.
-    if (has_pipe) {
-      ::close(ends[0]);
-      ::close(ends[1]);
-    }
-    for (auto& fault : find_faults(path)) found.add(std::move(fault));
-  } else {
-    ::close(ends[1]);
-    std::string text;
-    char buffer[4096];
-    for (ssize_t n = 1; n != 0;) {
-      n = ::read(ends[0], buffer, sizeof buffer);
-      if (n > 0) text.append(buffer, static_cast<std::size_t>(n));
-      if (n < 0 && errno != EINTR) break;
-    }
-    ::close(ends[0]);
-    int status = 0;
-    pid_t ended = 0;
-    while ((ended = ::waitpid(child, &status, 0)) < 0 && errno == EINTR) continue;
-    parse(path, text, found);
-    const auto why = ended == child ? describe_end(status) : std::string();
-    if (!why.empty()) found.error("hdf5.damaged", {path}, "the file is damaged: " + why, "copy or write it again");
-  }
+  const Look look = g_looker(path, static_cast<double>(state.st_size));
+  parse(path, look.faults, found);
+  if (!look.end.empty())
+    found.error("hdf5.damaged", {path}, "the file is damaged: " + look.end, "copy or write it again");
   found.throw_if_errors();
   get_inspected()[path] = stamp;
 }

@@ -20,6 +20,7 @@ class BinaryInput {
   }
   bool is_64_bit() const { return word_ == 8; }
   std::size_t get_word_size() const { return word_; }
+  std::size_t get_size() const { return bytes_.size(); }
   bool is_at_end() const { return next_ >= bytes_.size(); }
   std::size_t get_offset() const { return next_; }
   const std::string& get_path() const { return path_; }

@@ -24,14 +24,20 @@ struct Op4Header {
 /// Nastran's own rule: from this many rows on, strings are BIGMAT.
 inline constexpr long kBigRows = 65536;
 
-/// Checks and settles the sign of NROW.
-inline void settle_header(Op4Header& header, const Fail& fail) {
+/// Checks and settles the sign of NROW. `claimed`: rows and columns of the matrices of the file so far, of which there
+/// are no more than two large matrices have, and a hundred for each byte.
+inline void settle_header(Op4Header& header, std::size_t file_size, double& claimed, const Fail& fail) {
   header.is_bigmat = header.num_rows < 0 || header.num_rows >= kBigRows;
   header.num_rows = std::abs(header.num_rows);
   if (header.num_rows == 0 || header.num_rows > kMostRows || header.num_cols <= 0 || header.num_cols > kMostRows)
     fail("matrices.size", "matrix " + header.name + " has " + std::to_string(header.num_rows) + " rows and " +
                               std::to_string(header.num_cols) + " columns, expected 1 to " + std::to_string(kMostRows) +
                               " of each");
+  claimed += static_cast<double>(header.num_rows) + static_cast<double>(header.num_cols);
+  if (claimed > 4.0 * kMostRows + 100.0 * static_cast<double>(file_size))
+    fail("matrices.size", "the matrices up to " + header.name + " claim " +
+                              std::to_string(static_cast<long long>(claimed)) + " rows and columns in " +
+                              std::to_string(file_size) + " bytes");
   if (header.type < 1 || header.type > 4)
     fail("matrices.op4-header",
          "matrix " + header.name + " has the type " + std::to_string(header.type) + ", expected 1 to 4");

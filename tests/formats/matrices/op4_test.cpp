@@ -1,4 +1,5 @@
 // Nastran OUTPUT4 of every flavour: written and read back, and read by tests/oracle/op4_reader.py.
+#include "formats/matrices/detail/op4_header.hpp"
 #include "formats/matrices/op4.hpp"
 
 #include <cmath>
@@ -179,6 +180,13 @@ TEST(Op4Text, EachFaultHasItsErrorAndItsLine) {
   EXPECT_EQ(error("       2 9999999       1       2K\n"), "matrices.truncated");
   EXPECT_EQ(error("       299999999       1       2K\n"), "matrices.size");
   EXPECT_EQ(error("       2       0       1       2K\n"), "matrices.size");
+  // Each of these would be one that a file may have; not all of them in a file of 1000 bytes.
+  detail::Op4Header header{40'000'000, 40'000'000, 2, 2, "K", false};
+  double claimed = 0;
+  std::string id;
+  for (int i = 0; i < 3; ++i)
+    detail::settle_header(header, 1000, claimed, [&](const char* what, const std::string&) { id += what; });
+  EXPECT_EQ(id, "matrices.size");
   try {
     read_one(folder.write("x.op4", head + column + "nonsense\n"));
     FAIL();
