@@ -53,7 +53,7 @@ void check_subcases(const records::Deck& deck, const fe::Model& model, const fe:
                     std::string& text, nlohmann::json& json, Diagnostics& diagnostics) {
   std::vector<Row> rows;
   for (const auto& s : deck.subcases)
-    if (s.load != 0 || s.temperature != 0 || enforces(deck, s.spc)) rows.push_back({s});
+    if (s.load != 0 || s.temperature != 0 || s.deform != 0 || enforces(deck, s.spc)) rows.push_back({s});
   json["subcases"] = nlohmann::json::array();
   if (rows.empty()) return;
   SubcaseFailures failures(rows.size(), deck.subcases.size());

@@ -32,7 +32,11 @@ void cut_to_window(report::Curve& curve, const VectorXd& time, const std::vector
   curve.y = curve.y(inside).eval();
 }
 
+/// The time has a path in the file as channels have, but is none.
+bool is_time(const std::string& name) { return name == "/time" || name == "time"; }
+
 VectorXd read_abscissa(const hdf5::ResultsFile& results, const std::string& file, const std::string& name) {
+  if (is_time(name) && results.channels.count("/sensors/" + name) == 0) return results.time;
   const auto columns = choose_columns(results, file, name);
   if (columns.size() != 1)
     throw InputError("cli.one-channel", {file}, fmt::format("--x {} names {} curves", name, columns.size()),
@@ -116,7 +120,7 @@ VectorXd find_outcome(const hdf5::OutcomeTable& table, const std::string& file, 
 report::Plot make_history_plot(const std::vector<std::string>& files, const std::vector<std::string>& sensors,
                                const CurveChoice& choice, Diagnostics& diagnostics) {
   report::Plot plot;
-  plot.x_label = choice.x.empty() ? "" : choice.x;
+  plot.x_label = is_time(choice.x) ? "" : choice.x;
   std::vector<report::Curve> first;
   for (std::size_t f = 0; f < files.size(); ++f) {
     const auto& file = files[f];

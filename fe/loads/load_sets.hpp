@@ -45,6 +45,9 @@ std::vector<PlainLoadSet> list_plain_sets(const records::Deck& deck, int set);
 /// (fe.dead-load).
 void report_dead_loads(const records::Deck& deck, int set, Diagnostics& diagnostics);
 
+/// fe.unread-load for each kind of card of this set that is not read; returns whether there are such.
+bool report_unread_loads(const records::Deck& deck, const std::string& command, int set, Diagnostics& diagnostics);
+
 /// Calls visit(set, scale, card) for each of them that loads.
 template <class Visit>
 void for_each_plain_set(const records::Deck& deck, int set, const Visit& visit) {

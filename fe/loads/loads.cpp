@@ -147,6 +147,18 @@ bool add_point_loads(const LoadTarget& t) {
   return is_found || has_directed || has_scalar;
 }
 
+bool report_unread_loads(const records::Deck& deck, const std::string& command, int set, Diagnostics& diagnostics) {
+  bool is_found = false;
+  for (const auto& load : deck.unread_loads) {
+    if (load.set != set || load.command != command) continue;
+    is_found = true;
+    diagnostics.error("fe.unread-load", deck.locate(load.at),
+                      load.card + " of set " + std::to_string(set) + " is not read, and " + command + " selects it",
+                      "give the load by other cards, or --ignore " + load.card + " to compute without it");
+  }
+  return is_found;
+}
+
 VectorXd Model::calc_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const {
   return calc_applied_load(deck, set, diagnostics).F;
 }
@@ -170,6 +182,7 @@ AppliedLoad Model::calc_applied_load(const records::Deck& deck, int set, Diagnos
     const bool found[] = {add_point_loads(target), add_body_loads(target), add_surface_loads(target),
                           add_beam_loads(target), has_enforced(deck, plain.sid)};
     report_dead_loads(deck, plain.sid, diagnostics);
+    if (report_unread_loads(deck, "LOAD", plain.sid, diagnostics)) continue;
     if (std::find(std::begin(found), std::end(found), true) == std::end(found)) missing.push_back(plain);
   }
   // A LOAD card of which something is left loads the structure, as in Nastran.

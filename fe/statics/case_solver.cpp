@@ -13,7 +13,7 @@ std::vector<records::Subcase> choose_static_subcases(const records::Deck& deck, 
     return set != 0 && std::any_of(deck.spc.begin(), deck.spc.end(), [](const auto& spc) { return spc.d != 0; });
   };
   const auto is_loaded = [&](const records::Subcase& s) {
-    return s.load != 0 || s.temperature != 0 || enforces(s.spc);
+    return s.load != 0 || s.temperature != 0 || s.deform != 0 || enforces(s.spc);
   };
   std::vector<records::Subcase> chosen;
   for (const auto& subcase : deck.subcases)

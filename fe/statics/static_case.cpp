@@ -103,7 +103,15 @@ StaticLoad calc_static_load(const Model& model, const records::Deck& deck, const
   else
     result.F = VectorXd::Zero(model.num_gdofs());
   result.d = model.calc_enforced(deck, subcase.load, diagnostics);
-  result.initial = calc_thermal(model, deck, subcase.temperature, diagnostics);
+  bool is_unread = false;
+  for (const int set : {subcase.temperature, subcase.temperature > 0 ? model.subcase().initial_temperature : 0})
+    is_unread = (set > 0 && report_unread_loads(deck, "TEMPERATURE", set, diagnostics)) || is_unread;
+  if (!is_unread) result.initial = calc_thermal(model, deck, subcase.temperature, diagnostics);
+  if (subcase.deform > 0)
+    diagnostics.error("fe.unread-load", deck.locate(subcase.find_command("DEFORM")),
+                      "DEFORM " + std::to_string(subcase.deform) + " loads subcase " + std::to_string(subcase.id) +
+                          ", and enforced deformations of elements are not read",
+                      "give it as temperatures, or --ignore DEFORM to compute without it");
   if (!result.initial.of.empty()) result.F += sum_loads(model, result.initial);
   if (const auto lost = list_lost_loads(model, result.F); !lost.empty())
     diagnostics.warning("fe.load-autospc", deck.locate({}),

@@ -365,6 +365,7 @@ struct Subcase {
   int temperature = 0;          ///< TEMPERATURE(LOAD) or (BOTH)
   int initial_temperature = 0;  ///< TEMPERATURE(INITIAL)
   int suport1 = 0, nsm = 0;
+  int deform = 0;  ///< DEFORM, which is not read: an error where it loads
   std::vector<std::pair<double, std::string>> k2gg, m2gg, b2gg;  ///< (scale, DMIG name)
   std::map<std::string, CardLocation> commands;  ///< where "SPC", "LOAD", "METHOD", ... of this subcase stand
 
@@ -379,6 +380,14 @@ struct UnusedCard {
   CardEffect effect = CardEffect::None;
   int count = 0;
   CardLocation first;
+};
+
+/// A set of load cards that is not read, and no --ignore leaves out: an error where it loads.
+struct UnreadLoad {
+  std::string card;     ///< its name
+  std::string command;  ///< of the case control that selects it: LOAD, TEMPERATURE
+  int set = 0;
+  CardLocation at;  ///< of the first card of the set
 };
 
 struct Deck {
@@ -450,6 +459,7 @@ struct Deck {
   std::vector<EigenMethod> eigen_methods;
   std::vector<Param> params;
   std::vector<UnusedCard> unused;
+  std::vector<UnreadLoad> unread_loads;
   std::vector<std::string> left_out;       ///< what the record does not keep of cards that it reads: "12 fluid GRID"
   std::map<std::string, int> card_counts;  ///< every card name in the bulk data
   /// Ids of cards that were refused with an error of their own, by card name: who refers to one says nothing more.

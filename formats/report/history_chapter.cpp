@@ -206,7 +206,7 @@ void add_checks(const History& h, Chapter& chapter) {
                               : h.energy_error > 1e-4               ? Verdict::Warning
                                                                     : Verdict::Good,
                               "limit of the run " + format_value(h.energy_error_limit, 3)});
-  for (const auto& body : h.bodies) {
+  for (const auto& body : h.scene.bodies) {
     const auto* eta = find_channel(h, "/bodies/" + body.name + "/eta");
     if (body.size <= 0 || !eta || eta->values.cols() == 0) continue;
     const auto [largest, when] = find_deflection(body, *eta, h.time);
@@ -216,7 +216,7 @@ void add_checks(const History& h, Chapter& chapter) {
          fmt::format("{} of {} at t = {}; linear modes lose their meaning past 10 %", format_value(largest, 4),
                      format_value(body.size, 4), format_value(when, 4))});
   }
-  for (const auto& body : h.bodies)
+  for (const auto& body : h.scene.bodies)
     if (body.drawing.num_dropped > 0)
       chapter.checks.push_back(
           {"drawn with fewer modes", body.name, Verdict::None,
@@ -231,7 +231,7 @@ Chapter make_chapter(History history) {
   Chapter chapter{"results", history.file, history.facts, {}, {}, {}, history.settings};
   const Strides strides = choose_strides(history);
   add_checks(history, chapter);
-  const bool moves = std::any_of(history.bodies.begin(), history.bodies.end(), [&](const auto& body) {
+  const bool moves = std::any_of(history.scene.bodies.begin(), history.scene.bodies.end(), [&](const auto& body) {
     return find_channel(history, "/bodies/" + body.name + "/position") != nullptr;
   });
   if (moves)

@@ -41,6 +41,56 @@ json make_number(double value) { return std::isfinite(value) ? json(value) : jso
 
 json to_list(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
+json to_json(const ScenePlace& place) {
+  return {{"body", place.body}, {"point", place.point}, {"p", to_list(place.p)}};
+}
+
+json to_json(const SceneBody& body) {
+  return {{"name", body.name}, {"drawing", json::parse(to_json_text(body.drawing))}};
+}
+
+json to_json(const SceneHinge& hinge) {
+  return {{"name", hinge.name}, {"type", hinge.type}, {"at", to_json(hinge.at)}, {"axis", to_list(hinge.axis)}};
+}
+
+json to_json(const SceneSensor& sensor) {
+  json axes = json::array();
+  for (const auto& axis : sensor.axes) axes.push_back(to_list(axis));
+  return {{"name", sensor.name},          {"type", sensor.type},
+          {"at", to_json(sensor.at)},     {"to", sensor.to ? to_json(*sensor.to) : json()},
+          {"axis", to_list(sensor.axis)}, {"axes", std::move(axes)}};
+}
+
+template <typename T>
+json make_list(const std::vector<T>& things) {
+  json list = json::array();
+  for (const auto& thing : things) list.push_back(to_json(thing));
+  return list;
+}
+
+json make_arrows(const std::vector<SceneArrow>& arrows, long stride) {
+  json list = json::array();
+  for (const auto& arrow : arrows) {
+    json one{{"name", arrow.name},
+             {"moment", arrow.is_moment},
+             {"reaction", arrow.is_reaction},
+             {"at", to_json(arrow.at)},
+             {"towards", arrow.towards ? to_json(*arrow.towards) : json()},
+             {"frame", arrow.frame},
+             {"axes", {to_list(arrow.axes.row(0)), to_list(arrow.axes.row(1)), to_list(arrow.axes.row(2))}},
+             {"factor", arrow.factor},
+             {"channel", arrow.channel},
+             {"column", arrow.column}};
+    if (arrow.channel.empty()) {
+      const auto packed = pack_column(take_every(arrow.values, stride));
+      one["stride"] = stride;
+      one["values"] = {{"low", packed.low}, {"step", packed.step}, {"data", packed.data}};
+    }
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
 }  // namespace
 
 Strides choose_strides(const History& history) {
@@ -82,21 +132,13 @@ std::string make_data(const History& history, const Strides& strides) {
   }
   json events = json::array();
   for (const auto& event : history.events) events.push_back({{"time", make_number(event.time)}, {"what", event.what}});
-  json bodies = json::array(), hinges = json::array();
-  for (const auto& body : history.bodies)
-    bodies.push_back({{"name", body.name}, {"drawing", json::parse(to_json_text(body.drawing))}});
-  for (const auto& hinge : history.hinges)
-    hinges.push_back({{"name", hinge.name},
-                      {"type", hinge.type},
-                      {"parent", hinge.parent},
-                      {"point", hinge.point},
-                      {"p", to_list(hinge.p)},
-                      {"axis", to_list(hinge.axis)}});
   return json{{"time", make_time(history.time)},
               {"channels", std::move(channels)},
               {"events", std::move(events)},
-              {"bodies", std::move(bodies)},
-              {"hinges", std::move(hinges)}}
+              {"bodies", make_list(history.scene.bodies)},
+              {"hinges", make_list(history.scene.hinges)},
+              {"sensors", make_list(history.scene.sensors)},
+              {"arrows", make_arrows(history.scene.arrows, strides.others)}}
       .dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

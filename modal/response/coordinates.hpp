@@ -1,5 +1,8 @@
 #pragma once
 /// \file The coordinates of a driven model over frequency and over time.
+#include <functional>
+#include <vector>
+
 #include "modal/response/frequency_list.hpp"
 #include "modal/response/response_model.hpp"
 
@@ -18,9 +21,23 @@ struct Spectrum {
 Eigen::VectorXcd calc_amplitudes(const Excitation& excitation, double hz, Eigen::VectorXcd& d);
 [[noreturn]] void throw_unbounded(double hz, const std::string& why);
 
-/// (Λ - ω² + iωD + iS) q = P a. Throws ComputationError modal.unbounded-response at a frequency of an undamped mode,
-/// and at 0 Hz where the model is free or its supports move by a velocity or an acceleration.
-Spectrum calc_spectrum(const ResponseModel& model, const Excitation& excitation, const VectorXd& hz);
+/// Keeps the frequencies at which the response has a bound: of a list over an undamped mode the others count.
+class BoundedFrequencies {
+ public:
+  /// Whether solve() went through; false where it threw modal.unbounded-response, which is kept. Others go on.
+  bool take(const std::function<void()>& solve);
+  /// A warning for each that is left out; throws the first where no frequency is left.
+  void report(Diagnostics& diagnostics) const;
+
+ private:
+  int num_kept_ = 0;
+  std::vector<Diagnostic> left_out_;
+};
+
+/// (Λ - ω² + iωD + iS) q = P a. Leaves frequencies of undamped modes out, and 0 Hz where the model is free or its
+/// supports move by a velocity or an acceleration (BoundedFrequencies): Spectrum::hz are those that are left.
+Spectrum calc_spectrum(const ResponseModel& model, const Excitation& excitation, const VectorXd& hz,
+                       Diagnostics& diagnostics);
 
 /// A column per time that is shown.
 struct History {

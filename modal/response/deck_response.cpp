@@ -302,7 +302,7 @@ void DeckResponseSolver::solve_by_modes(const Task& task, const records::Dynamic
       diagnostics.warning("modal.response-range", deck_.locate(subcase.find_command("FREQUENCY")), text,
                           "take more modes: beyond them there are residual vectors only");
     }
-    const auto spectrum = calc_spectrum(response, excitation, hz);
+    const auto spectrum = calc_spectrum(response, excitation, hz, diagnostics);
     result.solution_error = calc_solution_error(response, spectrum);
     recover(model, response, excitation, damping, outputs, spectrum, result);
   }
@@ -322,7 +322,7 @@ void DeckResponseSolver::solve_directly(const Task& task, const records::Dynamic
     solve_history(model, direct, excitation, start, refine_times(deck_, excitation, grid, kMostFactored, diagnostics),
                   take);
   else
-    solve_spectrum(model, direct, excitation, hz, take);
+    solve_spectrum(model, direct, excitation, hz, take, diagnostics);
 }
 
 }  // namespace bough::modal::response

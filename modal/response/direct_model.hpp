@@ -34,11 +34,11 @@ struct MotionBlock {
   Values u, u_dot, u_ddot, p;
 };
 
-/// One factorization of K + iS + iωB - ω²M for each frequency; `take` gets the solutions some at a time. Throws
-/// ComputationError modal.unbounded-response where the matrix is singular to working precision, and at 0 Hz where
-/// supports move by a velocity or an acceleration.
+/// One factorization of K + iS + iωB - ω²M for each frequency; `take` gets the solutions some at a time. Leaves out
+/// (BoundedFrequencies) where the matrix is singular to working precision, and 0 Hz where supports move by a velocity
+/// or an acceleration.
 void solve_spectrum(const fe::Model& model, const DirectModel& direct, const Excitation& excitation, const VectorXd& hz,
-                    const std::function<void(const MotionBlock<MatrixXcd>&)>& take);
+                    const std::function<void(const MotionBlock<MatrixXcd>&)>& take, Diagnostics& diagnostics);
 
 /// Radau IIA of three stages (Hairer & Wanner, "Solving ordinary differential equations II", 2nd ed., IV.5): of order
 /// 5, without bound of the step, and what has no mass or is far too quick for the step follows its loads at once. Loads

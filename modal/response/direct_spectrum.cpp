@@ -68,26 +68,35 @@ VectorXd make_probe(Index n) {
 }
 
 void solve_spectrum(const fe::Model& model, const DirectModel& direct, const Excitation& excitation, const VectorXd& hz,
-                    const std::function<void(const MotionBlock<MatrixXcd>&)>& take) {
+                    const std::function<void(const MotionBlock<MatrixXcd>&)>& take, Diagnostics& diagnostics) {
   const Index n = model.num_fdofs();
   const DirectSpectrum solver(direct, n);
+  BoundedFrequencies bounded;
   for (Index first = 0; first < hz.size(); first += kHeldFrequencies) {
-    const Index count = std::min(kHeldFrequencies, hz.size() - first);
+    const VectorXd held = hz.segment(first, std::min(kHeldFrequencies, hz.size() - first));
     MotionBlock<MatrixXcd> block;
-    block.x = hz.segment(first, count);
-    block.u.resize(model.num_gdofs(), count);
-    block.p.resize(excitation.F.cols(), count);
-    for (Index i = 0; i < count; ++i) {
-      VectorXcd d;
-      block.p.col(i) = calc_amplitudes(excitation, block.x(i), d).head(excitation.F.cols());
-      block.u.col(i) = direct.X * d;
-      if (n > 0) block.u.col(i) += model.T() * solver.solve(block.x(i), block.p.col(i), d);
+    block.u.resize(model.num_gdofs(), held.size());
+    block.p.resize(excitation.F.cols(), held.size());
+    std::vector<Index> kept;
+    for (Index i = 0; i < held.size(); ++i) {
+      const auto solve = [&] {
+        VectorXcd d;
+        block.p.col(i) = calc_amplitudes(excitation, held(i), d).head(excitation.F.cols());
+        block.u.col(i) = direct.X * d;
+        if (n > 0) block.u.col(i) += model.T() * solver.solve(held(i), block.p.col(i), d);
+      };
+      if (bounded.take(solve)) kept.push_back(i);
     }
+    if (kept.empty()) continue;
+    block.x = held(kept);
+    block.u = block.u(Eigen::all, kept).eval();
+    block.p = block.p(Eigen::all, kept).eval();
     const Eigen::RowVectorXcd rate = 2i * std::numbers::pi * block.x.transpose().cast<std::complex<double>>();
     block.u_dot = block.u * rate.asDiagonal();
     block.u_ddot = block.u_dot * rate.asDiagonal();
     take(block);
   }
+  bounded.report(diagnostics);
 }
 
 }  // namespace bough::modal::response

@@ -18,6 +18,29 @@ std::string describe(const ResponseModel& model, Eigen::Index j) {
   return text;
 }
 
+VectorXcd solve_coordinates(const ResponseModel& model, double hz, const VectorXcd& force) {
+  const auto n = model.lambda.size();
+  const double omega = 2 * std::numbers::pi * hz;
+  VectorXd inertia = VectorXd::Constant(n, omega * omega);
+  inertia.tail(model.num_massless).setZero();
+  const VectorXd real = model.lambda - inertia;
+  const VectorXcd diagonal = real.cast<std::complex<double>>() +
+                             1i * (omega * model.D.diagonal() + model.S.diagonal()).cast<std::complex<double>>();
+  for (Eigen::Index j = 0; j < n; ++j)
+    if (!model.is_coupled && std::abs(diagonal(j)) <= 1e-14 * std::max(model.lambda(j), inertia(j)))
+      throw_unbounded(hz, describe(model, j));
+  if (!model.is_coupled) return force.cwiseQuotient(diagonal);
+  MatrixXcd Z = 1i * (omega * model.D + model.S).cast<std::complex<double>>();
+  Z.diagonal() = diagonal;
+  // Residual vectors lie many orders above the modes: rows and columns of one size.
+  const VectorXd scale = model.lambda.cwiseAbs().cwiseMax(inertia).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::PartialPivLU<MatrixXcd> lu(scale.asDiagonal() * Z * scale.asDiagonal());
+  const VectorXcd pivots = lu.matrixLU().diagonal();
+  if (n > 0 && !(pivots.cwiseAbs().minCoeff() > 1e-14))
+    throw_unbounded(hz, model.num_rigid > 0 && hz == 0 ? "the model moves freely" : "a mode is not damped");
+  return scale.asDiagonal() * lu.solve(scale.asDiagonal() * force).eval();
+}
+
 }  // namespace
 
 void throw_unbounded(double hz, const std::string& why) {
@@ -25,6 +48,27 @@ void throw_unbounded(double hz, const std::string& why) {
   std::snprintf(text, sizeof text, "the response at %.8g Hz has no bound: ", hz);
   throw ComputationError("modal.unbounded-response", {}, text + why,
                          "give damping (SDAMPING, PARAM,G, GE, dampers), or leave this frequency out");
+}
+
+bool BoundedFrequencies::take(const std::function<void()>& solve) {
+  try {
+    solve();
+  } catch (const ComputationError& failure) {
+    if (failure.items().empty() || failure.items().front().id != "modal.unbounded-response") throw;
+    left_out_.push_back(failure.items().front());
+    return false;
+  }
+  ++num_kept_;
+  return true;
+}
+
+void BoundedFrequencies::report(Diagnostics& diagnostics) const {
+  if (num_kept_ == 0 && !left_out_.empty()) throw ComputationError({left_out_.front()});
+  for (auto item : left_out_) {
+    item.severity = Severity::Warning;
+    item.what += "; it is left out";
+    diagnostics.add(item);
+  }
 }
 
 VectorXcd calc_amplitudes(const Excitation& excitation, double hz, VectorXcd& d) {
@@ -49,41 +93,29 @@ VectorXcd calc_amplitudes(const Excitation& excitation, double hz, VectorXcd& d)
   return a;
 }
 
-Spectrum calc_spectrum(const ResponseModel& model, const Excitation& excitation, const VectorXd& hz) {
+Spectrum calc_spectrum(const ResponseModel& model, const Excitation& excitation, const VectorXd& hz,
+                       Diagnostics& diagnostics) {
   const auto n = model.lambda.size();
   Spectrum s;
-  s.hz = hz;
   s.q.resize(n, hz.size());
   s.d.resize(excitation.D.cols(), hz.size());
   s.a.resize(model.P.cols(), hz.size());
+  BoundedFrequencies bounded;
+  std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < hz.size(); ++i) {
-    const double omega = 2 * std::numbers::pi * hz(i);
-    VectorXcd d;
-    s.a.col(i) = calc_amplitudes(excitation, hz(i), d);
-    s.d.col(i) = d;
-    const VectorXcd force = model.P * s.a.col(i);
-    VectorXd inertia = VectorXd::Constant(n, omega * omega);
-    inertia.tail(model.num_massless).setZero();
-    const VectorXd real = model.lambda - inertia;
-    const VectorXcd diagonal = real.cast<std::complex<double>>() +
-                               1i * (omega * model.D.diagonal() + model.S.diagonal()).cast<std::complex<double>>();
-    for (Eigen::Index j = 0; j < n; ++j)
-      if (!model.is_coupled && std::abs(diagonal(j)) <= 1e-14 * std::max(model.lambda(j), inertia(j)))
-        throw_unbounded(hz(i), describe(model, j));
-    if (!model.is_coupled) {
-      s.q.col(i) = force.cwiseQuotient(diagonal);
-      continue;
-    }
-    MatrixXcd Z = 1i * (omega * model.D + model.S).cast<std::complex<double>>();
-    Z.diagonal() = diagonal;
-    // Residual vectors lie many orders above the modes: rows and columns of one size.
-    const VectorXd scale = model.lambda.cwiseAbs().cwiseMax(inertia).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const Eigen::PartialPivLU<MatrixXcd> lu(scale.asDiagonal() * Z * scale.asDiagonal());
-    const VectorXcd pivots = lu.matrixLU().diagonal();
-    if (n > 0 && !(pivots.cwiseAbs().minCoeff() > 1e-14))
-      throw_unbounded(hz(i), model.num_rigid > 0 && hz(i) == 0 ? "the model moves freely" : "a mode is not damped");
-    s.q.col(i) = scale.asDiagonal() * lu.solve(scale.asDiagonal() * force).eval();
+    const auto solve = [&] {
+      VectorXcd d;
+      s.a.col(i) = calc_amplitudes(excitation, hz(i), d);
+      s.d.col(i) = d;
+      s.q.col(i) = solve_coordinates(model, hz(i), model.P * s.a.col(i));
+    };
+    if (bounded.take(solve)) kept.push_back(i);
   }
+  bounded.report(diagnostics);
+  s.hz = hz(kept);
+  s.q = s.q(Eigen::all, kept).eval();
+  s.d = s.d(Eigen::all, kept).eval();
+  s.a = s.a(Eigen::all, kept).eval();
   return s;
 }
 

@@ -122,6 +122,13 @@ class Plot(ProgramTest):
         self.assertEqual(len(curve), n)
         np.testing.assert_allclose(curve, np.column_stack((a["q"], a["qdot"]))[:n], atol=3e-3)
 
+    def test_time_by_its_path(self):
+        """--x /time is the time, as without it."""
+        options = ["a.h5", "--sensor", "/hinges/slide/qdot"]
+        plain = self.get_points(*options)
+        for name in ("/time", "time"):
+            np.testing.assert_array_equal(self.get_points(*options, "--x", name), plain)
+
     def test_psd(self):
         a = self.results["a"]
         (svg,) = self.draw("a.h5", "--sensor", "place:x", "--psd", "--segment", "200")

@@ -52,7 +52,9 @@ class Refusals(ProgramTest):
     def test_unbounded(self):
         self.refuse("modal.unbounded-response", self.deck(f"RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ4,5,.1,1.,.1,1"), code=3,
                     says=["is not damped"])
-        self.refuse("modal.unbounded-response", self.deck("RLOAD1,9,10,,,1.,,ACCE\nSPCD,10,2,1,2.\nFREQ,5,0.,1."), code=3)
+        self.refuse("modal.unbounded-response", self.deck("RLOAD1,9,10,,,1.,,ACCE\nSPCD,10,2,1,2.\nFREQ,5,0."), code=3)
+        self.write("d.bdf", self.deck("RLOAD1,9,10,,,1.,,ACCE\nSPCD,10,2,1,2.\nFREQ,5,0.,1."))
+        self.assertRegex(self.bough("frequency", "d.bdf").stderr, r"warning: the response at 0 Hz .*left out.*unbounded-response")
 
     def test_warnings(self):
         self.write("d.bdf", CHAIN.format(sol=108, modes=1, case="DLOAD = 9\nFREQUENCY = 5\nSDAMPING = 6",

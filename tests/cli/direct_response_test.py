@@ -278,6 +278,20 @@ class Choices(refusals.Refusals):
         self.refuse("modal.unbounded-response", free.format(repr(3 / 2 / np.pi)), code=3)
         self.write("d.bdf", free.format("1."))
         self.bough("frequency", "d.bdf")
+        # The frequencies beside that of the mode are kept: x1 = F (k - ω² m) / ((k - ω² m)² - k²) of two masses.
+        pole = 3 / 2 / np.pi
+        for way in ("--direct", "--modal"):
+            self.write("d.bdf", free.format(f".1,.2,{pole!r},.7"))
+            text = self.bough("frequency", "d.bdf", way, "-o", "r.h5").stderr
+            self.assertRegex(text, r"warning: the response at 0.4774648\d* Hz has no bound.*left out")
+            with h5py.File(self.path("r.h5")) as f:
+                group = f["subcases"][list(f["subcases"])[0]]
+                hz = group["frequency_hz"][:]
+                found = group["displacement"]
+                np.testing.assert_allclose(hz, [.1, .2, .7])
+                column = found["dofs"][:].tolist().index([1, 1])
+                s = 9 - 2 * (2 * np.pi * hz) ** 2
+                np.testing.assert_allclose(found["real"][:, column], 2 * s / (s * s - 81), rtol=1e-9)
         # A bar of lumped mass turns about its own axis without any.
         self.refuse("modal.unbounded-response", ONE.format(
             sol=109, case="DLOAD = 9\nTSTEP = 5", bulk="TLOAD2,9,10,,,0.,9.\nDAREA,10,1,1,1.\nTSTEP,5,9,.1\nGRID,3,,2.,0.,0.\nGRID,4,,3.,0.,0.\n"

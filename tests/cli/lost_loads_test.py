@@ -55,6 +55,33 @@ class LostLoads(ProgramTest):
         self.assertIn("[modal.massless-interface]", result.stderr)
         self.assertIn("turning of grid 4 about (0.333 0.667 0.667)", result.stderr)
 
+    ROD = ("GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCROD,1,1,1,2\nPROD,1,1,1.\nMAT1,1,1.,,.3,1.,1.-5\nSPC1,1,123456,1\n"
+           "SPC1,1,23456,2\nFORCE,5,2,,1.,1.,0.,0.\nTEMPD,6,1.\nPLOADX1,7,1,1.,1.,1,2\nLOAD,8,1.,1.,5,1.,7\n"
+           "TEMPP3,6,1,0.,1.,1.,2.\nDEFORM,4,1,.1\n")
+
+    def test_loads_that_are_not_read(self):
+        """An error where the case selects them, a warning elsewhere; --ignore computes without them."""
+        for case, card in [("TEMP(LOAD) = 6", "TEMPP3"), ("LOAD = 8", "PLOADX1"), ("LOAD = 5\nDEFORM = 4", "DEFORM"),
+                           ("DEFORM = 4", "DEFORM")]:
+            self.write("r.bdf", f"SOL 101\nCEND\nSPC = 1\n{case}\nBEGIN BULK\n{self.ROD}ENDDATA\n")
+            self.fails(1, "static", "r.bdf", says=[card], error="fe.unread-load")
+            self.bough("modes", "r.bdf", "-n", "1")
+            if case != "DEFORM = 4":
+                self.bough("static", "r.bdf", "--ignore", card)
+        self.write("r.bdf", f"SOL 101\nCEND\nSPC = 1\nLOAD = 5\nBEGIN BULK\n{self.ROD}ENDDATA\n")
+        self.assertNotIn("unread-load", self.bough("static", "r.bdf").stderr)
+
+    def test_the_end_misspelt_and_requests(self):
+        head = f"SOL 101\nCEND\nSPC = 1\nLOAD = 5\nESE = ALL\nGPFORCE = ALL\nBEGIN BULK\n{self.ROD}"
+        for end in ("ENDATA", "ENDDAT", "END DATA"):
+            self.write("r.bdf", head + end + "\n")
+            self.fails(1, "static", "r.bdf", says=["ENDDATA", "r.bdf:21"])
+        self.write("r.bdf", head + "ENDDATA\n")
+        text = self.bough("static", "r.bdf").stderr
+        self.assertIn("modes --ese", text)
+        self.assertIn("static --grid-forces all", text)
+        self.assertNotIn("nothing to do", text)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -3,6 +3,9 @@ mouse. Pictures are kept in BOUGH_ARTEFACTS. Skipped, with a message, where chro
 import os
 import unittest
 
+import h5py
+import numpy as np
+
 from browser import Browser, find_chromium
 from linear_test import PENDULUM
 from report_test import write_results
@@ -16,6 +19,107 @@ COUNT_COLORS = """(() => { const c = document.querySelector('%s'); const s = doc
   for (let i = 0; i < d.length; i += 4) seen.add((d[i] << 16) | (d[i + 1] << 8) | d[i + 2]); return seen.size; })()"""
 HASH = """(() => { const d = document.querySelector('%s').toDataURL(); let h = 0;
   for (let i = 0; i < d.length; ++i) h = (h * 31 + d.charCodeAt(i)) | 0; return h; })()"""
+
+
+# Two arms in space, hinge axes askew, a force that follows the lower one, a strut to ground.
+ARMS = """
+[[body]]
+name = "upper"
+mass = 1.5
+cg = [0.5, 0.0, 0.0]
+inertia = [0.02, 0.15, 0.15]
+nodes = [{ id = 1, position = [1.0, 0.0, 0.0] }, { id = 3, position = [0.5, 0.0, 0.0] }]
+[[body]]
+name = "lower"
+mass = 0.8
+cg = [0.4, 0.0, 0.0]
+inertia = [1e-9, 1e-9, 1e-9]
+nodes = [{ id = 1, position = [0.8, 0.0, 0.0] }, { id = 2, position = [0.4, 0.0, 0.0] }]
+[[hinge]]
+name = "shoulder"
+type = "universal"
+parent = "ground"
+child = "upper"
+parent_rotation_deg = [20.0, 30.0, 40.0]
+child_rotation_deg = [20.0, 30.0, 40.0]
+axis = [0.0, 0.0, 1.0]
+axis2 = [0.0, 1.0, 0.0]
+[[hinge]]
+name = "elbow"
+type = "revolute"
+parent = "upper"
+parent_node = 1
+parent_rotation_deg = [70.0, 10.0, 0.0]
+child = "lower"
+child_rotation_deg = [70.0, 10.0, 0.0]
+axis = [0.0, 0.0, 1.0]
+[[function]]
+name = "wave"
+type = "sine"
+amplitude = 1.0
+frequency_hz = 0.7
+phase = 0.5
+[[force]]
+name = "push"
+body = "lower"
+node = 1
+force = [1.0, 2.0, 3.0]
+function = "wave"
+[[force]]
+name = "twist"
+body = "lower"
+node = 1
+moment = [0.0, 0.0, 0.1]
+frame = "inertial"
+[[force]]
+name = "strut"
+type = "spring"
+body = "upper"
+node = 1
+to_position = [0.5, 1.0, 1.0]
+stiffness = 30.0
+free_length = 1.0
+[[sensor]]
+name = "upper_acceleration"
+type = "acceleration"
+body = "upper"
+node = 3
+[[sensor]]
+name = "lower_acceleration"
+type = "acceleration"
+body = "lower"
+node = 2
+[[sensor]]
+name = "upper_cg"
+type = "position"
+body = "upper"
+node = 3
+[[sensor]]
+name = "lower_cg"
+type = "position"
+body = "lower"
+node = 2
+[[sensor]]
+name = "gyro"
+type = "gyro"
+body = "lower"
+node = 1
+rotation_deg = [0.0, 0.0, 30.0]
+[[sensor]]
+name = "bend"
+type = "hinge_angle"
+hinge = "elbow"
+[[sensor]]
+name = "span"
+type = "distance"
+body = "lower"
+node = 1
+target = [0.0, 0.0, 1.0]
+[simulation]
+duration = 2.0
+output_step = 0.005
+gravity = [0.0, 0.0, -9.81]
+"""
 
 
 @unittest.skipUnless(find_chromium(), "chromium is not installed (apt install chromium); the page is not tried in a browser")
@@ -141,6 +245,58 @@ class Page(ProgramTest):
         head = b.run("films[0].slice(0, 4).arrayBuffer().then((b) => [...new Uint8Array(b)].join(' '))")
         self.assertEqual(head, "26 69 223 163")
         self.assertEqual(b.run("Number(document.querySelector('.motion .scrub').value)"), 1000)
+        self.check_sound()
+
+    def test_arrows(self):
+        """What is drawn on each body is what moves it: Σ forces = m (a - g), Σ moments about the mass centre = 0."""
+        self.write("arms.toml", ARMS)
+        self.bough("run", "arms.toml", "-o", "run.h5")
+        self.open("run.h5")
+        self.build_all()
+        self.check_sound()
+        b = self.browser
+        b.show(".motion")
+        with h5py.File(self.path("run.h5")) as f:
+            time, a = f["time"][:], {body: f[f"sensors/{body}_acceleration"][:] for body in ("upper", "lower")}
+            cg = {body: f[f"sensors/{body}_cg"][:] for body in ("upper", "lower")}
+            gravity = np.array([0, 0, -9.81])
+            for k in (0, 150, 400):
+                b.run(f"document.querySelector('[data-view=motion]').view.set_time({time[k]})")
+                arrows = b.run("document.querySelector('[data-view=motion]').view.marks.arrows")
+                found = {(one["name"], one["moment"]): (np.array(one["vector"]), np.array(one["at"])) for one in arrows}
+                self.assertEqual(len(arrows), 8)    # push, twist, strut at both ends; two hinges
+                ends = [np.array(one["at"]) for one in arrows if one["name"] == "strut"]
+                pull = next(np.array(one["vector"]) for one in arrows if one["name"] == "strut")
+                np.testing.assert_allclose(pull, np.linalg.norm(pull) * (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0]),
+                                           atol=1e-5)
+                elbow, push = found["elbow", False], found["push", False]
+                np.testing.assert_allclose(elbow[0] + push[0], 0.8 * (a["lower"][k] - gravity), atol=1e-4)
+                # The body is thin: its moment of momentum about the mass centre is told by its inertia alone, 1e-9.
+                turning = (found["elbow", True][0] + found["twist", True][0] + np.cross(elbow[1] - cg["lower"][k], elbow[0])
+                           + np.cross(push[1] - cg["lower"][k], push[0]))
+                np.testing.assert_allclose(turning, 0, atol=1e-4)
+                shoulder = found["shoulder", False]
+                np.testing.assert_allclose(shoulder[0] - elbow[0] + pull, 1.5 * (a["upper"][k] - gravity), atol=1e-4)
+        legend = b.run("document.querySelector('.motion').textContent")
+        for word in ("an arrow of length 1 [L] is", "Moment (two heads)", "shoulder", "sensors: "):
+            self.assertIn(word, legend)
+        self.picture("motion-arrows")
+        # Toggles and the scale.
+        whole = b.run(HASH % ".scene")
+        meaning = "document.querySelector('[data-view=motion]').view.marks"
+        text = b.run(meaning + ".meaning.textContent")
+        for name, left in (("reactions", 4), ("applied", 0), ("sensors", 0)):
+            before = b.run(HASH % ".scene")
+            b.run(f"[...document.querySelectorAll('.motion label')].find(l => l.textContent.trim() === '{name}').click()")
+            self.assertEqual(b.run(meaning + ".arrows.length"), left)
+            self.assertNotEqual(b.run(HASH % ".scene"), before)
+        for name in ("reactions", "applied", "sensors"):
+            b.run(f"[...document.querySelectorAll('.motion label')].find(l => l.textContent.trim() === '{name}').click()")
+        self.assertEqual(b.run(HASH % ".scene"), whole)
+        b.run("""(() => { const s = document.querySelector('.motion input[aria-label="arrows ×"]'); s.value = 1;
+          s.dispatchEvent(new Event('input')); })()""")
+        self.assertNotEqual(b.run(HASH % ".scene"), whole)
+        self.assertNotEqual(b.run(meaning + ".meaning.textContent"), text)
         self.check_sound()
 
     def test_modes(self):

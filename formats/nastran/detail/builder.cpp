@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 #include <tuple>
 #include <unordered_set>
 
@@ -243,6 +244,7 @@ class Builder {
       last_name_ = text_.name;
     }
     if (entry->count++ == 0) entry->first = text_.lines.front().at;
+    if (entry->parser == nullptr && entry->dynamic == nullptr) keep_unread_load();
     if ((entry->parser == nullptr && entry->dynamic == nullptr) || is_default_card(text_.name)) return;
     design_.apply(text_);
     Card card(text_, deck_.files, diagnostics_);
@@ -251,6 +253,14 @@ class Builder {
     else
       entry->parser(card, reading_);
     if (card.is_ok()) leftovers_.add(card);
+  }
+
+  void keep_unread_load() {
+    const auto command = find_selecting_command(text_.name);
+    if (command.empty() || ignored_.count(text_.name) > 0 || text_.fields.empty()) return;
+    const auto set = parse_int(text_.fields.front());
+    if (set && unread_sets_.emplace(text_.name, *set).second)
+      deck_.unread_loads.push_back({text_.name, std::string(command), *set, text_.lines.front().at});
   }
 
   NameEntry& find_entry() {
@@ -278,7 +288,9 @@ class Builder {
     if (++num_unreadable_ > max_unreadable) return;
     diagnostics_.error("deck.unreadable-line", where,
                        "'" + text_.name + "' is no card name, expected a letter and up to seven letters or digits",
-                       "fixed fields are eight columns wide and begin with the name; comments begin with $");
+                       text_.name.substr(0, 3) == "END"
+                           ? "the end of the deck is written ENDDATA"
+                           : "fixed fields are eight columns wide and begin with the name; comments begin with $");
   }
 
   /// Counts of all names; one message for each name that is not read, in the order of the deck.
@@ -363,6 +375,7 @@ class Builder {
   Reading reading_;
   Replicator replicator_;
   std::unordered_set<std::string> ignored_;
+  std::set<std::pair<std::string, int>> unread_sets_;
   std::unordered_map<std::string, NameEntry> names_;
   std::unordered_map<std::string, int> defaults_seen_;  ///< card index
   Design design_;

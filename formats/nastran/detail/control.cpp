@@ -6,6 +6,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "formats/nastran/detail/control_lines.hpp"
 #include "formats/nastran/detail/control_words.hpp"
 #include "formats/nastran/detail/dynamic_control.hpp"
 #include "formats/nastran/detail/matrix_selection.hpp"
@@ -15,36 +16,6 @@ namespace bough::nastran::detail {
 namespace {
 
 using records::Subcase;
-
-/// Words of one note.
-constexpr std::size_t most_words = 100;
-
-/// Exact word, or an abbreviation of at least `shortest` letters.
-bool is_command(std::string_view word, std::string_view command, std::size_t shortest) {
-  return word.size() >= shortest && word.size() <= command.size() && word == command.substr(0, word.size());
-}
-
-struct Command {
-  std::string word;        ///< upper case
-  std::string options;     ///< what stands in parentheses, upper case
-  std::string_view value;  ///< after "=" or, without one, after the word
-};
-
-Command split_command(std::string_view text) {
-  Command command;
-  text = trim(text);
-  const auto word = find_first_word(text);
-  command.word = make_upper(word);
-  auto rest = trim(text.substr(word.size()));
-  if (!rest.empty() && rest.front() == '(') {
-    const auto close = rest.find(')');
-    command.options = make_upper(rest.substr(1, close == std::string_view::npos ? close : close - 1));
-    rest = close == std::string_view::npos ? std::string_view{} : trim(rest.substr(close + 1));
-  }
-  if (!rest.empty() && rest.front() == '=') rest = trim(rest.substr(1));
-  command.value = rest;
-  return command;
-}
 
 class CaseControl {
  public:
@@ -124,6 +95,8 @@ class CaseControl {
       read_statsub(c);
     } else if (is_command(c.word, "SUPORT1", 4))
       read_set(c, "SUPORT1", current().suport1);
+    else if (is_command(c.word, "DEFORM", 4))
+      read_deform(c);
     else if (c.word == "NSM")
       read_set(c, "NSM", current().nsm);
     else if (c.word == "K2GG")
@@ -173,12 +146,6 @@ class CaseControl {
   }
 
   void report_unused(const std::string& word) {
-    if (is_command(word, "DEFORM", 4)) {
-      diagnostics_.warning("deck.unused-load", deck_.locate(at_),
-                           "DEFORM selects a load that is not read: enforced deformations of elements",
-                           "give it as temperatures, or leave it out");
-      return;
-    }
     const auto nearest = find_nearest_command(word);
     if (nearest.empty()) return note(word);
     diagnostics_.warning("deck.unknown-case-control", deck_.locate(at_),
@@ -325,6 +292,14 @@ class CaseControl {
       note("TEMPERATURE(" + *kind + ")");
   }
 
+  /// Enforced deformations of elements are not read: a static solution of the case is refused, unless asked otherwise.
+  void read_deform(const Command& c) {
+    if (asked_to_ignore_.count("DEFORM") == 0) read_set(c, "DEFORM", current().deform);
+    diagnostics_.warning("deck.unused-load", deck_.locate(at_),
+                         "DEFORM selects a load that is not read: enforced deformations of elements",
+                         "give it as temperatures, or leave it out");
+  }
+
   /// Names of DMIG with or without factors: "K1, K2", "1.25*K1, 0.82*K2", or the id of a SET of such a list.
   void read_matrices(const Command& c, const char* name, MatrixList& matrices) {
     matrices.clear();
@@ -364,9 +339,7 @@ class CaseControl {
                        "write " + c.word + (std::string_view(expected) == "the number of a set" ? " = n" : " = NAME"));
   }
 
-  void note(const std::string& word) {
-    if (noted_.insert(word).second) ignored_.emplace_back(word, at_);
-  }
+  void note(const std::string& word) { ignored_.add(word, at_); }
 
   void finish() {
     end_combination();
@@ -374,14 +347,7 @@ class CaseControl {
     if (dynamics_ && !in_subcase_) dynamics_->selections[0] = selection_above_;
     choose_matrices(deck_, sets_, at_, diagnostics_);
     if (dynamics_) add_direct_input(*dynamics_, sets_, at_, diagnostics_);
-    if (ignored_.empty()) return;
-    std::string words;
-    const auto num_shown = std::min(ignored_.size(), most_words);
-    for (std::size_t i = 0; i < num_shown; ++i)
-      words += (i == 0 ? "" : ", ") + ignored_[i].first + " (line " + std::to_string(ignored_[i].second.line) + ")";
-    if (num_shown < ignored_.size()) words += " and " + std::to_string(ignored_.size() - num_shown) + " more";
-    diagnostics_.note("deck.case-control-ignored", deck_.locate(ignored_.front().second),
-                      "case control not used: " + words, "nothing to do, unless one of them should matter");
+    ignored_.report(deck_, diagnostics_);
   }
 
   const Source& source_;
@@ -395,42 +361,19 @@ class CaseControl {
   std::vector<int> real_ids_, sym_ids_;
   bool is_symcom_over_ = false;
   records::CardLocation at_;
-  std::vector<std::pair<std::string, records::CardLocation>> ignored_;
-  std::unordered_set<std::string> noted_;  ///< the words of ignored_
+  IgnoredCommands ignored_;
   std::unordered_set<int> subcase_ids_;
   std::unordered_set<std::string> asked_to_ignore_;
   NamedSets sets_;
 };
 
-void read_executive(const Source& source, std::size_t last, records::Deck& deck) {
-  for (std::size_t i = 0; i < last; ++i) {
-    const auto command = split_command(source.lines[i].text);
-    // "SOL 3,0" of the COSMIC programs names the solution and a subset of it.
-    if (command.word == "SOL") deck.sol = make_upper(command.value.substr(0, command.value.find_first_of(" ,")));
-  }
-}
-
 }  // namespace
 
 std::size_t read_control(const Source& source, records::Deck& deck, Diagnostics& diagnostics,
                          const ControlOptions& options) {
-  constexpr std::size_t none = static_cast<std::size_t>(-1);
-  std::size_t cend = none, begin = none;
-  for (std::size_t i = 0; i < source.lines.size() && begin == none; ++i) {
-    const auto text = trim(source.lines[i].text);
-    if (text.empty() || (text.front() != 'C' && text.front() != 'c' && text.front() != 'B' && text.front() != 'b'))
-      continue;
-    const auto word = find_first_word(text);
-    if (is_word(word, "CEND") && word.size() == text.size() && cend == none) cend = i;
-    if (!is_word(word, "BEGIN")) continue;
-    const auto section = find_first_word(text.substr(word.size()));
-    // A bare BEGIN before CEND belongs to a DMAP sequence.
-    const auto is_cend = [](const Line& line) { return is_word(trim(line.text), "CEND"); };
-    const bool is_dmap =
-        section.empty() && cend == none &&
-        std::any_of(source.lines.begin() + static_cast<std::ptrdiff_t>(i), source.lines.end(), is_cend);
-    if ((section.empty() && !is_dmap) || is_word(section, "BULK")) begin = i;
-  }
+  const auto [cend, begin_bulk] = find_sections(source);
+  auto begin = begin_bulk;
+  constexpr auto none = Sections::none;
   if (begin == none && cend == none) {
     deck.subcases.emplace_back();
     return 0;

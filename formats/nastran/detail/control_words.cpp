@@ -1,5 +1,6 @@
 #include "formats/nastran/detail/control_words.hpp"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -27,6 +28,22 @@ constexpr std::string_view known_commands =
     "SELG SELO SELR SEMG SEMP SEMR SERE SETP SEUP SHEL SKIN SMET SPCG SPLI STAT STEP STOC STRF SUBM SUBS SUPE SYMC "
     "SYMS TERM TFL THER TRIM TSTE TSTR UNGL USER VARC VATV VCCT VIBR VUGR WEAK WEIG XYCO";
 
+constexpr std::size_t most_words = 100;  // of one note
+
+/// What gives the result that a command asks for; empty: nothing.
+std::string_view find_option(std::string_view word) {
+  struct Option {
+    std::string_view command, option;
+  };
+  static constexpr std::array options{
+      Option{"ESE", "ESE: 'modes --ese'; 'static -o FILE.h5' has the strain energy of each element"},
+      Option{"EKE", "EKE: 'modes --ese'"},
+      Option{"GPFO", "GPFORCE: 'static --grid-forces all'"}};
+  for (const auto& one : options)
+    if (word.substr(0, 4) == one.command) return one.option;
+  return {};
+}
+
 bool is_among(std::string_view commands, std::string_view word) {
   word = word.substr(0, 4);
   while (!commands.empty()) {
@@ -50,6 +67,30 @@ std::string find_nearest_command(std::string_view word) {
   // Of the words that begin as LOAD does only LOADSET is another command; LOADS is a slip.
   const bool is_known = word.substr(0, 4) == "LOAD" ? is_loadset : is_among(known_commands, word);
   return is_known ? std::string{} : find_nearest(word, used);
+}
+
+void IgnoredCommands::add(const std::string& word, const records::CardLocation& at) {
+  if (seen_.insert(word).second) words_.emplace_back(word, at);
+}
+
+void IgnoredCommands::report(const records::Deck& deck, Diagnostics& diagnostics) const {
+  if (words_.empty()) return;
+  std::string words, options;
+  bool has_others = words_.size() > most_words;
+  const auto num_shown = std::min(words_.size(), most_words);
+  for (std::size_t i = 0; i < num_shown; ++i) {
+    words += (i == 0 ? "" : ", ") + words_[i].first + " (line " + std::to_string(words_[i].second.line) + ")";
+    const auto option = find_option(words_[i].first);
+    if (option.empty()) has_others = true;
+    if (!option.empty() && options.find(option) == std::string::npos)
+      options += (options.empty() ? "" : ", ") + std::string(option);
+  }
+  if (num_shown < words_.size()) words += " and " + std::to_string(words_.size() - num_shown) + " more";
+  const std::string nothing = "nothing to do, unless one of them should matter";
+  diagnostics.note("deck.case-control-ignored", deck.locate(words_.front().second), "case control not used: " + words,
+                   options.empty() ? nothing
+                                   : "an option of the command line gives it: " + options +
+                                         (has_others ? "; of the others: " + nothing : ""));
 }
 
 const UnsupportedCommand* find_unsupported_command(std::string_view word) {

@@ -159,8 +159,20 @@ std::string find_nearest_card(std::string_view name) {
     return names;
   };
   static const auto read = sort_names(get_card_parsers()), known = sort_names(get_effects());
+  if (name.substr(0, 3) == "END") return "ENDDATA";  // no card begins so
   const auto nearest = find_nearest(name, read);
   return nearest.empty() ? find_nearest(name, known) : nearest;
+}
+
+std::string_view find_selecting_command(std::string_view name) {
+  constexpr std::string_view with_load =
+      " ACCEL ACCEL1 FORCEAX FORCEDST GMLOAD LOADCYH LOADCYN LOADCYT MOMAX MOMNTDST PLOAD3 PLOADB3 PLOADG PLOADX "
+      "PLOADX1 PRESAX RFORCE2 SLOADN1 ";
+  constexpr std::string_view with_temperature =
+      " TEMPAX TEMPB3 TEMPBC TEMPEX TEMPF TEMPN1 TEMPP2 TEMPP3 TEMPP4 TEMPG TMPSET ";
+  const std::string word = " " + std::string(name) + " ";
+  if (with_load.find(word) != std::string_view::npos) return "LOAD";
+  return with_temperature.find(word) != std::string_view::npos ? "TEMPERATURE" : std::string_view{};
 }
 
 const char* find_loss(std::string_view name) {

@@ -12,6 +12,8 @@ namespace bough::nastran::detail {
 std::optional<records::CardEffect> find_effect(std::string_view name);
 /// The known or read name nearest to `name`, or empty.
 std::string find_nearest_card(std::string_view name);
+/// The command that selects a static load which is not read, by the set in its first field; empty for other cards.
+std::string_view find_selecting_command(std::string_view name);
 /// What is lost with a set of dofs that is not used, or nullptr for other cards.
 const char* find_loss(std::string_view name);
 /// Cards that act in responses alone. Those that a command selects, which is refused itself, are no error.

@@ -35,6 +35,7 @@ function build(place, chapter, failures) {
     const view = kViews[place.dataset.view](chapter);
     place.replaceChildren(view.element);
     place.classList.add("built");
+    place.view = view;
     view.draw?.();
   } catch (error) {
     failures.push(`${place.dataset.view}: ${error.message}`);

@@ -1,18 +1,8 @@
 import { Box, Drawing } from "./drawing.js";
 import { find_index, format_number } from "./numbers.js";
-import { el, get_css, get_style, make_button, make_check, make_select, make_slider, save_blob } from "./page_parts.js";
+import { el, get_style, make_button, make_check, make_select, make_slider, save_blob } from "./page_parts.js";
+import { SceneMarks, to_rotation, turn } from "./scene_marks.js";
 import { Viewer, make_triad } from "./viewer.js";
-
-// Rows of the rotation of a quaternion w x y z, of any length.
-function to_rotation([w, x, y, z]) {
-  const s = 2 / (w * w + x * x + y * y + z * z || 1);
-  return [
-    [1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)],
-    [s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x)],
-    [s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)],
-  ];
-}
-const turn = (R, v) => R.map((row) => row[0] * v[0] + row[1] * v[1] + row[2] * v[2]);
 
 // The moving system of a run.
 export class MotionView {
@@ -30,6 +20,7 @@ export class MotionView {
     this.has_frames = true;
     this.has_colors = false;
     this.is_playing = false;
+    this.marks = new SceneMarks(this);
     this.viewer = new Viewer(460);
     this.scrubber = el("input", { type: "range", class: "scrub", min: 0, max: 1000, step: 1, value: 0, "aria-label": "time" });
     this.scrubber.addEventListener("input", () => this.set_time(this.first + (this.scrubber.value / 1000) * (this.last - this.first)));
@@ -40,6 +31,7 @@ export class MotionView {
       make_slider("plays in", { min: 0.5, max: 2.3, step: 0.05, value: 1.1 }, (v) => { this.seconds = 10 ** v; return format_number(10 ** v, 2) + " s"; }),
       make_slider("deformation ×", { min: 0, max: 3, step: 0.05, value: 0 }, (v) => { this.scale = 10 ** v; this.draw(); return format_number(10 ** v, 3); }),
       make_select("follow", ["nothing", ...moving.map((b) => b.name)], (i) => { this.follow = i === 0 ? -1 : moving[i - 1].index; this.anchor(); }),
+      ...this.marks.make_tools(),
       make_check("frames", true, (on) => { this.has_frames = on; this.draw(); }),
       make_check("colour by displacement", false, (on) => { this.has_colors = on; this.draw(); }), this.viewer.make_view_buttons());
     if (globalThis.MediaRecorder) tools.append(make_button("WebM", "Play once from the start and save it as a film", () => this.film()));
@@ -49,7 +41,7 @@ export class MotionView {
       return el("span", { class: "entry" }, mark, " " + b.name);
     }));
     const help = el("p", { class: "note" }, "Black: hinges and their axes. Frames: orange x, green y, blue z. A click in a chart takes this view there.");
-    this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock), names, help);
+    this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock), names, this.marks.legend, this.marks.now, help);
     run.link.on("pick", (time) => { this.play(false); this.set_time(time); });
     this.reach = this.find_reach();
     const box = this.find_box();
@@ -90,6 +82,7 @@ export class MotionView {
         }
       }
     }
+    this.marks.extend(box);
     return box;
   }
 
@@ -158,7 +151,7 @@ export class MotionView {
   }
 
   draw() {
-    if (!this.viewer.home || !this.clock) return;
+    if (!this.viewer?.home || !this.clock) return;
     const size = this.viewer.extent, things = [], boxes = [];
     const places = this.bodies.map((b) => (b.is_drawn ? this.place(b, this.time) : null));
     if (this.has_frames) things.push(...make_triad([0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]], 0.1 * size));
@@ -174,7 +167,7 @@ export class MotionView {
       (is_box ? boxes : things).push({ alpha: is_box ? 0.4 : 1, points: body.world, size: d.size, triangles: d.triangles, edges: d.edges, ghosts: d.ghosts, color: get_style(k).color, by_level: this.has_colors && eta.length > 0, dots: d.triangles.length === 0 });
       if (this.has_frames) things.push(...make_triad(p, [0, 1, 2].map((c) => R.map((row) => row[c])), 0.06 * size));
     });
-    this.add_hinges(things, places, size);
+    this.viewer.marks = this.marks.make_things(places, this.time, size);
     if (this.follow >= 0) {
       const p = places[this.follow].p;
       if (this.before) this.viewer.target = this.viewer.target.map((t, i) => t + p[i] - this.before[i]);
@@ -184,22 +177,5 @@ export class MotionView {
     this.viewer.things = [...things, ...boxes];
     this.viewer.reach = this.reach * this.scale;
     this.viewer.draw();
-  }
-
-  add_hinges(things, places, size) {
-    for (const hinge of this.run.data.hinges) {
-      const place = hinge.parent >= 0 ? places[hinge.parent] : { p: [0, 0, 0], R: [[1, 0, 0], [0, 1, 0], [0, 0, 1]] };
-      if (!place) continue;
-      let p = hinge.p;
-      if (hinge.point >= 0) {
-        // The point of a flexible parent has moved from its undeformed place.
-        const d = this.bodies[hinge.parent].drawing, k = 3 * hinge.point;
-        p = p.map((v, i) => v + d.points[k + i] - d.xyz[k + i]);
-      }
-      const at = turn(place.R, p).map((v, i) => v + place.p[i]);
-      const axis = turn(place.R, hinge.axis), half = 0.03 * size;
-      const points = Math.hypot(...axis) > 0 ? [...at, ...at.map((v, i) => v - half * axis[i]), ...at.map((v, i) => v + half * axis[i])] : at;
-      things.push({ points: new Float32Array(points), edges: new Uint32Array(points.length > 3 ? [1, 2] : []), color: get_css("--hinge"), dots: true });
-    }
   }
 }

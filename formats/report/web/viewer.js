@@ -6,7 +6,7 @@ const multiply = (a, b) => {
   for (let j = 0; j < 4; ++j) for (let i = 0; i < 4; ++i) for (let k = 0; k < 4; ++k) c[4 * j + i] += a[4 * k + i] * b[4 * j + k];
   return c;
 };
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
 const kVertex = `#version 300 es
@@ -52,7 +52,8 @@ const to_rgba = (css, alpha = 1) => {
   return [(v >> 16) / 255, ((v >> 8) & 255) / 255, (v & 255) / 255, alpha];
 };
 
-// A stage on which things are drawn: { points, size, triangles, edges, color, by_level, line_color }. Dragging turns,
+// A stage on which things are drawn: { points, size, triangles, edges, color, by_level, line_color }; marks stand before
+// all things. Dragging turns,
 // the right button or shift moves, the wheel comes nearer, a double click shows all.
 export class Viewer {
   constructor(height = 420) {
@@ -65,6 +66,7 @@ export class Viewer {
     this.program = this.make_program();
     this.buffers = { place: gl.createBuffer(), size: gl.createBuffer(), index: gl.createBuffer() };
     this.things = [];
+    this.marks = [];
     this.reach = 0;
     this.target = [0, 0, 0];
     this.distance = 5;
@@ -147,6 +149,8 @@ export class Viewer {
     gl.uniform3fv(this.at("eye"), this.eye);
     gl.uniform1f(this.at("reach"), this.reach);
     for (const thing of this.things) this.draw_thing(thing);
+    gl.clear(gl.DEPTH_BUFFER_BIT);  // no body hides what comes now
+    for (const thing of this.marks) this.draw_thing(thing);
   }
 
   draw_thing(thing) {

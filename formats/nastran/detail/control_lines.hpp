@@ -1,0 +1,33 @@
+#pragma once
+/// \file Lines of the executive and the case control: commands, and where the sections begin.
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "formats/nastran/detail/lines.hpp"
+#include "formats/records/deck.hpp"
+
+namespace bough::nastran::detail {
+
+/// Exact word, or an abbreviation of at least `shortest` letters.
+bool is_command(std::string_view word, std::string_view command, std::size_t shortest);
+
+struct Command {
+  std::string word;        ///< upper case
+  std::string options;     ///< what stands in parentheses, upper case
+  std::string_view value;  ///< after "=" or, without one, after the word
+};
+
+Command split_command(std::string_view text);
+
+/// Lines of CEND and BEGIN BULK.
+struct Sections {
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  std::size_t cend = none, begin_bulk = none;
+};
+Sections find_sections(const Source& source);
+
+/// SOL, out of the lines before `last`.
+void read_executive(const Source& source, std::size_t last, records::Deck& deck);
+
+}  // namespace bough::nastran::detail
