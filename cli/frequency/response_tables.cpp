@@ -54,7 +54,9 @@ std::string format_response(const records::ResponseSubcase& s, bool is_over_time
                                               : fmt::format("{} frequencies", num),
                                  s.x.size() > 0 ? s.x(0) : 0, s.x.size() > 0 ? s.x(s.x.size() - 1) : 0,
                                  is_over_time ? "" : " Hz", how);
-  if (!s.is_direct)
+  if (s.is_direct)
+    text += fmt::format("residual of the response {:.1e}\n", s.solution_error);
+  else
     text += fmt::format("orthogonality {:.1e}, {} {:.1e}\n", s.basis_error,
                         is_over_time ? "a step against two halves" : "residual of the response", s.solution_error);
   const auto curves = exports::list_curves(s);
@@ -89,7 +91,8 @@ nlohmann::json to_json(const records::ResponseSubcase& s, bool is_over_time, boo
   json[is_over_time ? "time" : "frequency_hz"] = to_json_list(s.x);
   json["method"] = s.is_direct ? "direct" : "modal";
   json["modes"] = {{"frequency_hz", to_json_list(s.mode_hz)}, {"damping_ratio", to_json_list(s.damping_ratio)}};
-  if (!s.is_direct) json["accuracy"] = {{"basis", s.basis_error}, {"solution", s.solution_error}};
+  json["accuracy"] = {{"solution", s.solution_error}};
+  if (!s.is_direct) json["accuracy"]["basis"] = s.basis_error;
   auto residual = nlohmann::json::array();
   for (const auto kind : s.kind) residual.push_back(kind == records::ModeKind::Residual);
   json["modes"]["is_residual"] = residual;

@@ -65,18 +65,17 @@ void write_subcase(FileWriter& file, const records::ResponseSubcase& s, bool is_
     file.write_attribute(group, "phase", curves.is_phase ? 1 : 0);
     file.write_attribute(group, "punch", curves.is_punched ? 1 : 0);
   }
+  file.write_number(path + "/accuracy/solution", s.solution_error,
+                    {s.is_direct    ? "residual of the equation of motion, the worst"
+                     : is_over_time ? "what a step and two halves of it differ by, relative"
+                                    : "residual of the equation of the coordinates over its loads, worst frequency",
+                     "1"});
   if (s.is_direct) return;
+  file.write_number(path + "/accuracy/basis", s.basis_error,
+                    {"of the orthogonality of the coordinates to M and K", "1"});
   file.write_vector(path + "/modes/frequency_hz", s.mode_hz,
                     {"of each coordinate: rigid motions (0), normal modes, residual vectors", "1/T"});
   file.write_vector(path + "/modes/damping_ratio", s.damping_ratio, {"its share of the critical damping", "1"});
-  if (!s.is_direct) {
-    file.write_number(path + "/accuracy/basis", s.basis_error,
-                      {"of the orthogonality of the coordinates to M and K", "1"});
-    file.write_number(path + "/accuracy/solution", s.solution_error,
-                      {is_over_time ? "what a step and two halves of it differ by, relative"
-                                    : "residual of the equation of the coordinates over its loads, worst frequency",
-                       "1"});
-  }
   std::vector<int> residual;
   for (const auto kind : s.kind) residual.push_back(kind == records::ModeKind::Residual);
   file.write_integers(path + "/modes/is_residual", residual, {"1: a residual vector", "1"});

@@ -44,6 +44,35 @@ double calc_solution_error(const ResponseModel& response, const Spectrum& spectr
   return worst;
 }
 
+void ResidualRecord::add(const VectorXd& D, const Eigen::VectorXcd& x, const Eigen::VectorXcd& A_x,
+                         const Eigen::VectorXcd& b) {
+  constexpr double kEntries = 1e-6;  // as in fe/linear/residual.cpp
+  const VectorXd scale = D.cwiseSqrt().cwiseInverse();
+  const double rest = scale.cwiseProduct(A_x - b).norm();
+  const double size = scale.cwiseProduct(A_x).norm() + kEntries * D.cwiseSqrt().cwiseProduct(x).norm();
+  if (is_over_time_) {
+    if (!(rest <= rest_)) rest_ = rest;
+    if (!(size <= size_)) size_ = size;
+  } else if (rest != 0 && !(rest * size_ <= rest_ * size)) {
+    rest_ = rest;
+    size_ = size;
+  }
+}
+
+double ResidualRecord::worst() const { return rest_ == 0 ? 0 : rest_ / size_; }
+
+void report_residual(double residual, const SourceLocation& at, Diagnostics& diagnostics) {
+  if (residual <= kAccuracyWarning) return;
+  char text[112];
+  std::snprintf(text, sizeof text, "the response fulfils its equation to %.1e, expected below %.0e", residual,
+                kAccuracyWarning);
+  const char* advice =
+      "look for very soft beside very stiff parts, for a mode that next to nothing damps, and for steps far below what "
+      "moves";
+  if (residual <= kAccuracyError) return diagnostics.warning("modal.response-accuracy", at, text, advice);
+  throw ComputationError("modal.response-accuracy", at, text, advice);
+}
+
 void report_accuracy(double basis_error, double solution_error, const SourceLocation& at, Diagnostics& diagnostics) {
   const auto is_within = [&](double limit) { return basis_error <= limit && solution_error <= limit; };  // no NaN is
   if (is_within(kAccuracyWarning)) return;

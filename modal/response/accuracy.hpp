@@ -15,6 +15,24 @@ double calc_basis_error(const fe::Model& model, const ResponseModel& response);
 /// |(Λ - ω² m + iωD + iS) q - P a| / |P a| of the worst frequency, each row over √max(|λ|, ω² m).
 double calc_solution_error(const ResponseModel& response, const Spectrum& spectrum);
 
+/// The worst residual of the equations A x = b that a direct solution solves: |D⁻¹ᐟ²(A x - b)| over |D⁻¹ᐟ²A x| and what
+/// the entries of A alone could bring about, as fe::calc_residuals has it. Over frequency of each, over time of the
+/// largest forces that were there: what is at rest has no residual of its own.
+class ResidualRecord {
+ public:
+  explicit ResidualRecord(bool is_over_time) : is_over_time_(is_over_time) {}
+  /// D > 0: diagonal of A; real and imaginary parts count alike.
+  void add(const VectorXd& D, const Eigen::VectorXcd& x, const Eigen::VectorXcd& A_x, const Eigen::VectorXcd& b);
+  double worst() const;
+
+ private:
+  bool is_over_time_;
+  double rest_ = 0, size_ = 0;
+};
+
+/// Of a direct solution: warning, or ComputationError, modal.response-accuracy.
+void report_residual(double residual, const SourceLocation& at, Diagnostics& diagnostics);
+
 /// Warning, or ComputationError, modal.response-accuracy.
 void report_accuracy(double basis_error, double solution_error, const SourceLocation& at, Diagnostics& diagnostics);
 

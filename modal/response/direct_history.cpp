@@ -7,6 +7,7 @@
 #include "fe/linear/complex_factor.hpp"
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/mechanism.hpp"
+#include "modal/response/accuracy.hpp"
 #include "modal/response/direct_model.hpp"
 #include "modal/response/support_motion.hpp"
 
@@ -126,7 +127,10 @@ class DirectMotion {
     Index next = 0;
     const auto num = static_cast<Index>(grid_.shown.size());
     for (Index i = 0; i < grid_.time.size(); ++i) {
-      if (i > 0) advance(i);
+      if (i > 0) {
+        advance(i);
+        check(i);
+      }
       const bool is_shown = next < num && grid_.shown[static_cast<std::size_t>(next)] == i;
       jump(i, is_shown ? next - first_ : -1);
       if (!is_shown) continue;
@@ -136,6 +140,7 @@ class DirectMotion {
       }
     }
   }
+  double residual() const { return residual_.worst(); }
 
  private:
   void begin_block(Index first) {
@@ -183,6 +188,7 @@ class DirectMotion {
       const double c = radau_.c(stage);
       F.col(stage) = calc_load(calc_forces(i, stage, h), d.value(c), d.rate(c), d.second(c));
     }
+    end_acceleration_ = d.second(1);
     F.colwise() -= times(m_.K, u_).col(0);
     const VectorXd M_v = times(m_.M, v_);
     const Eigen::RowVector3cd w = Eigen::RowVector3cd::Ones() * radau_.P;
@@ -211,6 +217,19 @@ class DirectMotion {
     u_ += change.col(kStages - 1);
     a_ = (V.colwise() - v_) * radau_.G.col(kStages - 1) / h;
     v_ = V.col(kStages - 1);
+  }
+
+  /// The last stage is the end of the step, where the equation of motion holds.
+  void check(Index i) {
+    if (n_ == 0) return;
+    const double h = calc_step_before(grid_, i);
+    const VectorXd load = calc_load(forces_.before.col(i), supports_.d.before.col(i), supports_.d_dot.before.col(i),
+                                    end_acceleration_);
+    const VectorXd A_x = times(m_.K, u_) + times(m_.B, v_) + times(m_.M, a_);
+    VectorXd D = m_.K_diagonal + m_.M_diagonal / (h * h);
+    const double largest = D.maxCoeff();
+    D = (D.array() > 1e-14 * largest).select(D, largest > 0 ? largest : 1.0);
+    residual_.add(D, u_, A_x, load);
   }
 
   /// (M + δB + δ²K)⁻¹, δ a time far below the step: M⁻¹ where there is mass, what is stiff otherwise.
@@ -285,16 +304,19 @@ class DirectMotion {
   Index n_, first_ = 0;
   std::map<long long, StepFactors> factors_;
   std::optional<fe::SymmetricFactor> quick_;
-  VectorXd u_, v_, a_;
+  VectorXd u_, v_, a_, end_acceleration_;
+  ResidualRecord residual_{true};
   MotionBlock<MatrixXd> block_;
 };
 
 }  // namespace
 
-void solve_history(const fe::Model& model, const DirectModel& direct, const Excitation& excitation,
+double solve_history(const fe::Model& model, const DirectModel& direct, const Excitation& excitation,
                    const StartMotion& start, const TimeGrid& grid,
                    const std::function<void(const MotionBlock<MatrixXd>&)>& take) {
-  DirectMotion(model, direct, excitation, grid).run(start, take);
+  DirectMotion motion(model, direct, excitation, grid);
+  motion.run(start, take);
+  return motion.residual();
 }
 
 }  // namespace bough::modal::response

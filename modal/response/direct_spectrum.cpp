@@ -5,6 +5,7 @@
 #include "fe/linear/complex_factor.hpp"
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/mechanism.hpp"
+#include "modal/response/accuracy.hpp"
 #include "modal/response/coordinates.hpp"
 #include "modal/response/direct_model.hpp"
 
@@ -23,7 +24,7 @@ class DirectSpectrum {
   DirectSpectrum(const DirectModel& direct, Index n) : direct_(direct), n_(n), probe_(make_probe(n)) {}
 
   /// The f-set's motion for loads p and motions d of the supports.
-  VectorXcd solve(double hz, const VectorXcd& p, const VectorXcd& d) const {
+  VectorXcd solve(double hz, const VectorXcd& p, const VectorXcd& d) {
     const double omega = 2 * std::numbers::pi * hz;
     const auto& m = direct_;
     const fe::PetscMat A = omega == 0 ? share(m.K) : fe::add(m.K.get(), -omega * omega, m.M.get());
@@ -40,11 +41,22 @@ class DirectSpectrum {
     // Along a motion that next to nothing resists, the answer to any load is round-off.
     const double energy = std::abs(x.col(1).dot(sides.col(1))), size = D.dot(x.col(1).cwiseAbs2());
     if (!(energy > fe::kMechanismEnergy * size)) throw_unbounded(hz, kWhy);
+    VectorXcd A_x = multiply(A, x.col(0));
+    if (imaginary) A_x += 1i * multiply(imaginary, x.col(0));
+    residual_.add(D, x.col(0), A_x, sides.col(0));
     return x.col(0);
   }
+  double residual() const { return residual_.worst(); }
 
  private:
   static constexpr const char* kWhy = "the model moves freely, or a mode at this frequency is not damped";
+
+  static VectorXcd multiply(const fe::PetscMat& A, const VectorXcd& x) {
+    MatrixXd parts(x.size(), 2);
+    parts << x.real(), x.imag();
+    const MatrixXd y = fe::multiply(A.get(), parts);
+    return y.col(0) + 1i * y.col(1);
+  }
 
   fe::PetscMat make_imaginary(double omega) const {
     const auto& m = direct_;
@@ -55,6 +67,7 @@ class DirectSpectrum {
   const DirectModel& direct_;
   Index n_;
   VectorXd probe_;
+  ResidualRecord residual_{false};
 };
 
 }  // namespace
@@ -67,10 +80,10 @@ VectorXd make_probe(Index n) {
   return probe;
 }
 
-void solve_spectrum(const fe::Model& model, const DirectModel& direct, const Excitation& excitation, const VectorXd& hz,
+double solve_spectrum(const fe::Model& model, const DirectModel& direct, const Excitation& excitation, const VectorXd& hz,
                     const std::function<void(const MotionBlock<MatrixXcd>&)>& take, Diagnostics& diagnostics) {
   const Index n = model.num_fdofs();
-  const DirectSpectrum solver(direct, n);
+  DirectSpectrum solver(direct, n);
   BoundedFrequencies bounded;
   for (Index first = 0; first < hz.size(); first += kHeldFrequencies) {
     const VectorXd held = hz.segment(first, std::min(kHeldFrequencies, hz.size() - first));
@@ -97,6 +110,7 @@ void solve_spectrum(const fe::Model& model, const DirectModel& direct, const Exc
     take(block);
   }
   bounded.report(diagnostics);
+  return solver.residual();
 }
 
 }  // namespace bough::modal::response

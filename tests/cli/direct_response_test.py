@@ -262,6 +262,7 @@ class Choices(refusals.Refusals):
             self.write("d.bdf", self.deck(good, sol=sol))
             said = self.bough("frequency", "d.bdf", *options)
             self.assertEqual("; direct" in said.stdout, is_direct, f"SOL {sol} {options}")
+            self.assertLess(float(said.stdout.split("residual of the response ")[1].split()[0]), 1e-12)
             self.assertEqual("[cli.by-modes]" in said.stderr, sol == 108 and not is_direct)
         self.bough("frequency", "d.bdf", "--direct", "--modes", "3", code=2)
 

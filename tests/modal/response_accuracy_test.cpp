@@ -98,5 +98,36 @@ TEST(ResponseAccuracy, AStepIsTwoHalves) {
   }
 }
 
+TEST(ResidualRecord, TakesTheWorstFrequencyAndTheWholeOfATime) {
+  const VectorXd D = Eigen::Vector2d(4, 9);
+  const Eigen::VectorXcd x = Eigen::Vector2cd(1, 0), A_x = Eigen::Vector2cd(2, 3), small = 1e-3 * A_x;
+  // |D^-1/2 A x| = sqrt(1 + 1), what is wrong 3e-4 / 3.
+  const Eigen::VectorXcd b = A_x + Eigen::Vector2cd(0, 3e-4);
+  const double wrong = 1e-4 / (std::sqrt(2.0) + 2e-6);
+  ResidualRecord over_frequency(false), over_time(true);
+  EXPECT_EQ(over_frequency.worst(), 0);
+  for (auto* record : {&over_frequency, &over_time}) {
+    record->add(D, x, A_x, A_x);
+    record->add(D, x, A_x, b);
+    EXPECT_NEAR(record->worst(), wrong, 1e-12);
+    record->add(D, 1e-3 * x, small, small + (b - A_x));
+  }
+  EXPECT_NEAR(over_frequency.worst(), 1e3 * wrong, 1e-9);
+  EXPECT_NEAR(over_time.worst(), wrong, 1e-12);
+  over_time.add(D, x, A_x, std::nan("") * b);
+  EXPECT_FALSE(over_time.worst() <= 1);
+}
+
+TEST(ResidualRecord, IsToldAndEndsWhatIsWrong) {
+  Diagnostics diagnostics;
+  report_residual(1e-7, {"d.bdf"}, diagnostics);
+  EXPECT_TRUE(diagnostics.items().empty());
+  report_residual(1e-5, {"d.bdf"}, diagnostics);
+  ASSERT_EQ(diagnostics.items().size(), 1u);
+  EXPECT_EQ(diagnostics.items()[0].id, "modal.response-accuracy");
+  for (const double wrong : {1e-2, std::nan("")})
+    EXPECT_THROW(report_residual(wrong, {"d.bdf"}, diagnostics), ComputationError);
+}
+
 }  // namespace
 }  // namespace bough::modal::response
