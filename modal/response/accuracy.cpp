@@ -47,6 +47,7 @@ double calc_solution_error(const ResponseModel& response, const Spectrum& spectr
 void ResidualRecord::add(const VectorXd& D, const Eigen::VectorXcd& x, const Eigen::VectorXcd& A_x,
                          const Eigen::VectorXcd& b) {
   constexpr double kEntries = 1e-6;  // as in fe/linear/residual.cpp
+  if (std::isnan(rest_)) return;     // and stays
   const VectorXd scale = D.cwiseSqrt().cwiseInverse();
   const double rest = scale.cwiseProduct(A_x - b).norm();
   const double size = scale.cwiseProduct(A_x).norm() + kEntries * D.cwiseSqrt().cwiseProduct(x).norm();
