@@ -181,11 +181,11 @@ TEST(Op4Text, EachFaultHasItsErrorAndItsLine) {
   EXPECT_EQ(error("       299999999       1       2K\n"), "matrices.size");
   EXPECT_EQ(error("       2       0       1       2K\n"), "matrices.size");
   // Each of these would be one that a file may have; not all of them in a file of 1000 bytes.
-  detail::Op4Header header{40'000'000, 40'000'000, 2, 2, "K", false};
+  matrices::detail::Op4Header header{40'000'000, 40'000'000, 2, 2, "K", false};
   double claimed = 0;
   std::string id;
   for (int i = 0; i < 3; ++i)
-    detail::settle_header(header, 1000, claimed, [&](const char* what, const std::string&) { id += what; });
+    matrices::detail::settle_header(header, 1000, claimed, [&](const char* what, const std::string&) { id += what; });
   EXPECT_EQ(id, "matrices.size");
   try {
     read_one(folder.write("x.op4", head + column + "nonsense\n"));
