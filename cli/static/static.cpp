@@ -15,6 +15,7 @@
 #include "cli/common/text_file.hpp"
 #include "cli/common/vtu_file.hpp"
 #include "cli/listing/listing.hpp"
+#include "cli/static/case_extremes.hpp"
 #include "cli/static/combinations.hpp"
 #include "cli/static/static_tables.hpp"
 #include "fe/statics/case_solver.hpp"
@@ -31,7 +32,7 @@ struct StaticOptions : CommonOptions {
   std::string deck, vtu;
   DeckModelOptions model;
   std::vector<std::string> grid_forces;
-  bool full = false, in_cd = false, is_linear = false;
+  bool full = false, in_cd = false, is_linear = false, has_extremes = false;
   ListingOptions listing;
 };
 
@@ -147,6 +148,8 @@ int run_static(const StaticOptions& options) {
   result.dof_map = solver.model().calc_dof_map();
   result.mesh = solver.model().calc_mesh();
   result.source = calc_sources(deck.files);
+  for (auto& subcase : result.subcases) subcase.margins = calc_margins(deck, subcase);
+  if (options.has_extremes) result.extremes = find_case_extremes(result);
   std::string picture;
   if (!options.vtu.empty() && console.is_root())
     picture = make_vtu_text(exports::make_picture(result), exports::VtuEncoding::Base64, options.deck, diagnostics);
@@ -155,13 +158,16 @@ int run_static(const StaticOptions& options) {
 
   if (!options.output.empty() && console.is_root()) hdf5::write_static(result, options.output);
   if (options.in_cd) result = turn_to_cd(solver.model(), std::move(result));
+  if (options.in_cd && options.has_extremes) result.extremes = find_case_extremes(result);
   if (options.json) {
     nlohmann::json json{{"subcases", nlohmann::json::array()}};
     for (const auto& subcase : result.subcases) json["subcases"].push_back(to_json(result, subcase, options.full));
+    if (options.has_extremes) json["extremes"] = to_json(result.extremes);
     if (!failures.is_empty()) json["failed"] = failures.to_json();
     console.print_data(json.dump(2) + "\n");
   } else {
     for (const auto& subcase : result.subcases) console.print(format_static(result, subcase, options.full));
+    console.print(format_case_extremes(result.extremes));
   }
   if (!picture.empty()) write_text_file(options.vtu, picture);
   if (listing) do_once([&] { write_listings(options.listing, listing->get()); });
@@ -179,6 +185,8 @@ void add_static(CLI::App& app, Action& action) {
   auto* verb = app.add_subcommand("static", "Static solution (SOL 101) of every subcase with a load");
   verb->add_option("deck", o->deck, "Nastran deck")->required();
   verb->add_flag("--full", o->full, "Every grid and element instead of the largest values");
+  verb->add_flag("--extremes,--maxmin", o->has_extremes,
+                 "The least and the largest of each component over the subcases");
   verb->add_flag("--cd", o->in_cd, "Print vectors in the displacement (CD) axes of each grid, not in basic");
   verb->add_flag("--linear", o->is_linear, "Solve the cards linearly though SOL is nonlinear (106, 129, 400, ...)");
   verb->add_option("--vtu", o->vtu, "Write the displacements of every subcase to this file for ParaView");

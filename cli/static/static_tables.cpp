@@ -8,6 +8,7 @@
 
 #include "cli/common/console.hpp"
 #include "cli/common/deck_tables.hpp"
+#include "cli/static/case_extremes.hpp"
 
 namespace bough::cli {
 
@@ -187,7 +188,7 @@ std::string format_static(const records::StaticResult& result, const records::St
   }
   for (const auto& block : s.elements) text += format_elements(block, full) + "\n";
   for (const auto& block : s.stresses) text += format_stresses(block, full) + "\n";
-  return text + format_grid_forces(s.grid_forces);
+  return text + format_margins(s.margins) + format_grid_forces(s.grid_forces);
 }
 
 nlohmann::json to_json(const records::StaticResult& result, const records::StaticSubcase& s, bool full) {
@@ -216,6 +217,7 @@ nlohmann::json to_json(const records::StaticResult& result, const records::Stati
     json["grid_forces"].push_back(
         {{"grid", f.node}, {"source", f.source}, {"element", f.element}, {"force", to_json_list(f.force)}});
   for (const auto& block : s.stresses) json["max_stress"][block.card] = list_stress_maxima(block);
+  if (!s.margins.empty()) json["margins"] = to_json(s.margins);
   if (!full) return json;
   if (s.inertia.size() > 0) json["inertia"] = to_json_list(s.inertia);
   json["dof_map"] = nlohmann::json::array();

@@ -82,7 +82,24 @@ void write_subcase(FileWriter& file, const records::StaticSubcase& subcase) {
                       {"a row per element: what `components` names, as component@point", "F/L^2, 1"});
     file.write_attribute(group, "components", block.components);
   }
+  for (const auto& block : subcase.margins) {
+    const std::string group = path + "/margins/" + block.card;
+    file.write_integers(group + "/id", block.id, {"element ids", "1"});
+    file.write_matrix(group + "/margin", block.margin,
+                      {"a row per element: limit / |stress| - 1; no number without a limit or such a stress", "1"});
+    file.write_attribute(group, "components", std::vector<std::string>{"tension", "compression", "shear"});
+  }
   write_grid_forces(file, path + "/grid_forces", subcase.grid_forces);
+}
+
+void write_extremes(FileWriter& file, const records::CaseExtremes& block) {
+  const std::string group = "/extremes/" + block.path;
+  file.write_integers(group + "/id", block.id, {"grid or element of each row", "1"});
+  file.write_matrix(group + "/min", block.low, {"least over the subcases, a column per component", block.dims});
+  file.write_matrix(group + "/max", block.high, {"largest over the subcases, a column per component", block.dims});
+  file.write_integers(group + "/min_subcase", block.low_case, {"subcase of the least", "1"});
+  file.write_integers(group + "/max_subcase", block.high_case, {"subcase of the largest", "1"});
+  file.write_attribute(group, "components", block.components);
 }
 
 void write_sparse(FileWriter& file, const std::string& path, const records::SparseMatrix& matrix,
@@ -106,6 +123,7 @@ void write_static(const records::StaticResult& result, const std::string& path) 
   file.write_integers("/dof_map", result.dof_map, {kDofMap, "1"});
   write_mesh(file, result.mesh);
   for (const auto& subcase : result.subcases) write_subcase(file, subcase);
+  for (const auto& block : result.extremes) write_extremes(file, block);
   file.commit();
 }
 

@@ -22,6 +22,24 @@ struct ElementStresses {
   MatrixXd stress;  ///< elements x components
 };
 
+/// Margins of safety of the elements of one card whose material has limits: limit / |stress| - 1, no number where
+/// there is no limit, or no stress of that kind.
+struct StressMargins {
+  std::string card;
+  std::vector<int> id;
+  MatrixXd margin;  ///< elements x (tension, compression, shear)
+};
+
+/// Over the subcases, of each grid or element: a row each, a column per component.
+struct CaseExtremes {
+  std::string path;  ///< displacement, reaction, elements/CARD, stresses/CARD
+  std::string dims;
+  std::vector<std::string> components;
+  std::vector<int> id;
+  MatrixXd low, high;
+  Eigen::MatrixXi low_case, high_case;  ///< ids of the subcases
+};
+
 /// A force that acts on a grid: of an element ("CBAR", its id), or of LOAD, SPC, MPC, INERTIA (id 0). Basic axes.
 struct GridForce {
   int node = 0;
@@ -55,6 +73,7 @@ struct StaticSubcase {
   Eigen::Matrix<double, 6, 1> inertia_resultant = Eigen::Matrix<double, 6, 1>::Zero();
   std::vector<ElementForces> elements;
   std::vector<ElementStresses> stresses;
+  std::vector<StressMargins> margins;
   std::vector<GridForce> grid_forces;  ///< where asked for: by grid, then elements, then the others
 };
 
@@ -63,6 +82,7 @@ struct StaticResult {
   Eigen::MatrixXi dof_map;  ///< ndof x 2: node id, code 1..6 (0 for a scalar point)
   BodyMesh mesh;
   std::vector<StaticSubcase> subcases;
+  std::vector<CaseExtremes> extremes;  ///< where asked for
 };
 
 /// Compressed rows, as SciPy's csr_matrix.

@@ -323,5 +323,58 @@ class Energies(ProgramTest):
         self.fails(1, "modes", "d.bdf", "--meffmass", "99", error="modal.unknown-grid")
 
 
+class Summary(ProgramTest):
+    """Margins of safety and extremes over subcases; two rods in line, one of which has no limits."""
+    DECK = ("SOL 101\nCEND\nSPC = 1\nMAXMIN = ALL\nSTRAIN = ALL\nSUBCASE 1\nLOAD = 1\nSUBCASE 2\nLOAD = 2\nSUBCASE 7\nLOAD = 3\n"
+            "BEGIN BULK\nMAT1,1,100.,,.25,1.,,,\n,20.,8.,4.\nMAT1,2,100.,,.25,1.\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\n"
+            "GRID,3,,2.,0.,0.\nPROD,1,1,2.,1.5,.5\nPROD,2,2,2.,1.5,.5\nCROD,11,1,1,2\nCROD,12,2,2,3\nSPC1,1,2356,2,3\n"
+            "SPC1,1,123456,1\nFORCE,1,3,,10.,1.,0.,0.\nFORCE,2,3,,-10.,1.,0.,0.\nMOMENT,2,3,,3.,1.,0.,0.\n"
+            "FORCE,3,3,,4.,1.,0.,0.\nENDDATA\n")
+
+    def test_margins_and_extremes(self):
+        self.write("d.bdf", self.DECK)
+        data = json.loads(self.bough("static", "d.bdf", "--json", "--extremes", "-o", "d.h5").stdout)
+        with h5py.File(self.path("d.h5")) as f:
+            # Stress 10/2 against ST 20; -5 against SC 8, torsion 3 . 0.5/1.5 against SS 4.
+            for case, expected in [("1", [3, np.nan, np.nan]), ("2", [np.nan, .6, 3]), ("7", [9, np.nan, np.nan])]:
+                group = f[f"subcases/{case}/margins/CROD"]
+                self.assertEqual(group["id"][:].tolist(), [11])    # 12 has no limits
+                np.testing.assert_allclose(group["margin"][0], expected, rtol=1e-12)
+            # x of grid 3: 10/2 . 2/100; the subcases of the extremes.
+            group = f["extremes/displacement"]
+            row = group["id"][:].tolist().index(3)
+            np.testing.assert_allclose([group["min"][row, 0], group["max"][row, 0]], [-.1, .1], rtol=1e-12)
+            self.assertEqual((group["min_subcase"][row, 0], group["max_subcase"][row, 0]), (2, 1))
+            group = f["extremes/stresses/CROD"]
+            column = list(group.attrs["components"]).index("xx")
+            np.testing.assert_allclose([group["min"][:, column], group["max"][:, column]], [[-5, -5], [5, 5]], rtol=1e-12)
+            force = [f[f"subcases/{case}/elements/CROD/force"][:] for case in ("1", "2", "7")]
+            np.testing.assert_array_equal(f["extremes/elements/CROD/min"][:], np.min(force, axis=0))
+            np.testing.assert_array_equal(f["extremes/elements/CROD/max"][:], np.max(force, axis=0))
+        low = data["extremes"]["reaction"]["x"]["min"]
+        self.assertEqual((round(low["value"], 9), low["id"], low["subcase"]), (-10, 1, 1))
+        shear = next(m for m in data["subcases"][1]["margins"] if m["of"] == "shear")
+        self.assertAlmostEqual(shear["margin"], 3)
+        said = self.bough("static", "d.bdf", "--extremes")
+        self.assertRegex(said.stdout, r"margin of safety +of +smallest +element\n +CROD +tension +3.0+e\+00 +11")
+        self.assertRegex(said.stdout, r"over subcases: displacement")
+        self.assertNotIn("over subcases", self.bough("static", "d.bdf").stdout)
+        # What the deck asks for, and an option or nothing gives.
+        self.assertIn("'static --extremes'", said.stderr)
+        self.assertRegex(said.stderr, r"not used: MAXMIN \(line 4\), STRAIN \(line 5\)")
+
+    def test_margins_of_bars(self):
+        """Bending of a cantilever: σ = F L c/I on both sides."""
+        self.write("d.bdf", make_beam(2, "PBARL,1,1,,BAR\n,.1,.2\n", "FORCE,2,3,,600.,0.,1.,0.\n").replace(
+            "MAT1,1,7.+10,,.3,2700.\n", "MAT1,1,7.+10,,.3,2700.,,,\n,8.+6,6.+6\n"))
+        self.bough("static", "d.bdf", "-o", "d.h5")
+        stress = 600 * 2 * .05 / (.2 * .1 ** 3 / 12)
+        with h5py.File(self.path("d.h5")) as f:
+            found = f["subcases/0/margins/CBAR/margin"][0]
+        other = 600 * 2 * .1 / (.1 * .2 ** 3 / 12)
+        self.assertTrue(any(np.allclose(found[:2], [8e6 / s - 1, 6e6 / s - 1], rtol=1e-9) for s in (stress, other)), found)
+        self.assertTrue(np.isnan(found[2]))
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view plain_commands =
     "ACCE BOUT DISP ECHO ELFO ELST FORC GROU HOUT LINE MAXL MEFF MPCF NOUT OLOA OUTP PAGE POST PRES SACC SDIS SET SETS "
-    "SKIP SORT SPCF STRA STRE SURF SVEC SVEL VECT VELO VOLU";
+    "SKIP SORT SPCF STRE SURF SVEC SVEL VECT VELO VOLU";
 
 /// The other commands of the quick reference guides.
 constexpr std::string_view known_commands =
@@ -21,11 +21,13 @@ constexpr std::string_view known_commands =
     "DLOA DMTR DRSP DSAP DSPR DSYM DTEM DVEL DYNR DYRL EBDS EDE EFLO EFOR EKE ELAR ELPF ELSD ELSU ENDS ENDT ENFO ENTH "
     "EQUI ERP ESE EXPL EXTD EXTR EXTS FATI FBOD FLSF FLST FLUX FMET FORM FREQ FRFI FRFO FRFR GCRS GELD GPFO GPKE GPRS "
     "GPSD GPST GUST GVEC HADA HARM HDOT HTFL IC INCL INIT INPO INTE INTK IRAN JINT JOIN K2PP K42G KOUN LAMI LINK LOAD "
-    "LSEQ M2PP MASS MATR MATV MAXT MAXU MCFR MEFF MODA MODC MODE MODP MODS MODT MONI MONV MPRE MTXP MXSP NCHI NLBU "
+    "LSEQ M2PP MASS MATR MATV MAXM MAXT MAXU MCFR MEFF MODA MODC MODE MODP MODS MODT MONI MONV MPRE MTXP MXSP NCHI "
+    "NLBU "
     "NLCN NLHA NLIC NLLO NLOP NLPA NLPC NLRE NLST NONL NSMS OFRE OFRQ OMOD OPRE OSTN OTIM OTME OUTR P2G PACI PAMF "
     "PANC PART PCHA PEAK PENE PFGR PFMO PFPA PLOT PLSL PREF PREL PROG RADB RAND RCPA RCRO RCSE REPC REPS RESI RESV "
     "RGYR RIGI RMAX ROTO RSDA RSMA RSPE RSVC RVEL SDAM SDEN SEAL SECO SEDA SEDC SEDL SEDR SEDV SEEF SEEX SEFI SEKR "
-    "SELG SELO SELR SEMG SEMP SEMR SERE SETP SEUP SHEL SKIN SMET SPCG SPLI STAT STEP STOC STRF SUBM SUBS SUPE SYMC "
+    "SELG SELO SELR SEMG SEMP SEMR SERE SETP SEUP SHEL SKIN SMET SPCG SPLI STAT STEP STOC STRA STRF SUBM SUBS SUPE "
+    "SYMC "
     "SYMS TERM TFL THER TRIM TSTE TSTR UNGL USER VARC VATV VCCT VIBR VUGR WEAK WEIG XYCO";
 
 constexpr std::size_t most_words = 100;  // of one note
@@ -37,8 +39,9 @@ std::string_view find_option(std::string_view word) {
   };
   static constexpr std::array options{
       Option{"ESE", "ESE: 'modes --ese'; 'static -o FILE.h5' has the strain energy of each element"},
-      Option{"EKE", "EKE: 'modes --ese'"},
-      Option{"GPFO", "GPFORCE: 'static --grid-forces all'"}};
+      Option{"EKE", "EKE: 'modes --ese'"}, Option{"GPFO", "GPFORCE: 'static --grid-forces all'"},
+      Option{"MAXM", "MAXMIN: 'static --extremes'"},
+      Option{"STRA", "STRAIN: none gives strains, 'static' and 'reduce --recover' give stresses"}};
   for (const auto& one : options)
     if (word.substr(0, 4) == one.command) return one.option;
   return {};
@@ -89,7 +92,7 @@ void IgnoredCommands::report(const records::Deck& deck, Diagnostics& diagnostics
   const std::string nothing = "nothing to do, unless one of them should matter";
   diagnostics.note("deck.case-control-ignored", deck.locate(words_.front().second), "case control not used: " + words,
                    options.empty() ? nothing
-                                   : "an option of the command line gives it: " + options +
+                                   : "options of the command line give results: " + options +
                                          (has_others ? "; of the others: " + nothing : ""));
 }
 

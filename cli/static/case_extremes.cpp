@@ -1,0 +1,196 @@
+#include "cli/static/case_extremes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/common/console.hpp"
+#include "cli/listing/stress_columns.hpp"
+
+namespace bough::cli {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+constexpr std::array<const char*, 3> kKinds{"tension", "compression", "shear"};
+
+/// Largest pull, push and shear of a row; what is derived (von Mises) is none of them.
+std::array<double, 3> find_stresses(const records::ElementStresses& block, Index row) {
+  std::array<double, 3> worst{};
+  for (std::size_t c = 0; c < block.components.size(); ++c) {
+    const auto name = block.components[c].substr(0, block.components[c].find('@'));
+    const double stress = block.stress(row, static_cast<Index>(c));
+    if (name == "xx") worst = {std::max(worst[0], stress), std::min(worst[1], stress), worst[2]};
+    if (name == "torsion") worst[2] = std::max(worst[2], std::abs(stress));
+  }
+  return worst;
+}
+
+/// A kind of result of one subcase, a row per grid or element.
+struct Block {
+  std::string path, dims;
+  std::vector<std::string> components;
+  std::vector<int> id;
+  MatrixXd values;
+};
+
+/// Of grids with six dofs.
+Block make_grid_block(const std::string& name, const std::string& dims, const Eigen::MatrixXi& dof_map,
+                      const Eigen::VectorXd& values) {
+  Block block{name, dims, {"x", "y", "z", "rx", "ry", "rz"}, {}, {}};
+  std::vector<Index> first;
+  for (Index i = 0; i < dof_map.rows(); ++i)
+    if (dof_map(i, 1) == 1) first.push_back(i);
+  block.values.resize(static_cast<Index>(first.size()), 6);
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    block.id.push_back(dof_map(first[k], 0));
+    block.values.row(static_cast<Index>(k)) = values.segment(first[k], 6).transpose();
+  }
+  return block;
+}
+
+std::vector<Block> list_blocks(const records::StaticResult& result, const records::StaticSubcase& s) {
+  std::vector<Block> blocks{make_grid_block("displacement", "L, 1", result.dof_map, s.displacement),
+                            make_grid_block("reaction", "F, F L", result.dof_map, s.reaction)};
+  for (const auto& b : s.elements) blocks.push_back({"elements/" + b.card, "F, F L", b.components, b.id, b.force});
+  for (const auto& b : s.stresses) blocks.push_back({"stresses/" + b.card, "F/L^2, 1", b.components, b.id, b.stress});
+  return blocks;
+}
+
+/// The least (sign 1) or the largest (-1) of a column.
+struct Extreme {
+  double value = 0;
+  int id = 0, subcase = 0;
+};
+Extreme find_extreme(const MatrixXd& values, const Eigen::MatrixXi& cases, const std::vector<int>& id, Index column,
+                     bool is_largest) {
+  Index row = 0;
+  const double value = is_largest ? values.col(column).maxCoeff(&row) : values.col(column).minCoeff(&row);
+  return {value, id[static_cast<std::size_t>(row)], cases(row, column)};
+}
+
+/// The smallest margin of each kind: element and value; none without a number.
+struct Smallest {
+  std::string card, kind;
+  double margin = 0;
+  int id = 0;
+};
+std::vector<Smallest> list_smallest(const std::vector<records::StressMargins>& margins) {
+  std::vector<Smallest> list;
+  for (const auto& block : margins)
+    for (Index k = 0; k < 3; ++k) {
+      Index at = -1;
+      for (Index r = 0; r < block.margin.rows(); ++r)
+        if (std::isfinite(block.margin(r, k)) && (at < 0 || block.margin(r, k) < block.margin(at, k))) at = r;
+      if (at >= 0)
+        list.push_back({block.card, kKinds[static_cast<std::size_t>(k)], block.margin(at, k),
+                        block.id[static_cast<std::size_t>(at)]});
+    }
+  return list;
+}
+
+}  // namespace
+
+std::vector<records::StressMargins> calc_margins(const records::Deck& deck, const records::StaticSubcase& subcase) {
+  std::vector<records::StressMargins> result;
+  const auto limits = list_stress_limits(deck);
+  if (limits.empty()) return result;
+  for (const auto& block : subcase.stresses) {
+    records::StressMargins margins{block.card, {}, {}};
+    std::vector<Index> rows;
+    for (std::size_t r = 0; r < block.id.size(); ++r) {
+      if (!limits.contains(block.id[r])) continue;
+      margins.id.push_back(block.id[r]);
+      rows.push_back(static_cast<Index>(r));
+    }
+    if (rows.empty()) continue;
+    margins.margin.resize(static_cast<Index>(rows.size()), 3);
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const auto& limit = limits.at(margins.id[r]);
+      const auto worst = find_stresses(block, rows[r]);
+      margins.margin.row(static_cast<Index>(r)) << calc_margin(worst[0], limit.tension),
+          calc_margin(worst[1], limit.compression), calc_margin(worst[2], limit.shear);
+    }
+    result.push_back(std::move(margins));
+  }
+  return result;
+}
+
+std::vector<records::CaseExtremes> find_case_extremes(const records::StaticResult& result) {
+  std::vector<records::CaseExtremes> extremes;
+  for (const auto& s : result.subcases) {
+    for (const auto& block : list_blocks(result, s)) {
+      const auto at =
+          std::find_if(extremes.begin(), extremes.end(), [&](const auto& e) { return e.path == block.path; });
+      if (at == extremes.end()) {
+        const Eigen::MatrixXi own = Eigen::MatrixXi::Constant(block.values.rows(), block.values.cols(), s.id);
+        if (block.values.size() > 0)
+          extremes.push_back(
+              {block.path, block.dims, block.components, block.id, block.values, block.values, own, own});
+        continue;
+      }
+      BOUGH_DEMAND(at->id == block.id && at->components == block.components);
+      for (Index i = 0; i < block.values.size(); ++i) {
+        const double value = block.values(i);
+        if (value < at->low(i)) at->low(i) = value, at->low_case(i) = s.id;
+        if (value > at->high(i)) at->high(i) = value, at->high_case(i) = s.id;
+      }
+    }
+  }
+  return extremes;
+}
+
+std::string format_margins(const std::vector<records::StressMargins>& margins) {
+  const auto smallest = list_smallest(margins);
+  if (smallest.empty()) return {};
+  Table table{{"margin of safety", "of", "smallest", "element"}, {}};
+  for (const auto& one : smallest)
+    table.rows.push_back({one.card, one.kind, fmt::format("{:.6e}", one.margin), std::to_string(one.id)});
+  return table.to_text() + "\n";
+}
+
+nlohmann::json to_json(const std::vector<records::StressMargins>& margins) {
+  auto list = nlohmann::json::array();
+  for (const auto& one : list_smallest(margins))
+    list.push_back({{"card", one.card}, {"of", one.kind}, {"margin", one.margin}, {"element", one.id}});
+  return list;
+}
+
+std::string format_case_extremes(const std::vector<records::CaseExtremes>& extremes) {
+  std::string text;
+  for (const auto& block : extremes) {
+    Table table{{"over subcases: " + block.path, "smallest", "id", "subcase", "largest", "id", "subcase"}, {}};
+    for (std::size_t c = 0; c < block.components.size(); ++c) {
+      const auto column = static_cast<Index>(c);
+      const auto low = find_extreme(block.low, block.low_case, block.id, column, false);
+      const auto high = find_extreme(block.high, block.high_case, block.id, column, true);
+      table.rows.push_back({block.components[c], fmt::format("{:.6e}", low.value), std::to_string(low.id),
+                            std::to_string(low.subcase), fmt::format("{:.6e}", high.value), std::to_string(high.id),
+                            std::to_string(high.subcase)});
+    }
+    text += table.to_text() + "\n";
+  }
+  return text;
+}
+
+nlohmann::json to_json(const std::vector<records::CaseExtremes>& extremes) {
+  auto json = nlohmann::json::object();
+  const auto to_object = [](const Extreme& e) {
+    return nlohmann::json{{"value", e.value}, {"id", e.id}, {"subcase", e.subcase}};
+  };
+  for (const auto& block : extremes)
+    for (std::size_t c = 0; c < block.components.size(); ++c) {
+      const auto column = static_cast<Index>(c);
+      json[block.path][block.components[c]] = {
+          {"min", to_object(find_extreme(block.low, block.low_case, block.id, column, false))},
+          {"max", to_object(find_extreme(block.high, block.high_case, block.id, column, true))}};
+    }
+  return json;
+}
+
+}  // namespace bough::cli
