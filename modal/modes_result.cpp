@@ -37,7 +37,7 @@ records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs&
   for (std::size_t k = 0; k < grids.size(); ++k) {
     result.node_id.push_back(grids[k]->id);
     result.node_xyz.row(static_cast<Eigen::Index>(k)) = grids[k]->x.transpose();
-    result.phi.push_back(pairs.Phi.middleRows(grids[k]->first_gdof, 6));
+    result.phi.push_back(n > 0 ? MatrixXd(pairs.Phi.middleRows(grids[k]->first_gdof, 6)) : MatrixXd(6, 0));
   }
   result.residual = pairs.residual;
   result.num_rigid_modes = pairs.num_rigid;

@@ -59,7 +59,7 @@ void Reduction::set_nodes(const fe::Model& model) {
   for (std::size_t k = 0; k < ids.size(); ++k) {
     const auto& node = model.node(model.find_node(ids[k]));
     body_.node_xyz.row(static_cast<Eigen::Index>(k)) = node.x.transpose();
-    body_.phi.push_back(Phi_.middleRows(node.first_gdof, 6));
+    body_.phi.push_back(Phi_.cols() > 0 ? MatrixXd(Phi_.middleRows(node.first_gdof, 6)) : MatrixXd(6, 0));
     if (lacks_rotation(model, node)) body_.phi.back().bottomRows<3>().setZero();
   }
   body_.mesh = model.calc_mesh();

@@ -26,7 +26,7 @@ std::vector<double> to_list(const Eigen::VectorXd& v) { return {v.begin(), v.end
 
 nlohmann::json to_rows(const Eigen::MatrixXd& m) {
   auto rows = nlohmann::json::array();
-  for (Eigen::Index i = 0; i < m.rows(); ++i) rows.push_back(to_list(m.row(i)));
+  for (Eigen::Index i = 0; i < m.rows(); ++i) rows.push_back(m.cols() > 0 ? to_list(m.row(i)) : std::vector<double>());
   return rows;
 }
 

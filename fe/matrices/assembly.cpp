@@ -133,6 +133,7 @@ MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen
                     const std::vector<QuadraticForm>& forms = {}) {
   BOUGH_DEMAND(X.rows() == model.num_gdofs());
   MatrixXd Y = MatrixXd::Zero(X.rows(), X.cols());
+  if (X.cols() == 0) return Y;
   MatrixXd K_e, X_e, Y_e;
   const auto [begin, end] = calc_element_range(model);
   for (int e = begin; e < end; ++e) {
