@@ -1,9 +1,11 @@
 #include "fe/linear/petsc.hpp"
 
 #include <dlfcn.h>
+#include <pthread.h>
 
 #include <algorithm>
 #include <cctype>
+#include <csignal>
 #include <cstdlib>
 #include <string>
 #include <string_view>
@@ -67,6 +69,20 @@ void hold_threads() {
   if (const auto set = find_function<void(int)>("openblas_set_num_threads")) set(1);
 }
 
+/// Open MPI puts a handler of its own in the place of ours for a moment: a signal that comes then would be lost, and
+/// waits instead.
+PetscErrorCode initialize_undisturbed() {
+  sigset_t held, before;
+  sigemptyset(&held);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&held, signal);
+  pthread_sigmask(SIG_BLOCK, &held, &before);
+  int argc = 0;
+  char** argv = nullptr;
+  const PetscErrorCode code = PetscInitialize(&argc, &argv, nullptr, nullptr);
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return code;
+}
+
 }  // namespace
 
 MpiWorld initialize_petsc() {
@@ -86,9 +102,7 @@ MpiWorld initialize_petsc() {
     }
     // A crash is Bough's to report, not PETSc's.
     PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
-    int argc = 0;
-    char** argv = nullptr;
-    check_petsc(PetscInitialize(&argc, &argv, nullptr, nullptr));
+    check_petsc(initialize_undisturbed());
     PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
     std::atexit([] {
       PetscBool finalized = PETSC_FALSE;

@@ -50,7 +50,8 @@ class PunchReader {
     if (line.rfind("$SUBCASE ID", 0) == 0) {
       const auto id = parse_integer(find_value(line, "$SUBCASE ID"));
       if (!id) in_.fail_line("$SUBCASE ID = and a number");
-      if (is_in_mode_ && modes_[subcase_].back().rows.empty()) in_.fail_line("the rows of a mode before another subcase");
+      if (is_in_mode_ && modes_[subcase_].back().rows.empty())
+        in_.fail_line("the rows of a mode before another subcase");
       is_in_mode_ = false;
       subcase_ = static_cast<int>(*id);
     }

@@ -12,7 +12,7 @@ namespace bough::modal::bases {
 /// How modes that were solved for were checked.
 struct ModesCheck {
   int num_found = 0;       ///< up to the highest that is complete with its copies, rigid motions included
-  int inertia_count = -1;  ///< of the factor (Sylvester), as many where none is missed; -1: not made or not to be trusted
+  int inertia_count = -1;  ///< of the factor (Sylvester), as many where none is missed; -1: none to be trusted
   double residual = 0;     ///< the largest
 };
 

@@ -54,7 +54,7 @@ void ResidualRecord::add(const VectorXd& D, const Eigen::VectorXcd& x, const Eig
   if (is_over_time_) {
     if (!(rest <= rest_)) rest_ = rest;
     if (!(size <= size_)) size_ = size;
-  } else if (rest != 0 && !(rest * size_ <= rest_ * size)) {
+  } else if (rest != 0 && (rest_ == 0 || !(rest * size_ <= rest_ * size))) {
     rest_ = rest;
     size_ = size;
   }

@@ -319,9 +319,8 @@ void DeckResponseSolver::solve_directly(const Task& task, const records::Dynamic
     recover(model, e, d, o, motion, result);
   };
   if (options_.is_over_time)
-    result.solution_error =
-        solve_history(model, direct, excitation, start, refine_times(deck_, excitation, grid, kMostFactored, diagnostics),
-                  take);
+    result.solution_error = solve_history(model, direct, excitation, start,
+                                          refine_times(deck_, excitation, grid, kMostFactored, diagnostics), take);
   else
     result.solution_error = solve_spectrum(model, direct, excitation, hz, take, diagnostics);
   report_residual(result.solution_error, deck_.locate({}), diagnostics);

@@ -15,10 +15,10 @@ using Eigen::MatrixXcd;
 ///   M q̈ + B q̇ + (K + i S) q = Tᵀ (F p - M X d̈ - B X ḋ - (K + i S) X d).
 /// Over time S is in B, at the rates W3 and W4.
 struct DirectModel {
-  fe::PetscMat K, M, B, S;           ///< B, S: empty where nothing damps
-  VectorXd K_diagonal, M_diagonal;   ///< |K_ii|, M_ii
-  MatrixXd X;                        ///< num_gdofs x k
-  MatrixXd F, K_X, M_X, B_X, S_X;    ///< Tᵀ of the patterns, num_fdofs x m or k
+  fe::PetscMat K, M, B, S;          ///< B, S: empty where nothing damps
+  VectorXd K_diagonal, M_diagonal;  ///< |K_ii|, M_ii
+  MatrixXd X;                       ///< num_gdofs x k
+  MatrixXd F, K_X, M_X, B_X, S_X;   ///< Tᵀ of the patterns, num_fdofs x m or k
 };
 DirectModel make_direct_model(const fe::System& system, const records::DynamicDeck& deck,
                               const records::DynamicSubcase& subcase, const Excitation& excitation,
@@ -37,15 +37,16 @@ struct MotionBlock {
 /// One factorization of K + iS + iωB - ω²M for each frequency; `take` gets the solutions some at a time. Leaves out
 /// (BoundedFrequencies) where the matrix is singular to working precision, and 0 Hz where supports move by a velocity
 /// or an acceleration. Returns the largest residual (ResidualRecord).
-double solve_spectrum(const fe::Model& model, const DirectModel& direct, const Excitation& excitation, const VectorXd& hz,
-                    const std::function<void(const MotionBlock<MatrixXcd>&)>& take, Diagnostics& diagnostics);
+double solve_spectrum(const fe::Model& model, const DirectModel& direct, const Excitation& excitation,
+                      const VectorXd& hz, const std::function<void(const MotionBlock<MatrixXcd>&)>& take,
+                      Diagnostics& diagnostics);
 
 /// Radau IIA of three stages (Hairer & Wanner, "Solving ordinary differential equations II", 2nd ed., IV.5): of order
 /// 5, without bound of the step, and what has no mass or is far too quick for the step follows its loads at once. Loads
 /// are taken at the stages, motions of the supports are those of the modal solution (sampled_curve.hpp). For each size
 /// of step one real and one complex factorization. Returns the residual of the equation of motion at the ends of steps.
 double solve_history(const fe::Model& model, const DirectModel& direct, const Excitation& excitation,
-                   const StartMotion& start, const TimeGrid& grid,
-                   const std::function<void(const MotionBlock<MatrixXd>&)>& take);
+                     const StartMotion& start, const TimeGrid& grid,
+                     const std::function<void(const MotionBlock<MatrixXd>&)>& take);
 
 }  // namespace bough::modal::response

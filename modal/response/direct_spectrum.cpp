@@ -80,8 +80,9 @@ VectorXd make_probe(Index n) {
   return probe;
 }
 
-double solve_spectrum(const fe::Model& model, const DirectModel& direct, const Excitation& excitation, const VectorXd& hz,
-                    const std::function<void(const MotionBlock<MatrixXcd>&)>& take, Diagnostics& diagnostics) {
+double solve_spectrum(const fe::Model& model, const DirectModel& direct, const Excitation& excitation,
+                      const VectorXd& hz, const std::function<void(const MotionBlock<MatrixXcd>&)>& take,
+                      Diagnostics& diagnostics) {
   const Index n = model.num_fdofs();
   DirectSpectrum solver(direct, n);
   BoundedFrequencies bounded;

@@ -256,14 +256,15 @@ class Stresses(modal.DeckResponse):
 
 class Choices(refusals.Refusals):
     def test_which_solution(self):
-        good = "RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ,5,1.\n"
+        good, residuals = "RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ,5,1.,1.1,1.2,1.7,2.9\n", []
         for sol, options, is_direct in [(108, (), True), (111, (), False), (111, ("--direct",), True),
                                         (108, ("--modal",), False), (108, ("--modes", "1"), False), (101, (), False)]:
             self.write("d.bdf", self.deck(good, sol=sol))
             said = self.bough("frequency", "d.bdf", *options)
             self.assertEqual("; direct" in said.stdout, is_direct, f"SOL {sol} {options}")
-            self.assertLess(float(said.stdout.split("residual of the response ")[1].split()[0]), 1e-12)
+            residuals.append(float(said.stdout.split("residual of the response ")[1].split()[0]))
             self.assertEqual("[cli.by-modes]" in said.stderr, sol == 108 and not is_direct)
+        self.assertTrue(0 < max(residuals) < 1e-12, residuals)
         self.bough("frequency", "d.bdf", "--direct", "--modes", "3", code=2)
 
     def test_modal_requests(self):

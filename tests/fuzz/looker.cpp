@@ -102,7 +102,8 @@ hdf5::Look look_by_one_process(const std::string& path, double) {
   ++server.files;
   hdf5::Look look;
   pollfd wait{server.from, POLLIN, 0};
-  if (send(server.to, path) && ::poll(&wait, 1, kMostMilliseconds) > 0 && receive(server.from, look.faults)) return look;
+  if (send(server.to, path) && ::poll(&wait, 1, kMostMilliseconds) > 0 && receive(server.from, look.faults))
+    return look;
   stop(server);
   return {{}, "the process that looked at it ended"};
 }
