@@ -11,6 +11,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "base/file_roles.hpp"
+
 namespace bough {
 
 namespace fs = std::filesystem;
@@ -100,6 +102,7 @@ std::string find_target(const std::string& path, std::error_code& failed) {
 }
 
 PartFile::PartFile(const std::string& path) {
+  note_output(path);
   target_ = find_target(path, error_);
   if (error_) return;
   // Absolute: whoever removes it may stand in another folder by then.
@@ -149,6 +152,11 @@ bool PartFile::write(const char* data, std::size_t size) {
 
 bool PartFile::commit(bool always_syncs) {
   if (error_) return false;
+  // A run fills the file of that name: it would go on filling one that nobody sees.
+  if (is_file_locked(target_)) {
+    errno = EBUSY;
+    return fail();
+  }
   errno = 0;
   struct stat old {};
   const bool replaces = ::stat(target_.c_str(), &old) == 0;

@@ -11,7 +11,7 @@ std::string find_target(const std::string& path, std::error_code& failed);
 
 /// A new file beside the target of `path`, NAME.bough-part-PID, that takes its place when it is whole. It is made with
 /// O_EXCL and O_NOFOLLOW and locked while it is open; parts of the same name whose process is gone are removed first.
-/// Removed by its destructor, and by remove_parts.
+/// Removed by its destructor, and by remove_parts. What the call has read is refused (note_output).
 class PartFile {
  public:
   explicit PartFile(const std::string& path);

@@ -2,6 +2,7 @@
 #include <functional>
 
 #include "base/diagnostic.hpp"
+#include "base/file_roles.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/help_files.hpp"
 #include "cli/common/memory_limit.hpp"
@@ -139,6 +140,7 @@ int run(int argc, const char* const* argv) {
   }
   try {
     cli::set_work_space_aside();
+    const FileRoles roles;
     const int code = action();
     cli::flush_data();
     return code;

@@ -80,15 +80,6 @@ detail::Restored find_soft(const fe::System& system, const EigenOptions& options
     const auto& first = model.autospc().front();
     what += ": AUTOSPC holds " + std::to_string(model.autospc().size()) + " without stiffness, the first at grid " +
             std::to_string(first.node);
-    MatrixXd K;
-    for (const auto& element : model.elements()) {
-      K.setZero(element->num_dofs(), element->num_dofs());
-      model.add_stiffness(*element, K);
-      if (K.size() == 0 || K.diagonal().minCoeff() >= 0) continue;
-      what += "; " + element->card() + " " + std::to_string(element->id()) + " has negative stiffness";
-      advice = "correct its sign";
-      break;
-    }
   }
   throw ComputationError("modal.no-dofs", {}, what, advice);
 }
@@ -100,6 +91,27 @@ void check_request(const fe::Model& model, const EigenOptions& options) {
                      std::to_string(options.num_modes) + " modes are asked for, the model has " +
                          std::to_string(model.num_fdofs()) + " free dofs",
                      "ask for as many as the motion needs: all of them would take a dense matrix of every dof");
+}
+
+/// A motion whose stiffness is negative grows by itself; a model on negative springs may well want to show it.
+void warn_of_negative(const fe::Model& model, const EigenPairs& pairs, Diagnostics& diagnostics) {
+  const auto kept = pairs.lambda.size() - std::min<Eigen::Index>(pairs.num_rigid, pairs.lambda.size());
+  if (kept == 0) return;
+  const auto lambda = pairs.lambda.tail(kept).array();
+  const auto number = (lambda < -1e-12 * lambda.abs().maxCoeff()).count();
+  if (number == 0) return;
+  auto what = std::to_string(number) + (number == 1 ? " mode has" : " modes have") +
+              " negative stiffness: the model is not in stable equilibrium";
+  MatrixXd K;
+  for (const auto& element : model.elements()) {
+    K.setZero(element->num_dofs(), element->num_dofs());
+    model.add_stiffness(*element, K);
+    if (K.size() == 0 || K.diagonal().minCoeff() >= 0) continue;
+    what += "; " + element->card() + " " + std::to_string(element->id()) + " has negative stiffness";
+    break;
+  }
+  diagnostics.warning("modal.unstable", {}, what,
+                      "correct the sign of its springs and loads, unless that is what you look for");
 }
 
 }  // namespace
@@ -118,6 +130,7 @@ EigenPairs calc_normal_modes(const fe::System& system, const EigenOptions& optio
     if (!restored.is_done || item.id != "modal.roundoff") diagnostics.add(item);
   detail::warn_of_lost_digits(restored, diagnostics);
   fe::check_residuals(answer.pairs.residual, "mode", diagnostics);
+  warn_of_negative(system.model, answer.pairs, diagnostics);
   return std::move(answer.pairs);
 }
 

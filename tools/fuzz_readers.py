@@ -4,8 +4,8 @@
                                            [READER ...]
 
 Inputs that reach new code are kept in FOLDER/corpus for the next time; those of tests/fuzz/corpus are the seeds. Prints
-one row a reader: executions, their rate, coverage, findings; FOLDER/executed.json adds them up over all calls, and
---write puts those sums into docs/verification/robustness.md. Exit 1 when something was found.
+one row a reader: executions, their rate, coverage, findings; FOLDER/executed.json adds them up over all calls, to what
+docs/verification/robustness.md tells, and --write puts those sums there. Exit 1 when something was found.
 """
 import argparse
 import glob
@@ -16,7 +16,7 @@ import resource
 import subprocess
 import sys
 
-from robustness_page import write_table
+from robustness_page import read_table, write_table
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 CORPUS = os.path.join(ROOT, "tests", "fuzz", "corpus")
@@ -118,9 +118,10 @@ def get_seconds():
 
 
 def count(folder, reader, number, seconds, coverage, found):
-    """Adds to what FOLDER/executed.json has; returns all of it."""
+    """Adds to what FOLDER/executed.json has, which begins with what the page tells; returns all of it."""
     path = os.path.join(folder, "executed.json")
-    known = {}
+    known = {name.strip("`"): [int(runs.replace(",", "")), int(runs.replace(",", "")) / max(1.0, float(rate)), int(edges), 0]
+             for name, runs, rate, edges in read_table("fuzz")}
     if os.path.exists(path):
         with open(path, encoding="ascii") as f:
             known = json.load(f)

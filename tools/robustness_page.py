@@ -32,3 +32,11 @@ def write_table(mark, heads, rows, notes=(), num_keys=1):
     text = "\n".join([begin, *table, *(["", *below] if below else []), end])
     with open(PAGE, "w", encoding="utf-8") as f:
         f.write(before + text + after)
+
+
+def read_table(mark):
+    """Cells of the rows between the marks, without the heads."""
+    with open(PAGE, encoding="utf-8") as f:
+        inside = f.read().partition(f"<!-- {mark} -->")[2].partition(f"<!-- end of {mark} -->")[0]
+    rows = [line.strip("| ").split(" | ") for line in inside.splitlines() if line.startswith("| ")]
+    return rows[2:]

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/file_roles.hpp"
 #include "cli/batch/batch_steps.hpp"
 #include "cli/common/body_files.hpp"
 #include "cli/common/options.hpp"
@@ -24,6 +25,7 @@ constexpr std::size_t max_cases = 1'000'000;
 
 std::string read_all(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
+  note_input(path);
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();

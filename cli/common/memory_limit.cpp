@@ -5,10 +5,15 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <array>
+#include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <vector>
 
 #include "base/diagnostic.hpp"
+#include "base/part_file.hpp"
+#include "cli/common/console.hpp"
 
 namespace bough::cli {
 
@@ -16,11 +21,37 @@ namespace {
 
 constexpr const char* kThreads = "OPENBLAS_NUM_THREADS";
 /// What OpenBLAS takes for each thread, and what MPI and PETSc take when they start.
-constexpr std::size_t kWorkSpace = std::size_t{160} << 20;
+constexpr std::size_t kWorkSpace = std::size_t{200} << 20;
 
 bool is_limited() {
   rlimit limit{};
   return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+}
+
+/// HDF5 and others read behind what they did not get. Calls nothing that a handler may not.
+void end_without_memory(int) {
+  remove_parts();
+  const char* text =
+      "error: a library did not survive the limit of memory (ulimit -v); raise it, or use a smaller model "
+      "[cli.no-memory]\n";
+  (void)!::write(STDERR_FILENO, text, std::strlen(text));
+  ::_exit(kComputationFailed);
+}
+
+void catch_crashes() {
+  static std::array<char, 1 << 16> room;  // a handler's stack where the other one is what ran out
+  stack_t stack{};
+  stack.ss_sp = room.data();
+  stack.ss_size = room.size();
+  ::sigaltstack(&stack, nullptr);
+  for (const int signal : {SIGSEGV, SIGBUS, SIGABRT}) {
+    struct sigaction now {};
+    if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler != SIG_DFL) continue;
+    struct sigaction own {};
+    own.sa_handler = end_without_memory;
+    own.sa_flags = SA_ONSTACK;
+    ::sigaction(signal, &own, nullptr);
+  }
 }
 
 }  // namespace
@@ -33,6 +64,7 @@ void prepare_for_memory_limit(char** arguments) {
 
 void set_work_space_aside() {
   if (!is_limited()) return;
+  catch_crashes();
   void* room = mmap(nullptr, kWorkSpace, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED)
     throw ComputationError("cli.no-memory", {}, "the limit of memory (ulimit -v) leaves too little to start with",

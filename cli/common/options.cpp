@@ -11,6 +11,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "base/file_roles.hpp"
 #include "base/part_file.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/ranks.hpp"
@@ -26,7 +27,9 @@ namespace fs = std::filesystem;
 
 void add_common_options(CLI::App& verb, CommonOptions& options, unsigned offers, const std::string& output_help) {
   if (offers & kOutput) {
-    verb.add_option("-o,--output", options.output, output_help);
+    verb.add_option("-o,--output", options.output, output_help)->check([](const std::string& name) {
+      return name.empty() ? std::string("the name is empty") : std::string();
+    });
     auto* keep = verb.add_flag("--no-clobber", options.no_clobber, "Refuse to overwrite an existing output file");
     verb.add_flag("--force")->description("Overwrite an existing output file (the default)")->excludes(keep);
   }
@@ -85,6 +88,7 @@ void check_output(const CommonOptions& options, const std::string& path, const s
       throw InputError("cli.output-is-input", {path}, "the output would overwrite the input file " + input,
                        "choose another file with -o");
   }
+  note_output(path);
   if (options.no_clobber && fs::exists(path, ignored)) {
     throw InputError("cli.output-exists", {path}, "the output file exists",
                      "choose another name or leave out --no-clobber");
@@ -93,6 +97,8 @@ void check_output(const CommonOptions& options, const std::string& path, const s
     throw ComputationError("cli.write", {path}, fs::is_directory(path, ignored) ? "is a folder" : "is no regular file",
                            "choose a file with -o");
   }
+  if (is_file_locked(path))
+    throw InputError("hdf5.busy", {path}, "another process writes this file", "wait until it ends, or choose another");
   std::error_code failed;
   const auto target = find_target(path, failed);
   if (failed) throw ComputationError("cli.write", {path}, failed.message(), "choose a file with -o");
@@ -169,6 +175,7 @@ void demand_file(const std::string& path) {
                      fs::is_directory(path) ? "is a folder, not a file" : "no such file, or not readable",
                      "check the path");
   }
+  note_input(path);
 }
 
 void demand_kind(const std::string& path, const std::string& kind, const std::string& expected) {

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <memory>
 
+#include "base/file_roles.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/edit/edit_session.hpp"
@@ -38,6 +39,7 @@ EditText read_edit_text(const std::string& file) {
     check_output({}, file);
     return {file, "", false};
   }
+  FileRoles::allow_both(file);
   demand_file(file);
   const auto kind = toml_files::detect_kind(file);
   if (kind != "body") demand_kind(file, kind, "system");

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "base/diagnostic.hpp"
+#include "base/file_roles.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/system_files.hpp"
 #include "cli/common/text_file.hpp"
@@ -322,6 +323,7 @@ void EditSession::save(const Words& given) {
   } else if (path != target_ && std::filesystem::exists(path, failed) && !is_forced) {
     throw InputError("cli.output-exists", {path}, "the file exists", "choose another name, or save NAME --force");
   }
+  if (path == text_.get_file() || path == target_) FileRoles::allow_both(path);
   check_output({}, path);
   Diagnostics diagnostics;
   toml_files::check_text(text_.get_text(), path, diagnostics);

@@ -73,6 +73,42 @@ double calc_strain_energy(const MovingBody& body, Eigen::Index sample) {
   return 0.5 * eta.dot(body.flex->modal_stiffness.topLeftCorner(n, n) * eta);
 }
 
+/// The folder of the frames. Without keep() what was not there before goes again: a disk that is full stays no fuller.
+class FrameFolder {
+ public:
+  explicit FrameFolder(const fs::path& place) : place_(place) {
+    check_place(place.string());
+    std::error_code failed;
+    is_new_ = fs::create_directories(place, failed);
+    if (failed)
+      throw ComputationError("cli.write", {place.string()}, "the folder cannot be made: " + failed.message(),
+                             "choose another place with -o");
+  }
+  ~FrameFolder() {
+    std::error_code failed;
+    for (const auto& file : added_) fs::remove(file, failed);
+    if (is_new_) fs::remove(place_, failed);
+  }
+  FrameFolder(const FrameFolder&) = delete;
+  FrameFolder& operator=(const FrameFolder&) = delete;
+
+  void write(const std::string& name, const std::string& text) {
+    const auto file = place_ / name;
+    std::error_code failed;
+    if (!fs::exists(file, failed)) added_.push_back(file);
+    write_text_file(file.string(), text);
+  }
+  void keep() {
+    added_.clear();
+    is_new_ = false;
+  }
+
+ private:
+  fs::path place_;
+  bool is_new_ = false;
+  std::vector<fs::path> added_;
+};
+
 /// The mesh of all bodies as one; what moves is filled in for each frame.
 class Frames {
  public:
@@ -139,13 +175,7 @@ int write_pvd(const MovingSystem& system, double scale, bool is_ascii, const std
               Diagnostics& diagnostics) {
   const fs::path collection(output);
   const std::string folder = collection.stem().string() + "-frames";
-  const auto place = collection.parent_path() / folder;
-  check_place(place.string());
-  std::error_code failed;
-  fs::create_directories(place, failed);
-  if (failed)
-    throw ComputationError("cli.write", {place.string()}, "the folder cannot be made: " + failed.message(),
-                           "choose another place with -o");
+  FrameFolder place(collection.parent_path() / folder);
   Frames frames(system, scale, diagnostics);
   std::string text =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\" "
@@ -153,13 +183,13 @@ int write_pvd(const MovingSystem& system, double scale, bool is_ascii, const std
   const auto count = static_cast<int>(system.time.size());
   for (int i = 0; i < count; ++i) {
     const auto name = fmt::format("{:06}.vtu", i);
-    write_text_file((place / name).string(),
-                    frames.make(i, is_ascii ? exports::VtuEncoding::Ascii : exports::VtuEncoding::Base64));
+    place.write(name, frames.make(i, is_ascii ? exports::VtuEncoding::Ascii : exports::VtuEncoding::Base64));
     text += fmt::format("<DataSet timestep=\"{:.17g}\" group=\"\" part=\"0\" file=\"{}\"/>\n", system.time[i],
                         escape_xml(folder + "/" + name));
   }
   // Last: a collection that is there names whole files.
   write_text_file(output, text + "</Collection>\n</VTKFile>\n");
+  place.keep();
   return count;
 }
 

@@ -241,6 +241,7 @@ nlohmann::json make_json(const LinearModel& model) {
         {"imag", to_list(model.poles.imag)},
         {"frequency_hz", to_list(model.poles.frequency_hz)},
         {"damping", to_list(model.poles.damping)},
+        {"error", to_list(model.poles.error)},
         {"mode", model.poles.mode},
         {"body_mode", model.poles.body_mode},
         {"hinge", model.poles.hinge}}}};

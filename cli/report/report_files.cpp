@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/file_roles.hpp"
 #include "cli/common/body_files.hpp"
 #include "cli/common/options.hpp"
 #include "cli/export/export_matrices.hpp"
@@ -28,6 +29,7 @@ constexpr const char* kTakes =
 
 report::Chapter make_selection_chapter(const std::string& file) {
   std::ifstream in(file);
+  note_input(file);
   const auto json = nlohmann::json::parse(in, nullptr, false);
   const auto fail = [&](const std::string& what) { return InputError("cli.no-report", {file}, what, kTakes); };
   if (!json.is_object() || !json.contains("modes") || !json.contains("total_cost"))

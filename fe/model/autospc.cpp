@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <unordered_map>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -86,6 +88,16 @@ NodeBlocks calc_node_blocks(const Model& model, const std::vector<int>& gdof_nod
   return result;
 }
 
+/// Eigenvalues by size, the smallest first, with their vectors: a negative stiffness is one.
+std::pair<VectorXd, MatrixXd> find_principal_stiffness(const MatrixXd& K) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(K);
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(K.rows()));
+  std::iota(order.begin(), order.end(), 0);
+  const VectorXd size = solver.eigenvalues().cwiseAbs();
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return size(a) < size(b); });
+  return {size(order), solver.eigenvectors()(Eigen::all, order)};
+}
+
 /// Makes the entries of a block oblique where a held component has stiffness of its own: of the directions N without
 /// stiffness (columns, rows `slots`) the held components follow the free ones by Nᵀ u = 0. `limit`: what is none.
 void set_oblique(const Matrix3d& K, const std::vector<int>& slots, double limit, bool is_rotation,
@@ -99,13 +111,13 @@ void set_oblique(const Matrix3d& K, const std::vector<int>& slots, double limit,
     (is_held ? held : free).push_back(static_cast<Eigen::Index>(i));
   }
   for (std::size_t e = first; e < entries.size(); ++e)
-    entries[e].is_skew = K(slot_of(entries[e]), slot_of(entries[e])) > limit;
+    entries[e].is_skew = std::abs(K(slot_of(entries[e]), slot_of(entries[e]))) > limit;
   const bool is_any = std::any_of(entries.begin() + static_cast<std::ptrdiff_t>(first), entries.end(),
                                   [](const AutospcEntry& e) { return e.is_skew; });
   if (!is_any || free.empty()) return;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(MatrixXd(K(slots, slots)));
-  if (solver.eigenvalues()[m - 1] > limit || solver.eigenvalues()[m] <= limit) return;
-  const MatrixXd N = solver.eigenvectors().leftCols(m);
+  const auto [stiffness, directions] = find_principal_stiffness(K(slots, slots));
+  if (stiffness[m - 1] > limit || stiffness[m] <= limit) return;
+  const MatrixXd N = directions.leftCols(m);
   const Eigen::FullPivLU<MatrixXd> lu(MatrixXd(N(held, Eigen::all).transpose()));
   if (lu.rcond() < 1e-6) return;
   const MatrixXd C = lu.solve(-MatrixXd(N(free, Eigen::all).transpose()));
@@ -140,18 +152,17 @@ std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vect
       if (is_free[b][s]) slots.push_back(s);
     const auto all_slots = slots;
     const Eigen::Vector3d diagonal = blocks[b].diagonal();
-    const double scale = model.prestress() ? diagonal.cwiseAbs().maxCoeff() : diagonal.maxCoeff();
+    const double scale = diagonal.cwiseAbs().maxCoeff();
     const size_t first = entries.size();
     while (!slots.empty()) {
       int singular = 0;
       double ratio = 0;
       if (scale > noise[b]) {
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(MatrixXd(blocks[b](slots, slots)));
-        const double lowest = solver.eigenvalues()[0] / scale;
-        ratio = std::max(0.0, lowest);
-        if (ratio * scale > std::max(epsilon * scale, noise[b]) || (model.prestress() && lowest < -epsilon)) break;
+        const auto [stiffness, directions] = find_principal_stiffness(blocks[b](slots, slots));
+        ratio = stiffness[0] / scale;
+        if (stiffness[0] > std::max(epsilon * scale, noise[b])) break;
         // Of equal shares the last: a rod along a diagonal keeps its first component.
-        const Eigen::VectorXd share = solver.eigenvectors().col(0).cwiseAbs();
+        const Eigen::VectorXd share = directions.col(0).cwiseAbs();
         for (int i = 0; i < share.size(); ++i)
           if (share[i] >= share.maxCoeff() - 1e-9) singular = i;
       }

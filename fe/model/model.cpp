@@ -29,7 +29,9 @@ records::BodyMesh Model::calc_mesh() const {
   std::map<std::string, std::vector<std::pair<int, std::vector<int>>>> by_type;
   for (const auto& element : elements_) {
     ElementShape shape = element->shape();
-    if (!shape.type.empty()) by_type[shape.type].emplace_back(element->id(), std::move(shape.nodes));
+    // A scalar point is nowhere.
+    const bool is_drawn = std::all_of(shape.nodes.begin(), shape.nodes.end(), [&](int k) { return row[k] >= 0; });
+    if (is_drawn && !shape.type.empty()) by_type[shape.type].emplace_back(element->id(), std::move(shape.nodes));
   }
   for (const auto& [id, shape] : drawn_lines_) by_type[shape.type].emplace_back(id, shape.nodes);
   for (const auto& [type, members] : by_type) {

@@ -23,14 +23,25 @@ records::Subcase select_subcase(const records::Deck& deck, int id, Diagnostics& 
 
 std::vector<int> expand_set(int sid, const std::vector<records::SetUnion>& unions, const std::vector<int>& plain,
                             const std::string& what, const records::Deck& deck, Diagnostics& diagnostics) {
-  std::vector<int> result, seen;
-  std::vector<std::pair<int, records::CardLocation>> open{
-      {sid, records::find_selection(deck, what, sid)}};  // who names it
+  struct Entry {
+    int id;
+    records::CardLocation at;  ///< who names it
+    std::size_t depth;         ///< of that one, in `path`
+  };
+  std::vector<int> result, seen, path;
+  std::vector<Entry> open{{sid, records::find_selection(deck, what, sid), 0}};
   while (!open.empty()) {
-    const auto [id, at] = open.back();
+    const auto [id, at, depth] = open.back();
     open.pop_back();
+    path.resize(depth);
+    if (std::find(path.begin(), path.end(), id) != path.end()) {
+      diagnostics.warning("fe.circular-set", deck.locate(at), what + " set " + std::to_string(id) + " contains itself",
+                          "correct the set ids of this card");
+      continue;
+    }
     if (std::find(seen.begin(), seen.end(), id) != seen.end()) continue;
     seen.push_back(id);
+    path.push_back(id);
     bool exists = false;
     if (std::binary_search(plain.begin(), plain.end(), id)) {
       result.push_back(id);
@@ -38,7 +49,7 @@ std::vector<int> expand_set(int sid, const std::vector<records::SetUnion>& union
     }
     for (const auto& u : unions)
       if (u.sid == id) {
-        for (const int member : u.sets) open.emplace_back(member, u.at);
+        for (const int member : u.sets) open.push_back({member, u.at, path.size()});
         exists = true;
       }
     if (!exists)

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "base/diagnostic.hpp"
+#include "base/file_roles.hpp"
 #include "formats/flx/detail/layout_words.hpp"
 
 namespace bough::flx {
@@ -307,6 +308,7 @@ Layout read_layout(const std::string& path) {
   std::error_code failed;
   std::ifstream in;
   if (std::filesystem::is_regular_file(path, failed)) in.open(path, std::ios::binary);
+  note_input(path);
   std::ostringstream text;
   text << in.rdbuf();
   if (!in.is_open() || text.fail())

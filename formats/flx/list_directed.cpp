@@ -7,6 +7,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/file_roles.hpp"
+
 namespace bough::flx {
 
 namespace {
@@ -73,6 +75,7 @@ ListReader ListReader::open(const std::string& path, Diagnostics& diagnostics) {
   std::error_code failed;
   std::ifstream in;
   if (std::filesystem::is_regular_file(path, failed)) in.open(path, std::ios::binary);
+  note_input(path);
   std::ostringstream text;
   text << in.rdbuf();
   if (!in.is_open() || text.fail())

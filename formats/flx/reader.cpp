@@ -4,6 +4,7 @@
 #include <fstream>
 #include <map>
 
+#include "base/file_roles.hpp"
 #include "formats/flx/detail/flx_reader.hpp"
 
 namespace bough::flx {
@@ -11,6 +12,7 @@ namespace bough::flx {
 std::vector<FlxFile> read_flx_bodies(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError("flx.cannot-read", {path}, "the file cannot be read", "check its path and permissions");
+  note_input(path);
   std::vector<FlxFile> bodies;
   Diagnostics diagnostics;
   std::map<int, int> first_line;  // of each body id

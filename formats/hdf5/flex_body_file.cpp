@@ -1,10 +1,11 @@
 #include <algorithm>
 
 #include "base/version.hpp"
+#include "formats/hdf5/body_accuracy.hpp"
+#include "formats/hdf5/detail/body_sense.hpp"
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/recovery.hpp"
 #include "formats/hdf5/detail/writer.hpp"
-#include "formats/hdf5/body_accuracy.hpp"
 #include "formats/hdf5/files.hpp"
 
 namespace bough::hdf5 {
@@ -318,6 +319,8 @@ FlexBody read_flex_body(const std::string& path) {
   read_preload(file, body);
   read_recovery(file, body);
   body.mesh = read_mesh(file);
+  file.throw_if_errors();
+  check_sense(file, body);
   file.throw_if_errors();
   return body;
 }

@@ -15,6 +15,8 @@ void write_poles(FileWriter& file, const records::Poles& poles) {
   file.write_vector("/poles/imag", poles.imag, {"eigenvalues of A, imaginary part", "1/T"});
   file.write_vector("/poles/frequency_hz", poles.frequency_hz, {"|pole| / 2 pi", "1/T"});
   file.write_vector("/poles/damping", poles.damping, {"-real / |pole|; 0 for a pole at 0", "1"});
+  if (poles.error.size() > 0)
+    file.write_vector("/poles/error", poles.error, {"what a pole may be off by, estimated", "1/T"});
   file.write_strings("/poles/mode", poles.mode, {"the coordinate that takes part most", "1"});
   file.write_strings("/poles/body_mode", poles.body_mode, {"the mode of a body that does; empty: none", "1"});
   file.write_strings("/poles/hinge", poles.hinge, {"the hinge coordinate that does; empty: none", "1"});
@@ -104,6 +106,7 @@ LinearModel read_linear_model(const std::string& path) {
   model.poles.imag = file.read_vector("/poles/imag", nx);
   model.poles.frequency_hz = file.read_vector("/poles/frequency_hz", nx);
   model.poles.damping = file.read_vector("/poles/damping", nx);
+  if (file.has("/poles/error")) model.poles.error = file.read_vector("/poles/error", nx);
   model.poles.mode = file.read_strings("/poles/mode", nx);
   if (file.has("/poles/hinge")) {
     model.poles.body_mode = file.read_strings("/poles/body_mode", nx);

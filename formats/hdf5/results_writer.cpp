@@ -85,6 +85,7 @@ class ResultsWriter final : public records::ResultSink {
     last_checkpoint_->num_samples = static_cast<long>(num_written_);
     last_checkpoint_->num_events = static_cast<long>(num_events_);
     write_checkpoint_to("/checkpoint", *last_checkpoint_);
+    file_.check_name();
   }
 
   void write_energy_error(double worst) override {
@@ -100,6 +101,7 @@ class ResultsWriter final : public records::ResultSink {
     add_wall_time(file_, std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count());
     write_state(file_, completed, reason);
     file_.flush();
+    file_.check_name();
     file_.check(close(), "the file cannot be written");
   }
 

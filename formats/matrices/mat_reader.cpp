@@ -4,6 +4,7 @@
 
 #include <matio.h>
 
+#include "base/file_roles.hpp"
 #include "formats/matrices/detail/readers.hpp"
 #include "formats/matrices/detail/triplets.hpp"
 
@@ -16,6 +17,7 @@ class MatReader {
  public:
   explicit MatReader(const std::string& path) : path_(path), file_(Mat_Open(path.c_str(), MAT_ACC_RDONLY), Mat_Close) {
     if (!file_) fail("the file cannot be read as a MATLAB file", "write it with save -v6, -v7 or -v7.3");
+    note_input(path);
   }
 
   std::vector<Matrix> read() {

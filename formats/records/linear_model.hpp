@@ -19,6 +19,7 @@ struct Poles {
   Eigen::VectorXd real, imag;
   Eigen::VectorXd frequency_hz;               ///< |λ| / 2π
   Eigen::VectorXd damping;                    ///< -Re λ / |λ|; 0 for λ = 0
+  Eigen::VectorXd error;                      ///< estimated, of λ; empty where it was not asked for
   std::vector<std::string> mode;              ///< the coordinate that takes part most
   std::vector<std::string> body_mode, hinge;  ///< the mode and the hinge coordinate that do; "" where none does
   int size() const { return static_cast<int>(real.size()); }

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <map>
 
+#include "base/file_roles.hpp"
 #include "formats/sid/sid.hpp"
 
 namespace bough::sid {
@@ -21,6 +22,7 @@ class Reader {
  public:
   explicit Reader(const std::string& path) : path_(path), in_(path, std::ios::binary) {
     if (!in_) throw InputError("cli.no-file", {path}, "no such file, or not readable", "check the path");
+    note_input(path);
   }
 
   Sid run() {

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <map>
 
+#include "base/file_roles.hpp"
 #include "formats/toml/campaign.hpp"
 #include "formats/toml/detail/campaign_words.hpp"
 #include "formats/toml/detail/fields.hpp"
@@ -155,6 +156,7 @@ class Reader {
     if (std::filesystem::is_regular_file(spec_.table, failed)) in.open(spec_.table);
     if (!in.is_open())
       return bad(0, "the table " + spec_.table + " cannot be opened", "check its path, relative to this file");
+    note_input(spec_.table);
     std::vector<std::size_t> columns;
     std::string line;
     for (int number = 1; std::getline(in, line); ++number) {

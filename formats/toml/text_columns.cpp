@@ -6,6 +6,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/file_roles.hpp"
+
 namespace bough::toml_files {
 namespace {
 
@@ -196,6 +198,7 @@ void read_columns(const std::string& path, const SourceLocation& asked_at, const
                       "check its path, relative to this file");
     return;
   }
+  note_input(path);
   Reader(path, choice, diagnostics).read(in, x, y);
 }
 

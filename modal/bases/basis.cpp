@@ -25,6 +25,9 @@ VectorXd join(const VectorXd& a, const VectorXd& b) {
   return c;
 }
 MatrixXd times_M(const fe::Model& model, const MatrixXd& X) { return fe::calc_mass_times(model, model.mass_kind(), X); }
+VectorXd calc_norms(const fe::Model& model, const MatrixXd& X) {
+  return X.cwiseProduct(times_M(model, X)).colwise().sum().cwiseMax(0).cwiseSqrt();
+}
 MatrixXd calc_gram_M(const fe::Model& model, const MatrixXd& X) {
   const MatrixXd G = X.transpose() * times_M(model, X);
   return 0.5 * (G + G.transpose());
@@ -182,10 +185,21 @@ std::string describe_directions(const fe::Model& model, const Basis& basis, cons
 /// K^N = M^ND of the component, twice: the second time nearly diagonal, for the digits of the lowest values.
 void orthogonalize(const fe::Model& model, const MatrixXd& rigid, Eigen::Index num_constraint, Basis& basis,
                    Diagnostics& diagnostics) {
+  constexpr double kRigid = 1e-9;  // what is left of a vector that is a rigid motion
   MatrixXd& Phi = basis.Phi;
-  for (int pass = 0; pass < 2 && rigid.cols() > 0; ++pass)
-    Phi -= rigid * (times_M(model, rigid).transpose() * Phi).eval();
-  const MatrixXd K = basis.K;
+  MatrixXd K = basis.K;
+  if (rigid.cols() > 0) {
+    const VectorXd before = calc_norms(model, Phi);
+    for (int pass = 0; pass < 2; ++pass) Phi -= rigid * (times_M(model, rigid).transpose() * Phi).eval();
+    const VectorXd after = calc_norms(model, Phi);
+    // The constraint modes of a single grid: round-off of rigid elements is no shape.
+    for (Eigen::Index j = 0; j < Phi.cols(); ++j) {
+      if (after(j) > kRigid * before(j)) continue;
+      Phi.col(j).setZero();
+      K.row(j).setZero();
+      K.col(j).setZero();
+    }
+  }
   MatrixXd N = MatrixXd::Identity(Phi.cols(), Phi.cols());
   for (int pass = 0; pass < 2; ++pass) {
     const auto pairs = calc_ritz_pairs(calc_gram_M(model, Phi), pass == 0 ? K : calc_gram_K(model, Phi));

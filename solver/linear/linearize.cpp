@@ -241,6 +241,25 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
                       "its poles are not those of the motion; linearize at several times");
 }
 
+/// Soft poles beside stiff ones: A is known to its largest entries, they are made of small differences of these.
+void warn_of_uncertain(const records::Poles& poles, const SourceLocation& at, Diagnostics& diagnostics) {
+  constexpr double kUncertain = 1e-4;
+  int number = 0, worst = 0;
+  double most = 0;
+  for (int i = 0; i < poles.size(); ++i) {
+    const double size = std::hypot(poles.real[i], poles.imag[i]);
+    if (size == 0 || !(poles.error[i] > kUncertain * size)) continue;
+    ++number;
+    if (poles.error[i] > most * size) most = poles.error[i] / size, worst = i;
+  }
+  if (number == 0) return;
+  diagnostics.warning("linear.uncertain-poles", at,
+                      std::to_string(number) + (number == 1 ? " pole is" : " poles are") +
+                          " known to less than four digits, worst of all number " + std::to_string(worst + 1) + " (" +
+                          poles.mode[static_cast<std::size_t>(worst)] + "), to " + short_text(100 * most) + " %",
+                      "they are soft beside the stiffest, or nearly multiple: lock or leave out what is stiffest");
+}
+
 }  // namespace
 
 LinearModel linearize(Plant& plant, const OperatingPoint& point, const LinearizeOptions& options,
@@ -341,7 +360,10 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
     return model;
   }
   if (options.check) model.hankel = statespace::calc_hankel(model.A, model.B, model.C);
-  model.poles = statespace::calc_poles(model.A, model.states.name);
+  MatrixXd error = MatrixXd::Zero(nx, nx);
+  error.bottomRows(n + nz) = (jacobian.value.array() != 0).select(jacobian.error.array(), 0.0).topRows(n + nz);
+  model.poles = statespace::calc_poles(model.A, model.states.name, error);
+  if (options.check) warn_of_uncertain(model.poles, at, diagnostics);
   if (num_inputs == static_cast<Eigen::Index>(outputs.size()) && num_inputs > 0) {
     const Eigen::VectorXcd zeros = statespace::calc_zeros(model.A, model.B, model.C, model.D);
     model.has_zeros = true;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -12,10 +13,12 @@ namespace bough::statespace {
 namespace {
 
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 struct Pole {
   std::complex<double> value;
   std::string mode, body_mode, hinge;
+  double error = 0;
 };
 
 std::string get_coordinate(const std::string& state) {
@@ -35,7 +38,7 @@ bool is_state(const std::string& coordinate) { return coordinate.ends_with(')');
 
 /// From the share of each coordinate.
 Pole name_pole(std::complex<double> value, const std::map<std::string, double>& share) {
-  Pole pole{value, "", "", ""};
+  Pole pole{value, "", "", "", 0};
   double most = -1, most_modal = 0, most_hinge = 0;
   for (const auto& [coordinate, part] : share) {
     if (part > most) most = part, pole.mode = coordinate;
@@ -50,9 +53,10 @@ Pole name_pole(std::complex<double> value, const std::map<std::string, double>& 
 }
 
 void add_poles(const MatrixXd& A, const std::vector<int>& block, const std::vector<std::string>& names,
-               std::vector<Pole>& poles) {
+               const MatrixXd& error, std::vector<Pole>& poles) {
   if (block.size() == 1) {
     poles.push_back(name_pole(A(block[0], block[0]), {{get_coordinate(names[static_cast<std::size_t>(block[0])]), 1}}));
+    if (error.size() > 0) poles.back().error = error(block[0], block[0]);
     return;
   }
   const auto fail = [] {
@@ -60,7 +64,7 @@ void add_poles(const MatrixXd& A, const std::vector<int>& block, const std::vect
   };
   MatrixXd a = A(block, block);
   if (!a.allFinite()) fail();
-  balance(a);
+  const VectorXd scale = balance(a);
   const Eigen::EigenSolver<MatrixXd> solver(a);
   if (solver.info() != Eigen::Success) fail();
   const Eigen::MatrixXcd right = solver.eigenvectors();
@@ -73,15 +77,20 @@ void add_poles(const MatrixXd& A, const std::vector<int>& block, const std::vect
       share[get_coordinate(names[static_cast<std::size_t>(block[k])])] += std::abs(right(row, p) * left(p, row));
     }
     poles.push_back(name_pole(solver.eigenvalues()[p], share));
+    if (error.size() == 0) continue;
+    const VectorXd v = right.col(p).cwiseAbs(), w = left.row(p).transpose().cwiseAbs();
+    poles.back().error = w.cwiseQuotient(scale).dot(error(block, block) * scale.cwiseProduct(v)) +
+                         std::numeric_limits<double>::epsilon() * a.norm() * w.norm() * v.norm();
   }
 }
 
 }  // namespace
 
-records::Poles calc_poles(const MatrixXd& A, const std::vector<std::string>& names) {
+records::Poles calc_poles(const MatrixXd& A, const std::vector<std::string>& names, const MatrixXd& error) {
   BOUGH_DEMAND(A.rows() == A.cols() && static_cast<Eigen::Index>(names.size()) == A.rows());
+  BOUGH_DEMAND(error.size() == 0 || (error.rows() == A.rows() && error.cols() == A.cols()));
   std::vector<Pole> poles;
-  for (const auto& block : find_blocks(A)) add_poles(A, block, names, poles);
+  for (const auto& block : find_blocks(A)) add_poles(A, block, names, error, poles);
   // Pairs from one block are exact conjugates and stay together.
   std::stable_sort(poles.begin(), poles.end(), [](const Pole& a, const Pole& b) {
     const auto key = [](const Pole& p) {
@@ -92,6 +101,7 @@ records::Poles calc_poles(const MatrixXd& A, const std::vector<std::string>& nam
   records::Poles out;
   const auto n = static_cast<Eigen::Index>(poles.size());
   for (auto* v : {&out.real, &out.imag, &out.frequency_hz, &out.damping}) v->setZero(n);
+  if (error.size() > 0) out.error.setZero(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Pole& pole = poles[static_cast<std::size_t>(i)];
     const double size = std::abs(pole.value);
@@ -99,6 +109,7 @@ records::Poles calc_poles(const MatrixXd& A, const std::vector<std::string>& nam
     out.imag[i] = pole.value.imag();
     out.frequency_hz[i] = size / (2 * std::numbers::pi);
     out.damping[i] = size > 0 ? -pole.value.real() / size + 0.0 : 0;
+    if (error.size() > 0) out.error[i] = pole.error;
     out.mode.push_back(pole.mode);
     out.body_mode.push_back(pole.body_mode);
     out.hinge.push_back(pole.hinge);

@@ -7,6 +7,10 @@ namespace bough::statespace {
 /// A: n x n; names: of the states, n. Block by block (blocks.hpp), each balanced. A state takes part in a pole by
 /// |v_k w_k|, v and w its right and left eigenvectors (Perez-Arriaga, Verghese & Schweppe, IEEE Trans. PAS 101 (1982)
 /// 3117); "boom:eta3" and "boom:eta3_dot" count together.
-records::Poles calc_poles(const Eigen::MatrixXd& A, const std::vector<std::string>& names);
+/// `error`, n x n or empty: what the entries of A may be off by. A pole is then off by |w|ᵀ error |v| for wᵀv = 1, to
+/// first order, and by what rounding does to A in the solution, ε |A| |w| |v| (Wilkinson, The Algebraic Eigenvalue
+/// Problem, 1965, ch. 2): a soft pole beside stiff ones has fewer digits than A.
+records::Poles calc_poles(const Eigen::MatrixXd& A, const std::vector<std::string>& names,
+                          const Eigen::MatrixXd& error = {});
 
 }  // namespace bough::statespace

@@ -104,6 +104,55 @@ class Runs(ProgramTest):
         times = self.read_times()
         self.assertTrue((times[1:] > times[:-1]).all())
 
+    def test_nobody_else_writes_over_a_run(self):
+        first = self.start_long()
+        self.fails(1, "export", "boom.h5", "--to", "flx", "-o", "r.h5", error="hdf5.busy")
+        self.stop(first)
+        self.assertGreater(len(self.read_times()), 10)
+
+    def test_run_whose_file_is_gone_says_so(self):
+        for replaced in (False, True):
+            first = self.start_long()
+            os.rename(self.path("r.h5"), self.path("moved.h5"))
+            if replaced:
+                self.write("r.h5", "mine")
+            self.assertIn("taken its place" if replaced else "removed or renamed", self.stop(first))
+            if replaced:
+                with open(self.path("r.h5")) as f:
+                    self.assertEqual(f.read(), "mine")
+                os.remove(self.path("r.h5"))
+
+    def test_what_is_read_is_not_written(self):
+        """However the file came to be read: included, a matrix, a table, a body, a table of cases, by a link."""
+        def refuse(kept, *words):
+            with open(self.path(kept), "rb") as f:
+                before = f.read()
+            self.fails(1, *words, error="cli.output-is-input")
+            with open(self.path(kept), "rb") as f:
+                self.assertEqual(f.read(), before)
+
+        head, bulk = BEAM.split("BEGIN BULK\n")
+        self.write("grids.inc", bulk.replace("ENDDATA\n", ""))
+        self.write("deck.bdf", head + "BEGIN BULK\nINCLUDE 'grids.inc'\nENDDATA\n")
+        os.symlink("grids.inc", self.path("link.h5"))
+        refuse("grids.inc", "modes", "deck.bdf", "-o", "grids.inc")
+        refuse("grids.inc", "modes", "deck.bdf", "-o", "link.h5")
+        refuse("grids.inc", "modes", "deck.bdf", "--vtu", "grids.inc")
+        self.write("body.toml", '[body]\nname = "b"\ndeck = "deck.bdf"\n[body.modes]\nnumber = 2\n')
+        refuse("grids.inc", "reduce", "body.toml", "-o", "grids.inc")
+        refuse("grids.inc", "matrices", "deck.bdf", "-o", "grids.inc")
+        refuse("boom.h5", "report", "boom.h5", "-o", "boom.h5")
+        refuse("boom.h5", "run", "spinup.toml", "-o", "boom.h5")
+        refuse("boom.h5", "linearize", "spinup.toml", "-o", "boom.h5")
+        self.write("cases.csv", "modes\n2\n3\n")
+        self.write("camp.toml", '[campaign]\nname = "c"\ntable = "cases.csv"\n[[parameter]]\nname = "modes"\n'
+                   'file = "body.toml"\nkey = "/body/modes/number"\n[[step]]\nrun = ["reduce", "body.toml"]\n')
+        with open(self.path("cases.csv"), "rb") as f:
+            before = f.read()
+        self.fails(3, "batch", "camp.toml", "-o", "cases.csv")
+        with open(self.path("cases.csv"), "rb") as f:
+            self.assertEqual(f.read(), before)
+
     def test_results_of_a_stopped_run_say_so(self):
         self.stop(self.start_long())
         for words in (["export", "r.h5", "--to", "csv", "-o", "r.csv"], ["export", "r.h5", "--to", "mat", "-o", "r.mat"],

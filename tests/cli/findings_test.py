@@ -27,6 +27,33 @@ ENDDATA
 """
 
 
+class OneInterfaceGrid(ProgramTest):
+    def test_rigid_arm_is_the_offset_of_a_mass(self):
+        """Free, fixed at one grid: its constraint modes are rigid motions, with the round-off of an RBE2 or without."""
+        line = "".join(f"GRID,{k},,{0.37 * k - 0.2},{0.11 * k},{0.05 * k}\n" for k in range(1, 8))
+        line += "".join(f"CBAR,{k},1,{k},{k + 1},0.,0.,1.\n" for k in range(1, 7))
+        deck = ("SOL 103\nCEND\nBEGIN BULK\nPBAR,1,1,1.-4,1.-8,3.-8,1.-8\nMAT1,1,7.+10,,.3,2700.\n" + line)
+        offset = np.array([0.13, -0.29, 0.41])
+        tip = np.array([0.37 * 7 - 0.2, 0.77, 0.35])
+        self.write("conm2.bdf", deck + "CONM2,90,7,,.6,{},{},{}\n+,.01,,.02,,,.03\nENDDATA\n".format(*offset))
+        self.write("rbe2.bdf", deck + "GRID,99,,{},{},{}\nRBE2,91,7,123456,99\nCONM2,90,99,,.6\n+,.01,,.02,,,.03\nENDDATA\n"
+                   .format(*(tip + offset)))
+        import h5py
+        values = {}
+        for name in ("conm2", "rbe2"):
+            self.write(name + ".toml", f'[body]\nname = "b"\ndeck = "{name}.bdf"\nframe = "mean"\n[body.modes]\n'
+                       'number = 12\nbasis = "craig-bampton"\ninterface = [1]\n')
+            self.bough("reduce", name + ".toml")
+            with h5py.File(self.path("b.h5")) as f:
+                values[name] = np.diag(f["modal/stiffness"][:])
+        exact = json.loads(self.bough("modes", "conm2.bdf", "-n", "16", "--json").stdout)["modes"]
+        exact = np.array([m["eigenvalue"] for m in exact])[6:]
+        self.assertEqual(len(values["conm2"]), 12)
+        np.testing.assert_allclose(values["rbe2"], values["conm2"], rtol=1e-8)
+        self.assertTrue((np.sort(values["rbe2"])[:10] > exact[:10] * (1 - 1e-8)).all())
+        np.testing.assert_allclose(np.sort(values["rbe2"])[:3], exact[:3], rtol=1e-2)
+
+
 class MassByDirection(ProgramTest):
     def test_three_masses_are_printed_and_warned_of(self):
         self.write("s.bdf", SIDEWAYS)

@@ -1,4 +1,5 @@
 """Input without end or measure is told in a moment: names, includes, repeats, numbers, signs."""
+import json
 import os
 import time
 import unittest
@@ -119,8 +120,48 @@ class Limits(ProgramTest):
     def test_negative_spring_is_named(self):
         self.write("y.bdf", "SOL 103\nCEND\nSPC=1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,0.,0.,0.\n"
                    "CELAS2,7,-1.,1,1,2,1\nCONM2,5,2,,1.\nSPC1,1,123456,1\nSPC1,1,23456,2\nENDDATA\n")
-        self.fails(3, "modes", "y.bdf", says=["AUTOSPC holds 1", "CELAS2 7 has negative stiffness"],
-                   error="modal.no-dofs")
+        result = self.bough("modes", "y.bdf", "--json")
+        self.assertIn("1 mode has negative stiffness", result.stderr)
+        self.assertIn("CELAS2 7 has negative stiffness", result.stderr)
+        self.assertIn("[modal.unstable]", result.stderr)
+        self.assertAlmostEqual(json.loads(result.stdout)["modes"][0]["eigenvalue"], -1, delta=1e-12)
+
+    def test_negative_net_stiffness_is_no_mechanism(self):
+        """1 - 3 against ground: AUTOSPC holds what has no stiffness, not what has less than none."""
+        deck = ("SOL {}\nCEND\nSPC=1\nLOAD=9\nDISP=ALL\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCELAS2,6,1.,1,1,2,1\n"
+                "CELAS2,7,-3.,2,1\nCELAS2,8,5.,2,2\nCONM2,5,2,,2.\nCONM2,4,1,,2.\nSPC1,1,123456,1\nFORCE,9,2,,4.,1.,1.,0.\nENDDATA\n")
+        self.write("z.bdf", deck.format(103))
+        result = self.bough("modes", "z.bdf", "--json")
+        self.assertIn("[modal.unstable]", result.stderr)
+        values = [mode["eigenvalue"] for mode in json.loads(result.stdout)["modes"]]
+        for value, wanted in zip(values, (-1, 2.5)):
+            self.assertAlmostEqual(value, wanted, delta=1e-12)
+        self.write("zs.bdf", deck.format(101))
+        self.bough("static", "zs.bdf", "-o", "zs.h5")
+        import h5py
+        with h5py.File(self.path("zs.h5")) as f:
+            found = []
+            f.visititems(lambda name, item: found.append(item[:]) if name.endswith("displacement") else None)
+        self.assertAlmostEqual(found[0].reshape(-1, 6)[1, 0], -2, delta=1e-12)
+        self.assertAlmostEqual(found[0].reshape(-1, 6)[1, 1], 0.8, delta=1e-12)
+
+    def test_sets_that_contain_themselves(self):
+        for cards in ("SPCADD,7,7,1\n", "SPCADD,7,8,1\nSPCADD,8,7\n"):
+            self.write("c.bdf", BEAM.replace("SPC = 1", "SPC = 7").replace("ENDDATA", cards + "ENDDATA"))
+            result = self.bough("modes", "c.bdf")
+            self.assertRegex(result.stderr, r"c.bdf:\d+: warning: SPC set 7 contains itself.*\[fe.circular-set\]")
+        self.write("c.bdf", BEAM.replace("SPC = 1", "SPC = 7").replace("ENDDATA", "SPCADD,7,8,9\nSPCADD,8,1\nSPCADD,9,1\nENDDATA"))
+        self.assertNotIn("circular", self.bough("modes", "c.bdf").stderr)
+
+    def test_names_of_outputs_are_names(self):
+        self.write("b.bdf", BEAM)
+        self.assertIn("the name is empty", self.fails(2, "modes", "b.bdf", "-o", "").stderr)
+
+    def test_elements_at_scalar_points_are_not_drawn(self):
+        self.write("s.bdf", BEAM.replace("ENDDATA", "SPOINT,90\nCELAS2,91,4.,90\nCMASS2,92,1.,90\nCELAS2,93,1.,90,,3,2\nENDDATA"))
+        self.bough("reduce", "s.bdf", "--modes", "3", "-o", "s.h5")
+        self.bough("info", "s.h5")
+        self.bough("report", "s.h5", "-o", "s.html")
 
     def test_more_modes_than_dofs(self):
         grids = [f"GRID,{k},,{k}.,0.,0." for k in range(4, 300)]

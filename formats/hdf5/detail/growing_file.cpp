@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/diagnostic.hpp"
+#include "base/file_roles.hpp"
 #include "base/part_file.hpp"
 
 namespace bough::hdf5 {
@@ -78,6 +79,7 @@ void GrowingFile::lock() {
 }
 
 void GrowingFile::create() {
+  note_output(path_);
   std::error_code failed;
   target_ = find_target(path_, failed);
   errno = failed.value();
@@ -101,6 +103,18 @@ void GrowingFile::create() {
   const Handle access = make_growing_access();
   file_ = Handle(H5Fcreate(target_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
   check(file_.is_valid(), "the file cannot be created");
+}
+
+void GrowingFile::check_name() {
+  struct stat named {
+  }, opened{};
+  if (lock_ < 0) return;
+  const bool is_there = ::lstat(target_.c_str(), &named) == 0;
+  if (is_there && ::fstat(lock_, &opened) == 0 && named.st_dev == opened.st_dev && named.st_ino == opened.st_ino)
+    return;
+  errno = 0;
+  check(false, is_there ? "another file has taken its place since the run began"
+                        : "the file has been removed or renamed since the run began");
 }
 
 void GrowingFile::open() {

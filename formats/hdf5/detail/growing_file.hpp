@@ -24,6 +24,8 @@ class GrowingFile {
   void create();
   /// Keeps other processes from writing the existing file for as long as this object lives: InputError "hdf5.busy".
   void lock();
+  /// That the file is still to be found under its name: what is written would be lost otherwise.
+  void check_name();
   /// After lock().
   void open();
   /// After the columns are closed, and the lock with it; false when that failed.

@@ -7,6 +7,7 @@
 
 #include <unistd.h>
 
+#include "base/file_roles.hpp"
 #include "base/part_file.hpp"
 #include "formats/hdf5/detail/inspect.hpp"
 
@@ -64,6 +65,7 @@ Handle open_file(const std::string& path, bool to_write) {
   if (!std::filesystem::is_regular_file(path, ignored) || !(in.open(path, std::ios::binary), in)) {
     throw InputError("hdf5.cannot-open", {path}, "the file cannot be opened", "check its path and permissions");
   }
+  if (!to_write) note_input(path);
   char head[8] = {};
   in.read(head, sizeof head);
   const auto length = static_cast<std::size_t>(in.gcount());

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/file_roles.hpp"
+
 namespace bough::matrices::detail {
 
 std::string read_bytes(const std::string& path, std::size_t most) {
@@ -13,6 +15,7 @@ std::string read_bytes(const std::string& path, std::size_t most) {
   std::ifstream file(path, std::ios::binary);
   if (error || !file)
     throw InputError("matrices.cannot-open", {path}, "the file cannot be opened", "check its path and permissions");
+  note_input(path);
   std::string bytes(std::min<std::uintmax_t>(size, most), '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(file.gcount()));

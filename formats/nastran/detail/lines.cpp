@@ -8,6 +8,7 @@
 #include <fstream>
 #include <optional>
 
+#include "base/file_roles.hpp"
 #include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
@@ -20,6 +21,7 @@ std::optional<std::string> read_file(const fs::path& path) {
   if (!fs::is_regular_file(path, failed)) return std::nullopt;
   std::ifstream in(path, std::ios::binary | std::ios::ate);
   if (!in) return std::nullopt;
+  note_input(path.string());
   std::string bytes(static_cast<std::size_t>(in.tellg()), '\0');
   in.seekg(0);
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -260,7 +262,10 @@ class Loader {
       return;
     }
     if (!path) {
-      diagnostics_.error("deck.include-missing", where, "included file '" + name + "' does not exist",
+      std::error_code none;
+      const bool is_there = fs::exists(folder / name, none);
+      diagnostics_.error("deck.include-missing", where,
+                         "included file '" + name + (is_there ? "' is a folder or a pipe, no file" : "' does not exist"),
                          symbol.empty() ? "it is looked for in the folder of the including file and of the deck"
                          : value        ? symbol + " is '" + *value + "' in the environment"
                                         : "set the environment variable " + symbol + " to the folder it stands for");

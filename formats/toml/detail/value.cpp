@@ -7,6 +7,8 @@
 
 #include <toml++/toml.h>
 
+#include "base/file_roles.hpp"
+
 namespace bough::toml_files {
 
 namespace {
@@ -89,6 +91,7 @@ bool read_text(const std::string& path, std::string& text, Diagnostics& diagnost
     diagnostics.error("toml.cannot-open", {path}, "the file cannot be opened", "check its path and permissions");
     return false;
   }
+  note_input(path);
   std::ostringstream buffer;
   buffer << in.rdbuf();
   text = buffer.str();

@@ -196,6 +196,38 @@ TEST(FlexBodyFile, EveryFaultIsReportedAtOnce) {
   }
 }
 
+TEST(FlexBodyFile, WhatNoBodyHasIsRefused) {
+  const TempFolder folder;
+  const std::string path = folder.at("body.h5");
+  const auto read = [&](const auto& change) -> std::string {
+    records::FlexBody body = test::make_random_body(3, 3, 4, true);
+    change(body);
+    write_flex_body(body, path);
+    try {
+      read_flex_body(path);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  using records::FlexBody;
+  EXPECT_EQ(read([](FlexBody&) {}), "");
+  EXPECT_THAT(read([](FlexBody& b) { b.node_id[2] = b.node_id[1]; }), HasSubstr("/nodes/id lists node 8 twice"));
+  EXPECT_THAT(read([](FlexBody& b) { b.mass = -2; }), HasSubstr("/rigid/mass is -2; correct the file"));
+  EXPECT_THAT(read([](FlexBody& b) { b.mass = 0; }), HasSubstr("/rigid/mass is zero, and its modes move mass"));
+  EXPECT_THAT(read([](FlexBody& b) { b.inertia(0, 1) *= 1.01; }),
+              HasSubstr("/rigid/inertia is not symmetric: (2, 1) is"));
+  EXPECT_THAT(read([](FlexBody& b) { b.inertia = Eigen::Vector3d(1, 2, -3).asDiagonal(); }),
+              HasSubstr("/rigid/inertia has the principal moment -3"));
+  EXPECT_THAT(read([](FlexBody& b) {
+                b.modal_stiffness(2, 0) += 1;
+                b.modal_stiffness(0, 2) *= 2;
+              }),
+              HasSubstr("/modal/stiffness is not symmetric: (3, 1) is"));
+  EXPECT_THAT(read([](FlexBody& b) { b.modal_mass(1, 1) = -5; }), HasSubstr("/modal/mass of mode 2 is -5"));
+  EXPECT_EQ(read([](FlexBody& b) { b.modal_stiffness(2, 0) *= 1 + 1e-7; }), "");
+}
+
 TEST(FlexBodyFile, FailedWriteLeavesTheOldFileAndNothingElse) {
   const TempFolder folder;
   const auto body = test::make_random_body(1, 3, 3, true);

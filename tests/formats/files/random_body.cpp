@@ -1,5 +1,6 @@
 #include "random_body.hpp"
 
+#include <cmath>
 #include <random>
 
 namespace bough::test {
@@ -16,6 +17,14 @@ class Numbers {
   double next() { return distribution_(engine_); }
   MatrixXd make(Eigen::Index rows, Eigen::Index cols) {
     return MatrixXd::NullaryExpr(rows, cols, [&] { return next(); });
+  }
+  MatrixXd make_symmetric(Eigen::Index n) {
+    const MatrixXd m = make(n, n);
+    return m + m.transpose();
+  }
+  MatrixXd make_definite(Eigen::Index n) {
+    const MatrixXd m = make(n, n);
+    return MatrixXd(m * m.transpose()).selfadjointView<Eigen::Lower>();
   }
 
  private:
@@ -89,9 +98,9 @@ FlexBody make_random_body(unsigned seed, int n, int p, bool full) {
   FlexBody body;
   body.name = "bööm ≠ ascii";
   body.source = {{"deck.bdf", std::string(64, 'a')}, {"größe.toml", std::string(64, 'b')}};
-  body.mass = r.next();
+  body.mass = std::abs(r.next());
   body.cg = r.make(3, 1);
-  body.inertia = r.make(3, 3);
+  body.inertia = r.make_definite(3);
   for (int k = 0; k < p; ++k) body.node_id.push_back(7 * k + 1);
   body.node_xyz = r.make(p, 3);
   if (p > 1) body.interface_nodes = {8};
@@ -100,8 +109,8 @@ FlexBody make_random_body(unsigned seed, int n, int p, bool full) {
   body.eigenvalue = r.make(n, 1);
   for (int j = 0; j < n; ++j) body.kind.push_back(static_cast<records::ModeKind>(j % 3));
   for (int k = 0; k < p; ++k) body.phi.push_back(r.make(6, n));
-  body.modal_mass = r.make(n, n);
-  body.modal_stiffness = r.make(n, n);
+  body.modal_mass = r.make_definite(n);
+  body.modal_stiffness = r.make_symmetric(n);
   body.modal_damping = r.make(n, n);
   body.effective_mass = r.make(n, 6);
   body.exact = make_integrals(r, n);

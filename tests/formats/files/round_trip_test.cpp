@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/hdf5/comparison_file.hpp"
+#include "formats/hdf5/files.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
 #include "formats/hdf5/table_file.hpp"
@@ -71,7 +72,7 @@ class Drawn {
     m.error = draw_value();
     m.difference = draw_value();
     m.poles = {draw_vector(nx), draw_vector(nx), draw_vector(nx), draw_vector(nx),
-               draw_words(nx),  draw_words(nx),  draw_words(nx)};
+               draw_vector(nx), draw_words(nx),  draw_words(nx),  draw_words(nx)};
     m.has_zeros = draw(0, 1) == 1;
     if (m.has_zeros) {
       m.zeros_real = draw_vector(2);

@@ -1,6 +1,7 @@
 // Eigenvalues and zeros of models whose answer is known.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <limits>
 #include <random>
 
@@ -62,6 +63,34 @@ TEST(Poles, OfOscillatorsAndOfAFloatingBody) {
   EXPECT_NEAR(poles.frequency_hz[5] * 2 * M_PI, 40, 1e-12);
   EXPECT_NEAR(poles.damping[4], 0.05, 1e-13);
   EXPECT_EQ(poles.mode[5], "a:eta2");
+}
+
+TEST(Poles, ErrorsBoundWhatEntriesAreOffBy) {
+  // A soft oscillator between stiff ones, in units that are far apart.
+  Eigen::Matrix3d K;
+  K << 2e8, -1e8, 3e3, -1e8, 1.5e8, -2e3, 3e3, -2e3, 1.0;
+  MatrixXd A = MatrixXd::Zero(6, 6);
+  A.topRightCorner(3, 3).setIdentity();
+  A.bottomLeftCorner(3, 3) = -K;
+  A.bottomRightCorner(3, 3) = -1e-3 * Eigen::Matrix3d::Identity();
+  MatrixXd error = MatrixXd::Zero(6, 6);
+  error.bottomLeftCorner(3, 3) = 1e-9 * K.cwiseAbs();
+  const std::vector<std::string> names{"a", "b", "c", "a_dot", "b_dot", "c_dot"};
+  const auto poles = statespace::calc_poles(A, names, error);
+  ASSERT_EQ(poles.error.size(), 6);
+  EXPECT_EQ(statespace::calc_poles(A, names).error.size(), 0);
+  std::srand(7);
+  VectorXd most = VectorXd::Zero(6);
+  for (int trial = 0; trial < 200; ++trial) {
+    const MatrixXd sign = MatrixXd::Random(6, 6).cwiseSign();
+    const auto other = statespace::calc_poles(A + error.cwiseProduct(sign), names);
+    for (Eigen::Index i = 0; i < 6; ++i)
+      most[i] = std::max(most[i], std::hypot(other.real[i] - poles.real[i], other.imag[i] - poles.imag[i]));
+  }
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    EXPECT_LE(most[i], 1.01 * poles.error[i]) << i;
+    EXPECT_GE(most[i], 0.3 * poles.error[i]) << i;
+  }
 }
 
 TEST(Poles, NoneOfAMatrixThatIsNotFinite) {

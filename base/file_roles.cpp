@@ -1,0 +1,76 @@
+#include "base/file_roles.hpp"
+
+#include <sys/stat.h>
+
+#include <map>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include "base/diagnostic.hpp"
+
+namespace bough {
+
+namespace {
+
+using FileNumber = std::pair<dev_t, ino_t>;
+
+/// False for what is not there, or is no regular file: a terminal may be read and written.
+bool find_number(const std::string& path, FileNumber& number) {
+  struct stat state {};
+  if (::stat(path.c_str(), &state) != 0 || !S_ISREG(state.st_mode)) return false;
+  number = {state.st_dev, state.st_ino};
+  return true;
+}
+
+[[noreturn]] void refuse(const std::string& output, const std::string& input) {
+  throw InputError("cli.output-is-input", {output}, "the output would overwrite the input file " + input,
+                   "choose another file with -o");
+}
+
+std::mutex& get_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+}  // namespace
+
+struct FileRoles::Files {
+  std::map<FileNumber, std::string> inputs, outputs;  ///< as they were first called
+  std::set<FileNumber> both;
+
+  static Files*& get_current() {
+    static Files* current = nullptr;
+    return current;
+  }
+};
+
+FileRoles::FileRoles() : files_(new Files), outer_(Files::get_current()) { Files::get_current() = files_; }
+
+FileRoles::~FileRoles() {
+  Files::get_current() = outer_;
+  delete files_;
+}
+
+void FileRoles::allow_both(const std::string& path) {
+  const std::lock_guard lock(get_mutex());
+  FileNumber number;
+  if (auto* files = Files::get_current(); files && find_number(path, number)) files->both.insert(number);
+}
+
+void FileRoles::note(const std::string& path, bool is_input) {
+  const std::lock_guard lock(get_mutex());
+  auto* files = Files::get_current();
+  FileNumber number;
+  if (!files || !find_number(path, number) || files->both.count(number) > 0) return;
+  const auto& others = is_input ? files->outputs : files->inputs;
+  if (const auto other = others.find(number); other != others.end())
+    refuse(is_input ? other->second : path, is_input ? path : other->second);
+  (is_input ? files->inputs : files->outputs).emplace(number, path);
+}
+
+void note_input(const std::string& path) { FileRoles::note(path, true); }
+
+void note_output(const std::string& path) { FileRoles::note(path, false); }
+
+}  // namespace bough

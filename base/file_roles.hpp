@@ -1,0 +1,36 @@
+#pragma once
+/// \file What one call of the program reads and writes, so that no output takes the place of an input.
+#include <string>
+
+namespace bough {
+
+/// While one lives, files read and files to be written are remembered by device and number (links do not hide them),
+/// and note_input and note_output refuse a file that is both. The innermost counts. Without one, as in a session of
+/// Python that writes again what it read an hour ago, nothing is remembered.
+class FileRoles {
+ public:
+  FileRoles();
+  ~FileRoles();
+  FileRoles(const FileRoles&) = delete;
+  FileRoles& operator=(const FileRoles&) = delete;
+
+  /// The file is meant to be read and written back.
+  static void allow_both(const std::string& path);
+
+ private:
+  friend void note_input(const std::string& path);
+  friend void note_output(const std::string& path);
+  static void note(const std::string& path, bool is_input);
+  struct Files;
+  Files* files_;
+  Files* outer_;
+};
+
+/// Every reader calls it with what it opens. InputError "cli.output-is-input" when the call is to write this file.
+void note_input(const std::string& path);
+
+/// Whoever is about to write calls it, early where a long calculation comes before. InputError "cli.output-is-input"
+/// when the call has read this file. A file that takes the place of the old one is another file, and may be read.
+void note_output(const std::string& path);
+
+}  // namespace bough
