@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "cli/common/console.hpp"
 #include "formats/matrices/mat_file.hpp"
@@ -191,6 +192,19 @@ LinearModel choose_channels(LinearModel model, const std::vector<std::string>& i
   return model;
 }
 
+/// Poles that the errors of A hide: those of free motion, or soft ones beside very stiff ones.
+static std::string format_lost_poles(const records::Poles& poles) {
+  std::string numbers;
+  double most = 0;
+  for (int i = 0; i < static_cast<int>(poles.error.size()); ++i) {
+    const double size = std::hypot(poles.real[i], poles.imag[i]);
+    if (poles.error[i] == 0 || size > poles.error[i]) continue;
+    numbers += " " + std::to_string(i + 1);
+    most = std::max(most, poles.error[i]);
+  }
+  return numbers.empty() ? "" : fmt::format("\nzero within what A is known to ({:.1e}): pole{}\n", most, numbers);
+}
+
 std::string format_linear_model(const LinearModel& model) {
   std::string text = fmt::format(
       "{} states, {} inputs, {} outputs at t = {:g}, |u_dot| {:.1e}\n"
@@ -211,7 +225,7 @@ std::string format_linear_model(const LinearModel& model) {
                           format_number(poles.frequency_hz[i], scale), format_number(poles.damping[i], 1),
                           poles.mode[static_cast<std::size_t>(i)], name_partner(poles, static_cast<std::size_t>(i))});
   }
-  if (!table.rows.empty()) text += table.to_text();
+  if (!table.rows.empty()) text += table.to_text() + format_lost_poles(poles);
   const std::string tail = format_multipliers(model.multipliers) + format_hankel(model.hankel);
   if (!model.has_zeros) return text + tail;
   text += model.zeros_real.size() == 0 ? "\nno finite zeros\n" : "\nzeros\n";

@@ -1,6 +1,7 @@
 #include "solver/linear/linearize.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -245,10 +246,15 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
 void warn_of_uncertain(const records::Poles& poles, const SourceLocation& at, Diagnostics& diagnostics) {
   constexpr double kUncertain = 1e-4;
   int number = 0, worst = 0;
-  double most = 0;
+  double most = 0, least_known = std::numeric_limits<double>::infinity();
+  const auto calc_size = [&](int i) { return std::hypot(poles.real[i], poles.imag[i]); };
+  for (int i = 0; i < poles.size(); ++i)
+    if (calc_size(i) > poles.error[i]) least_known = std::min(least_known, calc_size(i));
   for (int i = 0; i < poles.size(); ++i) {
-    const double size = std::hypot(poles.real[i], poles.imag[i]);
+    const double size = calc_size(i);
     if (size == 0 || !(poles.error[i] > kUncertain * size)) continue;
+    // Zero within its error, as of free motion, and far below all others.
+    if (size <= poles.error[i] && poles.error[i] <= kUncertain * least_known) continue;
     ++number;
     if (poles.error[i] > most * size) most = poles.error[i] / size, worst = i;
   }

@@ -106,16 +106,17 @@ class Runs(ProgramTest):
 
     def test_nobody_else_writes_over_a_run(self):
         first = self.start_long()
-        self.fails(1, "export", "boom.h5", "--to", "flx", "-o", "r.h5", error="hdf5.busy")
+        self.fails(1, "export", "boom.h5", "--to", "sid", "-o", "r.h5", error="hdf5.busy")
         self.stop(first)
         self.assertGreater(len(self.read_times()), 10)
 
     def test_run_whose_file_is_gone_says_so(self):
         for replaced in (False, True):
             first = self.start_long()
-            os.rename(self.path("r.h5"), self.path("moved.h5"))
             if replaced:
-                self.write("r.h5", "mine")
+                os.replace(self.path(self.write("mine.h5", "mine")), self.path("r.h5"))
+            else:
+                os.rename(self.path("r.h5"), self.path("moved.h5"))
             self.assertIn("taken its place" if replaced else "removed or renamed", self.stop(first))
             if replaced:
                 with open(self.path("r.h5")) as f:
@@ -145,8 +146,8 @@ class Runs(ProgramTest):
         refuse("boom.h5", "run", "spinup.toml", "-o", "boom.h5")
         refuse("boom.h5", "linearize", "spinup.toml", "-o", "boom.h5")
         self.write("cases.csv", "modes\n2\n3\n")
-        self.write("camp.toml", '[campaign]\nname = "c"\ntable = "cases.csv"\n[[parameter]]\nname = "modes"\n'
-                   'file = "body.toml"\nkey = "/body/modes/number"\n[[step]]\nrun = ["reduce", "body.toml"]\n')
+        self.write("camp.toml", '[campaign]\nname = "c"\nmethod = "list"\ntable = "cases.csv"\nsteps = ["reduce body.toml"]\n'
+                   '[[parameter]]\nname = "modes"\nfile = "body.toml"\nkey = "body.modes.number"\n')
         with open(self.path("cases.csv"), "rb") as f:
             before = f.read()
         self.fails(3, "batch", "camp.toml", "-o", "cases.csv")
@@ -238,7 +239,7 @@ class Files(ProgramTest):
         self.fails(3, "modes", "beam.bdf", "-o", "round.h5", error="cli.write")
 
     def test_signal_ends_with_exit_3_and_no_parts(self):
-        self.write("plate.bdf", make_plate(80))
+        self.write("plate.bdf", make_plate(160))
         for at in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             for words in (["modes", "plate.bdf", "-n", "60", "-o", "x.h5"],
                           ["reduce", "plate.bdf", "-n", "60", "-o", "x.h5"]):

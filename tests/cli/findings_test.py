@@ -41,8 +41,8 @@ class OneInterfaceGrid(ProgramTest):
         import h5py
         values = {}
         for name in ("conm2", "rbe2"):
-            self.write(name + ".toml", f'[body]\nname = "b"\ndeck = "{name}.bdf"\nframe = "mean"\n[body.modes]\n'
-                       'number = 12\nbasis = "craig-bampton"\ninterface = [1]\n')
+            self.write(name + ".toml", f'[body]\nname = "b"\ndeck = "{name}.bdf"\nframe = "mean"\ninterface = [1]\n'
+                       '[body.modes]\nnumber = 12\nbasis = "craig-bampton"\n')
             self.bough("reduce", name + ".toml")
             with h5py.File(self.path("b.h5")) as f:
                 values[name] = np.diag(f["modal/stiffness"][:])

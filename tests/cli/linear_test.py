@@ -188,6 +188,26 @@ class Linearize(LinearTest):
             said = self.bough("linearize", "corner.toml").stderr
             self.assertEqual("[linear.inaccurate]" in said, is_told, (y, position, said))
 
+    def test_soft_poles_beside_stiff_ones_are_doubted(self):
+        """Two masses on rails, a stiff strut between them, a soft spring to the wall: l^2 - 2 (1 + K) l + 2 K = 0."""
+        body = '[[body]]\nname = "{0}"\nmass = 1.0\ncg = [0.0, 0.0, 0.0]\ninertia = [1.0, 1.0, 1.0]\n'
+        hinge = ('[[hinge]]\nname = "r{0}"\ntype = "prismatic"\nchild = "{0}"\naxis = [1.0, 0.0, 0.0]\n'
+                 'parent_position = [{1}, 0.0, 0.0]\nstiffness = {2}\n')
+        for stiff, warned in ((1e3, False), (1e12, True), (1e16, None)):
+            self.write("rails.toml", body.format("a") + body.format("b") + hinge.format("a", 0.0, 2.0) +
+                       hinge.format("b", 1.0, 0.0) + '[[force]]\nname = "strut"\ntype = "spring"\nbody = "a"\n'
+                       f'to_body = "b"\nstiffness = {stiff}\nfree_length = 1.0\n[simulation]\nduration = 1.0\n')
+            result = self.bough("linearize", "rails.toml", "--json")
+            self.assertEqual("[linear.uncertain-poles]" in result.stderr, warned is True, result.stderr)
+            if warned is None:
+                self.assertRegex(self.bough("linearize", "rails.toml").stdout, "zero within what A is known to .*: poles? 1")
+            else:
+                poles = json.loads(result.stdout)["poles"]
+                size, error = np.hypot(poles["real"], poles["imag"]), np.array(poles["error"])
+                large = 1 + stiff + np.sqrt(1 + stiff ** 2)
+                for k, exact in ((0, np.sqrt(2 * stiff / large)), (2, np.sqrt(large))):
+                    self.assertLessEqual(abs(size[k] - exact), 1.01 * error[k])
+
     def test_at_a_time_it_is_the_state_of_the_run(self):
         self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.9"))
         self.bough("run", "pendulum.toml", "-o", "run.h5")

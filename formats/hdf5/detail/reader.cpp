@@ -1,9 +1,11 @@
 #include "formats/hdf5/detail/reader.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include <unistd.h>
 
@@ -17,6 +19,9 @@ namespace {
 
 constexpr char kSignature[8] = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// To open a file that a run writes.
+constexpr int kMostTries = 40;
 
 std::string describe_expected(const Shape& shape) {
   std::string text;
@@ -74,7 +79,15 @@ Handle open_file(const std::string& path, bool to_write) {
   }
   inspect_file(path);
   const Handle access = make_file_access();
-  Handle file(H5Fopen(path.c_str(), to_write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access.get()), H5Fclose);
+  const auto open = [&] {
+    return Handle(H5Fopen(path.c_str(), to_write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access.get()), H5Fclose);
+  };
+  Handle file = open();
+  // In the middle of a flush of the run that writes it: the next moment will do.
+  for (int i = 0; !file.is_valid() && !to_write && i < kMostTries && is_file_locked(path); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    file = open();
+  }
   if (!file.is_valid()) {
     if (to_write && H5Fis_hdf5(path.c_str()) > 0 && ::access(path.c_str(), W_OK) != 0) {
       throw InputError("hdf5.cannot-open", {path}, "the file cannot be written to", "check its permissions");

@@ -264,11 +264,12 @@ class Loader {
     if (!path) {
       std::error_code none;
       const bool is_there = fs::exists(folder / name, none);
-      diagnostics_.error("deck.include-missing", where,
-                         "included file '" + name + (is_there ? "' is a folder or a pipe, no file" : "' does not exist"),
-                         symbol.empty() ? "it is looked for in the folder of the including file and of the deck"
-                         : value        ? symbol + " is '" + *value + "' in the environment"
-                                        : "set the environment variable " + symbol + " to the folder it stands for");
+      diagnostics_.error(
+          "deck.include-missing", where,
+          "included file '" + name + (is_there ? "' is a folder or a pipe, no file" : "' does not exist"),
+          symbol.empty() ? "it is looked for in the folder of the including file and of the deck"
+          : value        ? symbol + " is '" + *value + "' in the environment"
+                         : "set the environment variable " + symbol + " to the folder it stands for");
       return;
     }
     std::error_code failed;
