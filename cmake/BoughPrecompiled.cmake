@@ -12,9 +12,10 @@ set(BOUGH_PCH_COMMON <Eigen/Dense> <algorithm> <array> <charconv> <cmath> <files
   <map> <memory> <numbers> <numeric> <optional> <random> <set> <sstream> <string> <string_view> <unordered_map>
   <utility> <vector> "$<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/base/decompositions.hpp>")
 
-# bough_precompile(TARGET OWNER HEADERS header... [LINK target...]): the precompiled headers of OWNER, made at its first use.
+# bough_precompile(TARGET OWNER HEADERS header... [LINK target...] [OPTIONS flag...]): the precompiled headers of OWNER,
+# made at its first use.
 function(bough_precompile target owner)
-  cmake_parse_arguments(ARG "" "" "HEADERS;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "HEADERS;LINK;OPTIONS" ${ARGN})
   if(NOT BOUGH_PCH)
     return()
   endif()
@@ -29,6 +30,7 @@ function(bough_precompile target owner)
     endif()
     target_link_libraries(${owner} PRIVATE bough_flags Eigen3::Eigen ${ARG_LINK})
     target_include_directories(${owner} PRIVATE ${CMAKE_SOURCE_DIR})
+    target_compile_options(${owner} PRIVATE ${ARG_OPTIONS})
     target_precompile_headers(${owner} PRIVATE ${BOUGH_PCH_COMMON} ${ARG_HEADERS})
   endif()
   target_precompile_headers(${target} REUSE_FROM ${owner})

@@ -67,6 +67,17 @@ int count_below_gap(const RootSearch& search, const Roots& roots, int cut) {
 RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
   constexpr int kStuck = 4;
   RootSearchResult result;
+  // Roots that were found are not lost for want of a second factor.
+  const auto count_if_memory = [&](int cut) {
+    if (!result.no_memory.empty()) return -1;
+    try {
+      return count_below_gap(search, roots, cut);
+    } catch (const ComputationError& error) {
+      if (error.items().front().id != "fe.out-of-memory") throw;
+      result.no_memory = error.items().front().what;
+      return -1;
+    }
+  };
   int best_cut = -1, best_size = 0, num_stuck = 0;
   for (;;) {
     int missing = search.wanted - roots.size(), cut = -1, count = -1;
@@ -75,7 +86,7 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
       missing = cut < 0 ? 4 : 0;
     }
     if (missing == 0 && search.counts) {
-      count = count_below_gap(search, roots, cut);
+      count = count_if_memory(cut);
       if (count > search.num_available) {  // more than exist
         result.cut = cut;
         result.doubtful = count;
@@ -95,7 +106,7 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
       if (roots.size() > kept) continue;
       result.is_missing = cut >= 0;
       if (cut < 0 && search.counts && kept > 0) {  // the solver has no more to give: there are no more
-        count = count_below_gap(search, roots, kept);
+        count = count_if_memory(kept);
         result.is_missing = count > kept && count <= search.num_available;
       }
       cut = kept;
@@ -116,6 +127,13 @@ void report_count(const RootSearchResult& result, int num_known, const std::stri
         "look for negative springs and for DMIG that take stiffness away; if stiffness spans many "
         "orders, soften the stiffest parts or use rigid elements");
   if (!counts || result.count >= 0 || result.cut == 0) return;
+  if (!result.no_memory.empty()) {
+    diagnostics.warning("modal.not-counted", {},
+                        found + " were found, each with its own residual, but not counted: " + result.no_memory,
+                        "one between may be missing; count on a larger machine, or on more processes of several "
+                        "(mpirun -n 2 bough ...)");
+    return;
+  }
   diagnostics.warning(
       "modal.uncertain-count", {},
       found + " were found, each with its own residual, but the inertia of the factor " +

@@ -41,10 +41,11 @@ struct RootSearch {
 };
 
 struct RootSearchResult {
-  int cut = 0;              ///< the roots before it are complete: a gap follows, or nothing
-  int count = -1;           ///< of the inertia below that gap, at least `cut`; -1: not made, or not to be trusted
-  int doubtful = -1;        ///< the inertia's own number where it is below `cut` or above what exists
-  bool is_missing = false;  ///< the inertia counts roots that the solver does not find
+  int cut = 0;                 ///< the roots before it are complete: a gap follows, or nothing
+  int count = -1;              ///< of the inertia below that gap, at least `cut`; -1: not made, or not to be trusted
+  int doubtful = -1;           ///< the inertia's own number where it is below `cut` or above what exists
+  bool is_missing = false;     ///< the inertia counts roots that the solver does not find
+  std::string no_memory = {};  ///< why there was none for the second factor that counts
 };
 
 /// Repeats solve, gap, count until the first `wanted` roots are complete or the solver has no more. An inertia below
@@ -52,7 +53,8 @@ struct RootSearchResult {
 RootSearchResult search_roots(const RootSearch& search, Roots& roots);
 
 /// Throws ComputationError("modal.missed-modes") where roots are missing; warns "modal.uncertain-count" where the count
-/// was asked for and is not to be trusted. `name`: "modes", "load factors"; `num_known`: motions counted beside them.
+/// was asked for and is not to be trusted, "modal.not-counted" where memory was short. `name`: "modes", "load factors";
+/// `num_known`: motions counted beside them.
 void report_count(const RootSearchResult& result, int num_known, const std::string& name, bool counts,
                   Diagnostics& diagnostics);
 

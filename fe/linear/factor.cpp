@@ -1,6 +1,7 @@
 #include "fe/linear/factor.hpp"
 
 #include "base/diagnostic.hpp"
+#include "fe/linear/memory_need.hpp"
 #include "fe/linear/ordering.hpp"
 #include "fe/linear/petsc_message.hpp"
 #include "fe/linear/ranks.hpp"
@@ -93,6 +94,15 @@ void judge_definite(PetscErrorCode code) {
   check_petsc(code);
 }
 
+/// The system gives memory that it does not have, and ends the process that uses it.
+void require_memory_of(Mat analysed) {
+  PetscInt n = 0;
+  MatInfo info;
+  check_petsc(MatGetSize(analysed, &n, nullptr));
+  check_petsc(MatGetInfo(analysed, MAT_LOCAL, &info));
+  require_memory(static_cast<double>(n), info.nz_used, calc_free_memory());
+}
+
 PetscMat factor_definite(Mat A) {
   if (initialize_petsc().size > 1) return {};
   if (const LowRankPart* part = find_low_rank(A)) {
@@ -117,7 +127,10 @@ PetscMat factor_definite(Mat A) {
   check_petsc(MatFactorInfoInitialize(&info));
   MatFactorError error = MAT_FACTOR_NOERROR;
   PetscErrorCode code = MatCholeskyFactorSymbolic(factor.get(), A, order.get(), &info);
-  if (code == 0) code = MatCholeskyFactorNumeric(factor.get(), A, &info);
+  if (code == 0) {
+    require_memory_of(factor.get());
+    code = MatCholeskyFactorNumeric(factor.get(), A, &info);
+  }
   judge_definite(code);
   if (code != 0) return {};
   check_petsc(MatFactorGetError(factor.get(), &error));

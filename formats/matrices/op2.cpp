@@ -121,7 +121,11 @@ class Op2Reader {
       if (!is_lama && !holds_shapes(name)) continue;
       if (data.size() < in_.get_word_size()) continue;
       // Trailer and header of the table come first; they are no pairs of identification and data.
-      if (ident.empty() && count_words(data) < kIdentSize) continue;
+      if (is_ident && count_words(data) < kIdentSize) {
+        if (ident.empty()) continue;
+        fail("an identification of table " + name + " has " + std::to_string(count_words(data)) + " words, expected " +
+             std::to_string(kIdentSize));
+      }
       data.erase(0, in_.get_word_size());
       if (is_ident) {
         ident = data;

@@ -2,16 +2,23 @@
 
 #include <csignal>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <malloc.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/time.h>
 #include <sys/wait.h>
+#include <ucontext.h>
 #include <unistd.h>
+
+#include <sanitizer/asan_interface.h>
+#include <sanitizer/common_interface_defs.h>
 
 namespace bough::fuzz {
 
@@ -21,6 +28,9 @@ namespace {
 constexpr int kFiles = 2000;
 /// Of computing, and then of waiting on a busy machine. Some damaged lists have no end, and a whole file takes 1 to 5.
 constexpr int kMilliseconds = 40, kMostMilliseconds = 2000;
+
+/// How the process ends that finds a fault of Bough's own code, not of the library that it watches.
+constexpr int kOwnFault = 77;
 
 struct Server {
   pid_t process = -1;
@@ -46,10 +56,52 @@ bool receive(int descriptor, std::string& text) {
   return true;
 }
 
+/// Of code of Bough: of this program, but none of the functions by which the sanitizers replace others. Those are the
+/// only ones that the dynamic linker knows.
+bool is_own(const void* code) {
+  Dl_info here{}, there{};
+  if (::dladdr(reinterpret_cast<const void*>(&is_own), &here) == 0 || ::dladdr(code, &there) == 0) return false;
+  return here.dli_fbase == there.dli_fbase && !there.dli_sname;
+}
+
+/// The first frame that is no function of the sanitizers: "    #1 0x7f.. (module+0x..)".
+void see_report(const char* report) {
+  const char* frame = report;
+  for (int i = 0; i < 8 && (frame = std::strstr(frame, " 0x")) != nullptr; ++i, ++frame) {
+    if (frame == report || frame[-1] < '0' || frame[-1] > '9') continue;
+    const auto* code = reinterpret_cast<const void*>(std::strtoull(frame + 1, nullptr, 16));
+    Dl_info there{};
+    if (::dladdr(code, &there) != 0 && there.dli_sname && std::strstr(there.dli_fname, "fuzz_readers")) continue;
+    ::_exit(is_own(code) ? kOwnFault : 1);
+  }
+  ::_exit(1);
+}
+
+void see_signal(int, siginfo_t*, void* context) {
+  const auto code = static_cast<const ucontext_t*>(context)->uc_mcontext.gregs[REG_RIP];
+  ::_exit(is_own(reinterpret_cast<const void*>(code)) ? kOwnFault : 1);
+}
+
+/// Faults of the library are what the process is for; faults of Bough end it otherwise. Undefined behaviour is looked
+/// for in Bough alone, and ends without a report of addresses.
+void watch_for_own_faults() {
+  __asan_set_error_report_callback(see_report);
+  __sanitizer_set_death_callback([] { ::_exit(kOwnFault); });
+  static char stack[1 << 16];
+  stack_t other{};
+  other.ss_sp = stack;
+  other.ss_size = sizeof stack;
+  ::sigaltstack(&other, nullptr);
+  struct sigaction action {};
+  action.sa_sigaction = see_signal;
+  action.sa_flags = SA_SIGINFO | SA_ONSTACK;
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) ::sigaction(signal, &action, nullptr);
+}
+
 [[noreturn]] void serve(int in, int out) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM, SIGPROF, SIGXCPU})
-    std::signal(signal, SIG_DFL);
+  for (const int signal : {SIGABRT, SIGINT, SIGTERM, SIGPROF, SIGXCPU}) std::signal(signal, SIG_DFL);
+  watch_for_own_faults();
   if (const int null = ::open("/dev/null", O_WRONLY); null >= 0) {
     ::dup2(null, STDOUT_FILENO);
     ::dup2(null, STDERR_FILENO);
@@ -73,8 +125,13 @@ void stop(Server& server) {
   ::close(server.to);
   ::close(server.from);
   ::kill(server.process, SIGKILL);
-  ::waitpid(server.process, nullptr, 0);
+  int status = 0;
+  ::waitpid(server.process, &status, 0);
   server = {};
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kOwnFault) {
+    std::fputs("what looks at the file broke by itself\n", stderr);
+    std::abort();
+  }
 }
 
 void start(Server& server) {

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "base/diagnostic.hpp"
+
 namespace bough::modal::detail {
 namespace {
 
@@ -78,6 +80,26 @@ TEST(Roots, AnInertiaAboveAllThatCanBeFoundIsAMiss) {
   // Where there cannot be more, the inertia is wrong.
   roots = make_empty(diagonal);
   EXPECT_FALSE(search_roots(diagonal.make_search(3), roots).is_missing);
+}
+
+TEST(Roots, RootsAreKeptWhereTheMemoryIsTooSmallToCountThem) {
+  Diagonal diagonal{VectorXd{{1, 2, 2, 4, 5, 9}}};
+  Roots roots = make_empty(diagonal);
+  RootSearch search = diagonal.make_search(2);
+  search.count = [](double) -> int { throw ComputationError("fe.out-of-memory", {}, "31 GB"); };
+  const auto result = search_roots(search, roots);
+  EXPECT_EQ(result.cut, 3);
+  EXPECT_EQ(result.count, -1);
+  EXPECT_EQ(roots.value[2], 2);
+  Diagnostics told;
+  report_count(result, 0, "modes", true, told);
+  ASSERT_EQ(told.items().size(), 1u);
+  EXPECT_EQ(told.items()[0].id, "modal.not-counted");
+  EXPECT_EQ(told.items()[0].what, "3 modes were found, each with its own residual, but not counted: 31 GB");
+
+  search.count = [](double) -> int { throw ComputationError("fe.factorization", {}, "pivots"); };
+  roots = make_empty(diagonal);
+  EXPECT_THROW(search_roots(search, roots), ComputationError);
 }
 
 }  // namespace

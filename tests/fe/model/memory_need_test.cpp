@@ -1,0 +1,68 @@
+/// What a factor needs is compared with what is free, before the work begins.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include <sys/resource.h>
+
+#include "base/diagnostic.hpp"
+#include "fe/linear/factor.hpp"
+#include "fe/linear/memory_need.hpp"
+
+namespace bough::fe {
+namespace {
+
+TEST(MemoryNeed, IsToldWithWhatIsFree) {
+  EXPECT_NO_THROW(require_memory(1e6, 1e8, 2e9));
+  try {
+    require_memory(3e6, 3.4e9, 12.4e9);
+    FAIL() << "31 GB in 12";
+  } catch (const ComputationError& error) {
+    const Diagnostic& told = error.items().front();
+    EXPECT_EQ(told.id, "fe.out-of-memory");
+    EXPECT_EQ(told.what, "the factor of 3000000 equations needs about 31 GB, 12 GB of memory are free");
+  }
+}
+
+TEST(MemoryNeed, UnitsArePlain) {
+  EXPECT_EQ(format_bytes(31.4e9), "31 GB");
+  EXPECT_EQ(format_bytes(1.44e9), "1.4 GB");
+  EXPECT_EQ(format_bytes(240e6), "240 MB");
+  EXPECT_EQ(format_bytes(2.5e12), "2.5 TB");
+}
+
+TEST(MemoryNeed, FreeMemoryIsWhatLimitsLeave) {
+  const double free = calc_free_memory();
+  EXPECT_GT(free, 1e6);
+  const auto is_within_limit = [] {
+    constexpr double kLimit = 4e9;
+    const rlimit limit{static_cast<rlim_t>(kLimit), RLIM_INFINITY};
+    if (setrlimit(RLIMIT_AS, &limit) != 0) std::_Exit(2);
+    std::_Exit(calc_free_memory() < kLimit ? 0 : 1);
+  };
+  EXPECT_EXIT(is_within_limit(), testing::ExitedWithCode(0), "");
+}
+
+/// The library's own count of a factor that is known: a tridiagonal matrix has two entries a column but in the last.
+TEST(MemoryNeed, EntriesOfAFactorAreThoseOfItsAnalysis) {
+  if (initialize_petsc().size > 1) GTEST_SKIP() << "CHOLMOD is for one process";
+  constexpr int n = 50;
+  PetscMat A;
+  check_petsc(MatCreateSeqAIJ(PETSC_COMM_SELF, n, n, 3, nullptr, A.out()));
+  for (int i = 0; i < n; ++i) {
+    check_petsc(MatSetValue(A.get(), i, i, 2, INSERT_VALUES));
+    for (const int j : {i - 1, i + 1})
+      if (j >= 0 && j < n) check_petsc(MatSetValue(A.get(), i, j, -1, INSERT_VALUES));
+  }
+  check_petsc(MatAssemblyBegin(A.get(), MAT_FINAL_ASSEMBLY));
+  check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
+  const PetscMat factor = factor_definite(A.get());
+  ASSERT_TRUE(factor);
+  MatInfo info;
+  check_petsc(MatGetInfo(factor.get(), MAT_LOCAL, &info));
+  EXPECT_EQ(info.nz_used, 2 * n - 1);
+}
+
+}  // namespace
+}  // namespace bough::fe
