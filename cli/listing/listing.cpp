@@ -46,6 +46,17 @@ const records::DynamicSelection* find_selection(const records::CaseRequests& req
   return found == all.end() ? nullptr : &found->second;
 }
 
+bool asks_for(const records::CaseRequests& requests, const std::string& command) {
+  const auto asks = [&](const records::DynamicSelection& selection) {
+    const auto request = selection.outputs.find(command);
+    return request != selection.outputs.end() && !request->second.is_none;
+  };
+  return std::any_of(requests.selections.begin(), requests.selections.end(),
+                     [&](const auto& selection) { return asks(selection.second); }) ||
+         std::any_of(requests.combinations.begin(), requests.combinations.end(),
+                     [&](const auto& combination) { return asks(combination.selection); });
+}
+
 records::DynamicDeck read_loads_deck_or_throw(const std::string& path, const fe::ModelOptions& options,
                                               Diagnostics& diagnostics) {
   auto deck = is_one_of_many() ? nastran::read_packed_dynamic_deck(share([&] { return nastran::pack_deck(path); }),

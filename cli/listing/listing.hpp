@@ -30,6 +30,8 @@ void add_listing_options(CLI::App& verb, ListingOptions& options);
 records::CaseRequests read_requests_once(const std::string& path, Diagnostics& diagnostics);
 /// Of a subcase; a deck without SUBCASE has one. nullptr: none.
 const records::DynamicSelection* find_selection(const records::CaseRequests& requests, int subcase);
+/// A subcase or combination wants some of what this command gives.
+bool asks_for(const records::CaseRequests& requests, const std::string& command);
 /// read_deck_or_throw with the cards of loads over frequency and time (nastran/dynamic_reader.hpp). Collective.
 records::DynamicDeck read_loads_deck_or_throw(const std::string& path, const fe::ModelOptions& options,
                                               Diagnostics& diagnostics);

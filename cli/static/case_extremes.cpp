@@ -59,6 +59,7 @@ std::vector<Block> list_blocks(const records::StaticResult& result, const record
                             make_grid_block("reaction", "F, F L", result.dof_map, s.reaction)};
   for (const auto& b : s.elements) blocks.push_back({"elements/" + b.card, "F, F L", b.components, b.id, b.force});
   for (const auto& b : s.stresses) blocks.push_back({"stresses/" + b.card, "F/L^2, 1", b.components, b.id, b.stress});
+  for (const auto& b : s.strains) blocks.push_back({"strains/" + b.card, "1, 1/L", b.components, b.id, b.stress});
   return blocks;
 }
 

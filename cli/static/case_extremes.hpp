@@ -12,7 +12,7 @@ namespace bough::cli {
 /// Of rods, bars and beams whose MAT1 has ST, SC or SS, as Nastran prints them.
 std::vector<records::StressMargins> calc_margins(const records::Deck& deck, const records::StaticSubcase& subcase);
 
-/// Of displacements, reactions, element forces and stresses; all subcases have the same grids and elements.
+/// Of displacements, reactions, element forces, stresses and strains; all subcases have the same grids and elements.
 std::vector<records::CaseExtremes> find_case_extremes(const records::StaticResult& result);
 
 /// The smallest of each kind; empty without any.

@@ -11,6 +11,7 @@ namespace bough::cli {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using records::StaticSubcase;
 
@@ -36,8 +37,16 @@ void add_blocks(double factor, const std::vector<Block>& parts, Eigen::MatrixXd 
   for (std::size_t b = 0; b < parts.size(); ++b) sums[b].*values += factor * (parts[b].*values);
 }
 
+void add_strains(double factor, const std::vector<records::ElementStresses>& parts,
+                 std::vector<records::ElementStresses>& sums) {
+  const bool is_first = sums.empty();
+  add_blocks(factor, parts, &records::ElementStresses::stress, sums);
+  for (std::size_t b = 0; b < sums.size(); ++b)
+    sums[b].corner = factor * parts[b].corner + (is_first ? MatrixXd(0 * parts[b].corner) : sums[b].corner);
+}
+
 /// Of the sums of the components.
-void derive_stresses(const fe::Model& model, std::vector<records::ElementStresses>& blocks) {
+void derive_results(const fe::Model& model, bool of_strain, std::vector<records::ElementStresses>& blocks) {
   std::unordered_map<int, std::vector<const fe::Element*>> elements;
   for (const auto& element : model.elements()) elements[element->id()].push_back(element.get());
   for (auto& block : blocks)
@@ -46,16 +55,17 @@ void derive_stresses(const fe::Model& model, std::vector<records::ElementStresse
       const auto& named = elements.at(block.id[k]);
       const auto element = std::find_if(named.begin(), named.end(), [&](const auto* e) { return e->card() == card; });
       BOUGH_DEMAND(element != named.end());
-      const auto points = (*element)->stress_points();
+      const auto points = of_strain ? (*element)->strain_points() : (*element)->stress_points();
       const auto names = fe::list_stress_names(points);
-      VectorXd stress(static_cast<Index>(names.size()));
+      VectorXd values(static_cast<Index>(names.size()));
       for (std::size_t i = 0; i < names.size(); ++i) {
         const auto name = names[i].substr(std::string("stress_").size());
         const auto at = std::find(block.components.begin(), block.components.end(), name);
         BOUGH_DEMAND(at != block.components.end());
-        stress[static_cast<Index>(i)] = block.stress(static_cast<Index>(k), at - block.components.begin());
+        values[static_cast<Index>(i)] = block.stress(static_cast<Index>(k), at - block.components.begin());
       }
-      block.stress.row(static_cast<Index>(k)) = fe::calc_stress_results(points, stress).transpose();
+      block.stress.row(static_cast<Index>(k)) =
+          (of_strain ? fe::calc_strain_results(points, values) : fe::calc_stress_results(points, values)).transpose();
     }
 }
 
@@ -85,13 +95,15 @@ StaticSubcase combine(const fe::Model& model, const records::Deck& deck, const r
     sum.inertia_resultant += factor * part->inertia_resultant;
     add_blocks(factor, part->elements, &records::ElementForces::force, sum.elements);
     add_blocks(factor, part->stresses, &records::ElementStresses::stress, sum.stresses);
+    add_strains(factor, part->strains, sum.strains);
   }
   sum.strain_energy = 0.5 * sum.displacement.dot(VectorXd(fe::calc_stiffness_times(model, sum.displacement)));
   Diagnostics said;  // by the subcases
   const auto alone = fe::calc_element_forces(model, sum.displacement, deck, 0, said);
   BOUGH_DEMAND(alone.size() == sum.elements.size());
   for (std::size_t b = 0; b < alone.size(); ++b) sum.elements[b].strain_energy = alone[b].strain_energy;
-  derive_stresses(model, sum.stresses);
+  derive_results(model, false, sum.stresses);
+  derive_results(model, true, sum.strains);
   return sum;
 }
 

@@ -32,7 +32,7 @@ struct StaticOptions : CommonOptions {
   std::string deck, vtu;
   DeckModelOptions model;
   std::vector<std::string> grid_forces;
-  bool full = false, in_cd = false, is_linear = false, has_extremes = false;
+  bool full = false, in_cd = false, is_linear = false, has_extremes = false, has_strains = false;
   ListingOptions listing;
 };
 
@@ -127,6 +127,7 @@ int run_static(const StaticOptions& options) {
   SubcaseFailures failures(subcases.size(), deck.subcases.size());
   std::optional<ListingMaker> listing;
   const auto requests = read_requests_once(options.deck, diagnostics);
+  if (options.has_strains || asks_for(requests, "STRAIN")) solver.ask_strains();
   if (!options.listing.empty()) listing.emplace(deck, requests, diagnostics);
   diagnostics.throw_if_errors();
   for (const auto& subcase : subcases) {
@@ -187,6 +188,7 @@ void add_static(CLI::App& app, Action& action) {
   verb->add_flag("--full", o->full, "Every grid and element instead of the largest values");
   verb->add_flag("--extremes,--maxmin", o->has_extremes,
                  "The least and the largest of each component over the subcases");
+  verb->add_flag("--strains", o->has_strains, "Strains of elements beside their stresses, as STRAIN of the deck");
   verb->add_flag("--cd", o->in_cd, "Print vectors in the displacement (CD) axes of each grid, not in basic");
   verb->add_flag("--linear", o->is_linear, "Solve the cards linearly though SOL is nonlinear (106, 129, 400, ...)");
   verb->add_option("--vtu", o->vtu, "Write the displacements of every subcase to this file for ParaView");

@@ -127,8 +127,8 @@ std::string format_elements(const records::ElementForces& block, bool full) {
   return full ? format_all(block.card, block.id, names, values) : format_extremes(block.card, block.id, names, values);
 }
 
-std::string format_stresses(const records::ElementStresses& block, bool full) {
-  const std::string title = block.card + " stress";
+std::string format_stresses(const records::ElementStresses& block, const char* what, bool full) {
+  const std::string title = block.card + " " + what;
   return full ? format_all(title, block.id, block.components, block.stress)
               : format_extremes(title, block.id, block.components, block.stress);
 }
@@ -187,7 +187,8 @@ std::string format_static(const records::StaticResult& result, const records::St
     text += format_vector("reaction", result.dof_map, s.reaction) + "\n";
   }
   for (const auto& block : s.elements) text += format_elements(block, full) + "\n";
-  for (const auto& block : s.stresses) text += format_stresses(block, full) + "\n";
+  for (const auto& block : s.stresses) text += format_stresses(block, "stress", full) + "\n";
+  for (const auto& block : s.strains) text += format_stresses(block, "strain", full) + "\n";
   return text + format_margins(s.margins) + format_grid_forces(s.grid_forces);
 }
 
@@ -217,6 +218,7 @@ nlohmann::json to_json(const records::StaticResult& result, const records::Stati
     json["grid_forces"].push_back(
         {{"grid", f.node}, {"source", f.source}, {"element", f.element}, {"force", to_json_list(f.force)}});
   for (const auto& block : s.stresses) json["max_stress"][block.card] = list_stress_maxima(block);
+  for (const auto& block : s.strains) json["max_strain"][block.card] = list_stress_maxima(block);
   if (!s.margins.empty()) json["margins"] = to_json(s.margins);
   if (!full) return json;
   if (s.inertia.size() > 0) json["inertia"] = to_json_list(s.inertia);
@@ -235,6 +237,9 @@ nlohmann::json to_json(const records::StaticResult& result, const records::Stati
   for (const auto& block : s.stresses)
     json["stresses"][block.card] = {
         {"id", block.id}, {"components", block.components}, {"stress", to_json(block.stress)}};
+  for (const auto& block : s.strains)
+    json["strains"][block.card] = {
+        {"id", block.id}, {"components", block.components}, {"strain", to_json(block.stress)}};
   return json;
 }
 

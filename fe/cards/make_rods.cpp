@@ -36,7 +36,8 @@ bool check_section(Maker& maker, const std::string& who, double A, double J, dou
 
 RodProperty make_property(const records::Mat1& material, double A, double J, double c, double nsm) {
   const double mass = material.rho * A + nsm;
-  return {material.E * A, material.G * J, mass, mass, material.alpha, material.tref, material.ge, A, J > 0 ? c / J : 0};
+  return {material.E * A, material.G * J, mass, mass, material.alpha, material.tref, material.ge, A, J > 0 ? c / J : 0,
+          material.E, material.G};
 }
 
 /// Hollow or solid circular tube, diameter linear from od to od2, constant wall t (t = 0: solid). Axial and torsional
@@ -66,7 +67,9 @@ RodProperty make_tube(const records::Mat1& material, const records::Ptube& tube)
           material.tref,
           material.ge,
           area(least),
-          least / 2 / polar(least)};
+          least / 2 / polar(least),
+          material.E,
+          material.G};
 }
 
 }  // namespace

@@ -56,6 +56,8 @@ class Beam final : public Element {
   /// At the points of the property (C_a, D_a, ... at end A, C_b, ... at end B): of axial force and bending.
   std::vector<StressPoint> stress_points() const override;
   MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
+  MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
+  VectorXd calc_thermal_strains(const ElementTemperature& T) const override;
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
 

@@ -1,4 +1,5 @@
 #include "fe/elements/beam.hpp"
+#include "fe/elements/temperature.hpp"
 #include "fe/sections/stress.hpp"
 
 namespace bough::fe {
@@ -24,6 +25,12 @@ Eigen::RowVector3d calc_row(const BeamSection& s, const Eigen::Vector2d& point) 
   return row;
 }
 
+/// The points of an end; without any its axis.
+const std::vector<Eigen::Vector2d>& get_points(const std::vector<Eigen::Vector2d>& given) {
+  static const std::vector<Eigen::Vector2d> axis{Eigen::Vector2d::Zero()};
+  return given.empty() ? axis : given;
+}
+
 }  // namespace
 
 std::vector<StressPoint> Beam::stress_points() const {
@@ -39,9 +46,7 @@ std::vector<StressPoint> Beam::stress_points() const {
 }
 
 MatrixXd Beam::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
-  static const std::vector<Eigen::Vector2d> axis{Eigen::Vector2d::Zero()};
-  const auto& a = property_->points_a.empty() ? axis : property_->points_a;
-  const auto& b = property_->points_b.empty() ? axis : property_->points_b;
+  const auto &a = get_points(property_->points_a), &b = get_points(property_->points_b);
   MatrixXd stress(static_cast<Eigen::Index>(a.size() + b.size()), forces.cols());
   Eigen::Index row = 0;
   for (int end = 0; end < 2; ++end) {
@@ -52,6 +57,25 @@ MatrixXd Beam::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
     }
   }
   return stress;
+}
+
+MatrixXd Beam::calc_strains(const Eigen::Ref<const MatrixXd>& forces) const {
+  return calc_stresses(forces) / property_->material.E;
+}
+
+/// α (T + (y - n_y) dT/dy + (z - n_z) dT/dz), as beam_thermal.cpp.
+VectorXd Beam::calc_thermal_strains(const ElementTemperature& given) const {
+  if (!has_expansion()) return {};
+  const ElementTemperature T = given.calc_change(property_->material.tref);
+  const auto &a = get_points(property_->points_a), &b = get_points(property_->points_b);
+  VectorXd strain(static_cast<Eigen::Index>(a.size() + b.size()));
+  Eigen::Index row = 0;
+  for (int end = 0; end < 2; ++end) {
+    const Eigen::Vector2d n = property_->calc_section(end).n;
+    for (const auto& point : end == 0 ? a : b)
+      strain[row++] = T.node[end] + (point - n).dot(end == 0 ? T.gradient_a : T.gradient_b);
+  }
+  return property_->material.alpha * strain;
 }
 
 }  // namespace bough::fe

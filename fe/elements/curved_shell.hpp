@@ -61,6 +61,10 @@ class CurvedShell final : public Element {
   std::vector<StressPoint> stress_points() const override;
   MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
   VectorXd calc_initial_stresses(const ElementTemperature& T) const override;
+  /// Of the mean of N and M likewise: at the points of the stresses, and of the reference surface.
+  std::vector<StressPoint> strain_points() const override;
+  MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
+  VectorXd calc_thermal_strains(const ElementTemperature& T) const override;
   /// Second order of e, κ, γ (sampled and interpolated as they are) with d_i = exp(θ_i) V_i, and of the drilling.
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
@@ -87,6 +91,12 @@ class CurvedShell final : public Element {
   };
   NodalMasses calc_nodal_masses(MassKind kind) const;
   int num_points() const { return static_cast<int>(tying_->points.size()); }
+  /// Σ over the points of quadrature of their share of the area times of(point).
+  template <class Of>
+  MatrixXd sum_over_points(const Of& of) const;
+  /// Temperatures of the full set of nodes: of a midside node that is absent the mean of its corners.
+  VectorXd calc_nodal_temperatures(const ElementTemperature& T) const;
+  double calc_temperature(const VectorXd& nodal, int point) const;
   int num_full() const { return tying_->num_nodes; }
   int num_bubbles() const { return tying_->num_corners == 4 ? 4 : 2; }
   Surface calc_surface(int sample) const;

@@ -5,13 +5,9 @@ namespace bough::fe {
 
 double CurvedShell::add_thermal(const ElementTemperature& given, Eigen::Ref<VectorXd> load,
                                 Eigen::Ref<VectorXd> initial) const {
-  const int n = num_full(), corners = tying_->num_corners, m = num_bubbles();
+  const int n = num_full(), m = num_bubbles();
   const ElementTemperature T = given.calc_change(calc_section(0).expansion->tref);
-  VectorXd nodal(n);
-  for (int i = 0; i < n; ++i) {
-    const int at = place_[static_cast<std::size_t>(i)];
-    nodal[i] = at >= 0 ? T.node[at] : 0.5 * (T.node[i - corners] + T.node[(i - corners + 1) % corners]);
-  }
+  const VectorXd nodal = calc_nodal_temperatures(T);
   const Operators o = calc_operators(false);
   VectorXd full = VectorXd::Zero(6 * n + m);
   std::vector<Vector3d> N, M;
@@ -20,8 +16,7 @@ double CurvedShell::add_thermal(const ElementTemperature& given, Eigen::Ref<Vect
     const auto& p = o.points[q];
     const ShellSection section = calc_section(static_cast<int>(q));
     const ShellExpansion& e = *section.expansion;
-    const auto& at = tying_->samples[static_cast<std::size_t>(tying_->points[q].sample)];
-    const double t = at.shape.head(n).dot(nodal);
+    const double t = calc_temperature(nodal, static_cast<int>(q));
     N.push_back(e.calc_N(t, T.gradient_z));
     M.push_back(e.calc_M(t, T.gradient_z));
     full += p.area * (p.membrane.transpose() * N.back() + p.bending.transpose() * M.back());

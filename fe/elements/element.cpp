@@ -24,6 +24,16 @@ VectorXd Element::calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const
 std::vector<StressPoint> Element::stress_points() const { return {}; }
 MatrixXd Element::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const { return MatrixXd(0, forces.cols()); }
 VectorXd Element::calc_initial_stresses(const ElementTemperature&) const { return {}; }
+std::vector<StressPoint> Element::strain_points() const { return stress_points(); }
+MatrixXd Element::calc_strains(const Eigen::Ref<const MatrixXd>& forces) const {
+  BOUGH_DEMAND(strain_points().empty());  // who has points says what they strain
+  return MatrixXd(0, forces.cols());
+}
+VectorXd Element::calc_thermal_strains(const ElementTemperature&) const { return {}; }
+MatrixXd Element::calc_corner_strains(const Eigen::Ref<const MatrixXd>& forces) const {
+  return MatrixXd(0, forces.cols());
+}
+VectorXd Element::calc_corner_thermal_strains(const ElementTemperature&) const { return {}; }
 double Element::add_thermal(const ElementTemperature&, Eigen::Ref<VectorXd>, Eigen::Ref<VectorXd>) const { return 0; }
 void Element::add_geometric_stiffness(const Eigen::Ref<const VectorXd>&, double, Eigen::Ref<MatrixXd>) const {}
 

@@ -116,6 +116,17 @@ class Element {
   /// between the plies of a laminate. Empty: nothing.
   virtual VectorXd calc_initial_stresses(const ElementTemperature& T) const;
 
+  /// Where the element gives strains: stress_points(), of shells the reference surface too ("mid"); empty: none.
+  virtual std::vector<StressPoint> strain_points() const;
+  /// Mechanical strains there of internal forces (s x m), rows as those of calc_stresses: what the material strains
+  /// beside its free expansion, so that σ = C ε.
+  virtual MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const;
+  /// What temperatures T add to those: free expansion. The sum is what the displacements strain. Empty: nothing.
+  virtual VectorXd calc_thermal_strains(const ElementTemperature& T) const;
+  /// Of solids, both at their corners: six a corner, in the order of the grids. The others have no rows.
+  virtual MatrixXd calc_corner_strains(const Eigen::Ref<const MatrixXd>& forces) const;
+  virtual VectorXd calc_corner_thermal_strains(const ElementTemperature& T) const;
+
  private:
   int id_;
   std::string card_;

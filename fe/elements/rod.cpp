@@ -64,6 +64,19 @@ MatrixXd Rod::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
   return stress;
 }
 
+MatrixXd Rod::calc_strains(const Eigen::Ref<const MatrixXd>& forces) const {
+  MatrixXd strain = calc_stresses(forces);
+  if (strain.rows() == 0) return strain;
+  for (const auto& [row, modulus] : {std::pair{0, property_.E}, std::pair{1, property_.G}})
+    strain.row(row) *= modulus > 0 ? 1 / modulus : 0;
+  return strain;
+}
+
+VectorXd Rod::calc_thermal_strains(const ElementTemperature& T) const {
+  if (!has_expansion() || !(property_.area > 0)) return {};
+  return Eigen::Vector2d(property_.alpha * T.calc_change(property_.tref).node.mean(), 0);
+}
+
 double Rod::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const {
   const double strain = property_.alpha * T.calc_change(property_.tref).node.mean(), N = property_.EA * strain;
   load.segment<3>(0) -= N * axis_;

@@ -14,6 +14,7 @@ struct RodProperty {
   double ge = 0;                  ///< structural damping
   double area = 0;                ///< the smallest, for stresses; 0: none
   double torsion = 0;             ///< largest shear stress per torque (C/J); 0: none
+  double E = 0, G = 0;            ///< of the material, for strains
 };
 
 /// Rod between two grids. Mass: translations only; consistent is Nastran's: along the axis the mean of lumped and
@@ -32,6 +33,8 @@ class Rod final : public Element {
   std::vector<std::string> internal_force_names() const override { return {"axial", "torque"}; }
   std::vector<StressPoint> stress_points() const override;
   MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
+  MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
+  VectorXd calc_thermal_strains(const ElementTemperature& T) const override;
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
   bool has_expansion() const override { return property_.alpha != 0; }

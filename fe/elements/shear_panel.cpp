@@ -149,6 +149,10 @@ MatrixXd ShearPanel::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) con
   return forces.topRows(4) / property_.t;
 }
 
+MatrixXd ShearPanel::calc_strains(const Eigen::Ref<const MatrixXd>& forces) const {
+  return calc_stresses(forces) / property_.G;
+}
+
 void ShearPanel::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                          Eigen::Ref<MatrixXd> K_G) const {
   Eigen::Matrix4d of = Eigen::Matrix4d::Zero();

@@ -45,6 +45,7 @@ class ShearPanel final : public Element {
   /// Shear flow over thickness along each side.
   std::vector<StressPoint> stress_points() const override;
   MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
+  MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
   /// ∫ N_ab u,a·u,b of the panel's stress field with the shapes w_i N_i / w, which hold x; rods N/L across.
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;

@@ -51,6 +51,10 @@ class Shell final : public Element {
   std::vector<StressPoint> stress_points() const override;
   MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
   VectorXd calc_initial_stresses(const ElementTemperature& T) const override;
+  /// Of the mean of N and M likewise: at the points of the stresses, and of the reference surface.
+  std::vector<StressPoint> strain_points() const override;
+  MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
+  VectorXd calc_thermal_strains(const ElementTemperature& T) const override;
   /// Second order of the element's strains under N, M, Q, of its drilling and of its rigid arms
   /// (docs/elements/shell.md).
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
@@ -75,6 +79,10 @@ class Shell final : public Element {
   using ForceMap = Eigen::Matrix<double, 9 * N, 6 * N>;
   int num_nodes() const { return num_nodes_; }
   int num_points() const { return num_nodes_; }
+  /// Of each point of quadrature its share of the area; their sum is one.
+  std::vector<double> calc_shares() const;
+  /// Mean over the area of what is linear between the corners.
+  double calc_mean(const Eigen::Ref<const VectorXd>& corner) const;
   template <int N>
   shell::Corners<N> get_corners() const {
     return xy_.leftCols<N>();

@@ -19,47 +19,116 @@ MatrixXd calc_mean_resultants(const Eigen::Ref<const MatrixXd>& forces, const st
 
 std::vector<StressPoint> Shell::stress_points() const { return list_stress_points(section_); }
 
-MatrixXd Shell::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
-  if (!section_.stress) return MatrixXd(0, forces.cols());
+std::vector<double> Shell::calc_shares() const {
   std::vector<double> share;
   if (num_nodes_ == 4)
     for (const auto& p : shell::calc_points<4>(get_corners<4>())) share.push_back(p.weight / area_);
   else
     for (const auto& p : shell::calc_points<3>(get_corners<3>())) share.push_back(p.weight / area_);
-  return calc_stress_map(section_) * calc_mean_resultants(forces, share);
+  return share;
+}
+
+double Shell::calc_mean(const Eigen::Ref<const VectorXd>& corner) const {
+  double sum = 0;
+  if (num_nodes_ == 4)
+    for (const auto& p : shell::calc_points<4>(get_corners<4>())) sum += p.weight * p.shape.dot(corner.head<4>());
+  else
+    for (const auto& p : shell::calc_points<3>(get_corners<3>())) sum += p.weight * p.shape.dot(corner.head<3>());
+  return sum / area_;
+}
+
+MatrixXd Shell::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
+  if (!section_.stress) return MatrixXd(0, forces.cols());
+  return calc_stress_map(section_) * calc_mean_resultants(forces, calc_shares());
 }
 
 VectorXd Shell::calc_initial_stresses(const ElementTemperature& given) const {
   if (!section_.expansion) return {};
   const ElementTemperature T = given.calc_change(section_.expansion->tref);
-  return calc_ply_expansion(section_, T.node.head(num_nodes_).mean(), T.gradient_z);
+  return calc_ply_expansion(section_, calc_mean(T.node), T.gradient_z);
+}
+
+std::vector<StressPoint> Shell::strain_points() const { return list_strain_points(section_); }
+
+MatrixXd Shell::calc_strains(const Eigen::Ref<const MatrixXd>& forces) const {
+  if (!section_.stress) return MatrixXd(0, forces.cols());
+  return calc_strain_map(section_) * calc_mean_resultants(forces, calc_shares());
+}
+
+VectorXd Shell::calc_thermal_strains(const ElementTemperature& given) const {
+  if (!section_.expansion) return {};
+  const ElementTemperature T = given.calc_change(section_.expansion->tref);
+  return calc_section_expansion(section_, calc_mean(T.node), T.gradient_z);
 }
 
 std::vector<StressPoint> CurvedShell::stress_points() const { return list_stress_points(sections_.front()); }
 
-MatrixXd CurvedShell::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
-  if (!sections_.front().stress) return MatrixXd(0, forces.cols());
-  // The thickness and the direction of the material may change from point to point.
-  MatrixXd stress;
+template <class Of>
+MatrixXd CurvedShell::sum_over_points(const Of& of) const {
+  MatrixXd sum;
   const double area = calc_area();
   for (int q = 0; q < num_points(); ++q) {
     const auto& point = tying_->points[static_cast<std::size_t>(q)];
     const Surface f = calc_surface(point.sample);
     const double share = point.weight * Vector3d(f.x.col(0)).cross(Vector3d(f.x.col(1))).norm() / area;
-    const MatrixXd part =
-        share * (calc_stress_map(calc_section(q)) * forces.middleRows<6>(kNumForces * static_cast<Eigen::Index>(q)));
+    const MatrixXd part = share * of(q);
     if (q == 0)
-      stress = part;
+      sum = part;
     else
-      stress += part;
+      sum += part;
   }
-  return stress;
+  return sum;
+}
+
+MatrixXd CurvedShell::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
+  if (!sections_.front().stress) return MatrixXd(0, forces.cols());
+  // The thickness and the direction of the material may change from point to point.
+  return sum_over_points([&](int q) -> MatrixXd {
+    return calc_stress_map(calc_section(q)) * forces.middleRows<6>(kNumForces * static_cast<Eigen::Index>(q));
+  });
+}
+
+VectorXd CurvedShell::calc_nodal_temperatures(const ElementTemperature& T) const {
+  const int n = num_full(), corners = tying_->num_corners;
+  VectorXd nodal(n);
+  for (int i = 0; i < n; ++i) {
+    const int at = place_[static_cast<std::size_t>(i)];
+    nodal[i] = at >= 0 ? T.node[at] : 0.5 * (T.node[i - corners] + T.node[(i - corners + 1) % corners]);
+  }
+  return nodal;
+}
+
+double CurvedShell::calc_temperature(const VectorXd& nodal, int point) const {
+  const auto& at = tying_->samples[static_cast<std::size_t>(tying_->points[static_cast<std::size_t>(point)].sample)];
+  return at.shape.head(num_full()).dot(nodal);
 }
 
 VectorXd CurvedShell::calc_initial_stresses(const ElementTemperature& given) const {
-  if (!sections_.front().expansion) return {};
+  const auto& front = sections_.front();
+  if (!front.expansion || !front.stress || front.stress->layers.empty()) return {};
+  const ElementTemperature T = given.calc_change(front.expansion->tref);
+  const VectorXd nodal = calc_nodal_temperatures(T);
+  return sum_over_points([&](int q) -> MatrixXd {
+    return calc_ply_expansion(calc_section(q), calc_temperature(nodal, q), T.gradient_z);
+  });
+}
+
+std::vector<StressPoint> CurvedShell::strain_points() const { return list_strain_points(sections_.front()); }
+
+MatrixXd CurvedShell::calc_strains(const Eigen::Ref<const MatrixXd>& forces) const {
+  if (!sections_.front().stress) return MatrixXd(0, forces.cols());
+  return sum_over_points([&](int q) -> MatrixXd {
+    return calc_strain_map(calc_section(q)) * forces.middleRows<6>(kNumForces * static_cast<Eigen::Index>(q));
+  });
+}
+
+VectorXd CurvedShell::calc_thermal_strains(const ElementTemperature& given) const {
+  if (!sections_.front().expansion || !sections_.front().stress) return {};
   const ElementTemperature T = given.calc_change(sections_.front().expansion->tref);
-  return calc_ply_expansion(calc_section(0), T.node.head(tying_->num_corners).mean(), T.gradient_z);
+  const VectorXd nodal = calc_nodal_temperatures(T);
+  return sum_over_points([&](int q) -> MatrixXd {
+    return calc_section_expansion(calc_section(q), calc_temperature(nodal, q), T.gradient_z);
+  });
 }
 
 }  // namespace bough::fe

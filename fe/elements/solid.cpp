@@ -221,11 +221,16 @@ MatrixXd Solid::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
   return mean / volume;
 }
 
-MatrixXd Solid::calc_corner_stresses(const Eigen::Ref<const VectorXd>& force) const {
+MatrixXd Solid::calc_corner_map() const {
   const auto points = list_points(geometry_, false);
   const int num = get_num_corners(geometry_.kind);
   const auto count = static_cast<Eigen::Index>(points.size());
-  if (count < num) return VectorXd(calc_stresses(force)).replicate(1, num);
+  if (count < num) {
+    Eigen::RowVectorXd weight(count);
+    const auto fields = calc_fields(false);
+    for (Eigen::Index q = 0; q < count; ++q) weight[q] = fields[static_cast<std::size_t>(q)].weight;
+    return (weight / weight.sum()).replicate(num, 1);
+  }
   MatrixXd L(count, num);
   VectorXd shape(num);
   Eigen::Matrix3Xd dshape(3, num);
@@ -233,8 +238,49 @@ MatrixXd Solid::calc_corner_stresses(const Eigen::Ref<const VectorXd>& force) co
     calc_solid_shape(geometry_.kind, {}, points[static_cast<std::size_t>(q)].natural, shape, dshape);
     L.row(q) = shape.transpose();
   }
-  const MatrixXd values = Eigen::Map<const MatrixXd>(force.data(), 6, count).transpose();
-  return L.colPivHouseholderQr().solve(values).transpose();
+  return L.colPivHouseholderQr().solve(MatrixXd::Identity(count, count));
+}
+
+MatrixXd Solid::calc_corner_stresses(const Eigen::Ref<const VectorXd>& force) const {
+  return Eigen::Map<const MatrixXd>(force.data(), 6, force.size() / 6) * calc_corner_map().transpose();
+}
+
+MatrixXd Solid::calc_strains(const Eigen::Ref<const MatrixXd>& forces) const {
+  return C_el_.completeOrthogonalDecomposition().solve(calc_stresses(forces));
+}
+
+VectorXd Solid::calc_thermal_strains(const ElementTemperature& given) const {
+  if (!expansion_) return {};
+  const ElementTemperature T = given.calc_change(expansion_->tref);
+  double mean = 0, volume = 0;
+  for (const auto& f : calc_fields(false)) {
+    mean += f.weight * f.shape.dot(T.node);
+    volume += f.weight;
+  }
+  return mean / volume * expansion_->alpha;
+}
+
+MatrixXd Solid::calc_corner_strains(const Eigen::Ref<const MatrixXd>& forces) const {
+  const MatrixXd map = calc_corner_map();
+  const auto law = C_el_.completeOrthogonalDecomposition();
+  MatrixXd strains(6 * map.rows(), forces.cols());
+  for (Eigen::Index c = 0; c < forces.cols(); ++c) {
+    const VectorXd force = forces.col(c);
+    const Eigen::Map<const MatrixXd> at_points(force.data(), 6, map.cols());
+    strains.col(c) = MatrixXd(law.solve(MatrixXd(at_points * map.transpose()))).reshaped();
+  }
+  return strains;
+}
+
+VectorXd Solid::calc_corner_thermal_strains(const ElementTemperature& given) const {
+  if (!expansion_) return {};
+  const ElementTemperature T = given.calc_change(expansion_->tref);
+  const auto fields = calc_fields(false);
+  VectorXd change(static_cast<Eigen::Index>(fields.size()));
+  for (std::size_t q = 0; q < fields.size(); ++q)
+    change[static_cast<Eigen::Index>(q)] = fields[q].shape.dot(T.node);
+  const MatrixXd strains = expansion_->alpha * (calc_corner_map() * change).transpose();
+  return strains.reshaped();
 }
 
 void Solid::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,

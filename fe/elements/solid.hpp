@@ -67,6 +67,11 @@ class Solid final : public Element {
   /// each natural coordinate through those of the quadrature points, by least squares where they are more; the mean
   /// where they are fewer than the corners.
   MatrixXd calc_corner_stresses(const Eigen::Ref<const VectorXd>& force) const;
+  /// C⁻¹ of those stresses. Where C is singular: the least strains that have them.
+  MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
+  VectorXd calc_thermal_strains(const ElementTemperature& T) const override;
+  MatrixXd calc_corner_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
+  VectorXd calc_corner_thermal_strains(const ElementTemperature& T) const override;
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
   void add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
@@ -82,6 +87,8 @@ class Solid final : public Element {
  private:
   struct Field;
   std::vector<Field> calc_fields(bool mass) const;
+  /// Values at the corners (rows) per value at the quadrature points: see calc_corner_stresses().
+  MatrixXd calc_corner_map() const;
   bool is_quadratic() const { return static_cast<int>(geometry_.x.size()) > get_num_corners(geometry_.kind); }
   bool has_modes() const { return num_modes() > 0; }
   int num_modes() const {

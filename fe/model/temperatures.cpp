@@ -96,7 +96,8 @@ InitialForces calc_thermal(const Model& model, const records::Deck& deck, int se
     }
     if (T_0) T->initial = &*T_0;
     InitialForces::Part part{VectorXd::Zero(element->num_internal_forces()), VectorXd::Zero(element->num_dofs()), 0,
-                             element->calc_initial_stresses(*T)};
+                             element->calc_initial_stresses(*T), element->calc_thermal_strains(*T),
+                             element->calc_corner_thermal_strains(*T)};
     part.energy = element->add_thermal(*T, part.load, part.force);
     result.of.emplace(element.get(), std::move(part));
   }

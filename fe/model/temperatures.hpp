@@ -14,6 +14,7 @@ struct InitialForces {
     VectorXd load;   ///< at the nodes, among those of the static load
     double energy = 0;
     VectorXd stress;  ///< beside those of `force`: Element::calc_initial_stresses
+    VectorXd strain, corner_strain;  ///< Element::calc_thermal_strains, calc_corner_thermal_strains
   };
   std::unordered_map<const Element*, Part> of;  ///< all elements, on every rank
 

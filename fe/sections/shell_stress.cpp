@@ -32,11 +32,26 @@ Matrix6d calc_compliance(const ShellSection& section) {
   return scale.asDiagonal() * Matrix6d(scaled.completeOrthogonalDecomposition().pseudoInverse()) * scale.asDiagonal();
 }
 
-Matrix3x6d calc_layer_strain(const ShellStress::Layer& layer) {
-  const Matrix3d turn = calc_turn(layer.angle);
+Matrix3x6d calc_strain_at(double z, double angle) {
+  const Matrix3d turn = calc_turn(angle);
   Matrix3x6d strain;
-  strain << turn, layer.z * turn;
+  strain << turn, z * turn;
   return strain;
+}
+
+Matrix3x6d calc_layer_strain(const ShellStress::Layer& layer) { return calc_strain_at(layer.z, layer.angle); }
+
+/// Strains at the points of list_strain_points() per [ε; κ].
+Eigen::Matrix<double, Eigen::Dynamic, 6> list_strains(const ShellStress& stress) {
+  std::vector<Matrix3x6d> rows;
+  for (const auto& layer : stress.layers) rows.push_back(calc_layer_strain(layer));
+  if (stress.layers.empty())
+    for (const double z : {stress.z1, stress.z2}) rows.push_back(calc_strain_at(z, 0));
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  Eigen::Matrix<double, Eigen::Dynamic, 6> all(3 * count + 6, 6);
+  for (Eigen::Index k = 0; k < count; ++k) all.middleRows<3>(3 * k) = rows[static_cast<std::size_t>(k)];
+  all.bottomRows<6>().setIdentity();
+  return all;
 }
 
 }  // namespace
@@ -93,6 +108,27 @@ Eigen::VectorXd calc_ply_expansion(const ShellSection& section, double t, double
     result.segment<3>(3 * static_cast<Eigen::Index>(k)) =
         layers[k].Q * (calc_layer_strain(layers[k]) * free - (t + layers[k].z * g) * layers[k].alpha);
   return result;
+}
+
+std::vector<StressPoint> list_strain_points(const ShellSection& section) {
+  auto points = list_stress_points(section);
+  if (points.empty()) return points;
+  for (auto& point : points) point.theory = FailureTheory::None;
+  points.emplace_back().name = "mid";
+  points.back().kind = StressKind::Mid;
+  return points;
+}
+
+Eigen::Matrix<double, Eigen::Dynamic, 6> calc_strain_map(const ShellSection& section) {
+  if (!section.stress) return Eigen::Matrix<double, Eigen::Dynamic, 6>(0, 6);
+  return list_strains(*section.stress) * calc_compliance(section);
+}
+
+Eigen::VectorXd calc_section_expansion(const ShellSection& section, double t, double g) {
+  if (!section.stress || !section.expansion) return {};
+  Eigen::Matrix<double, 6, 1> held;
+  held << section.expansion->calc_N(t, g), section.expansion->calc_M(t, g);
+  return calc_strain_map(section) * held;
 }
 
 }  // namespace bough::fe

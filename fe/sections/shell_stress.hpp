@@ -1,5 +1,6 @@
 #pragma once
-/// \file Stresses in a plate's section from its stress resultants: the two surfaces of a PSHELL, every ply of a PCOMP.
+/// \file Stresses and strains in a plate's section from its stress resultants: the two surfaces of a PSHELL, every ply
+/// of a PCOMP.
 #include "fe/sections/shell_section.hpp"
 #include "fe/sections/stress.hpp"
 
@@ -29,5 +30,13 @@ std::vector<StressPoint> list_stress_points(const ShellSection& section);
 Eigen::Matrix<double, Eigen::Dynamic, 6> calc_stress_map(const ShellSection& section);
 /// What the temperature t + z g adds in the plies; empty for one material.
 Eigen::VectorXd calc_ply_expansion(const ShellSection& section, double t, double g);
+
+/// Those points, and the reference surface, "mid": its strains and curvatures.
+std::vector<StressPoint> list_strain_points(const ShellSection& section);
+/// Mechanical strains there per [N; M]: ε + z κ of [ε; κ] = [A B; B D]⁻¹ [N; M]. Without membrane (bending) stiffness
+/// the section has no strain of that kind.
+Eigen::Matrix<double, Eigen::Dynamic, 6> calc_strain_map(const ShellSection& section);
+/// What the temperature t + z g adds: the free expansion of the section as a whole.
+Eigen::VectorXd calc_section_expansion(const ShellSection& section, double t, double g);
 
 }  // namespace bough::fe

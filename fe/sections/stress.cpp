@@ -19,7 +19,8 @@ std::string add_point(const std::string& component, const StressPoint& point) {
 }
 
 /// What a point adds to its components.
-std::vector<std::string> list_derived(const StressPoint& point) {
+std::vector<std::string> list_derived(const StressPoint& point, bool of_strain) {
+  if (of_strain && (point.kind == StressKind::Rod || point.kind == StressKind::Ply)) return {};
   switch (point.kind) {
     case StressKind::Plane:
     case StressKind::Solid:
@@ -34,10 +35,11 @@ std::vector<std::string> list_derived(const StressPoint& point) {
   }
 }
 
-void calc_derived(const StressPoint& point, const Eigen::Ref<const VectorXd>& s, double* out) {
+void calc_derived(const StressPoint& point, const Eigen::Ref<const VectorXd>& given, bool of_strain, double* out) {
+  const VectorXd s = of_strain ? halve_shears(point.kind, given) : VectorXd(given);
   if (point.kind == StressKind::Plane) {
     const double mean = 0.5 * (s[0] + s[1]), radius = std::hypot(0.5 * (s[0] - s[1]), s[2]);
-    out[0] = calc_plane_von_mises(s);
+    out[0] = of_strain ? calc_plane_von_mises_strain(given) : calc_plane_von_mises(s);
     out[1] = mean + radius;
     out[2] = mean - radius;
   } else if (point.kind == StressKind::Solid) {
@@ -45,7 +47,7 @@ void calc_derived(const StressPoint& point, const Eigen::Ref<const VectorXd>& s,
     sigma << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
     const Vector3d principal =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sigma, Eigen::EigenvaluesOnly).eigenvalues();
-    out[0] = calc_solid_von_mises(s);
+    out[0] = of_strain ? calc_solid_von_mises_strain(given) : calc_solid_von_mises(s);
     out[1] = principal[2];
     out[2] = principal[0];
   } else if (point.kind == StressKind::Rod) {
@@ -56,19 +58,55 @@ void calc_derived(const StressPoint& point, const Eigen::Ref<const VectorXd>& s,
 }
 
 /// Over several points: axial stress its extremes, the others the largest of what a point derives first.
-std::vector<std::string> list_extremes(const std::vector<StressPoint>& points) {
+std::vector<std::string> list_extremes(const std::vector<StressPoint>& points, bool of_strain) {
   if (points.size() < 2) return {};
   const auto& first = points.front();
   if (first.kind == StressKind::Axial) return {"max", "min"};
-  const auto derived = list_derived(first);
+  const auto derived = list_derived(first, of_strain);
   return derived.empty() ? std::vector<std::string>{} : std::vector<std::string>{derived.front()};
+}
+
+std::vector<std::string> list_names(const std::vector<StressPoint>& points, bool of_strain) {
+  std::vector<std::string> names;
+  for (const auto& point : points) {
+    for (const auto& component : list_components(point.kind)) names.push_back(add_point(component, point));
+    for (const auto& derived : list_derived(point, of_strain)) names.push_back(add_point(derived, point));
+  }
+  for (const auto& extreme : list_extremes(points, of_strain)) names.push_back(extreme);
+  return names;
+}
+
+VectorXd calc_results(const std::vector<StressPoint>& points, const Eigen::Ref<const VectorXd>& given,
+                      bool of_strain) {
+  VectorXd out(static_cast<Eigen::Index>(list_names(points, of_strain).size()));
+  Eigen::Index from = 0, to = 0;
+  double most = -HUGE_VAL, least = HUGE_VAL;
+  for (const auto& point : points) {
+    const auto n = static_cast<Eigen::Index>(list_components(point.kind).size());
+    const auto d = static_cast<Eigen::Index>(list_derived(point, of_strain).size());
+    out.segment(to, n) = given.segment(from, n);
+    calc_derived(point, given.segment(from, n), of_strain, out.data() + to + n);
+    if (point.kind != StressKind::Mid) {
+      const double value = d > 0 ? out[to + n] : given[from];
+      most = std::max(most, value);
+      least = std::min(least, value);
+    }
+    from += n;
+    to += n + d;
+  }
+  BOUGH_DEMAND(from == given.size());
+  const auto extremes = out.size() - to;
+  if (extremes > 0) out[to] = most;
+  if (extremes > 1) out[to + 1] = least;
+  return out;
 }
 
 }  // namespace
 
 const std::vector<std::string>& list_components(StressKind kind) {
   static const std::vector<std::string> axial{"xx"}, rod{"xx", "torsion"}, shear{"xy"}, plane{"xx", "yy", "xy"},
-      ply{"11", "22", "12"}, solid{"xx", "yy", "zz", "xy", "yz", "zx"};
+      ply{"11", "22", "12"}, solid{"xx", "yy", "zz", "xy", "yz", "zx"},
+      mid{"xx", "yy", "xy", "kappa_xx", "kappa_yy", "kappa_xy"};
   switch (kind) {
     case StressKind::Axial:
       return axial;
@@ -80,6 +118,8 @@ const std::vector<std::string>& list_components(StressKind kind) {
       return plane;
     case StressKind::Ply:
       return ply;
+    case StressKind::Mid:
+      return mid;
     default:
       return solid;
   }
@@ -92,36 +132,33 @@ std::vector<std::string> list_stress_names(const std::vector<StressPoint>& point
   return names;
 }
 
-std::vector<std::string> list_result_names(const std::vector<StressPoint>& points) {
-  std::vector<std::string> names;
-  for (const auto& point : points) {
-    for (const auto& component : list_components(point.kind)) names.push_back(add_point(component, point));
-    for (const auto& derived : list_derived(point)) names.push_back(add_point(derived, point));
-  }
-  for (const auto& extreme : list_extremes(points)) names.push_back(extreme);
-  return names;
-}
+std::vector<std::string> list_result_names(const std::vector<StressPoint>& points) { return list_names(points, false); }
 
 VectorXd calc_stress_results(const std::vector<StressPoint>& points, const Eigen::Ref<const VectorXd>& stress) {
-  VectorXd out(static_cast<Eigen::Index>(list_result_names(points).size()));
-  Eigen::Index from = 0, to = 0;
-  double most = -HUGE_VAL, least = HUGE_VAL;
-  for (const auto& point : points) {
-    const auto n = static_cast<Eigen::Index>(list_components(point.kind).size());
-    const auto d = static_cast<Eigen::Index>(list_derived(point).size());
-    out.segment(to, n) = stress.segment(from, n);
-    calc_derived(point, stress.segment(from, n), out.data() + to + n);
-    const double value = d > 0 ? out[to + n] : stress[from];
-    most = std::max(most, value);
-    least = std::min(least, value);
-    from += n;
-    to += n + d;
-  }
-  BOUGH_DEMAND(from == stress.size());
-  const auto extremes = out.size() - to;
-  if (extremes > 0) out[to] = most;
-  if (extremes > 1) out[to + 1] = least;
-  return out;
+  return calc_results(points, stress, false);
+}
+
+std::vector<std::string> list_strain_result_names(const std::vector<StressPoint>& points) {
+  return list_names(points, true);
+}
+
+VectorXd calc_strain_results(const std::vector<StressPoint>& points, const Eigen::Ref<const VectorXd>& strain) {
+  return calc_results(points, strain, true);
+}
+
+double calc_plane_von_mises_strain(const Vector3d& e) {
+  return std::sqrt(std::max(0.0, 4.0 / 9 * (e[0] * e[0] - e[0] * e[1] + e[1] * e[1]) + e[2] * e[2] / 3));
+}
+
+double calc_solid_von_mises_strain(const Vector6d& e) {
+  const double a = e[0] - e[1], b = e[1] - e[2], c = e[2] - e[0];
+  return std::sqrt(2.0 / 9 * (a * a + b * b + c * c) + e.tail<3>().squaredNorm() / 3);
+}
+
+VectorXd halve_shears(StressKind kind, VectorXd strain) {
+  if (kind == StressKind::Plane || kind == StressKind::Ply) strain[2] *= 0.5;
+  if (kind == StressKind::Solid) strain.tail<3>() *= 0.5;
+  return strain;
 }
 
 double calc_plane_von_mises(const Vector3d& s) {

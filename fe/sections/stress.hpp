@@ -1,5 +1,6 @@
 #pragma once
-/// \file Points at which elements give stresses, and what is derived from those: von Mises, principal, failure indices.
+/// \file Points at which elements give stresses and strains, and what is derived from those: von Mises, principal,
+/// failure indices.
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +17,8 @@ enum class StressKind {
   Shear,  ///< xy alone
   Plane,  ///< xx yy xy
   Ply,    ///< 11 22 12, in the axes of the ply
-  Solid   ///< xx yy zz xy yz zx
+  Solid,  ///< xx yy zz xy yz zx
+  Mid     ///< strains alone: xx yy xy of the reference surface of a shell, and its curvatures κ, so that ε(z) = ε + z κ
 };
 
 /// The criterion of a ply (FT of PCOMP).
@@ -41,6 +43,19 @@ std::vector<std::string> list_result_names(const std::vector<StressPoint>& point
 /// The values under those names.
 Eigen::VectorXd calc_stress_results(const std::vector<StressPoint>& points,
                                     const Eigen::Ref<const Eigen::VectorXd>& stress);
+
+/// The same of strains (shears are angles γ): "xx@top", "von_mises@top", "major@top", ..., and over all points of an
+/// element "max", "min", "von_mises". Plies derive nothing.
+std::vector<std::string> list_strain_result_names(const std::vector<StressPoint>& points);
+Eigen::VectorXd calc_strain_results(const std::vector<StressPoint>& points,
+                                    const Eigen::Ref<const Eigen::VectorXd>& strain);
+
+/// √(4/9 (εx² - εxεy + εy²) + γ²/3): √(2/3 e:e) of the deviator e with εz = 0, as Nastran prints it.
+double calc_plane_von_mises_strain(const Eigen::Vector3d& strain);
+/// √(2/9 ((εx - εy)² + (εy - εz)² + (εz - εx)²) + (γxy² + γyz² + γzx²)/3), of xx yy zz xy yz zx.
+double calc_solid_von_mises_strain(const Eigen::Matrix<double, 6, 1>& strain);
+/// Shears γ become the γ/2 of a tensor, of which stresses and strains have the same principal values.
+Eigen::VectorXd halve_shears(StressKind kind, Eigen::VectorXd strain);
 
 /// √(σx² - σxσy + σy² + 3τ²).
 double calc_plane_von_mises(const Eigen::Vector3d& stress);

@@ -43,6 +43,8 @@ records::StaticSubcase CaseSolver::solve(const records::Subcase& subcase, Diagno
   solved.mpc_set = subcase.mpc;
   solved.elements = calc_element_forces(*model_, solved.displacement, deck_, subcase.load, own, load.initial);
   solved.stresses = calc_element_stresses(*model_, solved.displacement, deck_, subcase.load, load.initial);
+  if (has_strains_)
+    solved.strains = calc_element_strains(*model_, solved.displacement, deck_, subcase.load, load.initial);
   if (grids_) solved.grid_forces = calc_grid_forces(*model_, solved, load.initial, *grids_);
   for (const auto& item : own.items()) diagnostics.add(item);
   return solved;

@@ -19,6 +19,9 @@ class CaseSolver {
   /// The forces on these grids are listed one by one; empty: on all.
   void ask_grid_forces(std::vector<int> grids) { grids_ = std::move(grids); }
 
+  /// Strains of elements beside their stresses.
+  void ask_strains() { has_strains_ = true; }
+
   /// Throws what is wrong with this subcase alone.
   records::StaticSubcase solve(const records::Subcase& subcase, Diagnostics& diagnostics);
   const Model& model() const { return *model_; }  ///< of the last subcase that had one
@@ -29,6 +32,7 @@ class CaseSolver {
   const records::Deck& deck_;
   ModelOptions options_;
   std::optional<std::vector<int>> grids_;
+  bool has_strains_ = false;
   std::optional<std::array<int, 5>> held_;  ///< SPC, MPC, SUPORT1, preload, TEMPERATURE(INITIAL) of what is kept
   std::exception_ptr failure_;              ///< what came of them
   std::optional<Model> model_;

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What static solutions and bodies tell of elements beside their forces: stresses, forces on grids.
+/// \file What static solutions and bodies tell of elements beside their forces: stresses, strains, forces on grids.
 #include "fe/sections/stress.hpp"
 #include "fe/statics/static_case.hpp"
 
@@ -14,6 +14,12 @@ MatrixXd calc_internal_forces(const Element& element, const Eigen::Ref<const Mat
 std::vector<records::ElementStresses> calc_element_stresses(const Model& model, const VectorXd& u_g,
                                                             const records::Deck& deck, int load,
                                                             const InitialForces& initial = {});
+
+/// Strains likewise, of the displacements: those of temperatures are among them, σ = C (ε - α ΔT). Solids give those at
+/// their corners too. Replicated.
+std::vector<records::ElementStresses> calc_element_strains(const Model& model, const VectorXd& u_g,
+                                                           const records::Deck& deck, int load,
+                                                           const InitialForces& initial = {});
 
 /// What acts on each of the grids (ids; empty: all): every element, and LOAD, SPC, MPC (rigid elements too), INERTIA of
 /// `solved`, in basic axes. They sum to nothing. Of elements: -(K_e u - load of its temperatures).

@@ -82,6 +82,17 @@ void write_subcase(FileWriter& file, const records::StaticSubcase& subcase) {
                       {"a row per element: what `components` names, as component@point", "F/L^2, 1"});
     file.write_attribute(group, "components", block.components);
   }
+  for (const auto& block : subcase.strains) {
+    const std::string group = path + "/strains/" + block.card;
+    file.write_integers(group + "/id", block.id, {"element ids", "1"});
+    file.write_integers(group + "/property", block.property, {"property ids; 0: none", "1"});
+    file.write_matrix(group + "/strain", block.stress,
+                      {"a row per element: what `components` names, as component@point; shears are angles", "1, 1/L"});
+    if (block.corner.cols() > 0)
+      file.write_matrix(group + "/corner", block.corner,
+                        {"a row per element: xx yy zz xy yz zx at each of its corners, basic axes", "1"});
+    file.write_attribute(group, "components", block.components);
+  }
   for (const auto& block : subcase.margins) {
     const std::string group = path + "/margins/" + block.card;
     file.write_integers(group + "/id", block.id, {"element ids", "1"});

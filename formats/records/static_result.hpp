@@ -14,12 +14,13 @@ struct ElementForces {
 };
 
 /// Stresses of the elements of one card that have the same points. "xx@top": component and point; derived ones
-/// (von_mises, max, min, max_shear, failure, ...) are among them.
+/// (von_mises, max, min, max_shear, failure, ...) are among them. Strains likewise: they stand where stresses do.
 struct ElementStresses {
   std::string card;
   std::vector<std::string> components;
   std::vector<int> id, property;
   MatrixXd stress;  ///< elements x components
+  MatrixXd corner;  ///< strains of solids alone: elements x (xx yy zz xy yz zx of each corner)
 };
 
 /// Margins of safety of the elements of one card whose material has limits: limit / |stress| - 1, no number where
@@ -32,7 +33,7 @@ struct StressMargins {
 
 /// Over the subcases, of each grid or element: a row each, a column per component.
 struct CaseExtremes {
-  std::string path;  ///< displacement, reaction, elements/CARD, stresses/CARD
+  std::string path;  ///< displacement, reaction, elements/CARD, stresses/CARD, strains/CARD
   std::string dims;
   std::vector<std::string> components;
   std::vector<int> id;
@@ -73,6 +74,7 @@ struct StaticSubcase {
   Eigen::Matrix<double, 6, 1> inertia_resultant = Eigen::Matrix<double, 6, 1>::Zero();
   std::vector<ElementForces> elements;
   std::vector<ElementStresses> stresses;
+  std::vector<ElementStresses> strains;  ///< where asked for; with those of temperatures
   std::vector<StressMargins> margins;
   std::vector<GridForce> grid_forces;  ///< where asked for: by grid, then elements, then the others
 };

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view plain_commands =
     "ACCE BOUT DISP ECHO ELFO ELST FORC GROU HOUT LINE MAXL MEFF MPCF NOUT OLOA OUTP PAGE POST PRES SACC SDIS SET SETS "
-    "SKIP SORT SPCF STRE SURF SVEC SVEL VECT VELO VOLU";
+    "SKIP SORT SPCF STRA STRE SURF SVEC SVEL VECT VELO VOLU";
 
 /// The other commands of the quick reference guides.
 constexpr std::string_view known_commands =
@@ -40,8 +40,7 @@ std::string_view find_option(std::string_view word) {
   static constexpr std::array options{
       Option{"ESE", "ESE: 'modes --ese'; 'static -o FILE.h5' has the strain energy of each element"},
       Option{"EKE", "EKE: 'modes --ese'"}, Option{"GPFO", "GPFORCE: 'static --grid-forces all'"},
-      Option{"MAXM", "MAXMIN: 'static --extremes'"},
-      Option{"STRA", "STRAIN: none gives strains, 'static' and 'reduce --recover' give stresses"}};
+      Option{"MAXM", "MAXMIN: 'static --extremes'"}};
   for (const auto& one : options)
     if (word.substr(0, 4) == one.command) return one.option;
   return {};
