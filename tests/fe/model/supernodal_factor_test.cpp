@@ -64,7 +64,12 @@ PetscMat make_grid(int num_x, int num_y, double shift = 0, bool is_apart = false
   return A;
 }
 
-class SupernodalFactorOn : public ::testing::TestWithParam<int> {};
+class SupernodalFactorOn : public ::testing::TestWithParam<int> {
+ protected:
+  void SetUp() override {
+    if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes factor together";
+  }
+};
 INSTANTIATE_TEST_SUITE_P(Threads, SupernodalFactorOn, ::testing::Values(1, 2));
 
 TEST_P(SupernodalFactorOn, SolvesAsThePivotedOneDoes) {
@@ -90,6 +95,7 @@ TEST_P(SupernodalFactorOn, SolvesAsThePivotedOneDoes) {
 }
 
 TEST(SupernodalFactor, IsOfLargeMatricesInGroups) {
+  if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes factor together";
   const Threads two(2);
   EXPECT_FALSE(make_supernodal_factor(make_grid(90, 60).get()).factor) << "small";
   EXPECT_EQ(make_supernodal_factor(make_grid(4000, 1).get(), 0).num_parts, 2) << "a line";
