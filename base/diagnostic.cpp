@@ -80,10 +80,12 @@ void Diagnostics::throw_if_errors() const {
 }
 
 Failure::Failure(std::vector<Diagnostic> items, int exit_code) : items_(std::move(items)), exit_code_(exit_code) {
-  for (const auto& d : items_) {
+  constexpr std::size_t kMost = 1000;  // a card that is repeated a million times is wrong a million times
+  for (std::size_t i = 0; i < std::min(items_.size(), kMost); ++i) {
     if (!text_.empty()) text_ += '\n';
-    text_ += format(d);
+    text_ += format(items_[i]);
   }
+  if (items_.size() > kMost) text_ += "\n... and " + std::to_string(items_.size() - kMost) + " more";
 }
 InputError::InputError(std::string_view id, SourceLocation where, std::string what, std::string advice)
     : InputError({make(Severity::Error, id, std::move(where), std::move(what), std::move(advice))}) {}

@@ -52,7 +52,8 @@ class Diagnostics {
   int num_warnings_ = 0;
 };
 
-/// Base of what Bough throws for reasons outside its own code. what() is every diagnostic, one per line.
+/// Base of what Bough throws for reasons outside its own code. what() is the first thousand diagnostics,
+/// one per line, and how many follow.
 class Failure : public std::exception {
  public:
   Failure(std::vector<Diagnostic> items, int exit_code);

@@ -8,8 +8,8 @@ target_compile_options(bough_flags INTERFACE $<BUILD_INTERFACE:-Wall;-Wextra;-Wp
   "$<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:Clang>:-Wno-shadow;-Wno-missing-field-initializers;-Wno-overlength-strings>>")
 if(BOUGH_SANITIZE)
   # A finding ends the program: a test that only prints one would pass. Eigen makes references to the first entry of
-  # empty matrices; null pointers that are used the address sanitizer finds itself.
-  set(checks -fsanitize=${BOUGH_SANITIZE} -fno-sanitize-recover=all -fno-sanitize=null,alignment,vptr)
+  # empty matrices, and blocks of them; null pointers that are used the address sanitizer finds itself.
+  set(checks -fsanitize=${BOUGH_SANITIZE} -fno-sanitize-recover=all -fno-sanitize=null,alignment,vptr,pointer-overflow)
   target_compile_options(bough_flags INTERFACE "$<BUILD_INTERFACE:${checks};-fno-omit-frame-pointer>")
   target_compile_definitions(bough_flags INTERFACE $<BUILD_INTERFACE:_GLIBCXX_ASSERTIONS>)
   target_link_options(bough_flags INTERFACE $<BUILD_INTERFACE:-fsanitize=${BOUGH_SANITIZE}>)

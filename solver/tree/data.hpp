@@ -74,7 +74,7 @@ struct TreeData {
   bool has(Stage s) const { return (done & static_cast<unsigned>(s)) != 0; }
   void demand(Stage s) const { BOUGH_DEMAND(has(s)); }
   const BodyData& operator[](int b) const { return b < 0 ? ground : bodies[static_cast<size_t>(b)]; }
-  BodyData& operator[](int b) { return bodies[static_cast<size_t>(b)]; }
+  BodyData& operator[](int b) { return b < 0 ? ground : bodies[static_cast<size_t>(b)]; }
 };
 
 /// 6 x n of 𝒫 of a flexible body.

@@ -2,8 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace bough {
 namespace {
+
+TEST(Failure, OfAMillionDiagnosticsTellsTheFirst) {
+  const std::vector<Diagnostic> same(1'000'000, {Severity::Error, "x.same", {}, "again", ""});
+  const InputError error(same);
+  const std::string text = error.what();
+  EXPECT_EQ(error.items().size(), same.size());
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1000);
+  EXPECT_EQ(text.substr(text.rfind('\n')), "\n... and 999000 more");
+}
 
 TEST(Diagnostic, FormatIsFileLineKindWhatAdviceId) {
   const Diagnostic d{Severity::Error, "deck.missing-grid", {"a.bdf", 12, 0}, "grid 7 does not exist", "add it"};

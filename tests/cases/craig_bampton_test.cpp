@@ -3,6 +3,8 @@
 // attachment Jacobian φ - K_G2 η alone. Reference: a geometrically exact beam, -0.5338 m at 6.766 s.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <cmath>
 
 #include "tests/cases/support/example.hpp"
@@ -19,7 +21,7 @@ struct Peak {
 
 /// Of the parabola through the three samples around the smallest.
 Peak find_peak(const VectorXd& t, const VectorXd& v) {
-  const int i = find_minimum(v);
+  const int i = std::clamp(find_minimum(v), 1, static_cast<int>(v.size()) - 2);
   const double a = v[i - 1] - v[i], b = v[i + 1] - v[i], h = t[i + 1] - t[i];
   const double s = 0.5 * (a - b) / (a + b);
   return {v[i] - 0.25 * (a - b) * s, t[i] + s * h};

@@ -6,7 +6,7 @@ import subprocess
 import sys
 import time
 
-from support import BEAM, PROGRAM, SOURCE, ProgramTest, unittest
+from support import BEAM, PROGRAM, SLOWER, SOURCE, ProgramTest, unittest
 
 PARTS = "*.bough-part-*"
 
@@ -64,7 +64,7 @@ class Runs(ProgramTest):
 
     def stop(self, process):
         process.send_signal(signal.SIGTERM)
-        _, said = process.communicate(timeout=60)
+        _, said = process.communicate(timeout=60 * SLOWER)
         self.assertEqual(process.returncode, 3, said)
         return said
 
@@ -245,9 +245,9 @@ class Files(ProgramTest):
                           ["reduce", "plate.bdf", "-n", "60", "-o", "x.h5"]):
                 process = subprocess.Popen([PROGRAM, *words], cwd=self.folder, text=True, stdout=subprocess.DEVNULL,
                                            stderr=subprocess.PIPE)
-                time.sleep(0.4)
+                time.sleep(0.4 * SLOWER)
                 process.send_signal(at)
-                _, said = process.communicate(timeout=60)
+                _, said = process.communicate(timeout=60 * SLOWER)
                 self.assertEqual(process.returncode, 3, (at, words, said))
                 self.assertIn("[cli.interrupted]", said)
                 self.assertEqual(glob.glob(self.path(PARTS)), [])
@@ -266,6 +266,7 @@ class Files(ProgramTest):
         with open(self.path("beam.bdf")) as f:
             self.assertEqual(f.read(), BEAM)
 
+    @unittest.skipIf(SLOWER > 1, "the sanitizers need more address space")
     def test_limit_of_memory_is_told(self):
         told = 0
         for limit in range(170, 620, 30):  # in MB; below some 160 the libraries are not loaded

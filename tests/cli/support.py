@@ -7,6 +7,8 @@ import unittest
 
 PROGRAM = os.environ["BOUGH_PROGRAM"]
 SOURCE = os.environ["BOUGH_SOURCE_DIR"]
+# How many times as long as the program itself one under the sanitizers takes; these need address space without end.
+SLOWER = int(os.environ.get("BOUGH_SLOWER", "1"))
 VERBS = ["check", "modes", "static", "frequency", "transient", "matrices", "reduce", "integrals", "flx", "compare", "run",
          "equilibrium", "linearize", "response", "select", "export", "plot", "report", "info", "init", "batch", "edit", "convert"]
 
@@ -31,8 +33,8 @@ class ProgramTest(unittest.TestCase):
 
     def bough(self, *arguments, code=0, launcher=(), env=None, timeout=250):
         """Runs and checks the exit code; returns the finished process with stdout and stderr as text."""
-        result = subprocess.run([*launcher, PROGRAM, *map(str, arguments)], cwd=self.folder, text=True, timeout=timeout,
-                                capture_output=True, env={**os.environ, **(env or {})})
+        result = subprocess.run([*launcher, PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,
+                                timeout=timeout * SLOWER, capture_output=True, env={**os.environ, **(env or {})})
         self.assertEqual(result.returncode, code,
                          f"bough {' '.join(map(str, arguments))}\n--- stdout\n{result.stdout}\n--- stderr\n{result.stderr}")
         return result
