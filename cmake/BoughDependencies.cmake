@@ -31,8 +31,11 @@ if(NOT BOUGH_SOLVER_ONLY)
   find_path(MATIO_INCLUDE_DIR matio.h REQUIRED)
   find_library(MATIO_LIBRARY matio REQUIRED)
   find_library(BLAS_LIBRARY blas REQUIRED)  # the one PETSc uses
+  find_library(LAPACK_LIBRARY lapack REQUIRED)
   find_path(METIS_INCLUDE_DIR metis.h REQUIRED)
   find_library(METIS_LIBRARY metis REQUIRED)
+  find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)  # the one PETSc uses
+  find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
   find_package(CLI11 REQUIRED)
   find_package(nlohmann_json 3 REQUIRED)
   find_package(fmt REQUIRED)

@@ -11,7 +11,6 @@
 
 #include "base/diagnostic.hpp"
 #include "fe/linear/factor.hpp"
-#include "fe/linear/sum_factor.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "modal/block_lanczos.hpp"
 
@@ -27,7 +26,7 @@ PetscErrorCode apply_factor(PC pc, Vec b, Vec x) {
   Mat factor = nullptr;
   const PetscErrorCode code = PCShellGetContext(pc, static_cast<void*>(&factor));
   if (code != 0) return code;
-  if (!fe::is_sum_factor(factor)) return MatSolve(factor, b, x);
+  if (!fe::is_own_factor(factor)) return MatSolve(factor, b, x);
   fe::scatter(fe::solve_factored(factor, fe::gather(b)).col(0), x);
   return 0;
 }

@@ -42,7 +42,7 @@ void add_strains(double factor, const std::vector<records::ElementStresses>& par
   const bool is_first = sums.empty();
   add_blocks(factor, parts, &records::ElementStresses::stress, sums);
   for (std::size_t b = 0; b < sums.size(); ++b)
-    sums[b].corner = is_first ? MatrixXd(factor * parts[b].corner) : MatrixXd(sums[b].corner + factor * parts[b].corner);
+    sums[b].corner = factor * parts[b].corner + (is_first ? MatrixXd(0 * parts[b].corner) : sums[b].corner);
 }
 
 /// Of the sums of the components.

@@ -29,12 +29,12 @@ std::vector<double> Shell::calc_shares() const {
 }
 
 double Shell::calc_mean(const Eigen::Ref<const VectorXd>& corner) const {
-  double mean = 0;
+  double sum = 0;
   if (num_nodes_ == 4)
-    for (const auto& p : shell::calc_points<4>(get_corners<4>())) mean += p.weight / area_ * p.shape.dot(corner.head<4>());
+    for (const auto& p : shell::calc_points<4>(get_corners<4>())) sum += p.weight * p.shape.dot(corner.head<4>());
   else
-    for (const auto& p : shell::calc_points<3>(get_corners<3>())) mean += p.weight / area_ * p.shape.dot(corner.head<3>());
-  return mean;
+    for (const auto& p : shell::calc_points<3>(get_corners<3>())) sum += p.weight * p.shape.dot(corner.head<3>());
+  return sum / area_;
 }
 
 MatrixXd Shell::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {

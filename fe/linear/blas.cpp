@@ -8,14 +8,15 @@
 #include <algorithm>
 
 #include "base/diagnostic.hpp"
+#include "fe/linear/threads.hpp"
 
 namespace bough::fe {
 
-void multiply_dense(bool transposed, const Eigen::Ref<const Eigen::MatrixXd>& A,
-                    const Eigen::Ref<const Eigen::MatrixXd>& B, double beta, Eigen::Ref<Eigen::MatrixXd> C) {
-  BOUGH_DEMAND((transposed ? A.rows() : A.cols()) == B.rows() && (transposed ? A.cols() : A.rows()) == C.rows() &&
-               B.cols() == C.cols());
-  if (C.size() == 0) return;
+namespace {
+
+using Block = Eigen::Ref<const Eigen::MatrixXd>;
+
+void multiply(bool transposed, const Block& A, const Block& B, double beta, Eigen::Ref<Eigen::MatrixXd> C) {
   const auto as_blas = [](Eigen::Index i) { return static_cast<PetscBLASInt>(i); };
   const PetscBLASInt m = as_blas(C.rows()), n = as_blas(C.cols()), k = as_blas(B.rows());
   const PetscBLASInt lda = as_blas(std::max<Eigen::Index>(1, A.outerStride()));
@@ -23,6 +24,30 @@ void multiply_dense(bool transposed, const Eigen::Ref<const Eigen::MatrixXd>& A,
   const PetscBLASInt ldc = as_blas(C.outerStride());
   const double one = 1;
   BLASgemm_(transposed ? "T" : "N", "N", &m, &n, &k, &one, A.data(), &lda, B.data(), &ldb, &beta, C.data(), &ldc);
+}
+
+/// Fewer rows are done before a thread has started.
+constexpr Eigen::Index kTall = 50000;
+
+}  // namespace
+
+void multiply_dense(bool transposed, const Eigen::Ref<const Eigen::MatrixXd>& A,
+                    const Eigen::Ref<const Eigen::MatrixXd>& B, double beta, Eigen::Ref<Eigen::MatrixXd> C) {
+  BOUGH_DEMAND((transposed ? A.rows() : A.cols()) == B.rows() && (transposed ? A.cols() : A.rows()) == C.rows() &&
+               B.cols() == C.cols());
+  if (C.size() == 0) return;
+  if (A.rows() < kTall || get_num_threads() < 2) return multiply(transposed, A, B, beta, C);
+  // Tall matrices wait for the memory, which gives two cores more than one.
+  const Eigen::Index top = A.rows() / 2, bottom = A.rows() - top;
+  if (transposed) {
+    Eigen::MatrixXd half(C.rows(), C.cols());
+    do_both([&] { multiply(true, A.topRows(top), B.topRows(top), beta, C); },
+            [&] { multiply(true, A.bottomRows(bottom), B.bottomRows(bottom), 0, half); });
+    C += half;
+  } else {
+    do_both([&] { multiply(false, A.topRows(top), B, beta, C.topRows(top)); },
+            [&] { multiply(false, A.bottomRows(bottom), B, beta, C.bottomRows(bottom)); });
+  }
 }
 
 }  // namespace bough::fe

@@ -6,6 +6,7 @@
 #include "fe/linear/petsc_message.hpp"
 #include "fe/linear/ranks.hpp"
 #include "fe/linear/sum_factor.hpp"
+#include "fe/linear/supernodal_factor.hpp"
 
 namespace bough::fe {
 namespace {
@@ -111,6 +112,7 @@ PetscMat factor_definite(Mat A) {
     PetscMat sum = make_sum_factor(std::move(sparse), *part);
     return count_extra_negative(sum.get()) == 0 ? std::move(sum) : PetscMat();
   }
+  if (SupernodalFactor own = make_supernodal_factor(A); own.factor || !own.is_definite) return std::move(own.factor);
   // Without both a small matrix gets an LDLᵀ that takes negative pivots as they come.
   check_petsc(PetscOptionsSetValue(nullptr, "-mat_cholmod_final_asis", "false"));
   check_petsc(PetscOptionsSetValue(nullptr, "-mat_cholmod_final_ll", "true"));
@@ -189,9 +191,11 @@ void SymmetricFactor::factor_by_mumps(Mat A, bool find_null_pivots) {
                          "look for negative springs, and for very soft and very stiff parts side by side");
 }
 
+bool is_own_factor(Mat factor) { return is_sum_factor(factor) || is_supernodal_factor(factor); }
+
 MatrixXd solve_factored(Mat factor, const Eigen::Ref<const MatrixXd>& B) {
   if (B.cols() == 0) return B;
-  if (MatrixXd X; solve_sum(factor, B, X)) return X;
+  if (MatrixXd X; solve_sum(factor, B, X) || solve_supernodal(factor, B, X)) return X;
   const PetscMat rhs = make_dense(factor, B);
   if (initialize_petsc().size == 1) {
     MatrixXd X(B.rows(), B.cols());

@@ -47,7 +47,9 @@ class SymmetricFactor {
 /// LLᵀ by CHOLMOD of a positive definite A on one process; empty when A is not, or there are several.
 PetscMat factor_definite(Mat A);
 
-/// X with A X = B from a factor of A that PETSc holds.
+/// Whether MatSolve does not know the factor, but solve_factored alone.
+bool is_own_factor(Mat factor);
+/// X with A X = B from a factor of A that PETSc holds, or that stands for one.
 Eigen::MatrixXd solve_factored(Mat factor, const Eigen::Ref<const Eigen::MatrixXd>& B);
 /// A X of a distributed A and a replicated X, replicated.
 Eigen::MatrixXd multiply(Mat A, const Eigen::Ref<const Eigen::MatrixXd>& X);

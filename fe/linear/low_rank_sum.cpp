@@ -50,14 +50,7 @@ PetscErrorCode destroy_sum(Mat A) {
   return 0;
 }
 
-const Sum* find_sum(Mat A) {
-  PetscBool is_shell = PETSC_FALSE;
-  check_petsc(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(A), MATSHELL, &is_shell));
-  if (!is_shell) return nullptr;
-  void* context = nullptr;
-  check_petsc(MatShellGetContext(A, static_cast<void*>(&context)));
-  return static_cast<const Sum*>(context);
-}
+const Sum* find_sum(Mat A) { return static_cast<const Sum*>(find_shell_context(A, destroy_sum)); }
 
 SparseColumns join_columns(const SparseColumns& A, const SparseColumns& B) {
   SparseColumns C(A.rows(), A.cols() + B.cols());

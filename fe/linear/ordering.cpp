@@ -3,6 +3,7 @@
 #include <metis.h>
 
 #include <type_traits>
+#include <vector>
 
 namespace bough::fe {
 namespace {
@@ -11,11 +12,6 @@ static_assert(std::is_same_v<idx_t, PetscInt>, "graphs are handed to METIS as Pe
 
 constexpr const char* kGroups = "bough_row_groups";
 constexpr const char* kOrder = "bough_elimination_order";
-/// Below this the solver's own order costs less than it could gain.
-constexpr PetscInt kSmall = 3000;
-/// Neighbours of a vertex, on average, of a mesh; of beams in lines there are two. Minimum degree eliminates a line
-/// from its free end, which loses fewer digits than dissection does by condensing pieces that nothing holds.
-constexpr std::size_t kMesh = 4;
 
 struct Graph {
   std::vector<idx_t> start{0}, neighbours, weight;
@@ -59,19 +55,42 @@ void copy_row_groups(Mat from, Mat to) {
   }
 }
 
-PetscIs find_elimination_order(Mat A) {
+namespace {
+
+/// The rows of groups in the order of `rank`.
+std::vector<PetscInt> list_rows(const std::vector<idx_t>& rank, const PetscInt* group_start) {
+  std::vector<PetscInt> rows;
+  for (const idx_t g : rank)
+    for (PetscInt row = group_start[g]; row < group_start[g + 1]; ++row) rows.push_back(row);
+  return rows;
+}
+
+/// Behind the groups that have so many rows.
+std::vector<idx_t>::const_iterator skip_rows(const Graph& graph, const std::vector<idx_t>& rank, idx_t num_rows) {
+  auto group = rank.begin();
+  for (idx_t rows = 0; rows < num_rows && group != rank.end(); ++group)
+    rows += graph.weight[static_cast<std::size_t>(*group)];
+  return group;
+}
+
+bool couples(const Graph& graph, const std::vector<idx_t>& some, const std::vector<idx_t>& others) {
+  std::vector<char> is_other(graph.weight.size(), 0);
+  for (const idx_t g : others) is_other[static_cast<std::size_t>(g)] = 1;
+  for (const idx_t g : some)
+    for (idx_t k = graph.start[g]; k < graph.start[g + 1]; ++k)
+      if (is_other[static_cast<std::size_t>(graph.neighbours[k])]) return true;
+  return false;
+}
+
+/// Calls `use(graph, group_start)` with the graph of the row groups of A; not where A has none, is smaller than
+/// `least`, or lives on several processes.
+template <class Use>
+void visit_group_graph(Mat A, PetscInt least, const Use& use) {
   PetscObject object = nullptr;
   check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(A), kGroups, &object));
   PetscInt size = 0;
   check_petsc(MatGetSize(A, &size, nullptr));
-  if (!object || size < kSmall || initialize_petsc().size > 1) return {};
-  PetscObject known = nullptr;
-  check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(A), kOrder, &known));
-  if (known) {
-    check_petsc(PetscObjectReference(known));
-    return PetscIs(reinterpret_cast<IS>(known));
-  }
-
+  if (!object || size < least || initialize_petsc().size > 1) return;
   const IS groups = reinterpret_cast<IS>(object);
   PetscInt num_groups = 0;
   const PetscInt *group_start = nullptr, *row_start = nullptr, *columns = nullptr;
@@ -80,27 +99,63 @@ PetscIs find_elimination_order(Mat A) {
   --num_groups;
   check_petsc(ISGetIndices(groups, &group_start));
   check_petsc(MatGetRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &size, &row_start, &columns, &done));
-  std::vector<PetscInt> order;
   if (done) {
     Graph graph = build_group_graph(row_start, columns, group_start, num_groups);
-    std::vector<idx_t> rank(num_groups), inverse(num_groups);
-    idx_t num = num_groups, options[METIS_NOPTIONS];
-    METIS_SetDefaultOptions(options);
-    if (!graph.neighbours.empty() &&
-        METIS_NodeND(&num, graph.start.data(), graph.neighbours.data(), graph.weight.data(), options, rank.data(),
-                     inverse.data()) == METIS_OK)
-      for (const idx_t g : rank)
-        for (PetscInt row = group_start[g]; row < group_start[g + 1]; ++row) order.push_back(row);
+    if (!graph.neighbours.empty()) use(graph, group_start);
   }
   check_petsc(MatRestoreRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &size, &row_start, &columns, &done));
   check_petsc(ISRestoreIndices(groups, &group_start));
+}
+
+}  // namespace
+
+PetscIs find_elimination_order(Mat A, PetscInt least) {
+  PetscObject known = nullptr;
+  check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(A), kOrder, &known));
+  PetscInt size = 0;
+  check_petsc(MatGetSize(A, &size, nullptr));
+  if (size < least) return {};
+  if (known) {
+    check_petsc(PetscObjectReference(known));
+    return PetscIs(reinterpret_cast<IS>(known));
+  }
   PetscIs result;
-  if (order.empty()) return result;
-  check_petsc(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(order.size()), order.data(), PETSC_COPY_VALUES,
-                              result.out()));
-  check_petsc(ISSetPermutation(result.get()));
-  check_petsc(
-      PetscObjectCompose(reinterpret_cast<PetscObject>(A), kOrder, reinterpret_cast<PetscObject>(result.get())));
+  visit_group_graph(A, least, [&](Graph& graph, const PetscInt* group_start) {
+    std::vector<idx_t> rank(graph.weight.size()), inverse(graph.weight.size());
+    idx_t num = static_cast<idx_t>(rank.size()), options[METIS_NOPTIONS];
+    METIS_SetDefaultOptions(options);
+    if (METIS_NodeND(&num, graph.start.data(), graph.neighbours.data(), graph.weight.data(), options, rank.data(),
+                     inverse.data()) != METIS_OK)
+      return;
+    const std::vector<PetscInt> order = list_rows(rank, group_start);
+    check_petsc(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(order.size()), order.data(), PETSC_COPY_VALUES,
+                                result.out()));
+    check_petsc(ISSetPermutation(result.get()));
+    check_petsc(
+        PetscObjectCompose(reinterpret_cast<PetscObject>(A), kOrder, reinterpret_cast<PetscObject>(result.get())));
+  });
+  return result;
+}
+
+std::optional<TwoParts> find_two_parts(Mat A, PetscInt least) {
+  std::optional<TwoParts> result;
+  visit_group_graph(A, least, [&](Graph& graph, const PetscInt* group_start) {
+    std::vector<idx_t> rank(graph.weight.size()), inverse(graph.weight.size()), sizes(3);
+    idx_t options[METIS_NOPTIONS];
+    METIS_SetDefaultOptions(options);
+    if (METIS_NodeNDP(static_cast<idx_t>(rank.size()), graph.start.data(), graph.neighbours.data(), graph.weight.data(),
+                      2, options, rank.data(), inverse.data(), sizes.data()) != METIS_OK)
+      return;
+    // METIS tells how many rows its parts have, those between last; of which of the two parts first, the graph tells.
+    const auto between = skip_rows(graph, rank, sizes[0] + sizes[1]);
+    for (const idx_t num_rows : {sizes[0], sizes[1]}) {
+      const auto second = skip_rows(graph, rank, num_rows);
+      if (couples(graph, {rank.cbegin(), second}, {second, between})) continue;
+      result = {list_rows({rank.cbegin(), second}, group_start), list_rows({second, between}, group_start),
+                list_rows({between, rank.cend()}, group_start)};
+      return;
+    }
+  });
   return result;
 }
 

@@ -8,7 +8,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <string>
-#include <string_view>
 
 #include "base/diagnostic.hpp"
 #include "fe/linear/petsc_message.hpp"
@@ -57,15 +56,14 @@ Function* find_function(const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
 }
 
-/// One thread in OpenBLAS and in CHOLMOD unless the user says otherwise: the factors' dense blocks are small, and
-/// threads that wait for each other by spinning double the time on a busy machine and add a fifth on a quiet one.
-/// CHOLMOD asks OpenMP for a number of threads of its own, whatever OMP_NUM_THREADS says; no level of parallel regions
-/// means one. Found by name, since other libraries may be installed.
+/// One thread in CHOLMOD, and in OpenBLAS unless the user says otherwise: the factors' dense blocks are small, and
+/// threads that wait for each other by spinning double the time on a busy machine and add a fifth on a quiet one. Two
+/// parts of a model are work enough for two (threads.hpp). CHOLMOD asks OpenMP for a number of threads of its own,
+/// whatever OMP_NUM_THREADS says; no level of parallel regions means one. Found by name, since other libraries may be
+/// installed.
 void hold_threads() {
-  const char* openmp = std::getenv("OMP_NUM_THREADS");
-  if (!openmp || std::string_view(openmp) == "1")
-    if (const auto set = find_function<void(int)>("omp_set_max_active_levels")) set(0);
-  if (openmp || std::getenv("OPENBLAS_NUM_THREADS")) return;
+  set_openmp_levels(0);
+  if (std::getenv("OPENBLAS_NUM_THREADS")) return;
   if (const auto set = find_function<void(int)>("openblas_set_num_threads")) set(1);
 }
 
@@ -84,6 +82,15 @@ PetscErrorCode initialize_undisturbed() {
 }
 
 }  // namespace
+
+int set_openmp_levels(int levels) {
+  const auto set = find_function<void(int)>("omp_set_max_active_levels");
+  const auto get = find_function<int()>("omp_get_max_active_levels");
+  if (!set || !get) return levels;
+  const int before = get();
+  set(levels);
+  return before;
+}
 
 MpiWorld initialize_petsc() {
   PetscBool initialized = PETSC_FALSE;
@@ -114,6 +121,18 @@ MpiWorld initialize_petsc() {
   MPI_Comm_rank(PETSC_COMM_WORLD, &world.rank);
   MPI_Comm_size(PETSC_COMM_WORLD, &world.size);
   return world;
+}
+
+void* find_shell_context(Mat A, PetscErrorCode (*destroy)(Mat)) {
+  PetscBool is_shell = PETSC_FALSE;
+  check_petsc(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(A), MATSHELL, &is_shell));
+  if (!is_shell) return nullptr;
+  void (*own)() = nullptr;
+  check_petsc(MatShellGetOperation(A, MATOP_DESTROY, &own));
+  if (own != reinterpret_cast<void (*)()>(destroy)) return nullptr;
+  void* context = nullptr;
+  check_petsc(MatShellGetContext(A, static_cast<void*>(&context)));
+  return context;
 }
 
 PetscMat share(const PetscMat& A) {

@@ -18,6 +18,10 @@ struct MpiWorld {
 };
 MpiWorld initialize_petsc();
 
+/// How deep parallel regions of OpenMP may be nested from this thread on: 0 is one thread. Returns what it was before;
+/// nothing happens where no library of the process uses OpenMP.
+int set_openmp_levels(int levels);
+
 /// Owning handle; Destroy is PETSc's MatDestroy and so on.
 template <class T, PetscErrorCode (*Destroy)(T*)>
 class PetscHandle {
@@ -42,6 +46,9 @@ class PetscHandle {
 using PetscMat = PetscHandle<Mat, MatDestroy>;
 using PetscVec = PetscHandle<Vec, VecDestroy>;
 using PetscKsp = PetscHandle<KSP, KSPDestroy>;
+
+/// What a shell matrix keeps, told by what destroys it; null for every other matrix.
+void* find_shell_context(Mat A, PetscErrorCode (*destroy)(Mat));
 
 /// Another handle of the same matrix, which lives as long as any of them.
 PetscMat share(const PetscMat& A);

@@ -31,14 +31,7 @@ PetscErrorCode destroy_factor(Mat A) {
   return 0;
 }
 
-const SumFactor* find_factor(Mat A) {
-  PetscBool is_shell = PETSC_FALSE;
-  check_petsc(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(A), MATSHELL, &is_shell));
-  if (!is_shell) return nullptr;
-  void* context = nullptr;
-  check_petsc(MatShellGetContext(A, static_cast<void*>(&context)));
-  return static_cast<const SumFactor*>(context);
-}
+const SumFactor* find_factor(Mat A) { return static_cast<const SumFactor*>(find_shell_context(A, destroy_factor)); }
 
 /// Rows and columns of S to about one.
 VectorXd calc_units(const MatrixXd& S) {

@@ -1,0 +1,57 @@
+#include "fe/linear/threads.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <exception>
+#include <thread>
+
+#include "fe/linear/petsc.hpp"
+
+namespace bough::fe {
+
+namespace {
+
+/// While it lives, OpenMP starts no threads from this one: CHOLMOD asks for four, whatever OMP_NUM_THREADS says.
+class OneThread {
+ public:
+  OneThread() = default;
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+  ~OneThread() { set_openmp_levels(before_); }
+
+ private:
+  int before_ = set_openmp_levels(0);
+};
+
+}  // namespace
+
+int get_num_threads() {
+  if (const char* asked = std::getenv("OMP_NUM_THREADS")) return std::max(1, std::atoi(asked));
+  return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 2U));
+}
+
+void do_alone(const std::function<void()>& work) {
+  const OneThread alone;
+  work();
+}
+
+void do_both(const std::function<void()>& first, const std::function<void()>& second) {
+  std::exception_ptr failure;
+  std::thread other([&] {
+    try {
+      do_alone(second);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  });
+  try {
+    do_alone(first);
+  } catch (...) {
+    other.join();
+    throw;
+  }
+  other.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,15 @@
+#pragma once
+/// \file Two threads for what is worth them.
+#include <functional>
+
+namespace bough::fe {
+
+/// OMP_NUM_THREADS, or two where the machine has them.
+int get_num_threads();
+
+/// Both at once, the second in a thread of its own; OpenMP starts none beside them. What either throws is thrown here.
+void do_both(const std::function<void()>& first, const std::function<void()>& second);
+/// The same of one alone, in this thread.
+void do_alone(const std::function<void()>& work);
+
+}  // namespace bough::fe

@@ -1,0 +1,136 @@
+/// A factor in two parts against one in one part, and what it refuses.
+#include "fe/linear/supernodal_factor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "fe/linear/factor.hpp"
+#include "fe/linear/ordering.hpp"
+
+namespace bough::fe {
+namespace {
+
+/// So many threads while it lives.
+class Threads {
+ public:
+  explicit Threads(int num) {
+    if (const char* before = std::getenv("OMP_NUM_THREADS")) before_ = before;
+    setenv("OMP_NUM_THREADS", std::to_string(num).c_str(), 1);
+  }
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+  ~Threads() {
+    if (before_.empty())
+      unsetenv("OMP_NUM_THREADS");
+    else
+      setenv("OMP_NUM_THREADS", before_.c_str(), 1);
+  }
+
+ private:
+  std::string before_;
+};
+
+/// Nine points of a grid of num_x x num_y nodes of two rows each, with `shift` of the identity taken away. Definite
+/// below about 1.5 ((π / num_x)² + (π / num_y)²).
+PetscMat make_grid(int num_x, int num_y, double shift = 0, bool is_apart = false) {
+  const int n = 2 * num_x * num_y;
+  PetscMat A;
+  check_petsc(MatCreateSeqAIJ(PETSC_COMM_SELF, n, n, 18, nullptr, A.out()));
+  for (int y = 0; y < num_y; ++y)
+    for (int x = 0; x < num_x; ++x)
+      for (int d = 0; d < 2; ++d) {
+        const int row = 2 * (y * num_x + x) + d;
+        check_petsc(MatSetValue(A.get(), row, row, 5 + 0.1 * d - shift, INSERT_VALUES));
+        // Apart: the second rows alone, and the columns of nodes left and right of the 30th.
+        if (!is_apart) check_petsc(MatSetValue(A.get(), row, 2 * (y * num_x + x) + 1 - d, 0.005, INSERT_VALUES));
+        if (is_apart && d == 1) continue;
+        for (int dx = -1; dx <= 1; ++dx)
+          for (int dy = -1; dy <= 1; ++dy) {
+            if ((dx == 0 && dy == 0) || x + dx < 0 || x + dx >= num_x || y + dy < 0 || y + dy >= num_y) continue;
+            if (is_apart && dx != 0 && std::min(x, x + dx) == 30) continue;
+            check_petsc(
+                MatSetValue(A.get(), row, row + 2 * (dy * num_x + dx), dx * dy == 0 ? -1 : -0.25, INSERT_VALUES));
+          }
+      }
+  check_petsc(MatAssemblyBegin(A.get(), MAT_FINAL_ASSEMBLY));
+  check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
+  std::vector<int> start;
+  for (int i = 0; i <= n; i += 2) start.push_back(i);
+  set_row_groups(A.get(), start);
+  return A;
+}
+
+class SupernodalFactorOn : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Threads, SupernodalFactorOn, ::testing::Values(1, 2));
+
+TEST_P(SupernodalFactorOn, SolvesAsThePivotedOneDoes) {
+  const Threads threads(GetParam());
+  const PetscMat A = make_grid(90, 60);
+  const SupernodalFactor own = make_supernodal_factor(A.get(), 0);
+  ASSERT_TRUE(own.factor);
+  EXPECT_TRUE(own.is_definite);
+  EXPECT_EQ(own.num_parts, GetParam());
+  EXPECT_TRUE(is_supernodal_factor(own.factor.get()));
+  EXPECT_TRUE(is_own_factor(own.factor.get()));
+  const SymmetricFactor pivoted(A.get(), false, FactorMethod::Pivoting);
+  const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 90 * 60, 21);
+  for (const int m : {1, 4, 5, 8, 21}) {  // few, many, and more than go together
+    const Eigen::MatrixXd X = solve_factored(own.factor.get(), B.leftCols(m));
+    const Eigen::MatrixXd R = B.leftCols(m) - multiply(A.get(), X);
+    EXPECT_LT(R.cwiseAbs().maxCoeff(), 1e-12 * X.cwiseAbs().maxCoeff()) << m;
+    EXPECT_LT((X - pivoted.solve(B.leftCols(m))).cwiseAbs().maxCoeff(), 1e-11 * X.cwiseAbs().maxCoeff()) << m;
+    // Again, to the bit: nothing depends on which thread comes first.
+    const SupernodalFactor again = make_supernodal_factor(A.get(), 0);
+    EXPECT_TRUE((solve_factored(again.factor.get(), B.leftCols(m)).array() == X.array()).all()) << m;
+  }
+}
+
+TEST(SupernodalFactor, IsOfLargeMatricesInGroups) {
+  const Threads two(2);
+  EXPECT_FALSE(make_supernodal_factor(make_grid(90, 60).get()).factor) << "small";
+  EXPECT_EQ(make_supernodal_factor(make_grid(4000, 1).get(), 0).num_parts, 2) << "a line";
+  const PetscMat bare = make_grid(90, 60);
+  check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(bare.get()), "bough_row_groups", nullptr));
+  EXPECT_FALSE(make_supernodal_factor(bare.get(), 0).factor) << "rows without groups";
+  EXPECT_EQ(make_supernodal_factor(make_grid(20, 20).get(), 0).num_parts, 1) << "many rows between";
+}
+
+/// A negative eigenvalue of the whole (0.0055) may be none of either part (0.011): the rows between have it.
+TEST_P(SupernodalFactorOn, IndefiniteMatricesAreTold) {
+  const Threads threads(GetParam());
+  EXPECT_TRUE(make_supernodal_factor(make_grid(90, 60, 0.002).get(), 0).is_definite);
+  for (const double shift : {0.006, 0.05, 3.0}) {
+    const SupernodalFactor own = make_supernodal_factor(make_grid(90, 60, shift).get(), 0);
+    EXPECT_FALSE(own.is_definite) << shift;
+    EXPECT_FALSE(own.factor) << shift;
+  }
+}
+
+TEST_P(SupernodalFactorOn, LargeMatricesTakeIt) {
+  const Threads threads(GetParam());
+  const PetscMat A = make_grid(160, 90);
+  const PetscMat factor = factor_definite(A.get());
+  ASSERT_TRUE(factor);
+  EXPECT_TRUE(is_supernodal_factor(factor.get()));
+  const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 160 * 90, 3);
+  const Eigen::MatrixXd X = SymmetricFactor(A.get(), false).solve(B);
+  EXPECT_LT((B - multiply(A.get(), X)).cwiseAbs().maxCoeff(), 1e-12 * X.cwiseAbs().maxCoeff());
+}
+
+/// Two pieces that do not touch, and rows of a piece that stand alone: trees without a way to the rows between.
+TEST_P(SupernodalFactorOn, PiecesMayBeApart) {
+  const Threads threads(GetParam());
+  const PetscMat A = make_grid(90, 60, 0, true);
+  const SupernodalFactor own = make_supernodal_factor(A.get(), 0);
+  ASSERT_TRUE(own.factor);
+  const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 90 * 60, 4);
+  const Eigen::MatrixXd X = solve_factored(own.factor.get(), B);
+  EXPECT_LT((B - multiply(A.get(), X)).cwiseAbs().maxCoeff(), 1e-12 * X.cwiseAbs().maxCoeff());
+}
+
+}  // namespace
+}  // namespace bough::fe
