@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "cli/common/console.hpp"
 #include "cli/common/model_options.hpp"
@@ -130,19 +131,21 @@ int run_static(const StaticOptions& options) {
   if (options.has_strains || asks_for(requests, "STRAIN")) solver.ask_strains();
   if (!options.listing.empty()) listing.emplace(deck, requests, diagnostics);
   diagnostics.throw_if_errors();
-  for (const auto& subcase : subcases) {
-    Diagnostics own;
-    try {
-      result.subcases.push_back(solver.solve(subcase, own));
-      if (listing) {
-        listing->add_weight(solver.model());
-        listing->add_static(solver.model(), result.subcases.back(), own);
+  for (std::size_t next = 0; next < subcases.size();)
+    for (auto& one : solver.solve_next(std::span(subcases).subspan(next))) {
+      const int id = subcases[next++].id;
+      try {
+        if (one.failure) std::rethrow_exception(one.failure);
+        result.subcases.push_back(std::move(*one.result));
+        if (listing) {
+          listing->add_weight(solver.model());
+          listing->add_static(solver.model(), result.subcases.back(), one.said);
+        }
+      } catch (const Failure& failure) {
+        failures.add(id, failure);
       }
-    } catch (const Failure& failure) {
-      failures.add(subcase.id, failure);
+      add_new(one.said, diagnostics);
     }
-    add_new(own, diagnostics);
-  }
   if (result.subcases.empty()) failures.throw_all(diagnostics);
   if (options.model.subcase == 0)
     add_combinations(deck, requests, solver.model(), result, failures, listing ? &*listing : nullptr, diagnostics);

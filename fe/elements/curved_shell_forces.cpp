@@ -3,6 +3,7 @@
 #include "base/rotation.hpp"
 #include "fe/elements/curved_shell_operators.hpp"
 #include "fe/elements/geometric_projection.hpp"
+#include "fe/linear/blas.hpp"
 
 namespace bough::fe {
 
@@ -102,6 +103,11 @@ MatrixXd CurvedShell::calc_force_map(const Operators& o, const MatrixXd& inner_m
 void CurvedShell::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
   const Operators o = calc_operators(true);
   force = calc_force_map(o, calc_inner_map(o)) * u;
+}
+
+void CurvedShell::calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const {
+  const Operators o = calc_operators(true);
+  multiply_dense(false, calc_force_map(o, calc_inner_map(o)), U, 0, forces);
 }
 
 std::vector<std::string> CurvedShell::internal_force_names() const {

@@ -16,6 +16,9 @@ void Element::add_structural_damping(double g, Eigen::Ref<MatrixXd> K) const {
   if (g + structural_damping_ != 0) add_stiffness(g + structural_damping_, K);
 }
 void Element::calc_internal_forces(const Eigen::Ref<const VectorXd>&, Eigen::Ref<VectorXd>) const {}
+void Element::calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const {
+  for (Eigen::Index c = 0; c < U.cols(); ++c) calc_internal_forces(U.col(c), forces.col(c));
+}
 VectorXd Element::calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const {
   VectorXd force = VectorXd::Zero(num_internal_forces());
   calc_internal_forces(u, force);
@@ -42,7 +45,7 @@ void Element::add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>
                                                 GeometricProjection& sums) const {
   const Eigen::Index s = num_internal_forces(), m = U.cols();
   MatrixXd force(s, m), K_G(num_dofs(), num_dofs());
-  for (Eigen::Index c = 0; c < m; ++c) calc_internal_forces(U.col(c), force.col(c));
+  calc_internal_forces_of(U, force);
   const Eigen::Index num_terms = std::min(s, m);
   auto terms = sums.add_terms(num_terms);
   for (Eigen::Index k = 0; k < num_terms; ++k) {

@@ -84,6 +84,8 @@ class Element {
   virtual int num_internal_forces() const { return 0; }
   /// Internal forces (s) of the element for its nodal displacements u (N), linear in u. Names: internal_force_names().
   virtual void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const;
+  /// Of every column of U (N x m): s x m. Elements whose map from u to forces is dear make it once.
+  virtual void calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const;
   virtual std::vector<std::string> internal_force_names() const { return {}; }
   /// What static solutions print of an element: its internal forces, or those of a spring, which no K_G asks for.
   virtual std::vector<std::string> printed_force_names() const { return internal_force_names(); }

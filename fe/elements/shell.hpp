@@ -44,6 +44,7 @@ class Shell final : public Element {
   /// the moment about the normal of each corner.
   int num_internal_forces() const override { return (kNumForces + 1) * num_points(); }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
+  void calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const override;
   std::vector<std::string> internal_force_names() const override;
   std::vector<std::string> printed_force_names() const override;
   VectorXd calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const override;

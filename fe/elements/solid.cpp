@@ -161,6 +161,10 @@ void Solid::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref
   force = calc_force_map(calc_fields(false)) * u;
 }
 
+void Solid::calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const {
+  multiply_dense(false, calc_force_map(calc_fields(false)), U, 0, forces);
+}
+
 double Solid::add_thermal(const ElementTemperature& given, Eigen::Ref<VectorXd> load,
                           Eigen::Ref<VectorXd> initial) const {
   const ElementTemperature T = given.calc_change(expansion_->tref);

@@ -59,6 +59,7 @@ class Solid final : public Element {
   /// The six stresses at every quadrature point, in basic axes.
   int num_internal_forces() const override { return 6 * num_points_; }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
+  void calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const override;
   std::vector<std::string> internal_force_names() const override;
   /// The mean of the stresses over the volume, in basic axes: that at the centre where they are linear.
   std::vector<StressPoint> stress_points() const override;

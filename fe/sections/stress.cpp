@@ -35,8 +35,23 @@ std::vector<std::string> list_derived(const StressPoint& point, bool of_strain) 
   }
 }
 
+Eigen::Index count_derived(const StressPoint& point, bool of_strain) {
+  switch (point.kind) {
+    case StressKind::Plane:
+    case StressKind::Solid:
+      return 3;
+    case StressKind::Rod:
+      return of_strain ? 0 : 1;
+    case StressKind::Ply:
+      return of_strain || point.theory == FailureTheory::None ? 0 : 1;
+    default:
+      return 0;
+  }
+}
+
 void calc_derived(const StressPoint& point, const Eigen::Ref<const VectorXd>& given, bool of_strain, double* out) {
-  const VectorXd s = of_strain ? halve_shears(point.kind, given) : VectorXd(given);
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> s = given;  // no memory of its own: it is called often
+  if (of_strain) s = halve_shears(point.kind, given);
   if (point.kind == StressKind::Plane) {
     const double mean = 0.5 * (s[0] + s[1]), radius = std::hypot(0.5 * (s[0] - s[1]), s[2]);
     out[0] = of_strain ? calc_plane_von_mises_strain(given) : calc_plane_von_mises(s);
@@ -50,9 +65,9 @@ void calc_derived(const StressPoint& point, const Eigen::Ref<const VectorXd>& gi
     out[0] = of_strain ? calc_solid_von_mises_strain(given) : calc_solid_von_mises(s);
     out[1] = principal[2];
     out[2] = principal[0];
-  } else if (point.kind == StressKind::Rod) {
+  } else if (point.kind == StressKind::Rod && !of_strain) {
     out[0] = std::sqrt(s[0] * s[0] + 3 * s[1] * s[1]);
-  } else if (point.kind == StressKind::Ply && point.theory != FailureTheory::None) {
+  } else if (point.kind == StressKind::Ply && !of_strain && point.theory != FailureTheory::None) {
     out[0] = calc_failure_index(point, s);
   }
 }
@@ -78,26 +93,9 @@ std::vector<std::string> list_names(const std::vector<StressPoint>& points, bool
 
 VectorXd calc_results(const std::vector<StressPoint>& points, const Eigen::Ref<const VectorXd>& given,
                       bool of_strain) {
-  VectorXd out(static_cast<Eigen::Index>(list_names(points, of_strain).size()));
-  Eigen::Index from = 0, to = 0;
-  double most = -HUGE_VAL, least = HUGE_VAL;
-  for (const auto& point : points) {
-    const auto n = static_cast<Eigen::Index>(list_components(point.kind).size());
-    const auto d = static_cast<Eigen::Index>(list_derived(point, of_strain).size());
-    out.segment(to, n) = given.segment(from, n);
-    calc_derived(point, given.segment(from, n), of_strain, out.data() + to + n);
-    if (point.kind != StressKind::Mid) {
-      const double value = d > 0 ? out[to + n] : given[from];
-      most = std::max(most, value);
-      least = std::min(least, value);
-    }
-    from += n;
-    to += n + d;
-  }
-  BOUGH_DEMAND(from == given.size());
-  const auto extremes = out.size() - to;
-  if (extremes > 0) out[to] = most;
-  if (extremes > 1) out[to + 1] = least;
+  const PointResults results(points, of_strain);
+  VectorXd out(results.size());
+  results.calc(given, out);
   return out;
 }
 
@@ -144,6 +142,38 @@ std::vector<std::string> list_strain_result_names(const std::vector<StressPoint>
 
 VectorXd calc_strain_results(const std::vector<StressPoint>& points, const Eigen::Ref<const VectorXd>& strain) {
   return calc_results(points, strain, true);
+}
+
+PointResults::PointResults(std::vector<StressPoint> points, bool of_strain)
+    : points_(std::move(points)), of_strain_(of_strain) {
+  for (const auto& point : points_) {
+    num_components_.push_back(static_cast<Eigen::Index>(list_components(point.kind).size()));
+    num_derived_.push_back(count_derived(point, of_strain));
+    size_ += num_components_.back() + num_derived_.back();
+  }
+  num_extremes_ = static_cast<Eigen::Index>(list_extremes(points_, of_strain).size());
+  size_ += num_extremes_;
+}
+
+void PointResults::calc(const Eigen::Ref<const VectorXd>& given, Eigen::Ref<VectorXd> out) const {
+  BOUGH_DEMAND(out.size() == size_);
+  Eigen::Index from = 0, to = 0;
+  double most = -HUGE_VAL, least = HUGE_VAL;
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    const auto n = num_components_[p], d = num_derived_[p];
+    out.segment(to, n) = given.segment(from, n);
+    calc_derived(points_[p], given.segment(from, n), of_strain_, out.data() + to + n);
+    if (points_[p].kind != StressKind::Mid) {
+      const double value = d > 0 ? out[to + n] : given[from];
+      most = std::max(most, value);
+      least = std::min(least, value);
+    }
+    from += n;
+    to += n + d;
+  }
+  BOUGH_DEMAND(from == given.size());
+  if (num_extremes_ > 0) out[to] = most;
+  if (num_extremes_ > 1) out[to + 1] = least;
 }
 
 double calc_plane_von_mises_strain(const Vector3d& e) {

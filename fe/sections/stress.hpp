@@ -50,6 +50,20 @@ std::vector<std::string> list_strain_result_names(const std::vector<StressPoint>
 Eigen::VectorXd calc_strain_results(const std::vector<StressPoint>& points,
                                     const Eigen::Ref<const Eigen::VectorXd>& strain);
 
+/// Both, of the points of one element and the values of many cases.
+class PointResults {
+ public:
+  PointResults(std::vector<StressPoint> points, bool of_strain);
+  Eigen::Index size() const { return size_; }
+  void calc(const Eigen::Ref<const Eigen::VectorXd>& given, Eigen::Ref<Eigen::VectorXd> out) const;
+
+ private:
+  std::vector<StressPoint> points_;
+  std::vector<Eigen::Index> num_components_, num_derived_;
+  Eigen::Index num_extremes_ = 0, size_ = 0;
+  bool of_strain_;
+};
+
 /// √(4/9 (εx² - εxεy + εy²) + γ²/3): √(2/3 e:e) of the deviator e with εz = 0, as Nastran prints it.
 double calc_plane_von_mises_strain(const Eigen::Vector3d& strain);
 /// √(2/9 ((εx - εy)² + (εy - εz)² + (εz - εx)²) + (γxy² + γyz² + γzx²)/3), of xx yy zz xy yz zx.

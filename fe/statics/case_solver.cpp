@@ -3,10 +3,33 @@
 #include <algorithm>
 
 #include "fe/matrices/system.hpp"
+#include "fe/statics/element_recovery.hpp"
 #include "fe/statics/element_results.hpp"
 #include "fe/statics/preload.hpp"
 
 namespace bough::fe {
+namespace {
+
+constexpr std::size_t kMostColumns = 32;  // of the g-set, in a dozen copies while they are solved
+constexpr std::size_t kMostHeated = 16;
+
+/// What must be the same for a model and its factor to be kept.
+std::array<int, 5> list_held(const records::Subcase& subcase) {
+  return {subcase.spc, subcase.mpc, subcase.suport1, subcase.preload, subcase.initial_temperature};
+}
+
+/// What solve_static_cases gives; the head is there.
+void take(records::StaticSubcase&& from, records::StaticSubcase& to) {
+  from.id = to.id;
+  from.label = std::move(to.label);
+  from.load_set = to.load_set;
+  from.temperature_set = to.temperature_set;
+  from.spc_set = to.spc_set;
+  from.mpc_set = to.mpc_set;
+  to = std::move(from);
+}
+
+}  // namespace
 
 std::vector<records::Subcase> choose_static_subcases(const records::Deck& deck, int asked) {
   const auto enforces = [&](int set) {
@@ -29,35 +52,108 @@ CaseSolver::CaseSolver(const records::Deck& deck, ModelOptions options) : deck_(
   options_.uses_enforced = true;
 }
 
-records::StaticSubcase CaseSolver::solve(const records::Subcase& subcase, Diagnostics& diagnostics) {
-  prepare(subcase, diagnostics);
-  Diagnostics own;
-  const auto load = calc_static_load(*model_, deck_, subcase, own);
-  own.throw_if_errors();
-  auto solved = solve_static_case(*model_, *solver_, load, suport_, &own);
-  solved.id = subcase.id;
-  solved.label = subcase.label.empty() ? subcase.subtitle : subcase.label;
-  solved.load_set = subcase.load;
-  solved.temperature_set = subcase.temperature;
-  solved.spc_set = subcase.spc;
-  solved.mpc_set = subcase.mpc;
-  solved.elements = calc_element_forces(*model_, solved.displacement, deck_, subcase.load, own, load.initial);
-  solved.stresses = calc_element_stresses(*model_, solved.displacement, deck_, subcase.load, load.initial);
-  if (has_strains_)
-    solved.strains = calc_element_strains(*model_, solved.displacement, deck_, subcase.load, load.initial);
-  if (grids_) solved.grid_forces = calc_grid_forces(*model_, solved, load.initial, *grids_);
-  for (const auto& item : own.items()) diagnostics.add(item);
+std::vector<CaseSolver::Solved> CaseSolver::solve_next(std::span<const records::Subcase> left) {
+  BOUGH_DEMAND(!left.empty());
+  std::vector<Solved> solved(1);
+  try {
+    prepare(left.front(), solved.front().said);
+  } catch (const Failure&) {
+    solved.front().failure = std::current_exception();
+    return solved;
+  }
+  // Heated elements keep a kilobyte each and subcase.
+  std::size_t count = 0, num_heated = 0;
+  for (; count < std::min(left.size(), kMostTogether) && is_prepared_for(left[count]); ++count)
+    if (left[count].temperature != 0 && ++num_heated > kMostHeated) break;
+  solved.resize(count);
+  std::vector<StaticLoad> loads(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto& subcase = left[k];
+    Diagnostics own;
+    try {
+      loads[k] = calc_static_load(*model_, deck_, subcase, own);
+      own.throw_if_errors();
+    } catch (const Failure&) {
+      solved[k].failure = std::current_exception();
+      continue;
+    }
+    for (const auto& item : own.items()) solved[k].said.add(item);
+    auto& result = solved[k].result.emplace();
+    result.id = subcase.id;
+    result.label = subcase.label.empty() ? subcase.subtitle : subcase.label;
+    result.load_set = subcase.load;
+    result.temperature_set = subcase.temperature;
+    result.spc_set = subcase.spc;
+    result.mpc_set = subcase.mpc;
+  }
+  for (std::size_t k = 0; k < count; k += kMostColumns) {
+    const std::size_t size = std::min(kMostColumns, count - k);
+    solve_displacements(std::span(loads).subspan(k, size), std::span(solved).subspan(k, size));
+  }
+  add_element_results(loads, solved);
   return solved;
 }
 
+void CaseSolver::solve_displacements(std::span<const StaticLoad> loads, std::span<Solved> solved) const {
+  std::vector<const StaticLoad*> wanted;
+  for (std::size_t k = 0; k < loads.size(); ++k)
+    if (solved[k].result) wanted.push_back(&loads[k]);
+  if (wanted.empty()) return;
+  if (wanted.size() > 1) {
+    Diagnostics own;
+    try {
+      auto together = solve_static_cases(*model_, *solver_, wanted, suport_, &own);
+      if (own.items().empty()) {
+        auto next = together.begin();
+        for (auto& one : solved)
+          if (one.result) take(std::move(*next++), *one.result);
+        return;
+      }
+    } catch (const Failure&) {  // one after the other tells whose it is
+    }
+  }
+  for (std::size_t k = 0; k < loads.size(); ++k) {
+    if (!solved[k].result) continue;
+    Diagnostics own;
+    try {
+      take(solve_static_case(*model_, *solver_, loads[k], suport_, &own), *solved[k].result);
+      for (const auto& item : own.items()) solved[k].said.add(item);
+    } catch (const Failure&) {
+      solved[k].failure = std::current_exception();
+      solved[k].result.reset();
+    }
+  }
+}
+
+void CaseSolver::add_element_results(std::span<const StaticLoad> loads, std::span<Solved> solved) const {
+  std::vector<RecoveryCase> cases;
+  std::vector<std::size_t> of;
+  for (std::size_t k = 0; k < solved.size(); ++k) {
+    if (!solved[k].result) continue;
+    auto& result = *solved[k].result;
+    cases.push_back({&result.displacement, result.load_set, &loads[k].initial, &solved[k].said});
+    of.push_back(k);
+  }
+  auto fields = recover_elements(*model_, deck_, cases, {true, true, has_strains_});
+  for (std::size_t c = 0; c < of.size(); ++c) {
+    auto& result = *solved[of[c]].result;
+    result.elements = std::move(fields[c].forces);
+    result.stresses = std::move(fields[c].stresses);
+    result.strains = std::move(fields[c].strains);
+    if (grids_) result.grid_forces = calc_grid_forces(*model_, result, loads[of[c]].initial, *grids_);
+  }
+}
+
+bool CaseSolver::is_prepared_for(const records::Subcase& subcase) const {
+  return held_ == list_held(subcase) && (!model_ || model_->is_held_for(deck_, subcase.load));
+}
+
 void CaseSolver::prepare(const records::Subcase& subcase, Diagnostics& diagnostics) {
-  const std::array<int, 5> held{subcase.spc, subcase.mpc, subcase.suport1, subcase.preload,
-                                subcase.initial_temperature};
-  if (held_ == held && (!model_ || model_->is_held_for(deck_, subcase.load))) {
+  if (is_prepared_for(subcase)) {
     if (failure_) std::rethrow_exception(failure_);
     return;
   }
-  held_ = held;
+  held_ = list_held(subcase);
   failure_ = nullptr;
   solver_.reset();
   try {

@@ -3,6 +3,7 @@
 #include <array>
 #include <exception>
 #include <optional>
+#include <span>
 
 #include "fe/statics/static_case.hpp"
 
@@ -22,12 +23,25 @@ class CaseSolver {
   /// Strains of elements beside their stresses.
   void ask_strains() { has_strains_ = true; }
 
-  /// Throws what is wrong with this subcase alone.
-  records::StaticSubcase solve(const records::Subcase& subcase, Diagnostics& diagnostics);
+  /// The result of a subcase, or what is wrong with it alone.
+  struct Solved {
+    std::optional<records::StaticSubcase> result;
+    std::exception_ptr failure;
+    Diagnostics said;
+  };
+  /// Of the first of `left` (not empty) and as many after it as are held alike, at most kMostTogether: one model, and
+  /// their elements are formed once. A subcase's result does not depend on the others.
+  std::vector<Solved> solve_next(std::span<const records::Subcase> left);
+  static constexpr std::size_t kMostTogether = 128;
+
   const Model& model() const { return *model_; }  ///< of the last subcase that had one
 
  private:
   void prepare(const records::Subcase& subcase, Diagnostics& diagnostics);
+  bool is_prepared_for(const records::Subcase& subcase) const;
+  /// Without the fields of elements. Those with a result are solved together where nothing is wrong with any.
+  void solve_displacements(std::span<const StaticLoad> loads, std::span<Solved> solved) const;
+  void add_element_results(std::span<const StaticLoad> loads, std::span<Solved> solved) const;
 
   const records::Deck& deck_;
   ModelOptions options_;

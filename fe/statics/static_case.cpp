@@ -3,21 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 
-#include "fe/cards/element_properties.hpp"
-#include "fe/elements/beam.hpp"
 #include "fe/loads/load_sets.hpp"
 #include "fe/statics/reactions.hpp"
 
 namespace bough::fe {
 namespace {
-
-VectorXd calc_forces(const Element& element, const VectorXd& u, const InitialForces::Part* initial) {
-  VectorXd force = element.calc_printed_forces(u);
-  if (initial) force += initial->force.head(force.size());
-  return force;
-}
 
 /// Forces (in CD axes) that hold the oblique directions of AUTOSPC, as those of the dofs that it holds: along the
 /// direction, as large as what of the residual acts where nothing else holds.
@@ -124,112 +115,86 @@ StaticLoad calc_static_load(const Model& model, const records::Deck& deck, const
 
 records::StaticSubcase solve_static_case(const Model& model, const StaticSolver& solver, const StaticLoad& load,
                                          const Suport& suport, Diagnostics* diagnostics) {
-  records::StaticSubcase result;
-  const VectorXd u0 = model.T_fixed() * load.d;
-  VectorXd F = load.F;
-  if (!load.d.isZero(0)) F -= calc_stiffness_times(model, u0);
-  VectorXd applied = load.F;
-  for (const int fdof : suport.fdofs) {
-    const auto [node, component] = model.describe_fdof(fdof);
-    const auto row = static_cast<Eigen::Index>(result.support.size());
-    result.support.push_back({node, component, suport.strain_energy[row], 0});
+  return std::move(solve_static_cases(model, solver, {&load}, suport, diagnostics).front());
+}
+
+std::vector<records::StaticSubcase> solve_static_cases(const Model& model, const StaticSolver& solver,
+                                                       const std::vector<const StaticLoad*>& loads,
+                                                       const Suport& suport, Diagnostics* diagnostics) {
+  std::vector<records::StaticSubcase> results(loads.size());
+  const auto count = static_cast<Eigen::Index>(loads.size());
+  MatrixXd F(model.num_gdofs(), count), U0 = MatrixXd::Zero(model.num_gdofs(), count);
+  std::vector<Eigen::Index> enforced;
+  for (Eigen::Index c = 0; c < count; ++c) {
+    const StaticLoad& load = *loads[static_cast<std::size_t>(c)];
+    F.col(c) = load.F;
+    if (load.d.isZero(0)) continue;
+    U0.col(c) = model.T_fixed() * load.d;
+    enforced.push_back(c);
   }
-  result.support_epsilon = suport.epsilon;
-  if (suport.relief != InertiaRelief::None) {
-    const VectorXd a = calc_acceleration(suport, F);
+  if (!enforced.empty()) F(Eigen::all, enforced) -= calc_stiffness_times(model, U0(Eigen::all, enforced));
+  for (Eigen::Index c = 0; c < count; ++c) {
+    auto& result = results[static_cast<std::size_t>(c)];
+    for (const int fdof : suport.fdofs) {
+      const auto [node, component] = model.describe_fdof(fdof);
+      const auto row = static_cast<Eigen::Index>(result.support.size());
+      result.support.push_back({node, component, suport.strain_energy[row], 0});
+    }
+    result.support_epsilon = suport.epsilon;
+    if (suport.relief == InertiaRelief::None) continue;
+    const VectorXd a = calc_acceleration(suport, F.col(c));
     for (std::size_t i = 0; i < result.support.size(); ++i)
       result.support[i].acceleration = a[static_cast<Eigen::Index>(i)];
     result.inertia = -suport.M_motions * a;
     result.inertia_resultant = calc_resultant(model, result.inertia);
-    F += result.inertia;
-    applied += result.inertia;
+    F.col(c) += result.inertia;
   }
-  VectorXd u1;
+  MatrixXd U1;
   try {
-    u1 = solver.solve(F, diagnostics);
+    U1 = solver.solve(F, diagnostics);
   } catch (const ComputationError&) {
     solver.demand_no_mechanism(model);
     throw;
   }
-  if (suport.relief == InertiaRelief::Free) remove_rigid_part(suport, u1);
-  result.displacement = u1 + u0;
-  result.load = load.F;
-  const VectorXd K_u = calc_stiffness_times(model, result.displacement);
-  const VectorXd residual = K_u - applied;
-  const double work = std::abs(u1.dot(F));
-  result.epsilon = work > 0 ? std::abs(u1.dot(residual)) / work : 0;
-  result.strain_energy = 0.5 * result.displacement.dot(K_u);
-  if (!load.initial.of.empty()) {
-    result.strain_energy -= result.displacement.dot(sum_loads(model, load.initial));
-    for (const auto& element : model.elements())
-      if (const auto* part = load.initial.find(*element)) result.strain_energy += part->energy;
-  }
-
-  result.reaction = calc_cd_reactions(model, residual);
-  if (!suport.fdofs.empty()) {
-    const VectorXd at_f = model.T().transpose() * residual;
-    for (const int fdof : suport.fdofs) {
-      const auto [node, component] = model.describe_fdof(fdof);
-      result.reaction[model.node(model.find_node(node)).first_gdof + std::max(component - 1, 0)] = at_f[fdof];
+  VectorXd work(count);
+  for (Eigen::Index c = 0; c < count; ++c) {
+    if (suport.relief == InertiaRelief::Free) {
+      VectorXd u1 = U1.col(c);
+      remove_rigid_part(suport, u1);
+      U1.col(c) = u1;
     }
+    work[c] = std::abs(U1.col(c).dot(F.col(c)));
   }
-  turn_to_basic(model, result.reaction);
-  result.mpc_force = residual - result.reaction;
-  result.load_resultant = calc_resultant(model, result.load);
-  result.reaction_resultant = calc_resultant(model, result.reaction);
-  result.mpc_resultant = calc_resultant(model, result.mpc_force);
-  return result;
-}
-
-std::vector<records::ElementForces> calc_element_forces(const Model& model, const VectorXd& u_g,
-                                                        const records::Deck& deck, int load, Diagnostics& diagnostics,
-                                                        const InitialForces& initial) {
-  BOUGH_DEMAND(u_g.size() == model.num_gdofs());
-  std::unordered_map<int, VectorXd> end_loads;
-  if (load > 0) end_loads = calc_beam_end_loads(model, deck, load, diagnostics);
-  // Elements of one card may differ in their number of points: "CTETRA" and "CTETRA-24".
-  std::map<std::pair<std::string, int>, std::vector<int>> groups;
-  const auto& elements = model.elements();
-  for (std::size_t e = 0; e < elements.size(); ++e) {
-    const int count = static_cast<int>(elements[e]->printed_force_names().size());
-    if (count > 0) groups[{elements[e]->card(), count}].push_back(static_cast<int>(e));
-  }
-  const auto [begin, end] = calc_element_range(model);
-  const auto properties = list_element_properties(deck);
-  std::vector<records::ElementForces> result;
-  for (const auto& [key, members] : groups) {
-    records::ElementForces block;
-    block.card =
-        !result.empty() && result.back().card == key.first ? key.first + "-" + std::to_string(key.second) : key.first;
-    block.components = elements[static_cast<std::size_t>(members.front())]->printed_force_names();
-    const auto rows = static_cast<Eigen::Index>(members.size());
-    block.force = MatrixXd::Zero(rows, key.second);
-    MatrixXd energy = MatrixXd::Zero(rows, 1);
-    for (Eigen::Index r = 0; r < rows; ++r) {
-      const int e = members[static_cast<std::size_t>(r)];
-      const Element& element = *elements[static_cast<std::size_t>(e)];
-      block.id.push_back(element.id());
-      const auto property = properties.find(element.id());
-      block.property.push_back(property == properties.end() ? 0 : property->second);
-      if (e < begin || e >= end) continue;
-      VectorXd u(element.num_dofs());
-      for (int i = 0; i < u.size(); ++i) u[i] = u_g[element.gdofs()[static_cast<std::size_t>(i)]];
-      const auto* heated = initial.find(element);
-      VectorXd force = calc_forces(element, u, heated);
-      if (const auto own = end_loads.find(e); own != end_loads.end())
-        element.as_beam()->add_load_forces(own->second, force);
-      block.force.row(r) = force.transpose();
-      MatrixXd K = MatrixXd::Zero(u.size(), u.size());
-      model.add_stiffness(element, K);
-      energy(r, 0) = 0.5 * u.dot(K * u);
-      if (heated) energy(r, 0) += heated->energy - u.dot(heated->load);
+  const MatrixXd U = U1 + U0, K_U = calc_stiffness_times(model, U);
+  for (Eigen::Index c = 0; c < count; ++c) {
+    const StaticLoad& load = *loads[static_cast<std::size_t>(c)];
+    auto& result = results[static_cast<std::size_t>(c)];
+    result.displacement = U.col(c);
+    result.load = load.F;
+    VectorXd residual = K_U.col(c) - load.F;
+    if (result.inertia.size() > 0) residual -= result.inertia;
+    result.epsilon = work[c] > 0 ? std::abs(U1.col(c).dot(residual)) / work[c] : 0;
+    result.strain_energy = 0.5 * U.col(c).dot(K_U.col(c));
+    if (!load.initial.of.empty()) {
+      result.strain_energy -= result.displacement.dot(sum_loads(model, load.initial));
+      for (const auto& element : model.elements())
+        if (const auto* part = load.initial.find(*element)) result.strain_energy += part->energy;
     }
-    sum_over_ranks(block.force);
-    sum_over_ranks(energy);
-    block.strain_energy = energy.col(0);
-    result.push_back(std::move(block));
+    result.reaction = calc_cd_reactions(model, residual);
+    if (!suport.fdofs.empty()) {
+      const VectorXd at_f = model.T().transpose() * residual;
+      for (const int fdof : suport.fdofs) {
+        const auto [node, component] = model.describe_fdof(fdof);
+        result.reaction[model.node(model.find_node(node)).first_gdof + std::max(component - 1, 0)] = at_f[fdof];
+      }
+    }
+    turn_to_basic(model, result.reaction);
+    result.mpc_force = residual - result.reaction;
+    result.load_resultant = calc_resultant(model, result.load);
+    result.reaction_resultant = calc_resultant(model, result.reaction);
+    result.mpc_resultant = calc_resultant(model, result.mpc_force);
   }
-  return result;
+  return results;
 }
 
 Eigen::Matrix<double, 6, 1> calc_resultant(const Model& model, const VectorXd& F_g, const Vector3d& point) {

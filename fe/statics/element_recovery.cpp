@@ -1,0 +1,342 @@
+#include "fe/statics/element_recovery.hpp"
+
+#include <map>
+#include <optional>
+
+#include "fe/cards/element_properties.hpp"
+#include "fe/elements/beam.hpp"
+#include "fe/linear/blas.hpp"
+#include "fe/loads/load_sets.hpp"
+#include "fe/sections/stress.hpp"
+
+namespace bough::fe {
+namespace {
+
+using Eigen::Index;
+
+/// Rows of a table of every case, a few at a time: a row after the other would touch a line of memory per number.
+class TableRows {
+ public:
+  TableRows(Index num_columns, std::vector<MatrixXd*> tables)
+      : num_columns_(num_columns), tables_(std::move(tables)), rows_(kRows, num_columns * num_cases()) {}
+
+  /// values: columns of the table x cases. Rows come in ascending order.
+  void set(Index row, const Eigen::Ref<const MatrixXd>& values) {
+    if (count_ == kRows || (count_ > 0 && row != first_ + count_)) flush();
+    if (count_ == 0) first_ = row;
+    for (Index c = 0; c < num_cases(); ++c)
+      for (Index k = 0; k < num_columns_; ++k) rows_(count_, c * num_columns_ + k) = values(k, c);
+    ++count_;
+  }
+  void flush() {
+    for (Index c = 0; c < num_cases(); ++c)
+      tables_[static_cast<std::size_t>(c)]->middleRows(first_, count_) =
+          rows_.block(0, c * num_columns_, count_, num_columns_);
+    count_ = 0;
+  }
+
+ private:
+  static constexpr Index kRows = 16;
+  Index num_cases() const { return static_cast<Index>(tables_.size()); }
+
+  Index num_columns_;
+  std::vector<MatrixXd*> tables_;
+  MatrixXd rows_;
+  Index first_ = 0, count_ = 0;
+};
+
+/// Elements of one card that give the same.
+struct Group {
+  std::string card;
+  std::vector<std::string> names;
+  std::vector<int> elements, id, property;
+};
+using Groups = std::vector<Group>;
+
+/// Where an element stands: its group and row; none where `group` is negative.
+struct Place {
+  int group = -1;
+  Index row = 0;
+};
+
+std::vector<Place> list_places(const Groups& groups, std::size_t num_elements) {
+  std::vector<Place> places(num_elements);
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (std::size_t r = 0; r < groups[g].elements.size(); ++r)
+      places[static_cast<std::size_t>(groups[g].elements[r])] = {static_cast<int>(g), static_cast<Index>(r)};
+  return places;
+}
+
+void fill_ids(const Model& model, const std::unordered_map<int, int>& properties, Group& group) {
+  for (const int e : group.elements) {
+    const Element& element = *model.elements()[static_cast<std::size_t>(e)];
+    const auto property = properties.find(element.id());
+    group.id.push_back(element.id());
+    group.property.push_back(property == properties.end() ? 0 : property->second);
+  }
+}
+
+/// Elements of one card may differ in their number of points: "CTETRA" and "CTETRA-24".
+Groups group_by_forces(const Model& model) {
+  std::map<std::pair<std::string, int>, std::vector<int>> found;
+  const auto& elements = model.elements();
+  for (std::size_t e = 0; e < elements.size(); ++e)
+    if (const int count = static_cast<int>(elements[e]->printed_force_names().size()); count > 0)
+      found[{elements[e]->card(), count}].push_back(static_cast<int>(e));
+  Groups groups;
+  for (auto& [key, members] : found) {
+    const bool is_more = !groups.empty() && groups.back().card == key.first;
+    auto names = elements[static_cast<std::size_t>(members.front())]->printed_force_names();
+    groups.push_back({is_more ? key.first + "-" + std::to_string(key.second) : key.first, std::move(names),
+                      std::move(members), {}, {}});
+  }
+  return groups;
+}
+
+std::vector<StressPoint> list_points(const Element& element, bool of_strain) {
+  return of_strain ? element.strain_points() : element.stress_points();
+}
+
+Groups group_by_points(const Model& model, bool of_strain) {
+  std::map<std::pair<std::string, std::vector<std::string>>, std::vector<int>> found;
+  const auto& elements = model.elements();
+  for (std::size_t e = 0; e < elements.size(); ++e)
+    if (const auto points = list_points(*elements[e], of_strain); !points.empty())
+      found[{elements[e]->card(), of_strain ? list_strain_result_names(points) : list_result_names(points)}].push_back(
+          static_cast<int>(e));
+  Groups groups;
+  std::map<std::string, int> count;
+  for (auto& [key, members] : found) {
+    const int number = ++count[key.first];
+    groups.push_back({number == 1 ? key.first : key.first + "-" + std::to_string(number), key.second,
+                      std::move(members), {}, {}});
+  }
+  return groups;
+}
+
+/// One element and all cases.
+struct Current {
+  const Element& element;
+  int index;
+  MatrixXd U;                                        ///< N x cases
+  std::vector<const InitialForces::Part*> heated{};  ///< a case each; nullptr: cold
+  MatrixXd forces{};                                 ///< internal forces, with those of loads and temperatures
+};
+
+/// Stresses or strains of all groups.
+class PointTables {
+ public:
+  using Blocks = std::vector<records::ElementStresses> ElementResults::*;
+
+  PointTables(const Model& model, const std::unordered_map<int, int>& properties, bool of_strain, Blocks blocks,
+              std::vector<ElementResults>& results)
+      : of_strain_(of_strain), blocks_(blocks), results_(results), groups_(group_by_points(model, of_strain)) {
+    for (auto& result : results) (result.*blocks).resize(groups_.size());
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      auto& group = groups_[g];
+      fill_ids(model, properties, group);
+      const Element& first = *model.elements()[static_cast<std::size_t>(group.elements.front())];
+      const auto rows = static_cast<Index>(group.elements.size()), columns = static_cast<Index>(group.names.size());
+      const Index corners = of_strain ? first.calc_corner_strains(VectorXd::Zero(first.num_internal_forces())).size() : 0;
+      std::vector<MatrixXd*> tables, corner_tables;
+      for (auto& result : results) {
+        auto& block = (result.*blocks)[g];
+        block.card = group.card;
+        block.components = group.names;
+        block.id = group.id;
+        block.property = group.property;
+        block.stress.setZero(rows, columns);
+        block.corner.setZero(rows, corners);
+        tables.push_back(&block.stress);
+        corner_tables.push_back(&block.corner);
+      }
+      tables_.emplace_back(columns, std::move(tables));
+      corners_.emplace_back(corners, std::move(corner_tables));
+    }
+    places_ = list_places(groups_, model.elements().size());
+  }
+
+  bool holds(int element) const { return places_[static_cast<std::size_t>(element)].group >= 0; }
+
+  void add(const Current& at) {
+    const auto [group, row] = places_[static_cast<std::size_t>(at.index)];
+    if (group < 0) return;
+    const auto g = static_cast<std::size_t>(group);
+    MatrixXd values = of_strain_ ? at.element.calc_strains(at.forces) : at.element.calc_stresses(at.forces);
+    for (std::size_t c = 0; c < at.heated.size(); ++c)
+      if (at.heated[c]) add_part(of_strain_ ? at.heated[c]->strain : at.heated[c]->stress, c, values);
+    const PointResults derive(list_points(at.element, of_strain_), of_strain_);
+    MatrixXd rows(static_cast<Index>(groups_[g].names.size()), values.cols());
+    for (Index c = 0; c < values.cols(); ++c) derive.calc(values.col(c), rows.col(c));
+    tables_[g].set(row, rows);
+    if (!of_strain_ || (results_.front().*blocks_)[g].corner.cols() == 0) return;
+    MatrixXd corner = at.element.calc_corner_strains(at.forces);
+    for (std::size_t c = 0; c < at.heated.size(); ++c)
+      if (at.heated[c]) add_part(at.heated[c]->corner_strain, c, corner);
+    corners_[g].set(row, corner);
+  }
+
+  void finish() {
+    for (auto* all : {&tables_, &corners_})
+      for (auto& table : *all) table.flush();
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+      for (auto& result : results_) {
+        auto& block = (result.*blocks_)[g];
+        sum_over_ranks(block.stress);
+        if (block.corner.cols() > 0) sum_over_ranks(block.corner);
+      }
+  }
+
+ private:
+  static void add_part(const VectorXd& more, std::size_t c, MatrixXd& values) {
+    if (more.size() > 0) values.col(static_cast<Index>(c)) += more;
+  }
+
+  bool of_strain_;
+  Blocks blocks_;
+  std::vector<ElementResults>& results_;
+  Groups groups_;
+  std::vector<TableRows> tables_, corners_;
+  std::vector<Place> places_;
+};
+
+/// Forces and strain energies of all groups.
+class ForceTables {
+ public:
+  ForceTables(const Model& model, const std::unordered_map<int, int>& properties, std::vector<ElementResults>& results)
+      : model_(model), results_(results), groups_(group_by_forces(model)) {
+    for (auto& result : results) result.forces.resize(groups_.size());
+    energies_.assign(groups_.size(), std::vector<MatrixXd>(results.size()));
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      auto& group = groups_[g];
+      fill_ids(model, properties, group);
+      const auto rows = static_cast<Index>(group.elements.size()), columns = static_cast<Index>(group.names.size());
+      std::vector<MatrixXd*> tables, energy_tables;
+      for (std::size_t c = 0; c < results.size(); ++c) {
+        auto& block = results[c].forces[g];
+        block.card = group.card;
+        block.components = group.names;
+        block.id = group.id;
+        block.property = group.property;
+        block.force.setZero(rows, columns);
+        energies_[g][c].setZero(rows, 1);
+        tables.push_back(&block.force);
+        energy_tables.push_back(&energies_[g][c]);
+      }
+      tables_.emplace_back(columns, std::move(tables));
+      energy_tables_.emplace_back(1, std::move(energy_tables));
+    }
+    places_ = list_places(groups_, model.elements().size());
+  }
+
+  bool holds(int element) const { return places_[static_cast<std::size_t>(element)].group >= 0; }
+
+  void add(const Current& at) {
+    const auto [group, row] = places_[static_cast<std::size_t>(at.index)];
+    if (group < 0) return;
+    const auto g = static_cast<std::size_t>(group);
+    const auto count = static_cast<Index>(groups_[g].names.size());
+    if (at.element.num_internal_forces() > 0) {
+      tables_[g].set(row, at.forces.topRows(count));  // they begin with those that are printed
+    } else {
+      MatrixXd forces(count, at.U.cols());
+      for (Index c = 0; c < at.U.cols(); ++c) forces.col(c) = at.element.calc_printed_forces(at.U.col(c));
+      for (std::size_t c = 0; c < at.heated.size(); ++c)
+        if (at.heated[c]) forces.col(static_cast<Index>(c)) += at.heated[c]->force.head(count);
+      tables_[g].set(row, forces);
+    }
+    K_.setZero(at.U.rows(), at.U.rows());
+    model_.add_stiffness(at.element, K_);
+    K_U_.resize(at.U.rows(), at.U.cols());
+    multiply_dense(false, K_, at.U, 0, K_U_);
+    MatrixXd energy = 0.5 * at.U.cwiseProduct(K_U_).colwise().sum();
+    for (std::size_t c = 0; c < at.heated.size(); ++c)
+      if (const auto* part = at.heated[c]) {
+        const auto column = static_cast<Index>(c);
+        energy(0, column) += part->energy - at.U.col(column).dot(part->load);
+      }
+    energy_tables_[g].set(row, energy);
+  }
+
+  void finish() {
+    for (auto* all : {&tables_, &energy_tables_})
+      for (auto& table : *all) table.flush();
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+      for (std::size_t c = 0; c < results_.size(); ++c) {
+        auto& block = results_[c].forces[g];
+        sum_over_ranks(block.force);
+        sum_over_ranks(energies_[g][c]);
+        block.strain_energy = energies_[g][c].col(0);
+      }
+  }
+
+ private:
+  const Model& model_;
+  std::vector<ElementResults>& results_;
+  Groups groups_;
+  std::vector<TableRows> tables_, energy_tables_;
+  std::vector<std::vector<MatrixXd>> energies_;  ///< rows x 1, by group and case
+  std::vector<Place> places_;
+  MatrixXd K_, K_U_;
+};
+
+/// Loads along beams, by element: a case each.
+using EndLoads = std::vector<std::unordered_map<int, VectorXd>>;
+
+void find_forces(const std::vector<RecoveryCase>& cases, const EndLoads& end_loads, Current& at) {
+  at.forces.setZero(at.element.num_internal_forces(), at.U.cols());
+  if (at.forces.rows() == 0) return;
+  at.element.calc_internal_forces_of(at.U, at.forces);
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    auto force = at.forces.col(static_cast<Index>(c));
+    if (!at.heated.empty() && at.heated[c]) force += at.heated[c]->force;
+    if (const auto own = end_loads[c].find(at.index); own != end_loads[c].end())
+      at.element.as_beam()->add_load_forces(own->second, force);
+  }
+}
+
+}  // namespace
+
+std::vector<ElementResults> recover_elements(const Model& model, const records::Deck& deck,
+                                             const std::vector<RecoveryCase>& cases, const RecoveredFields& fields) {
+  std::vector<ElementResults> results(cases.size());
+  if (cases.empty()) return results;
+  EndLoads end_loads(cases.size());
+  bool is_heated = false;
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    BOUGH_DEMAND(cases[c].u_g->size() == model.num_gdofs());
+    is_heated = is_heated || (cases[c].initial && !cases[c].initial->of.empty());
+    Diagnostics unheard;
+    if (cases[c].load > 0)
+      end_loads[c] = calc_beam_end_loads(model, deck, cases[c].load, cases[c].said ? *cases[c].said : unheard);
+  }
+  const auto properties = list_element_properties(deck);
+  std::optional<ForceTables> forces;
+  std::optional<PointTables> stresses, strains;
+  if (fields.forces) forces.emplace(model, properties, results);
+  if (fields.stresses) stresses.emplace(model, properties, false, &ElementResults::stresses, results);
+  if (fields.strains) strains.emplace(model, properties, true, &ElementResults::strains, results);
+
+  const auto [begin, end] = calc_element_range(model);
+  for (int e = begin; e < end; ++e) {
+    if (!(forces && forces->holds(e)) && !(stresses && stresses->holds(e)) && !(strains && strains->holds(e))) continue;
+    const Element& element = *model.elements()[static_cast<std::size_t>(e)];
+    const auto& gdofs = element.gdofs();
+    Current at{element, e, MatrixXd(element.num_dofs(), static_cast<Index>(cases.size()))};
+    for (std::size_t c = 0; c < cases.size(); ++c)
+      for (std::size_t i = 0; i < gdofs.size(); ++i)
+        at.U(static_cast<Index>(i), static_cast<Index>(c)) = (*cases[c].u_g)[gdofs[i]];
+    if (is_heated)
+      for (const auto& one : cases) at.heated.push_back(one.initial ? one.initial->find(element) : nullptr);
+    find_forces(cases, end_loads, at);
+    if (forces) forces->add(at);
+    if (stresses) stresses->add(at);
+    if (strains) strains->add(at);
+  }
+  if (forces) forces->finish();
+  if (stresses) stresses->finish();
+  if (strains) strains->finish();
+  return results;
+}
+
+}  // namespace bough::fe
