@@ -87,8 +87,11 @@ Groups group_by_forces(const Model& model) {
   for (auto& [key, members] : found) {
     const bool is_more = !groups.empty() && groups.back().card == key.first;
     auto names = elements[static_cast<std::size_t>(members.front())]->printed_force_names();
-    groups.push_back({is_more ? key.first + "-" + std::to_string(key.second) : key.first, std::move(names),
-                      std::move(members), {}, {}});
+    groups.push_back({is_more ? key.first + "-" + std::to_string(key.second) : key.first,
+                      std::move(names),
+                      std::move(members),
+                      {},
+                      {}});
   }
   return groups;
 }
@@ -108,8 +111,8 @@ Groups group_by_points(const Model& model, bool of_strain) {
   std::map<std::string, int> count;
   for (auto& [key, members] : found) {
     const int number = ++count[key.first];
-    groups.push_back({number == 1 ? key.first : key.first + "-" + std::to_string(number), key.second,
-                      std::move(members), {}, {}});
+    groups.push_back(
+        {number == 1 ? key.first : key.first + "-" + std::to_string(number), key.second, std::move(members), {}, {}});
   }
   return groups;
 }
@@ -137,7 +140,8 @@ class PointTables {
       fill_ids(model, properties, group);
       const Element& first = *model.elements()[static_cast<std::size_t>(group.elements.front())];
       const auto rows = static_cast<Index>(group.elements.size()), columns = static_cast<Index>(group.names.size());
-      const Index corners = of_strain ? first.calc_corner_strains(VectorXd::Zero(first.num_internal_forces())).size() : 0;
+      const Index corners =
+          of_strain ? first.calc_corner_strains(VectorXd::Zero(first.num_internal_forces())).size() : 0;
       std::vector<MatrixXd*> tables, corner_tables;
       for (auto& result : results) {
         auto& block = (result.*blocks)[g];
