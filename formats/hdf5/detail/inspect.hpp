@@ -16,6 +16,9 @@ std::vector<Diagnostic> find_faults(const std::string& path);
 /// changed since is not looked at again. Throws InputError.
 void inspect_file(const std::string& path);
 
+/// A file that this process has written whole is as good as looked at, until it changes.
+void trust_file(const std::string& path);
+
 /// What find_faults finds, as text from one process to another; empty: nothing. Throws what find_faults throws.
 std::string write_faults(const std::string& path);
 
@@ -27,6 +30,7 @@ struct Look {
 /// How inspect_file has a file of so many bytes looked at: by a process each, unless a fuzzer, which has a million of
 /// them, keeps one for many.
 using Looker = Look (*)(const std::string& path, double size);
-void set_looker(Looker looker);
+/// Returns the one before.
+Looker set_looker(Looker looker);
 
 }  // namespace bough::hdf5

@@ -7,6 +7,7 @@
 
 #include "base/diagnostic.hpp"
 #include "base/version.hpp"
+#include "formats/hdf5/detail/inspect.hpp"
 
 namespace bough::hdf5 {
 
@@ -177,6 +178,7 @@ void FileWriter::commit() {
   const bool is_there = part_.commit();
   errno = part_.error().value();
   check(is_there, "the file cannot be put in its place");
+  trust_file(path_);
 }
 
 void FileWriter::link(const std::string& path, const std::string& existing) {
