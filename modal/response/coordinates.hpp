@@ -47,10 +47,10 @@ struct History {
   MatrixXd a;                 ///< (m + 3k) x nt
   double step_error = 0;      ///< what one step and two halves of it differ by, relative to what a step does
 };
-/// Exact for loads and motions that are lines between the steps: x' = A x + b f by the exponential of A and of the two
-/// integrals with it (Van Loan, IEEE Trans. Autom. Control 23 (1978) 395), each coordinate for itself where damping
-/// does not couple them. Jumps at steps are jumps. Displacements and velocities of the supports are splines, corners
-/// of displacements impulses of their inertia (sampled_curve.hpp).
+/// Exact for loads that are parabolas and motions that are lines between the steps, of order 4 in the step for others:
+/// x' = A x + b f by the exponential of A and of the three integrals with it (Van Loan, IEEE Trans. Autom. Control 23
+/// (1978) 395), each coordinate for itself where damping does not couple them. Jumps at steps are jumps. Displacements
+/// and velocities of the supports are splines, corners of displacements impulses of their inertia (sampled_curve.hpp).
 History calc_history(const ResponseModel& model, const Excitation& excitation, const TimeGrid& grid);
 
 }  // namespace bough::modal::response

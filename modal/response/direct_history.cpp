@@ -103,9 +103,7 @@ struct Cubic {
   VectorXd rate(double c) const {
     return 6 * c * (1 - c) / h * (d1 - d0) + (1 - c) * (1 - 3 * c) * v0 + c * (3 * c - 2) * v1;
   }
-  VectorXd second(double c) const {
-    return ((6 - 12 * c) / h * (d1 - d0) + (6 * c - 4) * v0 + (6 * c - 2) * v1) / h;
-  }
+  VectorXd second(double c) const { return ((6 - 12 * c) / h * (d1 - d0) + (6 * c - 4) * v0 + (6 * c - 2) * v1) / h; }
 };
 
 class DirectMotion {
@@ -162,10 +160,7 @@ class DirectMotion {
   /// Forces of the loads between the steps, and at the end of one.
   VectorXd calc_forces(Index i, int stage, double h) const {
     if (stage == kStages - 1) return forces_.before.col(i);
-    VectorXd p = VectorXd::Zero(m_.F.cols());
-    const double t = grid_.time(i - 1) + radau_.c(stage) * h;
-    for (const auto& term : excitation_.forces) p(term.column) += calc_history(term, t, Side::Mean, 0);
-    return p;
+    return sample_forces_within(excitation_, grid_.time(i - 1) + radau_.c(stage) * h);
   }
 
   const StepFactors& find_factors(double h) {
@@ -223,8 +218,8 @@ class DirectMotion {
   void check(Index i) {
     if (n_ == 0) return;
     const double h = calc_step_before(grid_, i);
-    const VectorXd load = calc_load(forces_.before.col(i), supports_.d.before.col(i), supports_.d_dot.before.col(i),
-                                    end_acceleration_);
+    const VectorXd load =
+        calc_load(forces_.before.col(i), supports_.d.before.col(i), supports_.d_dot.before.col(i), end_acceleration_);
     const VectorXd A_x = times(m_.K, u_) + times(m_.B, v_) + times(m_.M, a_);
     VectorXd D = m_.K_diagonal + m_.M_diagonal / (h * h);
     const double largest = D.maxCoeff();
@@ -312,8 +307,8 @@ class DirectMotion {
 }  // namespace
 
 double solve_history(const fe::Model& model, const DirectModel& direct, const Excitation& excitation,
-                   const StartMotion& start, const TimeGrid& grid,
-                   const std::function<void(const MotionBlock<MatrixXd>&)>& take) {
+                     const StartMotion& start, const TimeGrid& grid,
+                     const std::function<void(const MotionBlock<MatrixXd>&)>& take) {
   DirectMotion motion(model, direct, excitation, grid);
   motion.run(start, take);
   return motion.residual();

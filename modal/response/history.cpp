@@ -10,9 +10,10 @@
 namespace bough::modal::response {
 namespace {
 
-/// x_1 = E x_0 + P0 f_0 + P1 (f_1 - f_0) over a step, x = [ω0 q; q̇] of the coordinates `part`.
+/// x_1 = E x_0 + P0 f_0 + P1 (f_1 - f_0) + P2 (f_m - (f_0 + f_1) / 2) over a step with the load f_m at its middle, x =
+/// [ω0 q; q̇] of the coordinates `part`.
 struct Step {
-  MatrixXd E, P0, P1;
+  MatrixXd E, P0, P1, P2;
 };
 
 /// ω0 keeps the entries of A of one size.
@@ -21,15 +22,18 @@ VectorXd calc_scale(const VectorXd& lambda, double h) { return lambda.cwiseAbs()
 Step make_step(const VectorXd& lambda, const MatrixXd& D, double h) {
   const auto n = lambda.size();
   const VectorXd scale = calc_scale(lambda, h);
-  MatrixXd A = MatrixXd::Zero(4 * n, 4 * n);
+  MatrixXd A = MatrixXd::Zero(5 * n, 5 * n);
   A.block(0, n, n, n) = (h * scale).asDiagonal();
   A.block(n, 0, n, n) = (-h * lambda.cwiseQuotient(scale)).asDiagonal();
   A.block(n, n, n, n) = -h * D;
   // Forces in units of a unit rate over the step, so that they do not govern the scaling of the exponential.
   A.block(n, 2 * n, n, n).setIdentity();
   A.block(2 * n, 3 * n, n, n).setIdentity();
+  A.block(3 * n, 4 * n, n, n).setIdentity();
   const MatrixXd e = A.exp();
-  return {e.topLeftCorner(2 * n, 2 * n), h * e.block(0, 2 * n, 2 * n, n), h * e.block(0, 3 * n, 2 * n, n)};
+  // The parabola through both ends and the middle: 4 s (1 - s) beside the line.
+  return {e.topLeftCorner(2 * n, 2 * n), h * e.block(0, 2 * n, 2 * n, n), h * e.block(0, 3 * n, 2 * n, n),
+          h * (4 * e.block(0, 3 * n, 2 * n, n) - 8 * e.block(0, 4 * n, 2 * n, n))};
 }
 
 class Motion {
@@ -106,8 +110,12 @@ class Motion {
       // Loads f0, then f1 as well: the middle has their mean.
       const MatrixXd E_off = E * E - whole[part].E, P0_off = E * P0 + P0 - whole[part].P0;
       const MatrixXd P1_off = 0.5 * (E * P1 + P0 + P1) - whole[part].P1;
-      worst = std::max({worst, E_off.norm() / std::max(1.0, whole[part].E.norm()),
-                        std::max(P0_off.norm(), P1_off.norm()) / (whole[part].P0.norm() + whole[part].P1.norm())});
+      // The parabola is a line to 1 and back with a quarter of a parabola on each half.
+      const MatrixXd P2 = 0.25 * turn.asDiagonal() * half[part].P2;
+      const MatrixXd P2_off = E * (P1 + P2) + P0 - P1 + P2 - whole[part].P2;
+      worst = std::max(
+          {worst, E_off.norm() / std::max(1.0, whole[part].E.norm()),
+           std::max({P0_off.norm(), P1_off.norm(), P2_off.norm()}) / (whole[part].P0.norm() + whole[part].P1.norm())});
     }
     return worst;
   }
@@ -116,6 +124,10 @@ class Motion {
     const double h = step_before(i);
     const auto& steps = find_steps(h);
     const VectorXd f0 = P_ * collect(i - 1, true), f1 = P_ * collect(i, false);
+    // Supports are lines between the steps; forces are known at their middle too.
+    const VectorXd bump =
+        P_.leftCols(p_.after.rows()) * (sample_forces_within(excitation_, grid_.time(i - 1) + 0.5 * h) -
+                                        0.5 * (p_.after.col(i - 1) + p_.before.col(i)));
     const Eigen::Index size = model_.is_coupled ? n_ : 1;
     for (std::size_t part = 0; part < steps.size(); ++part) {
       const auto first = static_cast<Eigen::Index>(part) * size;
@@ -123,8 +135,8 @@ class Motion {
       const VectorXd scale = calc_scale(model_.lambda.segment(first, size), h);
       VectorXd x(2 * size);
       x << scale.cwiseProduct(q_.segment(first, size)), v_.segment(first, size);
-      const VectorXd y =
-          s.E * x + s.P0 * f0.segment(first, size) + s.P1 * (f1.segment(first, size) - f0.segment(first, size));
+      const VectorXd y = s.E * x + s.P0 * f0.segment(first, size) +
+                         s.P1 * (f1.segment(first, size) - f0.segment(first, size)) + s.P2 * bump.segment(first, size);
       q_.segment(first, size) = y.head(size).cwiseQuotient(scale);
       v_.segment(first, size) = y.tail(size);
     }

@@ -78,4 +78,10 @@ Sides sample_forces(const Excitation& excitation, const TimeGrid& grid) {
   return p;
 }
 
+VectorXd sample_forces_within(const Excitation& excitation, double t) {
+  VectorXd p = VectorXd::Zero(excitation.F.cols());
+  for (const auto& term : excitation.forces) p(term.column) += calc_history(term, t, Side::Mean, 0);
+  return p;
+}
+
 }  // namespace bough::modal::response

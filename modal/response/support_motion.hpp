@@ -19,6 +19,8 @@ SupportMotion sample_support_motion(const Excitation& excitation, const TimeGrid
 
 /// The forces p (m x nt) at the steps.
 Sides sample_forces(const Excitation& excitation, const TimeGrid& grid);
+/// The forces p (m) between two steps.
+VectorXd sample_forces_within(const Excitation& excitation, double t);
 
 /// Length of the step that ends at i, or that starts there; beyond the ends of the grid that beside it.
 double calc_step_before(const TimeGrid& grid, Eigen::Index i);
