@@ -147,10 +147,32 @@ EditTarget EditText::find_target(const std::string& words, bool wants_key) const
                    nearest.empty() ? "'list' shows what there is" : "did you mean '" + nearest + "'?");
 }
 
+namespace {
+
+/// [tip:x, "rate"] with quotes around what has none.
+std::string quote_entries(const std::string& list) {
+  std::string quoted;
+  for (std::size_t from = 1; from < list.size();) {
+    const std::size_t to = std::min(list.find(',', from), list.size() - 1);
+    const auto first = list.find_first_not_of(" \t", from), last = list.find_last_not_of(" \t", to - 1);
+    const std::string entry = first < to ? list.substr(first, last - first + 1) : std::string();
+    quoted += (quoted.empty() ? "" : ", ") +
+              (entry.empty() || toml_files::is_value(entry) ? entry : toml_files::quote_text(entry));
+    from = to + 1;
+  }
+  return "[" + quoted + "]";
+}
+
+}  // namespace
+
 std::string EditText::make_value(const KindHelp* kind, const std::string& key, const std::string& text) const {
   if (text.empty()) throw InputError("cli.edit-command", {}, "the value of " + key + " is missing", "write key=value");
   const bool is_value = toml_files::is_value(text);
   const auto* help = kind == nullptr ? nullptr : kind->find(key);
+  // What a function takes is known by its type, to `check`; what none takes is known here.
+  if (help == nullptr && kind != nullptr && kind->kind == "function")
+    throw InputError("toml.unknown-key", {}, "unknown key '" + key + "' in a function",
+                     "'help function' lists the keys");
   if (help == nullptr || !help->takes_text) {
     // Parameters stand for numbers.
     if (text[0] == '$') return toml_files::quote_text(text);
@@ -161,6 +183,10 @@ std::string EditText::make_value(const KindHelp* kind, const std::string& key, c
   }
   const bool has_quotes = text[0] == '"' || text[0] == '\'';
   if (is_value && (has_quotes || help->takes_other)) return text;
+  if (help->takes_other && text.size() > 1 && text.front() == '[' && text.back() == ']') {
+    const std::string list = quote_entries(text);
+    if (toml_files::is_value(list)) return list;
+  }
   return toml_files::quote_text(text);
 }
 

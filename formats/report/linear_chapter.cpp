@@ -44,15 +44,33 @@ std::vector<Pair> make_pairs(const records::FrequencyResponse& response) {
   return pairs;
 }
 
+/// What the parts of each pole may be off by, as the file states it; round-off at least.
+Eigen::VectorXd calc_doubt(const records::Poles& poles, double least) {
+  const Eigen::ArrayXd size = (poles.real.array().square() + poles.imag.array().square()).sqrt();
+  const double largest = size.size() > 0 ? size.maxCoeff() : 0;
+  Eigen::VectorXd doubt = Eigen::VectorXd::Constant(size.size(), least * largest);
+  if (poles.error.size() == size.size()) doubt = poles.error.cwiseMax(1e-12 * largest);
+  return doubt;
+}
+
+/// Without the round-off in the real parts of undamped poles, which would fill the picture.
+records::Poles round_off(const records::Poles& poles) {
+  records::Poles rounded = poles;
+  const Eigen::VectorXd doubt = calc_doubt(poles, 1e-12);
+  for (auto* part : {&rounded.real, &rounded.imag}) *part = (part->array().abs() > doubt.array()).select(*part, 0);
+  rounded.damping = (rounded.real.array() == 0).select(0, poles.damping);
+  return rounded;
+}
+
 std::string make_poles(const records::LinearModel& model) {
   Plot plot{"Poles and zeros", "real part [1/T]", "imaginary part [1/T]", {}, 0, 0};
-  plot.curves.push_back({"poles", model.poles.real, model.poles.imag, true});
+  const records::Poles poles = round_off(model.poles);
+  plot.curves.push_back({"poles", poles.real, poles.imag, true});
   if (model.zeros_real.size() > 0) plot.curves.push_back({"zeros", model.zeros_real, model.zeros_imag, true});
   HtmlTable table("Poles", {{"real"}, {"imaginary"}, {"frequency [1/T]"}, {"damping %"}, {"coordinate", true}});
-  for (Eigen::Index i = 0; i < model.poles.real.size(); ++i)
-    table.add_row({format_value(model.poles.real[i]), format_value(model.poles.imag[i]),
-                   format_value(model.poles.frequency_hz[i]), format_value(100 * model.poles.damping[i], 4),
-                   model.poles.mode[static_cast<std::size_t>(i)]});
+  for (Eigen::Index i = 0; i < poles.real.size(); ++i)
+    table.add_row({format_value(poles.real[i]), format_value(poles.imag[i]), format_value(poles.frequency_hz[i]),
+                   format_value(100 * poles.damping[i], 4), poles.mode[static_cast<std::size_t>(i)]});
   std::string html = make_figure(plot, "poles") + table.to_html(400);
   if (model.has_zeros && model.zeros_real.size() > 0) {
     HtmlTable zeros("Transmission zeros", {{"real"}, {"imaginary"}});
@@ -126,13 +144,12 @@ Chapter make_chapter(const records::LinearModel& model, const LinearFindings& fi
                      const std::vector<std::pair<std::string, std::string>>& facts) {
   Chapter chapter{"linear model", file, facts, {}, {}, {}, {}};
   int unstable = 0;
-  double worst = 0, largest = 0;
+  double worst = 0;
+  const Eigen::VectorXd doubt = calc_doubt(model.poles, 1e-6);
   for (Eigen::Index i = 0; i < model.poles.real.size(); ++i)
-    largest = std::max(largest, std::hypot(model.poles.real[i], model.poles.imag[i]));
-  for (const double re : model.poles.real)
-    if (re > 1e-6 * largest) {
+    if (model.poles.real[i] > doubt[i]) {
       ++unstable;
-      worst = std::max(worst, re);
+      worst = std::max(worst, model.poles.real[i]);
     }
   chapter.checks.push_back({"poles in the right half plane", std::to_string(unstable),
                             unstable > 0 ? Verdict::Warning : Verdict::Good,
@@ -173,13 +190,14 @@ Chapter make_chapter(const records::LinearModel& model, const LinearFindings& fi
                      {"input", model.inputs.name[static_cast<std::size_t>(pair.input)]},
                      {"decibel", pack_doubles(pair.decibel)},
                      {"degrees", pack_doubles(pair.degrees)}});
+  const records::Poles poles = round_off(model.poles);
   chapter.data = json{
       {"poles",
-       {{"real", to_list(model.poles.real)},
-        {"imag", to_list(model.poles.imag)},
-        {"frequency", to_list(model.poles.frequency_hz)},
-        {"damping", to_list(model.poles.damping)},
-        {"mode", model.poles.mode}}},
+       {{"real", to_list(poles.real)},
+        {"imag", to_list(poles.imag)},
+        {"frequency", to_list(poles.frequency_hz)},
+        {"damping", to_list(poles.damping)},
+        {"mode", poles.mode}}},
       {"zeros", {{"real", to_list(model.zeros_real)}, {"imag", to_list(model.zeros_imag)}}},
       {"frequency", pack_doubles(findings.response.frequency_hz)},
       {"pairs",

@@ -81,6 +81,14 @@ class Edit(ProgramTest):
         self.assertTrue(os.path.exists(self.path("new.svg")))
         self.bough("check", "new.toml")
 
+    def test_lists_of_names_and_unknown_keys(self):
+        self.edit("add controller c type=sum inputs=[one, \"two\", three:x]", "save")
+        self.assertIn('inputs = ["one", "two", "three:x"]', self.read())
+        self.edit("add sensor s type=accelerometer scale=[1, 2,3]", "save")
+        self.assertIn("scale = [1, 2,3]", self.read())
+        wrong = self.edit("add function f type=step tme=2", code=1)
+        self.assertIn("unknown key 'tme' in a function", wrong.stderr)
+
     def test_rename_follows_references_and_delete_asks_for_them(self):
         self.edit("rename pin root", "rename bob weight", "save")
         self.assertEqual(self.read(), SYSTEM.replace('"pin"', '"root"').replace('"bob"', '"weight"'))
