@@ -61,6 +61,10 @@ std::string format(const Diagnostic& d) {
 void Diagnostics::add(Diagnostic d) {
   if (d.severity == Severity::Error) ++num_errors_;
   if (d.severity == Severity::Warning) ++num_warnings_;
+  // A wrong card that is repeated three million times would take gigabytes to say so.
+  constexpr std::size_t kMost = 200'000;
+  const auto is_same = [&](const Diagnostic& other) { return other.id == d.id && other.severity == d.severity; };
+  if (items_.size() >= kMost && std::any_of(items_.end() - 16, items_.end(), is_same)) return;
   items_.push_back(std::move(d));
 }
 void Diagnostics::error(std::string_view id, SourceLocation where, std::string what, std::string advice) {

@@ -218,7 +218,9 @@ std::vector<Diagnostic> shorten(const std::vector<Diagnostic>& items, std::size_
   for (const auto& [key, kind] : kinds)
     if (kind.count > most) {
       auto& line = shown[kind.line];
-      line.what = "... and " + group_digits(kind.count - most) + " more of " + line.id;
+      // Of so many, Diagnostics keeps no more.
+      const bool is_cut = items.size() >= 200'000;
+      line.what = (is_cut ? "... and at least " : "... and ") + group_digits(kind.count - most) + " more of " + line.id;
       line.advice = "-v prints them all";
     }
   return shown;

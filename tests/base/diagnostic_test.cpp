@@ -16,6 +16,19 @@ TEST(Failure, OfAMillionDiagnosticsTellsTheFirst) {
   EXPECT_EQ(text.substr(text.rfind('\n')), "\n... and 999000 more");
 }
 
+TEST(Diagnostics, OfMillionsOfOneKindKeepsSomeAndCountsAll) {
+  Diagnostics diagnostics;
+  constexpr int n = 300'000;
+  for (int i = 0; i < n; ++i) {
+    diagnostics.error("deck.bad-integer", {"a.bdf", i}, "wrong");
+    diagnostics.error("deck.bad-real", {"a.bdf", i}, "wrong");
+  }
+  diagnostics.error("fe.no-grids", {"a.bdf"}, "another kind");
+  EXPECT_EQ(diagnostics.num_errors(), 2 * n + 1);
+  EXPECT_LT(diagnostics.items().size(), 250'000u);
+  EXPECT_TRUE(diagnostics.has("fe.no-grids"));
+}
+
 TEST(Diagnostic, FormatIsFileLineKindWhatAdviceId) {
   const Diagnostic d{Severity::Error, "deck.missing-grid", {"a.bdf", 12, 0}, "grid 7 does not exist", "add it"};
   EXPECT_EQ(format(d), "a.bdf:12: error: grid 7 does not exist; add it [deck.missing-grid]");

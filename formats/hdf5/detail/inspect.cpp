@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 #include <new>
 #include <utility>
@@ -43,6 +44,15 @@ Stamp make_stamp(const struct stat& state) {
   return {static_cast<long long>(state.st_dev), static_cast<long long>(state.st_ino),
           static_cast<long long>(state.st_size), static_cast<long long>(state.st_mtim.tv_sec),
           static_cast<long long>(state.st_mtim.tv_nsec)};
+}
+
+/// Clocks of files tick some hundred times a second: a file may change twice within a tick and look the same.
+bool is_older(const struct stat& state, double seconds) {
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME, &now);
+  return static_cast<double>(now.tv_sec - state.st_mtim.tv_sec) +
+             1e-9 * static_cast<double>(now.tv_nsec - state.st_mtim.tv_nsec) >
+         seconds;
 }
 
 /// The states of files last found good, by whatever name; few, so that a worker of many cases does not grow.
@@ -176,6 +186,7 @@ void inspect_file(const std::string& path) {
   if (::stat(path.c_str(), &state) != 0) return;
   if (is_file_locked(path)) return;  // a run of Bough writes it now: between two looks it is another file
   const auto stamp = make_stamp(state);
+  const bool is_settled = is_older(state, 0.1);
   if (g_inspected.has(stamp)) return;
 
   Diagnostics found;
@@ -184,7 +195,7 @@ void inspect_file(const std::string& path) {
   if (!look.end.empty())
     found.error("hdf5.damaged", {path}, "the file is damaged: " + look.end, "copy or write it again");
   found.throw_if_errors();
-  g_inspected.add(stamp);
+  if (is_settled) g_inspected.add(stamp);
 }
 
 }  // namespace bough::hdf5

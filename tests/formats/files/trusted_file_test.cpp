@@ -1,7 +1,7 @@
 /// A file that this process wrote itself is read without a look through it; one that has changed since is looked at.
 #include <gtest/gtest.h>
 
-#include <cstdio>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 
@@ -21,28 +21,31 @@ Look count_look(const std::string&, double) {
 
 TEST(TrustedFile, IsLookedAtOnlyAfterItChanged) {
   const Looker before = set_looker(count_look);
-  g_looks = 0;
   const test::TempFolder folder;
   const std::string path = folder.at("outcomes.h5"), copy = folder.at("copy.h5");
   OutcomeTable table;
   table.name = "study";
   table.cases = {1, 2};
   write_outcomes(table, path);
-  EXPECT_EQ(read_outcomes(path).cases, table.cases);
-  EXPECT_EQ(g_looks, 0);
+  const auto count_looks = [&](const std::string& file) {
+    g_looks = 0;
+    EXPECT_EQ(read_outcomes(file).cases, table.cases);
+    return g_looks;
+  };
+  EXPECT_EQ(count_looks(path), 0) << "written by this process";
 
   std::filesystem::copy_file(path, copy);
-  EXPECT_EQ(read_outcomes(copy).cases, table.cases);
-  EXPECT_EQ(g_looks, 1) << "a copy was not written by this process";
-  EXPECT_EQ(read_outcomes(copy).cases, table.cases);
-  EXPECT_EQ(g_looks, 1) << "seen, and not changed since";
+  EXPECT_GT(count_looks(copy), 0) << "a copy was not";
+  EXPECT_GT(count_looks(copy), 0) << "so new that a change would not show";
+  using namespace std::chrono_literals;
+  std::filesystem::last_write_time(copy, std::filesystem::file_time_type::clock::now() - 1h);
+  EXPECT_EQ(count_looks(copy), 1) << "changed since";
+  EXPECT_EQ(count_looks(copy), 0) << "seen, and not changed since";
 
   std::filesystem::rename(copy, path);
-  EXPECT_EQ(read_outcomes(path).cases, table.cases);
-  EXPECT_EQ(g_looks, 1) << "the same file by another name";
+  EXPECT_EQ(count_looks(path), 0) << "the same file by another name";
   std::ofstream(path, std::ios::app | std::ios::binary) << "more";
-  (void)read_outcomes(path);
-  EXPECT_EQ(g_looks, 2) << "bytes put behind it";
+  EXPECT_GT(count_looks(path), 0) << "bytes put behind it";
   set_looker(before);
 }
 
