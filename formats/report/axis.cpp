@@ -20,6 +20,9 @@ double get_round_step(double rough) {
 
 Axis make_axis(double min, double max, int wanted, bool widen) {
   Axis axis;
+  // Nothing here overflows.
+  min = std::clamp(min, -1e300, 1e300);
+  max = std::clamp(max, -1e300, 1e300);
   if (!(max > min)) {
     const double half = min == 0 ? 1 : 0.5 * std::abs(min);
     min -= half;

@@ -10,7 +10,7 @@ import unittest
 import h5py
 import numpy as np
 
-from support import PROGRAM, ProgramTest
+from support import PROGRAM, SLOWER, ProgramTest
 
 SYSTEM = """
 [parameters]
@@ -110,7 +110,8 @@ class MonteCarlo(ProgramTest):
             self.assertEqual(np.ravel(one["hinges/axis/q"])[-1], angles[6])
         # The memory of the one worker after the first tenth of the cases is that after the last.
         memory = [json.load(open(self.path(f"mc/case-{i:04d}/outcome.json")))["memory_kb"] for i in range(1, count, 2)]
-        self.assertLess(memory[-1], memory[6] + 4000, memory)
+        if SLOWER == 1:  # the sanitizers keep what was freed
+            self.assertLess(memory[-1], memory[6] + 4000, memory)
 
     def test_killed_and_called_again(self):
         """A campaign that was killed has, called again, the statistics of one that was not, byte by byte; the memory of
@@ -148,7 +149,8 @@ class MonteCarlo(ProgramTest):
         with open(self.path("whole/statistics.csv"), "rb") as a, open(self.path("parts/statistics.csv"), "rb") as b:
             self.assertEqual(a.read(), b.read())
         early = max(memory[:len(memory) // 4])  # the tables at the end are not among them
-        self.assertLess(max(memory), early + 1000)
+        if SLOWER == 1:
+            self.assertLess(max(memory), early + 1000)
 
     def test_deviation_follows_the_noise(self):
         """Lyapunov's equation of the sampled loop gives the variance of the angle."""
