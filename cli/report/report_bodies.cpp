@@ -44,6 +44,31 @@ void add_integrals(const records::FlexBody& body, report::ModalModel& m) {
   }
 }
 
+/// Ranges of rates, their ends by halving the steps between the rates looked at.
+std::vector<std::pair<double, double>> find_divergence(const records::FlexBody& body, int axis,
+                                                       const modal::SpinFrequencies& spin) {
+  const auto find_edge = [&](double from, double to, bool is_after) {
+    for (int i = 0; i < 16; ++i) {
+      const double middle = 0.5 * (from + to);
+      const bool diverges =
+          modal::calc_spin_frequencies(body, Eigen::Vector3d::Unit(axis), Eigen::VectorXd::Constant(1, middle))
+              .diverges[0];
+      (diverges == is_after ? to : from) = middle;
+    }
+    return is_after ? to : from;
+  };
+  std::vector<std::pair<double, double>> ranges;
+  const auto n = spin.diverges.size();
+  for (std::size_t r = 0; r < n; ++r) {
+    const auto k = static_cast<Eigen::Index>(r);
+    const bool was = r > 0 && spin.diverges[r - 1];
+    if (spin.diverges[r] && !was) ranges.emplace_back(r > 0 ? find_edge(spin.rate[k - 1], spin.rate[k], true) : 0, 0);
+    if (!spin.diverges[r] && was) ranges.back().second = find_edge(spin.rate[k - 1], spin.rate[k], false);
+  }
+  if (n > 0 && spin.diverges[n - 1]) ranges.back().second = spin.rate[spin.rate.size() - 1];
+  return ranges;
+}
+
 void add_spin(const records::FlexBody& body, report::ModalModel& m) {
   if (body.num_modes() == 0 || body.integrals().empty()) return;
   double first = 0;
@@ -58,9 +83,8 @@ void add_spin(const records::FlexBody& body, report::ModalModel& m) {
     const auto spin =
         modal::calc_spin_frequencies(body, Eigen::Vector3d::Unit(axis), Eigen::VectorXd::LinSpaced(33, 0, 2 * first));
     report::SpinCurves curves{
-        names[static_cast<std::size_t>(axis)], spin.rate, spin.frequency_hz, spin.without_hz, -1, spin.has_stiffness};
-    for (std::size_t r = 0; r < spin.diverges.size() && curves.diverges_at < 0; ++r)
-      if (spin.diverges[r]) curves.diverges_at = spin.rate[static_cast<Eigen::Index>(r)];
+        names[static_cast<std::size_t>(axis)], spin.rate,         spin.frequency_hz, spin.without_hz,
+        find_divergence(body, axis, spin),     spin.has_stiffness};
     m.spin.push_back(std::move(curves));
   }
 }

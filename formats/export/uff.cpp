@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <set>
 
 #include "base/diagnostic.hpp"
@@ -164,7 +165,18 @@ struct UffFunction {
   Eigen::VectorXd real, imag;
   bool is_over_time = true;
   int load_case = 0;
+  int node = 0, direction = 0;  ///< 1 to 6: along and about x, y, z; 0: none, a scalar
+  std::pair<int, const char*> ordinate{0, "NONE"};
 };
+
+/// The format's code of a quantity, and its name.
+std::pair<int, const char*> find_ordinate(const std::string& quantity) {
+  if (quantity == "displacement") return {8, "Displacement"};
+  if (quantity == "velocity") return {11, "Velocity"};
+  if (quantity == "acceleration") return {12, "Acceleration"};
+  if (quantity == "spc_force") return {9, "Reaction force"};
+  return {0, "NONE"};
+}
 
 void put_function(UffText& out, int number, const UffFunction& f) {
   const auto n = f.x.size();
@@ -175,12 +187,12 @@ void put_function(UffText& out, int number, const UffFunction& f) {
   out.begin(58);
   out.put_id(f.name);
   for (int i = 0; i < 4; ++i) out.put_id("");
-  out.print("%5d%10d%5d%10d %-10s%10d%4d %-10s%10d%4d\n", f.is_over_time ? 1 : 12, number, 0, f.load_case, "NONE", 0, 0,
-            "NONE", 0, 0);
+  out.print("%5d%10d%5d%10d %-10s%10d%4d %-10s%10d%4d\n", f.is_over_time ? 1 : 12, number, 0, f.load_case, "NONE",
+            f.node, f.direction, "NONE", 0, 0);
   out.print("%10d%10d%10d%13.5E%13.5E%13.5E\n", is_complex ? 6 : 4, static_cast<int>(n), even ? 1 : 0,
             even ? f.x(0) : 0.0, even ? step : 0.0, 0.0);
   const std::pair<int, const char*> abscissa{f.is_over_time ? 17 : 18, f.is_over_time ? "Time" : "Frequency"};
-  for (const auto& [type, label] : {abscissa, {0, "NONE"}, {0, "NONE"}, {0, "NONE"}})
+  for (const auto& [type, label] : {abscissa, f.ordinate, {0, "NONE"}, {0, "NONE"}})
     out.print("%10d%5d%5d%5d %-20s %-20s\n", type, 0, 0, 0, label, "NONE");
   const Eigen::Index per_line = is_complex ? (even ? 2 : 1) : (even ? 4 : 2);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -232,9 +244,13 @@ std::string make_uff(const records::DeckResponse& response) {
   UffText out;
   int number = 0;
   for (const auto& subcase : response.subcases)
-    for (const auto& curve : list_curves(subcase))
+    for (const auto& curve : list_curves(subcase)) {
+      const auto ordinate = find_ordinate(curve.quantity);
+      const bool is_of_grid = ordinate.first != 0;
       put_function(out, ++number,
-                   {curve.name, subcase.x, curve.real, curve.imag, response.is_over_time, std::max(subcase.id, 0)});
+                   {curve.name, subcase.x, curve.real, curve.imag, response.is_over_time, std::max(subcase.id, 0),
+                    is_of_grid ? curve.id : 0, is_of_grid ? std::atoi(curve.component.c_str()) : 0, ordinate});
+    }
   return out.take();
 }
 

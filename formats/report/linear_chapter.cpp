@@ -84,14 +84,12 @@ std::string make_poles(const records::LinearModel& model) {
 std::string make_bode(const records::LinearModel& model, const Eigen::VectorXd& frequency,
                       const std::vector<Pair>& pairs) {
   std::string html = "<div class=\"live\" data-view=\"bode\">\n";
-  // The axes of static pictures are linear: the logarithm is drawn.
-  const Eigen::VectorXd decades = frequency.array().log10();
   for (std::size_t p = 0; p < std::min(kMostPictures, pairs.size()); ++p) {
     const auto& pair = pairs[p];
     const std::string name = model.outputs.name[static_cast<std::size_t>(pair.output)] + " over " +
                              model.inputs.name[static_cast<std::size_t>(pair.input)];
     html += make_figure(
-        {name, "log10 of the frequency [1/T]", "magnitude [dB]", {{"", decades, pair.decibel, false}}, 0, 0});
+        {name, "frequency, cycles [1/T]", "magnitude [dB]", {{"", frequency, pair.decibel, false}}, 0, 0, true});
   }
   html += "</div>\n";
   const auto all = static_cast<std::size_t>(model.inputs.size()) * static_cast<std::size_t>(model.outputs.size());
@@ -101,11 +99,11 @@ std::string make_bode(const records::LinearModel& model, const Eigen::VectorXd& 
 
 std::string make_singular_values(const LinearFindings& findings) {
   const auto& values = findings.response.singular_values;
-  const Eigen::VectorXd decades = findings.response.frequency_hz.array().log10();
-  Plot plot{"Singular values of the transfer matrix", "log10 of the frequency [1/T]", "dB", {}, 0, 0};
+  const Eigen::VectorXd& frequency = findings.response.frequency_hz;
+  Plot plot{"Singular values of the transfer matrix", "frequency, cycles [1/T]", "magnitude [dB]", {}, 0, 0, true};
   for (Eigen::Index i = 0; i < std::min<Eigen::Index>(values.cols(), 6); ++i) {
     const Eigen::VectorXd decibel = 20 * values.col(i).array().max(1e-300).log10();
-    plot.curves.push_back({std::to_string(i + 1), decades, decibel, false});
+    plot.curves.push_back({fmt::format("σ{}", i + 1), frequency, decibel, false});
   }
   return make_figure(plot);
 }

@@ -142,9 +142,14 @@ std::string make_spin(const ModalModel& m) {
       table.add_row(std::move(row));
     }
     html += table.to_html();
-    if (curves.diverges_at >= 0)
-      html += make_text(fmt::format("About {} the body buckles or flutters from a rate of {} on.", curves.axis,
-                                    format_value(curves.diverges_at, 4)));
+    const double step = curves.rate.size() > 1 ? curves.rate[1] - curves.rate[0] : 0;
+    for (const auto& [from, to] : curves.diverges) {
+      const bool is_open = to >= curves.rate[curves.rate.size() - 1];
+      html +=
+          make_text(fmt::format("About {} the body buckles or flutters at rates from {} {} {}{}.", curves.axis,
+                                format_value(from, 5), is_open ? "up to the last one here," : "to", format_value(to, 5),
+                                step > 0 ? fmt::format(" (looked at in steps of {})", format_value(step, 3)) : ""));
+    }
   }
   return html;
 }

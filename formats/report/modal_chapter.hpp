@@ -21,8 +21,8 @@ struct IntegralsTable {
 struct SpinCurves {
   std::string axis;
   Eigen::VectorXd rate;
-  Eigen::MatrixXd frequency_hz, without_hz;  ///< r x k
-  double diverges_at = -1;                   ///< rate; negative: nowhere here
+  Eigen::MatrixXd frequency_hz, without_hz;         ///< r x k
+  std::vector<std::pair<double, double>> diverges;  ///< rates between which it does
   bool has_stiffness = true;
 };
 

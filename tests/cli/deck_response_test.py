@@ -13,6 +13,8 @@ from scipy.sparse import csr_matrix
 from support import SOURCE, ProgramTest
 
 sys.path.insert(0, os.path.join(SOURCE, "python"))
+sys.path.insert(0, os.path.join(SOURCE, "tests", "oracle"))
+import uff_reader  # noqa: E402
 
 # m = 4, k = 36 to a fixed grid, c = 2.4: moves along x.
 ONE = """SOL {sol}
@@ -588,6 +590,17 @@ class Files(DeckResponse):
         self.assertEqual(lines[8][:6], "-CONT-")
         self.assertAlmostEqual(float(lines[9][18:36]), np.degrees(np.angle(u[0])) % 360, delta=1e-3)
         self.assertEqual(int(lines[-1][72:]), len(lines))
+
+    def test_universal_file(self):
+        """Programs of modal tests go by grid, direction and quantity, not by the title."""
+        self.write("d.bdf", self.DECK)
+        self.bough("frequency", "d.bdf", "-o", "d.h5")
+        self.bough("export", "d.h5", "--to", "uff", "-o", "d.uff")
+        r = read(self.path("d.h5"))[1]
+        found = {(f["quantity"], f["node"], f["direction"]): f["values"] for f in uff_reader.read(self.path("d.uff")) if "quantity" in f}
+        for code, quantity in ((8, "displacement"), (11, "velocity"), (12, "acceleration"), (9, "spc_force")):
+            for dof, values in r[quantity].items():
+                np.testing.assert_allclose(found[code, *dof], values, rtol=1e-11, atol=1e-300)
 
     def test_table_and_json(self):
         self.write("d.bdf", self.DECK)

@@ -3,6 +3,7 @@ import base64
 import hashlib
 import json
 import os
+import re
 import time
 import unittest
 from html.parser import HTMLParser
@@ -173,6 +174,18 @@ class Report(ProgramTest):
         self.bough("run", "spinup-no-kg.toml", "-o", "no-kg.h5")
         health = {r[1]: r for r in self.report("no-kg.h5").get_table("Health")}
         self.assertEqual(health["deflection of body boom to its size"][0], "look")
+
+    def test_rates_of_divergence(self):
+        """A shaft of two bending stiffnesses is unstable between its two bending frequencies, and only there."""
+        self.write("shaft.bdf", BEAM.replace("1.-8,1.-8,1.-8", "1.-8,2.-8,3.-8"))
+        self.bough("reduce", "shaft.bdf", "--modes", "4", "-o", "shaft.h5")
+        self.bough("report", "shaft.h5", "-o", "page.html")
+        with h5py.File(self.path("shaft.h5")) as f:
+            rates = 2 * np.pi * f["modes/frequency_hz"][:2]
+        with open(self.path("page.html"), encoding="utf-8") as f:
+            found = re.findall(r"About x the body buckles or flutters at rates from ([\d.]+) to ([\d.]+) ", f.read())
+        self.assertEqual(len(found), 1)
+        np.testing.assert_allclose(np.array(found[0], float), rates, rtol=1e-4)
 
     def test_body(self):
         self.make_boom()

@@ -19,6 +19,7 @@ namespace {
 
 /// Beyond this many lines that are no cards the file is not a deck.
 constexpr int max_unreadable = 20;
+constexpr int kMostWrongCopies = 1000;  // what is wrong in these is wrong in millions
 constexpr int max_repeats = 1'000'000;
 /// Unknown names for which the nearest known one is looked for.
 constexpr int max_proposals = 20;
@@ -185,8 +186,15 @@ class Builder {
         stopped_ = true;
         return;
       }
-      for (int i = 0; i < *repeats; ++i)
+      const int before = diagnostics_.num_errors();
+      for (int i = 0; i < *repeats; ++i) {
         if (!finish_relative(replicator_.make_copy(text_))) return;
+        if (diagnostics_.num_errors() - before < kMostWrongCopies) continue;
+        if (i + 1 < *repeats)
+          fail_replication(std::to_string(kMostWrongCopies) + " errors of its copies; the other " +
+                           std::to_string(*repeats - i - 1) + " are not read");
+        return;
+      }
       return;
     }
     finish_relative(replicator_.resolve(text_));
