@@ -24,8 +24,8 @@ namespace bough::cli {
 namespace {
 
 constexpr const char* kTakes =
-    "give results, a flexible body, modes, a response, a linear model, a comparison, outcomes.h5, or the JSON of "
-    "select";
+    "give results, a flexible body, modes, a response of a deck (frequency, transient), a linear model, a comparison, "
+    "outcomes.h5, or the JSON of select; of sweeps and responses of linear models `bough plot` makes pictures";
 
 report::Chapter make_selection_chapter(const std::string& file) {
   std::ifstream in(file);

@@ -41,6 +41,11 @@ PackedColumn pack_column(const Eigen::Ref<const Eigen::VectorXd>& values) {
   if (low == high && !has_gaps) return packed;
   // Halves first: the difference of two large numbers may overflow.
   packed.step = (high / 2 - low / 2) / ((PackedColumn::kMissing - 1) / 2.0);
+  if (low < 0 && high > 0 && packed.step < 1e290) {
+    // Zero stays zero: it is so many steps above the least.
+    packed.step *= 1 + 1e-6;
+    packed.low = low = -packed.step * std::ceil(-low / packed.step);
+  }
   std::vector<unsigned char> bytes;
   bytes.reserve(3 * static_cast<std::size_t>(values.size()));
   for (const double v : values) {

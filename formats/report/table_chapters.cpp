@@ -42,6 +42,25 @@ std::string make_array_table(const records::ComparisonArray& array, const std::v
   return table.to_html(300);
 }
 
+/// With what the frequencies differ by.
+std::string make_pairs_table(const records::ComparisonArray& array) {
+  if (array.values.cols() != 6) return make_array_table(array, nullptr);
+  HtmlTable table(
+      array.description,
+      {{"mode of A"}, {"of B"}, {"frequency A"}, {"frequency B"}, {"B less A, %"}, {"MAC"}, {"in the span of B"}});
+  for (const auto& row : array.values.rowwise()) {
+    const double difference = row(2) != 0 ? 100 * (row(3) / row(2) - 1) : std::nan("");
+    table.add_row({format_value(row(0)), format_value(row(1)), format_value(row(2)), format_value(row(3)),
+                   format_value(difference, 4), format_value(row(4)), format_value(row(5))});
+  }
+  return table.to_html(300);
+}
+
+std::string name_files(const records::Comparison& comparison) {
+  if (comparison.source.size() < 2) return {};
+  return make_text("A is " + comparison.source[0].first + ", B is " + comparison.source[1].first + ".", "note");
+}
+
 double take_percentile(const std::vector<double>& sorted, double share) {
   const double at = share * static_cast<double>(sorted.size() - 1);
   const auto low = static_cast<std::size_t>(at);
@@ -92,7 +111,7 @@ Chapter make_chapter(const records::Comparison& comparison, const std::string& f
       chapter.checks.push_back({"least MAC of a pair", format_value(least, 4),
                                 least < 0.9 ? Verdict::Warning : Verdict::Good,
                                 fmt::format("{} pairs; below 0.9 look at the share in the span", array.values.rows())});
-      chapter.add_panel("pairs", "Pairs of modes", make_array_table(array, nullptr));
+      chapter.add_panel("pairs", "Pairs of modes", name_files(comparison) + make_pairs_table(array));
     } else if (array.path == "/refinement/values") {
       chapter.add_panel("refinement", "Refinement", make_array_table(array, find_words(array.path)));
     } else if (array.path.starts_with("/integrals/")) {
@@ -100,6 +119,9 @@ Chapter make_chapter(const records::Comparison& comparison, const std::string& f
       rest += make_array_table({array.path, array.values, method + ": " + array.description, array.dims}, nullptr);
     } else if (array.path == "/stiffness/values") {
       chapter.add_panel("stiffness", "Geometric stiffness", make_array_table(array, find_words(array.path)));
+    } else if (array.path == "/offset") {
+      const std::vector<std::string> axes{"x", "y", "z"};
+      rest += make_array_table(array, &axes);
     } else if (array.path != "/nodes") {
       rest += make_array_table(array, nullptr);
     }

@@ -314,7 +314,11 @@ class Report(ProgramTest):
         self.write("select.json", printed)
         self.bough("init", "campaign")
         page = self.report("comparison.h5", "select.json")
-        self.assertEqual(len(page.get_table("mode of A, of B")) - 1, 2)
+        pairs = page.get_table("mode of A, of B")
+        self.assertEqual(len(pairs) - 1, 2)
+        self.assertEqual(float(pairs[1][4]), 0)  # the same frequency
+        with open(self.path("page.html"), encoding="utf-8") as f:
+            self.assertIn("A is boom.h5, B is small.h5.", f.read())
         modes = json.loads(printed)["modes"]
         rows = page.get_table("Modes by component cost")[1:]
         self.assertEqual([r[4] for r in rows], ["yes" if m["kept"] else "no" for m in modes])

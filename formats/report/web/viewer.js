@@ -100,8 +100,27 @@ export class Viewer {
     this.home = box;
     this.target = box.get_middle();
     this.extent = box.get_diagonal();
-    this.distance = 1.1 * this.extent;
+    this.distance = Math.max(this.find_distance(box), 0.3 * this.extent);
     this.draw();
+  }
+
+  // From where each corner of a box is seen, with some room for what moves out of it.
+  find_distance(box) {
+    const { back, right, up } = this.get_axes();
+    const half = box.low.map((low, i) => (box.high[i] >= low ? (box.high[i] - low) / 2 : 0.5));
+    const [fx, fy] = this.get_lens();
+    let distance = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const p = half.map((h, i) => ((corner >> i) & 1 ? h : -h));
+      distance = Math.max(distance, fx * Math.abs(dot(right, p)) + dot(back, p), fy * Math.abs(dot(up, p)) + dot(back, p));
+    }
+    return 1.25 * distance;
+  }
+
+  // The angle holds for the shorter side.
+  get_lens() {
+    const aspect = this.canvas.width > 0 && this.canvas.height > 0 ? this.canvas.width / this.canvas.height : 1, f = 1 / Math.tan(0.35);
+    return aspect > 1 ? [f / aspect, f] : [f, f * aspect];
   }
 
   // Looks across what happens in one plane of the axes.
@@ -125,9 +144,7 @@ export class Viewer {
     const eye = this.target.map((t, i) => t + this.distance * back[i]);
     this.eye = eye;
     const look = [right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2], back[2], 0, -dot(right, eye), -dot(up, eye), -dot(back, eye), 1];
-    const aspect = this.canvas.width / this.canvas.height, f = 1 / Math.tan(0.35);
-    // The angle holds for the shorter side.
-    const fx = aspect > 1 ? f / aspect : f, fy = aspect > 1 ? f : f * aspect;
+    const [fx, fy] = this.get_lens();
     const near = Math.max(this.distance - 3 * this.extent, 0.01 * this.distance), far = this.distance + 3 * this.extent;
     const lens = [fx, 0, 0, 0, 0, fy, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, (2 * far * near) / (near - far), 0];
     return multiply(lens, look);
