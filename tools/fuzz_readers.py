@@ -94,10 +94,11 @@ def fuzz(program, reader, options):
     limit = [f"-runs={options.runs}"] if options.runs else [f"-max_total_time={round(60 * options.minutes)}"]
     before = set(glob.glob(found + "*"))
     begin = get_seconds()
-    # matio asks for what the names of a struct claim before it reads them, up to 2^31 and more; nothing fills it.
+    # matio asks for what the names of a struct claim before it reads them, up to 2^32; that is not ours to mend.
     # Entropic weights of inputs cost more than most of the readers.
     ran = subprocess.run([program, own, os.path.join(CORPUS, reader), f"-artifact_prefix={found}", "-timeout=100",
-                          "-report_slow_units=1000", "-rss_limit_mb=3000", f"-malloc_limit_mb={65536 if reader == 'matrices' else 1500}", f"-max_len={LONGEST.get(reader, 4096)}",
+                          "-report_slow_units=1000", f"-rss_limit_mb={9000 if reader == 'matrices' else 3000}",
+                          f"-malloc_limit_mb={65536 if reader == 'matrices' else 1500}", f"-max_len={LONGEST.get(reader, 4096)}",
                           *dictionary, "-print_final_stats=1", "-reload=0", "-entropic=0", *limit], env=environment,
                          cwd=options.keep, capture_output=True, text=True, errors="replace")
     new = sorted(set(glob.glob(found + "*")) - before)
