@@ -81,7 +81,8 @@ def list_commands(text):
 
 @functools.cache
 def has_module():
-    return subprocess.run(["/usr/bin/python3", "-B", "-c", "import bough, sys; sys.exit(bough._bough is None)"], capture_output=True,
+    tries = "import bough, sys; sys.exit(bough._bough is None)"  # without it, the reader alone
+    return subprocess.run(["/usr/bin/python3", "-B", "-c", tries], capture_output=True,
                           env={**os.environ, "PYTHONPATH": MODULE}).returncode == 0
 
 
