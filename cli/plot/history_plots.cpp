@@ -89,8 +89,14 @@ double find_step(const VectorXd& time, const std::string& name) {
   return step;
 }
 
-void take_spectrum(report::Curve& curve, const CurveChoice& choice) {
+void take_spectrum(report::Curve& curve, const CurveChoice& choice, Diagnostics& diagnostics) {
   const double step = find_step(curve.x, curve.label);
+  if (choice.psd && curve.y.size() < choice.segment)
+    diagnostics.note("cli.short-segment", {},
+                     fmt::format("a segment of {} samples is wanted of {}, which has {}: they are the only segment, "
+                                 "nothing is averaged",
+                                 choice.segment, curve.label.empty() ? "the curve" : curve.label, curve.y.size()),
+                     "give a --segment of an eighth of the samples or less, or run longer");
   auto spectrum = choice.psd ? report::calc_psd(curve.y, step, choice.segment) : report::calc_amplitudes(curve.y, step);
   curve.x = std::move(spectrum.frequency);
   curve.y = std::move(spectrum.value);
@@ -158,7 +164,7 @@ report::Plot make_history_plot(const std::vector<std::string>& files, const std:
 }
 
 report::Plot make_campaign_plot(const std::vector<std::string>& files, const std::vector<std::string>& names,
-                                const CurveChoice& choice) {
+                                const CurveChoice& choice, Diagnostics& diagnostics) {
   report::Plot plot;
   plot.x_label = choice.x.empty() ? "cases below, %" : choice.x;
   for (const auto& file : files) {
@@ -166,32 +172,42 @@ report::Plot make_campaign_plot(const std::vector<std::string>& files, const std
     const auto table = hdf5::read_outcomes(file);
     for (const auto& name : names) {
       VectorXd y = find_outcome(table, file, name);
+      VectorXd x = choice.x.empty() ? y : find_outcome(table, file, choice.x);
+      std::vector<Eigen::Index> kept;
+      for (Eigen::Index i = 0; i < y.size(); ++i)
+        if (std::isfinite(x[i]) && std::isfinite(y[i])) kept.push_back(i);
+      if (std::ssize(kept) < y.size())
+        diagnostics.note("cli.cases-left-out", {file},
+                         fmt::format("{} of {} cases have no value of {}: left out", y.size() - std::ssize(kept),
+                                     y.size(), choice.x.empty() ? name : name + " or " + choice.x),
+                         "look at their errors in the table of the campaign");
+      x = x(kept).eval();
+      y = y(kept).eval();
       const std::string label = (files.size() > 1 ? fs::path(file).stem().string() + " " : "") +
                                 (names.size() > 1 || files.size() == 1 ? name : "");
       if (!choice.x.empty()) {
-        plot.curves.push_back({label, find_outcome(table, file, choice.x), std::move(y), true});
+        plot.curves.push_back({label, std::move(x), std::move(y), true});
         continue;
       }
-      std::vector<double> values;
-      std::copy_if(y.begin(), y.end(), std::back_inserter(values), [](double v) { return std::isfinite(v); });
-      std::sort(values.begin(), values.end());
-      const auto n = std::ssize(values);
+      std::sort(y.begin(), y.end());
+      const auto n = y.size();
       plot.curves.push_back({label,
                              n > 1 ? VectorXd(VectorXd::LinSpaced(n, 0, 100)) : VectorXd(VectorXd::Constant(n, 50)),
-                             Eigen::Map<VectorXd>(values.data(), n), n == 1});
+                             std::move(y), n == 1});
     }
   }
   return plot;
 }
 
-std::vector<report::Plot> shape_plots(std::vector<report::Plot> plots, const CurveChoice& choice, bool is_over_time) {
+std::vector<report::Plot> shape_plots(std::vector<report::Plot> plots, const CurveChoice& choice, bool is_over_time,
+                                      Diagnostics& diagnostics) {
   for (auto& plot : plots) {
     for (auto& curve : plot.curves) {
-      if (is_over_time && (choice.psd || choice.spectrum)) take_spectrum(curve, choice);
+      if (is_over_time && (choice.psd || choice.spectrum)) take_spectrum(curve, choice, diagnostics);
     }
     if (is_over_time && (choice.psd || choice.spectrum)) plot.x_label = "frequency [1/T]";
     plot.has_log_x = plot.has_log_x || choice.log_x;
-    plot.has_log_y = choice.log_y || (is_over_time && choice.psd);
+    plot.has_log_y = plot.has_log_y || (is_over_time && (choice.log_y || choice.psd));
   }
   if (!choice.subplots) return plots;
   std::vector<report::Plot> single;

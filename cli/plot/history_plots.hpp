@@ -22,13 +22,14 @@ report::Plot make_history_plot(const std::vector<std::string>& files, const std:
                                const CurveChoice& choice, Diagnostics& diagnostics);
 
 /// Columns of outcomes.h5: a point a case against the column `x`; without it the values in order against the percentage
-/// of the cases that lie below.
+/// of the cases that lie below. Cases without a value are left out: note "cli.cases-left-out".
 report::Plot make_campaign_plot(const std::vector<std::string>& files, const std::vector<std::string>& names,
-                                const CurveChoice& choice);
+                                const CurveChoice& choice, Diagnostics& diagnostics);
 
-/// Cuts to the window, takes spectra, sets logarithmic axes, and with `subplots` gives each curve a plot of its own.
-/// Throws InputError "cli.bad-range" for a window without samples, "cli.uneven-samples" where a spectrum is asked of
-/// samples that are not evenly spaced.
-std::vector<report::Plot> shape_plots(std::vector<report::Plot> plots, const CurveChoice& choice, bool is_over_time);
+/// Takes spectra, sets logarithmic axes, and with `subplots` gives each curve a plot of its own.
+/// Throws InputError "cli.uneven-samples" where a spectrum is asked of samples that are not evenly spaced; the note
+/// "cli.short-segment" where there are fewer of them than a segment wants.
+std::vector<report::Plot> shape_plots(std::vector<report::Plot> plots, const CurveChoice& choice, bool is_over_time,
+                                      Diagnostics& diagnostics);
 
 }  // namespace bough::cli

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <filesystem>
+#include <map>
 #include <numbers>
 
 #include "cli/common/options.hpp"
@@ -74,21 +75,57 @@ void add_poles(const records::LinearModel& model, const std::string& prefix, Plo
   if (model.zeros_real.size() > 0) plot.curves.push_back({prefix + "zeros", model.zeros_real, model.zeros_imag, true});
 }
 
+/// The branch of `among` whose conjugate b is wherever the two are complex; -1: none. They may part on the real axis.
+int find_conjugate(const records::LinearSweep& sweep, Index b, const std::vector<Index>& among) {
+  const double most = 1e-9 * (sweep.real.cwiseAbs().maxCoeff() + sweep.imag.cwiseAbs().maxCoeff());
+  for (std::size_t k = 0; k < among.size(); ++k) {
+    const auto a = among[k];
+    bool is_conjugate = true;
+    for (Index i = 0; i < sweep.imag.rows() && is_conjugate; ++i)
+      is_conjugate = std::abs(sweep.imag(i, a) + sweep.imag(i, b)) <= most &&
+                     (std::abs(sweep.imag(i, b)) <= most || std::abs(sweep.real(i, a) - sweep.real(i, b)) <= most);
+    if (is_conjugate) return static_cast<int>(k);
+  }
+  return -1;
+}
+
 void add_sweep(const records::LinearSweep& sweep, const std::string& kind, const std::string& prefix, Plot& plot) {
   if (kind == "campbell") plot.x_label = sweep.parameter;
   const double largest = sweep.frequency_hz.size() > 0 ? sweep.frequency_hz.maxCoeff() : 0;
-  VectorXd first_real(0), first_imag(0);
-  for (Index b = 0; b < sweep.real.cols(); ++b) {
+  std::map<std::string, int> count_of;
+  const auto make_name = [&](Index b) {
     const auto k = static_cast<std::size_t>(b);
     const auto &from = sweep.mode.front()[k], &to = sweep.mode.back()[k];
     const std::string name = prefix + (from == to ? from : from + " -> " + to);
-    if (kind == "campbell") {
-      // Of a pair one; what stands at 0 all along is no line.
-      if (sweep.imag.col(b).sum() < 0 || sweep.frequency_hz.col(b).maxCoeff() <= 1e-9 * largest) continue;
-      plot.curves.push_back({name, sweep.value, sweep.frequency_hz.col(b)});
-    } else {
-      plot.curves.push_back({sweep.imag.col(b).sum() < 0 ? "" : name, sweep.real.col(b), sweep.imag.col(b)});
-    }
+    const int number = ++count_of[name];
+    return number > 1 ? fmt::format("{} ({})", name, number) : name;
+  };
+  const auto draw = [&](Index b, const std::string& name, int style) {
+    if (kind == "locus")
+      plot.curves.push_back({name, sweep.real.col(b), sweep.imag.col(b), false, style});
+    else
+      plot.curves.push_back({name, sweep.value, sweep.frequency_hz.col(b), false, style});
+  };
+  const auto stands_at_zero = [&](Index b) {
+    return kind == "campbell" && sweep.frequency_hz.col(b).maxCoeff() <= 1e-9 * largest;
+  };
+  std::vector<Index> upper, lower;
+  for (Index b = 0; b < sweep.real.cols(); ++b) (sweep.imag.col(b).sum() < 0 ? lower : upper).push_back(b);
+  std::vector<int> curve_of(upper.size(), -1);
+  for (std::size_t k = 0; k < upper.size(); ++k) {
+    if (stands_at_zero(upper[k])) continue;
+    curve_of[k] = static_cast<int>(plot.curves.size());
+    draw(upper[k], make_name(upper[k]), -1);
+  }
+  for (const Index b : lower) {
+    // Of a pair one color and name, and one frequency.
+    const int partner = find_conjugate(sweep, b, upper);
+    const int style = partner < 0 ? -1 : curve_of[static_cast<std::size_t>(partner)];
+    const bool is_drawn =
+        style >= 0 && kind == "campbell" &&
+        (sweep.frequency_hz.col(b) - sweep.frequency_hz.col(upper[static_cast<std::size_t>(partner)])).norm() <=
+            1e-9 * largest;
+    if (!is_drawn && !stands_at_zero(b)) draw(b, style >= 0 ? "" : make_name(b), style);
   }
   if (kind != "locus") return;
   plot.curves.push_back({fmt::format("{}{} = {:g}", prefix, sweep.parameter, sweep.value[0]), sweep.real.row(0),

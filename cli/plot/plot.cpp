@@ -15,6 +15,7 @@
 #include "cli/plot/history_plots.hpp"
 #include "cli/plot/linear_plots.hpp"
 #include "cli/plot/response_plots.hpp"
+#include "formats/export/csv.hpp"
 #include "formats/report/svg_plot.hpp"
 #include "formats/report/terminal_plot.hpp"
 
@@ -106,15 +107,25 @@ void print_plots(const std::vector<report::Plot>& plots, const Console& console)
   console.print_data(text);
 }
 
-/// curve,x,y: the points of every curve as it is drawn, all digits.
+/// The name in a legend; of the curve below it that has none, as phases have, that of the first plot.
+std::string name_curve(const std::vector<report::Plot>& plots, std::size_t plot, std::size_t curve) {
+  const auto& own = plots[plot];
+  std::string name = own.curves[curve].label;
+  if (name.empty() && curve < plots.front().curves.size()) name = plots.front().curves[curve].label;
+  if (plots.size() > 1 || name.empty())
+    name += (name.empty() || own.y_label.empty() ? "" : ", ") + (own.y_label.empty() ? own.title : own.y_label);
+  return name;
+}
+
+/// curve,x,y: name and points of every curve as it is drawn, all digits.
 std::string make_curves_csv(const std::vector<report::Plot>& plots) {
   std::string text = "curve,x,y\n";
-  int number = 0;
-  for (const auto& plot : plots)
-    for (const auto& curve : plot.curves) {
-      ++number;
+  for (std::size_t p = 0; p < plots.size(); ++p)
+    for (std::size_t c = 0; c < plots[p].curves.size(); ++c) {
+      const auto& curve = plots[p].curves[c];
+      const auto name = exports::write_csv_field(name_curve(plots, p, c));
       for (Eigen::Index i = 0; i < curve.x.size(); ++i)
-        text += fmt::format("{},{:.17g},{:.17g}\n", number, curve.x[i], curve.y[i]);
+        text += fmt::format("{},{:.17g},{:.17g}\n", name, curve.x[i], curve.y[i]);
     }
   return text;
 }
@@ -179,6 +190,17 @@ void check_choices(const PlotOptions& o) {
     throw InputError("cli.nothing-to-plot", {}, "--difference takes two files", "name the run to take off first");
 }
 
+/// What is asked of curves that a file of this kind has not.
+void demand_unused(const std::string& file, const std::string& kind,
+                   const std::vector<std::pair<const char*, bool>>& options) {
+  std::vector<std::string> used;
+  for (const auto& [name, is_used] : options)
+    if (is_used) used.push_back(name);
+  if (!used.empty())
+    throw InputError("cli.plot-option", {file}, fmt::format("{} of {} is not drawn", fmt::join(used, ", "), kind),
+                     "leave it out, or give results of a run");
+}
+
 int run_plot(const PlotOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
@@ -191,21 +213,33 @@ int run_plot(const PlotOptions& o) {
     throw InputError("cli.nothing-to-plot", {}, "neither --sensor nor --kind says what to draw",
                      "give --sensor NAME of results, or --kind bode of a linear model");
   if (is_deck_response(o.files)) {
-    auto plots = make_response_plots(o.files, o.sensors, o.curves.window);
+    const auto& c = o.curves;
+    auto plots = make_response_plots(o.files, o.sensors, c.window, c.log_y);
     const bool is_over_time = plots.size() == 1;
-    return draw_plots(o, shape_plots(std::move(plots), o.curves, is_over_time), o.sensors.front(), diagnostics,
-                      console);
+    demand_unused(o.files.front(), "a response of a deck", {{"--x", !c.x.empty()}, {"--difference", c.difference}});
+    if (!is_over_time)
+      demand_unused(o.files.front(), "curves over frequency", {{"--psd", c.psd}, {"--spectrum", c.spectrum}});
+    plots = shape_plots(std::move(plots), c, is_over_time, diagnostics);
+    return draw_plots(o, std::move(plots), o.sensors.front(), diagnostics, console);
   }
   demand_file(o.files.front());
   const bool is_campaign = read_file_format(o.files.front()) == "bough-outcomes";
-  auto plot = is_campaign ? make_campaign_plot(o.files, o.sensors, o.curves)
+  if (is_campaign)
+    demand_unused(o.files.front(), "a campaign",
+                  {{"--psd", o.curves.psd},
+                   {"--spectrum", o.curves.spectrum},
+                   {"--difference", o.curves.difference},
+                   {"--window", !o.curves.window.empty()}});
+  auto plot = is_campaign ? make_campaign_plot(o.files, o.sensors, o.curves, diagnostics)
                           : make_history_plot(o.files, o.sensors, o.curves, diagnostics);
   plot.title = fmt::format("{}", fmt::join(o.sensors, ", "));
   if (plot.x_label.empty()) plot.x_label = "time";
   if (o.sensors.size() == 1) plot.y_label = o.sensors.front();
   const bool is_over_time = !is_campaign && o.curves.x.empty();
   if (is_over_time && o.curves.psd) plot.y_label += plot.y_label.empty() ? "PSD" : ", PSD";
-  return draw_plots(o, shape_plots({std::move(plot)}, o.curves, is_over_time), o.sensors.front(), diagnostics, console);
+  plot.has_log_y = o.curves.log_y;
+  const auto plots = shape_plots({std::move(plot)}, o.curves, is_over_time, diagnostics);
+  return draw_plots(o, plots, o.sensors.front(), diagnostics, console);
 }
 
 }  // namespace
@@ -228,22 +262,31 @@ void add_plot(CLI::App& app, Action& action) {
   auto& c = o->curves;
   verb->add_option("--x", c.x, "Against this channel instead of the time; of outcomes.h5 a point a case")
       ->excludes("--kind");
-  verb->add_option("--window", c.window, "Only times from T0 to T1, as T0,T1")->delimiter(',')->expected(2);
-  auto* psd = verb->add_flag("--psd", c.psd, "Power spectral density (Welch, Hann's window, overlap of a half)");
+  verb->add_option("--window", c.window, "Only times from T0 to T1, as T0,T1")
+      ->delimiter(',')
+      ->expected(2)
+      ->excludes("--kind");
+  auto* psd = verb->add_flag("--psd", c.psd, "Power spectral density (Welch, Hann's window, overlap of a half)")
+                  ->excludes("--kind");
   verb->add_flag("--spectrum", c.spectrum, "Amplitudes over frequency (Hann's window, straight line taken off)")
       ->excludes(psd)
-      ->excludes("--x");
+      ->excludes("--x")
+      ->excludes("--kind");
   psd->excludes("--x");
   verb->add_option("--segment", c.segment, "--psd: samples of a segment")
       ->check(CLI::Range(2, 1 << 30))
       ->needs(psd)
       ->capture_default_str();
-  verb->add_flag("--difference", c.difference, "Each further file less the first one")->excludes("--x");
-  verb->add_flag("--subplots", c.subplots, "Each curve in a plot of its own, one above the other");
-  verb->add_flag("--log-x", c.log_x, "Decades below");
-  verb->add_flag("--log-y", c.log_y, "Decades upward; --psd has them");
+  verb->add_flag("--difference", c.difference, "Each further file less the first one")
+      ->excludes("--x")
+      ->excludes("--kind");
+  verb->add_flag("--subplots", c.subplots, "Each curve in a plot of its own, one above the other")->excludes("--kind");
+  verb->add_flag("--log-x", c.log_x, "Decades below")->excludes("--kind");
+  verb->add_flag("--log-y", c.log_y,
+                 "Decades upward; --psd has them; of a deck's response over frequency instead of dB")
+      ->excludes("--kind");
   verb->add_flag("--term", o->term, "Print the curves in the terminal; a picture too only with -o");
-  verb->add_option("--csv", o->csv, "Write the points of the curves, as curve,x,y; a picture too only with -o");
+  verb->add_option("--csv", o->csv, "Write name and points of the curves, as curve,x,y; a picture too only with -o");
   verb->add_option("--points", o->points, "CSV file of x,y drawn as markers: reference points; may be repeated")
       ->allow_extra_args(false);
   verb->add_option("--label", o->labels, "Label of each curve in turn, then of each --points; may be repeated")

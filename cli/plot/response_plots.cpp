@@ -14,20 +14,20 @@ namespace {
 
 using exports::NamedCurve;
 
-void add_response_curve(const NamedCurve& curve, const Eigen::VectorXd& x, const std::string& label,
+void add_response_curve(const NamedCurve& curve, const Eigen::VectorXd& x, const std::string& label, bool has_decades,
                         std::vector<report::Plot>& plots) {
   if (curve.imag.size() == 0) {
     plots[0].curves.push_back({label, x, curve.real});
     return;
   }
-  Eigen::VectorXd decibel(x.size()), degrees(x.size());
+  Eigen::VectorXd magnitude(x.size()), degrees(x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const auto [size, phase] = exports::to_polar(curve.real(i), curve.imag(i));
-    decibel(i) = size > 0 ? 20 * std::log10(size) : std::nan("");
+    magnitude(i) = has_decades ? size : size > 0 ? 20 * std::log10(size) : std::nan("");
     degrees(i) = size > 0 ? phase : std::nan("");
     if (i > 0 && std::isfinite(degrees(i - 1))) degrees(i) -= 360 * std::round((degrees(i) - degrees(i - 1)) / 360);
   }
-  plots[0].curves.push_back({label, x, decibel});
+  plots[0].curves.push_back({label, x, magnitude});
   plots[1].curves.push_back({"", x, degrees});
 }
 
@@ -45,8 +45,8 @@ bool is_deck_response(const std::vector<std::string>& files) {
 }
 
 std::vector<report::Plot> make_response_plots(const std::vector<std::string>& files,
-                                              const std::vector<std::string>& names,
-                                              const std::vector<double>& window) {
+                                              const std::vector<std::string>& names, const std::vector<double>& window,
+                                              bool has_decades) {
   std::vector<report::Plot> plots(1);
   for (const auto& file : files) {
     demand_file(file);
@@ -54,13 +54,14 @@ std::vector<report::Plot> make_response_plots(const std::vector<std::string>& fi
     const bool is_over_time = response.is_over_time;
     plots.resize(is_over_time ? 1 : 2);
     for (auto& plot : plots) plot.x_label = is_over_time ? "time" : "frequency [1/T]";
-    plots[0].y_label = is_over_time ? "" : "magnitude [dB]";
+    plots[0].y_label = is_over_time ? "" : has_decades ? "magnitude" : "magnitude [dB]";
+    plots[0].has_log_y = has_decades;
     if (!is_over_time) plots[1].y_label = "phase [degrees]", plots[0].x_label.clear();
     for (const auto& subcase : response.subcases) {
       const auto curves = exports::list_curves(subcase);
       const auto& x = subcase.x;
-      const bool has_decades = !is_over_time && x.size() > 1 && x(0) > 0 && x(x.size() - 1) > 30 * x(0);
-      for (auto& plot : plots) plot.has_log_x = has_decades;
+      const bool is_wide = !is_over_time && x.size() > 1 && x(0) > 0 && x(x.size() - 1) > 30 * x(0);
+      for (auto& plot : plots) plot.has_log_x = is_wide;
       for (const auto& name : names) {
         bool is_found = false;
         std::vector<std::string> known;
@@ -70,7 +71,7 @@ std::vector<report::Plot> make_response_plots(const std::vector<std::string>& fi
           is_found = true;
           std::string label = files.size() > 1 ? std::filesystem::path(file).stem().string() + " " : "";
           if (response.subcases.size() > 1) label += "subcase " + std::to_string(subcase.id) + " ";
-          add_response_curve(curve, x, label + curve.name, plots);
+          add_response_curve(curve, x, label + curve.name, has_decades, plots);
         }
         const auto nearest = find_nearest(name, known);
         if (!is_found)

@@ -10,11 +10,11 @@ namespace bough::cli {
 /// Whether the first of the files is one of these.
 bool is_deck_response(const std::vector<std::string>& files);
 
-/// Curves by name, quantity:grid:component, or all of quantity:grid. Over frequency magnitude (dB) above phase, over
-/// time one plot. A window, if given, cuts either. Throws InputError "cli.unknown-channel",
-/// "cli.bad-range" for a window without samples.
+/// Curves by name, quantity:grid:component, or all of quantity:grid. Over frequency magnitude (dB, or its own
+/// units in decades) above phase, over time one plot. A window, if given, cuts either. Throws InputError
+/// "cli.unknown-channel", "cli.bad-range" for a window without samples.
 std::vector<report::Plot> make_response_plots(const std::vector<std::string>& files,
                                               const std::vector<std::string>& names,
-                                              const std::vector<double>& window = {});
+                                              const std::vector<double>& window = {}, bool has_decades = false);
 
 }  // namespace bough::cli

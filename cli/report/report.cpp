@@ -53,10 +53,11 @@ int run_report(const ReportOptions& o) {
 void add_report(CLI::App& app, Action& action) {
   auto o = std::make_shared<ReportOptions>();
   auto* verb = app.add_subcommand("report", "One HTML page of results, bodies, modes, linear models, for any browser");
-  verb->add_option(
-          "files", o->request.files,
-          "Results, flexible bodies, modes, linear models, comparisons, outcomes.h5 of a campaign, or the JSON "
-          "that `select` printed")
+  verb->add_option("files", o->request.files,
+                   "Results, flexible bodies, modes, static solutions, responses, linear models, sweeps, comparisons, "
+                   "outcomes.h5 of "
+                   "a campaign, or the JSON "
+                   "that `select` printed")
       ->required();
   verb->add_option("--channel", o->request.channels,
                    "Of results only this: a sensor, NAME:component, or a path such as /energy; may be repeated")

@@ -13,19 +13,17 @@
 #include "cli/export/export_matrices.hpp"
 #include "formats/hdf5/comparison_file.hpp"
 #include "formats/hdf5/files.hpp"
-#include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/table_file.hpp"
-#include "formats/report/linear_chapter.hpp"
+#include "formats/report/static_chapter.hpp"
 #include "formats/report/table_chapters.hpp"
-#include "solver/statespace/frequency_response.hpp"
 
 namespace bough::cli {
 
 namespace {
 
 constexpr const char* kTakes =
-    "give results, a flexible body, modes, a response of a deck (frequency, transient), a linear model, a comparison, "
-    "outcomes.h5, or the JSON of select; of sweeps and responses of linear models `bough plot` makes pictures";
+    "give results, a flexible body, modes, a static solution, a response, a linear model, a sweep, a comparison, "
+    "outcomes.h5, or the JSON of select";
 
 report::Chapter make_selection_chapter(const std::string& file) {
   std::ifstream in(file);
@@ -43,20 +41,6 @@ report::Chapter make_selection_chapter(const std::string& file) {
   } catch (const nlohmann::json::exception& error) {
     throw fail(std::string("not the list of modes that select prints: ") + error.what());
   }
-}
-
-report::Chapter make_linear_chapter(const std::string& file) {
-  const auto model = hdf5::read_linear_model(file);
-  report::LinearFindings findings{{}, {}, {}, model.inputs.size() == 1 && model.outputs.size() == 1};
-  if (model.inputs.size() > 0 && model.outputs.size() > 0) {
-    findings.has_margins = findings.has_margins && model.outputs.name.front().ends_with(":return");
-    statespace::FrequencyRange range{0, 0, 300, 2000};
-    if (findings.has_margins) range = statespace::widen_for_loop(model, range);
-    findings.response = statespace::calc_frequency_response(model, range);
-    findings.peak = statespace::calc_peak_gain(model, findings.response);
-    if (findings.has_margins) findings.margins = statespace::calc_margins(model, findings.response);
-  }
-  return report::make_chapter(model, findings, file, list_facts(file));
 }
 
 report::Chapter make_campaign_chapter(const std::string& file) {
@@ -140,6 +124,9 @@ report::Chapter make_chapter(const std::string& file, const ReportRequest& reque
   if (format == "bough-modes") return make_modes_chapter(file);
   if (format == "bough-frequency" || format == "bough-transient") return make_response_chapter(file);
   if (format == "bough-linear") return make_linear_chapter(file);
+  if (format == "bough-response") return make_model_response_chapter(file);
+  if (format == "bough-sweep") return make_sweep_chapter(file);
+  if (format == "bough-static") return report::make_chapter(hdf5::read_static(file), file, list_facts(file));
   if (format == "bough-comparison") return report::make_chapter(hdf5::read_comparison(file), file, list_facts(file));
   if (format == "bough-outcomes") return make_campaign_chapter(file);
   throw InputError("cli.no-report", {file}, "no page can be made of a file of format \"" + format + "\"", kTakes);

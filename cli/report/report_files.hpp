@@ -25,6 +25,11 @@ report::Chapter make_body_chapter(const std::string& file, Diagnostics& diagnost
 report::Chapter make_modes_chapter(const std::string& file);
 /// Of `frequency` or `transient`: the largest curves of each quantity, their peaks, the modes.
 report::Chapter make_response_chapter(const std::string& file);
+/// Poles, Bode diagrams, singular values, margins of what `linearize` wrote; all but the poles of what `response` did.
+report::Chapter make_linear_chapter(const std::string& file);
+report::Chapter make_model_response_chapter(const std::string& file);
+/// Of `linearize --sweep` or `--each`: Campbell diagram, root locus, where it is unstable.
+report::Chapter make_sweep_chapter(const std::string& file);
 report::Chapter make_results_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics);
 
 }  // namespace bough::cli

@@ -191,6 +191,7 @@ int run_run(const RunOptions& o) {
     progress.show(p);
   };
   options.stop = &get_stop_flag();
+  get_stop_flag().store(false);  // a worker of a campaign comes here once a case
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   solver::SimulateOutcome outcome;

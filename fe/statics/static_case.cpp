@@ -45,6 +45,39 @@ void turn_to_basic(const Model& model, VectorXd& values) {
   }
 }
 
+/// Grids that no multipoint constraint or rigid element is at: each of their dofs has a column of T or T_fixed to
+/// itself. What the residual leaves there beside the reactions is rounding.
+std::vector<bool> find_untied(const Model& model) {
+  const auto& nodes = model.nodes();
+  std::vector<int> columns_of(nodes.size(), 0);
+  std::vector<bool> is_untied(nodes.size(), true);
+  for (const SparseRows* map : {&model.T(), &model.T_fixed()}) {
+    constexpr int kNone = -1, kMany = -2;
+    std::vector<int> node_of(static_cast<std::size_t>(map->cols()), kNone);
+    const auto visit = [&](const auto& act) {
+      for (std::size_t n = 0; n < nodes.size(); ++n)
+        for (int d = 0; d < nodes[n].num_dofs; ++d)
+          for (SparseRows::InnerIterator entry(*map, nodes[n].first_gdof + d); entry; ++entry)
+            act(n, static_cast<std::size_t>(entry.col()));
+    };
+    visit([&](std::size_t n, std::size_t column) {
+      int& node = node_of[column];
+      if (node == kNone) {
+        node = static_cast<int>(n);
+        ++columns_of[n];
+      } else if (node != static_cast<int>(n)) {
+        node = kMany;
+      }
+    });
+    visit([&](std::size_t n, std::size_t column) {
+      if (node_of[column] == kMany) is_untied[n] = false;
+    });
+  }
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    if (columns_of[n] != nodes[n].num_dofs) is_untied[n] = false;
+  return is_untied;
+}
+
 }  // namespace
 
 VectorXd calc_reactions(const Model& model, const VectorXd& residual) {
@@ -166,6 +199,7 @@ std::vector<records::StaticSubcase> solve_static_cases(const Model& model, const
     work[c] = std::abs(U1.col(c).dot(F.col(c)));
   }
   const MatrixXd U = U1 + U0, K_U = calc_stiffness_times(model, U);
+  const auto is_untied = find_untied(model);
   for (Eigen::Index c = 0; c < count; ++c) {
     const StaticLoad& load = *loads[static_cast<std::size_t>(c)];
     auto& result = results[static_cast<std::size_t>(c)];
@@ -190,6 +224,8 @@ std::vector<records::StaticSubcase> solve_static_cases(const Model& model, const
     }
     turn_to_basic(model, result.reaction);
     result.mpc_force = residual - result.reaction;
+    for (std::size_t n = 0; n < is_untied.size(); ++n)
+      if (is_untied[n]) result.mpc_force.segment(model.nodes()[n].first_gdof, model.nodes()[n].num_dofs).setZero();
     result.load_resultant = calc_resultant(model, result.load);
     result.reaction_resultant = calc_resultant(model, result.reaction);
     result.mpc_resultant = calc_resultant(model, result.mpc_force);

@@ -12,6 +12,8 @@ struct CsvColumn {
   std::string name;
   Eigen::VectorXd values;
 };
+/// Quoted when it needs to be (RFC 4180).
+std::string write_csv_field(const std::string& name);
 void write_csv(std::ostream& out, const std::vector<CsvColumn>& columns);
 
 }  // namespace bough::exports

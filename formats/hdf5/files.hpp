@@ -22,6 +22,8 @@ void write_modes(const records::ModesResult& modes, const std::string& path);
 records::ModesResult read_modes(const std::string& path);
 
 void write_static(const records::StaticResult& result, const std::string& path);
+/// All but extremes, forces on grids and strains at corners.
+records::StaticResult read_static(const std::string& path);
 void write_matrices(const records::MatricesResult& result, const std::string& path);
 
 /// A sink that writes path as it goes. `flush_every` samples between flushes. When appending (resume) the file must

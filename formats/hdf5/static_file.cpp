@@ -32,11 +32,14 @@ void write_subcase(FileWriter& file, const records::StaticSubcase& subcase) {
   file.write_attribute(path, "spc_set", subcase.spc_set);
   file.write_attribute(path, "mpc_set", subcase.mpc_set);
   file.write_vector(path + "/displacement", subcase.displacement, {"displacements in the order of /dof_map", "L, 1"});
-  file.write_vector(path + "/load", subcase.load, {"loads on the grids, in the order of /dof_map", "F, F L"});
-  file.write_vector(path + "/reaction", subcase.reaction,
-                    {"forces of the single-point constraints on the structure, in the order of /dof_map", "F, F L"});
-  file.write_vector(path + "/mpc_force", subcase.mpc_force,
-                    {"forces of multipoint constraints and rigid elements, in the order of /dof_map", "F, F L"});
+  file.write_vector_with_zeros(path + "/load", subcase.load,
+                               {"loads on the grids, in the order of /dof_map", "F, F L"});
+  file.write_vector_with_zeros(
+      path + "/reaction", subcase.reaction,
+      {"forces of the single-point constraints on the structure, in the order of /dof_map", "F, F L"});
+  file.write_vector_with_zeros(
+      path + "/mpc_force", subcase.mpc_force,
+      {"forces of multipoint constraints and rigid elements, in the order of /dof_map", "F, F L"});
   file.write_number(path + "/strain_energy", subcase.strain_energy, {"strain energy", "F L"});
   file.write_number(path + "/epsilon", subcase.epsilon, {"work of the residual over the work of the loads", "1"});
   Eigen::Matrix<double, 3, 6> resultants;

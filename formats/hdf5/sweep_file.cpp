@@ -161,4 +161,48 @@ void write_response(const records::FrequencyResponse& response, const records::P
   file.commit();
 }
 
+ResponseOfModel read_model_response(const std::string& path) {
+  FileReader file(path, kResponseFormat, kVersion);
+  ResponseOfModel found;
+  auto& response = found.response;
+  response.source = file.read_source();
+  response.inputs = read_signals(file, "/inputs");
+  response.outputs = read_signals(file, "/outputs");
+  response.frequency_hz = file.read_vector("/frequency_hz", -1);
+  const Index count = response.frequency_hz.size(), ny = response.outputs.size(), nu = response.inputs.size();
+  const auto real = file.read_array("/real", {count, ny, nu}), imag = file.read_array("/imag", {count, ny, nu});
+  response.singular_values = file.read_matrix("/singular_values", count, std::min(ny, nu));
+  found.peak.value = file.read_number("/peak/value");
+  found.peak.frequency_hz = file.read_number("/peak/frequency_hz");
+  found.peak.is_finite = found.peak.value >= 0;
+  if (file.has("/margins")) {
+    found.has_margins = true;
+    const auto read = [&](const std::string& group, std::vector<records::Crossing>& crossings, bool is_phase) {
+      const auto frequency = file.read_vector(group + "/frequency_hz", -1);
+      const auto margin = file.read_vector(group + "/margin", frequency.size());
+      const Eigen::VectorXd delay = is_phase ? file.read_vector(group + "/delay", frequency.size())
+                                             : Eigen::VectorXd(Eigen::VectorXd::Zero(frequency.size()));
+      for (Index k = 0; k < frequency.size(); ++k) crossings.push_back({frequency[k], margin[k], delay[k]});
+    };
+    read("/margins/gain", found.margins.gain, false);
+    read("/margins/phase", found.margins.phase, true);
+    found.margins.distance = file.read_number("/margins/distance");
+    found.margins.distance_hz = file.read_number("/margins/distance_hz");
+    found.margins.largest_real = file.read_number("/margins/largest_real");
+    found.margins.is_stable = found.margins.largest_real <= 0;
+  }
+  file.throw_if_errors();
+  const auto size = static_cast<std::size_t>(ny * nu);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+    Eigen::MatrixXcd value(ny, nu);
+    for (Index i = 0; i < ny; ++i)
+      for (Index j = 0; j < nu; ++j) {
+        const auto at = k * size + static_cast<std::size_t>(i * nu + j);
+        value(i, j) = {real.data[at], imag.data[at]};
+      }
+    response.value.push_back(std::move(value));
+  }
+  return found;
+}
+
 }  // namespace bough::hdf5

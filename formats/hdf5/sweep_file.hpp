@@ -12,6 +12,15 @@ void write_sweep(const records::LinearSweep& sweep, const std::string& path);
 /// All but the models' Hankel values and multipliers.
 records::LinearSweep read_sweep(const std::string& path);
 
+/// What `bough response` wrote.
+struct ResponseOfModel {
+  records::FrequencyResponse response;
+  records::PeakGain peak;  ///< is_certified is not in the file
+  records::Margins margins;
+  bool has_margins = false;
+};
+ResponseOfModel read_model_response(const std::string& path);
+
 /// `margins`: of a loop, or nullptr.
 void write_response(const records::FrequencyResponse& response, const records::PeakGain& peak,
                     const records::Margins* margins, const std::string& path);

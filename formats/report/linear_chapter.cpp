@@ -81,18 +81,22 @@ std::string make_poles(const records::LinearModel& model) {
   return html;
 }
 
-std::string make_bode(const records::LinearModel& model, const Eigen::VectorXd& frequency,
-                      const std::vector<Pair>& pairs) {
+std::string make_bode(const records::FrequencyResponse& response, const std::vector<Pair>& pairs) {
   std::string html = "<div class=\"live\" data-view=\"bode\">\n";
   for (std::size_t p = 0; p < std::min(kMostPictures, pairs.size()); ++p) {
     const auto& pair = pairs[p];
-    const std::string name = model.outputs.name[static_cast<std::size_t>(pair.output)] + " over " +
-                             model.inputs.name[static_cast<std::size_t>(pair.input)];
-    html += make_figure(
-        {name, "frequency, cycles [1/T]", "magnitude [dB]", {{"", frequency, pair.decibel, false}}, 0, 0, true});
+    const std::string name = response.outputs.name[static_cast<std::size_t>(pair.output)] + " over " +
+                             response.inputs.name[static_cast<std::size_t>(pair.input)];
+    html += make_figure({name,
+                         "frequency, cycles [1/T]",
+                         "magnitude [dB]",
+                         {{"", response.frequency_hz, pair.decibel, false}},
+                         0,
+                         0,
+                         true});
   }
   html += "</div>\n";
-  const auto all = static_cast<std::size_t>(model.inputs.size()) * static_cast<std::size_t>(model.outputs.size());
+  const auto all = static_cast<std::size_t>(response.inputs.size()) * static_cast<std::size_t>(response.outputs.size());
   if (all > pairs.size()) html += make_text(fmt::format("The first {} of {} pairs.", pairs.size(), all), "note");
   return html;
 }
@@ -130,10 +134,37 @@ std::string make_hankel(const records::Hankel& hankel) {
   return html;
 }
 
+/// Stability, gain, Bode diagrams, singular values, margins.
+void add_response(const LinearFindings& findings, const std::vector<Pair>& pairs, Chapter& chapter) {
+  if (findings.has_margins)
+    chapter.checks.push_back({"with the loop closed", findings.margins.is_stable ? "stable" : "unstable",
+                              findings.margins.is_stable ? Verdict::Good : Verdict::Warning,
+                              "largest real part " + format_value(findings.margins.largest_real, 4)});
+  if (!pairs.empty()) {
+    chapter.checks.push_back(
+        {"largest gain", findings.peak.is_finite ? format_value(findings.peak.value) : "infinite", Verdict::None,
+         findings.peak.is_finite ? "at " + format_value(findings.peak.frequency_hz) + " [1/T]" : findings.peak.why});
+    chapter.add_panel("bode", "Bode", make_bode(findings.response, pairs));
+    chapter.add_panel("sigma", "Singular values", make_singular_values(findings));
+  }
+  if (findings.has_margins) chapter.add_panel("margins", "Margins", make_margins(findings.margins));
+}
+
 json to_list(const Eigen::VectorXd& values) {
   json list = json::array();
   for (const double v : values) list.push_back(std::isfinite(v) ? json(v) : json());
   return list;
+}
+
+/// Of the living Bode diagrams.
+json list_pairs(const records::FrequencyResponse& response, const std::vector<Pair>& pairs_of) {
+  json pairs = json::array();
+  for (const auto& pair : pairs_of)
+    pairs.push_back({{"output", response.outputs.name[static_cast<std::size_t>(pair.output)]},
+                     {"input", response.inputs.name[static_cast<std::size_t>(pair.input)]},
+                     {"decibel", pack_doubles(pair.decibel)},
+                     {"degrees", pack_doubles(pair.degrees)}});
+  return pairs;
 }
 
 }  // namespace
@@ -157,19 +188,8 @@ Chapter make_chapter(const records::LinearModel& model, const LinearFindings& fi
   chapter.checks.push_back({"rate of change |u̇| at the point", format_value(model.residual, 3), Verdict::None,
                             "0 at rest and in a steady spin"});
   chapter.add_panel("poles", "Poles and zeros", make_poles(model));
-  if (findings.has_margins)
-    chapter.checks.push_back({"with the loop closed", findings.margins.is_stable ? "stable" : "unstable",
-                              findings.margins.is_stable ? Verdict::Good : Verdict::Warning,
-                              "largest real part " + format_value(findings.margins.largest_real, 4)});
   const auto pairs_of = make_pairs(findings.response);
-  if (!pairs_of.empty()) {
-    chapter.checks.push_back(
-        {"largest gain", findings.peak.is_finite ? format_value(findings.peak.value) : "infinite", Verdict::None,
-         findings.peak.is_finite ? "at " + format_value(findings.peak.frequency_hz) + " [1/T]" : findings.peak.why});
-    chapter.add_panel("bode", "Bode", make_bode(model, findings.response.frequency_hz, pairs_of));
-    chapter.add_panel("sigma", "Singular values", make_singular_values(findings));
-  }
-  if (findings.has_margins) chapter.add_panel("margins", "Margins", make_margins(findings.margins));
+  add_response(findings, pairs_of, chapter);
   if (model.hankel.value.size() > 0) chapter.add_panel("hankel", "Hankel", make_hankel(model.hankel));
   for (const auto& [id, title, signals] :
        {std::tuple("states", "States", &model.states), std::tuple("inputs", "Inputs", &model.inputs),
@@ -182,24 +202,34 @@ Chapter make_chapter(const records::LinearModel& model, const LinearFindings& fi
         id, title,
         "<details><summary>" + std::to_string(signals->size()) + "</summary>\n" + table.to_html(400) + "</details>\n");
   }
-  json pairs = json::array();
-  for (const auto& pair : pairs_of)
-    pairs.push_back({{"output", model.outputs.name[static_cast<std::size_t>(pair.output)]},
-                     {"input", model.inputs.name[static_cast<std::size_t>(pair.input)]},
-                     {"decibel", pack_doubles(pair.decibel)},
-                     {"degrees", pack_doubles(pair.degrees)}});
   const records::Poles poles = round_off(model.poles);
-  chapter.data = json{
-      {"poles",
-       {{"real", to_list(poles.real)},
-        {"imag", to_list(poles.imag)},
-        {"frequency", to_list(poles.frequency_hz)},
-        {"damping", to_list(poles.damping)},
-        {"mode", poles.mode}}},
-      {"zeros", {{"real", to_list(model.zeros_real)}, {"imag", to_list(model.zeros_imag)}}},
-      {"frequency", pack_doubles(findings.response.frequency_hz)},
-      {"pairs",
-       pairs}}.dump(-1, ' ', false, json::error_handler_t::replace);
+  chapter.data = json{{"poles",
+                       {{"real", to_list(poles.real)},
+                        {"imag", to_list(poles.imag)},
+                        {"frequency", to_list(poles.frequency_hz)},
+                        {"damping", to_list(poles.damping)},
+                        {"mode", poles.mode}}},
+                      {"zeros", {{"real", to_list(model.zeros_real)}, {"imag", to_list(model.zeros_imag)}}},
+                      {"frequency", pack_doubles(findings.response.frequency_hz)},
+                      {"pairs", list_pairs(findings.response, pairs_of)}}
+                     .dump(-1, ' ', false, json::error_handler_t::replace);
+  return chapter;
+}
+
+Chapter make_chapter(const LinearFindings& findings, const std::string& file,
+                     const std::vector<std::pair<std::string, std::string>>& facts) {
+  Chapter chapter{"response of a linear model", file, facts, {}, {}, {}, {}};
+  const auto& response = findings.response;
+  const auto pairs = make_pairs(response);
+  const Eigen::Index n = response.frequency_hz.size();
+  chapter.facts.emplace_back(
+      "frequencies",
+      n == 0 ? "0" : fmt::format("{} from {:g} to {:g}", n, response.frequency_hz[0], response.frequency_hz[n - 1]));
+  chapter.facts.emplace_back("inputs", fmt::format("{}", fmt::join(response.inputs.name, ", ")));
+  chapter.facts.emplace_back("outputs", fmt::format("{}", fmt::join(response.outputs.name, ", ")));
+  add_response(findings, pairs, chapter);
+  chapter.data = json{{"frequency", pack_doubles(response.frequency_hz)}, {"pairs", list_pairs(response, pairs)}}.dump(
+      -1, ' ', false, json::error_handler_t::replace);
   return chapter;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The chapter of a linear model: poles and zeros, Bode diagrams, singular values, margins.
+/// \file The chapters of a linear model and of its response: poles and zeros, Bode diagrams, singular values, margins.
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +19,10 @@ struct LinearFindings {
 
 /// Poles and zeros, Bode diagrams of at most 24 pairs of input and output, singular values, Hankel values.
 Chapter make_chapter(const records::LinearModel& model, const LinearFindings& findings, const std::string& file,
+                     const std::vector<std::pair<std::string, std::string>>& facts);
+
+/// Without a model's poles: what `response` wrote.
+Chapter make_chapter(const LinearFindings& findings, const std::string& file,
                      const std::vector<std::pair<std::string, std::string>>& facts);
 
 }  // namespace bough::report

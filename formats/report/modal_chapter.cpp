@@ -208,7 +208,7 @@ std::string draw_heat_map(const std::string& title, const Eigen::MatrixXd& value
 Chapter make_chapter(const ModalModel& m) {
   Chapter chapter{m.kind, m.file, m.facts, m.checks, {}, {}, {}};
   if (!m.drawing.shapes.empty()) {
-    std::string html = make_place("modes", "The shapes are drawn by a script with WebGL 2; this reader runs none.");
+    std::string html = make_place("modes", "The shapes are drawn by a script with WebGL 2.");
     if (m.drawing.num_dropped > 0)
       html += make_text(fmt::format("To keep the page small it has the shapes of the first {} of {} modes.",
                                     m.drawing.shapes.size(), m.frequency_hz.size()),

@@ -164,7 +164,11 @@ struct Style {
   const char* color;
   const char* dash;
 };
-Style get_style(std::size_t i) { return {kColors[i % kColors.size()], kDashes[i / kColors.size() % kDashes.size()]}; }
+Style get_style(const Plot& plot, std::size_t curve) {
+  const int given = plot.curves[curve].style;
+  const auto i = given < 0 ? curve : static_cast<std::size_t>(given);
+  return {kColors[i % kColors.size()], kDashes[i / kColors.size() % kDashes.size()]};
+}
 
 std::string draw_marker(double x, double y, const char* color) {
   return "<circle cx=\"" + number(x) + "\" cy=\"" + number(y) + "\" r=\"4\" fill=\"#ffffff\" stroke=\"" + color +
@@ -190,7 +194,7 @@ double draw_legend(const Plot& plot, double top, std::string& svg) {
       x = kLeft;
       y += 21;
     }
-    const Style style = get_style(i);
+    const Style style = get_style(plot, i);
     svg += plot.curves[i].markers_only ? draw_marker(x + 14, y - 4.5, style.color)
                                        : draw_stroke("M" + number(x) + " " + number(y - 4.5) + "h28", style);
     svg += "<text x=\"" + number(x + 36) + "\" y=\"" + number(y) + "\" font-size=\"13\" fill=\"#111111\">" +
@@ -250,7 +254,7 @@ std::string draw_svg(const Plot& given) {
   svg += legend + draw_axes(plot, f);
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     const Curve curve = thin_out(plot.curves[i]);
-    const Style style = get_style(i);
+    const Style style = get_style(plot, i);
     if (!curve.markers_only) {
       svg += draw_stroke(draw_line(curve, f), style);
       continue;

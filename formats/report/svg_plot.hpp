@@ -11,6 +11,7 @@ struct Curve {
   std::string label;
   Eigen::VectorXd x, y;
   bool markers_only = false;  ///< reference points rather than a line
+  int style = -1;             ///< color and dashes of the curve of this number; -1: its own
 };
 struct Plot {
   std::string title, x_label, y_label;

@@ -26,6 +26,24 @@ json = "/frequency_hz"
 """
 
 
+SLIDE = """[[body]]
+name = "bob"
+mass = 2.0
+[[hinge]]
+name = "slide"
+type = "prismatic"
+child = "bob"
+axis = [1.0, 0.0, 0.0]
+stiffness = [50.0]
+position = [0.1]
+[simulation]
+duration = 400.0
+integrator = "rk4"
+step = 1e-3
+output_step = 1.0
+"""
+
+
 class BatchTest(ProgramTest):
     def setUp(self):
         super().setUp()
@@ -276,6 +294,22 @@ take = "min"
         # Frequencies go with the root of E: no case was lost or exchanged.
         for row in rows:
             self.assertAlmostEqual(float(row["hz.1"]) / float(rows[0]["hz.1"]) / math.sqrt(float(row["E"]) / 6e10), 1, 8)
+
+    def test_a_worker_that_is_stopped_fails_its_case_alone(self):
+        self.write("slide.toml", SLIDE)
+        self.campaign('[[parameter]]\nname = "end"\nfile = "slide.toml"\nkey = "simulation.duration"\n'
+                      'values = [400.0, 401.0, 402.0, 403.0]\n',
+                      'steps = ["run slide.toml -o out.h5"]')
+        process = subprocess.Popen([PROGRAM, "batch", "study.toml", "-j", "1"], cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while not os.path.exists(self.path("study/case-0002/out.h5")) and process.poll() is None:
+            time.sleep(0.002)
+        with open(f"/proc/{process.pid}/task/{process.pid}/children") as f:
+            os.kill(int(f.read().split()[0]), signal.SIGTERM)
+        process.wait()
+        rows = self.table()
+        self.assertEqual([r["exit_code"] for r in rows], ["0", "3", "0", "0"])
+        self.assertIn("stopped on request", rows[1]["error"])
 
     def test_interrupt_ends_cleanly(self):
         self.campaign(E + "range = [6e10, 7e10]\nnumber = 300\n" + HZ)

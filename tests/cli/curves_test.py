@@ -1,4 +1,5 @@
 """bough plot: spectra against SciPy, phase plots, differences, windows, axes, campaigns, the terminal."""
+import csv
 import os
 import re
 import unittest
@@ -88,7 +89,10 @@ class Plot(ProgramTest):
 
     def get_points(self, *arguments):
         self.bough("plot", *arguments, "--csv", "p.csv")
-        return np.loadtxt(self.path("p.csv"), delimiter=",", skiprows=1)[:, 1:]
+        with open(self.path("p.csv"), newline="") as f:
+            rows = list(csv.reader(f))[1:]
+        self.curves = list(dict.fromkeys(row[0] for row in rows))
+        return np.array([row[1:] for row in rows], float)
 
     def read(self, svg, log_x=False, log_y=False):
         frame, x, y = read_ticks(svg)
@@ -110,6 +114,17 @@ class Plot(ProgramTest):
         for svg, key in zip(plots, ["x", "qdot"]):
             (curve,), _ = self.read(svg)
             self.check(curve, a["time"][inside], a[key][inside])
+
+    def test_curves_have_their_names(self):
+        self.get_points("a.h5", "b.h5", "--sensor", "place:x", "--sensor", "/hinges/slide/q")
+        self.assertEqual(self.curves, ["a sensors/place:x", "a hinges/slide/q", "b sensors/place:x", "b hinges/slide/q"])
+
+    def test_a_segment_longer_than_the_samples_is_told(self):
+        for segment, is_told in [("5000", True), ("500", False)]:
+            self.draw("a.h5", "--sensor", "place:x", "--psd", "--segment", segment)
+            self.assertEqual("[cli.short-segment]" in self.said, is_told, self.said)
+        self.draw("a.h5", "--sensor", "place:x", "--psd", "--segment", "5000")
+        self.assertIn("which has 1001", self.said)
 
     def test_phase_plot(self):
         a = self.results["a"]
@@ -221,6 +236,19 @@ class Plot(ProgramTest):
         (curve,), _ = self.read(svg)
         np.testing.assert_allclose(curve, [(0, 1), (100 / 3, 2), (200 / 3, 3), (100, 5)], atol=0.3)
         self.fails(1, "plot", "outcomes.h5", "--sensor", "tip", error="cli.unknown-channel")
+        # A case that failed takes no part in the axes, and is told.
+        with h5py.File(self.path("outcomes.h5"), "r+") as f:
+            f["parameters/mass"][4] = -1e5
+        for options in [["--x", "mass"], []]:
+            self.draw("outcomes.h5", "--sensor", "top", *options)
+            self.assertIn("1 of 5 cases have no value of top", self.said)
+            self.assertIn("[cli.cases-left-out]", self.said)
+        (svg,) = self.draw("outcomes.h5", "--sensor", "top", "--x", "mass")
+        _, x, _ = read_ticks(svg)
+        self.assertGreaterEqual(min(v for _, v in x), 0)
+        for option in ["--psd", "--spectrum", ["--window", "0,1"]]:
+            self.fails(1, "plot", "outcomes.h5", "--sensor", "top", *(option if isinstance(option, list) else [option]),
+                       error="cli.plot-option")
 
     def test_what_cannot_be_drawn(self):
         self.fails(1, "plot", "a.h5", "--sensor", "place:x", "--difference", error="cli.nothing-to-plot")

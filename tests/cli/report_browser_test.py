@@ -9,6 +9,7 @@ import numpy as np
 from browser import Browser, find_chromium
 from linear_test import PENDULUM
 from report_test import write_results
+from static_test import FRAME
 from support import ProgramTest
 
 WAIT_FRAMES = "new Promise(r => requestAnimationFrame(() => requestAnimationFrame(r)))"
@@ -323,6 +324,21 @@ class Page(ProgramTest):
         self.picture("modes-dark")
         self.picture("modes-dark-page", whole=True)
         self.check_sound()
+
+    def test_static_solutions(self):
+        self.write("frame.bdf", FRAME)
+        self.bough("static", "frame.bdf", "-o", "frame.h5")
+        self.open("frame.h5")
+        self.build_all()
+        b = self.browser
+        b.show(".modes")
+        self.assertGreater(b.run(COUNT_COLORS % ".scene"), 5)
+        first = b.run(HASH % ".scene")
+        self.assertIn("Subcase 1: TIP FORCE", b.run("document.querySelector('.modes .note').textContent"))
+        b.click(".modes .tools button[title='Next mode']")
+        self.assertNotEqual(b.run(HASH % ".scene"), first)
+        self.check_sound()
+        self.picture("static", whole=True)
 
     def test_linear_and_tables(self):
         self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.0"))

@@ -14,6 +14,7 @@ import scipy.linalg
 
 from support import BEAM, SOURCE, ProgramTest
 from linear_test import PENDULUM
+from response_test import AXIS
 
 MISSING = 0xFFFFFF
 
@@ -396,6 +397,67 @@ class Report(ProgramTest):
             f["time"][:] = t
         packed = self.report("r.h5").get_data()[0]["time"]["data"]
         np.testing.assert_array_equal(np.frombuffer(base64.b64decode(packed), "<f8"), t)
+
+    def test_static_solution(self):
+        """A cantilever with two loads: closed forms, sums, the ends of its forces."""
+        grids = "".join(f"GRID,{k + 1},,{0.25 * k},0.,0.\n" for k in range(5))
+        bars = "".join(f"CBAR,{k},1,{k},{k + 1},0.,1.,0.\n" for k in range(1, 5))
+        self.write("tip.bdf", "SOL 101\nCEND\nSPC=1\nSUBCASE 3\nLABEL=sideways\nLOAD=3\nSUBCASE 7\nLOAD=7\nBEGIN BULK\n"
+                   + grids + bars + "PBAR,1,1,1.-3,2.-8,3.-8,4.-8,,,+\n+,.01,.02,-.01,.02\nMAT1,1,7.+10,,.3,2700.,,,,+\n+,1.+6,2.+6\n"
+                   "SPC1,1,123456,1\nFORCE,3,5,,2.,0.,0.,1.\nFORCE,7,5,,500.,1.,0.,0.\nENDDATA\n")
+        self.bough("static", "tip.bdf", "-o", "tip.h5")
+        page = self.report("tip.h5")
+        subcases = next(t["rows"] for t in page.tables if t["rows"][0][0] == "subcase")
+        self.assertEqual([r[0] for r in subcases[1:]], ["3", "7"])
+        self.assertEqual(subcases[1][1], "sideways")
+        self.assertAlmostEqual(float(subcases[1][2]), 2 / (3 * 7e10 * 3e-8), delta=2e-6 * float(subcases[1][2]))
+        self.assertAlmostEqual(float(subcases[2][2]), 500 / (7e10 * 1e-3), delta=1e-5 * float(subcases[2][2]))
+        self.assertEqual([r[3] for r in subcases[1:]], ["5", "5"])
+        sums = [t["rows"] for t in page.tables if t["caption"].startswith("Sums")]
+        self.assertEqual([float(v) for v in sums[0][1][1:]], [0, 0, 2, 0, -2, 0])
+        np.testing.assert_allclose([float(v) for v in sums[0][2][1:]], [0, 0, -2, 0, 2, 0], atol=1e-9)
+        reactions = [t["rows"] for t in page.tables if t["caption"].startswith("Forces of single")]
+        self.assertEqual([r[0] for r in reactions[1][1:]], ["1"])
+        self.assertAlmostEqual(float(reactions[1][1][1]), -500, delta=1e-3)
+        forces = [t["rows"] for t in page.tables if t["caption"] == "Forces of elements"]
+        axial = next(r for r in forces[1] if r[1].startswith("axial"))
+        self.assertAlmostEqual(float(axial[4]), 500, delta=1e-3)
+        margins = [t["rows"] for t in page.tables if t["caption"].startswith("Least margins")]
+        self.assertAlmostEqual(float(margins[1][1][2]), 1e6 / (500 / 1e-3) - 1, delta=1e-4)
+        (data,) = page.get_data()
+        self.assertEqual(data["names"], ["subcase 3: sideways", "subcase 7"])
+        self.assertEqual(len(data["drawing"]["shapes"]), 2)
+
+    def test_sweep_and_response(self):
+        self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.0"))
+        self.bough("linearize", "pendulum.toml", "-o", "linear.h5")
+        self.bough("response", "linear.h5", "-o", "response.h5")
+        page = self.report("response.h5")
+        (data,) = page.get_data()
+        with h5py.File(self.path("response.h5")) as f:
+            H = f["real"][:] + 1j * f["imag"][:]
+            outputs, inputs = ([n.decode() for n in f[k + "/name"]] for k in ("outputs", "inputs"))
+        self.assertEqual(len(data["pairs"]), H.shape[1] * H.shape[2])
+        for pair in data["pairs"]:
+            h = H[:, outputs.index(pair["output"]), inputs.index(pair["input"])]
+            decibel = np.frombuffer(base64.b64decode(pair["decibel"]), "<f8")
+            if np.abs(h).max() > 0:
+                np.testing.assert_allclose(10**(decibel / 20), np.abs(h), rtol=1e-10)
+        # 2 s² + kd s + 8: unstable for negative kd, real poles from 8 on, of 12 at -5.236 and -0.764.
+        self.write("axis.toml", AXIS)
+        self.bough("linearize", "axis.toml", "--sweep", "kd=-3:12:16", "-o", "sweep.h5")
+        page = self.report("sweep.h5")
+        unstable = next(r for r in page.get_table("Health") if r[1].startswith("values with poles"))
+        self.assertEqual(unstable[2], "3")
+        self.assertIn("kd = -3 to -1", " ".join(unstable))
+        rows = page.get_table("Of each motion")
+        np.testing.assert_allclose([float(v) for v in rows[1][2:4]], [2 / (2 * np.pi), 0.764 / (2 * np.pi)], rtol=1e-3)
+        self.assertAlmostEqual(float(rows[1][4]), -100 * 3 / 8, places=3)
+        self.bough("plot", "sweep.h5", "--kind", "locus", "-o", "locus.svg")
+        with open(self.path("locus.svg"), encoding="utf-8") as f:
+            strokes = re.findall(r'<path d="M[^h"]*" fill="none" stroke="([^"]+)"', f.read())
+        self.assertEqual(len(strokes), 2)
+        self.assertEqual(strokes[0], strokes[1])  # of a pair
 
     def test_refusals(self):
         self.write("beam.bdf", BEAM)

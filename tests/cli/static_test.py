@@ -60,6 +60,29 @@ class Static(ProgramTest):
             np.testing.assert_allclose(case["reaction"][:].reshape(2, 6)[:, :3], [[-5, -5, 0], [5, -5, 0]], atol=1e-9)
             self.assertLess(np.abs(case["mpc_force"][:]).max(), 1e-9)
 
+    def test_vectors_of_zeros_take_no_space(self):
+        n = 40
+        grids = "".join(f"GRID,{i + 1},,{i % n:d}.,{i // n:d}.,0.\n" for i in range(n * n))
+        plates = "".join(f"CQUAD4,{a},1,{a},{a + 1},{a + n + 1},{a + n}\n" for a in range(1, n * n - n) if a % n)
+        ties = "RBE2,99999,1600,123456,9999\nGRID,9999,,40.,40.,0.\n"
+        for tie, loaded in [("", 1600), (ties, 9999)]:
+            self.write("plate.bdf", "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\n" + grids + plates + tie +
+                       "PSHELL,1,1,.1,1,,1\nMAT1,1,7.+10,,.3\nSPC1,1,123456,1,THRU,40\n"
+                       f"FORCE,2,{loaded},,1.,3.,0.,5.\nPARAM,K6ROT,1.\nENDDATA\n")
+            self.bough("static", "plate.bdf", "-o", "plate.h5", "-q")
+            with h5py.File(self.path("plate.h5")) as f:
+                dofs = f["dof_map"][:]
+                self.assertGreater(len(dofs), 8192)
+                (case,) = f["subcases"].values()
+                load, reaction, mpc = (case[name][:] for name in ("load", "reaction", "mpc_force"))
+            at = np.flatnonzero(load)
+            self.assertEqual([(*dofs[i], load[i]) for i in at], [(loaded, 1, 3), (loaded, 3, 5)])
+            self.assertTrue((dofs[np.flatnonzero(reaction), 0] <= n).all())
+            sums = [sum(reaction[i] for i in np.flatnonzero(dofs[:, 1] == c)) for c in (1, 2, 3)]
+            np.testing.assert_allclose(sums, [-3, 0, -5], atol=1e-7)
+            # Forces of constraints only where there are some.
+            self.assertEqual(set(dofs[np.flatnonzero(mpc), 0]), {1600, 9999} if tie else set())
+
     def test_cantilever_against_theory(self):
         self.write("frame.bdf", FRAME)
         cases = json.loads(self.bough("static", "frame.bdf", "--json", "--full", "-o", "s.h5").stdout)["subcases"]

@@ -27,6 +27,9 @@ PBAR,1,1,1.,2.,3.,4.
 MAT1,1,1.+4,,.3,1.
 ENDDATA
 """
+STATIC = DECK.replace("SOL 103", "SOL 101").replace("METHOD = 1", "LOAD = 7").replace("EIGRL,1,,,2", "FORCE,7,2,,1.,0.,1.,0.")
+SINES = DECK.replace("SOL 103", "SOL 111").replace("METHOD = 1", "METHOD = 1\nDLOAD = 5\nFREQ = 6\nDISP(PHASE) = ALL").replace(
+    "EIGRL,1,,,2", "EIGRL,1,,,2\nFREQ1,6,1.,1.,2\nRLOAD1,5,7,,,8\nTABLED1,8,,,,,,,,+\n+,0.,1.,9.,1.,ENDT\nDAREA,7,2,2,1.")
 BODY = """[body]
 name = "rod"
 deck = "rod.bdf"
@@ -63,6 +66,17 @@ node = 2
 [simulation]
 duration = 0.02
 output_step = 0.01
+"""
+PUSH = """[[function]]
+name = "push"
+type = "constant"
+value = 0.0
+[[force]]
+name = "push"
+body = "ball"
+node = 1
+force = [0.0, 1.0, 0.0]
+function = "push"
 """
 
 
@@ -139,8 +153,17 @@ def main():
     run("run", "system.toml", "-o", "results.h5")
     run("linearize", "system.toml", "-o", "linear.h5")
     run("compare", "rod.h5", "rod.h5", "-o", "comparison.h5")
+    write("load.bdf", STATIC)
+    write("sines.bdf", SINES)
+    run("static", "load.bdf", "-o", "static.h5")
+    run("frequency", "sines.bdf", "-o", "frequency.h5")
+    write("push.toml", SYSTEM.replace("[simulation]", PUSH + "[simulation]"))
+    run("linearize", "push.toml", "-o", "push.h5")
+    run("response", "push.h5", "--from", "1", "--to", "2", "--points", "4", "-o", "response.h5")
+    write("sweep.toml", "[parameters]\nspin = 0.1\n" + SYSTEM.replace("rate = [0.1]", 'rate = ["$spin"]'))
+    run("linearize", "sweep.toml", "--sweep", "spin=0:1:2", "-o", "sweep.h5")
     shrink(os.path.join(folder, "results.h5"))
-    for name in ("rod", "modes", "matrices", "results", "linear", "comparison"):
+    for name in ("rod", "modes", "matrices", "results", "linear", "comparison", "static", "frequency", "response", "sweep"):
         put("hdf5", name, os.path.join(folder, name + ".h5"))
 
     run("matrices", "rod.bdf", "--to", "op4", "-o", "matrices.op4")

@@ -13,7 +13,9 @@
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/grids_file.hpp"
 #include "formats/hdf5/linear_file.hpp"
+#include "formats/hdf5/response_file.hpp"
 #include "formats/hdf5/sparse_file.hpp"
+#include "formats/hdf5/sweep_file.hpp"
 #include "formats/hdf5/table_file.hpp"
 #include "formats/matrices/matrix_reader.hpp"
 #include "formats/matrices/mode_table.hpp"
@@ -145,6 +147,10 @@ void read_hdf5(const std::string& path) {
   survive([&] { hdf5::read_sparse_file(path); });
   survive([&] { hdf5::read_grids(path); });
   survive([&] { hdf5::read_comparison(path); });
+  survive([&] { hdf5::read_static(path); });
+  survive([&] { hdf5::read_sweep(path); });
+  survive([&] { hdf5::read_model_response(path); });
+  survive([&] { hdf5::read_response(path); });
 }
 
 void read_op4_text(const std::string& path) {

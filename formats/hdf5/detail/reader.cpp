@@ -299,20 +299,41 @@ int FileReader::read_integer_attribute(const std::string& object, const std::str
   return value;
 }
 
-std::vector<std::pair<std::string, std::string>> FileReader::read_source() {
-  std::vector<std::pair<std::string, std::string>> source;
-  if (H5Aexists(file_.get(), "source") <= 0) return source;
-  const Handle attribute(H5Aopen(file_.get(), "source", H5P_DEFAULT), H5Aclose);
+namespace {
+/// The texts of a list or table of them; empty for another kind.
+std::vector<std::string> read_texts(hid_t object, const std::string& name, Dims& dims) {
+  if (H5Aexists(object, name.c_str()) <= 0) return {};
+  const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
   const Handle space(H5Aget_space(attribute.get()), H5Sclose);
   const Handle type(H5Aget_type(attribute.get()), H5Tclose);
-  const Dims dims = get_dims(space.get());
-  if (dims.size() != 2 || dims[1] != 2 || H5Tis_variable_str(type.get()) <= 0 || dims[0] == 0) return source;
+  dims = get_dims(space.get());
+  if (H5Tis_variable_str(type.get()) <= 0 || count(dims) == 0) return {};
   const Handle memory = make_string_type();
   std::vector<char*> data(count(dims), nullptr);
-  if (H5Aread(attribute.get(), memory.get(), data.data()) < 0) return source;
-  for (std::size_t i = 0; i < data.size(); i += 2)
-    source.emplace_back(data[i] ? data[i] : "", data[i + 1] ? data[i + 1] : "");
-  for (char* text : data) H5free_memory(text);
+  if (H5Aread(attribute.get(), memory.get(), data.data()) < 0) return {};
+  std::vector<std::string> words;
+  for (char* text : data) {
+    words.emplace_back(text ? text : "");
+    H5free_memory(text);
+  }
+  return words;
+}
+}  // namespace
+
+std::vector<std::string> FileReader::read_attribute_words(const std::string& object, const std::string& name) {
+  if (!has(object)) return {};
+  const Handle opened(H5Oopen(file_.get(), object.c_str(), H5P_DEFAULT), H5Oclose);
+  Dims dims;
+  auto words = opened.is_valid() ? read_texts(opened.get(), name, dims) : std::vector<std::string>();
+  return dims.size() == 1 ? words : std::vector<std::string>();
+}
+
+std::vector<std::pair<std::string, std::string>> FileReader::read_source() {
+  std::vector<std::pair<std::string, std::string>> source;
+  Dims dims;
+  const auto words = read_texts(file_.get(), "source", dims);
+  if (dims.size() != 2 || dims[1] != 2) return source;
+  for (std::size_t i = 0; i + 1 < words.size(); i += 2) source.emplace_back(words[i], words[i + 1]);
   return source;
 }
 
@@ -322,6 +343,13 @@ std::vector<std::string> FileReader::get_children(const std::string& group) {
   const Handle opened(H5Gopen2(file_.get(), group.c_str(), H5P_DEFAULT), H5Gclose);
   if (opened.is_valid()) H5Literate(opened.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add_name, &names);
   return names;
+}
+
+Eigen::MatrixXd to_matrix(const NumberArray& array) {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  BOUGH_DEMAND(array.shape.size() == 2);
+  return Eigen::Map<const Rows>(array.data.data(), static_cast<Eigen::Index>(array.shape[0]),
+                                static_cast<Eigen::Index>(array.shape[1]));
 }
 
 }  // namespace bough::hdf5

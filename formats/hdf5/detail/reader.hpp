@@ -51,6 +51,8 @@ class FileReader {
   std::string read_text(const std::string& path);
 
   std::string read_attribute(const std::string& object, const std::string& name);
+  /// A list of texts; empty where it is missing or of another kind.
+  std::vector<std::string> read_attribute_words(const std::string& object, const std::string& name);
   int read_integer_attribute(const std::string& object, const std::string& name, int otherwise);
   std::vector<std::pair<std::string, std::string>> read_source();
   std::vector<std::string> get_children(const std::string& group);
@@ -68,6 +70,9 @@ class FileReader {
   Handle file_;
   Diagnostics diagnostics_;
 };
+
+/// Of two dimensions.
+Eigen::MatrixXd to_matrix(const NumberArray& array);
 
 records::BodyMesh read_mesh(FileReader& file);
 std::vector<Eigen::MatrixXd> read_mode_shapes(FileReader& file, long num_nodes, long num_modes);

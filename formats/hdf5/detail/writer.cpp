@@ -66,13 +66,16 @@ void FileWriter::make_group(const std::string& path) {
   check(group.is_valid(), "group " + path + " cannot be written");
 }
 
+/// Parents are made here and not by the library, which would stamp them with the time.
+void FileWriter::make_parents(const std::string& path) {
+  for (std::size_t end = path.find('/', 1); end != std::string::npos; end = path.find('/', end + 1))
+    make_group(path.substr(0, end));
+}
+
 void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_type, hid_t memory_type, const void* data,
                        const Meaning& meaning) {
   errno = 0;
-  // Parents are made here and not by the library, which would stamp them with the time.
-  for (std::size_t end = path.find('/', 1); end != std::string::npos; end = path.find('/', end + 1)) {
-    make_group(path.substr(0, end));
-  }
+  make_parents(path);
   const Handle space = make_space(shape);
   Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.get(), false);
@@ -155,6 +158,36 @@ void FileWriter::write_number(const std::string& path, double value, const Meani
 
 void FileWriter::write_vector(const std::string& path, const Eigen::VectorXd& v, const Meaning& meaning) {
   write_numbers(path, {static_cast<hsize_t>(v.size())}, v.data(), meaning);
+}
+
+void FileWriter::write_vector_with_zeros(const std::string& path, const Eigen::VectorXd& v, const Meaning& meaning) {
+  constexpr Eigen::Index kChunk = 4096;
+  if (v.size() < 2 * kChunk) return write_vector(path, v, meaning);
+  errno = 0;
+  make_parents(path);
+  const Handle space = make_space({static_cast<hsize_t>(v.size())});
+  Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation.get(), false);
+  const hsize_t chunk = kChunk;
+  H5Pset_chunk(creation.get(), 1, &chunk);
+  {
+    Handle dataset(
+        H5Dcreate2(file_.get(), path.c_str(), H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+        H5Dclose);
+    check(dataset.is_valid(), "dataset " + path + " cannot be written");
+    for (Eigen::Index from = 0; from < v.size(); from += kChunk) {
+      const Eigen::Index size = std::min(kChunk, v.size() - from);
+      if (v.segment(from, size).isZero(0)) continue;
+      const auto start = static_cast<hsize_t>(from), count = static_cast<hsize_t>(size);
+      const Handle memory = make_space({count});
+      H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, &start, nullptr, &count, nullptr);
+      check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, v.data() + from) >= 0,
+            "dataset " + path + " cannot be written");
+    }
+    check(dataset.reset(), "dataset " + path + " cannot be written");
+  }
+  write_attribute(path, "description", meaning.description);
+  write_attribute(path, "dims", meaning.dims);
 }
 
 void FileWriter::write_matrix(const std::string& path, const Eigen::MatrixXd& m, const Meaning& meaning) {

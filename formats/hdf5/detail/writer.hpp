@@ -30,6 +30,8 @@ class FileWriter {
 
   void write_number(const std::string& path, double value, const Meaning& meaning);
   void write_vector(const std::string& path, const Eigen::VectorXd& v, const Meaning& meaning);
+  /// In chunks, of which those of zeros take no space.
+  void write_vector_with_zeros(const std::string& path, const Eigen::VectorXd& v, const Meaning& meaning);
   void write_matrix(const std::string& path, const Eigen::MatrixXd& m, const Meaning& meaning);
   void write_integers(const std::string& path, const std::vector<int>& data, const Meaning& meaning);
   void write_integers(const std::string& path, const Eigen::MatrixXi& m, const Meaning& meaning);
@@ -52,6 +54,7 @@ class FileWriter {
   void check(bool ok, const std::string& what);
   void write(const std::string& path, const Dims& shape, hid_t file_type, hid_t memory_type, const void* data,
              const Meaning& meaning);
+  void make_parents(const std::string& path);
   void write_attribute(const std::string& object, const std::string& name, const Dims& shape, hid_t file_type,
                        hid_t memory_type, const void* data);
 

@@ -51,7 +51,7 @@ export class Chart {
     this.make_legend();
     this.listen();
     on_theme(() => this.element.isConnected && this.draw());
-    new ResizeObserver(() => this.draw()).observe(this.stage);
+    new ResizeObserver(() => requestAnimationFrame(() => this.draw())).observe(this.stage);
     // Charts off the screen wait until they come near.
     this.is_near = true;
     new IntersectionObserver(([entry]) => {

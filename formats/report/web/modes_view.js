@@ -3,7 +3,7 @@ import { format_number } from "./numbers.js";
 import { el, get_css, make_button, make_check, make_select, make_slider } from "./page_parts.js";
 import { Viewer, make_triad } from "./viewer.js";
 
-// One mode at a time, swinging.
+// One mode at a time, swinging; or one static solution.
 export class ModesView {
   constructor(data) {
     this.drawing = new Drawing(data.drawing);
@@ -15,8 +15,9 @@ export class ModesView {
     this.has_overlay = true;
     this.has_colors = true;
     const count = data.drawing.shapes.length;
-    const names = Array.from({ length: count }, (_, j) => `${j + 1}: ${format_number(data.frequency[j] ?? NaN, 5)}${data.kinds[j] && data.kinds[j] !== "normal" ? " " + data.kinds[j] : ""}`);
-    this.picker = make_select(data.buckling ? "load factor" : "mode, frequency [1/T]", names, (j) => this.show(j));
+    this.names = data.names;
+    const names = data.names?.slice(0, count) ?? Array.from({ length: count }, (_, j) => `${j + 1}: ${format_number(data.frequency[j] ?? NaN, 5)}${data.kinds[j] && data.kinds[j] !== "normal" ? " " + data.kinds[j] : ""}`);
+    this.picker = make_select(data.names ? "deformed by" : data.buckling ? "load factor" : "mode, frequency [1/T]", names, (j) => this.show(j));
     this.picker.list.classList.add("mode-picker");
     const step = (by) => () => this.show((this.mode + by + count) % count);
     this.box = new Box();
@@ -38,7 +39,7 @@ export class ModesView {
     this.mode = mode;
     this.picker.list.value = mode;
     this.reach = this.drawing.get_reach(mode);
-    this.note.textContent = `Mode ${mode + 1}: largest displacement of its shape ${format_number(this.reach)}, drawn as the amplitude's share of the size of the body. Colours: none (dark) to largest (bright). Orange x, green y, blue z.`;
+    this.note.textContent = `${this.names ? this.names[mode][0].toUpperCase() + this.names[mode].slice(1) + ": largest displacement" : `Mode ${mode + 1}: largest displacement of its shape`} ${format_number(this.reach)}, drawn as the amplitude's share of the size of the body. Colours: none (dark) to largest (bright). Orange x, green y, blue z.`;
     this.draw();
   }
 

@@ -75,7 +75,7 @@ export class Viewer {
     this.pitch = 0.45;
     this.listen();
     on_theme(() => this.draw());
-    new ResizeObserver(() => this.draw()).observe(this.canvas);
+    new ResizeObserver(() => requestAnimationFrame(() => this.draw())).observe(this.canvas);
   }
 
   make_program() {
