@@ -4,7 +4,9 @@
 
 #include <matio.h>
 
+#include "base/apart.hpp"
 #include "base/file_roles.hpp"
+#include "formats/hdf5/inspect.hpp"
 #include "formats/matrices/detail/readers.hpp"
 #include "formats/matrices/detail/triplets.hpp"
 
@@ -162,8 +164,26 @@ class MatReader {
   std::vector<Matrix> matrices_;
 };
 
+/// Read and forgotten; what is wrong in Bough's own words is said again by the reading that counts.
+std::string try_mat(const std::string& path) {
+  try {
+    MatReader(path).read();
+  } catch (const InputError&) {
+  }
+  return {};
+}
+
 }  // namespace
 
-std::vector<Matrix> read_mat(const std::string& path) { return MatReader(path).read(); }
+std::vector<Matrix> read_mat(const std::string& path) {
+  if (read_bytes(path, 10) == "MATLAB 7.3") hdf5::inspect_file(path);
+  std::error_code ignored;
+  const double size = static_cast<double>(std::filesystem::file_size(path, ignored));
+  // Damaged files break the library (heap overflows, gigabytes for the names of a struct), in a process of its own first.
+  const Apart tried = work_apart(path, try_mat, {5 + 1e-6 * size, 1e9 + 2200 * size}, "MATLAB file");
+  if (!tried.end.empty())
+    throw InputError("matrices.mat", {path}, "the file is damaged: " + tried.end, "copy or write it again");
+  return MatReader(path).read();
+}
 
 }  // namespace bough::matrices::detail

@@ -8,6 +8,8 @@ import time
 
 import h5py
 import numpy
+import scipy.io
+import scipy.sparse
 
 from support import PROGRAM, SLOWER, ProgramTest, unittest
 
@@ -175,6 +177,34 @@ class HostileFiles(ProgramTest):
                 with open(self.path(name), "wb") as f:
                     f.write(bytes_)
                 self.read(commands[k % len(commands)])
+
+    def test_matlab_files(self):
+        shutil.copy(self.maker.path("boom.bdf"), self.folder)
+        self.bough("matrices", "boom.bdf", "--no-kg", "-o", "k.h5")
+        self.write("given.toml", '[body]\ndeck = "boom.bdf"\n[body.modes]\nnumber = 3\n[body.matrices]\n'
+                   'file = "k.h5"\nmodes = "phi.mat:PHI"\n')
+        # Version 7.3 is HDF5 behind 512 bytes: nothing outside it is read either.
+        self.write("secret.bin", "12345678" * 100)
+        with h5py.File(self.path("phi.mat"), "w", userblock_size=512) as f:
+            phi = f.create_dataset("PHI", shape=(2, 3), dtype="f8", external=[("secret.bin", 0, 48)])
+            phi.attrs["MATLAB_class"] = numpy.bytes_("double")
+        with open(self.path("phi.mat"), "r+b") as f:
+            f.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(116) + bytes(8) + b"\x00\x02IM")
+        self.refused([["reduce", "given.toml", "-o", "x.h5"]], "hdf5.outside", ["/PHI is stored in another file"])
+        # The library asks for the names of a struct as they claim to be long, and breaks on some.
+        scipy.io.savemat(self.path("phi.mat"), {"model": {"PHI": numpy.eye(3), "K": numpy.eye(2)},
+                                                "S": scipy.sparse.eye(4).tocsc()})
+        whole = self.get_bytes("phi.mat")
+        draw = random.Random(3)
+        for _ in range(40):
+            bytes_ = bytearray(whole)
+            for _ in range(draw.choice((1, 2, 4))):
+                bytes_[128 + draw.randrange(len(bytes_) - 128)] = draw.choice((0, 1, 127, 255, draw.randrange(256)))
+            with open(self.path("phi.mat"), "wb") as f:
+                f.write(bytes_)
+            result = self.read(["reduce", "given.toml", "-o", "x.h5"])
+            self.assertEqual(result.returncode, 1)
+            self.assertIn("phi.mat", result.stderr)
 
     def test_files_that_crash_the_library(self):
         folder = os.path.join(os.environ.get("BOUGH_SHARED_DIR", ""), "cases/robust")

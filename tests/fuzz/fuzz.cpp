@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
   }
   const char* folder = std::getenv("BOUGH_FUZZ_FOLDER");
   g_path = std::string(folder ? folder : "/tmp") + "/bough-fuzz-" + std::to_string(::getpid());
-  bough::hdf5::set_looker(bough::fuzz::look_by_one_process);
+  bough::set_apart_worker(bough::fuzz::work_by_one_process);
   std::atexit([] { ::unlink(g_path.c_str()); });
   return 0;
 }

@@ -37,6 +37,12 @@ struct Server {
   int to = -1, from = -1, files = 0;
 };
 
+/// The server is this program, forked: it knows a task by its address.
+struct Order {
+  ApartTask task = nullptr;
+  std::string path;
+};
+
 bool send(int descriptor, const std::string& text) {
   const auto size = static_cast<std::uint32_t>(text.size());
   std::string all(reinterpret_cast<const char*>(&size), sizeof size);
@@ -54,6 +60,14 @@ bool receive(int descriptor, std::string& text) {
     at += static_cast<std::size_t>(n);
   }
   return true;
+}
+
+bool send(int descriptor, const Order& order) {
+  return ::write(descriptor, &order.task, sizeof order.task) == sizeof order.task && send(descriptor, order.path);
+}
+
+bool receive(int descriptor, Order& order) {
+  return ::read(descriptor, &order.task, sizeof order.task) == sizeof order.task && receive(descriptor, order.path);
 }
 
 /// Of code of Bough: of this program, but none of the functions by which the sanitizers replace others. Those are the
@@ -107,12 +121,12 @@ void watch_for_own_faults() {
     ::dup2(null, STDERR_FILENO);
   }
   ::mallopt(M_PERTURB, 0x5A);
-  std::string path;
-  while (receive(in, path)) {
+  Order order;
+  while (receive(in, order)) {
     const itimerval most{{0, 0}, {0, 1000 * kMilliseconds}};
     ::setitimer(ITIMER_PROF, &most, nullptr);
     try {
-      if (!send(out, hdf5::write_faults(path))) break;
+      if (!send(out, order.task(order.path))) break;
     } catch (const std::exception&) {
       break;
     }
@@ -151,16 +165,16 @@ void start(Server& server) {
 
 }  // namespace
 
-hdf5::Look look_by_one_process(const std::string& path, double) {
+Apart work_by_one_process(const std::string& path, ApartTask task, const ApartLimits&, const std::string&) {
   static Server server;
   std::signal(SIGPIPE, SIG_IGN);
   if (server.files >= kFiles) stop(server);
   if (server.process < 0) start(server);
   ++server.files;
-  hdf5::Look look;
+  Apart done;
   pollfd wait{server.from, POLLIN, 0};
-  if (send(server.to, path) && ::poll(&wait, 1, kMostMilliseconds) > 0 && receive(server.from, look.faults))
-    return look;
+  if (send(server.to, Order{task, path}) && ::poll(&wait, 1, kMostMilliseconds) > 0 && receive(server.from, done.said))
+    return done;
   stop(server);
   return {{}, "the process that looked at it ended"};
 }

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "formats/hdf5/detail/handle.hpp"
-#include "formats/hdf5/detail/inspect.hpp"
+#include "formats/hdf5/inspect.hpp"
 
 namespace bough::hdf5 {
 

@@ -11,7 +11,7 @@
 
 #include "base/file_roles.hpp"
 #include "base/part_file.hpp"
-#include "formats/hdf5/detail/inspect.hpp"
+#include "formats/hdf5/inspect.hpp"
 
 namespace bough::hdf5 {
 

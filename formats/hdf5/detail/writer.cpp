@@ -7,7 +7,7 @@
 
 #include "base/diagnostic.hpp"
 #include "base/version.hpp"
-#include "formats/hdf5/detail/inspect.hpp"
+#include "formats/hdf5/inspect.hpp"
 
 namespace bough::hdf5 {
 

@@ -22,15 +22,4 @@ void trust_file(const std::string& path);
 /// What find_faults finds, as text from one process to another; empty: nothing. Throws what find_faults throws.
 std::string write_faults(const std::string& path);
 
-/// What a process that looked at a file has to say, and how it ended where that says something of the file.
-struct Look {
-  std::string faults;
-  std::string end;
-};
-/// How inspect_file has a file of so many bytes looked at: by a process each, unless a fuzzer, which has a million of
-/// them, keeps one for many.
-using Looker = Look (*)(const std::string& path, double size);
-/// Returns the one before.
-Looker set_looker(Looker looker);
-
 }  // namespace bough::hdf5

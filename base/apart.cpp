@@ -1,0 +1,129 @@
+#include "base/apart.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <exception>
+#include <fstream>
+#include <new>
+#include <utility>
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+// GCC has the macro, clang the feature; either keeps terabytes of address space.
+#if defined(__has_feature)
+#define BOUGH_HAS_ADDRESS_SANITIZER __has_feature(address_sanitizer)
+#else
+#define BOUGH_HAS_ADDRESS_SANITIZER 0
+#endif
+
+namespace bough {
+
+namespace {
+
+/// Exit code of a child that ran out of memory.
+constexpr int kNoMemory = 9;
+
+void limit(decltype(RLIMIT_CPU) resource, double most) {
+  rlimit now{};
+  getrlimit(resource, &now);
+  now.rlim_cur = std::min(now.rlim_cur, static_cast<rlim_t>(most));
+  setrlimit(resource, &now);
+}
+
+[[maybe_unused]] double get_memory() {
+  std::ifstream in("/proc/self/statm");
+  double pages = 0;
+  in >> pages;
+  return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+void write_all(int descriptor, const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const auto done = ::write(descriptor, text.data() + at, text.size() - at);
+    if (done <= 0) return;
+    at += static_cast<std::size_t>(done);
+  }
+}
+
+[[noreturn]] void become_worker(const std::string& path, ApartTask task, const ApartLimits& limits, int descriptor) {
+  // Nobody handles a crash here, or cleans up for the parent.
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM, SIGHUP, SIGXCPU})
+    std::signal(signal, SIG_DFL);
+  if (const int null = ::open("/dev/null", O_WRONLY); null >= 0) {
+    ::dup2(null, STDOUT_FILENO);
+    ::dup2(null, STDERR_FILENO);
+  }
+  ::mallopt(M_PERTURB, 0x5A);  // memory that was never set shows here, and not where it matters
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_CPU, limits.seconds);
+#if !defined(__SANITIZE_ADDRESS__) && !BOUGH_HAS_ADDRESS_SANITIZER
+  limit(RLIMIT_AS, get_memory() + limits.bytes);
+#endif
+  try {
+    write_all(descriptor, task(path));
+  } catch (const std::bad_alloc&) {
+    ::_exit(kNoMemory);
+  } catch (const std::exception&) {
+    ::_exit(1);
+  }
+  ::_exit(0);
+}
+
+/// What the way in which the process ended says of the file; empty: nothing.
+std::string describe_end(int status, const std::string& library) {
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
+  if (WIFEXITED(status))
+    return WEXITSTATUS(status) == kNoMemory ? "reading it takes more memory than a file of its size can need"
+                                            : "reading it fails";
+  if (WTERMSIG(status) == SIGXCPU) return "reading it comes to no end";
+  return "the " + library + " library does not survive reading it (" + strsignal(WTERMSIG(status)) + ")";
+}
+
+Apart work_in_a_process(const std::string& path, ApartTask task, const ApartLimits& limits,
+                        const std::string& library) {
+  int ends[2];
+  pid_t child = -1;
+  const bool has_pipe = ::pipe2(ends, O_CLOEXEC) == 0;
+  if (has_pipe) child = ::fork();
+  if (child == 0) become_worker(path, task, limits, ends[1]);
+  if (child < 0) {
+    // No process to be had: better done here than not.
+    if (has_pipe) {
+      ::close(ends[0]);
+      ::close(ends[1]);
+    }
+    return {task(path), {}};
+  }
+  ::close(ends[1]);
+  Apart done;
+  char buffer[4096];
+  for (ssize_t n = 1; n != 0;) {
+    n = ::read(ends[0], buffer, sizeof buffer);
+    if (n > 0) done.said.append(buffer, static_cast<std::size_t>(n));
+    if (n < 0 && errno != EINTR) break;
+  }
+  ::close(ends[0]);
+  int status = 0;
+  pid_t ended = 0;
+  while ((ended = ::waitpid(child, &status, 0)) < 0 && errno == EINTR) continue;
+  if (ended == child) done.end = describe_end(status, library);
+  return done;
+}
+
+ApartWorker g_worker = work_in_a_process;
+
+}  // namespace
+
+Apart work_apart(const std::string& path, ApartTask task, const ApartLimits& limits, const std::string& library) {
+  return g_worker(path, task, limits, library);
+}
+
+ApartWorker set_apart_worker(ApartWorker worker) { return std::exchange(g_worker, worker); }
+
+}  // namespace bough
