@@ -182,6 +182,7 @@ report::Chapter make_modes_chapter(const std::string& file) {
                                                 : ""});
   m.checks.push_back({"rigid-body modes", std::to_string(modes.num_rigid_modes), Verdict::None, ""});
   m.drawing = report::make_drawing(modes.mesh, modes.node_id, modes.node_xyz, modes.phi);
+  report::add_energies(modes.mesh, modes.energies.id, modes.energies.strain, modes.energies.total_strain, m.drawing);
   return report::make_chapter(m);
 }
 

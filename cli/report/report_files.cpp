@@ -84,7 +84,8 @@ std::vector<std::pair<std::string, std::string>> list_facts(const std::string& f
   add("format_version", "version of the format");
   add("subcase", "subcase");
   add("frame", "frame");
-  add("wall_time", "wall time, s");
+  if (const auto found = info.attributes.find("wall_time"); found != info.attributes.end())
+    facts.emplace_back("wall time, s", report::format_value(std::strtod(found->second.c_str(), nullptr), 3));
   add("fingerprint", "SHA-256 of all inputs");
   // Names and hashes in turn; a name may hold a comma itself.
   const auto source = info.attributes.find("source");

@@ -47,8 +47,9 @@ std::string make_pictures(const std::vector<Largest>& of, const Eigen::VectorXd&
       std::tie(size[i], phase[i]) = exports::to_polar(curve.real[i], curve.imag[i]);
       if (i > 0) phase[i] -= 360 * std::round((phase[i] - phase[i - 1]) / 360);
     }
-    upper.curves.push_back(report::thin_curve({curve.name, x, size, false}, kMostPicturePoints));
-    if (!is_over_time) lower.curves.push_back(report::thin_curve({curve.name, x, phase, false}, kMostPicturePoints));
+    upper.curves.push_back(report::thin_curve({curve.name, x, size, false}, kMostPicturePoints, upper.has_log_x));
+    if (!is_over_time)
+      lower.curves.push_back(report::thin_curve({curve.name, x, phase, false}, kMostPicturePoints, lower.has_log_x));
   }
   return report::make_figure(upper) + (is_over_time ? "" : report::make_figure(lower));
 }

@@ -3,6 +3,7 @@
 
 #include "base/diagnostic.hpp"
 #include "formats/export/vtu.hpp"
+#include "formats/records/mesh_measure.hpp"
 
 namespace bough::exports {
 
@@ -128,33 +129,6 @@ BodyMesh choose_mesh(const BodyMesh& mesh, const std::vector<int>& ids, const Ma
   return cut_mesh(nodes, all);
 }
 
-/// Length, area or volume between the corners of an element; solids as tetrahedra, six a hexahedron.
-double calc_measure(const BodyMesh& mesh, const BodyMesh::Block& block, Eigen::Index e) {
-  const auto at = [&](int k) -> Eigen::Vector3d { return mesh.grid_xyz.row(block.connectivity(e, k)).transpose(); };
-  const auto tetra = [&](int a, int b, int c, int d) {
-    return std::abs((at(b) - at(a)).cross(at(c) - at(a)).dot(at(d) - at(a))) / 6;
-  };
-  const auto& type = block.type;
-  if (type.starts_with("line")) return (at(1) - at(0)).norm();
-  if (type.starts_with("tri")) return 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
-  if (type.starts_with("quad")) return 0.5 * (at(2) - at(0)).cross(at(3) - at(1)).norm();
-  if (type.starts_with("tetra")) return tetra(0, 1, 2, 3);
-  if (type.starts_with("penta")) return tetra(0, 1, 2, 3) + tetra(1, 2, 3, 4) + tetra(2, 3, 4, 5);
-  if (!type.starts_with("hexa")) return 0;
-  return tetra(0, 1, 2, 6) + tetra(0, 2, 3, 6) + tetra(0, 3, 7, 6) + tetra(0, 7, 4, 6) + tetra(0, 4, 5, 6) +
-         tetra(0, 5, 1, 6);
-}
-
-/// By element; none for those without extent, as a spring between two grids of one place.
-std::unordered_map<int, double> calc_measures(const BodyMesh& mesh) {
-  std::unordered_map<int, double> measures;
-  for (const auto& block : mesh.blocks)
-    for (Eigen::Index e = 0; e < block.connectivity.rows(); ++e)
-      if (block.connectivity.row(e).minCoeff() >= 0)
-        measures[block.element_id[static_cast<std::size_t>(e)]] = calc_measure(mesh, block, e);
-  return measures;
-}
-
 /// Shares of the whole, an array a mode; and the strain energy itself per length, area or volume.
 void add_energies(const std::vector<std::string>& names, const records::ModeEnergies& energies, Picture& picture) {
   const auto add = [&](const std::string& name, const Eigen::VectorXd& part, double whole) {
@@ -163,7 +137,7 @@ void add_energies(const std::vector<std::string>& names, const records::ModeEner
     for (std::size_t e = 0; e < energies.id.size(); ++e)
       array.by_element[energies.id[e]] = whole > 0 ? part[static_cast<Eigen::Index>(e)] / whole : 0;
   };
-  const auto measures = calc_measures(picture.mesh);
+  const auto measures = records::calc_measures(picture.mesh);
   for (std::size_t j = 0; j < names.size(); ++j) {
     const auto column = static_cast<Eigen::Index>(j);
     add(names[j] + "_strain_energy", energies.strain.col(column), energies.total_strain[column]);

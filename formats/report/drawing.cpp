@@ -1,13 +1,16 @@
 #include "formats/report/drawing.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
+#include <unordered_map>
 
 #include <Eigen/Eigenvalues>
 
+#include "formats/records/mesh_measure.hpp"
 #include "formats/report/pack.hpp"
 
 namespace bough::report {
@@ -18,6 +21,11 @@ constexpr double kMostShapeBytes = 2.2e6;     // of one body, before base64
 constexpr std::size_t kMostOutlined = 30000;  // faces; of finer meshes the edges are left out
 
 using Face = std::array<int, 4>;  // a triangle repeats its last corner
+struct ElementFace {
+  Face corners;
+  std::uint32_t element;
+};
+using Kind = DrawnElements::Kind;
 
 /// Corners of the faces of a cell, in the order of VTK's corners; plane elements are one face. Empty: a line or point.
 std::vector<Face> list_faces(const std::string& type) {
@@ -91,23 +99,27 @@ class DrawingBuilder {
     const auto grids = static_cast<int>(mesh_.grid_id.size());
     for (const auto& block : mesh_.blocks) {
       const auto local = list_faces(block.type);
-      const bool solid = is_solid(block.type);
+      const bool solid = is_solid(block.type), line = block.type.starts_with("line");
       for (Eigen::Index e = 0; e < block.connectivity.rows(); ++e) {
         const auto corner = [&](int k) { return block.connectivity(e, k); };
         const auto is_grid = [&](int k) { return corner(k) >= 0 && corner(k) < grids; };
-        if (block.type.starts_with("line") && block.connectivity.cols() >= 2 && is_grid(0) && is_grid(1))
-          add_edge(corner(0), corner(1));
+        const auto element = static_cast<std::uint32_t>(drawing.elements.id.size());
+        if (line || !local.empty()) {
+          drawing.elements.id.push_back(block.element_id[static_cast<std::size_t>(e)]);
+          drawing.elements.kind.push_back(line ? Kind::Line : solid ? Kind::Solid : Kind::Surface);
+        }
+        if (line && block.connectivity.cols() >= 2 && is_grid(0) && is_grid(1)) add_edge(corner(0), corner(1), element);
         for (const auto& f : local) {
           if (!std::all_of(f.begin(), f.end(), [&](int k) { return k < block.connectivity.cols() && is_grid(k); }))
             continue;
           const Face face{corner(f[0]), corner(f[1]), corner(f[2]), corner(f[3])};
           if (!solid) {
-            faces_.push_back(face);
+            faces_.push_back({face, element});
             continue;
           }
           Face key = face;
           std::sort(key.begin(), key.end());
-          auto [at, is_new] = solid_faces_.try_emplace(key, face);
+          auto [at, is_new] = solid_faces_.try_emplace(key, ElementFace{face, element});
           if (!is_new) solid_faces_.erase(at);
         }
       }
@@ -117,33 +129,59 @@ class DrawingBuilder {
   void add_faces() {
     for (const auto& [unused, face] : solid_faces_) faces_.push_back(face);
     const bool is_outlined = faces_.size() <= kMostOutlined;
-    for (const auto& f : faces_) {
+    for (const auto& [f, element] : faces_) {
       const bool whole = std::all_of(f.begin(), f.end(), [&](int g) { return has_shape(g); });
       if (whole) {
-        for (const int g : {f[0], f[1], f[2]}) drawing.triangles.push_back(use_grid(g));
-        if (f[3] != f[2])
-          for (const int g : {f[0], f[2], f[3]}) drawing.triangles.push_back(use_grid(g));
+        add_triangle(f[0], f[1], f[2], element);
+        if (f[3] != f[2]) add_triangle(f[0], f[2], f[3], element);
       }
       for (std::size_t k = 0; k < 4 && (is_outlined || !whole); ++k)
-        if (f[k] != f[(k + 1) % 4]) add_edge(f[k], f[(k + 1) % 4]);
+        if (f[k] != f[(k + 1) % 4]) add_edge(f[k], f[(k + 1) % 4], DrawnElements::kNone);
     }
   }
 
-  void add_edge(int a, int b) {
+  void add_triangle(int a, int b, int c, std::uint32_t element) {
+    for (const int g : {a, b, c}) drawing.triangles.push_back(use_grid(g));
+    drawing.elements.of_triangle.push_back(element);
+  }
+
+  void add_edge(int a, int b, std::uint32_t element) {
     if (!seen_.insert(std::minmax(a, b)).second) return;
-    auto& list = has_shape(a) && has_shape(b) ? drawing.edges : drawing.ghosts;
-    for (const int g : {a, b}) list.push_back(use_grid(g));
+    const bool whole = has_shape(a) && has_shape(b);
+    for (const int g : {a, b}) (whole ? drawing.edges : drawing.ghosts).push_back(use_grid(g));
+    if (whole) drawing.elements.of_edge.push_back(element);
   }
 
   const records::BodyMesh& mesh_;
   std::vector<int> shape_of_grid_, point_of_grid_, shape_of_point_;
   std::vector<Eigen::RowVector3d> places_;
-  std::vector<Face> faces_;
-  std::map<Face, Face> solid_faces_;
+  std::vector<ElementFace> faces_;
+  std::map<Face, ElementFace> solid_faces_;
   std::set<std::pair<int, int>> seen_;
 };
 
 }  // namespace
+
+void add_energies(const records::BodyMesh& mesh, const std::vector<int>& id, const Eigen::MatrixXd& energy,
+                  const Eigen::VectorXd& whole, Drawing& drawing) {
+  if (energy.cols() < static_cast<Eigen::Index>(drawing.shapes.size()) || whole.size() != energy.cols()) return;
+  std::unordered_map<int, Eigen::Index> row_of;
+  for (std::size_t e = 0; e < id.size(); ++e) row_of[id[e]] = static_cast<Eigen::Index>(e);
+  const auto measures = records::calc_measures(mesh);
+  const auto count = static_cast<Eigen::Index>(drawing.elements.id.size());
+  drawing.measure = Eigen::VectorXd::Zero(count);
+  drawing.energy.assign(drawing.shapes.size(), Eigen::VectorXd::Zero(count));
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const int element = drawing.elements.id[static_cast<std::size_t>(k)];
+    if (const auto measure = measures.find(element); measure != measures.end()) drawing.measure[k] = measure->second;
+    const auto row = row_of.find(element);
+    for (std::size_t j = 0; row != row_of.end() && j < drawing.energy.size(); ++j) {
+      const auto column = static_cast<Eigen::Index>(j);
+      const double share = energy(row->second, column) / whole[column];
+      drawing.energy[j][k] = std::isfinite(share) ? std::max(0.0, share) : 0;
+    }
+  }
+}
 
 int Drawing::find(int node) const {
   const auto at = std::find(id.begin(), id.end(), node);
@@ -220,6 +258,19 @@ std::string to_json_text(const Drawing& drawing) {
   for (const auto& shape : drawing.shapes) {
     const double largest = shape.size() > 0 ? shape.cwiseAbs().maxCoeff() : 0;
     json["shapes"].push_back({{"largest", largest}, {"data", pack_shorts(flatten(shape), largest)}});
+  }
+  if (!drawing.energy.empty()) {
+    std::vector<std::uint32_t> kind;
+    for (const auto k : drawing.elements.kind) kind.push_back(static_cast<std::uint32_t>(k));
+    json["elements"] = {{"of_triangle", pack_indices(drawing.elements.of_triangle)},
+                        {"of_edge", pack_indices(drawing.elements.of_edge)},
+                        {"kind", pack_indices(kind)},
+                        {"measure", pack_floats(drawing.measure)},
+                        {"energy", nlohmann::json::array()}};
+    for (const auto& share : drawing.energy) {
+      const double largest = share.size() > 0 ? share.maxCoeff() : 0;
+      json["elements"]["energy"].push_back({{"largest", largest}, {"data", pack_shorts(share, largest)}});
+    }
   }
   return json.dump();
 }

@@ -9,6 +9,15 @@
 
 namespace bough::report {
 
+/// Elements that a drawing shows, for colours by what each of them has.
+struct DrawnElements {
+  enum class Kind { Line, Surface, Solid };
+  std::vector<int> id;
+  std::vector<Kind> kind;
+  std::vector<std::uint32_t> of_triangle, of_edge;  ///< index into id of each; kNone for an outline
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+};
+
 struct Drawing {
   std::vector<int> id;                          ///< node of each point; empty for a rigid body
   Eigen::MatrixXd xyz;                          ///< k x 3
@@ -16,6 +25,9 @@ struct Drawing {
   std::vector<std::uint32_t> ghosts;            ///< edges of elements of which not every grid has a shape
   std::vector<Eigen::MatrixXd> shapes;          ///< [mode] k x 3; may be fewer than the modes (num_dropped)
   int num_dropped = 0;                          ///< modes whose shapes would make the page too large
+  DrawnElements elements;
+  std::vector<Eigen::VectorXd> energy;  ///< [shape] share of each element; empty where it is not known
+  Eigen::VectorXd measure;              ///< of each element, with energy: length, area or volume; 0 without extent
 
   /// Index of a node among the points, -1 without.
   int find(int node) const;
@@ -27,6 +39,10 @@ Drawing make_drawing(const records::BodyMesh& mesh, const std::vector<int>& node
                      const std::vector<Eigen::MatrixXd>& phi, bool all_shapes = false);
 /// A body's own: of all grids with `--full`, else of its output nodes.
 Drawing make_drawing(const records::FlexBody& body, bool all_shapes = false);
+
+/// Strain energy of the elements of the mesh: a row an id, a column a shape, which share `whole`.
+void add_energies(const records::BodyMesh& mesh, const std::vector<int>& id, const Eigen::MatrixXd& energy,
+                  const Eigen::VectorXd& whole, Drawing& drawing);
 
 /// The box of uniform density with this mass and inertia about cg, and a line from cg to each node. A body whose
 /// inertia no box has (a point, a line) gets what is left of one.

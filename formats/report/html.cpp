@@ -6,6 +6,7 @@
 
 #include "base/diagnostic.hpp"
 #include "base/xml_text.hpp"
+#include "formats/report/thin.hpp"
 
 namespace bough::report {
 
@@ -42,7 +43,7 @@ std::string HtmlTable::to_html(std::size_t most) const {
 
 std::string make_figure(const Plot& plot, const std::string& live) {
   Plot thin = plot;
-  for (auto& curve : thin.curves) curve = thin_curve(curve, 600);
+  for (auto& curve : thin.curves) curve = thin_curve(curve, 600, plot.has_log_x);
   return std::string("<figure") + (live.empty() ? "" : " class=\"live\" data-view=\"" + escape_xml(live) + "\"") +
          ">\n" + draw_svg(thin) + "</figure>\n";
 }
@@ -57,12 +58,21 @@ std::string make_text(const std::string& text, const std::string& css_class) {
          "</p>\n";
 }
 
-Curve thin_curve(const Curve& curve, Eigen::Index most) {
-  const Eigen::Index n = curve.x.size(), bins = most / 2;
+Curve thin_curve(const Curve& curve, Eigen::Index most, bool has_log_x) {
+  const Eigen::Index n = curve.x.size();
   if (n <= most || curve.markers_only) return curve;
+  // What lies at zero and below is not drawn in decades.
+  Eigen::VectorXd x = curve.x;
+  if (has_log_x && x[n - 1] > 0) {
+    double least = x[n - 1];
+    for (const double v : x)
+      if (v > 0) least = std::min(least, v);
+    x = x.cwiseMax(least).array().log10();
+  }
+  const auto ends = split_samples(x, most / 2);
   std::vector<Eigen::Index> keep{0};
-  for (Eigen::Index b = 0; b < bins; ++b) {
-    const Eigen::Index first = b * n / bins, last = (b + 1) * n / bins;
+  for (std::size_t b = 0; b + 1 < ends.size(); ++b) {
+    const Eigen::Index first = ends[b], last = ends[b + 1];
     Eigen::Index low = first, high = first;
     for (Eigen::Index i = first; i < last; ++i) {
       if (curve.y[i] < curve.y[low]) low = i;

@@ -39,6 +39,6 @@ std::string make_place(const std::string& live, const std::string& without);
 std::string make_text(const std::string& text, const std::string& css_class = {});
 
 /// At most about `most` points: of each bin the extremes, so that peaks stay.
-Curve thin_curve(const Curve& curve, Eigen::Index most);
+Curve thin_curve(const Curve& curve, Eigen::Index most, bool has_log_x = false);
 
 }  // namespace bough::report

@@ -161,7 +161,8 @@ std::string draw_heat_map(const std::string& title, const Eigen::MatrixXd& value
   const Eigen::Index most = 40, rows = std::min(most, values.rows()), cols = std::min(most, values.cols());
   const double cell = std::max(10.0, std::min(34.0, 620.0 / static_cast<double>(std::max<Eigen::Index>(cols, 1))));
   const double left = 64, top = 44;
-  const double width = std::max(300.0, left + cell * static_cast<double>(cols) + 20),
+  const double heading = 8 + 7.2 * static_cast<double>(row_label.size() + column_label.size() + 25);
+  const double width = std::max({300.0, heading, left + cell * static_cast<double>(cols) + 20}),
                height = top + cell * static_cast<double>(rows) + 34;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
@@ -209,6 +210,8 @@ Chapter make_chapter(const ModalModel& m) {
   Chapter chapter{m.kind, m.file, m.facts, m.checks, {}, {}, {}};
   if (!m.drawing.shapes.empty()) {
     std::string html = make_place("modes", "The shapes are drawn by a script with WebGL 2.");
+    if (m.kind == "modes" && m.drawing.energy.empty())
+      html += make_text("Colours by strain energy come with bough modes --ese.", "note");
     if (m.drawing.num_dropped > 0)
       html += make_text(fmt::format("To keep the page small it has the shapes of the first {} of {} modes.",
                                     m.drawing.shapes.size(), m.frequency_hz.size()),

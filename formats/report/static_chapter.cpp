@@ -137,6 +137,24 @@ std::string make_panel(const StaticResult& result, const StaticSubcase& s) {
   return html;
 }
 
+/// Shares of the sum of all elements, those that are not drawn too.
+void add_element_energies(const StaticResult& result, Drawing& drawing) {
+  std::vector<int> id;
+  std::map<int, Index> row_of;
+  for (const auto& s : result.subcases)
+    for (const auto& block : s.elements)
+      for (const int element : block.id)
+        if (row_of.try_emplace(element, static_cast<Index>(id.size())).second) id.push_back(element);
+  if (id.empty()) return;
+  Eigen::MatrixXd energy =
+      Eigen::MatrixXd::Zero(static_cast<Index>(id.size()), static_cast<Index>(result.subcases.size()));
+  for (std::size_t c = 0; c < result.subcases.size(); ++c)
+    for (const auto& block : result.subcases[c].elements)
+      for (std::size_t e = 0; e < block.id.size() && static_cast<Index>(e) < block.strain_energy.size(); ++e)
+        energy(row_of.at(block.id[e]), static_cast<Index>(c)) = block.strain_energy[static_cast<Index>(e)];
+  add_energies(result.mesh, id, energy, energy.colwise().sum().transpose(), drawing);
+}
+
 Drawing draw_shapes(const StaticResult& result) {
   std::map<int, Index> index_of;
   for (std::size_t i = 0; i < result.mesh.grid_id.size(); ++i)
@@ -152,7 +170,9 @@ Drawing draw_shapes(const StaticResult& result) {
         phi[static_cast<std::size_t>(found->second)](code - 1, c) = u[i];
     }
   }
-  return make_drawing(result.mesh, result.mesh.grid_id, result.mesh.grid_xyz, phi);
+  auto drawing = make_drawing(result.mesh, result.mesh.grid_id, result.mesh.grid_xyz, phi);
+  add_element_energies(result, drawing);
+  return drawing;
 }
 
 }  // namespace

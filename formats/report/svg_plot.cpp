@@ -9,6 +9,7 @@
 #include "base/diagnostic.hpp"
 #include "base/xml_text.hpp"
 #include "formats/report/axis.hpp"
+#include "formats/report/thin.hpp"
 
 namespace bough::report {
 
@@ -102,9 +103,9 @@ Curve thin_out(const Curve& curve) {
   const Eigen::Index n = curve.x.size();
   if (n <= kMost || curve.markers_only || !curve.y.allFinite()) return curve;
   std::vector<Eigen::Index> keep;
-  const Eigen::Index bins = kMost / 4;
-  for (Eigen::Index b = 0; b < bins; ++b) {
-    const Eigen::Index first = b * n / bins, size = (b + 1) * n / bins - first;
+  const auto ends = split_samples(curve.x, kMost / 4);
+  for (std::size_t b = 0; b + 1 < ends.size(); ++b) {
+    const Eigen::Index first = ends[b], size = ends[b + 1] - first;
     Eigen::Index low = 0, high = 0;
     curve.y.segment(first, size).minCoeff(&low);
     curve.y.segment(first, size).maxCoeff(&high);
@@ -231,6 +232,14 @@ std::string draw_svg(const Plot& given) {
   if (x.is_empty()) x = {0, 1};
   if (y.is_empty()) y = {0, 1};
   const bool is_given = plot.y_max > plot.y_min;
+  // No marker is cut by the frame.
+  Range marked;
+  for (const auto& curve : plot.curves)
+    if (curve.markers_only) marked.add(curve.x);
+  if (const double room = 0.015 * (x.max - x.min); !marked.is_empty() && !plot.has_log_x && room > 0) {
+    x.min = std::min(x.min, marked.min - room);
+    x.max = std::max(x.max, marked.max + room);
+  }
 
   std::string legend;
   const double title_bottom = plot.title.empty() ? 20 : 44;

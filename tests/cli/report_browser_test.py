@@ -1,5 +1,6 @@
 """The report page in headless Chromium: panels built, no script error, nothing loaded, zoom, picker and play by the
 mouse. Pictures are kept in BOUGH_ARTEFACTS. Skipped, with a message, where chromium is not installed."""
+import base64
 import os
 import unittest
 
@@ -18,6 +19,9 @@ COUNT_COLORS = """(() => { const c = document.querySelector('%s'); const s = doc
   s.width = c.width; s.height = c.height; const g = s.getContext('2d'); g.drawImage(c, 0, 0);
   const d = g.getImageData(0, 0, s.width, s.height).data; const seen = new Set();
   for (let i = 0; i < d.length; i += 4) seen.add((d[i] << 16) | (d[i + 1] << 8) | d[i + 2]); return seen.size; })()"""
+COLORINGS = "[...document.querySelector('[aria-label=\"colour by\"]').options].map((o) => o.textContent)"
+CHOOSE_COLORS = """(() => { const s = document.querySelector('[aria-label="colour by"]'); s.value = %d;
+  s.dispatchEvent(new Event('change')); })()"""
 HASH = """(() => { const d = document.querySelector('%s').toDataURL(); let h = 0;
   for (let i = 0; i < d.length; ++i) h = (h * 31 + d.charCodeAt(i)) | 0; return h; })()"""
 
@@ -317,12 +321,42 @@ class Page(ProgramTest):
         b.click(".modes .play")
         self.assertTrue(b.wait_for(f"({HASH % '.scene'}) !== {second}", 10))
         b.click(".modes .play")
+        # A body file has no energies of its elements; a modes file may.
+        self.assertEqual(b.run(COLORINGS), ["displacement", "nothing"])
+        coloured = b.run(HASH % ".scene")
+        b.run(CHOOSE_COLORS % 1)
+        self.assertNotEqual(b.run(HASH % ".scene"), coloured)
+        b.run(CHOOSE_COLORS % 0)
+        self.assertEqual(b.run(HASH % ".scene"), coloured)
         # Dark colours.
         b.click("header button")
         b.run(WAIT_FRAMES)
         b.show(".modes")
         self.picture("modes-dark")
         self.picture("modes-dark-page", whole=True)
+        self.check_sound()
+
+    def test_strain_energy(self):
+        """The colour of a plate is that of its energy: five stops of viridis, brightest where the most is."""
+        self.copy_example("ex05-plate")
+        self.bough("modes", "plate.bdf", "-n", "3", "--ese", "-o", "modes.h5")
+        self.open("modes.h5")
+        self.build_all()
+        b = self.browser
+        b.show(".modes")
+        self.assertEqual(b.run(COLORINGS), ["displacement", "nothing", "strain energy", "strain energy density"])
+        shown = set()
+        for way in range(4):
+            b.run(CHOOSE_COLORS % way)
+            shown.add(b.run(HASH % ".scene"))
+            self.assertEqual("Colours: " in b.run("document.querySelector('.modes .note').textContent"), way != 1)
+        self.assertGreaterEqual(len(shown), 3)  # of equal elements both energies look the same
+        self.picture("modes-energy")
+        with h5py.File(self.path("modes.h5")) as f:
+            energy = f["energies/strain"][:, 0] / f["energies/total_strain"][0]
+        self.assertIn(f"{100 * energy.max():.4g}", b.run(f"({CHOOSE_COLORS % 2}, document.querySelector('.modes .note').textContent)"))
+        levels = np.array(b.run("[...document.querySelector('[data-view=modes]').view.energy.levels]"))
+        np.testing.assert_allclose(np.sort(levels), np.sort(energy / energy.max()), atol=1e-4)
         self.check_sound()
 
     def test_static_solutions(self):
@@ -378,6 +412,31 @@ class Page(ProgramTest):
             self.assertLess(min(times), 100)
             b.click(".plots .tools button[title^='Reset']")
         self.picture("long")
+        self.check_sound()
+
+    def test_print(self):
+        """On paper every view is there, light, and charts are as wide as a sheet; after it all is as it was."""
+        self.make_boom()
+        self.bough("run", "spinup.toml", "-o", "spinup.h5")
+        self.open("spinup.h5", "boom.h5")
+        b = self.browser
+        b.click("header button")
+        width = "document.querySelector('.plots .curves').clientWidth"
+        b.show(".plots .chart")
+        self.assertTrue(b.wait_for("Boolean(document.querySelector('.plots .curves'))"))
+        before = b.run(width)
+        self.assertGreater(before, 700)
+        b.run("dispatchEvent(new Event('beforeprint'))")
+        self.assertEqual(b.run("document.querySelectorAll('.live.built').length"), b.run("document.querySelectorAll('.live').length"))
+        self.assertEqual((b.run(width), b.run("document.documentElement.dataset.theme")), (680, "light"))
+        b.run("dispatchEvent(new Event('afterprint'))")
+        b.run(WAIT_FRAMES)
+        self.assertEqual((b.run(width), b.run("document.documentElement.dataset.theme")), (before, "dark"))
+        pdf = base64.b64decode(b.call("Page.printToPDF")["data"])
+        self.assertTrue(pdf.startswith(b"%PDF"))
+        self.assertGreater(len(pdf), 20000)
+        with open(os.path.join(self.artefacts, "print.pdf"), "wb") as out:
+            out.write(pdf)
         self.check_sound()
 
     def test_without_script(self):

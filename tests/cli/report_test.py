@@ -6,6 +6,7 @@ import os
 import re
 import time
 import unittest
+import xml.etree.ElementTree as ElementTree
 from html.parser import HTMLParser
 
 import h5py
@@ -13,6 +14,7 @@ import numpy as np
 import scipy.linalg
 
 from support import BEAM, SOURCE, ProgramTest
+from curves_test import read_curves, read_ticks, scale
 from linear_test import PENDULUM
 from response_test import AXIS
 
@@ -245,6 +247,51 @@ class Report(ProgramTest):
             raw = np.frombuffer(base64.b64decode(shapes[0]["data"]), "<i2").reshape(-1, 3) * shapes[0]["largest"] / 32767
             np.testing.assert_allclose(raw, f["modes/phi"][:, :3, 0], atol=1e-4 * shapes[0]["largest"])
 
+    def read_energies(self, drawing):
+        """Shares of the elements of a drawing: a row an element, a column a shape."""
+        get = lambda name, kind: np.frombuffer(base64.b64decode(drawing["elements"][name]), kind)
+        shares = [np.frombuffer(base64.b64decode(e["data"]), "<i2") * e["largest"] / 32767 for e in drawing["elements"]["energy"]]
+        return np.array(shares).T, get("kind", "<u4"), get("measure", "<f4"), get("of_triangle", "<u4"), get("of_edge", "<u4")
+
+    def test_strain_energy_of_elements(self):
+        """A cantilever of two plates and a bar: what the page colours is what the file has, triangle by triangle."""
+        self.write("mixed.bdf", "SOL 103\nCEND\nSPC = 1\nMETHOD = 1\nBEGIN BULK\nEIGRL,1,,,3\nSPC1,1,123456,1,4\n"
+                   + "".join(f"GRID,{k + 1},,{x},{y},0.\n" for k, (x, y) in enumerate([(0., 0.), (1., 0.), (3., 0.), (0., 1.), (1., 1.), (3., 1.), (4., 1.)]))
+                   + "CQUAD4,10,1,1,2,5,4\nCQUAD4,20,1,2,3,6,5\nCBAR,30,2,6,7,0.,0.,1.\nPSHELL,1,1,.01,1,,1\nPBAR,2,1,1.-4,1.-9,1.-9,2.-9\n"
+                   "MAT1,1,7.+10,,.3,2700.\nENDDATA\n")
+        self.bough("modes", "mixed.bdf", "-o", "plain.h5")
+        page = self.report("plain.h5")
+        self.assertNotIn("elements", page.get_data()[0]["drawing"])
+        self.bough("modes", "mixed.bdf", "--ese", "-o", "modes.h5")
+        drawing = self.report("modes.h5").get_data()[0]["drawing"]
+        shares, kind, measure, of_triangle, of_edge = self.read_energies(drawing)
+        with h5py.File(self.path("modes.h5")) as f:
+            ids = f["energies/id"][:].tolist()
+            expected = f["energies/strain"][:] / f["energies/total_strain"][:]
+        np.testing.assert_allclose(expected.sum(axis=0), 1, rtol=1e-9)
+        # kind (0 line, 1 surface) and size tell which is which.
+        at = {(1, 1.0): 10, (1, 2.0): 20, (0, 1.0): 30}
+        found = [at[int(k), round(float(m), 6)] for k, m in zip(kind, measure)]
+        self.assertEqual(sorted(found), [10, 20, 30])
+        np.testing.assert_allclose(shares, expected[[ids.index(e) for e in found]], atol=1e-4)
+        # Two triangles a plate, whose corners are its grids; the bar is an edge, the others are outlines.
+        self.assertEqual(len(of_triangle), 4)
+        xyz = np.frombuffer(base64.b64decode(drawing["xyz"]), "<f4").reshape(-1, 3)
+        corners = np.frombuffer(base64.b64decode(drawing["triangles"]), "<u4").reshape(-1, 3)
+        for element, three in zip(of_triangle, xyz[corners]):
+            self.assertEqual(measure[element], 1 if three[:, 0].max() <= 1 else 2)
+        edges = np.frombuffer(base64.b64decode(drawing["edges"]), "<u4").reshape(-1, 2)
+        bars = xyz[edges[of_edge != 0xFFFFFFFF]]
+        np.testing.assert_allclose(np.sort(bars[:, :, 0]), [[3, 4]])
+        # Of a static solution: by hand, a bar of two elements that carries 500 along and a moment.
+        self.write("rod.bdf", "SOL 101\nCEND\nSPC=1\nLOAD=7\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,3.,0.,0.\n"
+                   "CBAR,1,1,1,2,0.,1.,0.\nCBAR,2,1,2,3,0.,1.,0.\nPBAR,1,1,1.-3,2.-8,3.-8,4.-8\nMAT1,1,7.+10,,.3,2700.\n"
+                   "SPC1,1,123456,1\nFORCE,7,3,,500.,1.,0.,0.\nENDDATA\n")
+        self.bough("static", "rod.bdf", "-o", "rod.h5")
+        shares, kind, measure, _, _ = self.read_energies(self.report("rod.h5").get_data()[0]["drawing"])
+        np.testing.assert_allclose(shares[:, 0], [1 / 3, 2 / 3], atol=1e-4)  # N² L / 2 E A
+        np.testing.assert_allclose(measure, [1, 2])
+
     def test_drawing_of_solids(self):
         """Two bricks: ten faces outside, none of the one between; all edges once; the modes of every corner."""
         grids = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1, 2)]
@@ -458,6 +505,30 @@ class Report(ProgramTest):
             strokes = re.findall(r'<path d="M[^h"]*" fill="none" stroke="([^"]+)"', f.read())
         self.assertEqual(len(strokes), 2)
         self.assertEqual(strokes[0], strokes[1])  # of a pair
+
+    def test_pictures_of_crowded_samples(self):
+        """Most samples crowd about a resonance, as those of `response` do: the picture keeps the others all the same."""
+        self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.0"))
+        self.bough("linearize", "pendulum.toml", "--outputs", "angle", "-o", "linear.h5")
+        self.bough("response", "linear.h5", "-o", "response.h5")
+        f = np.unique(np.concatenate([np.geomspace(1e-3, 100, 300), np.linspace(0.99, 1.01, 4000)]))
+        H = 1 / (1 - f**2 + 0.02j * f)
+        with h5py.File(self.path("response.h5"), "r+") as out:
+            for name, values in [("frequency_hz", f), ("real", H.real[:, None, None]), ("imag", H.imag[:, None, None]),
+                                 ("singular_values", np.abs(H)[:, None])]:
+                attributes = dict(out[name].attrs)
+                del out[name]
+                out[name] = values
+                out[name].attrs.update(attributes)
+        self.report("response.h5")
+        with open(self.path("page.html"), encoding="utf-8") as page:
+            svg = next(s for s in re.findall(r"<svg.*?</svg>", page.read(), re.S) if "Singular values" in s)
+        svg = ElementTree.fromstring(svg)
+        _, x, y = read_ticks(svg)
+        (curve,) = read_curves(svg)
+        decibel = np.interp(np.log10(f), np.log10(scale(curve[:, 0], x, True)), scale(curve[:, 1], y, False))
+        np.testing.assert_allclose(decibel, 20 * np.log10(np.abs(H)), atol=1.0)
+        self.assertLess(len(curve), 700)
 
     def test_refusals(self):
         self.write("beam.bdf", BEAM)

@@ -31,6 +31,7 @@ export class Link {
 let is_printing = false;
 export const set_printing = (is_on) => (is_printing = is_on);
 
+const kPaperWidth = 680;  // CSS pixels that a sheet has room for
 const kMargin = { left: 76, right: 14, top: 10, bottom: 42 };
 
 // Curves and points on a canvas. options: series [{ name, x, y, points, tip(i) }] (x ascending for curves), x_label,
@@ -138,7 +139,7 @@ export class Chart {
   }
 
   draw() {
-    const width = this.stage.clientWidth;
+    const width = is_printing ? kPaperWidth : this.stage.clientWidth;
     if (width < 50) return;
     this.is_late = !this.is_near && !is_printing;
     if (this.is_late) return;
@@ -236,7 +237,7 @@ export class Chart {
     g.setLineDash([3, 3]);
     g.font = "11px " + get_css("--font");
     g.textAlign = "left";
-    let free = -Infinity;
+    const free = new Array(3).fill(-Infinity);  // where each row of labels has room again
     for (const mark of this.marks) {
       const x = this.map_x(this.to_x(mark.x));
       if (!(x >= this.frame.left && x <= this.frame.left + this.frame.width)) continue;
@@ -244,10 +245,13 @@ export class Chart {
       g.moveTo(x, this.frame.top);
       g.lineTo(x, this.frame.top + this.frame.height);
       g.stroke();
-      if (x < free) continue;
-      const label = mark.label.length > 40 ? mark.label.slice(0, 39) + "…" : mark.label;
-      g.fillText(label, x + 3, this.frame.top + 11);
-      free = x + 6 + g.measureText(label).width;
+      const label = mark.label.length > 32 ? mark.label.slice(0, 31) + "…" : mark.label;
+      const size = g.measureText(label).width, row = free.findIndex((end) => x >= end);
+      if (row < 0) continue;
+      // Near the right end it stands before its line.
+      const is_before = x + 3 + size > this.frame.left + this.frame.width && x - 3 - size >= Math.max(this.frame.left, free[row]);
+      g.fillText(label, is_before ? x - 3 - size : x + 3, this.frame.top + 11 + 13 * row);
+      free[row] = x + (is_before ? 3 : 6 + size);
     }
     g.restore();
   }

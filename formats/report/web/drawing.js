@@ -11,6 +11,21 @@ export class Drawing {
     this.shapes = new Array(json.shapes.length);
     this.points = new Float32Array(this.xyz);
     this.size = new Float32Array(this.xyz.length / 3);  // of the displacement of each point
+    if (json.elements) {
+      const { of_triangle, of_edge, kind, measure, energy } = json.elements;
+      this.elements = { of_triangle: unpack_indices(of_triangle), of_edge: unpack_indices(of_edge), kind: unpack_indices(kind), measure: unpack_floats(measure), energy };
+    }
+  }
+
+  // Strain energy of each element in shape j over the largest, 0 to 1; by density lines, surfaces and solids each over
+  // the largest of their own.
+  get_levels(j, is_density) {
+    const { kind, measure, energy } = this.elements, { data, largest } = energy[j];
+    const share = Float32Array.from(unpack_shorts(data), (v) => (v * largest) / 32767);
+    if (!is_density) return { levels: share.map((v) => (largest > 0 ? v / largest : 0)), largest };
+    const density = share.map((v, k) => (measure[k] > 0 ? v / measure[k] : 0)), most = [0, 0, 0];
+    density.forEach((v, k) => (most[kind[k]] = Math.max(most[kind[k]], v)));
+    return { levels: density.map((v, k) => (most[kind[k]] > 0 ? v / most[kind[k]] : 0)), largest };
   }
 
   get_shape(j) {

@@ -3,6 +3,8 @@ import { format_number } from "./numbers.js";
 import { el, get_css, make_button, make_check, make_select, make_slider } from "./page_parts.js";
 import { Viewer, make_triad } from "./viewer.js";
 
+const kColorings = ["displacement", "nothing", "strain energy", "strain energy density"];
+
 // One mode at a time, swinging; or one static solution.
 export class ModesView {
   constructor(data) {
@@ -13,7 +15,7 @@ export class ModesView {
     this.turns = 0.5;  // per second
     this.is_playing = false;
     this.has_overlay = true;
-    this.has_colors = true;
+    this.color_by = 0;
     const count = data.drawing.shapes.length;
     this.names = data.names;
     const names = data.names?.slice(0, count) ?? Array.from({ length: count }, (_, j) => `${j + 1}: ${format_number(data.frequency[j] ?? NaN, 5)}${data.kinds[j] && data.kinds[j] !== "normal" ? " " + data.kinds[j] : ""}`);
@@ -29,7 +31,7 @@ export class ModesView {
       make_slider("amplitude", { min: 0, max: 0.4, step: 0.005, value: 0.12 }, (v) => { this.amplitude = v; this.draw(); return Math.round(100 * v) + " %"; }),
       make_slider("speed", { min: 0.1, max: 3, step: 0.1, value: 0.5 }, (v) => { this.turns = v; return v + " /s"; }),
       make_check("undeformed", true, (on) => { this.has_overlay = on; this.draw(); }),
-      make_check("colours", true, (on) => { this.has_colors = on; this.draw(); }), this.viewer.make_view_buttons());
+      make_select("colour by", kColorings.slice(0, this.drawing.elements ? 4 : 2), (i) => { this.color_by = i; this.show(this.mode); }), this.viewer.make_view_buttons());
     this.element = el("div", { class: "modes" }, tools, this.viewer.element, el("div", { class: "ramp", "aria-hidden": "true" }), this.note);
     this.viewer.fit(this.box);
     this.show(0);
@@ -39,7 +41,10 @@ export class ModesView {
     this.mode = mode;
     this.picker.list.value = mode;
     this.reach = this.drawing.get_reach(mode);
-    this.note.textContent = `${this.names ? this.names[mode][0].toUpperCase() + this.names[mode].slice(1) + ": largest displacement" : `Mode ${mode + 1}: largest displacement of its shape`} ${format_number(this.reach)}, drawn as the amplitude's share of the size of the body. Colours: none (dark) to largest (bright). Orange x, green y, blue z.`;
+    this.energy = this.color_by > 1 ? this.drawing.get_levels(mode, this.color_by === 3) : null;
+    const what = this.names ? this.names[mode][0].toUpperCase() + this.names[mode].slice(1) + ": largest displacement" : `Mode ${mode + 1}: largest displacement of its shape`;
+    const colors = ["none (dark) to largest displacement (bright)", "", `strain energy of each element, none (dark) to the largest (bright), ${format_number(100 * (this.energy?.largest ?? 0), 4)} % of the whole`, "strain energy per length, area or volume of each element, none (dark) to the largest of lines, of surfaces, of solids (bright)"][this.color_by];
+    this.note.textContent = `${what} ${format_number(this.reach)}, drawn as the amplitude's share of the size of the body. ${colors && `Colours: ${colors}. `}Axes: orange x, green y, blue z.`;
     this.draw();
   }
 
@@ -64,7 +69,8 @@ export class ModesView {
     this.drawing.deform(Array.from({ length: this.mode + 1 }, (_, j) => (j === this.mode ? Math.sin(this.phase) : 0)), scale);
     const { xyz, points, triangles, edges, ghosts } = this.drawing;
     const has_faces = triangles.length > 0;
-    const body = { points, size: this.drawing.size, triangles, edges, ghosts, color: get_css("--body"), by_level: this.has_colors, dots: !has_faces };
+    const body = { points, size: this.drawing.size, triangles, edges, ghosts, color: get_css("--body"), by_level: this.color_by === 0, dots: !has_faces };
+    if (this.energy) Object.assign(body, { elements: this.drawing.elements, levels: this.energy.levels });
     const things = [...make_triad([0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]], 0.12 * size), body];
     if (this.has_overlay) things.unshift({ points: xyz, edges, color: get_css("--ghost"), alpha: 0.7, lift: -1e-3 });
     this.viewer.things = things;

@@ -40,7 +40,7 @@ export class MotionView {
       mark.style.background = get_style(b.index).color;
       return el("span", { class: "entry" }, mark, " " + b.name);
     }));
-    const help = el("p", { class: "note" }, "Black: hinges and their axes. Frames: orange x, green y, blue z. A click in a chart takes this view there.");
+    const help = el("p", { class: "note" }, "Black (white in the dark): hinges and their axes. Frames: orange x, green y, blue z. A click in a chart takes this view there.");
     this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock), names, this.marks.legend, this.marks.now, help);
     run.link.on("pick", (time) => { this.play(false); this.set_time(time); });
     this.reach = this.find_reach();

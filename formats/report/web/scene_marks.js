@@ -155,7 +155,9 @@ export class SceneMarks {
       words.push(`${kind}: an arrow of length 1 [L] is ${format_number(1 / per_unit[k], 3)} ${dims}, the largest ${format_number(most.value, 4)} (${most.name}, t = ${format_number(most.time, 4)})`);
     });
     this.meaning.textContent = words.length > 0 ? words.join(". ") + "." : "";
-    const shown = this.arrows.slice(0, 12).map((a) => `${a.name} ${format_number(Math.hypot(...a.vector), 4)} ${a.moment ? "[F L]" : "[F]"}`);
+    // What rounding leaves is none.
+    const measure = (a) => { const v = Math.hypot(...a.vector); return v < 1e-12 * this.largest[a.moment ? 1 : 0].value ? 0 : v; };
+    const shown = this.arrows.slice(0, 12).map((a) => `${a.name} ${format_number(measure(a), 4)} ${a.moment ? "[F L]" : "[F]"}`);
     if (this.arrows.length > 12) shown.push(`${this.arrows.length - 12} more`);
     this.now.textContent = shown.length > 0 ? "Now: " + shown.join(", ") : "";
   }

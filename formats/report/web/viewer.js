@@ -53,8 +53,8 @@ const to_rgba = (css, alpha = 1) => {
 };
 
 // A stage on which things are drawn: { points, size, triangles, edges, color, by_level, line_color }; marks stand before
-// all things. Dragging turns,
-// the right button or shift moves, the wheel comes nearer, a double click shows all.
+// all things. With by_level a point's colour is its size over `reach`; with elements and levels (Drawing) each element
+// has one colour. Dragging turns, the right button or shift moves, the wheel comes nearer, a double click shows all.
 export class Viewer {
   constructor(height = 420) {
     this.canvas = el("canvas", { class: "scene", tabindex: "0", role: "img", "aria-label": "three-dimensional view" });
@@ -171,18 +171,10 @@ export class Viewer {
   }
 
   draw_thing(thing) {
+    if (thing.levels) return this.draw_elements(thing);
     const gl = this.gl;
     const count = thing.points.length / 3;
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers.place);
-    gl.bufferData(gl.ARRAY_BUFFER, thing.points, gl.STREAM_DRAW);
-    gl.enableVertexAttribArray(0);
-    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers.size);
-    if (thing.size) {
-      gl.bufferData(gl.ARRAY_BUFFER, thing.size, gl.STREAM_DRAW);
-      gl.enableVertexAttribArray(1);
-      gl.vertexAttribPointer(1, 1, gl.FLOAT, false, 0, 0);
-    } else gl.disableVertexAttribArray(1);
+    this.fill(thing.points, thing.size);
     const draw = (kind, indices, color, by_level, lit, lift) => {
       gl.uniform4fv(this.at("color"), color);
       gl.uniform1f(this.at("by_level"), by_level ? 1 : 0);
@@ -200,6 +192,52 @@ export class Viewer {
       draw(gl.LINES, thing.edges, has_faces ? to_rgba(get_css("--edge"), (thing.alpha ?? 1) * 0.6) : color, !has_faces && thing.by_level, false, thing.lift ?? 1e-4);
     if (thing.ghosts?.length > 0) draw(gl.LINES, thing.ghosts, to_rgba(get_css("--ghost"), 0.6), false, false, 0);
     if (thing.dots) draw(gl.POINTS, null, color, thing.by_level, false, 2e-4);
+  }
+
+  fill(points, size) {
+    const gl = this.gl;
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers.place);
+    gl.bufferData(gl.ARRAY_BUFFER, points, gl.STREAM_DRAW);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers.size);
+    if (size) {
+      gl.bufferData(gl.ARRAY_BUFFER, size, gl.STREAM_DRAW);
+      gl.enableVertexAttribArray(1);
+      gl.vertexAttribPointer(1, 1, gl.FLOAT, false, 0, 0);
+    } else gl.disableVertexAttribArray(1);
+  }
+
+  // Corners of neighbours are drawn apart, each in the colour of its element; outlines as ever.
+  draw_elements(thing) {
+    const gl = this.gl, { points, triangles, edges, elements, levels } = thing;
+    const spread = (indices, of, corners, is_kept) => {
+      const place = [], size = [];
+      for (let i = 0; i < of.length; ++i) {
+        if (!is_kept(of[i])) continue;
+        for (let c = 0; c < corners; ++c) {
+          const p = 3 * indices[corners * i + c];
+          place.push(points[p], points[p + 1], points[p + 2]);
+          size.push(levels[of[i]]);
+        }
+      }
+      this.fill(new Float32Array(place), new Float32Array(size));
+      return size.length;
+    };
+    gl.uniform1f(this.at("reach"), 1);
+    gl.uniform4fv(this.at("color"), to_rgba(thing.color));
+    gl.uniform1f(this.at("by_level"), 1);
+    for (const [kind, indices, of, corners, lit, lift] of [[gl.TRIANGLES, triangles, elements.of_triangle, 3, 1, 0], [gl.LINES, edges, elements.of_edge, 2, 0, 2e-4]]) {
+      const count = spread(indices, of, corners, (element) => element !== 0xffffffff);
+      gl.uniform1f(this.at("lit"), lit);
+      gl.uniform1f(this.at("lift"), lift);
+      if (count > 0) gl.drawArrays(kind, 0, count);
+    }
+    gl.uniform1f(this.at("reach"), this.reach);
+    const outlines = [];
+    elements.of_edge.forEach((element, i) => element === 0xffffffff && outlines.push(edges[2 * i], edges[2 * i + 1]));
+    const { levels: _, ...rest } = thing;
+    this.draw_thing({ ...rest, triangles: undefined, edges: Uint32Array.from(outlines), color: get_css("--edge"), alpha: 0.6, by_level: false, dots: false });
   }
 
   listen() {
