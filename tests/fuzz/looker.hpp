@@ -5,7 +5,7 @@
 
 namespace bough::fuzz {
 
-/// For set_apart_worker. A file that takes more than 40 ms of computing comes to no end.
+/// For set_apart_worker. A file that takes more than 15 ms of computing comes to no end.
 Apart work_by_one_process(const std::string& path, ApartTask task, const ApartLimits& limits,
                           const std::string& library);
 
