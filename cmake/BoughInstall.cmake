@@ -23,7 +23,7 @@ foreach(room base formats fe modal stiffening solver)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bough COMPONENT libbough-dev
     FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h" PATTERN "detail" EXCLUDE)
 endforeach()
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/data/schema ${CMAKE_SOURCE_DIR}/data/examples
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/data/schema ${CMAKE_SOURCE_DIR}/data/examples ${CMAKE_SOURCE_DIR}/data/matlab
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bough COMPONENT bough)
 install(EXPORT BoughTargets NAMESPACE bough:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Bough COMPONENT libbough-dev)
 configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/BoughConfig.cmake.in ${CMAKE_BINARY_DIR}/BoughConfig.cmake

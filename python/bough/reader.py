@@ -16,7 +16,7 @@ class File:
         self.arrays, self.descriptions, self.attributes = {}, {}, {}
         with h5py.File(path, "r") as f:
             self.attributes[""] = dict(f.attrs)
-            f.visititems(self._take)
+            self._take_all(f, "")
         self.format = self._get_text("format")
         self.format_version = self._get_text("format_version")
         if not self.format.startswith("bough-"):
@@ -25,6 +25,13 @@ class File:
     def _get_text(self, name):
         value = self.attributes[""].get(name, "")
         return value.decode() if isinstance(value, bytes) else str(value)
+
+    def _take_all(self, group, path):
+        """By every name: what is linked twice is there twice, which h5py's visititems shows once."""
+        for name, item in group.items():
+            self._take(path + name, item)
+            if isinstance(item, h5py.Group):
+                self._take_all(item, path + name + "/")
 
     def _take(self, name, item):
         self.attributes[name] = dict(item.attrs)

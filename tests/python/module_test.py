@@ -379,6 +379,30 @@ class Reader(unittest.TestCase):
         self.assertIn("File", subprocess.run([sys.executable, "-c", code, path], capture_output=True, text=True,
                                              check=True).stdout)
 
+    def test_every_name_of_a_file(self):
+        """Datasets that the file links twice have both names; strings, numbers and attributes are h5py's."""
+        import h5py
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "body.h5")
+            bough.reduce(os.path.join(EXAMPLES, "ex01-spinup", "boom.bdf"), modes=2, full=True).save(path)
+            names = []
+
+            def walk(group, before):
+                for name, item in group.items():
+                    if isinstance(item, h5py.Group):
+                        walk(item, before + name + "/")
+                    else:
+                        names.append(before + name)
+
+            read = bough.reader.read(path)
+            with h5py.File(path) as f:
+                walk(f, "")
+                self.assertEqual(sorted(read), sorted(names))
+                for name in names:
+                    if not h5py.check_string_dtype(f[name].dtype):
+                        np.testing.assert_array_equal(read[name], f[name][()])
+            np.testing.assert_array_equal(read["mesh/grid_id"], read["grids/id"])
+
     def test_every_public_name_is_said(self):
         for name in bough.__all__:
             with self.subTest(name), warnings.catch_warnings():
