@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "fe/linear/blas.hpp"
 #include "fe/matrices/assembly.hpp"
 
 namespace bough::stiffening {
@@ -28,8 +29,8 @@ double find_largest_difference(const Eigen::MatrixXd& A, const Eigen::MatrixXd& 
 BasisCheck check_basis(const fe::Model& model, const Eigen::MatrixXd& Phi, const Eigen::MatrixXd& modal_mass,
                        const Eigen::MatrixXd& modal_stiffness) {
   if (Phi.cols() == 0) return {};
-  const Eigen::MatrixXd M = Phi.transpose() * fe::calc_mass_times(model, model.mass_kind(), Phi);
-  const Eigen::MatrixXd K = Phi.transpose() * fe::calc_stiffness_times(model, Phi);
+  const auto M = fe::calc_inner_products(Phi, fe::calc_mass_times(model, model.mass_kind(), Phi));
+  const auto K = fe::calc_inner_products(Phi, fe::calc_stiffness_times(model, Phi));
   return {find_largest_difference(M, modal_mass), find_largest_difference(K, modal_stiffness)};
 }
 

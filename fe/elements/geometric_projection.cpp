@@ -7,13 +7,17 @@
 namespace bough::fe {
 
 namespace {
-constexpr Eigen::Index kTerms = 512;  // with 20 modes they fill 0.9 MB
+/// With 20 modes 512 of them fill 0.9 MB; with a thousand fewer fill 64 MB.
+Eigen::Index choose_capacity(Eigen::Index num_products) {
+  return std::clamp<Eigen::Index>(8'000'000 / std::max<Eigen::Index>(1, num_products), 16, 512);
 }
+
+}  // namespace
 
 GeometricProjection::GeometricProjection(Eigen::Index num_columns, Eigen::Index num_loads)
     : n_(num_columns),
-      products_(n_ * (n_ + 1) / 2, kTerms),
-      weights_(kTerms, num_loads),
+      products_(n_ * (n_ + 1) / 2, choose_capacity(n_ * (n_ + 1) / 2)),
+      weights_(products_.cols(), num_loads),
       sums_(MatrixXd::Zero(products_.rows(), num_loads)) {}
 
 GeometricProjection::Terms GeometricProjection::add_terms(Eigen::Index num_terms) {

@@ -24,6 +24,11 @@ class GeometricProjection {
   };
   Terms add_terms(Eigen::Index num_terms);
 
+  /// What was added and is not yet summed: after drop_terms(), the terms of the last call.
+  Terms last_terms() { return {products_.leftCols(used_), weights_.topRows(used_)}; }
+  /// Leaves them out of the sum.
+  void drop_terms() { used_ = 0; }
+
   /// Φᵀ K_G Φ for every load: m matrices n x n.
   std::vector<MatrixXd> finish();
 

@@ -144,19 +144,29 @@ void Shell::add_projected_of(const Eigen::Ref<const MatrixXd>& U, const Eigen::R
   const ShellFields<N> fields = calc_fields<N>();
   auto terms = sums.add_terms(2 * kNumPairs + N + N + 2 * N + 3 * N + (has_arms_ ? N : 0));
 
-  MatrixXd force((kNumForces + 1) * N, U.cols());
-  multiply_dense(false, calc_force_map<N>(fields), U, 0, force);
-  for (Eigen::Index c = 0; c < U.cols(); ++c) {
-    const SecondOrder<N> s = calc_second_order<N>(fields, force.col(c).data());
-    double* w = terms.weights.col(c).data();
-    for (int j = 0; j < N; ++j)
-      for (int i = 0; i < j; ++i) *w++ = -s.NN(i, j), *w++ = -s.MM(i, j);
-    for (int k = 0; k < N; ++k) *w++ = s.on_side[k];
-    for (int q = 0; q < N; ++q) *w++ = s.on_drilling[q];
-    for (int i = 0; i < N; ++i) *w++ = s.turn(0, i), *w++ = s.turn(1, i);
-    for (int q = 0; q < N; ++q)
-      for (int a = 0; a < 3; ++a) *w++ = s.on_slope(a, q);
-    for (int i = 0; i < N && has_arms_; ++i) *w++ = s.on_arm[i];
+  const auto weigh = [&](const Eigen::Ref<const MatrixXd>& force, Eigen::Ref<MatrixXd> weights) {
+    for (Eigen::Index c = 0; c < force.cols(); ++c) {
+      const SecondOrder<N> s = calc_second_order<N>(fields, force.col(c).data());
+      double* w = weights.col(c).data();
+      for (int j = 0; j < N; ++j)
+        for (int i = 0; i < j; ++i) *w++ = -s.NN(i, j), *w++ = -s.MM(i, j);
+      for (int k = 0; k < N; ++k) *w++ = s.on_side[k];
+      for (int q = 0; q < N; ++q) *w++ = s.on_drilling[q];
+      for (int i = 0; i < N; ++i) *w++ = s.turn(0, i), *w++ = s.turn(1, i);
+      for (int q = 0; q < N; ++q)
+        for (int a = 0; a < 3; ++a) *w++ = s.on_slope(a, q);
+      for (int i = 0; i < N && has_arms_; ++i) *w++ = s.on_arm[i];
+    }
+  };
+  const ForceMap<N> map = calc_force_map<N>(fields);
+  if (U.cols() > 6 * N) {  // the weights are linear in u: of unit displacements, then of all loads at once
+    MatrixXd of_unit(terms.weights.rows(), 6 * N);
+    weigh(map, of_unit);
+    multiply_dense(false, of_unit, U, 0, terms.weights);
+  } else {
+    MatrixXd force((kNumForces + 1) * N, U.cols());
+    multiply_dense(false, map, U, 0, force);
+    weigh(force, terms.weights);
   }
 
   // Columns of Φ in element axes, one row each: of the nodes, and of the surface.

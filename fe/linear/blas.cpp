@@ -50,4 +50,11 @@ void multiply_dense(bool transposed, const Eigen::Ref<const Eigen::MatrixXd>& A,
   }
 }
 
+Eigen::MatrixXd calc_inner_products(const Eigen::Ref<const Eigen::MatrixXd>& A,
+                                    const Eigen::Ref<const Eigen::MatrixXd>& B) {
+  Eigen::MatrixXd C(A.cols(), B.cols());
+  multiply_dense(true, A, B, 0, C);
+  return C;
+}
+
 }  // namespace bough::fe

@@ -8,5 +8,8 @@ namespace bough::fe {
 /// C = op(A) B + beta C, op(A) = Aᵀ when `transposed`; column-major blocks with leading dimensions of their own.
 void multiply_dense(bool transposed, const Eigen::Ref<const Eigen::MatrixXd>& A,
                     const Eigen::Ref<const Eigen::MatrixXd>& B, double beta, Eigen::Ref<Eigen::MatrixXd> C);
+/// Aᵀ B.
+Eigen::MatrixXd calc_inner_products(const Eigen::Ref<const Eigen::MatrixXd>& A,
+                                    const Eigen::Ref<const Eigen::MatrixXd>& B);
 
 }  // namespace bough::fe

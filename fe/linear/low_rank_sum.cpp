@@ -98,6 +98,7 @@ PetscMat take_kept_sparse(Mat A, const std::vector<int>& kept) {
   PetscMat result;
   check_petsc(MatCreateSubMatrix(A, rows.get(), rows.get(), MAT_INITIAL_MATRIX, result.out()));
   check_petsc(MatSetOption(result.get(), MAT_SYMMETRIC, PETSC_TRUE));
+  take_row_groups(A, kept, result.get());
   return result;
 }
 

@@ -55,6 +55,42 @@ void copy_row_groups(Mat from, Mat to) {
   }
 }
 
+void take_row_groups(Mat whole, const std::vector<int>& kept, Mat part) {
+  constexpr double kNearlyAll = 0.9;
+  PetscObject object = nullptr;
+  PetscInt size = 0;
+  check_petsc(MatGetSize(whole, &size, nullptr));
+  if (kept.empty() || initialize_petsc().size > 1) return;
+  check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(whole), kGroups, &object));
+  if (!object) return;
+  const PetscInt* start = nullptr;
+  check_petsc(ISGetIndices(reinterpret_cast<IS>(object), &start));
+  std::vector<int> own{0};
+  for (std::size_t i = 1, group = 0; i < kept.size(); ++i) {
+    while (start[group + 1] <= kept[i - 1]) ++group;
+    if (kept[i] >= start[group + 1]) own.push_back(static_cast<int>(i));
+  }
+  own.push_back(static_cast<int>(kept.size()));
+  check_petsc(ISRestoreIndices(reinterpret_cast<IS>(object), &start));
+  set_row_groups(part, own);
+
+  check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(whole), kOrder, &object));
+  if (!object || static_cast<double>(kept.size()) < kNearlyAll * size) return;
+  std::vector<PetscInt> place(static_cast<std::size_t>(size), -1), order;
+  for (std::size_t i = 0; i < kept.size(); ++i) place[static_cast<std::size_t>(kept[i])] = static_cast<PetscInt>(i);
+  const PetscInt* rows = nullptr;
+  check_petsc(ISGetIndices(reinterpret_cast<IS>(object), &rows));
+  for (PetscInt i = 0; i < size; ++i)
+    if (const PetscInt row = place[static_cast<std::size_t>(rows[i])]; row >= 0) order.push_back(row);
+  check_petsc(ISRestoreIndices(reinterpret_cast<IS>(object), &rows));
+  PetscIs kept_order;
+  check_petsc(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(order.size()), order.data(), PETSC_COPY_VALUES,
+                              kept_order.out()));
+  check_petsc(ISSetPermutation(kept_order.get()));
+  check_petsc(
+      PetscObjectCompose(reinterpret_cast<PetscObject>(part), kOrder, reinterpret_cast<PetscObject>(kept_order.get())));
+}
+
 namespace {
 
 /// The rows of groups in the order of `rank`.

@@ -16,6 +16,10 @@ void set_row_groups(Mat A, const std::vector<int>& start);
 /// Gives `to`, a matrix of the same rows, the groups of `from`.
 void copy_row_groups(Mat from, Mat to);
 
+/// Gives `part`, the rows and columns `kept` (ascending) of `whole`, what is left of its groups, and of its order where
+/// nearly all rows are left.
+void take_row_groups(Mat whole, const std::vector<int>& kept, Mat part);
+
 /// Nested dissection (METIS; Karypis & Kumar, SIAM J. Sci. Comput. 20 (1998) 359) of the graph of row groups, some
 /// thirty times smaller than the graph of rows (Ashcraft, SIAM J. Sci. Comput. 16 (1995) 1404). Empty, for the solver's
 /// own choice, where A has no groups or less than `least` rows, or lives on several processes. Costs O(nonzeros) the

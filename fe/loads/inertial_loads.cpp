@@ -139,7 +139,7 @@ bool has_approximate_mass(const Model& model, MassKind kind) {
 MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Phi) {
   const Eigen::Index n = Phi.cols(), size = 4 + 3 * n;
   constexpr Eigen::Index kPoints = 512;
-  MatrixXd gram = MatrixXd::Zero(size, size), Z(kPoints, size), mu_Z = Z, Phi_e, u;
+  MatrixXd gram = MatrixXd::Zero(size, size), Z(kPoints, size), mu_Z = Z, Phi_e, H, u;
   Eigen::Index used = 0;
   const auto flush = [&] {
     multiply_dense(true, Z.topRows(used), mu_Z.topRows(used), 1, gram);
@@ -158,15 +158,17 @@ MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Ph
       mu_Z.resize(count, size);
     }
     Phi_e = Phi(element.gdofs(), Eigen::all);
+    H.resize(3 * count, element.num_dofs());
     for (Eigen::Index r = 0; r < count; ++r) {
       const auto& point = carried.points[static_cast<std::size_t>(r)];
-      auto row = Z.row(used + r);
-      row[0] = point.is_place ? 1 : 0;
-      row.segment<3>(1) = point.x.transpose();
-      u.noalias() = point.H * Phi_e;
-      for (int a = 0; a < 3; ++a) row.segment(4 + a * n, n) = u.row(a);
+      Z(used + r, 0) = point.is_place ? 1 : 0;
+      Z.row(used + r).segment<3>(1) = point.x.transpose();
+      for (int a = 0; a < 3; ++a) H.row(a * count + r) = point.H.row(a);
     }
-    mu_Z.middleRows(used, count).noalias() = carried.mu * Z.middleRows(used, count);
+    u.resize(3 * count, n);
+    multiply_dense(false, H, Phi_e, 0, u);
+    for (int a = 0; a < 3; ++a) Z.block(used, 4 + a * n, count, n) = u.middleRows(a * count, count);
+    multiply_dense(false, carried.mu, Z.middleRows(used, count), 0, mu_Z.middleRows(used, count));
     used += count;
   }
   flush();

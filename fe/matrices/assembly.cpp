@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "fe/linear/blas.hpp"
 #include "fe/linear/ordering.hpp"
 #include "fe/model/element_transform.hpp"
 
@@ -144,7 +145,8 @@ MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen
     add(element, K_e);
     X_e.resize(n, X.cols());
     for (int i = 0; i < n; ++i) X_e.row(i) = X.row(gdofs[i]);
-    Y_e.noalias() = K_e * X_e;
+    Y_e.resize(n, X.cols());
+    multiply_dense(false, K_e, X_e, 0, Y_e);
     for (int i = 0; i < n; ++i) Y.row(gdofs[i]) += Y_e.row(i);
   }
   const MpiWorld world = initialize_petsc();

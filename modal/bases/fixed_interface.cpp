@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "fe/linear/blas.hpp"
+#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/mechanism.hpp"
 #include "fe/linear/residual.hpp"
 #include "fe/model/row_kinds.hpp"
@@ -45,8 +47,11 @@ struct FixedInterface::Impl {
         kinds(fe::list_row_kinds(model, part.interior)),
         K(system.K) {
     if (part.interior.empty()) return;
-    K_ii = calc_triple_product(K.get(), part.S_i);
-    M_ii = calc_triple_product(system.M.get(), part.S_i);
+    const auto take_interior = [this](Mat A) {
+      return part.is_selection() ? fe::take_kept(A, part.interior) : calc_triple_product(A, part.S_i);
+    };
+    K_ii = take_interior(K.get());
+    M_ii = take_interior(system.M.get());
     const auto is_sound = [&] {
       return !factor->is_singular() && fe::calc_softest_energy(K_ii.get(), kinds, *factor) >= fe::kMechanismEnergy;
     };
@@ -94,7 +99,7 @@ MatrixXd FixedInterface::solve(const MatrixXd& F_g) const {
 
 /// Orthonormal once more, and one basis of each repeated root.
 void FixedInterface::Impl::make_canonical(VectorXd& lambda, MatrixXd& X) const {
-  const MatrixXd G = X.transpose() * fe::multiply(M_ii.get(), X);
+  const MatrixXd G = fe::calc_inner_products(X, fe::multiply(M_ii.get(), X));
   detail::orthonormalize_ascending(G, X);
   const VectorXd weights = detail::calc_basis_weights(model);
   for (int a = 0, b = 0; a < lambda.size(); a = b) {

@@ -20,6 +20,8 @@ struct Partition {
   SparseRows S_i;                             ///< num_fdofs x ni
   MatrixXd S_b;                               ///< num_fdofs x nb
   int num_boundary() const { return static_cast<int>(boundary.size()); }
+  /// S_i is columns of the identity: SᵢᵀASᵢ are rows and columns of A.
+  bool is_selection() const { return S_i.nonZeros() == S_i.cols(); }
 };
 
 /// Dofs that constraints hold have no coordinate. Those that follow from the dofs before them are left out, warning

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fe/linear/factor.hpp"
+#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/ordering.hpp"
 #include "modal/krylov.hpp"
 #include "modal/pencil.hpp"
@@ -198,6 +199,38 @@ TEST(Ordering, IsAPermutationThatKeepsTheDofsOfAGridTogether) {
   const MatrixXd B = fe::multiply(K.get(), X);
   const MatrixXd residual = fe::multiply(K.get(), fe::solve_factored(factor.get(), B)) - B;
   EXPECT_LT(residual.norm(), 1e-9 * fe::get_diagonal(K.get()).norm());
+}
+
+// What is left of a matrix keeps its groups and its order: neighbours stay together, and the factor is the same size.
+TEST(Ordering, RowsThatAreLeftKeepTheirGroups) {
+  if (fe::initialize_petsc().size > 1) GTEST_SKIP() << "several processes leave the order to the solver";
+  Diagnostics diagnostics;
+  const auto model = make_pair(false, true, diagnostics);
+  const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
+  for (const bool is_ordered : {false, true}) {
+    if (is_ordered) fe::find_elimination_order(K.get());
+    std::vector<int> kept;
+    for (int row = 0; row < model.num_fdofs(); ++row)
+      if (row % 60 != 0 && row / 6 != 17) kept.push_back(row);
+    const auto part = fe::take_kept(K.get(), kept);
+    const auto order = fe::find_elimination_order(part.get());
+    ASSERT_TRUE(static_cast<bool>(order)) << is_ordered;
+    PetscInt size = 0;
+    const PetscInt* rows = nullptr;
+    fe::check_petsc(ISGetSize(order.get(), &size));
+    ASSERT_EQ(size, static_cast<PetscInt>(kept.size()));
+    fe::check_petsc(ISGetIndices(order.get(), &rows));
+    std::vector<int> seen(size, 0);
+    int jumps = 0;
+    const auto get_node = [&](PetscInt row) { return model.describe_fdof(kept[row]).first; };
+    for (int i = 0; i < size; ++i) {
+      ++seen[rows[i]];
+      if (i > 0 && get_node(rows[i]) != get_node(rows[i - 1])) ++jumps;
+    }
+    EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int count) { return count == 1; }));
+    EXPECT_EQ(jumps, 2 * 600 - 2);  // a grid is gone
+    fe::check_petsc(ISRestoreIndices(order.get(), &rows));
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "base/rotation.hpp"
+#include "formats/nastran/reader.hpp"
 #include "modal/eigen.hpp"
 #include "tests/support/beam_decks.hpp"
 
@@ -158,6 +159,35 @@ TEST(Integrals, ExactSetGivesTheKineticEnergy) {
   }
   energy += w.dot(inertia * w) + 2 * w.dot(angular);
   EXPECT_NEAR(energy / direct, 1, 1e-12);
+}
+
+// Where the mass of the grids is one in all directions the Gram matrix is made of the momentum formulas' products: the
+// same as of the vectors e×φ themselves. A mass along one axis or between two grids' axes is not such: neither way may
+// take it for one.
+TEST(Integrals, ExactSetIsThatOfTheTurnedVectors) {
+  const std::string frame =
+      "SOL 103\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,.1,0.\nGRID,3,,2.,-.1,.2\nSPOINT,9\n"
+      "MAT1,1,70.+9,,.3,2700.\nPBAR,1,1,4.-4,3.-8,5.-8,6.-8\nCBAR,1,1,1,2,0.,0.,1.\nCBAR,2,1,2,3,0.,0.,1.\n"
+      "CONM2,3,2,,.4\n";
+  int number = 0;
+  for (const std::string& more : {std::string(), std::string("CMASS2,7,.3,2,2\n"), std::string("CMASS2,7,.3,2,1,3,2\n"),
+                                  std::string("CMASS2,7,.3,2,1,9\n")}) {
+    Diagnostics diagnostics;
+    const auto deck = nastran::read_deck_text(frame + more + "ENDDATA\n", "mass.bdf", {}, diagnostics);
+    const auto model = fe::Model::build(deck, {}, diagnostics);
+    const MatrixXd Phi = make_random(model.num_gdofs(), 3);
+    const Vector3d S(0.5, -0.7, 0.2);
+    const auto mass_times = [&](const MatrixXd& X) -> MatrixXd {
+      return fe::calc_mass_times(model, MassKind::Lumped, X);
+    };
+    const auto of_vectors = calc_exact_integrals(modal::NodalDofs::from_model(model), mass_times, Phi, S);
+    EXPECT_LT(calc_difference(calc_exact_integrals(model, MassKind::Lumped, Phi, S), of_vectors), 1e-12) << number;
+    const auto momentum = calc_momentum_integrals(model, MassKind::Lumped, Phi, S);
+    if (number++ > 0)
+      EXPECT_GT(calc_difference(momentum, of_vectors), 1e-3) << more;
+    else
+      EXPECT_LT(calc_difference(momentum, of_vectors), 1e-12);
+  }
 }
 
 // Moving the reference: Γ1(S) = Γ1 - S × Γ0 and Γ3(S) = Γ3 - ((SᵀΓ0) 1 - Γ0 Sᵀ).

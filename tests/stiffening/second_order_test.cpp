@@ -169,6 +169,37 @@ TEST(SecondOrder, DoesNotFeelTheSupport) {
   }
 }
 
+// Many modes are taken by rows of K_G, few by their products, element by element: both are the projection of the
+// assembled matrix, of elements, carried masses, loads on arms and links.
+TEST(SecondOrder, RowsAndProductsGiveTheSameProjection) {
+  for (const auto kind : {MassKind::Lumped, MassKind::Consistent}) {
+    Diagnostics diagnostics;
+    const auto deck = test::read_deck(test::make_all_kinds(), diagnostics);
+    const auto model = build(deck, kind);
+    const auto load = make_load(model, true);
+    std::srand(7);
+    const MatrixXd Phi = model.T() * MatrixXd::Random(model.num_fdofs(), 50);
+    for (const int num_loads : {1, 30}) {
+      const MatrixXd mix = MatrixXd::Random(1, num_loads),
+                     U = model.T() * MatrixXd::Random(model.num_fdofs(), num_loads);
+      const fe::AppliedLoads loads{load.load.F * mix, load.load.A_I * mix, {}};
+      const auto by_rows = stiffening::calc_generalized_geometric_stiffness(model, loads, U, Phi);
+      const auto by_products = stiffening::calc_generalized_geometric_stiffness(model, loads, U, Phi.leftCols(7));
+      ASSERT_EQ(by_rows.size(), static_cast<std::size_t>(num_loads));
+      for (int c = 0; c < num_loads; c += 29) {
+        const auto K_G = fe::assemble_geometric_stiffness(model, fe::DofSet::Global,
+                                                          {loads.F.col(c), loads.A_I.col(c), {}}, U.col(c));
+        const MatrixXd expected = Phi.transpose() * fe::multiply(K_G.get(), Phi);
+        const auto& found = by_rows[static_cast<std::size_t>(c)];
+        ASSERT_GT(expected.norm(), 0);
+        EXPECT_LT((found - expected).norm(), 1e-12 * expected.norm()) << c << " of " << num_loads;
+        EXPECT_LT((by_products[static_cast<std::size_t>(c)] - expected.topLeftCorner(7, 7)).norm(),
+                  1e-12 * expected.norm());
+      }
+    }
+  }
+}
+
 /// K_link of unit forces (basic axes of the deck's grids) on the dependent dofs of a small deck, on the g-set.
 MatrixXd calc_link_stiffness(const fe::Model& model, const VectorXd& force) {
   MatrixXd K = MatrixXd::Zero(model.num_gdofs(), model.num_gdofs());
