@@ -15,6 +15,19 @@ void subtract(const Eigen::Ref<const MatrixXd>& V, const MatrixXd& C, MatrixXd& 
   fe::multiply_dense(false, V, -C, 1, W);
 }
 
+/// The first columns of V become V S: a few rows at a time, since a second V would be the largest thing in memory.
+void turn(const MatrixXd& S, Eigen::Index size, MatrixXd& V) {
+  constexpr Eigen::Index kRows = 4096;
+  MatrixXd rows, turned;
+  for (Eigen::Index first = 0; first < V.rows(); first += kRows) {
+    const auto count = std::min(kRows, V.rows() - first);
+    rows = V.block(first, 0, count, size);
+    turned.resize(count, S.cols());
+    fe::multiply_dense(false, rows, S, 0, turned);
+    V.block(first, 0, count, S.cols()) = turned;
+  }
+}
+
 MatrixXd multiply_transposed(const Eigen::Ref<const MatrixXd>& V, const Eigen::Ref<const MatrixXd>& W) {
   MatrixXd C(V.cols(), W.cols());
   fe::multiply_dense(true, V, W, 0, C);
@@ -149,9 +162,7 @@ void BlockLanczos::restart() {
   // A few more than wanted: those between keep the wanted ones converging.
   const int b = static_cast<int>(problem_.start.cols());
   const int keep = std::min(size_ - b, problem_.num_wanted + std::max(b, (size_ - problem_.num_wanted) / 3));
-  MatrixXd X(V_.rows(), keep);
-  fe::multiply_dense(false, V_.leftCols(size_), S_.leftCols(keep), 0, X);
-  V_.leftCols(keep) = X;
+  turn(S_.leftCols(keep), size_, V_);
   T_.setZero();
   T_.diagonal().head(keep) = theta_.head(keep);
   size_ = keep;
@@ -162,8 +173,9 @@ BlockLanczosResult BlockLanczos::finish(bool is_done) {
   BlockLanczosResult result;
   const int size = std::min<int>(problem_.num_wanted, size_);
   result.theta = theta_.head(size);
-  result.X.resize(V_.rows(), size);
-  fe::multiply_dense(false, V_.leftCols(size_), S_.leftCols(size), 0, result.X);
+  turn(S_.leftCols(size), size_, V_);
+  V_.conservativeResize(Eigen::NoChange, size);
+  result.X = std::move(V_);
   result.num_solves = num_solves_;
   result.is_done = is_done;
   return result;

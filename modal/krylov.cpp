@@ -11,6 +11,7 @@
 
 #include "base/diagnostic.hpp"
 #include "fe/linear/factor.hpp"
+#include "fe/linear/memory_need.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "modal/block_lanczos.hpp"
 
@@ -245,6 +246,7 @@ constexpr int kBlockSize = 5000;
 /// Nothing when the blocks did not converge.
 std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, Mat factor, int wanted) {
   const bool is_near = problem.spectrum == Spectrum::NearShift;
+  fe::release_freed_memory();
   BlockLanczosProblem blocks;
   blocks.solve = [&](const Eigen::Ref<const MatrixXd>& X) { return fe::solve_factored(factor, X); };
   blocks.multiply_mass = [&](const Eigen::Ref<const MatrixXd>& X) { return fe::multiply(problem.B, X); };
@@ -255,7 +257,8 @@ std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, Mat facto
   blocks.deflate = problem.deflate;
   blocks.num_wanted = wanted;
   blocks.num_guard = std::min(problem.num_guard, wanted - 1);
-  blocks.max_subspace = 11 * wanted / 5 + 60;
+  // The vectors are the most of the memory beside the factor: for few modes a restart costs next to nothing.
+  blocks.max_subspace = 11 * wanted / 5 + std::clamp(wanted, 24, 60);
   blocks.tolerance = problem.tolerance;
   blocks.progress = problem.progress;
   BlockLanczosResult found = solve_block_lanczos(blocks);

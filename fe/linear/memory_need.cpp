@@ -6,6 +6,9 @@
 #include <limits>
 #include <sstream>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -87,6 +90,12 @@ void require_memory(double num_equations, double num_entries, double free_bytes)
                              " equations needs about " + format_bytes(needed) + ", " + format_bytes(free_bytes) +
                              " of memory are free",
                          "use a coarser mesh, or run on more processes of a larger machine (mpirun -n 2 bough ...)");
+}
+
+void release_freed_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 }  // namespace bough::fe

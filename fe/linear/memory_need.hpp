@@ -19,4 +19,7 @@ double calc_factor_bytes(double num_entries);
 /// `free_bytes`.
 void require_memory(double num_equations, double num_entries, double free_bytes);
 
+/// Gives the pages between what is still used back to the system, before what takes the most: the C library keeps them.
+void release_freed_memory();
+
 }  // namespace bough::fe

@@ -114,6 +114,10 @@ void Part::take(const Rows& A, const std::vector<PetscInt>& rows, std::size_t nu
   start_.assign(1, 0);
   row_.clear();
   value_.clear();
+  std::size_t most = rows.size();  // of the upper triangle
+  for (const PetscInt row : rows) most += static_cast<std::size_t>(A.start[row + 1] - A.start[row]);
+  row_.reserve(most / 2);
+  value_.reserve(most / 2);
   for (std::size_t j = 0; j < rows.size(); ++j) {
     for (PetscInt k = A.start[rows[j]]; k < A.start[rows[j] + 1]; ++k) {
       const int i = A.column[k] <= last ? place[static_cast<std::size_t>(A.column[k])] : -1;
@@ -156,9 +160,9 @@ bool Part::factor() {
   cholmod_sparse matrix = as_sparse();
   cholmod_factorize(&matrix, factor_, &common_);
   check();
-  start_ = {};
-  row_ = {};
-  value_ = {};
+  start_ = std::vector<int>();  // {} would keep the memory
+  row_ = std::vector<int>();
+  value_ = std::vector<double>();
   if (common_.status != CHOLMOD_OK || factor_->minor < factor_->n) return false;
   const auto n_p = static_cast<int>(rows_.size());
   const auto n_s = num_between_;
@@ -320,6 +324,7 @@ SupernodalFactor make_supernodal_factor(Mat A, PetscInt least) {
   check_petsc(MatGetSize(A, &n, nullptr));
   double num_entries = 0;
   for (const auto& part : parts->part) num_entries += part->num_entries();
+  release_freed_memory();
   require_memory(static_cast<double>(n), num_entries, calc_free_memory());
 
   std::vector<MatrixXd> schur(num);
