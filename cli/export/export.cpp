@@ -32,7 +32,7 @@ struct ExportOptions : CommonOptions {
   std::string file;
   std::string format;
   std::vector<std::string> channels;
-  bool ascii = false;
+  bool ascii = false, is_moving = false;
   std::string fields = "large";
   BodyExportOptions body;
   MovingOptions moving;
@@ -68,6 +68,8 @@ std::string make_csv(const ExportOptions& o, Diagnostics& diagnostics) {
 }
 
 std::string make_universal(const ExportOptions& o, Diagnostics& diagnostics) {
+  if (o.is_moving)
+    return make_moving_uff(read_moving_system(o.file, o.moving, diagnostics), o.moving.scale, o.file, diagnostics);
   const auto format = read_file_format(o.file);
   if (format == "bough-modes") return exports::make_uff(hdf5::read_modes(o.file));
   if (format == "bough-flexbody") return exports::make_uff(read_body(o.file, diagnostics));
@@ -171,6 +173,8 @@ void add_export(CLI::App& app, Action& action) {
                    "(default: all)")
       ->allow_extra_args(false);
   verb->add_flag("--ascii", o->ascii, "vtu, pvd: numbers as text instead of base64");
+  verb->add_flag("--moving", o->is_moving,
+                 "uff: the moving system of a run, places and displacements at each sample, instead of its channels");
   verb->add_option("--fields", o->fields,
                    "bdf: large (16 columns where 8 lose digits), small (always 8) or free (commas, every digit)")
       ->check(CLI::IsMember({"large", "small", "free"}))
@@ -184,6 +188,7 @@ void add_export(CLI::App& app, Action& action) {
       "  bough export spinup.h5 --to csv --channel tip_deflection:y --channel /bodies/boom/eta\n"
       "  bough export boom-modes.h5 --to vtu -o boom.vtu\n"
       "  bough export spinup.h5 --to pvd --every 10 -o spinup.pvd\n  bough export spinup.h5 --to gltf -o spinup.glb\n"
+      "  bough export spinup.h5 --to uff --moving --every 10 -o spinup.uff\n"
       "  bough export boom.h5 --to mat -o boom.mat\n"
       "  bough export boom-modes.h5 --to uff -o boom.uff\n  bough export boom.h5 --to sid -o boom.SID_FEM\n"
       "  bough export boom.h5 --to mbdyn -o boom.fem\n  bough export boom.bdf --to bdf -o plain.bdf");

@@ -48,6 +48,11 @@ Eigen::Matrix3d to_rotation(const Eigen::Ref<const Eigen::RowVectorXd>& quaterni
 int write_pvd(const MovingSystem& system, double scale, bool is_ascii, const std::string& output,
               Diagnostics& diagnostics);
 
+/// A universal file of the same mesh: places at the first sample, displacements from there at each
+/// (docs/formats/uff.md).
+std::string make_moving_uff(const MovingSystem& system, double scale, const std::string& name,
+                            Diagnostics& diagnostics);
+
 /// The run, or the modes of a modes file or a body, as one binary glTF file (docs/formats/gltf.md).
 std::string make_glb(const std::string& file, const MovingOptions& options, Diagnostics& diagnostics);
 

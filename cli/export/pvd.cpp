@@ -6,6 +6,7 @@
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/export/moving_system.hpp"
+#include "formats/export/uff.hpp"
 #include "formats/export/vtu.hpp"
 
 namespace bough::cli {
@@ -131,8 +132,34 @@ class Frames {
                {"strain_energy", MatrixXd(g, 1)}};
   }
 
-  /// x = r + R (p + s Φη), v = ṙ + R (ω × (p + Φη) + Φη̇) with ω in B.
+  /// The mesh as the last sample placed it.
+  const records::BodyMesh& get_mesh() const { return mesh_; }
+
   std::string make(Eigen::Index sample, exports::VtuEncoding encoding) {
+    place(sample);
+    return exports::make_vtu(mesh_, arrays_, encoding);
+  }
+
+  /// Body b + 1 has ids from (b + 1) 10^d on: with the ids of its grids behind, or, rigid, its points in order.
+  /// Numbers from 1 on where these would be longer than an integer.
+  std::vector<int> number_grids() const {
+    long most = 1, unit = 1;
+    for (const auto& part : parts_) most = std::max(most, static_cast<long>(part.mesh.grid_id.size()));
+    for (const int id : mesh_.grid_id) most = std::max(most, static_cast<long>(id));
+    while (unit <= most) unit *= 10;
+    const bool fits = unit * static_cast<long>(parts_.size() + 1) < std::numeric_limits<int>::max();
+    std::vector<int> ids;
+    for (std::size_t b = 0; b < parts_.size(); ++b)
+      for (std::size_t k = 0; k < parts_[b].mesh.grid_id.size(); ++k) {
+        const long own = parts_[b].mesh.grid_id[k] > 0 ? parts_[b].mesh.grid_id[k] : static_cast<long>(k) + 1;
+        ids.push_back(fits ? static_cast<int>(unit * static_cast<long>(b + 1) + own)
+                           : static_cast<int>(ids.size()) + 1);
+      }
+    return ids;
+  }
+
+  /// x = r + R (p + s Φη), v = ṙ + R (ω × (p + Φη) + Φη̇) with ω in B.
+  void place(Eigen::Index sample) {
     Eigen::Index first = 0;
     for (std::size_t b = 0; b < parts_.size(); ++b) {
       const auto& body = system_.bodies[b];
@@ -158,7 +185,6 @@ class Frames {
       arrays_[4].values(rows, 0).setConstant(calc_strain_energy(body, sample));
       first += g;
     }
-    return exports::make_vtu(mesh_, arrays_, encoding);
   }
 
  private:
@@ -169,7 +195,28 @@ class Frames {
   std::vector<exports::PointArray> arrays_;
 };
 
+/// Without the faces of boxes, of which the edges are there too.
+records::BodyMesh take_lines(records::BodyMesh mesh) {
+  std::erase_if(mesh.blocks, [](const auto& block) {
+    return block.type == "tri3" && !block.element_id.empty() && block.element_id.front() == 0;
+  });
+  return mesh;
+}
+
 }  // namespace
+
+std::string make_moving_uff(const MovingSystem& system, double scale, const std::string& name,
+                            Diagnostics& diagnostics) {
+  Frames frames(system, scale, diagnostics);
+  frames.place(0);
+  auto first = take_lines(frames.get_mesh());
+  first.grid_id = frames.number_grids();
+  const auto calc_displacement = [&](Eigen::Index sample) -> MatrixXd {
+    frames.place(sample);
+    return frames.get_mesh().grid_xyz - first.grid_xyz;
+  };
+  return exports::make_uff(first, system.time, calc_displacement, name);
+}
 
 int write_pvd(const MovingSystem& system, double scale, bool is_ascii, const std::string& output,
               Diagnostics& diagnostics) {

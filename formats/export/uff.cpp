@@ -240,6 +240,29 @@ std::string make_uff(const std::vector<CsvColumn>& columns) {
   return out.take();
 }
 
+std::string make_uff(const records::BodyMesh& mesh, const Eigen::VectorXd& time,
+                     const std::function<Eigen::MatrixXd(Eigen::Index)>& calc_displacement, const std::string& model) {
+  UffText out;
+  put_geometry(out, mesh, {}, {});
+  for (Eigen::Index i = 0; i < time.size(); ++i) {
+    const Eigen::MatrixXd u = calc_displacement(i);
+    BOUGH_DEMAND(u.rows() == static_cast<Eigen::Index>(mesh.grid_id.size()) && u.cols() == 3);
+    out.begin(55);
+    out.put_id(model);
+    out.put_id("Displacement from the first place");
+    for (int k = 0; k < 3; ++k) out.put_id("");
+    // Structural, transient, three translations, displacement, real, three values a node; load case 1, time step.
+    out.print("%10d%10d%10d%10d%10d%10d\n", 1, 4, 2, 8, 2, 3);
+    out.print("%10d%10d%10d%10d\n%13.5E\n", 2, 1, 1, static_cast<int>(i) + 1, time(i));
+    for (std::size_t k = 0; k < mesh.grid_id.size(); ++k) {
+      const auto row = static_cast<Eigen::Index>(k);
+      out.print("%10d\n%13.5E%13.5E%13.5E\n", mesh.grid_id[k], u(row, 0), u(row, 1), u(row, 2));
+    }
+    out.end();
+  }
+  return out.take();
+}
+
 std::string make_uff(const records::DeckResponse& response) {
   UffText out;
   int number = 0;

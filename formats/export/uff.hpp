@@ -1,5 +1,6 @@
 #pragma once
 /// \file Universal files in text (docs/formats/uff.md): nodes, trace lines, modes at nodes, functions.
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,5 +20,10 @@ std::string make_uff(const std::vector<CsvColumn>& columns);
 
 /// Curves of a deck's response as functions (58): over frequency complex spectra, over time real.
 std::string make_uff(const records::DeckResponse& response);
+
+/// A mesh that moves: 15 and 82 of where it is at first, then 55 for each time, transient, of three translations of
+/// each grid from there (grids x 3 for an index into `time`).
+std::string make_uff(const records::BodyMesh& mesh, const Eigen::VectorXd& time,
+                     const std::function<Eigen::MatrixXd(Eigen::Index)>& calc_displacement, const std::string& model);
 
 }  // namespace bough::exports

@@ -3,6 +3,7 @@ positions that NumPy makes of the results and the body file."""
 import json
 import os
 import struct
+import sys
 import unittest
 import xml.etree.ElementTree as ElementTree
 
@@ -10,7 +11,10 @@ import h5py
 import meshio
 import numpy as np
 
-from support import BEAM, ProgramTest
+from support import BEAM, SOURCE, ProgramTest
+
+sys.path.insert(0, os.path.join(SOURCE, "tests", "oracle"))
+import uff_reader  # noqa: E402
 
 SYSTEM = """name = "swing"
 [[body]]
@@ -201,6 +205,29 @@ class Moving(ProgramTest):
             np.testing.assert_allclose(mesh.points[of_beam], x - self.run_of["beam"]["position"][sample], rtol=0,
                                        atol=1e-12)
             np.testing.assert_allclose(mesh.point_data["displacement"][of_beam], u, rtol=1e-12, atol=1e-14)
+
+    def test_uff_of_a_run(self):
+        """The first place and, at each sample, where every point has gone from there."""
+        self.bough("export", "swing.h5", "--to", "uff", "--moving", "--every", "5", "--scale", "3", "-o", "swing.uff")
+        sets = uff_reader.read(self.path("swing.uff"))
+        nodes, times = sets[0], [s for s in sets if s["dataset"] == 55]
+        samples = np.arange(0, len(self.time), 5)
+        np.testing.assert_allclose([s["reals"][0] for s in times], self.time[samples], atol=1e-5)
+        self.assertEqual([s["parameters"] for s in times], [[1, k + 1] for k in range(len(samples))])
+        self.assertEqual({s["analysis"] for s in times}, {4})
+        # The hub has 8 corners, its mass centre and a node or two; the grids of the beam keep their ids.
+        points = len(nodes["id"]) - 3
+        self.assertEqual(nodes["id"], [100 + k for k in range(1, points + 1)] + [201, 202, 203])
+        beam = [points, points + 1, points + 2]
+        start = self.expect([1, 2, 3], 0, 3)[0]
+        np.testing.assert_allclose(nodes["xyz"][beam], start, atol=1e-5)
+        for sample, found in zip(samples, times):
+            self.assertEqual(found["id"], nodes["id"])
+            np.testing.assert_allclose(found["shape"][beam], self.expect([1, 2, 3], sample, 3)[0] - start, atol=2e-5)
+        traced = {abs(k) for s in sets if s["dataset"] == 82 for k in s["nodes"] if k}
+        self.assertLessEqual(traced, set(nodes["id"]))
+        self.assertTrue({nodes["id"][k] for k in beam} <= traced)
+        self.fails(1, "export", "beam.h5", "--to", "uff", "--moving", "-o", "x.uff", error="hdf5.wrong-format")
 
     def test_gltf_of_a_run(self):
         self.bough("export", "swing.h5", "--to", "gltf", "--scale", "2", "-o", "swing.glb")

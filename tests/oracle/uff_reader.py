@@ -29,12 +29,13 @@ def read_82(lines):
 def read_55(lines):
     assert all(line.strip() for line in lines[:5])
     model, analysis, character, kind, data_type, per_node = (int(v) for v in fields(lines[5], *[10] * 6))
-    assert (model, character, kind, data_type, per_node) == (1, 3, 8, 2, 6)
+    # Six displacements of a mode; three translations of an instant.
+    assert (model, kind, data_type) == (1, 8, 2) and (character, per_node) == ((2, 3) if analysis == 4 else (3, 6))
     counts = [int(v) for v in fields(lines[6], *[10] * 8) if v]
     reals = [float(v) for v in fields(lines[7], *[13] * 6) if v]
     assert counts[0] == len(counts) - 2 and counts[1] == len(reals)
     ids = [int(fields(line, 10)[0]) for line in lines[8::2]]
-    shape = np.array([[float(v) for v in fields(line, *[13] * 6)] for line in lines[9::2]])
+    shape = np.array([[float(v) for v in fields(line, *[13] * per_node)] for line in lines[9::2]])
     return dict(model=lines[0].strip(), analysis=analysis, parameters=counts[2:], reals=reals, id=ids, shape=shape)
 
 
