@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <memory>
 
@@ -41,6 +42,41 @@ const Template& find_template(const std::string& name) {
 }
 
 bool is_deck(const std::string& name) { return fs::path(name).has_extension() || fs::is_regular_file(name); }
+
+/// Where the schemas are: of an installed program in share/bough, of a built one in the sources. Empty: not there.
+fs::path find_schemas() {
+  std::error_code failed;
+  const auto folder = fs::read_symlink("/proc/self/exe", failed).parent_path();
+  for (const char* place : {"../share/bough/schema", "../../data/schema"})
+    if (const auto found = (folder / place).lexically_normal(); fs::is_directory(found, failed)) return found;
+  return {};
+}
+
+/// The URI of a path: letters, digits and what needs no escape.
+std::string make_uri(const std::string& path) {
+  constexpr char kDigits[] = "0123456789ABCDEF";
+  std::string uri = "file://";
+  for (const char c : path) {
+    const auto code = static_cast<unsigned char>(c);
+    if (std::isalnum(code) != 0 || std::string_view("/-._~").find(c) != std::string_view::npos)
+      uri += c;
+    else
+      uri += {'%', kDigits[code >> 4], kDigits[code & 15]};
+  }
+  return uri;
+}
+
+/// Tells editors by which schema the file is checked and completed.
+void add_schema_line(StartFile& file) {
+  if (!file.name.ends_with(".toml")) return;
+  const auto folder = find_schemas();
+  if (folder.empty()) return;
+  const auto has = [&](const std::string& table) {
+    return file.text.starts_with(table) || file.text.find("\n" + table) != std::string::npos;
+  };
+  const std::string kind = has("[campaign]") ? "campaign" : has("[body]") ? "body" : "system";
+  file.text = "#:schema " + make_uri((folder / (kind + ".schema.json")).string()) + "\n" + file.text;
+}
 
 Files make_files(const InitOptions& o, Diagnostics& diagnostics) {
   Files made;
@@ -91,7 +127,8 @@ int run_init(const InitOptions& o) {
   if (!console.is_root()) return kSuccess;
   if (o.name.empty()) return list_templates(console);
   Diagnostics diagnostics;
-  const Files chosen = make_files(o, diagnostics);
+  Files chosen = make_files(o, diagnostics);
+  for (auto& file : chosen.files) add_schema_line(file);
   console.print(diagnostics);
   const fs::path folder = o.output.empty() ? fs::path(chosen.folder) : fs::path(o.output);
   for (const auto& file : chosen.files) {

@@ -1,8 +1,13 @@
 """Exit codes, help, versions, messages: what every verb owes."""
 import json
 import os
+import re
 import subprocess
+import tomllib
 import unittest
+import urllib.parse
+
+import jsonschema
 
 from support import BEAM, PROGRAM, SOURCE, VERBS, ProgramTest
 
@@ -125,6 +130,23 @@ class InitFromDeck(ProgramTest):
         body, _ = self.start()
         self.assertIn('frame = "free"', body)
         self.assertIn("number = 3 ", body)
+
+    def test_editors_find_the_schema(self):
+        """The first line of each TOML file leads to the schema of its kind, which the rest of it keeps."""
+        self.bough("init", "spinup", "-o", ".")
+        self.bough("init", "boom.bdf", "--force")
+        self.bough("init", "campaign", "-o", "many")
+        seen = set()
+        for name in ["spinup.toml", "boom.toml", "boom-run.toml", "many/campaign.toml", "many/boom.toml"]:
+            with open(self.path(name)) as f:
+                line = f.readline()
+            uri = re.fullmatch(r"#:schema file://(/.*\.schema\.json)\n", line).group(1)
+            with open(urllib.parse.unquote(uri)) as f:
+                schema = json.load(f)
+            with open(self.path(name), "rb") as f:
+                jsonschema.validate(tomllib.load(f), schema)
+            seen.add(os.path.basename(uri))
+        self.assertEqual(seen, {"body.schema.json", "campaign.schema.json", "system.schema.json"})
 
     def test_without_a_name_the_templates_are_listed(self):
         said = self.bough("init").stdout
