@@ -1,3 +1,5 @@
+#include "cli/command.hpp"
+
 #include <CLI/CLI.hpp>
 #include <functional>
 
@@ -75,7 +77,7 @@ int print_checked(const cli::Console& console, const std::function<void()>& prin
   }
 }
 
-int run(int argc, const char* const* argv) {
+int run(int argc, const char* const* argv, std::vector<Diagnostic>& failures) {
   CLI::App app("Bough: from a finite-element model to a flexible multibody simulation", "bough");
   app.formatter(cli::make_formatter());
   app.set_help_flag("-h,--help", "Print this help and exit");
@@ -145,6 +147,7 @@ int run(int argc, const char* const* argv) {
     cli::flush_data();
     return code;
   } catch (const Failure& failure) {
+    failures = failure.items();
     return cli::report_failure(failure, cli::Console(count_given("--quiet") > 0, count_given("--verbose")));
   } catch (const std::bad_alloc&) {
     console.print_error({}, "not enough memory", "use a smaller model or fewer modes");
@@ -159,11 +162,15 @@ int run(int argc, const char* const* argv) {
 
 namespace bough::cli {
 
-int run_command(const std::vector<std::string>& words) {
+CommandOutcome run_and_tell(const std::vector<std::string>& words) {
   std::vector<const char*> arguments{"bough"};
   for (const auto& word : words) arguments.push_back(word.c_str());
-  return run(static_cast<int>(arguments.size()), arguments.data());
+  CommandOutcome outcome;
+  outcome.exit_code = run(static_cast<int>(arguments.size()), arguments.data(), outcome.failures);
+  return outcome;
 }
+
+int run_command(const std::vector<std::string>& words) { return run_and_tell(words).exit_code; }
 
 std::vector<std::string> list_verbs() {
   CLI::App app;

@@ -48,6 +48,8 @@ std::string show_source_line(const SourceLocation& where) {
   std::string line;
   for (int k = 0; k < where.line; ++k)
     if (!std::getline(in, line)) return "";
+  // Of cards the column is negative, of the text with its tabs as blanks: it stands in no message.
+  const bool is_told = where.column >= 0, has_tabs = line.find('\t') != std::string::npos;
   // What would steer the terminal is not passed on.
   for (char& c : line)
     if (static_cast<unsigned char>(c) < ' ' || c == 127) c = ' ';
@@ -60,7 +62,7 @@ std::string show_source_line(const SourceLocation& where) {
     line += " ...";
   }
   auto text = "    " + line + "\n";
-  const auto column = static_cast<std::size_t>(std::max(where.column, 0));
+  const auto column = static_cast<std::size_t>(is_told || !has_tabs ? std::abs(where.column) : 0);
   if (column > 0 && column <= kLongest) text += std::string(3 + column, ' ') + "^\n";
   return text;
 }

@@ -1,4 +1,6 @@
 // Failures as exceptions with their messages, each with file and line.
+#include <cstdlib>
+
 #include "python/bindings/bindings.hpp"
 
 namespace bough::python {
@@ -41,7 +43,7 @@ void bind_messages(py::module_& m) {
       .def_readonly("id", &Diagnostic::id)
       .def_property_readonly("file", [](const Diagnostic& d) { return d.where.file; })
       .def_property_readonly("line", [](const Diagnostic& d) { return d.where.line; })
-      .def_property_readonly("column", [](const Diagnostic& d) { return d.where.column; })
+      .def_property_readonly("column", [](const Diagnostic& d) { return std::abs(d.where.column); })
       .def_readonly("what", &Diagnostic::what)
       .def_readonly("advice", &Diagnostic::advice)
       .def("__str__", [](const Diagnostic& d) { return format(d); })

@@ -1,5 +1,6 @@
 #include "python/bindings/bindings.hpp"
 
+#include "cli/command.hpp"
 #include "cli/verbs.hpp"
 
 PYBIND11_MODULE(_bough, m) {
@@ -11,5 +12,13 @@ PYBIND11_MODULE(_bough, m) {
   bind_systems(m);
   m.def("call", &bough::cli::run_command, py::arg("words"), py::call_guard<py::gil_scoped_release>(),
         "One command line, messages and exit code as from the shell.");
+  m.def(
+      "call_and_tell",
+      [](const std::vector<std::string>& words) {
+        const auto outcome = bough::cli::run_and_tell(words);
+        return std::make_pair(outcome.exit_code, outcome.failures);
+      },
+      py::arg("words"), py::call_guard<py::gil_scoped_release>(),
+      "As call: the exit code, and the messages of the failure that ended it.");
   m.def("verbs", &bough::cli::list_verbs);
 }

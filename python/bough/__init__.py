@@ -79,13 +79,15 @@ def _call_quietly(words):
     _sys.stderr.flush()
     with _tempfile.TemporaryFile() as out, _tempfile.TemporaryFile() as err:
         with _redirected(1, out), _redirected(2, err):
-            code = _bough.call([str(word) for word in words])
+            code, messages = _bough.call_and_tell([str(word) for word in words])
         texts = []
         for file in (out, err):
             file.seek(0)
             texts.append(file.read().decode("utf-8", "replace"))
     if code:
-        raise (InputError if code in (1, 2) else ComputationError)(texts[1].strip())
+        error = (InputError if code in (1, 2) else ComputationError)(texts[1].strip())
+        error.messages, error.exit_code = messages, code
+        raise error
     return texts
 
 

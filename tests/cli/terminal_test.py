@@ -48,6 +48,26 @@ class Terminal(ProgramTest):
         self.assertRegex(said, r"bad.toml:3: error: .*durration.*\n      durration = 2.0 # é+ \.\.\.\n")
         self.assertNotIn("\n      durration", self.bough("check", "bad.toml", code=1).stderr)
 
+    def test_the_mark_under_a_field(self):
+        """Under the field of a card, in columns and between commas, on its own line; in no message and no pipe."""
+        self.write("bad.bdf", "SOL 103\nCEND\nBEGIN BULK\nGRID,1,,0.,zero,0.\nGRID           2              1.   x.y0      0.\n"
+                   "CBAR           1       1       1       2      0.      1.     bad\n"
+                   "PBEAM,1,1,1.,1.,1.,,1.,,+\n+,,,here,\nENDDATA\n")
+        said = self.at_terminal("check", "bad.bdf", NO_COLOR="1")[1].replace("\r\n", "\n").splitlines()
+        marked = []
+        for line, below in zip(said, said[1:]):
+            if below.strip() == "^" and line.startswith("    "):
+                marked.append(line[below.index("^"):].split(",")[0].split()[0])
+        for word in ("zero", "x.y0", "bad"):
+            self.assertIn(word, marked)
+        self.assertRegex("\n".join(said), r"bad.bdf:4: error: GRID")
+        self.assertNotIn("^", self.bough("check", "bad.bdf", code=1).stderr)
+        # With tabs the columns are others.
+        self.write("tabs.bdf", "SOL 103\nCEND\nBEGIN BULK\nGRID\t1\t\t0.\tzero\t0.\nENDDATA\n")
+        said = self.at_terminal("check", "tabs.bdf", NO_COLOR="1")[1]
+        self.assertIn("zero", said)
+        self.assertNotIn("^", said)
+
     def test_progress(self):
         self.copy_example("ex01-spinup")
         self.bough("reduce", "boom.toml")

@@ -155,8 +155,19 @@ class Errors(InFolder):
         first = raised.exception.messages[0]
         self.assertEqual((first.severity, first.file, first.line), ("error", "bad.bdf", 3))
         self.assertTrue(first.what and first.id)
+        self.assertEqual(first.column, 15)  # of the x
         self.assertIn("bad.bdf:3: error:", str(raised.exception))
         self.assertIsInstance(raised.exception, bough.Failure)
+        # The same of what Python calls as the shell does.
+        for call in (lambda: bough.modes("bad.bdf", 2), lambda: bough.static("bad.bdf")):
+            with self.assertRaises(bough.InputError) as raised:
+                call()
+            self.assertEqual([str(m) for m in raised.exception.messages], [str(first)])
+            self.assertEqual((raised.exception.messages[0].line, raised.exception.exit_code), (3, 1))
+            self.assertIn("bad.bdf:3: error:", str(raised.exception))
+        with self.assertRaises(bough.InputError) as raised:
+            bough.select("nothing.h5")
+        self.assertEqual(raised.exception.messages[0].id, "cli.no-file")
 
     def test_names_that_are_slips(self):
         with self.assertRaises(bough.InputError):

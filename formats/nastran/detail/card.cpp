@@ -42,7 +42,12 @@ SourceLocation Card::locate(int i) const {
   const auto* line = &text_.lines.front();
   for (const auto& other : text_.lines)
     if (other.first_field <= i) line = &other;
-  return {files_[static_cast<std::size_t>(line->at.file)], line->at.line, 0};
+  // Below zero: for the mark under the line at a terminal, not for the text of the message.
+  int column = 0;
+  if (const auto field = get(i); !field.empty() && line->text.data() <= field.data() &&
+                                 field.data() + field.size() <= line->text.data() + line->text.size())
+    column = -static_cast<int>(field.data() - line->text.data()) - 1;
+  return {files_[static_cast<std::size_t>(line->at.file)], line->at.line, column};
 }
 
 void Card::fail(std::string_view id, int i, std::string what, std::string advice) {
