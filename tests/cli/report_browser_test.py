@@ -228,6 +228,20 @@ class Page(ProgramTest):
         self.assertNotEqual(b.run(HASH % ".scene"), view)
         b.show(".motion")
         self.picture("motion")
+        # The camera goes with the body that it follows.
+        with h5py.File(self.path("run.h5")) as f:
+            time, place = f["time"][:], f["bodies/lower/position"][:]
+        self.assertGreater(np.ptp(place, axis=0).max(), 0.1)
+        follow = """(() => { const s = document.querySelector('[aria-label=follow]');
+          s.value = [...s.options].findIndex((o) => o.textContent === '%s'); s.dispatchEvent(new Event('change')); })()"""
+        b.run(follow % "lower")
+        moving = "document.querySelector('[data-view=motion]').view"
+        b.run(f"{moving}.set_time({time[0]})")
+        before = np.array(b.run(f"{moving}.viewer.target"))
+        for k in (len(time) // 3, len(time) - 1):
+            b.run(f"{moving}.set_time({time[k]})")
+            np.testing.assert_allclose(np.array(b.run(f"{moving}.viewer.target")) - before, place[k] - place[0], atol=1e-5)
+        b.run(follow % "nothing")
         # Turning by the mouse changes the view.
         view, box = b.run(HASH % ".scene"), b.show(".scene")
         b.drag((box["x"] + 400, box["y"] + 200), (box["x"] + 480, box["y"] + 160))
@@ -334,6 +348,70 @@ class Page(ProgramTest):
         b.show(".modes")
         self.picture("modes-dark")
         self.picture("modes-dark-page", whole=True)
+        self.check_sound()
+
+    def slide(self, name, value):
+        self.browser.run(f"""(() => {{ const s = document.querySelector('input[aria-label="{name}"]'); s.value = {value};
+          s.dispatchEvent(new Event('input')); }})()""")
+
+    def catch_files(self):
+        """What the page saves from now on is kept in `saved`."""
+        self.browser.run("""(() => { window.saved = []; const make = URL.createObjectURL.bind(URL);
+          URL.createObjectURL = (blob) => { saved.push(blob); return make(blob); }; })()""")
+
+    def check_picture(self, button):
+        """PNG's eight bytes, and as many pixels as the canvas."""
+        b = self.browser
+        count = b.run("saved.length")
+        b.run(f"[...document.querySelectorAll('{button}')].find((one) => one.textContent === 'PNG').click()")
+        self.assertTrue(b.wait_for(f"saved.length === {count + 1}"))
+        head = b.run(f"saved[{count}].slice(0, 24).arrayBuffer().then((a) => [...new Uint8Array(a)])")
+        self.assertEqual(bytes(head[:8]), b"\x89PNG\r\n\x1a\n")
+        return int.from_bytes(bytes(head[16:20]), "big"), int.from_bytes(bytes(head[20:24]), "big")
+
+    def test_controls_of_the_views(self):
+        """Amplitude, speed, undeformed overlay of modes; scrub, frames, deformation of a run; PNG of both."""
+        self.make_boom()
+        self.bough("run", "spinup.toml", "-o", "spinup.h5")
+        self.open("spinup.h5", "boom.h5")
+        self.build_all()
+        b = self.browser
+        self.catch_files()
+        view = "document.querySelector('[data-view=modes]').view"
+        b.show(".modes")
+        deflect = f"Math.max(...{view}.drawing.size)"
+        size = b.run(f"{view}.box.get_diagonal()")
+        for share in (0.1, 0.3):
+            self.slide("amplitude", share)
+            self.assertAlmostEqual(b.run(deflect), share * size, delta=1e-4 * size)   # at the end of its swing
+        with_overlay = b.run(HASH % ".modes .scene")
+        b.click(".modes input[type=checkbox]")
+        self.assertNotEqual(b.run(HASH % ".modes .scene"), with_overlay)
+        # At one swing a second the phase goes on by 2 pi in a second of frames.
+        self.slide("speed", 1)
+        self.assertEqual(b.run(f"{view}.turns"), 1)
+        self.assertEqual(self.check_picture(".modes button"), tuple(b.run("(({width, height}) => [width, height])(document.querySelector('.modes .scene'))")))
+        view = "document.querySelector('[data-view=motion]').view"
+        b.show(".motion")
+        with h5py.File(self.path("spinup.h5")) as f:
+            time, eta = f["time"][:], f["bodies/boom/eta"][:]
+        # A real mouse on the scrubber's middle: half of the time.
+        box = b.show(".motion .scrub")
+        at = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+        b.mouse("mousePressed", *at, button="left", buttons=1, clickCount=1)
+        b.mouse("mouseReleased", *at, button="left", clickCount=1)
+        self.assertAlmostEqual(b.run(f"{view}.time"), time[-1] / 2, delta=0.02 * time[-1])
+        self.assertRegex(b.run("document.querySelector('.clock').textContent"), r"t = \d")
+        b.run(f"{view}.set_time({time[700]})")
+        largest = f"Math.max(...{view}.bodies[0].drawing.size)"
+        once = b.run(largest)
+        self.assertGreater(np.abs(eta[700]).max(), 0)
+        self.slide("deformation ×", 1)    # decades
+        self.assertAlmostEqual(b.run(largest), 10 * once, delta=1e-3 * once)
+        framed = b.run(HASH % ".motion .scene")
+        b.run("[...document.querySelectorAll('.motion label')].find(l => l.textContent.trim() === 'frames').click()")
+        self.assertNotEqual(b.run(HASH % ".motion .scene"), framed)
+        self.assertEqual(self.check_picture(".motion button"), tuple(b.run("(({width, height}) => [width, height])(document.querySelector('.motion .scene'))")))
         self.check_sound()
 
     def test_strain_energy(self):
