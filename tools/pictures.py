@@ -149,6 +149,12 @@ def modes():
     plate.page("modes", "[data-view=modes]", "plate.h5", before=MODE)
 
 
+def modes_energy():
+    plate = Folder("plate")
+    plate.run("modes", "plate.bdf", "-n", "6", "--ese", "-o", "modes.h5")
+    plate.page("modes-energy", "[data-view=modes]", "modes.h5", before=MODE + ENERGY)
+
+
 def spinup_report():
     boom = Folder("spinup")
     boom.run("reduce", "boom.toml")
@@ -189,10 +195,12 @@ def notebooks():
 
 
 MODE = "[...document.querySelectorAll('[data-view=modes] button')].find(b => b.textContent === '▶').click()"
+ENERGY = """; (() => { const s = document.querySelector('[aria-label="colour by"]'); s.value = 2;
+  s.dispatchEvent(new Event('change')); })()"""
 SCRUB = """(() => { const s = document.querySelector('.scrub'); s.value = 200;
   s.dispatchEvent(new Event('input', { bubbles: true })); })()"""
 MAKERS = [satellite_curves, satellite_report, select, separation, campbell, blade_tip, modes,
-          spinup_report, edit, notebooks]
+          modes_energy, spinup_report, edit, notebooks]
 with tempfile.TemporaryDirectory(prefix="bough-pictures-") as SCRATCH:
     os.makedirs(PICTURES, exist_ok=True)
     for maker in MAKERS:
