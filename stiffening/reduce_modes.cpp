@@ -75,7 +75,8 @@ void Reduction::set_modes(const fe::System& system, const StaticSolve& solve) {
   if (!massless.empty())
     diagnostics_.warning("reduce.residual-massless", where(),
                          "what moves no mass has no residual vector; lost of the flexibility under " + massless,
-                         "what acts there meets a stiffer body; give the model inertia there if it should not");
+                         "what acts there meets a stiffer body; give the model inertia there, or take fewer modes, if it "
+                         "should not");
 
   const bool is_moved = is_free() && spec_.frame != BodyFrame::Free;
   // Raw coordinates lose those of the frame's node first, so that select counts what is left.

@@ -4,6 +4,7 @@
 
 The list is of the machine that it runs on: run it again where other versions are installed.
 """
+import os
 import re
 import subprocess
 import sys
@@ -16,7 +17,7 @@ BINDING = {
     "slepc": "BSD-2-Clause", "petsc": "BSD-2-Clause", "hypre": "Apache-2.0 OR MIT", "hdf5": "LicenseRef-BSD-style-HDF5",
     "sundials": "BSD-3-Clause", "openblas": "BSD-3-Clause", "metis": "Apache-2.0", "muparser": "BSD-2-Clause",
     "openmpi": "BSD-3-Clause", "fmtlib": "MIT", "tomlplusplus": "MIT", "matio": "BSD-2-Clause",
-    "superlu": "BSD-3-Clause", "superlu-dist": "BSD-3-Clause", "scalapack": "BSD-3-Clause", "arpack": "BSD-3-Clause",
+    "libedit": "BSD-3-Clause", "ncurses": "X11-distribute-modifications-variant", "superlu": "BSD-3-Clause", "superlu-dist": "BSD-3-Clause", "scalapack": "BSD-3-Clause", "arpack": "BSD-3-Clause",
 }
 HEADERS = [("libeigen3-dev", "MPL-2.0"), ("libcli11-dev", "BSD-3-Clause"), ("nlohmann-json3-dev", "MIT"),
            ("pybind11-dev", "BSD-3-Clause")]
@@ -27,14 +28,15 @@ def run(*command):
 
 
 def find_packages(program):
-    packages = set()
-    for path in re.findall(r"=> (/\S+)", run("ldd", program)):
-        for where in (path, path.removeprefix("/usr"), "/usr" + path, run("readlink", "-f", path).strip()):
-            owner = run("dpkg-query", "-S", where).split("\n")[0].partition(": ")[0]
-            if owner and "diversion" not in owner:
-                packages.add(owner.split(",")[0].split(":")[0])
-                break
-    return sorted(packages)
+    places = [(path, path.removeprefix("/usr"), "/usr" + path, os.path.realpath(path))
+              for path in re.findall(r"=> (/\S+)", run("ldd", program))]
+    owners = {}
+    for line in run("dpkg-query", "-S", *{where for own in places for where in own}).split("\n"):
+        owner, _, where = line.partition(": ")
+        if owner and "diversion" not in owner:
+            owners.setdefault(where, owner.split(",")[0].split(":")[0])
+    return sorted({next(owners[where] for where in own if where in owners)
+                   for own in places if any(where in owners for where in own)})
 
 
 def describe(package, declared):

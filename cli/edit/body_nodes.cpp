@@ -25,6 +25,7 @@ std::vector<std::string> list_body_nodes(const std::string& text, const std::str
       const auto flexible = read_body((std::filesystem::path(system_file).parent_path() / file).string(), quiet);
       for (const int node : flexible.node_id) ids.push_back(std::to_string(node));
     } catch (const Failure&) {  // not reduced yet, or damaged: `check` says so
+      if (ids.size() == 1) return {};
     }
     return ids;
   }

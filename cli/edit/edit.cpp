@@ -52,7 +52,12 @@ int run_edit(const EditOptions& o) {
   if (!console.is_root()) return kSuccess;
   const bool is_interactive = is_at_terminal();
   EditSession::Ask ask;
-  if (is_interactive) ask = [](const std::string& prompt) { return read_line(prompt); };
+  if (is_interactive)
+    ask = [](const std::string& prompt) {
+      auto line = read_line(prompt);
+      if (was_left()) throw InputError("cli.edit-command", {}, "the command was left", "it changed nothing");
+      return line;
+    };
   if (!o.output.empty()) check_output(o, o.output);
   EditSession session(read_edit_text(o.file), console, ask, o.output);
   const auto prompt = fs::path(o.file).filename().string() + "> ";

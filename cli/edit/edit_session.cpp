@@ -130,33 +130,6 @@ void EditSession::show(const Words& words) {
   console_.print_data(toml_files::get_item_text(text_.get_text(), find_item(words, 1, 0).item.path()));
 }
 
-KeyValues EditSession::ask_for_keys(const KindHelp& kind, KeyValues given) const {
-  const auto has = [&](const std::string& key) {
-    return std::any_of(given.begin(), given.end(), [&](const auto& pair) { return pair.first == key; });
-  };
-  const auto ask = [&](const toml_files::KeyHelp& key) {
-    console_.print(toml_files::format_help(key));
-    const auto answer = ask_("  " + key.name + (key.is_required ? "" : " (empty: none)") + " = ");
-    if (!answer) throw InputError("cli.edit-command", {}, "add was left", "it changed nothing");
-    if (!answer->empty()) given.emplace_back(key.name, text_.make_value(&kind, key.name, *answer));
-  };
-  for (const auto& key : kind.keys)
-    while (key.is_required && !has(key.name)) ask(key);
-  for (const auto& wanted : kind.wanted) {
-    const auto is_wanted = [&](const toml_files::KeyHelp& key) {
-      return (wanted + ",").find(" " + key.name + ",") != std::string::npos;
-    };
-    const auto is_met = [&] {
-      return std::any_of(kind.keys.begin(), kind.keys.end(),
-                         [&](const auto& k) { return is_wanted(k) && has(k.name); });
-    };
-    if (!is_met()) console_.print("  it needs " + wanted + "\n");
-    for (const auto& key : kind.keys)
-      if (is_wanted(key) && !is_met()) ask(key);
-  }
-  return given;
-}
-
 void EditSession::add(const Words& words) {
   if (words.size() < 2) throw_usage("add");
   const auto& kind = text_.find_kind(words[1]);
@@ -231,6 +204,7 @@ void EditSession::remove(const Words& given) {
   }
   // What names it goes first, and what names that before it; the numbers of the others move meanwhile.
   std::vector<EditTarget> left{target};
+  std::string deleted;
   while (!left.empty()) {
     const auto more = find_uses_of(left.back(), text);
     if (!more.empty()) {
@@ -254,9 +228,10 @@ void EditSession::remove(const Words& given) {
           (!item.name.empty() || item.number == gone.item.number))
         gone.item = item;
     demand_success(toml_files::remove_path(text, gone.path()));
-    if (!left.empty()) console_.print("deleted: " + gone.item.kind + " " + gone.item.name + "\n");
+    if (!left.empty()) deleted += "deleted: " + gone.item.kind + " " + gone.item.name + "\n";
   }
   text_.change(text, true);
+  console_.print(deleted);
 }
 
 void EditSession::rename(const Words& words) {

@@ -45,7 +45,13 @@ class EditSession {
   void help(const Words& words) const;
   bool quit();
 
+  void ask_for_key(const toml_files::KindHelp& kind, const toml_files::KeyHelp& key,
+                   toml_files::KeyValues& given) const;
   toml_files::KeyValues ask_for_keys(const toml_files::KindHelp& kind, toml_files::KeyValues given) const;
+  /// What its type, or what it refers to, needs besides: the schema does not tell, the reader does.
+  toml_files::KeyValues ask_for_missing(const toml_files::KindHelp& kind, toml_files::KeyValues given) const;
+  /// The errors of a text, as `check` has them.
+  std::vector<Diagnostic> list_errors(const std::string& text) const;
   EditTarget find_item(const Words& words, std::size_t first, std::size_t num_after) const;
   std::vector<toml_files::NameUse> find_uses_of(const EditTarget& target, const std::string& text) const;
 

@@ -39,7 +39,8 @@ void EditText::change(const std::string& text, bool allows_missing) {
   for (const auto& item : list_errors(text_, file_)) ++known[item.id + item.what];
   std::vector<Diagnostic> added;
   for (auto& item : list_errors(text, file_)) {
-    if (--known[item.id + item.what] >= 0 || (allows_missing && item.id == "toml.missing-key")) continue;
+    const bool is_missing = item.id == "toml.missing-key" || item.id == "toml.missing-table";
+    if (--known[item.id + item.what] >= 0 || (allows_missing && is_missing)) continue;
     item.where = {};
     added.push_back(item);
   }

@@ -13,7 +13,9 @@ bool is_at_terminal();
 /// The words that may stand in place of the last one of a line.
 using Complete = std::function<std::vector<std::string>(const std::string& line)>;
 
-/// The next line without its end; nothing at the end of the input. The prompt is printed at a terminal only.
+/// The next line without its end; nothing at the end of the input. The prompt is printed at a terminal only. After
+/// Ctrl-C it is empty, or nothing without `complete`, and was_left() is true.
 std::optional<std::string> read_line(const std::string& prompt, const Complete& complete = {});
+bool was_left();
 
 }  // namespace bough::cli

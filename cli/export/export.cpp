@@ -59,6 +59,16 @@ std::vector<exports::CsvColumn> read_columns(const ExportOptions& o) {
 
 std::string make_csv(const ExportOptions& o, Diagnostics& diagnostics) {
   std::ostringstream text;
+  if (!o.channels.empty()) {
+    if (const auto own = read_file_format(o.file); has_shapes(own)) {
+      if (o.channels != std::vector<std::string>{"modes"})
+        throw InputError("cli.unknown-channel", {o.file},
+                         "a file of modes or a body has no channel '" + o.channels[0] + "'",
+                         "--channel modes is the table of modes; without --channel come the shapes");
+      exports::write_csv(text, read_mode_columns(o.file, own, diagnostics));
+      return text.str();
+    }
+  }
   const auto format = o.channels.empty() ? read_file_format(o.file) : "";
   if (format == "bough-linear") return make_linear_csv(hdf5::read_linear_model(o.file));
   if (format == "bough-sweep") return make_sweep_csv(hdf5::read_sweep(o.file));
@@ -170,7 +180,7 @@ void add_export(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"csv", "vtu", "pvd", "gltf", "bdf", "mat", "op4", "uff", "sid", "mbdyn"}));
   verb->add_option("--channel", o->channels,
                    "csv, uff: only these: a path or folder of the file, or a sensor; with :component; may be repeated "
-                   "(default: all)")
+                   "(default: all). csv of modes or a body: modes, their table instead of the shapes")
       ->allow_extra_args(false);
   verb->add_flag("--ascii", o->ascii, "vtu, pvd: numbers as text instead of base64");
   verb->add_flag("--moving", o->is_moving,
@@ -186,7 +196,7 @@ void add_export(CLI::App& app, Action& action) {
   verb->footer(
       "Example:\n  bough export spinup.h5 --to csv -o spinup.csv\n"
       "  bough export spinup.h5 --to csv --channel tip_deflection:y --channel /bodies/boom/eta\n"
-      "  bough export boom-modes.h5 --to vtu -o boom.vtu\n"
+      "  bough export boom-modes.h5 --to vtu -o boom.vtu\n  bough export boom-modes.h5 --to csv --channel modes\n"
       "  bough export spinup.h5 --to pvd --every 10 -o spinup.pvd\n  bough export spinup.h5 --to gltf -o spinup.glb\n"
       "  bough export spinup.h5 --to uff --moving --every 10 -o spinup.uff\n"
       "  bough export boom.h5 --to mat -o boom.mat\n"

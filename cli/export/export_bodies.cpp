@@ -62,4 +62,31 @@ std::vector<exports::CsvColumn> read_shape_columns(const std::string& file, cons
   return make(body.node_id, body.node_xyz, body.phi);
 }
 
+std::vector<exports::CsvColumn> read_mode_columns(const std::string& file, const std::string& format,
+                                                  Diagnostics& diagnostics) {
+  std::vector<exports::CsvColumn> columns;
+  const auto make = [&](const Eigen::VectorXd& hz, const Eigen::VectorXd& eigenvalue, const Eigen::VectorXd& mass,
+                        const Eigen::MatrixXd& effective) {
+    static constexpr const char* kDirections[] = {"x", "y", "z", "rx", "ry", "rz"};
+    columns = {{"mode", Eigen::VectorXd::LinSpaced(hz.size(), 1, static_cast<double>(hz.size()))},
+               {"frequency_hz", hz},
+               {"eigenvalue", eigenvalue},
+               {"modal_mass", mass}};
+    for (int d = 0; d < 6 && effective.rows() == hz.size(); ++d)
+      columns.push_back({std::string("effective_mass_") + kDirections[d], effective.col(d)});
+  };
+  if (format == "bough-modes") {
+    const auto modes = hdf5::read_modes(file);
+    if (modes.load_factor.size() > 0)
+      return {{"mode", Eigen::VectorXd::LinSpaced(modes.load_factor.size(), 1,
+                                                  static_cast<double>(modes.load_factor.size()))},
+              {"load_factor", modes.load_factor}};
+    make(modes.frequency_hz, modes.eigenvalue, modes.modal_mass, modes.effective_mass);
+  } else {
+    const auto body = read_body(file, diagnostics);
+    make(body.frequency_hz, body.eigenvalue, body.modal_mass.diagonal(), body.effective_mass);
+  }
+  return columns;
+}
+
 }  // namespace bough::cli

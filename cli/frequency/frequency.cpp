@@ -97,6 +97,7 @@ int run_deck_response(const DeckResponseOptions& options) {
   response_options.is_direct = choose_direct(options, deck, diagnostics);
   if (options.no_residuals) response_options.residual_vectors = false;
   response_options.grids = options.grids;
+  response_options.with_listing = !options.listing.empty();
   response_options.choose_eigen = [&](const records::DynamicSubcase& subcase, Diagnostics& own) {
     return choose_eigen(options, deck, subcase, own);
   };
@@ -121,17 +122,21 @@ int run_deck_response(const DeckResponseOptions& options) {
   }
   if (response.subcases.empty()) failures.throw_all(diagnostics);
   response.source = calc_sources(deck.files);
-  const auto has_elements = [](const auto& subcase) { return !subcase.elements.empty(); };
-  if (!options.listing.empty() && std::any_of(response.subcases.begin(), response.subcases.end(), has_elements))
-    diagnostics.note("cli.unlisted-elements", deck.locate({}), "the listing has no forces of elements",
-                     "the HDF5, CSV and punch files have them");
+  records::Listing listing;
+  if (!options.listing.empty()) {
+    Diagnostics heard;  // by the solver
+    auto of_first = model_options;
+    for (const auto& subcase : subcases)
+      if (std::max(subcase.id, 1) == response.subcases.front().id) of_first.subcase = subcase.id;
+    listing = make_response_listing(response, deck, fe::Model::build(deck, of_first, heard), diagnostics);
+  }
   console.print(diagnostics);
   console.print(failures.get_items(diagnostics));
   do_once([&] {
     if (!options.output.empty()) hdf5::write_response(response, options.output);
     if (!options.csv.empty()) write_text_file(options.csv, exports::make_response_csv(response));
     if (!options.punch.empty()) write_text_file(options.punch, exports::make_punch_text(response));
-    if (!options.listing.empty()) write_listings(options.listing, make_response_listing(response));
+    if (!options.listing.empty()) write_listings(options.listing, listing);
   });
   if (options.json) {
     nlohmann::json json{{"subcases", nlohmann::json::array()}};

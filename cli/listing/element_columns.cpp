@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <unordered_map>
 
 namespace bough::cli {
 namespace {
@@ -76,8 +75,14 @@ double calc_quad_angle(const std::array<Eigen::Vector3d, 4>& x) {
   return std::atan2(normal.dot(side.cross(axis)), side.dot(axis));
 }
 
-std::optional<records::ListedElements> make_listed_forces(const fe::Model& model, const records::ElementForces& forces,
-                                                          const BeamLoads& loads,
+ElementIndex index_elements(const fe::Model& model) {
+  ElementIndex index;
+  for (const auto& element : model.elements()) index[{element->card(), element->id()}] = element.get();
+  return index;
+}
+
+std::optional<records::ListedElements> make_listed_forces(const fe::Model& model, const ElementIndex& elements,
+                                                          const records::ElementForces& forces, const BeamLoads& loads,
                                                           const std::function<bool(int)>& is_wanted) {
   const auto type = list_types().find(forces.card);
   if (type == list_types().end()) return std::nullopt;
@@ -88,11 +93,6 @@ std::optional<records::ListedElements> make_listed_forces(const fe::Model& model
   for (std::size_t k = 0; k < forces.id.size(); ++k)
     if (is_wanted(forces.id[k])) rows.push_back(k);
   std::sort(rows.begin(), rows.end(), [&](auto a, auto b) { return forces.id[a] < forces.id[b]; });
-  std::unordered_map<int, const fe::Element*> elements;
-  const bool needs_nodes = block.card == "CBEAM" || block.card == "CQUAD4";
-  if (needs_nodes)
-    for (const auto& element : model.elements())
-      if (element->card() == block.card) elements[element->id()] = element.get();
   for (const auto k : rows) {
     const auto row = static_cast<Index>(k);
     const int id = forces.id[k];
@@ -102,12 +102,12 @@ std::optional<records::ListedElements> make_listed_forces(const fe::Model& model
     } else if (block.card == "CBEAM") {
       const auto own = loads.find(id);
       values = make_beam_row(forces.force.row(row), own == loads.end() ? Eigen::Vector4d::Zero() : own->second);
-      const auto& nodes = elements.at(id)->shape().nodes;
+      const auto& nodes = elements.at({block.card, id})->shape().nodes;
       block.ends.push_back({model.node(nodes[0]).id, model.node(nodes[1]).id});
     } else if (block.card == "CTRIA3") {
       values = make_shell_row(forces, row, 0);
     } else if (block.card == "CQUAD4") {
-      const auto& nodes = elements.at(id)->shape().nodes;
+      const auto& nodes = elements.at({block.card, id})->shape().nodes;
       values = make_shell_row(forces, row,
                               calc_quad_angle({model.node(nodes[0]).x, model.node(nodes[1]).x, model.node(nodes[2]).x,
                                                model.node(nodes[3]).x}));

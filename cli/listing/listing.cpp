@@ -161,12 +161,13 @@ void ListingMaker::add_vector(const fe::Model& model, const std::string& command
   if (!vector.id.empty()) step.vectors.push_back(std::move(vector));
 }
 
-void ListingMaker::add_elements(const fe::Model& model, const std::vector<records::ElementForces>& forces,
-                                const BeamLoads& loads, ListedStep& step, Diagnostics& diagnostics) {
+void ListingMaker::add_elements(const fe::Model& model, const ElementIndex& elements,
+                                const std::vector<records::ElementForces>& forces, const BeamLoads& loads,
+                                ListedStep& step, Diagnostics& diagnostics) {
   const auto choice = choose(step.subcase, "FORCE");
   if (!choice) return;
   for (const auto& of_card : forces) {
-    auto block = make_listed_forces(model, of_card, loads, [&](int id) { return choice->contains(id); });
+    auto block = make_listed_forces(model, elements, of_card, loads, [&](int id) { return choice->contains(id); });
     if (!block) {
       if (left_out_.insert("forces of " + of_card.card).second)
         diagnostics.note("cli.unlisted-elements", deck_.locate({}),
@@ -198,14 +199,15 @@ BeamLoads ListingMaker::sum_beam_loads(const fe::Model& model, const records::St
   return sums;
 }
 
-void ListingMaker::add_stresses(const fe::Model& model, const std::vector<records::ElementStresses>& stresses,
+void ListingMaker::add_stresses(const fe::Model& model, const ElementIndex& elements,
+                                const std::vector<records::ElementStresses>& stresses,
                                 const std::vector<records::ElementForces>& forces, ListedStep& step,
                                 Diagnostics& diagnostics) {
   const auto choice = choose(step.subcase, "STRESS");
   if (!choice) return;
   for (const auto& of_card : stresses) {
-    auto block =
-        make_listed_stresses(model, deck_, of_card, forces, limits_, [&](int id) { return choice->contains(id); });
+    auto block = make_listed_stresses(model, elements, deck_, of_card, forces, limits_,
+                                      [&](int id) { return choice->contains(id); });
     if (!block) {
       if (left_out_.insert("stresses of " + of_card.card).second)
         diagnostics.note("cli.unlisted-elements", deck_.locate({}),
@@ -225,8 +227,9 @@ void ListingMaker::add_static(const fe::Model& model, const records::StaticSubca
   add_vector(model, "OLOAD", ListedKind::Load, solved.load, step);
   add_vector(model, "SPCFORCES", ListedKind::SpcForce, solved.reaction, step);
   add_vector(model, "MPCFORCES", ListedKind::MpcForce, solved.mpc_force, step);
-  add_elements(model, solved.elements, sum_beam_loads(model, solved), step, diagnostics);
-  add_stresses(model, solved.stresses, solved.elements, step, diagnostics);
+  const auto elements = index_elements(model);
+  add_elements(model, elements, solved.elements, sum_beam_loads(model, solved), step, diagnostics);
+  add_stresses(model, elements, solved.stresses, solved.elements, step, diagnostics);
   listing_.steps.push_back(std::move(step));
 }
 
@@ -264,6 +267,7 @@ void ListingMaker::add_modes(const fe::Model& model, const modal::EigenPairs& pa
   }
   const bool has_reactions = choose(subcase, "SPCFORCES").has_value();
   const bool has_forces = choose(subcase, "FORCE").has_value(), has_stresses = choose(subcase, "STRESS").has_value();
+  const auto elements = has_forces || has_stresses ? index_elements(model) : ElementIndex{};
   for (Index j = 0; j < pairs.lambda.size(); ++j) {
     ListedStep mode = step;
     mode.kind = ListedStep::Kind::Mode;
@@ -278,9 +282,10 @@ void ListingMaker::add_modes(const fe::Model& model, const modal::EigenPairs& pa
     }
     if (has_forces || has_stresses) {
       const auto forces = fe::calc_element_forces(model, pairs.Phi.col(j), deck_, 0, diagnostics);
-      add_elements(model, forces, {}, mode, diagnostics);
+      add_elements(model, elements, forces, {}, mode, diagnostics);
       if (has_stresses)
-        add_stresses(model, fe::calc_element_stresses(model, pairs.Phi.col(j), deck_, 0), forces, mode, diagnostics);
+        add_stresses(model, elements, fe::calc_element_stresses(model, pairs.Phi.col(j), deck_, 0), forces, mode,
+                     diagnostics);
     }
     listing_.steps.push_back(std::move(mode));
   }

@@ -63,11 +63,13 @@ class ListingMaker {
   records::ListedStep make_step(int subcase) const;
   void add_vector(const fe::Model& model, const std::string& command, records::ListedKind kind,
                   const Eigen::Ref<const Eigen::VectorXd>& u_g, records::ListedStep& step) const;
-  void add_elements(const fe::Model& model, const std::vector<records::ElementForces>& forces,
-                    const BeamLoads& loads, records::ListedStep& step, Diagnostics& diagnostics);
+  void add_elements(const fe::Model& model, const ElementIndex& elements,
+                    const std::vector<records::ElementForces>& forces, const BeamLoads& loads,
+                    records::ListedStep& step, Diagnostics& diagnostics);
   /// Of a subcase, or of what it is combined of.
   BeamLoads sum_beam_loads(const fe::Model& model, const records::StaticSubcase& solved) const;
-  void add_stresses(const fe::Model& model, const std::vector<records::ElementStresses>& stresses,
+  void add_stresses(const fe::Model& model, const ElementIndex& elements,
+                    const std::vector<records::ElementStresses>& stresses,
                     const std::vector<records::ElementForces>& forces, records::ListedStep& step,
                     Diagnostics& diagnostics);
   void report_sets(Diagnostics& diagnostics) const;

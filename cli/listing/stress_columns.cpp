@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <unordered_map>
 
 #include <Eigen/Eigenvalues>
@@ -111,19 +112,24 @@ VectorXd make_plate_stresses(const std::array<double, 2>& z, const VectorXd& str
   for (int side = 0; side < 2; ++side) {
     const Eigen::Vector3d s = turn_plane(stress.segment<3>(3 * side), angle);
     const auto [at, major, minor] = calc_principal(s(0), s(1), s(2));
-    row.segment<8>(8 * side) << z[static_cast<std::size_t>(side)], s, at, major, minor,
-        fe::calc_plane_von_mises(s);
+    row.segment<8>(8 * side) << z[static_cast<std::size_t>(side)], s, at, major, minor, fe::calc_plane_von_mises(s);
   }
   return row;
 }
 
-/// A row per ply: 11 22 12, the shear between plies (blank), angle, major, minor, largest shear.
-MatrixXd make_ply_stresses(const VectorXd& stress) {
-  MatrixXd rows(stress.size() / 3, 9);
-  for (Index k = 0; k < rows.rows(); ++k) {
+/// A row per ply: 11 22 12, the shear above it (none above the last), angle, major, minor, largest shear.
+MatrixXd make_ply_stresses(const fe::Element& element, const VectorXd& stress) {
+  const auto points = element.stress_points();
+  const Index count =
+      std::count_if(points.begin(), points.end(), [](const auto& point) { return point.kind == fe::StressKind::Ply; });
+  MatrixXd rows(count, 9);
+  for (Index k = 0; k < count; ++k) {
     const Eigen::Vector3d s = stress.segment<3>(3 * k);
     const auto [at, major, minor] = calc_principal(s(0), s(1), s(2));
-    rows.row(k) << s.transpose(), kBlank, kBlank, at, major, minor, 0.5 * (major - minor);
+    const Index bond = 3 * count + 2 * k;
+    const Eigen::RowVector2d above =
+        bond < stress.size() ? Eigen::RowVector2d(stress.segment<2>(bond)) : Eigen::RowVector2d::Zero();
+    rows.row(k) << s.transpose(), above, at, major, minor, 0.5 * (major - minor);
   }
   return rows;
 }
@@ -161,20 +167,25 @@ VectorXd take_components(const fe::Element& element, const records::ElementStres
   return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
 
-VectorXd find_forces(const std::vector<records::ElementForces>& forces, const std::string& card, int id) {
+/// Of bars and solids, whose columns need them.
+std::unordered_map<int, VectorXd> index_forces(const std::vector<records::ElementForces>& forces,
+                                               const std::string& card) {
+  static const std::set<std::string> cards{"CBAR", "CTETRA", "CPENTA", "CHEXA"};
+  std::unordered_map<int, VectorXd> index;
+  if (cards.count(card) == 0) return index;
   for (const auto& block : forces) {
     if (block.card.substr(0, block.card.find('-')) != card) continue;
-    const auto at = std::find(block.id.begin(), block.id.end(), id);
-    if (at != block.id.end()) return block.force.row(at - block.id.begin()).transpose();
+    for (std::size_t k = 0; k < block.id.size(); ++k)
+      index[block.id[k]] = block.force.row(static_cast<Index>(k)).transpose();
   }
-  return {};
+  return index;
 }
 
 double calc_turn(const fe::Model& model, const fe::Element& element) {
   if (element.card() != "CQUAD4") return 0;
   const auto nodes = element.shape().nodes;
-  return calc_quad_angle({model.node(nodes[0]).x, model.node(nodes[1]).x, model.node(nodes[2]).x,
-                          model.node(nodes[3]).x});
+  return calc_quad_angle(
+      {model.node(nodes[0]).x, model.node(nodes[1]).x, model.node(nodes[2]).x, model.node(nodes[3]).x});
 }
 
 }  // namespace
@@ -204,18 +215,16 @@ double calc_margin(double stress, double limit) {
   return limit == 0 || stress == 0 ? kBlank : std::abs(limit) / std::abs(stress) - 1;
 }
 
-std::optional<records::ListedElements> make_listed_stresses(const fe::Model& model, const records::Deck& deck,
+std::optional<records::ListedElements> make_listed_stresses(const fe::Model& model, const ElementIndex& elements,
+                                                            const records::Deck& deck,
                                                             const records::ElementStresses& stresses,
                                                             const std::vector<records::ElementForces>& forces,
                                                             const std::map<int, StressLimits>& limits,
                                                             const std::function<bool(int)>& is_wanted) {
   records::ListedElements block;
   block.card = stresses.card.substr(0, stresses.card.find('-'));
-  std::unordered_map<int, const fe::Element*> elements;
-  for (const auto& element : model.elements())
-    if (element->card() == block.card) elements[element->id()] = element.get();
   if (stresses.id.empty()) return std::nullopt;
-  const auto kind = elements.at(stresses.id.front())->stress_points().front().kind;
+  const auto kind = elements.at({block.card, stresses.id.front()})->stress_points().front().kind;
   block.type = find_stress_type(block.card, kind);
   if (block.type == 0) return std::nullopt;
   std::vector<std::size_t> order;
@@ -226,10 +235,11 @@ std::optional<records::ListedElements> make_listed_stresses(const fe::Model& mod
     const auto found = std::find_if(deck.pshell.begin(), deck.pshell.end(), [id](const auto& p) { return p.id == id; });
     return found == deck.pshell.end() ? nullptr : &*found;
   };
+  const auto force_rows = index_forces(forces, block.card);
   std::vector<VectorXd> rows;
   for (const auto k : order) {
     const int id = stresses.id[k];
-    const fe::Element& element = *elements.at(id);
+    const fe::Element& element = *elements.at({block.card, id});
     const VectorXd stress = take_components(element, stresses, static_cast<Index>(k));
     const auto found = limits.find(id);
     const StressLimits own = found == limits.end() ? StressLimits{} : found->second;
@@ -249,7 +259,7 @@ std::optional<records::ListedElements> make_listed_stresses(const fe::Model& mod
           block.ends.push_back({model.node(ends[0]).id, model.node(ends[1]).id});
           add(make_beam_stresses(stress, own), 0);
         } else {
-          add(make_bar_stresses(element, find_forces(forces, block.card, id), stress, own), 0);
+          add(make_bar_stresses(element, force_rows.at(id), stress, own), 0);
         }
         break;
       case fe::StressKind::Plane:
@@ -258,12 +268,12 @@ std::optional<records::ListedElements> make_listed_stresses(const fe::Model& mod
             0);
         break;
       case fe::StressKind::Ply: {
-        const MatrixXd plies = make_ply_stresses(stress);
+        const MatrixXd plies = make_ply_stresses(element, stress);
         for (Index p = 0; p < plies.rows(); ++p) add(plies.row(p).transpose(), static_cast<int>(p) + 1);
         break;
       }
       case fe::StressKind::Solid: {
-        const MatrixXd points = make_solid_stresses(element, find_forces(forces, block.card, id), stress);
+        const MatrixXd points = make_solid_stresses(element, force_rows.at(id), stress);
         for (Index p = 0; p < points.rows(); ++p)
           add(points.row(p).transpose(), p == 0 ? 0 : model.node(nodes[static_cast<std::size_t>(p - 1)]).id);
         break;
@@ -275,6 +285,18 @@ std::optional<records::ListedElements> make_listed_stresses(const fe::Model& mod
   block.real.resize(static_cast<Index>(rows.size()), rows.empty() ? 0 : rows.front().size());
   for (std::size_t r = 0; r < rows.size(); ++r) block.real.row(static_cast<Index>(r)) = rows[r].transpose();
   return block;
+}
+
+void keep_linear_columns(records::ListedElements& block) {
+  static const std::map<int, std::vector<int>> columns{{1, {0, 2}},
+                                                       {2, {0, 1, 2, 3, 8, 9, 10, 11}},
+                                                       {33, {0, 1, 2, 3, 8, 9, 10, 11}},
+                                                       {34, {0, 1, 2, 3, 4, 8, 9, 10, 11}},
+                                                       {39, {0, 8, 14, 1, 9, 15}},
+                                                       {95, {0, 1, 2, 3, 4}}};
+  static const std::map<int, int> alike{{3, 1}, {10, 1}, {74, 33}, {67, 39}, {68, 39}, {97, 95}};
+  const auto like = alike.find(block.type);
+  block.real = MatrixXd(block.real(Eigen::all, columns.at(like == alike.end() ? block.type : like->second)));
 }
 
 }  // namespace bough::cli

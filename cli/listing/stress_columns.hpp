@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "cli/listing/element_columns.hpp"
 #include "fe/model/model.hpp"
 #include "formats/records/listing.hpp"
 #include "formats/records/static_result.hpp"
@@ -21,10 +22,16 @@ double calc_margin(double stress, double limit);
 
 /// Of the elements of one card that `is_wanted` (ids) takes, by their ids; none where this card has no such table.
 /// `forces`: of the same card.
-std::optional<records::ListedElements> make_listed_stresses(const fe::Model& model, const records::Deck& deck,
+std::optional<records::ListedElements> make_listed_stresses(const fe::Model& model, const ElementIndex& elements,
+                                                            const records::Deck& deck,
                                                             const records::ElementStresses& stresses,
                                                             const std::vector<records::ElementForces>& forces,
                                                             const std::map<int, StressLimits>& limits,
                                                             const std::function<bool(int)>& is_wanted);
+
+/// Columns of make_listed_stresses that are linear in the motion, for real and imaginary parts of a response: bars
+/// SA1 to SA4, axial, SB1 to SB4; beams SXC to SXF of both ends; rods axial, torsion; plates distance, x, y, xy of both
+/// surfaces; plies 11 22 12 xz yz; solids xx yy zz xy yz zx.
+void keep_linear_columns(records::ListedElements& block);
 
 }  // namespace bough::cli

@@ -24,12 +24,7 @@ modal::EigenOptions choose_eigen_options(const ModesOptions& options, const reco
     eigen.num_modes = card.num_modes;
     eigen.min_hz = card.f1;
     eigen.max_hz = card.f2;
-    if (!options.buckling) {
-      // The methods by transformation compute every root; ND then asks for the lowest whatever F1 and F2 say.
-      static const std::set<std::string> by_transformation{"GIV", "MGIV", "HOU", "MHOU", "AGIV", "AHOU"};
-      if (!card.is_eigrl && card.num_modes > 0 && by_transformation.count(card.method) > 0)
-        eigen.min_hz = eigen.max_hz = std::nullopt;
-    }
+    if (!options.buckling && counts_whatever_range(card)) eigen.min_hz = eigen.max_hz = std::nullopt;
     break;
   }
   if (options.min_hz) eigen.min_hz = options.min_hz;
@@ -40,6 +35,11 @@ modal::EigenOptions choose_eigen_options(const ModesOptions& options, const reco
   if (options.number > 0) eigen.num_modes = options.number;
   if (eigen.num_modes == 0 && !eigen.max_hz) eigen.num_modes = 10;
   return eigen;
+}
+
+bool counts_whatever_range(const records::EigenMethod& card) {
+  static const std::set<std::string> by_transformation{"GIV", "MGIV", "HOU", "MHOU", "AGIV", "AHOU"};
+  return !card.is_eigrl && card.num_modes > 0 && by_transformation.count(card.method) > 0;
 }
 
 modal::Norm choose_norm(const records::Deck& deck, int method, const fe::Model& model) {

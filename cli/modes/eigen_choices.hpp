@@ -28,6 +28,9 @@ struct ModesOptions : CommonOptions {
 modal::EigenOptions choose_eigen_options(const ModesOptions& options, const records::Deck& deck, int method,
                                          Diagnostics& diagnostics);
 
+/// EIGR of the methods that compute every root: ND then asks for the lowest whatever F1 and F2 say.
+bool counts_whatever_range(const records::EigenMethod& card);
+
 /// NORM of the deck's card. Throws fe.missing-grid and fe.bad-component where it names no dof.
 modal::Norm choose_norm(const records::Deck& deck, int method, const fe::Model& model);
 

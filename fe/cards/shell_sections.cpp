@@ -223,10 +223,14 @@ void ShellSections::set_stress(const records::Pcomp& p, const std::vector<Lamina
   }
   double z = z0;
   const auto theory = theories.find(p.failure);
+  const auto shear = calc_interlaminar_shear(layers);
+  stress->has_shear = p.bending;
+  stress->bond = p.layup == records::Layup::Stacked ? p.sb : 0;
   for (std::size_t k = 0; k < layers.size(); ++k) {
     auto& layer = stress->layers.emplace_back();
     layer.z = z + 0.5 * layers[k].thickness;
     z += layers[k].thickness;
+    layer.shear = shear[k].asDiagonal();
     const bool is_ply = p.layup == records::Layup::Stacked;
     layer.angle = is_ply ? p.plies[k].theta_deg * kDegree : 0;
     const PlaneMaterial own = rotate_material(layers[k].material, -layer.angle);

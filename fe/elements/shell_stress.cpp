@@ -7,11 +7,11 @@
 namespace bough::fe {
 namespace {
 
-/// Mean [N; M] over the points, whose shares of the area are `share`.
+/// Mean [N; M; Q] over the points, whose shares of the area are `share`.
 MatrixXd calc_mean_resultants(const Eigen::Ref<const MatrixXd>& forces, const std::vector<double>& share) {
-  MatrixXd mean = MatrixXd::Zero(6, forces.cols());
+  MatrixXd mean = MatrixXd::Zero(Shell::kNumForces, forces.cols());
   for (std::size_t q = 0; q < share.size(); ++q)
-    mean += share[q] * forces.middleRows<6>(Shell::kNumForces * static_cast<Eigen::Index>(q));
+    mean += share[q] * forces.middleRows<Shell::kNumForces>(Shell::kNumForces * static_cast<Eigen::Index>(q));
   return mean;
 }
 
@@ -52,7 +52,7 @@ std::vector<StressPoint> Shell::strain_points() const { return list_strain_point
 
 MatrixXd Shell::calc_strains(const Eigen::Ref<const MatrixXd>& forces) const {
   if (!section_.stress) return MatrixXd(0, forces.cols());
-  return calc_strain_map(section_) * calc_mean_resultants(forces, calc_shares());
+  return calc_strain_map(section_) * calc_mean_resultants(forces, calc_shares()).topRows<6>();
 }
 
 VectorXd Shell::calc_thermal_strains(const ElementTemperature& given) const {
@@ -84,7 +84,7 @@ MatrixXd CurvedShell::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) co
   if (!sections_.front().stress) return MatrixXd(0, forces.cols());
   // The thickness and the direction of the material may change from point to point.
   return sum_over_points([&](int q) -> MatrixXd {
-    return calc_stress_map(calc_section(q)) * forces.middleRows<6>(kNumForces * static_cast<Eigen::Index>(q));
+    return calc_stress_map(calc_section(q)) * forces.middleRows<kNumForces>(kNumForces * static_cast<Eigen::Index>(q));
   });
 }
 
@@ -108,9 +108,8 @@ VectorXd CurvedShell::calc_initial_stresses(const ElementTemperature& given) con
   if (!front.expansion || !front.stress || front.stress->layers.empty()) return {};
   const ElementTemperature T = given.calc_change(front.expansion->tref);
   const VectorXd nodal = calc_nodal_temperatures(T);
-  return sum_over_points([&](int q) -> MatrixXd {
-    return calc_ply_expansion(calc_section(q), calc_temperature(nodal, q), T.gradient_z);
-  });
+  return sum_over_points(
+      [&](int q) -> MatrixXd { return calc_ply_expansion(calc_section(q), calc_temperature(nodal, q), T.gradient_z); });
 }
 
 std::vector<StressPoint> CurvedShell::strain_points() const { return list_strain_points(sections_.front()); }

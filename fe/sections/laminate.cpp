@@ -45,8 +45,8 @@ Eigen::Vector3d rotate_strain(const Eigen::Vector3d& strain, double angle) {
 
 namespace {
 
-/// Shear stiffness of the stack in one direction by the energy of the equilibrium shear flow.
-double calc_shear_stiffness(const std::vector<LaminateLayer>& layers, int direction) {
+/// Where the stack bends about in one direction, from its bottom.
+double find_neutral(const std::vector<LaminateLayer>& layers, int direction) {
   double EA = 0, ES = 0, z = 0;
   for (const auto& l : layers) {
     const double E = l.material.Q(direction, direction);
@@ -54,8 +54,12 @@ double calc_shear_stiffness(const std::vector<LaminateLayer>& layers, int direct
     ES += E * l.thickness * (z + 0.5 * l.thickness);
     z += l.thickness;
   }
-  const double neutral = ES / EA;
-  double EI = 0, energy = 0, F = 0, bottom = -neutral;
+  return ES / EA;
+}
+
+/// Shear stiffness of the stack in one direction by the energy of the equilibrium shear flow.
+double calc_shear_stiffness(const std::vector<LaminateLayer>& layers, int direction) {
+  double EI = 0, energy = 0, F = 0, bottom = -find_neutral(layers, direction);
   for (const auto& l : layers) {
     const double E = l.material.Q(direction, direction), t = l.thickness, top = bottom + t;
     EI += E * (std::pow(top, 3) - std::pow(bottom, 3)) / 3;
@@ -97,6 +101,23 @@ ShellSection make_laminate_section(const std::vector<LaminateLayer>& layers, dou
   s.shear_flexible = Sx > 0 && Sy > 0;
   if (s.shear_flexible) s.S = Eigen::Vector2d(Sx, Sy).asDiagonal();
   return s;
+}
+
+std::vector<Eigen::Vector2d> calc_interlaminar_shear(const std::vector<LaminateLayer>& layers) {
+  std::vector<Eigen::Vector2d> shear(layers.size(), Eigen::Vector2d::Zero());
+  for (int direction = 0; direction < 2; ++direction) {
+    double EI = 0, F = 0, bottom = -find_neutral(layers, direction);
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+      const double E = layers[k].material.Q(direction, direction), top = bottom + layers[k].thickness;
+      EI += E * (std::pow(top, 3) - std::pow(bottom, 3)) / 3;
+      F += 0.5 * E * (top * top - bottom * bottom);
+      shear[k][direction] = -F;
+      bottom = top;
+    }
+    for (auto& of_layer : shear) of_layer[direction] /= EI;
+  }
+  shear.back().setZero();  // F is round-off there
+  return shear;
 }
 
 LaminateLayer smear(const std::vector<LaminateLayer>& layers) {

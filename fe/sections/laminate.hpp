@@ -37,6 +37,9 @@ struct LaminateLayer {
 /// F(z) = ∫ E (z' - z̄) dz' (MSC Nastran's PCOMP; Whitney, "Shear correction factors for orthotropic laminates", 1973).
 /// One homogeneous layer gives 5/6 G t.
 ShellSection make_laminate_section(const std::vector<LaminateLayer>& layers, double z0);
+/// The shear stresses xz and yz above each layer per unit Qx and Qy, in the laminate's axes, of the same equilibrium:
+/// τ = -Q F(z) / (EI), so a parabola over the thickness of one material and zero above the last layer.
+std::vector<Eigen::Vector2d> calc_interlaminar_shear(const std::vector<LaminateLayer>& layers);
 /// One layer of the same thickness, stretch and free expansion in the plane as all of them, whatever their order; rigid
 /// in transverse shear where one of them is.
 LaminateLayer smear(const std::vector<LaminateLayer>& layers);

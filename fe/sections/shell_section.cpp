@@ -25,7 +25,10 @@ ShellSection rotate_section(const ShellSection& section, double angle) {
   }
   if (section.stress && !section.stress->layers.empty()) {
     auto turned_stress = std::make_shared<ShellStress>(*section.stress);
-    for (auto& layer : turned_stress->layers) layer.angle += angle;
+    for (auto& layer : turned_stress->layers) {
+      layer.angle += angle;
+      layer.shear = (layer.shear * r).eval();
+    }
     turned.stress = std::move(turned_stress);
   }
   return turned;

@@ -41,6 +41,9 @@ Matrix3x6d calc_strain_at(double z, double angle) {
 
 Matrix3x6d calc_layer_strain(const ShellStress::Layer& layer) { return calc_strain_at(layer.z, layer.angle); }
 
+/// Between the layers; none above the last.
+std::size_t count_bonds(const ShellStress& stress) { return stress.has_shear ? stress.layers.size() - 1 : 0; }
+
 /// Strains at the points of list_strain_points() per [ε; κ].
 Eigen::Matrix<double, Eigen::Dynamic, 6> list_strains(const ShellStress& stress) {
   std::vector<Matrix3x6d> rows;
@@ -73,15 +76,22 @@ std::vector<StressPoint> list_stress_points(const ShellSection& section) {
     point.strength = layer.strength;
     if (layer.theory == FailureTheory::Strain) point.compliance = layer.Q.inverse();
   }
+  for (std::size_t k = 1; k <= count_bonds(*section.stress); ++k) {
+    auto& point = points.emplace_back();
+    point.name = "bond" + std::to_string(k);
+    point.kind = StressKind::Bond;
+    point.theory = section.stress->layers.front().theory;
+    point.bond = section.stress->bond;
+  }
   return points;
 }
 
-Eigen::Matrix<double, Eigen::Dynamic, 6> calc_stress_map(const ShellSection& section) {
-  Eigen::Matrix<double, Eigen::Dynamic, 6> map(0, 6);
+Eigen::Matrix<double, Eigen::Dynamic, 8> calc_stress_map(const ShellSection& section) {
+  Eigen::Matrix<double, Eigen::Dynamic, 8> map(0, 8);
   if (!section.stress) return map;
   const ShellStress& stress = *section.stress;
   if (stress.layers.empty()) {
-    map.setZero(6, 6);
+    map.setZero(6, 8);
     for (int k = 0; k < 2; ++k) {
       if (stress.t > 0) map.block<3, 3>(3 * k, 0) = Matrix3d::Identity() / stress.t;
       const double z = k == 0 ? stress.z1 : stress.z2;
@@ -90,10 +100,14 @@ Eigen::Matrix<double, Eigen::Dynamic, 6> calc_stress_map(const ShellSection& sec
     return map;
   }
   const Matrix6d compliance = calc_compliance(section);
-  map.resize(3 * static_cast<Eigen::Index>(stress.layers.size()), 6);
-  for (std::size_t k = 0; k < stress.layers.size(); ++k)
-    map.middleRows<3>(3 * static_cast<Eigen::Index>(k)) =
-        stress.layers[k].Q * calc_layer_strain(stress.layers[k]) * compliance;
+  const auto num_plies = static_cast<Eigen::Index>(stress.layers.size());
+  const auto num_bonds = static_cast<Eigen::Index>(count_bonds(stress));
+  map.setZero(3 * num_plies + 2 * num_bonds, 8);
+  for (Eigen::Index k = 0; k < num_plies; ++k) {
+    const auto& layer = stress.layers[static_cast<std::size_t>(k)];
+    map.block<3, 6>(3 * k, 0) = layer.Q * calc_layer_strain(layer) * compliance;
+    if (k < num_bonds) map.block<2, 2>(3 * num_plies + 2 * k, 6) = layer.shear;
+  }
   return map;
 }
 
@@ -103,7 +117,8 @@ Eigen::VectorXd calc_ply_expansion(const ShellSection& section, double t, double
   Eigen::Matrix<double, 6, 1> held;
   held << section.expansion->calc_N(t, g), section.expansion->calc_M(t, g);
   const Eigen::Matrix<double, 6, 1> free = calc_compliance(section) * held;
-  Eigen::VectorXd result(3 * static_cast<Eigen::Index>(layers.size()));
+  Eigen::VectorXd result =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * layers.size() + 2 * count_bonds(*section.stress)));
   for (std::size_t k = 0; k < layers.size(); ++k)
     result.segment<3>(3 * static_cast<Eigen::Index>(k)) =
         layers[k].Q * (calc_layer_strain(layers[k]) * free - (t + layers[k].z * g) * layers[k].alpha);
@@ -113,6 +128,7 @@ Eigen::VectorXd calc_ply_expansion(const ShellSection& section, double t, double
 std::vector<StressPoint> list_strain_points(const ShellSection& section) {
   auto points = list_stress_points(section);
   if (points.empty()) return points;
+  std::erase_if(points, [](const StressPoint& point) { return point.kind == StressKind::Bond; });
   for (auto& point : points) point.theory = FailureTheory::None;
   points.emplace_back().name = "mid";
   points.back().kind = StressKind::Mid;

@@ -18,6 +18,8 @@ std::string add_point(const std::string& component, const StressPoint& point) {
   return point.name.empty() ? component : component + "@" + point.name;
 }
 
+bool has_bond_index(const StressPoint& point) { return point.theory != FailureTheory::None && point.bond > 0; }
+
 /// What a point adds to its components.
 std::vector<std::string> list_derived(const StressPoint& point, bool of_strain) {
   if (of_strain && (point.kind == StressKind::Rod || point.kind == StressKind::Ply)) return {};
@@ -29,6 +31,9 @@ std::vector<std::string> list_derived(const StressPoint& point, bool of_strain) 
       return {"von_mises"};
     case StressKind::Ply:
       if (point.theory != FailureTheory::None) return {"failure"};
+      return {};
+    case StressKind::Bond:
+      if (has_bond_index(point)) return {"failure"};
       return {};
     default:
       return {};
@@ -44,6 +49,8 @@ Eigen::Index count_derived(const StressPoint& point, bool of_strain) {
       return of_strain ? 0 : 1;
     case StressKind::Ply:
       return of_strain || point.theory == FailureTheory::None ? 0 : 1;
+    case StressKind::Bond:
+      return has_bond_index(point) ? 1 : 0;
     default:
       return 0;
   }
@@ -69,6 +76,8 @@ void calc_derived(const StressPoint& point, const Eigen::Ref<const VectorXd>& gi
     out[0] = std::sqrt(s[0] * s[0] + 3 * s[1] * s[1]);
   } else if (point.kind == StressKind::Ply && !of_strain && point.theory != FailureTheory::None) {
     out[0] = calc_failure_index(point, s);
+  } else if (point.kind == StressKind::Bond && has_bond_index(point)) {
+    out[0] = std::max(std::abs(s[0]), std::abs(s[1])) / point.bond;
   }
 }
 
@@ -91,8 +100,7 @@ std::vector<std::string> list_names(const std::vector<StressPoint>& points, bool
   return names;
 }
 
-VectorXd calc_results(const std::vector<StressPoint>& points, const Eigen::Ref<const VectorXd>& given,
-                      bool of_strain) {
+VectorXd calc_results(const std::vector<StressPoint>& points, const Eigen::Ref<const VectorXd>& given, bool of_strain) {
   const PointResults results(points, of_strain);
   VectorXd out(results.size());
   results.calc(given, out);
@@ -103,7 +111,7 @@ VectorXd calc_results(const std::vector<StressPoint>& points, const Eigen::Ref<c
 
 const std::vector<std::string>& list_components(StressKind kind) {
   static const std::vector<std::string> axial{"xx"}, rod{"xx", "torsion"}, shear{"xy"}, plane{"xx", "yy", "xy"},
-      ply{"11", "22", "12"}, solid{"xx", "yy", "zz", "xy", "yz", "zx"},
+      ply{"11", "22", "12"}, bond{"xz", "yz"}, solid{"xx", "yy", "zz", "xy", "yz", "zx"},
       mid{"xx", "yy", "xy", "kappa_xx", "kappa_yy", "kappa_xy"};
   switch (kind) {
     case StressKind::Axial:
@@ -116,6 +124,8 @@ const std::vector<std::string>& list_components(StressKind kind) {
       return plane;
     case StressKind::Ply:
       return ply;
+    case StressKind::Bond:
+      return bond;
     case StressKind::Mid:
       return mid;
     default:
@@ -163,7 +173,8 @@ void PointResults::calc(const Eigen::Ref<const VectorXd>& given, Eigen::Ref<Vect
     const auto n = num_components_[p], d = num_derived_[p];
     out.segment(to, n) = given.segment(from, n);
     calc_derived(points_[p], given.segment(from, n), of_strain_, out.data() + to + n);
-    if (points_[p].kind != StressKind::Mid) {
+    const bool is_beside = points_[p].kind == StressKind::Mid || (points_[p].kind == StressKind::Bond && d == 0);
+    if (!is_beside) {
       const double value = d > 0 ? out[to + n] : given[from];
       most = std::max(most, value);
       least = std::min(least, value);

@@ -17,8 +17,9 @@ enum class StressKind {
   Shear,  ///< xy alone
   Plane,  ///< xx yy xy
   Ply,    ///< 11 22 12, in the axes of the ply
+  Bond,   ///< xz yz between two plies, in the axes of the laminate
   Solid,  ///< xx yy zz xy yz zx
-  Mid     ///< strains alone: xx yy xy of the reference surface of a shell, and its curvatures κ, so that ε(z) = ε + z κ
+  Mid  ///< strains alone: xx yy xy of the reference surface of a shell, and its curvatures κ, so that ε(z) = ε + z κ
 };
 
 /// The criterion of a ply (FT of PCOMP).
@@ -30,6 +31,7 @@ struct StressPoint {
   FailureTheory theory = FailureTheory::None;
   records::PlyStrength strength;                         ///< with a theory
   Eigen::Matrix3d compliance = Eigen::Matrix3d::Zero();  ///< Strain: ply strains of ply stresses
+  double bond = 0;                                       ///< of a Bond: its shear strength; 0: none
 };
 
 /// Names of the components of a kind: "xx", "yy", ...

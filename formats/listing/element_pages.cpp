@@ -8,8 +8,23 @@ namespace {
 using records::ListedElements;
 using records::ListedStep;
 
-/// Several elements a line.
+std::string show_row(const Eigen::MatrixXd& values, std::size_t k, const std::string& gap) {
+  std::string text;
+  for (Eigen::Index c = 0; c < values.cols(); ++c)
+    text += (c == 0 ? "" : gap) + show_real(values(static_cast<Eigen::Index>(k), c));
+  return text;
+}
+
+/// Several elements a line; of complex values one, real and imaginary part beside each other.
 void add_columns(const ListedElements& block, std::size_t of_line, Pages& pages) {
+  if (block.imag.size() > 0) {
+    for (std::size_t k = 0; k < block.id.size(); ++k) {
+      std::string text = fmt::format("{:>24}", block.id[k]);
+      for (Eigen::Index c = 0; c < block.real.cols(); ++c) text += "          " + show_pair(block, k, c);
+      pages.add_row(text);
+    }
+    return;
+  }
   for (std::size_t k = 0; k < block.id.size(); k += of_line) {
     std::string text;
     for (std::size_t i = k; i < std::min(k + of_line, block.id.size()); ++i) {
@@ -24,9 +39,9 @@ void add_columns(const ListedElements& block, std::size_t of_line, Pages& pages)
 void add_rows(const ListedElements& block, const std::string& gap, Pages& pages) {
   for (std::size_t k = 0; k < block.id.size(); ++k) {
     std::string text = fmt::format("{:>14}   ", block.id[k]);
-    for (Eigen::Index c = 0; c < block.real.cols(); ++c)
-      text += (c == 0 ? "" : gap) + show_real(block.real(static_cast<Eigen::Index>(k), c));
-    pages.add_row(text);
+    text += show_row(block.real, k, gap);
+    if (block.imag.size() > 0) text += fmt::format("\n{:17}", "") + show_row(block.imag, k, gap);
+    pages.add_row(text, block.imag.size() > 0 ? 2 : 1);
   }
 }
 
@@ -36,10 +51,14 @@ void add_beams(const ListedElements& block, Pages& pages) {
     std::string text = fmt::format("0 {:>8}", block.id[k]);
     for (int end = 0; end < 2; ++end) {
       text += fmt::format("\n{:11}{:>8}   {:.3f}  ", "", block.ends[k][static_cast<std::size_t>(end)], double(end));
-      for (Eigen::Index c = 0; c < half; ++c)
-        text += " " + show_real(block.real(static_cast<Eigen::Index>(k), end * half + c));
+      for (const auto* part : {&block.real, &block.imag}) {
+        if (part->size() == 0) continue;
+        if (part == &block.imag) text += fmt::format("\n{:29}", "");
+        for (Eigen::Index c = 0; c < half; ++c)
+          text += " " + show_real((*part)(static_cast<Eigen::Index>(k), end * half + c));
+      }
     }
-    pages.add_row(text, 3);
+    pages.add_row(text, block.imag.size() > 0 ? 5 : 3);
   }
 }
 
@@ -49,6 +68,21 @@ std::string space_out(const std::string& word) {
   std::string text;
   for (const char c : word) text += (text.empty() ? "" : " ") + std::string(1, c);
   return text;
+}
+
+std::string show_pair(const ListedElements& block, std::size_t k, Eigen::Index column) {
+  const auto row = static_cast<Eigen::Index>(k);
+  return show_real(block.real(row, column)) + " / " + show_real(block.imag(row, column));
+}
+
+void begin_table(const ListedStep& step, const ListedElements& block, const std::string& title,
+                 const std::vector<std::string>& columns, Pages& pages) {
+  auto headings = make_step_lines(step);
+  const bool is_complex = block.imag.size() > 0;
+  headings.push_back(centre(is_complex ? "C O M P L E X   " + title : title));
+  if (is_complex) headings.push_back(centre(block.is_phase ? "(MAGNITUDE/PHASE)" : "(REAL/IMAGINARY)"));
+  headings.insert(headings.end(), columns.begin(), columns.end());
+  pages.begin_table(headings);
 }
 
 std::vector<std::string> make_step_lines(const ListedStep& step) {
@@ -65,11 +99,9 @@ std::vector<std::string> make_step_lines(const ListedStep& step) {
 }
 
 void add_force_pages(const ListedStep& step, const ListedElements& block, Pages& pages) {
-  auto headings = make_step_lines(step);
+  const bool is_complex = block.imag.size() > 0;
   const auto begin = [&](const std::string& title, const std::vector<std::string>& columns) {
-    headings.push_back(centre(title));
-    headings.insert(headings.end(), columns.begin(), columns.end());
-    pages.begin_table(headings);
+    begin_table(step, block, title, columns, pages);
   };
   const auto& card = block.card;
   switch (block.type) {
@@ -107,17 +139,27 @@ void add_force_pages(const ListedStep& step, const ListedElements& block, Pages&
     case 1:
     case 3:
     case 10:
-      begin("F O R C E S   I N   R O D   E L E M E N T S     ( " + space_out(card) + " )",
-            {"       ELEMENT       AXIAL                                     ELEMENT       AXIAL",
-             "         ID.         FORCE          TORQUE                       ID.         FORCE          TORQUE"});
+      if (is_complex)
+        begin("F O R C E S   I N   R O D   E L E M E N T S     ( " + space_out(card) + " )",
+              {"                 ELEMENT                       AXIAL                                  TORQUE",
+               "                   ID.                         FORCE"});
+      else
+        begin("F O R C E S   I N   R O D   E L E M E N T S     ( " + space_out(card) + " )",
+              {"       ELEMENT       AXIAL                                     ELEMENT       AXIAL",
+               "         ID.         FORCE          TORQUE                       ID.         FORCE          TORQUE"});
       return add_columns(block, 2, pages);
     default:
-      begin(
-          "F O R C E S   I N   S C A L A R   S P R I N G S        ( " + space_out(card) + " )",
-          {"      ELEMENT         FORCE            ELEMENT         FORCE            ELEMENT         FORCE            "
-           "ELEMENT         FORCE",
-           "        ID.                              ID.                              ID.                              "
-           "ID."});
+      if (is_complex)
+        begin("F O R C E S   I N   S C A L A R   S P R I N G S        ( " + space_out(card) + " )",
+              {"                 ELEMENT                       FORCE", "                   ID."});
+      else
+        begin(
+            "F O R C E S   I N   S C A L A R   S P R I N G S        ( " + space_out(card) + " )",
+            {"      ELEMENT         FORCE            ELEMENT         FORCE            ELEMENT         FORCE            "
+             "ELEMENT         FORCE",
+             "        ID.                              ID.                              ID.                            "
+             "  "
+             "ID."});
       return add_columns(block, 4, pages);
   }
 }

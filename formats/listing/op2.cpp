@@ -1,12 +1,11 @@
 #include "formats/listing/op2.hpp"
 
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <map>
 
 #include "base/diagnostic.hpp"
+#include "formats/listing/detail/op2_writer.hpp"
 
 namespace bough::listing {
 namespace {
@@ -14,116 +13,10 @@ namespace {
 using records::ListedKind;
 using records::ListedStep;
 
+using detail::Op2Writer;
+using detail::Words;
+
 constexpr int kIdentWords = 146, kDevice = 1;
-
-/// 4-byte words.
-class Words {
- public:
-  void add(int value) { add_bits(static_cast<std::uint32_t>(value)); }
-  /// No number: 1 as an integer, as Nastran has it.
-  void add(double value) {
-    add_bits(std::isnan(value) ? 1U : std::bit_cast<std::uint32_t>(static_cast<float>(value)));
-  }
-  void add(const std::string& text, std::size_t size) {
-    std::string padded = text.substr(0, size);
-    for (char& c : padded)
-      if (static_cast<unsigned char>(c) > '~') c = '?';
-    padded.resize(size, ' ');
-    bytes_ += padded;
-  }
-  void set(std::size_t index, int value) { set_bits(index, static_cast<std::uint32_t>(value)); }
-  void set(std::size_t index, double value) {
-    set_bits(index, std::bit_cast<std::uint32_t>(static_cast<float>(value)));
-  }
-  int count() const { return static_cast<int>(bytes_.size() / 4); }
-  const std::string& bytes() const { return bytes_; }
-
- private:
-  static std::array<char, 4> split(std::uint32_t bits) {
-    return {static_cast<char>(bits & 255U), static_cast<char>(bits >> 8U & 255U), static_cast<char>(bits >> 16U & 255U),
-            static_cast<char>(bits >> 24U & 255U)};
-  }
-  void add_bits(std::uint32_t bits) {
-    const auto four = split(bits);
-    bytes_.append(four.data(), four.size());
-  }
-  void set_bits(std::size_t index, std::uint32_t bits) {
-    const auto four = split(bits);
-    bytes_.replace(4 * index, 4, four.data(), four.size());
-  }
-  std::string bytes_;
-};
-
-class Op2Writer {
- public:
-  Op2Writer() {
-    Words date;
-    for (const int part : {1, 1, 0}) date.add(part);  // the same input gives the same file
-    put_block(date);
-    Words tape;
-    tape.add("NASTRAN FORT TAPE ID CODE - ", 28);
-    put_block(tape);
-    Words label;
-    label.add("XXXXXXXX", 8);
-    put_block(label);
-    put_key(-1);
-    put_key(0);
-  }
-
-  void begin_table(const std::string& name, const std::string& inner) {
-    Words words;
-    words.add(name, 8);
-    put_block(words);
-    put_key(-1);
-    Words trailer;
-    for (const int word : {102, 0, 0, 0, 512, 0, 0}) trailer.add(word);
-    put_block(trailer);
-    next_ = -2;
-    begin_record();
-    Words head;
-    head.add(inner, 8);
-    for (const int word : {1, 1, 0, 0, 1}) head.add(word);
-    put_block(head);
-  }
-  void add_record(const Words& words) {
-    begin_record();
-    put_block(words);
-  }
-  void end_table() {
-    begin_record();
-    put_key(0);
-  }
-  std::string finish() {
-    put_key(0);
-    return std::move(bytes_);
-  }
-
- private:
-  void put_record(const std::string& data) {
-    Words length;
-    length.add(static_cast<int>(data.size()));
-    bytes_ += length.bytes() + data + length.bytes();
-  }
-  void put_key(int key) {
-    Words word;
-    word.add(key);
-    put_record(word.bytes());
-  }
-  void put_block(const Words& words) {
-    put_key(words.count());
-    put_record(words.bytes());
-  }
-  /// -n ends the record before; the first word of the next says that it belongs to a table.
-  void begin_record() {
-    put_key(next_--);
-    Words kind;
-    kind.add(0);
-    put_block(kind);
-  }
-
-  std::string bytes_;
-  int next_ = -2;
-};
 
 struct Head {
   int analysis = 1, table = 1, subcase = 0;
@@ -237,8 +130,9 @@ void add_beam_row(const records::ListedElements& block, std::size_t k, Words& da
     const bool is_a = station == 0, is_b = station == kBeamStations - 1;
     data.add(is_a ? block.ends[k][0] : is_b ? block.ends[k][1] : 0);
     data.add(is_b ? 1.0 : 0.0);
-    for (Eigen::Index c = 0; c < half; ++c)
-      data.add(is_a ? block.real(row, c) : is_b ? block.real(row, half + c) : 0.0);
+    for (const auto* part : {&block.real, &block.imag})
+      for (Eigen::Index c = 0; c < half && part->size() > 0; ++c)
+        data.add(is_a ? (*part)(row, c) : is_b ? (*part)(row, half + c) : 0.0);
   }
 }
 
@@ -266,15 +160,63 @@ void add_solid_row(const records::ListedElements& block, std::size_t k, Words& d
     data.add(corners);
   }
   data.add(block.point[k]);
-  for (Eigen::Index c = 0; c < block.real.cols(); ++c) data.add(block.real(static_cast<Eigen::Index>(k), c));
+  for (const auto* part : {&block.real, &block.imag})
+    for (Eigen::Index c = 0; c < part->cols(); ++c) data.add((*part)(static_cast<Eigen::Index>(k), c));
+}
+
+/// Columns first .. last of both parts, one part after the other.
+void add_parts(const records::ListedElements& block, std::size_t k, int first, int last, Words& data) {
+  for (const auto* part : {&block.real, &block.imag})
+    for (int c = first; c < last; ++c) data.add((*part)(static_cast<Eigen::Index>(k), c));
+}
+
+/// Columns first .. last, of each the real and the imaginary part.
+void add_pairs(const records::ListedElements& block, std::size_t k, int first, int last, Words& data) {
+  for (int c = first; c < last; ++c) add_parts(block, k, c, c + 1, data);
+}
+
+/// Complex stresses: the columns of keep_linear_columns in Nastran's order of real and imaginary parts.
+void add_complex_stresses(const records::ListedElements& block, std::size_t k, Words& data) {
+  const auto row = static_cast<Eigen::Index>(k);
+  switch (block.type) {
+    case kBeam:
+      for (int station = 0; station < kBeamStations; ++station) {
+        const bool is_a = station == 0, is_b = station == kBeamStations - 1;
+        data.add(is_a ? block.ends[k][0] : is_b ? block.ends[k][1] : 0);
+        data.add(is_b ? 1.0 : 0.0);
+        if (is_a || is_b)
+          add_parts(block, k, is_b ? 4 : 0, is_b ? 8 : 4, data);
+        else
+          for (int c = 0; c < 8; ++c) data.add(0.0);
+      }
+      return;
+    case 34:
+      add_parts(block, k, 0, 5, data);
+      add_parts(block, k, 5, 9, data);
+      return;
+    case 33:
+    case 74:
+      for (const int side : {0, 4}) {
+        data.add(block.real(row, side));  // the distance
+        add_pairs(block, k, side + 1, side + 4, data);
+      }
+      return;
+    case 95:
+    case 97:
+      add_parts(block, k, 0, 5, data);
+      return;
+    default:
+      add_pairs(block, k, 0, 2, data);  // rods
+  }
 }
 
 /// Stresses: by element, layer or corner (docs/formats/op2.md).
 void add_stresses(const ListedStep& step, const records::ListedElements& block, Op2Writer& file) {
-  Words ident = make_ident(make_head(step, 5)), data;
+  const bool is_complex = block.imag.size() > 0;
+  Words ident = make_ident(make_head(step, is_complex ? 1005 : 5)), data;
   set_step(step, ident);
   ident.set(2, block.type);
-  ident.set(8, 1);
+  ident.set(8, !is_complex ? 1 : block.is_phase ? 3 : 2);
   ident.set(10, is_layered(block.type) ? 0 : 1);  // largest shear, or von Mises
   int count = 0;
   for (std::size_t k = 0; k < block.id.size(); ++k) {
@@ -286,7 +228,9 @@ void add_stresses(const ListedStep& step, const records::ListedElements& block, 
     ++count;
     data.add(10 * block.id[k] + kDevice);
     if (is_layered(block.type)) data.add(block.point[k]);
-    if (block.type == kBeam)
+    if (is_complex)
+      add_complex_stresses(block, k, data);
+    else if (block.type == kBeam)
       add_beam_stresses(block, k, data);
     else
       for (Eigen::Index c = 0; c < block.real.cols(); ++c) data.add(block.real(static_cast<Eigen::Index>(k), c));
@@ -296,17 +240,19 @@ void add_stresses(const ListedStep& step, const records::ListedElements& block, 
   file.add_record(data);
 }
 
-void add_elements(const ListedStep& step, const records::ListedElements& block, int table, Op2Writer& file) {
-  Words ident = make_ident(make_head(step, table)), data;
+void add_forces(const ListedStep& step, const records::ListedElements& block, Op2Writer& file) {
+  const bool is_complex = block.imag.size() > 0;
+  Words ident = make_ident(make_head(step, is_complex ? 1004 : 4)), data;
   set_step(step, ident);
   ident.set(2, block.type);
-  ident.set(8, 1);
+  ident.set(8, !is_complex ? 1 : block.is_phase ? 3 : 2);
   for (std::size_t k = 0; k < block.id.size(); ++k) {
     data.add(10 * block.id[k] + kDevice);
     if (block.type == kBeam)
       add_beam_row(block, k, data);
     else
-      for (Eigen::Index c = 0; c < block.real.cols(); ++c) data.add(block.real(static_cast<Eigen::Index>(k), c));
+      for (const auto* part : {&block.real, &block.imag})
+        for (Eigen::Index c = 0; c < part->cols(); ++c) data.add((*part)(static_cast<Eigen::Index>(k), c));
   }
   ident.set(9, block.id.empty() ? 0 : data.count() / static_cast<int>(block.id.size()));
   file.add_record(ident);
@@ -365,9 +311,6 @@ std::string make_op2(const records::Listing& listing) {
       listing, "OQG1", "OQG1", [](ListedKind k) { return k == ListedKind::SpcForce; }, file);
   add_vectors(
       listing, "OQMG1", "OQMG1", [](ListedKind k) { return k == ListedKind::MpcForce; }, file);
-  const auto add_forces = [](const ListedStep& step, const records::ListedElements& block, Op2Writer& to) {
-    add_elements(step, block, 4, to);
-  };
   add_blocks(
       listing, "OEF1", &ListedStep::forces, [](int) { return true; }, add_forces, file);
   add_blocks(

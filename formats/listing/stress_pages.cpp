@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "formats/listing/detail/element_pages.hpp"
@@ -76,9 +77,9 @@ void add_plate_stresses(const ListedElements& block, Pages& pages) {
 
 void add_ply_stresses(const ListedElements& block, Pages& pages) {
   for (std::size_t k = 0; k < block.id.size(); ++k)
-    pages.add_row(fmt::format("0{:>8} {:>3} {} {:20} {:6.2f} {}", block.id[k], block.point[k],
-                              show_columns(block, k, 0, 3, " "), "",  // no shear between plies
-                              block.real(static_cast<Eigen::Index>(k), 5), show_columns(block, k, 6, 9, " ")));
+    pages.add_row(fmt::format("0{:>8} {:>3} {} {:6.2f} {}", block.id[k], block.point[k],
+                              show_columns(block, k, 0, 5, " "), block.real(static_cast<Eigen::Index>(k), 5),
+                              show_columns(block, k, 6, 9, " ")));
 }
 
 void add_solid_stresses(const ListedElements& block, Pages& pages) {
@@ -109,39 +110,137 @@ void add_solid_stresses(const ListedElements& block, Pages& pages) {
   }
 }
 
+/// Columns first .. last, real parts above imaginary ones.
+void add_two_lines(const std::string& head, const ListedElements& block, std::size_t k, int first, int last,
+                   std::string& text) {
+  const auto row = static_cast<Eigen::Index>(k);
+  for (const auto* part : {&block.real, &block.imag}) {
+    text += part == &block.real ? (text.empty() ? "" : "\n") + head : "\n" + std::string(head.size(), ' ');
+    for (int c = first; c < last; ++c) text += "  " + show_value((*part)(row, c));
+  }
+}
+
+void add_complex_stresses(const ListedElements& block, Pages& pages) {
+  for (std::size_t k = 0; k < block.id.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    std::string text;
+    if (block.type == 34) {
+      add_two_lines(fmt::format("0{:>18}     ENDA   ", block.id[k]), block, k, 0, 5, text);
+      add_two_lines(fmt::format("{:19}     ENDB   ", ""), block, k, 5, 9, text);
+    } else if (block.type == 2) {
+      for (const int end : {0, 1})
+        add_two_lines(
+            fmt::format("{}{:>17}{:>9}   {:.3f}", end == 0 ? "0" : " ", end == 0 ? fmt::to_string(block.id[k]) : "",
+                        block.ends[k][static_cast<std::size_t>(end)], double(end)),
+            block, k, 4 * end, 4 * end + 4, text);
+    } else if (block.type == 33 || block.type == 74) {
+      for (const int side : {0, 4}) {
+        text += side == 0 ? fmt::format("0{:>8}   ", block.id[k]) : fmt::format("\n{:12}", "");
+        text += show_value(block.real(row, side));
+        for (int c = side + 1; c < side + 4; ++c) text += "   " + show_pair(block, k, c);
+      }
+    } else if (block.type == 95 || block.type == 97) {
+      add_two_lines(fmt::format("0{:>17}{:>16} ", block.id[k], block.point[k]), block, k, 0, 5, text);
+    } else if (block.type == 39 || block.type == 67 || block.type == 68) {
+      const bool is_centre = block.point[k] == 0;
+      if (is_centre) text = fmt::format("0{:>10}", block.id[k]);
+      add_two_lines(fmt::format("{:12}{:>9}", "", is_centre ? "CENTER" : fmt::to_string(block.point[k])), block, k, 0,
+                    6, text);
+    } else {
+      text = fmt::format("{:>24}          {}          {}", block.id[k], show_pair(block, k, 0), show_pair(block, k, 1));
+    }
+    pages.add_row(text, static_cast<int>(std::count(text.begin(), text.end(), '\n')) + 1);
+  }
+}
+
 std::string name_plate(int type) { return type == 33 || type == 95 ? "Q U A D 4" : "T R I A 3"; }
+
+std::string name_stresses(const ListedElements& block) {
+  switch (block.type) {
+    case 34:
+      return "S T R E S S E S   I N   B A R   E L E M E N T S          ( C B A R )";
+    case 2:
+      return "S T R E S S E S   I N   B E A M   E L E M E N T S        ( C B E A M )";
+    case 33:
+    case 74:
+      return (block.type == 33 ? "S T R E S S E S   I N   Q U A D R I L A T E R A L   E L E M E N T S   ( "
+                               : "S T R E S S E S   I N   T R I A N G U L A R   E L E M E N T S   ( ") +
+             name_plate(block.type) + " )";
+    case 95:
+    case 97:
+      return "S T R E S S E S   I N   L A Y E R E D   C O M P O S I T E   E L E M E N T S   ( " +
+             name_plate(block.type) + " )";
+    case 67:
+      return "S T R E S S E S   I N   H E X A H E D R O N   S O L I D   E L E M E N T S   ( H E X A )";
+    case 68:
+      return "S T R E S S E S   I N   P E N T A H E D R O N   S O L I D   E L E M E N T S   ( P E N T A )";
+    case 39:
+      return "S T R E S S E S   I N   T E T R A H E D R O N   S O L I D   E L E M E N T S   ( C T E T R A )";
+    default:
+      return "S T R E S S E S   I N   R O D   E L E M E N T S      ( " + space_out(block.card) + " )";
+  }
+}
+
+std::vector<std::string> name_complex_columns(int type) {
+  switch (type) {
+    case 34:
+      return {
+          "            ELEMENT                    LOCATION       LOCATION       LOCATION       LOCATION        AVERAGE",
+          "              ID.                          1              2              3              4        AXIAL "
+          "STRESS"};
+    case 2:
+      return {"                           STAT DIST/   LOCATION       LOCATION       LOCATION       LOCATION",
+              "        ELEMENT-ID   GRID   LENGTH         C              D              E              F"};
+    case 33:
+    case 74:
+      return {"  ELEMENT      FIBER                              STRESSES IN ELEMENT COORD SYSTEM",
+              "    ID.       DISTANCE               NORMAL-X                        NORMAL-Y                        "
+              "SHEAR-XY"};
+    case 95:
+    case 97:
+      return {
+          "           ELEMENT             PLY     STRESSES IN FIBER AND MATRIX DIRECTIONS         INTER-LAMINAR  "
+          "STRESSES",
+          "             ID                 ID    NORMAL-1       NORMAL-2       SHEAR-12      SHEAR XZ-MAT   SHEAR "
+          "YZ-MAT"};
+    case 39:
+    case 67:
+    case 68:
+      return {"                CORNER       ---------------------CENTER AND CORNER POINT STRESSES---------------------",
+              "  ELEMENT-ID    GRID-ID     NORMAL-X       NORMAL-Y       NORMAL-Z       SHEAR-XY       SHEAR-YZ       "
+              "SHEAR-ZX"};
+    default:
+      return {"                 ELEMENT                       AXIAL                                  TORSIONAL",
+              "                   ID.                         STRESS                                  STRESS"};
+  }
+}
 
 }  // namespace
 
 void add_stress_pages(const ListedStep& step, const ListedElements& block, Pages& pages) {
-  auto headings = make_step_lines(step);
-  const auto begin = [&](const std::string& title, const std::vector<std::string>& columns) {
-    headings.push_back(centre(title));
-    headings.insert(headings.end(), columns.begin(), columns.end());
-    pages.begin_table(headings);
+  const auto begin = [&](const std::vector<std::string>& columns) {
+    begin_table(step, block, name_stresses(block), columns, pages);
   };
+  if (block.imag.size() > 0) {
+    begin(name_complex_columns(block.type));
+    return add_complex_stresses(block, pages);
+  }
   switch (block.type) {
     case 34:
       begin(
-          "S T R E S S E S   I N   B A R   E L E M E N T S          ( C B A R )",
           {"  ELEMENT        SA1            SA2            SA3            SA4           AXIAL          SA-MAX         "
            "SA-MIN     M.S.-T",
            "    ID.          SB1            SB2            SB3            SB4           STRESS         SB-MAX         "
            "SB-MIN     M.S.-C"});
       return add_bar_stresses(block, pages);
     case 2:
-      begin("S T R E S S E S   I N   B E A M   E L E M E N T S        ( C B E A M )",
-            {"                    STAT DIST/",
+      begin({"                    STAT DIST/",
              "   ELEMENT-ID  GRID   LENGTH    SXC           SXD           SXE           SXF           S-MAX         "
-             "S-MIN "
-             "        M.S.-T   M.S.-C"});
+             "S-MIN         M.S.-T   M.S.-C"});
       return add_beam_stresses(block, pages);
     case 33:
     case 74:
       begin(
-          (block.type == 33 ? "S T R E S S E S   I N   Q U A D R I L A T E R A L   E L E M E N T S   ( "
-                            : "S T R E S S E S   I N   T R I A N G U L A R   E L E M E N T S   ( ") +
-              name_plate(block.type) + " )",
           {"  ELEMENT      FIBER               STRESSES IN ELEMENT COORD SYSTEM             PRINCIPAL STRESSES (ZERO "
            "SHEAR)",
            "    ID.       DISTANCE           NORMAL-X       NORMAL-Y      SHEAR-XY       ANGLE         MAJOR           "
@@ -150,33 +249,26 @@ void add_stress_pages(const ListedStep& step, const ListedElements& block, Pages
     case 95:
     case 97:
       begin(
-          "S T R E S S E S   I N   L A Y E R E D   C O M P O S I T E   E L E M E N T S   ( " + name_plate(block.type) +
-              " )",
-          {"   ELEMENT  PLY   STRESSES IN FIBER AND MATRIX DIRECTIONS      INTER-LAMINAR  STRESSES   PRINCIPAL "
-           "STRESSES (ZERO SHEAR)      MAX",
-           "     ID      ID     NORMAL-1      NORMAL-2      SHEAR-12      SHEAR XZ-MAT  SHEAR YZ-MAT   ANGLE    MAJOR "
-           "        MINOR        SHEAR"});
+          {"  ELEMENT PLY   STRESSES IN FIBER AND MATRIX DIRECTIONS      INTER-LAMINAR  STRESSES       PRINCIPAL "
+           "STRESSES (ZERO SHEAR)     MAX",
+           "    ID     ID    NORMAL-1      NORMAL-2      SHEAR-12     SHEAR XZ-MAT  SHEAR YZ-MAT   ANGLE     MAJOR    "
+           "     MINOR         SHEAR"});
       return add_ply_stresses(block, pages);
     case 39:
     case 67:
     case 68:
-      begin(block.type == 67 ? "S T R E S S E S   I N   H E X A H E D R O N   S O L I D   E L E M E N T S   ( H E X A )"
-            : block.type == 68
-                ? "S T R E S S E S   I N   P E N T A H E D R O N   S O L I D   E L E M E N T S   ( P E N T A )"
-                : "S T R E S S E S   I N   T E T R A H E D R O N   S O L I D   E L E M E N T S   ( C T E T R A )",
-            {"0                CORNER        ------CENTER AND CORNER POINT STRESSES---------       DIR.  COSINES       "
-             "MEAN",
-             "  ELEMENT-ID    GRID-ID        NORMAL              SHEAR             PRINCIPAL       -A-  -B-  -C-     "
-             "PRESSURE       VON MISES"});
+      begin(
+          {"0                CORNER        ------CENTER AND CORNER POINT STRESSES---------       DIR.  COSINES       "
+           "MEAN",
+           "  ELEMENT-ID    GRID-ID        NORMAL              SHEAR             PRINCIPAL       -A-  -B-  -C-     "
+           "PRESSURE       VON MISES"});
       return add_solid_stresses(block, pages);
     default:
-      begin("S T R E S S E S   I N   R O D   E L E M E N T S      ( " + space_out(block.card) + " )",
-            {"       ELEMENT       AXIAL       SAFETY      TORSIONAL     SAFETY       ELEMENT       AXIAL       SAFETY "
-             "    "
-             " TORSIONAL     SAFETY",
-             "         ID.        STRESS       MARGIN        STRESS      MARGIN         ID.        STRESS       MARGIN "
-             "    "
-             "   STRESS      MARGIN"});
+      begin(
+          {"       ELEMENT       AXIAL       SAFETY      TORSIONAL     SAFETY       ELEMENT       AXIAL       SAFETY "
+           "     TORSIONAL     SAFETY",
+           "         ID.        STRESS       MARGIN        STRESS      MARGIN         ID.        STRESS       MARGIN "
+           "        STRESS      MARGIN"});
       return add_rod_stresses(block, pages);
   }
 }

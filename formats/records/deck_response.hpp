@@ -10,6 +10,7 @@ struct ResponseCurves {
   std::vector<std::pair<int, int>> dofs;  ///< grid and component 1..6, 0 for a scalar point
   MatrixXd real, imag;
   bool is_phase = false, is_punched = false;  ///< how the deck asks for them
+  bool is_printed = true;                     ///< in the listing
 };
 
 /// Samples x (elements x components), element after element.
@@ -18,7 +19,7 @@ struct ElementCurves {
   std::vector<std::string> components;
   std::vector<int> ids;
   MatrixXd real, imag;
-  bool is_phase = false, is_punched = false;
+  bool is_phase = false, is_punched = false, is_printed = true;
   bool is_stress = false;  ///< else forces
 };
 
@@ -28,8 +29,9 @@ struct ResponseSubcase {
   VectorXd x;  ///< Hz, or time
   std::vector<ResponseCurves> curves;
   std::vector<ElementCurves> elements;
-  bool is_direct = false;           ///< solved without modes
-  VectorXd mode_hz, damping_ratio;  ///< of the coordinates
+  std::vector<ElementCurves> listed_forces;  ///< what the stresses of a listing need of bars and solids; not written
+  bool is_direct = false;                    ///< solved without modes
+  VectorXd mode_hz, damping_ratio;           ///< of the coordinates
   std::vector<ModeKind> kind;
   int num_rigid = 0;
   double basis_error = 0;     ///< of the orthogonality of the coordinates to M and K

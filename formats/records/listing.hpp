@@ -33,11 +33,13 @@ struct ListedVector {
 /// Forces or stresses of the elements of one card, in ascending order, in Nastran's columns (docs/formats/op2.md).
 struct ListedElements {
   std::string card;
-  int type = 0;  ///< Nastran's element type
+  int type = 0;                          ///< Nastran's element type
   std::vector<int> id;                   ///< of each row
   std::vector<std::array<int, 2>> ends;  ///< CBEAM: grids of the ends
   std::vector<int> point;                ///< of each row: the ply, or the corner's grid of a solid (0: the centre)
   Eigen::MatrixXd real;                  ///< rows x columns; no number: left blank
+  Eigen::MatrixXd imag;                  ///< of the same size, or empty: real
+  bool is_phase = false;                 ///< imag not empty: they are magnitude and phase in degrees
   bool is_printed = true;
 };
 

@@ -147,7 +147,8 @@ Basis calc_free_interface_basis(const fe::System& system, const BasisOptions& op
   if (!lost.empty())
     diagnostics.warning("modal.massless-interface", {},
                         "what moves no mass has no attachment mode; lost of the flexibility in " + lost,
-                        "a hinge there meets a stiffer body; give the model inertia there if it should not");
+                        "a hinge there meets a stiffer body; give the model inertia there, or take fewer modes, if it should "
+                        "not");
   for (const int i : residual.unused)
     if (i >= num_attachments) basis.unused_loads.push_back(i - static_cast<int>(num_attachments));
   const auto n = basis.lambda.size();

@@ -85,6 +85,32 @@ VectorXd calc_lost_flexibility(const fe::Model& model, const MatrixXd& Y, const 
   return (whole.array() > 0).select(1 - held.array() / whole.array(), 0.0);
 }
 
+/// M-norms at which a static solution X of F is round-off: a frequency 1e11 times the lowest of all, or one that the
+/// support holds (a moment on a motion without mass and strain), which has less than the flexibility that F has at
+/// least, (FᵀF)² / FᵀKF <= FᵀK⁻¹F. Such a vector, of unit mass, would be anything: a twist of any size, which has no
+/// mass.
+VectorXd calc_least_norms(const fe::Model& model, const MatrixXd& kept, const MatrixXd& F, const MatrixXd& X,
+                          const VectorXd& norm) {
+  const VectorXd flexibility = F.cwiseProduct(X).colwise().sum();
+  const VectorXd square = F.colwise().squaredNorm();
+  const VectorXd stiffness = F.cwiseProduct(fe::calc_stiffness_times(model, F)).colwise().sum();
+  double longest = 0;  // 1/ω²
+  if (kept.cols() > 0) {
+    const double lambda = kept.col(0).dot(VectorXd(fe::calc_stiffness_times(model, kept.col(0))));
+    if (lambda > 0) longest = 1 / lambda;
+  }
+  const auto is_held = [&](Eigen::Index i) {
+    return !(flexibility(i) > 0) ||
+           (stiffness(i) > 0 && flexibility(i) < 1e-8 * square(i) * square(i) / stiffness(i));
+  };
+  for (Eigen::Index i = 0; i < F.cols(); ++i)
+    if (!is_held(i)) longest = std::max(longest, norm(i) * norm(i) / flexibility(i));
+  VectorXd least(F.cols());
+  for (Eigen::Index i = 0; i < F.cols(); ++i)
+    least(i) = is_held(i) ? HUGE_VAL : 1e-11 * std::sqrt(longest * flexibility(i));
+  return least;
+}
+
 }  // namespace
 
 ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve& solve, const MatrixXd& rigid,
@@ -102,6 +128,7 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
   if (rigid.cols() > 0) X -= rigid * (rigid.transpose() * times_M(X));
   const MatrixXd X_static = X;
   const VectorXd before = X.cwiseProduct(times_M(X)).colwise().sum().cwiseMax(0).cwiseSqrt();
+  const VectorXd least = calc_least_norms(model, kept, F_e, X, before);
 
   MatrixXd Q(F.rows(), rigid.cols() + kept.cols());
   Q << rigid, kept;
@@ -120,7 +147,7 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
       const double norm = std::sqrt(std::max(X.col(c).dot(MX.col(c)), 0.0));
       // A load that inertia balances of itself (a uniform acceleration) leaves roundoff only.
       const bool is_balanced = F_e.col(used[i]).norm() < 1e-10 * F.col(used[i]).norm();
-      if (pass == 0 && (is_balanced || !(norm > 1e-6 * before(used[i])))) {
+      if (pass == 0 && (is_balanced || !(norm > std::max(1e-6 * before(used[i]), least(used[i]))))) {
         X.col(c).setZero();
         MX.col(c).setZero();
         (is_balanced ? balanced : result.unused).push_back(used[i]);

@@ -146,11 +146,13 @@ DampingChoice choose_damping(const records::DynamicDeck& deck, const records::Dy
 }
 
 /// What a solution without modes has no use for.
-void report_modal(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase, Diagnostics& diagnostics) {
+void report_modal(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase, bool is_over_time,
+                  Diagnostics& diagnostics) {
   if (subcase.dynamics.sdamping != 0)
     diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("SDAMPING")),
                         "SDAMPING damps modes: the direct solution leaves it out, as in Nastran",
                         "damp by PARAM,G, GE or dampers, or solve by modes (--modal)");
+  if (is_over_time) return;
   const int set = subcase.dynamics.frequency;
   for (const auto& list : deck.dynamics.frequencies)
     if (list.sid == set && list.kind >= 3)
@@ -244,7 +246,7 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
   if (options_.is_over_time) task.start = calc_start(model, deck_, subcase, own);
   task.damping = choose_damping(deck_, subcase, options_.is_over_time, model, own);
   if (options_.is_over_time) task.grid = make_times(deck_, subcase, own);
-  if (options_.is_direct) report_modal(deck_, subcase, own);
+  if (options_.is_direct) report_modal(deck_, subcase, options_.is_over_time, own);
   task.natural.resize(prepared_->modes.lambda.size());
   for (Eigen::Index j = 0; j < task.natural.size(); ++j) task.natural(j) = to_hz(prepared_->modes.lambda(j));
   if (options_.is_direct) own.throw_if_errors();
@@ -252,7 +254,7 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
     task.hz =
         make_frequencies(deck_, subcase, task.natural.tail(task.natural.size() - prepared_->modes.num_left_out), own);
   own.throw_if_errors();
-  task.outputs = choose_outputs(model, deck_, subcase, task.excitation, options_.grids, own);
+  task.outputs = choose_outputs(model, deck_, subcase, task.excitation, options_.grids, options_.with_listing, own);
   own.throw_if_errors();
   records::ResponseSubcase result;
   result.id = std::max(subcase.id, 1);  // what stands above all subcases is the first, as in Nastran

@@ -14,6 +14,7 @@ struct ResponseOptions {
   bool is_direct = false;                ///< without modes
   std::optional<bool> residual_vectors;  ///< overrules RESVEC of the deck (default: yes)
   std::vector<int> grids;                ///< displacement, velocity, acceleration of these besides
+  bool with_listing = false;             ///< what a listing needs is recovered too
   /// EIGRL or EIGR of the subcase, with the command line.
   std::function<EigenOptions(const records::DynamicSubcase&, Diagnostics&)> choose_eigen;
   /// Of the subcase's STATSUB; may be empty.

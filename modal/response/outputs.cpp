@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <set>
 #include <utility>
 
 #include "modal/response/recovery.hpp"
@@ -33,17 +34,34 @@ std::vector<int> list_driven_grids(const fe::Model& model, const records::Dynami
   return grids;
 }
 
+/// The tables of stresses of bars (axial stress) and solids (corners) need forces too.
+void add_listed_forces(const fe::Model& model, std::vector<OutputChoice>& outputs) {
+  static const std::set<std::string> cards{"CBAR", "CTETRA", "CPENTA", "CHEXA"};
+  const auto stress =
+      std::find_if(outputs.begin(), outputs.end(), [](const auto& output) { return output.quantity == "stress"; });
+  if (stress == outputs.end()) return;
+  const std::set<int> chosen(stress->ids.begin(), stress->ids.end());
+  OutputChoice forces;
+  forces.quantity = "force";
+  forces.is_for_listing = true;
+  for (const auto& element : model.elements())
+    if (cards.count(element->card()) > 0 && chosen.count(element->id()) > 0) forces.ids.push_back(element->id());
+  if (!forces.ids.empty()) outputs.push_back(std::move(forces));
+}
+
 }  // namespace
 
 std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::DynamicDeck& deck,
                                          const records::DynamicSubcase& subcase, const Excitation& excitation,
-                                         const std::vector<int>& extra_grids, Diagnostics& diagnostics) {
+                                         const std::vector<int>& extra_grids, bool with_listing,
+                                         Diagnostics& diagnostics) {
   std::vector<OutputChoice> outputs;
   const auto& selection = subcase.dynamics;
   for (const auto& [command, quantity] : kQuantities) {
     const auto found = selection.outputs.find(command);
     const bool is_asked = found != selection.outputs.end() && !found->second.is_none;
-    OutputChoice output{quantity, {}, false, false};
+    OutputChoice output;
+    output.quantity = quantity;
     const bool of_elements = output.quantity == "force" || output.quantity == "stress";
     if (is_asked) {
       const auto& request = found->second;
@@ -58,6 +76,7 @@ std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::
       const auto is_in = [&](int id) { return request.is_all || set->second.contains(id); };
       output.is_phase = request.is_phase;
       output.is_punched = request.is_punched;
+      output.is_printed = request.is_printed;
       if (of_elements) {
         for (const auto& element : model.elements())
           if (is_in(element->id())) output.ids.push_back(element->id());
@@ -80,10 +99,13 @@ std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::
     }
     if (!output.ids.empty()) outputs.push_back(std::move(output));
   }
+  if (with_listing) add_listed_forces(model, outputs);
   const bool is_said = std::any_of(kQuantities.begin(), kQuantities.end(),
                                    [&](const auto& q) { return selection.outputs.count(q.first) > 0; });
   if (!outputs.empty() || is_said) return outputs;
-  outputs.push_back({"displacement", list_driven_grids(model, deck, subcase, excitation), false, false});
+  outputs.emplace_back();
+  outputs.back().quantity = "displacement";
+  outputs.back().ids = list_driven_grids(model, deck, subcase, excitation);
   diagnostics.note("modal.default-output", deck.locate({}),
                    "the deck asks for no result: the displacements of the grids that are driven are given",
                    "write DISPLACEMENT = n and SET n = ids in the case control, or --grid");

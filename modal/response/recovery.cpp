@@ -117,8 +117,7 @@ std::vector<ElementGroup> list_groups(const fe::Model& model, const std::vector<
   std::map<std::pair<std::string, std::vector<std::string>>, ElementGroup> groups;
   for (const auto& element : model.elements()) {
     if (wanted.count(element->id()) == 0) continue;
-    const auto names =
-        of_stress ? list_stress_components(*element, is_over_time) : element->printed_force_names();
+    const auto names = of_stress ? list_stress_components(*element, is_over_time) : element->printed_force_names();
     if (names.empty()) continue;
     groups[{element->card(), names}].elements.push_back(element.get());
   }
@@ -172,20 +171,22 @@ class Recovery {
     result.x.conservativeResize(before + x.size());
     result.x.tail(x.size()) = x;
     const bool is_first = before == 0;
-    std::size_t at = 0, at_element = 0;
+    std::size_t at = 0, at_element = 0, at_listed = 0;
     for (const auto& output : outputs_) {
       const bool of_stress = output.quantity == "stress";
       if (of_stress || output.quantity == "force") {
         for (const auto& group : list_groups(model_, output.ids, of_stress, damping_.is_over_time)) {
-          if (is_first) result.elements.push_back(begin_curves(group, output));
+          auto& into = output.is_for_listing ? result.listed_forces : result.elements;
+          if (is_first) into.push_back(begin_curves(group, output));
           const Values values = apply([&](const MatrixXd& U) { return group.calc(U); }, 0);
-          append(Values(group.derive(values)), result.elements[at_element++]);
+          append(Values(group.derive(values)), into[output.is_for_listing ? at_listed++ : at_element++]);
         }
         continue;
       }
       const auto rows = list_rows(model_, output.ids);
       if (is_first)
-        result.curves.push_back({output.quantity, rows.dofs, {}, {}, output.is_phase, output.is_punched});
+        result.curves.push_back(
+            {output.quantity, rows.dofs, {}, {}, output.is_phase, output.is_punched, output.is_printed});
       append(calc<Values>(output.quantity, rows, apply, p), result.curves[at++]);
     }
   }
@@ -198,6 +199,7 @@ class Recovery {
     for (const auto* element : group.elements) curves.ids.push_back(element->id());
     curves.is_phase = output.is_phase;
     curves.is_punched = output.is_punched;
+    curves.is_printed = output.is_printed;
     curves.is_stress = group.of_stress;
     return curves;
   }

@@ -10,15 +10,17 @@ namespace bough::modal::response {
 struct OutputChoice {
   std::string quantity;  ///< displacement, velocity, acceleration, spc_force, force, stress
   std::vector<int> ids;  ///< grids, or elements
-  bool is_phase = false, is_punched = false;
+  bool is_phase = false, is_punched = false, is_printed = true;
+  bool is_for_listing = false;  ///< forces that no one asked for
 };
 
-/// What the subcase asks for. Reports modal.missing-set. `extra_grids`: displacement, velocity and acceleration of
-/// these besides; with no request at all the displacements of the grids that are loaded or moved (note
-/// modal.default-output).
+/// What the subcase asks for, `with_listing` also what its listing needs. Reports modal.missing-set. `extra_grids`:
+/// displacement, velocity and acceleration of these besides; with no request at all the displacements of the grids that
+/// are loaded or moved (note modal.default-output).
 std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::DynamicDeck& deck,
                                          const records::DynamicSubcase& subcase, const Excitation& excitation,
-                                         const std::vector<int>& extra_grids, Diagnostics& diagnostics);
+                                         const std::vector<int>& extra_grids, bool with_listing,
+                                         Diagnostics& diagnostics);
 
 /// Solved by modes.
 void recover(const fe::Model& model, const ResponseModel& response, const Excitation& excitation,

@@ -62,6 +62,10 @@ records::BodySpec make_spec(const ReduceCall& call, Diagnostics& diagnostics) {
     if (!call.modes && !call.max_hz)
       throw InputError("cli.no-modes", {call.file}, "the number of modes is not given", "give modes=N or max_hz=F");
   }
+  if (call.modes && *call.modes < 0)
+    throw py::value_error("modes is a number of modes, 0 or more, not " + std::to_string(*call.modes));
+  if (call.max_hz && !(*call.max_hz > 0))
+    throw py::value_error("max_hz is a frequency above 0, not " + std::to_string(*call.max_hz));
   if (call.name) spec.name = *call.name;
   if (call.modes) spec.num_modes = *call.modes;
   if (call.max_hz) spec.max_frequency_hz = *call.max_hz;

@@ -52,7 +52,7 @@ Body Body::make_flexible(const records::FlexBody& flex, int num_modes, bool stif
                          const std::vector<double>& damping_ratios) {
   Body body;
   const int n = num_modes < 0 ? flex.num_modes() : num_modes;
-  BOUGH_DEMAND(n <= flex.num_modes() && !flex.integrals().empty());
+  BOUGH_DEMAND(n <= flex.num_modes() && (n == 0 || !flex.integrals().empty()));
   body.n_ = n;
   body.stiffened_ = stiffening;
   body.mass_ = flex.mass;

@@ -54,7 +54,7 @@ bool check_flexible(const records::BodyRecord& r, const records::FlexBody& flex,
                           "' has " + std::to_string(flex.num_modes()));
     return false;
   }
-  if (flex.integrals().empty()) {
+  if (flex.integrals().empty() && flex.num_modes() > 0) {
     diagnostics.error(
         "system.missing-integrals", r.at,
         "the file '" + r.file + "' of body " + quote(r.name) + " has no '" + flex.integrals_method + "' mass integrals",

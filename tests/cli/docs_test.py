@@ -1,5 +1,6 @@
 """The commands of the tutorial, of "your own deck" and of the examples, as printed, with the numbers they print."""
 import csv
+import importlib.util
 import os
 import re
 import shlex
@@ -97,6 +98,18 @@ class Pages(ProgramTest):
             with self.subTest(example):
                 self.copy_example(example)
                 self.do(read(f"data/examples/{example}/README.md"))
+
+
+@unittest.skipUnless(shutil.which("dpkg-query"), "no Debian packages here")
+class Licences(unittest.TestCase):
+    def test_every_library_is_in_the_list(self):
+        spec = importlib.util.spec_from_file_location("list_licences", os.path.join(SOURCE, "tools/list_licences.py"))
+        tool = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(tool)
+        listed = set(re.findall(r"(?m)^PackageName: (\S+)$", read("packaging/licences.spdx")))
+        found = tool.find_packages(PROGRAM)
+        self.assertGreater(len(found), 20)
+        self.assertEqual([name for name in found if name not in listed], [])
 
 
 if __name__ == "__main__":

@@ -181,6 +181,22 @@ class Export(ProgramTest):
             held = scipy.linalg.eigh(m["K"][6:, 6:], m["M"][6:, 6:], eigvals_only=True)
             np.testing.assert_allclose(held, own, rtol=1e-8)
 
+    def test_table_of_modes(self):
+        self.write("beam.bdf", BEAM)
+        self.bough("modes", "beam.bdf", "-o", "m.h5", "-q")
+        self.bough("reduce", "beam.bdf", "--modes", "3", "-o", "b.h5", "-q")
+        for name in ("m.h5", "b.h5"):
+            lines = self.bough("export", name, "--to", "csv", "--channel", "modes").stdout.splitlines()
+            self.assertEqual(lines[0], "mode,frequency_hz,eigenvalue,modal_mass," + ",".join(
+                f"effective_mass_{d}" for d in ("x", "y", "z", "rx", "ry", "rz")))
+            table = np.array([[float(v) for v in line.split(",")] for line in lines[1:]])
+            with h5py.File(self.path(name)) as f:
+                np.testing.assert_array_equal(table[:, 1], f["modes/frequency_hz"][:])
+                np.testing.assert_array_equal(table[:, 4:], f["effective_mass"][:] + 0.0)
+            np.testing.assert_array_equal(table[:, 0], [1, 2, 3])
+            np.testing.assert_allclose(table[:, 3], 1, rtol=1e-9)
+            self.fails(1, "export", name, "--to", "csv", "--channel", "tip", error="cli.unknown-channel")
+
     def test_modes(self):
         self.write("beam.bdf", BEAM)
         self.bough("modes", "beam.bdf", "-o", "m.h5", "-q")

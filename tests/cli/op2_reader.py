@@ -4,6 +4,7 @@ from collections import namedtuple
 
 Record = namedtuple("Record", "ident data")
 WIDTHS = {1: 3, 2: 100, 3: 3, 10: 3, 11: 2, 12: 2, 13: 2, 14: 2, 33: 9, 34: 9, 74: 9, 102: 7}
+COMPLEX_WIDTHS = {1: 5, 2: 177, 3: 5, 10: 5, 11: 3, 12: 3, 13: 3, 14: 3, 33: 17, 34: 17, 74: 17, 102: 13}
 
 
 class Op2:
@@ -110,12 +111,14 @@ class Op2:
         found = []
         for ident, data in self.tables[name]:
             words = ident[0]
-            assert words[1] == code and words[8] == 1, words[:10]
+            is_complex = words[1] // 1000 == 1
+            assert words[1] % 1000 == code and words[8] in ((2, 3) if is_complex else (1,)), words[:10]
             wide = words[9]
             if code == 4:
-                assert wide == WIDTHS[words[2]], (words[2], wide)
+                assert wide == (COMPLEX_WIDTHS if is_complex else WIDTHS)[words[2]], (words[2], wide)
             rows = {}
-            form = "<i" + ("i8f" * 11 if words[2] == 2 and code == 4 else f"{wide - 1}f")
+            beam = "i15f" if is_complex else "i8f"
+            form = "<i" + (beam * 11 if words[2] == 2 and code == 4 else f"{wide - 1}f")
             assert struct.calcsize(form) == 4 * wide
             for k in range(len(data) // (4 * wide)):
                 row = struct.unpack_from(form, data, 4 * wide * k)

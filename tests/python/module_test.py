@@ -169,6 +169,13 @@ class Errors(InFolder):
             bough.select("nothing.h5")
         self.assertEqual(raised.exception.messages[0].id, "cli.no-file")
 
+    def test_numbers_of_modes(self):
+        self.write("fine.bdf", "SOL 103\nBEGIN BULK\nENDDATA\n")
+        with self.assertRaisesRegex(ValueError, "modes is a number of modes, 0 or more, not -1"):
+            bough.reduce("fine.bdf", modes=-1)
+        with self.assertRaisesRegex(ValueError, "max_hz is a frequency above 0"):
+            bough.reduce("fine.bdf", max_hz=-5.0)
+
     def test_names_that_are_slips(self):
         with self.assertRaises(bough.InputError):
             bough.System("nothing.toml")

@@ -10,6 +10,12 @@ std::string space_out(const std::string& word);
 /// What stands above the title of a table: of which mode, frequency or time it is.
 std::vector<std::string> make_step_lines(const records::ListedStep& step);
 
+/// Real and imaginary part beside each other.
+std::string show_pair(const records::ListedElements& block, std::size_t k, Eigen::Index column);
+/// Title and columns of a table, complex where the block is.
+void begin_table(const records::ListedStep& step, const records::ListedElements& block, const std::string& title,
+                 const std::vector<std::string>& columns, Pages& pages);
+
 void add_force_pages(const records::ListedStep& step, const records::ListedElements& block, Pages& pages);
 void add_stress_pages(const records::ListedStep& step, const records::ListedElements& block, Pages& pages);
 

@@ -29,12 +29,18 @@ constexpr const char* table[][2] = {
     {"CONROD", ". . . . A I L N"},
     {"PVISC", ". B BR . . B BR ."},
     {"PSHELL", ". . L . . . . S L L ."},
-    {"PSHEAR", ". . L S . ."},
+    {"PSHEAR", ". . L S . . L S"},  // F1 F2, or another one on the card
+    {"MAT11", ". P P P . . . P P P R . . . . ."},
+    {"PCOMP1", ". L S P . . L ."},
+    {"PBUSH1D", ". K B M . . . ."},
+    {"PGAP", ". L F K K K . . L . ."},
     {"PSOLID", nothing},
     {"CBAR", offsets},
     {"CBEAM", offsets},
     {"CROD", nothing},
     {"CTUBE", nothing},
+    {"CBEND", nothing},
+    {"CGAP", nothing},
     {"CVISC", nothing},
     {"CSHEAR", nothing},
     {"CQUAD4", quad},
@@ -86,15 +92,26 @@ constexpr const char* table[][2] = {
     {"TEMP", nothing},
     {"TEMPD", nothing},
     {"TEMPP1", ". . . 1/L"},
+    {"TEMPRB", ". . . . 1/L 1/L 1/L 1/L"},
+    {"ACCEL1", ". . G . . ."},
+    {"PLOAD3", ". P"},
+    {"DLOAD", nothing},
+    {"DPHASE", nothing},
+    {"DELAY", ". . . T . . T"},
+    {"FREQ1", ". Hz Hz ."},
+    {"FREQ2", ". Hz Hz ."},
+    {"FREQ3", ". Hz Hz . . ."},
+    {"FREQ4", ". Hz Hz . ."},
+    {"FREQ5", ". Hz Hz"},
     {"CONM1", ". . . M M M M M M ML ML ML J ML ML ML J J ML ML ML J J J"},
 };
 
 const std::map<std::string_view, Dimension> dimensions{
-    {"L", {0, 1, 0}},    {"A", {0, 2, 0}},   {"I", {0, 4, 0}},    {"L6", {0, 6, 0}}, {"1/L", {0, -1, 0}},
-    {"P", {1, -1, -2}},  {"R", {1, -3, 0}},  {"M", {1, 0, 0}},    {"ML", {1, 1, 0}}, {"J", {1, 2, 0}},
-    {"N", {1, -1, 0}},   {"S", {1, -2, 0}},  {"F", {1, 1, -2}},   {"Q", {1, 2, -2}}, {"K", {1, 0, -2}},
-    {"B", {1, 0, -1}},   {"BL", {1, 1, -1}}, {"BR", {1, 2, -1}},  {"G", {0, 1, -2}}, {"Hz", {0, 0, -1}},
-    {"Hz2", {0, 0, -2}}, {"T", {0, 0, 1}},   {"1/P2", {-2, 2, 4}}};
+    {"L", {0, 1, 0}},    {"A", {0, 2, 0}},   {"I", {0, 4, 0}},     {"L6", {0, 6, 0}}, {"1/L", {0, -1, 0}},
+    {"P", {1, -1, -2}},  {"R", {1, -3, 0}},  {"M", {1, 0, 0}},     {"ML", {1, 1, 0}}, {"J", {1, 2, 0}},
+    {"N", {1, -1, 0}},   {"S", {1, -2, 0}},  {"F", {1, 1, -2}},    {"Q", {1, 2, -2}}, {"K", {1, 0, -2}},
+    {"B", {1, 0, -1}},   {"BL", {1, 1, -1}}, {"BR", {1, 2, -1}},   {"G", {0, 1, -2}}, {"Hz", {0, 0, -1}},
+    {"Hz2", {0, 0, -2}}, {"T", {0, 0, 1}},   {"1/P2", {-2, 2, 4}}, {"V", {0, 1, -1}}};
 
 }  // namespace
 
