@@ -36,15 +36,18 @@ bool is_body_mode(const std::string& coordinate) {
 /// "controller 'pid' (state 1)".
 bool is_state(const std::string& coordinate) { return coordinate.ends_with(')'); }
 
+/// Shares of bodies that are alike differ by rounding: the first by name has the pole.
+constexpr double kMore = 1 + 1e-6;
+
 /// From the share of each coordinate.
 Pole name_pole(std::complex<double> value, const std::map<std::string, double>& share) {
   Pole pole{value, "", "", "", 0};
   double most = -1, most_modal = 0, most_hinge = 0;
   for (const auto& [coordinate, part] : share) {
-    if (part > most) most = part, pole.mode = coordinate;
+    if (part > most * kMore) most = part, pole.mode = coordinate;
     if (is_state(coordinate)) continue;
     double& best = is_body_mode(coordinate) ? most_modal : most_hinge;
-    if (part > best) best = part, (is_body_mode(coordinate) ? pole.body_mode : pole.hinge) = coordinate;
+    if (part > best * kMore) best = part, (is_body_mode(coordinate) ? pole.body_mode : pole.hinge) = coordinate;
   }
   // What only rounding couples takes no part.
   if (most_modal < 1e-9 * most) pole.body_mode.clear();
