@@ -30,11 +30,11 @@ VectorXd calc_norms(const fe::Model& model, const MatrixXd& X) {
   return X.cwiseProduct(times_M(model, X)).colwise().sum().cwiseMax(0).cwiseSqrt();
 }
 MatrixXd calc_gram_M(const fe::Model& model, const MatrixXd& X) {
-  const MatrixXd G = fe::calc_inner_products(X, times_M(model, X));
+  const MatrixXd G = X.transpose() * times_M(model, X);
   return 0.5 * (G + G.transpose());
 }
 MatrixXd calc_gram_K(const fe::Model& model, const MatrixXd& X) {
-  const MatrixXd G = fe::calc_inner_products(X, fe::calc_stiffness_times(model, X));
+  const MatrixXd G = X.transpose() * fe::calc_stiffness_times(model, X);
   return 0.5 * (G + G.transpose());
 }
 
