@@ -32,6 +32,24 @@ std::array<Point<N>, N> list_drilling(const ShellFields<N>& fields, const Corner
   return result;
 }
 
+/// [8×N] The forces of each point times its area, moments as they work on curvatures: where these stretch the element
+/// (strain_of_plate), with the work of the membrane forces on that.
+template <int N>
+Eigen::Matrix<double, 8, N> calc_working_forces(const ShellFields<N>& fields, const double* force) {
+  Eigen::Matrix<double, 8, N> f = Eigen::Map<const Eigen::Matrix<double, 8, N>>(force);
+  double area = 0;
+  for (int q = 0; q < N; ++q) {
+    f.col(q) *= fields.points[q].weight;
+    area += fields.points[q].weight;
+  }
+  if (!fields.membrane.coupled) return f;
+  const Eigen::Vector3d mean = f.template topRows<3>().rowwise().sum() / area;
+  for (int q = 0; q < N; ++q)
+    f.template block<3, 1>(3, q) +=
+        fields.membrane.stretch.transpose() * (f.template block<3, 1>(0, q) - fields.points[q].weight * mean);
+  return f;
+}
+
 }  // namespace
 
 template <int N>
@@ -39,10 +57,10 @@ Shell::SecondOrder<N> Shell::calc_second_order(const ShellFields<N>& fields, con
   SecondOrder<N> s;
   const auto& plate = fields.plate;
   Eigen::Matrix<double, 2, N> arm_force = Eigen::Matrix<double, 2, N>::Zero();
+  const Eigen::Matrix<double, kNumForces, N> forces = calc_working_forces<N>(fields, force);
   for (int q = 0; q < N; ++q) {
     const auto& point = fields.points[q];
-    const Eigen::Matrix<double, kNumForces, 1> f =
-        point.weight * Eigen::Map<const Eigen::Matrix<double, kNumForces, 1>>(force + kNumForces * q);
+    const auto f = forces.col(q);
     Eigen::Matrix2d n, m;
     n << f[0], f[2], f[2], f[1];
     m << f[3], f[5], f[5], f[4];

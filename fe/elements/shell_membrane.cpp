@@ -33,16 +33,15 @@ void set_bilinear(const Points<N>& points, Membrane<N>& m) {
   }
 }
 
-/// The incompatible modes of Taylor, Beresford & Wilson, IJNME 10 (1976) 1211-1219 (QM6), condensed into the strains.
-void add_modes(const Corners<4>& xy, const Points<4>& points, const ShellSection& section, const Plate<4>& plate,
-               Membrane<4>& m) {
+/// The incompatible modes of Taylor, Beresford & Wilson, IJNME 10 (1976) 1211-1219 (QM6), condensed into the strains. They
+/// do no work on the forces of curvature, B κ̄, which are constant.
+void add_modes(const Corners<4>& xy, const Points<4>& points, const ShellSection& section, Membrane<4>& m) {
   const Point<4> centre = calc_centre<4>(xy);
   auto& modes = m.mode;
   Eigen::Matrix4d& Kaa = m.mode_stiffness;
   Kaa.setZero();
   m.has_modes = true;
-  Eigen::Matrix<double, 4, 12> Kau = Eigen::Matrix<double, 4, 12>::Zero(), Kap = Kau;
-  m.coupled = !section.B.isZero(0);
+  Eigen::Matrix<double, 4, 12> Kau = Eigen::Matrix<double, 4, 12>::Zero();
   for (int q = 0; q < 4; ++q) {
     const auto& p = points[q];
     // J at the centre, scaled, so that the modes do no work on constant stress.
@@ -52,14 +51,9 @@ void add_modes(const Corners<4>& xy, const Points<4>& points, const ShellSection
     const Eigen::Matrix<double, 4, 3> stress = p.weight * modes[q].transpose() * section.A;
     Kaa.noalias() += stress * modes[q];
     Kau.noalias() += stress * m.strain[q];
-    if (m.coupled) Kap.noalias() += p.weight * modes[q].transpose() * section.B * plate.bending[q];
   }
-  const Eigen::LDLT<Eigen::Matrix4d> factor(Kaa);
-  const Eigen::Matrix<double, 4, 12> by_membrane = factor.solve(Kau);
+  const Eigen::Matrix<double, 4, 12> by_membrane = Kaa.ldlt().solve(Kau);
   for (int q = 0; q < 4; ++q) m.strain[q].noalias() -= modes[q] * by_membrane;
-  if (!m.coupled) return;
-  const Eigen::Matrix<double, 4, 12> by_plate = factor.solve(Kap);
-  for (int q = 0; q < 4; ++q) m.strain_of_plate[q].noalias() = -modes[q] * by_plate;
 }
 
 /// Linear stresses in equilibrium about the centre, in units of `size`.
@@ -169,12 +163,28 @@ void set_andes(const Corners<3>& xy, const Points<3>& points, const ShellSection
   }
 }
 
+template <int N>
+void set_coupling(const Points<N>& points, const ShellSection& section, const Plate<N>& plate, Membrane<N>& m) {
+  m.stretch = calc_stretch_of_curvature(section);
+  m.coupled = !m.stretch.isZero(0);
+  if (!m.coupled) return;
+  Strains<N> mean = Strains<N>::Zero();
+  double area = 0;
+  for (int q = 0; q < N; ++q) {
+    mean += points[q].weight * plate.bending[q];
+    area += points[q].weight;
+  }
+  mean /= area;
+  for (int q = 0; q < N; ++q) m.strain_of_plate[q] = m.stretch * (plate.bending[q] - mean);
+}
+
 }  // namespace
 
 template <int N>
 Membrane<N> calc_membrane(MembraneKind kind, const Corners<N>& xy, const Points<N>& points, const ShellSection& section,
-                          [[maybe_unused]] const Plate<N>& plate) {
+                          const Plate<N>& plate) {
   Membrane<N> m;
+  set_coupling<N>(points, section, plate, m);
   if (kind == MembraneKind::Drilling && section.A.determinant() > 0) {
     if constexpr (N == 4)
       set_hybrid(xy, points, section, m);
@@ -191,7 +201,7 @@ Membrane<N> calc_membrane(MembraneKind kind, const Corners<N>& xy, const Points<
     m.spring_weight[q] = section.drilling * points[q].weight;
   }
   if constexpr (N == 4) {
-    if (!section.A.isZero(0)) add_modes(xy, points, section, plate, m);
+    if (!section.A.isZero(0)) add_modes(xy, points, section, m);
   }
   return m;
 }

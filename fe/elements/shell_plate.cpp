@@ -1,3 +1,4 @@
+#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "fe/elements/shell_fields.hpp"
@@ -75,6 +76,12 @@ Eigen::Matrix<double, 2, N> calc_side_vectors(const Plate<N>& plate, const Point
 
 }  // namespace
 
+Eigen::Matrix3d calc_stretch_of_curvature(const ShellSection& section) {
+  const Eigen::LLT<Eigen::Matrix3d> A(section.A);
+  if (section.B.isZero(0) || A.info() != Eigen::Success) return Eigen::Matrix3d::Zero();
+  return -A.solve(section.B);
+}
+
 template <int N>
 Points<N> calc_points(const Corners<N>& xy) {
   Points<N> points;
@@ -94,6 +101,7 @@ template <int N>
 Plate<N> calc_plate(const Corners<N>& xy, const Points<N>& points, const ShellSection& section) {
   Plate<N> plate;
   double side_force[N];  // Q_s per mean
+  const Eigen::Matrix3d law = section.D + section.B.transpose() * calc_stretch_of_curvature(section);
   for (int k = 0; k < N; ++k) {
     auto& side = plate.sides[k];
     side.i = kSides<N>[k][0], side.j = kSides<N>[k][1];
@@ -103,7 +111,7 @@ Plate<N> calc_plate(const Corners<N>& xy, const Points<N>& points, const ShellSe
     const double L = side.length, cs = side.t.x(), sn = side.t.y();
     // Bending and shear stiffness along the side (Katili, Part I, eq. 16 for an isotropic plate).
     const Eigen::Vector3d e(cs * cs, sn * sn, 2 * cs * sn);
-    const double rigid_force = 12 * e.dot(section.D * e) / (L * L);
+    const double rigid_force = 12 * e.dot(law * e) / (L * L);
     side.phi = section.shear_flexible ? rigid_force / side.t.dot(section.S * side.t) : 0;
     side_force[k] = rigid_force;
     side.mean.setZero();

@@ -3,6 +3,7 @@ import os
 import random
 import resource
 import shutil
+import struct
 import subprocess
 import time
 
@@ -177,6 +178,29 @@ class HostileFiles(ProgramTest):
                 with open(self.path(name), "wb") as f:
                     f.write(bytes_)
                 self.read(commands[k % len(commands)])
+
+    def test_references_of_texts_lead_to_texts(self):
+        """A number, a length or a place in the heap of texts that is wrong: the library itself copies what is there."""
+        whole = self.get_bytes("boom.h5")
+        heap = whole.rindex(b"GCOL")  # the last one has room left
+        objects, at = {}, heap + 16
+        while (head := struct.unpack_from("<HHIQ", whole, at))[0]:
+            objects[head[0]] = (at, head[3])
+            at += 16 + (head[3] + 7) // 8 * 8
+        number = max(objects, key=lambda n: objects[n][1])
+        place, length = objects[number]
+        reference = whole.index(struct.pack("<IQI", length, heap, number))
+        changes = {"number": (reference + 12, "<I", 60000), "length": (reference, "<I", length - 1),
+                   "heap": (reference + 4, "<Q", heap + 8), "far heap": (reference + 4, "<Q", 1 << 40),
+                   "size": (place + 8, "<Q", len(whole)), "size beyond the heap": (place + 8, "<Q", 1 << 62),
+                   "end of the heap": (at + 8, "<Q", 1 << 20), "size of the heap": (heap + 8, "<Q", len(whole))}
+        for what, (where, kind, value) in changes.items():
+            with self.subTest(what):
+                bytes_ = bytearray(whole)
+                struct.pack_into(kind, bytes_, where, value)
+                with open(self.path("boom.h5"), "wb") as f:
+                    f.write(bytes_)
+                self.refused(self.READ_BODY[:2], "hdf5.damaged")
 
     def test_matlab_files(self):
         shutil.copy(self.maker.path("boom.bdf"), self.folder)

@@ -34,7 +34,7 @@ class Interlaminar(ProgramTest):
                 text += f"CQUAD8,{e + 1},1," + ",".join(map(str, corners + sides[:2])) + "\n," + ",".join(map(str, sides[2:])) + f",,,,,{theta}\n"
             else:
                 corners = [grid[e, 0], grid[e + 1, 0], grid[e + 1, 1], grid[e, 1]]
-                text += f"CQUAD4,{e + 1},1," + ",".join(map(str, corners)) + f",{theta}\n"
+                text += f"{card},{e + 1},1," + ",".join(map(str, corners)) + f",{theta}\n"
         at_end = [grid[columns - 1, j] for j in range(rows)]
         shares = [1 / 6, 4 / 6, 1 / 6] if quadratic else [.5, .5]
         text += "".join(f"FORCE,2,{g},,{V * s:.12g},0.,0.,1.\n" for g, s in zip(at_end, shares))
@@ -89,9 +89,9 @@ class Interlaminar(ProgramTest):
         neutral = (E * t * middle).sum() / (E * t).sum()
         EI = (E * ((z[1:] - neutral)**3 - (z[:-1] - neutral)**3) / 3).sum()
         ES = -np.cumsum(E * t * (middle - neutral))
-        for card, z0 in (("CQUAD8", ""), ("CQUAD8", "0.")):
+        for card, z0 in (("CQUAD8", ""), ("CQUAD8", "0."), ("CQUAD4", ""), ("CQUAD4", "0."), ("CQUADR", "0.")):
             stress = self.solve(self.CROSS + f"PCOMP,1,{z0}\n,2,2.-3,90.,YES,2,1.-3,0.,YES\n,2,1.-3,0.,YES\n", card)
-            np.testing.assert_allclose(self.Q["Qx"], V / WIDTH, rtol=1e-7)
+            np.testing.assert_allclose(self.Q["Qx"], V / WIDTH, rtol=1e-7, err_msg=card + z0)
             for k in (1, 2):
                 np.testing.assert_allclose(stress[f"xz@bond{k}"], V / WIDTH * ES[k - 1] / EI, rtol=1e-7)
 

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "formats/hdf5/detail/handle.hpp"
+#include "formats/hdf5/detail/text_heaps.hpp"
 #include "formats/hdf5/inspect.hpp"
 
 namespace bough::hdf5 {
@@ -76,6 +78,7 @@ class Walker {
     const Handle access = make_file_access();
     const Handle file(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
     if (!file.is_valid()) return {};  // who opens it for its content says why
+    heaps_.emplace(file.get());
     const Handle root(H5Gopen2(file.get(), "/", H5P_DEFAULT), H5Gclose);
     if (root.is_valid()) {
       seen_.insert(get_address(root.get()));
@@ -137,14 +140,24 @@ class Walker {
     if (count * static_cast<double>(H5Tget_size(type.get())) > std::max(file_size_, kMega))
       return report_claim(what + " claims more than the file holds");
     if (!memory.is_valid() || H5Sget_simple_extent_type(space.get()) == H5S_NULL || count == 0) return;
+    if (is_text(memory)) {
+      std::vector<char> references(static_cast<std::size_t>(count) * heaps_->reference_size());
+      if (H5Aread(attribute.get(), heaps_->reference_type(), references.data()) < 0 || !heaps_->holds(references))
+        return report_unreadable(what);
+    }
     std::vector<char> data(static_cast<std::size_t>(count) * H5Tget_size(memory.get()));
     if (H5Aread(attribute.get(), memory.get(), data.data()) < 0) return report_unreadable(what);
     free_text(memory, space, data);
   }
 
+  /// Of variable length.
+  static bool is_text(const Handle& memory) {
+    return H5Tget_class(memory.get()) == H5T_STRING && H5Tis_variable_str(memory.get()) > 0;
+  }
+
   /// Counts and gives back the texts that variable strings point to.
   void free_text(const Handle& memory, const Handle& space, std::vector<char>& data) {
-    if (H5Tget_class(memory.get()) != H5T_STRING || H5Tis_variable_str(memory.get()) <= 0) return;
+    if (!is_text(memory)) return;
     auto** texts = reinterpret_cast<char**>(data.data());
     for (std::size_t i = 0; i < data.size() / sizeof(char*); ++i)
       if (texts[i]) text_ += static_cast<double>(std::string_view(texts[i]).size());
@@ -198,6 +211,12 @@ class Walker {
         H5Sselect_hyperslab(from.get(), H5S_SELECT_SET, start.data(), nullptr, block.data(), nullptr);
         to = Handle(H5Screate_simple(static_cast<int>(block.size()), block.data(), nullptr), H5Sclose);
       }
+      if (is_text(memory)) {
+        std::vector<char> references(static_cast<std::size_t>(calc_count(block)) * heaps_->reference_size());
+        if (H5Dread(dataset, heaps_->reference_type(), to.get(), from.get(), H5P_DEFAULT, references.data()) < 0 ||
+            !heaps_->holds(references))
+          return report_unreadable(path);
+      }
       std::vector<char> data(static_cast<std::size_t>(calc_count(block) * width));
       if (H5Dread(dataset, memory.get(), to.get(), from.get(), H5P_DEFAULT, data.data()) < 0)
         return report_unreadable(path);
@@ -211,6 +230,7 @@ class Walker {
   const std::string& path_;
   double file_size_ = 0, unstored_ = 0, text_ = 0, plain_ = 0;
   std::set<haddr_t> seen_;
+  std::optional<TextHeaps> heaps_;
   Diagnostics found_;
 };
 

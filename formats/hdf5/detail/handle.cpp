@@ -39,12 +39,10 @@ bool takes_a_block(int descriptor) {
          ::ftruncate(descriptor, 0) == 0;
 }
 
-namespace {
 int get_descriptor(hid_t file) {
   void* found = nullptr;
   return H5Fget_vfd_handle(file, H5P_DEFAULT, &found) < 0 || !found ? -1 : *static_cast<int*>(found);
 }
-}  // namespace
 
 bool reserve_space(hid_t file, hsize_t more) {
   hsize_t size = 0;

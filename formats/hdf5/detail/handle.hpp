@@ -67,6 +67,9 @@ Handle make_string_type();
 /// file systems.
 Handle make_file_access();
 
+/// What the operating system knows an open file by; -1 where it is not a plain file.
+int get_descriptor(hid_t file);
+
 /// Whether an empty file takes a few bytes, which are cut off again; false, with errno, where that fails. HDF5 itself
 /// does not survive a file that cannot take its first block.
 bool takes_a_block(int descriptor);
