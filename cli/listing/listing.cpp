@@ -57,6 +57,14 @@ bool asks_for(const records::CaseRequests& requests, const std::string& command)
                      [&](const auto& combination) { return asks(combination.selection); });
 }
 
+void note_requests(const records::Deck& deck, const records::CaseRequests& requests,
+                   const std::vector<std::pair<std::string, std::string>>& options, Diagnostics& diagnostics) {
+  for (const auto& [command, option] : options) {
+    if (!asks_for(requests, command)) continue;
+    diagnostics.note("cli.request-by-option", deck.locate({}), "the deck asks for " + command, option + " gives it");
+  }
+}
+
 records::DynamicDeck read_loads_deck_or_throw(const std::string& path, const fe::ModelOptions& options,
                                               Diagnostics& diagnostics) {
   auto deck = is_one_of_many() ? nastran::read_packed_dynamic_deck(share([&] { return nastran::pack_deck(path); }),
@@ -220,6 +228,44 @@ void ListingMaker::add_stresses(const fe::Model& model, const ElementIndex& elem
   }
 }
 
+void ListingMaker::add_energies(const std::vector<records::ElementForces>& elements, double total,
+                                records::ListedStep& step) const {
+  const auto choice = choose(step.subcase, "ESE");
+  if (lists_all_ || !choice || !choice->is_printed) return;
+  for (const auto& of_card : elements) {
+    std::vector<std::pair<int, double>> energies;
+    for (std::size_t k = 0; k < of_card.id.size(); ++k)
+      if (choice->contains(of_card.id[k]))
+        energies.emplace_back(of_card.id[k], of_card.strain_energy[static_cast<Index>(k)]);
+    if (energies.empty()) continue;
+    std::sort(energies.begin(), energies.end());
+    records::ListedEnergies block{of_card.card, {}, VectorXd(static_cast<Index>(energies.size())), total};
+    for (const auto& [id, energy] : energies) {
+      block.energy[static_cast<Index>(block.id.size())] = energy;
+      block.id.push_back(id);
+    }
+    step.energies.push_back(std::move(block));
+  }
+}
+
+void ListingMaker::add_grid_forces(const fe::Model& model, const std::vector<records::GridForce>& forces,
+                                   records::ListedStep& step) const {
+  const auto choice = choose(step.subcase, "GPFORCE");
+  if (lists_all_ || !choice || !choice->is_printed) return;
+  static const std::map<std::string, std::string> names{{"LOAD", "APP-LOAD"}, {"SPC", "F-OF-SPC"}, {"MPC", "F-OF-MPC"}};
+  for (const auto& f : forces) {
+    if (!choice->contains(f.node)) continue;
+    const auto& R = model.node(model.find_node(f.node)).R_basic_cd;
+    records::ListedGridForce row{f.node, f.element, f.source, f.force};
+    if (const auto name = names.find(f.source); f.element == 0 && name != names.end()) row.source = name->second;
+    for (const int part : {0, 3}) row.force.segment<3>(part) = R.transpose() * f.force.segment<3>(part);
+    step.grid_forces.push_back(std::move(row));
+  }
+  std::stable_sort(step.grid_forces.begin(), step.grid_forces.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.grid, a.element > 0) < std::pair(b.grid, b.element > 0);
+  });
+}
+
 void ListingMaker::add_static(const fe::Model& model, const records::StaticSubcase& solved, Diagnostics& diagnostics) {
   auto step = make_step(solved.id);
   step.load_set = solved.load_set;
@@ -230,6 +276,8 @@ void ListingMaker::add_static(const fe::Model& model, const records::StaticSubca
   const auto elements = index_elements(model);
   add_elements(model, elements, solved.elements, sum_beam_loads(model, solved), step, diagnostics);
   add_stresses(model, elements, solved.stresses, solved.elements, step, diagnostics);
+  add_energies(solved.elements, solved.strain_energy, step);
+  add_grid_forces(model, solved.grid_forces, step);
   listing_.steps.push_back(std::move(step));
 }
 
@@ -267,6 +315,7 @@ void ListingMaker::add_modes(const fe::Model& model, const modal::EigenPairs& pa
   }
   const bool has_reactions = choose(subcase, "SPCFORCES").has_value();
   const bool has_forces = choose(subcase, "FORCE").has_value(), has_stresses = choose(subcase, "STRESS").has_value();
+  const bool has_energies = !lists_all_ && choose(subcase, "ESE").has_value();
   const auto elements = has_forces || has_stresses ? index_elements(model) : ElementIndex{};
   for (Index j = 0; j < pairs.lambda.size(); ++j) {
     ListedStep mode = step;
@@ -280,12 +329,13 @@ void ListingMaker::add_modes(const fe::Model& model, const modal::EigenPairs& pa
       VectorXd reaction = fe::calc_reactions(model, residual);
       add_vector(model, "SPCFORCES", ListedKind::SpcForce, reaction, mode);
     }
-    if (has_forces || has_stresses) {
+    if (has_forces || has_stresses || has_energies) {
       const auto forces = fe::calc_element_forces(model, pairs.Phi.col(j), deck_, 0, diagnostics);
       add_elements(model, elements, forces, {}, mode, diagnostics);
       if (has_stresses)
         add_stresses(model, elements, fe::calc_element_stresses(model, pairs.Phi.col(j), deck_, 0), forces, mode,
                      diagnostics);
+      add_energies(forces, 0.5 * roots.stiffness(j), mode);
     }
     listing_.steps.push_back(std::move(mode));
   }

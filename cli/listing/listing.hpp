@@ -32,6 +32,10 @@ records::CaseRequests read_requests_once(const std::string& path, Diagnostics& d
 const records::DynamicSelection* find_selection(const records::CaseRequests& requests, int subcase);
 /// A subcase or combination wants some of what this command gives.
 bool asks_for(const records::CaseRequests& requests, const std::string& command);
+/// Notes cli.request-by-option for each of `options`, command of the case control and what gives it here, that some
+/// subcase asks for.
+void note_requests(const records::Deck& deck, const records::CaseRequests& requests,
+                   const std::vector<std::pair<std::string, std::string>>& options, Diagnostics& diagnostics);
 /// read_deck_or_throw with the cards of loads over frequency and time (nastran/dynamic_reader.hpp). Collective.
 records::DynamicDeck read_loads_deck_or_throw(const std::string& path, const fe::ModelOptions& options,
                                               Diagnostics& diagnostics);
@@ -72,6 +76,11 @@ class ListingMaker {
                     const std::vector<records::ElementStresses>& stresses,
                     const std::vector<records::ElementForces>& forces, records::ListedStep& step,
                     Diagnostics& diagnostics);
+  /// Only where the deck asks for them.
+  void add_energies(const std::vector<records::ElementForces>& elements, double total,
+                    records::ListedStep& step) const;
+  void add_grid_forces(const fe::Model& model, const std::vector<records::GridForce>& forces,
+                       records::ListedStep& step) const;
   void report_sets(Diagnostics& diagnostics) const;
 
   const records::Deck& deck_;

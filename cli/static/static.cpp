@@ -74,6 +74,15 @@ void check_forces_grids(const std::vector<int>& ids, const records::Deck& deck) 
   }
 }
 
+/// Of the forces on all grids, which the listing had, those that --grid-forces asks for.
+void keep_grid_forces(const std::vector<std::string>& words, records::StaticResult& result) {
+  const auto ids = read_grids(words);
+  for (auto& subcase : result.subcases)
+    std::erase_if(subcase.grid_forces, [&](const records::GridForce& f) {
+      return words.empty() || (!ids.empty() && std::find(ids.begin(), ids.end(), f.node) == ids.end());
+    });
+}
+
 /// SUBCOM, SYMCOM and REPCASE behind the subcases.
 void add_combinations(const records::Deck& deck, const records::CaseRequests& requests, const fe::Model& model,
                       records::StaticResult& result, SubcaseFailures& failures, ListingMaker* listing,
@@ -124,12 +133,17 @@ int run_static(const StaticOptions& options) {
   }
   records::StaticResult result;
   fe::CaseSolver solver(deck, make_model_options(options.model));
-  if (!options.grid_forces.empty()) solver.ask_grid_forces(read_grids(options.grid_forces));
   SubcaseFailures failures(subcases.size(), deck.subcases.size());
   std::optional<ListingMaker> listing;
   const auto requests = read_requests_once(options.deck, diagnostics);
   if (options.has_strains || asks_for(requests, "STRAIN")) solver.ask_strains();
   if (!options.listing.empty()) listing.emplace(deck, requests, diagnostics);
+  const bool lists_forces = listing && asks_for(requests, "GPFORCE");
+  if (lists_forces || !options.grid_forces.empty())
+    solver.ask_grid_forces(lists_forces ? std::vector<int>{} : read_grids(options.grid_forces));
+  if (!listing) note_requests(deck, requests, {{"ESE", "--f06 FILE, or -o FILE.h5,"}}, diagnostics);
+  if (!listing && options.grid_forces.empty())
+    note_requests(deck, requests, {{"GPFORCE", "--f06 FILE, or --grid-forces all,"}}, diagnostics);
   diagnostics.throw_if_errors();
   for (std::size_t next = 0; next < subcases.size();)
     for (auto& one : solver.solve_next(std::span(subcases).subspan(next))) {
@@ -149,6 +163,7 @@ int run_static(const StaticOptions& options) {
   if (result.subcases.empty()) failures.throw_all(diagnostics);
   if (options.model.subcase == 0)
     add_combinations(deck, requests, solver.model(), result, failures, listing ? &*listing : nullptr, diagnostics);
+  if (lists_forces) keep_grid_forces(options.grid_forces, result);
   result.dof_map = solver.model().calc_dof_map();
   result.mesh = solver.model().calc_mesh();
   result.source = calc_sources(deck.files);

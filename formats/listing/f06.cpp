@@ -172,6 +172,52 @@ void add_vector(const ListedStep& step, const records::ListedVector& v, Pages& p
   }
 }
 
+/// QUAD4 of CQUAD4.
+std::string name_element(const std::string& card) {
+  return card.starts_with("C") && card != "CONROD" ? card.substr(1) : card;
+}
+
+void add_energies(const ListedStep& step, const records::ListedEnergies& block, Pages& pages) {
+  auto headings = detail::make_step_lines(step);
+  const std::string name = name_element(block.card), gap(20, ' ');
+  headings.insert(headings.end(),
+                  {centre("E L E M E N T   S T R A I N   E N E R G I E S"), " ",
+                   fmt::format("{:16}ELEMENT-TYPE = {:<19}* TOTAL ENERGY OF ALL ELEMENTS IN PROBLEM = {:13.6E}", "",
+                               name, block.total),
+                   " ", fmt::format("{:37}ELEMENT-ID{}STRAIN-ENERGY{}PERCENT OF TOTAL", "", gap.substr(8), gap.substr(8))});
+  pages.begin_table(headings);
+  const auto show = [&](double energy) {
+    return fmt::format("{}{}{:13.4f}", show_real(energy), gap.substr(5),
+                       block.total > 0 ? 100 * energy / block.total : 0.0);
+  };
+  for (std::size_t k = 0; k < block.id.size(); ++k)
+    pages.add_row(fmt::format("{:>47}{}", block.id[k], gap.substr(8)) + show(block.energy[static_cast<Eigen::Index>(k)]));
+  pages.add_row(fmt::format("\n{:23}TYPE = {:<9}SUBTOTAL{}", "", name, gap.substr(8)) + show(block.energy.sum()), 2);
+}
+
+/// Grid by grid, loads and constraints first, then elements, then the sum.
+void add_grid_forces(const ListedStep& step, Pages& pages) {
+  auto headings = detail::make_step_lines(step);
+  headings.insert(headings.end(), {centre("G R I D   P O I N T   F O R C E   B A L A N C E"), " ",
+                                   "   POINT-ID    ELEMENT-ID     SOURCE             T1             T2             T3"
+                                   "             R1             R2             R3"});
+  pages.begin_table(headings);
+  Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
+  const auto add = [&](int grid, int element, const std::string& source, const Eigen::Matrix<double, 6, 1>& force) {
+    std::string row = fmt::format(" {:>10}    {:>10}     {:<10}", grid, element > 0 ? std::to_string(element) : "", source);
+    for (int c = 0; c < 6; ++c) row += "  " + show_real(force[c]);
+    pages.add_row(row);
+  };
+  for (std::size_t k = 0; k < step.grid_forces.size(); ++k) {
+    const auto& f = step.grid_forces[k];
+    add(f.grid, f.element, name_element(f.source), f.force);
+    sum += f.force;
+    if (k + 1 < step.grid_forces.size() && step.grid_forces[k + 1].grid == f.grid) continue;
+    add(f.grid, 0, "*TOTALS*", sum);
+    sum.setZero();
+  }
+}
+
 }  // namespace
 
 std::string make_f06(const records::Listing& listing) {
@@ -196,6 +242,8 @@ std::string make_f06(const records::Listing& listing) {
       if (block.is_printed) detail::add_force_pages(step, block, pages);
     for (const auto& block : step.stresses)
       if (block.is_printed) detail::add_stress_pages(step, block, pages);
+    for (const auto& block : step.energies) add_energies(step, block, pages);
+    if (!step.grid_forces.empty()) add_grid_forces(step, pages);
   }
   return pages.finish();
 }

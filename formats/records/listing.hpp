@@ -43,6 +43,21 @@ struct ListedElements {
   bool is_printed = true;
 };
 
+/// Strain energies of the elements of one card, in ascending order.
+struct ListedEnergies {
+  std::string card;
+  std::vector<int> id;
+  Eigen::VectorXd energy;
+  double total = 0;  ///< of all elements of the structure
+};
+
+/// What acts on a grid: the load, a constraint (element 0) or an element; in displacement (CD) axes.
+struct ListedGridForce {
+  int grid = 0, element = 0;
+  std::string source;
+  Eigen::Matrix<double, 6, 1> force = Eigen::Matrix<double, 6, 1>::Zero();
+};
+
 /// Everything of one subcase, mode, frequency or time.
 struct ListedStep {
   enum class Kind { Static, Mode, Frequency, Time };
@@ -55,6 +70,8 @@ struct ListedStep {
   double at = 0;  ///< Hz or time
   std::vector<ListedVector> vectors;
   std::vector<ListedElements> forces, stresses;
+  std::vector<ListedEnergies> energies;
+  std::vector<ListedGridForce> grid_forces;  ///< by grid in ascending order
 };
 
 struct ListedRoots {

@@ -78,8 +78,8 @@ class LostLoads(ProgramTest):
             self.fails(1, "static", "r.bdf", says=["ENDDATA", "r.bdf:21"])
         self.write("r.bdf", head + "ENDDATA\n")
         text = self.bough("static", "r.bdf").stderr
-        self.assertIn("modes --ese", text)
-        self.assertIn("static --grid-forces all", text)
+        self.assertIn("the deck asks for ESE", text)
+        self.assertIn("--grid-forces all", text)
         self.assertNotIn("nothing to do", text)
 
 

@@ -10,7 +10,7 @@ namespace bough::nastran::detail {
 namespace {
 
 constexpr std::string_view plain_commands =
-    "ACCE BOUT DISP ECHO ELFO ELST FORC GROU HOUT LINE MAXL MEFF MPCF NOUT OLOA OUTP PAGE POST PRES SACC SDIS SET SETS "
+    "ACCE BOUT DISP ECHO ELFO ELST ESE FORC GPFO GROU HOUT LINE MAXL MEFF MPCF NOUT OLOA OUTP PAGE POST PRES SACC SDIS SET SETS "
     "SKIP SORT SPCF STRA STRE SURF SVEC SVEL VECT VELO VOLU";
 
 /// The other commands of the quick reference guides.
@@ -19,7 +19,7 @@ constexpr std::string_view known_commands =
     "AUXT AVLE AXIS B2PP BCHA BCMO BCON BCRE BCSE BFRI BGRE BGSE BLDO BOLT BSEQ BSQU BUCK CAMP CCOM CMET CMSE CMSF "
     "COND COSM CRAC CSSC CYCF CYCS CZRE DACC DATA DATR DBSA DEAC DEFO DEMA DEPO DESF DESG DESM DESO DESS DESV DIVE "
     "DLOA DMTR DRSP DSAP DSPR DSYM DTEM DVEL DYNR DYRL EBDS EDE EFLO EFOR EKE ELAR ELPF ELSD ELSU ENDS ENDT ENFO ENTH "
-    "EQUI ERP ESE EXPL EXTD EXTR EXTS FATI FBOD FLSF FLST FLUX FMET FORM FREQ FRFI FRFO FRFR GCRS GELD GPFO GPKE GPRS "
+    "EQUI ERP EXPL EXTD EXTR EXTS FATI FBOD FLSF FLST FLUX FMET FORM FREQ FRFI FRFO FRFR GCRS GELD GPKE GPRS "
     "GPSD GPST GUST GVEC HADA HARM HDOT HTFL IC INCL INIT INPO INTE INTK IRAN JINT JOIN K2PP K42G KOUN LAMI LINK LOAD "
     "LSEQ M2PP MASS MATR MATV MAXM MAXT MAXU MCFR MEFF MODA MODC MODE MODP MODS MODT MONI MONV MPRE MTXP MXSP NCHI "
     "NLBU "
@@ -38,9 +38,7 @@ std::string_view find_option(std::string_view word) {
     std::string_view command, option;
   };
   static constexpr std::array options{
-      Option{"ESE", "ESE: 'modes --ese'; 'static -o FILE.h5' has the strain energy of each element"},
-      Option{"EKE", "EKE: 'modes --ese'"}, Option{"GPFO", "GPFORCE: 'static --grid-forces all'"},
-      Option{"MAXM", "MAXMIN: 'static --extremes'"}};
+      Option{"EKE", "EKE: 'modes --ese'"}, Option{"MAXM", "MAXMIN: 'static --extremes'"}};
   for (const auto& one : options)
     if (word.substr(0, 4) == one.command) return one.option;
   return {};

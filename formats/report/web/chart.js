@@ -139,10 +139,10 @@ export class Chart {
   }
 
   draw() {
-    const width = is_printing ? kPaperWidth : this.stage.clientWidth;
-    if (width < 50) return;
     this.is_late = !this.is_near && !is_printing;
     if (this.is_late) return;
+    const width = is_printing ? kPaperWidth : this.stage.clientWidth;
+    if (width < 50) return;
     const scale = devicePixelRatio || 1;
     for (const canvas of [this.canvas, this.overlay]) {
       if (canvas.width !== Math.round(width * scale) || canvas.height !== Math.round(this.height * scale)) {
@@ -152,7 +152,7 @@ export class Chart {
         canvas.style.height = this.height + "px";
       }
     }
-    this.stage.style.height = this.height + "px";
+    if (this.stage.clientHeight !== this.height) this.stage.style.height = this.height + "px";
     const frame = { left: kMargin.left, top: kMargin.top, width: width - kMargin.left - kMargin.right, height: this.height - kMargin.top - kMargin.bottom };
     this.frame = frame;
     this.range = this.calc_ranges();

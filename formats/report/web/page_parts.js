@@ -44,17 +44,21 @@ const kColors = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00
 const kDarkColors = ["#4aa8e0", "#f0803c", "#2cc79a", "#e29cc4", "#8fd0f5", "#f2b83a", "#ffffff"];
 const kDashes = [[], [8, 4], [2, 3], [10, 3, 2, 3]];
 
-export const is_dark = () => {
+// Asked of the page once a theme: a picture asks hundreds of times, and the page would be laid out again each time.
+const known = new Map();
+const ask_once = (name, ask) => known.get(name) ?? (known.set(name, ask()), known.get(name));
+
+export const is_dark = () => ask_once("is dark", () => {
   const chosen = document.documentElement.dataset.theme;
   return chosen ? chosen === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-};
+});
 
 export function get_style(index) {
   const colors = is_dark() ? kDarkColors : kColors;
   return { color: colors[index % colors.length], dash: kDashes[Math.floor(index / colors.length) % kDashes.length] };
 }
 
-export const get_css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+export const get_css = (name) => ask_once(name, () => getComputedStyle(document.documentElement).getPropertyValue(name).trim());
 
 const repainters = [];
 // What is to be drawn again when the theme changes.
@@ -64,11 +68,16 @@ export const on_theme = (draw) => repainters.push(draw);
 export function set_theme(theme) {
   if (theme) document.documentElement.dataset.theme = theme;
   else delete document.documentElement.dataset.theme;
+  repaint();
+}
+
+function repaint() {
+  known.clear();
   for (const draw of repainters) draw();
 }
 
 export function make_theme_button() {
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => repainters.forEach((draw) => draw()));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
   return make_button("Light / dark", "Change the colours of the page", () => set_theme(is_dark() ? "light" : "dark"));
 }
 
