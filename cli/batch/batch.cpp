@@ -19,6 +19,7 @@
 #include "cli/batch/worker.hpp"
 #include "cli/batch/worker_pool.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/interrupt.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
@@ -46,7 +47,7 @@ struct Shard {
   bool holds(int number) const { return (number - 1) % count == index; }
 };
 
-/// Set by SIGINT and SIGTERM; a handler can reach nothing but static storage.
+/// Set by SIGINT, SIGTERM and SIGHUP; a handler can reach nothing but static storage.
 volatile int& get_stop() {
   static volatile int stop = 0;
   return stop;
@@ -302,8 +303,7 @@ int run_batch(const BatchOptions& o) {
   pool.num_workers = o.jobs > 0 ? o.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   pool.time_limit = o.time_limit > 0 ? o.time_limit : plan.get_spec().time_limit;
   pool.stop = &get_stop();
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  take_signals(on_signal);
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
   auto shown = begin - std::chrono::seconds(1);

@@ -24,7 +24,16 @@ void end_on_signal(int signal) {
 
 }  // namespace
 
+void take_signals(void (*handler)(int)) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction now {};
+    if (signal == SIGHUP && ::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN) continue;  // nohup
+    std::signal(signal, handler);
+  }
+}
+
 void end_cleanly_on_signals() {
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is an error of the write, which has a message
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction now {};
     if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler == SIG_IGN) continue;

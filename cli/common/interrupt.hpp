@@ -7,6 +7,9 @@ namespace bough::cli {
 /// the signals over.
 void end_cleanly_on_signals();
 
+/// For such verbs: the three signals call `handler`; a hangup that was ignored (nohup) stays so.
+void take_signals(void (*handler)(int));
+
 /// Standard streams that the caller has closed lead to where every write fails, and not into the next file opened.
 void secure_streams();
 

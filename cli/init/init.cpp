@@ -89,6 +89,8 @@ Files make_files(const InitOptions& o, Diagnostics& diagnostics) {
   }
   demand_deck(o.name);
   const auto deck = nastran::read_deck(o.name, {}, diagnostics);
+  if (deck.grids.empty())
+    diagnostics.error("fe.no-grids", {o.name}, "the deck has no GRID", "give the bulk data of a model");
   diagnostics.throw_if_errors();
   made.folder = ".";
   const fs::path folder = fs::absolute(o.output.empty() ? "." : o.output);

@@ -12,6 +12,7 @@
 
 #include "base/part_file.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/interrupt.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/start_state.hpp"
 #include "cli/common/system_files.hpp"
@@ -32,7 +33,7 @@ struct RunOptions : CommonOptions {
   bool resume = false;
 };
 
-/// Set by SIGINT and SIGTERM; a handler can reach nothing but static storage.
+/// Set by SIGINT, SIGTERM and SIGHUP; a handler can reach nothing but static storage.
 std::atomic<bool>& get_stop_flag() {
   static std::atomic<bool> stop{false};
   return stop;
@@ -192,8 +193,7 @@ int run_run(const RunOptions& o) {
   };
   options.stop = &get_stop_flag();
   get_stop_flag().store(false);  // a worker of a campaign comes here once a case
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  take_signals(on_signal);
   solver::SimulateOutcome outcome;
   try {
     outcome = solver::simulate(loaded.system, loaded.spec, sink, options, diagnostics);
@@ -229,7 +229,7 @@ void add_run(CLI::App& app, Action& action) {
   add_common_options(*verb, *o, kOutput | kJson, "Results HDF5 file (default: the system file's name with .h5, here)");
   verb->footer(
       "Example:\n  bough run spinup.toml -o spinup.h5\n  bough run spinup.toml -o spinup.h5 --resume\n"
-      "SIGINT (Ctrl-C) and SIGTERM write a checkpoint and end the file cleanly, with exit code 3. --resume takes the "
+      "SIGINT (Ctrl-C), SIGTERM and SIGHUP write a checkpoint and end the file cleanly, exit code 3. --resume takes the "
       "system file of the run with another duration, other samples or limits; it refuses other changes. A worst "
       "relative energy error above energy_error_limit ends with exit code 3 too, the results are written.");
   verb->callback([&action, o] { action = [o] { return run_run(*o); }; });

@@ -151,12 +151,15 @@ class ResultsWriter final : public records::ResultSink {
     }
     if (!events_.empty()) {
       const Handle text = make_string_type();
+      std::vector<double> times;
+      std::vector<const char*> texts;
       for (const auto& event : events_) {
-        const char* what = event.what.c_str();
-        file_.append(event_time_, num_events_, 1, 1, H5T_NATIVE_DOUBLE, &event.time);
-        file_.append(event_what_, num_events_, 1, 1, text.get(), &what);
-        ++num_events_;
+        times.push_back(event.time);
+        texts.push_back(event.what.c_str());
       }
+      file_.append(event_time_, num_events_, events_.size(), 1, H5T_NATIVE_DOUBLE, times.data());
+      file_.append(event_what_, num_events_, events_.size(), 1, text.get(), texts.data());
+      num_events_ += events_.size();
       events_.clear();
     }
     file_.flush();

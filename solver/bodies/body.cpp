@@ -91,7 +91,7 @@ void Body::add_second_order(const records::FlexBody& flex) {
   L_t_.topRows(n) = field_.L.transpose();
   B_ = field_.B;
   gamma1_rest_t_ = MatrixXd::Zero(rows, 3);
-  gamma1_rest_t_.topRows(n) = integrals.gamma1.leftCols(n).transpose();
+  if (n > 0) gamma1_rest_t_.topRows(n) = integrals.gamma1.leftCols(n).transpose();  // without modes of no size
   J1_rest_t_ = MatrixXd::Zero(rows, 6);
   J0_rest_ = J0_ - pack_inertia(field_.A0 * field_.A0.transpose());
   MatrixXd J(6, n * n), C(3, n * n), A2(3, n * n), C_dot(3, n * (n + 1) / 2);

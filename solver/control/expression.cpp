@@ -13,6 +13,9 @@ class Expression final : public Block {
  public:
   std::vector<mu::Parser> parsers;
   std::unique_ptr<double[]> variables;  // u1..., t
+  bool uses_time = false;
+
+  bool depends_on_time() const override { return uses_time && sizes.sample_time == 0; }
 
   void calc_outputs(const BlockInput& in, double* y) const override {
     for (int i = 0; i < sizes.inputs; ++i) variables[static_cast<size_t>(i)] = in.u[i];
@@ -46,6 +49,7 @@ std::unique_ptr<Block> make_expression(SettingsReader& keys, const ControllerWir
       parser.DefineFun("step", &calc_step);
       parser.SetExpr(text);
       parser.Eval();
+      made->uses_time = made->uses_time || parser.GetUsedVar().count("t") > 0;
       made->parsers.push_back(std::move(parser));
     } catch (const mu::Parser::exception_type& error) {
       keys.error("control.bad-expression", "has the expression \"" + text + "\": " + error.GetMsg(),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bough::solver {
 namespace {
@@ -13,27 +14,31 @@ size_t find_interval(const std::vector<double>& x, double t) {
 }
 
 double calc_range(const std::vector<double>& y) {
-  const auto [least, most] = std::minmax_element(y.begin(), y.end());
-  return *most - *least;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const double v : y) {
+    if (!std::isfinite(v)) continue;
+    least = std::min(least, v);
+    most = std::max(most, v);
+  }
+  return most - least;
 }
 
-/// A point wherever the table has changed by a quarter of its range since the last one, and the point before the first
-/// change of each such stretch.
+}  // namespace
+
 std::vector<double> find_landmarks(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<double> found;
   const double least = 0.25 * calc_range(y);
   if (!(least > 0)) return found;
-  double last = y.front();
-  for (size_t i = 1; i < x.size(); ++i) {
-    if (std::abs(y[i] - last) < least) continue;
+  const auto first = std::find_if(y.begin(), y.end(), [](double v) { return std::isfinite(v); });
+  double last = *first;
+  for (auto i = static_cast<size_t>(first - y.begin()) + 1; i < x.size(); ++i) {
+    if (!(std::abs(y[i] - last) >= least)) continue;
     if (found.empty() || found.back() < x[i - 1]) found.push_back(x[i - 1]);
     found.push_back(x[i]);
     last = y[i];
   }
   return found;
 }
-
-}  // namespace
 
 std::vector<double> LinearTable::corners() const {
   std::vector<double> found = {x_.front()};

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "solver/forces/function_parameters.hpp"
+#include "solver/forces/table.hpp"
 
 namespace bough::solver {
 namespace {
@@ -18,7 +19,7 @@ class TimeExpression final : public TimeFunction {
  public:
   std::vector<mu::Parser> parsers;  ///< f; or f, its rate and its acceleration
   std::unique_ptr<double> t = std::make_unique<double>(0);
-  std::vector<double> jumps;
+  std::vector<double> jumps, marks;
 
   Value calc(double at) const override {
     *t = at;
@@ -27,8 +28,41 @@ class TimeExpression final : public TimeFunction {
     return {parsers[0].Eval(), parsers[1].Eval(), parsers[2].Eval()};
   }
   std::vector<double> breakpoints() const override { return jumps; }
+  std::vector<double> landmarks() const override { return marks; }
   bool has_derivatives() const override { return parsers.size() == 3; }
 };
+
+/// The run in so many parts, at whose ends a formula is looked at.
+constexpr int kLooks = 10'000;
+/// More landmarks are of something that never rests: those alone count that end a rest.
+constexpr size_t kMostMarks = 1000;
+/// A rest is so many times longer than what follows it.
+constexpr double kRest = 5;
+
+/// Of the formula and of its derivatives, as a table of it would have them.
+std::vector<double> find_marks(const TimeExpression& made, const TimeSpan& run) {
+  std::vector<double> x(kLooks + 1), y[3], found;
+  if (!(run.end > run.start)) return found;
+  for (size_t i = 0; i < x.size(); ++i) {
+    x[i] = run.start + static_cast<double>(i) / kLooks * (run.end - run.start);
+    const auto value = made.calc(x[i]);
+    const double all[] = {value.f, value.f_dot, value.f_ddot};
+    for (size_t d = 0; d < made.parsers.size(); ++d) y[d].push_back(all[d]);
+  }
+  for (size_t d = 0; d < made.parsers.size(); ++d) {
+    auto marks = bough::solver::find_landmarks(x, y[d]);
+    if (marks.size() > kMostMarks) {
+      std::vector<double> ends;
+      for (size_t i = 1; i + 1 < marks.size(); ++i)
+        if (marks[i] - marks[i - 1] > kRest * (marks[i + 1] - marks[i])) ends.insert(ends.end(), {marks[i], marks[i + 1]});
+      marks = std::move(ends);
+    }
+    found.insert(found.end(), marks.begin(), marks.end());
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
 
 /// df/dt at t by differences of the fourth order.
 template <class Function>
@@ -42,11 +76,18 @@ void check_derivatives(const TimeExpression& made, const TimeSpan& run, Function
   for (const double t : made.jumps)
     if (t > run.start && t < run.end) ends.push_back(t);
   std::sort(ends.begin(), ends.end());
-  constexpr int kPlaces = 7;
+  constexpr int kPlaces = 7, kSizes = 200;
   constexpr double kClose = 1e-4;
   for (size_t i = 1; i < ends.size(); ++i) {
     const double length = ends[i] - ends[i - 1], h = 1e-4 * length;
     if (!(length > 0)) continue;
+    // Formulas round to their largest terms, which may cancel: 1 + tanh(t) is 0 where its slope is not.
+    double size[] = {0, 0};
+    for (int k = 0; k <= kSizes; ++k) {
+      const auto there = made.calc(ends[i - 1] + (k + 0.5) / (kSizes + 1) * length);
+      if (std::isfinite(there.f)) size[0] = std::max(size[0], std::abs(there.f));
+      if (std::isfinite(there.f_dot)) size[1] = std::max(size[1], std::abs(there.f_dot));
+    }
     for (int k = 0; k < kPlaces; ++k) {
       const double t = ends[i - 1] + (k + 0.5) / kPlaces * length;
       const auto value = [&](double at) { return made.calc(at).f; };
@@ -58,7 +99,7 @@ void check_derivatives(const TimeExpression& made, const TimeSpan& run, Function
       const double given[] = {here.f_dot, here.f_ddot};
       for (int d = 0; d < 2; ++d) {
         const double scale = std::max(std::abs(slopes[d]), std::abs(given[d]));
-        const double blur = 10 * std::abs(slopes[d] - again[d]) + 1e-9 * std::abs(d == 0 ? here.f : here.f_dot) / h;
+        const double blur = 10 * std::abs(slopes[d] - again[d]) + 1e-9 * size[d] / h;
         if (!(std::abs(again[d] - given[d]) > kClose * scale + blur)) continue;
         std::ostringstream what;
         what << "has a " << (d == 0 ? "rate" : "acceleration") << " of " << given[d] << " at t = " << t
@@ -104,6 +145,7 @@ std::unique_ptr<const TimeFunction> make_time_expression(const records::Function
     }
   }
   if (!p.failed() && made->has_derivatives()) check_derivatives(*made, run, p);
+  if (!p.failed()) made->marks = find_marks(*made, run);
   return made;
 }
 

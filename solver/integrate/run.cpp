@@ -16,6 +16,11 @@ constexpr int kCheckpointEvery = 100;
 constexpr double kEnergyWarning = 1e-2;
 /// Relative gap of a constraint that projections do not close.
 constexpr double kOpen = 1e-6;
+/// Of the run: steps cut shorter than that, so many in a row, come to no end that anybody waits for.
+constexpr double kShortCut = 3e-8;
+constexpr int kMostCuts = 20000;
+/// Cuts between two looks at what there is to tell.
+constexpr int kLookUp = 500;
 /// Sine between two axes of a gimbal: nearer ones are worth a warning.
 constexpr double kNearLock = 0.01;
 /// Motions of so many absolute tolerances have an energy below which nothing is judged.
@@ -67,6 +72,10 @@ StepperOptions make_stepper_options(const SystemOde& ode, const records::Simulat
   o.absolute_tolerance.tail(ode.size() - ode.num_coordinates() - ode.num_z())
       .setConstant(std::sqrt(s.absolute_tolerance));
   o.step = plan.step;
+  // What the samples see the steps see too.
+  const auto& places = ode.system().impl().signals.places;
+  if (o.step == 0 && std::any_of(places.begin(), places.end(), [](const auto& p) { return p.block->depends_on_time(); }))
+    o.step = plan.output_step;
   o.rk_order = s.rk_order;
   return o;
 }
@@ -184,6 +193,7 @@ SimulateOutcome Run::go() {
     restarts = true;
     if (is_cut) {
       leave_corners(t);
+      if (settle_cut(t)) return *outcome_;
       continue;
     }
     t = stop.time;
@@ -198,6 +208,28 @@ SimulateOutcome Run::go() {
   }
   save(timeline_.end());
   return close(timeline_.end(), "");
+}
+
+bool Run::settle_cut(double t) {
+  const double span = timeline_.end() - timeline_.start(), taken = t - cut_at_;
+  num_cuts_ = taken < kShortCut * span ? num_cuts_ + 1 : 0;
+  cut_at_ = t;
+  if (num_cuts_ > kMostCuts)
+    finish_failed(t, "run.stalled",
+                  "the run makes no progress at t = " + short_text(t) + ": " + std::to_string(kMostCuts) +
+                      " switches, impacts or events in a row came within " + short_text(kShortCut * span) +
+                      " of each other",
+                  "give switches a hysteresis, stops room or a stiffness, events values that lie apart");
+  if (num_cuts_ % kLookUp == 0 && options_.progress) {
+    update_progress(t);
+    options_.progress(progress_);
+  }
+  if (is_stop_asked() && t < timeline_.end()) {
+    outcome_ = halt(t);
+    return true;
+  }
+  if (std::chrono::steady_clock::now() - saved_at_ >= options_.checkpoint_after) save(t);
+  return false;
 }
 
 double Run::begin() {

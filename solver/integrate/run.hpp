@@ -31,6 +31,9 @@ class Run {
   /// The first sample, or where a checkpoint left off. The time reached; `outcome_` when an event ends the run there.
   double begin();
   void fire_due(double t);
+  /// Behind a step that something ended at t: whether the run ends there on request. Fails ("run.stalled") where such
+  /// steps make no progress.
+  bool settle_cut(double t);
   /// A checkpoint at a stop is of behind its jump; its events may not have come yet.
   void resume_at_stop(double t);
   /// Energy of motions too small for the tolerances.
@@ -163,6 +166,8 @@ class Run {
   bool has_changed_ = false;                                   ///< the system, since the stepper was started
   bool is_started_ = false;                                    ///< the stepper is
   int num_tiny_ = 0;
+  double cut_at_ = -std::numeric_limits<double>::infinity();  ///< where something last ended a step
+  int num_cuts_ = 0;                                           ///< in quick succession
   VectorXd guards_, last_guards_;
   /// Of a block that switches: since when the last hundreds of switches are counted.
   struct Switching {

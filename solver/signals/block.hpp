@@ -58,6 +58,9 @@ class Block {
   /// The memory after guard `guard` has become positive; the guard must not be positive any more.
   virtual void switch_over(const BlockInput& in, int guard, double* d) const;
 
+  /// Whether the outputs depend on the time itself: a step that passes over a short event of theirs would not see it.
+  virtual bool depends_on_time() const { return false; }
+
   /// How many of its inputs an event may choose among; 0: none.
   virtual int num_choices() const { return 0; }
   /// The memory with input `choice` (from 0) passed on.

@@ -195,8 +195,12 @@ class BadHdf5(ProgramTest):
         self.write("deck.bdf", BEAM)
         self.bough("reduce", "deck.bdf", "--modes", "2", "-o", "body.h5")
         with h5py.File(self.path("body.h5"), "a") as f:
-            f["/stiffening/kg_inertial"][0, 0, 1] = 1e9
+            size = np.abs(f["/stiffening/kg_inertial"][0]).max()
+            f["/stiffening/kg_inertial"][0, 0, 1] += 1e-5 * size
         self.fails(1, "check", "body.h5", error="cli.bad-body")
+        with h5py.File(self.path("body.h5"), "a") as f:
+            f["/stiffening/kg_inertial"][0, 0, 1] = 1e9
+        self.fails(1, "check", "body.h5", says=["/stiffening/kg_inertial is not symmetric"], error="hdf5.value")
         self.write("system.toml", SYSTEM)
         self.bough("run", "system.toml", "-o", "out.h5")
         with h5py.File(self.path("out.h5"), "a") as f:

@@ -47,6 +47,16 @@ void check_rigid(FileReader& file, const records::FlexBody& body) {
     found << "/rigid/inertia has the principal moment " << principal[0];
     file.error("hdf5.value", found.str(), kAdvice);
   }
+  const Eigen::Matrix3d about_cg =
+      body.inertia - body.mass * (body.cg.squaredNorm() * Eigen::Matrix3d::Identity() - body.cg * body.cg.transpose());
+  const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(about_cg, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  if (least < -kAsymmetry * std::abs(principal[2]) && principal[0] >= 0) {
+    std::ostringstream found;
+    found << "/rigid/inertia, about the origin of the frame, is too small for /rigid/mass at /rigid/cg: about the "
+             "centre of mass it has the principal moment "
+          << least;
+    file.error("hdf5.value", found.str(), kAdvice);
+  }
 }
 
 }  // namespace
@@ -61,6 +71,8 @@ void check_sense(FileReader& file, const records::FlexBody& body) {
   check_rigid(file, body);
   check_symmetric(file, "/modal/mass", body.modal_mass);
   check_symmetric(file, "/modal/stiffness", body.modal_stiffness);
+  for (const auto& kg : body.kg_inertial) check_symmetric(file, "/stiffening/kg_inertial", kg);
+  for (const auto& kg : body.kg_external) check_symmetric(file, "/stiffening/kg_external", kg);
   for (Eigen::Index j = 0; j < body.modal_mass.rows(); ++j) {
     if (!(body.modal_mass(j, j) < 0)) continue;
     std::ostringstream what;

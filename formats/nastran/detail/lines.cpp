@@ -112,6 +112,11 @@ class Loader {
       is_after_empty = false;
       source_.lines.push_back({line, {file, cursor.get_number()}});
     }
+    if (depth() == 1 && !done_ && !source_.lines.empty() && text.back() != '\n')
+      diagnostics_.warning("deck.cut-off",
+                           {source_.files[static_cast<std::size_t>(file)], cursor.get_number(), 0},
+                           "the deck ends within this line, without ENDDATA: it may have been cut off",
+                           "compare it with the original; write ENDDATA at its end");
   }
 
   void push(const std::string& name) { chain_.push_back(name); }

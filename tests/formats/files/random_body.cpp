@@ -101,6 +101,8 @@ FlexBody make_random_body(unsigned seed, int n, int p, bool full) {
   body.mass = std::abs(r.next());
   body.cg = r.make(3, 1);
   body.inertia = r.make_definite(3);
+  body.inertia +=
+      body.mass * (body.cg.squaredNorm() * Eigen::Matrix3d::Identity() - body.cg * body.cg.transpose());
   for (int k = 0; k < p; ++k) body.node_id.push_back(7 * k + 1);
   body.node_xyz = r.make(p, 3);
   if (p > 1) body.interface_nodes = {8};
@@ -118,7 +120,7 @@ FlexBody make_random_body(unsigned seed, int n, int p, bool full) {
   body.masses = "bodies";
   for (std::size_t i = 0; i < records::kNumInertialLoads; ++i) {
     body.kg_inertial_computed[i] = i % 2 == 0;
-    body.kg_inertial[i] = i % 2 == 0 ? r.make(n, n) : MatrixXd::Zero(n, n);
+    body.kg_inertial[i] = i % 2 == 0 ? r.make_symmetric(n) : MatrixXd::Zero(n, n);
   }
   body.external_load = MatrixXd::Zero(n, 0);
   body.load_resultant = MatrixXd::Zero(6, 0);
@@ -127,7 +129,7 @@ FlexBody make_random_body(unsigned seed, int n, int p, bool full) {
   body.lumped = make_integrals(r, n);
   body.consistent = make_integrals(r, n);
   body.locators = {{"tip x", 8, 1}, {"tip y", 8, 2}, {"thrust", 0, 0}};
-  for (int e = 0; e < 3; ++e) body.kg_external.push_back(r.make(n, n));
+  for (int e = 0; e < 3; ++e) body.kg_external.push_back(r.make_symmetric(n));
   body.external_load = r.make(n, 3);
   body.load_resultant = r.make(6, 3);
   for (int e = 0; e < 3; ++e) body.load_moment.push_back(r.make(3, n));

@@ -37,7 +37,7 @@ TEST(Fields, GridInEveryFormat) {
       "GRID*,7,2,1.5,-2.-3\n*,30.,3,126\n",
       // carriage returns, no end of line at the end
       "GRID    7       2       1.5     -2.-3   30.     3       126\r\n",
-      "$ first\n\n   \nGRID,7,2,1.5,-2.-3,30.,3,126",
+      "$ first\n\n   \nGRID,7,2,1.5,-2.-3,30.,3,126\nENDDATA",
   };
   for (const char* text : spellings) {
     SCOPED_TRACE(text);
