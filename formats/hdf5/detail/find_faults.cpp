@@ -137,6 +137,7 @@ class Walker {
     const Handle type(H5Aget_type(attribute.get()), H5Tclose), space(H5Aget_space(attribute.get()), H5Sclose);
     const Handle memory = make_memory_type(type.get());
     const double count = calc_count(get_dims(space.get()));
+    if (count > 0 && H5Tget_size(type.get()) == 0) return report_claim(what + " has values without a size");
     if (count * static_cast<double>(H5Tget_size(type.get())) > std::max(file_size_, kMega))
       return report_claim(what + " claims more than the file holds");
     if (!memory.is_valid() || H5Sget_simple_extent_type(space.get()) == H5S_NULL || count == 0) return;
@@ -173,6 +174,7 @@ class Walker {
     const int num_filters = H5Pget_nfilters(creation.get());
     const Dims dims = get_dims(space.get());
     const double width = static_cast<double>(H5Tget_size(type.get())), size = calc_count(dims) * width;
+    if (calc_count(dims) > 0 && width == 0) return report_claim(path + " has values without a size");
     if (H5Sget_simple_extent_type(space.get()) == H5S_NULL || size == 0) return;
     double chunk_size = 0;
     if (layout == H5D_CHUNKED) {
