@@ -188,8 +188,7 @@ int run_modes(const ModesOptions& options) {
   bool is_first = true;
   std::optional<ListingMaker> listing;
   if (!options.listing.empty()) listing.emplace(deck, requests, diagnostics);
-  if (!listing && !options.energies)
-    note_requests(deck, requests, {{"ESE", "--f06 FILE, or --ese,"}}, diagnostics);
+  if (!listing && !options.energies) note_requests(deck, requests, {{"ESE", "--f06 FILE, or --ese,"}}, diagnostics);
   diagnostics.throw_if_errors();
   for (const auto& task : tasks) {
     Diagnostics own;

@@ -57,7 +57,8 @@ template <int N>
 Plate<N> calc_plate(const Corners<N>& xy, const Points<N>& points, const ShellSection& section);
 
 /// [3×3] -A⁻¹ B: strains that curvatures draw with them where no membrane force may grow (Reddy, Mechanics of Laminated
-/// Composite Plates and Shells, §4.2), so that moments are (D - Bᵀ A⁻¹ B) κ. Zero without coupling, or with a singular A.
+/// Composite Plates and Shells, §4.2), so that moments are (D - Bᵀ A⁻¹ B) κ. Zero without coupling, or with a singular
+/// A.
 Eigen::Matrix3d calc_stretch_of_curvature(const ShellSection& section);
 
 enum class MembraneKind { Plain, Drilling };
@@ -65,11 +66,12 @@ enum class MembraneKind { Plain, Drilling };
 template <int N>
 struct Membrane {
   std::array<Strains<N>, N> strain;
-  bool has_rotations = false;                 ///< the corners' θz strain it
-  bool coupled = false;                       ///< stretch and strain_of_plate count
-  Eigen::Matrix3d stretch;                    ///< -A⁻¹ B
-  /// -A⁻¹ B (κ - κ̄) with κ̄ the mean over the element: without it the membrane, which is poorer than the plate, would hold
-  /// curvatures that vary. Enhanced strain of zero mean (Simo & Rifai, IJNME 29 (1990) 1595-1638): constant states stay.
+  bool has_rotations = false;  ///< the corners' θz strain it
+  bool coupled = false;        ///< stretch and strain_of_plate count
+  Eigen::Matrix3d stretch;     ///< -A⁻¹ B
+  /// -A⁻¹ B (κ - κ̄) with κ̄ the mean over the element: without it the membrane, which is poorer than the plate, would
+  /// hold curvatures that vary. Enhanced strain of zero mean (Simo & Rifai, IJNME 29 (1990) 1595-1638): constant states
+  /// stay.
   std::array<Strains<N>, N> strain_of_plate;
   /// Strains of the four inner modes, condensed into `strain`, and their own stiffness; only where has_modes.
   bool has_modes = false;

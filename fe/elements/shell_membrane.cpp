@@ -33,8 +33,8 @@ void set_bilinear(const Points<N>& points, Membrane<N>& m) {
   }
 }
 
-/// The incompatible modes of Taylor, Beresford & Wilson, IJNME 10 (1976) 1211-1219 (QM6), condensed into the strains. They
-/// do no work on the forces of curvature, B κ̄, which are constant.
+/// The incompatible modes of Taylor, Beresford & Wilson, IJNME 10 (1976) 1211-1219 (QM6), condensed into the strains.
+/// They do no work on the forces of curvature, B κ̄, which are constant.
 void add_modes(const Corners<4>& xy, const Points<4>& points, const ShellSection& section, Membrane<4>& m) {
   const Point<4> centre = calc_centre<4>(xy);
   auto& modes = m.mode;

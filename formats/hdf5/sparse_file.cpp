@@ -25,8 +25,8 @@ records::SparseMatrix read_sparse(FileReader& file, const std::string& path) {
   if (matrix.num_rows < 0 || matrix.num_cols < 0) {
     fail("the shape is negative");
   } else if (matrix.indptr.size() != static_cast<std::size_t>(matrix.num_rows) + 1) {
-    fail("indptr has " + std::to_string(matrix.indptr.size()) +
-         " entries, expected rows + 1 = " + std::to_string(std::int64_t{matrix.num_rows} + 1) + "; compressed columns are not read");
+    fail("indptr has " + std::to_string(matrix.indptr.size()) + " entries, expected rows + 1 = " +
+         std::to_string(std::int64_t{matrix.num_rows} + 1) + "; compressed columns are not read");
   } else if (matrix.data.size() != matrix.indices.size()) {
     fail("data has " + std::to_string(matrix.data.size()) + " entries, indices " +
          std::to_string(matrix.indices.size()));

@@ -180,18 +180,20 @@ std::string name_element(const std::string& card) {
 void add_energies(const ListedStep& step, const records::ListedEnergies& block, Pages& pages) {
   auto headings = detail::make_step_lines(step);
   const std::string name = name_element(block.card), gap(20, ' ');
-  headings.insert(headings.end(),
-                  {centre("E L E M E N T   S T R A I N   E N E R G I E S"), " ",
-                   fmt::format("{:16}ELEMENT-TYPE = {:<19}* TOTAL ENERGY OF ALL ELEMENTS IN PROBLEM = {:13.6E}", "",
-                               name, block.total),
-                   " ", fmt::format("{:37}ELEMENT-ID{}STRAIN-ENERGY{}PERCENT OF TOTAL", "", gap.substr(8), gap.substr(8))});
+  headings.insert(
+      headings.end(),
+      {centre("E L E M E N T   S T R A I N   E N E R G I E S"), " ",
+       fmt::format("{:16}ELEMENT-TYPE = {:<19}* TOTAL ENERGY OF ALL ELEMENTS IN PROBLEM = {:13.6E}", "", name,
+                   block.total),
+       " ", fmt::format("{:37}ELEMENT-ID{}STRAIN-ENERGY{}PERCENT OF TOTAL", "", gap.substr(8), gap.substr(8))});
   pages.begin_table(headings);
   const auto show = [&](double energy) {
     return fmt::format("{}{}{:13.4f}", show_real(energy), gap.substr(5),
                        block.total > 0 ? 100 * energy / block.total : 0.0);
   };
   for (std::size_t k = 0; k < block.id.size(); ++k)
-    pages.add_row(fmt::format("{:>47}{}", block.id[k], gap.substr(8)) + show(block.energy[static_cast<Eigen::Index>(k)]));
+    pages.add_row(fmt::format("{:>47}{}", block.id[k], gap.substr(8)) +
+                  show(block.energy[static_cast<Eigen::Index>(k)]));
   pages.add_row(fmt::format("\n{:23}TYPE = {:<9}SUBTOTAL{}", "", name, gap.substr(8)) + show(block.energy.sum()), 2);
 }
 
@@ -204,7 +206,8 @@ void add_grid_forces(const ListedStep& step, Pages& pages) {
   pages.begin_table(headings);
   Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
   const auto add = [&](int grid, int element, const std::string& source, const Eigen::Matrix<double, 6, 1>& force) {
-    std::string row = fmt::format(" {:>10}    {:>10}     {:<10}", grid, element > 0 ? std::to_string(element) : "", source);
+    std::string row =
+        fmt::format(" {:>10}    {:>10}     {:<10}", grid, element > 0 ? std::to_string(element) : "", source);
     for (int c = 0; c < 6; ++c) row += "  " + show_real(force[c]);
     pages.add_row(row);
   };

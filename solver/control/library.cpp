@@ -19,6 +19,8 @@ std::map<std::string, ControllerFunctions>& get_hosted() {
 
 class Library final : public Block {
  public:
+  /// What it does with the time is not known.
+  bool depends_on_time() const override { return sizes.sample_time == 0; }
   /// `handle` of dlopen; null where a host lends the functions.
   Library(void* handle, ControllerFunctions f) : handle_(handle), f_(std::move(f)) {}
   ~Library() override {

@@ -13,6 +13,7 @@ size_t find_interval(const std::vector<double>& x, double t) {
   return static_cast<size_t>(std::clamp<std::ptrdiff_t>(it - x.begin() - 1, 0, std::ssize(x) - 2));
 }
 
+/// Of the numbers that are finite; a constant that rounding blurs has none.
 double calc_range(const std::vector<double>& y) {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const double v : y) {
@@ -20,7 +21,7 @@ double calc_range(const std::vector<double>& y) {
     least = std::min(least, v);
     most = std::max(most, v);
   }
-  return most - least;
+  return most - least > 1e-13 * std::max(std::abs(most), std::abs(least)) ? most - least : 0;
 }
 
 }  // namespace

@@ -54,7 +54,8 @@ std::vector<double> find_marks(const TimeExpression& made, const TimeSpan& run) 
     if (marks.size() > kMostMarks) {
       std::vector<double> ends;
       for (size_t i = 1; i + 1 < marks.size(); ++i)
-        if (marks[i] - marks[i - 1] > kRest * (marks[i + 1] - marks[i])) ends.insert(ends.end(), {marks[i], marks[i + 1]});
+        if (marks[i] - marks[i - 1] > kRest * (marks[i + 1] - marks[i]))
+          ends.insert(ends.end(), {marks[i], marks[i + 1]});
       marks = std::move(ends);
     }
     found.insert(found.end(), marks.begin(), marks.end());

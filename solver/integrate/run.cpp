@@ -74,7 +74,8 @@ StepperOptions make_stepper_options(const SystemOde& ode, const records::Simulat
   o.step = plan.step;
   // What the samples see the steps see too.
   const auto& places = ode.system().impl().signals.places;
-  if (o.step == 0 && std::any_of(places.begin(), places.end(), [](const auto& p) { return p.block->depends_on_time(); }))
+  if (o.step == 0 &&
+      std::any_of(places.begin(), places.end(), [](const auto& p) { return p.block->depends_on_time(); }))
     o.step = plan.output_step;
   o.rk_order = s.rk_order;
   return o;
@@ -220,7 +221,7 @@ bool Run::settle_cut(double t) {
                       " switches, impacts or events in a row came within " + short_text(kShortCut * span) +
                       " of each other",
                   "give switches a hysteresis, stops room or a stiffness, events values that lie apart");
-  if (num_cuts_ % kLookUp == 0 && options_.progress) {
+  if (num_cuts_ > 0 && num_cuts_ % kLookUp == 0 && options_.progress) {
     update_progress(t);
     options_.progress(progress_);
   }

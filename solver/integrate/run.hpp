@@ -167,7 +167,7 @@ class Run {
   bool is_started_ = false;                                    ///< the stepper is
   int num_tiny_ = 0;
   double cut_at_ = -std::numeric_limits<double>::infinity();  ///< where something last ended a step
-  int num_cuts_ = 0;                                           ///< in quick succession
+  int num_cuts_ = 0;                                          ///< in quick succession
   VectorXd guards_, last_guards_;
   /// Of a block that switches: since when the last hundreds of switches are counted.
   struct Switching {

@@ -18,7 +18,7 @@ struct Progress {
 };
 
 struct SimulateOptions {
-  std::function<void(const Progress&)> progress;  ///< called at each output sample
+  std::function<void(const Progress&)> progress;  ///< called at each output sample, and between many switches
   const std::atomic<bool>* stop = nullptr;        ///< set by a signal: checkpoint and end cleanly
   std::optional<records::Checkpoint> resume;
   std::chrono::seconds checkpoint_after{60};  ///< where samples are rare; else with every hundredth

@@ -242,7 +242,8 @@ std::vector<Diagnostic> find_faults(const std::string& path) {
   QuietErrors quiet;
   // Only the filters of the library itself: no code is loaded for a file's sake.
   H5PLset_loading_state(0);
-  // What the library never set must not hold what it had there before: it would survive here what it does not elsewhere.
+  // What the library never set must not hold what it had there before: it would survive here what it does not
+  // elsewhere.
   H5garbage_collect();
   H5set_free_list_limits(0, 0, 0, 0, 0, 0);
   return Walker(path).walk();

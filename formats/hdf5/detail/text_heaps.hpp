@@ -1,5 +1,6 @@
 #pragma once
-/// \file Where strings of variable length lie in a file: the references to them, checked before the library follows any.
+/// \file Where strings of variable length lie in a file: the references to them, checked before the library follows
+/// any.
 #include <map>
 #include <vector>
 
@@ -7,9 +8,9 @@
 
 namespace bough::hdf5 {
 
-/// The global heaps of one open file. The library (1.10) takes the heap, the number in it and the length that a reference
-/// tells without looking whether there is such an object, and copies what is there, whatever it is. HDF5 File Format
-/// Specification, Version 3.0, III.E (global heap), IV.A.2.d (variable-length datatype).
+/// The global heaps of one open file. The library (1.10) takes the heap, the number in it and the length that a
+/// reference tells without looking whether there is such an object, and copies what is there, whatever it is. HDF5 File
+/// Format Specification, Version 3.0, III.E (global heap), IV.A.2.d (variable-length datatype).
 class TextHeaps {
  public:
   explicit TextHeaps(hid_t file);

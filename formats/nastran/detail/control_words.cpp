@@ -10,7 +10,8 @@ namespace bough::nastran::detail {
 namespace {
 
 constexpr std::string_view plain_commands =
-    "ACCE BOUT DISP ECHO ELFO ELST ESE FORC GPFO GROU HOUT LINE MAXL MEFF MPCF NOUT OLOA OUTP PAGE POST PRES SACC SDIS SET SETS "
+    "ACCE BOUT DISP ECHO ELFO ELST ESE FORC GPFO GROU HOUT LINE MAXL MEFF MPCF NOUT OLOA OUTP PAGE POST PRES SACC SDIS "
+    "SET SETS "
     "SKIP SORT SPCF STRA STRE SURF SVEC SVEL VECT VELO VOLU";
 
 /// The other commands of the quick reference guides.
@@ -37,8 +38,8 @@ std::string_view find_option(std::string_view word) {
   struct Option {
     std::string_view command, option;
   };
-  static constexpr std::array options{
-      Option{"EKE", "EKE: 'modes --ese'"}, Option{"MAXM", "MAXMIN: 'static --extremes'"}};
+  static constexpr std::array options{Option{"EKE", "EKE: 'modes --ese'"},
+                                      Option{"MAXM", "MAXMIN: 'static --extremes'"}};
   for (const auto& one : options)
     if (word.substr(0, 4) == one.command) return one.option;
   return {};

@@ -25,14 +25,12 @@ struct Request {
   std::string_view letters;
   const char* name;
 };
-constexpr std::array requests{Request{"DISP", "DISPLACEMENT"}, Request{"VECT", "DISPLACEMENT"},
-                              Request{"PRES", "DISPLACEMENT"}, Request{"VELO", "VELOCITY"},
-                              Request{"ACCE", "ACCELERATION"}, Request{"SPCF", "SPCFORCES"},
-                              Request{"FORC", "FORCE"},        Request{"ELFO", "FORCE"},
-                              Request{"OLOA", "OLOAD"},        Request{"MPCF", "MPCFORCES"},
-                              Request{"STRE", "STRESS"},       Request{"ELST", "STRESS"},
-                              Request{"STRA", "STRAIN"},       Request{"ESE", "ESE"},
-                              Request{"GPFO", "GPFORCE"}};
+constexpr std::array requests{
+    Request{"DISP", "DISPLACEMENT"}, Request{"VECT", "DISPLACEMENT"}, Request{"PRES", "DISPLACEMENT"},
+    Request{"VELO", "VELOCITY"},     Request{"ACCE", "ACCELERATION"}, Request{"SPCF", "SPCFORCES"},
+    Request{"FORC", "FORCE"},        Request{"ELFO", "FORCE"},        Request{"OLOA", "OLOAD"},
+    Request{"MPCF", "MPCFORCES"},    Request{"STRE", "STRESS"},       Request{"ELST", "STRESS"},
+    Request{"STRA", "STRAIN"},       Request{"ESE", "ESE"},           Request{"GPFO", "GPFORCE"}};
 
 bool has_option(std::string_view options, std::string_view option) {
   while (!options.empty()) {
@@ -67,8 +65,7 @@ DynamicCommand read_request(const CommandText& c, const char* name, DynamicSelec
   }
   request.is_phase = has_option(c.options, "PHASE");
   request.is_punched = has_option(c.options, "PUNCH");
-  request.is_printed =
-      has_option(c.options, "PRINT") || (!request.is_punched && !has_option(c.options, "PLOT"));
+  request.is_printed = has_option(c.options, "PRINT") || (!request.is_punched && !has_option(c.options, "PLOT"));
   request.at = c.at;
   selected.outputs[name] = request;
   return DynamicCommand::Read;

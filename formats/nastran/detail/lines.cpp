@@ -113,8 +113,7 @@ class Loader {
       source_.lines.push_back({line, {file, cursor.get_number()}});
     }
     if (depth() == 1 && !done_ && !source_.lines.empty() && text.back() != '\n')
-      diagnostics_.warning("deck.cut-off",
-                           {source_.files[static_cast<std::size_t>(file)], cursor.get_number(), 0},
+      diagnostics_.warning("deck.cut-off", {source_.files[static_cast<std::size_t>(file)], cursor.get_number(), 0},
                            "the deck ends within this line, without ENDDATA: it may have been cut off",
                            "compare it with the original; write ENDDATA at its end");
   }

@@ -101,8 +101,7 @@ FlexBody make_random_body(unsigned seed, int n, int p, bool full) {
   body.mass = std::abs(r.next());
   body.cg = r.make(3, 1);
   body.inertia = r.make_definite(3);
-  body.inertia +=
-      body.mass * (body.cg.squaredNorm() * Eigen::Matrix3d::Identity() - body.cg * body.cg.transpose());
+  body.inertia += body.mass * (body.cg.squaredNorm() * Eigen::Matrix3d::Identity() - body.cg * body.cg.transpose());
   for (int k = 0; k < p; ++k) body.node_id.push_back(7 * k + 1);
   body.node_xyz = r.make(p, 3);
   if (p > 1) body.interface_nodes = {8};
