@@ -127,6 +127,40 @@ fe::Model Reduction::build_model() {
   return fe::Model::build(deck_, options, elements, reported);
 }
 
+/// φᵀ K_e φ of each element that has stiffness.
+void Reduction::set_strain_energy(const fe::Model& model) {
+  if (!spec_.strain_energy) return;
+  report("strain energy of elements");
+  const auto n = Phi_.cols();
+  const auto& elements = model.elements();
+  MatrixXd all = MatrixXd::Zero(static_cast<Eigen::Index>(elements.size()), n * (n + 1) / 2), K, u;
+  Eigen::VectorXd is_stiff = Eigen::VectorXd::Zero(all.rows());
+  const auto [begin, end] = fe::calc_element_range(model);
+  for (int e = begin; e < end; ++e) {
+    const fe::Element& element = *elements[static_cast<std::size_t>(e)];
+    K.setZero(element.num_dofs(), element.num_dofs());
+    model.add_stiffness(element, K);
+    if (K.isZero(0)) continue;
+    is_stiff(e) = 1;
+    u = Phi_(element.gdofs(), Eigen::all);
+    const MatrixXd k = u.transpose() * K * u;
+    for (Eigen::Index i = 0, column = 0; i < n; ++i)
+      for (Eigen::Index j = i; j < n; ++j) all(e, column++) = 0.5 * (k(i, j) + k(j, i));
+  }
+  fe::sum_over_ranks(all);
+  MatrixXd stiff = is_stiff;
+  fe::sum_over_ranks(stiff);
+  auto& energy = body_.strain_energy;
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index e = 0; e < all.rows(); ++e) {
+    if (stiff(e, 0) == 0) continue;
+    rows.push_back(e);
+    energy.id.push_back(elements[static_cast<std::size_t>(e)]->id());
+    energy.card.emplace_back(elements[static_cast<std::size_t>(e)]->card());
+  }
+  energy.matrix = all(rows, Eigen::all);
+}
+
 FlexBody Reduction::run() {
   check_spec();
   report("model");
@@ -151,6 +185,7 @@ FlexBody Reduction::run() {
   report("static solutions");
   set_stiffening(model, solve);
   set_preload(model);
+  set_strain_energy(model);
   return std::move(body_);
 }
 

@@ -43,6 +43,7 @@ class Reduction {
   void set_nodes(const fe::Model& model);
   void set_integrals(const fe::Model& model);  ///< and effective masses, F_I
   std::map<std::pair<std::string, std::vector<std::string>>, std::vector<int>> choose_recovered(const fe::Model& model);
+  void set_strain_energy(const fe::Model& model);
   void set_recovery(const fe::Model& model, const MatrixXd& U, const MatrixXd& F, const std::vector<int>& inertial);
   void set_stiffening(const fe::Model& model, const modal::bases::StaticSolve& solve);
   void make_loads(const fe::Model& model);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <unordered_map>
 
 #include "base/xml_text.hpp"
 #include "cli/common/options.hpp"
@@ -8,6 +9,7 @@
 #include "cli/export/moving_system.hpp"
 #include "formats/export/uff.hpp"
 #include "formats/export/vtu.hpp"
+#include "formats/records/mesh_measure.hpp"
 
 namespace bough::cli {
 
@@ -21,6 +23,7 @@ using Eigen::MatrixXd;
 struct Part {
   records::BodyMesh mesh;
   std::vector<MatrixXd> modes;
+  std::size_t first_block = 0;  ///< of the mesh of all
 };
 
 /// The box of a rigid body with its lines, and a point where nothing else is.
@@ -53,7 +56,7 @@ Part make_part(const MovingBody& body, Diagnostics& diagnostics) {
                                     picture.mesh.grid_id.size(),
                                     picture.mesh.grid_id.size() + static_cast<std::size_t>(picture.num_missing)),
                         "reduce with --full, or without a list of output nodes");
-  Part part{std::move(picture.mesh), {}};
+  Part part{std::move(picture.mesh), {}, 0};
   // Translations and rotations take turns.
   for (std::size_t j = 0; j < picture.arrays.size(); j += 2) part.modes.push_back(std::move(picture.arrays[j].values));
   return part;
@@ -72,6 +75,15 @@ double calc_strain_energy(const MovingBody& body, Eigen::Index sample) {
   const auto n = std::min(body.eta.cols(), body.flex->modal_stiffness.rows());
   const Eigen::VectorXd eta = body.eta.row(sample).head(n).transpose();
   return 0.5 * eta.dot(body.flex->modal_stiffness.topLeftCorner(n, n) * eta);
+}
+
+/// ½ ηᵀ k η of each element that the body file has (records::ElementStrainEnergy).
+Eigen::VectorXd calc_element_energies(const records::FlexBody& body, const Eigen::RowVectorXd& eta) {
+  const auto n = static_cast<Eigen::Index>(body.num_modes());
+  Eigen::VectorXd pairs(n * (n + 1) / 2);
+  for (Eigen::Index i = 0, k = 0; i < n; ++i)
+    for (Eigen::Index j = i; j < n; ++j) pairs[k++] = (i == j ? 0.5 : 1) * eta[i] * eta[j];
+  return body.strain_energy.matrix * pairs;
 }
 
 /// The folder of the frames. Without keep() what was not there before goes again: a disk that is full stays no fuller.
@@ -115,7 +127,8 @@ class Frames {
  public:
   Frames(const MovingSystem& system, double scale, Diagnostics& diagnostics) : system_(system), scale_(scale) {
     for (const auto& body : system.bodies) parts_.push_back(make_part(body, diagnostics));
-    for (const auto& part : parts_) {
+    for (auto& part : parts_) {
+      part.first_block = mesh_.blocks.size();
       const auto first = static_cast<int>(mesh_.grid_id.size());
       mesh_.grid_id.insert(mesh_.grid_id.end(), part.mesh.grid_id.begin(), part.mesh.grid_id.end());
       for (auto block : part.mesh.blocks) {
@@ -130,6 +143,7 @@ class Frames {
                {"displacement_magnitude", MatrixXd(g, 1)},
                {"velocity", MatrixXd(g, 3)},
                {"strain_energy", MatrixXd(g, 1)}};
+    add_cells();
   }
 
   /// The mesh as the last sample placed it.
@@ -137,7 +151,7 @@ class Frames {
 
   std::string make(Eigen::Index sample, exports::VtuEncoding encoding) {
     place(sample);
-    return exports::make_vtu(mesh_, arrays_, encoding);
+    return exports::make_vtu(mesh_, arrays_, encoding, cells_);
   }
 
   /// Body b + 1 has ids from (b + 1) 10^d on: with the ids of its grids behind, or, rigid, its points in order.
@@ -183,16 +197,59 @@ class Frames {
       if (body.velocity.cols() == 3) v.rowwise() += body.velocity.row(sample);
       arrays_[3].values(rows, Eigen::all) = v;
       arrays_[4].values(rows, 0).setConstant(calc_strain_energy(body, sample));
+      place_energies(b, sample);
       first += g;
     }
   }
 
  private:
+  bool has_energies(std::size_t b) const {
+    const auto& body = system_.bodies[b];
+    return body.flex && !body.flex->strain_energy.empty() && body.eta.cols() == body.flex->num_modes();
+  }
+
+  /// Of all elements, where a body has energies of them: zero elsewhere.
+  void add_cells() {
+    bool has_any = false;
+    for (std::size_t b = 0; b < parts_.size(); ++b) has_any = has_any || has_energies(b);
+    if (!has_any) return;
+    cells_ = {{"element_strain_energy", {}, {}}, {"element_strain_energy_density", {}, {}}};
+    for (auto& array : cells_)
+      for (const auto& block : mesh_.blocks)
+        array.by_block.emplace_back(Eigen::VectorXd::Zero(block.connectivity.rows()));
+    measures_.resize(parts_.size());
+    for (std::size_t b = 0; b < parts_.size(); ++b)
+      if (has_energies(b)) measures_[b] = records::calc_measures(parts_[b].mesh);
+  }
+
+  void place_energies(std::size_t b, Eigen::Index sample) {
+    if (!has_energies(b)) return;
+    const auto& body = system_.bodies[b];
+    const auto& id = body.flex->strain_energy.id;
+    const Eigen::VectorXd energy = calc_element_energies(*body.flex, body.eta.row(sample));
+    std::unordered_map<int, double> by_element;
+    for (std::size_t e = 0; e < id.size(); ++e) by_element[id[e]] = energy[static_cast<Eigen::Index>(e)];
+    const auto& blocks = parts_[b].mesh.blocks;
+    for (std::size_t k = 0; k < blocks.size(); ++k)
+      for (std::size_t e = 0; e < blocks[k].element_id.size(); ++e) {
+        const int element = blocks[k].element_id[e];
+        const auto found = by_element.find(element);
+        const auto measure = measures_[b].find(element);
+        const double value = found == by_element.end() ? 0 : found->second;
+        const auto at = static_cast<Eigen::Index>(e);
+        cells_[0].by_block[parts_[b].first_block + k][at] = value;
+        cells_[1].by_block[parts_[b].first_block + k][at] =
+            measure != measures_[b].end() && measure->second > 0 ? value / measure->second : 0;
+      }
+  }
+
   const MovingSystem& system_;
   double scale_;
   std::vector<Part> parts_;
   records::BodyMesh mesh_;
   std::vector<exports::PointArray> arrays_;
+  std::vector<exports::CellArray> cells_;
+  std::vector<std::unordered_map<int, double>> measures_;  ///< of the elements of each body
 };
 
 /// Without the faces of boxes, of which the edges are there too.

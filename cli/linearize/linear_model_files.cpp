@@ -41,6 +41,12 @@ void write_linear_mat(const LinearModel& model, const std::string& path) {
                              {"state_name", make_cells(model.states.name)},
                              {"input_name", make_cells(model.inputs.name)},
                              {"output_name", make_cells(model.outputs.name)}};
+  if (const auto second = records::make_second_order(model); second.M.size() > 0) {
+    fields.emplace_back("mass", second.M);
+    fields.emplace_back("damping", second.D);
+    fields.emplace_back("stiffness", second.K);
+    fields.emplace_back("input_force", second.F);
+  }
   if (model.sample_time > 0) fields.emplace_back("sample_time", Eigen::MatrixXd::Constant(1, 1, model.sample_time));
   matrices::write_mat(path, fields);
 }
@@ -260,6 +266,9 @@ nlohmann::json make_json(const LinearModel& model) {
         {"body_mode", model.poles.body_mode},
         {"hinge", model.poles.hinge}}}};
   if (model.sample_time > 0) json["sample_time"] = model.sample_time;
+  if (const auto second = records::make_second_order(model); second.M.size() > 0)
+    json["second_order"] = {
+        {"M", to_rows(second.M)}, {"D", to_rows(second.D)}, {"K", to_rows(second.K)}, {"F", to_rows(second.F)}};
   json["operating_point"]["q_name"] = model.q_names.name;
   json["operating_point"]["q_dims"] = model.q_names.dims;
   json["operating_point"]["u_name"] = model.u_names.name;

@@ -40,6 +40,7 @@ struct ReduceVerbOptions : CommonOptions {
   std::vector<std::string> loads;
   bool full = false;
   std::vector<std::string> recover;
+  bool strain_energy = false;
   bool integrals_report = false;
   std::string mass, integrals;
   std::vector<double> origin;
@@ -127,6 +128,7 @@ records::BodySpec make_spec(const ReduceVerbOptions& o, Diagnostics& diagnostics
   for (const auto& load : o.loads) spec.loads.push_back(parse_load(load));
   if (o.full) spec.full = true;
   if (!o.recover.empty()) spec.recover = o.recover;
+  if (o.strain_energy) spec.strain_energy = true;
   if (!o.mass.empty()) spec.mass = o.mass;
   if (!o.integrals.empty()) spec.integrals = o.integrals;
   if (!o.origin.empty()) spec.origin = Vector3d(o.origin[0], o.origin[1], o.origin[2]);
@@ -302,6 +304,8 @@ void add_reduce(CLI::App& app, Action& action) {
                    "Elements whose forces and stresses the body recovers: ALL, ids, ranges 17-25, property:3, "
                    "card:CBAR; e.g. 17,20-25")
       ->delimiter(',');
+  verb->add_flag("--strain-energy", o->strain_energy,
+                 "Write the strain energy of each element in the modes too: colours of the report page and of export");
   verb->add_option("--loads-deck", o->loads_deck,
                    "Also write the twelve inertial loads F_I to this file, as FORCE and MOMENT cards for another FE "
                    "program");

@@ -139,6 +139,7 @@ report::Chapter make_body_chapter(const std::string& file, Diagnostics& diagnost
   add_integrals(body, m);
   add_spin(body, m);
   m.drawing = report::make_drawing(body);
+  report::add_energies(body, m.drawing);
   return report::make_chapter(m);
 }
 

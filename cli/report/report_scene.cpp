@@ -62,6 +62,8 @@ report::SceneBody read_scene_body(const records::SystemSpec& spec, const records
   Diagnostics unused;  // said by the run
   const auto flex = read_body(place + body.file.substr(written.size()), unused);
   drawn.drawing = report::make_drawing(flex);
+  if (!report::add_energy_matrices(flex, drawn.drawing))
+    missing.push_back("body " + body.name + ": the strain energy of its elements in all modes is too large for a page");
   drawn.size = calc_size(flex.node_xyz);
   return drawn;
 }

@@ -56,8 +56,23 @@ void hold_tolerance(const records::FlexBody& body, const std::vector<Weighing>& 
   s.lost = calc_lost(s.kept);
 }
 
-/// The part that decays: poles at 0 and what grows left out, so that gains are finite.
-records::LinearModel make_decaying(const StateSpace& s) {
+/// R of m = Q R, with no more rows than columns.
+Eigen::MatrixXd take_triangle(const Eigen::MatrixXd& m) {
+  if (m.rows() <= m.cols()) return m;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> factor(m);
+  return factor.matrixQR().topRows(m.cols()).triangularView<Eigen::Upper>();
+}
+
+/// A body has forces and outputs at each of its nodes, and few states: with B = Rᵀ Qᵀ and C = Q R the gains are those
+/// of Rᵀ and R.
+StateSpace compress(const StateSpace& s) {
+  return {s.A, take_triangle(s.B.transpose()).transpose(), take_triangle(s.C)};
+}
+
+/// The part that decays: poles at 0 and what grows left out, so that gains are finite. Of the gains singular values and
+/// norm are kept.
+records::LinearModel make_decaying(const StateSpace& whole) {
+  const StateSpace s = compress(whole);
   const auto part = statespace::split_stable(s.A, true);
   const Eigen::MatrixXd P = (part.U * part.L).real();
   records::LinearModel model;

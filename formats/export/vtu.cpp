@@ -54,11 +54,13 @@ struct Cells {
   std::vector<std::int64_t> connectivity, offsets;
   std::vector<std::uint8_t> types;
   std::vector<std::int32_t> ids;
+  std::vector<std::pair<std::size_t, Eigen::Index>> places;  ///< block of the mesh, row there
 };
 
 Cells collect_cells(const records::BodyMesh& mesh) {
   Cells cells;
-  for (const auto& block : mesh.blocks) {
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+    const auto& block = mesh.blocks[b];
     const auto& type = find_cell_type(block);
     for (Eigen::Index e = 0; e < block.connectivity.rows(); ++e) {
       if (block.connectivity.row(e).minCoeff() < 0) continue;
@@ -68,6 +70,7 @@ Cells collect_cells(const records::BodyMesh& mesh) {
       cells.offsets.push_back(static_cast<std::int64_t>(cells.connectivity.size()));
       cells.types.push_back(type.vtk);
       cells.ids.push_back(block.element_id[static_cast<std::size_t>(e)]);
+      cells.places.emplace_back(b, e);
     }
   }
   return cells;
@@ -174,8 +177,13 @@ std::string make_vtu(const records::BodyMesh& mesh, const std::vector<PointArray
   text.add_array("Int32", "element_id", 1, cells.ids);
   for (const auto& array : cell_arrays) {
     std::vector<double> values;
-    for (const auto id : cells.ids) {
-      const auto found = array.by_element.find(id);
+    for (std::size_t k = 0; k < cells.ids.size(); ++k) {
+      if (!array.by_block.empty()) {
+        const auto [block, row] = cells.places[k];
+        values.push_back(array.by_block[block][row]);
+        continue;
+      }
+      const auto found = array.by_element.find(cells.ids[k]);
       values.push_back(found == array.by_element.end() ? 0 : found->second);
     }
     text.add_array("Float64", array.name, 1, values);

@@ -16,10 +16,12 @@ struct PointArray {
   Eigen::MatrixXd values;
 };
 
-/// Values at the cells, by element id; 0 where an element has none.
+/// Values at the cells, by element id; 0 where an element has none. Of several bodies, whose elements may have the same
+/// ids: by block of the mesh, a value each element.
 struct CellArray {
   std::string name;
   std::unordered_map<int, double> by_element;
+  std::vector<Eigen::VectorXd> by_block;  ///< in place of by_element, unless empty
 };
 
 enum class VtuEncoding {

@@ -261,6 +261,12 @@ void write_flex_body(const FlexBody& body, const BodyAccuracy& accuracy, const s
   write_stiffening(file, body);
   write_preload(file, body);
   write_recovery(file, body);
+  if (!body.strain_energy.empty()) {
+    file.write_integers("/strain_energy/id", body.strain_energy.id, {"element ids", "1"});
+    file.write_strings("/strain_energy/card", body.strain_energy.card, {"card of each", "1"});
+    file.write_matrix("/strain_energy/matrix", body.strain_energy.matrix,
+                      {"energy of an element is eta^T k eta / 2: element, upper triangle of k row by row", "F L/E^2"});
+  }
   if (body.full_phi.size() > 0) {
     file.write_matrix("/full/phi", body.full_phi,
                       {"mode shapes at every degree of freedom: rows as /dof_map", "L/E, 1/E"});
@@ -318,6 +324,13 @@ FlexBody read_flex_body(const std::string& path) {
   read_stiffening(file, body);
   read_preload(file, body);
   read_recovery(file, body);
+  if (file.has("/strain_energy/matrix")) {
+    auto& energy = body.strain_energy;
+    energy.id = file.read_integers("/strain_energy/id", -1);
+    const auto e = static_cast<long>(energy.id.size()), n = static_cast<long>(body.num_modes());
+    energy.card = file.read_strings("/strain_energy/card", e);
+    energy.matrix = file.read_matrix("/strain_energy/matrix", e, n * (n + 1) / 2);
+  }
   body.mesh = read_mesh(file);
   file.throw_if_errors();
   check_sense(file, body);

@@ -42,6 +42,16 @@ void write_hankel(FileWriter& file, const records::Hankel& hankel) {
   file.write_integers("/hankel/left_out", std::vector<int>{hankel.num_left_out}, {"poles that do not decay", "1"});
 }
 
+void write_second_order(FileWriter& file, const LinearModel& model) {
+  const auto second = records::make_second_order(model);
+  if (second.M.size() == 0) return;
+  const char* const dims = "as the names' dims say";
+  file.write_matrix("/second_order/M", second.M, {"M d'' + D d' + K d = F u, d displacements: mass matrix", dims});
+  file.write_matrix("/second_order/D", second.D, {"damping, and gyroscopic terms of a motion", dims});
+  file.write_matrix("/second_order/K", second.K, {"stiffness, of loads and of a motion too", dims});
+  file.write_matrix("/second_order/F", second.F, {"displacement, input", dims});
+}
+
 }  // namespace
 
 void write_linear_model(const LinearModel& model, const std::string& path) {
@@ -54,6 +64,7 @@ void write_linear_model(const LinearModel& model, const std::string& path) {
   file.write_matrix("/B", model.B, {"x_dot = A x + B u: state, input", dims});
   file.write_matrix("/C", model.C, {"y = C x + D u: output, state", dims});
   file.write_matrix("/D", model.D, {"y = C x + D u: output, input", dims});
+  write_second_order(file, model);
   write_signals(file, "/states", model.states, "states: displacements of the freedoms, then their rates");
   write_signals(file, "/inputs", model.inputs, "inputs: departures from their values at the operating point");
   write_signals(file, "/outputs", model.outputs, "outputs: departures from their values at the operating point");
@@ -94,6 +105,7 @@ LinearModel read_linear_model(const std::string& path) {
   model.B = file.read_matrix("/B", nx, nu);
   model.C = file.read_matrix("/C", ny, nx);
   model.D = file.read_matrix("/D", ny, nu);
+  if (file.has("/second_order/M")) model.mass = file.read_matrix("/second_order/M", nx / 2, nx / 2);
   model.time = file.read_number("/operating_point/time");
   model.q = file.read_vector("/operating_point/q", -1);
   model.u = file.read_vector("/operating_point/u", -1);

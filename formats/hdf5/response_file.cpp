@@ -18,10 +18,12 @@ std::string get_dims(const std::string& quantity) {
 
 /// `real` and `imag`, or `value` over time; samples x columns, or as `shape` folds the columns.
 void write_samples(FileWriter& file, const std::string& group, const MatrixXd& real, const MatrixXd& imag,
-                   const Dims& shape, const std::string& what, const std::string& dims) {
+                   const Dims& shape, const std::string& what, const std::string& dims,
+                   std::vector<std::string>& written) {
   const auto write = [&](const char* name, const MatrixXd& values, const std::string& text) {
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = values;
     file.write_numbers(group + "/" + name, shape, rows.data(), {text, dims});
+    written.push_back(group + "/" + name);
   };
   if (imag.size() == 0) return write("value", real, what + ", a row per time");
   write("real", real, what + ", a row per frequency: real part of e^(i w t)");
@@ -35,10 +37,10 @@ void write_subcase(FileWriter& file, const records::ResponseSubcase& s, bool is_
   file.write_attribute(path, "subtitle", s.subtitle);
   file.write_attribute(path, "label", s.label);
   file.write_attribute(path, "method", s.is_direct ? "direct" : "modal");
-  if (is_over_time)
-    file.write_vector(path + "/time", s.x, {"time of each row", "T"});
-  else
-    file.write_vector(path + "/frequency_hz", s.x, {"frequency of each row", "1/T"});
+  const std::string scale = path + (is_over_time ? "/time" : "/frequency_hz");
+  file.write_vector(scale, s.x,
+                    is_over_time ? Meaning{"time of each row", "T"} : Meaning{"frequency of each row", "1/T"});
+  std::vector<std::string> written;
   const auto rows = static_cast<hsize_t>(s.x.size());
   for (const auto& curves : s.curves) {
     const std::string group = path + "/" + curves.quantity;
@@ -50,7 +52,7 @@ void write_subcase(FileWriter& file, const records::ResponseSubcase& s, bool is_
     file.write_integers(group + "/dofs", dofs,
                         {"a row per column: grid and component 1..6 in its displacement (CD) axes, 0 scalar", "1"});
     write_samples(file, group, curves.real, curves.imag, {rows, static_cast<hsize_t>(dofs.rows())}, curves.quantity,
-                  get_dims(curves.quantity));
+                  get_dims(curves.quantity), written);
     file.write_attribute(group, "phase", curves.is_phase ? 1 : 0);
     file.write_attribute(group, "punch", curves.is_punched ? 1 : 0);
   }
@@ -60,11 +62,12 @@ void write_subcase(FileWriter& file, const records::ResponseSubcase& s, bool is_
     write_samples(file, group, curves.real, curves.imag,
                   {rows, static_cast<hsize_t>(curves.ids.size()), static_cast<hsize_t>(curves.components.size())},
                   curves.is_stress ? "stresses by element and component" : "forces by element and component",
-                  curves.is_stress ? "F/L^2" : "F, F L");
+                  curves.is_stress ? "F/L^2" : "F, F L", written);
     file.write_attribute(group, "components", curves.components);
     file.write_attribute(group, "phase", curves.is_phase ? 1 : 0);
     file.write_attribute(group, "punch", curves.is_punched ? 1 : 0);
   }
+  file.attach_scale(scale, written);
   file.write_number(path + "/accuracy/solution", s.solution_error,
                     {s.is_direct    ? "residual of the equation of motion, the worst"
                      : is_over_time ? "what a step and two halves of it differ by, relative"

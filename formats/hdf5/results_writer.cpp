@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/diagnostic.hpp"
+#include "formats/hdf5/detail/dimension_scales.hpp"
 #include "formats/hdf5/detail/results_header.hpp"
 #include "formats/hdf5/detail/results_layout.hpp"
 #include "formats/hdf5/files.hpp"
@@ -129,6 +130,9 @@ class ResultsWriter final : public records::ResultSink {
       const auto& channel = column.channel;
       column.dataset = file_.make_column(channel.path, channel.size, H5T_IEEE_F64LE, channel.description, channel.dims);
     }
+    std::vector<std::string> users;
+    for (std::size_t i = 1; i < columns_.size(); ++i) users.push_back(columns_[i].channel.path);
+    file_.check(attach_scale(file_.get(), "/time", users), "the scale /time cannot be written");
     const Handle text = make_string_type();
     event_time_ = file_.make_column("/events/time", 1, H5T_IEEE_F64LE, "time of the event", "T");
     event_what_ = file_.make_column("/events/what", 1, text.get(), "what happened", "1");

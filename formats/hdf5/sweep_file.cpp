@@ -78,6 +78,9 @@ void write_sweep(const records::LinearSweep& sweep, const std::string& path) {
   file.write_matrix("/poles/frequency_hz", sweep.frequency_hz, {"|pole| / 2 pi", "1/T"});
   file.write_matrix("/poles/damping", sweep.damping, {"-real / |pole|; 0 for a pole at 0", "1"});
   file.write_matrix("/poles/correlation", sweep.correlation, {"with the motion at the point before", "1"});
+  file.attach_scale("/parameter/value", {"/A", "/B", "/C", "/D", "/operating_point/time", "/operating_point/q",
+                                         "/operating_point/u", "/operating_point/residual", "/poles/real",
+                                         "/poles/imag", "/poles/frequency_hz", "/poles/damping"});
   std::vector<std::string> start, end;
   if (!sweep.mode.empty()) start = sweep.mode.front(), end = sweep.mode.back();
   file.write_strings("/poles/mode_first", start,
@@ -136,6 +139,7 @@ void write_response(const records::FrequencyResponse& response, const records::P
                      {"C (jw - A)^-1 B + D: frequency, output, input; real part", "as the names' dims say"});
   file.write_numbers("/imag", shape, imag.data(), {"likewise, imaginary part", "as the names' dims say"});
   file.write_matrix("/singular_values", response.singular_values, {"frequency, descending", "as the names' dims say"});
+  file.attach_scale("/frequency_hz", {"/real", "/imag", "/singular_values"});
   file.write_number("/peak/value", peak.is_finite ? peak.value : -1,
                     {"largest singular value of all frequencies; -1: it is infinite", "as the names' dims say"});
   file.write_number("/peak/frequency_hz", std::isfinite(peak.frequency_hz) ? peak.frequency_hz : -1,

@@ -92,6 +92,7 @@ struct BodySpec {
   std::string output_file;        ///< empty = NAME.h5
   bool full = false;
   std::vector<std::string> recover;  ///< elements with /recovery: ALL, ids, ranges "A-B", "property:ID", "card:CBAR"
+  bool strain_energy = false;        ///< of each element, in the modes
   std::vector<std::string> ignore_cards;
 
   std::optional<MatricesSpec> matrices;  ///< instead of the deck's elements

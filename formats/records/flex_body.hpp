@@ -52,6 +52,19 @@ struct BodyMesh {
   std::vector<Block> blocks;
 };
 
+/// Strain energy of elements, ½ ηᵀ k η each.
+struct ElementStrainEnergy {
+  std::vector<int> id;
+  std::vector<std::string> card;
+  MatrixXd matrix;  ///< e x n(n+1)/2: the upper triangle of each k, row by row
+
+  bool empty() const { return id.empty(); }
+  /// Column of k_ij, i <= j, of n modes.
+  static Eigen::Index find_column(Eigen::Index i, Eigen::Index j, Eigen::Index n) {
+    return i * n - i * (i - 1) / 2 + j - i;
+  }
+};
+
 struct FlexBody {
   std::string name;
   std::vector<std::pair<std::string, std::string>> source;  ///< (file name, SHA-256)
@@ -92,6 +105,8 @@ struct FlexBody {
 
   std::vector<RecoveryBlock> recovery;  ///< forces and stresses of elements; empty: not asked for
   MatrixXd inertial_load;               ///< n x 12: ΦᵀF_I, zero where K_G1 was not computed; with recovery alone
+
+  ElementStrainEnergy strain_energy;  ///< empty: not asked for
 
   MatrixXd full_phi;  ///< ndof x n, only with --full
   BodyMesh mesh;

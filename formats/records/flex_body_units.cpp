@@ -115,6 +115,7 @@ void change_units(FlexBody& body, const UnitChange& c) {
   scale_full(body, c);
   scale_stiffening(body, c);
   scale_recovery(body, c);
+  body.strain_energy.matrix *= energy / (e * e);
   body.mesh.grid_xyz *= c.length;
 }
 

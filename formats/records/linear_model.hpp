@@ -58,6 +58,9 @@ struct LinearModel {
   double error = 0;       ///< estimated, of A and C, relative to the largest entry of the row (docs/formats/linear.md)
   double difference = 0;  ///< between A and C by one step size and by another, likewise
 
+  Eigen::MatrixXd
+      mass;  ///< of the freedoms, n x n: uᵀ mass u / 2 is the kinetic energy; empty where it was not asked for
+
   Poles poles;
   bool has_zeros = false;  ///< there are as many outputs as inputs
   Eigen::VectorXd zeros_real, zeros_imag;
@@ -65,5 +68,14 @@ struct LinearModel {
   Multipliers multipliers;
   Hankel hankel;
 };
+
+/// M δ̈ + D δ̇ + K δ = F u, δ the displacements of the freedoms: n x n, n x n, n x n, n x num_inputs.
+struct SecondOrder {
+  Eigen::MatrixXd M, D, K, F;
+};
+
+/// The same model of second order. Empty where the model has no mass matrix, is one from sample to sample, or has
+/// states of controllers, which are of first order.
+SecondOrder make_second_order(const LinearModel& model);
 
 }  // namespace bough::records

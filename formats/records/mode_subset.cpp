@@ -63,6 +63,13 @@ FlexBody keep_modes(const FlexBody& body, const std::vector<int>& kept) {
   for (auto& moment : small.load_moment) cut.cols(moment);
   cut.both(small.kg_preload);
   cut.cols(small.full_phi);
+  if (!small.strain_energy.empty()) {
+    std::vector<Eigen::Index> columns;
+    for (std::size_t i = 0; i < kept.size(); ++i)
+      for (std::size_t j = i; j < kept.size(); ++j)
+        columns.push_back(ElementStrainEnergy::find_column(kept[i], kept[j], body.num_modes()));
+    small.strain_energy.matrix = MatrixXd(small.strain_energy.matrix(Eigen::all, columns));
+  }
   // What the modes left out of the static answers was left out by all of them: it grows by what those that go held.
   for (auto& block : small.recovery) {
     const MatrixXd all = block.matrix;

@@ -160,6 +160,18 @@ class DrawingBuilder {
   std::set<std::pair<int, int>> seen_;
 };
 
+/// Of packed matrices, some 1.6 MB of the page.
+constexpr Eigen::Index kMostEntries = 600000;
+
+void add_measures(const records::BodyMesh& mesh, Drawing& drawing) {
+  const auto measures = records::calc_measures(mesh);
+  const auto& id = drawing.elements.id;
+  drawing.measure = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(id.size()));
+  for (std::size_t k = 0; k < id.size(); ++k)
+    if (const auto measure = measures.find(id[k]); measure != measures.end())
+      drawing.measure[static_cast<Eigen::Index>(k)] = measure->second;
+}
+
 }  // namespace
 
 void add_energies(const records::BodyMesh& mesh, const std::vector<int>& id, const Eigen::MatrixXd& energy,
@@ -167,13 +179,11 @@ void add_energies(const records::BodyMesh& mesh, const std::vector<int>& id, con
   if (energy.cols() < static_cast<Eigen::Index>(drawing.shapes.size()) || whole.size() != energy.cols()) return;
   std::unordered_map<int, Eigen::Index> row_of;
   for (std::size_t e = 0; e < id.size(); ++e) row_of[id[e]] = static_cast<Eigen::Index>(e);
-  const auto measures = records::calc_measures(mesh);
+  add_measures(mesh, drawing);
   const auto count = static_cast<Eigen::Index>(drawing.elements.id.size());
-  drawing.measure = Eigen::VectorXd::Zero(count);
   drawing.energy.assign(drawing.shapes.size(), Eigen::VectorXd::Zero(count));
   for (Eigen::Index k = 0; k < count; ++k) {
     const int element = drawing.elements.id[static_cast<std::size_t>(k)];
-    if (const auto measure = measures.find(element); measure != measures.end()) drawing.measure[k] = measure->second;
     const auto row = row_of.find(element);
     for (std::size_t j = 0; row != row_of.end() && j < drawing.energy.size(); ++j) {
       const auto column = static_cast<Eigen::Index>(j);
@@ -181,6 +191,39 @@ void add_energies(const records::BodyMesh& mesh, const std::vector<int>& id, con
       drawing.energy[j][k] = std::isfinite(share) ? std::max(0.0, share) : 0;
     }
   }
+}
+
+void add_energies(const records::FlexBody& body, Drawing& drawing) {
+  const auto& energy = body.strain_energy;
+  if (energy.empty()) return;
+  const auto n = static_cast<Eigen::Index>(body.num_modes());
+  Eigen::MatrixXd of_shapes(energy.matrix.rows(), n);
+  for (Eigen::Index j = 0; j < n; ++j)
+    of_shapes.col(j) = 0.5 * energy.matrix.col(records::ElementStrainEnergy::find_column(j, j, n));
+  add_energies(body.mesh, energy.id, of_shapes, of_shapes.colwise().sum().transpose(), drawing);
+}
+
+bool add_energy_matrices(const records::FlexBody& body, Drawing& drawing) {
+  const auto& energy = body.strain_energy;
+  const auto n = static_cast<Eigen::Index>(drawing.shapes.size()), all = static_cast<Eigen::Index>(body.num_modes());
+  const auto count = static_cast<Eigen::Index>(drawing.elements.id.size());
+  if (energy.empty() || n == 0) return true;
+  if (n < all || count * n * (n + 1) / 2 > kMostEntries) return false;
+  std::unordered_map<int, Eigen::Index> row_of;
+  for (std::size_t e = 0; e < energy.id.size(); ++e) row_of[energy.id[e]] = static_cast<Eigen::Index>(e);
+  add_measures(body.mesh, drawing);
+  // Stiff modes and soft ones move by amounts of equal energy.
+  drawing.weight = body.modal_stiffness.diagonal().head(n).cwiseAbs().cwiseSqrt();
+  drawing.energy_matrix = Eigen::MatrixXd::Zero(count, n * (n + 1) / 2);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto row = row_of.find(drawing.elements.id[static_cast<std::size_t>(k)]);
+    for (Eigen::Index i = 0, column = 0; row != row_of.end() && i < n; ++i)
+      for (Eigen::Index j = i; j < n; ++j, ++column)
+        if (const double w = drawing.weight[i] * drawing.weight[j]; w > 0)
+          drawing.energy_matrix(k, column) =
+              energy.matrix(row->second, records::ElementStrainEnergy::find_column(i, j, all)) / w;
+  }
+  return true;
 }
 
 int Drawing::find(int node) const {
@@ -259,7 +302,7 @@ std::string to_json_text(const Drawing& drawing) {
     const double largest = shape.size() > 0 ? shape.cwiseAbs().maxCoeff() : 0;
     json["shapes"].push_back({{"largest", largest}, {"data", pack_shorts(flatten(shape), largest)}});
   }
-  if (!drawing.energy.empty()) {
+  if (!drawing.energy.empty() || drawing.energy_matrix.size() > 0) {
     std::vector<std::uint32_t> kind;
     for (const auto k : drawing.elements.kind) kind.push_back(static_cast<std::uint32_t>(k));
     json["elements"] = {{"of_triangle", pack_indices(drawing.elements.of_triangle)},
@@ -271,6 +314,15 @@ std::string to_json_text(const Drawing& drawing) {
       const double largest = share.size() > 0 ? share.maxCoeff() : 0;
       json["elements"]["energy"].push_back({{"largest", largest}, {"data", pack_shorts(share, largest)}});
     }
+  }
+  if (drawing.energy_matrix.size() > 0) {
+    const Eigen::VectorXd largest = drawing.energy_matrix.cwiseAbs().rowwise().maxCoeff();
+    Eigen::MatrixXd rows = drawing.energy_matrix;
+    for (Eigen::Index k = 0; k < rows.rows(); ++k)
+      if (largest[k] > 0) rows.row(k) /= largest[k];
+    json["elements"]["matrix"] = {{"weight", pack_floats(drawing.weight)},
+                                  {"largest", pack_floats(largest)},
+                                  {"data", pack_shorts(flatten(rows), 1)}};
   }
   return json.dump();
 }

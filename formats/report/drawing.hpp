@@ -28,6 +28,10 @@ struct Drawing {
   DrawnElements elements;
   std::vector<Eigen::VectorXd> energy;  ///< [shape] share of each element; empty where it is not known
   Eigen::VectorXd measure;              ///< of each element, with energy: length, area or volume; 0 without extent
+  /// Of a body that moves in all its modes: ½ Σ a_i a_j k_ij of each element, a_i = coefficient i times weight[i];
+  /// element x n(n+1)/2 (records::ElementStrainEnergy). Empty where it is not known or would make the page too large.
+  Eigen::MatrixXd energy_matrix;
+  Eigen::VectorXd weight;
 
   /// Index of a node among the points, -1 without.
   int find(int node) const;
@@ -43,6 +47,11 @@ Drawing make_drawing(const records::FlexBody& body, bool all_shapes = false);
 /// Strain energy of the elements of the mesh: a row an id, a column a shape, which share `whole`.
 void add_energies(const records::BodyMesh& mesh, const std::vector<int>& id, const Eigen::MatrixXd& energy,
                   const Eigen::VectorXd& whole, Drawing& drawing);
+
+/// The same of a flexible body that has them: energies of its shapes, or for a body in motion the matrices.
+void add_energies(const records::FlexBody& body, Drawing& drawing);
+/// False where they would make the page too large.
+bool add_energy_matrices(const records::FlexBody& body, Drawing& drawing);
 
 /// The box of uniform density with this mass and inertia about cg, and a line from cg to each node. A body whose
 /// inertia no box has (a point, a line) gets what is left of one.

@@ -210,8 +210,10 @@ Chapter make_chapter(const ModalModel& m) {
   Chapter chapter{m.kind, m.file, m.facts, m.checks, {}, {}, {}};
   if (!m.drawing.shapes.empty()) {
     std::string html = make_place("modes", "The shapes are drawn by a script with WebGL 2.");
-    if (m.kind == "modes" && m.drawing.energy.empty())
-      html += make_text("Colours by strain energy come with bough modes --ese.", "note");
+    if (m.drawing.energy.empty())
+      html += make_text(m.kind == "modes" ? "Colours by strain energy come with bough modes --ese."
+                                          : "Colours by strain energy come with bough reduce --strain-energy.",
+                        "note");
     if (m.drawing.num_dropped > 0)
       html += make_text(fmt::format("To keep the page small it has the shapes of the first {} of {} modes.",
                                     m.drawing.shapes.size(), m.frequency_hz.size()),

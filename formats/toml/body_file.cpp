@@ -236,6 +236,7 @@ records::BodySpec read_body_spec_text(const std::string& text, const std::string
   spec.output_file = resolve_path(path, output.get_string("file"));
   spec.output_nodes = output.get_ints("nodes");
   spec.full = output.get_bool("full", false);
+  spec.strain_energy = output.get_bool("strain_energy", false);
   if (const Value* recover = output.find("recover")) {
     if (recover->is_string()) spec.recover.push_back(recover->text);
     for (const Value& item : recover->items)

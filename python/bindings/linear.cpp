@@ -29,6 +29,15 @@ void bind_linear(py::module_& m) {
       .def_property_readonly("B", show(&LinearModel::B))
       .def_property_readonly("C", show(&LinearModel::C))
       .def_property_readonly("D", show(&LinearModel::D))
+      .def_property_readonly(
+          "second_order",
+          [](const LinearModel& l) -> py::object {
+            auto second = records::make_second_order(l);
+            if (second.M.size() == 0) return py::none();
+            return py::make_tuple(give(std::move(second.M)), give(std::move(second.D)), give(std::move(second.K)),
+                                  give(std::move(second.F)));
+          },
+          "(M, D, K, F): M d'' + D d' + K d = F u, d the displacements; None with states of controllers")
       .def_property_readonly("states", [](const LinearModel& l) { return l.states.name; })
       .def_property_readonly("inputs", [](const LinearModel& l) { return l.inputs.name; })
       .def_property_readonly("outputs", [](const LinearModel& l) { return l.outputs.name; })

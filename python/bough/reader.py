@@ -7,6 +7,8 @@
 """
 import h5py
 
+SCALES = ("CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST")  # what h5py's `dims` shows
+
 
 class File:
     """Everything in a file, by path. `format` says which kind it is: bough-results, bough-flexbody, ..."""
@@ -34,7 +36,7 @@ class File:
                 self._take_all(item, path + name + "/")
 
     def _take(self, name, item):
-        self.attributes[name] = dict(item.attrs)
+        self.attributes[name] = {key: value for key, value in item.attrs.items() if key not in SCALES}
         if isinstance(item, h5py.Dataset):
             value = item[()]
             if h5py.check_string_dtype(item.dtype):

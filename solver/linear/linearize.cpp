@@ -314,6 +314,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   model.A.block(0, n, n, n).setIdentity();
   model.A.bottomRows(n + nz) = jacobian.value.topRows(n + nz);
   model.C = take_rows(jacobian.value, n + nz, outputs);
+  if (options.check && nz == 0) model.mass = plant.calc_mass(point);
 
   const auto num_inputs = static_cast<Eigen::Index>(inputs.size());
   model.B = MatrixXd::Zero(nx, num_inputs);

@@ -184,16 +184,18 @@ MatrixXd Plant::calc_turning(const OperatingPoint& point) const {
     turning.block<3, 3>(row, row) = -skew(u.segment<3>(row));
   }
   if (!has_loops()) return turning(rows_, rows_);
-  // What follows is displaced too: the columns of its rates by unit rates of the freedoms.
-  OperatingPoint still = point;
-  still.u.setZero();
-  const VectorXd given = calc_speeds(still);
-  MatrixXd follow(u.size(), num_freedoms());
-  for (int j = 0; j < num_freedoms(); ++j) {
-    still.u = VectorXd::Unit(num_freedoms(), j);
-    follow.col(j) = calc_speeds(still) - given;
-  }
-  return turning(rows_, Eigen::all) * follow;
+  return turning(rows_, Eigen::all) * calc_follow(point);
+}
+
+MatrixXd Plant::calc_mass(const OperatingPoint& point) {
+  VectorXd ignored(system_.num_u());
+  compute(point, nullptr, 0, ignored);
+  MatrixXd mass;
+  VectorXd force;
+  calc_dense_equations(system_.impl().tree, data_->tree, mass, force);
+  if (!has_loops()) return mass(rows_, rows_);
+  const MatrixXd follow = calc_follow(point);
+  return follow.transpose() * mass * follow;
 }
 
 VectorXd Plant::get_for_file(const VectorXd& q) const {

@@ -71,6 +71,8 @@ class Plant {
   VectorXd calc_speeds(const OperatingPoint& point) const;
   /// ∂δ̇/∂δ about a motion: zero but for orientations that turn. num_freedoms².
   MatrixXd calc_turning(const OperatingPoint& point) const;
+  /// The mass matrix of the freedoms; where loops are closed what follows moves along. num_freedoms².
+  MatrixXd calc_mass(const OperatingPoint& point);
   /// Quaternions as the files have them: w, x, y, z.
   VectorXd get_for_file(const VectorXd& q) const;
 
@@ -150,6 +152,7 @@ class Plant {
   // Loops (plant_loops.cpp)
   bool has_loops() const { return !grip_.empty(); }
   void choose_independent();
+  MatrixXd calc_follow(const OperatingPoint& point) const;
   void close_positions(VectorXd& q) const;
 
   const System& system_;

@@ -59,6 +59,19 @@ void Plant::close_positions(VectorXd& q) const {
   if (!found.is_closed) fail_dead(impl.loops, found);
 }
 
+/// What follows moves along: the rates of all (num_u), a column for the unit rate of each freedom.
+MatrixXd Plant::calc_follow(const OperatingPoint& point) const {
+  OperatingPoint still = point;
+  still.u.setZero();
+  const VectorXd given = calc_speeds(still);
+  MatrixXd follow(given.size(), num_freedoms());
+  for (int j = 0; j < num_freedoms(); ++j) {
+    still.u = VectorXd::Unit(num_freedoms(), j);
+    follow.col(j) = calc_speeds(still) - given;
+  }
+  return follow;
+}
+
 VectorXd Plant::calc_speeds(const OperatingPoint& point) const {
   if (!has_loops()) return expand(point.u);
   const System::Impl& impl = system_.impl();

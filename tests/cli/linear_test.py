@@ -168,7 +168,10 @@ class Linearize(LinearTest):
         self.assertEqual(float(np.squeeze(model["operating_point/residual"])), 0)
         mat = scipy.io.loadmat(self.path("model.mat"))
         self.assertEqual(sorted(k for k in mat if k[0] != "_"),
-                         ["A", "B", "C", "D", "input_name", "output_name", "state_name"])
+                         ["A", "B", "C", "D", "damping", "input_force", "input_name", "mass", "output_name",
+                          "state_name", "stiffness"])
+        for key, exact in (("mass", inertia), ("damping", 0.05), ("stiffness", 2 * 9.81 * 0.7), ("input_force", 0.7)):
+            np.testing.assert_allclose(mat[key], [[exact]], rtol=1e-9)
         np.testing.assert_array_equal(mat["A"], model["A"])
         data = json.loads(self.bough("linearize", "pendulum.toml", "--json").stdout)
         self.assertEqual(data["outputs"], ["angle", "place:x", "place:y", "place:z"])
@@ -276,6 +279,71 @@ class Linearize(LinearTest):
                                                                  "/hinges/spin/qdot", "/bodies/boom/eta_dot"]])
         for half in [slice(0, 7), slice(7, 14)]:
             self.assertLess(np.abs(found - x)[half].max(), 1e-6 * np.abs(x[half]).max())
+
+
+class SecondOrder(LinearTest):
+    """M d'' + D d' + K d = F u against A, B and the kinetic energy that a run writes."""
+
+    def check_form(self, model):
+        M, D, K, F = (model[f"second_order/{name}"] for name in "MDKF")
+        n = len(M)
+        np.testing.assert_allclose(M, M.T, atol=1e-12 * np.abs(M).max())
+        self.assertGreater(np.linalg.eigvalsh(M).min(), 0)
+        # d' = T d + v: B acts on v' alone, and the pencil has the poles of A.
+        largest = max(1, np.abs(model["B"]).max(initial=0))
+        np.testing.assert_allclose(np.linalg.solve(M, F), model["B"][n:], atol=1e-10 * largest)
+        first = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
+        found, known = np.poly(first), np.poly(model["A"])
+        np.testing.assert_allclose(found, known, atol=1e-7 * np.abs(known).max())
+        return M, D, K, F
+
+    def test_a_beam_on_a_hub(self):
+        self.make_boom(3)
+        self.write_hub("hub.toml", inertia=0.4)
+        M, D, K, F = self.check_form(self.linearize("hub.toml", "--inputs", "torque"))
+        self.assertAlmostEqual(M[0, 0], 0.4 + 1 / 3, places=6)  # of the beam about its root
+        np.testing.assert_allclose(K, K.T, atol=1e-8 * np.abs(K).max())
+        np.testing.assert_allclose(F, np.eye(len(M))[:, :1], atol=1e-12)
+        with h5py.File(self.path("boom.h5")) as f:
+            np.testing.assert_allclose(M[1:, 1:], f["/modal/mass"], atol=1e-12)
+            np.testing.assert_allclose(K[1:, 1:], f["/modal/stiffness"], atol=1e-8 * np.abs(K).max())
+
+    def test_gyroscopic_terms_of_a_spin(self):
+        self.make_boom(4)
+        self.write_hub("spin.toml", motion='motion = "angle"', rate=6)
+        M, D, K, F = self.check_form(self.linearize("spin.toml"))
+        np.testing.assert_allclose(D, -D.T, atol=1e-7 * np.abs(K).max())
+        np.testing.assert_allclose(K, K.T, atol=1e-7 * np.abs(K).max())
+
+    def test_a_free_body_turns(self):
+        """Axes that turn along: torque-free I w' = Iw x w."""
+        self.write("top.toml", '[[body]]\nname = "top"\nmass = 2.0\ncg = [0.0, 0.0, 0.0]\ninertia = [1.0, 2.0, 2.5]\n'
+                               '[[hinge]]\nname = "float"\ntype = "free"\nchild = "top"\nrate = [0.0, 0.0, 3.0, 0.0, 0.0, 0.0]\n'
+                               '[simulation]\nduration = 1.0\n')
+        M, D, K, _ = self.check_form(self.linearize("top.toml"))
+        np.testing.assert_allclose(np.diag(M), [1, 2, 2.5, 2, 2, 2], rtol=1e-12)
+        np.testing.assert_allclose(D[:2, :2], [[0, -(1 + 2 - 2.5) * 3], [(1 + 2 - 2.5) * 3, 0]], atol=1e-8)
+        np.testing.assert_allclose(np.diag(K)[:2], [9 * (2.5 - 2), 9 * (2.5 - 1)], rtol=1e-8)
+
+    def test_a_loop_moves_along(self):
+        self.copy_example("ex07-four-bar")
+        self.bough("reduce", "coupler.toml")
+        with open(self.path("four-bar.toml")) as f:
+            self.write("short.toml", f.read().replace("duration = 2.0", "duration = 0.002"))
+        model = self.linearize("short.toml")
+        M = self.check_form(model)[0]
+        self.bough("run", "short.toml", "-o", "run.h5")
+        with h5py.File(self.path("run.h5")) as f:
+            energy = f["/energy/kinetic"][0]
+        u = model["operating_point/u"]
+        self.assertAlmostEqual(0.5 * u @ M @ u / energy, 1, places=10)
+
+    def test_states_of_controllers_have_no_second_order(self):
+        self.write("sampled.toml", PENDULUM.replace("POSITION", "0.0") +
+                   '[[controller]]\nname = "lag"\ntype = "transfer_function"\ninputs = ["angle"]\nnumerator = [1.0]\n'
+                   'denominator = [1.0, 0.1]\n[[actuator]]\nname = "motor"\ntype = "hinge"\nhinge = "pin"\ninput = "lag"\n')
+        self.assertNotIn("second_order/M", self.linearize("sampled.toml"))
+        self.assertIn("second_order/M", self.linearize("sampled.toml", "--open"))
 
 
 class Equilibrium(LinearTest):

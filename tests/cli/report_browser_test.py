@@ -437,6 +437,42 @@ class Page(ProgramTest):
         np.testing.assert_allclose(np.sort(levels), np.sort(energy / energy.max()), atol=1e-4)
         self.check_sound()
 
+    def test_strain_energy_of_a_moving_system(self):
+        """Colours of a run are those of the body file's energies at its modal coordinates, over the largest of the run."""
+        self.copy_example("ex05-plate")
+        self.bough("reduce", "plate.bdf", "--modes", "4", "--strain-energy", "-o", "plate.h5")
+        self.write("swing.toml", '[[body]]\nname = "plate"\nfile = "plate.h5"\n[[hinge]]\nname = "pin"\ntype = "revolute"\n'
+                                 'child = "plate"\naxis = [0.0, 1.0, 0.0]\nrate = 2.0\n[simulation]\nduration = 0.2\n'
+                                 'output_step = 0.005\ngravity = [0.0, 0.0, -9.81]\n')
+        self.bough("run", "swing.toml", "-o", "run.h5")
+        self.open("run.h5")
+        self.build_all()
+        b = self.browser
+        b.show(".motion")
+        self.assertEqual(b.run(COLORINGS), ["body", "displacement", "strain energy", "strain energy density"])
+        with h5py.File(self.path("run.h5")) as f:
+            eta, time = f["bodies/plate/eta"][()], f["time"][()]
+        with h5py.File(self.path("plate.h5")) as f:
+            packed = f["strain_energy/matrix"][()]
+        i, j = np.triu_indices(eta.shape[1])
+        energies = (eta[:, i] * eta[:, j] * np.where(i == j, 0.5, 1)) @ packed.T
+        shown = set()
+        for way in range(4):
+            b.run(CHOOSE_COLORS % way)
+            b.run(f"document.querySelector('[data-view=motion]').view.set_time({time[20]})")
+            shown.add(b.run(HASH % ".scene"))
+            self.assertEqual("Colours: " in b.run("document.querySelector('.motion').textContent"), way > 0)
+        self.assertGreaterEqual(len(shown), 3)
+        b.run(CHOOSE_COLORS % 2)
+        view = "document.querySelector('[data-view=motion]').view"
+        most = b.run(f"{view}.most[0]")
+        self.assertAlmostEqual(most / energies.max(), 1, delta=0.05)  # of a hundred instants
+        for k in (3, 20, 40):
+            found = np.array(b.run(f"[...{view}.get_levels({view}.bodies[0].drawing, {eta[k].tolist()})]")) * most
+            np.testing.assert_allclose(np.sort(found), np.sort(energies[k]), atol=1e-3 * energies[k].max())
+        self.picture("motion-energy")
+        self.check_sound()
+
     def test_static_solutions(self):
         self.write("frame.bdf", FRAME)
         self.bough("static", "frame.bdf", "-o", "frame.h5")

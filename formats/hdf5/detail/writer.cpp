@@ -7,6 +7,7 @@
 
 #include "base/diagnostic.hpp"
 #include "base/version.hpp"
+#include "formats/hdf5/detail/dimension_scales.hpp"
 #include "formats/hdf5/inspect.hpp"
 
 namespace bough::hdf5 {
@@ -202,6 +203,10 @@ void FileWriter::write_integers(const std::string& path, const std::vector<int>&
 void FileWriter::write_integers(const std::string& path, const Eigen::MatrixXi& m, const Meaning& meaning) {
   const Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = m;
   write_integers(path, {static_cast<hsize_t>(m.rows()), static_cast<hsize_t>(m.cols())}, rows.data(), meaning);
+}
+
+void FileWriter::attach_scale(const std::string& scale, const std::vector<std::string>& users) {
+  check(hdf5::attach_scale(file_.get(), scale, users), "the scale " + scale + " cannot be written");
 }
 
 void FileWriter::commit() {

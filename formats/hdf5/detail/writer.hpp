@@ -46,6 +46,8 @@ class FileWriter {
   void make_group(const std::string& path);
   /// A second name of an existing dataset.
   void link(const std::string& path, const std::string& existing);
+  /// The dataset `scale` is what the first dimension of `users` stands at.
+  void attach_scale(const std::string& scale, const std::vector<std::string>& users);
 
   /// Closes, forces the bytes to disk and renames. The file appears now.
   void commit();

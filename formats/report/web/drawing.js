@@ -14,7 +14,23 @@ export class Drawing {
     if (json.elements) {
       const { of_triangle, of_edge, kind, measure, energy } = json.elements;
       this.elements = { of_triangle: unpack_indices(of_triangle), of_edge: unpack_indices(of_edge), kind: unpack_indices(kind), measure: unpack_floats(measure), energy };
+      this.matrix = json.elements.matrix;
     }
+  }
+
+  // Strain energy of each element for these coefficients of the shapes, and with `is_density` over its extent.
+  calc_energies(coefficients, is_density) {
+    this.matrices ??= { weight: unpack_floats(this.matrix.weight), largest: unpack_floats(this.matrix.largest), data: unpack_shorts(this.matrix.data) };
+    const { weight, largest, data } = this.matrices, { measure } = this.elements, n = weight.length;
+    const a = Array.from(weight, (w, i) => w * (coefficients[i] ?? 0));
+    const pairs = [];
+    for (let i = 0; i < n; ++i) for (let j = i; j < n; ++j) pairs.push((i === j ? 0.5 : 1) * a[i] * a[j]);
+    return Float32Array.from(largest, (scale, k) => {
+      let sum = 0;
+      for (let c = 0, at = k * pairs.length; c < pairs.length; ++c) sum += data[at + c] * pairs[c];
+      const energy = Math.max(0, (sum * scale) / 32767);
+      return !is_density ? energy : measure[k] > 0 ? energy / measure[k] : 0;
+    });
   }
 
   // Strain energy of each element in shape j over the largest, 0 to 1; by density lines, surfaces and solids each over

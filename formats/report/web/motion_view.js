@@ -18,7 +18,7 @@ export class MotionView {
     this.scale = 1;
     this.follow = -1;
     this.has_frames = true;
-    this.has_colors = false;
+    this.color_by = 0;
     this.is_playing = false;
     this.marks = new SceneMarks(this);
     this.viewer = new Viewer(460);
@@ -33,15 +33,16 @@ export class MotionView {
       make_select("follow", ["nothing", ...moving.map((b) => b.name)], (i) => { this.follow = i === 0 ? -1 : moving[i - 1].index; this.anchor(); }),
       ...this.marks.make_tools(),
       make_check("frames", true, (on) => { this.has_frames = on; this.draw(); }),
-      make_check("colour by displacement", false, (on) => { this.has_colors = on; this.draw(); }), this.viewer.make_view_buttons());
+      make_select("colour by", ["body", "displacement", ...(moving.some((b) => b.drawing.matrix) ? ["strain energy", "strain energy density"] : [])], (i) => { this.color_by = i; this.set_colors(); }), this.viewer.make_view_buttons());
     if (globalThis.MediaRecorder) tools.append(make_button("WebM", "Play once from the start and save it as a film", () => this.film()));
     const names = el("p", { class: "note legend" }, ...moving.map((b) => {
       const mark = el("span", { class: "swatch" });
       mark.style.background = get_style(b.index).color;
       return el("span", { class: "entry" }, mark, " " + b.name);
     }));
+    this.color_note = el("p", { class: "note" });
     const help = el("p", { class: "note" }, "Black (white in the dark): hinges and their axes. Frames: orange x, green y, blue z. A click in a chart takes this view there.");
-    this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock), names, this.marks.legend, this.marks.now, help);
+    this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock), this.color_note, names, this.marks.legend, this.marks.now, help);
     run.link.on("pick", (time) => { this.play(false); this.set_time(time); });
     this.reach = this.find_reach();
     const box = this.find_box();
@@ -96,6 +97,31 @@ export class MotionView {
       }
     }
     return most;
+  }
+
+  // The largest energy of an element in the run, of lines, surfaces and solids: by density each has its own.
+  find_most(is_density) {
+    const most = [0, 0, 0];
+    for (const body of this.bodies.filter((b) => b.is_drawn && b.eta && b.drawing.matrix))
+      for (const time of this.list_times(100))
+        body.drawing.calc_energies(this.sample(body.eta, time), is_density).forEach((v, k) => {
+          const kind = is_density ? body.drawing.elements.kind[k] : 0;
+          if (v > most[kind]) most[kind] = v;
+        });
+    return most;
+  }
+
+  set_colors() {
+    this.most = this.color_by > 1 ? this.find_most(this.color_by === 3) : null;
+    this.color_note.textContent = ["", `Colours: displacement, none (dark) to the largest of the run (bright), ${format_number(this.reach)}.`,
+      `Colours: strain energy of each element, none (dark) to the largest of the run (bright), ${format_number(this.most?.[0] ?? 0)}.`,
+      "Colours: strain energy per length, area or volume, none (dark) to the largest of the run of lines, of surfaces, of solids (bright)."][this.color_by];
+    this.draw();
+  }
+
+  get_levels(drawing, eta) {
+    const { kind } = drawing.elements, is_density = this.color_by === 3;
+    return drawing.calc_energies(eta, is_density).map((v, k) => v / (this.most[is_density ? kind[k] : 0] || 1));
   }
 
   // From now on the camera goes with the body.
@@ -164,7 +190,8 @@ export class MotionView {
         for (let r = 0; r < 3; ++r) body.world[i + r] = p[r] + R[r][0] * d.points[i] + R[r][1] * d.points[i + 1] + R[r][2] * d.points[i + 2];
       // Boxes of rigid bodies are seen through, after what they may hold.
       const is_box = d.packed.length === 0 && d.triangles.length > 0;
-      (is_box ? boxes : things).push({ alpha: is_box ? 0.4 : 1, points: body.world, size: d.size, triangles: d.triangles, edges: d.edges, ghosts: d.ghosts, color: get_style(k).color, by_level: this.has_colors && eta.length > 0, dots: d.triangles.length === 0 });
+      const colors = this.most && d.matrix && eta.length > 0 ? { elements: d.elements, levels: this.get_levels(d, eta) } : {};
+      (is_box ? boxes : things).push({ ...colors, alpha: is_box ? 0.4 : 1, points: body.world, size: d.size, triangles: d.triangles, edges: d.edges, ghosts: d.ghosts, color: get_style(k).color, by_level: this.color_by === 1 && eta.length > 0, dots: d.triangles.length === 0 });
       if (this.has_frames) things.push(...make_triad(p, [0, 1, 2].map((c) => R.map((row) => row[c])), 0.06 * size));
     });
     this.viewer.marks = this.marks.make_things(places, this.time, size);
