@@ -127,7 +127,7 @@ fe::Model Reduction::build_model() {
   return fe::Model::build(deck_, options, elements, reported);
 }
 
-/// φᵀ K_e φ of each element that has stiffness.
+/// φᵀ K_e φ of each element that has stiffness, without what a preload adds to it.
 void Reduction::set_strain_energy(const fe::Model& model) {
   if (!spec_.strain_energy) return;
   report("strain energy of elements");
@@ -139,7 +139,7 @@ void Reduction::set_strain_energy(const fe::Model& model) {
   for (int e = begin; e < end; ++e) {
     const fe::Element& element = *elements[static_cast<std::size_t>(e)];
     K.setZero(element.num_dofs(), element.num_dofs());
-    model.add_stiffness(element, K);
+    element.add_stiffness(1, K);
     if (K.isZero(0)) continue;
     is_stiff(e) = 1;
     u = Phi_(element.gdofs(), Eigen::all);

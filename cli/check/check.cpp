@@ -24,6 +24,7 @@
 #include "fe/statics/preload.hpp"
 #include "formats/flx/flx_file.hpp"
 #include "formats/hdf5/files.hpp"
+#include "formats/hdf5/linear_file.hpp"
 #include "formats/nastran/reader.hpp"
 #include "formats/records/params.hpp"
 #include "formats/toml/specs.hpp"
@@ -317,11 +318,23 @@ int check_hdf5(const CheckOptions& options, const Console& console) {
     check_static(options.file, info, text, json, diagnostics);
   } else if (format != info.attributes.end() && format->second == "bough-matrices") {
     check_matrices(options.file, info, text, json, diagnostics);
+  } else if (format != info.attributes.end() && format->second == "bough-linear") {
+    const auto model = hdf5::read_linear_model(options.file);
+    text += fmt::format("linear model: {} states, {} inputs, {} outputs at t = {:g}, known to {:.1e}\n",
+                        model.states.size(), model.inputs.size(), model.outputs.size(), model.time,
+                        std::max(model.error, model.difference));
+    json["kind"] = "bough-linear";
+    json["num_states"] = model.states.size();
+  } else if (format != info.attributes.end() && format->second.starts_with("bough-")) {
+    diagnostics.error("cli.unknown-format", {options.file},
+                      "there is nothing that check looks at in a file of format \"" + format->second + "\"",
+                      "bough info FILE lists what is in it; bough report FILE makes a page of it");
   } else {
     diagnostics.error("cli.unknown-format", {options.file},
                       "an HDF5 file without a format that Bough knows" +
                           (format == info.attributes.end() ? std::string() : ", found \"" + format->second + "\""),
-                      "expected bough-flexbody, bough-modes, bough-results, bough-static or bough-matrices");
+                      "expected bough-flexbody, bough-modes, bough-results, bough-static, bough-linear or "
+                      "bough-matrices");
   }
   return finish(options, console, text, json, diagnostics);
 }

@@ -4,7 +4,9 @@
 #include <cctype>
 
 #include "cli/common/body_files.hpp"
+#include "cli/linearize/linear_model_files.hpp"
 #include "formats/hdf5/files.hpp"
+#include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sparse_file.hpp"
 #include "formats/matrices/mat_file.hpp"
 #include "formats/records/mode_kind.hpp"
@@ -196,8 +198,12 @@ void export_mat(const std::string& file, const std::string& output, Diagnostics&
     variables.emplace_back("time", results.time);
     for (const auto& [path, values] : results.channels)
       if (path != "/time") put(variables, path.substr(1), values);
+  } else if (format == "bough-linear") {
+    const auto model = hdf5::read_linear_model(file);
+    variables = make_linear_fields(model);
+    for (auto& field : make_second_order_fields(model)) variables.push_back(std::move(field));
   } else {
-    refuse_export(file, "mat", "a flexible body, or what bough modes, matrices or run wrote");
+    refuse_export(file, "mat", "a flexible body, or what bough modes, matrices, run or linearize wrote");
   }
   matrices::write_mat(output, variables);
 }

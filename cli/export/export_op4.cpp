@@ -5,6 +5,7 @@
 #include "cli/common/body_files.hpp"
 #include "cli/export/export_matrices.hpp"
 #include "formats/hdf5/files.hpp"
+#include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sparse_file.hpp"
 #include "formats/matrices/op4.hpp"
 
@@ -152,8 +153,19 @@ std::string make_op4(const std::string& file, Diagnostics& diagnostics) {
     const auto set = hdf5::read_sparse_file(file);
     for (const auto& [path, matrix] : set.matrices) out.put(make_op4_name(path), matrix);
     out.put("DOFMAP", set.dof_map.cast<double>());
+  } else if (format == "bough-linear") {
+    const auto model = hdf5::read_linear_model(file);
+    for (const auto& [name, matrix] : {std::pair{"A", &model.A}, {"B", &model.B}, {"C", &model.C}, {"D", &model.D}})
+      out.put(name, *matrix);
+    const auto second = records::make_second_order(model);
+    for (const auto& [name, matrix] : {std::pair{"MASS", &second.M},
+                                       {"DAMPING", &second.D},
+                                       {"STIFF", &second.K},
+                                       {"FORCE", &second.F},
+                                       {"STATES", &second.Z}})
+      out.put(name, *matrix);
   } else {
-    refuse_export(file, "op4", "a flexible body, or what bough modes or matrices wrote");
+    refuse_export(file, "op4", "a flexible body, or what bough modes, matrices or linearize wrote");
   }
   return out.take();
 }

@@ -118,7 +118,8 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
   if (grid > 0) hinge += fmt::format("child_node = {}\naxis = [0.0, 0.0, 1.0]\n", grid);
   const std::string system = fmt::format(
       "# bough run {0}-run.toml -o {0}-run.h5\n[[body]]\nname = \"{0}\"\nfile = \"{0}.h5\"\n\n"
-      "[[hinge]]\nname = \"base\"\n{1}\n[simulation]\nduration = 1.0\noutput_step = 0.01\n{2}",
+      "[[hinge]]\nname = \"base\"\n{1}\n[simulation]\nduration = 1.0\noutput_step = 0.01\n{2}"
+      "gravity = [0.0, 0.0, -9.81]  # a load to begin with, in the units of the deck (-9810.0 of mm, 0.0 in space)\n",
       name, hinge, grid > 0 ? "integrator = \"auto\"\n" : "");
   return {{name + ".toml", body}, {name + "-run.toml", system}};
 }

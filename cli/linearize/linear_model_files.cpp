@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "cli/common/console.hpp"
-#include "formats/matrices/mat_file.hpp"
 #include "solver/statespace/hankel.hpp"
 
 namespace bough::cli {
@@ -20,7 +19,7 @@ matrices::MatCells make_cells(const std::vector<std::string>& words) { return {w
 
 /// Rounding of a value that is zero reads as zero.
 std::string format_number(double value, double scale) {
-  return std::abs(value) < 1e-12 * scale ? "0" : fmt::format("{:.6g}", value);
+  return value == 0 || std::abs(value) < 1e-12 * scale ? "0" : fmt::format("{:.6g}", value);
 }
 
 std::vector<double> to_list(const Eigen::VectorXd& v) { return {v.begin(), v.end()}; }
@@ -33,7 +32,7 @@ nlohmann::json to_rows(const Eigen::MatrixXd& m) {
 
 }  // namespace
 
-void write_linear_mat(const LinearModel& model, const std::string& path) {
+matrices::MatFields make_linear_fields(const LinearModel& model) {
   matrices::MatFields fields{{"A", model.A},
                              {"B", model.B},
                              {"C", model.C},
@@ -41,14 +40,21 @@ void write_linear_mat(const LinearModel& model, const std::string& path) {
                              {"state_name", make_cells(model.states.name)},
                              {"input_name", make_cells(model.inputs.name)},
                              {"output_name", make_cells(model.outputs.name)}};
-  if (const auto second = records::make_second_order(model); second.M.size() > 0) {
-    fields.emplace_back("mass", second.M);
-    fields.emplace_back("damping", second.D);
-    fields.emplace_back("stiffness", second.K);
-    fields.emplace_back("input_force", second.F);
-  }
   if (model.sample_time > 0) fields.emplace_back("sample_time", Eigen::MatrixXd::Constant(1, 1, model.sample_time));
-  matrices::write_mat(path, fields);
+  return fields;
+}
+
+matrices::MatFields make_second_order_fields(const LinearModel& model) {
+  const auto second = records::make_second_order(model);
+  if (second.M.size() == 0) return {};
+  matrices::MatFields fields{
+      {"mass", second.M}, {"damping", second.D}, {"stiffness", second.K}, {"input_force", second.F}};
+  if (second.Z.cols() > 0) fields.emplace_back("state_force", second.Z);
+  return fields;
+}
+
+void write_linear_mat(const LinearModel& model, const std::string& path) {
+  matrices::write_mat(path, make_linear_fields(model));
 }
 
 std::string format_hankel(const records::Hankel& hankel) {
@@ -87,7 +93,7 @@ std::string format_operating_point(const LinearModel& model) {
                           speed == speeds.end() ? "-" : fmt::format("{:.6g}", rate),
                           model.q_names.dims[static_cast<std::size_t>(i)],
                           !is_in(model.periodic, name) ? ""
-                          : rate != 0                  ? "periodic, turns"
+                          : std::abs(rate) > 1e-8      ? "periodic, turns"
                                                        : "periodic"});
   }
   for (int i = 0; i < model.u_names.size(); ++i) {  // rates that are no coordinate's
@@ -269,6 +275,8 @@ nlohmann::json make_json(const LinearModel& model) {
   if (const auto second = records::make_second_order(model); second.M.size() > 0)
     json["second_order"] = {
         {"M", to_rows(second.M)}, {"D", to_rows(second.D)}, {"K", to_rows(second.K)}, {"F", to_rows(second.F)}};
+  if (json.contains("second_order") && model.A.rows() > 2 * model.mass.rows())
+    json["second_order"]["Z"] = to_rows(records::make_second_order(model).Z);
   json["operating_point"]["q_name"] = model.q_names.name;
   json["operating_point"]["q_dims"] = model.q_names.dims;
   json["operating_point"]["u_name"] = model.u_names.name;

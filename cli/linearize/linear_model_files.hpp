@@ -4,11 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "formats/matrices/mat_file.hpp"
 #include "formats/records/linear_model.hpp"
 
 namespace bough::cli {
 
-/// A B C D, state_name, input_name, output_name; nothing else.
+/// A, B, C, D and names.
+matrices::MatFields make_linear_fields(const records::LinearModel& model);
+/// mass, damping, stiffness, input_force, state_force of the same of second order; none where it has no mass matrix.
+matrices::MatFields make_second_order_fields(const records::LinearModel& model);
 void write_linear_mat(const records::LinearModel& model, const std::string& path);
 /// Size, operating point, accuracy, poles and zeros, multipliers, Hankel values.
 std::string format_linear_model(const records::LinearModel& model);

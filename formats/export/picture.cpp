@@ -152,6 +152,27 @@ void add_energies(const std::vector<std::string>& names, const records::ModeEner
   }
 }
 
+/// The same of a body that has them.
+void add_energies(const std::vector<std::string>& names, const records::FlexBody& body, Picture& picture) {
+  const auto& energy = body.strain_energy;
+  const auto n = static_cast<Eigen::Index>(body.num_modes());
+  const auto measures = records::calc_measures(picture.mesh);
+  for (Eigen::Index j = 0; !energy.empty() && j < n; ++j) {
+    const Eigen::VectorXd own = 0.5 * energy.matrix.col(records::ElementStrainEnergy::find_column(j, j, n));
+    const double whole = own.sum();
+    CellArray share{names[static_cast<std::size_t>(j)] + "_strain_energy", {}, {}};
+    CellArray density{share.name + "_density", {}, {}};
+    for (std::size_t e = 0; e < energy.id.size(); ++e) {
+      const double value = own[static_cast<Eigen::Index>(e)];
+      share.by_element[energy.id[e]] = whole > 0 ? value / whole : 0;
+      const auto measure = measures.find(energy.id[e]);
+      if (measure != measures.end() && measure->second > 0) density.by_element[energy.id[e]] = value / measure->second;
+    }
+    picture.cells.push_back(std::move(share));
+    picture.cells.push_back(std::move(density));
+  }
+}
+
 void add_stresses(const std::string& stem, const records::StaticSubcase& subcase, Picture& picture) {
   auto& energy = picture.cells.emplace_back();
   energy.name = stem + "_strain_energy";
@@ -192,7 +213,10 @@ Picture make_picture(const records::FlexBody& body) {
   } else {
     shapes = map_shapes(body.node_id, body.phi);
   }
-  return make_picture(choose_mesh(body.mesh, body.node_id, body.node_xyz), shapes, make_names(body.frequency_hz));
+  auto picture =
+      make_picture(choose_mesh(body.mesh, body.node_id, body.node_xyz), shapes, make_names(body.frequency_hz));
+  add_energies(make_names(body.frequency_hz), body, picture);
+  return picture;
 }
 
 Picture make_picture(const records::StaticResult& result) {

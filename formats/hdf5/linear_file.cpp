@@ -46,10 +46,13 @@ void write_second_order(FileWriter& file, const LinearModel& model) {
   const auto second = records::make_second_order(model);
   if (second.M.size() == 0) return;
   const char* const dims = "as the names' dims say";
-  file.write_matrix("/second_order/M", second.M, {"M d'' + D d' + K d = F u, d displacements: mass matrix", dims});
+  file.write_matrix("/second_order/M", second.M,
+                    {"M d'' + D d' + K d = F u + Z z, d displacements: mass matrix", dims});
   file.write_matrix("/second_order/D", second.D, {"damping, and gyroscopic terms of a motion", dims});
   file.write_matrix("/second_order/K", second.K, {"stiffness, of loads and of a motion too", dims});
   file.write_matrix("/second_order/F", second.F, {"displacement, input", dims});
+  if (second.Z.cols() > 0)
+    file.write_matrix("/second_order/Z", second.Z, {"displacement, state of controllers, actuators, sensors", dims});
 }
 
 }  // namespace
@@ -105,7 +108,7 @@ LinearModel read_linear_model(const std::string& path) {
   model.B = file.read_matrix("/B", nx, nu);
   model.C = file.read_matrix("/C", ny, nx);
   model.D = file.read_matrix("/D", ny, nu);
-  if (file.has("/second_order/M")) model.mass = file.read_matrix("/second_order/M", nx / 2, nx / 2);
+  if (file.has("/second_order/M")) model.mass = file.read_matrix("/second_order/M", -1, -1);
   model.time = file.read_number("/operating_point/time");
   model.q = file.read_vector("/operating_point/q", -1);
   model.u = file.read_vector("/operating_point/u", -1);

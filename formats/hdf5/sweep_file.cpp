@@ -80,7 +80,7 @@ void write_sweep(const records::LinearSweep& sweep, const std::string& path) {
   file.write_matrix("/poles/correlation", sweep.correlation, {"with the motion at the point before", "1"});
   file.attach_scale("/parameter/value", {"/A", "/B", "/C", "/D", "/operating_point/time", "/operating_point/q",
                                          "/operating_point/u", "/operating_point/residual", "/poles/real",
-                                         "/poles/imag", "/poles/frequency_hz", "/poles/damping"});
+                                         "/poles/imag", "/poles/frequency_hz", "/poles/damping", "/poles/correlation"});
   std::vector<std::string> start, end;
   if (!sweep.mode.empty()) start = sweep.mode.front(), end = sweep.mode.back();
   file.write_strings("/poles/mode_first", start,

@@ -69,13 +69,13 @@ struct LinearModel {
   Hankel hankel;
 };
 
-/// M δ̈ + D δ̇ + K δ = F u, δ the displacements of the freedoms: n x n, n x n, n x n, n x num_inputs.
+/// M δ̈ + D δ̇ + K δ = F u + Z z, δ the displacements of the freedoms, z the states behind their rates, of controllers,
+/// actuators and sensors: n x n, n x n, n x n, n x num_inputs, n x nz.
 struct SecondOrder {
-  Eigen::MatrixXd M, D, K, F;
+  Eigen::MatrixXd M, D, K, F, Z;
 };
 
-/// The same model of second order. Empty where the model has no mass matrix, is one from sample to sample, or has
-/// states of controllers, which are of first order.
+/// The same model of second order. Empty where the model has no mass matrix or is one from sample to sample.
 SecondOrder make_second_order(const LinearModel& model);
 
 }  // namespace bough::records

@@ -35,9 +35,11 @@ void bind_linear(py::module_& m) {
             auto second = records::make_second_order(l);
             if (second.M.size() == 0) return py::none();
             return py::make_tuple(give(std::move(second.M)), give(std::move(second.D)), give(std::move(second.K)),
-                                  give(std::move(second.F)));
+                                  give(std::move(second.F)), give(std::move(second.Z)));
           },
-          "(M, D, K, F): M d'' + D d' + K d = F u, d the displacements; None with states of controllers")
+          "(M, D, K, F, Z): M d'' + D d' + K d = F u + Z z, d the displacements, z the states of controllers; None of "
+          "a "
+          "sampled loop")
       .def_property_readonly("states", [](const LinearModel& l) { return l.states.name; })
       .def_property_readonly("inputs", [](const LinearModel& l) { return l.inputs.name; })
       .def_property_readonly("outputs", [](const LinearModel& l) { return l.outputs.name; })

@@ -26,6 +26,8 @@ using records::LinearModel;
 constexpr double kOtherStep = 0.7;
 /// A and C that are known worse than this, relative to their rows, are told.
 constexpr double kInaccurate = 1e-4;
+/// Steps of displacement within the time of the slowest motion: a system that moves less than that is at rest.
+constexpr double kAtRest = 1e-6;
 
 std::string short_text(double value) {
   std::ostringstream text;
@@ -209,8 +211,8 @@ void note_unsteady(Plant& plant, const VectorXd& u_dot, const MatrixXd& A_lower,
 }
 
 /// A motion under way may change its own linear model.
-void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& here, const SourceLocation& at,
-                     Diagnostics& diagnostics) {
+void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& here, const MatrixXd& A,
+                     const std::vector<std::string>& states, const SourceLocation& at, Diagnostics& diagnostics) {
   const int n = plant.num_freedoms();
   int fastest = -1;
   double travel = 0;  // in steps
@@ -220,6 +222,14 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
     travel = std::abs(point.u[i]) / plant.step(i);
   }
   if (fastest < 0) return;
+  // What has come to rest still has speeds by rounding: it goes nowhere before the slowest of its motions has died out.
+  const auto poles = statespace::calc_poles(A, states);
+  double slowest = 0;
+  for (int i = poles.size() - 1; i >= 0; --i) {
+    const double size = std::hypot(poles.real[i], poles.imag[i]);
+    if (size > 1e-6 * std::hypot(poles.real[poles.size() - 1], poles.imag[poles.size() - 1])) slowest = size;
+  }
+  if (travel < kAtRest * slowest) return;
   OperatingPoint later = point;
   VectorXd delta = VectorXd::Zero(n);
   for (int i = 0; i < n; ++i) {
@@ -314,7 +324,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   model.A.block(0, n, n, n).setIdentity();
   model.A.bottomRows(n + nz) = jacobian.value.topRows(n + nz);
   model.C = take_rows(jacobian.value, n + nz, outputs);
-  if (options.check && nz == 0) model.mass = plant.calc_mass(point);
+  if (options.check) model.mass = plant.calc_mass(point);
 
   const auto num_inputs = static_cast<Eigen::Index>(inputs.size());
   model.B = MatrixXd::Zero(nx, num_inputs);
@@ -348,7 +358,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
                               short_text(kInaccurate),
                           "the motion has a corner near this state (a gap, a limit, a table of lines): linearize "
                           "beside it, or give it a smooth law");
-    check_constancy(plant, point, jacobian, at, diagnostics);
+    check_constancy(plant, point, jacobian, model.A, model.states.name, at, diagnostics);
   }
   if (options.check && options.cut.empty() && !plant.is_open())
     model.multipliers = calc_multipliers(plant, point, model.A, at, diagnostics);

@@ -111,7 +111,7 @@ records::Poles calc_poles(const MatrixXd& A, const std::vector<std::string>& nam
     out.real[i] = pole.value.real();
     out.imag[i] = pole.value.imag();
     out.frequency_hz[i] = size / (2 * std::numbers::pi);
-    out.damping[i] = size > 0 ? -pole.value.real() / size + 0.0 : 0;
+    out.damping[i] = size > pole.error ? -pole.value.real() / size + 0.0 : 0;
     if (error.size() > 0) out.error[i] = pole.error;
     out.mode.push_back(pole.mode);
     out.body_mode.push_back(pole.body_mode);

@@ -168,8 +168,9 @@ class Linearize(LinearTest):
         self.assertEqual(float(np.squeeze(model["operating_point/residual"])), 0)
         mat = scipy.io.loadmat(self.path("model.mat"))
         self.assertEqual(sorted(k for k in mat if k[0] != "_"),
-                         ["A", "B", "C", "D", "damping", "input_force", "input_name", "mass", "output_name",
-                          "state_name", "stiffness"])
+                         ["A", "B", "C", "D", "input_name", "output_name", "state_name"])
+        self.bough("export", "model.h5", "--to", "mat", "-o", "second.mat")
+        mat = scipy.io.loadmat(self.path("second.mat"))
         for key, exact in (("mass", inertia), ("damping", 0.05), ("stiffness", 2 * 9.81 * 0.7), ("input_force", 0.7)):
             np.testing.assert_allclose(mat[key], [[exact]], rtol=1e-9)
         np.testing.assert_array_equal(mat["A"], model["A"])
@@ -338,12 +339,28 @@ class SecondOrder(LinearTest):
         u = model["operating_point/u"]
         self.assertAlmostEqual(0.5 * u @ M @ u / energy, 1, places=10)
 
-    def test_states_of_controllers_have_no_second_order(self):
+    def test_what_has_come_to_rest_is_at_rest(self):
+        """Speeds of rounding are no motion: nothing changes along them."""
+        self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.3").replace("damping = 0.05", "damping = 2.0"))
+        result = self.bough("linearize", "pendulum.toml", "--at", "60")
+        self.assertNotIn("linear.time-varying", result.stderr)
+        self.assertNotIn("turns", result.stdout)
+        self.assertIn("linear.time-varying", self.bough("linearize", "pendulum.toml", "--at", "0.3").stderr)
+
+    def test_states_of_controllers_drive_the_second_order(self):
         self.write("sampled.toml", PENDULUM.replace("POSITION", "0.0") +
                    '[[controller]]\nname = "lag"\ntype = "transfer_function"\ninputs = ["angle"]\nnumerator = [1.0]\n'
                    'denominator = [1.0, 0.1]\n[[actuator]]\nname = "motor"\ntype = "hinge"\nhinge = "pin"\ninput = "lag"\n')
-        self.assertNotIn("second_order/M", self.linearize("sampled.toml"))
-        self.assertIn("second_order/M", self.linearize("sampled.toml", "--open"))
+        model = self.linearize("sampled.toml")
+        M, Z, A = model["second_order/M"], model["second_order/Z"], model["A"]
+        np.testing.assert_allclose(Z, M @ A[1:2, 2:], atol=1e-12 * np.abs(A).max())
+        self.assertNotEqual(Z[0, 0], 0)
+        self.assertNotIn("second_order/Z", self.linearize("sampled.toml", "--open"))
+        self.bough("export", "model.h5", "--to", "mat", "-o", "again.mat")
+        np.testing.assert_array_equal(scipy.io.loadmat(self.path("again.mat"))["A"], model["A"][:2, :2])
+        self.bough("export", "model.h5", "--to", "op4", "-o", "again.op4")
+        self.assertIn("MASS", open(self.path("again.op4")).read())
+        self.assertIn("linear model: 2 states", self.bough("check", "model.h5").stdout)
 
 
 class Equilibrium(LinearTest):

@@ -65,6 +65,26 @@ class StrainEnergy(ProgramTest):
             np.testing.assert_array_equal(f["energies/id"], ids)
         np.testing.assert_allclose(np.einsum("eii->ei", k) / np.diag(K), share, atol=1e-9)
 
+    def test_a_preload_is_not_among_it(self):
+        self.copy_example("ex05-plate")
+        self.write("body.toml", '[body]\nname = "plate"\ndeck = "plate.bdf"\n[body.preload]\nspin = [0.0, 0.0, 5.0]\n'
+                                '[body.modes]\nnumber = 3\n[body.output]\nfile = "spun.h5"\nstrain_energy = true\n')
+        self.bough("reduce", "body.toml")
+        _, k, K, _ = self.read("spun.h5")
+        with h5py.File(self.path("spun.h5")) as f:
+            K_G = f["stiffening/kg_preload"][()]
+        self.assertGreater(np.abs(K_G).max(), 1e-6 * np.abs(K).max())
+        np.testing.assert_allclose(k.sum(axis=0), K - K_G, atol=1e-9 * np.abs(K).max())
+
+    def test_cells_of_the_modes_of_a_body(self):
+        ids, k, _, _ = self.reduce()
+        self.bough("export", "plate.h5", "--to", "vtu", "-o", "plate.vtu")
+        mesh = meshio.read(self.path("plate.vtu"))
+        name = next(key for key in mesh.cell_data if key.startswith("mode_002") and key.endswith("_strain_energy"))
+        share = dict(zip(ids, k[:, 1, 1] / k[:, 1, 1].sum()))
+        for element, value in zip(np.concatenate(mesh.cell_data["element_id"]), np.concatenate(mesh.cell_data[name])):
+            self.assertAlmostEqual(value, share.get(element, 0), places=12)
+
     def test_of_two_ranks_is_the_same(self):
         _, k, _, _ = self.reduce()
         self.bough("reduce", "plate.bdf", "--modes", "4", "--strain-energy", "-o", "two.h5",

@@ -377,6 +377,10 @@ class LinearModels(InFolder):
         expected = np.roots([inertia, 3, 40])
         for pole in expected:
             self.assertLess(np.abs(closed.poles - pole).min(), 1e-6)
+        M, D, K, F, Z = model.second_order
+        np.testing.assert_allclose(M, [[inertia]], rtol=1e-12)
+        np.testing.assert_allclose(F, M @ model.B[1:2], rtol=1e-12)
+        self.assertEqual(Z.shape[0], 1)
         closed.save("closed.h5")
         np.testing.assert_array_equal(bough.read_linear_model("closed.h5").A, closed.A)
         self.assertEqual(model.outputs[0].split(":")[0], "angle")
