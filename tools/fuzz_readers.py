@@ -26,7 +26,7 @@ CORPUS = os.path.join(ROOT, "tests", "fuzz", "corpus")
 SANITIZER = ("detect_leaks=0:allocator_may_return_null=1:malloc_context_size=1:quarantine_size_mb=1:"
              "thread_local_quarantine_size_kb=16:detect_stack_use_after_return=0")
 # Longest input, and seconds that one may take: HDF5 files are looked through in a process of their own.
-LONGEST = {"hdf5": 30000, "matrices": 1500, "mode-tables": 16384, "nastran": 600, "packed-deck": 400,
+LONGEST = {"hdf5": 30000, "matrices": 600, "mode-tables": 16384, "nastran": 600, "packed-deck": 400,
            "deck-editor": 1500}
 
 

@@ -15,6 +15,7 @@
 #include "cli/export/moving_system.hpp"
 #include "cli/linearize/linear_model_files.hpp"
 #include "cli/linearize/sweep.hpp"
+#include "cli/response/response_csv.hpp"
 #include "formats/export/response_text.hpp"
 #include "formats/export/uff.hpp"
 #include "formats/export/vtu.hpp"
@@ -72,6 +73,7 @@ std::string make_csv(const ExportOptions& o, Diagnostics& diagnostics) {
   const auto format = o.channels.empty() ? read_file_format(o.file) : "";
   if (format == "bough-linear") return make_linear_csv(hdf5::read_linear_model(o.file));
   if (format == "bough-sweep") return make_sweep_csv(hdf5::read_sweep(o.file));
+  if (format == "bough-response") return make_response_csv(hdf5::read_model_response(o.file).response);
   if (is_response(format)) return exports::make_response_csv(hdf5::read_response(o.file));
   exports::write_csv(text, has_shapes(format) ? read_shape_columns(o.file, format, diagnostics) : read_columns(o));
   return text.str();

@@ -13,8 +13,8 @@
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/linearize/linear_model_files.hpp"
+#include "cli/response/response_csv.hpp"
 #include "cli/verbs.hpp"
-#include "formats/export/csv.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
 
@@ -37,28 +37,6 @@ constexpr std::size_t kMostRows = 24;
 
 double to_decibel(double gain) { return 20 * std::log10(gain); }
 double to_degrees(double angle) { return angle * 180 / std::numbers::pi; }
-
-std::string make_csv(const FrequencyResponse& response) {
-  std::vector<exports::CsvColumn> columns{{"frequency_hz", response.frequency_hz}};
-  const Index count = response.frequency_hz.size();
-  for (int j = 0; j < response.inputs.size(); ++j)
-    for (int i = 0; i < response.outputs.size(); ++i) {
-      const std::string name =
-          response.outputs.name[static_cast<std::size_t>(i)] + "/" + response.inputs.name[static_cast<std::size_t>(j)];
-      Eigen::VectorXd real(count), imag(count);
-      for (Index k = 0; k < count; ++k) {
-        const auto h = response.value[static_cast<std::size_t>(k)](i, j);
-        real[k] = h.real(), imag[k] = h.imag();
-      }
-      columns.push_back({name + ":real", std::move(real)});
-      columns.push_back({name + ":imag", std::move(imag)});
-    }
-  for (Index s = 0; s < response.singular_values.cols(); ++s)
-    columns.push_back({"sigma" + std::to_string(s + 1), response.singular_values.col(s)});
-  std::ostringstream text;
-  exports::write_csv(text, columns);
-  return text.str();
-}
 
 struct Summit {
   std::string name;
@@ -183,7 +161,7 @@ int run_response(const ResponseOptions& o) {
   else
     console.print(format(model, response, peak, given));
   if (!o.output.empty()) hdf5::write_response(response, peak, given, o.output);
-  if (!o.csv.empty()) write_text_file(o.csv, make_csv(response));
+  if (!o.csv.empty()) write_text_file(o.csv, make_response_csv(response));
   for (const auto& path : {o.output, o.csv})
     if (!path.empty() && !o.json) console.print("written: " + path + "\n");
   return kSuccess;

@@ -106,6 +106,8 @@ class Response(LinearTest):
         self.write_hub("hub.toml", eta="damping = 0.01")
         model = self.linearize("hub.toml")
         self.bough("response", "model.h5", "-o", "r.h5", "--csv", "r.csv")
+        self.bough("export", "r.h5", "--to", "csv", "-o", "again.csv")
+        self.assertEqual(open(self.path("again.csv")).read(), open(self.path("r.csv")).read())
         r = self.read("r.h5")
         w = 2 * math.pi * r["frequency_hz"]
         H = r["real"] + 1j * r["imag"]
