@@ -66,6 +66,13 @@ nlohmann::json SubcaseFailures::to_json() const {
   return list;
 }
 
+void add_warnings(const Diagnostics& from, Diagnostics& to) {
+  Diagnostics warnings;
+  for (const auto& item : from.items())
+    if (item.severity != Severity::Error) warnings.add(item);
+  add_new(warnings, to);
+}
+
 void add_new(const Diagnostics& from, Diagnostics& to) {
   std::set<std::string> known;
   for (const auto& item : to.items()) known.insert(format(item));

@@ -199,6 +199,7 @@ int run_modes(const ModesOptions& options) {
     } catch (const Failure& failure) {
       console.end_progress();
       failures.add(task.buckling ? task.buckling->buckling.id : task.subcase, failure);
+      add_warnings(own, diagnostics);
       continue;
     }
     auto& result = solved.result;

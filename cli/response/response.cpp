@@ -88,7 +88,7 @@ std::string format(const LinearModel& model, const FrequencyResponse& response, 
                         std::isfinite(peak.frequency_hz) ? fmt::format("at {:.6g} Hz", peak.frequency_hz)
                                                          : std::string("beyond all poles"),
                         peak.is_certified ? "" : "; of the frequencies looked at");
-  Table table{{"output over input", "lowest dB", "largest dB", "at Hz"}, {}};
+  Table table{{"output over input", "dB at first", "largest dB", "at Hz"}, {}};
   const auto summits = find_summits(response);
   for (std::size_t k = 0; k < std::min(kMostRows, summits.size()); ++k) {
     const auto& s = summits[k];

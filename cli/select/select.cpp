@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 
 #include "cli/common/body_files.hpp"
@@ -14,6 +15,20 @@
 namespace bough::cli {
 
 namespace {
+
+/// More is lost than kept of what the outputs do, or fewer modes are wanted than what always stays.
+void warn_of_losses(const SelectOptions& o, const Selection& s, Diagnostics& diagnostics) {
+  if (o.number > 0 && static_cast<int>(s.kept.size()) > o.number)
+    diagnostics.warning("select.always-kept", {o.body},
+                        "--number " + std::to_string(o.number) + ", and " + std::to_string(s.kept.size()) +
+                            " modes are kept: static shapes and those of --keep always are",
+                        "ask for more modes than those, or reduce the body without residual vectors");
+  if (s.lost > 0.5 && !s.kept.empty())
+    diagnostics.warning("select.most-is-lost", {o.body},
+                        "the modes kept lose " + std::to_string(std::lround(100 * s.lost)) +
+                            " % of what the outputs do: they are no model of the body",
+                        "keep more modes, or weigh them by the inputs and outputs that matter");
+}
 
 int run_select(const SelectOptions& o) {
   Console console(o.quiet, o.verbosity);
@@ -48,6 +63,7 @@ int run_select(const SelectOptions& o) {
     s.modal_hankel = statespace::calc_modal_hankel(body, inputs, outputs, o.damping);
   }
   weigh_losses(weighings, s);
+  warn_of_losses(o, s, diagnostics);
   console.print(diagnostics);
   if (o.json)
     console.print_data(make_json(body, s).dump(2) + "\n");

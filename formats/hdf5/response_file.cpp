@@ -137,6 +137,21 @@ records::DeckResponse read_response(const std::string& path) {
       read_samples(file, at, rows, {static_cast<long>(dofs.rows())}, response.is_over_time, curves.real, curves.imag);
       s.curves.push_back(std::move(curves));
     }
+    for (const char* folder : {"/elements", "/stresses"}) {
+      if (!file.has(group + folder)) continue;
+      for (const auto& card : file.get_children(group + folder)) {
+        const std::string at = group + folder + "/" + card;
+        records::ElementCurves curves;
+        curves.card = card;
+        curves.is_stress = std::string_view(folder) == "/stresses";
+        curves.ids = file.read_integers(at + "/id", -1);
+        curves.components = file.read_attribute_words(at, "components");
+        read_samples(file, at, rows,
+                     {static_cast<long>(curves.ids.size()), static_cast<long>(curves.components.size())},
+                     response.is_over_time, curves.real, curves.imag);
+        s.elements.push_back(std::move(curves));
+      }
+    }
     s.is_direct = !file.has(group + "/modes");
     if (s.is_direct) {
       response.subcases.push_back(std::move(s));

@@ -48,13 +48,17 @@ MatrixXd calc_damper_loads(const fe::Model& model, const MatrixXd& Phi) {
         dense(i, at - rows.begin()) = B.data[static_cast<std::size_t>(k)];
     }
   }
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(make_symmetric(dense));
+  // Rows by their own size: forces and moments have other units.
+  VectorXd root = dense.diagonal().cwiseAbs().cwiseSqrt();
+  for (double& r : root) r = r > 0 ? r : 1;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(
+      make_symmetric(root.cwiseInverse().asDiagonal() * dense * root.cwiseInverse().asDiagonal()));
   const VectorXd size = solver.eigenvalues().cwiseAbs();
   MatrixXd loads = none;
   for (Eigen::Index c = 0; c < n; ++c) {
     if (!(size(c) > 1e-12 * size.maxCoeff())) continue;
     VectorXd load = VectorXd::Zero(model.num_gdofs());
-    load(rows) = solver.eigenvectors().col(c);
+    load(rows) = root.cwiseProduct(solver.eigenvectors().col(c));
     loads = join_columns(loads, load);
   }
   return loads.cols() > kMostDamperDirections ? fe::calc_damping_times(model, Phi) : loads;

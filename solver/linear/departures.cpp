@@ -42,6 +42,16 @@ std::vector<double> list_instants(const std::vector<SampleTimes>& samples, doubl
   return instants;
 }
 
+Departures::Departures(Plant& plant, const OperatingPoint& point)
+    : plant_(plant), point_(point), n_(plant.num_freedoms()), nz_(plant.num_states()) {
+  if (plant.sampled_rows().empty()) return;
+  // A law that has seen no sample yet takes its first one otherwise than all that follow, as a difference does.
+  const OperatingPoint start = plant.make_initial_point();
+  if (point.t != start.t || point.memory != start.memory) return;
+  point_.memory = plant.resample(point);
+  plant.fill_queues(point_.memory);
+}
+
 std::vector<std::string> Departures::list_names() const {
   std::vector<std::string> names;
   for (const char* suffix : {"", "_dot"})

@@ -16,8 +16,7 @@ std::vector<double> list_instants(const std::vector<SampleTimes>& samples, doubl
 
 class Departures {
  public:
-  Departures(Plant& plant, const OperatingPoint& point)
-      : plant_(plant), point_(point), n_(plant.num_freedoms()), nz_(plant.num_states()) {}
+  Departures(Plant& plant, const OperatingPoint& point);
   int num_x() const { return 2 * n_ + nz_; }
   int num_m() const { return static_cast<int>(plant_.sampled_rows().size()); }
   /// num_x + num_m.

@@ -186,7 +186,10 @@ MatrixXd take_rows(const MatrixXd& m, int first, const std::vector<int>& rows) {
 void open_cut(LinearModel& model, const std::string& name) {
   const double back = 1 + model.D(0, 0);
   const MatrixXd B = model.B / back, C = model.C / back;
-  model.A -= B * model.C;
+  // What comes back is taken off the rows that it drives: rounding is left of what was there by the loop alone.
+  const MatrixXd taken = B * model.C, sum = model.A.cwiseAbs() + taken.cwiseAbs();
+  model.A -= taken;
+  model.A = (model.A.array().abs() > 1e-13 * sum.array()).select(model.A, 0.0);
   model.B = B;
   model.C = -C;
   model.D /= -back;

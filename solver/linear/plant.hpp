@@ -85,6 +85,8 @@ class Plant {
   /// actuators; then what each actuator is told to do, "motor:command".
   const records::Signals& outputs() const { return outputs_; }
   int num_sensor_outputs() const { return num_sensor_outputs_; }
+  /// The controller of output i where is_open leaves out states or memory of it; "": none.
+  std::string find_frozen_law(int i) const;
   /// Where a loop may be cut: the output before, and the input behind the cut. Throws nothing; -1: no such name. Of a
   /// signal the value without what the input adds, of an actuator its command likewise.
   struct Cut {

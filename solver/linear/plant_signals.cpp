@@ -52,6 +52,19 @@ void Plant::add_inputs() {
   inputs_.insert(inputs_.end(), more.begin(), more.end());
 }
 
+std::string Plant::find_frozen_law(int i) const {
+  if (!is_open_) return "";
+  int first = num_sensor_outputs_;
+  for (const auto& p : system_.impl().signals.places) {
+    if (!is_of(*p.block, "/controllers/")) continue;
+    const int size = p.block->sizes.outputs;
+    if (i >= first && i < first + size)
+      return p.block->sizes.states + p.block->sizes.memory > 0 ? p.block->name : std::string();
+    first += size;
+  }
+  return "";
+}
+
 void Plant::add_outputs() {
   for (const char* kind : {"/sensors/", "/controllers/", "/actuators/"}) {
     for (const auto& p : system_.impl().signals.places) {

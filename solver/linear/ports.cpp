@@ -56,6 +56,16 @@ Ports choose_ports(const Plant& plant, const LinearizeOptions& options, const So
   else
     ports.outputs = choose(options.outputs, plant.outputs().name, "output", "linear.unknown-output", at, diagnostics);
   diagnostics.throw_if_errors();
+  std::string said;
+  for (const int i : ports.outputs) {
+    const std::string law = plant.find_frozen_law(i);
+    if (law.empty() || law == said) continue;
+    diagnostics.warning("linear.open-controller", at,
+                        "--open: the states of controller '" + law + "' are left out, so that its output '" +
+                            plant.outputs().name[static_cast<size_t>(i)] + "' is only what it does at once",
+                        "leave --open out, or take outputs of sensors and commands of actuators");
+    said = law;
+  }
   return ports;
 }
 

@@ -208,5 +208,14 @@ class BadHdf5(ProgramTest):
         self.fails(1, "check", "out.h5", error="cli.not-finite")
 
 
+    def test_a_mass_of_negative_energy_is_named(self):
+        """Before the modes fail by it, and with them."""
+        self.write("mass.bdf", "SOL 103\nCEND\nMETHOD=1\nSPC=1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\n"
+                               "CBAR,1,1,1,2,0.,1.,0.\nPBAR,1,1,1.-3,1.-6,1.-6,2.-6\nMAT1,1,7.+10,,.3,2700.\n"
+                               "CONM1,8,2,,2.\n,,,3.\nSPC1,1,123456,1\nEIGRL,1,,,3\nENDDATA\n")
+        self.assertIn("mass.bdf:11: warning: CONM1 8 has negative energy", self.bough("check", "mass.bdf").stderr)
+        self.assertIn("[fe.indefinite-mass]", self.bough("modes", "mass.bdf", code=3).stderr)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -75,6 +75,12 @@ def read_file(path):
 
     def put(name, item):
         for key, value in item.attrs.items():
+            if key == "DIMENSION_LIST":  # places in memory: the scales that they lead to
+                found[f"{name}@{key}"] = str([[f[scale].name for scale in scales] for scales in value])
+                continue
+            if key == "REFERENCE_LIST":
+                found[f"{name}@{key}"] = str([f[entry[0]].name for entry in value])
+                continue
             found[f"{name}@{key}"] = np.asarray(value).tobytes() if np.asarray(value).dtype.kind != "O" else str(value)
         if isinstance(item, h5py.Dataset) and not any(word in name for word in TIMES):
             value = np.asarray(item[()])

@@ -434,6 +434,34 @@ class SampledLoop(LinearTest):
             with h5py.File(self.path("loop.h5")) as f:
                 self.assertEqual(float(np.squeeze(f["sample_time"][()])), self.T)
 
+    def test_a_difference_of_samples_has_begun(self):
+        """At t = 0 too: a law that takes the difference of its own samples has had one before."""
+        text = AXIS.replace('kd = "$kd"\n', f'kd = 6.0\nfilter = 0.05\nsample_time = 0.02\ndelay = 0.02\n')
+        self.write("axis.toml", text.replace("kp = 8.0", "kp = 40.0").replace('rate = "rate"\n', ""))
+        loops = []
+        for more in ([], ["--at", "0.1"]):
+            self.bough("linearize", "axis.toml", "--break", "drive", *more, "-o", "loop.h5")
+            self.bough("response", "loop.h5", "-o", "r.h5", "--from", "0.1", "--to", "10")
+            with h5py.File(self.path("r.h5")) as f:
+                loops.append((f["frequency_hz"][:], (f["real"][:] + 1j * f["imag"][:]).ravel()))
+        f_hz, start = loops[0]
+        late = np.interp(f_hz, loops[1][0], loops[1][1].real) + 1j * np.interp(f_hz, loops[1][0], loops[1][1].imag)
+        self.assertLess(np.abs(start / late - 1).max(), 2e-2)
+
+    def test_an_integrator_has_no_largest_gain(self):
+        """Rounding where the loop is cut does not hide that the pole at 0 comes through."""
+        for lag in (0.005, 0.01, 0.05):
+            self.write("axis.toml", '[[body]]\nname = "arm"\nmass = 1.0\ninertia = [1.0, 0.7, 1.0]\n[[hinge]]\nname = "pivot"\n'
+                       'type = "revolute"\nchild = "arm"\naxis = [0.0, 1.0, 0.0]\ndamping = 0.3\nstiffness = 1.0\n'
+                       '[[sensor]]\nname = "angle"\ntype = "hinge_angle"\nhinge = "pivot"\n[[controller]]\nname = "law"\n'
+                       'type = "pid"\ninputs = ["angle"]\nkp = 40.0\nki = 15.0\nkd = 6.0\nfilter = 0.01\n[[actuator]]\n'
+                       f'name = "motor"\ntype = "hinge"\nhinge = "pivot"\ninput = "law"\nlag = {lag}\n[simulation]\nduration = 1.0\n')
+            self.bough("linearize", "axis.toml", "--break", "motor", "-o", "loop.h5")
+            self.assertIn("largest gain: infinite", self.bough("response", "loop.h5").stdout)
+        self.assertIn("[linear.open-controller]",
+                      self.bough("linearize", "axis.toml", "--open", "--inputs", "motor", "--outputs", "law").stderr)
+        self.assertNotIn("[linear.open-controller]", self.bough("linearize", "axis.toml", "--open").stderr)
+
     def test_margins_are_where_the_closed_loop_turns(self):
         delay = 0.04
         self.write_axis(delay)
@@ -584,6 +612,14 @@ class SelectMore(LinearTest):
             result = self.bough(*arguments, "--spectrum", "bad.csv", code=0 if "41:q" in text else 1)
             if "41:q" not in text:
                 self.assertIn("[select.bad-spectrum]", result.stderr)
+
+    def test_what_is_no_model_of_the_body_is_told(self):
+        self.make_boom(8)
+        said = self.bough("select", "boom.h5", "--number", "1", "--keep", "7,8").stderr
+        self.assertIn("[select.always-kept]", said)
+        self.assertIn("[select.most-is-lost]", said)
+        said = self.bough("select", "boom.h5", "--number", "4").stderr
+        self.assertNotIn("[select.", said)
 
     def test_modes_of_one_frequency_go_together(self):
         # Outputs and inputs at 45 degrees to the two planes of bending: how the pair is turned does not matter.
