@@ -69,7 +69,7 @@ nlohmann::json SubcaseFailures::to_json() const {
 void add_warnings(const Diagnostics& from, Diagnostics& to) {
   Diagnostics warnings;
   for (const auto& item : from.items())
-    if (item.severity != Severity::Error) warnings.add(item);
+    if (item.severity == Severity::Warning) warnings.add(item);
   add_new(warnings, to);
 }
 

@@ -39,7 +39,7 @@ class SubcaseFailures {
 
 /// Adds what is new: the model of each subcase says again what the deck made the first one say.
 void add_new(const Diagnostics& from, Diagnostics& to);
-/// The same without errors: what was said before a failure, which has those itself.
+/// Warnings alone: what was said before a failure, which has its errors itself.
 void add_warnings(const Diagnostics& from, Diagnostics& to);
 
 }  // namespace bough::cli

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "fe/sections/shell_stress.hpp"
 #include "formats/records/params.hpp"
@@ -223,6 +224,7 @@ void ShellSections::set_stress(const records::Pcomp& p, const std::vector<Lamina
   }
   double z = z0;
   const auto theory = theories.find(p.failure);
+  std::set<int> weak;  // materials without strengths that have been told
   const auto shear = calc_interlaminar_shear(layers);
   stress->has_shear = p.bending;
   stress->bond = p.layup == records::Layup::Stacked ? p.sb : 0;
@@ -245,6 +247,14 @@ void ShellSections::set_stress(const records::Pcomp& p, const std::vector<Lamina
       layer.strength.Xc = layer.strength.Yc = std::abs(i->sc);
       layer.strength.S = i->ss;
     }
+    const auto& own_strength = layer.strength;
+    if (own_strength.Xt > 0 && own_strength.Yt > 0 && own_strength.S > 0) continue;
+    if (weak.insert(p.plies[k].mid).second)
+      maker_.diagnostics().note("fe.no-strength", maker_.deck().locate(p.at),
+                                "PCOMP " + std::to_string(p.id) + " asks for " + p.failure + ", and material " +
+                                    std::to_string(p.plies[k].mid) +
+                                    " lacks a strength (Xt, Yt or S): its plies have the failure index 0",
+                                "give all three");
   }
   section.stress = std::move(stress);
 }

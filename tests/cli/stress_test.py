@@ -376,5 +376,19 @@ class Summary(ProgramTest):
         self.assertTrue(np.isnan(found[2]))
 
 
+    def test_a_missing_strength_is_told(self):
+        """An index of 0 is no safety: the plies whose material lacks a strength are named, once a material."""
+        deck = ("SOL 101\nCEND\nSPC=1\nLOAD=2\nSTRESS=ALL\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\n"
+                "GRID,4,,0.,1.,0.\nCQUAD4,1,1,1,2,3,4\nPCOMP,1,,,5.+7,HILL\n,1,.1,0.,,1,.1,90.\n"
+                "MAT8,1,1.+11,1.+10,.3,5.+9,,,1500.\n,,,,1.+9,1.+9,5.+7,2.+8,{}\nSPC1,1,123456,1,4\n"
+                "FORCE,2,2,,1.,1.,0.,0.\nENDDATA\n")
+        self.write("weak.bdf", deck.format(""))
+        said = self.bough("static", "weak.bdf").stderr
+        self.assertEqual(said.count("[fe.no-strength]"), 1)
+        self.assertIn("weak.bdf:12: note: PCOMP 1 asks for HILL, and material 1 lacks a strength", said)
+        self.write("strong.bdf", deck.format("1.+7"))
+        self.assertNotIn("[fe.no-strength]", self.bough("static", "strong.bdf").stderr)
+
+
 if __name__ == "__main__":
     unittest.main()
