@@ -229,10 +229,9 @@ void add_run(CLI::App& app, Action& action) {
   add_common_options(*verb, *o, kOutput | kJson, "Results HDF5 file (default: the system file's name with .h5, here)");
   verb->footer(
       "Example:\n  bough run spinup.toml -o spinup.h5\n  bough run spinup.toml -o spinup.h5 --resume\n"
-      "SIGINT (Ctrl-C), SIGTERM and SIGHUP write a checkpoint and end the file cleanly, exit code 3. --resume takes "
-      "the "
-      "system file of the run with another duration, other samples or limits; it refuses other changes. A worst "
-      "relative energy error above energy_error_limit ends with exit code 3 too, the results are written.");
+      "SIGINT (Ctrl-C), SIGTERM and SIGHUP write a checkpoint and end the file cleanly, exit code 3. --resume "
+      "takes the system file of the run with another duration, other samples or limits; it refuses other changes. A "
+      "worst relative energy error above energy_error_limit ends with exit code 3 too, the results are written.");
   verb->callback([&action, o] { action = [o] { return run_run(*o); }; });
 }
 

@@ -138,10 +138,11 @@ void add_energies(const std::vector<std::string>& names, const records::ModeEner
       array.by_element[energies.id[e]] = whole > 0 ? part[static_cast<Eigen::Index>(e)] / whole : 0;
   };
   const auto measures = records::calc_measures(picture.mesh);
-  for (std::size_t j = 0; j < names.size(); ++j) {
+  for (std::size_t j = 0; !energies.id.empty() && j < names.size(); ++j) {
     const auto column = static_cast<Eigen::Index>(j);
     add(names[j] + "_strain_energy", energies.strain.col(column), energies.total_strain[column]);
-    add(names[j] + "_kinetic_energy", energies.kinetic.col(column), energies.total_kinetic[column]);
+    if (energies.kinetic.size() > 0)
+      add(names[j] + "_kinetic_energy", energies.kinetic.col(column), energies.total_kinetic[column]);
     auto& density = picture.cells.emplace_back();
     density.name = names[j] + "_strain_energy_density";
     for (std::size_t e = 0; e < energies.id.size(); ++e) {
@@ -152,25 +153,18 @@ void add_energies(const std::vector<std::string>& names, const records::ModeEner
   }
 }
 
-/// The same of a body that has them.
-void add_energies(const std::vector<std::string>& names, const records::FlexBody& body, Picture& picture) {
+/// Of a body that has them; it tells no kinetic energies.
+records::ModeEnergies take_energies(const records::FlexBody& body) {
   const auto& energy = body.strain_energy;
   const auto n = static_cast<Eigen::Index>(body.num_modes());
-  const auto measures = records::calc_measures(picture.mesh);
-  for (Eigen::Index j = 0; !energy.empty() && j < n; ++j) {
-    const Eigen::VectorXd own = 0.5 * energy.matrix.col(records::ElementStrainEnergy::find_column(j, j, n));
-    const double whole = own.sum();
-    CellArray share{names[static_cast<std::size_t>(j)] + "_strain_energy", {}, {}};
-    CellArray density{share.name + "_density", {}, {}};
-    for (std::size_t e = 0; e < energy.id.size(); ++e) {
-      const double value = own[static_cast<Eigen::Index>(e)];
-      share.by_element[energy.id[e]] = whole > 0 ? value / whole : 0;
-      const auto measure = measures.find(energy.id[e]);
-      if (measure != measures.end() && measure->second > 0) density.by_element[energy.id[e]] = value / measure->second;
-    }
-    picture.cells.push_back(std::move(share));
-    picture.cells.push_back(std::move(density));
-  }
+  records::ModeEnergies taken;
+  if (energy.empty()) return taken;
+  taken.id = energy.id;
+  taken.strain.resize(energy.matrix.rows(), n);
+  for (Eigen::Index j = 0; j < n; ++j)
+    taken.strain.col(j) = 0.5 * energy.matrix.col(records::ElementStrainEnergy::find_column(j, j, n));
+  taken.total_strain = taken.strain.colwise().sum();
+  return taken;
 }
 
 void add_stresses(const std::string& stem, const records::StaticSubcase& subcase, Picture& picture) {
@@ -215,7 +209,7 @@ Picture make_picture(const records::FlexBody& body) {
   }
   auto picture =
       make_picture(choose_mesh(body.mesh, body.node_id, body.node_xyz), shapes, make_names(body.frequency_hz));
-  add_energies(make_names(body.frequency_hz), body, picture);
+  add_energies(make_names(body.frequency_hz), take_energies(body), picture);
   return picture;
 }
 
