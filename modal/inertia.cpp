@@ -1,5 +1,6 @@
-/// \file The inertia of a shifted pencil by MUMPS.
+/// \file The inertia of a shifted pencil, front by front, or by MUMPS.
 #include "fe/linear/factor.hpp"
+#include "fe/linear/fronts.hpp"
 #include "fe/linear/memory_need.hpp"
 #include "fe/linear/sum_factor.hpp"
 #include "modal/krylov.hpp"
@@ -28,6 +29,7 @@ class MumpsOption {
 int count_negative(Mat A, double factor, Mat B) {
   initialize_slepc();
   fe::release_freed_memory();  // the factor and the vectors of the modes
+  if (const auto count = fe::count_negative_by_fronts(A, factor, B)) return *count;
   const fe::PetscMat sum = fe::add(A, factor, B);
   const fe::LowRankPart* part = fe::find_low_rank(sum.get());
   Mat C = fe::get_sparse(sum.get());

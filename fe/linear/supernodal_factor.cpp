@@ -9,29 +9,19 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "base/diagnostic.hpp"
 #include "fe/linear/blas.hpp"
+#include "fe/linear/dissection.hpp"
 #include "fe/linear/memory_need.hpp"
-#include "fe/linear/ordering.hpp"
 #include "fe/linear/supernodes.hpp"
-#include "fe/linear/threads.hpp"
 
 namespace bough::fe {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// Rows between the parts, of all: their dense blocks are factored three times.
-constexpr double kMostBetween = 0.02;
-/// The rows of A, both triangles.
-struct Rows {
-  const PetscInt *start = nullptr, *column = nullptr;
-  const PetscScalar* value = nullptr;
-};
 
 /// One part with the rows between: its LLᵀ by CHOLMOD, and the trailing block of that as a dense matrix.
 class Part {
@@ -55,7 +45,8 @@ class Part {
 
   /// (K_pp, K_ps; K_sp, K_ss / 2 + δ) in the order of `own`, postordered, then `between`. False where CHOLMOD wants
   /// another order or no supernodes.
-  bool analyse(const Rows& A, std::vector<PetscInt> own, const std::vector<PetscInt>& between, const VectorXd& delta);
+  bool analyse(const MatrixRows& A, std::vector<PetscInt> own, const std::vector<PetscInt>& between,
+               const VectorXd& delta);
   double num_entries() const { return common_.lnz; }
   /// False: not positive definite.
   bool factor();
@@ -68,7 +59,7 @@ class Part {
 
  private:
   /// The upper triangle of `rows`, of which the first are the part's own.
-  void take(const Rows& A, const std::vector<PetscInt>& rows, std::size_t num_own, const VectorXd& delta);
+  void take(const MatrixRows& A, const std::vector<PetscInt>& rows, std::size_t num_own, const VectorXd& delta);
   cholmod_sparse as_sparse();
   Supernodes get_supernodes() const {
     return {static_cast<int>(factor_->nsuper),    static_cast<const int*>(factor_->super),
@@ -107,7 +98,7 @@ cholmod_sparse Part::as_sparse() {
   return matrix;
 }
 
-void Part::take(const Rows& A, const std::vector<PetscInt>& rows, std::size_t num_own, const VectorXd& delta) {
+void Part::take(const MatrixRows& A, const std::vector<PetscInt>& rows, std::size_t num_own, const VectorXd& delta) {
   const PetscInt last = *std::max_element(rows.begin(), rows.end());
   std::vector<int> place(static_cast<std::size_t>(last) + 1, -1);
   for (std::size_t i = 0; i < rows.size(); ++i) place[static_cast<std::size_t>(rows[i])] = static_cast<int>(i);
@@ -131,7 +122,7 @@ void Part::take(const Rows& A, const std::vector<PetscInt>& rows, std::size_t nu
   }
 }
 
-bool Part::analyse(const Rows& A, std::vector<PetscInt> own, const std::vector<PetscInt>& between,
+bool Part::analyse(const MatrixRows& A, std::vector<PetscInt> own, const std::vector<PetscInt>& between,
                    const VectorXd& delta) {
   const auto n_p = own.size();
   take(A, own, n_p, delta);
@@ -212,15 +203,6 @@ void Part::backward(const MatrixXd& X_s, Eigen::Ref<MatrixXd> X) {
   }
 }
 
-/// All parts, one or two, at once.
-template <class Work>
-void do_all(std::size_t num_parts, const Work& work) {
-  if (num_parts > 1)
-    do_both([&] { work(0); }, [&] { work(1); });
-  else
-    do_alone([&] { work(0); });
-}
-
 struct Parts {
   std::vector<std::unique_ptr<Part>> part;
   std::vector<PetscInt> between;
@@ -250,7 +232,7 @@ void solve_dense(const MatrixXd& L, MatrixXd& X) {
   if (n > 0 && m > 0) LAPACKpotrs_("L", &n, &m, L.data(), &n, X.data(), &n, &info);
 }
 
-VectorXd calc_row_sums(const Rows& A, const std::vector<PetscInt>& rows, PetscInt size) {
+VectorXd calc_row_sums(const MatrixRows& A, const std::vector<PetscInt>& rows, PetscInt size) {
   std::vector<char> is_in(static_cast<std::size_t>(size), 0);
   for (const PetscInt row : rows) is_in[static_cast<std::size_t>(row)] = 1;
   VectorXd sums = VectorXd::Zero(static_cast<Eigen::Index>(rows.size()));
@@ -258,41 +240,6 @@ VectorXd calc_row_sums(const Rows& A, const std::vector<PetscInt>& rows, PetscIn
     for (PetscInt k = A.start[rows[i]]; k < A.start[rows[i] + 1]; ++k)
       if (is_in[static_cast<std::size_t>(A.column[k])]) sums(static_cast<Eigen::Index>(i)) += std::abs(A.value[k]);
   return sums;
-}
-
-/// The rows of A while `use` looks at them.
-template <class Use>
-void visit_rows(Mat A, const Use& use) {
-  PetscInt size = 0;
-  PetscBool done = PETSC_FALSE;
-  Rows rows;
-  check_petsc(MatGetRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &size, &rows.start, &rows.column, &done));
-  check_petsc(MatSeqAIJGetArrayRead(A, &rows.value));
-  if (done) use(rows, size);
-  check_petsc(MatSeqAIJRestoreArrayRead(A, &rows.value));
-  check_petsc(MatRestoreRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &size, &rows.start, &rows.column, &done));
-}
-
-/// One part where there is one thread, or where two would be uneven or have much between them.
-std::optional<TwoParts> find_parts(Mat A, PetscInt least) {
-  const auto size_of = [](const auto& rows) { return static_cast<double>(rows.size()); };
-  if (get_num_threads() > 1) {
-    auto two = find_two_parts(A, least);
-    const double first = two ? size_of(two->first) : 0, second = two ? size_of(two->second) : 0;
-    if (two && size_of(two->between) < kMostBetween * (first + second) &&
-        std::min(first, second) > 0.3 * std::max(first, second))
-      return two;
-  }
-  const PetscIs order = find_elimination_order(A, least);
-  if (!order) return std::nullopt;
-  PetscInt n = 0;
-  const PetscInt* rows = nullptr;
-  TwoParts one;
-  check_petsc(ISGetSize(order.get(), &n));
-  check_petsc(ISGetIndices(order.get(), &rows));
-  one.first.assign(rows, rows + n);
-  check_petsc(ISRestoreIndices(order.get(), &rows));
-  return one;
 }
 
 }  // namespace
@@ -312,7 +259,7 @@ SupernodalFactor make_supernodal_factor(Mat A, PetscInt least) {
 
   std::vector<char> is_fine(num, 0);
   VectorXd delta;
-  visit_rows(A, [&](const Rows& rows, PetscInt size) {
+  visit_rows(A, [&](const MatrixRows& rows, PetscInt size) {
     delta = calc_row_sums(rows, parts->between, size);
     do_all(num, [&](std::size_t p) {
       is_fine[p] = parts->part[p]->analyse(rows, std::move(own[p]), parts->between, delta) ? 1 : 0;

@@ -1,0 +1,43 @@
+#pragma once
+/// \file The parts of a large matrix that are worked on at the same time.
+#include <optional>
+
+#include "base/diagnostic.hpp"
+#include "fe/linear/ordering.hpp"
+#include "fe/linear/threads.hpp"
+
+namespace bough::fe {
+
+/// The rows of a matrix on one process, both triangles.
+struct MatrixRows {
+  const PetscInt *start = nullptr, *column = nullptr;
+  const PetscScalar* value = nullptr;
+};
+
+/// use(rows, size) with the rows of A.
+template <class Use>
+void visit_rows(Mat A, const Use& use) {
+  PetscInt size = 0;
+  PetscBool done = PETSC_FALSE;
+  MatrixRows rows;
+  check_petsc(MatGetRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &size, &rows.start, &rows.column, &done));
+  check_petsc(MatSeqAIJGetArrayRead(A, &rows.value));
+  if (done) use(rows, size);
+  check_petsc(MatSeqAIJRestoreArrayRead(A, &rows.value));
+  check_petsc(MatRestoreRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &size, &rows.start, &rows.column, &done));
+}
+
+/// One part where there is one thread, or where two would be uneven or have much between them; empty where A has no row
+/// groups or less than `least` rows.
+std::optional<TwoParts> find_parts(Mat A, PetscInt least);
+
+/// work(p) of all parts, one or two, at once.
+template <class Work>
+void do_all(std::size_t num_parts, const Work& work) {
+  if (num_parts > 1)
+    do_both([&] { work(0); }, [&] { work(1); });
+  else
+    do_alone([&] { work(0); });
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,157 @@
+/// Negative eigenvalues counted front by front, against dense algebra.
+#include "fe/linear/fronts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fe/linear/factor.hpp"
+#include "fe/linear/ordering.hpp"
+
+namespace bough::fe {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kLong = 60, kWide = 4, kRows = 2 * kLong * kWide;
+
+int row_of(int x, int y, int d) { return 2 * (x * kWide + y) + d; }
+
+/// A strip of nodes of two rows each, `stiffness` between neighbours, `inertia` in the nodes.
+PetscMat make_strip(double stiffness, double inertia, double across = 0) {
+  PetscMat A;
+  check_petsc(MatCreateSeqAIJ(PETSC_COMM_SELF, kRows, kRows, 30, nullptr, A.out()));
+  const auto add_to = [&](int i, int j, double value) { check_petsc(MatSetValue(A.get(), i, j, value, ADD_VALUES)); };
+  const auto connect = [&](int i, int j, double k) {
+    add_to(i, i, k);
+    add_to(j, j, k);
+    add_to(i, j, -k);
+    add_to(j, i, -k);
+  };
+  for (int x = 0; x < kLong; ++x)
+    for (int y = 0; y < kWide; ++y)
+      for (int d = 0; d < 2; ++d) {
+        const int row = row_of(x, y, d);
+        add_to(row, row, inertia * (1 + 0.01 * x + 0.1 * y + 0.03 * d) + (x == 0 ? stiffness : 0));
+        if (d == 0) connect(row, row + 1, 0.3 * stiffness);
+        if (x + 1 < kLong) connect(row, row_of(x + 1, y, d), stiffness);
+        if (y + 1 < kWide) connect(row, row_of(x, y + 1, d), 0.7 * stiffness);
+        if (x + 1 < kLong && across != 0) connect(row, row_of(x + 1, y, 1 - d), across);
+      }
+  check_petsc(MatAssemblyBegin(A.get(), MAT_FINAL_ASSEMBLY));
+  check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
+  std::vector<int> start;
+  for (int i = 0; i <= kRows; i += 2) start.push_back(i);
+  set_row_groups(A.get(), start);
+  return A;
+}
+
+MatrixXd to_dense(Mat A) { return multiply(A, MatrixXd::Identity(kRows, kRows)); }
+
+class FrontsOn : public ::testing::TestWithParam<int> {
+ protected:
+  void SetUp() override {
+    if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes count together";
+    if (const char* before = std::getenv("OMP_NUM_THREADS")) before_ = before;
+    setenv("OMP_NUM_THREADS", std::to_string(GetParam()).c_str(), 1);
+  }
+  void TearDown() override {
+    if (before_.empty())
+      unsetenv("OMP_NUM_THREADS");
+    else
+      setenv("OMP_NUM_THREADS", before_.c_str(), 1);
+  }
+
+ private:
+  std::string before_;
+};
+INSTANTIATE_TEST_SUITE_P(Threads, FrontsOn, ::testing::Values(1, 2));
+
+/// All along the spectrum, where more and more fronts are indefinite. B couples rows that A does not,
+/// of nodes that A couples.
+TEST_P(FrontsOn, CountAsTheEigenvaluesDo) {
+  const PetscMat A = make_strip(1, 0), B = make_strip(0.05, 1, 0.02);
+  const VectorXd values =
+      Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(to_dense(A.get()), to_dense(B.get()), Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  int num_counted = 0, num_tried = 0;
+  for (Eigen::Index i = 0; i + 1 < values.size(); i += i < 40 ? 1 : 37) {
+    const double mu = 0.5 * (values(i) + values(i + 1));
+    if (values(i + 1) - values(i) < 1e-9 * mu) continue;
+    ++num_tried;
+    const auto count = count_negative_by_fronts(A.get(), -mu, B.get(), 0);
+    if (!count) continue;  // a front was close to an eigenvalue of its own
+    ++num_counted;
+    EXPECT_EQ(*count, i + 1) << mu;
+  }
+  EXPECT_GT(num_tried, 40);
+  EXPECT_GT(num_counted, num_tried * 8 / 10);
+  EXPECT_EQ(count_negative_by_fronts(A.get(), 0, B.get(), 0), 0);
+  EXPECT_EQ(count_negative_by_fronts(A.get(), -1e6, B.get(), 0), kRows);
+}
+
+/// A pivot of no size, whatever is tried first, is no answer of its own.
+TEST_P(FrontsOn, LeaveTinyPivotsToOthers) {
+  // Rows without diagonal: [0 1; 1 0] in each node, one eigenvalue of each sign, pivoted inside the front.
+  PetscMat pairs;
+  check_petsc(MatCreateSeqAIJ(PETSC_COMM_SELF, kRows, kRows, 4, nullptr, pairs.out()));
+  for (int i = 0; i < kRows; ++i) {
+    check_petsc(MatSetValue(pairs.get(), i, i, 0, INSERT_VALUES));
+    check_petsc(MatSetValue(pairs.get(), i, i % 2 == 0 ? i + 1 : i - 1, 1, INSERT_VALUES));
+  }
+  check_petsc(MatAssemblyBegin(pairs.get(), MAT_FINAL_ASSEMBLY));
+  check_petsc(MatAssemblyEnd(pairs.get(), MAT_FINAL_ASSEMBLY));
+  const PetscMat A = make_strip(1, 0), B = make_strip(0, 1);
+  copy_row_groups(A.get(), pairs.get());
+  if (const auto count = count_negative_by_fronts(pairs.get(), 0, B.get(), 0)) {
+    EXPECT_EQ(*count, kRows / 2);
+  }
+  // The diagonal of the first rows that are eliminated becomes 1e-12 of what stands beside it.
+  PetscMat weak = make_strip(1, 0);
+  for (int x = 1; x < kLong; x += 2)
+    for (int d = 0; d < 2; ++d)
+      for (int y = 0; y < kWide; ++y)
+        check_petsc(MatSetValue(weak.get(), row_of(x, y, d), row_of(x, y, d), 1e-12, INSERT_VALUES));
+  check_petsc(MatAssemblyBegin(weak.get(), MAT_FINAL_ASSEMBLY));
+  check_petsc(MatAssemblyEnd(weak.get(), MAT_FINAL_ASSEMBLY));
+  const VectorXd values =
+      Eigen::SelfAdjointEigenSolver<MatrixXd>(to_dense(weak.get()), Eigen::EigenvaluesOnly).eigenvalues();
+  if (const auto count = count_negative_by_fronts(weak.get(), 0, B.get(), 0)) {
+    EXPECT_EQ(*count, (values.array() < 0).count());
+  }
+}
+
+/// B couples the ends of the strip, which A has in two parts: then one that pivots freely counts.
+TEST_P(FrontsOn, AreNotForPartsThatAreCoupled) {
+  const PetscMat A = make_strip(1, 0), B = make_strip(0, 1);
+  check_petsc(MatSetOption(B.get(), MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
+  for (const auto& [i, j] : {std::pair(row_of(0, 0, 0), row_of(kLong - 1, 0, 0))}) {
+    check_petsc(MatSetValue(B.get(), i, j, 0.1, ADD_VALUES));
+    check_petsc(MatSetValue(B.get(), j, i, 0.1, ADD_VALUES));
+  }
+  check_petsc(MatAssemblyBegin(B.get(), MAT_FINAL_ASSEMBLY));
+  check_petsc(MatAssemblyEnd(B.get(), MAT_FINAL_ASSEMBLY));
+  const auto count = count_negative_by_fronts(A.get(), -0.1, B.get(), 0);
+  EXPECT_EQ(count.has_value(), GetParam() == 1);
+  if (count) {
+    const MatrixXd sum = to_dense(A.get()) - 0.1 * to_dense(B.get());
+    EXPECT_EQ(*count,
+              (Eigen::SelfAdjointEigenSolver<MatrixXd>(sum, Eigen::EigenvaluesOnly).eigenvalues().array() < 0).count());
+  }
+}
+
+TEST_P(FrontsOn, AreNotForMatricesWithoutGroupsOrOfFewRows) {
+  const PetscMat A = make_strip(1, 0), B = make_strip(0, 1);
+  EXPECT_FALSE(count_negative_by_fronts(A.get(), -1, B.get()));
+  PetscMat bare;
+  check_petsc(MatConvert(A.get(), MATSEQAIJ, MAT_INITIAL_MATRIX, bare.out()));
+  check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(bare.get()), "bough_row_groups", nullptr));
+  EXPECT_FALSE(count_negative_by_fronts(bare.get(), -1, B.get(), 0));
+}
+
+}  // namespace
+}  // namespace bough::fe
