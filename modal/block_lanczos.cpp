@@ -104,11 +104,12 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
     const VectorXd length = g.tail(g.size() - dropped).cwiseSqrt();
     const MatrixXd U = gram.eigenvectors().rightCols(length.size());
     const MatrixXd to_unit = U * length.cwiseInverse().asDiagonal();
-    MatrixXd unit(W.rows(), length.size()), B_unit(W.rows(), length.size());
-    fe::multiply_dense(false, W, to_unit, 0, unit);
-    fe::multiply_dense(false, B_W, to_unit, 0, B_unit);
-    W = std::move(unit);
-    B_W = std::move(B_unit);
+    turn(to_unit, W.cols(), W);
+    turn(to_unit, B_W.cols(), B_W);
+    if (length.size() < W.cols()) {
+      W.conservativeResize(Eigen::NoChange, length.size());
+      B_W.conservativeResize(Eigen::NoChange, length.size());
+    }
     R = (length.asDiagonal() * U.transpose() * R).eval();
     const bool is_small = C_pass.size() == 0 || C_pass.cwiseAbs().maxCoeff() < 1e-6;
     if (pass > 0 && dropped == 0 && is_small && (length.array() - 1).abs().maxCoeff() < 1e-10) break;

@@ -3,6 +3,7 @@
 
 #include "fe/elements/geometric_projection.hpp"
 #include "fe/linear/blas.hpp"
+#include "fe/linear/threads.hpp"
 #include "stiffening/projected_rows.hpp"
 #include "stiffening/reduce.hpp"
 
@@ -119,39 +120,55 @@ class RowSums {
 /// From so many modes on the rows of K_G are fewer numbers than the products of modes: of an element of four nodes
 /// 40 n² m flops by products, 12 n² m by rows beside what it takes to have these.
 constexpr Eigen::Index kManyModes = 40;
+/// Fewer elements are done before a thread has started.
+constexpr int kElementsOfThread = 500;
 
 }  // namespace
 
 std::vector<MatrixXd> calc_generalized_geometric_stiffness(const fe::Model& model, const fe::AppliedLoads& loads,
                                                            const MatrixXd& U, const MatrixXd& Phi) {
   BOUGH_DEMAND(U.rows() == model.num_gdofs() && Phi.rows() == model.num_gdofs());
-  fe::GeometricProjection sums(Phi.cols(), U.cols());
-  RowSums rows(model, U, Phi);
   const bool by_rows = Phi.cols() >= kManyModes;
-  const auto [first, last] = fe::calc_element_range(model);
-  for (int e = first; e < last && U.cols() > 0; ++e) {
-    const auto& element = *model.elements()[static_cast<std::size_t>(e)];
-    if (element.num_internal_forces() == 0) continue;
-    if (by_rows)
-      rows.add(element);
-    else
-      element.add_projected_geometric_stiffness(U(element.gdofs(), Eigen::all), Phi(element.gdofs(), Eigen::all), sums);
-  }
   // Forms have their own split over ranks.
   const auto forms = U.cols() > 0 ? fe::calc_second_order(model, loads, U) : std::vector<fe::QuadraticForm>{};
   const fe::MpiWorld world = fe::initialize_petsc();
-  for (std::size_t i = static_cast<std::size_t>(world.rank); i < forms.size();
-       i += static_cast<std::size_t>(world.size)) {
-    if (by_rows && RowSums::takes(forms[i]))
-      rows.add(forms[i]);
-    else
-      add_form(forms[i], Phi(forms[i].gdofs, Eigen::all), sums);
+  const auto sum_some = [&](int first, int last, bool with_forms) {
+    fe::GeometricProjection sums(Phi.cols(), U.cols());
+    RowSums rows(model, U, Phi);
+    for (int e = first; e < last && U.cols() > 0; ++e) {
+      const auto& element = *model.elements()[static_cast<std::size_t>(e)];
+      if (element.num_internal_forces() == 0) continue;
+      if (by_rows)
+        rows.add(element);
+      else
+        element.add_projected_geometric_stiffness(U(element.gdofs(), Eigen::all), Phi(element.gdofs(), Eigen::all),
+                                                  sums);
+    }
+    for (std::size_t i = static_cast<std::size_t>(world.rank); with_forms && i < forms.size();
+         i += static_cast<std::size_t>(world.size)) {
+      if (by_rows && RowSums::takes(forms[i]))
+        rows.add(forms[i]);
+      else
+        add_form(forms[i], Phi(forms[i].gdofs, Eigen::all), sums);
+    }
+    auto result = sums.finish();
+    if (by_rows && U.cols() > 0) {
+      const auto of_rows = rows.calc();
+      for (std::size_t c = 0; c < result.size(); ++c) result[c] += of_rows[c];
+    }
+    return result;
+  };
+  const auto [first, last] = fe::calc_element_range(model);
+  if (fe::get_num_threads() < 2 || last - first < kElementsOfThread) {
+    auto result = sum_some(first, last, true);
+    for (auto& K_G : result) fe::sum_over_ranks(K_G);
+    return result;
   }
-  auto result = sums.finish();
-  if (by_rows && U.cols() > 0) {
-    const auto of_rows = rows.calc();
-    for (std::size_t c = 0; c < result.size(); ++c) result[c] += of_rows[c];
-  }
+  std::vector<MatrixXd> result, second;
+  const int middle = first + (last - first) / 2;
+  fe::do_both([&, begin = first] { result = sum_some(begin, middle, false); },
+              [&, end = last] { second = sum_some(middle, end, true); });
+  for (std::size_t c = 0; c < result.size(); ++c) result[c] += second[c];
   for (auto& K_G : result) fe::sum_over_ranks(K_G);
   return result;
 }

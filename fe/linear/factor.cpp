@@ -1,8 +1,8 @@
 #include "fe/linear/factor.hpp"
 
 #include "base/diagnostic.hpp"
+#include "fe/linear/dissection.hpp"
 #include "fe/linear/memory_need.hpp"
-#include "fe/linear/ordering.hpp"
 #include "fe/linear/petsc_message.hpp"
 #include "fe/linear/ranks.hpp"
 #include "fe/linear/sum_factor.hpp"
@@ -12,6 +12,32 @@ namespace bough::fe {
 namespace {
 
 using Eigen::MatrixXd;
+
+/// Fewer are done before a thread has started.
+constexpr PetscInt kRowsOfThread = 5000;
+
+/// Rows [first, last) of Y = A X, four columns at a time: A is read once for them.
+void multiply_rows(const MatrixRows& A, PetscInt first, PetscInt last, const Eigen::Ref<const MatrixXd>& X,
+                   MatrixXd& Y) {
+  Eigen::Index c = 0;
+  for (; c + 4 <= X.cols(); c += 4) {
+    const double* x[] = {X.col(c).data(), X.col(c + 1).data(), X.col(c + 2).data(), X.col(c + 3).data()};
+    for (PetscInt row = first; row < last; ++row) {
+      double sum[4] = {0, 0, 0, 0};
+      for (PetscInt k = A.start[row]; k < A.start[row + 1]; ++k)
+        for (int i = 0; i < 4; ++i) sum[i] += A.value[k] * x[i][A.column[k]];
+      for (int i = 0; i < 4; ++i) Y(row, c + i) = sum[i];
+    }
+  }
+  for (; c < X.cols(); ++c) {
+    const double* x = X.col(c).data();
+    for (PetscInt row = first; row < last; ++row) {
+      double sum = 0;
+      for (PetscInt k = A.start[row]; k < A.start[row + 1]; ++k) sum += A.value[k] * x[A.column[k]];
+      Y(row, c) = sum;
+    }
+  }
+}
 
 /// A PETSc matrix on the storage of `values`, which outlives it and, if const, is not written to. One process only.
 PetscMat share_dense(const Eigen::Ref<const MatrixXd>& values) {
@@ -212,14 +238,15 @@ MatrixXd SymmetricFactor::solve(const Eigen::Ref<const MatrixXd>& B) const { ret
 
 MatrixXd multiply(Mat A, const Eigen::Ref<const MatrixXd>& X) {
   if (const LowRankPart* part = find_low_rank(A)) return multiply(get_sparse(A), X) + part->multiply(X);
-  const PetscMat dense = make_dense(A, X);
-  PetscMat product;
   if (initialize_petsc().size == 1 && X.cols() > 0) {
     MatrixXd Y(X.rows(), X.cols());
-    product = share_dense(Y);
-    check_petsc(MatMatMult(A, dense.get(), MAT_REUSE_MATRIX, PETSC_DEFAULT, product.out()));
+    visit_rows(A, [&](const MatrixRows& rows, PetscInt size) {
+      do_halves(size, kRowsOfThread, [&](PetscInt first, PetscInt last) { multiply_rows(rows, first, last, X, Y); });
+    });
     return Y;
   }
+  const PetscMat dense = make_dense(A, X);
+  PetscMat product;
   check_petsc(MatMatMult(A, dense.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, product.out()));
   return replicate(product.get());
 }
@@ -234,12 +261,7 @@ MatrixXd calc_residual(Mat A, const Eigen::Ref<const MatrixXd>& X, const Eigen::
     of_part = U * (part->W.cast<long double>() * (U.transpose() * X.cast<long double>()));
     A = get_sparse(A);
   }
-  PetscInt first = 0, last = 0, num = 0;
-  check_petsc(MatGetOwnershipRange(A, &first, &last));
-  const PetscInt* columns = nullptr;
-  const PetscScalar* values = nullptr;
-  for (PetscInt row = first; row < last; ++row) {
-    check_petsc(MatGetRow(A, row, &num, &columns, &values));
+  const auto subtract = [&](PetscInt row, PetscInt num, const PetscInt* columns, const PetscScalar* values) {
     for (Eigen::Index c = 0; c < B.cols(); ++c) {
       long double sum = B(row, c);
       if (part) sum -= of_part(row, c);
@@ -247,6 +269,25 @@ MatrixXd calc_residual(Mat A, const Eigen::Ref<const MatrixXd>& X, const Eigen::
       for (PetscInt k = 0; k < num; ++k) sum -= static_cast<long double>(values[k]) * x[columns[k]];
       R(row, c) = static_cast<double>(sum);
     }
+  };
+  if (initialize_petsc().size == 1) {
+    visit_rows(A, [&](const MatrixRows& rows, PetscInt size) {
+      const auto subtract_some = [&](PetscInt first, PetscInt last) {
+        for (PetscInt row = first; row < last; ++row)
+          subtract(row, rows.start[row + 1] - rows.start[row], rows.column + rows.start[row],
+                   rows.value + rows.start[row]);
+      };
+      do_halves(size, kRowsOfThread, subtract_some);
+    });
+    return R;
+  }
+  PetscInt first = 0, last = 0, num = 0;
+  check_petsc(MatGetOwnershipRange(A, &first, &last));
+  const PetscInt* columns = nullptr;
+  const PetscScalar* values = nullptr;
+  for (PetscInt row = first; row < last; ++row) {
+    check_petsc(MatGetRow(A, row, &num, &columns, &values));
+    subtract(row, num, columns, values);
     check_petsc(MatRestoreRow(A, row, &num, &columns, &values));
   }
   sum_over_ranks(R);

@@ -54,4 +54,9 @@ void do_both(const std::function<void()>& first, const std::function<void()>& se
   if (failure) std::rethrow_exception(failure);
 }
 
+void do_halves(int size, int least, const std::function<void(int, int)>& work) {
+  if (get_num_threads() < 2 || size < 2 * least) return work(0, size);
+  do_both([&] { work(0, size / 2); }, [&] { work(size / 2, size); });
+}
+
 }  // namespace bough::fe

@@ -12,4 +12,7 @@ void do_both(const std::function<void()>& first, const std::function<void()>& se
 /// The same of one alone, in this thread.
 void do_alone(const std::function<void()>& work);
 
+/// work(first, last) of 0 to `size`: two halves at once where there are two threads and more than `least` for each.
+void do_halves(int size, int least, const std::function<void(int, int)>& work);
+
 }  // namespace bough::fe

@@ -5,6 +5,8 @@
 
 #include "fe/linear/blas.hpp"
 #include "fe/linear/ordering.hpp"
+#include "fe/linear/threads.hpp"
+#include "fe/matrices/factor_need.hpp"
 #include "fe/model/element_transform.hpp"
 
 namespace bough::fe {
@@ -129,31 +131,119 @@ const std::vector<QuadraticForm>& get_forms(const Model& model) {
   return model.prestress() ? model.prestress()->forms : none;
 }
 
+/// Fewer are done before a thread has started.
+constexpr int kElementsOfThread = 2000;
+
 /// Σ_e of element matrices and of forms times X, over ranks.
 MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen::Ref<const MatrixXd>& X,
                     const std::vector<QuadraticForm>& forms = {}) {
   BOUGH_DEMAND(X.rows() == model.num_gdofs());
   MatrixXd Y = MatrixXd::Zero(X.rows(), X.cols());
   if (X.cols() == 0) return Y;
-  MatrixXd K_e, X_e, Y_e;
+  const auto add_some = [&](int begin, int end, MatrixXd& sum) {
+    MatrixXd K_e, X_e, Y_e;
+    for (int e = begin; e < end; ++e) {
+      const Element& element = *model.elements()[e];
+      const auto& gdofs = element.gdofs();
+      const int n = element.num_dofs();
+      K_e.setZero(n, n);
+      add(element, K_e);
+      X_e.resize(n, X.cols());
+      for (int i = 0; i < n; ++i) X_e.row(i) = X.row(gdofs[i]);
+      Y_e.resize(n, X.cols());
+      multiply_dense(false, K_e, X_e, 0, Y_e);
+      for (int i = 0; i < n; ++i) sum.row(gdofs[i]) += Y_e.row(i);
+    }
+  };
   const auto [begin, end] = calc_element_range(model);
-  for (int e = begin; e < end; ++e) {
-    const Element& element = *model.elements()[e];
-    const auto& gdofs = element.gdofs();
-    const int n = element.num_dofs();
-    K_e.setZero(n, n);
-    add(element, K_e);
-    X_e.resize(n, X.cols());
-    for (int i = 0; i < n; ++i) X_e.row(i) = X.row(gdofs[i]);
-    Y_e.resize(n, X.cols());
-    multiply_dense(false, K_e, X_e, 0, Y_e);
-    for (int i = 0; i < n; ++i) Y.row(gdofs[i]) += Y_e.row(i);
+  if (get_num_threads() > 1 && end - begin > kElementsOfThread) {
+    MatrixXd second = MatrixXd::Zero(X.rows(), X.cols());
+    const int middle = begin + (end - begin) / 2;
+    do_both([&, from = begin] { add_some(from, middle, Y); }, [&, to = end] { add_some(middle, to, second); });
+    Y += second;
+  } else {
+    add_some(begin, end, Y);
   }
   const MpiWorld world = initialize_petsc();
   for (size_t k = static_cast<size_t>(world.rank); k < forms.size(); k += static_cast<size_t>(world.size))
     Y(forms[k].gdofs, Eigen::all) += calc_form(forms[k], 0) * X(forms[k].gdofs, Eigen::all);
   sum_over_ranks(Y);
   return Y;
+}
+
+/// Rows [first, last) with all that is added to them.
+Rows sum_some_rows(const Model& model, const SparseRows& T, const AddElementMatrix& add,
+                   const std::vector<QuadraticForm>& forms, const Parts& parts, int first, int last) {
+  const int num_elements = static_cast<int>(model.elements().size());
+  Rows rows = calc_pattern(parts, T, first, last);
+  rows.values.assign(rows.columns.size(), 0);
+  ElementTransform transform;
+  MatrixXd K_e;
+  for (int e : rows.elements) {
+    transform.set(T, *parts[e]);
+    if (e < num_elements) {
+      K_e.setZero(parts[e]->size(), parts[e]->size());
+      add(*model.elements()[e], K_e);
+    } else {
+      K_e = calc_form(forms[e - num_elements], 0);
+    }
+    add_rows(transform.project(K_e), transform.columns(), first, last, rows);
+  }
+  drop_zeros(rows, first);
+  rows.columns.resize(static_cast<size_t>(rows.start.back()));
+  rows.values.resize(rows.columns.size());
+  return rows;
+}
+
+/// What `second`, the rows behind, adds to `first`.
+void append(Rows second, Rows& first) {
+  const int size = first.start.back();
+  BOUGH_DEMAND(first.columns.size() + second.columns.size() < 2147483647u);
+  first.columns.insert(first.columns.end(), second.columns.begin(), second.columns.end());
+  first.values.insert(first.values.end(), second.values.begin(), second.values.end());
+  first.same.insert(first.same.end(), second.same.begin(), second.same.end());
+  for (size_t i = 1; i < second.start.size(); ++i) first.start.push_back(size + second.start[i]);
+}
+
+/// Fewer rows are done before a thread has started.
+constexpr int kRowsOfThread = 5000;
+
+/// A row near the middle of [first, last) that few elements have on both sides and that begins a run of rows with the
+/// same elements; -1: none.
+int find_cut(const Parts& parts, const SparseRows& T, int first, int last) {
+  constexpr int kWindow = 32;
+  const int middle = first + (last - first) / 2;
+  int above = 0, below = 0, both = 0;
+  std::vector<int> columns;
+  std::vector<std::vector<int>> touching(kWindow);  // rows from the one before the middle on
+  for (int e = 0; e < static_cast<int>(parts.size()); ++e) {
+    calc_element_columns(T, *parts[static_cast<size_t>(e)], columns);
+    bool is_above = false, is_below = false;
+    for (const int c : columns) {
+      if (c < first || c >= last) continue;
+      (c < middle ? is_above : is_below) = true;
+      if (c >= middle - 1 && c < middle - 1 + kWindow) touching[static_cast<size_t>(c - middle + 1)].push_back(e);
+    }
+    above += is_above ? 1 : 0;
+    below += is_below ? 1 : 0;
+    both += is_above && is_below ? 1 : 0;
+  }
+  if (4 * both > std::min(above, below)) return -1;
+  for (size_t i = 1; i < touching.size(); ++i)
+    if (touching[i] != touching[i - 1]) return middle - 1 + static_cast<int>(i);
+  return -1;
+}
+
+/// Two threads take a half each as two ranks would, where few elements touch both.
+Rows sum_rows(const Model& model, const SparseRows& T, const AddElementMatrix& add,
+              const std::vector<QuadraticForm>& forms, const Parts& parts, int first, int last) {
+  const int cut = get_num_threads() > 1 && last - first > 2 * kRowsOfThread ? find_cut(parts, T, first, last) : -1;
+  if (cut < 0) return sum_some_rows(model, T, add, forms, parts, first, last);
+  Rows rows, second;
+  do_both([&] { rows = sum_some_rows(model, T, add, forms, parts, first, cut); },
+          [&] { second = sum_some_rows(model, T, add, forms, parts, cut, last); });
+  append(std::move(second), rows);
+  return rows;
 }
 
 /// TᵀAT, sparse. Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an
@@ -170,26 +260,10 @@ PetscMat assemble_sparse(const Model& model, const SparseRows& T, const AddEleme
   check_petsc(MatSetUp(A));
   PetscInt first = 0, last = 0;
   check_petsc(MatGetOwnershipRange(A, &first, &last));
-  const int num_elements = static_cast<int>(model.elements().size());
   Parts parts;
   for (const auto& element : model.elements()) parts.push_back(&element->gdofs());
   for (const auto& form : forms) parts.push_back(&form.gdofs);
-  Rows rows = calc_pattern(parts, T, first, last);
-  rows.values.assign(rows.columns.size(), 0);
-
-  ElementTransform transform;
-  MatrixXd K_e;
-  for (int e : rows.elements) {
-    transform.set(T, *parts[e]);
-    if (e < num_elements) {
-      K_e.setZero(parts[e]->size(), parts[e]->size());
-      add(*model.elements()[e], K_e);
-    } else {
-      K_e = calc_form(forms[e - num_elements], 0);
-    }
-    add_rows(transform.project(K_e), transform.columns(), first, last, rows);
-  }
-  drop_zeros(rows, first);
+  const Rows rows = sum_rows(model, T, add, forms, parts, first, last);
   // Each does nothing for the other's type.
   check_petsc(MatSeqAIJSetPreallocationCSR(A, rows.start.data(), rows.columns.data(), rows.values.data()));
   check_petsc(MatMPIAIJSetPreallocationCSR(A, rows.start.data(), rows.columns.data(), rows.values.data()));
@@ -213,6 +287,7 @@ PetscMat assemble(const Model& model, DofSet set, MatrixKind kind, const AddElem
 }
 
 PetscMat assemble_stiffness(const Model& model, DofSet set) {
+  if (set == DofSet::Free) require_memory_for_factor(model);
   return assemble(
       model, set, MatrixKind::Stiffness,
       [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); }, get_forms(model));

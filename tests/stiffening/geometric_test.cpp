@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <string>
 
 #include "base/rotation.hpp"
 #include "fe/loads/second_order.hpp"
@@ -76,6 +78,40 @@ TEST(GeometricStiffness, EqualsTheDenseProjection) {
   const Eigen::VectorXd mix = 2 * Eigen::VectorXd::Unit(12, 0) - 3 * Eigen::VectorXd::Unit(12, 8);
   const auto sum = calc_generalized_geometric_stiffness(model, take(mix), U * mix, pairs.Phi).front();
   EXPECT_LT((sum - (2 * many[0] - 3 * many[8])).cwiseAbs().maxCoeff(), 1e-10 * sum.cwiseAbs().maxCoeff());
+}
+
+// Two threads sum a half of the elements each, few modes by products and many by rows.
+TEST(GeometricStiffness, OfTwoThreadsIsThatOfOne) {
+  DeckMaker maker;
+  maker.add_section(1, {70e9, 27e9, 2700, 1e-4, 1e-8, 3e-8, 2e-8}, true);
+  maker.add_line(1, 1, {0.3, 0.1, -0.2}, {1.3, 0.4, 0}, 300, Vector3d::UnitY());
+  maker.add_line(1, 1001, {1.3, 0.4, 0}, {1.5, 1.4, 0.7}, 300, Vector3d::UnitX(), 301);
+  maker.add_mass(9000, 1100, 0.4);
+  maker.fix(1, 123456);
+  Diagnostics diagnostics;
+  const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+  const auto K = fe::assemble_stiffness(model, DofSet::Free);
+  const fe::StaticSolver solver(model, K);
+  const fe::AppliedLoads loads{fe::calc_inertial_loads(model, model.mass_kind()), MatrixXd::Identity(12, 12), {}};
+  const MatrixXd U = solver.solve(loads.F);
+  const MatrixXd Phi = solver.solve(MatrixXd::Random(U.rows(), 45));
+  const char* before = std::getenv("OMP_NUM_THREADS");
+  const std::string kept = before ? before : "";
+  const auto calc_by = [&](const char* threads, int num) {
+    setenv("OMP_NUM_THREADS", threads, 1);
+    return calc_generalized_geometric_stiffness(model, loads, U, Phi.leftCols(num));
+  };
+  for (const int num : {5, 45}) {
+    const auto one = calc_by("1", num), two = calc_by("2", num);
+    ASSERT_EQ(one.size(), two.size());
+    // Rotations and displacements of short elements cancel: 1e-16 (1 / length)².
+    for (std::size_t c = 0; c < one.size(); ++c)
+      EXPECT_LT((one[c] - two[c]).cwiseAbs().maxCoeff(), 1e-10 * one[c].cwiseAbs().maxCoeff()) << num << " " << c;
+  }
+  if (before)
+    setenv("OMP_NUM_THREADS", kept.c_str(), 1);
+  else
+    unsetenv("OMP_NUM_THREADS");
 }
 
 // The loads on a body balance as a whole, so the sum of all K_G does not know which support each was solved on.

@@ -1,0 +1,153 @@
+/// What two threads do in halves, against one; and what a factor will take, against what it takes.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "fe/linear/factor.hpp"
+#include "fe/linear/ordering.hpp"
+#include "fe/matrices/assembly.hpp"
+#include "fe/matrices/factor_need.hpp"
+#include "tests/fe/model/text_model.hpp"
+
+namespace bough::fe {
+namespace {
+
+using Eigen::MatrixXd;
+
+class Threads {
+ public:
+  explicit Threads(int num) {
+    if (const char* before = std::getenv("OMP_NUM_THREADS")) before_ = before;
+    setenv("OMP_NUM_THREADS", std::to_string(num).c_str(), 1);
+  }
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+  ~Threads() {
+    if (before_.empty())
+      unsetenv("OMP_NUM_THREADS");
+    else
+      setenv("OMP_NUM_THREADS", before_.c_str(), 1);
+  }
+
+ private:
+  std::string before_;
+};
+
+/// num x num plates, curved so that no entry is zero; `mixed`: grids numbered from both sides in turn, so that elements
+/// have rows in both halves.
+std::string write_shell(int num, bool mixed = false) {
+  std::string text = "MAT1,1,7.+10,,0.3,2700.\nPSHELL,1,1,0.01,1,,1\n";
+  const int m = num + 1;
+  const auto id = [&](int x, int y) {
+    const int k = y * m + x;
+    return 1 + (mixed ? (k % 2 == 0 ? k / 2 : m * m - 1 - k / 2) : k);
+  };
+  for (int y = 0; y <= num; ++y)
+    for (int x = 0; x <= num; ++x)
+      text += "GRID," + std::to_string(id(x, y)) + ",," + std::to_string(0.1 * x) + "," + std::to_string(0.1 * y) +
+              "," + std::to_string(0.01 * (x * x + x * y) / num) + "\n";
+  for (int y = 0; y < num; ++y)
+    for (int x = 0; x < num; ++x)
+      text += "CQUAD4," + std::to_string(y * num + x + 1) + ",1," + std::to_string(id(x, y)) + "," +
+              std::to_string(id(x + 1, y)) + "," + std::to_string(id(x + 1, y + 1)) + "," +
+              std::to_string(id(x, y + 1)) + "\n";
+  // Held on one side.
+  for (int x = 0; x <= num; ++x) text += "SPC1,1,123456," + std::to_string(id(x, 0)) + "\n";
+  return "SPC = 1\nBEGIN BULK\n" + text;
+}
+
+void expect_same(Mat A, Mat B) {
+  PetscBool equal = PETSC_FALSE;
+  check_petsc(MatEqual(A, B, &equal));
+  EXPECT_TRUE(equal);
+}
+
+TEST(TwoThreads, AssembleTheSameBitForBit) {
+  if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes have one thread each";
+  for (const bool mixed : {false, true}) {
+    const Model model = test::build(write_shell(46, mixed));
+    ASSERT_GT(model.num_fdofs(), 10000);
+    const auto assemble_by = [&](int num) {
+      const Threads threads(num);
+      return std::pair(assemble_stiffness(model, DofSet::Free), assemble_mass(model, DofSet::Free, MassKind::Consistent));
+    };
+    const auto one = assemble_by(1), two = assemble_by(2);
+    expect_same(one.first.get(), two.first.get());
+    expect_same(one.second.get(), two.second.get());
+    // The same rows belong together: the order of elimination is the same.
+    const PetscIs first = find_elimination_order(one.first.get()), second = find_elimination_order(two.first.get());
+    ASSERT_TRUE(first && second);
+    PetscBool equal = PETSC_FALSE;
+    check_petsc(ISEqual(first.get(), second.get(), &equal));
+    EXPECT_TRUE(equal);
+  }
+}
+
+TEST(TwoThreads, MultiplyTheSame) {
+  if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes have one thread each";
+  const Model model = test::build(write_shell(46));
+  const PetscMat K = assemble_stiffness(model, DofSet::Free);
+  const MatrixXd X = MatrixXd::Random(model.num_fdofs(), 7), X_g = MatrixXd::Random(model.num_gdofs(), 3);
+  const MatrixXd B = MatrixXd::Random(model.num_fdofs(), 7);
+  const auto multiply_by = [&](int num) {
+    const Threads threads(num);
+    return std::array<MatrixXd, 3>{multiply(K.get(), X), calc_residual(K.get(), X, B),
+                                   calc_stiffness_times(model, X_g)};
+  };
+  const auto one = multiply_by(1), two = multiply_by(2);
+  EXPECT_EQ(one[0], two[0]);
+  EXPECT_EQ(one[1], two[1]);
+  EXPECT_LT((one[2] - two[2]).cwiseAbs().maxCoeff(), 1e-14 * one[2].cwiseAbs().maxCoeff());
+  // By another code: PETSc's own product.
+  PetscVec x, y;
+  check_petsc(MatCreateVecs(K.get(), x.out(), y.out()));
+  for (const int c : {0, 6}) {
+    PetscScalar* values = nullptr;
+    check_petsc(VecGetArray(x.get(), &values));
+    Eigen::VectorXd::Map(values, X.rows()) = X.col(c);
+    check_petsc(VecRestoreArray(x.get(), &values));
+    check_petsc(MatMult(K.get(), x.get(), y.get()));
+    const PetscScalar* found = nullptr;
+    check_petsc(VecGetArrayRead(y.get(), &found));
+    const Eigen::VectorXd expected = Eigen::VectorXd::Map(found, X.rows());
+    check_petsc(VecRestoreArrayRead(y.get(), &found));
+    EXPECT_LT((one[0].col(c) - expected).cwiseAbs().maxCoeff(), 1e-14 * expected.cwiseAbs().maxCoeff());
+    EXPECT_LT((one[1].col(c) - (B.col(c) - expected)).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST(FactorNeed, IsAboutWhatTheFactorTakes) {
+  if (initialize_petsc().size > 1) GTEST_SKIP() << "one process factors by CHOLMOD";
+  const auto expect_about = [](const std::string& deck) {
+    const Model model = test::build(deck);
+    const PetscMat K = assemble_stiffness(model, DofSet::Free);
+    const PetscMat factor = factor_definite(K.get());
+    ASSERT_TRUE(factor);
+    MatInfo info;
+    check_petsc(MatGetInfo(factor.get(), MAT_LOCAL, &info));
+    const double estimate = estimate_factor_entries(model);
+    EXPECT_GT(estimate, 0.7 * info.nz_used);
+    EXPECT_LT(estimate, 1.4 * info.nz_used);
+  };
+  expect_about(write_shell(50));
+  std::string solids = "MAT1,1,7.+10,,0.3,2700.\nPSOLID,1,1\n";
+  constexpr int num = 11, m = num + 1;
+  const auto id = [](int x, int y, int z) { return std::to_string(1 + x + m * (y + m * z)); };
+  for (int z = 0; z < m; ++z)
+    for (int y = 0; y < m; ++y)
+      for (int x = 0; x < m; ++x)
+        solids +=
+            "GRID," + id(x, y, z) + ",," + std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(z) + "\n";
+  for (int z = 0, e = 0; z < num; ++z)
+    for (int y = 0; y < num; ++y)
+      for (int x = 0; x < num; ++x)
+        solids += "CHEXA," + std::to_string(++e) + ",1," + id(x, y, z) + "," + id(x + 1, y, z) + "," +
+                  id(x + 1, y + 1, z) + "," + id(x, y + 1, z) + "," + id(x, y, z + 1) + "," + id(x + 1, y, z + 1) +
+                  ",+\n+," + id(x + 1, y + 1, z + 1) + "," + id(x, y + 1, z + 1) + "\n";
+  expect_about("SPC = 1\nBEGIN BULK\n" + solids + "SPC1,1,123,1,THRU," + std::to_string(m * m) +
+               "\nSPC1,1,456,1,THRU," + std::to_string(m * m * m) + "\n");
+}
+
+}  // namespace
+}  // namespace bough::fe
