@@ -1,11 +1,14 @@
 #include "fe/statics/element_recovery.hpp"
 
+#include <array>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "fe/cards/element_properties.hpp"
 #include "fe/elements/beam.hpp"
 #include "fe/linear/blas.hpp"
+#include "fe/linear/threads.hpp"
 #include "fe/loads/load_sets.hpp"
 #include "fe/sections/stress.hpp"
 
@@ -13,6 +16,9 @@ namespace bough::fe {
 namespace {
 
 using Eigen::Index;
+
+/// Fewer are done before a thread has started.
+constexpr int kElementsOfThread = 500;
 
 /// Rows of a table of every case, a few at a time: a row after the other would touch a line of memory per number.
 class TableRows {
@@ -121,6 +127,7 @@ Groups group_by_points(const Model& model, bool of_strain) {
 struct Current {
   const Element& element;
   int index;
+  std::size_t half;                                  ///< of the elements: each has its rows
   MatrixXd U;                                        ///< N x cases
   std::vector<const InitialForces::Part*> heated{};  ///< a case each; nullptr: cold
   MatrixXd forces{};                                 ///< internal forces, with those of loads and temperatures
@@ -154,8 +161,8 @@ class PointTables {
         tables.push_back(&block.stress);
         corner_tables.push_back(&block.corner);
       }
-      tables_.emplace_back(columns, std::move(tables));
-      corners_.emplace_back(corners, std::move(corner_tables));
+      for (auto& of_half : tables_) of_half.emplace_back(columns, tables);
+      for (auto& of_half : corners_) of_half.emplace_back(corners, corner_tables);
     }
     places_ = list_places(groups_, model.elements().size());
   }
@@ -172,17 +179,18 @@ class PointTables {
     const PointResults derive(list_points(at.element, of_strain_), of_strain_);
     MatrixXd rows(static_cast<Index>(groups_[g].names.size()), values.cols());
     for (Index c = 0; c < values.cols(); ++c) derive.calc(values.col(c), rows.col(c));
-    tables_[g].set(row, rows);
+    tables_[at.half][g].set(row, rows);
     if (!of_strain_ || (results_.front().*blocks_)[g].corner.cols() == 0) return;
     MatrixXd corner = at.element.calc_corner_strains(at.forces);
     for (std::size_t c = 0; c < at.heated.size(); ++c)
       if (at.heated[c]) add_part(at.heated[c]->corner_strain, c, corner);
-    corners_[g].set(row, corner);
+    corners_[at.half][g].set(row, corner);
   }
 
   void finish() {
-    for (auto* all : {&tables_, &corners_})
-      for (auto& table : *all) table.flush();
+    for (auto* halves : {&tables_, &corners_})
+      for (auto& of_half : *halves)
+        for (auto& table : of_half) table.flush();
     for (std::size_t g = 0; g < groups_.size(); ++g)
       for (auto& result : results_) {
         auto& block = (result.*blocks_)[g];
@@ -200,7 +208,7 @@ class PointTables {
   Blocks blocks_;
   std::vector<ElementResults>& results_;
   Groups groups_;
-  std::vector<TableRows> tables_, corners_;
+  std::array<std::vector<TableRows>, 2> tables_, corners_;
   std::vector<Place> places_;
 };
 
@@ -227,8 +235,8 @@ class ForceTables {
         tables.push_back(&block.force);
         energy_tables.push_back(&energies_[g][c]);
       }
-      tables_.emplace_back(columns, std::move(tables));
-      energy_tables_.emplace_back(1, std::move(energy_tables));
+      for (auto& of_half : tables_) of_half.emplace_back(columns, tables);
+      for (auto& of_half : energy_tables_) of_half.emplace_back(1, energy_tables);
     }
     places_ = list_places(groups_, model.elements().size());
   }
@@ -241,30 +249,32 @@ class ForceTables {
     const auto g = static_cast<std::size_t>(group);
     const auto count = static_cast<Index>(groups_[g].names.size());
     if (at.element.num_internal_forces() > 0) {
-      tables_[g].set(row, at.forces.topRows(count));  // they begin with those that are printed
+      tables_[at.half][g].set(row, at.forces.topRows(count));  // they begin with those that are printed
     } else {
       MatrixXd forces(count, at.U.cols());
       for (Index c = 0; c < at.U.cols(); ++c) forces.col(c) = at.element.calc_printed_forces(at.U.col(c));
       for (std::size_t c = 0; c < at.heated.size(); ++c)
         if (at.heated[c]) forces.col(static_cast<Index>(c)) += at.heated[c]->force.head(count);
-      tables_[g].set(row, forces);
+      tables_[at.half][g].set(row, forces);
     }
-    K_.setZero(at.U.rows(), at.U.rows());
-    model_.add_stiffness(at.element, K_);
-    K_U_.resize(at.U.rows(), at.U.cols());
-    multiply_dense(false, K_, at.U, 0, K_U_);
-    MatrixXd energy = 0.5 * at.U.cwiseProduct(K_U_).colwise().sum();
+    auto& [K, K_U] = scratch_[at.half];
+    K.setZero(at.U.rows(), at.U.rows());
+    model_.add_stiffness(at.element, K);
+    K_U.resize(at.U.rows(), at.U.cols());
+    multiply_dense(false, K, at.U, 0, K_U);
+    MatrixXd energy = 0.5 * at.U.cwiseProduct(K_U).colwise().sum();
     for (std::size_t c = 0; c < at.heated.size(); ++c)
       if (const auto* part = at.heated[c]) {
         const auto column = static_cast<Index>(c);
         energy(0, column) += part->energy - at.U.col(column).dot(part->load);
       }
-    energy_tables_[g].set(row, energy);
+    energy_tables_[at.half][g].set(row, energy);
   }
 
   void finish() {
-    for (auto* all : {&tables_, &energy_tables_})
-      for (auto& table : *all) table.flush();
+    for (auto* halves : {&tables_, &energy_tables_})
+      for (auto& of_half : *halves)
+        for (auto& table : of_half) table.flush();
     for (std::size_t g = 0; g < groups_.size(); ++g)
       for (std::size_t c = 0; c < results_.size(); ++c) {
         auto& block = results_[c].forces[g];
@@ -278,10 +288,10 @@ class ForceTables {
   const Model& model_;
   std::vector<ElementResults>& results_;
   Groups groups_;
-  std::vector<TableRows> tables_, energy_tables_;
+  std::array<std::vector<TableRows>, 2> tables_, energy_tables_;
   std::vector<std::vector<MatrixXd>> energies_;  ///< rows x 1, by group and case
   std::vector<Place> places_;
-  MatrixXd K_, K_U_;
+  std::array<std::pair<MatrixXd, MatrixXd>, 2> scratch_;  ///< K, K U
 };
 
 /// Loads along beams, by element: a case each.
@@ -321,21 +331,30 @@ std::vector<ElementResults> recover_elements(const Model& model, const records::
   if (fields.stresses) stresses.emplace(model, properties, false, &ElementResults::stresses, results);
   if (fields.strains) strains.emplace(model, properties, true, &ElementResults::strains, results);
 
+  const auto recover = [&](int from, int to, std::size_t half) {
+    for (int e = from; e < to; ++e) {
+      if (!(forces && forces->holds(e)) && !(stresses && stresses->holds(e)) && !(strains && strains->holds(e)))
+        continue;
+      const Element& element = *model.elements()[static_cast<std::size_t>(e)];
+      const auto& gdofs = element.gdofs();
+      Current at{element, e, half, MatrixXd(element.num_dofs(), static_cast<Index>(cases.size()))};
+      for (std::size_t c = 0; c < cases.size(); ++c)
+        for (std::size_t i = 0; i < gdofs.size(); ++i)
+          at.U(static_cast<Index>(i), static_cast<Index>(c)) = (*cases[c].u_g)[gdofs[i]];
+      if (is_heated)
+        for (const auto& one : cases) at.heated.push_back(one.initial ? one.initial->find(element) : nullptr);
+      find_forces(cases, end_loads, at);
+      if (forces) forces->add(at);
+      if (stresses) stresses->add(at);
+      if (strains) strains->add(at);
+    }
+  };
   const auto [begin, end] = calc_element_range(model);
-  for (int e = begin; e < end; ++e) {
-    if (!(forces && forces->holds(e)) && !(stresses && stresses->holds(e)) && !(strains && strains->holds(e))) continue;
-    const Element& element = *model.elements()[static_cast<std::size_t>(e)];
-    const auto& gdofs = element.gdofs();
-    Current at{element, e, MatrixXd(element.num_dofs(), static_cast<Index>(cases.size()))};
-    for (std::size_t c = 0; c < cases.size(); ++c)
-      for (std::size_t i = 0; i < gdofs.size(); ++i)
-        at.U(static_cast<Index>(i), static_cast<Index>(c)) = (*cases[c].u_g)[gdofs[i]];
-    if (is_heated)
-      for (const auto& one : cases) at.heated.push_back(one.initial ? one.initial->find(element) : nullptr);
-    find_forces(cases, end_loads, at);
-    if (forces) forces->add(at);
-    if (stresses) stresses->add(at);
-    if (strains) strains->add(at);
+  if (get_num_threads() < 2 || end - begin < kElementsOfThread) {
+    recover(begin, end, 0);
+  } else {
+    const int middle = begin + (end - begin) / 2;
+    do_both([&, from = begin] { recover(from, middle, 0); }, [&, to = end] { recover(middle, to, 1); });
   }
   if (forces) forces->finish();
   if (stresses) stresses->finish();

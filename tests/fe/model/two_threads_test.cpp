@@ -8,6 +8,7 @@
 #include "fe/linear/ordering.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/factor_need.hpp"
+#include "fe/statics/element_recovery.hpp"
 #include "tests/fe/model/text_model.hpp"
 
 namespace bough::fe {
@@ -70,7 +71,8 @@ TEST(TwoThreads, AssembleTheSameBitForBit) {
     ASSERT_GT(model.num_fdofs(), 10000);
     const auto assemble_by = [&](int num) {
       const Threads threads(num);
-      return std::pair(assemble_stiffness(model, DofSet::Free), assemble_mass(model, DofSet::Free, MassKind::Consistent));
+      return std::pair(assemble_stiffness(model, DofSet::Free),
+                       assemble_mass(model, DofSet::Free, MassKind::Consistent));
     };
     const auto one = assemble_by(1), two = assemble_by(2);
     expect_same(one.first.get(), two.first.get());
@@ -114,6 +116,32 @@ TEST(TwoThreads, MultiplyTheSame) {
     check_petsc(VecRestoreArrayRead(y.get(), &found));
     EXPECT_LT((one[0].col(c) - expected).cwiseAbs().maxCoeff(), 1e-14 * expected.cwiseAbs().maxCoeff());
     EXPECT_LT((one[1].col(c) - (B.col(c) - expected)).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST(TwoThreads, RecoverTheSameBitForBit) {
+  Diagnostics diagnostics;
+  const auto deck = nastran::read_deck_text(write_shell(30) + "PARAM,AUTOSPC,NO\n", "deck.bdf", {}, diagnostics);
+  const Model model = Model::build(deck, {}, diagnostics);
+  const Eigen::VectorXd u = Eigen::VectorXd::Random(model.num_gdofs()), v = Eigen::VectorXd::Random(model.num_gdofs());
+  const std::vector<RecoveryCase> cases{{&u, 0, nullptr, nullptr}, {&v, 0, nullptr, nullptr}};
+  const auto recover_by = [&](int num) {
+    const Threads threads(num);
+    return recover_elements(model, deck, cases, {true, true, true});
+  };
+  const auto one = recover_by(1), two = recover_by(2);
+  ASSERT_EQ(one.size(), two.size());
+  for (std::size_t c = 0; c < one.size(); ++c) {
+    ASSERT_EQ(one[c].forces.size(), 1u);
+    ASSERT_EQ(one[c].forces[0].force.rows(), 900);
+    EXPECT_GT(one[c].forces[0].force.cwiseAbs().rowwise().sum().minCoeff(), 0);
+    EXPECT_EQ(one[c].forces[0].force, two[c].forces[0].force);
+    EXPECT_EQ(one[c].forces[0].strain_energy, two[c].forces[0].strain_energy);
+    ASSERT_EQ(one[c].stresses.size(), 1u);
+    EXPECT_EQ(one[c].stresses[0].stress, two[c].stresses[0].stress);
+    ASSERT_EQ(one[c].strains.size(), 1u);
+    EXPECT_EQ(one[c].strains[0].stress, two[c].strains[0].stress);
+    EXPECT_EQ(one[c].strains[0].corner, two[c].strains[0].corner);
   }
 }
 
