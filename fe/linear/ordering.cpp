@@ -12,6 +12,8 @@ static_assert(std::is_same_v<idx_t, PetscInt>, "graphs are handed to METIS as Pe
 
 constexpr const char* kGroups = "bough_row_groups";
 constexpr const char* kOrder = "bough_elimination_order";
+constexpr const char* kParts =
+    "bough_two_parts";  // rows of the first, of the second, between; how many there are of each
 
 struct Graph {
   std::vector<idx_t> start{0}, neighbours, weight;
@@ -173,8 +175,68 @@ PetscIs find_elimination_order(Mat A, PetscInt least) {
   return result;
 }
 
+namespace {
+
+std::optional<TwoParts> find_known_parts(Mat A) {
+  PetscObject object = nullptr;
+  check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(A), kParts, &object));
+  if (!object) return std::nullopt;
+  const IS all = reinterpret_cast<IS>(object);
+  PetscInt size = 0;
+  const PetscInt* rows = nullptr;
+  check_petsc(ISGetSize(all, &size));
+  check_petsc(ISGetIndices(all, &rows));
+  const PetscInt* num = rows + size - 3;
+  TwoParts parts;
+  for (auto* part : {&parts.first, &parts.second, &parts.between}) {
+    part->assign(rows, rows + *num);
+    rows += *num++;
+  }
+  rows -= size - 3;
+  check_petsc(ISRestoreIndices(all, &rows));
+  return parts;
+}
+
+/// A may have got entries since its parts were found.
+bool are_apart(Mat A, const TwoParts& parts) {
+  PetscInt size = 0;
+  const PetscInt *start = nullptr, *columns = nullptr;
+  PetscBool done = PETSC_FALSE;
+  check_petsc(MatGetRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &size, &start, &columns, &done));
+  bool apart = done == PETSC_TRUE;
+  if (apart) {
+    std::vector<char> is_second(static_cast<std::size_t>(size), 0);
+    for (const PetscInt row : parts.second) is_second[static_cast<std::size_t>(row)] = 1;
+    for (const PetscInt row : parts.first)
+      for (PetscInt k = start[row]; k < start[row + 1]; ++k)
+        apart = apart && is_second[static_cast<std::size_t>(columns[k])] == 0;
+  }
+  check_petsc(MatRestoreRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &size, &start, &columns, &done));
+  return apart;
+}
+
+void keep_parts(const TwoParts& parts, Mat A) {
+  std::vector<PetscInt> all, sizes;
+  for (const auto* part : {&parts.first, &parts.second, &parts.between}) {
+    all.insert(all.end(), part->begin(), part->end());
+    sizes.push_back(static_cast<PetscInt>(part->size()));
+  }
+  all.insert(all.end(), sizes.begin(), sizes.end());
+  PetscIs kept;
+  check_petsc(
+      ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(all.size()), all.data(), PETSC_COPY_VALUES, kept.out()));
+  check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(A), kParts, reinterpret_cast<PetscObject>(kept.get())));
+}
+
+}  // namespace
+
 std::optional<TwoParts> find_two_parts(Mat A, PetscInt least) {
-  std::optional<TwoParts> result;
+  PetscInt size = 0;
+  check_petsc(MatGetSize(A, &size, nullptr));
+  if (size < least) return std::nullopt;
+  std::optional<TwoParts> result = find_known_parts(A);
+  if (result && are_apart(A, *result)) return result;
+  result.reset();
   visit_group_graph(A, least, [&](Graph& graph, const PetscInt* group_start) {
     std::vector<idx_t> rank(graph.weight.size()), inverse(graph.weight.size()), sizes(3);
     idx_t options[METIS_NOPTIONS];
@@ -192,6 +254,7 @@ std::optional<TwoParts> find_two_parts(Mat A, PetscInt least) {
       return;
     }
   });
+  if (result) keep_parts(*result, A);
   return result;
 }
 

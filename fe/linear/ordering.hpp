@@ -30,7 +30,7 @@ PetscIs find_elimination_order(Mat A, PetscInt least = 3000);
 struct TwoParts {
   std::vector<PetscInt> first, second, between;
 };
-/// The same with the first dissection told apart; empty as find_elimination_order(), and below `least` rows.
+/// The same with the first dissection told apart, kept alike; empty as find_elimination_order(), and below `least` rows.
 std::optional<TwoParts> find_two_parts(Mat A, PetscInt least);
 
 }  // namespace bough::fe

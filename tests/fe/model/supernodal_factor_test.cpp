@@ -138,5 +138,29 @@ TEST_P(SupernodalFactorOn, PiecesMayBeApart) {
   EXPECT_LT((B - multiply(A.get(), X)).cwiseAbs().maxCoeff(), 1e-12 * X.cwiseAbs().maxCoeff());
 }
 
+/// What was found of a matrix is found anew when it has got an entry between its parts.
+TEST(SupernodalFactor, PartsAreThoseOfTheMatrixAsItIs) {
+  if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes factor together";
+  const PetscMat A = make_grid(90, 60);
+  const auto before = find_two_parts(A.get(), 0), again = find_two_parts(A.get(), 0);
+  ASSERT_TRUE(before && again);
+  EXPECT_EQ(before->first, again->first);
+  EXPECT_EQ(before->second, again->second);
+  EXPECT_EQ(before->between, again->between);
+  check_petsc(MatSetOption(A.get(), MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
+  const PetscInt i = before->first.front(), j = before->second.front();
+  check_petsc(MatSetValue(A.get(), i, j, -0.1, INSERT_VALUES));
+  check_petsc(MatSetValue(A.get(), j, i, -0.1, INSERT_VALUES));
+  check_petsc(MatAssemblyBegin(A.get(), MAT_FINAL_ASSEMBLY));
+  check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
+  const auto after = find_two_parts(A.get(), 0);
+  ASSERT_TRUE(after);
+  const auto has = [](const std::vector<PetscInt>& rows, PetscInt row) {
+    return std::find(rows.begin(), rows.end(), row) != rows.end();
+  };
+  EXPECT_FALSE(has(after->first, i) && has(after->second, j));
+  EXPECT_FALSE(has(after->second, i) && has(after->first, j));
+}
+
 }  // namespace
 }  // namespace bough::fe
