@@ -2,6 +2,7 @@
 
 #include "base/rotation.hpp"
 #include "fe/linear/blas.hpp"
+#include "fe/linear/threads.hpp"
 
 namespace bough::fe {
 namespace {
@@ -87,6 +88,24 @@ Matrix3Xd calc_point_loads(const CarriedMass& carried, const AccelerationField& 
   return -a * carried.mu;
 }
 
+namespace {
+
+/// Fewer are done before a thread has started.
+constexpr int kElementsOfThread = 2000;
+
+/// add(from, to, sum) of this rank's elements, in two halves at once where there are two threads.
+template <class Add>
+void visit_element_halves(const Model& model, MatrixXd& sum, const Add& add) {
+  const auto [begin, end] = calc_element_range(model);
+  if (get_num_threads() < 2 || end - begin < kElementsOfThread) return add(begin, end, sum);
+  const int middle = begin + (end - begin) / 2;
+  MatrixXd second = MatrixXd::Zero(sum.rows(), sum.cols());
+  do_both([&, from = begin] { add(from, middle, sum); }, [&, to = end] { add(middle, to, second); });
+  sum += second;
+}
+
+}  // namespace
+
 MatrixXd calc_inertial_loads(const Model& model, MassKind kind, const MatrixXd& A_I, const MassProduct& mass_times) {
   BOUGH_DEMAND(A_I.rows() == 12);
   MatrixXd F = -mass_times(calc_grid_field(model, A_I));
@@ -95,26 +114,29 @@ MatrixXd calc_inertial_loads(const Model& model, MassKind kind, const MatrixXd& 
   if (spin.isZero(0)) return F;
   // Where mass hangs on rotations the grids' own accelerations are not those of the mass.
   const MatrixXd grid_field = calc_grid_field(model, spin);
-  MatrixXd change = MatrixXd::Zero(F.rows(), F.cols()), M;
-  const auto [begin, end] = calc_element_range(model);
-  for (int e = begin; e < end; ++e) {
-    const Element& element = *model.elements()[static_cast<std::size_t>(e)];
-    if (!element.carries_turning_mass(kind)) continue;
-    M.setZero(element.num_dofs(), element.num_dofs());
-    element.add_mass(kind, model.wtmass(), M);
-    MatrixXd f = M * grid_field(element.gdofs(), Eigen::all);
-    CarriedMass carried(element.num_dofs());
-    if (calc_carried(model, element, kind, carried)) {
-      for (Eigen::Index c = 0; c < f.cols(); ++c) {
-        const Matrix3Xd loads = calc_point_loads(carried, calc_acceleration_field(spin.col(c)));
-        for (Eigen::Index r = 0; r < loads.cols(); ++r)
-          f.col(c) += carried.points[static_cast<std::size_t>(r)].H.transpose() * loads.col(r);
+  const auto add_change = [&](int from, int to, MatrixXd& sum) {
+    MatrixXd M;
+    for (int e = from; e < to; ++e) {
+      const Element& element = *model.elements()[static_cast<std::size_t>(e)];
+      if (!element.carries_turning_mass(kind)) continue;
+      M.setZero(element.num_dofs(), element.num_dofs());
+      element.add_mass(kind, model.wtmass(), M);
+      MatrixXd f = M * grid_field(element.gdofs(), Eigen::all);
+      CarriedMass carried(element.num_dofs());
+      if (calc_carried(model, element, kind, carried)) {
+        for (Eigen::Index c = 0; c < f.cols(); ++c) {
+          const Matrix3Xd loads = calc_point_loads(carried, calc_acceleration_field(spin.col(c)));
+          for (Eigen::Index r = 0; r < loads.cols(); ++r)
+            f.col(c) += carried.points[static_cast<std::size_t>(r)].H.transpose() * loads.col(r);
+        }
+      } else {
+        f += turn_momenta(model, element, M, spin);
       }
-    } else {
-      f += turn_momenta(model, element, M, spin);
+      for (int i = 0; i < element.num_dofs(); ++i) sum.row(element.gdofs()[static_cast<std::size_t>(i)]) += f.row(i);
     }
-    for (int i = 0; i < element.num_dofs(); ++i) change.row(element.gdofs()[static_cast<std::size_t>(i)]) += f.row(i);
-  }
+  };
+  MatrixXd change = MatrixXd::Zero(F.rows(), F.cols());
+  visit_element_halves(model, change, add_change);
   sum_over_ranks(change);
   return F + change;
 }
@@ -139,39 +161,42 @@ bool has_approximate_mass(const Model& model, MassKind kind) {
 MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Phi) {
   const Eigen::Index n = Phi.cols(), size = 4 + 3 * n;
   constexpr Eigen::Index kPoints = 512;
-  MatrixXd gram = MatrixXd::Zero(size, size), Z(kPoints, size), mu_Z = Z, Phi_e, H, u;
-  Eigen::Index used = 0;
-  const auto flush = [&] {
-    multiply_dense(true, Z.topRows(used), mu_Z.topRows(used), 1, gram);
-    used = 0;
+  const auto add_points = [&](int from, int to, MatrixXd& gram) {
+    MatrixXd Z(kPoints, size), mu_Z = Z, Phi_e, H, u;
+    Eigen::Index used = 0;
+    const auto flush = [&] {
+      multiply_dense(true, Z.topRows(used), mu_Z.topRows(used), 1, gram);
+      used = 0;
+    };
+    for (int e = from; e < to; ++e) {
+      const Element& element = *model.elements()[static_cast<std::size_t>(e)];
+      if (!element.carries_turning_mass(kind)) continue;
+      CarriedMass carried(element.num_dofs());
+      if (!calc_carried(model, element, kind, carried)) continue;
+      const auto count = static_cast<Eigen::Index>(carried.points.size());
+      if (used + count > Z.rows()) flush();
+      if (count > Z.rows()) {
+        Z.resize(count, size);
+        mu_Z.resize(count, size);
+      }
+      Phi_e = Phi(element.gdofs(), Eigen::all);
+      H.resize(3 * count, element.num_dofs());
+      for (Eigen::Index r = 0; r < count; ++r) {
+        const auto& point = carried.points[static_cast<std::size_t>(r)];
+        Z(used + r, 0) = point.is_place ? 1 : 0;
+        Z.row(used + r).segment<3>(1) = point.x.transpose();
+        for (int a = 0; a < 3; ++a) H.row(a * count + r) = point.H.row(a);
+      }
+      u.resize(3 * count, n);
+      multiply_dense(false, H, Phi_e, 0, u);
+      for (int a = 0; a < 3; ++a) Z.block(used, 4 + a * n, count, n) = u.middleRows(a * count, count);
+      multiply_dense(false, carried.mu, Z.middleRows(used, count), 0, mu_Z.middleRows(used, count));
+      used += count;
+    }
+    flush();
   };
-  const auto [begin, end] = calc_element_range(model);
-  for (int e = begin; e < end; ++e) {
-    const Element& element = *model.elements()[static_cast<std::size_t>(e)];
-    if (!element.carries_turning_mass(kind)) continue;
-    CarriedMass carried(element.num_dofs());
-    if (!calc_carried(model, element, kind, carried)) continue;
-    const auto count = static_cast<Eigen::Index>(carried.points.size());
-    if (used + count > Z.rows()) flush();
-    if (count > Z.rows()) {
-      Z.resize(count, size);
-      mu_Z.resize(count, size);
-    }
-    Phi_e = Phi(element.gdofs(), Eigen::all);
-    H.resize(3 * count, element.num_dofs());
-    for (Eigen::Index r = 0; r < count; ++r) {
-      const auto& point = carried.points[static_cast<std::size_t>(r)];
-      Z(used + r, 0) = point.is_place ? 1 : 0;
-      Z.row(used + r).segment<3>(1) = point.x.transpose();
-      for (int a = 0; a < 3; ++a) H.row(a * count + r) = point.H.row(a);
-    }
-    u.resize(3 * count, n);
-    multiply_dense(false, H, Phi_e, 0, u);
-    for (int a = 0; a < 3; ++a) Z.block(used, 4 + a * n, count, n) = u.middleRows(a * count, count);
-    multiply_dense(false, carried.mu, Z.middleRows(used, count), 0, mu_Z.middleRows(used, count));
-    used += count;
-  }
-  flush();
+  MatrixXd gram = MatrixXd::Zero(size, size);
+  visit_element_halves(model, gram, add_points);
   sum_over_ranks(gram);
   return gram;
 }
