@@ -11,8 +11,10 @@ namespace bough::fe {
 using PetscIs = PetscHandle<IS, ISDestroy>;
 
 /// Tells A that its rows fall into runs that couple alike, as the six of a grid do: run i is [start[i], start[i + 1]).
-/// One process only.
-void set_row_groups(Mat A, const std::vector<int>& start);
+/// On several processes each tells of its own rows, with the numbers that they have in A; collective.
+void set_row_groups(Mat A, std::vector<int> start);
+/// The starts on all processes and the end; empty where A has no groups.
+std::vector<PetscInt> get_row_groups(Mat A);
 /// Gives `to`, a matrix of the same rows, the groups of `from`.
 void copy_row_groups(Mat from, Mat to);
 
