@@ -4,7 +4,8 @@
 
 #include <algorithm>
 
-#include "fe/linear/blas.hpp"
+extern "C" void dlauum_(const char* part, const PetscBLASInt* n, double* A, const PetscBLASInt* lda,
+                        PetscBLASInt* info);
 
 namespace bough::fe {
 
@@ -107,9 +108,13 @@ bool PartFactor::factor() {
 }
 
 MatrixXd PartFactor::calc_schur() const {
-  MatrixXd schur(num_between_, num_between_);
-  multiply_dense(false, L_ss_, MatrixXd(L_ss_.transpose()), 0, schur);
-  return schur;
+  // LAPACK multiplies U Uᵀ alone, a sixth of a product of dense matrices: L read from its end.
+  MatrixXd schur = L_ss_.reverse();
+  const auto n = static_cast<PetscBLASInt>(num_between_);
+  PetscBLASInt info = 0;
+  if (n > 0) dlauum_("U", &n, schur.data(), &n, &info);
+  schur.triangularView<Eigen::StrictlyLower>() = schur.transpose();
+  return schur.reverse();
 }
 
 void PartFactor::forward(const Eigen::Ref<const MatrixXd>& B, MatrixXd& carried) {

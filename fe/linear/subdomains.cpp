@@ -21,8 +21,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Rows between, whose dense block every rank holds and factors: 288 MB, some seconds.
-constexpr PetscInt kMostRowsBetween = 6000;
+/// Rows between, whose dense block every rank holds twice and works on for n³ operations: 256 MB, two seconds.
+constexpr PetscInt kMostRowsBetween = 4000;
 /// Of all rows, where they are too many to cost nothing.
 constexpr double kMostShare = 0.03;
 constexpr PetscInt kFewBetween = 1000;

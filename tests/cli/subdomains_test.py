@@ -135,15 +135,22 @@ class Subdomains(ProgramTest):
         """A negative spring: no LLᵀ, whatever the number of ranks."""
         self.compare(write_plate(more="CELAS2,90001,-2.+7,500,3\n"), (2,))
 
-    def test_singular_deck(self):
-        self.write("deck.bdf", write_plate(more="GRID,90001,,20.,0.,0.\nGRID,90002,,21.,0.,0.\nPROD,9,1,1.-4\n"
-                                           "CROD,90001,9,90001,90002\nPARAM,AUTOSPC,NO\nMAT1,9,2.+11,,.3,0.\n"))
-        for flags in ((), ("--json",)):
-            found = [subprocess.run([*launch(n), PROGRAM, "modes", "deck.bdf", "-n", "8", *flags], cwd=self.folder, text=True,
-                                    capture_output=True, timeout=120, env={**os.environ, **ENV}) for n in (1, 2)]
-            self.assertEqual(found[1].returncode, found[0].returncode)
-            said = [[line for line in one.stderr.splitlines() if "error:" in line or "warning:" in line] for one in found]
-            self.assertEqual(said[1], said[0])
+    def test_massless_mechanism(self):
+        """Two bars without mass on a ball joint at the corner: K + sM is singular until their motions are held."""
+        corner = make_grid_ids(36, 26)[26, 36]
+        self.compare(write_plate(more="GRID,90001,,7.,4.5,.3\nGRID,90002,,8.,5.1,.9\nPBAR,9,9,1.-4,1.-8,1.-8,1.-8\n"
+                                      f"MAT1,9,2.+11,,.3,0.\nCBAR,90001,9,{corner},90001,0.,0.,1.\n,456\n"
+                                      "CBAR,90002,9,90001,90002,0.,0.,1.\n"), (2, 3))
+
+    def test_errors_are_those_of_one(self):
+        """No mass at all: K + sM has no modes, the same words and the same code, and no rank waits for another."""
+        self.write("deck.bdf", write_plate().replace(",.3,8000.", ",.3,0."))
+        found = [subprocess.run([*launch(n), PROGRAM, "modes", "deck.bdf", "-n", "8"], cwd=self.folder, text=True,
+                                capture_output=True, timeout=120, env={**os.environ, **ENV}) for n in (1, 2)]
+        self.assertEqual([one.returncode for one in found], [1, 1])
+        said = [[line for line in one.stderr.splitlines() if "error:" in line] for one in found]
+        self.assertIn("[modal.no-mass]", said[0][0])
+        self.assertEqual(said[1], said[0])
 
     def find_ranks(self, launcher):
         ranks = []
