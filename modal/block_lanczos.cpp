@@ -28,12 +28,6 @@ void turn(const MatrixXd& S, Eigen::Index size, MatrixXd& V) {
   }
 }
 
-MatrixXd multiply_transposed(const Eigen::Ref<const MatrixXd>& V, const Eigen::Ref<const MatrixXd>& W) {
-  MatrixXd C(V.cols(), W.cols());
-  fe::multiply_dense(true, V, W, 0, C);
-  return C;
-}
-
 class BlockLanczos {
  public:
   explicit BlockLanczos(const BlockLanczosProblem& problem);
@@ -43,6 +37,8 @@ class BlockLanczos {
   /// Makes W B-orthonormal and B-orthogonal to the basis: W = V C + W_out R. Directions of W that lie in the span of
   /// the basis, by roundoff, are dropped: W may get narrower.
   void orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R);
+  /// VᵀW of all rows.
+  MatrixXd multiply_transposed(const Eigen::Ref<const MatrixXd>& V, const Eigen::Ref<const MatrixXd>& W) const;
   void append(const MatrixXd& W);
   void expand();
   /// Ritz pairs of the present basis; the number of leading ones that converged.
@@ -78,11 +74,21 @@ BlockLanczos::BlockLanczos(const BlockLanczosProblem& problem) : problem_(proble
   scale_ = 0;
 }
 
+MatrixXd BlockLanczos::multiply_transposed(const Eigen::Ref<const MatrixXd>& V,
+                                           const Eigen::Ref<const MatrixXd>& W) const {
+  MatrixXd C(V.cols(), W.cols());
+  fe::multiply_dense(true, V, W, 0, C);
+  if (problem_.sum) problem_.sum(C);
+  return C;
+}
+
 void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
   C = MatrixXd::Zero(size_, W.cols());
   R = MatrixXd::Identity(W.cols(), W.cols());
   MatrixXd B_W = problem_.multiply_mass(W);
-  scale_ = std::max(scale_, std::sqrt(W.cwiseProduct(B_W).colwise().sum().cwiseAbs().maxCoeff()));
+  MatrixXd squares = W.cwiseProduct(B_W).colwise().sum();
+  if (problem_.sum) problem_.sum(squares);
+  scale_ = std::max(scale_, std::sqrt(squares.cwiseAbs().maxCoeff()));
   for (int pass = 0; pass < 5 && W.cols() > 0; ++pass) {
     if (problem_.deflate.cols() > 0) {
       const MatrixXd D = multiply_transposed(problem_.deflate, B_W);

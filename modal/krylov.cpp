@@ -12,6 +12,7 @@
 #include "base/diagnostic.hpp"
 #include "fe/linear/factor.hpp"
 #include "fe/linear/memory_need.hpp"
+#include "fe/linear/subdomains.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "modal/block_lanczos.hpp"
 
@@ -103,13 +104,15 @@ double calc_fixed_number(int index, int start) {
 
 namespace {
 
-/// b fixed columns; the first does not depend on b.
-MatrixXd make_start(const KrylovProblem& problem, int b) {
+/// b fixed columns; the first does not depend on b, and a row not on where it is kept.
+MatrixXd make_start(const KrylovProblem& problem, int b, const fe::Subdomains* domains = nullptr) {
   PetscInt n = 0;
   check_petsc(MatGetSize(problem.A, &n, nullptr));
+  if (domains) n = domains->num_own();
   MatrixXd start(n, b);
   for (int c = 0; c < b; ++c)
-    for (int i = 0; i < n; ++i) start(i, c) = calc_fixed_number(i, problem.start + 1000 * c);
+    for (int i = 0; i < n; ++i)
+      start(i, c) = calc_fixed_number(domains ? domains->get_row(i) : i, problem.start + 1000 * c);
   return start;
 }
 
@@ -189,15 +192,25 @@ SlepcEps set_up(const KrylovProblem& problem, Mat factor, int wanted, int subspa
   return eps;
 }
 
+/// A product or a solution of several vectors.
+using Apply = std::function<MatrixXd(const Eigen::Ref<const MatrixXd>&)>;
+
 /// x = (λ - σ)(A - σB)⁻¹B x: removes what a semi-definite B lets into the vectors unseen (Nour-Omid et al., Math. Comp.
 /// 48 (1987) 663). A solve of eight right-hand sides costs a third of eight solves, of sixteen a quarter.
-void purify(const KrylovProblem& problem, Mat factor, KrylovResult& result) {
+void purify(const KrylovProblem& problem, const Apply& solve, const Apply& multiply_mass, KrylovResult& result) {
   const VectorXd scale = result.values.array() - problem.shift;
   constexpr Eigen::Index kBlock = 24;  // enough for the speed, few for the memory
   for (Eigen::Index first = 0; first < scale.size(); first += kBlock) {
     auto X = result.vectors.middleCols(first, std::min(kBlock, scale.size() - first));
-    X = fe::solve_factored(factor, fe::multiply(problem.B, X)) * scale.segment(first, X.cols()).asDiagonal();
+    X = solve(multiply_mass(X)) * scale.segment(first, X.cols()).asDiagonal();
   }
+}
+
+Apply solve_by(Mat factor) {
+  return [factor](const Eigen::Ref<const MatrixXd>& X) { return fe::solve_factored(factor, X); };
+}
+Apply multiply_by(Mat A) {
+  return [A](const Eigen::Ref<const MatrixXd>& X) { return fe::multiply(A, X); };
 }
 
 /// Nothing when SLEPc gives up: a subspace beyond the rank of B, where its inner product is roundoff.
@@ -236,25 +249,31 @@ std::optional<KrylovResult> solve_one_vector(const KrylovProblem& problem, Mat f
     result.values = VectorXd(result.values(kept));
     result.vectors = MatrixXd(result.vectors(Eigen::all, kept));
   }
-  purify(problem, factor ? factor : get_factor(eps.get()), result);
+  purify(problem, solve_by(factor ? factor : get_factor(eps.get())), multiply_by(problem.B), result);
   return result;
 }
 
 /// Above this size a solve of one right-hand side mostly waits for the factor's entries.
 constexpr int kBlockSize = 5000;
 
+/// What the vectors of Lanczos meet: replicated ones, or the rows that `domains` gives to each rank.
+struct Operators {
+  Apply solve, multiply_mass, multiply_operator;
+  const fe::Subdomains* domains = nullptr;
+};
+
 /// Nothing when the blocks did not converge.
-std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, Mat factor, int wanted) {
+std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, const Operators& by, int wanted) {
   const bool is_near = problem.spectrum == Spectrum::NearShift;
   fe::release_freed_memory();
   BlockLanczosProblem blocks;
-  blocks.solve = [&](const Eigen::Ref<const MatrixXd>& X) { return fe::solve_factored(factor, X); };
-  blocks.multiply_mass = [&](const Eigen::Ref<const MatrixXd>& X) { return fe::multiply(problem.B, X); };
-  if (!is_near)
-    blocks.multiply_operator = [&](const Eigen::Ref<const MatrixXd>& X) { return fe::multiply(problem.A, X); };
+  blocks.solve = by.solve;
+  blocks.multiply_mass = by.multiply_mass;
+  if (!is_near) blocks.multiply_operator = by.multiply_operator;
+  if (by.domains) blocks.sum = fe::sum_alike;
   blocks.positive_only = problem.spectrum == Spectrum::LargestPositive;
-  blocks.start = make_start(problem, wanted > 100 ? 8 : 4);
-  blocks.deflate = problem.deflate;
+  blocks.start = make_start(problem, wanted > 100 ? 8 : 4, by.domains);
+  blocks.deflate = by.domains ? by.domains->take_own(problem.deflate) : problem.deflate;
   blocks.num_wanted = wanted;
   blocks.num_guard = std::min(problem.num_guard, wanted - 1);
   // The vectors are the most of the memory beside the factor: for few modes a restart costs next to nothing.
@@ -273,8 +292,34 @@ std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, Mat facto
   result.values = is_near ? VectorXd(theta.cwiseInverse().array() + problem.shift) : theta;
   result.vectors = kept.size() == static_cast<std::size_t>(found.theta.size()) ? std::move(found.X)
                                                                                : MatrixXd(found.X(Eigen::all, kept));
-  if (is_near) purify(problem, factor, result);
+  if (is_near) purify(problem, by.solve, by.multiply_mass, result);
+  if (by.domains) result.vectors = by.domains->replicate(result.vectors);
   return result;
+}
+
+std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, Mat factor, int wanted) {
+  return solve_blocks(problem, {solve_by(factor), multiply_by(problem.B), multiply_by(problem.A)}, wanted);
+}
+
+/// Every rank on its part of the rows, with the factor in substructures. Nothing where there are no parts or the blocks
+/// did not converge; where A - shift B is not definite, nothing or, with `definite_only`, a singular result.
+std::optional<KrylovResult> solve_in_parts(const KrylovProblem& problem, int wanted) {
+  const auto domains = fe::find_subdomains(problem.A, problem.B);
+  if (!domains) return std::nullopt;
+  const fe::PetscMat shifted = problem.shift == 0 ? fe::PetscMat() : fe::add(problem.A, -problem.shift, problem.B);
+  const fe::SubdomainFactor factor(shifted ? shifted.get() : problem.A, *domains);
+  if (!factor.is_definite()) {
+    if (!problem.definite_only) return std::nullopt;
+    KrylovResult result;
+    result.is_singular = true;
+    return result;
+  }
+  const fe::SubdomainMatrix B(problem.B, *domains);
+  const Operators by{[&](const Eigen::Ref<const MatrixXd>& X) { return factor.solve(X); },
+                     [&](const Eigen::Ref<const MatrixXd>& X) { return B.multiply(X); },
+                     {},
+                     &*domains};
+  return solve_blocks(problem, by, wanted);
 }
 
 }  // namespace
@@ -287,6 +332,10 @@ KrylovResult solve_krylov(const KrylovProblem& problem) {
   const int wanted = std::clamp(problem.num_wanted, 1, std::max(1, room));
 
   const bool is_alone = fe::initialize_petsc().size == 1;
+  const bool by_blocks = problem.method == KrylovMethod::Blocks ||
+                         (problem.method == KrylovMethod::Fastest && n >= kBlockSize && 4 * wanted < room);
+  if (!is_alone && by_blocks && !problem.factor && problem.spectrum == Spectrum::NearShift)
+    if (auto result = solve_in_parts(problem, wanted)) return std::move(*result);
   fe::PetscMat own_factor;
   if (!problem.factor && is_alone) own_factor = make_definite_factor(problem);
   Mat factor = problem.factor ? problem.factor : own_factor.get();
@@ -302,8 +351,6 @@ KrylovResult solve_krylov(const KrylovProblem& problem) {
     return pivoted && pivoted->is_singular();
   };
   if (!factor && is_sum(problem) && is_singular()) return make_singular();  // SLEPc factors sparse matrices alone
-  const bool by_blocks = problem.method == KrylovMethod::Blocks ||
-                         (problem.method == KrylovMethod::Fastest && n >= kBlockSize && 4 * wanted < room);
   const bool prefers_blocks = by_blocks && factor && !pivoted && is_alone && problem.spectrum == Spectrum::NearShift;
   if (prefers_blocks)
     if (auto result = solve_blocks(problem, factor, wanted)) return std::move(*result);

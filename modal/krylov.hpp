@@ -1,7 +1,8 @@
 #pragma once
 /// \file SLEPc behind two calls: some eigenpairs of a symmetric pencil, and the inertia of a shifted pencil.
 ///
-/// Internal to modal. Vectors go in and out replicated on every rank; the matrices are distributed.
+/// Internal to modal. Vectors go in and out replicated on every rank; the matrices are distributed, and the vectors of
+/// Lanczos by blocks too.
 #include <functional>
 
 #include <Eigen/Dense>
@@ -23,7 +24,8 @@ enum class Spectrum {
 };
 
 enum class KrylovMethod {
-  Fastest,  ///< by blocks near a shift on one process, where the factor is definite and larger than a cache
+  Fastest,  ///< by blocks near a shift, where the factor is definite and larger than a cache; of several processes each
+            ///< on its part of the rows (linear/subdomains.hpp) where they are cut
   Blocks,
   OneVector  ///< SLEPc's Krylov-Schur
 };

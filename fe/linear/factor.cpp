@@ -1,5 +1,7 @@
 #include "fe/linear/factor.hpp"
 
+#include <vector>
+
 #include "base/diagnostic.hpp"
 #include "fe/linear/dissection.hpp"
 #include "fe/linear/memory_need.hpp"
@@ -74,18 +76,21 @@ PetscMat make_dense(Mat A, const Eigen::Ref<const MatrixXd>& values) {
 }
 
 MatrixXd replicate(Mat dense) {
-  PetscInt local = 0, size = 0, m = 0, first = 0, lda = 0;
+  PetscInt local = 0, size = 0, m = 0, lda = 0;
   check_petsc(MatGetLocalSize(dense, &local, nullptr));
   check_petsc(MatGetSize(dense, &size, &m));
-  check_petsc(MatGetOwnershipRange(dense, &first, nullptr));
-  MatrixXd values = MatrixXd::Zero(size, m);
+  MatrixXd values(size, m);
   const PetscScalar* data = nullptr;
+  const PetscInt* firsts = nullptr;
+  check_petsc(MatGetOwnershipRanges(dense, &firsts));
+  std::vector<int> num;
+  for (int rank = 0; rank < initialize_petsc().size; ++rank) num.push_back(firsts[rank + 1] - firsts[rank]);
   check_petsc(MatDenseGetLDA(dense, &lda));
   check_petsc(MatDenseGetArrayRead(dense, &data));
-  values.middleRows(first, local) =
-      Eigen::Map<const MatrixXd, 0, Eigen::OuterStride<>>(data, local, m, Eigen::OuterStride<>(lda));
+  for (PetscInt j = 0; j < m; ++j)
+    MPI_Allgatherv(data + static_cast<std::ptrdiff_t>(j) * lda, local, MPI_DOUBLE, values.col(j).data(), num.data(),
+                   firsts, MPI_DOUBLE, PETSC_COMM_WORLD);
   check_petsc(MatDenseRestoreArrayRead(dense, &data));
-  sum_over_ranks(values);
   return values;
 }
 

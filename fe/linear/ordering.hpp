@@ -11,8 +11,10 @@ namespace bough::fe {
 using PetscIs = PetscHandle<IS, ISDestroy>;
 
 /// Tells A that its rows fall into runs that couple alike, as the six of a grid do: run i is [start[i], start[i + 1]).
-/// One process only.
-void set_row_groups(Mat A, const std::vector<int>& start);
+/// On several processes each tells of its own rows, with the numbers that they have in A; collective.
+void set_row_groups(Mat A, std::vector<int> start);
+/// The starts on all processes and the end; empty where A has no groups.
+std::vector<PetscInt> get_row_groups(Mat A);
 /// Gives `to`, a matrix of the same rows, the groups of `from`.
 void copy_row_groups(Mat from, Mat to);
 
@@ -30,7 +32,8 @@ PetscIs find_elimination_order(Mat A, PetscInt least = 3000);
 struct TwoParts {
   std::vector<PetscInt> first, second, between;
 };
-/// The same with the first dissection told apart, kept alike; empty as find_elimination_order(), and below `least` rows.
+/// The same with the first dissection told apart, kept alike; empty as find_elimination_order(), and below `least`
+/// rows.
 std::optional<TwoParts> find_two_parts(Mat A, PetscInt least);
 
 }  // namespace bough::fe

@@ -26,6 +26,7 @@ class OneThread {
 }  // namespace
 
 int get_num_threads() {
+  if (initialize_petsc().size > 1) return 1;  // the ranks are threads enough
   if (const char* asked = std::getenv("OMP_NUM_THREADS")) return std::max(1, std::atoi(asked));
   return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 2U));
 }

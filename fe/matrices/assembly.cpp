@@ -118,11 +118,11 @@ void drop_zeros(Rows& rows, int first) {
 }
 
 /// Where the runs of rows with the same elements start, and the end.
-std::vector<int> find_row_groups(const Rows& rows) {
+std::vector<int> find_row_groups(const Rows& rows, int first) {
   std::vector<int> start;
   for (int row = 0; row < static_cast<int>(rows.same.size()); ++row)
-    if (!rows.same[row]) start.push_back(row);
-  start.push_back(static_cast<int>(rows.same.size()));
+    if (!rows.same[row]) start.push_back(first + row);
+  start.push_back(first + static_cast<int>(rows.same.size()));
   return start;
 }
 
@@ -269,7 +269,7 @@ PetscMat assemble_sparse(const Model& model, const SparseRows& T, const AddEleme
   check_petsc(MatMPIAIJSetPreallocationCSR(A, rows.start.data(), rows.columns.data(), rows.values.data()));
   check_petsc(MatSetOption(A, MAT_SYMMETRIC, PETSC_TRUE));
   check_petsc(MatSetOption(A, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
-  if (initialize_petsc().size == 1) set_row_groups(A, find_row_groups(rows));
+  set_row_groups(A, find_row_groups(rows, first));
   return matrix;
 }
 

@@ -1,0 +1,170 @@
+#include "fe/linear/part_factor.hpp"
+
+#include <petscblaslapack.h>
+
+#include <algorithm>
+
+extern "C" void dlauum_(const char* part, const PetscBLASInt* n, double* A, const PetscBLASInt* lda,
+                        PetscBLASInt* info);
+
+namespace bough::fe {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+ComputationError make_out_of_memory() {
+  return {"fe.out-of-memory",
+          {},
+          "the factor of the stiffness matrix does not fit the memory",
+          "use a coarser mesh, or run on more processes of a larger machine (mpirun -n 2 bough ...)"};
+}
+
+cholmod_sparse PartFactor::as_sparse() {
+  cholmod_sparse matrix{};
+  matrix.nrow = matrix.ncol = start_.size() - 1;
+  matrix.nzmax = row_.size();
+  matrix.p = start_.data();
+  matrix.i = row_.data();
+  matrix.x = value_.data();
+  matrix.stype = 1;
+  matrix.itype = CHOLMOD_INT;
+  matrix.xtype = CHOLMOD_REAL;
+  matrix.dtype = CHOLMOD_DOUBLE;
+  matrix.packed = 1;
+  return matrix;
+}
+
+void PartFactor::take(const MatrixRows& A, const std::vector<PetscInt>& rows, std::size_t num_own,
+                      const VectorXd& delta, double share) {
+  const PetscInt last = *std::max_element(rows.begin(), rows.end());
+  std::vector<int> place(static_cast<std::size_t>(last) + 1, -1);
+  for (std::size_t i = 0; i < rows.size(); ++i) place[static_cast<std::size_t>(rows[i])] = static_cast<int>(i);
+  start_.assign(1, 0);
+  row_.clear();
+  value_.clear();
+  std::size_t most = rows.size();  // of the upper triangle
+  for (const PetscInt row : rows) most += static_cast<std::size_t>(A.start[row + 1] - A.start[row]);
+  row_.reserve(most / 2);
+  value_.reserve(most / 2);
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    for (PetscInt k = A.start[rows[j]]; k < A.start[rows[j] + 1]; ++k) {
+      const int i = A.column[k] <= last ? place[static_cast<std::size_t>(A.column[k])] : -1;
+      if (i < 0 || i > static_cast<int>(j)) continue;  // of the other part, or below the diagonal
+      const bool is_between = i >= static_cast<int>(num_own), is_diagonal = i == static_cast<int>(j);
+      row_.push_back(i);
+      value_.push_back(is_between ? share * A.value[k] + (is_diagonal ? delta(i - static_cast<int>(num_own)) : 0.0)
+                                  : A.value[k]);
+    }
+    start_.push_back(static_cast<int>(row_.size()));
+  }
+}
+
+bool PartFactor::analyse(const MatrixRows& A, std::vector<PetscInt> own, const std::vector<PetscInt>& between,
+                         const VectorXd& delta, int num_parts) {
+  const auto n_p = own.size();
+  take(A, own, n_p, delta, 1.0 / num_parts);
+  cholmod_sparse alone = as_sparse();
+  std::vector<int> parent(n_p), post(n_p);
+  if (!cholmod_etree(&alone, parent.data(), &common_)) return false;
+  if (cholmod_postorder(parent.data(), n_p, nullptr, post.data(), &common_) != static_cast<int>(n_p)) return false;
+  rows_.clear();
+  for (const int i : post) rows_.push_back(own[static_cast<std::size_t>(i)]);
+
+  own = rows_;
+  own.insert(own.end(), between.begin(), between.end());
+  take(A, own, n_p, delta, 1.0 / num_parts);
+  num_between_ = static_cast<Eigen::Index>(between.size());
+  cholmod_sparse matrix = as_sparse();
+  factor_ = cholmod_analyze(&matrix, &common_);
+  check();
+  if (!factor_ || !factor_->is_super) return false;
+  const int* order = static_cast<const int*>(factor_->Perm);
+  for (std::size_t i = 0; i < own.size(); ++i)
+    if (order[i] != static_cast<int>(i)) return false;
+  return true;
+}
+
+bool PartFactor::factor() {
+  cholmod_sparse matrix = as_sparse();
+  cholmod_factorize(&matrix, factor_, &common_);
+  check();
+  start_ = std::vector<int>();  // {} would keep the memory
+  row_ = std::vector<int>();
+  value_ = std::vector<double>();
+  if (common_.status != CHOLMOD_OK || factor_->minor < factor_->n) return false;
+  const auto n_p = static_cast<int>(rows_.size());
+  const auto n_s = num_between_;
+  L_ss_ = MatrixXd::Zero(n_s, n_s);
+  const Supernodes L = get_supernodes();
+  for (int k = 0; k < L.num; ++k) {
+    if (L.super[k + 1] <= n_p) continue;
+    const int num_rows = L.row_at[k + 1] - L.row_at[k];
+    for (int j = std::max(L.super[k], n_p); j < L.super[k + 1]; ++j)
+      for (int i = j - L.super[k]; i < num_rows; ++i)
+        L_ss_(L.row[L.row_at[k] + i] - n_p, j - n_p) =
+            L.value[L.value_at[k] + static_cast<std::ptrdiff_t>(j - L.super[k]) * num_rows + i];
+  }
+  return true;
+}
+
+MatrixXd PartFactor::calc_schur() const {
+  // LAPACK multiplies U Uᵀ alone, a sixth of a product of dense matrices: L read from its end.
+  MatrixXd schur = L_ss_.reverse();
+  const auto n = static_cast<PetscBLASInt>(num_between_);
+  PetscBLASInt info = 0;
+  if (n > 0) dlauum_("U", &n, schur.data(), &n, &info);
+  schur.triangularView<Eigen::StrictlyLower>() = schur.transpose();
+  return schur.reverse();
+}
+
+void PartFactor::forward(const Eigen::Ref<const MatrixXd>& B, MatrixXd& carried) {
+  const auto n_p = static_cast<Eigen::Index>(rows_.size()), n_s = num_between_, m = B.cols();
+  Z_.resize(m <= kFewSides ? kFewSides : kManySides, n_p + n_s);
+  for (Eigen::Index i = 0; i < n_p; ++i) {
+    double* z = Z_.col(i).data();
+    const double* b = B.data() + rows_[static_cast<std::size_t>(i)];
+    for (Eigen::Index c = 0; c < m; ++c) z[c] = b[c * B.outerStride()];
+    std::fill(z + m, z + Z_.rows(), 0.0);
+  }
+  Z_.rightCols(n_s).setZero();
+  solve_lower(get_supernodes(), Z_);
+  // L_ss z_s = -L_sp z_p
+  carried = -Z_.rightCols(n_s) * L_ss_.triangularView<Eigen::Lower>().transpose();
+}
+
+void PartFactor::backward(const MatrixXd& X_s, Eigen::Ref<MatrixXd> X) {
+  const auto n_p = static_cast<Eigen::Index>(rows_.size());
+  // L_ssᵀ x_s as the right side of the rows between, so that they come out as they are.
+  Z_.rightCols(num_between_).noalias() = X_s * L_ss_.triangularView<Eigen::Lower>();
+  solve_lower_transposed(get_supernodes(), Z_);
+  for (Eigen::Index i = 0; i < n_p; ++i) {
+    const double* z = Z_.col(i).data();
+    double* x = X.data() + rows_[static_cast<std::size_t>(i)];
+    for (Eigen::Index c = 0; c < X.cols(); ++c) x[c * X.outerStride()] = z[c];
+  }
+}
+
+bool factor_dense(MatrixXd& S) {
+  const auto n = static_cast<PetscBLASInt>(S.rows());
+  PetscBLASInt info = 0;
+  if (n > 0) LAPACKpotrf_("L", &n, S.data(), &n, &info);
+  return info == 0;
+}
+
+void solve_dense(const MatrixXd& L, MatrixXd& X) {
+  const auto n = static_cast<PetscBLASInt>(L.rows()), m = static_cast<PetscBLASInt>(X.cols());
+  PetscBLASInt info = 0;
+  if (n > 0 && m > 0) LAPACKpotrs_("L", &n, &m, L.data(), &n, X.data(), &n, &info);
+}
+
+VectorXd calc_row_sums(const MatrixRows& A, const std::vector<PetscInt>& rows, PetscInt size) {
+  std::vector<char> is_in(static_cast<std::size_t>(size), 0);
+  for (const PetscInt row : rows) is_in[static_cast<std::size_t>(row)] = 1;
+  VectorXd sums = VectorXd::Zero(static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (PetscInt k = A.start[rows[i]]; k < A.start[rows[i] + 1]; ++k)
+      if (is_in[static_cast<std::size_t>(A.column[k])]) sums(static_cast<Eigen::Index>(i)) += std::abs(A.value[k]);
+  return sums;
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,87 @@
+#pragma once
+/// \file One part of a positive definite matrix, with the rows between the parts.
+///
+/// Internal to linear.
+#include <vector>
+
+// First: the BLAS header needs PETSc's own names.
+#include "fe/linear/petsc.hpp"
+
+#include <cholmod.h>
+
+#include "base/diagnostic.hpp"
+#include "fe/linear/dissection.hpp"
+#include "fe/linear/supernodes.hpp"
+
+namespace bough::fe {
+
+/// "fe.out-of-memory" of a factor.
+ComputationError make_out_of_memory();
+
+/// Of one part with the rows between it and others: its LLᵀ by CHOLMOD, and the trailing block of that as a dense
+/// matrix (substructures: Przemieniecki, AIAA J. 1 (1963) 138).
+class PartFactor {
+ public:
+  PartFactor() {
+    cholmod_start(&common_);
+    common_.print = 0;
+    common_.nmethods = 1;
+    common_.method[0].ordering = CHOLMOD_NATURAL;
+    common_.postorder = 0;  // the rows between stay last
+    common_.supernodal = CHOLMOD_SUPERNODAL;
+    common_.final_ll = 1;
+    common_.quick_return_if_not_posdef = 1;
+  }
+  PartFactor(const PartFactor&) = delete;
+  PartFactor& operator=(const PartFactor&) = delete;
+  ~PartFactor() {
+    cholmod_free_factor(&factor_, &common_);
+    cholmod_finish(&common_);
+  }
+
+  /// (K_pp, K_ps; K_sp, D_p), D_p = K_ss / num_parts + δ, in the order of `own`, postordered, then `between`. False
+  /// where CHOLMOD wants another order or no supernodes.
+  bool analyse(const MatrixRows& A, std::vector<PetscInt> own, const std::vector<PetscInt>& between,
+               const Eigen::VectorXd& delta, int num_parts);
+  double num_entries() const { return common_.lnz; }
+  /// False: not positive definite.
+  bool factor();
+  /// L_ss L_ssᵀ = D_p - K_sp K_pp⁻¹ K_ps.
+  Eigen::MatrixXd calc_schur() const;
+  /// K_pp z = B_p as far as L goes; `carried`, kFewSides or kManySides x rows between, becomes K_sp K_pp⁻¹ B_p.
+  void forward(const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::MatrixXd& carried);
+  /// Then X_p, with the solution of the rows between.
+  void backward(const Eigen::MatrixXd& X_s, Eigen::Ref<Eigen::MatrixXd> X);
+
+ private:
+  /// The upper triangle of `rows`, of which the first are the part's own.
+  void take(const MatrixRows& A, const std::vector<PetscInt>& rows, std::size_t num_own, const Eigen::VectorXd& delta,
+            double share);
+  cholmod_sparse as_sparse();
+  Supernodes get_supernodes() const {
+    return {static_cast<int>(factor_->nsuper),    static_cast<const int*>(factor_->super),
+            static_cast<const int*>(factor_->pi), static_cast<const int*>(factor_->px),
+            static_cast<const int*>(factor_->s),  static_cast<const double*>(factor_->x)};
+  }
+  void check() const {
+    if (common_.status == CHOLMOD_OUT_OF_MEMORY || common_.status == CHOLMOD_TOO_LARGE) throw make_out_of_memory();
+  }
+
+  cholmod_common common_{};
+  cholmod_factor* factor_ = nullptr;
+  std::vector<int> start_, row_;
+  std::vector<double> value_;
+  std::vector<PetscInt> rows_;  ///< of A, in the order of L; those of the part alone
+  Eigen::Index num_between_ = 0;
+  Eigen::MatrixXd L_ss_;  ///< lower
+  Eigen::MatrixXd Z_;     ///< right-hand sides x rows of L
+};
+
+/// L of the symmetric S in its place (lower); false: not positive definite.
+bool factor_dense(Eigen::MatrixXd& S);
+/// X becomes (L Lᵀ)⁻¹ X.
+void solve_dense(const Eigen::MatrixXd& L, Eigen::MatrixXd& X);
+/// Sums of |A_ij| of these rows of A (size x size) over these columns.
+Eigen::VectorXd calc_row_sums(const MatrixRows& A, const std::vector<PetscInt>& rows, PetscInt size);
+
+}  // namespace bough::fe

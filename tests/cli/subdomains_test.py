@@ -1,0 +1,196 @@
+"""Modes of decks that are cut among ranks are those of one process: frequencies, shapes, effective masses, errors."""
+import glob
+import os
+import signal
+import subprocess
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+from support import PROGRAM, ProgramTest
+
+# Ranks that wait leave the core to those that work.
+ENV = {"OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1"}
+
+
+def launch(ranks):
+    return ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+
+
+HEAD = "SOL 103\nCEND\nSPC = 1\nBEGIN BULK\nPARAM,COUPMASS,1\nMAT1,1,2.+11,,.3,8000.\n"
+
+
+def make_grid_ids(nx, ny):
+    return np.arange(1, (nx + 1) * (ny + 1) + 1).reshape(ny + 1, nx + 1)
+
+
+def write_plate(nx=36, ny=26, more="", held=True):
+    """A plate of 6 m x 4 m, clamped on its left edge; 5,994 rows at the least."""
+    ids = make_grid_ids(nx, ny)
+    lines = [HEAD if held else HEAD.replace("SPC = 1\n", ""), "PSHELL,1,1,.05,1,,1\n"]
+    for (j, i), grid in np.ndenumerate(ids):
+        lines.append(f"GRID,{grid},,{6 * i / nx:.6f},{4 * j / ny:.6f},0.\n")
+    for j in range(ny):
+        for i in range(nx):
+            a, b, c, d = ids[j, i], ids[j, i + 1], ids[j + 1, i + 1], ids[j + 1, i]
+            lines.append(f"CQUAD4,{j * nx + i + 1},1,{a},{b},{c},{d}\n")
+    if held:
+        lines += [f"SPC1,1,123456,{grid}\n" for grid in ids[:, 0]]
+    return "".join(lines) + more + "ENDDATA\n"
+
+
+def write_linked():
+    """Rigid elements, an RBE3 and an MPC from corner to corner, across whatever cut."""
+    ids = make_grid_ids(36, 26)
+    # The mass of the RBE3 hangs on the middle; a rigid beam joins two opposite edges.
+    return write_plate(more="GRID,90001,,3.,2.,.5\nCONM2,90001,90001,,500.\n"
+                       f"RBE3,90002,,90001,123456,1.,123,{ids[5, 5]},\n,{ids[5, 31]},{ids[21, 5]},{ids[21, 31]}\n"
+                       f"RBE2,90003,{ids[0, 18]},123456,{ids[26, 18]}\n"
+                       f"MPC,1,{ids[10, 36]},3,1.,{ids[13, 2]},3,-1.\n").replace("SPC = 1\n", "SPC = 1\nMPC = 1\n")
+
+
+def write_grillage(n=33):
+    ids = make_grid_ids(n, n)
+    lines = [HEAD, "PBAR,1,1,1.-3,2.-6,3.-6,1.-6\n"]
+    for (j, i), grid in np.ndenumerate(ids):
+        lines.append(f"GRID,{grid},,{i / n * 10:.6f},{j / n * 8:.6f},0.\n")
+    pairs = [(ids[j, i], ids[j, i + 1]) for j in range(n + 1) for i in range(n)]
+    pairs += [(ids[j, i], ids[j + 1, i]) for j in range(n) for i in range(n + 1)]
+    lines += [f"CBAR,{e},1,{a},{b},0.,0.,1.\n" for e, (a, b) in enumerate(pairs, 1)]
+    lines += [f"SPC1,1,123456,{grid}\n" for grid in ids[0]]
+    return "".join(lines) + "ENDDATA\n"
+
+
+def write_block(n=(24, 9, 8)):
+    ids = np.arange(1, np.prod([k + 1 for k in n]) + 1).reshape([k + 1 for k in n])
+    lines = [HEAD, "PSOLID,1,1\n"]
+    for (i, j, k), grid in np.ndenumerate(ids):
+        lines.append(f"GRID,{grid},,{i / 6:.6f},{j / 7:.6f},{k / 8:.6f}\n")
+    element = 0
+    for i, j, k in np.ndindex(*n):
+        element += 1
+        a = [ids[i + x, j + y, k + z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        lines.append(f"CHEXA,{element},1,{a[0]},{a[1]},{a[2]},{a[3]},{a[4]},{a[5]},\n,{a[6]},{a[7]}\n")
+    lines += [f"SPC1,1,123,{grid}\n" for grid in ids[0].ravel()]
+    return "".join(lines) + "ENDDATA\n"
+
+
+class Subdomains(ProgramTest):
+    def solve(self, ranks, *options):
+        """Eigenvalues, effective masses, shapes as rows."""
+        self.bough("modes", "deck.bdf", "-n", 8, "-o", f"r{ranks}.h5", *options, launcher=launch(ranks), env=ENV)
+        with h5py.File(self.path(f"r{ranks}.h5")) as file:
+            phi = file["modes/phi"][()]
+            return file["modes/eigenvalue"][()], file["effective_mass"][()], phi.reshape(-1, phi.shape[-1]).T
+
+    def compare(self, text, ranks=(2, 3, 4), *options):
+        self.write("deck.bdf", text)
+        eigenvalue, mass, shape = self.solve(1, *options)
+        self.assertEqual(len(eigenvalue), 8)
+        for n in ranks:
+            found, mass_there, there = self.solve(n, *options)
+            np.testing.assert_allclose(found, eigenvalue, rtol=2e-10, atol=1e-10 * np.abs(eigenvalue).max())
+            np.testing.assert_allclose(mass_there, mass, rtol=0, atol=1e-6 * np.abs(mass).max())
+            mac = np.sum(shape * there, 1) ** 2 / np.sum(shape**2, 1) / np.sum(there**2, 1)
+            np.testing.assert_allclose(mac, 1, atol=1e-8, err_msg=f"{n} ranks")
+
+    def test_held_plate(self):
+        self.compare(write_plate())
+
+    def test_free_plate(self):
+        self.compare(write_plate(held=False))
+
+    def test_links_across_the_cut(self):
+        self.compare(write_linked())
+
+    def test_beams(self):
+        self.compare(write_grillage(), (2, 3))
+
+    def test_solids(self):
+        self.compare(write_block(), (2, 4))
+
+    def test_too_small_to_cut(self):
+        self.compare(write_plate(8, 6))
+
+    def test_two_bodies(self):
+        """Parts that nothing joins: there may be no rows between. The other is shorter: no root of one is of the other."""
+        one = write_plate(40, 13)
+        grids = 41 * 14
+        other = []
+        for line in one.splitlines():
+            words = line.split(",")
+            if words[0] == "GRID":
+                x = f"{0.9 * float(words[3]):.6f}"
+                other.append(",".join(["GRID", str(int(words[1]) + grids), "", x, words[4], "9."]))
+            elif words[0] == "CQUAD4":
+                corners = [str(int(word) + grids) for word in words[3:]]
+                other.append(",".join(["CQUAD4", str(int(words[1]) + 5000), "1", *corners]))
+            elif words[0] == "SPC1":
+                other.append(f"SPC1,1,123456,{int(words[3]) + grids}")
+        self.compare(one.replace("ENDDATA\n", "") + "\n".join(other) + "\nENDDATA\n", (2, 3))
+
+    def test_an_unstable_plate(self):
+        """A negative spring: no LLᵀ, whatever the number of ranks."""
+        self.compare(write_plate(more="CELAS2,90001,-2.+7,500,3\n"), (2,))
+
+    def test_massless_mechanism(self):
+        """Two bars without mass on a ball joint at the corner: K + sM is singular until their motions are held."""
+        corner = make_grid_ids(36, 26)[26, 36]
+        self.compare(write_plate(more="GRID,90001,,7.,4.5,.3\nGRID,90002,,8.,5.1,.9\nPBAR,9,9,1.-4,1.-8,1.-8,1.-8\n"
+                                      f"MAT1,9,2.+11,,.3,0.\nCBAR,90001,9,{corner},90001,0.,0.,1.\n,456\n"
+                                      "CBAR,90002,9,90001,90002,0.,0.,1.\n"), (2, 3))
+
+    def test_errors_are_those_of_one(self):
+        """No mass at all: K + sM has no modes, the same words and the same code, and no rank waits for another."""
+        self.write("deck.bdf", write_plate().replace(",.3,8000.", ",.3,0."))
+        found = [subprocess.run([*launch(n), PROGRAM, "modes", "deck.bdf", "-n", "8"], cwd=self.folder, text=True,
+                                capture_output=True, timeout=120, env={**os.environ, **ENV}) for n in (1, 2)]
+        self.assertEqual([one.returncode for one in found], [1, 1])
+        said = [[line for line in one.stderr.splitlines() if "error:" in line] for one in found]
+        self.assertIn("[modal.no-mass]", said[0][0])
+        self.assertEqual(said[1], said[0])
+
+    def find_ranks(self, launcher):
+        ranks = []
+        for path in glob.glob("/proc/[0-9]*/stat"):
+            try:
+                with open(path) as file:
+                    head, tail = file.read().rsplit(")", 1)
+            except OSError:
+                continue
+            if int(tail.split()[1]) == launcher.pid and os.path.basename(PROGRAM)[:15] in head:
+                ranks.append(int(head.split()[0]))
+        return ranks
+
+    def end(self, act):
+        """The exit code when `act(launcher, ranks)` comes in the middle."""
+        self.write("deck.bdf", write_plate(120, 90))
+        launcher = subprocess.Popen([*launch(2), PROGRAM, "modes", "deck.bdf", "-n", "60"], cwd=self.folder,
+                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env={**os.environ, **ENV})
+        try:
+            ranks, until = [], time.monotonic() + 60
+            while len(ranks) < 2 and time.monotonic() < until:
+                ranks = self.find_ranks(launcher)
+                time.sleep(0.05)
+            self.assertEqual(len(ranks), 2)
+            time.sleep(0.7)
+            act(launcher, ranks)
+            code = launcher.wait(60)
+            for rank in ranks:
+                self.assertFalse(os.path.exists(f"/proc/{rank}") and rank in self.find_ranks(launcher))
+            return code
+        finally:
+            launcher.kill()
+            launcher.wait()
+
+    def test_a_rank_that_dies_ends_all(self):
+        self.assertNotEqual(self.end(lambda launcher, ranks: os.kill(ranks[1], signal.SIGKILL)), 0)
+
+    def test_an_interrupt_ends_all(self):
+        self.assertNotEqual(self.end(lambda launcher, ranks: launcher.send_signal(signal.SIGINT)), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
