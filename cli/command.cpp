@@ -1,7 +1,10 @@
 #include "cli/command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
+#include <iterator>
+#include <string_view>
 
 #include "base/diagnostic.hpp"
 #include "base/file_roles.hpp"
@@ -19,30 +22,41 @@ namespace {
 
 using namespace bough;
 
-void add_verbs(CLI::App& app, cli::Action& action) {
-  cli::add_check(app, action);
-  cli::add_modes(app, action);
-  cli::add_static(app, action);
-  cli::add_frequency(app, action);
-  cli::add_transient(app, action);
-  cli::add_matrices(app, action);
-  cli::add_reduce(app, action);
-  cli::add_integrals(app, action);
-  cli::add_flx(app, action);
-  cli::add_compare(app, action);
-  cli::add_run(app, action);
-  cli::add_equilibrium(app, action);
-  cli::add_linearize(app, action);
-  cli::add_response(app, action);
-  cli::add_select(app, action);
-  cli::add_export(app, action);
-  cli::add_plot(app, action);
-  cli::add_report(app, action);
-  cli::add_info(app, action);
-  cli::add_init(app, action);
-  cli::add_batch(app, action);
-  cli::add_edit(app, action);
-  cli::add_convert(app, action);
+struct Verb {
+  std::string_view name;
+  void (*add)(CLI::App& app, cli::Action& action);
+};
+
+constexpr Verb kVerbs[] = {{"check", cli::add_check},
+                           {"modes", cli::add_modes},
+                           {"static", cli::add_static},
+                           {"frequency", cli::add_frequency},
+                           {"transient", cli::add_transient},
+                           {"matrices", cli::add_matrices},
+                           {"reduce", cli::add_reduce},
+                           {"integrals", cli::add_integrals},
+                           {"flx", cli::add_flx},
+                           {"compare", cli::add_compare},
+                           {"run", cli::add_run},
+                           {"equilibrium", cli::add_equilibrium},
+                           {"linearize", cli::add_linearize},
+                           {"response", cli::add_response},
+                           {"select", cli::add_select},
+                           {"export", cli::add_export},
+                           {"plot", cli::add_plot},
+                           {"report", cli::add_report},
+                           {"info", cli::add_info},
+                           {"init", cli::add_init},
+                           {"batch", cli::add_batch},
+                           {"edit", cli::add_edit},
+                           {"convert", cli::add_convert}};
+
+/// That one verb, or all: the options of all take longer to set up than a small deck takes to solve.
+void add_verbs(CLI::App& app, cli::Action& action, std::string_view only = {}) {
+  const bool is_verb =
+      std::any_of(std::begin(kVerbs), std::end(kVerbs), [&](const Verb& verb) { return verb.name == only; });
+  for (const auto& verb : kVerbs)
+    if (!is_verb || verb.name == only) verb.add(app, action);
 }
 
 std::vector<std::string> get_names(const CLI::App& app) {
@@ -102,7 +116,7 @@ int run(int argc, const char* const* argv, std::vector<Diagnostic>& failures) {
   app.require_subcommand(0, 1);
 
   cli::Action action;
-  add_verbs(app, action);
+  add_verbs(app, action, argc > 1 ? argv[1] : "");
 
   const cli::Console console(false, 0);
   if (!check_verb(app, argc, argv, console)) return cli::kUsageError;
@@ -173,10 +187,9 @@ CommandOutcome run_and_tell(const std::vector<std::string>& words) {
 int run_command(const std::vector<std::string>& words) { return run_and_tell(words).exit_code; }
 
 std::vector<std::string> list_verbs() {
-  CLI::App app;
-  Action action;
-  add_verbs(app, action);
-  return get_names(app);
+  std::vector<std::string> names;
+  for (const auto& verb : kVerbs) names.emplace_back(verb.name);
+  return names;
 }
 
 }  // namespace bough::cli

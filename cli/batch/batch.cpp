@@ -9,8 +9,10 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <thread>
 
@@ -21,9 +23,11 @@
 #include "cli/common/console.hpp"
 #include "cli/common/interrupt.hpp"
 #include "cli/common/options.hpp"
+#include "cli/common/ranks.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/verbs.hpp"
+#include "fe/linear/petsc.hpp"
 #include "formats/hdf5/files.hpp"
 
 namespace bough::cli {
@@ -35,6 +39,8 @@ namespace {
 
 struct BatchOptions : CommonOptions {
   std::string campaign, shard;
+  std::vector<std::string> merged;
+  bool merges = false;
   int jobs = 0;
   double time_limit = 0;
   bool dry_run = false, retry = false, restart = false, force_outside = false;
@@ -53,6 +59,14 @@ volatile int& get_stop() {
   return stop;
 }
 void on_signal(int) { get_stop() = 1; }
+
+/// This process among those that mpirun or srun started for one call.
+struct Rank {
+  int index = 0, count = 1;
+  bool takes(std::size_t position) const {
+    return position % static_cast<std::size_t>(count) == static_cast<std::size_t>(index);
+  }
+};
 
 Shard parse_shard(const std::string& text) {
   Shard shard;
@@ -76,10 +90,7 @@ class Folder {
     if (failed)
       throw ComputationError("cli.write", {path.string()}, "the folder could not be made: " + failed.message(),
                              "choose another with -o");
-    json now{{"format", "bough-campaign"}, {"name", plan.get_spec().name}, {"bough", get_version()}};
-    now["cases"] = plan.num_cases();
-    for (const auto& [file, hash] : plan.get_inputs())
-      now["inputs"].push_back({fs::path(file).filename().string(), hash});
+    const json now = describe(plan);
     const auto state = (path / "campaign.json").string();
     std::ifstream in(state);
     const auto before = in ? json::parse(in, nullptr, false) : json();
@@ -98,10 +109,20 @@ class Folder {
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
 
-  fs::path get_case(int number) const { return path_ / plan_.get_folder(number); }
   const std::string& get_fingerprint() const { return fingerprint_; }
 
+  /// What campaign.json says.
+  static json describe(const BatchPlan& plan) {
+    json now{{"format", "bough-campaign"}, {"name", plan.get_spec().name}, {"bough", get_version()}};
+    now["cases"] = plan.num_cases();
+    for (const auto& [file, hash] : plan.get_inputs())
+      now["inputs"].push_back({fs::path(file).filename().string(), hash});
+    return now;
+  }
+
  private:
+  fs::path get_case(int number) const { return path_ / plan_.get_folder(number); }
+
   InputError describe_change(const json& before, const json& now) const {
     std::string what;
     if (before.is_object() && before.contains("inputs") && before.value("bough", "") == now["bough"]) {
@@ -158,6 +179,71 @@ class Folder {
   std::string fingerprint_;
   std::vector<int> locks_;
 };
+
+/// While it lives, no other call reads the outcomes for a table or writes it: of two shards that end together the
+/// second sees the cases of both.
+class TableLock {
+ public:
+  explicit TableLock(const fs::path& folder)
+      : descriptor_(open((folder / ".table-lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+    while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) continue;
+  }
+  ~TableLock() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  TableLock(const TableLock&) = delete;
+  TableLock& operator=(const TableLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+/// n of the shards i/n that have written to these folders; 0 when none has, or of different n.
+int find_shard_count(const std::vector<fs::path>& folders) {
+  std::set<int> counts;
+  std::error_code ignored;
+  for (const auto& folder : folders)
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+      int index = 0, count = 0;
+      char rest = 0;
+      if (std::sscanf(entry.path().filename().c_str(), ".lock-%d-of-%d%c", &index, &count, &rest) == 2 && count > 1)
+        counts.insert(count);
+    }
+  return counts.size() == 1 ? *counts.begin() : 0;
+}
+
+/// "1 to 3, 7, 9 to 12".
+std::string format_numbers(const std::vector<int>& numbers) {
+  constexpr std::size_t most = 10;
+  std::string text;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < numbers.size();) {
+    std::size_t end = i + 1;
+    while (end < numbers.size() && numbers[end] == numbers[end - 1] + 1) ++end;
+    if (count++ == most) return text + ", ...";
+    text += (text.empty() ? "" : ", ") + std::to_string(numbers[i]);
+    if (end > i + 1) text += (end > i + 2 ? " to " : ", ") + std::to_string(numbers[end - 1]);
+    i = end;
+  }
+  return text;
+}
+
+/// Empty when every case is there; else what lacks, by shards where whole ones do.
+std::string describe_missing(const BatchPlan& plan, const std::vector<int>& missing,
+                             const std::vector<fs::path>& folders) {
+  std::map<int, int> of_shard;
+  const int count = find_shard_count(folders);
+  std::string shards;
+  if (count > 0)
+    for (const int number : missing) ++of_shard[(number - 1) % count];
+  for (const auto& [index, lacking] : of_shard) {
+    const int whole = (plan.num_cases() - 1 - index) / count + 1;
+    shards += fmt::format("{}shard {}/{} ({})", shards.empty() ? "" : ", ", index + 1, count,
+                          lacking == whole ? "all of it" : fmt::format("{} of {}", lacking, whole));
+  }
+  return fmt::format("{} of {} cases are not done: {}{}", missing.size(), plan.num_cases(), format_numbers(missing),
+                     shards.empty() ? "" : "; " + shards);
+}
 
 std::string join_words(const std::vector<std::string>& words) {
   std::string text;
@@ -230,6 +316,19 @@ json to_json(const std::vector<Statistics>& statistics) {
   return all;
 }
 
+/// What all ranks have done together.
+void count_again(const BatchPlan& plan, const std::vector<int>& wanted, const fs::path& folder, Tally& tally) {
+  tally.failed.clear();
+  int num_over = 0;
+  for (const int number : wanted) {
+    auto outcome = read_outcome(folder / plan.get_folder(number));
+    if (!outcome) continue;
+    ++num_over;
+    if (!outcome->error.empty()) tally.failed.push_back(std::move(*outcome));
+  }
+  tally.num_done = num_over - tally.num_before;
+}
+
 int report(const BatchOptions& o, const BatchPlan& plan, const Tally& tally, int num_wanted, int num_in_table,
            const std::vector<Statistics>& statistics, const fs::path& folder, const Console& console) {
   const auto table = (folder / "outcomes.csv").string();
@@ -269,9 +368,61 @@ int report(const BatchOptions& o, const BatchPlan& plan, const Tally& tally, int
   return tally.failed.empty() && tally.completed ? kSuccess : kComputationFailed;
 }
 
+/// One table of what several folders hold, or of the campaign's own: after shards that had a folder each.
+int run_merge(const BatchOptions& o, const BatchPlan& plan, const fs::path& folder, const Console& console) {
+  std::vector<fs::path> parts;
+  for (const auto& part : o.merged) parts.push_back(fs::absolute(part).lexically_normal());
+  if (parts.empty()) parts.push_back(folder);
+  Diagnostics found;
+  const json expected = Folder::describe(plan);
+  for (const auto& part : parts) {
+    std::ifstream in(part / "campaign.json");
+    const auto before = in ? json::parse(in, nullptr, false) : json();
+    if (before == expected) continue;
+    if (before.is_object() && before.value("format", "") == "bough-campaign")
+      found.error("batch.changed-campaign", {part.string()}, "the folder holds cases of another campaign",
+                  "merge what was made from these inputs, by this version");
+    else
+      found.error("batch.missing-shard", {part.string()}, "holds no cases of a campaign",
+                  "run its shard first, or correct the name");
+  }
+  found.throw_if_errors();
+  const Folder state(folder, plan, {}, false);
+  const TableLock lock(folder);
+  std::vector<BatchOutcome> outcomes;
+  std::vector<int> missing;
+  Tally tally;
+  for (const auto& one : plan.get_cases()) {
+    std::optional<BatchOutcome> outcome;
+    for (std::size_t i = 0; i < parts.size() && !outcome; ++i)
+      outcome = read_outcome(parts[i] / plan.get_folder(one.number));
+    if (!outcome) {
+      missing.push_back(one.number);
+      continue;
+    }
+    ++tally.num_before;
+    if (!outcome->error.empty()) tally.failed.push_back(*outcome);
+    outcomes.push_back(std::move(*outcome));
+  }
+  const auto statistics = write_tables(plan, outcomes, state.get_fingerprint(), folder);
+  const int code =
+      report(o, plan, tally, plan.num_cases(), static_cast<int>(outcomes.size()), statistics, folder, console);
+  if (missing.empty()) return code;
+  console.print_error("batch.missing-shard", describe_missing(plan, missing, parts),
+                      "the table has the others; run what is missing, then merge again");
+  return kComputationFailed;
+}
+
 int run_batch(const BatchOptions& o) {
   Console console(o.quiet, o.verbosity);
-  if (!console.is_root()) return kSuccess;  // workers are this process's own; other ranks have nothing to do
+  Rank rank;
+  if (is_one_of_many() && o.worker_fd < 0 && !o.dry_run && !o.merges) {
+    const auto& petsc = fe::initialize_petsc();
+    rank = {petsc.rank, petsc.size};
+    console.set_rank(petsc.rank);
+  } else if (!console.is_root()) {
+    return kSuccess;  // one says it for all
+  }
   const auto shard = parse_shard(o.shard);
   const BatchPlan plan(o.campaign, list_verbs(), o.force_outside);
   const auto folder = fs::absolute(o.output.empty() ? plan.get_spec().name : o.output).lexically_normal();
@@ -280,27 +431,32 @@ int run_batch(const BatchOptions& o) {
     list_cases(plan, shard, o.json, console);
     return kSuccess;
   }
-  const Folder state(folder, plan, shard, o.restart);
+  if (o.merges) return run_merge(o, plan, folder, console);
+  std::optional<Folder> state;  // of the first rank
+  do_once([&] { state.emplace(folder, plan, shard, o.restart); });
 
   Tally tally;
   std::vector<int> wanted, open;
+  const auto get_case = [&](int number) { return folder / plan.get_folder(number); };
   for (const auto& one : plan.get_cases())
     if (shard.holds(one.number)) wanted.push_back(one.number);
-  for (const int number : wanted) {
-    const auto outcome = read_outcome(state.get_case(number));
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const auto outcome = read_outcome(get_case(wanted[i]));
     if (!outcome || (o.retry && !outcome->error.empty())) {
-      open.push_back(number);
+      if (rank.takes(i)) open.push_back(wanted[i]);
       continue;
     }
     ++tally.num_before;
     if (!outcome->error.empty()) tally.failed.push_back(*outcome);
   }
+  wait_for_all(true);  // the count before is right only while no rank works
 
   PoolOptions pool;
   pool.command = {"bough", "batch", o.campaign, "-o", folder.string()};
   if (o.force_outside) pool.command.emplace_back("--force-outside");
   pool.command.emplace_back("--worker");
-  pool.num_workers = o.jobs > 0 ? o.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int all_cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  pool.num_workers = o.jobs > 0 ? o.jobs : rank.count > 1 ? 1 : all_cores;
   pool.time_limit = o.time_limit > 0 ? o.time_limit : plan.get_spec().time_limit;
   pool.stop = &get_stop();
   take_signals(on_signal);
@@ -309,7 +465,7 @@ int run_batch(const BatchOptions& o) {
   auto shown = begin - std::chrono::seconds(1);
   const auto count_seconds = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
   tally.completed = run_pool(pool, open, [&](const BatchOutcome& outcome) {
-    write_outcome(outcome, state.get_case(outcome.number));
+    write_outcome(outcome, get_case(outcome.number));
     ++tally.num_done;
     if (!outcome.error.empty()) tally.failed.push_back(outcome);
     if (Clock::now() - shown < std::chrono::milliseconds(100)) return;
@@ -320,16 +476,23 @@ int run_batch(const BatchOptions& o) {
                     wanted.size(), tally.failed.size(), each,
                     each * static_cast<double>(open.size() - static_cast<std::size_t>(tally.num_done))));
   });
+  tally.completed = wait_for_all(tally.completed);
   tally.seconds = count_seconds();
   console.end_progress();
+  if (rank.count > 1) count_again(plan, wanted, folder, tally);
   std::sort(tally.failed.begin(), tally.failed.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
 
-  std::vector<BatchOutcome> outcomes;  // of all shards, as far as they are
-  for (const auto& one : plan.get_cases())
-    if (auto outcome = read_outcome(state.get_case(one.number))) outcomes.push_back(std::move(*outcome));
-  const auto statistics = write_tables(plan, outcomes, state.get_fingerprint(), folder);
-  return report(o, plan, tally, static_cast<int>(wanted.size()), static_cast<int>(outcomes.size()), statistics, folder,
-                console);
+  int code = tally.failed.empty() && tally.completed ? kSuccess : kComputationFailed;
+  do_once([&] {
+    const TableLock lock(folder);
+    std::vector<BatchOutcome> outcomes;  // of all shards, as far as they are
+    for (const auto& one : plan.get_cases())
+      if (auto outcome = read_outcome(get_case(one.number))) outcomes.push_back(std::move(*outcome));
+    const auto statistics = write_tables(plan, outcomes, state->get_fingerprint(), folder);
+    code = report(o, plan, tally, static_cast<int>(wanted.size()), static_cast<int>(outcomes.size()), statistics,
+                  folder, console);
+  });
+  return code;
 }
 
 }  // namespace
@@ -341,6 +504,10 @@ void add_batch(CLI::App& app, Action& action) {
   verb->add_option("-j,--jobs", o->jobs, "Worker processes (default: one a core)")->check(make_positive());
   verb->add_option("-o,--output", o->output, "Folder of the cases and the table (default: the campaign's name, here)");
   verb->add_option("--shard", o->shard, "i/n: only every n-th case from the i-th on, for job arrays");
+  auto* merge = verb->add_option("--merge", o->merged,
+                                 "Do no case: make one table of these folders of shards, or of the campaign's own")
+                    ->expected(0, -1)
+                    ->type_name("FOLDER ...");
   verb->add_option("--time-limit", o->time_limit, "Seconds a case may take (default: the campaign's)")
       ->check(make_positive());
   verb->add_flag("--retry", o->retry, "Do failed cases again");
@@ -352,8 +519,14 @@ void add_batch(CLI::App& app, Action& action) {
   verb->footer(
       "Example:\n  bough batch study.toml --dry-run\n  bough batch study.toml -j 8 -o study\n"
       "  bough batch study.toml --shard 3/10 -o /scratch/study\n"
+      "  bough batch study.toml --merge part-1 part-2 part-3 -o study\n"
+      "  mpirun -n 4 bough batch study.toml -o study\n"
       "Finished cases are skipped: the same command goes on after Ctrl-C or a kill. Exit code 3 when a case failed.");
-  verb->callback([&action, o] { action = [o] { return run_batch(*o); }; });
+  verb->callback([&action, o, merge] {
+    o->merges = merge->count() > 0;
+    std::erase(o->merged, "");  // what stands for no folder
+    action = [o] { return run_batch(*o); };
+  });
 }
 
 }  // namespace bough::cli

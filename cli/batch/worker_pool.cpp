@@ -29,12 +29,15 @@ struct Worker {
   std::string waiting;  ///< of its answer
 };
 
-/// A worker is a process of its own, not one of the MPI job that this program may be part of.
+/// A worker is a process of its own, not one of the MPI job that this program may be part of. There Open MPI leaves how
+/// to reach the job in its parameters too.
 void clear_launch() {
+  const bool is_launched = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMIX_RANK") != nullptr;
   for (char** entry = environ; *entry != nullptr;) {
     const std::string text = *entry;
     const bool is_launch = text.rfind("OMPI_COMM_", 0) == 0 || text.rfind("OMPI_UNIVERSE", 0) == 0 ||
-                           text.rfind("PMIX_", 0) == 0 || text.rfind("PMI_", 0) == 0;
+                           text.rfind("PMIX_", 0) == 0 || text.rfind("PMI_", 0) == 0 ||
+                           (is_launched && text.rfind("OMPI_MCA_", 0) == 0);
     if (is_launch)
       unsetenv(text.substr(0, text.find('=')).c_str());
     else

@@ -44,7 +44,9 @@ std::string to_text(const Failure& failure) {
 bool is_one_of_many() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
     if (const char* value = std::getenv(name)) return std::atoi(value) > 1;
-  return false;
+  // srun --mpi=pmix says no more than this; a job without srun has no rank.
+  const char* tasks = std::getenv("SLURM_STEP_NUM_TASKS");
+  return std::getenv("PMIX_RANK") != nullptr && tasks != nullptr && std::atoi(tasks) > 1;
 }
 
 std::string share(const std::function<std::string()>& make) {
@@ -63,6 +65,15 @@ std::string share(const std::function<std::string()>& make) {
   if (!failed.empty()) throw_failure(failed);
   broadcast(bytes);
   return bytes;
+}
+
+bool wait_for_all(bool is_true) {
+  if (!is_one_of_many()) return is_true;
+  int all = 0;
+  const int own = is_true ? 1 : 0;
+  fe::initialize_petsc();
+  MPI_Allreduce(&own, &all, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
+  return all != 0;
 }
 
 void do_once(const std::function<void()>& act) {

@@ -14,5 +14,7 @@ bool is_one_of_many();
 std::string share(const std::function<std::string()>& make);
 /// The same for something done on the first rank alone.
 void do_once(const std::function<void()>& act);
+/// Waits until every process is here; whether it is true in all of them.
+bool wait_for_all(bool is_true);
 
 }  // namespace bough::cli

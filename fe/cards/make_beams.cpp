@@ -28,7 +28,7 @@ std::optional<Vector3d> calc_orientation(Maker& maker, const records::BeamElemen
   return card.offt[0] == 'B' ? card.v : Vector3d(a.R_basic_cd * card.v);
 }
 
-void make_beam(Maker& maker, BeamProperties& properties, const records::BeamElement& card) {
+void make_beam(Maker& maker, BeamProperties& properties, BeamFields& fields, const records::BeamElement& card) {
   const std::string name = card.is_cbeam ? "CBEAM" : "CBAR", who = name + " " + std::to_string(card.id);
   auto property = properties.find(card, who);
   const int a = maker.find_grid(card.ga, who, card.at), b = maker.find_grid(card.gb, who, card.at);
@@ -99,16 +99,18 @@ void make_beam(Maker& maker, BeamProperties& properties, const records::BeamElem
                                 who + " has warping points SA, SB, which are not used");
   if (!property) return;
   const double ge = property->material.ge;
-  maker.add(
-      std::make_unique<Beam>(card.id, name, std::vector{a, b}, maker.list_gdofs({a, b}), std::move(property), geometry),
-      ge);
+  auto field = fields.find(property, geometry.length);
+  maker.add(std::make_unique<Beam>(card.id, name, std::vector{a, b}, maker.list_gdofs({a, b}), std::move(property),
+                                   geometry, std::move(field)),
+            ge);
 }
 
 }  // namespace
 
 void make_beams(Maker& maker) {
   BeamProperties properties(maker);
-  for (const records::BeamElement& card : maker.deck().beams) make_beam(maker, properties, card);
+  BeamFields fields;
+  for (const records::BeamElement& card : maker.deck().beams) make_beam(maker, properties, fields, card);
 }
 
 }  // namespace bough::fe

@@ -32,18 +32,22 @@ Matrix6d calc_section_mass(const BeamProperty& property, const BeamSection& s, b
 }
 
 Beam::Beam(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs,
-           std::shared_ptr<const BeamProperty> property, const BeamGeometry& geometry)
+           std::shared_ptr<const BeamProperty> property, const BeamGeometry& geometry,
+           std::shared_ptr<const BeamField> field)
     : Element(id, std::move(card), std::move(nodes), std::move(gdofs)),
       property_(std::move(property)),
-      geometry_(geometry) {
+      geometry_(geometry),
+      field_(std::move(field)) {
   BOUGH_DEMAND(num_dofs() == 12 && property_ && geometry_.length > 0);
+  if (!field_) field_ = std::make_shared<BeamField>(*property_, geometry_.length);
+  BOUGH_DEMAND(field_->length() == geometry_.length);
 }
 
 Matrix12d Beam::calc_release() const {
   Matrix12d C = Matrix12d::Identity();
   const unsigned pins = geometry_.pin_a | (geometry_.pin_b << 6);
   if (!pins) return C;
-  const BeamField field(*property_, geometry_.length);
+  const BeamField& field = *field_;
   const Matrix6x12d S = field.calc_relative();
   Matrix12d K = S.transpose() * field.calc_stiffness() * S;
   const Matrix12d K0 = K;
@@ -74,7 +78,7 @@ Matrix12d Beam::calc_end_map() const {
 }
 
 void Beam::add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const {
-  const BeamField field(*property_, geometry_.length);
+  const BeamField& field = *field_;
   const Matrix6x12d A = field.calc_relative() * calc_end_map();
   const Matrix6x12d GA = scale * (field.calc_stiffness() * A);
   K.noalias() += A.transpose().lazyProduct(GA);
@@ -85,7 +89,7 @@ void Beam::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const {
 }
 
 void Beam::add_lumped_mass(double scale, Eigen::Ref<MatrixXd> M) const {
-  const BeamField field(*property_, geometry_.length);
+  const BeamField& field = *field_;
   Matrix6d end[2] = {Matrix6d::Zero(), Matrix6d::Zero()};
   for (const auto& point : field.calc_points(2, 3)) {
     const double t = point.x / geometry_.length;
@@ -104,7 +108,7 @@ void Beam::add_lumped_mass(double scale, Eigen::Ref<MatrixXd> M) const {
 }
 
 void Beam::add_consistent_mass(double scale, Eigen::Ref<MatrixXd> M) const {
-  const BeamField field(*property_, geometry_.length);
+  const BeamField& field = *field_;
   Matrix12d local = Matrix12d::Zero();
   double mass = 0;
   for (const auto& point : field.calc_points(4, 7)) {
@@ -127,10 +131,18 @@ void Beam::add_consistent_mass(double scale, Eigen::Ref<MatrixXd> M) const {
 }
 
 void Beam::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
-  const BeamField field(*property_, geometry_.length);
-  const Eigen::Matrix<double, 12, 1> u_end = calc_end_map() * u;
-  const Eigen::Matrix<double, 6, 1> q = field.calc_stiffness() * (field.calc_relative() * u_end);
-  force << q[0], q[1], q[2], q[3], q[4] - q[2] * geometry_.length, q[5] + q[1] * geometry_.length, q[4], q[5];
+  calc_internal_forces_of(u, force);
+}
+
+void Beam::calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const {
+  const Matrix12d map = calc_end_map();
+  const Matrix6d G = field_->calc_stiffness();
+  const Matrix6x12d S = field_->calc_relative();
+  for (Eigen::Index c = 0; c < U.cols(); ++c) {
+    const Eigen::Matrix<double, 12, 1> u_end = map * U.col(c);
+    const Eigen::Matrix<double, 6, 1> q = G * (S * u_end);
+    forces.col(c) << q[0], q[1], q[2], q[3], q[4] - q[2] * geometry_.length, q[5] + q[1] * geometry_.length, q[4], q[5];
+  }
 }
 
 std::vector<std::string> Beam::internal_force_names() const {
@@ -140,7 +152,7 @@ std::vector<std::string> Beam::internal_force_names() const {
 void Beam::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                    Eigen::Ref<MatrixXd> K_G) const {
   const double N = force[0], Vy = force[1], Vz = force[2], T = force[3];
-  const BeamField field(*property_, geometry_.length);
+  const BeamField& field = *field_;
   Matrix12d local = Matrix12d::Zero();
   enum { du, dv, dw, rx, ry, rz, drx, dry, drz };
   for (const auto& point : field.calc_points(3, 7)) {

@@ -35,9 +35,11 @@ Matrix6d calc_section_mass(const BeamProperty& property, const BeamSection& s, b
 
 class Beam final : public Element {
  public:
-  /// nodes: two; gdofs: twelve. The property must give E > 0 and a positive length is the caller's check.
+  /// nodes: two; gdofs: twelve. The property must give E > 0 and a positive length is the caller's check. field: of
+  /// this property and length, where other beams have the same; made here when left out.
   Beam(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs,
-       std::shared_ptr<const BeamProperty> property, const BeamGeometry& geometry);
+       std::shared_ptr<const BeamProperty> property, const BeamGeometry& geometry,
+       std::shared_ptr<const BeamField> field = nullptr);
 
   ElementShape shape() const override { return {"line2", nodes()}; }
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
@@ -52,6 +54,7 @@ class Beam final : public Element {
 
   int num_internal_forces() const override { return 8; }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
+  void calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const override;
   std::vector<std::string> internal_force_names() const override;
   /// At the points of the property (C_a, D_a, ... at end A, C_b, ... at end B): of axial force and bending.
   std::vector<StressPoint> stress_points() const override;
@@ -91,6 +94,7 @@ class Beam final : public Element {
 
   std::shared_ptr<const BeamProperty> property_;
   BeamGeometry geometry_;
+  std::shared_ptr<const BeamField> field_;
 };
 
 }  // namespace bough::fe

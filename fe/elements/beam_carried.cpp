@@ -45,12 +45,13 @@ bool Beam::carries_turning_mass(MassKind kind) const {
 }
 
 bool Beam::add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const {
+  if (carried.detail == CarriedDetail::Whether) return true;
   kind == MassKind::Lumped ? add_lumped_bodies(x, carried) : add_consistent_bodies(x, carried);
   return true;
 }
 
 void Beam::add_lumped_bodies(const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const {
-  const BeamField field(*property_, geometry_.length);
+  const BeamField& field = *field_;
   MassMoments end[2];
   for (const auto& point : field.calc_points(2, 3)) {
     const double t = point.x / geometry_.length;
@@ -69,14 +70,18 @@ void Beam::add_lumped_bodies(const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& 
 
 void Beam::add_consistent_bodies(const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const {
   using Motion = Eigen::Matrix<double, 3, 12>;
-  const BeamField field(*property_, geometry_.length);
+  const BeamField& field = *field_;
   const Matrix3d& R = geometry_.R_basic_element;
   Matrix12d turn = Matrix12d::Zero(), tips = Matrix12d::Identity();  // element axes, grids to tips
   for (int i = 0; i < 12; i += 3) turn.block<3, 3>(i, i) = R.transpose();
   tips.block<3, 3>(0, 3) = -skew(geometry_.wa);
   tips.block<3, 3>(6, 9) = -skew(geometry_.wb);
-  const Matrix12d released = calc_release() * turn;  // by the tips in basic axes
+  const bool has_pins = geometry_.pin_a || geometry_.pin_b;
+  const Matrix12d released = has_pins ? Matrix12d(calc_release() * turn) : turn;  // by the tips in basic axes
   const Vector3d arms[2] = {geometry_.wa, geometry_.wb}, x_a = x.col(0) + geometry_.wa;
+  const bool has_arms = !arms[0].isZero(0) || !arms[1].isZero(0);
+  const auto by_grids = [&](const Motion& motion) { return has_arms ? Motion(motion * tips) : motion; };
+  const bool needs_second = carried.detail == CarriedDetail::SecondOrder;
   // What the second-order motion of the arms' ends does to points.
   std::vector<std::pair<int, Matrix3d>> by_end[2];
   std::vector<CarriedMass::ChordPoint> moved;
@@ -91,21 +96,21 @@ void Beam::add_consistent_bodies(const Eigen::Ref<const Matrix3Xd>& x, CarriedMa
     Matrix6x12d D;
     field.calc_shape(point.x, &D, nullptr);
     const Motion U = R * D.topRows<3>() * released, Theta = R * D.bottomRows<3>() * released;
-    const int first =
-        carried.add_body(x_a + point.x * R.col(0), section.m, section.S, section.E, U * tips, Theta * tips, -1, false);
-    for (int p = first; p < static_cast<int>(carried.points.size()); ++p) {
+    const int first = carried.add_body(x_a + point.x * R.col(0), section.m, section.S, section.E, by_grids(U),
+                                       by_grids(Theta), -1, false);
+    for (int p = first; needs_second && p < static_cast<int>(carried.points.size()); ++p) {
       const auto& added = carried.points[static_cast<std::size_t>(p)];
       moved.push_back({p, added.is_place ? U : Motion(-skew(added.x) * Theta), Theta});
       add_ends(p, moved.back().motion);
     }
     mass += section.m;
   }
-  carried.add_chord_field(x_a, geometry_.length * R.col(0), tips, moved);
+  if (needs_second) carried.add_chord_field(x_a, geometry_.length * R.col(0), tips, moved);
   if (!property_->has_section_inertia && !property_->has_torsional_inertia && !geometry_.is_part) {
     // The mean of lumped and consistent along the axis: a mass that feels the stretch and is nowhere, so that the pull
     // of spin is that of the line.
     const Motion stretch = R.col(0) * (released.row(6) - released.row(0));
-    const int p = carried.add_point(false, Vector3d::Zero(), stretch * tips);
+    const int p = carried.add_point(false, Vector3d::Zero(), by_grids(stretch));
     carried.mu(p, p) = mass / 12;
   }
   for (int k = 0; k < 2; ++k) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "fe/shape/gauss.hpp"
 
@@ -55,6 +56,36 @@ BeamField::BeamField(const BeamProperty& property, double length)
   const Matrix6d scaled = d.asDiagonal() * f * d.asDiagonal();
   G_ = d.asDiagonal() * scaled.llt().solve(Matrix6d::Identity()) * d.asDiagonal();
   G_ = (0.5 * (G_ + G_.transpose())).eval();
+  GS_ = G_ * calc_relative();
+}
+
+void BeamField::keep_shapes() {
+  if (!uniform_ || !kept_.empty()) return;
+  std::vector<std::pair<double, Shape>> kept;
+  for (const int n : {3, 4})
+    for (const auto& point : calc_points(n, 7)) {
+      kept.emplace_back(point.x, Shape{});
+      calc_shape(point.x, &kept.back().second.D, &kept.back().second.e);
+    }
+  kept_ = std::move(kept);
+}
+
+const BeamField::Shape* BeamField::find_kept(double x) const {
+  for (const auto& [at, shape] : kept_)
+    if (at == x) return &shape;
+  return nullptr;
+}
+
+std::shared_ptr<const BeamField> BeamFields::find(std::shared_ptr<const BeamProperty> property, double length) {
+  // With more lengths than this the beams are a mesh of all kinds, and the kept shapes would fill memory.
+  constexpr std::size_t kMost = 512;
+  const std::pair key(std::move(property), length);
+  if (const auto known = fields_.find(key); known != fields_.end()) return known->second;
+  auto field = std::make_shared<BeamField>(*key.first, length);
+  if (fields_.size() >= kMost) return field;
+  field->keep_shapes();
+  fields_.emplace(key, field);
+  return field;
 }
 
 Matrix6d BeamField::calc_compliance(double x) const {
@@ -119,12 +150,16 @@ Matrix6x12d BeamField::calc_relative() const {
 }
 
 void BeamField::calc_shape(double x, Matrix6x12d* D, Matrix6x12d* e) const {
-  const Matrix6x12d GS = G_ * calc_relative();
+  if (const Shape* kept = find_kept(x)) {
+    if (D) *D = kept->D;
+    if (e) *e = kept->e;
+    return;
+  }
   if (D) {
-    D->noalias() = calc_flexibility(x) * GS;
+    D->noalias() = calc_flexibility(x) * GS_;
     D->leftCols<6>() += calc_equilibrium(x).transpose();
   }
-  if (e) e->noalias() = calc_compliance(x) * (calc_equilibrium(length_ - x) * GS);
+  if (e) e->noalias() = calc_compliance(x) * (calc_equilibrium(length_ - x) * GS_);
 }
 
 std::vector<BeamField::Point> BeamField::calc_points(int num_uniform, int num_tapered) const {

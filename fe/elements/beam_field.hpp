@@ -5,6 +5,10 @@
 /// Local axes: x along the shear centres from end A to end B, y and z in the section. Displacements of a section are
 /// [u v w θx θy θz] of its shear centre; section forces [N Vy Vz T My Mz] act on the face whose normal is +x, moments
 /// about the shear centre; section deformations [ε γy γz κx κy κz]: γy = v' - θz, γz = w' + θy, κ = θ'.
+#include <array>
+#include <map>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "fe/sections/beam_property.hpp"
@@ -45,16 +49,36 @@ class BeamField {
   };
   std::vector<Point> calc_points(int num_uniform, int num_tapered) const;
 
+  /// Keeps the shapes at calc_points(3, 7) and calc_points(4, 7), some 8 kB of a uniform beam; calc_shape() then takes
+  /// them from there. For a field that many beams share. Nothing for a tapered one.
+  void keep_shapes();
+
  private:
+  struct Shape {
+    Matrix6x12d D, e;
+  };
   Matrix6d calc_compliance(double x) const;
   Matrix6d calc_flexibility(double x) const;
+  const Shape* find_kept(double x) const;
 
   const BeamProperty& property_;
   double length_;
   bool uniform_;
   ActiveForces active_;
   Matrix6d G_;
+  Matrix6x12d GS_;              ///< G S
   std::vector<double> breaks_;  ///< tapered: ends of the panels of the quadrature, 0 to length
+  std::vector<std::pair<double, Shape>> kept_;
+};
+
+/// Fields by property and length, to be shared by the beams that have them: most of the work on a small frame is in
+/// them. The properties must outlive the fields.
+class BeamFields {
+ public:
+  std::shared_ptr<const BeamField> find(std::shared_ptr<const BeamProperty> property, double length);
+
+ private:
+  std::map<std::pair<std::shared_ptr<const BeamProperty>, double>, std::shared_ptr<const BeamField>> fields_;
 };
 
 }  // namespace bough::fe

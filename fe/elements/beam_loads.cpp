@@ -6,7 +6,7 @@ namespace bough::fe {
 using Vector12d = Eigen::Matrix<double, 12, 1>;
 
 Vector12d Beam::calc_end_load(const BeamLineLoad& load) const {
-  const BeamField field(*property_, geometry_.length);
+  const BeamField& field = *field_;
   const auto displace = [&](double x) {
     Matrix6x12d D;
     field.calc_shape(std::min(x, geometry_.length), &D, nullptr);
@@ -27,7 +27,7 @@ void Beam::add_load_forces(const Vector12d& end_load, Eigen::Ref<VectorXd> force
   // Forces on the ends: K (v + released motion under the load) - load.
   Vector12d nodal = -end_load;
   if (const unsigned pins = geometry_.pin_a | (geometry_.pin_b << 6)) {
-    const BeamField field(*property_, geometry_.length);
+    const BeamField& field = *field_;
     const Matrix6x12d S = field.calc_relative();
     const Matrix12d K = S.transpose() * field.calc_stiffness() * S;
     std::vector<int> released;

@@ -8,7 +8,7 @@ namespace bough::fe {
 /// from end A; the end forces are G (S u - δ).
 double Beam::add_thermal(const ElementTemperature& given, Eigen::Ref<VectorXd> load,
                          Eigen::Ref<VectorXd> initial) const {
-  const BeamField field(*property_, geometry_.length);
+  const BeamField& field = *field_;
   const double L = geometry_.length, alpha = property_->material.alpha;
   const ElementTemperature T = given.calc_change(property_->material.tref);
   const Eigen::Vector2d n_a = property_->calc_section(0).n, n_b = property_->calc_section(1).n;

@@ -140,10 +140,11 @@ void Bend::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const {
 }
 
 bool Bend::add_carried(MassKind, const Eigen::Ref<const Matrix3Xd>&, CarriedMass& carried) const {
+  if (carried.detail == CarriedDetail::Whether) return true;
   std::vector<CarriedMass::ChordPoint> moved;
   for (int k = 0; k < kNumParts; ++k) {
     const Eigen::Matrix<double, 12, 12> motion = motion_.middleRows<12>(6 * k);
-    CarriedMass part(12);
+    CarriedMass part(12, carried.detail);
     Matrix3Xd x(3, 2);
     x << chain_[static_cast<std::size_t>(k)], chain_[static_cast<std::size_t>(k) + 1];
     parts_[static_cast<std::size_t>(k)]->add_carried(MassKind::Consistent, x, part);
@@ -152,7 +153,8 @@ bool Bend::add_carried(MassKind, const Eigen::Ref<const Matrix3Xd>&, CarriedMass
     carried.mu.bottomRightCorner(part.mu.rows(), part.mu.cols()) = mass_scale_ * part.mu;
     for (const auto& p : part.chord_points) moved.push_back({first + p.point, p.motion * motion, p.turn * motion});
   }
-  carried.add_chord_field(chain_.front(), chain_.back() - chain_.front(), MatrixXd::Identity(12, 12), moved);
+  if (carried.detail == CarriedDetail::SecondOrder)
+    carried.add_chord_field(chain_.front(), chain_.back() - chain_.front(), MatrixXd::Identity(12, 12), moved);
   return true;
 }
 

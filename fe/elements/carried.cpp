@@ -43,9 +43,10 @@ void CarriedMass::add_grid_body(const Vector3d& x, double m, const Vector3d& S, 
 namespace {
 
 using Matrix39d = Eigen::Matrix<double, 3, 9>;
+using Matrix9d = Eigen::Matrix<double, 9, 9>;
 
 /// out_a += factor (P z × Q z)_a.
-void add_product(const Matrix39d& P, const Matrix39d& Q, double factor, std::array<MatrixXd, 3>& out) {
+void add_product(const Matrix39d& P, const Matrix39d& Q, double factor, std::array<Matrix9d, 3>& out) {
   for (int a = 0; a < 3; ++a) {
     const int b = (a + 1) % 3, c = (a + 2) % 3;
     out[static_cast<std::size_t>(a)] += factor * (P.row(b).transpose() * Q.row(c) - P.row(c).transpose() * Q.row(b));
@@ -68,8 +69,8 @@ void CarriedMass::add_chord_field(const Vector3d& x_a, const Vector3d& chord, co
   ends_seen.middleRows<3>(3) = theta_a - theta;
   ends_seen.middleRows<3>(6) = d + skew(chord) * theta;
   ends_seen.bottomRows<3>() = theta_b - theta;
-  std::array<std::array<MatrixXd, 3>, 3> second;  // of θ_A, end B, θ_B
-  for (auto& part : second) part.fill(MatrixXd::Zero(9, 9));
+  std::array<std::array<Matrix9d, 3>, 3> second;  // of θ_A, end B, θ_B
+  for (auto& part : second) part.fill(Matrix9d::Zero());
   const Matrix39d turned_chord = -skew(chord) * theta;
   add_product(theta, theta_a, -0.5, second[0]);
   add_product(theta, d, -1, second[1]);
@@ -83,7 +84,7 @@ void CarriedMass::add_chord_field(const Vector3d& x_a, const Vector3d& chord, co
     const auto& point = points[static_cast<std::size_t>(p.point)];
     const Vector3d X = point.is_place ? Vector3d(point.x - x_a) : point.x;
     CarriedField::Part part{p.point, {}};
-    part.Q.fill(MatrixXd::Zero(9, 9));
+    part.Q.fill(Matrix9d::Zero());
     const Matrix39d turned = -skew(X) * theta;
     add_product(theta, turned, 0.5, part.Q);
     add_product(theta, p.motion * ends_seen, 1, part.Q);

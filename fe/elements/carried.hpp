@@ -36,17 +36,22 @@ struct CarriedTurn {
 struct CarriedField {
   struct Part {
     int point = 0;
-    std::array<MatrixXd, 3> Q;  ///< 9 x 9
+    std::array<Eigen::Matrix<double, 9, 9>, 3> Q;
   };
   MatrixXd L;  ///< 9 x N: θ of end A, motion of end B from A, θ of end B
   std::vector<Part> parts;
 };
 
+/// What is asked of an element about its carried mass: each more holds the one before.
+enum class CarriedDetail { Whether, Points, SecondOrder };
+
 /// Kinetic energy ½ Σ μ_rs ẋ_r·ẋ_s. A material point s from a grid is the place and three arms.
 struct CarriedMass {
-  explicit CarriedMass(int num_dofs_) : num_dofs(num_dofs_) {}
+  explicit CarriedMass(int num_dofs_, CarriedDetail detail_ = CarriedDetail::SecondOrder)
+      : num_dofs(num_dofs_), detail(detail_) {}
 
   int num_dofs;
+  CarriedDetail detail;  ///< an element may leave out what is more
   std::vector<CarriedPoint> points;
   std::vector<CarriedTurn> turns;
   std::vector<CarriedField> fields;

@@ -12,6 +12,7 @@ bool Shell::carries_turning_mass(MassKind kind) const {
 }
 
 bool Shell::add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const {
+  if (carried.detail == CarriedDetail::Whether) return true;
   const int n = num_nodes();
   const Vector3d z = R_.col(2), arm = (z_offset_ + section_.mass_offset) * z;
   const double rotary = kind == MassKind::Consistent ? section_.rotary_inertia : 0;
@@ -42,6 +43,7 @@ bool CurvedShell::carries_turning_mass(MassKind kind) const {
 }
 
 bool CurvedShell::add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const {
+  if (carried.detail == CarriedDetail::Whether) return true;
   const auto masses = calc_nodal_masses(kind);
   const int n = static_cast<int>(nodes().size());
   for (int i = 0; i < n; ++i) {

@@ -94,6 +94,11 @@ void require_memory(double num_equations, double num_entries, double free_bytes)
 
 void release_freed_memory() {
 #ifdef __GLIBC__
+#if __GLIBC_PREREQ(2, 33)
+  // The system takes pages back and gives them out again, cleared, for longer than a small model takes.
+  constexpr std::size_t kWorthIt = std::size_t{16} << 20;
+  if (::mallinfo2().fordblks < kWorthIt) return;
+#endif
   malloc_trim(0);
 #endif
 }

@@ -122,7 +122,7 @@ MatrixXd calc_inertial_loads(const Model& model, MassKind kind, const MatrixXd& 
       M.setZero(element.num_dofs(), element.num_dofs());
       element.add_mass(kind, model.wtmass(), M);
       MatrixXd f = M * grid_field(element.gdofs(), Eigen::all);
-      CarriedMass carried(element.num_dofs());
+      CarriedMass carried(element.num_dofs(), CarriedDetail::Points);
       if (calc_carried(model, element, kind, carried)) {
         for (Eigen::Index c = 0; c < f.cols(); ++c) {
           const Matrix3Xd loads = calc_point_loads(carried, calc_acceleration_field(spin.col(c)));
@@ -152,7 +152,7 @@ MatrixXd calc_inertial_loads(const Model& model, MassKind kind) {
 
 bool has_approximate_mass(const Model& model, MassKind kind) {
   for (const auto& element : model.elements()) {
-    CarriedMass carried(element->num_dofs());
+    CarriedMass carried(element->num_dofs(), CarriedDetail::Whether);
     if (element->carries_turning_mass(kind) && !calc_carried(model, *element, kind, carried)) return true;
   }
   return false;
@@ -171,7 +171,7 @@ MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Ph
     for (int e = from; e < to; ++e) {
       const Element& element = *model.elements()[static_cast<std::size_t>(e)];
       if (!element.carries_turning_mass(kind)) continue;
-      CarriedMass carried(element.num_dofs());
+      CarriedMass carried(element.num_dofs(), CarriedDetail::Points);
       if (!calc_carried(model, element, kind, carried)) continue;
       const auto count = static_cast<Eigen::Index>(carried.points.size());
       if (used + count > Z.rows()) flush();
@@ -204,7 +204,7 @@ MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Ph
 PetscMat assemble_grid_mass(const Model& model, MassKind kind) {
   const double scale = model.wtmass();
   return assemble(model, DofSet::Global, MatrixKind::Other, [&](const Element& e, Eigen::Ref<MatrixXd> M) {
-    CarriedMass carried(e.num_dofs());
+    CarriedMass carried(e.num_dofs(), CarriedDetail::Whether);
     if (e.carries_turning_mass(kind) && calc_carried(model, e, kind, carried)) return;
     e.add_mass(kind, scale, M);
   });

@@ -33,7 +33,8 @@ MatrixXd calc_inertial_loads(const Model& model, MassKind kind);
 /// Whether masses are there whose elements cannot say of what bodies they are.
 bool has_approximate_mass(const Model& model, MassKind kind);
 
-/// The bodies of one element that carries_turning_mass(), masses times WTMASS; false when it cannot say.
+/// The bodies of one element that carries_turning_mass(), masses times WTMASS, as far as carried.detail asks; false
+/// when it cannot say.
 bool calc_carried(const Model& model, const Element& element, MassKind kind, CarriedMass& carried);
 
 /// The part of M on the g-set that moves as the translations of the grids do, and what is not known to do otherwise:

@@ -5,6 +5,7 @@ import json
 import math
 import os
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -273,6 +274,56 @@ take = "min"
         without_time = [[{k: v for k, v in row.items() if k != "seconds"} for row in self.table(f)]
                         for f in ("whole", "parts")]
         self.assertEqual(*without_time)
+
+    def without_time(self, folder):
+        return [{k: v for k, v in row.items() if k != "seconds"} for row in self.table(folder)]
+
+    def test_folders_of_shards_become_one_table(self):
+        self.campaign(E + "range = [6e10, 7e10]\nnumber = 7\n" + HZ)
+        self.bough("batch", "study.toml", "-o", "whole")
+        for i in (1, 3):
+            self.bough("batch", "study.toml", "-o", f"part-{i}", "--shard", f"{i}/3")
+        parts = ["part-1", "part-2", "part-3"]
+        merge = ("batch", "study.toml", "-o", "merged", "--merge")
+        # A shard that never began, one that ended early, all of them.
+        self.fails(1, *merge, *parts, says=["part-2"], error="batch.missing-shard")
+        self.fails(3, *merge, "part-1", "part-3", says=["2 of 7 cases are not done: 2, 5", "shard 2/3 (all of it)"],
+                   error="batch.missing-shard")
+        self.assertEqual([r["case"] for r in self.table("merged")], ["1", "3", "4", "6", "7"])
+        self.bough("batch", "study.toml", "-o", "part-2", "--shard", "2/3")
+        os.rename(self.path("part-2/case-0005/outcome.json"), self.path("kept.json"))
+        self.fails(3, *merge, *parts, says=["cases are not done: 5", "shard 2/3 (1 of 2)"], error="batch.missing-shard")
+        os.rename(self.path("kept.json"), self.path("part-2/case-0005/outcome.json"))
+        self.bough(*merge, *parts)
+        self.assertEqual(self.without_time("merged"), self.without_time("whole"))
+        self.assertEqual(self.read("merged/statistics.csv"), self.read("whole/statistics.csv"))
+        self.bough("batch", "study.toml", "-o", "whole", "--merge")
+        self.write("beam.bdf", BEAM.replace("2700.", "2800."))
+        self.fails(1, *merge, *parts, error="batch.changed-campaign")
+
+    def test_shards_that_end_together_leave_the_whole_table(self):
+        self.campaign(E + "range = [6e10, 7e10]\nnumber = 8\n" + HZ)
+        shards = [subprocess.Popen([PROGRAM, "batch", "study.toml", "-j", "1", "-q", "--shard", f"{i}/4"],
+                                   cwd=self.folder) for i in (1, 2, 3, 4)]
+        self.assertEqual([s.wait() for s in shards], [0] * 4)
+        self.assertEqual([int(r["case"]) for r in self.table()], list(range(1, 9)))
+
+    @unittest.skipUnless(shutil.which("mpirun"), "no mpirun")
+    def test_ranks_divide_the_cases(self):
+        self.campaign(E + "values = [6e10, 6.5e10, 7e10, -1.0, 8e10]\n" + HZ)
+        self.bough("batch", "study.toml", "-o", "whole", code=3)
+        launch = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "2", PROGRAM, "batch", "study.toml"]
+        first = subprocess.run([*launch, "--json"], cwd=self.folder, text=True, capture_output=True)
+        self.assertEqual(first.returncode, 3, first.stderr)
+        summary = json.loads(first.stdout[:first.stdout.rindex("}") + 1])
+        self.assertEqual((summary["done"], summary["done_before"], len(summary["failed"])), (5, 0, 1))
+        self.assertEqual(first.stderr.count("[batch.failed-cases]"), 1)
+        self.assertEqual(self.without_time("study"), self.without_time("whole"))
+        again = subprocess.run([*launch, "--retry", "--json"], cwd=self.folder, text=True, capture_output=True)
+        summary = json.loads(again.stdout[:again.stdout.rindex("}") + 1])
+        self.assertEqual((summary["done"], summary["done_before"]), (1, 4))
+        self.assertEqual(subprocess.run([*launch, "--restart", "-q"], cwd=self.folder, capture_output=True).returncode, 3)
+        self.assertEqual(self.without_time("study"), self.without_time("whole"))
 
     def test_resumes_after_a_kill(self):
         self.campaign(E + "range = [6e10, 7e10]\nnumber = 300\n" + HZ)

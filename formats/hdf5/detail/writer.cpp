@@ -59,7 +59,7 @@ void FileWriter::check(bool ok, const std::string& what) {
 }
 
 void FileWriter::make_group(const std::string& path) {
-  if (exists(file_.get(), path)) return;
+  if (!groups_.insert(path).second) return;
   Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.get(), false);
   const Handle group(H5Gcreate2(file_.get(), path.c_str(), link_creation_.get(), creation.get(), H5P_DEFAULT),
@@ -89,21 +89,33 @@ void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_ty
       check(H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0,
             "dataset " + path + " cannot be written");
     }
+    write_meaning(dataset.get(), path, meaning);
     check(dataset.reset(), "dataset " + path + " cannot be written");
   }
-  write_attribute(path, "description", meaning.description);
-  write_attribute(path, "dims", meaning.dims);
+}
+
+void FileWriter::write_attribute(hid_t object, const std::string& path, const std::string& name, const Dims& shape,
+                                 hid_t file_type, hid_t memory_type, const void* data) {
+  const Handle space = make_space(shape);
+  const Handle attribute(H5Acreate2(object, name.c_str(), file_type, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  check(attribute.is_valid(), "attribute " + path + "@" + name + " cannot be written");
+  if (!has_elements(shape)) return;
+  check(H5Awrite(attribute.get(), memory_type, data) >= 0, "attribute " + path + "@" + name + " cannot be written");
 }
 
 void FileWriter::write_attribute(const std::string& object, const std::string& name, const Dims& shape, hid_t file_type,
                                  hid_t memory_type, const void* data) {
-  const Handle space = make_space(shape);
-  const Handle attribute(H5Acreate_by_name(file_.get(), object.c_str(), name.c_str(), file_type, space.get(),
-                                           H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                         H5Aclose);
-  check(attribute.is_valid(), "attribute " + object + "@" + name + " cannot be written");
-  if (!has_elements(shape)) return;
-  check(H5Awrite(attribute.get(), memory_type, data) >= 0, "attribute " + object + "@" + name + " cannot be written");
+  const Handle opened(H5Oopen(file_.get(), object.c_str(), H5P_DEFAULT), H5Oclose);
+  check(opened.is_valid(), "attribute " + object + "@" + name + " cannot be written");
+  write_attribute(opened.get(), object, name, shape, file_type, memory_type, data);
+}
+
+void FileWriter::write_meaning(hid_t dataset, const std::string& path, const Meaning& meaning) {
+  const Handle type = make_string_type();
+  for (const auto& [name, text] : {std::pair("description", &meaning.description), {"dims", &meaning.dims}}) {
+    const char* data = text->c_str();
+    write_attribute(dataset, path, name, Dims{}, type.get(), type.get(), &data);
+  }
 }
 
 void FileWriter::write_attribute(const std::string& object, const std::string& name, const std::string& text) {
@@ -185,10 +197,9 @@ void FileWriter::write_vector_with_zeros(const std::string& path, const Eigen::V
       check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, v.data() + from) >= 0,
             "dataset " + path + " cannot be written");
     }
+    write_meaning(dataset.get(), path, meaning);
     check(dataset.reset(), "dataset " + path + " cannot be written");
   }
-  write_attribute(path, "description", meaning.description);
-  write_attribute(path, "dims", meaning.dims);
 }
 
 void FileWriter::write_matrix(const std::string& path, const Eigen::MatrixXd& m, const Meaning& meaning) {

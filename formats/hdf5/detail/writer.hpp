@@ -1,5 +1,6 @@
 #pragma once
 /// \file Writes one HDF5 file: beside its place first, renamed when whole.
+#include <set>
 #include <string>
 #include <vector>
 
@@ -57,13 +58,18 @@ class FileWriter {
   void write(const std::string& path, const Dims& shape, hid_t file_type, hid_t memory_type, const void* data,
              const Meaning& meaning);
   void make_parents(const std::string& path);
+  /// `object` lies at `path`.
+  void write_attribute(hid_t object, const std::string& path, const std::string& name, const Dims& shape,
+                       hid_t file_type, hid_t memory_type, const void* data);
   void write_attribute(const std::string& object, const std::string& name, const Dims& shape, hid_t file_type,
                        hid_t memory_type, const void* data);
+  void write_meaning(hid_t dataset, const std::string& path, const Meaning& meaning);
 
   QuietErrors quiet_;
   std::string path_;
   PartFile part_;
   Handle file_, link_creation_;
+  std::set<std::string> groups_;
 };
 
 /// The blocks that flexible-body and modes files share.

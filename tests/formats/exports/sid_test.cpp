@@ -281,7 +281,7 @@ struct Fault {
   std::string from, to, id;
 };
 
-void PrintTo(const Fault& fault, std::ostream* out) { *out << "'" << fault.from << "' is '" << fault.to << "'"; }
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.id << " of '" << fault.from << "'"; }
 
 class SidFault : public testing::TestWithParam<Fault> {};
 
