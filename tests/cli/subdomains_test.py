@@ -100,19 +100,19 @@ class Subdomains(ProgramTest):
         self.compare(write_plate())
 
     def test_free_plate(self):
-        self.compare(write_plate(held=False))
+        self.compare(write_plate(held=False), (2, 3))
 
     def test_links_across_the_cut(self):
-        self.compare(write_linked())
+        self.compare(write_linked(), (2, 3))
 
     def test_beams(self):
-        self.compare(write_grillage(), (2, 3))
+        self.compare(write_grillage(), (2,))
 
     def test_solids(self):
-        self.compare(write_block(), (2, 4))
+        self.compare(write_block(), (3,))
 
     def test_too_small_to_cut(self):
-        self.compare(write_plate(8, 6))
+        self.compare(write_plate(8, 6), (2,))
 
     def test_two_bodies(self):
         """Parts that nothing joins: there may be no rows between. The other is shorter: no root of one is of the other."""

@@ -1,0 +1,84 @@
+/// Rows cut among ranks against the whole matrix; on one process there is nothing to cut.
+#include "fe/linear/subdomains.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <vector>
+
+#include "fe/linear/factor.hpp"
+#include "fe/linear/ordering.hpp"
+
+namespace bough::fe {
+namespace {
+
+using Eigen::MatrixXd;
+
+constexpr int kWide = 60, kHigh = 40, kRows = 2 * kWide * kHigh;
+
+/// Two rows a node, each coupled to the four nodes around and to each other, on all ranks; `reach`: to the node that
+/// many further on too.
+PetscMat make_grid(double diagonal, int reach = 0) {
+  PetscMat A;
+  check_petsc(MatCreate(PETSC_COMM_WORLD, A.out()));
+  check_petsc(MatSetSizes(A.get(), PETSC_DECIDE, PETSC_DECIDE, kRows, kRows));
+  check_petsc(MatSetType(A.get(), MATAIJ));
+  check_petsc(MatSeqAIJSetPreallocation(A.get(), 9, nullptr));
+  check_petsc(MatMPIAIJSetPreallocation(A.get(), 9, nullptr, 9, nullptr));
+  PetscInt first = 0, last = 0;
+  check_petsc(MatGetOwnershipRange(A.get(), &first, &last));
+  std::vector<int> start;
+  for (PetscInt row = first; row < last; ++row) {
+    if (row == first || row % 2 == 0) start.push_back(row);
+    const int node = row / 2, x = node % kWide;
+    const auto set = [&](int column, double value) {
+      if (column >= 0 && column < kRows) check_petsc(MatSetValue(A.get(), row, column, value, INSERT_VALUES));
+    };
+    set(row, diagonal + 0.01 * (row % 7));
+    set(row ^ 1, 0.1);
+    if (x > 0) set(row - 2, -1);
+    if (x + 1 < kWide) set(row + 2, -1);
+    set(row - 2 * kWide, -1);
+    set(row + 2 * kWide, -1);
+    if (reach > 0) set(row - 2 * reach, 0.05), set(row + 2 * reach, 0.05);
+  }
+  start.push_back(last);
+  check_petsc(MatAssemblyBegin(A.get(), MAT_FINAL_ASSEMBLY));
+  check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
+  set_row_groups(A.get(), start);
+  return A;
+}
+
+TEST(Subdomains, MultiplyAndSolveAsTheWholeDoes) {
+  const PetscMat A = make_grid(4.5), B = make_grid(2, 3);  // B couples what A does not
+  const auto domains = find_subdomains(A.get(), B.get(), 0);
+  ASSERT_EQ(domains.has_value(), initialize_petsc().size > 1);
+  if (!domains) return;
+  std::srand(1);
+  const MatrixXd X = MatrixXd::Random(kRows, 13);
+  EXPECT_EQ(domains->replicate(domains->take_own(X)), X);
+  for (Mat matrix : {A.get(), B.get()}) {
+    const MatrixXd Y = domains->replicate(SubdomainMatrix(matrix, *domains).multiply(domains->take_own(X)));
+    EXPECT_LT((Y - multiply(matrix, X)).cwiseAbs().maxCoeff(), 1e-13);
+  }
+  const SubdomainFactor factor(A.get(), *domains);
+  ASSERT_TRUE(factor.is_definite());
+  for (const int m : {1, 4, 8, 13}) {
+    const MatrixXd solution = domains->replicate(factor.solve(domains->take_own(X.leftCols(m))));
+    EXPECT_LT((multiply(A.get(), solution) - X.leftCols(m)).cwiseAbs().maxCoeff(), 1e-12) << m;
+  }
+}
+
+TEST(Subdomains, TellWhatIsNotDefinite) {
+  const PetscMat A = make_grid(3);
+  if (const auto domains = find_subdomains(A.get(), A.get(), 0))
+    EXPECT_FALSE(SubdomainFactor(A.get(), *domains).is_definite());
+}
+
+TEST(Subdomains, LeaveSmallMatricesWhole) {
+  const PetscMat A = make_grid(4.5);
+  EXPECT_FALSE(find_subdomains(A.get(), A.get(), kRows + 1));
+}
+
+}  // namespace
+}  // namespace bough::fe
