@@ -2,13 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <string>
 
 #include "base/rotation.hpp"
 #include "fe/loads/second_order.hpp"
 #include "stiffening/reduce.hpp"
 #include "tests/support/beam_decks.hpp"
+#include "tests/support/threads.hpp"
 
 namespace bough {
 namespace {
@@ -95,23 +94,17 @@ TEST(GeometricStiffness, OfTwoThreadsIsThatOfOne) {
   const fe::AppliedLoads loads{fe::calc_inertial_loads(model, model.mass_kind()), MatrixXd::Identity(12, 12), {}};
   const MatrixXd U = solver.solve(loads.F);
   const MatrixXd Phi = solver.solve(MatrixXd::Random(U.rows(), 45));
-  const char* before = std::getenv("OMP_NUM_THREADS");
-  const std::string kept = before ? before : "";
-  const auto calc_by = [&](const char* threads, int num) {
-    setenv("OMP_NUM_THREADS", threads, 1);
+  const auto calc_by = [&](int num_threads, int num) {
+    const test::Threads threads(num_threads);
     return calc_generalized_geometric_stiffness(model, loads, U, Phi.leftCols(num));
   };
   for (const int num : {5, 45}) {
-    const auto one = calc_by("1", num), two = calc_by("2", num);
+    const auto one = calc_by(1, num), two = calc_by(2, num);
     ASSERT_EQ(one.size(), two.size());
     // Rotations and displacements of short elements cancel: 1e-16 (1 / length)².
     for (std::size_t c = 0; c < one.size(); ++c)
       EXPECT_LT((one[c] - two[c]).cwiseAbs().maxCoeff(), 1e-10 * one[c].cwiseAbs().maxCoeff()) << num << " " << c;
   }
-  if (before)
-    setenv("OMP_NUM_THREADS", kept.c_str(), 1);
-  else
-    unsetenv("OMP_NUM_THREADS");
 }
 
 // The loads on a body balance as a whole, so the sum of all K_G does not know which support each was solved on.

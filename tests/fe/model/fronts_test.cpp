@@ -3,13 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "fe/linear/factor.hpp"
 #include "fe/linear/ordering.hpp"
+#include "tests/support/threads.hpp"
 
 namespace bough::fe {
 namespace {
@@ -56,18 +55,10 @@ class FrontsOn : public ::testing::TestWithParam<int> {
  protected:
   void SetUp() override {
     if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes count together";
-    if (const char* before = std::getenv("OMP_NUM_THREADS")) before_ = before;
-    setenv("OMP_NUM_THREADS", std::to_string(GetParam()).c_str(), 1);
-  }
-  void TearDown() override {
-    if (before_.empty())
-      unsetenv("OMP_NUM_THREADS");
-    else
-      setenv("OMP_NUM_THREADS", before_.c_str(), 1);
   }
 
  private:
-  std::string before_;
+  bough::test::Threads threads_{GetParam()};
 };
 INSTANTIATE_TEST_SUITE_P(Threads, FrontsOn, ::testing::Values(1, 2));
 
@@ -94,35 +85,17 @@ TEST_P(FrontsOn, CountAsTheEigenvaluesDo) {
   EXPECT_EQ(count_negative_by_fronts(A.get(), -1e6, B.get(), 0), kRows);
 }
 
-/// A pivot of no size, whatever is tried first, is no answer of its own.
+/// Where a front adds far more to a row than stands on its diagonal, one that pivots freely counts.
 TEST_P(FrontsOn, LeaveTinyPivotsToOthers) {
-  // Rows without diagonal: [0 1; 1 0] in each node, one eigenvalue of each sign, pivoted inside the front.
-  PetscMat pairs;
-  check_petsc(MatCreateSeqAIJ(PETSC_COMM_SELF, kRows, kRows, 4, nullptr, pairs.out()));
-  for (int i = 0; i < kRows; ++i) {
-    check_petsc(MatSetValue(pairs.get(), i, i, 0, INSERT_VALUES));
-    check_petsc(MatSetValue(pairs.get(), i, i % 2 == 0 ? i + 1 : i - 1, 1, INSERT_VALUES));
-  }
-  check_petsc(MatAssemblyBegin(pairs.get(), MAT_FINAL_ASSEMBLY));
-  check_petsc(MatAssemblyEnd(pairs.get(), MAT_FINAL_ASSEMBLY));
-  const PetscMat A = make_strip(1, 0), B = make_strip(0, 1);
-  copy_row_groups(A.get(), pairs.get());
-  if (const auto count = count_negative_by_fronts(pairs.get(), 0, B.get(), 0)) {
-    EXPECT_EQ(*count, kRows / 2);
-  }
-  // The diagonal of the first rows that are eliminated becomes 1e-12 of what stands beside it.
-  PetscMat weak = make_strip(1, 0);
+  const PetscMat A = make_strip(1, 0), B = make_strip(0, 1), weak = make_strip(1, 0);
+  ASSERT_EQ(count_negative_by_fronts(A.get(), 0, B.get(), 0), 0);
   for (int x = 1; x < kLong; x += 2)
-    for (int d = 0; d < 2; ++d)
-      for (int y = 0; y < kWide; ++y)
+    for (int y = 0; y < kWide; ++y)
+      for (int d = 0; d < 2; ++d)
         check_petsc(MatSetValue(weak.get(), row_of(x, y, d), row_of(x, y, d), 1e-12, INSERT_VALUES));
   check_petsc(MatAssemblyBegin(weak.get(), MAT_FINAL_ASSEMBLY));
   check_petsc(MatAssemblyEnd(weak.get(), MAT_FINAL_ASSEMBLY));
-  const VectorXd values =
-      Eigen::SelfAdjointEigenSolver<MatrixXd>(to_dense(weak.get()), Eigen::EigenvaluesOnly).eigenvalues();
-  if (const auto count = count_negative_by_fronts(weak.get(), 0, B.get(), 0)) {
-    EXPECT_EQ(*count, (values.array() < 0).count());
-  }
+  EXPECT_FALSE(count_negative_by_fronts(weak.get(), 0, B.get(), 0));
 }
 
 /// B couples the ends of the strip, which A has in two parts: then one that pivots freely counts.

@@ -4,35 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include "fe/linear/factor.hpp"
 #include "fe/linear/ordering.hpp"
+#include "tests/support/threads.hpp"
 
 namespace bough::fe {
 namespace {
 
-/// So many threads while it lives.
-class Threads {
- public:
-  explicit Threads(int num) {
-    if (const char* before = std::getenv("OMP_NUM_THREADS")) before_ = before;
-    setenv("OMP_NUM_THREADS", std::to_string(num).c_str(), 1);
-  }
-  Threads(const Threads&) = delete;
-  Threads& operator=(const Threads&) = delete;
-  ~Threads() {
-    if (before_.empty())
-      unsetenv("OMP_NUM_THREADS");
-    else
-      setenv("OMP_NUM_THREADS", before_.c_str(), 1);
-  }
-
- private:
-  std::string before_;
-};
+using bough::test::Threads;
 
 /// Nine points of a grid of num_x x num_y nodes of two rows each, with `shift` of the identity taken away. Definite
 /// below about 1.5 ((π / num_x)² + (π / num_y)²).

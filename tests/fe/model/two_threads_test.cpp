@@ -1,7 +1,6 @@
 /// What two threads do in halves, against one; and what a factor will take, against what it takes.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <string>
 
 #include "fe/linear/factor.hpp"
@@ -10,30 +9,14 @@
 #include "fe/matrices/factor_need.hpp"
 #include "fe/statics/element_recovery.hpp"
 #include "tests/fe/model/text_model.hpp"
+#include "tests/support/threads.hpp"
 
 namespace bough::fe {
 namespace {
 
 using Eigen::MatrixXd;
 
-class Threads {
- public:
-  explicit Threads(int num) {
-    if (const char* before = std::getenv("OMP_NUM_THREADS")) before_ = before;
-    setenv("OMP_NUM_THREADS", std::to_string(num).c_str(), 1);
-  }
-  Threads(const Threads&) = delete;
-  Threads& operator=(const Threads&) = delete;
-  ~Threads() {
-    if (before_.empty())
-      unsetenv("OMP_NUM_THREADS");
-    else
-      setenv("OMP_NUM_THREADS", before_.c_str(), 1);
-  }
-
- private:
-  std::string before_;
-};
+using bough::test::Threads;
 
 /// num x num plates, curved so that no entry is zero; `mixed`: grids numbered from both sides in turn, so that elements
 /// have rows in both halves.
