@@ -150,6 +150,12 @@ bool PartFile::write(const char* data, std::size_t size) {
   return true;
 }
 
+void PartFile::start_sync() {
+#ifdef SYNC_FILE_RANGE_WRITE
+  if (!error_) static_cast<void>(::sync_file_range(descriptor_, 0, 0, SYNC_FILE_RANGE_WRITE));  // a wish, no more
+#endif
+}
+
 bool PartFile::commit(bool always_syncs) {
   if (error_) return false;
   // A run fills the file of that name: it would go on filling one that nobody sees.

@@ -28,6 +28,8 @@ class PartFile {
 
   /// Appends; false, with error(), when the file did not take all of it.
   bool write(const char* data, std::size_t size);
+  /// Asks for the bytes so far to go to the disk while the caller goes on: commit() waits for less.
+  void start_sync();
   /// Bytes to the disk, then the name: the file appears now, with the permissions of the old one. False, with error(),
   /// and then the old one is untouched. A file that replaces none need not be on the disk when it appears.
   bool commit(bool always_syncs = true);

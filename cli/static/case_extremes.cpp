@@ -54,9 +54,9 @@ Block make_grid_block(const std::string& name, const std::string& dims, const Ei
   return block;
 }
 
-std::vector<Block> list_blocks(const records::StaticResult& result, const records::StaticSubcase& s) {
-  std::vector<Block> blocks{make_grid_block("displacement", "L, 1", result.dof_map, s.displacement),
-                            make_grid_block("reaction", "F, F L", result.dof_map, s.reaction)};
+std::vector<Block> list_blocks(const Eigen::MatrixXi& dof_map, const records::StaticSubcase& s) {
+  std::vector<Block> blocks{make_grid_block("displacement", "L, 1", dof_map, s.displacement),
+                            make_grid_block("reaction", "F, F L", dof_map, s.reaction)};
   for (const auto& b : s.elements) blocks.push_back({"elements/" + b.card, "F, F L", b.components, b.id, b.force});
   for (const auto& b : s.stresses) blocks.push_back({"stresses/" + b.card, "F/L^2, 1", b.components, b.id, b.stress});
   for (const auto& b : s.strains) blocks.push_back({"strains/" + b.card, "1, 1/L", b.components, b.id, b.stress});
@@ -122,28 +122,23 @@ std::vector<records::StressMargins> calc_margins(const records::Deck& deck, cons
   return result;
 }
 
-std::vector<records::CaseExtremes> find_case_extremes(const records::StaticResult& result) {
-  std::vector<records::CaseExtremes> extremes;
-  for (const auto& s : result.subcases) {
-    for (const auto& block : list_blocks(result, s)) {
-      const auto at =
-          std::find_if(extremes.begin(), extremes.end(), [&](const auto& e) { return e.path == block.path; });
-      if (at == extremes.end()) {
-        const Eigen::MatrixXi own = Eigen::MatrixXi::Constant(block.values.rows(), block.values.cols(), s.id);
-        if (block.values.size() > 0)
-          extremes.push_back(
-              {block.path, block.dims, block.components, block.id, block.values, block.values, own, own});
-        continue;
-      }
-      BOUGH_DEMAND(at->id == block.id && at->components == block.components);
-      for (Index i = 0; i < block.values.size(); ++i) {
-        const double value = block.values(i);
-        if (value < at->low(i)) at->low(i) = value, at->low_case(i) = s.id;
-        if (value > at->high(i)) at->high(i) = value, at->high_case(i) = s.id;
-      }
+void add_to_extremes(const Eigen::MatrixXi& dof_map, const records::StaticSubcase& subcase,
+                     std::vector<records::CaseExtremes>& extremes) {
+  for (const auto& block : list_blocks(dof_map, subcase)) {
+    const auto at = std::find_if(extremes.begin(), extremes.end(), [&](const auto& e) { return e.path == block.path; });
+    if (at == extremes.end()) {
+      const Eigen::MatrixXi own = Eigen::MatrixXi::Constant(block.values.rows(), block.values.cols(), subcase.id);
+      if (block.values.size() > 0)
+        extremes.push_back({block.path, block.dims, block.components, block.id, block.values, block.values, own, own});
+      continue;
+    }
+    BOUGH_DEMAND(at->id == block.id && at->components == block.components);
+    for (Index i = 0; i < block.values.size(); ++i) {
+      const double value = block.values(i);
+      if (value < at->low(i)) at->low(i) = value, at->low_case(i) = subcase.id;
+      if (value > at->high(i)) at->high(i) = value, at->high_case(i) = subcase.id;
     }
   }
-  return extremes;
 }
 
 std::string format_margins(const std::vector<records::StressMargins>& margins) {

@@ -12,8 +12,10 @@ namespace bough::cli {
 /// Of rods, bars and beams whose MAT1 has ST, SC or SS, as Nastran prints them.
 std::vector<records::StressMargins> calc_margins(const records::Deck& deck, const records::StaticSubcase& subcase);
 
-/// Of displacements, reactions, element forces, stresses and strains; all subcases have the same grids and elements.
-std::vector<records::CaseExtremes> find_case_extremes(const records::StaticResult& result);
+/// Of displacements, reactions, element forces, stresses and strains: those of one subcase more. All subcases have the
+/// same grids and elements.
+void add_to_extremes(const Eigen::MatrixXi& dof_map, const records::StaticSubcase& subcase,
+                     std::vector<records::CaseExtremes>& extremes);
 
 /// The smallest of each kind; empty without any.
 std::string format_margins(const std::vector<records::StressMargins>& margins);

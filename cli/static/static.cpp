@@ -16,16 +16,12 @@
 #include "cli/common/text_file.hpp"
 #include "cli/common/vtu_file.hpp"
 #include "cli/listing/listing.hpp"
-#include "cli/static/case_extremes.hpp"
 #include "cli/static/combinations.hpp"
-#include "cli/static/static_tables.hpp"
+#include "cli/static/static_output.hpp"
 #include "fe/statics/case_solver.hpp"
-#include "formats/hdf5/files.hpp"
 #include "formats/nastran/dynamic_reader.hpp"
 
 namespace bough::cli {
-
-using Eigen::VectorXd;
 
 namespace {
 
@@ -36,18 +32,6 @@ struct StaticOptions : CommonOptions {
   bool full = false, in_cd = false, is_linear = false, has_extremes = false, has_strains = false;
   ListingOptions listing;
 };
-
-/// Vectors in the displacement axes of their grids, as other programs print them.
-records::StaticResult turn_to_cd(const fe::Model& model, records::StaticResult result) {
-  for (auto& s : result.subcases)
-    for (VectorXd* v : {&s.displacement, &s.load, &s.reaction, &s.mpc_force, &s.inertia})
-      for (const auto& node : model.nodes())
-        for (int i = 0; i < node.num_dofs / 3 && v->size() > 0; ++i) {
-          auto part = v->segment<3>(node.first_gdof + 3 * i);
-          part = (node.R_basic_cd.transpose() * part).eval();
-        }
-  return result;
-}
 
 /// Ids, or "all": none.
 std::vector<int> read_grids(const std::vector<std::string>& words) {
@@ -75,26 +59,39 @@ void check_forces_grids(const std::vector<int>& ids, const records::Deck& deck) 
 }
 
 /// Of the forces on all grids, which the listing had, those that --grid-forces asks for.
-void keep_grid_forces(const std::vector<std::string>& words, records::StaticResult& result) {
+void keep_grid_forces(const std::vector<std::string>& words, records::StaticSubcase& subcase) {
   const auto ids = read_grids(words);
-  for (auto& subcase : result.subcases)
-    std::erase_if(subcase.grid_forces, [&](const records::GridForce& f) {
-      return words.empty() || (!ids.empty() && std::find(ids.begin(), ids.end(), f.node) == ids.end());
-    });
+  std::erase_if(subcase.grid_forces, [&](const records::GridForce& f) {
+    return words.empty() || (!ids.empty() && std::find(ids.begin(), ids.end(), f.node) == ids.end());
+  });
 }
 
 /// SUBCOM, SYMCOM and REPCASE behind the subcases.
 void add_combinations(const records::Deck& deck, const records::CaseRequests& requests, const fe::Model& model,
-                      records::StaticResult& result, SubcaseFailures& failures, ListingMaker* listing,
+                      StaticOutput& output, SubcaseFailures& failures, ListingMaker* listing,
                       Diagnostics& diagnostics) {
   for (const auto& combination : requests.combinations) {
     try {
-      result.subcases.push_back(combine(model, deck, combination, result.subcases));
-      if (listing) listing->add_static(model, result.subcases.back(), diagnostics);
+      auto sum = combine(model, deck, combination, output.get_result().subcases);
+      if (listing) listing->add_static(model, sum, diagnostics);
+      output.add({std::move(sum)});
     } catch (const Failure& failure) {
       failures.add(combination.control.id, failure);
     }
   }
+}
+
+/// What the verb's options and the deck make of each subcase.
+StaticWishes make_wishes(const StaticOptions& options, const records::CaseRequests& requests, bool is_root) {
+  StaticWishes wishes;
+  if (is_root) wishes.path = options.output;
+  wishes.has_text = !options.quiet && !options.json;
+  wishes.has_json = options.json;
+  wishes.is_full = options.full;
+  wishes.in_cd = options.in_cd;
+  wishes.has_extremes = options.has_extremes;
+  wishes.keeps = !options.vtu.empty() || (options.model.subcase == 0 && !requests.combinations.empty());
+  return wishes;
 }
 
 /// As read_deck_or_throw; without --subcase this verb makes the combinations.
@@ -131,7 +128,6 @@ int run_static(const StaticOptions& options) {
     subcases.emplace_back();
     subcases.back().id = options.model.subcase;
   }
-  records::StaticResult result;
   fe::CaseSolver solver(deck, make_model_options(options.model));
   SubcaseFailures failures(subcases.size(), deck.subcases.size());
   std::optional<ListingMaker> listing;
@@ -145,48 +141,49 @@ int run_static(const StaticOptions& options) {
   if (!listing && options.grid_forces.empty())
     note_requests(deck, requests, {{"GPFORCE", "--f06 FILE, or --grid-forces all,"}}, diagnostics);
   diagnostics.throw_if_errors();
-  for (std::size_t next = 0; next < subcases.size();)
+  StaticOutput output(deck, make_wishes(options, requests, console.is_root()));
+  const auto take = [&](fe::CaseSolver::Solved& one) {
+    if (one.failure) std::rethrow_exception(one.failure);
+    if (listing) {
+      listing->add_weight(solver.model());
+      listing->add_static(solver.model(), *one.result, one.said);
+    }
+    if (lists_forces) keep_grid_forces(options.grid_forces, *one.result);
+  };
+  for (std::size_t next = 0; next < subcases.size() && !output.has_failed();) {
+    std::vector<records::StaticSubcase> solved;
     for (auto& one : solver.solve_next(std::span(subcases).subspan(next))) {
       const int id = subcases[next++].id;
       try {
-        if (one.failure) std::rethrow_exception(one.failure);
-        result.subcases.push_back(std::move(*one.result));
-        if (listing) {
-          listing->add_weight(solver.model());
-          listing->add_static(solver.model(), result.subcases.back(), one.said);
-        }
+        take(one);
+        solved.push_back(std::move(*one.result));
       } catch (const Failure& failure) {
         failures.add(id, failure);
       }
       add_new(one.said, diagnostics);
     }
-  if (result.subcases.empty()) failures.throw_all(diagnostics);
+    if (solved.empty()) continue;
+    if (output.is_empty()) output.set_model(solver.model());
+    output.add(std::move(solved));
+  }
+  if (output.is_empty()) failures.throw_all(diagnostics);
   if (options.model.subcase == 0)
-    add_combinations(deck, requests, solver.model(), result, failures, listing ? &*listing : nullptr, diagnostics);
-  if (lists_forces) keep_grid_forces(options.grid_forces, result);
-  result.dof_map = solver.model().calc_dof_map();
-  result.mesh = solver.model().calc_mesh();
-  result.source = calc_sources(deck.files);
-  for (auto& subcase : result.subcases) subcase.margins = calc_margins(deck, subcase);
-  if (options.has_extremes) result.extremes = find_case_extremes(result);
+    add_combinations(deck, requests, solver.model(), output, failures, listing ? &*listing : nullptr, diagnostics);
   std::string picture;
   if (!options.vtu.empty() && console.is_root())
-    picture = make_vtu_text(exports::make_picture(result), exports::VtuEncoding::Base64, options.deck, diagnostics);
+    picture = make_vtu_text(exports::make_picture(output.get_result()), exports::VtuEncoding::Base64, options.deck,
+                            diagnostics);
   console.print(diagnostics);
   console.print(failures.get_items(diagnostics));
 
-  if (!options.output.empty() && console.is_root()) hdf5::write_static(result, options.output);
-  if (options.in_cd) result = turn_to_cd(solver.model(), std::move(result));
-  if (options.in_cd && options.has_extremes) result.extremes = find_case_extremes(result);
+  output.finish();
   if (options.json) {
-    nlohmann::json json{{"subcases", nlohmann::json::array()}};
-    for (const auto& subcase : result.subcases) json["subcases"].push_back(to_json(result, subcase, options.full));
-    if (options.has_extremes) json["extremes"] = to_json(result.extremes);
+    nlohmann::json json{{"subcases", output.get_subcases()}};
+    if (options.has_extremes) json["extremes"] = output.get_extremes();
     if (!failures.is_empty()) json["failed"] = failures.to_json();
     console.print_data(json.dump(2) + "\n");
   } else {
-    for (const auto& subcase : result.subcases) console.print(format_static(result, subcase, options.full));
-    console.print(format_case_extremes(result.extremes));
+    console.print(output.get_text());
   }
   if (!picture.empty()) write_text_file(options.vtu, picture);
   if (listing) do_once([&] { write_listings(options.listing, listing->get()); });

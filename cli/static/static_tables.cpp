@@ -32,9 +32,9 @@ std::vector<Extreme> find_maxima(const Eigen::MatrixXi& dof_map, const VectorXd&
   return maxima;
 }
 
-std::string format_maxima(const records::StaticResult& result, const records::StaticSubcase& s) {
+std::string format_maxima(const Eigen::MatrixXi& dof_map, const records::StaticSubcase& s) {
   Table table{{"largest", "displacement", "at grid", "reaction", "at grid"}, {}};
-  const auto u = find_maxima(result.dof_map, s.displacement), r = find_maxima(result.dof_map, s.reaction);
+  const auto u = find_maxima(dof_map, s.displacement), r = find_maxima(dof_map, s.reaction);
   for (std::size_t c = 0; c < 6; ++c)
     table.rows.push_back({kComponents[c], fmt::format("{:.6e}", u[c].value), std::to_string(u[c].id),
                           fmt::format("{:.6e}", r[c].value), std::to_string(r[c].id)});
@@ -110,11 +110,15 @@ std::string format_extremes(const std::string& title, const std::vector<int>& id
     columns.push_back(static_cast<Eigen::Index>(c));
   }
   for (const auto& [name, columns] : groups) {
-    const Eigen::MatrixXd part = values(Eigen::all, columns);
-    Eigen::Index low = 0, high = 0, column = 0;
-    const double least = part.minCoeff(&low, &column), most = part.maxCoeff(&high, &column);
-    table.rows.push_back({name, fmt::format("{:.6e}", least), std::to_string(id[static_cast<std::size_t>(low)]),
-                          fmt::format("{:.6e}", most), std::to_string(id[static_cast<std::size_t>(high)])});
+    Extreme least, most;
+    for (const auto column : columns) {
+      Eigen::Index low = 0, high = 0;
+      const double min = values.col(column).minCoeff(&low), max = values.col(column).maxCoeff(&high);
+      if (least.id == 0 || min < least.value) least = {min, id[static_cast<std::size_t>(low)]};
+      if (most.id == 0 || max > most.value) most = {max, id[static_cast<std::size_t>(high)]};
+    }
+    table.rows.push_back({name, fmt::format("{:.6e}", least.value), std::to_string(least.id),
+                          fmt::format("{:.6e}", most.value), std::to_string(most.id)});
   }
   return table.to_text();
 }
@@ -176,15 +180,15 @@ nlohmann::json list_stress_maxima(const records::ElementStresses& block) {
 
 }  // namespace
 
-std::string format_static(const records::StaticResult& result, const records::StaticSubcase& s, bool full) {
+std::string format_static(const Eigen::MatrixXi& dof_map, const records::StaticSubcase& s, bool full) {
   std::string text = fmt::format("subcase {}{}: LOAD {}, SPC {}, MPC {}{}\n\n", s.id,
                                  s.label.empty() ? "" : " (" + s.label + ")", s.load_set, s.spc_set, s.mpc_set,
                                  s.temperature_set ? fmt::format(", TEMPERATURE {}", s.temperature_set) : "");
-  text += format_maxima(result, s) + "\n" + format_balance(s) + "\n" + format_support(s);
+  text += format_maxima(dof_map, s) + "\n" + format_balance(s) + "\n" + format_support(s);
   if (full) {
-    text += format_vector("displacement", result.dof_map, s.displacement) + "\n";
-    text += format_vector("load", result.dof_map, s.load) + "\n";
-    text += format_vector("reaction", result.dof_map, s.reaction) + "\n";
+    text += format_vector("displacement", dof_map, s.displacement) + "\n";
+    text += format_vector("load", dof_map, s.load) + "\n";
+    text += format_vector("reaction", dof_map, s.reaction) + "\n";
   }
   for (const auto& block : s.elements) text += format_elements(block, full) + "\n";
   for (const auto& block : s.stresses) text += format_stresses(block, "stress", full) + "\n";
@@ -192,7 +196,7 @@ std::string format_static(const records::StaticResult& result, const records::St
   return text + format_margins(s.margins) + format_grid_forces(s.grid_forces);
 }
 
-nlohmann::json to_json(const records::StaticResult& result, const records::StaticSubcase& s, bool full) {
+nlohmann::json to_json(const Eigen::MatrixXi& dof_map, const records::StaticSubcase& s, bool full) {
   nlohmann::json json{{"id", s.id},
                       {"label", s.label},
                       {"load_set", s.load_set},
@@ -201,8 +205,8 @@ nlohmann::json to_json(const records::StaticResult& result, const records::Stati
                       {"temperature_set", s.temperature_set},
                       {"strain_energy", s.strain_energy},
                       {"epsilon", s.epsilon},
-                      {"max_displacement", list_maxima(find_maxima(result.dof_map, s.displacement))},
-                      {"max_reaction", list_maxima(find_maxima(result.dof_map, s.reaction))},
+                      {"max_displacement", list_maxima(find_maxima(dof_map, s.displacement))},
+                      {"max_reaction", list_maxima(find_maxima(dof_map, s.reaction))},
                       {"resultants",
                        {{"load", to_json_list(s.load_resultant)},
                         {"reaction", to_json_list(s.reaction_resultant)},
@@ -223,8 +227,8 @@ nlohmann::json to_json(const records::StaticResult& result, const records::Stati
   if (!full) return json;
   if (s.inertia.size() > 0) json["inertia"] = to_json_list(s.inertia);
   json["dof_map"] = nlohmann::json::array();
-  for (Eigen::Index i = 0; i < result.dof_map.rows(); ++i)
-    json["dof_map"].push_back({result.dof_map(i, 0), result.dof_map(i, 1)});
+  for (Eigen::Index i = 0; i < dof_map.rows(); ++i)
+    json["dof_map"].push_back({dof_map(i, 0), dof_map(i, 1)});
   json["displacement"] = to_json_list(s.displacement);
   json["load"] = to_json_list(s.load);
   json["reaction"] = to_json_list(s.reaction);

@@ -7,8 +7,8 @@
 
 namespace bough::cli {
 
-/// Maxima, balance and element forces; `full`: every grid and element.
-std::string format_static(const records::StaticResult& result, const records::StaticSubcase& subcase, bool full);
-nlohmann::json to_json(const records::StaticResult& result, const records::StaticSubcase& subcase, bool full);
+/// Maxima, balance and element forces; `full`: every grid and element. `dof_map`: of StaticResult.
+std::string format_static(const Eigen::MatrixXi& dof_map, const records::StaticSubcase& subcase, bool full);
+nlohmann::json to_json(const Eigen::MatrixXi& dof_map, const records::StaticSubcase& subcase, bool full);
 
 }  // namespace bough::cli

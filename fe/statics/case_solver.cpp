@@ -3,14 +3,12 @@
 #include <algorithm>
 
 #include "fe/matrices/system.hpp"
-#include "fe/statics/element_recovery.hpp"
 #include "fe/statics/element_results.hpp"
 #include "fe/statics/preload.hpp"
 
 namespace bough::fe {
 namespace {
 
-constexpr std::size_t kMostColumns = 32;  // of the g-set, in a dozen copies while they are solved
 constexpr std::size_t kMostHeated = 16;
 
 /// What must be the same for a model and its factor to be kept.
@@ -86,10 +84,7 @@ std::vector<CaseSolver::Solved> CaseSolver::solve_next(std::span<const records::
     result.spc_set = subcase.spc;
     result.mpc_set = subcase.mpc;
   }
-  for (std::size_t k = 0; k < count; k += kMostColumns) {
-    const std::size_t size = std::min(kMostColumns, count - k);
-    solve_displacements(std::span(loads).subspan(k, size), std::span(solved).subspan(k, size));
-  }
+  solve_displacements(loads, solved);
   add_element_results(loads, solved);
   return solved;
 }
@@ -125,7 +120,8 @@ void CaseSolver::solve_displacements(std::span<const StaticLoad> loads, std::spa
   }
 }
 
-void CaseSolver::add_element_results(std::span<const StaticLoad> loads, std::span<Solved> solved) const {
+void CaseSolver::add_element_results(std::span<const StaticLoad> loads, std::span<Solved> solved) {
+  if (!layout_) layout_.emplace(*model_, deck_, RecoveredFields{true, true, has_strains_});
   std::vector<RecoveryCase> cases;
   std::vector<std::size_t> of;
   for (std::size_t k = 0; k < solved.size(); ++k) {
@@ -134,7 +130,7 @@ void CaseSolver::add_element_results(std::span<const StaticLoad> loads, std::spa
     cases.push_back({&result.displacement, result.load_set, &loads[k].initial, &solved[k].said});
     of.push_back(k);
   }
-  auto fields = recover_elements(*model_, deck_, cases, {true, true, has_strains_});
+  auto fields = recover_elements(*model_, deck_, cases, *layout_);
   for (std::size_t c = 0; c < of.size(); ++c) {
     auto& result = *solved[of[c]].result;
     result.elements = std::move(fields[c].forces);
@@ -156,6 +152,7 @@ void CaseSolver::prepare(const records::Subcase& subcase, Diagnostics& diagnosti
   held_ = list_held(subcase);
   failure_ = nullptr;
   solver_.reset();
+  layout_.reset();
   try {
     Diagnostics own;
     options_.subcase = subcase.id;

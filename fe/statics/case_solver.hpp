@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "fe/statics/element_recovery.hpp"
 #include "fe/statics/static_case.hpp"
 
 namespace bough::fe {
@@ -32,7 +33,7 @@ class CaseSolver {
   /// Of the first of `left` (not empty) and as many after it as are held alike, at most kMostTogether: one model, and
   /// their elements are formed once. A subcase's result does not depend on the others.
   std::vector<Solved> solve_next(std::span<const records::Subcase> left);
-  static constexpr std::size_t kMostTogether = 128;
+  static constexpr std::size_t kMostTogether = 32;  ///< eights for the factor; a dozen copies on the g-set
 
   const Model& model() const { return *model_; }  ///< of the last subcase that had one
 
@@ -41,7 +42,7 @@ class CaseSolver {
   bool is_prepared_for(const records::Subcase& subcase) const;
   /// Without the fields of elements. Those with a result are solved together where nothing is wrong with any.
   void solve_displacements(std::span<const StaticLoad> loads, std::span<Solved> solved) const;
-  void add_element_results(std::span<const StaticLoad> loads, std::span<Solved> solved) const;
+  void add_element_results(std::span<const StaticLoad> loads, std::span<Solved> solved);
 
   const records::Deck& deck_;
   ModelOptions options_;
@@ -51,6 +52,7 @@ class CaseSolver {
   std::exception_ptr failure_;              ///< what came of them
   std::optional<Model> model_;
   std::unique_ptr<StaticSolver> solver_;
+  std::optional<RecoveryLayout> layout_;
   Suport suport_;
 };
 

@@ -1,11 +1,9 @@
 #include "fe/statics/element_recovery.hpp"
 
 #include <array>
-#include <map>
 #include <optional>
 #include <utility>
 
-#include "fe/cards/element_properties.hpp"
 #include "fe/elements/beam.hpp"
 #include "fe/linear/blas.hpp"
 #include "fe/linear/threads.hpp"
@@ -51,78 +49,6 @@ class TableRows {
   Index first_ = 0, count_ = 0;
 };
 
-/// Elements of one card that give the same.
-struct Group {
-  std::string card;
-  std::vector<std::string> names;
-  std::vector<int> elements, id, property;
-};
-using Groups = std::vector<Group>;
-
-/// Where an element stands: its group and row; none where `group` is negative.
-struct Place {
-  int group = -1;
-  Index row = 0;
-};
-
-std::vector<Place> list_places(const Groups& groups, std::size_t num_elements) {
-  std::vector<Place> places(num_elements);
-  for (std::size_t g = 0; g < groups.size(); ++g)
-    for (std::size_t r = 0; r < groups[g].elements.size(); ++r)
-      places[static_cast<std::size_t>(groups[g].elements[r])] = {static_cast<int>(g), static_cast<Index>(r)};
-  return places;
-}
-
-void fill_ids(const Model& model, const std::unordered_map<int, int>& properties, Group& group) {
-  for (const int e : group.elements) {
-    const Element& element = *model.elements()[static_cast<std::size_t>(e)];
-    const auto property = properties.find(element.id());
-    group.id.push_back(element.id());
-    group.property.push_back(property == properties.end() ? 0 : property->second);
-  }
-}
-
-/// Elements of one card may differ in their number of points: "CTETRA" and "CTETRA-24".
-Groups group_by_forces(const Model& model) {
-  std::map<std::pair<std::string, int>, std::vector<int>> found;
-  const auto& elements = model.elements();
-  for (std::size_t e = 0; e < elements.size(); ++e)
-    if (const int count = static_cast<int>(elements[e]->printed_force_names().size()); count > 0)
-      found[{elements[e]->card(), count}].push_back(static_cast<int>(e));
-  Groups groups;
-  for (auto& [key, members] : found) {
-    const bool is_more = !groups.empty() && groups.back().card == key.first;
-    auto names = elements[static_cast<std::size_t>(members.front())]->printed_force_names();
-    groups.push_back({is_more ? key.first + "-" + std::to_string(key.second) : key.first,
-                      std::move(names),
-                      std::move(members),
-                      {},
-                      {}});
-  }
-  return groups;
-}
-
-std::vector<StressPoint> list_points(const Element& element, bool of_strain) {
-  return of_strain ? element.strain_points() : element.stress_points();
-}
-
-Groups group_by_points(const Model& model, bool of_strain) {
-  std::map<std::pair<std::string, std::vector<std::string>>, std::vector<int>> found;
-  const auto& elements = model.elements();
-  for (std::size_t e = 0; e < elements.size(); ++e)
-    if (const auto points = list_points(*elements[e], of_strain); !points.empty())
-      found[{elements[e]->card(), of_strain ? list_strain_result_names(points) : list_result_names(points)}].push_back(
-          static_cast<int>(e));
-  Groups groups;
-  std::map<std::string, int> count;
-  for (auto& [key, members] : found) {
-    const int number = ++count[key.first];
-    groups.push_back(
-        {number == 1 ? key.first : key.first + "-" + std::to_string(number), key.second, std::move(members), {}, {}});
-  }
-  return groups;
-}
-
 /// One element and all cases.
 struct Current {
   const Element& element;
@@ -138,13 +64,12 @@ class PointTables {
  public:
   using Blocks = std::vector<records::ElementStresses> ElementResults::*;
 
-  PointTables(const Model& model, const std::unordered_map<int, int>& properties, bool of_strain, Blocks blocks,
+  PointTables(const Model& model, const RecoveryLayout::Table& layout, bool of_strain, Blocks blocks,
               std::vector<ElementResults>& results)
-      : of_strain_(of_strain), blocks_(blocks), results_(results), groups_(group_by_points(model, of_strain)) {
+      : of_strain_(of_strain), blocks_(blocks), results_(results), layout_(layout), groups_(layout.groups) {
     for (auto& result : results) (result.*blocks).resize(groups_.size());
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-      auto& group = groups_[g];
-      fill_ids(model, properties, group);
+      const auto& group = groups_[g];
       const Element& first = *model.elements()[static_cast<std::size_t>(group.elements.front())];
       const auto rows = static_cast<Index>(group.elements.size()), columns = static_cast<Index>(group.names.size());
       const Index corners =
@@ -164,19 +89,16 @@ class PointTables {
       for (auto& of_half : tables_) of_half.emplace_back(columns, tables);
       for (auto& of_half : corners_) of_half.emplace_back(corners, corner_tables);
     }
-    places_ = list_places(groups_, model.elements().size());
   }
 
-  bool holds(int element) const { return places_[static_cast<std::size_t>(element)].group >= 0; }
-
   void add(const Current& at) {
-    const auto [group, row] = places_[static_cast<std::size_t>(at.index)];
+    const auto [group, row] = layout_.places[static_cast<std::size_t>(at.index)];
     if (group < 0) return;
     const auto g = static_cast<std::size_t>(group);
     MatrixXd values = of_strain_ ? at.element.calc_strains(at.forces) : at.element.calc_stresses(at.forces);
     for (std::size_t c = 0; c < at.heated.size(); ++c)
       if (at.heated[c]) add_part(of_strain_ ? at.heated[c]->strain : at.heated[c]->stress, c, values);
-    const PointResults derive(list_points(at.element, of_strain_), of_strain_);
+    const PointResults derive(of_strain_ ? at.element.strain_points() : at.element.stress_points(), of_strain_);
     MatrixXd rows(static_cast<Index>(groups_[g].names.size()), values.cols());
     for (Index c = 0; c < values.cols(); ++c) derive.calc(values.col(c), rows.col(c));
     tables_[at.half][g].set(row, rows);
@@ -207,21 +129,20 @@ class PointTables {
   bool of_strain_;
   Blocks blocks_;
   std::vector<ElementResults>& results_;
-  Groups groups_;
+  const RecoveryLayout::Table& layout_;
+  const std::vector<RecoveryGroup>& groups_;
   std::array<std::vector<TableRows>, 2> tables_, corners_;
-  std::vector<Place> places_;
 };
 
 /// Forces and strain energies of all groups.
 class ForceTables {
  public:
-  ForceTables(const Model& model, const std::unordered_map<int, int>& properties, std::vector<ElementResults>& results)
-      : model_(model), results_(results), groups_(group_by_forces(model)) {
+  ForceTables(const Model& model, const RecoveryLayout::Table& layout, std::vector<ElementResults>& results)
+      : model_(model), results_(results), layout_(layout), groups_(layout.groups) {
     for (auto& result : results) result.forces.resize(groups_.size());
     energies_.assign(groups_.size(), std::vector<MatrixXd>(results.size()));
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-      auto& group = groups_[g];
-      fill_ids(model, properties, group);
+      const auto& group = groups_[g];
       const auto rows = static_cast<Index>(group.elements.size()), columns = static_cast<Index>(group.names.size());
       std::vector<MatrixXd*> tables, energy_tables;
       for (std::size_t c = 0; c < results.size(); ++c) {
@@ -238,13 +159,10 @@ class ForceTables {
       for (auto& of_half : tables_) of_half.emplace_back(columns, tables);
       for (auto& of_half : energy_tables_) of_half.emplace_back(1, energy_tables);
     }
-    places_ = list_places(groups_, model.elements().size());
   }
 
-  bool holds(int element) const { return places_[static_cast<std::size_t>(element)].group >= 0; }
-
   void add(const Current& at) {
-    const auto [group, row] = places_[static_cast<std::size_t>(at.index)];
+    const auto [group, row] = layout_.places[static_cast<std::size_t>(at.index)];
     if (group < 0) return;
     const auto g = static_cast<std::size_t>(group);
     const auto count = static_cast<Index>(groups_[g].names.size());
@@ -287,10 +205,10 @@ class ForceTables {
  private:
   const Model& model_;
   std::vector<ElementResults>& results_;
-  Groups groups_;
+  const RecoveryLayout::Table& layout_;
+  const std::vector<RecoveryGroup>& groups_;
   std::array<std::vector<TableRows>, 2> tables_, energy_tables_;
-  std::vector<std::vector<MatrixXd>> energies_;  ///< rows x 1, by group and case
-  std::vector<Place> places_;
+  std::vector<std::vector<MatrixXd>> energies_;           ///< rows x 1, by group and case
   std::array<std::pair<MatrixXd, MatrixXd>, 2> scratch_;  ///< K, K U
 };
 
@@ -313,6 +231,11 @@ void find_forces(const std::vector<RecoveryCase>& cases, const EndLoads& end_loa
 
 std::vector<ElementResults> recover_elements(const Model& model, const records::Deck& deck,
                                              const std::vector<RecoveryCase>& cases, const RecoveredFields& fields) {
+  return recover_elements(model, deck, cases, RecoveryLayout(model, deck, fields));
+}
+
+std::vector<ElementResults> recover_elements(const Model& model, const records::Deck& deck,
+                                             const std::vector<RecoveryCase>& cases, const RecoveryLayout& layout) {
   std::vector<ElementResults> results(cases.size());
   if (cases.empty()) return results;
   EndLoads end_loads(cases.size());
@@ -324,17 +247,15 @@ std::vector<ElementResults> recover_elements(const Model& model, const records::
     if (cases[c].load > 0)
       end_loads[c] = calc_beam_end_loads(model, deck, cases[c].load, cases[c].said ? *cases[c].said : unheard);
   }
-  const auto properties = list_element_properties(deck);
   std::optional<ForceTables> forces;
   std::optional<PointTables> stresses, strains;
-  if (fields.forces) forces.emplace(model, properties, results);
-  if (fields.stresses) stresses.emplace(model, properties, false, &ElementResults::stresses, results);
-  if (fields.strains) strains.emplace(model, properties, true, &ElementResults::strains, results);
+  if (layout.forces.is_asked) forces.emplace(model, layout.forces, results);
+  if (layout.stresses.is_asked) stresses.emplace(model, layout.stresses, false, &ElementResults::stresses, results);
+  if (layout.strains.is_asked) strains.emplace(model, layout.strains, true, &ElementResults::strains, results);
 
   const auto recover = [&](int from, int to, std::size_t half) {
     for (int e = from; e < to; ++e) {
-      if (!(forces && forces->holds(e)) && !(stresses && stresses->holds(e)) && !(strains && strains->holds(e)))
-        continue;
+      if (!layout.forces.holds(e) && !layout.stresses.holds(e) && !layout.strains.holds(e)) continue;
       const Element& element = *model.elements()[static_cast<std::size_t>(e)];
       const auto& gdofs = element.gdofs();
       Current at{element, e, half, MatrixXd(element.num_dofs(), static_cast<Index>(cases.size()))};

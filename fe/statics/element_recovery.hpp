@@ -22,9 +22,37 @@ struct ElementResults {
   std::vector<records::ElementStresses> stresses, strains;
 };
 
+/// Elements of one card that give the same.
+struct RecoveryGroup {
+  std::string card;  ///< "CTETRA" and "CTETRA-24" where elements of one card differ in their number of points
+  std::vector<std::string> names;
+  std::vector<int> elements, id, property;  ///< elements: where they stand in the model
+};
+
+/// What of a model's elements is asked for, group by group.
+struct RecoveryLayout {
+  RecoveryLayout(const Model& model, const records::Deck& deck, const RecoveredFields& fields);
+
+  /// Where an element stands: its group and row; none where `group` is negative.
+  struct Place {
+    int group = -1;
+    Eigen::Index row = 0;
+  };
+  struct Table {
+    bool is_asked = false;
+    std::vector<RecoveryGroup> groups;
+    std::vector<Place> places;  ///< of all elements
+    bool holds(int element) const { return is_asked && places[static_cast<std::size_t>(element)].group >= 0; }
+  };
+  Table forces, stresses, strains;
+};
+
 /// Results of every case. The matrices of an element are formed once for all of them: O(elements) beside a product and
 /// what is derived, O(elements x cases). Memory: the results and the numbers of a few elements. Replicated.
 std::vector<ElementResults> recover_elements(const Model& model, const records::Deck& deck,
                                              const std::vector<RecoveryCase>& cases, const RecoveredFields& fields);
+/// The same of a layout that was made before.
+std::vector<ElementResults> recover_elements(const Model& model, const records::Deck& deck,
+                                             const std::vector<RecoveryCase>& cases, const RecoveryLayout& layout);
 
 }  // namespace bough::fe

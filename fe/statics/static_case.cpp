@@ -234,7 +234,14 @@ std::vector<records::StaticSubcase> solve_static_cases(const Model& model, const
 }
 
 Eigen::Matrix<double, 6, 1> calc_resultant(const Model& model, const VectorXd& F_g, const Vector3d& point) {
-  return model.calc_rigid_modes(point).transpose() * F_g;
+  Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
+  for (const Node& node : model.nodes()) {
+    if (node.num_dofs != 6) continue;
+    const Vector3d F = F_g.segment<3>(node.first_gdof);
+    sum.head<3>() += F;
+    sum.tail<3>() += (node.x - point).cross(F) + F_g.segment<3>(node.first_gdof + 3);
+  }
+  return sum;
 }
 
 records::SparseMatrix gather_sparse(const PetscMat& A) {

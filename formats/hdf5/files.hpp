@@ -13,6 +13,8 @@
 
 namespace bough::hdf5 {
 
+class FileWriter;
+
 /// Throw InputError: "hdf5.cannot-open", "hdf5.truncated", "hdf5.wrong-format", "hdf5.missing", "hdf5.shape";
 /// ComputationError "hdf5.write" (disk full, no permission).
 void write_flex_body(const records::FlexBody& body, const std::string& path);
@@ -22,6 +24,22 @@ void write_modes(const records::ModesResult& modes, const std::string& path);
 records::ModesResult read_modes(const std::string& path);
 
 void write_static(const records::StaticResult& result, const std::string& path);
+/// The same file, a subcase after the other: none needs to be kept. Nothing is left of it without commit().
+class StaticWriter {
+ public:
+  explicit StaticWriter(const std::string& path);
+  ~StaticWriter();
+  StaticWriter(const StaticWriter&) = delete;
+  StaticWriter& operator=(const StaticWriter&) = delete;
+  void add(const records::StaticSubcase& subcase);
+  /// What is added so far goes to the disk in the meantime.
+  void start_sync();
+  /// What all subcases share: `whole` without its subcases. The file appears now.
+  void commit(const records::StaticResult& whole);
+
+ private:
+  std::unique_ptr<FileWriter> file_;
+};
 /// All but extremes, forces on grids and strains at corners.
 records::StaticResult read_static(const std::string& path);
 void write_matrices(const records::MatricesResult& result, const std::string& path);

@@ -131,14 +131,27 @@ constexpr const char* kDofMap = "a row per dof: node id and code 1..6 (0 for a s
 
 }  // namespace
 
+StaticWriter::StaticWriter(const std::string& path)
+    : file_(std::make_unique<FileWriter>(path, "bough-static", kStaticFormatVersion)) {}
+
+StaticWriter::~StaticWriter() = default;
+
+void StaticWriter::add(const records::StaticSubcase& subcase) { write_subcase(*file_, subcase); }
+
+void StaticWriter::start_sync() { file_->start_sync(); }
+
+void StaticWriter::commit(const records::StaticResult& whole) {
+  file_->write_source(whole.source);
+  file_->write_integers("/dof_map", whole.dof_map, {kDofMap, "1"});
+  write_mesh(*file_, whole.mesh);
+  for (const auto& block : whole.extremes) write_extremes(*file_, block);
+  file_->commit();
+}
+
 void write_static(const records::StaticResult& result, const std::string& path) {
-  FileWriter file(path, "bough-static", kStaticFormatVersion);
-  file.write_source(result.source);
-  file.write_integers("/dof_map", result.dof_map, {kDofMap, "1"});
-  write_mesh(file, result.mesh);
-  for (const auto& subcase : result.subcases) write_subcase(file, subcase);
-  for (const auto& block : result.extremes) write_extremes(file, block);
-  file.commit();
+  StaticWriter file(path);
+  for (const auto& subcase : result.subcases) file.add(subcase);
+  file.commit(result);
 }
 
 void write_matrices(const records::MatricesResult& result, const std::string& path) {

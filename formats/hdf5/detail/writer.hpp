@@ -50,6 +50,8 @@ class FileWriter {
   /// The dataset `scale` is what the first dimension of `users` stands at.
   void attach_scale(const std::string& scale, const std::vector<std::string>& users);
 
+  /// What is written so far goes to the disk in the meantime.
+  void start_sync() { part_.start_sync(); }
   /// Closes, forces the bytes to disk and renames. The file appears now.
   void commit();
 

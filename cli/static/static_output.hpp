@@ -1,0 +1,65 @@
+#pragma once
+/// \file What `static` makes of its subcases: a file, tables or JSON, extremes; a subcase is let go when all have it.
+#include <future>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fe/model/model.hpp"
+#include "formats/hdf5/files.hpp"
+#include "formats/records/static_result.hpp"
+
+namespace bough::cli {
+
+struct StaticWishes {
+  std::string path;  ///< of the HDF5 file; empty: none
+  bool has_text = true, has_json = false, is_full = false;
+  bool in_cd = false;  ///< text and JSON: vectors in the displacement axes of their grids
+  bool has_extremes = false;
+  bool keeps = false;  ///< the subcases stay in get_result()
+};
+
+/// Takes subcases while the next ones are solved: a thread beside the caller's, where there is one and enough for it.
+class StaticOutput {
+ public:
+  StaticOutput(const records::Deck& deck, StaticWishes wishes);
+  ~StaticOutput();
+  StaticOutput(const StaticOutput&) = delete;
+  StaticOutput& operator=(const StaticOutput&) = delete;
+
+  /// What all subcases share; before the first of them. The model may change afterwards.
+  void set_model(const fe::Model& model);
+  void add(std::vector<records::StaticSubcase> subcases);
+  /// Whether the file could not be written: no use in going on. finish() throws it.
+  bool has_failed();
+  bool is_empty() const { return count_ == 0; }
+  /// With the subcases where they are kept; without extremes before finish().
+  const records::StaticResult& get_result();
+
+  /// The file appears. Throws ComputationError "hdf5.write".
+  void finish();
+  const std::string& get_text() const { return text_; }         ///< after finish()
+  const nlohmann::json& get_subcases() const { return json_; }  ///< after finish(); a list
+  nlohmann::json get_extremes() const;                          ///< after finish()
+
+ private:
+  void wait();
+  void write(const std::vector<records::StaticSubcase>& subcases);
+  void show(const std::vector<records::StaticSubcase>& subcases);
+  records::StaticSubcase turn_to_cd(records::StaticSubcase subcase) const;
+
+  const records::Deck& deck_;
+  StaticWishes wishes_;
+  records::StaticResult result_;
+  std::vector<std::pair<int, Eigen::Matrix3d>> turns_;  ///< first row of three numbers, basic to CD
+  std::size_t count_ = 0;
+  std::optional<hdf5::StaticWriter> file_;
+  std::vector<records::CaseExtremes> shown_extremes_;  ///< with in_cd other than the file's
+  std::string text_;
+  nlohmann::json json_ = nlohmann::json::array();
+  std::exception_ptr failure_;
+  std::future<void> running_;  ///< last: it ends before what it works on
+};
+
+}  // namespace bough::cli
