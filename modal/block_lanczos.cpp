@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fe/linear/blas.hpp"
+#include "fe/linear/threads.hpp"
 
 namespace bough::modal::detail {
 namespace {
@@ -17,15 +18,18 @@ void subtract(const Eigen::Ref<const MatrixXd>& V, const MatrixXd& C, MatrixXd& 
 
 /// The first columns of V become V S: a few rows at a time, since a second V would be the largest thing in memory.
 void turn(const MatrixXd& S, Eigen::Index size, MatrixXd& V) {
-  constexpr Eigen::Index kRows = 4096;
-  MatrixXd rows, turned;
-  for (Eigen::Index first = 0; first < V.rows(); first += kRows) {
-    const auto count = std::min(kRows, V.rows() - first);
-    rows = V.block(first, 0, count, size);
-    turned.resize(count, S.cols());
-    fe::multiply_dense(false, rows, S, 0, turned);
-    V.block(first, 0, count, S.cols()) = turned;
-  }
+  constexpr Eigen::Index kRows = 1024;
+  const auto num_blocks = static_cast<int>((V.rows() + kRows - 1) / kRows);
+  fe::do_halves(num_blocks, 20, [&](int from, int to) {
+    MatrixXd rows, turned;
+    for (Eigen::Index first = from * kRows; first < std::min(to * kRows, V.rows()); first += kRows) {
+      const auto count = std::min(kRows, V.rows() - first);
+      rows = V.block(first, 0, count, size);
+      turned.resize(count, S.cols());
+      fe::multiply_dense(false, rows, S, 0, turned);
+      V.block(first, 0, count, S.cols()) = turned;
+    }
+  });
 }
 
 class BlockLanczos {
@@ -86,13 +90,12 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
   C = MatrixXd::Zero(size_, W.cols());
   R = MatrixXd::Identity(W.cols(), W.cols());
   MatrixXd B_W = problem_.multiply_mass(W);
-  MatrixXd squares = W.cwiseProduct(B_W).colwise().sum();
-  if (problem_.sum) problem_.sum(squares);
-  scale_ = std::max(scale_, std::sqrt(squares.cwiseAbs().maxCoeff()));
   for (int pass = 0; pass < 5 && W.cols() > 0; ++pass) {
+    VectorXd squares = VectorXd::Zero(W.cols());  // of W as it was given: of what is taken off, and what is left
     if (problem_.deflate.cols() > 0) {
       const MatrixXd D = multiply_transposed(problem_.deflate, B_W);
       subtract(problem_.deflate, D, W);
+      squares += D.colwise().squaredNorm().transpose();
     }
     // First the blocks that the recurrence couples; what roundoff left of the others follows in the next pass.
     const int from = pass == 0 ? coupled_from_ : 0;
@@ -102,6 +105,8 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
     C.bottomRows(size_ - from) += C_pass * R;
     B_W = problem_.multiply_mass(W);
     const MatrixXd G = multiply_transposed(W, B_W);
+    squares += C_pass.colwise().squaredNorm().transpose() + G.diagonal();
+    if (pass == 0) scale_ = std::max(scale_, std::sqrt(squares.cwiseAbs().maxCoeff()));
     const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(0.5 * (G + G.transpose()));
     const VectorXd& g = gram.eigenvalues();
     // Lengths: of the operator's result in the first pass, of unit vectors later.
