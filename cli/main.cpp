@@ -16,6 +16,7 @@ __attribute__((section(".preinit_array"), used)) void (*const begin)() = bough::
 }  // namespace
 
 int main(int argc, char** argv) {
+  bough::cli::leave_word_to_first_rank();
   bough::cli::prepare_for_memory_limit(argv);
   bough::cli::secure_streams();
   const int code = bough::cli::run_command({argv + 1, argv + argc});

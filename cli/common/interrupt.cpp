@@ -13,12 +13,15 @@ namespace bough::cli {
 
 namespace {
 
+/// Ranks of one launch end together: the first one says so.
+volatile std::sig_atomic_t is_first_rank = 1;
+
 /// Calls nothing that a handler may not.
 void end_on_signal(int signal) {
   remove_parts();
   const char* text = signal == SIGINT ? "error: interrupted; nothing was written [cli.interrupted]\n"
                                       : "error: told to end; nothing was written [cli.interrupted]\n";
-  (void)!::write(STDERR_FILENO, text, std::strlen(text));
+  if (is_first_rank) (void)!::write(STDERR_FILENO, text, std::strlen(text));
   ::_exit(kComputationFailed);
 }
 
@@ -42,6 +45,8 @@ void end_cleanly_on_signals() {
     ::sigaction(signal, &own, nullptr);
   }
 }
+
+void leave_word_to_first_rank() { is_first_rank = Console::get_launch_rank() == 0; }
 
 void secure_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})

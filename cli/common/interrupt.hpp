@@ -7,6 +7,9 @@ namespace bough::cli {
 /// the signals over.
 void end_cleanly_on_signals();
 
+/// Of several ranks only the first says that it ends. Before main() the environment is not there yet.
+void leave_word_to_first_rank();
+
 /// For such verbs: the three signals call `handler`; a hangup that was ignored (nohup) stays so.
 void take_signals(void (*handler)(int));
 

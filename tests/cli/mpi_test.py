@@ -1,6 +1,7 @@
 """The same numbers on one process and on two."""
 import json
 import os
+import signal
 import subprocess
 import sys
 import unittest
@@ -50,6 +51,21 @@ class Ranks(ProgramTest):
                          "/integrals/exact/gamma0", "/integrals/exact/gamma4", "/rigid/inertia"]:
                 scale = max(np.abs(a[path][:]).max(), 1e-300)
                 np.testing.assert_allclose(b[path][:] / scale, a[path][:] / scale, atol=1e-7, err_msg=path)
+
+    def test_the_end_that_is_asked_for_is_said_once(self):
+        deck = subprocess.run([sys.executable, os.path.join(SOURCE, "bench/plate_deck.py"), "50", "--modes", "150"],
+                              capture_output=True, text=True, check=True).stdout
+        self.write("plate.bdf", deck)
+        process = subprocess.Popen([*launch(2), PROGRAM, "modes", "plate.bdf", "-vv"], cwd=self.folder, text=True,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        line = process.stderr.readline()
+        while line and "converged" not in line:
+            line = process.stderr.readline()
+        process.send_signal(signal.SIGTERM)
+        _, said = process.communicate(timeout=120)
+        if process.returncode == 0:
+            self.skipTest("the modes were there before the signal came")
+        self.assertEqual(said.count("[cli.interrupted]"), 1, said)
 
     def test_plate(self):
         deck = subprocess.run([sys.executable, os.path.join(SOURCE, "bench/plate_deck.py"), "7", "--modes", "8"],
