@@ -198,6 +198,18 @@ class TableLock {
   int descriptor_;
 };
 
+/// Lines behind the head of a table; those within quotes are none.
+std::size_t count_rows(const fs::path& table) {
+  std::ifstream in(table);
+  std::size_t lines = 0;
+  bool is_quoted = false;
+  for (std::istreambuf_iterator<char> at(in), end; at != end; ++at) {
+    if (*at == '"') is_quoted = !is_quoted;
+    if (*at == '\n' && !is_quoted) ++lines;
+  }
+  return lines > 0 ? lines - 1 : 0;
+}
+
 /// n of the shards i/n that have written to these folders; 0 when none has, or of different n.
 int find_shard_count(const std::vector<fs::path>& folders) {
   std::set<int> counts;
@@ -488,6 +500,11 @@ int run_batch(const BatchOptions& o) {
     std::vector<BatchOutcome> outcomes;  // of all shards, as far as they are
     for (const auto& one : plan.get_cases())
       if (auto outcome = read_outcome(get_case(one.number))) outcomes.push_back(std::move(*outcome));
+    if (const auto before = count_rows(folder / "outcomes.csv"); before > outcomes.size())
+      console.print(Diagnostic{Severity::Warning, "batch.smaller-table", {(folder / "outcomes.csv").string()},
+                               fmt::format("it had {} cases and has {} now: the others were merged from other folders",
+                                           before, outcomes.size()),
+                               "merge them again when all shards are done"});
     const auto statistics = write_tables(plan, outcomes, state->get_fingerprint(), folder);
     code = report(o, plan, tally, static_cast<int>(wanted.size()), static_cast<int>(outcomes.size()), statistics,
                   folder, console);

@@ -14,6 +14,8 @@
 #include <sstream>
 #include <tuple>
 
+#include "cli/common/interrupt.hpp"
+
 namespace bough::cli {
 
 namespace {
@@ -237,6 +239,7 @@ int choose_exit_code(const Failure& failure) {
 }
 
 int report_failure(const Failure& failure, const Console& console) {
+  end_in_silence();
   console.print(failure.items());
   return choose_exit_code(failure);
 }

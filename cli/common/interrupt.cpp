@@ -13,15 +13,15 @@ namespace bough::cli {
 
 namespace {
 
-/// Ranks of one launch end together: the first one says so.
-volatile std::sig_atomic_t is_first_rank = 1;
+/// Ranks of one launch end together: the first one says so, unless it has said why.
+volatile std::sig_atomic_t says_it = 1;
 
 /// Calls nothing that a handler may not.
 void end_on_signal(int signal) {
   remove_parts();
   const char* text = signal == SIGINT ? "error: interrupted; nothing was written [cli.interrupted]\n"
                                       : "error: told to end; nothing was written [cli.interrupted]\n";
-  if (is_first_rank) (void)!::write(STDERR_FILENO, text, std::strlen(text));
+  if (says_it) (void)!::write(STDERR_FILENO, text, std::strlen(text));
   ::_exit(kComputationFailed);
 }
 
@@ -46,7 +46,11 @@ void end_cleanly_on_signals() {
   }
 }
 
-void leave_word_to_first_rank() { is_first_rank = Console::get_launch_rank() == 0; }
+void leave_word_to_first_rank() {
+  if (Console::get_launch_rank() != 0) says_it = 0;
+}
+
+void end_in_silence() { says_it = 0; }
 
 void secure_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})

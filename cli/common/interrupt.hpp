@@ -10,6 +10,9 @@ void end_cleanly_on_signals();
 /// Of several ranks only the first says that it ends. Before main() the environment is not there yet.
 void leave_word_to_first_rank();
 
+/// A failure has been told: the signal with which mpirun ends the other ranks adds nothing.
+void end_in_silence();
+
 /// For such verbs: the three signals call `handler`; a hangup that was ignored (nohup) stays so.
 void take_signals(void (*handler)(int));
 

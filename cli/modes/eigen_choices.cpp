@@ -21,7 +21,7 @@ modal::EigenOptions choose_eigen_options(const ModesOptions& options, const reco
   eigen.check_inertia = !options.no_check;
   for (const auto& card : deck.eigen_methods) {
     if (!names(card)) continue;
-    eigen.num_modes = card.num_modes;
+    eigen.num_modes = card.is_lowest_only && options.max_hz ? 0 : card.num_modes;
     eigen.min_hz = card.f1;
     eigen.max_hz = card.f2;
     if (!options.buckling && counts_whatever_range(card)) eigen.min_hz = eigen.max_hz = std::nullopt;

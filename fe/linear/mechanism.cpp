@@ -31,6 +31,29 @@ void reduce_columns(MatrixXd& X) {
   }
 }
 
+/// Those of m motions that strain next to nothing, by inverse iteration on a subspace.
+MatrixXd find_soft_motions(Mat K, const VectorXd& D, const SymmetricFactor& factor, Eigen::Index m, double most) {
+  const Eigen::Index n = D.size();
+  MatrixXd X = make_random(n, m);
+  VectorXd energy;
+  for (int iteration = 0; iteration < 5; ++iteration) {
+    X = factor.solve(D.asDiagonal() * X);
+    for (Eigen::Index c = 0; c < m; ++c) X.col(c) /= std::sqrt(X.col(c).dot(D.cwiseProduct(X.col(c))));
+    // An orthonormal basis under D, then its Ritz vectors.
+    MatrixXd scaled = D.cwiseSqrt().asDiagonal() * X;
+    scaled = Eigen::HouseholderQR<MatrixXd>(scaled).householderQ() * MatrixXd::Identity(n, m);
+    X = D.cwiseSqrt().cwiseInverse().asDiagonal() * scaled;
+    MatrixXd projected = X.transpose() * fe::multiply(K, X);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(0.5 * (projected + projected.transpose()));
+    X = (X * ritz.eigenvectors()).eval();
+    energy = ritz.eigenvalues().cwiseAbs();
+  }
+  std::vector<int> found;
+  for (int c = 0; c < m; ++c)
+    if (energy[c] < most) found.push_back(c);
+  return X(Eigen::all, found);
+}
+
 }  // namespace
 
 double calc_softest_energy(Mat K, const RowKinds& kinds, const SymmetricFactor& factor) {
@@ -44,29 +67,14 @@ double calc_softest_energy(Mat K, const RowKinds& kinds, const SymmetricFactor& 
 
 MatrixXd find_mechanisms(Mat K, const RowKinds& kinds, int expected, double most) {
   const VectorXd D = fill_diagonal(get_diagonal(K), kinds);
-  const Eigen::Index n = D.size(), m = std::min<Eigen::Index>(n, std::clamp(expected + 2, 6, 24));
+  const Eigen::Index n = D.size();
   const PetscMat shifted = add_diagonal(K, 1e-13 * D);
   const SymmetricFactor factor(shifted.get(), false, FactorMethod::Pivoting);
   if (factor.is_singular()) return MatrixXd(n, 0);
-
-  MatrixXd X = make_random(n, m);
-  VectorXd energy;
-  for (int iteration = 0; iteration < 5; ++iteration) {
-    X = factor.solve(D.asDiagonal() * X);
-    for (Eigen::Index c = 0; c < m; ++c) X.col(c) /= std::sqrt(X.col(c).dot(D.cwiseProduct(X.col(c))));
-    // An orthonormal basis under D, then its Ritz vectors.
-    MatrixXd scaled = D.cwiseSqrt().asDiagonal() * X;
-    scaled = Eigen::HouseholderQR<MatrixXd>(scaled).householderQ() * MatrixXd::Identity(n, m);
-    X = D.cwiseSqrt().cwiseInverse().asDiagonal() * scaled;
-    MatrixXd projected = X.transpose() * multiply(K, X);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(0.5 * (projected + projected.transpose()));
-    X = (X * ritz.eigenvectors()).eval();
-    energy = ritz.eigenvalues().cwiseAbs();
-  }
-  std::vector<int> found;
-  for (int c = 0; c < m; ++c)
-    if (energy[c] < most) found.push_back(c);
-  MatrixXd basis = X(Eigen::all, found);
+  const Eigen::Index m = std::min<Eigen::Index>(n, std::clamp(expected + 2, 6, kMostMechanisms));
+  MatrixXd basis = find_soft_motions(K, D, factor, m, most);
+  const Eigen::Index all = std::min<Eigen::Index>(n, kMostMechanisms);
+  if (basis.cols() == m && m < all) basis = find_soft_motions(K, D, factor, all, most);  // there may be more of them
   reduce_columns(basis);
   return basis;
 }

@@ -10,12 +10,15 @@ inline constexpr double kMechanismEnergy = 4e-15;
 /// The same where a solution has already failed by its residual: round-off of the elements may leave a mechanism more.
 inline constexpr double kSoftMotionEnergy = 100 * kMechanismEnergy;
 
+/// More of them are not looked for.
+inline constexpr int kMostMechanisms = 24;
+
 /// xᵀKx / xᵀDx of the softest motion x that one solution for a random load (fixed seed) shows, D = diag K. The rows
 /// are of `kinds`: the same for K in any units.
 double calc_softest_energy(Mat K, const RowKinds& kinds, const SymmetricFactor& factor);
 
 /// A basis (num_rows x k) of the motions with xᵀKx < `energy` xᵀDx, by inverse iteration of K + 1e-13 D on at
-/// least `expected` vectors; k = 0 when there are none, k ≤ 24. Columns are reduced: each has a unit entry (largest by
+/// least `expected` vectors; k = 0 when there are none, k ≤ kMostMechanisms. Columns are reduced: each has a unit entry (largest by
 /// complete pivoting) where the others are zero, so separate mechanisms stay separate.
 Eigen::MatrixXd find_mechanisms(Mat K, const RowKinds& kinds, int expected, double energy = kMechanismEnergy);
 

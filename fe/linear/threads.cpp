@@ -1,5 +1,7 @@
 #include "fe/linear/threads.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
@@ -23,10 +25,17 @@ class OneThread {
   int before_ = set_openmp_levels(0);
 };
 
+/// OpenBLAS takes 128 MB of addresses for a second thread, and where ulimit -v leaves none tries for ever.
+bool has_limited_memory() {
+  rlimit limit{};
+  return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+}
+
 }  // namespace
 
 int get_num_threads() {
   if (initialize_petsc().size > 1) return 1;  // the ranks are threads enough
+  if (has_limited_memory()) return 1;
   if (const char* asked = std::getenv("OMP_NUM_THREADS")) return std::max(1, std::atoi(asked));
   return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 2U));
 }

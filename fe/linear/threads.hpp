@@ -4,7 +4,7 @@
 
 namespace bough::fe {
 
-/// OMP_NUM_THREADS, or two where the machine has them; one of each rank of several.
+/// OMP_NUM_THREADS, or two where the machine has them; one of each rank of several, and where ulimit -v limits memory.
 int get_num_threads();
 
 /// Both at once, the second in a thread of its own; OpenMP starts none beside them. What either throws is thrown here.

@@ -48,7 +48,8 @@ double calc_model_size(const Model& model) {
     Diagnostic item;
     item.id = "fe.mechanism";
     item.what = "the stiffness matrix is singular: mechanism " + std::to_string(c + 1) + " of " +
-                std::to_string(motions.cols()) + " moves most at " + describe_motion(model, kept, motions.col(c), size);
+                std::to_string(motions.cols()) + (motions.cols() < kMostMechanisms ? "" : " or more") +
+                " moves most at " + describe_motion(model, kept, motions.col(c), size);
     item.advice = "hold or stiffen these dofs (components in the displacement axes of the grids)";
     const auto& subcase = model.subcase();
     const auto num_held = model.num_fdofs() - static_cast<int>(kept.size());

@@ -345,6 +345,7 @@ struct EigenMethod {
   std::string method;  ///< EIGR: LAN, GIV, ...
   std::optional<double> f1, f2;
   int num_modes = 0;          ///< 0: by range
+  bool is_lowest_only = false;  ///< num_modes is 1 for want of a number and of an upper end
   std::string norm = "MASS";  ///< MASS, MAX, POINT
   int norm_grid = 0, norm_component = 0;
   CardLocation at;

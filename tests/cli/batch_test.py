@@ -298,6 +298,13 @@ take = "min"
         self.assertEqual(self.without_time("merged"), self.without_time("whole"))
         self.assertEqual(self.read("merged/statistics.csv"), self.read("whole/statistics.csv"))
         self.bough("batch", "study.toml", "-o", "whole", "--merge")
+        # A shard again where more was merged: its own table is smaller, and that is told.
+        self.bough("batch", "study.toml", "-o", "part-1", "--merge", *parts)
+        said = self.bough("batch", "study.toml", "-o", "part-1", "--shard", "1/3").stderr
+        self.assertIn("[batch.smaller-table]", said)
+        self.assertIn("it had 7 cases and has 3 now", said)
+        said = self.bough("batch", "study.toml", "-o", "part-1", "--shard", "1/3").stderr
+        self.assertNotIn("[batch.smaller-table]", said)
         self.write("beam.bdf", BEAM.replace("2700.", "2800."))
         self.fails(1, *merge, *parts, error="batch.changed-campaign")
 

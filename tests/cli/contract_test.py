@@ -136,6 +136,13 @@ class Decks(ProgramTest):
     def test_a_range_without_an_inside_is_an_error(self):
         self.write("beam.bdf", BEAM)
         self.fails(1, "modes", "beam.bdf", "--min-hz", 20, "--max-hz", 10, says=["from 20 to 10"], error="cli.bad-range")
+        # A range goes before the one root of an EIGRL that says neither a number nor an end; not before its number.
+        for card, number in (("EIGRL,1", 6), ("EIGRL,1,,,1", 1), ("EIGRL,1,,1.", 6)):
+            self.write("ranged.bdf", BEAM.replace("EIGRL,1,,,3", card))
+            found = json.loads(self.bough("modes", "ranged.bdf", "--max-hz", 1e9, "--json").stdout)["frequency_hz"]
+            self.assertGreaterEqual(len(found), number, card) if number > 1 else self.assertEqual(len(found), 1, card)
+        self.write("ranged.bdf", BEAM.replace("EIGRL,1,,,3", "EIGRL,1"))
+        self.assertEqual(len(json.loads(self.bough("modes", "ranged.bdf", "--json").stdout)["frequency_hz"]), 1)
         result = self.bough("modes", "beam.bdf", "--min-hz", 1e-6, "--max-hz", 2e-6)
         self.assertIn("[modal.empty-range]", result.stderr)
         self.assertNotIn("none missed", result.stdout)

@@ -305,6 +305,13 @@ class Modes(ProgramTest):
             self.assertLess(np.abs(shape / shape[20] - sine).max(), 1e-4)
 
 
+class Mechanisms(ProgramTest):
+    def test_more_than_are_listed_are_told_to_be_more(self):
+        pairs = "".join(f"CELAS2,{k},9.,{2 * k},,{2 * k + 1}\n" for k in range(1, 31))
+        self.write("p.bdf", "SOL 101\nCEND\nLOAD = 1\nBEGIN BULK\nSPOINT,2,THRU,61\nSLOAD,1,2,1.\n" + pairs + "ENDDATA\n")
+        self.fails(1, "static", "p.bdf", says=["mechanism 1 of 24 or more"], error="fe.mechanism")
+
+
 class CheckGeometry(ProgramTest):
     def test_coincident_and_unused_grids(self):
         self.write("frame.bdf", FRAME.replace("ENDDATA", "GRID,8,,1.,0.,0.\nENDDATA"))

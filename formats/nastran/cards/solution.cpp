@@ -65,7 +65,8 @@ void parse_eigrl(Card& card, Reading& r) {
   read_keywords(card, m);
   if (m.f1 && m.f2 && *m.f2 <= *m.f1)
     card.fail("deck.field-range", 2, "V2 is '" + std::string(card.get(2)) + "', expected a value above V1");
-  if (m.num_modes == 0 && !m.f2) m.num_modes = 1;
+  m.is_lowest_only = m.num_modes == 0 && !m.f2;
+  if (m.is_lowest_only) m.num_modes = 1;
   if (r.claim(IdSpace::EigenMethod, m.sid, card)) r.deck.eigen_methods.push_back(std::move(m));
 }
 
@@ -105,7 +106,8 @@ void parse_eigb(Card& card, Reading& r) {
   m.at = card.get_location();
   card.demand(m.num_modes >= 0, 5, "NDP", "zero or a positive integer");
   if (m.f1 && m.f2 && *m.f2 <= *m.f1) m.f1 = m.f2 = std::nullopt;
-  if (m.num_modes == 0 && !m.f2) m.num_modes = 1;
+  m.is_lowest_only = m.num_modes == 0 && !m.f2;
+  if (m.is_lowest_only) m.num_modes = 1;
   if (r.claim(IdSpace::EigenMethod, m.sid, card)) r.deck.eigen_methods.push_back(std::move(m));
 }
 

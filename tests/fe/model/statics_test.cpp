@@ -85,6 +85,22 @@ TEST(StaticsMpi, unheld_model_is_a_mechanism_of_six_motions) {
   EXPECT_EQ(find_mechanisms(assemble_stiffness(model, DofSet::Free).get(), list_row_kinds(model), 6).cols(), 6);
 }
 
+TEST(StaticsMpi, more_motions_than_those_of_a_body_are_all_found) {
+  // Free, and the last grid spins; or it is loose altogether.
+  Eigen::Matrix<double, 6, 6> pinned = make_beam(1);
+  pinned.row(3).setZero();
+  pinned.col(3).setZero();
+  ModelOptions options;
+  options.autospc = false;
+  Diagnostics d;
+  auto deck = make_line(6, 5);
+  deck.subcases.clear();
+  const std::string text = catch_mechanism(Model::build(deck, options, make_chain(1, pinned), d));
+  EXPECT_THAT(text, HasSubstr("mechanism 7 of 7"));
+  const auto loose = Model::build(deck, options, make_chain(1, Eigen::Matrix<double, 6, 6>::Zero()), d);
+  EXPECT_THAT(catch_mechanism(loose), HasSubstr("mechanism 12 of 12"));
+}
+
 TEST(StaticsMpi, hinge_is_named_by_grid_and_component) {
   auto deck = make_line(6, 5);
   deck.spc.push_back(make_spc(1, 1, 63));
