@@ -1,35 +1,11 @@
 #include "fe/elements/beam.hpp"
 
+#include <array>
+
 #include "base/rotation.hpp"
+#include "fe/elements/geometric_projection.hpp"
 
 namespace bough::fe {
-
-Matrix6d calc_section_mass(const BeamProperty& property, const BeamSection& s, bool bending) {
-  const double rho_A = property.material.rho * s.A;
-  const double mu = rho_A + s.nsm;
-  Matrix6d m = Matrix6d::Zero();
-  m.topLeftCorner<3, 3>() = mu * Matrix3d::Identity();
-  if (property.has_torsional_inertia) m(3, 3) = property.material.rho * (s.I1 + s.I2);
-  if (!property.has_section_inertia) return m;
-  const Eigen::Vector2d first = rho_A * s.n + s.nsm * s.m;
-  const Vector3d p(0, first[0], first[1]);
-  m.topRightCorner<3, 3>() = -skew(p);
-  m.bottomLeftCorner<3, 3>() = skew(p);
-  const double rho = property.material.rho;
-  double yy = rho_A * s.n[0] * s.n[0] + s.nsm * s.m[0] * s.m[0];
-  double zz = rho_A * s.n[1] * s.n[1] + s.nsm * s.m[1] * s.m[1];
-  double yz = rho_A * s.n[0] * s.n[1] + s.nsm * s.m[0] * s.m[1];
-  m(3, 3) = yy + zz + rho * (s.I1 + s.I2) + s.nsi;
-  if (bending) {
-    yy += rho * s.I1;
-    zz += rho * s.I2;
-    yz += rho * s.I12;
-  }
-  m(4, 4) = zz;
-  m(5, 5) = yy;
-  m(4, 5) = m(5, 4) = -yz;
-  return m;
-}
 
 Beam::Beam(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs,
            std::shared_ptr<const BeamProperty> property, const BeamGeometry& geometry,
@@ -73,7 +49,7 @@ Matrix12d Beam::calc_arm_map() const {
 }
 
 Matrix12d Beam::calc_end_map() const {
-  if (!(geometry_.pin_a || geometry_.pin_b)) return calc_arm_map();
+  if (!has_pins()) return calc_arm_map();
   return calc_release() * calc_arm_map();
 }
 
@@ -107,27 +83,30 @@ void Beam::add_lumped_mass(double scale, Eigen::Ref<MatrixXd> M) const {
   }
 }
 
-void Beam::add_consistent_mass(double scale, Eigen::Ref<MatrixXd> M) const {
-  const BeamField& field = *field_;
-  Matrix12d local = Matrix12d::Zero();
-  double mass = 0;
-  for (const auto& point : field.calc_points(4, 7)) {
-    const Matrix6d m = calc_section_mass(*property_, property_->calc_section(point.x / geometry_.length), true);
-    Matrix6x12d D;
-    field.calc_shape(point.x, &D, nullptr);
-    const Matrix6x12d mD = point.weight * (m * D);
-    local.noalias() += D.transpose().lazyProduct(mD);
-    mass += point.weight * m(0, 0);
+void Beam::add_at_grids(const Matrix12d& local, double scale, Eigen::Ref<MatrixXd> K) const {
+  if (has_arms() || has_pins()) {
+    const Matrix12d T = calc_end_map();
+    K += scale * (T.transpose() * (local * T));
+    return;
   }
+  const Matrix3d& R = geometry_.R_basic_element;
+  for (int i = 0; i < 12; i += 3)
+    for (int j = 0; j < 12; j += 3) {
+      const Matrix3d turned = R * local.block<3, 3>(i, j);
+      K.block<3, 3>(i, j) += scale * (turned * R.transpose());
+    }
+}
+
+void Beam::add_consistent_mass(double scale, Eigen::Ref<MatrixXd> M) const {
+  BeamField::LineMass line = field_->calc_line_mass();
   if (!property_->has_section_inertia && !property_->has_torsional_inertia && !geometry_.is_part) {
     // Nastran's coupled CBAR: the axial terms are the mean of lumped and consistent. BARMASS makes them consistent.
-    local(0, 0) += mass / 12;
-    local(6, 6) += mass / 12;
-    local(0, 6) -= mass / 12;
-    local(6, 0) -= mass / 12;
+    line.M(0, 0) += line.mass / 12;
+    line.M(6, 6) += line.mass / 12;
+    line.M(0, 6) -= line.mass / 12;
+    line.M(6, 0) -= line.mass / 12;
   }
-  const Matrix12d T = calc_end_map();
-  M += scale * (T.transpose() * (local * T));
+  add_at_grids(line.M, scale, M);
 }
 
 void Beam::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
@@ -149,43 +128,97 @@ std::vector<std::string> Beam::internal_force_names() const {
   return {"axial", "shear_y", "shear_z", "torque", "moment_y_a", "moment_z_a", "moment_y_b", "moment_z_b"};
 }
 
+namespace {
+
+/// ½ qᵀ W q = second-order part of the stress power, docs/elements/beam.md eq. (7): W(i, j) = W(j, i) of each force.
+struct StressTerm {
+  enum Force { kN, kVy, kVz, kT, kMy, kMz } force;
+  enum Motion { du, dv, dw, rx, ry, rz, drx, dry, drz } i, j;
+  double factor;
+  bool is_twist() const { return i == drx && j == drx; }  ///< its factor is r²
+  static const std::array<StressTerm, 17> kAll;
+};
+// clang-format off
+constexpr std::array<StressTerm, 17> StressTerm::kAll{{
+    {kN, dv, dv, 1}, {kN, dw, dw, 1}, {kN, drx, drx, 1},
+    {kVy, rx, dw, 1}, {kVy, rx, ry, 0.5}, {kVy, rz, du, -1},
+    {kVz, rx, dv, -1}, {kVz, rx, rz, 0.5}, {kVz, ry, du, 1},
+    {kT, rz, dry, 0.5}, {kT, ry, drz, -0.5},
+    {kMy, dv, drx, -1}, {kMy, rx, drz, 0.5}, {kMy, rz, drx, 0.5},
+    {kMz, dw, drx, -1}, {kMz, rx, dry, -0.5}, {kMz, ry, drx, -0.5}}};
+// clang-format on
+
+/// q of the section at x per displacements of the ends.
+Eigen::Matrix<double, 9, 12> calc_stressed_motion(const BeamField& field, double x) {
+  Matrix6x12d D, e;
+  field.calc_shape(x, &D, &e);
+  Eigen::Matrix<double, 9, 12> Q;
+  Q.row(StressTerm::du) = e.row(0);
+  Q.row(StressTerm::dv) = e.row(1) + D.row(5);
+  Q.row(StressTerm::dw) = e.row(2) - D.row(4);
+  Q.middleRows<3>(StressTerm::rx) = D.bottomRows<3>();
+  Q.middleRows<3>(StressTerm::drx) = e.bottomRows<3>();
+  return Q;
+}
+
+/// Polar radius² of the section. Without torsional stiffness the twist is anybody's, AUTOSPC's in skew axes: no work
+/// for N on it.
+double calc_twist_radius2(const BeamField& field, const BeamSection& s) {
+  return field.active().torsion ? s.n.squaredNorm() + (s.A > 0 ? (s.I1 + s.I2) / s.A : 0) : 0;
+}
+
+}  // namespace
+
 void Beam::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                    Eigen::Ref<MatrixXd> K_G) const {
-  const double N = force[0], Vy = force[1], Vz = force[2], T = force[3];
   const BeamField& field = *field_;
   Matrix12d local = Matrix12d::Zero();
-  enum { du, dv, dw, rx, ry, rz, drx, dry, drz };
   for (const auto& point : field.calc_points(3, 7)) {
     const double t = point.x / geometry_.length;
-    const double My = (1 - t) * force[4] + t * force[6], Mz = (1 - t) * force[5] + t * force[7];
-    const BeamSection s = property_->calc_section(t);
-    // Without torsional stiffness the twist is anybody's, AUTOSPC's in skew axes: no work for N on it.
-    const double r2 = field.active().torsion ? s.n.squaredNorm() + (s.A > 0 ? (s.I1 + s.I2) / s.A : 0) : 0;
-    // ½ qᵀ W q = second-order part of the stress power, docs/elements/beam.md eq. (7).
+    const double section[] = {
+        force[0], force[1], force[2], force[3], (1 - t) * force[4] + t * force[6], (1 - t) * force[5] + t * force[7]};
+    const double r2 = calc_twist_radius2(field, property_->calc_section(t));
     Eigen::Matrix<double, 9, 9> W = Eigen::Matrix<double, 9, 9>::Zero();
-    const auto set = [&](int i, int j, double value) { W(i, j) = W(j, i) = value; };
-    W(dv, dv) = W(dw, dw) = N;
-    W(drx, drx) = N * r2;
-    set(rx, dw, Vy), set(rx, ry, 0.5 * Vy), set(rz, du, -Vy);
-    set(rx, dv, -Vz), set(rx, rz, 0.5 * Vz), set(ry, du, Vz);
-    set(dv, drx, -My), set(rx, drz, 0.5 * My), set(rz, drx, 0.5 * My);
-    set(dw, drx, -Mz), set(rx, dry, -0.5 * Mz), set(ry, drx, -0.5 * Mz);
-    set(rz, dry, 0.5 * T), set(ry, drz, -0.5 * T);
-    Matrix6x12d D, e;
-    field.calc_shape(point.x, &D, &e);
-    Eigen::Matrix<double, 9, 12> Q;
-    Q.row(du) = e.row(0);
-    Q.row(dv) = e.row(1) + D.row(5);
-    Q.row(dw) = e.row(2) - D.row(4);
-    Q.middleRows<3>(rx) = D.bottomRows<3>();
-    Q.middleRows<3>(drx) = e.bottomRows<3>();
+    for (const auto& term : StressTerm::kAll)
+      W(term.i, term.j) = W(term.j, term.i) = section[term.force] * (term.is_twist() ? r2 : term.factor);
+    const Eigen::Matrix<double, 9, 12> Q = calc_stressed_motion(field, point.x);
     const Eigen::Matrix<double, 9, 12> WQ = point.weight * (W * Q);
     local.noalias() += Q.transpose().lazyProduct(WQ);
   }
-  const Matrix12d map = calc_end_map();
-  K_G += scale * (map.transpose() * (local * map));
-  if (!geometry_.wa.isZero(0) || !geometry_.wb.isZero(0)) add_arm_stiffness(force, scale, K_G);
-  if (geometry_.pin_a || geometry_.pin_b) add_pin_stiffness(force, scale, K_G);
+  add_at_grids(local, scale, K_G);
+  if (has_arms()) add_arm_stiffness(force, scale, K_G);
+  if (has_pins()) add_pin_stiffness(force, scale, K_G);
+}
+
+/// Products of q at the points, once for all loads. Arms and pins have terms of their own.
+void Beam::add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
+                                             GeometricProjection& sums) const {
+  if (has_arms() || has_pins()) return Element::add_projected_geometric_stiffness(U, Phi, sums);
+  auto terms = sums.add_terms(num_internal_forces());
+  MatrixXd force(num_internal_forces(), U.cols());
+  calc_internal_forces_of(U, force);
+  terms.weights = force;
+  Eigen::Matrix<double, Eigen::Dynamic, 12> ends(Phi.cols(), 12);  // rows: columns of Φ in element axes
+  for (int i = 0; i < 12; i += 3)
+    ends.middleCols<3>(i) = Phi.middleRows<3>(i).transpose().lazyProduct(geometry_.R_basic_element);
+  Eigen::Matrix<double, Eigen::Dynamic, 9> X(Phi.cols(), 9);
+  for (const auto& point : field_->calc_points(3, 7)) {
+    const double t = point.x / geometry_.length;
+    const double r2 = calc_twist_radius2(*field_, property_->calc_section(t));
+    X.noalias() = ends.lazyProduct(calc_stressed_motion(*field_, point.x).transpose());
+    for (const auto& term : StressTerm::kAll) {
+      const auto add = [&, factor = point.weight * (term.is_twist() ? r2 : term.factor)](int k, double share) {
+        auto product = terms.products.col(k);
+        if (term.i == term.j)
+          add_square(X.col(term.i), share * factor, product);
+        else
+          add_cross(X.col(term.i), X.col(term.j), share * factor, product);
+      };
+      const bool is_moment = term.force == StressTerm::kMy || term.force == StressTerm::kMz;
+      add(term.force, is_moment ? 1 - t : 1);  // moments: those of end A
+      if (is_moment) add(term.force + 2, t);   // and of end B
+    }
+  }
 }
 
 /// Second-order motion of the arm tips, ½ θ×(θ×w), under the end forces.

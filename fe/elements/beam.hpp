@@ -29,10 +29,6 @@ struct BeamLineLoad {
   Eigen::Matrix<double, 6, 1> p1 = Eigen::Matrix<double, 6, 1>::Zero(), p2 = p1;
 };
 
-/// Mass per length of a section about its shear centre, for the motion [u v w θx θy θz]: 6 x 6.
-/// bending: with the rotary inertia of the section about its y and z axes.
-Matrix6d calc_section_mass(const BeamProperty& property, const BeamSection& s, bool bending);
-
 class Beam final : public Element {
  public:
   /// nodes: two; gdofs: twelve. The property must give E > 0 and a positive length is the caller's check. field: of
@@ -63,6 +59,8 @@ class Beam final : public Element {
   VectorXd calc_thermal_strains(const ElementTemperature& T) const override;
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
+  void add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
+                                         GeometricProjection& sums) const override;
 
   bool has_expansion() const override { return property_->material.alpha != 0; }
   double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
@@ -85,6 +83,10 @@ class Beam final : public Element {
   Matrix12d calc_arm_map() const;  ///< arm tip dofs (element axes) per grid dofs (basic)
   Matrix12d calc_release() const;  ///< element end dofs per arm tip dofs: pins condensed
   Matrix12d calc_end_map() const;  ///< element end dofs per grid dofs
+  bool has_arms() const { return !geometry_.wa.isZero(0) || !geometry_.wb.isZero(0); }
+  bool has_pins() const { return geometry_.pin_a || geometry_.pin_b; }
+  /// K += scale Tᵀ local T, T the end map.
+  void add_at_grids(const Matrix12d& local, double scale, Eigen::Ref<MatrixXd> K) const;
   void add_arm_stiffness(const Eigen::Ref<const VectorXd>& force, double scale, Eigen::Ref<MatrixXd> K_G) const;
   void add_pin_stiffness(const Eigen::Ref<const VectorXd>& force, double scale, Eigen::Ref<MatrixXd> K_G) const;
   void add_lumped_mass(double scale, Eigen::Ref<MatrixXd> M) const;

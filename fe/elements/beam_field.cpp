@@ -68,6 +68,21 @@ void BeamField::keep_shapes() {
       calc_shape(point.x, &kept.back().second.D, &kept.back().second.e);
     }
   kept_ = std::move(kept);
+  kept_mass_ = calc_line_mass();
+}
+
+BeamField::LineMass BeamField::calc_line_mass() const {
+  if (kept_mass_) return *kept_mass_;
+  LineMass line{Matrix12d::Zero(), 0};
+  for (const auto& point : calc_points(4, 7)) {
+    const Matrix6d m = calc_section_mass(property_, property_.calc_section(point.x / length_), true);
+    Matrix6x12d D;
+    calc_shape(point.x, &D, nullptr);
+    const Matrix6x12d mD = point.weight * (m * D);
+    line.M.noalias() += D.transpose().lazyProduct(mD);
+    line.mass += point.weight * m(0, 0);
+  }
+  return line;
 }
 
 const BeamField::Shape* BeamField::find_kept(double x) const {

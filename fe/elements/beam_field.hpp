@@ -8,6 +8,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -49,8 +50,16 @@ class BeamField {
   };
   std::vector<Point> calc_points(int num_uniform, int num_tapered) const;
 
-  /// Keeps the shapes at calc_points(3, 7) and calc_points(4, 7), some 8 kB of a uniform beam; calc_shape() then takes
-  /// them from there. For a field that many beams share. Nothing for a tapered one.
+  /// ∫ Dᵀ m D with the inertia of the sections, 12 x 12 in element axes, and the mass of the line.
+  struct LineMass {
+    Matrix12d M;
+    double mass;
+  };
+  LineMass calc_line_mass() const;
+
+  /// Keeps the shapes at calc_points(3, 7) and calc_points(4, 7) and the mass, some 9 kB of a uniform beam;
+  /// calc_shape() and calc_line_mass() then take them from there. For a field that many beams share. Nothing for a
+  /// tapered one.
   void keep_shapes();
 
  private:
@@ -69,6 +78,7 @@ class BeamField {
   Matrix6x12d GS_;              ///< G S
   std::vector<double> breaks_;  ///< tapered: ends of the panels of the quadrature, 0 to length
   std::vector<std::pair<double, Shape>> kept_;
+  std::optional<LineMass> kept_mass_;
 };
 
 /// Fields by property and length, to be shared by the beams that have them: most of the work on a small frame is in

@@ -132,6 +132,9 @@ void require_memory_of(Mat analysed) {
   MatInfo info;
   check_petsc(MatGetSize(analysed, &n, nullptr));
   check_petsc(MatGetInfo(analysed, MAT_LOCAL, &info));
+  // A megabyte is there: to ask the system takes as long as such a factor.
+  constexpr double kFewEntries = 1e5;
+  if (info.nz_used < kFewEntries) return;
   require_memory(static_cast<double>(n), info.nz_used, calc_free_memory());
 }
 

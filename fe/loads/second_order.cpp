@@ -1,6 +1,7 @@
 #include "fe/loads/second_order.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 namespace bough::fe {
@@ -36,20 +37,31 @@ class GridForms {
   std::map<int, Weights> at_;
 };
 
+/// Forces on the points of carried masses in each of the twelve inertial loads.
+using PointLoads = std::array<Matrix3Xd, 12>;
+
+PointLoads calc_unit_loads(const CarriedMass& carried) {
+  PointLoads loads;
+  for (int c = 0; c < 12; ++c)
+    loads[static_cast<std::size_t>(c)] = calc_point_loads(carried, calc_acceleration_field(Vector12d::Unit(c)));
+  return loads;
+}
+
 /// -f·(zᵀ Q z) of every point is ½ zᵀ W z.
-void add_field(const Element& element, const CarriedMass& carried, const CarriedField& field, const MatrixXd& A_I,
+void add_field(const Element& element, const PointLoads& f, const CarriedField& field, const MatrixXd& A_I,
                std::vector<QuadraticForm>& forms) {
   const auto r = static_cast<int>(field.L.rows());
-  MatrixXd unit = MatrixXd::Zero(r * (r + 1) / 2, 12), W(r, r);
-  for (int c = 0; c < 12; ++c) {
-    const Matrix3Xd f = calc_point_loads(carried, calc_acceleration_field(Vector12d::Unit(c)));
-    W.setZero();
-    for (const auto& part : field.parts)
-      for (int a = 0; a < 3; ++a) W -= f(a, part.point) * part.Q[static_cast<std::size_t>(a)];
-    for (int j = 0; j < r; ++j)
-      for (int i = j; i < r; ++i) unit(find_weight(r, i, j), c) = W(i, j) + W(j, i);
-  }
-  MatrixXd weights = unit * A_I;
+  const auto num_terms = 3 * static_cast<Eigen::Index>(field.parts.size());
+  MatrixXd W(r * (r + 1) / 2, num_terms), by_load(num_terms, 12);  // of unit forces; forces
+  Eigen::Index term = 0;
+  for (const auto& part : field.parts)
+    for (int a = 0; a < 3; ++a, ++term) {
+      const auto& Q = part.Q[static_cast<std::size_t>(a)];
+      for (int j = 0; j < r; ++j)
+        for (int i = j; i < r; ++i) W(find_weight(r, i, j), term) = -(Q(i, j) + Q(j, i));
+      for (int c = 0; c < 12; ++c) by_load(term, c) = f[static_cast<std::size_t>(c)](a, part.point);
+    }
+  MatrixXd weights = W * (by_load * A_I);
   if (!weights.isZero(0)) forms.push_back({element.gdofs(), field.L, std::move(weights)});
 }
 
@@ -59,13 +71,14 @@ void add_carried_masses(const Model& model, const MatrixXd& A_I, GridForms& grid
     CarriedMass carried(element->num_dofs());
     if (!calc_carried(model, *element, model.mass_kind(), carried)) continue;
     std::vector<Weights> unit(carried.turns.size(), Weights::Zero(6, 12));
+    const PointLoads loads = calc_unit_loads(carried);
     for (int i = 0; i < 12; ++i) {
-      const Matrix3Xd f = calc_point_loads(carried, calc_acceleration_field(Vector12d::Unit(i)));
+      const Matrix3Xd& f = loads[static_cast<std::size_t>(i)];
       for (std::size_t t = 0; t < carried.turns.size(); ++t)
         for (const auto& part : carried.turns[t].parts)
           unit[t].col(i) += calc_arm_weights(part.B.transpose() * f.col(part.point), part.arm);
     }
-    for (const auto& field : carried.fields) add_field(*element, carried, field, A_I, forms);
+    for (const auto& field : carried.fields) add_field(*element, loads, field, A_I, forms);
     for (std::size_t t = 0; t < carried.turns.size(); ++t) {
       const auto& turn = carried.turns[t];
       const Weights weights = unit[t] * A_I;

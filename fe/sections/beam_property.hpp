@@ -34,4 +34,8 @@ struct BeamProperty {
   BeamSection calc_section(double x_over_L) const;
 };
 
+/// Mass per length of a section about its shear centre, for the motion [u v w θx θy θz]: 6 x 6.
+/// bending: with the rotary inertia of the section about its y and z axes.
+Eigen::Matrix<double, 6, 6> calc_section_mass(const BeamProperty& property, const BeamSection& s, bool bending);
+
 }  // namespace bough::fe

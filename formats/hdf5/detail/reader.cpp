@@ -133,13 +133,12 @@ void FileReader::error(const char* id, const std::string& what, const std::strin
 
 Handle FileReader::open_dataset(const std::string& path, const Shape& shape, H5T_class_t type, Dims& found) {
   found = make_fallback(shape);
-  if (!has(path)) {
-    error("hdf5.missing", path + " is missing", "write the file again");
-    return {};
-  }
   Handle dataset(H5Dopen2(file_.get(), path.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset.is_valid()) {
-    error("hdf5.damaged", path + " cannot be read", "write the file again");
+    if (has(path))
+      error("hdf5.damaged", path + " cannot be read", "write the file again");
+    else
+      error("hdf5.missing", path + " is missing", "write the file again");
     return {};
   }
   const Handle space(H5Dget_space(dataset.get()), H5Sclose);
@@ -243,7 +242,8 @@ std::vector<std::string> FileReader::read_strings(const std::string& path, const
   if (H5Tis_variable_str(type.get()) > 0) {
     const Handle memory = make_string_type();
     std::vector<char*> data(words.size(), nullptr);
-    if (H5Dread(dataset.get(), memory.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()) < 0) {
+    const Handle transfer = make_string_transfer(words.size());
+    if (H5Dread(dataset.get(), memory.get(), H5S_ALL, H5S_ALL, transfer.get(), data.data()) < 0) {
       error("hdf5.damaged", path + " cannot be read", "write the file again");
       return words;
     }

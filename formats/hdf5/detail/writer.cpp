@@ -36,6 +36,12 @@ FileWriter::FileWriter(const std::string& path, const std::string& format, const
   Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.get(), false);
   const Handle access = make_file_access();
+  string_type_ = make_string_type();
+  scalar_ = make_space({});
+  creation_ = Handle(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation_.get(), false);
+  group_creation_ = Handle(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_obj_track_times(group_creation_.get(), false);
   link_creation_ = Handle(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(link_creation_.get(), 1);
   errno = part_.error().value();
@@ -59,12 +65,11 @@ void FileWriter::check(bool ok, const std::string& what) {
 }
 
 void FileWriter::make_group(const std::string& path) {
-  if (!groups_.insert(path).second) return;
-  Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
-  H5Pset_obj_track_times(creation.get(), false);
-  const Handle group(H5Gcreate2(file_.get(), path.c_str(), link_creation_.get(), creation.get(), H5P_DEFAULT),
-                     H5Gclose);
+  if (groups_.count(path) > 0) return;
+  Handle group(H5Gcreate2(file_.get(), path.c_str(), link_creation_.get(), group_creation_.get(), H5P_DEFAULT),
+               H5Gclose);
   check(group.is_valid(), "group " + path + " cannot be written");
+  groups_.emplace(path, std::move(group));
 }
 
 /// Parents are made here and not by the library, which would stamp them with the time.
@@ -73,20 +78,24 @@ void FileWriter::make_parents(const std::string& path) {
     make_group(path.substr(0, end));
 }
 
-void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_type, hid_t memory_type, const void* data,
-                       const Meaning& meaning) {
-  errno = 0;
+hid_t FileWriter::find_parent(const std::string& path) {
   make_parents(path);
+  const auto end = path.rfind('/');
+  return end == 0 ? file_.get() : groups_.at(path.substr(0, end)).get();
+}
+
+void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_type, hid_t memory_type, const void* data,
+                       const Meaning& meaning, hid_t transfer) {
+  errno = 0;
+  const hid_t parent = find_parent(path);
   const Handle space = make_space(shape);
-  Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_obj_track_times(creation.get(), false);
   {
-    Handle dataset(
-        H5Dcreate2(file_.get(), path.c_str(), file_type, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
-        H5Dclose);
+    Handle dataset(H5Dcreate2(parent, path.c_str() + path.rfind('/') + 1, file_type, space.get(), H5P_DEFAULT,
+                              creation_.get(), H5P_DEFAULT),
+                   H5Dclose);
     check(dataset.is_valid(), "dataset " + path + " cannot be written");
     if (has_elements(shape)) {
-      check(H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0,
+      check(H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, transfer, data) >= 0,
             "dataset " + path + " cannot be written");
     }
     write_meaning(dataset.get(), path, meaning);
@@ -96,8 +105,10 @@ void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_ty
 
 void FileWriter::write_attribute(hid_t object, const std::string& path, const std::string& name, const Dims& shape,
                                  hid_t file_type, hid_t memory_type, const void* data) {
-  const Handle space = make_space(shape);
-  const Handle attribute(H5Acreate2(object, name.c_str(), file_type, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const Handle space = shape.empty() ? Handle() : make_space(shape);
+  const Handle attribute(H5Acreate2(object, name.c_str(), file_type, shape.empty() ? scalar_.get() : space.get(),
+                                    H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose);
   check(attribute.is_valid(), "attribute " + path + "@" + name + " cannot be written");
   if (!has_elements(shape)) return;
   check(H5Awrite(attribute.get(), memory_type, data) >= 0, "attribute " + path + "@" + name + " cannot be written");
@@ -111,17 +122,15 @@ void FileWriter::write_attribute(const std::string& object, const std::string& n
 }
 
 void FileWriter::write_meaning(hid_t dataset, const std::string& path, const Meaning& meaning) {
-  const Handle type = make_string_type();
   for (const auto& [name, text] : {std::pair("description", &meaning.description), {"dims", &meaning.dims}}) {
     const char* data = text->c_str();
-    write_attribute(dataset, path, name, Dims{}, type.get(), type.get(), &data);
+    write_attribute(dataset, path, name, Dims{}, string_type_.get(), string_type_.get(), &data);
   }
 }
 
 void FileWriter::write_attribute(const std::string& object, const std::string& name, const std::string& text) {
-  const Handle type = make_string_type();
   const char* data = text.c_str();
-  write_attribute(object, name, Dims{}, type.get(), type.get(), &data);
+  write_attribute(object, name, Dims{}, string_type_.get(), string_type_.get(), &data);
 }
 
 void FileWriter::write_attribute(const std::string& object, const std::string& name, int value) {
@@ -134,20 +143,18 @@ void FileWriter::write_attribute(const std::string& object, const std::string& n
 
 void FileWriter::write_attribute(const std::string& object, const std::string& name,
                                  const std::vector<std::string>& words) {
-  const Handle type = make_string_type();
   std::vector<const char*> data;
   for (const auto& w : words) data.push_back(w.c_str());
-  write_attribute(object, name, Dims{words.size()}, type.get(), type.get(), data.data());
+  write_attribute(object, name, Dims{words.size()}, string_type_.get(), string_type_.get(), data.data());
 }
 
 void FileWriter::write_source(const std::vector<std::pair<std::string, std::string>>& source) {
-  const Handle type = make_string_type();
   std::vector<const char*> data;
   for (const auto& [name, hash] : source) {
     data.push_back(name.c_str());
     data.push_back(hash.c_str());
   }
-  write_attribute("/", "source", Dims{source.size(), 2}, type.get(), type.get(), data.data());
+  write_attribute("/", "source", Dims{source.size(), 2}, string_type_.get(), string_type_.get(), data.data());
 }
 
 void FileWriter::write_numbers(const std::string& path, const Dims& shape, const double* data, const Meaning& meaning) {
@@ -159,10 +166,10 @@ void FileWriter::write_integers(const std::string& path, const Dims& shape, cons
 }
 
 void FileWriter::write_strings(const std::string& path, const std::vector<std::string>& words, const Meaning& meaning) {
-  const Handle type = make_string_type();
   std::vector<const char*> data;
   for (const auto& w : words) data.push_back(w.c_str());
-  write(path, {words.size()}, type.get(), type.get(), data.data(), meaning);
+  write(path, {words.size()}, string_type_.get(), string_type_.get(), data.data(), meaning,
+        make_string_transfer(words.size()).get());
 }
 
 void FileWriter::write_number(const std::string& path, double value, const Meaning& meaning) {
@@ -222,6 +229,7 @@ void FileWriter::attach_scale(const std::string& scale, const std::vector<std::s
 
 void FileWriter::commit() {
   errno = 0;
+  groups_.clear();
   check(flush_file(file_.get()), "the file cannot be written");
   check(file_.reset(), "the file cannot be written");
   const bool is_there = part_.commit();

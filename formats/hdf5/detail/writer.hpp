@@ -1,6 +1,6 @@
 #pragma once
 /// \file Writes one HDF5 file: beside its place first, renamed when whole.
-#include <set>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -58,8 +58,10 @@ class FileWriter {
  private:
   void check(bool ok, const std::string& what);
   void write(const std::string& path, const Dims& shape, hid_t file_type, hid_t memory_type, const void* data,
-             const Meaning& meaning);
+             const Meaning& meaning, hid_t transfer = H5P_DEFAULT);
   void make_parents(const std::string& path);
+  /// The group that `path` lies in, made where it is not there.
+  hid_t find_parent(const std::string& path);
   /// `object` lies at `path`.
   void write_attribute(hid_t object, const std::string& path, const std::string& name, const Dims& shape,
                        hid_t file_type, hid_t memory_type, const void* data);
@@ -70,8 +72,10 @@ class FileWriter {
   QuietErrors quiet_;
   std::string path_;
   PartFile part_;
-  Handle file_, link_creation_;
-  std::set<std::string> groups_;
+  // Made once: most of the time of a small dataset goes to what describes it.
+  Handle string_type_, scalar_, creation_, group_creation_, link_creation_;
+  Handle file_;
+  std::map<std::string, Handle> groups_;  ///< open, by path
 };
 
 /// The blocks that flexible-body and modes files share.

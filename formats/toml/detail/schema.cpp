@@ -272,10 +272,25 @@ class Checker {
   Diagnostics& diagnostics_;
 };
 
+/// Parsed once: the workers of a campaign read a file of the same kind for every case.
+const json& get_parsed(const char* schema_text) {
+  if (schema_text == get_body_schema()) {
+    static const json body = json::parse(get_body_schema());
+    return body;
+  }
+  if (schema_text == get_system_schema()) {
+    static const json system = json::parse(get_system_schema());
+    return system;
+  }
+  BOUGH_DEMAND(schema_text == get_campaign_schema());
+  static const json campaign = json::parse(get_campaign_schema());
+  return campaign;
+}
+
 }  // namespace
 
 void check_schema(const Value& root, const char* schema_text, const std::string& file, Diagnostics& diagnostics) {
-  const json schema = json::parse(schema_text);
+  const json& schema = get_parsed(schema_text);
   Checker(schema, file, diagnostics).check(root, schema, "", 0);
 }
 

@@ -450,5 +450,24 @@ TEST(BeamMass, ConsistentNastranBar) {
   EXPECT_EQ(M(3, 3), 0);
 }
 
+/// Two equal beams take theirs from the field that they share; one alone, and skew ones, from the same formula.
+TEST(BeamMass, OfASharedFieldIsThatOfItsOwn) {
+  ChainOptions options;
+  options.num_elements = 2;
+  options.length = 2.6, options.rho = 3;
+  options.section = make_section(0.5, 0.02, 0.05, 0.04);
+  const MatrixXd chain = make_bar_chain(options).calc_mass(MassKind::Consistent);
+  options.R = make_rotation(3);
+  const MatrixXd skew_chain = make_bar_chain(options).calc_mass(MassKind::Consistent);
+  options.R.setIdentity();
+  options.num_elements = 1, options.length = 1.3;
+  const MatrixXd one = make_bar_chain(options).calc_mass(MassKind::Consistent);
+  MatrixXd expected = MatrixXd::Zero(18, 18), T = MatrixXd::Zero(18, 18);
+  expected.topLeftCorner<12, 12>() += one, expected.bottomRightCorner<12, 12>() += one;
+  EXPECT_LT((chain - expected).norm(), 1e-15 * expected.norm());
+  for (int i = 0; i < 18; i += 3) T.block<3, 3>(i, i) = make_rotation(3);
+  EXPECT_LT((skew_chain - T * expected * T.transpose()).norm(), 1e-14 * expected.norm());
+}
+
 }  // namespace
 }  // namespace bough::fe::test

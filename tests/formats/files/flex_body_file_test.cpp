@@ -71,6 +71,22 @@ class Surgeon {
   hid_t file_;
 };
 
+/// More texts than the buffer holds that strings are converted in, a megabyte.
+TEST(FlexBodyFile, ManyTexts) {
+  const TempFolder folder;
+  auto body = test::make_random_body(2, 3, 5, true);
+  constexpr int num_elements = 70'000;
+  body.strain_energy = {};
+  for (int i = 0; i < num_elements; ++i) {
+    body.strain_energy.id.push_back(i + 1);
+    body.strain_energy.card.push_back("CARD" + std::to_string(i));
+  }
+  const auto n = body.num_modes();
+  body.strain_energy.matrix = Eigen::MatrixXd::Zero(num_elements, n * (n + 1) / 2);
+  write_flex_body(body, folder.at("body.h5"));
+  EXPECT_EQ(read_flex_body(folder.at("body.h5")).strain_energy.card, body.strain_energy.card);
+}
+
 TEST(FlexBodyFile, RoundTripIsExact) {
   const TempFolder folder;
   for (unsigned seed = 1; seed <= 4; ++seed) {

@@ -3,6 +3,12 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <random>
+
 namespace bough::flx {
 namespace {
 
@@ -38,6 +44,22 @@ TEST(NumberFormat, C) {
   EXPECT_EQ(print("%g", 0.1), "0.1");
   EXPECT_EQ(print("%.17g", 0.1), "0.10000000000000001");
   EXPECT_EQ(print("%8.3E", 1), "too wide");
+}
+
+/// Digit for digit, from the least number to the greatest, halves that are rounded to even among them.
+TEST(NumberFormat, PrintsAsPrintf) {
+  std::mt19937_64 random(7);
+  std::vector<double> values{5e-324, 1.7976931348623157e308, 0.5, 1.5, 2.5, 0.125, 9.9999995, 1e100, 1e-100};
+  for (int i = 0; i < 2000; ++i) {
+    const double x = std::bit_cast<double>(random());
+    if (std::isfinite(x)) values.push_back(x);
+  }
+  for (const char* format : {"%17.8E", "%e", "%.0e", "%.16E", "%40.25e", "%+17.8E", "%.3f"})
+    for (const double x : values) {
+      std::array<char, 512> expected;
+      std::snprintf(expected.data(), expected.size(), format, x);
+      ASSERT_EQ(print(format, x), expected.data()) << format;
+    }
 }
 
 TEST(NumberFormat, Integers) {
