@@ -1,8 +1,11 @@
 #include "modal/canonical.hpp"
 
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "fe/linear/blas.hpp"
+#include "fe/linear/petsc.hpp"
 #include "modal/krylov.hpp"
 
 namespace bough::modal::detail {
@@ -45,14 +48,45 @@ void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X) {
   fe::multiply_dense(false, Y, inverse, 0, X);
 }
 
-void fix_signs(MatrixXd& Phi) {
-  for (Eigen::Index j = 0; j < Phi.cols(); ++j) {
-    if (Phi.rows() == 0) return;
-    const double largest = Phi.col(j).cwiseAbs().maxCoeff();
-    Eigen::Index i = 0;
-    while (std::abs(Phi(i, j)) < (1 - 1e-6) * largest) ++i;
-    if (Phi(i, j) < 0) Phi.col(j) *= -1;
+VectorXd find_largest(const std::vector<int>& place, bool over_ranks, const Eigen::Ref<const MatrixXd>& X) {
+  const Eigen::Index m = X.cols();
+  VectorXd largest = VectorXd::Zero(m), value = VectorXd::Zero(m);
+  for (Eigen::Index j = 0; j < m && X.rows() > 0; ++j) largest(j) = X.col(j).cwiseAbs().maxCoeff();
+  const auto all_of = [&](MPI_Op op, void* values, MPI_Datatype type) {
+    if (over_ranks) MPI_Allreduce(MPI_IN_PLACE, values, static_cast<int>(m), type, op, PETSC_COMM_WORLD);
+  };
+  all_of(MPI_MAX, largest.data(), MPI_DOUBLE);
+  std::vector<int> first(static_cast<std::size_t>(m), std::numeric_limits<int>::max());
+  for (Eigen::Index j = 0; j < m; ++j)
+    for (Eigen::Index i = 0; i < X.rows(); ++i) {
+      if (std::abs(X(i, j)) < (1 - 1e-6) * largest(j)) continue;
+      first[static_cast<std::size_t>(j)] = place[static_cast<std::size_t>(i)];
+      value(j) = X(i, j);
+      break;
+    }
+  const std::vector<int> own = first;
+  all_of(MPI_MIN, first.data(), MPI_INT);
+  // Two ranks may have the row that is first; it is the same there but for roundoff.
+  VectorXd high(m);
+  for (Eigen::Index j = 0; j < m; ++j) {
+    const auto c = static_cast<std::size_t>(j);
+    const bool is_mine = own[c] == first[c] && first[c] != std::numeric_limits<int>::max();
+    high(j) = is_mine ? value(j) : -std::numeric_limits<double>::infinity();
   }
+  all_of(MPI_MAX, high.data(), MPI_DOUBLE);
+  return high.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
+}
+
+void fix_signs(const std::vector<int>& place, bool over_ranks, MatrixXd& Phi) {
+  const VectorXd largest = find_largest(place, over_ranks, Phi);
+  for (Eigen::Index j = 0; j < Phi.cols(); ++j)
+    if (largest(j) < 0) Phi.col(j) *= -1;
+}
+
+void fix_signs(MatrixXd& Phi) {
+  std::vector<int> place(static_cast<std::size_t>(Phi.rows()));
+  std::iota(place.begin(), place.end(), 0);
+  fix_signs(place, false, Phi);
 }
 
 int find_cluster_end(const VectorXd& values, int first, double tolerance, double floor) {

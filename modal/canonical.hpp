@@ -1,5 +1,7 @@
 #pragma once
 /// \file What makes eigenvectors the same on any number of ranks: a canonical basis of each repeated root, and signs.
+#include <vector>
+
 #include "fe/model/model.hpp"
 
 namespace bough::modal::detail {
@@ -22,6 +24,12 @@ void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X);
 
 /// Makes the component of largest magnitude of each column positive, the first among those within 1e-6 of it.
 void fix_signs(MatrixXd& Phi);
+/// The same of rows that ranks share: `place` says which each of this rank's is, and the ranks together have all.
+void fix_signs(const std::vector<int>& place, bool over_ranks, MatrixXd& Phi);
+
+/// Of each column over all ranks the entry of largest magnitude, the first (by `place`, of every row of X) among those
+/// within 1e-6 of it; zero where there is none. Collective.
+VectorXd find_largest(const std::vector<int>& place, bool over_ranks, const Eigen::Ref<const MatrixXd>& X);
 
 /// End of the cluster that starts at `first`: values that differ from their neighbour by no more than
 /// tolerance (|value| + floor) belong together.

@@ -1,6 +1,7 @@
 #include "modal/eigen.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "modal/element_strain.hpp"
@@ -93,6 +94,24 @@ void check_request(const fe::Model& model, const EigenOptions& options) {
                      "ask for as many as the motion needs: all of them would take a dense matrix of every dof");
 }
 
+/// The first element of the deck with negative stiffness; empty: none.
+std::string describe_first_negative(const fe::Model& model) {
+  std::string text;
+  int place = std::numeric_limits<int>::max();
+  MatrixXd K;
+  for (std::size_t e = 0; e < model.elements().size() && text.empty(); ++e) {
+    const auto& element = model.elements()[e];
+    K.setZero(element->num_dofs(), element->num_dofs());
+    model.add_stiffness(*element, K);
+    if (K.size() == 0 || K.diagonal().minCoeff() >= 0) continue;
+    text = "; " + element->card() + " " + std::to_string(element->id()) + " has negative stiffness";
+    if (model.share()) place = model.share()->number[e];
+  }
+  if (!model.share()) return text;
+  const auto places = fe::join_over_ranks(std::vector<int>{place});
+  return fe::spread_text(text, static_cast<int>(std::min_element(places.begin(), places.end()) - places.begin()));
+}
+
 /// A motion whose stiffness is negative grows by itself; a model on negative springs may well want to show it.
 void warn_of_negative(const fe::Model& model, const EigenPairs& pairs, Diagnostics& diagnostics) {
   const auto kept = pairs.lambda.size() - std::min<Eigen::Index>(pairs.num_rigid, pairs.lambda.size());
@@ -102,14 +121,7 @@ void warn_of_negative(const fe::Model& model, const EigenPairs& pairs, Diagnosti
   if (number == 0) return;
   auto what = std::to_string(number) + (number == 1 ? " mode has" : " modes have") +
               " negative stiffness: the model is not in stable equilibrium";
-  MatrixXd K;
-  for (const auto& element : model.elements()) {
-    K.setZero(element->num_dofs(), element->num_dofs());
-    model.add_stiffness(*element, K);
-    if (K.size() == 0 || K.diagonal().minCoeff() >= 0) continue;
-    what += "; " + element->card() + " " + std::to_string(element->id()) + " has negative stiffness";
-    break;
-  }
+  what += describe_first_negative(model);
   diagnostics.warning("modal.unstable", {}, what,
                       "correct the sign of its springs and loads, unless that is what you look for");
 }

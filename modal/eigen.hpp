@@ -24,7 +24,8 @@ struct EigenOptions {
 /// within 1e-6 of it) is positive, so it does not depend on the rank count.
 struct EigenPairs {
   VectorXd lambda;         ///< n; rigid modes are exactly 0
-  MatrixXd Phi;            ///< num_gdofs x n in basic, constrained rows zero, dependent rows recovered
+  MatrixXd Phi;            ///< num_gdofs x n in basic, constrained rows zero, dependent rows recovered; of a model
+                           ///< by parts the rows that fe::find_reach() lists (fe/matrices/reach.hpp)
   VectorXd residual;       ///< |Kφ - λMφ| / |Kφ|; for rigid modes over the K-norm scale
   int num_rigid = 0;       ///< zero eigenvalues, first
   int inertia_count = -1;  ///< eigenvalues below the highest returned; -1 not checked

@@ -8,6 +8,7 @@
 #include "base/diagnostic.hpp"
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/residual.hpp"
+#include "fe/matrices/reach.hpp"
 #include "modal/canonical.hpp"
 #include "modal/pencil.hpp"
 
@@ -53,17 +54,17 @@ void add_element(const MatrixXd& K, const MatrixXd& u, int most_dofs, MatrixXd& 
   strain.energy += z.transpose() * (kappa.asDiagonal() * z);
 }
 
-/// Rows of the f-dofs of a g-set field: the components along their CD axes.
-MatrixXd take_fdofs(const fe::Model& model, const MatrixXd& U) {
-  MatrixXd X(model.num_fdofs(), U.cols());
-  for (int f = 0; f < model.num_fdofs(); ++f) {
-    const auto [id, component] = model.describe_fdof(f);
+/// The f-dofs of `rows` of a g-set field as far as `reach`: the components along their CD axes.
+MatrixXd take_fdofs(const fe::Model& model, const fe::OwnRows& rows, const fe::Reach& reach, const MatrixXd& U) {
+  MatrixXd X(rows.num, U.cols());
+  for (int i = 0; i < rows.num; ++i) {
+    const auto [id, component] = model.describe_fdof(rows.first + i);
     const auto& node = model.node(model.find_node(id));
-    const int c = component - 1;
+    const int c = component - 1, row = reach.find_row(node.first_gdof);
     if (node.num_dofs == 6)
-      X.row(f) = node.R_basic_cd.col(c % 3).transpose() * U.middleRows(node.first_gdof + 3 * (c / 3), 3);
+      X.row(i) = node.R_basic_cd.col(c % 3).transpose() * U.middleRows(row + 3 * (c / 3), 3);
     else
-      X.row(f) = U.row(node.first_gdof);
+      X.row(i) = U.row(row);
   }
   return X;
 }
@@ -147,15 +148,17 @@ class SoftModes {
 };
 
 /// Puts the improved modes in the place of the `soft` ones and sorts all.
-void replace(const Pencil& pencil, const SoftModes& better, const std::vector<Index>& soft, EigenPairs& pairs) {
-  const VectorXd residual =
-      fe::calc_residuals(fe::calc_residual_scale(pencil.K_diagonal, pencil.M_diagonal, better.theta()), better.X(),
-                         better.forces(), better.M_X() * better.theta().asDiagonal(), pencil.kinds);
+void replace(const Pencil& pencil, const SoftModes& better, const fe::Reach& reach, const std::vector<Index>& soft,
+             EigenPairs& pairs) {
+  const VectorXd residual = fe::calc_pair_residuals(pencil.K_diagonal, pencil.M_diagonal, better.theta(), better.X(),
+                                                    better.forces(), better.M_X(), pencil.kinds, pencil.rows);
+  const bool is_cut = pencil.model.share() != nullptr;
   for (std::size_t i = 0; i < soft.size(); ++i) {
     const auto c = static_cast<Index>(i);
     pairs.lambda(soft[i]) = better.theta()(c);
     pairs.residual(soft[i]) = residual(c);
-    pairs.Phi.col(soft[i]) = pencil.model.T() * better.X().col(c);
+    const VectorXd field = pencil.model.T() * better.X().col(c);
+    pairs.Phi.col(soft[i]) = is_cut ? VectorXd(field(reach.gdofs)) : field;
   }
   std::vector<Index> order(static_cast<std::size_t>(pairs.lambda.size()));
   std::iota(order.begin(), order.end(), Index{0});
@@ -164,7 +167,7 @@ void replace(const Pencil& pencil, const SoftModes& better, const std::vector<In
   pairs.residual = pairs.residual(order).eval();
   pairs.Phi = pairs.Phi(Eigen::all, order).eval();
   pairs.num_rigid = static_cast<int>((pairs.lambda.array() == 0).count());
-  fix_signs(pairs.Phi);
+  fix_signs(reach.gdofs, is_cut, pairs.Phi);
 }
 
 }  // namespace
@@ -172,9 +175,8 @@ void replace(const Pencil& pencil, const SoftModes& better, const std::vector<In
 ElementStrain calc_element_strain(const fe::Model& model, const MatrixXd& X_g, bool is_fine) {
   const Index m = X_g.cols();
   ElementStrain strain{MatrixXd::Zero(X_g.rows(), m), MatrixXd::Zero(m, m), VectorXd::Zero(m), VectorXd::Zero(m)};
-  const auto [begin, end] = fe::calc_element_range(model);
   MatrixXd K, u, forces;
-  for (int e = begin; e < end; ++e) {
+  for (const int e : fe::list_own_elements(model)) {
     const fe::Element& element = *model.elements()[static_cast<std::size_t>(e)];
     K.setZero(element.num_dofs(), element.num_dofs());
     model.add_stiffness(element, K);
@@ -223,10 +225,7 @@ VectorXd calc_graded_eigenvalues(MatrixXd G, MatrixXd& V) {
 namespace {
 
 /// Blocks of given matrices are no structures of their own: their energies are no strain.
-bool has_given_blocks(const fe::Model& model) {
-  return std::any_of(model.elements().begin(), model.elements().end(),
-                     [](const auto& element) { return element->card() == "DMIG"; });
-}
+bool has_given_blocks(const fe::Model& model) { return model.has_card("DMIG"); }
 
 }  // namespace
 
@@ -234,17 +233,22 @@ Restored restore_digits(const fe::System& system, int number, bool is_from_first
   const fe::Model& model = system.model;
   if (has_given_blocks(model)) return {};
   if (model.prestress() || model.omitted() || pairs.lambda.size() == 0) return {};
-  const Pencil pencil(system);
-  const MatrixXd X = take_fdofs(model, pairs.Phi);
+  const Pencil of_rows(system);
+  const fe::Reach reach = fe::find_reach(model);
+  const MatrixXd X_own = take_fdofs(model, of_rows.rows, reach, pairs.Phi);
   // Those below the last soft one too: what is left out of them would grow by the ratio of the eigenvalues.
   Index num_soft = 0;
-  for (Index j = 0; j < X.cols(); ++j)
-    if (std::abs(pencil.calc_relative_energy(X.col(j), pairs.lambda(j))) < kSoft) num_soft = j + 1;
+  for (Index j = 0; j < X_own.cols(); ++j)
+    if (std::abs(of_rows.calc_relative_energy(X_own.col(j), pairs.lambda(j))) < kSoft) num_soft = j + 1;
   if (num_soft == 0) return {};
+  // Few modes are soft: from here on vectors are whole.
+  const Pencil pencil(system, VectorRows::Whole);
+  const MatrixXd X = of_rows.rows.replicate(X_own.leftCols(num_soft));
   std::vector<Index> soft(static_cast<std::size_t>(num_soft));
   std::iota(soft.begin(), soft.end(), Index{0});
   const bool has_values = std::any_of(soft.begin(), soft.end(), [&](Index j) { return pairs.lambda(j) != 0; });
-  const auto strain = calc_element_strain(model, pairs.Phi(Eigen::all, soft), has_values);
+  const MatrixXd soft_field = model.share() ? MatrixXd(model.T() * X) : MatrixXd(pairs.Phi(Eigen::all, soft));
+  const auto strain = calc_element_strain(model, soft_field, has_values);
   const auto is_same = [&](std::size_t i) {
     const auto c = static_cast<Index>(i);
     const double lambda = pairs.lambda(soft[i]), energy = strain.energy(c, c);
@@ -257,7 +261,7 @@ Restored restore_digits(const fe::System& system, int number, bool is_from_first
   if (!is_from_first) return {true, 1, {}};
 
   const VectorXd before = pairs.lambda;
-  SoftModes better(system, pencil, X(Eigen::all, soft));
+  SoftModes better(system, pencil, X);
   if (!better.improve()) return {};
   Restored result;
   result.is_done = true;
@@ -273,7 +277,7 @@ Restored restore_digits(const fe::System& system, int number, bool is_from_first
                         number_text(std::sqrt(now) / (2 * M_PI)) + " Hz";
   }
   if (num_changed > 3) result.changes += " and " + std::to_string(num_changed - 3) + " more";
-  replace(pencil, better, soft, pairs);
+  replace(pencil, better, reach, soft, pairs);
   return result;
 }
 

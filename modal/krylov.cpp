@@ -12,6 +12,7 @@
 #include "base/diagnostic.hpp"
 #include "fe/linear/factor.hpp"
 #include "fe/linear/memory_need.hpp"
+#include "fe/linear/own_rows.hpp"
 #include "fe/linear/subdomains.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "modal/block_lanczos.hpp"
@@ -273,7 +274,7 @@ std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, const Ope
   if (by.domains) blocks.sum = fe::sum_alike;
   blocks.positive_only = problem.spectrum == Spectrum::LargestPositive;
   blocks.start = make_start(problem, wanted > 100 ? 8 : 4, by.domains);
-  blocks.deflate = by.domains ? by.domains->take_own(problem.deflate) : problem.deflate;
+  blocks.deflate = by.domains ? by.domains->from_rows(problem.deflate) : problem.deflate;
   blocks.num_wanted = wanted;
   blocks.num_guard = std::min(problem.num_guard, wanted - 1);
   // The vectors are the most of the memory beside the factor: for few modes a restart costs next to nothing.
@@ -293,7 +294,7 @@ std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, const Ope
   result.vectors = kept.size() == static_cast<std::size_t>(found.theta.size()) ? std::move(found.X)
                                                                                : MatrixXd(found.X(Eigen::all, kept));
   if (is_near) purify(problem, by.solve, by.multiply_mass, result);
-  if (by.domains) result.vectors = by.domains->replicate(result.vectors);
+  if (by.domains) result.vectors = by.domains->to_rows(result.vectors);
   return result;
 }
 
@@ -322,20 +323,27 @@ std::optional<KrylovResult> solve_in_parts(const KrylovProblem& problem, int wan
   return solve_blocks(problem, by, wanted);
 }
 
-}  // namespace
+/// How many roots are asked for, of how many there may be, and whether blocks are for them.
+struct Request {
+  int room = 0, wanted = 0;
+  bool by_blocks = false;
+};
 
-KrylovResult solve_krylov(const KrylovProblem& problem) {
-  initialize_slepc();
+Request find_request(const KrylovProblem& problem) {
   PetscInt n = 0;
   check_petsc(MatGetSize(problem.A, &n, nullptr));
-  const int room = (problem.max_subspace > 0 ? std::min<int>(problem.max_subspace, n) : static_cast<int>(n));
-  const int wanted = std::clamp(problem.num_wanted, 1, std::max(1, room));
+  Request request;
+  request.room = problem.max_subspace > 0 ? std::min<int>(problem.max_subspace, n) : static_cast<int>(n);
+  request.wanted = std::clamp(problem.num_wanted, 1, std::max(1, request.room));
+  request.by_blocks = problem.method == KrylovMethod::Blocks ||
+                      (problem.method == KrylovMethod::Fastest && n >= kBlockSize && 4 * request.wanted < request.room);
+  return request;
+}
 
+/// With whole vectors.
+KrylovResult solve_whole(const KrylovProblem& problem) {
+  const auto [room, wanted, by_blocks] = find_request(problem);
   const bool is_alone = fe::initialize_petsc().size == 1;
-  const bool by_blocks = problem.method == KrylovMethod::Blocks ||
-                         (problem.method == KrylovMethod::Fastest && n >= kBlockSize && 4 * wanted < room);
-  if (!is_alone && by_blocks && !problem.factor && problem.spectrum == Spectrum::NearShift)
-    if (auto result = solve_in_parts(problem, wanted)) return std::move(*result);
   fe::PetscMat own_factor;
   if (!problem.factor && is_alone) own_factor = make_definite_factor(problem);
   Mat factor = problem.factor ? problem.factor : own_factor.get();
@@ -364,6 +372,23 @@ KrylovResult solve_krylov(const KrylovProblem& problem) {
                          "the eigenvalue solver found no " + std::to_string(wanted) + " modes: it did not converge",
                          "ask for fewer modes; look for parts that nothing holds, and for very soft beside very stiff "
                          "ones");
+}
+
+}  // namespace
+
+KrylovResult solve_krylov(const KrylovProblem& problem) {
+  initialize_slepc();
+  if (fe::initialize_petsc().size == 1) return solve_whole(problem);
+  const Request request = find_request(problem);
+  if (request.by_blocks && !problem.factor && problem.spectrum == Spectrum::NearShift)
+    if (auto result = solve_in_parts(problem, request.wanted)) return std::move(*result);
+  const fe::OwnRows rows = fe::find_own_rows(problem.A);
+  if (!rows.is_cut) return solve_whole(problem);
+  KrylovProblem whole = problem;
+  whole.deflate = rows.replicate(problem.deflate);
+  KrylovResult result = solve_whole(whole);
+  if (result.vectors.rows() == rows.size) result.vectors = rows.take(result.vectors);
+  return result;
 }
 
 }  // namespace bough::modal::detail

@@ -1,8 +1,8 @@
 #pragma once
 /// \file SLEPc behind two calls: some eigenpairs of a symmetric pencil, and the inertia of a shifted pencil.
 ///
-/// Internal to modal. Vectors go in and out replicated on every rank; the matrices are distributed, and the vectors of
-/// Lanczos by blocks too.
+/// Internal to modal. Vectors go in and out as find_own_rows(A) has them (linear/own_rows.hpp): by parts, or whole on
+/// every rank; the matrices are distributed, and the vectors of Lanczos by blocks too.
 #include <functional>
 
 #include <Eigen/Dense>
@@ -37,7 +37,7 @@ struct KrylovProblem {
   int num_wanted = 1;
   int num_guard = 0;     ///< of num_wanted: the last ones, to show the gap; rough unless close to the others
   int max_subspace = 0;  ///< rank of the operator, 0: the size of A
-  MatrixXd deflate;      ///< n x k known eigenvectors, kept out; k may be 0
+  MatrixXd deflate;      ///< own rows x k known eigenvectors, kept out; k may be 0
   double tolerance = 1e-12;
   Mat factor = nullptr;        ///< of A - shift B or of B, whichever is factored; nullptr: made here
   bool definite_only = false;  ///< an indefinite matrix to factor counts as singular
@@ -48,7 +48,7 @@ struct KrylovProblem {
 
 struct KrylovResult {
   VectorXd values;           ///< converged ones, in SLEPc's order; may be fewer or more than wanted
-  MatrixXd vectors;          ///< n x values.size(), replicated
+  MatrixXd vectors;          ///< own rows x values.size()
   bool is_singular = false;  ///< the matrix to factor is singular: nothing was solved
 };
 

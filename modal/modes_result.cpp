@@ -3,17 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <vector>
 
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/checks.hpp"
+#include "fe/matrices/reach.hpp"
 #include "modal/mode_energies.hpp"
 
 namespace bough::modal {
 
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
+using Eigen::VectorXd;
 
 EigenPairs sort_negative(EigenPairs pairs) {
+  const auto is_negative = [](double value) { return value < 0; };
+  if (std::is_partitioned(pairs.lambda.begin(), pairs.lambda.end(), is_negative)) return pairs;
   std::vector<Eigen::Index> order(static_cast<std::size_t>(pairs.lambda.size()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
   std::stable_partition(order.begin(), order.end(), [&](Eigen::Index i) { return pairs.lambda(i) < 0; });
@@ -23,10 +29,56 @@ EigenPairs sort_negative(EigenPairs pairs) {
   return pairs;
 }
 
+namespace {
+
+/// Shapes at the grids, 6 x n each, of Phi on the rows of `reach`.
+std::vector<MatrixXd> collect_shapes(const fe::Model& model, const fe::Reach& reach, const MatrixXd& Phi) {
+  std::vector<MatrixXd> shapes;
+  const auto n = Phi.cols();
+  const fe::ModelShare* share = model.share();
+  const bool is_first = fe::initialize_petsc().rank == 0;
+  std::vector<int> own;  // rows of Phi, of this rank's grids
+  std::vector<Eigen::Index> grid_of_node(model.nodes().size(), -1);
+  for (std::size_t k = 0; k < model.nodes().size(); ++k) {
+    const auto& node = model.nodes()[k];
+    if (node.num_dofs != 6) continue;
+    const int row = reach.find_row(node.first_gdof);
+    grid_of_node[k] = static_cast<Eigen::Index>(shapes.size());
+    if (!share) {
+      shapes.emplace_back(n > 0 ? MatrixXd(Phi.middleRows(row, 6)) : MatrixXd(6, 0));
+      continue;
+    }
+    shapes.emplace_back(6, is_first ? n : 0);
+    for (int c = 0; share->is_at_home(static_cast<int>(k)) && c < 6; ++c) own.push_back(row + c);
+  }
+  if (!share) return shapes;
+  // By rank and in each by node.
+  std::vector<std::size_t> order(model.nodes().size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return share->home[a] < share->home[b]; });
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const VectorXd all = fe::collect_on_first(VectorXd(Phi(own, j)));
+    Eigen::Index at = 0;
+    for (std::size_t i = 0; is_first && i < order.size(); ++i)
+      if (const auto grid = grid_of_node[order[i]]; grid >= 0) {
+        shapes[static_cast<std::size_t>(grid)].col(j) = all.segment<6>(at);
+        at += 6;
+      }
+  }
+  return shapes;
+}
+
+}  // namespace
+
 records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs& found, bool buckling,
                                        const ModesExtras& extras) {
   records::ModesResult result;
-  const EigenPairs pairs = buckling ? found : sort_negative(found);
+  std::optional<EigenPairs> sorted;
+  if (!buckling && !std::is_partitioned(found.lambda.begin(), found.lambda.end(), [](double v) { return v < 0; }))
+    sorted = sort_negative(found);
+  const EigenPairs& pairs = sorted ? *sorted : found;
+  const fe::Reach reach = fe::find_reach(model);
   result.subcase = model.subcase().id;
   result.mass_properties = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
   const int n = static_cast<int>(pairs.lambda.size());
@@ -37,12 +89,14 @@ records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs&
   for (std::size_t k = 0; k < grids.size(); ++k) {
     result.node_id.push_back(grids[k]->id);
     result.node_xyz.row(static_cast<Eigen::Index>(k)) = grids[k]->x.transpose();
-    result.phi.push_back(n > 0 ? MatrixXd(pairs.Phi.middleRows(grids[k]->first_gdof, 6)) : MatrixXd(6, 0));
+  }
+  if (extras.has_shapes) {
+    result.phi = collect_shapes(model, reach, pairs.Phi);
+    result.mesh = model.calc_mesh();
   }
   result.residual = pairs.residual;
   result.num_rigid_modes = pairs.num_rigid;
   result.inertia_count = pairs.inertia_count;
-  result.mesh = model.calc_mesh();
   if (buckling) {
     result.load_factor = pairs.lambda;
     return result;
@@ -50,9 +104,17 @@ records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs&
   result.eigenvalue = pairs.lambda;
   result.frequency_hz = pairs.lambda.cwiseMax(0.0).cwiseSqrt() / (2 * M_PI);
   result.kind.assign(n, records::ModeKind::Normal);
-  const MatrixXd M_Phi = fe::calc_mass_times(model, model.mass_kind(), pairs.Phi);
-  result.modal_mass = pairs.Phi.cwiseProduct(M_Phi).colwise().sum();
-  result.effective_mass = calc_effective_mass(model, pairs.Phi, M_Phi);
+  // Its share of M Phi: sums over ranks of products with it.
+  const MatrixXd M_Phi = fe::calc_own_mass_times(model, model.mass_kind(), reach, pairs.Phi);
+  const auto calc_momentum = [&](const Vector3d& point) {
+    MatrixXd L = M_Phi.transpose() * fe::take_rigid_modes(model, reach, point);
+    fe::sum_alike(L);
+    return L;
+  };
+  VectorXd modal_mass = pairs.Phi.cwiseProduct(M_Phi).colwise().sum();
+  fe::sum_alike(modal_mass);
+  result.modal_mass = modal_mass;
+  result.effective_mass = modal_mass.cwiseInverse().asDiagonal() * calc_momentum(Vector3d::Zero()).cwiseAbs2();
   if (extras.energies_of != nullptr) result.energies = calc_mode_energies(model, *extras.energies_of, pairs.Phi);
   if (extras.about_grid != 0) {
     const int node = model.find_node(extras.about_grid);
@@ -63,9 +125,9 @@ records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs&
                        "name a GRID of the deck");
     auto& about = result.effective_mass_about;
     about.grid = extras.about_grid;
-    const MatrixXd Phi_R = model.calc_rigid_modes(model.node(node).x);
-    about.mass = result.modal_mass.cwiseInverse().asDiagonal() * (M_Phi.transpose() * Phi_R).cwiseAbs2();
-    about.rigid = fe::calc_mass_properties(model, model.mass_kind(), model.node(node).x).rigid_mass;
+    const Vector3d& x = model.node(node).x;
+    about.mass = modal_mass.cwiseInverse().asDiagonal() * calc_momentum(x).cwiseAbs2();
+    about.rigid = fe::calc_mass_properties(model, model.mass_kind(), x).rigid_mass;
   }
   return result;
 }

@@ -10,13 +10,15 @@ namespace bough::modal {
 struct ModesExtras {
   const records::Deck* energies_of = nullptr;  ///< energies of the elements, whose properties this deck names
   int about_grid = 0;  ///< effective masses about this grid; InputError modal.unknown-grid where the model has it not
+  bool has_shapes = true;  ///< the shapes and what is drawn; else the record has neither
 };
 
 /// What is below zero first (fe.preload-tips), then as found: the order of the record.
 EigenPairs sort_negative(EigenPairs pairs);
 
 /// Mass properties about the origin, shapes at the grids, residuals; of normal modes (not of buckling) frequencies,
-/// modal and effective masses too, with the shapes' own lengths.
+/// modal and effective masses too, with the shapes' own lengths. Collective; of a model by parts the first rank gets
+/// the shapes and what is drawn.
 records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs& pairs, bool buckling,
                                        const ModesExtras& extras = {});
 

@@ -5,6 +5,7 @@
 
 #include "fe/linear/blas.hpp"
 #include "fe/linear/low_rank_sum.hpp"
+#include "fe/matrices/reach.hpp"
 #include "fe/matrices/system.hpp"
 #include "modal/canonical.hpp"
 
@@ -65,6 +66,7 @@ void NormalModes::choose_range(KrylovMethod method) {
   problem.M = pencil_.M.get();
   problem.M_diagonal = pencil_.M_diagonal;
   problem.kinds = pencil_.kinds;
+  problem.rows = pencil_.rows;
   problem.rigid = rigid_.modes;
   problem.supported = supported_.get();
   problem.is_complete = rigid_.is_complete;
@@ -90,7 +92,7 @@ bool NormalModes::add_roots(Roots& roots, int number, int guard, bool definite_o
 void NormalModes::find_first() {
   constexpr int guard = 2;  // those above show the gap
   const int request = std::max(0, range_.last - num_rigid()) + guard;
-  const Roots none{VectorXd(0), MatrixXd(pencil_.size(), 0)};
+  const Roots none{VectorXd(0), MatrixXd(pencil_.num_rows(), 0)};
   found_ = none;
   shift_ = 0;
   if (has_supports()) {
@@ -106,7 +108,7 @@ void NormalModes::find_first() {
     add_roots(found_, request, guard);
     // A shift far above the first eigenvalue with strain costs digits, and the vectors where it is out of all
     // proportion; one far below it lets the motions without strain into them: move it by what the strain energies say.
-    const VectorXd energy = found_.X.cwiseProduct(pencil_.calc_K_times(found_.X)).colwise().sum();
+    const VectorXd energy = pencil_.rows.dot_columns(found_.X, pencil_.calc_K_times(found_.X));
     double lowest = 0;
     for (int i = 0; i < found_.size(); ++i)
       if (pencil_.calc_relative_energy(found_.X.col(i), energy(i)) > 1e-12 && (lowest == 0 || energy(i) < lowest))
@@ -125,7 +127,7 @@ void NormalModes::find_negative() {
   for (int attempt = 0; attempt < 30 && !is_above(shift); ++attempt) shift *= 4;
   if (shift == shift_ || !is_above(shift)) return;
   shift_ = shift;
-  found_ = {VectorXd(0), MatrixXd(pencil_.size(), 0)};
+  found_ = {VectorXd(0), MatrixXd(pencil_.num_rows(), 0)};
   add_roots(found_, std::max(0, range_.last - num_rigid()) + 2, 2);
 }
 
@@ -163,9 +165,9 @@ bool NormalModes::has_every_root() {
   if (!solver_->knows_rank()) return false;
   add_roots(found_, solver_->num_available() - found_.size(), 0);
   if (found_.size() < solver_->num_available()) return false;
-  const VectorXd residual = fe::calc_residuals(
-      fe::calc_residual_scale(pencil_.K_diagonal, pencil_.M_diagonal, found_.value), found_.X,
-      pencil_.calc_K_times(found_.X), pencil_.calc_M_times(found_.X) * found_.value.asDiagonal(), pencil_.kinds);
+  const VectorXd residual = fe::calc_pair_residuals(pencil_.K_diagonal, pencil_.M_diagonal, found_.value, found_.X,
+                                                    pencil_.calc_K_times(found_.X), pencil_.calc_M_times(found_.X),
+                                                    pencil_.kinds, pencil_.rows);
   return residual.size() > 0 && residual.maxCoeff() <= fe::kResidualError;
 }
 
@@ -174,37 +176,39 @@ EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
   const int k = num_rigid(), num_zero = k + num_zero_;
   VectorXd lambda(cut);
   for (int i = 0; i < cut; ++i) lambda(i) = value(i);
-  MatrixXd X(pencil_.size(), cut);
+  MatrixXd X(pencil_.num_rows(), cut);
   X << rigid_.modes.leftCols(std::min(k, cut)), found_.X.leftCols(std::max(0, cut - k));
 
-  const VectorXd weights = calc_basis_weights(model);
   if (cut > k) {
     // Purification and separate Krylov runs leave the vectors orthogonal to nine digits or so: once more.
     const MatrixXd& R = rigid_.modes;
     MatrixXd Y = X.rightCols(cut - k);
-    if (k > 0) Y -= R * (pencil_.calc_M_times(R).transpose() * Y).eval();
-    MatrixXd G(cut - k, cut - k);
-    fe::multiply_dense(true, Y, pencil_.calc_M_times(Y), 0, G);
+    if (k > 0) Y -= R * pencil_.dot(pencil_.calc_M_times(R), Y);
+    const MatrixXd G = pencil_.dot(Y, pencil_.calc_M_times(Y));
     overlap_ = (G - MatrixXd::Identity(cut - k, cut - k)).cwiseAbs().maxCoeff();
     orthonormalize_ascending(G, Y);
     X.rightCols(cut - k) = Y;
   }
+  const VectorXd weights = calc_basis_weights(model);
   for (int a = std::min(k, cut), b = a; a < cut; a = b) {
     if (a < num_zero) {
       b = std::min(num_zero, cut);
     } else {
       b = find_cluster_end(lambda, a, calc_cluster_tolerance(pencil_, X.col(a), lambda(a)), 0);
     }
+    if (b == a + 1) continue;
     const MatrixXd Y = X.middleCols(a, b - a);
-    X.middleCols(a, b - a) = Y * calc_cluster_rotation(weights, MatrixXd(model.T() * Y));
+    X.middleCols(a, b - a) = Y * calc_cluster_rotation(weights, MatrixXd(model.T() * pencil_.rows.replicate(Y)));
     lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
   }
+  const fe::Reach reach = fe::find_reach(model);
   if (cut > 0) {
     // Where constraints have large factors, sums over the matrix of the f-set lose digits that those over elements
     // have.
-    const MatrixXd X_g = model.T() * X;
+    const MatrixXd X_g = fe::expand(model, pencil_.rows, reach, X);
     MatrixXd G(cut, cut);
-    fe::multiply_dense(true, X_g, fe::calc_mass_times(model, model.mass_kind(), X_g), 0, G);
+    fe::multiply_dense(true, X_g, fe::calc_own_mass_times(model, model.mass_kind(), reach, X_g), 0, G);
+    fe::sum_alike(G);
     if ((G - MatrixXd::Identity(cut, cut)).cwiseAbs().maxCoeff() > 1e-9) orthonormalize_ascending(G, X);
   }
 
@@ -220,11 +224,12 @@ EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
   for (int j = pairs.num_rigid; j < size; ++j)
     worst_roundoff_ = std::max(worst_roundoff_, calc_roundoff(pencil_, X.col(j), pairs.lambda(j)));
   MatrixXd KX = pencil_.calc_K_times(X);
-  for (const auto& [f, stiffness] : springs_) KX.row(f) -= stiffness * X.row(f);  // rigid motions move them
-  pairs.residual = fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, pencil_.M_diagonal, pairs.lambda), X,
-                                      KX, pencil_.calc_M_times(X) * pairs.lambda.asDiagonal(), pencil_.kinds);
-  pairs.Phi = model.T() * X;
-  fix_signs(pairs.Phi);
+  for (const auto& [f, stiffness] : springs_)  // rigid motions move them
+    if (const auto i = f - pencil_.rows.first; i >= 0 && i < pencil_.num_rows()) KX.row(i) -= stiffness * X.row(i);
+  pairs.residual = fe::calc_pair_residuals(pencil_.K_diagonal, pencil_.M_diagonal, pairs.lambda, X, KX,
+                                           pencil_.calc_M_times(X), pencil_.kinds, pencil_.rows);
+  pairs.Phi = fe::expand(model, pencil_.rows, reach, X);
+  fix_signs(reach.gdofs, pencil_.rows.is_cut, pairs.Phi);
   return pairs;
 }
 
@@ -234,7 +239,7 @@ EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnost
   const auto answer_nothing = [&] {
     said.warning("modal.empty-range", {}, "no mode lies in the frequency range asked for",
                  "widen the range of EIGRL or of --min-hz and --max-hz");
-    found_ = {VectorXd(0), MatrixXd(pencil_.size(), 0)};
+    found_ = {VectorXd(0), MatrixXd(pencil_.num_rows(), 0)};
     num_zero_ = 0;
     return make_pairs(0, range_.last, said);
   };

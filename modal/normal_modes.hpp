@@ -33,7 +33,10 @@ class NormalModes {
       : options_(options),
         factor_(options.factor ? options.factor : system.factor),
         pencil_(system),
-        rigid_(find_rigid(pencil_)) {}
+        rigid_(find_rigid(Pencil(system, VectorRows::Whole))) {
+    rigid_.modes = pencil_.rows.take(rigid_.modes);
+    rigid_.massless.resize(pencil_.num_rows(), 0);  // nobody asks for them
+  }
 
   Answer solve();
   bool has_supports() const { return !rigid_.supports.empty(); }
@@ -61,7 +64,7 @@ class NormalModes {
   const EigenOptions& options_;
   const fe::SymmetricFactor* factor_;  ///< LLᵀ of K where there is one
   Pencil pencil_;
-  RigidMotions rigid_;
+  RigidMotions rigid_;                           ///< `modes` with the rows of the pencil's vectors
   std::vector<std::pair<int, double>> springs_;  ///< f-dofs of the massless motions, held by them in K
   fe::PetscMat supported_;                       ///< K with springs at the supports too
   std::optional<PencilSolver> solver_;

@@ -72,48 +72,55 @@ Vector3d calc_mean_position(const fe::Model& model) {
   return count ? (sum / count).eval() : sum;
 }
 
-/// The 30 displacement fields x^a e_k of degree 0..2 about the mean position, rotations half their curl.
-MatrixXd calc_polynomials(const fe::Model& model) {
+/// The 30 displacement fields x^a e_k of degree 0..2 about the mean position, rotations half their curl, at the f-dofs
+/// of `rows` along their CD axes.
+MatrixXd calc_polynomials(const fe::Model& model, const fe::OwnRows& rows) {
   const Vector3d centre = calc_mean_position(model);
   double size = 0;
   for (const auto& node : model.nodes())
     if (node.num_dofs == 6) size = std::max(size, (node.x - centre).norm());
   if (size == 0) size = 1;
-  MatrixXd U = MatrixXd::Zero(model.num_gdofs(), 30);
-  for (const auto& node : model.nodes()) {
+  MatrixXd X = MatrixXd::Zero(rows.num, 30);
+  Eigen::Matrix<double, 3, 30> displacement, rotation;
+  int known = -1;
+  for (int i = 0; i < rows.num; ++i) {
+    const auto [id, component] = model.describe_fdof(rows.first + i);
+    const auto& node = model.node(model.find_node(id));
     if (node.num_dofs != 6) continue;
-    const Vector3d x = (node.x - centre) / size;
-    int column = 0;
-    const auto add = [&](double value, const Vector3d& gradient) {
-      for (int k = 0; k < 3; ++k, ++column) {
-        U(node.first_gdof + k, column) = value;
-        U.block<3, 1>(node.first_gdof + 3, column) = 0.5 * gradient.cross(Vector3d::Unit(k)) / size;
-      }
-    };
-    add(1, Vector3d::Zero());
-    for (int i = 0; i < 3; ++i) add(x(i), Vector3d::Unit(i));
-    for (int i = 0; i < 3; ++i)
-      for (int j = i; j < 3; ++j) add(x(i) * x(j), x(j) * Vector3d::Unit(i) + x(i) * Vector3d::Unit(j));
+    if (id != known) {
+      const Vector3d x = (node.x - centre) / size;
+      int column = 0;
+      const auto add = [&](double value, const Vector3d& gradient) {
+        for (int k = 0; k < 3; ++k, ++column) {
+          displacement.col(column) = value * Vector3d::Unit(k);
+          rotation.col(column) = 0.5 * gradient.cross(Vector3d::Unit(k)) / size;
+        }
+      };
+      add(1, Vector3d::Zero());
+      for (int a = 0; a < 3; ++a) add(x(a), Vector3d::Unit(a));
+      for (int a = 0; a < 3; ++a)
+        for (int b = a; b < 3; ++b) add(x(a) * x(b), x(b) * Vector3d::Unit(a) + x(a) * Vector3d::Unit(b));
+      known = id;
+    }
+    const int c = component - 1;
+    X.row(i) = node.R_basic_cd.col(c % 3).transpose() * (c < 3 ? displacement : rotation);
   }
-  return U;
+  return X;
 }
 
 }  // namespace
 
-Pencil::Pencil(const fe::System& system)
+Pencil::Pencil(const fe::System& system, VectorRows which)
     : model(system.model),
       K(fe::share(system.K)),
       M(fe::share(system.M)),
       K_diagonal(system.K_diagonal),
       M_diagonal(system.M_diagonal),
-      kinds(fe::list_row_kinds(model)) {}
-
-MatrixXd Pencil::calc_K_times(const MatrixXd& X) const { return fe::multiply(K.get(), X); }
-
-MatrixXd Pencil::calc_M_times(const MatrixXd& X) const { return fe::multiply(M.get(), X); }
+      kinds(fe::list_row_kinds(model)),
+      rows(which == VectorRows::Own ? fe::find_own_rows(K.get()) : fe::make_whole_rows(K.get())) {}
 
 double Pencil::calc_relative_energy(const VectorXd& x, double energy) const {
-  const double scale = x.cwiseAbs2().dot(K_diagonal);
+  const double scale = rows.dot_columns(x.cwiseAbs2(), K_diagonal.segment(rows.first, rows.num))(0);
   return scale > 0 ? std::abs(energy) / scale : 0;
 }
 
@@ -264,9 +271,9 @@ void orthonormalize(const Pencil& pencil, MatrixXd& modes) {
 }
 
 double estimate_first_eigenvalue(const Pencil& pencil) {
-  const MatrixXd X = restrict_to_fdofs(pencil.model, calc_polynomials(pencil.model));
-  const MatrixXd K = X.transpose() * pencil.calc_K_times(X);
-  const MatrixXd M = X.transpose() * pencil.calc_M_times(X);
+  const MatrixXd X = calc_polynomials(pencil.model, pencil.rows);
+  const MatrixXd K = pencil.dot(X, pencil.calc_K_times(X));
+  const MatrixXd M = pencil.dot(X, pencil.calc_M_times(X));
   const VectorXd scale = M.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
   VectorXd m;
   const MatrixXd V = calc_range(scale.asDiagonal() * M * scale.asDiagonal(), 1e-9, true, &m);

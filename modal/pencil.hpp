@@ -1,8 +1,9 @@
 #pragma once
-/// \file K and M of a model on the f-set, their products with replicated vectors, and the motions without strain.
+/// \file K and M of a model on the f-set, their products with vectors, and the motions without strain.
 #include <string>
 #include <vector>
 
+#include "fe/linear/own_rows.hpp"
 #include "fe/linear/row_kinds.hpp"
 #include "fe/matrices/system.hpp"
 
@@ -11,24 +12,30 @@ namespace bough::modal::detail {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// K and M of a system, shared with it until a copy takes the place of one; products with vectors replicated on every
-/// rank.
+enum class VectorRows { Own, Whole };
+
+/// K and M of a system, shared with it until a copy takes the place of one. Vectors are those of `rows`: of a model by
+/// parts the rank's own f-dofs where the pencil is made for `Own`, else whole on every rank. Functions of a pencil are
+/// collective, and their scalars and small matrices alike on every rank.
 struct Pencil {
-  explicit Pencil(const fe::System& system);
+  explicit Pencil(const fe::System& system, VectorRows which = VectorRows::Own);
 
   const fe::Model& model;
   fe::PetscMat K, M;
-  VectorXd K_diagonal, M_diagonal;  ///< |K_ii| and M_ii, num_fdofs, replicated
-  fe::RowKinds kinds;               ///< of the f-dofs
+  VectorXd K_diagonal, M_diagonal;  ///< |K_ii| and M_ii, num_fdofs, whole on every rank
+  fe::RowKinds kinds;               ///< of the f-dofs, likewise
+  fe::OwnRows rows;                 ///< of vectors
 
   int size() const { return model.num_fdofs(); }
-  MatrixXd calc_K_times(const MatrixXd& X) const;
-  MatrixXd calc_M_times(const MatrixXd& X) const;
+  int num_rows() const { return rows.num; }
+  MatrixXd calc_K_times(const MatrixXd& X) const { return rows.multiply(K.get(), X); }
+  MatrixXd calc_M_times(const MatrixXd& X) const { return rows.multiply(M.get(), X); }
+  MatrixXd dot(const MatrixXd& X, const MatrixXd& Y) const { return rows.dot(X, Y); }  ///< XᵀY
   /// φᵀKφ / Σ K_ii φ_i²: about 1e-16 for a motion without strain, whatever the units and the mesh.
   double calc_relative_energy(const VectorXd& x, double energy) const;
 };
 
-/// The rigid motions of the model that its constraints and springs leave free.
+/// The rigid motions of the model that its constraints and springs leave free; whole vectors where they are found.
 struct RigidMotions {
   MatrixXd modes;     ///< num_fdofs x k, orthonormal under M, in order: translations of the cg, rotations, loose dofs
   MatrixXd massless;  ///< num_fdofs x l: no strain and no mass; K - σM is singular along them for every σ
@@ -43,9 +50,9 @@ struct RigidMotions {
 /// `floor`: share of the root of K_ii that counts as a term too, for Y of unit length under diag K with roundoff in it.
 MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor = 0);
 
-/// Combinations c of Φ_R (about the cg) with (Φ_R c)ᵀ K (Φ_R c) and every row of K Φ_R c zero in roundoff on the f-set,
-/// and the dofs with mass that nothing stiffens at all. A motion that a support prevents shows as strain where it was
-/// cut off.
+/// With a pencil of whole vectors, as the functions above: combinations c of Φ_R (about the cg) with (Φ_R c)ᵀ K (Φ_R c)
+/// and every row of K Φ_R c zero in roundoff on the f-set, and the dofs with mass that nothing stiffens at all. A
+/// motion that a support prevents shows as strain where it was cut off.
 RigidMotions find_rigid_motions(const Pencil& pencil);
 /// Makes motions without strain, ascending, orthonormal in M by products of themselves: those of the six motions that
 /// they are sums of cancel where a turn about an oblique axis has next to no inertia.

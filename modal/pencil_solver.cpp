@@ -17,10 +17,10 @@ MatrixXd symmetrize(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
 constexpr double kReach = 1e6;  ///< how far above the first root of a stage the digits suffice
 
 /// X without the M-orthonormal R.
-void take_out(Mat M, const MatrixXd& R, MatrixXd& X) {
+void take_out(const fe::OwnRows& rows, Mat M, const MatrixXd& R, MatrixXd& X) {
   if (R.cols() == 0) return;
-  const MatrixXd MR = fe::multiply(M, R);
-  for (int pass = 0; pass < 2; ++pass) X -= R * (MR.transpose() * X).eval();
+  const MatrixXd MR = rows.multiply(M, R);
+  for (int pass = 0; pass < 2; ++pass) X -= R * rows.dot(MR, X);
 }
 
 /// Values and vectors among X by K itself.
@@ -36,6 +36,7 @@ void solve_among(Mat K, Mat M, Roots& roots) {
 }  // namespace
 
 PencilSolver::PencilSolver(const PencilProblem& problem, int request) : problem_(problem) {
+  if (problem_.rows.size == 0) problem_.rows = fe::make_whole_rows(problem.M);
   const auto k = static_cast<int>(problem.rigid.cols());
   num_available_ = std::max(0, static_cast<int>((problem.M_diagonal.array() > 0).count()) - k);
   C_ = factor_low_rank(problem.M, problem.M_diagonal, std::min(3 * request + 100 + k, 4000));
@@ -43,7 +44,9 @@ PencilSolver::PencilSolver(const PencilProblem& problem, int request) : problem_
 }
 
 bool PencilSolver::solve_whole(double shift, int number, bool definite_only, Roots& roots) {
-  const auto r = C_->cols(), k = problem_.rigid.cols();
+  // C has few columns, and its solutions are whole.
+  const MatrixXd rigid = problem_.rows.replicate(problem_.rigid);
+  const auto r = C_->cols(), k = rigid.cols();
   const fe::PetscMat shifted = shift == 0 ? fe::PetscMat() : add(problem_.K, shift, problem_.M);
   Mat A = problem_.supported ? problem_.supported : shift == 0 ? problem_.K : shifted.get();
   std::optional<fe::SymmetricFactor> own;
@@ -58,7 +61,7 @@ bool PencilSolver::solve_whole(double shift, int number, bool definite_only, Roo
 
   // In stages: beside values a million times as large roundoff is all that G has of the small ones.
   Roots all{VectorXd(0), MatrixXd(C_->rows(), 0)};
-  MatrixXd known = problem_.rigid;
+  MatrixXd known = rigid;
   const auto wanted = std::min<Eigen::Index>(roots.size() + number, r - k);
   while (all.size() < wanted) {
     Roots stage = solve_stage(*factor, shift, known, static_cast<int>(wanted) - all.size());
@@ -72,6 +75,7 @@ bool PencilSolver::solve_whole(double shift, int number, bool definite_only, Roo
     all.add(stage.value, stage.X);
   }
   roots = std::move(all);
+  if (problem_.rows.is_cut) roots.X = problem_.rows.take(roots.X);
   return true;
 }
 
@@ -87,7 +91,7 @@ Roots PencilSolver::solve_stage(const fe::SymmetricFactor& factor, double shift,
   const bool is_first = k == problem_.rigid.cols();
   const auto solve_for = [&](const MatrixXd& Y) {
     MatrixXd X = factor.solve(MatrixXd(*C_ * Y));
-    if (!is_first || problem_.supported) take_out(problem_.M, known, X);
+    if (!is_first || problem_.supported) take_out(fe::make_whole_rows(problem_.M), problem_.M, known, X);
     return X;
   };
   MatrixXd G(Z.cols(), Z.cols());
@@ -137,7 +141,7 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
   krylov.progress = problem_.progress;
   auto result = solve_krylov(krylov);
   if (result.is_singular) return false;
-  if (problem_.supported) take_out(problem_.M, problem_.rigid, result.vectors);
+  if (problem_.supported) take_out(problem_.rows, problem_.M, problem_.rigid, result.vectors);
   roots.add(result.values, result.vectors);
   return true;
 }

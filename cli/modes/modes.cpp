@@ -107,6 +107,10 @@ Solved solve_task(const ModesOptions& options, const records::DynamicDeck& deck,
       task.buckling
           ? fe::calc_subcase_prestress(deck, model_options, modal::get_preloaded(deck, *task.buckling), diagnostics)
           : calc_prestress(deck, model_options, diagnostics);
+  const auto asks_residuals = [&](const auto& one) { return modal::response::asks_residual_vectors(deck, one.second); };
+  // What these make of elements takes all of them on every rank.
+  model_options.by_parts = !options.buckling && !listing && !options.energies &&
+                           std::none_of(requests.selections.begin(), requests.selections.end(), asks_residuals);
   auto model = fe::Model::build(deck, model_options, diagnostics);
   diagnostics.throw_if_errors();
   if (fe::has_damping(model))
@@ -137,6 +141,7 @@ Solved solve_task(const ModesOptions& options, const records::DynamicDeck& deck,
   modal::ModesExtras extras{options.energies ? &deck : nullptr, options.about_grid};
   if (extras.about_grid == 0 && !options.buckling && selection)
     extras.about_grid = selection->effective_mass_grid.value_or(0);
+  extras.has_shapes = !options.output.empty() || !options.vtu.empty() || !options.compare.empty();
   solved.result = modal::make_modes_result(model, pairs, options.buckling, extras);
   solved.norm = norm.kind;
   std::fill_n(solved.result.kind.end() - num_residual, num_residual, records::ModeKind::Residual);

@@ -4,6 +4,7 @@
 /// All matrices are in basic axes at the element's grid points (offsets and pin releases are already inside), in the
 /// order of get_gdofs(). Functions add into the caller's storage and keep no scratch of their own: an element is const.
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -150,10 +151,20 @@ class NodeTable {
   virtual Matrix3d calc_axes(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const = 0;
   /// Position in basic of coordinates given in system cid.
   virtual Vector3d calc_point(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const = 0;
+  /// Whether an element stays after it was made; the others were for their messages (fe/model/model_share.hpp).
+  virtual bool keeps(const Element& /*element*/) const { return true; }
 };
 
 struct ElementList {
   std::vector<std::unique_ptr<const Element>> elements;
+
+  /// Of all that add() was given, kept or not; what is put into `elements` directly is not among them.
+  int num_made = 0;
+  std::vector<int> number;      ///< of the kept ones: the place among all
+  std::set<std::string> cards;  ///< their kinds
+  bool has_damping = false;     ///< of any
+
+  void add(std::unique_ptr<const Element> element, const NodeTable& nodes);
 };
 
 /// Every element of the deck (bars, beams, rods, tubes, springs, bushes, masses, shells, solids); missing properties,

@@ -13,6 +13,7 @@ namespace {
 static_assert(std::is_same_v<idx_t, PetscInt>, "graphs are handed to METIS as PetscInt");
 
 constexpr const char* kGroups = "bough_row_groups";
+constexpr const char* kByParts = "bough_rows_by_parts";
 constexpr const char* kOrder = "bough_elimination_order";
 constexpr const char* kParts =
     "bough_two_parts";  // rows of the first, of the second, between; how many there are of each
@@ -74,8 +75,21 @@ std::vector<PetscInt> get_row_groups(Mat A) {
   return result;
 }
 
+void set_rows_by_parts(Mat A) {
+  PetscIs mark;
+  check_petsc(ISCreateGeneral(PETSC_COMM_SELF, 0, nullptr, PETSC_COPY_VALUES, mark.out()));
+  check_petsc(
+      PetscObjectCompose(reinterpret_cast<PetscObject>(A), kByParts, reinterpret_cast<PetscObject>(mark.get())));
+}
+
+bool are_rows_by_parts(Mat A) {
+  PetscObject object = nullptr;
+  check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(A), kByParts, &object));
+  return object != nullptr;
+}
+
 void copy_row_groups(Mat from, Mat to) {
-  for (const char* name : {kGroups, kOrder}) {
+  for (const char* name : {kGroups, kOrder, kByParts}) {
     PetscObject object = nullptr;
     check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(from), name, &object));
     if (object) check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(to), name, object));

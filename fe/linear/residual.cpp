@@ -5,28 +5,58 @@
 #include <cstdio>
 
 #include "base/diagnostic.hpp"
+#include "fe/linear/own_rows.hpp"
+#include "fe/linear/ranks.hpp"
 
 namespace bough::fe {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+/// Of one column: what is wrong, of the forces and of the entries, squared and scaled; of the rows from `first` on.
+Eigen::Vector3d sum_squares(const VectorXd& d, const VectorXd& scale, Eigen::Index first,
+                            const Eigen::Ref<const VectorXd>& x, const Eigen::Ref<const VectorXd>& y,
+                            const Eigen::Ref<const VectorXd>& f) {
+  Eigen::Vector3d sums = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const Eigen::Index row = first + i;
+    sums(0) += (y(i) - f(i)) * (y(i) - f(i)) / scale(row);
+    sums(1) += y(i) * y(i) / scale(row);
+    sums(2) += d(row) * x(i) * x(i);
+  }
+  return sums;
+}
+
+double calc_residual(const Eigen::Vector3d& sums) {
+  return sums(0) == 0 ? 0 : std::sqrt(sums(0)) / (std::sqrt(sums(1)) + 1e-6 * std::sqrt(sums(2)));
+}
+
+}  // namespace
+
 VectorXd calc_residuals(const MatrixXd& D, const MatrixXd& X, const MatrixXd& Y, const MatrixXd& F,
                         const RowKinds& kinds) {
   BOUGH_DEMAND(D.rows() == X.rows() && Y.cols() == X.cols() && F.cols() == X.cols());
   VectorXd residual = VectorXd::Zero(X.cols());
   for (Eigen::Index j = 0; j < X.cols(); ++j) {
-    const auto d = D.col(D.cols() == 1 ? 0 : j);
-    const VectorXd scale = fill_diagonal(d, kinds);
-    double wrong = 0, force = 0, entries = 0;
-    for (Eigen::Index i = 0; i < d.size(); ++i) {
-      wrong += (Y(i, j) - F(i, j)) * (Y(i, j) - F(i, j)) / scale(i);
-      force += Y(i, j) * Y(i, j) / scale(i);
-      entries += d(i) * X(i, j) * X(i, j);
-    }
-    const double size = std::sqrt(force) + 1e-6 * std::sqrt(entries);
-    residual(j) = wrong == 0 ? 0 : std::sqrt(wrong) / size;
+    const VectorXd d = D.col(D.cols() == 1 ? 0 : j);
+    residual(j) = calc_residual(sum_squares(d, fill_diagonal(d, kinds), 0, X.col(j), Y.col(j), F.col(j)));
   }
+  return residual;
+}
+
+VectorXd calc_pair_residuals(const VectorXd& K_diagonal, const VectorXd& M_diagonal, const VectorXd& lambda,
+                             const MatrixXd& X, const MatrixXd& KX, const MatrixXd& MX, const RowKinds& kinds,
+                             const OwnRows& rows) {
+  MatrixXd sums(3, X.cols());
+  for (Eigen::Index j = 0; j < X.cols(); ++j) {
+    const VectorXd d = K_diagonal.cwiseAbs() + std::abs(lambda(j)) * M_diagonal.cwiseAbs();
+    sums.col(j) = sum_squares(d, fill_diagonal(d, kinds), rows.first, X.col(j), KX.col(j), lambda(j) * MX.col(j));
+  }
+  if (rows.is_cut) sum_alike(sums);
+  VectorXd residual(X.cols());
+  for (Eigen::Index j = 0; j < X.cols(); ++j) residual(j) = calc_residual(sums.col(j));
   return residual;
 }
 

@@ -1,165 +1,18 @@
 #include "fe/linear/subdomains.hpp"
 
-#include <metis.h>
-
 #include <algorithm>
-#include <functional>
-#include <new>
 #include <numeric>
 #include <utility>
 
-#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/memory_need.hpp"
-#include "fe/linear/ordering.hpp"
 #include "fe/linear/part_factor.hpp"
 #include "fe/linear/ranks.hpp"
 
 namespace bough::fe {
-namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// Rows between, whose dense block every rank holds twice and works on for n³ operations: 256 MB, two seconds.
-constexpr PetscInt kMostRowsBetween = 4000;
-/// Of all rows, where they are too many to cost nothing.
-constexpr double kMostShare = 0.03;
-constexpr PetscInt kFewBetween = 1000;
-
-/// The graph of row groups, neighbours without the group itself.
-struct GroupGraph {
-  std::vector<idx_t> start{0}, neighbours, weight;
-  idx_t size() const { return static_cast<idx_t>(weight.size()); }
-};
-
-std::vector<int> list_group_of(const std::vector<PetscInt>& group_start) {
-  std::vector<int> group_of(static_cast<std::size_t>(group_start.back()));
-  for (std::size_t g = 0; g + 1 < group_start.size(); ++g)
-    std::fill(group_of.begin() + group_start[g], group_of.begin() + group_start[g + 1], static_cast<int>(g));
-  return group_of;
-}
-
-/// Concatenated on the first rank.
-std::vector<int> collect(const std::vector<int>& own, const MpiWorld& world) {
-  const int num = static_cast<int>(own.size());
-  std::vector<int> nums(static_cast<std::size_t>(world.size)), starts(nums.size(), 0), all;
-  MPI_Gather(&num, 1, MPI_INT, nums.data(), 1, MPI_INT, 0, PETSC_COMM_WORLD);
-  if (world.rank == 0) {
-    std::partial_sum(nums.begin(), nums.end() - 1, starts.begin() + 1);
-    all.resize(static_cast<std::size_t>(starts.back() + nums.back()));
-  }
-  MPI_Gatherv(own.data(), num, MPI_INT, all.data(), nums.data(), starts.data(), MPI_INT, 0, PETSC_COMM_WORLD);
-  return all;
-}
-
-/// From the rows that each rank holds, on the first; groups begin anew with the rows of a rank.
-GroupGraph build_group_graph(Mat A, Mat B, const std::vector<PetscInt>& group_start, const MpiWorld& world) {
-  const std::vector<int> group_of = list_group_of(group_start);
-  PetscInt first = 0, last = 0, num = 0;
-  check_petsc(MatGetOwnershipRange(A, &first, &last));
-  const PetscInt* columns = nullptr;
-  const int num_groups = static_cast<int>(group_start.size()) - 1;
-  std::vector<int> degree, neighbours, mark(static_cast<std::size_t>(num_groups), -1);
-  for (int g = 0; g < num_groups; ++g) {
-    if (group_start[g] < first || group_start[g] >= last) continue;
-    const std::size_t before = neighbours.size();
-    mark[g] = g;
-    for (PetscInt row = group_start[g]; row < group_start[g + 1]; ++row)
-      for (Mat matrix : {A, B}) {
-        check_petsc(MatGetRow(matrix, row, &num, &columns, nullptr));
-        for (PetscInt k = 0; k < num; ++k)
-          if (const int other = group_of[columns[k]]; mark[other] != g) mark[other] = g, neighbours.push_back(other);
-        check_petsc(MatRestoreRow(matrix, row, &num, &columns, nullptr));
-      }
-    degree.push_back(static_cast<int>(neighbours.size() - before));
-  }
-  degree = collect(degree, world);
-  GroupGraph graph;
-  graph.neighbours = collect(neighbours, world);
-  if (world.rank != 0) return graph;
-  for (int g = 0; g < num_groups; ++g) {
-    graph.start.push_back(graph.start.back() + degree[g]);
-    graph.weight.push_back(group_start[g + 1] - group_start[g]);
-  }
-  return graph;
-}
-
-/// The part of every group, `num_parts` for those between: of an edge between two parts the end in the higher one, so
-/// that one line along a cut is enough. Empty where METIS gives none or a part has no inner group.
-std::vector<idx_t> cut(GroupGraph& graph, idx_t num_parts) {
-  idx_t num = graph.size(), constraints = 1, edges = 0, options[METIS_NOPTIONS];
-  std::vector<idx_t> home(static_cast<std::size_t>(num));
-  METIS_SetDefaultOptions(options);
-  if (num < num_parts || graph.neighbours.empty() ||
-      METIS_PartGraphRecursive(&num, &constraints, graph.start.data(), graph.neighbours.data(), graph.weight.data(),
-                               nullptr, nullptr, &num_parts, nullptr, nullptr, options, &edges,
-                               home.data()) != METIS_OK)
-    return {};
-  std::vector<idx_t> part = home;
-  for (idx_t g = 0; g < num; ++g)
-    for (idx_t k = graph.start[g]; k < graph.start[g + 1]; ++k)
-      if (home[graph.neighbours[k]] < home[g]) part[g] = num_parts;
-  std::vector<char> has_inner(static_cast<std::size_t>(num_parts) + 1, 0);
-  for (const idx_t p : part) has_inner[p] = 1;
-  if (std::any_of(has_inner.begin(), has_inner.end() - 1, [](char has) { return has == 0; })) return {};
-  return part;
-}
-
-/// The rows of the groups of this rank's part in the order of a nested dissection.
-std::vector<PetscInt> order_inner(const SubdomainMatrix& A, const std::vector<PetscInt>& inner,
-                                  const std::vector<int>& group_of) {
-  std::vector<idx_t> start{0}, neighbours, weight, first_row;
-  std::vector<idx_t> vertex(inner.size());
-  for (std::size_t i = 0; i < inner.size(); ++i) {
-    if (i == 0 || group_of[inner[i]] != group_of[inner[i - 1]]) weight.push_back(0), first_row.push_back(i);
-    ++weight.back();
-    vertex[i] = static_cast<idx_t>(weight.size()) - 1;
-  }
-  std::vector<idx_t> mark(weight.size(), -1);
-  for (std::size_t v = 0; v < weight.size(); ++v) {
-    mark[v] = static_cast<idx_t>(v);
-    for (idx_t i = first_row[v]; i < first_row[v] + weight[v]; ++i)
-      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator entry(A.rows(), i); entry; ++entry) {
-        if (entry.col() >= static_cast<Index>(inner.size())) continue;
-        const idx_t other = vertex[static_cast<std::size_t>(entry.col())];
-        if (mark[other] != static_cast<idx_t>(v)) mark[other] = static_cast<idx_t>(v), neighbours.push_back(other);
-      }
-    start.push_back(static_cast<idx_t>(neighbours.size()));
-  }
-  std::vector<idx_t> rank(weight.size()), inverse(weight.size());
-  std::iota(rank.begin(), rank.end(), 0);
-  idx_t num = static_cast<idx_t>(weight.size()), options[METIS_NOPTIONS];
-  METIS_SetDefaultOptions(options);
-  if (!neighbours.empty() && METIS_NodeND(&num, start.data(), neighbours.data(), weight.data(), options, rank.data(),
-                                          inverse.data()) != METIS_OK)
-    std::iota(rank.begin(), rank.end(), 0);
-  std::vector<PetscInt> rows;
-  for (const idx_t v : rank)
-    for (idx_t i = first_row[v]; i < first_row[v] + weight[v]; ++i) rows.push_back(inner[static_cast<std::size_t>(i)]);
-  return rows;
-}
-
-bool are_all(bool is_fine) {
-  int all = is_fine ? 1 : 0;
-  MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
-  return all == 1;
-}
-
-/// What one rank has no memory for ends all of them, with the same words.
-void do_on_all(const std::function<void()>& act) {
-  std::optional<ComputationError> failure;
-  try {
-    act();
-  } catch (const ComputationError& error) {
-    failure = error;
-  } catch (const std::bad_alloc&) {
-    failure = make_out_of_memory();
-  }
-  if (!are_all(!failure)) throw failure ? *failure : make_out_of_memory();
-}
-
-}  // namespace
 
 MatrixXd Subdomains::take_own(const Eigen::Ref<const MatrixXd>& X) const {
   MatrixXd own(num_own(), X.cols());
@@ -176,40 +29,137 @@ MatrixXd Subdomains::replicate(const MatrixXd& own) const {
   return X;
 }
 
-std::optional<Subdomains> find_subdomains(Mat A, Mat B, PetscInt least) {
-  const MpiWorld world = initialize_petsc();
-  Subdomains result;
-  check_petsc(MatGetSize(A, &result.size, nullptr));
-  if (world.size == 1 || result.size < least || find_low_rank(A) || find_low_rank(B)) return std::nullopt;
-  const std::vector<PetscInt> group_start = get_row_groups(A);
-  if (group_start.size() < 2) return std::nullopt;
-  const int num_groups = static_cast<int>(group_start.size()) - 1;
-  std::vector<idx_t> part;
-  {
-    GroupGraph graph = build_group_graph(A, B, group_start, world);
-    if (world.rank == 0) part = cut(graph, world.size);
-  }
-  int is_cut = part.empty() ? 0 : 1;
-  MPI_Bcast(&is_cut, 1, MPI_INT, 0, PETSC_COMM_WORLD);
-  if (is_cut == 0) return std::nullopt;
-  part.resize(static_cast<std::size_t>(num_groups));
-  MPI_Bcast(part.data(), num_groups, MPI_INT, 0, PETSC_COMM_WORLD);
-  for (int g = 0; g < num_groups; ++g)
-    for (PetscInt row = group_start[g]; row < group_start[g + 1]; ++row)
-      if (part[g] == world.rank)
-        result.inner.push_back(row);
-      else if (part[g] == world.size)
-        result.between.push_back(row);
-  const auto between = static_cast<long long>(result.between.size());
-  if (between > kMostRowsBetween || (between > kFewBetween && static_cast<double>(between) > kMostShare * result.size))
-    return std::nullopt;
-  result.first_shared = static_cast<PetscInt>(between * world.rank / world.size);
-  result.num_shared = static_cast<PetscInt>(between * (world.rank + 1) / world.size) - result.first_shared;
-  result.inner = order_inner(SubdomainMatrix(A, result), result.inner, list_group_of(group_start));
-  return result;
+MatrixXd Subdomains::from_rows(const Eigen::Ref<const MatrixXd>& X) const {
+  if (!by_parts) return take_own(X);
+  const PetscInt first = find_first_row();
+  MatrixXd own(num_own(), X.cols());
+  for (Index c = 0; c < X.cols(); ++c)
+    for (PetscInt i = 0; i < num_own(); ++i) own(i, c) = X(get_row(i) - first, c);
+  return own;
 }
 
+MatrixXd Subdomains::to_rows(const MatrixXd& own) const {
+  if (!by_parts) return replicate(own);
+  const PetscInt first = find_first_row();
+  MatrixXd X(own.rows(), own.cols());
+  for (Index c = 0; c < own.cols(); ++c)
+    for (PetscInt i = 0; i < num_own(); ++i) X(get_row(i) - first, c) = own(i, c);
+  return X;
+}
+
+PetscInt Subdomains::find_first_row() const {
+  PetscInt first = num_own() > 0 ? get_row(0) : 0;
+  for (PetscInt i = 0; i < num_own(); ++i) first = std::min(first, get_row(i));
+  return first;
+}
+
+namespace {
+
+/// Entries with their columns among the rows inner, between.
+struct Entries {
+  std::vector<int> start{0}, column;
+  std::vector<double> value;
+};
+
+/// Of the inner rows, in their order, and on every rank of those between, with columns that count from the first of
+/// these.
+struct RowsOfPart {
+  Entries inner, between;
+};
+
+/// Own rows of A alone are read; of those between every rank gets what others have.
+RowsOfPart read_own_rows(Mat A, const Subdomains& domains) {
+  std::vector<int> place(static_cast<std::size_t>(domains.size), -1);
+  const PetscInt n_p = domains.num_inner();
+  for (PetscInt i = 0; i < n_p; ++i) place[static_cast<std::size_t>(domains.inner[i])] = i;
+  for (PetscInt i = 0; i < domains.num_between(); ++i) place[static_cast<std::size_t>(domains.between[i])] = n_p + i;
+  PetscInt num = 0;
+  const PetscInt* columns = nullptr;
+  const PetscScalar* values = nullptr;
+  RowsOfPart rows;
+  MatInfo info;
+  check_petsc(MatGetInfo(A, MAT_LOCAL, &info));
+  rows.inner.column.reserve(static_cast<std::size_t>(info.nz_used));
+  rows.inner.value.reserve(static_cast<std::size_t>(info.nz_used));
+  for (const PetscInt row : domains.inner) {
+    check_petsc(MatGetRow(A, row, &num, &columns, &values));
+    for (PetscInt k = 0; k < num; ++k) {
+      const int j = place[static_cast<std::size_t>(columns[k])];
+      BOUGH_DEMAND(j >= 0);  // inner rows of two ranks do not couple
+      rows.inner.column.push_back(j);
+      rows.inner.value.push_back(values[k]);
+    }
+    check_petsc(MatRestoreRow(A, row, &num, &columns, &values));
+    rows.inner.start.push_back(static_cast<int>(rows.inner.column.size()));
+  }
+  std::vector<int> nums, own_columns;
+  std::vector<double> own_values;
+  for (PetscInt s = 0; s < domains.num_shared; ++s) {
+    const PetscInt row = domains.between[domains.first_shared + s];
+    check_petsc(MatGetRow(A, row, &num, &columns, &values));
+    int count = 0;
+    for (PetscInt k = 0; k < num; ++k)
+      if (const int j = place[static_cast<std::size_t>(columns[k])]; j >= n_p) {
+        own_columns.push_back(j - n_p);
+        own_values.push_back(values[k]);
+        ++count;
+      }
+    check_petsc(MatRestoreRow(A, row, &num, &columns, &values));
+    nums.push_back(count);
+  }
+  // Rows between ascend with the rank: one after the other they are in order.
+  for (const int count : join_over_ranks(nums)) rows.between.start.push_back(rows.between.start.back() + count);
+  rows.between.column = join_over_ranks(own_columns);
+  rows.between.value = join_over_ranks(own_values);
+  return rows;
+}
+
+/// Rows of the symmetric matrix with ascending columns, without sorting: row i has what the rows before have in
+/// column i.
+Eigen::SparseMatrix<double, Eigen::RowMajor> merge(const RowsOfPart& rows, Index n_p, Index n_s) {
+  std::vector<int> count(static_cast<std::size_t>(n_p + n_s), 0);
+  const auto tail = [&](Index i) {  // of an inner row, in columns between
+    std::vector<std::pair<int, double>> entries;
+    for (int k = rows.inner.start[i]; k < rows.inner.start[i + 1]; ++k)
+      if (rows.inner.column[k] >= n_p) entries.emplace_back(rows.inner.column[k], rows.inner.value[k]);
+    std::sort(entries.begin(), entries.end());
+    return entries;
+  };
+  for (Index i = 0; i < n_p; ++i)
+    for (int k = rows.inner.start[i]; k < rows.inner.start[i + 1]; ++k) {
+      ++count[static_cast<std::size_t>(rows.inner.column[k])];
+      if (rows.inner.column[k] >= n_p) ++count[static_cast<std::size_t>(i)];
+    }
+  for (const int column : rows.between.column) ++count[static_cast<std::size_t>(n_p + column)];
+  Eigen::SparseMatrix<double, Eigen::RowMajor> A(n_p + n_s, n_p + n_s);
+  std::vector<int> next(count.size() + 1, 0);
+  std::partial_sum(count.begin(), count.end(), next.begin() + 1);
+  A.resizeNonZeros(next.back());
+  std::copy(next.begin(), next.end(), A.outerIndexPtr());
+  const auto put = [&](Index row, Index column, double value) {
+    const int at = next[static_cast<std::size_t>(row)]++;
+    A.innerIndexPtr()[at] = static_cast<int>(column);
+    A.valuePtr()[at] = value;
+  };
+  for (Index i = 0; i < n_p; ++i)
+    for (int k = rows.inner.start[i]; k < rows.inner.start[i + 1]; ++k)
+      put(rows.inner.column[k], i, rows.inner.value[k]);
+  for (Index i = 0; i < n_p; ++i)
+    if (next[static_cast<std::size_t>(i)] < A.outerIndexPtr()[i + 1])  // few are next to the cut
+      for (const auto& [column, value] : tail(i)) put(i, column, value);
+  for (Index s = 0; s < n_s; ++s)
+    for (int k = rows.between.start[s]; k < rows.between.start[s + 1]; ++k)
+      put(n_p + rows.between.column[k], n_p + s, rows.between.value[k]);
+  return A;
+}
+
+}  // namespace
+
 SubdomainMatrix::SubdomainMatrix(Mat A, const Subdomains& domains) : domains_(domains) {
+  if (domains.by_parts) {
+    rows_ = merge(read_own_rows(A, domains), domains.num_inner(), domains.num_between());
+    return;
+  }
   std::vector<PetscInt> rows = domains.inner;
   rows.insert(rows.end(), domains.between.begin(), domains.between.end());
   std::vector<int> order(rows.size()), place(rows.size());
@@ -287,6 +237,19 @@ MatrixXd SubdomainMatrix::multiply(const Eigen::Ref<const MatrixXd>& X) const {
   return Y;
 }
 
+void require_memory_of_ranks(double num_rows, double num_entries, const ComputationError& otherwise) {
+  // Ranks of one machine share its memory.
+  double need[2] = {num_rows, num_entries};
+  MPI_Comm machine = MPI_COMM_NULL;
+  MPI_Comm_split_type(PETSC_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+  MPI_Allreduce(MPI_IN_PLACE, need, 2, MPI_DOUBLE, MPI_SUM, machine);
+  MPI_Comm_free(&machine);
+  do_on_all(otherwise, [&] {
+    release_freed_memory();
+    require_memory(need[0], need[1], calc_free_memory());
+  });
+}
+
 SubdomainFactor::SubdomainFactor(Mat A, const Subdomains& domains)
     : domains_(domains), part_(std::make_unique<PartFactor>()) {
   const MpiWorld world = initialize_petsc();
@@ -295,27 +258,19 @@ SubdomainFactor::SubdomainFactor(Mat A, const Subdomains& domains)
   std::iota(between.begin(), between.end(), domains.num_inner());
   VectorXd delta;
   bool is_fine = false;
+  const ComputationError no_memory = make_out_of_memory();
   {
     const SubdomainMatrix matrix(A, domains);
     const auto& rows = matrix.rows();
     const MatrixRows as_rows{rows.outerIndexPtr(), rows.innerIndexPtr(), rows.valuePtr()};
-    do_on_all([&] {
+    do_on_all(no_memory, [&] {
       delta = calc_row_sums(as_rows, between, static_cast<PetscInt>(rows.rows()));
       is_fine = part_->analyse(as_rows, std::move(own), between, delta, world.size);
     });
   }
   if (!are_all(is_fine)) return;
-  // Ranks of one machine share its memory.
-  double need[2] = {static_cast<double>(domains.num_inner() + domains.num_between()), part_->num_entries()};
-  MPI_Comm machine = MPI_COMM_NULL;
-  MPI_Comm_split_type(PETSC_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
-  MPI_Allreduce(MPI_IN_PLACE, need, 2, MPI_DOUBLE, MPI_SUM, machine);
-  MPI_Comm_free(&machine);
-  do_on_all([&] {
-    release_freed_memory();
-    require_memory(need[0], need[1], calc_free_memory());
-  });
-  do_on_all([&] {
+  require_memory_of_ranks(domains.num_inner() + domains.num_between(), part_->num_entries(), no_memory);
+  do_on_all(no_memory, [&] {
     is_fine = part_->factor();
     if (is_fine) L_ = part_->calc_schur();
   });

@@ -7,6 +7,7 @@
 #include "fe/linear/ordering.hpp"
 #include "fe/linear/threads.hpp"
 #include "fe/matrices/factor_need.hpp"
+#include "fe/matrices/reach.hpp"
 #include "fe/model/element_transform.hpp"
 
 namespace bough::fe {
@@ -132,38 +133,46 @@ const std::vector<QuadraticForm>& get_forms(const Model& model) {
 }
 
 /// Fewer are done before a thread has started.
-constexpr int kElementsOfThread = 2000;
+constexpr size_t kElementsOfThread = 2000;
 
-/// Σ_e of element matrices and of forms times X, over ranks.
-MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen::Ref<const MatrixXd>& X,
-                    const std::vector<QuadraticForm>& forms = {}) {
-  BOUGH_DEMAND(X.rows() == model.num_gdofs());
+/// Σ of this rank's element matrices times X; row_of(g): of X and of the sum.
+template <class RowOf>
+MatrixXd sum_own_elements(const Model& model, const AddElementMatrix& add, const Eigen::Ref<const MatrixXd>& X,
+                          const RowOf& row_of) {
   MatrixXd Y = MatrixXd::Zero(X.rows(), X.cols());
-  if (X.cols() == 0) return Y;
-  const auto add_some = [&](int begin, int end, MatrixXd& sum) {
+  const std::vector<int> own = list_own_elements(model);
+  const auto add_some = [&](size_t begin, size_t end, MatrixXd& sum) {
     MatrixXd K_e, X_e, Y_e;
-    for (int e = begin; e < end; ++e) {
-      const Element& element = *model.elements()[e];
+    for (size_t i = begin; i < end; ++i) {
+      const Element& element = *model.elements()[own[i]];
       const auto& gdofs = element.gdofs();
       const int n = element.num_dofs();
       K_e.setZero(n, n);
       add(element, K_e);
       X_e.resize(n, X.cols());
-      for (int i = 0; i < n; ++i) X_e.row(i) = X.row(gdofs[i]);
+      for (int d = 0; d < n; ++d) X_e.row(d) = X.row(row_of(gdofs[d]));
       Y_e.resize(n, X.cols());
       multiply_dense(false, K_e, X_e, 0, Y_e);
-      for (int i = 0; i < n; ++i) sum.row(gdofs[i]) += Y_e.row(i);
+      for (int d = 0; d < n; ++d) sum.row(row_of(gdofs[d])) += Y_e.row(d);
     }
   };
-  const auto [begin, end] = calc_element_range(model);
-  if (get_num_threads() > 1 && end - begin > kElementsOfThread) {
+  if (get_num_threads() > 1 && own.size() > kElementsOfThread) {
     MatrixXd second = MatrixXd::Zero(X.rows(), X.cols());
-    const int middle = begin + (end - begin) / 2;
-    do_both([&, from = begin] { add_some(from, middle, Y); }, [&, to = end] { add_some(middle, to, second); });
+    const size_t middle = own.size() / 2;
+    do_both([&] { add_some(0, middle, Y); }, [&] { add_some(middle, own.size(), second); });
     Y += second;
   } else {
-    add_some(begin, end, Y);
+    add_some(0, own.size(), Y);
   }
+  return Y;
+}
+
+/// Σ_e of element matrices and of forms times X, over ranks.
+MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen::Ref<const MatrixXd>& X,
+                    const std::vector<QuadraticForm>& forms = {}) {
+  BOUGH_DEMAND(X.rows() == model.num_gdofs());
+  if (X.cols() == 0) return MatrixXd::Zero(X.rows(), 0);
+  MatrixXd Y = sum_own_elements(model, add, X, [](int g) { return g; });
   const MpiWorld world = initialize_petsc();
   for (size_t k = static_cast<size_t>(world.rank); k < forms.size(); k += static_cast<size_t>(world.size))
     Y(forms[k].gdofs, Eigen::all) += calc_form(forms[k], 0) * X(forms[k].gdofs, Eigen::all);
@@ -255,7 +264,10 @@ PetscMat assemble_sparse(const Model& model, const SparseRows& T, const AddEleme
   PetscMat matrix;
   check_petsc(MatCreate(PETSC_COMM_WORLD, matrix.out()));
   Mat A = matrix.get();
-  check_petsc(MatSetSizes(A, PETSC_DECIDE, PETSC_DECIDE, size, size));
+  const ModelShare* share = model.share();
+  const PetscInt num_own = share ? share->last_fdof - share->first_fdof : PETSC_DECIDE;
+  BOUGH_DEMAND(!share || size == model.num_fdofs());
+  check_petsc(MatSetSizes(A, num_own, num_own, size, size));
   check_petsc(MatSetType(A, MATAIJ));
   check_petsc(MatSetUp(A));
   PetscInt first = 0, last = 0;
@@ -270,6 +282,7 @@ PetscMat assemble_sparse(const Model& model, const SparseRows& T, const AddEleme
   check_petsc(MatSetOption(A, MAT_SYMMETRIC, PETSC_TRUE));
   check_petsc(MatSetOption(A, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
   set_row_groups(A, find_row_groups(rows, first));
+  if (share) set_rows_by_parts(A);
   return matrix;
 }
 
@@ -309,6 +322,14 @@ MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<con
       model, [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); }, X_g);
 }
 
+MatrixXd calc_own_mass_times(const Model& model, MassKind kind, const Reach& reach,
+                             const Eigen::Ref<const MatrixXd>& X) {
+  BOUGH_DEMAND(X.rows() == static_cast<Eigen::Index>(reach.gdofs.size()));
+  const double scale = model.wtmass();
+  const auto add = [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); };
+  return sum_own_elements(model, add, X, [&reach](int g) { return reach.find_row(g); });
+}
+
 MatrixXd calc_stiffness_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g) {
   return calc_times(
       model, [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); }, X_g, get_forms(model));
@@ -334,14 +355,21 @@ MatrixXd calc_structural_damping_times(const Model& model, double g, const Eigen
       model, [g](const Element& e, Eigen::Ref<MatrixXd> K) { e.add_structural_damping(g, K); }, X_g);
 }
 
-bool has_damping(const Model& model) {
-  return std::any_of(model.elements().begin(), model.elements().end(), [](const auto& e) { return e->has_damping(); });
-}
+bool has_damping(const Model& model) { return model.has_damping(); }
 
 std::pair<int, int> calc_element_range(const Model& model) {
+  BOUGH_DEMAND(!model.share());
   const MpiWorld world = initialize_petsc();
   const long long num = static_cast<long long>(model.elements().size());
   return {static_cast<int>(num * world.rank / world.size), static_cast<int>(num * (world.rank + 1) / world.size)};
+}
+
+std::vector<int> list_own_elements(const Model& model) {
+  if (model.share()) return model.share()->owned;
+  const auto [first, last] = calc_element_range(model);
+  std::vector<int> own(static_cast<size_t>(last - first));
+  std::iota(own.begin(), own.end(), first);
+  return own;
 }
 
 }  // namespace bough::fe

@@ -39,8 +39,7 @@ Vector6d calc_ground_check(const Model& model, GroundSet set) {
   const MatrixXd K_u = calc_stiffness_times(model, u);
   // The scale is the diagonal's energy, element by element.
   MatrixXd scale = MatrixXd::Zero(6, 1);
-  const auto [begin, end] = calc_element_range(model);
-  for (int e = begin; e < end; ++e) {
+  for (const int e : list_own_elements(model)) {
     const Element& element = *model.elements()[static_cast<std::size_t>(e)];
     MatrixXd K = MatrixXd::Zero(element.num_dofs(), element.num_dofs());
     element.add_stiffness(1, K);

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
+#include <utility>
+#include <vector>
 
+#include "fe/linear/ranks.hpp"
 #include "fe/matrices/grid_point_weight.hpp"
 
 namespace bough::fe {
@@ -26,6 +30,39 @@ records::CardLocation find_card(const records::Deck& deck, const std::string& ca
   return card == "CONM1" ? find(deck.conm1) : records::CardLocation{};
 }
 
+/// Card and id of the elements whose mass differs by direction, in the order of the deck.
+std::vector<std::pair<std::string, int>> find_wrong_masses(const Model& model) {
+  const MatrixXd Phi_R = model.calc_rigid_modes();
+  MatrixXd M_e;
+  const auto is_wrong = [&](const Element& element) {
+    M_e.setZero(element.num_dofs(), element.num_dofs());
+    element.add_mass(model.mass_kind(), 1, M_e);
+    const MatrixXd own = Phi_R(element.gdofs(), Eigen::all);
+    return calc_mass_difference(Matrix6d(own.transpose() * M_e * own)) > kMassDifference;
+  };
+  std::vector<std::pair<std::string, int>> wrong;
+  if (!model.share()) {
+    for (const auto& element : model.elements())
+      if (is_wrong(*element)) wrong.emplace_back(element->card(), element->id());
+    return wrong;
+  }
+  // place, id, letters of the card; of all ranks by place
+  std::vector<int> found;
+  for (const int e : model.share()->owned) {
+    const Element& element = *model.elements()[static_cast<std::size_t>(e)];
+    if (!is_wrong(element)) continue;
+    found.insert(found.end(), {model.share()->number[static_cast<std::size_t>(e)], element.id(),
+                               static_cast<int>(element.card().size())});
+    found.insert(found.end(), element.card().begin(), element.card().end());
+  }
+  std::map<int, std::pair<std::string, int>> by_place;
+  found = join_over_ranks(found);
+  for (auto i = found.begin(); i != found.end(); i += 3 + i[2])
+    by_place[i[0]] = {std::string(i + 3, i + 3 + i[2]), i[1]};
+  for (auto& [place, card] : by_place) wrong.push_back(std::move(card));
+  return wrong;
+}
+
 }  // namespace
 
 double calc_mass_difference(const Matrix6d& M) {
@@ -43,18 +80,13 @@ std::string describe_mass(const Model& model, const records::Deck& deck, const M
   const bool is_basic = weight.S.isIdentity(0);
   std::string text = "the mass is " + show(weight.mass[0]) + " along x, " + show(weight.mass[1]) + " along y, " +
                      show(weight.mass[2]) + " along z" + (is_basic ? "" : " of its principal axes");
-  const MatrixXd Phi_R = model.calc_rigid_modes();
+  const auto wrong = find_wrong_masses(model);
   std::vector<std::string> names;
-  std::size_t num = 0;
-  MatrixXd M_e;
-  for (const auto& element : model.elements()) {
-    M_e.setZero(element->num_dofs(), element->num_dofs());
-    element->add_mass(model.mass_kind(), 1, M_e);
-    const MatrixXd own = Phi_R(element->gdofs(), Eigen::all);
-    if (!(calc_mass_difference(Matrix6d(own.transpose() * M_e * own)) > kMassDifference)) continue;
-    if (++num > 5) continue;
-    names.push_back(element->card() + (element->id() > 0 ? " " + std::to_string(element->id()) : ""));
-    if (at.line == 0) at = deck.locate(find_card(deck, element->card(), element->id()));
+  const std::size_t num = wrong.size();
+  for (const auto& [card, id] : wrong) {
+    if (names.size() == 5) break;
+    names.push_back(card + (id > 0 ? " " + std::to_string(id) : ""));
+    if (at.line == 0) at = deck.locate(find_card(deck, card, id));
   }
   for (std::size_t i = 0; i < names.size(); ++i) text += (i == 0 ? " (" : ", ") + names[i];
   if (num > names.size()) text += " and " + std::to_string(num - names.size()) + " more";

@@ -9,6 +9,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "fe/linear/ranks.hpp"
 #include "fe/model/element_transform.hpp"
 
 namespace bough::fe {
@@ -127,6 +128,29 @@ void set_oblique(const Matrix3d& K, const std::vector<int>& slots, double limit,
         entries[first + i].terms.emplace_back(slots[static_cast<std::size_t>(free[j])] + 1 + (is_rotation ? 3 : 0), c);
 }
 
+/// The entries of all ranks, by node as one process has them.
+std::vector<AutospcEntry> merge(const Model& model, const std::vector<AutospcEntry>& own) {
+  std::vector<double> numbers;
+  for (const auto& entry : own) {
+    numbers.insert(numbers.end(), {double(entry.node), double(entry.component), entry.ratio, entry.is_skew ? 1.0 : 0.0,
+                                   static_cast<double>(entry.terms.size())});
+    for (const auto& [component, factor] : entry.terms) numbers.insert(numbers.end(), {double(component), factor});
+  }
+  numbers = join_over_ranks(numbers);
+  std::vector<AutospcEntry> all;
+  for (auto at = numbers.begin(); at != numbers.end();) {
+    AutospcEntry entry{static_cast<int>(at[0]), static_cast<int>(at[1]), at[2], at[3] != 0, {}};
+    const auto num_terms = static_cast<int>(at[4]);
+    at += 5;
+    for (int i = 0; i < num_terms; ++i, at += 2) entry.terms.emplace_back(static_cast<int>(at[0]), at[1]);
+    all.push_back(std::move(entry));
+  }
+  std::stable_sort(all.begin(), all.end(), [&](const AutospcEntry& a, const AutospcEntry& b) {
+    return model.find_node(a.node) < model.find_node(b.node);
+  });
+  return all;
+}
+
 }  // namespace
 
 std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vector<int>& fdof_ldof, double epsilon) {
@@ -146,6 +170,7 @@ std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vect
   const auto [blocks, noise] = calc_node_blocks(model, ldof_node, fdof_block, fdof_slot);
   std::vector<AutospcEntry> entries;
   for (int b = 0; b < num_blocks; ++b) {
+    if (model.share() && !model.share()->is_at_home(b / 2)) continue;
     const Node& node = nodes[b / 2];
     std::vector<int> slots;
     for (int s = 0; s < 3; ++s)
@@ -175,39 +200,40 @@ std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vect
     if (entries.size() > first && node.num_dofs == 6 && scale > noise[b])
       set_oblique(blocks[b], all_slots, std::max(epsilon * scale, noise[b]), b % 2 == 1, entries, first);
   }
-  return entries;
+  return model.share() ? merge(model, entries) : entries;
 }
 
-std::vector<double> calc_masses(const std::vector<Node>& nodes,
-                                const std::vector<std::unique_ptr<const Element>>& elements, const SparseRows& T0,
-                                const std::vector<int>& fdof_ldof, MassKind kind,
+std::vector<double> calc_masses(const Model& model, const std::vector<int>& fdof_ldof,
                                 const std::vector<AutospcEntry>& entries) {
-  std::unordered_map<int, int> first_dof;  // of the nodes by id
-  for (const Node& node : nodes) first_dof[node.id] = node.first_gdof;
   std::unordered_map<int, std::size_t> at_dof;  // entries
-  for (std::size_t e = 0; e < entries.size(); ++e)
-    at_dof[first_dof[entries[e].node] + std::max(entries[e].component - 1, 0)] = e;
+  for (std::size_t e = 0; e < entries.size(); ++e) {
+    const int node = model.find_node(entries[e].node);
+    // Another rank has all that hangs on the others.
+    if (!model.share() || model.share()->is_at_home(node))
+      at_dof[model.node(node).first_gdof + std::max(entries[e].component - 1, 0)] = e;
+  }
   std::vector<int> entry_of(fdof_ldof.size(), -1);
   for (std::size_t f = 0; f < fdof_ldof.size(); ++f)
     if (const auto found = at_dof.find(fdof_ldof[f]); found != at_dof.end())
       entry_of[f] = static_cast<int>(found->second);
-  std::vector<double> mass(entries.size(), 0);
+  VectorXd mass = VectorXd::Zero(static_cast<Eigen::Index>(entries.size()));
   ElementTransform transform;
   MatrixXd M_e;
-  for (const auto& element : elements) {
-    transform.set(T0, element->gdofs());
+  for (const auto& element : model.elements()) {
+    transform.set(model.T(), element->gdofs());
     const auto& columns = transform.columns();
     if (std::none_of(columns.begin(), columns.end(), [&](int f) { return entry_of[static_cast<std::size_t>(f)] >= 0; }))
       continue;
     M_e.setZero(element->num_dofs(), element->num_dofs());
-    element->add_mass(kind, 1, M_e);
+    element->add_mass(model.mass_kind(), 1, M_e);
     if (M_e.isZero(0)) continue;
     transform.hold(M_e);
     for (std::size_t i = 0; i < columns.size(); ++i)
       if (const int e = entry_of[static_cast<std::size_t>(columns[i])]; e >= 0)
-        mass[static_cast<std::size_t>(e)] += transform.entry(static_cast<int>(i), static_cast<int>(i));
+        mass(e) += transform.entry(static_cast<int>(i), static_cast<int>(i));
   }
-  return mass;
+  if (model.share()) sum_alike(mass);
+  return {mass.begin(), mass.end()};
 }
 
 }  // namespace bough::fe

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "fe/cards/nonstructural.hpp"
-#include "fe/model/autospc.hpp"
+#include "fe/linear/petsc.hpp"
 #include "fe/model/coordinates.hpp"
 #include "fe/model/direct_matrices.hpp"
 #include "fe/model/rigid.hpp"
@@ -41,37 +42,42 @@ SparseRows rotate_rows(const std::vector<Node>& nodes, const SparseRows& C) {
   return T;
 }
 
-/// Columns of T that belong to `ldofs`, in this order; those of T ascend as `column_ldof` does.
-SparseRows take_columns(const SparseRows& T, const std::vector<int>& column_ldof, const std::vector<int>& ldofs) {
-  std::unordered_map<int, int> place;
-  for (size_t k = 0; k < ldofs.size(); ++k) {
-    const auto at = std::lower_bound(column_ldof.begin(), column_ldof.end(), ldofs[k]);
-    if (at != column_ldof.end() && *at == ldofs[k])
-      place.emplace(static_cast<int>(at - column_ldof.begin()), static_cast<int>(k));
-  }
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int row = 0; row < T.outerSize() && !place.empty(); ++row)
-    for (SparseRows::InnerIterator it(T, row); it; ++it)
-      if (const auto found = place.find(it.col()); found != place.end())
-        entries.emplace_back(row, found->second, it.value());
-  SparseRows taken(T.rows(), static_cast<int>(ldofs.size()));
-  taken.setFromTriplets(entries.begin(), entries.end());
-  return taken;
-}
-
 }  // namespace
 
 Model ModelBuilder::build(const ElementFactory& factory) {
   model_.subcase_ = select_subcase(deck_, options_.subcase, diagnostics_);
   set_params();
   add_nodes();
-  model_.elements_ = factory(deck_, model_, diagnostics_).elements;
-  report_unmodelled(deck_, model_.elements_, diagnostics_);
-  for (auto& element : make_direct(deck_, model_.subcase_, model_, diagnostics_).elements)
-    model_.elements_.push_back(std::move(element));
-  auto added = make_nonstructural(deck_, model_.subcase_.nsm, model_.elements_, model_, diagnostics_);
-  for (auto& element : added.elements) model_.elements_.push_back(std::move(element));
+  // What moves with what decides which elements a rank keeps; it is said after what is said of the elements.
+  Diagnostics of_nodes = std::exchange(diagnostics_, Diagnostics()), of_constraints;
+  std::vector<ConstraintEquation> equations;
+  std::optional<Elimination> first;
+  try {
+    equations = collect_constraints();
+    of_constraints = std::exchange(diagnostics_, std::move(of_nodes));
+  } catch (...) {
+    for (const auto& item : diagnostics_.items()) of_nodes.add(item);
+    diagnostics_ = std::move(of_nodes);
+    throw;
+  }
+  if (of_constraints.num_errors() == 0) {
+    cut_into_parts();
+    first = set_transform();
+  }
+  make_elements(factory);
   set_prestress();
+  for (const auto& item : of_constraints.items()) diagnostics_.add(item);
+  diagnostics_.throw_if_errors();
+  model_.links_ = Links(std::move(links_), std::move(equations));
+  apply_autospc(*first);
+  check_prestress();
+  omit_dofs();
+  add_drawn_lines();
+  report_suport(model_, deck_, diagnostics_);
+  return std::move(model_);
+}
+
+std::vector<ConstraintEquation> ModelBuilder::collect_constraints() {
   is_fixed_.assign(model_.num_gdofs_, 0);
   collect_fixed();
   hold_spcd();
@@ -80,14 +86,30 @@ Model ModelBuilder::build(const ElementFactory& factory) {
   auto equations = equations_;
   equations_ = resolve_chains(
       model_.num_gdofs_, std::move(equations_), [this](int l) { return name_dof(l); }, diagnostics_);
-  diagnostics_.throw_if_errors();
-  model_.links_ = Links(std::move(links_), std::move(equations));
-  apply_autospc(set_transform());
-  check_prestress();
-  omit_dofs();
-  add_drawn_lines();
-  report_suport(model_, deck_, diagnostics_);
-  return std::move(model_);
+  return equations;
+}
+
+void ModelBuilder::make_elements(const ElementFactory& factory) {
+  const auto add = [this](ElementList list) {
+    for (const auto& element : list.elements) {  // lists that are not the catalogue's say nothing of them
+      list.cards.insert(element->card());
+      list.has_damping = list.has_damping || element->has_damping();
+    }
+    model_.cards_.merge(list.cards);
+    model_.has_damping_ = model_.has_damping_ || list.has_damping;
+    for (auto& element : list.elements) model_.elements_.push_back(std::move(element));
+    if (!model_.share_) return;
+    for (const int place : list.number) model_.share_->number.push_back(num_made_ + place);
+    num_made_ += list.num_made;
+    BOUGH_DEMAND(model_.share_->number.size() == model_.elements_.size());
+  };
+  add(factory(deck_, model_, diagnostics_));
+  report_unmodelled(deck_, model_.cards_, diagnostics_);
+  add(make_direct(deck_, model_.subcase_, model_, diagnostics_));
+  add(make_nonstructural(deck_, model_.subcase_.nsm, model_.elements_, model_, diagnostics_));
+  if (!model_.share_) return;
+  for (size_t e = 0; e < model_.elements_.size(); ++e)
+    if (model_.share_->is_owned(*model_.elements_[e])) model_.share_->owned.push_back(static_cast<int>(e));
 }
 
 void ModelBuilder::set_params() {
@@ -284,6 +306,7 @@ void ModelBuilder::check_dependent_not_fixed() {
 
 Elimination ModelBuilder::set_transform() {
   Elimination elimination = eliminate(model_.num_gdofs_, equations_, is_fixed_);
+  set_share(elimination);
   model_.T_ = rotate_rows(model_.nodes_, elimination.C);
   const FixedPart fixed = collect_fixed_part(model_.num_gdofs_, equations_, is_fixed_);
   model_.T_fixed_ = rotate_rows(model_.nodes_, fixed.C);
@@ -291,9 +314,11 @@ Elimination ModelBuilder::set_transform() {
   model_.node_fdof_.assign(model_.nodes_.size(), {-1, -1, -1, -1, -1, -1});
   model_.fdof_node_.clear();
   model_.fdof_component_.clear();
-  int k = 0;
+  int k = 0, last = -1;
   for (size_t f = 0; f < elimination.fdof_ldof.size(); ++f) {
     const int ldof = elimination.fdof_ldof[f];
+    if (ldof < last) k = 0;  // of the next rank
+    last = ldof;
     while (ldof >= model_.nodes_[k].first_gdof + model_.nodes_[k].num_dofs) ++k;
     const int slot = ldof - model_.nodes_[k].first_gdof;
     model_.node_fdof_[k][slot] = static_cast<int>(f);
@@ -303,74 +328,15 @@ Elimination ModelBuilder::set_transform() {
   return elimination;
 }
 
-void ModelBuilder::apply_autospc(const Elimination& first) {
-  const records::Param* param = deck_.find_param("AUTOSPC");
-  const bool is_on = options_.autospc.value_or(!param || (param->value != "NO" && param->value != "N"));
-  const double epsilon = get_real_param(deck_, "EPZERO", 1e-8, diagnostics_);
-  diagnostics_.throw_if_errors();
-  // Decks with AUTOSPC NO still have dofs that nothing touches; Nastran's solvers pass over such empty columns.
-  const bool only_null = !is_on && param && !options_.autospc;
-  if (!is_on && !only_null) return;
-  model_.autospc_ = find_singular_dofs(model_, first.fdof_ldof, only_null ? 1e-14 : epsilon);
-  const bool asks_mass = only_null || std::any_of(model_.autospc_.begin(), model_.autospc_.end(),
-                                                  [](const AutospcEntry& entry) { return entry.is_skew; });
-  std::vector<double> mass(model_.autospc_.size(), 0);
-  if (asks_mass)
-    mass = calc_masses(model_.nodes_, model_.elements_, model_.T_, first.fdof_ldof, model_.mass_kind_, model_.autospc_);
-  std::set<int> massive;  // nodes; rotations have next to no mass, and rigid motions are told by their components
-  for (size_t e = 0; e < mass.size(); ++e)
-    if (mass[e] > 0 && !only_null && model_.autospc_[e].component <= 3) massive.insert(model_.autospc_[e].node);
-  int num_massive = 0, num_skew = 0;
-  std::vector<AutospcEntry> held;
-  for (size_t e = 0; e < mass.size(); ++e) {
-    auto& entry = model_.autospc_[e];
-    // Mass without stiffness moves at zero frequency in normal modes.
-    if (only_null && !options_.uses_enforced && mass[e] > 0) continue;
-    // Where the block carries mass or its weight, the oblique direction is held and the others stay what they are; else
-    // the component alone, which strains nothing either and is what Nastran prints.
-    if (entry.component > 3 || massive.count(entry.node) == 0) entry.terms.clear();
-    num_skew += entry.is_skew ? 1 : 0;
-    num_massive += entry.terms.empty() ? 0 : 1;
-    held.push_back(std::move(entry));
+void ModelBuilder::set_share(Elimination& elimination) {
+  if (home_.empty()) return;
+  const MpiWorld world = initialize_petsc();
+  ModelShare share = order_by_home(model_.nodes_, home_, world.rank, elimination);
+  if (model_.share_) {
+    share.owned = std::move(model_.share_->owned);
+    share.number = std::move(model_.share_->number);
   }
-  model_.autospc_ = std::move(held);
-  // Without any stiffness at all there is nothing to solve yet.
-  if (only_null && model_.autospc_.size() == static_cast<size_t>(model_.T_.cols())) model_.autospc_.clear();
-  if (model_.autospc_.empty()) return;
-  std::vector<int> oblique;
-  for (const auto& entry : model_.autospc_) {
-    const Node& node = model_.nodes_[model_.find_node(entry.node)];
-    const int ldof = node.first_gdof + std::max(entry.component - 1, 0);
-    if (entry.terms.empty()) {
-      is_fixed_[ldof] = 1;
-      continue;
-    }
-    ConstraintEquation equation{ldof, {}, "AUTOSPC of grid " + std::to_string(entry.node), deck_.locate({})};
-    for (const auto& [component, factor] : entry.terms)
-      equation.terms.emplace_back(node.first_gdof + component - 1, factor);
-    equations_.push_back(std::move(equation));
-    oblique.push_back(ldof);
-  }
-  model_.T_oblique_ = take_columns(model_.T_, first.fdof_ldof, oblique);
-  if (!oblique.empty())  // what hangs on these dofs follows too
-    equations_ = resolve_chains(
-        model_.num_gdofs_, std::move(equations_), [this](int l) { return name_dof(l); }, diagnostics_);
-  set_transform();
-  if (only_null) {
-    diagnostics_.warning("fe.null-dofs", deck_.locate(param->at),
-                         "PARAM,AUTOSPC,NO leaves " + std::to_string(model_.autospc_.size()) +
-                             " dofs that nothing stiffens, the first at grid " +
-                             std::to_string(model_.autospc_[0].node) + "; they are held all the same",
-                         "there is no solution with them; hold or remove them");
-    return;
-  }
-  const auto are = [](int n) { return std::to_string(n) + (n == 1 ? " is" : " are"); };
-  std::string what = "AUTOSPC holds " + std::to_string(model_.autospc_.size()) +
-                     " dofs without stiffness, the first at grid " + std::to_string(model_.autospc_[0].node);
-  if (num_skew > 0)
-    what += "; " + are(num_skew) + " the weakest of a singular block (an oblique direction without stiffness)";
-  if (num_massive > 0) what += ", " + std::to_string(num_massive) + " of them with mass: the direction itself is held";
-  diagnostics_.note("fe.autospc", deck_.locate({}), what, "PARAM,AUTOSPC,NO keeps them");
+  model_.share_ = std::move(share);
 }
 
 Model Model::build(const records::Deck& deck, const ModelOptions& options, const ElementFactory& factory,

@@ -1,6 +1,8 @@
 #include "fe/model/suport.hpp"
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 #include "fe/model/sets.hpp"
 
@@ -67,12 +69,15 @@ std::vector<int> find_suport(const Model& model, const records::Deck& deck, Diag
 
 void report_suport(const Model& model, const records::Deck& deck, Diagnostics& diagnostics) {
   if (deck.suport.empty() && model.subcase().suport1 == 0) return;
-  Diagnostics found;  // its warnings come again where the dofs are held
-  std::string list;
+  Diagnostics found;                      // its warnings come again where the dofs are held
+  std::vector<std::array<int, 3>> named;  // f-dofs may be numbered by rank
   for (const int fdof : find_suport(model, deck, found)) {
     const auto [grid, component] = model.describe_fdof(fdof);
-    list += (list.empty() ? "" : ", ") + name_suport(grid, component);
+    named.push_back({model.find_node(grid), component, grid});
   }
+  std::sort(named.begin(), named.end());
+  std::string list;
+  for (const auto& [node, component, grid] : named) list += (list.empty() ? "" : ", ") + name_suport(grid, component);
   for (const auto& item : found.items())
     if (item.severity == Severity::Error) diagnostics.add(item);
   diagnostics.throw_if_errors();

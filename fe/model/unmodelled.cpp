@@ -1,12 +1,10 @@
 #include "fe/model/unmodelled.hpp"
 
 #include <map>
-#include <set>
 
 namespace bough::fe {
 
-void report_unmodelled(const records::Deck& deck, const std::vector<std::unique_ptr<const Element>>& elements,
-                       Diagnostics& diagnostics) {
+void report_unmodelled(const records::Deck& deck, const std::set<std::string>& made, Diagnostics& diagnostics) {
   if (diagnostics.num_errors() > 0) return;
   struct Cards {
     int count = 0;
@@ -22,8 +20,6 @@ void report_unmodelled(const records::Deck& deck, const std::vector<std::unique_
   for (const auto& card : deck.shear_panels) add("CSHEAR", card);
   for (const auto& card : deck.cbush1d) add("CBUSH1D", card);
   if (given.empty()) return;
-  std::set<std::string> made;
-  for (const auto& element : elements) made.insert(element->card());
   for (const auto& [name, cards] : given)
     if (made.count(name) == 0)
       diagnostics.error("fe.not-modelled", deck.locate(cards.first),

@@ -152,6 +152,67 @@ class Subdomains(ProgramTest):
         self.assertIn("[modal.no-mass]", said[0][0])
         self.assertEqual(said[1], said[0])
 
+    def say(self, ranks, *options, text):
+        """Exit code, messages and tables of one call."""
+        self.write("deck.bdf", text)
+        done = subprocess.run([*launch(ranks), PROGRAM, "modes", "deck.bdf", "-n", "8", *options], cwd=self.folder,
+                              text=True, capture_output=True, timeout=120, env={**os.environ, **ENV})
+        messages = [line for line in done.stderr.splitlines() if "error:" in line or "warning:" in line or "note:" in line]
+        return done.returncode, messages, done.stdout
+
+    def test_messages_are_those_of_one(self):
+        """Each in a card that only one rank's part uses: once, the same words in the same order, the same code."""
+        ids = make_grid_ids(36, 26)
+        corner, other = ids[26, 36], ids[0, 1]
+        for more, code in ((f"CBAR,90001,9,{corner},{other},0.,0.,1.\n", 1),
+                           (f"CQUAD4,90001,1,{corner},{corner},{other},{other}\nCROD,90002,8,{corner},{other}\n", 1),
+                           (f"GRID,90001,,7.,5.,1.\nRBE2,90002,{corner},123456,90001,88888\nCONM2,90003,77777,,1.\n", 1),
+                           # a rod that hangs on the corner and grids that nothing holds: AUTOSPC on one rank alone
+                           (f"GRID,90001,,7.,5.,1.\nCONROD,90002,{corner},90001,1,.01\nGRID,90003,,8.,8.,8.\n", 0),
+                           (f"CMASS2,90001,500.,{corner},3\nCMASS2,90002,50.,{other},1\n", 0),
+                           (f"CELAS2,90001,-2.+5,{corner},3\n", 0)):
+            found = [self.say(n, text=write_plate(more=more)) for n in (1, 2, 3)]
+            self.assertEqual(found[0][0], code, found[0])
+            self.assertTrue(found[0][1])
+            for one in found[1:]:
+                self.assertEqual(one[:2], found[0][:2])
+
+    def test_masses_on_offsets(self):
+        ids = make_grid_ids(36, 26)
+        masses = "".join(f"CONM2,{90000 + i},{ids[3 * i, 2 * i + 4]},,{100 + 10 * i}.,,.2,-.1,.5\n" for i in range(8))
+        self.compare(write_plate(more=masses), (2, 3))
+
+    def test_an_mpc_between_rigid_parts(self):
+        """RBE2 spiders at both ends whose middles an MPC joins: what hangs on one part is moved by another."""
+        ids = make_grid_ids(36, 26)
+        left, right = ",".join(map(str, ids[10:14, 3])), ",".join(map(str, ids[10:14, 33]))
+        more = (f"GRID,90001,,.5,2.,.3\nGRID,90002,,5.5,2.,.3\nCONM2,90003,90002,,300.\n"
+                f"RBE2,90004,90001,123456,{left}\nRBE2,90005,90002,123456,{right}\nMPC,1,90001,3,1.,90002,3,-.5\n")
+        self.compare(write_plate(more=more).replace("SPC = 1\n", "SPC = 1\nMPC = 1\n"), (2, 3))
+
+    def test_files_and_lengths_are_those_of_one(self):
+        """What is drawn, ids and lengths by NORM = MAX, component by component."""
+        text = write_linked().replace("BEGIN BULK\n", "METHOD = 7\nBEGIN BULK\nEIGRL,7,,,8,,,,MAX\nPLOTEL,95001,1,500\n")
+        self.write("deck.bdf", text)
+        files = []
+        for n in (1, 2, 3):
+            self.bough("modes", "deck.bdf", "-o", f"f{n}.h5", "--meffmass", "90001", launcher=launch(n), env=ENV)
+            found = {}
+            with h5py.File(self.path(f"f{n}.h5")) as file:
+                file.visititems(lambda name, item: found.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
+            files.append(found)
+        for found in files[1:]:
+            self.assertEqual(sorted(found), sorted(files[0]))
+            for name, values in files[0].items():
+                if np.issubdtype(np.asarray(values).dtype, np.floating):
+                    if "residual" in name:
+                        self.assertLess(np.max(found[name]), 1e-8)
+                        continue
+                    scale = max(np.abs(values).max(), 1e-300)
+                    np.testing.assert_allclose(found[name] / scale, values / scale, atol=2e-6, err_msg=name)
+                else:
+                    np.testing.assert_array_equal(found[name], values, err_msg=name)
+
     def find_ranks(self, launcher):
         ranks = []
         for path in glob.glob("/proc/[0-9]*/stat"):

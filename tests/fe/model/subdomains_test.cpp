@@ -6,8 +6,12 @@
 #include <cstdlib>
 #include <vector>
 
+#include <Eigen/SparseCholesky>
+
 #include "fe/linear/factor.hpp"
+#include "fe/linear/fronts.hpp"
 #include "fe/linear/ordering.hpp"
+#include "fe/linear/ranks.hpp"
 
 namespace bough::fe {
 namespace {
@@ -49,8 +53,18 @@ PetscMat make_grid(double diagonal, int reach = 0) {
   return A;
 }
 
-TEST(Subdomains, MultiplyAndSolveAsTheWholeDoes) {
+/// Cut by METIS, or where PETSc has cut the rows.
+class SubdomainsOf : public ::testing::TestWithParam<bool> {
+ protected:
+  void mark(Mat A) const {
+    if (GetParam()) set_rows_by_parts(A);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(ByParts, SubdomainsOf, ::testing::Bool());
+
+TEST_P(SubdomainsOf, MultiplyAndSolveAsTheWholeDoes) {
   const PetscMat A = make_grid(4.5), B = make_grid(2, 3);  // B couples what A does not
+  mark(A.get());
   const auto domains = find_subdomains(A.get(), B.get(), 0);
   ASSERT_EQ(domains.has_value(), initialize_petsc().size > 1);
   if (!domains) return;
@@ -67,6 +81,63 @@ TEST(Subdomains, MultiplyAndSolveAsTheWholeDoes) {
     const MatrixXd solution = domains->replicate(factor.solve(domains->take_own(X.leftCols(m))));
     EXPECT_LT((multiply(A.get(), solution) - X.leftCols(m)).cwiseAbs().maxCoeff(), 1e-12) << m;
   }
+}
+
+/// On every rank.
+Eigen::SparseMatrix<double> gather_matrix(Mat A) {
+  PetscInt first = 0, last = 0, num = 0;
+  check_petsc(MatGetOwnershipRange(A, &first, &last));
+  const PetscInt* columns = nullptr;
+  const PetscScalar* values = nullptr;
+  std::vector<int> places;
+  std::vector<double> entries;
+  for (PetscInt row = first; row < last; ++row) {
+    check_petsc(MatGetRow(A, row, &num, &columns, &values));
+    for (PetscInt k = 0; k < num; ++k) {
+      places.push_back(row);
+      places.push_back(columns[k]);
+      entries.push_back(values[k]);
+    }
+    check_petsc(MatRestoreRow(A, row, &num, &columns, &values));
+  }
+  places = join_over_ranks(places);
+  entries = join_over_ranks(entries);
+  std::vector<Eigen::Triplet<double>> all;
+  for (std::size_t i = 0; i < entries.size(); ++i) all.emplace_back(places[2 * i], places[2 * i + 1], entries[i]);
+  Eigen::SparseMatrix<double> whole(kRows, kRows);
+  whole.setFromTriplets(all.begin(), all.end());
+  return whole;
+}
+
+TEST_P(SubdomainsOf, CountAsAFactorOfTheWholeDoes) {
+  const PetscMat A = make_grid(4.5), B = make_grid(2, 3);
+  mark(A.get());
+  const Eigen::SparseMatrix<double> K = gather_matrix(A.get()), M = gather_matrix(B.get());
+  for (const double mu : {0.0, 0.3, 0.9, 20.0}) {
+    const auto count = count_negative_by_fronts(A.get(), -mu, B.get(), 0);
+    if (!count) continue;  // a pivot was small
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(K - mu * M);
+    ASSERT_EQ(factor.info(), Eigen::Success);
+    EXPECT_EQ(*count, (factor.vectorD().array() < 0).count()) << mu;
+  }
+  EXPECT_EQ(count_negative_by_fronts(A.get(), 0, B.get(), 0), 0);
+}
+
+/// A keeps its parts for one B alone.
+TEST_P(SubdomainsOf, AreKeptForOneOther) {
+  const PetscMat A = make_grid(4.5), B = make_grid(2, 3), C = make_grid(2, 90);
+  mark(A.get());
+  const auto first = find_subdomains(A.get(), B.get(), 0), again = find_subdomains(A.get(), B.get(), 0),
+             other = find_subdomains(A.get(), C.get(), 0);
+  ASSERT_EQ(first.has_value(), initialize_petsc().size > 1);
+  if (!first) return;
+  EXPECT_EQ(again->inner, first->inner);
+  EXPECT_EQ(again->between, first->between);
+  EXPECT_EQ(again->num_shared, first->num_shared);
+  ASSERT_TRUE(other.has_value());
+  EXPECT_NE(other->between, first->between);
+  const MatrixXd X = MatrixXd::Random(first->num_own(), 3);
+  EXPECT_EQ(first->from_rows(first->to_rows(X)), X);
 }
 
 TEST(Subdomains, TellWhatIsNotDefinite) {

@@ -1,0 +1,117 @@
+#pragma once
+/// \file One part of a symmetric sum, eliminated front by front.
+///
+/// Internal to linear.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+// First: the BLAS header needs PETSc's own names.
+#include "fe/linear/petsc.hpp"
+
+#include <petscblaslapack.h>
+
+#include <cholmod.h>
+
+#include "base/diagnostic.hpp"
+#include "fe/linear/dissection.hpp"
+
+namespace bough::fe {
+
+/// "fe.out-of-memory" of a count.
+ComputationError make_no_memory_for_count();
+
+/// A + factor B by rows, both triangles.
+struct RowSum {
+  MatrixRows A, B;
+  double factor = 0;
+
+  /// use(column, value) for the entries of a row, ascending.
+  template <class Use>
+  void visit(PetscInt row, const Use& use) const {
+    PetscInt a = A.start[row], b = B.start[row];
+    const PetscInt a_end = A.start[row + 1], b_end = B.start[row + 1];
+    while (a < a_end || b < b_end) {
+      if (b == b_end || (a < a_end && A.column[a] < B.column[b])) {
+        use(A.column[a], A.value[a]);
+        ++a;
+      } else if (a == a_end || B.column[b] < A.column[a]) {
+        use(B.column[b], factor * B.value[b]);
+        ++b;
+      } else {
+        use(A.column[a], A.value[a] + factor * B.value[b]);
+        ++a;
+        ++b;
+      }
+    }
+  }
+
+  /// |A_ii| + |factor B_ii|.
+  double calc_size(PetscInt row) const {
+    const auto find = [row](const MatrixRows& M) {
+      const PetscInt* at = std::lower_bound(M.column + M.start[row], M.column + M.start[row + 1], row);
+      return at != M.column + M.start[row + 1] && *at == row ? std::abs(M.value[at - M.column]) : 0.0;
+    };
+    return find(A) + std::abs(factor) * find(B);
+  }
+};
+
+/// The rows of one part and those between, which come last and are not eliminated.
+class PartFronts {
+ public:
+  PartFronts() {
+    cholmod_start(&common_);
+    common_.print = 0;
+    common_.nmethods = 1;
+    common_.method[0].ordering = CHOLMOD_NATURAL;
+    common_.postorder = 0;
+    common_.supernodal = CHOLMOD_SUPERNODAL;
+  }
+  PartFronts(const PartFronts&) = delete;
+  PartFronts& operator=(const PartFronts&) = delete;
+  ~PartFronts() {
+    cholmod_free_factor(&factor_, &common_);
+    cholmod_finish(&common_);
+  }
+
+  /// False where CHOLMOD has no supernodes in this order, or the part couples to a row that is not its own.
+  bool analyse(const RowSum& sum, const std::vector<PetscInt>& own, const std::vector<PetscInt>& between);
+  /// Numbers that count() keeps at the same time.
+  double num_numbers() const { return most_stack_ + square(most_rows_) + square(most_columns_) * 2; }
+  /// Of the part's own rows, and what they leave on those between, lower triangle; -1 where a pivot is too small.
+  int count(Eigen::MatrixXd& schur);
+
+ private:
+  static double square(double x) { return x * x; }
+  /// One triangle of `rows`. False where the part's own couple to others.
+  bool take(const RowSum& sum, const std::vector<PetscInt>& rows, bool upper);
+  cholmod_sparse as_sparse(int stype);
+  /// Eliminates the first `num` of the front's rows; -1 as above.
+  int eliminate(int num, int num_rows, const int* rows);
+  int get_num_columns(int k) const { return std::min(super_[k + 1], static_cast<int>(num_own_)) - super_[k]; }
+  int get_num_rows(int k) const { return row_at_[k + 1] - row_at_[k]; }
+  void check() const {
+    if (common_.status == CHOLMOD_OUT_OF_MEMORY || common_.status == CHOLMOD_TOO_LARGE)
+      throw make_no_memory_for_count();
+  }
+
+  cholmod_common common_{};
+  cholmod_factor* factor_ = nullptr;
+  std::size_t num_own_ = 0;
+  int num_fronts_ = 0;
+  const int *super_ = nullptr, *row_at_ = nullptr, *row_ = nullptr;
+  std::vector<int> num_children_;
+  double most_stack_ = 0;
+  int most_rows_ = 0, most_columns_ = 0;
+
+  std::vector<int> start_, row_of_entry_;  ///< one triangle of the sum, by columns
+  std::vector<double> value_;
+  Eigen::VectorXd diagonal_;  ///< |A| + |factor B|
+  std::vector<double> front_, pivots_, right_, work_;
+  std::vector<PetscBLASInt> pivot_order_;
+};
+
+/// Negative eigenvalues of a dense matrix, of which the lower triangle is given and lost; -1 where a pivot is zero.
+int count_negative_of_dense(Eigen::MatrixXd& S);
+
+}  // namespace bough::fe
