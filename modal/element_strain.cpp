@@ -6,7 +6,9 @@
 #include <numeric>
 
 #include "base/diagnostic.hpp"
+#include "fe/linear/blas.hpp"
 #include "fe/linear/low_rank_sum.hpp"
+#include "fe/linear/ranks.hpp"
 #include "fe/linear/residual.hpp"
 #include "fe/matrices/reach.hpp"
 #include "modal/canonical.hpp"
@@ -120,7 +122,15 @@ class SoftModes {
   }
 
   void find_ritz() {
-    orthonormalize_ascending(X_.transpose() * pencil_.calc_M_times(X_), X_);
+    // By the elements: where constraints have large factors, sums over the f-set lose digits of the mass too.
+    const auto& model = pencil_.model;
+    const fe::Reach reach = fe::find_reach(model);
+    MatrixXd X_g = model.T() * X_;
+    if (model.share()) X_g = X_g(reach.gdofs, Eigen::all).eval();
+    MatrixXd G(X_.cols(), X_.cols());
+    fe::multiply_dense(true, X_g, fe::calc_own_mass_times(model, model.mass_kind(), reach, X_g), 0, G);
+    fe::sum_alike(G);
+    orthonormalize_ascending(G, X_);
     const auto strain = calc_element_strain(pencil_.model, pencil_.model.T() * X_, true);
     MatrixXd V;
     theta_ = calc_graded_eigenvalues(strain.energy, V);

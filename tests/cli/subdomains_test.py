@@ -51,6 +51,20 @@ def write_linked():
                        f"MPC,1,{ids[10, 36]},3,1.,{ids[13, 2]},3,-1.\n").replace("SPC = 1\n", "SPC = 1\nMPC = 1\n")
 
 
+def write_door(nx=34, ny=34):
+    """A clamped plate and another that hangs on its edge and swings: one motion without strain behind supports."""
+    ids = make_grid_ids(nx, ny)
+    lines = []
+    for (j, i), grid in np.ndenumerate(ids):
+        lines.append(f"GRID,{5000 + grid},,{6 + 5 * i / nx:.6f},{4 * j / ny:.6f},0.\n")
+    for j in range(ny):
+        for i in range(nx):
+            a, b, c, d = (5000 + g for g in (ids[j, i], ids[j, i + 1], ids[j + 1, i + 1], ids[j + 1, i]))
+            lines.append(f"CQUAD4,{5000 + j * nx + i},1,{a},{b},{c},{d}\n")
+    lines += [f"RBE2,{90000 + j},{ids[j, nx]},12346,{5000 + ids[j, 0]}\n" for j in range(ny + 1)]
+    return write_plate(nx, ny, "".join(lines))
+
+
 def write_grillage(n=33):
     ids = make_grid_ids(n, n)
     lines = [HEAD, "PBAR,1,1,1.-3,2.-6,3.-6,1.-6\n"]
@@ -104,6 +118,9 @@ class Subdomains(ProgramTest):
 
     def test_links_across_the_cut(self):
         self.compare(write_linked(), (2, 3))
+
+    def test_a_door(self):
+        self.compare(write_door(), (2, 3))
 
     def test_beams(self):
         self.compare(write_grillage(), (2,))

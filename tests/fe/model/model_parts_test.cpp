@@ -189,7 +189,7 @@ TEST_F(ModelParts, DrawTheSameOnTheFirstRank) {
 /// Errors of elements and constraints, in elements at one end only: the same words in the same order on every rank.
 TEST(ModelPartsMessages, AreThoseOfOne) {
   const std::string last = std::to_string(grid(kLong, kWide)), first = std::to_string(grid(1, 0));
-  for (const std::string more :
+  for (const std::string& more :
        {"CROD,7001,77," + last + "," + first + "\n",                              // no such property
         "CQUAD4,7001,1," + last + "," + last + "," + first + "," + first + "\n",  // no area
         "CBAR,7001,9," + last + ",88888,0.,0.,1.\nRBE2,7002," + last + ",123,99999\n",
