@@ -3,6 +3,8 @@
 /// source: a symmetric eigenproblem alone costs 6 s. Part of the precompiled headers; nothing needs to include it.
 #include <Eigen/Dense>
 
+#include "base/products.hpp"
+
 #ifndef BOUGH_INSTANCE  // base/instances define it as nothing
 #define BOUGH_INSTANCE extern
 #endif
@@ -16,6 +18,9 @@ BOUGH_INSTANCE template SelfAdjointEigenSolver<MatrixXd>& SelfAdjointEigenSolver
 BOUGH_INSTANCE template class SelfAdjointEigenSolver<Matrix3d>;
 BOUGH_INSTANCE template SelfAdjointEigenSolver<Matrix3d>& SelfAdjointEigenSolver<Matrix3d>::compute(
     const EigenBase<Matrix3d>&, int);
+BOUGH_INSTANCE template class SelfAdjointEigenSolver<Matrix<double, 6, 6>>;
+BOUGH_INSTANCE template SelfAdjointEigenSolver<Matrix<double, 6, 6>>&
+SelfAdjointEigenSolver<Matrix<double, 6, 6>>::compute(const EigenBase<Matrix<double, 6, 6>>&, int);
 BOUGH_INSTANCE template class SelfAdjointEigenSolver<MatrixXcd>;
 BOUGH_INSTANCE template SelfAdjointEigenSolver<MatrixXcd>& SelfAdjointEigenSolver<MatrixXcd>::compute(
     const EigenBase<MatrixXcd>&, int);

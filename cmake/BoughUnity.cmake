@@ -1,12 +1,13 @@
 # BOUGH_UNITY: neighbouring sources compiled as one, so that the templates of Eigen and the standard library that they
 # share are made once. Off by default, so that a plain build shows a missing include; ./dev turns it on.
 option(BOUGH_UNITY "Compile neighbouring sources together" OFF)
-set(BOUGH_UNITY_LINES 1500 CACHE STRING "Lines of sources compiled together")
+set(BOUGH_UNITY_LINES 3000 CACHE STRING "Lines of sources compiled together")
 if(BOUGH_UNITY)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cmake/unity_groups.py)
 endif()
 
-# bough_unity(TARGET): sorts the sources of TARGET into groups without equal names.
+# bough_unity(TARGET): sorts the sources of TARGET into groups in which no name hides another.
 function(bough_unity target)
   if(NOT BOUGH_UNITY)
     return()

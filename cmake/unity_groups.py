@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""Sorts sources into unity groups: neighbours that define no name twice. Reads paths, prints GROUP:PATH.
+"""Sorts sources into unity groups: neighbours that hide no name from each other. Reads paths, prints GROUP:PATH.
 
 usage: unity_groups.py ROOT MAX_LINES < paths
 
-Names of anonymous namespaces are those that collide when two files become one translation unit. A function of one
-file may also hide one that another file finds in a header; what the compiler refuses then is renamed, or kept apart
-by SKIP_UNITY_BUILD_INCLUSION.
+Names of anonymous namespaces are those that collide when two files become one translation unit: with each other, or
+with what a later file means by the same word and finds in a header. A file joins none that defines a name it uses.
 """
 import os
 import re
@@ -17,6 +16,8 @@ TYPE = re.compile(r"(?:template\s*<[^>]*>\s*)?(?:struct|class|enum class|enum|un
 ALIAS = re.compile(r"using\s+(\w+)\s*=")
 NAME = re.compile(r"(\w+)\s*(?:\(|=|\{|;|\[)")
 CONSTANT = re.compile(r"\bk[A-Z]\w*")
+WORD = re.compile(r"\b[A-Za-z_]\w*")
+COMMENT = re.compile(r"//[^\n]*")
 TEST = re.compile(r"^(?:TEST|TEST_F|TEST_P|TYPED_TEST)\((\w+),", re.M)
 
 
@@ -46,18 +47,23 @@ def find_names(text):
             if found:
                 names.add(found.group(1))
             names.update(CONSTANT.findall(line.split("(")[0]))
-    return names - set(TEST.findall(text)) - {"TEST", "TEST_F", "TEST_P", "INSTANTIATE_TEST_SUITE_P", "using"}
+    return names - set(TEST.findall(text)) - {"TEST", "TEST_F", "TEST_P", "INSTANTIATE_TEST_SUITE_P", "using", "if"}
+
+
+def find_words(text):
+    """Every word of the file: what a neighbour before it defines for itself under one of these would hide it."""
+    return set(WORD.findall(COMMENT.sub("", QUOTED.sub('""', text))))
 
 
 def sort_into_groups(root, paths, max_lines):
-    """First fit among the groups of the same two upper folders."""
+    """First fit among the groups of the same upper folder, in the order of paths: neighbours first."""
     groups = []
     for path in sorted(paths):
         text = open(path, encoding="utf-8").read()
-        names, lines = find_names(text), text.count("\n")
-        room = "/".join(os.path.relpath(os.path.dirname(path), root).split(os.sep)[:2])
+        names, words, lines = find_names(text), find_words(text), text.count("\n")
+        room = os.path.relpath(path, root).split(os.sep)[0]
         for group in groups:
-            if group["room"] == room and group["lines"] + lines <= max_lines and not group["names"] & names:
+            if group["room"] == room and group["lines"] + lines <= max_lines and not group["names"] & words:
                 break
         else:
             group = {"room": room, "lines": 0, "names": set(), "paths": []}
@@ -77,7 +83,7 @@ def main():
         number[room] = number.get(room, -1) + 1
         if len(group["paths"]) > 1:
             for path in group["paths"]:
-                print(f"{room.replace('/', '_')}_{number[room]}:{path}")
+                print(f"{room}_{number[room]}:{path}")
 
 
 if __name__ == "__main__":

@@ -516,7 +516,7 @@ int run_batch(const BatchOptions& o) {
 
 void add_batch(CLI::App& app, Action& action) {
   auto o = std::make_shared<BatchOptions>();
-  auto* verb = app.add_subcommand("batch", "One job over a grid, a list or a sample of parameters; resumable");
+  auto* verb = add_verb(app, "batch", "One job over a grid, a list or a sample of parameters; resumable");
   verb->add_option("campaign", o->campaign, "Campaign file (.toml)")->required();
   verb->add_option("-j,--jobs", o->jobs, "Worker processes (default: one a core)")->check(make_positive());
   verb->add_option("-o,--output", o->output, "Folder of the cases and the table (default: the campaign's name, here)");

@@ -25,6 +25,10 @@ namespace bough::cli {
 
 namespace fs = std::filesystem;
 
+CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what) {
+  return app.add_subcommand(name, what);
+}
+
 void add_common_options(CLI::App& verb, CommonOptions& options, unsigned offers, const std::string& output_help) {
   if (offers & kOutput) {
     verb.add_option("-o,--output", options.output, output_help)->check([](const std::string& name) {

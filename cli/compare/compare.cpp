@@ -159,7 +159,7 @@ modal::ModalModel load_model(const std::string& file, Diagnostics& diagnostics) 
 
 void add_compare(CLI::App& app, Action& action) {
   auto o = std::make_shared<CompareOptions>();
-  auto* verb = app.add_subcommand("compare", "Two bodies or modes files side by side; the integrals of one body");
+  auto* verb = add_verb(app, "compare", "Two bodies or modes files side by side; the integrals of one body");
   verb->add_option("files", o->files,
                    "Two flexible bodies or modes files; or one body: its integrals by method; or three with "
                    "--refinement")

@@ -109,8 +109,7 @@ void convert_toml(const ConvertOptions& o, const records::UnitChange& change, co
       [&](const std::string& body, const std::string& locator) { return facts.find_direction(body, locator); },
       [&](const std::string& body, int element) { return facts.find_components(body, element); }};
   int num_changed = 0;
-  const auto changed =
-      toml_files::change_units(text, o.file, change, o.to_radians, asked, diagnostics, num_changed);
+  const auto changed = toml_files::change_units(text, o.file, change, o.to_radians, asked, diagnostics, num_changed);
   diagnostics.throw_if_errors();
   console.print(diagnostics);
   write_text_file(o.output, changed);
@@ -161,8 +160,8 @@ int run_convert(const ConvertOptions& o) {
 
 void add_convert(CLI::App& app, Action& action) {
   auto o = std::make_shared<ConvertOptions>();
-  auto* verb = app.add_subcommand(
-      "convert", "A deck, system, body or flexible-body file in other units; comments and order are kept");
+  auto* verb = add_verb(app, "convert",
+                        "A deck, system, body or flexible-body file in other units; comments and order are kept");
   verb->add_option("file", o->file, "Nastran deck with its INCLUDE files, system or body file, flexible body")
       ->required();
   auto* units = verb->add_option("--units", o->units, "FROM:TO, as mm-N-tonne:m-kg-s")->type_name("FROM:TO");

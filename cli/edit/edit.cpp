@@ -84,7 +84,7 @@ int run_edit(const EditOptions& o) {
 
 void add_edit(CLI::App& app, Action& action) {
   auto o = std::make_shared<EditOptions>();
-  auto* verb = app.add_subcommand("edit", "Change a system or body file by commands, at a terminal or from a script");
+  auto* verb = add_verb(app, "edit", "Change a system or body file by commands, at a terminal or from a script");
   verb->add_option("file", o->file, "system.toml or body.toml; a new system file where there is none")->required();
   add_common_options(*verb, *o, kOutput, "Where save writes (default: the file itself)");
   verb->footer(

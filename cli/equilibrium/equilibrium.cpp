@@ -125,7 +125,7 @@ int run_equilibrium(const EquilibriumOptions& o) {
 
 void add_equilibrium(CLI::App& app, Action& action) {
   auto o = std::make_shared<EquilibriumOptions>();
-  auto* verb = app.add_subcommand("equilibrium", "A state of rest, or of steady spin, of a multibody system");
+  auto* verb = add_verb(app, "equilibrium", "A state of rest, or of steady spin, of a multibody system");
   verb->add_option("file", o->file, "System file (.toml); hinge rates given there are kept")->required();
   add_set_option(*verb, o->set);
   add_common_options(*verb, *o, kOutput | kJson, "Write the state to this HDF5 file, for --start-from");

@@ -165,8 +165,7 @@ int run_export(const ExportOptions& o) {
 
 void add_export(CLI::App& app, Action& action) {
   auto o = std::make_shared<ExportOptions>();
-  auto* verb =
-      app.add_subcommand("export", "Bodies, modes, matrices, results or a deck in the format of another program");
+  auto* verb = add_verb(app, "export", "Bodies, modes, matrices, results or a deck in the format of another program");
   verb->add_option(
           "file", o->file,
           "csv: results, modes, flexible body, linear model, sweep or response of a deck; vtu: modes file or flexible "

@@ -9,6 +9,7 @@
 
 #include "cli/common/body_files.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/flx/flx_output.hpp"
@@ -120,7 +121,7 @@ int run_flx(const FlxVerbOptions& o) {
 
 void add_flx(CLI::App& app, Action& action) {
   auto o = std::make_shared<FlxVerbOptions>();
-  auto* verb = app.add_subcommand("flx", "Flexible bodies become a .FLX file for TREETOPS, or such a file is read");
+  auto* verb = add_verb(app, "flx", "Flexible bodies become a .FLX file for TREETOPS, or such a file is read");
   verb->add_option("body", o->bodies, "Flexible-body files that bough reduce wrote; several stand in one .FLX");
   verb->add_option("--read", o->read,
                    "Print this .FLX file block by block, of FILE.FLX:2 the body with the id 2; with -o write it again");

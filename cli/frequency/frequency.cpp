@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "cli/common/console.hpp"
+#include "cli/common/options.hpp"
 #include "cli/common/ranks.hpp"
 #include "cli/common/solution.hpp"
 #include "cli/common/subcase_failures.hpp"
@@ -155,11 +156,11 @@ int run_deck_response(const DeckResponseOptions& options) {
   return failures.get_exit_code();
 }
 
-void add_verb(CLI::App& app, Action& action, bool is_over_time, const char* name, const char* what,
+void add_response_verb(CLI::App& app, Action& action, bool is_over_time, const char* name, const char* what,
               const std::string& footer) {
   auto o = std::make_shared<DeckResponseOptions>();
   o->is_over_time = is_over_time;
-  auto* verb = app.add_subcommand(name, what);
+  auto* verb = add_verb(app, name, what);
   verb->add_option("deck", o->deck, "Nastran deck")->required();
   verb->add_option("--grid", o->grids, "Displacement, velocity and acceleration of this grid too; may be repeated")
       ->delimiter(',')
@@ -170,8 +171,8 @@ void add_verb(CLI::App& app, Action& action, bool is_over_time, const char* name
   add_modal(verb->add_option("-n,--number,--modes", o->number, "Number of modes (default: the deck's EIGRL)")
                 ->check(make_positive()));
   add_modal(verb->add_option("--max-hz", o->max_hz, "Modes up to this frequency"));
-  add_modal(verb->add_flag("--no-residuals", o->no_residuals,
-                           "Modes alone, without residual vectors of what drives them"));
+  add_modal(
+      verb->add_flag("--no-residuals", o->no_residuals, "Modes alone, without residual vectors of what drives them"));
   verb->add_flag("--full", o->full, "Every curve in the table, their samples in --json");
   verb->add_option("--csv", o->csv, "Write the curves to this file of comma-separated values");
   verb->add_option("--punch", o->punch, "Write the curves to this Nastran punch file");
@@ -185,14 +186,14 @@ void add_verb(CLI::App& app, Action& action, bool is_over_time, const char* name
 }  // namespace
 
 void add_frequency(CLI::App& app, Action& action) {
-  add_verb(app, action, false, "frequency",
+  add_response_verb(app, action, false, "frequency",
            "Frequency response of a deck, by modes with residual vectors (SOL 111) or directly (SOL 108)",
            "Example:\n  bough frequency bracket.bdf -o bracket.h5 --csv bracket.csv\n"
            "  bough frequency bracket.bdf --grid 12 --max-hz 500 --punch bracket.pch");
 }
 
 void add_transient(CLI::App& app, Action& action) {
-  add_verb(app, action, true, "transient",
+  add_response_verb(app, action, true, "transient",
            "Transient response of a deck, by modes with residual vectors (SOL 112) or directly (SOL 109)",
            "Example:\n  bough transient bracket.bdf -o bracket.h5 --csv bracket.csv\n"
            "  bough transient bracket.bdf --grid 12 --json --full");

@@ -98,7 +98,7 @@ int run_info(const InfoOptions& o) {
 
 void add_info(CLI::App& app, Action& action) {
   auto o = std::make_shared<InfoOptions>();
-  auto* verb = app.add_subcommand("info", "What an HDF5 file of Bough, or a .FLX, holds");
+  auto* verb = add_verb(app, "info", "What an HDF5 file of Bough, or a .FLX, holds");
   verb->add_option("file", o->file, "HDF5 file or .FLX")->required();
   add_common_options(*verb, *o, kOutput | kJson, "Write the list to this file instead of stdout");
   verb->footer("Example:\n  bough info boom.h5");

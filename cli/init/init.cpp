@@ -160,7 +160,7 @@ int run_init(const InitOptions& o) {
 void add_init(CLI::App& app, Action& action) {
   auto o = std::make_shared<InitOptions>();
   auto* verb =
-      app.add_subcommand("init", "A ready example to start from, or the files for a deck: spinup, hub, two-link, ...");
+      add_verb(app, "init", "A ready example to start from, or the files for a deck: spinup, hub, two-link, ...");
   std::string names;
   for (const auto& known : get_templates()) names += std::string(names.empty() ? "" : ", ") + known.name;
   verb->add_option("template", o->name, names + "; or a Nastran deck. Default: lists them");

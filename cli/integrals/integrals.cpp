@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "cli/common/console.hpp"
+#include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/flx/flx_output.hpp"
 #include "formats/flx/model_input.hpp"
@@ -116,7 +117,7 @@ int run_integrals(const IntegralsOptions& o) {
 
 void add_integrals(CLI::App& app, Action& action) {
   auto o = std::make_shared<IntegralsOptions>();
-  auto* verb = app.add_subcommand("integrals", "Mass integrals of given matrices and modes (NASA-CR-202063 4.2.3)");
+  auto* verb = add_verb(app, "integrals", "Mass integrals of given matrices and modes (NASA-CR-202063 4.2.3)");
   verb->add_option("model", o->model, "Model information file: sizes, dof map, nodes, options")->required();
   verb->add_option("matrices", o->matrices, "Matrices file: mass, stiffness, damping, mode shapes")->required();
   verb->add_option("--fi", o->fi, "Write the twelve inertial loads, ndof x 12, too: text, a row per dof");

@@ -145,7 +145,7 @@ int run_linearize(const LinearizeVerbOptions& o) {
 
 void add_linearize(CLI::App& app, Action& action) {
   auto o = std::make_shared<LinearizeVerbOptions>();
-  auto* verb = app.add_subcommand("linearize", "A B C D, poles and zeros of a multibody system about a state");
+  auto* verb = add_verb(app, "linearize", "A B C D, poles and zeros of a multibody system about a state");
   verb->add_option("file", o->file, "System file (.toml)")->required();
   verb->add_option("--at", o->at, "Run to this time and linearize there (default: the initial state)");
   verb->add_option("--start-from", o->start_from,

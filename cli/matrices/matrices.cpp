@@ -218,7 +218,7 @@ int run_matrices(const MatricesOptions& options) {
 void add_matrices(CLI::App& app, Action& action) {
   auto o = std::make_shared<MatricesOptions>();
   auto* verb =
-      app.add_subcommand("matrices", "Stiffness, mass, damping and geometric stiffness of a deck before constraints");
+      add_verb(app, "matrices", "Stiffness, mass, damping and geometric stiffness of a deck before constraints");
   verb->add_option("deck", o->deck, "Nastran deck")->required();
   verb->add_option("--to", o->format, "h5 (HDF5), mtx (Matrix Market) or op4 (Nastran OUTPUT4, formatted)")
       ->check(CLI::IsMember({"h5", "mtx", "op4"}))

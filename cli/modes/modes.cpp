@@ -268,7 +268,7 @@ int run_modes(const ModesOptions& options) {
 
 void add_modes(CLI::App& app, Action& action) {
   auto o = std::make_shared<ModesOptions>();
-  auto* verb = app.add_subcommand("modes", "Normal modes (SOL 103) or buckling load factors (SOL 105) of a deck");
+  auto* verb = add_verb(app, "modes", "Normal modes (SOL 103) or buckling load factors (SOL 105) of a deck");
   verb->add_option("deck", o->deck, "Nastran deck")->required();
   verb->add_option("-n,--number,--modes", o->number, "Number of modes (default: the deck's EIGRL, else 10)")
       ->check(make_positive());

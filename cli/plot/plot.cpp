@@ -246,7 +246,7 @@ int run_plot(const PlotOptions& o) {
 
 void add_plot(CLI::App& app, Action& action) {
   auto o = std::make_shared<PlotOptions>();
-  auto* verb = app.add_subcommand("plot", "Curves of results against time, or a linear model, as a picture");
+  auto* verb = add_verb(app, "plot", "Curves of results against time, or a linear model, as a picture");
   verb->add_option("files", o->files, "HDF5 files: results, or with --kind linear models or sweeps")->required();
   verb->add_option("--sensor,--channel", o->sensors,
                    "Sensor NAME or NAME:component, or a path such as /energy/strain; of responses of decks "

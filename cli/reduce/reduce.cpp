@@ -267,8 +267,7 @@ int run_reduce(const ReduceVerbOptions& o) {
 
 void add_reduce(CLI::App& app, Action& action) {
   auto o = std::make_shared<ReduceVerbOptions>();
-  auto* verb =
-      app.add_subcommand("reduce", "A deck becomes a flexible body: modes, mass integrals, geometric stiffness");
+  auto* verb = add_verb(app, "reduce", "A deck becomes a flexible body: modes, mass integrals, geometric stiffness");
   verb->add_option("file", o->file, "Body file (.toml) or Nastran deck; may be missing with --matrices");
   verb->add_option("-n,--modes,--number", o->num_modes, "Number of elastic modes")->check(make_positive());
   verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted");

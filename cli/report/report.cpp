@@ -52,7 +52,7 @@ int run_report(const ReportOptions& o) {
 
 void add_report(CLI::App& app, Action& action) {
   auto o = std::make_shared<ReportOptions>();
-  auto* verb = app.add_subcommand("report", "One HTML page of results, bodies, modes, linear models, for any browser");
+  auto* verb = add_verb(app, "report", "One HTML page of results, bodies, modes, linear models, for any browser");
   verb->add_option("files", o->request.files,
                    "Results, flexible bodies, modes, static solutions, responses, linear models, sweeps, comparisons, "
                    "outcomes.h5 of "

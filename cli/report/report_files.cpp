@@ -14,6 +14,7 @@
 #include "formats/hdf5/comparison_file.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/table_file.hpp"
+#include "formats/report/html.hpp"
 #include "formats/report/static_chapter.hpp"
 #include "formats/report/table_chapters.hpp"
 

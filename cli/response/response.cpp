@@ -171,7 +171,7 @@ int run_response(const ResponseOptions& o) {
 
 void add_response(CLI::App& app, Action& action) {
   auto o = std::make_shared<ResponseOptions>();
-  auto* verb = app.add_subcommand("response", "Frequency response, largest gain and margins of a linear model");
+  auto* verb = add_verb(app, "response", "Frequency response, largest gain and margins of a linear model");
   verb->add_option("file", o->file, "Linear model (.h5) of bough linearize")->required();
   verb->add_option("--inputs", o->inputs, "Only these inputs (default: all)")->delimiter(',');
   verb->add_option("--outputs", o->outputs, "Only these outputs (default: all)")->delimiter(',');

@@ -219,7 +219,7 @@ int run_run(const RunOptions& o) {
 
 void add_run(CLI::App& app, Action& action) {
   auto o = std::make_shared<RunOptions>();
-  auto* verb = app.add_subcommand("run", "Time history of a multibody system");
+  auto* verb = add_verb(app, "run", "Time history of a multibody system");
   verb->add_option("file", o->file, "System file (.toml)")->required();
   verb->add_flag("--resume", o->resume, "Continue the results file from its last checkpoint");
   verb->add_option("--start-from", o->start_from,

@@ -4,6 +4,7 @@
 
 #include "cli/common/body_files.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/options.hpp"
 #include "cli/common/system_files.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/select/selection.hpp"
@@ -86,7 +87,7 @@ int run_select(const SelectOptions& o) {
 
 void add_select(CLI::App& app, Action& action) {
   auto o = std::make_shared<SelectOptions>();
-  auto* verb = app.add_subcommand("select", "Ranks the modes of a body by component cost and picks those to keep");
+  auto* verb = add_verb(app, "select", "Ranks the modes of a body by component cost and picks those to keep");
   verb->add_option("body", o->body, "Flexible-body HDF5 file, or .FLX (panels.FLX:2: its body 2)")->required();
   verb->add_option("system", o->systems,
                    "System files (.toml) with their forces, actuators, sensors, in closed loop; of several the worst "

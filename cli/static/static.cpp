@@ -198,7 +198,7 @@ int run_static(const StaticOptions& options) {
 
 void add_static(CLI::App& app, Action& action) {
   auto o = std::make_shared<StaticOptions>();
-  auto* verb = app.add_subcommand("static", "Static solution (SOL 101) of every subcase with a load");
+  auto* verb = add_verb(app, "static", "Static solution (SOL 101) of every subcase with a load");
   verb->add_option("deck", o->deck, "Nastran deck")->required();
   verb->add_flag("--full", o->full, "Every grid and element instead of the largest values");
   verb->add_flag("--extremes,--maxmin", o->has_extremes,

@@ -26,11 +26,11 @@ class BeamProperties {
   bool check(const BeamProperty& property, const std::string& who, const records::CardLocation& at);
 
   Maker& maker_;
-  Index<records::Pbar> pbar_;
-  Index<records::Pbarl> pbarl_;
-  Index<records::Pbeam> pbeam_;
-  Index<records::Pbeaml> pbeaml_;
-  Index<records::Pbcomp> pbcomp_;
+  RecordIndex<records::Pbar> pbar_;
+  RecordIndex<records::Pbarl> pbarl_;
+  RecordIndex<records::Pbeam> pbeam_;
+  RecordIndex<records::Pbeaml> pbeaml_;
+  RecordIndex<records::Pbcomp> pbcomp_;
   std::unordered_map<int, std::shared_ptr<const BeamProperty>> bars_, beams_;
 };
 

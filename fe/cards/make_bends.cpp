@@ -87,7 +87,7 @@ std::shared_ptr<const BeamProperty> make_property(Maker& maker, const records::P
 }  // namespace
 
 void make_bends(Maker& maker) {
-  const Index<records::Pbend> properties(maker.deck().special.pbend);
+  const RecordIndex<records::Pbend> properties(maker.deck().special.pbend);
   std::unordered_map<int, std::shared_ptr<const BeamProperty>> made;
   for (const auto& card : maker.deck().special.cbend) {
     const std::string who = "CBEND " + std::to_string(card.id);

@@ -13,7 +13,7 @@ bool check_length(Maker& maker, const std::string& who, const Vector3d& line, co
   return false;
 }
 
-void make_visc(Maker& maker, const Index<records::Pvisc>& properties, const records::Cvisc& card) {
+void make_visc(Maker& maker, const RecordIndex<records::Pvisc>& properties, const records::Cvisc& card) {
   const std::string who = "CVISC " + std::to_string(card.id);
   const records::Pvisc* property = properties.find(card.pid);
   if (!property) maker.report_missing_property(card.pid, "PVISC", who, card.at);
@@ -25,7 +25,7 @@ void make_visc(Maker& maker, const Index<records::Pvisc>& properties, const reco
                                       line.normalized()));
 }
 
-void make_bush1d(Maker& maker, const Index<records::Pbush1d>& properties, const records::Cbush1d& card) {
+void make_bush1d(Maker& maker, const RecordIndex<records::Pbush1d>& properties, const records::Cbush1d& card) {
   const std::string who = "CBUSH1D " + std::to_string(card.id);
   const records::Pbush1d* property = properties.find(card.pid);
   if (!property) maker.report_missing_property(card.pid, "PBUSH1D", who, card.at);
@@ -55,9 +55,9 @@ void make_bush1d(Maker& maker, const Index<records::Pbush1d>& properties, const 
 
 void make_line_dampers(Maker& maker) {
   const auto& deck = maker.deck();
-  const Index<records::Pvisc> pvisc(deck.pvisc);
+  const RecordIndex<records::Pvisc> pvisc(deck.pvisc);
   for (const records::Cvisc& card : deck.cvisc) make_visc(maker, pvisc, card);
-  const Index<records::Pbush1d> pbush1d(deck.pbush1d);
+  const RecordIndex<records::Pbush1d> pbush1d(deck.pbush1d);
   for (const records::Cbush1d& card : deck.cbush1d) make_bush1d(maker, pbush1d, card);
 }
 

@@ -36,8 +36,8 @@ bool check_section(Maker& maker, const std::string& who, double A, double J, dou
 
 RodProperty make_property(const records::Mat1& material, double A, double J, double c, double nsm) {
   const double mass = material.rho * A + nsm;
-  return {material.E * A, material.G * J, mass, mass, material.alpha, material.tref, material.ge, A, J > 0 ? c / J : 0,
-          material.E, material.G};
+  return {material.E * A,    material.G * J, mass,      mass, material.alpha, material.tref, material.ge, A,
+          J > 0 ? c / J : 0, material.E,     material.G};
 }
 
 /// Hollow or solid circular tube, diameter linear from od to od2, constant wall t (t = 0: solid). Axial and torsional
@@ -77,7 +77,7 @@ RodProperty make_tube(const records::Mat1& material, const records::Ptube& tube)
 void make_rods(Maker& maker) {
   const auto& deck = maker.deck();
   std::unordered_map<int, std::optional<RodProperty>> made;
-  const Index<records::Prod> prod(deck.prod);
+  const RecordIndex<records::Prod> prod(deck.prod);
   for (const records::Crod& card : deck.crod) {
     const std::string who = "CROD " + std::to_string(card.id);
     if (!made.contains(card.pid)) {
@@ -105,7 +105,7 @@ void make_rods(Maker& maker) {
     make_rod(maker, "CONROD", card.id, card.ga, card.gb, card.at, material && ok ? &property : nullptr);
   }
   made.clear();
-  const Index<records::Ptube> ptube(deck.ptube);
+  const RecordIndex<records::Ptube> ptube(deck.ptube);
   for (const records::Ctube& card : deck.ctube) {
     const std::string who = "CTUBE " + std::to_string(card.id);
     if (!made.contains(card.pid)) {

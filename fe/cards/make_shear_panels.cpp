@@ -7,7 +7,7 @@ namespace bough::fe {
 
 void make_shear_panels(Maker& maker) {
   const auto& deck = maker.deck();
-  const Index<records::Pshear> pshear(deck.pshear);
+  const RecordIndex<records::Pshear> pshear(deck.pshear);
   for (const auto& card : deck.shear_panels) {
     const std::string who = "CSHEAR " + std::to_string(card.id);
     std::vector<int> nodes;

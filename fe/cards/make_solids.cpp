@@ -77,7 +77,7 @@ class MaterialMaker {
   }
 
   Maker& maker_;
-  Index<records::Mat9> mat9_;
+  RecordIndex<records::Mat9> mat9_;
   std::map<int, std::optional<SolidMaterial>> made_;
 };
 
@@ -113,7 +113,7 @@ struct LeftHanded {
 
 void make_solids(Maker& maker) {
   const auto& deck = maker.deck();
-  const Index<records::Psolid> psolid(deck.psolid);
+  const RecordIndex<records::Psolid> psolid(deck.psolid);
   MaterialMaker materials(maker);
   std::map<int, std::shared_ptr<const SolidExpansion>> expansions;  // by PSOLID
   std::set<int> said, bad_axes;

@@ -173,7 +173,7 @@ void make_gap(Maker& maker, const records::Pgap* property, const records::Cgap& 
 
 void make_springs(Maker& maker) {
   const auto& deck = maker.deck();
-  const Index<records::Pelas> pelas(deck.pelas);
+  const RecordIndex<records::Pelas> pelas(deck.pelas);
   for (const records::ScalarSpring& card : deck.springs) {
     const std::string name = name_scalar("CELAS", card.pid, card.by_scalar_points),
                       who = name + " " + std::to_string(card.id);
@@ -191,7 +191,7 @@ void make_springs(Maker& maker) {
                                              std::move(ends->b)),
               ge);
   }
-  const Index<records::Pmass> pmass(deck.pmass);
+  const RecordIndex<records::Pmass> pmass(deck.pmass);
   for (const records::ScalarMass& card : deck.scalar_masses) {
     const std::string name = name_scalar("CMASS", card.pid, card.by_scalar_points),
                       who = name + " " + std::to_string(card.id);
@@ -208,7 +208,7 @@ void make_springs(Maker& maker) {
     maker.add(std::make_unique<ScalarMass>(card.id, name, std::move(ends->nodes), std::move(ends->gdofs), m,
                                            std::move(ends->b)));
   }
-  const Index<records::Pdamp> pdamp(deck.pdamp);
+  const RecordIndex<records::Pdamp> pdamp(deck.pdamp);
   for (const records::ScalarDamper& card : deck.dampers) {
     const std::string name = name_scalar("CDAMP", card.pid, card.by_scalar_points),
                       who = name + " " + std::to_string(card.id);
@@ -225,13 +225,13 @@ void make_springs(Maker& maker) {
     maker.add(std::make_unique<ScalarDamper>(card.id, name, std::move(ends->nodes), std::move(ends->gdofs), b,
                                              std::move(ends->b)));
   }
-  const Index<records::Pbush> pbush(deck.pbush);
+  const RecordIndex<records::Pbush> pbush(deck.pbush);
   for (const records::Cbush& card : deck.cbush) {
     const records::Pbush* property = pbush.find(card.pid);
     if (!property) maker.report_missing_property(card.pid, "PBUSH", "CBUSH " + std::to_string(card.id), card.at);
     make_bush(maker, "CBUSH", property, card);
   }
-  const Index<records::Pgap> pgap(deck.special.pgap);
+  const RecordIndex<records::Pgap> pgap(deck.special.pgap);
   for (const records::Cgap& card : deck.special.cgap) make_gap(maker, pgap.find(card.pid), card);
 }
 

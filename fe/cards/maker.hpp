@@ -9,9 +9,9 @@ namespace bough::fe {
 
 /// Index of records by id; the last one of an id wins.
 template <class Record>
-class Index {
+class RecordIndex {
  public:
-  explicit Index(const std::vector<Record>& records) {
+  explicit RecordIndex(const std::vector<Record>& records) {
     for (const Record& record : records) map_[record.id] = &record;
   }
   const Record* find(int id) const {
@@ -57,7 +57,7 @@ class Maker {
   const NodeTable& nodes_;
   Diagnostics& diagnostics_;
   ElementList& list_;
-  Index<records::Mat1> mat1_;
+  RecordIndex<records::Mat1> mat1_;
   std::unordered_map<int, bool> material_ok_;
 };
 

@@ -40,11 +40,11 @@ class ShellSections {
   void stack_smeared(const records::Pcomp& p, std::vector<LaminateLayer>& layers, double& z0);
 
   Maker& maker_;
-  Index<records::Pshell> pshell_;
-  Index<records::Pcomp> pcomp_;
-  Index<records::Mat1> mat1_;
-  Index<records::Mat2> mat2_;
-  Index<records::Mat8> mat8_;
+  RecordIndex<records::Pshell> pshell_;
+  RecordIndex<records::Pcomp> pcomp_;
+  RecordIndex<records::Mat1> mat1_;
+  RecordIndex<records::Mat2> mat2_;
+  RecordIndex<records::Mat8> mat8_;
   bool has_temperatures_ = false, has_initial_ = false;  // else no section needs its expansion
   double drilling_factor_ = 1e-4;
   std::map<int, std::optional<PlaneMaterial>> materials_;

@@ -53,9 +53,10 @@ class Doublet final : public TimeFunction {
 
 /// offset + amplitude sin(φ(s) + phase), s = t - at in [0, T), offset outside. Linear: φ̇ = ω₀ + (ω₁ - ω₀) s / T;
 /// logarithmic: φ̇ = ω₀ (ω₁ / ω₀)^(s / T), so many octaves a time.
-class Sweep final : public TimeFunction {
+class SweptSine final : public TimeFunction {
  public:
-  Sweep(double amplitude, double from, double to, double at, double duration, double phase, double offset, bool is_log)
+  SweptSine(double amplitude, double from, double to, double at, double duration, double phase, double offset,
+            bool is_log)
       : amplitude_(amplitude),
         from_(from),
         to_(to),
@@ -114,7 +115,7 @@ std::unique_ptr<const TimeFunction> make_sweep(const FunctionRecord& r, Function
             near.empty() ? "use linear or logarithmic" : "did you mean '" + near + "'?");
   }
   if (p.failed()) return nullptr;
-  return std::make_unique<Sweep>(amplitude, 2 * kPi * from, 2 * kPi * to, at, duration, phase, offset, is_log);
+  return std::make_unique<SweptSine>(amplitude, 2 * kPi * from, 2 * kPi * to, at, duration, phase, offset, is_log);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ constexpr double kInaccurate = 1e-4;
 /// Steps of displacement within the time of the slowest motion: a system that moves less than that is at rest.
 constexpr double kAtRest = 1e-6;
 
-std::string short_text(double value) {
+std::string brief_text(double value) {
   std::ostringstream text;
   text.precision(3);
   text << value;
@@ -207,7 +207,7 @@ void note_unsteady(Plant& plant, const VectorXd& u_dot, const MatrixXd& A_lower,
     if (std::abs(u_dot[i]) <= 1e-6 * std::max(scale[i], 1e-6 * scale.maxCoeff())) continue;
     diagnostics.note(
         "linear.not-steady", at,
-        "the operating point is not steady: " + plant.freedom_name(i) + " accelerates by " + short_text(u_dot[i]),
+        "the operating point is not steady: " + plant.freedom_name(i) + " accelerates by " + brief_text(u_dot[i]),
         "bough equilibrium finds a state of rest or of steady spin");
     return;
   }
@@ -249,8 +249,8 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
   const double change = calc_relative(there.topRows(n) - here.value.topRows(n), scale);
   if (change < 1e-5) return;
   diagnostics.warning("linear.time-varying", at,
-                      "A changes along the motion, by " + short_text(100 * change) + " % while " +
-                          plant.freedom_name(fastest) + " moves by " + short_text(delta[fastest]) +
+                      "A changes along the motion, by " + brief_text(100 * change) + " % while " +
+                          plant.freedom_name(fastest) + " moves by " + brief_text(delta[fastest]) +
                           ": the model holds at this instant only",
                       "its poles are not those of the motion; linearize at several times");
 }
@@ -275,7 +275,7 @@ void warn_of_uncertain(const records::Poles& poles, const SourceLocation& at, Di
   diagnostics.warning("linear.uncertain-poles", at,
                       std::to_string(number) + (number == 1 ? " pole is" : " poles are") +
                           " known to less than four digits, worst of all number " + std::to_string(worst + 1) + " (" +
-                          poles.mode[static_cast<std::size_t>(worst)] + "), to " + short_text(100 * most) + " %",
+                          poles.mode[static_cast<std::size_t>(worst)] + "), to " + brief_text(100 * most) + " %",
                       "they are soft beside the stiffest, or nearly multiple: lock or leave out what is stiffest");
 }
 
@@ -357,8 +357,8 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
     const double corner = find_corner(plant, point, base, calc_row_scales(jacobian.value, get_row_dims(plant)));
     if (const double worst = std::max({model.error, model.difference, corner}); !(worst <= kInaccurate))
       diagnostics.warning("linear.inaccurate", at,
-                          "A and C are known to " + short_text(worst) + " of their rows only, expected below " +
-                              short_text(kInaccurate),
+                          "A and C are known to " + brief_text(worst) + " of their rows only, expected below " +
+                              brief_text(kInaccurate),
                           "the motion has a corner near this state (a gap, a limit, a table of lines): linearize "
                           "beside it, or give it a smooth law");
     check_constancy(plant, point, jacobian, model.A, model.states.name, at, diagnostics);

@@ -12,8 +12,6 @@ namespace {
 using records::ConstraintRecord;
 using records::ConstraintType;
 
-std::string quote(const std::string& s) { return "'" + s + "'"; }
-
 // grip of positions and of rates, by row of u
 void collect_grips(const records::SystemSpec& spec, const TreeOrder& order, const Tree& tree,
                    std::vector<Grip>& positions, std::vector<Grip>& rates) {

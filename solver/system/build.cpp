@@ -6,9 +6,9 @@
 
 namespace bough::solver {
 
-namespace {
+std::string quote(const std::string& name) { return "'" + name + "'"; }
 
-std::string quote(const std::string& s) { return "'" + s + "'"; }
+namespace {
 
 /// Each after those that it is made of. Reports "function.loop".
 class FunctionBuilder {

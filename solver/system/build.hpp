@@ -11,6 +11,9 @@ namespace bough::solver {
 
 using FlexMap = std::map<std::string, records::FlexBody>;
 
+/// A name, as messages show it.
+std::string quote(const std::string& name);
+
 /// A body of the system, or nothing when its record has errors. `is_lagged`: its stiffening is a matter of others.
 std::optional<Body> build_body(const records::BodyRecord& record, const FlexMap& flex, Diagnostics& diagnostics,
                                bool is_lagged = false);

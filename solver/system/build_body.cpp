@@ -7,8 +7,6 @@ namespace bough::solver {
 
 namespace {
 
-std::string quote(const std::string& s) { return "'" + s + "'"; }
-
 bool check_rigid(const records::BodyRecord& r, Diagnostics& diagnostics) {
   bool good = true;
   if (!std::isfinite(r.mass) || r.mass < 0) {

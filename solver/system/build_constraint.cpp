@@ -11,8 +11,6 @@ namespace {
 using records::ConstraintRecord;
 using records::ConstraintType;
 
-std::string quote(const std::string& s) { return "'" + s + "'"; }
-
 records::HingeRecord make_hinge_record(const ConstraintRecord& r) {
   records::HingeRecord h;
   h.name = r.name;

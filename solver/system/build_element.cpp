@@ -15,8 +15,6 @@ namespace {
 
 using records::ElementType;
 using records::ForceElementRecord;
-std::string quote(const std::string& s) { return "'" + s + "'"; }
-
 class ElementBuilder {
  public:
   ElementBuilder(const ForceElementRecord& record, const ElementContext& context, Tree& tree, Diagnostics& diagnostics)

@@ -3,8 +3,6 @@
 namespace bough::solver {
 
 namespace {
-std::string quote(const std::string& s) { return "'" + s + "'"; }
-
 // Turns a named locator into a node force or a pattern.
 bool set_locator(const records::ForceRecord& r, const Body& body, const records::FlexBody* flex, AppliedForce& force,
                  Diagnostics& diagnostics) {

@@ -3,8 +3,6 @@
 namespace bough::solver {
 
 namespace {
-std::string quote(const std::string& s) { return "'" + s + "'"; }
-
 bool check_count(const records::HingeRecord& r, const std::vector<double>& values, int expected, const char* key,
                  Diagnostics& diagnostics) {
   if (values.empty() || static_cast<int>(values.size()) == expected) return true;

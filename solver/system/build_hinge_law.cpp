@@ -11,8 +11,6 @@ namespace bough::solver {
 
 namespace {
 
-std::string quote(const std::string& s) { return "'" + s + "'"; }
-
 class LawBuilder {
  public:
   LawBuilder(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb, Diagnostics& diagnostics)

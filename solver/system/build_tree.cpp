@@ -5,8 +5,6 @@
 namespace bough::solver {
 
 namespace {
-std::string quote(const std::string& s) { return "'" + s + "'"; }
-
 template <class Records>
 void check_names(const Records& records, const char* kind, Diagnostics& diagnostics) {
   std::set<std::string> seen;

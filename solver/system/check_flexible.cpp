@@ -11,8 +11,6 @@ namespace {
 constexpr double kSpanned = 1e-3;       // of the rigid inertia
 constexpr double kInconsistent = 1e-3;  // of the modal mass
 
-std::string quote(const std::string& s) { return "'" + s + "'"; }
-
 // The hinge's free columns at Bo, in B, at the initial coordinates; the child's end does not move.
 MatrixXd calc_hinge_columns(const TreeBody& tb) {
   HingeMotion motion;

@@ -1,0 +1,2 @@
+#define BOUGH_PRODUCTS
+#include "base/products.hpp"
