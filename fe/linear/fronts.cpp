@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "fe/linear/dissection.hpp"
@@ -29,29 +30,45 @@ void add_between(const RowSum& sum, const std::vector<PetscInt>& between, Matrix
     });
 }
 
-/// -1 where a pivot is too small, or B couples the parts.
-int count_of_sum(const RowSum& sum, const TwoParts& cut) {
+/// The parts that have rows; empty where one couples to rows of the other.
+std::vector<PartFronts> analyse(const RowSum& sum, const TwoParts& cut) {
   std::vector<const std::vector<PetscInt>*> own;
   for (const auto* rows : {&cut.first, &cut.second})
     if (!rows->empty()) own.push_back(rows);
-  const std::size_t num = own.size();
-  std::vector<PartFronts> parts(num);
-  std::vector<int> result(num, 0);
-  do_all(num, [&](std::size_t p) { result[p] = parts[p].analyse(sum, *own[p], cut.between) ? 0 : -1; });
-  const auto has_failed = [&] { return std::any_of(result.begin(), result.end(), [](int one) { return one < 0; }); };
-  if (num == 0 || has_failed()) return -1;
-  double num_numbers = 0, num_rows = static_cast<double>(cut.between.size());
-  for (std::size_t p = 0; p < num; ++p) {
-    num_numbers += parts[p].num_numbers();
-    num_rows += static_cast<double>(own[p]->size());
-  }
-  require_memory(num_rows, num_numbers, calc_free_memory());
+  std::vector<PartFronts> parts(own.size());
+  std::vector<int> is_fine(own.size(), 0);
+  do_all(own.size(), [&](std::size_t p) { is_fine[p] = parts[p].analyse(sum, *own[p], cut.between); });
+  if (std::all_of(is_fine.begin(), is_fine.end(), [](int one) { return one != 0; })) return parts;
+  return {};
+}
 
+/// One part: what was cut for A, B may couple.
+void join(TwoParts& cut) {
+  cut.first.insert(cut.first.end(), cut.second.begin(), cut.second.end());
+  cut.first.insert(cut.first.end(), cut.between.begin(), cut.between.end());
+  cut.second.clear();
+  cut.between.clear();
+}
+
+/// -1 where a pivot is too small.
+int count_of_sum(const RowSum& sum, TwoParts cut) {
+  std::vector<PartFronts> parts = analyse(sum, cut);
+  if (parts.empty()) {
+    join(cut);
+    parts = analyse(sum, cut);
+  }
+  const std::size_t num = parts.size();
+  if (num == 0) return -1;
+  double num_numbers = 0;
+  for (const PartFronts& part : parts) num_numbers += part.num_numbers();
+  require_memory(static_cast<double>(cut.first.size() + cut.second.size() + cut.between.size()), num_numbers,
+                 calc_free_memory());
+
+  std::vector<int> result(num, 0);
   std::vector<MatrixXd> schur(num);
   do_all(num, [&](std::size_t p) { result[p] = parts[p].count(schur[p]); });
-  if (has_failed()) return -1;
-  int negative = 0;
-  for (const int one : result) negative += one;
+  if (std::any_of(result.begin(), result.end(), [](int one) { return one < 0; })) return -1;
+  const int negative = std::accumulate(result.begin(), result.end(), 0);
   for (std::size_t p = 1; p < num; ++p) schur[0] += schur[p];
   add_between(sum, cut.between, schur[0]);
   const int last = count_negative_of_dense(schur[0]);
@@ -103,7 +120,7 @@ std::optional<int> count_negative_by_fronts(Mat A, double factor, Mat B, PetscIn
   std::sort(cut->between.begin(), cut->between.end());
   int count = -1;
   visit_rows(A, [&](const MatrixRows& a, PetscInt) {
-    visit_rows(B, [&](const MatrixRows& b, PetscInt) { count = count_of_sum({a, b, factor}, *cut); });
+    visit_rows(B, [&](const MatrixRows& b, PetscInt) { count = count_of_sum({a, b, factor}, std::move(*cut)); });
   });
   if (count < 0) return std::nullopt;
   return count;
