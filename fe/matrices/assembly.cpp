@@ -135,10 +135,11 @@ const std::vector<QuadraticForm>& get_forms(const Model& model) {
 /// Fewer are done before a thread has started.
 constexpr size_t kElementsOfThread = 2000;
 
-/// Σ of this rank's element matrices times X; row_of(g): of X and of the sum.
+/// Σ of this rank's element matrices times X; row_of(g): of X and of the sum. `energy`: ½ x_eᵀ A_e x_e, by element.
 template <class RowOf>
 MatrixXd sum_own_elements(const Model& model, const AddElementMatrix& add, const Eigen::Ref<const MatrixXd>& X,
-                          const RowOf& row_of) {
+                          const RowOf& row_of, MatrixXd* energy = nullptr) {
+  if (energy) energy->setZero(static_cast<Eigen::Index>(model.elements().size()), X.cols());
   MatrixXd Y = MatrixXd::Zero(X.rows(), X.cols());
   const std::vector<int> own = list_own_elements(model);
   const auto add_some = [&](size_t begin, size_t end, MatrixXd& sum) {
@@ -153,6 +154,7 @@ MatrixXd sum_own_elements(const Model& model, const AddElementMatrix& add, const
       for (int d = 0; d < n; ++d) X_e.row(d) = X.row(row_of(gdofs[d]));
       Y_e.resize(n, X.cols());
       multiply_dense(false, K_e, X_e, 0, Y_e);
+      if (energy) energy->row(own[i]) = 0.5 * X_e.cwiseProduct(Y_e).colwise().sum();
       for (int d = 0; d < n; ++d) sum.row(row_of(gdofs[d])) += Y_e.row(d);
     }
   };
@@ -169,10 +171,11 @@ MatrixXd sum_own_elements(const Model& model, const AddElementMatrix& add, const
 
 /// Σ_e of element matrices and of forms times X, over ranks.
 MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen::Ref<const MatrixXd>& X,
-                    const std::vector<QuadraticForm>& forms = {}) {
+                    const std::vector<QuadraticForm>& forms = {}, MatrixXd* energy = nullptr) {
   BOUGH_DEMAND(X.rows() == model.num_gdofs());
   if (X.cols() == 0) return MatrixXd::Zero(X.rows(), 0);
-  MatrixXd Y = sum_own_elements(model, add, X, [](int g) { return g; });
+  MatrixXd Y = sum_own_elements(
+      model, add, X, [](int g) { return g; }, energy);
   const MpiWorld world = initialize_petsc();
   for (size_t k = static_cast<size_t>(world.rank); k < forms.size(); k += static_cast<size_t>(world.size))
     Y(forms[k].gdofs, Eigen::all) += calc_form(forms[k], 0) * X(forms[k].gdofs, Eigen::all);
@@ -330,9 +333,10 @@ MatrixXd calc_own_mass_times(const Model& model, MassKind kind, const Reach& rea
   return sum_own_elements(model, add, X, [&reach](int g) { return reach.find_row(g); });
 }
 
-MatrixXd calc_stiffness_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g) {
+MatrixXd calc_stiffness_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g, MatrixXd* energy) {
   return calc_times(
-      model, [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); }, X_g, get_forms(model));
+      model, [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); }, X_g, get_forms(model),
+      energy);
 }
 
 MatrixXd calc_prestress_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g) {

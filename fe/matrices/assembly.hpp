@@ -23,8 +23,8 @@ PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind);
 PetscMat assemble_damping(const Model& model, DofSet set);
 /// Products with the g-set mass matrix without forming it: M X, num_gdofs x k, replicated on every rank. O(elements k).
 MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g);
-/// The same with K.
-MatrixXd calc_stiffness_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g);
+/// The same with K. `energy`, if given: ½ x_eᵀ K_e x_e, elements x k, of this rank's elements; others have zeros.
+MatrixXd calc_stiffness_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g, MatrixXd* energy = nullptr);
 /// The same with the share of K that is K_G0 of the prestress.
 MatrixXd calc_prestress_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g);
 /// The same with B.

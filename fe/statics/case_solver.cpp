@@ -84,25 +84,26 @@ std::vector<CaseSolver::Solved> CaseSolver::solve_next(std::span<const records::
     result.spc_set = subcase.spc;
     result.mpc_set = subcase.mpc;
   }
-  solve_displacements(loads, solved);
-  add_element_results(loads, solved);
+  const MatrixXd energy = solve_displacements(loads, solved);
+  add_element_results(loads, energy, solved);
   return solved;
 }
 
-void CaseSolver::solve_displacements(std::span<const StaticLoad> loads, std::span<Solved> solved) const {
+MatrixXd CaseSolver::solve_displacements(std::span<const StaticLoad> loads, std::span<Solved> solved) const {
   std::vector<const StaticLoad*> wanted;
   for (std::size_t k = 0; k < loads.size(); ++k)
     if (solved[k].result) wanted.push_back(&loads[k]);
-  if (wanted.empty()) return;
+  if (wanted.empty()) return {};
   if (wanted.size() > 1) {
     Diagnostics own;
     try {
-      auto together = solve_static_cases(*model_, *solver_, wanted, suport_, &own);
+      MatrixXd energy;
+      auto together = solve_static_cases(*model_, *solver_, wanted, suport_, &own, &energy);
       if (own.items().empty()) {
         auto next = together.begin();
         for (auto& one : solved)
           if (one.result) take(std::move(*next++), *one.result);
-        return;
+        return energy;
       }
     } catch (const Failure&) {  // one after the other tells whose it is
     }
@@ -118,9 +119,11 @@ void CaseSolver::solve_displacements(std::span<const StaticLoad> loads, std::spa
       solved[k].result.reset();
     }
   }
+  return {};
 }
 
-void CaseSolver::add_element_results(std::span<const StaticLoad> loads, std::span<Solved> solved) {
+void CaseSolver::add_element_results(std::span<const StaticLoad> loads, const MatrixXd& energy,
+                                     std::span<Solved> solved) {
   if (!layout_) layout_.emplace(*model_, deck_, RecoveredFields{true, true, has_strains_});
   std::vector<RecoveryCase> cases;
   std::vector<std::size_t> of;
@@ -130,7 +133,7 @@ void CaseSolver::add_element_results(std::span<const StaticLoad> loads, std::spa
     cases.push_back({&result.displacement, result.load_set, &loads[k].initial, &solved[k].said});
     of.push_back(k);
   }
-  auto fields = recover_elements(*model_, deck_, cases, *layout_);
+  auto fields = recover_elements(*model_, deck_, cases, *layout_, energy.size() > 0 ? &energy : nullptr);
   for (std::size_t c = 0; c < of.size(); ++c) {
     auto& result = *solved[of[c]].result;
     result.elements = std::move(fields[c].forces);

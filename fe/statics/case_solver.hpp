@@ -41,8 +41,9 @@ class CaseSolver {
   void prepare(const records::Subcase& subcase, Diagnostics& diagnostics);
   bool is_prepared_for(const records::Subcase& subcase) const;
   /// Without the fields of elements. Those with a result are solved together where nothing is wrong with any.
-  void solve_displacements(std::span<const StaticLoad> loads, std::span<Solved> solved) const;
-  void add_element_results(std::span<const StaticLoad> loads, std::span<Solved> solved);
+  /// Strain energies of this rank's elements, elements x those that are solved; empty where each was solved alone.
+  MatrixXd solve_displacements(std::span<const StaticLoad> loads, std::span<Solved> solved) const;
+  void add_element_results(std::span<const StaticLoad> loads, const MatrixXd& energy, std::span<Solved> solved);
 
   const records::Deck& deck_;
   ModelOptions options_;

@@ -137,8 +137,9 @@ class PointTables {
 /// Forces and strain energies of all groups.
 class ForceTables {
  public:
-  ForceTables(const Model& model, const RecoveryLayout::Table& layout, std::vector<ElementResults>& results)
-      : model_(model), results_(results), layout_(layout), groups_(layout.groups) {
+  ForceTables(const Model& model, const RecoveryLayout::Table& layout, const MatrixXd* known_energy,
+              std::vector<ElementResults>& results)
+      : model_(model), known_energy_(known_energy), results_(results), layout_(layout), groups_(layout.groups) {
     for (auto& result : results) result.forces.resize(groups_.size());
     energies_.assign(groups_.size(), std::vector<MatrixXd>(results.size()));
     for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -175,12 +176,7 @@ class ForceTables {
         if (at.heated[c]) forces.col(static_cast<Index>(c)) += at.heated[c]->force.head(count);
       tables_[at.half][g].set(row, forces);
     }
-    auto& [K, K_U] = scratch_[at.half];
-    K.setZero(at.U.rows(), at.U.rows());
-    model_.add_stiffness(at.element, K);
-    K_U.resize(at.U.rows(), at.U.cols());
-    multiply_dense(false, K, at.U, 0, K_U);
-    MatrixXd energy = 0.5 * at.U.cwiseProduct(K_U).colwise().sum();
+    MatrixXd energy = known_energy_ ? MatrixXd(known_energy_->row(at.index)) : calc_energy(at);
     for (std::size_t c = 0; c < at.heated.size(); ++c)
       if (const auto* part = at.heated[c]) {
         const auto column = static_cast<Index>(c);
@@ -203,7 +199,17 @@ class ForceTables {
   }
 
  private:
+  MatrixXd calc_energy(const Current& at) {
+    auto& [K, K_U] = scratch_[at.half];
+    K.setZero(at.U.rows(), at.U.rows());
+    model_.add_stiffness(at.element, K);
+    K_U.resize(at.U.rows(), at.U.cols());
+    multiply_dense(false, K, at.U, 0, K_U);
+    return 0.5 * at.U.cwiseProduct(K_U).colwise().sum();
+  }
+
   const Model& model_;
+  const MatrixXd* known_energy_;
   std::vector<ElementResults>& results_;
   const RecoveryLayout::Table& layout_;
   const std::vector<RecoveryGroup>& groups_;
@@ -235,7 +241,10 @@ std::vector<ElementResults> recover_elements(const Model& model, const records::
 }
 
 std::vector<ElementResults> recover_elements(const Model& model, const records::Deck& deck,
-                                             const std::vector<RecoveryCase>& cases, const RecoveryLayout& layout) {
+                                             const std::vector<RecoveryCase>& cases, const RecoveryLayout& layout,
+                                             const MatrixXd* known_energy) {
+  BOUGH_DEMAND(!known_energy || (known_energy->rows() == static_cast<Index>(model.elements().size()) &&
+                                 known_energy->cols() == static_cast<Index>(cases.size())));
   std::vector<ElementResults> results(cases.size());
   if (cases.empty()) return results;
   EndLoads end_loads(cases.size());
@@ -249,7 +258,7 @@ std::vector<ElementResults> recover_elements(const Model& model, const records::
   }
   std::optional<ForceTables> forces;
   std::optional<PointTables> stresses, strains;
-  if (layout.forces.is_asked) forces.emplace(model, layout.forces, results);
+  if (layout.forces.is_asked) forces.emplace(model, layout.forces, known_energy, results);
   if (layout.stresses.is_asked) stresses.emplace(model, layout.stresses, false, &ElementResults::stresses, results);
   if (layout.strains.is_asked) strains.emplace(model, layout.strains, true, &ElementResults::strains, results);
 

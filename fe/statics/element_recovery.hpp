@@ -47,12 +47,14 @@ struct RecoveryLayout {
   Table forces, stresses, strains;
 };
 
-/// Results of every case. The matrices of an element are formed once for all of them: O(elements) beside a product and
+/// Results of every case. `energy`, if given: elements x cases, ½ uᵀ K u of this rank's elements (calc_stiffness_times),
+/// which spares forming K again. The matrices of an element are formed once for all of them: O(elements) beside a product and
 /// what is derived, O(elements x cases). Memory: the results and the numbers of a few elements. Replicated.
 std::vector<ElementResults> recover_elements(const Model& model, const records::Deck& deck,
                                              const std::vector<RecoveryCase>& cases, const RecoveredFields& fields);
 /// The same of a layout that was made before.
 std::vector<ElementResults> recover_elements(const Model& model, const records::Deck& deck,
-                                             const std::vector<RecoveryCase>& cases, const RecoveryLayout& layout);
+                                             const std::vector<RecoveryCase>& cases, const RecoveryLayout& layout,
+                                             const MatrixXd* energy = nullptr);
 
 }  // namespace bough::fe

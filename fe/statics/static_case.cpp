@@ -153,7 +153,8 @@ records::StaticSubcase solve_static_case(const Model& model, const StaticSolver&
 
 std::vector<records::StaticSubcase> solve_static_cases(const Model& model, const StaticSolver& solver,
                                                        const std::vector<const StaticLoad*>& loads,
-                                                       const Suport& suport, Diagnostics* diagnostics) {
+                                                       const Suport& suport, Diagnostics* diagnostics,
+                                                       MatrixXd* energy) {
   std::vector<records::StaticSubcase> results(loads.size());
   const auto count = static_cast<Eigen::Index>(loads.size());
   MatrixXd F(model.num_gdofs(), count), U0 = MatrixXd::Zero(model.num_gdofs(), count);
@@ -198,7 +199,7 @@ std::vector<records::StaticSubcase> solve_static_cases(const Model& model, const
     }
     work[c] = std::abs(U1.col(c).dot(F.col(c)));
   }
-  const MatrixXd U = U1 + U0, K_U = calc_stiffness_times(model, U);
+  const MatrixXd U = U1 + U0, K_U = calc_stiffness_times(model, U, energy);
   const auto is_untied = find_untied(model);
   for (Eigen::Index c = 0; c < count; ++c) {
     const StaticLoad& load = *loads[static_cast<std::size_t>(c)];

@@ -30,10 +30,12 @@ StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int l
 records::StaticSubcase solve_static_case(const Model& model, const StaticSolver& solver, const StaticLoad& load,
                                          const Suport& suport = {}, Diagnostics* diagnostics = nullptr);
 
-/// Of several loads, solved together: one factor read and every element formed once for all of them.
+/// Of several loads, solved together: one factor read and every element formed once for all of them. `energy`, if
+/// given: as of calc_stiffness_times.
 std::vector<records::StaticSubcase> solve_static_cases(const Model& model, const StaticSolver& solver,
                                                        const std::vector<const StaticLoad*>& loads,
-                                                       const Suport& suport = {}, Diagnostics* diagnostics = nullptr);
+                                                       const Suport& suport = {}, Diagnostics* diagnostics = nullptr,
+                                                       MatrixXd* energy = nullptr);
 
 /// Forces and strain energy of every element, by card in alphabetical order. Replicated. `deck`, `load`: loads along
 /// beams, which act between the ends that u knows; `initial`: of heated elements.
