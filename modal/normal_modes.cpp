@@ -36,6 +36,13 @@ void NormalModes::add_supports() {
   add_springs(rigid_.supports, pencil_.K_diagonal, supported_.get());
 }
 
+void warn_of_cut_root(int num_more, Diagnostics& said) {
+  const std::string more = std::to_string(num_more);
+  said.warning("modal.cut-root", {},
+               "the last mode belongs to a repeated root: " + more + " more mode(s) have the same frequency",
+               "ask for " + more + " more");
+}
+
 /// A spring to ground on one dof of each massless motion: strain and mass of every eigenvector are indifferent to how
 /// much of the motion is in it, so nothing else changes.
 void NormalModes::hold_massless(Diagnostics& said) {
@@ -54,13 +61,16 @@ int NormalModes::count_below(double hz) const {
   return hz > 0 ? count_roots_below(pencil_.K.get(), pencil_.M.get(), calc_lambda(hz)) : 0;
 }
 
-void NormalModes::choose_range(KrylovMethod method) {
+void NormalModes::choose_range() {
   range_.first = options_.min_hz ? std::max(0, count_below(*options_.min_hz)) : 0;
   range_.last = options_.num_modes > 0 ? range_.first + options_.num_modes : pencil_.size();
   if (options_.max_hz) {
     const int below = count_below(*options_.max_hz);
     range_.last = std::min(range_.last, below >= 0 ? below : range_.first + 10);
   }
+}
+
+void NormalModes::make_solver(KrylovMethod method) {
   PencilProblem problem;
   problem.K = pencil_.K.get();
   problem.M = pencil_.M.get();
@@ -172,25 +182,31 @@ bool NormalModes::has_every_root() {
 }
 
 EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
-  const auto& model = pencil_.model;
-  const int k = num_rigid(), num_zero = k + num_zero_;
-  VectorXd lambda(cut);
-  for (int i = 0; i < cut; ++i) lambda(i) = value(i);
-  MatrixXd X(pencil_.num_rows(), cut);
-  X << rigid_.modes.leftCols(std::min(k, cut)), found_.X.leftCols(std::max(0, cut - k));
+  const int k = std::min(num_rigid(), cut);
+  Found found{VectorXd(cut), MatrixXd(pencil_.num_rows(), cut), k, num_rigid() + num_zero_};
+  for (int i = 0; i < cut; ++i) found.lambda(i) = value(i);
+  found.X << rigid_.modes.leftCols(k), found_.X.leftCols(cut - k);
+  found.first = std::min(range_.first, cut);
+  found.size = std::clamp(range_.last, found.first, cut) - found.first;
+  return finish_pairs(std::move(found), count, said);
+}
 
+EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) {
+  const auto& model = pencil_.model;
+  auto& [lambda, X, k, num_zero, first, size] = found;
+  const auto cut = static_cast<int>(lambda.size());
   if (cut > k) {
     // Purification and separate Krylov runs leave the vectors orthogonal to nine digits or so: once more.
     const MatrixXd& R = rigid_.modes;
     MatrixXd Y = X.rightCols(cut - k);
-    if (k > 0) Y -= R * pencil_.dot(pencil_.calc_M_times(R), Y);
+    if (R.cols() > 0) Y -= R * pencil_.dot(pencil_.calc_M_times(R), Y);
     const MatrixXd G = pencil_.dot(Y, pencil_.calc_M_times(Y));
     overlap_ = (G - MatrixXd::Identity(cut - k, cut - k)).cwiseAbs().maxCoeff();
     orthonormalize_ascending(G, Y);
     X.rightCols(cut - k) = Y;
   }
   const VectorXd weights = calc_basis_weights(model);
-  for (int a = std::min(k, cut), b = a; a < cut; a = b) {
+  for (int a = k, b = a; a < cut; a = b) {
     if (a < num_zero) {
       b = std::min(num_zero, cut);
     } else {
@@ -213,7 +229,6 @@ EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
   }
 
   EigenPairs pairs;
-  const int first = std::min(range_.first, cut), size = std::clamp(range_.last, first, cut) - first;
   X = X.middleCols(first, size).eval();
   pairs.lambda = lambda.segment(first, size);
   pairs.num_rigid = std::clamp(num_zero - first, 0, size);
@@ -234,7 +249,7 @@ EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
 }
 
 EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnostics& said) {
-  choose_range(method);
+  choose_range();
   is_sound = true;
   const auto answer_nothing = [&] {
     said.warning("modal.empty-range", {}, "no mode lies in the frequency range asked for",
@@ -245,6 +260,8 @@ EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnost
   };
   // Where it costs little the roots decide that too.
   if (range_.is_empty() && range_.first > 100) return answer_nothing();
+  if (auto pairs = find_window(said)) return std::move(*pairs);
+  make_solver(method);
   find_first();
   auto result = search();
   for (int cut = -1; fit_range(num_rigid() + result.cut) && result.cut > cut;) {
@@ -271,10 +288,7 @@ EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnost
                  "ask for fewer, or use a finer mesh or a consistent mass");
   if (cut > range_.last && range_.last > 0 && value(cut - 1) > 0 &&
       value(range_.last) - value(range_.last - 1) <= 3e-4 * value(range_.last))
-    said.warning("modal.cut-root", {},
-                 "the last mode belongs to a repeated root: " + std::to_string(cut - range_.last) +
-                     " more mode(s) have the same frequency",
-                 "ask for " + std::to_string(cut - range_.last) + " more");
+    warn_of_cut_root(cut - range_.last, said);
   auto pairs = make_pairs(cut, result.count < 0 ? -1 : num_rigid() + result.count, said);
   // As many vectors as modes, orthogonal and each with a small residual: they are there, whatever the pivots say.
   if (options_.check_inertia && result.count < 0) is_sound = overlap_ < 1e-6;

@@ -26,6 +26,8 @@ struct Answer {
   bool is_clean() const { return is_sound && worst() <= fe::kResidualWarning; }
 };
 
+void warn_of_cut_root(int num_more, Diagnostics& said);
+
 class NormalModes {
  public:
   using FindRigid = RigidMotions (*)(const Pencil&);
@@ -49,7 +51,8 @@ class NormalModes {
   int count_below(double hz) const;
   void hold_massless(Diagnostics& said);
   void add_supports();
-  void choose_range(KrylovMethod method);
+  void choose_range();
+  void make_solver(KrylovMethod method);
   /// False when `definite_only` and the shifted stiffness is not definite.
   bool add_roots(Roots& roots, int number, int guard, bool definite_only = false);
   void find_first();
@@ -60,6 +63,22 @@ class NormalModes {
   /// The modes by one method; `is_sound` false where it missed some or left a residual.
   EigenPairs find_pairs(KrylovMethod method, bool& is_sound, Diagnostics& said);
   EigenPairs make_pairs(int cut, int count, Diagnostics& said);
+  /// M-orthonormal values and vectors of whole clusters, the first `num_known` and `num_zero` without strain; those of
+  /// [first, first + size) are wanted.
+  struct Found {
+    VectorXd lambda;
+    MatrixXd X;
+    int num_known = 0, num_zero = 0, first = 0, size = 0;
+  };
+  EigenPairs finish_pairs(Found found, int count, Diagnostics& said);
+  /// A range with many more modes below it than in it, by a shift inside; nothing where that is not for the model or
+  /// does not find as many as the inertia at both ends says.
+  std::optional<EigenPairs> find_window(Diagnostics& said);
+  struct Edge {
+    double mu = 0;
+    int count = -1;  ///< of roots below
+  };
+  std::optional<Edge> find_upper_edge(double lower) const;
 
   const EigenOptions& options_;
   const fe::SymmetricFactor* factor_;  ///< LLᵀ of K where there is one
