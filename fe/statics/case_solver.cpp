@@ -11,6 +11,14 @@ namespace {
 
 constexpr std::size_t kMostHeated = 16;
 
+/// Of `left` subcases in as few groups as there must be, each a little smaller than the one before it: what the caller
+/// does with the last has no other beside it.
+std::size_t choose_group(std::size_t left) {
+  const std::size_t num = (left + CaseSolver::kMostTogether - 1) / CaseSolver::kMostTogether,
+                    even = (left + num - 1) / num;
+  return num == 1 ? left : std::min(even + even / 10, CaseSolver::kMostTogether);
+}
+
 /// What must be the same for a model and its factor to be kept.
 std::array<int, 5> list_held(const records::Subcase& subcase) {
   return {subcase.spc, subcase.mpc, subcase.suport1, subcase.preload, subcase.initial_temperature};
@@ -61,7 +69,8 @@ std::vector<CaseSolver::Solved> CaseSolver::solve_next(std::span<const records::
   }
   // Heated elements keep a kilobyte each and subcase.
   std::size_t count = 0, num_heated = 0;
-  for (; count < std::min(left.size(), kMostTogether) && is_prepared_for(left[count]); ++count)
+  const std::size_t most = choose_group(left.size());
+  for (; count < most && is_prepared_for(left[count]); ++count)
     if (left[count].temperature != 0 && ++num_heated > kMostHeated) break;
   solved.resize(count);
   std::vector<StaticLoad> loads(count);

@@ -33,7 +33,7 @@ class CaseSolver {
   /// Of the first of `left` (not empty) and as many after it as are held alike, at most kMostTogether: one model, and
   /// their elements are formed once. A subcase's result does not depend on the others.
   std::vector<Solved> solve_next(std::span<const records::Subcase> left);
-  static constexpr std::size_t kMostTogether = 32;  ///< eights for the factor; a dozen copies on the g-set
+  static constexpr std::size_t kMostTogether = 40;  ///< eights for the factor; a dozen copies on the g-set
 
   const Model& model() const { return *model_; }  ///< of the last subcase that had one
 

@@ -133,8 +133,27 @@ TEST(ElementRecovery, SubcasesTogetherAreTheSubcasesAlone) {
     ASSERT_EQ(a.elements.size(), b.elements.size());
     double largest = 0;  // some elements carry nothing but roundoff of what others carry
     for (const auto& of_card : a.elements) largest = std::max(largest, of_card.force.norm());
-    for (std::size_t i = 0; i < a.elements.size(); ++i)
+    for (std::size_t i = 0; i < a.elements.size(); ++i) {
       EXPECT_LT((a.elements[i].force - b.elements[i].force).norm(), 1e-11 * largest);
+      EXPECT_LT((a.elements[i].strain_energy - b.elements[i].strain_energy).cwiseAbs().maxCoeff(),
+                1e-10 * std::abs(a.strain_energy));
+    }
+  }
+}
+
+TEST(ElementRecovery, DividesManySubcasesIntoFewGroupsTheLastTheSmallest) {
+  Diagnostics diagnostics;
+  const auto deck = nastran::read_deck_text(kDeck, "deck.bdf", {}, diagnostics);
+  diagnostics.throw_if_errors();
+  const std::vector<std::pair<std::size_t, std::vector<std::size_t>>> expected{
+      {1, {1}}, {40, {40}}, {41, {23, 18}}, {80, {40, 40}}, {100, {37, 35, 28}}};
+  for (const auto& [number, sizes] : expected) {
+    std::vector<records::Subcase> subcases(number, deck.subcases[0]);
+    CaseSolver solver(deck, {});
+    std::vector<std::size_t> seen;
+    for (std::size_t next = 0; next < number; next += seen.back())
+      seen.push_back(solver.solve_next(std::span(subcases).subspan(next)).size());
+    EXPECT_EQ(seen, sizes) << number;
   }
 }
 
