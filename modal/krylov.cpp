@@ -273,7 +273,11 @@ std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, const Ope
   if (!is_near) blocks.multiply_operator = by.multiply_operator;
   if (by.domains) blocks.sum = fe::sum_alike;
   blocks.positive_only = problem.spectrum == Spectrum::LargestPositive;
-  blocks.start = make_start(problem, wanted > 100 ? 8 : 4, by.domains);
+  blocks.start = make_start(problem,
+                            problem.block > 0 ? std::min(problem.block, wanted)
+                            : wanted > 100    ? 8
+                                              : 4,
+                            by.domains);
   blocks.deflate = by.domains ? by.domains->from_rows(problem.deflate) : problem.deflate;
   blocks.num_wanted = wanted;
   blocks.num_guard = std::min(problem.num_guard, wanted - 1);

@@ -42,6 +42,7 @@ struct KrylovProblem {
   Mat factor = nullptr;        ///< of A - shift B or of B, whichever is factored; nullptr: made here
   bool definite_only = false;  ///< an indefinite matrix to factor counts as singular
   int start = 0;               ///< picks one of the fixed start vectors
+  int block = 0;               ///< columns of the blocks, as many as a root has copies; 0: what is fastest
   KrylovMethod method = KrylovMethod::Fastest;
   std::function<void(int converged, int wanted)> progress;
 };

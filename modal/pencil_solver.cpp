@@ -133,7 +133,9 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
   krylov.num_guard = number <= left ? num_guard : 0;
   krylov.deflate = join(problem_.rigid, roots.X);
   krylov.tolerance = problem_.tolerance;
+  constexpr int kMostColumns = 48;
   krylov.start = round_++;
+  if (krylov.start > 0 && number <= kMostColumns) krylov.block = std::max(4, number);  // what the first round missed
   krylov.definite_only = definite_only;
   krylov.method = problem_.method;
   if (shift == 0 && !problem_.supported && problem_.factor && problem_.factor->is_definite())

@@ -62,6 +62,15 @@ int count_below_gap(const RootSearch& search, const Roots& roots, int cut) {
   return count;
 }
 
+/// Just above the last one, which shows no gap: hundreds of parts alike have a root as often.
+int count_copies(const RootSearch& search, const Roots& roots) {
+  const double top = get_key(search, roots, roots.size() - 1);
+  return search.count(top + 1e-3 * std::abs(top + search.shift));
+}
+
+/// Of those missing among known ones: copies mostly, which a block of as many columns finds in a few solutions.
+constexpr int kMostAtOnce = 46;
+
 }  // namespace
 
 RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
@@ -71,7 +80,7 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
   const auto count_if_memory = [&](int cut) {
     if (!result.no_memory.empty()) return -1;
     try {
-      return count_below_gap(search, roots, cut);
+      return cut < 0 ? count_copies(search, roots) : count_below_gap(search, roots, cut);
     } catch (const ComputationError& error) {
       if (error.items().front().id != "fe.out-of-memory") throw;
       result.no_memory = error.items().front().what;
@@ -79,11 +88,13 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
     }
   };
   int best_cut = -1, best_size = 0, num_stuck = 0;
+  int num_without_gap = 0, known = 0;  // as many roots are there, found or not
   for (;;) {
     int missing = search.wanted - roots.size(), cut = -1, count = -1;
     if (missing <= 0) {
       cut = find_cut(search, roots);
-      missing = cut < 0 ? 4 : 0;
+      if (cut < 0 && known <= roots.size() && search.counts && ++num_without_gap > 2) known = count_if_memory(-1);
+      missing = cut < 0 ? std::max(4, std::min(known, search.num_available) - roots.size()) : 0;
     }
     if (missing == 0 && search.counts) {
       count = count_if_memory(cut);
@@ -93,6 +104,7 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
         return result;
       }
       missing = std::max(0, count - cut);
+      known = std::max(known, count);
     }
     if (missing > 0) {
       const int before = roots.size();
@@ -102,7 +114,8 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
       num_stuck = cut > best_cut || before > best_size ? 0 : num_stuck + 1;
       best_cut = std::max(best_cut, cut);
       best_size = std::max(best_size, before);
-      if (num_stuck < kStuck) search.solve(roots, missing + 2);
+      const int most = before < search.wanted ? missing : kMostAtOnce;
+      if (num_stuck < kStuck) search.solve(roots, std::min(missing, most) + 2);
       if (roots.size() > kept) continue;
       result.is_missing = cut >= 0;
       if (cut < 0 && search.counts && kept > 0) {  // the solver has no more to give: there are no more

@@ -49,6 +49,23 @@ TEST(Roots, CopiesAtTheCutAreCompleted) {
   EXPECT_FALSE(result.is_missing);
 }
 
+/// Hundreds of parts alike: the inertia tells how many, and they come by blocks instead of a few at a time.
+TEST(Roots, HundredsOfCopiesTakeFewSolutions) {
+  VectorXd all(403);
+  all << 1, VectorXd::Constant(400, 2), 5, 9;
+  Diagonal diagonal{all};
+  Roots roots = make_empty(diagonal);
+  const auto result = search_roots(diagonal.make_search(3), roots);
+  EXPECT_EQ(result.cut, 401);
+  EXPECT_EQ(result.count, 401);
+  EXPECT_LE(diagonal.num_solves, 14);
+  // Without a count there is no other way to the gap.
+  Roots again = make_empty(diagonal);
+  RootSearch search = diagonal.make_search(3);
+  search.counts = false;
+  EXPECT_EQ(search_roots(search, again).cut, 401);
+}
+
 TEST(Roots, TheInertiaFindsWhatTheSolverPassedOver) {
   Diagonal diagonal{VectorXd{{1, 2, 3, 4, 5, 9}}, 1};
   Roots roots = make_empty(diagonal);
