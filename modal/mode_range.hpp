@@ -6,6 +6,11 @@ namespace bough::modal::detail {
 
 double calc_lambda(double hz);
 
+/// The least and the first too large eigenvalue of a range: roots on its ends lie inside, whatever their last digits
+/// and those of their copies.
+double calc_lower(const EigenOptions& options);
+double calc_upper(const EigenOptions& options);
+
 /// Positions wanted, [first, last). The inertia of the factor guesses them, the roots found decide: the inertia is off
 /// where parts move without strain and with next to no mass.
 struct ModeRange {

@@ -43,6 +43,21 @@ void warn_of_cut_root(int num_more, Diagnostics& said) {
                "ask for " + more + " more");
 }
 
+void warn_of_fewer(int found, int asked, bool is_range, Diagnostics& said) {
+  said.warning("modal.fewer-modes", {},
+               "the model has " + std::to_string(found) + " modes" +
+                   (is_range ? " from the start of the range on, " : ", ") + std::to_string(asked) + " were asked for",
+               "ask for fewer, or use a finer mesh or a consistent mass");
+}
+
+EigenPairs NormalModes::answer_nothing(Diagnostics& said) {
+  said.warning("modal.empty-range", {}, "no mode lies in the frequency range asked for",
+               "widen the range of EIGRL or of --min-hz and --max-hz");
+  found_ = {VectorXd(0), MatrixXd(pencil_.num_rows(), 0)};
+  num_zero_ = 0;
+  return make_pairs(0, range_.last, said);
+}
+
 /// A spring to ground on one dof of each massless motion: strain and mass of every eigenvector are indifferent to how
 /// much of the motion is in it, so nothing else changes.
 void NormalModes::hold_massless(Diagnostics& said) {
@@ -57,15 +72,15 @@ void NormalModes::hold_massless(Diagnostics& said) {
 }
 
 /// A guess, -1 where the factor has none: the roots decide (fit_range).
-int NormalModes::count_below(double hz) const {
-  return hz > 0 ? count_roots_below(pencil_.K.get(), pencil_.M.get(), calc_lambda(hz)) : 0;
+int NormalModes::count_below(double lambda) const {
+  return lambda > 0 ? count_roots_below(pencil_.K.get(), pencil_.M.get(), lambda) : 0;
 }
 
 void NormalModes::choose_range() {
-  range_.first = options_.min_hz ? std::max(0, count_below(*options_.min_hz)) : 0;
+  range_.first = options_.min_hz ? std::max(0, count_below(calc_lower(options_))) : 0;
   range_.last = options_.num_modes > 0 ? range_.first + options_.num_modes : pencil_.size();
   if (options_.max_hz) {
-    const int below = count_below(*options_.max_hz);
+    const int below = count_below(calc_upper(options_));
     range_.last = std::min(range_.last, below >= 0 ? below : range_.first + 10);
   }
 }
@@ -251,15 +266,8 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
 EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnostics& said) {
   choose_range();
   is_sound = true;
-  const auto answer_nothing = [&] {
-    said.warning("modal.empty-range", {}, "no mode lies in the frequency range asked for",
-                 "widen the range of EIGRL or of --min-hz and --max-hz");
-    found_ = {VectorXd(0), MatrixXd(pencil_.num_rows(), 0)};
-    num_zero_ = 0;
-    return make_pairs(0, range_.last, said);
-  };
   // Where it costs little the roots decide that too.
-  if (range_.is_empty() && range_.first > 100) return answer_nothing();
+  if (range_.is_empty() && range_.first > 100) return answer_nothing(said);
   if (auto pairs = find_window(said)) return std::move(*pairs);
   make_solver(method);
   find_first();
@@ -268,8 +276,10 @@ EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnost
     cut = result.cut;
     result = search();
   }
-  if (range_.is_empty() && (options_.min_hz || options_.max_hz)) return answer_nothing();
-  const int wanted = range_.last, cut = num_rigid() + result.cut;
+  if (range_.is_empty() && (options_.min_hz || options_.max_hz)) return answer_nothing(said);
+  // A range from --min-hz on was cut to what exists already.
+  const bool has_open_end = options_.num_modes > 0 && !options_.max_hz;
+  const int wanted = has_open_end ? range_.first + options_.num_modes : range_.last, cut = num_rigid() + result.cut;
   if (result.is_missing && has_every_root()) {
     result.is_missing = false;
     std::swap(result.doubtful, result.count);
@@ -282,14 +292,13 @@ EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnost
   report_count(result, num_rigid(), "modes", options_.check_inertia, said);
   range_.last = std::min(range_.last, cut);
   if (range_.last < wanted && options_.num_modes > 0)
-    said.warning("modal.fewer-modes", {},
-                 "the model has " + std::to_string(std::max(0, range_.last - range_.first)) + " modes, " +
-                     std::to_string(wanted - range_.first) + " were asked for",
-                 "ask for fewer, or use a finer mesh or a consistent mass");
-  if (cut > range_.last && range_.last > 0 && value(cut - 1) > 0 &&
-      value(range_.last) - value(range_.last - 1) <= 3e-4 * value(range_.last))
-    warn_of_cut_root(cut - range_.last, said);
-  auto pairs = make_pairs(cut, result.count < 0 ? -1 : num_rigid() + result.count, said);
+    warn_of_fewer(std::max(0, range_.last - range_.first), wanted - range_.first, options_.min_hz.has_value(), said);
+  int copies = 0;  // of the last one, that are left out
+  if (cut > range_.last && range_.last > 0 && value(cut - 1) > 0)
+    for (int i = range_.last; i < cut && value(i) - value(i - 1) <= 3e-4 * value(i); ++i) ++copies;
+  if (copies > 0) warn_of_cut_root(copies, said);
+  const int num_above = range_.last > 0 ? cut - range_.last - copies : 0;  // found to see the ends of the range
+  auto pairs = make_pairs(cut, result.count < 0 ? -1 : num_rigid() + result.count - num_above, said);
   // As many vectors as modes, orthogonal and each with a small residual: they are there, whatever the pivots say.
   if (options_.check_inertia && result.count < 0) is_sound = overlap_ < 1e-6;
   is_sound = is_sound && (pairs.residual.size() == 0 || pairs.residual.maxCoeff() <= fe::kResidualError);

@@ -27,6 +27,7 @@ struct Answer {
 };
 
 void warn_of_cut_root(int num_more, Diagnostics& said);
+void warn_of_fewer(int found, int asked, bool is_range, Diagnostics& said);
 
 class NormalModes {
  public:
@@ -48,7 +49,8 @@ class NormalModes {
   int num_rigid() const { return static_cast<int>(rigid_.modes.cols()); }
   /// Eigenvalue by position in the whole list: rigid ones, then the found ones.
   double value(int i) const { return i < num_rigid() + num_zero_ ? 0 : found_.value(i - num_rigid()); }
-  int count_below(double hz) const;
+  int count_below(double lambda) const;
+  EigenPairs answer_nothing(Diagnostics& said);
   void hold_massless(Diagnostics& said);
   void add_supports();
   void choose_range();
@@ -78,7 +80,8 @@ class NormalModes {
     double mu = 0;
     int count = -1;  ///< of roots below
   };
-  std::optional<Edge> find_upper_edge(double lower) const;
+  std::optional<Edge> find_upper_edge(const Edge& lower) const;
+  bool add_window(const Edge& lower, const Edge& upper, Roots& roots) const;
 
   const EigenOptions& options_;
   const fe::SymmetricFactor* factor_;  ///< LLᵀ of K where there is one

@@ -1,4 +1,4 @@
-/// \file Modes of a range high in the spectrum by a shift inside it: those below are counted, not computed.
+/// \file Modes of a range high in the spectrum by shifts inside it: those below are counted, not computed.
 #include <algorithm>
 #include <cmath>
 
@@ -10,30 +10,34 @@ namespace {
 
 /// Fewer below the range are found along with it in the time that factors with pivots take.
 constexpr int kFewBelow = 60;
-/// More in the range want more than one shift.
-constexpr int kMostInside = 100;
+constexpr int kMostOfShift = 80;
 constexpr int kGuard = 4;  ///< beyond the edges, to show the gaps
+
+/// Between two eigenvalues, of which the larger may be out of all proportion.
+double find_middle(double below, double above) {
+  return above > 4 * below ? std::sqrt(below * above) : 0.5 * (below + above);
+}
 
 }  // namespace
 
-/// Of --max-hz where that many roots lie below it; else, and without one, a little above as many as are asked for, by
-/// growing steps, then halves.
-std::optional<NormalModes::Edge> NormalModes::find_upper_edge(double lower) const {
-  const auto count = [&](double mu) { return count_roots_below(pencil_.K.get(), pencil_.M.get(), mu); };
-  const int least = range_.last + 1, most = range_.last + 2 * (range_.last - range_.first) + 20;
-  double below = lower;
-  Edge edge{options_.max_hz ? calc_lambda(*options_.max_hz) : 1.02 * lower};
-  for (int attempt = 0; attempt < 60; ++attempt) {
-    edge.count = count(edge.mu);
+/// The end of the range, drawn in to where a little more roots lie below than are asked for; without an end, or with
+/// one far above the last root, what a few counts and bisection find. `count` tells how many there are.
+std::optional<NormalModes::Edge> NormalModes::find_upper_edge(const Edge& lower) const {
+  Edge edge{options_.max_hz ? calc_upper(options_) : 1.02 * lower.mu};
+  double below = lower.mu;
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    edge.count = count_below(edge.mu);
     if (edge.count < 0) return std::nullopt;
-    if (edge.count >= least || options_.max_hz) break;
+    if (edge.count > range_.last || options_.max_hz) break;
     const double step = edge.mu - below;
     below = edge.mu;
     edge.mu += 2 * step;
   }
-  for (int attempt = 0; attempt < 60 && edge.count > most; ++attempt) {
-    const double middle = 0.5 * (below + edge.mu);
-    const int number = count(middle);
+  below = lower.mu;
+  const int least = std::min(range_.last + 1, edge.count), most = range_.last + 2 * (range_.last - range_.first) + 20;
+  for (int attempt = 0; attempt < 60 && (edge.count > most || edge.mu > 1.2 * below); ++attempt) {
+    const double middle = find_middle(below, edge.mu);
+    const int number = count_below(middle);
     if (number < 0) return std::nullopt;
     if (number >= least)
       edge = {middle, number};
@@ -43,22 +47,20 @@ std::optional<NormalModes::Edge> NormalModes::find_upper_edge(double lower) cons
   return edge;
 }
 
-std::optional<EigenPairs> NormalModes::find_window(Diagnostics& said) {
-  const int number = range_.last - range_.first;
-  const bool is_for_it = options_.min_hz && options_.check_inertia && number > 0 && number <= kMostInside &&
-                         range_.first > std::max(kFewBelow, 2 * number) && fe::initialize_petsc().size == 1;
-  if (!is_for_it) return std::nullopt;
-  const double lower = calc_lambda(*options_.min_hz);
-  const auto upper = find_upper_edge(lower);
-  if (!upper) return std::nullopt;
-  const int inside = upper->count - range_.first;
-  if (inside < number || inside > 3 * kMostInside) return std::nullopt;
-
+/// The roots between two edges, as many as their counts say; false where others are found. Many are divided.
+bool NormalModes::add_window(const Edge& lower, const Edge& upper, Roots& roots) const {
+  const int inside = upper.count - lower.count;
+  const double middle = find_middle(lower.mu, upper.mu);
+  if (inside <= 0) return inside == 0;
+  if (inside > kMostOfShift && middle - lower.mu > 1e-6 * lower.mu) {
+    const Edge between{middle, count_below(middle)};
+    return between.count >= 0 && add_window(lower, between, roots) && add_window(between, upper, roots);
+  }
   KrylovProblem krylov;
   krylov.A = pencil_.K.get();
   krylov.B = pencil_.M.get();
   krylov.deflate = MatrixXd(pencil_.num_rows(), 0);
-  krylov.shift = 0.5 * (lower + upper->mu);
+  krylov.shift = middle;
   krylov.tolerance = options_.tolerance;
   krylov.max_subspace = static_cast<int>((pencil_.M_diagonal.array() > 0).count()) - num_rigid();
   krylov.method = KrylovMethod::OneVector;
@@ -69,25 +71,45 @@ std::optional<EigenPairs> NormalModes::find_window(Diagnostics& said) {
     try {
       result = solve_krylov(krylov);
     } catch (const ComputationError&) {
-      return std::nullopt;
+      return false;
     }
-    if (result.is_singular) return std::nullopt;
-    Roots roots{VectorXd(0), MatrixXd(pencil_.num_rows(), 0)};
-    roots.add(result.values, result.vectors);
+    if (result.is_singular) return false;
     std::vector<int> kept;
-    for (int i = 0; i < roots.size(); ++i)
-      if (roots.value(i) >= lower && roots.value(i) < upper->mu) kept.push_back(i);
-    // As many as the two counts say there are: none is missing. A root on the edge may be on its other side.
+    for (int i = 0; i < result.values.size(); ++i)
+      if (result.values(i) >= lower.mu && result.values(i) < upper.mu) kept.push_back(i);
     if (static_cast<int>(kept.size()) != inside) continue;
-    Found found{roots.value(kept), roots.X(Eigen::all, kept), 0, 0, 0, number};
-    int cut = number;
-    while (cut < inside && found.lambda(cut) - found.lambda(cut - 1) <= 1e-6 * found.lambda(cut)) ++cut;
-    if (cut > number) warn_of_cut_root(cut - number, said);
-    auto pairs = finish_pairs(std::move(found), range_.first + cut, said);
-    if (overlap_ < 1e-6 && pairs.residual.maxCoeff() <= fe::kResidualError) return pairs;
-    return std::nullopt;
+    roots.add(result.values(kept), result.vectors(Eigen::all, kept));
+    return true;
   }
-  return std::nullopt;
+  return false;
+}
+
+std::optional<EigenPairs> NormalModes::find_window(Diagnostics& said) {
+  const int asked = range_.last - range_.first;
+  if (!options_.min_hz || asked <= 0 || range_.first <= std::max(kFewBelow, 2 * asked) ||
+      fe::initialize_petsc().size > 1)
+    return std::nullopt;
+  const Edge lower{calc_lower(options_), range_.first};
+  const auto upper = find_upper_edge(lower);
+  if (!upper || upper->count < lower.count) return std::nullopt;
+  const int inside = upper->count - lower.count, number = std::min(asked, inside);
+  if (inside == 0) {
+    range_.last = range_.first;
+    return answer_nothing(said);
+  }
+  Roots roots{VectorXd(0), MatrixXd(pencil_.num_rows(), 0)};
+  if (!add_window(lower, *upper, roots)) return std::nullopt;
+  Found found{std::move(roots.value), std::move(roots.X), 0, 0, 0, number};
+  int cut = number;
+  while (cut < inside && found.lambda(cut) - found.lambda(cut - 1) <= 1e-6 * found.lambda(cut)) ++cut;
+  Diagnostics own;
+  if (cut > number) warn_of_cut_root(cut - number, own);
+  if (number < asked) warn_of_fewer(number, asked, true, own);
+  auto pairs = finish_pairs(std::move(found), options_.check_inertia ? range_.first + cut : -1, own);
+  if (!(overlap_ < 1e-6 && pairs.residual.maxCoeff() <= fe::kResidualError)) return std::nullopt;
+  range_.last = range_.first + number;
+  for (const auto& item : own.items()) said.add(item);
+  return pairs;
 }
 
 }  // namespace bough::modal::detail

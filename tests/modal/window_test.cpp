@@ -53,7 +53,7 @@ DeckMaker make_beam(bool is_free) {
 class Window : public ::testing::TestWithParam<bool> {
  protected:
   const DeckMaker maker_ = make_beam(GetParam());
-  const Seen all_ = solve(maker_.deck, make_options(180, 0));
+  const Seen all_ = solve(maker_.deck, make_options(280, 0));
 
   /// Between root j - 1 and root j.
   double before(int j) const { return 0.5 * (to_hz(all_.pairs.lambda(j - 1)) + to_hz(all_.pairs.lambda(j))); }
@@ -79,6 +79,39 @@ TEST_P(Window, HasAsManyAsAreAskedFor) {
   expect_same(some, 120, 7);
   EXPECT_LT(some.most_wanted, 120);
   expect_same(solve(maker_.deck, make_options(5, before(120), before(170))), 120, 5);
+}
+
+TEST_P(Window, IsDividedWhereItHasMany) {
+  expect_same(solve(maker_.deck, make_options(81, before(175))), 175, 81);
+  expect_same(solve(maker_.deck, make_options(0, before(175), before(258))), 175, 83);
+}
+
+TEST_P(Window, EndsWithTheLastMode) {
+  const auto all = solve(maker_.deck, make_options(360, 0));
+  const auto& lambda = all.pairs.lambda;
+  const auto number = static_cast<int>(lambda.size()), first = number - 4;  // torsion may have no mass
+  ASSERT_GT(number, 200);
+  const double from = 0.5 * (to_hz(lambda(first - 1)) + to_hz(lambda(first)));
+  for (const double to : {0.0, 1.01 * to_hz(lambda(number - 1)), 1e9}) {
+    const auto some = solve(maker_.deck, make_options(7, from, to));
+    ASSERT_EQ(some.pairs.lambda.size(), 4) << to;
+    EXPECT_NEAR(some.pairs.lambda(3) / lambda(number - 1), 1, 1e-9);
+    EXPECT_EQ(some.said.has("modal.fewer-modes"), to == 0);
+    EXPECT_LT(some.most_wanted, 20);
+  }
+  const auto none = solve(maker_.deck, make_options(5, 1.01 * to_hz(lambda(number - 1))));
+  EXPECT_EQ(none.pairs.lambda.size(), 0);
+  EXPECT_TRUE(none.said.has("modal.empty-range"));
+}
+
+TEST_P(Window, NeedsNoCheck) {
+  EigenOptions options = make_options(5, before(120));
+  options.check_inertia = false;
+  const auto some = solve(maker_.deck, options);
+  ASSERT_EQ(some.pairs.lambda.size(), 5);
+  EXPECT_EQ(some.pairs.inertia_count, -1);
+  EXPECT_NEAR(some.pairs.lambda(4) / all_.pairs.lambda(124), 1, 1e-9);
+  EXPECT_LT(some.most_wanted, 50);
 }
 
 TEST_P(Window, IsNotForFewBelow) {
@@ -112,6 +145,26 @@ TEST(WindowOfCopies, CompletesTheLastRoot) {
   EXPECT_LT(some.most_wanted, first);
   EXPECT_LT((some.pairs.Phi - all.pairs.Phi.middleCols(first, 3)).cwiseAbs().maxCoeff(),
             1e-5 * all.pairs.Phi.cwiseAbs().maxCoeff());
+}
+
+/// A mode on an end of the range is in it, with all its copies; from below and by a window.
+TEST(WindowOfCopies, HoldsRootsOnItsEnds) {
+  DeckMaker maker;
+  maker.add_section(1, {70e9, 27e9, 2700, 1e-4, 1e-11, 1e-11, 2e-11});
+  maker.add_line(1, 1, Vector3d::Zero(), {1, 0, 0}, 60, Vector3d::UnitY());
+  maker.fix(1, 123456);
+  const auto all = solve(maker.deck, make_options(200, 0));
+  const auto& lambda = all.pairs.lambda;
+  const auto is_pair = [&](int j) { return lambda(j + 1) - lambda(j) < 1e-9 * lambda(j); };
+  for (const int from : {0, 130}) {
+    int first = from, last = from + 12;
+    while (!is_pair(first)) ++first;
+    while (!is_pair(last)) ++last;
+    const auto some = solve(maker.deck, make_options(0, to_hz(lambda(first)), to_hz(lambda(last))));
+    EXPECT_EQ(some.pairs.lambda.size(), last + 2 - first) << from;
+    EXPECT_EQ(some.pairs.inertia_count, last + 2) << from;
+    EXPECT_FALSE(some.said.has("modal.cut-root")) << from;
+  }
 }
 
 }  // namespace
