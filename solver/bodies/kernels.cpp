@@ -7,6 +7,10 @@
 #endif
 #define BOUGH_INLINE inline __attribute__((always_inline))
 
+// Wide registers are handed to inlined functions only: no ABI is at stake.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace bough::solver {
 
 using Eigen::Index;
@@ -256,3 +260,5 @@ void solve_lower_transposed(const double* L, Index ld, Index n, double* z) {
 }
 
 }  // namespace bough::solver
+
+#pragma GCC diagnostic pop
