@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 
 struct EigenOptions {
   int num_modes = 10;  ///< wanted, rigid ones included; 0: all in the range below
-  std::optional<double> min_hz, max_hz;
+  std::optional<double> min_hz, max_hz;  ///< a root on an end, to 1e-9, is in the range with its copies
   double tolerance = 1e-12;
   bool check_inertia = true;  ///< Sylvester count: no mode missed below the highest
   std::function<void(int converged, int wanted)> progress;

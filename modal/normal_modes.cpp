@@ -294,9 +294,9 @@ EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnost
   if (range_.last < wanted && options_.num_modes > 0)
     warn_of_fewer(std::max(0, range_.last - range_.first), wanted - range_.first, options_.min_hz.has_value(), said);
   int copies = 0;  // of the last one, that are left out
-  if (cut > range_.last && range_.last > 0 && value(cut - 1) > 0)
+  if (range_.last > 0)
     for (int i = range_.last; i < cut && value(i) - value(i - 1) <= 3e-4 * value(i); ++i) ++copies;
-  if (copies > 0) warn_of_cut_root(copies, said);
+  if (copies > 0 && value(range_.last) > 0) warn_of_cut_root(copies, said);
   const int num_above = range_.last > 0 ? cut - range_.last - copies : 0;  // found to see the ends of the range
   auto pairs = make_pairs(cut, result.count < 0 ? -1 : num_rigid() + result.count - num_above, said);
   // As many vectors as modes, orthogonal and each with a small residual: they are there, whatever the pivots say.

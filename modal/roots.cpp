@@ -93,7 +93,7 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
     int missing = search.wanted - roots.size(), cut = -1, count = -1;
     if (missing <= 0) {
       cut = find_cut(search, roots);
-      if (cut < 0 && known <= roots.size() && search.counts && ++num_without_gap > 2) known = count_if_memory(-1);
+      if (cut < 0 && known <= roots.size() && search.counts && ++num_without_gap % 3 == 0) known = count_if_memory(-1);
       missing = cut < 0 ? std::max(4, std::min(known, search.num_available) - roots.size()) : 0;
     }
     if (missing == 0 && search.counts) {

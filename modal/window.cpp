@@ -1,8 +1,9 @@
 /// \file Modes of a range high in the spectrum by shifts inside it: those below are counted, not computed.
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
-#include "modal/canonical.hpp"
 #include "modal/normal_modes.hpp"
 
 namespace bough::modal::detail {
@@ -10,7 +11,7 @@ namespace {
 
 /// Fewer below the range are found along with it in the time that factors with pivots take.
 constexpr int kFewBelow = 60;
-constexpr int kMostOfShift = 80;
+constexpr int kMostOfShift = 80;  ///< more are divided
 constexpr int kGuard = 4;  ///< beyond the edges, to show the gaps
 
 /// Between two eigenvalues, of which the larger may be out of all proportion.

@@ -117,6 +117,20 @@ TEST(Eigen, FewerModesThanAskedFor) {
   EXPECT_TRUE(quiet.has("modal.fewer-modes"));
 }
 
+// A straight line has five motions with mass and no strain. Three are asked for: the count has the others too, and
+// nothing is said of copies.
+TEST(Eigen, CountsTheZerosThatAreLeftOut) {
+  DeckMaker maker(false);
+  maker.add_section(1, kSection);
+  maker.add_line(1, 1, Vector3d::Zero(), Vector3d::UnitX(), 10, Vector3d::UnitY());
+  Diagnostics diagnostics;
+  const auto pairs = solve(maker.deck, make_options(3), diagnostics);
+  EXPECT_EQ(pairs.lambda.size(), 3);
+  EXPECT_EQ(pairs.num_rigid, 3);
+  EXPECT_EQ(pairs.inertia_count, 5);
+  EXPECT_FALSE(diagnostics.has("modal.cut-root"));
+}
+
 TEST(Eigen, RangeOfFrequencies) {
   Diagnostics diagnostics;
   const auto maker = test::make_cantilever(kSection, 1, 30);
