@@ -147,6 +147,7 @@ class Page(ProgramTest):
             self.browser.run(f"document.querySelectorAll('.live')[{k}].scrollIntoView(), {WAIT_FRAMES}")
             self.assertTrue(self.browser.wait_for(f"document.querySelectorAll('.live')[{k}].classList.contains('built')"),
                             self.browser.run("document.documentElement.dataset.failures"))
+        self.browser.run(WAIT_FRAMES)    # charts draw a frame after they were made
         return count
 
     def check_sound(self):
@@ -537,14 +538,14 @@ class Page(ProgramTest):
         b.click("header button")
         width = "document.querySelector('.plots .curves').clientWidth"
         b.show(".plots .chart")
-        self.assertTrue(b.wait_for("Boolean(document.querySelector('.plots .curves'))"))
+        # A canvas is 300 wide until it is drawn, a frame after it was made.
+        self.assertTrue(b.wait_for(f"(document.querySelector('.plots .curves') ? {width} : 0) > 700"))
         before = b.run(width)
-        self.assertGreater(before, 700)
         b.run("dispatchEvent(new Event('beforeprint'))")
         self.assertEqual(b.run("document.querySelectorAll('.live.built').length"), b.run("document.querySelectorAll('.live').length"))
         self.assertEqual((b.run(width), b.run("document.documentElement.dataset.theme")), (680, "light"))
         b.run("dispatchEvent(new Event('afterprint'))")
-        b.run(WAIT_FRAMES)
+        self.assertTrue(b.wait_for(f"{width} !== 680"))
         self.assertEqual((b.run(width), b.run("document.documentElement.dataset.theme")), (before, "dark"))
         pdf = base64.b64decode(b.call("Page.printToPDF")["data"])
         self.assertTrue(pdf.startswith(b"%PDF"))
