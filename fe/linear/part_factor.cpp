@@ -92,24 +92,36 @@ bool PartFactor::factor() {
   row_ = std::vector<int>();
   value_ = std::vector<double>();
   if (common_.status != CHOLMOD_OK || factor_->minor < factor_->n) return false;
-  const auto n_p = static_cast<int>(rows_.size());
-  const auto n_s = num_between_;
-  L_ss_ = MatrixXd::Zero(n_s, n_s);
-  const Supernodes L = get_supernodes();
-  for (int k = 0; k < L.num; ++k) {
-    if (L.super[k + 1] <= n_p) continue;
-    const int num_rows = L.row_at[k + 1] - L.row_at[k];
-    for (int j = std::max(L.super[k], n_p); j < L.super[k + 1]; ++j)
-      for (int i = j - L.super[k]; i < num_rows; ++i)
-        L_ss_(L.row[L.row_at[k] + i] - n_p, j - n_p) =
-            L.value[L.value_at[k] + static_cast<std::ptrdiff_t>(j - L.super[k]) * num_rows + i];
-  }
+  pack();
   return true;
 }
 
-MatrixXd PartFactor::calc_schur() const {
+void PartFactor::pack() {
+  const auto n_p = static_cast<int>(rows_.size());
+  const int* super = static_cast<const int*>(factor_->super);
+  const int* value_at = static_cast<const int*>(factor_->px);
+  auto* value = static_cast<double*>(factor_->x);
+  const auto num = static_cast<int>(factor_->nsuper);
+  const auto num_own = static_cast<int>(std::lower_bound(super, super + num, n_p) - super);  // some with both kinds
+  supernodes_ = {num_own, n_p, super, static_cast<const int*>(factor_->pi), static_cast<const int*>(factor_->s)};
+  L_ss_ = MatrixXd::Zero(num_between_, num_between_);
+  for (int k = 0; k < num; ++k) {
+    const int* row = supernodes_.row + supernodes_.row_at[k];
+    const int num_rows = supernodes_.row_at[k + 1] - supernodes_.row_at[k];
+    for (int j = std::max(super[k], n_p); j < super[k + 1]; ++j)
+      for (int i = j - super[k]; i < num_rows; ++i)
+        L_ss_(row[i] - n_p, j - n_p) = value[value_at[k] + static_cast<std::ptrdiff_t>(j - super[k]) * num_rows + i];
+  }
+  supernodes_.num_values = pack_supernodes(supernodes_, value_at, value);
+  factor_->x = cholmod_realloc(static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, supernodes_.num_values)),
+                               sizeof(double), factor_->x, &factor_->xsize, &common_);
+  supernodes_.value = static_cast<const double*>(factor_->x);
+}
+
+MatrixXd PartFactor::take_schur() {
   // LAPACK multiplies U Uᵀ alone, a sixth of a product of dense matrices: L read from its end.
   MatrixXd schur = L_ss_.reverse();
+  L_ss_.resize(0, 0);
   const auto n = static_cast<PetscBLASInt>(num_between_);
   PetscBLASInt info = 0;
   if (n > 0) dlauum_("U", &n, schur.data(), &n, &info);
@@ -127,16 +139,14 @@ void PartFactor::forward(const Eigen::Ref<const MatrixXd>& B, MatrixXd& carried)
     std::fill(z + m, z + Z_.rows(), 0.0);
   }
   Z_.rightCols(n_s).setZero();
-  solve_lower(get_supernodes(), Z_);
-  // L_ss z_s = -L_sp z_p
-  carried = -Z_.rightCols(n_s) * L_ss_.triangularView<Eigen::Lower>().transpose();
+  solve_lower(supernodes_, Z_);
+  carried = -Z_.rightCols(n_s);
 }
 
 void PartFactor::backward(const MatrixXd& X_s, Eigen::Ref<MatrixXd> X) {
   const auto n_p = static_cast<Eigen::Index>(rows_.size());
-  // L_ssᵀ x_s as the right side of the rows between, so that they come out as they are.
-  Z_.rightCols(num_between_).noalias() = X_s * L_ss_.triangularView<Eigen::Lower>();
-  solve_lower_transposed(get_supernodes(), Z_);
+  Z_.rightCols(num_between_) = X_s;
+  solve_lower_transposed(supernodes_, Z_);
   for (Eigen::Index i = 0; i < n_p; ++i) {
     const double* z = Z_.col(i).data();
     double* x = X.data() + rows_[static_cast<std::size_t>(i)];

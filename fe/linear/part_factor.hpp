@@ -46,8 +46,8 @@ class PartFactor {
   double num_entries() const { return common_.lnz; }
   /// False: not positive definite.
   bool factor();
-  /// L_ss L_ssᵀ = D_p - K_sp K_pp⁻¹ K_ps.
-  Eigen::MatrixXd calc_schur() const;
+  /// L_ss L_ssᵀ = D_p - K_sp K_pp⁻¹ K_ps, once after factor(): L_ss is not kept, since no solution needs it.
+  Eigen::MatrixXd take_schur();
   /// K_pp z = B_p as far as L goes; `carried`, kFewSides or kManySides x rows between, becomes K_sp K_pp⁻¹ B_p.
   void forward(const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::MatrixXd& carried);
   /// Then X_p, with the solution of the rows between.
@@ -58,11 +58,8 @@ class PartFactor {
   void take(const MatrixRows& A, const std::vector<PetscInt>& rows, std::size_t num_own, const Eigen::VectorXd& delta,
             double share);
   cholmod_sparse as_sparse();
-  Supernodes get_supernodes() const {
-    return {static_cast<int>(factor_->nsuper),    static_cast<const int*>(factor_->super),
-            static_cast<const int*>(factor_->pi), static_cast<const int*>(factor_->px),
-            static_cast<const int*>(factor_->s),  static_cast<const double*>(factor_->x)};
-  }
+  /// Keeps the columns of the part alone, packed, and those of the rows between as L_ss_.
+  void pack();
   void check() const {
     if (common_.status == CHOLMOD_OUT_OF_MEMORY || common_.status == CHOLMOD_TOO_LARGE) throw make_out_of_memory();
   }
@@ -73,8 +70,9 @@ class PartFactor {
   std::vector<double> value_;
   std::vector<PetscInt> rows_;  ///< of A, in the order of L; those of the part alone
   Eigen::Index num_between_ = 0;
-  Eigen::MatrixXd L_ss_;  ///< lower
-  Eigen::MatrixXd Z_;     ///< right-hand sides x rows of L
+  Supernodes supernodes_;  ///< (L_pp; L_sp), in the memory of factor_
+  Eigen::MatrixXd L_ss_;   ///< lower
+  Eigen::MatrixXd Z_;      ///< right-hand sides x rows of L
 };
 
 /// L of the symmetric S in its place (lower); false: not positive definite.

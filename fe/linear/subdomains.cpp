@@ -272,7 +272,7 @@ SubdomainFactor::SubdomainFactor(Mat A, const Subdomains& domains)
   require_memory_of_ranks(domains.num_inner() + domains.num_between(), part_->num_entries(), no_memory);
   do_on_all(no_memory, [&] {
     is_fine = part_->factor();
-    if (is_fine) L_ = part_->calc_schur();
+    if (is_fine) L_ = part_->take_schur();
   });
   if (!are_all(is_fine)) return;
   sum_alike(L_);

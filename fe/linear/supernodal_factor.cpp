@@ -65,7 +65,7 @@ SupernodalFactor make_supernodal_factor(Mat A, PetscInt least) {
   std::vector<MatrixXd> schur(num);
   do_all(num, [&](std::size_t p) {
     is_fine[p] = parts->part[p]->factor() ? 1 : 0;
-    if (is_fine[p] != 0) schur[p] = parts->part[p]->calc_schur();
+    if (is_fine[p] != 0) schur[p] = parts->part[p]->take_schur();
   });
   result.is_definite = are_all();
   if (!result.is_definite) return result;

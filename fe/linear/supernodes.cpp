@@ -48,68 +48,83 @@ BOUGH_INLINE void subtract(Row<W, M>& row, double factor, const Row<W, M>& other
 }
 
 /// Columns j to j + C of a supernode: their own rows are solved for, the rows below are relieved of them.
+/// \return the end of their entries.
 template <int W, int M, int C>
-BOUGH_INLINE void forward_columns(const double* L, Index ld, Index j, double* z) {
+BOUGH_INLINE const double* forward_group(const double* L, Index ld, Index j, double* z) {
   Row<W, M> x[C];
   for (int c = 0; c < C; ++c) {
     load<W, M>(z + (j + c) * M, x[c]);
-    for (int p = 0; p < c; ++p) subtract<W, M>(x[c], L[j + c + (j + p) * ld], x[p]);
-    const double inverse = 1 / L[j + c + (j + c) * ld];
+    for (int p = 0; p < c; ++p) subtract<W, M>(x[c], *L++, x[p]);
+    const double inverse = *L++;
     for (int r = 0; r < M / W; ++r) x[c].v[r] *= inverse;
     store<W, M>(z + (j + c) * M, x[c]);
   }
-  for (Index i = j + C; i < ld; ++i) {
+  for (Index i = j + C; i < ld; ++i, L += C) {
     Row<W, M> t;
     load<W, M>(z + i * M, t);
-    for (int c = 0; c < C; ++c) subtract<W, M>(t, L[i + (j + c) * ld], x[c]);
+    for (int c = 0; c < C; ++c) subtract<W, M>(t, L[c], x[c]);
     store<W, M>(z + i * M, t);
   }
+  return L;
 }
 
+/// The same of Lᵀ, from the end of their entries. \return their begin.
 template <int W, int M, int C>
-BOUGH_INLINE void backward_columns(const double* L, Index ld, Index j, double* z) {
+BOUGH_INLINE const double* backward_group(const double* L, Index ld, Index j, double* z) {
   Row<W, M> x[C];
   for (int c = 0; c < C; ++c) load<W, M>(z + (j + c) * M, x[c]);
-  for (Index i = j + C; i < ld; ++i) {
+  for (Index i = ld - 1; i >= j + C; --i) {
+    L -= C;
     Row<W, M> t;
     load<W, M>(z + i * M, t);
-    for (int c = 0; c < C; ++c) subtract<W, M>(x[c], L[i + (j + c) * ld], t);
+    for (int c = 0; c < C; ++c) subtract<W, M>(x[c], L[c], t);
   }
   for (int c = C - 1; c >= 0; --c) {
-    for (int p = c + 1; p < C; ++p) subtract<W, M>(x[c], L[j + p + (j + c) * ld], x[p]);
-    const double inverse = 1 / L[j + c + (j + c) * ld];
+    const double inverse = *--L;
     for (int r = 0; r < M / W; ++r) x[c].v[r] *= inverse;
     store<W, M>(z + (j + c) * M, x[c]);
+    for (int p = c - 1; p >= 0; --p) subtract<W, M>(x[p], *--L, x[c]);
   }
+  return L;
 }
 
 template <int W, int M>
 struct Kernels {
-  static BOUGH_INLINE void forward(const double* L, Index ld, Index num, double* z) {
+  static BOUGH_INLINE const double* forward(const double* L, Index ld, Index num, double* z) {
     Index j = 0;
-    for (; j + 4 <= num; j += 4) forward_columns<W, M, 4>(L, ld, j, z);
-    for (; j < num; ++j) forward_columns<W, M, 1>(L, ld, j, z);
+    for (; j + 4 <= num; j += 4) L = forward_group<W, M, 4>(L, ld, j, z);
+    if (num - j == 1) L = forward_group<W, M, 1>(L, ld, j, z);
+    if (num - j == 2) L = forward_group<W, M, 2>(L, ld, j, z);
+    if (num - j == 3) L = forward_group<W, M, 3>(L, ld, j, z);
+    return L;
   }
-  static BOUGH_INLINE void backward(const double* L, Index ld, Index num, double* z) {
-    const Index blocks = num / 4 * 4;
-    for (Index j = num - 1; j >= blocks; --j) backward_columns<W, M, 1>(L, ld, j, z);
-    for (Index j = blocks - 4; j >= 0; j -= 4) backward_columns<W, M, 4>(L, ld, j, z);
+  static BOUGH_INLINE const double* backward(const double* L, Index ld, Index num, double* z) {
+    Index j = num / 4 * 4;
+    if (num - j == 1) L = backward_group<W, M, 1>(L, ld, j, z);
+    if (num - j == 2) L = backward_group<W, M, 2>(L, ld, j, z);
+    if (num - j == 3) L = backward_group<W, M, 3>(L, ld, j, z);
+    for (j -= 4; j >= 0; j -= 4) L = backward_group<W, M, 4>(L, ld, j, z);
+    return L;
   }
 };
 
-using Kernel = void (*)(const double* L, Index ld, Index num, double* z);
+using Kernel = const double* (*)(const double* L, Index ld, Index num, double* z);
 
 #ifdef BOUGH_WIDE
 const bool kHasWide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-#define BOUGH_KERNEL(name, M)                                                                                     \
-  BOUGH_WIDE void name##_wide_##M(const double* L, Index ld, Index num, double* z) {                              \
-    Kernels<4, M>::name(L, ld, num, z);                                                                           \
-  }                                                                                                               \
-  void name##_narrow_##M(const double* L, Index ld, Index num, double* z) { Kernels<2, M>::name(L, ld, num, z); } \
+#define BOUGH_KERNEL(name, M)                                                                 \
+  BOUGH_WIDE const double* name##_wide_##M(const double* L, Index ld, Index num, double* z) { \
+    return Kernels<4, M>::name(L, ld, num, z);                                                \
+  }                                                                                           \
+  const double* name##_narrow_##M(const double* L, Index ld, Index num, double* z) {          \
+    return Kernels<2, M>::name(L, ld, num, z);                                                \
+  }                                                                                           \
   Kernel get_##name##_##M() { return kHasWide ? name##_wide_##M : name##_narrow_##M; }
 #else
-#define BOUGH_KERNEL(name, M)                                                                                     \
-  void name##_narrow_##M(const double* L, Index ld, Index num, double* z) { Kernels<2, M>::name(L, ld, num, z); } \
+#define BOUGH_KERNEL(name, M)                                                        \
+  const double* name##_narrow_##M(const double* L, Index ld, Index num, double* z) { \
+    return Kernels<2, M>::name(L, ld, num, z);                                       \
+  }                                                                                  \
   Kernel get_##name##_##M() { return name##_narrow_##M; }
 #endif
 BOUGH_KERNEL(forward, 4)
@@ -124,43 +139,77 @@ std::vector<double> make_room(const Supernodes& L, Index m) {
   return std::vector<double>(static_cast<std::size_t>(most * m));
 }
 
-}  // namespace
-
-void solve_lower(const Supernodes& L, Eigen::MatrixXd& Z) {
-  const Index m = Z.rows();
-  BOUGH_DEMAND(m == kFewSides || m == kManySides);
-  const Kernel forward = m == kFewSides ? get_forward_4() : get_forward_8();
-  std::vector<double> room = make_room(L, m);
+template <int M>
+void solve_forward(const Supernodes& L, Kernel forward, double* Z) {
+  std::vector<double> room = make_room(L, M);
   double* z = room.data();
+  const double* value = L.value;
   for (int k = 0; k < L.num; ++k) {
-    const Index num = L.super[k + 1] - L.super[k], num_rows = L.row_at[k + 1] - L.row_at[k];
-    double* own = Z.data() + L.super[k] * m;
-    std::memcpy(z, own, static_cast<std::size_t>(num * m) * sizeof(double));
-    std::fill(z + num * m, z + num_rows * m, 0.0);
-    forward(L.value + L.value_at[k], num_rows, num, z);
-    std::memcpy(own, z, static_cast<std::size_t>(num * m) * sizeof(double));
+    const Index num = std::min(L.super[k + 1], L.size) - L.super[k], ld = L.row_at[k + 1] - L.row_at[k];
     const int* row = L.row + L.row_at[k];
-    for (Index i = num; i < num_rows; ++i) {
-      double* to = Z.data() + row[i] * m;
-      for (Index c = 0; c < m; ++c) to[c] += z[i * m + c];
+    double* own = Z + Index{L.super[k]} * M;
+    std::memcpy(z, own, static_cast<std::size_t>(num * M) * sizeof(double));
+    std::fill(z + num * M, z + ld * M, 0.0);
+    value = forward(value, ld, num, z);
+    std::memcpy(own, z, static_cast<std::size_t>(num * M) * sizeof(double));
+    for (Index i = num; i < ld; ++i) {
+      double* to = Z + Index{row[i]} * M;
+      for (int c = 0; c < M; ++c) to[c] += z[i * M + c];
     }
   }
 }
 
-void solve_lower_transposed(const Supernodes& L, Eigen::MatrixXd& Z) {
-  const Index m = Z.rows();
-  BOUGH_DEMAND(m == kFewSides || m == kManySides);
-  const Kernel backward = m == kFewSides ? get_backward_4() : get_backward_8();
-  std::vector<double> room = make_room(L, m);
+template <int M>
+void solve_backward(const Supernodes& L, Kernel backward, double* Z) {
+  std::vector<double> room = make_room(L, M);
   double* z = room.data();
+  const double* value = L.value + L.num_values;
   for (int k = L.num - 1; k >= 0; --k) {
-    const Index num = L.super[k + 1] - L.super[k], num_rows = L.row_at[k + 1] - L.row_at[k];
+    const Index num = std::min(L.super[k + 1], L.size) - L.super[k], ld = L.row_at[k + 1] - L.row_at[k];
     const int* row = L.row + L.row_at[k];
-    for (Index i = 0; i < num_rows; ++i)
-      std::memcpy(z + i * m, Z.data() + row[i] * m, static_cast<std::size_t>(m) * sizeof(double));
-    backward(L.value + L.value_at[k], num_rows, num, z);
-    std::memcpy(Z.data() + L.super[k] * m, z, static_cast<std::size_t>(num * m) * sizeof(double));
+    for (Index i = 0; i < ld; ++i) std::memcpy(z + i * M, Z + Index{row[i]} * M, M * sizeof(double));
+    value = backward(value, ld, num, z);
+    std::memcpy(Z + Index{L.super[k]} * M, z, static_cast<std::size_t>(num * M) * sizeof(double));
   }
+}
+
+}  // namespace
+
+std::ptrdiff_t pack_supernodes(const Supernodes& L, const int* value_at, double* value) {
+  std::vector<double> columns;
+  double* to = value;
+  for (int k = 0; k < L.num; ++k) {
+    const Index num = std::min(L.super[k + 1], L.size) - L.super[k], ld = L.row_at[k + 1] - L.row_at[k];
+    for (Index j = 0; j < num; j += 4) {
+      const Index width = std::min<Index>(4, num - j);
+      // A copy: what is packed may reach into what is read, and never beyond.
+      const double* from = value + value_at[k] + j * ld;
+      columns.assign(from, from + width * ld);
+      for (Index i = 0; i < width; ++i) {
+        for (Index c = 0; c < i; ++c) *to++ = columns[static_cast<std::size_t>(j + i + c * ld)];
+        *to++ = 1 / columns[static_cast<std::size_t>(j + i + i * ld)];
+      }
+      for (Index i = j + width; i < ld; ++i)
+        for (Index c = 0; c < width; ++c) *to++ = columns[static_cast<std::size_t>(i + c * ld)];
+    }
+  }
+  return to - value;
+}
+
+void solve_lower(const Supernodes& L, Eigen::MatrixXd& Z) {
+  BOUGH_DEMAND(Z.rows() == kFewSides || Z.rows() == kManySides);
+  if (Z.rows() == kFewSides)
+    solve_forward<kFewSides>(L, get_forward_4(), Z.data());
+  else
+    solve_forward<kManySides>(L, get_forward_8(), Z.data());
+}
+
+void solve_lower_transposed(const Supernodes& L, Eigen::MatrixXd& Z) {
+  BOUGH_DEMAND(Z.rows() == kFewSides || Z.rows() == kManySides);
+  if (Z.rows() == kFewSides)
+    solve_backward<kFewSides>(L, get_backward_4(), Z.data());
+  else
+    solve_backward<kManySides>(L, get_backward_8(), Z.data());
 }
 
 }  // namespace bough::fe
