@@ -41,8 +41,13 @@ class BlockLanczos {
   /// Makes W B-orthonormal and B-orthogonal to the basis: W = V C + W_out R. Directions of W that lie in the span of
   /// the basis, by roundoff, are dropped: W may get narrower.
   void orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R);
+  /// The principal directions of W, G = WᵀBW, at length one, those up to `floor` left out; B W and R follow. Their
+  /// lengths, ascending.
+  VectorXd make_unit(const MatrixXd& G, double floor, MatrixXd& W, MatrixXd& B_W, MatrixXd& R);
   /// VᵀW of all rows.
   MatrixXd multiply_transposed(const Eigen::Ref<const MatrixXd>& V, const Eigen::Ref<const MatrixXd>& W) const;
+  /// Takes the last two blocks of the basis off W, from B W too, without a product. \return how long that was.
+  double relieve(MatrixXd& W, MatrixXd& B_W, MatrixXd& C) const;
   void append(const MatrixXd& W);
   void expand();
   /// Ritz pairs of the present basis; the number of leading ones that converged.
@@ -51,13 +56,14 @@ class BlockLanczos {
   BlockLanczosResult finish(bool is_done);
 
   const BlockLanczosProblem& problem_;
-  MatrixXd V_;              ///< n x room; the first size_ columns are the basis
-  MatrixXd T_;              ///< Vᵀ B A⁻¹B V, room x room
-  MatrixXd R_;              ///< A⁻¹B V = V T + next_ R_ in the columns of the last block
-  MatrixXd next_, B_next_;  ///< the block to append and B times it
+  MatrixXd V_;                 ///< n x room; the first size_ columns are the basis
+  MatrixXd T_;                 ///< Vᵀ B A⁻¹B V, room x room
+  MatrixXd R_;                 ///< A⁻¹B V = V T + next_ R_ in the columns of the last block
+  MatrixXd next_, B_next_;     ///< the block to append, then the last one, and B times it
+  MatrixXd B_before_;          ///< B times the block before
+  bool is_recurrent_ = false;  ///< A⁻¹B of the last block has nothing but roundoff of blocks before these two
   int size_ = 0, last_width_ = 0;
-  int coupled_from_ = 0;  ///< A⁻¹B of the last block couples to the columns from here on, but for roundoff
-  double scale_ = 0;      ///< the largest ‖A⁻¹B v‖ so far: what is small is small beside it
+  double scale_ = 0;  ///< the largest ‖A⁻¹B v‖ so far: what is small is small beside it
   VectorXd theta_;
   MatrixXd S_;
   int num_solves_ = 0;
@@ -86,10 +92,38 @@ MatrixXd BlockLanczos::multiply_transposed(const Eigen::Ref<const MatrixXd>& V,
   return C;
 }
 
+VectorXd BlockLanczos::make_unit(const MatrixXd& G, double floor, MatrixXd& W, MatrixXd& B_W, MatrixXd& R) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(0.5 * (G + G.transpose()));
+  const VectorXd& g = gram.eigenvalues();
+  const auto dropped = (g.array() <= floor * floor).count();
+  const VectorXd length = g.tail(g.size() - dropped).cwiseSqrt();
+  const MatrixXd U = gram.eigenvectors().rightCols(length.size());
+  const MatrixXd to_unit = U * length.cwiseInverse().asDiagonal();
+  for (MatrixXd* vectors : {&W, &B_W}) {
+    turn(to_unit, vectors->cols(), *vectors);
+    if (dropped > 0) vectors->conservativeResize(Eigen::NoChange, length.size());
+  }
+  R = (length.asDiagonal() * U.transpose() * R).eval();
+  return length;
+}
+
+double BlockLanczos::relieve(MatrixXd& W, MatrixXd& B_W, MatrixXd& C) const {
+  const auto b = B_before_.cols(), both = b + B_next_.cols();
+  const auto V = V_.middleCols(size_ - both, both);
+  const MatrixXd C_near = multiply_transposed(V, B_W);
+  subtract(V, C_near, W);
+  subtract(B_before_, C_near.topRows(b), B_W);
+  subtract(B_next_, C_near.bottomRows(both - b), B_W);
+  C.bottomRows(both) = C_near;
+  return std::sqrt(C_near.colwise().squaredNorm().maxCoeff());
+}
+
 void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
   C = MatrixXd::Zero(size_, W.cols());
   R = MatrixXd::Identity(W.cols(), W.cols());
   MatrixXd B_W = problem_.multiply_mass(W);
+  // What the recurrence couples first: left in, it would carry errors of the basis into the other directions.
+  const double near = is_recurrent_ ? relieve(W, B_W, C) : 0;
   for (int pass = 0; pass < 5 && W.cols() > 0; ++pass) {
     VectorXd squares = VectorXd::Zero(W.cols());  // of W as it was given: of what is taken off, and what is left
     if (problem_.deflate.cols() > 0) {
@@ -97,34 +131,25 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
       subtract(problem_.deflate, D, W);
       squares += D.colwise().squaredNorm().transpose();
     }
-    // First the blocks that the recurrence couples; what roundoff left of the others follows in the next pass.
-    const int from = pass == 0 ? coupled_from_ : 0;
-    const auto V = V_.middleCols(from, size_ - from);
+    const auto V = V_.leftCols(size_);
     const MatrixXd C_pass = multiply_transposed(V, B_W);
     subtract(V, C_pass, W);
-    C.bottomRows(size_ - from) += C_pass * R;
+    C += C_pass * R;
     B_W = problem_.multiply_mass(W);
     const MatrixXd G = multiply_transposed(W, B_W);
     squares += C_pass.colwise().squaredNorm().transpose() + G.diagonal();
-    if (pass == 0) scale_ = std::max(scale_, std::sqrt(squares.cwiseAbs().maxCoeff()));
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(0.5 * (G + G.transpose()));
-    const VectorXd& g = gram.eigenvalues();
+    const double given = std::sqrt(squares.cwiseAbs().maxCoeff());
+    if (pass == 0) scale_ = std::max({scale_, near, given});
     // Lengths: of the operator's result in the first pass, of unit vectors later.
-    const double floor = (pass == 0 ? 1e-14 * scale_ : 1e-6);
-    const auto dropped = (g.array() <= floor * floor).count();
-    const VectorXd length = g.tail(g.size() - dropped).cwiseSqrt();
-    const MatrixXd U = gram.eigenvectors().rightCols(length.size());
-    const MatrixXd to_unit = U * length.cwiseInverse().asDiagonal();
-    turn(to_unit, W.cols(), W);
-    turn(to_unit, B_W.cols(), B_W);
-    if (length.size() < W.cols()) {
-      W.conservativeResize(Eigen::NoChange, length.size());
-      B_W.conservativeResize(Eigen::NoChange, length.size());
-    }
-    R = (length.asDiagonal() * U.transpose() * R).eval();
-    const bool is_small = C_pass.size() == 0 || C_pass.cwiseAbs().maxCoeff() < 1e-6;
-    if (pass > 0 && dropped == 0 && is_small && (length.array() - 1).abs().maxCoeff() < 1e-10) break;
+    const VectorXd length = make_unit(G, pass == 0 ? 1e-14 * scale_ : 1e-6, W, B_W, R);
+    if (length.size() == 0) break;
+    // What roundoff left along the basis has grown as `given` to the least of them, that of columns among themselves
+    // as their ratio squared.
+    if (given > 20 * length.minCoeff()) continue;
+    if (length.maxCoeff() > 3 * length.minCoeff()) make_unit(multiply_transposed(W, B_W), 1e-6, W, B_W, R);
+    break;
   }
+  B_before_ = std::move(B_next_);
   B_next_ = std::move(B_W);
 }
 
@@ -136,17 +161,19 @@ void BlockLanczos::append(const MatrixXd& W) {
 
 void BlockLanczos::expand() {
   append(next_);
-  MatrixXd W = problem_.solve(problem_.multiply_operator ? problem_.multiply_operator(next_) : B_next_);
+  next_.resize(0, 0);
+  const auto last = V_.middleCols(size_ - last_width_, last_width_);
+  MatrixXd W = problem_.solve(problem_.multiply_operator ? problem_.multiply_operator(last) : B_next_);
   ++num_solves_;
   MatrixXd C;
   orthonormalize(W, C, R_);
   const int first = size_ - last_width_;
-  coupled_from_ = first;
   T_.block(0, first, size_, last_width_) = C;
   T_.block(first, 0, last_width_, size_) = C.transpose();
   T_.block(first, first, last_width_, last_width_) =
       0.5 * (C.bottomRows(last_width_) + C.bottomRows(last_width_).transpose());
   next_ = std::move(W);
+  is_recurrent_ = true;
 }
 
 int BlockLanczos::calc_ritz() {
@@ -178,7 +205,7 @@ void BlockLanczos::restart() {
   T_.setZero();
   T_.diagonal().head(keep) = theta_.head(keep);
   size_ = keep;
-  coupled_from_ = 0;
+  is_recurrent_ = false;
 }
 
 BlockLanczosResult BlockLanczos::finish(bool is_done) {

@@ -1,6 +1,7 @@
 #pragma once
 /// \file The parts of a large matrix that are worked on at the same time.
 #include <optional>
+#include <vector>
 
 #include "base/diagnostic.hpp"
 #include "fe/linear/ordering.hpp"
@@ -26,6 +27,11 @@ void visit_rows(Mat A, const Use& use) {
   check_petsc(MatSeqAIJRestoreArrayRead(A, &rows.value));
   check_petsc(MatRestoreRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &size, &rows.start, &rows.column, &done));
 }
+
+/// A postorder of the elimination tree of the rows and columns `rows`, in this order, of a symmetric matrix whose
+/// pattern is that of all `matrices` together (Liu, SIAM J. Matrix Anal. Appl. 11 (1990) 134); `size`: of the matrix.
+std::vector<int> calc_postorder(const std::vector<const MatrixRows*>& matrices, PetscInt size,
+                                const std::vector<PetscInt>& rows);
 
 /// One part where there is one thread, or where two would be uneven or have much between them; empty where A has no row
 /// groups or less than `least` rows.

@@ -87,7 +87,7 @@ std::optional<int> count_over_ranks(Mat A, double factor, Mat B, PetscInt least)
   int negative = -1;
   {
     const SubdomainMatrix a(A, *domains), b(B, *domains);
-    const RowSum sum{a.as_rows(), b.as_rows(), factor};
+    const RowSum sum{a.as_rows(), b.as_rows(), factor, static_cast<PetscInt>(a.rows().rows())};
     PartFronts part;
     bool is_fine = false;
     do_on_all(no_memory, [&] { is_fine = part.analyse(sum, own, between); });
@@ -119,8 +119,8 @@ std::optional<int> count_negative_by_fronts(Mat A, double factor, Mat B, PetscIn
   if (!cut) return std::nullopt;
   std::sort(cut->between.begin(), cut->between.end());
   int count = -1;
-  visit_rows(A, [&](const MatrixRows& a, PetscInt) {
-    visit_rows(B, [&](const MatrixRows& b, PetscInt) { count = count_of_sum({a, b, factor}, std::move(*cut)); });
+  visit_rows(A, [&](const MatrixRows& a, PetscInt rows) {
+    visit_rows(B, [&](const MatrixRows& b, PetscInt) { count = count_of_sum({a, b, factor, rows}, std::move(*cut)); });
   });
   if (count < 0) return std::nullopt;
   return count;

@@ -59,28 +59,31 @@ void PartFactor::take(const MatrixRows& A, const std::vector<PetscInt>& rows, st
   }
 }
 
-bool PartFactor::analyse(const MatrixRows& A, std::vector<PetscInt> own, const std::vector<PetscInt>& between,
-                         const VectorXd& delta, int num_parts) {
-  const auto n_p = own.size();
-  take(A, own, n_p, delta, 1.0 / num_parts);
-  cholmod_sparse alone = as_sparse();
-  std::vector<int> parent(n_p), post(n_p);
-  if (!cholmod_etree(&alone, parent.data(), &common_)) return false;
-  if (cholmod_postorder(parent.data(), n_p, nullptr, post.data(), &common_) != static_cast<int>(n_p)) return false;
-  rows_.clear();
-  for (const int i : post) rows_.push_back(own[static_cast<std::size_t>(i)]);
-
-  own = rows_;
+bool PartFactor::analyse(const MatrixRows& A, PetscInt size, std::vector<PetscInt> own,
+                         const std::vector<PetscInt>& between, const VectorXd& delta, int num_parts) {
+  const auto n_p = static_cast<int>(own.size());
   own.insert(own.end(), between.begin(), between.end());
-  take(A, own, n_p, delta, 1.0 / num_parts);
+  std::vector<PetscInt> rows;
+  rows.reserve(own.size());
+  const std::vector<int> order = calc_postorder({&A}, size, own);
+  for (const int i : order)
+    if (i < n_p) rows.push_back(own[static_cast<std::size_t>(i)]);
+  rows_ = rows;
+  between_.clear();
+  for (const int i : order)
+    if (i >= n_p) {
+      between_.push_back(i - n_p);
+      rows.push_back(own[static_cast<std::size_t>(i)]);
+    }
+  take(A, rows, rows_.size(), delta(between_), 1.0 / num_parts);
   num_between_ = static_cast<Eigen::Index>(between.size());
   cholmod_sparse matrix = as_sparse();
   factor_ = cholmod_analyze(&matrix, &common_);
   check();
   if (!factor_ || !factor_->is_super) return false;
-  const int* order = static_cast<const int*>(factor_->Perm);
-  for (std::size_t i = 0; i < own.size(); ++i)
-    if (order[i] != static_cast<int>(i)) return false;
+  const int* order_taken = static_cast<const int*>(factor_->Perm);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (order_taken[i] != static_cast<int>(i)) return false;
   return true;
 }
 
@@ -126,7 +129,9 @@ MatrixXd PartFactor::take_schur() {
   PetscBLASInt info = 0;
   if (n > 0) dlauum_("U", &n, schur.data(), &n, &info);
   schur.triangularView<Eigen::StrictlyLower>() = schur.transpose();
-  return schur.reverse();
+  MatrixXd sorted(n, n);
+  sorted(between_, between_) = schur.reverse();
+  return sorted;
 }
 
 void PartFactor::forward(const Eigen::Ref<const MatrixXd>& B, MatrixXd& carried) {
@@ -140,12 +145,13 @@ void PartFactor::forward(const Eigen::Ref<const MatrixXd>& B, MatrixXd& carried)
   }
   Z_.rightCols(n_s).setZero();
   solve_lower(supernodes_, Z_);
-  carried = -Z_.rightCols(n_s);
+  carried.resize(Z_.rows(), n_s);
+  carried(Eigen::all, between_) = -Z_.rightCols(n_s);
 }
 
 void PartFactor::backward(const MatrixXd& X_s, Eigen::Ref<MatrixXd> X) {
   const auto n_p = static_cast<Eigen::Index>(rows_.size());
-  Z_.rightCols(num_between_) = X_s;
+  Z_.rightCols(num_between_) = X_s(Eigen::all, between_);
   solve_lower_transposed(supernodes_, Z_);
   for (Eigen::Index i = 0; i < n_p; ++i) {
     const double* z = Z_.col(i).data();

@@ -39,9 +39,9 @@ class PartFactor {
     cholmod_finish(&common_);
   }
 
-  /// (K_pp, K_ps; K_sp, D_p), D_p = K_ss / num_parts + δ, in the order of `own`, postordered, then `between`. False
-  /// where CHOLMOD wants another order or no supernodes.
-  bool analyse(const MatrixRows& A, std::vector<PetscInt> own, const std::vector<PetscInt>& between,
+  /// (K_pp, K_ps; K_sp, D_p), D_p = K_ss / num_parts + δ, in the order of `own`, postordered, then `between`, in which
+  /// what does not couple is sorted too. A: size x size. False where CHOLMOD wants another order or no supernodes.
+  bool analyse(const MatrixRows& A, PetscInt size, std::vector<PetscInt> own, const std::vector<PetscInt>& between,
                const Eigen::VectorXd& delta, int num_parts);
   double num_entries() const { return common_.lnz; }
   /// False: not positive definite.
@@ -70,9 +70,10 @@ class PartFactor {
   std::vector<double> value_;
   std::vector<PetscInt> rows_;  ///< of A, in the order of L; those of the part alone
   Eigen::Index num_between_ = 0;
-  Supernodes supernodes_;  ///< (L_pp; L_sp), in the memory of factor_
-  Eigen::MatrixXd L_ss_;   ///< lower
-  Eigen::MatrixXd Z_;      ///< right-hand sides x rows of L
+  std::vector<int> between_;  ///< what those that come last in L are of the rows between
+  Supernodes supernodes_;     ///< (L_pp; L_sp), in the memory of factor_
+  Eigen::MatrixXd L_ss_;      ///< lower
+  Eigen::MatrixXd Z_;         ///< right-hand sides x rows of L
 };
 
 /// L of the symmetric S in its place (lower); false: not positive definite.

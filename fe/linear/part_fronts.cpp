@@ -23,7 +23,7 @@ ComputationError make_no_memory_for_count() {
           "leave the count out (--no-check)"};
 }
 
-bool PartFronts::take(const RowSum& sum, const std::vector<PetscInt>& rows, bool upper) {
+bool PartFronts::take(const RowSum& sum, const std::vector<PetscInt>& rows) {
   const PetscInt last = *std::max_element(rows.begin(), rows.end());
   std::vector<int> place(static_cast<std::size_t>(last) + 1, -1);
   for (std::size_t i = 0; i < rows.size(); ++i) place[static_cast<std::size_t>(rows[i])] = static_cast<int>(i);
@@ -39,22 +39,22 @@ bool PartFronts::take(const RowSum& sum, const std::vector<PetscInt>& rows, bool
         is_closed = is_closed && !is_own;
         return;
       }
-      if (upper ? i > j : i < j) return;
+      if (i < j) return;
       row_of_entry_.push_back(i);
-      if (!upper) value_.push_back(value);
+      value_.push_back(value);
     });
     start_.push_back(static_cast<int>(row_of_entry_.size()));
   }
   return is_closed;
 }
 
-cholmod_sparse PartFronts::as_sparse(int stype) {
+cholmod_sparse PartFronts::as_sparse() {
   cholmod_sparse matrix{};
   matrix.nrow = matrix.ncol = start_.size() - 1;
   matrix.nzmax = row_of_entry_.size();
   matrix.p = start_.data();
   matrix.i = row_of_entry_.data();
-  matrix.stype = stype;
+  matrix.stype = -1;
   matrix.itype = CHOLMOD_INT;
   matrix.xtype = CHOLMOD_PATTERN;
   matrix.dtype = CHOLMOD_DOUBLE;
@@ -64,18 +64,12 @@ cholmod_sparse PartFronts::as_sparse(int stype) {
 
 bool PartFronts::analyse(const RowSum& sum, const std::vector<PetscInt>& own, const std::vector<PetscInt>& between) {
   num_own_ = own.size();
-  take(sum, own, true);
-  cholmod_sparse alone = as_sparse(1);
-  std::vector<int> parent(num_own_), post(num_own_);
-  if (!cholmod_etree(&alone, parent.data(), &common_)) return false;
-  if (cholmod_postorder(parent.data(), num_own_, nullptr, post.data(), &common_) != static_cast<int>(num_own_))
-    return false;
   std::vector<PetscInt> rows;
   rows.reserve(num_own_ + between.size());
-  for (const int i : post) rows.push_back(own[static_cast<std::size_t>(i)]);
+  for (const int i : calc_postorder({&sum.A, &sum.B}, sum.size, own)) rows.push_back(own[static_cast<std::size_t>(i)]);
   rows.insert(rows.end(), between.begin(), between.end());
-  if (!take(sum, rows, false)) return false;
-  cholmod_sparse matrix = as_sparse(-1);
+  if (!take(sum, rows)) return false;
+  cholmod_sparse matrix = as_sparse();
   factor_ = cholmod_analyze(&matrix, &common_);
   check();
   if (!factor_ || !factor_->is_super) return false;

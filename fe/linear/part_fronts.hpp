@@ -25,6 +25,7 @@ ComputationError make_no_memory_for_count();
 struct RowSum {
   MatrixRows A, B;
   double factor = 0;
+  PetscInt size = 0;  ///< of A and B
 
   /// use(column, value) for the entries of a row, ascending.
   template <class Use>
@@ -83,9 +84,9 @@ class PartFronts {
 
  private:
   static double square(double x) { return x * x; }
-  /// One triangle of `rows`. False where the part's own couple to others.
-  bool take(const RowSum& sum, const std::vector<PetscInt>& rows, bool upper);
-  cholmod_sparse as_sparse(int stype);
+  /// The lower triangle of `rows`. False where the part's own couple to others.
+  bool take(const RowSum& sum, const std::vector<PetscInt>& rows);
+  cholmod_sparse as_sparse();
   /// Eliminates the first `num` of the front's rows; -1 as above.
   int eliminate(int num, int num_rows, const int* rows);
   int get_num_columns(int k) const { return std::min(super_[k + 1], static_cast<int>(num_own_)) - super_[k]; }
@@ -104,7 +105,7 @@ class PartFronts {
   double most_stack_ = 0;
   int most_rows_ = 0, most_columns_ = 0;
 
-  std::vector<int> start_, row_of_entry_;  ///< one triangle of the sum, by columns
+  std::vector<int> start_, row_of_entry_;  ///< lower triangle of the sum, by columns
   std::vector<double> value_;
   Eigen::VectorXd diagonal_;  ///< |A| + |factor B|
   std::vector<double> front_, pivots_, right_, work_;

@@ -264,8 +264,9 @@ SubdomainFactor::SubdomainFactor(Mat A, const Subdomains& domains)
     const auto& rows = matrix.rows();
     const MatrixRows as_rows{rows.outerIndexPtr(), rows.innerIndexPtr(), rows.valuePtr()};
     do_on_all(no_memory, [&] {
-      delta = calc_row_sums(as_rows, between, static_cast<PetscInt>(rows.rows()));
-      is_fine = part_->analyse(as_rows, std::move(own), between, delta, world.size);
+      const auto size = static_cast<PetscInt>(rows.rows());
+      delta = calc_row_sums(as_rows, between, size);
+      is_fine = part_->analyse(as_rows, size, std::move(own), between, delta, world.size);
     });
   }
   if (!are_all(is_fine)) return;

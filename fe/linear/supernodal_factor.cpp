@@ -50,7 +50,7 @@ SupernodalFactor make_supernodal_factor(Mat A, PetscInt least) {
     delta = calc_row_sums(rows, parts->between, size);
     do_all(num, [&](std::size_t p) {
       is_fine[p] =
-          parts->part[p]->analyse(rows, std::move(own[p]), parts->between, delta, static_cast<int>(num)) ? 1 : 0;
+          parts->part[p]->analyse(rows, size, std::move(own[p]), parts->between, delta, static_cast<int>(num)) ? 1 : 0;
     });
   });
   const auto are_all = [&] { return std::all_of(is_fine.begin(), is_fine.end(), [](char one) { return one != 0; }); };

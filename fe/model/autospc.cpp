@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include <Eigen/LU>
 
 #include "fe/linear/ranks.hpp"
+#include "fe/linear/threads.hpp"
 #include "fe/model/element_transform.hpp"
 
 namespace bough::fe {
@@ -50,43 +52,80 @@ void add_noise(const VectorXd& sizes, ElementTransform& transform, const std::ve
   }
 }
 
-NodeBlocks calc_node_blocks(const Model& model, const std::vector<int>& gdof_node, const std::vector<int>& fdof_block,
-                            const std::vector<int>& fdof_slot) {
-  const auto& nodes = model.nodes();
-  const size_t num_blocks = 2 * nodes.size();
-  NodeBlocks result{std::vector<Matrix3d>(num_blocks, Matrix3d::Zero()), std::vector<double>(num_blocks, 0)};
-  auto& blocks = result.K;
-  ElementTransform transform;
-  MatrixXd K_e;
-  const auto add = [&](const MatrixXd& K) {
-    transform.hold(K);
-    const auto& columns = transform.columns();
+/// Where the f-dofs belong: the block of each, its row there; and the node of each dof of the l-set.
+struct Places {
+  const std::vector<int>&gdof_node, &fdof_block, &fdof_slot;
+};
+
+/// Sums blocks of what is added, each in a transform of its own.
+class BlockSum {
+ public:
+  BlockSum(const Model& model, const Places& places) : model_(model), places_(places) {
+    const size_t num = 2 * model.nodes().size();
+    sum = {std::vector<Matrix3d>(num, Matrix3d::Zero()), std::vector<double>(num, 0)};
+  }
+  void add_elements(int first, int last) {
+    for (int e = first; e < last; ++e) {
+      const Element& element = *model_.elements()[static_cast<size_t>(e)];
+      const int n = element.num_dofs();
+      K_e_.setZero(n, n);
+      model_.add_stiffness(element, K_e_);
+      if (K_e_.isZero(0)) continue;
+      transform_.set(model_.T(), element.gdofs());
+      add_noise(calc_sizes(element, model_.nodes(), places_.gdof_node, K_e_), transform_, places_.fdof_block,
+                sum.noise);
+      add(K_e_);
+    }
+  }
+  void add_forms() {
+    for (const auto& form : model_.prestress()->forms) {
+      transform_.set(model_.T(), form.gdofs);
+      add(calc_form(form, 0));
+    }
+  }
+
+  NodeBlocks sum;  ///< of the noise, the squares
+
+ private:
+  void add(const MatrixXd& K) {
+    transform_.hold(K);
+    const auto& columns = transform_.columns();
     for (size_t i = 0; i < columns.size(); ++i)
       for (size_t j = i; j < columns.size() && j < i + 6; ++j) {
-        if (fdof_block[columns[i]] != fdof_block[columns[j]]) continue;
-        Matrix3d& block = blocks[fdof_block[columns[i]]];
-        const int a = fdof_slot[columns[i]], b = fdof_slot[columns[j]];
-        const double value = transform.entry(static_cast<int>(i), static_cast<int>(j));
+        if (places_.fdof_block[columns[i]] != places_.fdof_block[columns[j]]) continue;
+        Matrix3d& block = sum.K[places_.fdof_block[columns[i]]];
+        const int a = places_.fdof_slot[columns[i]], b = places_.fdof_slot[columns[j]];
+        const double value = transform_.entry(static_cast<int>(i), static_cast<int>(j));
         block(a, b) += value;
         if (a != b) block(b, a) += value;
       }
-  };
-  for (const auto& element : model.elements()) {
-    const int n = element->num_dofs();
-    K_e.setZero(n, n);
-    model.add_stiffness(*element, K_e);
-    if (K_e.isZero(0)) continue;
-    transform.set(model.T(), element->gdofs());
-    add_noise(calc_sizes(*element, nodes, gdof_node, K_e), transform, fdof_block, result.noise);
-    add(K_e);
   }
-  for (double& noise : result.noise) noise = std::sqrt(noise);
-  if (model.prestress())
-    for (const auto& form : model.prestress()->forms) {
-      transform.set(model.T(), form.gdofs);
-      add(calc_form(form, 0));
+
+  const Model& model_;
+  const Places& places_;
+  ElementTransform transform_;
+  MatrixXd K_e_;
+};
+
+/// Two threads take half of the elements each.
+NodeBlocks calc_node_blocks(const Model& model, const Places& places) {
+  constexpr int kElementsOfThread = 2000;  // fewer are done before a thread has started
+  const auto num = static_cast<int>(model.elements().size());
+  BlockSum sum(model, places);
+  std::optional<BlockSum> second;
+  do_halves(num, kElementsOfThread, [&](int first, int last) {
+    BlockSum& own = first == 0 ? sum : second.emplace(model, places);
+    own.add_elements(first, last);
+  });
+  NodeBlocks& result = sum.sum;
+  if (second)
+    for (size_t i = 0; i < result.K.size(); ++i) {
+      result.K[i] += second->sum.K[i];
+      result.noise[i] += second->sum.noise[i];
     }
-  return result;
+  if (model.prestress()) sum.add_forms();
+  for (double& noise : result.noise) noise = std::sqrt(noise);
+  return std::move(result);
 }
 
 /// Eigenvalues by size, the smallest first, with their vectors: a negative stiffness is one.
@@ -167,7 +206,7 @@ std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vect
     fdof_slot[f] = component % 3;
     is_free[fdof_block[f]][fdof_slot[f]] = 1;
   }
-  const auto [blocks, noise] = calc_node_blocks(model, ldof_node, fdof_block, fdof_slot);
+  const auto [blocks, noise] = calc_node_blocks(model, {ldof_node, fdof_block, fdof_slot});
   std::vector<AutospcEntry> entries;
   for (int b = 0; b < num_blocks; ++b) {
     if (model.share() && !model.share()->is_at_home(b / 2)) continue;
