@@ -101,6 +101,18 @@ void Shell::add_turned(const Square<N>& local, double scale, Eigen::Ref<MatrixXd
     }
 }
 
+namespace {
+
+/// K += BᵀC, column by column: for so few rows Eigen's product of large matrices packs longer than it multiplies.
+template <class Rows, class Square>
+void add_product(const Rows& B, const Rows& C, Square& K) {
+  const Eigen::Matrix<double, Rows::ColsAtCompileTime, Rows::RowsAtCompileTime> B_t = B.transpose();
+  for (int j = 0; j < Rows::ColsAtCompileTime; ++j)
+    for (int r = 0; r < Rows::RowsAtCompileTime; ++r) K.col(j) += B_t.col(r) * C(r, j);
+}
+
+}  // namespace
+
 template <int N>
 void Shell::add_stiffness_of(double scale, Eigen::Ref<MatrixXd> out) const {
   using Block = Eigen::Matrix<double, 3 * N, 3 * N>;
@@ -111,16 +123,18 @@ void Shell::add_stiffness_of(double scale, Eigen::Ref<MatrixXd> out) const {
   for (int q = 0; q < N; ++q) {
     const double w = points[q].weight;
     const Strains<N>&e = membrane.strain[q], &k = plate.bending[q];
-    K_mm.noalias() += e.transpose() * (w * c.A * e);
-    K_pp.noalias() += k.transpose() * (w * c.D * k);
-    if (c.shear_flexible) K_pp.noalias() += plate.shear[q].transpose() * (w * plate.force[q]);
+    add_product(e, Strains<N>(w * c.A * e), K_mm);
+    add_product(k, Strains<N>(w * c.D * k), K_pp);
+    if (c.shear_flexible) add_product(plate.shear[q], Vectors<N>(w * plate.force[q]), K_pp);
     if (!coupled) continue;
-    K_mp.noalias() += e.transpose() * (w * c.B * k);
+    add_product(e, Strains<N>(w * c.B * k), K_mp);
     if (!membrane.coupled) continue;
     const Strains<N>& f = membrane.strain_of_plate[q];
-    const Block cross = f.transpose() * (w * c.B * k);
-    K_mp.noalias() += e.transpose() * (w * c.A * f);
-    K_pp += cross + cross.transpose() + f.transpose() * (w * c.A * f);
+    Block cross = Block::Zero();
+    add_product(f, Strains<N>(w * c.B * k), cross);
+    add_product(e, Strains<N>(w * c.A * f), K_mp);
+    add_product(f, Strains<N>(w * c.A * f), K_pp);
+    K_pp += cross + cross.transpose();
   }
   for (int i = 0; i < membrane.num_springs; ++i)
     K_mm.noalias() += membrane.spring_weight[i] * membrane.spring[i].transpose() * membrane.spring[i];

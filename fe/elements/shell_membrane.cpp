@@ -52,7 +52,10 @@ void add_modes(const Corners<4>& xy, const Points<4>& points, const ShellSection
     Kaa.noalias() += stress * modes[q];
     Kau.noalias() += stress * m.strain[q];
   }
-  const Eigen::Matrix<double, 4, 12> by_membrane = Kaa.ldlt().solve(Kau);
+  // Column by column: the solver of many right-hand sides is made for larger matrices.
+  const Eigen::LDLT<Eigen::Matrix4d> factor(Kaa);
+  Eigen::Matrix<double, 4, 12> by_membrane;
+  for (int j = 0; j < 12; ++j) by_membrane.col(j) = factor.solve(Kau.col(j));
   for (int q = 0; q < 4; ++q) m.strain[q].noalias() -= modes[q] * by_membrane;
 }
 

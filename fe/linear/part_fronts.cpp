@@ -30,6 +30,7 @@ bool PartFronts::take(const RowSum& sum, const std::vector<PetscInt>& rows) {
   start_.assign(1, 0);
   row_of_entry_.clear();
   value_.clear();
+  diagonal_.resize(static_cast<Eigen::Index>(rows.size()));
   bool is_closed = true;
   for (int j = 0; j < static_cast<int>(rows.size()); ++j) {
     const bool is_own = j < static_cast<int>(num_own_);
@@ -44,6 +45,7 @@ bool PartFronts::take(const RowSum& sum, const std::vector<PetscInt>& rows) {
       value_.push_back(value);
     });
     start_.push_back(static_cast<int>(row_of_entry_.size()));
+    diagonal_(j) = sum.calc_size(rows[static_cast<std::size_t>(j)]);
   }
   return is_closed;
 }
@@ -77,8 +79,6 @@ bool PartFronts::analyse(const RowSum& sum, const std::vector<PetscInt>& own, co
   for (int i = 0; i < static_cast<int>(rows.size()); ++i)
     if (order[i] != i) return false;
 
-  diagonal_.resize(static_cast<Eigen::Index>(rows.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) diagonal_(static_cast<Eigen::Index>(i)) = sum.calc_size(rows[i]);
   super_ = static_cast<const int*>(factor_->super);
   row_at_ = static_cast<const int*>(factor_->pi);
   row_ = static_cast<const int*>(factor_->s);
