@@ -138,6 +138,19 @@ std::pair<VectorXd, MatrixXd> find_principal_stiffness(const MatrixXd& K) {
   return {size(order), solver.eigenvectors()(Eigen::all, order)};
 }
 
+/// Whether the free part of K is definite and its least eigenvalue well above `limit`: λ1 = det / (λ2 λ3) is at least
+/// 4 det / trace². Most blocks are, and their eigenvalues need not be found.
+bool is_stiff(Matrix3d K, const std::array<char, 3>& is_free, double scale, double limit) {
+  for (int s = 0; s < 3; ++s) {
+    if (is_free[static_cast<std::size_t>(s)]) continue;
+    K.row(s).setZero();
+    K.col(s).setZero();
+    K(s, s) = scale;
+  }
+  const double minor = K(0, 0) * K(1, 1) - K(0, 1) * K(1, 0), determinant = K.determinant(), trace = K.trace();
+  return K(0, 0) > 0 && minor > 0 && 4 * determinant > trace * trace * std::max(2 * limit, 1e-6 * scale);
+}
+
 /// Makes the entries of a block oblique where a held component has stiffness of its own: of the directions N without
 /// stiffness (columns, rows `slots`) the held components follow the free ones by Nᵀ u = 0. `limit`: what is none.
 void set_oblique(const Matrix3d& K, const std::vector<int>& slots, double limit, bool is_rotation,
@@ -210,13 +223,14 @@ std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vect
   std::vector<AutospcEntry> entries;
   for (int b = 0; b < num_blocks; ++b) {
     if (model.share() && !model.share()->is_at_home(b / 2)) continue;
+    const double scale = blocks[b].diagonal().cwiseAbs().maxCoeff();
+    const double limit = std::max(epsilon * scale, noise[b]);
+    if (scale > noise[b] && is_stiff(blocks[b], is_free[b], scale, limit)) continue;
     const Node& node = nodes[b / 2];
     std::vector<int> slots;
     for (int s = 0; s < 3; ++s)
       if (is_free[b][s]) slots.push_back(s);
     const auto all_slots = slots;
-    const Eigen::Vector3d diagonal = blocks[b].diagonal();
-    const double scale = diagonal.cwiseAbs().maxCoeff();
     const size_t first = entries.size();
     while (!slots.empty()) {
       int singular = 0;
@@ -224,7 +238,7 @@ std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vect
       if (scale > noise[b]) {
         const auto [stiffness, directions] = find_principal_stiffness(blocks[b](slots, slots));
         ratio = stiffness[0] / scale;
-        if (stiffness[0] > std::max(epsilon * scale, noise[b])) break;
+        if (stiffness[0] > limit) break;
         // Of equal shares the last: a rod along a diagonal keeps its first component.
         const Eigen::VectorXd share = directions.col(0).cwiseAbs();
         for (int i = 0; i < share.size(); ++i)
@@ -237,7 +251,7 @@ std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vect
     std::sort(entries.begin() + static_cast<std::ptrdiff_t>(first), entries.end(),
               [](const AutospcEntry& x, const AutospcEntry& y) { return x.component < y.component; });
     if (entries.size() > first && node.num_dofs == 6 && scale > noise[b])
-      set_oblique(blocks[b], all_slots, std::max(epsilon * scale, noise[b]), b % 2 == 1, entries, first);
+      set_oblique(blocks[b], all_slots, limit, b % 2 == 1, entries, first);
   }
   return model.share() ? merge(model, entries) : entries;
 }

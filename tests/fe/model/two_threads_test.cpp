@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "fe/linear/factor.hpp"
 #include "fe/linear/ordering.hpp"
@@ -67,6 +69,30 @@ TEST(TwoThreads, AssembleTheSameBitForBit) {
     check_petsc(ISEqual(first.get(), second.get(), &equal));
     EXPECT_TRUE(equal);
   }
+}
+
+TEST(TwoThreads, HoldTheSameDofs) {
+  if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes have one thread each";
+  // Rods along a bent line: a grid has stiffness along them, one where they bend in a plane.
+  constexpr int num_rods = 4500;
+  std::string deck = "BEGIN BULK\nMAT1,1,7.+10,,0.3,2700.\nPROD,1,1,1.-4\n";
+  for (int i = 0; i <= num_rods; ++i)
+    deck += "GRID," + std::to_string(i + 1) + ",," + std::to_string(0.1 * i) + "," + std::to_string(0.05 * i) + "," +
+            std::to_string(i % 3 == 0 ? 0.1 : 0.0) + "\n";
+  for (int i = 1; i <= num_rods; ++i)
+    deck += "CROD," + std::to_string(i) + ",1," + std::to_string(i) + "," + std::to_string(i + 1) + "\n";
+  const auto list = [&](int num) {
+    const Threads threads(num);
+    Diagnostics diagnostics;
+    const auto cards = nastran::read_deck_text(deck, "deck.bdf", {}, diagnostics);
+    std::vector<std::pair<int, int>> held;
+    for (const AutospcEntry& entry : Model::build(cards, {}, diagnostics).autospc())
+      held.emplace_back(entry.node, entry.component);
+    return held;
+  };
+  const auto one = list(1);
+  EXPECT_GT(one.size(), 4u * num_rods);
+  EXPECT_EQ(one, list(2));
 }
 
 TEST(TwoThreads, MultiplyTheSame) {
