@@ -122,8 +122,9 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
   C = MatrixXd::Zero(size_, W.cols());
   R = MatrixXd::Identity(W.cols(), W.cols());
   MatrixXd B_W = problem_.multiply_mass(W);
-  // What the recurrence couples first: left in, it would carry errors of the basis into the other directions.
-  const double near = is_recurrent_ ? relieve(W, B_W, C) : 0;
+  // What the recurrence couples first: left in, it would carry errors of the basis into the other directions. Not
+  // before known vectors are off, whose θ may be much larger.
+  const double near = is_recurrent_ && problem_.deflate.cols() == 0 ? relieve(W, B_W, C) : 0;
   for (int pass = 0; pass < 5 && W.cols() > 0; ++pass) {
     VectorXd squares = VectorXd::Zero(W.cols());  // of W as it was given: of what is taken off, and what is left
     if (problem_.deflate.cols() > 0) {

@@ -256,7 +256,8 @@ std::optional<KrylovResult> solve_one_vector(const KrylovProblem& problem, Mat f
 
 /// Above this size a solve of one right-hand side mostly waits for the factor's entries.
 constexpr int kBlockSize = 5000;
-/// Of vectors that large: values are right to its square, and roundoff of K alone turns them further.
+/// Of vectors that large: values are right to its square, and roundoff of K alone turns them further. Not where a shift
+/// stands for supports: what is left of stiff parts in a vector counts by their stiffness over the shift.
 constexpr double kBlockTolerance = 1e-10;
 
 /// What the vectors of Lanczos meet: replicated ones, or the rows that `domains` gives to each rank.
@@ -285,8 +286,8 @@ std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, const Ope
   blocks.num_guard = std::min(problem.num_guard, wanted - 1);
   // The vectors are the most of the memory beside the factor: for few modes a restart costs next to nothing.
   blocks.max_subspace = 11 * wanted / 5 + std::clamp(wanted, 24, 60);
-  blocks.tolerance =
-      blocks.start.rows() >= kBlockSize ? std::max(problem.tolerance, kBlockTolerance) : problem.tolerance;
+  const bool is_large = is_near && problem.shift == 0 && blocks.start.rows() >= kBlockSize;
+  blocks.tolerance = is_large ? std::max(problem.tolerance, kBlockTolerance) : problem.tolerance;
   blocks.progress = problem.progress;
   BlockLanczosResult found = solve_block_lanczos(blocks);
   if (!found.is_done) return std::nullopt;
