@@ -2,8 +2,8 @@
 /// \file Lanczos by blocks: the eigenvalues of a definite pencil nearest zero, with a solve of several right-hand sides
 /// at a time.
 ///
-/// Internal to modal. Where a sparse factor does not fit the cache a solve costs what reading the factor costs: one
-/// right-hand side 54 ms, eight 127 ms (docs/verification/speed.md). SLEPc's Krylov-Schur solves for one at a time.
+/// Internal to modal. Where a sparse factor does not fit the cache a solve costs what reading the factor costs: four
+/// right-hand sides 41 ms, eight 58 ms (docs/verification/speed.md). SLEPc's Krylov-Schur solves for one at a time.
 #include <functional>
 
 #include <Eigen/Dense>

@@ -197,7 +197,7 @@ SlepcEps set_up(const KrylovProblem& problem, Mat factor, int wanted, int subspa
 using Apply = std::function<MatrixXd(const Eigen::Ref<const MatrixXd>&)>;
 
 /// x = (λ - σ)(A - σB)⁻¹B x: removes what a semi-definite B lets into the vectors unseen (Nour-Omid et al., Math. Comp.
-/// 48 (1987) 663). A solve of eight right-hand sides costs a third of eight solves, of sixteen a quarter.
+/// 48 (1987) 663). A solve of eight right-hand sides costs a sixth of eight solves.
 void purify(const KrylovProblem& problem, const Apply& solve, const Apply& multiply_mass, KrylovResult& result) {
   const VectorXd scale = result.values.array() - problem.shift;
   constexpr Eigen::Index kBlock = 24;  // enough for the speed, few for the memory
@@ -286,7 +286,10 @@ std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, const Ope
   blocks.num_guard = std::min(problem.num_guard, wanted - 1);
   // The vectors are the most of the memory beside the factor: for few modes a restart costs next to nothing.
   blocks.max_subspace = 11 * wanted / 5 + std::clamp(wanted, 24, 60);
-  const bool is_large = is_near && problem.shift == 0 && blocks.start.rows() >= kBlockSize;
+  // Of all ranks together: they must agree.
+  PetscInt size = 0;
+  check_petsc(MatGetSize(problem.A, &size, nullptr));
+  const bool is_large = is_near && problem.shift == 0 && size >= kBlockSize;
   blocks.tolerance = is_large ? std::max(problem.tolerance, kBlockTolerance) : problem.tolerance;
   blocks.progress = problem.progress;
   BlockLanczosResult found = solve_block_lanczos(blocks);
