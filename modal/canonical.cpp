@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "fe/linear/blas.hpp"
 #include "fe/linear/petsc.hpp"
@@ -44,8 +45,9 @@ void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X) {
     inverse = cholesky.matrixU().solve(inverse);
   else
     inverse = Eigen::SelfAdjointEigenSolver<MatrixXd>(0.5 * (G + G.transpose())).operatorInverseSqrt();
-  const MatrixXd Y = X;
-  fe::multiply_dense(false, Y, inverse, 0, X);
+  MatrixXd Y(X.rows(), X.cols());
+  fe::multiply_dense(false, X, inverse, 0, Y);
+  X = std::move(Y);
 }
 
 VectorXd find_largest(const std::vector<int>& place, bool over_ranks, const Eigen::Ref<const MatrixXd>& X) {
@@ -77,10 +79,11 @@ VectorXd find_largest(const std::vector<int>& place, bool over_ranks, const Eige
   return high.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
 }
 
-void fix_signs(const std::vector<int>& place, bool over_ranks, MatrixXd& Phi) {
-  const VectorXd largest = find_largest(place, over_ranks, Phi);
+VectorXd fix_signs(const std::vector<int>& place, bool over_ranks, MatrixXd& Phi) {
+  const VectorXd sign = find_largest(place, over_ranks, Phi).unaryExpr([](double v) { return v < 0 ? -1.0 : 1.0; });
   for (Eigen::Index j = 0; j < Phi.cols(); ++j)
-    if (largest(j) < 0) Phi.col(j) *= -1;
+    if (sign(j) < 0) Phi.col(j) *= -1;
+  return sign;
 }
 
 void fix_signs(MatrixXd& Phi) {

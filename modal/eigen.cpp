@@ -64,6 +64,7 @@ detail::Restored find_soft(const fe::System& system, const EigenOptions& options
         pairs.lambda = others.lambda.head(number);
         pairs.residual = others.residual.head(number);
         pairs.Phi = others.Phi.leftCols(number);
+        pairs.M_Phi.resize(0, 0), pairs.energy_share.resize(0);
         pairs.num_rigid = std::min(number, others.num_rigid);
       }
     } catch (const ComputationError&) {

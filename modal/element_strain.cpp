@@ -178,6 +178,7 @@ void replace(const Pencil& pencil, const SoftModes& better, const fe::Reach& rea
   pairs.Phi = pairs.Phi(Eigen::all, order).eval();
   pairs.num_rigid = static_cast<int>((pairs.lambda.array() == 0).count());
   fix_signs(reach.gdofs, is_cut, pairs.Phi);
+  pairs.M_Phi.resize(0, 0), pairs.energy_share.resize(0);  // of what was before
 }
 
 }  // namespace
@@ -243,14 +244,14 @@ Restored restore_digits(const fe::System& system, int number, bool is_from_first
   const fe::Model& model = system.model;
   if (has_given_blocks(model)) return {};
   if (model.prestress() || model.omitted() || pairs.lambda.size() == 0) return {};
+  // Those below the last soft one too: what is left out of them would grow by the ratio of the eigenvalues.
+  Index num_soft = 0;
+  for (Index j = 0; j < pairs.energy_share.size(); ++j)
+    if (pairs.energy_share(j) < kSoft) num_soft = j + 1;
+  if (num_soft == 0) return {};
   const Pencil of_rows(system);
   const fe::Reach reach = fe::find_reach(model);
   const MatrixXd X_own = take_fdofs(model, of_rows.rows, reach, pairs.Phi);
-  // Those below the last soft one too: what is left out of them would grow by the ratio of the eigenvalues.
-  Index num_soft = 0;
-  for (Index j = 0; j < X_own.cols(); ++j)
-    if (std::abs(of_rows.calc_relative_energy(X_own.col(j), pairs.lambda(j))) < kSoft) num_soft = j + 1;
-  if (num_soft == 0) return {};
   // Few modes are soft: from here on vectors are whole.
   const Pencil pencil(system, VectorRows::Whole);
   const MatrixXd X = of_rows.rows.replicate(X_own.leftCols(num_soft));

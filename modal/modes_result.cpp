@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "fe/linear/blas.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/checks.hpp"
 #include "fe/matrices/reach.hpp"
@@ -26,6 +27,8 @@ EigenPairs sort_negative(EigenPairs pairs) {
   pairs.lambda = pairs.lambda(order).eval();
   pairs.residual = pairs.residual(order).eval();
   pairs.Phi = pairs.Phi(Eigen::all, order).eval();
+  if (pairs.M_Phi.cols() > 0) pairs.M_Phi = pairs.M_Phi(Eigen::all, order).eval();
+  if (pairs.energy_share.size() > 0) pairs.energy_share = pairs.energy_share(order).eval();
   return pairs;
 }
 
@@ -80,7 +83,8 @@ records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs&
   const EigenPairs& pairs = sorted ? *sorted : found;
   const fe::Reach reach = fe::find_reach(model);
   result.subcase = model.subcase().id;
-  result.mass_properties = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
+  result.mass_properties =
+      extras.mass ? *extras.mass : fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
   const int n = static_cast<int>(pairs.lambda.size());
   std::vector<const fe::Node*> grids;
   for (const auto& node : model.nodes())
@@ -105,9 +109,12 @@ records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs&
   result.frequency_hz = pairs.lambda.cwiseMax(0.0).cwiseSqrt() / (2 * M_PI);
   result.kind.assign(n, records::ModeKind::Normal);
   // Its share of M Phi: sums over ranks of products with it.
-  const MatrixXd M_Phi = fe::calc_own_mass_times(model, model.mass_kind(), reach, pairs.Phi);
+  MatrixXd made;
+  if (pairs.M_Phi.cols() != n) made = fe::calc_own_mass_times(model, model.mass_kind(), reach, pairs.Phi);
+  const MatrixXd& M_Phi = pairs.M_Phi.cols() != n ? made : pairs.M_Phi;
   const auto calc_momentum = [&](const Vector3d& point) {
-    MatrixXd L = M_Phi.transpose() * fe::take_rigid_modes(model, reach, point);
+    MatrixXd L(n, 6);
+    fe::multiply_dense(true, M_Phi, fe::take_rigid_modes(model, reach, point), 0, L);
     fe::sum_alike(L);
     return L;
   };

@@ -213,12 +213,15 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
   if (cut > k) {
     // Purification and separate Krylov runs leave the vectors orthogonal to nine digits or so: once more.
     const MatrixXd& R = rigid_.modes;
-    MatrixXd Y = X.rightCols(cut - k);
+    MatrixXd Y = k > 0 ? MatrixXd(X.rightCols(cut - k)) : std::move(X);
     if (R.cols() > 0) Y -= R * pencil_.dot(pencil_.calc_M_times(R), Y);
     const MatrixXd G = pencil_.dot(Y, pencil_.calc_M_times(Y));
     overlap_ = (G - MatrixXd::Identity(cut - k, cut - k)).cwiseAbs().maxCoeff();
     orthonormalize_ascending(G, Y);
-    X.rightCols(cut - k) = Y;
+    if (k > 0)
+      X.rightCols(cut - k) = Y;
+    else
+      X = std::move(Y);
   }
   const VectorXd weights = calc_basis_weights(model);
   for (int a = k, b = a; a < cut; a = b) {
@@ -233,33 +236,47 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
     lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
   }
   const fe::Reach reach = fe::find_reach(model);
+  MatrixXd X_g, M_X_g;  // of X, as long as it stays as it is
   if (cut > 0) {
     // Where constraints have large factors, sums over the matrix of the f-set lose digits that those over elements
     // have.
-    const MatrixXd X_g = fe::expand(model, pencil_.rows, reach, X);
+    X_g = fe::expand(model, pencil_.rows, reach, X);
+    M_X_g = fe::calc_own_mass_times(model, model.mass_kind(), reach, X_g);
     MatrixXd G(cut, cut);
-    fe::multiply_dense(true, X_g, fe::calc_own_mass_times(model, model.mass_kind(), reach, X_g), 0, G);
+    fe::multiply_dense(true, X_g, M_X_g, 0, G);
     fe::sum_alike(G);
-    if ((G - MatrixXd::Identity(cut, cut)).cwiseAbs().maxCoeff() > 1e-9) orthonormalize_ascending(G, X);
+    if ((G - MatrixXd::Identity(cut, cut)).cwiseAbs().maxCoeff() > 1e-9) {
+      orthonormalize_ascending(G, X);
+      X_g.resize(0, 0), M_X_g.resize(0, 0);
+    }
   }
 
   EigenPairs pairs;
-  X = X.middleCols(first, size).eval();
+  if (size < cut) X = X.middleCols(first, size).eval();
   pairs.lambda = lambda.segment(first, size);
   pairs.num_rigid = std::clamp(num_zero - first, 0, size);
   pairs.inertia_count = count;
   pairs.num_massless = static_cast<int>(rigid_.held.size());
   warn_of_roundoff(pencil_, pairs.lambda, X, pairs.num_rigid, said);
   worst_roundoff_ = 0;
-  for (int j = pairs.num_rigid; j < size; ++j)
-    worst_roundoff_ = std::max(worst_roundoff_, calc_roundoff(pencil_, X.col(j), pairs.lambda(j)));
+  pairs.energy_share.resize(size);
+  for (int j = 0; j < size; ++j) {
+    pairs.energy_share(j) = pencil_.calc_relative_energy(X.col(j), pairs.lambda(j));
+    if (j >= pairs.num_rigid) worst_roundoff_ = std::max(worst_roundoff_, calc_roundoff(pairs.energy_share(j)));
+  }
   MatrixXd KX = pencil_.calc_K_times(X);
   for (const auto& [f, stiffness] : springs_)  // rigid motions move them
     if (const auto i = f - pencil_.rows.first; i >= 0 && i < pencil_.num_rows()) KX.row(i) -= stiffness * X.row(i);
   pairs.residual = fe::calc_pair_residuals(pencil_.K_diagonal, pencil_.M_diagonal, pairs.lambda, X, KX,
                                            pencil_.calc_M_times(X), pencil_.kinds, pencil_.rows);
-  pairs.Phi = fe::expand(model, pencil_.rows, reach, X);
-  fix_signs(reach.gdofs, pencil_.rows.is_cut, pairs.Phi);
+  if (X_g.cols() > 0) {
+    pairs.Phi = X_g.middleCols(first, size);
+    if (options_.keeps_mass_times) pairs.M_Phi = M_X_g.middleCols(first, size);
+  } else {
+    pairs.Phi = fe::expand(model, pencil_.rows, reach, X);
+  }
+  const VectorXd sign = fix_signs(reach.gdofs, pencil_.rows.is_cut, pairs.Phi);
+  if (pairs.M_Phi.cols() > 0) pairs.M_Phi *= sign.asDiagonal();
   return pairs;
 }
 

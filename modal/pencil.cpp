@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fe/linear/blas.hpp"
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/mechanism.hpp"
 #include "fe/model/row_kinds.hpp"
@@ -160,17 +161,22 @@ MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor) {
 
 namespace {
 
-/// Of the motions of the whole.
-RigidMotions find_global_motions(const Pencil& pencil) {
+MatrixXd multiply_transposed(const MatrixXd& A, const MatrixXd& B) {
+  MatrixXd C(A.cols(), B.cols());
+  fe::multiply_dense(true, A, B, 0, C);
+  return C;
+}
+
+/// D times the rigid motions about a point, D the diagonal of K, and of these Y, those without strain.
+struct Strainless {
+  MatrixXd DB, Y;
+};
+
+Strainless find_strainless(const Pencil& pencil, const Vector3d& centre) {
   const auto& model = pencil.model;
-  const auto properties = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
-  const Vector3d centre = properties.mass > 0 ? properties.cg : calc_mean_position(model);
   const MatrixXd B = restrict_to_fdofs(model, model.calc_rigid_modes(centre));
-  RigidMotions result;
-  result.modes.resize(model.num_fdofs(), 0);
-  result.massless.resize(model.num_fdofs(), 0);
-  const MatrixXd DB = pencil.K_diagonal.asDiagonal() * B;
-  const MatrixXd D = B.transpose() * DB;
+  Strainless result{pencil.K_diagonal.asDiagonal() * B, MatrixXd(model.num_fdofs(), 0)};
+  const MatrixXd D = multiply_transposed(B, result.DB);
   const VectorXd scale = D.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
   VectorXd d;
   const MatrixXd V = calc_range(scale.asDiagonal() * D * scale.asDiagonal(), 1e-10, true, &d);
@@ -181,8 +187,8 @@ RigidMotions find_global_motions(const Pencil& pencil) {
   MatrixXd Y = B * (scale.asDiagonal() * V * d.cwiseSqrt().cwiseInverse().asDiagonal());
   VectorXd energy;
   for (int pass = 0; pass < 2; ++pass) {
-    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(Y.transpose() * pencil.calc_K_times(Y),
-                                                                    Y.transpose() * pencil.K_diagonal.asDiagonal() * Y);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(
+        multiply_transposed(Y, pencil.calc_K_times(Y)), multiply_transposed(Y, pencil.K_diagonal.asDiagonal() * Y));
     Y = (Y * solver.eigenvectors()).eval();
     energy = solver.eigenvalues();
   }
@@ -191,7 +197,21 @@ RigidMotions find_global_motions(const Pencil& pencil) {
     if (std::abs(energy(i)) < 1e-13) strainless.push_back(i);
   if (strainless.empty()) return result;
   Y = Y(Eigen::all, strainless).eval();
-  Y = (Y * find_forceless(pencil, Y)).eval();
+  result.Y = Y * find_forceless(pencil, Y);
+  return result;
+}
+
+/// Of the motions of the whole.
+RigidMotions find_global_motions(const Pencil& pencil) {
+  const auto& model = pencil.model;
+  RigidMotions result;
+  result.modes.resize(model.num_fdofs(), 0);
+  result.massless.resize(model.num_fdofs(), 0);
+  // What supports hold needs no centre of mass.
+  if (!model.fixed_dofs().empty() && find_strainless(pencil, calc_mean_position(model)).Y.cols() == 0) return result;
+  const auto properties = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
+  const Vector3d centre = properties.mass > 0 ? properties.cg : calc_mean_position(model);
+  auto [DB, Y] = find_strainless(pencil, centre);
   if (Y.cols() == 0) return result;
 
   VectorXd mass;

@@ -11,8 +11,10 @@ double calc_cluster_tolerance(const Pencil& pencil, const VectorXd& x, double la
   return std::clamp(20 * 2.2e-16 / std::max(std::abs(pencil.calc_relative_energy(x, lambda)), 1e-300), 1e-8, 1e-4);
 }
 
+double calc_roundoff(double energy_share) { return 0.02 * 2.2e-16 / std::max(energy_share, 1e-300); }
+
 double calc_roundoff(const Pencil& pencil, const VectorXd& x, double lambda) {
-  return 0.02 * 2.2e-16 / std::max(std::abs(pencil.calc_relative_energy(x, lambda)), 1e-300);
+  return calc_roundoff(pencil.calc_relative_energy(x, lambda));
 }
 
 void warn_of_roundoff(const Pencil& pencil, const VectorXd& lambda, const MatrixXd& X, int num_rigid,

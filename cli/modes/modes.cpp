@@ -43,6 +43,7 @@ modal::EigenPairs solve(const ModesOptions& options, const records::Deck& deck, 
   eigen.progress = [&](int converged, int wanted) {
     console.show_progress(fmt::format("modes: {} of {} converged", converged, wanted));
   };
+  eigen.keeps_mass_times = true;
   return modal::calc_normal_modes(model, eigen, diagnostics);
 }
 
@@ -130,9 +131,10 @@ Solved solve_task(const ModesOptions& options, const records::DynamicDeck& deck,
                                   diagnostics)
           : solve(options, deck, model, console, diagnostics);
   console.end_progress();
-  if (!options.buckling)
-    fe::report_mass(model, deck, fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero()), diagnostics);
+  const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
+  if (!options.buckling) fe::report_mass(model, deck, mass, diagnostics);
   modal::normalize(model, norm, pairs.Phi, diagnostics);
+  if (norm.kind != "MASS") pairs.M_Phi.resize(0, 0);
   if (!task.buckling) pairs = modal::sort_negative(std::move(pairs));
   if (listing) {
     listing->add_weight(model);
@@ -141,6 +143,7 @@ Solved solve_task(const ModesOptions& options, const records::DynamicDeck& deck,
   modal::ModesExtras extras{options.energies ? &deck : nullptr, options.about_grid};
   if (extras.about_grid == 0 && !options.buckling && selection)
     extras.about_grid = selection->effective_mass_grid.value_or(0);
+  extras.mass = &mass;
   extras.has_shapes = !options.output.empty() || !options.vtu.empty() || !options.compare.empty();
   solved.result = modal::make_modes_result(model, pairs, options.buckling, extras);
   solved.norm = norm.kind;

@@ -7,6 +7,7 @@
 #include "base/diagnostic.hpp"
 #include "fe/linear/own_rows.hpp"
 #include "fe/linear/ranks.hpp"
+#include "fe/linear/threads.hpp"
 
 namespace bough::fe {
 
@@ -29,6 +30,8 @@ Eigen::Vector3d sum_squares(const VectorXd& d, const VectorXd& scale, Eigen::Ind
   return sums;
 }
 
+constexpr Eigen::Index kRowsOfThread = 5000;  ///< of less no second thread takes columns
+
 double calc_residual(const Eigen::Vector3d& sums) {
   return sums(0) == 0 ? 0 : std::sqrt(sums(0)) / (std::sqrt(sums(1)) + 1e-6 * std::sqrt(sums(2)));
 }
@@ -50,10 +53,12 @@ VectorXd calc_pair_residuals(const VectorXd& K_diagonal, const VectorXd& M_diago
                              const MatrixXd& X, const MatrixXd& KX, const MatrixXd& MX, const RowKinds& kinds,
                              const OwnRows& rows) {
   MatrixXd sums(3, X.cols());
-  for (Eigen::Index j = 0; j < X.cols(); ++j) {
-    const VectorXd d = K_diagonal.cwiseAbs() + std::abs(lambda(j)) * M_diagonal.cwiseAbs();
-    sums.col(j) = sum_squares(d, fill_diagonal(d, kinds), rows.first, X.col(j), KX.col(j), lambda(j) * MX.col(j));
-  }
+  do_halves(static_cast<int>(X.cols()), X.rows() > kRowsOfThread ? 1 : static_cast<int>(X.cols()), [&](int from, int to) {
+    for (int j = from; j < to; ++j) {
+      const VectorXd d = K_diagonal.cwiseAbs() + std::abs(lambda(j)) * M_diagonal.cwiseAbs();
+      sums.col(j) = sum_squares(d, fill_diagonal(d, kinds), rows.first, X.col(j), KX.col(j), lambda(j) * MX.col(j));
+    }
+  });
   if (rows.is_cut) sum_alike(sums);
   VectorXd residual(X.cols());
   for (Eigen::Index j = 0; j < X.cols(); ++j) residual(j) = calc_residual(sums.col(j));

@@ -1,7 +1,10 @@
 #include "fe/matrices/assembly.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
+#include <span>
+#include <utility>
 
 #include "fe/linear/blas.hpp"
 #include "fe/linear/ordering.hpp"
@@ -30,34 +33,58 @@ struct Rows {
   std::vector<int> elements;  ///< those that touch the rows, ascending
 };
 
-/// The g-dofs of all that is added: elements, then others.
-using Parts = std::vector<const std::vector<int>*>;
+/// What is added, elements and others: their g-dofs, and the columns of T that these rows have, each once and ascending.
+class Parts {
+ public:
+  Parts(const SparseRows& T, std::vector<const std::vector<int>*> parts) : gdofs_(std::move(parts)) {
+    std::vector<int> seconds;
+    do_halves(size(), kLeast, [&](int from, int to) {
+      std::vector<int> columns, all;
+      for (int e = from; e < to; ++e) {
+        calc_element_columns(T, this->gdofs(e), columns);
+        sizes_[static_cast<size_t>(e)] = static_cast<int>(columns.size());
+        all.insert(all.end(), columns.begin(), columns.end());
+      }
+      (from == 0 ? columns_ : seconds) = std::move(all);
+    });
+    columns_.insert(columns_.end(), seconds.begin(), seconds.end());
+    std::partial_sum(sizes_.begin(), sizes_.end(), start_.begin() + 1);
+  }
+  int size() const { return static_cast<int>(gdofs_.size()); }
+  const std::vector<int>& gdofs(int e) const { return *gdofs_[static_cast<size_t>(e)]; }
+  std::span<const int> columns(int e) const {
+    const auto i = static_cast<size_t>(e);
+    return {columns_.data() + start_[i], columns_.data() + start_[i + 1]};
+  }
 
-Rows calc_pattern(const Parts& parts, const SparseRows& T, int first, int last) {
+ private:
+  static constexpr int kLeast = 2000;  ///< fewer are done before a thread has started
+  std::vector<const std::vector<int>*> gdofs_;
+  std::vector<int> sizes_ = std::vector<int>(gdofs_.size());
+  std::vector<std::ptrdiff_t> start_ = std::vector<std::ptrdiff_t>(gdofs_.size() + 1);
+  std::vector<int> columns_;
+};
+
+Rows calc_pattern(const Parts& parts, int num_columns, int first, int last) {
   const int num_rows = last - first;
   Rows rows;
-  // Each element's columns once; then, per own row, the elements that touch it.
-  std::vector<int> element_start{0}, element_columns, columns;
+  // Per own row, the elements that touch it.
   std::vector<int> count(num_rows + 1, 0);
-  for (int e = 0; e < static_cast<int>(parts.size()); ++e) {
-    calc_element_columns(T, *parts[e], columns);
+  for (int e = 0; e < parts.size(); ++e) {
     bool touches = false;
-    for (int c : columns)
+    for (int c : parts.columns(e))
       if (c >= first && c < last) ++count[c - first + 1], touches = true;
-    if (!touches) continue;
-    rows.elements.push_back(e);
-    element_columns.insert(element_columns.end(), columns.begin(), columns.end());
-    element_start.push_back(static_cast<int>(element_columns.size()));
+    if (touches) rows.elements.push_back(e);
   }
   std::partial_sum(count.begin(), count.end(), count.begin());
   std::vector<int> touching(count.back()), next(count.begin(), count.end() - 1);
-  for (int e = 0; e < static_cast<int>(rows.elements.size()); ++e)
-    for (int i = element_start[e]; i < element_start[e + 1]; ++i)
-      if (const int c = element_columns[i]; c >= first && c < last) touching[next[c - first]++] = e;
+  for (const int e : rows.elements)
+    for (const int c : parts.columns(e))
+      if (c >= first && c < last) touching[next[c - first]++] = e;
 
   rows.start.reserve(num_rows + 1);
   rows.same.assign(num_rows, 0);
-  std::vector<int> mark(T.cols(), -1);
+  std::vector<int> mark(static_cast<size_t>(num_columns), -1);
   for (int row = 0; row < num_rows; ++row) {
     const auto begin = static_cast<std::ptrdiff_t>(rows.columns.size());
     const auto own = touching.begin() + count[row], own_end = touching.begin() + count[row + 1];
@@ -68,10 +95,10 @@ Rows calc_pattern(const Parts& parts, const SparseRows& T, int first, int last) 
       mark[first + row] = row;
       rows.columns.push_back(first + row);
       for (auto t = own; t != own_end; ++t)
-        for (int i = element_start[*t]; i < element_start[*t + 1]; ++i)
-          if (mark[element_columns[i]] != row) {
-            mark[element_columns[i]] = row;
-            rows.columns.push_back(element_columns[i]);
+        for (const int column : parts.columns(*t))
+          if (mark[column] != row) {
+            mark[column] = row;
+            rows.columns.push_back(column);
           }
       std::sort(rows.columns.begin() + begin, rows.columns.end());
     }
@@ -118,13 +145,42 @@ void drop_zeros(Rows& rows, int first) {
   rows.start.back() = kept;
 }
 
-/// Where the runs of rows with the same elements start, and the end.
-std::vector<int> find_row_groups(const Rows& rows, int first) {
-  std::vector<int> start;
-  for (int row = 0; row < static_cast<int>(rows.same.size()); ++row)
-    if (!rows.same[row]) start.push_back(first + row);
-  start.push_back(first + static_cast<int>(rows.same.size()));
-  return start;
+/// The rows of a matrix with no room to spare.
+struct Csr {
+  std::unique_ptr<int[]> start, columns;
+  std::unique_ptr<double[]> values;
+  std::vector<int> groups;  ///< where the runs of rows with the same elements start, and the end
+};
+
+void copy_rows(const Rows& rows, int row, int entry, Csr& csr) {
+  for (size_t i = 1; i < rows.start.size(); ++i) csr.start[row + static_cast<int>(i)] = entry + rows.start[i];
+  std::copy(rows.columns.begin(), rows.columns.end(), csr.columns.get() + entry);
+  std::copy(rows.values.begin(), rows.values.end(), csr.values.get() + entry);
+}
+
+/// `first` and the rows behind it, from row number `begin` on.
+Csr join(Rows first, Rows second, int begin) {
+  BOUGH_DEMAND(first.columns.size() + second.columns.size() < 2147483647u);
+  const int num_first = static_cast<int>(first.start.size()) - 1, entries = first.start.back();
+  const size_t num_rows = first.start.size() + second.start.size() - 2;
+  Csr csr{std::make_unique_for_overwrite<int[]>(num_rows + 1),
+          std::make_unique_for_overwrite<int[]>(first.columns.size() + second.columns.size()),
+          std::make_unique_for_overwrite<double[]>(first.columns.size() + second.columns.size()),
+          {}};
+  csr.start[0] = 0;
+  const auto copy_first = [&] { copy_rows(std::exchange(first, {}), 0, 0, csr); };
+  const auto copy_second = [&] { copy_rows(std::exchange(second, {}), num_first, entries, csr); };
+  for (const Rows* rows : {&first, &second})
+    for (size_t i = 0; i < rows->same.size(); ++i)
+      if (!rows->same[i]) csr.groups.push_back(begin + (rows == &second ? num_first : 0) + static_cast<int>(i));
+  csr.groups.push_back(begin + static_cast<int>(num_rows));
+  if (second.columns.empty()) {
+    copy_first();
+    copy_second();
+  } else {
+    do_both(copy_first, copy_second);
+  }
+  return csr;
 }
 
 const std::vector<QuadraticForm>& get_forms(const Model& model) {
@@ -187,14 +243,15 @@ MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen
 Rows sum_some_rows(const Model& model, const SparseRows& T, const AddElementMatrix& add,
                    const std::vector<QuadraticForm>& forms, const Parts& parts, int first, int last) {
   const int num_elements = static_cast<int>(model.elements().size());
-  Rows rows = calc_pattern(parts, T, first, last);
+  Rows rows = calc_pattern(parts, static_cast<int>(T.cols()), first, last);
   rows.values.assign(rows.columns.size(), 0);
   ElementTransform transform;
   MatrixXd K_e;
   for (int e : rows.elements) {
-    transform.set(T, *parts[e]);
+    transform.set(T, parts.gdofs(e), parts.columns(e));
     if (e < num_elements) {
-      K_e.setZero(parts[e]->size(), parts[e]->size());
+      const auto size = static_cast<Eigen::Index>(parts.gdofs(e).size());
+      K_e.setZero(size, size);
       add(*model.elements()[e], K_e);
     } else {
       K_e = calc_form(forms[e - num_elements], 0);
@@ -207,31 +264,19 @@ Rows sum_some_rows(const Model& model, const SparseRows& T, const AddElementMatr
   return rows;
 }
 
-/// What `second`, the rows behind, adds to `first`.
-void append(Rows second, Rows& first) {
-  const int size = first.start.back();
-  BOUGH_DEMAND(first.columns.size() + second.columns.size() < 2147483647u);
-  first.columns.insert(first.columns.end(), second.columns.begin(), second.columns.end());
-  first.values.insert(first.values.end(), second.values.begin(), second.values.end());
-  first.same.insert(first.same.end(), second.same.begin(), second.same.end());
-  for (size_t i = 1; i < second.start.size(); ++i) first.start.push_back(size + second.start[i]);
-}
-
 /// Fewer rows are done before a thread has started.
 constexpr int kRowsOfThread = 5000;
 
 /// A row near the middle of [first, last) that few elements have on both sides and that begins a run of rows with the
 /// same elements; -1: none.
-int find_cut(const Parts& parts, const SparseRows& T, int first, int last) {
+int find_cut(const Parts& parts, int first, int last) {
   constexpr int kWindow = 32;
   const int middle = first + (last - first) / 2;
   int above = 0, below = 0, both = 0;
-  std::vector<int> columns;
   std::vector<std::vector<int>> touching(kWindow);  // rows from the one before the middle on
-  for (int e = 0; e < static_cast<int>(parts.size()); ++e) {
-    calc_element_columns(T, *parts[static_cast<size_t>(e)], columns);
+  for (int e = 0; e < parts.size(); ++e) {
     bool is_above = false, is_below = false;
-    for (const int c : columns) {
+    for (const int c : parts.columns(e)) {
       if (c < first || c >= last) continue;
       (c < middle ? is_above : is_below) = true;
       if (c >= middle - 1 && c < middle - 1 + kWindow) touching[static_cast<size_t>(c - middle + 1)].push_back(e);
@@ -247,15 +292,35 @@ int find_cut(const Parts& parts, const SparseRows& T, int first, int last) {
 }
 
 /// Two threads take a half each as two ranks would, where few elements touch both.
-Rows sum_rows(const Model& model, const SparseRows& T, const AddElementMatrix& add,
-              const std::vector<QuadraticForm>& forms, const Parts& parts, int first, int last) {
-  const int cut = get_num_threads() > 1 && last - first > 2 * kRowsOfThread ? find_cut(parts, T, first, last) : -1;
-  if (cut < 0) return sum_some_rows(model, T, add, forms, parts, first, last);
+Csr sum_rows(const Model& model, const SparseRows& T, const AddElementMatrix& add,
+             const std::vector<QuadraticForm>& forms, const Parts& parts, int first, int last) {
+  const int cut = get_num_threads() > 1 && last - first > 2 * kRowsOfThread ? find_cut(parts, first, last) : -1;
+  if (cut < 0) return join(sum_some_rows(model, T, add, forms, parts, first, last), {}, first);
   Rows rows, second;
   do_both([&] { rows = sum_some_rows(model, T, add, forms, parts, first, cut); },
           [&] { second = sum_some_rows(model, T, add, forms, parts, cut, last); });
-  append(std::move(second), rows);
-  return rows;
+  return join(std::move(rows), std::move(second), first);
+}
+
+/// What a matrix of one process stands on, for as long as it lives.
+PetscErrorCode destroy_csr(void* csr) {
+  delete static_cast<Csr*>(csr);
+  return 0;
+}
+
+/// A matrix on rows where they are: PETSc's own way copies them entry by entry.
+PetscMat make_matrix(Csr rows, int num_rows, int num_columns) {
+  auto csr = std::make_unique<Csr>(std::move(rows));
+  PetscMat matrix;
+  PetscHandle<PetscContainer, PetscContainerDestroy> owner;
+  check_petsc(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, num_rows, num_columns, csr->start.get(), csr->columns.get(),
+                                        csr->values.get(), matrix.out()));
+  check_petsc(PetscContainerCreate(PETSC_COMM_SELF, owner.out()));
+  check_petsc(PetscContainerSetUserDestroy(owner.get(), destroy_csr));
+  check_petsc(PetscContainerSetPointer(owner.get(), csr.release()));
+  check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(matrix.get()), "bough_rows",
+                                 reinterpret_cast<PetscObject>(owner.get())));
+  return matrix;
 }
 
 /// TᵀAT, sparse. Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an
@@ -263,28 +328,35 @@ Rows sum_rows(const Model& model, const SparseRows& T, const AddElementMatrix& a
 PetscMat assemble_sparse(const Model& model, const SparseRows& T, const AddElementMatrix& add,
                          const std::vector<QuadraticForm>& forms) {
   const PetscInt size = static_cast<PetscInt>(T.cols());
+  std::vector<const std::vector<int>*> gdofs;
+  for (const auto& element : model.elements()) gdofs.push_back(&element->gdofs());
+  for (const auto& form : forms) gdofs.push_back(&form.gdofs);
+  const Parts parts(T, std::move(gdofs));
 
   PetscMat matrix;
-  check_petsc(MatCreate(PETSC_COMM_WORLD, matrix.out()));
-  Mat A = matrix.get();
+  PetscInt first = 0, last = size;
+  std::vector<int> groups;
   const ModelShare* share = model.share();
-  const PetscInt num_own = share ? share->last_fdof - share->first_fdof : PETSC_DECIDE;
   BOUGH_DEMAND(!share || size == model.num_fdofs());
-  check_petsc(MatSetSizes(A, num_own, num_own, size, size));
-  check_petsc(MatSetType(A, MATAIJ));
-  check_petsc(MatSetUp(A));
-  PetscInt first = 0, last = 0;
-  check_petsc(MatGetOwnershipRange(A, &first, &last));
-  Parts parts;
-  for (const auto& element : model.elements()) parts.push_back(&element->gdofs());
-  for (const auto& form : forms) parts.push_back(&form.gdofs);
-  const Rows rows = sum_rows(model, T, add, forms, parts, first, last);
-  // Each does nothing for the other's type.
-  check_petsc(MatSeqAIJSetPreallocationCSR(A, rows.start.data(), rows.columns.data(), rows.values.data()));
-  check_petsc(MatMPIAIJSetPreallocationCSR(A, rows.start.data(), rows.columns.data(), rows.values.data()));
+  if (initialize_petsc().size == 1) {
+    Csr rows = sum_rows(model, T, add, forms, parts, first, last);
+    groups = std::move(rows.groups);
+    matrix = make_matrix(std::move(rows), size, size);
+  } else {
+    check_petsc(MatCreate(PETSC_COMM_WORLD, matrix.out()));
+    const PetscInt num_own = share ? share->last_fdof - share->first_fdof : PETSC_DECIDE;
+    check_petsc(MatSetSizes(matrix.get(), num_own, num_own, size, size));
+    check_petsc(MatSetType(matrix.get(), MATMPIAIJ));
+    check_petsc(MatSetUp(matrix.get()));
+    check_petsc(MatGetOwnershipRange(matrix.get(), &first, &last));
+    Csr rows = sum_rows(model, T, add, forms, parts, first, last);
+    groups = std::move(rows.groups);
+    check_petsc(MatMPIAIJSetPreallocationCSR(matrix.get(), rows.start.get(), rows.columns.get(), rows.values.get()));
+  }
+  Mat A = matrix.get();
   check_petsc(MatSetOption(A, MAT_SYMMETRIC, PETSC_TRUE));
   check_petsc(MatSetOption(A, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
-  set_row_groups(A, find_row_groups(rows, first));
+  set_row_groups(A, std::move(groups));
   if (share) set_rows_by_parts(A);
   return matrix;
 }

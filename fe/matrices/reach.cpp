@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "fe/linear/threads.hpp"
+
 namespace bough::fe {
 
 Reach find_reach(const Model& model) {
@@ -27,7 +29,13 @@ Reach find_reach(const Model& model) {
 }
 
 MatrixXd expand(const Model& model, const OwnRows& rows, const Reach& reach, const Eigen::Ref<const MatrixXd>& X) {
-  if (!rows.is_cut) return model.T() * X;
+  if (!rows.is_cut) {
+    MatrixXd U(model.num_gdofs(), X.cols());
+    do_halves(static_cast<int>(X.cols()), X.rows() > 5000 ? 1 : static_cast<int>(X.cols()), [&](int from, int to) {
+      U.middleCols(from, to - from).noalias() = model.T() * X.middleCols(from, to - from);
+    });
+    return U;
+  }
   constexpr Eigen::Index kAtOnce = 4;
   MatrixXd field = MatrixXd::Zero(static_cast<Eigen::Index>(reach.gdofs.size()), X.cols());
   for (Eigen::Index c = 0; c < X.cols(); c += kAtOnce) {

@@ -14,6 +14,15 @@ void calc_element_columns(const SparseRows& T, const std::vector<int>& gdofs, st
 
 void ElementTransform::set(const SparseRows& T, const std::vector<int>& gdofs) {
   calc_element_columns(T, gdofs, columns_);
+  read(T, gdofs);
+}
+
+void ElementTransform::set(const SparseRows& T, const std::vector<int>& gdofs, std::span<const int> columns) {
+  columns_.assign(columns.begin(), columns.end());
+  read(T, gdofs);
+}
+
+void ElementTransform::read(const SparseRows& T, const std::vector<int>& gdofs) {
   const auto find = [this](int column) {
     return static_cast<int>(std::lower_bound(columns_.begin(), columns_.end(), column) - columns_.begin());
   };

@@ -1,5 +1,6 @@
 #pragma once
 /// \file One element's part of u_g = T q_f, for element-wise TᵀKT.
+#include <span>
 #include <vector>
 
 #include <Eigen/Sparse>
@@ -18,6 +19,8 @@ class ElementTransform {
  public:
   /// Reads the rows of T of an element.
   void set(const SparseRows& T, const std::vector<int>& gdofs);
+  /// The same where calc_element_columns() was called before.
+  void set(const SparseRows& T, const std::vector<int>& gdofs, std::span<const int> columns);
   /// The f-dofs the element touches, ascending.
   const std::vector<int>& columns() const { return columns_; }
   /// T_eᵀ K_e T_e, columns().size() square; valid until the next call.
@@ -29,6 +32,9 @@ class ElementTransform {
   const VectorXd& project_diagonal(const Eigen::Ref<const VectorXd>& d);
 
  private:
+  /// With the columns known.
+  void read(const SparseRows& T, const std::vector<int>& gdofs);
+
   std::vector<int> columns_;
   std::vector<int> selected_;  ///< per element dof: position in columns_, -1 for a zero row
   bool is_selection_ = false;  ///< every row of T_e is zero or one unit entry
