@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "fe/linear/blas.hpp"
@@ -34,7 +35,7 @@ void turn(const MatrixXd& S, Eigen::Index size, MatrixXd& V) {
 
 class BlockLanczos {
  public:
-  explicit BlockLanczos(const BlockLanczosProblem& problem);
+  explicit BlockLanczos(BlockLanczosProblem problem);
   BlockLanczosResult run();
 
  private:
@@ -55,7 +56,8 @@ class BlockLanczos {
   void restart();
   BlockLanczosResult finish(bool is_done);
 
-  const BlockLanczosProblem& problem_;
+  BlockLanczosProblem problem_;
+  int width_;                  ///< columns of the start
   MatrixXd V_;                 ///< n x room; the first size_ columns are the basis
   MatrixXd T_;                 ///< Vᵀ B A⁻¹B V, room x room
   MatrixXd R_;                 ///< A⁻¹B V = V T + next_ R_ in the columns of the last block
@@ -69,15 +71,17 @@ class BlockLanczos {
   int num_solves_ = 0;
 };
 
-BlockLanczos::BlockLanczos(const BlockLanczosProblem& problem) : problem_(problem) {
-  const auto n = problem.start.rows(), b = problem.start.cols();
-  const Eigen::Index asked = problem.max_subspace > 0 ? problem.max_subspace : 2 * problem.num_wanted + 8 * b;
-  const auto room = std::max(asked, problem.num_wanted + 2 * b) + b;
+BlockLanczos::BlockLanczos(BlockLanczosProblem problem)
+    : problem_(std::move(problem)), width_(static_cast<int>(problem_.start.cols())) {
+  const auto n = problem_.start.rows(), b = problem_.start.cols();
+  const Eigen::Index asked = problem_.max_subspace > 0 ? problem_.max_subspace : 2 * problem_.num_wanted + 8 * b;
+  const auto room = std::max(asked, problem_.num_wanted + 2 * b) + b;
   V_.resize(n, room);
   T_ = MatrixXd::Zero(room, room);
   // Through A⁻¹B once: a start outside the range of A⁻¹B stays in the vectors where B is singular.
-  next_ = problem.solve(problem.multiply_operator ? problem.multiply_operator(problem.start)
-                                                  : problem.multiply_mass(problem.start));
+  next_ = problem_.solve(problem_.multiply_operator ? problem_.multiply_operator(problem_.start)
+                                                    : problem_.multiply_mass(problem_.start));
+  problem_.start.resize(0, 0);
   ++num_solves_;
   MatrixXd C, R;
   orthonormalize(next_, C, R);
@@ -136,6 +140,7 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
     const MatrixXd C_pass = multiply_transposed(V, B_W);
     subtract(V, C_pass, W);
     C += C_pass * R;
+    B_W.resize(0, 0);  // as large as what comes
     B_W = problem_.multiply_mass(W);
     const MatrixXd G = multiply_transposed(W, B_W);
     squares += C_pass.colwise().squaredNorm().transpose() + G.diagonal();
@@ -200,7 +205,7 @@ int BlockLanczos::calc_ritz() {
 
 void BlockLanczos::restart() {
   // A few more than wanted: those between keep the wanted ones converging.
-  const int b = static_cast<int>(problem_.start.cols());
+  const int b = width_;
   const int keep = std::min(size_ - b, problem_.num_wanted + std::max(b, (size_ - problem_.num_wanted) / 3));
   turn(S_.leftCols(keep), size_, V_);
   T_.setZero();
@@ -223,7 +228,7 @@ BlockLanczosResult BlockLanczos::finish(bool is_done) {
 
 BlockLanczosResult BlockLanczos::run() {
   if (next_.cols() == 0) return {VectorXd(0), MatrixXd(V_.rows(), 0), num_solves_, true};  // A⁻¹B is nothing
-  const int room = static_cast<int>(V_.cols() - problem_.start.cols());
+  const int room = static_cast<int>(V_.cols()) - width_;
   for (int restarts = 0; next_.cols() > 0; ++restarts) {
     int check = 2 * problem_.num_wanted;  // before, the Ritz values tell nothing
     while (size_ + next_.cols() <= room && next_.cols() > 0) {
@@ -243,6 +248,6 @@ BlockLanczosResult BlockLanczos::run() {
 
 }  // namespace
 
-BlockLanczosResult solve_block_lanczos(const BlockLanczosProblem& problem) { return BlockLanczos(problem).run(); }
+BlockLanczosResult solve_block_lanczos(BlockLanczosProblem problem) { return BlockLanczos(std::move(problem)).run(); }
 
 }  // namespace bough::modal::detail

@@ -18,6 +18,7 @@ struct EigenOptions {
   bool check_inertia = true;  ///< Sylvester count: no mode missed below the highest
   std::function<void(int converged, int wanted)> progress;
   const fe::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K of the system, where the caller has it: saves one
+  int least_rows_to_release = 500000;  ///< from so many f-dofs on K gives its memory back while Lanczos runs
   bool keeps_mass_times = false;                ///< the pairs keep M Φ, where it is made: saves making it again
 };
 

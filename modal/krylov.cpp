@@ -200,7 +200,7 @@ using Apply = std::function<MatrixXd(const Eigen::Ref<const MatrixXd>&)>;
 /// 48 (1987) 663). A solve of eight right-hand sides costs a sixth of eight solves.
 void purify(const KrylovProblem& problem, const Apply& solve, const Apply& multiply_mass, KrylovResult& result) {
   const VectorXd scale = result.values.array() - problem.shift;
-  constexpr Eigen::Index kBlock = 24;  // enough for the speed, few for the memory
+  constexpr Eigen::Index kBlock = 8;  // as many as a solution takes at once
   for (Eigen::Index first = 0; first < scale.size(); first += kBlock) {
     auto X = result.vectors.middleCols(first, std::min(kBlock, scale.size() - first));
     X = solve(multiply_mass(X)) * scale.segment(first, X.cols()).asDiagonal();
@@ -292,25 +292,33 @@ std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, const Ope
   const bool is_large = is_near && problem.shift == 0 && size >= kBlockSize;
   blocks.tolerance = is_large ? std::max(problem.tolerance, kBlockTolerance) : problem.tolerance;
   blocks.progress = problem.progress;
-  BlockLanczosResult found = solve_block_lanczos(blocks);
+  const bool positive_only = blocks.positive_only;
+  BlockLanczosResult found = solve_block_lanczos(std::move(blocks));
   if (!found.is_done) return std::nullopt;
   // θ beyond the rank of B are roundoff.
   KrylovResult result;
   const double largest = found.theta.size() > 0 ? found.theta.cwiseAbs().maxCoeff() : 0;
   std::vector<int> kept;
   for (int i = 0; i < found.theta.size(); ++i)
-    if (std::abs(found.theta(i)) > 1e-15 * largest && (!blocks.positive_only || found.theta(i) > 0)) kept.push_back(i);
+    if (std::abs(found.theta(i)) > 1e-15 * largest && (!positive_only || found.theta(i) > 0)) kept.push_back(i);
   const VectorXd theta = found.theta(kept);
   result.values = is_near ? VectorXd(theta.cwiseInverse().array() + problem.shift) : theta;
   result.vectors = kept.size() == static_cast<std::size_t>(found.theta.size()) ? std::move(found.X)
                                                                                : MatrixXd(found.X(Eigen::all, kept));
+  found.X.resize(0, 0);
+  fe::release_freed_memory();  // of the vectors that are left out
   if (is_near) purify(problem, by.solve, by.multiply_mass, result);
   if (by.domains) result.vectors = by.domains->to_rows(result.vectors);
   return result;
 }
 
 std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, Mat factor, int wanted) {
-  return solve_blocks(problem, {solve_by(factor), multiply_by(problem.B), multiply_by(problem.A)}, wanted);
+  const Operators by{solve_by(factor), multiply_by(problem.B), multiply_by(problem.A)};
+  if (!problem.release || problem.spectrum != Spectrum::NearShift) return solve_blocks(problem, by, wanted);
+  problem.release();
+  auto result = solve_blocks(problem, by, wanted);
+  if (!result) problem.restore();
+  return result;
 }
 
 /// Whether LLᵀ of A went through although A is singular, for roundoff that is positive: then the solution of a load on

@@ -45,6 +45,9 @@ struct KrylovProblem {
   int block = 0;               ///< columns of the blocks, as many as a root has copies; 0: what is fastest
   KrylovMethod method = KrylovMethod::Fastest;
   std::function<void(int converged, int wanted)> progress;
+  /// Where vectors are whole: from `release` on A is not needed any more, `restore` asks for it back. The caller brings
+  /// it back in the end, when the factor's memory is free again.
+  std::function<void()> release, restore;
 };
 
 struct KrylovResult {

@@ -110,8 +110,9 @@ records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs&
   result.kind.assign(n, records::ModeKind::Normal);
   // Its share of M Phi: sums over ranks of products with it.
   MatrixXd made;
-  if (pairs.M_Phi.cols() != n) made = fe::calc_own_mass_times(model, model.mass_kind(), reach, pairs.Phi);
-  const MatrixXd& M_Phi = pairs.M_Phi.cols() != n ? made : pairs.M_Phi;
+  const bool has_it = pairs.M_Phi.rows() == pairs.Phi.rows() && pairs.M_Phi.cols() == n;
+  if (!has_it) made = fe::calc_own_mass_times(model, model.mass_kind(), reach, pairs.Phi);
+  const MatrixXd& M_Phi = has_it ? pairs.M_Phi : made;
   const auto calc_momentum = [&](const Vector3d& point) {
     MatrixXd L(n, 6);
     fe::multiply_dense(true, M_Phi, fe::take_rigid_modes(model, reach, point), 0, L);

@@ -5,6 +5,8 @@
 
 #include "fe/linear/blas.hpp"
 #include "fe/linear/low_rank_sum.hpp"
+#include "fe/linear/memory_need.hpp"
+#include "fe/matrices/assembly.hpp"
 #include "fe/matrices/reach.hpp"
 #include "fe/matrices/system.hpp"
 #include "modal/canonical.hpp"
@@ -63,6 +65,7 @@ EigenPairs NormalModes::answer_nothing(Diagnostics& said) {
 void NormalModes::hold_massless(Diagnostics& said) {
   if (rigid_.held.empty()) return;
   pencil_.K = fe::copy(pencil_.K.get());  // the system's own stays as it is
+  has_own_stiffness_ = false;
   springs_ = add_springs(rigid_.held, pencil_.K_diagonal, pencil_.K.get());
   std::string where;
   for (const int f : rigid_.held) where += (where.empty() ? "" : ", ") + describe(pencil_.model, f);
@@ -100,6 +103,17 @@ void NormalModes::make_solver(KrylovMethod method) {
   problem.tolerance = options_.tolerance;
   problem.method = method;
   problem.progress = options_.progress;
+  // Beside the factor and the vectors of Lanczos K is an eighth of the memory; it is made again in a thirtieth of the
+  // time.
+  if (has_own_stiffness_ && pencil_.size() >= options_.least_rows_to_release) {
+    problem.release = [this] { is_away_ = fe::drop_stiffness(pencil_.K.get()); };
+    problem.restore = [this] {
+      if (!std::exchange(is_away_, false)) return;
+      fe::release_freed_memory();  // of the factor, and of what assembly takes
+      fe::restore_stiffness(pencil_.model, pencil_.K.get());
+      fe::release_freed_memory();
+    };
+  }
   solver_.emplace(problem, std::max(0, range_.last - num_rigid()));
 }
 

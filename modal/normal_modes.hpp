@@ -86,6 +86,8 @@ class NormalModes {
   const EigenOptions& options_;
   const fe::SymmetricFactor* factor_;  ///< LLᵀ of K where there is one
   Pencil pencil_;
+  bool has_own_stiffness_ = !pencil_.model.checked_stiffness();  ///< K as assemble_stiffness() makes it
+  bool is_away_ = false;                                         ///< K, while Lanczos runs
   RigidMotions rigid_;                           ///< `modes` with the rows of the pencil's vectors
   std::vector<std::pair<int, double>> springs_;  ///< f-dofs of the massless motions, held by them in K
   fe::PetscMat supported_;                       ///< K with springs at the supports too

@@ -141,7 +141,17 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
   if (shift == 0 && !problem_.supported && problem_.factor && problem_.factor->is_definite())
     krylov.factor = problem_.factor->get();
   krylov.progress = problem_.progress;
-  auto result = solve_krylov(krylov);
+  krylov.release = problem_.release;
+  krylov.restore = problem_.restore;
+  auto result = [&] {
+    try {
+      return solve_krylov(krylov);
+    } catch (...) {
+      if (krylov.restore) krylov.restore();  // another way may be tried
+      throw;
+    }
+  }();
+  if (krylov.restore) krylov.restore();
   if (result.is_singular) return false;
   if (problem_.supported) take_out(problem_.rows, problem_.M, problem_.rigid, result.vectors);
   roots.add(result.values, result.vectors);

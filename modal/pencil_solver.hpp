@@ -23,6 +23,7 @@ struct PencilProblem {
   double tolerance = 1e-12;
   KrylovMethod method = KrylovMethod::Fastest;
   std::function<void(int converged, int wanted)> progress = {};
+  std::function<void()> release = {}, restore = {};  ///< of K, where it may be away (KrylovProblem)
 };
 
 class PencilSolver {

@@ -25,6 +25,11 @@ modal::EigenOptions choose_eigen_options(const ModesOptions& options, const reco
     eigen.min_hz = card.f1;
     eigen.max_hz = card.f2;
     if (!options.buckling && counts_whatever_range(card)) eigen.min_hz = eigen.max_hz = std::nullopt;
+    if (options.max_hz && options.number == 0 && eigen.num_modes > 0)
+      diagnostics.note("cli.method-number", deck.locate(card.at),
+                       fmt::format("{} {}: ND = {} bounds the range of --max-hz too", card.is_eigrl ? "EIGRL" : "EIGR",
+                                   card.sid, card.num_modes),
+                       "--number goes before it");
     break;
   }
   if (options.min_hz) eigen.min_hz = options.min_hz;

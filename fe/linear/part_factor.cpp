@@ -26,7 +26,7 @@ cholmod_sparse PartFactor::as_sparse() {
   matrix.p = start_.data();
   matrix.i = row_.data();
   matrix.x = value_.data();
-  matrix.stype = 1;
+  matrix.stype = -1;  // CHOLMOD factors the lower triangle where it is, the upper one transposed
   matrix.itype = CHOLMOD_INT;
   matrix.xtype = CHOLMOD_REAL;
   matrix.dtype = CHOLMOD_DOUBLE;
@@ -42,15 +42,16 @@ void PartFactor::take(const MatrixRows& A, const std::vector<PetscInt>& rows, st
   start_.assign(1, 0);
   row_.clear();
   value_.clear();
-  std::size_t most = rows.size();  // of the upper triangle
+  std::size_t most = rows.size();  // of the lower triangle
   for (const PetscInt row : rows) most += static_cast<std::size_t>(A.start[row + 1] - A.start[row]);
   row_.reserve(most / 2);
   value_.reserve(most / 2);
   for (std::size_t j = 0; j < rows.size(); ++j) {
+    const bool is_between = j >= num_own;
     for (PetscInt k = A.start[rows[j]]; k < A.start[rows[j] + 1]; ++k) {
       const int i = A.column[k] <= last ? place[static_cast<std::size_t>(A.column[k])] : -1;
-      if (i < 0 || i > static_cast<int>(j)) continue;  // of the other part, or below the diagonal
-      const bool is_between = i >= static_cast<int>(num_own), is_diagonal = i == static_cast<int>(j);
+      if (i < static_cast<int>(j)) continue;  // of the other part, or above the diagonal
+      const bool is_diagonal = i == static_cast<int>(j);
       row_.push_back(i);
       value_.push_back(is_between ? share * A.value[k] + (is_diagonal ? delta(i - static_cast<int>(num_own)) : 0.0)
                                   : A.value[k]);

@@ -54,7 +54,7 @@ class PartFactor {
   void backward(const Eigen::MatrixXd& X_s, Eigen::Ref<Eigen::MatrixXd> X);
 
  private:
-  /// The upper triangle of `rows`, of which the first are the part's own.
+  /// The lower triangle of `rows`, of which the first are the part's own.
   void take(const MatrixRows& A, const std::vector<PetscInt>& rows, std::size_t num_own, const Eigen::VectorXd& delta,
             double share);
   cholmod_sparse as_sparse();

@@ -5,29 +5,13 @@
 #include <vector>
 
 #include "base/diagnostic.hpp"
-
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(BOUGH_NARROW)
-#define BOUGH_WIDE __attribute__((target("avx2,fma")))
-#endif
-#define BOUGH_INLINE inline __attribute__((always_inline))
+#include "fe/linear/wide.hpp"
 
 namespace bough::fe {
 
 using Eigen::Index;
 
 namespace {
-
-using Two = double __attribute__((vector_size(16)));
-using Four = double __attribute__((vector_size(32)));
-
-template <int W>
-struct Register {
-  using type = Four;
-};
-template <>
-struct Register<2> {
-  using type = Two;
-};
 
 /// M right-hand sides of one row.
 template <int W, int M>
@@ -111,7 +95,6 @@ struct Kernels {
 using Kernel = const double* (*)(const double* L, Index ld, Index num, double* z);
 
 #ifdef BOUGH_WIDE
-const bool kHasWide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 #define BOUGH_KERNEL(name, M)                                                                 \
   BOUGH_WIDE const double* name##_wide_##M(const double* L, Index ld, Index num, double* z) { \
     return Kernels<4, M>::name(L, ld, num, z);                                                \
@@ -119,7 +102,7 @@ const bool kHasWide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("
   const double* name##_narrow_##M(const double* L, Index ld, Index num, double* z) {          \
     return Kernels<2, M>::name(L, ld, num, z);                                                \
   }                                                                                           \
-  Kernel get_##name##_##M() { return kHasWide ? name##_wide_##M : name##_narrow_##M; }
+  Kernel get_##name##_##M() { return has_wide() ? name##_wide_##M : name##_narrow_##M; }
 #else
 #define BOUGH_KERNEL(name, M)                                                        \
   const double* name##_narrow_##M(const double* L, Index ld, Index num, double* z) { \

@@ -9,14 +9,13 @@
 #include "fe/linear/blas.hpp"
 #include "fe/linear/ordering.hpp"
 #include "fe/linear/threads.hpp"
+#include "fe/matrices/csr_matrix.hpp"
 #include "fe/matrices/factor_need.hpp"
 #include "fe/matrices/reach.hpp"
 #include "fe/model/element_transform.hpp"
 
 namespace bough::fe {
 namespace {
-
-static_assert(sizeof(PetscInt) == sizeof(int), "rows are handed to PETSc as int");
 
 SparseRows make_identity(int size) {
   SparseRows identity(size, size);
@@ -145,13 +144,6 @@ void drop_zeros(Rows& rows, int first) {
   rows.start.back() = kept;
 }
 
-/// The rows of a matrix with no room to spare.
-struct Csr {
-  std::unique_ptr<int[]> start, columns;
-  std::unique_ptr<double[]> values;
-  std::vector<int> groups;  ///< where the runs of rows with the same elements start, and the end
-};
-
 void copy_rows(const Rows& rows, int row, int entry, Csr& csr) {
   for (size_t i = 1; i < rows.start.size(); ++i) csr.start[row + static_cast<int>(i)] = entry + rows.start[i];
   std::copy(rows.columns.begin(), rows.columns.end(), csr.columns.get() + entry);
@@ -160,13 +152,9 @@ void copy_rows(const Rows& rows, int row, int entry, Csr& csr) {
 
 /// `first` and the rows behind it, from row number `begin` on.
 Csr join(Rows first, Rows second, int begin) {
-  BOUGH_DEMAND(first.columns.size() + second.columns.size() < 2147483647u);
   const int num_first = static_cast<int>(first.start.size()) - 1, entries = first.start.back();
   const size_t num_rows = first.start.size() + second.start.size() - 2;
-  Csr csr{std::make_unique_for_overwrite<int[]>(num_rows + 1),
-          std::make_unique_for_overwrite<int[]>(first.columns.size() + second.columns.size()),
-          std::make_unique_for_overwrite<double[]>(first.columns.size() + second.columns.size()),
-          {}};
+  Csr csr = make_csr(num_rows, first.columns.size() + second.columns.size());
   csr.start[0] = 0;
   const auto copy_first = [&] { copy_rows(std::exchange(first, {}), 0, 0, csr); };
   const auto copy_second = [&] { copy_rows(std::exchange(second, {}), num_first, entries, csr); };
@@ -302,25 +290,14 @@ Csr sum_rows(const Model& model, const SparseRows& T, const AddElementMatrix& ad
   return join(std::move(rows), std::move(second), first);
 }
 
-/// What a matrix of one process stands on, for as long as it lives.
-PetscErrorCode destroy_csr(void* csr) {
-  delete static_cast<Csr*>(csr);
-  return 0;
-}
-
-/// A matrix on rows where they are: PETSc's own way copies them entry by entry.
-PetscMat make_matrix(Csr rows, int num_rows, int num_columns) {
-  auto csr = std::make_unique<Csr>(std::move(rows));
-  PetscMat matrix;
-  PetscHandle<PetscContainer, PetscContainerDestroy> owner;
-  check_petsc(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, num_rows, num_columns, csr->start.get(), csr->columns.get(),
-                                        csr->values.get(), matrix.out()));
-  check_petsc(PetscContainerCreate(PETSC_COMM_SELF, owner.out()));
-  check_petsc(PetscContainerSetUserDestroy(owner.get(), destroy_csr));
-  check_petsc(PetscContainerSetPointer(owner.get(), csr.release()));
-  check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(matrix.get()), "bough_rows",
-                                 reinterpret_cast<PetscObject>(owner.get())));
-  return matrix;
+/// Rows [first, last) of TᵀAT; last < 0: all.
+Csr sum_rows(const Model& model, const SparseRows& T, const AddElementMatrix& add,
+             const std::vector<QuadraticForm>& forms, int first = 0, int last = -1) {
+  std::vector<const std::vector<int>*> gdofs;
+  for (const auto& element : model.elements()) gdofs.push_back(&element->gdofs());
+  for (const auto& form : forms) gdofs.push_back(&form.gdofs);
+  return sum_rows(model, T, add, forms, Parts(T, std::move(gdofs)), first,
+                  last < 0 ? static_cast<int>(T.cols()) : last);
 }
 
 /// TᵀAT, sparse. Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an
@@ -328,28 +305,23 @@ PetscMat make_matrix(Csr rows, int num_rows, int num_columns) {
 PetscMat assemble_sparse(const Model& model, const SparseRows& T, const AddElementMatrix& add,
                          const std::vector<QuadraticForm>& forms) {
   const PetscInt size = static_cast<PetscInt>(T.cols());
-  std::vector<const std::vector<int>*> gdofs;
-  for (const auto& element : model.elements()) gdofs.push_back(&element->gdofs());
-  for (const auto& form : forms) gdofs.push_back(&form.gdofs);
-  const Parts parts(T, std::move(gdofs));
-
   PetscMat matrix;
-  PetscInt first = 0, last = size;
   std::vector<int> groups;
   const ModelShare* share = model.share();
   BOUGH_DEMAND(!share || size == model.num_fdofs());
   if (initialize_petsc().size == 1) {
-    Csr rows = sum_rows(model, T, add, forms, parts, first, last);
+    Csr rows = sum_rows(model, T, add, forms);
     groups = std::move(rows.groups);
-    matrix = make_matrix(std::move(rows), size, size);
+    matrix = make_matrix(std::move(rows), size);
   } else {
+    PetscInt first = 0, last = 0;
     check_petsc(MatCreate(PETSC_COMM_WORLD, matrix.out()));
     const PetscInt num_own = share ? share->last_fdof - share->first_fdof : PETSC_DECIDE;
     check_petsc(MatSetSizes(matrix.get(), num_own, num_own, size, size));
     check_petsc(MatSetType(matrix.get(), MATMPIAIJ));
     check_petsc(MatSetUp(matrix.get()));
     check_petsc(MatGetOwnershipRange(matrix.get(), &first, &last));
-    Csr rows = sum_rows(model, T, add, forms, parts, first, last);
+    Csr rows = sum_rows(model, T, add, forms, first, last);
     groups = std::move(rows.groups);
     check_petsc(MatMPIAIJSetPreallocationCSR(matrix.get(), rows.start.get(), rows.columns.get(), rows.values.get()));
   }
@@ -374,11 +346,23 @@ PetscMat assemble(const Model& model, DofSet set, MatrixKind kind, const AddElem
                   join(calc_wide_part(model, *split, add, forms), 1, of_forms, 1));
 }
 
+namespace {
+
+AddElementMatrix add_stiffness_of(const Model& model) {
+  return [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); };
+}
+
+}  // namespace
+
 PetscMat assemble_stiffness(const Model& model, DofSet set) {
   if (set == DofSet::Free) require_memory_for_factor(model);
-  return assemble(
-      model, set, MatrixKind::Stiffness,
-      [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); }, get_forms(model));
+  return assemble(model, set, MatrixKind::Stiffness, add_stiffness_of(model), get_forms(model));
+}
+
+bool drop_stiffness(Mat K) { return !find_low_rank(K) && drop_entries(K); }
+
+void restore_stiffness(const Model& model, Mat K) {
+  fill_entries(K, sum_rows(model, model.T(), add_stiffness_of(model), get_forms(model)));
 }
 
 PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind) {

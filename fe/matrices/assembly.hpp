@@ -19,6 +19,10 @@ PetscMat assemble(const Model& model, DofSet set, MatrixKind kind, const AddElem
 /// K (with K_G0 of a prestressed model), or M (times WTMASS).
 PetscMat assemble_stiffness(const Model& model, DofSet set);
 PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind);
+/// Gives the memory of K of the f-set back to the system as long as nobody reads it, until restore_stiffness() makes it
+/// again, bit for bit. False, and nothing happens, where K has a part of low rank or is on several processes.
+bool drop_stiffness(Mat K);
+void restore_stiffness(const Model& model, Mat K);
 /// The viscous damping B of dampers and bushes.
 PetscMat assemble_damping(const Model& model, DofSet set);
 /// Products with the g-set mass matrix without forming it: M X, num_gdofs x k, replicated on every rank. O(elements k).

@@ -55,11 +55,17 @@ struct Mat1 {
   CardLocation at;
 };
 
+/// Four times zero: where a section gives no points for stress (Eigen sets nothing by itself).
+inline std::array<Eigen::Vector2d, 4> make_no_points() {
+  const Eigen::Vector2d zero = Eigen::Vector2d::Zero();
+  return {zero, zero, zero, zero};
+}
+
 struct Pbar {
   int id = 0, mid = 0;
   double A = 0, I1 = 0, I2 = 0, I12 = 0, J = 0, nsm = 0;
   std::optional<double> k1, k2;               ///< shear factors; empty = no shear flexibility
-  std::array<Eigen::Vector2d, 4> recovery{};  ///< C D E F
+  std::array<Eigen::Vector2d, 4> recovery = make_no_points();  ///< C D E F
   CardLocation at;
 };
 
@@ -75,7 +81,7 @@ struct Pbarl {
 struct PbeamStation {
   double x_over_L = 0;
   double A = 0, I1 = 0, I2 = 0, I12 = 0, J = 0, nsm = 0;
-  std::array<Eigen::Vector2d, 4> recovery{};
+  std::array<Eigen::Vector2d, 4> recovery = make_no_points();
 };
 struct Pbeam {
   int id = 0, mid = 0;

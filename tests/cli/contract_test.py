@@ -133,6 +133,13 @@ class Decks(ProgramTest):
         self.assertIn("METHOD = 7 names no EIGRL", result.stderr)
         self.assertIn("[cli.no-method]", result.stderr)
 
+    def test_a_number_of_the_deck_bounds_the_range_and_says_so(self):
+        self.write("beam.bdf", BEAM.replace("EIGRL,1,,,3", "EIGRL,1,0.,1.,2"))
+        result = self.bough("modes", "beam.bdf", "--max-hz", 1e9, "--json")
+        self.assertEqual(2, len(json.loads(result.stdout)["frequency_hz"]))
+        self.assertRegex(result.stderr, r"beam.bdf:\d+: note: EIGRL 1: ND = 2 bounds the range .*cli.method-number")
+        self.assertNotIn("method-number", self.bough("modes", "beam.bdf", "--max-hz", 1e9, "-n", 6).stderr)
+
     def test_a_range_without_an_inside_is_an_error(self):
         self.write("beam.bdf", BEAM)
         self.fails(1, "modes", "beam.bdf", "--min-hz", 20, "--max-hz", 10, says=["from 20 to 10"], error="cli.bad-range")

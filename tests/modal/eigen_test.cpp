@@ -1,5 +1,6 @@
 /// The eigenvalue solver itself: repeated roots, ranges, small and singular problems, messages.
 #include "modal/eigen.hpp"
+#include "fe/matrices/assembly.hpp"
 #include "modal/roundoff.hpp"
 
 #include <gmock/gmock.h>
@@ -281,6 +282,46 @@ TEST(Eigen, MissedModesAreNotPassedOver) {
   maker.deck.params.push_back({"AUTOSPC", "NO", {}});
   Diagnostics diagnostics;
   EXPECT_THAT(get_error([&] { solve(maker.deck, make_options(2), diagnostics); }), HasSubstr("modal.missed-modes"));
+}
+
+records::Deck make_long_beam() { return test::make_cantilever(kSection, 1, 1000).deck; }
+
+TEST(Eigen, StiffnessGivesItsMemoryBackAndIsMadeAgain) {
+  Diagnostics diagnostics;
+  const auto model = fe::Model::build(make_long_beam(), {}, diagnostics);
+  const fe::System system(model);
+  const MatrixXd X = MatrixXd::Random(model.num_fdofs(), 2), before = fe::multiply(system.K.get(), X);
+  ASSERT_TRUE(fe::drop_stiffness(system.K.get()));
+  EXPECT_LT(fe::multiply(system.K.get(), X).norm(), 0.5 * before.norm());  // what is left: parts of pages
+  fe::restore_stiffness(model, system.K.get());
+  EXPECT_EQ(fe::multiply(system.K.get(), X), before);
+  EXPECT_FALSE(fe::drop_stiffness(fe::copy(system.K.get()).get()));  // on arrays of PETSc's
+}
+
+TEST(Eigen, ModesAreTheSameWithTheStiffnessAway) {
+  Diagnostics diagnostics;
+  auto options = make_options(6);
+  const auto kept = solve(make_long_beam(), options, diagnostics);
+  options.least_rows_to_release = 0;
+  const auto away = solve(make_long_beam(), options, diagnostics);
+  EXPECT_EQ(away.lambda, kept.lambda);
+  EXPECT_EQ(away.Phi, kept.Phi);
+  EXPECT_EQ(away.residual, kept.residual);
+  EXPECT_EQ(away.inertia_count, 6);
+}
+
+TEST(Eigen, KeepsMassTimesModesWhereAsked) {
+  Diagnostics diagnostics;
+  const auto model = fe::Model::build(make_cantilevers(3).deck, {}, diagnostics);
+  auto options = make_options(7);
+  EXPECT_EQ(calc_normal_modes(model, options, diagnostics).M_Phi.cols(), 0);
+  options.keeps_mass_times = true;
+  const auto pairs = calc_normal_modes(model, options, diagnostics);
+  const MatrixXd M_Phi = fe::calc_mass_times(model, model.mass_kind(), pairs.Phi);
+  ASSERT_EQ(pairs.M_Phi.cols(), 7);
+  EXPECT_LT((pairs.M_Phi - M_Phi).norm(), 1e-12 * M_Phi.norm());
+  ASSERT_EQ(pairs.energy_share.size(), 7);
+  EXPECT_GT(pairs.energy_share.minCoeff(), 1e-14);
 }
 
 }  // namespace

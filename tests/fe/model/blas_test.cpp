@@ -25,6 +25,17 @@ TEST(MultiplyDense, IsTheProductHoweverTall) {
       MatrixXd result = B;
       multiply_dense(false, A, C, 1, result);
       EXPECT_LT((result - sum).cwiseAbs().maxCoeff(), 1e-13) << rows << " " << threads;
+      // Narrow ones: four columns at a time of both and single ones.
+      for (const Eigen::Index columns : {1, 3, 4, 7, 8, 9}) {
+        const auto C_few = C(Eigen::seqN(1, 38), Eigen::all).leftCols(columns);
+        MatrixXd narrow = B;
+        multiply_dense(false, A.middleCols(1, 38), C_few, 1, narrow.leftCols(columns));
+        EXPECT_LT((narrow.leftCols(columns) - B.leftCols(columns) - A.middleCols(1, 38) * C_few).cwiseAbs().maxCoeff(),
+                  1e-13);
+        EXPECT_EQ(narrow.rightCols(10 - columns), B.rightCols(10 - columns));
+        multiply_dense(false, A.middleCols(1, 38), C_few, 0, narrow.leftCols(columns));
+        EXPECT_LT((narrow.leftCols(columns) - A.middleCols(1, 38) * C_few).cwiseAbs().maxCoeff(), 1e-13);
+      }
     }
   }
 }

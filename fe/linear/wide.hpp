@@ -1,0 +1,31 @@
+#pragma once
+/// \file Loops for processors with AVX2 beside loops for all others: templates on the numbers in a register, of which
+/// one is compiled with BOUGH_WIDE and taken where has_wide().
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(BOUGH_NARROW)
+#define BOUGH_WIDE __attribute__((target("avx2,fma")))
+#endif
+#define BOUGH_INLINE inline __attribute__((always_inline))
+
+namespace bough::fe {
+
+/// W numbers side by side.
+template <int W>
+struct Register;
+template <>
+struct Register<4> {
+  using type = double __attribute__((vector_size(32)));
+};
+template <>
+struct Register<2> {
+  using type = double __attribute__((vector_size(16)));
+};
+
+#ifdef BOUGH_WIDE
+inline bool has_wide() {
+  static const bool has = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  return has;
+}
+#endif
+
+}  // namespace bough::fe
