@@ -3,8 +3,9 @@
 
 usage: unity_groups.py ROOT MAX_LINES < paths
 
-Names of anonymous namespaces are those that collide when two files become one translation unit: with each other, or
-with what a later file means by the same word and finds in a header. A file joins none that defines a name it uses.
+Names of anonymous namespaces are those that collide when two files become one translation unit: with each other, with
+what a later file means by the same word and finds in a header, or with a function that the header of an earlier file
+declares. A file joins none that defines a name it uses, or whose headers declare one that it defines.
 """
 import os
 import re
@@ -18,6 +19,8 @@ NAME = re.compile(r"(\w+)\s*(?:\(|=|\{|;|\[)")
 CONSTANT = re.compile(r"\bk[A-Z]\w*")
 WORD = re.compile(r"\b[A-Za-z_]\w*")
 COMMENT = re.compile(r"//[^\n]*")
+INCLUDE = re.compile(r'^#include "([^"]+)"', re.M)
+DECLARED = re.compile(r"^(?!using |namespace |#|//|struct |class |enum |template )[A-Za-z_][\w:<>,&* ]*?[ &*](\w+)\(", re.M)
 TEST = re.compile(r"^(?:TEST|TEST_F|TEST_P|TYPED_TEST)\((\w+),", re.M)
 
 
@@ -55,21 +58,37 @@ def find_words(text):
     return set(WORD.findall(COMMENT.sub("", QUOTED.sub('""', text))))
 
 
+def find_declared(root, text, known):
+    """The functions that headers of the project declare for this text, and those that they include."""
+    names = set()
+    for header in INCLUDE.findall(text):
+        if header not in known:
+            known[header] = set()
+            path = os.path.join(root, header)
+            if os.path.exists(path):
+                inside = open(path, encoding="utf-8").read()
+                known[header] = set(DECLARED.findall(inside)) | find_declared(root, inside, known)
+        names |= known[header]
+    return names
+
+
 def sort_into_groups(root, paths, max_lines):
     """First fit among the groups of the same upper folder, in the order of paths: neighbours first."""
-    groups = []
+    groups, known = [], {}
     for path in sorted(paths):
         text = open(path, encoding="utf-8").read()
         names, words, lines = find_names(text), find_words(text), text.count("\n")
         room = os.path.relpath(path, root).split(os.sep)[0]
         for group in groups:
-            if group["room"] == room and group["lines"] + lines <= max_lines and not group["names"] & words:
+            if group["room"] == room and group["lines"] + lines <= max_lines and not group["names"] & words \
+                    and not group["declared"] & names:
                 break
         else:
-            group = {"room": room, "lines": 0, "names": set(), "paths": []}
+            group = {"room": room, "lines": 0, "names": set(), "declared": set(), "paths": []}
             groups.append(group)
         group["lines"] += lines
         group["names"] |= names
+        group["declared"] |= find_declared(root, text, known)
         group["paths"].append(path)
     return groups
 

@@ -155,19 +155,35 @@ void NormalModes::find_first() {
     if (!(lowest > 0) || (shift_ <= 10 * lowest && shift_ >= 1e-5 * lowest)) break;
     shift_ = 0.1 * lowest;
   }
-  find_negative();
+  if (pencil_.model.prestress()) find_negative();
+}
+
+/// A shift that makes K + shift M definite, shift_ or larger; 0: none of those tried does.
+double NormalModes::find_definite_shift() const {
+  const auto is_above = [&](double shift) { return count_roots_below(pencil_.K.get(), pencil_.M.get(), -shift) == 0; };
+  double shift = shift_;
+  for (int attempt = 0; attempt < 30 && !is_above(shift); ++attempt) shift *= 4;
+  return shift == shift_ || is_above(shift) ? shift : 0;
 }
 
 /// Stress may leave a free body roots below zero (fe.preload-tips): the shift goes below the lowest of them.
 void NormalModes::find_negative() {
-  if (!pencil_.model.prestress()) return;
-  const auto is_above = [&](double shift) { return count_roots_below(pencil_.K.get(), pencil_.M.get(), -shift) == 0; };
-  double shift = shift_;
-  for (int attempt = 0; attempt < 30 && !is_above(shift); ++attempt) shift *= 4;
-  if (shift == shift_ || !is_above(shift)) return;
+  const double shift = find_definite_shift();
+  if (!(shift > shift_)) return;
   shift_ = shift;
   found_ = {VectorXd(0), MatrixXd(pencil_.num_rows(), 0)};
   add_roots(found_, std::max(0, range_.last - num_rigid()) + 2, 2);
+}
+
+/// A spring may leave single roots so far below zero that Lanczos sees nothing of them from near the others: `missing`
+/// more by a shift below all, then back. False where there is no such shift.
+bool NormalModes::add_far_below(int missing) {
+  const double near = shift_, far = shift_ > 0 ? find_definite_shift() : 0;
+  if (!(far > near)) return false;
+  shift_ = far;
+  add_roots(found_, missing, 0);
+  shift_ = near;
+  return true;
 }
 
 RootSearchResult NormalModes::search() {
@@ -303,6 +319,7 @@ EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnost
   make_solver(method);
   find_first();
   auto result = search();
+  if (result.is_missing && add_far_below(std::max(1, result.count - result.cut))) result = search();
   for (int cut = -1; fit_range(num_rigid() + result.cut) && result.cut > cut;) {
     cut = result.cut;
     result = search();

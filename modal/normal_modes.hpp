@@ -58,7 +58,9 @@ class NormalModes {
   /// False when `definite_only` and the shifted stiffness is not definite.
   bool add_roots(Roots& roots, int number, int guard, bool definite_only = false);
   void find_first();
+  double find_definite_shift() const;
   void find_negative();
+  bool add_far_below(int missing);
   RootSearchResult search();
   bool fit_range(int cut);
   bool has_every_root();

@@ -40,7 +40,8 @@ VectorXd OwnRows::dot_columns(const Eigen::Ref<const MatrixXd>& X, const Eigen::
 }
 
 MatrixXd OwnRows::multiply(Mat A, const Eigen::Ref<const MatrixXd>& X) const {
-  if (!is_cut || X.cols() == 0) return fe::multiply(A, X);
+  if (!is_cut) return fe::multiply(A, X);
+  if (X.cols() == 0) return X;
   PetscMat dense, product;
   const auto m = static_cast<PetscInt>(X.cols());
   MatrixXd own = X;

@@ -12,7 +12,7 @@
 namespace bough::fe {
 namespace {
 
-std::string show(double value) {
+std::string show_number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
@@ -90,7 +90,7 @@ Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<i
     if (suport.strain_energy[j] <= kMechanismEnergy * diagonal) continue;
     const auto [grid, component] = model.describe_fdof(suport.fdofs[static_cast<std::size_t>(j)]);
     const std::string what = "the motion of SUPORT " + name_suport(grid, component) + " strains the model: energy " +
-                             show(suport.strain_energy[j]) + " for a unit, epsilon " + show(suport.epsilon);
+                             show_number(suport.strain_energy[j]) + " for a unit, epsilon " + show_number(suport.epsilon);
     const std::string advice =
         "SUPORT must hold a free body in a statically determinate way; look for SPC, grounded "
         "springs or too many dofs";
@@ -98,7 +98,7 @@ Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<i
       throw InputError(
           "fe.suport-strained", where,
           "PARAM,INREL,-2 is for a free body, this one is held: a rigid motion, at " + name_suport(grid, component) +
-              ", strains it with energy " + show(suport.strain_energy[j]) + " for a unit",
+              ", strains it with energy " + show_number(suport.strain_energy[j]) + " for a unit",
           model.subcase().spc != 0
               ? "take out SPC = " + std::to_string(model.subcase().spc) + " and grounded springs, or leave out INREL"
               : "look for grounded springs, or leave out INREL");

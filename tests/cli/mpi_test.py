@@ -26,6 +26,12 @@ class Ranks(ProgramTest):
         np.testing.assert_allclose(found[1]["eigenvalue"], found[0]["eigenvalue"], rtol=1e-9)
         np.testing.assert_allclose(found[1]["effective_mass"], found[0]["effective_mass"], atol=1e-8)
 
+    def test_a_range_without_a_mode(self):
+        for n in (1, 2):
+            result = self.bough("modes", "boom.bdf", "--max-hz", 1e-3, "--json", "-o", "m.h5", launcher=launch(n))
+            self.assertEqual([], json.loads(result.stdout)["frequency_hz"])
+            self.assertIn("[modal.empty-range]", result.stderr)
+
     def test_frequency(self):
         """A beam with a damper, residual vectors of its load and of the damper."""
         with open(self.path("boom.bdf")) as f:

@@ -284,6 +284,28 @@ TEST(Eigen, MissedModesAreNotPassedOver) {
   EXPECT_THAT(get_error([&] { solve(maker.deck, make_options(2), diagnostics); }), HasSubstr("modal.missed-modes"));
 }
 
+/// A spring to ground pulls far below zero: Lanczos from just below the first root does not see that root.
+TEST(Eigen, FindsARootFarBelowZero) {
+  for (const int elements : {60, 200}) {
+    auto maker = test::make_cantilever(kSection, 1, elements);
+    records::ScalarSpring spring;
+    spring.id = 900;
+    spring.k = -3e8;
+    spring.g1 = elements / 2 + 1;
+    spring.c1 = 1;
+    maker.deck.springs.push_back(spring);
+    Diagnostics diagnostics;
+    const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+    for (const int number : {1, 3, 5}) {  // bending comes in pairs
+      const auto pairs = calc_normal_modes(model, make_options(number), diagnostics);
+      ASSERT_EQ(pairs.lambda.size(), number);
+      EXPECT_LT(pairs.lambda(0), -1e8);
+      EXPECT_LT(pairs.residual.maxCoeff(), 1e-8);
+      EXPECT_EQ(pairs.inertia_count, number);
+    }
+  }
+}
+
 records::Deck make_long_beam() { return test::make_cantilever(kSection, 1, 1000).deck; }
 
 TEST(Eigen, StiffnessGivesItsMemoryBackAndIsMadeAgain) {
