@@ -25,11 +25,6 @@ modal::EigenOptions choose_eigen_options(const ModesOptions& options, const reco
     eigen.min_hz = card.f1;
     eigen.max_hz = card.f2;
     if (!options.buckling && counts_whatever_range(card)) eigen.min_hz = eigen.max_hz = std::nullopt;
-    if (options.max_hz && options.number == 0 && eigen.num_modes > 0)
-      diagnostics.note("cli.method-number", deck.locate(card.at),
-                       fmt::format("{} {}: ND = {} bounds the range of --max-hz too", card.is_eigrl ? "EIGRL" : "EIGR",
-                                   card.sid, card.num_modes),
-                       "--number goes before it");
     break;
   }
   if (options.min_hz) eigen.min_hz = options.min_hz;
@@ -40,6 +35,20 @@ modal::EigenOptions choose_eigen_options(const ModesOptions& options, const reco
   if (options.number > 0) eigen.num_modes = options.number;
   if (eigen.num_modes == 0 && !eigen.max_hz) eigen.num_modes = 10;
   return eigen;
+}
+
+void note_method_number(const ModesOptions& options, const records::Deck& deck, int method, int found,
+                        Diagnostics& diagnostics) {
+  if (!options.max_hz || options.number > 0) return;
+  for (const auto& card : deck.eigen_methods) {
+    if (method != 0 && card.sid != method) continue;
+    if (card.num_modes > 0 && !card.is_lowest_only && found >= card.num_modes)
+      diagnostics.note("cli.method-number", deck.locate(card.at),
+                       fmt::format("{} {}: ND = {} bounds the range of --max-hz too; there may be more modes in it",
+                                   card.is_eigrl ? "EIGRL" : "EIGR", card.sid, card.num_modes),
+                       "--number goes before it");
+    return;
+  }
 }
 
 bool counts_whatever_range(const records::EigenMethod& card) {

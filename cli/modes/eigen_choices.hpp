@@ -28,6 +28,10 @@ struct ModesOptions : CommonOptions {
 modal::EigenOptions choose_eigen_options(const ModesOptions& options, const records::Deck& deck, int method,
                                          Diagnostics& diagnostics);
 
+/// A note where the number of the deck's card bounds a range of the command line: as many modes were found.
+void note_method_number(const ModesOptions& options, const records::Deck& deck, int method, int found,
+                        Diagnostics& diagnostics);
+
 /// EIGR of the methods that compute every root: ND then asks for the lowest whatever F1 and F2 say.
 bool counts_whatever_range(const records::EigenMethod& card);
 

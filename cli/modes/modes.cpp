@@ -44,7 +44,9 @@ modal::EigenPairs solve(const ModesOptions& options, const records::Deck& deck, 
     console.show_progress(fmt::format("modes: {} of {} converged", converged, wanted));
   };
   eigen.keeps_mass_times = true;
-  return modal::calc_normal_modes(model, eigen, diagnostics);
+  auto pairs = modal::calc_normal_modes(model, eigen, diagnostics);
+  note_method_number(options, deck, model.subcase().method, static_cast<int>(pairs.lambda.size()), diagnostics);
+  return pairs;
 }
 
 /// One table of the verb: the subcase whose constraints hold, and with --buckling its load.
@@ -91,6 +93,7 @@ modal::EigenPairs solve_with_residuals(const ModesOptions& options, const record
     console.show_progress(fmt::format("modes: {} of {} converged", converged, wanted));
   };
   auto pairs = modal::calc_normal_modes(system, eigen, diagnostics);
+  note_method_number(options, deck, model.subcase().method, static_cast<int>(pairs.lambda.size()), diagnostics);
   const auto loads = modal::response::collect_residual_loads(
       model, deck, records::DynamicSubcase(model.subcase(), selection), diagnostics);
   diagnostics.throw_if_errors();

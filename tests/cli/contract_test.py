@@ -139,6 +139,7 @@ class Decks(ProgramTest):
         self.assertEqual(2, len(json.loads(result.stdout)["frequency_hz"]))
         self.assertRegex(result.stderr, r"beam.bdf:\d+: note: EIGRL 1: ND = 2 bounds the range .*cli.method-number")
         self.assertNotIn("method-number", self.bough("modes", "beam.bdf", "--max-hz", 1e9, "-n", 6).stderr)
+        self.assertNotIn("method-number", self.bough("modes", "beam.bdf", "--max-hz", 1e-3).stderr)
 
     def test_a_range_without_an_inside_is_an_error(self):
         self.write("beam.bdf", BEAM)
