@@ -279,6 +279,8 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
       orthonormalize_ascending(G, X);
       X_g.resize(0, 0), M_X_g.resize(0, 0);
     }
+    constexpr int kMostKept = 60;  // of more the memory counts
+    if (cut > kMostKept) X_g.resize(0, 0), M_X_g.resize(0, 0);
   }
 
   EigenPairs pairs;
