@@ -79,11 +79,10 @@ VectorXd find_largest(const std::vector<int>& place, bool over_ranks, const Eige
   return high.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
 }
 
-VectorXd fix_signs(const std::vector<int>& place, bool over_ranks, MatrixXd& Phi) {
-  const VectorXd sign = find_largest(place, over_ranks, Phi).unaryExpr([](double v) { return v < 0 ? -1.0 : 1.0; });
+void fix_signs(const std::vector<int>& place, bool over_ranks, MatrixXd& Phi) {
+  const VectorXd largest = find_largest(place, over_ranks, Phi);
   for (Eigen::Index j = 0; j < Phi.cols(); ++j)
-    if (sign(j) < 0) Phi.col(j) *= -1;
-  return sign;
+    if (largest(j) < 0) Phi.col(j) *= -1;
 }
 
 void fix_signs(MatrixXd& Phi) {

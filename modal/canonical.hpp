@@ -25,8 +25,7 @@ void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X);
 /// Makes the component of largest magnitude of each column positive, the first among those within 1e-6 of it.
 void fix_signs(MatrixXd& Phi);
 /// The same of rows that ranks share: `place` says which each of this rank's is, and the ranks together have all.
-/// Returns what each column was multiplied by, 1 or -1.
-VectorXd fix_signs(const std::vector<int>& place, bool over_ranks, MatrixXd& Phi);
+void fix_signs(const std::vector<int>& place, bool over_ranks, MatrixXd& Phi);
 
 /// Of each column over all ranks the entry of largest magnitude, the first (by `place`, of every row of X) among those
 /// within 1e-6 of it; zero where there is none. Collective.

@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 
+#include "fe/linear/memory_need.hpp"
 #include "modal/element_strain.hpp"
 #include "modal/normal_modes.hpp"
 #include "modal/null_motions.hpp"
@@ -64,7 +65,7 @@ detail::Restored find_soft(const fe::System& system, const EigenOptions& options
         pairs.lambda = others.lambda.head(number);
         pairs.residual = others.residual.head(number);
         pairs.Phi = others.Phi.leftCols(number);
-        pairs.M_Phi.resize(0, 0), pairs.energy_share.resize(0);
+        pairs.modal_mass.resize(0), pairs.energy_share.resize(0);
         pairs.num_rigid = std::min(number, others.num_rigid);
       }
     } catch (const ComputationError&) {
@@ -138,6 +139,7 @@ EigenPairs calc_normal_modes(const fe::System& system, const EigenOptions& optio
   check_request(system.model, options);
   detail::initialize_slepc();
   auto answer = find_answer(system, options);
+  if (answer.pairs.Phi.cols() > detail::kColumnsAtOnce) fe::release_freed_memory();
   const auto restored = find_soft(system, options, answer.pairs);
   for (const auto& item : answer.said.items())
     if (!restored.is_done || item.id != "modal.roundoff") diagnostics.add(item);

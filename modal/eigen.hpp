@@ -19,7 +19,6 @@ struct EigenOptions {
   std::function<void(int converged, int wanted)> progress;
   const fe::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K of the system, where the caller has it: saves one
   int least_rows_to_release = 500000;  ///< from so many f-dofs on K gives its memory back while Lanczos runs
-  bool keeps_mass_times = false;                ///< the pairs keep M Φ, where it is made: saves making it again
 };
 
 /// K φ = λ M φ, φᵀMφ = 1, ascending λ. Sign rule: the component of largest magnitude (first by g-dof among those
@@ -28,7 +27,7 @@ struct EigenPairs {
   VectorXd lambda;         ///< n; rigid modes are exactly 0
   MatrixXd Phi;            ///< num_gdofs x n in basic, constrained rows zero, dependent rows recovered; of a model
                            ///< by parts the rows that fe::find_reach() lists (fe/matrices/reach.hpp)
-  MatrixXd M_Phi;          ///< as Phi, this rank's share of M Φ (a sum over ranks); empty where it is not kept
+  VectorXd modal_mass;     ///< φᵀMφ, 1 but for roundoff; empty: not known
   VectorXd energy_share;   ///< |φᵀKφ| / Σ K_ii φ_i²: near 1e-16 K has no digit of a mode left; empty: not known
   VectorXd residual;       ///< |Kφ - λMφ| / |Kφ|; for rigid modes over the K-norm scale
   int num_rigid = 0;       ///< zero eigenvalues, first

@@ -127,10 +127,7 @@ class SoftModes {
     const fe::Reach reach = fe::find_reach(model);
     MatrixXd X_g = model.T() * X_;
     if (model.share()) X_g = X_g(reach.gdofs, Eigen::all).eval();
-    MatrixXd G(X_.cols(), X_.cols());
-    fe::multiply_dense(true, X_g, fe::calc_own_mass_times(model, model.mass_kind(), reach, X_g), 0, G);
-    fe::sum_alike(G);
-    orthonormalize_ascending(G, X_);
+    orthonormalize_ascending(fe::calc_mass_gram(model, model.mass_kind(), reach, X_g), X_);
     const auto strain = calc_element_strain(pencil_.model, pencil_.model.T() * X_, true);
     MatrixXd V;
     theta_ = calc_graded_eigenvalues(strain.energy, V);
@@ -178,7 +175,7 @@ void replace(const Pencil& pencil, const SoftModes& better, const fe::Reach& rea
   pairs.Phi = pairs.Phi(Eigen::all, order).eval();
   pairs.num_rigid = static_cast<int>((pairs.lambda.array() == 0).count());
   fix_signs(reach.gdofs, is_cut, pairs.Phi);
-  pairs.M_Phi.resize(0, 0), pairs.energy_share.resize(0);  // of what was before
+  pairs.modal_mass.resize(0), pairs.energy_share.resize(0);  // of what was before
 }
 
 }  // namespace

@@ -11,7 +11,9 @@
 
 #include "base/diagnostic.hpp"
 #include "fe/linear/factor.hpp"
+#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/memory_need.hpp"
+#include "fe/linear/ordering.hpp"
 #include "fe/linear/own_rows.hpp"
 #include "fe/linear/subdomains.hpp"
 #include "fe/matrices/assembly.hpp"
@@ -141,7 +143,10 @@ fe::SymmetricFactor make_pivoted_factor(const KrylovProblem& problem) {
 fe::PetscMat make_definite_factor(const KrylovProblem& problem) {
   if (problem.spectrum != Spectrum::NearShift) return fe::factor_definite(problem.B);
   if (problem.shift == 0) return fe::factor_definite(problem.A);
-  return fe::factor_definite(fe::add(problem.A, -problem.shift, problem.B).get());
+  const fe::PetscMat shifted = fe::add(problem.A, -problem.shift, problem.B);
+  fe::PetscMat factor = fe::factor_definite(shifted.get());
+  fe::copy_row_groups(fe::get_sparse(shifted.get()), fe::get_sparse(problem.A));  // the count takes its dissection
+  return factor;
 }
 
 /// SLEPc, set up with a factor of ours or, without one, with MUMPS; empty when MUMPS finds the matrix singular or SLEPc
@@ -214,6 +219,9 @@ Apply multiply_by(Mat A) {
   return [A](const Eigen::Ref<const MatrixXd>& X) { return fe::multiply(A, X); };
 }
 
+/// Of the largest 1/(λ - shift): smaller ones have no digit, and beyond the rank of B are roundoff (1.5e-15 was seen).
+constexpr double kNoDigit = 1e-14;
+
 /// Nothing when SLEPc gives up: a subspace beyond the rank of B, where its inner product is roundoff.
 std::optional<KrylovResult> solve_one_vector(const KrylovProblem& problem, Mat factor, int wanted, int room) {
   // 2.6 vectors a mode: the lowest modes of a plate are there before the first restart.
@@ -241,11 +249,10 @@ std::optional<KrylovResult> solve_one_vector(const KrylovProblem& problem, Mat f
     result.vectors.col(i) = fe::gather(x.get());
   }
   if (problem.spectrum != Spectrum::NearShift) return result;
-  // 1/(λ - shift) beyond the rank of B are roundoff, as in solve_blocks.
   const VectorXd distance = (result.values.array() - problem.shift).abs();
   std::vector<int> kept;
   for (PetscInt i = 0; i < converged; ++i)
-    if (1e-15 * distance(i) < distance.minCoeff()) kept.push_back(i);
+    if (kNoDigit * distance(i) < distance.minCoeff()) kept.push_back(i);
   if (static_cast<PetscInt>(kept.size()) < converged) {
     result.values = VectorXd(result.values(kept));
     result.vectors = MatrixXd(result.vectors(Eigen::all, kept));
@@ -295,12 +302,11 @@ std::optional<KrylovResult> solve_blocks(const KrylovProblem& problem, const Ope
   const bool positive_only = blocks.positive_only;
   BlockLanczosResult found = solve_block_lanczos(std::move(blocks));
   if (!found.is_done) return std::nullopt;
-  // θ beyond the rank of B are roundoff.
   KrylovResult result;
   const double largest = found.theta.size() > 0 ? found.theta.cwiseAbs().maxCoeff() : 0;
   std::vector<int> kept;
   for (int i = 0; i < found.theta.size(); ++i)
-    if (std::abs(found.theta(i)) > 1e-15 * largest && (!positive_only || found.theta(i) > 0)) kept.push_back(i);
+    if (std::abs(found.theta(i)) > kNoDigit * largest && (!positive_only || found.theta(i) > 0)) kept.push_back(i);
   const VectorXd theta = found.theta(kept);
   result.values = is_near ? VectorXd(theta.cwiseInverse().array() + problem.shift) : theta;
   result.vectors = kept.size() == static_cast<std::size_t>(found.theta.size()) ? std::move(found.X)

@@ -27,7 +27,7 @@ EigenPairs sort_negative(EigenPairs pairs) {
   pairs.lambda = pairs.lambda(order).eval();
   pairs.residual = pairs.residual(order).eval();
   pairs.Phi = pairs.Phi(Eigen::all, order).eval();
-  if (pairs.M_Phi.cols() > 0) pairs.M_Phi = pairs.M_Phi(Eigen::all, order).eval();
+  if (pairs.modal_mass.size() > 0) pairs.modal_mass = pairs.modal_mass(order).eval();
   if (pairs.energy_share.size() > 0) pairs.energy_share = pairs.energy_share(order).eval();
   return pairs;
 }
@@ -108,19 +108,16 @@ records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs&
   result.eigenvalue = pairs.lambda;
   result.frequency_hz = pairs.lambda.cwiseMax(0.0).cwiseSqrt() / (2 * M_PI);
   result.kind.assign(n, records::ModeKind::Normal);
-  // Its share of M Phi: sums over ranks of products with it.
-  MatrixXd made;
-  const bool has_it = pairs.M_Phi.rows() == pairs.Phi.rows() && pairs.M_Phi.cols() == n;
-  if (!has_it) made = fe::calc_own_mass_times(model, model.mass_kind(), reach, pairs.Phi);
-  const MatrixXd& M_Phi = has_it ? pairs.M_Phi : made;
+  const VectorXd modal_mass = pairs.modal_mass.size() == n
+                                  ? pairs.modal_mass
+                                  : fe::calc_modal_mass(model, model.mass_kind(), reach, pairs.Phi);
   const auto calc_momentum = [&](const Vector3d& point) {
     MatrixXd L(n, 6);
-    fe::multiply_dense(true, M_Phi, fe::take_rigid_modes(model, reach, point), 0, L);
+    const MatrixXd Phi_R = fe::take_rigid_modes(model, reach, point);
+    fe::multiply_dense(true, pairs.Phi, fe::calc_own_mass_times(model, model.mass_kind(), reach, Phi_R), 0, L);
     fe::sum_alike(L);
     return L;
   };
-  VectorXd modal_mass = pairs.Phi.cwiseProduct(M_Phi).colwise().sum();
-  fe::sum_alike(modal_mass);
   result.modal_mass = modal_mass;
   result.effective_mass = modal_mass.cwiseInverse().asDiagonal() * calc_momentum(Vector3d::Zero()).cwiseAbs2();
   if (extras.energies_of != nullptr) result.energies = calc_mode_energies(model, *extras.energies_of, pairs.Phi);

@@ -30,6 +30,11 @@ std::vector<std::pair<int, double>> add_springs(const std::vector<int>& dofs, co
   return springs;
 }
 
+/// What many vectors had: the next ones are longer and would not fit where these were.
+void release_columns(Eigen::Index number) {
+  if (number > kColumnsAtOnce) fe::release_freed_memory();
+}
+
 }  // namespace
 
 void NormalModes::add_supports() {
@@ -231,9 +236,27 @@ EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
   Found found{VectorXd(cut), MatrixXd(pencil_.num_rows(), cut), k, num_rigid() + num_zero_};
   for (int i = 0; i < cut; ++i) found.lambda(i) = value(i);
   found.X << rigid_.modes.leftCols(k), found_.X.leftCols(cut - k);
+  found_.X.resize(0, 0);
+  release_columns(cut);
   found.first = std::min(range_.first, cut);
   found.size = std::clamp(range_.last, found.first, cut) - found.first;
   return finish_pairs(std::move(found), count, said);
+}
+
+/// Of some columns at a time.
+VectorXd NormalModes::calc_residuals(const VectorXd& lambda, const MatrixXd& X) const {
+  VectorXd residual(X.cols());
+  for (Eigen::Index c = 0; c < X.cols(); c += kColumnsAtOnce) {
+    const auto num = std::min(kColumnsAtOnce, X.cols() - c);
+    const auto some = X.middleCols(c, num);
+    MatrixXd KX = pencil_.calc_K_times(some);
+    for (const auto& [f, stiffness] : springs_)  // rigid motions move them
+      if (const auto i = f - pencil_.rows.first; i >= 0 && i < pencil_.num_rows()) KX.row(i) -= stiffness * some.row(i);
+    residual.segment(c, num) =
+        fe::calc_pair_residuals(pencil_.K_diagonal, pencil_.M_diagonal, lambda.segment(c, num), some, KX,
+                                pencil_.calc_M_times(some), pencil_.kinds, pencil_.rows);
+  }
+  return residual;
 }
 
 EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) {
@@ -245,7 +268,7 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
     const MatrixXd& R = rigid_.modes;
     MatrixXd Y = k > 0 ? MatrixXd(X.rightCols(cut - k)) : std::move(X);
     if (R.cols() > 0) Y -= R * pencil_.dot(pencil_.calc_M_times(R), Y);
-    const MatrixXd G = pencil_.dot(Y, pencil_.calc_M_times(Y));
+    const MatrixXd G = pencil_.calc_mass_gram(Y);
     overlap_ = (G - MatrixXd::Identity(cut - k, cut - k)).cwiseAbs().maxCoeff();
     orthonormalize_ascending(G, Y);
     if (k > 0)
@@ -253,6 +276,7 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
     else
       X = std::move(Y);
   }
+  release_columns(cut);
   const VectorXd weights = calc_basis_weights(model);
   for (int a = k, b = a; a < cut; a = b) {
     if (a < num_zero) {
@@ -266,25 +290,25 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
     lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
   }
   const fe::Reach reach = fe::find_reach(model);
-  MatrixXd X_g, M_X_g;  // of X, as long as it stays as it is
+  EigenPairs pairs;
+  pairs.Phi = fe::expand(model, pencil_.rows, reach, X);
   if (cut > 0) {
     // Where constraints have large factors, sums over the matrix of the f-set lose digits that those over elements
     // have.
-    X_g = fe::expand(model, pencil_.rows, reach, X);
-    M_X_g = fe::calc_own_mass_times(model, model.mass_kind(), reach, X_g);
-    MatrixXd G(cut, cut);
-    fe::multiply_dense(true, X_g, M_X_g, 0, G);
-    fe::sum_alike(G);
+    const MatrixXd G = fe::calc_mass_gram(model, model.mass_kind(), reach, pairs.Phi);
     if ((G - MatrixXd::Identity(cut, cut)).cwiseAbs().maxCoeff() > 1e-9) {
       orthonormalize_ascending(G, X);
-      X_g.resize(0, 0), M_X_g.resize(0, 0);
+      pairs.Phi = fe::expand(model, pencil_.rows, reach, X);
+    } else {
+      pairs.modal_mass = G.diagonal();
     }
-    constexpr int kMostKept = 60;  // of more the memory counts
-    if (cut > kMostKept) X_g.resize(0, 0), M_X_g.resize(0, 0);
   }
 
-  EigenPairs pairs;
-  if (size < cut) X = X.middleCols(first, size).eval();
+  if (size < cut) {
+    X = X.middleCols(first, size).eval();
+    pairs.Phi = pairs.Phi.middleCols(first, size).eval();
+    if (pairs.modal_mass.size() > 0) pairs.modal_mass = pairs.modal_mass.segment(first, size).eval();
+  }
   pairs.lambda = lambda.segment(first, size);
   pairs.num_rigid = std::clamp(num_zero - first, 0, size);
   pairs.inertia_count = count;
@@ -296,19 +320,8 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
     pairs.energy_share(j) = pencil_.calc_relative_energy(X.col(j), pairs.lambda(j));
     if (j >= pairs.num_rigid) worst_roundoff_ = std::max(worst_roundoff_, calc_roundoff(pairs.energy_share(j)));
   }
-  MatrixXd KX = pencil_.calc_K_times(X);
-  for (const auto& [f, stiffness] : springs_)  // rigid motions move them
-    if (const auto i = f - pencil_.rows.first; i >= 0 && i < pencil_.num_rows()) KX.row(i) -= stiffness * X.row(i);
-  pairs.residual = fe::calc_pair_residuals(pencil_.K_diagonal, pencil_.M_diagonal, pairs.lambda, X, KX,
-                                           pencil_.calc_M_times(X), pencil_.kinds, pencil_.rows);
-  if (X_g.cols() > 0) {
-    pairs.Phi = X_g.middleCols(first, size);
-    if (options_.keeps_mass_times) pairs.M_Phi = M_X_g.middleCols(first, size);
-  } else {
-    pairs.Phi = fe::expand(model, pencil_.rows, reach, X);
-  }
-  const VectorXd sign = fix_signs(reach.gdofs, pencil_.rows.is_cut, pairs.Phi);
-  if (pairs.M_Phi.cols() > 0) pairs.M_Phi *= sign.asDiagonal();
+  pairs.residual = calc_residuals(pairs.lambda, X);
+  fix_signs(reach.gdofs, pencil_.rows.is_cut, pairs.Phi);
   return pairs;
 }
 

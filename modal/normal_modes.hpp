@@ -74,6 +74,7 @@ class NormalModes {
     MatrixXd X;
     int num_known = 0, num_zero = 0, first = 0, size = 0;
   };
+  VectorXd calc_residuals(const VectorXd& lambda, const MatrixXd& X) const;
   EigenPairs finish_pairs(Found found, int count, Diagnostics& said);
   /// A range with many more modes below it than in it, by a shift inside; nothing where that is not for the model or
   /// does not find as many as the inertia at both ends says.

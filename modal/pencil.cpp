@@ -125,6 +125,16 @@ double Pencil::calc_relative_energy(const VectorXd& x, double energy) const {
   return scale > 0 ? std::abs(energy) / scale : 0;
 }
 
+MatrixXd Pencil::calc_mass_gram(const MatrixXd& X) const {
+  MatrixXd G(X.cols(), X.cols());
+  for (Eigen::Index c = 0; c < X.cols(); c += kColumnsAtOnce) {
+    const auto num = std::min(kColumnsAtOnce, X.cols() - c);
+    G.block(0, c, c + num, num) = dot(X.leftCols(c + num), calc_M_times(X.middleCols(c, num)));
+  }
+  G.triangularView<Eigen::StrictlyLower>() = G.transpose();
+  return G;
+}
+
 MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor) {
   Mat K = fe::get_sparse(pencil.K.get());
   MatrixXd of_part, terms_of_part;
@@ -161,12 +171,6 @@ MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor) {
 
 namespace {
 
-MatrixXd multiply_transposed(const MatrixXd& A, const MatrixXd& B) {
-  MatrixXd C(A.cols(), B.cols());
-  fe::multiply_dense(true, A, B, 0, C);
-  return C;
-}
-
 /// D times the rigid motions about a point, D the diagonal of K, and of these Y, those without strain.
 struct Strainless {
   MatrixXd DB, Y;
@@ -176,7 +180,7 @@ Strainless find_strainless(const Pencil& pencil, const Vector3d& centre) {
   const auto& model = pencil.model;
   const MatrixXd B = restrict_to_fdofs(model, model.calc_rigid_modes(centre));
   Strainless result{pencil.K_diagonal.asDiagonal() * B, MatrixXd(model.num_fdofs(), 0)};
-  const MatrixXd D = multiply_transposed(B, result.DB);
+  const MatrixXd D = fe::calc_inner_products(B, result.DB);
   const VectorXd scale = D.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
   VectorXd d;
   const MatrixXd V = calc_range(scale.asDiagonal() * D * scale.asDiagonal(), 1e-10, true, &d);
@@ -188,7 +192,7 @@ Strainless find_strainless(const Pencil& pencil, const Vector3d& centre) {
   VectorXd energy;
   for (int pass = 0; pass < 2; ++pass) {
     const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(
-        multiply_transposed(Y, pencil.calc_K_times(Y)), multiply_transposed(Y, pencil.K_diagonal.asDiagonal() * Y));
+        fe::calc_inner_products(Y, pencil.calc_K_times(Y)), fe::calc_inner_products(Y, pencil.K_diagonal.asDiagonal() * Y));
     Y = (Y * solver.eigenvectors()).eval();
     energy = solver.eigenvalues();
   }

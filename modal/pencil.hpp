@@ -13,11 +13,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 enum class VectorRows { Own, Whole };
+/// Columns that products of many vectors take at a time: their memory counts beside that of the vectors.
+constexpr Eigen::Index kColumnsAtOnce = 128;
 
 /// K and M of a system, shared with it until a copy takes the place of one. Vectors are those of `rows`: of a model by
 /// parts the rank's own f-dofs where the pencil is made for `Own`, else whole on every rank. Functions of a pencil are
 /// collective, and their scalars and small matrices alike on every rank.
 struct Pencil {
+  using Block = Eigen::Ref<const MatrixXd>;
   explicit Pencil(const fe::System& system, VectorRows which = VectorRows::Own);
 
   const fe::Model& model;
@@ -28,9 +31,10 @@ struct Pencil {
 
   int size() const { return model.num_fdofs(); }
   int num_rows() const { return rows.num; }
-  MatrixXd calc_K_times(const MatrixXd& X) const { return rows.multiply(K.get(), X); }
-  MatrixXd calc_M_times(const MatrixXd& X) const { return rows.multiply(M.get(), X); }
-  MatrixXd dot(const MatrixXd& X, const MatrixXd& Y) const { return rows.dot(X, Y); }  ///< XᵀY
+  MatrixXd calc_K_times(const Block& X) const { return rows.multiply(K.get(), X); }
+  MatrixXd calc_M_times(const Block& X) const { return rows.multiply(M.get(), X); }
+  MatrixXd dot(const Block& X, const Block& Y) const { return rows.dot(X, Y); }  ///< XᵀY
+  MatrixXd calc_mass_gram(const MatrixXd& X) const;                              ///< XᵀMX; M X of some columns at a time
   /// φᵀKφ / Σ K_ii φ_i²: about 1e-16 for a motion without strain, whatever the units and the mesh.
   double calc_relative_energy(const VectorXd& x, double energy) const;
 };

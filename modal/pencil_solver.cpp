@@ -154,7 +154,7 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
   if (krylov.restore) krylov.restore();
   if (result.is_singular) return false;
   if (problem_.supported) take_out(problem_.rows, problem_.M, problem_.rigid, result.vectors);
-  roots.add(result.values, result.vectors);
+  roots.add(result.values, std::move(result.vectors));
   return true;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "base/diagnostic.hpp"
@@ -20,16 +21,17 @@ void Roots::keep(int count) {
   X.conservativeResize(Eigen::NoChange, count);
 }
 
-void Roots::add(const VectorXd& values, const MatrixXd& vectors, bool by_magnitude) {
+void Roots::add(const VectorXd& values, MatrixXd vectors, bool by_magnitude) {
   VectorXd all(value.size() + values.size());
   all << value, values;
-  const MatrixXd both = join(X, vectors);
+  if (X.cols() > 0) vectors = join(X, vectors);
+  X.resize(0, 0);
   const auto key = [&](int i) { return by_magnitude ? std::abs(all(i)) : all(i); };
   std::vector<int> order(static_cast<std::size_t>(all.size()));
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
   value = all(order);
-  X = both(Eigen::all, order);
+  X = std::is_sorted(order.begin(), order.end()) ? std::move(vectors) : MatrixXd(vectors(Eigen::all, order));
 }
 
 namespace {

@@ -21,7 +21,7 @@ struct Roots {
   int size() const { return static_cast<int>(value.size()); }
   void keep(int count);
   /// Ascending afterwards, or by ascending magnitude.
-  void add(const VectorXd& values, const MatrixXd& vectors, bool by_magnitude = false);
+  void add(const VectorXd& values, MatrixXd vectors, bool by_magnitude = false);
 };
 
 /// What is asked of one kind of eigenproblem. Positions count the roots alone, without known motions.

@@ -43,7 +43,6 @@ modal::EigenPairs solve(const ModesOptions& options, const records::Deck& deck, 
   eigen.progress = [&](int converged, int wanted) {
     console.show_progress(fmt::format("modes: {} of {} converged", converged, wanted));
   };
-  eigen.keeps_mass_times = true;
   auto pairs = modal::calc_normal_modes(model, eigen, diagnostics);
   note_method_number(options, deck, model.subcase().method, static_cast<int>(pairs.lambda.size()), diagnostics);
   return pairs;
@@ -137,7 +136,7 @@ Solved solve_task(const ModesOptions& options, const records::DynamicDeck& deck,
   const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
   if (!options.buckling) fe::report_mass(model, deck, mass, diagnostics);
   modal::normalize(model, norm, pairs.Phi, diagnostics);
-  if (norm.kind != "MASS") pairs.M_Phi.resize(0, 0);
+  if (norm.kind != "MASS") pairs.modal_mass.resize(0);
   if (!task.buckling) pairs = modal::sort_negative(std::move(pairs));
   if (listing) {
     listing->add_weight(model);

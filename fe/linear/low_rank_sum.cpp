@@ -208,7 +208,9 @@ PetscMat add(Mat A, double factor, Mat B) {
   PetscMat C = copy_sparse(get_sparse(A));
   if (factor == 0) return make_sum(std::move(C), get_part(A));
   check_petsc(MatAXPY(C.get(), factor, get_sparse(B), DIFFERENT_NONZERO_PATTERN));
+  // Where the patterns differ the sum is another matrix, of which PETSc knows nothing.
   check_petsc(MatSetOption(C.get(), MAT_SYMMETRIC, PETSC_TRUE));
+  copy_row_groups(get_sparse(A), C.get());
   return make_sum(std::move(C), join(get_part(A), 1, get_part(B), factor));
 }
 

@@ -89,7 +89,7 @@ bool are_rows_by_parts(Mat A) {
 }
 
 void copy_row_groups(Mat from, Mat to) {
-  for (const char* name : {kGroups, kOrder, kByParts}) {
+  for (const char* name : {kGroups, kOrder, kParts, kByParts}) {
     PetscObject object = nullptr;
     check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(from), name, &object));
     if (object) check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(to), name, object));

@@ -18,7 +18,8 @@ std::vector<PetscInt> get_row_groups(Mat A);
 /// Tells A that its rows are dealt out by parts of the model, so that those of two ranks couple along a cut alone.
 void set_rows_by_parts(Mat A);
 bool are_rows_by_parts(Mat A);
-/// Gives `to`, a matrix of the same rows, the groups of `from`, and whether its rows are by parts.
+/// Gives `to`, a matrix of the same rows, the groups of `from`, the dissection that is known, and whether its rows are
+/// by parts.
 void copy_row_groups(Mat from, Mat to);
 
 /// Gives `part`, the rows and columns `kept` (ascending) of `whole`, what is left of its groups, and of its order where

@@ -30,8 +30,6 @@ Eigen::Vector3d sum_squares(const VectorXd& d, const VectorXd& scale, Eigen::Ind
   return sums;
 }
 
-constexpr Eigen::Index kRowsOfThread = 5000;  ///< of less no second thread takes columns
-
 double calc_residual(const Eigen::Vector3d& sums) {
   return sums(0) == 0 ? 0 : std::sqrt(sums(0)) / (std::sqrt(sums(1)) + 1e-6 * std::sqrt(sums(2)));
 }
@@ -50,10 +48,10 @@ VectorXd calc_residuals(const MatrixXd& D, const MatrixXd& X, const MatrixXd& Y,
 }
 
 VectorXd calc_pair_residuals(const VectorXd& K_diagonal, const VectorXd& M_diagonal, const VectorXd& lambda,
-                             const MatrixXd& X, const MatrixXd& KX, const MatrixXd& MX, const RowKinds& kinds,
-                             const OwnRows& rows) {
+                             const Eigen::Ref<const MatrixXd>& X, const MatrixXd& KX, const MatrixXd& MX,
+                             const RowKinds& kinds, const OwnRows& rows) {
   MatrixXd sums(3, X.cols());
-  do_halves(static_cast<int>(X.cols()), X.rows() > kRowsOfThread ? 1 : static_cast<int>(X.cols()), [&](int from, int to) {
+  do_columns(X.rows(), X.cols(), [&](int from, int to) {
     for (int j = from; j < to; ++j) {
       const VectorXd d = K_diagonal.cwiseAbs() + std::abs(lambda(j)) * M_diagonal.cwiseAbs();
       sums.col(j) = sum_squares(d, fill_diagonal(d, kinds), rows.first, X.col(j), KX.col(j), lambda(j) * MX.col(j));

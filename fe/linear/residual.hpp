@@ -34,8 +34,9 @@ Eigen::VectorXd calc_static_residuals(const Eigen::VectorXd& K_diagonal, const E
 /// The same of eigenpairs with F = M X: D = |K_ii| + |λ_j| |M_ii| of whole diagonals, own rows of X, K X and M X.
 /// Collective.
 Eigen::VectorXd calc_pair_residuals(const Eigen::VectorXd& K_diagonal, const Eigen::VectorXd& M_diagonal,
-                                    const Eigen::VectorXd& lambda, const Eigen::MatrixXd& X, const Eigen::MatrixXd& KX,
-                                    const Eigen::MatrixXd& MX, const RowKinds& kinds, const OwnRows& rows);
+                                    const Eigen::VectorXd& lambda, const Eigen::Ref<const Eigen::MatrixXd>& X,
+                                    const Eigen::MatrixXd& KX, const Eigen::MatrixXd& MX, const RowKinds& kinds,
+                                    const OwnRows& rows);
 
 /// D of eigenpairs: |K_ii| + |λ_j| |B_ii|, n x m.
 Eigen::MatrixXd calc_residual_scale(const Eigen::VectorXd& K_diagonal, const Eigen::VectorXd& B_diagonal,

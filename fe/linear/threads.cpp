@@ -69,4 +69,10 @@ void do_halves(int size, int least, const std::function<void(int, int)>& work) {
   do_both([&] { work(0, size / 2); }, [&] { work(size / 2, size); });
 }
 
+void do_columns(std::ptrdiff_t rows, std::ptrdiff_t columns, const std::function<void(int, int)>& work) {
+  constexpr std::ptrdiff_t kLeast = 5000;  // fewer are done before a thread has started
+  const auto num = static_cast<int>(columns);
+  do_halves(num, rows > kLeast ? 1 : num, work);
+}
+
 }  // namespace bough::fe

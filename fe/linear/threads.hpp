@@ -1,5 +1,6 @@
 #pragma once
 /// \file Two threads for what is worth them.
+#include <cstddef>
 #include <functional>
 
 namespace bough::fe {
@@ -14,5 +15,7 @@ void do_alone(const std::function<void()>& work);
 
 /// work(first, last) of 0 to `size`: two halves at once where there are two threads and more than `least` for each.
 void do_halves(int size, int least, const std::function<void(int, int)>& work);
+/// The same of the columns of an array, where it has rows enough.
+void do_columns(std::ptrdiff_t rows, std::ptrdiff_t columns, const std::function<void(int, int)>& work);
 
 }  // namespace bough::fe

@@ -78,7 +78,8 @@ std::string describe_mass(const Model& model, const records::Deck& deck, const M
                           SourceLocation& at) {
   const auto weight = calc_grid_point_weight(rigid_mass);
   const bool is_basic = weight.S.isIdentity(0);
-  std::string text = "the mass is " + show_value(weight.mass[0]) + " along x, " + show_value(weight.mass[1]) + " along y, " +
+  std::string text = "the mass is " + show_value(weight.mass[0]) + " along x, " + show_value(weight.mass[1]) +
+                     " along y, " +
                      show_value(weight.mass[2]) + " along z" + (is_basic ? "" : " of its principal axes");
   const auto wrong = find_wrong_masses(model);
   std::vector<std::string> names;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "fe/linear/blas.hpp"
 #include "fe/linear/threads.hpp"
 
 namespace bough::fe {
@@ -31,7 +32,7 @@ Reach find_reach(const Model& model) {
 MatrixXd expand(const Model& model, const OwnRows& rows, const Reach& reach, const Eigen::Ref<const MatrixXd>& X) {
   if (!rows.is_cut) {
     MatrixXd U(model.num_gdofs(), X.cols());
-    do_halves(static_cast<int>(X.cols()), X.rows() > 5000 ? 1 : static_cast<int>(X.cols()), [&](int from, int to) {
+    do_columns(X.rows(), X.cols(), [&](int from, int to) {
       U.middleCols(from, to - from).noalias() = model.T() * X.middleCols(from, to - from);
     });
     return U;
@@ -47,6 +48,39 @@ MatrixXd expand(const Model& model, const OwnRows& rows, const Reach& reach, con
           field(static_cast<Eigen::Index>(i), c + k) += it.value() * whole(it.col(), k);
   }
   return field;
+}
+
+namespace {
+
+/// work(first, number, M X of these columns): enough that the matrices of elements count for little beside them.
+template <class Work>
+void visit_mass_times(const Model& model, MassKind kind, const Reach& reach, const MatrixXd& X, Work work) {
+  constexpr Eigen::Index kAtOnce = 128;
+  for (Eigen::Index c = 0; c < X.cols(); c += kAtOnce) {
+    const Eigen::Index num = std::min(kAtOnce, X.cols() - c);
+    work(c, num, calc_own_mass_times(model, kind, reach, X.middleCols(c, num)));
+  }
+}
+
+}  // namespace
+
+MatrixXd calc_mass_gram(const Model& model, MassKind kind, const Reach& reach, const MatrixXd& X) {
+  MatrixXd G(X.cols(), X.cols());
+  visit_mass_times(model, kind, reach, X, [&](Eigen::Index c, Eigen::Index num, const MatrixXd& M_X) {
+    multiply_dense(true, X.leftCols(c + num), M_X, 0, G.block(0, c, c + num, num));
+  });
+  G.triangularView<Eigen::StrictlyLower>() = G.transpose();
+  sum_alike(G);
+  return G;
+}
+
+VectorXd calc_modal_mass(const Model& model, MassKind kind, const Reach& reach, const MatrixXd& X) {
+  VectorXd mass(X.cols());
+  visit_mass_times(model, kind, reach, X, [&](Eigen::Index c, Eigen::Index num, const MatrixXd& M_X) {
+    mass.segment(c, num) = X.middleCols(c, num).cwiseProduct(M_X).colwise().sum();
+  });
+  sum_alike(mass);
+  return mass;
 }
 
 MatrixXd take_rigid_modes(const Model& model, const Reach& reach, const Vector3d& point) {

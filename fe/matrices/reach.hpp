@@ -24,5 +24,9 @@ MatrixXd take_rigid_modes(const Model& model, const Reach& reach, const Vector3d
 /// What this rank adds to M X (times WTMASS), rows of `reach`: the sum over ranks of Yᵀ times it is Yᵀ M X.
 MatrixXd calc_own_mass_times(const Model& model, MassKind kind, const Reach& reach,
                              const Eigen::Ref<const MatrixXd>& X);
+/// XᵀMX, alike on every rank; M X of some columns at a time. Collective, as the next.
+MatrixXd calc_mass_gram(const Model& model, MassKind kind, const Reach& reach, const MatrixXd& X);
+/// Its diagonal.
+VectorXd calc_modal_mass(const Model& model, MassKind kind, const Reach& reach, const MatrixXd& X);
 
 }  // namespace bough::fe

@@ -90,7 +90,8 @@ Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<i
     if (suport.strain_energy[j] <= kMechanismEnergy * diagonal) continue;
     const auto [grid, component] = model.describe_fdof(suport.fdofs[static_cast<std::size_t>(j)]);
     const std::string what = "the motion of SUPORT " + name_suport(grid, component) + " strains the model: energy " +
-                             show_number(suport.strain_energy[j]) + " for a unit, epsilon " + show_number(suport.epsilon);
+                             show_number(suport.strain_energy[j]) + " for a unit, epsilon " +
+                             show_number(suport.epsilon);
     const std::string advice =
         "SUPORT must hold a free body in a statically determinate way; look for SPC, grounded "
         "springs or too many dofs";

@@ -1,6 +1,8 @@
 /// The eigenvalue solver itself: repeated roots, ranges, small and singular problems, messages.
 #include "modal/eigen.hpp"
 #include "fe/matrices/assembly.hpp"
+#include "fe/matrices/reach.hpp"
+#include "modal/modes_result.hpp"
 #include "modal/roundoff.hpp"
 
 #include <gmock/gmock.h>
@@ -332,18 +334,38 @@ TEST(Eigen, ModesAreTheSameWithTheStiffnessAway) {
   EXPECT_EQ(away.inertia_count, 6);
 }
 
-TEST(Eigen, KeepsMassTimesModesWhereAsked) {
+TEST(Eigen, KnowsModalMassAndEnergyOfEachMode) {
   Diagnostics diagnostics;
   const auto model = fe::Model::build(make_cantilevers(3).deck, {}, diagnostics);
-  auto options = make_options(7);
-  EXPECT_EQ(calc_normal_modes(model, options, diagnostics).M_Phi.cols(), 0);
-  options.keeps_mass_times = true;
-  const auto pairs = calc_normal_modes(model, options, diagnostics);
+  const auto pairs = calc_normal_modes(model, make_options(7), diagnostics);
   const MatrixXd M_Phi = fe::calc_mass_times(model, model.mass_kind(), pairs.Phi);
-  ASSERT_EQ(pairs.M_Phi.cols(), 7);
-  EXPECT_LT((pairs.M_Phi - M_Phi).norm(), 1e-12 * M_Phi.norm());
+  ASSERT_EQ(pairs.modal_mass.size(), 7);
+  for (int j = 0; j < 7; ++j) EXPECT_NEAR(pairs.modal_mass(j), pairs.Phi.col(j).dot(M_Phi.col(j)), 1e-14);
   ASSERT_EQ(pairs.energy_share.size(), 7);
   EXPECT_GT(pairs.energy_share.minCoeff(), 1e-14);
+}
+
+/// More modes than are multiplied at a time: orthonormal, small residuals, effective masses as M of all of them has it.
+TEST(Eigen, ManyModesGoSomeColumnsAtATime) {
+  Diagnostics diagnostics;
+  const auto model = fe::Model::build(make_cantilevers(5).deck, {}, diagnostics);
+  const auto pairs = calc_normal_modes(model, make_options(150), diagnostics);
+  ASSERT_EQ(pairs.lambda.size(), 150);
+  EXPECT_LT(pairs.residual.maxCoeff(), 1e-8);
+  const MatrixXd M_Phi = fe::calc_mass_times(model, model.mass_kind(), pairs.Phi);
+  EXPECT_LT((pairs.Phi.transpose() * M_Phi - MatrixXd::Identity(150, 150)).cwiseAbs().maxCoeff(), 1e-9);
+  const fe::Reach reach = fe::find_reach(model);
+  EXPECT_LT((fe::calc_mass_gram(model, model.mass_kind(), reach, pairs.Phi) - pairs.Phi.transpose() * M_Phi)
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-13);
+  auto without = pairs;
+  without.modal_mass.resize(0);
+  const auto known = make_modes_result(model, pairs, false), made = make_modes_result(model, without, false);
+  EXPECT_LT((known.modal_mass - made.modal_mass).cwiseAbs().maxCoeff(), 1e-14);
+  const MatrixXd L = M_Phi.transpose() * model.calc_rigid_modes();
+  const MatrixXd wanted = L.cwiseAbs2();  // of modal mass 1
+  EXPECT_LT((made.effective_mass - wanted).cwiseAbs().maxCoeff(), 1e-11 * wanted.cwiseAbs().maxCoeff());
 }
 
 }  // namespace

@@ -161,6 +161,42 @@ void FileWriter::write_numbers(const std::string& path, const Dims& shape, const
   write(path, shape, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, data, meaning);
 }
 
+void FileWriter::write_items(const std::string& path, const Dims& shape,
+                             const std::function<void(std::size_t, double*)>& fill, const Meaning& meaning) {
+  constexpr std::size_t kAtOnce = 500'000;  // numbers
+  const std::size_t num = shape.at(0);
+  std::size_t size = 1;
+  for (std::size_t i = 1; i < shape.size(); ++i) size *= shape[i];
+  const std::size_t slab = std::max<std::size_t>(1, kAtOnce / std::max<std::size_t>(1, size));
+  std::vector<double> data(std::min(slab, num) * size);
+  const auto fill_slab = [&](std::size_t first, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) fill(first + i, data.data() + i * size);
+  };
+  if (num <= slab) {
+    fill_slab(0, num);
+    return write_numbers(path, shape, data.data(), meaning);
+  }
+  errno = 0;
+  const hid_t parent = find_parent(path);
+  const Handle space = make_space(shape);
+  Handle dataset(H5Dcreate2(parent, path.c_str() + path.rfind('/') + 1, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT,
+                            creation_.get(), H5P_DEFAULT),
+                 H5Dclose);
+  check(dataset.is_valid(), "dataset " + path + " cannot be written");
+  Dims start(shape.size(), 0), count = shape;
+  for (std::size_t first = 0; has_elements(shape) && first < num; first += slab) {
+    start[0] = first;
+    count[0] = std::min(slab, num - first);
+    fill_slab(first, count[0]);
+    const Handle memory = make_space(count);
+    H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+    check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, data.data()) >= 0,
+          "dataset " + path + " cannot be written");
+  }
+  write_meaning(dataset.get(), path, meaning);
+  check(dataset.reset(), "dataset " + path + " cannot be written");
+}
+
 void FileWriter::write_integers(const std::string& path, const Dims& shape, const int* data, const Meaning& meaning) {
   write(path, shape, H5T_STD_I32LE, H5T_NATIVE_INT, data, meaning);
 }
@@ -267,18 +303,16 @@ void write_mesh(FileWriter& file, const records::BodyMesh& mesh) {
 }
 
 void write_mode_shapes(FileWriter& file, const std::vector<Eigen::MatrixXd>& phi, int num_modes) {
-  std::vector<double> data;
-  data.reserve(phi.size() * 6 * static_cast<std::size_t>(num_modes));
-  for (const auto& node : phi) {
+  const auto fill = [&](std::size_t k, double* data) {
+    const auto& node = phi[k];
     BOUGH_DEMAND(node.rows() == 6 && node.cols() == num_modes);
-    for (int i = 0; i < 6; ++i) {
-      for (int j = 0; j < num_modes; ++j) data.push_back(node(i, j));
-    }
-  }
-  file.write_numbers("/modes/phi", {phi.size(), 6, static_cast<hsize_t>(num_modes)}, data.data(),
-                     {"mode shapes at the output nodes: node, then translations x y z and rotations x y z, then mode; "
-                      "body axes",
-                      "L/E, 1/E"});
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < num_modes; ++j) *data++ = node(i, j);
+  };
+  file.write_items("/modes/phi", {phi.size(), 6, static_cast<hsize_t>(num_modes)}, fill,
+                   {"mode shapes at the output nodes: node, then translations x y z and rotations x y z, then mode; "
+                    "body axes",
+                    "L/E, 1/E"});
 }
 
 void write_mode_kinds(FileWriter& file, const std::vector<records::ModeKind>& kinds) {

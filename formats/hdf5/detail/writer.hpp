@@ -1,5 +1,6 @@
 #pragma once
 /// \file Writes one HDF5 file: beside its place first, renamed when whole.
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -26,6 +27,10 @@ class FileWriter {
   FileWriter& operator=(const FileWriter&) = delete;
 
   void write_numbers(const std::string& path, const Dims& shape, const double* data, const Meaning& meaning);
+  /// The same of numbers that are nowhere side by side: fill(first, data) puts item `first` of the first dimension at
+  /// `data`. A few megabytes at a time.
+  void write_items(const std::string& path, const Dims& shape, const std::function<void(std::size_t, double*)>& fill,
+                   const Meaning& meaning);
   void write_integers(const std::string& path, const Dims& shape, const int* data, const Meaning& meaning);
   void write_strings(const std::string& path, const std::vector<std::string>& data, const Meaning& meaning);
 

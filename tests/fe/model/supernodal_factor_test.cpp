@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fe/linear/factor.hpp"
+#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/ordering.hpp"
 #include "tests/support/threads.hpp"
 
@@ -110,6 +111,21 @@ TEST_P(SupernodalFactorOn, LargeMatricesTakeIt) {
 }
 
 /// Two pieces that do not touch, and rows of a piece that stand alone: trees without a way to the rows between.
+/// K + s M of a body that nothing holds is factored as K would be, whatever M couples beside K.
+TEST_P(SupernodalFactorOn, SumsAreFactoredInPartsToo) {
+  const Threads threads(GetParam());
+  const PetscMat K = make_grid(90, 60, 0, true), M = make_grid(90, 60);
+  ASSERT_TRUE(make_supernodal_factor(K.get(), 0).factor);  // K knows its parts, which M couples
+  const PetscMat sum = add(K.get(), 0.5, M.get());
+  EXPECT_EQ(get_row_groups(sum.get()), get_row_groups(K.get()));
+  const SupernodalFactor own = make_supernodal_factor(sum.get(), 0);
+  ASSERT_TRUE(own.factor);
+  EXPECT_EQ(own.num_parts, GetParam());
+  const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 90 * 60, 3), X = solve_factored(own.factor.get(), B);
+  const Eigen::MatrixXd R = B - multiply(K.get(), X) - 0.5 * multiply(M.get(), X);
+  EXPECT_LT(R.cwiseAbs().maxCoeff(), 1e-12 * X.cwiseAbs().maxCoeff());
+}
+
 TEST_P(SupernodalFactorOn, PiecesMayBeApart) {
   const Threads threads(GetParam());
   const PetscMat A = make_grid(90, 60, 0, true);

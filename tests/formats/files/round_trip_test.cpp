@@ -172,6 +172,17 @@ TEST(FileRoundTrips, BodiesAndModes) {
   }
 }
 
+/// More shapes than are written at a time, the last time fewer.
+TEST(FileRoundTrips, ManyModes) {
+  const auto modes = test::make_random_modes(1, 300, 700);
+  expect_same_bytes([&](const std::string& path) { write_modes(modes, path); },
+                    [&](const std::string& path) {
+                      const auto found = read_modes(path);
+                      EXPECT_TRUE(test::are_identical(found, modes));
+                      return [found](const std::string& other) { write_modes(found, other); };
+                    });
+}
+
 TEST(FileRoundTrips, KeysOfTomlFiles) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(seed);
