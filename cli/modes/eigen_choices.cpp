@@ -8,24 +8,33 @@
 #include "formats/records/selection.hpp"
 
 namespace bough::cli {
+namespace {
+
+/// The card that METHOD = `method` selects, the first of the deck where it selects none; null: there is none.
+const records::EigenMethod* find_method(const records::Deck& deck, int method) {
+  const auto& cards = deck.eigen_methods;
+  const auto card =
+      std::find_if(cards.begin(), cards.end(), [&](const auto& c) { return method == 0 || c.sid == method; });
+  return card == cards.end() ? nullptr : &*card;
+}
+
+}  // namespace
 
 modal::EigenOptions choose_eigen_options(const ModesOptions& options, const records::Deck& deck, int method,
                                          Diagnostics& diagnostics) {
   modal::EigenOptions eigen;
-  const auto names = [method](const auto& card) { return method == 0 || card.sid == method; };
-  if (method != 0 && std::none_of(deck.eigen_methods.begin(), deck.eigen_methods.end(), names))
+  const auto* card = find_method(deck, method);
+  if (method != 0 && !card)
     diagnostics.warning("cli.no-method", deck.locate(records::find_selection(deck, "METHOD", method)),
                         fmt::format("METHOD = {} names no EIGRL or EIGR card of the deck", method),
                         "add the card or correct the id; --number, --min-hz and --max-hz go before it");
   eigen.num_modes = 0;
   eigen.check_inertia = !options.no_check;
-  for (const auto& card : deck.eigen_methods) {
-    if (!names(card)) continue;
-    eigen.num_modes = card.is_lowest_only && options.max_hz ? 0 : card.num_modes;
-    eigen.min_hz = card.f1;
-    eigen.max_hz = card.f2;
-    if (!options.buckling && counts_whatever_range(card)) eigen.min_hz = eigen.max_hz = std::nullopt;
-    break;
+  if (card) {
+    eigen.num_modes = card->is_lowest_only && options.max_hz ? 0 : card->num_modes;
+    eigen.min_hz = card->f1;
+    eigen.max_hz = card->f2;
+    if (!options.buckling && counts_whatever_range(*card)) eigen.min_hz = eigen.max_hz = std::nullopt;
   }
   if (options.min_hz) eigen.min_hz = options.min_hz;
   if (options.max_hz) eigen.max_hz = options.max_hz;
@@ -39,16 +48,13 @@ modal::EigenOptions choose_eigen_options(const ModesOptions& options, const reco
 
 void note_method_number(const ModesOptions& options, const records::Deck& deck, int method, int found,
                         Diagnostics& diagnostics) {
-  if (!options.max_hz || options.number > 0) return;
-  for (const auto& card : deck.eigen_methods) {
-    if (method != 0 && card.sid != method) continue;
-    if (card.num_modes > 0 && !card.is_lowest_only && found >= card.num_modes)
-      diagnostics.note("cli.method-number", deck.locate(card.at),
-                       fmt::format("{} {}: ND = {} bounds the range of --max-hz too; there may be more modes in it",
-                                   card.is_eigrl ? "EIGRL" : "EIGR", card.sid, card.num_modes),
-                       "--number goes before it");
-    return;
-  }
+  const auto* card = find_method(deck, method);
+  if (!options.max_hz || options.number > 0 || !card) return;
+  if (card->num_modes == 0 || card->is_lowest_only || found < card->num_modes) return;
+  diagnostics.note("cli.method-number", deck.locate(card->at),
+                   fmt::format("{} {}: ND = {} bounds the range of --max-hz too; there may be more modes in it",
+                               card->is_eigrl ? "EIGRL" : "EIGR", card->sid, card->num_modes),
+                   "--number goes before it");
 }
 
 bool counts_whatever_range(const records::EigenMethod& card) {
@@ -57,21 +63,19 @@ bool counts_whatever_range(const records::EigenMethod& card) {
 }
 
 modal::Norm choose_norm(const records::Deck& deck, int method, const fe::Model& model) {
-  for (const auto& card : deck.eigen_methods) {
-    if (method != 0 && card.sid != method) continue;
-    if (card.norm == "POINT") {
-      const std::string who = fmt::format("EIGR {}: NORM = POINT names grid {}", card.sid, card.norm_grid);
-      const int node = model.find_node(card.norm_grid);
-      if (node < 0)
-        throw InputError("fe.missing-grid", deck.locate(card.at), who + ", which the deck does not define",
-                         "add the GRID, correct the id, or use NORM = MASS or MAX");
-      if (model.node(node).num_dofs == 6 && card.norm_component == 0)
-        throw InputError("fe.bad-component", deck.locate(card.at), who + " without a component, expected C = 1 to 6",
-                         "name the component");
-    }
-    return {card.norm, card.norm_grid, card.norm_component};
+  const auto* card = find_method(deck, method);
+  if (!card) return {};
+  if (card->norm == "POINT") {
+    const std::string who = fmt::format("EIGR {}: NORM = POINT names grid {}", card->sid, card->norm_grid);
+    const int node = model.find_node(card->norm_grid);
+    if (node < 0)
+      throw InputError("fe.missing-grid", deck.locate(card->at), who + ", which the deck does not define",
+                       "add the GRID, correct the id, or use NORM = MASS or MAX");
+    if (model.node(node).num_dofs == 6 && card->norm_component == 0)
+      throw InputError("fe.bad-component", deck.locate(card->at), who + " without a component, expected C = 1 to 6",
+                       "name the component");
   }
-  return {};
+  return {card->norm, card->norm_grid, card->norm_component};
 }
 
 }  // namespace bough::cli
