@@ -147,7 +147,8 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
     const double given = std::sqrt(squares.cwiseAbs().maxCoeff());
     if (pass == 0) scale_ = std::max({scale_, near, given});
     // Lengths: of the operator's result in the first pass, of unit vectors later.
-    const VectorXd length = make_unit(G, pass == 0 ? 1e-14 * scale_ : 1e-6, W, B_W, R);
+    // Shorter ones are roundoff, and at length one what they have where nothing has mass would be all of them.
+    const VectorXd length = make_unit(G, pass == 0 ? 1e-12 * scale_ : 1e-6, W, B_W, R);
     if (length.size() == 0) break;
     // What roundoff left along the basis has grown as `given` to the least of them, that of columns among themselves
     // as their ratio squared.

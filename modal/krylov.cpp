@@ -376,7 +376,8 @@ Request find_request(const KrylovProblem& problem) {
   request.room = problem.max_subspace > 0 ? std::min<int>(problem.max_subspace, n) : static_cast<int>(n);
   request.wanted = std::clamp(problem.num_wanted, 1, std::max(1, request.room));
   request.by_blocks = problem.method == KrylovMethod::Blocks ||
-                      (problem.method == KrylovMethod::Fastest && n >= kBlockSize && 4 * request.wanted < request.room);
+                      (problem.method == KrylovMethod::Fastest && (n >= kBlockSize || problem.block > 0) &&
+                       4 * request.wanted < request.room);
   return request;
 }
 

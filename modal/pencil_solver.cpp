@@ -5,6 +5,7 @@
 
 #include "fe/linear/blas.hpp"
 #include "fe/linear/mechanism.hpp"
+#include "fe/linear/residual.hpp"
 #include "modal/canonical.hpp"
 
 namespace bough::modal::detail {
@@ -120,6 +121,21 @@ Roots PencilSolver::solve_stage(const fe::SymmetricFactor& factor, double shift,
   return stage;
 }
 
+/// Of fewer roots than were asked for some may be what roundoff made of a root with more copies than a Krylov space
+/// sees; those whose residual is large are looked for once more, beside the good ones.
+void PencilSolver::drop_rough(KrylovResult& result) const {
+  const VectorXd K_diagonal = fe::get_diagonal(problem_.K).cwiseAbs(), M_diagonal = fe::get_diagonal(problem_.M);
+  const VectorXd residual = fe::calc_pair_residuals(
+      K_diagonal, M_diagonal, result.values, result.vectors, problem_.rows.multiply(problem_.K, result.vectors),
+      problem_.rows.multiply(problem_.M, result.vectors), problem_.kinds, problem_.rows);
+  std::vector<int> kept;
+  for (int j = 0; j < residual.size(); ++j)
+    if (residual(j) <= fe::kResidualWarning) kept.push_back(j);
+  if (kept.empty() || static_cast<Eigen::Index>(kept.size()) == residual.size()) return;
+  result.values = result.values(kept).eval();
+  result.vectors = result.vectors(Eigen::all, kept).eval();
+}
+
 bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_only, Roots& roots) {
   const int left = num_available_ - roots.size();
   if (left <= 0) return true;
@@ -154,6 +170,7 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
   if (krylov.restore) krylov.restore();
   if (result.is_singular) return false;
   if (problem_.supported) take_out(problem_.rows, problem_.M, problem_.rigid, result.vectors);
+  if (krylov.start == 0 && !problem_.supported && result.values.size() < krylov.num_wanted) drop_rough(result);
   roots.add(result.values, std::move(result.vectors));
   return true;
 }

@@ -47,6 +47,7 @@ class PencilSolver {
 
  private:
   bool solve_whole(double shift, int number, bool definite_only, Roots& roots);
+  void drop_rough(KrylovResult& result) const;
   Roots solve_stage(const fe::SymmetricFactor& factor, double shift, const MatrixXd& known, int number);
 
   PencilProblem problem_;

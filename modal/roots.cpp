@@ -116,8 +116,7 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
       num_stuck = cut > best_cut || before > best_size ? 0 : num_stuck + 1;
       best_cut = std::max(best_cut, cut);
       best_size = std::max(best_size, before);
-      const int most = before < search.wanted ? missing : kMostAtOnce;
-      if (num_stuck < kStuck) search.solve(roots, std::min(missing, most) + 2);
+      if (num_stuck < kStuck) search.solve(roots, std::min(missing, kMostAtOnce) + 2);
       if (roots.size() > kept) continue;
       result.is_missing = cut >= 0;
       if (cut < 0 && search.counts && kept > 0) {  // the solver has no more to give: there are no more
