@@ -126,12 +126,18 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
   C = MatrixXd::Zero(size_, W.cols());
   R = MatrixXd::Identity(W.cols(), W.cols());
   MatrixXd B_W = problem_.multiply_mass(W);
-  // What the recurrence couples first: left in, it would carry errors of the basis into the other directions. Not
-  // before known vectors are off, whose θ may be much larger.
-  const double near = is_recurrent_ && problem_.deflate.cols() == 0 ? relieve(W, B_W, C) : 0;
+  const bool has_known = problem_.deflate.cols() > 0;
+  // What the recurrence couples first: left in, it would carry errors of the basis into the other directions, which
+  // grow by the ratio of both from block to block. Known vectors, whose θ may be much larger, are off before.
+  if (is_recurrent_ && has_known) {
+    subtract(problem_.deflate, multiply_transposed(problem_.deflate, B_W), W);
+    B_W = problem_.multiply_mass(W);
+  }
+  const double near = is_recurrent_ ? relieve(W, B_W, C) : 0;
+  const double most = is_recurrent_ ? 20 : 2;  // that a pass may take off
   for (int pass = 0; pass < 5 && W.cols() > 0; ++pass) {
     VectorXd squares = VectorXd::Zero(W.cols());  // of W as it was given: of what is taken off, and what is left
-    if (problem_.deflate.cols() > 0) {
+    if (has_known) {
       const MatrixXd D = multiply_transposed(problem_.deflate, B_W);
       subtract(problem_.deflate, D, W);
       squares += D.colwise().squaredNorm().transpose();
@@ -152,7 +158,7 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
     if (length.size() == 0) break;
     // What roundoff left along the basis has grown as `given` to the least of them, that of columns among themselves
     // as their ratio squared.
-    if (given > 20 * length.minCoeff()) continue;
+    if (given > most * length.minCoeff()) continue;
     if (length.maxCoeff() > 3 * length.minCoeff()) make_unit(multiply_transposed(W, B_W), 1e-6, W, B_W, R);
     break;
   }
@@ -194,12 +200,16 @@ int BlockLanczos::calc_ritz() {
   S_ = ritz.eigenvectors()(Eigen::all, order);
   const MatrixXd residual = R_ * S_.bottomRows(last_width_);
   const int num_strict = problem_.num_wanted - problem_.num_guard;
+  // Roundoff of the largest θ, which after a restart couples all of the basis to what follows.
+  const double floor = 1e-14 * scale_, most = std::min(1e-9, 1000 * problem_.tolerance);
   int converged = 0;
   for (; converged < size_; ++converged) {
     const double theta = problem_.positive_only ? theta_(converged) : std::abs(theta_(converged));
     if (!(theta > 0)) break;
     const bool is_rough = converged >= num_strict && theta < (1 - 1e-3) * std::abs(theta_(num_strict - 1));
-    if (next_.cols() > 0 && residual.col(converged).norm() > (is_rough ? 1e-4 : problem_.tolerance) * theta) break;
+    const double allowed =
+        is_rough ? 1e-4 * theta : std::max(problem_.tolerance * theta, std::min(floor, most * theta));
+    if (next_.cols() > 0 && residual.col(converged).norm() > allowed) break;
   }
   return converged;
 }
@@ -240,7 +250,7 @@ BlockLanczosResult BlockLanczos::run() {
       if (converged == problem_.num_wanted || next_.cols() == 0) return finish(true);
       check = size_ + size_ / 32;
     }
-    calc_ritz();
+    if (calc_ritz() >= problem_.num_wanted) return finish(true);  // of a basis too small to be looked at before
     if (restarts == problem_.max_restarts) break;
     restart();
   }

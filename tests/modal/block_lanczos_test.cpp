@@ -105,6 +105,24 @@ TEST(BlockLanczos, LeavesOutWhatIsKnown) {
   EXPECT_LT(result.X.topRows(3).cwiseAbs().maxCoeff(), 1e-13);
 }
 
+/// As of a free body: what the basis lacks of orthogonality must not grow from block to block, else nothing converges
+/// behind a restart.
+TEST(BlockLanczos, StaysOrthogonalBesideKnownVectors) {
+  constexpr int kKnown = 6, kWanted = 100;
+  auto matrices = make_chain(3000);
+  const double first = matrices.a(kKnown);
+  matrices.a.head(kKnown).setConstant(1e-3 * first);
+  auto problem = matrices.make(4, kWanted);
+  problem.deflate = MatrixXd::Identity(3000, kKnown);
+  problem.max_subspace = 160;
+  const auto result = solve_block_lanczos(problem);
+  ASSERT_TRUE(result.is_done);
+  EXPECT_LT(result.num_solves, 150);
+  for (int i = 0; i < kWanted; ++i) EXPECT_NEAR(result.theta(i) * matrices.a(kKnown + i), 1, 1e-11) << i;
+  EXPECT_LT(calc_orthogonality(matrices, result.X), 1e-12);
+  EXPECT_LT(result.X.topRows(kKnown).cwiseAbs().maxCoeff(), 1e-12);
+}
+
 TEST(BlockLanczos, GuardsMayBeRough) {
   const auto matrices = make_chain(4000);
   auto problem = matrices.make(4, 12);
