@@ -192,7 +192,8 @@ Strainless find_strainless(const Pencil& pencil, const Vector3d& centre) {
   VectorXd energy;
   for (int pass = 0; pass < 2; ++pass) {
     const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(
-        fe::calc_inner_products(Y, pencil.calc_K_times(Y)), fe::calc_inner_products(Y, pencil.K_diagonal.asDiagonal() * Y));
+        fe::calc_inner_products(Y, pencil.calc_K_times(Y)),
+        fe::calc_inner_products(Y, pencil.K_diagonal.asDiagonal() * Y));
     Y = (Y * solver.eigenvectors()).eval();
     energy = solver.eigenvalues();
   }

@@ -5,6 +5,7 @@
 
 #include "fe/linear/own_rows.hpp"
 #include "fe/linear/row_kinds.hpp"
+#include "fe/matrices/reach.hpp"
 #include "fe/matrices/system.hpp"
 
 namespace bough::modal::detail {
@@ -13,8 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 enum class VectorRows { Own, Whole };
-/// Columns that products of many vectors take at a time: their memory counts beside that of the vectors.
-constexpr Eigen::Index kColumnsAtOnce = 128;
+using fe::kColumnsAtOnce;
 
 /// K and M of a system, shared with it until a copy takes the place of one. Vectors are those of `rows`: of a model by
 /// parts the rank's own f-dofs where the pencil is made for `Own`, else whole on every rank. Functions of a pencil are
@@ -34,7 +34,7 @@ struct Pencil {
   MatrixXd calc_K_times(const Block& X) const { return rows.multiply(K.get(), X); }
   MatrixXd calc_M_times(const Block& X) const { return rows.multiply(M.get(), X); }
   MatrixXd dot(const Block& X, const Block& Y) const { return rows.dot(X, Y); }  ///< XᵀY
-  MatrixXd calc_mass_gram(const MatrixXd& X) const;                              ///< XᵀMX; M X of some columns at a time
+  MatrixXd calc_mass_gram(const MatrixXd& X) const;  ///< XᵀMX; M X of some columns at a time
   /// φᵀKφ / Σ K_ii φ_i²: about 1e-16 for a motion without strain, whatever the units and the mesh.
   double calc_relative_energy(const VectorXd& x, double energy) const;
 };

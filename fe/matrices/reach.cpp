@@ -55,9 +55,8 @@ namespace {
 /// work(first, number, M X of these columns): enough that the matrices of elements count for little beside them.
 template <class Work>
 void visit_mass_times(const Model& model, MassKind kind, const Reach& reach, const MatrixXd& X, Work work) {
-  constexpr Eigen::Index kAtOnce = 128;
-  for (Eigen::Index c = 0; c < X.cols(); c += kAtOnce) {
-    const Eigen::Index num = std::min(kAtOnce, X.cols() - c);
+  for (Eigen::Index c = 0; c < X.cols(); c += kColumnsAtOnce) {
+    const Eigen::Index num = std::min(kColumnsAtOnce, X.cols() - c);
     work(c, num, calc_own_mass_times(model, kind, reach, X.middleCols(c, num)));
   }
 }

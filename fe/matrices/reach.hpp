@@ -24,6 +24,8 @@ MatrixXd take_rigid_modes(const Model& model, const Reach& reach, const Vector3d
 /// What this rank adds to M X (times WTMASS), rows of `reach`: the sum over ranks of Yᵀ times it is Yᵀ M X.
 MatrixXd calc_own_mass_times(const Model& model, MassKind kind, const Reach& reach,
                              const Eigen::Ref<const MatrixXd>& X);
+/// Columns that products of many vectors take at a time: their memory counts beside that of the vectors.
+constexpr Eigen::Index kColumnsAtOnce = 128;
 /// XᵀMX, alike on every rank; M X of some columns at a time. Collective, as the next.
 MatrixXd calc_mass_gram(const Model& model, MassKind kind, const Reach& reach, const MatrixXd& X);
 /// Its diagonal.

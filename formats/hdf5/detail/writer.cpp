@@ -84,8 +84,8 @@ hid_t FileWriter::find_parent(const std::string& path) {
   return end == 0 ? file_.get() : groups_.at(path.substr(0, end)).get();
 }
 
-void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_type, hid_t memory_type, const void* data,
-                       const Meaning& meaning, hid_t transfer) {
+void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_type, const Put& put,
+                       const Meaning& meaning) {
   errno = 0;
   const hid_t parent = find_parent(path);
   const Handle space = make_space(shape);
@@ -94,13 +94,18 @@ void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_ty
                               creation_.get(), H5P_DEFAULT),
                    H5Dclose);
     check(dataset.is_valid(), "dataset " + path + " cannot be written");
-    if (has_elements(shape)) {
-      check(H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, transfer, data) >= 0,
-            "dataset " + path + " cannot be written");
-    }
+    if (has_elements(shape)) check(put(dataset.get(), space.get()), "dataset " + path + " cannot be written");
     write_meaning(dataset.get(), path, meaning);
     check(dataset.reset(), "dataset " + path + " cannot be written");
   }
+}
+
+void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_type, hid_t memory_type, const void* data,
+                       const Meaning& meaning, hid_t transfer) {
+  const auto put = [&](hid_t dataset, hid_t) {
+    return H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, transfer, data) >= 0;
+  };
+  write(path, shape, file_type, put, meaning);
 }
 
 void FileWriter::write_attribute(hid_t object, const std::string& path, const std::string& name, const Dims& shape,
@@ -169,32 +174,20 @@ void FileWriter::write_items(const std::string& path, const Dims& shape,
   for (std::size_t i = 1; i < shape.size(); ++i) size *= shape[i];
   const std::size_t slab = std::max<std::size_t>(1, kAtOnce / std::max<std::size_t>(1, size));
   std::vector<double> data(std::min(slab, num) * size);
-  const auto fill_slab = [&](std::size_t first, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) fill(first + i, data.data() + i * size);
+  const auto put = [&](hid_t dataset, hid_t space) {
+    Dims start(shape.size(), 0), count = shape;
+    bool is_fine = true;
+    for (std::size_t first = 0; is_fine && first < num; first += slab) {
+      start[0] = first;
+      count[0] = std::min(slab, num - first);
+      for (std::size_t i = 0; i < count[0]; ++i) fill(first + i, data.data() + i * size);
+      const Handle memory = make_space(count);
+      H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+      is_fine = H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory.get(), space, H5P_DEFAULT, data.data()) >= 0;
+    }
+    return is_fine;
   };
-  if (num <= slab) {
-    fill_slab(0, num);
-    return write_numbers(path, shape, data.data(), meaning);
-  }
-  errno = 0;
-  const hid_t parent = find_parent(path);
-  const Handle space = make_space(shape);
-  Handle dataset(H5Dcreate2(parent, path.c_str() + path.rfind('/') + 1, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT,
-                            creation_.get(), H5P_DEFAULT),
-                 H5Dclose);
-  check(dataset.is_valid(), "dataset " + path + " cannot be written");
-  Dims start(shape.size(), 0), count = shape;
-  for (std::size_t first = 0; has_elements(shape) && first < num; first += slab) {
-    start[0] = first;
-    count[0] = std::min(slab, num - first);
-    fill_slab(first, count[0]);
-    const Handle memory = make_space(count);
-    H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
-    check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, data.data()) >= 0,
-          "dataset " + path + " cannot be written");
-  }
-  write_meaning(dataset.get(), path, meaning);
-  check(dataset.reset(), "dataset " + path + " cannot be written");
+  write(path, shape, H5T_IEEE_F64LE, put, meaning);
 }
 
 void FileWriter::write_integers(const std::string& path, const Dims& shape, const int* data, const Meaning& meaning) {

@@ -62,6 +62,9 @@ class FileWriter {
 
  private:
   void check(bool ok, const std::string& what);
+  /// put(dataset, its space) writes all that is in it; false: it could not.
+  using Put = std::function<bool(hid_t, hid_t)>;
+  void write(const std::string& path, const Dims& shape, hid_t file_type, const Put& put, const Meaning& meaning);
   void write(const std::string& path, const Dims& shape, hid_t file_type, hid_t memory_type, const void* data,
              const Meaning& meaning, hid_t transfer = H5P_DEFAULT);
   void make_parents(const std::string& path);
