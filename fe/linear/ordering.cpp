@@ -1,11 +1,11 @@
 #include "fe/linear/ordering.hpp"
 
-#include <metis.h>
-
 #include <numeric>
 #include <type_traits>
 #include <utility>
 #include <vector>
+
+#include "fe/linear/graph.hpp"
 
 namespace bough::fe {
 namespace {
@@ -17,10 +17,6 @@ constexpr const char* kByParts = "bough_rows_by_parts";
 constexpr const char* kOrder = "bough_elimination_order";
 constexpr const char* kParts =
     "bough_two_parts";  // rows of the first, of the second, between; how many there are of each
-
-struct Graph {
-  std::vector<idx_t> start{0}, neighbours, weight;
-};
 
 /// Vertices are groups; two are neighbours where A couples any of their rows.
 Graph build_group_graph(const PetscInt* row_start, const PetscInt* columns, const PetscInt* group_start, int num) {
@@ -134,29 +130,12 @@ void take_row_groups(Mat whole, const std::vector<int>& kept, Mat part) {
 
 namespace {
 
-/// The rows of groups in the order of `rank`.
-std::vector<PetscInt> list_rows(const std::vector<idx_t>& rank, const PetscInt* group_start) {
+/// The rows of groups in this order.
+std::vector<PetscInt> list_rows(const std::vector<idx_t>& groups, const PetscInt* group_start) {
   std::vector<PetscInt> rows;
-  for (const idx_t g : rank)
+  for (const idx_t g : groups)
     for (PetscInt row = group_start[g]; row < group_start[g + 1]; ++row) rows.push_back(row);
   return rows;
-}
-
-/// Behind the groups that have so many rows.
-std::vector<idx_t>::const_iterator skip_rows(const Graph& graph, const std::vector<idx_t>& rank, idx_t num_rows) {
-  auto group = rank.begin();
-  for (idx_t rows = 0; rows < num_rows && group != rank.end(); ++group)
-    rows += graph.weight[static_cast<std::size_t>(*group)];
-  return group;
-}
-
-bool couples(const Graph& graph, const std::vector<idx_t>& some, const std::vector<idx_t>& others) {
-  std::vector<char> is_other(graph.weight.size(), 0);
-  for (const idx_t g : others) is_other[static_cast<std::size_t>(g)] = 1;
-  for (const idx_t g : some)
-    for (idx_t k = graph.start[g]; k < graph.start[g + 1]; ++k)
-      if (is_other[static_cast<std::size_t>(graph.neighbours[k])]) return true;
-  return false;
 }
 
 /// Calls `use(graph, group_start)` with the graph of the row groups of A; not where A has none, is smaller than
@@ -198,13 +177,8 @@ PetscIs find_elimination_order(Mat A, PetscInt least) {
   }
   PetscIs result;
   visit_group_graph(A, least, [&](Graph& graph, const PetscInt* group_start) {
-    std::vector<idx_t> rank(graph.weight.size()), inverse(graph.weight.size());
-    idx_t num = static_cast<idx_t>(rank.size()), options[METIS_NOPTIONS];
-    METIS_SetDefaultOptions(options);
-    if (METIS_NodeND(&num, graph.start.data(), graph.neighbours.data(), graph.weight.data(), options, rank.data(),
-                     inverse.data()) != METIS_OK)
-      return;
-    const std::vector<PetscInt> order = list_rows(rank, group_start);
+    const std::vector<PetscInt> order = list_rows(find_dissection(graph), group_start);
+    if (order.empty()) return;
     check_petsc(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(order.size()), order.data(), PETSC_COPY_VALUES,
                                 result.out()));
     check_petsc(ISSetPermutation(result.get()));
@@ -277,21 +251,19 @@ std::optional<TwoParts> find_two_parts(Mat A, PetscInt least) {
   if (result && are_apart(A, *result)) return result;
   result.reset();
   visit_group_graph(A, least, [&](Graph& graph, const PetscInt* group_start) {
-    std::vector<idx_t> rank(graph.weight.size()), inverse(graph.weight.size()), sizes(3);
-    idx_t options[METIS_NOPTIONS];
-    METIS_SetDefaultOptions(options);
-    if (METIS_NodeNDP(static_cast<idx_t>(rank.size()), graph.start.data(), graph.neighbours.data(), graph.weight.data(),
-                      2, options, rank.data(), inverse.data(), sizes.data()) != METIS_OK)
-      return;
-    // METIS tells how many rows its parts have, those between last; of which of the two parts first, the graph tells.
-    const auto between = skip_rows(graph, rank, sizes[0] + sizes[1]);
-    for (const idx_t num_rows : {sizes[0], sizes[1]}) {
-      const auto second = skip_rows(graph, rank, num_rows);
-      if (couples(graph, {rank.cbegin(), second}, {second, between})) continue;
-      result = {list_rows({rank.cbegin(), second}, group_start), list_rows({second, between}, group_start),
-                list_rows({between, rank.cend()}, group_start)};
-      return;
+    const std::vector<idx_t> part = find_separator(graph);
+    if (part.empty()) return;
+    std::vector<idx_t> groups[3];
+    for (std::size_t g = 0; g < part.size(); ++g) groups[part[g]].push_back(static_cast<idx_t>(g));
+    for (std::vector<idx_t>* own : {&groups[0], &groups[1]}) {
+      Graph sub = take_vertices(graph, *own);
+      const std::vector<idx_t> order = find_dissection(sub);
+      if (order.size() != own->size()) return;
+      std::vector<idx_t> sorted;
+      for (const idx_t v : order) sorted.push_back((*own)[static_cast<std::size_t>(v)]);
+      *own = std::move(sorted);
     }
+    result = {list_rows(groups[0], group_start), list_rows(groups[1], group_start), list_rows(groups[2], group_start)};
   });
   if (result) keep_parts(*result, A);
   return result;

@@ -11,6 +11,17 @@ namespace {
 /// more than is there; a hundred times costs two digits of sixteen.
 constexpr double kMostGrowth = 100;
 
+/// Of LDLᵀ as LAPACK's sytrf leaves it.
+int count_negative_pivots(const double* D, PetscBLASInt n, const PetscBLASInt* order) {
+  int negative = 0;
+  for (PetscBLASInt j = 0; j < n; ++j) {
+    const bool is_pair = order[j] < 0;  // of one eigenvalue of each sign
+    if (is_pair || D[static_cast<std::ptrdiff_t>(j) * (n + 1)] < 0) ++negative;
+    if (is_pair) ++j;
+  }
+  return negative;
+}
+
 }  // namespace
 
 using Eigen::MatrixXd;
@@ -112,16 +123,25 @@ bool PartFronts::analyse(const RowSum& sum, const std::vector<PetscInt>& own, co
   return left.empty();
 }
 
-int PartFronts::eliminate(int num, int num_rows, const int* rows) {
-  const PetscBLASInt n = num, m = num_rows - num, ld = num_rows;
+void FrontElimination::reserve(int num_columns) {
+  const auto n = static_cast<std::size_t>(num_columns);
+  if (n <= pivot_order_.size()) return;
+  pivots_.resize(n * n);
+  pivot_order_.resize(n);
+  work_.resize(n * 64 + 64);
+}
+
+int FrontElimination::eliminate(double* F, PetscBLASInt ld, int num, int num_rows) {
+  reserve(num);
+  const PetscBLASInt n = num, m = num_rows - num;
   const double one = 1, minus = -1;
-  double *F = front_.data(), *below = F + num, *left = below + static_cast<std::ptrdiff_t>(num) * ld;
+  double *below = F + num, *left = below + static_cast<std::ptrdiff_t>(num) * ld;
   PetscBLASInt info = 0;
   for (int j = 0; j < num; ++j)
     std::copy_n(F + j + static_cast<std::ptrdiff_t>(j) * ld, num - j,
                 pivots_.data() + j + static_cast<std::ptrdiff_t>(j) * num);
-  VectorXd before(m);
-  for (int i = 0; i < m; ++i) before(i) = left[i + static_cast<std::ptrdiff_t>(i) * ld];
+  change.resize(m);
+  for (int i = 0; i < m; ++i) change(i) = left[i + static_cast<std::ptrdiff_t>(i) * ld];
   int negative = 0;
   LAPACKpotrf_("L", &n, F, &ld, &info);
   if (info == 0) {
@@ -132,11 +152,7 @@ int PartFronts::eliminate(int num, int num_rows, const int* rows) {
     PetscBLASInt size = static_cast<PetscBLASInt>(work_.size());
     LAPACKsytrf_("L", &n, pivots_.data(), &n, pivot_order_.data(), work_.data(), &size, &info);
     if (info != 0) return -1;
-    for (int j = 0; j < num; ++j) {
-      const bool is_pair = pivot_order_[static_cast<std::size_t>(j)] < 0;  // of one eigenvalue of each sign
-      if (is_pair || pivots_[static_cast<std::size_t>(j) * static_cast<std::size_t>(num + 1)] < 0) ++negative;
-      if (is_pair) ++j;
-    }
+    negative = count_negative_pivots(pivots_.data(), n, pivot_order_.data());
     if (m == 0) return negative;
     right_.resize(static_cast<std::size_t>(num) * static_cast<std::size_t>(m));
     for (int i = 0; i < m; ++i)
@@ -153,10 +169,14 @@ int PartFronts::eliminate(int num, int num_rows, const int* rows) {
                 left + first + static_cast<std::ptrdiff_t>(first) * ld, &ld);
     }
   }
-  for (int i = 0; i < m; ++i) {
-    const double change = std::abs(left[i + static_cast<std::ptrdiff_t>(i) * ld] - before(i));
-    if (!(change <= kMostGrowth * diagonal_(rows[num + i]))) return -1;
-  }
+  for (int i = 0; i < m; ++i) change(i) = std::abs(left[i + static_cast<std::ptrdiff_t>(i) * ld] - change(i));
+  return negative;
+}
+
+int PartFronts::eliminate(int num, int num_rows, const int* rows) {
+  const int negative = elimination_.eliminate(front_.data(), num_rows, num, num_rows);
+  for (int i = 0; i < num_rows - num && negative >= 0; ++i)
+    if (!(elimination_.change(i) <= kMostGrowth * diagonal_(rows[num + i]))) return -1;
   return negative;
 }
 
@@ -164,9 +184,7 @@ int PartFronts::count(MatrixXd& schur) {
   const auto n_s = diagonal_.size() - static_cast<Eigen::Index>(num_own_);
   schur = MatrixXd::Zero(n_s, n_s);
   front_.resize(static_cast<std::size_t>(most_rows_) * static_cast<std::size_t>(most_rows_));
-  pivots_.resize(static_cast<std::size_t>(most_columns_) * static_cast<std::size_t>(most_columns_));
-  pivot_order_.resize(static_cast<std::size_t>(most_columns_));
-  work_.resize(static_cast<std::size_t>(most_columns_) * 64 + 64);
+  elimination_.reserve(most_columns_);
   std::vector<double> stack(static_cast<std::size_t>(most_stack_));
   std::size_t top = 0;
   std::vector<int> waiting;  // fronts whose remainders are on the stack
@@ -218,21 +236,37 @@ int PartFronts::count(MatrixXd& schur) {
   return negative;
 }
 
+namespace {
+
+/// Block by block with pivots of each alone, five times as fast as LAPACK; -1 where one is too small.
+int count_by_blocks(MatrixXd S) {
+  constexpr int kColumns = 96;
+  const auto n = static_cast<int>(S.rows());
+  const VectorXd size = S.diagonal().cwiseAbs();
+  FrontElimination elimination;
+  int negative = 0;
+  for (int first = 0; first < n; first += kColumns) {
+    const int num = std::min(kColumns, n - first);
+    const int own = elimination.eliminate(&S(first, first), n, num, n - first);
+    if (own < 0) return -1;
+    negative += own;
+    for (int i = first + num; i < n; ++i)
+      if (!(elimination.change(i - first - num) <= kMostGrowth * size(i))) return -1;
+  }
+  return negative;
+}
+
+}  // namespace
+
 int count_negative_of_dense(MatrixXd& S) {
   const auto n = static_cast<PetscBLASInt>(S.rows());
   if (n == 0) return 0;
+  if (const int negative = count_by_blocks(S); negative >= 0) return negative;
   std::vector<PetscBLASInt> order(static_cast<std::size_t>(n));
   PetscBLASInt size = 64 * n, info = 0;
   std::vector<double> work(static_cast<std::size_t>(size));
   LAPACKsytrf_("L", &n, S.data(), &n, order.data(), work.data(), &size, &info);
-  if (info != 0) return -1;
-  int negative = 0;
-  for (PetscBLASInt j = 0; j < n; ++j) {
-    const bool is_pair = order[static_cast<std::size_t>(j)] < 0;
-    if (is_pair || S(j, j) < 0) ++negative;
-    if (is_pair) ++j;
-  }
-  return negative;
+  return info != 0 ? -1 : count_negative_pivots(S.data(), n, order.data());
 }
 
 }  // namespace bough::fe

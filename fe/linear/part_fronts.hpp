@@ -57,6 +57,21 @@ struct RowSum {
   }
 };
 
+/// Eliminates the first rows of dense symmetric matrices.
+class FrontElimination {
+ public:
+  /// Lower triangle of F, num_rows square, in place: the first `num` rows by LLᵀ where they are positive, else by LDLᵀ
+  /// with pivots among them. Their negative eigenvalues; -1 where a pivot is zero.
+  int eliminate(double* F, PetscBLASInt ld, int num, int num_rows);
+  void reserve(int num_columns);
+
+  Eigen::VectorXd change;  ///< by how much the diagonal of the rows that are left changed
+
+ private:
+  std::vector<double> pivots_, right_, work_;
+  std::vector<PetscBLASInt> pivot_order_;
+};
+
 /// The rows of one part and those between, which come last and are not eliminated.
 class PartFronts {
  public:
@@ -108,8 +123,8 @@ class PartFronts {
   std::vector<int> start_, row_of_entry_;  ///< lower triangle of the sum, by columns
   std::vector<double> value_;
   Eigen::VectorXd diagonal_;  ///< |A| + |factor B|
-  std::vector<double> front_, pivots_, right_, work_;
-  std::vector<PetscBLASInt> pivot_order_;
+  std::vector<double> front_;
+  FrontElimination elimination_;
 };
 
 /// Negative eigenvalues of a dense matrix, of which the lower triangle is given and lost; -1 where a pivot is zero.

@@ -1,12 +1,12 @@
 /// Which rows are inner ones of a rank and which lie between.
-#include <metis.h>
-
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
+#include "fe/linear/graph.hpp"
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/ordering.hpp"
+#include "fe/linear/own_entries.hpp"
 #include "fe/linear/ranks.hpp"
 #include "fe/linear/subdomains.hpp"
 
@@ -20,12 +20,6 @@ constexpr PetscInt kMostRowsBetween = 4000;
 /// Of all rows, where they are too many to cost nothing.
 constexpr double kMostShare = 0.03;
 constexpr PetscInt kFewBetween = 1000;
-
-/// The graph of row groups, neighbours without the group itself.
-struct GroupGraph {
-  std::vector<idx_t> start{0}, neighbours, weight;
-  idx_t size() const { return static_cast<idx_t>(weight.size()); }
-};
 
 std::vector<int> list_group_of(const std::vector<PetscInt>& group_start) {
   std::vector<int> group_of(static_cast<std::size_t>(group_start.back()));
@@ -48,7 +42,7 @@ std::vector<int> collect(const std::vector<int>& own, const MpiWorld& world) {
 }
 
 /// From the rows that each rank holds, on the first; groups begin anew with the rows of a rank.
-GroupGraph build_group_graph(Mat A, Mat B, const std::vector<PetscInt>& group_start, const MpiWorld& world) {
+Graph build_group_graph(Mat A, Mat B, const std::vector<PetscInt>& group_start, const MpiWorld& world) {
   const std::vector<int> group_of = list_group_of(group_start);
   PetscInt first = 0, last = 0, num = 0;
   check_petsc(MatGetOwnershipRange(A, &first, &last));
@@ -69,7 +63,7 @@ GroupGraph build_group_graph(Mat A, Mat B, const std::vector<PetscInt>& group_st
     degree.push_back(static_cast<int>(neighbours.size() - before));
   }
   degree = collect(degree, world);
-  GroupGraph graph;
+  Graph graph;
   graph.neighbours = collect(neighbours, world);
   if (world.rank != 0) return graph;
   for (int g = 0; g < num_groups; ++g) {
@@ -80,22 +74,16 @@ GroupGraph build_group_graph(Mat A, Mat B, const std::vector<PetscInt>& group_st
 }
 
 /// The part of every group, `num_parts` for those between: of an edge between two parts the end in the higher one, so
-/// that one line along a cut is enough. Empty where METIS gives none or a part has no inner group.
-std::vector<idx_t> cut(GroupGraph& graph, idx_t num_parts) {
-  idx_t num = graph.size(), constraints = 1, edges = 0, options[METIS_NOPTIONS];
-  std::vector<idx_t> home(static_cast<std::size_t>(num));
-  METIS_SetDefaultOptions(options);
-  if (num < num_parts || graph.neighbours.empty() ||
-      METIS_PartGraphRecursive(&num, &constraints, graph.start.data(), graph.neighbours.data(), graph.weight.data(),
-                               nullptr, nullptr, &num_parts, nullptr, nullptr, options, &edges,
-                               home.data()) != METIS_OK)
-    return {};
+/// that one line along a cut is enough. Empty where there are none or a part has no inner group.
+std::vector<idx_t> cut(Graph& graph, idx_t num_parts) {
+  const std::vector<idx_t> home = cut_into_parts(graph, num_parts);
   std::vector<idx_t> part = home;
-  for (idx_t g = 0; g < num; ++g)
-    for (idx_t k = graph.start[g]; k < graph.start[g + 1]; ++k)
-      if (home[graph.neighbours[k]] < home[g]) part[g] = num_parts;
   std::vector<char> has_inner(static_cast<std::size_t>(num_parts) + 1, 0);
-  for (const idx_t p : part) has_inner[p] = 1;
+  for (std::size_t g = 0; g < part.size(); ++g) {
+    for (idx_t k = graph.start[g]; k < graph.start[g + 1]; ++k)
+      if (home[static_cast<std::size_t>(graph.neighbours[k])] < home[g]) part[g] = num_parts;
+    has_inner[static_cast<std::size_t>(part[g])] = 1;
+  }
   if (std::any_of(has_inner.begin(), has_inner.end() - 1, [](char has) { return has == 0; })) return {};
   return part;
 }
@@ -103,34 +91,31 @@ std::vector<idx_t> cut(GroupGraph& graph, idx_t num_parts) {
 /// The rows of the groups of this rank's part in the order of a nested dissection.
 std::vector<PetscInt> order_inner(const SubdomainMatrix& A, const std::vector<PetscInt>& inner,
                                   const std::vector<int>& group_of) {
-  std::vector<idx_t> start{0}, neighbours, weight, first_row;
-  std::vector<idx_t> vertex(inner.size());
+  Graph graph;
+  std::vector<idx_t> first_row, vertex(inner.size());
   for (std::size_t i = 0; i < inner.size(); ++i) {
-    if (i == 0 || group_of[inner[i]] != group_of[inner[i - 1]]) weight.push_back(0), first_row.push_back(i);
-    ++weight.back();
-    vertex[i] = static_cast<idx_t>(weight.size()) - 1;
+    if (i == 0 || group_of[inner[i]] != group_of[inner[i - 1]])
+      graph.weight.push_back(0), first_row.push_back(static_cast<idx_t>(i));
+    ++graph.weight.back();
+    vertex[i] = graph.size() - 1;
   }
-  std::vector<idx_t> mark(weight.size(), -1);
-  for (std::size_t v = 0; v < weight.size(); ++v) {
-    mark[v] = static_cast<idx_t>(v);
-    for (idx_t i = first_row[v]; i < first_row[v] + weight[v]; ++i)
+  std::vector<idx_t> mark(graph.weight.size(), -1);
+  for (idx_t v = 0; v < graph.size(); ++v) {
+    mark[v] = v;
+    for (idx_t i = first_row[v]; i < first_row[v] + graph.weight[v]; ++i)
       for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator entry(A.rows(), i); entry; ++entry) {
         if (entry.col() >= static_cast<Index>(inner.size())) continue;
         const idx_t other = vertex[static_cast<std::size_t>(entry.col())];
-        if (mark[other] != static_cast<idx_t>(v)) mark[other] = static_cast<idx_t>(v), neighbours.push_back(other);
+        if (mark[other] != v) mark[other] = v, graph.neighbours.push_back(other);
       }
-    start.push_back(static_cast<idx_t>(neighbours.size()));
+    graph.start.push_back(static_cast<idx_t>(graph.neighbours.size()));
   }
-  std::vector<idx_t> rank(weight.size()), inverse(weight.size());
-  std::iota(rank.begin(), rank.end(), 0);
-  idx_t num = static_cast<idx_t>(weight.size()), options[METIS_NOPTIONS];
-  METIS_SetDefaultOptions(options);
-  if (!neighbours.empty() && METIS_NodeND(&num, start.data(), neighbours.data(), weight.data(), options, rank.data(),
-                                          inverse.data()) != METIS_OK)
-    std::iota(rank.begin(), rank.end(), 0);
+  const std::vector<idx_t> order = find_dissection(graph);
+  if (order.empty()) return inner;
   std::vector<PetscInt> rows;
-  for (const idx_t v : rank)
-    for (idx_t i = first_row[v]; i < first_row[v] + weight[v]; ++i) rows.push_back(inner[static_cast<std::size_t>(i)]);
+  for (const idx_t v : order)
+    for (idx_t i = first_row[v]; i < first_row[v] + graph.weight[v]; ++i)
+      rows.push_back(inner[static_cast<std::size_t>(i)]);
   return rows;
 }
 
@@ -139,7 +124,7 @@ bool cut_rows(Mat A, Mat B, const std::vector<PetscInt>& group_start, const MpiW
   const int num_groups = static_cast<int>(group_start.size()) - 1;
   std::vector<idx_t> part;
   {
-    GroupGraph graph = build_group_graph(A, B, group_start, world);
+    Graph graph = build_group_graph(A, B, group_start, world);
     if (world.rank == 0) part = cut(graph, world.size);
   }
   int is_cut = part.empty() ? 0 : 1;
@@ -162,19 +147,15 @@ bool cut_rows(Mat A, Mat B, const std::vector<PetscInt>& group_start, const MpiW
 /// The same of rows that are by parts already: of those of two ranks that couple the ones of the higher rank lie
 /// between, with all of their group. Nothing but their numbers is sent, and a rank's share of them are its own.
 bool take_parts(Mat A, Mat B, const std::vector<PetscInt>& group_start, Subdomains& result) {
-  PetscInt first = 0, last = 0, num = 0;
-  check_petsc(MatGetOwnershipRange(A, &first, &last));
-  const PetscInt* columns = nullptr;
+  const OwnEntries a(A), b(B);
+  const PetscInt first = a.first(), last = a.last();
   std::vector<int> between;
   auto group = std::lower_bound(group_start.begin(), group_start.end(), first);
   for (; group != group_start.end() && *group < last; ++group) {
     bool reaches_below = false;
     for (PetscInt row = *group; row < group[1]; ++row)
-      for (Mat matrix : {A, B}) {
-        check_petsc(MatGetRow(matrix, row, &num, &columns, nullptr));
-        reaches_below = reaches_below || (num > 0 && columns[0] < first);  // they ascend
-        check_petsc(MatRestoreRow(matrix, row, &num, &columns, nullptr));
-      }
+      for (const OwnEntries* matrix : {&a, &b})
+        matrix->visit(row, [&](PetscInt column, double) { reaches_below = reaches_below || column < first; });
     auto& rows = reaches_below ? between : result.inner;
     for (PetscInt row = *group; row < group[1]; ++row) rows.push_back(row);
   }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fe/linear/memory_need.hpp"
+#include "fe/linear/own_entries.hpp"
 #include "fe/linear/part_factor.hpp"
 #include "fe/linear/ranks.hpp"
 
@@ -55,109 +56,111 @@ PetscInt Subdomains::find_first_row() const {
 
 namespace {
 
-/// Entries with their columns among the rows inner, between.
+/// Entries of rows one after the other.
 struct Entries {
   std::vector<int> start{0}, column;
   std::vector<double> value;
+  void end_row() { start.push_back(static_cast<int>(column.size())); }
 };
 
-/// Of the inner rows, in their order, and on every rank of those between, with columns that count from the first of
-/// these.
-struct RowsOfPart {
-  Entries inner, between;
-};
-
-/// Own rows of A alone are read; of those between every rank gets what others have.
-RowsOfPart read_own_rows(Mat A, const Subdomains& domains) {
-  std::vector<int> place(static_cast<std::size_t>(domains.size), -1);
+/// A_ss on every rank, from the rows between that each has; columns count from the first of these. Collective.
+Entries join_between(const OwnEntries& A, const Subdomains& domains, const std::vector<int>& place) {
   const PetscInt n_p = domains.num_inner();
-  for (PetscInt i = 0; i < n_p; ++i) place[static_cast<std::size_t>(domains.inner[i])] = i;
-  for (PetscInt i = 0; i < domains.num_between(); ++i) place[static_cast<std::size_t>(domains.between[i])] = n_p + i;
-  PetscInt num = 0;
-  const PetscInt* columns = nullptr;
-  const PetscScalar* values = nullptr;
-  RowsOfPart rows;
-  MatInfo info;
-  check_petsc(MatGetInfo(A, MAT_LOCAL, &info));
-  rows.inner.column.reserve(static_cast<std::size_t>(info.nz_used));
-  rows.inner.value.reserve(static_cast<std::size_t>(info.nz_used));
-  for (const PetscInt row : domains.inner) {
-    check_petsc(MatGetRow(A, row, &num, &columns, &values));
-    for (PetscInt k = 0; k < num; ++k) {
-      const int j = place[static_cast<std::size_t>(columns[k])];
-      BOUGH_DEMAND(j >= 0);  // inner rows of two ranks do not couple
-      rows.inner.column.push_back(j);
-      rows.inner.value.push_back(values[k]);
-    }
-    check_petsc(MatRestoreRow(A, row, &num, &columns, &values));
-    rows.inner.start.push_back(static_cast<int>(rows.inner.column.size()));
-  }
-  std::vector<int> nums, own_columns;
-  std::vector<double> own_values;
+  std::vector<int> nums;
+  Entries own;
   for (PetscInt s = 0; s < domains.num_shared; ++s) {
-    const PetscInt row = domains.between[domains.first_shared + s];
-    check_petsc(MatGetRow(A, row, &num, &columns, &values));
-    int count = 0;
-    for (PetscInt k = 0; k < num; ++k)
-      if (const int j = place[static_cast<std::size_t>(columns[k])]; j >= n_p) {
-        own_columns.push_back(j - n_p);
-        own_values.push_back(values[k]);
-        ++count;
-      }
-    check_petsc(MatRestoreRow(A, row, &num, &columns, &values));
-    nums.push_back(count);
+    A.visit(domains.between[domains.first_shared + s], [&](PetscInt column, double value) {
+      const int j = place[static_cast<std::size_t>(column)];
+      if (j < n_p) return;
+      own.column.push_back(j - n_p);
+      own.value.push_back(value);
+    });
+    own.end_row();
+    nums.push_back(own.start[static_cast<std::size_t>(s) + 1] - own.start[static_cast<std::size_t>(s)]);
   }
   // Rows between ascend with the rank: one after the other they are in order.
-  for (const int count : join_over_ranks(nums)) rows.between.start.push_back(rows.between.start.back() + count);
-  rows.between.column = join_over_ranks(own_columns);
-  rows.between.value = join_over_ranks(own_values);
-  return rows;
+  Entries all;
+  for (const int count : join_over_ranks(nums)) all.start.push_back(all.start.back() + count);
+  all.column = join_over_ranks(own.column);
+  all.value = join_over_ranks(own.value);
+  return all;
 }
 
-/// Rows of the symmetric matrix with ascending columns, without sorting: row i has what the rows before have in
-/// column i.
-Eigen::SparseMatrix<double, Eigen::RowMajor> merge(const RowsOfPart& rows, Index n_p, Index n_s) {
-  std::vector<int> count(static_cast<std::size_t>(n_p + n_s), 0);
-  const auto tail = [&](Index i) {  // of an inner row, in columns between
-    std::vector<std::pair<int, double>> entries;
-    for (int k = rows.inner.start[i]; k < rows.inner.start[i + 1]; ++k)
-      if (rows.inner.column[k] >= n_p) entries.emplace_back(rows.inner.column[k], rows.inner.value[k]);
-    std::sort(entries.begin(), entries.end());
-    return entries;
-  };
-  for (Index i = 0; i < n_p; ++i)
-    for (int k = rows.inner.start[i]; k < rows.inner.start[i + 1]; ++k) {
-      ++count[static_cast<std::size_t>(rows.inner.column[k])];
-      if (rows.inner.column[k] >= n_p) ++count[static_cast<std::size_t>(i)];
+/// Entry k of a row goes to order[k] in the order of its columns.
+void sort_columns(const std::vector<int>& columns, std::vector<int>& order) {
+  order.resize(columns.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return columns[a] < columns[b]; });
+}
+
+/// The rows of the symmetric matrix by inner, between, with ascending columns. Own rows of A alone are read.
+Eigen::SparseMatrix<double, Eigen::RowMajor> collect_rows(const OwnEntries& A, const Subdomains& domains) {
+  const PetscInt n_p = domains.num_inner(), n_s = domains.num_between();
+  std::vector<int> place(static_cast<std::size_t>(domains.size), -1);
+  for (PetscInt i = 0; i < n_p; ++i) place[static_cast<std::size_t>(domains.inner[i])] = i;
+  for (PetscInt i = 0; i < n_s; ++i) place[static_cast<std::size_t>(domains.between[i])] = n_p + i;
+  const Entries between = join_between(A, domains, place);
+
+  // Of a row between: its entries in inner columns are those of the inner rows.
+  std::vector<Entries> tails(static_cast<std::size_t>(n_s));
+  Eigen::SparseMatrix<double, Eigen::RowMajor> rows(n_p + n_s, n_p + n_s);
+  // As many as there can be: the tails repeat entries of own rows between, and those that others have.
+  rows.resizeNonZeros(static_cast<Index>(A.num_entries()) + A.num_entries_of_others() +
+                      static_cast<Index>(between.column.size()));
+  int *start = rows.outerIndexPtr(), *column = rows.innerIndexPtr(), end = 0;
+  double* value = rows.valuePtr();
+  std::vector<int> columns, order;
+  std::vector<double> values;
+  start[0] = 0;
+  PetscInt known = -1;
+  for (PetscInt i = 0; i < n_p; ++i) {
+    const PetscInt row = domains.inner[i];
+    values.clear();
+    if (known >= 0 && A.has_same_columns(row, known)) {
+      A.visit(row, [&](PetscInt, double entry) { values.push_back(entry); });
+    } else {
+      columns.clear();
+      A.visit(row, [&](PetscInt j, double entry) {
+        columns.push_back(place[static_cast<std::size_t>(j)]);
+        values.push_back(entry);
+      });
+      sort_columns(columns, order);
+      BOUGH_DEMAND(columns.empty() || columns[order[0]] >= 0);  // inner rows of two ranks do not couple
     }
-  for (const int column : rows.between.column) ++count[static_cast<std::size_t>(n_p + column)];
-  Eigen::SparseMatrix<double, Eigen::RowMajor> A(n_p + n_s, n_p + n_s);
-  std::vector<int> next(count.size() + 1, 0);
-  std::partial_sum(count.begin(), count.end(), next.begin() + 1);
-  A.resizeNonZeros(next.back());
-  std::copy(next.begin(), next.end(), A.outerIndexPtr());
-  const auto put = [&](Index row, Index column, double value) {
-    const int at = next[static_cast<std::size_t>(row)]++;
-    A.innerIndexPtr()[at] = static_cast<int>(column);
-    A.valuePtr()[at] = value;
-  };
-  for (Index i = 0; i < n_p; ++i)
-    for (int k = rows.inner.start[i]; k < rows.inner.start[i + 1]; ++k)
-      put(rows.inner.column[k], i, rows.inner.value[k]);
-  for (Index i = 0; i < n_p; ++i)
-    if (next[static_cast<std::size_t>(i)] < A.outerIndexPtr()[i + 1])  // few are next to the cut
-      for (const auto& [column, value] : tail(i)) put(i, column, value);
-  for (Index s = 0; s < n_s; ++s)
-    for (int k = rows.between.start[s]; k < rows.between.start[s + 1]; ++k)
-      put(n_p + rows.between.column[k], n_p + s, rows.between.value[k]);
-  return A;
+    known = row;
+    for (const int k : order) {
+      column[end] = columns[k];
+      value[end++] = values[k];
+    }
+    start[i + 1] = end;
+    for (int k = end; k > start[i] && column[k - 1] >= n_p; --k) {
+      Entries& tail = tails[static_cast<std::size_t>(column[k - 1] - n_p)];
+      tail.column.push_back(i);
+      tail.value.push_back(value[k - 1]);
+    }
+  }
+  for (PetscInt s = 0; s < n_s; ++s) {
+    const Entries& tail = tails[static_cast<std::size_t>(s)];
+    std::copy(tail.column.begin(), tail.column.end(), column + end);
+    std::copy(tail.value.begin(), tail.value.end(), value + end);
+    end += static_cast<int>(tail.column.size());
+    columns.assign(between.column.begin() + between.start[s], between.column.begin() + between.start[s + 1]);
+    sort_columns(columns, order);
+    for (const int k : order) {
+      column[end] = n_p + columns[k];
+      value[end++] = between.value[static_cast<std::size_t>(between.start[s] + k)];
+    }
+    start[n_p + s + 1] = end;
+  }
+  rows.resizeNonZeros(end);
+  return rows;
 }
 
 }  // namespace
 
 SubdomainMatrix::SubdomainMatrix(Mat A, const Subdomains& domains) : domains_(domains) {
   if (domains.by_parts) {
-    rows_ = merge(read_own_rows(A, domains), domains.num_inner(), domains.num_between());
+    rows_ = collect_rows(OwnEntries(A), domains);
     return;
   }
   std::vector<PetscInt> rows = domains.inner;

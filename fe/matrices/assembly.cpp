@@ -314,16 +314,12 @@ PetscMat assemble_sparse(const Model& model, const SparseRows& T, const AddEleme
     groups = std::move(rows.groups);
     matrix = make_matrix(std::move(rows), size);
   } else {
-    PetscInt first = 0, last = 0;
-    check_petsc(MatCreate(PETSC_COMM_WORLD, matrix.out()));
-    const PetscInt num_own = share ? share->last_fdof - share->first_fdof : PETSC_DECIDE;
-    check_petsc(MatSetSizes(matrix.get(), num_own, num_own, size, size));
-    check_petsc(MatSetType(matrix.get(), MATMPIAIJ));
-    check_petsc(MatSetUp(matrix.get()));
-    check_petsc(MatGetOwnershipRange(matrix.get(), &first, &last));
-    Csr rows = sum_rows(model, T, add, forms, first, last);
+    PetscInt num_own = share ? share->last_fdof - share->first_fdof : PETSC_DECIDE, all = size, last = 0;
+    check_petsc(PetscSplitOwnership(PETSC_COMM_WORLD, &num_own, &all));
+    MPI_Scan(&num_own, &last, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD);
+    Csr rows = sum_rows(model, T, add, forms, last - num_own, last);
     groups = std::move(rows.groups);
-    check_petsc(MatMPIAIJSetPreallocationCSR(matrix.get(), rows.start.get(), rows.columns.get(), rows.values.get()));
+    matrix = make_matrix_of_ranks(std::move(rows), last - num_own, size);
   }
   Mat A = matrix.get();
   check_petsc(MatSetOption(A, MAT_SYMMETRIC, PETSC_TRUE));

@@ -1,11 +1,10 @@
 #include "fe/model/model_share.hpp"
 
-#include <metis.h>
-
 #include <algorithm>
 #include <numeric>
 #include <tuple>
 
+#include "fe/linear/graph.hpp"
 #include "fe/model/element_transform.hpp"
 
 namespace bough::fe {
@@ -84,15 +83,14 @@ std::vector<int> Joins::cut(int num_parts) {
       METIS_MeshToNodal(&num_joins, &num_nodes, start_.data(), nodes_of_.data(), &base, &start, &neighbours) !=
           METIS_OK)
     return {};
-  idx_t constraints = 1, parts = num_parts, edges = 0, options[METIS_NOPTIONS];
-  std::vector<idx_t> home(weight_.size());
-  METIS_SetDefaultOptions(options);
-  const int result = METIS_PartGraphRecursive(&num_nodes, &constraints, start, neighbours, weight_.data(), nullptr,
-                                              nullptr, &parts, nullptr, nullptr, options, &edges, home.data());
+  Graph graph;
+  graph.start.assign(start, start + num_nodes + 1);
+  graph.neighbours.assign(neighbours, neighbours + start[num_nodes]);
+  graph.weight = weight_;
   METIS_Free(start);
   METIS_Free(neighbours);
-  if (result != METIS_OK) return {};
-  return {home.begin(), home.end()};
+  const std::vector<idx_t> part = cut_into_parts(graph, num_parts);
+  return {part.begin(), part.end()};
 }
 
 }  // namespace

@@ -1,0 +1,30 @@
+#pragma once
+/// \file Graphs of grids or rows, and how METIS cuts them (Karypis & Kumar, SIAM J. Sci. Comput. 20 (1998) 359).
+#include <vector>
+
+#include <metis.h>
+
+namespace bough::fe {
+
+/// Neighbours of each vertex, not itself, and its weight.
+struct Graph {
+  std::vector<idx_t> start{0}, neighbours, weight;
+  idx_t size() const { return static_cast<idx_t>(weight.size()); }
+};
+
+/// The vertices `which` and what couples them.
+Graph take_vertices(const Graph& graph, const std::vector<idx_t>& which);
+
+/// Nested dissection: the vertices in the order of their elimination; as they are where nothing couples them, empty
+/// where METIS fails.
+std::vector<idx_t> find_dissection(Graph& graph);
+
+/// Two parts of about the same weight and few vertices between, the part (0, 1) or 2 of each. METIS cuts by vertices:
+/// ends of the edges that a cut by edges has are a third more on a plate. Empty where it fails.
+std::vector<idx_t> find_separator(Graph& graph);
+
+/// The part of each vertex, of which all have some weight: of edges between two parts few vertices are an end in the
+/// higher one. Empty: no such parts.
+std::vector<idx_t> cut_into_parts(Graph& graph, idx_t num_parts);
+
+}  // namespace bough::fe
