@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/rotation.hpp"
+#include "fe/linear/blas.hpp"
 #include "fe/statics/static_case.hpp"
 
 namespace bough::stiffening {
@@ -82,7 +83,7 @@ void Reduction::report_partial_rotation(const fe::Model& model) {
 
 /// What each external load does to the body as a whole: Φ_Rᵀ F, and Σ φ_kj × f_k by which mode j shifts its moment.
 void Reduction::set_resultants(const fe::Model& model, const MatrixXd& F_ext) {
-  body_.load_resultant = model.calc_rigid_modes().transpose() * F_ext;
+  body_.load_resultant = fe::calc_inner_products(model.calc_rigid_modes(), F_ext);
   body_.load_moment.assign(static_cast<std::size_t>(F_ext.cols()), MatrixXd::Zero(3, Phi_.cols()));
   for (Eigen::Index e = 0; e < F_ext.cols(); ++e) {
     for (const auto& node : model.nodes()) {
@@ -146,7 +147,7 @@ void Reduction::set_stiffening(const fe::Model& model, const StaticSolve& solve)
     F_ext.col(static_cast<Eigen::Index>(e)) = loads_[e].load.F;
     body_.locators.push_back(loads_[e].locator);
   }
-  body_.external_load = Phi_.transpose() * F_ext;
+  body_.external_load = fe::calc_inner_products(Phi_, F_ext);
   set_resultants(model, F_ext);
 
   std::vector<int> inertial;

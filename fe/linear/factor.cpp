@@ -7,6 +7,7 @@
 #include "fe/linear/memory_need.hpp"
 #include "fe/linear/petsc_message.hpp"
 #include "fe/linear/ranks.hpp"
+#include "fe/linear/row_products.hpp"
 #include "fe/linear/sum_factor.hpp"
 #include "fe/linear/supernodal_factor.hpp"
 
@@ -16,31 +17,6 @@ namespace {
 using Eigen::MatrixXd;
 
 /// Fewer are done before a thread has started.
-constexpr PetscInt kRowsOfThread = 5000;
-
-/// Rows [first, last) of Y = A X, four columns at a time: A is read once for them.
-void multiply_rows(const MatrixRows& A, PetscInt first, PetscInt last, const Eigen::Ref<const MatrixXd>& X,
-                   MatrixXd& Y) {
-  Eigen::Index c = 0;
-  for (; c + 4 <= X.cols(); c += 4) {
-    const double* x[] = {X.col(c).data(), X.col(c + 1).data(), X.col(c + 2).data(), X.col(c + 3).data()};
-    for (PetscInt row = first; row < last; ++row) {
-      double sum[4] = {0, 0, 0, 0};
-      for (PetscInt k = A.start[row]; k < A.start[row + 1]; ++k)
-        for (int i = 0; i < 4; ++i) sum[i] += A.value[k] * x[i][A.column[k]];
-      for (int i = 0; i < 4; ++i) Y(row, c + i) = sum[i];
-    }
-  }
-  for (; c < X.cols(); ++c) {
-    const double* x = X.col(c).data();
-    for (PetscInt row = first; row < last; ++row) {
-      double sum = 0;
-      for (PetscInt k = A.start[row]; k < A.start[row + 1]; ++k) sum += A.value[k] * x[A.column[k]];
-      Y(row, c) = sum;
-    }
-  }
-}
-
 /// A PETSc matrix on the storage of `values`, which outlives it and, if const, is not written to. One process only.
 PetscMat share_dense(const Eigen::Ref<const MatrixXd>& values) {
   PetscMat dense;
@@ -247,10 +223,8 @@ MatrixXd SymmetricFactor::solve(const Eigen::Ref<const MatrixXd>& B) const { ret
 MatrixXd multiply(Mat A, const Eigen::Ref<const MatrixXd>& X) {
   if (const LowRankPart* part = find_low_rank(A)) return multiply(get_sparse(A), X) + part->multiply(X);
   if (initialize_petsc().size == 1 && X.cols() > 0) {
-    MatrixXd Y(X.rows(), X.cols());
-    visit_rows(A, [&](const MatrixRows& rows, PetscInt size) {
-      do_halves(size, kRowsOfThread, [&](PetscInt first, PetscInt last) { multiply_rows(rows, first, last, X, Y); });
-    });
+    MatrixXd Y;
+    visit_rows(A, [&](const MatrixRows& rows, PetscInt) { Y = multiply_rows(rows, X); });
     return Y;
   }
   const PetscMat dense = make_dense(A, X);
@@ -261,6 +235,10 @@ MatrixXd multiply(Mat A, const Eigen::Ref<const MatrixXd>& X) {
 
 MatrixXd calc_residual(Mat A, const Eigen::Ref<const MatrixXd>& X, const Eigen::Ref<const MatrixXd>& B) {
   MatrixXd R = MatrixXd::Zero(B.rows(), B.cols());
+  if (initialize_petsc().size == 1 && B.cols() > 0 && !find_low_rank(A)) {
+    visit_rows(A, [&](const MatrixRows& rows, PetscInt) { R = subtract_precisely(rows, X, B); });
+    return R;
+  }
   // What cancels between the two parts of a sum has more digits too.
   Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic> of_part;
   const LowRankPart* part = find_low_rank(A);
@@ -278,17 +256,6 @@ MatrixXd calc_residual(Mat A, const Eigen::Ref<const MatrixXd>& X, const Eigen::
       R(row, c) = static_cast<double>(sum);
     }
   };
-  if (initialize_petsc().size == 1) {
-    visit_rows(A, [&](const MatrixRows& rows, PetscInt size) {
-      const auto subtract_some = [&](PetscInt first, PetscInt last) {
-        for (PetscInt row = first; row < last; ++row)
-          subtract(row, rows.start[row + 1] - rows.start[row], rows.column + rows.start[row],
-                   rows.value + rows.start[row]);
-      };
-      do_halves(size, kRowsOfThread, subtract_some);
-    });
-    return R;
-  }
   PetscInt first = 0, last = 0, num = 0;
   check_petsc(MatGetOwnershipRange(A, &first, &last));
   const PetscInt* columns = nullptr;

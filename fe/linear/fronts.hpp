@@ -16,4 +16,7 @@ namespace bough::fe {
 /// or with a low-rank part; ranks among which the rows are not cut. Throws "fe.out-of-memory".
 std::optional<int> count_negative_by_fronts(Mat A, double factor, Mat B, PetscInt least = 3000);
 
+/// Negative eigenvalues of a dense matrix, of which the lower triangle is given and lost; -1 where a pivot is zero.
+int count_negative_of_dense(Eigen::MatrixXd& S);
+
 }  // namespace bough::fe

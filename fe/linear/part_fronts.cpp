@@ -1,5 +1,7 @@
 #include "fe/linear/part_fronts.hpp"
 
+#include "fe/linear/fronts.hpp"
+
 extern "C" void dsytrs2_(const char* uplo, const PetscBLASInt* n, const PetscBLASInt* num_sides, double* A,
                          const PetscBLASInt* lda, const PetscBLASInt* pivots, double* B, const PetscBLASInt* ldb,
                          double* work, PetscBLASInt* info);

@@ -127,7 +127,4 @@ class PartFronts {
   FrontElimination elimination_;
 };
 
-/// Negative eigenvalues of a dense matrix, of which the lower triangle is given and lost; -1 where a pivot is zero.
-int count_negative_of_dense(Eigen::MatrixXd& S);
-
 }  // namespace bough::fe

@@ -78,14 +78,39 @@ bool calc_carried(const Model& model, const Element& element, MassKind kind, Car
   return true;
 }
 
-Matrix3Xd calc_point_loads(const CarriedMass& carried, const AccelerationField& field) {
-  Matrix3Xd a(3, carried.points.size());
-  for (Eigen::Index s = 0; s < a.cols(); ++s) {
-    const auto& point = carried.points[static_cast<std::size_t>(s)];
-    a.col(s) = field.A * point.x;
-    if (point.is_place) a.col(s) += field.a_o;
+AccelerationFields::AccelerationFields(const std::vector<AccelerationField>& fields)
+    : num_(static_cast<Eigen::Index>(fields.size())), of_place_(4, 3 * num_) {
+  for (Eigen::Index c = 0; c < num_; ++c) {
+    const auto& field = fields[static_cast<std::size_t>(c)];
+    for (int a = 0; a < 3; ++a) of_place_.col(a * num_ + c) << field.a_o[a], field.A.row(a).transpose();
   }
-  return -a * carried.mu;
+}
+
+AccelerationFields::AccelerationFields(const MatrixXd& A_I)
+    : AccelerationFields([&A_I] {
+        std::vector<AccelerationField> fields;
+        for (Eigen::Index c = 0; c < A_I.cols(); ++c) fields.push_back(calc_acceleration_field(A_I.col(c)));
+        return fields;
+      }()) {}
+
+MatrixXd AccelerationFields::calc_point_loads(const CarriedMass& carried) const {
+  const auto count = static_cast<Eigen::Index>(carried.points.size());
+  MatrixXd places(count, 4), all(count, 3 * num_), loads(3 * count, num_);
+  for (Eigen::Index s = 0; s < count; ++s) {
+    const auto& point = carried.points[static_cast<std::size_t>(s)];
+    places.row(s) << (point.is_place ? 1.0 : 0.0), point.x.transpose();
+  }
+  all.noalias() = (-carried.mu * places).eval() * of_place_;
+  for (int a = 0; a < 3; ++a) loads.middleRows(a * count, count) = all.middleCols(a * num_, num_);
+  return loads;
+}
+
+MatrixXd stack_motions(const CarriedMass& carried) {
+  const auto count = static_cast<Eigen::Index>(carried.points.size());
+  MatrixXd H(3 * count, carried.num_dofs);
+  for (Eigen::Index r = 0; r < count; ++r)
+    for (int a = 0; a < 3; ++a) H.row(a * count + r) = carried.points[static_cast<std::size_t>(r)].H.row(a);
+  return H;
 }
 
 namespace {
@@ -114,21 +139,19 @@ MatrixXd calc_inertial_loads(const Model& model, MassKind kind, const MatrixXd& 
   if (spin.isZero(0)) return F;
   // Where mass hangs on rotations the grids' own accelerations are not those of the mass.
   const MatrixXd grid_field = calc_grid_field(model, spin);
+  const AccelerationFields fields(spin);
   const auto add_change = [&](int from, int to, MatrixXd& sum) {
-    MatrixXd M;
+    MatrixXd M, f;
     for (int e = from; e < to; ++e) {
       const Element& element = *model.elements()[static_cast<std::size_t>(e)];
       if (!element.carries_turning_mass(kind)) continue;
       M.setZero(element.num_dofs(), element.num_dofs());
       element.add_mass(kind, model.wtmass(), M);
-      MatrixXd f = M * grid_field(element.gdofs(), Eigen::all);
+      f.resize(M.rows(), spin.cols());
+      multiply_dense(false, M, grid_field(element.gdofs(), Eigen::all), 0, f);
       CarriedMass carried(element.num_dofs(), CarriedDetail::Points);
       if (calc_carried(model, element, kind, carried)) {
-        for (Eigen::Index c = 0; c < f.cols(); ++c) {
-          const Matrix3Xd loads = calc_point_loads(carried, calc_acceleration_field(spin.col(c)));
-          for (Eigen::Index r = 0; r < loads.cols(); ++r)
-            f.col(c) += carried.points[static_cast<std::size_t>(r)].H.transpose() * loads.col(r);
-        }
+        multiply_dense(true, stack_motions(carried), fields.calc_point_loads(carried), 1, f);
       } else {
         f += turn_momenta(model, element, M, spin);
       }
@@ -162,7 +185,7 @@ MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Ph
   const Eigen::Index n = Phi.cols(), size = 4 + 3 * n;
   constexpr Eigen::Index kPoints = 512;
   const auto add_points = [&](int from, int to, MatrixXd& gram) {
-    MatrixXd Z(kPoints, size), mu_Z = Z, Phi_e, H, u;
+    MatrixXd Z(kPoints, size), mu_Z = Z, Phi_e, u;
     Eigen::Index used = 0;
     const auto flush = [&] {
       multiply_dense(true, Z.topRows(used), mu_Z.topRows(used), 1, gram);
@@ -180,15 +203,13 @@ MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Ph
         mu_Z.resize(count, size);
       }
       Phi_e = Phi(element.gdofs(), Eigen::all);
-      H.resize(3 * count, element.num_dofs());
       for (Eigen::Index r = 0; r < count; ++r) {
         const auto& point = carried.points[static_cast<std::size_t>(r)];
         Z(used + r, 0) = point.is_place ? 1 : 0;
         Z.row(used + r).segment<3>(1) = point.x.transpose();
-        for (int a = 0; a < 3; ++a) H.row(a * count + r) = point.H.row(a);
       }
       u.resize(3 * count, n);
-      multiply_dense(false, H, Phi_e, 0, u);
+      multiply_dense(false, stack_motions(carried), Phi_e, 0, u);
       for (int a = 0; a < 3; ++a) Z.block(used, 4 + a * n, count, n) = u.middleRows(a * count, count);
       multiply_dense(false, carried.mu, Z.middleRows(used, count), 0, mu_Z.middleRows(used, count));
       used += count;
@@ -203,11 +224,13 @@ MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Ph
 
 PetscMat assemble_grid_mass(const Model& model, MassKind kind) {
   const double scale = model.wtmass();
-  return assemble(model, DofSet::Global, MatrixKind::Other, [&](const Element& e, Eigen::Ref<MatrixXd> M) {
+  const auto is_carried = [&](const Element& e) {
     CarriedMass carried(e.num_dofs(), CarriedDetail::Whether);
-    if (e.carries_turning_mass(kind) && calc_carried(model, e, kind, carried)) return;
-    e.add_mass(kind, scale, M);
-  });
+    return e.carries_turning_mass(kind) && calc_carried(model, e, kind, carried);
+  };
+  return assemble_some(
+      model, [&](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); },
+      [&](const Element& e) { return !is_carried(e); });
 }
 
 }  // namespace bough::fe

@@ -1,6 +1,7 @@
 #pragma once
 /// \file What an accelerated frame does to the mass of a model: F_I, and with it GRAV and RFORCE.
 #include <functional>
+#include <vector>
 
 #include "fe/elements/carried.hpp"
 #include "fe/matrices/assembly.hpp"
@@ -45,7 +46,20 @@ PetscMat assemble_grid_mass(const Model& model, MassKind kind);
 /// in Phi (num_gdofs x n), x of every column first: 4 + 3n square. Summed over ranks.
 MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Phi);
 
-/// Forces -Σ_s μ_rs a_s on the points of a carried mass: 3 x points.
-Matrix3Xd calc_point_loads(const CarriedMass& carried, const AccelerationField& field);
+/// k fields at once, those of the columns of A_I (12 x k).
+class AccelerationFields {
+ public:
+  explicit AccelerationFields(const std::vector<AccelerationField>& fields);
+  explicit AccelerationFields(const MatrixXd& A_I);
+  /// Forces -Σ_s μ_rs a_s on the points of a carried mass along x, then y, then z: 3 points x k.
+  MatrixXd calc_point_loads(const CarriedMass& carried) const;
+
+ private:
+  Eigen::Index num_;
+  MatrixXd of_place_;  ///< 4 x 3k: a = [1 or 0 for an arm, x] · its column, along x of every load first
+};
+
+/// H of all points, rows as those of the forces: 3 points x N.
+MatrixXd stack_motions(const CarriedMass& carried);
 
 }  // namespace bough::fe

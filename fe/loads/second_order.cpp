@@ -1,8 +1,10 @@
 #include "fe/loads/second_order.hpp"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <map>
+
+#include "fe/linear/threads.hpp"
 
 namespace bough::fe {
 namespace {
@@ -20,38 +22,35 @@ Eigen::Matrix<double, 6, 1> calc_arm_weights(const Vector3d& f, const Vector3d& 
 /// Forms on the rotations of grids, one a grid: what many elements do there is summed.
 class GridForms {
  public:
-  explicit GridForms(Eigen::Index num_loads) : num_loads_(num_loads) {}
+  GridForms(const Model& model, Eigen::Index num_loads)
+      : num_loads_(num_loads), place_(static_cast<std::size_t>(model.num_gdofs()), -1) {}
 
   Weights& find(int first_rotation) {
-    return at_.try_emplace(first_rotation, Weights::Zero(6, num_loads_)).first->second;
+    int& place = place_[static_cast<std::size_t>(first_rotation)];
+    if (place < 0) {
+      place = static_cast<int>(weights_.size());
+      weights_.emplace_back(Weights::Zero(6, num_loads_));
+    }
+    return weights_[static_cast<std::size_t>(place)];
   }
-  void move_to(std::vector<QuadraticForm>& forms) {
-    for (auto& [first, weights] : at_)
-      if (!weights.isZero(0))
-        forms.push_back({{first, first + 1, first + 2}, Matrix3d::Identity(), std::move(weights)});
-    at_.clear();
+  /// use(first rotation, weights), ascending.
+  template <class Use>
+  void visit(const Use& use) {
+    for (std::size_t first = 0; first < place_.size(); ++first)
+      if (place_[first] >= 0) use(static_cast<int>(first), weights_[static_cast<std::size_t>(place_[first])]);
   }
 
  private:
   Eigen::Index num_loads_;
-  std::map<int, Weights> at_;
+  std::vector<int> place_;
+  std::vector<Weights> weights_;
 };
 
-/// Forces on the points of carried masses in each of the twelve inertial loads.
-using PointLoads = std::array<Matrix3Xd, 12>;
-
-PointLoads calc_unit_loads(const CarriedMass& carried) {
-  PointLoads loads;
-  for (int c = 0; c < 12; ++c)
-    loads[static_cast<std::size_t>(c)] = calc_point_loads(carried, calc_acceleration_field(Vector12d::Unit(c)));
-  return loads;
-}
-
-/// -f·(zᵀ Q z) of every point is ½ zᵀ W z.
-void add_field(const Element& element, const PointLoads& f, const CarriedField& field, const MatrixXd& A_I,
+/// -f·(zᵀ Q z) of every point is ½ zᵀ W z. f: forces on the points in the twelve inertial loads.
+void add_field(const Element& element, const MatrixXd& f, const CarriedField& field, const MatrixXd& A_I,
                std::vector<QuadraticForm>& forms) {
   const auto r = static_cast<int>(field.L.rows());
-  const auto num_terms = 3 * static_cast<Eigen::Index>(field.parts.size());
+  const auto num_terms = 3 * static_cast<Eigen::Index>(field.parts.size()), num_points = f.rows() / 3;
   MatrixXd W(r * (r + 1) / 2, num_terms), by_load(num_terms, 12);  // of unit forces; forces
   Eigen::Index term = 0;
   for (const auto& part : field.parts)
@@ -59,35 +58,58 @@ void add_field(const Element& element, const PointLoads& f, const CarriedField& 
       const auto& Q = part.Q[static_cast<std::size_t>(a)];
       for (int j = 0; j < r; ++j)
         for (int i = j; i < r; ++i) W(find_weight(r, i, j), term) = -(Q(i, j) + Q(j, i));
-      for (int c = 0; c < 12; ++c) by_load(term, c) = f[static_cast<std::size_t>(c)](a, part.point);
+      by_load.row(term) = f.row(a * num_points + part.point);
     }
   MatrixXd weights = W * (by_load * A_I);
   if (!weights.isZero(0)) forms.push_back({element.gdofs(), field.L, std::move(weights)});
 }
 
+/// What a turn makes of the forces f: 6 x 12.
+Eigen::Matrix<double, 6, 12> calc_turn_weights(const CarriedTurn& turn, const MatrixXd& f) {
+  Eigen::Matrix<double, 6, 12> weights = Eigen::Matrix<double, 6, 12>::Zero();
+  const auto num_points = f.rows() / 3;
+  for (const auto& part : turn.parts) {
+    Eigen::Matrix<double, 6, 3> of_force;
+    for (int a = 0; a < 3; ++a) of_force.col(a) = calc_arm_weights(part.B.row(a).transpose(), part.arm);
+    for (int a = 0; a < 3; ++a) weights.noalias() += of_force.col(a) * f.row(a * num_points + part.point);
+  }
+  return weights;
+}
+
+/// Of some of the elements: `grids` in the twelve inertial loads, `forms` in all loads.
+struct CarriedForms {
+  GridForms grids;
+  std::vector<QuadraticForm> forms;
+
+  void add(const Model& model, const MatrixXd& A_I, int from, int to) {
+    const AccelerationFields fields(Eigen::Matrix<double, 12, 12>::Identity());
+    for (int e = from; e < to; ++e) {
+      const Element& element = *model.elements()[static_cast<std::size_t>(e)];
+      if (!element.carries_turning_mass(model.mass_kind())) continue;
+      CarriedMass carried(element.num_dofs());
+      if (!calc_carried(model, element, model.mass_kind(), carried)) continue;
+      const MatrixXd f = fields.calc_point_loads(carried);
+      for (const auto& field : carried.fields) add_field(element, f, field, A_I, forms);
+      for (const auto& turn : carried.turns) {
+        const auto unit = calc_turn_weights(turn, f);
+        if (turn.slot >= 0) {
+          if (!unit.isZero(0)) grids.find(element.gdofs()[static_cast<std::size_t>(turn.slot)]) += unit;
+        } else if (const Weights weights = unit * A_I; !weights.isZero(0)) {
+          forms.push_back({element.gdofs(), turn.Theta, weights});
+        }
+      }
+    }
+  }
+};
+
 void add_carried_masses(const Model& model, const MatrixXd& A_I, GridForms& grids, std::vector<QuadraticForm>& forms) {
-  for (const auto& element : model.elements()) {
-    if (!element->carries_turning_mass(model.mass_kind())) continue;
-    CarriedMass carried(element->num_dofs());
-    if (!calc_carried(model, *element, model.mass_kind(), carried)) continue;
-    std::vector<Weights> unit(carried.turns.size(), Weights::Zero(6, 12));
-    const PointLoads loads = calc_unit_loads(carried);
-    for (int i = 0; i < 12; ++i) {
-      const Matrix3Xd& f = loads[static_cast<std::size_t>(i)];
-      for (std::size_t t = 0; t < carried.turns.size(); ++t)
-        for (const auto& part : carried.turns[t].parts)
-          unit[t].col(i) += calc_arm_weights(part.B.transpose() * f.col(part.point), part.arm);
-    }
-    for (const auto& field : carried.fields) add_field(*element, loads, field, A_I, forms);
-    for (std::size_t t = 0; t < carried.turns.size(); ++t) {
-      const auto& turn = carried.turns[t];
-      const Weights weights = unit[t] * A_I;
-      if (weights.isZero(0)) continue;
-      if (turn.slot >= 0)
-        grids.find(element->gdofs()[static_cast<std::size_t>(turn.slot)]) += weights;
-      else
-        forms.push_back({element->gdofs(), turn.Theta, weights});
-    }
+  constexpr int kElementsOfThread = 500;
+  CarriedForms first{GridForms(model, 12), {}}, second{GridForms(model, 12), {}};
+  do_halves(static_cast<int>(model.elements().size()), kElementsOfThread,
+            [&](int from, int to) { (from == 0 ? first : second).add(model, A_I, from, to); });
+  for (CarriedForms* part : {&first, &second}) {
+    part->grids.visit([&](int first_rotation, const Weights& unit) { grids.find(first_rotation) += unit * A_I; });
+    std::move(part->forms.begin(), part->forms.end(), std::back_inserter(forms));
   }
 }
 
@@ -144,12 +166,14 @@ std::vector<QuadraticForm> calc_second_order(const Model& model, const AppliedLo
                                              const Eigen::Ref<const MatrixXd>& U) {
   BOUGH_DEMAND(loads.F.cols() == U.cols() && loads.A_I.cols() == U.cols() && loads.A_I.rows() == 12);
   std::vector<QuadraticForm> forms;
-  GridForms grids(U.cols());
+  GridForms grids(model, U.cols());
   if (!loads.A_I.isZero(0)) add_carried_masses(model, loads.A_I, grids, forms);
   for (std::size_t c = 0; c < loads.arms.size(); ++c)
     for (const auto& arm : loads.arms[c])
       grids.find(arm.first_rotation).col(static_cast<Eigen::Index>(c)) += calc_arm_weights(arm.force, arm.arm);
-  grids.move_to(forms);
+  grids.visit([&](int first, Weights& weights) {
+    if (!weights.isZero(0)) forms.push_back({{first, first + 1, first + 2}, Matrix3d::Identity(), std::move(weights)});
+  });
   for (std::size_t c = 0; c < loads.followers.size(); ++c)
     for (const auto& follower : loads.followers[c]) {
       forms.push_back({follower.gdofs, follower.L, MatrixXd::Zero(follower.weights.rows(), U.cols())});

@@ -32,7 +32,8 @@ struct Rows {
   std::vector<int> elements;  ///< those that touch the rows, ascending
 };
 
-/// What is added, elements and others: their g-dofs, and the columns of T that these rows have, each once and ascending.
+/// What is added, elements and others: their g-dofs, and the columns of T that these rows have, each once and
+/// ascending.
 class Parts {
  public:
   Parts(const SparseRows& T, std::vector<const std::vector<int>*> parts) : gdofs_(std::move(parts)) {
@@ -292,9 +293,10 @@ Csr sum_rows(const Model& model, const SparseRows& T, const AddElementMatrix& ad
 
 /// Rows [first, last) of TᵀAT; last < 0: all.
 Csr sum_rows(const Model& model, const SparseRows& T, const AddElementMatrix& add,
-             const std::vector<QuadraticForm>& forms, int first = 0, int last = -1) {
+             const std::vector<QuadraticForm>& forms, int first = 0, int last = -1, const TakesElement& takes = {}) {
+  static const std::vector<int> none;
   std::vector<const std::vector<int>*> gdofs;
-  for (const auto& element : model.elements()) gdofs.push_back(&element->gdofs());
+  for (const auto& element : model.elements()) gdofs.push_back(takes && !takes(*element) ? &none : &element->gdofs());
   for (const auto& form : forms) gdofs.push_back(&form.gdofs);
   return sum_rows(model, T, add, forms, Parts(T, std::move(gdofs)), first,
                   last < 0 ? static_cast<int>(T.cols()) : last);
@@ -303,21 +305,21 @@ Csr sum_rows(const Model& model, const SparseRows& T, const AddElementMatrix& ad
 /// TᵀAT, sparse. Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an
 /// entry does not depend on the number of ranks.
 PetscMat assemble_sparse(const Model& model, const SparseRows& T, const AddElementMatrix& add,
-                         const std::vector<QuadraticForm>& forms) {
+                         const std::vector<QuadraticForm>& forms, const TakesElement& takes = {}) {
   const PetscInt size = static_cast<PetscInt>(T.cols());
   PetscMat matrix;
   std::vector<int> groups;
   const ModelShare* share = model.share();
   BOUGH_DEMAND(!share || size == model.num_fdofs());
   if (initialize_petsc().size == 1) {
-    Csr rows = sum_rows(model, T, add, forms);
+    Csr rows = sum_rows(model, T, add, forms, 0, -1, takes);
     groups = std::move(rows.groups);
     matrix = make_matrix(std::move(rows), size);
   } else {
     PetscInt num_own = share ? share->last_fdof - share->first_fdof : PETSC_DECIDE, all = size, last = 0;
     check_petsc(PetscSplitOwnership(PETSC_COMM_WORLD, &num_own, &all));
     MPI_Scan(&num_own, &last, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD);
-    Csr rows = sum_rows(model, T, add, forms, last - num_own, last);
+    Csr rows = sum_rows(model, T, add, forms, last - num_own, last, takes);
     groups = std::move(rows.groups);
     matrix = make_matrix_of_ranks(std::move(rows), last - num_own, size);
   }
@@ -340,6 +342,10 @@ PetscMat assemble(const Model& model, DofSet set, MatrixKind kind, const AddElem
   if (!split) return make_sum(assemble_sparse(model, model.T(), add, forms), of_forms);
   return make_sum(assemble_sparse(model, split->T, add, forms),
                   join(calc_wide_part(model, *split, add, forms), 1, of_forms, 1));
+}
+
+PetscMat assemble_some(const Model& model, const AddElementMatrix& add, const TakesElement& takes) {
+  return assemble_sparse(model, make_identity(model.num_gdofs()), add, {}, takes);
 }
 
 namespace {

@@ -15,6 +15,9 @@ enum class MatrixKind { Stiffness, Other };
 /// (wide_part.hpp). O(elements).
 PetscMat assemble(const Model& model, DofSet set, MatrixKind kind, const AddElementMatrix& add,
                   std::vector<QuadraticForm> forms = {});
+/// The same of the elements that `takes` says, on the g-set; the others are not asked.
+using TakesElement = std::function<bool(const Element&)>;
+PetscMat assemble_some(const Model& model, const AddElementMatrix& add, const TakesElement& takes);
 
 /// K (with K_G0 of a prestressed model), or M (times WTMASS).
 PetscMat assemble_stiffness(const Model& model, DofSet set);

@@ -30,11 +30,11 @@ VectorXd calc_norms(const fe::Model& model, const MatrixXd& X) {
   return X.cwiseProduct(times_M(model, X)).colwise().sum().cwiseMax(0).cwiseSqrt();
 }
 MatrixXd calc_gram_M(const fe::Model& model, const MatrixXd& X) {
-  const MatrixXd G = X.transpose() * times_M(model, X);
+  const MatrixXd G = fe::calc_inner_products(X, times_M(model, X));
   return 0.5 * (G + G.transpose());
 }
 MatrixXd calc_gram_K(const fe::Model& model, const MatrixXd& X) {
-  const MatrixXd G = X.transpose() * fe::calc_stiffness_times(model, X);
+  const MatrixXd G = fe::calc_inner_products(X, fe::calc_stiffness_times(model, X));
   return 0.5 * (G + G.transpose());
 }
 
@@ -94,8 +94,7 @@ Basis calc_free_interface_basis(const fe::System& system, const BasisOptions& op
   basis.num_rigid = pairs.num_rigid;
   basis.num_massless = pairs.num_massless;
   const auto num_pairs = static_cast<int>(pairs.lambda.size());
-  if (num_pairs > 0)
-    basis.check = {num_pairs, pairs.inertia_count, pairs.residual.maxCoeff()};
+  if (num_pairs > 0) basis.check = {num_pairs, pairs.inertia_count, pairs.residual.maxCoeff()};
   auto kept = pairs.lambda.size() - pairs.num_rigid;
   if (options.num_modes == 0 && !options.max_hz) kept = 0;
   // A massless rigid motion takes none of the modes asked for: what came in its place is cut again.
@@ -145,10 +144,10 @@ Basis calc_free_interface_basis(const fe::System& system, const BasisOptions& op
             format_percent(part) + ")";
   }
   if (!lost.empty())
-    diagnostics.warning("modal.massless-interface", {},
-                        "what moves no mass has no attachment mode; lost of the flexibility in " + lost,
-                        "a hinge there meets a stiffer body; give the model inertia there, or take fewer modes, if it should "
-                        "not");
+    diagnostics.warning(
+        "modal.massless-interface", {}, "what moves no mass has no attachment mode; lost of the flexibility in " + lost,
+        "a hinge there meets a stiffer body; give the model inertia there, or take fewer modes, if it should "
+        "not");
   for (const int i : residual.unused)
     if (i >= num_attachments) basis.unused_loads.push_back(i - static_cast<int>(num_attachments));
   const auto n = basis.lambda.size();

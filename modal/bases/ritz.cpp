@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fe/linear/blas.hpp"
 #include "modal/canonical.hpp"
 
 namespace bough::modal::bases {
@@ -78,7 +79,7 @@ VectorXd calc_lost_flexibility(const fe::Model& model, const MatrixXd& Y, const 
   VectorXd held = VectorXd::Zero(F.cols());
   if (Y.cols() > 0) {
     const MatrixXd YF = Y.transpose() * F;
-    const Eigen::LDLT<MatrixXd> K(symmetrize(Y.transpose() * fe::calc_stiffness_times(model, Y)));
+    const Eigen::LDLT<MatrixXd> K(symmetrize(fe::calc_inner_products(Y, fe::calc_stiffness_times(model, Y))));
     held = YF.cwiseProduct(K.solve(YF)).colwise().sum();
   }
   const VectorXd whole = F.cwiseProduct(X).colwise().sum();
@@ -100,8 +101,7 @@ VectorXd calc_least_norms(const fe::Model& model, const MatrixXd& kept, const Ma
     if (lambda > 0) longest = 1 / lambda;
   }
   const auto is_held = [&](Eigen::Index i) {
-    return !(flexibility(i) > 0) ||
-           (stiffness(i) > 0 && flexibility(i) < 1e-8 * square(i) * square(i) / stiffness(i));
+    return !(flexibility(i) > 0) || (stiffness(i) > 0 && flexibility(i) < 1e-8 * square(i) * square(i) / stiffness(i));
   };
   for (Eigen::Index i = 0; i < F.cols(); ++i)
     if (!is_held(i)) longest = std::max(longest, norm(i) * norm(i) / flexibility(i));
@@ -184,7 +184,7 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
   std::sort(result.unused.begin(), result.unused.end());
 
   if (used.empty()) return result;
-  const MatrixXd K = X.transpose() * fe::calc_stiffness_times(model, X);
+  const MatrixXd K = fe::calc_inner_products(X, fe::calc_stiffness_times(model, X));
   const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(symmetrize(K));
   result.modes.lambda = ritz.eigenvalues();
   result.modes.Phi = X * ritz.eigenvectors();

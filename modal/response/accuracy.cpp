@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "fe/linear/blas.hpp"
 #include "fe/matrices/assembly.hpp"
 
 namespace bough::modal::response {
@@ -13,8 +14,8 @@ using namespace std::complex_literals;
 
 double calc_basis_error(const fe::Model& model, const ResponseModel& response) {
   const auto n = response.lambda.size(), num = response.num_dynamic();
-  const MatrixXd M = response.Phi.transpose() * fe::calc_mass_times(model, model.mass_kind(), response.Phi);
-  const MatrixXd K = response.Phi.transpose() * fe::calc_stiffness_times(model, response.Phi);
+  const MatrixXd M = fe::calc_inner_products(response.Phi, fe::calc_mass_times(model, model.mass_kind(), response.Phi));
+  const MatrixXd K = fe::calc_inner_products(response.Phi, fe::calc_stiffness_times(model, response.Phi));
   double worst = 0;
   for (Eigen::Index j = 0; j < n; ++j)
     for (Eigen::Index i = 0; i < n; ++i) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "fe/linear/blas.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/statics/static_case.hpp"
 
@@ -154,9 +155,9 @@ class Maker {
       const auto residual = bases::calc_residual_vectors(model_, solve_, rigid(), kept, F);
       if (residual.modes.lambda.size() > 0) {
         kept = join_columns(kept, residual.modes.Phi);
-        const auto pairs =
-            bases::calc_ritz_pairs(make_symmetric(kept.transpose() * times_mass(model_, kept)),
-                                   make_symmetric(kept.transpose() * fe::calc_stiffness_times(model_, kept)));
+        const auto pairs = bases::calc_ritz_pairs(
+            make_symmetric(fe::calc_inner_products(kept, times_mass(model_, kept))),
+            make_symmetric(fe::calc_inner_products(kept, fe::calc_stiffness_times(model_, kept))));
         kept = kept * pairs.N;
         lambda = pairs.lambda;
       }
@@ -201,7 +202,7 @@ class Maker {
     if (kept.empty()) return;
     const MatrixXd X = rest(Eigen::all, kept);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(
-        make_symmetric(X.transpose() * fe::calc_stiffness_times(model_, X)));
+        make_symmetric(fe::calc_inner_products(X, fe::calc_stiffness_times(model_, X))));
     const auto num = (gram.eigenvalues().array() > 1e-8).count();
     const MatrixXd Z =
         X * gram.eigenvectors().rightCols(num) * gram.eigenvalues().tail(num).cwiseSqrt().cwiseInverse().asDiagonal();
@@ -220,9 +221,10 @@ class Maker {
 
   void damp(ResponseModel& r) const {
     const auto n = r.lambda.size();
-    r.D = make_symmetric(r.Phi.transpose() * fe::calc_damping_times(model_, r.Phi));
+    r.D = make_symmetric(fe::calc_inner_products(r.Phi, fe::calc_damping_times(model_, r.Phi)));
     r.S = MatrixXd::Zero(n, n);
-    const MatrixXd K_e = make_symmetric(r.Phi.transpose() * fe::calc_structural_damping_times(model_, 0, r.Phi));
+    const MatrixXd K_e =
+        make_symmetric(fe::calc_inner_products(r.Phi, fe::calc_structural_damping_times(model_, 0, r.Phi)));
     MatrixXd K = r.lambda.asDiagonal();
     if (damping_.times_direct) K -= make_symmetric(r.Phi.transpose() * damping_.times_direct(r.Phi));
     const MatrixXd K_g = damping_.g * K;

@@ -191,7 +191,9 @@ TEST(CarriedBodies, SecondOrderIsThatOfExactRotations) {
   carried.add_grid_body(x, 3, S, E, 0);
   Eigen::Matrix<double, 12, 1> A_I = Eigen::Matrix<double, 12, 1>::Random();
   const auto field = fe::calc_acceleration_field(A_I);
-  const auto f = fe::calc_point_loads(carried, field);
+  const auto num_points = static_cast<Eigen::Index>(carried.points.size());
+  const fe::Matrix3Xd f =  // rows: along x of every point first
+      fe::AccelerationFields(std::vector{field}).calc_point_loads(carried).reshaped(num_points, 3).transpose();
   Matrix3d K = Matrix3d::Zero();
   for (const auto& turn : carried.turns)
     for (const auto& part : turn.parts) K += fe::calc_arm_stiffness(part.B.transpose() * f.col(part.point), part.arm);

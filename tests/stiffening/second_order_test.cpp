@@ -73,11 +73,9 @@ VectorXd turn_load(const fe::Model& model, const BalancedLoad& load, const Vecto
     if (!element->carries_turning_mass(model.mass_kind()) ||
         !fe::calc_carried(model, *element, model.mass_kind(), carried))
       continue;
-    const auto f = fe::calc_point_loads(carried, a);
-    for (Eigen::Index r = 0; r < f.cols(); ++r) {
-      const VectorXd at = carried.points[static_cast<std::size_t>(r)].H.transpose() * f.col(r);
-      for (int i = 0; i < element->num_dofs(); ++i) turned[element->gdofs()[static_cast<std::size_t>(i)]] += at[i];
-    }
+    const VectorXd at =
+        fe::stack_motions(carried).transpose() * fe::AccelerationFields(std::vector{a}).calc_point_loads(carried);
+    for (int i = 0; i < element->num_dofs(); ++i) turned[element->gdofs()[static_cast<std::size_t>(i)]] += at[i];
   }
   return turned;
 }

@@ -124,5 +124,26 @@ TEST_P(FrontsOn, AreNotForMatricesWithoutGroupsOrOfFewRows) {
   EXPECT_FALSE(count_negative_by_fronts(bare.get(), -1, B.get(), 0));
 }
 
+/// Definite but for a few, as a Schur complement above a few modes; any numbers; pivots that no block of rows has
+/// alone.
+TEST(Fronts, DenseMatricesAreCounted) {
+  std::srand(3);
+  for (const int n : {1, 5, 96, 97, 300}) {
+    const Eigen::MatrixXd some = Eigen::MatrixXd::Random(n, n), few = Eigen::MatrixXd::Random(n, std::min(n, 3));
+    Eigen::MatrixXd swapped = Eigen::MatrixXd::Zero(n, n);
+    for (int i = 0; i < n; ++i) swapped(i, n - 1 - i) = 1;
+    swapped += 1e-9 * Eigen::MatrixXd::Identity(n, n);
+    for (const Eigen::MatrixXd& S :
+         {Eigen::MatrixXd(some * some.transpose() + 0.1 * Eigen::MatrixXd::Identity(n, n) - 5 * few * few.transpose()),
+          Eigen::MatrixXd(some + some.transpose()), swapped}) {
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(S);
+      Eigen::MatrixXd lower = S.triangularView<Eigen::Lower>();
+      EXPECT_EQ(count_negative_of_dense(lower), (solver.eigenvalues().array() < 0).count()) << n;
+    }
+  }
+  Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(4, 4);
+  EXPECT_EQ(count_negative_of_dense(zero), -1);
+}
+
 }  // namespace
 }  // namespace bough::fe
