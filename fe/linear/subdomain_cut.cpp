@@ -88,9 +88,11 @@ std::vector<idx_t> cut(Graph& graph, idx_t num_parts) {
   return part;
 }
 
-/// The rows of the groups of this rank's part in the order of a nested dissection.
-std::vector<PetscInt> order_inner(const SubdomainMatrix& A, const std::vector<PetscInt>& inner,
-                                  const std::vector<int>& group_of) {
+/// The rows of the groups of this rank's part in the order of a nested dissection. visit(i, use): use(j) with the inner
+/// rows, numbered as in `inner`, that the i-th couples to, -1 for others.
+template <class Visit>
+std::vector<PetscInt> order_inner(const std::vector<PetscInt>& inner, const std::vector<int>& group_of,
+                                  const Visit& visit) {
   Graph graph;
   std::vector<idx_t> first_row, vertex(inner.size());
   for (std::size_t i = 0; i < inner.size(); ++i) {
@@ -103,11 +105,11 @@ std::vector<PetscInt> order_inner(const SubdomainMatrix& A, const std::vector<Pe
   for (idx_t v = 0; v < graph.size(); ++v) {
     mark[v] = v;
     for (idx_t i = first_row[v]; i < first_row[v] + graph.weight[v]; ++i)
-      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator entry(A.rows(), i); entry; ++entry) {
-        if (entry.col() >= static_cast<Index>(inner.size())) continue;
-        const idx_t other = vertex[static_cast<std::size_t>(entry.col())];
+      visit(i, [&](PetscInt j) {
+        if (j < 0) return;
+        const idx_t other = vertex[static_cast<std::size_t>(j)];
         if (mark[other] != v) mark[other] = v, graph.neighbours.push_back(other);
-      }
+      });
     graph.start.push_back(static_cast<idx_t>(graph.neighbours.size()));
   }
   const std::vector<idx_t> order = find_dissection(graph);
@@ -117,6 +119,25 @@ std::vector<PetscInt> order_inner(const SubdomainMatrix& A, const std::vector<Pe
     for (idx_t i = first_row[v]; i < first_row[v] + graph.weight[v]; ++i)
       rows.push_back(inner[static_cast<std::size_t>(i)]);
   return rows;
+}
+
+std::vector<PetscInt> order_inner(Mat A, const Subdomains& domains, const std::vector<int>& group_of) {
+  const PetscInt n_p = domains.num_inner();
+  if (!domains.by_parts) {
+    const SubdomainMatrix sub(A, domains);
+    return order_inner(domains.inner, group_of, [&](PetscInt i, const auto& use) {
+      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator entry(sub.rows(), i); entry; ++entry)
+        use(entry.col() < n_p ? static_cast<PetscInt>(entry.col()) : -1);
+    });
+  }
+  const OwnEntries own(A);
+  std::vector<PetscInt> place(static_cast<std::size_t>(own.last() - own.first()), -1);
+  for (PetscInt i = 0; i < n_p; ++i) place[static_cast<std::size_t>(domains.inner[i] - own.first())] = i;
+  return order_inner(domains.inner, group_of, [&](PetscInt i, const auto& use) {
+    own.visit(domains.inner[i], [&](PetscInt column, double) {
+      use(column >= own.first() && column < own.last() ? place[static_cast<std::size_t>(column - own.first())] : -1);
+    });
+  });
 }
 
 /// Inner rows and those between, by METIS; false where there are no parts. Shares of the rows between are alike.
@@ -220,7 +241,7 @@ std::optional<Subdomains> find_subdomains(Mat A, Mat B, PetscInt least) {
   const auto between = static_cast<long long>(result.between.size());
   if (between > kMostRowsBetween || (between > kFewBetween && static_cast<double>(between) > kMostShare * result.size))
     return std::nullopt;
-  result.inner = order_inner(SubdomainMatrix(A, result), result.inner, list_group_of(group_start));
+  result.inner = order_inner(A, result, list_group_of(group_start));
   keep(result, A, B);
   return result;
 }
