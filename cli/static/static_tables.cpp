@@ -112,10 +112,18 @@ std::string format_extremes(const std::string& title, const std::vector<int>& id
   for (const auto& [name, columns] : groups) {
     Extreme least, most;
     for (const auto column : columns) {
-      Eigen::Index low = 0, high = 0;
-      const double min = values.col(column).minCoeff(&low), max = values.col(column).maxCoeff(&high);
-      if (least.id == 0 || min < least.value) least = {min, id[static_cast<std::size_t>(low)]};
-      if (most.id == 0 || max > most.value) most = {max, id[static_cast<std::size_t>(high)]};
+      // Where they are is asked of few columns: the passes for it are slower than those for the numbers.
+      const auto all = values.col(column);
+      const double min = all.minCoeff(), max = all.maxCoeff();
+      Eigen::Index at = 0;
+      if (least.id == 0 || !(min >= least.value)) {
+        const double value = all.minCoeff(&at);
+        least = {value, id[static_cast<std::size_t>(at)]};
+      }
+      if (most.id == 0 || !(max <= most.value)) {
+        const double value = all.maxCoeff(&at);
+        most = {value, id[static_cast<std::size_t>(at)]};
+      }
     }
     table.rows.push_back({name, fmt::format("{:.6e}", least.value), std::to_string(least.id),
                           fmt::format("{:.6e}", most.value), std::to_string(most.id)});
