@@ -67,9 +67,9 @@ void hold_threads() {
   if (const auto set = find_function<void(int)>("openblas_set_num_threads")) set(1);
 }
 
-/// What MPI looks for while it starts, unless the user says it. A process that no launcher started needs no daemon and no
-/// network transport: making them ready takes ten times as long as the rest of its start (360 ms against 30 ms). Ranks
-/// that are all on one machine need no network either: asking every kind of it takes 200 ms.
+/// What MPI looks for while it starts, unless the user says it. A process that no launcher started needs no daemon and
+/// no network transport: making them ready takes ten times as long as the rest of its start (360 ms against 30 ms).
+/// Ranks that are all on one machine need no network either: asking every kind of it takes 200 ms.
 void choose_transport() {
   const auto get = [](const char* name) {
     const char* value = std::getenv(name);

@@ -41,8 +41,7 @@ SplitCsr split(const Csr& rows, int first) {
   const int last = first + rows.num_rows;
   const auto is_own = [&](int column) { return column >= first && column < last; };
   const int size = rows.start[rows.num_rows];
-  const auto num_own =
-      static_cast<std::size_t>(std::count_if(rows.columns.get(), rows.columns.get() + size, is_own));
+  const auto num_own = static_cast<std::size_t>(std::count_if(rows.columns.get(), rows.columns.get() + size, is_own));
   const auto num_rows = static_cast<std::size_t>(rows.num_rows);
   SplitCsr result{make_csr(num_rows, num_own), make_csr(num_rows, static_cast<std::size_t>(size) - num_own)};
   int own = 0, other = 0;
