@@ -176,7 +176,10 @@ int run(int argc, const char* const* argv, std::vector<Diagnostic>& failures) {
 
 namespace bough::cli {
 
-CommandOutcome run_and_tell(const std::vector<std::string>& words) {
+CommandOutcome run_and_tell(const std::vector<std::string>& given) {
+  std::vector<std::string> words = given;
+  for (auto& word : words)  // -.5, as decks have it, would be an option
+    if (word.size() > 2 && word.compare(0, 2, "-.") == 0 && word[2] >= '0' && word[2] <= '9') word.insert(1, "0");
   std::vector<const char*> arguments{"bough"};
   for (const auto& word : words) arguments.push_back(word.c_str());
   CommandOutcome outcome;

@@ -7,7 +7,7 @@ namespace bough::fe {
 namespace {
 
 /// Rows between the parts, of all: their dense blocks are factored three times.
-constexpr double kMostBetween = 0.02;
+constexpr double kMostBetween = 0.12;
 
 }  // namespace
 

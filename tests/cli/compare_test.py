@@ -153,7 +153,7 @@ class Compare(ProgramTest):
     def test_another_origin(self):
         self.body("a")
         self.write("same.bdf", cantilever(16))
-        self.bough("reduce", "same.bdf", "--modes", 4, "--origin", 0.3, -0.2, 0.1, "-o", "b.h5", "-q")
+        self.bough("reduce", "same.bdf", "--modes", 4, "--origin", ".3", "-.2", ".1", "-o", "b.h5", "-q")
         r = self.json("a.h5", "b.h5")
         np.testing.assert_allclose(r["nodes"]["offset"], [-0.3, 0.2, -0.1], atol=1e-12)
         self.assertEqual(r["nodes"]["by_id"], 17)

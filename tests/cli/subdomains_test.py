@@ -92,10 +92,11 @@ def write_block(n=(24, 9, 8)):
 
 
 class Subdomains(ProgramTest):
-    def solve(self, ranks, *options):
+    def solve(self, ranks, *options, threads=1):
         """Eigenvalues, effective masses, shapes as rows."""
         options = options if "-n" in options else ("-n", 8, *options)
-        self.bough("modes", "deck.bdf", "-o", f"r{ranks}.h5", *options, launcher=launch(ranks), env=ENV)
+        self.bough("modes", "deck.bdf", "-o", f"r{ranks}.h5", *options, launcher=launch(ranks),
+                   env={**ENV, "OMP_NUM_THREADS": str(threads)})
         with h5py.File(self.path(f"r{ranks}.h5")) as file:
             phi = file["modes/phi"][()]
             return file["modes/eigenvalue"][()], file["effective_mass"][()], phi.reshape(-1, phi.shape[-1]).T
@@ -105,7 +106,7 @@ class Subdomains(ProgramTest):
         eigenvalue, mass, shape = self.solve(1, *options)
         self.assertEqual(len(eigenvalue), options[options.index("-n") + 1] if "-n" in options else 8)
         for n in ranks:
-            found, mass_there, there = self.solve(n, *options)
+            found, mass_there, there = self.solve(n, *options, threads=2 if n == 1 else 1)
             np.testing.assert_allclose(found, eigenvalue, rtol=2e-10, atol=1e-10 * np.abs(eigenvalue).max())
             np.testing.assert_allclose(mass_there, mass, rtol=0, atol=1e-6 * np.abs(mass).max())
             mac = np.sum(shape * there, 1) ** 2 / np.sum(shape**2, 1) / np.sum(there**2, 1)
@@ -128,6 +129,10 @@ class Subdomains(ProgramTest):
 
     def test_solids(self):
         self.compare(write_block(), (3,))
+
+    def test_a_cube(self):
+        """A twentieth of the rows lies between two halves, of ranks (two) and of threads (one rank)."""
+        self.compare(write_block((20, 20, 19)), (1, 2))
 
     def test_ranks_decide_alike(self):
         """15,000 rows, of which one rank has more than 5,000 and another fewer: what depends on size goes by all."""

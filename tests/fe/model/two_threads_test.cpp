@@ -85,9 +85,9 @@ TEST(TwoThreads, HoldTheSameDofs) {
     const Threads threads(num);
     Diagnostics diagnostics;
     const auto cards = nastran::read_deck_text(deck, "deck.bdf", {}, diagnostics);
+    const Model model = Model::build(cards, {}, diagnostics);
     std::vector<std::pair<int, int>> held;
-    for (const AutospcEntry& entry : Model::build(cards, {}, diagnostics).autospc())
-      held.emplace_back(entry.node, entry.component);
+    for (const AutospcEntry& entry : model.autospc()) held.emplace_back(entry.node, entry.component);
     return held;
   };
   const auto one = list(1);
