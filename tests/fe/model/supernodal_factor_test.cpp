@@ -85,7 +85,7 @@ TEST(SupernodalFactor, IsOfLargeMatricesInGroups) {
   const PetscMat bare = make_grid(90, 60);
   check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(bare.get()), "bough_row_groups", nullptr));
   EXPECT_FALSE(make_supernodal_factor(bare.get(), 0).factor) << "rows without groups";
-  EXPECT_EQ(make_supernodal_factor(make_grid(20, 20).get(), 0).num_parts, 1) << "many rows between";
+  EXPECT_EQ(make_supernodal_factor(make_grid(6, 6).get(), 0).num_parts, 1) << "many rows between";
 }
 
 /// A negative eigenvalue of the whole (0.0055) may be none of either part (0.011): the rows between have it.
