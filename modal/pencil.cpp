@@ -18,12 +18,15 @@ namespace {
 /// Rows of the f-dofs of a g-set field: the displacement component along the f-dof's CD axis.
 MatrixXd restrict_to_fdofs(const fe::Model& model, const MatrixXd& U) {
   MatrixXd X = MatrixXd::Zero(model.num_fdofs(), U.cols());
+  const fe::Node* node = nullptr;
+  int known = 0;  // its id
   for (int f = 0; f < model.num_fdofs(); ++f) {
     const auto [id, component] = model.describe_fdof(f);
-    const auto& node = model.node(model.find_node(id));
-    if (node.num_dofs != 6) continue;
+    if (!node || id != known) node = &model.node(model.find_node(id));
+    known = id;
+    if (node->num_dofs != 6) continue;
     const int c = component - 1;
-    X.row(f) = node.R_basic_cd.col(c % 3).transpose() * U.middleRows(node.first_gdof + 3 * (c / 3), 3);
+    X.row(f) = node->R_basic_cd.col(c % 3).transpose() * U.middleRows(node->first_gdof + 3 * (c / 3), 3);
   }
   return X;
 }
@@ -188,14 +191,16 @@ Strainless find_strainless(const Pencil& pencil, const Vector3d& centre) {
 
   // Y: orthonormal under D. A second pass on the vectors themselves: products of the six basic motions cancel where one
   // motion is much softer than its parts (a turn about a skew axis), those of the motion itself do not.
+  constexpr double kSurelyStrained = 1e-6;  // as supports hold a body: no second pass
   MatrixXd Y = B * (scale.asDiagonal() * V * d.cwiseSqrt().cwiseInverse().asDiagonal());
   VectorXd energy;
   for (int pass = 0; pass < 2; ++pass) {
     const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(
         fe::calc_inner_products(Y, pencil.calc_K_times(Y)),
         fe::calc_inner_products(Y, pencil.K_diagonal.asDiagonal() * Y));
-    Y = (Y * solver.eigenvectors()).eval();
     energy = solver.eigenvalues();
+    if (pass == 0 && energy.minCoeff() > kSurelyStrained) return result;
+    Y = (Y * solver.eigenvectors()).eval();
   }
   std::vector<int> strainless;
   for (int i = 0; i < energy.size(); ++i)
