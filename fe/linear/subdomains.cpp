@@ -273,7 +273,9 @@ SubdomainFactor::SubdomainFactor(Mat A, const Subdomains& domains)
     });
   }
   if (!are_all(is_fine)) return;
-  require_memory_of_ranks(domains.num_inner() + domains.num_between(), part_->num_entries(), no_memory);
+  // The block of the rows between is there twice more while it is taken out.
+  require_memory_of_ranks(domains.num_inner() + domains.num_between(),
+                          part_->num_entries() + 2.0 * domains.num_between() * domains.num_between(), no_memory);
   do_on_all(no_memory, [&] {
     is_fine = part_->factor();
     if (is_fine) L_ = part_->take_schur();

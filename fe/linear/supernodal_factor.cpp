@@ -1,6 +1,7 @@
 #include "fe/linear/supernodal_factor.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -59,6 +60,8 @@ SupernodalFactor make_supernodal_factor(Mat A, PetscInt least) {
   check_petsc(MatGetSize(A, &n, nullptr));
   double num_entries = 0;
   for (const auto& part : parts->part) num_entries += part->num_entries();
+  // Each part has its block of the rows between twice more while it is taken out.
+  if (num > 1) num_entries += 2.0 * static_cast<double>(num) * std::pow(static_cast<double>(parts->between.size()), 2);
   release_freed_memory();
   require_memory(static_cast<double>(n), num_entries, calc_free_memory());
 
