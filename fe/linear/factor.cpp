@@ -16,7 +16,6 @@ namespace {
 
 using Eigen::MatrixXd;
 
-/// Fewer are done before a thread has started.
 /// A PETSc matrix on the storage of `values`, which outlives it and, if const, is not written to. One process only.
 PetscMat share_dense(const Eigen::Ref<const MatrixXd>& values) {
   PetscMat dense;

@@ -240,7 +240,7 @@ int PartFronts::count(MatrixXd& schur) {
 
 namespace {
 
-/// Block by block with pivots of each alone, five times as fast as LAPACK; -1 where one is too small.
+/// Block by block with pivots of each alone, nearly all by products; -1 where one is too small.
 int count_by_blocks(MatrixXd S) {
   constexpr int kColumns = 96;
   const auto n = static_cast<int>(S.rows());
