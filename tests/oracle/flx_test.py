@@ -310,6 +310,31 @@ class OfMatrices(OracleTest):
         for name in ["alpha", "gamma0", "gamma1", "gamma2", "gamma3", "gamma4"]:
             self.assert_equal(found["out"][name][0, 0], flx[name], name)
 
+    @unittest.skipUnless(shutil.which("octave"), "Octave is not installed")
+    def test_the_call_of_the_report(self):
+        """fimake5(idof_tab, nnode, phir, mass): node numbers with a gap; columns by the other form, nodes renumbered."""
+        write_input(self, "t", self.M, self.K, self.D, self.Phi, self.dof_map, self.xyz)
+        numbers = np.array([3, 205, 17, 40, 8, 90])      # of the nodes 1 to 6
+        idof = self.dof_map.astype(float)
+        nodal = (idof[:, 1] >= 1) & (idof[:, 1] <= 6)
+        idof[nodal, 0] = numbers[self.dof_map[nodal, 0].astype(int) - 1]
+        scipy.io.savemat(self.path("in.mat"), {
+            "M": self.M, "xyz": self.xyz, "idof_tab": idof, "dof_map": self.dof_map.astype(float),
+            "phir": treeflx.rigid_modes(self.dof_map, self.xyz, (0.5, -0.25, 2.0))})
+        folder = os.path.join(SOURCE, "data/matlab")
+        self.write("main.m", f"addpath('{folder}'); load in.mat; fi = fimake5(idof_tab, 205, phir, M);\n"
+                             "F = fimake5(M, dof_map, xyz, [0.5 -0.25 2]); save -v7 out.mat fi F\n")
+        subprocess.run(["octave", "--no-gui", "--quiet", "main.m"], cwd=self.folder, check=True)
+        found = scipy.io.loadmat(self.path("out.mat"))
+        self.assert_equal(found["fi"], found["F"], "fimake5")
+
+    def test_the_shipped_integrals_are_read_by_plain_read_statements(self):
+        """READ(unit, *) of the report: each line begins with a value, and what stands behind the values is passed over."""
+        for name in ("test.inp", "test.mat"):
+            with open(os.path.join(SOURCE, "data/integrals", name)) as f:
+                for line in f:
+                    self.assertRegex(line, r"^\s*(\d+\*)?[-+]?\d+(\.\d*)?([DE][-+]?\d+)?[\s,]")
+
     def test_exact_set(self):
         write_input(self, "t", self.M, self.K, self.D, self.Phi, self.dof_map, self.xyz, nodes=(1,))
         self.bough("integrals", "t.inp", "t.mat", "--integrals", "exact", "--digits", "17", "-o", "t.FLX")

@@ -111,31 +111,31 @@ TEST_F(ModelInputTest, ReadsEveryOption) {
 }
 
 TEST_F(ModelInputTest, EveryFaultHasItsLineAndItem) {
-  expect_fault("2, 5, 2 ", "0, 5, 2 ", "flx.wrong-size", 3, "item 1 of 15: sizes (nodes, dofs, modes): found 0 5 2");
-  expect_fault("2, 5, 2 ", "2, 5, 6 ", "flx.wrong-size", 3, "found 2 5 6");
-  expect_fault("2 2\n2 6", "2 2\n2 8", "flx.bad-dof", 8, "item 2 of 15: degree-of-freedom map: entry 5 has the type 8");
-  expect_fault("2 2\n2 6", "2 2\n3 6", "flx.unknown-node", 8, "entry 5 is at node 3, the model has 1 to 2");
-  expect_fault("2 2\n2 6", "2 2\n2 2", "flx.duplicate-dof", 8, "entry 5 is node 2 type 2 again");
-  expect_fault("-1.0 2*0.0", "-1.0 x 0", "flx.bad-number", 9, "item 3 of 15: offset vector: value 2 of 3");
-  expect_fault("0                  ! integrals", "3 !", "flx.bad-option", 13,
+  expect_fault("2, 5, 2 ", "0, 5, 2 ", "flx.wrong-size", 1, "item 1 of 15: sizes (nodes, dofs, modes): found 0 5 2");
+  expect_fault("2, 5, 2 ", "2, 5, 6 ", "flx.wrong-size", 1, "found 2 5 6");
+  expect_fault("2 2\n2 6", "2 2\n2 8", "flx.bad-dof", 6, "item 2 of 15: degree-of-freedom map: entry 5 has the type 8");
+  expect_fault("2 2\n2 6", "2 2\n3 6", "flx.unknown-node", 6, "entry 5 is at node 3, the model has 1 to 2");
+  expect_fault("2 2\n2 6", "2 2\n2 2", "flx.duplicate-dof", 6, "entry 5 is node 2 type 2 again");
+  expect_fault("-1.0 2*0.0", "-1.0 x 0", "flx.bad-number", 7, "item 3 of 15: offset vector: value 2 of 3");
+  expect_fault("0                  ! integrals", "3 !", "flx.bad-option", 11,
                "item 6 of 15: modal integral option: found 3");
-  expect_fault("4.0                ! mass", "0.0 !", "flx.bad-value", 14, "item 7 of 15: body mass: found 0");
-  expect_fault("1                  ! damping", "0 !", "flx.bad-option", 15, "item 8 of 15: damping option: found 0");
-  expect_fault("1                  ! damping", "2\n-1 !", "flx.bad-value", 16, "item 9 of 15: damping ratio: found -1");
-  expect_fault("2                  ! modes to output", "3 !", "flx.too-many-modes", 16,
+  expect_fault("4.0                ! mass", "0.0 !", "flx.bad-value", 12, "item 7 of 15: body mass: found 0");
+  expect_fault("1                  ! damping", "0 !", "flx.bad-option", 13, "item 8 of 15: damping option: found 0");
+  expect_fault("1                  ! damping", "2\n-1 !", "flx.bad-value", 14, "item 9 of 15: damping ratio: found -1");
+  expect_fault("2                  ! modes to output", "3 !", "flx.too-many-modes", 14,
                "item 10 of 15: number of modes: found 3, the modes given are 2");
-  expect_fault("1                  ! 1 the first", "4 !", "flx.bad-option", 17, "item 11 of 15: mode selection flag");
-  expect_fault("1                  ! 1 the first ones, 2 by a list", "2\n2\n1", "flx.bad-selection", 19,
+  expect_fault("1                  ! 1 the first", "4 !", "flx.bad-option", 15, "item 11 of 15: mode selection flag");
+  expect_fault("1                  ! 1 the first ones, 2 by a list", "2\n2\n1", "flx.bad-selection", 17,
                "item 12 of 15: mode selection: entry 2 is mode 1 after mode 2");
-  expect_fault("1                  ! 1 the first ones, 2 by a list", "2\n1\n3", "flx.bad-selection", 19,
+  expect_fault("1                  ! 1 the first ones, 2 by a list", "2\n1\n3", "flx.bad-selection", 17,
                "entry 2 is mode 3, the modes given are 1 to 2");
-  expect_fault("2                  ! nodes to output", "3 !", "flx.too-many-nodes", 18, "item 13 of 15");
-  expect_fault("output\n1\n2\n", "output\n1\n5\n", "flx.unknown-node", 20,
+  expect_fault("2                  ! nodes to output", "3 !", "flx.too-many-nodes", 16, "item 13 of 15");
+  expect_fault("output\n1\n2\n", "output\n1\n5\n", "flx.unknown-node", 18,
                "item 14 of 15: output nodes: entry 2 is node 5");
-  expect_fault("output\n1\n2\n", "output\n2\n1\n", "flx.node-order", 20, "entry 2 is node 1 after node 2");
-  expect_fault("2                  ! special", "0 !", "flx.bad-option", 21,
+  expect_fault("output\n1\n2\n", "output\n2\n1\n", "flx.node-order", 18, "entry 2 is node 1 after node 2");
+  expect_fault("2                  ! special", "0 !", "flx.bad-option", 19,
                "item 15 of 15: special node option: found 0");
-  expect_fault("2                  ! special nodes: 1 no, 2 yes\n", "", "flx.short-file", 20, "item 15 of 15");
+  expect_fault("2                  ! special nodes: 1 no, 2 yes\n", "", "flx.short-file", 18, "item 15 of 15");
 }
 
 TEST_F(ModelInputTest, FaultsAreReportedTogether) {
