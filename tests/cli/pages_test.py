@@ -137,7 +137,7 @@ class Pages(ProgramTest):
         self.prepare(page)
         text, printed = read(name), []
         for shown, meant in page.stands_for.items():
-            text = re.sub(rf"(?<![\w./-]){re.escape(shown)}(?![\w./-])", meant, text)
+            text = re.sub(rf"(?<![\w./-]){re.escape(shown)}(?![\w./-])", lambda _: meant, text)
         script = page.python
         for kind, lines in list_blocks(text):
             if kind == "toml":
@@ -288,6 +288,9 @@ PAGES = {
     "docs/formats/mat.md": boom(stands_for={"FILE.h5": "run.h5"}),
     "docs/formats/sid.md": boom(stands_for=SAME),
     "docs/formats/mbdyn.md": boom(stands_for=SAME),
+    "docs/formats/campaign-toml.md": Page(
+        ("ex08-satellite", "ex01-spinup"), ("reduce wing.toml -q",), {"study.toml": DENSITY, **TIP},
+        stands_for={"samples = 20": "samples = 2", "[1, 1000]": "[1, 2]", "number = 1000": "number = 2"}),
     "docs/formats/comparison.md": boom(
         before=("matrices boom.bdf -o MATRICES.h5 -q",), stands_for={**SAME, "DECK": "boom.bdf", "N": "3"},
         left_out=("--refinement",)),  # compare_test.py: three meshes
