@@ -17,6 +17,7 @@
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
 #include "formats/toml/specs.hpp"
+#include "solver/integrate/timeline.hpp"
 
 namespace bough::cli {
 
@@ -68,10 +69,12 @@ records::LinearSweep sweep_parameter(const LinearizeVerbOptions& o, Diagnostics&
 
 /// At every N-th sample of the run.
 records::LinearSweep sweep_run(const LinearizeVerbOptions& o, const LoadedSystem& loaded, Diagnostics& diagnostics) {
-  const auto& s = loaded.spec.simulation;
+  Diagnostics checked;
+  const auto plan = solver::make_run_plan(loaded.spec.simulation, checked);
+  checked.throw_if_errors();
+  const solver::Timeline samples(plan);
   std::vector<double> times;
-  for (int k = 0; k * o.each * s.output_step <= s.duration * (1 + 1e-12); ++k)
-    times.push_back(s.start + k * o.each * s.output_step);
+  for (long i = 0; i < samples.num_outputs(); i += o.each) times.push_back(samples.calc_output(i));
   auto plant = make_plant(loaded, o.open);
   std::optional<records::Checkpoint> last;
   const auto linearize = [&](double t) {

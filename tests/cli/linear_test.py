@@ -192,6 +192,15 @@ class Linearize(LinearTest):
             said = self.bough("linearize", "corner.toml").stderr
             self.assertEqual("[linear.inaccurate]" in said, is_told, (y, position, said))
 
+    def test_each_counts_the_samples_of_the_run(self):
+        """Without output_step a run has 1,000 samples and its start."""
+        for step in ("", "output_step = 0.001\n", "output_step = 0.0015\n"):
+            self.write("each.toml", PENDULUM.replace("POSITION", "0.1").replace("duration = 1.0\n",
+                                                                               "duration = 1.0\n" + step))
+            self.bough("linearize", "each.toml", "--each", "500", "-o", "each.h5", timeout=60)
+            with h5py.File(self.path("each.h5")) as f:
+                np.testing.assert_allclose(f["parameter/value"][()], [0, 0.75] if "15" in step else [0, 0.5, 1.0])
+
     def test_soft_poles_beside_stiff_ones_are_doubted(self):
         """Two masses on rails, a stiff strut between them, a soft spring to the wall: l^2 - 2 (1 + K) l + 2 K = 0."""
         body = '[[body]]\nname = "{0}"\nmass = 1.0\ncg = [0.0, 0.0, 0.0]\ninertia = [1.0, 1.0, 1.0]\n'
