@@ -26,20 +26,6 @@ Latches::Latches(const System& system) : system_(system) {
   }
 }
 
-// Of what rests: all that crosses the hinge but for what acts along the coordinate by itself.
-double Latches::calc_holding_force(const SystemData& data, const Watched& w) const {
-  const int row = w.latch.u_row;
-  double applied = data.tree.motion.tau[row];
-  const Loops& loops = system_.impl().loops;
-  for (int i = 0; i < loops.size(); ++i) {
-    if (!data.loops[i].closing.is_closed) continue;
-    for (const CouplerTerm& term : loops[i].terms) {
-      if (term.u_row == row) applied -= term.ratio * data.loops[i].lambda[0];
-    }
-  }
-  return data.tree.hinge_force[row] - applied;
-}
-
 void Latches::calc_guards(const SystemData& data, VectorXd& guards) const {
   guards.setConstant(-1);
   for (size_t i = 0; i < latches_.size(); ++i) {
@@ -48,7 +34,7 @@ void Latches::calc_guards(const SystemData& data, VectorXd& guards) const {
     const HingeMode mode = data.tree.mode[static_cast<size_t>(w.latch.u_row)];
     const double q = data.tree.q[w.latch.q_row], rate = data.tree.u[w.latch.u_row];
     if (mode == HingeMode::Locked && w.rests) {
-      const double force = calc_holding_force(data, w);
+      const double force = data.tree.calc_constraint_force(w.latch.u_row);
       if (std::isfinite(w.high())) own[0] = force - w.high();
       if (std::isfinite(w.low())) own[1] = w.low() - force;
     } else if (mode == HingeMode::Free) {
@@ -174,7 +160,7 @@ void Latches::find_rest(SystemOde& ode, double t, double shortest, VectorXd& y, 
     size_t loosest = latches_.size();
     for (size_t i = 0; i < latches_.size(); ++i) {
       if (!rests[i]) continue;
-      const double force = calc_holding_force(ode.data(), latches_[i]);
+      const double force = ode.data().tree.calc_constraint_force(latches_[i].latch.u_row);
       const double excess = std::max(force - latches_[i].high(), latches_[i].low() - force);
       if (!(excess > most)) continue;
       most = excess;
@@ -183,7 +169,7 @@ void Latches::find_rest(SystemOde& ode, double t, double shortest, VectorXd& y, 
     if (loosest == latches_.size()) break;
     rests[loosest] = false;
     if (latches_[loosest].latch.static_friction > 0)
-      slide[loosest] = calc_holding_force(ode.data(), latches_[loosest]) > 0 ? -1 : 1;
+      slide[loosest] = ode.data().tree.calc_constraint_force(latches_[loosest].latch.u_row) > 0 ? -1 : 1;
   }
   for (size_t i = 0; i < latches_.size(); ++i) {
     const Watched& w = latches_[i];

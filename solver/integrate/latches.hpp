@@ -57,7 +57,6 @@ class Latches {
   [[noreturn]] void fail_endless(const std::vector<std::string>& what) const;
   void find_rest(SystemOde& ode, double t, double shortest, VectorXd& y, std::vector<std::string>& what);
   void lock(SystemOde& ode, double t, const std::vector<bool>& rests, VectorXd& y) const;
-  double calc_holding_force(const SystemData& data, const Watched& w) const;
 
   const System& system_;
   std::vector<Watched> latches_;

@@ -306,7 +306,9 @@ double Run::calc_flow() const {
         std::max(size, data[b].state.p_WBo.norm() + (body.mass() > 0 ? body.first_moment().norm() / body.mass() : 0));
   }
   // Springs, dampers and actuators of hinges: a force along the size, or a moment through one radian.
-  return force * size + moment + data.hinge_force.cwiseAbs().sum() * std::max(size, 1.0);
+  double along = 0;
+  for (int row = 0; row < impl.tree.num_u; ++row) along += std::abs(data.get_hinge_force(row));
+  return force * size + moment + along * std::max(size, 1.0);
 }
 
 void Run::cross_jump() {

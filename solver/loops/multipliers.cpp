@@ -92,7 +92,6 @@ void apply(const Loops& loops, const Tree& tree, const LoopData& data, double si
   for (const LoopBlock& block : data.blocks) {
     for (const int i : block.constraints) {
       const Constraint& c = loops[i];
-      // Taken off again it leaves springs and dampers, and of a driven coordinate what its motor gives.
       for (const CouplerTerm& term : c.terms)
         tree_data.hinge_force[term.u_row] += sign * term.ratio * data[i].lambda[0];
       if (!c.closure) continue;
@@ -139,6 +138,15 @@ void close_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, Loop
   apply(loops, tree, data, 1, tree_data);
   solve(tree, tree_data, u_dot);
   apply(loops, tree, data, -1, tree_data);
+  // The force of a coupler acts along its coordinates, not across their hinges: a motor or a brake does not carry it.
+  for (const LoopBlock& block : data.blocks) {
+    for (const int i : block.constraints) {
+      for (const CouplerTerm& term : loops[i].terms) {
+        if (tree_data.mode[static_cast<size_t>(term.u_row)] != HingeMode::Free)
+          tree_data.transmitted[term.u_row] -= term.ratio * data[i].lambda[0];
+      }
+    }
+  }
 }
 
 namespace {

@@ -91,7 +91,7 @@ Power calc_powers(const System& system, const SystemData& data) {
     for (int i = 0; i < tb.num_hinge_u(); ++i) {
       const int row = tb.u_offset + i;
       if (data.tree.mode[static_cast<size_t>(row)] == HingeMode::Prescribed)
-        power += data.tree.hinge_force[row] * u[row];
+        power += data.tree.transmitted[row] * u[row];
       else if (tb.damping.size() > 0)
         dissipated += tb.damping[i] * u[row] * u[row];
     }

@@ -253,7 +253,7 @@ void get_hinge(const System& system, const SystemData& data, int body, Eigen::Re
   BOUGH_DEMAND(q.size() == tb.num_hinge_q() && q_dot.size() == nu && force.size() == nu);
   tb.hinge->get_for_file(data.tree.q.data() + tb.q_offset, q.data());
   q_dot = data.tree.u.segment(tb.u_offset, nu);
-  force = data.tree.hinge_force.segment(tb.u_offset, nu);
+  for (int i = 0; i < nu; ++i) force[i] = data.tree.get_hinge_force(tb.u_offset + i);
 }
 
 HingeReaction get_hinge_reaction(const System& system, const SystemData& data, int body) {

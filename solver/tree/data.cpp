@@ -19,7 +19,8 @@ Sweep make_sweep(const Tree& tree) {
 TreeData make_tree_data(const Tree& tree) {
   TreeData data;
   data.q = VectorXd::Zero(tree.num_q);
-  data.u = data.given_u = data.given_udot = data.hinge_force = data.slide = VectorXd::Zero(tree.num_u);
+  data.u = data.given_u = data.given_udot = data.hinge_force = data.transmitted = data.slide =
+      VectorXd::Zero(tree.num_u);
   data.h = data.applied = VectorXd::Zero(tree.num_v);
   clear_added(tree, data);
   data.motion = make_sweep(tree);

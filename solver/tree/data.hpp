@@ -5,7 +5,7 @@
 ///     velocity      calc_velocity(u)        V, b, h; clears what is applied
 ///     forces        (solver/forces)         applied, hinge_force
 ///     factor        calc_factor             𝒫, D = LLᵀ, G: position only
-///     acceleration  solve                   β, z, A', u̇
+///     acceleration  solve                   β, z, A', u̇, transmitted
 /// A stage demands those it reads and undoes those that read it. No pass allocates.
 #include "solver/state/motion.hpp"
 #include "solver/tree/tree.hpp"
@@ -62,7 +62,8 @@ struct TreeData {
   std::vector<MarkerMotion> markers;
   VectorXd h, applied;   ///< num_v: [f; t about Bo; modal] per body, in B, gravity left out
   VectorXd slide;        ///< num_u: which way a coordinate with dry friction slides, 1 or -1; 0: it has none, or rests
-  VectorXd hinge_force;  ///< num_u: springs and dampers; after solve, where not free, all that crosses the hinge
+  VectorXd hinge_force;  ///< num_u: load along the coordinate: springs, dampers, elements and actuators of the hinge
+  VectorXd transmitted;  ///< num_u: after solve, where not free: hinge wrench along the coordinate, motor inertia added
   Vector3d gravity = Vector3d::Zero();  ///< set by add_forces
   VectorXd
       added;  ///< num_u: on the diagonal of ℋᵀ𝒫ℋ along hinge coordinates: inertia of motors, and of an implicit step
@@ -72,6 +73,14 @@ struct TreeData {
   std::vector<BodyData> bodies;
 
   bool has(Stage s) const { return (done & static_cast<unsigned>(s)) != 0; }
+  /// Generalized hinge force as reported: the load of a free coordinate, else the transmitted force.
+  double get_hinge_force(int row) const {
+    return mode[static_cast<size_t>(row)] == HingeMode::Free ? hinge_force[row] : transmitted[row];
+  }
+  /// Force that keeps a locked or prescribed coordinate to its motion, in addition to its load. After solve, and after
+  /// close_loops where constraints are closed.
+  double calc_constraint_force(int row) const { return transmitted[row] - hinge_force[row]; }
+
   void demand(Stage s) const { BOUGH_DEMAND(has(s)); }
   const BodyData& operator[](int b) const { return b < 0 ? ground : bodies[static_cast<size_t>(b)]; }
   BodyData& operator[](int b) { return b < 0 ? ground : bodies[static_cast<size_t>(b)]; }

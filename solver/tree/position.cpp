@@ -95,6 +95,7 @@ void start_velocity(const Tree& tree, const ConstVectorRef& u, TreeData& data) {
   data.u = u;
   data.applied.setZero();
   data.hinge_force.setZero();
+  data.transmitted.setZero();
   data.done &= static_cast<unsigned>(Stage::Position) | static_cast<unsigned>(Stage::Factor);
   data.done |= static_cast<unsigned>(Stage::Velocity);
   for (const int m : tree.moving) {

@@ -154,8 +154,8 @@ void finish_solve(const Tree& tree, TreeData& data, Eigen::Ref<VectorXd> u_dot) 
       const int row = tb.u_offset + i;
       if (data.mode[static_cast<size_t>(row)] == HingeMode::Free) continue;
       const auto H = data[b].hinge.H.col(i);
-      data.hinge_force[row] = H.head<3>().dot(r.force) + H.tail<3>().dot(r.moment);
-      if (tb.rotor.size() > 0) data.hinge_force[row] += tb.rotor[i] * data.given_udot[row];
+      data.transmitted[row] = H.head<3>().dot(r.force) + H.tail<3>().dot(r.moment);
+      if (tb.rotor.size() > 0) data.transmitted[row] += tb.rotor[i] * data.given_udot[row];
       s.u_dot[row] = data.given_udot[row];
     }
   }

@@ -233,6 +233,48 @@ TEST_P(RandomLoops, ReactionsCloseNewtonAndEulerOfEveryBody) {
   EXPECT_LT((rate - loads).cwiseAbs().maxCoeff(), 1e-10 * scale);
 }
 
+// Every second hinge locked: what holds a coordinate is its row of M u_dot - f - G'lambda by the dense equations,
+// gears, springs and dampers of that coordinate included; rows of free coordinates vanish.
+TEST_P(RandomLoops, ForcesThatHoldCoordinatesAreThoseOfTheDenseEquations) {
+  Looped s = make_looped(GetParam());
+  const Tree& tree = s.system.impl().tree;
+  const Loops& loops = s.system.impl().loops;
+  Discrete discrete = get_discrete(*s.data);
+  std::vector<int> locked;
+  for (int b = 0; b < tree.size(); b += 2) {
+    for (int i = 0; i < tree[b].num_hinge_u(); ++i) {
+      HingeMode& mode = discrete.mode[static_cast<size_t>(tree[b].u_offset + i)];
+      if (mode == HingeMode::Prescribed) continue;
+      mode = HingeMode::Locked;
+      locked.push_back(tree[b].u_offset + i);
+    }
+  }
+  set_modes(s.system, *s.data, discrete);
+  const VectorXd u_dot = calc_u_dot(s.system, *s.data, 0.3, s.q, s.u);
+  MatrixXd M;
+  VectorXd f;
+  calc_dense_equations(tree, s.data->tree, M, f);
+  const MatrixXd G = calc_dense_rows(loops, tree, s.data->tree, s.data->loops);
+  VectorXd lambda(G.rows());
+  int at = 0;
+  for (const LoopBlock& block : s.data->loops.blocks) {
+    lambda.segment(at, block.rows.size()) = block.rows;
+    at += static_cast<int>(block.rows.size());
+  }
+  // Accelerations of prescribed coordinates are in the bias already.
+  VectorXd moving = u_dot;
+  for (int row = 0; row < tree.num_u; ++row)
+    if (discrete.mode[static_cast<size_t>(row)] == HingeMode::Prescribed) moving[row] = 0;
+  const VectorXd left = M * moving - f - G.transpose() * lambda;
+  const double scale = 1 + f.norm() + (G.transpose() * lambda).norm() + left.norm();
+  ASSERT_FALSE(locked.empty());
+  for (const int row : locked) EXPECT_NEAR(s.data->tree.calc_constraint_force(row), left[row], 1e-9 * scale) << row;
+  for (int row = 0; row < tree.num_u; ++row) {
+    if (discrete.mode[static_cast<size_t>(row)] != HingeMode::Free) continue;
+    EXPECT_LT(std::abs(left[row]), 1e-9 * scale) << row;
+  }
+}
+
 TEST_P(RandomLoops, AllocateNothing) {
   Looped s = make_looped(GetParam());
   State state;

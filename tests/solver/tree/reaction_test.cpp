@@ -77,7 +77,7 @@ TEST_P(ReactionTest, AlongFreeCoordinatesIsTheHingeForce) {
     Vector6d wrench;
     wrench << r.force, r.moment;
     for (int i = 0; i < tb.num_hinge_u(); ++i)
-      EXPECT_NEAR(data->tree[b].hinge.H.col(i).dot(wrench), data->tree.hinge_force[tb.u_offset + i],
+      EXPECT_NEAR(data->tree[b].hinge.H.col(i).dot(wrench), data->tree.get_hinge_force(tb.u_offset + i),
                   1e-11 * (1 + wrench.norm()));
   }
 }
