@@ -19,7 +19,7 @@ struct BlockInput {
   const double* u = nullptr;  ///< inputs
   const double* z = nullptr;  ///< continuous states
   const double* d = nullptr;  ///< memory: what changes at samples and switches only
-  long sample = 0;            ///< sampled blocks: the number of this sample, 0 at the start of the run
+  long sample = 0;            ///< sampled blocks: number of this sample, counted from time zero
   const System* system = nullptr;
   const SystemData* data = nullptr;  ///< the motion at t, for sensors and actuators
 };

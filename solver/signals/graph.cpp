@@ -1,5 +1,6 @@
 #include "solver/signals/graph.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -8,10 +9,18 @@
 namespace bough::solver {
 namespace {
 
-/// The number of the instant within `close` of t, -1 when there is none.
+/// Index, from the first, of the instant within `close` of t; -1 if there is none.
 long find_sample(double t, double first, double period, double close) {
   const long k = std::lround((t - first) / period);
   return k >= 0 && std::abs(t - (first + static_cast<double>(k) * period)) <= close ? k : -1;
+}
+
+/// Number of the first sample of a run from `start`, counted from time zero: the parts of a mission draw different
+/// noise, and the same as one run where they meet at a sample.
+long calc_first_number(double start, double period) {
+  const double periods = start / period, nearest = std::round(periods);
+  const bool is_sample = std::abs(periods - nearest) <= 1e-9 * std::max(1.0, std::abs(periods));
+  return std::lround(is_sample ? nearest : std::ceil(periods));
 }
 
 void demand_finite(const BlockPlace& place, const double* y, double t) {
@@ -220,7 +229,7 @@ bool SignalGraph::sample(const System& system, SystemData& data, double close) c
     }
     if (const long k = find_sample(t, start, period, close); k >= 0) {
       BlockInput in = look(p, system, data);
-      in.sample = k;
+      in.sample = calc_first_number(start, period) + k;
       const int slot = p.queue_length > 0 ? p.queue + n * static_cast<int>(k % p.queue_length) : p.held;
       if (s.is_ideal && p.block->path.starts_with("/sensors/"))
         p.block->calc_ideal(in, s.memory.data() + slot);
@@ -256,7 +265,7 @@ void SignalGraph::resample(const System& system, SystemData& data) const {
       held.setZero();
     } else {
       BlockInput in = look(p, system, data);
-      in.sample = std::lround((data.tree.t - start) / p.block->sizes.sample_time);
+      in.sample = std::lround(data.tree.t / p.block->sizes.sample_time);
       if (p.block->path.starts_with("/sensors/")) {
         p.block->calc_ideal(in, held.data());  // its walk is noise
       } else {

@@ -299,6 +299,42 @@ TEST(Noise, AResumedRunDrawsWhatTheUnbrokenOneDraws) {
   EXPECT_EQ(whole.sink.get("/sensors/rate").bottomRows(rest.rows()), second.sink.get("/sensors/rate"));
 }
 
+// A mission in parts, of which each starts its controllers and sensors again, at any multiple of the sample times:
+// white noise of a sensor that nothing moves is that of one run, on its way through a delay too.
+TEST(Noise, PartsOfAMissionDrawWhatOneRunDraws) {
+  auto spec = make_axis();
+  spec.actuators.clear();
+  spec.controllers.clear();
+  spec.simulation.integrator = "rk4";
+  spec.simulation.step = spec.simulation.output_step = 0.05;
+  spec.simulation.duration = 6;
+  spec.sensors[0].chain.numbers = {{"sample_time", {0.1}}, {"noise_density", {1}}};
+  spec.sensors[1].chain.numbers = {{"sample_time", {0.15}}, {"noise_density", {1}}, {"delay", {0.25}}};
+  const MemorySink whole = run(spec).sink;
+  const MatrixXd angle = whole.get("/sensors/angle"), rate = whole.get("/sensors/rate");
+  ASSERT_EQ(angle.rows(), 121);
+  for (const double from : {1.2, 3.0}) {
+    spec.simulation.start = from;
+    spec.simulation.duration = 6 - from;
+    const MemorySink part = run(spec).sink;
+    const MatrixXd own = part.get("/sensors/angle"), later = part.get("/sensors/rate");
+    EXPECT_EQ(own, angle.bottomRows(own.rows())) << from;
+    EXPECT_EQ(later(0, 0), 0);  // its first sample is on its way
+    EXPECT_EQ(later.bottomRows(later.rows() - 5), rate.bottomRows(later.rows() - 5)) << from;
+  }
+  // Between two samples a part goes on with the number of the next one.
+  spec.simulation.start = 1.23;
+  spec.simulation.duration = 1;
+  const MatrixXd shifted = run(spec).sink.get("/sensors/angle");
+  EXPECT_EQ(shifted(0, 0), angle(26, 0));
+  EXPECT_EQ(shifted(2, 0), angle(28, 0));
+  // Before time zero too.
+  spec.simulation.start = -0.3;
+  const MatrixXd before = run(spec).sink.get("/sensors/angle");
+  EXPECT_EQ(before(6, 0), angle(0, 0));
+  EXPECT_NE(before(0, 0), angle(6, 0));
+}
+
 TEST(Sensor, ImperfectionsComeInTheirOrder) {
   auto spec = make_axis();
   spec.actuators.clear();
