@@ -33,7 +33,7 @@ class LaggedStiffening final : public Block {
       Eigen::Map<Vector6d> load(y + 12 + 6 * i);
       const AppliedForce* f = sources[i].source.force;
       if (f != nullptr && f->pattern.size() > 0) {
-        load << (f->function ? f->function->calc(in.data->tree.t).f : 1.0), 0, 0, 0, 0, 0;
+        load << (f->function ? in.data->tree.functions[*f->function].calc(in.data->tree.t).f : 1.0), 0, 0, 0, 0, 0;
       } else {
         load = calc_node_load(sources[i].source, body, *in.system, *in.data);
       }

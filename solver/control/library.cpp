@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <sstream>
 
 #include "solver/control/hosted.hpp"
@@ -65,6 +67,10 @@ class Library final : public Block {
       return {"control.library-failed", at, what.str(), advice};
     };
     int result = 0;
+    // Its instance is one for all threads. A host guards its own functions (the Python module by the interpreter's
+    // lock, which must not be waited for under this one).
+    std::unique_lock one_at_a_time(*calls_, std::defer_lock);
+    if (handle_ != nullptr) one_at_a_time.lock();
     try {
       result = action();
     } catch (const std::exception& error) {
@@ -85,6 +91,7 @@ class Library final : public Block {
 
   void* handle_;
   ControllerFunctions f_;
+  std::unique_ptr<std::mutex> calls_ = std::make_unique<std::mutex>();
 };
 
 template <class F>

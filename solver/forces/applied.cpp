@@ -40,7 +40,7 @@ void add_wrench_in_body(const TreeBody& tb, int node_index, const Vector3d& f, c
 }
 
 void add_applied_force(const AppliedForce& force, const Tree& tree, double t, TreeData& data) {
-  add_applied_load(force, tree, force.function ? force.function->calc(t).f : 1.0, data);
+  add_applied_load(force, tree, force.function ? data.functions[*force.function].calc(t).f : 1.0, data);
 }
 
 void add_applied_load(const AppliedForce& force, const Tree& tree, double value, TreeData& data) {

@@ -16,7 +16,26 @@ class Combination : public TimeFunction {
     return std::all_of(of.begin(), of.end(), [](const TimeFunction* f) { return f->has_derivatives(); });
   }
 
+ protected:
+  /// Copies of the functions that threads cannot share take their places; false: there are none.
+  bool copy_parts() {
+    for (const TimeFunction*& f : of) {
+      auto copy = f->clone();
+      if (!copy) continue;
+      f = copy.get();
+      own_.push_back(std::move(copy));
+    }
+    return !own_.empty();
+  }
+  template <class Kind>
+  static std::unique_ptr<const TimeFunction> clone_as(const Kind& kind) {
+    auto copy = std::make_unique<Kind>(kind);
+    if (!copy->copy_parts()) return nullptr;
+    return copy;
+  }
+
  private:
+  std::vector<std::shared_ptr<const TimeFunction>> own_;
   std::vector<double> collect(std::vector<double> (TimeFunction::*get)() const) const {
     std::vector<double> all;
     for (const TimeFunction* f : of) {
@@ -32,6 +51,7 @@ class Combination : public TimeFunction {
 class Sum final : public Combination {
  public:
   std::vector<double> weights;
+  std::unique_ptr<const TimeFunction> clone() const override { return clone_as(*this); }
   Value calc(double t) const override {
     Value sum;
     for (size_t i = 0; i < of.size(); ++i) {
@@ -47,6 +67,7 @@ class Sum final : public Combination {
 class Product final : public Combination {
  public:
   double gain = 1;
+  std::unique_ptr<const TimeFunction> clone() const override { return clone_as(*this); }
   Value calc(double t) const override {
     Value all{gain, 0, 0};
     for (const TimeFunction* f : of) {

@@ -126,6 +126,19 @@ bool check_table(const FunctionRecord& r, FunctionParameters& p) {
 
 }  // namespace
 
+FunctionCopies::FunctionCopies(const std::vector<const TimeFunction*>& functions) {
+  for (const TimeFunction* f : functions) {
+    if (std::shared_ptr<const TimeFunction> copy = f->clone()) copies_.emplace_back(f, std::move(copy));
+  }
+  std::sort(copies_.begin(), copies_.end());
+}
+
+const TimeFunction& FunctionCopies::find(const TimeFunction& f) const {
+  const auto at = std::lower_bound(copies_.begin(), copies_.end(), &f,
+                                   [](const auto& copy, const TimeFunction* x) { return copy.first < x; });
+  return at != copies_.end() && at->first == &f ? *at->second : f;
+}
+
 std::unique_ptr<const TimeFunction> make_time_function(const FunctionRecord& r, Diagnostics& diagnostics,
                                                        const TimeSpan& run, const FunctionMap& others) {
   static const std::vector<std::string> types = {"constant", "step",       "ramp",     "pulse",   "sine",

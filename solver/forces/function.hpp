@@ -26,6 +26,20 @@ class TimeFunction {
   virtual std::vector<double> landmarks() const { return {}; }
   /// Whether f_dot and f_ddot are known; else they are not numbers, and f is no motion.
   virtual bool has_derivatives() const { return true; }
+  /// A copy for another thread; nullptr: calc() writes nothing, so that threads can share the function.
+  virtual std::unique_ptr<const TimeFunction> clone() const { return nullptr; }
+};
+
+/// The functions of a system as one thread evaluates them: copies of those that threads cannot share.
+class FunctionCopies {
+ public:
+  FunctionCopies() = default;
+  explicit FunctionCopies(const std::vector<const TimeFunction*>& functions);
+  const TimeFunction& operator[](const TimeFunction& f) const { return copies_.empty() ? f : find(f); }
+
+ private:
+  const TimeFunction& find(const TimeFunction& f) const;
+  std::vector<std::pair<const TimeFunction*, std::shared_ptr<const TimeFunction>>> copies_;  ///< by address
 };
 
 /// Functions by name; one that failed maps to nullptr.

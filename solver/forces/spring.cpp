@@ -37,7 +37,7 @@ ForceResult SpringElement::calc(const Tree& tree, const TreeData& data, Loads* l
     stored = law_.stiffness > 0 ? 0.5 * elastic * elastic / law_.stiffness : elastic * stretch;
     damper = elastic == 0 ? 0 : sign * std::max(-sign * elastic, sign * damper);
   }
-  const double driven = law_.function ? law_.function->calc(data.t).f : 0;
+  const double driven = law_.function ? data.functions[*law_.function].calc(data.t).f : 0;
   const double tension = elastic + damper + driven;
   if (loads != nullptr) {
     loads->add_wrench(from_, tension * along, Vector3d::Zero());

@@ -1,35 +1,35 @@
-// A formula of t, by muParser, with its derivatives where they are given.
-#include <muParser.h>
-
+// A formula of t, with its derivatives where they are given.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <sstream>
 
+#include "solver/forces/formulas.hpp"
 #include "solver/forces/function_parameters.hpp"
 #include "solver/forces/table.hpp"
 
 namespace bough::solver {
 namespace {
 
-double calc_step(double x) { return x >= 0 ? 1 : 0; }
-
-/// A parser reads its variable where it is: t is copied there.
 class TimeExpression final : public TimeFunction {
  public:
-  std::vector<mu::Parser> parsers;  ///< f; or f, its rate and its acceleration
-  std::unique_ptr<double> t = std::make_unique<double>(0);
+  TimeExpression() : formulas(std::make_unique<Formulas>(Formulas::Names{{"t", 0}})) {}
+  TimeExpression(const TimeExpression& other)
+      : formulas(std::make_unique<Formulas>(*other.formulas)), jumps(other.jumps), marks(other.marks) {}
+  TimeExpression& operator=(const TimeExpression&) = delete;
+
+  std::unique_ptr<Formulas> formulas;  ///< f; or f, its rate and its acceleration
   std::vector<double> jumps, marks;
 
-  Value calc(double at) const override {
-    *t = at;
+  Value calc(double t) const override {
+    (*formulas)[0] = t;
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    if (!has_derivatives()) return {parsers[0].Eval(), nan, nan};
-    return {parsers[0].Eval(), parsers[1].Eval(), parsers[2].Eval()};
+    if (!has_derivatives()) return {formulas->calc(0), nan, nan};
+    return {formulas->calc(0), formulas->calc(1), formulas->calc(2)};
   }
+  std::unique_ptr<const TimeFunction> clone() const override { return std::make_unique<TimeExpression>(*this); }
   std::vector<double> breakpoints() const override { return jumps; }
   std::vector<double> landmarks() const override { return marks; }
-  bool has_derivatives() const override { return parsers.size() == 3; }
+  bool has_derivatives() const override { return formulas->size() == 3; }
 };
 
 /// The run in so many parts, at whose ends a formula is looked at.
@@ -43,13 +43,14 @@ constexpr double kRest = 5;
 std::vector<double> find_marks(const TimeExpression& made, const TimeSpan& run) {
   std::vector<double> x(kLooks + 1), y[3], found;
   if (!(run.end > run.start)) return found;
+  const auto num = static_cast<size_t>(made.formulas->size());
   for (size_t i = 0; i < x.size(); ++i) {
     x[i] = run.start + static_cast<double>(i) / kLooks * (run.end - run.start);
     const auto value = made.calc(x[i]);
     const double all[] = {value.f, value.f_dot, value.f_ddot};
-    for (size_t d = 0; d < made.parsers.size(); ++d) y[d].push_back(all[d]);
+    for (size_t d = 0; d < num; ++d) y[d].push_back(all[d]);
   }
-  for (size_t d = 0; d < made.parsers.size(); ++d) {
+  for (size_t d = 0; d < num; ++d) {
     auto marks = bough::solver::find_landmarks(x, y[d]);
     if (marks.size() > kMostMarks) {
       std::vector<double> ends;
@@ -131,19 +132,11 @@ std::unique_ptr<const TimeFunction> make_time_expression(const records::Function
     p.error("function.unsorted", "has times in x that do not ascend", "give them in order, each once");
   for (const auto* text : {&r.expression, &r.first, &r.second}) {
     if (text->empty()) continue;
-    try {
-      mu::Parser parser;
-      parser.DefineVar("t", made->t.get());
-      parser.DefineConst("pi", std::numbers::pi);
-      parser.DefineFun("step", &calc_step);
-      parser.SetExpr(*text);
-      parser.Eval();
-      made->parsers.push_back(std::move(parser));
-    } catch (const mu::Parser::exception_type& error) {
-      p.error("control.bad-expression", "has the expression \"" + *text + "\": " + error.GetMsg(),
-              "write it of t, pi and functions as sin, sqrt, abs, min, step");
-      return nullptr;
-    }
+    const std::string fault = made->formulas->add(*text);
+    if (fault.empty()) continue;
+    p.error("control.bad-expression", "has the expression \"" + *text + "\": " + fault,
+            "write it of t, pi and functions as sin, sqrt, abs, min, step");
+    return nullptr;
   }
   if (!p.failed() && made->has_derivatives()) check_derivatives(*made, run, p);
   if (!p.failed()) made->marks = find_marks(*made, run);

@@ -157,12 +157,12 @@ std::string SystemOde::name_first_non_finite(double t, const Eigen::Ref<const Ve
   for (const TreeBody& tb : impl.tree.bodies) {
     for (const TimeFunction* f : tb.motion) {
       if (f == nullptr) continue;
-      const auto value = f->calc(t);
+      const auto value = data_->tree.functions[*f].calc(t);
       if (!std::isfinite(value.f + value.f_dot + value.f_ddot)) return "the motion of hinge '" + tb.hinge_name + "'";
     }
   }
   for (const AppliedForce& force : impl.forces) {
-    const double value = force.function ? force.function->calc(t).f : 1;
+    const double value = force.function ? data_->tree.functions[*force.function].calc(t).f : 1;
     if (!std::isfinite(value * force.direction.norm())) return "force '" + force.name + "'";
   }
   VectorXd y_dot = VectorXd::Zero(size());

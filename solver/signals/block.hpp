@@ -1,6 +1,7 @@
 #pragma once
 /// \file One block of the signal graph: sensors, controllers, actuators, functions. The calls are those of the C
 /// interface for controllers of the user (solver/control/bough_controller.h); a Block keeps no state of its own.
+#include <memory>
 #include <string>
 
 #include "base/diagnostic.hpp"
@@ -13,6 +14,11 @@ class SystemData;
 
 using Eigen::Vector3d;
 
+/// What a block keeps for one thread to compute with: no state.
+struct BlockScratch {
+  virtual ~BlockScratch() = default;
+};
+
 /// What a block computes from. The pointers hold for one call.
 struct BlockInput {
   double t = 0;
@@ -22,6 +28,7 @@ struct BlockInput {
   long sample = 0;            ///< sampled blocks: number of this sample, counted from time zero
   const System* system = nullptr;
   const SystemData* data = nullptr;  ///< the motion at t, for sensors and actuators
+  BlockScratch* scratch = nullptr;   ///< of make_scratch
 };
 
 struct BlockSizes {
@@ -44,6 +51,8 @@ class Block {
   SourceLocation at;
   BlockSizes sizes;
 
+  /// For each thread, whose SystemData keeps it; nullptr: none.
+  virtual std::shared_ptr<BlockScratch> make_scratch() const { return nullptr; }
   /// Initial states and memory; zero on entry.
   virtual void start(double* z, double* d) const;
   /// At the start of a run: lags that are to start at rest take the value of what they follow. False without any.

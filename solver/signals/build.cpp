@@ -17,7 +17,9 @@ namespace {
 class FunctionBlock final : public Block {
  public:
   explicit FunctionBlock(const TimeFunction* f) : f_(f) { sizes.has_feedthrough = false; }
-  void calc_outputs(const BlockInput& in, double* y) const override { y[0] = f_->calc(in.t).f; }
+  void calc_outputs(const BlockInput& in, double* y) const override {
+    y[0] = in.data->tree.functions[*f_].calc(in.t).f;
+  }
 
  private:
   const TimeFunction* f_;

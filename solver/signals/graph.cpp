@@ -49,6 +49,7 @@ SignalData SignalGraph::make_data() const {
   s.inputs = VectorXd::Zero(num_inputs);
   s.bias = s.command = VectorXd::Zero(num_actuators);
   for (const auto& p : places) {
+    s.block_scratch.push_back(p.block->make_scratch());
     p.block->start(s.z.data() + p.state, s.memory.data() + p.memory);
     if (p.activity >= 0) s.memory[p.activity] = p.is_active ? 1 : 0;
   }
@@ -64,7 +65,9 @@ const BlockPlace* SignalGraph::find(const std::string& path) const {
 
 BlockInput SignalGraph::look_again(const BlockPlace& p, const System& system, const SystemData& data) const {
   const SignalData& s = data.signals;
-  return {data.tree.t, s.inputs.data() + p.in, s.z.data() + p.state, s.memory.data() + p.memory, 0, &system, &data};
+  const auto place = static_cast<size_t>(&p - places.data());
+  return {data.tree.t, s.inputs.data() + p.in,      s.z.data() + p.state, s.memory.data() + p.memory, 0, &system,
+          &data,       s.block_scratch[place].get()};
 }
 
 BlockInput SignalGraph::look(const BlockPlace& p, const System& system, SystemData& data) const {

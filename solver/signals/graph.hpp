@@ -34,6 +34,7 @@ struct SignalData {
   VectorXd memory;  ///< what blocks keep between samples, and what is held or on its way
   VectorXd inputs, scratch, fresh;
   /// Linear models: more on each actuator's command; with is_open that is all, beside what is held here.
+  std::vector<std::shared_ptr<BlockScratch>> block_scratch;  ///< of each block, in the order of places
   VectorXd bias, command;
   bool is_open = false;
   VectorXd shift;         ///< likewise: more on each value, as all that read it see it; empty: none

@@ -42,6 +42,7 @@ class FunctionBuilder {
     path_.pop_back();
     const auto& run = spec_.simulation;
     impl_.functions.push_back(make_time_function(record, diagnostics_, {run.start, run.start + run.duration}, made_));
+    if (impl_.functions.back()) impl_.tree.functions.push_back(impl_.functions.back().get());
     made_.emplace(record.name, impl_.functions.back().get());
   }
 

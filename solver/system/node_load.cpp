@@ -45,7 +45,7 @@ Vector6d calc_node_load(const NodeSource& source, int body, const System& system
   const Tree& tree = system.impl().tree;
   if (source.force != nullptr) {
     const AppliedForce& f = *source.force;
-    Vector3d v = (f.function ? f.function->calc(data.tree.t).f : 1.0) * f.direction;
+    Vector3d v = (f.function ? data.tree.functions[*f.function].calc(data.tree.t).f : 1.0) * f.direction;
     if (f.frame == records::VectorFrame::Inertial) v = data.tree[body].state.R_WB.transpose() * v;
     if (f.frame == records::VectorFrame::Node) v = data.tree.markers[static_cast<size_t>(f.marker)].R * v;
     Vector6d load = Vector6d::Zero();

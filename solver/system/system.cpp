@@ -124,7 +124,7 @@ void calc_q_dot(const System& system, SystemData& data, double t, const Eigen::R
       const HingeMode mode = data.tree.mode[as_index(tb.u_offset + i)];
       rates[i] = mode == HingeMode::Free     ? u[tb.u_offset + i]
                  : mode == HingeMode::Locked ? 0
-                                             : tb.motion[as_index(i)]->calc(t).f_dot;
+                                             : data.tree.functions[*tb.motion[as_index(i)]].calc(t).f_dot;
     }
     tb.hinge->calc_q_dot(q.data() + tb.q_offset, rates, q_dot.data() + tb.q_offset);
     q_dot.segment(tb.eta_offset(), tb.num_modes()) = u.segment(tb.eta_dot_offset(), tb.num_modes());

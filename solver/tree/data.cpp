@@ -18,6 +18,7 @@ Sweep make_sweep(const Tree& tree) {
 
 TreeData make_tree_data(const Tree& tree) {
   TreeData data;
+  data.functions = FunctionCopies(tree.functions);
   data.q = VectorXd::Zero(tree.num_q);
   data.u = data.given_u = data.given_udot = data.hinge_force = data.transmitted = data.slide =
       VectorXd::Zero(tree.num_u);

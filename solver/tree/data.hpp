@@ -57,6 +57,7 @@ struct TreeData {
   unsigned done = 0;  ///< Stage bits
   std::vector<HingeMode> mode;
   double t = 0;
+  FunctionCopies functions;      ///< each function of time is evaluated by its copy here
   VectorXd q, u;                 ///< rows of prescribed coordinates hold their functions' values, of locked ones zero
   VectorXd given_u, given_udot;  ///< num_u: rates and accelerations of the prescribed ones
   std::vector<MarkerMotion> markers;

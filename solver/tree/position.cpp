@@ -11,7 +11,7 @@ void set_given(const TreeBody& tb, TreeData& data) {
   for (size_t i = 0; i < tb.motion.size(); ++i) {
     const int row = tb.u_offset + static_cast<int>(i);
     if (data.mode[static_cast<size_t>(row)] != HingeMode::Prescribed) continue;
-    const auto value = tb.motion[i]->calc(data.t);
+    const auto value = data.functions[*tb.motion[i]].calc(data.t);
     data.q[tb.q_offset + static_cast<int>(i)] = value.f;
     data.given_u[row] = value.f_dot;
     data.given_udot[row] = value.f_ddot;

@@ -52,9 +52,10 @@ struct TreeBody {
 };
 
 struct Tree {
-  std::vector<TreeBody> bodies;  ///< parents before children
-  std::vector<Marker> markers;   ///< each once; [0] is ground's origin
-  std::vector<int> moving;       ///< those that deform
+  std::vector<TreeBody> bodies;                ///< parents before children
+  std::vector<Marker> markers;                 ///< each once; [0] is ground's origin
+  std::vector<int> moving;                     ///< those that deform
+  std::vector<const TimeFunction*> functions;  ///< that motions, forces and signals name
   int num_q = 0, num_u = 0, num_v = 0;
 
   const TreeBody& operator[](int b) const { return bodies[static_cast<size_t>(b)]; }

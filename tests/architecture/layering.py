@@ -42,7 +42,7 @@ OUTSIDE = [
     (r"^toml\+\+", ["formats/toml"]),
     (r"^matio", ["formats/matrices"]),
     (r"^nlohmann", ["formats/toml", "formats/report", "cli"]),
-    (r"^muParser", ["solver/control/expression.cpp", "solver/forces/time_expression.cpp"]),
+    (r"^muParser", ["solver/forces/formulas.cpp"]),
     (r"^dlfcn", ["solver/control/library.cpp", "fe/linear/petsc.cpp", "cli/common/memory_limit.cpp"]),
     (r"^CLI/", ["cli"]),
     (r"^fmt/", ["cli", "formats"]),
