@@ -7,6 +7,8 @@ void evaluate(const System& system, const State& state, SystemData& data, Eigen:
               Eigen::Ref<VectorXd> u_dot) {
   const Tree& tree = system.impl().tree;
   const Loops& loops = system.impl().loops;
+  if (!state.discrete.mode.empty() && !has_modes(data, state.discrete)) set_modes(system, data, state.discrete);
+  if (state.discrete.memory.size() > 0) data.signals.memory = state.discrete.memory;
   set_z(data, state.z);
   calc_position(tree, state.t, state.q, data.tree);  // markers, R_PB, r, X, H, Jc, M(η)
   calc_velocity(tree, state.u, data.tree);           // V = X V_P + H u - Jc η̇,   b, h

@@ -109,6 +109,16 @@ State System::make_initial_state() const {
 void set_modes(const System& system, SystemData& data, const Discrete& discrete) {
   set_modes(system.impl().tree, discrete.mode, data.tree);
   if (!discrete.closings.empty()) set_closings(system.impl().loops, system.impl().tree, discrete.closings, data.loops);
+  if (discrete.memory.size() > 0) data.signals.memory = discrete.memory;
+}
+
+bool has_modes(const SystemData& data, const Discrete& discrete) {
+  const auto is_same = [](const ConstraintData& a, const Closing& b) {
+    return a.closing.is_closed == b.is_closed && a.closing.R == b.R && a.closing.p == b.p && a.closing.gap == b.gap;
+  };
+  return data.tree.mode == discrete.mode &&
+         (discrete.closings.empty() || std::equal(data.loops.constraints.begin(), data.loops.constraints.end(),
+                                                  discrete.closings.begin(), discrete.closings.end(), is_same));
 }
 
 Discrete get_discrete(const SystemData& data) {

@@ -92,11 +92,14 @@ class System {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What each coordinate does from now on (SystemData starts with the modes of the records). Not within a step:
-/// allocates.
+/// The discrete state from now on (SystemData starts with that of the records): what get_discrete returns. Memory that
+/// is left empty stays. Not within a step: allocates.
 void set_modes(const System& system, SystemData& data, const Discrete& discrete);
 Discrete get_discrete(const SystemData& data);
-/// The whole chain at a state: position, velocity, forces, factor, acceleration, and both derivatives. No allocation.
+/// Returns true if coordinates and constraints have the modes of `discrete`. No allocation.
+bool has_modes(const SystemData& data, const Discrete& discrete);
+/// The whole chain at a state: position, velocity, forces, factor, acceleration, and both derivatives. state.discrete
+/// without modes: as `data` has it. No allocation, unless the modes differ from those of `data`.
 void evaluate(const System& system, const State& state, SystemData& data, Eigen::Ref<VectorXd> q_dot,
               Eigen::Ref<VectorXd> u_dot);
 

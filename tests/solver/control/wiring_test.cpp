@@ -293,5 +293,26 @@ TEST(Units, OfWhatIsAddedAndDrivenAreCompared) {
   EXPECT_THAT(collect_messages(spec), ::testing::IsEmpty());
 }
 
+// A state holds all that an evaluation depends on: modes of hinges, and what a relay remembers.
+TEST(State, IsRestoredWhole) {
+  auto spec = make_axis();
+  spec.controllers = {make_law("law", "relay", {"angle"}, {{"on", {1}}, {"off", {0.5}}, {"value", {5}}})};
+  const System system = build(spec);
+  State state = system.make_initial_state();
+  ASSERT_EQ(state.discrete.memory.size(), 1);
+  state.discrete.memory[0] = 1;  // on
+  auto data = system.make_data();
+  set_modes(system, *data, state.discrete);
+  EXPECT_EQ(get_discrete(*data).memory, state.discrete.memory);
+  auto other = system.make_data();
+  VectorXd q_dot(system.num_q()), u_dot(system.num_u());
+  evaluate(system, state, *other, q_dot, u_dot);
+  EXPECT_NEAR(u_dot[0], 5.0 / 2, 1e-14);
+  state.discrete.mode[0] = HingeMode::Locked;
+  evaluate(system, state, *other, q_dot, u_dot);
+  EXPECT_EQ(u_dot[0], 0);
+  EXPECT_EQ(get_discrete(*other).mode, state.discrete.mode);
+}
+
 }  // namespace
 }  // namespace bough::solver::testing
