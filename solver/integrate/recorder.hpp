@@ -21,6 +21,8 @@ class Recorder {
   /// that is nearer to the one kept last. No allocation.
   const VectorXd& calc_sample(double t, const SystemData& data, const Eigen::Ref<const VectorXd>& q,
                               const Eigen::Ref<const VectorXd>& u, double work, double dissipated);
+  /// The last sample of calc_sample.
+  const VectorXd& sample() const { return sample_; }
   /// Of the last sample.
   const Energies& energies() const { return energies_; }
 

@@ -107,7 +107,6 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
       latches_(system) {
   stepper_ = make_stepper(setup_.integrator, ode_, make_stepper_options(ode_, spec.simulation, setup_.plan));
   y_ = y_dot_ = VectorXd::Zero(ode_.size());
-  gaps_ = last_gaps_ = trial_gaps_ = setup_.triggers.make_gaps();
   checkpoint_.state = y_;
   checkpoint_.memory = {{"energy", VectorXd::Zero(EnergyMonitor::kMemory)},
                         {"quaternions", setup_.recorder.quaternions},
@@ -117,8 +116,10 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
                         {"discrete", ode_.make_memory()},
                         {"control", VectorXd::Zero(1 + ode_.data().signals.memory.size())},
                         {"latches", latches_.make_memory()}};
-  latch_guards_ = last_latch_guards_ = latches_.make_guards();
-  guards_ = last_guards_ = VectorXd::Zero(system.impl().signals.num_guards);
+  evaluated_.y = y_;
+  evaluated_.memory = ode_.data().signals.memory;
+  evaluated_.slide = ode_.data().tree.slide;
+  start_events();
   for (int b = 0; b < system.num_bodies(); ++b) {
     const TreeBody& tb = system.impl().tree[b];
     if (tb.hinge->has_plain_coordinates() && tb.num_hinge_u() > 2) gimbals_.push_back(b);
@@ -130,23 +131,19 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
 void Run::start() {
   const double t = begin();
   if (outcome_ || t >= timeline_.end()) return;
-  start_corners(t);
   const Stop stop = stop_ = timeline_.find_stop(t);
-  stepper_->restart(t, y_, stop.time, stop.latest);
-  is_started_ = true;
+  restart(t);
   take_step(stop);
 }
 
 SimulateOutcome Run::go() {
   double t = begin();
   if (outcome_) return *outcome_;
-  start_corners(t);
   bool restarts = true;
   while (t < timeline_.end()) {
     const Stop stop = stop_ = timeline_.find_stop(t);
     if (restarts) {
-      stepper_->restart(t, y_, stop.time, stop.latest);
-      is_started_ = true;
+      restart(t);
       if (const auto* memory = restored_.find("stepper")) stepper_->set_memory(*memory);
       restored_ = {};
     } else {
@@ -156,33 +153,29 @@ SimulateOutcome Run::go() {
     bool is_cut = false;  // the step ends before the stop
     while (stepper_->time() < stop.time && !is_cut) {
       take_step(stop);
-      const double corner = find_corner(stop);
-      const auto switches = find_switch(stop, corner);
-      const auto latch = find_latch(stop, switches.value_or(corner));
-      const double reached = latch.value_or(switches.value_or(corner));
-      const auto turn = watch_signals(stop, reached);
-      if (!write_outputs(turn ? turn->time : reached)) return *outcome_;
-      if (turn && turn->time < stop.time) {
-        t = turn->time;
+      const auto change = scan_step(stop);
+      if (!change) return *outcome_;
+      if (change->firing && change->firing->time < stop.time) {
+        t = change->firing->time;
         guard([&] { stepper_->calc_state(t, y_); });
-        if (const auto ends = fire({*turn})) return finish(*ends);
+        if (const auto ends = fire({*change->firing})) return finish(*ends);
         settle_switches(t);
         settle_latches(t);
         is_cut = true;
         continue;
       }
-      if (turn) waiting_.push_back(*turn);
-      if ((switches || latch) && reached < stop.time) {  // something switches within the step, which ends there
-        t = reached;
+      if (change->firing) waiting_.push_back(*change->firing);
+      if (change->is_switch && change->time < stop.time) {  // something switches within the step, which ends there
+        t = change->time;
         guard([&] { stepper_->calc_state(t, y_); });
         settle_switches(t);
         settle_latches(t);
         is_cut = true;
         continue;
       }
-      if (reached < stepper_->time()) {  // the rest of the step is void
-        guard([&] { stepper_->calc_state(reached, y_); });
-        stepper_->restart(reached, y_, stop.time, stop.latest);
+      if (change->time < stepper_->time()) {  // the rest of the step is void
+        guard([&] { stepper_->calc_state(change->time, y_); });
+        restart(change->time);
       }
       if (stepper_->time() >= stop.time) break;
       if (is_stop_asked()) {
@@ -193,7 +186,6 @@ SimulateOutcome Run::go() {
     }
     restarts = true;
     if (is_cut) {
-      leave_corners(t);
       if (settle_cut(t)) return *outcome_;
       continue;
     }
@@ -202,13 +194,20 @@ SimulateOutcome Run::go() {
     cross_jump();
     settle_control(t);
     if (const auto ends = pass(stop)) return finish(*ends);
+    if (has_changed_) settle_switches(t);
     settle_latches(t);
     if (is_stop_asked() && t < timeline_.end()) return halt(t);
     restarts = stop.restarts || has_changed_ || has_switched_;
-    if (restarts) leave_corners(t);
   }
   save(timeline_.end());
   return close(timeline_.end(), "");
+}
+
+void Run::restart(double t) {
+  restart_kinks(t);
+  stepper_->restart(t, y_, stop_.time, stop_.latest);
+  is_started_ = true;
+  scanned_ = t;
 }
 
 bool Run::settle_cut(double t) {
@@ -244,13 +243,13 @@ double Run::begin() {
     y_ = options_.resume->state;
     if (const auto* m = options_.resume->find("control")) set_control_memory(*m);
   }
-  guard([&] { ode_.calc_derivative(t, y_, y_dot_); });
+  evaluate(t, false);
   monitor_.start(calc_energies(ode_.system(), ode_.data()), calc_noise());
   saved_at_ = std::chrono::steady_clock::now();
   if (goes_on) {
     t = restore(*options_.resume);
     if (!options_.resume->find("energy")) {  // of a state that no run has led to
-      guard([&] { ode_.calc_derivative(t, y_, y_dot_); });
+      evaluate(t, false);
       monitor_.start(calc_energies(ode_.system(), ode_.data()), calc_noise());
     }
     resume_at_stop(t);
@@ -262,8 +261,7 @@ double Run::begin() {
   settle_latches(t);
   checkpoint_.time = t;
   write_outputs_at(t);
-  setup_.triggers.start(calc_gaps(t));
-  last_gaps_ = gaps_;
+  start_signal_events(t);
   passed_ = t;
   fire_due(t);
   return t;
@@ -374,22 +372,18 @@ void Run::watch_axes(double t) {
   }
 }
 
-bool Run::write_outputs(double t) {
-  while (timeline_.next_output() <= t) {
-    const double t_out = timeline_.next_output();
-    guard([&] { stepper_->calc_state(t_out, y_); });
-    if (t_out == stop_.time) {
-      cross_jump();
-      settle_control(t_out);
-    }
-    const bool saves = timeline_.next_index() % kCheckpointEvery == 0;
-    write_outputs_at(t_out);
-    if (saves) save(t_out);
-    if (!is_stop_asked() || t_out >= stop_.time) continue;  // what comes at the stop comes before the halt
-    outcome_ = halt(t_out);
-    return false;
+bool Run::write_output(double t, bool is_at_state) {
+  if (!is_at_state) guard([&] { stepper_->calc_state(t, y_); });
+  if (t == stop_.time) {
+    cross_jump();
+    settle_control(t);
   }
-  return true;
+  const bool saves = timeline_.next_index() % kCheckpointEvery == 0;
+  write_outputs_at(t);
+  if (saves) save(t);
+  if (!is_stop_asked() || t >= stop_.time) return true;  // what comes at the stop comes before the halt
+  outcome_ = halt(t);
+  return false;
 }
 
 void Run::write_outputs_at(double t) {
@@ -405,7 +399,7 @@ void Run::write_outputs_at(double t) {
 }
 
 void Run::observe(double t) {
-  calc_sample(t, y_);
+  calc_sample(t);
   const Energies& e = setup_.recorder.energies();
   const double work = ode_.get_work(y_), dissipated = ode_.get_dissipated(y_);
   if (!std::isfinite(e.kinetic + e.strain + e.potential + work))
@@ -440,19 +434,44 @@ std::string Run::name_fastest() const {
   return ode_.name_row(row) + " reached " + short_text(y_[row]);
 }
 
-const VectorXd& Run::calc_sample(double t, const VectorXd& y) {
-  guard([&] {
-    ode_.calc_derivative(t, y, y_dot_);
-    calc_signals(ode_.system(), ode_.data());
-  });
-  const int num_q = ode_.num_q();
-  return setup_.recorder.calc_sample(t, ode_.data(), y.head(num_q), y.segment(num_q, ode_.num_coordinates() - num_q),
-                                     ode_.get_work(y), ode_.get_dissipated(y));
+bool Run::is_evaluated(double t) const {
+  const SystemData& data = std::as_const(ode_).data();
+  return evaluated_.number == ode_.num_evaluations() && evaluated_.t == t && data.tree.has(Stage::Acceleration) &&
+         evaluated_.y == y_ && evaluated_.memory == data.signals.memory && evaluated_.slide == data.tree.slide;
 }
 
-const VectorXd& Run::calc_gaps(double t) {
-  if (setup_.triggers.has_signals()) setup_.triggers.calc_gaps(calc_sample(t, y_), gaps_);
-  return gaps_;
+void Run::evaluate(double t, bool with_signals) {
+  guard([&] {
+    if (!is_evaluated(t)) {
+      evaluated_.number = -1;
+      ode_.calc_derivative(t, y_, y_dot_);
+      evaluated_.number = ode_.num_evaluations();
+      evaluated_.t = t;
+      evaluated_.y = y_;
+      evaluated_.memory = ode_.data().signals.memory;
+      evaluated_.slide = ode_.data().tree.slide;
+      evaluated_.has_signals = evaluated_.has_sample = false;
+    }
+    if (with_signals && !evaluated_.has_signals) calc_signals(ode_.system(), ode_.data());
+    evaluated_.has_signals = evaluated_.has_signals || with_signals;
+  });
+}
+
+const VectorXd& Run::calc_sample(double t) {
+  evaluate(t, true);
+  if (!evaluated_.has_sample) {
+    const int num_q = ode_.num_q();
+    setup_.recorder.calc_sample(t, ode_.data(), y_.head(num_q), y_.segment(num_q, ode_.num_coordinates() - num_q),
+                                ode_.get_work(y_), ode_.get_dissipated(y_));
+    evaluated_.has_sample = true;
+  }
+  return setup_.recorder.sample();
+}
+
+void Run::start_signal_events(double t) {
+  calc_signal_events(t);
+  last_events_.signals = events_.signals;
+  setup_.triggers.start(events_.signals);
 }
 
 void Run::update_progress(double t) {
@@ -462,7 +481,7 @@ void Run::update_progress(double t) {
   progress_.order = s.order;
   progress_.num_steps = s.num_steps;
   progress_.num_rejected = s.num_rejected;
-  progress_.num_evaluations = s.num_evaluations;
+  progress_.num_evaluations = ode_.num_evaluations();
   progress_.energy_error = monitor_.latest();
 }
 

@@ -49,26 +49,74 @@ class Run {
   void watch_axes(double t);
   /// Takes y_ over the jumps of given rates at stop_, after calc_state at its time; logs them once.
   void cross_jump();
-  /// The samples of the last step up to t; false when the run was asked to stop at one, and did.
-  bool write_outputs(double t);
+  /// Starts the integrator afresh at (t, y_), towards stop_.
+  void restart(double t);
+  /// The sample at t within the last step, at which y_ is or is to be; false when the run was asked to stop there, and
+  /// did.
+  bool write_output(double t, bool is_at_state);
   /// The sample at t, of y_, which is the next one.
   void write_outputs_at(double t);
   /// Looks at y_ at t: sample, energies, limits.
   void observe(double t);
   /// The largest rate, in words.
   std::string name_fastest() const;
-  const VectorXd& calc_sample(double t, const VectorXd& y);
-  const VectorXd& calc_gaps(double t);
+  /// Evaluates the equations of motion at (t, y_), and on request all signals, unless ode_ holds that state.
+  void evaluate(double t, bool with_signals);
+  /// Returns true if ode_ holds the evaluation at (t, y_).
+  bool is_evaluated(double t) const;
+  const VectorXd& calc_sample(double t);
   void update_progress(double t);
   /// Warns where jets have used up much of their body.
   void tell_consumption();
   /// The regular end, with the judgement of the energy.
   SimulateOutcome close(double t, const std::string& reason);
 
+  // Event functions and their zero crossings (run_scan.cpp)
+  /// Values of the event functions.
+  struct EventValues {
+    VectorXd kinks;     ///< of forces: their signs change
+    VectorXd switches;  ///< of blocks: positive where a block switches
+    VectorXd contacts;  ///< of joint contacts: positive where one changes its mode
+    VectorXd signals;   ///< of events: signals minus their values
+  };
+  /// The first change within the last step.
+  struct Change {
+    double time = 0;         ///< up to which the step stands
+    bool is_kink = false;    ///< a force has a kink there
+    bool is_switch = false;  ///< a block or a joint contact changes its mode there
+    std::optional<Firing> firing;
+  };
+  void start_events();
+  bool has_event_functions() const;
+  // One kind each at (t, y_), into events_; kinks need no accelerations.
+  void calc_kinks(double t);
+  void calc_switches(double t);
+  void calc_contacts(double t);
+  void calc_signal_events(double t);
+  /// All of them at t within the last step, by one evaluation.
+  void calc_events(double t, const Stop& stop);
+  /// Kinks are looked for from (t, y_) on.
+  void restart_kinks(double t);
+  /// Where event function i of a kind crosses zero between the last look and `to`, whose values are in events_.
+  double locate(VectorXd EventValues::*rows, Eigen::Index i, double before, double to, double tolerance,
+                const Stop& stop);
+  /// The first crossing of one kind up to `to`, which becomes its time; events_ is of `to`. get_before(i): the value at
+  /// the last look where function i has crossed, else none.
+  template <class Before>
+  bool find_first(VectorXd EventValues::*rows, const Before& get_before, const Stop& stop, double& to);
+  /// The first change between the last look and t.
+  Change find_change(const Stop& stop, double t);
+  /// Looks at the last step, at each sample and at its end, and writes the samples, up to the first change. None when
+  /// the run was asked to stop at a sample, and did.
+  std::optional<Change> scan_step(const Stop& stop);
+
   // Events (run_events.cpp)
-  /// Signals that crossed their values in the last step up to `to`: each is located and logged, up to the first that
+  /// Signals that crossed their values between the last look and `to`: each is located and logged, up to the first that
   /// does more, which is returned and has not come yet; those after it have not crossed.
-  std::optional<Firing> watch_signals(const Stop& stop, double to);
+  std::optional<Firing> find_firing(const Stop& stop, double to);
+  /// Events whose signals have crossed their values by a jump at t, where y_ is.
+  std::vector<size_t> find_crossed(double t);
+  void start_signal_events(double t);
   /// What comes at a stop itself: events at a time, and crossings by the jump.
   std::optional<Firing> pass(const Stop& stop);
   /// Carries out events that come at one time, at which y_ is, and those that they bring about; the one that ends the
@@ -79,13 +127,6 @@ class Run {
   /// The end that an event brings: a last sample at its time.
   SimulateOutcome finish(const Firing& firing);
 
-  // Corners of forces (run_corners.cpp)
-  void start_corners(double t);
-  /// Where in the last step the first force has a corner, or its end.
-  double find_corner(const Stop& stop);
-  const VectorXd& calc_corners(double t);
-  /// From here on at t, where y_ is.
-  void leave_corners(double t);
   // Controllers (run_control.cpp)
   /// Samples that are due at t and switches that are open there, once; y_ is the state.
   void settle_control(double t);
@@ -95,13 +136,9 @@ class Run {
   void settle_switches(double t);
   /// Counts a switch of a block; warns once ("control.sliding") where it switches without rest.
   void count_switch(const std::string& label, double t);
-  /// The first time in the last step up to `to` at which a block switches.
-  std::optional<double> find_switch(const Stop& stop, double to);
   // Dry friction and rigid stops (run_latches.cpp)
   /// What rests, slides and strikes at (t, y_), from here on.
   void settle_latches(double t);
-  /// The first time in the last step up to `to` at which that changes.
-  std::optional<double> find_latch(const Stop& stop, double to);
 
   void get_control_memory(VectorXd& memory) const;
   void set_control_memory(const VectorXd& memory);
@@ -150,8 +187,18 @@ class Run {
   double coming_ = 0, coming_at_ = -std::numeric_limits<double>::infinity();
   std::unique_ptr<Stepper> stepper_;
   VectorXd y_, y_dot_;
-  VectorXd corners_, last_corners_, corners_at_end_, largest_corners_;
-  VectorXd gaps_, last_gaps_, trial_gaps_;  ///< of the signals of events, from their values
+  /// The last evaluation by evaluate().
+  struct Evaluated {
+    long number = -1;  ///< SystemOde::num_evaluations
+    double t = 0;
+    VectorXd y, memory, slide;
+    bool has_signals = false, has_sample = false;
+  };
+  Evaluated evaluated_;
+  EventValues events_, last_events_;  ///< at the present and at the last look
+  double scanned_ = 0;                ///< time of the last look
+  bool has_located_ = false;          ///< since the last look, so that y_ is elsewhere
+  VectorXd largest_kinks_;
   records::Checkpoint checkpoint_, restored_;
   std::chrono::steady_clock::time_point saved_at_;
   Progress progress_;
@@ -168,7 +215,6 @@ class Run {
   int num_tiny_ = 0;
   double cut_at_ = -std::numeric_limits<double>::infinity();  ///< where something last ended a step
   int num_cuts_ = 0;                                          ///< in quick succession
-  VectorXd guards_, last_guards_;
   /// Of a block that switches: since when the last hundreds of switches are counted.
   struct Switching {
     double since = 0;
@@ -178,7 +224,6 @@ class Run {
   std::map<std::string, Switching> switching_;  ///< by label
   std::vector<int> gimbals_;                    ///< bodies on three angles or more, of which no warning was given
   Latches latches_;
-  VectorXd latch_guards_, last_latch_guards_;
   double settled_ = -std::numeric_limits<double>::infinity();
   int num_settled_ = 0;
   double sampled_ = -std::numeric_limits<double>::infinity();  ///< the last instant whose samples are taken

@@ -37,8 +37,7 @@ double Run::restore(const records::Checkpoint& c) {
   if (const auto* m = c.find("control")) set_control_memory(*m);
   settle_control(c.time);
   settle_latches(c.time);
-  last_gaps_ = calc_gaps(c.time);
-  setup_.triggers.start(last_gaps_);
+  start_signal_events(c.time);
   if (const auto* m = c.find("events")) {
     passed_ = (*m)[0];
     setup_.triggers.signs = m->tail(m->size() - 1);

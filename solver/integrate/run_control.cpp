@@ -1,7 +1,6 @@
 // Samples and switches of controllers, sensors and actuators (docs/theory/control.md).
 #include <algorithm>
 
-#include "solver/integrate/locate.hpp"
 #include "solver/integrate/run.hpp"
 #include "solver/system/impl.hpp"
 
@@ -20,11 +19,12 @@ void Run::settle_control(double t) {
   const SignalGraph& signals = ode_.system().impl().signals;
   if (sampled_ == t || signals.places.empty()) return;
   sampled_ = t;
-  guard([&] {
-    ode_.calc_derivative(t, y_, y_dot_);
-    calc_signals(ode_.system(), ode_.data());
-    if (signals.sample(ode_.system(), ode_.data(), timeline_.resolution())) has_switched_ = true;
-  });
+  if (signals.has_samples()) {
+    evaluate(t, true);
+    guard([&] {
+      if (signals.sample(ode_.system(), ode_.data(), timeline_.resolution())) has_switched_ = true;
+    });
+  }
   settle_switches(t);
 }
 
@@ -34,9 +34,8 @@ void Run::settle_lags(double t) {
   VectorXd before;
   for (int i = 0; i < kMostLags; ++i) {
     bool is_done = true;
+    evaluate(t, true);
     guard([&] {
-      ode_.calc_derivative(t, y_, y_dot_);
-      calc_signals(ode_.system(), ode_.data());
       before = ode_.data().signals.z;
       is_done = !signals.settle(ode_.system(), ode_.data()) || ode_.data().signals.z == before;
     });
@@ -51,13 +50,9 @@ void Run::settle_switches(double t) {
   std::string what;
   for (int i = 0; i < kMostSwitches; ++i) {
     bool is_open = false;
-    guard([&] {
-      ode_.calc_derivative(t, y_, y_dot_);
-      calc_signals(ode_.system(), ode_.data());
-      signals.calc_guards(ode_.system(), ode_.data(), guards_);
-      is_open = signals.switch_over(ode_.system(), ode_.data(), guards_, what);
-    });
-    last_guards_ = guards_;
+    calc_switches(t);
+    guard([&] { is_open = signals.switch_over(ode_.system(), ode_.data(), events_.switches, what); });
+    last_events_.switches = events_.switches;
     if (!is_open) return;
     has_switched_ = true;
     count_switch(what, t);
@@ -81,32 +76,6 @@ void Run::count_switch(const std::string& label, double t) {
                            short_text(s.since) + " to " + short_text(t) + ": it slides along its switching line",
                        "give it more hysteresis (relay: on and off further apart), or sample its inputs by a gain of 1 "
                        "with sample_time");
-}
-
-std::optional<double> Run::find_switch(const Stop& stop, double to) {
-  const SignalGraph& signals = ode_.system().impl().signals;
-  const double from = stepper_->last_time();
-  if (signals.num_guards == 0) return {};
-  const auto calc = [&](double t) -> const VectorXd& {
-    guard([&] {
-      stepper_->calc_state(t, y_);
-      ode_.calc_derivative(std::min(t, stop.latest), y_, y_dot_);
-      calc_signals(ode_.system(), ode_.data());
-      signals.calc_guards(ode_.system(), ode_.data(), guards_);
-    });
-    return guards_;
-  };
-  const VectorXd at_end = calc(to);
-  std::optional<double> first;
-  for (Eigen::Index i = 0; i < at_end.size(); ++i) {
-    if (!(at_end[i] > 0)) continue;
-    const double before = std::min(0.0, last_guards_[i]);
-    const double at =
-        locate_crossing([&](double t) { return calc(t)[i]; }, from, before, to, at_end[i], timeline_.resolution());
-    first = std::min(first.value_or(to), at);
-  }
-  last_guards_ = at_end;
-  return first;
 }
 
 void Run::get_control_memory(VectorXd& memory) const {

@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "solver/integrate/locate.hpp"
 #include "solver/integrate/run.hpp"
 
 namespace bough::solver {
@@ -18,28 +17,17 @@ bool is_same(const Discrete& a, const Discrete& b) {
 
 }  // namespace
 
-std::optional<Firing> Run::watch_signals(const Stop& stop, double to) {
+std::optional<Firing> Run::find_firing(const Stop& stop, double to) {
   if (!setup_.triggers.has_signals()) return {};
-  const double from = stepper_->last_time();
-  guard([&] { stepper_->calc_state(to, y_); });
-  calc_gaps(std::min(to, stop.latest));
   std::vector<size_t> crossed;
   const VectorXd signs = setup_.triggers.signs;
-  setup_.triggers.find_crossed(gaps_, crossed);
+  setup_.triggers.find_crossed(events_.signals, crossed);
   std::vector<Firing> firings;
   for (const size_t i : crossed) {
     const auto row = static_cast<Eigen::Index>(i);
-    const auto calc_gap = [&](double t) {
-      guard([&] { stepper_->calc_state(t, y_); });
-      setup_.triggers.calc_gaps(calc_sample(std::min(t, stop.latest), y_), trial_gaps_);
-      return trial_gaps_[row];
-    };
-    const double asked = setup_.triggers.get(i).tolerance;
-    firings.push_back(
-        {locate_crossing(calc_gap, from, last_gaps_[row], to, gaps_[row], asked > 0 ? asked : timeline_.resolution()),
-         i});
+    const double own = setup_.triggers.get(i).tolerance, tolerance = own > 0 ? own : timeline_.resolution();
+    firings.push_back({locate(&EventValues::signals, row, last_events_.signals[row], to, tolerance, stop), i});
   }
-  last_gaps_ = gaps_;
   std::stable_sort(firings.begin(), firings.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
   for (auto f = firings.begin(); f != firings.end(); ++f) {
     if (setup_.triggers.get(f->trigger).action == records::EventAction::Log) {
@@ -56,6 +44,18 @@ std::optional<Firing> Run::watch_signals(const Stop& stop, double to) {
   return {};
 }
 
+void Run::calc_signal_events(double t) {
+  if (setup_.triggers.has_signals()) setup_.triggers.calc_gaps(calc_sample(t), events_.signals);
+}
+
+std::vector<size_t> Run::find_crossed(double t) {
+  std::vector<size_t> crossed;
+  calc_signal_events(t);
+  setup_.triggers.find_crossed(events_.signals, crossed);
+  last_events_.signals = events_.signals;
+  return crossed;
+}
+
 std::optional<Firing> Run::pass(const Stop& stop) {
   std::vector<Firing> firings = std::move(waiting_);
   waiting_.clear();
@@ -63,10 +63,7 @@ std::optional<Firing> Run::pass(const Stop& stop) {
   setup_.triggers.find_due(stop.time, timeline_.resolution(), firings);
   if ((stop.restarts || has_switched_) && (stop.latest < stop.time || stop.time < timeline_.end())) {
     observe(stop.time);
-    std::vector<size_t> crossed;
-    setup_.triggers.find_crossed(calc_gaps(stop.time), crossed);
-    for (const size_t i : crossed) firings.push_back({stop.time, i});
-    last_gaps_ = gaps_;
+    for (const size_t i : find_crossed(stop.time)) firings.push_back({stop.time, i});
   }
   return fire(std::move(firings));
 }
@@ -84,11 +81,8 @@ std::optional<Firing> Run::fire(std::vector<Firing> firings) {
     if (!changes) return {};
     const Firing last = firings.back();
     if (round > kMostRounds || num_quick_ > kMostQuick) fail_cycle(last);
-    std::vector<size_t> crossed;
-    setup_.triggers.find_crossed(calc_gaps(last.time), crossed);
-    last_gaps_ = gaps_;
     firings.clear();
-    for (const size_t i : crossed) firings.push_back({last.time, i});
+    for (const size_t i : find_crossed(last.time)) firings.push_back({last.time, i});
   }
   return {};
 }

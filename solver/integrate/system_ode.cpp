@@ -20,6 +20,7 @@ SystemOde::SystemOde(const System& system)
 void SystemOde::calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) {
   const auto q = y.head(num_q_);
   const auto u = y.segment(num_q_, num_u_);
+  ++num_evaluations_;
   calc_kinematics(system_, *data_, t, q, u);
   set_z(*data_, y.segment(num_coordinates(), num_z_));
   add_forces(system_, *data_, t);

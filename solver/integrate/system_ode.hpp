@@ -30,6 +30,8 @@ class SystemOde final : public Ode {
   /// and nothing else: (M + γh D + γ²h² K) u̇ by the order-n recursion, in which K and D are blocks of one body.
   void calc_stage(double t, const Eigen::Ref<const VectorXd>& y, double gamma_h, bool is_first,
                   Eigen::Ref<VectorXd> k) override;
+  /// Evaluations of the equations of motion so far, by calc_derivative and calc_stage.
+  long num_evaluations() const { return num_evaluations_; }
   const SystemData& data() const { return *data_; }
   SystemData& data() { return *data_; }
   VectorXd make_initial_state() const;
@@ -65,6 +67,7 @@ class SystemOde final : public Ode {
   std::unique_ptr<SystemData> data_;
   int num_q_, num_u_, num_z_;
   bool has_motion_ = false;
+  long num_evaluations_ = 0;
   // Of the stages: stiffness and damping along hinge coordinates, first stage and right-hand side in the tangent of q,
   // first stage of u, what the stage adds to forces by row of u.
   VectorXd k_, c_, first_delta_, first_u_, delta_, extra_;

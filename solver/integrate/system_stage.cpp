@@ -49,6 +49,7 @@ void SystemOde::calc_stage(double t, const Eigen::Ref<const VectorXd>& y, double
     calc_derivative(t, y, k);
     power = calc_powers(system_, *data_);
   }
+  ++num_evaluations_;
   calc_kinematics(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
   add_forces(system_, *data_, t);
   if (is_first) calc_tangent();

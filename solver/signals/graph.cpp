@@ -103,6 +103,7 @@ void SignalGraph::calc(const BlockPlace& p, const System& system, SystemData& da
 }
 
 void SignalGraph::calc_early(const System& system, SystemData& data) const {
+  data.signals.has_late = false;
   for (const int i : order) {
     const auto& p = places[static_cast<size_t>(i)];
     if (p.is_needed && !p.is_late) calc(p, system, data);
@@ -110,6 +111,7 @@ void SignalGraph::calc_early(const System& system, SystemData& data) const {
 }
 
 void SignalGraph::calc_late(const System& system, SystemData& data) const {
+  data.signals.has_late = true;
   for (const int i : order) {
     const auto& p = places[static_cast<size_t>(i)];
     if (p.is_needed && p.is_late) calc(p, system, data);
@@ -120,7 +122,7 @@ void SignalGraph::calc_all(const System& system, SystemData& data) const {
   for (const bool is_late : {false, true}) {
     for (const int i : order) {
       const auto& p = places[static_cast<size_t>(i)];
-      if (p.is_late == is_late) calc(p, system, data);
+      if (p.is_late == is_late && !(p.is_needed && (!is_late || data.signals.has_late))) calc(p, system, data);
     }
   }
 }

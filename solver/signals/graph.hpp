@@ -1,6 +1,7 @@
 #pragma once
 /// \file Signals as one vector, computed in topological order: functions, sensors of (q, u), controllers, actuators |
 /// the accelerations | sensors of u̇ and what follows from them (docs/theory/control.md).
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -33,12 +34,13 @@ struct SignalData {
   VectorXd z;       ///< continuous states
   VectorXd memory;  ///< what blocks keep between samples, and what is held or on its way
   VectorXd inputs, scratch, fresh;
-  /// Linear models: more on each actuator's command; with is_open that is all, beside what is held here.
   std::vector<std::shared_ptr<BlockScratch>> block_scratch;  ///< of each block, in the order of places
+  /// Linear models: more on each actuator's command; with is_open that is all, beside what is held here.
   VectorXd bias, command;
   bool is_open = false;
   VectorXd shift;         ///< likewise: more on each value, as all that read it see it; empty: none
   bool is_ideal = false;  ///< likewise: samples of sensors are those of calc_ideal
+  bool has_late = false;  ///< calc_late is done at the present state
 };
 
 /// Instants first, first + period, ...
@@ -64,7 +66,7 @@ class SignalGraph {
   void calc_early(const System& system, SystemData& data) const;
   /// What is late and needed. After accelerations.
   void calc_late(const System& system, SystemData& data) const;
-  /// Every block. After accelerations.
+  /// The blocks that calc_early and calc_late have left out. After accelerations.
   void calc_all(const System& system, SystemData& data) const;
   /// After calc_all: one sensor as linear models see it; y: its outputs.
   void calc_ideal(const BlockPlace& place, const System& system, SystemData& data, double* y) const;
@@ -77,6 +79,9 @@ class SignalGraph {
   /// Propellant used up on each body.
   VectorXd calc_consumption(const System& system, const SystemData& data) const;
 
+  bool has_samples() const {
+    return std::any_of(places.begin(), places.end(), [](const BlockPlace& p) { return p.is_sampled(); });
+  }
   /// Instants of all sampled blocks, each kind once.
   std::vector<SampleTimes> collect_samples() const;
   /// Takes the samples due within `close` of data's time, after calc_all there: each block sees what those before it in

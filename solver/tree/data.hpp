@@ -73,7 +73,6 @@ struct TreeData {
   BodyData ground;
   std::vector<BodyData> bodies;
 
-  bool has(Stage s) const { return (done & static_cast<unsigned>(s)) != 0; }
   /// Generalized hinge force as reported: the load of a free coordinate, else the transmitted force.
   double get_hinge_force(int row) const {
     return mode[static_cast<size_t>(row)] == HingeMode::Free ? hinge_force[row] : transmitted[row];
@@ -82,6 +81,7 @@ struct TreeData {
   /// close_loops where constraints are closed.
   double calc_constraint_force(int row) const { return transmitted[row] - hinge_force[row]; }
 
+  bool has(Stage s) const { return (done & static_cast<unsigned>(s)) != 0; }
   void demand(Stage s) const { BOUGH_DEMAND(has(s)); }
   const BodyData& operator[](int b) const { return b < 0 ? ground : bodies[static_cast<size_t>(b)]; }
   BodyData& operator[](int b) { return b < 0 ? ground : bodies[static_cast<size_t>(b)]; }
