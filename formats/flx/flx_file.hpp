@@ -70,7 +70,8 @@ struct FlxName {
   std::string path;
   int body_id = 0;
 };
-/// Empty where the name does not end in .FLX, in any case, with or without the id of a body.
+/// Empty if the file is no .FLX. An existing file is one if its first word is FLX, under any name (TREETOPS:
+/// problem.FLN); otherwise, unless it is HDF5, the name decides: .FLX in any case.
 std::optional<FlxName> parse_flx_name(const std::string& name);
 
 /// The record that the solver and the other verbs take. What the file cannot say is empty (mesh, F_I, other sets of

@@ -56,6 +56,21 @@ FlxFile read_flx(const std::string& path, int body_id) {
                    "correct the number behind the colon");
 }
 
+namespace {
+
+/// First bytes of a regular file; empty for any other. A pipe is not read: its bytes could not be read again.
+std::string read_head(const std::string& path) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed)) return {};
+  std::string head(8, '\0');
+  std::ifstream in(path, std::ios::binary);
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  return head;
+}
+
+}  // namespace
+
 std::optional<FlxName> parse_flx_name(const std::string& name) {
   FlxName parsed{name, 0};
   if (const auto colon = name.rfind(':'); colon != std::string::npos) {
@@ -66,6 +81,10 @@ std::optional<FlxName> parse_flx_name(const std::string& name) {
     else
       parsed.body_id = 0;
   }
+  const auto head = read_head(parsed.path);
+  const auto words = detail::split_blanks(head);
+  if (!words.empty() && words[0] == "FLX") return parsed;
+  if (head.starts_with("\x89HDF")) return std::nullopt;
   std::string ending = parsed.path.size() > 4 ? parsed.path.substr(parsed.path.size() - 4) : "";
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (ending != ".flx") return std::nullopt;

@@ -50,8 +50,8 @@ records::BodyRecord read_body(const Fields& table, const std::string& path, Diag
   body.recover_all = table.get_bool("recover", false);
   body.recover = table.get_ints("recover");
   if (table.has("file")) {
-    // A .FLX may leave them to the system, as TREETOPS has it.
-    if (body.file.find(".flx") == std::string::npos && body.file.find(".FLX") == std::string::npos)
+    // A .FLX, under any name, may leave them to the system, as TREETOPS has it. The content decides when it is read.
+    if (body.file.ends_with(".h5") || body.file.ends_with(".hdf5"))
       refuse_keys(table, {"cg", "inertia"}, "in body '" + body.name + "', which comes from a file", diagnostics);
     refuse_keys(table, {"nodes"}, "in body '" + body.name + "', which comes from a file", diagnostics);
   } else {

@@ -258,6 +258,19 @@ TEST_F(FlxBodyTest, NamesOfFiles) {
   EXPECT_EQ(show("boom.FLX:0"), "no");
   EXPECT_EQ(show("boom.FLX:1x"), "no");
   EXPECT_EQ(show(".FLX"), "no");
+  // The content of a file goes before its name.
+  const auto put = [](const std::string& name, const std::string& text) {
+    const auto path = (std::filesystem::temp_directory_path() / name).string();
+    std::ofstream(path) << text;
+    return path;
+  };
+  const auto fln = put("bough-names.FLN", "FLX 1.1\n"), hdf5 = put("bough-names.FLX", "\x89HDF\r\n"),
+             deck = put("bough-names.dat", "FLXA\n");
+  EXPECT_EQ(show(fln), fln + " 0");
+  EXPECT_EQ(show(fln + ":3"), fln + " 3");
+  EXPECT_EQ(show(hdf5), "no");
+  EXPECT_EQ(show(deck), "no");
+  for (const auto& path : {fln, hdf5, deck}) std::filesystem::remove(path);
 }
 
 TEST_F(FlxBodyTest, ALayoutMayHoldTheGeometricStiffness) {
