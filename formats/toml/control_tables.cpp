@@ -54,6 +54,7 @@ records::Settings read_settings(const Fields& table, const std::string& path, co
       settings.matrices[key] = matrix;
     } else {
       auto numbers = table.get_numbers(entry.key);
+      if (entry.key == "angle" || entry.key == "misalignment") check_radians(table, key, numbers, diagnostics);
       for (double& number : numbers) number *= in_degrees ? kDegree : 1;
       settings.numbers[key] = std::move(numbers);
     }
@@ -105,13 +106,7 @@ void read_sensor_keys(const Fields& table, const std::string& path, const std::s
   sensor.component = table.get_string("component");
   sensor.sequence = table.get_string("sequence", "321");
   sensor.target = table.get_vector("target", type == "direction" ? sensor.target : Eigen::Vector3d::Zero());
-  const bool in_degrees = table.has("rotation_deg");
-  const Eigen::Vector3d turn = (in_degrees ? kDegree : 1.0) *
-                               table.get_vector(in_degrees ? "rotation_deg" : "rotation", Eigen::Vector3d::Zero());
-  sensor.mount =
-      (Eigen::AngleAxisd(turn.x(), Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(turn.y(), Eigen::Vector3d::UnitY()) *
-       Eigen::AngleAxisd(turn.z(), Eigen::Vector3d::UnitZ()))
-          .toRotationMatrix();
+  sensor.mount = read_rotation(table, "rotation", diagnostics);
   std::vector<std::string> others;
   for (const auto& entry : table.entries()) {
     const std::string key = entry.key.ends_with("_deg") ? entry.key.substr(0, entry.key.size() - 4) : entry.key;

@@ -29,6 +29,7 @@ void read_values(const Fields& fields, const std::string& path, records::Functio
     const std::string suffix = "_deg";
     const bool in_degrees = entry.key.size() > suffix.size() && entry.key.ends_with(suffix);
     const std::string key = in_degrees ? entry.key.substr(0, entry.key.size() - suffix.size()) : entry.key;
+    if (entry.key == "phase") check_radians(fields, key, {entry.value.number}, diagnostics);
     const bool is_new =
         function.values.emplace(key, entry.value.number * (in_degrees ? std::numbers::pi / 180 : 1)).second;
     if (!is_new) {

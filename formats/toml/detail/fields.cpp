@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <numbers>
 #include <sstream>
 
 namespace bough::toml_files {
@@ -101,6 +102,30 @@ Fields Fields::get_table(const std::string& key) const {
   static const Value empty;
   const Value* v = table_.find(key);
   return Fields(v && v->is_table() ? *v : empty, file_);
+}
+
+void check_radians(const Fields& table, const std::string& key, const std::vector<double>& angles,
+                   Diagnostics& diagnostics) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  const auto large = std::find_if(angles.begin(), angles.end(), [](double a) { return std::abs(a) > kTurn + 1e-9; });
+  if (large == angles.end()) return;
+  std::ostringstream what;
+  what << "angle " << *large << " in " << key << " is more than one turn: the unit is rad, this is "
+       << *large * 180 / std::numbers::pi << " degrees";
+  diagnostics.warning("toml.large-angle", table.locate(key), what.str(),
+                      "write " + key + "_deg for an angle in degrees");
+}
+
+Eigen::Matrix3d read_rotation(const Fields& table, const std::string& key, Diagnostics& diagnostics) {
+  using Eigen::AngleAxisd, Eigen::Vector3d;
+  Vector3d angles = table.get_vector(key, Vector3d::Zero());
+  if (table.has(key))
+    check_radians(table, key, {angles.begin(), angles.end()}, diagnostics);
+  else
+    angles = table.get_vector(key + "_deg", Vector3d::Zero()) * (std::numbers::pi / 180);
+  return (AngleAxisd(angles.x(), Vector3d::UnitX()) * AngleAxisd(angles.y(), Vector3d::UnitY()) *
+          AngleAxisd(angles.z(), Vector3d::UnitZ()))
+      .toRotationMatrix();
 }
 
 void refuse_keys(const Fields& table, std::initializer_list<const char*> keys, const std::string& because,

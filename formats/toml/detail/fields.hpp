@@ -51,6 +51,13 @@ class Fields {
   const std::string& file_;
 };
 
+/// Warns "toml.large-angle" of an angle in radians above one turn: a number meant in degrees.
+void check_radians(const Fields& table, const std::string& key, const std::vector<double>& angles,
+                   Diagnostics& diagnostics);
+
+/// R = Rx(a) Ry(b) Rz(c) of `key` (rad) or key_deg; the identity without both.
+Eigen::Matrix3d read_rotation(const Fields& table, const std::string& key, Diagnostics& diagnostics);
+
 /// Reports "toml.conflicting-keys" for each key of the list that stands where it has no meaning.
 void refuse_keys(const Fields& table, std::initializer_list<const char*> keys, const std::string& because,
                  Diagnostics& diagnostics);

@@ -56,15 +56,6 @@ void demand(const Fields& table, const std::string& key, const std::string& beca
   diagnostics.error("toml.missing-key", table.locate(), "missing key '" + key + "' " + because, "add it");
 }
 
-Eigen::Matrix3d read_rotation(const Fields& table, const std::string& key) {
-  using Eigen::AngleAxisd, Eigen::Vector3d;
-  Vector3d angles = table.get_vector(key, Vector3d::Zero());
-  if (!table.has(key)) angles = table.get_vector(key + "_deg", Vector3d::Zero()) * (std::numbers::pi / 180);
-  return (AngleAxisd(angles.x(), Vector3d::UnitX()) * AngleAxisd(angles.y(), Vector3d::UnitY()) *
-          AngleAxisd(angles.z(), Vector3d::UnitZ()))
-      .toRotationMatrix();
-}
-
 /// Six numbers (the diagonal), or six rows of six.
 Eigen::Matrix<double, 6, 6> read_six(const Fields& table, const std::string& key, Diagnostics& diagnostics) {
   Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();
@@ -94,11 +85,11 @@ void read_element(const Fields& table, const Keys& keys, ForceElementRecord& e, 
   e.from.body = table.get_string("body");
   e.from.node = table.get_int("node", 0);
   e.from.position = table.get_vector("position", e.from.position);
-  e.from.rotation = read_rotation(table, "rotation");
+  e.from.rotation = read_rotation(table, "rotation", diagnostics);
   e.to.body = table.get_string("to_body", "ground");
   e.to.node = table.get_int("to_node", 0);
   e.to.position = table.get_vector("to_position", e.to.position);
-  e.to.rotation = read_rotation(table, "to_rotation");
+  e.to.rotation = read_rotation(table, "to_rotation", diagnostics);
   if (e.type == ElementType::Bushing) {
     e.stiffness6 = read_six(table, "stiffness", diagnostics);
     e.damping6 = read_six(table, "damping", diagnostics);

@@ -82,9 +82,13 @@ class HingeReader {
       list.assign(kinds.size(), list[0]);
     else
       check_length(from, used, given.is_array() ? given.items.size() : list.size(), kinds.size());
-    for (std::size_t i = 0; in_degrees && i < std::min(list.size(), kinds.size()); ++i) {
-      if (kinds[i] == 'a') list[i] *= kRadPerDegree;
+    std::vector<double> angles;
+    for (std::size_t i = 0; i < std::min(list.size(), kinds.size()); ++i) {
+      if (kinds[i] != 'a') continue;
+      if (in_degrees) list[i] *= kRadPerDegree;
+      angles.push_back(list[i]);
     }
+    if (of_positions && !in_degrees) check_radians(from, key, angles, diagnostics_);
     return list;
   }
 
@@ -107,17 +111,6 @@ class HingeReader {
       check_length(table_, key, given.is_array() ? given.items.size() : names.size(), coordinates_.u.size());
     }
     return names;
-  }
-
-  /// R = Rx(a) Ry(b) Rz(c).
-  Eigen::Matrix3d read_rotation(const std::string& key) const {
-    using Eigen::AngleAxisd, Eigen::Vector3d;
-    const bool in_degrees = !table_.has(key) && table_.has(key + "_deg");
-    Vector3d angles = table_.get_vector(in_degrees ? key + "_deg" : key, Vector3d::Zero());
-    if (in_degrees) angles *= kRadPerDegree;
-    return (AngleAxisd(angles.x(), Vector3d::UnitX()) * AngleAxisd(angles.y(), Vector3d::UnitY()) *
-            AngleAxisd(angles.z(), Vector3d::UnitZ()))
-        .toRotationMatrix();
   }
 
  private:
@@ -175,8 +168,8 @@ records::HingeRecord read_hinge(const Fields& table, Diagnostics& diagnostics) {
   hinge.child_node = table.get_int("child_node", 0);
   hinge.parent_position = table.get_vector("parent_position", hinge.parent_position);
   hinge.child_position = table.get_vector("child_position", hinge.child_position);
-  hinge.parent_rotation = reader.read_rotation("parent_rotation");
-  hinge.child_rotation = reader.read_rotation("child_rotation");
+  hinge.parent_rotation = read_rotation(table, "parent_rotation", diagnostics);
+  hinge.child_rotation = read_rotation(table, "child_rotation", diagnostics);
   hinge.axis = table.get_vector("axis", hinge.axis);
   hinge.axis2 = table.get_vector("axis2", hinge.axis2);
   const std::string type = table.get_string("type"), because = "in hinge '" + hinge.name + "' of type " + type;
