@@ -26,7 +26,7 @@ std::vector<std::string> get_component_names(const std::string& path, int size) 
 
 std::vector<std::string> get_component_names(const std::string& path, int size, const std::string& description) {
   const auto colon = description.rfind(": ");
-  const bool is_sensor = description.find(" of body ") < colon && colon != std::string::npos;
+  const bool is_sensor = path.starts_with("/sensors/") && colon != std::string::npos;
   if (size == 1 || !(is_sensor || path.find("/recovery/") != std::string::npos)) return get_component_names(path, size);
   std::vector<std::string> names;
   for (std::size_t at = is_sensor ? colon + 2 : 0; at <= description.size();) {
@@ -37,8 +37,8 @@ std::vector<std::string> get_component_names(const std::string& path, int size, 
   return static_cast<int>(names.size()) == size ? names : get_component_names(path, size);
 }
 
-int find_component(const SignalName& name, int size) {
-  const auto names = get_component_names(name.path, size);
+int find_component(const SignalName& name, int size, const std::string& description) {
+  const auto names = get_component_names(name.path, size, description);
   for (int i = 0; i < size; ++i) {
     if (name.component == names[static_cast<std::size_t>(i)] || name.component == std::to_string(i + 1)) return i;
   }

@@ -16,11 +16,12 @@ SignalName parse_signal_name(const std::string& text);
 /// scalar.
 std::vector<std::string> get_component_names(const std::string& path, int size);
 
-/// The same, where the channel's description lists names of its own, as rows of elements have them: "axial, shear_y" of
-/// /bodies/B/recovery/..., "CBEAM/101 of body frame: axial, shear_y" of a sensor.
+/// Names listed at the end of the channel's description, otherwise those of its path. Lists: "axial, shear_y" of
+/// /bodies/B/recovery/..., "CBEAM/101 of body frame: axial, shear_y" and "... in rad: angle1, angle2, angle3" of
+/// sensors.
 std::vector<std::string> get_component_names(const std::string& path, int size, const std::string& description);
 
-/// Index from 0 of a component by its name or its count, -1 when there is none such; empty: 0 of a scalar.
-int find_component(const SignalName& name, int size);
+/// Index from 0 of a component by its name or its count from 1, -1 without such a component; empty: 0 of a scalar.
+int find_component(const SignalName& name, int size, const std::string& description);
 
 }  // namespace bough::records

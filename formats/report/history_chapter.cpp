@@ -38,7 +38,8 @@ Plot make_plot(const History& h, const std::string& title, const std::string& y_
   Plot plot{title, "time [T]", y_label, {}, 0, 0};
   for (const auto* channel : channels) {
     if (!channel) continue;
-    const auto names = records::get_component_names(channel->path, static_cast<int>(channel->values.cols()));
+    const auto names =
+        records::get_component_names(channel->path, static_cast<int>(channel->values.cols()), channel->description);
     for (Eigen::Index c = 0; c < channel->values.cols(); ++c) {
       const auto& component = names[static_cast<std::size_t>(c)];
       const std::string last = channel->path.substr(channel->path.rfind('/') + 1);
@@ -55,7 +56,8 @@ std::string make_statistics(const History& h) {
       "Every column, from all samples of the file",
       {{"channel", true}, {"dims", true}, {"min"}, {"at"}, {"max"}, {"at"}, {"mean"}, {"rms"}, {"first"}, {"last"}});
   for (const auto& channel : h.channels) {
-    const auto names = records::get_component_names(channel.path, static_cast<int>(channel.values.cols()));
+    const auto names =
+        records::get_component_names(channel.path, static_cast<int>(channel.values.cols()), channel.description);
     for (Eigen::Index c = 0; c < channel.values.cols() && h.time.size() > 0; ++c) {
       const auto values = channel.values.col(c);
       std::vector<std::string> row{name_column(channel.path, names[static_cast<std::size_t>(c)]), channel.dims};

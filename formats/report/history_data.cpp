@@ -115,7 +115,8 @@ std::string make_data(const History& history, const Strides& strides) {
   json channels = json::array();
   for (const auto& channel : history.channels) {
     const long stride = is_of_the_others(channel.path) ? strides.others : strides.first;
-    const auto names = records::get_component_names(channel.path, static_cast<int>(channel.values.cols()));
+    const auto names =
+        records::get_component_names(channel.path, static_cast<int>(channel.values.cols()), channel.description);
     json columns = json::array();
     for (Eigen::Index c = 0; c < channel.values.cols(); ++c) {
       const auto packed = pack_column(take_every(channel.values.col(c), stride));

@@ -35,9 +35,13 @@ class Resolver {
   int find(const records::TriggerRecord& r) {
     const auto name = records::parse_signal_name(r.signal);
     int size = 0;
+    std::string description;
     std::vector<std::string> known;
     for (const auto& channel : recorder_.channels()) {
-      if (channel.path == name.path) size = channel.size;
+      if (channel.path == name.path) {
+        size = channel.size;
+        description = channel.description;
+      }
       known.push_back(channel.path.starts_with("/sensors/") ? channel.path.substr(9) : channel.path);
     }
     if (size == 0) {
@@ -47,10 +51,10 @@ class Resolver {
             near.empty() ? "name a sensor as tip:x, or a channel as /hinges/root/q:1" : "did you mean '" + near + "'?");
       return -1;
     }
-    const int component = records::find_component(name, size);
+    const int component = records::find_component(name, size, description);
     if (component >= 0) return recorder_.find(name.path, component);
     if (!is_sound_) return -1;
-    const auto names = list(records::get_component_names(name.path, size));
+    const auto names = list(records::get_component_names(name.path, size, description));
     error(r, "run.unknown-signal",
           "watches '" + r.signal + "', but " +
               (name.component.empty() ? "does not say which component"

@@ -11,8 +11,12 @@ namespace {
 
 bool is_of(const Block& block, const char* kind) { return block.path.starts_with(kind); }
 
-std::string name_component(const std::string& name, int i, int size) {
+/// `name` with component i (from 0) of the block's outputs: names of its description, x y z of three, counts of others.
+std::string name_component(const Block& block, const std::string& name, int i) {
+  const int size = block.sizes.outputs;
   if (size == 1) return name;
+  const auto names = records::get_component_names(block.path, size, block.description);
+  if (names != records::get_component_names(block.path, size)) return name + ":" + names[static_cast<std::size_t>(i)];
   return name + ":" + (size == 3 ? std::string(1, "xyz"[i]) : std::to_string(i + 1));
 }
 
@@ -47,7 +51,7 @@ void Plant::add_inputs() {
     const std::string name = is_taken(p.block->name) ? p.block->path : p.block->name;
     const int size = p.block->sizes.outputs;
     for (int i = 0; i < size; ++i)
-      more.push_back({name_component(name, i, size), p.block->dims, -1, -1, -1, p.out + i});
+      more.push_back({name_component(*p.block, name, i), p.block->dims, -1, -1, -1, p.out + i});
   }
   inputs_.insert(inputs_.end(), more.begin(), more.end());
 }
@@ -69,13 +73,8 @@ void Plant::add_outputs() {
   for (const char* kind : {"/sensors/", "/controllers/", "/actuators/"}) {
     for (const auto& p : system_.impl().signals.places) {
       if (!is_of(*p.block, kind)) continue;
-      const int size = p.block->sizes.outputs;
-      // Rows of an element by their names.
-      const auto names = records::get_component_names(p.block->path, size, p.block->description);
-      for (int i = 0; i < size; ++i) {
-        const bool is_named = size > 1 && names != records::get_component_names(p.block->path, size);
-        outputs_.name.push_back(is_named ? p.block->name + ":" + names[static_cast<std::size_t>(i)]
-                                         : name_component(p.block->name, i, size));
+      for (int i = 0; i < p.block->sizes.outputs; ++i) {
+        outputs_.name.push_back(name_component(*p.block, p.block->name, i));
         outputs_.dims.push_back(p.block->dims);
       }
     }

@@ -1,19 +1,41 @@
 #include "solver/linear/ports.hpp"
 
+#include <algorithm>
+
+#include "formats/records/signal_name.hpp"
+
 namespace bough::solver {
 namespace {
+
+/// Indices of the components of `name`; a command of an actuator is none.
+std::vector<int> list_components(const std::string& name, const std::vector<std::string>& known) {
+  std::vector<int> list;
+  for (size_t i = 0; i < known.size(); ++i)
+    if (known[i].starts_with(name + ":") && known[i] != name + ":command") list.push_back(static_cast<int>(i));
+  return list;
+}
+
+/// Index of the component that "NAME:2" counts, for components with names; -1 without such a component.
+int find_counted(const std::string& name, const std::vector<std::string>& known) {
+  const auto signal = records::parse_signal_name("/" + name);
+  const auto list = list_components(signal.path.substr(1), known);
+  for (size_t i = 0; i < list.size(); ++i)
+    if (signal.component == std::to_string(i + 1)) return list[i];
+  return -1;
+}
 
 /// Index of each wanted name; a name before ":" stands for all of its components.
 std::vector<int> choose(const std::vector<std::string>& wanted, const std::vector<std::string>& known,
                         const std::string& noun, const char* id, const SourceLocation& at, Diagnostics& diagnostics) {
   std::vector<int> chosen;
   for (const auto& name : wanted) {
-    const auto size = chosen.size();
-    for (size_t i = 0; i < known.size(); ++i) {
-      const bool is_component = known[i].starts_with(name + ":") && known[i] != name + ":command";
-      if (known[i] == name || is_component) chosen.push_back(static_cast<int>(i));
-    }
-    if (chosen.size() > size) continue;
+    auto found = list_components(name, known);
+    for (size_t i = 0; i < known.size(); ++i)
+      if (known[i] == name) found.push_back(static_cast<int>(i));
+    std::sort(found.begin(), found.end());
+    if (const int counted = found.empty() ? find_counted(name, known) : -1; counted >= 0) found.push_back(counted);
+    chosen.insert(chosen.end(), found.begin(), found.end());
+    if (!found.empty()) continue;
     const std::string near = find_nearest(name, known);
     std::string list;
     for (const auto& word : known) list += (list.empty() ? "" : ", ") + word;

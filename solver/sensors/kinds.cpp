@@ -20,7 +20,7 @@ const SensorKind& get_kind(records::SensorType type) {
       {T::Resolver, "resolver", "1", SensorOf::Coordinate, 0, false},
       {T::Tachometer, "tachometer", "1/T or L/T", SensorOf::Coordinate, 0, false},
       {T::Quaternion, "attitude as a quaternion w, x, y, z", "1", SensorOf::Attitude, 4, false},
-      {T::Euler, "attitude as angles", "1", SensorOf::Attitude, 3, false},
+      {T::Euler, "attitude as Euler angles in rad", "1", SensorOf::Attitude, 3, false},
       {T::DirectionCosines, "attitude as direction cosines, row by row", "1", SensorOf::Attitude, 9, false},
       {T::Gyro, "rate gyro", "1/T", SensorOf::Instrument, 3, false},
       {T::IntegratingGyro, "integrating gyro", "1", SensorOf::Instrument, 3, false},

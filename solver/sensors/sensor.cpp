@@ -88,7 +88,13 @@ class Resolver {
     }
     e.size = r.coordinate == 0 ? count : 1;
     if (r.coordinate > 0) e.description += ", coordinate " + std::to_string(r.coordinate);
+    if (angle || system_.impl().tree[e.body].hinge->has_plain_coordinates()) name_by_count(e);
     set_dims(r, e);
+  }
+
+  /// Three components are x, y, z unless the description names them; coordinates and modes have no axes.
+  static void name_by_count(Sensors::Entry& e) {
+    if (e.size == 3) e.description += ": 1, 2, 3";
   }
 
   /// Of coordinates that are all angles or all travels.
@@ -118,6 +124,7 @@ class Resolver {
             count == 0 ? "remove the sensor" : "give 1 to " + std::to_string(count) + ", or 0 for all");
     else if (kind.of == SensorOf::Modes)
       e.size = r.coordinate == 0 ? count : 1;
+    name_by_count(e);
   }
 
   void resolve_element(const SensorRecord& r, Sensors::Entry& e) {
@@ -183,7 +190,7 @@ class Resolver {
       return;
     }
     for (size_t i = 0; i < 3; ++i) e.axes[i] = s[i] - '1';
-    e.description += ", turns about " + s;
+    e.description += ", turns about axes " + s + ": angle1, angle2, angle3";
   }
 
   void resolve_node(const SensorRecord& r, Sensors::Entry& e) {

@@ -270,13 +270,14 @@ class Builder {
       return;
     }
     const int n = from.block->sizes.outputs;
-    const int component = records::find_component({source.path, wire.text}, n);
+    const int component = records::find_component({source.path, wire.text}, n, from.block->description);
     if (component >= 0) {
       add_row(from.out + component);
       return;
     }
     std::string list;
-    for (const auto& name : records::get_component_names(source.path, n)) list += (list.empty() ? "" : ", ") + name;
+    for (const auto& name : records::get_component_names(source.path, n, from.block->description))
+      list += (list.empty() ? "" : ", ") + name;
     diagnostics_.error(
         "control.unknown-signal", wire.at,
         to.block->label + " names component '" + wire.text + "' of '" + source.name + "', which does not exist",

@@ -62,7 +62,7 @@ class Satellite(ProgramTest):
             A, B, C = (f[name][:] for name in "ABC")
             names = {kind: [n.decode() for n in f[kind + "/name"][:]] for kind in ("states", "inputs", "outputs")}
         column = names["inputs"].index("wheel_z")
-        angle, rate = (C[names["outputs"].index(name)] for name in ("attitude:x", "gyro:z"))  # euler: z, y, x
+        angle, rate = (C[names["outputs"].index(name)] for name in ("attitude:angle1", "gyro:z"))  # euler: z, y, x
         n = A.shape[0]
         block = np.zeros((n + 1, n + 1))
         block[:n, :n], block[:n, n] = A, B[:, column]
@@ -133,12 +133,12 @@ class Satellite(ProgramTest):
         half = expm(0.05 * block)
         F, G = half[:n, :n], half[:n, n:]
         outputs = names["outputs"]
-        K = np.array([kp * C[outputs.index("attitude:" + angle)] + kd * C[outputs.index("gyro:" + axis)]
-                      for kp, kd, angle, axis in ((113, 528, "z", "x"), (33, 154, "y", "y"), (132, 616, "x", "z"))])
+        K = np.array([kp * C[outputs.index("attitude:angle" + angle)] + kd * C[outputs.index("gyro:" + axis)]
+                      for kp, kd, angle, axis in ((113, 528, "3", "x"), (33, 154, "2", "y"), (132, 616, "1", "z"))])
         K[2:] = 0
         step = np.block([[F @ F - G @ K, F @ G], [-K, np.zeros((3, 3))]])
         push = np.concatenate([G[:, 2], [0, 0, 1]])
-        K_z = np.concatenate([132 * C[outputs.index("attitude:x")] + 616 * C[outputs.index("gyro:z")], np.zeros(3)])
+        K_z = np.concatenate([132 * C[outputs.index("attitude:angle1")] + 616 * C[outputs.index("gyro:z")], np.zeros(3)])
         with h5py.File(self.path("response.h5")) as f:
             omega, L = 2 * np.pi * f["frequency_hz"][:], (f["real"][:] + 1j * f["imag"][:]).ravel()
         exact = np.array([K_z @ np.linalg.solve(np.exp(0.1j * w) * np.eye(n + 3) - step, push) for w in omega])
