@@ -11,6 +11,7 @@
 #include "cli/common/console.hpp"
 #include "cli/common/help_files.hpp"
 #include "cli/common/memory_limit.hpp"
+#include "cli/common/old_commands.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/common/versions.hpp"
 #include "cli/convert/convert.hpp"
@@ -72,9 +73,11 @@ bool check_verb(const CLI::App& app, int argc, const char* const* argv, const cl
     if (!word.empty() && word[0] == '-') continue;
     const auto verbs = get_names(app);
     if (std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return true;
-    const auto nearest = find_nearest(word, verbs);
+    const auto successor = cli::find_successor(word), nearest = find_nearest(word, verbs);
     console.print_error("cli.unknown-verb", "unknown verb \"" + word + "\"",
-                        nearest.empty() ? "bough --help lists the verbs" : "did you mean \"" + nearest + "\"");
+                        !successor.empty() ? successor
+                        : nearest.empty()  ? "bough --help lists the verbs"
+                                           : "did you mean \"" + nearest + "\"");
     return false;
   }
   return true;
@@ -96,7 +99,8 @@ int run(int argc, const char* const* argv, std::vector<Diagnostic>& failures) {
   app.formatter(cli::make_formatter());
   app.set_help_flag("-h,--help", "Print this help and exit");
   app.footer(
-      "bough VERB --help explains a verb. Exit codes: 0 success, 1 the input is wrong, 2 usage, 3 the computation "
+      "bough VERB --help, or bough help VERB, explains a verb. Exit codes: 0 success, 1 the input is wrong, 2 usage, 3 "
+      "the computation "
       "failed.\n"
       "Example:\n  bough init spinup && cd spinup && bough reduce boom.toml && bough run spinup.toml -o spinup.h5");
   bool show_version = false;
@@ -180,6 +184,11 @@ CommandOutcome run_and_tell(const std::vector<std::string>& given) {
   std::vector<std::string> words = given;
   for (auto& word : words)  // -.5, as decks have it, would be an option
     if (word.size() > 2 && word.compare(0, 2, "-.") == 0 && word[2] >= '0' && word[2] <= '9') word.insert(1, "0");
+  if (!words.empty() && words[0] == "version") words[0] = "--version";
+  if (!words.empty() && words[0] == "help") {  // bough help [VERB]
+    words.erase(words.begin());
+    words.insert(words.begin() + (words.empty() ? 0 : 1), "--help");
+  }
   std::vector<const char*> arguments{"bough"};
   for (const auto& word : words) arguments.push_back(word.c_str());
   CommandOutcome outcome;

@@ -64,7 +64,10 @@ void Reduction::set_nodes(const fe::Model& model) {
   }
   body_.mesh = model.calc_mesh();
   body_.dof_map = model.calc_dof_map();
-  if (spec_.full) body_.full_phi = Phi_;
+  if (spec_.full)
+    body_.full_phi = Phi_;
+  else
+    body_.set_mesh_shapes(Phi_);
 }
 
 /// What needs M on the g-set, assembled once: many products are cheaper so than element by element.

@@ -317,7 +317,10 @@ FlexBody MatrixReduction::run() {
   body.integrals_method = spec_.integrals;
   set_geometric(body);
   warn_of_missing(body);
-  if (!spec_.full) body.full_phi.resize(0, 0);
+  if (!spec_.full) {
+    body.set_mesh_shapes(body.full_phi);
+    body.full_phi.resize(0, 0);
+  }
   diagnostics_.throw_if_errors();
   return body;
 }

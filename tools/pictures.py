@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""tools/pictures.py PROGRAM [NAME...]: makes the pictures of the manuals anew, docs/pictures/NAME.png, each below
-150 kB by a palette: plots and tables of the tutorials, the report page in headless Chromium (which must be installed),
-a session of `edit`, figures of the notebooks (where the Python module lies beside PROGRAM). Look at what it made."""
+"""tools/pictures.py PROGRAM [NAME...]: makes the pictures of the manuals again, docs/pictures/NAME.png, each below
+150 kB by a palette. A picture comes from the commands of one page, run as printed up to the one that makes it (SHOTS):
+a plot, a table of the terminal, or the report page in headless Chromium (which must be installed). Besides, a session of
+`edit` and the figures of the notebooks (if the Python module is next to PROGRAM). Look at the result."""
+import dataclasses
 import glob
 import html
 import os
 import re
 import shutil
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -15,23 +18,23 @@ import time
 from PIL import Image
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-PROGRAM = os.path.abspath(sys.argv[1])
 PICTURES = os.path.join(ROOT, "docs/pictures")
 LARGEST = 150_000
 sys.path.insert(0, os.path.join(ROOT, "tests/cli"))
 from browser import Browser  # noqa: E402
+from page_blocks import list_commands  # noqa: E402
 
 TERMINAL = """<!DOCTYPE html><meta charset="utf-8"><style>body{margin:0;background:#1d2430}
 pre{margin:0;padding:18px 22px;color:#dfe5ee;font:14px/1.35 "DejaVu Sans Mono",monospace;display:inline-block}
 b{color:#8fd18f;font-weight:normal}</style><pre id="t">%s</pre>"""
 
 
-def keep(name, source, colors=96, width=None):
+def keep(name, source, folder, colors=96, width=None):
     """A picture with a palette of as many colours as fit, no wider than `width`."""
     image = Image.open(source).convert("RGB")
     if width and image.width > width:
         image = image.resize((width, round(image.height * width / image.width)), Image.LANCZOS)
-    target = os.path.join(PICTURES, name + ".png")
+    target = os.path.join(folder, name + ".png")
     while True:
         image.quantize(colors, dither=Image.Dither.NONE).save(target, optimize=True)
         if os.path.getsize(target) < LARGEST or colors <= 8:
@@ -40,44 +43,121 @@ def keep(name, source, colors=96, width=None):
     print(f"{name}.png: {image.width} x {image.height}, {colors} colours, {os.path.getsize(target) // 1000} kB")
 
 
-class Folder:
-    """A folder of an example in which commands run."""
+SATELLITE, STAGES, BLADE = ("docs/tutorials/" + name + ".md" for name in ("satellite", "stage-separation", "rotor-blade"))
+REPORT = "docs/report.md"
+MODE = "[...document.querySelectorAll('[data-view=modes] button')].find(b => b.textContent === '▶').click()"
+ENERGY = """; (() => { const s = document.querySelector('[aria-label="colour by"]'); s.value = 2;
+  s.dispatchEvent(new Event('change')); })()"""
+SCRUB = """(() => { const s = document.querySelector('.scrub'); s.value = %d;
+  s.dispatchEvent(new Event('input', { bubbles: true })); })()"""
+LOOK_ALONG_Z = "; [...document.querySelectorAll('.motion button')].find(b => b.textContent === 'z').click()"
 
-    def __init__(self, example):
-        self.path = os.path.join(SCRATCH, example)
-        if not os.path.exists(self.path):
-            self.run("init", example, where=SCRATCH)
 
-    def run(self, *words, where=None):
-        ran = subprocess.run([PROGRAM, *words], cwd=where or self.path, text=True, capture_output=True)
-        assert ran.returncode == 0, f"{words}\n{ran.stdout}{ran.stderr}"
-        return ran.stdout
+@dataclasses.dataclass
+class Shot:
+    """A picture by the command of `page` that has `part` in it: the plot or page that it writes, or what it prints."""
+    page: str
+    part: str
+    selector: str = ""      # of a report page: what is at the top of the window
+    before: str = ""        # script that is run there
+    width: int = 1180
+    height: int = 760
 
-    def plot(self, name, *words):
-        self.run("plot", *words, "-o", name + ".png")
-        keep(name, os.path.join(self.path, name + ".png"), 192, 900)
+    def find_command(self):
+        with open(os.path.join(ROOT, self.page), encoding="utf-8") as f:
+            commands = list_commands(f.read())
+        found = [command for command in commands if self.part in command]
+        assert len(found) == 1, f"{self.page} prints {len(found)} commands with {self.part}"
+        return commands, found[0]
 
-    def page(self, name, selector, *files, width=1180, height=760, before="", wait=2.0):
-        """What the window shows when `selector` stands at its top."""
-        self.run("report", *files, "-o", "page.html")
-        browser = Browser(width, height)
+
+SHOTS = {
+    "satellite-curves": Shot(SATELLITE, "-o satellite.svg"),
+    "satellite-report": Shot(SATELLITE, "-o satellite.html", "[data-view=motion]", SCRUB % 200, height=860),
+    "select": Shot(SATELLITE, "bough select"),
+    "separation": Shot(STAGES, "-o separation.svg"),
+    "campbell": Shot(BLADE, "-o campbell.svg"),
+    "blade-tip": Shot(BLADE, "-o tip.svg"),
+    "modes": Shot(REPORT, "-o plate.html", "[data-view=modes]", MODE),
+    "modes-energy": Shot(REPORT, "-o modes.html", "[data-view=modes]", MODE + ENERGY),
+    # At 6.77 s, where the boom is bent most, seen along the axis of rotation.
+    "spinup-report": Shot(REPORT, "-o spinup.html", "[data-view=motion]", SCRUB % 338 + LOOK_ALONG_Z, 1000, 1180),
+}
+
+
+# Figures that pages show as the SVG that a command of the page writes: docs/NAME.svg.
+FIGURES = {"figure8": Shot("data/examples/ex02-hub/README.md", "-o figure8.svg")}
+
+
+class Pages:
+    """Pages followed in folders of their own: each command once, in the order of its page."""
+
+    def __init__(self, program, scratch):
+        self.program, self.scratch, self.pages = program, scratch, {}
+
+    def follow(self, page, commands, last):
+        """Runs the commands up to `last`: its folder and what it printed."""
+        if page not in self.pages:
+            folder = os.path.join(self.scratch, re.sub(r"\W+", "-", page))
+            if page.startswith("data/examples"):
+                shutil.copytree(os.path.join(ROOT, os.path.dirname(page)), folder)
+            else:
+                os.makedirs(folder)
+            self.pages[page] = [folder, 0, {}]
+        state = self.pages[page]
+        while last not in state[2]:
+            command = commands[state[1]]
+            for part in command.split("&&"):
+                words = shlex.split(part)
+                if words[0] == "cd":
+                    state[0] = os.path.join(state[0], words[1])
+                    continue
+                ran = subprocess.run([self.program, *words[1:]], cwd=state[0], text=True, capture_output=True)
+                assert ran.returncode == 0, f"{page}: {command}\n{ran.stdout}{ran.stderr}"
+            state[1] += 1
+            state[2][command] = (state[0], ran.stdout if words[0] != "cd" else "")
+        return state[2][last]
+
+    def take(self, name, folder):
+        """The picture NAME.png in `folder`."""
+        shot = SHOTS[name]
+        commands, command = shot.find_command()
+        where, printed = self.follow(shot.page, commands, command)
+        if shot.selector:
+            self.take_page(name, os.path.join(where, shot.part.split()[-1]), shot, folder)
+        elif shot.part.startswith("-o "):
+            picture = os.path.join(self.scratch, "plot.png")
+            subprocess.run(["rsvg-convert", "--background-color=white", "--format=png", "--output=" + picture,
+                            os.path.join(where, shot.part.split()[-1])], check=True)
+            keep(name, picture, folder, 192, 900)
+        else:
+            self.take_terminal(name, f"$ {command}\n{printed}", folder)
+
+    def draw(self, name):
+        """The file of the figure NAME."""
+        commands, command = FIGURES[name].find_command()
+        where, _ = self.follow(FIGURES[name].page, commands, command)
+        return os.path.join(where, name + ".svg")
+
+    def take_page(self, name, page, shot, folder, wait=2.0):
+        browser = Browser(shot.width, shot.height)
         try:
-            browser.open(os.path.join(self.path, "page.html"))
-            show = f"document.querySelector({selector!r}).scrollIntoView(), scrollBy(0, -64)"
+            browser.open(page)
+            show = f"document.querySelector({shot.selector!r}).scrollIntoView(), scrollBy(0, -64)"
             browser.run(show)
             time.sleep(wait)
-            if before:
-                browser.run(before)
+            if shot.before:
+                browser.run(shot.before)
                 browser.run(show)
                 time.sleep(wait)
-            path = os.path.join(SCRATCH, "page.png")
-            browser.screenshot(path)
-            keep(name, path, 128)
+            picture = os.path.join(self.scratch, "page.png")
+            browser.screenshot(picture)
+            keep(name, picture, folder, 128)
         finally:
             browser.close()
 
-    def terminal(self, name, text):
-        path = os.path.join(SCRATCH, "terminal.html")
+    def take_terminal(self, name, text, folder):
+        path = os.path.join(self.scratch, "terminal.html")
         text = re.sub(r"(?m)^(\$ |[\w.]+> )(.*)$", lambda m: f"\0{m.group(0)}\1", text)
         text = html.escape(text, quote=False).replace("\0", "<b>").replace("\1", "</b>")
         with open(path, "w", encoding="utf-8") as f:
@@ -88,121 +168,58 @@ class Folder:
             box = browser.show("#t")
             browser.call("Emulation.setDeviceMetricsOverride", width=round(box["width"]), height=round(box["height"]),
                          deviceScaleFactor=1, mobile=False)
-            picture = os.path.join(SCRATCH, "terminal.png")
+            picture = os.path.join(self.scratch, "terminal.png")
             browser.screenshot(picture)
-            keep(name, picture, 16)
+            keep(name, picture, folder, 16)
         finally:
             browser.close()
 
+    def take_edit(self, folder):
+        """The session that docs/edit.md prints, in the folder of its example."""
+        where = os.path.join(self.scratch, "edit")
+        for words, at in ((["init", "spinup", "-o", where], self.scratch), (["reduce", "boom.toml"], where)):
+            subprocess.run([self.program, *words], cwd=at, check=True, capture_output=True)
+        with open(os.path.join(ROOT, "docs/edit.md"), encoding="utf-8") as f:
+            session = re.findall(r"(?m)^    spinup\.toml> (.*)$", f.read())
+        # Each command by itself, so that its answer stands behind it.
+        shutil.copy(os.path.join(where, "spinup.toml"), os.path.join(where, "kept.toml"))
+        text, before = "$ bough edit spinup.toml\n", ""
+        for k, command in enumerate(session):
+            shutil.copy(os.path.join(where, "kept.toml"), os.path.join(where, "spinup.toml"))
+            printed = subprocess.run([self.program, "edit", "spinup.toml"], cwd=where, text=True, capture_output=True,
+                                     input="\n".join(session[:k + 1]) + "\n").stdout
+            assert printed.startswith(before), printed
+            text += f"spinup.toml> {command}\n{printed[len(before):]}"
+            before = printed
+        self.take_terminal("edit", text, folder)
 
-def make_satellite():
-    satellite = Folder("satellite")
-    satellite.run("reduce", "wing.toml")
-    satellite.run("run", "satellite.toml", "-o", "satellite.h5")
-    return satellite
-
-
-def satellite_curves():
-    make_satellite().plot("satellite-curves", "satellite.h5", "--sensor", "attitude:1", "--sensor",
-                          "/actuators/wheel_z:2", "--sensor", "tip:x", "--subplots")
-
-
-def satellite_report():
-    satellite = make_satellite()
-    satellite.run("reduce", "wing.toml", "--full")    # elements in the picture, not lines between the output nodes
-    satellite.run("run", "satellite.toml", "-o", "satellite.h5")
-    satellite.page("satellite-report", "[data-view=motion]", "satellite.h5", "wing.h5", height=860, before=SCRUB)
-
-
-def select():
-    satellite = Folder("satellite")
-    satellite.run("reduce", "wing.toml")
-    words = ["select", "wing.h5", "pointing.toml", "--outputs", "tip", "--number", "3", "-o", "small.h5"]
-    satellite.terminal("select", "$ bough " + " ".join(words) + "\n" + satellite.run(*words))
-
-
-def separation():
-    stages = Folder("stage-separation")
-    stages.run("reduce", "stage.toml")
-    stages.run("run", "separation.toml", "-o", "separation.h5")
-    stages.plot("separation", "separation.h5", "--sensor", "gap", "--sensor", "tip_off:2", "--sensor", "tip_off:3",
-                "--subplots")
+    def take_notebooks(self, folder):
+        module = os.path.join(os.path.dirname(os.path.dirname(self.program)), "python")
+        for name in ("monte_carlo", "kg_by_hand"):
+            where = os.path.join(self.scratch, name)
+            os.makedirs(where)
+            subprocess.run(["/usr/bin/python3", "-B", os.path.join(ROOT, f"docs/notebooks/{name}.py")], cwd=where,
+                           check=True, stdout=subprocess.DEVNULL,
+                           env={**os.environ, "PYTHONPATH": module, "MPLBACKEND": "Agg"})
+            for picture in glob.glob(os.path.join(where, "*.png")):
+                keep("notebook-" + name.replace("_", "-"), picture, folder, 64, 640)
 
 
-def campbell():
-    blade = Folder("rotor-blade")
-    blade.run("reduce", "blade.toml")
-    blade.run("linearize", "rotor.toml", "--at", "4", "--sweep", "rate=0:36:19", "-o", "campbell.h5")
-    blade.plot("campbell", "campbell.h5", "--kind", "campbell", "--y-min", "0", "--y-max", "40")
-
-
-def blade_tip():
-    blade = Folder("rotor-blade")
-    blade.run("reduce", "blade.toml")
-    blade.run("run", "rotor.toml", "-o", "rotor.h5")
-    blade.plot("blade-tip", "rotor.h5", "--sensor", "tip:z", "--sensor", "tip:y", "--subplots")
-
-
-def modes():
-    plate = Folder("plate")
-    plate.run("reduce", "plate.toml")
-    plate.page("modes", "[data-view=modes]", "plate.h5", before=MODE)
-
-
-def modes_energy():
-    plate = Folder("plate")
-    plate.run("modes", "plate.bdf", "-n", "6", "--ese", "-o", "modes.h5")
-    plate.page("modes-energy", "[data-view=modes]", "modes.h5", before=MODE + ENERGY)
-
-
-def spinup_report():
-    boom = Folder("spinup")
-    boom.run("reduce", "boom.toml")
-    boom.run("run", "spinup.toml", "-o", "spinup.h5")
-    # At 6.77 s, where the boom is bent most, seen along the axis of rotation.
-    boom.page("spinup-report", "[data-view=motion]", "spinup.h5", "boom.h5", width=1000, height=1180,
-              before=SCRUB.replace("200", "338") + "; [...document.querySelectorAll('.motion button')]"
-                     ".find(b => b.textContent === 'z').click()")
-
-
-def edit():
-    boom = Folder("spinup")
-    boom.run("reduce", "boom.toml")
-    with open(os.path.join(ROOT, "docs/edit.md"), encoding="utf-8") as f:
-        session = re.findall(r"(?m)^    spinup\.toml> (.*)$", f.read())
-    # Each command by itself, so that its answer stands behind it.
-    shutil.copy(os.path.join(boom.path, "spinup.toml"), os.path.join(boom.path, "kept.toml"))
-    text, before = "$ bough edit spinup.toml\n", ""
-    for k, command in enumerate(session):
-        shutil.copy(os.path.join(boom.path, "kept.toml"), os.path.join(boom.path, "spinup.toml"))
-        said = subprocess.run([PROGRAM, "edit", "spinup.toml"], cwd=boom.path, text=True, capture_output=True,
-                              input="\n".join(session[:k + 1]) + "\n").stdout
-        assert said.startswith(before), said
-        text += f"spinup.toml> {command}\n{said[len(before):]}"
-        before = said
-    boom.terminal("edit", text)
-
-
-def notebooks():
-    module = os.path.join(os.path.dirname(os.path.dirname(PROGRAM)), "python")
-    for name in ("monte_carlo", "kg_by_hand"):
-        folder = os.path.join(SCRATCH, name)
-        os.makedirs(folder)
-        subprocess.run(["/usr/bin/python3", "-B", os.path.join(ROOT, f"docs/notebooks/{name}.py")], cwd=folder, check=True,
-                       stdout=subprocess.DEVNULL, env={**os.environ, "PYTHONPATH": module, "MPLBACKEND": "Agg"})
-        for picture in glob.glob(os.path.join(folder, "*.png")):
-            keep("notebook-" + name.replace("_", "-"), picture, 64, 640)
-
-
-MODE = "[...document.querySelectorAll('[data-view=modes] button')].find(b => b.textContent === '▶').click()"
-ENERGY = """; (() => { const s = document.querySelector('[aria-label="colour by"]'); s.value = 2;
-  s.dispatchEvent(new Event('change')); })()"""
-SCRUB = """(() => { const s = document.querySelector('.scrub'); s.value = 200;
-  s.dispatchEvent(new Event('input', { bubbles: true })); })()"""
-MAKERS = [satellite_curves, satellite_report, select, separation, campbell, blade_tip, modes,
-          modes_energy, spinup_report, edit, notebooks]
-with tempfile.TemporaryDirectory(prefix="bough-pictures-") as SCRATCH:
+def main(program, names):
     os.makedirs(PICTURES, exist_ok=True)
-    for maker in MAKERS:
-        if len(sys.argv) == 2 or maker.__name__ in sys.argv[2:]:
-            maker()
+    with tempfile.TemporaryDirectory(prefix="bough-pictures-") as scratch:
+        pages = Pages(os.path.abspath(program), scratch)
+        for name in SHOTS:
+            if not names or name in names:
+                pages.take(name, PICTURES)
+        for name in FIGURES:
+            if not names or name in names:
+                shutil.copy(pages.draw(name), os.path.join(ROOT, "docs"))
+        if not names or "edit" in names:
+            pages.take_edit(PICTURES)
+        if not names or "notebooks" in names:
+            pages.take_notebooks(PICTURES)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], sys.argv[2:])

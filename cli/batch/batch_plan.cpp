@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "base/file_roles.hpp"
@@ -70,6 +71,7 @@ BatchPlan::BatchPlan(const std::string& campaign_file, const std::vector<std::st
   carry_all();
   diagnostics_.throw_if_errors();
   outputs_ = find_outputs(spec_, campaign_folder_);
+  check_filled_names();
   for (auto& [file, carried] : carried_)
     if (carried.kind == FileKind::Toml) resolve_paths(file, carried);
   find_fields();
@@ -123,6 +125,34 @@ void BatchPlan::carry_all() {
       const auto file = make_absolute(campaign_folder_, step.words[i]);
       if (is_input_word(step.words, i) && has_suffix(file, ".toml") && fs::is_regular_file(file))
         carry(file, step.at, false);
+    }
+  }
+}
+
+/// Inputs of steps whose names hold a parameter: each differs from case to case, so that only `files` brings them
+/// there.
+void BatchPlan::check_filled_names() {
+  for (const auto& step : spec_.steps) {
+    for (std::size_t i = 1; i < step.words.size(); ++i) {
+      if (!is_input_word(step.words, i) || step.words[i].find('{') == std::string::npos) continue;
+      std::set<std::string> seen;
+      std::string missing, first;
+      for (const auto& one : cases_) {
+        auto names = outputs_;
+        names.push_back(step.words[i]);
+        fill_in(names, spec_, one);
+        const auto name = names.back(), file = make_absolute(campaign_folder_, name);
+        names.pop_back();
+        if (!seen.insert(file).second || std::find(names.begin(), names.end(), file) != names.end()) continue;
+        if (carried_.count(file) != 0 || !fs::is_regular_file(file)) continue;
+        if (first.empty()) first = name;
+        missing += (missing.empty() ? "\"" : ", \"") + name + "\"";
+      }
+      if (!missing.empty())
+        diagnostics_.error(
+            "batch.no-file", step.at,
+            "'" + step.words.front() + " " + step.words[i] + "' reads " + first + ", which no case has in its folder",
+            "add files = [" + missing + "] to [campaign]");
     }
   }
 }

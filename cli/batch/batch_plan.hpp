@@ -43,6 +43,7 @@ class BatchPlan {
   void carry(const std::string& file, const SourceLocation& at, bool has_cards);
   void carry_all();
   void resolve_paths(const std::string& file, Carried& carried);
+  void check_filled_names();
   void find_fields();
   void check_keys(const toml_files::CampaignParameter& p);
   void calc_inputs();

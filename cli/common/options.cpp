@@ -14,6 +14,7 @@
 #include "base/file_roles.hpp"
 #include "base/part_file.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/old_commands.hpp"
 #include "cli/common/ranks.hpp"
 #include "cli/common/subcase_failures.hpp"
 #include "cli/common/text_file.hpp"
@@ -174,9 +175,16 @@ bool has_suffix(const std::string& path, const std::string& suffix) {
 }
 
 void demand_file(const std::string& path) {
-  if (!fs::is_regular_file(path) || !std::ifstream(path)) {
+  std::error_code failed;
+  const auto kind = fs::status(path, failed).type();
+  const bool is_stream =
+      kind == fs::file_type::fifo || kind == fs::file_type::character || kind == fs::file_type::socket;
+  if (is_stream)
+    throw InputError("cli.no-file", {path}, "is a pipe or a device, not a regular file, and input is read twice",
+                     "write it to a file first");
+  if (kind != fs::file_type::regular || !std::ifstream(path)) {
     throw InputError("cli.no-file", {path},
-                     fs::is_directory(path) ? "is a folder, not a file" : "no such file, or not readable",
+                     kind == fs::file_type::directory ? "is a folder, not a file" : "no such file, or not readable",
                      "check the path");
   }
   note_input(path);
@@ -191,6 +199,7 @@ void demand_kind(const std::string& path, const std::string& kind, const std::st
 
 void demand_deck(const std::string& path) {
   demand_file(path);
+  refuse_treetops_input(path);
   std::string begin(8, '\0');
   std::ifstream(path, std::ios::binary).read(begin.data(), 8);
   const bool is_hdf5 = begin == "\x89HDF\r\n\x1a\n";

@@ -6,6 +6,7 @@
 
 #include "cli/common/body_files.hpp"
 #include "cli/common/control_files.hpp"
+#include "cli/common/old_commands.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/start_state.hpp"
 #include "formats/toml/specs.hpp"
@@ -104,7 +105,10 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, cons
 
 LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, LoadOptions options) {
   const auto& start_from = options.start_from;
-  if (!options.text) demand_file(path);
+  if (!options.text) {
+    demand_file(path);
+    refuse_treetops_input(path);
+  }
   const auto set = split_settings(options.set, path);
   auto spec = options.text ? toml_files::read_system_spec_text(*options.text, path, set, diagnostics)
                            : toml_files::read_system_spec(path, diagnostics, set);

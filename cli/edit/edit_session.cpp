@@ -1,12 +1,14 @@
 #include "cli/edit/edit_session.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "base/diagnostic.hpp"
 #include "base/file_roles.hpp"
+#include "cli/common/old_commands.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/system_files.hpp"
 #include "cli/common/text_file.hpp"
@@ -60,11 +62,16 @@ bool EditSession::execute(const std::string& line) {
   const auto words = split_words(line);
   if (words.empty()) return true;
   const auto known = list_commands();
-  const auto command = words[0] == "change" ? "set" : words[0] == "exit" ? "quit" : words[0];
+  std::string command = words[0];
+  std::transform(command.begin(), command.end(), command.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (command == "change") command = "set";
+  if (command == "exit") command = "quit";
   if (std::find(known.begin(), known.end(), command) == known.end()) {
-    const auto nearest = find_nearest(command, known);
-    throw InputError("cli.edit-command", {}, "there is no command '" + command + "'",
-                     nearest.empty() ? "'help' lists the commands" : "did you mean '" + nearest + "'?");
+    const auto successor = find_successor(words[0]), nearest = find_nearest(command, known);
+    throw InputError("cli.edit-command", {}, "there is no command '" + words[0] + "'",
+                     !successor.empty() ? successor
+                     : nearest.empty()  ? "'help' lists the commands"
+                                        : "did you mean '" + nearest + "'?");
   }
   const bool takes_none = command == "undo" || command == "redo" || command == "diff" || command == "check";
   if (takes_none && words.size() > 1) throw_usage(command);

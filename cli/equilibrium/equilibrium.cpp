@@ -10,6 +10,7 @@
 
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
+#include "cli/common/text_file.hpp"
 #include "cli/linearize/operating_point.hpp"
 #include "cli/run/provenance_sink.hpp"
 #include "cli/verbs.hpp"
@@ -115,7 +116,7 @@ int run_equilibrium(const EquilibriumOptions& o) {
     console.print(text);
   }
   if (!o.output.empty()) {
-    write_equilibrium(loaded, plant, found, sources, o.output);
+    write_whole(o.output, [&](const std::string& part) { write_equilibrium(loaded, plant, found, sources, part); });
     if (!o.json) console.print("written: " + o.output + "\n");
   }
   return kSuccess;

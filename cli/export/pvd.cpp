@@ -57,8 +57,8 @@ Part make_part(const MovingBody& body, Diagnostics& diagnostics) {
                                     picture.mesh.grid_id.size() + static_cast<std::size_t>(picture.num_missing)),
                         "reduce with --full, or without a list of output nodes");
   Part part{std::move(picture.mesh), {}, 0};
-  // Translations and rotations take turns.
-  for (std::size_t j = 0; j < picture.arrays.size(); j += 2) part.modes.push_back(std::move(picture.arrays[j].values));
+  for (auto& array : picture.arrays)
+    if (!array.name.ends_with("_rotation")) part.modes.push_back(std::move(array.values));
   return part;
 }
 

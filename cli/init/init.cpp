@@ -1,8 +1,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <sstream>
 
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
@@ -20,7 +22,7 @@ namespace {
 struct InitOptions {
   std::string name, output;
   int hinge = 0;
-  bool quiet = false, force = false;
+  bool quiet = false, force = false, lists = false;
 };
 
 struct Files {
@@ -43,12 +45,20 @@ const Template& find_template(const std::string& name) {
 
 bool is_deck(const std::string& name) { return fs::path(name).has_extension() || fs::is_regular_file(name); }
 
-/// Where the schemas are: of an installed program in share/bough, of a built one in the sources. Empty: not there.
+/// The installed schemas: next to the program in share/bough, else under XDG_DATA_DIRS. Empty: not installed. Sources
+/// and build folders do not count: they move and vanish, and the line would stay.
 fs::path find_schemas() {
   std::error_code failed;
-  const auto folder = fs::read_symlink("/proc/self/exe", failed).parent_path();
-  for (const char* place : {"../share/bough/schema", "../../data/schema"})
-    if (const auto found = (folder / place).lexically_normal(); fs::is_directory(found, failed)) return found;
+  const auto program = fs::read_symlink("/proc/self/exe", failed).parent_path();
+  std::vector<fs::path> places{program / "../share"};
+  const char* const given = std::getenv("XDG_DATA_DIRS");
+  std::istringstream list(given != nullptr && *given != '\0' ? given : "/usr/local/share:/usr/share");
+  for (std::string place; std::getline(list, place, ':');)
+    if (fs::path(place).is_absolute()) places.emplace_back(place);
+  for (const auto& place : places) {
+    const auto found = (place / "bough/schema").lexically_normal();
+    if (fs::is_directory(found, failed)) return found;
+  }
   return {};
 }
 
@@ -124,10 +134,44 @@ int list_templates(const Console& console) {
   return kSuccess;
 }
 
+/// Files and folders that one call makes: all of them stay, or none. A file that was overwritten (--force) stays.
+class NewPaths {
+ public:
+  NewPaths() = default;
+  NewPaths(const NewPaths&) = delete;
+  NewPaths& operator=(const NewPaths&) = delete;
+  ~NewPaths() {
+    std::error_code ignored;
+    for (auto path = paths_.rbegin(); path != paths_.rend(); ++path) fs::remove(*path, ignored);
+  }
+
+  void make_folder(const fs::path& folder) {
+    std::vector<fs::path> missing;
+    std::error_code failed;
+    for (fs::path path = fs::absolute(folder).lexically_normal(); !path.empty() && !fs::exists(path, failed);) {
+      if (path.has_filename()) missing.push_back(path);
+      path = path.parent_path();
+    }
+    paths_.insert(paths_.end(), missing.rbegin(), missing.rend());
+    fs::create_directories(folder, failed);
+    if (failed)
+      throw ComputationError("cli.write", {folder.string()}, "the folder could not be made: " + failed.message(),
+                             "choose another with -o");
+  }
+  void write(const fs::path& path, const std::string& text) {
+    if (!fs::exists(path)) paths_.push_back(path);
+    write_text_file(path.string(), text);
+  }
+  void keep() { paths_.clear(); }
+
+ private:
+  std::vector<fs::path> paths_;
+};
+
 int run_init(const InitOptions& o) {
   const Console console(o.quiet, 0);
   if (!console.is_root()) return kSuccess;
-  if (o.name.empty()) return list_templates(console);
+  if (o.name.empty() || o.lists) return list_templates(console);
   Diagnostics diagnostics;
   Files chosen = make_files(o, diagnostics);
   for (auto& file : chosen.files) add_schema_line(file);
@@ -141,16 +185,11 @@ int run_init(const InitOptions& o) {
     }
   }
   diagnostics.throw_if_errors();
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) {
-    throw ComputationError("cli.write", {folder.string()}, "the folder could not be made: " + failed.message(),
-                           "choose another with -o");
-  }
-  for (const auto& file : chosen.files) {
-    write_text_file((folder / file.name).string(), file.text);
-    console.print((folder / file.name).string() + "\n");
-  }
+  NewPaths made;
+  made.make_folder(folder);
+  for (const auto& file : chosen.files) made.write(folder / file.name, file.text);
+  made.keep();
+  for (const auto& file : chosen.files) console.print((folder / file.name).string() + "\n");
   console.print(chosen.advice);
   return kSuccess;
 }
@@ -167,6 +206,7 @@ void add_init(CLI::App& app, Action& action) {
   verb->add_option("-o,--output", o->output, "Folder to write into (default: the template's name; for a deck, here)");
   verb->add_option("--hinge", o->hinge, "Of a deck: the grid on a revolute hinge to ground; chooses the basis for it")
       ->check(CLI::PositiveNumber);
+  verb->add_flag("--list", o->lists, "List the templates, as without a name");
   verb->add_flag("--force", o->force, "Overwrite files that are there already");
   verb->add_flag("-q,--quiet", o->quiet, "Print errors only");
   verb->add_flag("-v,--verbose")->description("Accepted as by every verb; init has nothing more to tell");

@@ -217,6 +217,20 @@ static std::string format_lost_poles(const records::Poles& poles) {
   return numbers.empty() ? "" : fmt::format("\nzero within what A is known to ({:.1e}): pole{}\n", most, numbers);
 }
 
+/// Poles at z = 0, and modes that the samples show at another frequency.
+static std::string format_sampling(const LinearModel& model) {
+  std::size_t num_gone = 0;
+  for (int i = 0; i < model.poles.size(); ++i) num_gone += records::is_gone(model, i) ? 1 : 0;
+  std::string text =
+      num_gone > 0 ? fmt::format("and {} at z = 0: gone within a sample\n", count(num_gone, "pole")) : "";
+  if (model.aliased.empty()) return text;
+  text += fmt::format("\naliased, above the Nyquist frequency {:.6g} Hz\n", 0.5 / model.sample_time);
+  Table table{{"mode", "frequency Hz", "appears at Hz"}, {}};
+  for (const auto& one : model.aliased)
+    table.rows.push_back({one.mode, fmt::format("{:.6g}", one.frequency_hz), fmt::format("{:.6g}", one.appears_at_hz)});
+  return text + table.to_text();
+}
+
 std::string format_linear_model(const LinearModel& model) {
   std::string text = fmt::format(
       "{} states, {} inputs, {} outputs at t = {:g}, |u_dot| {:.1e}\n"
@@ -231,13 +245,14 @@ std::string format_linear_model(const LinearModel& model) {
   const auto& poles = model.poles;
   const double scale = poles.size() > 0 ? poles.frequency_hz.maxCoeff() * 6.28 : 0;
   for (int i = 0; i < poles.size(); ++i) {
-    if (poles.imag[i] < 0) continue;  // told by its partner
+    if (poles.imag[i] < 0 || records::is_gone(model, i)) continue;  // its conjugate is listed; gone ones are counted
     table.rows.push_back({std::to_string(i + 1), format_number(poles.real[i], scale),
                           poles.imag[i] > 0 ? "±" + format_number(poles.imag[i], scale) : "0",
                           format_number(poles.frequency_hz[i], scale), format_number(poles.damping[i], 1),
                           poles.mode[static_cast<std::size_t>(i)], name_partner(poles, static_cast<std::size_t>(i))});
   }
   if (!table.rows.empty()) text += table.to_text() + format_lost_poles(poles);
+  text += format_sampling(model);
   const std::string tail = format_multipliers(model.multipliers) + format_hankel(model.hankel);
   if (!model.has_zeros) return text + tail;
   text += model.zeros_real.size() == 0 ? "\nno finite zeros\n" : "\nzeros\n";
@@ -271,7 +286,13 @@ nlohmann::json make_json(const LinearModel& model) {
         {"mode", model.poles.mode},
         {"body_mode", model.poles.body_mode},
         {"hinge", model.poles.hinge}}}};
-  if (model.sample_time > 0) json["sample_time"] = model.sample_time;
+  if (model.sample_time > 0) {
+    json["sample_time"] = model.sample_time;
+    json["aliased"] = nlohmann::json::array();
+    for (const auto& one : model.aliased)
+      json["aliased"].push_back(
+          {{"mode", one.mode}, {"frequency_hz", one.frequency_hz}, {"appears_at_hz", one.appears_at_hz}});
+  }
   if (const auto second = records::make_second_order(model); second.M.size() > 0)
     json["second_order"] = {
         {"M", to_rows(second.M)}, {"D", to_rows(second.D)}, {"K", to_rows(second.K)}, {"F", to_rows(second.F)}};

@@ -13,6 +13,7 @@
 #include "cli/linearize/linear_model_files.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
+#include "formats/report/pole_plot.hpp"
 #include "solver/statespace/frequency_response.hpp"
 
 namespace bough::cli {
@@ -68,11 +69,6 @@ void add_response(const FrequencyResponse& response, const std::string& kind, co
     plots[0].curves.push_back({c.name, response.frequency_hz, c.decibel});
     plots[1].curves.push_back({"", response.frequency_hz, c.degrees});
   }
-}
-
-void add_poles(const records::LinearModel& model, const std::string& prefix, Plot& plot) {
-  plot.curves.push_back({prefix + "poles", model.poles.real, model.poles.imag, true});
-  if (model.zeros_real.size() > 0) plot.curves.push_back({prefix + "zeros", model.zeros_real, model.zeros_imag, true});
 }
 
 /// The branch of `among` whose conjugate b is wherever the two are complex; -1: none. They may part on the real axis.
@@ -151,6 +147,7 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
                                                         : "magnitude [dB]";
   }
   if (kind == "bode") plots[1].y_label = "phase [degrees]", plots[0].x_label.clear();
+  std::vector<std::pair<std::string, records::LinearModel>> models;
   for (const auto& file : files) {
     demand_file(file);
     const std::string prefix = files.size() > 1 ? std::filesystem::path(file).stem().string() + " " : "";
@@ -164,9 +161,9 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
       add_sweep(hdf5::read_sweep(file), kind, prefix, plots[0]);
       continue;
     }
-    const auto all = hdf5::read_linear_model(file);
+    auto all = hdf5::read_linear_model(file);
     if (kind == "poles") {
-      add_poles(all, prefix, plots[0]);
+      models.emplace_back(files.size() > 1 ? std::filesystem::path(file).stem().string() : "", std::move(all));
       continue;
     }
     const auto model = choose_channels(all, choice.inputs, choice.outputs, file);
@@ -174,6 +171,11 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
       throw InputError("linear.no-channels", {file}, "the model has no input or no output",
                        "name some with --inputs and --outputs of bough linearize");
     add_response(statespace::calc_frequency_response(model), kind, prefix, plots);
+  }
+  if (kind == "poles") {
+    std::vector<std::pair<std::string, const records::LinearModel*>> named;
+    for (const auto& [name, model] : models) named.emplace_back(name, &model);
+    plots[0] = report::make_pole_plot(named);
   }
   return plots;
 }

@@ -12,6 +12,9 @@ namespace {
 using Eigen::MatrixXd;
 using records::BodyMesh;
 
+/// Ends the name of the array of rotations, which follows that of the translations.
+constexpr const char* kRotation = "_rotation";
+
 /// printf of three numbers at most, with a point whatever the locale.
 std::string format_name(const char* stem, int number, const char* middle, double value, const char* unit) {
   char buffer[80];
@@ -67,7 +70,7 @@ BodyMesh cut_mesh(const BodyMesh& mesh, const std::vector<int>& kept) {
   return part;
 }
 
-/// `phi` holds 6 x n of each id.
+/// `phi` holds 6 x n of each id, or 3 x n: translations alone.
 Picture make_picture(const BodyMesh& mesh, const std::unordered_map<int, MatrixXd>& phi,
                      const std::vector<std::string>& names) {
   Picture picture;
@@ -78,16 +81,17 @@ Picture make_picture(const BodyMesh& mesh, const std::unordered_map<int, MatrixX
   picture.mesh = picture.num_missing == 0 ? mesh : cut_mesh(mesh, kept);
   const auto num_points = static_cast<Eigen::Index>(kept.size());
   for (std::size_t j = 0; j < names.size(); ++j) {
-    PointArray translation{names[j], MatrixXd(num_points, 3)},
-        rotation{names[j] + "_rotation", MatrixXd(num_points, 3)};
+    PointArray translation{names[j], MatrixXd(num_points, 3)}, rotation{names[j] + kRotation, MatrixXd(num_points, 3)};
+    bool has_rotations = true;
     for (Eigen::Index k = 0; k < num_points; ++k) {
       const auto& shape = phi.at(picture.mesh.grid_id[static_cast<std::size_t>(k)]);
-      BOUGH_DEMAND(shape.rows() == 6 && shape.cols() == static_cast<Eigen::Index>(names.size()));
+      BOUGH_DEMAND((shape.rows() == 6 || shape.rows() == 3) && shape.cols() == static_cast<Eigen::Index>(names.size()));
       translation.values.row(k) = shape.col(static_cast<Eigen::Index>(j)).head<3>().transpose();
-      rotation.values.row(k) = shape.col(static_cast<Eigen::Index>(j)).tail<3>().transpose();
+      has_rotations = has_rotations && shape.rows() == 6;
+      if (has_rotations) rotation.values.row(k) = shape.col(static_cast<Eigen::Index>(j)).tail<3>().transpose();
     }
     picture.arrays.push_back(std::move(translation));
-    picture.arrays.push_back(std::move(rotation));
+    if (has_rotations) picture.arrays.push_back(std::move(rotation));
   }
   return picture;
 }
@@ -204,6 +208,9 @@ Picture make_picture(const records::FlexBody& body) {
   std::unordered_map<int, MatrixXd> shapes;
   if (body.full_phi.size() > 0) {
     shapes = map_shapes(body.dof_map, body.full_phi);
+  } else if (body.mesh_phi.size() > 0) {
+    for (std::size_t i = 0; i < body.mesh.grid_id.size(); ++i)
+      shapes[body.mesh.grid_id[i]] = body.mesh_phi.middleRows(3 * static_cast<Eigen::Index>(i), 3).cast<double>();
   } else {
     shapes = map_shapes(body.node_id, body.phi);
   }

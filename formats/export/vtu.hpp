@@ -48,7 +48,8 @@ std::string make_vtu(const records::BodyMesh& mesh, const std::vector<PointArray
 /// buckling_001_factor_4.32 and its _rotation. With energies of elements mode_001_0.463Hz_strain_energy and
 /// _kinetic_energy on the cells, as shares of the mode's, and _strain_energy_density.
 Picture make_picture(const records::ModesResult& modes);
-/// The same of a body, in its frame B: of all grids when full_phi is there, else of the output nodes only.
+/// Mode shapes of a body, in its frame B: of all grids (without rotations unless full_phi is there), or of the output
+/// nodes if the file has no others.
 Picture make_picture(const records::FlexBody& body);
 /// Static solutions as arrays subcase_001_displacement and subcase_001_displacement_rotation, basic frame; on the cells
 /// subcase_001_strain_energy, and subcase_001_von_mises, _failure, _max, _min where elements have them.

@@ -134,6 +134,14 @@ void write_stiffening(FileWriter& file, const FlexBody& body) {
   write_resultants(file, body);
 }
 
+void write_mesh_shapes(FileWriter& file, const FlexBody& body) {
+  if (body.mesh_phi.size() == 0) return;
+  const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = body.mesh_phi;
+  file.write_floats(
+      "/mesh/phi", {to_dim(body.mesh.grid_id.size()), 3, to_dim(static_cast<std::size_t>(rows.cols()))}, rows.data(),
+      {"mode shapes of all grids, to be drawn: grid, translation x y z, mode; body axes, single precision", "L/E"});
+}
+
 void write_preload(FileWriter& file, const FlexBody& body) {
   if (body.preload.empty()) return;
   file.make_group("/preload");
@@ -272,6 +280,7 @@ void write_flex_body(const FlexBody& body, const BodyAccuracy& accuracy, const s
                       {"mode shapes at every degree of freedom: rows as /dof_map", "L/E, 1/E"});
   }
   write_mesh(file, body.mesh);
+  write_mesh_shapes(file, body);
   file.commit();
 }
 
@@ -332,6 +341,12 @@ FlexBody read_flex_body(const std::string& path) {
     energy.matrix = file.read_matrix("/strain_energy/matrix", e, n * (n + 1) / 2);
   }
   body.mesh = read_mesh(file);
+  if (file.has("/mesh/phi")) {
+    const auto g = static_cast<long>(body.mesh.grid_id.size());
+    const NumberArray shapes = file.read_array("/mesh/phi", {g, 3, n});
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    body.mesh_phi = Eigen::Map<const Rows>(shapes.data.data(), 3 * g, n).cast<float>();
+  }
   file.throw_if_errors();
   check_sense(file, body);
   file.throw_if_errors();

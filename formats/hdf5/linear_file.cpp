@@ -10,9 +10,12 @@ namespace {
 constexpr const char* kFormat = "bough-linear";
 using records::LinearModel;
 
-void write_poles(FileWriter& file, const records::Poles& poles) {
-  file.write_vector("/poles/real", poles.real, {"eigenvalues of A, real part", "1/T"});
-  file.write_vector("/poles/imag", poles.imag, {"eigenvalues of A, imaginary part", "1/T"});
+void write_poles(FileWriter& file, const LinearModel& model) {
+  const auto& poles = model.poles;
+  const std::string what =
+      model.sample_time > 0 ? "ln z / sample_time of the eigenvalues z of A, least 1e-16" : "eigenvalues of A";
+  file.write_vector("/poles/real", poles.real, {what + ", real part", "1/T"});
+  file.write_vector("/poles/imag", poles.imag, {what + ", imaginary part", "1/T"});
   file.write_vector("/poles/frequency_hz", poles.frequency_hz, {"|pole| / 2 pi", "1/T"});
   file.write_vector("/poles/damping", poles.damping, {"-real / |pole|; 0 for a pole at 0", "1"});
   if (poles.error.size() > 0)
@@ -20,6 +23,20 @@ void write_poles(FileWriter& file, const records::Poles& poles) {
   file.write_strings("/poles/mode", poles.mode, {"the coordinate that takes part most", "1"});
   file.write_strings("/poles/body_mode", poles.body_mode, {"the mode of a body that does; empty: none", "1"});
   file.write_strings("/poles/hinge", poles.hinge, {"the hinge coordinate that does; empty: none", "1"});
+}
+
+void write_aliased(FileWriter& file, const std::vector<records::AliasedMode>& aliased) {
+  std::vector<std::string> mode;
+  Eigen::VectorXd frequency(static_cast<long>(aliased.size())), appears_at(frequency.size());
+  for (std::size_t i = 0; i < aliased.size(); ++i) {
+    mode.push_back(aliased[i].mode);
+    frequency[static_cast<long>(i)] = aliased[i].frequency_hz;
+    appears_at[static_cast<long>(i)] = aliased[i].appears_at_hz;
+  }
+  file.write_strings("/aliased/mode", mode,
+                     {"coordinate that takes part most in a mode above the Nyquist frequency", "1"});
+  file.write_vector("/aliased/frequency_hz", frequency, {"of the continuous motion, |Im| / 2 pi", "1/T"});
+  file.write_vector("/aliased/appears_at_hz", appears_at, {"of its pole ln z / sample_time", "1/T"});
 }
 
 void write_multipliers(FileWriter& file, const records::Multipliers& m) {
@@ -63,8 +80,9 @@ void write_linear_model(const LinearModel& model, const std::string& path) {
   if (model.sample_time > 0)
     file.write_number("/sample_time", model.sample_time, {"x+ = A x + B u, y = C x + D u", "T"});
   const char* const dims = "as the names' dims say";
-  file.write_matrix("/A", model.A, {"x_dot = A x + B u: state, state", dims});
-  file.write_matrix("/B", model.B, {"x_dot = A x + B u: state, input", dims});
+  const std::string law = model.sample_time > 0 ? "x+ = A x + B u" : "x_dot = A x + B u";
+  file.write_matrix("/A", model.A, {law + ": state, state", dims});
+  file.write_matrix("/B", model.B, {law + ": state, input", dims});
   file.write_matrix("/C", model.C, {"y = C x + D u: output, state", dims});
   file.write_matrix("/D", model.D, {"y = C x + D u: output, input", dims});
   write_second_order(file, model);
@@ -85,7 +103,8 @@ void write_linear_model(const LinearModel& model, const std::string& path) {
                     {"estimated error of A and C, relative to the largest entry of the row", "1"});
   file.write_number("/accuracy/difference", model.difference,
                     {"of A and C between two step sizes, relative to the largest entry of the row", "1"});
-  write_poles(file, model.poles);
+  write_poles(file, model);
+  if (!model.aliased.empty()) write_aliased(file, model.aliased);
   if (model.has_zeros) {
     file.write_vector("/zeros/real", model.zeros_real, {"finite transmission zeros, real part", "1/T"});
     file.write_vector("/zeros/imag", model.zeros_imag, {"finite transmission zeros, imaginary part", "1/T"});
@@ -131,6 +150,13 @@ LinearModel read_linear_model(const std::string& path) {
     model.q_names = read_signals(file, "/operating_point/positions");
     model.u_names = read_signals(file, "/operating_point/speeds");
     model.periodic = file.read_strings("/operating_point/periodic", -1);
+  }
+  if (file.has("/aliased/mode")) {
+    const auto frequency = file.read_vector("/aliased/frequency_hz", -1);
+    const auto appears_at = file.read_vector("/aliased/appears_at_hz", frequency.size());
+    const auto mode = file.read_strings("/aliased/mode", frequency.size());
+    for (std::size_t i = 0; i < mode.size(); ++i)
+      model.aliased.push_back({mode[i], frequency[static_cast<long>(i)], appears_at[static_cast<long>(i)]});
   }
   if (file.has("/multipliers/period")) {
     auto& m = model.multipliers;

@@ -110,6 +110,9 @@ struct FlexBody {
 
   MatrixXd full_phi;  ///< ndof x n, only with --full
   BodyMesh mesh;
+  /// 3g x n: translations of all grids of the mesh (row 3 i + axis), for pictures: single precision. Empty if `phi` or
+  /// `full_phi` has them.
+  Eigen::MatrixXf mesh_phi;
 
   int num_modes() const { return static_cast<int>(eigenvalue.size()); }
   int num_nodes() const { return static_cast<int>(node_id.size()); }
@@ -117,6 +120,9 @@ struct FlexBody {
   int find_node(int id) const;
   /// Index of the locator at (node, direction), -1 when absent.
   int find_locator(int node, int direction) const;
+  /// Copies the translations of all grids of the mesh from `Phi` (ndof x n, rows as dof_map) into mesh_phi, if elements
+  /// connect grids that are no output nodes.
+  void set_mesh_shapes(const MatrixXd& Phi);
   /// The set named by integrals_method.
   const MassIntegrals& integrals() const;
 };

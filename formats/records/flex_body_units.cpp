@@ -117,6 +117,7 @@ void change_units(FlexBody& body, const UnitChange& c) {
   scale_recovery(body, c);
   body.strain_energy.matrix *= energy / (e * e);
   body.mesh.grid_xyz *= c.length;
+  body.mesh_phi *= static_cast<float>(c.length / c.calc_modal());
 }
 
 }  // namespace bough::records

@@ -2,6 +2,13 @@
 
 namespace bough::records {
 
+std::complex<double> calc_z(const LinearModel& model, Eigen::Index i) {
+  const auto z = std::exp(std::complex<double>(model.poles.real[i], model.poles.imag[i]) * model.sample_time);
+  return std::abs(z) < kGone ? 0.0 : z;
+}
+
+bool is_gone(const LinearModel& model, Eigen::Index i) { return model.sample_time > 0 && calc_z(model, i) == 0.0; }
+
 SecondOrder make_second_order(const LinearModel& model) {
   const Eigen::Index n = model.mass.rows();
   const Eigen::Index nz = model.A.rows() - 2 * n;

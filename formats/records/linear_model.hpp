@@ -1,5 +1,6 @@
 #pragma once
 /// \file A linear model ẋ = A x + B u, y = C x + D u about an operating point (docs/formats/linear.md).
+#include <complex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,6 +44,13 @@ struct Hankel {
   int num_left_out = 0;  ///< poles that do not decay
 };
 
+/// Of a model from sample to sample: a mode faster than half the sample rate, whose pole appears at another frequency.
+struct AliasedMode {
+  std::string mode;
+  double frequency_hz = 0;   ///< [1/T] of the continuous motion, |Im λ| / 2π
+  double appears_at_hz = 0;  ///< [1/T] of the pole ln z / sample_time, at most 1 / (2 sample_time)
+};
+
 /// With a sample_time: x, u and y from sample to sample, x⁺ = A x + B u; poles are those of ln z / sample_time.
 struct LinearModel {
   std::vector<std::pair<std::string, std::string>> source;  ///< (file name, SHA-256)
@@ -62,7 +70,8 @@ struct LinearModel {
       mass;  ///< of the freedoms, n x n: uᵀ mass u / 2 is the kinetic energy; empty where it was not asked for
 
   Poles poles;
-  bool has_zeros = false;  ///< there are as many outputs as inputs
+  std::vector<AliasedMode> aliased;  ///< with a sample_time
+  bool has_zeros = false;            ///< there are as many outputs as inputs
   Eigen::VectorXd zeros_real, zeros_imag;
 
   Multipliers multipliers;
@@ -74,6 +83,14 @@ struct LinearModel {
 struct SecondOrder {
   Eigen::MatrixXd M, D, K, F, Z;
 };
+
+/// |z| below which a pole of a sampled model is zero: a held value or a delay, gone within a sample.
+constexpr double kGone = 1e-9;
+
+/// z = exp(λ sample_time) of pole i of a sampled model; 0 where it is gone.
+std::complex<double> calc_z(const LinearModel& model, Eigen::Index i);
+/// Returns true for poles at z = 0 of a sampled model: their λ is the logarithm of round-off.
+bool is_gone(const LinearModel& model, Eigen::Index i);
 
 /// The same model of second order. Empty where the model has no mass matrix or is one from sample to sample.
 SecondOrder make_second_order(const LinearModel& model);

@@ -63,6 +63,7 @@ FlexBody keep_modes(const FlexBody& body, const std::vector<int>& kept) {
   for (auto& moment : small.load_moment) cut.cols(moment);
   cut.both(small.kg_preload);
   cut.cols(small.full_phi);
+  if (small.mesh_phi.size() > 0) small.mesh_phi = Eigen::MatrixXf(body.mesh_phi(Eigen::all, kept));
   if (!small.strain_energy.empty()) {
     std::vector<Eigen::Index> columns;
     for (std::size_t i = 0; i < kept.size(); ++i)

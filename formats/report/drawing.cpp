@@ -239,6 +239,12 @@ Drawing make_drawing(const records::BodyMesh& mesh, const std::vector<int>& node
 }
 
 Drawing make_drawing(const records::FlexBody& body, bool all_shapes) {
+  if (body.mesh_phi.size() > 0) {
+    std::vector<Eigen::MatrixXd> phi;
+    for (std::size_t i = 0; i < body.mesh.grid_id.size(); ++i)
+      phi.emplace_back(body.mesh_phi.middleRows(3 * static_cast<Eigen::Index>(i), 3).cast<double>());
+    return make_drawing(body.mesh, body.mesh.grid_id, body.mesh.grid_xyz, phi, all_shapes);
+  }
   if (body.full_phi.size() == 0) return make_drawing(body.mesh, body.node_id, body.node_xyz, body.phi, all_shapes);
   const auto g = static_cast<Eigen::Index>(body.mesh.grid_id.size());
   std::map<int, Eigen::Index> grid_of;

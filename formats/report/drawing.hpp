@@ -41,7 +41,7 @@ struct Drawing {
 /// Shapes that would make a page too large are dropped, unless all_shapes.
 Drawing make_drawing(const records::BodyMesh& mesh, const std::vector<int>& node_id, const Eigen::MatrixXd& node_xyz,
                      const std::vector<Eigen::MatrixXd>& phi, bool all_shapes = false);
-/// A body's own: of all grids with `--full`, else of its output nodes.
+/// A body's own: of all grids, or of the output nodes of a file without their shapes.
 Drawing make_drawing(const records::FlexBody& body, bool all_shapes = false);
 
 /// Strain energy of the elements of the mesh: a row an id, a column a shape, which share `whole`.

@@ -9,6 +9,7 @@
 
 #include "formats/report/html.hpp"
 #include "formats/report/pack.hpp"
+#include "formats/report/pole_plot.hpp"
 
 namespace bough::report {
 
@@ -44,34 +45,32 @@ std::vector<Pair> make_pairs(const records::FrequencyResponse& response) {
   return pairs;
 }
 
-/// What the parts of each pole may be off by, as the file states it; round-off at least.
-Eigen::VectorXd calc_doubt(const records::Poles& poles, double least) {
-  const Eigen::ArrayXd size = (poles.real.array().square() + poles.imag.array().square()).sqrt();
-  const double largest = size.size() > 0 ? size.maxCoeff() : 0;
-  Eigen::VectorXd doubt = Eigen::VectorXd::Constant(size.size(), least * largest);
-  if (poles.error.size() == size.size()) doubt = poles.error.cwiseMax(1e-12 * largest);
-  return doubt;
-}
-
-/// Without the round-off in the real parts of undamped poles, which would fill the picture.
-records::Poles round_off(const records::Poles& poles) {
-  records::Poles rounded = poles;
-  const Eigen::VectorXd doubt = calc_doubt(poles, 1e-12);
-  for (auto* part : {&rounded.real, &rounded.imag}) *part = (part->array().abs() > doubt.array()).select(*part, 0);
-  rounded.damping = (rounded.real.array() == 0).select(0, poles.damping);
-  return rounded;
-}
-
 std::string make_poles(const records::LinearModel& model) {
-  Plot plot{"Poles and zeros", "real part [1/T]", "imaginary part [1/T]", {}, 0, 0};
-  const records::Poles poles = round_off(model.poles);
-  plot.curves.push_back({"poles", poles.real, poles.imag, true});
-  if (model.zeros_real.size() > 0) plot.curves.push_back({"zeros", model.zeros_real, model.zeros_imag, true});
+  Plot plot = make_pole_plot({{"", &model}});
+  plot.title = "Poles and zeros";
+  const records::Poles poles = round_poles(model.poles);
   HtmlTable table("Poles", {{"real"}, {"imaginary"}, {"frequency [1/T]"}, {"damping %"}, {"coordinate", true}});
-  for (Eigen::Index i = 0; i < poles.real.size(); ++i)
+  int num_gone = 0;
+  for (Eigen::Index i = 0; i < poles.real.size(); ++i) {
+    if (records::is_gone(model, i)) {
+      ++num_gone;
+      continue;
+    }
     table.add_row({format_value(poles.real[i]), format_value(poles.imag[i]), format_value(poles.frequency_hz[i]),
                    format_value(100 * poles.damping[i], 4), poles.mode[static_cast<std::size_t>(i)]});
+  }
   std::string html = make_figure(plot, "poles") + table.to_html(400);
+  if (num_gone > 0)
+    html += make_text(fmt::format("{} {} at z = 0: gone within a sample.", num_gone, num_gone == 1 ? "pole" : "poles"),
+                      "note");
+  if (!model.aliased.empty()) {
+    HtmlTable aliased(
+        fmt::format("Modes above the Nyquist frequency {} [1/T]: aliased", format_value(0.5 / model.sample_time, 4)),
+        {{"mode", true}, {"frequency [1/T]"}, {"appears at [1/T]"}});
+    for (const auto& one : model.aliased)
+      aliased.add_row({one.mode, format_value(one.frequency_hz), format_value(one.appears_at_hz)});
+    html += aliased.to_html(400);
+  }
   if (model.has_zeros && model.zeros_real.size() > 0) {
     HtmlTable zeros("Transmission zeros", {{"real"}, {"imaginary"}});
     for (Eigen::Index i = 0; i < model.zeros_real.size(); ++i)
@@ -156,6 +155,39 @@ json to_list(const Eigen::VectorXd& values) {
   return list;
 }
 
+/// Every pole of the table, with its point in the plane of make_pole_plot (x, y).
+json list_poles(const records::LinearModel& model) {
+  const auto poles = round_poles(model.poles);
+  json list{{"real", json::array()}, {"imag", json::array()},      {"x", json::array()},      {"y", json::array()},
+            {"mode", json::array()}, {"frequency", json::array()}, {"damping", json::array()}};
+  for (Eigen::Index i = 0; i < poles.real.size(); ++i) {
+    if (records::is_gone(model, i)) continue;
+    const std::complex<double> s(poles.real[i], poles.imag[i]);
+    const auto point = model.sample_time > 0 ? records::calc_z(model, i) : s;
+    for (const auto& [key, value] :
+         {std::pair("real", s.real()), std::pair("imag", s.imag()), std::pair("x", point.real()),
+          std::pair("y", point.imag()), std::pair("frequency", poles.frequency_hz[i]),
+          std::pair("damping", poles.damping[i])})
+      list[key].push_back(std::isfinite(value) ? json(value) : json());
+    list["mode"].push_back(poles.mode[static_cast<std::size_t>(i)]);
+  }
+  return list;
+}
+
+/// Labels, guides and notes of the plane.
+json make_plane(const records::LinearModel& model) {
+  const auto plot = make_pole_plot({{"", &model}});
+  json guides = json::array(), notes = json::array();
+  for (const auto& guide : plot.guides)
+    guides.push_back({{"label", guide.label}, {"x", to_list(guide.x)}, {"y", to_list(guide.y)}});
+  for (const auto& note : plot.notes) notes.push_back({{"x", note.x}, {"y", note.y}, {"text", note.text}});
+  return {{"x_label", plot.x_label},
+          {"y_label", plot.y_label},
+          {"equal", plot.is_equal},
+          {"guides", std::move(guides)},
+          {"notes", std::move(notes)}};
+}
+
 /// Of the living Bode diagrams.
 json list_pairs(const records::FrequencyResponse& response, const std::vector<Pair>& pairs_of) {
   json pairs = json::array();
@@ -174,7 +206,7 @@ Chapter make_chapter(const records::LinearModel& model, const LinearFindings& fi
   Chapter chapter{"linear model", file, facts, {}, {}, {}, {}};
   int unstable = 0;
   double worst = 0;
-  const Eigen::VectorXd doubt = calc_doubt(model.poles, 1e-6);
+  const Eigen::VectorXd doubt = calc_pole_uncertainty(model.poles, 1e-6);
   for (Eigen::Index i = 0; i < model.poles.real.size(); ++i)
     if (model.poles.real[i] > doubt[i]) {
       ++unstable;
@@ -202,13 +234,8 @@ Chapter make_chapter(const records::LinearModel& model, const LinearFindings& fi
         id, title,
         "<details><summary>" + std::to_string(signals->size()) + "</summary>\n" + table.to_html(400) + "</details>\n");
   }
-  const records::Poles poles = round_off(model.poles);
-  chapter.data = json{{"poles",
-                       {{"real", to_list(poles.real)},
-                        {"imag", to_list(poles.imag)},
-                        {"frequency", to_list(poles.frequency_hz)},
-                        {"damping", to_list(poles.damping)},
-                        {"mode", poles.mode}}},
+  chapter.data = json{{"poles", list_poles(model)},
+                      {"plane", make_plane(model)},
                       {"zeros", {{"real", to_list(model.zeros_real)}, {"imag", to_list(model.zeros_imag)}}},
                       {"frequency", pack_doubles(findings.response.frequency_hz)},
                       {"pairs", list_pairs(findings.response, pairs_of)}}

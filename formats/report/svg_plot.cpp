@@ -161,6 +161,46 @@ std::string draw_axes(const Plot& plot, const Frame& f) {
   return svg;
 }
 
+/// Guides and their labels: next to the last point of each inside the frame.
+std::string draw_guides(const Plot& plot, const Frame& f) {
+  std::string svg;
+  for (const auto& guide : plot.guides) {
+    svg += "<path d=\"" + draw_line(guide, f) + "\" fill=\"none\" stroke=\"#b0b0b0\" stroke-width=\"1\"/>\n";
+    if (guide.label.empty() || guide.x.size() < 2) continue;
+    const auto unit_x = [&](double v) { return (v - f.x.min) / (f.x.max - f.x.min); };
+    const auto unit_y = [&](double v) { return (v - f.y.min) / (f.y.max - f.y.min); };
+    double x = 0, y = 0;
+    bool is_inside = false;
+    for (Eigen::Index i = 0; i + 1 < guide.x.size() && (i == 0 || guide.x.size() == 2 || i < guide.x.size() / 2); ++i) {
+      const double ax = unit_x(guide.x[i]), ay = unit_y(guide.y[i]);
+      const double bx = unit_x(guide.x[i + 1]), by = unit_y(guide.y[i + 1]);
+      double from = 0, to = 1;
+      if (!clip_segment(ax, ay, bx, by, from, to)) continue;
+      is_inside = true;
+      x = f.left + (ax + to * (bx - ax)) * f.width;
+      y = f.top + (1 - ay - to * (by - ay)) * f.height;
+    }
+    if (is_inside)
+      svg += "<text x=\"" + number(std::max(x, f.left) + 4) + "\" y=\"" + number(std::max(y, f.top) + 12) +
+             "\" font-size=\"11\" fill=\"#777777\">" + escape_xml(guide.label) + "</text>\n";
+  }
+  return svg;
+}
+
+std::string draw_notes(const Plot& plot, const Frame& f) {
+  std::string svg;
+  for (const auto& note : plot.notes)
+    if (note.x >= f.x.min && note.x <= f.x.max && note.y >= f.y.min && note.y <= f.y.max) {
+      const double x = f.map_x(note.x);
+      // To the left of what lies at the right end.
+      const bool is_right = x + kCharacter * static_cast<double>(count_characters(note.text)) > f.left + f.width - 12;
+      svg += "<text x=\"" + number(is_right ? x - 9 : x + 9) + "\" y=\"" + number(f.map_y(note.y) - 8) +
+             "\" font-size=\"13\" fill=\"#111111\"" + (is_right ? " text-anchor=\"end\"" : "") + ">" +
+             escape_xml(note.text) + "</text>\n";
+    }
+  return svg;
+}
+
 struct Style {
   const char* color;
   const char* dash;
@@ -171,7 +211,14 @@ Style get_style(const Plot& plot, std::size_t curve) {
   return {kColors[i % kColors.size()], kDashes[i / kColors.size() % kDashes.size()]};
 }
 
-std::string draw_marker(double x, double y, const char* color) {
+std::string draw_marker(Mark mark, double x, double y, const char* color) {
+  if (mark == Mark::None) return "";
+  if (mark == Mark::Cross)
+    return "<path d=\"M" + number(x - 4.5) + " " + number(y - 4.5) + "l9 9m0 -9l-9 9\" fill=\"none\" stroke=\"" +
+           color + "\" stroke-width=\"1.8\"/>\n";
+  if (mark == Mark::Ring)
+    return "<circle cx=\"" + number(x) + "\" cy=\"" + number(y) + "\" r=\"5.5\" fill=\"none\" stroke=\"" + color +
+           "\" stroke-width=\"1.8\"/>\n";
   return "<circle cx=\"" + number(x) + "\" cy=\"" + number(y) + "\" r=\"4\" fill=\"#ffffff\" stroke=\"" + color +
          "\" stroke-width=\"1.8\"/>\n";
 }
@@ -196,7 +243,7 @@ double draw_legend(const Plot& plot, double top, std::string& svg) {
       y += 21;
     }
     const Style style = get_style(plot, i);
-    svg += plot.curves[i].markers_only ? draw_marker(x + 14, y - 4.5, style.color)
+    svg += plot.curves[i].markers_only ? draw_marker(plot.curves[i].mark, x + 14, y - 4.5, style.color)
                                        : draw_stroke("M" + number(x) + " " + number(y - 4.5) + "h28", style);
     svg += "<text x=\"" + number(x + 36) + "\" y=\"" + number(y) + "\" font-size=\"13\" fill=\"#111111\">" +
            escape_xml(label) + "</text>\n";
@@ -251,6 +298,12 @@ std::string draw_svg(const Plot& given) {
         : is_given     ? make_axis(plot.y_min, plot.y_max, 7, false)
                        : make_axis(y.min, y.max, 7, true);
 
+  if (plot.is_equal) {
+    const double unit = 1.08 * std::max((x.max - x.min) / f.width, (y.max - y.min) / f.height);
+    const double middle_x = (x.min + x.max) / 2, middle_y = (y.min + y.max) / 2;
+    f.x = make_axis(middle_x - unit * f.width / 2, middle_x + unit * f.width / 2, 9, false);
+    f.y = make_axis(middle_y - unit * f.height / 2, middle_y + unit * f.height / 2, 7, false);
+  }
   const double height = f.top + f.height + kBottom;
   std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(height) +
                     "\" width=\"" + number(kWidth) + "\" height=\"" + number(height) +
@@ -260,7 +313,7 @@ std::string draw_svg(const Plot& given) {
     svg += "<text x=\"" + number(f.left) + "\" y=\"32\" font-size=\"18\" font-weight=\"bold\" fill=\"#111111\">" +
            escape_xml(plot.title) + "</text>\n";
   }
-  svg += legend + draw_axes(plot, f);
+  svg += legend + draw_axes(plot, f) + draw_guides(plot, f);
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     const Curve curve = thin_out(plot.curves[i]);
     const Style style = get_style(plot, i);
@@ -271,9 +324,10 @@ std::string draw_svg(const Plot& given) {
     for (Eigen::Index k = 0; k < curve.x.size(); ++k) {
       const bool is_inside =
           curve.x[k] >= f.x.min && curve.x[k] <= f.x.max && curve.y[k] >= f.y.min && curve.y[k] <= f.y.max;
-      if (is_inside) svg += draw_marker(f.map_x(curve.x[k]), f.map_y(curve.y[k]), style.color);
+      if (is_inside) svg += draw_marker(curve.mark, f.map_x(curve.x[k]), f.map_y(curve.y[k]), style.color);
     }
   }
+  svg += draw_notes(plot, f);
   svg += "<rect x=\"" + number(f.left) + "\" y=\"" + number(f.top) + "\" width=\"" + number(f.width) + "\" height=\"" +
          number(f.height) + "\" fill=\"none\" stroke=\"#333333\" stroke-width=\"1.2\"/>\n</svg>\n";
   return svg;

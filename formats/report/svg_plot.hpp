@@ -7,11 +7,20 @@
 
 namespace bough::report {
 
+/// Of points: a disc of the paper's colour, a cross (poles), a hollow ring (zeros), nothing (they only open the range).
+enum class Mark { Dot, Cross, Ring, None };
+
 struct Curve {
   std::string label;
   Eigen::VectorXd x, y;
   bool markers_only = false;  ///< reference points rather than a line
   int style = -1;             ///< color and dashes of the curve of this number; -1: its own
+  Mark mark = Mark::Dot;
+};
+/// Text next to a point of the picture.
+struct Note {
+  double x = 0, y = 0;
+  std::string text;
 };
 struct Plot {
   std::string title, x_label, y_label;
@@ -19,6 +28,9 @@ struct Plot {
   double y_min = 0, y_max = 0;  ///< equal: automatic; curves are clipped to the frame
   bool has_log_x = false;       ///< decades; values that are not positive are left out
   bool has_log_y = false;
+  bool is_equal = false;      ///< one scale for both axes
+  std::vector<Curve> guides;  ///< thin lines behind the curves, labelled where they leave the frame; not in the range
+  std::vector<Note> notes;
 };
 /// log10 of what is drawn in decades, ends of the axis too; NaN where there is none.
 Plot take_logarithms(Plot plot);

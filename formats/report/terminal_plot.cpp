@@ -29,7 +29,11 @@ std::string to_braille(int bits) {
 class Canvas {
  public:
   Canvas(int columns, int rows)
-      : columns_(columns), rows_(rows), bits_(static_cast<std::size_t>(columns * rows)), curve_(bits_.size(), -1) {}
+      : columns_(columns),
+        rows_(rows),
+        bits_(static_cast<std::size_t>(columns * rows)),
+        curve_(bits_.size(), -1),
+        marks_(bits_.size()) {}
 
   /// x to the right and y up, from 0 to 1.
   void put(double x, double y, int curve) {
@@ -48,11 +52,22 @@ class Canvas {
     const int n = static_cast<int>(std::min(steps, 4.0 * (columns_ + rows_) * 4)) + 1;
     for (int k = 0; k <= n; ++k) put(ax + (bx - ax) * k / n, ay + (by - ay) * k / n, curve);
   }
+  /// A character in place of the dots of its cell.
+  void put_mark(double x, double y, const char* mark, int curve) {
+    if (!(x >= 0 && x <= 1 && y >= 0 && y <= 1)) return;
+    const int i = static_cast<int>(std::lround(x * (2 * columns_ - 1)));
+    const int j = static_cast<int>(std::lround((1 - y) * (4 * rows_ - 1)));
+    const auto cell = static_cast<std::size_t>(j / 4 * columns_ + i / 2);
+    // A pole on a zero shows as both.
+    marks_[cell] = !marks_[cell].empty() && marks_[cell] != mark ? "\u2297" : mark;
+    curve_[cell] = curve;
+  }
   std::string take_row(int row, bool has_color) const {
     std::string text;
     for (int c = 0; c < columns_; ++c) {
       const auto cell = static_cast<std::size_t>(row * columns_ + c);
-      text += bits_[cell] == 0 ? " " : paint(to_braille(bits_[cell]), curve_[cell], has_color);
+      const std::string own = marks_[cell].empty() && bits_[cell] != 0 ? to_braille(bits_[cell]) : marks_[cell];
+      text += own.empty() ? " " : paint(own, curve_[cell], has_color);
     }
     while (!text.empty() && text.back() == ' ') text.pop_back();
     return text;
@@ -61,6 +76,7 @@ class Canvas {
  private:
   int columns_, rows_;
   std::vector<int> bits_, curve_;
+  std::vector<std::string> marks_;
 };
 
 std::string format_end(double value, bool is_log) {
@@ -76,6 +92,11 @@ std::string cut_text(const std::string& text, int most) {
     if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80 && ++count > most) return text.substr(0, i);
   return text;
 }
+
+bool is_marked(const Curve& curve) {
+  return curve.markers_only && (curve.mark == Mark::Cross || curve.mark == Mark::Ring);
+}
+const char* get_mark(const Curve& curve) { return curve.mark == Mark::Cross ? "\u00d7" : "o"; }
 
 struct Ends {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -110,19 +131,31 @@ std::string draw_text(const Plot& given, int width, int height, bool has_color) 
   for (std::size_t c = 0; c < plot.curves.size(); ++c) {
     const auto& curve = plot.curves[c];
     const int index = static_cast<int>(c);
+    if (curve.mark == Mark::None) continue;
     for (Eigen::Index i = 0; i < curve.x.size(); ++i) {
       const double bx = x.map(curve.x[i]), by = y.map(curve.y[i]);
-      if (i == 0 || curve.markers_only)
+      if (is_marked(curve))
+        canvas.put_mark(bx, by, get_mark(curve), index);
+      else if (i == 0 || curve.markers_only)
         canvas.put(bx, by, index);
       else
         canvas.put_line(x.map(curve.x[i - 1]), y.map(curve.y[i - 1]), bx, by, index);
     }
   }
+  // Of the z plane the unit circle; more lines would hide the marks.
+  if (plot.is_equal && !plot.guides.empty()) {
+    const auto& circle = plot.guides.front();
+    for (Eigen::Index i = 0; i + 1 < circle.x.size(); ++i)
+      canvas.put_line(x.map(circle.x[i]), y.map(circle.y[i]), x.map(circle.x[i + 1]), y.map(circle.y[i + 1]), -1);
+  }
   std::string text;
   if (!plot.title.empty()) text += cut_text(plot.title, width) + "\n";
   for (std::size_t c = 0; c < plot.curves.size(); ++c)
     if (!plot.curves[c].label.empty() && plot.curves.size() > 1)
-      text += paint("\u2501\u2501 ", static_cast<int>(c), has_color) + cut_text(plot.curves[c].label, width - 3) + "\n";
+      text += paint(is_marked(plot.curves[c]) ? get_mark(plot.curves[c]) + std::string("  ") : "\u2501\u2501 ",
+                    static_cast<int>(c), has_color) +
+              cut_text(plot.curves[c].label, width - 3) + "\n";
+  for (const auto& note : plot.notes) text += cut_text(note.text, width) + "\n";
   for (int row = 0; row < height; ++row) {
     const std::string label = row == 0 ? top : row == height - 1 ? bottom : "";
     text += std::string(static_cast<std::size_t>(margin) - label.size(), ' ') + label +

@@ -28,6 +28,9 @@ bool check_simulation(const records::SimulationRecord& s, Diagnostics& diagnosti
   const bool steps = demand(std::isfinite(s.output_step) && s.output_step >= 0, "output_step is not a positive number",
                             "give output_step > 0, or leave it out for a thousandth of the duration");
   const bool good = starts && lasts && steps;
+  std::ostringstream longer;
+  longer << "output_step " << s.output_step << " is longer than duration " << s.duration;
+  demand(!good || s.output_step <= s.duration * (1 + 1e-12), longer.str(), "give a shorter output_step");
   demand(!(s.output_step > 0 && s.duration / s.output_step > 1e8), "output_step asks for more than 1e8 samples",
          "give a longer output_step");
   const bool good_step = demand(std::isfinite(s.step) && s.step >= 0, "step is not a positive number", "give step > 0");

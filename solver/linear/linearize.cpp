@@ -371,6 +371,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   if (is_held) {
     const auto loop = calc_sampled_loop(plant, point, *cut, model.A, model.B.col(0), at);
     model.sample_time = loop.sample_time;
+    model.aliased = find_aliased(statespace::calc_poles(model.A, model.states.name), loop.sample_time);
     model.states = loop.states;
     std::tie(model.A, model.B, model.C, model.D) = std::tie(loop.A, loop.B, loop.C, loop.D);
   }

@@ -113,6 +113,17 @@ records::LinearModel calc_sampled_loop(Plant& plant, const OperatingPoint& point
   return model;
 }
 
+std::vector<records::AliasedMode> find_aliased(const records::Poles& poles, double sample_time) {
+  std::vector<records::AliasedMode> aliased;
+  for (Eigen::Index i = 0; i < poles.imag.size(); ++i) {
+    const double frequency = poles.imag[i] / (2 * std::numbers::pi);
+    if (frequency * sample_time <= 0.5) continue;
+    const double appears_at = std::abs(frequency - std::round(frequency * sample_time) / sample_time);
+    aliased.push_back({poles.mode[static_cast<size_t>(i)], frequency, appears_at});
+  }
+  return aliased;
+}
+
 records::Poles calc_sampled_poles(const records::LinearModel& model) {
   constexpr double kGone = 1e-16;
   auto poles = statespace::calc_poles(model.A, model.states.name);

@@ -13,6 +13,9 @@ namespace bough::solver {
 records::LinearModel calc_sampled_loop(Plant& plant, const OperatingPoint& point, const PlantInput& cut,
                                        const MatrixXd& A, const VectorXd& b, const SourceLocation& at);
 
+/// The modes above half the sample rate 1 / sample_time among the poles λ of the continuous model.
+std::vector<records::AliasedMode> find_aliased(const records::Poles& poles, double sample_time);
+
 /// Poles of x⁺ = A x as those of ln z / sample_time; z below 1e-16 count as that.
 records::Poles calc_sampled_poles(const records::LinearModel& model);
 

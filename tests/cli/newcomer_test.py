@@ -1,12 +1,17 @@
-"""What a new user meets first: names of components, angles in degrees by mistake, files under other names."""
+"""What a new user meets first: names of components, angles in degrees by mistake, commands of other programs, campaigns
+without their decks, files under other names, failures that leave nothing behind."""
+import json
+import math
 import os
 import re
+import resource
+import subprocess
 import unittest
 
 import h5py
 import numpy as np
 
-from support import ProgramTest
+from support import BEAM, PROGRAM, SOURCE, ProgramTest
 
 # A rigid body turns about z at 0.1 rad/s for 1 s.
 YAW = """[[body]]
@@ -39,6 +44,43 @@ hinge = "z"
 input = "law"
 """
 EVENT = '[[event]]\nname = "turned"\nsignal = "%s"\nvalue = 0.05\n'
+# A mass on a sampled law: two poles of the loop are at z = 0 (held sample, delay).
+SAMPLED = """[[body]]
+name = "m"
+mass = 1.0
+inertia = [1.0, 1.0, 1.0]
+[[hinge]]
+name = "z"
+type = "revolute"
+child = "m"
+axis = [0.0, 0.0, 1.0]
+stiffness = %s
+[[sensor]]
+name = "angle"
+type = "hinge_angle"
+hinge = "z"
+[[sensor]]
+name = "rate"
+type = "hinge_rate"
+hinge = "z"
+[[controller]]
+name = "law"
+type = "pid"
+inputs = ["angle"]
+rate = "rate"
+kp = 1.0
+kd = 1.0
+sample_time = 0.1
+delay = 0.05
+[[actuator]]
+name = "motor"
+type = "hinge"
+hinge = "z"
+input = "law"
+[simulation]
+duration = 1.0
+"""
+
 
 class Components(ProgramTest):
     def test_euler_angles_are_named_by_their_order(self):
@@ -111,6 +153,50 @@ class Slips(ProgramTest):
         self.write("tilted.toml", TURNING.replace('type = "euler"', 'type = "euler"\nrotation = [90.0, 0.0, 0.0]'))
         self.assertIn("[toml.large-angle]", self.bough("check", "tilted.toml").stderr)
 
+    def test_an_output_step_longer_than_the_run(self):
+        self.write("yaw.toml", TURNING.replace("output_step = 0.5", "output_step = 1.5"))
+        for verb in ("check", "run"):
+            self.fails(1, verb, "yaw.toml", says=["output_step 1.5 is longer than duration 1"], error="run.bad-simulation")
+        self.write("yaw.toml", TURNING.replace("output_step = 0.5", "output_step = 1.0"))
+        self.bough("check", "yaw.toml")
+
+    def test_commands_of_treetops(self):
+        for word, says in (("treeset", "bough edit"), ("TREEPLOT", "bough plot"), ("modify", "set NAME.key=value"),
+                           ("PRINT", "show NAME"), ("stop", "quit"), ("CONVRT", "bough convert")):
+            self.fails(2, word, "x", says=["unknown verb", says], error="cli.unknown-verb")
+        self.write("yaw.toml", TURNING)
+        for word, says in (("MODIFY hub", "set NAME.key=value"), ("PRINT", "show NAME"), ("STOP", "quit"),
+                           ("CONVRT", "bough convert"), ("treeset", "bough edit")):
+            ran = subprocess.run([PROGRAM, "edit", "yaw.toml"], cwd=self.folder, text=True, capture_output=True,
+                                 input=word + "\n")
+            self.assertIn(says, ran.stdout + ran.stderr)
+        ran = subprocess.run([PROGRAM, "edit", "yaw.toml"], cwd=self.folder, text=True, capture_output=True,
+                             input="LIST\nQUIT\n")
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        self.assertIn("attitude", ran.stdout)
+        self.write("problem.INT", "1 SIM CONTROL\n  1 Title    TWO BODIES\n  2 Simulation stop time   10\n")
+        for verb in ("check", "reduce", "run"):
+            self.fails(1, verb, "problem.INT", says=["TREETOPS", "bough edit"], error="cli.wrong-file")
+        self.write("beam.int", BEAM)     # a deck under that name is a deck
+        self.bough("check", "beam.int")
+
+    def test_words_that_others_programs_take(self):
+        self.assertEqual(self.bough("help").stdout, self.bough("--help").stdout)
+        self.assertEqual(self.bough("help", "run").stdout, self.bough("run", "--help").stdout)
+        self.assertEqual(self.bough("version").stdout, self.bough("--version").stdout)
+        self.assertEqual(self.bough("init", "--list").stdout, self.bough("init").stdout)
+        self.fails(2, "help", "rnu", says=['did you mean "run"'], error="cli.unknown-verb")
+
+    def test_a_campaign_that_does_not_bring_its_decks(self):
+        self.write("a.bdf", BEAM)
+        self.write("b.bdf", BEAM)
+        text = '[campaign]\n%ssteps = ["reduce {deck}.bdf --modes 2 -o {deck}.h5", "info {deck}.h5"]\n' \
+               '[[parameter]]\nname = "deck"\nvalues = ["a", "b"]\n'
+        self.write("decks.toml", text % "")
+        self.fails(1, "batch", "decks.toml", says=["reads a.bdf", 'files = ["a.bdf", "b.bdf"]'], error="batch.no-file")
+        self.write("decks.toml", text % 'files = ["a.bdf", "b.bdf"]\n')
+        self.bough("batch", "decks.toml")
+
 
 class Files(ProgramTest):
     def test_a_flx_is_told_by_its_content(self):
@@ -130,6 +216,138 @@ class Files(ProgramTest):
             with h5py.File(self.path("short.h5")) as f:
                 histories.append(f["/sensors/tip_deflection"][:])
         np.testing.assert_allclose(histories[0], histories[1], atol=1e-9 * np.abs(histories[1]).max())
+
+    def test_display_shapes_of_all_grids(self):
+        """The wing of the satellite has 4 output nodes of 42 grids: every grid moves in pictures as --full has it."""
+        self.copy_example("ex08-satellite")
+        self.bough("reduce", "wing.toml")
+        size = os.path.getsize(self.path("wing.h5"))
+        self.bough("reduce", "wing.toml", "--full", "-o", "full.h5")
+        with h5py.File(self.path("wing.h5")) as f, h5py.File(self.path("full.h5")) as whole:
+            phi, grids = f["/mesh/phi"], whole["/grids/id"][:]
+            self.assertEqual(phi.dtype, np.dtype("<f4"))
+            self.assertEqual(phi.shape, (42, 3, 6))
+            self.assertNotIn("/mesh/phi", whole)
+            rows = whole["/dof_map"][:]
+            exact = np.zeros(phi.shape)
+            for (grid, code), row in zip(rows, whole["/full/phi"][:]):
+                if 1 <= code <= 3:
+                    exact[np.flatnonzero(grids == grid)[0], code - 1] = row
+            np.testing.assert_allclose(phi[:], exact, rtol=1e-6, atol=1e-6 * np.abs(exact).max())
+            self.assertLess(phi.nbytes, 0.1 * size)
+        self.bough("export", "wing.h5", "--to", "vtu", "-o", "wing.vtu")
+        with open(self.path("wing.vtu"), "rb") as f:
+            self.assertIn(b'NumberOfPoints="42"', f.read())
+        # Fewer modes, other units: the shapes follow.
+        self.bough("select", "wing.h5", "pointing.toml", "--outputs", "tip", "--number", "3", "-o", "small.h5")
+        with h5py.File(self.path("small.h5")) as f:
+            self.assertEqual(f["/mesh/phi"].shape, (42, 3, 3))
+        self.copy_example("ex01-spinup")
+        self.bough("reduce", "boom.toml")
+        with h5py.File(self.path("boom.h5")) as f:
+            self.assertNotIn("/mesh/phi", f)    # every grid is an output node: nothing twice
+
+    def test_nothing_is_left_when_the_disk_is_full(self):
+        def call(*words):
+            limit = (lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000)))
+            # Python ignores SIGXFSZ, and the program inherits that: writes fail as on a full disk.
+            return subprocess.run([PROGRAM, *words], cwd=self.folder, text=True, capture_output=True, preexec_fn=limit,
+                                  restore_signals=False)
+
+        ran = call("init", "spinup", "-o", "a/b")
+        self.assertEqual(ran.returncode, 3, ran.stderr)
+        self.assertEqual(os.listdir(self.folder), [])
+        self.write("yaw.toml", TURNING.replace("rate = 0.1", "stiffness = 1.0"))
+        ran = call("equilibrium", "yaw.toml", "-o", "rest.h5")
+        self.assertEqual(ran.returncode, 3, ran.stdout + ran.stderr)
+        self.assertIn("rest.h5: ", ran.stderr)
+        self.assertNotIn("part", ran.stderr)
+        self.assertEqual(os.listdir(self.folder), ["yaw.toml"])
+        self.bough("equilibrium", "yaw.toml", "-o", "rest.h5")
+        with open(self.path("rest.h5"), "rb") as f:
+            before = f.read()
+        self.assertEqual(call("equilibrium", "yaw.toml", "-o", "rest.h5").returncode, 3)
+        with open(self.path("rest.h5"), "rb") as f:
+            self.assertEqual(f.read(), before)
+
+    def test_a_pipe_is_no_missing_file(self):
+        os.mkfifo(self.path("deck.bdf"))
+        for verb in ("check", "modes"):
+            result = self.fails(1, verb, "deck.bdf", says=["pipe"], error="cli.no-file")
+            self.assertNotIn("no such file", result.stderr)
+
+
+class SampledPoles(ProgramTest):
+    def model(self, stiffness):
+        self.write("s.toml", SAMPLED % stiffness)
+        said = self.bough("linearize", "s.toml", "--break", "motor", "-o", "loop.h5").stdout
+        return said, h5py.File(self.path("loop.h5"))
+
+    def test_poles_at_zero_are_no_poles(self):
+        said, f = self.model("0.0")
+        with f:
+            self.assertEqual(f["/A"].attrs["description"], "x+ = A x + B u: state, state")
+            z = np.linalg.eigvals(f["/A"][:])
+        gone = int(np.sum(np.abs(z) < 1e-9))
+        self.assertGreater(gone, 0)
+        self.assertIn(f"and {gone} poles at z = 0: gone within a sample", said)
+        self.assertNotIn("-368", said)
+        self.bough("plot", "loop.h5", "--kind", "poles", "-o", "p.svg")
+        with open(self.path("p.svg")) as f:
+            svg = f.read()
+        self.assertIn("real part of z", svg)
+        self.assertIn("at 0: gone within a sample", svg)
+        self.assertIn("2 at 1", svg)
+        self.bough("report", "loop.h5", "-o", "r.html")
+        with open(self.path("r.html")) as f:
+            page = f.read()
+        self.assertNotIn("-368", page)
+        self.assertIn("gone within a sample", page)
+
+    def test_modes_above_nyquist_are_named(self):
+        """ω = 50 rad/s is 7.96 Hz; samples at 10 Hz show it at 2.04 Hz."""
+        said, f = self.model("2500.0")
+        with f:
+            self.assertEqual([n.decode() for n in f["/aliased/mode"][:]], ["z:1"])
+            np.testing.assert_allclose(f["/aliased/frequency_hz"][:], 50 / (2 * math.pi), rtol=1e-9)
+            np.testing.assert_allclose(f["/aliased/appears_at_hz"][:], 10 - 50 / (2 * math.pi), rtol=1e-9)
+            # The pole itself, from the eigenvalues of A.
+            angle = np.abs(np.angle(np.linalg.eigvals(f["/A"][:]))) / (2 * math.pi * 0.1)
+            self.assertLess(np.abs(angle - (10 - 50 / (2 * math.pi))).min(), 1e-6)
+        self.assertRegex(said, r"aliased, above the Nyquist frequency 5 Hz\n.*\n *z:1 +7\.95775 +2\.04225")
+        found = json.loads(self.bough("linearize", "s.toml", "--break", "motor", "--json").stdout)
+        self.assertEqual(found["aliased"][0]["mode"], "z:1")
+
+
+class PoleMarks(ProgramTest):
+    def test_poles_are_crosses_and_zeros_hollow_rings(self):
+        self.write("s.toml", SAMPLED.replace("sample_time = 0.1\ndelay = 0.05\n", "") % "2.0")
+        self.bough("linearize", "s.toml", "--inputs", "motor", "--outputs", "rate", "-o", "l.h5")
+        with h5py.File(self.path("l.h5")) as f:
+            poles, zeros = f["/poles/real"].shape[0], f["/zeros/real"].shape[0]
+        self.assertGreater(zeros, 0)
+        self.bough("plot", "l.h5", "--kind", "poles", "-o", "p.svg")
+        with open(self.path("p.svg")) as f:
+            svg = f.read()
+        # One more of each in the legend.
+        self.assertEqual(len(re.findall(r"l9 9m0 -9l-9 9", svg)), poles + 1)
+        self.assertEqual(len(re.findall(r'<circle [^>]*fill="none"', svg)), zeros + 1)
+        self.assertNotRegex(svg, r'<circle [^>]*fill="#ffffff"')
+        self.assertRegex(svg, r">0\.\d+</text>")      # a ray of constant damping with its label
+        said = self.bough("plot", "l.h5", "--kind", "poles", "--term").stdout
+        self.assertRegex(said, "×|⊗")
+        self.assertRegex(said, "×  poles")
+        self.assertRegex(said, "o  zeros")
+
+    def test_poles_at_zero_are_counted(self):
+        self.write("free.toml", '[[body]]\nname = "b"\nmass = 1.0\ninertia = [1.0, 1.0, 1.0]\n[[hinge]]\nname = "f"\n'
+                                'type = "free"\nchild = "b"\n[[force]]\nname = "push"\nbody = "b"\nforce = [1.0, 0.0, 0.0]\n'
+                                '[simulation]\nduration = 1.0\n')
+        self.bough("linearize", "free.toml", "-o", "l.h5")
+        self.bough("plot", "l.h5", "--kind", "poles", "-o", "p.svg")
+        with open(self.path("p.svg")) as f:
+            self.assertIn(">12 at 0<", f.read())
+        self.assertIn("12 at 0", self.bough("plot", "l.h5", "--kind", "poles", "--term").stdout)
 
 
 if __name__ == "__main__":

@@ -15,9 +15,9 @@ import shutil
 import subprocess
 import unittest
 
+from page_blocks import list_blocks, list_commands, split_lines
 from support import PROGRAM, SOURCE, ProgramTest
 
-COMMAND = re.compile(r"(?:(?:\.\./|\./)dev )?bough |cd [\w-]+$")
 HAS_PNG = shutil.which("rsvg-convert") is not None
 MODULE = os.path.join(os.path.dirname(os.path.dirname(PROGRAM)), "python")
 
@@ -38,45 +38,6 @@ class Page:
 def read(path):
     with open(os.path.join(SOURCE, path), encoding="utf-8") as f:
         return f.read()
-
-
-def list_blocks(text):
-    """("toml", its name and text), ("python", text) and ("lines", lines of a block of four blanks), in order."""
-    lines, at, blocks = text.split("\n"), 0, []
-    while at < len(lines):
-        line = lines[at]
-        if line.startswith("```"):
-            end = next(k for k in range(at + 1, len(lines)) if lines[k].startswith("```"))
-            blocks.append((line[3:].strip(), lines[at + 1:end]))
-            at = end + 1
-        elif line.startswith("    ") and (at == 0 or not lines[at - 1].strip()):
-            end = at
-            while end < len(lines) and (lines[end].startswith("    ") or not lines[end].strip()):
-                end += 1
-            blocks.append(("lines", [part[4:] for part in lines[at:end]]))
-            at = end
-        else:
-            at += 1
-    return blocks
-
-
-def split_lines(lines):
-    """Commands of a block, with lines that end in a backslash joined; the other lines."""
-    commands, others, joined = [], [], ""
-    for line in lines:
-        whole = joined + line.strip() if joined else line
-        joined = ""
-        if COMMAND.match(whole) and whole.endswith("\\"):
-            joined = whole[:-1]
-        elif COMMAND.match(whole):
-            commands.append(re.split(r"\s{3,}|  \(", whole)[0])
-        elif line.strip():
-            others.append(line)
-    return commands, others
-
-
-def list_commands(text):
-    return [command for kind, lines in list_blocks(text) if kind == "lines" for command in split_lines(lines)[0]]
 
 
 @functools.cache
@@ -268,7 +229,7 @@ PAGES = {
     "docs/tutorials/rotor-blade.md": Page(output=True),
     "docs/python.md": boom({"arm.toml": ARM}, python=f"import sys\nsys.path.insert(0, {READER!r})",
                            stands_for={"spinup.toml": "short.toml", "spinup.h5": "run.h5"}),
-    "docs/report.md": boom(stands_for={"spinup.h5": "run.h5"}),
+    "docs/report.md": Page(),
     "docs/command-line.md": boom({**TIP, "density.toml": DENSITY}, ("batch density.toml -q",), left_out=("VERB",), stands_for={
         "a.h5": "run.h5", "b.h5": "run.h5", "outcomes.h5": "density/outcomes.h5"}),
     "docs/other-fe-codes.md": boom(

@@ -529,6 +529,25 @@ class Page(ProgramTest):
         self.picture("long")
         self.check_sound()
 
+    def test_a_batch_of_changes_counts_by_its_last(self):
+        """A chart left the screen and came back in one batch of its observer: it is on the screen, and a zoom draws it."""
+        self.browser.call("Page.addScriptToEvaluateOnNewDocument", source="""(() => { const Real = window.IntersectionObserver;
+            const leave = (e) => e.target.className === "stage" && e.isIntersecting
+              ? [{ target: e.target, isIntersecting: false }, e] : [e];
+            window.IntersectionObserver = class extends Real {
+              constructor(act, options) { super((entries, self) => act(entries.flatMap(leave), self), options); } }; })()""")
+        write_results(self.path("run.h5"), 200, ["s0"])
+        self.open("run.h5")
+        self.build_all()
+        b = self.browser
+        box = b.show(".plots .chart .overlay")
+        b.run(WAIT_FRAMES)
+        before = b.run(HASH % ".plots .chart .curves")
+        b.drag((box["x"] + 200, box["y"] + 100), (box["x"] + 600, box["y"] + 102))
+        b.run(WAIT_FRAMES)
+        self.assertNotEqual(b.run(HASH % ".plots .chart .curves"), before)
+        self.check_sound()
+
     def test_print(self):
         """On paper every view is there, light, and charts are as wide as a sheet; after it all is as it was."""
         self.make_boom()

@@ -181,15 +181,23 @@ class InitFromDeck(ProgramTest):
         self.assertIn("number = 3 ", body)
 
     def test_editors_find_the_schema(self):
-        """The first line of each TOML file leads to the schema of its kind, which the rest of it keeps."""
-        self.bough("init", "spinup", "-o", ".")
-        self.bough("init", "boom.bdf", "--force")
-        self.bough("init", "campaign", "-o", "many")
+        """The first line of each TOML file leads to the installed schema of its kind, which the rest of it keeps; without
+        an installed one there is no such line, and none that leads to sources or a build folder."""
+        os.makedirs(self.path("share/bough"))
+        os.symlink(os.path.join(SOURCE, "data/schema"), self.path("share/bough/schema"))
+        nowhere, installed = {"XDG_DATA_DIRS": self.path("nowhere")}, {"XDG_DATA_DIRS": self.path("share")}
+        self.bough("init", "spinup", "-o", ".", env=nowhere)
+        with open(self.path("spinup.toml")) as f:
+            self.assertNotIn("#:schema", f.read())
+        self.bough("init", "spinup", "-o", ".", "--force", env=installed)
+        self.bough("init", "boom.bdf", "--force", env=installed)
+        self.bough("init", "campaign", "-o", "many", env=installed)
         seen = set()
         for name in ["spinup.toml", "boom.toml", "boom-run.toml", "many/campaign.toml", "many/boom.toml"]:
             with open(self.path(name)) as f:
                 line = f.readline()
             uri = re.fullmatch(r"#:schema file://(/.*\.schema\.json)\n", line).group(1)
+            self.assertTrue(urllib.parse.unquote(uri).startswith(self.path("share/bough/schema/")))
             with open(urllib.parse.unquote(uri)) as f:
                 schema = json.load(f)
             with open(self.path(name), "rb") as f:

@@ -166,6 +166,10 @@ void FileWriter::write_numbers(const std::string& path, const Dims& shape, const
   write(path, shape, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, data, meaning);
 }
 
+void FileWriter::write_floats(const std::string& path, const Dims& shape, const float* data, const Meaning& meaning) {
+  write(path, shape, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, data, meaning);
+}
+
 void FileWriter::write_items(const std::string& path, const Dims& shape,
                              const std::function<void(std::size_t, double*)>& fill, const Meaning& meaning) {
   constexpr std::size_t kAtOnce = 500'000;  // numbers

@@ -31,6 +31,8 @@ class FileWriter {
   /// `data`. A few megabytes at a time.
   void write_items(const std::string& path, const Dims& shape, const std::function<void(std::size_t, double*)>& fill,
                    const Meaning& meaning);
+  /// Single precision, for what is only drawn.
+  void write_floats(const std::string& path, const Dims& shape, const float* data, const Meaning& meaning);
   void write_integers(const std::string& path, const Dims& shape, const int* data, const Meaning& meaning);
   void write_strings(const std::string& path, const std::vector<std::string>& data, const Meaning& meaning);
 

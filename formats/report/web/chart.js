@@ -34,11 +34,23 @@ export const set_printing = (is_on) => (is_printing = is_on);
 const kPaperWidth = 680;  // CSS pixels that a sheet has room for
 const kMargin = { left: 76, right: 14, top: 10, bottom: 42 };
 
+// The mark of a point, in the picture and in its legend.
+function stroke_mark(g, kind, x, y, size) {
+  g.beginPath();
+  if (kind === "cross") {
+    g.moveTo(x - size, y - size);
+    g.lineTo(x + size, y + size);
+    g.moveTo(x - size, y + size);
+    g.lineTo(x + size, y - size);
+  } else g.arc(x, y, size, 0, 2 * Math.PI);
+  g.stroke();
+}
+
 // Curves and points on a canvas. options: series [{ name, x, y, points, tip(i) }] (x ascending for curves), x_label,
-// y_label, x_log, y_log, marks [{ x, label }], link, equal (one scale for both axes), height.
+// y_label, x_log, y_log, marks [{ x, label }], guides [{ label, x, y }], notes [{ x, y, text }], link, equal (one scale for both axes), height.
 export class Chart {
   constructor(options) {
-    Object.assign(this, { series: [], marks: [], x_log: false, y_log: false, equal: false, height: 280 }, options);
+    Object.assign(this, { series: [], marks: [], guides: [], notes: [], x_log: false, y_log: false, equal: false, height: 280 }, options);
     this.link ??= new Link();
     this.link.charts.push(this);
     this.hidden = new Set();
@@ -53,10 +65,10 @@ export class Chart {
     this.listen();
     on_theme(() => this.element.isConnected && this.draw());
     new ResizeObserver(() => requestAnimationFrame(() => this.draw())).observe(this.stage);
-    // Charts off the screen wait until they come near.
+    // Charts off the screen wait until they come near. Several changes may arrive in one batch: the last one counts.
     this.is_near = true;
-    new IntersectionObserver(([entry]) => {
-      this.is_near = entry.isIntersecting;
+    new IntersectionObserver((entries) => {
+      this.is_near = entries[entries.length - 1].isIntersecting;
       if (this.is_near && this.is_late) this.draw();
     }, { rootMargin: "300px" }).observe(this.stage);
   }
@@ -108,6 +120,7 @@ export class Chart {
         x1 = Math.max(x1, x);
       }
     }
+    if (this.equal && this.guides.length > 0) [x0, x1] = [Math.min(x0, -1), Math.max(x1, 1)];  // the unit circle
     if (!(x0 <= x1)) [x0, x1] = [0, 1];
     const has_points = visible.some((s) => s.points);
     if (x0 === x1 || has_points) {
@@ -125,6 +138,7 @@ export class Chart {
         if (y > y1 && y < Infinity) y1 = y;
       }
     }
+    if (this.equal && this.guides.length > 0) [y0, y1] = [Math.min(y0, -1), Math.max(y1, 1)];
     if (!(y0 <= y1)) [y0, y1] = [0, 1];
     if (this.y_log) y0 = Math.max(y0, y1 - 12);
     const pad = 0.05 * (y1 - y0) || 0.1 * Math.abs(y0) || 1;
@@ -166,6 +180,7 @@ export class Chart {
     g.rect(frame.left, frame.top, frame.width, frame.height);
     g.clip();
     this.draw_marks(g);
+    this.draw_guides(g);
     for (const s of this.get_visible()) s.points ? this.draw_points(g, s) : this.draw_curve(g, s);
     g.restore();
     this.draw_legend_strokes();
@@ -256,6 +271,41 @@ export class Chart {
     g.restore();
   }
 
+  // Thin lines behind the curves, each with its label where it leaves the frame, and counts next to points.
+  draw_guides(g) {
+    const { left, top, width, height } = this.frame;
+    g.save();
+    g.lineWidth = 1;
+    g.font = "11px " + get_css("--font");
+    g.textAlign = "left";
+    for (const guide of this.guides) {
+      g.strokeStyle = get_css("--line");
+      g.fillStyle = get_css("--text");
+      g.beginPath();
+      let last = null;
+      for (let i = 0; i < guide.x.length; ++i) {
+        const x = this.map_x(guide.x[i]), y = this.map_y(guide.y[i]);
+        i === 0 ? g.moveTo(x, y) : g.lineTo(x, y);
+        if (2 * i <= guide.x.length && x >= left && x < left + width && y >= top && y < top + height) last = [x, y];
+        // A ray leaves the frame at the first side that it meets.
+        if (guide.x.length === 2 && i === 1) {
+          const from = [this.map_x(guide.x[0]), this.map_y(guide.y[0])], to = [x, y];
+          const share = Math.min(to[0] < left ? (from[0] - left) / (from[0] - to[0]) : 1, to[1] < top ? (from[1] - top) / (from[1] - to[1]) : 1);
+          last = share > 0 ? [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])] : null;
+        }
+      }
+      g.stroke();
+      if (guide.label && last) g.fillText(guide.label, Math.max(last[0], left) + 4, Math.max(last[1], top) + 12);
+    }
+    g.font = "12px " + get_css("--font");
+    g.fillStyle = get_css("--text");
+    for (const note of this.notes) {
+      const x = this.map_x(note.x), y = this.map_y(note.y) - 8, size = g.measureText(note.text).width;
+      g.fillText(note.text, x + 9 + size > left + width ? x - 9 - size : x + 9, y);
+    }
+    g.restore();
+  }
+
   // Of more samples than pixels the least and the largest of each column are joined: peaks stay.
   draw_curve(g, s) {
     const style = get_style(s.style ?? s.index);
@@ -311,14 +361,7 @@ export class Chart {
     for (let i = 0; i < s.x.length; ++i) {
       const x = this.map_x(this.to_x(s.x[i])), y = this.map_y(this.to_y(s.y[i]));
       if (!Number.isFinite(x + y)) continue;
-      g.beginPath();
-      if (s.points === "cross") {
-        g.moveTo(x - 4, y - 4);
-        g.lineTo(x + 4, y + 4);
-        g.moveTo(x - 4, y + 4);
-        g.lineTo(x + 4, y - 4);
-      } else g.arc(x, y, 4, 0, 2 * Math.PI);
-      g.stroke();
+      stroke_mark(g, s.points, x, y, 4);
     }
   }
 
@@ -329,12 +372,10 @@ export class Chart {
       g.strokeStyle = style.color;
       g.lineWidth = 2;
       g.setLineDash(style.dash);
+      if (this.series[i].points) return stroke_mark(g, this.series[i].points, 14, 5, 3.5);
       g.beginPath();
-      if (this.series[i].points) g.arc(14, 5, 3.5, 0, 2 * Math.PI);
-      else {
-        g.moveTo(0, 5);
-        g.lineTo(28, 5);
-      }
+      g.moveTo(0, 5);
+      g.lineTo(28, 5);
       g.stroke();
     });
   }

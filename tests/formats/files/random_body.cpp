@@ -138,6 +138,7 @@ FlexBody make_random_body(unsigned seed, int n, int p, bool full) {
   body.F_I = r.make(6 * p + 1, 12);
   body.full_phi = r.make(6 * p + 1, n);
   body.mesh = make_mesh(r, p);
+  body.mesh_phi = r.make(3 * static_cast<int>(body.mesh.grid_id.size()), n).cast<float>();
   body.preload = "spin (0, 0, 5)";
   body.kg_preload = r.make(n, n);
   body.preload_A_I = r.make(12, 1);
@@ -171,20 +172,20 @@ records::ModesResult make_random_modes(unsigned seed, int n, int p) {
 }
 
 bool are_identical(const FlexBody& a, const FlexBody& b) {
-  bool ok = a.name == b.name && a.preload == b.preload && same(a.kg_preload, b.kg_preload) &&
-            same(a.preload_A_I, b.preload_A_I) && a.source == b.source && a.mass == b.mass && a.cg == b.cg &&
-            a.inertia == b.inertia && a.node_id == b.node_id && same(a.node_xyz, b.node_xyz) &&
-            a.interface_nodes == b.interface_nodes && a.is_free_free == b.is_free_free &&
-            same(a.frequency_hz, b.frequency_hz) && same(a.eigenvalue, b.eigenvalue) && a.kind == b.kind &&
-            same(a.phi, b.phi) && same(a.modal_mass, b.modal_mass) && same(a.modal_stiffness, b.modal_stiffness) &&
-            same(a.modal_damping, b.modal_damping) && same(a.effective_mass, b.effective_mass) &&
-            same(a.lumped, b.lumped) && same(a.consistent, b.consistent) && same(a.exact, b.exact) &&
-            a.integrals_method == b.integrals_method && a.masses == b.masses && same(a.F_I, b.F_I) &&
-            a.dof_map.rows() == b.dof_map.rows() && a.dof_map == b.dof_map &&
-            a.kg_inertial_computed == b.kg_inertial_computed && same(a.locators, b.locators) &&
-            same(a.kg_external, b.kg_external) && same(a.external_load, b.external_load) &&
-            same(a.load_resultant, b.load_resultant) && same(a.load_moment, b.load_moment) &&
-            same(a.full_phi, b.full_phi) && same(a.mesh, b.mesh);
+  bool ok =
+      a.name == b.name && a.preload == b.preload && same(a.kg_preload, b.kg_preload) &&
+      same(a.preload_A_I, b.preload_A_I) && a.source == b.source && a.mass == b.mass && a.cg == b.cg &&
+      a.inertia == b.inertia && a.node_id == b.node_id && same(a.node_xyz, b.node_xyz) &&
+      a.interface_nodes == b.interface_nodes && a.is_free_free == b.is_free_free &&
+      same(a.frequency_hz, b.frequency_hz) && same(a.eigenvalue, b.eigenvalue) && a.kind == b.kind &&
+      same(a.phi, b.phi) && same(a.modal_mass, b.modal_mass) && same(a.modal_stiffness, b.modal_stiffness) &&
+      same(a.modal_damping, b.modal_damping) && same(a.effective_mass, b.effective_mass) && same(a.lumped, b.lumped) &&
+      same(a.consistent, b.consistent) && same(a.exact, b.exact) && a.integrals_method == b.integrals_method &&
+      a.masses == b.masses && same(a.F_I, b.F_I) && a.dof_map.rows() == b.dof_map.rows() && a.dof_map == b.dof_map &&
+      a.kg_inertial_computed == b.kg_inertial_computed && same(a.locators, b.locators) &&
+      same(a.kg_external, b.kg_external) && same(a.external_load, b.external_load) &&
+      same(a.load_resultant, b.load_resultant) && same(a.load_moment, b.load_moment) && same(a.full_phi, b.full_phi) &&
+      same(a.mesh, b.mesh) && same(a.mesh_phi.cast<double>(), b.mesh_phi.cast<double>());
   for (std::size_t i = 0; ok && i < records::kNumInertialLoads; ++i) ok = same(a.kg_inertial[i], b.kg_inertial[i]);
   return ok;
 }

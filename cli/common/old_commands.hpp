@@ -1,0 +1,14 @@
+#pragma once
+/// \file Commands of TREETOPS (NASA-CR-202063, section 2) and what replaces them here.
+#include <string>
+#include <string_view>
+
+namespace bough::cli {
+
+/// The command line or the word of `bough edit` that replaces `word`, in any case, as advice; empty for other words.
+std::string find_successor(std::string_view word);
+
+/// Throws InputError "cli.wrong-file" for a .INT file of TREETOPS: it is told by its name, and no deck.
+void refuse_treetops_input(const std::string& path);
+
+}  // namespace bough::cli

@@ -1,0 +1,83 @@
+"""Pictures of the manuals: each is named by tools/pictures.py with the command of a page that makes it, and what the
+command makes today looks like the stored picture. Compared in patches of 6 x 6 pixels: fonts differ between machines."""
+import glob
+import importlib.util
+import os
+import re
+import shutil
+import sys
+import unittest
+
+from browser import find_chromium
+from support import PROGRAM, SOURCE, ProgramTest
+
+HAS_PILLOW = importlib.util.find_spec("PIL") is not None
+if HAS_PILLOW:
+    import numpy as np
+    from PIL import Image
+    sys.path.insert(0, os.path.join(SOURCE, "tools"))
+    import pictures
+
+PATCH, MAX_DIFFERENCE = 6, 4.0    # of 255, mean over the picture
+
+
+def read(path):
+    with open(os.path.join(SOURCE, path), encoding="utf-8") as f:
+        return f.read()
+
+
+@unittest.skipUnless(HAS_PILLOW, "Pillow is not installed (apt install python3-pil): pictures are not compared")
+class Pictures(ProgramTest):
+    def load(self, path):
+        image = Image.open(path).convert("L")
+        return np.asarray(image.resize((max(1, image.width // PATCH), max(1, image.height // PATCH)), Image.BOX), float)
+
+    def take(self, names):
+        pages = pictures.Pages(PROGRAM, self.folder)
+        for name in names:
+            pages.take(name, self.folder)
+            stored = os.path.join(SOURCE, "docs/pictures", name + ".png")
+            a, b = Image.open(self.path(name + ".png")), Image.open(stored)
+            # The height of a terminal and of a page depends on the font.
+            self.assertLess(abs(a.height / b.height - 1), 0.1, name)
+            a, b = self.load(self.path(name + ".png")), self.load(stored)
+            rows, columns = min(len(a), len(b)), min(len(a[0]), len(b[0]))
+            self.assertLess(np.abs(a[:rows, :columns] - b[:rows, :columns]).mean(), MAX_DIFFERENCE, name)
+
+    def test_every_picture_has_a_printed_command(self):
+        known = {"edit", "notebook-monte-carlo", "notebook-kg-by-hand"}
+        for name, shot in pictures.SHOTS.items():
+            _, command = shot.find_command()
+            self.assertTrue(command.startswith("bough "))
+            self.assertIn(f"pictures/{name}.png", read(shot.page))
+            known.add(name)
+        stored = {os.path.basename(path)[:-4] for path in glob.glob(os.path.join(SOURCE, "docs/pictures/*.png"))}
+        self.assertEqual(stored, known)
+
+    @unittest.skipUnless(shutil.which("rsvg-convert"), "rsvg-convert is not installed: plots are not compared")
+    def test_plots(self):
+        self.take([name for name, shot in pictures.SHOTS.items() if shot.part.endswith(".svg")])
+
+    def test_figures(self):
+        """The curves of the stored figure, point by point in pixels."""
+        pages = pictures.Pages(PROGRAM, self.folder)
+        for name in pictures.FIGURES:
+            with open(pages.draw(name), encoding="utf-8") as f:
+                made = self.list_curves(f.read())
+            stored = self.list_curves(read(f"docs/{name}.svg"))
+            self.assertEqual(len(made), len(stored))
+            for a, b in zip(made, stored):
+                self.assertEqual(a.shape, b.shape)
+                self.assertLess(np.abs(a - b).max(), 1.0)
+
+    def list_curves(self, svg):
+        paths = re.findall(r'<path d="([^"]*)" fill="none" stroke="#[0-9A-F]{6}"', svg)
+        return [np.array(re.findall(r"-?\d+\.?\d*", path), float) for path in paths]
+
+    @unittest.skipUnless(find_chromium(), "chromium is not installed: pictures of pages are not compared")
+    def test_pages_and_terminals(self):
+        self.take([name for name, shot in pictures.SHOTS.items() if not shot.part.endswith(".svg")])
+
+
+if __name__ == "__main__":
+    unittest.main()
