@@ -1,7 +1,10 @@
 #include "formats/listing/op2.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 
 #include "base/diagnostic.hpp"
@@ -17,6 +20,30 @@ using detail::Op2Writer;
 using detail::Words;
 
 constexpr int kIdentWords = 146, kDevice = 1;
+constexpr std::size_t kTextSize = 128, kSubtitleSize = 67;  ///< bytes
+
+/// The largest id of a point or element: 10 id + device code is an integer of 32 bits.
+constexpr int kMaxId = (std::numeric_limits<std::int32_t>::max() - kDevice) / 10;
+
+/// Throws InputError export.large-id: the number would stand as another one.
+void demand_small_ids(const records::Listing& listing) {
+  int largest = 0;
+  const auto look = [&](const std::vector<int>& ids) {
+    for (const int id : ids) largest = std::max(largest, id);
+  };
+  for (const auto& step : listing.steps) {
+    for (const auto& vector : step.vectors) look(vector.id);
+    for (const auto* blocks : {&step.forces, &step.stresses})
+      for (const auto& block : *blocks) look(block.id);
+  }
+  if (largest <= kMaxId) return;
+  throw InputError("export.large-id", {},
+                   "an OUTPUT2 file holds ids up to " + std::to_string(kMaxId) +
+                       " (10 times the id and a device code "
+                       "in 32 bits), found " +
+                       std::to_string(largest),
+                   "renumber the deck, leave --op2 out, or write --f06");
+}
 
 struct Head {
   int analysis = 1, table = 1, subcase = 0;
@@ -30,7 +57,10 @@ Words make_ident(const Head& head) {
   words.set(0, 10 * head.analysis + kDevice);
   words.set(1, head.table);
   words.set(3, head.subcase);
-  for (const auto* text : {&head.title, &head.subtitle, &head.label}) words.add(*text, 128);
+  words.add(head.title, kTextSize);
+  // What stands behind column 67 of a subtitle names the adaptivity index and the superelement.
+  words.add(head.subtitle.substr(0, kSubtitleSize), kTextSize);
+  words.add(head.label, kTextSize);
   BOUGH_DEMAND(words.count() == kIdentWords);
   return words;
 }
@@ -272,14 +302,54 @@ void add_vectors(const records::Listing& listing, const char* name, const char* 
   if (is_open) file.end_table();
 }
 
+/// One block of each element type: readers take a table for a type and subcase to be complete. Elements in ascending
+/// order, the rows of each in the order that they have.
+std::vector<records::ListedElements> merge_types(const std::vector<records::ListedElements>& blocks) {
+  std::vector<std::pair<int, std::vector<const records::ListedElements*>>> types;
+  for (const auto& block : blocks) {
+    if (block.id.empty()) continue;
+    auto type = std::find_if(types.begin(), types.end(), [&](const auto& t) { return t.first == block.type; });
+    if (type == types.end()) type = types.insert(types.end(), {block.type, {}});
+    type->second.push_back(&block);
+  }
+  std::vector<records::ListedElements> merged;
+  for (const auto& [type, parts] : types) {
+    auto& whole = merged.emplace_back(*parts.front());
+    if (parts.size() == 1) continue;
+    std::vector<std::pair<std::size_t, std::size_t>> rows;  // part, row
+    for (std::size_t p = 0; p < parts.size(); ++p)
+      for (std::size_t k = 0; k < parts[p]->id.size(); ++k) rows.emplace_back(p, k);
+    std::stable_sort(rows.begin(), rows.end(), [&parts = parts](const auto& a, const auto& b) {
+      return parts[a.first]->id[a.second] < parts[b.first]->id[b.second];
+    });
+    const auto num = static_cast<Eigen::Index>(rows.size());
+    whole.id.clear();
+    whole.point.clear();
+    whole.ends.clear();
+    whole.real.resize(num, parts.front()->real.cols());
+    whole.imag.resize(parts.front()->imag.size() > 0 ? num : 0, parts.front()->imag.cols());
+    for (Eigen::Index i = 0; i < num; ++i) {
+      const auto& [p, k] = rows[static_cast<std::size_t>(i)];
+      const auto& part = *parts[p];
+      BOUGH_DEMAND(part.real.cols() == whole.real.cols() && part.imag.cols() == whole.imag.cols());
+      whole.id.push_back(part.id[k]);
+      if (!part.point.empty()) whole.point.push_back(part.point[k]);
+      if (!part.ends.empty()) whole.ends.push_back(part.ends[k]);
+      whole.real.row(i) = part.real.row(static_cast<Eigen::Index>(k));
+      if (whole.imag.size() > 0) whole.imag.row(i) = part.imag.row(static_cast<Eigen::Index>(k));
+    }
+  }
+  return merged;
+}
+
 template <class Add>
 void add_blocks(const records::Listing& listing, const char* name,
                 std::vector<records::ListedElements> ListedStep::*blocks, const std::function<bool(int)>& is_of,
                 const Add& add, Op2Writer& file) {
   bool is_open = false;
   for (const auto& step : listing.steps)
-    for (const auto& block : step.*blocks) {
-      if (block.id.empty() || !is_of(block.type)) continue;
+    for (const auto& block : merge_types(step.*blocks)) {
+      if (!is_of(block.type)) continue;
       if (!is_open) file.begin_table(name, name);
       is_open = true;
       add(step, block, file);
@@ -290,6 +360,7 @@ void add_blocks(const records::Listing& listing, const char* name,
 }  // namespace
 
 std::string make_op2(const records::Listing& listing) {
+  demand_small_ids(listing);
   Op2Writer file;
   if (listing.weight) {
     Head head;

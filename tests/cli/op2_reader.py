@@ -75,10 +75,18 @@ class Op2:
             blocks.append(data)
         assert len(blocks[0]) == 28 and len(blocks) % 2 == 1, [len(b) for b in blocks]
         self.tables[name] = []
+        seen = set()
         for ident, data in zip(blocks[1::2], blocks[2::2]):
             assert len(ident) == 584
             words = struct.unpack("<50i", ident[:200])
-            texts = [ident[200 + 128 * i:328 + 128 * i].decode().rstrip() for i in range(3)]
+            texts = [ident[200 + 128 * i:328 + 128 * i].decode("ascii").rstrip() for i in range(3)]
+            # Behind column 67 of SUBTITLE stand the adaptivity index and the superelement.
+            assert len(texts[1]) <= 67, texts[1]
+            # A record is all of its table, element type, subcase and step: readers make room once.
+            kind = words[2] if words[1] % 1000 in (4, 5) else 0
+            key = (*words[:2], kind, *words[3:5])
+            assert key not in seen, f"{name} has two records of {key}"
+            seen.add(key)
             self.tables[name].append(Record((words, texts), data))
 
     @staticmethod

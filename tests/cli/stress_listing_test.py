@@ -196,5 +196,53 @@ class Stresses(ProgramTest):
         np.testing.assert_allclose(beam[10][2:8], [0, 0, 7, 0, 0, 0], rtol=1e-5, atol=1e-4)
 
 
+
+class Strict(ProgramTest):
+    """What readers that make room for a table once, and read fields by their columns, stop at."""
+    DECK = HEAD + ("GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,2.,0.,0.\n"
+                   "GRID,6,,2.,1.,0.\nGRID,7,,3.,0.,0.\nGRID,8,,3.,1.,0.\n"
+                   "CQUAD4,1,1,1,2,3,4\nCQUAD4,2,2,2,5,6,3\nCQUAD4,3,1,5,7,8,6\n"
+                   "PCOMP,1\n,8,.1,0.,YES,8,.1,90.,YES\nPCOMP,2\n,8,.1,0.,YES,8,.1,90.,YES\n,8,.1,0.,YES\n"
+                   "MAT8,8,1.4+11,1.+10,.3,5.+9,5.+9,5.+9\nSPC1,1,123456,1,4\nFORCE,2,7,,100.,0.,0.,1.\nENDDATA\n")
+
+    def solve(self, case):
+        self.write("d.bdf", self.DECK.format(case=case))
+        self.bough("static", "d.bdf", "--op2", "d.op2", "--f06", "d.f06", "-o", "d.h5")
+        return Op2(self.path("d.op2"))
+
+    def test_laminates_of_other_numbers_of_plies(self):
+        op2 = self.solve("STRESS = ALL\nFORCE = ALL\nSUBCASE 1\nSUBCASE 2\n")
+        for table in ("OES1C", "OEF1"):
+            self.assertEqual([ident[0][3] for ident, _ in op2.tables[table]], [1, 2])
+        data = op2.tables["OES1C"][0].data
+        rows = [struct.unpack_from("<2i9f", data, at) for at in range(0, len(data), 44)]
+        self.assertEqual([row[:2] for row in rows], [(11, 1), (11, 2), (21, 1), (21, 2), (21, 3), (31, 1), (31, 2)])
+        # Each element as in a deck with laminates of one kind.
+        alone = self.DECK.format(case="STRESS = ALL\n").replace("CQUAD4,2,2,2,5,6,3\n", "")
+        self.write("a.bdf", alone.replace("2,7,,100.", "2,2,,100.").replace("SPC1,1,123456,1,4", "SPC1,1,123456,1,4,5,6,7\nSPC1,1,123456,8"))
+        self.bough("static", "a.bdf", "--op2", "a.op2")
+        one = read_stresses(Op2(self.path("a.op2")))
+        self.assertEqual([len(one[95, 1]), len(one[95, 3])], [2, 2])
+
+    def test_texts_end_at_their_fields(self):
+        long = "x" * 61 + " twelve words of a title that goes on and on beyond the field that is made for it, and further"
+        op2 = self.solve(f"TITLE = {long}\nSUBTITLE = {long}\nLABEL = {long}\nDISP = ALL\n")
+        (record,) = op2.tables["OUGV1"]
+        self.assertEqual(record.ident[1], [long[:128].rstrip(), long[:67].rstrip(), long[:128].rstrip()])
+
+    def test_ids_beyond_the_words(self):
+        """10 id + 1 in 32 bits."""
+        for grid, code in [(214748364, 0), (214748365, 1), (500000000, 1)]:
+            self.write("d.bdf", self.DECK.format(case="DISP = ALL\n").replace("GRID,7,", f"GRID,{grid},").replace(
+                ",5,7,8,6", f",5,{grid},8,6").replace("2,7,,", f"2,{grid},,"))
+            result = self.bough("static", "d.bdf", "--op2", "d.op2", code=code)
+            if code:
+                self.assertIn("[export.large-id]", result.stderr)
+                self.assertIn("214748364", result.stderr)
+            else:
+                (record,) = Op2(self.path("d.op2")).tables["OUGV1"]
+                self.assertIn(grid, [struct.unpack_from("<i", record.data, at)[0] // 10 for at in range(0, len(record.data), 32)])
+
+
 if __name__ == "__main__":
     unittest.main()
