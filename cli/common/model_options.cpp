@@ -15,7 +15,7 @@ void add_model_options(CLI::App& verb, DeckModelOptions& options) {
       ->check(CLI::IsMember({"deck", "lumped", "consistent"}))
       ->capture_default_str();
   verb.add_option("--ignore", options.ignore_cards,
-                  "Skip this card though it carries stiffness, mass or constraint; may be repeated")
+                  "Leave out this card, command or parameter though it changes the answer; may be repeated")
       ->allow_extra_args(false);
 }
 

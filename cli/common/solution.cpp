@@ -12,6 +12,7 @@ namespace {
 struct OtherSolution {
   const char* name;
   bool has_nonlinear_statics;
+  bool has_complex_modes = false;
 };
 
 /// Solutions whose answer is not that of the linear cards, by number and by name of the MSC and NX sequences; 4 and 13
@@ -36,6 +37,14 @@ const OtherSolution* find_other_solution(const std::string& sol) {
                                                         {"146", {"aeroelastic response", false}},
                                                         {"SEAERO", {"aeroelastic response", false}},
                                                         {"AERO", {"aeroelastic response", false}},
+                                                        {"28", {"complex eigenvalues", false, true}},
+                                                        {"29", {"complex eigenvalues", false, true}},
+                                                        {"107", {"complex eigenvalues", false, true}},
+                                                        {"SEDCEIG", {"complex eigenvalues", false, true}},
+                                                        {"DCEIG", {"complex eigenvalues", false, true}},
+                                                        {"110", {"complex eigenvalues by modes", false, true}},
+                                                        {"SEMCEIG", {"complex eigenvalues by modes", false, true}},
+                                                        {"MCEIG", {"complex eigenvalues by modes", false, true}},
                                                         {"153", {"static heat transfer with structure", true}},
                                                         {"NLSCSH", {"static heat transfer with structure", true}},
                                                         {"159", {"transient heat transfer with structure", true}},
@@ -70,6 +79,19 @@ void demand_static_solution(const records::Deck& deck, bool is_linear, Diagnosti
     throw InputError("cli.nonlinear-static", deck.locate({0, 0}),
                      fmt::format("SOL {} is {}, found no --linear", deck.sol, other->name),
                      "bough static --linear gives the linear solution of the cards as they stand");
+  note_solution(deck, diagnostics);
+}
+
+void demand_real_modes(const records::Deck& deck, const std::vector<std::string>& ignored, Diagnostics& diagnostics) {
+  const auto* other = find_other_solution(deck.sol);
+  const bool is_ignored = std::any_of(ignored.begin(), ignored.end(), [](const std::string& name) {
+    return name == "CMETHOD" || name == "cmethod" || name == "EIGC";
+  });
+  if (other && other->has_complex_modes && !is_ignored)
+    throw InputError(
+        "cli.complex-modes", deck.locate({0, 0}),
+        fmt::format("SOL {} asks for {}, found bough modes, which gives the real ones", deck.sol, other->name),
+        "--ignore CMETHOD gives the real modes, without damping, dampers and gyroscopic terms");
   note_solution(deck, diagnostics);
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 /// \file What the deck's SOL asks for beyond linear statics, modes and buckling.
+#include <string>
+#include <vector>
+
 #include "formats/records/deck.hpp"
 
 namespace bough::cli {
@@ -10,5 +13,9 @@ void note_solution(const records::Deck& deck, Diagnostics& diagnostics);
 /// Static solutions of a SOL that is nonlinear in its statics only when asked for: throws
 /// InputError("cli.nonlinear-static") unless `is_linear`, else notes as note_solution.
 void demand_static_solution(const records::Deck& deck, bool is_linear, Diagnostics& diagnostics);
+
+/// Normal modes of a SOL that asks for complex eigenvalues only when asked for: throws InputError("cli.complex-modes")
+/// unless CMETHOD (or EIGC) is among the names of --ignore, else notes as note_solution.
+void demand_real_modes(const records::Deck& deck, const std::vector<std::string>& ignored, Diagnostics& diagnostics);
 
 }  // namespace bough::cli

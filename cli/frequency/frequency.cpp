@@ -82,7 +82,7 @@ int run_deck_response(const DeckResponseOptions& options) {
   console.set_rank(fe::initialize_petsc().rank);
   Diagnostics diagnostics;
   const auto model_options = make_model_options(options.model);
-  const auto deck = read_loads_deck_or_throw(options.deck, model_options, diagnostics);
+  const auto deck = read_loads_deck_or_throw(options.deck, model_options, true, diagnostics);
   std::vector<records::DynamicSubcase> subcases;
   say_first(diagnostics, [&] {
     demand_grids(options, deck);
@@ -157,7 +157,7 @@ int run_deck_response(const DeckResponseOptions& options) {
 }
 
 void add_response_verb(CLI::App& app, Action& action, bool is_over_time, const char* name, const char* what,
-              const std::string& footer) {
+                       const std::string& footer) {
   auto o = std::make_shared<DeckResponseOptions>();
   o->is_over_time = is_over_time;
   auto* verb = add_verb(app, name, what);
@@ -187,16 +187,16 @@ void add_response_verb(CLI::App& app, Action& action, bool is_over_time, const c
 
 void add_frequency(CLI::App& app, Action& action) {
   add_response_verb(app, action, false, "frequency",
-           "Frequency response of a deck, by modes with residual vectors (SOL 111) or directly (SOL 108)",
-           "Example:\n  bough frequency bracket.bdf -o bracket.h5 --csv bracket.csv\n"
-           "  bough frequency bracket.bdf --grid 12 --max-hz 500 --punch bracket.pch");
+                    "Frequency response of a deck, by modes with residual vectors (SOL 111) or directly (SOL 108)",
+                    "Example:\n  bough frequency bracket.bdf -o bracket.h5 --csv bracket.csv\n"
+                    "  bough frequency bracket.bdf --grid 12 --max-hz 500 --punch bracket.pch");
 }
 
 void add_transient(CLI::App& app, Action& action) {
   add_response_verb(app, action, true, "transient",
-           "Transient response of a deck, by modes with residual vectors (SOL 112) or directly (SOL 109)",
-           "Example:\n  bough transient bracket.bdf -o bracket.h5 --csv bracket.csv\n"
-           "  bough transient bracket.bdf --grid 12 --json --full");
+                    "Transient response of a deck, by modes with residual vectors (SOL 112) or directly (SOL 109)",
+                    "Example:\n  bough transient bracket.bdf -o bracket.h5 --csv bracket.csv\n"
+                    "  bough transient bracket.bdf --grid 12 --json --full");
 }
 
 }  // namespace bough::cli

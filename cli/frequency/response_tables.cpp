@@ -43,11 +43,10 @@ std::string format_response(const records::ResponseSubcase& s, bool is_over_time
   const auto num_residual =
       static_cast<std::size_t>(std::count(s.kind.begin(), s.kind.end(), records::ModeKind::Residual));
   const auto num = static_cast<std::size_t>(s.x.size());
-  const std::string how =
-      s.is_direct ? "direct"
-                  : fmt::format("{}{} and {}", count(s.kind.size() - num_residual, "mode"),
-                                s.num_rigid > 0 ? fmt::format(" ({} rigid)", s.num_rigid) : "",
-                                count(num_residual, "residual vector"));
+  const std::string how = s.is_direct ? "direct"
+                                      : fmt::format("{}{} and {}", count(s.kind.size() - num_residual, "mode"),
+                                                    s.num_rigid > 0 ? fmt::format(" ({} rigid)", s.num_rigid) : "",
+                                                    count(num_residual, "residual vector"));
   std::string text = fmt::format("subcase {}: {} from {:.6g} to {:.6g}{}; {}\n", s.id,
                                  is_over_time ? count(num, "time")
                                  : num == 1   ? "1 frequency"
@@ -59,6 +58,9 @@ std::string format_response(const records::ResponseSubcase& s, bool is_over_time
   else
     text += fmt::format("orthogonality {:.1e}, {} {:.1e}\n", s.basis_error,
                         is_over_time ? "a step against two halves" : "residual of the response", s.solution_error);
+  if (s.damped_motion == "absolute") text += "SDAMPING damps the absolute motion of the modes (PARAM,ENFMOTN,ABS)\n";
+  if (s.damped_motion == "relative")
+    text += "SDAMPING damps the motion relative to the supports (PARAM,ENFMOTN,REL); all that is given is absolute\n";
   const auto curves = exports::list_curves(s);
   const auto peaks = list_peaks(curves, s.x);
   for (std::size_t first = 0, last = 0; first < peaks.size(); first = last) {
@@ -91,6 +93,7 @@ nlohmann::json to_json(const records::ResponseSubcase& s, bool is_over_time, boo
   json[is_over_time ? "time" : "frequency_hz"] = to_json_list(s.x);
   json["method"] = s.is_direct ? "direct" : "modal";
   json["modes"] = {{"frequency_hz", to_json_list(s.mode_hz)}, {"damping_ratio", to_json_list(s.damping_ratio)}};
+  if (!s.damped_motion.empty()) json["modes"]["damped_motion"] = s.damped_motion;
   json["accuracy"] = {{"solution", s.solution_error}};
   if (!s.is_direct) json["accuracy"]["basis"] = s.basis_error;
   auto residual = nlohmann::json::array();

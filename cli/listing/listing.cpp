@@ -66,10 +66,11 @@ void note_requests(const records::Deck& deck, const records::CaseRequests& reque
 }
 
 records::DynamicDeck read_loads_deck_or_throw(const std::string& path, const fe::ModelOptions& options,
-                                              Diagnostics& diagnostics) {
+                                              bool is_response, Diagnostics& diagnostics) {
+  const nastran::ReadOptions read{options.ignore_cards, is_response};
   auto deck = is_one_of_many() ? nastran::read_packed_dynamic_deck(share([&] { return nastran::pack_deck(path); }),
-                                                                   {options.ignore_cards}, diagnostics)
-                               : nastran::read_dynamic_deck(path, {options.ignore_cards}, diagnostics);
+                                                                   read, diagnostics)
+                               : nastran::read_dynamic_deck(path, read, diagnostics);
   if (diagnostics.num_errors() > 0) fe::Model::build(deck, options, diagnostics);
   diagnostics.throw_if_errors();
   return deck;
@@ -343,8 +344,9 @@ void ListingMaker::add_modes(const fe::Model& model, const modal::EigenPairs& pa
 }
 
 void write_listings(const ListingOptions& options, const records::Listing& listing) {
+  const auto op2 = options.op2.empty() ? std::string() : listing::make_op2(listing);
   if (!options.f06.empty()) write_text_file(options.f06, listing::make_f06(listing));
-  if (!options.op2.empty()) write_text_file(options.op2, listing::make_op2(listing));
+  if (!options.op2.empty()) write_text_file(options.op2, op2);
 }
 
 }  // namespace bough::cli

@@ -36,9 +36,10 @@ bool asks_for(const records::CaseRequests& requests, const std::string& command)
 /// subcase asks for.
 void note_requests(const records::Deck& deck, const records::CaseRequests& requests,
                    const std::vector<std::pair<std::string, std::string>>& options, Diagnostics& diagnostics);
-/// read_deck_or_throw with the cards of loads over frequency and time (nastran/dynamic_reader.hpp). Collective.
+/// read_deck_or_throw with the cards of loads over frequency and time (nastran/dynamic_reader.hpp). `is_response`:
+/// false for residual vectors of normal modes. Collective.
 records::DynamicDeck read_loads_deck_or_throw(const std::string& path, const fe::ModelOptions& options,
-                                              Diagnostics& diagnostics);
+                                              bool is_response, Diagnostics& diagnostics);
 
 /// Collects what is listed, subcase after subcase. A deck without any output request is listed as a whole.
 class ListingMaker {

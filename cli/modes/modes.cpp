@@ -162,7 +162,8 @@ records::DynamicDeck read_modes_deck(const ModesOptions& options, const records:
   const bool has_residuals = std::any_of(
       requests.selections.begin(), requests.selections.end(),
       [&](const auto& selection) { return modal::response::asks_residual_vectors(deck, selection.second); });
-  if (has_residuals && !options.buckling) return read_loads_deck_or_throw(options.deck, model_options, diagnostics);
+  if (has_residuals && !options.buckling)
+    return read_loads_deck_or_throw(options.deck, model_options, false, diagnostics);
   for (const auto& item : own.items()) diagnostics.add(item);
   return deck;
 }
@@ -190,7 +191,7 @@ int run_modes(const ModesOptions& options) {
   if (modal::is_buckling_solution(deck) && !options.buckling)
     diagnostics.note("cli.buckling-deck", deck.locate({}), "the deck asks for buckling (SOL " + deck.sol + ")",
                      "these are its normal modes; --buckling gives the load factors");
-  note_solution(deck, diagnostics);
+  say_first(diagnostics, [&] { demand_real_modes(deck, model_options.ignore_cards, diagnostics); });
   nlohmann::json json;
   std::string text, written;
   std::vector<std::pair<std::string, std::string>> pictures;

@@ -26,8 +26,8 @@ namespace {
 
 constexpr const char* kInertialNames[records::kNumInertialLoads] = {"ax",  "ay",  "az",  "alx",  "aly",  "alz",
                                                                     "wx2", "wy2", "wz2", "wxwy", "wxwz", "wywz"};
-const std::vector<std::string> kStiffnessNames = {"K", "KGG", "KAA", "KFF", "KLL", "KAAX"};
-const std::vector<std::string> kMassNames = {"M", "MGG", "MAA", "MFF", "MLL", "MAAX"};
+const std::vector<std::string> kStiffnessNames = {"K", "KGG", "KAA", "KFF", "KLL", "KAAX", "KXX"};
+const std::vector<std::string> kMassNames = {"M", "MGG", "MAA", "MFF", "MLL", "MAAX", "MXX"};
 
 Eigen::SparseMatrix<double, Eigen::RowMajor> to_eigen(const records::SparseMatrix& a) {
   std::vector<Eigen::Triplet<double>> entries;

@@ -288,7 +288,8 @@ void add_reduce(CLI::App& app, Action& action) {
   verb->add_option("--origin", o->origin, "Origin of the body frame in basic: X Y Z")->expected(3);
   verb->add_option("--damping", o->damping, "Modal damping ratio of every mode")->check(make_not_negative());
   verb->add_option("--subcase", o->subcase, "Subcase whose SPC and MPC sets are used (default: the first)");
-  verb->add_option("--ignore", o->ignore_cards, "Skip this card though it carries stiffness, mass or constraint")
+  verb->add_option("--ignore", o->ignore_cards,
+                   "Leave out this card, command or parameter though it changes the answer")
       ->allow_extra_args(false);
   verb->add_option(
           "--matrices", o->matrices,

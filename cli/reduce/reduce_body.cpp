@@ -27,7 +27,7 @@ std::optional<records::DynamicDeck> read_residuals(const records::BodySpec& spec
   const auto* found = find_selection(requests, spec.subcase != 0 ? spec.subcase : first);
   if (!found || !modal::response::asks_residual_vectors(deck, *found)) return {};
   selection = *found;
-  return read_loads_deck_or_throw(spec.deck, model_options, diagnostics);
+  return read_loads_deck_or_throw(spec.deck, model_options, false, diagnostics);
 }
 
 Reduced reduce_deck(const records::BodySpec& spec, const stiffening::ReduceOptions& options,

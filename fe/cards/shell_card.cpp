@@ -86,7 +86,8 @@ std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& she
   if (!card.mcid) return card.theta_deg * kDegree;
   const std::string field = shell.who + " has MCID " + std::to_string(*card.mcid) + ", ";
   Diagnostics found;  // reported here, with the field
-  const Vector3d axis = maker.nodes().calc_axes(*card.mcid, x, maker.deck().locate(card.at), found).col(0);
+  const Matrix3d axes = maker.nodes().calc_axes(*card.mcid, x, maker.deck().locate(card.at), found);
+  Vector3d axis = axes.col(0);
   if (found.num_errors() > 0) {
     maker.error("fe.missing-coordinates", card.at, field + "a coordinate system that the deck does not define",
                 "add the CORD card or correct the field");
@@ -94,10 +95,13 @@ std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& she
   }
   if (normal.cross(axis).norm() < 1e-6) {
     if (is_isotropic(*shell.section)) return 0;
-    maker.error("fe.bad-material-axes", card.at,
-                field + "whose x-axis is normal to the element, and its property has directions",
-                "name a system whose x-axis has a part in the element, or give THETA");
-    return std::nullopt;
+    // Curved shells ask at every point.
+    const auto& said = maker.diagnostics().items();
+    const std::string what = field + "whose x-axis is normal to the element; its y-axis is taken in place of it";
+    if (said.empty() || said.back().what != what)
+      maker.diagnostics().warning("fe.bad-material-axes", maker.deck().locate(card.at), what,
+                                  "name a system whose x-axis has a part in the element, or give THETA");
+    axis = axes.col(1);
   }
   return std::atan2(normal.dot(side.cross(axis)), side.dot(axis) - side.dot(normal) * normal.dot(axis));
 }

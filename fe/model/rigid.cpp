@@ -182,6 +182,17 @@ bool add_body(const std::vector<BodyTerm>& independent, const std::vector<BodyTe
 
 }  // namespace
 
+namespace {
+
+std::string list_components(unsigned mask) {
+  std::string digits;
+  for (unsigned c = 0; c < 6; ++c)
+    if (mask >> c & 1u) digits += static_cast<char>('1' + c);
+  return digits;
+}
+
+}  // namespace
+
 void add_rbar(const records::Rbar& record, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations, std::vector<Link>& links) {
   const std::string card = "RBAR " + std::to_string(record.id);
@@ -191,14 +202,21 @@ void add_rbar(const records::Rbar& record, const NodeTable& nodes, const SourceL
   unsigned cna = record.cna, cnb = record.cnb, cma = record.cma, cmb = record.cmb;
   if (cna == 0 && cnb == 0) cna = 63u;
   if (std::popcount(cna) + std::popcount(cnb) < 6 && (cna == 0 || cnb == 0)) {
-    // Part of one grid: what it leaves open of that grid holds the body too, unless the card makes it dependent.
-    (cna != 0 ? cna : cnb) = 63u & ~(cna != 0 ? cma : cmb);
+    // Part of one grid: all six of that grid hold the body, unless the card makes some of them dependent. Without CMA
+    // and CMB the same components of the other grid depend.
+    unsigned& held = cna != 0 ? cna : cnb;
+    unsigned& tied = cna != 0 ? cmb : cma;
+    const unsigned named = held;
+    if (cma == 0 && cmb == 0) tied = named;
+    held = 63u & ~(cna != 0 ? cma : cmb);
     if (std::popcount(cna) + std::popcount(cnb) == 6)
       diagnostics.warning("fe.rbar-completed", at,
-                          card + " has " + std::to_string(std::popcount(record.cna) + std::popcount(record.cnb)) +
+                          card + " has " + std::to_string(std::popcount(named)) +
                               " independent components, expected 6; all six of grid " +
-                              std::to_string(cna != 0 ? record.ga : record.gb) + " are taken",
-                          "write 123456");
+                              std::to_string(cna != 0 ? record.ga : record.gb) + " hold it, and components " +
+                              list_components(tied) + " of grid " + std::to_string(cna != 0 ? record.gb : record.ga) +
+                              " depend on them",
+                          "write CNA = 123456 with CMB");
   }
   if (cma == 0 && cmb == 0) {
     cma = 63u & ~cna;

@@ -52,9 +52,11 @@ std::vector<int> expand_set(int sid, const std::vector<records::SetUnion>& union
         for (const int member : u.sets) open.push_back({member, u.at, path.size()});
         exists = true;
       }
+    // Nastran runs such a deck: the selection is often left over when the cards are gone.
     if (!exists)
-      diagnostics.error("fe.missing-set", deck.locate(at),
-                        what + " set " + std::to_string(id) + " is selected but has no cards", "correct the set id");
+      diagnostics.warning("fe.missing-set", deck.locate(at),
+                          what + " set " + std::to_string(id) + " is selected but has no cards; it adds nothing",
+                          "correct the set id or remove it");
   }
   std::sort(result.begin(), result.end());
   return result;

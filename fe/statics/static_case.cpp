@@ -10,6 +10,12 @@
 namespace bough::fe {
 namespace {
 
+/// What Subcase::deform selects, by command.
+constexpr std::pair<const char*, const char*> kUnreadLoads[] = {{"DEFORM", "enforced deformations of elements"},
+                                                                {"TRIM", "aerodynamic loads of a trimmed aircraft"},
+                                                                {"BOLTLD", "preloads of bolts"},
+                                                                {"CLOAD", "combinations of loads of superelements"}};
+
 /// Forces (in CD axes) that hold the oblique directions of AUTOSPC, as those of the dofs that it holds: along the
 /// direction, as large as what of the residual acts where nothing else holds.
 void add_oblique_reactions(const Model& model, const VectorXd& residual, VectorXd& reaction) {
@@ -132,10 +138,12 @@ StaticLoad calc_static_load(const Model& model, const records::Deck& deck, const
     is_unread = (set > 0 && report_unread_loads(deck, "TEMPERATURE", set, diagnostics)) || is_unread;
   if (!is_unread) result.initial = calc_thermal(model, deck, subcase.temperature, diagnostics);
   if (subcase.deform > 0)
-    diagnostics.error("fe.unread-load", deck.locate(subcase.find_command("DEFORM")),
-                      "DEFORM " + std::to_string(subcase.deform) + " loads subcase " + std::to_string(subcase.id) +
-                          ", and enforced deformations of elements are not read",
-                      "give it as temperatures, or --ignore DEFORM to compute without it");
+    for (const auto& [command, what] : kUnreadLoads)
+      if (subcase.commands.count(command) > 0)
+        diagnostics.error(
+            "fe.unread-load", deck.locate(subcase.find_command(command)),
+            std::string(command) + " loads subcase " + std::to_string(subcase.id) + ", and " + what + " are not read",
+            std::string("give the load by other cards, or --ignore ") + command + " to compute without it");
   if (!result.initial.of.empty()) result.F += sum_loads(model, result.initial);
   if (const auto lost = list_lost_loads(model, result.F); !lost.empty())
     diagnostics.warning("fe.load-autospc", deck.locate({}),

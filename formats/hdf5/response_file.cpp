@@ -79,6 +79,7 @@ void write_subcase(FileWriter& file, const records::ResponseSubcase& s, bool is_
   file.write_vector(path + "/modes/frequency_hz", s.mode_hz,
                     {"of each coordinate: rigid motions (0), normal modes, residual vectors", "1/T"});
   file.write_vector(path + "/modes/damping_ratio", s.damping_ratio, {"its share of the critical damping", "1"});
+  if (!s.damped_motion.empty()) file.write_attribute(path + "/modes", "damped_motion", s.damped_motion);
   std::vector<int> residual;
   for (const auto kind : s.kind) residual.push_back(kind == records::ModeKind::Residual);
   file.write_integers(path + "/modes/is_residual", residual, {"1: a residual vector", "1"});

@@ -105,6 +105,32 @@ DeckEditor::DeckEditor(DeckEditor&&) noexcept = default;
 
 const std::vector<std::string>& DeckEditor::get_files() const { return contents_->source.files; }
 
+std::map<std::string, std::string> DeckEditor::list_matrix_kinds() const {
+  std::map<std::string, std::string> kinds;
+  const auto add = [&](const std::string& name, const char* kind) {
+    auto& known = kinds.try_emplace(name, kind).first->second;
+    if (known != kind) known = "?";
+  };
+  detail::LoadColumns columns;
+  const auto read = [&](records::DynamicDeck& deck, bool is_response) {
+    Diagnostics reported;  // by the readers of the deck
+    deck.files = contents_->source.files;
+    detail::read_control(contents_->source, deck, reported,
+                         {.dynamics = &deck, .load_columns = &columns, .is_response = is_response});
+  };
+  records::DynamicDeck direct, loads;  // K2PP of the one, P2G of the other
+  read(direct, true);
+  read(loads, false);
+  for (const auto& subcase : direct.subcases) {
+    for (const auto& [factor, name] : subcase.k2gg) add(name, "K");
+    for (const auto& [factor, name] : subcase.m2gg) add(name, "M");
+    for (const auto& [factor, name] : subcase.b2gg) add(name, "B");
+  }
+  for (const auto& [subcase, list] : columns)
+    for (const auto& column : list) add(column.matrix, "P");
+  return kinds;
+}
+
 std::vector<DeckCard> DeckEditor::list_cards() const {
   const auto& c = *contents_;
   std::vector<DeckCard> cards;

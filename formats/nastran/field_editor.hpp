@@ -1,5 +1,6 @@
 #pragma once
 /// \file Changes single fields of a deck's text and leaves every other byte as it is.
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -56,6 +57,8 @@ class DeckEditor {
 
   /// The deck and what it includes.
   const std::vector<std::string>& get_files() const;
+  /// What the case control makes of a DMIG, by name: "K" stiffness, "M" mass, "B" damping, "P" load, "?" several.
+  std::map<std::string, std::string> list_matrix_kinds() const;
   /// All cards of the bulk data.
   std::vector<DeckCard> list_cards() const;
   /// Adds, at `asked_at`, batch.unknown-card, batch.ambiguous-card, batch.unknown-field, batch.replicated-card.

@@ -18,9 +18,13 @@ void fill_deck(const detail::Source& source, const ReadOptions& options, records
   detail::read_system_cells(source, deck);
   auto asked = control;
   asked.ignore_cards = options.ignore_cards;
+  asked.is_response = options.is_response;
+  detail::LoadColumns columns;
+  asked.load_columns = &columns;
   const auto first_line = detail::read_control(source, deck, diagnostics, asked);
-  detail::read_bulk(source, first_line, options, deck, diagnostics, dynamics ? &dynamics->dynamics : nullptr);
-  detail::report_params(deck, diagnostics, dynamics != nullptr);
+  detail::read_bulk(source, first_line, options, deck, diagnostics, dynamics);
+  detail::add_load_columns(columns, deck, diagnostics);
+  detail::report_params(deck, options.ignore_cards, diagnostics, dynamics != nullptr);
 }
 
 records::Deck make_deck(const detail::Source& source, const ReadOptions& options, Diagnostics& diagnostics,

@@ -9,6 +9,9 @@ namespace bough::nastran {
 
 struct ReadOptions {
   std::vector<std::string> ignore_cards;  ///< --ignore CARD: not an error though it carries stiffness, mass, constraint
+  /// read_dynamic_deck: what acts in responses alone counts (K2PP, TFL, EPOINT, ...); false: the loads are for residual
+  /// vectors of normal modes.
+  bool is_response = true;
 };
 
 /// Reads a deck or fragment with its INCLUDE files. Every error of the deck is added to `diagnostics` (none is thrown);

@@ -21,7 +21,10 @@ int find_excitation(const std::string& type) {
 }  // namespace
 
 UnitConverter::UnitConverter(const DeckEditor& deck, const UnitFactors& factors, Diagnostics& diagnostics)
-    : factors_(factors), diagnostics_(diagnostics), cards_(deck.list_cards()) {}
+    : factors_(factors),
+      diagnostics_(diagnostics),
+      cards_(deck.list_cards()),
+      matrix_kinds_(deck.list_matrix_kinds()) {}
 
 std::vector<FieldEdit> UnitConverter::convert() {
   for (const auto& card : cards_) note_card(card);
@@ -132,6 +135,12 @@ void UnitConverter::note_card(const DeckCard& card) {
     const auto pid = get(1).empty() ? get(0) : get(1);
     motions_[name + " " + pid].insert(find_motion(get(3), get(5), get_int(4) > 0));
   }
+  if (name == "CELAS3" || name == "CMASS3" || name == "CDAMP3")
+    for (const int first : {0, 4})
+      if (!get(first).empty())
+        motions_[name.substr(0, 5) + "1 " + (get(first + 1).empty() ? get(first) : get(first + 1))].insert(
+            Motion::Unknown);
+  if (name == "DMIG" && get(1) == "0" && get_int(5) > 0) polar_matrices_.insert(make_upper(get(0)));
 }
 
 void UnitConverter::convert_card() {
@@ -174,6 +183,8 @@ void UnitConverter::convert_card() {
   if (name == "MPC") return convert_mpc();
   if (name == "NSM" || name == "NSM1" || name == "NSML" || name == "NSML1") return convert_nonstructural();
   if (name == "PARAM") return convert_param();
+  if (name == "DMIG") return convert_dmig();
+  if (name == "GENEL") return convert_genel();
   if (!convert_static_load() && !convert_dynamic() && !convert_by_table()) refuse_unknown();
 }
 

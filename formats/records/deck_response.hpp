@@ -34,6 +34,8 @@ struct ResponseSubcase {
   VectorXd mode_hz, damping_ratio;           ///< of the coordinates
   std::vector<ModeKind> kind;
   int num_rigid = 0;
+  /// Where supports move and SDAMPING damps: "absolute" (PARAM,ENFMOTN,ABS) or "relative" (REL), else empty.
+  std::string damped_motion;
   double basis_error = 0;     ///< of the orthogonality of the coordinates to M and K
   double solution_error = 0;  ///< of the equation of the coordinates
 };

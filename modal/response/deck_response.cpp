@@ -108,8 +108,18 @@ void check_direct_input(const records::DynamicDeck& deck, const records::Dynamic
          "M2PP", "a load by GRAV, RFORCE or ACCEL");
 }
 
+/// PARAM,ENFMOTN or ENFMETH is REL; the default of MSC Nastran is ABS.
+bool is_relative(const records::Deck& deck) {
+  const auto is_rel = [&](const char* name) {
+    const auto* param = deck.find_param(name);
+    return param && param->value == "REL";
+  };
+  return is_rel("ENFMOTN") || is_rel("ENFMETH");
+}
+
 DampingChoice choose_damping(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
-                             bool is_over_time, const fe::Model& model, Diagnostics& diagnostics) {
+                             const ResponseOptions& options, const fe::Model& model, Diagnostics& diagnostics) {
+  const bool is_over_time = options.is_over_time;
   DampingChoice damping;
   damping.is_over_time = is_over_time;
   damping.g = records::get_real_param(deck, "G", 0, diagnostics);
@@ -127,7 +137,8 @@ DampingChoice choose_damping(const records::DynamicDeck& deck, const records::Dy
   const auto& curves = deck.dynamics.damping;
   const auto curve = std::find_if(curves.begin(), curves.end(), [set](const auto& c) { return c.id == set; });
   if (curve != curves.end()) damping.curve = &*curve;
-  if (set != 0 && !damping.curve)
+  damping.is_relative = is_relative(deck);
+  if (set != 0 && !damping.curve && !options.is_direct)  // a direct solution has no modes to damp
     diagnostics.error("modal.missing-table", deck.locate(subcase.find_command("SDAMPING")),
                       "SDAMPING = " + std::to_string(set) + " names no TABDMP1 card of the deck",
                       "add the table or correct the id");
@@ -244,7 +255,7 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
   Task task;
   task.excitation = calc_excitation(model, deck_, subcase, options_.is_over_time, own);
   if (options_.is_over_time) task.start = calc_start(model, deck_, subcase, own);
-  task.damping = choose_damping(deck_, subcase, options_.is_over_time, model, own);
+  task.damping = choose_damping(deck_, subcase, options_, model, own);
   if (options_.is_over_time) task.grid = make_times(deck_, subcase, own);
   if (options_.is_direct) report_modal(deck_, subcase, options_.is_over_time, own);
   task.natural.resize(prepared_->modes.lambda.size());
@@ -277,6 +288,7 @@ void DeckResponseSolver::solve_by_modes(const Task& task, const records::Dynamic
   Excitation excitation = task.excitation;
   excitation.residual = collect_unit_loads(model, deck_, diagnostics).F;
   diagnostics.throw_if_errors();
+  if (damping.curve && excitation.D.cols() > 0) result.damped_motion = damping.is_relative ? "relative" : "absolute";
   const bool with_residuals = options_.residual_vectors.value_or(subcase.dynamics.resvec.value_or(
       deck_.find_param("RESVEC") == nullptr || deck_.find_param("RESVEC")->value[0] != 'N'));
   const auto solve_static = [&](const MatrixXd& F) { return prepared_->statics->solve(F, &diagnostics); };

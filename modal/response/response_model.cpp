@@ -118,7 +118,7 @@ class Maker {
     const auto num_dynamic = r.Phi.cols();
     if (with_residuals) add_massless(join_columns(loads, calc_inner_loads(elastic())), r);
     r.P = r.Phi.transpose() * loads;
-    damp(r);
+    damp(r, k);
     const auto Phi = r.Phi.leftCols(num_dynamic);
     if (start.u.size() > 0) r.u0 = Phi.transpose() * times_mass(model_, start.u);
     if (start.v.size() > 0) r.v0 = Phi.transpose() * times_mass(model_, start.v);
@@ -219,7 +219,8 @@ class Maker {
     return calc_damping_ratio(*damping_.curve, hz);
   }
 
-  void damp(ResponseModel& r) const {
+  /// k: motions of the supports.
+  void damp(ResponseModel& r, Eigen::Index k) const {
     const auto n = r.lambda.size();
     r.D = make_symmetric(fe::calc_inner_products(r.Phi, fe::calc_damping_times(model_, r.Phi)));
     r.S = MatrixXd::Zero(n, n);
@@ -237,7 +238,7 @@ class Maker {
     } else {
       r.S = K_e + K_g;
     }
-    if (damping_.curve) add_curve(r);
+    if (damping_.curve) add_curve(r, k);
     r.is_coupled = is_off_diagonal(r.D) || is_off_diagonal(r.S);
     if (damping_.is_over_time && r.num_massless > 0) {
       if (r.D.bottomRows(r.num_massless).cwiseAbs().maxCoeff() > 1e-9 * r.D.cwiseAbs().maxCoeff())
@@ -252,7 +253,8 @@ class Maker {
         r.damping_ratio(j) = r.D(j, j) / (2 * std::sqrt(r.lambda(j))) + r.S(j, j) / (2 * r.lambda(j));
   }
 
-  void add_curve(ResponseModel& r) const {
+  void add_curve(ResponseModel& r, Eigen::Index k) const {
+    const auto m = r.P.cols() - 3 * k;
     for (Eigen::Index j = 0; j < r.num_dynamic(); ++j) {
       if (!(r.lambda(j) > 0)) continue;
       const double ratio = calc_ratio(r, j), omega = std::sqrt(r.lambda(j));
@@ -264,10 +266,11 @@ class Maker {
                              "TABDMP1 " + std::to_string(damping_.curve->id) + ": " + text,
                              "the table goes on along its last line; give it a point beyond the highest mode");
       }
-      if (damping_.is_stiffness && !damping_.is_over_time)
-        r.S(j, j) += 2 * ratio * r.lambda(j);
-      else
-        r.D(j, j) += 2 * ratio * omega;
+      const bool is_structural = damping_.is_stiffness && !damping_.is_over_time;
+      const double c = 2 * ratio * (is_structural ? r.lambda(j) : omega);
+      (is_structural ? r.S : r.D)(j, j) += c;
+      // On the absolute motion: c (q̇ + P_M ḋ), of the loads B Ψ (-ḋ) or K_s Ψ (-i d).
+      if (!damping_.is_relative) r.P.block(j, m + (is_structural ? 2 * k : k), 1, k) += c * r.P.block(j, m, 1, k);
     }
   }
 

@@ -27,6 +27,8 @@ struct DampingChoice {
   bool is_over_time = false;
   bool is_stiffness = false;                     ///< PARAM,KDAMP,-1: the curve is structural damping
   const records::DampingCurve* curve = nullptr;  ///< SDAMPING
+  /// PARAM,ENFMOTN,REL: the curve damps the motion relative to the supports, q; else the absolute one, q + Φᵀ M Ψ d.
+  bool is_relative = false;
 };
 
 /// u = Φ q + Ψ d on the g-set, basic axes, with

@@ -1,6 +1,7 @@
 #include "solver/forces/spring.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace bough::solver {
 
@@ -15,7 +16,8 @@ std::vector<ForceChannel> SpringElement::channels() const {
 ForceResult SpringElement::calc(const Tree& tree, const TreeData& data, Loads* loads) const {
   const MarkerInWorld a = calc_marker_in_world(data, tree, from_), b = calc_marker_in_world(data, tree, to_);
   const Vector3d d = b.p - a.p;
-  const double length = d.norm();
+  double length = d.norm();
+  if (!std::isfinite(length)) length = d.stableNorm();  // the squares of far ends have no number
   const Vector3d along = length > 0 ? Vector3d(d / length) : Vector3d::Zero();
   const double rate = along.dot(b.v - a.v);
 

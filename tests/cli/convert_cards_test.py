@@ -325,5 +325,92 @@ class ConvertCards(ProgramTest):
         self.fails(1, "convert", "d.bdf", *MM_TO_M, "-o", "no.bdf", error="deck.unit-field")
 
 
+
+DIRECT = """SOL 101
+CEND
+SPC = 1
+METHOD = 1
+LOAD = 5
+P2G = PL
+NSM = 50
+K2GG = 2.*KX
+M2GG = MX
+BEGIN BULK
+EIGRL,1,,,6
+MAT1,1,7.+4,,.3,2.7-9
+GRID,1,,0.,0.,0.
+GRID,2,,500.,0.,0.
+GRID,3,,1000.,0.,0.
+GRID,6,,1250.,0.,0.
+GRID,4,,1500.,0.,0.
+GRID,5,,1500.,200.,0.
+GRID,7,,1500.,200.,100.
+GRID,8,,1600.,0.,0.
+CBAR,1,1,1,2,0.,1.,0.
+CBAR,2,1,2,3,0.,1.,0.
+CBAR,3,1,3,4,0.,1.,0.
+PBAR,1,1,400.,2.+4,1.+4,1.+4
+RSPLINE,50,.1,3,6,123456,4
+RBAR1,60,4,5,123456,1.-5
+RTRPLT1,61,4,7,8,123456,123456,1.-5
+CONM2,9,6,,1.-4
+CONM2,10,7,,1.-4
+SPC1,1,123456,1
+FORCE,5,4,,10.,0.,1.,1.
+DMIG,KX,0,6,2,0
+DMIG,KX,5,2,,5,2,3.5,,
+,5,6,120.
+DMIG,KX,5,6,,5,6,9.+4
+DMIG,MX,0,6,2,0
+DMIG,MX,5,1,,5,1,2.-4,,
+,5,6,1.-3
+DMIG,MX,5,6,,5,6,.5
+DMIG,PL,0,9,2,0,,,1
+DMIG,PL,1,,,5,1,40.,,
+,5,6,900.
+GENEL,70,,2,2,2,6,,,+
++,K,10.,100.,5000.
+GENEL,71,,4,1,4,2,4,6,+
++,UD,,3,1,3,2,3,3,+
++,3,4,3,5,3,6,,,+
++,Z,1.-3,2.-4,1.-7,2.-3,3.-7,+
++,1.-6
+NSM1,40,PBAR,1.-7,1
+NSM1,41,PBAR,2.-7,1
+NSMADD,50,40,41
+ENDDATA
+"""
+
+
+class Direct(ProgramTest):
+    """Direct matrices, general elements, rigid elements whose reals are ratios."""
+
+    def solve(self, name):
+        self.bough("modes", name, "-o", "m.h5")
+        self.bough("static", name, "-o", "s.h5")
+        with h5py.File(self.path("m.h5")) as m, h5py.File(self.path("s.h5")) as s:
+            (case,) = s["subcases"]
+            return m["modes/frequency_hz"][()], s[f"subcases/{case}/displacement"][()].reshape(-1, 6)
+
+    def test_other_units(self):
+        self.write("d.bdf", DIRECT.replace("RJOINT,62,4,8,\n", "").replace("RTRPLT1,61,4,7,8,123456,123456,1.-5", "RTRPLT1,61,4,7,8,123456,123456,1.-5"))
+        hz, u = self.solve("d.bdf")
+        for units, length, time in [(MM_TO_M, 1e-3, 1), (MM_TO_MS, 1, 1e3)]:
+            self.bough("convert", "d.bdf", *units, "-o", "n.bdf")
+            new_hz, new_u = self.solve("n.bdf")
+            np.testing.assert_allclose(new_hz * time, hz, rtol=1e-8)
+            scale = np.abs(u).max(axis=0)
+            np.testing.assert_allclose(new_u / scale, u * ([length] * 3 + [1] * 3) / scale, atol=1e-8)
+
+    def test_what_nothing_tells(self):
+        """A matrix that no command selects, or two of other kinds; springs of scalar points."""
+        for old, new in [("K2GG = 2.*KX\n", ""), ("M2GG = MX", "M2GG = MX, KX"),
+                         ("NSM1,40", "CELAS4,80,1.,91,92\nNSM1,40")]:
+            self.write("d.bdf", DIRECT.replace(old, new))
+            self.fails(1, "convert", "d.bdf", *MM_TO_M, "-o", "no.bdf", error="deck.unit-field")
+        self.write("d.bdf", DIRECT.replace("NSM1,40", "CELAS3,80,1,91,92\nCMASS3,81,1,91,92\nCDAMP3,82,1,91,92\nNSM1,40"))
+        self.bough("convert", "d.bdf", *MM_TO_M, "-o", "fine.bdf")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -111,6 +111,13 @@ class MatrixBodies(ProgramTest):
         self.reduce("K=m.K.mtx", "M=m.M.mtx")
         self.same("body.h5")
 
+    def test_usual_names(self):
+        """A file that is not told which matrix to take: those of EXTSEOUT among the names."""
+        for k, m in (("KXX", "MXX"), ("KAA", "MAA"), ("KAAX", "MAAX")):
+            write_dmig(self.path("m.pch"), [("B2X", self.M_cd), (k, self.K_cd), (m, self.M_cd)], self.dofs)
+            self.reduce("m.pch")
+            self.same("body.h5", 1e-6)
+
     def test_without_a_deck(self):
         with h5py.File(self.path("own.h5")) as f:
             ids, xyz = f["grids/id"][:], f["grids/xyz"][:]

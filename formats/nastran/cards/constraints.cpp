@@ -23,7 +23,7 @@ void parse_rbe2(Card& card, Reading& r) {
   if (e.gm.empty() && card.is_ok())
     card.fail("deck.missing-field", 3, "GM is blank, expected a dependent grid at least");
   e.at = card.get_location();
-  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe2.push_back(std::move(e));
+  if (r.claim_rigid(e.id, card)) r.deck.rbe2.push_back(std::move(e));
 }
 
 /// EID, blank, REFGRID, REFC, then groups WT C G1 G2 ..., then UM with pairs G C, then ALPHA with a value.
@@ -31,7 +31,7 @@ void parse_rbe3(Card& card, Reading& r) {
   records::Rbe3 e;
   e.id = card.read_id(0, "EID");
   e.ref_grid = card.read_id(2, "REFGRID");
-  e.ref_c = card.read_components(3, "REFC");
+  e.ref_c = card.read_components(3, "REFC", 0b111111);
   const int size = card.get_size();
   int i = 4;
   while (i < size && !card.is_word(i, "UM") && !card.is_word(i, "ALPHA")) {
@@ -71,7 +71,7 @@ void parse_rbe3(Card& card, Reading& r) {
   }
   if (e.groups.empty() && card.is_ok()) card.fail("deck.missing-field", 4, "WT1 is blank, expected a weight and grids");
   e.at = card.get_location();
-  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe3.push_back(std::move(e));
+  if (r.claim_rigid(e.id, card)) r.deck.rbe3.push_back(std::move(e));
 }
 
 /// EID, pairs GN CN (three per line), UM (CRIGD3: MSET) with pairs GM CM, then ALPHA and TREF, reals.
@@ -104,7 +104,7 @@ void parse_rbe1(Card& card, Reading& r) {
               "choose six that hold a rigid body");
   if (card.is_ok() && e.dependent.empty())
     card.fail("deck.missing-field", 8, "UM is blank, expected a dependent grid at least");
-  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe1.push_back(std::move(e));
+  if (r.claim_rigid(e.id, card)) r.deck.rbe1.push_back(std::move(e));
 }
 
 void parse_rrod(Card& card, Reading& r) {
@@ -121,7 +121,7 @@ void parse_rrod(Card& card, Reading& r) {
               "CMA and CMB name " + std::to_string(e.cma) + " and " + std::to_string(e.cmb) +
                   ", expected one translation 1 to 3 in one of them");
   e.at = card.get_location();
-  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rrod.push_back(e);
+  if (r.claim_rigid(e.id, card)) r.deck.rrod.push_back(e);
 }
 
 /// Blank CMA and CMB: every component that is not independent depends.
@@ -150,7 +150,7 @@ void parse_rbar(Card& card, Reading& r) {
   if (card.is_ok() && ((e.cna & e.cma) != 0 || (e.cnb & e.cmb) != 0))
     card.fail("deck.field-range", 5, "a component is both independent and dependent", "leave CMA and CMB blank");
   e.at = card.get_location();
-  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbar.push_back(e);
+  if (r.claim_rigid(e.id, card)) r.deck.rbar.push_back(e);
 }
 
 void parse_spc(Card& card, Reading& r) {

@@ -457,4 +457,13 @@ const DynamicParserTable& get_dynamic_parsers() {
   return table;
 }
 
+int records::DynamicSelection::*find_selection_of(std::string_view card) {
+  using records::DynamicSelection;
+  if (card.substr(0, 4) == "FREQ") return &DynamicSelection::frequency;
+  if (card == "TSTEP") return &DynamicSelection::tstep;
+  if (card == "TIC") return &DynamicSelection::ic;
+  if (card == "TABDMP1") return &DynamicSelection::sdamping;
+  return nullptr;
+}
+
 }  // namespace bough::nastran::detail

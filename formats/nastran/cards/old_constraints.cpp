@@ -13,7 +13,7 @@ void parse_crigd1(Card& card, Reading& r) {
   if (e.gm.empty() && card.is_ok())
     card.fail("deck.missing-field", 2, "G1 is blank, expected a dependent grid at least");
   e.at = card.get_location();
-  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe2.push_back(std::move(e));
+  if (r.claim_rigid(e.id, card)) r.deck.rbe2.push_back(std::move(e));
 }
 
 /// CRIGD2: EID IG, pairs of a grid and its dependent components. It becomes an RBE1.
@@ -27,7 +27,7 @@ void parse_crigd2(Card& card, Reading& r) {
       e.dependent.push_back({card.read_id(i, "Gi"), card.read_components(i + 1, "Ci"), e.at});
   if (e.dependent.empty() && card.is_ok())
     card.fail("deck.missing-field", 2, "G1 is blank, expected a dependent grid at least");
-  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe1.push_back(std::move(e));
+  if (r.claim_rigid(e.id, card)) r.deck.rbe1.push_back(std::move(e));
 }
 
 /// CRIGDR: EID IG G C, one or two on a card: a rigid rod whose translation C at G depends.
@@ -41,7 +41,7 @@ void parse_crigdr(Card& card, Reading& r) {
     e.cmb = card.read_component(first + 3, "C");
     card.demand(e.cmb >= 1 && e.cmb <= 3, first + 3, "C", "a translation 1, 2 or 3");
     e.at = card.get_location();
-    if (r.claim(IdSpace::Rigid, e.id, card, first, 4)) r.deck.rrod.push_back(e);
+    if (r.claim_rigid(e.id, card, first, 4)) r.deck.rrod.push_back(e);
   }
 }
 

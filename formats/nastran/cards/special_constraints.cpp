@@ -21,7 +21,7 @@ void parse_one_follower(Card& card, Reading& r) {
     card.use(5);  // TREF
   }
   e.at = card.get_location();
-  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe2.push_back(std::move(e));
+  if (r.claim_rigid(e.id, card)) r.deck.rbe2.push_back(std::move(e));
 }
 
 void claim_plate(Card& card, Reading& r, records::Rbe1 e) {
@@ -32,7 +32,7 @@ void claim_plate(Card& card, Reading& r, records::Rbe1 e) {
               "choose six that hold a rigid body");
   std::erase_if(e.independent, [](const auto& term) { return term.c == 0; });
   std::erase_if(e.dependent, [](const auto& term) { return term.c == 0; });
-  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.rbe1.push_back(std::move(e));
+  if (r.claim_rigid(e.id, card)) r.deck.rbe1.push_back(std::move(e));
 }
 
 /// RTRPLT: EID GA GB GC CNA CNB CNC, CMA CMB CMC ALPHA: an RBE1 on three grids. Blank CM: all that is not independent.
@@ -80,7 +80,7 @@ void parse_rspline(Card& card, Reading& r) {
   if (card.is_ok() && (e.points.size() < 2 || e.points.back().c != 0))
     card.fail("deck.field-range", 3, "the spline ends at a dependent grid",
               "its first and last grids are independent: leave their components blank");
-  if (r.claim(IdSpace::Rigid, e.id, card)) r.deck.special.rspline.push_back(std::move(e));
+  if (r.claim_rigid(e.id, card)) r.deck.special.rspline.push_back(std::move(e));
 }
 
 }  // namespace

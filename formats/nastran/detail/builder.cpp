@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <set>
 #include <tuple>
 #include <unordered_set>
@@ -42,10 +43,11 @@ bool is_card_name(std::string_view name) {
 class Builder {
  public:
   Builder(const Source& source, std::size_t first_line, const ReadOptions& options, records::Deck& deck,
-          Diagnostics& diagnostics, records::DynamicCards* dynamics)
+          Diagnostics& diagnostics, records::DynamicDeck* dynamics)
       : source_(source),
         deck_(deck),
         dynamics_(dynamics),
+        is_response_(dynamics && options.is_response),
         diagnostics_(diagnostics),
         images_(make_card_images(source, first_line, diagnostics)),
         reading_(deck, diagnostics) {
@@ -66,10 +68,12 @@ class Builder {
       diagnostics_.error("deck.unreadable-line", {deck_.files.front(), 0, 0},
                          "and " + std::to_string(num_unreadable_ - max_unreadable) + " more lines that are no cards",
                          "check that the file is a Nastran deck");
+    leave_extra_points();
     expand_ranges(reading_);
     finish_direct_matrices(reading_);
     finish_fluid(reading_);
     finish_old_elements(reading_);
+    finish_rigid_ids(reading_);
     design_.report(deck_, diagnostics_);
     leftovers_.report(diagnostics_);
     report_names();
@@ -81,16 +85,22 @@ class Builder {
     return images_.images[static_cast<std::size_t>(images_.cards[static_cast<std::size_t>(card)])];
   }
 
-  /// The text of a card; returns the line with too many fields, or nullptr.
-  const Line* join(int card, CardText& text) {
+  /// Lines of a card with more fields than they have; nullptr: none.
+  struct Excess {
+    const Line* data = nullptr;    ///< behind a continuation mark
+    const Line* number = nullptr;  ///< alone in field 10, and no line continues it
+  };
+
+  /// The text of a card.
+  Excess join(int card, CardText& text) {
     text.clear();
-    const Line* excess = nullptr;
+    Excess excess;
     const Line* numbered = nullptr;  // its tag is a number
     std::string_view number;
     const CardImage* part = &image(card);
     while (true) {
       for (int i = part->first_line; i < part->first_line + part->num_lines; ++i) {
-        if (numbered != nullptr && !is_continued_by(number, line(i).text)) excess = numbered;
+        if (numbered != nullptr && !is_continued_by(number, line(i).text)) excess.number = numbered;
         split_line(line(i).text, split_);
         if (text.lines.empty()) {
           text.name.assign(split_.name);
@@ -100,7 +110,7 @@ class Builder {
         if (!split_.is_large) pad(text);
         text.lines.push_back({static_cast<int>(text.fields.size()), line(i).at, line(i).text});
         text.fields.insert(text.fields.end(), split_.data.begin(), split_.data.end());
-        if (split_.num_excess > 0) excess = &line(i);
+        if (split_.num_excess > 0) excess.data = &line(i);
         numbered = split_.has_number_tag ? &line(i) : nullptr;
         number = split_.tag;
       }
@@ -108,7 +118,8 @@ class Builder {
       part = &images_.images[static_cast<std::size_t>(part->next)];
     }
     pad(text);
-    return numbered != nullptr ? numbered : excess;
+    if (numbered != nullptr) excess.number = numbered;
+    return excess;
   }
 
   static void pad(CardText& text) { text.fields.resize((text.fields.size() + 7) / 8 * 8); }
@@ -155,13 +166,19 @@ class Builder {
   }
 
   void read_card(int card) {
-    const Line* excess = join(card, text_);
+    const Excess excess = join(card, text_);
     if (skip_statement()) return;
     const bool is_relative = Replicator::is_relative(text_);
-    if (excess != nullptr && (is_relative || is_read(text_.name)))
-      diagnostics_.error("deck.too-many-fields", deck_.locate(excess->at),
-                         text_.name + ": the free-field line has data in field 10 or behind a continuation mark",
+    if (excess.data != nullptr && (is_relative || is_read(text_.name)))
+      diagnostics_.error("deck.too-many-fields", deck_.locate(excess.data->at),
+                         text_.name + ": the free-field line has data behind a continuation mark",
                          "continue on another line that begins with a comma");
+    else if (excess.number != nullptr && (is_relative || is_read(text_.name)))
+      diagnostics_.warning("deck.too-many-fields", deck_.locate(excess.number->at),
+                           text_.name +
+                               ": the number in field 10 of the free-field line is not read: Nastran takes it "
+                               "for a continuation mark",
+                           "continue on another line that begins with a comma if it is data");
     reading_.card = card;
     if (!is_relative) {
       last_is_plain_ = true;
@@ -253,13 +270,53 @@ class Builder {
     }
     if (entry->count++ == 0) entry->first = text_.lines.front().at;
     if (entry->parser == nullptr && entry->dynamic == nullptr) keep_unread_load();
+    if (entry->parser == nullptr) keep_base();
     if ((entry->parser == nullptr && entry->dynamic == nullptr) || is_default_card(text_.name)) return;
     design_.apply(text_);
+    if (dynamics_ && !is_response_ && text_.name == "EPOINT") keep_extra_points();
+    if (entry->dynamic != nullptr && is_unselected()) return parse_unselected(*entry);
     Card card(text_, deck_.files, diagnostics_);
     if (entry->dynamic != nullptr)
-      entry->dynamic(card, *dynamics_);
+      entry->dynamic(card, dynamics_->dynamics);
     else
       entry->parser(card, reading_);
+    if (card.is_ok()) leftovers_.add(card);
+  }
+
+  void keep_extra_points() {
+    Diagnostics said;  // the card is named as not used
+    Card card(text_, deck_.files, said);
+    for (const int id : read_ids(card, 0, card.get_size(), "ID")) extra_points_.insert(id);
+  }
+
+  /// Normal modes have no extra points: what acts there loads nothing.
+  void leave_extra_points() {
+    if (extra_points_.empty()) return;
+    auto& cards = dynamics_->dynamics;
+    for (auto* values : {&cards.areas, &cards.delays, &cards.phases})
+      std::erase_if(*values, [&](const auto& value) { return extra_points_.count(value.g) > 0; });
+  }
+
+  /// Returns true if the card is of a set that a command selects, and no subcase does.
+  bool is_unselected() const {
+    const auto member = find_selection_of(text_.name);
+    const auto set = member && !text_.fields.empty() ? parse_int(text_.fields.front()) : std::nullopt;
+    return set && std::none_of(dynamics_->selections.begin(), dynamics_->selections.end(),
+                               [&](const auto& selection) { return selection.second.*member == *set; });
+  }
+
+  /// Nastran looks at selected sets alone: what is wrong with others is a warning, and they are not read.
+  void parse_unselected(const NameEntry& entry) {
+    Diagnostics own;
+    Card card(text_, deck_.files, own);
+    entry.dynamic(card, dynamics_->dynamics);
+    for (auto item : own.items()) {
+      if (item.severity == Severity::Error) {
+        item.severity = Severity::Warning;
+        item.what += "; no subcase selects the set, and the card is not used";
+      }
+      diagnostics_.add(std::move(item));
+    }
     if (card.is_ok()) leftovers_.add(card);
   }
 
@@ -269,6 +326,42 @@ class Builder {
     const auto set = parse_int(text_.fields.front());
     if (set && unread_sets_.emplace(text_.name, *set).second)
       deck_.unread_loads.push_back({text_.name, std::string(command), *set, text_.lines.front().at});
+  }
+
+  /// Cards that extend a property or a material do nothing where that is not there.
+  void keep_base() {
+    const auto kind = find_base(text_.name);
+    if (kind == CardBase::None || ignored_.count(text_.name) > 0 || text_.fields.empty()) return;
+    // PELAST and PDAMPT with tables of force over deflection alone are of nonlinear solutions.
+    const std::size_t num_tables = text_.name == "PELAST" ? 2 : text_.name == "PDAMPT" ? 1 : text_.fields.size();
+    const auto first = text_.fields.begin() + 1;
+    const auto last = text_.fields.begin() + static_cast<std::ptrdiff_t>(std::min(num_tables + 1, text_.fields.size()));
+    const bool acts = std::any_of(first, last, [](const auto& field) { return !trim(field).empty(); });
+    if (const auto id = parse_int(text_.fields.front()); id && acts) bases_[text_.name].push_back(*id);
+  }
+
+  /// Returns true if one of these cards extends a property or a material of the deck.
+  bool has_base(const std::string& name) const {
+    const auto found = bases_.find(name);
+    if (found == bases_.end()) return false;
+    const auto is_in = [](const auto& records, int id) {
+      return std::any_of(records.begin(), records.end(), [id](const auto& r) { return r.id == id; });
+    };
+    return std::any_of(found->second.begin(), found->second.end(), [&](int id) {
+      switch (find_base(name)) {
+        case CardBase::Spring:
+          return is_in(deck_.pelas, id);
+        case CardBase::Bush:
+          return is_in(deck_.pbush, id);
+        case CardBase::Damper:
+          return is_in(deck_.pdamp, id);
+        case CardBase::Material:
+          return is_in(deck_.mat1, id) || is_in(deck_.mat2, id) || is_in(deck_.mat8, id) || is_in(deck_.mat9, id);
+        case CardBase::None:
+          break;
+      }
+      return false;
+    });
   }
 
   NameEntry& find_entry() {
@@ -307,7 +400,9 @@ class Builder {
     for (const auto& entry : names_) {
       deck_.card_counts[entry.first] = entry.second.count;
       const bool is_read = entry.second.parser != nullptr || entry.second.dynamic != nullptr;
-      const bool is_lost = find_loss(entry.first) != nullptr && entry.second.dynamic == nullptr;
+      const auto in_response = is_response_ ? find_response_effect(entry.first) : std::nullopt;
+      const bool is_lost = (find_loss(entry.first) != nullptr && entry.second.dynamic == nullptr) ||
+                           (in_response && !in_response->needs_command);
       if (!is_read || is_lost) unread.push_back(&entry);
     }
     std::sort(unread.begin(), unread.end(), [](const auto* a, const auto* b) {
@@ -345,8 +440,16 @@ class Builder {
     if (is_ignored)
       diagnostics_.warning("deck.ignored-card", where, name + " is ignored (" + times + ")",
                            ignored_loss(name, *effect));
-    else if (dynamics_ && find_response_effect(name))
+    else if (is_response_ && find_response_effect(name) && (find_base(name) == CardBase::None || has_base(name)))
       report_response_card(name, *find_response_effect(name), times, where);
+    else if (find_base(name) == CardBase::Material && has_base(name) && selects_material_temperature())
+      diagnostics_.error("deck.unsupported-card", where,
+                         name +
+                             " is not supported and changes materials with the temperature that TEMPERATURE of the "
+                             "case control selects (" +
+                             times + ")",
+                         "give the material at its temperature and write TEMPERATURE(LOAD), or --ignore " + name +
+                             " to compute with the material as it is");
     else if (has_effect)
       diagnostics_.error("deck.unsupported-card", where,
                          name + " is not supported and carries " + get_effect_name(*effect) + " (" + times + ")",
@@ -358,8 +461,13 @@ class Builder {
           find_loss(name) != nullptr ? find_loss(name) : std::string("it carries ") + get_effect_name(*effect));
   }
 
+  bool selects_material_temperature() const {
+    return std::any_of(deck_.subcases.begin(), deck_.subcases.end(),
+                       [](const auto& subcase) { return subcase.commands.count("TEMPERATURE(MATERIAL)") > 0; });
+  }
+
   std::string ignored_loss(const std::string& name, records::CardEffect effect) const {
-    const auto in_response = dynamics_ ? find_response_effect(name) : std::nullopt;
+    const auto in_response = is_response_ ? find_response_effect(name) : std::nullopt;
     if (in_response && !in_response->needs_command) return std::string("in a response it ") + in_response->what;
     return std::string("it would carry ") + get_effect_name(effect);
   }
@@ -377,13 +485,16 @@ class Builder {
 
   const Source& source_;
   records::Deck& deck_;
-  records::DynamicCards* dynamics_;
+  records::DynamicDeck* dynamics_;
+  bool is_response_;
   Diagnostics& diagnostics_;
   CardImages images_;
   Reading reading_;
   Replicator replicator_;
   std::unordered_set<std::string> ignored_;
   std::set<std::pair<std::string, int>> unread_sets_;
+  std::set<int> extra_points_;                     ///< EPOINT, where they are left out
+  std::map<std::string, std::vector<int>> bases_;  ///< ids that cards such as PELAST and MATT1 extend, by card
   std::unordered_map<std::string, NameEntry> names_;
   std::unordered_map<std::string, int> defaults_seen_;  ///< card index
   Design design_;
@@ -403,7 +514,7 @@ class Builder {
 }  // namespace
 
 void read_bulk(const Source& source, std::size_t first_line, const ReadOptions& options, records::Deck& deck,
-               Diagnostics& diagnostics, records::DynamicCards* dynamics) {
+               Diagnostics& diagnostics, records::DynamicDeck* dynamics) {
   Builder(source, first_line, options, deck, diagnostics, dynamics).read();
 }
 

@@ -12,6 +12,6 @@ namespace bough::nastran::detail {
 /// deck.unknown-card and what the parsers add. `dynamics`: where the cards of responses go; without it they are not
 /// read.
 void read_bulk(const Source& source, std::size_t first_line, const ReadOptions& options, records::Deck& deck,
-               Diagnostics& diagnostics, records::DynamicCards* dynamics = nullptr);
+               Diagnostics& diagnostics, records::DynamicDeck* dynamics = nullptr);
 
 }  // namespace bough::nastran::detail

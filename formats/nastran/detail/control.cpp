@@ -95,8 +95,6 @@ class CaseControl {
       read_statsub(c);
     } else if (is_command(c.word, "SUPORT1", 4))
       read_set(c, "SUPORT1", current().suport1);
-    else if (is_command(c.word, "DEFORM", 4))
-      read_deform(c);
     else if (c.word == "NSM")
       read_set(c, "NSM", current().nsm);
     else if (c.word == "K2GG")
@@ -105,6 +103,10 @@ class CaseControl {
       read_matrices(c, "M2GG", current().m2gg);
     else if (c.word == "B2GG")
       read_matrices(c, "B2GG", current().b2gg);
+    else if (c.word == "P2G")
+      read_load_columns(c);
+    else if (is_command(c.word, "AUTOSPC", 4))
+      read_autospc(c);
     else if (c.word == "SET")
       read_named_set(c);
     else if (c.word == "PARAM")
@@ -116,12 +118,18 @@ class CaseControl {
   }
 
   void read_dynamic(const Command& c) {
-    if (dynamics_ && read_direct_input(c)) return;
-    if (const auto* acts = dynamics_ ? find_unsupported_command(c.word) : nullptr) return refuse(*acts);
+    if (is_response() && read_direct_input(c)) return;
+    if (const auto* acts = find_unsupported_command(c.word)) {
+      if (acts->scope == CommandScope::StaticLoad) return read_unread_load(c, *acts);
+      if (acts->scope == CommandScope::Model || is_response()) return refuse(*acts);
+      return note(c.word);
+    }
     const auto read = dynamics_
                           ? read_dynamic_command({c.word, c.options, c.value, at_}, current(), current_selection())
                           : DynamicCommand::Other;
     if (read == DynamicCommand::BadValue) return bad_value(c);
+    if (read == DynamicCommand::Other && is_response() && c.word == "IC")
+      return refuse({"IC", "TIC", "a start other than by TIC cards"});
     if (read == DynamicCommand::Other && !is_plain_command(c.word)) report_unused(c.word);
   }
 
@@ -135,7 +143,9 @@ class CaseControl {
     return false;
   }
 
-  /// What acts in a response, and Bough does not compute.
+  bool is_response() const { return dynamics_ && options_.is_response; }
+
+  /// What changes the answer, and Bough does not compute.
   void refuse(const UnsupportedCommand& command) {
     const std::string what = std::string(command.name) + " is not supported: it selects " + command.what;
     if (asked_to_ignore_.count(command.name) > 0 || asked_to_ignore_.count(command.card) > 0)
@@ -268,6 +278,7 @@ class CaseControl {
       sym_ids_.push_back(*id);
     }
     if (dynamics_) dynamics_->selections[*id] = selection_above_;
+    load_matrices_[*id] = load_matrices_above_;
   }
 
   void read_set(const Command& c, const char* name, int& set) {
@@ -284,20 +295,40 @@ class CaseControl {
   void read_temperature(const Command& c) {
     const auto kind = read_option(c, {"BOTH", "LOAD", "INITIAL", "MATERIAL"});
     if (!kind) return;
-    if (kind->empty() || *kind == "LOAD" || *kind == "BOTH")
-      read_set(c, "TEMPERATURE", current().temperature);
-    else if (*kind == "INITIAL")
-      read_set(c, "TEMPERATURE(INITIAL)", current().initial_temperature);
-    else
-      note("TEMPERATURE(" + *kind + ")");
+    if (kind->empty() || *kind == "LOAD" || *kind == "BOTH") read_set(c, "TEMPERATURE", current().temperature);
+    if (*kind == "INITIAL") read_set(c, "TEMPERATURE(INITIAL)", current().initial_temperature);
+    if (*kind == "LOAD" || *kind == "INITIAL") return;
+    int material = current().temperature;  // materials depend on the temperature where MATT1 and its kin are
+    if (*kind == "MATERIAL") read_set(c, "TEMPERATURE(MATERIAL)", material);
+    current().commands["TEMPERATURE(MATERIAL)"] = at_;
+    if (material == 0) current().commands.erase("TEMPERATURE(MATERIAL)");
   }
 
-  /// Enforced deformations of elements are not read: a static solution of the case is refused, unless asked otherwise.
-  void read_deform(const Command& c) {
-    if (asked_to_ignore_.count("DEFORM") == 0) read_set(c, "DEFORM", current().deform);
+  /// Loads that are not read: a static solution of the case is refused, unless asked otherwise. Subcase::deform is the
+  /// set of such a command, `commands` says of which.
+  void read_unread_load(const Command& c, const UnsupportedCommand& command) {
+    const bool is_ignored = asked_to_ignore_.count(command.name) > 0 || asked_to_ignore_.count(command.card) > 0;
+    if (!is_ignored) read_set(c, command.name, current().deform);
     diagnostics_.warning("deck.unused-load", deck_.locate(at_),
-                         "DEFORM selects a load that is not read: enforced deformations of elements",
-                         "give it as temperatures, or leave it out");
+                         std::string(command.name) + " selects a load that is not read: " + command.what,
+                         is_ignored ? "ignored as asked" : "give it by other cards, or leave it out");
+  }
+
+  /// P2G: as K2GG, of each subcase.
+  void read_load_columns(const Command& c) {
+    if (is_response()) return refuse({"P2G", "DMIG", "static loads given as a matrix"});
+    MatrixList names;
+    read_matrices(c, "P2G", names);
+    (in_subcase_ ? load_matrices_[current().id] : load_matrices_above_) = std::move(names);
+  }
+
+  /// AUTOSPC(...) = YES, NO: as the PARAM.
+  void read_autospc(const Command& c) {
+    const auto value = make_upper(c.value);
+    if (value == "YES" || value == "NO")
+      deck_.params.push_back({"AUTOSPC", value, at_});
+    else
+      note(c.word);
   }
 
   /// Names of DMIG with or without factors: "K1, K2", "1.25*K1, 0.82*K2", or the id of a SET of such a list.
@@ -344,9 +375,12 @@ class CaseControl {
   void finish() {
     end_combination();
     if (deck_.subcases.empty()) deck_.subcases.push_back(above_);
+    if (!in_subcase_) load_matrices_[0] = load_matrices_above_;
     if (dynamics_ && !in_subcase_) dynamics_->selections[0] = selection_above_;
     choose_matrices(deck_, sets_, at_, diagnostics_);
-    if (dynamics_) add_direct_input(*dynamics_, sets_, at_, diagnostics_);
+    if (options_.load_columns)
+      *options_.load_columns = choose_load_columns(deck_, load_matrices_, sets_, at_, diagnostics_);
+    if (is_response()) add_direct_input(*dynamics_, sets_, at_, diagnostics_);
     ignored_.report(deck_, diagnostics_);
   }
 
@@ -365,6 +399,8 @@ class CaseControl {
   std::unordered_set<int> subcase_ids_;
   std::unordered_set<std::string> asked_to_ignore_;
   NamedSets sets_;
+  MatrixList load_matrices_above_;           ///< P2G
+  std::map<int, MatrixList> load_matrices_;  ///< by subcase
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "formats/nastran/detail/lines.hpp"
+#include "formats/nastran/detail/matrix_selection.hpp"
 #include "formats/nastran/reader.hpp"
 #include "formats/records/deck_dynamics.hpp"
 
@@ -16,8 +17,10 @@ struct ControlOptions {
   /// Where SUBCOM, SYMCOM and REPCASE go, and what is wrong with them (deck.combination). Both or none; with dynamics.
   std::vector<records::CaseCombination>* combinations = nullptr;
   Diagnostics* combination_diagnostics = nullptr;
-  bool notes_combinations = true;  ///< without `combinations`: they are named as not used
-  /// With dynamics: commands that are only warned of (deck.unsupported-command); of ReadOptions.
+  bool notes_combinations = true;       ///< without `combinations`: they are named as not used
+  LoadColumns* load_columns = nullptr;  ///< where P2G goes
+  bool is_response = true;              ///< with `dynamics`: commands that act in responses alone count
+  /// Commands that are only warned of (deck.unsupported-command); of ReadOptions.
   std::vector<std::string> ignore_cards = {};
 };
 

@@ -17,16 +17,19 @@ constexpr std::string_view plain_commands =
 /// The other commands of the quick reference guides.
 constexpr std::string_view known_commands =
     "A2GG ACFP ACOU ACPO ACTI ADAC ADAM ADAP ADJU AECO AERC AERO AESY AEUX ALOA ANAL APRE ASCA ASSI AUTO AUXC AUXM "
-    "AUXT AVLE AXIS B2PP BCHA BCMO BCON BCRE BCSE BFRI BGRE BGSE BLDO BOLT BSEQ BSQU BUCK CAMP CCOM CMET CMSE CMSF "
+    "AUXT AVLE AXIS B2PP BCHA BCMO BCON BCRE BCSE BFRI BGRE BGSE BLDO BOLT BSEQ BSQU BUCK CAMP CCOM CLOA CMET CMSE "
+    "CMSF "
     "COND COSM CRAC CSSC CYCF CYCS CZRE DACC DATA DATR DBSA DEAC DEFO DEMA DEPO DESF DESG DESM DESO DESS DESV DIVE "
     "DLOA DMTR DRSP DSAP DSPR DSYM DTEM DVEL DYNR DYRL EBDS EDE EFLO EFOR EKE ELAR ELPF ELSD ELSU ENDS ENDT ENFO ENTH "
     "EQUI ERP EXPL EXTD EXTR EXTS FATI FBOD FLSF FLST FLUX FMET FORM FREQ FRFI FRFO FRFR GCRS GELD GPKE GPRS "
     "GPSD GPST GUST GVEC HADA HARM HDOT HTFL IC INCL INIT INPO INTE INTK IRAN JINT JOIN K2PP K42G KOUN LAMI LINK LOAD "
-    "LSEQ M2PP MASS MATR MATV MAXM MAXT MAXU MCFR MEFF MODA MODC MODE MODP MODS MODT MONI MONV MPRE MTXP MXSP NCHI "
+    "LSEQ M2PP MASS MATR MATV MAXM MAXT MAXU MCFR MEFF MFLU MODA MODC MODE MODP MODS MODT MONI MONV MPRE MTXP MXSP "
+    "NCHI "
     "NLBU "
     "NLCN NLHA NLIC NLLO NLOP NLPA NLPC NLRE NLST NONL NSMS OFRE OFRQ OMOD OPRE OSTN OTIM OTME OUTR P2G PACI PAMF "
     "PANC PART PCHA PEAK PENE PFGR PFMO PFPA PLOT PLSL PREF PREL PROG RADB RAND RCPA RCRO RCSE REPC REPS RESI RESV "
-    "RGYR RIGI RMAX ROTO RSDA RSMA RSPE RSVC RVEL SDAM SDEN SEAL SECO SEDA SEDC SEDL SEDR SEDV SEEF SEEX SEFI SEKR "
+    "RGYR RIGI RMAX RMET ROTO RSDA RSMA RSPE RSVC RVEL SDAM SDEN SEAL SECO SEDA SEDC SEDL SEDR SEDV SEEF SEEX SEFI "
+    "SEKR "
     "SELG SELO SELR SEMG SEMP SEMR SERE SETP SEUP SHEL SKIN SMET SPCG SPLI STAT STEP STOC STRA STRF SUBM SUBS SUPE "
     "SYMC "
     "SYMS TERM TFL THER TRIM TSTE TSTR UNGL USER VARC VATV VCCT VIBR VUGR WEAK WEIG XYCO";
@@ -76,31 +79,54 @@ void IgnoredCommands::add(const std::string& word, const records::CardLocation& 
 
 void IgnoredCommands::report(const records::Deck& deck, Diagnostics& diagnostics) const {
   if (words_.empty()) return;
-  std::string words, options;
+  std::string words, options, responses;
   bool has_others = words_.size() > most_words;
   const auto num_shown = std::min(words_.size(), most_words);
   for (std::size_t i = 0; i < num_shown; ++i) {
     words += (i == 0 ? "" : ", ") + words_[i].first + " (line " + std::to_string(words_[i].second.line) + ")";
     const auto option = find_option(words_[i].first);
-    if (option.empty()) has_others = true;
+    const auto* acts = find_unsupported_command(words_[i].first);
+    if (acts)
+      responses += (responses.empty() ? "" : ", ") + std::string(acts->name);
+    else if (option.empty())
+      has_others = true;
     if (!option.empty() && options.find(option) == std::string::npos)
       options += (options.empty() ? "" : ", ") + std::string(option);
   }
   if (num_shown < words_.size()) words += " and " + std::to_string(words_.size() - num_shown) + " more";
-  const std::string nothing = "nothing to do, unless one of them should matter";
+  const std::string nothing = "nothing to do: they concern output or other analyses";
+  std::vector<std::string> advice;
+  if (!options.empty()) advice.push_back("options of the command line give results: " + options);
+  if (!responses.empty()) advice.push_back(responses + " would change a response, where it is an error");
+  if (has_others || advice.empty()) advice.push_back((advice.empty() ? "" : "of the others: ") + nothing);
+  std::string text;
+  for (const auto& part : advice) text += (text.empty() ? "" : "; ") + part;
   diagnostics.note("deck.case-control-ignored", deck.locate(words_.front().second), "case control not used: " + words,
-                   options.empty() ? nothing
-                                   : "options of the command line give results: " + options +
-                                         (has_others ? "; of the others: " + nothing : ""));
+                   text);
 }
 
 const UnsupportedCommand* find_unsupported_command(std::string_view word) {
+  using enum CommandScope;
   static constexpr std::array commands{
       UnsupportedCommand{"TFL", "TF", "transfer functions: stiffness, damping and mass of the response"},
       UnsupportedCommand{"NONLINEAR", "NOLIN1", "loads that depend on the motion"},
-      UnsupportedCommand{"K42GG", "DMIG", "structural damping given as a matrix"}};
-  for (const auto& command : commands)
-    if (word.substr(0, 4) == std::string_view(command.name).substr(0, 4)) return &command;
+      UnsupportedCommand{"K42GG", "DMIG", "structural damping given as a matrix"},
+      UnsupportedCommand{"RANDOM", "RANDPS", "power spectra of the excitation: the response is given per load alone"},
+      UnsupportedCommand{"RMETHOD", "ROTORD", "rotors: gyroscopic terms of the response"},
+      UnsupportedCommand{"RGYRO", "RGYRO", "rotors: gyroscopic terms of the response"},
+      UnsupportedCommand{"GUST", "GUST", "aerodynamic loads of a gust"},
+      UnsupportedCommand{"MODESELECT", "MODESELECT", "the modes that take part in the response", Response, 6},
+      UnsupportedCommand{"MODSEL", "MODSEL", "the modes that take part in the response", Response, 6},
+      UnsupportedCommand{"MFLUID", "MFLUID", "the mass of a fluid on the structure", Model},
+      UnsupportedCommand{"MASSSET", "MASSSET", "a mass configuration", Model},
+      UnsupportedCommand{"DEFORM", "DEFORM", "enforced deformations of elements", StaticLoad},
+      UnsupportedCommand{"TRIM", "TRIM", "aerodynamic loads of a trimmed aircraft", StaticLoad},
+      UnsupportedCommand{"BOLTLD", "BOLTFOR", "preloads of bolts", StaticLoad, 6},
+      UnsupportedCommand{"CLOAD", "CLOAD", "a combination of loads of superelements", StaticLoad}};
+  for (const auto& command : commands) {
+    const auto name = std::string_view(command.name).substr(0, command.num_letters);
+    if (word.substr(0, name.size()) == name) return &command;
+  }
   return nullptr;
 }
 

@@ -30,10 +30,18 @@ class IgnoredCommands {
   std::unordered_set<std::string> seen_;
 };
 
-/// Commands that act in a response and that Bough does not honour there.
+/// Where a command changes the answer.
+enum class CommandScope {
+  Model,       ///< stiffness, mass: everywhere
+  StaticLoad,  ///< static solutions, stiffness from stress
+  Response     ///< responses over frequency and time
+};
+/// Commands that change the answer and that Bough does not honour.
 struct UnsupportedCommand {
   const char *name, *card;  ///< upper case; card: of those that it selects
   const char* what;         ///< what these are
+  CommandScope scope = CommandScope::Response;
+  std::size_t num_letters = 4;  ///< that tell it from other commands
 };
 /// nullptr for all others.
 const UnsupportedCommand* find_unsupported_command(std::string_view word);

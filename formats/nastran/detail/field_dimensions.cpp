@@ -14,6 +14,7 @@ namespace {
 constexpr const char* offsets = ". . . . . . . . . . L L L L L L";
 constexpr const char* quad = ". . . . . . . L . . L L L L";
 constexpr const char* triangle = ". . . . . . L . . . L L L";
+constexpr const char* plate = ". . L S . . L S";
 constexpr const char* solid = "";
 constexpr const char* nothing = "";
 constexpr const char* table[][2] = {
@@ -62,6 +63,21 @@ constexpr const char* table[][2] = {
     {"RBE3", nothing},
     {"RBAR", nothing},
     {"RROD", nothing},
+    {"RBAR1", nothing},
+    {"RJOINT", nothing},
+    {"RTRPLT", nothing},
+    {"RTRPLT1", nothing},
+    {"RSPLINE", nothing},  // D/L is a ratio
+    {"CELAS3", nothing},
+    {"CMASS3", nothing},
+    {"CDAMP3", nothing},
+    // Nothing tells whether a scalar point is a translation or a rotation.
+    {"CELAS4", ". ? . . . ? . ."},
+    {"CMASS4", ". ? . . . ? . ."},
+    {"CDAMP4", ". ? . . . ? . ."},
+    {"NSMADD", nothing},
+    {"BAROR", nothing},
+    {"BEAMOR", nothing},
     {"PLOTEL", nothing},
     {"SPC1", nothing},
     {"SPCADD", nothing},
@@ -103,15 +119,66 @@ constexpr const char* table[][2] = {
     {"FREQ3", ". Hz Hz . . ."},
     {"FREQ4", ". Hz Hz . ."},
     {"FREQ5", ". Hz Hz"},
+    // NASTRAN-95, User's Manual, section 2.4.
+    {"MAT6", ". P P P P P P P P P P P P P P P P P P P P P R . . . . . . . ."},
+    {"PQUAD1", ". . L . L3 . L S L L"},
+    {"PTRIA1", ". . L . L3 . L S L L"},
+    {"PQUAD2", plate},
+    {"PTRIA2", plate},
+    {"PQDMEM", plate},
+    {"PQDMEM1", plate},
+    {"PQDMEM2", plate},
+    {"PTRMEM", plate},
+    {"PQDPLT", ". . L3 . L S L L"},
+    {"PTRPLT", ". . L3 . L S L L"},
+    {"PTRBSC", ". . L3 . L S L L"},
+    {"PTRIM6", ". . L L L S"},
+    {"PTRPLT1", ". . L3 L3 L3 . L L L S L L L L L L"},
+    {"PTRSHL", ". . L L L . L3 L3 L3 . L L L S L L L L L L"},
+    {"PIS2D8", ". . L"},
+    {"PIHEX", nothing},
+    {"CQUAD1", nothing},
+    {"CTRIA1", nothing},
+    {"CQUAD2", nothing},
+    {"CTRIA2", nothing},
+    {"CQDMEM", nothing},
+    {"CQDMEM1", nothing},
+    {"CQDMEM2", nothing},
+    {"CTRMEM", nothing},
+    {"CQDPLT", nothing},
+    {"CTRPLT", nothing},
+    {"CTRBSC", nothing},
+    {"CTRIM6", nothing},
+    {"CTRPLT1", nothing},
+    {"CTRSHL", nothing},
+    {"CIS2D8", nothing},
+    {"CHEXA1", nothing},
+    {"CHEXA2", nothing},
+    {"CWEDGE", nothing},
+    {"CIHEX1", nothing},
+    {"CIHEX2", nothing},
+    {"CIHEX3", nothing},
+    {"CRIGD1", nothing},
+    {"CRIGD2", nothing},
+    {"CRIGD3", nothing},
+    {"CRIGDR", nothing},
+    {"CRBAR", nothing},
+    {"CRBE1", nothing},
+    {"CRBE2", nothing},
+    {"CRBE3", nothing},
+    {"CRROD", nothing},
+    {"CRTRPLT", nothing},
+    {"CRSPLINE", nothing},
     {"CONM1", ". . . M M M M M M ML ML ML J ML ML ML J J ML ML ML J J J"},
 };
 
 const std::map<std::string_view, Dimension> dimensions{
-    {"L", {0, 1, 0}},    {"A", {0, 2, 0}},   {"I", {0, 4, 0}},     {"L6", {0, 6, 0}}, {"1/L", {0, -1, 0}},
-    {"P", {1, -1, -2}},  {"R", {1, -3, 0}},  {"M", {1, 0, 0}},     {"ML", {1, 1, 0}}, {"J", {1, 2, 0}},
-    {"N", {1, -1, 0}},   {"S", {1, -2, 0}},  {"F", {1, 1, -2}},    {"Q", {1, 2, -2}}, {"K", {1, 0, -2}},
-    {"B", {1, 0, -1}},   {"BL", {1, 1, -1}}, {"BR", {1, 2, -1}},   {"G", {0, 1, -2}}, {"Hz", {0, 0, -1}},
-    {"Hz2", {0, 0, -2}}, {"T", {0, 0, 1}},   {"1/P2", {-2, 2, 4}}, {"V", {0, 1, -1}}};
+    {"L", {0, 1, 0}},   {"A", {0, 2, 0}},     {"I", {0, 4, 0}},     {"L6", {0, 6, 0}},    {"1/L", {0, -1, 0}},
+    {"L3", {0, 3, 0}},  {"1/K", {-1, 0, 2}},  {"1/F", {-1, -1, 2}}, {"1/Q", {-1, -2, 2}}, {"P", {1, -1, -2}},
+    {"R", {1, -3, 0}},  {"M", {1, 0, 0}},     {"ML", {1, 1, 0}},    {"J", {1, 2, 0}},     {"N", {1, -1, 0}},
+    {"S", {1, -2, 0}},  {"F", {1, 1, -2}},    {"Q", {1, 2, -2}},    {"K", {1, 0, -2}},    {"B", {1, 0, -1}},
+    {"BL", {1, 1, -1}}, {"BR", {1, 2, -1}},   {"G", {0, 1, -2}},    {"Hz", {0, 0, -1}},   {"Hz2", {0, 0, -2}},
+    {"T", {0, 0, 1}},   {"1/P2", {-2, 2, 4}}, {"V", {0, 1, -1}}};
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #include "formats/nastran/detail/known_cards.hpp"
 
 #include <algorithm>
+#include <array>
 #include <unordered_map>
 #include <vector>
 
@@ -192,6 +193,14 @@ const char* find_loss(std::string_view name) {
   return nullptr;
 }
 
+CardBase find_base(std::string_view name) {
+  static constexpr std::array tables{"MATT1", "MATT2", "MATT8", "MATT9", "MATT11"};
+  if (std::find(tables.begin(), tables.end(), name) != tables.end()) return CardBase::Material;
+  if (name == "PELAST") return CardBase::Spring;
+  if (name == "PBUSHT") return CardBase::Bush;
+  return name == "PDAMPT" ? CardBase::Damper : CardBase::None;
+}
+
 std::optional<ResponseEffect> find_response_effect(std::string_view name) {
   if (name == "PBUSHT" || name == "PELAST")
     return ResponseEffect{"gives stiffness and damping over frequency", false, " computes with the nominal values"};
@@ -200,6 +209,10 @@ std::optional<ResponseEffect> find_response_effect(std::string_view name) {
   if (name == "EPOINT") return ResponseEffect{"adds dofs to a response", false, " computes without them"};
   if (name == "TF") return ResponseEffect{"TFL", true, ""};
   if (name.substr(0, 5) == "NOLIN") return ResponseEffect{"NONLINEAR", true, ""};
+  if (name == "RANDPS" || name == "RANDT1") return ResponseEffect{"RANDOM", true, ""};
+  if (name == "GUST") return ResponseEffect{"GUST", true, ""};
+  if (name == "RGYRO") return ResponseEffect{"RGYRO", true, ""};
+  if (name == "ROTORD") return ResponseEffect{"RMETHOD", true, ""};
   return std::nullopt;
 }
 

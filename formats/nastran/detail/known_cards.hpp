@@ -23,6 +23,9 @@ struct ResponseEffect {
   const char* without;  ///< what is computed with --ignore
 };
 std::optional<ResponseEffect> find_response_effect(std::string_view name);
+/// What a card makes depend on frequency (PELAST, PBUSHT, PDAMPT) or on temperature (MATTi).
+enum class CardBase { None, Spring, Bush, Damper, Material };
+CardBase find_base(std::string_view name);
 const char* get_effect_name(records::CardEffect effect);
 
 }  // namespace bough::nastran::detail

@@ -23,6 +23,7 @@ struct Rule {
 bool is_real(const std::string& v) { return parse_real(v).has_value(); }
 bool is_integer(const std::string& v) { return parse_int(v).has_value(); }
 bool is_answer(const std::string& v) { return v == "YES" || v == "Y" || v == "NO" || v == "N"; }
+bool is_method(const std::string& v) { return v == "ABS" || v == "TOTAL" || v == "REL"; }
 /// A whole number written as a real one.
 std::string round_real(const std::string& v) {
   const auto value = parse_real(v);
@@ -39,6 +40,8 @@ const std::vector<Rule>& get_rules() {
       {"CK1", "a number", is_real},
       {"CK2", "a number", is_real},
       {"CK3", "a number", is_real},
+      {"CP1", "a number", is_real},
+      {"CP2", "a number", is_real},
       {"CM1", "a number", is_real},
       {"CM2", "a number", is_real},
       {"COUPMASS", "an integer", is_integer,
@@ -63,11 +66,18 @@ const std::vector<Rule>& get_rules() {
 
 /// Those that responses use besides.
 const std::vector<Rule>& get_response_rules() {
-  static const std::vector<Rule> rules{{"ALPHA1", "a number", is_real},      {"ALPHA2", "a number", is_real},
-                                       {"DFREQ", "a number", is_real},       {"HFREQ", "a number", is_real},
-                                       {"KDAMP", "1 or -1", is_integer},     {"LFREQ", "a number", is_real},
-                                       {"LMODES", "an integer", is_integer}, {"RESVEC", "YES or NO", is_answer},
-                                       {"W3", "a number", is_real},          {"W4", "a number", is_real}};
+  static const std::vector<Rule> rules{{"ALPHA1", "a number", is_real},
+                                       {"ALPHA2", "a number", is_real},
+                                       {"DFREQ", "a number", is_real},
+                                       {"ENFMETH", "ABS, TOTAL or REL", is_method},
+                                       {"ENFMOTN", "ABS, TOTAL or REL", is_method},
+                                       {"HFREQ", "a number", is_real},
+                                       {"KDAMP", "1 or -1", is_integer},
+                                       {"LFREQ", "a number", is_real},
+                                       {"LMODES", "an integer", is_integer},
+                                       {"RESVEC", "YES or NO", is_answer},
+                                       {"W3", "a number", is_real},
+                                       {"W4", "a number", is_real}};
   return rules;
 }
 
@@ -183,9 +193,41 @@ void check_values(records::Deck& deck, Diagnostics& diagnostics, bool of_respons
   deck.params = std::move(good);
 }
 
+/// Those that change the answer by some of their values, and that Bough does not honour.
+struct ActingParam {
+  std::string_view name;
+  bool of_responses;
+  bool (*acts)(const std::string& value);
+  const char* what;
+};
+constexpr auto is_not_one = [](const std::string& v) { return parse_real(v).value_or(1) != 1; };
+constexpr auto is_different = [](const std::string& v) { return v == "DIFF"; };
+constexpr std::array acting_params{
+    ActingParam{"CK3", false, is_not_one, "scales a part of the stiffness"},
+    ActingParam{"CK41", true, is_not_one, "scales the structural damping"},
+    ActingParam{"SHLDAMP", true, is_different, "damps shells by each of their materials"},
+    ActingParam{"SHLDMP", true, is_different, "damps shells by each of their materials"}};
+
+/// Whether the parameter changes the answer: deck.unsupported-param.
+bool report_acting(const records::Deck& deck, const records::Param& param, bool of_responses,
+                   const std::vector<std::string>& ignored, Diagnostics& diagnostics) {
+  for (const auto& acting : acting_params) {
+    if (param.name != acting.name || (acting.of_responses && !of_responses) || !acting.acts(param.value)) continue;
+    const std::string what = "PARAM," + param.name + "," + param.value + " is not supported: it " + acting.what;
+    if (std::any_of(ignored.begin(), ignored.end(), [&](const auto& name) { return make_upper(name) == param.name; }))
+      diagnostics.warning("deck.unsupported-param", deck.locate(param.at), what, "ignored as asked");
+    else
+      diagnostics.error("deck.unsupported-param", deck.locate(param.at), what,
+                        "take it out, or --ignore " + param.name + " to compute without it");
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
-void report_params(records::Deck& deck, Diagnostics& diagnostics, bool of_responses) {
+void report_params(records::Deck& deck, const std::vector<std::string>& ignored, Diagnostics& diagnostics,
+                   bool of_responses) {
   check_values(deck, diagnostics, of_responses);
   static const Names names;
   std::string list;
@@ -195,6 +237,7 @@ void report_params(records::Deck& deck, Diagnostics& diagnostics, bool of_respon
   for (const auto& param : deck.params) {
     if (std::find(names.used.begin(), names.used.end(), param.name) != names.used.end()) continue;
     if (!seen.insert(param.name).second) continue;
+    if (report_acting(deck, *deck.find_param(param.name), of_responses, ignored, diagnostics)) continue;
     const auto& more = get_response_rules();
     if (of_responses && std::any_of(more.begin(), more.end(), [&](const Rule& r) { return r.name == param.name; }))
       continue;
@@ -213,7 +256,7 @@ void report_params(records::Deck& deck, Diagnostics& diagnostics, bool of_respon
   }
   if (!list.empty())
     diagnostics.note("deck.unused-params", deck.locate(first), "PARAM not used: " + list,
-                     "nothing to do, unless one of them should matter");
+                     "nothing to do: they concern output or other analyses");
 }
 
 }  // namespace bough::nastran::detail

@@ -8,7 +8,10 @@ namespace bough::nastran::detail {
 /// left out of the deck, or a warning with what it is taken as. One note with every PARAM that has no effect here, by
 /// line (deck.unused-params), and a warning for each name that no Nastran knows, with the nearest that one does
 /// (deck.unknown-param).
+/// A value that changes the answer and that Bough does not honour is an error, a warning where `ignored` has the name
+/// (deck.unsupported-param).
 /// `of_responses`: those of responses have an effect too.
-void report_params(records::Deck& deck, Diagnostics& diagnostics, bool of_responses = false);
+void report_params(records::Deck& deck, const std::vector<std::string>& ignored, Diagnostics& diagnostics,
+                   bool of_responses = false);
 
 }  // namespace bough::nastran::detail

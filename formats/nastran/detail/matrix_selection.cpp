@@ -75,6 +75,26 @@ void choose_matrices(records::Deck& deck, const NamedSets& sets, const records::
   if (differs) report_later(deck, at, "K2GG, M2GG or B2GG", diagnostics);
 }
 
+LoadColumns choose_load_columns(const records::Deck& deck, const std::map<int, MatrixList>& selected,
+                                const NamedSets& sets, const records::CardLocation& at, Diagnostics& diagnostics) {
+  LoadColumns columns;
+  std::map<std::string, int> num_used;
+  for (const auto& subcase : deck.subcases) {
+    const auto found = selected.find(subcase.id);
+    if (found == selected.end() || found->second.empty()) continue;
+    auto chosen = found->second;
+    if (!expand_set(sets, chosen)) {
+      report_no_set(deck, at, "P2G", chosen.front().second, diagnostics);
+      continue;
+    }
+    std::map<std::string, int> next;
+    for (const auto& [scale, name] : chosen) next.try_emplace(name, 0);
+    for (auto& [name, column] : next) column = ++num_used[name];
+    for (const auto& [scale, name] : chosen) columns[subcase.id].push_back({scale, name, next[name]});
+  }
+  return columns;
+}
+
 void add_direct_input(records::DynamicDeck& deck, const NamedSets& sets, const records::CardLocation& at,
                       Diagnostics& diagnostics) {
   bool differs = false;

@@ -21,6 +21,23 @@ bool read_matrix_names(std::string_view text, MatrixList& matrices);
 void choose_matrices(records::Deck& deck, const NamedSets& sets, const records::CardLocation& at,
                      Diagnostics& diagnostics);
 
+/// A column of a DMIG that P2G adds to the loads of a subcase.
+struct LoadColumn {
+  double scale = 1;
+  std::string matrix;
+  int column = 1;
+};
+using LoadColumns = std::map<int, std::vector<LoadColumn>>;  ///< by subcase
+
+/// P2G of each subcase with the names of its sets: the k-th subcase that selects a matrix has column k of it (MSC adds
+/// the matrix of loads, a column for each load case). Adds deck.case-control-value.
+LoadColumns choose_load_columns(const records::Deck& deck, const std::map<int, MatrixList>& selected,
+                                const NamedSets& sets, const records::CardLocation& at, Diagnostics& diagnostics);
+/// Makes a load set of the LOAD and of the columns of each such subcase: FORCE and MOMENT in the displacement systems
+/// of the grids, SLOAD, times PARAM,CP2, with the LOAD times PARAM,CP1. The matrices are gone then. Adds
+/// deck.load-columns, deck.load-matrix.
+void add_load_columns(const LoadColumns& columns, records::Deck& deck, Diagnostics& diagnostics);
+
 /// K2PP, M2PP, B2PP: direct input of responses alone.
 struct DirectInput {
   const char* name;

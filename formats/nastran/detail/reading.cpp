@@ -1,6 +1,7 @@
 #include "formats/nastran/detail/reading.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "formats/nastran/detail/text.hpp"
 
@@ -30,11 +31,21 @@ const IdTable::Entry* IdTable::insert(const Entry& entry) {
 }
 
 bool Reading::claim(IdSpace space, int id, Card& card_, int first_field, int num_fields) {
+  return claim_in(ids[static_cast<std::size_t>(space)], id, card_, first_field, num_fields);
+}
+
+bool Reading::claim_rigid(int id, Card& card_, int first_field, int num_fields) {
+  const bool is_old = card_.get_name().starts_with("CR");
+  auto& table = is_old ? old_rigid_ids_[card_.get_name()] : ids[static_cast<std::size_t>(IdSpace::Rigid)];
+  return claim_in(table, id, card_, first_field, num_fields);
+}
+
+bool Reading::claim_in(IdTable& table, int id, Card& card_, int first_field, int num_fields) {
   if (!card_.is_ok()) {
     deck.refused[card_.get_name()].insert(id);
     return false;
   }
-  const auto* earlier = ids[static_cast<std::size_t>(space)].insert({id, card, first_field, num_fields});
+  const auto* earlier = table.insert({id, card, first_field, num_fields});
   if (earlier == nullptr) return true;
   bool is_same = earlier->card >= 0;
   std::string where;
@@ -57,6 +68,27 @@ bool Reading::claim(IdSpace space, int id, Card& card_, int first_field, int num
     card_.fail("deck.duplicate-id", first_field, "id " + std::to_string(id) + " is used twice" + where,
                "give one of them another id");
   return false;
+}
+
+void finish_rigid_ids(Reading& r) {
+  auto& deck = r.deck;
+  int highest = 0;
+  const auto visit_all = [&](const auto& visit) {
+    const auto visit_each = [&](auto& records) {
+      for (auto& record : records) visit(record.id);
+    };
+    visit_each(deck.rbe2);
+    visit_each(deck.rbe1);
+    visit_each(deck.rbe3);
+    visit_each(deck.rbar);
+    visit_each(deck.rrod);
+    visit_each(deck.special.rspline);
+  };
+  visit_all([&](int id) { highest = std::max(highest, id); });
+  std::set<int> used;
+  visit_all([&](int& id) {
+    if (!used.insert(id).second) id = ++highest;
+  });
 }
 
 bool is_default_card(std::string_view name) { return name == "GRDSET" || name == "BAROR" || name == "BEAMOR"; }

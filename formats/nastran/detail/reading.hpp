@@ -149,7 +149,16 @@ struct Reading {
   /// True if `id` is new in its space. A second card with the same content adds deck.repeated-card, with another
   /// content deck.duplicate-id. The content is num_fields fields from first_field on (all of them by default).
   bool claim(IdSpace space, int id, Card& card_, int first_field = 0, int num_fields = 1 << 20);
+  /// The same of rigid elements: those of NASTRAN-95 (CRIGD1, CRBAR, ...) share ids with the other names.
+  bool claim_rigid(int id, Card& card_, int first_field = 0, int num_fields = 1 << 20);
+
+ private:
+  bool claim_in(IdTable& table, int id, Card& card_, int first_field, int num_fields);
+  std::map<std::string, IdTable> old_rigid_ids_;  ///< by card name
 };
+
+/// Ids of their own for rigid elements of NASTRAN-95 that share theirs with an element of another name.
+void finish_rigid_ids(Reading& r);
 
 using CardParser = void (*)(Card&, Reading&);
 

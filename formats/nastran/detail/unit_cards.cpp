@@ -171,10 +171,58 @@ void UnitConverter::convert_param() {
       {"W3", "Hz"},    {"W4", "Hz"},   {"ALPHA1", "Hz"}, {"ALPHA2", "T"}, {"LFREQ", "Hz"},   {"HFREQ", "Hz"},
       {"WTMASS", "."}, {"G", "."},     {"GFL", "."},     {"K6ROT", "."},  {"MAXRATIO", "."}, {"EPZERO", "."},
       {"EPPRT", "."},  {"SNORM", "."}, {"CB1", "."},     {"CB2", "."},    {"CK1", "."},      {"CK2", "."},
-      {"CM1", "."},    {"CM2", "."},   {"BAILOUT", "."}, {"TINY", "."},   {"SIGMA", "?"}};
+      {"CM1", "."},    {"CM2", "."},   {"CP1", "."},     {"CP2", "."},    {"CK3", "."},      {"BAILOUT", "."},
+      {"TINY", "."},   {"SIGMA", "?"}};
   const auto found = words.find(make_upper(get(0)));
   if (found != words.end()) return scale(1, found->second);
   if (!parse_int(get(1)) && parse_real(get(1))) fail(1, "nothing tells its dimension");
+}
+
+/// NAME GJ CJ blank, then G C A B for each row; the header has no dimension.
+void UnitConverter::convert_dmig() {
+  if (get(1) == "0") return;
+  const auto name = make_upper(get(0));
+  const auto found = matrix_kinds_.find(name);
+  const auto kind = found == matrix_kinds_.end() ? "?" : found->second;
+  for (int i = 4; i < size(); i += 4) {
+    if (get(i).empty()) continue;
+    const auto motion = kind == "P" ? find_motion(get(i + 1), "", false) : find_motion(get(i + 1), get(2), true);
+    const std::string word = kind == "K"   ? choose(motion, "K", "Q", "F")
+                             : kind == "M" ? choose(motion, "M", "J", "ML")
+                             : kind == "B" ? choose(motion, "B", "BR", "BL")
+                             : kind == "P" ? choose(motion, "F", "Q", "?")
+                                           : "?";
+    scale(i + 2, word);
+    if (polar_matrices_.count(name) == 0) scale(i + 3, word);
+  }
+}
+
+/// UI and UD by pairs of grid and component; K or Z by columns from the diagonal on; S by rows.
+void UnitConverter::convert_genel() {
+  std::vector<std::string> ui, ud;
+  const auto read_pairs = [&](int first, std::vector<std::string>& components) {
+    int i = first;
+    for (; i < size() && make_upper(get(i)) != "UD" && make_upper(get(i)) != "K" && make_upper(get(i)) != "Z"; ++i)
+      if (!get(i).empty()) components.push_back(get(++i));
+    return i;
+  };
+  int i = read_pairs(2, ui);
+  if (make_upper(get(i)) == "UD") i = read_pairs(i + 1, ud);
+  const bool is_stiffness = make_upper(get(i)) == "K";
+  ++i;
+  for (std::size_t column = 0; column < ui.size(); ++column)
+    for (std::size_t row = column; row < ui.size() && i < size(); ++row, ++i) {
+      const auto motion = find_motion(ui[row], ui[column], true);
+      scale(i, is_stiffness ? choose(motion, "K", "Q", "F") : choose(motion, "1/K", "1/Q", "1/F"));
+    }
+  while (i < size() && make_upper(get(i)) != "S") ++i;
+  ++i;
+  for (const auto& row : ui)
+    for (std::size_t column = 0; column < ud.size() && i < size(); ++column, ++i) {
+      const auto motion = find_motion(row, ud[column], true);
+      const bool is_rotation = find_motion(row, "", false) == Motion::Rotation;
+      scale(i, choose(motion, ".", ".", is_rotation ? "1/L" : "L"));
+    }
 }
 
 }  // namespace bough::nastran::detail

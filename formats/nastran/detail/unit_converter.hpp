@@ -55,6 +55,8 @@ class UnitConverter {
   void convert_pload1();
   void convert_nonstructural();
   void convert_param();
+  void convert_dmig();
+  void convert_genel();
 
   /// Loads over frequency and time, tables; false where the card is none of them.
   bool convert_dynamic();
@@ -68,6 +70,8 @@ class UnitConverter {
   const DeckCard* card_ = nullptr;
   std::map<int, Axes> axes_;
   std::map<std::string, std::set<Motion>> motions_;
+  std::map<std::string, std::string> matrix_kinds_;  ///< of DMIG, by name
+  std::set<std::string> polar_matrices_;             ///< amplitude and phase
   std::set<std::string> grids_;
   std::map<std::string, std::set<std::string>> table_axes_;  ///< by TID: "Hz", "T"
   std::map<std::string, std::set<int>> enforced_;  ///< by EXCITEID: 0 force, 1 motion, 2 velocity, 3 acceleration

@@ -282,7 +282,6 @@ INSTANTIATE_TEST_SUITE_P(
                 [](records::Deck& k) {
                   k.mpc.push_back(make_mpc(2, {{3, 1, 1.0}, {2, 1, 1.0}}));
                 }},
-        BadCase{"fe.missing-set", [](records::Deck& k) { k.subcases[0].spc = 44; }},
         BadCase{"fe.missing-grid", [](records::Deck& k) { k.spc.push_back(make_spc(1, 77, 1)); }},
         BadCase{"fe.missing-grid", [](records::Deck& k) { k.rbe2.push_back(make_rbe2(9, 4, 63, {78})); }},
         BadCase{"fe.bad-component", [](records::Deck& k) { k.mpc[0].terms[1].c = 9; }},
@@ -308,6 +307,21 @@ INSTANTIATE_TEST_SUITE_P(
           name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
       return name;
     });
+
+/// Other codes run such decks.
+TEST(Constraints, SetsWithoutCardsAreAWarning) {
+  auto deck = make_deck(make_points());
+  deck.subcases[0].spc = 9;
+  deck.spcadd.push_back({9, {1, 44}, {}});
+  deck.spc.push_back(make_spc(1, 1, 63));
+  Diagnostics d, none;
+  EXPECT_EQ(Model::build(deck, {}, make_links(kLinks), d).num_fdofs(), 24);
+  EXPECT_TRUE(d.has("fe.missing-set"));
+  EXPECT_EQ(d.num_errors(), 0);
+  deck.subcases[0].spc = 44;
+  EXPECT_EQ(Model::build(deck, {}, make_links(kLinks), none).num_fdofs(), 30);
+  EXPECT_TRUE(none.has("fe.missing-set"));
+}
 
 TEST(Constraints, enforced_displacement_is_zero_with_a_warning_and_thru_ids_may_be_missing) {
   auto deck = make_deck(make_points());

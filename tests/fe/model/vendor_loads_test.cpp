@@ -133,20 +133,21 @@ TEST(VendorLoads, EverythingPrescribedGivesReactions) {
   EXPECT_LT(s.reaction_resultant.norm(), 1e-10);
 }
 
-/// CNA alone with fewer than six, or nothing at all: the bar is held by all of GA.
+/// Nothing at all: the bar is held by all of GA. CNA alone with fewer than six: all of GA holds it, and the same
+/// components of GB depend, as by an RBE2.
 TEST(VendorLoads, RbarIsCompletedAtItsFirstGrid) {
-  const std::string grids = "GRID,1,,0.,0.,0.\nGRID,2,,1.,2.,3.\n";
-  const MatrixXd T = MatrixXd(build("BEGIN BULK\n" + grids + "RBAR,5,1,2,123456\n").T());
-  for (const auto& [card, warnings] : {std::pair{"RBAR,5,1,2,123\n", 1}, {"RBAR,5,1,2\n", 0}}) {
-    Diagnostics d;
-    const Model model = build("BEGIN BULK\n" + grids + card, d);
-    EXPECT_EQ(MatrixXd(model.T()), T) << card;
-    EXPECT_EQ(count("BEGIN BULK\n" + grids + card, "fe.rbar-completed"), warnings);
-  }
-  // CMB names some: the others of GB stay free.
-  const Model hinge = build("BEGIN BULK\n" + grids + "RBAR,5,1,2,123,,,123\n");
-  EXPECT_EQ(hinge.num_fdofs(), 9);
-  EXPECT_EQ(count("BEGIN BULK\n" + grids + "RBAR,5,1,2,123,,456,123456\n", "fe.rigid-independent"), 1);
+  const std::string grids = "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,2.,3.\n";
+  const auto get_T = [&](const std::string& card) { return MatrixXd(build(grids + card).T()); };
+  EXPECT_EQ(get_T("RBAR,5,1,2\n"), get_T("RBAR,5,1,2,123456\n"));
+  EXPECT_EQ(count(grids + "RBAR,5,1,2\n", "fe.rbar-completed"), 0);
+  EXPECT_EQ(count(grids + "RBAR,5,1,2,123\n", "fe.rbar-completed"), 1);
+  EXPECT_LT((get_T("RBAR,5,1,2,123\n") - get_T("RBE2,5,1,123,2\n")).norm(), 1e-14);
+  EXPECT_LT((get_T("RBAR,5,1,2,,13\n") - get_T("RBE2,5,2,13,1\n")).norm(), 1e-14);
+  // The rotations of GB are free to be held.
+  const std::string held = "SPC = 3\n" + grids + "SPC1,3,456,2\nRBAR,5,1,2,123\n";
+  EXPECT_EQ(build(held).num_fdofs(), 6);
+  EXPECT_EQ(build(grids + "RBAR,5,1,2,123,,,123\n").num_fdofs(), 9);
+  EXPECT_EQ(count(grids + "RBAR,5,1,2,123,,456,123456\n", "fe.rigid-independent"), 1);
 }
 
 /// Pressure on a face by its grids, whichever way the solid counts them, P1 to P4 at the same grids.

@@ -131,9 +131,14 @@ TEST(Fields, EmptyLineBeforeAContinuation) {
 }
 
 TEST(Fields, DataBeyondFieldNineGoesOn) {
-  // A number alone in field 10 is a mark to Nastran, which would drop it: an error, unless a line continues it.
+  // A number alone in field 10 is a mark to Nastran, which drops it: a warning, unless a line continues it.
   const auto r = read("SPC1,1,123456,1,2,3,4,5,6,7\n");
   ASSERT_NE(r.find("deck.too-many-fields"), nullptr);
+  EXPECT_EQ(r.find("deck.too-many-fields")->severity, Severity::Warning);
+  EXPECT_EQ(r.deck.spc.size(), 6u);
+  const auto strong = read("MAT1,1,7.+10,,.3,2700.,1.-5,20.,.01,3.+8\n");
+  EXPECT_EQ(strong.count("deck.too-many-fields"), 1);
+  EXPECT_EQ(strong.deck.mat1.at(0).ge, .01);
   EXPECT_EQ(read_clean("SPC1,1,123456,1,2,3,4,5,6,7\n+7,8\n").spc.size(), 7u);
   EXPECT_NE(read("SPC1,1,123456,1,2,3,4,5,6,+A,8\n").find("deck.too-many-fields"), nullptr);
   EXPECT_EQ(read_clean("SPC1,1,123456,1,2,3,4,5,6,7,8,9\n").spc.size(), 9u);

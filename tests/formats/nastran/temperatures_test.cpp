@@ -42,8 +42,9 @@ TEST(Temperatures, SelectionInTheCaseControl) {
   EXPECT_EQ(r.deck.subcases[1].temperature, 8);
   EXPECT_EQ(r.deck.subcases[2].temperature, 0);
   EXPECT_EQ(r.deck.subcases[2].initial_temperature, 3);
-  ASSERT_NE(r.find("deck.case-control-ignored"), nullptr);
-  EXPECT_NE(r.find("deck.case-control-ignored")->what.find("TEMPERATURE(MATERIAL) (line 9)"), std::string::npos);
+  const bool has_materials[] = {false, true, true};
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(r.deck.subcases[i].commands.count("TEMPERATURE(MATERIAL)") > 0, has_materials[i]) << i;
 }
 
 TEST(Temperatures, ExpansionOfMaterials) {
