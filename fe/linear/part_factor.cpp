@@ -3,6 +3,7 @@
 #include <petscblaslapack.h>
 
 #include <algorithm>
+#include <cmath>
 
 extern "C" void dlauum_(const char* part, const PetscBLASInt* n, double* A, const PetscBLASInt* lda,
                         PetscBLASInt* info);
@@ -174,14 +175,19 @@ void solve_dense(const MatrixXd& L, MatrixXd& X) {
   if (n > 0 && m > 0) LAPACKpotrs_("L", &n, &m, L.data(), &n, X.data(), &n, &info);
 }
 
-VectorXd calc_row_sums(const MatrixRows& A, const std::vector<PetscInt>& rows, PetscInt size) {
-  std::vector<char> is_in(static_cast<std::size_t>(size), 0);
-  for (const PetscInt row : rows) is_in[static_cast<std::size_t>(row)] = 1;
-  VectorXd sums = VectorXd::Zero(static_cast<Eigen::Index>(rows.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i)
+VectorXd calc_separator_shift(const MatrixRows& A, const std::vector<PetscInt>& rows, PetscInt size) {
+  VectorXd root = VectorXd::Zero(size);  // of the diagonal, at `rows`
+  for (const PetscInt row : rows)
+    for (PetscInt k = A.start[row]; k < A.start[row + 1]; ++k)
+      if (A.column[k] == row && A.value[k] > 0) root(row) = std::sqrt(A.value[k]);
+  VectorXd shift = VectorXd::Zero(static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    double sum = 0;
     for (PetscInt k = A.start[rows[i]]; k < A.start[rows[i] + 1]; ++k)
-      if (is_in[static_cast<std::size_t>(A.column[k])]) sums(static_cast<Eigen::Index>(i)) += std::abs(A.value[k]);
-  return sums;
+      if (const double r = root(A.column[k]); r > 0) sum += std::abs(A.value[k]) / r;
+    shift(static_cast<Eigen::Index>(i)) = root(rows[i]) * sum;
+  }
+  return shift;
 }
 
 }  // namespace bough::fe

@@ -80,7 +80,11 @@ class PartFactor {
 bool factor_dense(Eigen::MatrixXd& S);
 /// X becomes (L Lᵀ)⁻¹ X.
 void solve_dense(const Eigen::MatrixXd& L, Eigen::MatrixXd& X);
-/// Sums of |A_ij| of these rows of A (size x size) over these columns.
-Eigen::VectorXd calc_row_sums(const MatrixRows& A, const std::vector<PetscInt>& rows, PetscInt size);
+/// Shift δ_i = √A_ii Σ_j |A_ij| / √A_jj of the separator rows, j in `rows`: diag δ - A_ss is semidefinite, since A_ss
+/// scaled to a unit diagonal is dominated by its row sums. The shift scales with the rows, so that translations and
+/// rotations lose equally few digits to it in any unit of length.
+/// \param A  size x size, symmetric.
+/// \return one per row of `rows`; 0 if the diagonal entry is not positive (A is not definite then).
+Eigen::VectorXd calc_separator_shift(const MatrixRows& A, const std::vector<PetscInt>& rows, PetscInt size);
 
 }  // namespace bough::fe

@@ -268,7 +268,7 @@ SubdomainFactor::SubdomainFactor(Mat A, const Subdomains& domains)
     const MatrixRows as_rows{rows.outerIndexPtr(), rows.innerIndexPtr(), rows.valuePtr()};
     do_on_all(no_memory, [&] {
       const auto size = static_cast<PetscInt>(rows.rows());
-      delta = calc_row_sums(as_rows, between, size);
+      delta = calc_separator_shift(as_rows, between, size);
       is_fine = part_->analyse(as_rows, size, std::move(own), between, delta, world.size);
     });
   }

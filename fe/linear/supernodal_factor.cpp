@@ -48,7 +48,7 @@ SupernodalFactor make_supernodal_factor(Mat A, PetscInt least) {
   std::vector<char> is_fine(num, 0);
   VectorXd delta;
   visit_rows(A, [&](const MatrixRows& rows, PetscInt size) {
-    delta = calc_row_sums(rows, parts->between, size);
+    delta = calc_separator_shift(rows, parts->between, size);
     do_all(num, [&](std::size_t p) {
       is_fine[p] =
           parts->part[p]->analyse(rows, size, std::move(own[p]), parts->between, delta, static_cast<int>(num)) ? 1 : 0;

@@ -83,6 +83,38 @@ TEST_P(SubdomainsOf, MultiplyAndSolveAsTheWholeDoes) {
   }
 }
 
+/// Every second row in another unit, a power of two: the solution is the same to the last bit.
+TEST_P(SubdomainsOf, UnitsOfRowsChangeNoDigit) {
+  std::srand(1);
+  const MatrixXd B = MatrixXd::Random(kRows, 4);
+  MatrixXd X;
+  for (const double unit : {1.0, 0x1p-20, 0x1p20}) {
+    const PetscMat A = make_grid(4.5);
+    PetscVec scale;
+    check_petsc(MatCreateVecs(A.get(), scale.out(), nullptr));
+    PetscInt first = 0, last = 0;
+    check_petsc(VecGetOwnershipRange(scale.get(), &first, &last));
+    for (PetscInt i = first; i < last; ++i)
+      check_petsc(VecSetValue(scale.get(), i, i % 2 == 0 ? 1 : unit, INSERT_VALUES));
+    check_petsc(VecAssemblyBegin(scale.get()));
+    check_petsc(VecAssemblyEnd(scale.get()));
+    check_petsc(MatDiagonalScale(A.get(), scale.get(), scale.get()));
+    Eigen::VectorXd S(kRows);
+    for (int i = 0; i < kRows; ++i) S(i) = i % 2 == 0 ? 1 : unit;
+    mark(A.get());
+    const auto domains = find_subdomains(A.get(), A.get(), 0);
+    ASSERT_EQ(domains.has_value(), initialize_petsc().size > 1);
+    if (!domains) return;
+    const SubdomainFactor factor(A.get(), *domains);
+    ASSERT_TRUE(factor.is_definite());
+    const MatrixXd Y = S.asDiagonal() * domains->replicate(factor.solve(domains->take_own(S.asDiagonal() * B)));
+    if (unit == 1)
+      X = Y;
+    else
+      EXPECT_EQ(Y, X) << unit;
+  }
+}
+
 /// On every rank.
 Eigen::SparseMatrix<double> gather_matrix(Mat A) {
   PetscInt first = 0, last = 0, num = 0;

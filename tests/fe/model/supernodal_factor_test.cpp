@@ -77,6 +77,31 @@ TEST_P(SupernodalFactorOn, SolvesAsThePivotedOneDoes) {
   }
 }
 
+/// Rotations in another unit of length: S A S with powers of two in S is factored without another rounding error, so
+/// that S X solves it to the last bit. Row sums over both kinds as the shift lose its digits.
+TEST_P(SupernodalFactorOn, UnitsOfRowsChangeNoDigit) {
+  const Threads threads(GetParam());
+  const PetscMat A = make_grid(90, 60);
+  const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 90 * 60, 5);
+  const Eigen::MatrixXd X = solve_factored(make_supernodal_factor(A.get(), 0).factor.get(), B);
+  for (const double unit : {0x1p-20, 0x1p20}) {
+    PetscVec scale;
+    check_petsc(MatCreateVecs(A.get(), scale.out(), nullptr));
+    Eigen::VectorXd S(B.rows());
+    for (Eigen::Index i = 0; i < S.size(); ++i) S(i) = i % 2 == 0 ? 1 : unit;
+    PetscScalar* values = nullptr;
+    check_petsc(VecGetArray(scale.get(), &values));
+    Eigen::VectorXd::Map(values, S.size()) = S;
+    check_petsc(VecRestoreArray(scale.get(), &values));
+    const PetscMat scaled = make_grid(90, 60);
+    check_petsc(MatDiagonalScale(scaled.get(), scale.get(), scale.get()));
+    const SupernodalFactor factor = make_supernodal_factor(scaled.get(), 0);
+    ASSERT_TRUE(factor.factor) << unit;
+    EXPECT_EQ(factor.num_parts, GetParam());
+    EXPECT_EQ(S.asDiagonal() * solve_factored(factor.factor.get(), S.asDiagonal() * B), X) << unit;
+  }
+}
+
 TEST(SupernodalFactor, IsOfLargeMatricesInGroups) {
   if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes factor together";
   const Threads two(2);
