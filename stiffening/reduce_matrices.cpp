@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <set>
 
 #include "base/rotation.hpp"
 #include "fe/linear/factor.hpp"
 #include "stiffening/given_checks.hpp"
 #include "stiffening/given_elements.hpp"
+#include "stiffening/given_rigid.hpp"
 
 namespace bough::stiffening {
 
@@ -55,6 +57,7 @@ class MatrixReduction {
   BodySpec make_spec() const;
   fe::ElementList make_elements(const fe::NodeTable& nodes);
   SparseRows place(const PointTable& points, const GivenMatrix& matrix, SparseRows* placement = nullptr);
+  void restore_rigid_motions(const PointTable& points, const SparseRows& M, SparseRows& K);
   MatrixXd calc_modes(const fe::System& system);
   void warn_of_strangers(const fe::System& system, const MatrixXd& Phi, const std::vector<int>& elastic);
   void check_integrals();
@@ -130,7 +133,7 @@ fe::ElementList MatrixReduction::make_elements(const fe::NodeTable& nodes) {
   if (diagnostics_.num_errors() > 0) return list;  // of the grids
 
   SparseRows P_K;
-  const SparseRows K = place(points, given_.K, &P_K);
+  SparseRows K = place(points, given_.K, &P_K);
   const SparseRows M = given_.mass_scale * place(points, given_.M);
   const SparseRows B = given_.B.empty() ? SparseRows() : place(points, given_.B);
   K_G_.clear(), F_.clear();
@@ -155,11 +158,41 @@ fe::ElementList MatrixReduction::make_elements(const fe::NodeTable& nodes) {
   check_mass(M, given_.M, points, diagnostics_);
   is_lumped_ = !couples_points(points, M);
   check_integrals();
+  if (spec_.frame != records::BodyFrame::Fixed && diagnostics_.num_errors() == 0) restore_rigid_motions(points, M, K);
   add_direct_elements(points, K, fe::DirectKind::Stiffness, list);
   add_direct_elements(points, M, fe::DirectKind::Mass, list);
   if (B.rows() > 0) add_direct_elements(points, B, fe::DirectKind::Damping, list);
   add_drawn_elements(deck_, nodes, list);
   return list;
+}
+
+/// Whether the deck ties points that K need not couple.
+bool has_constraint_equations(const Deck& deck) {
+  return !(deck.rbe1.empty() && deck.rbe2.empty() && deck.rbe3.empty() && deck.rbar.empty() && deck.rrod.empty() &&
+           deck.special.rspline.empty() && deck.mpc.empty());
+}
+
+/// K of a free body that another program condensed strains in rigid-body motions by round-off.
+void MatrixReduction::restore_rigid_motions(const PointTable& points, const SparseRows& M, SparseRows& K) {
+  const auto check = check_rigid_motions(points, K, M);
+  if (check.is_exact || !(check.elastic > 0)) return;
+  const auto to_hz = [](double lambda) { return std::sqrt(lambda) / (2 * std::numbers::pi); };
+  char text[200];
+  std::snprintf(text, sizeof text, "up to %.2g Hz, the first elastic mode has %.6g Hz", to_hz(check.worst),
+                to_hz(check.elastic));
+  if (check.num_mechanisms > 0 && check.num_rigid == 6 && !has_constraint_equations(deck_)) {
+    diagnostics_.error("reduce.mechanism", given_.K.at,
+                       given_.K.label + " has " + std::to_string(check.num_mechanisms) +
+                           " motion(s) without strain in addition to the six rigid-body motions",
+                       "look for hinges, and for parts or points that nothing holds");
+    return;
+  }
+  if (!check.is_free) return;
+  K = check.K;
+  diagnostics_.note(
+      "reduce.rigid-roundoff", given_.K.at,
+      given_.K.label + " strains in rigid-body motions by round-off: " + text + "; they are taken as rigid",
+      "nothing to do; use frame = \"fixed\" if the body is held by springs as soft as these");
 }
 
 MatrixXd MatrixReduction::calc_modes(const fe::System& system) {

@@ -248,6 +248,111 @@ TEST(ReduceMatrices, ConsistentMassTakesItsNodalMomenta) {
   expect_near(rigid.transpose() * body.F_I, rigid.transpose() * expected.F_I, 1e-12, "resultant");
 }
 
+/// A free steel tube of `num` beams along x, 12 m long, condensed to its two end grids and four fixed-interface modes
+/// as other programs do, in plain double precision: K, M [16 x 16]. `ground`: a spring from its middle to ground along
+/// y; `hinge`: the middle turns freely about z.
+struct Condensed {
+  MatrixXd K, M;
+  explicit Condensed(int num, double ground = 0, bool hinge = false) {
+    const double L = 12, E = 2.1e11, G = 8.1e10, rho = 7850, A = 4e-4, I = 8e-8, J = 1.6e-7, l = L / num;
+    const int N = 6 * (num + 1) + (hinge ? 1 : 0);
+    MatrixXd k = MatrixXd::Zero(12, 12), full_K = MatrixXd::Zero(N, N), full_M = full_K;
+    for (const auto& [c, stiffness] : {std::pair(0, E * A / l), std::pair(3, G * J / l)}) {
+      k(c, c) = k(c + 6, c + 6) = stiffness;
+      k(c, c + 6) = k(c + 6, c) = -stiffness;
+    }
+    for (const auto& [u, r, sign] : {std::tuple(1, 5, 1.0), std::tuple(2, 4, -1.0)}) {
+      const double b = E * I / (l * l * l);
+      const std::vector<int> at{u, r, u + 6, r + 6};
+      MatrixXd bending(4, 4);
+      bending << 12, 6 * l * sign, -12, 6 * l * sign, 6 * l * sign, 4 * l * l, -6 * l * sign, 2 * l * l,  //
+          -12, -6 * l * sign, 12, -6 * l * sign, 6 * l * sign, 2 * l * l, -6 * l * sign, 4 * l * l;
+      k(at, at) = b * bending;
+    }
+    for (int e = 0; e < num; ++e) {
+      std::vector<int> at;
+      for (int i = 0; i < 12; ++i) at.push_back(6 * e + i);
+      if (hinge && e == num / 2) at[5] = N - 1;
+      full_K(at, at) += k;
+      for (int i = 0; i < 12; ++i)
+        full_M(at[static_cast<std::size_t>(i)], at[static_cast<std::size_t>(i)]) += 0.5 * rho * A * l *
+                                                                                    (i % 6 < 3    ? 1
+                                                                                     : i % 6 == 3 ? 2e-4
+                                                                                                  : 1e-4);
+    }
+    full_K(6 * (num / 2) + 1, 6 * (num / 2) + 1) += ground;
+    std::vector<int> b, i;
+    for (int d = 0; d < N; ++d) (d < 6 || (d >= 6 * num && d < 6 * num + 6) ? b : i).push_back(d);
+    const MatrixXd K_ii = full_K(i, i), K_ib = full_K(i, b);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> fixed(K_ii, MatrixXd(full_M(i, i)));
+    MatrixXd T = MatrixXd::Zero(N, 16);
+    T(b, Eigen::seqN(0, 12)) = MatrixXd::Identity(12, 12);
+    T(i, Eigen::seqN(0, 12)) = -K_ii.partialPivLu().solve(K_ib);
+    T(i, Eigen::seqN(12, 4)) = fixed.eigenvectors().leftCols(4);
+    K = T.transpose() * full_K * T, M = T.transpose() * full_M * T;
+    K = (0.5 * (K + K.transpose())).eval(), M = (0.5 * (M + M.transpose())).eval();
+  }
+  GivenMatrices give() const {
+    GivenMatrices given;
+    given.K.values = K.sparseView(), given.M.values = M.sparseView();
+    given.K.label = "K", given.M.label = "M";
+    return given;
+  }
+  VectorXd calc_eigenvalues() const { return Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(K, M).eigenvalues(); }
+};
+
+constexpr const char* kEnds = "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,12.,0.,0.\nSPOINT,11,THRU,14\nENDDATA\n";
+
+// Condensation leaves rigid-body motions a strain of 1e-13 to 1e-7 of that of diag K: small beside the elastic modes.
+TEST(ReduceMatrices, CondensedFreeBodiesAreFreeInEveryFrameAndBasis) {
+  const auto deck = read(kEnds);
+  for (const int num : {20, 60, 200}) {
+    const Condensed tube(num);
+    const VectorXd lambda = tube.calc_eigenvalues();
+    ASSERT_LT(lambda.head(6).cwiseAbs().maxCoeff(), 1e-6 * lambda(6));
+    for (const auto frame : {records::BodyFrame::Free, records::BodyFrame::MeanAxes, records::BodyFrame::Node,
+                             records::BodyFrame::MassCentre})
+      for (const auto basis : {records::BodyBasis::Normal, records::BodyBasis::CraigBampton}) {
+        auto spec = make_spec(4);
+        spec.frame = frame;
+        spec.basis = basis;
+        if (frame == records::BodyFrame::Node) spec.frame_nodes = {1};
+        if (basis == records::BodyBasis::CraigBampton) spec.interface_nodes = {1, 2};
+        Diagnostics said;
+        const auto body = reduce_given(deck, spec, tube.give(), &said);
+        const auto who = std::to_string(num) + " beams, frame " + std::to_string(static_cast<int>(frame));
+        for (const char* id : {"fe.residual", "modal.unstable", "reduce.basis-off"}) EXPECT_FALSE(said.has(id)) << who;
+        EXPECT_TRUE(said.has("reduce.rigid-roundoff")) << who;
+        EXPECT_NEAR(body.mass, 7850 * 4e-4 * 12, 1e-9) << who;
+        ASSERT_GE(body.frequency_hz.size(), 4) << who;
+        for (int j = 0; j < 4; ++j)
+          EXPECT_NEAR(body.eigenvalue(j) / lambda(6 + j), 1, 1e-6) << who << ", mode " << j + 1;
+      }
+  }
+}
+
+// What is held, or hinged, is told from what is free by the size of its eigenvalues, not by round-off.
+TEST(ReduceMatrices, HeldAndHingedBodiesAreNotFree) {
+  const auto deck = read(kEnds);
+  auto spec = make_spec(4);
+  spec.frame = records::BodyFrame::Free;
+  const double first = Condensed(60).calc_eigenvalues()(6), mass = 7850 * 4e-4 * 12;
+  const auto get_id = [&](const Condensed& body) -> std::string {
+    try {
+      reduce_given(deck, spec, body.give());
+    } catch (const Failure& failure) {
+      return failure.items().back().id;
+    }
+    return "";
+  };
+  EXPECT_EQ(get_id(Condensed(60, 1e-4 * first * mass)), "reduce.grounded");
+  EXPECT_EQ(get_id(Condensed(60, 1e-2 * first * mass)), "reduce.grounded");
+  EXPECT_EQ(get_id(Condensed(60, 0, true)), "reduce.mechanism");
+  // With its frame on the ground spring it is a body with one soft mode, of next to the mass on the spring.
+  const Condensed held(60, 1e-4 * first * mass);
+  EXPECT_GT(held.calc_eigenvalues()(5), 1e-5 * first);
+}
+
 TEST(ReduceMatrices, DisplacementAxesAndTheOrderOfPoints) {
   const auto deck = read(kDeck);
   Exported own(deck);

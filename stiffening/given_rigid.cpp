@@ -1,0 +1,196 @@
+#include "stiffening/given_rigid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SparseCholesky>
+
+namespace bough::stiffening {
+
+namespace {
+
+using Eigen::Index;
+using SparseColumns = Eigen::SparseMatrix<double>;
+
+/// R [num_gdofs x 6] about the mean position, rotations by an angle that moves the farthest grid by one unit of length;
+/// 0 in rows without stiffness. `rotation_rows`: 1 at rotations.
+MatrixXd calc_motions(const PointTable& points, const VectorXd& D, VectorXd& rotation_rows, double& size) {
+  const auto dofs = points.calc_nodal_dofs();
+  const Eigen::Vector3d centre = dofs.xyz.colwise().mean();
+  size = (dofs.xyz.rowwise() - centre.transpose()).rowwise().norm().maxCoeff();
+  if (!(size > 0)) size = 1;
+  MatrixXd R = dofs.calc_rigid_modes(centre);
+  R.rightCols<3>() /= size;
+  rotation_rows = VectorXd::Zero(R.rows());
+  for (Index k = 0; k < dofs.row.rows(); ++k)
+    for (int c = 3; c < 6; ++c) rotation_rows(dofs.row(k, c)) = 1;
+  for (Index i = 0; i < R.rows(); ++i)
+    if (!(D(i) > 0)) R.row(i).setZero();
+  return R;
+}
+
+/// Whether every row of K R is below 1e-10 of the sum of its terms, and the energies below 1e-14 of those of diag K.
+bool is_exact(const SparseRows& K, const VectorXd& D, const MatrixXd& R) {
+  const MatrixXd K_R = K * R, terms = K.cwiseAbs() * R.cwiseAbs();
+  if ((K_R.array().abs() > 1e-10 * terms.array()).any()) return false;
+  for (Index c = 0; c < R.cols(); ++c)
+    if (std::abs(R.col(c).dot(K_R.col(c))) > 1e-14 * R.col(c).cwiseAbs2().dot(D)) return false;
+  return true;
+}
+
+/// Six rows that determine R best; translations first, since a rotation may be soft where it is held alone.
+std::vector<Index> choose_support(const MatrixXd& R, const VectorXd& rotation_rows, double size) {
+  constexpr double kRotationWeight = 0.01;
+  const VectorXd weight = (1 + rotation_rows.array() * (kRotationWeight * size - 1)).matrix();
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr((weight.asDiagonal() * R).transpose());
+  if (R.rows() < 6 || std::abs(qr.matrixR()(5, 5)) < 1e-6 * std::abs(qr.matrixR()(0, 0))) return {};
+  std::vector<Index> rows;
+  for (int i = 0; i < 6; ++i) rows.push_back(qr.colsPermutation().indices()(i));
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
+/// Pseudo-inverse of the symmetric A >= 0, judged with a unit diagonal; `null`: its null space.
+MatrixXd invert(const MatrixXd& A, MatrixXd& null) {
+  const VectorXd s = A.diagonal().unaryExpr([](double a) { return a > 0 ? 1 / std::sqrt(a) : 1.0; });
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(s.asDiagonal() * A * s.asDiagonal());
+  const VectorXd& values = solver.eigenvalues();
+  const auto num = (values.array() <= 1e-10 * values.maxCoeff()).count();
+  const MatrixXd V = s.asDiagonal() * solver.eigenvectors();
+  null = V.leftCols(num);
+  const auto kept = V.rightCols(V.cols() - num);
+  return kept * values.tail(V.cols() - num).cwiseInverse().asDiagonal() * kept.transpose();
+}
+
+/// Ritz values of K φ = λ M φ orthogonal to the rigid-body motions R, ascending, of four vectors.
+VectorXd calc_ritz_values(const SparseRows& M, const MatrixXd& R, const MatrixXd& mass_inverse,
+                          const std::vector<Index>& others, const Eigen::SimplicialLDLT<SparseColumns>& K_oo) {
+  const Index n = R.rows(), m = std::min<Index>(4, static_cast<Index>(others.size()));
+  const MatrixXd M_R = M * R;
+  MatrixXd X(n, m);
+  const auto fill = [&](Index column, int seed) {
+    for (Index i = 0; i < n; ++i) X(i, column) = std::sin(1.0 + 0.7 * static_cast<double>(i * (column + 1) + seed));
+  };
+  for (Index c = 0; c < m; ++c) fill(c, 0);
+  VectorXd values;
+  for (int step = 1; step <= 40; ++step) {
+    MatrixXd F = M * X;
+    F -= M_R * (mass_inverse * (R.transpose() * F));
+    MatrixXd Y = MatrixXd::Zero(n, m);
+    Y(others, Eigen::all) = K_oo.solve(MatrixXd(F(others, Eigen::all)));
+    Y -= R * (mass_inverse * (M_R.transpose() * Y));
+    const MatrixXd energy = Y.transpose() * F, mass = Y.transpose() * (M * Y);  // K Y = F
+    const VectorXd s = mass.diagonal().unaryExpr([](double a) { return a > 0 ? 1 / std::sqrt(a) : 0.0; });
+    const MatrixXd A = s.asDiagonal() * energy * s.asDiagonal(), B = s.asDiagonal() * mass * s.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> range(0.5 * (B + B.transpose()));
+    const VectorXd& b = range.eigenvalues();
+    const auto rank = (b.array() > 1e-12 * b.maxCoeff()).count();
+    if (rank == 0 || !std::isfinite(b.sum()) || !std::isfinite(A.sum())) return {};
+    const MatrixXd W = range.eigenvectors().rightCols(rank) * b.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(W.transpose() * (0.5 * (A + A.transpose())) * W);
+    X.leftCols(rank) = Y * (s.asDiagonal() * (W * ritz.eigenvectors()));
+    for (Index c = rank; c < m; ++c) fill(c, step);
+    const VectorXd before = values;
+    values = ritz.eigenvalues();
+    if (before.size() == values.size() && (values - before).head((m + 1) / 2).norm() < 1e-3 * values.norm()) break;
+  }
+  return values;
+}
+
+/// K with the columns of `support` from equilibrium; empty if these differ from K by more than 1e-4 of its diagonal.
+SparseRows restore(const SparseRows& K, const VectorXd& D, const MatrixXd& R, const std::vector<Index>& support,
+                   const std::vector<Index>& others) {
+  const MatrixXd inverse = R(support, Eigen::all).fullPivLu().inverse();
+  MatrixXd R_o = R;
+  R_o(support, Eigen::all).setZero();
+  MatrixXd K_s = -((K * R_o) * inverse);  // columns of the support, rows of the others
+  const MatrixXd K_ss = -(R(others, Eigen::all) * inverse).transpose() * K_s(others, Eigen::all);
+  K_s(support, Eigen::all) = 0.5 * (K_ss + K_ss.transpose());
+  std::vector<int> place(static_cast<std::size_t>(K.rows()), -1);
+  for (std::size_t j = 0; j < support.size(); ++j) place[static_cast<std::size_t>(support[j])] = static_cast<int>(j);
+  std::vector<Eigen::Triplet<double>> entries;
+  MatrixXd old = MatrixXd::Zero(K.rows(), 6);
+  for (int i = 0; i < K.outerSize(); ++i)
+    for (SparseRows::InnerIterator it(K, i); it; ++it) {
+      const int s = place[static_cast<std::size_t>(it.col())];
+      if (s >= 0)
+        old(i, s) = it.value();
+      else if (place[static_cast<std::size_t>(i)] < 0)
+        entries.emplace_back(i, static_cast<int>(it.col()), it.value());
+    }
+  for (Index i = 0; i < K.rows(); ++i)
+    for (Index j = 0; j < 6; ++j) {
+      const Index s = support[static_cast<std::size_t>(j)];
+      if (std::abs(K_s(i, j) - old(i, j)) > 1e-4 * std::sqrt(std::abs(D(i) * D(s)))) return {};
+      if (K_s(i, j) == 0) continue;
+      entries.emplace_back(static_cast<int>(i), static_cast<int>(s), K_s(i, j));
+      if (place[static_cast<std::size_t>(i)] < 0)
+        entries.emplace_back(static_cast<int>(s), static_cast<int>(i), K_s(i, j));
+    }
+  SparseRows restored(K.rows(), K.cols());
+  restored.setFromTriplets(entries.begin(), entries.end());
+  return restored;
+}
+
+}  // namespace
+
+RigidMotionCheck check_rigid_motions(const PointTable& points, const SparseRows& K, const SparseRows& M) {
+  RigidMotionCheck result;
+  const VectorXd D = K.diagonal();
+  VectorXd rotation_rows;
+  double size = 1;
+  const MatrixXd R = calc_motions(points, D, rotation_rows, size);
+  result.is_exact = is_exact(K, D, R);
+  if (result.is_exact) return result;
+  const auto support = choose_support(R, rotation_rows, size);
+  if (support.empty()) return result;
+  std::vector<Index> others;
+  for (Index i = 0; i < K.rows(); ++i)
+    if (D(i) > 0 && std::find(support.begin(), support.end(), i) == support.end()) others.push_back(i);
+  if (others.empty()) return result;
+
+  std::vector<int> place(static_cast<std::size_t>(K.rows()), -1);
+  for (std::size_t i = 0; i < others.size(); ++i) place[static_cast<std::size_t>(others[i])] = static_cast<int>(i);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const Index row : others)
+    for (SparseRows::InnerIterator it(K, row); it; ++it)
+      if (const int c = place[static_cast<std::size_t>(it.col())]; c >= 0)
+        entries.emplace_back(place[static_cast<std::size_t>(row)], c, it.value());
+  SparseColumns A(static_cast<Index>(others.size()), static_cast<Index>(others.size()));
+  A.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<SparseColumns> K_oo(A);
+  if (K_oo.info() != Eigen::Success) return result;
+
+  const MatrixXd mass = R.transpose() * (M * R), energy = R.transpose() * (K * R);
+  MatrixXd massless;
+  const MatrixXd mass_inverse = invert(0.5 * (mass + mass.transpose()), massless);
+  const VectorXd ritz = calc_ritz_values(M, R, mass_inverse, others, K_oo);
+  if (ritz.size() == 0) return result;
+  result.elastic = ritz(0);
+  for (Index k = 1; k < ritz.size(); ++k)
+    if (std::abs(ritz(k - 1)) < kMaxRigidQuotient * ritz(k))
+      result.elastic = ritz(k), result.num_mechanisms = static_cast<int>(k);
+  if (!(result.elastic > 0)) return result;
+  for (Index c = 0; c < massless.cols(); ++c) {
+    const VectorXd x = massless.col(c), u = R * x;
+    if (std::abs(x.dot(energy * x)) < 1e-10 * u.cwiseAbs2().dot(D)) ++result.num_rigid;
+  }
+  // Eigenvalues of (RᵀKR, RᵀMR) on the motions with mass.
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> root(mass_inverse);
+  const Index num = 6 - massless.cols();
+  const MatrixXd W =
+      root.eigenvectors().rightCols(num) * root.eigenvalues().tail(num).cwiseMax(0).cwiseSqrt().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> quotients(W.transpose() * (0.5 * (energy + energy.transpose())) * W);
+  result.worst = quotients.eigenvalues().cwiseAbs().maxCoeff();
+  const double most = kMaxRigidQuotient * result.elastic;
+  result.num_rigid += static_cast<int>((quotients.eigenvalues().array().abs() < most).count());
+  if (result.num_rigid < 6) return result;
+  result.K = restore(K, D, R, support, others);
+  result.is_free = result.K.nonZeros() > 0;
+  return result;
+}
+
+}  // namespace bough::stiffening
