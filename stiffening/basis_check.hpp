@@ -10,14 +10,16 @@ namespace bough::stiffening {
 /// √(M_ii M_jj) and √(K_ii K_jj).
 struct BasisCheck {
   double mass = 0, stiffness = 0;
+  double beyond_roundoff = 0;      ///< of both; entries of K above 1e-13 of √(pᵢ pⱼ), pⱼ = Σ K_ii φ_ij²
   modal::bases::ModesCheck modes;  ///< of the normal modes; none found: none were solved for
 };
-inline constexpr double kBasisWarning = 1e-5;
+inline constexpr double kBasisWarning = 1e-5, kBasisError = 1e-3;
 
 BasisCheck check_basis(const fe::Model& model, const Eigen::MatrixXd& Phi, const Eigen::MatrixXd& modal_mass,
                        const Eigen::MatrixXd& modal_stiffness);
 
-/// Warning reduce.basis-off; ComputationError of this id where one is no number.
+/// Warning reduce.basis-off above kBasisWarning; ComputationError of this id if one is not finite, or above kBasisError
+/// and more than round-off.
 void report_basis(const BasisCheck& check, const SourceLocation& at, Diagnostics& diagnostics);
 
 }  // namespace bough::stiffening

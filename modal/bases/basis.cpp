@@ -279,7 +279,7 @@ Basis calc_craig_bampton_basis(const fe::System& system, const BasisOptions& opt
   if (options.is_free && F.cols() > 0) {
     // In equilibrium with the inertia of the body; what inertia balances of itself (a uniform acceleration) is nothing.
     const VectorXd before = F.colwise().norm();
-    F -= times_M(model, rigid) * (rigid.transpose() * F).eval();
+    F = equilibrate(model, rigid, F);
     for (Eigen::Index c = 0; c < F.cols(); ++c)
       if (F.col(c).norm() < 1e-10 * before(c)) F.col(c).setZero();
   }

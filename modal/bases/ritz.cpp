@@ -113,6 +113,13 @@ VectorXd calc_least_norms(const fe::Model& model, const MatrixXd& kept, const Ma
 
 }  // namespace
 
+MatrixXd equilibrate(const fe::Model& model, const MatrixXd& rigid, MatrixXd F) {
+  if (rigid.cols() == 0 || F.cols() == 0) return F;
+  const MatrixXd M_R = fe::calc_mass_times(model, model.mass_kind(), rigid);
+  for (int pass = 0; pass < 2; ++pass) F -= M_R * (rigid.transpose() * F).eval();
+  return F;
+}
+
 ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve& solve, const MatrixXd& rigid,
                                       const MatrixXd& kept, const MatrixXd& F) {
   const auto times_M = [&](const MatrixXd& X) { return fe::calc_mass_times(model, model.mass_kind(), X); };
@@ -122,8 +129,7 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
   result.share.resize(m, 0);
   if (m == 0) return result;
 
-  MatrixXd F_e = F;  // in equilibrium
-  if (rigid.cols() > 0) F_e -= times_M(rigid) * (rigid.transpose() * F);
+  const MatrixXd F_e = equilibrate(model, rigid, F);
   MatrixXd X = solve(F_e);
   if (rigid.cols() > 0) X -= rigid * (rigid.transpose() * times_M(X));
   const MatrixXd X_static = X;

@@ -18,6 +18,10 @@ struct RitzPairs {
 };
 RitzPairs calc_ritz_pairs(const MatrixXd& M, const MatrixXd& K);
 
+/// Loads F [num_gdofs x m] in equilibrium with the inertia of the body: F - M R RᵀF, R = `rigid`, M-orthonormal. Twice:
+/// next to a mass of 1e8 the first pass leaves the round-off of F itself, which drives the body and strains it.
+MatrixXd equilibrate(const fe::Model& model, const MatrixXd& rigid, MatrixXd F);
+
 /// u_g for loads F_g (num_gdofs x m) on some support.
 using StaticSolve = std::function<MatrixXd(const MatrixXd& F_g)>;
 

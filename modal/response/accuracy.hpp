@@ -5,12 +5,21 @@
 
 namespace bough::modal::response {
 
-/// Above it a number is told as a warning; a solution error above the other ends the solution.
+/// Errors above the first are a warning; above the second they end the solution.
 inline constexpr double kAccuracyWarning = 1e-6, kAccuracyError = 1e-3;
 
-/// Of ΦᵀMΦ = 1 and ΦᵀKΦ = Λ, which the equation of the coordinates takes for granted: largest |φᵢᵀMφⱼ - δᵢⱼ| of those
-/// with mass, and |φᵢᵀKφⱼ - λᵢ δᵢⱼ| / √|λᵢ λⱼ| of those with strain; both sides assembled from the elements anew.
-double calc_basis_error(const fe::Model& model, const ResponseModel& response);
+/// Error of ΦᵀMΦ = 1 and ΦᵀKΦ = Λ, on which the equation of the coordinates depends.
+struct BasisError {
+  double worst = 0;
+  /// The worst entry that round-off does not explain: up to kAccuracyError, or above 1e-13 of √(pᵢ pⱼ), pⱼ = Σ K_ii
+  /// φ_ij². Next to parts 1e12 times as stiff the product with K has no digits, and the modes may be right
+  /// nevertheless.
+  double beyond_roundoff = 0;
+};
+
+/// Largest |φᵢᵀMφⱼ - δᵢⱼ| of coordinates with mass, and |φᵢᵀKφⱼ - λᵢ δᵢⱼ| / √|λᵢ λⱼ| of those with strain; both
+/// products element by element.
+BasisError calc_basis_error(const fe::Model& model, const ResponseModel& response);
 
 /// |(Λ - ω² m + iωD + iS) q - P a| / |P a| of the worst frequency, each row over √max(|λ|, ω² m).
 double calc_solution_error(const ResponseModel& response, const Spectrum& spectrum);
@@ -34,6 +43,7 @@ class ResidualRecord {
 void report_residual(double residual, const SourceLocation& at, Diagnostics& diagnostics);
 
 /// Warning, or ComputationError, modal.response-accuracy.
-void report_accuracy(double basis_error, double solution_error, const SourceLocation& at, Diagnostics& diagnostics);
+void report_accuracy(const BasisError& basis_error, double solution_error, const SourceLocation& at,
+                     Diagnostics& diagnostics);
 
 }  // namespace bough::modal::response

@@ -180,9 +180,7 @@ class Maker {
   /// What the shapes leave out of the static solutions where that does more than 1e-10 of the work of the load: there
   /// is next to no mass in it, or a residual vector would have it. Orthonormal in K.
   void add_massless(const MatrixXd& loads, ResponseModel& r) const {
-    MatrixXd F = loads;
-    const MatrixXd Phi_r = rigid();
-    if (Phi_r.cols() > 0) F -= times_mass(model_, Phi_r) * (Phi_r.transpose() * loads);
+    const MatrixXd Phi_r = rigid(), F = bases::equilibrate(model_, Phi_r, loads);
     MatrixXd rest = solve_(F);
     if (Phi_r.cols() > 0) rest -= Phi_r * (Phi_r.transpose() * times_mass(model_, rest));
     const VectorXd work = rest.cwiseProduct(F).colwise().sum();

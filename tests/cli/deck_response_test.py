@@ -559,6 +559,51 @@ class Structures(DeckResponse):
         self.near(found, u, 1e-10)
 
 
+# A chain of eight masses of 0.01 on a large one, which a force drives: the classical way to give a base its motion.
+LARGE_MASS = """SOL 111
+CEND
+SPC = 9
+METHOD = 3
+DLOAD = 1
+FREQUENCY = 1
+ACCELERATION = ALL
+BEGIN BULK
+SPOINT,1,THRU,9
+{chain}CMASS2,60,{mass},1,0
+DAREA,5,1,0,{force}
+RLOAD1,1,5,,,7
+TABLED1,7
+,0.,1.,1000.,1.,ENDT
+EIGRL,3,,,{modes}
+FREQ1,1,5.,1.,25
+GRID,99,,0.,0.,0.
+SPC1,9,123456,99
+ENDDATA
+"""
+
+
+class LargeMass(DeckResponse):
+    def test_base_by_a_large_mass(self):
+        """Against the dense equations: K, C, M of nine dofs, with and without residual vectors."""
+        n, k, c, m = 9, 1000.0, .01, .01
+        chain = "".join(f"CELAS2,{i},{k},{i},0,{i + 1},0\nCDAMP2,{i + 40},{c},{i},0,{i + 1},0\nCMASS2,{i + 20},{m},{i + 1},0\n"
+                        for i in range(1, n))
+        for mass in [1e4, 1e6, 1e8, 1e10]:
+            K = np.zeros((n, n))
+            for i in range(n - 1):
+                K[i:i + 2, i:i + 2] += k * np.array([[1, -1], [-1, 1]])
+            M = np.diag([mass] + [m] * (n - 1))
+            for modes, tolerance in [(4, 2e-3), (9, 1e-6)]:
+                with self.subTest(mass=mass, modes=modes):
+                    deck = LARGE_MASS.format(chain=chain, mass=mass, force=3 * mass, modes=modes)
+                    r = self.solve("frequency", deck)[1]
+                    for i, hz in enumerate(r["x"]):
+                        w = 2 * np.pi * hz
+                        u = np.linalg.solve(K + 1j * w * K * c / k - w * w * M, np.eye(n)[0] * 3 * mass)
+                        found = np.array([r["acceleration"][p, 0][i] for p in range(1, n + 1)])
+                        self.near(found, -w * w * u, tolerance)
+
+
 class Files(DeckResponse):
     DECK = ONE.format(sol=111, case="DLOAD = 9\nFREQUENCY = 5\nTITLE = A TITLE", bulk="RLOAD1,9,10,,,1.0\nDAREA,10,1,1,2.5\nFREQ1,5,.05,.03,30\n"
                       "CDAMP2,3,2.4,1,1,2,1").replace("DISPLACEMENT = 1", "DISPLACEMENT(PHASE,PUNCH) = 1")
