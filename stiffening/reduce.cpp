@@ -3,6 +3,7 @@
 #include <set>
 
 #include "fe/linear/factor.hpp"
+#include "fe/matrices/connected_parts.hpp"
 #include "fe/matrices/mass_directions.hpp"
 #include "modal/integrals.hpp"
 #include "stiffening/basis_check.hpp"
@@ -94,8 +95,11 @@ void Reduction::set_integrals(const fe::Model& model) {
   body_.F_I = fe::calc_inertial_loads(model, kind, MatrixXd::Identity(12, 12), mass_times);
 }
 
-void Reduction::add_mechanism_error(const std::string& what) {
-  if (is_free())
+/// The parts that nothing holds, if there are several; else what may hold the model.
+void Reduction::add_mechanism_error(const fe::Model& model, const std::string& what) {
+  if (const auto loose = fe::describe_loose_parts(model); !loose.what.empty())
+    diagnostics_.error("reduce.mechanism", where(), loose.what, loose.advice);
+  else if (is_free())
     diagnostics_.error("reduce.mechanism", where(), "besides the six rigid motions of a free body, " + what,
                        "tie the loose parts or constrain the free dofs");
   else

@@ -123,13 +123,14 @@ StaticSolve Reduction::make_solver(const fe::System& system) {
     factor_ = solver->find_definite_factor();
     return [solver](const MatrixXd& F) { return solver->solve(F); };
   } catch (const ComputationError& error) {
+    const auto& id = error.items().front().id;
+    const bool is_mechanism = id == "fe.mechanism" || id == "modal.interface-mechanism";
+    if (is_mechanism) add_mechanism_error(model, "the stiffness matrix is singular");
     for (auto item : error.items()) {
       if (item.where.file.empty()) item.where = deck_.locate({0, 0});
       diagnostics_.add(std::move(item));
     }
-    const auto& id = error.items().front().id;
-    if (id != "fe.mechanism" && id != "modal.interface-mechanism") throw;
-    add_mechanism_error("the stiffness matrix is singular");
+    if (!is_mechanism) throw;
     throw InputError(diagnostics_.items());
   }
 }

@@ -28,7 +28,7 @@ std::vector<int> Reduction::choose_columns(int available, const std::string& who
   return columns;
 }
 
-void Reduction::check_rigid(const modal::bases::Basis& basis) {
+void Reduction::check_rigid(const fe::Model& model, const modal::bases::Basis& basis) {
   const int num_rigid = is_free() ? 6 : 0, found_rigid = basis.num_rigid + basis.num_massless;
   if (is_free() && found_rigid < 6)
     diagnostics_.error(
@@ -41,7 +41,7 @@ void Reduction::check_rigid(const modal::bases::Basis& basis) {
             : "a free body may be preloaded by temperatures; loads do not turn with it: use frame = "
               "\"fixed\"");
   if (found_rigid > num_rigid)
-    add_mechanism_error(std::to_string(found_rigid - num_rigid) + " motion(s) have no strain");
+    add_mechanism_error(model, std::to_string(found_rigid - num_rigid) + " motion(s) have no strain");
   diagnostics_.throw_if_errors();
 }
 
@@ -58,7 +58,7 @@ void Reduction::set_modes(const fe::System& system, const StaticSolve& solve) {
   }
   const auto augmented = augment(model);
   auto basis = modal::bases::calc_basis(augmented ? augmented->system : system, options, solve, diagnostics_);
-  check_rigid(basis);
+  check_rigid(model, basis);
   modes_check_ = basis.check;
   std::string unused;
   for (const int i : basis.unused_loads) unused += (unused.empty() ? "" : ", ") + names[static_cast<std::size_t>(i)];
@@ -73,10 +73,11 @@ void Reduction::set_modes(const fe::System& system, const StaticSolve& solve) {
     massless += (massless.empty() ? "" : ", ") + names[static_cast<std::size_t>(i)] + percent;
   }
   if (!massless.empty())
-    diagnostics_.warning("reduce.residual-massless", where(),
-                         "what moves no mass has no residual vector; lost of the flexibility under " + massless,
-                         "what acts there meets a stiffer body; give the model inertia there, or take fewer modes, if it "
-                         "should not");
+    diagnostics_.warning(
+        "reduce.residual-massless", where(),
+        "what moves no mass has no residual vector; lost of the flexibility under " + massless,
+        "what acts there meets a stiffer body; give the model inertia there, or take fewer modes, if it "
+        "should not");
 
   const bool is_moved = is_free() && spec_.frame != BodyFrame::Free;
   // Raw coordinates lose those of the frame's node first, so that select counts what is left.

@@ -34,7 +34,7 @@ class Reduction {
   void add_thermal_stiffness(const fe::Model& model, std::size_t load, MatrixXd& K_G) const;
   void set_rigid_part(const fe::Model& model);
   std::vector<int> choose_columns(int available, const std::string& whose);
-  void check_rigid(const modal::bases::Basis& basis);
+  void check_rigid(const fe::Model& model, const modal::bases::Basis& basis);
   void set_modes(const fe::System& system, const modal::bases::StaticSolve& solve);
   void set_given_modes(const fe::System& system);
   void set_damping(const fe::Model& model, const modal::bases::Basis& basis);
@@ -60,7 +60,7 @@ class Reduction {
   std::unique_ptr<const Augmented> augment(const fe::Model& model) const;
   /// Mass, mean axes and, by `orthogonalize`, modes of the body itself in the space of its augmented modes.
   void take_off_augmentation(const fe::Model& model, modal::bases::Basis& basis) const;
-  void add_mechanism_error(const std::string& what);
+  void add_mechanism_error(const fe::Model& model, const std::string& what);
 
   bool is_free() const { return spec_.frame != records::BodyFrame::Fixed; }
 

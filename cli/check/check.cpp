@@ -20,6 +20,7 @@
 #include "cli/common/system_files.hpp"
 #include "fe/linear/factor.hpp"
 #include "fe/matrices/assembly.hpp"
+#include "fe/matrices/connected_parts.hpp"
 #include "fe/matrices/mass_directions.hpp"
 #include "fe/statics/preload.hpp"
 #include "formats/flx/flx_file.hpp"
@@ -90,6 +91,8 @@ void check_model(const CheckOptions& options, const records::Deck& deck, fe::Mod
                        "for modes and bodies give RHO in MAT1, NSM in a property, or CONM2 and CMASS cards");
   }
   fe::report_mass(model, deck, mass, diagnostics);
+  if (const auto loose = fe::describe_loose_parts(model); !loose.what.empty())
+    diagnostics.warning("fe.loose-parts", deck.locate({}), loose.what, loose.advice);
   const GroundChecks ground{fe::calc_ground_check(model, fe::GroundSet::Global),
                             fe::calc_ground_check(model, fe::GroundSet::Independent),
                             fe::calc_ground_check(model, fe::GroundSet::Free)};

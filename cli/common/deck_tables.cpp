@@ -8,6 +8,7 @@
 
 #include "base/rotation.hpp"
 #include "cli/common/console.hpp"
+#include "fe/matrices/connected_parts.hpp"
 #include "fe/matrices/mass_directions.hpp"
 #include "fe/sections/section_library.hpp"
 
@@ -98,7 +99,11 @@ std::string format_geometry(const fe::Model& model, const records::Deck& deck) {
   for (const auto& [a, b] : fe::find_coincident_grids(model, fe::choose_coincidence(model)))
     pairs.push_back(fmt::format("{} and {}", a, b));
   for (int id : fe::find_unused_grids(model, deck)) unused.push_back(std::to_string(id));
-  std::string text = list("coincident grids", pairs) + list("grids not used", unused);
+  const auto parts = fe::find_connected_parts(model);
+  std::vector<std::string> sizes;
+  for (const auto& part : parts) sizes.push_back(std::to_string(part.nodes.size()));
+  std::string text = list("connected parts, by grids and scalar points", sizes) + list("coincident grids", pairs) +
+                     list("grids not used", unused);
   const auto quality = fe::find_worst_quality(model);
   if (quality.empty()) return text;
   Table table{{"shape", "count", "worst aspect", "element", "worst warp", "element", "least Jacobian", "element"}, {}};
@@ -113,7 +118,14 @@ std::string format_geometry(const fe::Model& model, const records::Deck& deck) {
 nlohmann::json make_geometry_json(const fe::Model& model, const records::Deck& deck) {
   nlohmann::json json{{"coincident_grids", fe::find_coincident_grids(model, fe::choose_coincidence(model))},
                       {"unused_grids", fe::find_unused_grids(model, deck)},
+                      {"parts", nlohmann::json::array()},
                       {"quality", nlohmann::json::object()}};
+  for (const auto& part : fe::find_connected_parts(model))
+    json["parts"].push_back({{"points", part.nodes.size()},
+                             {"first", model.node(part.nodes.front()).id},
+                             {"last", model.node(part.nodes.back()).id},
+                             {"elements", part.num_elements},
+                             {"held", part.is_held}});
   for (const auto& q : fe::find_worst_quality(model))
     json["quality"][q.card] = {{"count", q.count},
                                {"aspect", q.worst.aspect},

@@ -17,7 +17,7 @@ struct GroundChecks {
 };
 std::string format_weight(const fe::GridPointWeight& weight);
 std::string format_ground_check(const GroundChecks& ground);
-/// Coincident and unused grids, and the worst shapes of plane and solid elements.
+/// Connected parts, coincident and unused grids, and the worst shapes of plane and solid elements.
 std::string format_geometry(const fe::Model& model, const records::Deck& deck);
 nlohmann::json make_geometry_json(const fe::Model& model, const records::Deck& deck);
 /// What every PBARL and PBEAML became, station by station; empty without them.

@@ -7,14 +7,25 @@
 
 #include "base/diagnostic.hpp"
 #include "cli/modes/eigen_choices.hpp"
+#include "fe/matrices/connected_parts.hpp"
 
 namespace bough::cli {
 
 namespace {
 
-bool has_constraints(const records::Deck& deck) {
-  return std::any_of(deck.subcases.begin(), deck.subcases.end(), [](const auto& s) { return s.spc > 0; }) ||
-         std::any_of(deck.grids.begin(), deck.grids.end(), [](const auto& g) { return g.ps != 0; });
+/// Whether constraints and springs to ground hold the six rigid-body motions of the model of the first subcase: an SPC
+/// set that holds rotations of solids alone does not. Of a deck with errors, whether it has constraints at all.
+bool is_constrained(const records::Deck& deck) {
+  const bool has_constraints =
+      std::any_of(deck.subcases.begin(), deck.subcases.end(), [](const auto& s) { return s.spc > 0; }) ||
+      std::any_of(deck.grids.begin(), deck.grids.end(), [](const auto& g) { return g.ps != 0; });
+  try {
+    Diagnostics diagnostics;
+    const auto model = fe::Model::build(deck, {}, diagnostics);
+    return diagnostics.num_errors() > 0 ? has_constraints : fe::count_held_motions(model) == 6;
+  } catch (const Failure&) {
+    return has_constraints;
+  }
 }
 
 /// Grids at which other structures hang: independent grids of RBE2, reference grids of RBE3, SUPORT. Without those that
@@ -75,7 +86,7 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
   if (grid > 0 && std::none_of(deck.grids.begin(), deck.grids.end(), [&](const auto& g) { return g.id == grid; }))
     throw InputError("cli.unknown-interface", {start.path},
                      fmt::format("interface node {} is not a grid of {}", grid, start.path), "name a GRID of the deck");
-  const bool is_fixed = grid == 0 && has_constraints(deck);
+  const bool is_fixed = grid == 0 && is_constrained(deck);
   const auto& name = start.name;
   auto interface = find_interface(deck);
   if (grid > 0) {
@@ -83,7 +94,7 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
     if (interface.size() >= kMostInterfaceGrids) interface.clear();
     interface.insert(interface.begin(), grid);
   }
-  std::string frame = "frame = \"free\"           # no constraints in the deck: free-free modes\n";
+  std::string frame = "frame = \"free\"           # no constraints of the deck hold the body: free-free modes\n";
   if (is_fixed) frame = "frame = \"fixed\"          # the deck's constraints hold the body frame\n";
   if (grid > 0)
     frame = fmt::format(

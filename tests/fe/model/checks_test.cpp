@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fe/matrices/checks.hpp"
+#include "fe/matrices/connected_parts.hpp"
 #include "fe/matrices/grid_point_weight.hpp"
 #include "formats/nastran/reader.hpp"
 
@@ -130,6 +131,60 @@ TEST(Checks, AnMpcThatGroundsIsFoundOnTheNSet) {
   const Model model = Model::build(deck, {}, d);
   EXPECT_LT(calc_ground_check(model, GroundSet::Global).maxCoeff(), 1e-12);
   EXPECT_GT(calc_ground_check(model, GroundSet::Independent)[1], 1e-3);
+}
+
+/// Bars 1-2-3 and 4-5-6 along x, grid 4 on grid 3, grid 1 clamped.
+Model build_two_bars(const std::string& more, Diagnostics& d, bool is_free = false) {
+  std::string text =
+      "SOL 103\nCEND\nSPC=1\nMPC=1\nBEGIN "
+      "BULK\nSPC1,1,123456,1\nPBAR,1,1,1.-4,1.-8,1.-8,2.-8\nMAT1,1,7.+10,,.3,2700.\n";
+  const double x[] = {0, 1, 2, 2, 3, 4};
+  for (int i = 0; i < 6; ++i) text += "GRID," + std::to_string(i + 1) + ",," + std::to_string(x[i]) + ",0.,0.\n";
+  for (const int a : {1, 2, 4, 5})
+    text += "CBAR," + std::to_string(a) + ",1," + std::to_string(a) + "," + std::to_string(a + 1) + ",0.,1.,0.\n";
+  if (more.find("MPC,") == std::string::npos) text.replace(text.find("MPC=1\n"), 6, "");
+  const auto deck = nastran::read_deck_text(text + more + "ENDDATA\n", "bars.bdf", {}, d);
+  ModelOptions options;
+  options.ignore_spc = is_free;
+  return Model::build(deck, options, d);
+}
+
+TEST(ConnectedParts, PartsThatWereNeverMergedAreNamed) {
+  for (const bool is_free : {false, true}) {
+    Diagnostics d;
+    const Model model = build_two_bars("", d, is_free);
+    const auto parts = find_connected_parts(model);
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_EQ(parts[0].nodes, (std::vector<int>{0, 1, 2}));
+    EXPECT_EQ(parts[1].nodes, (std::vector<int>{3, 4, 5}));
+    EXPECT_EQ(parts[0].num_elements, 2);
+    EXPECT_EQ(parts[0].is_held, !is_free);
+    EXPECT_FALSE(parts[1].is_held);
+    EXPECT_EQ(
+        describe_loose_parts(model).what,
+        "2 parts; part 2: 3 grids, 2 elements, grids 4 to 6, touches nothing; its grid 4 lies on grid 3 of part 1");
+    EXPECT_EQ(count_held_motions(model), is_free ? 0 : 6);
+  }
+}
+
+// Coincident grids that something joins are no finding, nor are parts that stand on their own supports.
+TEST(ConnectedParts, JoinedOrHeldPartsAreNone) {
+  for (const char* more :
+       {"RBE2,9,3,123456,4\n", "RBE3,9,,4,123456,1.,123456,3\n", "RBAR,9,3,4,123456\n", "MPC,1,3,2,1.,4,2,-1.\n",
+        "CELAS2,9,1.+3,3,2,4,2\n", "CBUSH,9,9,3,4,,,,0\nPBUSH,9,K,1.,1.,1.,1.,1.,1.\n"}) {
+    Diagnostics d;
+    const Model model = build_two_bars(more, d);
+    EXPECT_EQ(find_connected_parts(model).size(), 1u) << more;
+    EXPECT_EQ(describe_loose_parts(model).what, "") << more;
+  }
+  for (const char* more : {"SPC1,1,123456,6\n", "CELAS2,9,1.+3,6,2\n"}) {
+    Diagnostics d;
+    const Model model = build_two_bars(more, d);
+    EXPECT_EQ(find_connected_parts(model).size(), 2u) << more;
+    EXPECT_EQ(describe_loose_parts(model).what, "") << more;
+  }
+  Diagnostics d;
+  EXPECT_EQ(count_held_motions(build_two_bars("SPC1,1,456,2,THRU,6\n", d, true)), 0);
 }
 
 }  // namespace

@@ -1,0 +1,73 @@
+"""A deck in parts that nothing joins: `check`, `reduce` and `init` name the parts instead of the supports."""
+import json
+import unittest
+
+from support import ProgramTest
+
+# Bars 1-2-3 and 4-5-6 along x; grid 4 is on grid 3 and was never merged with it.
+BARS = """SOL 103
+CEND
+SPC = 1
+METHOD = 1
+BEGIN BULK
+EIGRL,1,,,8
+SPC1,1,123456,1
+PBAR,1,1,1.-4,1.-8,1.-8,2.-8
+MAT1,1,7.+10,,.3,2700.
+GRID,1,,0.,0.,0.
+GRID,2,,1.,0.,0.
+GRID,3,,2.,0.,0.
+GRID,4,,2.,0.,0.
+GRID,5,,3.,0.,0.
+GRID,6,,4.,0.,0.
+CBAR,1,1,1,2,0.,1.,0.
+CBAR,2,1,2,3,0.,1.,0.
+CBAR,3,1,4,5,0.,1.,0.
+CBAR,4,1,5,6,0.,1.,0.
+ENDDATA
+"""
+PARTS = ("2 parts; part 2: 3 grids, 2 elements, grids 4 to 6, touches nothing; its grid 4 lies on grid 3 of part 1; "
+         "merge them")
+
+
+class LooseParts(ProgramTest):
+    def test_check_counts_the_parts(self):
+        self.write("bars.bdf", BARS)
+        run = self.bough("check", "bars.bdf")
+        self.assertIn(PARTS, run.stderr)
+        self.assertIn("[fe.loose-parts]", run.stderr)
+        self.assertIn("connected parts, by grids and scalar points: 2 (3, 3)", run.stdout)
+        parts = json.loads(self.bough("check", "bars.bdf", "--json").stdout)["geometry"]["parts"]
+        self.assertEqual([(p["points"], p["first"], p["last"], p["elements"], p["held"]) for p in parts],
+                         [(3, 1, 3, 2, True), (3, 4, 6, 2, False)])
+
+    def test_coincident_grids_that_are_joined_are_no_finding(self):
+        self.write("bars.bdf", BARS.replace("ENDDATA", "RBE2,9,3,123456,4\nENDDATA"))
+        run = self.bough("check", "bars.bdf")
+        self.assertNotIn("fe.loose-parts", run.stderr)
+        self.assertIn("coincident grids: 1 (3 and 4)", run.stdout)
+        self.assertIn("scalar points: 1 (6)", run.stdout)
+
+    def test_reduce_names_the_parts_first(self):
+        self.write("bars.bdf", BARS)
+        for free in ([], ["--free"]):
+            run = self.fails(1, "reduce", "bars.bdf", "--modes", "3", *free, error="reduce.mechanism")
+            first = next(line for line in run.stderr.splitlines() if "error:" in line)
+            self.assertIn(PARTS, first)
+            self.assertNotIn("SPC set", run.stderr)
+
+    def test_init_writes_a_free_frame_where_nothing_holds_the_deck(self):
+        for name, deck, frame in [("clamped", BARS, "fixed"),
+                                  ("bare", BARS.replace("SPC = 1\n", ""), "free"),
+                                  ("rotations", BARS.replace("SPC1,1,123456,1", "SPC1,1,456,1,THRU,6"), "free"),
+                                  ("permanent", BARS.replace("SPC = 1\n", "").replace("GRID,6,,4.,0.,0.",
+                                                                                       "GRID,6,,4.,0.,0.,,4"), "free")]:
+            with self.subTest(name):
+                self.write(f"{name}.bdf", deck)
+                self.bough("init", f"{name}.bdf")
+                with open(self.path(f"{name}.toml")) as f:
+                    self.assertIn(f'frame = "{frame}"', f.read())
+
+
+if __name__ == "__main__":
+    unittest.main()
