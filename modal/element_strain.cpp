@@ -1,6 +1,7 @@
 #include "modal/element_strain.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
@@ -28,6 +29,8 @@ constexpr double kSame = 1e-6;       // relative, of eigenvalues
 constexpr double kShift = 1e-13;     // of diag K, which makes K definite
 constexpr double kNoDigits = 1e16;   // parts over energy
 constexpr double kSure = 1e-3;       // relative error up to which an eigenvalue is good
+constexpr double kMatters = 1e-4;    // relative change of a frequency below which there is nothing to report
+constexpr double kStiff = 1e6;       // largest over smallest stiffness of elements: they differ, not the mesh is fine
 
 void add_element(const MatrixXd& K, const MatrixXd& u, int most_dofs, MatrixXd& forces, ElementStrain& strain) {
   const VectorXd diagonal = K.diagonal().cwiseAbs();
@@ -232,6 +235,47 @@ VectorXd calc_graded_eigenvalues(MatrixXd G, MatrixXd& V) {
 
 namespace {
 
+/// The stiffest element, by translations, rotations and scalar points each; empty if stiffness differs by less than
+/// kStiff. Collective.
+std::string find_stiffest(const fe::Model& model) {
+  std::vector<int> kind_of(static_cast<std::size_t>(model.num_gdofs()), 0);
+  for (const auto& node : model.nodes())
+    for (int c = 0; c < node.num_dofs; ++c)
+      kind_of[static_cast<std::size_t>(node.first_gdof + c)] = node.num_dofs == 1 ? 2 : c / 3;
+  std::array<double, 3> least{}, most{};
+  std::array<std::string, 3> name;
+  for (const auto& element : model.elements()) {
+    MatrixXd K = MatrixXd::Zero(element->num_dofs(), element->num_dofs());
+    element->add_stiffness(1, K);
+    std::array<double, 3> size{};
+    for (int i = 0; i < element->num_dofs(); ++i) {
+      double& s = size[static_cast<std::size_t>(
+          kind_of[static_cast<std::size_t>(element->gdofs()[static_cast<std::size_t>(i)])])];
+      s = std::max(s, std::abs(K(i, i)));
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!(size[k] > 0)) continue;
+      if (!(least[k] > 0) || size[k] < least[k]) least[k] = size[k];
+      if (size[k] > most[k]) most[k] = size[k], name[k] = element->card() + " " + std::to_string(element->id());
+    }
+  }
+  std::string stiffest;
+  double ratio = kStiff;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (model.share()) {
+      const auto all_least = fe::join_over_ranks(std::vector<double>{least[k]});
+      const auto all_most = fe::join_over_ranks(std::vector<double>{most[k]});
+      for (const double one : all_least)
+        if (one > 0 && (!(least[k] > 0) || one < least[k])) least[k] = one;
+      const auto at = std::max_element(all_most.begin(), all_most.end());
+      most[k] = *at;
+      name[k] = fe::spread_text(name[k], static_cast<int>(at - all_most.begin()));
+    }
+    if (least[k] > 0 && most[k] / least[k] > ratio) ratio = most[k] / least[k], stiffest = name[k];
+  }
+  return stiffest;
+}
+
 /// Blocks of given matrices are no structures of their own: their energies are no strain.
 bool has_given_blocks(const fe::Model& model) { return model.has_card("DMIG"); }
 
@@ -279,12 +323,16 @@ Restored restore_digits(const fe::System& system, int number, bool is_from_first
     const double old = before(soft[i]), now = better.theta()(c);
     if (now == 0 && old == 0) continue;
     result.error = std::max(result.error, better.calc_error(c));
-    if (std::abs(now - old) > kSame * now && ++num_changed <= 3)
+    const double f_old = std::sqrt(std::max(0.0, old)) / (2 * M_PI), f_now = std::sqrt(now) / (2 * M_PI);
+    const double change = f_now > 0 ? std::abs(f_now - f_old) / f_now : 1;
+    if (change > kMatters && ++num_changed <= 3) {
       result.changes += (num_changed > 1 ? ", " : "") + std::string("mode ") + std::to_string(soft[i] + 1) + " from " +
-                        number_text(std::sqrt(std::max(0.0, old)) / (2 * M_PI)) + " to " +
-                        number_text(std::sqrt(now) / (2 * M_PI)) + " Hz";
+                        number_text(f_old) + " to " + number_text(f_now) + " Hz";
+      if (change < 0.1) result.changes += " (by " + number_text(100 * change) + " %)";
+    }
   }
   if (num_changed > 3) result.changes += " and " + std::to_string(num_changed - 3) + " more";
+  if (!result.changes.empty() || !(result.error < kSure)) result.stiffest = find_stiffest(model);
   replace(pencil, better, reach, soft, pairs);
   return result;
 }
@@ -294,12 +342,15 @@ void warn_of_lost_digits(const Restored& restored, Diagnostics& diagnostics) {
   if (!restored.is_done || (restored.changes.empty() && is_sure)) return;
   diagnostics.warning(
       "modal.lost-digits", {},
-      "stiffness spans so many orders that its sums have lost the soft parts; by the strain of the elements " +
+      "the sums of the assembled stiffness matrix have lost digits of soft modes; by the strain of the elements " +
           (restored.changes.empty() ? "the modes are as they were" : restored.changes) +
           (is_sure              ? ", right to about " + number_text(std::max(1e-15, restored.error))
            : restored.error < 1 ? ", not reliable: they may be off by " + number_text(restored.error) + " and more"
                                 : ", not reliable: K has no digit of them, and others may be missing"),
-      "replace the stiffest elements by rigid ones; forces in them are roundoff");
+      restored.stiffest.empty()
+          ? "a coarser mesh keeps more digits: elements far shorter than the waves of the modes only add round-off"
+          : "replace the stiffest elements, " + restored.stiffest +
+                " first, by rigid ones; forces in them are round-off");
 }
 
 }  // namespace bough::modal::detail

@@ -28,9 +28,10 @@ VectorXd calc_graded_eigenvalues(MatrixXd G, MatrixXd& V);
 
 /// What the elements say of modes.
 struct Restored {
-  bool is_done = false;   ///< the modes were improved
-  double error = 0;       ///< relative, of the worst eigenvalue of the first `number` modes
-  std::string changes;    ///< of them, in words; empty: none changed
+  bool is_done = false;  ///< the modes were improved
+  double error = 0;      ///< relative, of the worst eigenvalue of the first `number` modes
+  std::string changes;   ///< of them, in words; empty: no frequency changed by more than 1e-4
+  std::string stiffest;  ///< the element that is far stiffer than others; empty: the mesh is fine, or nothing to report
 };
 
 /// Looks at the modes whose energy is below 1e-9 of its parts, zeros among them. Where the elements say otherwise than
