@@ -85,6 +85,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("decks", nargs="*")
     parser.add_argument("--seconds", type=float, default=60)
+    parser.add_argument("--number", type=int, help="so many mutants, whatever time they take")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--timeout", type=float, default=20)
     parser.add_argument("--verb", default="check")
@@ -101,7 +102,7 @@ def main():
     exits, found, number, end = {}, [], 0, time.monotonic() + options.seconds
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "deck.bdf")
-        while time.monotonic() < end:
+        while number < options.number if options.number else time.monotonic() < end:
             random_ = random.Random(options.seed * 1000003 + number)
             deck = random_.choice(decks)
             mutant = mutate(random_, texts[deck])

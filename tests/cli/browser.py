@@ -8,6 +8,8 @@ import subprocess
 import tempfile
 import time
 
+from support import HANG
+
 
 def find_chromium():
     return os.environ.get("BOUGH_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
@@ -37,8 +39,8 @@ class Browser:
     def close(self):
         try:
             self.session = None
-            self.call("Browser.close", timeout=10)
-            self.process.wait(10)
+            self.call("Browser.close")
+            self.process.wait(HANG)
         except (OSError, RuntimeError, subprocess.TimeoutExpired):
             self.process.kill()
         self.process.wait()
@@ -46,10 +48,9 @@ class Browser:
         os.close(self.back)
         shutil.rmtree(self.folder, ignore_errors=True)
 
-    def receive(self, timeout):
-        end = time.monotonic() + timeout
+    def receive(self):
         while b"\0" not in self.left:
-            if not select.select([self.back], [], [], max(0, end - time.monotonic()))[0]:
+            if not select.select([self.back], [], [], HANG)[0]:
                 raise RuntimeError("the browser does not answer")
             more = os.read(self.back, 1 << 20)
             if not more:
@@ -58,7 +59,7 @@ class Browser:
         message, self.left = self.left.split(b"\0", 1)
         return json.loads(message)
 
-    def call(self, method, timeout=60, **parameters):
+    def call(self, method, **parameters):
         self.number += 1
         message = {"id": self.number, "method": method, "params": parameters}
         if self.session:
@@ -67,7 +68,7 @@ class Browser:
         while data:
             data = data[os.write(self.to, data):]
         while True:
-            answer = self.receive(timeout)
+            answer = self.receive()
             if answer.get("id") == self.number:
                 if "error" in answer:
                     raise RuntimeError(f"{method}: {answer['error']}")
@@ -81,8 +82,8 @@ class Browser:
             raise RuntimeError(json.dumps(answer["exceptionDetails"]))
         return answer["result"].get("value")
 
-    def wait_for(self, expression, seconds=20):
-        end = time.monotonic() + seconds
+    def wait_for(self, expression):
+        end = time.monotonic() + HANG
         while time.monotonic() < end:
             if self.run(expression):
                 return True
@@ -92,7 +93,7 @@ class Browser:
     def open(self, path, ready="document.documentElement.dataset.ready === 'true'"):
         self.events = []
         self.call("Page.navigate", url="file://" + os.path.abspath(path))
-        if not self.wait_for(f"document.readyState === 'complete' && ({ready})", 30):
+        if not self.wait_for(f"document.readyState === 'complete' && ({ready})"):
             raise RuntimeError("the page does not get ready: " + "; ".join(self.list_errors()))
 
     def list_errors(self):

@@ -3,7 +3,7 @@ import re
 import subprocess
 import unittest
 
-from support import BEAM, PROGRAM, ProgramTest
+from support import BEAM, HANG, PROGRAM, ProgramTest
 
 BODY = """[body]
 name = "rod"
@@ -40,7 +40,7 @@ class CheckRefuses(ProgramTest):
         self.bough("check", file, code=1)
 
     def run_any(self, *call):
-        return subprocess.run([PROGRAM, *call], cwd=self.folder, capture_output=True, text=True, timeout=200)
+        return subprocess.run([PROGRAM, *call], cwd=self.folder, capture_output=True, text=True, timeout=HANG)
 
     def body(self, deck=BEAM, more="", modes=2, after=""):
         self.write("rod.bdf", deck)

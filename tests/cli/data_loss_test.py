@@ -1,24 +1,14 @@
 """Nothing of the user's is lost: not by two programs at once, a full disk, a signal, a link or a file of a stranger."""
 import glob
 import os
+import itertools
 import signal
 import subprocess
 import sys
-import time
 
-from support import BEAM, PROGRAM, SLOWER, SOURCE, ProgramTest, unittest
+from support import BEAM, HANG, HOLD, IN_OUTPUTS, PROGRAM, SLOWER, SOURCE, ProgramTest, get_astray, unittest
 
 PARTS = "*.bough-part-*"
-
-
-def make_plate(n):
-    """A plate of n x n shells, held on one edge: some seconds of work."""
-    grids = [f"GRID,{1 + i + j * (n + 1)},,{i / n},{j / n},0." for j in range(n + 1) for i in range(n + 1)]
-    shells = [f"CQUAD4,{1 + i + j * n},1,{(a := 1 + i + j * (n + 1))},{a + 1},{a + n + 2},{a + n + 1}"
-              for j in range(n) for i in range(n)]
-    held = [f"SPC1,1,123456,{1 + i}" for i in range(n + 1)]
-    return "\n".join(["SOL 103", "CEND", "SPC = 1", "BEGIN BULK", "MAT1,1,7.+10,,.3,2700.", "PSHELL,1,1,.01,1,,1",
-                      *grids, *shells, *held, "ENDDATA", ""])
 
 
 class Disks(ProgramTest):
@@ -54,40 +44,22 @@ class Runs(ProgramTest):
         self.copy_example("ex01-spinup")
         self.bough("reduce", "boom.toml")
         with open(self.path("spinup.toml")) as f:
-            self.write("long.toml", f.read().replace("duration = 20.0", "duration = 2000.0"))
-
-    def start(self, *arguments):
-        process = subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, text=True, stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE)
-        self.addCleanup(lambda: (process.poll() is None and process.kill(), process.communicate()))
-        return process
+            self.write("long.toml", get_astray(IN_OUTPUTS, HOLD, 15.0, "tip_deflection:y") + f.read())
 
     def stop(self, process):
         process.send_signal(signal.SIGTERM)
-        _, said = process.communicate(timeout=60 * SLOWER)
+        _, said = process.communicate(timeout=HANG)
         self.assertEqual(process.returncode, 3, said)
         return said
 
     def start_long(self, *more):
-        process = self.start("run", "long.toml", "-o", "r.h5", *more)
-        size = os.path.getsize(self.path("r.h5")) if more else 30000
-        while process.poll() is None and (not os.path.exists(self.path("r.h5")) or
-                                          os.path.getsize(self.path("r.h5")) <= size):
-            time.sleep(0.01)
-        self.assertIsNone(process.poll())
-        return process
+        """A run that sleeps at t = 15; one that goes on sleeps again."""
+        return self.start_held("run", "long.toml", "-o", "r.h5", *more)[0]
 
-    def read_times(self, tries=1):
+    def read_times(self):
         import h5py
-        while True:
-            try:
-                with h5py.File(self.path("r.h5"), "r") as f:
-                    return f["time"][:]
-            except OSError:  # a reader may come in the middle of a flush
-                tries -= 1
-                if tries == 0:
-                    raise
-                time.sleep(0.05)
+        with h5py.File(self.path("r.h5"), "r") as f:
+            return f["time"][:]
 
     def test_two_runs_do_not_write_one_file(self):
         first = self.start_long()
@@ -99,7 +71,7 @@ class Runs(ProgramTest):
                    error="hdf5.busy")
         # Whoever only reads is not kept away.
         self.assertIn("still goes on", self.bough("export", "r.h5", "--to", "csv", "-o", "r.csv").stderr)
-        self.assertGreater(len(self.read_times(tries=20)), 10)
+        self.assertGreater(len(self.read_times()), 10)
         self.stop(first)
         times = self.read_times()
         self.assertTrue((times[1:] > times[:-1]).all())
@@ -239,15 +211,16 @@ class Files(ProgramTest):
         self.fails(3, "modes", "beam.bdf", "-o", "round.h5", error="cli.write")
 
     def test_signal_ends_with_exit_3_and_no_parts(self):
-        self.write("plate.bdf", make_plate(160))
+        """In the middle of the computation, and with the output file half written."""
+        points = ({"call": "MPI_Allreduce", "count": 5}, {"call": "open", "path": "x.h5.bough-part-"})
         for at in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            for words in (["modes", "plate.bdf", "-n", "60", "-o", "x.h5"],
-                          ["reduce", "plate.bdf", "-n", "60", "-o", "x.h5"]):
-                process = subprocess.Popen([PROGRAM, *words], cwd=self.folder, text=True, stdout=subprocess.DEVNULL,
-                                           stderr=subprocess.PIPE)
-                time.sleep(0.4 * SLOWER)
+            for words, point in itertools.product((["modes", "beam.bdf", "-n", "3", "-o", "x.h5"],
+                                                   ["reduce", "beam.bdf", "-n", "3", "-o", "x.h5"]), points):
+                process, _ = self.start_held(*words, **point)
+                if "path" in point:
+                    self.assertEqual(len(glob.glob(self.path(PARTS))), 1)
                 process.send_signal(at)
-                _, said = process.communicate(timeout=60 * SLOWER)
+                _, said = process.communicate(timeout=HANG)
                 self.assertEqual(process.returncode, 3, (at, words, said))
                 self.assertIn("[cli.interrupted]", said)
                 self.assertEqual(glob.glob(self.path(PARTS)), [])
@@ -271,7 +244,7 @@ class Files(ProgramTest):
         told = 0
         for limit in range(170, 620, 30):  # in MB; below some 160 the libraries are not loaded
             result = subprocess.run(["bash", "-c", f"ulimit -v {limit}000; exec {PROGRAM} modes beam.bdf -n 3"],
-                                    cwd=self.folder, text=True, capture_output=True, timeout=60,
+                                    cwd=self.folder, text=True, capture_output=True, timeout=HANG,
                                     env={k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"})
             told += "[cli.no-memory]" in result.stderr
             if result.returncode != 127:

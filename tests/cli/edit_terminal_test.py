@@ -1,15 +1,19 @@
 """bough edit as a person has it: completion, history, prompts, Ctrl-C, at a terminal of its own."""
+import fcntl
 import os
 import pty
 import re
 import select
+import struct
 import subprocess
+import termios
 import time
 import unittest
 
 from edit_test import SYSTEM
-from support import PROGRAM, SLOWER, ProgramTest
+from support import HANG, PROGRAM, ProgramTest
 
+GET_TERMINAL_NUMBER = 0x80045430  # TIOCGPTN of Linux
 HAS_LIBEDIT = "libedit" in subprocess.run(["ldd", PROGRAM], text=True, capture_output=True).stdout
 
 
@@ -21,15 +25,30 @@ class Terminal:
         if self.process == 0:
             os.chdir(folder)
             os.execve(PROGRAM, [PROGRAM, *arguments], {**os.environ, "TERM": "xterm", "NO_COLOR": "1", "COLUMNS": "120"})
+        number = struct.unpack("I", fcntl.ioctl(self.master, GET_TERMINAL_NUMBER, b"\0" * 4))[0]
+        self.slave = os.open(f"/dev/pts/{number}", os.O_RDWR | os.O_NOCTTY)
         self.said = ""
 
-    def read_until(self, end, seconds=30):
-        """What comes until a line of it ends with `end`."""
-        said, until = "", time.monotonic() + seconds * SLOWER
+    def is_waiting(self):
+        """The program has taken all that was typed and sleeps."""
+        try:
+            left = struct.unpack("i", fcntl.ioctl(self.slave, termios.FIONREAD, b"\0" * 4))[0]
+            with open(f"/proc/{self.process}/stat", encoding="ascii", errors="replace") as f:
+                return left == 0 and f.read().rsplit(")", 1)[1].split()[0] == "S"
+        except OSError:
+            return False
+
+    def read_until(self, end):
+        """What comes until a line of it ends with `end` and the program waits for more; None: until it has ended."""
+        said, until = "", time.monotonic() + HANG
         while time.monotonic() < until:
-            if not select.select([self.master], [], [], .2)[0]:
-                if re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", said).endswith(end):
+            waits = self.is_waiting()  # before it is looked whether there is more to read
+            if not select.select([self.master], [], [], 0)[0]:
+                if end is not None and waits and re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", said).endswith(end):
                     break
+                if os.waitid(os.P_PID, self.process, os.WEXITED | os.WNOWAIT | os.WNOHANG) is not None:
+                    break
+                select.select([self.master], [], [], .02)
                 continue
             try:
                 said += os.read(self.master, 65536).decode()
@@ -45,6 +64,7 @@ class Terminal:
 
     def end(self):
         """Exit code."""
+        os.close(self.slave)
         os.close(self.master)
         return os.waitstatus_to_exitcode(os.waitpid(self.process, 0)[1])
 
@@ -63,7 +83,7 @@ class EditAtTerminal(ProgramTest):
 
     def finish(self):
         os.write(self.terminal.master, b"quit\r")
-        self.terminal.read_until("\n", 3)
+        self.terminal.read_until(None)
         self.assertEqual(self.terminal.end(), 0)
 
     def test_completion_ends_words(self):

@@ -3,7 +3,7 @@ import os
 import subprocess
 import unittest
 
-from support import PROGRAM, SOURCE, ProgramTest
+from support import HANG, PROGRAM, SOURCE, ProgramTest
 
 SYSTEM = """# A pendulum.
 [[body]]
@@ -32,7 +32,7 @@ gravity = [0.0, 0.0, -9.81]
 
 class Edit(ProgramTest):
     def edit(self, *commands, code=0, file="p.toml"):
-        result = subprocess.run([PROGRAM, "edit", file], cwd=self.folder, text=True, timeout=250, capture_output=True,
+        result = subprocess.run([PROGRAM, "edit", file], cwd=self.folder, text=True, timeout=HANG, capture_output=True,
                                 input="\n".join(commands) + "\n")
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
@@ -117,7 +117,7 @@ class Edit(ProgramTest):
         process.stdin.flush()
         self.assertEqual(process.stdout.readline(), "5.0\n")  # the file is read by now
         self.write("p.toml", SYSTEM + "# by another\n")
-        _, said = process.communicate("save\n", timeout=60)
+        _, said = process.communicate("save\n", timeout=HANG)
         self.assertEqual(process.returncode, 1)
         self.assertIn("[cli.edit-changed]", said)
         self.assertTrue(self.read().endswith("# by another\n"))

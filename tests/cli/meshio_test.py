@@ -8,7 +8,7 @@ import h5py
 import meshio
 import numpy as np
 
-from support import BEAM, PROGRAM, SOURCE, ProgramTest
+from support import BEAM, HANG, PROGRAM, SOURCE, ProgramTest
 
 SHARED = os.environ.get("BOUGH_SHARED_DIR", "")
 TYPES = {"vertex": "vertex", "line2": "line", "tri3": "triangle", "quad4": "quad", "tetra4": "tetra", "penta6": "wedge",
@@ -205,7 +205,7 @@ class Deck(ProgramTest):
 
     def run_export(self, path, name, *options):
         return subprocess.run([PROGRAM, "export", path, "--to", "bdf", "-o", name, *options], cwd=self.folder,
-                              text=True, capture_output=True, timeout=250)
+                              text=True, capture_output=True, timeout=HANG)
 
     def count_known_cells(self, mesh):
         return {kind: n for kind, n in count_cells(mesh).items() if kind != "vertex"}  # CELAS1

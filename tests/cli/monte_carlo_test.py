@@ -3,14 +3,12 @@ import csv
 import json
 import os
 import signal
-import subprocess
-import time
 import unittest
 
 import h5py
 import numpy as np
 
-from support import PROGRAM, SLOWER, ProgramTest
+from support import SLOWER, ProgramTest
 
 SYSTEM = """
 [parameters]
@@ -121,31 +119,16 @@ class MonteCarlo(ProgramTest):
         self.write("mc.toml", CAMPAIGN.replace("COUNT", str(count)))
         self.bough("batch", "mc.toml", "-j", "1", "-o", "whole")
 
-        def read_memory(pid):
-            with open(f"/proc/{pid}/status") as f:
-                return next((int(line.split()[1]) for line in f if line.startswith("VmRSS")), 0)
-
-        def call(until):
-            """Memory of the program after each case that was seen to be done; killed once case `until` is."""
-            process = subprocess.Popen([PROGRAM, "batch", "mc.toml", "-j", "1", "-o", "parts", "-q"], cwd=self.folder)
-            seen, case = [], 1
-            while process.poll() is None:
-                while os.path.exists(self.path(f"parts/case-{case:04d}/outcome.json")):
-                    case += 1
-                try:
-                    seen.append((case, read_memory(process.pid)))
-                except OSError:
-                    pass
-                if case > until:
-                    process.send_signal(signal.SIGKILL)
-                time.sleep(0.002)
-            return process.wait(), [memory for c, memory in seen if memory > 0 and c <= count]
-
-        code, _ = call(until=count // 3)
-        self.assertEqual(code, -signal.SIGKILL)
+        words, point = ["batch", "mc.toml", "-j", "1", "-o", "parts", "-q"], {"LD_PRELOAD": os.environ["BOUGH_POINT"],
+                                                                           "POINT_CALL": "rename"}
+        self.bough(*words, code=-signal.SIGKILL, env={**point, "POINT_PATH": f"case-{count // 3:04d}/outcome.json",
+                                                      "POINT_ACT": "kill"})
         self.assertFalse(os.path.exists(self.path("parts/statistics.csv")))
-        code, memory = call(until=count + 1)
-        self.assertEqual(code, 0)
+        self.bough(*words, env={**point, "POINT_PATH": "outcome.json", "POINT_ACT": "log",
+                                "POINT_PIPE": self.path("memory")})
+        with open(self.path("memory")) as f:  # of the program after each case
+            memory = [int(line.split()[2]) for line in f]
+        self.assertEqual(len(memory), count - count // 3)
         with open(self.path("whole/statistics.csv"), "rb") as a, open(self.path("parts/statistics.csv"), "rb") as b:
             self.assertEqual(a.read(), b.read())
         early = max(memory[:len(memory) // 4])  # the tables at the end are not among them

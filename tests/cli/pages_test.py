@@ -16,7 +16,7 @@ import subprocess
 import unittest
 
 from page_blocks import list_blocks, list_commands, split_lines
-from support import PROGRAM, SOURCE, ProgramTest
+from support import HANG, PROGRAM, SOURCE, ProgramTest
 
 HAS_PNG = shutil.which("rsvg-convert") is not None
 MODULE = os.path.join(os.path.dirname(os.path.dirname(PROGRAM)), "python")
@@ -69,7 +69,7 @@ class Pages(ProgramTest):
         if ">" in words:
             given_out = os.path.join(self.where, words.pop(words.index(">") + 1))
             words.remove(">")
-        ran = subprocess.run([PROGRAM, *words], cwd=self.where, text=True, capture_output=True, timeout=250,
+        ran = subprocess.run([PROGRAM, *words], cwd=self.where, text=True, capture_output=True, timeout=HANG,
                              stdin=open(taken_in) if taken_in else subprocess.DEVNULL)
         self.assertEqual(ran.returncode, 0, f"{page}: {command}\n{ran.stdout}{ran.stderr}")
         if given_out:

@@ -1,5 +1,4 @@
 """Modes of decks that are cut among ranks are those of one process: frequencies, shapes, effective masses, errors."""
-import glob
 import os
 import signal
 import subprocess
@@ -9,7 +8,7 @@ import unittest
 import h5py
 import numpy as np
 
-from support import PROGRAM, ProgramTest
+from support import HANG, PROGRAM, ProgramTest
 
 # Ranks that wait leave the core to those that work.
 ENV = {"OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1"}
@@ -173,7 +172,7 @@ class Subdomains(ProgramTest):
         """No mass at all: K + sM has no modes, the same words and the same code, and no rank waits for another."""
         self.write("deck.bdf", write_plate().replace(",.3,8000.", ",.3,0."))
         found = [subprocess.run([*launch(n), PROGRAM, "modes", "deck.bdf", "-n", "8"], cwd=self.folder, text=True,
-                                capture_output=True, timeout=120, env={**os.environ, **ENV}) for n in (1, 2)]
+                                capture_output=True, timeout=HANG, env={**os.environ, **ENV}) for n in (1, 2)]
         self.assertEqual([one.returncode for one in found], [1, 1])
         said = [[line for line in one.stderr.splitlines() if "error:" in line] for one in found]
         self.assertIn("[modal.no-mass]", said[0][0])
@@ -183,7 +182,7 @@ class Subdomains(ProgramTest):
         """Exit code, messages and tables of one call."""
         self.write("deck.bdf", text)
         done = subprocess.run([*launch(ranks), PROGRAM, "modes", "deck.bdf", "-n", "8", *options], cwd=self.folder,
-                              text=True, capture_output=True, timeout=120, env={**os.environ, **ENV})
+                              text=True, capture_output=True, timeout=HANG, env={**os.environ, **ENV})
         messages = [line for line in done.stderr.splitlines() if "error:" in line or "warning:" in line or "note:" in line]
         return done.returncode, messages, done.stdout
 
@@ -240,38 +239,28 @@ class Subdomains(ProgramTest):
                 else:
                     np.testing.assert_array_equal(found[name], values, err_msg=name)
 
-    def find_ranks(self, launcher):
-        ranks = []
-        for path in glob.glob("/proc/[0-9]*/stat"):
-            try:
-                with open(path) as file:
-                    head, tail = file.read().rsplit(")", 1)
-            except OSError:
-                continue
-            if int(tail.split()[1]) == launcher.pid and os.path.basename(PROGRAM)[:15] in head:
-                ranks.append(int(head.split()[0]))
-        return ranks
+    def is_alive(self, process):
+        """Not so: a dead one that nobody has asked for its exit code."""
+        try:
+            with open(f"/proc/{process}/stat") as f:
+                return f.read().rsplit(")", 1)[1].split()[0] != "Z"
+        except OSError:
+            return False
 
     def end(self, act):
-        """The exit code when `act(launcher, ranks)` comes in the middle."""
-        self.write("deck.bdf", write_plate(120, 90))
-        launcher = subprocess.Popen([*launch(2), PROGRAM, "modes", "deck.bdf", "-n", "60"], cwd=self.folder,
-                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env={**os.environ, **ENV})
-        try:
-            ranks, until = [], time.monotonic() + 60
-            while len(ranks) < 2 and time.monotonic() < until:
-                ranks = self.find_ranks(launcher)
+        """The exit code when `act(launcher, ranks)` comes in the middle of the modes; no rank is left behind."""
+        self.write("deck.bdf", write_plate())
+        launcher, ranks = self.start_held("modes", "deck.bdf", "-n", "8", call="MPI_Allreduce", count=10, processes=2,
+                                          launcher=launch(2))
+        self.assertEqual(len(set(ranks)), 2)
+        act(launcher, ranks)
+        launcher.communicate(timeout=HANG)
+        for rank in ranks:
+            until = time.monotonic() + HANG
+            while self.is_alive(rank):
+                self.assertLess(time.monotonic(), until, "a rank is left behind")
                 time.sleep(0.05)
-            self.assertEqual(len(ranks), 2)
-            time.sleep(0.7)
-            act(launcher, ranks)
-            code = launcher.wait(60)
-            for rank in ranks:
-                self.assertFalse(os.path.exists(f"/proc/{rank}") and rank in self.find_ranks(launcher))
-            return code
-        finally:
-            launcher.kill()
-            launcher.wait()
+        return launcher.returncode
 
     def test_a_rank_that_dies_ends_all(self):
         self.assertNotEqual(self.end(lambda launcher, ranks: os.kill(ranks[1], signal.SIGKILL)), 0)

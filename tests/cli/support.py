@@ -1,5 +1,6 @@
 """Runs the built program in a folder of its own."""
 import os
+import select
 import shutil
 import subprocess
 import tempfile
@@ -9,6 +10,8 @@ PROGRAM = os.environ["BOUGH_PROGRAM"]
 SOURCE = os.environ["BOUGH_SOURCE_DIR"]
 # How many times as long as the program itself one under the sanitizers takes; these need address space without end.
 SLOWER = int(os.environ.get("BOUGH_SLOWER", "1"))
+# Guards against hangs only: no command takes a tenth of it, alone or on a busy machine.
+HANG = 600 * SLOWER
 VERBS = ["check", "modes", "static", "frequency", "transient", "matrices", "reduce", "integrals", "flx", "compare", "run",
          "equilibrium", "linearize", "response", "select", "export", "plot", "report", "info", "init", "batch", "edit", "convert"]
 
@@ -31,13 +34,48 @@ class ProgramTest(unittest.TestCase):
         for name in os.listdir(source):
             shutil.copy(os.path.join(source, name), self.folder)
 
-    def bough(self, *arguments, code=0, launcher=(), env=None, timeout=250):
+    def bough(self, *arguments, code=0, launcher=(), env=None):
         """Runs and checks the exit code; returns the finished process with stdout and stderr as text."""
         result = subprocess.run([*launcher, PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,
-                                timeout=timeout * SLOWER, capture_output=True, env={**os.environ, **(env or {})})
+                                timeout=HANG, capture_output=True, env={**os.environ, **(env or {})})
         self.assertEqual(result.returncode, code,
                          f"bough {' '.join(map(str, arguments))}\n--- stdout\n{result.stdout}\n--- stderr\n{result.stderr}")
         return result
+
+    def start_held(self, *arguments, call=None, path="", count=1, launcher=(), processes=1, env=None, **more):
+        """Starts the program, which stops itself at a point and sleeps there until it has handled a signal.
+
+        The point is the `count`-th call of that function of the C library, PETSc or MPI (tests/support/point.c), whose
+        path contains `path`; without `call` it is where a controller of get_astray holds. Returns the process and the
+        ids of those that sleep, when `processes` of them do.
+        """
+        point = {"ASTRAY_PIPE": self.path("hold.pipe"), **(env or {})}
+        if call:
+            point.update(POINT_CALL=call, POINT_ACT="hold", POINT_PIPE=self.path("hold.pipe"), POINT_COUNT=str(count),
+                         LD_PRELOAD=os.environ["BOUGH_POINT"], **({"POINT_PATH": path} if path else {}))
+        words = [*launcher]
+        if launcher:  # the ranks are to sleep, not the launcher
+            words += [word for name, value in point.items() for word in ("-x", f"{name}={value}")]
+        else:
+            more["env"] = {**os.environ, **point}
+        if not hasattr(self, "held"):
+            os.mkfifo(self.path("hold.pipe"))
+            self.held = os.open(self.path("hold.pipe"), os.O_RDWR)  # open to the end: who holds waits for no reader
+            self.addCleanup(os.close, self.held)
+        process = subprocess.Popen([*words, PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,
+                                   **{"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, **more})
+        self.addCleanup(lambda: (process.poll() is None and process.kill(), process.communicate()))
+        return process, self.wait_held(process, processes)
+
+    def wait_held(self, process, processes=1):
+        """Ids of so many processes, as soon as they sleep."""
+        sleeping = b""
+        while sleeping.count(b"\n") < processes:
+            if select.select([self.held], [], [], 1)[0]:
+                sleeping += os.read(self.held, 4096)
+            elif process.poll() is not None:
+                self.fail(f"ended before the point, exit code {process.returncode}: {process.communicate()}")
+        return [int(line) for line in sleeping.split()]
 
     def fails(self, code, *arguments, says=(), error=None):
         """The call must fail with the code, say every word of `says` and name the error id; nothing on stdout."""
@@ -48,6 +86,17 @@ class ProgramTest(unittest.TestCase):
             self.assertIn(f"[{error}]", result.stderr)
         self.assertIn("error:", result.stderr)
         return result
+
+
+# Where the user library tests/support/astray.c fails, and what it does there.
+IN_OPEN, IN_START, IN_OUTPUTS, IN_CLOSE, IN_SIZES = range(1, 6)
+EXIT, EXIT_AT_ONCE, QUICK_EXIT, ABORT, WRITE_NOWHERE, DIVIDE, OVERFLOW, HOLD, LOOP, FORK = range(1, 11)
+
+
+def get_astray(place, act, since, signal_name, more=""):
+    """A [[controller]] that does `act` at `place` from time `since` on; ASTRAY=0 in the environment keeps it quiet."""
+    return (f'[[controller]]\nname = "law"\ntype = "library"\nfile = "{os.environ["BOUGH_ASTRAY"]}"\n'
+            f'inputs = ["{signal_name}"]\nparameters = [{place}, {act}, {since}]\n{more}')
 
 
 BEAM = """SOL 103

@@ -66,7 +66,7 @@ def main():
     parser.add_argument("--verbs", default="check,modes,static,reduce")
     parser.add_argument("--shrink", action="store_true", help="cut down the decks that break a rule")
     parser.add_argument("--decks", nargs="+", help="these decks, and those in these folders, by the rules alone")
-    parser.add_argument("--timeout", type=float, default=20)
+    parser.add_argument("--timeout", type=float, default=600)
     parser.add_argument("--list-unclear", action="store_true", help="say why a deck has no certain answer, or is refused")
     parser.add_argument("--keep", default="oracle-found")
     parser.add_argument("-j", "--jobs", type=int, default=1)

@@ -34,7 +34,7 @@ class Ran:
 
 
 class Program:
-    def __init__(self, path, folder, timeout=20):
+    def __init__(self, path, folder, timeout=600):
         self.path, self.folder, self.timeout = os.path.abspath(path), folder, timeout
         self.env = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
