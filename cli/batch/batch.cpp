@@ -471,7 +471,8 @@ int run_batch(const BatchOptions& o) {
   pool.num_workers = o.jobs > 0 ? o.jobs : rank.count > 1 ? 1 : all_cores;
   pool.time_limit = o.time_limit > 0 ? o.time_limit : plan.get_spec().time_limit;
   pool.stop = &get_stop();
-  take_signals(on_signal);
+  pool.find_error = [&](int number) { return find_printed_error(plan, get_case(number)); };
+  const SignalScope signals(on_signal);
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
   auto shown = begin - std::chrono::seconds(1);
@@ -501,7 +502,9 @@ int run_batch(const BatchOptions& o) {
     for (const auto& one : plan.get_cases())
       if (auto outcome = read_outcome(get_case(one.number))) outcomes.push_back(std::move(*outcome));
     if (const auto before = count_rows(folder / "outcomes.csv"); before > outcomes.size())
-      console.print(Diagnostic{Severity::Warning, "batch.smaller-table", {(folder / "outcomes.csv").string()},
+      console.print(Diagnostic{Severity::Warning,
+                               "batch.smaller-table",
+                               {(folder / "outcomes.csv").string()},
                                fmt::format("it had {} cases and has {} now: the others were merged from other folders",
                                            before, outcomes.size()),
                                "merge them again when all shards are done"});

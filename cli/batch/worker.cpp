@@ -113,6 +113,17 @@ void collect_all(const BatchPlan& plan, const fs::path& folder, BatchOutcome& ou
 
 }  // namespace
 
+std::string find_printed_error(const BatchPlan& plan, const fs::path& here) {
+  const auto& steps = plan.get_spec().steps;
+  for (auto i = steps.size(); i > 0; --i) {
+    const auto name = here / ("step-" + std::to_string(i) + ".err");
+    if (!fs::exists(name)) continue;
+    const auto error = find_error(name.string());
+    return error.find("error: ") == std::string::npos ? "" : steps[i - 1].words[0] + ": " + error;
+  }
+  return {};
+}
+
 BatchOutcome run_case(const BatchPlan& plan, const BatchCase& one, const fs::path& folder) {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();

@@ -8,6 +8,9 @@ namespace bough::cli {
 /// step-k.err), outputs.
 BatchOutcome run_case(const BatchPlan& plan, const BatchCase& one, const std::filesystem::path& folder);
 
+/// The error that the last step of the case in `here` printed; empty without any.
+std::string find_printed_error(const BatchPlan& plan, const std::filesystem::path& here);
+
 /// Reads case numbers, one a line, from the socket `fd`, answers each with the outcome as a line of JSON; 0 when the
 /// other side has closed it. `may_leave`: the steps may write outside the case's folder.
 int serve_cases(const BatchPlan& plan, const std::filesystem::path& folder, int fd, bool may_leave);

@@ -175,21 +175,27 @@ class Pool {
     return std::chrono::duration<double>(Clock::now() - worker.begin).count();
   }
 
-  void fail(Worker& worker, const char* id, const std::string& what, const std::string& advice) {
+  void fail(Worker& worker, const std::string& error) {
     BatchOutcome outcome;
     outcome.number = worker.number;
     outcome.exit_code = 3;
     outcome.seconds = get_seconds(worker);
+    outcome.error = error;
+    done_(outcome);
+    give_next(worker);
+  }
+  void fail(Worker& worker, const char* id, const std::string& what, const std::string& advice) {
     Diagnostic diagnostic;
     diagnostic.id = id;
     diagnostic.what = what;
     diagnostic.advice = advice;
-    outcome.error = format(diagnostic);
-    done_(outcome);
-    give_next(worker);
+    fail(worker, format(diagnostic));
   }
   void fail_crashed(Worker& worker) {
     const int status = end(worker, false);
+    // A user library ended it, and the worker could still print which.
+    const auto error = WIFEXITED(status) && options_.find_error ? options_.find_error(worker.number) : std::string();
+    if (!error.empty()) return fail(worker, error);
     const auto why = WIFSIGNALED(status) ? std::string("signal ") + std::to_string(WTERMSIG(status)) + " (" +
                                                strsignal(WTERMSIG(status)) + ")"
                                          : "exit code " + std::to_string(WEXITSTATUS(status));

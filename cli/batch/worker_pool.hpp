@@ -14,6 +14,8 @@ struct PoolOptions {
   int num_workers = 1;
   double time_limit = 0;               ///< s a case; 0: none
   const volatile int* stop = nullptr;  ///< turns non-zero when a signal came
+  /// What a case printed before its worker ended itself; empty: nothing.
+  std::function<std::string(int number)> find_error;
 };
 
 /// Gives `cases` to workers as they come free and hands every outcome to `done`. A worker that dies, or that takes too

@@ -6,8 +6,10 @@
 #include <csignal>
 #include <cstring>
 
+#include "base/foreign_call.hpp"
 #include "base/part_file.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/user_code.hpp"
 
 namespace bough::cli {
 
@@ -22,16 +24,55 @@ void end_on_signal(int signal) {
   const char* text = signal == SIGINT ? "error: interrupted; nothing was written [cli.interrupted]\n"
                                       : "error: told to end; nothing was written [cli.interrupted]\n";
   if (says_it) (void)!::write(STDERR_FILENO, text, std::strlen(text));
-  ::_exit(kComputationFailed);
+  leave_at_once(kComputationFailed);
+}
+
+/// Of the SignalScope in force.
+void (*volatile g_handler)(int) = nullptr;
+volatile std::sig_atomic_t g_is_told = 0;
+
+/// The verb did not come to a point where it looks whether it is to end: where it is, if that is a user library.
+[[noreturn]] void end_on_second_interrupt() {
+  remove_parts();
+  char text[1200];
+  std::size_t size = 0;
+  const auto add = [&](const char* more) {
+    std::memcpy(text + size, more, std::strlen(more));
+    size += std::strlen(more);
+  };
+  add("error: interrupted a second time");
+  if (const auto* call = ForeignCall::find_current()) {
+    add(" in ");
+    size += call->describe(text + size, 1000);
+  }
+  add("; what was not flushed is lost [cli.interrupted]\n");
+  if (says_it) (void)!::write(STDERR_FILENO, text, size);
+  leave_at_once(kComputationFailed);
+}
+
+void on_signal_of_scope(int signal) {
+  if (signal == SIGINT && g_is_told) end_on_second_interrupt();
+  g_is_told = 1;
+  if (const auto handler = g_handler) handler(signal);
 }
 
 }  // namespace
 
-void take_signals(void (*handler)(int)) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction now {};
-    if (signal == SIGHUP && ::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN) continue;  // nohup
-    std::signal(signal, handler);
+SignalScope::SignalScope(void (*handler)(int)) {
+  g_is_told = 0;
+  g_handler = handler;
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    ::sigaction(kSignals[i], nullptr, &before_[i]);
+    if (kSignals[i] == SIGHUP && before_[i].sa_handler == SIG_IGN) continue;  // nohup
+    std::signal(kSignals[i], on_signal_of_scope);
+  }
+}
+
+SignalScope::~SignalScope() {
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    // The program is about to end by itself; a signal more does not make it say that nothing was written.
+    if (before_[i].sa_handler == end_on_signal) continue;
+    ::sigaction(kSignals[i], &before_[i], nullptr);
   }
 }
 

@@ -1,10 +1,13 @@
 #pragma once
+/// \file Signals that ask the program to end.
+#include <array>
+#include <csignal>
 
 namespace bough::cli {
 
 /// SIGINT, SIGTERM and SIGHUP end the program with exit code 3 and leave no half-written file behind; a signal that was
 /// ignored from the start stays so. In force before main() begins. Verbs that can stop in good order (run, batch) take
-/// the signals over.
+/// the signals over (SignalScope).
 void end_cleanly_on_signals();
 
 /// Of several ranks only the first says that it ends. Before main() the environment is not there yet.
@@ -13,8 +16,20 @@ void leave_word_to_first_rank();
 /// A failure has been told: the signal with which mpirun ends the other ranks adds nothing.
 void end_in_silence();
 
-/// For such verbs: the three signals call `handler`; a hangup that was ignored (nohup) stays so.
-void take_signals(void (*handler)(int));
+/// For such verbs: SIGINT, SIGTERM and SIGHUP call `handler` while the object lives; a hangup that was ignored (nohup)
+/// stays so. A SIGINT after any of the three ends the process at once, exit code 3. One object at a time. Handlers of a
+/// host program are put back at the end.
+class SignalScope {
+ public:
+  explicit SignalScope(void (*handler)(int));
+  ~SignalScope();
+  SignalScope(const SignalScope&) = delete;
+  SignalScope& operator=(const SignalScope&) = delete;
+
+ private:
+  static constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
+  std::array<struct sigaction, 3> before_{};
+};
 
 /// Standard streams that the caller has closed lead to where every write fails, and not into the next file opened.
 void secure_streams();

@@ -1,5 +1,7 @@
 #pragma once
-/// \file A sink that stands before the writer and adds what the solver cannot know: the input files with their SHA-256.
+/// \file A sink before the writer: adds the input files with their SHA-256, and delays the end of the file until the
+/// controllers are closed.
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,11 +24,17 @@ class ProvenanceSink final : public records::ResultSink {
   void write_event(const records::EventRecord& event) override { inner_.write_event(event); }
   void write_checkpoint(const records::Checkpoint& checkpoint) override { inner_.write_checkpoint(checkpoint); }
   void write_energy_error(double worst) override { inner_.write_energy_error(worst); }
-  void end(bool completed, const std::string& reason) override { inner_.end(completed, reason); }
+  void end(bool completed, const std::string& reason) override { end_.emplace(completed, reason); }
+  /// Passes on the end that the solver gave, if it gave one.
+  void finish() {
+    if (end_) inner_.end(end_->first, end_->second);
+    end_.reset();
+  }
 
  private:
   records::ResultSink& inner_;
   std::vector<std::pair<std::string, std::string>> source_;
+  std::optional<std::pair<bool, std::string>> end_;
 };
 
 }  // namespace bough::cli

@@ -19,6 +19,7 @@
 #include "cli/run/provenance_sink.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/toml/specs.hpp"
+#include "solver/control/user_code.hpp"
 #include "solver/integrate/simulate.hpp"
 
 namespace bough::cli {
@@ -74,9 +75,11 @@ class MessageFeed {
 };
 
 /// Throws InputError unless the results were begun with this system file and these bodies and tables, but for what may
-/// change. False, with a word about it, when the run is over.
-bool check_resume(const Console& console, const std::string& output, const std::string& file,
-                  const records::SystemSpec& spec, const std::vector<std::pair<std::string, std::string>>& sources) {
+/// change. Returns whether the file is marked as completed, and nothing, with a message, when an event has ended the
+/// run.
+std::optional<bool> check_resume(const Console& console, const std::string& output, const std::string& file,
+                                 const records::SystemSpec& spec,
+                                 const std::vector<std::pair<std::string, std::string>>& sources) {
   const auto inputs = hdf5::read_run_inputs(output);
   Diagnostics diagnostics;
   toml_files::check_same_system(inputs.system_text, spec.text, file, diagnostics);
@@ -90,9 +93,9 @@ bool check_resume(const Console& console, const std::string& output, const std::
                         "put that one back, or start the run again");
   }
   diagnostics.throw_if_errors();
-  if (!inputs.completed || inputs.reason.empty()) return true;
+  if (!inputs.completed || inputs.reason.empty()) return inputs.completed;
   console.print(fmt::format("{} is complete already: {}\n", output, inputs.reason));
-  return false;
+  return std::nullopt;
 }
 
 class ProgressLine {
@@ -170,10 +173,11 @@ int run_run(const RunOptions& o) {
     if (is_file_locked(output))  // before it is read: it changes all the time
       throw InputError("hdf5.busy", {output}, "another process writes this file",
                        "wait until it ends, or choose another");
-    if (!check_resume(console, output, o.file, loaded.spec, sources)) return kSuccess;
+    const auto is_completed = check_resume(console, output, o.file, loaded.spec, sources);
+    if (!is_completed) return kSuccess;
     options.resume = hdf5::read_checkpoint(output);
     const double end = loaded.spec.simulation.start + loaded.spec.simulation.duration;
-    if (options.resume->time >= end * (1 - 1e-12)) {
+    if (*is_completed && options.resume->time >= end * (1 - 1e-12)) {
       console.print(fmt::format("{} is complete already\n", output));
       return kSuccess;
     }
@@ -193,10 +197,13 @@ int run_run(const RunOptions& o) {
   };
   options.stop = &get_stop_flag();
   get_stop_flag().store(false);  // a worker of a campaign comes here once a case
-  take_signals(on_signal);
+  const SignalScope signals(on_signal);
   solver::SimulateOutcome outcome;
   try {
     outcome = solver::simulate(loaded.system, loaded.spec, sink, options, diagnostics);
+    // A library that fails in its end has not completed: the file says so only behind it.
+    solver::close_user_blocks(loaded.system);
+    sink.finish();
   } catch (...) {
     messages.print_new();
     console.end_progress();
@@ -229,7 +236,8 @@ void add_run(CLI::App& app, Action& action) {
   add_common_options(*verb, *o, kOutput | kJson, "Results HDF5 file (default: the system file's name with .h5, here)");
   verb->footer(
       "Example:\n  bough run spinup.toml -o spinup.h5\n  bough run spinup.toml -o spinup.h5 --resume\n"
-      "SIGINT (Ctrl-C), SIGTERM and SIGHUP write a checkpoint and end the file cleanly, exit code 3. --resume "
+      "SIGINT (Ctrl-C), SIGTERM and SIGHUP write a checkpoint and end the file cleanly, exit code 3; a second Ctrl-C "
+      "ends the program at once. --resume "
       "takes the system file of the run with another duration, other samples or limits; it refuses other changes. A "
       "worst relative energy error above energy_error_limit ends with exit code 3 too, the results are written.");
   verb->callback([&action, o] { action = [o] { return run_run(*o); }; });

@@ -13,7 +13,8 @@
  * ask for outputs at any state: equal arguments must give equal results. That is also how a run is saved and resumed.
  *
  * All functions return 0, or another number for a failure: the run then ends with the name of the controller, the time
- * and that number, as it does after a value that is not finite or a C++ exception. Arrays count from 0 in C, from 1 in
+ * and that number, as it does after a value that is not finite or a C++ exception. A crash, exit() and abort() end the
+ * program by the name of the controller too, but samples that were not flushed are lost. Arrays count from 0 in C, from 1 in
  * Fortran (bind(C), value for scalars). Times are absolute.
  */
 #ifndef BOUGH_CONTROLLER_H
@@ -29,9 +30,9 @@ struct bough_controller {
   int inputs;               /* given: numbers in u */
   int num_parameters;       /* given */
   const double* parameters; /* given: as in the system file; valid during open only */
-  int outputs;              /* to be set: numbers in y, at least 1 */
-  int states;               /* to be set: numbers in z; 0 on entry; none with sample_time */
-  int memory;               /* to be set: numbers in d; 0 on entry; needs sample_time in the system file */
+  int outputs;              /* to be set: numbers in y, 1 to 1000000 */
+  int states;               /* to be set: numbers in z, at most 10000; 0 on entry; none with sample_time */
+  int memory;               /* to be set: numbers in d, at most 1000000; 0 on entry; needs sample_time in the system file */
   int has_feedthrough;      /* to be set to 0 where y does not depend on u at the same moment; 1 on entry */
   double sample_time;       /* given: of the system file; 0: continuous */
   void* instance;           /* yours: the first argument of all other functions */
@@ -54,6 +55,7 @@ int bough_controller_derivatives(void* instance, double t, const double* u, cons
 /** The memory after the sample at t; needed where there is memory. d_next holds d on entry. */
 int bough_controller_update(void* instance, double t, const double* u, const double* z, const double* d,
                             double* d_next);
+/** The end of the instance. A run is marked as completed after it only. */
 void bough_controller_close(void* instance);
 
 #ifdef __cplusplus

@@ -2,6 +2,7 @@
 /// \file Controllers of type "library" that live in this process, not in a shared library: a host program (the Python
 /// module) lends the functions of bough_controller.h under the file name that the system file or the host gives.
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "solver/control/bough_controller.h"
@@ -32,7 +33,7 @@ class HostedController {
   std::string file_;
 };
 
-/// Null where no host lends that file.
-const ControllerFunctions* find_hosted_controller(const std::string& file);
+/// Functions that a host lends under that file name, if one does.
+std::optional<ControllerFunctions> find_hosted_controller(const std::string& file);
 
 }  // namespace bough::solver

@@ -3,30 +3,46 @@
 #include <dlfcn.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <sstream>
+#include <tuple>
 
+#include "base/foreign_call.hpp"
 #include "solver/control/hosted.hpp"
 #include "solver/control/makers.hpp"
+#include "solver/control/user_code.hpp"
+#include "solver/system/impl.hpp"
 
 namespace bough::solver {
 namespace {
 
-std::map<std::string, ControllerFunctions>& get_hosted() {
-  static std::map<std::string, ControllerFunctions> hosted;
+/// A vector of this length takes 8 MB, a Jacobian 800 MB to 8 GB: a larger size is a fault of the library.
+constexpr int kMaxStates = 10000, kMaxValues = 1000000;
+
+/// Functions that hosts lend, by file. Systems are built in several threads at once.
+struct Hosted {
+  std::mutex lock;
+  std::map<std::string, ControllerFunctions> by_file;
+};
+Hosted& get_hosted() {
+  static Hosted hosted;
   return hosted;
 }
 
-class Library final : public Block {
+constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
+
+class Library final : public UserBlock {
  public:
   /// What it does with the time is not known.
   bool depends_on_time() const override { return sizes.sample_time == 0; }
   /// `handle` of dlopen; null where a host lends the functions.
   Library(void* handle, ControllerFunctions f) : handle_(handle), f_(std::move(f)) {}
   ~Library() override {
-    if (is_open && f_.close != nullptr) f_.close(own.instance);
+    const ForeignCall marked(at, label, f_.language, "bough_controller_close");
+    if (*is_open_ && f_.close != nullptr) f_.close(own.instance);
     f_ = {};
     if (handle_ != nullptr) dlclose(handle_);
   }
@@ -34,21 +50,30 @@ class Library final : public Block {
   Library& operator=(const Library&) = delete;
 
   bough_controller own{};
-  bool is_open = false;
+  void note_open() { *is_open_ = true; }
 
+  void close() const override {
+    if (!*is_open_ || f_.close == nullptr) return;
+    *is_open_ = false;
+    call(kNoTime, "bough_controller_close", [&] {
+      f_.close(own.instance);
+      return 0;
+    });
+  }
   void start(double* z, double* d) const override {
-    if (f_.start != nullptr) call(0, "start", [&] { return f_.start(own.instance, z, d); });
+    if (f_.start != nullptr) call(0, "bough_controller_start", [&] { return f_.start(own.instance, z, d); });
   }
   void calc_outputs(const BlockInput& in, double* y) const override {
-    call(in.t, "outputs", [&] { return f_.outputs(own.instance, in.t, in.u, in.z, in.d, y); });
+    call(in.t, "bough_controller_outputs", [&] { return f_.outputs(own.instance, in.t, in.u, in.z, in.d, y); });
   }
   void calc_rates(const BlockInput& in, double* z_dot) const override {
-    call(in.t, "derivatives", [&] { return f_.derivatives(own.instance, in.t, in.u, in.z, in.d, z_dot); });
+    call(in.t, "bough_controller_derivatives",
+         [&] { return f_.derivatives(own.instance, in.t, in.u, in.z, in.d, z_dot); });
     demand_finite(in.t, "derivative", z_dot, sizes.states);
   }
   void update(const BlockInput& in, double* d) const override {
     if (f_.update == nullptr) return;
-    call(in.t, "update", [&] { return f_.update(own.instance, in.t, in.u, in.z, in.d, d); });
+    call(in.t, "bough_controller_update", [&] { return f_.update(own.instance, in.t, in.u, in.z, in.d, d); });
     demand_finite(in.t, "memory", d, sizes.memory);
   }
 
@@ -58,13 +83,9 @@ class Library final : public Block {
   }
   template <class Call>
   void call(double t, const char* function, const Call& action) const {
+    const ForeignCall marked(at, label, f_.language, function, t);
     const auto fail = [&](const std::string& how, const std::string& advice) -> ComputationError {
-      std::ostringstream what;
-      if (f_.language.empty())
-        what << label << ": bough_controller_" << function << " at t = " << t << how;
-      else
-        what << label << ": " << function << " of its " << f_.language << " law at t = " << t << how;
-      return {"control.library-failed", at, what.str(), advice};
+      return {"control.library-failed", at, marked.describe() + how, advice};
     };
     int result = 0;
     // Its instance is one for all threads. A host guards its own functions (the Python module by the interpreter's
@@ -92,6 +113,7 @@ class Library final : public Block {
   void* handle_;
   ControllerFunctions f_;
   std::unique_ptr<std::mutex> calls_ = std::make_unique<std::mutex>();
+  std::unique_ptr<bool> is_open_ = std::make_unique<bool>(false);  ///< of the instance, which is no part of the block
 };
 
 template <class F>
@@ -113,14 +135,25 @@ ControllerFunctions find_functions(void* handle) {
 
 }  // namespace
 
-HostedController::HostedController(std::string file, ControllerFunctions functions) : file_(std::move(file)) {
-  get_hosted()[file_] = std::move(functions);
+void close_user_blocks(const System& system) {
+  for (const auto& place : system.impl().signals.places)
+    if (const auto* block = dynamic_cast<const UserBlock*>(place.block.get())) block->close();
 }
-HostedController::~HostedController() { get_hosted().erase(file_); }
 
-const ControllerFunctions* find_hosted_controller(const std::string& file) {
-  const auto found = get_hosted().find(file);
-  return found == get_hosted().end() ? nullptr : &found->second;
+HostedController::HostedController(std::string file, ControllerFunctions functions) : file_(std::move(file)) {
+  const std::lock_guard held(get_hosted().lock);
+  get_hosted().by_file[file_] = std::move(functions);
+}
+HostedController::~HostedController() {
+  const std::lock_guard held(get_hosted().lock);
+  get_hosted().by_file.erase(file_);
+}
+
+std::optional<ControllerFunctions> find_hosted_controller(const std::string& file) {
+  const std::lock_guard held(get_hosted().lock);
+  const auto found = get_hosted().by_file.find(file);
+  if (found == get_hosted().by_file.end()) return std::nullopt;
+  return found->second;
 }
 
 std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring& wiring) {
@@ -131,16 +164,23 @@ std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring
     keys.error("control.missing-key", "has no 'file'", "give the shared library");
     return nullptr;
   }
-  const auto* hosted = find_hosted_controller(file);
-  void* handle = hosted != nullptr ? nullptr : dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (hosted == nullptr && handle == nullptr) {
+  const auto hosted = find_hosted_controller(file);
+  const std::string language = hosted ? hosted->language : "";
+  void* handle = nullptr;
+  if (!hosted) {
+    const ForeignCall marked(keys.get_place(), keys.get_owner(), language, "loading of its library");
+    handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  }
+  if (!hosted && handle == nullptr) {
     const char* why = dlerror();
     keys.error("control.bad-library", std::string("cannot load its library: ") + (why ? why : file),
                "check the path, and that it was linked as a shared library");
     return nullptr;
   }
-  const ControllerFunctions f = hosted != nullptr ? *hosted : find_functions(handle);
+  const ControllerFunctions f = hosted ? *hosted : find_functions(handle);
   auto made = std::make_unique<Library>(handle, f);
+  made->label = keys.get_owner();
+  made->at = keys.get_place();
   const auto refuse = [&](const std::string& what, const std::string& advice) {
     const std::string of = f.language.empty() ? "library " + file : f.language + " law";
     keys.error("control.bad-library", "has a " + of + " " + what, advice);
@@ -160,6 +200,7 @@ std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring
   own.sample_time = sample_time;
   int result = 0;
   try {
+    const ForeignCall marked(keys.get_place(), keys.get_owner(), language, "bough_controller_open");
     result = f.open(&own);
   } catch (const std::exception& error) {
     if (!f.language.empty()) return refuse("of no use: " + std::string(error.what()), "see bough.System");
@@ -168,9 +209,17 @@ std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring
     return refuse("whose bough_controller_open threw an exception", "mend the library");
   }
   if (result != 0) return refuse("whose bough_controller_open returned " + std::to_string(result), "0 is success");
-  made->is_open = true;
+  made->note_open();
   if (own.outputs < 1 || own.states < 0 || own.memory < 0)
     return refuse("that set impossible sizes", "give outputs >= 1, states >= 0, memory >= 0");
+  using Size = std::tuple<const char*, int, int>;
+  for (const auto& [noun, size, limit] :
+       {Size("outputs", own.outputs, kMaxValues), Size("states", own.states, kMaxStates),
+        Size("memory", own.memory, kMaxValues)}) {
+    if (size > limit)
+      return refuse("that set " + std::string(noun) + " to " + std::to_string(size),
+                    "the limit is " + std::to_string(limit) + "; see bough_controller_open");
+  }
   if (own.states > 0 && f.derivatives == nullptr)
     return refuse("with states and without bough_controller_derivatives", "export it");
   if (own.memory > 0 && !(sample_time > 0)) return refuse("with memory and no sample_time", "give sample_time");

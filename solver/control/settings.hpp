@@ -40,6 +40,8 @@ class SettingsReader {
   /// "control.unknown-key" for what nobody asked for.
   void refuse_others();
   bool has_failed() const { return has_failed_; }
+  const std::string& get_owner() const { return what_; }
+  const SourceLocation& get_place() const { return at_; }
 
  private:
   const records::Settings& settings_;

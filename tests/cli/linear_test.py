@@ -197,7 +197,7 @@ class Linearize(LinearTest):
         for step in ("", "output_step = 0.001\n", "output_step = 0.0015\n"):
             self.write("each.toml", PENDULUM.replace("POSITION", "0.1").replace("duration = 1.0\n",
                                                                                "duration = 1.0\n" + step))
-            self.bough("linearize", "each.toml", "--each", "500", "-o", "each.h5", timeout=60)
+            self.bough("linearize", "each.toml", "--each", "500", "-o", "each.h5")
             with h5py.File(self.path("each.h5")) as f:
                 np.testing.assert_allclose(f["parameter/value"][()], [0, 0.75] if "15" in step else [0, 0.5, 1.0])
 

@@ -1,6 +1,10 @@
 // Laws of the user in C, C++ and Fortran (data/examples/controllers) against the same law of our own blocks.
 #include <filesystem>
+#include <stdexcept>
 
+#include "base/foreign_call.hpp"
+#include "solver/control/hosted.hpp"
+#include "solver/control/user_code.hpp"
 #include "tests/solver/control/support.hpp"
 
 namespace bough::solver::testing {
@@ -49,6 +53,45 @@ TEST(Library, AnExceptionEndsTheRunByName) {
     EXPECT_THAT(failure.items()[0].what, HasSubstr("controller 'law': bough_controller_outputs at t = "));
     EXPECT_THAT(failure.items()[0].what, HasSubstr("beyond this law"));
   }
+}
+
+TEST(Library, AFailureOfCloseIsOneOfTheRun) {
+  ControllerFunctions f;
+  int closed = 0;
+  f.version = [] { return BOUGH_CONTROLLER_VERSION; };
+  f.open = [](bough_controller*) { return 0; };
+  f.outputs = [](void*, double, const double*, const double*, const double*, double* y) { return *y = 0, 0; };
+  f.close = [&](void*) {
+    ++closed;
+    throw std::runtime_error("the log is full");
+  };
+  const HostedController lent("lent", f);
+  const System system = build(make_library("lent"));
+  try {
+    close_user_blocks(system);
+    ADD_FAILURE() << "no failure";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.items()[0].id, "control.library-failed");
+    EXPECT_EQ(failure.items()[0].what, "controller 'law': bough_controller_close threw: the log is full");
+  }
+  close_user_blocks(system);
+  EXPECT_EQ(closed, 1);
+}
+
+TEST(Library, TheCallInProgressIsDescribed) {
+  ControllerFunctions f;
+  std::string seen;
+  f.language = "Python";
+  f.version = [] { return BOUGH_CONTROLLER_VERSION; };
+  f.open = [](bough_controller*) { return 0; };
+  f.outputs = [&](void*, double, const double*, const double*, const double*, double* y) {
+    seen = ForeignCall::find_current()->describe();
+    return *y = 0, 0;
+  };
+  const HostedController lent("lent", f);
+  run(make_library("lent"));
+  EXPECT_THAT(seen, HasSubstr("controller 'law': outputs of its Python law at t = "));
+  EXPECT_EQ(ForeignCall::find_current(), nullptr);
 }
 
 TEST(Library, RefusesWrongInputsAtOpening) {

@@ -1,0 +1,20 @@
+#pragma once
+/// \file Blocks that have opened code of the user, and their end.
+#include "solver/signals/block.hpp"
+
+namespace bough::solver {
+
+class System;
+
+/// A block that has opened something outside Bough, which the destructor closes at the latest.
+class UserBlock : public Block {
+ public:
+  /// Closes it, once; nothing else may be called after it. Throws ComputationError "control.library-failed".
+  virtual void close() const = 0;
+};
+
+/// Closes every UserBlock of the system, which can only be destroyed after it. A program that marks results as
+/// completed calls it first. Throws ComputationError "control.library-failed".
+void close_user_blocks(const System& system);
+
+}  // namespace bough::solver
