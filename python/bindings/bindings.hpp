@@ -11,12 +11,17 @@
 #include <Eigen/Dense>
 
 #include "base/diagnostic.hpp"
+#include "python/bindings/exclusive.hpp"
 
 namespace bough::python {
 
 namespace py = pybind11;
 
+/// Of functions that use MPI, PETSc or HDF5: other Python threads go on, one thread at a time is within.
+using OneAtATime = py::call_guard<py::gil_scoped_release, Exclusive>;
+
 void bind_messages(py::module_& m);
+void bind_exclusive(py::module_& m);
 void bind_bodies(py::module_& m);
 void bind_linear(py::module_& m);
 void bind_systems(py::module_& m);

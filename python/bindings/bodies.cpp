@@ -91,6 +91,7 @@ py::tuple reduce(const ReduceCall& call, const py::object& progress) {
   FlexBody body;
   {
     const py::gil_scoped_release released;
+    const Exclusive held;
     fe::initialize_petsc();
     const auto spec = make_spec(call, diagnostics);
     stiffening::ReduceOptions options;
@@ -173,7 +174,7 @@ void bind_flex_body(py::module_& m) {
       .def("copy", [](const FlexBody& b) { return FlexBody(b); })
       .def(
           "save", [](const FlexBody& b, const std::string& path) { hdf5::write_flex_body(b, path); }, py::arg("path"),
-          "Write the flexible-body HDF5 file.")
+          OneAtATime(), "Write the flexible-body HDF5 file.")
       .def("__repr__", [](const FlexBody& b) {
         return "<FlexBody '" + b.name + "': " + std::to_string(b.num_modes()) + " modes, " +
                std::to_string(b.num_nodes()) + " nodes>";
@@ -206,8 +207,8 @@ void bind_bodies(py::module_& m) {
         Diagnostics notes;  // of what a .FLX leaves out: docs/formats/flx.md
         return cli::read_body(path, notes);
       },
-      py::arg("path"), py::call_guard<py::gil_scoped_release>());
-  m.def("read_modes", &hdf5::read_modes, py::arg("path"), py::call_guard<py::gil_scoped_release>());
+      py::arg("path"), OneAtATime());
+  m.def("read_modes", &hdf5::read_modes, py::arg("path"), OneAtATime());
   m.def(
       "reduce",
       [](std::string file, std::optional<int> modes, std::optional<double> max_hz,

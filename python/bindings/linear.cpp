@@ -61,12 +61,12 @@ void bind_linear(py::module_& m) {
                              })
       .def(
           "save", [](const LinearModel& l, const std::string& path) { hdf5::write_linear_model(l, path); },
-          py::arg("path"), "Write the linear-model HDF5 file.")
+          py::arg("path"), OneAtATime(), "Write the linear-model HDF5 file.")
       .def("__repr__", [](const LinearModel& l) {
         return "<LinearModel: " + std::to_string(l.A.rows()) + " states, " + std::to_string(l.B.cols()) + " inputs, " +
                std::to_string(l.C.rows()) + " outputs>";
       });
-  m.def("read_linear_model", &hdf5::read_linear_model, py::arg("path"), py::call_guard<py::gil_scoped_release>());
+  m.def("read_linear_model", &hdf5::read_linear_model, py::arg("path"), OneAtATime());
 }
 
 }  // namespace bough::python

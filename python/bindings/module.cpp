@@ -7,10 +7,11 @@ PYBIND11_MODULE(_bough, m) {
   m.doc() = "Bough in this process; use the package bough, which says what each does.";
   using namespace bough::python;
   bind_messages(m);
+  bind_exclusive(m);
   bind_bodies(m);
   bind_linear(m);
   bind_systems(m);
-  m.def("call", &bough::cli::run_command, py::arg("words"), py::call_guard<py::gil_scoped_release>(),
+  m.def("call", &bough::cli::run_command, py::arg("words"), OneAtATime(),
         "One command line, messages and exit code as from the shell.");
   m.def(
       "call_and_tell",
@@ -18,7 +19,6 @@ PYBIND11_MODULE(_bough, m) {
         const auto outcome = bough::cli::run_and_tell(words);
         return std::make_pair(outcome.exit_code, outcome.failures);
       },
-      py::arg("words"), py::call_guard<py::gil_scoped_release>(),
-      "As call: the exit code, and the messages of the failure that ended it.");
+      py::arg("words"), OneAtATime(), "As call: the exit code, and the messages of the failure that ended it.");
   m.def("verbs", &bough::cli::list_verbs);
 }

@@ -35,6 +35,43 @@ struct Results {
   }
 };
 
+/// Results file of which other threads are kept out while it is used, not while the run computes.
+class ExclusiveSink final : public records::ResultSink {
+ public:
+  explicit ExclusiveSink(const std::string& path) {
+    act([&] { file_ = hdf5::make_results_writer(path); });
+  }
+  ~ExclusiveSink() override {
+    act([&] { file_.reset(); });
+  }
+  void begin(const records::ResultsHeader& header) override {
+    act([&] { file_->begin(header); });
+  }
+  void write_sample(const Eigen::Ref<const Eigen::VectorXd>& sample) override {
+    act([&] { file_->write_sample(sample); });
+  }
+  void write_event(const records::EventRecord& event) override {
+    act([&] { file_->write_event(event); });
+  }
+  void write_checkpoint(const records::Checkpoint& checkpoint) override {
+    act([&] { file_->write_checkpoint(checkpoint); });
+  }
+  void write_energy_error(double worst) override {
+    act([&] { file_->write_energy_error(worst); });
+  }
+  void end(bool completed, const std::string& reason) override {
+    act([&] { file_->end(completed, reason); });
+  }
+
+ private:
+  template <class Act>
+  static void act(const Act& what) {
+    const Exclusive held(false);  // Ctrl-C is looked for at each sample anyway
+    what();
+  }
+  std::unique_ptr<records::ResultSink> file_;
+};
+
 /// One sink into memory, perhaps one into a file.
 class Tee final : public records::ResultSink {
  public:
@@ -122,6 +159,7 @@ class PySystem {
     is_file_ = !options.text;
     {
       const py::gil_scoped_release released;
+      const Exclusive held;
       loaded_.emplace(cli::load_system(file_, diagnostics, std::move(options)));
     }
     messages = tell(diagnostics);
@@ -139,10 +177,11 @@ class PySystem {
     Diagnostics diagnostics;
     Results results;
     bool is_interrupted = false;
+    std::unique_ptr<py::error_already_set> raised;
     {
       const py::gil_scoped_release released;
       std::unique_ptr<records::ResultSink> file;
-      if (!output.empty()) file = hdf5::make_results_writer(output);
+      if (!output.empty()) file = std::make_unique<ExclusiveSink>(output);
       solver::MemorySink memory;
       Tee sink(memory, file.get(), calc_sources());
       std::atomic<bool> stop{false};
@@ -160,7 +199,7 @@ class PySystem {
             if (py::isinstance<py::bool_>(answer) && !answer.cast<bool>()) stop = true;
           } catch (py::error_already_set& error) {
             // A call that fails ends the run cleanly and is told after it.
-            raised_ = std::make_unique<py::error_already_set>(std::move(error));
+            raised = std::make_unique<py::error_already_set>(std::move(error));
             stop = true;
           }
         }
@@ -168,10 +207,7 @@ class PySystem {
       solver::simulate(loaded_->system, loaded_->spec, sink, options, diagnostics);
       results = collect(memory);
     }
-    if (raised_) {
-      const auto raised = std::move(raised_);
-      throw py::error_already_set(*raised);
-    }
+    if (raised) throw py::error_already_set(*raised);
     if (is_interrupted) {
       PyErr_SetNone(PyExc_KeyboardInterrupt);
       throw py::error_already_set();
@@ -209,7 +245,6 @@ class PySystem {
   bool is_file_ = true;
   Controllers controllers_;
   std::optional<cli::LoadedSystem> loaded_;
-  std::unique_ptr<py::error_already_set> raised_;
 };
 
 }  // namespace
@@ -253,7 +288,7 @@ void bind_systems(py::module_& m) {
         return "<Results: " + std::to_string(r.paths.size()) + " channels, " +
                std::to_string(r.channels.at("/time").rows()) + " samples>";
       });
-  m.def("read_results", &read_results, py::arg("path"), py::call_guard<py::gil_scoped_release>());
+  m.def("read_results", &read_results, py::arg("path"), OneAtATime());
 
   py::class_<PySystem>(m, "System")
       .def(py::init<std::string, const py::dict&, const std::map<std::string, records::FlexBody>&,

@@ -42,7 +42,7 @@ def call(*words):
     call("modes", "boom.bdf", "-n", 3) prints its table. Messages go to stderr.
     """
     _sys.stdout.flush()
-    with _worker_launcher():
+    with _bough.Exclusive(), _worker_launcher():
         return _bough.call([str(word) for word in words])
 
 
@@ -75,9 +75,9 @@ def _redirected(descriptor, file):
 
 def _call_quietly(words):
     """(stdout, stderr) of a verb; raises what the messages say."""
-    _sys.stdout.flush()
-    _sys.stderr.flush()
-    with _tempfile.TemporaryFile() as out, _tempfile.TemporaryFile() as err:
+    with _bough.Exclusive(), _tempfile.TemporaryFile() as out, _tempfile.TemporaryFile() as err:
+        _sys.stdout.flush()
+        _sys.stderr.flush()
         with _redirected(1, out), _redirected(2, err):
             code, messages = _bough.call_and_tell([str(word) for word in words])
         texts = []
@@ -126,7 +126,8 @@ def static(deck, **options):
     with _tempfile.TemporaryDirectory() as folder:
         path = _os.path.join(folder, "static.h5")
         _call_quietly(["static", _os.fspath(deck), "-q", "-o", path, *_make_words(options)])
-        return reader.read(path)
+        with _bough.Exclusive():  # the reader uses the same HDF5
+            return reader.read(path)
 
 
 def select(body, system=None, **options):

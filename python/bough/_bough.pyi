@@ -37,6 +37,12 @@ class InputError(Failure):
 class ComputationError(Failure):
     """The computation failed: singular, diverged, not converged."""
 
+class Exclusive:
+    """with Exclusive(): no other thread is within MPI, PETSc or HDF5."""
+    def __init__(self) -> None: ...
+    def __enter__(self) -> Exclusive: ...
+    def __exit__(self, *args: Any) -> None: ...
+
 class Warning(UserWarning):
     """A warning of Bough."""
 

@@ -293,7 +293,8 @@ class Runs(InFolder):
             system.run(progress=lambda t, end: 1 / 0)
 
     def test_other_threads_go_on(self):
-        system = bough.System.from_text(PENDULUM.format(law=EXPRESSION).replace("duration = 1.0", "duration = 200.0"))
+        """The run ends only because another thread has counted meanwhile."""
+        system = bough.System.from_text(PENDULUM.format(law=EXPRESSION).replace("duration = 1.0", "duration = 2e5"))
         counts = [0]
         done = threading.Event()
 
@@ -304,9 +305,10 @@ class Runs(InFolder):
 
         thread = threading.Thread(target=count)
         thread.start()
-        system.run()
+        results = system.run(progress=lambda t, end: counts[0] <= 3)
         done.set()
         thread.join()
+        self.assertFalse(results.completed)
         self.assertGreater(counts[0], 3)
 
     def test_two_systems_at_once(self):
@@ -361,6 +363,109 @@ class Runs(InFolder):
         self.assertIn("/sensors/angle", list(results))
         self.assertTrue(results.completed)
         self.assertIsInstance(results.describe("angle"), str)
+
+
+class Threads(InFolder):
+    """What MPI, PETSc and HDF5 do, of many threads at once, each with files of its own."""
+    COUNT = 8
+
+    def setUp(self):
+        super().setUp()
+        for name in ("boom.bdf", "boom.toml", "spinup.toml"):
+            shutil.copy(os.path.join(EXAMPLES, "ex01-spinup", name), self.folder)
+
+    def run_all(self, work):
+        """The values of work(k) of COUNT threads that start together."""
+        start = threading.Barrier(self.COUNT)
+        found = [None] * self.COUNT
+
+        def act(k):
+            start.wait()
+            found[k] = work(k)
+
+        threads = [threading.Thread(target=act, args=(k,)) for k in range(self.COUNT)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        return found
+
+    def test_the_first_calls_of_many(self):
+        """In a process that has started neither MPI nor HDF5."""
+        self.write("first.py", "import threading, bough\n"
+                   "def work(k):\n"
+                   "    start.wait()\n"
+                   "    found.append(len(bough.modes('boom.bdf', 3).frequency_hz))\n"
+                   f"found, start = [], threading.Barrier({self.COUNT})\n"
+                   f"threads = [threading.Thread(target=work, args=(k,)) for k in range({self.COUNT})]\n"
+                   "[t.start() for t in threads]; [t.join() for t in threads]\n"
+                   "print(found)\n")
+        ran = subprocess.run([sys.executable, "-B", "first.py"], text=True, capture_output=True)
+        self.assertEqual((ran.returncode, ran.stdout), (0, f"{[3] * self.COUNT}\n"), ran.stderr)
+
+    def test_everything_at_once(self):
+        text = PENDULUM.format(law=EXPRESSION)
+        body = bough.reduce("boom.bdf", modes=3)
+        body.save("boom.h5")
+        hz, stiffness = bough.modes("boom.bdf", 3).frequency_hz.copy(), body.modal_stiffness.copy()
+        angle = bough.System.from_text(text).run()["angle"]
+        poles = bough.System.from_text(text).linearize(at=0.1).poles
+
+        def work(k):
+            found = []
+            for _ in range(2):
+                found.append(np.array_equal(bough.read_flex_body("boom.h5").modal_stiffness, stiffness))
+                found.append(np.array_equal(bough.System.from_text(text).run(f"r{k}.h5")["angle"], angle))
+                found.append(np.array_equal(bough.read_results(f"r{k}.h5")["angle"], angle))
+                found.append(np.array_equal(bough.System.from_text(text).run()["angle"], angle))
+                found.append(np.allclose(bough.System.from_text(text).linearize(at=0.1).poles, poles))
+                found.append(np.allclose(bough.modes("boom.bdf", 3).frequency_hz, hz))
+                bough.reduce("boom.bdf", modes=3).save(f"b{k}.h5")
+                found.append(np.allclose(bough.read_flex_body(f"b{k}.h5").modal_stiffness, stiffness))
+            return all(found)
+
+        self.assertEqual(self.run_all(work), [True] * self.COUNT)
+
+    def test_errors_are_those_of_each(self):
+        def work(k):
+            self.write(f"bad{k}.bdf", f"SOL 103\nCEND\nBEGIN BULK\nGRID,{k + 1},,x,0.,0.\nENDDATA\n")
+            try:
+                bough.modes(f"bad{k}.bdf", 3)
+            except bough.InputError as error:
+                return [message.file for message in error.messages if message.line == 4]
+            return None
+
+        for k, files in enumerate(self.run_all(work)):
+            self.assertEqual(files, [f"bad{k}.bdf"])
+
+    def test_runs_go_on_in_parallel(self):
+        """Each waits within its controller until all are there, those too that write a file."""
+        for name in (None, "r{}.h5"):
+            together = threading.Barrier(self.COUNT, timeout=600)
+
+            def work(k):
+                waits = [True]
+
+                def law(t, u):
+                    if waits and t > 0.1:
+                        waits.pop()
+                        together.wait()
+                    return -40 * u[0] - 3 * u[1]
+
+                system = bough.System.from_text(PENDULUM.format(law=LIBRARY), controllers={"law": law})
+                return system.run(name.format(k) if name else None).completed
+
+            self.assertEqual(self.run_all(work), [True] * self.COUNT)
+
+    def test_a_callback_may_call_again(self):
+        bough.reduce("boom.bdf", modes=2).save("boom.h5")
+
+        def work(k):
+            sizes = []
+            bough.reduce("boom.bdf", modes=2, progress=lambda stage: sizes.append(bough.read_flex_body("boom.h5").num_modes))
+            return set(sizes)
+
+        self.assertEqual(self.run_all(work), [{2}] * self.COUNT)
 
 
 class LinearModels(InFolder):
