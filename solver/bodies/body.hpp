@@ -36,6 +36,13 @@ struct BodyInertia {
   MatrixXd make_M() const;  ///< (6+n)²
 };
 
+/// An acceleration T r of the points of a body, T symmetric, as factors of its mass integrals. In B.
+struct LinearField {
+  AffineField::Amplitudes V = AffineField::Amplitudes::Zero(), L = V;
+  Vector6d J1 = Vector6d::Zero();
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> J;
+};
+
 class Body {
  public:
   static Body make_rigid(double mass, const Vector3d& cg, const Matrix3d& inertia_about_cg);
@@ -65,6 +72,10 @@ class Body {
                  BodyInertia& inertia) const;
   /// h (6) of a rigid body.
   void calc_rigid_bias(const Vector3d& w_B, double* h) const;
+  /// After calc_mass. No allocation.
+  LinearField make_linear_field(const Matrix3d& T, const BodyInertia& inertia) const;
+  /// ∫ρ ∂r/∂η_j·(T r), the derivative of ½ ∫ρ r·(T r): what the acceleration T r of its points does on mode j.
+  double calc_modal_force(const LinearField& field, const BodyInertia& inertia, int j) const;
   void calc_inertia(const Vector3d& w_B, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
                     BodyInertia& inertia) const {
     calc_mass(eta, inertia);

@@ -161,6 +161,28 @@ void Body::calc_flexible_bias(const Vector3d& w, const ConstVectorRef& eta, cons
   x.h.segment<3>(3) = moment;
 }
 
+LinearField Body::make_linear_field(const Matrix3d& T, const BodyInertia& x) const {
+  // As ω̃ω̃ in calc_flexible_bias; ½ ∫ρ r·Tr = -½ Ω : J, Ω in place of ωωᵀ.
+  const Matrix3d Omega = T - 0.5 * T.trace() * Matrix3d::Identity();
+  Vector6d half = pack_tensor(Omega);
+  half.head<3>() *= 0.5;
+  LinearField field;
+  field.V = T * x.P;
+  field.L = T * (x.A - x.P);
+  field.J1 = -half;
+  field.J = -2 * E_J_.lazyProduct(half);
+  return field;
+}
+
+double Body::calc_modal_force(const LinearField& field, const BodyInertia& x, int j) const {
+  using Eigen::Map;
+  double force =
+      x.V.row(j).dot(Map<const Vector12d>(field.V.data())) + L_t_.row(j).dot(Map<const Vector12d>(field.L.data()));
+  if (J1_rest_t_.cols() > 0) force += J1_rest_t_.row(j).dot(field.J1);
+  for (Eigen::Index i = 0; i < field.J.size(); ++i) force += x.by_eta(j, i) * field.J[i];
+  return force;
+}
+
 void Body::calc_rigid_bias(const Vector3d& w, double* h) const {
   const Matrix3d J = M6_.bottomRightCorner<3, 3>();
   Eigen::Map<Vector3d>{h} = w.cross(w.cross(S0_));

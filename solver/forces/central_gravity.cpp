@@ -1,53 +1,92 @@
 #include "solver/forces/central_gravity.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace bough::solver {
 
+namespace {
+// Acceleration by J2 at R from the centre; oblate = ½ μ J2 a².
+Vector3d calc_oblate(double oblate, const Vector3d& R, const Vector3d& k) {
+  const double r2 = R.squaredNorm(), r5 = r2 * r2 * std::sqrt(r2), z = R.dot(k);
+  return -oblate / r5 * (6 * z * k - 15 * z * z / r2 * R + 3 * R);
+}
+}  // namespace
+
 Matrix3d calc_second_moment(const Matrix3d& J) { return 0.5 * J.trace() * Matrix3d::Identity() - J; }
+
+// Of one body; all in B.
+struct CentralGravity::Pull {
+  Vector3d c;         // mass centre from Bo
+  Vector3d f;         // at the mass centre
+  Vector3d torque;    // about the mass centre
+  Matrix3d gradient;  // of the spherical field at the mass centre
+  double potential;
+};
+
+CentralGravity::Pull CentralGravity::calc_pull(const TreeBody& tb, const BodyData& d) const {
+  const bool is_flexible = tb.is_flexible();
+  const double m = tb.body.mass(), mu = field_.mu;
+  const Vector3d S = is_flexible ? d.inertia.S : tb.body.first_moment();
+  const Matrix3d J = (is_flexible ? d.inertia.M6 : tb.body.M6()).bottomRightCorner<3, 3>();
+  Pull pull;
+  pull.c = S / m;
+  const Matrix3d P = calc_second_moment(J) - S * pull.c.transpose();
+  const Matrix3d& R_WB = d.state.R_WB;
+  const Vector3d R = R_WB.transpose() * (d.state.p_WBo - field_.centre) + pull.c;
+  const Vector3d k = R_WB.transpose() * field_.axis;
+  const double r2 = R.squaredNorm(), r = std::sqrt(r2), r3 = r * r2, r5 = r3 * r2;
+  const Vector3d PR = P * R;
+  const double RPR = R.dot(PR), trace = P.trace(), z = R.dot(k);
+  const double oblate = 0.5 * mu * field_.j2 * field_.equator * field_.equator;
+  pull.f = -mu * m / r3 * R;
+  pull.f += 0.5 * mu * (6 * PR - 15 * RPR / r2 * R + 3 * trace * R) / r5;
+  pull.f += m * calc_oblate(oblate, R, k);
+  pull.torque = -3 * mu / r5 * R.cross(PR);
+  pull.gradient = mu / r5 * (3 * R * R.transpose() - r2 * Matrix3d::Identity());
+  pull.potential = -mu * m / r - 0.5 * mu * (3 * RPR / r5 - trace / r3) + oblate * m / r3 * (3 * z * z / r2 - 1);
+  return pull;
+}
 
 ForceResult CentralGravity::calc(const Tree& tree, const TreeData& data, Loads* loads) const {
   ForceResult result;
-  const double mu = field_.mu;
-  for (const Attracted& one : bodies_) {
-    const TreeBody& tb = tree[one.body];
-    const BodyData& d = data[one.body];
-    const int n = tb.num_modes();
+  for (const int b : bodies_) {
+    const TreeBody& tb = tree[b];
+    const BodyData& d = data[b];
     const double m = tb.body.mass();
     if (!(m > 0)) continue;
-    const auto eta = data.q.segment(tb.eta_offset(), n);
-    const Vector3d S = n > 0 ? d.inertia.S : tb.body.first_moment();
-    const Vector3d c = S / m;
-    Matrix3d P = one.P0;
-    for (int j = 0; j < n; ++j) P += eta[j] * one.P1[static_cast<size_t>(j)];
-    P -= S * c.transpose();
-
-    // In B
-    const Matrix3d& R_WB = d.state.R_WB;
-    const Vector3d R = R_WB.transpose() * (d.state.p_WBo - field_.centre) + c;
-    const Vector3d k = R_WB.transpose() * field_.axis;
-    const double r2 = R.squaredNorm(), r = std::sqrt(r2), r3 = r * r2, r5 = r3 * r2;
-    const Vector3d PR = P * R;
-    const double RPR = R.dot(PR), trace = P.trace(), z = R.dot(k);
-    const double oblate = 0.5 * mu * m * field_.j2 * field_.equator * field_.equator;
-
-    Vector3d f = -mu * m / r3 * R;
-    f += 0.5 * mu * (6 * PR - 15 * RPR / r2 * R + 3 * trace * R) / r5;
-    f -= oblate / r5 * (6 * z * k - 15 * z * z / r2 * R + 3 * R);
-    const Vector3d torque = -3 * mu / r5 * R.cross(PR);  // about the mass centre
-    result.potential += -mu * m / r - 0.5 * mu * (3 * RPR / r5 - trace / r3) + oblate / r3 * (3 * z * z / r2 - 1);
-    result.power += f.dot(d.state.v_B + d.state.w_B.cross(c)) + torque.dot(d.state.w_B);
-    const Vector3d about_Bo = torque + c.cross(f);
-    if (loads != nullptr) loads->add_to_body(one.body, f, about_Bo);
-    for (int j = 0; j < n; ++j) {
-      const Vector3d S_j = d.inertia.M_top.col(j).head<3>();
-      const Matrix3d P_j = one.P1[static_cast<size_t>(j)] - S_j * c.transpose() - c * S_j.transpose();
-      const double on_mode = f.dot(S_j) / m + 0.5 * mu * (3 * R.dot(P_j * R) / r5 - P_j.trace() / r3);
+    const Pull pull = calc_pull(tb, d);
+    result.potential += pull.potential;
+    result.power += pull.f.dot(d.state.v_B + d.state.w_B.cross(pull.c)) + pull.torque.dot(d.state.w_B);
+    if (loads != nullptr) loads->add_to_body(b, pull.f, pull.torque + pull.c.cross(pull.f));
+    if (!tb.is_flexible()) continue;
+    // -∂V/∂η_j = f·S_j/m + ½ gradient : ∂P/∂η_j, S_j = ∂S/∂η_j.
+    const LinearField field = tb.body.make_linear_field(pull.gradient, d.inertia);
+    const Vector3d at_Bo = pull.f / m - pull.gradient * pull.c;
+    for (int j = 0; j < tb.num_modes(); ++j) {
+      const double on_mode =
+          at_Bo.dot(d.inertia.M_top.col(j).head<3>()) + tb.body.calc_modal_force(field, d.inertia, j);
       result.power += on_mode * data.u[tb.eta_dot_offset() + j];
-      if (loads != nullptr) loads->add_to_mode(one.body, j, on_mode);
+      if (loads != nullptr) loads->add_to_mode(b, j, on_mode);
     }
   }
   return result;
+}
+
+bool CentralGravity::attracts(int body) const {
+  return std::find(bodies_.begin(), bodies_.end(), body) != bodies_.end();
+}
+
+Vector3d CentralGravity::calc_acceleration(const Vector3d& p_W) const {
+  const Vector3d R = p_W - field_.centre;
+  const double r2 = R.squaredNorm();
+  return -field_.mu / (r2 * std::sqrt(r2)) * R +
+         calc_oblate(0.5 * field_.mu * field_.j2 * field_.equator * field_.equator, R, field_.axis);
+}
+
+BodyGravity CentralGravity::calc_on_body(const Tree& tree, const TreeData& data, int body) const {
+  const Pull pull = calc_pull(tree[body], data[body]);
+  return {pull.f / tree[body].body.mass() - pull.gradient * pull.c, pull.gradient};
 }
 
 }  // namespace bough::solver

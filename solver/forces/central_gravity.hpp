@@ -3,12 +3,18 @@
 ///
 /// With R the mass centre of a body from the centre, P = ∫ρ x xᵀ about the mass centre, n = R/|R|:
 ///     V = -μ m/R - μ/(2R³) (3 nᵀPn - tr P) + μ m J2 a²/(2R³) (3 (n·k)² - 1)
-/// of which every force is the exact derivative: on the mass centre, the gradient's torque 3μ/R³ n × Jn and, on
-/// flexible bodies, the modes by ∂R/∂η = ∂S/∂η / m (second order included) and ∂P/∂η (first order in η). What varies
-/// over the body beyond its second moments, and J2's own gradient, is left out.
+/// All loads are the gradient of V: the force at the mass centre, the torque 3μ/R³ n × Jn and the modal forces, by S(η)
+/// and P(η) to second order in η as in M(η). V depends on neither the origin nor the axes of B. Not in V: third moments
+/// of mass and the gradient of the J2 term.
 #include "solver/forces/element.hpp"
 
 namespace bough::solver {
+
+/// Gravity on the mass of one body: the affine field g(r) = g + gradient·r, r from Bo; in B; L/T², 1/T².
+struct BodyGravity {
+  Vector3d g = Vector3d::Zero();
+  Matrix3d gradient = Matrix3d::Zero();  ///< symmetric
+};
 
 class CentralGravity final : public ForceElement {
  public:
@@ -16,19 +22,24 @@ class CentralGravity final : public ForceElement {
     double mu = 0, j2 = 0, equator = 0;
     Vector3d centre = Vector3d::Zero(), axis = Vector3d::UnitZ();
   };
-  struct Attracted {
-    int body = 0;
-    Matrix3d P0 = Matrix3d::Zero();  ///< ∫ρ r rᵀ about Bo, undeformed
-    std::vector<Matrix3d> P1;        ///< per mode: its derivative
-  };
-  CentralGravity(std::string name, const Field& field, std::vector<Attracted> bodies)
+  CentralGravity(std::string name, const Field& field, std::vector<int> bodies)
       : ForceElement(std::move(name)), field_(field), bodies_(std::move(bodies)) {}
 
   ForceResult calc(const Tree& tree, const TreeData& data, Loads* loads) const override;
 
+  /// Returns true if the field acts on this body.
+  bool attracts(int body) const;
+  /// Acceleration of a free particle at p; in W.
+  Vector3d calc_acceleration(const Vector3d& p_W) const;
+  /// The affine field whose loads calc() puts on a body with mass. After calc_position.
+  BodyGravity calc_on_body(const Tree& tree, const TreeData& data, int body) const;
+
  private:
+  struct Pull;
+  Pull calc_pull(const TreeBody& tb, const BodyData& d) const;
+
   Field field_;
-  std::vector<Attracted> bodies_;
+  std::vector<int> bodies_;
 };
 
 /// ½ tr(J) 1 - J: the second moment of mass that belongs to a tensor of inertia.

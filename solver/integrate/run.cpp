@@ -298,7 +298,7 @@ double Run::calc_flow() const {
   for (int b = 0; b < impl.tree.size(); ++b) {
     const Body& body = impl.tree[b].body;
     const auto applied = data.applied.segment<6>(impl.tree[b].v_offset);
-    force += body.mass() * impl.gravity.norm() + applied.head<3>().norm();
+    force += body.mass() * impl.gravity.uniform.norm() + applied.head<3>().norm();
     moment += applied.tail<3>().norm();
     size =
         std::max(size, data[b].state.p_WBo.norm() + (body.mass() > 0 ? body.first_moment().norm() / body.mass() : 0));

@@ -71,7 +71,7 @@ void measure_instrument(const System& system, const SystemData& data, const Sens
   if (e.type == SensorType::Gyro || e.type == SensorType::IntegratingGyro) {
     value.noalias() = R_SW * k.w_WK;
   } else if (e.type == SensorType::Accelerometer) {
-    value.noalias() = R_SW * (k.a_WK - system.impl().gravity);
+    value.noalias() = R_SW * (k.a_WK - system.impl().gravity.calc_acceleration(e.body, k.p_WK));
   } else if (e.type == SensorType::Direction) {
     value.noalias() = R_SW * e.target;
   } else {

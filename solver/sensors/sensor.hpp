@@ -12,7 +12,7 @@
 ///   angular_acceleration   Δα - ω_A × Δω                                Δα
 ///   deflection, rotation   φη + ½[ηᵀg_aη]_a, ψη + ...: from the undeformed place, in B
 ///   quaternion, euler, dcm   of R_AS: the axes S of the sensor in A; w >= 0; R_AS = R_i(a) R_j(b) R_k(c)
-///   gyro, accelerometer, direction   ω, a - g, the target's direction in S
+///   gyro, accelerometer, direction   ω, a - g(p) of all gravity, the target's direction in S
 ///   horizon                  roll, pitch of S against the direction to the target, its z at zero
 ///   element                  forces and stresses of an element (solver/system/recovery.hpp)
 ///   hinge_angle, hinge_rate   coordinates as the user knows them (quaternion w, x, y, z) and rates; one, or all for 0

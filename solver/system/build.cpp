@@ -169,7 +169,7 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
   System system;
   Impl& impl = *system.impl_;
   Tree& tree = impl.tree;
-  impl.gravity = spec.simulation.gravity;
+  impl.gravity.uniform = spec.simulation.gravity;
   impl.start = spec.simulation.start;
   impl.is_lagged = spec.simulation.stiffening == "lagged";
   const SignalUses uses = collect_uses(spec, diagnostics);
@@ -243,7 +243,7 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
                              functions, diagnostics);
     if (force) (uses.forces.count(record.name) ? impl.driven : impl.forces).push_back(std::move(*force));
   }
-  if (!impl.gravity.allFinite()) {
+  if (!impl.gravity.uniform.allFinite()) {
     diagnostics.error("system.bad-gravity", spec.simulation.at, "gravity is not three finite numbers");
   }
   const bool is_complete = std::find(impl.sound.begin(), impl.sound.end(), false) == impl.sound.end();
@@ -254,7 +254,10 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
   build_constraints(spec, order, impl, diagnostics);
   const ElementContext context{spec, order, flex, functions, impl.sound};
   for (const auto& record : spec.force_elements) {
-    if (auto element = build_element(record, context, tree, diagnostics)) impl.elements.push_back(std::move(element));
+    auto element = build_element(record, context, tree, diagnostics);
+    if (!element) continue;
+    if (const auto* source = dynamic_cast<const CentralGravity*>(element.get())) impl.gravity.central.push_back(source);
+    impl.elements.push_back(std::move(element));
   }
   for (size_t b = 0; b < tree.bodies.size(); ++b) {
     if (order.hinge[b] < 0 || !impl.sound[b]) continue;

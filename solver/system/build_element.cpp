@@ -193,21 +193,11 @@ class ElementBuilder {
     std::vector<std::string> names = r_.bodies;
     if (names.empty())
       for (const TreeBody& tb : tree_.bodies) names.push_back(tb.name);
-    std::vector<CentralGravity::Attracted> bodies;
+    std::vector<int> bodies;
     for (const auto& name : names) {
       const int b = find_body(name);
       if (b == -1) refuse("acts on ground", "name bodies");
-      if (b < 0) continue;
-      CentralGravity::Attracted one;
-      one.body = b;
-      one.P0 = calc_second_moment(tree_[b].body.M6().bottomRightCorner<3, 3>());
-      const auto& file = context_.spec.bodies[static_cast<size_t>(context_.order.body[static_cast<size_t>(b)])].file;
-      const auto flex = context_.flex.find(file);
-      for (int j = 0; j < tree_[b].num_modes(); ++j) {
-        const Matrix3d& g3 = flex->second.integrals().gamma3[static_cast<size_t>(j)];
-        one.P1.push_back(calc_second_moment(g3 + g3.transpose()));
-      }
-      bodies.push_back(std::move(one));
+      if (b >= 0) bodies.push_back(b);
     }
     return std::make_unique<CentralGravity>(r_.name, field, std::move(bodies));
   }

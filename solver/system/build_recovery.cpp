@@ -20,9 +20,8 @@ std::vector<std::string> list_unknown_loads(const records::SystemSpec& spec, con
   for (const auto& r : spec.actuators)
     if (r.body == name) names.push_back(r.name);
   for (const auto& r : spec.force_elements) {
-    const bool is_field = r.type == records::ElementType::CentralGravity &&
-                          (r.bodies.empty() || std::find(r.bodies.begin(), r.bodies.end(), name) != r.bodies.end());
-    if (is_field || r.from.body == name || r.to.body == name) names.push_back(r.name);
+    const bool is_field = r.type == records::ElementType::CentralGravity;  // known: a part of A_I
+    if (!is_field && (r.from.body == name || r.to.body == name)) names.push_back(r.name);
   }
   for (const auto& force : impl.driven)
     if (force.body == b) names.push_back(force.name);

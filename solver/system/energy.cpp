@@ -54,7 +54,8 @@ Energies calc_energies(const System& system, const SystemData& data) {
     if (tb.stiffness.size() > 0)
       e.strain +=
           tb.hinge->calc_spring(data.tree.q.data() + tb.q_offset, tb.null_position.data(), tb.stiffness.data(), force);
-    e.potential -= system.impl().gravity.dot(tb.body.mass() * d.state.p_WBo + d.state.R_WB * first_moment(tb, d));
+    e.potential -=
+        system.impl().gravity.uniform.dot(tb.body.mass() * d.state.p_WBo + d.state.R_WB * first_moment(tb, d));
   }
   for (const auto& element : system.impl().elements) {
     const ForceResult result = element->calc(tree, data.tree, nullptr);

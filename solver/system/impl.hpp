@@ -2,6 +2,7 @@
 /// \file What stands behind System and SystemData.
 #include "solver/forces/applied.hpp"
 #include "solver/forces/element.hpp"
+#include "solver/forces/gravity_field.hpp"
 #include "solver/forces/latch.hpp"
 #include "solver/loops/loops.hpp"
 #include "solver/signals/graph.hpp"
@@ -23,7 +24,7 @@ struct System::Impl {
   std::vector<Latch> latches;
   SignalGraph signals;
   bool signals_are_sound = true;  ///< sensors, controllers and actuators have no errors
-  Vector3d gravity = Vector3d::Zero();
+  GravityField gravity;
   std::vector<double> breakpoints, landmarks;
   double start = 0;
   bool is_lagged = false;                             ///< bodies are stiffened by blocks of signals, not by themselves

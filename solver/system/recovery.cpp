@@ -72,12 +72,9 @@ std::vector<int> Recovery::connect(const System& system, const records::FlexBody
 }
 
 void Recovery::calc(const System& system, const SystemData& data, int first, int count, double* out) const {
-  const BodyState& s = data.tree[body_].state;
-  const Vector3d a = s.a_B - s.R_WB.transpose() * system.impl().gravity;
-  const Vector3d& w = s.w_B;
-  Eigen::Matrix<double, 12, 1> A_I;
-  A_I << a, s.alpha_B, w.cwiseAbs2(), w.x() * w.y(), w.x() * w.z(), w.y() * w.z();
-  A_I -= preload_;
+  const System::Impl& impl = system.impl();
+  const Eigen::Matrix<double, 12, 1> A_I =
+      impl.gravity.calc_inertial_acceleration(impl.tree, data.tree, body_) - preload_;
   Eigen::Map<VectorXd> rows(out, count);
   rows = offset_.segment(first, count);
   rows.noalias() += matrix_.middleRows(first, count) * data.tree.q.segment(system.eta_offset(body_), matrix_.cols());

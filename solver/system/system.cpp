@@ -176,7 +176,7 @@ void calc_signals(const System& system, SystemData& data) {
 void add_forces(const System& system, SystemData& data, double t) {
   const System::Impl& impl = system.impl();
   data.tree.demand(Stage::Velocity);
-  data.tree.gravity = impl.gravity;
+  data.tree.gravity = impl.gravity.uniform;
   impl.signals.calc_early(system, data);
   for (const AppliedForce& force : impl.forces) add_applied_force(force, impl.tree, t, data.tree);
   add_hinge_forces(impl.tree, data.tree);

@@ -196,6 +196,125 @@ TEST(ForceElements, CentralGravityIsThatOfThePointsToSecondMoments) {
   EXPECT_GT(near[1] / far[1], 14);
 }
 
+/// Potential energy of the points in the field of μ at `centre`, to second order of their distances from the mass
+/// centre: by their own places, second order in η included.
+double calc_point_potential(const PointBody& points, double mu, const Vector3d& centre, const Vector3d& p_WBo,
+                            const Matrix3d& R_WB, const VectorXd& eta) {
+  double mass = 0;
+  Vector3d moment = Vector3d::Zero();
+  std::vector<Vector3d> x;
+  for (size_t k = 0; k < points.p.size(); ++k) {
+    Vector3d r = points.p[k] + points.phi[k] * eta;
+    for (size_t a = 0; a < 3; ++a) r[static_cast<int>(a)] += 0.5 * eta.dot(points.g[k][a] * eta);
+    x.push_back(p_WBo + R_WB * r - centre);
+    mass += points.mass[k];
+    moment += points.mass[k] * x.back();
+  }
+  const Vector3d R = moment / mass, n = R.normalized();
+  double potential = -mu * mass / R.norm();
+  for (size_t k = 0; k < x.size(); ++k) {
+    const Vector3d d = x[k] - R;
+    potential -= 0.5 * mu * points.mass[k] * (3 * std::pow(n.dot(d), 2) - d.squaredNorm()) / std::pow(R.norm(), 3);
+  }
+  return potential;
+}
+
+TEST(ForceElements, CentralGravityIsTheGradientOfTheEnergyOfThePointsToSecondOrderInEta) {
+  for (const bool stiffening : {true, false}) {
+    Pair pair;
+    if (!stiffening)
+      for (auto& g : pair.points.g)
+        for (auto& component : g) component.setZero();
+    pair.flex["soft.h5"] = pair.points.make_record("soft");
+    pair.spec.bodies.resize(1);
+    pair.spec.bodies[0].stiffening = stiffening;
+    pair.spec.hinges.resize(1);
+    ForceElementRecord field;
+    field.name = "earth";
+    field.type = ElementType::CentralGravity;
+    field.mu = 20;
+    field.centre = {3, -4, 2};
+    pair.spec.force_elements = {field};
+    const System system = build(pair.spec, pair.flex);
+    auto data = system.make_data();
+    VectorXd q, u;
+    make_random_state(system, 3, q, u);
+    // First column: force, moment and modal forces in B at η = 0; then their derivatives by η.
+    const auto calc_loads = [&](const VectorXd& eta) -> VectorXd {
+      q.tail(3) = eta;
+      calc_kinematics(system, *data, 0, q, u);
+      add_forces(system, *data, 0);
+      return data->tree.applied;
+    };
+    const auto calc_energy_slope = [&](const VectorXd& eta) -> VectorXd {
+      const BodyState& s = get_body_state(*data, 0);
+      const auto slope = [&](auto potential) {
+        const double h = 1e-2;
+        return -(8 * (potential(h) - potential(-h)) - (potential(2 * h) - potential(-2 * h))) / (12 * h);
+      };
+      VectorXd loads(9);
+      for (int i = 0; i < 3; ++i) {
+        const Vector3d e = Vector3d::Unit(i);
+        loads[i] = slope([&](double h) {
+          return calc_point_potential(pair.points, field.mu, field.centre, s.p_WBo + h * s.R_WB * e, s.R_WB, eta);
+        });
+        loads[3 + i] = slope([&](double h) {
+          return calc_point_potential(pair.points, field.mu, field.centre, s.p_WBo, s.R_WB * calc_rotation_exp(h * e),
+                                      eta);
+        });
+        loads[6 + i] = slope([&](double h) {
+          return calc_point_potential(pair.points, field.mu, field.centre, s.p_WBo, s.R_WB, eta + h * e);
+        });
+      }
+      return loads;
+    };
+    const VectorXd zero = VectorXd::Zero(3);
+    const VectorXd at = calc_loads(zero);
+    EXPECT_LT((at - calc_energy_slope(zero)).norm(), 1e-6 * at.norm());
+    for (int j = 0; j < 3; ++j) {
+      const VectorXd eta = 1e-3 * VectorXd::Unit(3, j);
+      const VectorXd by_eta = (calc_loads(eta) - calc_loads(-eta)) / 2e-3;
+      const VectorXd expected = (calc_energy_slope(eta) - calc_energy_slope(-eta)) / 2e-3;
+      EXPECT_LT((by_eta - expected).norm(), 2e-5 * expected.norm()) << by_eta.transpose() << "\n"
+                                                                    << expected.transpose();
+    }
+  }
+}
+
+TEST(ForceElements, CentralGravityDoesNotDependOnTheOriginOfTheBody) {
+  Pair pair;
+  pair.spec.bodies.resize(1);
+  pair.spec.hinges.resize(1);
+  ForceElementRecord field;
+  field.name = "earth";
+  field.type = ElementType::CentralGravity;
+  field.mu = 20;
+  field.centre = {3, -4, 2};
+  field.j2 = 0.1;
+  field.equator = 2;
+  pair.spec.force_elements = {field};
+  VectorXd q, u, first;
+  double energy = 0;
+  for (const Vector3d& d : {Vector3d(0, 0, 0), Vector3d(0.5, 0, 0), Vector3d(1, -2, 0.5)}) {
+    PointBody points = pair.points;
+    for (auto& p : points.p) p -= d;
+    pair.flex["soft.h5"] = points.make_record("soft");
+    const System system = build(pair.spec, pair.flex);
+    auto data = system.make_data();
+    if (d.isZero(0)) make_random_state(system, 3, q, u);
+    VectorXd moved = q;
+    const Eigen::Quaterniond turn(q[3], q[0], q[1], q[2]);
+    moved.segment<3>(4) += turn * d;
+    calc_kinematics(system, *data, 0, moved, u);
+    add_forces(system, *data, 0);
+    VectorXd loads = data->tree.applied;
+    loads.segment<3>(3) += d.cross(Vector3d(loads.head<3>()));
+    if (d.isZero(0)) first = loads, energy = data->elements[0].potential;
+    EXPECT_NEAR(data->elements[0].potential, energy, 1e-12 * std::abs(energy));
+    EXPECT_LT((loads - first).norm(), 1e-11 * first.norm());
+  }
+}
+
 TEST(Curve, IntegralAndSlopeBelongToTheTable) {
   for (const std::string kind : {"linear", "cubic"}) {
     records::FunctionRecord f;
