@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/system/impl.hpp"
+#include "solver/tree/coordinates.hpp"
 
 namespace bough::solver {
 
@@ -23,16 +24,17 @@ Recorder::Recorder(const System& system) : system_(system) {
   }
   for (int b = 0; b < system.num_bodies(); ++b) {
     const std::string path = "/hinges/" + system.hinge_name(b) + "/";
-    if (system.num_hinge_q(b) > 0) {
-      add_channel(path + "q", system.num_hinge_q(b),
-                  "hinge coordinates, child relative to parent; quaternion as w, x, y, z", "1 or L");
-      add_channel(path + "qdot", system.num_hinge_rates(b),
+    if (const int nq = system.num_hinge_q(b), nu = system.num_hinge_rates(b); nq > 0) {
+      const TreeBody& tb = system.impl().tree[b];
+      add_channel(path + "q", nq, "hinge coordinates, child relative to parent; quaternion as w, x, y, z",
+                  list_hinge_dims(tb, HingeQuantity::Position, 0, nq));
+      add_channel(path + "qdot", nu,
                   "hinge rates; spherical and free: angular velocity of the child's hinge frame in the parent's",
-                  "1/T or L/T");
+                  list_hinge_dims(tb, HingeQuantity::Rate, 0, nu));
       add_channel(
-          path + "force", system.num_hinge_rates(b),
+          path + "force", nu,
           "generalized hinge force: spring and damper; all that crosses the hinge where it is locked or prescribed",
-          "F L or F");
+          list_hinge_dims(tb, HingeQuantity::Force, 0, nu));
     }
     add_channel(path + "reaction_force", 3,
                 "force of the parent on the child at the child's hinge frame, in the hinge axes of the parent", "F");

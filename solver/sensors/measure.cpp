@@ -90,7 +90,8 @@ void measure_coordinate(const System& system, const SystemData& data, const Sens
   Map<VectorXd> result(out, e.size);
   result = value.segment(e.coordinate == 0 ? 0 : e.coordinate - 1, e.size);
   if (e.type != SensorType::Resolver) return;
-  for (int i = 0; i < e.size; ++i) result[i] = std::remainder(result[i], 2 * EIGEN_PI);
+  for (int i = 0; i < e.size; ++i)
+    if (e.wraps[static_cast<size_t>(i)]) result[i] = std::remainder(result[i], 2 * EIGEN_PI);
 }
 
 void measure_modes(const System& system, const SystemData& data, const Sensors::Entry& e, double* out) {

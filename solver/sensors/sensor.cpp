@@ -97,16 +97,14 @@ class Resolver {
     if (e.size == 3) e.description += ": 1, 2, 3";
   }
 
-  /// Of coordinates that are all angles or all travels.
   void set_dims(const SensorRecord& r, Sensors::Entry& e) {
     const TreeBody& tb = system_.impl().tree[e.body];
-    if (!tb.hinge->has_plain_coordinates()) return;
     const int first = r.coordinate == 0 ? 0 : r.coordinate - 1;
-    int travels = 0;
-    for (int i = 0; i < e.size; ++i) travels += is_translation(tb, first + i) ? 1 : 0;
-    if (travels != 0 && travels != e.size) return;
     const bool is_rate = r.type == SensorType::HingeRate || r.type == SensorType::Tachometer;
-    e.dims = std::string(travels > 0 ? "L" : "1") + (is_rate ? "/T" : "");
+    e.dims = list_hinge_dims(tb, is_rate ? HingeQuantity::Rate : HingeQuantity::Position, first, e.size);
+    if (r.type != SensorType::Resolver) return;
+    e.wraps.resize(static_cast<size_t>(e.size));
+    for (int i = 0; i < e.size; ++i) e.wraps[static_cast<size_t>(i)] = !is_length(tb, first + i);
   }
 
   void resolve_modes(const SensorRecord& r, const SensorKind& kind, Sensors::Entry& e) {

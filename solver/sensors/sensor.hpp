@@ -45,6 +45,7 @@ class Sensors {
     int relative_to = -1;     ///< body index, -1: W
     bool from_turning = true;
     int coordinate = 0;                     ///< 1-based, 0: all
+    std::vector<bool> wraps;                ///< resolver: the component is an angle, brought into [-π, π]
     int row = 0;                            ///< element: first row of the body's Recovery
     Matrix3d mount = Matrix3d::Identity();  ///< R_KS
     Vector3d target = Vector3d::Zero();     ///< in W: a direction, a centre, the other end on ground

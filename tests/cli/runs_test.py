@@ -59,6 +59,10 @@ gravity = [0.0, -9.81, 0.0]
 """
 
 
+def read_text(attribute):
+    return attribute.decode() if isinstance(attribute, bytes) else attribute
+
+
 class Check(ProgramTest):
     def test_check_refuses_what_run_refuses(self):
         for old, new, error in [('hinge = "pin"', 'hinge = "pin"\ncoordinate = 3', "sensor.bad-coordinate"),
@@ -242,6 +246,24 @@ direction = "falling"
             self.assertNotIn("bodies", f)
             self.assertEqual(f["time"].shape, (5,))
             self.assertIn("energy_error", f["energy"].attrs)
+
+    def test_dims_are_those_of_the_coordinates(self):
+        types = {"turn": ("revolute", "1", "1/T", "F L"), "slide": ("prismatic", "L", "L/T", "F"),
+                 "both": ("cylindrical", "1, L", "1/T, L/T", "F L, F"), "plane": ("planar", "L, L, 1", "L/T, L/T, 1/T", "F, F, F L"),
+                 "screw": ("screw", "1", "1/T", "F L"), "ball": ("spherical", "1", "1/T", "F L"),
+                 "fly": ("free", "1, 1, 1, 1, L, L, L", "1/T, 1/T, 1/T, L/T, L/T, L/T", "F L, F L, F L, F, F, F")}
+        text = ""
+        for name, (kind, *_) in types.items():
+            text += f'[[body]]\nname = "b_{name}"\nmass = 1.0\ninertia = [1.0, 1.0, 1.0]\n'
+            text += f'[[hinge]]\nname = "{name}"\ntype = "{kind}"\nchild = "b_{name}"\n' + "pitch = 0.1\n" * (kind == "screw")
+            text += f'[[sensor]]\nname = "s_{name}"\ntype = "hinge_angle"\nhinge = "{name}"\n'
+        self.write("h.toml", text + "[simulation]\nduration = 0.1\n")
+        self.bough("run", "h.toml", "-q")
+        with h5py.File(self.path("h.h5")) as f:
+            for name, (_, *expected) in types.items():
+                for channel, dims in zip(("q", "qdot", "force"), expected):
+                    self.assertEqual(read_text(f[f"hinges/{name}/{channel}"].attrs["dims"]), dims, (name, channel))
+                self.assertEqual(read_text(f[f"sensors/s_{name}"].attrs["dims"]), expected[0], name)
 
     def test_relative_accelerations(self):
         # Relative to a body that turns with it, a point of that body rests, as its riders see it.

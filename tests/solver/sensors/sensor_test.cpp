@@ -156,6 +156,80 @@ TEST(Sensors, HingeCoordinates) {
   EXPECT_NEAR(out[1], x.ad, 1e-15);
 }
 
+VectorXd measure_at_start(const records::SystemSpec& spec, const System& system) {
+  auto data = system.make_data();
+  VectorXd q(system.num_q()), u(system.num_u()), u_dot(system.num_u());
+  system.calc_initial_state(q, u);
+  calc_kinematics(system, *data, 0, q, u);
+  add_forces(system, *data, 0);
+  calc_accelerations(system, *data, 0, u_dot);
+  Diagnostics diagnostics;
+  const Sensors sensors = Sensors::build(system, spec, diagnostics);
+  VectorXd out(sensors.size());
+  sensors.calc(system, *data, out);
+  return out;
+}
+
+// A resolver brings angles into a turn and leaves lengths as they are, whatever the hinge.
+TEST(Sensors, AResolverDoesNotWrapLengths) {
+  records::SystemSpec spec;
+  records::BodyRecord b;
+  b.name = "b";
+  b.mass = 1;
+  b.inertia.setIdentity();
+  spec.bodies = {b};
+  const auto run = [&](HingeType type, const std::vector<double>& position) {
+    spec.hinges = {make_hinge_record("h", type, "ground", "b")};
+    spec.hinges[0].position = position;
+    spec.sensors = {make_hinge_sensor(SensorType::Resolver, "h", 0)};
+    return measure_at_start(spec, build(spec));
+  };
+  const double wrapped = 4 - 2 * EIGEN_PI;
+  const VectorXd cylindrical = run(HingeType::Cylindrical, {4, 10});
+  EXPECT_NEAR(cylindrical[0], wrapped, 1e-15);
+  EXPECT_EQ(cylindrical[1], 10);
+  EXPECT_EQ(run(HingeType::Prismatic, {-20})[0], -20);
+  const VectorXd planar = run(HingeType::Planar, {5, -7, 4});
+  EXPECT_EQ(planar[0], 5);
+  EXPECT_EQ(planar[1], -7);
+  EXPECT_NEAR(planar[2], wrapped, 1e-15);
+  EXPECT_EQ(run(HingeType::Free, {1, 0, 0, 0, 8, 9, 10}).tail<3>(), Vector3d(8, 9, 10));
+}
+
+// a - g(p) with g of all sources at the place of the instrument: nothing at the mass centre of a body in free fall.
+TEST(Sensors, AnAccelerometerInFreeFallReadsTheTideAlone) {
+  records::SystemSpec spec;
+  records::BodyRecord b;
+  b.name = "sat";
+  b.mass = 100;
+  b.inertia = 10 * Matrix3d::Identity();
+  b.nodes = {{1, {1, 0.5, -2}}};
+  spec.bodies = {b, b};
+  spec.bodies[1].name = "free";  // which the centre does not attract
+  const double distance = 1000, mu = 1e5, spin = 0.02;
+  for (const std::string name : {"sat", "free"}) {
+    spec.hinges.push_back(make_hinge_record("orbit_" + name, HingeType::Free, "ground", name));
+    spec.hinges.back().position = {1, 0, 0, 0, distance, 20, 30};
+    spec.hinges.back().rate = {0, 0, spin, 0, 10, 0};
+    for (const int node : {0, 1})
+      spec.sensors.push_back(make_sensor(name + std::to_string(node), SensorType::Accelerometer, name, node, ""));
+  }
+  spec.simulation.gravity = {0.1, 0.2, -9.81};
+  records::ForceElementRecord earth;
+  earth.name = "earth";
+  earth.type = records::ElementType::CentralGravity;
+  earth.mu = mu;
+  earth.bodies = {"sat"};
+  spec.force_elements = {earth};
+  const VectorXd out = measure_at_start(spec, build(spec));
+  const Vector3d R(distance, 20, 30), r(1, 0.5, -2), w(0, 0, spin);
+  const auto calc_field = [&](const Vector3d& p) -> Vector3d { return -mu / std::pow(p.norm(), 3) * p; };
+  EXPECT_LT(out.head<3>().norm(), 1e-14);
+  EXPECT_LT((out.segment<3>(3) - (w.cross(w.cross(r)) + calc_field(R) - calc_field(R + r))).norm(), 1e-13);
+  EXPECT_LT(out.segment<3>(6).norm(), 1e-14);
+  EXPECT_LT((out.tail<3>() - w.cross(w.cross(r))).norm(), 1e-14);
+}
+
 // On flexible bodies in random trees: velocity and acceleration are the rates of position and velocity, in a moving
 // frame.
 TEST(Sensors, RatesOnFlexibleTrees) {
