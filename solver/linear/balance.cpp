@@ -30,9 +30,12 @@ void Balance::linearize() {
 }
 
 VectorXd Balance::calc_residual() const {
+  const int n = plant_->num_freedoms();
+  const VectorXd rates = plant_->evaluate(point_);
   VectorXd residual(size());
-  residual << plant_->evaluate(point_).head(plant_->num_freedoms() + plant_->num_states()),
-      plant_->calc_sample_rates(point_);
+  residual.head(n) = plant_->calc_unsteadiness(rates);
+  residual.segment(n, plant_->num_states()) = rates.segment(n, plant_->num_states());
+  residual.tail(size() - n - plant_->num_states()) = plant_->calc_sample_rates(point_);
   return residual;
 }
 

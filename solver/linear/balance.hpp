@@ -21,7 +21,14 @@ class Balance {
   std::string name(int row) const;
   /// Rows that may be displaced; m of n.
   const std::vector<int>& free() const { return free_; }
-  const VectorXd& residual() const { return residual_; }  ///< u̇, ż, change of the memory a sample time; n
+  /// u̇ (less that of a steady spin), ż, change of the memory a sample time; n.
+  const VectorXd& residual() const { return residual_; }
+  /// What rounding leaves of the residual in a steady spin; n.
+  VectorXd calc_rounding() const {
+    VectorXd rounding = VectorXd::Zero(size());
+    rounding.head(plant_->num_freedoms()) = plant_->calc_spin_rounding(point_);
+    return rounding;
+  }
   const MatrixXd& jacobian() const { return jacobian_; }  ///< of the residual by steps, n x m, of the last linearize
   double step(int j) const {
     const int i = free_[static_cast<size_t>(j)];

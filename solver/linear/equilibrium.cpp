@@ -51,10 +51,12 @@ class Newton {
   int find_restless() const {
     const VectorXd& residual = at_.residual();
     const double floor = row_scale_.size() > 0 ? 1e-9 * row_scale_.maxCoeff() : 0;
+    const VectorXd rounding = at_.calc_rounding();
     int worst = -1;
     double largest = 1;
     for (int i = 0; i < static_cast<int>(residual.size()); ++i) {
-      const double allowed = std::max({1e-7 * row_scale_[i], floor * 1e-3, 1e3 * std::numeric_limits<double>::min()});
+      const double allowed =
+          std::max({1e-7 * row_scale_[i], floor * 1e-3, rounding[i], 1e3 * std::numeric_limits<double>::min()});
       if (std::abs(residual[i]) / allowed <= largest) continue;
       largest = std::abs(residual[i]) / allowed;
       worst = i;

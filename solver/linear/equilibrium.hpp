@@ -19,13 +19,14 @@ struct Equilibrium {
   std::vector<Growth> unstable;  ///< poles that grow; empty: the state is stable, as far as first order tells
 };
 
-/// u̇(t, q, u, z) = 0 and ż = 0 for q and the states z of controllers and actuators, from `start`: hinge rates stay as
-/// they are there (zero: rest), modal rates become zero. Of sampled blocks too: their samples repeat themselves, what
-/// is delayed has arrived. What no displacement restores (b with b · ∂ż/∂(q, z) = 0) is what every motion from the
-/// start leaves it: b · (z - z₀) = (b · ∂ż/∂u) (q - q₀). Newton's method with least-norm steps, damped by the natural
-/// monotonicity test (Deuflhard, Newton Methods for Nonlinear Problems, 2004, 3.3); where that ends far away in an
-/// unstable state, or nowhere, downhill first (descent). Throws ComputationError "equilibrium.not-converged" with the
-/// residual and where it is largest.
+/// u̇(t, q, u, z) = 0 (of bodies that float and spin: in axes that turn with them about their mass centre, see
+/// Plant::calc_unsteadiness) and ż = 0 for q and the states z of controllers and actuators, from `start`: hinge rates
+/// stay as they are there (zero: rest), modal rates become zero. Of sampled blocks too: their samples repeat
+/// themselves, what is delayed has arrived. What no displacement restores (b with b · ∂ż/∂(q, z) = 0) is what every
+/// motion from the start leaves it: b · (z - z₀) = (b · ∂ż/∂u) (q - q₀). Newton's method with least-norm steps, damped
+/// by the natural monotonicity test (Deuflhard, Newton Methods for Nonlinear Problems, 2004, 3.3); where that ends far
+/// away in an unstable state, or nowhere, downhill first (descent). Throws ComputationError "equilibrium.not-converged"
+/// with the residual and where it is largest.
 Equilibrium find_equilibrium(Plant& plant, const OperatingPoint& start, const SourceLocation& at);
 
 }  // namespace bough::solver

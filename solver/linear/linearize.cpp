@@ -319,7 +319,8 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
     if (plant.is_periodic(i)) model.periodic.push_back(plant.freedom_name(i));
   }
   const VectorXd base = plant.evaluate(point);
-  model.residual = base.head(n).norm();
+  const VectorXd unsteady = plant.calc_unsteadiness(base);
+  model.residual = unsteady.norm();
 
   const Jacobian jacobian = calc_jacobian(plant, point, 1);
   model.A = MatrixXd::Zero(nx, nx);
@@ -345,7 +346,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
     model.outputs.dims.push_back(known.dims[static_cast<size_t>(i)]);
   }
 
-  note_unsteady(plant, base.head(n), jacobian.value.topRows(n), at, diagnostics);
+  note_unsteady(plant, unsteady, jacobian.value.topRows(n), at, diagnostics);
   std::vector<int> rows(static_cast<size_t>(n + nz));
   std::iota(rows.begin(), rows.end(), 0);
   for (const int i : outputs) rows.push_back(n + nz + i);

@@ -97,6 +97,12 @@ class Plant {
 
   /// [u̇; ż; y] with every function of time at its value, and `value` more of one input. May throw ComputationError.
   VectorXd evaluate(const OperatingPoint& point, const PlantInput* input = nullptr, double value = 0);
+  /// u̇ of the last evaluate less what a steady spin has of it: on a hinge to ground whose translations are free across
+  /// ω, ω × (ṗ - v_c) is taken off p̈, with v_c the velocity of the mass centre of all that it carries. Zero at rest and
+  /// in a steady spin, also about a mass centre beside the origin that drifts. num_freedoms.
+  VectorXd calc_unsteadiness(const VectorXd& u_dot) const;
+  /// What rounding leaves of it where bodies spin. num_freedoms.
+  VectorXd calc_spin_rounding(const OperatingPoint& point) const;
   /// What changes at samples: rows of the memory of sampled blocks, with what is held and on its way.
   const std::vector<int>& sampled_rows() const { return sampled_rows_; }
   /// "controller 'law' (memory 1)".

@@ -438,6 +438,20 @@ class Equilibrium(LinearTest):
                                  "[simulation]\nduration = 1.0\ngravity = [0.0, 0.0, -9.81]\n")
         self.fails(3, "equilibrium", "stone.toml", says=["stone:z", "9.81"], error="equilibrium.not-converged")
 
+    def test_a_body_spins_about_a_mass_centre_beside_its_origin(self):
+        """Its nutation is that of a free rigid body, ω √((C - A)(C - B) / (A B))."""
+        self.write("sat.toml", '[[body]]\nname = "sat"\nmass = 100.0\ncg = [0.1, 0.0, 0.5]\ninertia = [30.0, 40.0, 50.0]\n'
+                   '[[hinge]]\nname = "f"\ntype = "free"\nchild = "sat"\nrate = [0.0, 0.0, 1.0, 0.0, -0.1, 0.0]\n'
+                   "[simulation]\nduration = 10.0\n")
+        said = self.bough("equilibrium", "sat.toml", "-o", "spin.h5")
+        self.assertNotIn("unstable", said.stdout + said.stderr)
+        linear = self.bough("linearize", "sat.toml", "--equilibrium", "-o", "l.h5", "-v")
+        self.assertNotIn("[linear.not-steady]", linear.stderr)
+        with h5py.File(self.path("l.h5")) as f:
+            poles = f["poles/real"][:].ravel() + 1j * f["poles/imag"][:].ravel()
+        self.assertLess(np.abs(poles - 1j * np.sqrt(20 * 10 / (30 * 40))).min(), 1e-6)
+        self.assertLess(poles.real.max(), 1e-6)
+
 
 class Select(LinearTest):
     def make_plant(self, body, nodes, kept=slice(None)):

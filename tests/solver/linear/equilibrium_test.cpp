@@ -180,6 +180,43 @@ TEST(Equilibrium, AnAngleThatSpinsIsNotChosen) {
   EXPECT_TRUE(given.unstable.empty());
 }
 
+// A rigid body that floats and spins about a principal axis through its mass centre is in a steady spin wherever its
+// origin is and however its mass centre drifts; about another axis it tumbles.
+TEST(Equilibrium, AFloatingBodySpinsAboutItsMassCentre) {
+  for (const auto type : {records::HingeType::Free, records::HingeType::Planar}) {
+    records::SystemSpec spec;
+    records::BodyRecord sat;
+    sat.name = "sat";
+    sat.mass = 100;
+    sat.cg = {0.1, 0.03, 0.5};
+    sat.inertia = Vector3d(30, 40, 50).asDiagonal();
+    spec.bodies = {sat};
+    spec.hinges = {make_hinge_record("f", type, "ground", "sat")};
+    const bool is_free = type == records::HingeType::Free;
+    const auto set_rates = [&](const Vector3d& w, const Vector3d& drift) {
+      const Vector3d v = drift - w.cross(sat.cg);
+      spec.hinges[0].rate = is_free ? std::vector<double>{w.x(), w.y(), w.z(), v.x(), v.y(), v.z()}
+                                    : std::vector<double>{v.x(), v.y(), w.z()};
+    };
+    for (const Vector3d& drift : {Vector3d(0, 0, 0), Vector3d(7, -3, 2)}) {
+      set_rates({0, 0, 1.3}, drift);
+      const auto found = find(spec);
+      EXPECT_LT(found.residual, 1e-12);
+      EXPECT_TRUE(found.unstable.empty());
+    }
+    spec.hinges[0].axis = Vector3d::UnitZ();
+    if (!is_free) continue;
+    set_rates({0.5, 0, 1.3}, {0, 0, 0});
+    EXPECT_THROW(find(spec), ComputationError);
+    // What pulls its mass centre leaves it no steady spin.
+    set_rates({0, 0, 1.3}, {0, 0, 0});
+    spec.simulation.gravity = {0, 0, -1e-6};
+    EXPECT_THROW(find(spec), ComputationError);
+    spec.simulation.gravity = {1e-6, 0, 0};
+    EXPECT_THROW(find(spec), ComputationError);
+  }
+}
+
 TEST(Equilibrium, NoneForAFallingBody) {
   records::SystemSpec spec;
   spec.simulation.gravity = {0, 0, -9.81};

@@ -1,0 +1,81 @@
+// Steady spin of bodies that float: which accelerations it has in inertial coordinates.
+#include "solver/linear/plant.hpp"
+#include "solver/system/impl.hpp"
+
+namespace bough::solver {
+
+namespace {
+
+constexpr double kAligned = 1e-9;  // of unit vectors
+constexpr double kRounding = 1e-12;
+
+/// Free translations of a hinge on ground that a turn about ω maps onto each other. In Hp, as ω, v and the rest.
+struct FloatingBase {
+  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 6> axes{3, 0};
+  std::vector<int> rates;  ///< of the hinge, one per axis
+  Vector3d w = Vector3d::Zero(), v = Vector3d::Zero();
+};
+
+FloatingBase find_base(const TreeBody& tb, const TreeData& data, int body) {
+  FloatingBase base;
+  const auto& H = data[body].hinge.H;
+  for (int i = 0; i < tb.num_hinge_u(); ++i) {
+    const double rate = data.u[tb.u_offset + i];
+    base.v += H.col(i).head<3>() * rate;
+    base.w += H.col(i).tail<3>() * rate;
+    if (data.mode[static_cast<size_t>(tb.u_offset + i)] != HingeMode::Free || !H.col(i).tail<3>().isZero(0)) continue;
+    base.axes.conservativeResize(3, base.axes.cols() + 1);
+    base.axes.rightCols<1>() = H.col(i).head<3>();
+    base.rates.push_back(i);
+  }
+  return base;
+}
+
+}  // namespace
+
+VectorXd Plant::calc_unsteadiness(const VectorXd& u_dot) const {
+  const Tree& tree = system_.impl().tree;
+  const TreeData& data = data_->tree;
+  VectorXd all = expand(u_dot.head(num_freedoms()));
+  std::vector<int> root(static_cast<size_t>(tree.size()));
+  for (int b = 0; b < tree.size(); ++b)
+    root[static_cast<size_t>(b)] = tree[b].parent < 0 ? b : root[static_cast<size_t>(tree[b].parent)];
+  for (int b = 0; b < tree.size(); ++b) {
+    const TreeBody& tb = tree[b];
+    if (tb.parent >= 0) continue;
+    const FloatingBase base = find_base(tb, data, b);
+    if (base.rates.empty() || base.w.isZero(0)) continue;
+    const MatrixXd to_rates = base.axes.completeOrthogonalDecomposition().pseudoInverse();
+    const Matrix3d P = base.axes * to_rates, turn = skew(Vector3d(base.w.normalized()));
+    if (!(turn * P - P * turn).isZero(kAligned)) continue;
+    double mass = 0;
+    Vector3d momentum = Vector3d::Zero();
+    for (int c = b; c < tree.size(); ++c) {
+      if (root[static_cast<size_t>(c)] != b) continue;
+      Vector3d linear, angular;
+      calc_body_momentum(system_, *data_, c, linear, angular);
+      mass += tree[c].body.mass();
+      momentum += linear;
+    }
+    if (!(mass > 0)) continue;
+    const Vector3d v_centre = tb.on_parent.R_KM.transpose() * momentum / mass;
+    const VectorXd spin = to_rates * base.w.cross(base.v - v_centre);
+    for (size_t i = 0; i < base.rates.size(); ++i) {
+      double& value = all[tb.u_offset + base.rates[i]];
+      const double taken = spin[static_cast<Eigen::Index>(i)], rest = value - taken;
+      value = std::abs(rest) > kRounding * (std::abs(value) + std::abs(taken)) ? rest : 0;
+    }
+  }
+  return restrict(all);
+}
+
+VectorXd Plant::calc_spin_rounding(const OperatingPoint& point) const {
+  double w = 0;
+  for (int i = 0; i < num_freedoms(); ++i)
+    if (!is_mode(i) && freedom_dims(i) == "1") w = std::max(w, std::abs(point.u[i]));
+  VectorXd rounding(num_freedoms());
+  for (int i = 0; i < num_freedoms(); ++i) rounding[i] = 10 * kRounding * step(i) * w * w;
+  return rounding;
+}
+
+}  // namespace bough::solver
