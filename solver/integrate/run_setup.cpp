@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "solver/integrate/load_limit.hpp"
 #include "solver/system/impl.hpp"
 
 namespace bough::solver {
@@ -52,6 +53,8 @@ RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diag
   if (is_sound) setup.recorder.choose(spec.simulation.record, spec.simulation.at, diagnostics);
   setup.triggers = Triggers::build(spec, setup.recorder, is_sound, diagnostics);
   setup.changes = Changes::build(system, spec, is_sound, diagnostics);
+  if (is_sound && diagnostics.num_errors() == 0)
+    warn_of_unstiffened_loads(system, setup.plan.start, setup.plan.end, spec.simulation.at, diagnostics);
   setup.integrator = spec.simulation.integrator;
   if (setup.integrator == "adams" && system.num_constraints() > 0) {
     diagnostics.note("run.integrator-chosen", spec.simulation.at,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/signals/build.hpp"
+#include "solver/system/stiffening_terms.hpp"
 
 namespace bough::solver {
 
@@ -164,6 +165,19 @@ System System::build(const records::SystemSpec& spec, const std::map<std::string
   return system;
 }
 
+namespace {
+void collect_left_out(const records::SystemSpec& spec, const System& system, const FlexMap& flex, System::Impl& impl) {
+  impl.left_out.resize(static_cast<size_t>(system.num_bodies()));
+  for (const auto& r : spec.bodies) {
+    const int b = system.find_body(r.name);
+    const auto found = flex.find(r.file);
+    if (r.stiffening || b < 0 || found == flex.end() || !system.is_sound(b) || system.num_modes(b) == 0) continue;
+    impl.left_out[static_cast<size_t>(b)] =
+        std::make_shared<const StiffeningTerms>(StiffeningTerms::collect(spec, system, found->second, b, true));
+  }
+}
+}  // namespace
+
 System System::build_as_far(const records::SystemSpec& spec, const std::map<std::string, FlexBody>& flex,
                             Diagnostics& diagnostics) {
   System system;
@@ -265,6 +279,7 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
                      impl.latches, diagnostics);
   }
   build_recoveries(spec, system, flex, impl, diagnostics);
+  collect_left_out(spec, system, flex, impl);
   build_signals(spec, system, flex, functions, uses, impl, diagnostics);
   collect_breakpoints(impl);
   if (diagnostics.num_errors() == 0 && impl.loops.size() > 0) assemble(spec, order, system, impl, diagnostics);

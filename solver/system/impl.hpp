@@ -12,6 +12,8 @@
 
 namespace bough::solver {
 
+class StiffeningTerms;
+
 struct System::Impl {
   Tree tree;
   std::vector<std::unique_ptr<const TimeFunction>> functions;
@@ -30,6 +32,8 @@ struct System::Impl {
   bool is_lagged = false;                             ///< bodies are stiffened by blocks of signals, not by themselves
   std::vector<bool> sound;                            ///< by body: its record and its hinge have no errors
   std::vector<std::unique_ptr<Recovery>> recoveries;  ///< by body; nullptr: nothing is recovered of it
+  /// By body; what would stiffen those whose stiffening is off. nullptr: it is on, or the file has nothing.
+  std::vector<std::shared_ptr<const StiffeningTerms>> left_out;
 };
 
 class SystemData {

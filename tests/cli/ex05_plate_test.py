@@ -27,6 +27,16 @@ class Plate(ProgramTest):
             self.assertLess(deflection[p][t < 1].max(), 1e-8)  # flat until the tap
         self.assertLess(deflection["0.165"].max(), 0.01)
         self.assertGreater(deflection["0.170"][-1], 1.0)
+        # Without stiffening it stays flat: said before the run, not half a second into it.
+        for name, share in (("0.165", "0.985"), ("0.170", "1.01"), ("0.060", None)):
+            with open(self.path("plate-0.170.toml")) as f:
+                text = f.read().replace('file = "plate.h5"', 'file = "plate.h5"\nstiffening = false')
+            self.write("flat.toml", text.replace("value = 0.170", f"value = {name}").replace("duration = 15.0", "duration = 0.6"))
+            for verb in ("check", "run"):
+                said = self.bough(verb, "flat.toml").stderr
+                self.assertEqual("[run.unstiffened-load]" in said, share is not None, said)
+                self.assertIn(f"are {share}" if share else "", said)
+        self.assertNotIn("[run.unstiffened-load]", self.bough("check", "plate-0.170.toml").stderr)
         self.bough("plot", "plate-0.165.h5", "plate-0.170.h5", "--sensor", "deflection:z", "--y-min", "-0.01",
                    "--y-max", "0.04", "-o", "plate.svg")
         with open(self.path("plate.svg")) as f:

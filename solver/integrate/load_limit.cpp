@@ -1,0 +1,89 @@
+#include "solver/integrate/load_limit.hpp"
+
+#include <algorithm>
+
+#include "solver/integrate/run.hpp"
+#include "solver/system/impl.hpp"
+#include "solver/system/stiffening_terms.hpp"
+
+namespace bough::solver {
+namespace {
+
+constexpr int kNumLooks = 400;
+
+/// The start, and where a force or a prescribed motion has its extreme value among evenly spaced times and its jumps.
+std::vector<double> list_times(const System::Impl& impl, double start, double end) {
+  std::vector<double> looks, times = {start};
+  for (int i = 0; i <= kNumLooks; ++i) looks.push_back(start + (end - start) * i / kNumLooks);
+  for (const auto* list : {&impl.breakpoints, &impl.landmarks})
+    for (const double t : *list)
+      if (t > start && t <= end) looks.push_back(t);
+  const auto add_extremes = [&](const auto& calc) {
+    const auto is_less = [&](double a, double b) { return calc(a) < calc(b); };
+    const auto [least, most] = std::minmax_element(looks.begin(), looks.end(), is_less);
+    if (calc(*least) != calc(start)) times.push_back(*least);
+    if (calc(*most) != calc(start)) times.push_back(*most);
+  };
+  for (const AppliedForce& force : impl.forces)
+    if (force.function != nullptr) add_extremes([&](double t) { return force.function->calc(t).f; });
+  for (const TreeBody& tb : impl.tree.bodies)
+    for (const TimeFunction* motion : tb.motion) {
+      if (motion == nullptr || impl.loops.size() > 0) continue;
+      add_extremes([&](double t) { return motion->calc(t).f_dot; });
+      add_extremes([&](double t) { return motion->calc(t).f_ddot; });
+    }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+/// -min eig of K⁻¹ K_G: the loads over the critical ones; 0 where no multiple of them is critical.
+double calc_share(const MatrixXd& K, const MatrixXd& KG) {
+  const Eigen::LLT<MatrixXd> factor(0.5 * (K + K.transpose()));
+  if (factor.info() != Eigen::Success || !KG.allFinite()) return 0;
+  const MatrixXd half = factor.matrixL().solve(KG), both = factor.matrixL().solve(half.transpose());
+  return std::max(0.0, -Eigen::SelfAdjointEigenSolver<MatrixXd>(both, Eigen::EigenvaluesOnly).eigenvalues()[0]);
+}
+
+}  // namespace
+
+void warn_of_unstiffened_loads(const System& system, double start, double end, const SourceLocation& at,
+                               Diagnostics& diagnostics) {
+  const System::Impl& impl = system.impl();
+  if (std::all_of(impl.left_out.begin(), impl.left_out.end(), [](const auto& terms) { return terms == nullptr; }))
+    return;
+  struct Worst {
+    double share = 0, time = 0;
+  };
+  std::vector<Worst> worst(impl.left_out.size());
+  const auto data = system.make_data();
+  VectorXd q = VectorXd::Zero(system.num_q()), u = VectorXd::Zero(system.num_u()), u_dot = u;
+  for (const double t : list_times(impl, start, end)) {
+    try {
+      system.calc_initial_state(q, u);
+      calc_kinematics(system, *data, t, q, u);
+      add_forces(system, *data, t);
+      calc_accelerations(system, *data, t, u_dot);
+    } catch (const Failure&) {
+      continue;  // the run itself reports it
+    }
+    for (size_t b = 0; b < worst.size(); ++b) {
+      if (impl.left_out[b] == nullptr) continue;
+      VectorXd loads(impl.left_out[b]->num_loads());
+      impl.left_out[b]->calc_loads(system, *data, loads.data());
+      const double share =
+          calc_share(impl.tree[static_cast<int>(b)].body.K(), impl.left_out[b]->calc_stiffness(loads.data()));
+      if (share > worst[b].share) worst[b] = {share, t};
+    }
+  }
+  for (size_t b = 0; b < worst.size(); ++b) {
+    if (!(worst[b].share > kLoadLimit)) continue;
+    diagnostics.warning("run.unstiffened-load", at,
+                        "body '" + system.body_name(static_cast<int>(b)) +
+                            "' has no stiffening and its loads at t = " + short_text(worst[b].time) + " are " +
+                            short_text(worst[b].share) + " of the critical ones (from 1 on it buckles)",
+                        "set stiffening = true for this body");
+  }
+}
+
+}  // namespace bough::solver
