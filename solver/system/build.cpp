@@ -284,6 +284,7 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
   collect_breakpoints(impl);
   if (diagnostics.num_errors() == 0 && impl.loops.size() > 0) assemble(spec, order, system, impl, diagnostics);
   if (diagnostics.num_errors() == 0) check_stops(system, impl, diagnostics);
+  if (diagnostics.num_errors() == 0) check_shapes(spec, system, flex, diagnostics);
   return system;
 }
 

@@ -77,6 +77,9 @@ void build_hinge_laws(const records::HingeRecord& record, const ElementContext& 
 
 /// What starts beyond a rigid stop is an error ("system.beyond-stop"); by less than calc_slack it is put on it.
 void check_stops(const System& system, System::Impl& impl, Diagnostics& diagnostics);
+/// Warns "system.stiff-shapes" of constraints, and hinges to ground, that hold a node of a flexible body in directions
+/// in which its normal modes give way too little.
+void check_shapes(const records::SystemSpec& spec, const System& system, const FlexMap& flex, Diagnostics& diagnostics);
 
 /// What acts at a node. A hinge that can pass on a moment takes both.
 struct NodeLoad {

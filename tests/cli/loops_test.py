@@ -177,6 +177,37 @@ gravity = [0.0, 0.0, -10.0]
                 self.write("moves.toml", text.format(kind, 1.0, more) + f'integrator = "{integrator}"\n{step}')
                 self.bough("run", "moves.toml")
 
+    def test_shapes_that_cannot_meet_a_constraint_are_named(self):
+        """A cantilever whose end is clamped too: λ² = 22.3733 of a beam clamped at both ends (Blevins). Normal modes of
+        the cantilever converge slowly to it; static shapes hold it at once. A pin at the end does no harm."""
+        n, EI, mass = 20, 7e10 * 1e-8, 2700 * 1e-4
+        deck = ("SOL 103\nCEND\nSPC = 1\nBEGIN BULK\nMAT1,1,7.+10,,.3,2700.\nPBAR,1,1,1.-4,1.-8,1.-8,1.-8\n"
+                "PARAM,COUPMASS,1\nSPC1,1,123456,1\n" + f"SPC1,1,1345,2,THRU,{n + 1}\n"
+                + "".join(f"GRID,{k + 1},,{k / n},0.,0.\n" for k in range(n + 1))
+                + "".join(f"CBAR,{k + 1},1,{k + 1},{k + 2},0.,1.,0.\n" for k in range(n)) + "ENDDATA\n")
+        self.write("beam.bdf", deck)
+        found = {}
+        for basis, number in (("normal", 4), ("normal", 8), ("craig-bampton", 4)):
+            self.write("beam.toml", f'[body]\nname = "beam"\ndeck = "beam.bdf"\nframe = "fixed"\ninterface = [{n + 1}]\n'
+                       f'[body.modes]\nnumber = {number}\nbasis = "{basis}"\n[body.output]\nfile = "beam.h5"\n')
+            self.bough("reduce", "beam.toml", "-q")
+            for end, exact in (("fixed", 22.3733), ("revolute", 15.4182)):
+                self.write("held.toml", '[[body]]\nname = "beam"\nfile = "beam.h5"\n[[hinge]]\nname = "root"\ntype = "fixed"\n'
+                           'child = "beam"\nchild_node = 1\nparent_position = [0.0, 0.0, 0.0]\n'
+                           f'[[constraint]]\nname = "end"\ntype = "{end}"\nparent = "ground"\nparent_position = [1.0, 0.0, 0.0]\n'
+                           f'child = "beam"\nchild_node = {n + 1}\n[simulation]\nduration = 0.001\n')
+                said = [self.bough(*call).stderr for call in (("check", "held.toml"), ("run", "held.toml"),
+                                                              ("linearize", "held.toml", "-o", "l.h5"))]
+                with h5py.File(self.path("l.h5")) as f:
+                    least = np.hypot(f["poles/real"][:], f["poles/imag"][:]).min()
+                error = least / (exact * np.sqrt(EI / mass)) - 1
+                found[basis, number, end] = error
+                is_said = ["[system.stiff-shapes]" in text for text in said]
+                self.assertEqual(is_said, [error > 0.02] * 3, (basis, number, end, error, said[0]))
+        self.assertGreater(found["normal", 4, "fixed"], 0.1)
+        self.assertLess(found["craig-bampton", 4, "fixed"], 1e-3)
+        self.assertLess(found["normal", 4, "revolute"], 0.01)
+
     def test_what_is_refused(self):
         def refused(name, text, *words):
             self.write(name, text)
