@@ -51,7 +51,7 @@ void Actuator::calc_rates(const BlockInput& in, double* z_dot) const {
 
 namespace {
 
-enum class Where { Hinge, Force, Moment };
+enum class Where { Hinge, Force, Moment, Mode };
 struct Kind {
   const char* type;
   int outputs;
@@ -69,6 +69,7 @@ constexpr Kind kKinds[] = {
     {"wheel", 3, Where::Moment, "F L", make_rotor},
     {"cmg", 2, Where::Moment, "1/T", make_rotor},
     {"double_gimbal_cmg", 4, Where::Moment, "1/T", make_rotor},
+    {"modal", 1, Where::Mode, "", make_modal_drive},
 };
 
 const Kind* find_kind(const std::string& type) {
@@ -105,9 +106,9 @@ bool find_row(const records::ActuatorRecord& r, const System& system, const Tree
   return true;
 }
 
-bool find_marker(const records::ActuatorRecord& r, const System& system, Tree& tree, Where where, SettingsReader& keys,
-                 Diagnostics& diagnostics, ActuatorPlace& place) {
-  if (!r.hinge.empty()) keys.error("control.unknown-key", "takes no hinge", "its body and node say where it acts");
+/// Index of the body; -1: reported, or with errors of its own.
+int find_own_body(const records::ActuatorRecord& r, const System& system, SettingsReader& keys) {
+  if (!r.hinge.empty()) keys.error("control.unknown-key", "takes no hinge", "its body says where it acts");
   const int body = system.find_body(r.body);
   if (body < 0) {
     std::vector<std::string> names;
@@ -115,9 +116,31 @@ bool find_marker(const records::ActuatorRecord& r, const System& system, Tree& t
     const std::string near = find_nearest(r.body, names);
     keys.error("control.unknown-place", "is on the body '" + r.body + "', which does not exist",
                near.empty() ? "declare it" : "did you mean '" + near + "'?");
+    return -1;
+  }
+  return system.is_sound(body) ? body : -1;
+}
+
+bool find_mode(const records::ActuatorRecord& r, const System& system, const Tree& tree, SettingsReader& keys,
+               ActuatorPlace& place) {
+  const int body = find_own_body(r, system, keys);
+  if (body < 0) return false;
+  const int count = tree[body].num_modes();
+  if (r.coordinate < 1 || r.coordinate > count) {
+    keys.error(
+        "control.unknown-place",
+        "drives mode " + std::to_string(r.coordinate) + " of body '" + r.body + "', which has " + std::to_string(count),
+        count == 0 ? "name a flexible body" : "count from 1");
     return false;
   }
-  if (!system.is_sound(body)) return false;
+  place.row = tree[body].v_offset + 6 + r.coordinate - 1;
+  return true;
+}
+
+bool find_marker(const records::ActuatorRecord& r, const System& system, Tree& tree, Where where, SettingsReader& keys,
+                 Diagnostics& diagnostics, ActuatorPlace& place) {
+  const int body = find_own_body(r, system, keys);
+  if (body < 0) return false;
   Marker at;
   at.body = body;
   at.node = find_loaded_node(r.body, tree[body].body, r.node, {where == Where::Force, where == Where::Moment}, r.at,
@@ -159,8 +182,9 @@ std::unique_ptr<Block> make_actuator(const records::ActuatorRecord& r, const Sys
     return nullptr;
   }
   ActuatorPlace place;
-  const bool is_placed = kind->where == Where::Hinge
-                             ? find_row(r, system, tree, keys, place)
+  const bool is_placed = kind->where == Where::Hinge ? find_row(r, system, tree, keys, place)
+                         : kind->where == Where::Mode
+                             ? find_mode(r, system, tree, keys, place)
                              : find_marker(r, system, tree, kind->where, keys, diagnostics, place);
   auto made = kind->make(r, keys, place);
   keys.refuse_others();

@@ -4,12 +4,14 @@
 
 namespace bough::solver {
 
-/// Where an actuator acts: a row of u, or a marker.
+/// Where an actuator acts: a row of u (of a mode: of TreeData::applied), or a marker.
 struct ActuatorPlace {
   int row = -1, marker = -1;
 };
 
 std::unique_ptr<Actuator> make_hinge_drive(const records::ActuatorRecord& record, SettingsReader& keys,
+                                           const ActuatorPlace& place);
+std::unique_ptr<Actuator> make_modal_drive(const records::ActuatorRecord& record, SettingsReader& keys,
                                            const ActuatorPlace& place);
 std::unique_ptr<Actuator> make_push(const records::ActuatorRecord& record, SettingsReader& keys,
                                     const ActuatorPlace& place);

@@ -134,6 +134,7 @@ double SignalUnits::get_command_unit(const toml::table& actuator) const {
   // Currents stay; so a voltage is a power.
   if (type == "motor") return effort * rate;
   if (type == "force") return force();
+  if (type == "modal") return force() * c_.length / c_.calc_modal();
   if (type == "moment" || type == "wheel") return force() * c_.length;
   if (type == "cmg" || type == "double_gimbal_cmg") return 1 / c_.time;
   return 1;

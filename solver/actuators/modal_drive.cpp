@@ -1,0 +1,28 @@
+// Actuator on a modal coordinate: a generalized force on one mode of a flexible body, without resultant on the body.
+#include "solver/actuators/makers.hpp"
+#include "solver/system/impl.hpp"
+
+namespace bough::solver {
+namespace {
+
+class ModalDrive final : public Actuator {
+ public:
+  int row = -1;  ///< of TreeData::applied
+
+  void calc_outputs(const BlockInput& in, double* y) const override { y[0] = calc_command(in); }
+  void add_load(const BlockInput&, const double* y, SystemData& data) const override { data.tree.applied[row] += y[0]; }
+};
+
+}  // namespace
+
+std::unique_ptr<Actuator> make_modal_drive(const records::ActuatorRecord&, SettingsReader& keys,
+                                           const ActuatorPlace& place) {
+  auto made = std::make_unique<ModalDrive>();
+  made->row = place.row;
+  made->read_shaping(keys);
+  made->description = "generalized force on the mode";
+  made->dims = "by normalisation";
+  return made;
+}
+
+}  // namespace bough::solver
