@@ -12,7 +12,7 @@ namespace {
 constexpr int kNumLooks = 400;
 
 /// The start, and where a force or a prescribed motion has its extreme value among evenly spaced times and its jumps.
-std::vector<double> list_times(const System::Impl& impl, double start, double end) {
+std::vector<double> list_times(const System::Impl& impl, const FunctionCopies& functions, double start, double end) {
   std::vector<double> looks, times = {start};
   for (int i = 0; i <= kNumLooks; ++i) looks.push_back(start + (end - start) * i / kNumLooks);
   for (const auto* list : {&impl.breakpoints, &impl.landmarks})
@@ -25,12 +25,12 @@ std::vector<double> list_times(const System::Impl& impl, double start, double en
     if (calc(*most) != calc(start)) times.push_back(*most);
   };
   for (const AppliedForce& force : impl.forces)
-    if (force.function != nullptr) add_extremes([&](double t) { return force.function->calc(t).f; });
+    if (force.function != nullptr) add_extremes([&](double t) { return functions[*force.function].calc(t).f; });
   for (const TreeBody& tb : impl.tree.bodies)
     for (const TimeFunction* motion : tb.motion) {
       if (motion == nullptr || impl.loops.size() > 0) continue;
-      add_extremes([&](double t) { return motion->calc(t).f_dot; });
-      add_extremes([&](double t) { return motion->calc(t).f_ddot; });
+      add_extremes([&](double t) { return functions[*motion].calc(t).f_dot; });
+      add_extremes([&](double t) { return functions[*motion].calc(t).f_ddot; });
     }
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
@@ -58,7 +58,7 @@ void warn_of_unstiffened_loads(const System& system, double start, double end, c
   std::vector<Worst> worst(impl.left_out.size());
   const auto data = system.make_data();
   VectorXd q = VectorXd::Zero(system.num_q()), u = VectorXd::Zero(system.num_u()), u_dot = u;
-  for (const double t : list_times(impl, start, end)) {
+  for (const double t : list_times(impl, data->tree.functions, start, end)) {
     try {
       system.calc_initial_state(q, u);
       calc_kinematics(system, *data, t, q, u);

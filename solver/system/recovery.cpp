@@ -87,7 +87,7 @@ void Recovery::calc(const System& system, const SystemData& data, int first, int
   }
   for (const auto& pattern : patterns_) {
     const auto* f = pattern.force->function;
-    rows += (f ? f->calc(data.tree.t).f : 1.0) * pattern.rows.segment(first, count);
+    rows += (f ? data.tree.functions[*f].calc(data.tree.t).f : 1.0) * pattern.rows.segment(first, count);
   }
 }
 
