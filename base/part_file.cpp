@@ -156,7 +156,14 @@ void PartFile::start_sync() {
 #endif
 }
 
-bool PartFile::commit(bool always_syncs) {
+bool PartFile::commit() {
+  if (!publish()) return false;
+  ::close(descriptor_);
+  descriptor_ = -1;
+  return true;
+}
+
+bool PartFile::publish() {
   if (error_) return false;
   // A run fills the file of that name: it would go on filling one that nobody sees.
   if (is_file_locked(target_)) {
@@ -165,24 +172,35 @@ bool PartFile::commit(bool always_syncs) {
   }
   errno = 0;
   struct stat old {};
-  const bool replaces = ::stat(target_.c_str(), &old) == 0;
-  if (replaces && ::fchmod(descriptor_, old.st_mode & 07777) != 0) return fail();
-  if ((always_syncs || replaces) && ::fsync(descriptor_) != 0 && errno != EINVAL) return fail();
+  if (::stat(target_.c_str(), &old) == 0 && ::fchmod(descriptor_, old.st_mode & 07777) != 0) return fail();
+  errno = 0;
+  if (::fsync(descriptor_) != 0 && errno != EINVAL) return fail();
   if (::rename(name_.c_str(), target_.c_str()) != 0) return fail();
+  is_published_ = true;
   drop_part(slot_);
   slot_ = -1;
-  ::close(descriptor_);
-  descriptor_ = -1;
-  return true;
+  return sync_folder(target_) || fail();
 }
 
 void PartFile::abandon() {
   if (descriptor_ < 0) return;
-  ::unlink(name_.c_str());
+  if (!is_published_) ::unlink(name_.c_str());
   drop_part(slot_);
   slot_ = -1;
   ::close(descriptor_);
   descriptor_ = -1;
+}
+
+bool sync_folder(const std::string& path) {
+  const auto folder = fs::path(path).parent_path();
+  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  // A folder may be writable without being readable.
+  if (descriptor < 0) return true;
+  const bool is_synced = ::fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS || errno == ENOTSUP;
+  const int cause = errno;
+  ::close(descriptor);
+  errno = cause;
+  return is_synced;
 }
 
 void remove_parts() noexcept {

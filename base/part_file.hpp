@@ -30,9 +30,11 @@ class PartFile {
   bool write(const char* data, std::size_t size);
   /// Asks for the bytes so far to go to the disk while the caller goes on: commit() waits for less.
   void start_sync();
-  /// Bytes to the disk, then the name: the file appears now, with the permissions of the old one. False, with error(),
-  /// and then the old one is untouched. A file that replaces none need not be on the disk when it appears.
-  bool commit(bool always_syncs = true);
+  /// Syncs the bytes, renames the file and syncs its folder: the file appears now, with the permissions of the old one,
+  /// and survives a power cut. False, with error(), and then the old one is untouched.
+  bool commit();
+  /// As commit(), but the file stays open and locked.
+  bool publish();
   /// Closes and removes.
   void abandon();
 
@@ -40,8 +42,13 @@ class PartFile {
   bool fail();
   std::string name_, target_;
   int descriptor_ = -1, slot_ = -1;
+  bool is_published_ = false;
   std::error_code error_;
 };
+
+/// Syncs the folder of a file: its name survives a power cut. False, with errno; true where the file system syncs no
+/// folders.
+bool sync_folder(const std::string& path);
 
 /// Removes every part that this process has open. Async-signal-safe.
 void remove_parts() noexcept;

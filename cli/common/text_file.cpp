@@ -12,7 +12,7 @@ namespace bough::cli {
 
 void write_text_file(const std::string& path, const std::string& text) {
   PartFile part(path);
-  if (part.write(text.data(), text.size()) && part.commit(false)) return;
+  if (part.write(text.data(), text.size()) && part.commit()) return;
   throw ComputationError("cli.write", {path}, "the file could not be written: " + part.error().message(),
                          "check the folder, its permissions and the space left");
 }
