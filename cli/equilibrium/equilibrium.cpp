@@ -38,6 +38,7 @@ void write_equilibrium(const LoadedSystem& loaded, solver::Plant& plant, const s
   records::ResultsHeader header;
   header.system_text = loaded.spec.text;
   header.channels = recorder.channels();
+  header.max_samples = 1;
   header.settings = {{"equilibrium_residual", fmt::format("{:.17g}", found.residual)}};
   const auto writer = hdf5::make_results_writer(path);
   ProvenanceSink sink(*writer, calc_sources(sources));

@@ -1,9 +1,11 @@
 #pragma once
 /// \file Bough's HDF5 files (docs/formats): flexible body, modes, results. Written beside and renamed: whole or not at
 /// all (results: readable while they grow, finished or not).
+#include <chrono>
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "formats/records/flex_body.hpp"
@@ -44,11 +46,18 @@ class StaticWriter {
 records::StaticResult read_static(const std::string& path);
 void write_matrices(const records::MatricesResult& result, const std::string& path);
 
-/// A sink that writes path as it goes. `flush_every` samples between flushes. When appending (resume) the file must
-/// exist and end at or after `resume_time`; samples after it are cut.
-std::unique_ptr<records::ResultSink> make_results_writer(const std::string& path, int flush_every = 100);
+struct ResultsWriterOptions {
+  int flush_every = 100;  ///< samples after which it is looked whether a commit is due, where commit_every is zero
+  /// Between commits: samples are in the file for good, and are counted, from the next commit on.
+  std::chrono::milliseconds commit_every{1000};
+};
+/// A sink that writes `path` as it goes (docs/formats/results.md): the file is whole at every instant.
+std::unique_ptr<records::ResultSink> make_results_writer(const std::string& path,
+                                                         const ResultsWriterOptions& options = {});
+/// A sink that continues the file from its checkpoint at `resume_time`. The file is replaced, by one with the samples
+/// and events up to the checkpoint and new ones, when this has as many samples.
 std::unique_ptr<records::ResultSink> make_results_appender(const std::string& path, double resume_time,
-                                                           int flush_every = 100);
+                                                           const ResultsWriterOptions& options = {});
 
 /// A results file read back.
 struct ResultsFile {
@@ -70,7 +79,11 @@ struct RunInputs {
   std::string reason;
 };
 RunInputs read_run_inputs(const std::string& path);
+/// Of a results file alone: time, text and source.
+std::vector<records::EventRecord> read_events(const std::string& path);
 records::Checkpoint read_checkpoint(const std::string& path);
+/// Nothing where the run has come to none yet.
+std::optional<records::Checkpoint> find_checkpoint(const std::string& path);
 
 /// How far the run of a results file came, without its samples.
 struct RunState {

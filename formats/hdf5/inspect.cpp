@@ -15,7 +15,7 @@ namespace {
 
 constexpr char kBetween = '\x1f', kEnd = '\x1e';
 /// Seconds of computing that a file may take, and those it may take more for each of its bytes.
-constexpr double kSeconds = 5, kSecondsPerByte = 1e-7;
+constexpr double kSeconds = 5, kSecondsPerByte = 1e-6;
 
 /// Which state of a file was looked at.
 using Stamp = std::array<long long, 5>;

@@ -9,6 +9,7 @@
 #include "base/version.hpp"
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/results_layout.hpp"
+#include "formats/hdf5/detail/results_reader.hpp"
 #include "formats/hdf5/files.hpp"
 
 namespace bough::hdf5 {
@@ -38,18 +39,6 @@ int get_rank(const FileReader& file, const std::string& path) {
   return H5Sget_simple_extent_ndims(space.get());
 }
 
-/// NaN where it is not given.
-double read_energy_error(FileReader& file) {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  if (!file.has("/energy")) return value;
-  const Handle group(H5Oopen(file.get(), "/energy", H5P_DEFAULT), H5Oclose);
-  if (H5Aexists(group.get(), kEnergyError) <= 0) return value;
-  const Handle attribute(H5Aopen(group.get(), kEnergyError, H5P_DEFAULT), H5Aclose);
-  const Handle space(H5Aget_space(attribute.get()), H5Sclose);
-  if (H5Sget_simple_extent_npoints(space.get()) == 1) H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value);
-  return value;
-}
-
 ResultsFile read_once(const std::string& path) {
   FileReader file(path, kResultsFormat, kResultsFormatVersion);
   ResultsFile results;
@@ -77,12 +66,7 @@ ResultsFile read_once(const std::string& path) {
   }
   results.time.conservativeResize(rows);
   for (auto& [unused, values] : results.channels) values.conservativeResize(rows, Eigen::NoChange);
-  if (file.has("/events/time") && file.has("/events/what")) {
-    const Eigen::VectorXd times = file.read_vector("/events/time", -1, true);
-    const std::vector<std::string> what = file.read_strings("/events/what", -1);
-    const auto count = std::min(static_cast<std::size_t>(times.size()), what.size());
-    for (std::size_t i = 0; i < count; ++i) results.events.push_back({times[static_cast<Eigen::Index>(i)], what[i]});
-  }
+  results.events = read_events(file);
   file.throw_if_errors();
   return results;
 }
@@ -140,6 +124,33 @@ auto read_patiently(const std::string& path, const Read& read) {
 
 }  // namespace
 
+std::vector<records::EventRecord> read_events(FileReader& file) {
+  std::vector<records::EventRecord> events;
+  if (!file.has("/events/time") || !file.has("/events/what")) return events;
+  const Eigen::VectorXd times = file.read_vector("/events/time", -1, true);
+  const auto what = file.read_strings("/events/what", -1);
+  const auto source = file.has("/events/source") ? file.read_strings("/events/source", -1) : std::vector<std::string>();
+  const auto count = std::min(static_cast<std::size_t>(times.size()), what.size());
+  for (std::size_t i = 0; i < count; ++i)
+    events.push_back({times[static_cast<Eigen::Index>(i)], what[i], i < source.size() ? source[i] : std::string()});
+  return events;
+}
+
+double read_real_attribute(hid_t object, const char* name, double otherwise) {
+  if (H5Aexists(object, name) <= 0) return otherwise;
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+  double value = otherwise;
+  if (H5Sget_simple_extent_npoints(space.get()) == 1) H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value);
+  return value;
+}
+
+double read_energy_error(FileReader& file) {
+  if (!file.has("/energy")) return std::numeric_limits<double>::quiet_NaN();
+  const Handle group(H5Oopen(file.get(), "/energy", H5P_DEFAULT), H5Oclose);
+  return read_real_attribute(group.get(), kEnergyError, std::numeric_limits<double>::quiet_NaN());
+}
+
 ResultsFile read_results(const std::string& path) {
   return read_patiently(path, [&] { return read_once(path); });
 }
@@ -169,15 +180,27 @@ RunState read_run_state(const std::string& path) {
   });
 }
 
-records::Checkpoint read_checkpoint(const std::string& path) {
+std::vector<records::EventRecord> read_events(const std::string& path) {
+  return read_patiently(path, [&] {
+    FileReader file(path, kResultsFormat, kResultsFormatVersion);
+    auto events = read_events(file);
+    file.throw_if_errors();
+    return events;
+  });
+}
+
+std::optional<records::Checkpoint> find_checkpoint(const std::string& path) {
   FileReader file(path, kResultsFormat, kResultsFormatVersion);
   records::Checkpoint checkpoint;
   if (read_checkpoint_from(file, "/checkpoint", checkpoint)) return checkpoint;
-  if (read_checkpoint_from(file, "/checkpoint/previous", checkpoint)) return checkpoint;
-  if (!file.has("/checkpoint/state")) {
-    throw InputError("hdf5.missing", {path}, "/checkpoint is empty", "start the run again");
-  }
-  throw InputError("hdf5.damaged", {path}, "/checkpoint was cut while it was written", "start the run again");
+  if (read_checkpoint_from(file, "/checkpoint/previous", checkpoint)) return checkpoint;  // of version 0.2 and before
+  if (!file.has("/checkpoint/state")) return {};
+  throw InputError("hdf5.damaged", {path}, "/checkpoint is damaged", "start the run again");
+}
+
+records::Checkpoint read_checkpoint(const std::string& path) {
+  if (auto found = find_checkpoint(path)) return *found;
+  throw InputError("hdf5.missing", {path}, "/checkpoint is empty", "start the run again");
 }
 
 }  // namespace bough::hdf5

@@ -20,11 +20,13 @@ struct ResultsHeader {
   std::vector<std::pair<std::string, std::string>> source;    ///< (file name, SHA-256)
   std::vector<std::pair<std::string, std::string>> settings;  ///< effective values, as text
   std::vector<Channel> channels;                              ///< "/time" first
+  long max_samples = 0;                                       ///< upper bound of their number; 0: not known
 };
 
 struct EventRecord {
   double time = 0;
   std::string what;
+  std::string source{};  ///< what it happened to, kind and name: "event low", "hinge pivot"; empty: the run
 };
 
 struct Checkpoint {

@@ -35,11 +35,20 @@ std::string text_of(double value) {
   return text.str();
 }
 
-records::ResultsHeader make_header(const records::SystemSpec& spec, const RunSetup& setup) {
+/// Upper bound of the samples written: the chosen ones within the window, the end, and where an event ends the run.
+long calc_max_samples(const records::SimulationRecord& s, const RunPlan& plan, long num_outputs) {
+  const double first = std::max(plan.start, s.output_from), last = std::min(plan.end, s.output_until);
+  const double window = std::max(0.0, last - first) / plan.output_step / s.output_every;
+  const double all = std::ceil(static_cast<double>(num_outputs - 1) / s.output_every) + 1;
+  return static_cast<long>(std::min(all, std::floor(window + 1e-6) + 3));
+}
+
+records::ResultsHeader make_header(const records::SystemSpec& spec, const RunSetup& setup, long num_outputs) {
   const auto& s = spec.simulation;
   records::ResultsHeader header;
   header.system_text = spec.text;
   header.channels = setup.recorder.chosen_channels();
+  header.max_samples = calc_max_samples(s, setup.plan, num_outputs);
   header.settings = {{"integrator", setup.integrator},
                      {"start", text_of(s.start)},
                      {"duration", text_of(s.duration)},
@@ -236,7 +245,7 @@ double Run::begin() {
   y_ = ode_.make_initial_state();
   double t = timeline_.start();
   if (options_.resume) check_resume();
-  sink_.begin(make_header(spec_, setup_));
+  sink_.begin(make_header(spec_, setup_, timeline_.num_outputs()));
   // "start": what controllers start from, of a state that was found; the run begins there as any.
   const bool goes_on = options_.resume && !options_.resume->find("start");
   if (options_.resume && !goes_on) {
@@ -367,7 +376,7 @@ void Run::watch_axes(double t) {
     if (find_nearest_axes(tree[b], ode_.data().tree[b]).sine > kNearLock) continue;
     const std::string what = describe_gimbal_lock(tree[b], ode_.data().tree[b], kNearLock) + " at t = " + short_text(t);
     gimbals_.erase(gimbals_.begin() + static_cast<std::ptrdiff_t>(i--));
-    sink_.write_event({t, what});
+    sink_.write_event({t, what, "hinge " + ode_.system().hinge_name(b)});
     diagnostics_.warning("run.gimbal-lock", tree[b].hinge_at, what, kGimbalAdvice);
   }
 }

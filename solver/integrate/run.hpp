@@ -124,6 +124,9 @@ class Run {
   std::optional<Firing> fire(std::vector<Firing> firings);
   /// What an event does to hinges and constraints.
   void change(const Firing& firing);
+  void write_event(const Firing& firing);
+  /// Of a line of /events.
+  std::string get_source(const Firing& firing) const;
   /// The end that an event brings: a last sample at its time.
   SimulateOutcome finish(const Firing& firing);
 

@@ -31,7 +31,7 @@ std::optional<Firing> Run::find_firing(const Stop& stop, double to) {
   std::stable_sort(firings.begin(), firings.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
   for (auto f = firings.begin(); f != firings.end(); ++f) {
     if (setup_.triggers.get(f->trigger).action == records::EventAction::Log) {
-      sink_.write_event({f->time, setup_.triggers.describe(f->trigger)});
+      write_event(*f);
       continue;
     }
     const Firing turn = *f;
@@ -72,7 +72,7 @@ std::optional<Firing> Run::fire(std::vector<Firing> firings) {
   for (int round = 0; !firings.empty(); ++round) {
     bool changes = false;
     for (const Firing& f : firings) {
-      sink_.write_event({f.time, setup_.triggers.describe(f.trigger)});
+      write_event(f);
       if (setup_.triggers.get(f.trigger).action == records::EventAction::Stop) return f;
       if (setup_.triggers.get(f.trigger).action == records::EventAction::Log) continue;
       change(f);
@@ -87,14 +87,22 @@ std::optional<Firing> Run::fire(std::vector<Firing> firings) {
   return {};
 }
 
+std::string Run::get_source(const Firing& firing) const { return "event " + setup_.triggers.get(firing.trigger).name; }
+
+void Run::write_event(const Firing& firing) {
+  sink_.write_event({firing.time, setup_.triggers.describe(firing.trigger), get_source(firing)});
+}
+
 void Run::change(const Firing& firing) {
   guard([&] {
     ode_.project(firing.time, y_);
     const Discrete before = get_discrete(ode_.data());
     const Discrete next = setup_.changes.apply(firing.trigger, ode_, firing.time, y_);
-    sink_.write_event(
-        {firing.time, setup_.changes.describe(firing.trigger) + (is_same(next, before) ? ": it was so already" : "")});
-    for (const auto& what : ode_.change(firing.time, next, y_)) sink_.write_event({firing.time, what});
+    sink_.write_event({firing.time,
+                       setup_.changes.describe(firing.trigger) + (is_same(next, before) ? ": it was so already" : ""),
+                       get_source(firing)});
+    for (const auto& what : ode_.change(firing.time, next, y_))
+      sink_.write_event({firing.time, what, get_source(firing)});
     latches_.demand_inside(ode_, firing.time, 4 * timeline_.resolution(), y_);
   });
   const bool is_quick = firing.time - changed_ < kQuick * (timeline_.end() - timeline_.start());

@@ -1,5 +1,9 @@
 #pragma once
-/// \file A disk that fills up: this program's own pwrite refuses to write past a place in any file on disk.
+/// \file This program's own calls to the system that write files: refused past a place, or logged.
+#include <cstdint>
+#include <string>
+#include <vector>
+
 namespace bough::test {
 
 /// While it lives, writes that end past `limit` bytes fail with ENOSPC.
@@ -9,6 +13,26 @@ class FullDisk {
   ~FullDisk();
   FullDisk(const FullDisk&) = delete;
   FullDisk& operator=(const FullDisk&) = delete;
+};
+
+/// One call that changed, or synced, a file or folder.
+struct DiskCall {
+  enum Kind { Write, Truncate, Sync, Rename } kind = Write;
+  std::string path;         ///< at the time of the call; of Rename the new name
+  std::uint64_t place = 0;  ///< of Truncate the size
+  std::string data;
+};
+
+/// While it lives, calls that concern files below `folder` are logged, and syncs do nothing else.
+class DiskLog {
+ public:
+  explicit DiskLog(std::string folder);
+  ~DiskLog();
+  DiskLog(const DiskLog&) = delete;
+  DiskLog& operator=(const DiskLog&) = delete;
+  const std::vector<DiskCall>& calls() const { return calls_; }
+  std::vector<DiskCall> calls_;
+  std::string folder_;
 };
 
 }  // namespace bough::test
