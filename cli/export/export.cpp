@@ -7,6 +7,7 @@
 #include "cli/common/body_files.hpp"
 #include "cli/common/channels.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/event_list.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/vtu_file.hpp"
@@ -70,6 +71,8 @@ std::string make_csv(const ExportOptions& o, Diagnostics& diagnostics) {
       return text.str();
     }
   }
+  if (o.channels == std::vector<std::string>{"events"} || o.channels == std::vector<std::string>{"/events"})
+    return make_events_csv(hdf5::read_results(o.file).events);
   const auto format = o.channels.empty() ? read_file_format(o.file) : "";
   if (format == "bough-linear") return make_linear_csv(hdf5::read_linear_model(o.file));
   if (format == "bough-sweep") return make_sweep_csv(hdf5::read_sweep(o.file));
@@ -197,6 +200,7 @@ void add_export(CLI::App& app, Action& action) {
   verb->footer(
       "Example:\n  bough export spinup.h5 --to csv -o spinup.csv\n"
       "  bough export spinup.h5 --to csv --channel tip_deflection:y --channel /bodies/boom/eta\n"
+      "  bough export spinup.h5 --to csv --channel events\n"
       "  bough export boom-modes.h5 --to vtu -o boom.vtu\n  bough export boom-modes.h5 --to csv --channel modes\n"
       "  bough export spinup.h5 --to pvd --every 10 -o spinup.pvd\n  bough export spinup.h5 --to gltf -o spinup.glb\n"
       "  bough export spinup.h5 --to uff --moving --every 10 -o spinup.uff\n"

@@ -31,6 +31,17 @@ MatValue make_kinds(const std::vector<records::ModeKind>& kinds) {
   return cells;
 }
 
+MatValue make_events(const std::vector<records::EventRecord>& events) {
+  Eigen::VectorXd time(static_cast<Eigen::Index>(events.size()));
+  MatCells what, source;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    time[static_cast<Eigen::Index>(i)] = events[i].time;
+    what.emplace_back(events[i].what);
+    source.emplace_back(events[i].source);
+  }
+  return MatFields{{"time", time}, {"what", what}, {"source", source}};
+}
+
 /// `dims` as in the contract's C order; get(i...) by index in that order.
 template <class Get>
 MatArray make_array(const std::vector<std::size_t>& dims, const Get& get) {
@@ -198,6 +209,7 @@ void export_mat(const std::string& file, const std::string& output, Diagnostics&
     variables.emplace_back("time", results.time);
     for (const auto& [path, values] : results.channels)
       if (path != "/time") put(variables, path.substr(1), values);
+    variables.emplace_back("events", make_events(results.events));
   } else if (format == "bough-linear") {
     const auto model = hdf5::read_linear_model(file);
     variables = make_linear_fields(model);

@@ -4,6 +4,7 @@
 
 #include "cli/common/body_files.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/event_list.hpp"
 #include "cli/common/options.hpp"
 #include "formats/flx/flx_file.hpp"
 #include "formats/hdf5/files.hpp"
@@ -59,6 +60,9 @@ int run_info(const InfoOptions& o) {
   demand_body_file(o.file);
   if (!o.output.empty()) check_output(o, o.output, {get_body_path(o.file)});
   const auto info = is_flx(o.file) ? read_flx_info(o.file) : hdf5::read_info(o.file);
+  const auto format = info.attributes.find("format");
+  std::vector<records::EventRecord> events;
+  if (format != info.attributes.end() && format->second == "bough-results") events = hdf5::read_events(o.file);
   if (o.json) {
     auto objects = nlohmann::json::array();
     for (const auto& object : info.objects) {
@@ -68,7 +72,11 @@ int run_info(const InfoOptions& o) {
                          {"description", object.description},
                          {"dims", object.dims}});
     }
-    put_out(o, console, nlohmann::json{{"attributes", info.attributes}, {"objects", objects}}.dump(2) + "\n");
+    auto list = nlohmann::json::array();
+    for (const auto& e : events) list.push_back({{"time", e.time}, {"what", e.what}, {"source", e.source}});
+    nlohmann::json all{{"attributes", info.attributes}, {"objects", objects}};
+    if (!list.empty()) all["events"] = list;
+    put_out(o, console, all.dump(2) + "\n");
     return kSuccess;
   }
   const std::size_t width = get_terminal_width();
@@ -90,6 +98,7 @@ int run_info(const InfoOptions& o) {
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
   }
+  if (!events.empty()) text += "\n" + format_events(events);
   put_out(o, console, text);
   return kSuccess;
 }

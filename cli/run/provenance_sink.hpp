@@ -21,7 +21,10 @@ class ProvenanceSink final : public records::ResultSink {
     inner_.begin(with_source);
   }
   void write_sample(const Eigen::Ref<const Eigen::VectorXd>& sample) override { inner_.write_sample(sample); }
-  void write_event(const records::EventRecord& event) override { inner_.write_event(event); }
+  void write_event(const records::EventRecord& event) override {
+    events_.push_back(event);
+    inner_.write_event(event);
+  }
   void write_checkpoint(const records::Checkpoint& checkpoint) override { inner_.write_checkpoint(checkpoint); }
   void write_energy_error(double worst) override { inner_.write_energy_error(worst); }
   void end(bool completed, const std::string& reason) override { end_.emplace(completed, reason); }
@@ -30,9 +33,12 @@ class ProvenanceSink final : public records::ResultSink {
     if (end_) inner_.end(end_->first, end_->second);
     end_.reset();
   }
+  /// Written so far.
+  const std::vector<records::EventRecord>& events() const { return events_; }
 
  private:
   records::ResultSink& inner_;
+  std::vector<records::EventRecord> events_;
   std::vector<std::pair<std::string, std::string>> source_;
   std::optional<std::pair<bool, std::string>> end_;
 };

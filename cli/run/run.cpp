@@ -10,8 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/file_roles.hpp"
 #include "base/part_file.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/event_list.hpp"
 #include "cli/common/interrupt.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/start_state.hpp"
@@ -120,9 +122,16 @@ class ProgressLine {
   Clock::time_point begin_, shown_;
 };
 
-/// `resumed`: the time at which it went on; none: from the start.
+nlohmann::json make_events_json(const std::vector<records::EventRecord>& events) {
+  auto list = nlohmann::json::array();
+  for (const auto& e : events) list.push_back({{"time", e.time}, {"what", e.what}, {"source", e.source}});
+  return list;
+}
+
+/// `resumed`: the time at which it went on; none: from the start. `events`: of this part of the run.
 int report(const RunOptions& o, const Console& console, const solver::SimulateOutcome& outcome,
-           const std::string& output, double seconds, const std::optional<double>& resumed) {
+           const std::string& output, double seconds, const std::optional<double>& resumed,
+           const std::vector<records::EventRecord>& events) {
   const auto& last = outcome.last;
   if (o.json) {
     console.print_data(nlohmann::json{{"resumed_from", resumed ? nlohmann::json(*resumed) : nlohmann::json()},
@@ -134,10 +143,12 @@ int report(const RunOptions& o, const Console& console, const solver::SimulateOu
                                       {"rejected", last.num_rejected},
                                       {"evaluations", last.num_evaluations},
                                       {"energy_error", outcome.energy_error},
+                                      {"events", make_events_json(events)},
                                       {"seconds", seconds}}
                            .dump(2) +
                        "\n");
   } else {
+    console.print(format_events(events));
     console.print(fmt::format(
         "{}{} at t = {:g} after {} steps ({} rejected, {} evaluations), worst energy error {:.1e}, {:.2f} s\nwritten: "
         "{}\n",
@@ -173,16 +184,19 @@ int run_run(const RunOptions& o) {
     if (is_file_locked(output))  // before it is read: it changes all the time
       throw InputError("hdf5.busy", {output}, "another process writes this file",
                        "wait until it ends, or choose another");
+    FileRoles::allow_both(output);
     const auto is_completed = check_resume(console, output, o.file, loaded.spec, sources);
     if (!is_completed) return kSuccess;
-    options.resume = hdf5::read_checkpoint(output);
+    options.resume = hdf5::find_checkpoint(output);
     const double end = loaded.spec.simulation.start + loaded.spec.simulation.duration;
-    if (*is_completed && options.resume->time >= end * (1 - 1e-12)) {
+    if (*is_completed && options.resume && options.resume->time >= end * (1 - 1e-12)) {
       console.print(fmt::format("{} is complete already\n", output));
       return kSuccess;
     }
+  }
+  if (options.resume) {
     writer = hdf5::make_results_appender(output, options.resume->time);
-  } else {
+  } else {  // also where a run was killed before its first checkpoint: there is nothing to keep
     check_output(o, output);
     options.resume = find_start_control(o.start_from, loaded.system, loaded.spec.simulation.start, diagnostics);
     writer = hdf5::make_results_writer(output);
@@ -219,7 +233,7 @@ int run_run(const RunOptions& o) {
   }
   std::optional<double> resumed;
   if (options.resume) resumed = options.resume->time;
-  return report(o, console, outcome, output, progress.get_seconds(), resumed);
+  return report(o, console, outcome, output, progress.get_seconds(), resumed, sink.events());
 }
 
 }  // namespace

@@ -1,10 +1,13 @@
 """Runs from outside: what check foresees, what a resume accepts, how energy, events and samples are told."""
+import csv
+import io
 import json
 import os
 import unittest
 
 import h5py
 import numpy as np
+import scipy.io
 
 from support import ProgramTest
 
@@ -237,6 +240,54 @@ direction = "falling"
             what = [x.decode() for x in f["events/what"][:]]
             self.assertEqual(what, ["event 'half': /hinges/pin/q falls through 0.5", "event 'lowest': angle falls through 0"])
         self.assertIn("complete already: stopped by event", self.bough("run", "p.toml", "--resume").stdout)
+
+    def test_events_are_printed_listed_and_exported(self):
+        """The time of the first crossing of zero is known: a quarter of the period in samples of the run itself."""
+        self.write("p.toml", PENDULUM.replace("[simulation]", """[[event]]
+name = "low, \\"first\\""
+signal = "angle"
+value = 0.0
+direction = "falling"
+[simulation]"""))
+        line = "event 'low, \"first\"': angle falls through 0"
+        said = self.bough("run", "p.toml").stdout
+        with h5py.File(self.path("p.h5")) as f:
+            times, what, source = (f["events/" + name][:] for name in ("time", "what", "source"))
+            angle, t = f["sensors/angle"][:], f["time"][:]
+        at = next(i for i in range(1, len(t)) if angle[i - 1] > 0 >= angle[i])
+        self.assertTrue(t[at - 1] <= times[0] <= t[at])
+        self.assertEqual([x.decode() for x in what], [line] * len(times))
+        self.assertEqual([x.decode() for x in source], ['event low, "first"'] * len(times))
+        self.assertEqual(said.count(line), len(times))
+        self.assertIn(f"t = {times[0]:<12.9g} {line}", said)
+        self.assertIn(f"t = {times[0]:<12.9g} {line}", self.bough("info", "p.h5").stdout)
+        listed = json.loads(self.bough("info", "p.h5", "--json").stdout)["events"]
+        self.assertEqual([e["time"] for e in listed], list(times))
+        self.assertEqual(json.loads(self.bough("run", "p.toml", "--json").stdout)["events"], listed)
+        for channel in ("events", "/events"):
+            rows = list(csv.DictReader(io.StringIO(
+                self.bough("export", "p.h5", "--to", "csv", "--channel", channel).stdout)))
+            self.assertEqual([(float(r["time"]), r["what"], r["source"]) for r in rows],
+                             [(x, line, 'event low, "first"') for x in times])
+        self.bough("export", "p.h5", "--to", "mat", "-o", "p.mat")
+        events = scipy.io.loadmat(self.path("p.mat"), simplify_cells=True)["events"]
+        np.testing.assert_array_equal(np.atleast_1d(events["time"]), times)
+        self.assertEqual(list(np.atleast_1d(events["what"])), [line] * len(times))
+
+    def test_a_run_that_was_killed_at_once_starts_again(self):
+        self.write("p.toml", PENDULUM)
+        self.bough("run", "p.toml")
+        whole = self.read("p.h5")
+        with h5py.File(self.path("p.h5"), "a") as f:    # as before the first commit
+            f.attrs["completed"], f.attrs["reason"], f.attrs["num_samples"] = 0, "running", 0
+            for name in list(f["checkpoint"]):
+                del f["checkpoint"][name]
+        self.bough("run", "p.toml", "--resume")
+        np.testing.assert_array_equal(self.read("p.h5"), whole)
+
+    def read(self, name):
+        with h5py.File(self.path(name)) as f:
+            return f["sensors/angle"][:]
 
     def test_only_what_is_asked_for_is_written(self):
         self.write("p.toml", PENDULUM.replace("duration = 2.0", 'duration = 2.0\nrecord = ["sensors"]\noutput_every = 5'))
