@@ -33,6 +33,10 @@ class ProvenanceSink final : public records::ResultSink {
     if (end_) inner_.end(end_->first, end_->second);
     end_.reset();
   }
+  /// Passes on the end of a run that failed.
+  void finish_failed() {
+    if (end_ && !end_->first) finish();
+  }
   /// Written so far.
   const std::vector<records::EventRecord>& events() const { return events_; }
 

@@ -219,6 +219,7 @@ int run_run(const RunOptions& o) {
     solver::close_user_blocks(loaded.system);
     sink.finish();
   } catch (...) {
+    sink.finish_failed();
     messages.print_new();
     console.end_progress();
     throw;
