@@ -26,6 +26,8 @@ constexpr double kCertified = 1e-6;
 constexpr Index kMostStates = 300;
 /// Two poles at 1 are found that far from it.
 constexpr double kOnCircle = 1e-7;
+/// A pole with a smaller damping ratio is undamped; L is taken that far from it, relative to its frequency.
+constexpr double kUndamped = 1e-12, kBesidePole = 1e-7;
 
 /// A root of f between a and b, where its signs differ.
 double bisect(const std::function<double(double)>& f, double a, double b) {
@@ -36,6 +38,44 @@ double bisect(const std::function<double(double)>& f, double a, double b) {
     (f(middle) > 0) == is_positive ? a = middle : b = middle;
   }
   return 0.5 * (a + b);
+}
+
+/// A point of the locus L(ω).
+struct LocusPoint {
+  double omega = 0;
+  Complex value;
+  bool is_after_pole = false;  ///< an undamped pole lies between the point before and this one
+};
+
+/// The frequencies of the response; one at an undamped pole becomes two, next to it on both sides.
+///
+/// At the pole L has no value, and in floating point any. On both sides abs(L) tends to infinity, or, if a zero cancels
+/// the pole, to the finite value there.
+std::vector<LocusPoint> collect_locus(const records::LinearModel& loop, const records::FrequencyResponse& response,
+                                      const std::function<Complex(double)>& L) {
+  std::vector<double> undamped;
+  for (Index i = 0; i < loop.poles.size(); ++i)
+    if (loop.poles.imag[i] > 0 && std::abs(loop.poles.real[i]) <= kUndamped * loop.poles.imag[i])
+      undamped.push_back(loop.poles.imag[i]);
+  const double last = kTwoPi * response.frequency_hz[response.frequency_hz.size() - 1];
+  std::vector<LocusPoint> points;
+  for (Index k = 0; k < response.frequency_hz.size(); ++k) {
+    const double omega = kTwoPi * response.frequency_hz[k];
+    const Complex value = response.value[static_cast<std::size_t>(k)](0, 0);
+    const auto is_near = [&](double pole) { return std::abs(pole - omega) <= kBesidePole * omega; };
+    const auto pole = std::find_if(undamped.begin(), undamped.end(), is_near);
+    const bool is_finite = std::isfinite(value.real()) && std::isfinite(value.imag());
+    if (is_finite && pole == undamped.end()) {
+      points.push_back({omega, value, false});
+      continue;
+    }
+    const double at = pole == undamped.end() ? omega : *pole;
+    const double below = at * (1 - 2 * kBesidePole), above = at * (1 + 2 * kBesidePole);
+    // Several frequencies near one pole are one.
+    if (points.empty() || points.back().omega < below) points.push_back({below, L(below), false});
+    if (above <= last && points.back().omega < above) points.push_back({above, L(above), true});
+  }
+  return points;
 }
 
 /// The least f near x between a and b (golden section).
@@ -115,13 +155,17 @@ records::Margins calc_margins(const records::LinearModel& loop, const records::F
   records::Margins m;
   const TransferMatrix transfer(loop.A, loop.B, loop.C, loop.D);
   const auto L = [&](double omega) { return transfer.calc(calc_argument(loop, omega))(0, 0); };
-  const auto count = static_cast<Index>(response.value.size());
-  const auto get = [&](Index k) { return response.value[static_cast<std::size_t>(k)](0, 0); };
+  if (response.value.empty()) return m;
+  const std::vector<LocusPoint> locus = collect_locus(loop, response, L);
+  const auto count = static_cast<Index>(locus.size());
+  const auto get = [&](Index k) { return locus[static_cast<std::size_t>(k)].value; };
+  const auto get_omega = [&](Index k) { return locus[static_cast<std::size_t>(k)].omega; };
   Index nearest = 0;
   for (Index k = 0; k < count; ++k) {
     if (std::abs(1.0 + get(k)) < std::abs(1.0 + get(nearest))) nearest = k;
     if (k + 1 == count) break;
-    const double a = kTwoPi * response.frequency_hz[k], b = kTwoPi * response.frequency_hz[k + 1];
+    if (locus[static_cast<std::size_t>(k) + 1].is_after_pole) continue;
+    const double a = get_omega(k), b = get_omega(k + 1);
     const Complex here = get(k), next = get(k + 1);
     if ((std::abs(here) > 1) != (std::abs(next) > 1)) {
       const double omega = bisect([&](double w) { return std::abs(L(w)) - 1; }, a, b);
@@ -143,8 +187,7 @@ records::Margins calc_margins(const records::LinearModel& loop, const records::F
   }
   if (count > 0) {
     const Index before = std::max<Index>(0, nearest - 1), after = std::min(count - 1, nearest + 1);
-    const double omega = minimize([&](double w) { return std::abs(1.0 + L(w)); },
-                                  kTwoPi * response.frequency_hz[before], kTwoPi * response.frequency_hz[after]);
+    const double omega = minimize([&](double w) { return std::abs(1.0 + L(w)); }, get_omega(before), get_omega(after));
     m.distance = std::min(std::abs(1.0 + L(omega)), std::abs(1.0 + get(nearest)));
     m.distance_hz = omega / kTwoPi;
   }

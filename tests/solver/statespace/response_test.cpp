@@ -123,6 +123,71 @@ TEST(Margins, ADelayOfTheMarginDestabilizes) {
   }
 }
 
+/// |L| of both sides of an undamped pole is infinite: no crossing there, wherever the grid has its points.
+TEST(Margins, AnUndampedPoleIsNoCrossing) {
+  for (const double w : {1.0, 0.37, 6.283185307179586, 1e-3, 4e4}) {
+    // L = 4 (1 + s / 10 w) / (1 + s² / w²): |L| = 1 where 16 (1 + x / 100) = (1 - x)², x = (ω / w)² > 1.
+    const auto m = make_siso({0.4 * w, 4 * w * w}, {1, 0, w * w});
+    const double b = 2 + 0.16, x = (b + std::sqrt(b * b + 4 * 15)) / 2;
+    for (const int points : {1, 10, 300}) {
+      const FrequencyRange range{0, 0, points, 6000};
+      for (const auto& response :
+           {calc_frequency_response(m, range), calc_frequency_response(m, {w / 20 / std::numbers::pi, 0, points, 6000}),
+            calc_frequency_response(m, widen_for_loop(m, range))}) {
+        const auto margins = calc_margins(m, response);
+        ASSERT_EQ(margins.phase.size(), 1u) << w << " " << points;
+        EXPECT_NEAR(margins.phase[0].frequency_hz * 2 * std::numbers::pi, w * std::sqrt(x), 1e-10 * w);
+        EXPECT_TRUE(margins.gain.empty());
+      }
+    }
+  }
+}
+
+TEST(Margins, OfAnUndampedPoleBelowOneAreItsTwoCrossings) {
+  // L = 0.5 (1 + 0.01 s) / (1 + s²): |L| = 1 on both sides of the pole at 1.
+  const auto m = make_siso({0.005, 0.5}, {1, 0, 1});
+  const auto margins = calc_margins(m, calc_frequency_response(m));
+  ASSERT_EQ(margins.phase.size(), 2u);
+  for (const auto& c : margins.phase) {
+    const double x = std::pow(c.frequency_hz * 2 * std::numbers::pi, 2);
+    EXPECT_NEAR(0.25 * (1 + 1e-4 * x), (1 - x) * (1 - x), 1e-11);
+  }
+}
+
+TEST(Margins, AnUndampedPoleThatAZeroCancelsIsNone) {
+  // (s² + 1) / ((s² + 1) (s² + 0.2 s + 9)) times 4 and 16: |L(i)| is 0.5 and 2.
+  for (const double k : {4.0, 16.0}) {
+    const auto m = make_siso({0, k, 0, k}, {1, 0.2, 10, 0.2, 9});
+    const auto plain = make_siso({0, k}, {1, 0.2, 9});
+    const auto margins = calc_margins(m, calc_frequency_response(m));
+    const auto expected = calc_margins(plain, calc_frequency_response(plain));
+    ASSERT_EQ(margins.phase.size(), expected.phase.size()) << k;
+    for (std::size_t i = 0; i < expected.phase.size(); ++i)
+      EXPECT_NEAR(margins.phase[i].frequency_hz, expected.phase[i].frequency_hz, 1e-8);
+    EXPECT_EQ(margins.gain.size(), expected.gain.size());
+  }
+}
+
+TEST(Margins, OfASampledLoopWithAnUndampedPole) {
+  // x⁺ = turn by w T: poles exp(± i w T). y = what is 4 / (z² - 2 c z + 1) times (z - 0.5).
+  const double T = 0.1, w = 7, c = std::cos(w * T);
+  auto m = make_siso({4, -2}, {1, -2 * c, 1});
+  m.sample_time = T;
+  m.poles.real.setZero(2);
+  m.poles.imag.resize(2);
+  m.poles.imag << w, -w;
+  m.poles.frequency_hz = VectorXd::Constant(2, w / 2 / std::numbers::pi);
+  m.poles.damping.setZero(2);
+  const auto margins = calc_margins(m, calc_frequency_response(m));
+  // |L| decreases through 1 at most once behind the pole.
+  const auto size = [&](double omega) {
+    const auto z = std::polar(1.0, omega * T);
+    return std::abs(4.0 * (z - 0.5) / (z * z - 2 * c * z + 1.0));
+  };
+  EXPECT_GT(size(1), 1);
+  EXPECT_EQ(margins.phase.size(), size(std::numbers::pi / T) < 1 ? 1u : 0u);
+}
+
 TEST(PeakGain, OfASecondOrderSystemIsTheClosedForm) {
   const double zeta = 1e-3;
   const auto m = make_siso({0, 1}, {1, 2 * zeta, 1});
