@@ -34,6 +34,11 @@ SystemPlant::SystemPlant(const std::string& system, const std::string& body, Ope
 
 records::LinearModel SystemPlant::linearize(const LoadedSystem& loaded, Diagnostics& diagnostics) const {
   auto plant = make_plant(loaded, choice_.open);
+  if (const auto sampled = plant.list_sampled(); !choice_.open && !sampled.empty())
+    throw InputError("select.sampled", {file_},
+                     "the loops are sampled (" + sampled.front() +
+                         "), and costs are of continuous models: the modes would be ranked with these loops open",
+                     "replace the sampled blocks by continuous ones, or rank without controllers (--open)");
   auto point = choice_.at ? run_to(loaded, plant, *choice_.at, diagnostics) : plant.make_initial_point();
   if (choice_.equilibrium) point = find_rest(plant, std::move(point), file_);
   plant.hold_commands(point);

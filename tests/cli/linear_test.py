@@ -550,6 +550,13 @@ class Select(LinearTest):
         with open(self.path("hub.toml"), "a") as f:
             f.write('[[sensor]]\nname = "felt"\ntype = "acceleration"\nbody = "boom"\nnode = 41\n')
         self.assertIn("select.feedthrough", self.bough("select", "boom.h5", "hub.toml").stderr)
+        # A sampled rate loop: held between samples it would be ranked open.
+        with open(self.path("hub.toml"), "a") as f:
+            f.write('[[sensor]]\nname = "gyro"\ntype = "hinge_rate"\nhinge = "spin"\n[[controller]]\nname = "law"\n'
+                    'type = "gain"\ninputs = ["gyro"]\ngain = -0.1\nsample_time = 0.01\n[[actuator]]\nname = "motor"\n'
+                    'type = "hinge"\nhinge = "spin"\ninput = "law"\n')
+        self.fails(1, "select", "boom.h5", "hub.toml", says=["(law)"], error="select.sampled")
+        self.bough("select", "boom.h5", "hub.toml", "--open")
         self.write("alone.toml", '[[body]]\nname = "boom"\nfile = "other.h5"\n[[hinge]]\nname = "clamp"\n'
                    'type = "fixed"\nchild = "boom"\n[simulation]\nduration = 1.0\n')
         os.rename(self.path("boom.h5"), self.path("other.h5"))
