@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -34,6 +35,8 @@ struct ResponseOptions : CommonOptions {
 };
 
 constexpr std::size_t kMostRows = 24;
+/// Models with a larger error are reported, as by linearize.
+constexpr double kMaxUncertainty = 1e-4;
 
 double to_decibel(double gain) { return 20 * std::log10(gain); }
 double to_degrees(double angle) { return angle * 180 / std::numbers::pi; }
@@ -139,6 +142,13 @@ int run_response(const ResponseOptions& o) {
                      "give --to above --from");
   auto model = hdf5::read_linear_model(o.file);
   model = choose_channels(std::move(model), o.inputs, o.outputs, o.file);
+  Diagnostics diagnostics;
+  if (const double worst = std::max(model.error, model.difference); worst > kMaxUncertainty)
+    diagnostics.warning("linear.inaccurate", {o.file},
+                        fmt::format("the linear model is known to {:.3g} of its rows only, expected below {:g}", worst,
+                                    kMaxUncertainty),
+                        "bough linearize names what makes it uncertain: linearize on one side of it");
+  console.print(diagnostics);
   if (model.inputs.size() == 0 || model.outputs.size() == 0)
     throw InputError("linear.no-channels", {o.file}, "the model has no input or no output",
                      "name some with --inputs and --outputs of bough linearize");

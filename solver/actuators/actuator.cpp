@@ -30,23 +30,26 @@ void Actuator::read_shaping(SettingsReader& keys, int commands) {
   sizes.has_feedthrough = lag_ <= 0;
 }
 
-double Actuator::shape(double command) const {
-  double c = scale_ * command + bias_;
-  c = c > deadband_ ? c - deadband_ : c < -deadband_ ? c + deadband_ : 0;
-  return std::clamp(c, low_, high_);
+double Actuator::shape(const BlockInput& in, int i) const {
+  return evaluate_scalar_law(in.tangents, as_owner(), i, scale_ * in.u[i] + bias_, [this]<class T>(T c) {
+    c = c > T(deadband_) ? c - deadband_ : c < T(-deadband_) ? c + deadband_ : T(0);
+    return std::clamp(c, T(low_), T(high_));
+  });
 }
 
-double Actuator::calc_command(const BlockInput& in, int i) const { return lag_ > 0 ? in.z[i] : shape(in.u[i]); }
+double Actuator::calc_command(const BlockInput& in, int i) const { return lag_ > 0 ? in.z[i] : shape(in, i); }
 
 void Actuator::start(double* z, double*) const { std::fill_n(z, num_lags(), initial_); }
 
 bool Actuator::settle(const BlockInput& in, double* z) const {
-  for (int i = 0; is_steady_ && i < num_lags(); ++i) z[i] = shape(in.u[i]);
+  for (int i = 0; is_steady_ && i < num_lags(); ++i) z[i] = shape(in, i);
   return is_steady_;
 }
 
 void Actuator::calc_rates(const BlockInput& in, double* z_dot) const {
-  for (int i = 0; i < num_lags(); ++i) z_dot[i] = std::clamp((shape(in.u[i]) - in.z[i]) / lag_, -rate_, rate_);
+  for (int i = 0; i < num_lags(); ++i)
+    z_dot[i] = evaluate_scalar_law(in.tangents, as_owner(), sizes.inputs + i, (shape(in, i) - in.z[i]) / lag_,
+                                   [this]<class T>(T rate) { return std::clamp(rate, T(-rate_), T(rate_)); });
 }
 
 namespace {

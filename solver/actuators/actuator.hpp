@@ -23,10 +23,13 @@ class Actuator : public Block {
 
  protected:
   double calc_command(const BlockInput& in, int i = 0) const;
+  /// The first slot of laws (evaluate_law) of a kind of actuator; those before are of the shaping.
+  int law_slot() const { return 2 * sizes.inputs; }
   int num_lags() const { return lag_ > 0 ? sizes.inputs : 0; }
 
  private:
-  double shape(double command) const;
+  /// Of the command i.
+  double shape(const BlockInput& in, int i) const;
   double scale_ = 1, bias_ = 0, deadband_ = 0, low_ = 0, high_ = 0, lag_ = 0, rate_ = 0, initial_ = 0;
   bool is_steady_ = false;
 };

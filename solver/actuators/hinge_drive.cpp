@@ -32,7 +32,15 @@ class Motor final : public HingeDrive {
   void calc_outputs(const BlockInput& in, double* y) const override {
     const double rate = get_rate(in);
     y[1] = (calc_command(in) - back_emf * ratio * rate) / resistance;
-    y[0] = ratio * torque_constant * y[1] - viscous * rate - coulomb * std::tanh(rate / width);
+    y[0] = ratio * torque_constant * y[1] - viscous * rate - calc_coulomb(in, rate);
+  }
+
+ private:
+  double calc_coulomb(const BlockInput& in, double rate) const {
+    return evaluate_scalar_law(in.tangents, as_owner(), law_slot(), rate, [this](auto v) {
+      using std::tanh;
+      return coulomb * tanh(v / width);
+    });
   }
 };
 
@@ -41,7 +49,11 @@ class Brake final : public HingeDrive {
  public:
   double width = 1;
   void calc_outputs(const BlockInput& in, double* y) const override {
-    y[0] = -std::abs(calc_command(in)) * std::tanh(get_rate(in) / width);
+    y[0] = evaluate_law<1, 2>(in.tangents, as_owner(), law_slot(), {calc_command(in), get_rate(in)},
+                              [this](const auto& at) {
+                                using std::abs, std::tanh;
+                                return std::array{-abs(at[0]) * tanh(at[1] / width)};
+                              })[0];
   }
 };
 

@@ -73,9 +73,12 @@ class Wheel final : public Rotor {
  private:
   double get_momentum(const BlockInput& in) const { return in.z[num_lags()]; }
   double calc_torque(const BlockInput& in, double speed) const {
-    const double motor = calc_command(in);
-    if (in.d[0] * motor > 0) return 0;  // held at its limit
-    return motor - viscous * speed - coulomb * std::tanh(speed / width);
+    return evaluate_law<1, 2>(in.tangents, as_owner(), law_slot(), {calc_command(in), speed},
+                              [&]<class T>(const std::array<T, 2>& at) {
+                                using std::tanh;
+                                if (in.d[0] * at[0] > T(0)) return std::array{T(0)};  // held at its limit
+                                return std::array{at[0] - viscous * at[1] - coulomb * tanh(at[1] / width)};
+                              })[0];
   }
 };
 

@@ -23,18 +23,21 @@ class Limit final : public Block {
   VectorXd low, high, band;
   void calc_outputs(const BlockInput& in, double* y) const override {
     for (int i = 0; i < sizes.outputs; ++i) {
-      const double u = in.u[i] > band[i] ? in.u[i] - band[i] : in.u[i] < -band[i] ? in.u[i] + band[i] : 0;
-      y[i] = std::clamp(u, low[i], high[i]);
+      y[i] = evaluate_scalar_law(in.tangents, as_owner(), i, in.u[i], [&]<class T>(T u) {
+        u = u > T(band[i]) ? u - band[i] : u < T(-band[i]) ? u + band[i] : T(0);
+        return std::clamp(u, T(low[i]), T(high[i]));
+      });
     }
   }
 };
 
 /// Linear between the points, the end values outside; share: where in its interval.
-size_t find_interval(const std::vector<double>& x, double at, double& share) {
-  const auto above = std::upper_bound(x.begin(), x.end(), at);
+template <class T>
+size_t find_interval(const std::vector<double>& x, T at, T& share) {
+  const auto above = std::upper_bound(x.begin(), x.end(), at, [](T a, double b) { return a < T(b); });
   const auto i = static_cast<size_t>(
       std::clamp<std::ptrdiff_t>(above - x.begin() - 1, 0, static_cast<std::ptrdiff_t>(x.size()) - 2));
-  share = std::clamp((at - x[i]) / (x[i + 1] - x[i]), 0.0, 1.0);
+  share = std::clamp((at - x[i]) / (x[i + 1] - x[i]), T(0.0), T(1.0));
   return i;
 }
 
@@ -43,9 +46,11 @@ class Table1 final : public Block {
   std::vector<double> x, y;
   void calc_outputs(const BlockInput& in, double* out) const override {
     for (int c = 0; c < sizes.outputs; ++c) {
-      double s = 0;
-      const size_t i = find_interval(x, in.u[c], s);
-      out[c] = y[i] + s * (y[i + 1] - y[i]);
+      out[c] = evaluate_scalar_law(in.tangents, as_owner(), c, in.u[c], [this]<class T>(T u) {
+        T s = 0;
+        const size_t i = find_interval(x, u, s);
+        return y[i] + s * (y[i + 1] - y[i]);
+      });
     }
   }
 };
@@ -55,10 +60,14 @@ class Table2 final : public Block {
   std::vector<double> x1, x2;
   MatrixXd y;  ///< rows: x1
   void calc_outputs(const BlockInput& in, double* out) const override {
-    double r = 0, s = 0;
-    const auto i = static_cast<Eigen::Index>(find_interval(x1, in.u[0], r));
-    const auto j = static_cast<Eigen::Index>(find_interval(x2, in.u[1], s));
-    out[0] = (1 - r) * ((1 - s) * y(i, j) + s * y(i, j + 1)) + r * ((1 - s) * y(i + 1, j) + s * y(i + 1, j + 1));
+    out[0] =
+        evaluate_law<1, 2>(in.tangents, as_owner(), 0, {in.u[0], in.u[1]}, [this]<class T>(const std::array<T, 2>& u) {
+          T r = 0, s = 0;
+          const auto i = static_cast<Eigen::Index>(find_interval(x1, u[0], r));
+          const auto j = static_cast<Eigen::Index>(find_interval(x2, u[1], s));
+          return std::array{(1 - r) * ((1 - s) * y(i, j) + s * y(i, j + 1)) +
+                            r * ((1 - s) * y(i + 1, j) + s * y(i + 1, j + 1))};
+        })[0];
   }
 };
 

@@ -20,6 +20,19 @@ class Expression final : public Block {
   std::shared_ptr<BlockScratch> make_scratch() const override { return std::make_shared<Scratch>(formulas); }
 
   void calc_outputs(const BlockInput& in, double* y) const override {
+    if (in.tangents == nullptr) return calc(in, y);
+    evaluate_black_box(
+        in.tangents, as_owner(), 0, {in.u, in.u + sizes.inputs}, sizes.outputs,
+        [&](const double* u, double* to) {
+          BlockInput at = in;
+          at.u = u;
+          calc(at, to);
+        },
+        y);
+  }
+
+ private:
+  void calc(const BlockInput& in, double* y) const {
     Formulas& own = static_cast<Scratch*>(in.scratch)->formulas;
     for (int i = 0; i < sizes.inputs; ++i) own[i] = in.u[i];
     own[sizes.inputs] = in.t;

@@ -2,6 +2,7 @@
 // loaded.
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -64,22 +65,47 @@ class Library final : public UserBlock {
     if (f_.start != nullptr) call(0, "bough_controller_start", [&] { return f_.start(own.instance, z, d); });
   }
   void calc_outputs(const BlockInput& in, double* y) const override {
-    call(in.t, "bough_controller_outputs", [&] { return f_.outputs(own.instance, in.t, in.u, in.z, in.d, y); });
+    evaluate(in, 0, sizes.outputs, y, [this](const BlockInput& at, double* to) {
+      call(at.t, "bough_controller_outputs", [&] { return f_.outputs(own.instance, at.t, at.u, at.z, at.d, to); });
+    });
   }
   void calc_rates(const BlockInput& in, double* z_dot) const override {
-    call(in.t, "bough_controller_derivatives",
-         [&] { return f_.derivatives(own.instance, in.t, in.u, in.z, in.d, z_dot); });
-    demand_finite(in.t, "derivative", z_dot, sizes.states);
+    evaluate(in, 1, sizes.states, z_dot, [this](const BlockInput& at, double* to) {
+      call(at.t, "bough_controller_derivatives",
+           [&] { return f_.derivatives(own.instance, at.t, at.u, at.z, at.d, to); });
+      demand_finite(at.t, "derivative", to, sizes.states);
+    });
   }
   void update(const BlockInput& in, double* d) const override {
     if (f_.update == nullptr) return;
-    call(in.t, "bough_controller_update", [&] { return f_.update(own.instance, in.t, in.u, in.z, in.d, d); });
-    demand_finite(in.t, "memory", d, sizes.memory);
+    evaluate(in, 2, sizes.memory, d, [this](const BlockInput& at, double* to) {
+      std::copy_n(at.d, sizes.memory, to);
+      call(at.t, "bough_controller_update", [&] { return f_.update(own.instance, at.t, at.u, at.z, at.d, to); });
+      demand_finite(at.t, "memory", to, sizes.memory);
+    });
   }
 
  private:
   std::string describe_mending() const {
     return "mend the " + (f_.language.empty() ? "library" : f_.language + " law");
+  }
+  /// law(in, y), or its tangent by u, z and d.
+  template <class Law>
+  void evaluate(const BlockInput& in, int slot, int num_y, double* y, const Law& law) const {
+    if (in.tangents == nullptr) return law(in, y);
+    std::vector<double> x(in.u, in.u + sizes.inputs);
+    x.insert(x.end(), in.z, in.z + sizes.states);
+    x.insert(x.end(), in.d, in.d + sizes.memory);
+    evaluate_black_box(
+        in.tangents, as_owner(), slot, x, num_y,
+        [&](const double* at, double* to) {
+          BlockInput moved = in;
+          moved.u = at;
+          moved.z = at + sizes.inputs;
+          moved.d = moved.z + sizes.states;
+          law(moved, to);
+        },
+        y);
   }
   template <class Call>
   void call(double t, const char* function, const Call& action) const {

@@ -18,7 +18,7 @@ class Pid final : public Block {
   double setpoint = 0;
 
   void calc_outputs(const BlockInput& in, double* y) const override {
-    for (int i = 0; i < n; ++i) y[i] = std::clamp(calc(in, i), low[i], high[i]);
+    for (int i = 0; i < n; ++i) y[i] = limit(in, i, calc(in, i));
   }
   void calc_rates(const BlockInput& in, double* z_dot) const override {
     for (int i = 0; i < n; ++i) {
@@ -46,10 +46,14 @@ class Pid final : public Block {
  private:
   double error(const BlockInput& in, int i) const { return (has_reference ? in.u[n + i] : setpoint) - in.u[i]; }
   double get_integral(const BlockInput& in, int i) const { return !has_integral() ? 0 : T > 0 ? in.d[i] : in.z[i]; }
+  double limit(const BlockInput& in, int i, double u) const {
+    return evaluate_scalar_law(in.tangents, as_owner(), i, u,
+                               [&]<class T>(T x) { return std::clamp(x, T(low[i]), T(high[i])); });
+  }
   double calc_windup(const BlockInput& in, int i) const {
     if (ki[i] == 0) return 0;
-    const double u = calc(in, i), held = std::clamp(u, low[i], high[i]);
-    return ki[i] * error(in, i) + (u != held ? (held - u) / windup[i] : 0);
+    const double u = calc(in, i), held = limit(in, i, u);
+    return ki[i] * error(in, i) + (held - u) / windup[i];
   }
   double calc_difference(const BlockInput& in, int i) const {
     const double e = error(in, i), before = in.d[F() + 2 * n] > 0 ? in.d[F() + n + i] : e;

@@ -12,33 +12,47 @@ std::vector<ForceChannel> ContactElement::channels() const {
           {"friction", 3, "friction on the first end, in the inertial frame", "F"}};
 }
 
+template <class T>
+std::array<T, 5> ContactElement::calc_forces(const std::array<T, 5>& at) const {
+  using std::pow, std::sqrt;
+  const T gap = law_.is_plane ? at[0] - law_.radius : at[0] - law_.radius - law_.to_radius, rate = at[1];
+  const T depth = std::max(T(0), -gap);
+  const T elastic = law_.stiffness * pow(depth, law_.exponent);
+  const T normal = std::max(T(0.0), elastic * (1 - law_.damping * rate));
+  if (!(law_.friction > 0)) return {elastic, normal, T(0), T(0), T(0)};
+  const T slip = at[2] * at[2] + at[3] * at[3] + at[4] * at[4];
+  const T by = -law_.friction * normal / sqrt(slip + law_.slip_velocity * law_.slip_velocity);
+  return {elastic, normal, by * at[2], by * at[3], by * at[4]};
+}
+
 ForceResult ContactElement::calc(const Tree& tree, const TreeData& data, Loads* loads) const {
   const MarkerInWorld a = calc_marker_in_world(data, tree, from_), b = calc_marker_in_world(data, tree, to_);
   const Vector3d d = a.p - b.p;
   Vector3d n;  // from B to A
-  double gap;
+  double gap, separation;
   if (law_.is_plane) {
     n = b.R * law_.normal;
-    gap = n.dot(d) - law_.radius;
+    separation = n.dot(d);
+    gap = separation - law_.radius;
   } else {
-    const double distance = d.norm();
-    n = distance > 0 ? Vector3d(d / distance) : Vector3d::UnitZ();
-    gap = distance - law_.radius - law_.to_radius;
+    separation = d.norm();
+    n = separation > 0 ? Vector3d(d / separation) : Vector3d::UnitZ();
+    gap = separation - law_.radius - law_.to_radius;
   }
   const Vector3d at = a.p - (law_.radius + gap) * n;  // on the surface of B
   const Vector3d v = a.v + a.w.cross(at - a.p) - b.v - b.w.cross(at - b.p);
   const double rate = n.dot(v);
   ForceResult result;
   result.values = {gap, rate};
-  if (gap >= 0) return result;
+  if (gap >= 0 && data.tangents == nullptr) return result;
 
   const double depth = -gap;
-  const double elastic = law_.stiffness * std::pow(depth, law_.exponent);
-  const double normal = std::max(0.0, elastic * (1 - law_.damping * rate));
   const Vector3d slip = v - rate * n;
-  Vector3d friction = Vector3d::Zero();
-  if (law_.friction > 0)
-    friction = -law_.friction * normal / std::sqrt(slip.squaredNorm() + law_.slip_velocity * law_.slip_velocity) * slip;
+  const auto forces =
+      evaluate_law<5, 5>(data.tangents, {this, "force", name()}, 0, {separation, rate, slip.x(), slip.y(), slip.z()},
+                         [this](const auto& x) { return calc_forces(x); }, {a.p.norm() + b.p.norm(), 0, 0, 0, 0});
+  const double elastic = forces[0], normal = forces[1];
+  const Vector3d friction(forces[2], forces[3], forces[4]);
   if (loads != nullptr) {
     const Vector3d f = normal * n + friction;
     loads->add_wrench(from_, f, (at - a.p).cross(f));

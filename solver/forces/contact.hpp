@@ -28,6 +28,11 @@ class ContactElement final : public ForceElement {
   std::vector<ForceChannel> channels() const override;
 
  private:
+  /// [elastic, normal, friction x, y, z] at [separation, rate, slip x, y, z]; the separation is that of a point and the
+  /// surface, or of two centres.
+  template <class T>
+  std::array<T, 5> calc_forces(const std::array<T, 5>& at) const;
+
   int from_, to_;
   Law law_;
 };

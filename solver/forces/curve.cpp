@@ -45,6 +45,16 @@ Curve::Value Curve::calc(double x) const {
   return value;
 }
 
+double Curve::calc_slope(double x, bool from_below) const {
+  const auto next = from_below ? std::lower_bound(x_.begin(), x_.end(), x) : std::upper_bound(x_.begin(), x_.end(), x);
+  if (next == x_.begin() || next == x_.end()) return 0;
+  const auto i = static_cast<size_t>(next - x_.begin() - 1);
+  const double h = x_[i + 1] - x_[i], s = x - x_[i], chord = (y_[i + 1] - y_[i]) / h;
+  const double c2 = (3 * chord - 2 * slope_left_[i] - slope_right_[i]) / h;
+  const double c3 = (slope_left_[i] + slope_right_[i] - 2 * chord) / (h * h);
+  return slope_left_[i] + s * (2 * c2 + 3 * c3 * s);
+}
+
 Curve::Value Curve::calc_from_start(double x) const {
   if (x <= x_.front()) return {y_.front(), 0, y_.front() * (x - x_.front())};
   if (x >= x_.back()) return {y_.back(), 0, integral_.back() + y_.back() * (x - x_.back())};

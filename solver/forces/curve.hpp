@@ -5,6 +5,7 @@
 
 #include "base/diagnostic.hpp"
 #include "formats/records/system_spec.hpp"
+#include "solver/state/dual.hpp"
 
 namespace bough::solver {
 
@@ -19,8 +20,14 @@ class Curve {
   static std::unique_ptr<const Curve> make(const records::FunctionRecord& record, const SourceLocation& where,
                                            const std::string& user, Diagnostics& diagnostics);
   Value calc(double x) const;
+  /// y with its one-sided slope along x.
+  struct DualValue {
+    Dual y;
+  };
+  DualValue calc(Dual x) const { return {Dual(calc(x.x).y, calc_slope(x.x, x.dx < 0) * x.dx)}; }
 
  private:
+  double calc_slope(double x, bool from_below) const;
   Value calc_from_start(double x) const;
 
   std::vector<double> x_, y_, slope_left_, slope_right_;  ///< of each interval at its two ends

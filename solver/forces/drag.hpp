@@ -19,8 +19,16 @@ class DragElement final : public ForceElement {
   ForceResult calc(const Tree& tree, const TreeData& data, Loads* loads) const override {
     const MarkerInWorld k = calc_marker_in_world(data, tree, marker_);
     const Vector3d v = k.v - law_.wind_W;
-    const double seen = law_.normal.isZero(0) ? v.norm() : std::abs((k.R * law_.normal).dot(v));
-    const Vector3d f = -law_.half_density_area * seen * v;
+    const bool is_plate = !law_.normal.isZero(0);
+    const auto drag =
+        evaluate_law<3, 4>(data.tangents, {this, "force", name()}, 0,
+                           {is_plate ? (k.R * law_.normal).dot(v) : 0, v.x(), v.y(), v.z()}, [&](const auto& at) {
+                             using std::abs, std::sqrt;
+                             const auto square = at[1] * at[1] + at[2] * at[2] + at[3] * at[3];
+                             const auto by = -law_.half_density_area * (is_plate ? abs(at[0]) : sqrt(square));
+                             return std::array{by * at[1], by * at[2], by * at[3]};
+                           });
+    const Vector3d f(drag[0], drag[1], drag[2]);
     if (loads != nullptr) loads->add_wrench(marker_, f, Vector3d::Zero());
     ForceResult result;
     for (int i = 0; i < 3; ++i) result.values[static_cast<size_t>(i)] = f[i];

@@ -2,36 +2,49 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace bough::solver {
 
-double HingeLaw::calc_friction(double rate, double slide) const {
+template <class T>
+T HingeLaw::calc_friction(T rate, double slide) const {
+  using std::exp, std::tanh;
   if (law_.coulomb == 0 && law_.static_friction == 0) return 0;
-  const double s = rate / law_.stribeck_velocity;
-  return (law_.coulomb + (law_.static_friction - law_.coulomb) * std::exp(-s * s)) *
-         (law_.is_dry ? slide : std::tanh(rate / law_.smoothing));
+  const T s = rate / law_.stribeck_velocity;
+  return (law_.coulomb + (law_.static_friction - law_.coulomb) * exp(-s * s)) *
+         (law_.is_dry ? T(slide) : tanh(rate / law_.smoothing));
+}
+
+template <class T>
+std::array<T, 2> HingeLaw::calc_forces(const std::array<T, 2>& at, double slide, double& strain) const {
+  const T q = at[0], rate = at[1], deflection = q - law_.null_position;
+  T elastic = law_.preload, damper = -calc_friction(rate, slide);
+  constexpr bool kHasStrain = std::is_same_v<T, double>;
+  if constexpr (kHasStrain) strain = -law_.preload * deflection;
+  if (law_.spring) {
+    const auto table = law_.spring->calc(deflection);
+    elastic -= table.y;
+    if constexpr (kHasStrain) strain += table.integral;
+  }
+  if (law_.damper) damper -= law_.damper->calc(rate).y;
+  const T past = q > T(law_.upper) ? q - law_.upper : q < T(law_.lower) ? q - law_.lower : T(0);
+  if (past != T(0)) {
+    const T spring = -law_.stop_stiffness * past;
+    const T inward = past > T(0) ? rate : -rate;
+    elastic += spring;
+    damper += spring * std::max(T(-1.0), law_.stop_damping * inward);
+    if constexpr (kHasStrain) strain += 0.5 * law_.stop_stiffness * past * past;
+  }
+  return {elastic, damper};
 }
 
 ForceResult HingeLaw::calc(const Tree&, const TreeData& data, Loads* loads) const {
   ForceResult result;
   if (data.mode[static_cast<size_t>(u_row_)] == HingeMode::Prescribed) return result;
-  const double q = data.q[q_row_], rate = data.u[u_row_], deflection = q - law_.null_position;
-  double elastic = law_.preload, damper = -calc_friction(rate, data.slide[u_row_]);
-  result.strain = -law_.preload * deflection;
-  if (law_.spring) {
-    const auto table = law_.spring->calc(deflection);
-    elastic -= table.y;
-    result.strain += table.integral;
-  }
-  if (law_.damper) damper -= law_.damper->calc(rate).y;
-  const double past = q > law_.upper ? q - law_.upper : q < law_.lower ? q - law_.lower : 0;
-  if (past != 0) {
-    const double spring = -law_.stop_stiffness * past;
-    const double inward = past > 0 ? rate : -rate;
-    elastic += spring;
-    damper += spring * std::max(-1.0, law_.stop_damping * inward);
-    result.strain += 0.5 * law_.stop_stiffness * past * past;
-  }
+  const double rate = data.u[u_row_], slide = data.slide[u_row_];
+  const auto [elastic, damper] =
+      evaluate_law<2, 2>(data.tangents, {this, "hinge coordinate", name()}, 0, {data.q[q_row_], rate},
+                         [&](const auto& at) { return calc_forces(at, slide, result.strain); });
   if (loads != nullptr) loads->add_to_hinge(u_row_, elastic + damper);
   result.power = elastic * rate;
   result.dissipated = -damper * rate;

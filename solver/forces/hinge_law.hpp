@@ -38,7 +38,11 @@ class HingeLaw final : public ForceElement {
                    Eigen::Ref<VectorXd> damping) const override;
 
  private:
-  double calc_friction(double rate, double slide) const;
+  template <class T>
+  T calc_friction(T rate, double slide) const;
+  /// [elastic, damper] at [q, rate]; of doubles the strain energy too.
+  template <class T>
+  std::array<T, 2> calc_forces(const std::array<T, 2>& at, double slide, double& strain) const;
 
   int q_row_, u_row_;
   Law law_;

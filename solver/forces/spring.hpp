@@ -29,6 +29,10 @@ class SpringElement final : public ForceElement {
   std::vector<ForceChannel> channels() const override;
 
  private:
+  /// [elastic, damper] at [length, rate], positive in tension; of doubles the strain energy too.
+  template <class T>
+  std::array<T, 2> calc_tension(const std::array<T, 2>& at, double& stored) const;
+
   int from_, to_;  ///< markers
   Law law_;
 };

@@ -1,7 +1,5 @@
 #include "solver/linear/balance.hpp"
 
-#include "solver/linear/difference.hpp"
-
 namespace bough::solver {
 
 Balance::Balance(Plant& plant, const OperatingPoint& start) : plant_(&plant), point_(start) {
@@ -24,8 +22,7 @@ void Balance::linearize() {
   jacobian_.setZero(size(), m);
   for (int j = 0; j < m; ++j) {
     const auto f = [&](double h) -> VectorXd { return move(h * VectorXd::Unit(m, j)).residual_; };
-    const Difference column = differentiate(f, 0.5);
-    jacobian_.col(j) = (column.value.array().abs() > column.error.array()).select(column.value, 0.0);
+    jacobian_.col(j) = plant_->differentiate(f, 0.5).calc_clean();
   }
 }
 
@@ -65,8 +62,7 @@ MatrixXd Balance::calc_conserved() const {
       moved.point_.u[i] += h;
       return moved.calc_residual().tail(rows);
     };
-    const Difference column = differentiate(f, step(static_cast<int>(j)));
-    const VectorXd by_rate = (column.value.array().abs() > column.error.array()).select(column.value, 0.0);
+    const VectorXd by_rate = plant_->differentiate(f, step(static_cast<int>(j))).calc_clean();
     conserved.col(j) = -step(static_cast<int>(j)) * (b * by_rate);
   }
   return conserved;

@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/linear/difference.hpp"
-
 namespace bough::solver {
 namespace {
 
 constexpr int kMostSamples = 1000;
+
+void add_kinks(const std::vector<LawKink>& some, std::vector<LawKink>& all) {
+  for (const LawKink& kink : some) {
+    const auto is_same = [&](const LawKink& k) { return k.label == kink.label && k.at == kink.at; };
+    if (std::none_of(all.begin(), all.end(), is_same)) all.push_back(kink);
+  }
+}
 
 }  // namespace
 
@@ -61,44 +66,95 @@ std::vector<std::string> Departures::list_names() const {
   return names;
 }
 
-OperatingPoint Departures::move(int j, double h) const {
-  OperatingPoint moved = point_;
-  if (j < n_)
-    moved.q = plant_.displace(point_.q, h * VectorXd::Unit(n_, j));
-  else if (j < 2 * n_)
-    moved.u[j - n_] += h;
-  else if (j < num_x())
-    moved.z[plant_.state_row(j - 2 * n_)] += h;
+void Uncertainty::add(const Jacobian& jacobian, const VectorXd& scale) {
+  for (Eigen::Index i = 0; i < scale.size() && jacobian.value.cols() > 0; ++i) {
+    if (!(scale[i] > 0)) continue;
+    for (const MatrixXd* m : {&jacobian.error, &jacobian.kink})
+      relative = std::max(relative, m->row(i).cwiseAbs().maxCoeff() / scale[i]);
+  }
+  add_kinks(jacobian.kinks, kinks);
+}
+
+void Uncertainty::add(const Uncertainty& other) {
+  relative = std::max(relative, other.relative);
+  add_kinks(other.kinks, kinks);
+}
+
+VectorXd calc_row_scales(const MatrixXd& value) {
+  if (value.cols() == 0) return VectorXd::Zero(value.rows());
+  return value.rowwise().lpNorm<Eigen::Infinity>();
+}
+
+OperatingPoint displace_by_column(const Plant& plant, const OperatingPoint& point, int j, double h) {
+  const int n = plant.num_freedoms(), nx = 2 * n + plant.num_states();
+  OperatingPoint moved = point;
+  if (j < n)
+    moved.q = plant.displace(point.q, h * VectorXd::Unit(n, j));
+  else if (j < 2 * n)
+    moved.u[j - n] += h;
+  else if (j < nx)
+    moved.z[plant.state_row(j - 2 * n)] += h;
   else
-    moved.memory[plant_.sampled_rows()[static_cast<size_t>(j - num_x())]] += h;
+    moved.memory[plant.sampled_rows()[static_cast<size_t>(j - nx)]] += h;
   return moved;
 }
 
-double Departures::step(int j) const {
-  if (j < 2 * n_) return plant_.step(j % n_);
-  if (j < num_x()) return 0.1 * std::max(1.0, std::abs(point_.z[plant_.state_row(j - 2 * n_)]));
-  return 0.1 * std::max(1.0, std::abs(point_.memory[plant_.sampled_rows()[static_cast<size_t>(j - num_x())]]));
+double choose_step(const Plant& plant, const OperatingPoint& point, int j) {
+  const int n = plant.num_freedoms(), nx = 2 * n + plant.num_states();
+  if (j < n) return plant.step(j);
+  // The equations are quadratic in u: any step that is not lost in roundoff gives the same.
+  if (j < 2 * n) return plant.step(j - n) * std::max(1.0, point.u.cwiseAbs().maxCoeff());
+  if (j < nx) return 0.1 * std::max(1.0, std::abs(point.z[plant.state_row(j - 2 * n)]));
+  return 0.1 * std::max(1.0, std::abs(point.memory[plant.sampled_rows()[static_cast<size_t>(j - nx)]]));
 }
 
-MatrixXd Departures::differentiate_all(const std::function<VectorXd(const OperatingPoint&)>& f, int first,
-                                       int last) const {
-  MatrixXd value;
+Jacobian differentiate_column(Plant& plant, const std::function<VectorXd(double)>& f, double step) {
+  Jacobian column;
+  const Difference d = plant.differentiate(f, step, &column.kinks);
+  column.value = d.calc_clean();
+  column.error = d.error;
+  column.kink = d.kink;
+  return column;
+}
+
+Jacobian differentiate_columns(Plant& plant, const OperatingPoint& point,
+                               const std::function<VectorXd(const OperatingPoint&)>& f, int first, int last,
+                               double factor) {
+  Jacobian all;
   for (int j = first; j < last; ++j) {
-    const Difference column = differentiate([&](double h) { return f(move(j, h)); }, step(j));
-    if (j == first) value.resize(column.value.size(), last - first);
-    value.col(j - first) = (column.value.array().abs() > column.error.array()).select(column.value, 0.0);
+    const Jacobian column = differentiate_column(
+        plant, [&](double h) { return f(displace_by_column(plant, point, j, h)); },
+        factor * choose_step(plant, point, j));
+    if (j == first)
+      for (MatrixXd* m : {&all.value, &all.error, &all.kink}) m->setZero(column.value.rows(), last - first);
+    all.value.col(j - first) = column.value;
+    all.error.col(j - first) = column.error;
+    all.kink.col(j - first) = column.kink;
+    add_kinks(column.kinks, all.kinks);
   }
-  return value;
+  return all;
 }
 
-MatrixXd Departures::calc_held() const {
+MatrixXd Departures::differentiate_all(const std::function<VectorXd(const OperatingPoint&)>& f, int first, int last) {
+  const Jacobian jacobian = differentiate_columns(plant_, point_, f, first, last);
+  uncertainty_.add(jacobian, calc_row_scales(jacobian.value));
+  return jacobian.value;
+}
+
+VectorXd Departures::differentiate_one(const std::function<VectorXd(double)>& f, double step) {
+  const Jacobian column = differentiate_column(plant_, f, step);
+  uncertainty_.add(column, calc_row_scales(column.value));
+  return column.value;
+}
+
+MatrixXd Departures::calc_held() {
   MatrixXd E = MatrixXd::Zero(num_x(), num_m());
   const auto f = [&](const OperatingPoint& p) -> VectorXd { return plant_.evaluate(p).head(n_ + nz_); };
   E.bottomRows(n_ + nz_) = differentiate_all(f, num_x(), num_x() + num_m());
   return E;
 }
 
-MatrixXd Departures::calc_sample() const {
+MatrixXd Departures::calc_sample() {
   const auto f = [&](const OperatingPoint& p) -> VectorXd { return plant_.sample(p)(plant_.sampled_rows()); };
   return differentiate_all(f, 0, num_x() + num_m());
 }

@@ -14,6 +14,37 @@ double find_common_period(const std::vector<double>& cycles);
 /// Instants of samples in [from, from + period), each once, counted from `from`.
 std::vector<double> list_instants(const std::vector<SampleTimes>& samples, double from, double period);
 
+/// By columns of [δ; δu; δz; m]. Entries that are roundoff are 0, and their errors too.
+struct Jacobian {
+  MatrixXd value, error;
+  MatrixXd kink;               ///< half of the difference between the one-sided derivatives
+  std::vector<LawKink> kinks;  ///< laws that make it
+};
+
+/// What derivatives are known to.
+struct Uncertainty {
+  double relative = 0;         ///< the largest error or kink, relative to the scale of its row
+  std::vector<LawKink> kinks;  ///< laws with two slopes
+
+  /// Rows with scale 0 are left out.
+  void add(const Jacobian& jacobian, const VectorXd& scale);
+  void add(const Uncertainty& other);
+};
+
+/// The largest entry of each row.
+VectorXd calc_row_scales(const MatrixXd& value);
+
+/// A sum of length 1 of [δ; δu; δz; m] is changed by h; the step that suits column j.
+OperatingPoint displace_by_column(const Plant& plant, const OperatingPoint& point, int j, double h);
+double choose_step(const Plant& plant, const OperatingPoint& point, int j);
+
+/// ∂f/∂[δ; δu; δz; m], columns first to last (without it), with steps of `factor` times what suits them.
+Jacobian differentiate_columns(Plant& plant, const OperatingPoint& point,
+                               const std::function<VectorXd(const OperatingPoint&)>& f, int first, int last,
+                               double factor = 1);
+/// The derivative by one number, a column.
+Jacobian differentiate_column(Plant& plant, const std::function<VectorXd(double)>& f, double step);
+
 class Departures {
  public:
   Departures(Plant& plant, const OperatingPoint& point);
@@ -25,15 +56,19 @@ class Departures {
   const OperatingPoint& point() const { return point_; }
 
   /// E: num_x x num_m, of ẋ = A x + E m.
-  MatrixXd calc_held() const;
+  MatrixXd calc_held();
   /// [S_x S_m]: num_m x (num_x + num_m), of m⁺ = S_x x + S_m m by the samples due at the time set.
-  MatrixXd calc_sample() const;
-  /// ∂f/∂[x; m], columns first to last (without it); what is below its own error is 0.
-  MatrixXd differentiate_all(const std::function<VectorXd(const OperatingPoint&)>& f, int first, int last) const;
+  MatrixXd calc_sample();
+  /// ∂f/∂[x; m], columns first to last (without it).
+  MatrixXd differentiate_all(const std::function<VectorXd(const OperatingPoint&)>& f, int first, int last);
+  /// ∂f by one number.
+  VectorXd differentiate_one(const std::function<VectorXd(double)>& f, double step);
+
+  /// Of all derivatives so far.
+  const Uncertainty& uncertainty() const { return uncertainty_; }
 
  private:
-  OperatingPoint move(int j, double h) const;
-  double step(int j) const;
+  Uncertainty uncertainty_;
   Plant& plant_;
   OperatingPoint point_;
   int n_, nz_;

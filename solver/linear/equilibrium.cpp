@@ -212,7 +212,8 @@ void find_unstable(Plant& plant, const SourceLocation& at, Equilibrium& found) {
   const records::LinearModel model = linearize(plant, found.point, options, at, said);
   // Sampled laws hold what they hold between samples: whether they hold the state, the multipliers tell.
   records::Multipliers m;
-  if (!plant.is_open()) m = calc_multipliers(plant, found.point, model.A, at, said);
+  Uncertainty ignored;
+  if (!plant.is_open()) m = calc_multipliers(plant, found.point, model.A, at, said, ignored);
   if (m.period > 0) {
     for (Eigen::Index k = 0; k < m.real.size(); ++k) {
       if (m.imag[k] < 0 || m.decay[k] * m.period <= 1e-6) continue;

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <tuple>
 
-#include "solver/linear/difference.hpp"
+#include "solver/linear/departures.hpp"
 #include "solver/linear/ports.hpp"
 #include "solver/linear/sampled.hpp"
 #include "solver/linear/sampled_loop.hpp"
@@ -28,6 +28,8 @@ constexpr double kOtherStep = 0.7;
 constexpr double kInaccurate = 1e-4;
 /// Steps of displacement within the time of the slowest motion: a system that moves less than that is at rest.
 constexpr double kAtRest = 1e-6;
+/// Kinks that a message lists.
+constexpr std::size_t kMaxKinks = 5;
 
 std::string brief_text(double value) {
   std::ostringstream text;
@@ -35,11 +37,6 @@ std::string brief_text(double value) {
   text << value;
   return text.str();
 }
-
-/// Rows: those of [u̇; ż; y]. Columns: δ, δu, δz.
-struct Jacobian {
-  MatrixXd value, error;
-};
 
 /// Dimensions of [u̇; ż; y]; those of a state are its own.
 std::vector<std::string> get_row_dims(const Plant& plant) {
@@ -71,52 +68,46 @@ void clear_rounding(const Plant& plant, const VectorXd& step, Jacobian& jacobian
     if (most > least_known || least_known > 1e-9 * value.maxCoeff()) continue;
     jacobian.value.row(i).setZero();
     jacobian.error.row(i).setZero();
+    jacobian.kink.row(i).setZero();
   }
 }
 
-/// The j-th of displacements, rates and states of controllers moved by h.
-VectorXd evaluate_beside(Plant& plant, const OperatingPoint& point, int j, double h) {
-  const int n = plant.num_freedoms();
-  OperatingPoint moved = point;
-  if (j < n)
-    moved.q = plant.displace(point.q, h * VectorXd::Unit(n, j));
-  else if (j < 2 * n)
-    moved.u[j - n] += h;
-  else
-    moved.z[plant.state_row(j - 2 * n)] += h;
-  return plant.evaluate(moved);
-}
-
-double choose_step(const Plant& plant, const OperatingPoint& point, double rate, int j) {
-  const int n = plant.num_freedoms();
-  if (j < n) return plant.step(j);
-  if (j < 2 * n) return plant.step(j - n) * rate;
-  return 0.1 * std::max(1.0, std::abs(point.z[plant.state_row(j - 2 * n)]));
-}
-
+/// Rows: those of [u̇; ż; y]. Columns: δ, δu, δz.
 Jacobian calc_jacobian(Plant& plant, const OperatingPoint& point, double step_factor) {
-  const int n = plant.num_freedoms(), nz = plant.num_states(), rows = n + nz + plant.outputs().size();
-  Jacobian jacobian{MatrixXd::Zero(rows, 2 * n + nz), MatrixXd::Zero(rows, 2 * n + nz)};
-  // The equations are quadratic in u: any step that is not lost in rounding gives the same.
-  const double rate = std::max(1.0, point.u.size() > 0 ? point.u.cwiseAbs().maxCoeff() : 0.0);
-  VectorXd steps(2 * n + nz);
-  for (int j = 0; j < 2 * n + nz; ++j) {
-    const auto f = [&](double h) { return evaluate_beside(plant, point, j, h); };
-    steps[j] = choose_step(plant, point, rate, j);
-    const Difference column = differentiate(f, step_factor * steps[j]);
-    jacobian.error.col(j) = column.error;
-    // What does not rise above its own error is zero: structure is kept exactly.
-    jacobian.value.col(j) = (column.value.array().abs() > column.error.array()).select(column.value, 0.0);
-  }
+  const int nx = 2 * plant.num_freedoms() + plant.num_states();
+  const auto f = [&](const OperatingPoint& moved) { return plant.evaluate(moved); };
+  Jacobian jacobian = differentiate_columns(plant, point, f, 0, nx, step_factor);
+  const int rows = plant.num_freedoms() + plant.num_states() + plant.outputs().size();
+  VectorXd steps(nx);
+  for (int j = 0; j < nx; ++j) steps[j] = choose_step(plant, point, j);
+  if (nx == 0)
+    for (MatrixXd* m : {&jacobian.value, &jacobian.error, &jacobian.kink}) m->setZero(rows, 0);
   clear_rounding(plant, steps, jacobian);
   return jacobian;
 }
 
+/// The largest entry of each row, or a thousandth of the largest of all rows with the same dimensions where that is
+/// more: a row of zeros has nothing but rounding to be measured by.
+VectorXd calc_row_scales(const MatrixXd& value, const std::vector<std::string>& dims) {
+  VectorXd scale = solver::calc_row_scales(value);
+  std::map<std::string, double> largest;
+  for (Eigen::Index i = 0; i < scale.size(); ++i) {
+    double& most = largest[dims[static_cast<size_t>(i)]];
+    most = std::max(most, scale[i]);
+  }
+  for (Eigen::Index i = 0; i < scale.size(); ++i)
+    scale[i] = std::max(scale[i], 1e-3 * largest[dims[static_cast<size_t>(i)]]);
+  return scale;
+}
+
 /// Exact, f being affine in the input: f(value) - f(0), with a value that brings out the difference.
-VectorXd calc_input_column(Plant& plant, const OperatingPoint& point, const PlantInput& input, const VectorXd& base) {
-  if (input.actuator >= 0) {  // limits, a dead band and friction are not affine
-    const Difference column = differentiate([&](double h) { return plant.evaluate(point, &input, h); }, 1e-2);
-    return (column.value.array().abs() > column.error.array()).select(column.value, 0.0);
+VectorXd calc_input_column(Plant& plant, const OperatingPoint& point, const PlantInput& input, const VectorXd& base,
+                           Uncertainty& uncertainty) {
+  if (input.actuator >= 0 || input.signal >= 0) {  // limits, a dead band and friction are not affine
+    const Jacobian column = differentiate_column(
+        plant, [&](double h) { return plant.evaluate(point, &input, h); }, 1e-2);
+    uncertainty.add(column, calc_row_scales(column.value, get_row_dims(plant)));
+    return column.value;
   }
   const double large = base.size() > 0 ? base.cwiseAbs().maxCoeff() : 0;
   VectorXd column = plant.evaluate(point, &input, 1) - base;
@@ -134,45 +125,6 @@ double calc_relative(const MatrixXd& difference, const VectorXd& scale) {
     if (scale[i] > 0) worst = std::max(worst, difference.row(i).cwiseAbs().maxCoeff() / scale[i]);
   }
   return worst;
-}
-
-/// A motion with a corner in this very state has two slopes, of which central differences give the mean and no error:
-/// the second difference over its step stays as it is when the step shrinks, where that of a smooth one shrinks too.
-/// Relative to the rows; 0 without.
-double find_corner(Plant& plant, const OperatingPoint& point, const VectorXd& base, const VectorXd& scale) {
-  const double rate = std::max(1.0, point.u.size() > 0 ? point.u.cwiseAbs().maxCoeff() : 0.0);
-  double worst = 0;
-  for (int j = 0; j < 2 * plant.num_freedoms() + plant.num_states(); ++j) {
-    const double step = choose_step(plant, point, rate, j);
-    const auto calc_bend = [&](double h) -> VectorXd {
-      return (evaluate_beside(plant, point, j, h) + evaluate_beside(plant, point, j, -h) - 2 * base).cwiseAbs() / h;
-    };
-    VectorXd wide, narrow;
-    try {
-      wide = calc_bend(1e-2 * step), narrow = calc_bend(1e-3 * step);
-    } catch (const ComputationError&) {
-      continue;  // a loop that does not reach as far
-    }
-    for (Eigen::Index i = 0; i < scale.size(); ++i)
-      if (scale[i] > 0 && narrow[i] > 0.5 * wide[i] && narrow[i] < 2 * wide[i])
-        worst = std::max(worst, narrow[i] / (2 * scale[i]));
-  }
-  return worst;
-}
-
-/// The largest entry of each row, or a thousandth of the largest of all rows with the same dimensions where that is
-/// more: a row of zeros has nothing but rounding to be measured by.
-VectorXd calc_row_scales(const MatrixXd& value, const std::vector<std::string>& dims) {
-  VectorXd scale =
-      value.cols() > 0 ? VectorXd(value.rowwise().lpNorm<Eigen::Infinity>()) : VectorXd(VectorXd::Zero(value.rows()));
-  std::map<std::string, double> largest;
-  for (Eigen::Index i = 0; i < scale.size(); ++i) {
-    double& most = largest[dims[static_cast<size_t>(i)]];
-    most = std::max(most, scale[i]);
-  }
-  for (Eigen::Index i = 0; i < scale.size(); ++i)
-    scale[i] = std::max(scale[i], 1e-3 * largest[dims[static_cast<size_t>(i)]]);
-  return scale;
 }
 
 MatrixXd take_rows(const MatrixXd& m, int first, const std::vector<int>& rows) {
@@ -255,6 +207,26 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
                       "its poles are not those of the motion; linearize at several times");
 }
 
+/// Names the laws with two slopes at the operating point, or what else makes the derivatives uncertain.
+void warn_of_inaccurate(const Uncertainty& uncertainty, double difference, const SourceLocation& at,
+                        Diagnostics& diagnostics) {
+  const double worst = std::max(uncertainty.relative, difference);
+  if (worst <= kInaccurate) return;
+  std::string what = "the linear model is known to " + brief_text(worst) + " of its rows only, expected below " +
+                     brief_text(kInaccurate);
+  for (std::size_t i = 0; i < uncertainty.kinks.size() && i < kMaxKinks; ++i) {
+    const LawKink& kink = uncertainty.kinks[i];
+    what += std::string(i == 0 ? ": " : ", ") + kink.label + " has a kink at " + brief_text(kink.at) + ", with slope " +
+            brief_text(kink.slope_below) + " below and " + brief_text(kink.slope_above) + " above";
+  }
+  if (uncertainty.kinks.size() > kMaxKinks)
+    what += " and " + std::to_string(uncertainty.kinks.size() - kMaxKinks) + " more";
+  diagnostics.warning("linear.inaccurate", at, what,
+                      uncertainty.kinks.empty()
+                          ? "the motion has a kink or a jump near this state: linearize next to it"
+                          : "the model has the mean of both slopes: linearize on one side, or use a smooth law");
+}
+
 /// Soft poles beside stiff ones: A is known to its largest entries, they are made of small differences of these.
 void warn_of_uncertain(const records::Poles& poles, const SourceLocation& at, Diagnostics& diagnostics) {
   constexpr double kUncertain = 1e-4;
@@ -322,6 +294,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   const VectorXd unsteady = plant.calc_unsteadiness(base);
   model.residual = unsteady.norm();
 
+  Uncertainty uncertainty;
   const Jacobian jacobian = calc_jacobian(plant, point, 1);
   model.A = MatrixXd::Zero(nx, nx);
   model.A.topLeftCorner(n, n) = plant.calc_turning(point);
@@ -337,7 +310,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
     const PlantInput& input = plant.inputs()[static_cast<size_t>(inputs[static_cast<size_t>(k)])];
     model.inputs.name.push_back(input.name);
     model.inputs.dims.push_back(input.dims);
-    const VectorXd column = calc_input_column(plant, point, input, base);
+    const VectorXd column = calc_input_column(plant, point, input, base, uncertainty);
     model.B.col(k).tail(n + nz) = column.head(n + nz);
     model.D.col(k) = take_rows(column, n + nz, outputs);
   }
@@ -351,31 +324,31 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   std::iota(rows.begin(), rows.end(), 0);
   for (const int i : outputs) rows.push_back(n + nz + i);
   const VectorXd scale = calc_row_scales(jacobian.value, get_row_dims(plant))(rows);
-  model.error = calc_relative(take_rows(jacobian.error, 0, rows), scale);
+  Jacobian chosen;
+  chosen.value = take_rows(jacobian.value, 0, rows);
+  chosen.error = take_rows(jacobian.error, 0, rows);
+  chosen.kink = take_rows(jacobian.kink, 0, rows);
+  if (!chosen.kink.isZero(0)) chosen.kinks = jacobian.kinks;
+  uncertainty.add(chosen, scale);
   if (options.check) {
     const Jacobian other = calc_jacobian(plant, point, kOtherStep);
     model.difference = calc_relative(take_rows(other.value - jacobian.value, 0, rows), scale);
-    const double corner = find_corner(plant, point, base, calc_row_scales(jacobian.value, get_row_dims(plant)));
-    if (const double worst = std::max({model.error, model.difference, corner}); !(worst <= kInaccurate))
-      diagnostics.warning("linear.inaccurate", at,
-                          "A and C are known to " + brief_text(worst) + " of their rows only, expected below " +
-                              brief_text(kInaccurate),
-                          "the motion has a corner near this state (a gap, a limit, a table of lines): linearize "
-                          "beside it, or give it a smooth law");
     check_constancy(plant, point, jacobian, model.A, model.states.name, at, diagnostics);
   }
   if (options.check && options.cut.empty() && !plant.is_open())
-    model.multipliers = calc_multipliers(plant, point, model.A, at, diagnostics);
+    model.multipliers = calc_multipliers(plant, point, model.A, at, diagnostics, uncertainty);
   if (!options.cut.empty() && model.B.isZero(0) && model.D.isZero(0) && plant.list_sampled().empty())
     diagnostics.warning("linear.nothing-cut", at, "nothing reads '" + options.cut + "': the loop cut there is 0",
                         "cut it where the motion depends on it, at an actuator or at what a controller reads");
   if (is_held) {
-    const auto loop = calc_sampled_loop(plant, point, *cut, model.A, model.B.col(0), at);
+    const auto loop = calc_sampled_loop(plant, point, *cut, model.A, model.B.col(0), at, uncertainty);
     model.sample_time = loop.sample_time;
     model.aliased = find_aliased(statespace::calc_poles(model.A, model.states.name), loop.sample_time);
     model.states = loop.states;
     std::tie(model.A, model.B, model.C, model.D) = std::tie(loop.A, loop.B, loop.C, loop.D);
   }
+  model.error = uncertainty.relative;
+  warn_of_inaccurate(uncertainty, model.difference, at, diagnostics);
   if (!options.cut.empty()) open_cut(model, options.cut);
   if (is_held) {
     model.poles = calc_sampled_poles(model);

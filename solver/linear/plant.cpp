@@ -35,7 +35,8 @@ bool is_angle(const TreeBody& tb, int coordinate) {
 
 }  // namespace
 
-Plant::Plant(const System& system, bool is_open) : system_(system), data_(system.make_data()), is_open_(is_open) {
+Plant::Plant(const System& system, bool is_open)
+    : system_(system), data_(system.make_data()), tangents_(std::make_unique<LawTangents>()), is_open_(is_open) {
   const double size = calc_size(system.impl().tree);
   for (int b = 0; b < system.num_bodies(); ++b) {
     const size_t first = freedoms_.size();

@@ -8,12 +8,15 @@
 ///
 /// Where loops are closed the freedoms are independent ones among these, by pivots of G at the start (Wehage & Haug,
 /// J. Mech. Design 104 (1982) 247); the others follow: q by assembly, u by G u = 0.
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "formats/records/linear_model.hpp"
 #include "solver/loops/assemble.hpp"
+#include "solver/state/difference.hpp"
+#include "solver/state/law_tangents.hpp"
 #include "solver/system/system.hpp"
 
 namespace bough::solver {
@@ -95,6 +98,12 @@ class Plant {
   Cut find_cut(const std::string& name) const;
   std::vector<std::string> list_cuts() const;
 
+  /// Computes f'(0) of a function that evaluates this plant, as evaluate, sample or resample.
+  ///
+  /// Laws are their tangents at f(0) meanwhile (solver/state/law_tangents.hpp), so that `step` need suit the geometry
+  /// only. Difference::kink holds the effect of laws that have two slopes there; `kinks` gains them.
+  Difference differentiate(const std::function<VectorXd(double)>& f, double step,
+                           std::vector<LawKink>* kinks = nullptr);
   /// [u̇; ż; y] with every function of time at its value, and `value` more of one input. May throw ComputationError.
   VectorXd evaluate(const OperatingPoint& point, const PlantInput* input = nullptr, double value = 0);
   /// u̇ of the last evaluate less what a steady spin has of it: on a hinge to ground whose translations are free across
@@ -165,6 +174,7 @@ class Plant {
 
   const System& system_;
   std::unique_ptr<SystemData> data_;
+  std::unique_ptr<LawTangents> tangents_;
   std::vector<Freedom> freedoms_;
   bool is_open_ = false;
   std::vector<int> rows_;        ///< of u, one a freedom

@@ -89,6 +89,36 @@ void Plant::add_outputs() {
   }
 }
 
+Difference Plant::differentiate(const std::function<VectorXd(double)>& f, double step, std::vector<LawKink>* kinks) {
+  struct Scope {
+    TreeData& tree;
+    ~Scope() { tree.tangents = nullptr; }
+  } scope{data_->tree};
+  data_->tree.tangents = tangents_.get();
+  tangents_->record();
+  f(0);
+  const auto differentiate_side = [&](int side) {
+    return solver::differentiate(
+        [&](double h) {
+          tangents_->replay(side);
+          return f(h);
+        },
+        step);
+  };
+  Difference mean = differentiate_side(0);
+  const auto found = tangents_->list_kinks();
+  if (found.empty()) return mean;
+  const VectorXd half = differentiate_side(1).value - mean.value;
+  bool has_effect = false;
+  for (Eigen::Index e = 0; e < half.size(); ++e) {
+    if (std::abs(half[e]) <= mean.error[e] || std::abs(half[e]) <= 1e-9 * std::abs(mean.value[e])) continue;
+    mean.kink[e] = half[e];
+    has_effect = true;
+  }
+  if (has_effect && kinks != nullptr) kinks->insert(kinks->end(), found.begin(), found.end());
+  return mean;
+}
+
 VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, double value) {
   const int n = num_freedoms(), nz = num_states();
   const SignalGraph& signals = system_.impl().signals;

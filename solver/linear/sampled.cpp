@@ -7,13 +7,12 @@
 
 #include <unsupported/Eigen/MatrixFunctions>
 
-#include "solver/linear/departures.hpp"
 #include "solver/statespace/poles.hpp"
 
 namespace bough::solver {
 
 records::Multipliers calc_multipliers(Plant& plant, const OperatingPoint& point, const MatrixXd& A,
-                                      const SourceLocation& at, Diagnostics& diagnostics) {
+                                      const SourceLocation& at, Diagnostics& diagnostics, Uncertainty& uncertainty) {
   records::Multipliers out;
   if (plant.sampled_rows().empty()) return out;
   std::vector<double> cycles;
@@ -46,6 +45,7 @@ records::Multipliers calc_multipliers(Plant& plant, const OperatingPoint& point,
     const double to = k + 1 < instants.size() ? instants[k + 1] : period;
     map = MatrixXd(flow * (to - instants[k])).exp() * sample * map;
   }
+  uncertainty.add(departures.uncertainty());
   const auto values = statespace::calc_poles(map, departures.list_names());
   out.period = period;
   out.num_samples = static_cast<int>(instants.size());

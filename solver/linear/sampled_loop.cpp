@@ -6,8 +6,6 @@
 
 #include <unsupported/Eigen/MatrixFunctions>
 
-#include "solver/linear/departures.hpp"
-#include "solver/linear/difference.hpp"
 #include "solver/statespace/poles.hpp"
 
 namespace bough::solver {
@@ -16,14 +14,12 @@ namespace {
 constexpr double kInputStep = 1e-2;
 
 /// Of what is added at the cut: a column of m⁺, `before` and after the change.
-VectorXd calc_input_effect(Plant& plant, const OperatingPoint& point, const PlantInput& cut, bool is_before,
-                           bool is_after) {
-  const Difference column = differentiate(
+VectorXd calc_input_effect(Plant& plant, Departures& departures, const PlantInput& cut, bool is_before, bool is_after) {
+  return departures.differentiate_one(
       [&](double h) -> VectorXd {
-        return plant.sample(point, &cut, is_before ? h : 0, is_after ? h : 0)(plant.sampled_rows());
+        return plant.sample(departures.point(), &cut, is_before ? h : 0, is_after ? h : 0)(plant.sampled_rows());
       },
       kInputStep);
-  return (column.value.array().abs() > column.error.array()).select(column.value, 0.0);
 }
 
 /// The sample k + shift of each queue takes the place of k.
@@ -46,7 +42,8 @@ MatrixXd calc_renumbering(const Plant& plant, int nx, int size, double period) {
 }  // namespace
 
 records::LinearModel calc_sampled_loop(Plant& plant, const OperatingPoint& point, const PlantInput& cut,
-                                       const MatrixXd& A, const VectorXd& b, const SourceLocation& at) {
+                                       const MatrixXd& A, const VectorXd& b, const SourceLocation& at,
+                                       Uncertainty& uncertainty) {
   const SampleTimes hold = plant.find_hold(cut);
   const double period = hold.period;
   std::vector<double> times;
@@ -80,10 +77,10 @@ records::LinearModel calc_sampled_loop(Plant& plant, const OperatingPoint& point
     departures.set_time(base + instants[k]);
     MatrixXd sample = MatrixXd::Identity(size, size);
     sample.block(nx, 0, nm, nx + nm) = departures.calc_sample();
-    sample.col(last).segment(nx, nm) = calc_input_effect(plant, departures.point(), cut, true, /*is_after=*/k > 0);
+    sample.col(last).segment(nx, nm) = calc_input_effect(plant, departures, cut, true, /*is_after=*/k > 0);
     if (k == 0) {  // d is another one from here on
       sample(last, last) = 0;
-      effect.segment(nx, nm) = calc_input_effect(plant, departures.point(), cut, false, true);
+      effect.segment(nx, nm) = calc_input_effect(plant, departures, cut, false, true);
       effect[last] = 1;
       VectorXd row = VectorXd::Zero(size);
       const auto back = [&](const OperatingPoint& p) -> VectorXd {
@@ -100,6 +97,7 @@ records::LinearModel calc_sampled_loop(Plant& plant, const OperatingPoint& point
     map = step * sample * map;
     effect = step * effect;
   }
+  uncertainty.add(departures.uncertainty());
   const MatrixXd R = calc_renumbering(plant, nx, size, period);
   model.A = R * map;
   model.B = R * effect;

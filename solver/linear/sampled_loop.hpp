@@ -1,17 +1,19 @@
 #pragma once
 /// \file A loop that is cut where a signal is held between samples (docs/theory/linear.md, "Margins of sampled loops").
 #include "formats/records/linear_model.hpp"
-#include "solver/linear/plant.hpp"
+#include "solver/linear/departures.hpp"
 
 namespace bough::solver {
 
 /// From sample to sample of the signal behind the cut: ξ = [x; m; d], taken just before it changes, with d what is
 /// added to it from one change to the next, and y what comes back at the change, all loops closed. Between samples
-/// ẋ = A x + E m + b d by the matrix exponential, at samples by differences (sampled.hpp); queues are renumbered after
-/// each period, which makes the map the same for all. `A`, `b`: of the continuous model, m held. Throws InputError
-/// "linear.slower-samples" where other samples do not repeat within one of the cut's.
+/// ẋ = A x + E m + b d by the matrix exponential, at samples by differences (sampled.hpp), their errors in
+/// `uncertainty`; queues are renumbered after each period, which makes the map the same for all. `A`, `b`: of the
+/// continuous model, m held. Throws InputError "linear.slower-samples" where other samples do not repeat within one of
+/// the cut's.
 records::LinearModel calc_sampled_loop(Plant& plant, const OperatingPoint& point, const PlantInput& cut,
-                                       const MatrixXd& A, const VectorXd& b, const SourceLocation& at);
+                                       const MatrixXd& A, const VectorXd& b, const SourceLocation& at,
+                                       Uncertainty& uncertainty);
 
 /// The modes above half the sample rate 1 / sample_time among the poles λ of the continuous model.
 std::vector<records::AliasedMode> find_aliased(const records::Poles& poles, double sample_time);

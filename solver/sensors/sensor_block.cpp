@@ -51,7 +51,7 @@ class SensorBlock final : public Block {
       if (bias.size() > 0) value[i] += bias[i];
       if (walk > 0) value[i] += in.d[i];
       if (noise > 0 && is_real) value[i] += noise * draw(in.sample, i);
-      if (low.size() > 0) value[i] = std::clamp(value[i], low[i], high[i]);
+      if (low.size() > 0) value[i] = limit(in, i, value[i]);
       if (is_real && quantum.size() > 0 && quantum[i] > 0) value[i] = quantum[i] * std::round(value[i] / quantum[i]);
     }
   }
@@ -75,6 +75,10 @@ class SensorBlock final : public Block {
   bool is_integrating() const { return entry.type == SensorType::IntegratingGyro; }
 
  private:
+  double limit(const BlockInput& in, int i, double value) const {
+    return evaluate_scalar_law(in.tangents, as_owner(), i, value,
+                               [&]<class T>(T x) { return std::clamp(x, T(low[i]), T(high[i])); });
+  }
   double draw(long sample, int component) const {
     return calc_normal(seed, stream + static_cast<std::uint64_t>(component), static_cast<std::uint64_t>(sample));
   }

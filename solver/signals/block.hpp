@@ -6,6 +6,7 @@
 
 #include "base/diagnostic.hpp"
 #include "base/rotation.hpp"
+#include "solver/state/law_tangents.hpp"
 
 namespace bough::solver {
 
@@ -29,6 +30,7 @@ struct BlockInput {
   const System* system = nullptr;
   const SystemData* data = nullptr;  ///< the motion at t, for sensors and actuators
   BlockScratch* scratch = nullptr;   ///< of make_scratch
+  LawTangents* tangents = nullptr;   ///< while a linear model is made
 };
 
 struct BlockSizes {
@@ -43,6 +45,7 @@ struct BlockSizes {
 class Block {
  public:
   virtual ~Block() = default;
+  LawOwner as_owner() const { return {this, "", label}; }
 
   std::string name, path;         ///< as "pid", "/controllers/pid"
   std::string label;              ///< "controller 'pid'", for messages

@@ -66,8 +66,8 @@ const BlockPlace* SignalGraph::find(const std::string& path) const {
 BlockInput SignalGraph::look_again(const BlockPlace& p, const System& system, const SystemData& data) const {
   const SignalData& s = data.signals;
   const auto place = static_cast<size_t>(&p - places.data());
-  return {data.tree.t, s.inputs.data() + p.in,      s.z.data() + p.state, s.memory.data() + p.memory, 0, &system,
-          &data,       s.block_scratch[place].get()};
+  return {data.tree.t, s.inputs.data() + p.in,       s.z.data() + p.state, s.memory.data() + p.memory, 0, &system,
+          &data,       s.block_scratch[place].get(), data.tree.tangents};
 }
 
 BlockInput SignalGraph::look(const BlockPlace& p, const System& system, SystemData& data) const {

@@ -7,6 +7,7 @@
 ///     factor        calc_factor             𝒫, D = LLᵀ, G: position only
 ///     acceleration  solve                   β, z, A', u̇, transmitted
 /// A stage demands those it reads and undoes those that read it. No pass allocates.
+#include "solver/state/law_tangents.hpp"
 #include "solver/state/motion.hpp"
 #include "solver/tree/tree.hpp"
 
@@ -69,6 +70,7 @@ struct TreeData {
   VectorXd
       added;  ///< num_u: on the diagonal of ℋᵀ𝒫ℋ along hinge coordinates: inertia of motors, and of an implicit step
   double added_K = 0, added_D = 0;  ///< of an implicit step: M_ηη + added_D D + added_K K in ℋᵀ𝒫ℋ
+  LawTangents* tangents = nullptr;  ///< while a linear model is made
   Sweep motion, response;
   BodyData ground;
   std::vector<BodyData> bodies;

@@ -1,8 +1,8 @@
 // Linear models against hand equations, finite differences along true motions and the flow of the full equations.
 #include <gtest/gtest.h>
 
-#include "solver/linear/difference.hpp"
 #include "solver/linear/linearize.hpp"
+#include "solver/state/difference.hpp"
 #include "tests/solver/support/models.hpp"
 
 namespace bough::solver::testing {
@@ -68,6 +68,42 @@ TEST(Difference, ExtrapolatesAndTellsItsError) {
   } catch (const ComputationError& error) {
     EXPECT_EQ(error.items()[0].id, "linear.no-derivative");
   }
+}
+
+TEST(Difference, ShrinksToTheDetailsOfTheFunction) {
+  // Far finer than the step: saturation, a soft kink, a detail that large steps do not see at all, a limit.
+  const auto f = [](double h) {
+    return VectorXd(Eigen::Vector4d(std::tanh(h / 1e-8), std::sqrt(h * h + 1e-14) + 3 * h,
+                                    std::abs(h) < 1e-7 ? 5 * h : h, std::clamp(2 * h, -1e-9, 1e-6)));
+  };
+  const Difference d = differentiate(f, 0.1);
+  EXPECT_NEAR(d.value[0], 1e8, 1e-4 * 1e8);
+  EXPECT_NEAR(d.value[1], 3, 1e-5);
+  EXPECT_NEAR(d.value[2], 5, 1e-5);
+  EXPECT_NEAR(d.value[3], 2, 1e-5);
+  for (int e = 0; e < 4; ++e) {
+    EXPECT_LT(d.error[e], 1e-3 * std::abs(d.value[e])) << e;
+    EXPECT_EQ(d.is_roundoff[static_cast<size_t>(e)], 0) << e;
+  }
+}
+
+TEST(Difference, FindsAKinkAndNoneBesideIt) {
+  const auto f = [](double h) {
+    return VectorXd(Eigen::Vector4d(std::abs(h), 2 * h + 3 * std::max(0.0, h), std::abs(h - 1e-3), h * h));
+  };
+  const Difference d = differentiate(f, 0.1);
+  EXPECT_NEAR(d.kink[0], 1, 1e-12);
+  EXPECT_NEAR(d.kink[1], 1.5, 1e-12);
+  EXPECT_EQ(d.kink[2], 0);
+  EXPECT_EQ(d.kink[3], 0);
+  EXPECT_NEAR(d.value[1], 3.5, 1e-12);
+  EXPECT_NEAR(d.value[2], -1, 1e-9);
+}
+
+TEST(Difference, AJumpIsNoZero) {
+  const Difference d = differentiate([](double h) { return VectorXd(VectorXd::Constant(1, h >= 0 ? 1 : 0)); }, 0.1);
+  EXPECT_GT(d.error[0], 0.1);
+  EXPECT_EQ(d.is_roundoff[0], 0);
 }
 
 TEST(Linearize, Pendulum) {
