@@ -315,11 +315,11 @@ TEST(Constraints, SetsWithoutCardsAreAWarning) {
   deck.spcadd.push_back({9, {1, 44}, {}});
   deck.spc.push_back(make_spc(1, 1, 63));
   Diagnostics d, none;
-  EXPECT_EQ(Model::build(deck, {}, make_links(kLinks), d).num_fdofs(), 24);
+  EXPECT_EQ(Model::build(deck, {}, make_links(kLinks), d).num_fdofs(), 30);
   EXPECT_TRUE(d.has("fe.missing-set"));
   EXPECT_EQ(d.num_errors(), 0);
   deck.subcases[0].spc = 44;
-  EXPECT_EQ(Model::build(deck, {}, make_links(kLinks), none).num_fdofs(), 30);
+  EXPECT_EQ(Model::build(deck, {}, make_links(kLinks), none).num_fdofs(), 36);
   EXPECT_TRUE(none.has("fe.missing-set"));
 }
 

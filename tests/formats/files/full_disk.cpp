@@ -22,12 +22,15 @@ bool add_call(Kind kind, const std::string& path, std::uint64_t place, const voi
   return true;
 }
 
-bool add_call(Kind kind, int descriptor, std::uint64_t place, const void* data, std::size_t size) {
-  if (!disk_log) return false;
+std::string get_path(int descriptor) {
   std::array<char, 4096> path{};
   const auto link = "/proc/self/fd/" + std::to_string(descriptor);
   const auto length = ::readlink(link.c_str(), path.data(), path.size());
-  return length > 0 && add_call(kind, std::string(path.data(), static_cast<std::size_t>(length)), place, data, size);
+  return length > 0 ? std::string(path.data(), static_cast<std::size_t>(length)) : std::string();
+}
+
+bool add_call(Kind kind, int descriptor, std::uint64_t place, const void* data, std::size_t size) {
+  return disk_log && add_call(kind, get_path(descriptor), place, data, size);
 }
 
 }  // namespace
@@ -44,8 +47,8 @@ extern "C" int fallocate(int descriptor, int mode, off_t offset, off_t size) {
 
 extern "C" ssize_t pwrite(int descriptor, const void* data, size_t size, off64_t offset) {
   const long limit = write_limit;
-  const bool is_in_memory = ::fcntl(descriptor, F_GET_SEALS) >= 0;
-  if (limit >= 0 && !is_in_memory && offset + static_cast<off64_t>(size) > limit) {
+  // Files in memory, which the HDF5 library makes, have no limit; a file on a tmpfs has.
+  if (limit >= 0 && offset + static_cast<off64_t>(size) > limit && get_path(descriptor).rfind("/memfd:", 0) != 0) {
     errno = ENOSPC;
     return -1;
   }

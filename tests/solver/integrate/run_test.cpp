@@ -466,7 +466,7 @@ TEST(Advice, SpinWithoutStiffening) {
   auto spec = make_one_body(HingeType::Revolute);
   spec.bodies[0].file = "points.h5";
   spec.bodies[0].stiffening = false;
-  spec.simulation.duration = 0.01;
+  spec.simulation.duration = spec.simulation.output_step = 0.01;
   const auto flex = std::map<std::string, records::FlexBody>{{"points.h5", points.make_record("points")}};
   const System system = build(spec, flex);
   const double first = calc_first_frequency(system, 0);
