@@ -126,6 +126,12 @@ class Vtu(ProgramTest):
         self.write("beam.bdf", MIXED)
         self.write("body.toml", BODY)
         self.bough("reduce", "body.toml", "-o", "few.h5", "-q")
+        # Display shapes of all grids, in single precision.
+        self.assertEqual(self.bough("export", "few.h5", "--to", "vtu", "-o", "drawn.vtu").stderr, "")
+        drawn = meshio.read(self.path("drawn.vtu"))
+        # Files of older versions have shapes of the output nodes only.
+        with h5py.File(self.path("few.h5"), "r+") as file:
+            del file["mesh/phi"]
         said = self.bough("export", "few.h5", "--to", "vtu", "-o", "few.vtu").stderr
         self.assertIn("2 of 3 grids", said)
         self.assertIn("[export.partial-shapes]", said)
@@ -143,6 +149,7 @@ class Vtu(ProgramTest):
         self.assertEqual(len(full.points), 3)
         np.testing.assert_allclose(full.point_data[name[0]][[0, 2]], mesh.point_data[name[0]], rtol=1e-12, atol=1e-14)
         self.assertGreater(np.abs(full.point_data[name[0]][1]).max(), 0)
+        np.testing.assert_allclose(drawn.point_data[name[0]], full.point_data[name[0]], rtol=1e-6, atol=1e-6)
 
     def test_buckling(self):
         lines = ["SOL 105", "CEND", "SPC = 1", "SUBCASE 1", "LOAD = 4", "SUBCASE 2", "METHOD = 5", "BEGIN BULK",
@@ -177,6 +184,8 @@ class Deck(ProgramTest):
         """Ours and meshio's count of the deck written again; returns whether meshio could read the original too."""
         ignore, first = [], self.run_export(path, "large.bdf")
         if first.returncode != 0:  # cards of a kind that Bough does not read
+            if "[deck.unsupported-section]" in first.stderr or "[deck.include-missing]" in first.stderr:
+                return False  # superelements in sections of their own; a part of another deck
             cards = sorted({line.split(": error: ")[1].split(" ")[0] for line in first.stderr.splitlines()
                             if "[deck.unsupported-card]" in line})
             self.assertTrue(cards, first.stderr)
