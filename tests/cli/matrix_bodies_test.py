@@ -100,6 +100,14 @@ class MatrixBodies(ProgramTest):
         theta, vectors = theta[::-1][:5], vectors[:, ::-1][:, :5]
         return 1 / np.sqrt(theta) / (2 * np.pi), vectors / np.sqrt(theta)
 
+    def has_frequencies_of_punch(self, body):
+        """Those of K and M with the ten digits of a punch file."""
+        cut = np.vectorize(lambda v: float(f"{v:.9E}"))
+        K, M = (cut(np.tril(A)) for A in (self.K_cd, self.M_cd))
+        K, M = (A + np.tril(A, -1).T for A in (K, M))
+        with h5py.File(self.path(body)) as f:
+            np.testing.assert_allclose(f["modes/frequency_hz"][:], self.solve(K, M)[0], rtol=1e-8)
+
     def test_formats_of_bough(self):
         """Basic axes by the file: attribute of HDF5, list of dofs beside OUTPUT4 and Matrix Market."""
         self.reduce("own.h5")
@@ -116,7 +124,7 @@ class MatrixBodies(ProgramTest):
         for k, m in (("KXX", "MXX"), ("KAA", "MAA"), ("KAAX", "MAAX")):
             write_dmig(self.path("m.pch"), [("B2X", self.M_cd), (k, self.K_cd), (m, self.M_cd)], self.dofs)
             self.reduce("m.pch")
-            self.same("body.h5", 1e-6)
+            self.has_frequencies_of_punch("body.h5")
 
     def test_without_a_deck(self):
         with h5py.File(self.path("own.h5")) as f:
@@ -146,11 +154,7 @@ class MatrixBodies(ProgramTest):
         # NumPy on the same digits.
         write_dmig(self.path("n.pch"), [("KAAX", self.K_cd), ("MAAX", self.M_cd)], self.dofs)
         self.reduce("n.pch")
-        cut = np.vectorize(lambda v: float(f"{v:.9E}"))
-        K, M = (cut(np.tril(A)) for A in (self.K_cd, self.M_cd))
-        K, M = (A + np.tril(A, -1).T for A in (K, M))
-        with h5py.File(self.path("body.h5")) as f:
-            np.testing.assert_allclose(f["modes/frequency_hz"][:], self.solve(K, M)[0], rtol=1e-8)
+        self.has_frequencies_of_punch("body.h5")
 
     def test_calculix_and_abaqus(self):
         """No rows for what is clamped; grids in basic axes."""
