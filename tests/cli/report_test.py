@@ -310,10 +310,15 @@ class Report(ProgramTest):
         area = np.linalg.norm(np.cross(xyz[triangles[:, 1]] - xyz[triangles[:, 0]], xyz[triangles[:, 2]] - xyz[triangles[:, 0]]), axis=1) / 2
         self.assertAlmostEqual(area.sum(), 10)
         self.assertEqual({tuple(sorted(e)) for e in edges.tolist()}.__len__(), 20)
-        # A body that keeps the shapes of one end only: the rest is there, undeformed; with --full all of it moves.
+        # Display shapes move all of a body with two output nodes. A file of an older version has shapes of these only:
+        # the rest is there, undeformed; with --full all of it moves.
         self.write("bricks.toml", '[body]\nname = "bricks"\ndeck = "bricks.bdf"\nframe = "fixed"\ninterface = [3]\n'
                                   '[body.modes]\nnumber = 2\n[body.output]\nfile = "body.h5"\nnodes = [3, 6]\n')
         self.bough("reduce", "bricks.toml")
+        drawing = self.report("body.h5").get_data()[0]["drawing"]
+        self.assertEqual((get("triangles", "<u4").size, get("ghosts", "<u4").size, get("edges", "<u4").size), (60, 0, 40))
+        with h5py.File(self.path("body.h5"), "r+") as file:
+            del file["mesh/phi"]
         drawing = self.report("body.h5").get_data()[0]["drawing"]
         self.assertEqual((get("triangles", "<u4").size, get("ghosts", "<u4").size > 0, get("edges", "<u4").size), (0, True, 2))
         self.bough("reduce", "bricks.toml", "--full")
