@@ -65,6 +65,14 @@ MatrixXd invert(const MatrixXd& A, MatrixXd& null) {
   return kept * values.tail(V.cols() - num).cwiseInverse().asDiagonal() * kept.transpose();
 }
 
+/// Ritz values before the largest gap of kMaxRigidQuotient: motions without strain.
+Index count_mechanisms(const VectorXd& values) {
+  Index num = 0;
+  for (Index k = 1; k < values.size(); ++k)
+    if (std::abs(values(k - 1)) < kMaxRigidQuotient * values(k)) num = k;
+  return num;
+}
+
 /// Ritz values of K φ = λ M φ orthogonal to the rigid-body motions R, ascending, of four vectors.
 VectorXd calc_ritz_values(const SparseRows& M, const MatrixXd& R, const MatrixXd& mass_inverse,
                           const std::vector<Index>& others, const Eigen::SimplicialLDLT<SparseColumns>& K_oo) {
@@ -80,7 +88,8 @@ VectorXd calc_ritz_values(const SparseRows& M, const MatrixXd& R, const MatrixXd
     MatrixXd F = M * X;
     F -= M_R * (mass_inverse * (R.transpose() * F));
     MatrixXd Y = MatrixXd::Zero(n, m);
-    Y(others, Eigen::all) = K_oo.solve(MatrixXd(F(others, Eigen::all)));
+    const MatrixXd Y_o = K_oo.solve(MatrixXd(F(others, Eigen::all)));  // not into a view: it permutes its rows in place
+    Y(others, Eigen::all) = Y_o;
     Y -= R * (mass_inverse * (M_R.transpose() * Y));
     const MatrixXd energy = Y.transpose() * F, mass = Y.transpose() * (M * Y);  // K Y = F
     const VectorXd s = mass.diagonal().unaryExpr([](double a) { return a > 0 ? 1 / std::sqrt(a) : 0.0; });
@@ -92,10 +101,16 @@ VectorXd calc_ritz_values(const SparseRows& M, const MatrixXd& R, const MatrixXd
     const MatrixXd W = range.eigenvectors().rightCols(rank) * b.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(W.transpose() * (0.5 * (A + A.transpose())) * W);
     X.leftCols(rank) = Y * (s.asDiagonal() * (W * ritz.eigenvectors()));
-    for (Index c = rank; c < m; ++c) fill(c, step);
+    // Free of those kept: K_oo⁻¹ would bring a mechanism to the top of any vector that has a part of it, and leave one.
+    const MatrixXd M_kept = M * X.leftCols(rank);
+    for (Index c = rank; c < m; ++c) {
+      fill(c, step);
+      for (int pass = 0; pass < 2; ++pass) X.col(c) -= X.leftCols(rank) * (M_kept.transpose() * X.col(c)).eval();
+    }
     const VectorXd before = values;
     values = ritz.eigenvalues();
-    if (before.size() == values.size() && (values - before).head((m + 1) / 2).norm() < 1e-3 * values.norm()) break;
+    const Index first = count_mechanisms(values);
+    if (before.size() == values.size() && std::abs(values(first) - before(first)) < 1e-6 * values(first)) break;
   }
   return values;
 }
@@ -169,10 +184,8 @@ RigidMotionCheck check_rigid_motions(const PointTable& points, const SparseRows&
   const MatrixXd mass_inverse = invert(0.5 * (mass + mass.transpose()), massless);
   const VectorXd ritz = calc_ritz_values(M, R, mass_inverse, others, K_oo);
   if (ritz.size() == 0) return result;
-  result.elastic = ritz(0);
-  for (Index k = 1; k < ritz.size(); ++k)
-    if (std::abs(ritz(k - 1)) < kMaxRigidQuotient * ritz(k))
-      result.elastic = ritz(k), result.num_mechanisms = static_cast<int>(k);
+  result.num_mechanisms = static_cast<int>(count_mechanisms(ritz));
+  result.elastic = ritz(result.num_mechanisms);
   if (!(result.elastic > 0)) return result;
   for (Index c = 0; c < massless.cols(); ++c) {
     const VectorXd x = massless.col(c), u = R * x;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <set>
 
@@ -283,13 +284,22 @@ struct Condensed {
     full_K(6 * (num / 2) + 1, 6 * (num / 2) + 1) += ground;
     std::vector<int> b, i;
     for (int d = 0; d < N; ++d) (d < 6 || (d >= 6 * num && d < 6 * num + 6) ? b : i).push_back(d);
-    const MatrixXd K_ii = full_K(i, i), K_ib = full_K(i, b);
-    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> fixed(K_ii, MatrixXd(full_M(i, i)));
+    const Eigen::SparseMatrix<double> K_ii = MatrixXd(full_K(i, i)).sparseView();
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(K_ii);
+    const VectorXd M_ii = full_M.diagonal()(i);
+    MatrixXd X(M_ii.size(), 8);  // fixed-interface modes by subspace iteration
+    for (Eigen::Index j = 0; j < X.size(); ++j) X(j) = std::sin(1 + 0.7 * static_cast<double>(j));
+    for (int step = 0; step < 25; ++step) {
+      X = solver.solve(MatrixXd(M_ii.asDiagonal() * X)).eval();
+      const MatrixXd k_x = X.transpose() * (K_ii * X), m_x = X.transpose() * M_ii.asDiagonal() * X;
+      X = (X * Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(k_x, m_x).eigenvectors()).eval();
+    }
     MatrixXd T = MatrixXd::Zero(N, 16);
     T(b, Eigen::seqN(0, 12)) = MatrixXd::Identity(12, 12);
-    T(i, Eigen::seqN(0, 12)) = -K_ii.partialPivLu().solve(K_ib);
-    T(i, Eigen::seqN(12, 4)) = fixed.eigenvectors().leftCols(4);
-    K = T.transpose() * full_K * T, M = T.transpose() * full_M * T;
+    T(i, Eigen::seqN(0, 12)) = -solver.solve(MatrixXd(full_K(i, b)));
+    T(i, Eigen::seqN(12, 4)) = X.leftCols(4);
+    const SparseRows sparse_K = full_K.sparseView();
+    K = T.transpose() * (sparse_K * T), M = T.transpose() * full_M.diagonal().asDiagonal() * T;
     K = (0.5 * (K + K.transpose())).eval(), M = (0.5 * (M + M.transpose())).eval();
   }
   GivenMatrices give() const {
@@ -310,6 +320,12 @@ TEST(ReduceMatrices, CondensedFreeBodiesAreFreeInEveryFrameAndBasis) {
     const Condensed tube(num);
     const VectorXd lambda = tube.calc_eigenvalues();
     ASSERT_LT(lambda.head(6).cwiseAbs().maxCoeff(), 1e-6 * lambda(6));
+    // Of the condensed matrix: the round-off of long chains of beams is in M too.
+    const MatrixXd moved = tube.M.topLeftCorner(12, 3) + tube.M.block(0, 6, 12, 3);
+    const double mass = (moved.topRows(3) + moved.middleRows(6, 3)).trace() / 3;
+    EXPECT_NEAR(mass, 7850 * 4e-4 * 12, num < 200 ? 1e-9 : 1e-8);
+    char first[40];
+    std::snprintf(first, sizeof first, "mode has %.6g Hz", std::sqrt(lambda(6)) / (2 * std::numbers::pi));
     for (const auto frame : {records::BodyFrame::Free, records::BodyFrame::MeanAxes, records::BodyFrame::Node,
                              records::BodyFrame::MassCentre})
       for (const auto basis : {records::BodyBasis::Normal, records::BodyBasis::CraigBampton}) {
@@ -323,7 +339,9 @@ TEST(ReduceMatrices, CondensedFreeBodiesAreFreeInEveryFrameAndBasis) {
         const auto who = std::to_string(num) + " beams, frame " + std::to_string(static_cast<int>(frame));
         for (const char* id : {"fe.residual", "modal.unstable", "reduce.basis-off"}) EXPECT_FALSE(said.has(id)) << who;
         EXPECT_TRUE(said.has("reduce.rigid-roundoff")) << who;
-        EXPECT_NEAR(body.mass, 7850 * 4e-4 * 12, 1e-9) << who;
+        for (const auto& item : said.items())
+          if (item.id == "reduce.rigid-roundoff") EXPECT_THAT(item.what, ::testing::HasSubstr(first)) << who;
+        EXPECT_NEAR(body.mass, mass, 1e-9) << who;
         ASSERT_GE(body.frequency_hz.size(), 4) << who;
         for (int j = 0; j < 4; ++j)
           EXPECT_NEAR(body.eigenvalue(j) / lambda(6 + j), 1, 1e-6) << who << ", mode " << j + 1;
