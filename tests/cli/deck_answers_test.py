@@ -92,7 +92,8 @@ class Static(ProgramTest):
             u, said = self.solve(case, bulk)
             np.testing.assert_allclose(list(u.values()), np.array(loads) * PER_NEWTON, rtol=1e-12, err_msg=case)
             self.assertIn("[deck.load-columns]", said)
-        self.assertAlmostEqual(self.solve("LOAD = 5", "PARAM,CP1,3.\n")[0]["1"], 300 * PER_NEWTON, delta=1e-18)
+        (u,) = self.solve("LOAD = 5", "PARAM,CP1,3.\n")[0].values()
+        self.assertAlmostEqual(u, 300 * PER_NEWTON, delta=1e-18)
         u, said = self.solve("P2G = PL\nSUBCASE 1\nLOAD = 5\nSUBCASE 2\nLOAD = 5", self.PL)
         np.testing.assert_allclose(list(u.values()), [1100 * PER_NEWTON, 100 * PER_NEWTON], rtol=1e-12)
         self.assertIn("[deck.load-matrix]", said)
@@ -102,7 +103,7 @@ class Static(ProgramTest):
         turned = self.PL.replace("2,1,1000.", "2,2,-1000.") + "CORD2R,7,,0.,0.,0.,0.,0.,1.\n,0.,1.,0.\n"
         self.write("d.bdf", ROD.format(case="P2G = PL", bulk=turned).replace("GRID,2,,1.,0.,0.", "GRID,2,,1.,0.,0.,7")
                    .replace("SPC1,1,23456,2", "SPC1,1,13456,2"))
-        self.assertIn(f"{1000 * PER_NEWTON:.4g}"[:4], self.bough("static", "d.bdf", "--full").stdout)
+        self.assertIn(f"{1000 * PER_NEWTON:.6e}", self.bough("static", "d.bdf", "--full").stdout)
 
     def test_direct_loads_refused(self):
         for bulk, error in [(self.PL.replace(",9,", ",6,"), "deck.load-matrix"), ("", "deck.load-matrix"),
@@ -121,9 +122,9 @@ class Static(ProgramTest):
         for command in ("TRIM", "BOLTLD", "DEFORM", "CLOAD"):
             self.write("d.bdf", ROD.format(case=f"LOAD = 5\n{command} = 4", bulk=""))
             self.fails(1, "static", "d.bdf", error="fe.unread-load", says=[command])
-            self.bough("modes", "d.bdf", "-n", "1", code=3)  # no mass: but no word of loads
+            self.bough("modes", "d.bdf", "-n", "1", code=1)  # no mass: but no word of loads
             u, said = self.solve(f"LOAD = 5\n{command} = 4", "", "--ignore", command)
-            self.assertAlmostEqual(u["1"], 100 * PER_NEWTON, delta=1e-18)
+            self.assertAlmostEqual(list(u.values())[0], 100 * PER_NEWTON, delta=1e-18)
             self.assertIn("ignored as asked", said)
 
     def test_materials_by_temperature(self):
@@ -157,7 +158,7 @@ class Static(ProgramTest):
             self.write("d.bdf", text)
             result = self.bough("static", "d.bdf", "--full")
             self.assertIn("[fe.missing-set]", result.stderr)
-            self.assertIn("5e-06", result.stdout)
+            self.assertIn("5.000000e-06", result.stdout)
 
 
 PLATE = """SOL 101
@@ -305,13 +306,13 @@ class Response(ProgramTest):
         """A steady base motion, long after the start: the harmonic solution."""
         f, g = 8.0, .3
         for param, is_relative in [("", False), ("PARAM,ENFMOTN,REL\n", True)]:
-            bulk = param + f"TLOAD2,1,5,,ACCE,0.,1.+3,{f},-90.\nTSTEP,1,4000,.001"
+            bulk = param + f"TLOAD2,1,5,,ACCE,0.,1.+3,{f},-90.\nTSTEP,1,16000,.00025"
             self.write("d.bdf", BASE.format(sol=112, case="TSTEP = 1", damping=g, type="G", bulk=bulk))
             self.bough("transient", "d.bdf", "-o", "d.h5")
             with h5py.File(self.path("d.h5")) as h:
                 part = h["subcases/1/acceleration"]
                 column = [tuple(d) for d in part["dofs"][()]].index((2, 0))
-                t, a = h["subcases/1/time"][-500:], part["value"][-500:, column]
+                t, a = h["subcases/1/time"][-2000:], part["value"][-2000:, column]
             w0, w = 2 * np.pi * 10, 2 * np.pi * f
             c = 1j * g * w0 * w
             H = (w0**2 + (c if is_relative else 0)) / (w0**2 - w**2 + c)

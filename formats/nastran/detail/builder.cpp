@@ -271,9 +271,9 @@ class Builder {
     if (entry->count++ == 0) entry->first = text_.lines.front().at;
     if (entry->parser == nullptr && entry->dynamic == nullptr) keep_unread_load();
     if (entry->parser == nullptr) keep_base();
+    if (dynamics_ && !is_response_ && text_.name == "EPOINT") keep_extra_points();
     if ((entry->parser == nullptr && entry->dynamic == nullptr) || is_default_card(text_.name)) return;
     design_.apply(text_);
-    if (dynamics_ && !is_response_ && text_.name == "EPOINT") keep_extra_points();
     if (entry->dynamic != nullptr && is_unselected()) return parse_unselected(*entry);
     Card card(text_, deck_.files, diagnostics_);
     if (entry->dynamic != nullptr)
