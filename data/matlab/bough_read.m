@@ -6,8 +6,9 @@ function [s, notes] = bough_read(path)
 %   a name that begins with none of its letters, or is a word of its language, gets an x in front: s.subcases.x3.
 %   [s, notes] = BOUGH_READ(...): notes('/sensors/tip') is a struct of that item's attributes (description, dims),
 %   notes('/') of the file's.
-%   Needs nothing else, in MATLAB and Octave alike: it reads the bytes of HDF5 files as Bough writes them (superblock 0,
-%   object headers 1, no filters), after The HDF Group, "HDF5 File Format Specification Version 3.0".
+%   Needs nothing else, in MATLAB and Octave alike: it reads the bytes of HDF5 files as Bough writes them (superblock and
+%   object headers of results 2, of other files 0 and 1; no filters), after The HDF Group, "HDF5 File Format Specification
+%   Version 3.0".
 [file, why] = fopen(path, 'r');
 if file < 0, error('bough_read: %s: %s', path, why); end
 b = fread(file, Inf, '*uint8');
@@ -15,12 +16,14 @@ fclose(file);
 if numel(b) < 96 || ~isequal(b(1:8)', uint8([137 72 68 70 13 10 26 10]))
   error('bough_read: %s is no HDF5 file', path);
 end
-if b(9) ~= 0 || b(14) ~= 8 || b(15) ~= 8
+% The version of the superblock says where the sizes of addresses and lengths are, and the address of the root group.
+if b(9) == 0, sizes = b(14:15); root = 64; else, sizes = b(10:11); root = 36; end
+if ~any(b(9) == [0 2]) || any(sizes ~= 8)
   error('bough_read: %s is an HDF5 file, but not as Bough writes them', path);
 end
 notes = containers.Map('KeyType', 'char', 'ValueType', 'any');
 heaps = containers.Map('KeyType', 'double', 'ValueType', 'any');
-s = read_object(b, number(b, 64, 8), '/', notes, heaps);
+s = read_object(b, number(b, root, 8), '/', notes, heaps);
 root = notes('/');
 if ~isfield(root, 'format') || ~strncmp(root.format, 'bough-', 6)
   error('bough_read: %s is no file of Bough: it has no attribute format', path);
@@ -51,6 +54,9 @@ for k = 1:numel(messages)
   switch m.type
     case 1, dims = read_dims(b, m.at);
     case 3, type = read_type(b, m.at);
+    case 6
+      [name, target] = read_link(b, m.at);
+      value = add_member(value, b, target, path, name, notes, heaps);
     case 8, layout = m.at;
     case 12
       [name, one] = read_attribute(b, m.at, heaps);
@@ -64,25 +70,56 @@ if layout >= 0, value = convert(b, read_data(b, layout, type.size, dims), type, 
 end
 
 function messages = list_messages(b, at)
-% Types and places of what an object header of version 1 holds, its continuations too.
-if b(at + 1) ~= 1, error('bough_read: an object header of version %d', b(at + 1)); end
+% Types and places of what an object header holds, its continuations too.
 messages = struct('type', {}, 'at', {});
-left = number(b, at + 2, 2);
-blocks = [at + 16, number(b, at + 8, 4)];
-while ~isempty(blocks) && left > 0
+is_second = isequal(char(b(at + 1:at + 4)'), 'OHDR');
+if is_second
+  flags = double(b(at + 6));
+  width = 2 ^ mod(flags, 4);
+  first = at + 6 + 16 * (bitand(flags, 32) > 0) + 4 * (bitand(flags, 16) > 0);
+  blocks = [first + width, number(b, first, width)];
+  prefix = 4 + 2 * (bitand(flags, 4) > 0);
+elseif b(at + 1) == 1
+  blocks = [at + 16, number(b, at + 8, 4)];
+  prefix = 8;
+else
+  error('bough_read: an object header of version %d', b(at + 1));
+end
+while ~isempty(blocks)
   place = blocks(1, 1); last = place + blocks(1, 2);
   blocks(1, :) = [];
-  while place + 8 <= last && left > 0
-    type = number(b, place, 2); size = number(b, place + 2, 2);
-    if type == 16
-      blocks(end + 1, :) = [number(b, place + 8, 8), number(b, place + 16, 8)];
-    elseif type ~= 0
-      messages(end + 1) = struct('type', type, 'at', place + 8);
+  while place + prefix <= last
+    if is_second
+      type = double(b(place + 1)); size = number(b, place + 1, 2);
+    else
+      type = number(b, place, 2); size = number(b, place + 2, 2);
     end
-    place = place + 8 + size;
-    left = left - 1;
+    body = place + prefix;
+    if type == 16
+      % A block of version 2 has a signature and a checksum around its messages.
+      blocks(end + 1, :) = [number(b, body, 8) + 4 * is_second, number(b, body + 8, 8) - 8 * is_second];
+    elseif type ~= 0
+      messages(end + 1) = struct('type', type, 'at', body);
+    end
+    place = body + size;
   end
 end
+end
+
+function [name, target] = read_link(b, at)
+% A hard link: name and address of the object.
+flags = double(b(at + 2));
+place = at + 2 + (bitand(flags, 8) > 0) + 8 * (bitand(flags, 4) > 0) + (bitand(flags, 16) > 0);
+width = 2 ^ mod(flags, 4);
+size = number(b, place, width);
+name = char(b(place + width + 1:place + width + size)');
+target = number(b, place + width + size, 8);
+end
+
+function s = add_member(s, b, at, path, name, notes, heaps)
+field = valid(name);
+while isfield(s, field), field = [field '_']; end
+s.(field) = read_object(b, at, [regexprep(path, '/$', '') '/' name], notes, heaps);
 end
 
 function s = read_group(b, tree, heap, path, notes, heaps)
@@ -96,9 +133,7 @@ for k = 1:numel(tables)
     first = names + number(b, entry, 8);
     last = first + find(b(first + 1:end) == 0, 1) - 1;
     name = char(b(first + 1:last)');
-    field = valid(name);
-    while isfield(s, field), field = [field '_']; end
-    s.(field) = read_object(b, number(b, entry + 8, 8), [regexprep(path, '/$', '') '/' name], notes, heaps);
+    s = add_member(s, b, number(b, entry + 8, 8), path, name, notes, heaps);
   end
 end
 end
