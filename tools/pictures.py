@@ -20,6 +20,8 @@ from PIL import Image
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PICTURES = os.path.join(ROOT, "docs/pictures")
 LARGEST = 150_000
+os.environ.setdefault("BOUGH_PROGRAM", os.path.abspath(sys.argv[1]) if len(sys.argv) > 1 else "")
+os.environ.setdefault("BOUGH_SOURCE_DIR", ROOT)
 sys.path.insert(0, os.path.join(ROOT, "tests/cli"))
 from browser import Browser  # noqa: E402
 from page_blocks import list_commands  # noqa: E402
