@@ -43,11 +43,22 @@ class Refusals(ProgramTest):
                            ("TABLED1,3\n,0.,1.,1.,1.,1.,0.,ENDT", "jumps at its first or last"),
                            ("TABLED2,3,1.\n,0.,0.,0.,1.,1.,1.,ENDT", "jumps at its first or last"),
                            ("TABLED1,3,LOG\n,0.,1.,2.,1.,ENDT", "LOG axis"), ("TABLED3,3,0.,0.\n,0.,1.,2.,1.,ENDT", "X2"),
-                           ("TLOAD2,3,10,,,1.,1.", "T2"), ("RLOAD1,3,10", "TC and TD"), ("RLOAD2,3,10", "TB"), ("TSTEP,3,10", "DT"),
-                           ("FREQ1,3,1.", "DF"), ("FREQ2,3,0.,1.", "F1"), ("FREQ3,3,1.,2.,,1", "NEF"), ("FREQ4,3,1.,2.,2.", "FSPD"),
-                           ("RLOAD1,3,10,,,1.,,FORCE", "TYPE"), ("TABDMP1,3,Q\n,0.,1.,2.,0.,ENDT", "quality"), ("DLOAD,3,1.", "S1")]:
+                           ("TLOAD2,3,10,,,1.,1.", "T2"), ("RLOAD1,3,10", "TC and TD"), ("RLOAD2,3,10", "TB"),
+                           ("FREQ1,5,1.", "DF"), ("FREQ2,5,0.,1.", "F1"), ("FREQ3,5,1.,2.,,1", "NEF"), ("FREQ4,5,1.,2.,2.", "FSPD"),
+                           ("RLOAD1,3,10,,,1.,,FORCE", "TYPE"), ("DLOAD,3,1.", "S1")]:
             self.write("d.bdf", self.deck(good + card))
             self.fails(1, "frequency", "d.bdf", says=[says, "d.bdf:2"])
+        # Sets that no subcase selects are warned of; selected ones are errors.
+        time = "TLOAD2,9,10,,,0.,1.\nDAREA,10,1,1,2.\n"
+        for verb, card, case, says in [
+                ("frequency", good + "TABDMP1,3,Q\n,0.,1.,2.,0.,ENDT", "DLOAD = 9\nFREQUENCY = 5\nSDAMPING = 3", "quality"),
+                ("transient", time + "TSTEP,3,10", "DLOAD = 9\nTSTEP = 3", "DT")]:
+            self.write("d.bdf", self.deck(card, case))
+            self.fails(1, verb, "d.bdf", says=[says, "d.bdf:2"])
+        for card, says in [("TABDMP1,3,Q\n,0.,1.,2.,0.,ENDT", "quality"), ("TSTEP,3,10", "DT"), ("FREQ1,3,1.", "DF")]:
+            self.write("d.bdf", self.deck(good + card))
+            said = self.bough("frequency", "d.bdf").stderr
+            self.assertRegex(said, f"warning: .*{says}.*no subcase selects the set")
 
     def test_unbounded(self):
         self.refuse("modal.unbounded-response", self.deck(f"RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ4,5,.1,1.,.1,1"), code=3,
