@@ -3,6 +3,7 @@
 /// a response. Apart from deck.hpp, which most of Bough is compiled with and which needs none of it.
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -110,6 +111,7 @@ struct DynamicCards {
   std::vector<FrequencyList> frequencies;
   std::vector<TimeSteps> steps;
   std::vector<ResidualDofs> residual_dofs;
+  std::set<int> extra_points;  ///< EPOINT of a deck read for normal modes, which have none: loads there act on nothing
 };
 
 /// SET of the case control: ids, or numbers such as frequencies.

@@ -279,7 +279,7 @@ int find_dof(const fe::Model& model, const records::DynamicDeck& deck, int g, in
              const records::CardLocation& at, Diagnostics& diagnostics) {
   const int index = model.find_node(g);
   if (index < 0) {
-    if (!model.is_refused(g))
+    if (!model.is_refused(g) && deck.dynamics.extra_points.count(g) == 0)
       diagnostics.error("fe.missing-grid", deck.locate(at),
                         card + " names grid " + std::to_string(g) + ", which the deck does not define",
                         "add the GRID or correct the id");

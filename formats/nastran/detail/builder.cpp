@@ -68,7 +68,6 @@ class Builder {
       diagnostics_.error("deck.unreadable-line", {deck_.files.front(), 0, 0},
                          "and " + std::to_string(num_unreadable_ - max_unreadable) + " more lines that are no cards",
                          "check that the file is a Nastran deck");
-    leave_extra_points();
     expand_ranges(reading_);
     finish_direct_matrices(reading_);
     finish_fluid(reading_);
@@ -286,15 +285,7 @@ class Builder {
   void keep_extra_points() {
     Diagnostics said;  // the card is named as not used
     Card card(text_, deck_.files, said);
-    for (const int id : read_ids(card, 0, card.get_size(), "ID")) extra_points_.insert(id);
-  }
-
-  /// Normal modes have no extra points: what acts there loads nothing.
-  void leave_extra_points() {
-    if (extra_points_.empty()) return;
-    auto& cards = dynamics_->dynamics;
-    for (auto* values : {&cards.areas, &cards.delays, &cards.phases})
-      std::erase_if(*values, [&](const auto& value) { return extra_points_.count(value.g) > 0; });
+    for (const int id : read_ids(card, 0, card.get_size(), "ID")) dynamics_->dynamics.extra_points.insert(id);
   }
 
   /// Returns true if the card is of a set that a command selects, and no subcase does.
@@ -493,7 +484,6 @@ class Builder {
   Replicator replicator_;
   std::unordered_set<std::string> ignored_;
   std::set<std::pair<std::string, int>> unread_sets_;
-  std::set<int> extra_points_;                     ///< EPOINT, where they are left out
   std::map<std::string, std::vector<int>> bases_;  ///< ids that cards such as PELAST and MATT1 extend, by card
   std::unordered_map<std::string, NameEntry> names_;
   std::unordered_map<std::string, int> defaults_seen_;  ///< card index
