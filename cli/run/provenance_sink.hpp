@@ -27,6 +27,7 @@ class ProvenanceSink final : public records::ResultSink {
   }
   void write_checkpoint(const records::Checkpoint& checkpoint) override { inner_.write_checkpoint(checkpoint); }
   void write_energy_error(double worst) override { inner_.write_energy_error(worst); }
+  void flush() override { inner_.flush(); }
   void end(bool completed, const std::string& reason) override { end_.emplace(completed, reason); }
   /// Passes on the end that the solver gave, if it gave one.
   void finish() {

@@ -45,7 +45,7 @@ class ResultsWriter final : public records::ResultSink {
   ~ResultsWriter() override {
     if (!file_.is_open() || file_.has_failed()) return;
     try {
-      if (num_rows_ > num_committed_ || checkpoint_) commit();
+      flush();
     } catch (const Failure&) {
       // There is no caller to report to; what was committed before stays.
     }
@@ -100,6 +100,11 @@ class ResultsWriter final : public records::ResultSink {
   void write_energy_error(double worst) override {
     BOUGH_DEMAND(file_.is_open());
     energy_error_ = worst;
+  }
+
+  void flush() override {
+    BOUGH_DEMAND(file_.is_open());
+    if (num_rows_ > num_committed_ || checkpoint_) commit();
   }
 
   void end(bool completed, const std::string& reason) override {

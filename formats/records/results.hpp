@@ -57,6 +57,8 @@ class ResultSink {
   virtual void write_checkpoint(const Checkpoint& checkpoint) = 0;
   /// The worst relative energy error so far: with each checkpoint, and before the end.
   virtual void write_energy_error(double) {}
+  /// Makes everything written so far safe on the disk: before anything that may end the program.
+  virtual void flush() {}
   /// Flush and close; `completed` tells a whole run from one that stopped early.
   virtual void end(bool completed, const std::string& reason) = 0;
 };

@@ -161,6 +161,12 @@ ControllerFunctions find_functions(void* handle) {
 
 }  // namespace
 
+bool has_user_blocks(const System& system) {
+  return std::ranges::any_of(system.impl().signals.places, [](const auto& place) {
+    return dynamic_cast<const UserBlock*>(place.block.get()) != nullptr;
+  });
+}
+
 void close_user_blocks(const System& system) {
   for (const auto& place : system.impl().signals.places)
     if (const auto* block = dynamic_cast<const UserBlock*>(place.block.get())) block->close();

@@ -55,7 +55,7 @@ class UserLibraries(ProgramTest):
                 self.make(IN_OUTPUTS, act, 2.5)
                 self.fails(3, "run", "s.toml", error=error,
                            says=["s.toml:1: error: controller 'law': bough_controller_outputs at t = 2.5", word])
-                self.check_samples(200)
+                self.check_samples(0)  # what is written is committed once a second at most
                 os.remove(self.path("s.h5"))
 
     def test_from_its_loading_to_its_end(self):
