@@ -51,6 +51,18 @@ gravity = [0.0, -9.81, 0.0]
 """)
         self.bough("run", "pendulum.toml", "-o", "run.h5")
 
+    def test_channels_that_are_too_many_have_none(self):
+        self.make_run()
+        with open(self.path("pendulum.toml"), "a") as file:
+            for k in range(4000):
+                file.write(f'[[sensor]]\nname = "a{k}"\ntype = "hinge_angle"\nhinge = "pin"\n')
+        self.bough("run", "pendulum.toml", "-o", "many.h5")
+        with h5py.File(self.path("many.h5")) as f:
+            self.assertEqual(len(f["/sensors"]), 4001)
+            self.assertNotIn("DIMENSION_LIST", f["/sensors/a3999"].attrs)
+            self.assertNotIn("REFERENCE_LIST", f["/time"].attrs)
+            np.testing.assert_array_equal(f["/sensors/a3999"], f["/sensors/angle"])
+
     def test_of_a_run_and_of_one_that_goes_on(self):
         self.make_run()
         users = self.find_users("run.h5", "/time")

@@ -174,10 +174,17 @@ void ResultsImage::place_columns(const std::vector<records::Channel>& channels) 
   }
   BOUGH_DEMAND(first == groups_.sample_size);
   changing_begin_ = image_.end();
-  // Every other channel names /time as the scale of its rows; /time, placed last, lists them.
+  // Every other channel names /time as the scale of its rows; /time, placed last, lists them. Where they are too many
+  // for its list there is no scale at all: half of an attachment is no attachment for H5DSis_attached.
+  const hsize_t num_users = columns_.size() - 1;
+  const bool has_scale = num_users > 0 && num_users <= kMaxUsers;
   std::string users;
   for (std::size_t i = 1; i < columns_.size(); ++i) {
     auto& column = columns_[i];
+    if (!has_scale) {
+      place(channels[i], column, {});
+      continue;
+    }
     std::string lists = heap_.encode(kTimeReference, 1);
     if (column.rank > 1) lists += heap_.encode("");
     place(channels[i], column,
@@ -190,8 +197,7 @@ void ResultsImage::place_columns(const std::vector<records::Channel>& channels) 
   for (const auto& [name, text] : {std::pair("CLASS", "DIMENSION_SCALE"), {"NAME", "time"}})
     scale.push_back(
         make_attribute(name, encode_fixed_text(std::strlen(text) + 1), encode_space({}), std::string(text) + '\0'));
-  const hsize_t num_users = columns_.size() - 1;
-  if (num_users > 0 && num_users <= kMaxUsers)
+  if (has_scale)
     scale.push_back(make_attribute("REFERENCE_LIST", encode_scale_user(), encode_space({num_users}), users));
   place(channels.front(), columns_.front(), scale);
   set_number(image_.at(heap_.find(kTimeReference)), columns_.front().header, 8);
