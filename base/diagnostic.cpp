@@ -58,6 +58,12 @@ std::string format(const Diagnostic& d) {
   return make_visible(text);
 }
 
+void Diagnostics::add_new(const Diagnostic& d) {
+  for (const auto& item : items_)
+    if (item.id == d.id && item.what == d.what) return;
+  add(d);
+}
+
 void Diagnostics::add(Diagnostic d) {
   if (d.severity == Severity::Error) ++num_errors_;
   if (d.severity == Severity::Warning) ++num_warnings_;

@@ -37,6 +37,8 @@ class Diagnostics {
   void warning(std::string_view id, SourceLocation where, std::string what, std::string advice = {});
   void note(std::string_view id, SourceLocation where, std::string what, std::string advice = {});
   void add(Diagnostic d);
+  /// Unless one with the same id and text is here already.
+  void add_new(const Diagnostic& d);
 
   const std::vector<Diagnostic>& items() const { return items_; }
   int num_errors() const { return num_errors_; }

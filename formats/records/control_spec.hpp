@@ -42,6 +42,17 @@ struct ActuatorRecord {
   SourceLocation at;
 };
 
+enum class InputHold { Zero, Linear };
+
+/// [[input]]: a signal that is set from outside.
+struct InputRecord {
+  std::string name;
+  std::string dims;  ///< empty: not said
+  double start = 0;
+  InputHold hold = InputHold::Zero;  ///< linear: a new value is reached at the end of the next advance
+  SourceLocation at;
+};
+
 /// [[connect]]: a signal into an input that does not name one.
 struct ConnectRecord {
   std::string from;  ///< a signal: "name", "name:component"

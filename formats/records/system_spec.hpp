@@ -171,6 +171,7 @@ struct SimulationRecord {
 struct SystemSpec {
   std::string file, text;  ///< the TOML file and its text, stored in the results
   std::string name;
+  std::vector<std::pair<std::string, double>> parameters;  ///< [parameters]; their numbers stand where they are named
   std::vector<BodyRecord> bodies;
   std::vector<HingeRecord> hinges;
   std::vector<ConstraintRecord> constraints;
@@ -179,6 +180,7 @@ struct SystemSpec {
   std::vector<ForceElementRecord> force_elements;  ///< [[force]] with a type
   std::vector<SensorRecord> sensors;
   std::vector<TriggerRecord> events;
+  std::vector<InputRecord> inputs;
   std::vector<ControllerRecord> controllers;
   std::vector<ActuatorRecord> actuators;
   std::vector<ConnectRecord> connects;

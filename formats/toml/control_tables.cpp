@@ -36,6 +36,12 @@ records::ConnectRecord read_connect(const Fields& table) {
   return {table.get_string("from"), table.get_string("to"), table.get_number("gain", 1), table.locate()};
 }
 
+records::InputRecord read_input(const Fields& table) {
+  const bool is_linear = table.get_string("hold", "zero") == "linear";
+  return {table.get_string("name"), table.get_string("dims"), table.get_number("start", 0),
+          is_linear ? records::InputHold::Linear : records::InputHold::Zero, table.locate()};
+}
+
 records::Settings read_settings(const Fields& table, const std::string& path, const std::vector<std::string>& known,
                                 Diagnostics& diagnostics) {
   records::Settings settings;

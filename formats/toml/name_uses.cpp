@@ -30,16 +30,17 @@ const std::map<std::string, Keys>& get_name_keys() {
   return keys;
 }
 
-/// Keys whose text is a signal, NAME or NAME:component, of sensors, controllers, actuators and functions.
+/// Keys whose text is a signal, NAME or NAME:component, of sensors, inputs, controllers, actuators and functions.
 const Keys kSignalKeys{"controller/inputs", "controller/reference", "controller/rate", "actuator/input",
                        "force/signal",      "event/signal",         "connect/from"};
-const Keys kSignalKinds{"sensor", "controller", "actuator", "function"};
+const Keys kSignalKinds{"sensor", "input", "controller", "actuator", "function"};
 /// connect.to goes to one of these.
 const Keys kTargetKinds{"controller", "actuator", "force"};
 /// Groups of the results, by kind: "/sensors/NAME" with more behind it.
 const std::map<std::string, std::string> kGroups{
     {"body", "bodies"},    {"hinge", "hinges"},           {"constraint", "constraints"}, {"force", "forces"},
-    {"sensor", "sensors"}, {"controller", "controllers"}, {"actuator", "actuators"}};
+    {"sensor", "sensors"}, {"controller", "controllers"}, {"actuator", "actuators"},
+    {"input", "inputs"}};
 
 struct Use {
   std::string path;  ///< with the numbers of list entries

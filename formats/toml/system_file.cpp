@@ -223,6 +223,9 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
 
   const Fields fields(root, path);
   spec.name = fields.get_string("name", get_stem(path));
+  if (const Value* parameters = fields.find("parameters"))
+    for (const auto& entry : parameters->entries)
+      if (entry.value.is_number()) spec.parameters.emplace_back(entry.key, entry.value.number);
   for (const Fields& table : fields.get_tables("body")) spec.bodies.push_back(read_body(table, path, diagnostics));
   for (const Fields& table : fields.get_tables("hinge")) spec.hinges.push_back(read_hinge(table, diagnostics));
   for (const Fields& table : fields.get_tables("constraint"))
@@ -234,6 +237,7 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
   }
   for (const Fields& table : fields.get_tables("force")) read_force(table, spec, diagnostics);
   for (const Fields& table : fields.get_tables("sensor")) spec.sensors.push_back(read_sensor(table, path, diagnostics));
+  for (const Fields& table : fields.get_tables("input")) spec.inputs.push_back(read_input(table));
   for (const Fields& table : fields.get_tables("controller"))
     spec.controllers.push_back(read_controller(table, path, diagnostics));
   for (const Fields& table : fields.get_tables("actuator"))

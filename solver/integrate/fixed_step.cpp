@@ -45,6 +45,10 @@ void FixedStepper::calc_state(double t, Eigen::Ref<VectorXd> y) {
     return;
   }
   BOUGH_DEMAND(t >= last_ && t < t_);
+  if (t == last_) {
+    y = last_y_;
+    return;
+  }
   between_ = last_y_;
   calc_step(last_, t - last_, t, between_);
   y = between_;

@@ -18,6 +18,7 @@ class FixedStepper : public Stepper {
   void calc_state(double t, Eigen::Ref<VectorXd> y) override;
   Eigen::Vector4d memory() const override;
   void set_memory(const Eigen::Vector4d& memory) override;
+  bool has_history() const override { return false; }
   StepStatistics statistics() const override;
 
  protected:

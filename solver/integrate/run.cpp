@@ -138,78 +138,104 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
 }
 
 void Run::start() {
-  const double t = begin();
-  if (outcome_ || t >= timeline_.end()) return;
-  const Stop stop = stop_ = timeline_.find_stop(t);
-  restart(t);
-  take_step(stop);
+  begin();
+  if (outcome_ || time_ >= timeline_.end()) return;
+  enter_interval();
+  take_step(stop_);
 }
 
-SimulateOutcome Run::go() {
-  double t = begin();
-  if (outcome_) return *outcome_;
-  bool restarts = true;
-  while (t < timeline_.end()) {
-    const Stop stop = stop_ = timeline_.find_stop(t);
-    if (restarts) {
-      restart(t);
-      if (const auto* memory = restored_.find("stepper")) stepper_->set_memory(*memory);
-      restored_ = {};
-    } else {
-      stepper_->set_stop(stop.time, stop.latest);
-    }
-    has_changed_ = has_switched_ = false;
-    bool is_cut = false;  // the step ends before the stop
-    while (stepper_->time() < stop.time && !is_cut) {
-      take_step(stop);
-      const auto change = scan_step(stop);
-      if (!change) return *outcome_;
-      if (change->firing && change->firing->time < stop.time) {
-        t = change->firing->time;
-        guard([&] { stepper_->calc_state(t, y_); });
-        if (const auto ends = fire({*change->firing})) return finish(*ends);
-        settle_switches(t);
-        settle_latches(t);
-        is_cut = true;
-        continue;
-      }
-      if (change->firing) waiting_.push_back(*change->firing);
-      if (change->is_switch && change->time < stop.time) {  // something switches within the step, which ends there
-        t = change->time;
-        guard([&] { stepper_->calc_state(t, y_); });
-        settle_switches(t);
-        settle_latches(t);
-        is_cut = true;
-        continue;
-      }
-      if (change->time < stepper_->time()) {  // the rest of the step is void
-        guard([&] { stepper_->calc_state(change->time, y_); });
-        restart(change->time);
-      }
-      if (stepper_->time() >= stop.time) break;
-      if (is_stop_asked()) {
-        y_ = stepper_->state();
-        return halt(stepper_->time());
-      }
-      save_now_and_then();
-    }
-    restarts = true;
-    if (is_cut) {
-      if (settle_cut(t)) return *outcome_;
-      continue;
-    }
-    t = stop.time;
-    stepper_->calc_state(t, y_);
-    cross_jump();
-    settle_control(t);
-    if (const auto ends = pass(stop)) return finish(*ends);
-    if (has_changed_) settle_switches(t);
-    settle_latches(t);
-    if (is_stop_asked() && t < timeline_.end()) return halt(t);
-    restarts = stop.restarts || has_changed_ || has_switched_;
+void Run::enter_interval() {
+  stop_ = timeline_.find_stop(time_);
+  if (needs_restart_) {
+    restart(time_);
+    if (const auto* memory = restored_.find("stepper")) stepper_->set_memory(*memory);
+    restored_ = {};
+  } else {
+    stepper_->set_stop(stop_.time, stop_.latest);
   }
+  has_changed_ = has_switched_ = has_stepped_ = false;
+  is_inside_ = true;
+}
+
+Run::Arrival Run::cross_interval(double t_pause) {
+  for (;;) {
+    if (scanned_ >= stepper_->time()) {
+      if (stepper_->time() >= stop_.time) return Arrival::AtStop;
+      if (has_stepped_ && is_stop_asked()) {
+        y_ = stepper_->state();
+        outcome_ = halt(time_ = stepper_->time());
+        return Arrival::End;
+      }
+      if (has_stepped_) save_now_and_then();
+      take_step(stop_);
+      has_stepped_ = true;
+    }
+    // A pause at the end of the step by rounding is one at its end.
+    const bool is_within = t_pause < stepper_->time() - timeline_.resolution();
+    const auto change = scan_step(stop_, is_within ? t_pause : stepper_->time());
+    if (!change) return Arrival::End;
+    const bool is_early = change->firing && change->firing->time < stop_.time;
+    if (is_early || (change->is_switch && change->time < stop_.time)) {
+      // An event, or a switch of a block or a contact, ends the step.
+      time_ = is_early ? change->firing->time : change->time;
+      guard([&] { stepper_->calc_state(time_, y_); });
+      if (is_early) {
+        if (const auto ends = fire({*change->firing})) {
+          outcome_ = finish(*ends);
+          return Arrival::End;
+        }
+      }
+      settle_switches(time_);
+      settle_latches(time_);
+      return Arrival::Cut;
+    }
+    if (change->firing) waiting_.push_back(*change->firing);
+    if (change->is_kink && change->time < stepper_->time()) {  // the rest of the step is void
+      guard([&] { stepper_->calc_state(change->time, y_); });
+      restart(change->time);
+    }
+    const double reached = scanned_;
+    if (reached < stop_.time && reached >= t_pause - timeline_.resolution()) {
+      guard([&] { stepper_->calc_state(time_ = reached, y_); });
+      return Arrival::Pause;
+    }
+  }
+}
+
+void Run::arrive_at_stop() {
+  stepper_->calc_state(time_ = stop_.time, y_);
+  cross_jump();
+  settle_control(time_);
+  if (const auto ends = pass(stop_)) {
+    outcome_ = finish(*ends);
+    return;
+  }
+  if (has_changed_) settle_switches(time_);
+  settle_latches(time_);
+  if (is_stop_asked() && time_ < timeline_.end()) {
+    outcome_ = halt(time_);
+    return;
+  }
+  needs_restart_ = stop_.restarts || has_changed_ || has_switched_;
+  is_inside_ = false;
+}
+
+void Run::advance_to(double t) {
+  const double until = std::min(t, timeline_.end());
+  while (!outcome_ && time_ < until - (until < timeline_.end() ? timeline_.resolution() : 0)) {
+    if (!is_inside_) enter_interval();
+    const Arrival arrival = cross_interval(until);
+    if (arrival == Arrival::Cut) {
+      needs_restart_ = true;
+      is_inside_ = false;
+      settle_cut(time_);
+    } else if (arrival == Arrival::AtStop) {
+      arrive_at_stop();
+    }
+  }
+  if (outcome_ || time_ < timeline_.end()) return;
   save(timeline_.end());
-  return close(timeline_.end(), "");
+  outcome_ = close(timeline_.end(), "");
 }
 
 void Run::restart(double t) {
@@ -219,7 +245,7 @@ void Run::restart(double t) {
   scanned_ = t;
 }
 
-bool Run::settle_cut(double t) {
+void Run::settle_cut(double t) {
   const double span = timeline_.end() - timeline_.start(), taken = t - cut_at_;
   num_cuts_ = taken < kShortCut * span ? num_cuts_ + 1 : 0;
   cut_at_ = t;
@@ -235,15 +261,15 @@ bool Run::settle_cut(double t) {
   }
   if (is_stop_asked() && t < timeline_.end()) {
     outcome_ = halt(t);
-    return true;
+    return;
   }
   if (std::chrono::steady_clock::now() - saved_at_ >= options_.checkpoint_after) save(t);
-  return false;
 }
 
-double Run::begin() {
+void Run::begin() {
   y_ = ode_.make_initial_state();
-  double t = timeline_.start();
+  time_ = timeline_.start();
+  const double t = time_;
   if (options_.resume) check_resume();
   sink_.begin(make_header(spec_, setup_, timeline_.num_outputs()));
   // "start": what controllers start from, of a state that was found; the run begins there as any.
@@ -256,13 +282,13 @@ double Run::begin() {
   monitor_.start(calc_energies(ode_.system(), ode_.data()), calc_noise());
   saved_at_ = std::chrono::steady_clock::now();
   if (goes_on) {
-    t = restore(*options_.resume);
+    time_ = restore(*options_.resume);
     if (!options_.resume->find("energy")) {  // of a state that no run has led to
-      evaluate(t, false);
+      evaluate(time_, false);
       monitor_.start(calc_energies(ode_.system(), ode_.data()), calc_noise());
     }
-    resume_at_stop(t);
-    return t;
+    resume_at_stop(time_);
+    return;
   }
   settle_lags(t);
   settle_control(t);
@@ -273,7 +299,6 @@ double Run::begin() {
   start_signal_events(t);
   passed_ = t;
   fire_due(t);
-  return t;
 }
 
 void Run::resume_at_stop(double t) {

@@ -20,20 +20,48 @@ class Run {
  public:
   Run(const System& system, const records::SystemSpec& spec, RunSetup setup, records::ResultSink& sink,
       const SimulateOptions& options, Diagnostics& diagnostics);
-  SimulateOutcome go();
-  /// The beginning of go(), through its first step.
+  /// The beginning, through its first step.
   void start();
+
+  /// The start: loops closed, controllers sampled, the first sample, events of its time.
+  void begin();
+  /// Goes on to t, or to the end where that comes first; what is due at t has come then. Slices change nothing but how
+  /// often event functions are looked at.
+  void advance_to(double t);
+  /// Reached; of an end, its own.
+  double time() const { return time_; }
+  double resolution() const { return timeline_.resolution(); }
+  int num_states() const { return ode_.size(); }
+  /// Of the signals.
+  const VectorXd& memory() const;
+  const std::optional<SimulateOutcome>& outcome() const { return outcome_; }
+  /// All channels at time().
+  const VectorXd& calc_outputs() { return calc_sample(time_); }
+  const Recorder& recorder() const { return setup_.recorder; }
+  /// What is held from time() on by the blocks of `memory`, one row of the signals' memory a value. Whatever a jump of
+  /// them brings about comes at once.
+  void set_held(const std::vector<std::pair<int, double>>& rows);
+  /// All that the run goes on from, bit for bit where the step is fixed.
+  records::Checkpoint save_state();
+  /// Of save_state() by a run of the same system and plan, which has begun. Throws InputError "run.bad-checkpoint".
+  void restore_state(const records::Checkpoint& saved);
 
  private:
   bool is_stop_asked() const { return options_.stop && options_.stop->load(std::memory_order_relaxed); }
 
   // The loop (run.cpp)
-  /// The first sample, or where a checkpoint left off. The time reached; `outcome_` when an event ends the run there.
-  double begin();
   void fire_due(double t);
-  /// Behind a step that something ended at t: whether the run ends there on request. Fails ("run.stalled") where such
-  /// steps make no progress.
-  bool settle_cut(double t);
+  /// Starts the integrator or leads it on to the next stop.
+  void enter_interval();
+  /// What ends a piece of the way to stop_.
+  enum class Arrival { AtStop, Cut, Pause, End };
+  /// Steps on to stop_, to where something cuts a step, or to t_pause.
+  Arrival cross_interval(double t_pause);
+  /// Behind the last step at stop_: jumps, samples, events, contacts.
+  void arrive_at_stop();
+  /// Behind a step that something ended at t: ends the run on request. Fails ("run.stalled") where such steps make no
+  /// progress.
+  void settle_cut(double t);
   /// A checkpoint at a stop is of behind its jump; its events may not have come yet.
   void resume_at_stop(double t);
   /// Energy of motions too small for the tolerances.
@@ -106,9 +134,9 @@ class Run {
   bool find_first(VectorXd EventValues::*rows, const Before& get_before, const Stop& stop, double& to);
   /// The first change between the last look and t.
   Change find_change(const Stop& stop, double t);
-  /// Looks at the last step, at each sample and at its end, and writes the samples, up to the first change. None when
-  /// the run was asked to stop at a sample, and did.
-  std::optional<Change> scan_step(const Stop& stop);
+  /// Looks at the last step up to `until`, at each sample and there, and writes the samples, up to the first change.
+  /// None when the run was asked to stop at a sample, and did.
+  std::optional<Change> scan_step(const Stop& stop, double until);
 
   // Events (run_events.cpp)
   /// Signals that crossed their values between the last look and `to`: each is located and logged, up to the first that
@@ -150,6 +178,9 @@ class Run {
   void check_resume();
   bool is_memory_good(const records::Checkpoint& c) const;
   double restore(const records::Checkpoint& c);
+  void fill_checkpoint(double t);
+  template <class Action>
+  void for_each_kept(const Action& action);
   /// A checkpoint of y_ at t.
   void save(double t);
   void save_now_and_then();
@@ -209,6 +240,10 @@ class Run {
   double last_sample_ = -std::numeric_limits<double>::infinity();
   double passed_ = -std::numeric_limits<double>::infinity();   ///< the last stop whose events have come
   Stop stop_;                                                  ///< the next one, or the one just met
+  double time_ = 0;                                            ///< where y_ is between pieces
+  bool needs_restart_ = true;                                  ///< of the stepper, at the next interval
+  bool is_inside_ = false;                                     ///< paused on the way to stop_
+  bool has_stepped_ = false;                                   ///< on the way to stop_
   double crossed_ = -std::numeric_limits<double>::infinity();  ///< the last stop whose jumps are logged
   std::vector<Firing> waiting_;                                ///< located at the next stop
   double changed_ = -std::numeric_limits<double>::infinity();  ///< the last time an event changed the system

@@ -45,7 +45,7 @@ double Run::restore(const records::Checkpoint& c) {
   return c.time;
 }
 
-void Run::save(double t) {
+void Run::fill_checkpoint(double t) {
   checkpoint_.time = t;
   checkpoint_.state = y_;
   monitor_.get_memory(checkpoint_.memory[0].second);
@@ -57,6 +57,10 @@ void Run::save(double t) {
   ode_.get_memory(checkpoint_.memory[5].second);
   get_control_memory(checkpoint_.memory[6].second);
   latches_.get_memory(checkpoint_.memory[7].second);
+}
+
+void Run::save(double t) {
+  fill_checkpoint(t);
   sink_.write_energy_error(monitor_.worst());
   sink_.write_checkpoint(checkpoint_);
   saved_at_ = std::chrono::steady_clock::now();

@@ -146,17 +146,17 @@ Run::Change Run::find_change(const Stop& stop, double t) {
   return found;
 }
 
-std::optional<Run::Change> Run::scan_step(const Stop& stop) {
-  const double end = stepper_->time();
+std::optional<Run::Change> Run::scan_step(const Stop& stop, double until) {
   for (;;) {
     const double sample = timeline_.next_output();
     Change found;
-    found.time = std::min(sample, end);
+    found.time = std::min(sample, until);
     const bool looks = has_event_functions();
     if (looks) found = find_change(stop, found.time);
     const double stands = found.firing ? found.firing->time : found.time;
+    scanned_ = stands;
     if (sample <= stands && !write_output(sample, looks && !has_located_)) return {};
-    if (found.is_kink || found.is_switch || found.firing || stands >= end) return found;
+    if (found.is_kink || found.is_switch || found.firing || stands >= until) return found;
   }
 }
 

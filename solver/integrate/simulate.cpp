@@ -1,8 +1,9 @@
 #include "solver/integrate/simulate.hpp"
 
-#include <algorithm>
+#include <limits>
 
 #include "solver/integrate/run.hpp"
+#include "solver/integrate/simulator.hpp"
 
 namespace bough::solver {
 
@@ -17,12 +18,6 @@ class NoSink final : public records::ResultSink {
   void end(bool, const std::string&) override {}
 };
 
-void add_new(const Diagnostic& item, Diagnostics& diagnostics) {
-  const auto is_same = [&](const Diagnostic& d) { return d.id == item.id && d.what == item.what; };
-  const auto& said = diagnostics.items();
-  if (std::none_of(said.begin(), said.end(), is_same)) diagnostics.add(item);
-}
-
 }  // namespace
 
 void check_start(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics) {
@@ -35,9 +30,9 @@ void check_start(const System& system, const records::SystemSpec& spec, Diagnost
       Run(system, spec, std::move(setup), sink, options, found).start();
     }
   } catch (const Failure& failure) {
-    for (const auto& item : failure.items()) add_new(item, found);
+    for (const auto& item : failure.items()) found.add_new(item);
   }
-  for (const auto& item : found.items()) add_new(item, diagnostics);
+  for (const auto& item : found.items()) diagnostics.add_new(item);
 }
 
 void check_run(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics) {
@@ -46,11 +41,9 @@ void check_run(const System& system, const records::SystemSpec& spec, Diagnostic
 
 SimulateOutcome simulate(const System& system, const records::SystemSpec& spec, records::ResultSink& sink,
                          const SimulateOptions& options, Diagnostics& diagnostics) {
-  Diagnostics found;
-  RunSetup setup = prepare_run(system, spec, found);
-  for (const auto& item : found.items()) add_new(item, diagnostics);
-  found.throw_if_errors();
-  return Run(system, spec, std::move(setup), sink, options, diagnostics).go();
+  Simulator simulator(system, spec, sink, options, diagnostics);
+  simulator.advance_to(std::numeric_limits<double>::infinity());
+  return *simulator.outcome();
 }
 
 }  // namespace bough::solver

@@ -8,6 +8,7 @@
 #include "solver/actuators/lagged_stiffening.hpp"
 #include "solver/control/controller.hpp"
 #include "solver/sensors/sensor_block.hpp"
+#include "solver/signals/input_block.hpp"
 #include "solver/signals/sources.hpp"
 #include "solver/signals/units.hpp"
 
@@ -35,6 +36,7 @@ class Builder {
     const int errors = diagnostics_.num_errors();
     impl_.signals.start = impl_.start;
     add_sensors();
+    add_inputs();
     declare();
     wire_controllers(uses);
     add_actuators(uses);
@@ -60,6 +62,11 @@ class Builder {
       sources_.list.push_back({entry.name, "/sensors/" + entry.name, entry.size,
                                add(make_sensor_block(entry, spec_.sensors[i], diagnostics_), {})});
     }
+  }
+
+  void add_inputs() {
+    for (const auto& r : spec_.inputs)
+      sources_.list.push_back({r.name, "/inputs/" + r.name, 1, add(std::make_unique<InputBlock>(r), {})});
   }
 
   void declare() {

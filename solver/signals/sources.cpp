@@ -19,7 +19,7 @@ bool Sources::find(const SignalUse& use, const std::string& user, Wire& wire, Di
     const std::string near = find_nearest(name, known);
     diagnostics.error("control.unknown-signal", use.at,
                       user + " names the signal '" + use.text + "', which does not exist",
-                      near.empty() ? "name a sensor, controller, actuator or function, as pid or tip:x"
+                      near.empty() ? "name a sensor, input, controller, actuator or function, as pid or tip:x"
                                    : "did you mean '" + near + "'?");
     return false;
   }

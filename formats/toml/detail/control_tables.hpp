@@ -12,6 +12,7 @@ records::Settings read_settings(const Fields& table, const std::string& path, co
 records::ControllerRecord read_controller(const Fields& table, const std::string& path, Diagnostics& diagnostics);
 records::ActuatorRecord read_actuator(const Fields& table, const std::string& path, Diagnostics& diagnostics);
 records::ConnectRecord read_connect(const Fields& table);
+records::InputRecord read_input(const Fields& table);
 /// Mount, target, the other end, sequence, and what becomes of the measurement; refuses those that the type does not
 /// take.
 void read_sensor_keys(const Fields& table, const std::string& path, const std::string& type,

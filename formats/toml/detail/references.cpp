@@ -63,12 +63,14 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
   std::stable_sort(forces.begin(), forces.end(), [](const auto& a, const auto& b) { return a.at.line < b.at.line; });
   collect_names(forces, "force", diagnostics);
   collect_names(spec.sensors, "sensor", diagnostics);
+  collect_names(spec.inputs, "input", diagnostics);
   collect_names(spec.events, "event", diagnostics);
   const auto controllers = collect_names(spec.controllers, "controller", diagnostics);
   collect_names(spec.actuators, "actuator", diagnostics);
 
   std::vector<std::string> signals = controllers;
   for (const auto& sensor : spec.sensors) signals.push_back(sensor.name);
+  for (const auto& input : spec.inputs) signals.push_back(input.name);
   for (const auto& actuator : spec.actuators) signals.push_back(actuator.name);
 
   for (const auto& body : spec.bodies) {

@@ -1,0 +1,29 @@
+#pragma once
+/// \file [[input]]: a signal that is set from outside while the system moves (docs/formats/system-toml.md).
+#include "formats/records/control_spec.hpp"
+#include "solver/signals/block.hpp"
+
+namespace bough::solver {
+
+/// Its memory is one straight line: from `value` at `from` to `next` at `until`, held before and after. A value that is
+/// held has both alike.
+class InputBlock final : public Block {
+ public:
+  enum Row { kFrom, kValue, kUntil, kNext, kNumRows };
+
+  explicit InputBlock(const records::InputRecord& record);
+  void start(double* z, double* d) const override;
+  void calc_outputs(const BlockInput& in, double* y) const override { y[0] = calc_value(in.t, in.d); }
+  bool depends_on_time() const override { return is_linear_; }
+
+  /// Whether a new value is reached at the next time that is asked for, not at once.
+  bool is_linear() const { return is_linear_; }
+  double start_value() const { return start_; }
+  static double calc_value(double t, const double* d);
+
+ private:
+  double start_;
+  bool is_linear_;
+};
+
+}  // namespace bough::solver
