@@ -2,6 +2,9 @@
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Threads REQUIRED)
 find_library(MUPARSER_LIBRARY muparser REQUIRED)
+find_package(nlohmann_json 3 REQUIRED)
+find_package(fmt REQUIRED)
+find_package(tomlplusplus REQUIRED)
 
 # Debian's SUNDIALS config drags in targets of optional packages; the few libraries needed are found by name.
 find_path(SUNDIALS_INCLUDE_DIR cvode/cvode.h REQUIRED)
@@ -37,7 +40,4 @@ if(NOT BOUGH_SOLVER_ONLY)
   find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)  # the one PETSc uses
   find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
   find_package(CLI11 REQUIRED)
-  find_package(nlohmann_json 3 REQUIRED)
-  find_package(fmt REQUIRED)
-  find_package(tomlplusplus REQUIRED)
 endif()

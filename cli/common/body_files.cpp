@@ -16,10 +16,7 @@ namespace fs = std::filesystem;
 
 bool is_flx(const std::string& name) { return flx::parse_flx_name(name).has_value(); }
 
-std::string get_body_path(const std::string& name) {
-  const auto parsed = flx::parse_flx_name(name);
-  return parsed ? parsed->path : name;
-}
+std::string get_body_path(const std::string& name) { return embed::get_body_path(name); }
 
 bool is_same_body(const std::string& a, const std::string& b) {
   std::error_code ignored;
@@ -72,21 +69,7 @@ records::FlexBody read_moving_body(const std::string& name, Diagnostics& diagnos
                                    const std::optional<RigidPart>& given) {
   auto [body, has_rigid] = read_any(name, diagnostics);
   const std::string path = get_body_path(name);
-  if (!has_rigid && !given)
-    throw InputError("flx.no-inertia", {path},
-                     "the file does not say the mass centre and the inertia of body \"" + body.name + "\"",
-                     "give cg and inertia in the [[body]] of the system, or write the file with bough flx from a body "
-                     "that has them");
-  if (has_rigid && given)
-    throw InputError("flx.two-inertias", {path},
-                     "the file says the mass centre and the inertia of body \"" + body.name + "\" itself",
-                     "take cg and inertia out of the [[body]]");
-  if (given) {
-    body.cg = given->cg;
-    const Eigen::Matrix3d apart =
-        given->cg.squaredNorm() * Eigen::Matrix3d::Identity() - given->cg * given->cg.transpose();
-    body.inertia = given->inertia + body.mass * apart;
-  }
+  embed::give_rigid_part(body, has_rigid, given, path);
   return std::move(body);
 }
 

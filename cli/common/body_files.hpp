@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "formats/records/flex_body.hpp"
+#include "embed/load.hpp"
 
 namespace bough {
 class Diagnostics;
@@ -21,11 +21,7 @@ bool is_same_body(const std::string& a, const std::string& b);
 /// demand_file() of the file alone.
 void demand_body_file(const std::string& name);
 
-/// What TREETOPS takes from its .INT: a .FLX without the extension of version 1.1 does not say it.
-struct RigidPart {
-  records::Vector3d cg;       ///< in B
-  records::Matrix3d inertia;  ///< about the mass centre, in B
-};
+using embed::RigidPart;
 
 /// Adds the note "flx.not-carried" with what a .FLX leaves out, once a file. Throws what the readers throw. A body
 /// whose file does not say its mass centre and inertia has none.

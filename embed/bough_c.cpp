@@ -1,0 +1,424 @@
+// The C interface: handles, status and messages around load_system() and Simulator.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <mutex>
+#include <new>
+#include <shared_mutex>
+#include <unordered_set>
+
+#include "base/version.hpp"
+#include "embed/bough.h"
+#include "embed/files.hpp"
+#include "embed/model.hpp"
+#include "embed/state_bytes.hpp"
+#include "solver/integrate/simulator.hpp"
+
+using bough::Diagnostic;
+using bough::Diagnostics;
+
+struct bough_model {
+  std::shared_ptr<const bough::embed::Model> model;
+};
+
+struct bough_simulation {
+  std::shared_ptr<const bough::embed::Model> model;
+  bough::records::SystemSpec spec;
+  bough::embed::NoSink sink;
+  bough::solver::SimulateOptions options;
+  Diagnostics diagnostics;
+  std::unique_ptr<bough::solver::Simulator> simulator;
+  std::string message;
+  std::uint64_t fingerprint = 0;
+  std::size_t state_size = 0;
+  bool has_failed = false;
+};
+
+namespace {
+
+using bough::embed::Port;
+
+/// Handles that are alive: a dead or foreign one is told, not followed.
+class Handles {
+ public:
+  void add(const void* handle) {
+    const std::unique_lock held(mutex_);
+    alive_.insert(handle);
+  }
+  bool remove(const void* handle) {
+    const std::unique_lock held(mutex_);
+    return alive_.erase(handle) > 0;
+  }
+  bool has(const void* handle) const {
+    const std::shared_lock held(mutex_);
+    return alive_.count(handle) > 0;
+  }
+
+ private:
+  mutable std::shared_mutex mutex_;
+  std::unordered_set<const void*> alive_;
+};
+Handles& get_models() {
+  static Handles handles;
+  return handles;
+}
+Handles& get_simulations() {
+  static Handles handles;
+  return handles;
+}
+
+bool is_alive(const bough_model* model) { return model && get_models().has(model); }
+bool is_alive(const bough_simulation* simulation) { return simulation && get_simulations().has(simulation); }
+
+template <std::size_t N>
+void put(char (&to)[N], const std::string& text) {
+  const std::size_t size = std::min(N - 1, text.size());
+  std::memcpy(to, text.data(), size);
+  to[size] = '\0';
+}
+
+std::string join(const std::vector<Diagnostic>& items) {
+  std::string text;
+  for (const auto& item : items) text += (text.empty() ? "" : "\n") + bough::format(item);
+  return text;
+}
+
+void fill(bough_message* message, const std::vector<Diagnostic>& items) {
+  if (!message) return;
+  *message = {};
+  if (items.empty()) return;
+  put(message->text, join(items));
+  const auto is_error = [](const Diagnostic& d) { return d.severity == bough::Severity::Error; };
+  const auto first = std::find_if(items.begin(), items.end(), is_error);
+  const Diagnostic& d = first == items.end() ? items.front() : *first;
+  put(message->id, d.id);
+  put(message->file, d.where.file);
+  message->line = d.where.line;
+  put(message->what, d.what);
+  put(message->advice, d.advice);
+}
+
+Diagnostic make_error(const char* id, std::string what, std::string advice) {
+  return {bough::Severity::Error, id, {}, std::move(what), std::move(advice)};
+}
+
+std::string to_text(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 9).ptr;
+  return {text, end};
+}
+
+/// Runs `action`; what it throws becomes a status and the items to tell.
+template <class Action>
+bough_status call(const Action& action, std::vector<Diagnostic>& told) noexcept {
+  try {
+    try {
+      return action();
+    } catch (const bough::InputError& error) {
+      told = error.items();
+      return BOUGH_BAD_INPUT;
+    } catch (const bough::Failure& error) {
+      told = error.items();
+      return BOUGH_FAILED;
+    } catch (const std::bad_alloc&) {
+      told = {make_error("embed.no-memory", "there is no memory left", "")};
+      return BOUGH_OUT_OF_MEMORY;
+    } catch (const std::exception& error) {
+      told = {make_error("embed.internal", error.what(), "report it with the model")};
+      return BOUGH_INTERNAL_ERROR;
+    } catch (...) {
+      told = {make_error("embed.internal", "an exception of an unknown type", "report it with the model")};
+      return BOUGH_INTERNAL_ERROR;
+    }
+  } catch (...) {
+    return BOUGH_OUT_OF_MEMORY;
+  }
+}
+
+bough_status refuse(const std::string& what, bough_message* message) {
+  fill(message, {make_error("embed.bad-argument", what, "see bough.h")});
+  return BOUGH_BAD_ARGUMENT;
+}
+
+bough_status refuse(bough_simulation& simulation, const std::string& what) {
+  simulation.message = bough::format(make_error("embed.bad-argument", what, "see bough.h"));
+  return BOUGH_BAD_ARGUMENT;
+}
+
+bough_status load(const char* file, const char* toml, const char* const* settings, bough_model** model,
+                  bough_message* message) {
+  if (message) *message = {};
+  if (model) *model = nullptr;
+  if (!file || !model) return refuse(file ? "model is null" : "the file is null", message);
+  Diagnostics diagnostics;
+  std::vector<Diagnostic> told;
+  const auto status = call(
+      [&] {
+        bough::embed::LoadOptions options;
+        for (const char* const* s = settings; s && *s; ++s) options.set.emplace_back(*s);
+        if (toml) options.text = toml;
+        auto made = std::make_unique<bough_model>();
+        made->model = std::make_shared<const bough::embed::Model>(
+            bough::embed::load_system(file, bough::embed::get_file_readers(), std::move(options), diagnostics));
+        get_models().add(made.get());
+        *model = made.release();
+        return BOUGH_OK;
+      },
+      told);
+  fill(message, status == BOUGH_OK ? diagnostics.items() : told);
+  return status;
+}
+
+/// The port, or none.
+const Port* find_port(const bough_model* model, bough_kind kind, int index) {
+  if (!is_alive(model)) return nullptr;
+  const auto* ports = model->model->list(kind);
+  return ports && index >= 0 && index < std::ssize(*ports) ? &(*ports)[static_cast<std::size_t>(index)] : nullptr;
+}
+
+void apply(const bough_options& o, bough::records::SimulationRecord& s) {
+  if (o.integrator && *o.integrator) s.integrator = o.integrator;
+  if (o.step > 0) s.step = o.step;
+  if (o.relative_tolerance > 0) s.relative_tolerance = o.relative_tolerance;
+  if (o.absolute_tolerance > 0) s.absolute_tolerance = o.absolute_tolerance;
+  if (!(o.duration > 0)) return;
+  // Samples stay where they are, since fixed steps divide the time between them.
+  if (s.output_step == 0) s.output_step = s.duration / 1000;
+  s.duration = o.duration;
+}
+
+std::uint64_t calc_fingerprint(const bough::records::SystemSpec& spec) {
+  const auto& s = spec.simulation;
+  const double numbers[] = {s.start, s.duration, s.output_step, s.step, s.relative_tolerance, s.absolute_tolerance};
+  const std::string text = spec.text + '\0' + s.integrator + '\0' + std::string(bough::get_version());
+  return bough::embed::calc_hash(std::as_bytes(std::span(numbers)), bough::embed::calc_hash(std::as_bytes(std::span(text))));
+}
+
+std::string describe_end(const bough_simulation& simulation) {
+  const auto& outcome = *simulation.simulator->outcome();
+  if (!outcome.reason.empty()) return outcome.reason;
+  return "the run has reached its end at t = " + to_text(outcome.time) + "; a longer duration may be given at its start";
+}
+
+}  // namespace
+
+extern "C" {
+
+int bough_abi_version(void) { return BOUGH_ABI_VERSION; }
+const char* bough_library_version(void) {
+  static const std::string version(bough::get_version());
+  return version.c_str();
+}
+bough_options bough_default_options(void) { return {sizeof(bough_options), nullptr, 0, 0, 0, 0}; }
+
+bough_status bough_load(const char* file, const char* const* settings, bough_model** model, bough_message* message) {
+  return load(file, nullptr, settings, model, message);
+}
+
+bough_status bough_load_text(const char* toml, const char* folder, const char* const* settings, bough_model** model,
+                             bough_message* message) {
+  if (!toml) return load(nullptr, nullptr, settings, model, message);
+  try {
+    const std::string file = folder && *folder ? std::string(folder) + "/system.toml" : "system.toml";
+    return load(file.c_str(), toml, settings, model, message);
+  } catch (...) {
+    return BOUGH_OUT_OF_MEMORY;
+  }
+}
+
+void bough_unload(bough_model* model) {
+  if (model && get_models().remove(model)) delete model;
+}
+
+int bough_count(const bough_model* model, bough_kind kind) {
+  const auto* ports = is_alive(model) ? model->model->list(kind) : nullptr;
+  return ports ? static_cast<int>(ports->size()) : -1;
+}
+
+int bough_find(const bough_model* model, bough_kind kind, const char* name) {
+  if (!is_alive(model) || !name) return -1;
+  try {
+    return model->model->find(kind, name);
+  } catch (...) {
+    return -1;
+  }
+}
+
+const char* bough_name(const bough_model* model, bough_kind kind, int index) {
+  const Port* port = find_port(model, kind, index);
+  return port ? port->name.c_str() : nullptr;
+}
+const char* bough_dims(const bough_model* model, bough_kind kind, int index) {
+  const Port* port = find_port(model, kind, index);
+  return port ? port->dims.c_str() : nullptr;
+}
+double bough_start_value(const bough_model* model, bough_kind kind, int index) {
+  const Port* port = find_port(model, kind, index);
+  return port ? port->start : std::numeric_limits<double>::quiet_NaN();
+}
+
+bough_status bough_start(const bough_model* model, const bough_options* options, bough_simulation** simulation,
+                         bough_message* message) {
+  if (message) *message = {};
+  if (simulation) *simulation = nullptr;
+  if (!simulation) return refuse("simulation is null", message);
+  if (!is_alive(model)) return refuse("the model is null or was unloaded", message);
+  if (options && options->size != sizeof(bough_options))
+    return refuse("options.size is not sizeof(bough_options): begin with bough_default_options()", message);
+  std::vector<Diagnostic> told;
+  auto made = std::unique_ptr<bough_simulation>(new (std::nothrow) bough_simulation);
+  if (!made) return BOUGH_OUT_OF_MEMORY;
+  const auto status = call(
+      [&] {
+        made->model = model->model;
+        made->spec = model->model->loaded().spec;
+        if (options) apply(*options, made->spec.simulation);
+        made->fingerprint = calc_fingerprint(made->spec);
+        made->simulator = std::make_unique<bough::solver::Simulator>(model->model->loaded().system, made->spec,
+                                                                     made->sink, made->options, made->diagnostics);
+        made->state_size = bough::embed::encode_state(made->simulator->save(), 0).size() +
+                           made->simulator->max_step_size() * sizeof(double);
+        get_simulations().add(made.get());
+        *simulation = made.release();
+        return BOUGH_OK;
+      },
+      told);
+  fill(message, status == BOUGH_OK ? (*simulation)->diagnostics.items() : told);
+  return status;
+}
+
+void bough_stop(bough_simulation* simulation) {
+  if (simulation && get_simulations().remove(simulation)) delete simulation;
+}
+
+double bough_time(const bough_simulation* simulation) {
+  return is_alive(simulation) ? simulation->simulator->time() : std::numeric_limits<double>::quiet_NaN();
+}
+
+bough_status bough_set_inputs(bough_simulation* simulation, int first, int n, const double* values) {
+  if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
+  auto& s = *simulation;
+  if (n == 0) return BOUGH_OK;
+  if (!values || first < 0 || n < 0 || n > s.simulator->num_inputs() - first)
+    return refuse(s, values ? "there are no inputs " + std::to_string(first) + " to " + std::to_string(first + n - 1) +
+                                  ": the model has " + std::to_string(s.simulator->num_inputs())
+                            : "values is null");
+  for (int i = 0; i < n; ++i)
+    if (!std::isfinite(values[i])) return refuse(s, "input " + std::to_string(first + i) + " is not finite");
+  s.simulator->set_inputs(first, {values, static_cast<std::size_t>(n)});
+  return BOUGH_OK;
+}
+
+bough_status bough_advance(bough_simulation* simulation, double t, double* reached) {
+  if (reached) *reached = std::numeric_limits<double>::quiet_NaN();
+  if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
+  auto& s = *simulation;
+  auto& simulator = *s.simulator;
+  if (reached) *reached = simulator.time();
+  if (s.has_failed) return BOUGH_FAILED;
+  if (!std::isfinite(t)) return refuse(s, "the time to advance to is not finite");
+  if (t < simulator.time() - simulator.resolution())
+    return refuse(s, "the time " + to_text(t) + " lies before " + to_text(simulator.time()) +
+                         ", which is reached: go back by bough_restore");
+  std::vector<Diagnostic> told;
+  auto status = call(
+      [&] {
+        if (simulator.outcome()) {
+          const bool is_there = t <= simulator.time() + simulator.resolution() && simulator.outcome()->reason.empty();
+          return is_there ? BOUGH_OK : BOUGH_TERMINATED;
+        }
+        simulator.advance_to(t);
+        if (!simulator.outcome()) return BOUGH_OK;
+        if (!simulator.outcome()->energy_is_kept) {
+          told = {s.diagnostics.items().back()};
+          return BOUGH_FAILED;
+        }
+        const bool is_regular = simulator.outcome()->reason.empty() && t <= simulator.time() + simulator.resolution();
+        return is_regular ? BOUGH_OK : BOUGH_TERMINATED;
+      },
+      told);
+  if (reached) *reached = simulator.time();
+  try {
+    if (status == BOUGH_TERMINATED) s.message = describe_end(s);
+    if (!told.empty()) s.message = join(told);
+  } catch (...) {
+    status = BOUGH_OUT_OF_MEMORY;
+  }
+  if (status > BOUGH_BAD_ARGUMENT) s.has_failed = true;
+  return status;
+}
+
+bough_status bough_get_outputs(bough_simulation* simulation, int first, int n, double* values) {
+  if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
+  auto& s = *simulation;
+  if (n == 0) return BOUGH_OK;
+  const auto& ports = *s.model->list(BOUGH_OUTPUTS);
+  if (!values || first < 0 || n < 0 || n > std::ssize(ports) - first)
+    return refuse(s, values ? "there are no outputs " + std::to_string(first) + " to " + std::to_string(first + n - 1) +
+                                  ": the model has " + std::to_string(ports.size())
+                            : "values is null");
+  if (s.has_failed) return BOUGH_FAILED;
+  std::vector<Diagnostic> told;
+  const auto status = call(
+      [&] {
+        const auto& all = s.simulator->calc_outputs();
+        for (int i = 0; i < n; ++i) values[i] = all[ports[static_cast<std::size_t>(first + i)].row];
+        return BOUGH_OK;
+      },
+      told);
+  if (status != BOUGH_OK) {
+    s.has_failed = true;
+    try {
+      s.message = join(told);
+    } catch (...) {
+      return BOUGH_OUT_OF_MEMORY;
+    }
+  }
+  return status;
+}
+
+size_t bough_state_size(const bough_simulation* simulation) { return is_alive(simulation) ? simulation->state_size : 0; }
+
+bough_status bough_save(const bough_simulation* simulation, void* buffer, size_t size) {
+  if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
+  auto& s = *const_cast<bough_simulation*>(simulation);
+  if (!buffer || size < s.state_size)
+    return refuse(s, buffer ? "the state takes " + std::to_string(s.state_size) + " bytes" : "the buffer is null");
+  if (s.has_failed) return BOUGH_FAILED;
+  std::vector<Diagnostic> told;
+  const auto status = call(
+      [&] {
+        const auto bytes = bough::embed::encode_state(s.simulator->save(), s.fingerprint);
+        std::memcpy(buffer, bytes.data(), bytes.size());
+        std::memset(static_cast<char*>(buffer) + bytes.size(), 0, size - bytes.size());
+        return BOUGH_OK;
+      },
+      told);
+  if (!told.empty()) s.message = join(told);
+  return status;
+}
+
+bough_status bough_restore(bough_simulation* simulation, const void* buffer, size_t size) {
+  if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
+  auto& s = *simulation;
+  if (!buffer) return refuse(s, "the buffer is null");
+  std::vector<Diagnostic> told;
+  const auto status = call(
+      [&] {
+        const auto state = bough::embed::decode_state({static_cast<const std::byte*>(buffer), size}, s.fingerprint);
+        s.simulator->restore(state);
+        s.has_failed = false;
+        return BOUGH_OK;
+      },
+      told);
+  if (!told.empty()) s.message = join(told);
+  return status;
+}
+
+const char* bough_last_message(const bough_simulation* simulation) {
+  return is_alive(simulation) ? simulation->message.c_str() : "the simulation is null or was stopped";
+}
+
+}  // extern "C"

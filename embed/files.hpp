@@ -1,0 +1,9 @@
+#pragma once
+/// \file Files that libbough.so reads beside the system file: .FLX, flat bodies, matrices in the system file itself.
+#include "embed/load.hpp"
+
+namespace bough::embed {
+
+FileReaders get_file_readers();
+
+}  // namespace bough::embed

@@ -1,0 +1,91 @@
+#include "embed/model.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "embed/bough.h"
+#include "formats/records/signal_name.hpp"
+#include "solver/integrate/recorder.hpp"
+
+namespace bough::embed {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// "L/T, 1/T": one entry for each component, or one for all.
+std::string find_dims(const records::Channel& channel, int component) {
+  std::vector<std::string> entries;
+  for (std::size_t at = 0; at <= channel.dims.size();) {
+    const auto end = std::min(channel.dims.find(", ", at), channel.dims.size());
+    entries.push_back(channel.dims.substr(at, end - at));
+    at = end + 2;
+  }
+  return static_cast<int>(entries.size()) == channel.size ? entries[static_cast<std::size_t>(component)] : channel.dims;
+}
+
+/// Rank of a channel among the outputs.
+int rank(const std::string& path) {
+  static const char* const order[] = {"/sensors/", "/controllers/", "/actuators/", "/inputs/", "/hinges/"};
+  for (int i = 0; i < 5; ++i)
+    if (path.starts_with(order[i])) return i;
+  return 5;
+}
+
+}  // namespace
+
+Model::Model(LoadedSystem loaded) : loaded_(std::move(loaded)) {
+  const auto& spec = loaded_.spec;
+  for (const auto& r : spec.inputs) ports_[BOUGH_INPUTS].push_back({r.name, r.dims, r.start, 0});
+  for (const auto& [name, value] : spec.parameters) ports_[BOUGH_PARAMETERS].push_back({name, "", value, 0});
+  add_outputs(solver::Recorder(loaded_.system).channels());
+  for (int kind = 0; kind < 5; ++kind)
+    for (std::size_t i = 0; i < ports_[kind].size(); ++i)
+      index_[kind].insert_or_assign(ports_[kind][i].name, static_cast<int>(i));
+}
+
+void Model::add_outputs(const std::vector<records::Channel>& channels) {
+  struct Entry {
+    const records::Channel* channel;
+    int row;
+  };
+  std::vector<Entry> entries;
+  int row = 0;
+  for (const auto& c : channels) {
+    if (c.path != "/time") entries.push_back({&c, row});
+    row += c.size;
+  }
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const Entry& a, const Entry& b) { return rank(a.channel->path) < rank(b.channel->path); });
+  for (const auto& [channel, first] : entries) {
+    const auto& path = channel->path;
+    const bool is_sensor = path.starts_with("/sensors/");
+    const std::string name = is_sensor ? path.substr(9) : path;
+    const auto components = records::get_component_names(path, channel->size, channel->description);
+    for (int i = 0; i < channel->size; ++i) {
+      const auto& component = components[static_cast<std::size_t>(i)];
+      ports_[BOUGH_OUTPUTS].push_back(
+          {name + (component.empty() ? "" : ":" + component), find_dims(*channel, i), kNone, first + i});
+      // Other names of the same: the path of a sensor, the bare name of a controller or actuator, counts.
+      auto& index = index_[BOUGH_OUTPUTS];
+      const int at = static_cast<int>(ports_[BOUGH_OUTPUTS].size()) - 1;
+      std::vector<std::string> others{path};
+      if (is_sensor) others.push_back(name);
+      if (rank(path) < 4) others.push_back(path.substr(path.find('/', 1) + 1));
+      for (const auto& other : others) {
+        if (!component.empty()) index.emplace(other + ":" + component, at);
+        index.emplace(other + ":" + std::to_string(i + 1), at);
+        if (channel->size == 1) index.emplace(other, at);
+      }
+    }
+  }
+}
+
+const std::vector<Port>* Model::list(int kind) const { return kind < 0 || kind > 4 ? nullptr : &ports_[kind]; }
+
+int Model::find(int kind, const std::string& name) const {
+  if (kind < 0 || kind > 4) return -1;
+  const auto found = index_[kind].find(name);
+  return found == index_[kind].end() ? -1 : found->second;
+}
+
+}  // namespace bough::embed

@@ -1,0 +1,236 @@
+"""The shared library against the program: a system stepped from outside moves as `bough run` moves it."""
+import multiprocessing
+import os
+import random
+import subprocess
+import unittest
+
+import h5py
+import numpy as np
+
+from host import INPUTS, OUTPUTS, Model, Simulation
+from support import ProgramTest
+
+# Dry friction, an elastic stop, a sampled noisy sensor, a delayed sampled law, a relay, an event that only logs.
+ARM = """
+[[body]]
+name = "a"
+mass = 2.0
+cg = [0.5, 0.0, 0.0]
+inertia = [0.01, 0.17, 0.17]
+[[body]]
+name = "b"
+mass = 1.0
+cg = [0.3, 0.0, 0.0]
+inertia = [0.01, 0.07, 0.07]
+[[hinge]]
+name = "h1"
+type = "revolute"
+child = "a"
+axis = [0.0, 0.0, 1.0]
+damping = [0.1]
+friction = {coulomb = 0.4}
+[[hinge]]
+name = "h2"
+type = "revolute"
+parent = "a"
+parent_position = [1.0, 0.0, 0.0]
+child = "b"
+axis = [0.0, 0.0, 1.0]
+position = [0.4]
+stops = {lower = -1.0, upper = 1.0, restitution = 0.4}
+[[sensor]]
+name = "angle"
+type = "hinge_angle"
+hinge = "h1"
+noise_density = 0.01
+seed = 3
+sample_time = 0.013
+[[sensor]]
+name = "tip"
+type = "position"
+body = "b"
+[[input]]
+name = "torque"
+dims = "F L"
+[[controller]]
+name = "law"
+type = "gain"
+inputs = ["angle"]
+gain = 3.0
+sample_time = 0.02
+delay = 0.03
+[[controller]]
+name = "relay"
+type = "relay"
+inputs = ["tip:y"]
+on = 0.2
+off = 0.1
+value = 0.5
+[[controller]]
+name = "sum"
+type = "sum"
+inputs = ["law", "torque", "relay"]
+weights = [-1.0, 1.0, 1.0]
+[[actuator]]
+name = "motor"
+type = "hinge"
+hinge = "h1"
+input = "sum"
+[[event]]
+name = "low"
+signal = "tip:y"
+value = -1.0
+[simulation]
+duration = 2.0
+output_step = 0.01
+integrator = "rk4"
+step = 0.002
+gravity = [0.0, -9.81, 0.0]
+"""
+
+
+def go_on(path, state, times, names, queue):
+    """In another process: what `times` show from a state on."""
+    model = Model(path)
+    simulation = Simulation(model)
+    simulation.restore(state)
+    rows = []
+    for t in times:
+        simulation.advance(t)
+        rows.append(simulation.outputs())
+    queue.put((model.names(OUTPUTS) == names, rows))
+
+
+class Embed(ProgramTest):
+    def run_reference(self, path):
+        """Time, and samples of every output by its name."""
+        self.bough("run", path, "-o", "ref.h5")
+        with h5py.File(self.path("ref.h5")) as f:
+            return f["time"][:], {name: self.read(f, name) for name in Model(self.path(path)).names(OUTPUTS)}
+
+    def read(self, f, name):
+        path, _, component = name.partition(":")
+        data = f[path if path.startswith("/") else "/sensors/" + path][:]
+        if not component:
+            return data.reshape(len(data))
+        if component.isdigit():
+            return data[:, int(component) - 1]
+        names = {"x": 0, "y": 1, "z": 2, "w": 0, "angle1": 0, "angle2": 1, "angle3": 2}
+        offset = 1 if data.shape[1] == 4 and component in "xyz" else 0
+        return data[:, names[component] + offset]
+
+    def compare(self, path, times, tolerance=0.0, saves=False, integrator=""):
+        t, expected = self.run_reference(path)
+        model = Model(self.path(path))
+        names, simulation, seen = model.names(OUTPUTS), Simulation(model, integrator), 0
+        for until in times:
+            simulation.advance(until)
+            if saves:
+                state = simulation.save()
+                simulation.close()
+                simulation = Simulation(model)
+                simulation.restore(state)
+            k = int(np.argmin(abs(t - until)))
+            if abs(t[k] - until) > 1e-9:
+                continue
+            seen += 1
+            values = simulation.outputs()
+            for name, value in zip(names, values):
+                wanted = expected[name][k]
+                if tolerance == 0:
+                    self.assertEqual(value, wanted, (name, until))
+                else:
+                    self.assertAlmostEqual(value, wanted, delta=tolerance * max(1, abs(wanted)), msg=(name, until))
+        self.assertGreater(seen, 50)
+        simulation.close()
+        model.close()
+
+    def test_slices_change_nothing(self):
+        self.write("arm.toml", ARM)
+        for step in (0.01, 0.002, 0.03):
+            self.compare("arm.toml", [step * k for k in range(1, round(2 / step) + 1)] + [2.0])
+
+    def test_states_go_on_at_every_sample(self):
+        self.write("arm.toml", ARM)
+        self.compare("arm.toml", [0.01 * k for k in range(1, 201)], saves=True)
+        self.write("implicit.toml", ARM.replace('"rk4"', '"implicit"'))
+        self.compare("implicit.toml", [0.01 * k for k in range(1, 201)], saves=True)
+
+    def test_a_state_goes_on_in_another_process(self):
+        self.write("arm.toml", ARM)
+        model = Model(self.path("arm.toml"))
+        simulation = Simulation(model)
+        simulation.advance(0.7531)
+        times = [0.76 + 0.01 * k for k in range(50)]
+        queue = multiprocessing.get_context("spawn").Queue()
+        process = multiprocessing.get_context("spawn").Process(
+            target=go_on, args=(self.path("arm.toml"), simulation.save(), times, model.names(OUTPUTS), queue))
+        process.start()
+        same, rows = queue.get()
+        process.join()
+        self.assertTrue(same)
+        for t, row in zip(times, rows):
+            simulation.advance(t)
+            np.testing.assert_array_equal(simulation.outputs(), row)
+
+    def test_adaptive_methods_agree_to_their_tolerance(self):
+        for name in ("adams", "rk"):
+            plain = ARM.replace('"rk4"', f'"{name}"').replace("step = 0.002\n", "").replace("noise_density = 0.01", "")
+            self.write("arm.toml", plain.replace("seed = 3\n", ""))
+            self.compare("arm.toml", [0.01 * k for k in range(1, 201)], tolerance=2e-5)
+
+    def test_random_slices_of_examples(self):
+        random.seed(4)
+        for example, file in (("two-link", None), ("four-bar", None), ("robot-arm", None), ("free-flyer", None)):
+            with self.subTest(example=example):
+                self.bough("init", example)
+                folder = self.path(example)
+                for name in sorted(os.listdir(folder)):
+                    if not name.endswith(".toml"):
+                        continue
+                    with open(os.path.join(folder, name), encoding="utf-8") as f:
+                        text = f.read()
+                    if "[simulation]" not in text or "file =" in text or 'type = "library"' in text:
+                        continue
+                    fixed = text.split("[simulation]")
+                    lines = [line for line in fixed[1].splitlines()
+                             if not line.startswith(("integrator", "step", "relative_tol", "absolute_tol"))]
+                    self.write("s.toml", fixed[0] + "[simulation]\nintegrator = \"rk4\"\n" + "\n".join(lines) + "\n")
+                    self.bough("run", "s.toml", "-o", "ref.h5")
+                    with h5py.File(self.path("ref.h5")) as f:
+                        t = f["time"][:]
+                    self.compare("s.toml", list(t[1:]) if len(t) < 3000 else list(t[1::10]))
+
+    def test_it_links_nothing_but_the_system(self):
+        said = subprocess.run(["ldd", os.environ["BOUGH_LIBRARY"]], capture_output=True, text=True, check=True).stdout
+        for name in ("hdf5", "petsc", "slepc", "mpi", "blas", "lapack", "mumps"):
+            self.assertNotIn(name, said)
+        said = subprocess.run(["nm", "-D", "--defined-only", os.environ["BOUGH_LIBRARY"]], capture_output=True, text=True,
+                              check=True).stdout
+        names = {line.split()[-1] for line in said.splitlines()}
+        self.assertTrue(all(name.startswith("bough_") for name in names), sorted(names)[:5])
+
+    def test_ten_thousand_simulations_leave_nothing(self):
+        self.write("arm.toml", ARM)
+
+        def get_memory():
+            with open("/proc/self/statm", encoding="ascii") as f:
+                return int(f.read().split()[1])
+
+        before = 0
+        for k in range(1200):
+            model = Model(self.path("arm.toml"))
+            simulation = Simulation(model)
+            simulation.set_inputs(0, 1.0)
+            simulation.advance(0.01)
+            simulation.close()
+            model.close()
+            if k == 200:
+                before = get_memory()
+        self.assertLess(get_memory() - before, 200)  # pages
+        self.assertEqual(Model(self.path("arm.toml")).names(INPUTS), ["torque"])
+
+
+if __name__ == "__main__":
+    unittest.main()

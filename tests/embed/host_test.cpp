@@ -1,0 +1,288 @@
+// The C and C++ interfaces as a host sees them: nothing but bough.h, bough.hpp and the shared library.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "embed/bough.hpp"
+
+namespace {
+
+/// A mass of 2 on a slide, pushed by an input: x'' = u / 2.
+const std::string kSlide = R"([parameters]
+mass = 2.0
+[[body]]
+name = "bob"
+mass = "$mass"
+inertia = [1.0, 1.0, 1.0]
+[[hinge]]
+name = "slide"
+type = "prismatic"
+child = "bob"
+axis = [1.0, 0.0, 0.0]
+[[sensor]]
+name = "x"
+type = "position"
+body = "bob"
+[[input]]
+name = "push"
+dims = "F"
+start = 1.0
+HOLD
+[[actuator]]
+name = "motor"
+type = "hinge"
+hinge = "slide"
+input = "push"
+EVENT
+[simulation]
+duration = 10.0
+output_step = 0.1
+integrator = "rk4"
+step = 0.01
+)";
+
+std::string make_slide(const std::string& hold = "", const std::string& event = "") {
+  std::string text = kSlide;
+  text.replace(text.find("HOLD"), 4, hold);
+  text.replace(text.find("EVENT"), 5, event);
+  return text;
+}
+
+const std::string kStopAtOne = "[[event]]\nname = \"there\"\nsignal = \"x:x\"\nvalue = 1.0\naction = \"stop\"";
+
+TEST(Host, InputsHoldFromWhenTheyAreSet) {
+  for (const char* integrator : {"rk4", "implicit", "rk", "adams", "bdf"}) {
+    const auto model = bough::Model::load_text(make_slide());
+    const int push = model.find_input("push"), x = model.find_output("x:x");
+    bough::Options options;
+    options.integrator = integrator;
+    options.relative_tolerance = 1e-12;
+    options.absolute_tolerance = 1e-13;
+    bough::Simulation simulation(model, options);
+    EXPECT_EQ(simulation.advance_to(1), bough::Reached::Time);
+    EXPECT_NEAR(simulation.output(x), 0.25, 1e-9) << integrator;
+    simulation.set_input(push, -1);
+    simulation.advance_to(1.505);
+    // From 1 on: 0.25 + 0.5 t - 0.25 t^2.
+    EXPECT_NEAR(simulation.output(x), 0.25 + 0.5 * 0.505 - 0.25 * 0.505 * 0.505, 1e-9) << integrator;
+    simulation.set_input(push, 0);
+    simulation.advance_to(2);
+    const double v = 0.5 - 0.5 * 0.505;
+    EXPECT_NEAR(simulation.output(x), 0.25 + 0.5 * 0.505 - 0.25 * 0.505 * 0.505 + v * 0.495, 1e-9) << integrator;
+  }
+}
+
+TEST(Host, LinearInputsAreReachedAtTheEndOfTheAdvance) {
+  const auto model = bough::Model::load_text(make_slide("hold = \"linear\""));
+  const int x = model.find_output("x:x"), push = model.find_output("/inputs/push");
+  for (const char* integrator : {"rk4", "rk", "adams"}) {
+    bough::Options options;
+    options.integrator = integrator;
+    options.relative_tolerance = 1e-12;
+    options.absolute_tolerance = 1e-13;
+    bough::Simulation simulation(model, options);
+    simulation.set_input(0, 3);
+    EXPECT_EQ(simulation.output(push), 1);
+    simulation.advance_to(2);
+    EXPECT_EQ(simulation.output(push), 3);
+    EXPECT_NEAR(simulation.output(x), 0.5 * (0.5 * 4 + 8.0 / 6), 1e-8) << integrator;  // u = 1 + t
+    simulation.advance_to(3);                                                          // held: v = 2 at 2
+    EXPECT_NEAR(simulation.output(x), 0.5 * (0.5 * 4 + 8.0 / 6) + 2 + 0.75, 1e-8) << integrator;
+  }
+}
+
+TEST(Host, EventsAndTheEndTerminate) {
+  const auto model = bough::Model::load_text(make_slide("", kStopAtOne));
+  bough::Simulation simulation(model);
+  EXPECT_EQ(simulation.advance_to(1), bough::Reached::Time);
+  const auto before = simulation.save();
+  EXPECT_EQ(simulation.advance_to(5), bough::Reached::Terminated);
+  EXPECT_NEAR(simulation.time(), 2, 1e-9);  // t^2 / 4 = 1
+  EXPECT_NE(simulation.reason().find("there"), std::string::npos);
+  EXPECT_NEAR(simulation.output(model.find_output("x:x")), 1, 1e-9);
+  EXPECT_EQ(simulation.advance_to(6), bough::Reached::Terminated);
+  simulation.restore(before);
+  EXPECT_EQ(simulation.time(), 1);
+  simulation.set_input(0, -1);
+  EXPECT_EQ(simulation.advance_to(2.5), bough::Reached::Time);
+  simulation.set_input(0, 0);
+  EXPECT_EQ(simulation.advance_to(10), bough::Reached::Time);  // the very end
+  EXPECT_EQ(simulation.advance_to(11), bough::Reached::Terminated);
+  EXPECT_NE(simulation.reason().find("end"), std::string::npos) << simulation.reason();
+  bough::Options longer;
+  longer.duration = 20;
+  bough::Simulation other(bough::Model::load_text(make_slide()), longer);
+  EXPECT_EQ(other.advance_to(15), bough::Reached::Time);
+}
+
+TEST(Host, AnInputThatJumpsOverTheValueOfAnEventTerminates) {
+  const auto model = bough::Model::load_text(
+      make_slide("", "[[event]]\nname = \"jump\"\nsignal = \"/inputs/push\"\nvalue = 2.0\naction = \"stop\""));
+  bough::Simulation simulation(model);
+  simulation.advance_to(1);
+  simulation.set_input(0, 3);
+  EXPECT_EQ(simulation.advance_to(2), bough::Reached::Terminated);
+  EXPECT_EQ(simulation.time(), 1);
+}
+
+TEST(Host, StatesGoOnBitForBit) {
+  const auto model = bough::Model::load_text(make_slide());
+  for (const char* integrator : {"rk4", "implicit"}) {
+    bough::Options options;
+    options.integrator = integrator;
+    bough::Simulation one(model, options);
+    one.advance_to(0.377);  // within a step
+    const auto state = one.save();
+    bough::Simulation other(model, options);
+    other.advance_to(3);
+    other.restore(state);
+    for (auto* s : {&one, &other}) {
+      s->set_input(0, -0.3);
+      s->advance_to(0.5111);
+      s->set_input(0, 0.7);
+      s->advance_to(4.44);
+    }
+    const int n = static_cast<int>(model.outputs().size());
+    std::vector<double> a(static_cast<std::size_t>(n)), b(a);
+    one.outputs(0, a.data(), n);
+    other.outputs(0, b.data(), n);
+    EXPECT_EQ(a, b) << integrator;
+    EXPECT_EQ(one.save(), other.save()) << integrator;
+  }
+}
+
+TEST(Host, PortsHaveNamesAndDimensions) {
+  const auto model = bough::Model::load_text(make_slide(), ".", {{"mass", 4}});
+  ASSERT_EQ(model.inputs().size(), 1u);
+  EXPECT_EQ(model.inputs()[0].name, "push");
+  EXPECT_EQ(model.inputs()[0].dims, "F");
+  ASSERT_EQ(model.parameters().size(), 1u);
+  EXPECT_EQ(model.parameters()[0].name, "mass");
+  EXPECT_EQ(bough_start_value(model.get(), BOUGH_PARAMETERS, 0), 4);
+  EXPECT_EQ(bough_start_value(model.get(), BOUGH_INPUTS, 0), 1);
+  EXPECT_TRUE(std::isnan(bough_start_value(model.get(), BOUGH_OUTPUTS, 0)));
+  EXPECT_EQ(model.outputs()[0].name, "x:x");
+  EXPECT_EQ(model.outputs()[0].dims, "L");
+  EXPECT_EQ(model.find_output("/sensors/x:x"), 0);
+  EXPECT_EQ(model.find_output("x:3"), 2);
+  EXPECT_EQ(model.outputs()[static_cast<std::size_t>(model.find_output("/hinges/slide/qdot"))].dims, "L/T");
+  EXPECT_THROW(model.find_output("y"), bough::Error);
+  bough::Simulation simulation(model);
+  simulation.advance_to(2);
+  EXPECT_NEAR(simulation.output(0), 0.5, 1e-12);  // 1 / 4 * 4 / 2
+}
+
+TEST(Host, ErrorsNameFileLineAndAdvice) {
+  bough_model* model = nullptr;
+  auto message = std::make_unique<bough_message>();
+  EXPECT_EQ(bough_load_text("[[body]]\nname = \"a\"\nmass = 2.0\ncgg = [0.0, 0.0, 0.0]\n[simulation]\nduration = 1.0\n", "lab", nullptr, &model, message.get()),
+            BOUGH_BAD_INPUT);
+  EXPECT_EQ(model, nullptr);
+  EXPECT_STREQ(message->id, "toml.unknown-key");
+  EXPECT_STREQ(message->file, "lab/system.toml");
+  EXPECT_EQ(message->line, 4);
+  EXPECT_NE(std::string(message->advice).find("'cg'"), std::string::npos) << message->advice;
+  EXPECT_EQ(bough_load("/nowhere/s.toml", nullptr, &model, message.get()), BOUGH_BAD_INPUT);
+  const char* const settings[] = {"mass=heavy", nullptr};
+  EXPECT_EQ(bough_load_text(make_slide().c_str(), ".", settings, &model, message.get()), BOUGH_BAD_INPUT);
+  EXPECT_NE(std::string(message->text).find("mass=heavy"), std::string::npos);
+}
+
+TEST(Host, BadUseIsAStatusAndAMessage) {
+  const auto model = bough::Model::load_text(make_slide());
+  EXPECT_EQ(bough_count(nullptr, BOUGH_INPUTS), -1);
+  EXPECT_EQ(bough_count(model.get(), static_cast<bough_kind>(17)), -1);
+  EXPECT_EQ(bough_find(model.get(), BOUGH_INPUTS, nullptr), -1);
+  EXPECT_EQ(bough_name(model.get(), BOUGH_INPUTS, 1), nullptr);
+  EXPECT_EQ(bough_name(model.get(), BOUGH_INPUTS, -1), nullptr);
+  EXPECT_EQ(bough_load(nullptr, nullptr, nullptr, nullptr), BOUGH_BAD_ARGUMENT);
+  bough_simulation* s = nullptr;
+  EXPECT_EQ(bough_start(nullptr, nullptr, &s, nullptr), BOUGH_BAD_ARGUMENT);
+  EXPECT_EQ(bough_start(model.get(), nullptr, nullptr, nullptr), BOUGH_BAD_ARGUMENT);
+  bough_options wrong = bough_default_options();
+  wrong.size = 3;
+  EXPECT_EQ(bough_start(model.get(), &wrong, &s, nullptr), BOUGH_BAD_ARGUMENT);
+  ASSERT_EQ(bough_start(model.get(), nullptr, &s, nullptr), BOUGH_OK);
+  const double nan = std::numeric_limits<double>::quiet_NaN(), one = 1;
+  double value = 0;
+  EXPECT_EQ(bough_set_inputs(s, 0, 1, &nan), BOUGH_BAD_ARGUMENT);
+  EXPECT_NE(std::string(bough_last_message(s)).find("not finite"), std::string::npos);
+  EXPECT_EQ(bough_set_inputs(s, 0, 2, &one), BOUGH_BAD_ARGUMENT);
+  EXPECT_EQ(bough_set_inputs(s, -1, 1, &one), BOUGH_BAD_ARGUMENT);
+  EXPECT_EQ(bough_set_inputs(s, std::numeric_limits<int>::max(), 1, &one), BOUGH_BAD_ARGUMENT);
+  EXPECT_EQ(bough_set_inputs(s, 0, 1, nullptr), BOUGH_BAD_ARGUMENT);
+  EXPECT_EQ(bough_get_outputs(s, 0, 100000, &value), BOUGH_BAD_ARGUMENT);
+  EXPECT_EQ(bough_advance(s, nan, nullptr), BOUGH_BAD_ARGUMENT);
+  ASSERT_EQ(bough_advance(s, 1, nullptr), BOUGH_OK);
+  EXPECT_EQ(bough_advance(s, 0.5, &value), BOUGH_BAD_ARGUMENT);
+  EXPECT_EQ(value, 1);
+  EXPECT_NE(std::string(bough_last_message(s)).find("before 1"), std::string::npos) << bough_last_message(s);
+  std::vector<std::byte> state(bough_state_size(s));
+  EXPECT_EQ(bough_save(s, state.data(), state.size() - 1), BOUGH_BAD_ARGUMENT);
+  ASSERT_EQ(bough_save(s, state.data(), state.size()), BOUGH_OK);
+  for (std::size_t i = 0; i < state.size(); i += 7) {  // whatever is cut or turned is told
+    if (i < state.size() / 2) EXPECT_EQ(bough_restore(s, state.data(), i), BOUGH_BAD_INPUT) << i;
+    auto turned = state;
+    turned[i] ^= std::byte{0x10};
+    const auto status = bough_restore(s, turned.data(), turned.size());
+    EXPECT_TRUE(status == BOUGH_BAD_INPUT || turned == state || i > state.size() / 2) << i;
+  }
+  ASSERT_EQ(bough_restore(s, state.data(), state.size()), BOUGH_OK);
+  bough_stop(s);
+  bough_stop(s);
+  EXPECT_EQ(bough_advance(s, 2, nullptr), BOUGH_BAD_ARGUMENT);
+  EXPECT_EQ(bough_state_size(s), 0u);
+  EXPECT_TRUE(std::isnan(bough_time(s)));
+  bough_stop(nullptr);
+  bough_unload(nullptr);
+}
+
+TEST(Host, ARunThatDivergesFailsAndComesBack) {
+  const auto model = bough::Model::load_text(make_slide());
+  bough::Options options;
+  options.integrator = "rk4";
+  bough::Simulation simulation(model, options);
+  simulation.advance_to(0.5);
+  const auto state = simulation.save();
+  simulation.set_input(0, 1e300);
+  try {
+    simulation.advance_to(9);
+    ADD_FAILURE() << "no failure at t = " << simulation.time();
+  } catch (const bough::Error& error) {
+    EXPECT_EQ(error.status(), BOUGH_FAILED);
+    EXPECT_NE(std::string(error.what()).find("run.diverged"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(simulation.advance_to(9.5), bough::Error);
+  simulation.restore(state);
+  simulation.set_input(0, 0);
+  EXPECT_EQ(simulation.advance_to(1), bough::Reached::Time);
+}
+
+TEST(Host, ModelsAreSharedByThreadsAndOutlivedBySimulations) {
+  std::vector<double> ends(4);
+  {
+    const auto model = bough::Model::load_text(make_slide());
+    std::vector<std::thread> threads;
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      threads.emplace_back([&, k] {
+        bough::Simulation simulation(model);
+        for (int i = 1; i <= 500; ++i) {
+          simulation.set_input(0, i % 2 ? 1 : -0.5);
+          simulation.advance_to(0.01 * i);
+        }
+        ends[k] = simulation.output(0);
+      });
+    }
+    for (auto& thread : threads) thread.join();
+  }
+  for (const double end : ends) EXPECT_EQ(end, ends[0]);
+  auto model = std::make_unique<bough::Model>(bough::Model::load_text(make_slide()));
+  bough::Simulation simulation(*model);
+  model.reset();
+  simulation.advance_to(2);
+  EXPECT_NEAR(simulation.output(0), 1, 1e-12);
+}
+
+}  // namespace
