@@ -104,6 +104,24 @@ BOUGH_API bough_status bough_advance(bough_simulation *simulation, double t, dou
 /** Outputs first .. first + n - 1 at the present time. */
 BOUGH_API bough_status bough_get_outputs(bough_simulation *simulation, int first, int n, double *values);
 
+/** With an integrator of the host, in place of bough_advance: x are the BOUGH_STATES, g the BOUGH_EVENTS. Between events
+ * the host sets (t, x) and reads derivatives and event functions; where one of those changes its sign, or at a time
+ * event, it puts the simulation there and calls bough_update_discrete. Inputs count at once, whatever their hold. */
+typedef struct bough_event_info {
+  int states_changed;     /* x has jumped: read it again */
+  int terminated;         /* the run has ended */
+  double next_event_time; /* where the host has to stop at the latest */
+} bough_event_info;
+
+BOUGH_API bough_status bough_get_continuous(bough_simulation *simulation, double *x);
+BOUGH_API bough_status bough_set_continuous(bough_simulation *simulation, double t, const double *x);
+BOUGH_API bough_status bough_derivatives(bough_simulation *simulation, double *x_dot);
+BOUGH_API bough_status bough_event_functions(bough_simulation *simulation, double *g);
+/** After each step of the host: whether event mode is called for, since constraints have drifted apart. */
+BOUGH_API bough_status bough_completed_step(bough_simulation *simulation, int *enter_event_mode);
+/** Event mode: what is due at t, what has crossed and what follows, until nothing changes. Call it once at the start. */
+BOUGH_API bough_status bough_update_discrete(bough_simulation *simulation, bough_event_info *info);
+
 /** Bytes that bough_save needs, the same for all states of one simulation; 0: no simulation. */
 BOUGH_API size_t bough_state_size(const bough_simulation *simulation);
 /** Everything that the simulation goes on from, also in another process with the same system, options and version. */

@@ -51,13 +51,13 @@ class Handles {
     const std::unique_lock held(mutex_);
     return alive_.erase(handle) > 0;
   }
-  bool has(const void* handle) const {
+  bool has(const void* handle) {
     const std::shared_lock held(mutex_);
     return alive_.count(handle) > 0;
   }
 
  private:
-  mutable std::shared_mutex mutex_;
+  std::shared_mutex mutex_;
   std::unordered_set<const void*> alive_;
 };
 Handles& get_models() {
@@ -200,6 +200,27 @@ std::string describe_end(const bough_simulation& simulation) {
   const auto& outcome = *simulation.simulator->outcome();
   if (!outcome.reason.empty()) return outcome.reason;
   return "the run has reached its end at t = " + to_text(outcome.time) + "; a longer duration may be given at its start";
+}
+
+/// Runs a computation of a simulation; where it fails the simulation is over.
+template <class Action>
+bough_status compute(bough_simulation& s, const Action& action) noexcept {
+  if (s.has_failed) return BOUGH_FAILED;
+  std::vector<Diagnostic> told;
+  const auto status = call(
+      [&] {
+        action();
+        return BOUGH_OK;
+      },
+      told);
+  if (status == BOUGH_OK) return status;
+  s.has_failed = true;
+  try {
+    s.message = join(told);
+  } catch (...) {
+    return BOUGH_OUT_OF_MEMORY;
+  }
+  return status;
 }
 
 }  // namespace
@@ -359,24 +380,63 @@ bough_status bough_get_outputs(bough_simulation* simulation, int first, int n, d
     return refuse(s, values ? "there are no outputs " + std::to_string(first) + " to " + std::to_string(first + n - 1) +
                                   ": the model has " + std::to_string(ports.size())
                             : "values is null");
-  if (s.has_failed) return BOUGH_FAILED;
-  std::vector<Diagnostic> told;
-  const auto status = call(
-      [&] {
-        const auto& all = s.simulator->calc_outputs();
-        for (int i = 0; i < n; ++i) values[i] = all[ports[static_cast<std::size_t>(first + i)].row];
-        return BOUGH_OK;
-      },
-      told);
-  if (status != BOUGH_OK) {
-    s.has_failed = true;
-    try {
-      s.message = join(told);
-    } catch (...) {
-      return BOUGH_OUT_OF_MEMORY;
-    }
-  }
-  return status;
+  return compute(s, [&] {
+    const auto& all = s.simulator->calc_outputs();
+    for (int i = 0; i < n; ++i) values[i] = all[ports[static_cast<std::size_t>(first + i)].row];
+  });
+}
+
+bough_status bough_get_continuous(bough_simulation* simulation, double* x) {
+  if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
+  if (!x) return refuse(*simulation, "x is null");
+  const auto& state = simulation->simulator->state();
+  std::copy_n(state.data(), state.size(), x);
+  return BOUGH_OK;
+}
+
+bough_status bough_set_continuous(bough_simulation* simulation, double t, const double* x) {
+  if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
+  auto& s = *simulation;
+  const Eigen::Map<const Eigen::VectorXd> state(x, x ? s.simulator->num_states() : 0);
+  if (!x || !std::isfinite(t) || !state.allFinite())
+    return refuse(s, !x ? "x is null" : !std::isfinite(t) ? "t is not finite" : "a state is not finite");
+  return compute(s, [&] { s.simulator->set_continuous(t, state); });
+}
+
+bough_status bough_derivatives(bough_simulation* simulation, double* x_dot) {
+  if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
+  auto& s = *simulation;
+  if (!x_dot) return refuse(s, "x_dot is null");
+  return compute(s, [&] { s.simulator->calc_derivatives(Eigen::Map<Eigen::VectorXd>(x_dot, s.simulator->num_states())); });
+}
+
+bough_status bough_event_functions(bough_simulation* simulation, double* g) {
+  if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
+  auto& s = *simulation;
+  if (!g) return refuse(s, "g is null");
+  return compute(
+      s, [&] { s.simulator->calc_event_functions(Eigen::Map<Eigen::VectorXd>(g, s.simulator->num_event_functions())); });
+}
+
+bough_status bough_completed_step(bough_simulation* simulation, int* enter_event_mode) {
+  if (enter_event_mode) *enter_event_mode = 0;
+  if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
+  auto& s = *simulation;
+  if (!enter_event_mode) return refuse(s, "enter_event_mode is null");
+  return compute(s, [&] { *enter_event_mode = s.simulator->needs_projection() ? 1 : 0; });
+}
+
+bough_status bough_update_discrete(bough_simulation* simulation, bough_event_info* info) {
+  if (info) *info = {};
+  if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
+  auto& s = *simulation;
+  if (!info) return refuse(s, "info is null");
+  return compute(s, [&] {
+    info->states_changed = s.simulator->update_discrete() ? 1 : 0;
+    info->terminated = s.simulator->outcome() ? 1 : 0;
+    info->next_event_time = s.simulator->next_event_time();
+    if (info->terminated) s.message = describe_end(s);
+  });
 }
 
 size_t bough_state_size(const bough_simulation* simulation) { return is_alive(simulation) ? simulation->state_size : 0; }

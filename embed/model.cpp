@@ -5,7 +5,7 @@
 
 #include "embed/bough.h"
 #include "formats/records/signal_name.hpp"
-#include "solver/integrate/recorder.hpp"
+#include "solver/integrate/simulator.hpp"
 
 namespace bough::embed {
 namespace {
@@ -37,7 +37,13 @@ Model::Model(LoadedSystem loaded) : loaded_(std::move(loaded)) {
   const auto& spec = loaded_.spec;
   for (const auto& r : spec.inputs) ports_[BOUGH_INPUTS].push_back({r.name, r.dims, r.start, 0});
   for (const auto& [name, value] : spec.parameters) ports_[BOUGH_PARAMETERS].push_back({name, "", value, 0});
-  add_outputs(solver::Recorder(loaded_.system).channels());
+  NoSink sink;
+  Diagnostics ignored;
+  const solver::SimulateOptions options;
+  const solver::Simulator simulator(loaded_.system, spec, sink, options, ignored);
+  add_outputs(simulator.channels());
+  for (int i = 0; i < simulator.num_states(); ++i) ports_[BOUGH_STATES].push_back({simulator.name_state(i), "", kNone, i});
+  for (const auto& name : simulator.list_event_functions()) ports_[BOUGH_EVENTS].push_back({name, "", kNone, 0});
   for (int kind = 0; kind < 5; ++kind)
     for (std::size_t i = 0; i < ports_[kind].size(); ++i)
       index_[kind].insert_or_assign(ports_[kind][i].name, static_cast<int>(i));

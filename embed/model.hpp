@@ -18,6 +18,7 @@ struct Port {
 
 class Model {
  public:
+  /// Begins a simulation once for the names; throws what that throws.
   explicit Model(LoadedSystem loaded);
 
   const LoadedSystem& loaded() const { return loaded_; }

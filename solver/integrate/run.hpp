@@ -34,6 +34,7 @@ class Run {
   int num_states() const { return ode_.size(); }
   /// Of the signals.
   const VectorXd& memory() const;
+  void put_memory(int row, double value);
   const std::optional<SimulateOutcome>& outcome() const { return outcome_; }
   /// All channels at time().
   const VectorXd& calc_outputs() { return calc_sample(time_); }
@@ -41,6 +42,26 @@ class Run {
   /// What is held from time() on by the blocks of `memory`, one row of the signals' memory a value. Whatever a jump of
   /// them brings about comes at once.
   void set_held(const std::vector<std::pair<int, double>>& rows);
+
+  // By an integrator of the host (run_continuous.cpp)
+  const VectorXd& state() const { return y_; }
+  std::string name_state(int row) const { return ode_.name_row(row); }
+  /// Puts it at (t, x). No time event lies between the last one and t, which may be the next one's.
+  void set_continuous(double t, const Eigen::Ref<const VectorXd>& x);
+  void calc_derivatives(Eigen::Ref<VectorXd> x_dot);
+  const VectorXd& calc_continuous_outputs();
+  /// An event is where one of them changes its sign.
+  int num_event_functions() const;
+  void calc_event_functions(Eigen::Ref<VectorXd> g);
+  std::vector<std::string> list_event_functions() const;
+  /// Whether constraints have drifted apart, so that update_discrete() is called for.
+  bool needs_projection();
+  /// Event mode at (t, x): what is due, what has crossed, and what follows, until nothing changes. Whether x has
+  /// jumped.
+  bool update_discrete();
+  /// The next time event; the end is one.
+  double next_event_time() const { return next_stop_.time; }
+
   /// All that the run goes on from, bit for bit where the step is fixed.
   records::Checkpoint save_state();
   /// Of save_state() by a run of the same system and plan, which has begun. Throws InputError "run.bad-checkpoint".
@@ -179,6 +200,9 @@ class Run {
   bool is_memory_good(const records::Checkpoint& c) const;
   double restore(const records::Checkpoint& c);
   void fill_checkpoint(double t);
+  double calc_seen_time() const;
+  void find_next_stop();
+  int num_kinks() const;
   template <class Action>
   void for_each_kept(const Action& action);
   /// A checkpoint of y_ at t.
@@ -241,6 +265,8 @@ class Run {
   double passed_ = -std::numeric_limits<double>::infinity();   ///< the last stop whose events have come
   Stop stop_;                                                  ///< the next one, or the one just met
   double time_ = 0;                                            ///< where y_ is between pieces
+  Stop next_stop_;                                             ///< of an integrator of the host
+  bool is_at_event_ = false;                                   ///< the event at time_ has come
   bool needs_restart_ = true;                                  ///< of the stepper, at the next interval
   bool is_inside_ = false;                                     ///< paused on the way to stop_
   bool has_stepped_ = false;                                   ///< on the way to stop_

@@ -52,6 +52,8 @@ void Run::for_each_kept(const Action& action) {
 
 const VectorXd& Run::memory() const { return ode_.data().signals.memory; }
 
+void Run::put_memory(int row, double value) { ode_.data().signals.memory[row] = value; }
+
 void Run::set_held(const std::vector<std::pair<int, double>>& rows) {
   VectorXd& memory = ode_.data().signals.memory;
   bool has_jumped = false;

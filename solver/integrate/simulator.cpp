@@ -39,7 +39,11 @@ std::size_t Simulator::max_step_size() const { return static_cast<std::size_t>(2
 const std::optional<SimulateOutcome>& Simulator::outcome() const { return run_->outcome(); }
 const std::vector<records::Channel>& Simulator::channels() const { return run_->recorder().channels(); }
 const Eigen::VectorXd& Simulator::calc_outputs() {
-  hold_inputs(run_->time());
+  if (is_continuous_) {
+    if (is_set_) put_inputs();
+    return run_->calc_continuous_outputs();
+  }
+  if (is_set_) hold_inputs(run_->time());
   return run_->calc_outputs();
 }
 
@@ -78,8 +82,47 @@ void Simulator::hold_inputs(double t) {
 }
 
 void Simulator::advance_to(double t) {
+  is_continuous_ = false;
   if (is_set_) hold_inputs(t);
   run_->advance_to(t);
+}
+
+int Simulator::num_states() const { return run_->num_states(); }
+const Eigen::VectorXd& Simulator::state() const { return run_->state(); }
+std::string Simulator::name_state(int row) const { return run_->name_state(row); }
+int Simulator::num_event_functions() const { return run_->num_event_functions(); }
+std::vector<std::string> Simulator::list_event_functions() const { return run_->list_event_functions(); }
+double Simulator::next_event_time() const { return run_->next_event_time(); }
+bool Simulator::needs_projection() { return run_->needs_projection(); }
+
+void Simulator::set_continuous(double t, const Eigen::Ref<const Eigen::VectorXd>& x) {
+  run_->set_continuous(t, x);
+  is_continuous_ = true;
+}
+
+void Simulator::calc_derivatives(Eigen::Ref<Eigen::VectorXd> x_dot) {
+  if (is_set_) put_inputs();
+  run_->calc_derivatives(x_dot);
+}
+
+void Simulator::calc_event_functions(Eigen::Ref<Eigen::VectorXd> g) {
+  if (is_set_) put_inputs();
+  run_->calc_event_functions(g);
+}
+
+bool Simulator::update_discrete() {
+  if (is_set_) put_inputs();
+  return run_->update_discrete();
+}
+
+void Simulator::put_inputs() {
+  for (int i = 0; i < num_inputs(); ++i) {
+    const double next = next_[static_cast<std::size_t>(i)];
+    const double line[] = {0, next, 0, next};
+    for (int k = 0; k < InputBlock::kNumRows; ++k)
+      run_->put_memory(inputs_[static_cast<std::size_t>(i)].memory + k, line[k]);
+  }
+  is_set_ = false;
 }
 
 records::Checkpoint Simulator::save() const {

@@ -41,6 +41,24 @@ class Simulator {
   /// The components of all channels at time(), one after another. No allocation.
   const Eigen::VectorXd& calc_outputs();
 
+  // By an integrator of the host, in place of advance_to()
+  int num_states() const;
+  const Eigen::VectorXd& state() const;
+  std::string name_state(int row) const;
+  /// Puts it at (t, x), t not past next_event_time().
+  void set_continuous(double t, const Eigen::Ref<const Eigen::VectorXd>& x);
+  void calc_derivatives(Eigen::Ref<Eigen::VectorXd> x_dot);
+  /// An event is where an event function changes its sign.
+  int num_event_functions() const;
+  void calc_event_functions(Eigen::Ref<Eigen::VectorXd> g);
+  std::vector<std::string> list_event_functions() const;
+  /// Whether constraints have drifted apart, so that update_discrete() is called for.
+  bool needs_projection();
+  /// Event mode at (t, x): what is due, what has crossed, and what follows, until nothing changes. Whether x has
+  /// jumped. The run may have ended then.
+  bool update_discrete();
+  double next_event_time() const;
+
   /// Everything that it goes on from, also in another process: bit for bit where the step is fixed.
   records::Checkpoint save() const;
   /// Throws InputError "run.bad-checkpoint" where the state is not of this system and plan.
@@ -52,12 +70,15 @@ class Simulator {
     int memory = 0;  ///< first row of its memory
   };
   void hold_inputs(double t);
+  /// Inputs at once, as an integrator of the host varies them.
+  void put_inputs();
 
   std::unique_ptr<Run> run_;
   std::vector<Input> inputs_;
   std::vector<double> next_;  ///< of inputs, as set
   std::vector<std::pair<int, double>> rows_;
-  bool is_set_ = false;  ///< since the last advance
+  bool is_set_ = false;         ///< since the last advance
+  bool is_continuous_ = false;  ///< an integrator of the host moves it
 };
 
 }  // namespace bough::solver
