@@ -137,8 +137,10 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, Load
       diagnostics.error("cli.no-body-file", body.at.file.empty() ? SourceLocation{path} : body.at,
                         "body \"" + body.name + "\": there is no file " + shorten(get_body_path(file)),
                         "make it with bough " +
-                            (is_flx(file) ? "flx BODY.h5" : "reduce " + name_reducible(shorten(file))) + " -o " +
-                            shorten(get_body_path(file)) + ", or correct the name");
+                            (is_flx(file)                ? "flx BODY.h5"
+                             : has_suffix(file, ".flat") ? "export BODY.h5 --to flat"
+                                                         : "reduce " + name_reducible(shorten(file))) +
+                            " -o " + shorten(get_body_path(file)) + ", or correct the name");
       continue;
     }
     try {
