@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "base/diagnostic.hpp"
+#include "formats/flat/flex_body.hpp"
 #include "formats/flx/flx_file.hpp"
 
 namespace bough::embed {
@@ -21,6 +22,11 @@ records::FlexBody read_body(const std::string& name, Diagnostics&, const std::op
   if (is_hdf5(path))
     throw InputError("embed.hdf5", {path}, "the body is an HDF5 file, which this library does not read",
                      "write it as a flat file: bough export " + path + " --to flat");
+  if (flat::is_flex_body(path)) {
+    auto body = flat::read_flex_body(path);
+    give_rigid_part(body, true, given, path);
+    return body;
+  }
   const auto file = flx::read_flx(path, parsed ? parsed->body_id : 0);
   std::vector<std::string> lacking;
   auto body = flx::make_flex_body(file, lacking);

@@ -26,7 +26,7 @@ CORPUS = os.path.join(ROOT, "tests", "fuzz", "corpus")
 SANITIZER = ("detect_leaks=0:allocator_may_return_null=1:malloc_context_size=1:quarantine_size_mb=1:"
              "thread_local_quarantine_size_kb=16:detect_stack_use_after_return=0")
 # Longest input, and seconds that one may take: HDF5 files are looked through in a process of their own.
-LONGEST = {"hdf5": 30000, "matrices": 600, "mode-tables": 16384, "nastran": 600, "packed-deck": 400,
+LONGEST = {"hdf5": 30000, "flat": 20000, "matrices": 600, "mode-tables": 16384, "nastran": 600, "packed-deck": 400,
            "deck-editor": 1500}
 
 
@@ -40,6 +40,7 @@ WORDS = {"matrices": ["%%MatrixMarket matrix ", "coordinate ", "array ", "real "
          "layout": ["E16.8", "I5", "%.9g", "for j", "end", "text ", "block ", "record=none", "order=k,a", "label=", "{mode:I5}",
                     "gamma4", "gains", "nodes=output"], "table": ["time", "nan", "inf", '"'],
          "model-matrices": ["2*", "1.D0", "/", "!", ",,"], "model-input": ["2*", "1.D0", "/", "!", ",,"],
+         "flat": ["/modes/eigenvalue ", "float64 ", "float32 ", "int32 ", "text ", "/length ", "1 0", "2 0 0"],
          "flx": ["GMASS", "GSTIF", "GDAMP", "ALPHA", "GAMMA1", "GAMMA4", "NODE", "GAIN", "SPECIAL", "!"]}
 
 

@@ -301,6 +301,14 @@ void check_results(const std::string& path, std::string& text, nlohmann::json& j
   json["completed"] = results.completed;
 }
 
+int check_flat(const CheckOptions& options, const Console& console) {
+  Diagnostics diagnostics;
+  std::string text;
+  nlohmann::json json;
+  check_flex_body(options.file, text, json, diagnostics);
+  return finish(options, console, text, json, diagnostics);
+}
+
 int check_hdf5(const CheckOptions& options, const Console& console) {
   Diagnostics diagnostics;
   const auto info = hdf5::read_info(options.file);
@@ -367,6 +375,7 @@ int check_file(const CheckOptions& options, Console& console) {
       throw InputError("cli.bad-diagram", {options.file}, "--diagram draws the blocks of a system file",
                        "name a system.toml");
   }
+  if (is_flat(options.file)) return check_flat(options, console);
   if (is_flx(options.file)) return check_flx(options, console);
   if (has_suffix(options.file, ".h5") || has_suffix(options.file, ".hdf5")) return check_hdf5(options, console);
   if (has_suffix(options.file, ".toml")) {

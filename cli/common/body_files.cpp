@@ -7,6 +7,7 @@
 
 #include "base/diagnostic.hpp"
 #include "cli/common/options.hpp"
+#include "formats/flat/flex_body.hpp"
 #include "formats/flx/flx_file.hpp"
 #include "formats/hdf5/files.hpp"
 
@@ -14,7 +15,9 @@ namespace bough::cli {
 
 namespace fs = std::filesystem;
 
-bool is_flx(const std::string& name) { return flx::parse_flx_name(name).has_value(); }
+bool is_flat(const std::string& name) { return flat::is_flex_body(name); }
+
+bool is_flx(const std::string& name) { return !is_flat(name) && flx::parse_flx_name(name).has_value(); }
 
 std::string get_body_path(const std::string& name) { return embed::get_body_path(name); }
 
@@ -49,6 +52,7 @@ struct Read {
 };
 
 Read read_any(const std::string& name, Diagnostics& diagnostics) {
+  if (is_flat(name)) return {flat::read_flex_body(name), true};
   const auto parsed = flx::parse_flx_name(name);
   if (!parsed) return {hdf5::read_flex_body(name), true};
   const auto file = flx::read_flx(parsed->path, parsed->body_id);

@@ -1,5 +1,6 @@
 #pragma once
-/// \file A flexible body from any file that holds one: HDF5 of `reduce`, or .FLX, of which "panels.FLX:2" is body 2.
+/// \file A flexible body from any file that holds one: HDF5 of `reduce`, a flat file, or .FLX, of which "panels.FLX:2"
+/// is body 2.
 #include <optional>
 #include <string>
 
@@ -12,6 +13,8 @@ struct SourceLocation;
 
 namespace bough::cli {
 
+/// Returns true if the content of the file is that of a flat body file (docs/formats/flat.md), by any name.
+bool is_flat(const std::string& name);
 /// Whether the name is one of a .FLX file, with or without the id of a body.
 bool is_flx(const std::string& name);
 /// The file alone, without the id of a body.

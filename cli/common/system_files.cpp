@@ -29,8 +29,10 @@ std::string name_reducible(const std::string& file) {
 std::string advise_body(const std::string& file) {
   const auto path = embed::shorten_path(get_body_path(file));
   return "make it with bough " +
-         (is_flx(file) ? "flx BODY.h5" : "reduce " + name_reducible(embed::shorten_path(file))) + " -o " + path +
-         ", or correct the name";
+         (is_flx(file)                ? "flx BODY.h5"
+          : has_suffix(file, ".flat") ? "export BODY.h5 --to flat"
+                                      : "reduce " + name_reducible(embed::shorten_path(file))) +
+         " -o " + path + ", or correct the name";
 }
 
 }  // namespace

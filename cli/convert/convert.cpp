@@ -13,6 +13,7 @@
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/convert/unit_system.hpp"
+#include "formats/flat/flex_body.hpp"
 #include "formats/hdf5/body_accuracy.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/nastran/unit_conversion.hpp"
@@ -120,9 +121,13 @@ void convert_toml(const ConvertOptions& o, const records::UnitChange& change, co
 void convert_body(const ConvertOptions& o, const records::UnitChange& change, const std::string& names,
                   const Console& console) {
   check_output(o, o.output, {o.file});
-  auto body = hdf5::read_flex_body(o.file);
+  const bool is_to_flat = is_flat(o.file);
+  auto body = is_to_flat ? flat::read_flex_body(o.file) : hdf5::read_flex_body(o.file);
   records::change_units(body, change);
-  hdf5::write_flex_body(body, hdf5::read_body_accuracy(o.file), o.output);
+  if (is_to_flat)
+    write_text_file(o.output, flat::format_flex_body(body));
+  else
+    hdf5::write_flex_body(body, hdf5::read_body_accuracy(o.file), o.output);
   console.print("written: " + o.output + "\nflexible body" + names);
 }
 
@@ -149,7 +154,7 @@ int run_convert(const ConvertOptions& o) {
   }
   if (is_toml)
     convert_toml(o, change, names, console);
-  else if (is_hdf5(o.file))
+  else if (is_hdf5(o.file) || is_flat(o.file))
     convert_body(o, change, names, console);
   else
     convert_deck(o, change, names, console);

@@ -172,16 +172,16 @@ void add_export(CLI::App& app, Action& action) {
   verb->add_option(
           "file", o->file,
           "csv: results, modes, flexible body, linear model, sweep or response of a deck; vtu: modes file or flexible "
-          "body; pvd: results; gltf: results, modes file or flexible body; bdf: Nastran deck; sid, mbdyn: flexible "
-          "body; mat, "
-          "op4, uff: any HDF5 file of Bough that has such arrays")
+          "body; pvd: results; gltf: results, modes file or flexible body; bdf: Nastran deck; sid, mbdyn, flat: "
+          "flexible body; mat, op4, uff: any HDF5 file of Bough that has such arrays")
       ->required();
   verb->add_option("--to", o->format,
                    "Format: csv, vtu (mode shapes for ParaView), pvd (the moving system for ParaView), gltf "
                    "(.glb: the moving system or modes), bdf (the deck as Bough reads it), mat (MATLAB), "
-                   "op4 (Nastran OUTPUT4), uff (universal file), sid (Standard Input Data), mbdyn (.fem)")
+                   "op4 (Nastran OUTPUT4), uff (universal file), sid (Standard Input Data), mbdyn (.fem), flat (a "
+                   "body for hosts without HDF5)")
       ->required()
-      ->check(CLI::IsMember({"csv", "vtu", "pvd", "gltf", "bdf", "mat", "op4", "uff", "sid", "mbdyn"}));
+      ->check(CLI::IsMember({"csv", "vtu", "pvd", "gltf", "bdf", "mat", "op4", "uff", "sid", "mbdyn", "flat"}));
   verb->add_option("--channel", o->channels,
                    "csv, uff: only these: a path or folder of the file, or a sensor; with :component; may be repeated "
                    "(default: all). csv of modes or a body: modes, their table instead of the shapes")
@@ -206,7 +206,8 @@ void add_export(CLI::App& app, Action& action) {
       "  bough export spinup.h5 --to uff --moving --every 10 -o spinup.uff\n"
       "  bough export boom.h5 --to mat -o boom.mat\n"
       "  bough export boom-modes.h5 --to uff -o boom.uff\n  bough export boom.h5 --to sid -o boom.SID_FEM\n"
-      "  bough export boom.h5 --to mbdyn -o boom.fem\n  bough export boom.bdf --to bdf -o plain.bdf");
+      "  bough export boom.h5 --to mbdyn -o boom.fem\n  bough export boom.h5 --to flat -o boom.flat\n  bough export "
+      "boom.bdf --to bdf -o plain.bdf");
   verb->callback([&action, o] { action = [o] { return run_export(*o); }; });
 }
 

@@ -6,6 +6,7 @@
 
 #include "cli/common/body_files.hpp"
 #include "cli/export/export_matrices.hpp"
+#include "formats/flat/flex_body.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/mbdyn/fem_file.hpp"
 #include "formats/sid/sid.hpp"
@@ -23,12 +24,13 @@ void add_body_export_options(CLI::App& verb, BodyExportOptions& o) {
   verb.add_option("--digits", o.digits, "sid: significant digits")->check(CLI::Range(6, 17))->capture_default_str();
 }
 
-bool is_body_format(const std::string& format) { return format == "sid" || format == "mbdyn"; }
+bool is_body_format(const std::string& format) { return format == "sid" || format == "mbdyn" || format == "flat"; }
 
 std::string make_body_text(const std::string& file, const std::string& format, const BodyExportOptions& o,
                            Diagnostics& diagnostics) {
   if (read_file_format(file) != "bough-flexbody") refuse_export(file, format, "a flexible body, from bough reduce");
   const auto body = read_moving_body(file, diagnostics);
+  if (format == "flat") return flat::format_flex_body(body);
   if (format == "mbdyn") return mbdyn::make_fem(body, {file}, diagnostics);
   sid::Layout layout;
   layout.is_full_inertia = o.inertia == "3x3";
@@ -78,8 +80,8 @@ std::vector<exports::CsvColumn> read_mode_columns(const std::string& file, const
   if (format == "bough-modes") {
     const auto modes = hdf5::read_modes(file);
     if (modes.load_factor.size() > 0)
-      return {{"mode", Eigen::VectorXd::LinSpaced(modes.load_factor.size(), 1,
-                                                  static_cast<double>(modes.load_factor.size()))},
+      return {{"mode",
+               Eigen::VectorXd::LinSpaced(modes.load_factor.size(), 1, static_cast<double>(modes.load_factor.size()))},
               {"load_factor", modes.load_factor}};
     make(modes.frequency_hz, modes.eigenvalue, modes.modal_mass, modes.effective_mass);
   } else {

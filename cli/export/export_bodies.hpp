@@ -1,5 +1,5 @@
 #pragma once
-/// \file export --to sid and mbdyn: a flexible body as the text of another program.
+/// \file export --to sid, mbdyn and flat: a flexible body in the file of another program or host.
 #include <string>
 
 #include <vector>

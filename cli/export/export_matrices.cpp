@@ -8,7 +8,7 @@
 namespace bough::cli {
 
 std::string read_file_format(const std::string& file) {
-  if (is_flx(file)) return "bough-flexbody";
+  if (is_flat(file) || is_flx(file)) return "bough-flexbody";
   const auto attributes = hdf5::read_info(file).attributes;
   const auto found = attributes.find("format");
   return found == attributes.end() ? std::string{} : found->second;

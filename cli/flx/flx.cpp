@@ -13,6 +13,7 @@
 #include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/flx/flx_output.hpp"
+#include "formats/flat/flex_body.hpp"
 #include "formats/flx/fragment.hpp"
 #include "formats/hdf5/files.hpp"
 
@@ -103,7 +104,8 @@ int run_flx(const FlxVerbOptions& o) {
   for (std::size_t b = 0; b < ids.size(); ++b) {
     options.body_id = ids[b];
     blame(o.bodies[b], [&] {
-      files.push_back(flx::make_flx(hdf5::read_flex_body(o.bodies[b]), options));
+      files.push_back(flx::make_flx(
+          is_flat(o.bodies[b]) ? flat::read_flex_body(o.bodies[b]) : hdf5::read_flex_body(o.bodies[b]), options));
       return kSuccess;
     });
     text += flx::write_flx(files.back(), layout);

@@ -6,6 +6,7 @@
 #include "cli/common/console.hpp"
 #include "cli/common/event_list.hpp"
 #include "cli/common/options.hpp"
+#include "formats/flat/flex_body.hpp"
 #include "formats/flx/flx_file.hpp"
 #include "formats/hdf5/files.hpp"
 
@@ -55,11 +56,25 @@ hdf5::FileInfo read_flx_info(const std::string& name) {
   return info;
 }
 
+hdf5::FileInfo read_flat_info(const std::string& path) {
+  hdf5::FileInfo info;
+  info.attributes = {{"format", "bough-flat"}};
+  for (const auto& array : flat::list_arrays(path)) {
+    std::string shape;
+    for (const long size : array.shape) shape += (shape.empty() ? "" : " x ") + std::to_string(size);
+    info.objects.push_back({array.name, shape.empty() ? "scalar" : shape, array.type, array.text, ""});
+    if (array.name == "/name") info.attributes["name"] = array.text;
+  }
+  return info;
+}
+
 int run_info(const InfoOptions& o) {
   const Console console(o.quiet, o.verbosity);
   demand_body_file(o.file);
   if (!o.output.empty()) check_output(o, o.output, {get_body_path(o.file)});
-  const auto info = is_flx(o.file) ? read_flx_info(o.file) : hdf5::read_info(o.file);
+  const auto info = is_flat(o.file)  ? read_flat_info(o.file)
+                    : is_flx(o.file) ? read_flx_info(o.file)
+                                     : hdf5::read_info(o.file);
   const auto format = info.attributes.find("format");
   std::vector<records::EventRecord> events;
   if (format != info.attributes.end() && format->second == "bough-results") events = hdf5::read_events(o.file);
@@ -107,8 +122,8 @@ int run_info(const InfoOptions& o) {
 
 void add_info(CLI::App& app, Action& action) {
   auto o = std::make_shared<InfoOptions>();
-  auto* verb = add_verb(app, "info", "What an HDF5 file of Bough, or a .FLX, holds");
-  verb->add_option("file", o->file, "HDF5 file or .FLX")->required();
+  auto* verb = add_verb(app, "info", "What an HDF5 file of Bough, a .FLX or a flat body file holds");
+  verb->add_option("file", o->file, "HDF5 file, .FLX or flat body file")->required();
   add_common_options(*verb, *o, kOutput | kJson, "Write the list to this file instead of stdout");
   verb->footer("Example:\n  bough info boom.h5");
   verb->callback([&action, o] { action = [o] { return run_info(*o); }; });

@@ -72,6 +72,7 @@ report::Chapter make_campaign_chapter(const std::string& file) {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> list_facts(const std::string& file) {
+  if (is_flat(file)) return {{"file", file}, {"format", "flat"}};
   if (is_flx(file)) return {{"file", file}, {"format", ".FLX"}};
   const auto info = hdf5::read_info(file);
   std::vector<std::pair<std::string, std::string>> facts{{"file", file}};

@@ -2,11 +2,11 @@
 
 #include "base/version.hpp"
 #include "formats/hdf5/body_accuracy.hpp"
-#include "formats/hdf5/detail/body_sense.hpp"
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/recovery.hpp"
 #include "formats/hdf5/detail/writer.hpp"
 #include "formats/hdf5/files.hpp"
+#include "formats/records/body_faults.hpp"
 
 namespace bough::hdf5 {
 
@@ -180,12 +180,6 @@ void read_stiffening(FileReader& file, FlexBody& body) {
     const auto k = static_cast<std::size_t>(e);
     body.locators.push_back({names[k], nodes[k], directions[k]});
     body.kg_external.emplace_back(Eigen::Map<const RowMajor>(external.data.data() + e * n * n, n, n));
-    if (nodes[k] != 0 && (body.find_node(nodes[k]) < 0 || directions[k] < 1 || directions[k] > 6)) {
-      file.error("hdf5.value",
-                 "locator '" + names[k] + "' is at node " + std::to_string(nodes[k]) + ", direction " +
-                     std::to_string(directions[k]) + ", expected an output node and 1 to 6",
-                 "write the file again");
-    }
   }
   body.external_load = file.read_matrix("/stiffening/external_load", n, ne);
   if (!file.has("/stiffening/load_resultant")) return;  // an older file
@@ -200,11 +194,7 @@ void read_method(FileReader& file, FlexBody& body) {
   body.masses = file.read_attribute("/integrals", "masses");
   const bool is_known =
       std::find(std::begin(kMethods), std::end(kMethods), body.integrals_method) != std::end(kMethods);
-  if (!is_known) {
-    file.error("hdf5.value",
-               "/integrals has the method '" + body.integrals_method + "', expected lumped, consistent or exact",
-               "write the file again");
-  } else if (body.num_modes() > 0 && !file.has("/integrals/" + body.integrals_method)) {
+  if (is_known && body.num_modes() > 0 && !file.has("/integrals/" + body.integrals_method)) {
     file.error("hdf5.missing", "/integrals/" + body.integrals_method + " is missing, the set that the solver uses",
                "write the file again");
   }
@@ -303,13 +293,6 @@ FlexBody read_flex_body(const std::string& path) {
   const long p = body.num_nodes();
   body.node_xyz = file.read_matrix("/nodes/xyz", p, 3);
   body.interface_nodes = file.read_integers("/nodes/interface", -1);
-  const auto is_unknown = [&](int id) { return body.find_node(id) < 0; };
-  if (const auto& nodes = body.interface_nodes; std::any_of(nodes.begin(), nodes.end(), is_unknown)) {
-    const auto first = std::find_if(nodes.begin(), nodes.end(), is_unknown);
-    file.error("hdf5.value",
-               "/nodes/interface names node " + std::to_string(*first) + ", which /nodes/id does not have",
-               "write the file again");
-  }
 
   body.eigenvalue = file.read_vector("/modes/eigenvalue", -1);
   const long n = body.num_modes();
@@ -347,9 +330,12 @@ FlexBody read_flex_body(const std::string& path) {
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     body.mesh_phi = Eigen::Map<const Rows>(shapes.data.data(), 3 * g, n).cast<float>();
   }
-  file.throw_if_errors();
-  check_sense(file, body);
-  file.throw_if_errors();
+  const auto add = [&](const std::vector<std::string>& faults) {
+    for (const auto& what : faults) file.error("hdf5.value", what, "correct the file, or write it again");
+    file.throw_if_errors();
+  };
+  add(records::find_unknown_names(body));
+  add(records::find_body_faults(body));
   return body;
 }
 

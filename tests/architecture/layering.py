@@ -19,6 +19,7 @@ MAY_INCLUDE = [
     ("formats/listing", RECORDS),
     ("formats/matrices", RECORDS + ["formats/nastran/reader.hpp", "formats/hdf5/sparse_file.hpp",
                                     "formats/hdf5/inspect.hpp"]),
+    ("formats/flat", RECORDS),
     ("formats/flx", RECORDS),
     ("formats/sid", RECORDS),
     ("formats/mbdyn", RECORDS),

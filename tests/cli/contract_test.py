@@ -320,7 +320,7 @@ class Outputs(ProgramTest):
                 ["flx", "--read", "panel.FLX"], ["compare", "panel.h5"], ["run", "pendulum.toml"],
                 ["plot", "pendulum.h5", "--sensor", "tip"], ["export", "pendulum.h5", "--to", "csv"], ["report", "pendulum.h5"],
                 ["export", "panel.bdf", "--to", "bdf"]] + \
-               [["export", "panel.h5", "--to", kind] for kind in ["csv", "vtu", "mat", "op4", "uff", "sid", "mbdyn"]]
+               [["export", "panel.h5", "--to", kind] for kind in ["csv", "vtu", "mat", "op4", "uff", "sid", "mbdyn", "flat"]]
 
     def test_an_input_is_never_overwritten(self):
         self.make_files()

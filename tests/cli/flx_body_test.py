@@ -237,7 +237,7 @@ child = "twin"
         with open(self.path("run.html")) as f:
             self.assertNotIn("is not here", f.read())
         self.assertEqual(self.notes(page), 0)
-        for to in ("csv", "mat", "op4", "uff", "sid", "mbdyn"):
+        for to in ("csv", "mat", "op4", "uff", "sid", "mbdyn", "flat"):
             self.bough("export", "both.FLX:2", "--to", to, "-o", "out." + to)
             self.assertGreater(os.path.getsize(self.path("out." + to)), 1000, to)
         self.fails(1, "check", self.write("cut.FLX", "FLX 1.1\nBODY 1\n"), error="flx.missing-block")

@@ -249,6 +249,7 @@ PAGES = {
     "docs/formats/mat.md": boom(stands_for={"FILE.h5": "run.h5"}),
     "docs/formats/sid.md": boom(stands_for=SAME),
     "docs/formats/mbdyn.md": boom(stands_for=SAME),
+    "docs/formats/flat.md": boom(stands_for=SAME),
     "docs/formats/campaign-toml.md": Page(
         ("ex08-satellite", "ex01-spinup"), ("reduce wing.toml -q",), {"study.toml": DENSITY, **TIP},
         stands_for={"samples = 20": "samples = 2", "[1, 1000]": "[1, 2]", "number = 1000": "number = 2"}),

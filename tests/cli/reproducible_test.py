@@ -145,7 +145,7 @@ class ReproducibleTest(ProgramTest):
               ("adams", "bdf", "rk", "rk4", "implicit")),
             ("rest.h5", "equilibrium", "rest.toml"), ("linear.h5", "linearize", "adams.toml"),
             ("gains.h5", "response", "linear.h5"), ("selected.h5", "select", "body.h5", "-n", "1"),
-            ("body.sid", "export", "body.h5", "--to", "sid"), ("body.vtu", "export", "body.h5", "--to", "vtu"),
+            ("body.sid", "export", "body.h5", "--to", "sid"), ("body.flat", "export", "body.h5", "--to", "flat"), ("body.vtu", "export", "body.h5", "--to", "vtu"),
             ("run.csv", "export", "rk4.h5", "--to", "csv"), ("run.svg", "plot", "rk4.h5", "--sensor", "tip"),
             ("page.html", "report", "rk4.h5", "body.h5"), ("info.txt", "info", "body.h5"),
             ("other.bdf", "convert", "beam.bdf", "--units", "m-kg-s:mm-N-tonne"),

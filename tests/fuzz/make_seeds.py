@@ -189,6 +189,8 @@ def main():
 
     run("flx", "rod.h5", "-o", "rod.flx")
     put("flx", "rod", os.path.join(folder, "rod.flx"))
+    run("export", "rod.h5", "--to", "flat", "-o", "rod.flat")
+    put("flat", "rod", os.path.join(folder, "rod.flat"))
     put("layout", "columns", data("integrals", "columns.layout"))
     put("layout", "diagonals", data("integrals", "diagonals.layout"))
     run("export", "rod.h5", "--to", "sid", "-o", "rod.sid")

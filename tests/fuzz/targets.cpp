@@ -7,6 +7,8 @@
 #include <sstream>
 
 #include "base/diagnostic.hpp"
+#include "formats/flat/detail/seal.hpp"
+#include "formats/flat/flex_body.hpp"
 #include "formats/flx/flx_file.hpp"
 #include "formats/flx/layout.hpp"
 #include "formats/flx/model_input.hpp"
@@ -214,6 +216,15 @@ void read_flx(const std::string& path) {
   survive([&] { flx::read_flx(path); });
 }
 
+// With the right checksum: the arrays before it are what is of interest.
+void read_flat(const std::string& path) {
+  survive([&] { flat::read_flex_body(path); });
+  std::string bytes = read_text(path);
+  bytes.resize(bytes.size() - std::min(bytes.size(), flat::detail::kSealSize));
+  bytes += flat::detail::make_seal(bytes);
+  survive([&] { flat::parse_flex_body(bytes, path); });
+}
+
 void read_layout(const std::string& path) {
   survive([&] { flx::parse_layout(read_text(path), path); });
 }
@@ -259,6 +270,7 @@ const std::vector<Target>& get_targets() {
       {"op4-binary", read_op4_binary},
       {"matrices", read_matrices},
       {"mode-tables", read_mode_tables},
+      {"flat", read_flat},
       {"flx", read_flx},
       {"layout", read_layout},
       {"sid", read_sid},
