@@ -38,8 +38,8 @@ solver::OperatingPoint make_start(const LoadedSystem& loaded, const solver::Plan
   return point;
 }
 
-solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& plant, double t,
-                              Diagnostics& diagnostics, std::optional<records::Checkpoint>* last) {
+solver::OperatingPoint run_to(const LoadedSystem& loaded, solver::Plant& plant, double t, Diagnostics& diagnostics,
+                              std::optional<records::Checkpoint>* last) {
   auto spec = loaded.spec;
   auto& s = spec.simulation;
   const int nq = loaded.system.num_q(), nu = loaded.system.num_u();
@@ -58,12 +58,17 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, const solver::Plant& p
   if (last) *last = sink.last();
   const auto& state = sink.last().state;
   const auto* discrete = sink.last().find("discrete");
-  if (discrete && !solver::SystemOde(loaded.system).is_alike(*discrete))
-    throw InputError("linear.changed-system", s.at,
-                     fmt::format("an event before t = {:g} locked, released, closed or broke something, and the linear "
-                                 "model is of the system as it starts",
-                                 t),
-                     "write the system as it is then, by locked and active");
+  solver::SystemOde ode(loaded.system);
+  if (discrete && !ode.is_alike(*discrete)) {
+    if (last)
+      throw InputError("linear.changed-system", s.at,
+                       fmt::format("an event before t = {:g} locked, released, closed or broke something, and the models "
+                                   "of a sweep have the same coordinates",
+                                   t),
+                       "linearize there by --at, or end the sweep before it by duration");
+    ode.set_memory(*discrete);
+    plant.set_modes(solver::get_discrete(ode.data()), t, state.head(nq));
+  }
   const auto* control = sink.last().find("control");
   Eigen::VectorXd memory;
   if (control) memory = control->tail(control->size() - 1);

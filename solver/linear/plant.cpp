@@ -37,15 +37,7 @@ bool is_angle(const TreeBody& tb, int coordinate) {
 
 Plant::Plant(const System& system, bool is_open)
     : system_(system), data_(system.make_data()), tangents_(std::make_unique<LawTangents>()), is_open_(is_open) {
-  const double size = calc_size(system.impl().tree);
-  for (int b = 0; b < system.num_bodies(); ++b) {
-    const size_t first = freedoms_.size();
-    add_hinge(b);
-    for (size_t i = first; i < freedoms_.size(); ++i) {
-      if (freedoms_[i].dims == "L") freedoms_[i].step = 0.05 * size;
-    }
-    add_modes(b, size);
-  }
+  add_freedoms();
   BOUGH_DEMAND(num_freedoms() == system.num_dofs());
   t_ = system.impl().start;
   for (const auto& p : system.impl().signals.places) {
@@ -56,7 +48,35 @@ Plant::Plant(const System& system, bool is_open)
   add_inputs();
   add_outputs();
   add_sampled();
-  choose_independent();
+  const OperatingPoint start = make_initial_point();
+  choose_independent(start.t, start.q);
+}
+
+void Plant::add_freedoms() {
+  const double size = calc_size(system_.impl().tree);
+  for (int b = 0; b < system_.num_bodies(); ++b) {
+    const size_t first = freedoms_.size();
+    add_hinge(b);
+    for (size_t i = first; i < freedoms_.size(); ++i) {
+      if (freedoms_[i].dims == "L") freedoms_[i].step = 0.05 * size;
+    }
+    add_modes(b, size);
+  }
+}
+
+void Plant::set_modes(const Discrete& discrete, double t, const VectorXd& q) {
+  Discrete modes = discrete;
+  modes.memory.resize(0);
+  solver::set_modes(system_, *data_, modes);
+  freedoms_.clear();
+  rows_.clear();
+  grip_.clear();
+  inputs_.clear();
+  outputs_ = {};
+  add_freedoms();
+  add_inputs();
+  add_outputs();
+  choose_independent(t, q);
 }
 
 void Plant::add_hinge(int b) {

@@ -62,6 +62,8 @@ class Plant {
   /// Sampled controllers and sensors, which stand still in a linear model.
   std::vector<std::string> list_sampled() const;
 
+  /// Freedoms and loops as hinges and constraints are behind an event, when the system stands at (t, q).
+  void set_modes(const Discrete& discrete, double t, const VectorXd& q);
   OperatingPoint make_initial_point() const;
   /// Where is_open: from now on actuators keep the commands they have there.
   void hold_commands(const OperatingPoint& point);
@@ -80,7 +82,7 @@ class Plant {
   VectorXd get_for_file(const VectorXd& q) const;
 
   /// Every force, then every actuator, then every free hinge coordinate, then components of sensors and controllers
-  /// (by their path, "/sensors/tip:x", where the name alone is taken).
+  /// and every [[input]] (by their path, "/sensors/tip:x", where the name alone is taken).
   const std::vector<PlantInput>& inputs() const { return inputs_; }
   int num_forces() const { return num_forces_; }
   int num_actuators() const { return num_actuators_; }
@@ -168,7 +170,8 @@ class Plant {
   VectorXd displace_tree(const VectorXd& q, const VectorXd& delta) const;
   // Loops (plant_loops.cpp)
   bool has_loops() const { return !grip_.empty(); }
-  void choose_independent();
+  void choose_independent(double t, const VectorXd& q);
+  void add_freedoms();
   MatrixXd calc_follow(const OperatingPoint& point) const;
   void close_positions(VectorXd& q) const;
 

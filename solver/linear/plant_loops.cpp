@@ -21,11 +21,10 @@ constexpr double kModeWeight = 1e-3;
 
 }  // namespace
 
-void Plant::choose_independent() {
+void Plant::choose_independent(double t, const VectorXd& q) {
   const System::Impl& impl = system_.impl();
   if (data_->loops.blocks.empty()) return;
-  const OperatingPoint start = make_initial_point();
-  calc_position(impl.tree, start.t, start.q, data_->tree);
+  calc_position(impl.tree, t, q, data_->tree);
   calc_closure_positions(impl.loops, impl.tree, data_->tree, data_->loops);
   const MatrixXd G = calc_dense_rows(impl.loops, impl.tree, data_->tree, data_->loops);
   MatrixXd own(G.rows(), num_freedoms());

@@ -229,7 +229,84 @@ gravity = [0.0, 0.0, -10.0]
         with h5py.File(self.path("f.h5")) as f:
             self.assertEqual(f["A"].shape, (2, 2))
         self.write("g.toml", STAGE)
-        self.fails(1, "linearize", "g.toml", "--at", 0.9, error="linear.changed-system")
+        self.fails(1, "linearize", "g.toml", "--each", 50, error="linear.changed-system")
+
+    def get_poles(self, *arguments):
+        self.bough("linearize", *arguments, "-o", "l.h5")
+        with h5py.File(self.path("l.h5")) as f:
+            return np.sort_complex(np.linalg.eigvals(f["A"][:]))
+
+    def test_models_behind_events_are_of_the_system_as_it_is_then(self):
+        pair = """
+[[body]]
+name = "a"
+mass = 1.0
+inertia = [1.0, 1.0, 1.0]
+[[body]]
+name = "b"
+mass = 2.0
+inertia = [1.0, 1.0, 1.0]
+[[hinge]]
+name = "ha"
+type = "prismatic"
+child = "a"
+axis = [1.0, 0.0, 0.0]
+stiffness = [10.0]
+position = [0.1]
+[[hinge]]
+name = "hb"
+type = "prismatic"
+parent = "a"
+child = "b"
+axis = [1.0, 0.0, 0.0]
+stiffness = [6.0]
+LOCKED
+[simulation]
+duration = 3.0
+[[event]]
+name = "go"
+time = 1.0
+action = "ACTION"
+hinge = "hb"
+"""
+        for action, locked in (("release", True), ("lock", False)):
+            text = pair.replace("ACTION", action)
+            self.write("s.toml", text.replace("LOCKED", "locked = true" if locked else ""))
+            self.write("then.toml", text.split("[[event]]")[0].replace("LOCKED", "" if locked else "locked = true"))
+            before, behind = self.get_poles("s.toml", "--at", 0.5), self.get_poles("s.toml", "--at", 2.0)
+            self.assertEqual((len(before), len(behind)), (2, 4) if locked else (4, 2))
+            np.testing.assert_allclose(behind, self.get_poles("then.toml"), atol=1e-6)
+
+    def test_models_behind_a_constraint_that_broke_or_closed(self):
+        end = FOUR_BAR.split("[simulation]")[0]
+        for action, active in (("break", True), ("close", False)):
+            own = end if active else end.replace('name = "pin"', 'name = "pin"\nactive = false')
+            self.write("s.toml", own + "[simulation]\nduration = 0.5\noutput_step = 0.001\nintegrator = \"rk\"\n"
+                       f"gravity = [0.0, -9.81, 0.0]\n[[event]]\nname = \"go\"\ntime = 0.1\naction = \"{action}\"\nconstraint = \"pin\"\n")
+            poles = self.get_poles("s.toml", "--at", 0.3)
+            self.bough("run", "s.toml", "-o", "s.h5")
+            self.assertEqual(len(poles), 6 if active else 2)
+            if not active:
+                continue
+            # The open chain from where it is then.
+            with h5py.File(self.path("s.h5")) as f:
+                k = int(np.argmin(abs(f["time"][:] - 0.3)))
+                state = {h: (float(f[f"hinges/{h}/q"][k]), float(f[f"hinges/{h}/qdot"][k]))
+                         for h in ("crank", "elbow", "rocker")}
+            text = end.split("[[constraint]]")[0]
+            lines, name, table = [], "", ""
+            for line in text.splitlines():
+                table = line if line.startswith("[[") else table
+                if line.startswith(("position", "rate", "guess")) and name in state:
+                    continue
+                lines.append(line)
+                if line.startswith("name = "):
+                    name = line.split('"')[1]
+                    if name in state and table == "[[hinge]]":
+                        lines += [f"position = [{state[name][0]!r}]", f"rate = [{state[name][1]!r}]"]
+            self.write("open.toml", "\n".join(lines) + "\n[simulation]\nduration = 1.0\n" +
+                       FOUR_BAR.split("[simulation]")[1].replace("duration", "#"))
+            np.testing.assert_allclose(poles, self.get_poles("open.toml"), atol=2e-5)
 
 
 if __name__ == "__main__":
