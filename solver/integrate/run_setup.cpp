@@ -61,11 +61,6 @@ RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diag
                      "integrator rk is taken: adams does not project onto constraints");
     setup.integrator = "rk";
   }
-  if (setup.integrator == "implicit" && system.num_constraints() > 0)
-    diagnostics.error("run.implicit-constraints", spec.simulation.at,
-                      "integrator implicit steps along the tree of hinges, and constraint '" +
-                          system.constraint_name(0) + "' closes a loop",
-                      "take rk4 for a fixed step, rk or bdf for one that adapts");
   if (setup.integrator == "auto" && diagnostics.num_errors() == 0)
     setup.integrator = choose_integrator(system, spec.simulation, setup.plan.output_step, diagnostics);
   else if ((setup.integrator == "adams" || setup.integrator == "rk") && is_sound && diagnostics.num_errors() == 0)
