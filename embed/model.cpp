@@ -6,22 +6,12 @@
 #include "embed/bough.h"
 #include "formats/records/signal_name.hpp"
 #include "solver/integrate/simulator.hpp"
+#include "solver/signals/units.hpp"
 
 namespace bough::embed {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-/// "L/T, 1/T": one entry for each component, or one for all.
-std::string find_dims(const records::Channel& channel, int component) {
-  std::vector<std::string> entries;
-  for (std::size_t at = 0; at <= channel.dims.size();) {
-    const auto end = std::min(channel.dims.find(", ", at), channel.dims.size());
-    entries.push_back(channel.dims.substr(at, end - at));
-    at = end + 2;
-  }
-  return static_cast<int>(entries.size()) == channel.size ? entries[static_cast<std::size_t>(component)] : channel.dims;
-}
 
 /// Rank of a channel among the outputs.
 int rank(const std::string& path) {
@@ -66,11 +56,12 @@ void Model::add_outputs(const std::vector<records::Channel>& channels) {
     const auto& path = channel->path;
     const bool is_sensor = path.starts_with("/sensors/");
     const std::string name = is_sensor ? path.substr(9) : path;
+    const auto dims = solver::split_dims(channel->dims, channel->size);
     const auto components = records::get_component_names(path, channel->size, channel->description);
     for (int i = 0; i < channel->size; ++i) {
       const auto& component = components[static_cast<std::size_t>(i)];
       ports_[BOUGH_OUTPUTS].push_back(
-          {name + (component.empty() ? "" : ":" + component), find_dims(*channel, i), kNone, first + i});
+          {name + (component.empty() ? "" : ":" + component), dims[static_cast<std::size_t>(i)], kNone, first + i});
       // Other names of the same: the path of a sensor, the bare name of a controller or actuator, counts.
       auto& index = index_[BOUGH_OUTPUTS];
       const int at = static_cast<int>(ports_[BOUGH_OUTPUTS].size()) - 1;

@@ -240,6 +240,7 @@ int check_system(const CheckOptions& options, const Console& console) {
            {spec.constraints.size(), "constraint"},
            {spec.forces.size() + spec.force_elements.size(), "force"},
            {spec.sensors.size(), "sensor"},
+           {spec.inputs.size(), "input"},
            {spec.controllers.size(), "controller"},
            {spec.actuators.size(), "actuator"},
            {spec.functions.size(), "function"},

@@ -29,7 +29,7 @@ std::string quote(const std::string& text) {
 struct Style {
   const char *shape, *fill;
 };
-constexpr Style kFunction{"ellipse", "#f3e8d2"}, kSensor{"cds", "#dcebdd"}, kController{"box", "#dde6f3"},
+constexpr Style kFunction{"ellipse", "#f3e8d2"}, kSensor{"cds", "#dcebdd"}, kInput{"parallelogram", "#ffffff"}, kController{"box", "#dde6f3"},
     kActuator{"house", "#f2dcdc"}, kForce{"house", "#efe3ee"}, kBody{"box3d", "#e6e6e6"}, kEvent{"diamond", "#ffffff"};
 
 class Writer {
@@ -40,6 +40,7 @@ class Writer {
     Diagnostics unheard;  // the system is built, which reports what is wrong
     const auto uses = solver::collect_uses(spec_, unheard);
     for (const auto& r : spec_.sensors) sources_.push_back({"sensor", r.name, "/sensors/" + r.name});
+    for (const auto& r : spec_.inputs) sources_.push_back({"input", r.name, "/inputs/" + r.name});
     for (const auto& r : spec_.controllers) sources_.push_back({"controller", r.name, "/controllers/" + r.name});
     for (const auto& r : spec_.actuators) sources_.push_back({"actuator", r.name, "/actuators/" + r.name});
     for (const auto& r : spec_.functions) sources_.push_back({"function", r.name, "/signals/" + r.name});
@@ -94,6 +95,7 @@ class Writer {
   }
 
   void add_signals(const solver::SignalUses& uses) {
+    for (const auto& r : spec_.inputs) node("input", r.name, r.name + "\n(input)", kInput);
     for (const auto& r : spec_.controllers) {
       const std::string me = "controller " + r.name;
       node("controller", r.name, r.name + "\n" + r.type + describe_rate(r.settings) + (r.active ? "" : "\n(off)"),

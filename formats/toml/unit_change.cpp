@@ -143,6 +143,13 @@ void change_event(const UnitTable& t, SignalUnits& units) {
     t.error("toml.unit-signal", "value", "the unit of " + t.text("signal") + " is not known", "convert it by hand");
 }
 
+void change_input(const UnitTable& t, SignalUnits& units) {
+  if (const auto unit = units.find_input_unit(t.table))
+    t.scale("start", *unit);
+  else if (!units.change().is_none())
+    t.error("toml.unit-signal", "name", "its dimension is not known", "give its dims, as dims = \"F L\"");
+}
+
 void change_simulation(const UnitTable& t, const records::UnitChange& c, const std::string& file,
                        Diagnostics& diagnostics) {
   for (const char* key : {"start", "duration", "output_step", "output_from", "output_until", "step", "stiffening_step"})
@@ -169,6 +176,7 @@ void change_system(const toml::table& root, UnitEdits& edits, const records::Uni
   visit("function", [&](const UnitTable& t) { change_function(t, units); });
   visit("force", [&](const UnitTable& t) { change_force(t, units, facts); });
   visit("sensor", [&](const UnitTable& t) { change_sensor(t, units); });
+  visit("input", [&](const UnitTable& t) { change_input(t, units); });
   visit("controller", [&](const UnitTable& t) { change_controller(t, units); });
   visit("actuator", [&](const UnitTable& t) { change_actuator(t, units); });
   visit("event", [&](const UnitTable& t) { change_event(t, units); });

@@ -47,7 +47,9 @@ void Plant::add_inputs() {
   };
   std::vector<PlantInput> more;
   for (const auto& p : system_.impl().signals.places) {
-    if (p.actuator >= 0 || (!is_of(*p.block, "/sensors/") && !is_of(*p.block, "/controllers/"))) continue;
+    const bool is_signal =
+        is_of(*p.block, "/sensors/") || is_of(*p.block, "/inputs/") || is_of(*p.block, "/controllers/");
+    if (p.actuator >= 0 || !is_signal) continue;
     const std::string name = is_taken(p.block->name) ? p.block->path : p.block->name;
     const int size = p.block->sizes.outputs;
     for (int i = 0; i < size; ++i)

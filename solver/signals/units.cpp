@@ -2,52 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <optional>
-#include <sstream>
+
+#include "formats/records/dims.hpp"
 
 namespace bough::solver {
-namespace {
-
-using Exponents = std::array<double, 3>;  // of M, L, T
-
-/// "M L^2/T^2", "F L", "1/T", "1"; nothing for other texts.
-std::optional<Exponents> parse(const std::string& text) {
-  Exponents all{};
-  double sign = 1;
-  std::string spaced;
-  for (const char c : text) spaced += c == '/' ? std::string(" / ") : std::string(1, c);
-  std::istringstream words(spaced);
-  std::string word;
-  while (words >> word) {
-    if (word == "/") {
-      sign = -1;
-      continue;
-    }
-    double power = sign;
-    if (const auto hat = word.find('^'); hat != std::string::npos) {
-      char* end = nullptr;
-      power = sign * std::strtod(word.c_str() + hat + 1, &end);
-      if (*end != '\0') return {};
-      word.resize(hat);
-    }
-    if (word == "1") continue;
-    if (word == "M")
-      all[0] += power;
-    else if (word == "L")
-      all[1] += power;
-    else if (word == "T")
-      all[2] += power;
-    else if (word == "F")
-      all[0] += power, all[1] += power, all[2] -= 2 * power;
-    else
-      return {};
-  }
-  return all;
-}
-
-}  // namespace
-
 std::vector<std::string> split_dims(const std::string& dims, int outputs) {
   std::vector<std::string> parts;
   for (size_t from = 0; from <= dims.size();) {
@@ -59,12 +18,12 @@ std::vector<std::string> split_dims(const std::string& dims, int outputs) {
   if (parts.size() == 1) parts.resize(n, parts.front());
   if (parts.size() != n) return std::vector<std::string>(n);
   for (auto& part : parts)
-    if (!parse(part)) part.clear();
+    if (!records::parse_dims(part)) part.clear();
   return parts;
 }
 
 bool are_alike_dims(const std::string& a, const std::string& b) {
-  return a.empty() || b.empty() || parse(a) == parse(b);
+  return a.empty() || b.empty() || records::parse_dims(a) == records::parse_dims(b);
 }
 
 std::string make_rate_dims(const std::string& a) {

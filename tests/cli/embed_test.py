@@ -197,6 +197,19 @@ class Embed(ProgramTest):
                            "integrator = \"rk4\"\nstep = 2e-4\nenergy_error_limit = 10.0\n" + "\n".join(lines) + "\n")
                 self.compare(folder + "s.toml", [2e-3 * k for k in range(1, 151)])
 
+    def test_inputs_are_known_everywhere(self):
+        self.write("arm.toml", ARM.replace('dims = "F L"', 'dims = "F L"\nstart = 0.5'))
+        self.assertIn("1 input", self.bough("check", "arm.toml", "--diagram", "arm.dot").stdout)
+        with open(self.path("arm.dot"), encoding="utf-8") as f:
+            self.assertIn('"input torque" -> "controller sum"', f.read())
+        self.bough("convert", "arm.toml", "--units", "m-kg-s:mm-N-tonne", "-o", "mm.toml")
+        with open(self.path("mm.toml"), encoding="utf-8") as f:
+            self.assertIn("start = 500", f.read())
+        self.write("plain.toml", ARM.replace("friction = {coulomb = 0.4}\n", "").replace("restitution = 0.4", "stiffness = 1.0"))
+        self.bough("linearize", "plain.toml", "--inputs", "torque,motor", "--outputs", "tip", "-o", "l.h5")
+        with h5py.File(self.path("l.h5")) as f:
+            np.testing.assert_allclose(f["B"][:, 0], f["B"][:, 1], atol=1e-12)  # the sum passes it on to the motor
+
     def test_it_links_nothing_but_the_system(self):
         said = subprocess.run(["ldd", os.environ["BOUGH_LIBRARY"]], capture_output=True, text=True, check=True).stdout
         for name in ("hdf5", "petsc", "slepc", "mpi", "blas", "lapack", "mumps"):

@@ -1,7 +1,10 @@
 #include "formats/toml/detail/signal_units.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+
+#include "formats/records/dims.hpp"
 
 namespace bough::toml_files {
 
@@ -182,7 +185,14 @@ std::optional<double> SignalUnits::find_channel_unit(const std::string& channel)
   return {};
 }
 
+std::optional<double> SignalUnits::find_input_unit(const toml::table& input) const {
+  const auto powers = records::parse_dims(get_text(input, "dims"));
+  if (!powers) return {};
+  return std::pow(c_.mass, (*powers)[0]) * std::pow(c_.length, (*powers)[1]) * std::pow(c_.time, (*powers)[2]);
+}
+
 std::vector<double> SignalUnits::list_units(const std::string& signal) {
+  if (signal.starts_with("/inputs/")) return list_units(signal.substr(8));
   if (signal.starts_with("/sensors/")) return list_units(signal.substr(9));
   if (signal.starts_with("/controllers/")) return list_units(signal.substr(13));
   if (signal.starts_with("/actuators/")) return list_units(signal.substr(11));
@@ -194,7 +204,9 @@ std::vector<double> SignalUnits::list_units(const std::string& signal) {
   const auto* sensor = find("sensor", name);
   const auto* actuator = find("actuator", name);
   std::vector<double> all;
-  if (sensor != nullptr)
+  if (const auto* input = find("input", name)) {
+    if (const auto unit = find_input_unit(*input)) all = {*unit};
+  } else if (sensor != nullptr)
     all = list_sensor_units(*sensor);
   else if (actuator != nullptr)
     all = list_actuator_units(*actuator);

@@ -36,6 +36,8 @@ class SignalUnits {
   std::vector<Wire> list_wires(const toml::table& block, const std::string& key, const std::string& port) const;
   /// Units of a signal's components; empty where they cannot be told.
   std::vector<double> list_units(const std::string& signal);
+  /// By its dims; nothing where they are not known.
+  std::optional<double> find_input_unit(const toml::table& input) const;
   /// The unit of one component or of all alike; nothing where it cannot be told.
   std::optional<double> find_unit(const std::string& signal);
   /// The unit of what a controller gives out; of a function's values.
