@@ -351,15 +351,17 @@ bough_status bough_derivatives(bough_simulation* simulation, double* x_dot) {
   if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
   auto& s = *simulation;
   if (!x_dot) return refuse(s, "x_dot is null");
-  return compute(s, [&] { s.simulator().calc_derivatives(Eigen::Map<Eigen::VectorXd>(x_dot, s.simulator().num_states())); });
+  return compute(
+      s, [&] { s.simulator().calc_derivatives(Eigen::Map<Eigen::VectorXd>(x_dot, s.simulator().num_states())); });
 }
 
 bough_status bough_event_functions(bough_simulation* simulation, double* g) {
   if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
   auto& s = *simulation;
   if (!g) return refuse(s, "g is null");
-  return compute(
-      s, [&] { s.simulator().calc_event_functions(Eigen::Map<Eigen::VectorXd>(g, s.simulator().num_event_functions())); });
+  return compute(s, [&] {
+    s.simulator().calc_event_functions(Eigen::Map<Eigen::VectorXd>(g, s.simulator().num_event_functions()));
+  });
 }
 
 bough_status bough_completed_step(bough_simulation* simulation, int* enter_event_mode) {
@@ -383,13 +385,16 @@ bough_status bough_update_discrete(bough_simulation* simulation, bough_event_inf
   });
 }
 
-size_t bough_state_size(const bough_simulation* simulation) { return is_alive(simulation) ? simulation->own->state_size() : 0; }
+size_t bough_state_size(const bough_simulation* simulation) {
+  return is_alive(simulation) ? simulation->own->state_size() : 0;
+}
 
 bough_status bough_save(const bough_simulation* simulation, void* buffer, size_t size) {
   if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
   auto& s = *const_cast<bough_simulation*>(simulation);
   if (!buffer || size < s.own->state_size())
-    return refuse(s, buffer ? "the state takes " + std::to_string(s.own->state_size()) + " bytes" : "the buffer is null");
+    return refuse(s,
+                  buffer ? "the state takes " + std::to_string(s.own->state_size()) + " bytes" : "the buffer is null");
   if (s.has_failed) return BOUGH_FAILED;
   std::vector<Diagnostic> told;
   const auto status = call(

@@ -26,7 +26,8 @@ Ports::Ports(const records::SystemSpec& spec, const solver::Simulator& simulator
   for (const auto& r : spec.inputs) ports_[BOUGH_INPUTS].push_back({r.name, r.dims, r.start, 0});
   for (const auto& [name, value] : spec.parameters) ports_[BOUGH_PARAMETERS].push_back({name, "", value, 0});
   add_outputs(simulator.channels());
-  for (int i = 0; i < simulator.num_states(); ++i) ports_[BOUGH_STATES].push_back({simulator.name_state(i), "", kNone, i});
+  for (int i = 0; i < simulator.num_states(); ++i)
+    ports_[BOUGH_STATES].push_back({simulator.name_state(i), "", kNone, i});
   for (const auto& name : simulator.list_event_functions()) ports_[BOUGH_EVENTS].push_back({name, "", kNone, 0});
   for (int kind = 0; kind < 5; ++kind)
     for (std::size_t i = 0; i < ports_[kind].size(); ++i)

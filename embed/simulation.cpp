@@ -60,7 +60,8 @@ std::string Simulation::describe_past(double t) const {
 std::string Simulation::describe_end() const {
   const auto& outcome = *simulator_->outcome();
   if (!outcome.reason.empty()) return outcome.reason;
-  return "the run has reached its end at t = " + to_text(outcome.time) + "; a longer duration may be given at its start";
+  return "the run has reached its end at t = " + to_text(outcome.time) +
+         "; a longer duration may be given at its start";
 }
 
 void Simulation::save(std::span<std::byte> to) const {

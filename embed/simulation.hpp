@@ -1,5 +1,6 @@
 #pragma once
-/// \file A simulation that a host steps: options of the host, ends, the state as bytes; below bough.h and the Python module.
+/// \file A simulation that a host steps: options of the host, ends, the state as bytes; below bough.h and the Python
+/// module.
 #include <memory>
 #include <span>
 #include <string>
