@@ -25,6 +25,7 @@ foreach(room base formats fe modal stiffening solver embed)
 endforeach()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/data/schema ${CMAKE_SOURCE_DIR}/data/examples ${CMAKE_SOURCE_DIR}/data/matlab
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bough COMPONENT bough)
+install(EXPORT BoughEmbedTargets NAMESPACE bough:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Bough COMPONENT libbough-dev)
 install(EXPORT BoughTargets NAMESPACE bough:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Bough COMPONENT libbough-dev)
 configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/BoughConfig.cmake.in ${CMAKE_BINARY_DIR}/BoughConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Bough)

@@ -1,6 +1,5 @@
 // The C interface: handles, status and messages around load_system() and Simulator.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -13,8 +12,6 @@
 #include "embed/bough.h"
 #include "embed/files.hpp"
 #include "embed/model.hpp"
-#include "embed/state_bytes.hpp"
-#include "solver/integrate/simulator.hpp"
 
 using bough::Diagnostic;
 using bough::Diagnostics;
@@ -25,15 +22,11 @@ struct bough_model {
 
 struct bough_simulation {
   std::shared_ptr<const bough::embed::Model> model;
-  bough::records::SystemSpec spec;
-  bough::embed::NoSink sink;
-  bough::solver::SimulateOptions options;
-  Diagnostics diagnostics;
-  std::unique_ptr<bough::solver::Simulator> simulator;
+  std::unique_ptr<bough::embed::Simulation> own;
   std::string message;
-  std::uint64_t fingerprint = 0;
-  std::size_t state_size = 0;
   bool has_failed = false;
+
+  bough::solver::Simulator& simulator() const { return own->simulator(); }
 };
 
 namespace {
@@ -104,12 +97,6 @@ Diagnostic make_error(const char* id, std::string what, std::string advice) {
   return {bough::Severity::Error, id, {}, std::move(what), std::move(advice)};
 }
 
-std::string to_text(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 9).ptr;
-  return {text, end};
-}
-
 /// Runs `action`; what it throws becomes a status and the items to tell.
 template <class Action>
 bough_status call(const Action& action, std::vector<Diagnostic>& told) noexcept {
@@ -176,30 +163,6 @@ const Port* find_port(const bough_model* model, bough_kind kind, int index) {
   if (!is_alive(model)) return nullptr;
   const auto* ports = model->model->list(kind);
   return ports && index >= 0 && index < std::ssize(*ports) ? &(*ports)[static_cast<std::size_t>(index)] : nullptr;
-}
-
-void apply(const bough_options& o, bough::records::SimulationRecord& s) {
-  if (o.integrator && *o.integrator) s.integrator = o.integrator;
-  if (o.step > 0) s.step = o.step;
-  if (o.relative_tolerance > 0) s.relative_tolerance = o.relative_tolerance;
-  if (o.absolute_tolerance > 0) s.absolute_tolerance = o.absolute_tolerance;
-  if (!(o.duration > 0)) return;
-  // Samples stay where they are, since fixed steps divide the time between them.
-  if (s.output_step == 0) s.output_step = s.duration / 1000;
-  s.duration = o.duration;
-}
-
-std::uint64_t calc_fingerprint(const bough::records::SystemSpec& spec) {
-  const auto& s = spec.simulation;
-  const double numbers[] = {s.start, s.duration, s.output_step, s.step, s.relative_tolerance, s.absolute_tolerance};
-  const std::string text = spec.text + '\0' + s.integrator + '\0' + std::string(bough::get_version());
-  return bough::embed::calc_hash(std::as_bytes(std::span(numbers)), bough::embed::calc_hash(std::as_bytes(std::span(text))));
-}
-
-std::string describe_end(const bough_simulation& simulation) {
-  const auto& outcome = *simulation.simulator->outcome();
-  if (!outcome.reason.empty()) return outcome.reason;
-  return "the run has reached its end at t = " + to_text(outcome.time) + "; a longer duration may be given at its start";
 }
 
 /// Runs a computation of a simulation; where it fails the simulation is over.
@@ -294,19 +257,17 @@ bough_status bough_start(const bough_model* model, const bough_options* options,
   const auto status = call(
       [&] {
         made->model = model->model;
-        made->spec = model->model->loaded().spec;
-        if (options) apply(*options, made->spec.simulation);
-        made->fingerprint = calc_fingerprint(made->spec);
-        made->simulator = std::make_unique<bough::solver::Simulator>(model->model->loaded().system, made->spec,
-                                                                     made->sink, made->options, made->diagnostics);
-        made->state_size = bough::embed::encode_state(made->simulator->save(), 0).size() +
-                           made->simulator->max_step_size() * sizeof(double);
+        bough::embed::SimulationOptions own;
+        if (options)
+          own = {options->integrator ? options->integrator : "", options->step, options->relative_tolerance,
+                 options->absolute_tolerance, options->duration};
+        made->own = std::make_unique<bough::embed::Simulation>(model->model->loaded(), own);
         get_simulations().add(made.get());
         *simulation = made.release();
         return BOUGH_OK;
       },
       told);
-  fill(message, status == BOUGH_OK ? (*simulation)->diagnostics.items() : told);
+  fill(message, status == BOUGH_OK ? (*simulation)->own->diagnostics().items() : told);
   return status;
 }
 
@@ -315,20 +276,20 @@ void bough_stop(bough_simulation* simulation) {
 }
 
 double bough_time(const bough_simulation* simulation) {
-  return is_alive(simulation) ? simulation->simulator->time() : std::numeric_limits<double>::quiet_NaN();
+  return is_alive(simulation) ? simulation->simulator().time() : std::numeric_limits<double>::quiet_NaN();
 }
 
 bough_status bough_set_inputs(bough_simulation* simulation, int first, int n, const double* values) {
   if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
   auto& s = *simulation;
   if (n == 0) return BOUGH_OK;
-  if (!values || first < 0 || n < 0 || n > s.simulator->num_inputs() - first)
+  if (!values || first < 0 || n < 0 || n > s.simulator().num_inputs() - first)
     return refuse(s, values ? "there are no inputs " + std::to_string(first) + " to " + std::to_string(first + n - 1) +
-                                  ": the model has " + std::to_string(s.simulator->num_inputs())
+                                  ": the model has " + std::to_string(s.simulator().num_inputs())
                             : "values is null");
   for (int i = 0; i < n; ++i)
     if (!std::isfinite(values[i])) return refuse(s, "input " + std::to_string(first + i) + " is not finite");
-  s.simulator->set_inputs(first, {values, static_cast<std::size_t>(n)});
+  s.simulator().set_inputs(first, {values, static_cast<std::size_t>(n)});
   return BOUGH_OK;
 }
 
@@ -336,33 +297,16 @@ bough_status bough_advance(bough_simulation* simulation, double t, double* reach
   if (reached) *reached = std::numeric_limits<double>::quiet_NaN();
   if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
   auto& s = *simulation;
-  auto& simulator = *s.simulator;
+  const auto& simulator = s.simulator();
   if (reached) *reached = simulator.time();
   if (s.has_failed) return BOUGH_FAILED;
   if (!std::isfinite(t)) return refuse(s, "the time to advance to is not finite");
-  if (t < simulator.time() - simulator.resolution())
-    return refuse(s, "the time " + to_text(t) + " lies before " + to_text(simulator.time()) +
-                         ", which is reached: go back by bough_restore");
+  if (s.own->is_past(t)) return refuse(s, s.own->describe_past(t) + ": go back by bough_restore");
   std::vector<Diagnostic> told;
-  auto status = call(
-      [&] {
-        if (simulator.outcome()) {
-          const bool is_there = t <= simulator.time() + simulator.resolution() && simulator.outcome()->reason.empty();
-          return is_there ? BOUGH_OK : BOUGH_TERMINATED;
-        }
-        simulator.advance_to(t);
-        if (!simulator.outcome()) return BOUGH_OK;
-        if (!simulator.outcome()->energy_is_kept) {
-          told = {s.diagnostics.items().back()};
-          return BOUGH_FAILED;
-        }
-        const bool is_regular = simulator.outcome()->reason.empty() && t <= simulator.time() + simulator.resolution();
-        return is_regular ? BOUGH_OK : BOUGH_TERMINATED;
-      },
-      told);
+  auto status = call([&] { return s.own->advance_to(t) ? BOUGH_OK : BOUGH_TERMINATED; }, told);
   if (reached) *reached = simulator.time();
   try {
-    if (status == BOUGH_TERMINATED) s.message = describe_end(s);
+    if (status == BOUGH_TERMINATED) s.message = s.own->describe_end();
     if (!told.empty()) s.message = join(told);
   } catch (...) {
     status = BOUGH_OUT_OF_MEMORY;
@@ -381,7 +325,7 @@ bough_status bough_get_outputs(bough_simulation* simulation, int first, int n, d
                                   ": the model has " + std::to_string(ports.size())
                             : "values is null");
   return compute(s, [&] {
-    const auto& all = s.simulator->calc_outputs();
+    const auto& all = s.simulator().calc_outputs();
     for (int i = 0; i < n; ++i) values[i] = all[ports[static_cast<std::size_t>(first + i)].row];
   });
 }
@@ -389,7 +333,7 @@ bough_status bough_get_outputs(bough_simulation* simulation, int first, int n, d
 bough_status bough_get_continuous(bough_simulation* simulation, double* x) {
   if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
   if (!x) return refuse(*simulation, "x is null");
-  const auto& state = simulation->simulator->state();
+  const auto& state = simulation->simulator().state();
   std::copy_n(state.data(), state.size(), x);
   return BOUGH_OK;
 }
@@ -397,25 +341,27 @@ bough_status bough_get_continuous(bough_simulation* simulation, double* x) {
 bough_status bough_set_continuous(bough_simulation* simulation, double t, const double* x) {
   if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
   auto& s = *simulation;
-  const Eigen::Map<const Eigen::VectorXd> state(x, x ? s.simulator->num_states() : 0);
+  const Eigen::Map<const Eigen::VectorXd> state(x, x ? s.simulator().num_states() : 0);
   if (!x || !std::isfinite(t) || !state.allFinite())
     return refuse(s, !x ? "x is null" : !std::isfinite(t) ? "t is not finite" : "a state is not finite");
-  return compute(s, [&] { s.simulator->set_continuous(t, state); });
+  return compute(s, [&] { s.simulator().set_continuous(t, state); });
 }
 
 bough_status bough_derivatives(bough_simulation* simulation, double* x_dot) {
   if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
   auto& s = *simulation;
   if (!x_dot) return refuse(s, "x_dot is null");
-  return compute(s, [&] { s.simulator->calc_derivatives(Eigen::Map<Eigen::VectorXd>(x_dot, s.simulator->num_states())); });
+  return compute(
+      s, [&] { s.simulator().calc_derivatives(Eigen::Map<Eigen::VectorXd>(x_dot, s.simulator().num_states())); });
 }
 
 bough_status bough_event_functions(bough_simulation* simulation, double* g) {
   if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
   auto& s = *simulation;
   if (!g) return refuse(s, "g is null");
-  return compute(
-      s, [&] { s.simulator->calc_event_functions(Eigen::Map<Eigen::VectorXd>(g, s.simulator->num_event_functions())); });
+  return compute(s, [&] {
+    s.simulator().calc_event_functions(Eigen::Map<Eigen::VectorXd>(g, s.simulator().num_event_functions()));
+  });
 }
 
 bough_status bough_completed_step(bough_simulation* simulation, int* enter_event_mode) {
@@ -423,7 +369,7 @@ bough_status bough_completed_step(bough_simulation* simulation, int* enter_event
   if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
   auto& s = *simulation;
   if (!enter_event_mode) return refuse(s, "enter_event_mode is null");
-  return compute(s, [&] { *enter_event_mode = s.simulator->needs_projection() ? 1 : 0; });
+  return compute(s, [&] { *enter_event_mode = s.simulator().needs_projection() ? 1 : 0; });
 }
 
 bough_status bough_update_discrete(bough_simulation* simulation, bough_event_info* info) {
@@ -432,27 +378,28 @@ bough_status bough_update_discrete(bough_simulation* simulation, bough_event_inf
   auto& s = *simulation;
   if (!info) return refuse(s, "info is null");
   return compute(s, [&] {
-    info->states_changed = s.simulator->update_discrete() ? 1 : 0;
-    info->terminated = s.simulator->outcome() ? 1 : 0;
-    info->next_event_time = s.simulator->next_event_time();
-    if (info->terminated) s.message = describe_end(s);
+    info->states_changed = s.simulator().update_discrete() ? 1 : 0;
+    info->terminated = s.simulator().outcome() ? 1 : 0;
+    info->next_event_time = s.simulator().next_event_time();
+    if (info->terminated) s.message = s.own->describe_end();
   });
 }
 
-size_t bough_state_size(const bough_simulation* simulation) { return is_alive(simulation) ? simulation->state_size : 0; }
+size_t bough_state_size(const bough_simulation* simulation) {
+  return is_alive(simulation) ? simulation->own->state_size() : 0;
+}
 
 bough_status bough_save(const bough_simulation* simulation, void* buffer, size_t size) {
   if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
   auto& s = *const_cast<bough_simulation*>(simulation);
-  if (!buffer || size < s.state_size)
-    return refuse(s, buffer ? "the state takes " + std::to_string(s.state_size) + " bytes" : "the buffer is null");
+  if (!buffer || size < s.own->state_size())
+    return refuse(s,
+                  buffer ? "the state takes " + std::to_string(s.own->state_size()) + " bytes" : "the buffer is null");
   if (s.has_failed) return BOUGH_FAILED;
   std::vector<Diagnostic> told;
   const auto status = call(
       [&] {
-        const auto bytes = bough::embed::encode_state(s.simulator->save(), s.fingerprint);
-        std::memcpy(buffer, bytes.data(), bytes.size());
-        std::memset(static_cast<char*>(buffer) + bytes.size(), 0, size - bytes.size());
+        s.own->save({static_cast<std::byte*>(buffer), size});
         return BOUGH_OK;
       },
       told);
@@ -467,8 +414,7 @@ bough_status bough_restore(bough_simulation* simulation, const void* buffer, siz
   std::vector<Diagnostic> told;
   const auto status = call(
       [&] {
-        const auto state = bough::embed::decode_state({static_cast<const std::byte*>(buffer), size}, s.fingerprint);
-        s.simulator->restore(state);
+        s.own->restore({static_cast<const std::byte*>(buffer), size});
         s.has_failed = false;
         return BOUGH_OK;
       },

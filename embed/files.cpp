@@ -39,17 +39,22 @@ void refuse_matrix_files(records::SystemSpec& spec, Diagnostics& diagnostics) {
   const std::string advice = "write the numbers into the system file";
   for (const auto& r : spec.controllers)
     if ((r.type == "state_space" || r.type == "gain") && r.settings.words.count("file") > 0)
-      diagnostics.error("embed.matrix-file", r.at, "controller '" + r.name + "' takes matrices from a file, which this library does not read", advice);
+      diagnostics.error("embed.matrix-file", r.at,
+                        "controller '" + r.name + "' takes matrices from a file, which this library does not read",
+                        advice);
   for (const auto& r : spec.functions)
     if (r.type == "table" && !r.file.empty() && r.x.empty())
-      diagnostics.error("embed.matrix-file", r.at, "function '" + r.name + "' takes its points from a file that this library does not read", advice);
+      diagnostics.error("embed.matrix-file", r.at,
+                        "function '" + r.name + "' takes its points from a file that this library does not read",
+                        advice);
 }
 
 }  // namespace
 
 FileReaders get_file_readers() {
-  return {read_body, refuse_matrix_files,
-          [](const std::string&) { return std::string("make it with bough reduce and bough export --to flat, or correct the name"); }};
+  return {read_body, refuse_matrix_files, [](const std::string&) {
+            return std::string("make it with bough reduce and bough export --to flat, or correct the name");
+          }};
 }
 
 }  // namespace bough::embed

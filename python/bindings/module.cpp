@@ -2,6 +2,7 @@
 
 #include "cli/command.hpp"
 #include "cli/verbs.hpp"
+#include "python/bindings/simulations.hpp"
 
 PYBIND11_MODULE(_bough, m) {
   m.doc() = "Bough in this process; use the package bough, which says what each does.";
@@ -10,6 +11,7 @@ PYBIND11_MODULE(_bough, m) {
   bind_exclusive(m);
   bind_bodies(m);
   bind_linear(m);
+  bind_simulations(m);
   bind_systems(m);
   m.def("call", &bough::cli::run_command, py::arg("words"), OneAtATime(),
         "One command line, messages and exit code as from the shell.");

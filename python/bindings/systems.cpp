@@ -6,6 +6,7 @@
 #include "cli/linearize/operating_point.hpp"
 #include "formats/hdf5/files.hpp"
 #include "python/bindings/controllers.hpp"
+#include "python/bindings/simulations.hpp"
 #include "solver/integrate/memory_sink.hpp"
 #include "solver/integrate/simulate.hpp"
 #include "solver/linear/linearize.hpp"
@@ -216,6 +217,13 @@ class PySystem {
     return results;
   }
 
+  /// The caller keeps this system alive as long as the simulation.
+  std::unique_ptr<Simulation> start(const std::string& integrator, double step, double relative_tolerance,
+                                    double absolute_tolerance, double duration) const {
+    return std::make_unique<Simulation>(
+        *loaded_, embed::SimulationOptions{integrator, step, relative_tolerance, absolute_tolerance, duration});
+  }
+
   py::tuple linearize(std::optional<double> at, bool equilibrium, bool open, std::vector<std::string> inputs,
                       std::vector<std::string> outputs) {
     Diagnostics diagnostics;
@@ -298,6 +306,8 @@ void bind_systems(py::module_& m) {
       .def_property_readonly("bodies", &PySystem::get_bodies)
       .def_readonly("messages", &PySystem::messages)
       .def("run", &PySystem::run, py::arg("output"), py::arg("progress"))
+      .def("start", &PySystem::start, py::arg("integrator"), py::arg("step"), py::arg("relative_tolerance"),
+           py::arg("absolute_tolerance"), py::arg("duration"), py::keep_alive<0, 1>())
       .def("linearize", &PySystem::linearize, py::arg("at"), py::arg("equilibrium"), py::arg("open"), py::arg("inputs"),
            py::arg("outputs"));
 }

@@ -32,7 +32,7 @@ except ImportError as _missing:  # the reader does without
     _missing_text = str(_missing)
 
 __all__ = ["ComputationError", "Event", "Failure", "FlexBody", "InputError", "LinearModel", "Locator", "MassIntegrals",
-           "Message", "Modes", "Results", "System", "Warning", "call", "modes", "read_flex_body", "read_linear_model",
+           "Message", "Modes", "Results", "Simulation", "System", "Warning", "call", "modes", "read_flex_body", "read_linear_model",
            "read_modes", "read_results", "reader", "reduce", "select", "static", "verbs"]
 
 
@@ -193,3 +193,69 @@ class System:
         """A B C D, poles and zeros about the start, a time or the equilibrium, as LinearModel."""
         model, _ = self._own.linearize(at, equilibrium, open, list(inputs), list(outputs))
         return model
+
+
+class Simulation:
+    """A system that is advanced from outside: inputs set, outputs read, its state saved and restored.
+
+    The numbers are those of System.run: bit for bit with rk4 and implicit, whatever times are advanced to. Options that
+    are not given are those of the system file. It belongs to one thread at a time.
+
+        simulation = bough.Simulation(bough.System("arm.toml"), step=1e-3)
+        while simulation.advance_to(simulation.time + 1e-3):
+            simulation.set("torque", -40 * simulation.output("angle"))
+        simulation.reason
+    """
+
+    def __init__(self, system, *, integrator="", step=0.0, relative_tolerance=0.0, absolute_tolerance=0.0,
+                 duration=0.0):
+        self._own = system._own.start(integrator, step, relative_tolerance, absolute_tolerance, duration)
+
+    @property
+    def inputs(self):
+        """Names of the [[input]]s, in order."""
+        return self._own.inputs
+
+    @property
+    def output_names(self):
+        """Names of the components of all channels: sensors (tip:x), controllers, actuators, inputs, hinges, others."""
+        return self._own.output_names
+
+    @property
+    def time(self):
+        """Time reached."""
+        return self._own.time
+
+    @property
+    def reason(self):
+        """Why the run has ended; empty while it goes on."""
+        return self._own.reason
+
+    @property
+    def messages(self):
+        """Warnings and notes of its start."""
+        return self._own.messages
+
+    def set(self, name, value):
+        """The value of an input, by name or index, from the present time on; of hold = "linear" at the next time."""
+        self._own.set(name, value)
+
+    def advance_to(self, t):
+        """Advances to t. False if an event or the duration has ended the run at `time`; `reason` is why."""
+        return self._own.advance_to(t)
+
+    def output(self, name):
+        """One output at the present time, as a number: by index or as "angle", "tip:x"."""
+        return self._own.output(name)
+
+    def outputs(self, names=None):
+        """Outputs at the present time as an array: all, or those of `names`, each with all its components."""
+        return self._own.outputs(None if names is None else list(names))
+
+    def save(self):
+        """The whole state as bytes."""
+        return self._own.save()
+
+    def restore(self, state):
+        """Goes back to a state that a simulation of an equal system and equal options has saved."""
+        self._own.restore(state)

@@ -61,12 +61,21 @@ void Latches::find_stops(const SystemOde& ode, double resolution, const VectorXd
 }
 
 void Latches::lock(SystemOde& ode, double t, const std::vector<bool>& rests, VectorXd& y) const {
-  Discrete next = get_discrete(ode.data());
-  for (size_t i = 0; i < latches_.size(); ++i) {
-    HingeMode& mode = next.mode[static_cast<size_t>(latches_[i].latch.u_row)];
-    if (mode == HingeMode::Prescribed || (mode == HingeMode::Locked && !latches_[i].rests)) continue;
-    mode = rests[i] ? HingeMode::Locked : HingeMode::Free;
+  const auto& modes = ode.data().tree.mode;
+  const auto get_next = [&](size_t i) {
+    const HingeMode mode = modes[static_cast<size_t>(latches_[i].latch.u_row)];
+    if (mode == HingeMode::Prescribed || (mode == HingeMode::Locked && !latches_[i].rests)) return mode;
+    return rests[i] ? HingeMode::Locked : HingeMode::Free;
+  };
+  size_t changed = 0;
+  while (changed < latches_.size() && get_next(changed) == modes[static_cast<size_t>(latches_[changed].latch.u_row)])
+    ++changed;
+  if (changed == latches_.size()) {
+    ode.keep_modes(t, y);
+    return;
   }
+  Discrete next = get_discrete(ode.data());
+  for (size_t i = 0; i < latches_.size(); ++i) next.mode[static_cast<size_t>(latches_[i].latch.u_row)] = get_next(i);
   ode.bring_to_rest(t, next, y);
 }
 
@@ -133,8 +142,10 @@ void Latches::fail_endless(const std::vector<std::string>& what) const {
 // What moves slowly enough may rest: all of it is held, and what is not held by what may hold it comes loose.
 void Latches::find_rest(SystemOde& ode, double t, double shortest, VectorXd& y, std::vector<std::string>& what) {
   const int u = ode.num_q();
-  std::vector<bool> rests(latches_.size(), false), before(latches_.size(), false);
-  std::vector<int> slide(latches_.size(), 0);
+  auto& [rests, before, slide] = scratch_;
+  rests.assign(latches_.size(), false);
+  before.assign(latches_.size(), false);
+  slide.assign(latches_.size(), 0);
   for (size_t i = 0; i < latches_.size(); ++i) {
     const Watched& w = latches_[i];
     const HingeMode mode = ode.data().tree.mode[static_cast<size_t>(w.latch.u_row)];

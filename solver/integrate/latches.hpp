@@ -59,7 +59,13 @@ class Latches {
   void lock(SystemOde& ode, double t, const std::vector<bool>& rests, VectorXd& y) const;
 
   const System& system_;
+  /// Of find_rest(), a row for each latch.
+  struct Scratch {
+    std::vector<bool> rests, before;
+    std::vector<int> slide;
+  };
   std::vector<Watched> latches_;
+  Scratch scratch_;
   VectorXd y_dot_;
   double shortest_ = 0;
 };

@@ -111,11 +111,12 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
       setup_(std::move(setup)),
       timeline_(make_timeline(system, setup_)),
       ode_(system),
+      coming_data_(system.make_data()),
       limit_(system),
       reach_(limit_.calc_reach()),
       latches_(system) {
   stepper_ = make_stepper(setup_.integrator, ode_, make_stepper_options(ode_, spec.simulation, setup_.plan));
-  y_ = y_dot_ = VectorXd::Zero(ode_.size());
+  y_ = y_dot_ = coming_y_dot_ = VectorXd::Zero(ode_.size());
   checkpoint_.state = y_;
   checkpoint_.memory = {{"energy", VectorXd::Zero(EnergyMonitor::kMemory)},
                         {"quaternions", setup_.recorder.quaternions},
@@ -367,13 +368,13 @@ double Run::calc_coming_energy() {
   if (std::abs(t - coming_at_) < 0.1 * spec_.simulation.output_step) return coming_;
   coming_at_ = t;
   const System& system = ode_.system();
-  VectorXd y_dot(ode_.size());
+  VectorXd& y_dot = coming_y_dot_;
   guard([&] { ode_.calc_derivative(t, stepper_->state(), y_dot); });
-  const VectorXd q = stepper_->state().head(ode_.num_q()),
-                 u = y_dot.segment(ode_.num_q(), system.num_u()) * spec_.simulation.output_step;
-  auto data = system.make_data();
-  calc_kinematics(system, *data, t, q, u);
-  return coming_ = calc_energies(system, *data).kinetic - system.impl().signals.calc_energy(system, *data);
+  auto u = y_dot.segment(ode_.num_q(), system.num_u());
+  u *= spec_.simulation.output_step;
+  calc_kinematics(system, *coming_data_, t, stepper_->state().head(ode_.num_q()), u);
+  return coming_ =
+             calc_energies(system, *coming_data_).kinetic - system.impl().signals.calc_energy(system, *coming_data_);
 }
 
 void Run::take_step(const Stop& stop) {

@@ -239,6 +239,8 @@ class Run {
   RunSetup setup_;
   Timeline timeline_;
   SystemOde ode_;
+  std::unique_ptr<SystemData> coming_data_;  ///< of calc_coming_energy()
+  VectorXd coming_y_dot_;
   LinearLimit limit_;
   VectorXd reach_;
   EnergyMonitor monitor_;
@@ -253,9 +255,11 @@ class Run {
     bool has_signals = false, has_sample = false;
   };
   Evaluated evaluated_;
-  EventValues events_, last_events_;  ///< at the present and at the last look
-  double scanned_ = 0;                ///< time of the last look
-  bool has_located_ = false;          ///< since the last look, so that y_ is elsewhere
+  EventValues events_, last_events_;         ///< at the present and at the last look
+  VectorXd signs_;                           ///< of find_firing()
+  VectorXd latches_before_, latches_after_;  ///< of settle_latches()
+  double scanned_ = 0;                       ///< time of the last look
+  bool has_located_ = false;                 ///< since the last look, so that y_ is elsewhere
   VectorXd largest_kinks_;
   records::Checkpoint checkpoint_, restored_;
   std::chrono::steady_clock::time_point saved_at_;

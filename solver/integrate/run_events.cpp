@@ -20,7 +20,7 @@ bool is_same(const Discrete& a, const Discrete& b) {
 std::optional<Firing> Run::find_firing(const Stop& stop, double to) {
   if (!setup_.triggers.has_signals()) return {};
   std::vector<size_t> crossed;
-  const VectorXd signs = setup_.triggers.signs;
+  signs_ = setup_.triggers.signs;
   setup_.triggers.find_crossed(events_.signals, crossed);
   std::vector<Firing> firings;
   for (const size_t i : crossed) {
@@ -37,7 +37,7 @@ std::optional<Firing> Run::find_firing(const Stop& stop, double to) {
     const Firing turn = *f;
     for (++f; f != firings.end(); ++f) {
       const auto row = static_cast<Eigen::Index>(f->trigger);
-      setup_.triggers.signs[row] = signs[row];
+      setup_.triggers.signs[row] = signs_[row];
     }
     return turn;
   }

@@ -13,13 +13,13 @@ constexpr int kMostTimes = 100;
 void Run::settle_latches(double t) {
   if (latches_.empty()) return;
   const double shortest = kShortestBounce * (timeline_.end() - timeline_.start());
-  VectorXd before = latches_.make_memory(), after = before;
-  latches_.get_memory(before);
+  if (latches_before_.size() == 0) latches_before_ = latches_after_ = latches_.make_memory();
+  latches_.get_memory(latches_before_);
   guard([&] {
     const auto what = latches_.settle(ode_, t, shortest, y_);
     for (const auto& line : what) sink_.write_event({t, line});
-    latches_.get_memory(after);
-    if (!what.empty() || before != after) has_switched_ = true;
+    latches_.get_memory(latches_after_);
+    if (!what.empty() || latches_before_ != latches_after_) has_switched_ = true;
   });
   calc_contacts(t);
   last_events_.contacts = events_.contacts;

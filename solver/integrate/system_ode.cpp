@@ -63,6 +63,12 @@ std::vector<std::string> SystemOde::change(double t, const Discrete& next, Eigen
   return events;
 }
 
+void SystemOde::keep_modes(double t, Eigen::Ref<VectorXd> y) {
+  calc_kinematics(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
+  y.head(num_q_) = data_->tree.q;
+  y.segment(num_q_, num_u_) = data_->tree.u;
+}
+
 void SystemOde::bring_to_rest(double t, const Discrete& next, Eigen::Ref<VectorXd> y) {
   const double before = get_work(y);
   change(t, next, y);

@@ -42,6 +42,8 @@ class SystemOde final : public Ode {
   /// The same of what comes to rest by itself: what it loses is dissipated. Rates that are left count: with them goes
   /// what the modes of the body have of its momentum.
   void bring_to_rest(double t, const Discrete& next, Eigen::Ref<VectorXd> y);
+  /// bring_to_rest() with the modes of now: coordinates and rates that are given take their values. No allocation.
+  void keep_modes(double t, Eigen::Ref<VectorXd> y);
   /// A constraint closed as it is found at (t, y).
   Closing find_closing(double t, const Eigen::Ref<const VectorXd>& y, int constraint);
   /// What each coordinate and constraint does, for a checkpoint.

@@ -26,6 +26,24 @@ with tempfile.TemporaryDirectory() as folder:
     # longer by the factor 1 + angle^2/16, and it comes back to where it started.
     assert abs(time - 2.00732) < 1e-9, time
     assert abs(angle - 0.1) < 1e-4, angle
+    # The example hosts, as an outside project that knows of libbough.so alone: by CMake and by pkg-config.
+    hosts, build = os.path.join(prefix, "share/bough/examples/hosts"), os.path.join(folder, "hosts")
+    system = os.path.join(hosts, "system.toml")
+    text = run("cmake", "-G", "Ninja", "-S", hosts, "-B", build, f"-DCMAKE_PREFIX_PATH={prefix}",
+               "-DCMAKE_BUILD_TYPE=Release", stdout=subprocess.PIPE).stdout
+    assert "PETSc" not in text and "hdf5" not in text.lower(), text
+    run("cmake", "--build", build)
+    printed = run(os.path.join(build, "host_c"), system, stdout=subprocess.PIPE).stdout
+    assert len(printed.splitlines()) == 6, printed
+    programs = [[os.path.join(build, name)] for name in ("host_cpp", "host_f") if os.path.exists(os.path.join(build, name))]
+    library = [os.path.join(base, name) for base, _, names in os.walk(prefix) for name in names if name == "libbough.so.1"][0]
+    environment = {**os.environ, "BOUGH_LIBRARY": library, "LD_LIBRARY_PATH": os.path.dirname(library),
+                   "PKG_CONFIG_PATH": os.path.join(os.path.dirname(library), "pkgconfig")}
+    flags = run("pkg-config", "--cflags", "--libs", "bough", stdout=subprocess.PIPE, env=environment).stdout.split()
+    run("cc", os.path.join(hosts, "host.c"), "-o", os.path.join(folder, "host"), *flags)
+    programs += [[os.path.join(folder, "host")], [sys.executable, "-B", os.path.join(hosts, "host.py")]]
+    for program in programs:
+        assert run(*program, system, stdout=subprocess.PIPE, env=environment).stdout == printed, program
     bough = os.path.join(prefix, "bin", "bough")
     assert "bough" in run(bough, "--version", stdout=subprocess.PIPE).stdout
     for name, words in [("man/man1/bough.1", ".SS bough reduce"), ("man/man1/bough-reduce.1", ".SH OPTIONS"),

@@ -536,5 +536,162 @@ class Reader(unittest.TestCase):
                 self.assertTrue(getattr(bough, name).__doc__)
 
 
+STEPPED = PENDULUM.format(law='type = "sum"\ninputs = ["torque", "angle"]\nweights = [1.0, -5.0]').replace(
+    'integrator = "rk"\nrelative_tolerance = 1e-10', 'integrator = "rk4"\nstep = 1e-3') + """
+[[input]]
+name = "torque"
+dims = "F L"
+"""
+STOP = '[[event]]\nname = "through"\nsignal = "angle"\nvalue = 0.8\naction = "stop"\n'
+
+
+class Simulations(InFolder):
+    def make(self, text=STEPPED, **options):
+        return bough.Simulation(bough.System.from_text(text, **options))
+
+    def test_slices_are_a_run(self):
+        system = bough.System.from_text(STEPPED)
+        results = system.run()
+        for slices in (1, 7):
+            simulation = bough.Simulation(system)
+            self.assertEqual(simulation.outputs(["angle"])[0], results["angle"][0, 0])
+            for k, t in enumerate(results.time[1:], 1):
+                for i in range(1, slices):
+                    simulation.advance_to(results.time[k - 1] + (t - results.time[k - 1]) * i / slices)
+                self.assertTrue(simulation.advance_to(t))
+                for name in ("angle", "rate", "/controllers/law", "/bodies/arm/quaternion"):
+                    np.testing.assert_array_equal(simulation.outputs([name]), results[name][k], name)
+        self.assertEqual(simulation.reason.split(" at ")[0], "the run has reached its end")
+        self.assertFalse(simulation.advance_to(1.5))
+
+    def test_names(self):
+        simulation = self.make()
+        self.assertEqual(simulation.inputs, ["torque"])
+        self.assertEqual(simulation.output_names[:2], ["angle", "rate"])
+        values = simulation.outputs()
+        self.assertEqual(values.shape, (len(simulation.output_names),))
+        self.assertEqual(simulation.output("angle"), values[0])
+        self.assertEqual(simulation.output(1), values[1])
+        self.assertEqual(simulation.outputs(["/bodies/arm/quaternion"]).shape, (4,))
+        self.assertEqual(simulation.messages, [])
+        for call in (lambda: simulation.set("torqe", 1), lambda: simulation.output("angel"),
+                     lambda: simulation.outputs(["angel"])):
+            with self.assertRaisesRegex(KeyError, "did you mean"):
+                call()
+        with self.assertRaises(IndexError):
+            simulation.set(1, 0.0)
+        with self.assertRaises(ValueError):
+            simulation.set(0, float("nan"))
+
+    def test_an_input_acts_from_when_it_is_set(self):
+        simulation = self.make(STEPPED.replace("-5.0", "0.0").replace("gravity = [0.0, 0.0, -9.81]", ""))
+        simulation.advance_to(0.5)
+        start = simulation.output("angle")
+        simulation.set("torque", 2.0)
+        simulation.advance_to(1.0)
+        inertia = 0.17 + 2.0 * 0.5 ** 2
+        self.assertAlmostEqual(simulation.output("angle") - start, 2.0 / inertia * 0.5 ** 2 / 2, places=12)
+
+    def test_states_are_saved_and_restored(self):
+        one, other = self.make(), self.make()
+        one.advance_to(0.1237)
+        state = one.save()
+        self.assertIsInstance(state, bytes)
+        other.advance_to(0.9)
+        other.restore(state)
+        self.assertEqual(other.time, one.time)
+        for simulation in (one, other):
+            simulation.set(0, 1.5)
+            simulation.advance_to(0.8)
+        np.testing.assert_array_equal(one.outputs(), other.outputs())
+        with self.assertRaisesRegex(ValueError, "restore"):
+            one.advance_to(0.2)
+        with self.assertRaises(bough.InputError) as caught:
+            one.restore(state[:50])
+        self.assertEqual(caught.exception.messages[0].id, "embed.bad-state")
+        with self.assertRaises(bough.InputError):
+            bough.Simulation(bough.System.from_text(STEPPED), step=5e-4).restore(state)
+
+    def test_an_event_ends_it(self):
+        simulation = self.make(STEPPED + STOP)
+        self.assertEqual(simulation.reason, "")
+        state = simulation.save()
+        self.assertFalse(simulation.advance_to(1.0))
+        self.assertLess(simulation.time, 1.0)
+        self.assertAlmostEqual(simulation.output("angle"), 0.8, places=6)
+        self.assertIn("through", simulation.reason)
+        simulation.restore(state)
+        self.assertEqual(simulation.reason, "")
+        self.assertTrue(simulation.advance_to(1e-3))
+
+    def test_options_and_failures(self):
+        with self.assertRaises(bough.InputError):
+            bough.Simulation(bough.System.from_text(STEPPED), integrator="euler")
+        longer = bough.Simulation(bough.System.from_text(STEPPED), duration=3.0)
+        self.assertTrue(longer.advance_to(2.5))
+        simulation = self.make()
+        state = simulation.save()
+        simulation.set("torque", 1e300)
+        for _ in range(2):
+            with self.assertRaises(bough.ComputationError):
+                simulation.advance_to(1.0)
+        simulation.restore(state)
+        simulation.set("torque", 0.0)
+        self.assertTrue(simulation.advance_to(0.5))
+
+    def test_controllers_in_python(self):
+        text = PENDULUM.format(law=LIBRARY).replace('integrator = "rk"\nrelative_tolerance = 1e-10',
+                                                    'integrator = "rk4"\nstep = 1e-3')
+        system = bough.System.from_text(text, controllers={"law": lambda t, u: -40 * u[0] - 3 * u[1]})
+        results, simulation = system.run(), bough.Simulation(system)
+        del system  # the simulation holds it
+        for k, t in enumerate(results.time):
+            simulation.advance_to(t)
+            self.assertEqual(simulation.output("angle"), results["angle"][k, 0])
+
+        def law(t, u):
+            if t > 0.5:
+                raise RuntimeError("no more")
+            return 0.0
+
+        failing = bough.Simulation(bough.System.from_text(text, controllers={"law": law}))
+        with self.assertRaisesRegex(bough.ComputationError, "no more"):
+            failing.advance_to(1.0)
+
+    def test_one_call_at_a_time(self):
+        seen = []
+
+        def law(t, u):
+            try:
+                simulation.output("angle")
+            except RuntimeError as error:
+                seen.append(str(error))
+            return 0.0
+
+        text = PENDULUM.format(law=LIBRARY)
+        system = bough.System.from_text(text, controllers={"law": lambda t, u: law(t, u) if simulation else 0.0})
+        simulation = None
+        simulation = bough.Simulation(system)
+        simulation.advance_to(0.01)
+        self.assertTrue(seen and "in use" in seen[0])
+
+    def test_threads(self):
+        system, ends = bough.System.from_text(STEPPED), [None] * 4
+
+        def move(i):
+            simulation = bough.Simulation(system)
+            for k in range(1, 201):
+                simulation.set("torque", 1.0 if k % 2 else -0.5)
+                simulation.advance_to(0.005 * k)
+            ends[i] = simulation.output("angle")
+
+        threads = [threading.Thread(target=move, args=(i,)) for i in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(set(ends)), 1, ends)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -1,7 +1,7 @@
 // No allocation in a run once it is under way: steps, samples, sensors, checkpoints.
 #include <gtest/gtest.h>
 
-#include "solver/integrate/simulate.hpp"
+#include "solver/integrate/simulator.hpp"
 #include "tests/solver/support/malloc_count.hpp"
 #include "tests/solver/support/models.hpp"
 
@@ -59,6 +59,50 @@ TEST(Allocation, NoneInARunUnderWay) {
     // CVODE's linear solver interface allocates a little when it starts, not per step.
     EXPECT_LE(last - first, integrator == "bdf" ? 6 : 0) << integrator;
     EXPECT_TRUE(std::isfinite(sink.sum));
+  }
+}
+
+TEST(Allocation, NoneBetweenPiecesOfARun) {
+  if (get_malloc_count() < 0) GTEST_SKIP() << "malloc cannot be counted in this build";
+  RandomTreeOptions options;
+  options.num_bodies = 6;
+  options.prescribed = false;
+  RandomTree tree = make_random_tree(8, options);
+  for (const auto& hinge : tree.spec.hinges) {
+    if (hinge.type != records::HingeType::Revolute && hinge.type != records::HingeType::Prismatic) continue;
+    records::InputRecord input;
+    input.name = "input " + hinge.name;
+    tree.spec.inputs.push_back(input);
+    records::ActuatorRecord actuator;
+    actuator.name = "motor " + hinge.name;
+    actuator.type = "hinge";
+    actuator.hinge = hinge.name;
+    actuator.input = input.name;
+    tree.spec.actuators.push_back(actuator);
+  }
+  ASSERT_FALSE(tree.spec.inputs.empty());
+  tree.spec.simulation.duration = 1;
+  tree.spec.simulation.output_step = 0.01;
+  tree.spec.simulation.step = 0.002;
+  const System system = build(tree.spec, tree.flex);
+  for (const std::string integrator : {"rk4", "implicit"}) {
+    tree.spec.simulation.integrator = integrator;
+    SummingSink sink;
+    Diagnostics diagnostics;
+    const SimulateOptions run_options;
+    Simulator simulator(system, tree.spec, sink, run_options, diagnostics);
+    std::vector<double> values(tree.spec.inputs.size());
+    double sum = 0;
+    long first = 0;
+    for (int k = 1; k <= 200; ++k) {  // 0.7 of a step
+      for (double& value : values) value = 0.1 * (k % 7);
+      simulator.set_inputs(0, values);
+      simulator.advance_to(0.0014 * k);
+      sum += simulator.calc_outputs().sum();
+      if (k == 20) first = get_malloc_count();
+    }
+    EXPECT_EQ(get_malloc_count() - first, 0) << integrator;
+    EXPECT_TRUE(std::isfinite(sum));
   }
 }
 

@@ -1,11 +1,10 @@
-#include "embed/model.hpp"
+#include "embed/ports.hpp"
 
 #include <algorithm>
 #include <limits>
 
 #include "embed/bough.h"
 #include "formats/records/signal_name.hpp"
-#include "solver/integrate/simulator.hpp"
 #include "solver/signals/units.hpp"
 
 namespace bough::embed {
@@ -23,23 +22,19 @@ int rank(const std::string& path) {
 
 }  // namespace
 
-Model::Model(LoadedSystem loaded) : loaded_(std::move(loaded)) {
-  const auto& spec = loaded_.spec;
+Ports::Ports(const records::SystemSpec& spec, const solver::Simulator& simulator) {
   for (const auto& r : spec.inputs) ports_[BOUGH_INPUTS].push_back({r.name, r.dims, r.start, 0});
   for (const auto& [name, value] : spec.parameters) ports_[BOUGH_PARAMETERS].push_back({name, "", value, 0});
-  NoSink sink;
-  Diagnostics ignored;
-  const solver::SimulateOptions options;
-  const solver::Simulator simulator(loaded_.system, spec, sink, options, ignored);
   add_outputs(simulator.channels());
-  for (int i = 0; i < simulator.num_states(); ++i) ports_[BOUGH_STATES].push_back({simulator.name_state(i), "", kNone, i});
+  for (int i = 0; i < simulator.num_states(); ++i)
+    ports_[BOUGH_STATES].push_back({simulator.name_state(i), "", kNone, i});
   for (const auto& name : simulator.list_event_functions()) ports_[BOUGH_EVENTS].push_back({name, "", kNone, 0});
   for (int kind = 0; kind < 5; ++kind)
     for (std::size_t i = 0; i < ports_[kind].size(); ++i)
       index_[kind].insert_or_assign(ports_[kind][i].name, static_cast<int>(i));
 }
 
-void Model::add_outputs(const std::vector<records::Channel>& channels) {
+void Ports::add_outputs(const std::vector<records::Channel>& channels) {
   struct Entry {
     const records::Channel* channel;
     int row;
@@ -58,6 +53,11 @@ void Model::add_outputs(const std::vector<records::Channel>& channels) {
     const std::string name = is_sensor ? path.substr(9) : path;
     const auto dims = solver::split_dims(channel->dims, channel->size);
     const auto components = records::get_component_names(path, channel->size, channel->description);
+    std::vector<std::string> all{path};
+    if (is_sensor) all.push_back(name);
+    if (rank(path) < 4) all.push_back(path.substr(path.find('/', 1) + 1));
+    for (const auto& own : all)
+      channels_.emplace(own, std::pair(static_cast<int>(ports_[BOUGH_OUTPUTS].size()), channel->size));
     for (int i = 0; i < channel->size; ++i) {
       const auto& component = components[static_cast<std::size_t>(i)];
       ports_[BOUGH_OUTPUTS].push_back(
@@ -65,10 +65,7 @@ void Model::add_outputs(const std::vector<records::Channel>& channels) {
       // Other names of the same: the path of a sensor, the bare name of a controller or actuator, counts.
       auto& index = index_[BOUGH_OUTPUTS];
       const int at = static_cast<int>(ports_[BOUGH_OUTPUTS].size()) - 1;
-      std::vector<std::string> others{path};
-      if (is_sensor) others.push_back(name);
-      if (rank(path) < 4) others.push_back(path.substr(path.find('/', 1) + 1));
-      for (const auto& other : others) {
+      for (const auto& other : all) {
         if (!component.empty()) index.emplace(other + ":" + component, at);
         index.emplace(other + ":" + std::to_string(i + 1), at);
         if (channel->size == 1) index.emplace(other, at);
@@ -77,12 +74,23 @@ void Model::add_outputs(const std::vector<records::Channel>& channels) {
   }
 }
 
-const std::vector<Port>* Model::list(int kind) const { return kind < 0 || kind > 4 ? nullptr : &ports_[kind]; }
+const std::vector<Port>* Ports::list(int kind) const { return kind < 0 || kind > 4 ? nullptr : &ports_[kind]; }
 
-int Model::find(int kind, const std::string& name) const {
+int Ports::find(int kind, const std::string& name) const {
   if (kind < 0 || kind > 4) return -1;
   const auto found = index_[kind].find(name);
   return found == index_[kind].end() ? -1 : found->second;
+}
+
+std::vector<int> Ports::find_outputs(const std::string& name) const {
+  std::vector<int> found;
+  const auto channel = channels_.find(name);
+  if (channel != channels_.end()) {
+    for (int i = 0; i < channel->second.second; ++i) found.push_back(channel->second.first + i);
+  } else if (const int one = find(BOUGH_OUTPUTS, name); one >= 0) {
+    found.push_back(one);
+  }
+  return found;
 }
 
 }  // namespace bough::embed

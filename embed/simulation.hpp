@@ -1,0 +1,68 @@
+#pragma once
+/// \file A simulation that a host steps: options of the host, ends, the state as bytes; below bough.h and the Python
+/// module.
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "embed/load.hpp"
+#include "formats/records/results.hpp"
+#include "solver/integrate/simulator.hpp"
+
+namespace bough::embed {
+
+/// A sink that drops all.
+class NoSink final : public records::ResultSink {
+ public:
+  void begin(const records::ResultsHeader&) override {}
+  void write_sample(const Eigen::Ref<const Eigen::VectorXd>&) override {}
+  void write_event(const records::EventRecord&) override {}
+  void write_checkpoint(const records::Checkpoint&) override {}
+  void end(bool, const std::string&) override {}
+};
+
+/// Zero or empty: as the system file says.
+struct SimulationOptions {
+  std::string integrator;
+  double step = 0, relative_tolerance = 0, absolute_tolerance = 0;
+  double duration = 0;  ///< [T] longest time from the start on
+};
+
+class Simulation {
+ public:
+  /// Throws what solver::Simulator throws. \param loaded and what `run` points to must outlive it.
+  Simulation(const LoadedSystem& loaded, const SimulationOptions& options, solver::SimulateOptions run = {});
+
+  solver::Simulator& simulator() { return *simulator_; }
+  const solver::Simulator& simulator() const { return *simulator_; }
+  const Diagnostics& diagnostics() const { return diagnostics_; }
+
+  /// Returns true if the run goes on at t, or ends at t itself since its duration is over.
+  /// Throws ComputationError "run.energy-error" and what Simulator::advance_to() throws.
+  bool advance_to(double t);
+  /// Returns true if t is before the time that is reached.
+  bool is_past(double t) const { return t < simulator_->time() - simulator_->resolution(); }
+  /// The message for a time that is_past().
+  std::string describe_past(double t) const;
+  /// Reason of the end. \pre the run has ended.
+  std::string describe_end() const;
+
+  /// Bytes of save(), the same for all states.
+  std::size_t state_size() const { return state_size_; }
+  /// \param to  at least state_size() bytes; those after the state are set to zero.
+  void save(std::span<std::byte> to) const;
+  /// Throws InputError "embed.bad-state", "run.bad-checkpoint".
+  void restore(std::span<const std::byte> from);
+
+ private:
+  records::SystemSpec spec_;
+  NoSink sink_;
+  solver::SimulateOptions run_;
+  Diagnostics diagnostics_;
+  std::uint64_t fingerprint_ = 0;
+  std::unique_ptr<solver::Simulator> simulator_;
+  std::size_t state_size_ = 0;
+};
+
+}  // namespace bough::embed
