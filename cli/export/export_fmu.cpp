@@ -85,17 +85,18 @@ class Packing {
   }
 
  private:
-  void edit(const std::string& problem, const toml_files::TableItem& item) const {
-    if (!problem.empty())
-      throw InputError("fmu.edit", {loaded_.spec.file, item.line}, "[[" + item.kind + "]] " + item.name + " cannot be rewritten: " + problem,
-                       "write the table with a heading and one key per line");
+  [[noreturn]] void fail(const toml_files::TableItem& item, const std::string& why, const std::string& advice) const {
+    throw InputError("fmu.cannot-pack", {loaded_.spec.file, item.line},
+                     "[[" + item.kind + "]] '" + item.name + "' cannot be packed into an FMU: " + why, advice);
   }
   void set(const toml_files::TableItem& item, const std::string& key, const std::string& value) {
-    edit(toml_files::set_value(text_, item.path() + "." + key, value), item);
+    const auto problem = toml_files::set_value(text_, item.path() + "." + key, value);
+    if (!problem.empty()) fail(item, problem, "write it as [[" + item.kind + "]], with one key per line");
   }
   void remove(const toml_files::TableItem& item, const std::string& key) {
-    if (std::find(item.keys.begin(), item.keys.end(), key) != item.keys.end())
-      edit(toml_files::remove_path(text_, item.path() + "." + key), item);
+    if (std::find(item.keys.begin(), item.keys.end(), key) == item.keys.end()) return;
+    const auto problem = toml_files::remove_path(text_, item.path() + "." + key);
+    if (!problem.empty()) fail(item, problem, "write it as [[" + item.kind + "]], with one key per line");
   }
 
   void add(const std::string& name, std::string bytes) { files_[name] = std::move(bytes); }
@@ -145,13 +146,10 @@ class Packing {
     }
     const auto found = controller.settings.words.find("file");
     const std::string file = found == controller.settings.words.end() || found->second.empty() ? "" : found->second.front();
-    const std::string what = "controller '" + controller.name + "'";
-    if (controller.type != "library")
-      throw InputError("fmu.controller", controller.at, what + " of type \"" + controller.type + "\" takes a file that an FMU cannot contain",
-                       "write its numbers into the system file, or give its signal by an [[input]]");
-    if (solver::find_hosted_controller(file))
-      throw InputError("fmu.hosted-controller", controller.at, what + " is a function of the program that exports",
-                       "build it as a shared library, or give its signal by an [[input]]");
+    const bool is_hosted = solver::find_hosted_controller(file).has_value();
+    if (controller.type != "library" || is_hosted)
+      fail(item, is_hosted ? "it is a function of the program that exports" : "its type is \"" + controller.type + "\"",
+           "use a shared library (type \"library\"), or take its signal from an [[input]]");
     const auto path = fs::path(file);
     const auto name = choose_name(file, path.stem().string(), path.extension().string());
     if (files_.count(name) == 0) add(name, read_bytes(file));

@@ -20,7 +20,7 @@ struct FmuOptions {
 /// \param file    a system file.
 /// \param output  the .fmu; its stem is the model identifier.
 /// \return one line on the variables, for the reader.
-/// \throws InputError of the system, "fmu.hosted-controller", "fmu.controller", "fmu.output"; ComputationError
+/// \throws InputError of the system, "fmu.cannot-pack", "fmu.output"; ComputationError
 /// "fmu.no-binary", "fmu.write".
 std::string export_fmu(const std::string& file, const std::string& output, const FmuOptions& options,
                        Diagnostics& diagnostics);
