@@ -40,4 +40,6 @@ if(NOT BOUGH_SOLVER_ONLY)
   find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)  # the one PETSc uses
   find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
   find_package(CLI11 REQUIRED)
+  find_path(LIBZIP_INCLUDE_DIR zip.h REQUIRED)
+  find_library(LIBZIP_LIBRARY zip REQUIRED)
 endif()

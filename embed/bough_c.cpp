@@ -3,67 +3,23 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <mutex>
 #include <new>
-#include <shared_mutex>
-#include <unordered_set>
 
 #include "base/version.hpp"
 #include "embed/bough.h"
 #include "embed/files.hpp"
+#include "embed/handles.hpp"
 #include "embed/model.hpp"
 
 using bough::Diagnostic;
 using bough::Diagnostics;
 
-struct bough_model {
-  std::shared_ptr<const bough::embed::Model> model;
-};
-
-struct bough_simulation {
-  std::shared_ptr<const bough::embed::Model> model;
-  std::unique_ptr<bough::embed::Simulation> own;
-  std::string message;
-  bool has_failed = false;
-
-  bough::solver::Simulator& simulator() const { return own->simulator(); }
-};
-
 namespace {
 
 using bough::embed::Port;
 
-/// Handles that are alive: a dead or foreign one is told, not followed.
-class Handles {
- public:
-  void add(const void* handle) {
-    const std::unique_lock held(mutex_);
-    alive_.insert(handle);
-  }
-  bool remove(const void* handle) {
-    const std::unique_lock held(mutex_);
-    return alive_.erase(handle) > 0;
-  }
-  bool has(const void* handle) {
-    const std::shared_lock held(mutex_);
-    return alive_.count(handle) > 0;
-  }
-
- private:
-  std::shared_mutex mutex_;
-  std::unordered_set<const void*> alive_;
-};
-Handles& get_models() {
-  static Handles handles;
-  return handles;
-}
-Handles& get_simulations() {
-  static Handles handles;
-  return handles;
-}
-
-bool is_alive(const bough_model* model) { return model && get_models().has(model); }
-bool is_alive(const bough_simulation* simulation) { return simulation && get_simulations().has(simulation); }
+bool is_alive(const bough_model* model) { return model && bough::embed::get_model_handles().has(model); }
+bool is_alive(const bough_simulation* simulation) { return simulation && bough::embed::get_simulation_handles().has(simulation); }
 
 template <std::size_t N>
 void put(char (&to)[N], const std::string& text) {
@@ -149,7 +105,7 @@ bough_status load(const char* file, const char* toml, const char* const* setting
         auto made = std::make_unique<bough_model>();
         made->model = std::make_shared<const bough::embed::Model>(
             bough::embed::load_system(file, bough::embed::get_file_readers(), std::move(options), diagnostics));
-        get_models().add(made.get());
+        bough::embed::get_model_handles().add(made.get());
         *model = made.release();
         return BOUGH_OK;
       },
@@ -188,6 +144,27 @@ bough_status compute(bough_simulation& s, const Action& action) noexcept {
 
 }  // namespace
 
+namespace bough::embed {
+
+Handles& get_model_handles() {
+  static Handles handles;
+  return handles;
+}
+Handles& get_simulation_handles() {
+  static Handles handles;
+  return handles;
+}
+
+std::unique_ptr<bough_simulation> make_simulation(std::shared_ptr<const Model> model, records::SystemSpec spec) {
+  auto made = std::make_unique<bough_simulation>();
+  made->model = std::move(model);
+  made->own = std::make_unique<Simulation>(made->model->loaded(), std::move(spec));
+  get_simulation_handles().add(made.get());
+  return made;
+}
+
+}  // namespace bough::embed
+
 extern "C" {
 
 int bough_abi_version(void) { return BOUGH_ABI_VERSION; }
@@ -213,7 +190,7 @@ bough_status bough_load_text(const char* toml, const char* folder, const char* c
 }
 
 void bough_unload(bough_model* model) {
-  if (model && get_models().remove(model)) delete model;
+  if (model && bough::embed::get_model_handles().remove(model)) delete model;
 }
 
 int bough_count(const bough_model* model, bough_kind kind) {
@@ -252,18 +229,14 @@ bough_status bough_start(const bough_model* model, const bough_options* options,
   if (options && options->size != sizeof(bough_options))
     return refuse("options.size is not sizeof(bough_options): begin with bough_default_options()", message);
   std::vector<Diagnostic> told;
-  auto made = std::unique_ptr<bough_simulation>(new (std::nothrow) bough_simulation);
-  if (!made) return BOUGH_OUT_OF_MEMORY;
   const auto status = call(
       [&] {
-        made->model = model->model;
         bough::embed::SimulationOptions own;
         if (options)
           own = {options->integrator ? options->integrator : "", options->step, options->relative_tolerance,
                  options->absolute_tolerance, options->duration};
-        made->own = std::make_unique<bough::embed::Simulation>(model->model->loaded(), own);
-        get_simulations().add(made.get());
-        *simulation = made.release();
+        const auto& spec = model->model->loaded().spec;
+        *simulation = bough::embed::make_simulation(model->model, bough::embed::change_spec(spec, own)).release();
         return BOUGH_OK;
       },
       told);
@@ -272,7 +245,7 @@ bough_status bough_start(const bough_model* model, const bough_options* options,
 }
 
 void bough_stop(bough_simulation* simulation) {
-  if (simulation && get_simulations().remove(simulation)) delete simulation;
+  if (simulation && bough::embed::get_simulation_handles().remove(simulation)) delete simulation;
 }
 
 double bough_time(const bough_simulation* simulation) {

@@ -36,9 +36,13 @@ std::string to_text(double value) {
 
 }  // namespace
 
-Simulation::Simulation(const LoadedSystem& loaded, const SimulationOptions& options, solver::SimulateOptions run)
-    : spec_(loaded.spec), run_(std::move(run)) {
-  apply(options, spec_.simulation);
+records::SystemSpec change_spec(records::SystemSpec spec, const SimulationOptions& options) {
+  apply(options, spec.simulation);
+  return spec;
+}
+
+Simulation::Simulation(const LoadedSystem& loaded, records::SystemSpec spec, solver::SimulateOptions run)
+    : spec_(std::move(spec)), run_(std::move(run)) {
   fingerprint_ = calc_fingerprint(spec_);
   simulator_ = std::make_unique<solver::Simulator>(loaded.system, spec_, sink_, run_, diagnostics_);
   state_size_ = encode_state(simulator_->save(), 0).size() + simulator_->max_step_size() * sizeof(double);

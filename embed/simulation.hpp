@@ -29,14 +29,21 @@ struct SimulationOptions {
   double duration = 0;  ///< [T] longest time from the start on
 };
 
+/// The records with the options of a host.
+records::SystemSpec change_spec(records::SystemSpec spec, const SimulationOptions& options);
+
 class Simulation {
  public:
+  /// \param spec  that of the system, with another [simulation] if needed.
   /// Throws what solver::Simulator throws. \param loaded and what `run` points to must outlive it.
-  Simulation(const LoadedSystem& loaded, const SimulationOptions& options, solver::SimulateOptions run = {});
+  Simulation(const LoadedSystem& loaded, records::SystemSpec spec, solver::SimulateOptions run = {});
 
   solver::Simulator& simulator() { return *simulator_; }
   const solver::Simulator& simulator() const { return *simulator_; }
   const Diagnostics& diagnostics() const { return diagnostics_; }
+  const records::SystemSpec& spec() const { return spec_; }
+  /// Of what must be the same where a state is restored.
+  std::uint64_t fingerprint() const { return fingerprint_; }
 
   /// Returns true if the run goes on at t, or ends at t itself since its duration is over.
   /// Throws ComputationError "run.energy-error" and what Simulator::advance_to() throws.

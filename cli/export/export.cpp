@@ -9,9 +9,11 @@
 #include "cli/common/console.hpp"
 #include "cli/common/event_list.hpp"
 #include "cli/common/options.hpp"
+#include "cli/common/system_files.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/vtu_file.hpp"
 #include "cli/export/export_bodies.hpp"
+#include "cli/export/export_fmu.hpp"
 #include "cli/export/export_matrices.hpp"
 #include "cli/export/moving_system.hpp"
 #include "cli/linearize/linear_model_files.hpp"
@@ -25,6 +27,7 @@
 #include "formats/hdf5/sweep_file.hpp"
 #include "formats/nastran/reader.hpp"
 #include "formats/nastran/writer.hpp"
+#include "formats/toml/specs.hpp"
 
 namespace bough::cli {
 
@@ -39,6 +42,7 @@ struct ExportOptions : CommonOptions {
   BodyExportOptions body;
   MovingOptions moving;
   std::vector<std::string> ignore_cards;
+  FmuOptions fmu;
 };
 
 bool is_response(const std::string& format) { return format == "bough-frequency" || format == "bough-transient"; }
@@ -129,12 +133,27 @@ int export_pvd(const ExportOptions& o, const Console& console, Diagnostics& diag
   return kSuccess;
 }
 
+int export_system(const ExportOptions& o, const Console& console, Diagnostics& diagnostics) {
+  if (o.output.empty()) {
+    console.print_error("cli.usage", "--to fmu writes no text: give the .fmu with -o", "see bough export --help");
+    return kUsageError;
+  }
+  demand_kind(o.file, toml_files::detect_kind(o.file), "system");
+  auto options = o.fmu;
+  options.outputs = o.channels;
+  const auto summary = export_fmu(o.file, o.output, options, diagnostics);
+  console.print(diagnostics);
+  console.print(summary + "written: " + o.output + "\n");
+  return kSuccess;
+}
+
 int run_export(const ExportOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
   demand_body_file(o.file);
   if (!o.output.empty()) check_output(o, o.output, {get_body_path(o.file)});
   Diagnostics diagnostics;
+  if (o.format == "fmu") return export_system(o, console, diagnostics);
   if (o.format != "bdf") warn_incomplete(o.file, diagnostics);
   if (o.format == "mat") {
     if (o.output.empty()) {
@@ -173,18 +192,19 @@ void add_export(CLI::App& app, Action& action) {
           "file", o->file,
           "csv: results, modes, flexible body, linear model, sweep or response of a deck; vtu: modes file or flexible "
           "body; pvd: results; gltf: results, modes file or flexible body; bdf: Nastran deck; sid, mbdyn, flat: "
-          "flexible body; mat, op4, uff: any HDF5 file of Bough that has such arrays")
+          "flexible body; fmu: system file; mat, op4, uff: any HDF5 file of Bough that has such arrays")
       ->required();
   verb->add_option("--to", o->format,
                    "Format: csv, vtu (mode shapes for ParaView), pvd (the moving system for ParaView), gltf "
                    "(.glb: the moving system or modes), bdf (the deck as Bough reads it), mat (MATLAB), "
                    "op4 (Nastran OUTPUT4), uff (universal file), sid (Standard Input Data), mbdyn (.fem), flat (a "
-                   "body for hosts without HDF5)")
+                   "body for hosts without HDF5), fmu (the system for other simulators)")
       ->required()
-      ->check(CLI::IsMember({"csv", "vtu", "pvd", "gltf", "bdf", "mat", "op4", "uff", "sid", "mbdyn", "flat"}));
+      ->check(CLI::IsMember({"csv", "vtu", "pvd", "gltf", "bdf", "mat", "op4", "uff", "sid", "mbdyn", "flat", "fmu"}));
   verb->add_option("--channel", o->channels,
                    "csv, uff: only these: a path or folder of the file, or a sensor; with :component; may be repeated "
-                   "(default: all). csv of modes or a body: modes, their table instead of the shapes")
+                   "(default: all). csv of modes or a body: modes, their table instead of the shapes. fmu: the outputs "
+                   "(default: every sensor)")
       ->allow_extra_args(false);
   verb->add_flag("--ascii", o->ascii, "vtu, pvd: numbers as text instead of base64");
   verb->add_flag("--moving", o->is_moving,
@@ -193,6 +213,10 @@ void add_export(CLI::App& app, Action& action) {
                    "bdf: large (16 columns where 8 lose digits), small (always 8) or free (commas, every digit)")
       ->check(CLI::IsMember({"large", "small", "free"}))
       ->capture_default_str();
+  verb->add_option("--fmi", o->fmu.version, "fmu: version of the standard, 2 or 3")
+      ->check(CLI::IsMember({2, 3}))
+      ->capture_default_str();
+  add_set_option(*verb, o->fmu.set);
   verb->add_option("--ignore", o->ignore_cards, "bdf: leave this card out; may be repeated")->allow_extra_args(false);
   add_body_export_options(*verb, o->body);
   add_moving_options(*verb, o->moving);
@@ -207,7 +231,7 @@ void add_export(CLI::App& app, Action& action) {
       "  bough export boom.h5 --to mat -o boom.mat\n"
       "  bough export boom-modes.h5 --to uff -o boom.uff\n  bough export boom.h5 --to sid -o boom.SID_FEM\n"
       "  bough export boom.h5 --to mbdyn -o boom.fem\n  bough export boom.h5 --to flat -o boom.flat\n  bough export "
-      "boom.bdf --to bdf -o plain.bdf");
+      "spinup.toml --to fmu --fmi 2 --channel tip_deflection:y -o spinup.fmu\n  bough export boom.bdf --to bdf -o plain.bdf");
   verb->callback([&action, o] { action = [o] { return run_export(*o); }; });
 }
 

@@ -19,7 +19,7 @@ Simulation::Simulation(const embed::LoadedSystem& loaded, const embed::Simulatio
   };
   {
     const py::gil_scoped_release released;
-    own_ = std::make_unique<embed::Simulation>(loaded, options, std::move(run));
+    own_ = std::make_unique<embed::Simulation>(loaded, embed::change_spec(loaded.spec, options), std::move(run));
     ports_ = std::make_unique<embed::Ports>(loaded.spec, own_->simulator());
   }
   messages = tell(own_->diagnostics());

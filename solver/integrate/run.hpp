@@ -269,7 +269,7 @@ class Run {
   double passed_ = -std::numeric_limits<double>::infinity();   ///< the last stop whose events have come
   Stop stop_;                                                  ///< the next one, or the one just met
   double time_ = 0;                                            ///< where y_ is between pieces
-  Stop next_stop_;                                             ///< of an integrator of the host
+  Stop next_stop_{-std::numeric_limits<double>::infinity(), 0, false};  ///< of a host's integrator; -inf: not yet known
   bool is_at_event_ = false;                                   ///< the event at time_ has come
   bool needs_restart_ = true;                                  ///< of the stepper, at the next interval
   bool is_inside_ = false;                                     ///< paused on the way to stop_

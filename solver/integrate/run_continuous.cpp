@@ -19,7 +19,7 @@ void Run::find_next_stop() {
 }
 
 void Run::set_continuous(double t, const Eigen::Ref<const VectorXd>& x) {
-  if (next_stop_.time == 0 && next_stop_.latest == 0) find_next_stop();
+  if (!std::isfinite(next_stop_.time)) find_next_stop();
   is_at_event_ = is_at_event_ && t == time_;
   time_ = t;
   y_ = x;
@@ -84,6 +84,7 @@ bool Run::needs_projection() {
 }
 
 bool Run::update_discrete() {
+  if (!std::isfinite(next_stop_.time)) find_next_stop();
   const VectorXd before = y_;
   const bool at_stop = !is_at_event_ && std::abs(time_ - next_stop_.time) <= timeline_.resolution();
   is_at_event_ = true;

@@ -44,7 +44,8 @@ void Run::for_each_kept(const Action& action) {
   for (double* value : {&time_, &scanned_, &last_sample_, &crossed_, &changed_, &cut_at_, &settled_, &coming_, &coming_at_})
     action(*value);
   for (int* value : {&num_quick_, &num_tiny_, &num_cuts_, &num_settled_}) action(*value);
-  for (bool* value : {&needs_restart_, &is_inside_, &has_stepped_, &has_changed_, &has_switched_}) action(*value);
+  for (double* value : {&next_stop_.time, &next_stop_.latest}) action(*value);
+  for (bool* value : {&is_at_event_, &next_stop_.restarts, &needs_restart_, &is_inside_, &has_stepped_, &has_changed_, &has_switched_}) action(*value);
   for (VectorXd* v : {&last_events_.kinks, &last_events_.switches, &last_events_.contacts, &last_events_.signals,
                       &largest_kinks_})
     action(*v);

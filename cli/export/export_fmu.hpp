@@ -1,0 +1,28 @@
+#pragma once
+/// \file Export of a system as an FMU (docs/fmu.md).
+#include <string>
+#include <vector>
+
+namespace bough {
+class Diagnostics;
+}
+
+namespace bough::cli {
+
+struct FmuOptions {
+  int version = 3;                   ///< of FMI: 2 or 3
+  std::vector<std::string> outputs;  ///< channels or components; empty: every sensor
+  std::vector<std::string> set;      ///< "name=value" of [parameters]: other start values
+};
+
+/// Writes an FMU for Co-Simulation and Model Exchange. Equal input gives equal bytes.
+///
+/// \param file    a system file.
+/// \param output  the .fmu; its stem is the model identifier.
+/// \return one line on the variables, for the reader.
+/// \throws InputError of the system, "fmu.cannot-pack", "fmu.output"; ComputationError
+/// "fmu.no-binary", "fmu.write".
+std::string export_fmu(const std::string& file, const std::string& output, const FmuOptions& options,
+                       Diagnostics& diagnostics);
+
+}  // namespace bough::cli

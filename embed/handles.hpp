@@ -1,0 +1,57 @@
+#pragma once
+/// \file Objects behind the handles of bough.h, for the other interfaces of the library.
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <string>
+#include <unordered_set>
+
+#include "embed/bough.h"
+#include "embed/model.hpp"
+#include "embed/simulation.hpp"
+
+struct bough_model {
+  std::shared_ptr<const bough::embed::Model> model;
+};
+
+struct bough_simulation {
+  std::shared_ptr<const bough::embed::Model> model;
+  std::unique_ptr<bough::embed::Simulation> own;
+  std::string message;
+  bool has_failed = false;
+
+  bough::solver::Simulator& simulator() const { return own->simulator(); }
+};
+
+namespace bough::embed {
+
+/// Represents the set of live handles: a released or foreign pointer is reported, not dereferenced. Thread-safe.
+class Handles {
+ public:
+  void add(const void* handle) {
+    const std::unique_lock held(mutex_);
+    alive_.insert(handle);
+  }
+  bool remove(const void* handle) {
+    const std::unique_lock held(mutex_);
+    return alive_.erase(handle) > 0;
+  }
+  bool has(const void* handle) {
+    const std::shared_lock held(mutex_);
+    return alive_.count(handle) > 0;
+  }
+
+ private:
+  std::shared_mutex mutex_;
+  std::unordered_set<const void*> alive_;
+};
+Handles& get_model_handles();
+Handles& get_simulation_handles();
+
+/// Starts a simulation and registers its handle; bough_stop() releases it.
+///
+/// \param spec  that of the model, with another [simulation] if needed.
+/// \throws as solver::Simulator.
+std::unique_ptr<bough_simulation> make_simulation(std::shared_ptr<const Model> model, records::SystemSpec spec);
+
+}  // namespace bough::embed

@@ -1,0 +1,163 @@
+#include "formats/fmu/model_description.hpp"
+
+#include <cctype>
+#include <charconv>
+#include <set>
+
+namespace bough::fmu {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+std::string escape(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '&') escaped += "&amp;";
+    else if (c == '<') escaped += "&lt;";
+    else if (c == '>') escaped += "&gt;";
+    else if (c == '"') escaped += "&quot;";
+    else if (static_cast<unsigned char>(c) < 32) escaped += ' ';
+    else escaped += c;
+  }
+  return escaped;
+}
+
+std::string attribute(const std::string& name, const std::string& value) {
+  return " " + name + "=\"" + escape(value) + "\"";
+}
+
+std::string optional_attribute(const std::string& name, const std::string& value) {
+  return value.empty() ? "" : attribute(name, value);
+}
+
+/// Gives every variable a name of its own: one that is taken gets a number.
+class Names {
+ public:
+  std::string get(const std::string& wanted) {
+    std::string name = wanted;
+    for (int i = 2; !taken_.insert(name).second; ++i) name = wanted + " (" + std::to_string(i) + ")";
+    return name;
+  }
+
+ private:
+  std::set<std::string> taken_;
+};
+
+std::string make_experiment(const ModelDescription& m) {
+  return "  <DefaultExperiment" + attribute("startTime", number(m.start)) + attribute("stopTime", number(m.stop)) +
+         attribute("tolerance", number(m.tolerance)) + (m.step > 0 ? attribute("stepSize", number(m.step)) : "") + "/>\n";
+}
+
+constexpr const char* kLogCategories =
+    "  <LogCategories>\n"
+    "    <Category name=\"logEvents\" description=\"the event that ends the run\"/>\n"
+    "    <Category name=\"logStatusWarning\" description=\"warnings of the system file\"/>\n"
+    "    <Category name=\"logStatusDiscard\" description=\"calls that return Discard\"/>\n"
+    "    <Category name=\"logStatusError\" description=\"calls that return Error\"/>\n"
+    "  </LogCategories>\n";
+
+}  // namespace
+
+std::string make_identifier(const std::string& text) {
+  std::string identifier;
+  for (const char c : text) identifier += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  if (identifier.empty() || std::isdigit(static_cast<unsigned char>(identifier[0]))) identifier.insert(0, "_");
+  return identifier;
+}
+
+std::string format_fmi2(const ModelDescription& m) {
+  const std::string common = attribute("modelIdentifier", m.identifier) + attribute("canGetAndSetFMUstate", "true") +
+                             attribute("canSerializeFMUstate", "true");
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription" + attribute("fmiVersion", "2.0") +
+                     attribute("modelName", m.model_name) + attribute("guid", m.token) +
+                     optional_attribute("description", m.description) + attribute("generationTool", m.tool) +
+                     attribute("variableNamingConvention", "flat") +
+                     attribute("numberOfEventIndicators", std::to_string(m.event_indicators.size())) + ">\n" +
+                     "  <ModelExchange" + common + "/>\n  <CoSimulation" + common +
+                     attribute("canHandleVariableCommunicationStepSize", "true") + "/>\n" + kLogCategories +
+                     make_experiment(m) + "  <ModelVariables>\n";
+  Names names;
+  std::size_t index = 0;
+  const auto add = [&](const Variable& v, const std::string& attributes, const std::string& real) {
+    text += "    <ScalarVariable" + attribute("name", names.get(v.name)) +
+            attribute("valueReference", std::to_string(v.reference)) + optional_attribute("description", v.description) +
+            attributes + "><Real" + real + "/></ScalarVariable>\n";
+    return ++index;
+  };
+  const std::string continuous = attribute("variability", "continuous"), calculated = attribute("initial", "calculated");
+  for (const auto& v : m.parameters)
+    add(v, attribute("causality", "parameter") + attribute("variability", "fixed") + attribute("initial", "exact"),
+        attribute("start", number(v.start)));
+  for (const auto& v : m.inputs) add(v, attribute("causality", "input") + continuous, attribute("start", number(v.start)));
+  std::string outputs, derivatives, unknowns;
+  const auto add_unknown = [](std::string& to, std::size_t of) {
+    to += "      <Unknown" + attribute("index", std::to_string(of)) + "/>\n";
+  };
+  for (const auto& v : m.outputs) {
+    const auto at = add(v, attribute("causality", "output") + continuous + calculated, "");
+    add_unknown(outputs, at);
+    add_unknown(unknowns, at);
+  }
+  const std::size_t first_state = index + 1;
+  for (const auto& v : m.states) add_unknown(unknowns, add(v, attribute("causality", "local") + continuous + calculated, ""));
+  for (std::size_t i = 0; i < m.derivatives.size(); ++i) {
+    const auto at = add(m.derivatives[i], attribute("causality", "local") + continuous + calculated,
+                        attribute("derivative", std::to_string(first_state + i)));
+    add_unknown(derivatives, at);
+    add_unknown(unknowns, at);
+  }
+  text += "  </ModelVariables>\n  <ModelStructure>\n";
+  const auto add_section = [&](const std::string& name, const std::string& lines) {
+    if (!lines.empty()) text += "    <" + name + ">\n" + lines + "    </" + name + ">\n";
+  };
+  add_section("Outputs", outputs);
+  add_section("Derivatives", derivatives);
+  add_section("InitialUnknowns", unknowns);
+  return text + "  </ModelStructure>\n</fmiModelDescription>\n";
+}
+
+std::string format_fmi3(const ModelDescription& m) {
+  const std::string common = attribute("modelIdentifier", m.identifier) + attribute("canGetAndSetFMUState", "true") +
+                             attribute("canSerializeFMUState", "true");
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription" + attribute("fmiVersion", "3.0") +
+                     attribute("modelName", m.model_name) + attribute("instantiationToken", m.token) +
+                     optional_attribute("description", m.description) + attribute("generationTool", m.tool) +
+                     attribute("variableNamingConvention", "flat") + ">\n  <ModelExchange" + common +
+                     attribute("needsCompletedIntegratorStep", "true") + "/>\n  <CoSimulation" + common +
+                     attribute("canHandleVariableCommunicationStepSize", "true") +
+                     attribute("mightReturnEarlyFromDoStep", "true") + attribute("hasEventMode", "true") + "/>\n" +
+                     kLogCategories + make_experiment(m) + "  <ModelVariables>\n";
+  Names names;
+  const auto add = [&](const Variable& v, const std::string& attributes) {
+    text += "    <Float64" + attribute("name", names.get(v.name)) + attribute("valueReference", std::to_string(v.reference)) +
+            optional_attribute("description", v.description) + attributes + "/>\n";
+  };
+  const std::string continuous = attribute("variability", "continuous"), calculated = attribute("initial", "calculated");
+  add({"time", "independent variable", 0, 0}, attribute("causality", "independent") + continuous);
+  for (const auto& v : m.parameters)
+    add(v, attribute("causality", "parameter") + attribute("variability", "fixed") + attribute("initial", "exact") +
+               attribute("start", number(v.start)));
+  for (const auto& v : m.inputs)
+    add(v, attribute("causality", "input") + continuous + attribute("start", number(v.start)));
+  for (const auto& v : m.outputs) add(v, attribute("causality", "output") + continuous + calculated);
+  for (const auto& v : m.states) add(v, attribute("causality", "local") + continuous + calculated);
+  for (std::size_t i = 0; i < m.derivatives.size(); ++i)
+    add(m.derivatives[i], attribute("causality", "local") + continuous + calculated +
+                              attribute("derivative", std::to_string(m.states[i].reference)));
+  for (const auto& v : m.event_indicators) add(v, attribute("causality", "local") + continuous + calculated);
+  text += "  </ModelVariables>\n  <ModelStructure>\n";
+  const auto list = [&](const char* name, const std::vector<Variable>& variables) {
+    for (const auto& v : variables)
+      text += std::string("    <") + name + attribute("valueReference", std::to_string(v.reference)) + "/>\n";
+  };
+  list("Output", m.outputs);
+  list("ContinuousStateDerivative", m.derivatives);
+  for (const auto* variables : {&m.outputs, &m.states, &m.derivatives}) list("InitialUnknown", *variables);
+  list("EventIndicator", m.event_indicators);
+  return text + "  </ModelStructure>\n</fmiModelDescription>\n";
+}
+
+}  // namespace bough::fmu

@@ -1,0 +1,34 @@
+#pragma once
+/// \file modelDescription.xml of FMI 2.0 and 3.0.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace bough::fmu {
+
+struct Variable {
+  std::string name, description;
+  std::uint32_t reference = 0;
+  double start = 0;  ///< of parameters and inputs
+};
+
+/// Represents what both versions describe: all variables are scalars of double precision.
+struct ModelDescription {
+  std::string model_name;        ///< any text
+  std::string identifier;        ///< a C identifier: the name of the binary
+  std::string token;             ///< guid, instantiation token
+  std::string description, tool;
+  double start = 0, stop = 1, tolerance = 1e-8, step = 0;  ///< default experiment; step 0: none
+  std::vector<Variable> parameters, inputs, outputs;
+  std::vector<Variable> states, derivatives;  ///< equal in number
+  std::vector<Variable> event_indicators;
+};
+
+/// Returns the text of modelDescription.xml. Equal descriptions give equal bytes: there is no date in it.
+std::string format_fmi2(const ModelDescription& model);
+std::string format_fmi3(const ModelDescription& model);
+
+/// Returns a C identifier like `text`: other characters become underscores.
+std::string make_identifier(const std::string& text);
+
+}  // namespace bough::fmu
