@@ -206,6 +206,13 @@ name = "drive"
 type = "hinge"
 hinge = "axis"
 input = "law"
+[[input]]
+name = "torque"
+[[actuator]]
+name = "motor"
+type = "hinge"
+hinge = "axis"
+input = "torque"
 [simulation]
 duration = 1.0
 """

@@ -85,6 +85,11 @@ class Hosts(unittest.TestCase):
                 self.assertTrue(f"```\n{f.read()}```\n" in re.sub(r"```\w+\n", "```\n", page), f"not in embedding.md: {name}")
         self.assertTrue(f"```\n{self.expected}```\n" in page, "the numbers printed are not in embedding.md")
 
+    def test_the_library_links_the_system_only(self):
+        linked = self.run_host(["ldd", LIBRARY])
+        for name in ("hdf5", "petsc", "slepc", "mpi", "blas", "lapack", "mumps"):
+            self.assertNotIn(name, linked)
+
     def test_every_constant_is_that_of_the_header(self):
         with open(os.path.join(SOURCE, "embed", "bough.h"), encoding="utf-8") as f:
             header = f.read()
