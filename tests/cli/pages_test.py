@@ -243,6 +243,7 @@ PAGES = {
         {"wing.bdf": read("data/examples/ex08-satellite/wing.bdf")},
         ("matrices wing.bdf --to op4 -o wing.op4 -q", "modes wing.bdf -n 8 -o wing.h5 --op2 wing.op2 -q"),
         left_out=(".pch", ".mtx")),   # punch and Abaqus files: matrix_bodies_test.py
+    "docs/fmu.md": boom(),
     "docs/formats/flx.md": boom(
         {name: read("data/integrals/" + name) for name in ("test.inp", "test.mat")},
         stands_for={"left.h5": "boom.h5", "right.h5": "boom.h5"}),

@@ -8,6 +8,7 @@
 
 #include "base/diagnostic.hpp"
 #include "cli/export/export_fmu.hpp"
+#include "formats/fmu/archive.hpp"
 #include "formats/fmu/model_description.hpp"
 #include "solver/control/hosted.hpp"
 
@@ -60,6 +61,16 @@ TEST(ExportFmu, RefusesControllersOfTheHost) {
   }
   EXPECT_FALSE(fs::exists(folder / "a.fmu"));
   fs::remove_all(folder);
+}
+
+TEST(ExportFmu, AnArchiveThatCannotBeWrittenIsReported) {
+  try {
+    fmu::write_archive("/nowhere/a.fmu", {{"resources/a.txt", "text"}});
+    ADD_FAILURE() << "no error";
+  } catch (const ComputationError& error) {
+    EXPECT_EQ(error.items()[0].id, "fmu.write");
+    EXPECT_EQ(error.items()[0].where.file, "/nowhere/a.fmu");
+  }
 }
 
 TEST(ModelDescription, IdentifiersAreThoseOfC) {
