@@ -3,6 +3,7 @@
 #include <fstream>
 #include <memory>
 #include <sstream>
+#include <utility>
 
 #include "cli/common/body_files.hpp"
 #include "cli/common/channels.hpp"
@@ -147,9 +148,26 @@ int export_system(const ExportOptions& o, const Console& console, Diagnostics& d
   return kSuccess;
 }
 
-int run_export(const ExportOptions& o) {
+/// -o, --output given several times, a line each: of an FMU what is no .fmu is an output of it, as --channel.
+bool take_outputs(ExportOptions& o) {
+  if (o.output.find('\n') == std::string::npos) return true;
+  std::istringstream lines(std::exchange(o.output, {}));
+  for (std::string line; std::getline(lines, line);) {
+    if (o.format == "fmu" && !has_suffix(line, ".fmu"))
+      o.channels.push_back(line);
+    else if (std::exchange(o.output, line) != "")
+      return false;
+  }
+  return true;
+}
+
+int run_export(ExportOptions o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
+  if (!take_outputs(o)) {
+    console.print_error("cli.usage", "-o is given twice", "name one file to write");
+    return kUsageError;
+  }
   demand_body_file(o.file);
   if (!o.output.empty()) check_output(o, o.output, {get_body_path(o.file)});
   Diagnostics diagnostics;
@@ -220,7 +238,9 @@ void add_export(CLI::App& app, Action& action) {
   verb->add_option("--ignore", o->ignore_cards, "bdf: leave this card out; may be repeated")->allow_extra_args(false);
   add_body_export_options(*verb, o->body);
   add_moving_options(*verb, o->moving);
-  add_common_options(*verb, *o, kOutput, "Write to this file instead of stdout");
+  add_common_options(*verb, *o, kOutput,
+                     "Write to this file instead of stdout; fmu: again with a signal, another output of the FMU");
+  verb->get_option("--output")->multi_option_policy(CLI::MultiOptionPolicy::Join);
   verb->footer(
       "Example:\n  bough export spinup.h5 --to csv -o spinup.csv\n"
       "  bough export spinup.h5 --to csv --channel tip_deflection:y --channel /bodies/boom/eta\n"

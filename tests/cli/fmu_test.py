@@ -205,6 +205,12 @@ class FmuTest(ProgramTest):
                     run.advance(1.0)
                 np.testing.assert_allclose(instance.get(["x:x"]), [0.125], rtol=1e-9)
 
+    def test_outputs_are_chosen_by_output_too(self):
+        self.write("slide.toml", SLIDE)
+        fmu = self.export("slide.toml", 3, "--output", "x:x", "--output", "/hinges/slide/qdot")
+        self.assertEqual(fmu.list("output"), ["x:x", "/hinges/slide/qdot"])
+        self.fails(2, "export", "slide.toml", "--to", "fmu", "-o", "a.fmu", "-o", "b.fmu", error="cli.usage")
+
     def test_outputs_are_chosen(self):
         self.write("arm.toml", ARM)
         self.assertEqual(self.export("arm.toml").list("output"), ["angle", "tip:x", "tip:y", "tip:z"])
