@@ -19,7 +19,8 @@ InputBlock::InputBlock(const records::InputRecord& record)
 void InputBlock::start(double*, double* d) const { d[kValue] = d[kNext] = start_; }
 
 double InputBlock::calc_value(double t, const double* d) {
-  if (t >= d[kUntil]) return d[kNext];
+  // A value that is held has no line, also at times before it was set.
+  if (t >= d[kUntil] || d[kUntil] <= d[kFrom]) return d[kNext];
   const double share = (std::max(t, d[kFrom]) - d[kFrom]) / (d[kUntil] - d[kFrom]);
   return d[kValue] + share * (d[kNext] - d[kValue]);
 }
