@@ -39,9 +39,8 @@ void send(const fmi2CallbackFunctions* functions, const char* name, Status statu
 
 template <class Action>
 fmi2Status run(fmi2Component component, unsigned allowed, const char* function, const Action& action) noexcept {
-  return static_cast<fmi2Status>(bough::fmi::call(component, allowed, function, [&](Instance& instance) {
-    return action(static_cast<Component&>(instance));
-  }));
+  return static_cast<fmi2Status>(bough::fmi::call(
+      component, allowed, function, [&](Instance& instance) { return action(static_cast<Component&>(instance)); }));
 }
 
 fmi2Status reject(fmi2Component component, const char* function, const char* why) noexcept {
@@ -221,7 +220,8 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component component, fmi2FMUstate state, fm
     const auto* saved = find_state(state);
     if (!saved || !bytes) return c.fail("fmi2SerializeFMUstate: this is no FMU state, or the pointer is null");
     const auto all = c.serialize(*saved);
-    if (size < all.size()) return c.fail("fmi2SerializeFMUstate: the state takes " + std::to_string(all.size()) + " bytes");
+    if (size < all.size())
+      return c.fail("fmi2SerializeFMUstate: the state takes " + std::to_string(all.size()) + " bytes");
     std::copy(all.begin(), all.end(), reinterpret_cast<std::byte*>(bytes));
     return Status::Ok;
   });
@@ -284,8 +284,8 @@ fmi2Status fmi2SetContinuousStates(fmi2Component component, const fmi2Real x[], 
   return run(component, bough::fmi::kContinuousTime, "fmi2SetContinuousStates",
              [&](Component& c) { return c.set_states(x, n); });
 }
-constexpr unsigned kStateReaders = bough::fmi::kInitialization | bough::fmi::kEventMode | bough::fmi::kContinuousTime |
-                                   bough::fmi::kTerminated;
+constexpr unsigned kStateReaders =
+    bough::fmi::kInitialization | bough::fmi::kEventMode | bough::fmi::kContinuousTime | bough::fmi::kTerminated;
 fmi2Status fmi2GetDerivatives(fmi2Component component, fmi2Real x_dot[], size_t n) {
   return run(component, kStateReaders, "fmi2GetDerivatives", [&](Component& c) { return c.get_derivatives(x_dot, n); });
 }

@@ -22,13 +22,12 @@ struct Instance3 : Instance {
 
 template <class Action>
 fmi3Status run3(fmi3Instance instance, unsigned allowed, const char* function, const Action& action) noexcept {
-  return static_cast<fmi3Status>(bough::fmi::call(
-      instance, allowed, function, [&](Instance& i) { return action(static_cast<Instance3&>(i)); }));
+  return static_cast<fmi3Status>(
+      bough::fmi::call(instance, allowed, function, [&](Instance& i) { return action(static_cast<Instance3&>(i)); }));
 }
 
 fmi3Status reject3(fmi3Instance instance, const char* function, const char* why) noexcept {
-  return run3(instance, kAllPhases, function,
-              [&](Instance3& i) { return i.fail(std::string(function) + ": " + why); });
+  return run3(instance, kAllPhases, function, [&](Instance3& i) { return i.fail(std::string(function) + ": " + why); });
 }
 
 /// Variables of other types than Float64 do not exist.
@@ -311,7 +310,8 @@ fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3
     const auto* saved = find_saved(state);
     if (!saved || !bytes) return i.fail("fmi3SerializeFMUState: this is no FMU state, or the pointer is null");
     const auto all = i.serialize(*saved);
-    if (size < all.size()) return i.fail("fmi3SerializeFMUState: the state takes " + std::to_string(all.size()) + " bytes");
+    if (size < all.size())
+      return i.fail("fmi3SerializeFMUState: the state takes " + std::to_string(all.size()) + " bytes");
     std::copy(all.begin(), all.end(), reinterpret_cast<std::byte*>(bytes));
     return Status::Ok;
   });
@@ -413,8 +413,8 @@ fmi3Status fmi3SetContinuousStates(fmi3Instance instance, const fmi3Float64 x[],
   return run3(instance, bough::fmi::kContinuousTime, "fmi3SetContinuousStates",
               [&](Instance3& i) { return i.set_states(x, n); });
 }
-constexpr unsigned kStateGetters = bough::fmi::kInitialization | bough::fmi::kEventMode | bough::fmi::kContinuousTime |
-                                   bough::fmi::kTerminated;
+constexpr unsigned kStateGetters =
+    bough::fmi::kInitialization | bough::fmi::kEventMode | bough::fmi::kContinuousTime | bough::fmi::kTerminated;
 fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance, fmi3Float64 x_dot[], size_t n) {
   return run3(instance, kStateGetters, "fmi3GetContinuousStateDerivatives",
               [&](Instance3& i) { return i.get_derivatives(x_dot, n); });

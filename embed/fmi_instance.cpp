@@ -104,7 +104,11 @@ std::string get_path_of_uri(const std::string& uri) {
 }
 
 Instance::Instance(InstanceOptions options)
-    : options_(std::move(options)), start_(kNone), stop_(kNone), simulation_(nullptr, bough_stop), probe_(nullptr, bough_stop) {
+    : options_(std::move(options)),
+      start_(kNone),
+      stop_(kNone),
+      simulation_(nullptr, bough_stop),
+      probe_(nullptr, bough_stop) {
   while (options_.resources.size() > 1 && options_.resources.back() == '/') options_.resources.pop_back();
   if (options_.resources.empty())
     throw InputError("fmu.resources", {}, "the folder of the resources is not given",
@@ -148,7 +152,8 @@ void Instance::load() {
     options.flex = model_->loaded().flex;
     const auto& names = *model_->list(BOUGH_PARAMETERS);
     for (std::size_t i = 0; i < names.size(); ++i)
-      if (parameters_[i] != default_parameters_[i]) options.set.push_back(names[i].name + "=" + to_text(parameters_[i]));
+      if (parameters_[i] != default_parameters_[i])
+        options.set.push_back(names[i].name + "=" + to_text(parameters_[i]));
     options.change_spec = [this](records::SystemSpec& spec) {
       for (std::size_t i = 0; i < inputs_.size() && i < spec.inputs.size(); ++i) spec.inputs[i].start = inputs_[i];
     };
@@ -160,9 +165,11 @@ void Instance::load() {
     for (const auto& item : diagnostics.items()) log(Status::Ok, "logStatusWarning", format(item));
   for (const int kind : {BOUGH_OUTPUTS, BOUGH_STATES, BOUGH_EVENTS}) {
     if (model_ && model_->list(kind)->size() != model->list(kind)->size())
-      throw InputError("fmu.structure", {}, "with these parameters the system has " +
-                           std::to_string(model->list(kind)->size()) + " " +
-                           (kind == BOUGH_OUTPUTS ? "outputs" : kind == BOUGH_STATES ? "states" : "event indicators") +
+      throw InputError("fmu.structure", {},
+                       "with these parameters the system has " + std::to_string(model->list(kind)->size()) + " " +
+                           (kind == BOUGH_OUTPUTS  ? "outputs"
+                            : kind == BOUGH_STATES ? "states"
+                                                   : "event indicators") +
                            ", its modelDescription.xml " + std::to_string(model_->list(kind)->size()),
                        "export an FMU with these parameters: bough export --set NAME=VALUE");
   }
@@ -263,7 +270,8 @@ Status Instance::get_values(std::span<const std::uint32_t> references, double* v
         if (!has_outputs_) {
           if (status = sync(); status != Status::Ok) return status;
           outputs_.resize(model_->list(BOUGH_OUTPUTS)->size());
-          status = check(bough_get_outputs(simulation_.get(), 0, static_cast<int>(outputs_.size()), outputs_.data()), simulation_.get());
+          status = check(bough_get_outputs(simulation_.get(), 0, static_cast<int>(outputs_.size()), outputs_.data()),
+                         simulation_.get());
           if (status != Status::Ok) return status;
           has_outputs_ = true;
         }
@@ -311,7 +319,8 @@ Status Instance::set_values(std::span<const std::uint32_t> references, const dou
     if (index >= to.size()) return fail("there is no variable of value reference " + std::to_string(references[i]));
     if (kind == VariableKind::Parameter && !is_before)
       return fail(name + " is a fixed parameter: set it before the end of the initialization");
-    if (!std::isfinite(values[i])) return fail(name + " is set to " + to_text(values[i]) + ", expected a finite number");
+    if (!std::isfinite(values[i]))
+      return fail(name + " is set to " + to_text(values[i]) + ", expected a finite number");
   }
   for (std::size_t i = 0; i < references.size(); ++i) {
     const std::size_t index = references[i] & kMaxIndex;
@@ -322,7 +331,8 @@ Status Instance::set_values(std::span<const std::uint32_t> references, const dou
     has_outputs_ = false;
     if (is_before) {
       simulation_.reset();
-    } else if (const auto status = bough_set_inputs(simulation_.get(), static_cast<int>(index), 1, &values[i]); status != BOUGH_OK) {
+    } else if (const auto status = bough_set_inputs(simulation_.get(), static_cast<int>(index), 1, &values[i]);
+               status != BOUGH_OK) {
       return check(status, simulation_.get());
     }
   }
@@ -351,7 +361,8 @@ Status Instance::do_step(double t, double h, StepResult& result) {
                 "; continue from there, or set an FMU state");
   const auto& times = simulation_->own->spec().simulation;
   const auto* outcome = simulation_->simulator().outcome() ? &*simulation_->simulator().outcome() : nullptr;
-  const bool may_extend = !simulation_->has_failed && (!outcome || (outcome->reason.empty() && outcome->energy_is_kept));
+  const bool may_extend =
+      !simulation_->has_failed && (!outcome || (outcome->reason.empty() && outcome->energy_is_kept));
   if (may_extend && t + h > times.start + times.duration + simulation_->simulator().resolution()) extend(t + h);
   has_outputs_ = false;
   const auto status = bough_advance(simulation_.get(), t + h, &result.time);
@@ -404,7 +415,8 @@ Status Instance::sync() {
 /// A copy of the simulation at its time, where the derivatives can be evaluated without a trace in the run.
 bough_simulation* Instance::prepare_probe() {
   if (options_.is_model_exchange) return simulation_.get();
-  if (!probe_ || probe_->own->fingerprint() != simulation_->own->fingerprint()) probe_ = make(simulation_->own->spec().simulation);
+  if (!probe_ || probe_->own->fingerprint() != simulation_->own->fingerprint())
+    probe_ = make(simulation_->own->spec().simulation);
   probe_->simulator().restore(simulation_->simulator().save());
   probe_->has_failed = false;
   std::vector<double> x(num_states());
@@ -425,7 +437,8 @@ Status Instance::get_derivatives(double* x_dot, std::size_t n) {
 Status Instance::get_event_functions(double* g, std::size_t n) {
   ensure_started();
   if (n != num_event_functions() || (n > 0 && !g))
-    return fail(std::to_string(n) + " event indicators are asked for, expected " + std::to_string(num_event_functions()));
+    return fail(std::to_string(n) + " event indicators are asked for, expected " +
+                std::to_string(num_event_functions()));
   if (n == 0) return Status::Ok;
   if (const auto status = sync(); status != Status::Ok) return status;
   auto* simulation = prepare_probe();
@@ -485,10 +498,12 @@ Status Instance::set_state(const SavedState& saved) {
     times.duration = saved.duration;
     times.output_step = saved.output_step;
     const auto* now = simulation_ ? &simulation_->own->spec().simulation : nullptr;
-    const bool fits = now && simulation_->model == model_ && now->start == times.start && now->duration == times.duration &&
-                      now->output_step == times.output_step && now->relative_tolerance == times.relative_tolerance;
+    const bool fits = now && simulation_->model == model_ && now->start == times.start &&
+                      now->duration == times.duration && now->output_step == times.output_step &&
+                      now->relative_tolerance == times.relative_tolerance;
     simulation = fits ? std::move(simulation_) : make(times);
-    const auto status = check(bough_restore(simulation.get(), saved.bytes.data(), saved.bytes.size()), simulation.get());
+    const auto status =
+        check(bough_restore(simulation.get(), saved.bytes.data(), saved.bytes.size()), simulation.get());
     if (status != Status::Ok) {
       simulation_ = std::move(simulation);
       return status;
@@ -530,11 +545,13 @@ std::unique_ptr<SavedState> Instance::deserialize(std::span<const std::byte> byt
   if (token != token_) BytesReader::fail("the serialized state is of another FMU");
   auto s = std::make_unique<SavedState>();
   const auto phase = reader.read<std::uint64_t>();
-  for (double* value : {&s->tolerance, &s->start, &s->stop, &s->duration, &s->output_step}) *value = reader.read<double>();
+  for (double* value : {&s->tolerance, &s->start, &s->stop, &s->duration, &s->output_step})
+    *value = reader.read<double>();
   for (auto* values : {&s->parameters, &s->inputs, &s->built_parameters, &s->built_inputs}) reader.read(*values);
   reader.read(s->bytes);
   const std::size_t end = reader.at();
-  if (reader.read<std::uint64_t>() != embed::calc_hash(bytes.first(end)) || phase > kTerminated || phase == 0 || (phase & (phase - 1)) != 0)
+  if (reader.read<std::uint64_t>() != embed::calc_hash(bytes.first(end)) || phase > kTerminated || phase == 0 ||
+      (phase & (phase - 1)) != 0)
     BytesReader::fail("the state is damaged");
   s->phase = static_cast<Phase>(phase);
   return s;

@@ -29,9 +29,9 @@ enum Phase : unsigned {
 };
 
 struct InstanceOptions {
-  std::string token, resources;       ///< guid or instantiation token; folder of the resources
+  std::string token, resources;  ///< guid or instantiation token; folder of the resources
   bool is_model_exchange = false;
-  bool has_event_mode = false;        ///< Co-Simulation of FMI 3: between steps the importer enters event mode
+  bool has_event_mode = false;  ///< Co-Simulation of FMI 3: between steps the importer enters event mode
   bool logs_all = false;
   std::function<void(Status, const char* category, const std::string& text)> log;
 };
@@ -44,10 +44,10 @@ struct StepResult {
 /// What get_state() makes: everything that an instance continues from.
 struct SavedState {
   Phase phase = kInstantiated;
-  std::vector<double> parameters, inputs;  ///< inputs: present values
-  std::vector<double> built_parameters, built_inputs;  ///< of the loaded model
+  std::vector<double> parameters, inputs;                                    ///< inputs: present values
+  std::vector<double> built_parameters, built_inputs;                        ///< of the loaded model
   double tolerance = 0, start = 0, stop = 0, duration = 0, output_step = 0;  ///< 0, NaN, NaN: as in the system file
-  std::vector<std::byte> bytes;  ///< of bough_save; empty: not started
+  std::vector<std::byte> bytes;                                              ///< of bough_save; empty: not started
 };
 
 class Instance {
@@ -118,7 +118,7 @@ class Instance {
   Phase phase_ = kInstantiated;
   std::string token_;
   std::shared_ptr<const embed::Model> model_;
-  std::vector<double> parameters_, inputs_;              ///< as set
+  std::vector<double> parameters_, inputs_;  ///< as set
   std::vector<double> default_parameters_, default_inputs_;
   std::vector<double> built_parameters_, built_inputs_;  ///< of model_
   double tolerance_ = 0, start_, stop_;

@@ -66,7 +66,8 @@ std::string calc_token(const std::string& folder) {
     throw InputError("fmu.resources", {(root / kManifest).string()}, what, advice);
   };
   std::getline(lines, line);
-  if (line != kManifestHead) fail("the first line is not \"" + std::string(kManifestHead) + "\"", "export the FMU again");
+  if (line != kManifestHead)
+    fail("the first line is not \"" + std::string(kManifestHead) + "\"", "export the FMU again");
   std::getline(lines, line);
   if (line != "version " + std::string(get_version()))
     fail("the resources are of another version than the binary, " + std::string(get_version()), "export the FMU again");
@@ -74,7 +75,8 @@ std::string calc_token(const std::string& folder) {
   hash.add(manifest);
   while (std::getline(lines, line)) {
     const std::string name = line.starts_with("file ") ? line.substr(5) : "";
-    if (name.empty() || name.find('/') != std::string::npos || name == "..") fail("a line names no file", "export the FMU again");
+    if (name.empty() || name.find('/') != std::string::npos || name == "..")
+      fail("a line names no file", "export the FMU again");
     hash.add(read_file(root / name));
   }
   return hash.get();

@@ -29,8 +29,9 @@ std::string quote(const std::string& text) {
 struct Style {
   const char *shape, *fill;
 };
-constexpr Style kFunction{"ellipse", "#f3e8d2"}, kSensor{"cds", "#dcebdd"}, kInput{"parallelogram", "#ffffff"}, kController{"box", "#dde6f3"},
-    kActuator{"house", "#f2dcdc"}, kForce{"house", "#efe3ee"}, kBody{"box3d", "#e6e6e6"}, kEvent{"diamond", "#ffffff"};
+constexpr Style kFunction{"ellipse", "#f3e8d2"}, kSensor{"cds", "#dcebdd"}, kInput{"parallelogram", "#ffffff"},
+    kController{"box", "#dde6f3"}, kActuator{"house", "#f2dcdc"}, kForce{"house", "#efe3ee"}, kBody{"box3d", "#e6e6e6"},
+    kEvent{"diamond", "#ffffff"};
 
 class Writer {
  public:

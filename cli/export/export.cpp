@@ -251,7 +251,8 @@ void add_export(CLI::App& app, Action& action) {
       "  bough export boom.h5 --to mat -o boom.mat\n"
       "  bough export boom-modes.h5 --to uff -o boom.uff\n  bough export boom.h5 --to sid -o boom.SID_FEM\n"
       "  bough export boom.h5 --to mbdyn -o boom.fem\n  bough export boom.h5 --to flat -o boom.flat\n  bough export "
-      "spinup.toml --to fmu --fmi 2 --channel tip_deflection:y -o spinup.fmu\n  bough export boom.bdf --to bdf -o plain.bdf");
+      "spinup.toml --to fmu --fmi 2 --channel tip_deflection:y -o spinup.fmu\n  bough export boom.bdf --to bdf -o "
+      "plain.bdf");
   verb->callback([&action, o] { action = [o] { return run_export(*o); }; });
 }
 

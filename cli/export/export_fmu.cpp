@@ -121,7 +121,8 @@ class Packing {
       const auto path = loaded_.flex_path.at(body.file);
       const auto name = choose_name(path, fs::path(path).stem().string(), ".FLX");
       if (files_.count(name) == 0) add(name, read_bytes(path));
-      set(item, "file", toml_files::quote_text(name + (flx_name->body_id > 0 ? ":" + std::to_string(flx_name->body_id) : "")));
+      set(item, "file",
+          toml_files::quote_text(name + (flx_name->body_id > 0 ? ":" + std::to_string(flx_name->body_id) : "")));
       return;
     }
     const auto name = choose_name(body.file, fs::path(embed::get_body_path(body.file)).stem().string(), ".flat");
@@ -145,7 +146,8 @@ class Packing {
       return;
     }
     const auto found = controller.settings.words.find("file");
-    const std::string file = found == controller.settings.words.end() || found->second.empty() ? "" : found->second.front();
+    const std::string file =
+        found == controller.settings.words.end() || found->second.empty() ? "" : found->second.front();
     const bool is_hosted = solver::find_hosted_controller(file).has_value();
     if (controller.type != "library" || is_hosted)
       fail(item, is_hosted ? "it is a function of the program that exports" : "its type is \"" + controller.type + "\"",
@@ -169,8 +171,10 @@ std::string find_binary() {
   const auto built = folder / "lib/bough_fmu.so", installed = folder / "lib/bough/bough_fmu.so";
   for (const auto& path : {built, installed})
     if (fs::is_regular_file(path, failed)) return path.string();
-  throw ComputationError("fmu.no-binary", {}, "the binary of FMUs is missing: " + built.string() + " and " + installed.string() + " do not exist",
-                         "install the whole package bough, or build the target bough_fmi");
+  throw ComputationError(
+      "fmu.no-binary", {},
+      "the binary of FMUs is missing: " + built.string() + " and " + installed.string() + " do not exist",
+      "install the whole package bough, or build the target bough_fmi");
 }
 
 /// Libraries that the binary needs and a plain system lacks, as this program has loaded them. The OpenMP runtime of
@@ -190,8 +194,10 @@ std::vector<fmu::ArchiveEntry> collect_libraries(const std::string& folder) {
   for (const auto& [name, path] : paths) {
     std::string bytes = read_bytes(path);
     const std::string of = '\0' + shared;
-    for (auto at = bytes.find(of); at != std::string::npos; at = bytes.find(of, at + of.size())) bytes.replace(at + 1, own.size(), own);
-    entries.push_back({folder + (name.starts_with(shared) ? own + name.substr(shared.size()) : name), std::move(bytes), true});
+    for (auto at = bytes.find(of); at != std::string::npos; at = bytes.find(of, at + of.size()))
+      bytes.replace(at + 1, own.size(), own);
+    entries.push_back(
+        {folder + (name.starts_with(shared) ? own + name.substr(shared.size()) : name), std::move(bytes), true});
   }
   return entries;
 }
@@ -205,7 +211,8 @@ std::vector<fmu::Variable> list_variables(const embed::Model& model, bough_kind 
 }
 
 /// Sensors, or the components of the channels that are named, in the order of the names.
-std::vector<fmu::Variable> choose_outputs(const embed::Model& model, const std::vector<std::string>& chosen, const std::string& file) {
+std::vector<fmu::Variable> choose_outputs(const embed::Model& model, const std::vector<std::string>& chosen,
+                                          const std::string& file) {
   const auto all = list_variables(model, BOUGH_OUTPUTS, fmi::VariableKind::Output);
   std::vector<fmu::Variable> outputs;
   std::set<std::uint32_t> taken;
@@ -244,7 +251,8 @@ std::vector<fmu::Variable> choose_outputs(const embed::Model& model, const std::
 
 }  // namespace
 
-std::string export_fmu(const std::string& file, const std::string& output, const FmuOptions& options, Diagnostics& diagnostics) {
+std::string export_fmu(const std::string& file, const std::string& output, const FmuOptions& options,
+                       Diagnostics& diagnostics) {
   const auto binary = find_binary();
   const embed::Model model(load_system(file, diagnostics, "", options.set));
   const auto& spec = model.loaded().spec;
@@ -271,8 +279,9 @@ std::string export_fmu(const std::string& file, const std::string& output, const
   d.event_indicators = list_variables(model, BOUGH_EVENTS, fmi::VariableKind::EventIndicator);
 
   const std::string folder = options.version == 2 ? "binaries/linux64/" : "binaries/x86_64-linux/";
-  std::vector<fmu::ArchiveEntry> entries{{"modelDescription.xml", options.version == 2 ? format_fmi2(d) : format_fmi3(d)},
-                                         {folder + d.identifier + ".so", read_bytes(binary), true}};
+  std::vector<fmu::ArchiveEntry> entries{
+      {"modelDescription.xml", options.version == 2 ? format_fmi2(d) : format_fmi3(d)},
+      {folder + d.identifier + ".so", read_bytes(binary), true}};
   for (auto& entry : collect_libraries(folder)) entries.push_back(std::move(entry));
   entries.push_back({std::string("resources/") + fmi::kManifest, manifest});
   for (const auto& resource : resources) entries.push_back({"resources/" + resource.name, resource.bytes});

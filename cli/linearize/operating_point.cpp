@@ -61,11 +61,12 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, solver::Plant& plant, 
   solver::SystemOde ode(loaded.system);
   if (discrete && !ode.is_alike(*discrete)) {
     if (last)
-      throw InputError("linear.changed-system", s.at,
-                       fmt::format("an event before t = {:g} locked, released, closed or broke something, and the models "
-                                   "of a sweep have the same coordinates",
-                                   t),
-                       "linearize there by --at, or end the sweep before it by duration");
+      throw InputError(
+          "linear.changed-system", s.at,
+          fmt::format("an event before t = {:g} locked, released, closed or broke something, and the models "
+                      "of a sweep have the same coordinates",
+                      t),
+          "linearize there by --at, or end the sweep before it by duration");
     ode.set_memory(*discrete);
     plant.set_modes(solver::get_discrete(ode.data()), t, state.head(nq));
   }

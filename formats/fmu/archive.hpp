@@ -6,7 +6,7 @@
 namespace bough::fmu {
 
 struct ArchiveEntry {
-  std::string name;   ///< with folders, "resources/system.toml"
+  std::string name;  ///< with folders, "resources/system.toml"
   std::string bytes;
   bool is_program = false;  ///< Unix permissions 0755 instead of 0644
 };

@@ -15,12 +15,18 @@ std::string number(double value) {
 std::string escape(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
-    if (c == '&') escaped += "&amp;";
-    else if (c == '<') escaped += "&lt;";
-    else if (c == '>') escaped += "&gt;";
-    else if (c == '"') escaped += "&quot;";
-    else if (static_cast<unsigned char>(c) < 32) escaped += ' ';
-    else escaped += c;
+    if (c == '&')
+      escaped += "&amp;";
+    else if (c == '<')
+      escaped += "&lt;";
+    else if (c == '>')
+      escaped += "&gt;";
+    else if (c == '"')
+      escaped += "&quot;";
+    else if (static_cast<unsigned char>(c) < 32)
+      escaped += ' ';
+    else
+      escaped += c;
   }
   return escaped;
 }
@@ -48,7 +54,8 @@ class Names {
 
 std::string make_experiment(const ModelDescription& m) {
   return "  <DefaultExperiment" + attribute("startTime", number(m.start)) + attribute("stopTime", number(m.stop)) +
-         attribute("tolerance", number(m.tolerance)) + (m.step > 0 ? attribute("stepSize", number(m.step)) : "") + "/>\n";
+         attribute("tolerance", number(m.tolerance)) + (m.step > 0 ? attribute("stepSize", number(m.step)) : "") +
+         "/>\n";
 }
 
 constexpr const char* kLogCategories =
@@ -71,10 +78,10 @@ std::string make_identifier(const std::string& text) {
 std::string format_fmi2(const ModelDescription& m) {
   const std::string common = attribute("modelIdentifier", m.identifier) + attribute("canGetAndSetFMUstate", "true") +
                              attribute("canSerializeFMUstate", "true");
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription" + attribute("fmiVersion", "2.0") +
-                     attribute("modelName", m.model_name) + attribute("guid", m.token) +
-                     optional_attribute("description", m.description) + attribute("generationTool", m.tool) +
-                     attribute("variableNamingConvention", "flat") +
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription" +
+                     attribute("fmiVersion", "2.0") + attribute("modelName", m.model_name) +
+                     attribute("guid", m.token) + optional_attribute("description", m.description) +
+                     attribute("generationTool", m.tool) + attribute("variableNamingConvention", "flat") +
                      attribute("numberOfEventIndicators", std::to_string(m.event_indicators.size())) + ">\n" +
                      "  <ModelExchange" + common + "/>\n  <CoSimulation" + common +
                      attribute("canHandleVariableCommunicationStepSize", "true") + "/>\n" + kLogCategories +
@@ -83,15 +90,17 @@ std::string format_fmi2(const ModelDescription& m) {
   std::size_t index = 0;
   const auto add = [&](const Variable& v, const std::string& attributes, const std::string& real) {
     text += "    <ScalarVariable" + attribute("name", names.get(v.name)) +
-            attribute("valueReference", std::to_string(v.reference)) + optional_attribute("description", v.description) +
-            attributes + "><Real" + real + "/></ScalarVariable>\n";
+            attribute("valueReference", std::to_string(v.reference)) +
+            optional_attribute("description", v.description) + attributes + "><Real" + real + "/></ScalarVariable>\n";
     return ++index;
   };
-  const std::string continuous = attribute("variability", "continuous"), calculated = attribute("initial", "calculated");
+  const std::string continuous = attribute("variability", "continuous"),
+                    calculated = attribute("initial", "calculated");
   for (const auto& v : m.parameters)
     add(v, attribute("causality", "parameter") + attribute("variability", "fixed") + attribute("initial", "exact"),
         attribute("start", number(v.start)));
-  for (const auto& v : m.inputs) add(v, attribute("causality", "input") + continuous, attribute("start", number(v.start)));
+  for (const auto& v : m.inputs)
+    add(v, attribute("causality", "input") + continuous, attribute("start", number(v.start)));
   std::string outputs, derivatives, unknowns;
   const auto add_unknown = [](std::string& to, std::size_t of) {
     to += "      <Unknown" + attribute("index", std::to_string(of)) + "/>\n";
@@ -102,7 +111,8 @@ std::string format_fmi2(const ModelDescription& m) {
     add_unknown(unknowns, at);
   }
   const std::size_t first_state = index + 1;
-  for (const auto& v : m.states) add_unknown(unknowns, add(v, attribute("causality", "local") + continuous + calculated, ""));
+  for (const auto& v : m.states)
+    add_unknown(unknowns, add(v, attribute("causality", "local") + continuous + calculated, ""));
   for (std::size_t i = 0; i < m.derivatives.size(); ++i) {
     const auto at = add(m.derivatives[i], attribute("causality", "local") + continuous + calculated,
                         attribute("derivative", std::to_string(first_state + i)));
@@ -122,20 +132,22 @@ std::string format_fmi2(const ModelDescription& m) {
 std::string format_fmi3(const ModelDescription& m) {
   const std::string common = attribute("modelIdentifier", m.identifier) + attribute("canGetAndSetFMUState", "true") +
                              attribute("canSerializeFMUState", "true");
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription" + attribute("fmiVersion", "3.0") +
-                     attribute("modelName", m.model_name) + attribute("instantiationToken", m.token) +
-                     optional_attribute("description", m.description) + attribute("generationTool", m.tool) +
-                     attribute("variableNamingConvention", "flat") + ">\n  <ModelExchange" + common +
-                     attribute("needsCompletedIntegratorStep", "true") + "/>\n  <CoSimulation" + common +
-                     attribute("canHandleVariableCommunicationStepSize", "true") +
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription" +
+                     attribute("fmiVersion", "3.0") + attribute("modelName", m.model_name) +
+                     attribute("instantiationToken", m.token) + optional_attribute("description", m.description) +
+                     attribute("generationTool", m.tool) + attribute("variableNamingConvention", "flat") +
+                     ">\n  <ModelExchange" + common + attribute("needsCompletedIntegratorStep", "true") +
+                     "/>\n  <CoSimulation" + common + attribute("canHandleVariableCommunicationStepSize", "true") +
                      attribute("mightReturnEarlyFromDoStep", "true") + attribute("hasEventMode", "true") + "/>\n" +
                      kLogCategories + make_experiment(m) + "  <ModelVariables>\n";
   Names names;
   const auto add = [&](const Variable& v, const std::string& attributes) {
-    text += "    <Float64" + attribute("name", names.get(v.name)) + attribute("valueReference", std::to_string(v.reference)) +
+    text += "    <Float64" + attribute("name", names.get(v.name)) +
+            attribute("valueReference", std::to_string(v.reference)) +
             optional_attribute("description", v.description) + attributes + "/>\n";
   };
-  const std::string continuous = attribute("variability", "continuous"), calculated = attribute("initial", "calculated");
+  const std::string continuous = attribute("variability", "continuous"),
+                    calculated = attribute("initial", "calculated");
   add({"time", "independent variable", 0, 0}, attribute("causality", "independent") + continuous);
   for (const auto& v : m.parameters)
     add(v, attribute("causality", "parameter") + attribute("variability", "fixed") + attribute("initial", "exact") +

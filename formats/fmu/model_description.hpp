@@ -14,9 +14,9 @@ struct Variable {
 
 /// Represents what both versions describe: all variables are scalars of double precision.
 struct ModelDescription {
-  std::string model_name;        ///< any text
-  std::string identifier;        ///< a C identifier: the name of the binary
-  std::string token;             ///< guid, instantiation token
+  std::string model_name;  ///< any text
+  std::string identifier;  ///< a C identifier: the name of the binary
+  std::string token;       ///< guid, instantiation token
   std::string description, tool;
   double start = 0, stop = 1, tolerance = 1e-8, step = 0;  ///< default experiment; step 0: none
   std::vector<Variable> parameters, inputs, outputs;

@@ -39,8 +39,7 @@ const Keys kTargetKinds{"controller", "actuator", "force"};
 /// Groups of the results, by kind: "/sensors/NAME" with more behind it.
 const std::map<std::string, std::string> kGroups{
     {"body", "bodies"},    {"hinge", "hinges"},           {"constraint", "constraints"}, {"force", "forces"},
-    {"sensor", "sensors"}, {"controller", "controllers"}, {"actuator", "actuators"},
-    {"input", "inputs"}};
+    {"sensor", "sensors"}, {"controller", "controllers"}, {"actuator", "actuators"},     {"input", "inputs"}};
 
 struct Use {
   std::string path;  ///< with the numbers of list entries

@@ -27,7 +27,8 @@ Simulation::Simulation(const embed::LoadedSystem& loaded, const embed::Simulatio
 
 template <class Action>
 auto Simulation::run(const Action& action) {
-  if (is_busy_) throw std::runtime_error("the simulation is in use by another call, of another thread or of a controller");
+  if (is_busy_)
+    throw std::runtime_error("the simulation is in use by another call, of another thread or of a controller");
   struct Busy {
     explicit Busy(bool& flag) : flag_(flag) { flag_ = true; }
     ~Busy() { flag_ = false; }
@@ -47,7 +48,8 @@ int Simulation::find(int kind, const Name& name) const {
   const std::string what = kind == BOUGH_INPUTS ? "input" : "output";
   if (const int* index = std::get_if<int>(&name)) {
     if (*index >= 0 && *index < std::ssize(ports)) return *index;
-    throw py::index_error("no " + what + " " + std::to_string(*index) + ": the system has " + std::to_string(ports.size()));
+    throw py::index_error("no " + what + " " + std::to_string(*index) + ": the system has " +
+                          std::to_string(ports.size()));
   }
   const auto& text = std::get<std::string>(name);
   const int found = ports_->find(kind, text);

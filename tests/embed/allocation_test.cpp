@@ -6,7 +6,8 @@
 
 namespace {
 
-/// Two links, friction, a stop that is far away, a spring of a formula, sampled and continuous controllers, a closed loop.
+/// Two links, friction, a stop that is far away, a spring of a formula, sampled and continuous controllers, a closed
+/// loop.
 const std::string kArm = R"([[body]]
 name = "a"
 mass = 2.0
