@@ -106,7 +106,8 @@ BOUGH_API bough_status bough_get_outputs(bough_simulation *simulation, int first
 
 /** With an integrator of the host, in place of bough_advance: x are the BOUGH_STATES, g the BOUGH_EVENTS. Between events
  * the host sets (t, x) and reads derivatives and event functions; where one of those changes its sign, or at a time
- * event, it puts the simulation there and calls bough_update_discrete. Inputs count at once, whatever their hold. */
+ * event, it puts the simulation there and calls bough_update_discrete. Inputs count at once, whatever their hold. Behind an event
+ * a function may be 0: its sign is that which it takes next. bough_advance may follow: it goes on from (t, x). */
 typedef struct bough_event_info {
   int states_changed;     /* x has jumped: read it again */
   int terminated;         /* the run has ended */

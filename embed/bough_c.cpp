@@ -19,7 +19,9 @@ namespace {
 using bough::embed::Port;
 
 bool is_alive(const bough_model* model) { return model && bough::embed::get_model_handles().has(model); }
-bool is_alive(const bough_simulation* simulation) { return simulation && bough::embed::get_simulation_handles().has(simulation); }
+bool is_alive(const bough_simulation* simulation) {
+  return simulation && bough::embed::get_simulation_handles().has(simulation);
+}
 
 template <std::size_t N>
 void put(char (&to)[N], const std::string& text) {
@@ -66,19 +68,21 @@ bough_status call(const Action& action, std::vector<Diagnostic>& told) noexcept 
       told = error.items();
       return BOUGH_FAILED;
     } catch (const std::bad_alloc&) {
-      told = {make_error("embed.no-memory", "there is no memory left", "")};
+      told = {make_error("memory", "there is no memory left", "")};
       return BOUGH_OUT_OF_MEMORY;
     } catch (const std::exception& error) {
-      told = {make_error("embed.internal", error.what(), "report it with the model")};
+      told = {make_error("internal", error.what(), "report it with the model")};
       return BOUGH_INTERNAL_ERROR;
     } catch (...) {
-      told = {make_error("embed.internal", "an exception of an unknown type", "report it with the model")};
+      told = {make_error("internal", "an exception of an unknown type", "report it with the model")};
       return BOUGH_INTERNAL_ERROR;
     }
   } catch (...) {
     return BOUGH_OUT_OF_MEMORY;
   }
 }
+
+using bough::embed::to_text;
 
 bough_status refuse(const std::string& what, bough_message* message) {
   fill(message, {make_error("embed.bad-argument", what, "see bough.h")});
@@ -180,7 +184,10 @@ bough_status bough_load(const char* file, const char* const* settings, bough_mod
 
 bough_status bough_load_text(const char* toml, const char* folder, const char* const* settings, bough_model** model,
                              bough_message* message) {
-  if (!toml) return load(nullptr, nullptr, settings, model, message);
+  if (!toml) {
+    if (model) *model = nullptr;
+    return refuse("the text is null", message);
+  }
   try {
     const std::string file = folder && *folder ? std::string(folder) + "/system.toml" : "system.toml";
     return load(file.c_str(), toml, settings, model, message);
@@ -228,6 +235,13 @@ bough_status bough_start(const bough_model* model, const bough_options* options,
   if (!is_alive(model)) return refuse("the model is null or was unloaded", message);
   if (options && options->size != sizeof(bough_options))
     return refuse("options.size is not sizeof(bough_options): begin with bough_default_options()", message);
+  if (options) {
+    for (const double number :
+         {options->step, options->relative_tolerance, options->absolute_tolerance, options->duration})
+      if (!std::isfinite(number) || number < 0)
+        return refuse("an option is " + to_text(number) + ": give a positive number, or 0 for that of the file",
+                      message);
+  }
   std::vector<Diagnostic> told;
   const auto status = call(
       [&] {
@@ -255,6 +269,7 @@ double bough_time(const bough_simulation* simulation) {
 bough_status bough_set_inputs(bough_simulation* simulation, int first, int n, const double* values) {
   if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
   auto& s = *simulation;
+  if (s.has_failed) return BOUGH_FAILED;
   if (n == 0) return BOUGH_OK;
   if (!values || first < 0 || n < 0 || n > s.simulator().num_inputs() - first)
     return refuse(s, values ? "there are no inputs " + std::to_string(first) + " to " + std::to_string(first + n - 1) +
@@ -306,6 +321,7 @@ bough_status bough_get_outputs(bough_simulation* simulation, int first, int n, d
 bough_status bough_get_continuous(bough_simulation* simulation, double* x) {
   if (!is_alive(simulation)) return BOUGH_BAD_ARGUMENT;
   if (!x) return refuse(*simulation, "x is null");
+  if (simulation->has_failed) return BOUGH_FAILED;
   const auto& state = simulation->simulator().state();
   std::copy_n(state.data(), state.size(), x);
   return BOUGH_OK;
@@ -317,7 +333,10 @@ bough_status bough_set_continuous(bough_simulation* simulation, double t, const 
   const Eigen::Map<const Eigen::VectorXd> state(x, x ? s.simulator().num_states() : 0);
   if (!x || !std::isfinite(t) || !state.allFinite())
     return refuse(s, !x ? "x is null" : !std::isfinite(t) ? "t is not finite" : "a state is not finite");
-  return compute(s, [&] { s.simulator().set_continuous(t, state); });
+  auto& simulator = s.simulator();
+  if (t > simulator.next_event_time() + simulator.resolution())
+    return refuse(s, s.own->describe_event_before(t) + ": set that time and call bough_update_discrete");
+  return compute(s, [&] { simulator.set_continuous(t, state); });
 }
 
 bough_status bough_derivatives(bough_simulation* simulation, double* x_dot) {

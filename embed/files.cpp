@@ -27,7 +27,10 @@ records::FlexBody read_body(const std::string& name, Diagnostics&, const std::op
     give_rigid_part(body, true, given, path);
     return body;
   }
-  const auto file = flx::read_flx(path, parsed ? parsed->body_id : 0);
+  if (!parsed)
+    throw InputError("embed.body-format", {path}, "the body is neither a flat file nor a .FLX",
+                     "write it as a flat file: bough export BODY.h5 --to flat -o BODY.flat");
+  const auto file = flx::read_flx(path, parsed->body_id);
   std::vector<std::string> lacking;
   auto body = flx::make_flex_body(file, lacking);
   give_rigid_part(body, file.has_rigid, given, path);

@@ -58,7 +58,7 @@ std::vector<std::pair<std::string, std::string>> split_settings(const std::vecto
     double number = 0;
     const auto [end, failed] = std::from_chars(value.data(), value.data() + value.size(), number);
     if (value.empty() || failed != std::errc() || end != value.data() + value.size())
-      throw InputError("cli.bad-setting", {path}, "--set " + text + " is not NAME=NUMBER", "write --set name=1.5");
+      throw InputError("cli.bad-setting", {path}, "the setting " + text + " is not NAME=NUMBER", "write name=1.5");
     // TOML wants a digit on both sides of a point.
     if (value.front() == '.') value = "0" + value;
     if (value.back() == '.') value += "0";
@@ -95,7 +95,10 @@ LoadedSystem load_system(const std::string& path, const FileReaders& readers, Lo
   if (diagnostics.num_errors() == 0 && readers.matrices) readers.matrices(spec, diagnostics);
   const bool has_errors_of_text = diagnostics.num_errors() > 0;
   const auto place = [&](const std::string& name) {
-    return fs::absolute(resolve_beside(path, name)).lexically_normal().string();
+    std::error_code none;  // without a working directory names stay as they are
+    const fs::path whole = resolve_beside(path, name);
+    const auto absolute = fs::absolute(whole, none);
+    return (none ? whole : absolute).lexically_normal().string();
   };
   std::map<std::string, records::FlexBody> given, flex;
   for (auto& [name, body] : options.flex) given[place(name)] = std::move(body);
@@ -109,7 +112,8 @@ LoadedSystem load_system(const std::string& path, const FileReaders& readers, Lo
     }
     const auto file = resolve_beside(path, body.file);
     body.is_unreadable = true;
-    if (!fs::exists(get_body_path(file))) {
+    std::error_code failed;
+    if (!fs::exists(get_body_path(file), failed)) {
       diagnostics.error("cli.no-body-file", body.at.file.empty() ? SourceLocation{path} : body.at,
                         "body \"" + body.name + "\": there is no file " + shorten_path(get_body_path(file)),
                         readers.advise_body ? readers.advise_body(file) : "correct the name");

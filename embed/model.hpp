@@ -16,7 +16,9 @@ class Model {
   int find(int kind, const std::string& name) const { return ports_.find(kind, name); }
 
  private:
-  static Ports make_ports(const LoadedSystem& loaded) { return {loaded.spec, Simulation(loaded, loaded.spec).simulator()}; }
+  static Ports make_ports(const LoadedSystem& loaded) {
+    return {loaded.spec, Simulation(loaded, loaded.spec).simulator()};
+  }
 
   LoadedSystem loaded_;
   Ports ports_;

@@ -21,20 +21,35 @@ void apply(const SimulationOptions& o, records::SimulationRecord& s) {
   s.duration = o.duration;
 }
 
-std::uint64_t calc_fingerprint(const records::SystemSpec& spec) {
+/// Of what must be the same where a state is restored: the text, options, version and bodies.
+std::uint64_t calc_fingerprint(const LoadedSystem& loaded, const records::SystemSpec& spec) {
   const auto& s = spec.simulation;
-  const double numbers[] = {s.start, s.duration, s.output_step, s.step, s.relative_tolerance, s.absolute_tolerance};
   const std::string text = spec.text + '\0' + s.integrator + '\0' + std::string(get_version());
-  return calc_hash(std::as_bytes(std::span(numbers)), calc_hash(std::as_bytes(std::span(text))));
+  std::uint64_t hash = calc_hash(std::as_bytes(std::span(text)));
+  const auto add = [&](const auto& matrix) {
+    hash = calc_hash(std::as_bytes(std::span(matrix.data(), static_cast<std::size_t>(matrix.size()))), hash);
+  };
+  const std::vector<double> numbers{s.start, s.duration,           s.output_step,
+                                    s.step,  s.relative_tolerance, s.absolute_tolerance};
+  add(numbers);
+  for (const auto& [name, body] : loaded.flex) {
+    add(std::vector<double>{body.mass});
+    for (const auto* matrix : {&body.modal_mass, &body.modal_stiffness, &body.modal_damping, &body.node_xyz})
+      add(*matrix);
+    for (const auto& phi : body.phi) add(phi);
+    add(body.inertia);
+    add(body.cg);
+  }
+  return hash;
 }
+
+}  // namespace
 
 std::string to_text(double value) {
   char text[32];
   const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 9).ptr;
   return {text, end};
 }
-
-}  // namespace
 
 records::SystemSpec change_spec(records::SystemSpec spec, const SimulationOptions& options) {
   apply(options, spec.simulation);
@@ -43,7 +58,7 @@ records::SystemSpec change_spec(records::SystemSpec spec, const SimulationOption
 
 Simulation::Simulation(const LoadedSystem& loaded, records::SystemSpec spec, solver::SimulateOptions run)
     : spec_(std::move(spec)), run_(std::move(run)) {
-  fingerprint_ = calc_fingerprint(spec_);
+  fingerprint_ = calc_fingerprint(loaded, spec_);
   simulator_ = std::make_unique<solver::Simulator>(loaded.system, spec_, sink_, run_, diagnostics_);
   state_size_ = encode_state(simulator_->save(), 0).size() + simulator_->max_step_size() * sizeof(double);
 }
@@ -59,6 +74,10 @@ bool Simulation::advance_to(double t) {
 
 std::string Simulation::describe_past(double t) const {
   return "the time " + to_text(t) + " lies before " + to_text(simulator_->time()) + ", which is reached";
+}
+
+std::string Simulation::describe_event_before(double t) const {
+  return "an event is due at t = " + to_text(simulator_->next_event_time()) + ", before " + to_text(t);
 }
 
 std::string Simulation::describe_end() const {

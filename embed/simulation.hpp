@@ -7,20 +7,13 @@
 #include <vector>
 
 #include "embed/load.hpp"
-#include "formats/records/results.hpp"
+#include "solver/integrate/no_sink.hpp"
 #include "solver/integrate/simulator.hpp"
 
 namespace bough::embed {
 
-/// A sink that drops all.
-class NoSink final : public records::ResultSink {
- public:
-  void begin(const records::ResultsHeader&) override {}
-  void write_sample(const Eigen::Ref<const Eigen::VectorXd>&) override {}
-  void write_event(const records::EventRecord&) override {}
-  void write_checkpoint(const records::Checkpoint&) override {}
-  void end(bool, const std::string&) override {}
-};
+/// Nine digits, whatever the locale.
+std::string to_text(double value);
 
 /// Zero or empty: as the system file says.
 struct SimulationOptions {
@@ -52,6 +45,8 @@ class Simulation {
   bool is_past(double t) const { return t < simulator_->time() - simulator_->resolution(); }
   /// The message for a time that is_past().
   std::string describe_past(double t) const;
+  /// The message for a time behind the next event of an integrator of the host.
+  std::string describe_event_before(double t) const;
   /// Reason of the end. \pre the run has ended.
   std::string describe_end() const;
 
@@ -64,7 +59,7 @@ class Simulation {
 
  private:
   records::SystemSpec spec_;
-  NoSink sink_;
+  solver::NoSink sink_;
   solver::SimulateOptions run_;
   Diagnostics diagnostics_;
   std::uint64_t fingerprint_ = 0;

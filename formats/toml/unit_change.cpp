@@ -147,7 +147,9 @@ void change_input(const UnitTable& t, SignalUnits& units) {
   if (const auto unit = units.find_input_unit(t.table))
     t.scale("start", *unit);
   else if (!units.change().is_none())
-    t.error("toml.unit-signal", "name", "its dimension is not known", "give its dims, as dims = \"F L\"");
+    t.error("toml.unit-signal", t.table.contains("dims") ? "dims" : "name",
+            t.table.contains("dims") ? "its dims cannot be read" : "its dimension is not known",
+            "give its dims by powers of M, L, T and F, as dims = \"F L\"");
 }
 
 void change_simulation(const UnitTable& t, const records::UnitChange& c, const std::string& file,

@@ -222,6 +222,7 @@ void Run::arrive_at_stop() {
 }
 
 void Run::advance_to(double t) {
+  if (is_led_) take_over();
   const double until = std::min(t, timeline_.end());
   while (!outcome_ && time_ < until - (until < timeline_.end() ? timeline_.resolution() : 0)) {
     if (!is_inside_) enter_interval();
@@ -234,6 +235,8 @@ void Run::advance_to(double t) {
       arrive_at_stop();
     }
   }
+  is_at_event_ = true;
+  next_stop_ = kNoStop;
   if (outcome_ || time_ < timeline_.end()) return;
   save(timeline_.end());
   outcome_ = close(timeline_.end(), "");

@@ -46,6 +46,9 @@ class Run {
   // By an integrator of the host (run_continuous.cpp)
   const VectorXd& state() const { return y_; }
   std::string name_state(int row) const { return ode_.name_row(row); }
+  /// From here on the state is the host's, until advance_to().
+  void lead();
+  bool is_led() const { return is_led_; }
   /// Puts it at (t, x). No time event lies between the last one and t, which may be the next one's.
   void set_continuous(double t, const Eigen::Ref<const VectorXd>& x);
   void calc_derivatives(Eigen::Ref<VectorXd> x_dot);
@@ -60,7 +63,7 @@ class Run {
   /// jumped.
   bool update_discrete();
   /// The next time event; the end is one.
-  double next_event_time() const { return next_stop_.time; }
+  double next_event_time();
 
   /// All that the run goes on from, bit for bit where the step is fixed.
   records::Checkpoint save_state();
@@ -200,7 +203,16 @@ class Run {
   bool is_memory_good(const records::Checkpoint& c) const;
   double restore(const records::Checkpoint& c);
   void fill_checkpoint(double t);
+  static constexpr Stop kNoStop{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+                                false};
   double calc_seen_time() const;
+  /// The host may have put any state: the energy balance is judged from here on.
+  void restart_balance();
+  /// Goes on by its own integrator from where that of the host has come.
+  void take_over();
+  /// Switches, crossings and contacts at time_ behind a jump. Returns false if an event has ended the run.
+  bool settle_jump();
+  std::string describe_end(const Firing& firing) const;
   void find_next_stop();
   int num_kinks() const;
   template <class Action>
@@ -266,14 +278,17 @@ class Run {
   Progress progress_;
   std::optional<SimulateOutcome> outcome_;
   double last_sample_ = -std::numeric_limits<double>::infinity();
-  double passed_ = -std::numeric_limits<double>::infinity();   ///< the last stop whose events have come
-  Stop stop_;                                                  ///< the next one, or the one just met
-  double time_ = 0;                                            ///< where y_ is between pieces
-  Stop next_stop_{-std::numeric_limits<double>::infinity(), 0, false};  ///< of a host's integrator; -inf: not yet known
-  bool is_at_event_ = false;                                   ///< the event at time_ has come
-  bool needs_restart_ = true;                                  ///< of the stepper, at the next interval
-  bool is_inside_ = false;                                     ///< paused on the way to stop_
-  bool has_stepped_ = false;                                   ///< on the way to stop_
+  double passed_ = -std::numeric_limits<double>::infinity();  ///< the last stop whose events have come
+  Stop stop_;                                                 ///< the next one, or the one just met
+  double time_ = 0;                                           ///< where y_ is between pieces
+  /// For an integrator of the host: the next stop; -inf: not known, as behind advance_to().
+  Stop next_stop_ = kNoStop;
+  bool is_at_event_ = true;    ///< the event at time_ has come
+  bool is_led_ = false;        ///< an integrator of the host has moved the state since the last advance_to()
+  int ended_by_ = -1;          ///< the event that has ended the run
+  bool needs_restart_ = true;  ///< of the stepper, at the next interval
+  bool is_inside_ = false;     ///< paused on the way to stop_
+  bool has_stepped_ = false;   ///< on the way to stop_
   double crossed_ = -std::numeric_limits<double>::infinity();  ///< the last stop whose jumps are logged
   std::vector<Firing> waiting_;                                ///< located at the next stop
   double changed_ = -std::numeric_limits<double>::infinity();  ///< the last time an event changed the system

@@ -18,13 +18,40 @@ void Run::find_next_stop() {
   next_stop_ = time_ < end ? timeline_.find_stop(time_) : Stop{end, end, true};
 }
 
-void Run::set_continuous(double t, const Eigen::Ref<const VectorXd>& x) {
+double Run::next_event_time() {
   if (!std::isfinite(next_stop_.time)) find_next_stop();
+  return next_stop_.time;
+}
+
+void Run::lead() {
+  next_event_time();
+  is_led_ = true;
+  needs_restart_ = true;
+  is_inside_ = false;
+}
+
+void Run::set_continuous(double t, const Eigen::Ref<const VectorXd>& x) {
+  lead();
   is_at_event_ = is_at_event_ && t == time_;
   time_ = t;
   y_ = x;
+}
+
+void Run::take_over() {
+  if (!is_at_event_) update_discrete();
+  is_led_ = false;
+  next_stop_ = kNoStop;
   needs_restart_ = true;
-  is_inside_ = false;
+  timeline_.skip_outputs(time_);
+  last_sample_ = std::min(last_sample_, time_);
+  if (!outcome_) restart_balance();
+}
+
+void Run::restart_balance() {
+  evaluate(calc_seen_time(), false);
+  Energies energies = calc_energies(ode_.system(), ode_.data());
+  energies.strain -= ode_.get_work(y_);
+  monitor_.start(energies, calc_noise());
 }
 
 void Run::calc_derivatives(Eigen::Ref<VectorXd> x_dot) {
@@ -83,12 +110,28 @@ bool Run::needs_projection() {
   return calc_largest_gap(ode_.system().impl().loops, ode_.data().loops) > kDrift;
 }
 
+bool Run::settle_jump() {
+  settle_switches(time_);
+  if (setup_.triggers.has_signals()) {
+    std::vector<Firing> firings;
+    for (const size_t i : find_crossed(time_)) firings.push_back({time_, i});
+    if (const auto ends = fire(std::move(firings))) {
+      outcome_ = finish(*ends);
+      return false;
+    }
+    if (has_changed_) settle_switches(time_);
+  }
+  settle_latches(time_);
+  return true;
+}
+
 bool Run::update_discrete() {
-  if (!std::isfinite(next_stop_.time)) find_next_stop();
+  next_event_time();
   const VectorXd before = y_;
   const bool at_stop = !is_at_event_ && std::abs(time_ - next_stop_.time) <= timeline_.resolution();
   is_at_event_ = true;
   if (needs_projection()) guard([&] { ode_.project(time_, y_); });
+  restart_balance();
   has_changed_ = has_switched_ = false;
   if (at_stop) {
     stop_ = next_stop_;
@@ -99,17 +142,7 @@ bool Run::update_discrete() {
       return true;
     }
   }
-  settle_switches(time_);
-  if (setup_.triggers.has_signals()) {
-    std::vector<Firing> firings;
-    for (const size_t i : find_crossed(time_)) firings.push_back({time_, i});
-    if (const auto ends = fire(std::move(firings))) {
-      outcome_ = finish(*ends);
-      return true;
-    }
-    if (has_changed_) settle_switches(time_);
-  }
-  settle_latches(time_);
+  if (!settle_jump()) return true;
   find_next_stop();
   if (time_ >= timeline_.end()) {
     save(timeline_.end());

@@ -116,9 +116,13 @@ SimulateOutcome Run::finish(const Firing& firing) {
     observe(firing.time);
     sink_.write_sample(setup_.recorder.keep_sample());
   }
+  ended_by_ = static_cast<int>(firing.trigger);
   save(firing.time);
-  return close(firing.time,
-               "stopped by " + setup_.triggers.describe(firing.trigger) + " at t = " + short_text(firing.time));
+  return close(firing.time, describe_end(firing));
+}
+
+std::string Run::describe_end(const Firing& firing) const {
+  return "stopped by " + setup_.triggers.describe(firing.trigger) + " at t = " + short_text(firing.time);
 }
 
 }  // namespace bough::solver

@@ -1,4 +1,5 @@
 // A run in pieces: what is set from outside between them, and its whole state.
+#include <cmath>
 #include <limits>
 
 #include "solver/integrate/run.hpp"
@@ -41,13 +42,16 @@ class Taker {
 /// Calls `action` with all that save_state() keeps beside the sections of a checkpoint, in one order.
 template <class Action>
 void Run::for_each_kept(const Action& action) {
-  for (double* value : {&time_, &scanned_, &last_sample_, &crossed_, &changed_, &cut_at_, &settled_, &coming_, &coming_at_})
+  for (double* value :
+       {&time_, &scanned_, &last_sample_, &crossed_, &changed_, &cut_at_, &settled_, &coming_, &coming_at_})
     action(*value);
-  for (int* value : {&num_quick_, &num_tiny_, &num_cuts_, &num_settled_}) action(*value);
+  for (int* value : {&num_quick_, &num_tiny_, &num_cuts_, &num_settled_, &ended_by_}) action(*value);
   for (double* value : {&next_stop_.time, &next_stop_.latest}) action(*value);
-  for (bool* value : {&is_at_event_, &next_stop_.restarts, &needs_restart_, &is_inside_, &has_stepped_, &has_changed_, &has_switched_}) action(*value);
-  for (VectorXd* v : {&last_events_.kinks, &last_events_.switches, &last_events_.contacts, &last_events_.signals,
-                      &largest_kinks_})
+  for (bool* value : {&is_led_, &is_at_event_, &next_stop_.restarts, &needs_restart_, &is_inside_, &has_stepped_,
+                      &has_changed_, &has_switched_})
+    action(*value);
+  for (VectorXd* v :
+       {&last_events_.kinks, &last_events_.switches, &last_events_.contacts, &last_events_.signals, &largest_kinks_})
     action(*v);
 }
 
@@ -64,17 +68,7 @@ void Run::set_held(const std::vector<std::pair<int, double>>& rows) {
   }
   if (!has_jumped || outcome_) return;
   coming_at_ = -std::numeric_limits<double>::infinity();
-  settle_switches(time_);
-  if (setup_.triggers.has_signals()) {
-    std::vector<Firing> firings;
-    for (const size_t i : find_crossed(time_)) firings.push_back({time_, i});
-    if (const auto ends = fire(std::move(firings))) {
-      outcome_ = finish(*ends);
-      return;
-    }
-    if (has_changed_) settle_switches(time_);
-  }
-  settle_latches(time_);
+  if (!settle_jump()) return;
   const bool is_within_step = is_inside_ && stepper_->time() != time_;
   if (!is_within_step && !has_changed_ && !stepper_->has_history()) return;
   needs_restart_ = true;
@@ -132,7 +126,14 @@ void Run::restore_state(const records::Checkpoint& saved) {
   Taker taker(*pieces);
   for_each_kept([&](auto& kept) { taker.take(kept); });
   timeline_.skip_outputs(time_);
-  if (stepper_->has_history() || time_ >= timeline_.end()) {
+  // The end is no stop where a longer run goes on from the state.
+  if (std::isfinite(next_stop_.time) && !timeline_.find_stop_at(next_stop_.time)) find_next_stop();
+  if (ended_by_ >= 0) {
+    const Firing end{time_, static_cast<size_t>(ended_by_)};
+    outcome_ = SimulateOutcome{true, time_, describe_end(end), progress_, monitor_.worst(), true};
+    return;
+  }
+  if (is_led_ || stepper_->has_history() || time_ >= timeline_.end()) {
     needs_restart_ = true;
     is_inside_ = false;
     return;

@@ -2,23 +2,11 @@
 
 #include <limits>
 
+#include "solver/integrate/no_sink.hpp"
 #include "solver/integrate/run.hpp"
 #include "solver/integrate/simulator.hpp"
 
 namespace bough::solver {
-
-namespace {
-
-class NoSink final : public records::ResultSink {
- public:
-  void begin(const records::ResultsHeader&) override {}
-  void write_sample(const Eigen::Ref<const Eigen::VectorXd>&) override {}
-  void write_event(const records::EventRecord&) override {}
-  void write_checkpoint(const records::Checkpoint&) override {}
-  void end(bool, const std::string&) override {}
-};
-
-}  // namespace
 
 void check_start(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics) {
   Diagnostics found;

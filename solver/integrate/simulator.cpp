@@ -39,12 +39,8 @@ std::size_t Simulator::max_step_size() const { return static_cast<std::size_t>(2
 const std::optional<SimulateOutcome>& Simulator::outcome() const { return run_->outcome(); }
 const std::vector<records::Channel>& Simulator::channels() const { return run_->recorder().channels(); }
 const Eigen::VectorXd& Simulator::calc_outputs() {
-  if (is_continuous_) {
-    if (is_set_) put_inputs();
-    return run_->calc_continuous_outputs();
-  }
-  if (is_set_) hold_inputs(run_->time());
-  return run_->calc_outputs();
+  apply_inputs();
+  return run_->is_led() ? run_->calc_continuous_outputs() : run_->calc_outputs();
 }
 
 double Simulator::get_input(int i) const {
@@ -62,18 +58,23 @@ void Simulator::hold_inputs(double t) {
   // A value that is reached at t, not at once, waits for a t that lies ahead.
   const double now = run_->time();
   bool has_waiting = false;
+  has_slopes_ = false;
   rows_.clear();
   for (int i = 0; i < num_inputs(); ++i) {
     const auto& input = inputs_[static_cast<std::size_t>(i)];
     const double next = next_[static_cast<std::size_t>(i)], value = get_input(i);
     const double* memory = run_->memory().data() + input.memory;
     const bool is_ramp = input.block->is_linear();
+    const bool has_slope = memory[InputBlock::kNext] != memory[InputBlock::kValue];
     if (is_ramp && t <= now) {
       has_waiting = has_waiting || next != value;
+      has_slopes_ = has_slopes_ || has_slope;
       continue;
     }
-    // A held value that stands needs no new row, and a slice of a run then changes nothing.
-    if (next == value && memory[InputBlock::kNext] == next && memory[InputBlock::kUntil] <= now) continue;
+    // A value that stands needs no new row, and a slice of a run then changes nothing; but behind a slope the line has
+    // a corner here, which ends the step.
+    if (next == value && memory[InputBlock::kNext] == next && memory[InputBlock::kUntil] <= now && !has_slope) continue;
+    has_slopes_ = has_slopes_ || (is_ramp && next != value);
     const double line[] = {now, is_ramp ? value : next, is_ramp ? t : now, next};
     for (int k = 0; k < InputBlock::kNumRows; ++k) rows_.emplace_back(input.memory + k, line[k]);
   }
@@ -82,8 +83,7 @@ void Simulator::hold_inputs(double t) {
 }
 
 void Simulator::advance_to(double t) {
-  is_continuous_ = false;
-  if (is_set_) hold_inputs(t);
+  if (is_set_ || has_slopes_) hold_inputs(t);
   run_->advance_to(t);
 }
 
@@ -92,27 +92,33 @@ const Eigen::VectorXd& Simulator::state() const { return run_->state(); }
 std::string Simulator::name_state(int row) const { return run_->name_state(row); }
 int Simulator::num_event_functions() const { return run_->num_event_functions(); }
 std::vector<std::string> Simulator::list_event_functions() const { return run_->list_event_functions(); }
-double Simulator::next_event_time() const { return run_->next_event_time(); }
+double Simulator::next_event_time() { return run_->next_event_time(); }
 bool Simulator::needs_projection() { return run_->needs_projection(); }
 
-void Simulator::set_continuous(double t, const Eigen::Ref<const Eigen::VectorXd>& x) {
-  run_->set_continuous(t, x);
-  is_continuous_ = true;
-}
+void Simulator::set_continuous(double t, const Eigen::Ref<const Eigen::VectorXd>& x) { run_->set_continuous(t, x); }
 
 void Simulator::calc_derivatives(Eigen::Ref<Eigen::VectorXd> x_dot) {
-  if (is_set_) put_inputs();
+  apply_inputs();
   run_->calc_derivatives(x_dot);
 }
 
 void Simulator::calc_event_functions(Eigen::Ref<Eigen::VectorXd> g) {
-  if (is_set_) put_inputs();
+  apply_inputs();
   run_->calc_event_functions(g);
 }
 
 bool Simulator::update_discrete() {
-  if (is_set_) put_inputs();
+  run_->lead();
+  apply_inputs();
   return run_->update_discrete();
+}
+
+void Simulator::apply_inputs() {
+  if (!is_set_) return;
+  if (run_->is_led())
+    put_inputs();
+  else
+    hold_inputs(run_->time());
 }
 
 void Simulator::put_inputs() {

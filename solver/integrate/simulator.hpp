@@ -57,7 +57,7 @@ class Simulator {
   /// Event mode at (t, x): what is due, what has crossed, and what follows, until nothing changes. Whether x has
   /// jumped. The run may have ended then.
   bool update_discrete();
-  double next_event_time() const;
+  double next_event_time();
 
   /// Everything that it goes on from, also in another process: bit for bit where the step is fixed.
   records::Checkpoint save() const;
@@ -70,6 +70,7 @@ class Simulator {
     int memory = 0;  ///< first row of its memory
   };
   void hold_inputs(double t);
+  void apply_inputs();
   /// Inputs at once, as an integrator of the host varies them.
   void put_inputs();
 
@@ -77,8 +78,8 @@ class Simulator {
   std::vector<Input> inputs_;
   std::vector<double> next_;  ///< of inputs, as set
   std::vector<std::pair<int, double>> rows_;
-  bool is_set_ = false;         ///< since the last advance
-  bool is_continuous_ = false;  ///< an integrator of the host moves it
+  bool is_set_ = false;      ///< since the last advance
+  bool has_slopes_ = false;  ///< an input moves along a line in the last advance
 };
 
 }  // namespace bough::solver

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "formats/records/dims.hpp"
 #include "formats/records/signal_name.hpp"
 #include "solver/actuators/actuator.hpp"
 #include "solver/actuators/driven_force.hpp"
@@ -65,8 +66,13 @@ class Builder {
   }
 
   void add_inputs() {
-    for (const auto& r : spec_.inputs)
+    for (const auto& r : spec_.inputs) {
+      if (!r.dims.empty() && !records::parse_dims(r.dims))
+        diagnostics_.warning("control.units", r.at,
+                             "input '" + r.name + "': dims \"" + r.dims + "\" is no dimension that can be read",
+                             "write powers of M, L, T and F, as \"F L\" or \"L/T^2\"");
       sources_.list.push_back({r.name, "/inputs/" + r.name, 1, add(std::make_unique<InputBlock>(r), {})});
+    }
   }
 
   void declare() {

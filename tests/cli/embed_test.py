@@ -1,6 +1,7 @@
 """The shared library against the program: a system stepped from outside moves as `bough run` moves it."""
 import multiprocessing
 import os
+import shutil
 import subprocess
 import unittest
 
@@ -196,6 +197,40 @@ class Embed(ProgramTest):
                 self.write(folder + "s.toml", head + "[simulation]\nduration = 0.3\noutput_step = 2e-3\n"
                            "integrator = \"rk4\"\nstep = 2e-4\nenergy_error_limit = 10.0\n" + "\n".join(lines) + "\n")
                 self.compare(folder + "s.toml", [2e-3 * k for k in range(1, 151)])
+
+    def test_bodies_and_matrices_in_other_formats_are_refused(self):
+        self.bough("init", "spinup")
+        self.bough("reduce", "spinup/boom.toml", "-o", "spinup/boom.h5")
+        path = self.path("spinup/spinup.toml")
+        with self.assertRaisesRegex(RuntimeError, "embed.hdf5"):
+            Model(path)
+        with open(path, encoding="utf-8") as f:
+            text = f.read()
+        self.write("spinup/deck.toml", text.replace("boom.h5", "boom.bdf"))
+        with self.assertRaisesRegex(RuntimeError, "embed.body-format"):
+            Model(self.path("spinup/deck.toml"))
+        self.write("arm.toml", ARM.replace("gain = 3.0", 'file = "law.mat"'))
+        with self.assertRaisesRegex(RuntimeError, "embed.matrix-file"):
+            Model(self.path("arm.toml"))
+
+    def test_states_of_another_body_are_refused(self):
+        self.bough("init", "spinup")
+        states = []
+        for folder, modulus in (("one", "6.895+10"), ("two", "2.0+10")):
+            shutil.copytree(self.path("spinup"), self.path(folder))
+            with open(self.path(folder + "/boom.bdf"), encoding="utf-8") as f:
+                deck = f.read()
+            self.assertIn("MAT1,1,6.895+10", deck)
+            self.write(folder + "/boom.bdf", deck.replace("MAT1,1,6.895+10", "MAT1,1," + modulus))
+            self.bough("reduce", folder + "/boom.toml", "-o", folder + "/boom.h5")
+            self.bough("export", folder + "/boom.h5", "--to", "flat", "-o", folder + "/boom.flat")
+            with open(self.path(folder + "/spinup.toml"), encoding="utf-8") as f:
+                self.write(folder + "/s.toml", f.read().replace("boom.h5", "boom.flat"))
+            simulation = Simulation(Model(self.path(folder + "/s.toml")))
+            for state in states:
+                with self.assertRaisesRegex(RuntimeError, "embed.bad-state"):
+                    simulation.restore(state)
+            states.append(simulation.save())
 
     def test_inputs_are_known_everywhere(self):
         self.write("arm.toml", ARM.replace('dims = "F L"', 'dims = "F L"\nstart = 0.5'))

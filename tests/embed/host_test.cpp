@@ -153,6 +153,172 @@ TEST(Host, StatesGoOnBitForBit) {
   }
 }
 
+TEST(Host, InputsHoldBeforeTheTimeAtWhichTheyWereSet) {
+  std::string text = make_slide();
+  text.replace(text.find("duration = 10.0"), 15, "start = -5.0\nduration = 10.0");
+  bough::Simulation simulation(bough::Model::load_text(text));
+  EXPECT_EQ(simulation.time(), -5);
+  simulation.advance_to(-3);
+  EXPECT_NEAR(simulation.output(0), 1, 1e-12);
+  // An integrator of the host that looks back behind the time of a value.
+  simulation.set_input(0, 3);
+  simulation.advance_to(-2);
+  std::vector<double> x(static_cast<std::size_t>(bough_count(bough::Model::load_text(text).get(), BOUGH_STATES))),
+      dot(x);
+  ASSERT_EQ(bough_get_continuous(simulation.get(), x.data()), BOUGH_OK);
+  ASSERT_EQ(bough_set_continuous(simulation.get(), -2.5, x.data()), BOUGH_OK);
+  ASSERT_EQ(bough_derivatives(simulation.get(), dot.data()), BOUGH_OK);
+  EXPECT_NEAR(dot[1], 1.5, 1e-12);
+}
+
+/// x'' = -4 x from x = 1.
+const std::string kSpring = R"([[body]]
+name = "bob"
+mass = 1.0
+inertia = [1.0, 1.0, 1.0]
+[[hinge]]
+name = "slide"
+type = "prismatic"
+child = "bob"
+axis = [1.0, 0.0, 0.0]
+stiffness = [4.0]
+position = [1.0]
+[[sensor]]
+name = "x"
+type = "position"
+body = "bob"
+EVENT
+[simulation]
+duration = 10.0
+output_step = 0.1
+step = 0.001
+relative_tolerance = 1e-11
+absolute_tolerance = 1e-12
+)";
+
+std::string make_spring(const std::string& event = "") {
+  std::string text = kSpring;
+  return text.replace(text.find("EVENT"), 5, event);
+}
+
+TEST(Host, AdvanceGoesOnFromWhereTheHostHasLed) {
+  const auto model = bough::Model::load_text(make_spring());
+  for (const char* integrator : {"rk4", "implicit", "rk", "adams", "bdf"}) {
+    for (const double t : {0.001, 0.3, 0.3007, 1.5}) {
+      for (const bool updates : {false, true}) {
+        bough::Options options;
+        options.integrator = integrator;
+        bough::Simulation simulation(model, options);
+        if (updates) simulation.advance_to(0.5 * t);
+        std::vector<double> x(4, 0.0);
+        x[0] = std::cos(2 * t);
+        x[1] = -2 * std::sin(2 * t);
+        bough_event_info info;
+        ASSERT_EQ(bough_set_continuous(simulation.get(), t, x.data()), BOUGH_OK);
+        if (updates) ASSERT_EQ(bough_update_discrete(simulation.get(), &info), BOUGH_OK);
+        const auto state = simulation.save();
+        EXPECT_EQ(simulation.advance_to(2.0), bough::Reached::Time) << simulation.reason();
+        const double tolerance = std::string(integrator) == "implicit" ? 1e-5 : 1e-7;
+        EXPECT_NEAR(simulation.output(0), std::cos(4.0), tolerance) << integrator << " " << t;
+        bough::Simulation other(model, options);
+        other.restore(state);
+        other.advance_to(2.0);
+        EXPECT_NEAR(other.output(0), simulation.output(0), 1e-9) << integrator << " " << t;
+        EXPECT_EQ(simulation.advance_to(10), bough::Reached::Time);  // with its energy balance
+      }
+    }
+  }
+}
+
+TEST(Host, NoStepOfTheHostPassesAnEvent) {
+  const auto model = bough::Model::load_text(make_spring("[[event]]\nname = \"e\"\ntime = 1.0\naction = \"stop\""));
+  bough::Simulation simulation(model);
+  std::vector<double> x(4, 0.0);
+  EXPECT_EQ(bough_set_continuous(simulation.get(), 1.1, x.data()), BOUGH_BAD_ARGUMENT);
+  EXPECT_NE(simulation.reason().find("due at t = 1"), std::string::npos) << simulation.reason();
+  ASSERT_EQ(bough_set_continuous(simulation.get(), 1.0, x.data()), BOUGH_OK);
+  // An event that the host has not let come comes when the run goes on.
+  EXPECT_EQ(simulation.advance_to(2), bough::Reached::Terminated);
+  EXPECT_EQ(simulation.time(), 1);
+}
+
+TEST(Host, DerivativesAreOfThePresentTime) {
+  std::string text = make_spring(
+      "[[function]]\nname = \"f\"\ntype = \"ramp\"\nvalue = 30.0\nfrom = 0.0\nto = 10.0\n[[force]]\nname = \"push\"\n"
+      "body = \"bob\"\nforce = [1.0, 0.0, 0.0]\nfunction = \"f\"");
+  const auto model = bough::Model::load_text(text);
+  bough::Simulation simulation(model);
+  simulation.advance_to(1.25);
+  std::vector<double> x(4), dot(4);
+  ASSERT_EQ(bough_get_continuous(simulation.get(), x.data()), BOUGH_OK);
+  ASSERT_EQ(bough_derivatives(simulation.get(), dot.data()), BOUGH_OK);
+  EXPECT_NEAR(dot[1], 3.75 - 4 * x[0], 1e-9);
+}
+
+TEST(Host, TheEndOfARampIsACornerWhateverComesNext) {
+  const auto model = bough::Model::load_text(make_slide("hold = \"linear\""), ".", {{"mass", 1}});
+  for (const char* integrator : {"rk4", "implicit", "rk", "adams"}) {
+    for (const bool sets : {false, true}) {
+      bough::Options options;
+      options.integrator = integrator;
+      options.relative_tolerance = 1e-11;
+      options.absolute_tolerance = 1e-13;
+      bough::Simulation simulation(model, options);
+      simulation.set_input(0, 2);  // from 1
+      simulation.advance_to(0.005);
+      simulation.output(0);
+      if (sets) simulation.set_input(0, 2);
+      simulation.advance_to(0.01);
+      EXPECT_NEAR(simulation.output(model.find_output("/hinges/slide/qdot")), 0.0075 + 0.01, 1e-10) << integrator;
+      simulation.advance_to(0.02);
+      EXPECT_NEAR(simulation.output(model.find_output("/hinges/slide/qdot")), 0.0075 + 0.03, 1e-10) << integrator;
+    }
+  }
+}
+
+TEST(Host, WhatAnEventHasEndedStaysEnded) {
+  const auto model = bough::Model::load_text(make_slide("", kStopAtOne));
+  bough::Simulation simulation(model), other(model);
+  simulation.advance_to(5);
+  const double end = simulation.time();
+  const auto state = simulation.save();
+  for (auto* s : {&simulation, &other}) {
+    s->restore(state);
+    EXPECT_EQ(s->advance_to(9), bough::Reached::Terminated);
+    EXPECT_EQ(s->time(), end);
+    EXPECT_NE(s->reason().find("there"), std::string::npos);
+    EXPECT_NEAR(s->output(0), 1, 1e-9);
+  }
+}
+
+TEST(Host, OptionsAreNumbers) {
+  const auto model = bough::Model::load_text(make_slide());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double value : {nan, -1.0, std::numeric_limits<double>::infinity()}) {
+    for (int k = 0; k < 4; ++k) {
+      bough_options options = bough_default_options();
+      (k == 0   ? options.step
+       : k == 1 ? options.relative_tolerance
+       : k == 2 ? options.absolute_tolerance
+                : options.duration) = value;
+      bough_simulation* simulation = nullptr;
+      auto message = std::make_unique<bough_message>();
+      EXPECT_EQ(bough_start(model.get(), &options, &simulation, message.get()), BOUGH_BAD_ARGUMENT) << k;
+      EXPECT_STREQ(message->id, "embed.bad-argument");
+    }
+  }
+}
+
+TEST(Host, DimensionsThatCannotBeReadAreNamed) {
+  std::string text = make_slide();
+  text.replace(text.find("\"F\""), 3, "\"N m\"");
+  bough_model* model = nullptr;
+  auto message = std::make_unique<bough_message>();
+  ASSERT_EQ(bough_load_text(text.c_str(), ".", nullptr, &model, message.get()), BOUGH_OK);
+  EXPECT_STREQ(message->id, "control.units");
+  bough_unload(model);
+}
+
 TEST(Host, PortsHaveNamesAndDimensions) {
   const auto model = bough::Model::load_text(make_slide(), ".", {{"mass", 4}});
   ASSERT_EQ(model.inputs().size(), 1u);
@@ -177,7 +343,8 @@ TEST(Host, PortsHaveNamesAndDimensions) {
 TEST(Host, ErrorsNameFileLineAndAdvice) {
   bough_model* model = nullptr;
   auto message = std::make_unique<bough_message>();
-  EXPECT_EQ(bough_load_text("[[body]]\nname = \"a\"\nmass = 2.0\ncgg = [0.0, 0.0, 0.0]\n[simulation]\nduration = 1.0\n", "lab", nullptr, &model, message.get()),
+  EXPECT_EQ(bough_load_text("[[body]]\nname = \"a\"\nmass = 2.0\ncgg = [0.0, 0.0, 0.0]\n[simulation]\nduration = 1.0\n",
+                            "lab", nullptr, &model, message.get()),
             BOUGH_BAD_INPUT);
   EXPECT_EQ(model, nullptr);
   EXPECT_STREQ(message->id, "toml.unknown-key");
