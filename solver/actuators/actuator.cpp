@@ -5,6 +5,7 @@
 
 #include "solver/actuators/makers.hpp"
 #include "solver/system/build.hpp"
+#include "solver/tree/coordinates.hpp"
 
 namespace bough::solver {
 
@@ -106,6 +107,7 @@ bool find_row(const records::ActuatorRecord& r, const System& system, const Tree
     return false;
   }
   place.row = tree[body].u_offset + r.coordinate - 1;
+  place.effort = list_hinge_dims(tree[body], HingeQuantity::Force, r.coordinate - 1, 1);
   return true;
 }
 
@@ -196,7 +198,8 @@ std::unique_ptr<Block> make_actuator(const records::ActuatorRecord& r, const Sys
   made->path = "/actuators/" + r.name;
   made->label = "actuator '" + r.name + "'";
   made->at = r.at;
-  if (r.settings.get("scale", 1) == 1) made->input_dims = kind->takes;
+  const bool takes_effort = r.type == "hinge" || r.type == "brake";
+  if (r.settings.get("scale", 1) == 1) made->input_dims = takes_effort ? place.effort : kind->takes;
   made->sizes.outputs = kind->outputs;
   return made;
 }

@@ -83,7 +83,7 @@ std::unique_ptr<Actuator> make_hinge_drive(const records::ActuatorRecord& r, Set
   made->read_shaping(keys);
   made->description = r.type == "motor" ? "generalized force on the hinge coordinate, current"
                                         : "generalized force on the hinge coordinate";
-  made->dims = r.type == "motor" ? "F L, current" : "F L or F";
+  made->dims = place.effort + (r.type == "motor" ? ", current" : "");
   return made;
 }
 

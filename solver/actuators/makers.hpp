@@ -1,11 +1,14 @@
 #pragma once
 /// \file Makers of the actuators' blocks; for actuator.cpp.
+#include <string>
+
 #include "solver/actuators/actuator.hpp"
 
 namespace bough::solver {
 
 /// Where an actuator acts: a row of u (of a mode: of TreeData::applied), or a marker.
 struct ActuatorPlace {
+  std::string effort = "F L or F";  ///< dimension along the hinge coordinate
   int row = -1, marker = -1;
 };
 
