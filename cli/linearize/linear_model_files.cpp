@@ -234,7 +234,7 @@ static std::string format_sampling(const LinearModel& model) {
 std::string format_linear_model(const LinearModel& model) {
   std::string text = fmt::format(
       "{} states, {} inputs, {} outputs at t = {:g}, |u_dot| {:.1e}\n"
-      "A, C by differences: error {:.1e}, another step differs by {:.1e}; B, D exact\n\n",
+      "by differences: error {:.1e}, another step differs by {:.1e}; columns of forces in B and D are exact\n\n",
       model.states.size(), model.inputs.size(), model.outputs.size(), model.time, model.residual, model.error,
       model.difference);
   if (model.sample_time > 0)
