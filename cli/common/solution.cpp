@@ -70,7 +70,8 @@ void note_solution(const records::Deck& deck, Diagnostics& diagnostics) {
   const auto* other = find_other_solution(deck.sol);
   if (other)
     diagnostics.note("cli.other-solution", deck.locate({0, 0}), fmt::format("SOL {} is {}", deck.sol, other->name),
-                     "this is the linear solution of the cards as they stand");
+                     other->has_complex_modes ? "modes needs --ignore CMETHOD and gives the real ones"
+                                              : "this is the linear solution of the cards as they stand");
 }
 
 void demand_static_solution(const records::Deck& deck, bool is_linear, Diagnostics& diagnostics) {

@@ -80,7 +80,7 @@ void IgnoredCommands::add(const std::string& word, const records::CardLocation& 
 void IgnoredCommands::report(const records::Deck& deck, Diagnostics& diagnostics) const {
   if (words_.empty()) return;
   std::string words, options, responses;
-  bool has_others = words_.size() > most_words;
+  bool has_others = words_.size() > most_words, asks_complex = false;
   const auto num_shown = std::min(words_.size(), most_words);
   for (std::size_t i = 0; i < num_shown; ++i) {
     words += (i == 0 ? "" : ", ") + words_[i].first + " (line " + std::to_string(words_[i].second.line) + ")";
@@ -88,6 +88,8 @@ void IgnoredCommands::report(const records::Deck& deck, Diagnostics& diagnostics
     const auto* acts = find_unsupported_command(words_[i].first);
     if (acts)
       responses += (responses.empty() ? "" : ", ") + std::string(acts->name);
+    else if (words_[i].first.substr(0, 4) == "CMET")
+      asks_complex = true;
     else if (option.empty())
       has_others = true;
     if (!option.empty() && options.find(option) == std::string::npos)
@@ -98,6 +100,7 @@ void IgnoredCommands::report(const records::Deck& deck, Diagnostics& diagnostics
   std::vector<std::string> advice;
   if (!options.empty()) advice.push_back("options of the command line give results: " + options);
   if (!responses.empty()) advice.push_back(responses + " would change a response, where it is an error");
+  if (asks_complex) advice.push_back("CMETHOD asks for complex modes, and modes are real here: without damping");
   if (has_others || advice.empty()) advice.push_back((advice.empty() ? "" : "of the others: ") + nothing);
   std::string text;
   for (const auto& part : advice) text += (text.empty() ? "" : "; ") + part;
