@@ -8,6 +8,9 @@ namespace bough::cli {
 /// for a host that loads Bough: the handlers belong to the process.
 void guard_user_code();
 
+/// The exit() alone, for a host that loads Bough: it keeps its own handlers of signals.
+void guard_user_exit();
+
 /// Reports and ends the process with exit code 3 if this process, not a child forked by a library, is within a user
 /// library. `call`: the function that ended it, as "_exit()". Async-signal-safe.
 void end_if_in_user_code(const char* call) noexcept;

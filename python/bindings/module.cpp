@@ -1,3 +1,4 @@
+#include "cli/common/user_code.hpp"
 #include "python/bindings/bindings.hpp"
 
 #include "cli/command.hpp"
@@ -7,6 +8,7 @@
 PYBIND11_MODULE(_bough, m) {
   m.doc() = "Bough in this process; use the package bough, which says what each does.";
   using namespace bough::python;
+  bough::cli::guard_user_exit();
   bind_messages(m);
   bind_exclusive(m);
   bind_bodies(m);

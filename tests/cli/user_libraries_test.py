@@ -1,13 +1,14 @@
 """Controllers of the user that crash, end the process, never return or ask for too much: named, exit code 3."""
 import os
 import signal
+import subprocess
 import unittest
 
 import h5py
 import numpy as np
 
 from support import (ABORT, DIVIDE, EXIT, EXIT_AT_ONCE, FORK, HANG, HOLD, IN_CLOSE, IN_OPEN, IN_OUTPUTS, IN_SIZES, IN_START,
-                     LOOP, OVERFLOW, QUICK_EXIT, WRITE_NOWHERE, ProgramTest, get_astray)
+                     LOOP, OVERFLOW, PROGRAM, QUICK_EXIT, WRITE_NOWHERE, ProgramTest, get_astray)
 
 SPRING = """
 [[body]]
@@ -57,6 +58,19 @@ class UserLibraries(ProgramTest):
                            says=["s.toml:1: error: controller 'law': bough_controller_outputs at t = 2.5", word])
                 self.check_samples(0)  # what is written is committed once a second at most
                 os.remove(self.path("s.h5"))
+
+    def test_python_does_not_end_without_a_word(self):
+        package = os.path.join(os.path.dirname(os.path.dirname(PROGRAM)), "python")
+        if not os.path.isdir(package):
+            self.skipTest("the Python module is not built")
+        self.make(IN_OUTPUTS, EXIT, 2.5)
+        done = subprocess.run(["/usr/bin/python3", "-c", "import bough; bough.System('s.toml').run(); print('still here')"],
+                              cwd=self.folder, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": package},
+                              timeout=HANG)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("controller 'law': bough_controller_outputs at t = 2.5", done.stderr)
+        self.assertIn("control.library-exited", done.stderr)
+        self.assertNotIn("still here", done.stdout)
 
     def test_from_its_loading_to_its_end(self):
         for place, function in ((IN_OPEN, "bough_controller_open"), (IN_START, "bough_controller_start")):
