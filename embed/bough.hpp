@@ -36,7 +36,7 @@ class Model {
       return bough_load(file.c_str(), settings, model, message);
     });
   }
-  /// Of a text; paths in it are relative to `folder`.
+  /// Loads a text; paths in it are relative to `folder`.
   static Model load_text(const std::string& toml, const std::string& folder = ".",
                          const std::map<std::string, double>& parameters = {}) {
     return make(parameters, [&](const char* const* settings, bough_model** model, bough_message* message) {
@@ -95,7 +95,7 @@ class Model {
   std::shared_ptr<bough_model> model_;
 };
 
-/// What the system file says where a value is zero or empty.
+/// Options of a run; zero or empty: as the system file says.
 struct Options {
   std::string integrator;
   double step = 0, relative_tolerance = 0, absolute_tolerance = 0, duration = 0;

@@ -14,7 +14,7 @@ using bough::fmi::Status;
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 constexpr unsigned kAny = bough::fmi::kAnyPhase;
 
-/// What FMI 2 asks of a component beyond an Instance.
+/// Component of FMI 2: an Instance and what only that version has.
 struct Component : Instance {
   Component(InstanceOptions options, std::string component_name, const fmi2CallbackFunctions* functions)
       : Instance(std::move(options)), name(std::move(component_name)), callbacks(functions) {}

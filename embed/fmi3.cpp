@@ -14,7 +14,7 @@ using bough::fmi::SavedState;
 using bough::fmi::Status;
 constexpr unsigned kAllPhases = bough::fmi::kAnyPhase;
 
-/// What FMI 3 asks of an instance beyond bough::fmi::Instance.
+/// Instance of FMI 3: a bough::fmi::Instance and what only that version has.
 struct Instance3 : Instance {
   explicit Instance3(InstanceOptions given) : Instance(std::move(given)) {}
   bool may_return_early = false;

@@ -17,7 +17,7 @@ namespace bough::fmi {
 /// Numbers as in both standards.
 enum class Status { Ok = 0, Warning = 1, Discard = 2, Error = 3, Fatal = 4 };
 
-/// What an importer may call depends on it. Bits, for lists of phases.
+/// Phase of an instance, on which the permitted calls depend. Bits, for lists of phases.
 enum Phase : unsigned {
   kInstantiated = 1,
   kInitialization = 2,
@@ -41,7 +41,7 @@ struct StepResult {
   double time = 0;             ///< [T] reached
 };
 
-/// What get_state() makes: everything that an instance continues from.
+/// Result of get_state(): everything that an instance continues from.
 struct SavedState {
   Phase phase = kInstantiated;
   std::vector<double> parameters, inputs;                                    ///< inputs: present values

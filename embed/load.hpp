@@ -39,7 +39,7 @@ struct FileReaders {
       body;
   /// Matrices of controllers and points of tables out of the files that they name.
   std::function<void(records::SystemSpec& spec, Diagnostics& diagnostics)> matrices;
-  /// What to do about a body file that is missing, for the message.
+  /// Advice of the message about a body file that is missing.
   std::function<std::string(const std::string& path)> advise_body;
 };
 

@@ -21,7 +21,7 @@ void apply(const SimulationOptions& o, records::SimulationRecord& s) {
   s.duration = o.duration;
 }
 
-/// Of what must be the same where a state is restored: the text, options, version and bodies.
+/// Hash of all that must be the same where a state is restored: text, options, version and bodies.
 std::uint64_t calc_fingerprint(const LoadedSystem& loaded, const records::SystemSpec& spec) {
   const auto& s = spec.simulation;
   const std::string text = spec.text + '\0' + s.integrator + '\0' + std::string(get_version());

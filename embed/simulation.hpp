@@ -35,7 +35,7 @@ class Simulation {
   const solver::Simulator& simulator() const { return *simulator_; }
   const Diagnostics& diagnostics() const { return diagnostics_; }
   const records::SystemSpec& spec() const { return spec_; }
-  /// Of what must be the same where a state is restored.
+  /// Hash of all that must be the same where a state is restored.
   std::uint64_t fingerprint() const { return fingerprint_; }
 
   /// Returns true if the run goes on at t, or ends at t itself since its duration is over.

@@ -13,7 +13,7 @@ class UserBlock : public Block {
   virtual void close() const = 0;
 };
 
-/// Whether the system has any UserBlock: code of others that may end the program.
+/// Returns true if the system has any UserBlock: code of others that may end the program.
 bool has_user_blocks(const System& system);
 
 /// Closes every UserBlock of the system, which can only be destroyed after it. A program that marks results as

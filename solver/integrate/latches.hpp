@@ -59,7 +59,7 @@ class Latches {
   void lock(SystemOde& ode, double t, const std::vector<bool>& rests, VectorXd& y) const;
 
   const System& system_;
-  /// Of find_rest(), a row for each latch.
+  /// Rows of find_rest(), one for each latch.
   struct Scratch {
     std::vector<bool> rests, before;
     std::vector<int> slide;

@@ -32,15 +32,15 @@ class Run {
   double time() const { return time_; }
   double resolution() const { return timeline_.resolution(); }
   int num_states() const { return ode_.size(); }
-  /// Of the signals.
+  /// Memory of the signals.
   const VectorXd& memory() const;
   void put_memory(int row, double value);
   const std::optional<SimulateOutcome>& outcome() const { return outcome_; }
   /// All channels at time().
   const VectorXd& calc_outputs() { return calc_sample(time_); }
   const Recorder& recorder() const { return setup_.recorder; }
-  /// What is held from time() on by the blocks of `memory`, one row of the signals' memory a value. Whatever a jump of
-  /// them brings about comes at once.
+  /// Sets what is held from time() on by the blocks of `memory`, one row of the signals' memory a value. Whatever a
+  /// jump of them brings about comes at once.
   void set_held(const std::vector<std::pair<int, double>>& rows);
 
   // By an integrator of the host (run_continuous.cpp)
@@ -57,7 +57,7 @@ class Run {
   int num_event_functions() const;
   void calc_event_functions(Eigen::Ref<VectorXd> g);
   std::vector<std::string> list_event_functions() const;
-  /// Whether constraints have drifted apart, so that update_discrete() is called for.
+  /// Returns true if constraints have drifted apart, so that update_discrete() is called for.
   bool needs_projection();
   /// Event mode at (t, x): what is due, what has crossed, and what follows, until nothing changes. Whether x has
   /// jumped.
@@ -67,7 +67,8 @@ class Run {
 
   /// All that the run goes on from, bit for bit where the step is fixed.
   records::Checkpoint save_state();
-  /// Of save_state() by a run of the same system and plan, which has begun. Throws InputError "run.bad-checkpoint".
+  /// Restores a state of save_state() by a run of the same system and plan, which has begun. Throws InputError
+  /// "run.bad-checkpoint".
   void restore_state(const records::Checkpoint& saved);
 
  private:
@@ -77,7 +78,7 @@ class Run {
   void fire_due(double t);
   /// Starts the integrator or leads it on to the next stop.
   void enter_interval();
-  /// What ends a piece of the way to stop_.
+  /// Ends of a piece of the way to stop_.
   enum class Arrival { AtStop, Cut, Pause, End };
   /// Steps on to stop_, to where something cuts a step, or to t_pause.
   Arrival cross_interval(double t_pause);

@@ -81,7 +81,7 @@ records::Checkpoint Run::save_state() {
   Numbers pieces;
   for_each_kept([&](const auto& kept) { pieces.add(kept); });
   saved.memory.emplace_back("pieces", pieces.get());
-  // Of a pause within a step, what the step is taken from once more.
+  // A pause within a step keeps the state from which the step is taken once more.
   const bool is_within_step = is_inside_ && !stepper_->has_history() && stepper_->time() != time_;
   VectorXd step(is_within_step ? 2 + ode_.size() : 0);
   if (is_within_step) {

@@ -10,8 +10,8 @@ namespace bough::solver {
 class Run;
 class InputBlock;
 
-/// Of one thread; the System may be shared by many. simulate() is a Simulator that is advanced to its end at once: the
-/// numbers are the same, bit for bit where the step is fixed, in any slices that end on steps.
+/// Belongs to one thread; the System may be shared by many. simulate() is a Simulator that is advanced to its end at
+/// once: the numbers are the same, bit for bit where the step is fixed, in any slices that end on steps.
 class Simulator {
  public:
   /// Begins the run: loops closed, controllers sampled, the first sample written. Throws what simulate() throws. All
@@ -52,7 +52,7 @@ class Simulator {
   int num_event_functions() const;
   void calc_event_functions(Eigen::Ref<Eigen::VectorXd> g);
   std::vector<std::string> list_event_functions() const;
-  /// Whether constraints have drifted apart, so that update_discrete() is called for.
+  /// Returns true if constraints have drifted apart, so that update_discrete() is called for.
   bool needs_projection();
   /// Event mode at (t, x): what is due, what has crossed, and what follows, until nothing changes. Whether x has
   /// jumped. The run may have ended then.

@@ -100,8 +100,8 @@ VectorXd calc_row_scales(const MatrixXd& value, const std::vector<std::string>& 
   return scale;
 }
 
-/// Of a force exact, f being affine in it: f(value) - f(0), with a value that brings out the difference. Commands and
-/// signals may pass limits and friction: their columns are differences, with an error of their own.
+/// The column of a force is exact, f being affine in it: f(value) - f(0), with a value that brings out the difference.
+/// Commands and signals may pass limits and friction: their columns are differences, with an error of their own.
 VectorXd calc_input_column(Plant& plant, const OperatingPoint& point, const PlantInput& input, const VectorXd& base,
                            Uncertainty& uncertainty) {
   if (input.actuator >= 0 || input.signal >= 0) {  // limits, a dead band and friction are not affine

@@ -16,7 +16,7 @@ class InputBlock final : public Block {
   void calc_outputs(const BlockInput& in, double* y) const override { y[0] = calc_value(in.t, in.d); }
   bool depends_on_time() const override { return is_linear_; }
 
-  /// Whether a new value is reached at the next time that is asked for, not at once.
+  /// Returns true if a new value is reached at the next time that is asked for, not at once.
   bool is_linear() const { return is_linear_; }
   double start_value() const { return start_; }
   static double calc_value(double t, const double* d);
