@@ -1,5 +1,6 @@
 #include "solver/integrate/linear_limit.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -61,7 +62,6 @@ std::vector<LinearLimit::Crossing> LinearLimit::find_crossings(double t, const S
                                                                const Eigen::Ref<const VectorXd>& q) {
   std::vector<Crossing> found;
   for (Watched& w : watched_) {
-    const std::string& name = system_.body_name(w.body);
     if (!w.deflection_reported && w.size > 0) {
       const auto eta = q.segment(system_.eta_offset(w.body), system_.num_modes(w.body));
       double largest = 0;
@@ -76,24 +76,37 @@ std::vector<LinearLimit::Crossing> LinearLimit::find_crossings(double t, const S
       }
       if (largest > kLinearLimit * w.size) {
         w.deflection_reported = true;
-        found.push_back({"run.linear-limit",
-                         "body '" + name + "' deflects by " + short_text(largest) + " at node " +
+        found.push_back({w.body, "run.linear-limit",
+                         "body '" + system_.body_name(w.body) + "' deflects by " + short_text(largest) + " at node " +
                              std::to_string(where) + " at t = " + short_text(t) + ", more than 10 % of its size " +
                              short_text(w.size),
                          "linear modes lose their meaning there; split the body into several"});
       }
     }
+  }
+  for (Crossing& spin : find_spins(t, data)) found.push_back(std::move(spin));
+  return found;
+}
+
+std::vector<LinearLimit::Crossing> LinearLimit::find_spins(double t, const SystemData& data) {
+  std::vector<Crossing> found;
+  for (Watched& w : watched_) {
     const double spin = get_body_state(data, w.body).w_B.norm();
     if (!w.spin_reported && w.frequency > 0 && spin > kSpinLimit * w.frequency) {
       w.spin_reported = true;
-      found.push_back({"run.unstiffened-spin",
-                       "body '" + name + "' has no stiffening and turns at " + short_text(spin) + " at t = " +
-                           short_text(t) + ", more than half of its first frequency " + short_text(w.frequency) +
+      found.push_back({w.body, spin_id,
+                       "body '" + system_.body_name(w.body) + "' has no stiffening and turns at " + short_text(spin) +
+                           " at t = " + short_text(t) + ", more than half of its first frequency " +
+                           short_text(w.frequency) +
                            " (radians per unit of time): without it its modes soften where the body stiffens",
                        "set stiffening = true for this body"});
     }
   }
   return found;
+}
+
+bool LinearLimit::watches_spins() const {
+  return std::any_of(watched_.begin(), watched_.end(), [](const Watched& w) { return w.frequency > 0; });
 }
 
 VectorXd LinearLimit::calc_reach() const {

@@ -1,6 +1,7 @@
 #pragma once
 /// \file Watches whether flexible bodies leave the range in which their modes mean something.
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "solver/system/system.hpp"
@@ -22,14 +23,21 @@ double calc_first_frequency(const System& system, int body);
 
 class LinearLimit {
  public:
+  static constexpr std::string_view spin_id = "run.unstiffened-spin";
+
   explicit LinearLimit(const System& system);
 
-  /// What was passed at t for the first time, as one message each. No allocation while nothing is.
+  /// What was passed at t for the first time, as one message each.
   struct Crossing {
-    const char* id;
+    int body;
+    std::string_view id;
     std::string what, advice;
   };
+  /// Deflections and spins. No allocation while nothing is passed.
   std::vector<Crossing> find_crossings(double t, const SystemData& data, const Eigen::Ref<const VectorXd>& q);
+  /// Spins of bodies without stiffening alone, from the kinematics in `data`.
+  std::vector<Crossing> find_spins(double t, const SystemData& data);
+  bool watches_spins() const;  ///< of at least one body
 
   /// Size a mode coordinate times its shape may reach on every node: |η_j| to be judged against. num_q, infinite for
   /// hinge coordinates. O(nodes · modes).

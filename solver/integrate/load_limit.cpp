@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "solver/integrate/linear_limit.hpp"
 #include "solver/integrate/run.hpp"
 #include "solver/system/impl.hpp"
 #include "solver/system/stiffening_terms.hpp"
@@ -47,11 +48,13 @@ double calc_share(const MatrixXd& K, const MatrixXd& KG) {
 
 }  // namespace
 
-void warn_of_unstiffened_loads(const System& system, double start, double end, const SourceLocation& at,
-                               Diagnostics& diagnostics) {
+std::set<int> warn_of_unstiffened_bodies(const System& system, double start, double end, const SourceLocation& at,
+                                         Diagnostics& diagnostics) {
   const System::Impl& impl = system.impl();
-  if (std::all_of(impl.left_out.begin(), impl.left_out.end(), [](const auto& terms) { return terms == nullptr; }))
-    return;
+  LinearLimit limit(system);
+  std::set<int> spinning;
+  const auto is_null = [](const auto& terms) { return terms == nullptr; };
+  if (!limit.watches_spins() && std::all_of(impl.left_out.begin(), impl.left_out.end(), is_null)) return spinning;
   struct Worst {
     double share = 0, time = 0;
   };
@@ -66,6 +69,10 @@ void warn_of_unstiffened_loads(const System& system, double start, double end, c
       calc_accelerations(system, *data, t, u_dot);
     } catch (const Failure&) {
       continue;  // the run itself reports it
+    }
+    for (const LinearLimit::Crossing& spin : limit.find_spins(t, *data)) {
+      diagnostics.warning(spin.id, at, spin.what, spin.advice);
+      spinning.insert(spin.body);
     }
     for (size_t b = 0; b < worst.size(); ++b) {
       if (impl.left_out[b] == nullptr) continue;
@@ -84,6 +91,7 @@ void warn_of_unstiffened_loads(const System& system, double start, double end, c
                             short_text(worst[b].share) + " of the critical ones (from 1 on it buckles)",
                         "set stiffening = true for this body");
   }
+  return spinning;
 }
 
 }  // namespace bough::solver

@@ -455,7 +455,8 @@ void Run::observe(double t) {
   if (timeline_.is_restart(t)) monitor_.add_feed(e.kinetic);
   for (const auto& crossing : limit_.find_crossings(t, ode_.data(), y_.head(ode_.num_q()))) {
     sink_.write_event({t, crossing.what});
-    diagnostics_.warning(crossing.id, spec_.simulation.at, crossing.what, crossing.advice);
+    const bool is_known = crossing.id == LinearLimit::spin_id && setup_.spins_reported.count(crossing.body) > 0;
+    if (!is_known) diagnostics_.warning(crossing.id, spec_.simulation.at, crossing.what, crossing.advice);
   }
   update_progress(t);
   const double limit = spec_.simulation.divergence_limit;

@@ -49,12 +49,13 @@ RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diag
   bool is_sound = true;
   for (int b = 0; b < system.num_bodies(); ++b) is_sound = is_sound && system.is_sound(b);
   is_sound = is_sound && system.impl().signals_are_sound;
-  RunSetup setup{make_run_plan(spec.simulation, diagnostics), Recorder(system), {}, {}, {}};
+  RunSetup setup{make_run_plan(spec.simulation, diagnostics), Recorder(system), {}, {}, {}, {}};
   if (is_sound) setup.recorder.choose(spec.simulation.record, spec.simulation.at, diagnostics);
   setup.triggers = Triggers::build(spec, setup.recorder, is_sound, diagnostics);
   setup.changes = Changes::build(system, spec, is_sound, diagnostics);
   if (is_sound && diagnostics.num_errors() == 0)
-    warn_of_unstiffened_loads(system, setup.plan.start, setup.plan.end, spec.simulation.at, diagnostics);
+    setup.spins_reported =
+        warn_of_unstiffened_bodies(system, setup.plan.start, setup.plan.end, spec.simulation.at, diagnostics);
   setup.integrator = spec.simulation.integrator;
   if (setup.integrator == "adams" && system.num_constraints() > 0) {
     diagnostics.note("run.integrator-chosen", spec.simulation.at,

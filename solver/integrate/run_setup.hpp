@@ -1,5 +1,7 @@
 #pragma once
 /// \file What a run needs beside its system, resolved and checked before it starts.
+#include <set>
+
 #include "solver/integrate/changes.hpp"
 #include "solver/integrate/recorder.hpp"
 #include "solver/integrate/stepper.hpp"
@@ -12,8 +14,9 @@ struct RunSetup {
   RunPlan plan;
   Recorder recorder;
   Triggers triggers;
-  Changes changes;         ///< by trigger
-  std::string integrator;  ///< never "auto"
+  Changes changes;               ///< by trigger
+  std::string integrator;        ///< never "auto"
+  std::set<int> spins_reported;  ///< bodies whose spin without stiffening is warned of already
 };
 
 /// Reports everything in the spec that `simulate` would refuse: sensors, groups to record, events, [simulation]. The

@@ -479,6 +479,20 @@ TEST(Advice, SpinWithoutStiffening) {
   const RunResult fast = run(spec, flex);
   ASSERT_TRUE(fast.diagnostics.has("run.unstiffened-spin"));
   EXPECT_EQ(fast.diagnostics.num_warnings(), 1);
+  // A prescribed spin is seen before the run, which then says it once.
+  spec.hinges[0].rate = {0};
+  spec.hinges[0].motion = {"f"};
+  spec.functions = {make_function("ramp", {{"value", 0.6 * first * 0.006}, {"from", 0.002}, {"to", 0.008}})};
+  Diagnostics ahead;
+  check_run(build(spec, flex), spec, ahead);
+  ASSERT_TRUE(ahead.has("run.unstiffened-spin"));
+  int num_said = 0;
+  const RunResult driven = run(spec, flex);
+  for (const auto& item : driven.diagnostics.items()) num_said += item.id == "run.unstiffened-spin";
+  EXPECT_EQ(num_said, 1);
+  EXPECT_TRUE(std::ranges::any_of(driven.sink.events(), [](const auto& event) {
+    return event.what.find("has no stiffening and turns at") != std::string::npos;
+  }));
   spec.bodies[0].stiffening = true;
   EXPECT_FALSE(run(spec, flex).diagnostics.has("run.unstiffened-spin"));
 }
