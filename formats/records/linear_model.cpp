@@ -1,5 +1,8 @@
 #include "formats/records/linear_model.hpp"
 
+#include <algorithm>
+#include <numbers>
+
 namespace bough::records {
 
 std::complex<double> calc_z(const LinearModel& model, Eigen::Index i) {
@@ -8,6 +11,11 @@ std::complex<double> calc_z(const LinearModel& model, Eigen::Index i) {
 }
 
 bool is_gone(const LinearModel& model, Eigen::Index i) { return model.sample_time > 0 && calc_z(model, i) == 0.0; }
+
+double calc_origin_radius(const Poles& poles, Eigen::Index i) {
+  constexpr double kRounding = 1e-12 * 2 * std::numbers::pi;
+  return std::max(poles.error.size() > 0 ? poles.error[i] : 0, kRounding * poles.frequency_hz.maxCoeff());
+}
 
 SecondOrder make_second_order(const LinearModel& model) {
   const Eigen::Index n = model.mass.rows();

@@ -19,7 +19,7 @@ struct Signals {
 struct Poles {
   Eigen::VectorXd real, imag;
   Eigen::VectorXd frequency_hz;               ///< |λ| / 2π
-  Eigen::VectorXd damping;                    ///< -Re λ / |λ|; 0 for λ = 0
+  Eigen::VectorXd damping;                    ///< -Re λ / |λ|; 0 at the origin
   Eigen::VectorXd error;                      ///< estimated, of λ; empty where it was not asked for
   std::vector<std::string> mode;              ///< the coordinate that takes part most
   std::vector<std::string> body_mode, hinge;  ///< the mode and the hinge coordinate that do; "" where none does
@@ -86,6 +86,9 @@ struct SecondOrder {
 
 /// |z| below which a pole of a sampled model is zero: a held value or a delay, gone within a sample.
 constexpr double kGone = 1e-9;
+
+/// Below which pole i is zero: its error, or the rounding of the largest pole.
+double calc_origin_radius(const Poles& poles, Eigen::Index i);
 
 /// z = exp(λ sample_time) of pole i of a sampled model; 0 where it is gone.
 std::complex<double> calc_z(const LinearModel& model, Eigen::Index i);

@@ -235,12 +235,12 @@ void warn_of_uncertain(const records::Poles& poles, const SourceLocation& at, Di
   double most = 0, least_known = std::numeric_limits<double>::infinity();
   const auto calc_size = [&](int i) { return std::hypot(poles.real[i], poles.imag[i]); };
   for (int i = 0; i < poles.size(); ++i)
-    if (calc_size(i) > poles.error[i]) least_known = std::min(least_known, calc_size(i));
+    if (calc_size(i) > records::calc_origin_radius(poles, i)) least_known = std::min(least_known, calc_size(i));
   for (int i = 0; i < poles.size(); ++i) {
     const double size = calc_size(i);
     if (size == 0 || !(poles.error[i] > kUncertain * size)) continue;
     // Zero within its error, as of free motion, and far below all others.
-    if (size <= poles.error[i] && poles.error[i] <= kUncertain * least_known) continue;
+    if (size <= records::calc_origin_radius(poles, i) && poles.error[i] <= kUncertain * least_known) continue;
     ++number;
     if (poles.error[i] > most * size) most = poles.error[i] / size, worst = i;
   }

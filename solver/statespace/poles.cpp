@@ -111,11 +111,14 @@ records::Poles calc_poles(const MatrixXd& A, const std::vector<std::string>& nam
     out.real[i] = pole.value.real();
     out.imag[i] = pole.value.imag();
     out.frequency_hz[i] = size / (2 * std::numbers::pi);
-    out.damping[i] = size > pole.error ? -pole.value.real() / size + 0.0 : 0;
     if (error.size() > 0) out.error[i] = pole.error;
     out.mode.push_back(pole.mode);
     out.body_mode.push_back(pole.body_mode);
     out.hinge.push_back(pole.hinge);
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double size = std::abs(poles[static_cast<std::size_t>(i)].value);
+    out.damping[i] = size > records::calc_origin_radius(out, i) ? -out.real[i] / size + 0.0 : 0;
   }
   return out;
 }

@@ -65,6 +65,14 @@ TEST(Poles, OfOscillatorsAndOfAFloatingBody) {
   EXPECT_EQ(poles.mode[5], "a:eta2");
 }
 
+// A pole that rounding of the largest makes is zero: neither stable nor not.
+TEST(Poles, OfTheOriginHaveNoDamping) {
+  const auto poles = calc_poles(Eigen::Vector3d(1e-9, -1e-3, -2e3).asDiagonal(), {"a", "b", "c"});
+  EXPECT_EQ(poles.damping[0], 0);
+  EXPECT_EQ(poles.damping[1], 1);
+  EXPECT_EQ(poles.damping[2], 1);
+}
+
 TEST(Poles, ErrorsBoundWhatEntriesAreOffBy) {
   // A soft oscillator between stiff ones, in units that are far apart.
   Eigen::Matrix3d K;
