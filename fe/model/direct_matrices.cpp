@@ -151,7 +151,7 @@ ElementList make_direct(const records::Deck& deck, const records::Subcase& subca
   demand_one("CM1", !subcase.m2gg.empty());
   demand_one("CB1", !subcase.b2gg.empty());
   for (const auto& matrix : deck.direct_matrices)
-    if (used.count(matrix.name) == 0)
+    if (used.count(matrix.name) == 0 && deck.response_matrices.count(matrix.name) == 0)
       diagnostics.warning(
           "fe.direct-unused", deck.locate(matrix.at), "DMIG " + matrix.name + " is not selected and adds nothing",
           "select it with K2GG, M2GG or B2GG in the case control, for a response also with K2PP, M2PP or "

@@ -3,6 +3,7 @@
 namespace bough::records {
 
 const Param* Deck::find_param(const std::string& name) const {
+  if (autospc_command && name == "AUTOSPC") return &*autospc_command;
   for (auto p = params.rbegin(); p != params.rend(); ++p)
     if (p->name == name) return &*p;
   return nullptr;

@@ -64,7 +64,7 @@ inline std::array<Eigen::Vector2d, 4> make_no_points() {
 struct Pbar {
   int id = 0, mid = 0;
   double A = 0, I1 = 0, I2 = 0, I12 = 0, J = 0, nsm = 0;
-  std::optional<double> k1, k2;               ///< shear factors; empty = no shear flexibility
+  std::optional<double> k1, k2;                                ///< shear factors; empty = no shear flexibility
   std::array<Eigen::Vector2d, 4> recovery = make_no_points();  ///< C D E F
   CardLocation at;
 };
@@ -350,9 +350,9 @@ struct EigenMethod {
   bool is_eigrl = true;
   std::string method;  ///< EIGR: LAN, GIV, ...
   std::optional<double> f1, f2;
-  int num_modes = 0;          ///< 0: by range
+  int num_modes = 0;            ///< 0: by range
   bool is_lowest_only = false;  ///< num_modes is 1 for want of a number and of an upper end
-  std::string norm = "MASS";  ///< MASS, MAX, POINT
+  std::string norm = "MASS";    ///< MASS, MAX, POINT
   int norm_grid = 0, norm_component = 0;
   CardLocation at;
 };
@@ -372,7 +372,7 @@ struct Subcase {
   int temperature = 0;          ///< TEMPERATURE(LOAD) or (BOTH)
   int initial_temperature = 0;  ///< TEMPERATURE(INITIAL)
   int suport1 = 0, nsm = 0;
-  int deform = 0;  ///< DEFORM, which is not read: an error where it loads
+  int deform = 0;                                                ///< DEFORM, which is not read: an error where it loads
   std::vector<std::pair<double, std::string>> k2gg, m2gg, b2gg;  ///< (scale, DMIG name)
   std::map<std::string, CardLocation> commands;  ///< where "SPC", "LOAD", "METHOD", ... of this subcase stand
 
@@ -448,7 +448,8 @@ struct Deck {
   std::vector<Rrod> rrod;
   std::vector<Rbe1> rbe1;
   std::vector<DirectMatrix> direct_matrices;
-  std::vector<GridComponents> suport;                  ///< SUPORT
+  std::set<std::string> response_matrices;  ///< names that K2PP, M2PP and B2PP select where no response is asked for
+  std::vector<GridComponents> suport;       ///< SUPORT
   std::map<int, std::vector<GridComponents>> suport1;  ///< SUPORT1, by set
   std::vector<GridComponents> aset, omit;              ///< ASETi, OMITi, flattened; empty: no reduction
   std::vector<GridComponents> qset;                    ///< QSETi: component modes, which are not computed
@@ -465,6 +466,7 @@ struct Deck {
   SpecialCards special;  ///< PBCOMP, GENEL, CBEND, NSM, RSPLINE, CGAP, ACCEL
   std::vector<EigenMethod> eigen_methods;
   std::vector<Param> params;
+  std::optional<Param> autospc_command;  ///< AUTOSPC of the case control, above PARAM,AUTOSPC
   std::vector<UnusedCard> unused;
   std::vector<UnreadLoad> unread_loads;
   std::vector<std::string> left_out;       ///< what the record does not keep of cards that it reads: "12 fluid GRID"
@@ -473,6 +475,7 @@ struct Deck {
   std::map<std::string, std::set<int>> refused;
 
   /// Value of a PARAM, the last one given; nullptr when absent.
+  /// The last of its name; for AUTOSPC the command of the case control, where there is one.
   const Param* find_param(const std::string& name) const;
   SourceLocation locate(const CardLocation& at) const;
   /// Whether one of the cards (names such as "MAT1") was refused under this id.

@@ -335,7 +335,8 @@ class Response(ProgramTest):
     def test_unselected_cards(self):
         """What no command selects is not looked at: frequencies with blanks, damping that a direct solution has not."""
         for sol, case, bulk in [(111, "", "FREQ1,3,,1.,3\n"), (108, "SDAMPING = 44\n", ""), (111, "", "TABDMP1,9,G\n,1.,ENDT\n"),
-                                (111, "", "PELAST,3,7\n"), (111, "", "PBUSHT,3,K,7\n"), (111, "", "PDAMPT,3,7\n")]:
+                                (111, "", "PELAST,3,7\n"), (111, "", "PELAS,3,1.\nPELAST,3,7\n"),
+                                (111, "", "PDAMP,3,1.\nPDAMPT,3,7\n"), (111, "", "PBUSH,3,K,1.\nPBUSHT,3,K,7\n"), (111, "", "PBUSHT,3,K,7\n"), (111, "", "PDAMPT,3,7\n")]:
             self.write("d.bdf", PAIR.format(sol=sol, case=f"DLOAD = 1\nFREQ = 2\n{case}", method="EIGRL,1,,,2",
                                             bulk=self.DRIVEN + "FREQ,2,1.\n" + bulk))
             self.bough("frequency", "d.bdf")

@@ -122,7 +122,9 @@ void parse_param(Card& card, Reading& r) {
   const auto* earlier = r.deck.find_param(p.name);
   if (earlier != nullptr && earlier->value != p.value)
     card.warn("deck.repeated-param", 1, p.name + " is '" + p.value + "' here and '" + earlier->value + "' before",
-              "the last one is used; remove one of them");
+              p.name == "AUTOSPC" && r.deck.autospc_command
+                  ? "the command of the case control is used; remove one of them"
+                  : "the last one is used; remove one of them");
   r.deck.params.push_back(std::move(p));
 }
 

@@ -341,11 +341,13 @@ class Builder {
     return std::any_of(found->second.begin(), found->second.end(), [&](int id) {
       switch (find_base(name)) {
         case CardBase::Spring:
-          return is_in(deck_.pelas, id);
+          // The property of no element changes nothing.
+          return std::any_of(deck_.springs.begin(), deck_.springs.end(), [id](const auto& s) { return s.pid == id; });
         case CardBase::Bush:
-          return is_in(deck_.pbush, id);
+          return std::any_of(deck_.cbush.begin(), deck_.cbush.end(), [id](const auto& b) { return b.pid == id; }) ||
+                 std::any_of(deck_.cbush1d.begin(), deck_.cbush1d.end(), [id](const auto& b) { return b.pid == id; });
         case CardBase::Damper:
-          return is_in(deck_.pdamp, id);
+          return std::any_of(deck_.dampers.begin(), deck_.dampers.end(), [id](const auto& d) { return d.pid == id; });
         case CardBase::Material:
           return is_in(deck_.mat1, id) || is_in(deck_.mat2, id) || is_in(deck_.mat8, id) || is_in(deck_.mat9, id);
         case CardBase::None:

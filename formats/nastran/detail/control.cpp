@@ -119,6 +119,7 @@ class CaseControl {
 
   void read_dynamic(const Command& c) {
     if (is_response() && read_direct_input(c)) return;
+    keep_response_matrices(c);
     if (const auto* acts = find_unsupported_command(c.word)) {
       if (acts->scope == CommandScope::StaticLoad) return read_unread_load(c, *acts);
       if (acts->scope == CommandScope::Model || is_response()) return refuse(*acts);
@@ -131,6 +132,14 @@ class CaseControl {
     if (read == DynamicCommand::Other && is_response() && c.word == "IC")
       return refuse({"IC", "TIC", "a start other than by TIC cards"});
     if (read == DynamicCommand::Other && !is_plain_command(c.word)) report_unused(c.word);
+  }
+
+  void keep_response_matrices(const Command& c) {
+    MatrixList names;
+    if (std::none_of(direct_inputs.begin(), direct_inputs.end(), [&](const auto& d) { return c.word == d.name; }))
+      return;
+    if (!read_matrix_names(c.value, names)) return;
+    for (const auto& [factor, name] : names) deck_.response_matrices.insert(name);
   }
 
   /// K2PP, M2PP, B2PP.
@@ -322,13 +331,15 @@ class CaseControl {
     (in_subcase_ ? load_matrices_[current().id] : load_matrices_above_) = std::move(names);
   }
 
-  /// AUTOSPC(...) = YES, NO: as the PARAM.
+  /// AUTOSPC(EPS=r, ...) = YES, NO; YES without a value. The command stands above PARAM,AUTOSPC.
   void read_autospc(const Command& c) {
-    const auto value = make_upper(c.value);
-    if (value == "YES" || value == "NO")
-      deck_.params.push_back({"AUTOSPC", value, at_});
-    else
-      note(c.word);
+    const auto value = c.value.empty() ? std::string("YES") : make_upper(c.value);
+    if (value != "YES" && value != "NO") return bad_value(c, "YES or NO");
+    deck_.autospc_command = {"AUTOSPC", value, at_};
+    const auto options = make_upper(c.options);
+    const auto eps = options.find("EPS=");
+    if (eps != std::string::npos && (eps == 0 || options[eps - 1] == ',' || options[eps - 1] == ' '))
+      deck_.params.push_back({"EPZERO", options.substr(eps + 4, options.find(',', eps) - eps - 4), at_});
   }
 
   /// Names of DMIG with or without factors: "K1, K2", "1.25*K1, 0.82*K2", or the id of a SET of such a list.

@@ -105,12 +105,15 @@ void write_solution(const records::Deck& deck, CardSink& sink) {
     card.add_blank().add_id(m.num_modes).end_line().add_word(m.norm);
     sink.put(card.add_id(m.norm_grid).add_id(m.norm_component));
   }
-  for (const auto& p : deck.params) {
+  const auto put = [&](const records::Param& p) {
     CardFields card("PARAM");
     card.add_word(p.name);
     if (!p.value.empty()) card.add_word(p.value);
     sink.put(card);
-  }
+  };
+  for (const auto& p : deck.params)
+    if (!deck.autospc_command || p.name != "AUTOSPC") put(p);
+  if (deck.autospc_command) put(*deck.autospc_command);
 }
 
 }  // namespace bough::nastran::detail

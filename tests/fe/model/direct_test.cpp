@@ -111,6 +111,8 @@ TEST(DirectMatrices, WhatIsWrong) {
   const std::string head = "CEND\nK2GG = KA\nBEGIN BULK\n";
   EXPECT_EQ(count(head + kGrids, "fe.missing-direct"), 1);
   EXPECT_EQ(count(kGrids + "DMIG,KA,0,6,1,0\n", "fe.direct-unused"), 1);
+  // Of responses: the case control says that its command is not used.
+  EXPECT_EQ(count("K2PP = KA\n" + kGrids + "DMIG,KA,0,6,1,0\n", "fe.direct-unused"), 0);
   EXPECT_EQ(count(head + kGrids + "DMIG,KA,0,1,1,0\nDMIG,KA,1,1,,2,1,1.\n", "fe.direct-not-symmetric"), 1);
   EXPECT_EQ(count(head + kGrids + "DMIG,KA,0,9,1,0,,,1\nDMIG,KA,1,1,,1,1,1.\n", "fe.direct-not-symmetric"), 1);
   EXPECT_EQ(count(head + kGrids + "DMIG,KA,0,6,3,0\nDMIG,KA,1,1,,2,1,1.,2.\n", "fe.direct-complex"), 1);

@@ -74,6 +74,22 @@ TEST(Control, PartsWithSymmetryAreSubcasesAndTheirCombinationIsNone) {
   EXPECT_NE(r.find("deck.case-control-ignored")->what.find("SYMCOM"), std::string::npos);
 }
 
+// AUTOSPC of the case control stands above the PARAM, without a value it says YES, and EPS is EPZERO.
+TEST(Control, AutospcStandsAboveTheParam) {
+  const auto find = [](const std::string& command) {
+    const auto r = read("CEND\n" + command + "\nBEGIN BULK\nPARAM,AUTOSPC,NO\n");
+    EXPECT_EQ(r.count("deck.case-control-ignored"), 0) << r.get_messages();
+    return r.deck;
+  };
+  EXPECT_EQ(find("SPC = 1").find_param("AUTOSPC")->value, "NO");
+  EXPECT_EQ(find("AUTOSPC = YES").find_param("AUTOSPC")->value, "YES");
+  EXPECT_EQ(find("AUTOSPC").find_param("AUTOSPC")->value, "YES");
+  const auto deck = find("AUTOSPC(NOPRINT, SID=100, EPS=1.E-6, SINGLE) = YES");
+  EXPECT_EQ(deck.find_param("AUTOSPC")->value, "YES");
+  EXPECT_EQ(deck.find_param("EPZERO")->value, "1.E-6");
+  EXPECT_EQ(read("CEND\nAUTOSPC = PERHAPS\nBEGIN BULK\n").count("deck.case-control-value"), 1);
+}
+
 TEST(Control, WhatIsNotRecognizedIsOneNote) {
   const auto r = read("CEND\nFMETHOD = 3\nSPC = 1\nDSAPRT = 4\nFMETHOD = 5\nBEGIN BULK\n");
   ASSERT_EQ(r.count("deck.case-control-ignored"), 1);
