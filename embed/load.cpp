@@ -1,6 +1,7 @@
 #include "embed/load.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <filesystem>
 
@@ -84,6 +85,26 @@ std::optional<RigidPart> find_rigid_part(const records::SystemSpec& spec, const 
   return RigidPart{found->cg, found->inertia};
 }
 
+/// Lends each FMU under a name of its own, which `lent` of its record then gives: two controllers may have one file.
+std::vector<std::unique_ptr<solver::HostedController>> lend_fmus(records::SystemSpec& spec, const FileReaders& readers,
+                                                                 Diagnostics& diagnostics) {
+  static std::atomic<long> number = 0;
+  std::vector<std::unique_ptr<solver::HostedController>> lent;
+  for (auto& controller : spec.controllers) {
+    if (controller.type != "fmu") continue;
+    try {
+      auto functions = readers.fmu(controller);
+      const std::string name = "fmu " + std::to_string(++number);
+      controller.settings.words["lent"] = {name};
+      lent.push_back(std::make_unique<solver::HostedController>(name, std::move(functions)));
+    } catch (const InputError& error) {
+      for (const auto& item : error.items()) diagnostics.add(item);
+    }
+  }
+  diagnostics.throw_if_errors();
+  return lent;
+}
+
 }  // namespace
 
 LoadedSystem load_system(const std::string& path, const FileReaders& readers, LoadOptions options,
@@ -94,6 +115,8 @@ LoadedSystem load_system(const std::string& path, const FileReaders& readers, Lo
   if (options.change_spec && diagnostics.num_errors() == 0) options.change_spec(spec);
   if (diagnostics.num_errors() == 0 && readers.matrices) readers.matrices(spec, diagnostics);
   const bool has_errors_of_text = diagnostics.num_errors() > 0;
+  auto lent = readers.fmu && !has_errors_of_text ? lend_fmus(spec, readers, diagnostics)
+                                                 : std::vector<std::unique_ptr<solver::HostedController>>();
   const auto place = [&](const std::string& name) {
     std::error_code none;  // without a working directory names stay as they are
     const fs::path whole = resolve_beside(path, name);
@@ -141,7 +164,7 @@ LoadedSystem load_system(const std::string& path, const FileReaders& readers, Lo
   auto system = solver::System::build_as_far(spec, flex, diagnostics);
   solver::check_run(system, spec, diagnostics);
   diagnostics.throw_if_errors();
-  return {std::move(spec), std::move(flex), std::move(flex_path), std::move(system), {}};
+  return {std::move(spec), std::move(flex), std::move(flex_path), std::move(system), std::move(lent), {}};
 }
 
 }  // namespace bough::embed

@@ -3,11 +3,13 @@
 /// program, the Python module and hosts.
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "formats/records/system_spec.hpp"
+#include "solver/control/hosted.hpp"
 #include "solver/system/system.hpp"
 
 namespace bough::embed {
@@ -17,7 +19,8 @@ struct LoadedSystem {
   std::map<std::string, records::FlexBody> flex;  ///< by the file name as written in the system file
   std::map<std::string, std::string> flex_path;   ///< the same names with the path they were read from
   solver::System system;
-  std::string start_from;  ///< results file with the initial state; empty: none
+  std::vector<std::unique_ptr<solver::HostedController>> lent;  ///< of controllers of type "fmu"
+  std::string start_from;                                       ///< results file with the initial state; empty: none
 };
 
 /// Mass centre and inertia, which a .FLX without the extension of version 1.1 leaves to the system.
@@ -41,6 +44,8 @@ struct FileReaders {
   std::function<void(records::SystemSpec& spec, Diagnostics& diagnostics)> matrices;
   /// Advice of the message about a body file that is missing.
   std::function<std::string(const std::string& path)> advise_body;
+  /// A controller of type "fmu"; may complete the record.
+  std::function<solver::ControllerFunctions(records::ControllerRecord& record)> fmu;
 };
 
 struct LoadOptions {

@@ -17,7 +17,7 @@ BINDING = {
     "slepc": "BSD-2-Clause", "petsc": "BSD-2-Clause", "hypre": "Apache-2.0 OR MIT", "hdf5": "LicenseRef-BSD-style-HDF5",
     "sundials": "BSD-3-Clause", "openblas": "BSD-3-Clause", "metis": "Apache-2.0", "muparser": "BSD-2-Clause",
     "openmpi": "BSD-3-Clause", "fmtlib": "MIT", "tomlplusplus": "MIT", "matio": "BSD-2-Clause",
-    "libedit": "BSD-3-Clause", "libzip": "BSD-3-Clause", "ncurses": "X11-distribute-modifications-variant", "superlu": "BSD-3-Clause", "superlu-dist": "BSD-3-Clause", "scalapack": "BSD-3-Clause", "arpack": "BSD-3-Clause",
+    "libedit": "BSD-3-Clause", "libzip": "BSD-3-Clause", "pugixml": "MIT", "ncurses": "X11-distribute-modifications-variant", "superlu": "BSD-3-Clause", "superlu-dist": "BSD-3-Clause", "scalapack": "BSD-3-Clause", "arpack": "BSD-3-Clause",
 }
 HEADERS = [("libeigen3-dev", "MPL-2.0"), ("libcli11-dev", "BSD-3-Clause"), ("nlohmann-json3-dev", "MIT"),
            ("pybind11-dev", "BSD-3-Clause")]

@@ -9,6 +9,7 @@
 #include "cli/common/old_commands.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/start_state.hpp"
+#include "cosim/fmu_controller.hpp"
 
 namespace bough::cli {
 
@@ -78,7 +79,7 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, Load
                                      read_controller_files(spec, found);
                                      read_function_files(spec, found);
                                    },
-                                   advise_body};
+                                   advise_body, cosim::load_fmu};
   auto loaded = embed::load_system(path, readers, std::move(options), diagnostics);
   loaded.start_from = start_from;
   return loaded;

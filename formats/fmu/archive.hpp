@@ -17,4 +17,10 @@ struct ArchiveEntry {
 /// \throws ComputationError "fmu.write".
 void write_archive(const std::string& path, const std::vector<ArchiveEntry>& entries);
 
+/// Unpacks an archive. Names that lead out of the folder are refused.
+///
+/// \param folder  exists.
+/// \throws InputError "fmu.bad-archive", ComputationError "fmu.unpack" where the disk is full.
+void extract_archive(const std::string& path, const std::string& folder);
+
 }  // namespace bough::fmu

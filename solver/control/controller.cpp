@@ -30,6 +30,7 @@ const std::map<std::string, Maker>& get_makers() {
       {"switch", plain(make_switch)},
       {"expression", plain(make_expression)},
       {"library", plain(make_library)},
+      {"fmu", plain(make_fmu)},
   };
   return makers;
 }

@@ -18,7 +18,7 @@ struct ControllerWiring {
 };
 
 /// Types: transfer_function state_space gain sum product limit notch lead_lag pid table relay pwpf switch expression
-/// library. Reports "control.*"; nullptr on errors.
+/// library fmu. Reports "control.*"; nullptr on errors.
 std::unique_ptr<Block> make_controller(const records::ControllerRecord& record, const ControllerWiring& wiring,
                                        Diagnostics& diagnostics);
 /// Outputs of the controller where they do not depend on its inputs, else 0.

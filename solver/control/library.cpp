@@ -39,6 +39,7 @@ class Library final : public UserBlock {
  public:
   /// What it does with the time is not known.
   bool depends_on_time() const override { return sizes.sample_time == 0; }
+  bool is_opaque() const override { return f_.is_opaque; }
   /// `handle` of dlopen; null where a host lends the functions.
   Library(void* handle, ControllerFunctions f) : handle_(handle), f_(std::move(f)) {}
   ~Library() override {
@@ -93,6 +94,9 @@ class Library final : public UserBlock {
   template <class Law>
   void evaluate(const BlockInput& in, int slot, int num_y, double* y, const Law& law) const {
     if (in.tangents == nullptr) return law(in, y);
+    if (f_.is_opaque)
+      throw InputError("linear.fmu", at, label + " is an FMU, which no linear model can be made of",
+                       "put a linear law in its place, or set active = false");
     std::vector<double> x(in.u, in.u + sizes.inputs);
     x.insert(x.end(), in.z, in.z + sizes.states);
     x.insert(x.end(), in.d, in.d + sizes.memory);
@@ -188,8 +192,9 @@ std::optional<ControllerFunctions> find_hosted_controller(const std::string& fil
   return found->second;
 }
 
-std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring& wiring) {
-  const std::string file = keys.get_word("file", "");
+namespace {
+
+std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring& wiring, const std::string& file) {
   const std::vector<double> parameters = keys.has("parameters") ? keys.get_list("parameters") : std::vector<double>();
   const double sample_time = keys.get("sample_time", 0);
   if (file.empty()) {
@@ -235,6 +240,8 @@ std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring
     const ForeignCall marked(keys.get_place(), keys.get_owner(), language, "bough_controller_open");
     result = f.open(&own);
   } catch (const std::exception& error) {
+    if (f.is_opaque)
+      return refuse("that cannot be used: " + std::string(error.what()), "see type = \"fmu\" in the manual");
     if (!f.language.empty()) return refuse("of no use: " + std::string(error.what()), "see bough.System");
     return refuse(std::string("whose bough_controller_open threw: ") + error.what(), "mend the library");
   } catch (...) {
@@ -262,6 +269,24 @@ std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring
   made->sizes.memory = own.memory;
   made->sizes.has_feedthrough = own.has_feedthrough != 0;
   return made;
+}
+
+}  // namespace
+
+std::unique_ptr<Block> make_fmu(SettingsReader& keys, const ControllerWiring& wiring) {
+  for (const char* key : {"input_names", "output_names", "parameter_names"})
+    if (keys.has(key)) keys.get_words(key);
+  keys.get_word("file", "");
+  const std::string lent = keys.get_word("lent", "");
+  if (!find_hosted_controller(lent)) {
+    keys.error("control.no-fmu", "is an FMU, which this program does not read", "use bough run, or bough in Python");
+    return nullptr;
+  }
+  return make_library(keys, wiring, lent);
+}
+
+std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring& wiring) {
+  return make_library(keys, wiring, keys.get_word("file", ""));
 }
 
 }  // namespace bough::solver

@@ -25,5 +25,7 @@ std::unique_ptr<Block> make_switch(SettingsReader& keys, const ControllerWiring&
 
 std::unique_ptr<Block> make_expression(SettingsReader& keys, const ControllerWiring& wiring);
 std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring& wiring);
+/// Functions that a host lends for the FMU; "control.no-fmu" where none does.
+std::unique_ptr<Block> make_fmu(SettingsReader& keys, const ControllerWiring& wiring);
 
 }  // namespace bough::solver

@@ -150,6 +150,13 @@ std::vector<std::string> Plant::list_sampled() const {
   return names;
 }
 
+std::string Plant::find_opaque() const {
+  const auto& places = system_.impl().signals.places;
+  for (size_t k = 0; k < places.size(); ++k)
+    if (is_felt_[k] && places[k].block->is_opaque()) return places[k].block->label;
+  return {};
+}
+
 void Plant::hold_commands(const OperatingPoint& point) {
   SignalData& s = data_->signals;
   if (!is_open_) return;

@@ -61,6 +61,8 @@ class Plant {
   int state_row(int i) const { return state_rows_[static_cast<size_t>(i)]; }
   /// Sampled controllers and sensors, which stand still in a linear model.
   std::vector<std::string> list_sampled() const;
+  /// Label of the first block whose samples have no linear model; empty: none.
+  std::string find_opaque() const;
 
   /// Freedoms and loops as hinges and constraints are behind an event, when the system stands at (t, q).
   void set_modes(const Discrete& discrete, double t, const VectorXd& q);

@@ -15,6 +15,11 @@ records::Multipliers calc_multipliers(Plant& plant, const OperatingPoint& point,
                                       const SourceLocation& at, Diagnostics& diagnostics, Uncertainty& uncertainty) {
   records::Multipliers out;
   if (plant.sampled_rows().empty()) return out;
+  if (const std::string opaque = plant.find_opaque(); !opaque.empty()) {
+    diagnostics.warning("linear.fmu-held", at, opaque + " is an FMU: there are no multipliers of the closed loops",
+                        "put a linear law in its place");
+    return out;
+  }
   std::vector<double> cycles;
   for (const auto& [period, queue] : plant.list_cycles()) cycles.push_back(period * queue);
   const double period = find_common_period(cycles);

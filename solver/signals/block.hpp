@@ -73,6 +73,9 @@ class Block {
   /// Whether the outputs depend on the time itself: a step that passes over a short event of theirs would not see it.
   virtual bool depends_on_time() const { return false; }
 
+  /// Whether its memory is no set of numbers, so that no linear model can be made of its samples.
+  virtual bool is_opaque() const { return false; }
+
   /// How many of its inputs an event may choose among; 0: none.
   virtual int num_choices() const { return 0; }
   /// The memory with input `choice` (from 0) passed on.

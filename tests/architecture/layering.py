@@ -34,6 +34,7 @@ MAY_INCLUDE = [
     ("solver/linear", RECORDS + ["solver"]),
     ("solver", RECORDS),
     ("embed", RECORDS + ["formats/toml", "formats/flx", "formats/flat", "solver"]),
+    ("cosim", RECORDS + ["formats/fmu", "solver/control", "embed/fmi2_types.h", "embed/fmi3_types.h"]),
 ]
 # Outside headers and the only folders that may see them.
 OUTSIDE = [
@@ -45,9 +46,10 @@ OUTSIDE = [
     (r"^toml\+\+", ["formats/toml"]),
     (r"^matio", ["formats/matrices"]),
     (r"^zip\.h", ["formats/fmu"]),
+    (r"^pugixml", ["formats/fmu"]),
     (r"^nlohmann", ["formats/toml", "formats/report", "cli"]),
     (r"^muParser", ["solver/forces/formulas.cpp"]),
-    (r"^dlfcn", ["solver/control/library.cpp", "fe/linear/petsc.cpp", "cli/common/memory_limit.cpp"]),
+    (r"^dlfcn", ["solver/control/library.cpp", "cosim/slave.cpp", "fe/linear/petsc.cpp", "cli/common/memory_limit.cpp"]),
     (r"^CLI/", ["cli"]),
     (r"^fmt/", ["cli", "formats"]),
     (r"^(sundials|cvode|arkode|nvector|sunlinsol|sunmatrix|sunnonlinsol)", ["solver/integrate", "cli/common/versions.cpp"]),

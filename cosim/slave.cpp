@@ -1,0 +1,430 @@
+#include "cosim/slave.hpp"
+
+#include <dlfcn.h>
+
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "embed/fmi2_types.h"
+#include "embed/fmi3_types.h"
+
+namespace bough::cosim {
+namespace {
+
+#if defined(__aarch64__)
+constexpr const char* kFolder2 = "linuxaarch64";
+constexpr const char* kFolder3 = "aarch64-linux";
+#else
+constexpr const char* kFolder2 = "linux64";
+constexpr const char* kFolder3 = "x86_64-linux";
+#endif
+constexpr const char* kName = "controller";
+constexpr int kWarning = 1, kDiscard = 2, kFatal = 4;
+
+const char* name_status(int status) {
+  static const char* names[] = {"ok", "warning", "discard", "error", "fatal", "pending"};
+  return status >= 0 && status < 6 ? names[status] : "unknown";
+}
+
+/// Closed after everything that was taken from it.
+class Library {
+ public:
+  explicit Library(const std::string& path) : handle_(dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+    if (handle_ == nullptr) {
+      const char* why = dlerror();
+      throw std::runtime_error("cannot load its binary: " + std::string(why ? why : path));
+    }
+  }
+  ~Library() { dlclose(handle_); }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+
+  template <class F>
+  void find(const char* name, F*& to) const {
+    to = reinterpret_cast<F*>(dlsym(handle_, name));
+    if (to == nullptr) throw std::runtime_error("its binary lacks the function " + std::string(name));
+  }
+
+ private:
+  void* handle_;
+};
+
+/// What both versions share: status, message and the variables.
+class SlaveBase : public Slave {
+ public:
+  SlaveBase(const fmu::ForeignModel& model, const std::string& folder, SlaveVariables variables)
+      : model_(model), folder_(folder), variables_(std::move(variables)), library_(get_binary_path(model, folder)) {}
+
+  void set_inputs(const double* values) override { set(variables_.inputs, values); }
+  void get_outputs(double* values) override {
+    for (const auto& v : variables_.outputs) {
+      get_one(v, values);
+      for (int i = 0; i < v.size; ++i)
+        if (!std::isfinite(values[i]))
+          throw std::runtime_error("an error: its output '" + v.name + "' is " + std::to_string(values[i]));
+      values += v.size;
+    }
+  }
+
+ protected:
+  virtual void set_one(const fmu::ForeignVariable& v, const double* values) = 0;
+  virtual void get_one(const fmu::ForeignVariable& v, double* values) = 0;
+
+  void set(const std::vector<fmu::ForeignVariable>& variables, const double* values) {
+    for (const auto& v : variables) {
+      set_one(v, values);
+      values += v.size;
+    }
+  }
+  void check(int status, const char* function) {
+    if (status == kFatal) is_lost_ = true;
+    if (status <= kWarning) return;
+    std::string what =
+        std::string("an error: ") + function + " returned " + std::to_string(status) + " (" + name_status(status) + ")";
+    if (!message_.empty()) what += ": " + message_;
+    message_.clear();
+    throw std::runtime_error(what);
+  }
+  [[noreturn]] static void fail_terminated() { throw std::runtime_error("the end of the simulation"); }
+
+  const fmu::ForeignModel model_;
+  const std::string folder_;
+  const SlaveVariables variables_;
+  Library library_;
+  std::string message_;   ///< the last that the FMU gave
+  bool is_lost_ = false;  ///< after a fatal error nothing may be called
+};
+
+template <class T>
+std::vector<T> convert(const double* values, int n) {
+  std::vector<T> converted(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i) converted[static_cast<std::size_t>(i)] = static_cast<T>(std::nearbyint(values[i]));
+  return converted;
+}
+
+void log2(fmi2ComponentEnvironment environment, fmi2String, fmi2Status, fmi2String, fmi2String message, ...) {
+  char text[2000];
+  va_list list;
+  va_start(list, message);
+  std::vsnprintf(text, sizeof text, message != nullptr ? message : "", list);
+  va_end(list);
+  *static_cast<std::string*>(environment) = text;
+}
+
+class Slave2 final : public SlaveBase {
+ public:
+  Slave2(const fmu::ForeignModel& model, const std::string& folder, SlaveVariables variables)
+      : SlaveBase(model, folder, std::move(variables)) {
+    library_.find("fmi2Instantiate", instantiate_);
+    library_.find("fmi2FreeInstance", free_);
+    library_.find("fmi2SetupExperiment", setup_);
+    library_.find("fmi2EnterInitializationMode", enter_);
+    library_.find("fmi2ExitInitializationMode", exit_);
+    library_.find("fmi2Terminate", terminate_);
+    library_.find("fmi2DoStep", do_step_);
+    library_.find("fmi2GetBooleanStatus", get_status_);
+    library_.find("fmi2SetReal", set_real_);
+    library_.find("fmi2GetReal", get_real_);
+    library_.find("fmi2SetInteger", set_integer_);
+    library_.find("fmi2GetInteger", get_integer_);
+    library_.find("fmi2SetBoolean", set_boolean_);
+    library_.find("fmi2GetBoolean", get_boolean_);
+    if (!model.can_save_state) return;
+    library_.find("fmi2GetFMUstate", get_state_);
+    library_.find("fmi2SetFMUstate", set_state_);
+    library_.find("fmi2FreeFMUstate", free_state_);
+    library_.find("fmi2SerializedFMUstateSize", get_size_);
+    library_.find("fmi2SerializeFMUstate", serialize_);
+    library_.find("fmi2DeSerializeFMUstate", deserialize_);
+  }
+  ~Slave2() override { end(); }
+
+  void start(double t, const double* parameters, const double* inputs) override {
+    end();
+    message_.clear();
+    const std::string uri = "file://" + folder_ + "/resources";
+    own_ = instantiate_(kName, fmi2CoSimulation, model_.token.c_str(), uri.c_str(), &callbacks_, 0, 1);
+    if (own_ == nullptr)
+      throw std::runtime_error("an error: fmi2Instantiate gave no instance" +
+                               (message_.empty() ? std::string() : ": " + message_));
+    set(variables_.parameters, parameters);
+    check(setup_(own_, 0, 0, t, 0, 0), "fmi2SetupExperiment");
+    check(enter_(own_), "fmi2EnterInitializationMode");
+    if (inputs != nullptr) set_inputs(inputs);
+    check(exit_(own_), "fmi2ExitInitializationMode");
+    is_running_ = true;
+  }
+  void step(double t, double step) override {
+    const int status = do_step_(own_, t, step, 1);
+    fmi2Boolean is_terminated = 0;
+    if (status == kDiscard && get_status_(own_, fmi2Terminated, &is_terminated) == fmi2OK && is_terminated)
+      fail_terminated();
+    check(status, "fmi2DoStep");
+  }
+  std::string save() override {
+    check(get_state_(own_, &state_), "fmi2GetFMUstate");
+    std::size_t size = 0;
+    check(get_size_(own_, state_, &size), "fmi2SerializedFMUstateSize");
+    std::string bytes(size, '\0');
+    check(serialize_(own_, state_, bytes.data(), size), "fmi2SerializeFMUstate");
+    return bytes;
+  }
+  void restore(const std::string& bytes) override {
+    check(deserialize_(own_, bytes.data(), bytes.size(), &state_), "fmi2DeSerializeFMUstate");
+    check(set_state_(own_, state_), "fmi2SetFMUstate");
+  }
+
+ private:
+  void end() {
+    if (own_ != nullptr && !is_lost_) {
+      if (state_ != nullptr) free_state_(own_, &state_);
+      if (is_running_) terminate_(own_);
+      free_(own_);
+    }
+    own_ = nullptr;
+    state_ = nullptr;
+    is_running_ = false;
+  }
+  void set_one(const fmu::ForeignVariable& v, const double* values) override {
+    switch (v.type) {
+      case fmu::ValueType::Int32:
+        return check(set_integer_(own_, &v.reference, 1, convert<int>(values, 1).data()), "fmi2SetInteger");
+      case fmu::ValueType::Boolean: {
+        const fmi2Boolean value = *values != 0;
+        return check(set_boolean_(own_, &v.reference, 1, &value), "fmi2SetBoolean");
+      }
+      default:
+        return check(set_real_(own_, &v.reference, 1, values), "fmi2SetReal");
+    }
+  }
+  void get_one(const fmu::ForeignVariable& v, double* values) override {
+    int value = 0;
+    switch (v.type) {
+      case fmu::ValueType::Int32:
+        check(get_integer_(own_, &v.reference, 1, &value), "fmi2GetInteger");
+        *values = value;
+        return;
+      case fmu::ValueType::Boolean:
+        check(get_boolean_(own_, &v.reference, 1, &value), "fmi2GetBoolean");
+        *values = value;
+        return;
+      default:
+        check(get_real_(own_, &v.reference, 1, values), "fmi2GetReal");
+    }
+  }
+
+  using Get = int(fmi2Component, const fmi2ValueReference*, std::size_t, int*);
+  using Set = int(fmi2Component, const fmi2ValueReference*, std::size_t, const int*);
+  fmi2Component (*instantiate_)(fmi2String, fmi2Type, fmi2String, fmi2String, const fmi2CallbackFunctions*, fmi2Boolean,
+                                fmi2Boolean) = nullptr;
+  void (*free_)(fmi2Component) = nullptr;
+  int (*setup_)(fmi2Component, fmi2Boolean, fmi2Real, fmi2Real, fmi2Boolean, fmi2Real) = nullptr;
+  int (*enter_)(fmi2Component) = nullptr;
+  int (*exit_)(fmi2Component) = nullptr;
+  int (*terminate_)(fmi2Component) = nullptr;
+  int (*do_step_)(fmi2Component, fmi2Real, fmi2Real, fmi2Boolean) = nullptr;
+  int (*get_status_)(fmi2Component, fmi2StatusKind, fmi2Boolean*) = nullptr;
+  int (*set_real_)(fmi2Component, const fmi2ValueReference*, std::size_t, const fmi2Real*) = nullptr;
+  int (*get_real_)(fmi2Component, const fmi2ValueReference*, std::size_t, fmi2Real*) = nullptr;
+  Set *set_integer_ = nullptr, *set_boolean_ = nullptr;
+  Get *get_integer_ = nullptr, *get_boolean_ = nullptr;
+  int (*get_state_)(fmi2Component, fmi2FMUstate*) = nullptr;
+  int (*set_state_)(fmi2Component, fmi2FMUstate) = nullptr;
+  int (*free_state_)(fmi2Component, fmi2FMUstate*) = nullptr;
+  int (*get_size_)(fmi2Component, fmi2FMUstate, std::size_t*) = nullptr;
+  int (*serialize_)(fmi2Component, fmi2FMUstate, fmi2Byte*, std::size_t) = nullptr;
+  int (*deserialize_)(fmi2Component, const fmi2Byte*, std::size_t, fmi2FMUstate*) = nullptr;
+
+  fmi2CallbackFunctions callbacks_{log2, std::calloc, std::free, nullptr, &message_};
+  fmi2Component own_ = nullptr;
+  fmi2FMUstate state_ = nullptr;
+  bool is_running_ = false;
+};
+
+void log3(fmi3InstanceEnvironment environment, fmi3Status, fmi3String, fmi3String message) {
+  *static_cast<std::string*>(environment) = message != nullptr ? message : "";
+}
+
+class Slave3 final : public SlaveBase {
+ public:
+  Slave3(const fmu::ForeignModel& model, const std::string& folder, SlaveVariables variables)
+      : SlaveBase(model, folder, std::move(variables)) {
+    library_.find("fmi3InstantiateCoSimulation", instantiate_);
+    library_.find("fmi3FreeInstance", free_);
+    library_.find("fmi3EnterInitializationMode", enter_);
+    library_.find("fmi3ExitInitializationMode", exit_);
+    library_.find("fmi3Terminate", terminate_);
+    library_.find("fmi3DoStep", do_step_);
+    if (!model.can_save_state) return;
+    library_.find("fmi3GetFMUState", get_state_);
+    library_.find("fmi3SetFMUState", set_state_);
+    library_.find("fmi3FreeFMUState", free_state_);
+    library_.find("fmi3SerializedFMUStateSize", get_size_);
+    library_.find("fmi3SerializeFMUState", serialize_);
+    library_.find("fmi3DeserializeFMUState", deserialize_);
+  }
+  ~Slave3() override { end(); }
+
+  void start(double t, const double* parameters, const double* inputs) override {
+    end();
+    message_.clear();
+    const std::string resources = folder_ + "/resources/";
+    own_ = instantiate_(kName, model_.token.c_str(), resources.c_str(), false, true, false, false, nullptr, 0,
+                        &message_, log3, nullptr);
+    if (own_ == nullptr)
+      throw std::runtime_error("an error: fmi3InstantiateCoSimulation gave no instance" +
+                               (message_.empty() ? std::string() : ": " + message_));
+    set(variables_.parameters, parameters);
+    check(enter_(own_, false, 0, t, false, 0), "fmi3EnterInitializationMode");
+    if (inputs != nullptr) set_inputs(inputs);
+    check(exit_(own_), "fmi3ExitInitializationMode");
+    is_running_ = true;
+  }
+  void step(double t, double step) override {
+    bool needs_event = false, is_terminated = false, is_early = false;
+    double reached = t;
+    const int status = do_step_(own_, t, step, true, &needs_event, &is_terminated, &is_early, &reached);
+    if (status <= kDiscard && is_terminated) fail_terminated();
+    check(status, "fmi3DoStep");
+    if (is_early)
+      throw std::runtime_error("an error: an early return at t = " + std::to_string(reached) + ", which is not allowed");
+  }
+  std::string save() override {
+    check(get_state_(own_, &state_), "fmi3GetFMUState");
+    std::size_t size = 0;
+    check(get_size_(own_, state_, &size), "fmi3SerializedFMUStateSize");
+    std::string bytes(size, '\0');
+    check(serialize_(own_, state_, reinterpret_cast<fmi3Byte*>(bytes.data()), size), "fmi3SerializeFMUState");
+    return bytes;
+  }
+  void restore(const std::string& bytes) override {
+    check(deserialize_(own_, reinterpret_cast<const fmi3Byte*>(bytes.data()), bytes.size(), &state_),
+          "fmi3DeserializeFMUState");
+    check(set_state_(own_, state_), "fmi3SetFMUState");
+  }
+
+ private:
+  void end() {
+    if (own_ != nullptr && !is_lost_) {
+      if (state_ != nullptr) free_state_(own_, &state_);
+      if (is_running_) terminate_(own_);
+      free_(own_);
+    }
+    own_ = nullptr;
+    state_ = nullptr;
+    is_running_ = false;
+  }
+  /// Functions of a type are looked up when a variable has it.
+  template <class T>
+  void set_values(const char* name, const fmu::ForeignVariable& v, const std::vector<T>& values) {
+    int (*function)(fmi3Instance, const fmi3ValueReference*, std::size_t, const T*, std::size_t) = nullptr;
+    library_.find(name, function);
+    check(function(own_, &v.reference, 1, values.data(), values.size()), name);
+  }
+  template <class T>
+  void get_values(const char* name, const fmu::ForeignVariable& v, double* to) {
+    int (*function)(fmi3Instance, const fmi3ValueReference*, std::size_t, T*, std::size_t) = nullptr;
+    library_.find(name, function);
+    const std::unique_ptr<T[]> values(new T[static_cast<std::size_t>(v.size)]());
+    check(function(own_, &v.reference, 1, values.get(), static_cast<std::size_t>(v.size)), name);
+    for (int i = 0; i < v.size; ++i) to[i] = static_cast<double>(values[static_cast<std::size_t>(i)]);
+  }
+  void set_boolean(const fmu::ForeignVariable& v, const double* x) {
+    int (*function)(fmi3Instance, const fmi3ValueReference*, std::size_t, const bool*, std::size_t) = nullptr;
+    library_.find("fmi3SetBoolean", function);
+    const auto n = static_cast<std::size_t>(v.size);
+    const std::unique_ptr<bool[]> values(new bool[n]);
+    for (std::size_t i = 0; i < n; ++i) values[i] = x[i] != 0;
+    check(function(own_, &v.reference, 1, values.get(), n), "fmi3SetBoolean");
+  }
+  void set_one(const fmu::ForeignVariable& v, const double* x) override {
+    using fmu::ValueType;
+    switch (v.type) {
+      case ValueType::Float32:
+        return set_values("fmi3SetFloat32", v, std::vector<float>(x, x + v.size));
+      case ValueType::Int8:
+        return set_values("fmi3SetInt8", v, convert<std::int8_t>(x, v.size));
+      case ValueType::UInt8:
+        return set_values("fmi3SetUInt8", v, convert<std::uint8_t>(x, v.size));
+      case ValueType::Int16:
+        return set_values("fmi3SetInt16", v, convert<std::int16_t>(x, v.size));
+      case ValueType::UInt16:
+        return set_values("fmi3SetUInt16", v, convert<std::uint16_t>(x, v.size));
+      case ValueType::Int32:
+        return set_values("fmi3SetInt32", v, convert<std::int32_t>(x, v.size));
+      case ValueType::UInt32:
+        return set_values("fmi3SetUInt32", v, convert<std::uint32_t>(x, v.size));
+      case ValueType::Int64:
+        return set_values("fmi3SetInt64", v, convert<std::int64_t>(x, v.size));
+      case ValueType::UInt64:
+        return set_values("fmi3SetUInt64", v, convert<std::uint64_t>(x, v.size));
+      case ValueType::Boolean:
+        return set_boolean(v, x);
+      default:
+        return set_values("fmi3SetFloat64", v, std::vector<double>(x, x + v.size));
+    }
+  }
+  void get_one(const fmu::ForeignVariable& v, double* y) override {
+    using fmu::ValueType;
+    switch (v.type) {
+      case ValueType::Float32:
+        return get_values<float>("fmi3GetFloat32", v, y);
+      case ValueType::Int8:
+        return get_values<std::int8_t>("fmi3GetInt8", v, y);
+      case ValueType::UInt8:
+        return get_values<std::uint8_t>("fmi3GetUInt8", v, y);
+      case ValueType::Int16:
+        return get_values<std::int16_t>("fmi3GetInt16", v, y);
+      case ValueType::UInt16:
+        return get_values<std::uint16_t>("fmi3GetUInt16", v, y);
+      case ValueType::Int32:
+        return get_values<std::int32_t>("fmi3GetInt32", v, y);
+      case ValueType::UInt32:
+        return get_values<std::uint32_t>("fmi3GetUInt32", v, y);
+      case ValueType::Int64:
+        return get_values<std::int64_t>("fmi3GetInt64", v, y);
+      case ValueType::UInt64:
+        return get_values<std::uint64_t>("fmi3GetUInt64", v, y);
+      case ValueType::Boolean:
+        return get_values<bool>("fmi3GetBoolean", v, y);
+      default:
+        return get_values<double>("fmi3GetFloat64", v, y);
+    }
+  }
+
+  fmi3Instance (*instantiate_)(fmi3String, fmi3String, fmi3String, fmi3Boolean, fmi3Boolean, fmi3Boolean, fmi3Boolean,
+                               const fmi3ValueReference*, std::size_t, fmi3InstanceEnvironment, fmi3LogMessageCallback,
+                               fmi3IntermediateUpdateCallback) = nullptr;
+  void (*free_)(fmi3Instance) = nullptr;
+  int (*enter_)(fmi3Instance, fmi3Boolean, fmi3Float64, fmi3Float64, fmi3Boolean, fmi3Float64) = nullptr;
+  int (*exit_)(fmi3Instance) = nullptr;
+  int (*terminate_)(fmi3Instance) = nullptr;
+  int (*do_step_)(fmi3Instance, fmi3Float64, fmi3Float64, fmi3Boolean, fmi3Boolean*, fmi3Boolean*, fmi3Boolean*,
+                  fmi3Float64*) = nullptr;
+  int (*get_state_)(fmi3Instance, fmi3FMUState*) = nullptr;
+  int (*set_state_)(fmi3Instance, fmi3FMUState) = nullptr;
+  int (*free_state_)(fmi3Instance, fmi3FMUState*) = nullptr;
+  int (*get_size_)(fmi3Instance, fmi3FMUState, std::size_t*) = nullptr;
+  int (*serialize_)(fmi3Instance, fmi3FMUState, fmi3Byte*, std::size_t) = nullptr;
+  int (*deserialize_)(fmi3Instance, const fmi3Byte*, std::size_t, fmi3FMUState*) = nullptr;
+
+  fmi3Instance own_ = nullptr;
+  fmi3FMUState state_ = nullptr;
+  bool is_running_ = false;
+};
+
+}  // namespace
+
+std::string get_binary_path(const fmu::ForeignModel& model, const std::string& folder) {
+  return folder + "/binaries/" + (model.version == 2 ? kFolder2 : kFolder3) + "/" + model.identifier + ".so";
+}
+
+std::unique_ptr<Slave> load_slave(const fmu::ForeignModel& model, const std::string& folder, SlaveVariables variables) {
+  if (model.version == 2) return std::make_unique<Slave2>(model, folder, std::move(variables));
+  return std::make_unique<Slave3>(model, folder, std::move(variables));
+}
+
+}  // namespace bough::cosim

@@ -1,0 +1,232 @@
+"""FMUs as controllers: the law of a shared library bit for bit, states that are saved, and what goes wrong, in words."""
+import os
+import signal
+import unittest
+import zipfile
+
+import h5py
+import numpy as np
+
+from fmu_sources import LIBRARY, compile_library, make_fmu
+from host import Model
+from support import SOURCE, ProgramTest
+
+SYSTEM = """
+[[body]]
+name = "rotor"
+mass = 1.0
+inertia = [1.0, 1.0, 2.0]
+[[hinge]]
+name = "axis"
+type = "revolute"
+child = "rotor"
+position = [0.3]
+[[function]]
+name = "on"
+type = "constant"
+value = 1.0
+[[sensor]]
+name = "angle"
+type = "hinge_angle"
+hinge = "axis"
+[[sensor]]
+name = "rate"
+type = "hinge_rate"
+hinge = "axis"
+[[controller]]
+name = "law"
+inputs = ["angle", "rate", "on"]
+{law}
+[[actuator]]
+name = "drive"
+type = "hinge"
+hinge = "axis"
+input = "law:1"
+[simulation]
+duration = {duration}
+output_step = 0.005
+integrator = "rk4"
+step = 0.005
+"""
+FMU = """type = "fmu"
+file = "law.fmu"
+parameter_names = ["kp", "kd", "fault"]
+parameters = [6.0, 4.0, {fault}]
+sample_time = 0.01
+{more}"""
+
+
+class FmuControllers(ProgramTest):
+    def make(self, fault=0, more="", duration=1.0, law=None, name="s.toml"):
+        return self.write(name, SYSTEM.format(law=law or FMU.format(fault=fault, more=more), duration=duration))
+
+    def read(self, name):
+        with h5py.File(self.path(name)) as f:
+            return f["sensors/angle"][:], f["controllers/law"][:]
+
+    def test_library_and_both_versions_are_the_same(self):
+        compile_library(self.path("law.so"), LIBRARY, "-I" + os.path.join(SOURCE, "solver/control"))
+        self.make(law='type = "library"\nfile = "law.so"\nparameters = [6.0, 4.0]\nsample_time = 0.01', name="library.toml")
+        self.bough("run", "library.toml")
+        angle, law = self.read("library.h5")
+        self.assertLess(abs(angle[-1]), 0.1)
+        self.assertEqual(law[-1, 1], 100)
+        for version in (2, 3):
+            for saves in (True, False):
+                make_fmu(self.path("law.fmu"), version, saves)
+                self.make(name="fmu.toml")
+                self.bough("run", "fmu.toml")
+                for left, right in zip(self.read("fmu.h5"), (angle, law)):
+                    np.testing.assert_array_equal(left, right, f"FMI {version}, saves {saves}")
+
+    def test_recommended_step_and_chosen_names(self):
+        make_fmu(self.path("law.fmu"), 2)
+        law = FMU.format(fault=0, more='input_names = ["angle", "rate", "enable"]\noutput_names = ["torque"]')
+        self.make(law=law.replace("sample_time = 0.01\n", ""))
+        self.bough("run", "s.toml")
+        self.assertEqual(self.read("s.h5")[1].ndim, 1)
+        make_fmu(self.path("law.fmu"), 3)  # recommends none
+        self.make(law=FMU.format(fault=0, more="").replace("sample_time = 0.01\n", ""))
+        self.fails(1, "run", "s.toml", error="fmu.no-step", says=["controller 'law'", "give sample_time"])
+
+    def test_state_is_saved(self):
+        for version in (2, 3):
+            make_fmu(self.path("law.fmu"), version)
+            self.make()
+            self.bough("run", "s.toml", "-o", "whole.h5")
+            self.make(duration=0.375)
+            self.bough("run", "s.toml", "-o", "parts.h5")
+            self.make()
+            self.bough("run", "s.toml", "-o", "parts.h5", "--resume")
+            for left, right in zip(self.read("parts.h5"), self.read("whole.h5")):
+                np.testing.assert_array_equal(left, right)
+            make_fmu(self.path("law.fmu"), version, saves=False)
+            self.make(duration=0.375)
+            self.bough("run", "s.toml", "-o", "parts.h5")
+            self.make()
+            self.fails(3, "run", "s.toml", "-o", "parts.h5", "--resume", says=["canSerializeFMUState", "controller 'law'"])
+
+    def test_two_of_one_file(self):
+        make_fmu(self.path("law.fmu"), 3)
+        text = SYSTEM.format(law=FMU.format(fault=0, more=""), duration=0.5)
+        second = text[text.index("[[controller]]"):text.index("[[actuator]]")].replace('"law"', '"other"').replace("6.0", "9.0")
+        self.write("s.toml", text.replace("[[actuator]]", second + "[[actuator]]", 1))
+        self.bough("run", "s.toml")
+        with h5py.File(self.path("s.h5")) as f:
+            law, other = f["controllers/law"][:], f["controllers/other"][:]
+        np.testing.assert_array_equal(law[:, 1], other[:, 1])
+        self.assertGreater(np.abs(other[2:20, 0] - law[2:20, 0]).max(), 0.1)
+
+    def test_faults_have_names(self):
+        for version in (2, 3):
+            make_fmu(self.path("law.fmu"), version)
+            for fault, says in [(1, [f"fmi{version}DoStep returned 3 (error): tank 7 is empty"]),
+                                (2, [f"fmi{version}DoStep returned 2 (discard)"]), (3, ["the end of the simulation"]),
+                                (4, ["its output 'torque' is"]), (7, ["returned 4 (fatal)"]), (6, ["SIGSEGV"])]:
+                self.make(fault=fault)
+                self.fails(3, "run", "s.toml", says=["controller 'law'", f"at t = 0.0{2 if fault == 4 else 3}", *says])
+                with h5py.File(self.path("s.h5")) as f:
+                    self.assertFalse(f.attrs["completed"])
+        self.assertEqual([n for n in os.listdir(self.folder) if n.startswith("bough-fmu")], [])
+
+    def test_refused_files(self):
+        def refuse(error, *says, code=1, **more):
+            self.make(**more)
+            self.fails(code, "check", "s.toml", error=error, says=says)
+
+        refuse("fmu.no-file", "there is no FMU", "s.toml")
+        self.write("law.fmu", "no zip")
+        refuse("fmu.bad-archive")
+        with zipfile.ZipFile(self.path("law.fmu"), "w") as archive:
+            archive.writestr("a.txt", "a")
+        refuse("fmu.bad-archive", "no modelDescription.xml")
+        with open(self.path("law.fmu"), "rb") as f:
+            whole = f.read()
+        make_fmu(self.path("law.fmu"), 3, files=[("../outside.txt", "bad")])
+        refuse("fmu.bad-archive", "'../outside.txt' leads out of the folder")
+        make_fmu(self.path("law.fmu"), 3)
+        with open(self.path("law.fmu"), "rb") as f:
+            whole = f.read()
+        with open(self.path("law.fmu"), "wb") as f:
+            f.write(whole[:-200])
+        refuse("fmu.bad-archive")
+        for change, error, says in [
+                (lambda x: x[:200], "fmu.bad-description", "is no XML"),
+                (lambda x: x.replace("fmiModelDescription", "model"), "fmu.bad-description", "fmiModelDescription"),
+                (lambda x: x.replace('"3.0"', '"1.0"'), "fmu.version", "'1.0'"),
+                (lambda x: x.replace("CoSimulation", "ModelExchange"), "fmu.no-cosimulation", "no Co-Simulation"),
+                (lambda x: x.replace('modelIdentifier="law"', 'modelIdentifier="../law"'), "fmu.bad-description", "../law"),
+                (lambda x: x.replace('name="kd"', 'name="kp"'), "fmu.bad-description", "two variables named 'kp'"),
+                (lambda x: x.replace('name="kd"', 'name="kds"'), "fmu.unknown-variable", "has no parameter 'kd'"),
+                (lambda x: x.replace("UInt8", "String"), "fmu.bad-variable", "'fault' of its FMU is no number"),
+                (lambda x: x.replace('<Dimension start="2"/>', '<Dimension valueReference="9"/>'), "fmu.bad-variable", "size of 'angle'"),
+                (lambda x: x.replace("{token}", "{other}"), "control.bad-library", "the token is wrong")]:
+            make_fmu(self.path("law.fmu"), 3, change=change)
+            refuse(error, says)
+        make_fmu(self.path("law.fmu"), 3, platform="x86_64-windows")
+        refuse("fmu.no-platform", "binaries/x86_64-linux/law.so", "it has x86_64-windows")
+        make_fmu(self.path("law.fmu"), 3)
+        refuse("control.bad-library", "it has 2 inputs, and 3 signals are wired to it", more='input_names = ["angle"]')
+        refuse("fmu.bad-variable", "3 parameters for 1", law=FMU.format(fault=0, more="").replace('["kp", "kd", "fault"]', '["kp"]'))
+        self.make()
+        self.bough("check", "s.toml")
+
+    def test_what_they_cannot_do(self):
+        make_fmu(self.path("law.fmu"), 3)
+        self.make()
+        said = self.bough("linearize", "s.toml").stderr  # samples are held there
+        self.assertIn("[linear.fmu-held]", said)
+        self.fails(1, "linearize", "s.toml", "--break", "law:1", error="linear.fmu", says=["controller 'law' is an FMU"])
+        self.fails(1, "export", "s.toml", "--to", "fmu", "-o", "out.fmu", says=['its type is "fmu"'])
+        with self.assertRaisesRegex(RuntimeError, r"\[control.no-fmu\]"):
+            Model(self.path("s.toml"))
+        result = self.bough("check", "s.toml", code=3, env={"TMPDIR": "/nowhere"})
+        self.assertIn("[fmu.unpack]", result.stderr)
+
+    def test_a_system_of_bough_is_one(self):
+        """A mass on a spring beside the rotor, as FMU that measures the angle: another program's plant in this one."""
+        self.write("mass.toml", """
+[[input]]
+name = "angle"
+[[body]]
+name = "bob"
+mass = 2.0
+inertia = [1.0, 1.0, 1.0]
+[[hinge]]
+name = "slide"
+type = "prismatic"
+child = "bob"
+axis = [1.0, 0.0, 0.0]
+stiffness = [8.0]
+[[actuator]]
+name = "push"
+type = "hinge"
+hinge = "slide"
+input = "angle"
+[[sensor]]
+name = "x"
+type = "position"
+body = "bob"
+[simulation]
+duration = 1.0
+integrator = "rk4"
+step = 0.01
+""")
+        for version in (2, 3):
+            self.bough("export", "mass.toml", "--to", "fmu", "--fmi", version, "-o", "law.fmu")
+            text = SYSTEM.format(law='type = "fmu"\nfile = "law.fmu"\nsample_time = 0.01\noutput_names = ["x:x"]',
+                                 duration=1.0).replace('["angle", "rate", "on"]', '["angle"]')
+            self.write("s.toml", text.replace('input = "law:1"', 'input = "rate"'))
+            self.bough("run", "s.toml")
+            with h5py.File(self.path("s.h5")) as f:
+                t, u, y = f["time"][:], f["sensors/angle"][:], f["controllers/law"][:]
+            at = np.isclose(t / 0.01, np.round(t / 0.01), atol=1e-6)
+            x, v = 0.0, 0.0  # the mass exactly, its input held for a step
+            for k, (angle, seen) in enumerate(zip(u[at], y[at])):
+                self.assertAlmostEqual(x, seen, delta=1e-9)
+                c, s, rest = np.cos(0.02), np.sin(0.02), angle / 8
+                x, v = rest + (x - rest) * c + v / 2 * s, -2 * (x - rest) * s + v * c
+
+
+if __name__ == "__main__":
+    unittest.main()
