@@ -1,12 +1,12 @@
 // The equations of motion, read aloud (docs/theory/multibody.md): from where the bodies are to how they accelerate.
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 
 void evaluate(const System& system, const State& state, SystemData& data, Eigen::Ref<VectorXd> q_dot,
               Eigen::Ref<VectorXd> u_dot) {
-  const Tree& tree = system.impl().tree;
-  const Loops& loops = system.impl().loops;
+  const Tree& tree = system.tree;
+  const Loops& loops = system.loops;
   if (!state.discrete.mode.empty() && !has_modes(data, state.discrete)) set_modes(system, data, state.discrete);
   if (state.discrete.memory.size() > 0) data.signals.memory = state.discrete.memory;
   set_z(data, state.z);

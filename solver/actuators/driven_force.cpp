@@ -9,7 +9,7 @@ class DrivenForce final : public Block {
   bool is_actuator() const override { return true; }
   void calc_outputs(const BlockInput& in, double* y) const override { y[0] = in.u[0]; }
   void add_load(const BlockInput& in, const double* y, SystemData& data) const override {
-    add_applied_load(*force_, in.system->impl().tree, y[0], data.tree);
+    add_applied_load(*force_, in.system->tree, y[0], data.tree);
   }
 
  private:

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "solver/actuators/makers.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {

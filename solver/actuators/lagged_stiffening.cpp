@@ -15,7 +15,7 @@ class LaggedStiffening final : public Block {
 
   void calc_outputs(const BlockInput& in, double* y) const override { terms.calc_loads(*in.system, *in.data, y); }
   void add_load(const BlockInput& in, const double* y, SystemData& data) const override {
-    const TreeBody& tb = in.system->impl().tree[body];
+    const TreeBody& tb = in.system->tree[body];
     terms.add_modal_force(y, data.tree.q.segment(tb.eta_offset(), n), data.tree.applied.segment(tb.v_offset + 6, n));
   }
 };
@@ -25,7 +25,6 @@ class LaggedStiffening final : public Block {
 std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::SystemSpec& spec, const System& system,
                                                            const FlexMap& flex, Diagnostics& diagnostics) {
   std::vector<std::unique_ptr<Block>> all;
-  const System::Impl& impl = system.impl();
   const auto& simulation = spec.simulation;
   std::string others, with_hinges;
   for (const auto& r : spec.bodies) {
@@ -54,7 +53,7 @@ std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::System
     if (!r.body.empty()) others += (others.empty() ? "" : ", ") + r.name;
   for (const auto& r : spec.force_elements)
     if (r.type != records::ElementType::CentralGravity) others += (others.empty() ? "" : ", ") + r.name;
-  for (const auto& force : impl.driven) others += (others.empty() ? "" : ", ") + force.name;
+  for (const auto& force : system.driven) others += (others.empty() ? "" : ", ") + force.name;
   for (const auto& r : spec.constraints) others += (others.empty() ? "" : ", ") + r.name;
   if (!all.empty() && !others.empty())
     diagnostics.warning(

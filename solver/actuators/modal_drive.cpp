@@ -1,6 +1,6 @@
 // Actuator on a modal coordinate: a generalized force on one mode of a flexible body, without resultant on the body.
 #include "solver/actuators/makers.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {

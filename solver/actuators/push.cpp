@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "solver/actuators/makers.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -17,7 +17,7 @@ class Push : public Actuator {
 
   void calc_outputs(const BlockInput& in, double* y) const override { y[0] = calc_command(in); }
   void add_load(const BlockInput& in, const double* y, SystemData& data) const override {
-    const Tree& tree = in.system->impl().tree;
+    const Tree& tree = in.system->tree;
     const int body = tree.markers[static_cast<size_t>(marker)].body;
     Vector3d load = y[0] * axis;
     if (frame == records::VectorFrame::Inertial)
@@ -44,8 +44,7 @@ class Jet final : public Push {
     if (exhaust > 0) z_dot[sizes.states - 1] = in.d[0] * thrust / exhaust;
   }
   void add_consumption(const BlockInput& in, Eigen::Ref<Eigen::VectorXd> by_body) const override {
-    if (exhaust > 0)
-      by_body[in.system->impl().tree.markers[static_cast<size_t>(marker)].body] += in.z[sizes.states - 1];
+    if (exhaust > 0) by_body[in.system->tree.markers[static_cast<size_t>(marker)].body] += in.z[sizes.states - 1];
   }
   void calc_guards(const BlockInput& in, double* g) const override {
     const double command = calc_command(in);

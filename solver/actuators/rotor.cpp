@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "solver/actuators/makers.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -18,11 +18,11 @@ class Rotor : public Actuator {
   const MarkerMotion& get_motion(const BlockInput& in) const {
     return in.data->tree.markers[static_cast<size_t>(marker)];
   }
-  int get_body(const BlockInput& in) const { return in.system->impl().tree.markers[static_cast<size_t>(marker)].body; }
+  int get_body(const BlockInput& in) const { return in.system->tree.markers[static_cast<size_t>(marker)].body; }
   /// Of the node, in B.
   Vector3d calc_rate(const BlockInput& in) const { return in.data->tree[get_body(in)].state.w_B + get_motion(in).w; }
   void add_moment(const BlockInput& in, const Vector3d& moment_B, SystemData& data) const {
-    add_marker_wrench(in.system->impl().tree, marker, Vector3d::Zero(), moment_B, data.tree);
+    add_marker_wrench(in.system->tree, marker, Vector3d::Zero(), moment_B, data.tree);
   }
 };
 

@@ -15,7 +15,7 @@
 #include "solver/control/hosted.hpp"
 #include "solver/control/makers.hpp"
 #include "solver/control/user_code.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -166,13 +166,13 @@ ControllerFunctions find_functions(void* handle) {
 }  // namespace
 
 bool has_user_blocks(const System& system) {
-  return std::ranges::any_of(system.impl().signals.places, [](const auto& place) {
+  return std::ranges::any_of(system.signals.places, [](const auto& place) {
     return dynamic_cast<const UserBlock*>(place.block.get()) != nullptr;
   });
 }
 
 void close_user_blocks(const System& system) {
-  for (const auto& place : system.impl().signals.places)
+  for (const auto& place : system.signals.places)
     if (const auto* block = dynamic_cast<const UserBlock*>(place.block.get())) block->close();
 }
 

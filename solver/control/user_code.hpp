@@ -4,7 +4,7 @@
 
 namespace bough::solver {
 
-class System;
+struct System;
 
 /// A block that has opened something outside Bough, which the destructor closes at the latest.
 class UserBlock : public Block {

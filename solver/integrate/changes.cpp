@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -24,7 +24,7 @@ void report(const records::TriggerRecord& r, const char* id, const std::string& 
 
 /// Rows of u of the coordinates an event names: all of an orientation, or none of it.
 std::vector<int> find_rows(const System& system, int body, const records::TriggerRecord& r, Diagnostics& diagnostics) {
-  const TreeBody& tb = system.impl().tree[body];
+  const TreeBody& tb = system.tree[body];
   const int num = tb.num_hinge_u();
   std::vector<bool> named(static_cast<size_t>(num), r.coordinates.empty());
   for (const int c : r.coordinates) {
@@ -50,7 +50,7 @@ std::vector<int> find_rows(const System& system, int body, const records::Trigge
 
 /// Place of a controller in the signal graph; -1 with errors reported.
 int find_controller(const System& system, const records::TriggerRecord& r, Diagnostics& diagnostics) {
-  const auto& places = system.impl().signals.places;
+  const auto& places = system.signals.places;
   const std::string folder = "/controllers/";
   std::vector<std::string> names;
   for (size_t i = 0; i < places.size(); ++i) {
@@ -116,7 +116,7 @@ Changes Changes::build(const System& system, const records::SystemSpec& spec, bo
 Discrete Changes::apply(size_t trigger, SystemOde& ode, double t, const VectorXd& y) const {
   const Change& change = changes_[trigger];
   if (change.place >= 0) {
-    const BlockPlace& p = ode.system().impl().signals.places[static_cast<size_t>(change.place)];
+    const BlockPlace& p = ode.system().signals.places[static_cast<size_t>(change.place)];
     VectorXd& memory = ode.data().signals.memory;
     if (change.action == EventAction::Switch)
       p.block->choose(change.choice, memory.data() + p.memory);

@@ -5,7 +5,7 @@
 
 #include "solver/forces/latch_slack.hpp"
 #include "solver/integrate/run.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -19,7 +19,7 @@ int sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
 }  // namespace
 
 Latches::Latches(const System& system) : system_(system) {
-  for (const Latch& latch : system.impl().latches) {
+  for (const Latch& latch : system.latches) {
     Watched w;
     w.latch = latch;
     latches_.push_back(std::move(w));
@@ -134,7 +134,7 @@ bool Latches::can_strike(const SystemOde& ode, const Watched& w) const {
 }
 
 void Latches::fail_endless(const std::vector<std::string>& what) const {
-  throw ComputationError("run.endless-impacts", system_.impl().tree.bodies.front().hinge_at,
+  throw ComputationError("run.endless-impacts", system_.tree.bodies.front().hinge_at,
                          "stops that throw each other back do not come to an end, last " + what.back(),
                          "give them a restitution below 1, or a stiffness in its place");
 }

@@ -5,14 +5,12 @@
 #include <limits>
 
 #include "solver/integrate/run.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
 
-const TreeBody& get_body(const System& system, int body) {
-  return system.impl().tree.bodies[static_cast<size_t>(body)];
-}
+const TreeBody& get_body(const System& system, int body) { return system.tree.bodies[static_cast<size_t>(body)]; }
 
 }  // namespace
 
@@ -53,7 +51,7 @@ double calc_first_frequency(const System& system, int b) {
 LinearLimit::LinearLimit(const System& system) : system_(system) {
   for (int b = 0; b < system.num_bodies(); ++b) {
     if (system.num_modes(b) == 0) continue;
-    const bool is_stiffened = get_body(system, b).body.stiffened() || system.impl().is_lagged;
+    const bool is_stiffened = get_body(system, b).body.stiffened() || system.is_lagged;
     watched_.push_back({b, calc_body_size(system, b), is_stiffened ? 0 : calc_first_frequency(system, b)});
   }
 }

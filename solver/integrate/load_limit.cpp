@@ -4,8 +4,8 @@
 
 #include "solver/integrate/linear_limit.hpp"
 #include "solver/integrate/run.hpp"
-#include "solver/system/impl.hpp"
 #include "solver/system/stiffening_terms.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -13,10 +13,10 @@ namespace {
 constexpr int kNumLooks = 400;
 
 /// The start, and where a force or a prescribed motion has its extreme value among evenly spaced times and its jumps.
-std::vector<double> list_times(const System::Impl& impl, const FunctionCopies& functions, double start, double end) {
+std::vector<double> list_times(const System& system, const FunctionCopies& functions, double start, double end) {
   std::vector<double> looks, times = {start};
   for (int i = 0; i <= kNumLooks; ++i) looks.push_back(start + (end - start) * i / kNumLooks);
-  for (const auto* list : {&impl.breakpoints, &impl.landmarks})
+  for (const auto* list : {&system.breakpoints, &system.landmarks})
     for (const double t : *list)
       if (t > start && t <= end) looks.push_back(t);
   const auto add_extremes = [&](const auto& calc) {
@@ -25,11 +25,11 @@ std::vector<double> list_times(const System::Impl& impl, const FunctionCopies& f
     if (calc(*least) != calc(start)) times.push_back(*least);
     if (calc(*most) != calc(start)) times.push_back(*most);
   };
-  for (const AppliedForce& force : impl.forces)
+  for (const AppliedForce& force : system.forces)
     if (force.function != nullptr) add_extremes([&](double t) { return functions[*force.function].calc(t).f; });
-  for (const TreeBody& tb : impl.tree.bodies)
+  for (const TreeBody& tb : system.tree.bodies)
     for (const TimeFunction* motion : tb.motion) {
-      if (motion == nullptr || impl.loops.size() > 0) continue;
+      if (motion == nullptr || system.loops.size() > 0) continue;
       add_extremes([&](double t) { return functions[*motion].calc(t).f_dot; });
       add_extremes([&](double t) { return functions[*motion].calc(t).f_ddot; });
     }
@@ -50,18 +50,17 @@ double calc_share(const MatrixXd& K, const MatrixXd& KG) {
 
 std::set<int> warn_of_unstiffened_bodies(const System& system, double start, double end, const SourceLocation& at,
                                          Diagnostics& diagnostics) {
-  const System::Impl& impl = system.impl();
   LinearLimit limit(system);
   std::set<int> spinning;
   const auto is_null = [](const auto& terms) { return terms == nullptr; };
-  if (!limit.watches_spins() && std::all_of(impl.left_out.begin(), impl.left_out.end(), is_null)) return spinning;
+  if (!limit.watches_spins() && std::all_of(system.left_out.begin(), system.left_out.end(), is_null)) return spinning;
   struct Worst {
     double share = 0, time = 0;
   };
-  std::vector<Worst> worst(impl.left_out.size());
+  std::vector<Worst> worst(system.left_out.size());
   const auto data = system.make_data();
   VectorXd q = VectorXd::Zero(system.num_q()), u = VectorXd::Zero(system.num_u()), u_dot = u;
-  for (const double t : list_times(impl, data->tree.functions, start, end)) {
+  for (const double t : list_times(system, data->tree.functions, start, end)) {
     try {
       system.calc_initial_state(q, u);
       calc_kinematics(system, *data, t, q, u);
@@ -75,11 +74,11 @@ std::set<int> warn_of_unstiffened_bodies(const System& system, double start, dou
       spinning.insert(spin.body);
     }
     for (size_t b = 0; b < worst.size(); ++b) {
-      if (impl.left_out[b] == nullptr) continue;
-      VectorXd loads(impl.left_out[b]->num_loads());
-      impl.left_out[b]->calc_loads(system, *data, loads.data());
+      if (system.left_out[b] == nullptr) continue;
+      VectorXd loads(system.left_out[b]->num_loads());
+      system.left_out[b]->calc_loads(system, *data, loads.data());
       const double share =
-          calc_share(impl.tree[static_cast<int>(b)].body.K(), impl.left_out[b]->calc_stiffness(loads.data()));
+          calc_share(system.tree[static_cast<int>(b)].body.K(), system.left_out[b]->calc_stiffness(loads.data()));
       if (share > worst[b].share) worst[b] = {share, t};
     }
   }

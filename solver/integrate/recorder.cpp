@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 #include "solver/tree/coordinates.hpp"
 
 namespace bough::solver {
@@ -25,7 +25,7 @@ Recorder::Recorder(const System& system) : system_(system) {
   for (int b = 0; b < system.num_bodies(); ++b) {
     const std::string path = "/hinges/" + system.hinge_name(b) + "/";
     if (const int nq = system.num_hinge_q(b), nu = system.num_hinge_rates(b); nq > 0) {
-      const TreeBody& tb = system.impl().tree[b];
+      const TreeBody& tb = system.tree[b];
       add_channel(path + "q", nq, "hinge coordinates, child relative to parent; quaternion as w, x, y, z",
                   list_hinge_dims(tb, HingeQuantity::Position, 0, nq));
       add_channel(path + "qdot", nu,
@@ -53,11 +53,11 @@ Recorder::Recorder(const System& system) : system_(system) {
     add_channel(path + "reaction_moment", 3,
                 "moment of the parent on the child about the child's frame, in the axes of the parent's", "F L");
   }
-  for (const auto& element : system.impl().elements) {
+  for (const auto& element : system.elements) {
     for (const ForceChannel& c : element->channels())
       add_channel("/forces/" + element->name() + "/" + c.name, c.size, c.description, c.dims);
   }
-  for (const auto& p : system.impl().signals.places)
+  for (const auto& p : system.signals.places)
     add_channel(p.block->path, p.block->sizes.outputs, p.block->description, p.block->dims);
   add_channel("/energy/kinetic", 1, "kinetic energy", "F L");
   add_channel("/energy/strain", 1, "strain energy of the modes, of springs and of contacts", "F L");
@@ -70,7 +70,7 @@ Recorder::Recorder(const System& system) : system_(system) {
   add_channel("/system_mass/cg", 3, "centre of mass of the system, in the inertial frame", "L");
   add_channel("/system_mass/inertia", 9,
               "inertia of the system about its centre of mass, in the inertial frame: three rows", "M L^2");
-  for (const auto& element : system.impl().elements) {
+  for (const auto& element : system.elements) {
     std::vector<int> sizes;
     for (const ForceChannel& c : element->channels()) sizes.push_back(c.size);
     element_sizes_.push_back(std::move(sizes));
@@ -142,7 +142,7 @@ const VectorXd& Recorder::keep_sample() {
 }
 
 void Recorder::add_recovery(const std::string& path, int body) {
-  const auto& recovery = system_.impl().recoveries[static_cast<size_t>(body)];
+  const auto& recovery = system_.recoveries[static_cast<size_t>(body)];
   if (!recovery) return;
   for (const auto& element : recovery->elements()) {
     if (!element.is_recorded) continue;
@@ -178,7 +178,7 @@ const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Ei
     put(q.segment(system_.eta_offset(b), system_.num_modes(b)));
     put(u.segment(system_.eta_dot_offset(b), system_.num_modes(b)));
     if (system_.num_modes(b) > 0) sample_[at++] = calc_strain_energy(system_, data, b);
-    if (const auto& recovery = system_.impl().recoveries[static_cast<size_t>(b)]; recovery) {
+    if (const auto& recovery = system_.recoveries[static_cast<size_t>(b)]; recovery) {
       for (const auto& element : recovery->elements()) {
         if (!element.is_recorded) continue;
         recovery->calc(system_, data, element.first, element.size(), sample_.data() + at);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 #include "solver/tree/gimbal_lock.hpp"
 
 namespace bough::solver {
@@ -82,7 +82,7 @@ StepperOptions make_stepper_options(const SystemOde& ode, const records::Simulat
       .setConstant(std::sqrt(s.absolute_tolerance));
   o.step = plan.step;
   // What the samples see the steps see too.
-  const auto& places = ode.system().impl().signals.places;
+  const auto& places = ode.system().signals.places;
   if (o.step == 0 &&
       std::any_of(places.begin(), places.end(), [](const auto& p) { return p.block->depends_on_time(); }))
     o.step = plan.output_step;
@@ -93,10 +93,10 @@ StepperOptions make_stepper_options(const SystemOde& ode, const records::Simulat
 Timeline make_timeline(const System& system, const RunSetup& setup) {
   auto restarts = setup.triggers.collect_times(false);
   auto landmarks = setup.triggers.collect_times(true);
-  restarts.insert(restarts.end(), system.breakpoints().begin(), system.breakpoints().end());
-  landmarks.insert(landmarks.end(), system.landmarks().begin(), system.landmarks().end());
+  restarts.insert(restarts.end(), system.breakpoints.begin(), system.breakpoints.end());
+  landmarks.insert(landmarks.end(), system.landmarks.begin(), system.landmarks.end());
   Timeline timeline(setup.plan, std::move(restarts), std::move(landmarks));
-  for (const auto& s : system.impl().signals.collect_samples()) timeline.add_samples(s.first, s.period);
+  for (const auto& s : system.signals.collect_samples()) timeline.add_samples(s.first, s.period);
   return timeline;
 }
 
@@ -131,7 +131,7 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
   evaluated_.slide = ode_.data().tree.slide;
   start_events();
   for (int b = 0; b < system.num_bodies(); ++b) {
-    const TreeBody& tb = system.impl().tree[b];
+    const TreeBody& tb = system.tree[b];
     if (tb.hinge->has_plain_coordinates() && tb.num_hinge_u() > 2) gimbals_.push_back(b);
   }
   progress_.start = timeline_.start();
@@ -324,26 +324,25 @@ double Run::calc_noise() {
   const VectorXd q = y_.head(ode_.num_q()), u = VectorXd::Constant(system.num_u(), small);
   auto data = system.make_data();
   calc_kinematics(system, *data, timeline_.start(), q, u);
-  double noise = calc_energies(system, *data).kinetic - system.impl().signals.calc_energy(system, *data);
-  for (const TreeBody& tb : system.impl().tree.bodies) noise += 0.5 * small * small * tb.body.K().trace();
+  double noise = calc_energies(system, *data).kinetic - system.signals.calc_energy(system, *data);
+  for (const TreeBody& tb : system.tree.bodies) noise += 0.5 * small * small * tb.body.K().trace();
   return noise;
 }
 
 double Run::calc_flow() const {
-  const System::Impl& impl = ode_.system().impl();
   const TreeData& data = ode_.data().tree;
   double force = 0, moment = 0, size = 0;
-  for (int b = 0; b < impl.tree.size(); ++b) {
-    const Body& body = impl.tree[b].body;
-    const auto applied = data.applied.segment<6>(impl.tree[b].v_offset);
-    force += body.mass() * impl.gravity.uniform.norm() + applied.head<3>().norm();
+  for (int b = 0; b < ode_.system().tree.size(); ++b) {
+    const Body& body = ode_.system().tree[b].body;
+    const auto applied = data.applied.segment<6>(ode_.system().tree[b].v_offset);
+    force += body.mass() * ode_.system().gravity.uniform.norm() + applied.head<3>().norm();
     moment += applied.tail<3>().norm();
     size =
         std::max(size, data[b].state.p_WBo.norm() + (body.mass() > 0 ? body.first_moment().norm() / body.mass() : 0));
   }
   // Springs, dampers and actuators of hinges: a force along the size, or a moment through one radian.
   double along = 0;
-  for (int row = 0; row < impl.tree.num_u; ++row) along += std::abs(data.get_hinge_force(row));
+  for (int row = 0; row < ode_.system().tree.num_u; ++row) along += std::abs(data.get_hinge_force(row));
   return force * size + moment + along * std::max(size, 1.0);
 }
 
@@ -376,8 +375,7 @@ double Run::calc_coming_energy() {
   auto u = y_dot.segment(ode_.num_q(), system.num_u());
   u *= spec_.simulation.output_step;
   calc_kinematics(system, *coming_data_, t, stepper_->state().head(ode_.num_q()), u);
-  return coming_ =
-             calc_energies(system, *coming_data_).kinetic - system.impl().signals.calc_energy(system, *coming_data_);
+  return coming_ = calc_energies(system, *coming_data_).kinetic - system.signals.calc_energy(system, *coming_data_);
 }
 
 void Run::take_step(const Stop& stop) {
@@ -399,7 +397,7 @@ void Run::take_step(const Stop& stop) {
 }
 
 void Run::watch_axes(double t) {
-  const Tree& tree = ode_.system().impl().tree;
+  const Tree& tree = ode_.system().tree;
   for (size_t i = 0; i < gimbals_.size(); ++i) {
     const int b = gimbals_[i];
     if (find_nearest_axes(tree[b], ode_.data().tree[b]).sine > kNearLock) continue;
@@ -442,7 +440,7 @@ void Run::observe(double t) {
   const double work = ode_.get_work(y_), dissipated = ode_.get_dissipated(y_);
   if (!std::isfinite(e.kinetic + e.strain + e.potential + work))
     fail_diverged(t, name_fastest() + ", and the energy is no finite number any more");
-  const Loops& loops = ode_.system().impl().loops;
+  const Loops& loops = ode_.system().loops;
   int open = -1;
   if (const double gap = calc_largest_gap(loops, ode_.data().loops, &open); gap > kOpen)
     finish_failed(
@@ -527,9 +525,9 @@ void Run::update_progress(double t) {
 void Run::tell_consumption() {
   const System& system = ode_.system();
   set_z(ode_.data(), y_.segment(ode_.num_coordinates(), ode_.num_z()));
-  const VectorXd used = system.impl().signals.calc_consumption(system, ode_.data());
+  const VectorXd used = system.signals.calc_consumption(system, ode_.data());
   for (int b = 0; b < system.num_bodies(); ++b) {
-    const double mass = system.impl().tree[b].body.mass();
+    const double mass = system.tree[b].body.mass();
     if (used[b] > kMuchPropellant * mass)
       diagnostics_.warning(
           "run.propellant", spec_.simulation.at,

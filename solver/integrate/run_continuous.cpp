@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "solver/integrate/run.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -63,7 +63,7 @@ const VectorXd& Run::calc_continuous_outputs() { return calc_sample(calc_seen_ti
 
 int Run::num_kinks() const {
   int kinks = 0;
-  for (const auto& element : ode_.system().impl().elements) kinks += element->num_corners();
+  for (const auto& element : ode_.system().elements) kinks += element->num_corners();
   return kinks;
 }
 
@@ -75,11 +75,10 @@ int Run::num_event_functions() const {
 void Run::calc_event_functions(Eigen::Ref<VectorXd> g) {
   const double t = calc_seen_time();
   evaluate(t, true);
-  const System::Impl& impl = ode_.system().impl();
   double* at = g.data();
   guard([&] {
-    for (const auto& element : impl.elements) {
-      element->calc_corners(impl.tree, ode_.data().tree, at);
+    for (const auto& element : ode_.system().elements) {
+      element->calc_corners(ode_.system().tree, ode_.data().tree, at);
       at += element->num_corners();
     }
   });
@@ -92,12 +91,13 @@ void Run::calc_event_functions(Eigen::Ref<VectorXd> g) {
 
 std::vector<std::string> Run::list_event_functions() const {
   std::vector<std::string> names;
-  const System::Impl& impl = ode_.system().impl();
   const auto add = [&](const std::string& what, int count) {
     for (int i = 1; i <= count; ++i) names.push_back(what + (count > 1 ? " " + std::to_string(i) : ""));
   };
-  for (const auto& element : impl.elements) add("force '" + element->name() + "': kink", element->num_corners());
-  for (const auto& place : impl.signals.places) add(place.block->label + ": switch", place.block->sizes.guards);
+  for (const auto& element : ode_.system().elements)
+    add("force '" + element->name() + "': kink", element->num_corners());
+  for (const auto& place : ode_.system().signals.places)
+    add(place.block->label + ": switch", place.block->sizes.guards);
   add("joint contact", static_cast<int>(events_.contacts.size()));
   for (int i = 0; i < setup_.triggers.make_gaps().size(); ++i)
     names.push_back("event '" + setup_.triggers.get(static_cast<size_t>(i)).name + "'");
@@ -107,7 +107,7 @@ std::vector<std::string> Run::list_event_functions() const {
 bool Run::needs_projection() {
   if (!ode_.has_projection()) return false;
   evaluate(calc_seen_time(), false);
-  return calc_largest_gap(ode_.system().impl().loops, ode_.data().loops) > kDrift;
+  return calc_largest_gap(ode_.system().loops, ode_.data().loops) > kDrift;
 }
 
 bool Run::settle_jump() {

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "solver/integrate/run.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -16,7 +16,7 @@ constexpr int kMostLags = 50;
 }  // namespace
 
 void Run::settle_control(double t) {
-  const SignalGraph& signals = ode_.system().impl().signals;
+  const SignalGraph& signals = ode_.system().signals;
   if (sampled_ == t || signals.places.empty()) return;
   sampled_ = t;
   if (signals.has_samples()) {
@@ -29,7 +29,7 @@ void Run::settle_control(double t) {
 }
 
 void Run::settle_lags(double t) {
-  const SignalGraph& signals = ode_.system().impl().signals;
+  const SignalGraph& signals = ode_.system().signals;
   if (signals.num_states == 0) return;
   VectorXd before;
   for (int i = 0; i < kMostLags; ++i) {
@@ -45,7 +45,7 @@ void Run::settle_lags(double t) {
 }
 
 void Run::settle_switches(double t) {
-  const SignalGraph& signals = ode_.system().impl().signals;
+  const SignalGraph& signals = ode_.system().signals;
   if (signals.num_guards == 0) return;
   std::string what;
   for (int i = 0; i < kMostSwitches; ++i) {
@@ -69,7 +69,7 @@ void Run::count_switch(const std::string& label, double t) {
   s.count = 0;
   if (s.is_told || t - s.since > window) return;
   s.is_told = true;
-  const auto& places = ode_.system().impl().signals.places;
+  const auto& places = ode_.system().signals.places;
   const auto place = std::find_if(places.begin(), places.end(), [&](const auto& p) { return p.block->label == label; });
   diagnostics_.warning("control.sliding", place == places.end() ? SourceLocation{} : place->block->at,
                        label + " has switched " + std::to_string(kManySwitches) + " times from t = " +

@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "solver/integrate/run.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 #include "solver/tree/gimbal_lock.hpp"
 
 namespace bough::solver {
@@ -73,7 +73,7 @@ void Run::fail_cycle(const Firing& firing) {
 
 void Run::fail_stalled(double t, const std::string& detail, int row) {
   const System& system = ode_.system();
-  if (const auto found = find_gimbal_lock(system.impl().tree, ode_.data().tree, kLocked); found.body >= 0)
+  if (const auto found = find_gimbal_lock(system.tree, ode_.data().tree, kLocked); found.body >= 0)
     finish_failed(t, "run.stalled",
                   "the integrator makes no progress at t = " + short_text(t) + ": " + detail + "; " + found.lock,
                   kGimbalAdvice);

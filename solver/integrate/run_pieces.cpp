@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "solver/integrate/run.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {

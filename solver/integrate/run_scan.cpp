@@ -6,7 +6,7 @@
 
 #include "solver/integrate/locate.hpp"
 #include "solver/integrate/run.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -22,9 +22,9 @@ void Run::start_events() {
   // Fixed steps depend on the samples and stops alone. Error estimates of adaptive ones look at few moments of a step
   // (Dormand and Prince's 8(7) at its two ends only) and miss a contact between them: their steps end at kinks.
   if (setup_.integrator != "rk4" && setup_.integrator != "implicit")
-    for (const auto& element : system.impl().elements) kinks += element->num_corners();
+    for (const auto& element : system.elements) kinks += element->num_corners();
   events_.kinks = VectorXd::Zero(kinks);
-  events_.switches = VectorXd::Zero(system.impl().signals.num_guards);
+  events_.switches = VectorXd::Zero(system.signals.num_guards);
   events_.contacts = latches_.make_guards();
   events_.signals = setup_.triggers.make_gaps();
   last_events_ = events_;
@@ -36,15 +36,14 @@ bool Run::has_event_functions() const {
 }
 
 void Run::calc_kinks(double t) {
-  const System::Impl& impl = ode_.system().impl();
   guard([&] {
     if (!is_evaluated(t)) {
       const int nq = ode_.num_q();
       calc_kinematics(ode_.system(), ode_.data(), t, y_.head(nq), y_.segment(nq, ode_.num_coordinates() - nq));
     }
     double* g = events_.kinks.data();
-    for (const auto& element : impl.elements) {
-      element->calc_corners(impl.tree, ode_.data().tree, g);
+    for (const auto& element : ode_.system().elements) {
+      element->calc_corners(ode_.system().tree, ode_.data().tree, g);
       g += element->num_corners();
     }
   });
@@ -59,7 +58,7 @@ void Run::restart_kinks(double t) {
 
 void Run::calc_switches(double t) {
   evaluate(t, true);
-  guard([&] { ode_.system().impl().signals.calc_guards(ode_.system(), ode_.data(), events_.switches); });
+  guard([&] { ode_.system().signals.calc_guards(ode_.system(), ode_.data(), events_.switches); });
 }
 
 void Run::calc_contacts(double t) {

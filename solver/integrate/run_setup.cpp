@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "solver/integrate/load_limit.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 
@@ -28,7 +28,7 @@ void hint_at_fast_modes(const System& system, const RunSetup& setup, const Sourc
   double fastest = 0;
   int where = 0;
   for (int b = 0; b < system.num_bodies(); ++b) {
-    const double own = calc_largest_frequency(system.impl().tree[b].body);
+    const double own = calc_largest_frequency(system.tree[b].body);
     if (own <= fastest) continue;
     fastest = own;
     where = b;
@@ -48,7 +48,7 @@ void hint_at_fast_modes(const System& system, const RunSetup& setup, const Sourc
 RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics) {
   bool is_sound = true;
   for (int b = 0; b < system.num_bodies(); ++b) is_sound = is_sound && system.is_sound(b);
-  is_sound = is_sound && system.impl().signals_are_sound;
+  is_sound = is_sound && system.signals_are_sound;
   RunSetup setup{make_run_plan(spec.simulation, diagnostics), Recorder(system), {}, {}, {}, {}};
   if (is_sound) setup.recorder.choose(spec.simulation.record, spec.simulation.at, diagnostics);
   setup.triggers = Triggers::build(spec, setup.recorder, is_sound, diagnostics);
@@ -70,7 +70,7 @@ RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diag
 }
 
 double calc_fastest_frequency(const System& system) {
-  const Tree& tree = system.impl().tree;
+  const Tree& tree = system.tree;
   MatrixXd K = MatrixXd::Zero(tree.num_u, tree.num_u);
   for (const TreeBody& tb : tree.bodies) {
     const int n = tb.body.num_modes();
@@ -82,8 +82,8 @@ double calc_fastest_frequency(const System& system) {
   const auto data = system.make_data();
   VectorXd q(system.num_q()), u(system.num_u()), force;
   system.calc_initial_state(q, u);
-  calc_kinematics(system, *data, system.impl().start, q, u);
-  add_forces(system, *data, system.impl().start);
+  calc_kinematics(system, *data, system.start, q, u);
+  add_forces(system, *data, system.start);
   MatrixXd M;
   calc_dense_equations(tree, data->tree, M, force);
   const Eigen::LLT<MatrixXd> factor(M);

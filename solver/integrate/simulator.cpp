@@ -4,7 +4,7 @@
 
 #include "solver/integrate/run.hpp"
 #include "solver/signals/input_block.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -22,7 +22,7 @@ RunSetup prepare(const System& system, const records::SystemSpec& spec, Diagnost
 Simulator::Simulator(const System& system, const records::SystemSpec& spec, records::ResultSink& sink,
                      const SimulateOptions& options, Diagnostics& diagnostics)
     : run_(std::make_unique<Run>(system, spec, prepare(system, spec, diagnostics), sink, options, diagnostics)) {
-  for (const auto& place : system.impl().signals.places) {
+  for (const auto& place : system.signals.places) {
     const auto* block = dynamic_cast<const InputBlock*>(place.block.get());
     if (block) inputs_.push_back({block, place.memory});
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 
@@ -13,7 +13,7 @@ SystemOde::SystemOde(const System& system)
       num_q_(system.num_q()),
       num_u_(system.num_u()),
       num_z_(system.num_z()) {
-  for (const TreeBody& tb : system.impl().tree.bodies) has_motion_ = has_motion_ || !tb.motion.empty();
+  for (const TreeBody& tb : system.tree.bodies) has_motion_ = has_motion_ || !tb.motion.empty();
   for (VectorXd* v : {&k_, &c_, &first_delta_, &first_u_, &delta_, &extra_}) v->setZero(num_u_);
 }
 
@@ -77,7 +77,7 @@ void SystemOde::bring_to_rest(double t, const Discrete& next, Eigen::Ref<VectorX
 
 Closing SystemOde::find_closing(double t, const Eigen::Ref<const VectorXd>& y, int constraint) {
   calc_kinematics(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
-  return solver::find_closing(system_.impl().loops, system_.impl().tree, data_->tree, constraint);
+  return solver::find_closing(system_.loops, system_.tree, data_->tree, constraint);
 }
 
 namespace {
@@ -132,7 +132,7 @@ void SystemOde::set_memory(const VectorXd& memory) {
 VectorXd SystemOde::make_initial_state() const {
   VectorXd y = VectorXd::Zero(size());
   system_.calc_initial_state(y.head(num_q_), y.segment(num_q_, num_u_));
-  y.segment(num_coordinates(), num_z_) = system_.impl().signals.make_data().z;
+  y.segment(num_coordinates(), num_z_) = system_.signals.make_data().z;
   return y;
 }
 
@@ -149,7 +149,7 @@ std::string SystemOde::name_row(int row) const {
     if (i >= eta && i < eta + system_.num_modes(b))
       return body + (is_rate ? " (modal rate " : " (modal coordinate ") + std::to_string(i - eta + 1) + ")";
   }
-  if (is_rate && i < num_u_ + num_z_) return system_.impl().signals.name_state(i - num_u_);
+  if (is_rate && i < num_u_ + num_z_) return system_.signals.name_state(i - num_u_);
   return i == num_u_ + num_z_ ? "the work done" : "the energy dissipated";
 }
 
@@ -160,15 +160,14 @@ std::string SystemOde::name_first_non_finite(double t, const Eigen::Ref<const Ve
     return row < values.size() ? row : -1;
   };
   if (const int row = find_bad(y); row >= 0) return name_row(row);
-  const System::Impl& impl = system_.impl();
-  for (const TreeBody& tb : impl.tree.bodies) {
+  for (const TreeBody& tb : system_.tree.bodies) {
     for (const TimeFunction* f : tb.motion) {
       if (f == nullptr) continue;
       const auto value = data_->tree.functions[*f].calc(t);
       if (!std::isfinite(value.f + value.f_dot + value.f_ddot)) return "the motion of hinge '" + tb.hinge_name + "'";
     }
   }
-  for (const AppliedForce& force : impl.forces) {
+  for (const AppliedForce& force : system_.forces) {
     const double value = force.function ? data_->tree.functions[*force.function].calc(t).f : 1;
     if (!std::isfinite(value * force.direction.norm())) return "force '" + force.name + "'";
   }
@@ -177,9 +176,9 @@ std::string SystemOde::name_first_non_finite(double t, const Eigen::Ref<const Ve
   for (size_t i = 0; i < data_->elements.size(); ++i) {
     const ForceResult& r = data_->elements[i];
     if (!std::isfinite(r.power + r.dissipated + r.strain + r.potential))
-      return "force '" + impl.elements[i]->name() + "'";
+      return "force '" + system_.elements[i]->name() + "'";
   }
-  for (const TreeBody& tb : impl.tree.bodies) {
+  for (const TreeBody& tb : system_.tree.bodies) {
     if (!data_->tree.applied.segment(tb.v_offset, 6 + tb.num_modes()).allFinite())
       return "the load on body '" + tb.name + "'";
   }

@@ -3,26 +3,25 @@
 //   (M + γh D + γ²h² K) u̇ = F - γh K r_δ,   δ̇ = r_δ + γh u̇
 // and the second one has r_δ = u - 2γh u̇₁ and F + 2γh (K δ̇₁ + D u̇₁).
 #include "solver/integrate/system_ode.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 
 void SystemOde::calc_tangent() {
-  const System::Impl& impl = system_.impl();
   k_.setZero();
   c_.setZero();
-  for (const TreeBody& tb : impl.tree.bodies) {
+  for (const TreeBody& tb : system_.tree.bodies) {
     k_.segment(tb.u_offset, tb.stiffness.size()) = tb.stiffness;
     c_.segment(tb.u_offset, tb.damping.size()) = tb.damping;
   }
-  for (const auto& element : impl.elements) element->add_tangent(impl.tree, data_->tree, k_, c_);
+  for (const auto& element : system_.elements) element->add_tangent(system_.tree, data_->tree, k_, c_);
 }
 
 void SystemOde::add_stage_forces(double gh, bool is_first) {
   TreeData& d = data_->tree;
   delta_ = d.u;
   if (!is_first) delta_ -= 2 * gh * first_u_;
-  for (const TreeBody& tb : system_.impl().tree.bodies) {
+  for (const TreeBody& tb : system_.tree.bodies) {
     const int u = tb.u_offset, nh = tb.num_hinge_u(), eta = tb.eta_dot_offset(), n = tb.num_modes();
     auto hinge = extra_.segment(u, nh);
     hinge = -gh * k_.segment(u, nh).cwiseProduct(delta_.segment(u, nh));
@@ -41,7 +40,7 @@ void SystemOde::add_stage_forces(double gh, bool is_first) {
 
 void SystemOde::calc_stage(double t, const Eigen::Ref<const VectorXd>& y, double gh, bool is_first,
                            Eigen::Ref<VectorXd> k) {
-  const Tree& tree = system_.impl().tree;
+  const Tree& tree = system_.tree;
   TreeData& d = data_->tree;
   Power power;
   const bool needs_derivative = has_motion_ || num_z_ > 0;

@@ -15,7 +15,7 @@
 #include "solver/statespace/hankel.hpp"
 #include "solver/statespace/poles.hpp"
 #include "solver/statespace/zeros.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -371,7 +371,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
 
 void warn_of_latches(const System& system, const SourceLocation& at, Diagnostics& diagnostics) {
   std::string list;
-  for (const Latch& latch : system.impl().latches) list += (list.empty() ? "" : ", ") + latch.name;
+  for (const Latch& latch : system.latches) list += (list.empty() ? "" : ", ") + latch.name;
   if (list.empty()) return;
   diagnostics.warning("linear.latches-left-out", at, "dry friction and rigid stops are left out: " + list,
                       "give friction a smoothing and stops a stiffness, or lock what rests");

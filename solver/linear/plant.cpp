@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 #include "solver/tree/coordinates.hpp"
 
 namespace bough::solver {
@@ -39,8 +39,8 @@ Plant::Plant(const System& system, bool is_open)
     : system_(system), data_(system.make_data()), tangents_(std::make_unique<LawTangents>()), is_open_(is_open) {
   add_freedoms();
   BOUGH_DEMAND(num_freedoms() == system.num_dofs());
-  t_ = system.impl().start;
-  for (const auto& p : system.impl().signals.places) {
+  t_ = system.start;
+  for (const auto& p : system.signals.places) {
     if (is_open && p.block->path.starts_with("/controllers/")) continue;
     for (int i = 0; i < p.block->sizes.states; ++i) state_rows_.push_back(p.state + i);
   }
@@ -53,7 +53,7 @@ Plant::Plant(const System& system, bool is_open)
 }
 
 void Plant::add_freedoms() {
-  const double size = calc_size(system_.impl().tree);
+  const double size = calc_size(system_.tree);
   for (int b = 0; b < system_.num_bodies(); ++b) {
     const size_t first = freedoms_.size();
     add_hinge(b);
@@ -81,7 +81,7 @@ void Plant::set_modes(const Discrete& discrete, double t, const VectorXd& q) {
 
 void Plant::add_hinge(int b) {
   static const char* const kNames[] = {"rx", "ry", "rz", "x", "y", "z"};
-  const TreeBody& tb = system_.impl().tree.bodies[as_index(b)];
+  const TreeBody& tb = system_.tree.bodies[as_index(b)];
   for (int i = 0; i < system_.num_hinge_rates(b); ++i) {
     const int row = system_.u_offset(b) + i;
     if (data_->tree.mode[as_index(row)] != HingeMode::Free) continue;
@@ -93,7 +93,7 @@ void Plant::add_hinge(int b) {
 }
 
 void Plant::add_modes(int b, double size) {
-  const TreeBody& tb = system_.impl().tree.bodies[as_index(b)];
+  const TreeBody& tb = system_.tree.bodies[as_index(b)];
   for (int i = 0; i < system_.num_modes(b); ++i) {
     double largest = 0;
     for (const Node& node : tb.body.nodes()) largest = std::max(largest, node.phi.col(i).norm() / size);
@@ -115,7 +115,7 @@ records::Signals Plant::name_positions() const {
     const bool is_free = has_quaternion(system_, b);
     for (int i = 0; i < system_.num_hinge_q(b); ++i) {
       static const char* const kNames[] = {"qw", "qx", "qy", "qz", "x", "y", "z"};
-      const TreeBody& tb = system_.impl().tree.bodies[as_index(b)];
+      const TreeBody& tb = system_.tree.bodies[as_index(b)];
       const std::string coordinate = is_free ? kNames[i] : std::to_string(i + 1);
       const int rate = is_free ? i - 1 : i;
       add(hinge + ":" + coordinate, (is_free && i < 4) || !is_translation(tb, rate) ? "1" : "L");
@@ -128,22 +128,22 @@ records::Signals Plant::name_positions() const {
 
 OperatingPoint Plant::make_initial_point() const {
   OperatingPoint point;
-  point.t = system_.impl().start;
+  point.t = system_.start;
   point.q = VectorXd::Zero(system_.num_q());
   VectorXd u = VectorXd::Zero(system_.num_u());
   system_.calc_initial_state(point.q, u);
   point.u = u(rows_);
-  const SignalData initial = system_.impl().signals.make_data();
+  const SignalData initial = system_.signals.make_data();
   point.z = initial.z;
   point.memory = initial.memory;
   return point;
 }
 
-std::string Plant::state_name(int i) const { return system_.impl().signals.name_state(state_row(i)); }
+std::string Plant::state_name(int i) const { return system_.signals.name_state(state_row(i)); }
 
 std::vector<std::string> Plant::list_sampled() const {
   std::vector<std::string> names;
-  const auto& places = system_.impl().signals.places;
+  const auto& places = system_.signals.places;
   for (size_t k = 0; k < places.size(); ++k) {
     if (places[k].is_sampled() && is_felt_[k]) names.push_back(places[k].block->name);
   }
@@ -151,7 +151,7 @@ std::vector<std::string> Plant::list_sampled() const {
 }
 
 std::string Plant::find_opaque() const {
-  const auto& places = system_.impl().signals.places;
+  const auto& places = system_.signals.places;
   for (size_t k = 0; k < places.size(); ++k)
     if (is_felt_[k] && places[k].block->is_opaque()) return places[k].block->label;
   return {};
@@ -162,7 +162,7 @@ void Plant::hold_commands(const OperatingPoint& point) {
   if (!is_open_) return;
   s.is_open = false;
   evaluate(point);
-  for (const auto& p : system_.impl().signals.places) {
+  for (const auto& p : system_.signals.places) {
     const int n = p.actuator >= 0 ? p.block->sizes.inputs : 0;
     s.command.segment(std::max(0, p.actuator), n) = s.inputs.segment(p.in, n);
   }
@@ -220,7 +220,7 @@ MatrixXd Plant::calc_mass(const OperatingPoint& point) {
   compute(point, nullptr, 0, ignored);
   MatrixXd mass;
   VectorXd force;
-  calc_dense_equations(system_.impl().tree, data_->tree, mass, force);
+  calc_dense_equations(system_.tree, data_->tree, mass, force);
   if (!has_loops()) return mass(rows_, rows_);
   const MatrixXd follow = calc_follow(point);
   return follow.transpose() * mass * follow;

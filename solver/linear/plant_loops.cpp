@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "solver/linear/plant.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -22,11 +22,10 @@ constexpr double kModeWeight = 1e-3;
 }  // namespace
 
 void Plant::choose_independent(double t, const VectorXd& q) {
-  const System::Impl& impl = system_.impl();
   if (data_->loops.blocks.empty()) return;
-  calc_position(impl.tree, t, q, data_->tree);
-  calc_closure_positions(impl.loops, impl.tree, data_->tree, data_->loops);
-  const MatrixXd G = calc_dense_rows(impl.loops, impl.tree, data_->tree, data_->loops);
+  calc_position(system_.tree, t, q, data_->tree);
+  calc_closure_positions(system_.loops, system_.tree, data_->tree, data_->loops);
+  const MatrixXd G = calc_dense_rows(system_.loops, system_.tree, data_->tree, data_->loops);
   MatrixXd own(G.rows(), num_freedoms());
   for (int j = 0; j < num_freedoms(); ++j)
     own.col(j) = G.col(rows_[static_cast<size_t>(j)]) * step(j) * (is_mode(j) ? kModeWeight : 1);
@@ -53,9 +52,8 @@ void Plant::choose_independent(double t, const VectorXd& q) {
 }
 
 void Plant::close_positions(VectorXd& q) const {
-  const System::Impl& impl = system_.impl();
-  const Assembly found = assemble_positions(impl.loops, impl.tree, t_, grip_, q, data_->tree, data_->loops);
-  if (!found.is_closed) fail_dead(impl.loops, found);
+  const Assembly found = assemble_positions(system_.loops, system_.tree, t_, grip_, q, data_->tree, data_->loops);
+  if (!found.is_closed) fail_dead(system_.loops, found);
 }
 
 /// What follows moves along: the rates of all (num_u), a column for the unit rate of each freedom.
@@ -73,12 +71,11 @@ MatrixXd Plant::calc_follow(const OperatingPoint& point) const {
 
 VectorXd Plant::calc_speeds(const OperatingPoint& point) const {
   if (!has_loops()) return expand(point.u);
-  const System::Impl& impl = system_.impl();
   calc_kinematics(system_, *data_, point.t, point.q, expand(point.u));
-  calc_closure_positions(impl.loops, impl.tree, data_->tree, data_->loops);
+  calc_closure_positions(system_.loops, system_.tree, data_->tree, data_->loops);
   VectorXd u = data_->tree.u;
-  const Assembly found = assemble_rates(impl.loops, impl.tree, grip_, u, data_->tree, data_->loops);
-  if (!found.is_closed) fail_dead(impl.loops, found);
+  const Assembly found = assemble_rates(system_.loops, system_.tree, grip_, u, data_->tree, data_->loops);
+  if (!found.is_closed) fail_dead(system_.loops, found);
   return u;
 }
 

@@ -4,7 +4,7 @@
 
 #include "formats/records/signal_name.hpp"
 #include "solver/linear/plant.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -23,13 +23,13 @@ std::string name_component(const Block& block, const std::string& name, int i) {
 }  // namespace
 
 void Plant::add_inputs() {
-  const auto& forces = system_.impl().forces;
+  const auto& forces = system_.forces;
   for (size_t i = 0; i < forces.size(); ++i) {
     const bool is_moment = forces[i].pattern.size() == 0 && forces[i].kind == records::ForceKind::Moment;
     inputs_.push_back({forces[i].name, is_moment ? "F L" : "F", static_cast<int>(i)});
   }
   num_forces_ = static_cast<int>(inputs_.size());
-  for (const auto& p : system_.impl().signals.places) {
+  for (const auto& p : system_.signals.places) {
     const int n = p.actuator >= 0 ? p.block->sizes.inputs : 0;
     for (int i = 0; i < n; ++i)
       inputs_.push_back({n == 1 ? p.block->name : p.block->name + ":" + std::to_string(i + 1), "by the controller", -1,
@@ -46,7 +46,7 @@ void Plant::add_inputs() {
     });
   };
   std::vector<PlantInput> more;
-  for (const auto& p : system_.impl().signals.places) {
+  for (const auto& p : system_.signals.places) {
     const bool is_signal =
         is_of(*p.block, "/sensors/") || is_of(*p.block, "/inputs/") || is_of(*p.block, "/controllers/");
     if (p.actuator >= 0 || !is_signal) continue;
@@ -61,7 +61,7 @@ void Plant::add_inputs() {
 std::string Plant::find_frozen_law(int i) const {
   if (!is_open_) return "";
   int first = num_sensor_outputs_;
-  for (const auto& p : system_.impl().signals.places) {
+  for (const auto& p : system_.signals.places) {
     if (!is_of(*p.block, "/controllers/")) continue;
     const int size = p.block->sizes.outputs;
     if (i >= first && i < first + size)
@@ -73,7 +73,7 @@ std::string Plant::find_frozen_law(int i) const {
 
 void Plant::add_outputs() {
   for (const char* kind : {"/sensors/", "/controllers/", "/actuators/"}) {
-    for (const auto& p : system_.impl().signals.places) {
+    for (const auto& p : system_.signals.places) {
       if (!is_of(*p.block, kind)) continue;
       for (int i = 0; i < p.block->sizes.outputs; ++i) {
         outputs_.name.push_back(name_component(*p.block, p.block->name, i));
@@ -82,7 +82,7 @@ void Plant::add_outputs() {
     }
     if (std::string_view(kind) == "/sensors/") num_sensor_outputs_ = outputs_.size();
   }
-  for (const auto& p : system_.impl().signals.places) {
+  for (const auto& p : system_.signals.places) {
     const int n = p.actuator >= 0 ? p.block->sizes.inputs : 0;
     for (int i = 0; i < n; ++i) {
       outputs_.name.push_back(p.block->name + ":command" + (n == 1 ? "" : std::to_string(i + 1)));
@@ -123,7 +123,7 @@ Difference Plant::differentiate(const std::function<VectorXd(double)>& f, double
 
 VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, double value) {
   const int n = num_freedoms(), nz = num_states();
-  const SignalGraph& signals = system_.impl().signals;
+  const SignalGraph& signals = system_.signals;
   VectorXd out(n + nz + outputs_.size()), u_dot(system_.num_u());
   compute(point, input, value, u_dot);
   out.head(n) = u_dot(rows_);
@@ -164,14 +164,14 @@ void Plant::compute(const OperatingPoint& point, const PlantInput* input, double
   set_z(*data_, point.z);
   add_forces(system_, *data_, point.t);
   if (input && input->force >= 0) {
-    AppliedForce one = system_.impl().forces[static_cast<size_t>(input->force)];
+    AppliedForce one = system_.forces[static_cast<size_t>(input->force)];
     one.function = nullptr;
     one.direction *= value;
     one.pattern *= value;
     one.pattern_K2 *= value;
     one.pattern_resultant *= value;
     one.pattern_moment *= value;
-    add_applied_force(one, system_.impl().tree, point.t, data_->tree);
+    add_applied_force(one, system_.tree, point.t, data_->tree);
   } else if (input && input->row >= 0) {
     data_->tree.hinge_force[input->row] += value;
   }
@@ -197,7 +197,7 @@ Plant::Cut Plant::find_cut(const std::string& name) const {
   // Sensors, controllers and actuators each in the order of the file, as add_outputs has them.
   int at = 0;
   for (const char* kind : {"/sensors/", "/controllers/", "/actuators/"}) {
-    for (const auto& p : system_.impl().signals.places) {
+    for (const auto& p : system_.signals.places) {
       if (!is_of(*p.block, kind)) continue;
       if (input.signal >= p.out && input.signal < p.out + p.block->sizes.outputs)
         cut.output = at + input.signal - p.out;
@@ -210,7 +210,7 @@ Plant::Cut Plant::find_cut(const std::string& name) const {
 
 /// Behind a sampled block stands what it samples, which is_needed leaves out.
 std::vector<bool> Plant::find_felt() const {
-  const auto& places = system_.impl().signals.places;
+  const auto& places = system_.signals.places;
   std::vector<size_t> block_of;
   for (size_t i = 0; i < places.size(); ++i) {
     const auto end = static_cast<size_t>(places[i].out + places[i].block->sizes.outputs);
@@ -232,7 +232,7 @@ std::vector<bool> Plant::find_felt() const {
 
 void Plant::add_sampled() {
   is_felt_ = find_felt();
-  const auto& places = system_.impl().signals.places;
+  const auto& places = system_.signals.places;
   for (size_t k = 0; k < places.size(); ++k) {
     const auto& p = places[k];
     if (!p.is_sampled() || !is_felt_[k]) continue;
@@ -259,11 +259,11 @@ void Plant::add_sampled() {
   }
 }
 
-std::vector<SampleTimes> Plant::collect_samples() const { return system_.impl().signals.collect_samples(); }
+std::vector<SampleTimes> Plant::collect_samples() const { return system_.signals.collect_samples(); }
 
 std::vector<std::pair<double, int>> Plant::list_cycles() const {
   std::vector<std::pair<double, int>> cycles;
-  const auto& places = system_.impl().signals.places;
+  const auto& places = system_.signals.places;
   for (size_t k = 0; k < places.size(); ++k) {
     const auto& p = places[k];
     if (p.is_sampled() && is_felt_[k]) cycles.emplace_back(p.block->sizes.sample_time, std::max(1, p.queue_length));
@@ -281,13 +281,13 @@ VectorXd Plant::sample(const OperatingPoint& point, const PlantInput* input, dou
   s.is_ideal = true;
   double shortest = 0;
   for (const auto& [period, queue] : list_cycles()) shortest = shortest > 0 ? std::min(shortest, period) : period;
-  system_.impl().signals.sample(system_, *data_, 1e-9 * shortest);
+  system_.signals.sample(system_, *data_, 1e-9 * shortest);
   s.is_ideal = false;
   return s.memory;
 }
 
 SampleTimes Plant::find_hold(const PlantInput& input) const {
-  const SignalGraph& signals = system_.impl().signals;
+  const SignalGraph& signals = system_.signals;
   const auto find_place = [&](int row) -> const BlockPlace* {
     for (const auto& p : signals.places)
       if (row >= p.out && row < p.out + p.block->sizes.outputs) return &p;
@@ -332,7 +332,7 @@ double Plant::calc_return(const OperatingPoint& point, const PlantInput& input, 
   calc_signals(system_, *data_);
   const SignalData& s = data_->signals;
   if (input.signal >= 0) return s.values[input.signal] - s.shift[input.signal];
-  for (const auto& p : system_.impl().signals.places) {
+  for (const auto& p : system_.signals.places) {
     const int i = input.actuator - p.actuator;
     if (p.actuator >= 0 && i >= 0 && i < p.block->sizes.inputs) return s.inputs[p.in + i] - value;
   }
@@ -343,7 +343,7 @@ VectorXd Plant::resample(const OperatingPoint& point) {
   VectorXd u_dot(system_.num_u());
   compute(point, nullptr, 0, u_dot);
   calc_signals(system_, *data_);
-  system_.impl().signals.resample(system_, *data_);
+  system_.signals.resample(system_, *data_);
   return data_->signals.memory;
 }
 
@@ -354,7 +354,7 @@ VectorXd Plant::calc_sample_rates(const OperatingPoint& point) {
 }
 
 void Plant::fill_queues(VectorXd& memory) const {
-  for (const auto& p : system_.impl().signals.places) {
+  for (const auto& p : system_.signals.places) {
     const int n = p.block->sizes.outputs;
     for (int k = 0; k < p.queue_length; ++k) memory.segment(p.queue + n * k, n) = memory.segment(p.held, n);
   }

@@ -1,6 +1,6 @@
 // Steady spin of bodies that float: which accelerations it has in inertial coordinates.
 #include "solver/linear/plant.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 
@@ -34,7 +34,7 @@ FloatingBase find_base(const TreeBody& tb, const TreeData& data, int body) {
 }  // namespace
 
 VectorXd Plant::calc_unsteadiness(const VectorXd& u_dot) const {
-  const Tree& tree = system_.impl().tree;
+  const Tree& tree = system_.tree;
   const TreeData& data = data_->tree;
   VectorXd all = expand(u_dot.head(num_freedoms()));
   std::vector<int> root(static_cast<size_t>(tree.size()));

@@ -3,7 +3,7 @@
 
 #include "solver/sensors/kinds.hpp"
 #include "solver/sensors/sensor.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -71,7 +71,7 @@ void measure_instrument(const System& system, const SystemData& data, const Sens
   if (e.type == SensorType::Gyro || e.type == SensorType::IntegratingGyro) {
     value.noalias() = R_SW * k.w_WK;
   } else if (e.type == SensorType::Accelerometer) {
-    value.noalias() = R_SW * (k.a_WK - system.impl().gravity.calc_acceleration(e.body, k.p_WK));
+    value.noalias() = R_SW * (k.a_WK - system.gravity.calc_acceleration(e.body, k.p_WK));
   } else if (e.type == SensorType::Direction) {
     value.noalias() = R_SW * e.target;
   } else {
@@ -98,7 +98,7 @@ void measure_modes(const System& system, const SystemData& data, const Sensors::
   const int n = system.num_modes(e.body);
   const auto eta = data.tree.q.segment(system.eta_offset(e.body), n);
   if (e.type == SensorType::StrainEnergy) {
-    const MatrixXd& K = system.impl().tree[e.body].body.K();
+    const MatrixXd& K = system.tree[e.body].body.K();
     *out = 0;
     for (int j = 0; j < n; ++j) *out += 0.5 * eta[j] * K.col(j).dot(eta);
     return;
@@ -143,7 +143,7 @@ void measure(const System& system, const SystemData& data, const Sensors::Entry&
       return measure_attitude(e, get_body_state(data, e.relative_to).R_WB.transpose() * R_WS, out);
     }
     case SensorOf::Element:
-      return system.impl().recoveries[static_cast<size_t>(e.body)]->calc(system, data, e.row, e.size, out);
+      return system.recoveries[static_cast<size_t>(e.body)]->calc(system, data, e.row, e.size, out);
     case SensorOf::Gap: {
       Vector3d other = e.target;
       if (e.to_body >= 0) other = calc_node_motion(system, data, e.to_body, e.to_node).p_WK;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "solver/sensors/kinds.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 #include "solver/tree/coordinates.hpp"
 
 namespace bough::solver {
@@ -88,7 +88,7 @@ class Resolver {
     }
     e.size = r.coordinate == 0 ? count : 1;
     if (r.coordinate > 0) e.description += ", coordinate " + std::to_string(r.coordinate);
-    if (angle || system_.impl().tree[e.body].hinge->has_plain_coordinates()) name_by_count(e);
+    if (angle || system_.tree[e.body].hinge->has_plain_coordinates()) name_by_count(e);
     set_dims(r, e);
   }
 
@@ -98,7 +98,7 @@ class Resolver {
   }
 
   void set_dims(const SensorRecord& r, Sensors::Entry& e) {
-    const TreeBody& tb = system_.impl().tree[e.body];
+    const TreeBody& tb = system_.tree[e.body];
     const int first = r.coordinate == 0 ? 0 : r.coordinate - 1;
     const bool is_rate = r.type == SensorType::HingeRate || r.type == SensorType::Tachometer;
     e.dims = list_hinge_dims(tb, is_rate ? HingeQuantity::Rate : HingeQuantity::Position, first, e.size);
@@ -131,7 +131,7 @@ class Resolver {
       error(r, "sensor.unknown-body", "is on the unknown body '" + r.body + "'",
             make_advice(r.body, bodies_, "bodies"));
     if (e.body < 0 || !system_.is_sound(e.body)) return;
-    const auto& recovery = system_.impl().recoveries[static_cast<size_t>(e.body)];
+    const auto& recovery = system_.recoveries[static_cast<size_t>(e.body)];
     const Recovery::Element* element = recovery ? recovery->find(r.element) : nullptr;
     if (element == nullptr) {
       error(

@@ -10,8 +10,8 @@
 
 namespace bough::solver {
 
-class System;
-class SystemData;
+struct System;
+struct SystemData;
 
 using Eigen::Vector3d;
 

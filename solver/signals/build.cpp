@@ -29,13 +29,12 @@ class FunctionBlock final : public Block {
 
 class Builder {
  public:
-  Builder(const records::SystemSpec& spec, const System& system, const FunctionMap& functions, System::Impl& impl,
-          Diagnostics& diagnostics)
-      : spec_(spec), system_(system), functions_(functions), impl_(impl), diagnostics_(diagnostics) {}
+  Builder(const records::SystemSpec& spec, System& system, const FunctionMap& functions, Diagnostics& diagnostics)
+      : spec_(spec), system_(system), functions_(functions), diagnostics_(diagnostics) {}
 
   void build(const SignalUses& uses, const FlexMap& flex) {
     const int errors = diagnostics_.num_errors();
-    impl_.signals.start = impl_.start;
+    system_.signals.start = system_.start;
     add_sensors();
     add_inputs();
     declare();
@@ -44,15 +43,15 @@ class Builder {
     add_forces(uses);
     add_stiffening(flex);
     set_activities();
-    impl_.signals_are_sound = diagnostics_.num_errors() == errors;
-    if (impl_.signals_are_sound) {
+    system_.signals_are_sound = diagnostics_.num_errors() == errors;
+    if (system_.signals_are_sound) {
       const bool is_whole = lay_out();
-      if (is_whole && diagnostics_.num_errors() == errors) impl_.signals.arrange(diagnostics_);
+      if (is_whole && diagnostics_.num_errors() == errors) system_.signals.arrange(diagnostics_);
       if (is_whole && diagnostics_.num_errors() == errors) check_units();
-      impl_.signals_are_sound = is_whole;
+      system_.signals_are_sound = is_whole;
     }
-    impl_.signals_are_sound = impl_.signals_are_sound && diagnostics_.num_errors() == errors;
-    if (!impl_.signals_are_sound) impl_.signals = SignalGraph();
+    system_.signals_are_sound = system_.signals_are_sound && diagnostics_.num_errors() == errors;
+    if (!system_.signals_are_sound) system_.signals = SignalGraph();
   }
 
  private:
@@ -86,9 +85,9 @@ class Builder {
   int add(std::unique_ptr<const Block> block, std::vector<Wire> wires) {
     BlockPlace place;
     place.block = std::move(block);
-    impl_.signals.places.push_back(std::move(place));
+    system_.signals.places.push_back(std::move(place));
     wires_.push_back(std::move(wires));
-    return static_cast<int>(impl_.signals.places.size()) - 1;
+    return static_cast<int>(system_.signals.places.size()) - 1;
   }
 
   void wire_controllers(const SignalUses& uses) {
@@ -156,7 +155,7 @@ class Builder {
   void add_actuators(const SignalUses& uses) {
     for (const auto& r : spec_.actuators) {
       const std::string user = "actuator '" + r.name + "'";
-      auto block = make_actuator(r, system_, impl_.tree, diagnostics_);
+      auto block = make_actuator(r, system_, system_.tree, diagnostics_);
       const int takes = block ? block->sizes.inputs : 0;  // 0: it has failed, and nobody knows
       std::vector<Wire> wires;
       const auto use = uses.actuators.find(r.name);
@@ -181,14 +180,14 @@ class Builder {
 
   int add_driver(std::unique_ptr<const Block> block, std::vector<Wire> wires) {
     const int place = add(std::move(block), std::move(wires));
-    SignalGraph& g = impl_.signals;
+    SignalGraph& g = system_.signals;
     g.places.back().actuator = g.num_actuators;
     g.num_actuators += g.places.back().block->sizes.inputs;
     return place;
   }
 
   void add_forces(const SignalUses& uses) {
-    for (const AppliedForce& force : impl_.driven) {
+    for (const AppliedForce& force : system_.driven) {
       std::vector<Wire> wires;
       const SignalUse& use = uses.forces.at(force.name);
       if (!wire_scalar(use, "force '" + force.name + "'", 1, wires)) continue;
@@ -210,7 +209,7 @@ class Builder {
       };
       const int place = sources_.at_path("/controllers/" + r.name).place;
       if (place < 0 || (r.active && std::none_of(spec_.events.begin(), spec_.events.end(), switches))) continue;
-      BlockPlace& p = impl_.signals.places[static_cast<size_t>(place)];
+      BlockPlace& p = system_.signals.places[static_cast<size_t>(place)];
       p.activity = 0;  // a row, once they are laid out
       p.is_active = r.active;
     }
@@ -231,14 +230,14 @@ class Builder {
     const auto add_times = [](std::vector<double>& to, const std::vector<double>& times) {
       to.insert(to.end(), times.begin(), times.end());
     };
-    add_times(impl_.breakpoints, f->corners());
-    add_times(impl_.landmarks, f->landmarks());
+    add_times(system_.breakpoints, f->corners());
+    add_times(system_.landmarks, f->landmarks());
     return source.place = add(std::move(block), {});
   }
 
   /// False where a function that is named has failed, which has been said.
   bool lay_out() {
-    SignalGraph& g = impl_.signals;
+    SignalGraph& g = system_.signals;
     for (size_t i = 0; i < wires_.size(); ++i) {  // grows by functions, which have no wires
       for (size_t k = 0; k < wires_[i].size(); ++k) {
         if (get_place(sources_.list[wires_[i][k].source]) < 0) return false;
@@ -273,7 +272,7 @@ class Builder {
 
   void connect(BlockPlace& to, const Wire& wire) {
     const Source& source = sources_.list[wire.source];
-    const BlockPlace& from = impl_.signals.places[static_cast<size_t>(source.place)];
+    const BlockPlace& from = system_.signals.places[static_cast<size_t>(source.place)];
     const auto add_row = [&](int row) {
       to.sources.push_back(row);
       to.gains.push_back(wire.gain);
@@ -299,13 +298,12 @@ class Builder {
 
   void check_units() {
     records_.resize(wires_.size(), nullptr);
-    check_signal_units(impl_.signals, records_, diagnostics_);
+    check_signal_units(system_.signals, records_, diagnostics_);
   }
 
   const records::SystemSpec& spec_;
-  const System& system_;
+  System& system_;
   const FunctionMap& functions_;
-  System::Impl& impl_;
   Diagnostics& diagnostics_;
   Sources sources_;
   std::vector<std::vector<Wire>> wires_;                   ///< by place
@@ -314,9 +312,9 @@ class Builder {
 
 }  // namespace
 
-void build_signals(const records::SystemSpec& spec, const System& system, const FlexMap& flex,
-                   const FunctionMap& functions, const SignalUses& uses, System::Impl& impl, Diagnostics& diagnostics) {
-  Builder(spec, system, functions, impl, diagnostics).build(uses, flex);
+void build_signals(const records::SystemSpec& spec, const FlexMap& flex, const FunctionMap& functions,
+                   const SignalUses& uses, System& system, Diagnostics& diagnostics) {
+  Builder(spec, system, functions, diagnostics).build(uses, flex);
 }
 
 }  // namespace bough::solver

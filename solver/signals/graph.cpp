@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {

@@ -154,26 +154,25 @@ void report_open(const Assembly& assembly, const Loops& loops, const Tree& tree,
 
 }  // namespace
 
-void assemble(const records::SystemSpec& spec, const TreeOrder& order, const System& system, System::Impl& impl,
-              Diagnostics& diagnostics) {
-  const Tree& tree = impl.tree;
+void assemble(const records::SystemSpec& spec, const TreeOrder& order, System& system, Diagnostics& diagnostics) {
+  const Tree& tree = system.tree;
   VectorXd q(tree.num_q), u(tree.num_u);
   system.calc_initial_state(q, u);
   const VectorXd q0 = q, u0 = u;
   TreeData data = make_tree_data(tree);
-  LoopData loop_data = make_loop_data(impl.loops, tree);
+  LoopData loop_data = make_loop_data(system.loops, tree);
   if (loop_data.blocks.empty()) return;
   std::vector<Grip> positions, rates;
   collect_grips(spec, order, tree, positions, rates);
-  const Assembly closed = assemble_positions(impl.loops, tree, impl.start, positions, q, data, loop_data);
-  if (!closed.is_closed) return report_open(closed, impl.loops, tree, positions, "the positions", diagnostics);
-  const Assembly moving = assemble_rates(impl.loops, tree, rates, u, data, loop_data);
-  if (!moving.is_closed) return report_open(moving, impl.loops, tree, rates, "the rates", diagnostics);
-  note_redundancies(spec, find_redundancies(impl.loops, tree, positions, data, loop_data), impl.loops, diagnostics);
-  note_moved(tree, q0, u0, q, u, impl.loops[loop_data.blocks[0].constraints[0]].at, diagnostics);
-  impl.initial_q = q;
-  impl.initial_u = u;
-  impl.initial_closings = get_closings(loop_data);
+  const Assembly closed = assemble_positions(system.loops, tree, system.start, positions, q, data, loop_data);
+  if (!closed.is_closed) return report_open(closed, system.loops, tree, positions, "the positions", diagnostics);
+  const Assembly moving = assemble_rates(system.loops, tree, rates, u, data, loop_data);
+  if (!moving.is_closed) return report_open(moving, system.loops, tree, rates, "the rates", diagnostics);
+  note_redundancies(spec, find_redundancies(system.loops, tree, positions, data, loop_data), system.loops, diagnostics);
+  note_moved(tree, q0, u0, q, u, system.loops[loop_data.blocks[0].constraints[0]].at, diagnostics);
+  system.initial_q = q;
+  system.initial_u = u;
+  system.initial_closings = get_closings(loop_data);
 }
 
 }  // namespace bough::solver

@@ -14,8 +14,8 @@ namespace {
 /// Each after those that it is made of. Reports "function.loop".
 class FunctionBuilder {
  public:
-  FunctionBuilder(const records::SystemSpec& spec, System::Impl& impl, Diagnostics& diagnostics)
-      : spec_(spec), impl_(impl), diagnostics_(diagnostics) {
+  FunctionBuilder(const records::SystemSpec& spec, System& system, Diagnostics& diagnostics)
+      : spec_(spec), system_(system), diagnostics_(diagnostics) {
     for (const auto& record : spec.functions) records_.emplace(record.name, &record);
   }
   FunctionMap build() {
@@ -42,13 +42,13 @@ class FunctionBuilder {
     }
     path_.pop_back();
     const auto& run = spec_.simulation;
-    impl_.functions.push_back(make_time_function(record, diagnostics_, {run.start, run.start + run.duration}, made_));
-    if (impl_.functions.back()) impl_.tree.functions.push_back(impl_.functions.back().get());
-    made_.emplace(record.name, impl_.functions.back().get());
+    system_.functions.push_back(make_time_function(record, diagnostics_, {run.start, run.start + run.duration}, made_));
+    if (system_.functions.back()) system_.tree.functions.push_back(system_.functions.back().get());
+    made_.emplace(record.name, system_.functions.back().get());
   }
 
   const records::SystemSpec& spec_;
-  System::Impl& impl_;
+  System& system_;
   Diagnostics& diagnostics_;
   std::map<std::string, const records::FunctionRecord*> records_;
   std::vector<std::string> path_;
@@ -126,24 +126,24 @@ void add_force_marker(AppliedForce& force, Tree& tree) {
   force.marker = tree.add_marker(at);
 }
 
-void collect_breakpoints(System::Impl& impl) {
+void collect_breakpoints(System& system) {
   const auto add = [](std::vector<double>& to, const std::vector<double>& times) {
     to.insert(to.end(), times.begin(), times.end());
   };
   const auto add_motion = [&](const TimeFunction* f) {
     if (f == nullptr) return;
-    add(impl.breakpoints, f->breakpoints());
-    add(impl.landmarks, f->landmarks());
+    add(system.breakpoints, f->breakpoints());
+    add(system.landmarks, f->landmarks());
   };
-  for (const TreeBody& tb : impl.tree.bodies) std::for_each(tb.motion.begin(), tb.motion.end(), add_motion);
+  for (const TreeBody& tb : system.tree.bodies) std::for_each(tb.motion.begin(), tb.motion.end(), add_motion);
   const auto add_force = [&](const TimeFunction* f) {
     if (f == nullptr) return;
-    add(impl.breakpoints, f->corners());
-    add(impl.landmarks, f->landmarks());
+    add(system.breakpoints, f->corners());
+    add(system.landmarks, f->landmarks());
   };
-  for (const AppliedForce& force : impl.forces) add_force(force.function);
-  for (const auto& element : impl.elements) add_force(element->function());
-  for (auto* times : {&impl.breakpoints, &impl.landmarks}) {
+  for (const AppliedForce& force : system.forces) add_force(force.function);
+  for (const auto& element : system.elements) add_force(element->function());
+  for (auto* times : {&system.breakpoints, &system.landmarks}) {
     std::sort(times->begin(), times->end());
     times->erase(std::unique(times->begin(), times->end()), times->end());
   }
@@ -166,13 +166,13 @@ System System::build(const records::SystemSpec& spec, const std::map<std::string
 }
 
 namespace {
-void collect_left_out(const records::SystemSpec& spec, const System& system, const FlexMap& flex, System::Impl& impl) {
-  impl.left_out.resize(static_cast<size_t>(system.num_bodies()));
+void collect_left_out(const records::SystemSpec& spec, const FlexMap& flex, System& system) {
+  system.left_out.resize(static_cast<size_t>(system.num_bodies()));
   for (const auto& r : spec.bodies) {
     const int b = system.find_body(r.name);
     const auto found = flex.find(r.file);
     if (r.stiffening || b < 0 || found == flex.end() || !system.is_sound(b) || system.num_modes(b) == 0) continue;
-    impl.left_out[static_cast<size_t>(b)] =
+    system.left_out[static_cast<size_t>(b)] =
         std::make_shared<const StiffeningTerms>(StiffeningTerms::collect(spec, system, found->second, b, true));
   }
 }
@@ -181,13 +181,12 @@ void collect_left_out(const records::SystemSpec& spec, const System& system, con
 System System::build_as_far(const records::SystemSpec& spec, const std::map<std::string, FlexBody>& flex,
                             Diagnostics& diagnostics) {
   System system;
-  Impl& impl = *system.impl_;
-  Tree& tree = impl.tree;
-  impl.gravity.uniform = spec.simulation.gravity;
-  impl.start = spec.simulation.start;
-  impl.is_lagged = spec.simulation.stiffening == "lagged";
+  Tree& tree = system.tree;
+  system.gravity.uniform = spec.simulation.gravity;
+  system.start = spec.simulation.start;
+  system.is_lagged = spec.simulation.stiffening == "lagged";
   const SignalUses uses = collect_uses(spec, diagnostics);
-  const FunctionMap functions = FunctionBuilder(spec, impl, diagnostics).build();
+  const FunctionMap functions = FunctionBuilder(spec, system, diagnostics).build();
   const TreeOrder order = order_tree(spec, diagnostics);
   for (const auto& record : spec.bodies) {
     if (!order.tree_index.count(record.name)) build_body(record, flex, diagnostics);  // for its own errors
@@ -202,12 +201,12 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
     tb.hinge_at = hinge.at;
     tb.parent = hinge.parent == "ground" ? -1 : order.tree_index.at(hinge.parent);
     tb.hinge = make_hinge(hinge, diagnostics);
-    auto body = build_body(record, flex, diagnostics, impl.is_lagged);
+    auto body = build_body(record, flex, diagnostics, system.is_lagged);
     const bool rotations_good = check_rotations(hinge, diagnostics);
     if (tb.hinge) build_hinge_coordinates(hinge, functions, tb, diagnostics);
     check_motion(hinge, spec.simulation, tb, diagnostics);
     const bool is_sound = body && tb.hinge && rotations_good;
-    impl.sound.push_back(is_sound);
+    system.sound.push_back(is_sound);
     if (!is_sound) {
       if (!tb.hinge) tb.hinge = make_stand_in(hinge);
       body = Body::make_rigid(1, Vector3d::Zero(), Matrix3d::Identity());
@@ -231,7 +230,7 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
                               " of ground, which has only node 0",
                           "give parent_position instead");
       }
-    } else if (impl.sound[static_cast<size_t>(tb.parent)]) {
+    } else if (system.sound[static_cast<size_t>(tb.parent)]) {
       const TreeBody& parent = tree.bodies[static_cast<size_t>(tb.parent)];
       tb.on_parent = build_attachment(parent.name, parent.body, hinge.parent_node, hinge.parent_position,
                                       hinge.parent_rotation, hinge, diagnostics);
@@ -250,40 +249,41 @@ System System::build_as_far(const records::SystemSpec& spec, const std::map<std:
                         near.empty() ? "declare it" : "did you mean " + quote(near) + "?");
       continue;
     }
-    if (!impl.sound[static_cast<size_t>(found->second)]) continue;
+    if (!system.sound[static_cast<size_t>(found->second)]) continue;
     const auto& file = spec.bodies[static_cast<size_t>(order.body[static_cast<size_t>(found->second)])].file;
     const auto flex_record = flex.find(file);
     auto force = build_force(record, tree, found->second, flex_record == flex.end() ? nullptr : &flex_record->second,
                              functions, diagnostics);
-    if (force) (uses.forces.count(record.name) ? impl.driven : impl.forces).push_back(std::move(*force));
+    if (force) (uses.forces.count(record.name) ? system.driven : system.forces).push_back(std::move(*force));
   }
-  if (!impl.gravity.uniform.allFinite()) {
+  if (!system.gravity.uniform.allFinite()) {
     diagnostics.error("system.bad-gravity", spec.simulation.at, "gravity is not three finite numbers");
   }
-  const bool is_complete = std::find(impl.sound.begin(), impl.sound.end(), false) == impl.sound.end();
+  const bool is_complete = std::find(system.sound.begin(), system.sound.end(), false) == system.sound.end();
   if (is_complete) check_masses(tree, spec, order, diagnostics);
   tree.finish();
-  for (auto* forces : {&impl.forces, &impl.driven})
+  for (auto* forces : {&system.forces, &system.driven})
     for (AppliedForce& force : *forces) add_force_marker(force, tree);
-  build_constraints(spec, order, impl, diagnostics);
-  const ElementContext context{spec, order, flex, functions, impl.sound};
+  build_constraints(spec, order, system, diagnostics);
+  const ElementContext context{spec, order, flex, functions, system.sound};
   for (const auto& record : spec.force_elements) {
     auto element = build_element(record, context, tree, diagnostics);
     if (!element) continue;
-    if (const auto* source = dynamic_cast<const CentralGravity*>(element.get())) impl.gravity.central.push_back(source);
-    impl.elements.push_back(std::move(element));
+    if (const auto* source = dynamic_cast<const CentralGravity*>(element.get()))
+      system.gravity.central.push_back(source);
+    system.elements.push_back(std::move(element));
   }
   for (size_t b = 0; b < tree.bodies.size(); ++b) {
-    if (order.hinge[b] < 0 || !impl.sound[b]) continue;
-    build_hinge_laws(spec.hinges[static_cast<size_t>(order.hinge[b])], context, tree.bodies[b], impl.elements,
-                     impl.latches, diagnostics);
+    if (order.hinge[b] < 0 || !system.sound[b]) continue;
+    build_hinge_laws(spec.hinges[static_cast<size_t>(order.hinge[b])], context, tree.bodies[b], system.elements,
+                     system.latches, diagnostics);
   }
-  build_recoveries(spec, system, flex, impl, diagnostics);
-  collect_left_out(spec, system, flex, impl);
-  build_signals(spec, system, flex, functions, uses, impl, diagnostics);
-  collect_breakpoints(impl);
-  if (diagnostics.num_errors() == 0 && impl.loops.size() > 0) assemble(spec, order, system, impl, diagnostics);
-  if (diagnostics.num_errors() == 0) check_stops(system, impl, diagnostics);
+  build_recoveries(spec, flex, system, diagnostics);
+  collect_left_out(spec, flex, system);
+  build_signals(spec, flex, functions, uses, system, diagnostics);
+  collect_breakpoints(system);
+  if (diagnostics.num_errors() == 0 && system.loops.size() > 0) assemble(spec, order, system, diagnostics);
+  if (diagnostics.num_errors() == 0) check_stops(system, diagnostics);
   if (diagnostics.num_errors() == 0) check_shapes(spec, system, flex, diagnostics);
   return system;
 }

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "solver/forces/curve.hpp"
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 
@@ -43,18 +43,16 @@ std::optional<AppliedForce> build_force(const records::ForceRecord& record, cons
                                         const records::FlexBody* flex, const FunctionMap& functions,
                                         Diagnostics& diagnostics);
 
-/// Every [[constraint]] and its markers into impl.loops, after the tree is finished.
-void build_constraints(const records::SystemSpec& spec, const TreeOrder& order, System::Impl& impl,
+/// Every [[constraint]] and its markers into system.loops, after the tree is finished.
+void build_constraints(const records::SystemSpec& spec, const TreeOrder& order, System& system,
                        Diagnostics& diagnostics);
 /// What of each flexible body is recovered, for the results and for sensors, after constraints and forces. Reports
 /// "system.no-recovery", "system.unknown-element"; notes "system.recovery-loads"; warns
 /// "system.recovery-constraint".
-void build_recoveries(const records::SystemSpec& spec, const System& system, const FlexMap& flex, System::Impl& impl,
-                      Diagnostics& diagnostics);
-/// Initial positions and rates that close the loops, into impl; `system` owns impl. Reports "system.cannot-assemble";
-/// notes "system.assembled" (what was moved) and "system.redundant-constraint".
-void assemble(const records::SystemSpec& spec, const TreeOrder& order, const System& system, System::Impl& impl,
-              Diagnostics& diagnostics);
+void build_recoveries(const records::SystemSpec& spec, const FlexMap& flex, System& system, Diagnostics& diagnostics);
+/// Initial positions and rates that close the loops, into system; `system` owns system. Reports
+/// "system.cannot-assemble"; notes "system.assembled" (what was moved) and "system.redundant-constraint".
+void assemble(const records::SystemSpec& spec, const TreeOrder& order, System& system, Diagnostics& diagnostics);
 /// What elements of force look names up in.
 struct ElementContext {
   const records::SystemSpec& spec;
@@ -76,7 +74,7 @@ void build_hinge_laws(const records::HingeRecord& record, const ElementContext& 
                       Diagnostics& diagnostics);
 
 /// What starts beyond a rigid stop is an error ("system.beyond-stop"); by less than calc_slack it is put on it.
-void check_stops(const System& system, System::Impl& impl, Diagnostics& diagnostics);
+void check_stops(System& system, Diagnostics& diagnostics);
 /// Warns "system.stiff-shapes" of constraints, and hinges to ground, that hold a node of a flexible body in directions
 /// in which its normal modes give way too little.
 void check_shapes(const records::SystemSpec& spec, const System& system, const FlexMap& flex, Diagnostics& diagnostics);

@@ -56,8 +56,8 @@ std::unique_ptr<const Closure> build_closure(const ConstraintRecord& r, Diagnost
 
 class Builder {
  public:
-  Builder(const records::SystemSpec& spec, const TreeOrder& order, System::Impl& impl, Diagnostics& diagnostics)
-      : spec_(spec), order_(order), impl_(impl), diagnostics_(diagnostics) {}
+  Builder(const records::SystemSpec& spec, const TreeOrder& order, System& system, Diagnostics& diagnostics)
+      : spec_(spec), order_(order), system_(system), diagnostics_(diagnostics) {}
 
   void build(const ConstraintRecord& r) {
     const int errors = diagnostics_.num_errors();
@@ -83,10 +83,10 @@ class Builder {
                            "name two bodies, or ground and a body");
       }
       if (!c.closure || !parent || !child || diagnostics_.num_errors() != errors) return;
-      c.parent_marker = impl_.tree.add_marker(*parent);
-      c.child_marker = impl_.tree.add_marker(*child);
+      c.parent_marker = system_.tree.add_marker(*parent);
+      c.child_marker = system_.tree.add_marker(*child);
     }
-    if (diagnostics_.num_errors() == errors) impl_.loops.constraints.push_back(std::move(c));
+    if (diagnostics_.num_errors() == errors) system_.loops.constraints.push_back(std::move(c));
   }
 
  private:
@@ -114,8 +114,8 @@ class Builder {
       return std::nullopt;
     }
     m.body = found->second;
-    if (!impl_.sound[static_cast<size_t>(m.body)]) return std::nullopt;
-    const Body& body = impl_.tree[m.body].body;
+    if (!system_.sound[static_cast<size_t>(m.body)]) return std::nullopt;
+    const Body& body = system_.tree[m.body].body;
     const bool is_ball = r.type != ConstraintType::Hinge || r.hinge == records::HingeType::Spherical;
     // The frame of what acts along a line lies at the child's point: the parent's node feels a moment.
     const bool is_point = is_ball && p.isZero(0) &&
@@ -131,7 +131,7 @@ class Builder {
     const std::string user = "constraint " + quote(r.name);
     if (r.terms.empty()) diagnostics_.error("system.bad-constraint", r.at, user + " couples nothing", "give its terms");
     std::vector<std::string> names;
-    for (const TreeBody& tb : impl_.tree.bodies) names.push_back(tb.hinge_name);
+    for (const TreeBody& tb : system_.tree.bodies) names.push_back(tb.hinge_name);
     for (const auto& term : r.terms) {
       const auto at = std::find(names.begin(), names.end(), term.hinge);
       if (at == names.end()) {
@@ -141,7 +141,7 @@ class Builder {
                            near.empty() ? "declare it" : "did you mean " + quote(near) + "?");
         continue;
       }
-      const TreeBody& tb = impl_.tree[static_cast<int>(at - names.begin())];
+      const TreeBody& tb = system_.tree[static_cast<int>(at - names.begin())];
       if (!tb.hinge->has_plain_coordinates()) {
         diagnostics_.error(
             "system.bad-constraint", r.at,
@@ -162,7 +162,7 @@ class Builder {
 
   const records::SystemSpec& spec_;
   const TreeOrder& order_;
-  System::Impl& impl_;
+  System& system_;
   Diagnostics& diagnostics_;
 };
 
@@ -177,12 +177,12 @@ double calc_length(const Tree& tree) {
 
 }  // namespace
 
-void build_constraints(const records::SystemSpec& spec, const TreeOrder& order, System::Impl& impl,
+void build_constraints(const records::SystemSpec& spec, const TreeOrder& order, System& system,
                        Diagnostics& diagnostics) {
-  Builder builder(spec, order, impl, diagnostics);
+  Builder builder(spec, order, system, diagnostics);
   for (const auto& record : spec.constraints) builder.build(record);
-  impl.loops.length = calc_length(impl.tree);
-  finish_loops(impl.tree, impl.loops);
+  system.loops.length = calc_length(system.tree);
+  finish_loops(system.tree, system.loops);
 }
 
 }  // namespace bough::solver

@@ -171,14 +171,14 @@ void build_hinge_laws(const records::HingeRecord& record, const ElementContext& 
   LawBuilder(record, context, tb, diagnostics).build(elements, latches);
 }
 
-void check_stops(const System& system, System::Impl& impl, Diagnostics& diagnostics) {
-  VectorXd q(impl.tree.num_q), u(impl.tree.num_u);
+void check_stops(System& system, Diagnostics& diagnostics) {
+  VectorXd q(system.tree.num_q), u(system.tree.num_u);
   system.calc_initial_state(q, u);
-  for (const Latch& latch : impl.latches) {
+  for (const Latch& latch : system.latches) {
     const auto carries = [&](const TreeBody& b) {
       return latch.u_row >= b.u_offset && latch.u_row < b.u_offset + b.num_hinge_u();
     };
-    TreeBody& tb = *std::find_if(impl.tree.bodies.begin(), impl.tree.bodies.end(), carries);
+    TreeBody& tb = *std::find_if(system.tree.bodies.begin(), system.tree.bodies.end(), carries);
     const int i = latch.u_row - tb.u_offset;
     if (tb.mode[static_cast<size_t>(i)] == HingeMode::Prescribed) continue;
     const double at = q[latch.q_row], inside = std::clamp(at, latch.lower, latch.upper);
@@ -188,12 +188,13 @@ void check_stops(const System& system, System::Impl& impl, Diagnostics& diagnost
       what << latch.name << " starts at " << at << ", beyond its " << (at < inside ? "lower" : "upper") << " stop at "
            << inside;
       diagnostics.error("system.beyond-stop", tb.hinge_at, what.str(),
-                        impl.initial_q.size() > 0 ? "give the hinge a position within its stops, or close the loops so"
-                                                  : "give the hinge a position within its stops");
+                        system.initial_q.size() > 0
+                            ? "give the hinge a position within its stops, or close the loops so"
+                            : "give the hinge a position within its stops");
       continue;
     }
     tb.initial_q[i] = inside;
-    if (impl.initial_q.size() > 0) impl.initial_q[latch.q_row] = inside;
+    if (system.initial_q.size() > 0) system.initial_q[latch.q_row] = inside;
   }
 }
 

@@ -14,7 +14,7 @@ std::string list_names(const std::vector<std::string>& names) {
 }
 
 /// Loads on the body whose values recovery does not know.
-std::vector<std::string> list_unknown_loads(const records::SystemSpec& spec, const System::Impl& impl, int b,
+std::vector<std::string> list_unknown_loads(const records::SystemSpec& spec, const System& system, int b,
                                             const std::string& name) {
   std::vector<std::string> names;
   for (const auto& r : spec.actuators)
@@ -23,7 +23,7 @@ std::vector<std::string> list_unknown_loads(const records::SystemSpec& spec, con
     const bool is_field = r.type == records::ElementType::CentralGravity;  // known: a part of A_I
     if (!is_field && (r.from.body == name || r.to.body == name)) names.push_back(r.name);
   }
-  for (const auto& force : impl.driven)
+  for (const auto& force : system.driven)
     if (force.body == b) names.push_back(force.name);
   return names;
 }
@@ -53,9 +53,8 @@ void report_held_nodes(const records::SystemSpec& spec, const records::BodyRecor
 
 }  // namespace
 
-void build_recoveries(const records::SystemSpec& spec, const System& system, const FlexMap& flex, System::Impl& impl,
-                      Diagnostics& diagnostics) {
-  impl.recoveries.resize(static_cast<size_t>(system.num_bodies()));
+void build_recoveries(const records::SystemSpec& spec, const FlexMap& flex, System& system, Diagnostics& diagnostics) {
+  system.recoveries.resize(static_cast<size_t>(system.num_bodies()));
   for (const auto& r : spec.bodies) {
     const bool is_sensed = std::any_of(spec.sensors.begin(), spec.sensors.end(), [&](const auto& s) {
       return s.type == records::SensorType::Element && s.body == r.name;
@@ -89,7 +88,7 @@ void build_recoveries(const records::SystemSpec& spec, const System& system, con
       recovery->record(id);
     }
     const auto nodes = recovery->connect(system, body, spec.forces);
-    auto others = list_unknown_loads(spec, impl, b, r.name);
+    auto others = list_unknown_loads(spec, system, b, r.name);
     for (const int id : nodes) others.push_back("what acts at node " + std::to_string(id));
     if (!others.empty())
       diagnostics.note("system.recovery-loads", r.at,
@@ -100,7 +99,7 @@ void build_recoveries(const records::SystemSpec& spec, const System& system, con
                                      : "add the node to [body] interface, or modes (attachment, residual) that hold "
                                        "the deflection; for other loads only the modes help");
     report_held_nodes(spec, r, body, diagnostics);
-    impl.recoveries[static_cast<size_t>(b)] = std::move(recovery);
+    system.recoveries[static_cast<size_t>(b)] = std::move(recovery);
   }
 }
 

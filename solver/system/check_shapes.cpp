@@ -55,8 +55,7 @@ bool has_static_shape(const records::FlexBody& flex, int node, int n) {
 
 void check_shapes(const records::SystemSpec& spec, const System& system, const FlexMap& flex,
                   Diagnostics& diagnostics) {
-  const System::Impl& impl = system.impl();
-  const Tree& tree = impl.tree;
+  const Tree& tree = system.tree;
   const auto find_flex = [&](int b) -> const records::FlexBody* {
     for (const auto& r : spec.bodies)
       if (const auto found = flex.find(r.file); r.name == tree[b].name && found != flex.end()) return &found->second;
@@ -81,7 +80,7 @@ void check_shapes(const records::SystemSpec& spec, const System& system, const F
   const auto data = system.make_data();
   VectorXd q = VectorXd::Zero(system.num_q()), u = VectorXd::Zero(system.num_u());
   system.calc_initial_state(q, u);
-  calc_kinematics(system, *data, impl.start, q, u);
+  calc_kinematics(system, *data, system.start, q, u);
   for (int b = 0; b < tree.size(); ++b) {
     const TreeBody& tb = tree[b];
     if (tb.parent >= 0 || !tb.on_child.moves) continue;
@@ -103,17 +102,17 @@ void check_shapes(const records::SystemSpec& spec, const System& system, const F
     const int node = tree[end.body].body.nodes()[static_cast<size_t>(end.node)].id;
     return own != nullptr && !has_static_shape(*own, node, tree[end.body].num_modes());
   };
-  const auto& all = impl.loops.constraints;
+  const auto& all = system.loops.constraints;
   if (std::none_of(all.begin(), all.end(), [&](const Constraint& c) {
         return c.closure && (is_slow(c.parent_marker) || is_slow(c.child_marker));
       }))
     return;
-  calc_closure_positions(impl.loops, tree, data->tree, data->loops);
-  const MatrixXd G = calc_dense_rows(impl.loops, tree, data->tree, data->loops);
+  calc_closure_positions(system.loops, tree, data->tree, data->loops);
+  const MatrixXd G = calc_dense_rows(system.loops, tree, data->tree, data->loops);
   int row = 0;
   for (const auto& block : data->loops.blocks) {
     for (const int c : block.constraints) {
-      const Constraint& constraint = impl.loops[c];
+      const Constraint& constraint = system.loops[c];
       const int count = constraint.num_rows();
       for (const int marker : {constraint.parent_marker, constraint.child_marker}) {
         const Marker& end = tree.markers[static_cast<size_t>(marker)];

@@ -1,5 +1,5 @@
 // Energies, power and momenta of the whole system, from M(η) of each body (docs/theory/multibody.md).
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 
@@ -40,7 +40,7 @@ Vector3d first_moment(const TreeBody& tb, const BodyData& d) {
 }  // namespace
 
 Energies calc_energies(const System& system, const SystemData& data) {
-  const Tree& tree = system.impl().tree;
+  const Tree& tree = system.tree;
   data.tree.demand(Stage::Velocity);
   Energies e;
   for (int b = 0; b < tree.size(); ++b) {
@@ -54,20 +54,19 @@ Energies calc_energies(const System& system, const SystemData& data) {
     if (tb.stiffness.size() > 0)
       e.strain +=
           tb.hinge->calc_spring(data.tree.q.data() + tb.q_offset, tb.null_position.data(), tb.stiffness.data(), force);
-    e.potential -=
-        system.impl().gravity.uniform.dot(tb.body.mass() * d.state.p_WBo + d.state.R_WB * first_moment(tb, d));
+    e.potential -= system.gravity.uniform.dot(tb.body.mass() * d.state.p_WBo + d.state.R_WB * first_moment(tb, d));
   }
-  for (const auto& element : system.impl().elements) {
+  for (const auto& element : system.elements) {
     const ForceResult result = element->calc(tree, data.tree, nullptr);
     e.strain += result.strain;
     e.potential += result.potential;
   }
-  e.kinetic += system.impl().signals.calc_energy(system, data);
+  e.kinetic += system.signals.calc_energy(system, data);
   return e;
 }
 
 double calc_strain_energy(const System& system, const SystemData& data, int body) {
-  const TreeBody& tb = system.impl().tree[body];
+  const TreeBody& tb = system.tree[body];
   const auto eta = data.tree.q.segment(tb.eta_offset(), tb.num_modes());
   double twice = 0;
   for (int j = 0; j < tb.num_modes(); ++j) twice += eta[j] * tb.body.K().col(j).dot(eta);
@@ -75,7 +74,7 @@ double calc_strain_energy(const System& system, const SystemData& data, int body
 }
 
 Power calc_powers(const System& system, const SystemData& data) {
-  const Tree& tree = system.impl().tree;
+  const Tree& tree = system.tree;
   data.tree.demand(Stage::Acceleration);
   const VectorXd &u = data.tree.u, &applied = data.tree.applied;
   double power = 0, dissipated = 0;
@@ -102,19 +101,19 @@ Power calc_powers(const System& system, const SystemData& data) {
   for (size_t i = 0; i < data.elements.size(); ++i) {
     const ForceResult& result = data.elements[i];
     dissipated += result.dissipated;
-    if (system.impl().elements[i]->is_along_hinge())
+    if (system.elements[i]->is_along_hinge())
       lost += result.dissipated;
     else
       power -= result.power;
   }
-  power += system.impl().signals.calc_power(system, data);
+  power += system.signals.calc_power(system, data);
   return {power - lost, dissipated};
 }
 
 void calc_body_momentum(const System& system, const SystemData& data, int body, Vector3d& linear, Vector3d& angular) {
   data.tree.demand(Stage::Velocity);
   const BodyData& d = data.tree[body];
-  const BodyMomentum m = calc_own_momentum(system.impl().tree[body], d, data.tree);
+  const BodyMomentum m = calc_own_momentum(system.tree[body], d, data.tree);
   linear = d.state.R_WB * m.p.head<3>();
   angular = d.state.R_WB * m.p.tail<3>() + d.state.p_WBo.cross(linear);
 }
@@ -128,11 +127,11 @@ void calc_momentum(const System& system, const SystemData& data, Vector3d& linea
     linear += p;
     angular += l;
   }
-  angular += system.impl().signals.calc_momentum(system, data);
+  angular += system.signals.calc_momentum(system, data);
 }
 
 SystemMass calc_system_mass(const System& system, const SystemData& data) {
-  const Tree& tree = system.impl().tree;
+  const Tree& tree = system.tree;
   data.tree.demand(Stage::Position);
   SystemMass total;
   Vector3d moment = Vector3d::Zero();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -23,24 +23,24 @@ VectorXd solve_active(const MatrixXd& A, const VectorXd& wanted, const std::vect
 }
 
 // M⁻¹ of a unit impulse along each row, loops closed: num_u x blows.
-MatrixXd calc_responses(const System::Impl& impl, SystemData& system_data, const std::vector<Blow>& blows) {
+MatrixXd calc_responses(const System& system, SystemData& system_data, const std::vector<Blow>& blows) {
   TreeData& data = system_data.tree;
-  MatrixXd D(impl.tree.num_u, static_cast<Eigen::Index>(blows.size()));
-  calc_factor(impl.tree, data);
+  MatrixXd D(system.tree.num_u, static_cast<Eigen::Index>(blows.size()));
+  calc_factor(system.tree, data);
   const bool has_loops = !system_data.loops.blocks.empty();
   if (has_loops) {
-    calc_closure_positions(impl.loops, impl.tree, data, system_data.loops);
-    factor_loops(impl.loops, impl.tree, data, system_data.loops);
+    calc_closure_positions(system.loops, system.tree, data, system_data.loops);
+    factor_loops(system.loops, system.tree, data, system_data.loops);
   }
   for (size_t j = 0; j < blows.size(); ++j) {
     Sweep& s = start_response(data);
     s.tau[blows[j].row] = 1;
-    run_response(impl.tree, data, s);
+    run_response(system.tree, data, s);
     VectorXd du = s.u_dot;
-    if (has_loops) remove_normal(impl.loops, impl.tree, data, system_data.loops, du);
+    if (has_loops) remove_normal(system.loops, system.tree, data, system_data.loops, du);
     D.col(static_cast<Eigen::Index>(j)) = du;
   }
-  for (int row = 0; row < impl.tree.num_u; ++row) {
+  for (int row = 0; row < system.tree.num_u; ++row) {
     if (data.mode[static_cast<size_t>(row)] != HingeMode::Free) D.row(row).setZero();
   }
   return D;
@@ -75,12 +75,11 @@ VectorXd solve_blows(const MatrixXd& A, const VectorXd& v, const VectorXd& e) {
 
 void strike(const System& system, SystemData& system_data, double t, const Eigen::Ref<const VectorXd>& q,
             std::vector<Blow>& blows, Eigen::Ref<VectorXd> u, double& work) {
-  const System::Impl& impl = system.impl();
   TreeData& data = system_data.tree;
   const auto n = static_cast<Eigen::Index>(blows.size());
-  calc_kinematics(impl.tree, t, q, u, data);
+  calc_kinematics(system.tree, t, q, u, data);
   const double before = calc_energies(system, system_data).kinetic;
-  const MatrixXd D = calc_responses(impl, system_data, blows);
+  const MatrixXd D = calc_responses(system, system_data, blows);
   MatrixXd A(n, n);
   VectorXd v(n), e(n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -109,7 +108,7 @@ void strike(const System& system, SystemData& system_data, double t, const Eigen
     const Blow& own = blows[static_cast<size_t>(i)];
     if (p[i] > 0 && std::abs(after[i] + e[i] * v[i]) <= close) u[own.row] = own.side * e[i] * v[i] + 0.0;  // no -0
   }
-  calc_velocity(impl.tree, u, data);
+  calc_velocity(system.tree, u, data);
   work += calc_energies(system, system_data).kinetic - before;
 }
 

@@ -1,7 +1,7 @@
 // Impulses: where rates that are given jump, those of free coordinates follow by M⁻¹ (solver/tree/response.cpp).
 #include <sstream>
 
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 
@@ -78,7 +78,7 @@ void describe_capture(const System& system, const SystemData& data, int c, const
 bool cross_jump(const System& system, SystemData& system_data, double before, double t, const Discrete* modes,
                 const Eigen::Ref<const VectorXd>& q, Eigen::Ref<VectorXd> u, double& work,
                 std::vector<std::string>& events) {
-  const Tree& tree = system.impl().tree;
+  const Tree& tree = system.tree;
   TreeData& data = system_data.tree;
   calc_kinematics(tree, before, q, u, data);
   const VectorXd u_before = data.u;
@@ -103,10 +103,10 @@ bool cross_jump(const System& system, SystemData& system_data, double before, do
   if (!system_data.loops.blocks.empty()) {
     // What closes the loops again acts in the same instant.
     calc_velocity(tree, u, data);
-    calc_closing_impulses(system.impl().loops, tree, data, system_data.loops);
+    calc_closing_impulses(system.loops, tree, data, system_data.loops);
     Sweep& s = start_response(data);
     add_response_jump(tree, data, given, s);
-    add_multipliers(system.impl().loops, tree, data, system_data.loops, s);
+    add_multipliers(system.loops, tree, data, system_data.loops, s);
     run_response(tree, data, s);
     u = u_given;
     add_free(data, s.u_dot, u);

@@ -1,5 +1,5 @@
 // Motion of nodes as sensors see it.
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 
@@ -14,7 +14,7 @@ NodeInBody calc_node(const TreeBody& tb, const TreeData& data, int node_index) {
 }  // namespace
 
 NodeMotion calc_node_motion(const System& system, const SystemData& data, int body, int node_index) {
-  const TreeBody& tb = system.impl().tree.bodies[static_cast<size_t>(body)];
+  const TreeBody& tb = system.tree.bodies[static_cast<size_t>(body)];
   const BodyData& d = data.tree.bodies[static_cast<size_t>(body)];
   const Node& node = tb.body.nodes()[static_cast<size_t>(node_index)];
   const BodyState& s = d.state;
@@ -37,7 +37,7 @@ NodeMotion calc_node_motion(const System& system, const SystemData& data, int bo
 
 void calc_node_deflection(const System& system, const SystemData& data, int body, int node_index,
                           Vector3d& deflection_B, Vector3d& rotation_B) {
-  const TreeBody& tb = system.impl().tree.bodies[static_cast<size_t>(body)];
+  const TreeBody& tb = system.tree.bodies[static_cast<size_t>(body)];
   const NodeInBody k = calc_node(tb, data.tree, node_index);
   deflection_B = k.r - tb.body.nodes()[static_cast<size_t>(node_index)].p;
   rotation_B = k.theta;

@@ -3,22 +3,21 @@
 namespace bough::solver {
 
 std::vector<NodeSource> list_node_sources(const System& system, int body) {
-  const System::Impl& impl = system.impl();
   std::vector<NodeSource> all;
   for (int c = 0; c < system.num_bodies(); ++c) {
-    const TreeBody& tb = impl.tree[c];
+    const TreeBody& tb = system.tree[c];
     if (tb.parent == body) all.push_back({tb.on_parent.node, c, -1, true, nullptr});
     if (c == body) all.push_back({tb.on_child.node, c, -1, false, nullptr});
   }
-  for (int c = 0; c < impl.loops.size(); ++c) {
-    if (!impl.loops[c].closure) continue;
+  for (int c = 0; c < system.loops.size(); ++c) {
+    if (!system.loops[c].closure) continue;
     for (const bool is_parent : {true, false}) {
-      const int marker = is_parent ? impl.loops[c].parent_marker : impl.loops[c].child_marker;
-      const Marker& m = impl.tree.markers[static_cast<size_t>(marker)];
+      const int marker = is_parent ? system.loops[c].parent_marker : system.loops[c].child_marker;
+      const Marker& m = system.tree.markers[static_cast<size_t>(marker)];
       if (m.body == body) all.push_back({m.node, -1, c, is_parent, nullptr});
     }
   }
-  for (const AppliedForce& force : impl.forces)
+  for (const AppliedForce& force : system.forces)
     if (force.body == body && force.pattern.size() == 0) all.push_back({force.node, -1, -1, false, &force});
   return all;
 }
@@ -42,7 +41,7 @@ Vector6d bring_to_node(const NodeSource& source, int body, const System& system,
 }  // namespace
 
 Vector6d calc_node_load(const NodeSource& source, int body, const System& system, const SystemData& data) {
-  const Tree& tree = system.impl().tree;
+  const Tree& tree = system.tree;
   if (source.force != nullptr) {
     const AppliedForce& f = *source.force;
     Vector3d v = (f.function ? data.tree.functions[*f.function].calc(data.tree.t).f : 1.0) * f.direction;
@@ -68,7 +67,7 @@ Vector6d calc_node_load(const NodeSource& source, int body, const System& system
     return bring_to_node(source, body, system, data, get_axes(tb.parent, tb.parent_marker, tb.on_parent.R_KM),
                          get_place(source.hinge, tb.child_marker, Vector3d::Zero()), r.force, r.moment);
   }
-  const Constraint& c = system.impl().loops[source.constraint];
+  const Constraint& c = system.loops[source.constraint];
   const ConstraintReaction r = get_constraint_reaction(system, data, source.constraint);
   const Marker& parent = tree.markers[static_cast<size_t>(c.parent_marker)];
   const Marker& child = tree.markers[static_cast<size_t>(c.child_marker)];

@@ -1,6 +1,6 @@
 #pragma once
 /// \file What a hinge, a constraint or a [[force]] puts on a node of a body, measured.
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver {
 

@@ -48,7 +48,7 @@ void Recovery::record(int id) {
 
 std::vector<int> Recovery::connect(const System& system, const records::FlexBody& flex,
                                    const std::vector<records::ForceRecord>& forces) {
-  const auto& nodes = system.impl().tree[body_].body.nodes();
+  const auto& nodes = system.tree[body_].body.nodes();
   std::set<int> unknown;
   for (const auto& source : list_node_sources(system, body_)) {
     const auto& node = nodes[static_cast<size_t>(source.node)];
@@ -61,7 +61,7 @@ std::vector<int> Recovery::connect(const System& system, const records::FlexBody
     }
     loaded_.push_back(loaded);
   }
-  for (const auto& force : system.impl().forces) {
+  for (const auto& force : system.forces) {
     if (force.body != body_ || force.pattern.size() == 0) continue;
     for (const auto& record : forces)
       for (size_t e = 0; record.name == force.name && e < flex.locators.size(); ++e)
@@ -72,9 +72,8 @@ std::vector<int> Recovery::connect(const System& system, const records::FlexBody
 }
 
 void Recovery::calc(const System& system, const SystemData& data, int first, int count, double* out) const {
-  const System::Impl& impl = system.impl();
   const Eigen::Matrix<double, 12, 1> A_I =
-      impl.gravity.calc_inertial_acceleration(impl.tree, data.tree, body_) - preload_;
+      system.gravity.calc_inertial_acceleration(system.tree, data.tree, body_) - preload_;
   Eigen::Map<VectorXd> rows(out, count);
   rows = offset_.segment(first, count);
   rows.noalias() += matrix_.middleRows(first, count) * data.tree.q.segment(system.eta_offset(body_), matrix_.cols());

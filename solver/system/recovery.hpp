@@ -8,11 +8,12 @@
 
 #include "formats/records/flex_body.hpp"
 #include "solver/forces/applied.hpp"
-#include "solver/system/system.hpp"
 
 namespace bough::solver {
 
 struct NodeSource;
+struct System;
+struct SystemData;
 
 class Recovery {
  public:

@@ -6,7 +6,6 @@ namespace bough::solver {
 
 StiffeningTerms StiffeningTerms::collect(const records::SystemSpec& spec, const System& system,
                                          const records::FlexBody& flex, int b, bool constraints) {
-  const System::Impl& impl = system.impl();
   const int n = system.num_modes(b);
   StiffeningTerms terms;
   terms.body_ = b;
@@ -15,7 +14,7 @@ StiffeningTerms StiffeningTerms::collect(const records::SystemSpec& spec, const 
     if (flex.kg_inertial_computed[i] && flex.kg_inertial[i].size() > 0)
       terms.K1_[i] = flex.kg_inertial[i].topLeftCorner(n, n);
   const auto get_K2 = [&](size_t e) -> MatrixXd { return flex.kg_external[e].topLeftCorner(n, n); };
-  const auto& nodes = impl.tree[b].body.nodes();
+  const auto& nodes = system.tree[b].body.nodes();
   for (const auto& source : list_node_sources(system, b)) {
     if (source.constraint >= 0 && !constraints) continue;
     Source own{source};
@@ -28,7 +27,7 @@ StiffeningTerms StiffeningTerms::collect(const records::SystemSpec& spec, const 
     }
     if (has_any) terms.sources_.push_back(std::move(own));
   }
-  for (const AppliedForce& force : impl.forces) {
+  for (const AppliedForce& force : system.forces) {
     if (force.body != b || force.pattern.size() == 0) continue;
     for (const auto& r : spec.forces) {
       if (r.name != force.name) continue;
@@ -49,8 +48,8 @@ bool StiffeningTerms::has_hinges() const {
 }
 
 void StiffeningTerms::calc_loads(const System& system, const SystemData& data, double* y) const {
-  const System::Impl& impl = system.impl();
-  Eigen::Map<Eigen::Matrix<double, 12, 1>>{y} = impl.gravity.calc_inertial_acceleration(impl.tree, data.tree, body_);
+  Eigen::Map<Eigen::Matrix<double, 12, 1>>{y} =
+      system.gravity.calc_inertial_acceleration(system.tree, data.tree, body_);
   for (size_t i = 0; i < sources_.size(); ++i) {
     Eigen::Map<Vector6d> load(y + 12 + 6 * i);
     const AppliedForce* f = sources_[i].source.force;

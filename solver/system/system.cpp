@@ -2,25 +2,17 @@
 
 #include <algorithm>
 
-#include "solver/system/impl.hpp"
-
-void std::default_delete<bough::solver::SystemData>::operator()(bough::solver::SystemData* data) const { delete data; }
-
 namespace bough::solver {
 
 namespace {
 size_t as_index(int b) { return static_cast<size_t>(b); }
-const TreeBody& at(const System& s, int b) { return s.impl().tree.bodies[as_index(b)]; }
+const TreeBody& at(const System& s, int b) { return s.tree.bodies[as_index(b)]; }
 }  // namespace
 
-System::System() : impl_(std::make_unique<Impl>()) {}
-System::~System() = default;
-System::System(System&&) noexcept = default;
-
-int System::num_bodies() const { return static_cast<int>(impl_->tree.bodies.size()); }
-int System::num_q() const { return impl_->tree.num_q; }
-int System::num_u() const { return impl_->tree.num_u; }
-int System::num_z() const { return impl_->signals.num_states; }
+int System::num_bodies() const { return static_cast<int>(tree.bodies.size()); }
+int System::num_q() const { return tree.num_q; }
+int System::num_u() const { return tree.num_u; }
+int System::num_z() const { return signals.num_states; }
 
 int System::find_body(const std::string& name) const {
   for (int b = 0; b < num_bodies(); ++b) {
@@ -38,7 +30,7 @@ int System::find_hinge(const std::string& name) const {
 
 const std::string& System::body_name(int b) const { return at(*this, b).name; }
 const std::string& System::hinge_name(int b) const { return at(*this, b).hinge_name; }
-bool System::is_sound(int b) const { return impl_->sound[as_index(b)]; }
+bool System::is_sound(int b) const { return sound[as_index(b)]; }
 int System::num_modes(int b) const { return at(*this, b).body.num_modes(); }
 int System::q_offset(int b) const { return at(*this, b).q_offset; }
 int System::u_offset(int b) const { return at(*this, b).u_offset; }
@@ -56,28 +48,26 @@ int System::find_node(int b, int id) const { return at(*this, b).body.find_node(
 bool System::has_node_second_order(int b, int node) const {
   return at(*this, b).body.nodes()[as_index(node)].K2.size() > 0;
 }
-const std::vector<double>& System::breakpoints() const { return impl_->breakpoints; }
-const std::vector<double>& System::landmarks() const { return impl_->landmarks; }
 
 std::unique_ptr<SystemData> System::make_data() const {
   auto data = std::make_unique<SystemData>();
-  data->tree = make_tree_data(impl_->tree);
-  data->loops = make_loop_data(impl_->loops, impl_->tree);
-  if (!impl_->initial_closings.empty()) set_closings(impl_->loops, impl_->tree, impl_->initial_closings, data->loops);
-  data->elements.resize(impl_->elements.size());
-  data->tangent = VectorXd::Zero(impl_->tree.num_u);
-  data->signals = impl_->signals.make_data();
+  data->tree = make_tree_data(tree);
+  data->loops = make_loop_data(loops, tree);
+  if (!initial_closings.empty()) set_closings(loops, tree, initial_closings, data->loops);
+  data->elements.resize(elements.size());
+  data->tangent = VectorXd::Zero(tree.num_u);
+  data->signals = signals.make_data();
   return data;
 }
 
 void System::calc_initial_state(Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) const {
   BOUGH_DEMAND(q.size() == num_q() && u.size() == num_u());
-  if (impl_->initial_q.size() > 0) {
-    q = impl_->initial_q;
-    u = impl_->initial_u;
+  if (initial_q.size() > 0) {
+    q = initial_q;
+    u = initial_u;
     return;
   }
-  for (const TreeBody& tb : impl_->tree.bodies) {
+  for (const TreeBody& tb : tree.bodies) {
     const int n = tb.num_modes();
     q.segment(tb.q_offset, tb.num_hinge_q()) = tb.initial_q;
     u.segment(tb.u_offset, tb.num_hinge_u()) = tb.initial_u;
@@ -86,7 +76,7 @@ void System::calc_initial_state(Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) 
     for (int i = 0; i < tb.num_hinge_u(); ++i) {
       if (tb.mode[as_index(i)] == HingeMode::Locked) u[tb.u_offset + i] = 0;
       if (tb.mode[as_index(i)] != HingeMode::Prescribed) continue;
-      const auto value = tb.motion[as_index(i)]->calc(impl_->start);
+      const auto value = tb.motion[as_index(i)]->calc(start);
       q[tb.q_offset + i] = value.f;
       u[tb.u_offset + i] = value.f_dot;
     }
@@ -95,7 +85,7 @@ void System::calc_initial_state(Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) 
 
 State System::make_initial_state() const {
   State state;
-  state.t = impl_->start;
+  state.t = start;
   state.q.resize(num_q());
   state.u.resize(num_u());
   calc_initial_state(state.q, state.u);
@@ -107,8 +97,8 @@ State System::make_initial_state() const {
 }
 
 void set_modes(const System& system, SystemData& data, const Discrete& discrete) {
-  set_modes(system.impl().tree, discrete.mode, data.tree);
-  if (!discrete.closings.empty()) set_closings(system.impl().loops, system.impl().tree, discrete.closings, data.loops);
+  set_modes(system.tree, discrete.mode, data.tree);
+  if (!discrete.closings.empty()) set_closings(system.loops, system.tree, discrete.closings, data.loops);
   if (discrete.memory.size() > 0) data.signals.memory = discrete.memory;
 }
 
@@ -128,7 +118,7 @@ Discrete get_discrete(const SystemData& data) {
 void calc_q_dot(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                 const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> q_dot) {
   BOUGH_DEMAND(q.size() == system.num_q() && u.size() == system.num_u() && q_dot.size() == q.size());
-  for (const TreeBody& tb : system.impl().tree.bodies) {
+  for (const TreeBody& tb : system.tree.bodies) {
     double rates[6];
     for (int i = 0; i < tb.num_hinge_u(); ++i) {
       const HingeMode mode = data.tree.mode[as_index(tb.u_offset + i)];
@@ -145,7 +135,7 @@ void get_q_dot(const System& system, const SystemData& data, Eigen::Ref<VectorXd
   const TreeData& d = data.tree;
   d.demand(Stage::Velocity);
   BOUGH_DEMAND(q_dot.size() == system.num_q());
-  for (const TreeBody& tb : system.impl().tree.bodies) {
+  for (const TreeBody& tb : system.tree.bodies) {
     tb.hinge->calc_q_dot(d.q.data() + tb.q_offset, d.u.data() + tb.u_offset, q_dot.data() + tb.q_offset);
     for (int j = 0; j < tb.num_modes(); ++j) q_dot[tb.eta_offset() + j] = d.u[tb.eta_dot_offset() + j];
   }
@@ -153,7 +143,7 @@ void get_q_dot(const System& system, const SystemData& data, Eigen::Ref<VectorXd
 
 void calc_kinematics(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                      const Eigen::Ref<const VectorXd>& u) {
-  calc_kinematics(system.impl().tree, t, q, u, data.tree);
+  calc_kinematics(system.tree, t, q, u, data.tree);
   std::fill(data.elements.begin(), data.elements.end(), ForceResult());
 }
 
@@ -164,26 +154,25 @@ void set_z(SystemData& data, const Eigen::Ref<const VectorXd>& z) {
 
 void calc_z_dot(const System& system, SystemData& data, Eigen::Ref<VectorXd> z_dot) {
   data.tree.demand(Stage::Acceleration);
-  system.impl().signals.calc_late(system, data);
-  system.impl().signals.calc_rates(system, data, z_dot);
+  system.signals.calc_late(system, data);
+  system.signals.calc_rates(system, data, z_dot);
 }
 
 void calc_signals(const System& system, SystemData& data) {
   data.tree.demand(Stage::Acceleration);
-  system.impl().signals.calc_all(system, data);
+  system.signals.calc_all(system, data);
 }
 
 void add_forces(const System& system, SystemData& data, double t) {
-  const System::Impl& impl = system.impl();
   data.tree.demand(Stage::Velocity);
-  data.tree.gravity = impl.gravity.uniform;
-  impl.signals.calc_early(system, data);
-  for (const AppliedForce& force : impl.forces) add_applied_force(force, impl.tree, t, data.tree);
-  add_hinge_forces(impl.tree, data.tree);
-  Loads loads(impl.tree, data.tree);
-  for (size_t i = 0; i < impl.elements.size(); ++i)
-    data.elements[i] = impl.elements[i]->calc(impl.tree, data.tree, &loads);
-  impl.signals.add_loads(system, data);
+  data.tree.gravity = system.gravity.uniform;
+  system.signals.calc_early(system, data);
+  for (const AppliedForce& force : system.forces) add_applied_force(force, system.tree, t, data.tree);
+  add_hinge_forces(system.tree, data.tree);
+  Loads loads(system.tree, data.tree);
+  for (size_t i = 0; i < system.elements.size(); ++i)
+    data.elements[i] = system.elements[i]->calc(system.tree, data.tree, &loads);
+  system.signals.add_loads(system, data);
 }
 
 void add_node_wrench(const System& system, SystemData& data, int body, int node_index, const Vector3d& f_W,
@@ -194,28 +183,24 @@ void add_node_wrench(const System& system, SystemData& data, int body, int node_
 }
 
 void calc_accelerations(const System& system, SystemData& data, double, Eigen::Ref<VectorXd> u_dot) {
-  const System::Impl& impl = system.impl();
-  factor_and_solve(impl.tree, data.tree, u_dot);
-  close_loops(impl.loops, impl.tree, data.tree, data.loops, u_dot);
+  factor_and_solve(system.tree, data.tree, u_dot);
+  close_loops(system.loops, system.tree, data.tree, data.loops, u_dot);
 }
 
 void calc_accelerations_dense(const System& system, SystemData& data, double, Eigen::Ref<VectorXd> u_dot) {
-  const System::Impl& impl = system.impl();
-  if (data.loops.blocks.empty()) return calc_dense_accelerations(impl.tree, data.tree, u_dot);
-  calc_dense_accelerations(impl.loops, impl.tree, data.tree, data.loops, u_dot);
+  if (data.loops.blocks.empty()) return calc_dense_accelerations(system.tree, data.tree, u_dot);
+  calc_dense_accelerations(system.loops, system.tree, data.tree, data.loops, u_dot);
 }
 
 void project(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) {
-  const System::Impl& impl = system.impl();
-  project(impl.loops, impl.tree, t, q, u, data.tree, data.loops);
+  project(system.loops, system.tree, t, q, u, data.tree, data.loops);
 }
 
 void remove_normal(const System& system, SystemData& data, Eigen::Ref<VectorXd> dq, Eigen::Ref<VectorXd> du) {
-  const System::Impl& impl = system.impl();
   if (data.loops.blocks.empty()) return;
   // q's in the tangent: N⁺ by columns of N, which are orthogonal to each other.
   VectorXd& tangent = data.tangent;
-  for (const TreeBody& tb : impl.tree.bodies) {
+  for (const TreeBody& tb : system.tree.bodies) {
     const int nq = tb.num_hinge_q(), nu = tb.num_hinge_u(), n = tb.num_modes();
     tangent.segment(tb.eta_dot_offset(), n) = dq.segment(tb.eta_offset(), n);
     if (tb.hinge->has_plain_coordinates()) {
@@ -230,24 +215,24 @@ void remove_normal(const System& system, SystemData& data, Eigen::Ref<VectorXd> 
       tangent[tb.u_offset + i] = N.dot(dq.segment(tb.q_offset, nq)) / N.squaredNorm();
     }
   }
-  remove_normal(impl.loops, impl.tree, data.tree, data.loops, tangent);
-  for (const TreeBody& tb : impl.tree.bodies) {
+  remove_normal(system.loops, system.tree, data.tree, data.loops, tangent);
+  for (const TreeBody& tb : system.tree.bodies) {
     const int n = tb.num_modes();
     double column[7];
     tb.hinge->calc_q_dot(data.tree.q.data() + tb.q_offset, tangent.data() + tb.u_offset, column);
     dq.segment(tb.q_offset, tb.num_hinge_q()) = Eigen::Map<const VectorXd>(column, tb.num_hinge_q());
     dq.segment(tb.eta_offset(), n) = tangent.segment(tb.eta_dot_offset(), n);
   }
-  remove_normal(impl.loops, impl.tree, data.tree, data.loops, du);
+  remove_normal(system.loops, system.tree, data.tree, data.loops, du);
 }
 
-int System::num_constraints() const { return impl_->loops.size(); }
-int System::find_constraint(const std::string& name) const { return impl_->loops.find(name); }
-const std::string& System::constraint_name(int c) const { return impl_->loops[c].name; }
-bool System::is_coupler(int c) const { return !impl_->loops[c].closure; }
+int System::num_constraints() const { return loops.size(); }
+int System::find_constraint(const std::string& name) const { return loops.find(name); }
+const std::string& System::constraint_name(int c) const { return loops[c].name; }
+bool System::is_coupler(int c) const { return !loops[c].closure; }
 
 ConstraintReaction get_constraint_reaction(const System& system, const SystemData& data, int constraint) {
-  const Loops& loops = system.impl().loops;
+  const Loops& loops = system.loops;
   const Vector6d wrench = calc_constraint_wrench(loops, data.loops, constraint);
   const ConstraintData& d = data.loops[constraint];
   const bool couples = !loops[constraint].closure && d.closing.is_closed;
@@ -267,7 +252,7 @@ void get_hinge(const System& system, const SystemData& data, int body, Eigen::Re
 }
 
 HingeReaction get_hinge_reaction(const System& system, const SystemData& data, int body) {
-  return calc_hinge_reaction(system.impl().tree, data.tree, body);
+  return calc_hinge_reaction(system.tree, data.tree, body);
 }
 
 }  // namespace bough::solver

@@ -15,27 +15,26 @@
 
 #include "base/rotation.hpp"
 #include "formats/records/system_spec.hpp"
+#include "solver/forces/applied.hpp"
+#include "solver/forces/element.hpp"
+#include "solver/forces/gravity_field.hpp"
+#include "solver/forces/latch.hpp"
+#include "solver/loops/loops.hpp"
+#include "solver/signals/graph.hpp"
 #include "solver/state/motion.hpp"
 #include "solver/state/state.hpp"
+#include "solver/system/recovery.hpp"
+#include "solver/tree/data.hpp"
 
 namespace bough::solver {
 
 using records::FlexBody;
 
-class SystemData;  ///< made by System::make_data; one per thread
+struct SystemData;
+class StiffeningTerms;
 
-}  // namespace bough::solver
-
-/// So that a SystemData can be owned where only this header is known.
-template <>
-struct std::default_delete<bough::solver::SystemData> {
-  void operator()(bough::solver::SystemData* data) const;
-};
-
-namespace bough::solver {
-
-class System {
- public:
+/// What never changes in a run. Const after build() and shared by threads; it may be moved while nothing refers to it.
+struct System {
   /// Checks everything that concerns the solver (names, nodes, tree without loops, locators of stiffened attachments)
   /// and reports all errors with their place in the TOML file; throws InputError when there are any. `flex` maps a
   /// body's file (as written) to its record. A body without an inboard hinge gets a free one (a note says so).
@@ -45,8 +44,27 @@ class System {
   /// body that cannot be built is a rigid one here, with is_sound false.
   static System build_as_far(const records::SystemSpec& spec, const std::map<std::string, FlexBody>& flex,
                              Diagnostics& diagnostics);
-  ~System();
-  System(System&&) noexcept;
+
+  Tree tree;
+  std::vector<std::unique_ptr<const TimeFunction>> functions;
+  std::vector<AppliedForce> forces;
+  std::vector<AppliedForce> driven;  ///< whose value is a signal: see signals
+  Loops loops;
+  VectorXd initial_q, initial_u;          ///< with closed loops; empty: as the records say
+  std::vector<Closing> initial_closings;  ///< likewise
+  std::vector<std::unique_ptr<const ForceElement>> elements;
+  std::vector<Latch> latches;
+  SignalGraph signals;
+  bool signals_are_sound = true;  ///< sensors, controllers and actuators have no errors
+  GravityField gravity;
+  std::vector<double> breakpoints;  ///< times at which a function that drives a hinge or a force jumps, ascending
+  std::vector<double> landmarks;    ///< times that no step may pass over, ascending (TimeFunction::landmarks)
+  double start = 0;
+  bool is_lagged = false;                             ///< bodies are stiffened by blocks of signals, not by themselves
+  std::vector<bool> sound;                            ///< by body: its record and its hinge have no errors
+  std::vector<std::unique_ptr<Recovery>> recoveries;  ///< by body; nullptr: nothing is recovered of it
+  /// By body; what would stiffen those whose stiffening is off. nullptr: it is on, or the file has nothing.
+  std::vector<std::shared_ptr<const StiffeningTerms>> left_out;
 
   int num_bodies() const;
   int num_q() const;
@@ -74,22 +92,20 @@ class System {
   int find_node(int body, int id) const;
   /// Whether the node carries the second-order (foreshortening) term.
   bool has_node_second_order(int body, int node_index) const;
-  /// Times at which a function that drives a hinge or a force jumps, ascending.
-  const std::vector<double>& breakpoints() const;
-  /// Times that no step may pass over, ascending (TimeFunction::landmarks).
-  const std::vector<double>& landmarks() const;
 
   std::unique_ptr<SystemData> make_data() const;
   /// Initial state as the records say; q (num_q), u (num_u).
   void calc_initial_state(Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) const;
   State make_initial_state() const;
+};
 
-  struct Impl;
-  const Impl& impl() const { return *impl_; }
-
- private:
-  System();
-  std::unique_ptr<Impl> impl_;
+/// Results and scratch of one thread: of the last state that was evaluated.
+struct SystemData {
+  TreeData tree;
+  LoopData loops;
+  std::vector<ForceResult> elements;  ///< of add_forces; zero before it
+  SignalData signals;
+  VectorXd tangent;  ///< num_u, scratch
 };
 
 /// The discrete state from now on (SystemData starts with that of the records): what get_discrete returns. Memory that

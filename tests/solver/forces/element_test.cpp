@@ -95,7 +95,7 @@ TEST(ForceElements, ActionsBetweenTwoBodiesCancel) {
       Vector3d force = Vector3d::Zero(), moment = Vector3d::Zero();
       for (int b = 0; b < 2; ++b) {
         const BodyState& s = get_body_state(*data, b);
-        const int v = system.impl().tree[b].v_offset;
+        const int v = system.tree[b].v_offset;
         const Vector3d f = s.R_WB * data->tree.applied.segment<3>(v);
         force += f;
         moment += s.R_WB * data->tree.applied.segment<3>(v + 3) + s.p_WBo.cross(f);
@@ -131,7 +131,7 @@ TEST(ForceElements, PowerIsWhatTheirEnergyLosesAndWhatTheyTurnIntoHeat) {
       // Power of all wrenches; the modal dampers of the body are taken out.
       double applied = 0, modal = 0;
       for (int b = 0; b < 2; ++b) {
-        const TreeBody& tb = system.impl().tree[b];
+        const TreeBody& tb = system.tree[b];
         const BodyState& s = get_body_state(*data, b);
         const auto load = data->tree.applied.segment(tb.v_offset, 6 + tb.num_modes());
         const auto eta_dot = u.segment(tb.eta_dot_offset(), tb.num_modes());
@@ -145,7 +145,7 @@ TEST(ForceElements, PowerIsWhatTheirEnergyLosesAndWhatTheyTurnIntoHeat) {
       // d/dt of the stored energy, along any motion with these rates.
       const auto calc_stored = [&](double h) {
         calc_kinematics(system, *data, 0, advance_q(system, *data, 0, h, q, u, VectorXd::Zero(u.size())), u);
-        const ForceResult r = system.impl().elements[0]->calc(system.impl().tree, data->tree, nullptr);
+        const ForceResult r = system.elements[0]->calc(system.tree, data->tree, nullptr);
         return r.strain + r.potential;
       };
       const double h = 2e-3;

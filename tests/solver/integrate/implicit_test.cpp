@@ -36,9 +36,9 @@ TEST(Implicit, FirstStageIsThatOfDenseMatrices) {
     add_forces(system, *data, 0.3);
     MatrixXd M, K = MatrixXd::Zero(u.size(), u.size()), D = K;
     VectorXd F;
-    calc_dense_equations(system.impl().tree, data->tree, M, F);
+    calc_dense_equations(system.tree, data->tree, M, F);
     std::vector<int> free;
-    for (const TreeBody& tb : system.impl().tree.bodies) {
+    for (const TreeBody& tb : system.tree.bodies) {
       const int n = tb.num_modes(), eta = tb.eta_dot_offset();
       K.block(eta, eta, n, n) = tb.body.K();
       D.block(eta, eta, n, n) = tb.body.D();

@@ -76,17 +76,17 @@ Looped make_looped(unsigned seed) {
   calc_kinematics(system, *data, 0.3, q, u);
   Discrete discrete = get_discrete(*data);
   for (int c = 0; c < system.num_constraints(); ++c)
-    discrete.closings[static_cast<size_t>(c)] = find_closing(system.impl().loops, system.impl().tree, data->tree, c);
+    discrete.closings[static_cast<size_t>(c)] = find_closing(system.loops, system.tree, data->tree, c);
   set_modes(system, *data, discrete);
   project(system, *data, 0.3, q, u);
   return {std::move(tree), std::move(system), std::move(data), q, u};
 }
 
 VectorXd calc_rates(const System& system, SystemData& data, double t, const VectorXd& q, const VectorXd& u) {
-  const Loops& loops = system.impl().loops;
+  const Loops& loops = system.loops;
   calc_kinematics(system, data, t, q, u);
-  calc_closure_positions(loops, system.impl().tree, data.tree, data.loops);
-  calc_closure_velocities(loops, system.impl().tree, data.tree, data.loops);
+  calc_closure_positions(loops, system.tree, data.tree, data.loops);
+  calc_closure_velocities(loops, system.tree, data.tree, data.loops);
   VectorXd rates = get_gaps(loops, data.loops);
   int at = 0;
   for (const LoopBlock& block : data.loops.blocks) {
@@ -108,7 +108,7 @@ class RandomLoops : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(RandomLoops, StartClosed) {
   Looped s = make_looped(GetParam());
-  EXPECT_LT(calc_largest_gap(s.system.impl().loops, s.data->loops), 1e-11);
+  EXPECT_LT(calc_largest_gap(s.system.loops, s.data->loops), 1e-11);
   EXPECT_LT(calc_rates(s.system, *s.data, 0.3, s.q, s.u).cwiseAbs().maxCoeff(),
             1e-10 * (1 + s.u.cwiseAbs().maxCoeff()));
 }
@@ -133,13 +133,12 @@ TEST_P(RandomLoops, MultipliersAgreeWithTheDenseEquations) {
 TEST_P(RandomLoops, BlocksAreGMGt) {
   Looped s = make_looped(GetParam());
   calc_u_dot(s.system, *s.data, 0.3, s.q, s.u);
-  const System::Impl& impl = s.system.impl();
   MatrixXd mass;
   VectorXd force;
-  calc_dense_equations(impl.tree, s.data->tree, mass, force);
-  const MatrixXd G = calc_dense_rows(impl.loops, impl.tree, s.data->tree, s.data->loops);
+  calc_dense_equations(s.system.tree, s.data->tree, mass, force);
+  const MatrixXd G = calc_dense_rows(s.system.loops, s.system.tree, s.data->tree, s.data->loops);
   std::vector<int> free;
-  for (int row = 0; row < impl.tree.num_u; ++row) {
+  for (int row = 0; row < s.system.tree.num_u; ++row) {
     if (s.data->tree.mode[static_cast<size_t>(row)] == HingeMode::Free) free.push_back(row);
   }
   const MatrixXd own = G(Eigen::all, free), M = mass(free, free);
@@ -195,7 +194,7 @@ TEST_P(RandomLoops, ReactionsCloseNewtonAndEulerOfEveryBody) {
   for (int k = 1; k <= 4; ++k) rate += weight[k - 1] / h * (calc_momenta(k * h) - calc_momenta(-k * h));
   Matrix6Xd loads = Matrix6Xd::Zero(6, system.num_bodies());
   for (int b = 0; b < system.num_bodies(); ++b) {
-    const TreeBody& tb = system.impl().tree[b];
+    const TreeBody& tb = system.tree[b];
     const BodyState& own = data.tree[b].state;
     const Vector3d S = tb.is_flexible() ? data.tree[b].inertia.S : tb.body.first_moment();
     const Vector3d f = own.R_WB * data.tree.applied.segment<3>(tb.v_offset);
@@ -213,14 +212,14 @@ TEST_P(RandomLoops, ReactionsCloseNewtonAndEulerOfEveryBody) {
     if (tb.parent >= 0) loads.col(tb.parent) -= wrench;
   }
   for (int i = 0; i < system.num_constraints(); ++i) {
-    const Constraint& c = system.impl().loops[i];
+    const Constraint& c = system.loops[i];
     const ConstraintReaction r = get_constraint_reaction(system, data, i);
     if (!c.closure) {  // a motor across each hinge: in the hinges' reactions already
       continue;
     }
     const RelativeMotion& X = data.loops[i].relative;
-    const Marker& parent = system.impl().tree.markers[static_cast<size_t>(c.parent_marker)];
-    const Marker& child = system.impl().tree.markers[static_cast<size_t>(c.child_marker)];
+    const Marker& parent = system.tree.markers[static_cast<size_t>(c.parent_marker)];
+    const Marker& child = system.tree.markers[static_cast<size_t>(c.child_marker)];
     const BodyState& state = data.tree[child.body].state;
     const Vector3d at = state.p_WBo + state.R_WB * data.tree.markers[static_cast<size_t>(c.child_marker)].r + X.o_W;
     const Vector3d f = X.R_WHp * r.force;
@@ -237,8 +236,8 @@ TEST_P(RandomLoops, ReactionsCloseNewtonAndEulerOfEveryBody) {
 // gears, springs and dampers of that coordinate included; rows of free coordinates vanish.
 TEST_P(RandomLoops, ForcesThatHoldCoordinatesAreThoseOfTheDenseEquations) {
   Looped s = make_looped(GetParam());
-  const Tree& tree = s.system.impl().tree;
-  const Loops& loops = s.system.impl().loops;
+  const Tree& tree = s.system.tree;
+  const Loops& loops = s.system.loops;
   Discrete discrete = get_discrete(*s.data);
   std::vector<int> locked;
   for (int b = 0; b < tree.size(); b += 2) {

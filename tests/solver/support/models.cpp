@@ -240,7 +240,7 @@ void make_random_state(const System& system, unsigned seed, VectorXd& q, VectorX
   u.resize(system.num_u());
   system.calc_initial_state(q, u);
   for (int b = 0; b < system.num_bodies(); ++b) {
-    const TreeBody& tb = system.impl().tree.bodies[static_cast<size_t>(b)];
+    const TreeBody& tb = system.tree.bodies[static_cast<size_t>(b)];
     for (int i = 0; i < system.num_hinge_q(b); ++i) q[system.q_offset(b) + i] = random();
     if (!tb.hinge->has_plain_coordinates()) q.segment(system.q_offset(b), 4).normalize();
     for (int i = 0; i < system.num_hinge_u(b); ++i) u[system.u_offset(b) + i] = random();

@@ -8,7 +8,7 @@
 #include <memory>
 #include <random>
 
-#include "solver/system/impl.hpp"
+#include "solver/system/system.hpp"
 
 namespace bough::solver::testing {
 

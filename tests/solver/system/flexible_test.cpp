@@ -31,7 +31,7 @@ Model make_model(int n, bool hinge_fixed) {
 MatrixXd calc_mass(const System& system, const SystemData& data) {
   MatrixXd mass;
   VectorXd force;
-  calc_dense_equations(system.impl().tree, data.tree, mass, force);
+  calc_dense_equations(system.tree, data.tree, mass, force);
   return mass;
 }
 

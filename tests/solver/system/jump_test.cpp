@@ -112,7 +112,7 @@ TEST(Jump, ByLockingKeepsTheMomenta) {
     calc_momentum(system, *data, p, l);
     const double before = calc_energies(system, *data).kinetic;
     Discrete locked = system.make_initial_state().discrete;
-    const Tree& t = system.impl().tree;
+    const Tree& t = system.tree;
     for (int b = 1; b < t.size(); ++b)
       for (int i = 0; i < t[b].num_hinge_u(); ++i)
         locked.mode[static_cast<size_t>(t[b].u_offset + i)] = HingeMode::Locked;

@@ -10,7 +10,7 @@ class ReactionTest : public ::testing::TestWithParam<unsigned> {};
 
 // Wrench about the inertial origin, in W, that the parent puts on body b.
 Vector6d calc_world_reaction(const System& system, const SystemData& data, int b) {
-  const TreeBody& tb = system.impl().tree[b];
+  const TreeBody& tb = system.tree[b];
   const HingeReaction r = get_hinge_reaction(system, data, b);
   const MarkerMotion& p = data.tree.markers[static_cast<size_t>(tb.parent_marker)];
   const MarkerMotion& c = data.tree.markers[static_cast<size_t>(tb.child_marker)];
@@ -49,7 +49,7 @@ TEST_P(ReactionTest, ClosesNewtonAndEulerOfEveryBody) {
 
   Matrix6Xd loads = Matrix6Xd::Zero(6, system.num_bodies());
   for (int b = 0; b < system.num_bodies(); ++b) {
-    const TreeBody& tb = system.impl().tree[b];
+    const TreeBody& tb = system.tree[b];
     const BodyState& s = data->tree[b].state;
     const Vector3d S = tb.is_flexible() ? data->tree[b].inertia.S : tb.body.first_moment();
     const Vector3d f = s.R_WB * data->tree.applied.segment<3>(tb.v_offset);
@@ -72,7 +72,7 @@ TEST_P(ReactionTest, AlongFreeCoordinatesIsTheHingeForce) {
   auto data = system.make_data();
   calc_u_dot(system, *data, 0.3, q, u);
   for (int b = 0; b < system.num_bodies(); ++b) {
-    const TreeBody& tb = system.impl().tree[b];
+    const TreeBody& tb = system.tree[b];
     const HingeReaction r = get_hinge_reaction(system, *data, b);
     Vector6d wrench;
     wrench << r.force, r.moment;

@@ -11,7 +11,7 @@ class ResponseTest : public ::testing::TestWithParam<unsigned> {
   ResponseTest() : tree_(make_random_tree(GetParam(), {})), system_(build(tree_.spec, tree_.flex)) {
     make_random_state(system_, GetParam() + 1000, q_, u_);
   }
-  const Tree& tree() const { return system_.impl().tree; }
+  const Tree& tree() const { return system_.tree; }
   VectorXd evaluate(TreeData& data) const {
     VectorXd u_dot(tree().num_u);
     calc_factor(tree(), data);
@@ -145,7 +145,7 @@ TEST(Stages, AreDemandedInTheirOrder) {
   VectorXd q, u;
   make_random_state(system, 3, q, u);
   VectorXd u_dot(system.num_u());
-  const Tree& t = system.impl().tree;
+  const Tree& t = system.tree;
   auto data = system.make_data();
   EXPECT_DEATH(calc_velocity(t, u, data->tree), "");
   EXPECT_DEATH(calc_factor(t, data->tree), "");
