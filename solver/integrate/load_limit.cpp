@@ -4,8 +4,8 @@
 
 #include "solver/integrate/linear_limit.hpp"
 #include "solver/integrate/run.hpp"
+#include "solver/system/derivative.hpp"
 #include "solver/system/stiffening_terms.hpp"
-#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -59,13 +59,12 @@ std::set<int> warn_of_unstiffened_bodies(const System& system, double start, dou
   };
   std::vector<Worst> worst(system.left_out.size());
   const auto data = system.make_data();
+  const VectorXd z = data->signals.z;
   VectorXd q = VectorXd::Zero(system.num_q()), u = VectorXd::Zero(system.num_u()), u_dot = u;
   for (const double t : list_times(system, data->tree.functions, start, end)) {
     try {
       system.calc_initial_state(q, u);
-      calc_kinematics(system, *data, t, q, u);
-      add_forces(system, *data, t);
-      calc_accelerations(system, *data, t, u_dot);
+      calc_motion(system, *data, t, q, u, z, u_dot, [] {});
     } catch (const Failure&) {
       continue;  // the run itself reports it
     }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/system/system.hpp"
+#include "solver/system/derivative.hpp"
 
 namespace bough::solver {
 
@@ -18,18 +18,8 @@ SystemOde::SystemOde(const System& system)
 }
 
 void SystemOde::calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) {
-  const auto q = y.head(num_q_);
-  const auto u = y.segment(num_q_, num_u_);
   ++num_evaluations_;
-  calc_kinematics(system_, *data_, t, q, u);
-  set_z(*data_, y.segment(num_coordinates(), num_z_));
-  add_forces(system_, *data_, t);
-  calc_accelerations(system_, *data_, t, y_dot.segment(num_q_, num_u_));
-  get_q_dot(system_, *data_, y_dot.head(num_q_));
-  calc_z_dot(system_, *data_, y_dot.segment(num_coordinates(), num_z_));
-  const Power power = calc_powers(system_, *data_);
-  y_dot[num_coordinates() + num_z_] = power.total;
-  y_dot[num_coordinates() + num_z_ + 1] = power.dissipated;
+  solver::calc_derivative(system_, *data_, t, y, y_dot);
 }
 
 std::vector<std::string> SystemOde::cross_jump(double before, double t, Eigen::Ref<VectorXd> y) {
@@ -129,12 +119,7 @@ void SystemOde::set_memory(const VectorXd& memory) {
   set_modes(system_, *data_, d);
 }
 
-VectorXd SystemOde::make_initial_state() const {
-  VectorXd y = VectorXd::Zero(size());
-  system_.calc_initial_state(y.head(num_q_), y.segment(num_q_, num_u_));
-  y.segment(num_coordinates(), num_z_) = system_.signals.make_data().z;
-  return y;
-}
+VectorXd SystemOde::make_initial_state() const { return system_.make_initial_state().x; }
 
 std::string SystemOde::name_row(int row) const {
   const bool is_rate = row >= num_q_;

@@ -3,7 +3,7 @@
 //   (M + γh D + γ²h² K) u̇ = F - γh K r_δ,   δ̇ = r_δ + γh u̇
 // and the second one has r_δ = u - 2γh u̇₁ and F + 2γh (K δ̇₁ + D u̇₁).
 #include "solver/integrate/system_ode.hpp"
-#include "solver/system/system.hpp"
+#include "solver/system/derivative.hpp"
 
 namespace bough::solver {
 
@@ -49,15 +49,15 @@ void SystemOde::calc_stage(double t, const Eigen::Ref<const VectorXd>& y, double
     power = calc_powers(system_, *data_);
   }
   ++num_evaluations_;
-  calc_kinematics(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
-  add_forces(system_, *data_, t);
-  if (is_first) calc_tangent();
-  add_stage_forces(gh, is_first);
-  d.added += gh * c_ + gh * gh * k_;
-  d.added_D = gh;
-  d.added_K = gh * gh;
-  auto u_dot = k.segment(num_q_, num_u_);
-  calc_accelerations(system_, *data_, t, u_dot);
+  const StateLayout layout = system_.layout();
+  auto u_dot = get_u(layout, k);
+  calc_motion(system_, *data_, t, get_q(layout, y), get_u(layout, y), get_z(layout, y), u_dot, [&] {
+    if (is_first) calc_tangent();
+    add_stage_forces(gh, is_first);
+    d.added += gh * c_ + gh * gh * k_;
+    d.added_D = gh;
+    d.added_K = gh * gh;
+  });
   for (const TreeBody& tb : tree.bodies)
     d.applied.segment(tb.v_offset + 6, tb.num_modes()) -= extra_.segment(tb.eta_dot_offset(), tb.num_modes());
   if (!needs_derivative) power = calc_powers(system_, *data_);

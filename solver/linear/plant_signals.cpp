@@ -4,7 +4,7 @@
 
 #include "formats/records/signal_name.hpp"
 #include "solver/linear/plant.hpp"
-#include "solver/system/system.hpp"
+#include "solver/system/derivative.hpp"
 
 namespace bough::solver {
 namespace {
@@ -160,22 +160,20 @@ void Plant::compute(const OperatingPoint& point, const PlantInput* input, double
   if (input && input->actuator >= 0) s.bias[input->actuator] = value;
   if (input && input->signal >= 0) s.shift = value * VectorXd::Unit(s.values.size(), input->signal);
   t_ = point.t;
-  calc_kinematics(system_, *data_, point.t, point.q, calc_speeds(point));
-  set_z(*data_, point.z);
-  add_forces(system_, *data_, point.t);
-  if (input && input->force >= 0) {
-    AppliedForce one = system_.forces[static_cast<size_t>(input->force)];
-    one.function = nullptr;
-    one.direction *= value;
-    one.pattern *= value;
-    one.pattern_K2 *= value;
-    one.pattern_resultant *= value;
-    one.pattern_moment *= value;
-    add_applied_force(one, system_.tree, point.t, data_->tree);
-  } else if (input && input->row >= 0) {
-    data_->tree.hinge_force[input->row] += value;
-  }
-  calc_accelerations(system_, *data_, point.t, u_dot);
+  calc_motion(system_, *data_, point.t, point.q, calc_speeds(point), point.z, u_dot, [&] {
+    if (input && input->force >= 0) {
+      AppliedForce one = system_.forces[static_cast<size_t>(input->force)];
+      one.function = nullptr;
+      one.direction *= value;
+      one.pattern *= value;
+      one.pattern_K2 *= value;
+      one.pattern_resultant *= value;
+      one.pattern_moment *= value;
+      add_applied_force(one, system_.tree, point.t, data_->tree);
+    } else if (input && input->row >= 0) {
+      data_->tree.hinge_force[input->row] += value;
+    }
+  });
 }
 
 std::vector<std::string> Plant::list_cuts() const {

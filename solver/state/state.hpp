@@ -28,13 +28,37 @@ struct Discrete {
   VectorXd memory;  ///< of controllers, sensors and actuators: what they hold between samples and switches
 };
 
+/// Rows of the continuous state x = [q; u; z; work; dissipated].
+///
+/// q: rows of prescribed coordinates are those of their functions. u: likewise; zero where locked. z: of controllers,
+/// actuators and sensors. work: done since the start by what is applied, damped or prescribed; dissipated: taken by
+/// dampers.
+struct StateLayout {
+  int num_q = 0, num_u = 0, num_z = 0;
+  int size() const { return num_q + num_u + num_z + 2; }
+  int work() const { return num_q + num_u + num_z; }
+  int dissipated() const { return work() + 1; }
+};
+
+/// Segments of x.
+template <class X>
+auto get_q(const StateLayout& layout, X&& x) {
+  return x.head(layout.num_q);
+}
+template <class X>
+auto get_u(const StateLayout& layout, X&& x) {
+  return x.segment(layout.num_q, layout.num_u);
+}
+template <class X>
+auto get_z(const StateLayout& layout, X&& x) {
+  return x.segment(layout.num_q + layout.num_u, layout.num_z);
+}
+
+/// Everything that an evaluation depends on.
 struct State {
   double t = 0;
-  VectorXd q;  ///< num_q; rows of prescribed coordinates are those of their functions
-  VectorXd u;  ///< num_u; likewise; zero where locked
-  VectorXd z;  ///< states of controllers
+  VectorXd x;  ///< StateLayout
   Discrete discrete;
-  double work = 0;  ///< done since the start by what is applied, damped or prescribed
 };
 
 }  // namespace bough::solver

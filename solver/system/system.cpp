@@ -86,12 +86,11 @@ void System::calc_initial_state(Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) 
 State System::make_initial_state() const {
   State state;
   state.t = start;
-  state.q.resize(num_q());
-  state.u.resize(num_u());
-  calc_initial_state(state.q, state.u);
+  state.x = VectorXd::Zero(layout().size());
+  calc_initial_state(get_q(layout(), state.x), get_u(layout(), state.x));
   const auto data = make_data();
   state.discrete = get_discrete(*data);
-  state.z = data->signals.z;
+  get_z(layout(), state.x) = data->signals.z;
   state.discrete.memory = data->signals.memory;
   return state;
 }

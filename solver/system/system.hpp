@@ -97,6 +97,7 @@ struct System {
   /// Initial state as the records say; q (num_q), u (num_u).
   void calc_initial_state(Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) const;
   State make_initial_state() const;
+  StateLayout layout() const { return {num_q(), num_u(), num_z()}; }
 };
 
 /// Results and scratch of one thread: of the last state that was evaluated.
@@ -114,10 +115,6 @@ void set_modes(const System& system, SystemData& data, const Discrete& discrete)
 Discrete get_discrete(const SystemData& data);
 /// Returns true if coordinates and constraints have the modes of `discrete`. No allocation.
 bool has_modes(const SystemData& data, const Discrete& discrete);
-/// The whole chain at a state: position, velocity, forces, factor, acceleration, and both derivatives. state.discrete
-/// without modes: as `data` has it. No allocation, unless the modes differ from those of `data`.
-void evaluate(const System& system, const State& state, SystemData& data, Eigen::Ref<VectorXd> q_dot,
-              Eigen::Ref<VectorXd> u_dot);
 
 /// What happens at t where given rates jump: from those just before (functions at `before`, the modes so far) to those
 /// at t (under `modes`, or as they are for nullptr; they stay). Rates of free coordinates get the impulse M⁻¹ of it,

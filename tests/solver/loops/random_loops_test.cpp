@@ -2,6 +2,7 @@
 // the dense [M Gᵀ; G 0], rates along the motion, Newton and Euler of every body.
 #include <gtest/gtest.h>
 
+#include "solver/system/derivative.hpp"
 #include "tests/solver/support/malloc_count.hpp"
 #include "tests/solver/support/models.hpp"
 
@@ -120,13 +121,12 @@ TEST_P(RandomLoops, MultipliersAgreeWithTheDenseEquations) {
   calc_accelerations_dense(s.system, *s.data, 0.3, dense);
   EXPECT_LT((u_dot - dense).norm(), 1e-9 * (1 + dense.norm()));
   // Again, by the page's own chain, and without a memory of the first time.
-  State state;
-  state.t = 0.3;
-  state.q = s.q;
-  state.u = s.u;
-  VectorXd q_dot(s.system.num_q()), again(s.system.num_u());
-  evaluate(s.system, state, *s.data, q_dot, again);
-  EXPECT_LT((u_dot - again).norm(), 1e-11 * (1 + dense.norm()));
+  const StateLayout layout = s.system.layout();
+  VectorXd x = VectorXd::Zero(layout.size()), x_dot = x;
+  get_q(layout, x) = s.q;
+  get_u(layout, x) = s.u;
+  calc_derivative(s.system, *s.data, 0.3, x, x_dot);
+  EXPECT_LT((u_dot - get_u(layout, x_dot)).norm(), 1e-11 * (1 + dense.norm()));
 }
 
 // The responses of the factored tree are M⁻¹Gᵀ of the rows by unit speeds.
@@ -276,17 +276,16 @@ TEST_P(RandomLoops, ForcesThatHoldCoordinatesAreThoseOfTheDenseEquations) {
 
 TEST_P(RandomLoops, AllocateNothing) {
   Looped s = make_looped(GetParam());
-  State state;
-  state.t = 0.3;
-  state.q = s.q;
-  state.u = s.u;
-  VectorXd q_dot(s.system.num_q()), u_dot(s.system.num_u());
-  evaluate(s.system, state, *s.data, q_dot, u_dot);
-  state.q += 1e-7 * q_dot;  // off the constraints
+  const StateLayout layout = s.system.layout();
+  VectorXd x = VectorXd::Zero(layout.size()), x_dot = x;
+  get_q(layout, x) = s.q;
+  get_u(layout, x) = s.u;
+  calc_derivative(s.system, *s.data, 0.3, x, x_dot);
+  get_q(layout, x) += 1e-7 * get_q(layout, x_dot);  // off the constraints
   const long before = get_malloc_count();
   if (before < 0) GTEST_SKIP() << "this build cannot count";
-  evaluate(s.system, state, *s.data, q_dot, u_dot);
-  project(s.system, *s.data, state.t, state.q, state.u);
+  calc_derivative(s.system, *s.data, 0.3, x, x_dot);
+  project(s.system, *s.data, 0.3, get_q(layout, x), get_u(layout, x));
   EXPECT_EQ(get_malloc_count(), before);
 }
 

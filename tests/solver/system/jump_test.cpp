@@ -206,7 +206,7 @@ TEST(SphericalSpring, GoesOnPastHalfATurn) {
   spec.hinges[0].position = {-1, 0, 0, 0};  // as good as 1, 0, 0, 0
   const System system = build(spec);
   auto data = system.make_data();
-  EXPECT_EQ(system.make_initial_state().q[3], 1);
+  EXPECT_EQ(system.make_initial_state().x[3], 1);
   const Vector3d axis = Vector3d(1, 2, 2) / 3;
   VectorXd torque(3), shown(4), rate(3);
   for (const double angle : {3.1, 3.14, 3.15, 3.2, 5.9}) {
