@@ -194,8 +194,7 @@ std::unique_ptr<Block> make_actuator(const records::ActuatorRecord& r, const Sys
   auto made = kind->make(r, keys, place);
   keys.refuse_others();
   if (!is_placed || keys.has_failed() || !made) return nullptr;
-  made->name = r.name;
-  made->path = "/actuators/" + r.name;
+  made->set_name(BlockKind::Actuator, r.name);
   made->label = "actuator '" + r.name + "'";
   made->at = r.at;
   const bool takes_effort = r.type == "hinge" || r.type == "brake";

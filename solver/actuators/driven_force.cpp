@@ -20,8 +20,7 @@ class DrivenForce final : public Block {
 
 std::unique_ptr<Block> make_driven_force(const AppliedForce& force, const SourceLocation& at) {
   auto made = std::make_unique<DrivenForce>(force);
-  made->name = force.name;
-  made->path = "/forces/" + force.name;
+  made->set_name(BlockKind::Force, force.name);
   made->label = "force '" + force.name + "'";
   made->description = "what the force is multiplied by";
   made->dims = "by the signal";

@@ -36,8 +36,7 @@ std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::System
     made->n = system.num_modes(b);
     made->terms = StiffeningTerms::collect(spec, system, record->second, b, false);
     if (made->terms.has_hinges()) with_hinges += (with_hinges.empty() ? "" : ", ") + r.name;
-    made->name = r.name;
-    made->path = "/stiffening/" + r.name;
+    made->set_name(BlockKind::Stiffening, r.name);
     made->label = "lagged stiffening of body '" + r.name + "'";
     made->description =
         "A_I (12), then FCONI, as the step before had them: force and moment at each node with locators, or a "

@@ -101,8 +101,7 @@ std::unique_ptr<Block> make_controller(const records::ControllerRecord& r, const
   }
   made->sizes.sample_time = sample_time;
   made->sizes.delay = delay;
-  made->name = r.name;
-  made->path = "/controllers/" + r.name;
+  made->set_name(BlockKind::Controller, r.name);
   made->label = "controller '" + r.name + "'";
   made->description = "outputs of a controller of type " + r.type;
   made->dims = "by the controller";

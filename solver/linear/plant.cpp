@@ -41,7 +41,7 @@ Plant::Plant(const System& system, bool is_open)
   BOUGH_DEMAND(num_freedoms() == system.num_dofs());
   t_ = system.start;
   for (const auto& p : system.signals.places) {
-    if (is_open && p.block->path.starts_with("/controllers/")) continue;
+    if (is_open && p.block->kind == BlockKind::Controller) continue;
     for (int i = 0; i < p.block->sizes.states; ++i) state_rows_.push_back(p.state + i);
   }
   std::sort(state_rows_.begin(), state_rows_.end());

@@ -9,8 +9,6 @@
 namespace bough::solver {
 namespace {
 
-bool is_of(const Block& block, const char* kind) { return block.path.starts_with(kind); }
-
 /// `name` with component i (from 0) of the block's outputs: names of its description, x y z of three, counts of others.
 std::string name_component(const Block& block, const std::string& name, int i) {
   const int size = block.sizes.outputs;
@@ -47,8 +45,8 @@ void Plant::add_inputs() {
   };
   std::vector<PlantInput> more;
   for (const auto& p : system_.signals.places) {
-    const bool is_signal =
-        is_of(*p.block, "/sensors/") || is_of(*p.block, "/inputs/") || is_of(*p.block, "/controllers/");
+    const bool is_signal = p.block->kind == BlockKind::Sensor || p.block->kind == BlockKind::Input ||
+                           p.block->kind == BlockKind::Controller;
     if (p.actuator >= 0 || !is_signal) continue;
     const std::string name = is_taken(p.block->name) ? p.block->path : p.block->name;
     const int size = p.block->sizes.outputs;
@@ -62,7 +60,7 @@ std::string Plant::find_frozen_law(int i) const {
   if (!is_open_) return "";
   int first = num_sensor_outputs_;
   for (const auto& p : system_.signals.places) {
-    if (!is_of(*p.block, "/controllers/")) continue;
+    if (p.block->kind != BlockKind::Controller) continue;
     const int size = p.block->sizes.outputs;
     if (i >= first && i < first + size)
       return p.block->sizes.states + p.block->sizes.memory > 0 ? p.block->name : std::string();
@@ -72,15 +70,15 @@ std::string Plant::find_frozen_law(int i) const {
 }
 
 void Plant::add_outputs() {
-  for (const char* kind : {"/sensors/", "/controllers/", "/actuators/"}) {
+  for (const BlockKind kind : {BlockKind::Sensor, BlockKind::Controller, BlockKind::Actuator}) {
     for (const auto& p : system_.signals.places) {
-      if (!is_of(*p.block, kind)) continue;
+      if (p.block->kind != kind) continue;
       for (int i = 0; i < p.block->sizes.outputs; ++i) {
         outputs_.name.push_back(name_component(*p.block, p.block->name, i));
         outputs_.dims.push_back(p.block->dims);
       }
     }
-    if (std::string_view(kind) == "/sensors/") num_sensor_outputs_ = outputs_.size();
+    if (kind == BlockKind::Sensor) num_sensor_outputs_ = outputs_.size();
   }
   for (const auto& p : system_.signals.places) {
     const int n = p.actuator >= 0 ? p.block->sizes.inputs : 0;
@@ -134,13 +132,13 @@ VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, d
   const SignalData& s = data_->signals;
   int at = n + nz;
   for (const auto& p : signals.places) {
-    if (!is_of(*p.block, "/sensors/")) continue;
+    if (p.block->kind != BlockKind::Sensor) continue;
     signals.calc_ideal(p, system_, *data_, out.data() + at);
     at += p.block->sizes.outputs;
   }
-  for (const char* kind : {"/controllers/", "/actuators/"}) {
+  for (const BlockKind kind : {BlockKind::Controller, BlockKind::Actuator}) {
     for (const auto& p : signals.places) {
-      if (!is_of(*p.block, kind)) continue;
+      if (p.block->kind != kind) continue;
       for (int i = 0; i < p.block->sizes.outputs; ++i)
         out[at++] = s.values[p.out + i] - (s.shift.size() > 0 ? s.shift[p.out + i] : 0);
     }
@@ -194,9 +192,9 @@ Plant::Cut Plant::find_cut(const std::string& name) const {
   const PlantInput& input = inputs_[static_cast<size_t>(cut.input)];
   // Sensors, controllers and actuators each in the order of the file, as add_outputs has them.
   int at = 0;
-  for (const char* kind : {"/sensors/", "/controllers/", "/actuators/"}) {
+  for (const BlockKind kind : {BlockKind::Sensor, BlockKind::Controller, BlockKind::Actuator}) {
     for (const auto& p : system_.signals.places) {
-      if (!is_of(*p.block, kind)) continue;
+      if (p.block->kind != kind) continue;
       if (input.signal >= p.out && input.signal < p.out + p.block->sizes.outputs)
         cut.output = at + input.signal - p.out;
       at += p.block->sizes.outputs;
@@ -300,8 +298,9 @@ SampleTimes Plant::find_hold(const PlantInput& input) const {
     if (p == nullptr) return {0, -1};
     const BlockSizes& sizes = p->block->sizes;
     if (p->is_sampled()) return {signals.start + sizes.delay, sizes.sample_time};
-    if (is_of(*p->block, "/signals/")) return {};
-    if (is_of(*p->block, "/sensors/") || is_of(*p->block, "/actuators/") || sizes.states > 0) return {0, -1};
+    if (p->block->kind == BlockKind::Function) return {};
+    if (p->block->kind == BlockKind::Sensor || p->block->kind == BlockKind::Actuator || sizes.states > 0)
+      return {0, -1};
     SampleTimes all;
     for (const int source : p->sources) {
       const SampleTimes one = look(source);

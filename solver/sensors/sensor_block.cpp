@@ -122,8 +122,7 @@ std::unique_ptr<Block> make_sensor_block(const Sensors::Entry& entry, const reco
   SensorBlock& s = *made;
   Reader reader(r, diagnostics);
   s.entry = entry;
-  s.name = r.name;
-  s.path = "/sensors/" + r.name;
+  s.set_name(BlockKind::Sensor, r.name);
   s.label = "sensor '" + r.name + "'";
   s.description = entry.description;
   s.dims = entry.dims;

@@ -2,6 +2,18 @@
 
 namespace bough::solver {
 
+const char* get_folder(BlockKind kind) {
+  static constexpr const char* folders[] = {"/signals/",   "/inputs/", "/sensors/",   "/controllers/",
+                                            "/actuators/", "/forces/", "/stiffening/"};
+  return folders[static_cast<std::size_t>(kind)];
+}
+
+void Block::set_name(BlockKind block_kind, const std::string& block_name) {
+  kind = block_kind;
+  name = block_name;
+  path = get_folder(kind) + name;
+}
+
 void Block::start(double*, double*) const {}
 bool Block::settle(const BlockInput&, double*) const { return false; }
 void Block::calc_ideal(const BlockInput& in, double* y) const { calc_outputs(in, y); }

@@ -42,11 +42,20 @@ struct BlockSizes {
   double delay = 0;                 ///< sampled: between the sample and its appearance at the outputs
 };
 
+/// Of the folder of the results that its outputs are in.
+enum class BlockKind : unsigned char { Function, Input, Sensor, Controller, Actuator, Force, Stiffening };
+
+/// "/sensors/" of BlockKind::Sensor.
+const char* get_folder(BlockKind kind);
+
 class Block {
  public:
   virtual ~Block() = default;
   LawOwner as_owner() const { return {this, "", label}; }
+  /// Sets kind, name and path.
+  void set_name(BlockKind block_kind, const std::string& block_name);
 
+  BlockKind kind = BlockKind::Function;
   std::string name, path;         ///< as "pid", "/controllers/pid"
   std::string label;              ///< "controller 'pid'", for messages
   std::string description, dims;  ///< of the outputs, for the results

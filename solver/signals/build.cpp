@@ -59,7 +59,7 @@ class Builder {
     const Sensors sensors = Sensors::build(system_, spec_, diagnostics_);
     for (size_t i = 0; i < sensors.entries().size(); ++i) {
       const auto& entry = sensors.entries()[i];
-      sources_.list.push_back({entry.name, "/sensors/" + entry.name, entry.size,
+      sources_.list.push_back({entry.name, get_folder(BlockKind::Sensor) + entry.name, entry.size,
                                add(make_sensor_block(entry, spec_.sensors[i], diagnostics_), {})});
     }
   }
@@ -70,16 +70,18 @@ class Builder {
         diagnostics_.warning("control.units", r.at,
                              "input '" + r.name + "': dims \"" + r.dims + "\" is no dimension that can be read",
                              "write powers of M, L, T and F, as \"F L\" or \"L/T^2\"");
-      sources_.list.push_back({r.name, "/inputs/" + r.name, 1, add(std::make_unique<InputBlock>(r), {})});
+      sources_.list.push_back(
+          {r.name, get_folder(BlockKind::Input) + r.name, 1, add(std::make_unique<InputBlock>(r), {})});
     }
   }
 
   void declare() {
     for (const auto& r : spec_.controllers)
-      sources_.list.push_back({r.name, "/controllers/" + r.name, find_outputs(r), -1});
+      sources_.list.push_back({r.name, get_folder(BlockKind::Controller) + r.name, find_outputs(r), -1});
     for (const auto& r : spec_.actuators)
-      sources_.list.push_back({r.name, "/actuators/" + r.name, find_actuator_outputs(r.type), -1});
-    for (const auto& r : spec_.functions) sources_.list.push_back({r.name, "/signals/" + r.name, 1, -1});
+      sources_.list.push_back({r.name, get_folder(BlockKind::Actuator) + r.name, find_actuator_outputs(r.type), -1});
+    for (const auto& r : spec_.functions)
+      sources_.list.push_back({r.name, get_folder(BlockKind::Function) + r.name, 1, -1});
   }
 
   int add(std::unique_ptr<const Block> block, std::vector<Wire> wires) {
@@ -145,7 +147,7 @@ class Builder {
     }
     auto block = make_controller(r, wiring, diagnostics_);
     if (!block) return;
-    Source& source = sources_.at_path("/controllers/" + r.name);
+    Source& source = sources_.at_path(get_folder(BlockKind::Controller) + r.name);
     source.size = block->sizes.outputs;
     source.place = add(std::move(block), wires);
     records_.resize(wires_.size(), nullptr);
@@ -160,7 +162,9 @@ class Builder {
       std::vector<Wire> wires;
       const auto use = uses.actuators.find(r.name);
       if (use != uses.actuators.end() && !wire_scalar(use->second, user, takes, wires)) continue;
-      if (block) sources_.at_path("/actuators/" + r.name).place = add_driver(std::move(block), std::move(wires));
+      if (block)
+        sources_.at_path(get_folder(BlockKind::Actuator) + r.name).place =
+            add_driver(std::move(block), std::move(wires));
     }
   }
 
@@ -207,7 +211,7 @@ class Builder {
         using records::EventAction;
         return e.target == r.name && (e.action == EventAction::Enable || e.action == EventAction::Disable);
       };
-      const int place = sources_.at_path("/controllers/" + r.name).place;
+      const int place = sources_.at_path(get_folder(BlockKind::Controller) + r.name).place;
       if (place < 0 || (r.active && std::none_of(spec_.events.begin(), spec_.events.end(), switches))) continue;
       BlockPlace& p = system_.signals.places[static_cast<size_t>(place)];
       p.activity = 0;  // a row, once they are laid out
@@ -222,8 +226,7 @@ class Builder {
     if (found == functions_.end() || found->second == nullptr) return -1;  // or a controller that could not be made
     const TimeFunction* f = found->second;
     auto block = std::make_unique<FunctionBlock>(f);
-    block->name = source.name;
-    block->path = source.path;
+    block->set_name(BlockKind::Function, source.name);
     block->label = "function '" + source.name + "'";
     block->description = "function of time";
     block->dims = "by the function";

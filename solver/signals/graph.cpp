@@ -236,7 +236,7 @@ bool SignalGraph::sample(const System& system, SystemData& data, double close) c
       BlockInput in = look(p, system, data);
       in.sample = calc_first_number(start, period) + k;
       const int slot = p.queue_length > 0 ? p.queue + n * static_cast<int>(k % p.queue_length) : p.held;
-      if (s.is_ideal && p.block->path.starts_with("/sensors/"))
+      if (s.is_ideal && p.block->kind == BlockKind::Sensor)
         p.block->calc_ideal(in, s.memory.data() + slot);
       else
         p.block->calc_outputs(in, s.memory.data() + slot);
@@ -271,7 +271,7 @@ void SignalGraph::resample(const System& system, SystemData& data) const {
     } else {
       BlockInput in = look(p, system, data);
       in.sample = std::lround(data.tree.t / p.block->sizes.sample_time);
-      if (p.block->path.starts_with("/sensors/")) {
+      if (p.block->kind == BlockKind::Sensor) {
         p.block->calc_ideal(in, held.data());  // its walk is noise
       } else {
         p.block->calc_outputs(in, held.data());

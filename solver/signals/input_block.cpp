@@ -6,8 +6,7 @@ namespace bough::solver {
 
 InputBlock::InputBlock(const records::InputRecord& record)
     : start_(record.start), is_linear_(record.hold == records::InputHold::Linear) {
-  name = record.name;
-  path = "/inputs/" + record.name;
+  set_name(BlockKind::Input, record.name);
   label = "input '" + record.name + "'";
   description = "set from outside";
   dims = record.dims.empty() ? "by the host" : record.dims;
