@@ -240,6 +240,9 @@ std::string format_linear_model(const LinearModel& model) {
   if (model.sample_time > 0)
     text += fmt::format("from sample to sample, every {:g}: x+ = A x + B u; of a pole z there is ln z / {:g}\n\n",
                         model.sample_time, model.sample_time);
+  if (model.sample_time > 0 && model.inputs.size() > 1)
+    text += fmt::format("lifted: {} values at the cut in that time, {} to {}\n\n", model.inputs.size(),
+                        model.inputs.name.front(), model.inputs.name.back());
   text += format_operating_point(model);
   Table table{{"pole", "real", "imag", "frequency Hz", "damping", "mode", "with"}, {}};
   const auto& poles = model.poles;

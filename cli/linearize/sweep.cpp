@@ -26,8 +26,21 @@ std::string name_branch(const LinearSweep& sweep, Index b) {
   return first == last ? first : first + " -> " + last;
 }
 
-/// Of a pair the one above, and what has no frequency all along.
-bool is_shown(const LinearSweep& sweep, Index b) { return sweep.imag.col(b).sum() >= 0; }
+/// Of a pair the one above, and what has no frequency all along; of sampled models no pole at z = 0.
+bool is_shown(const LinearSweep& sweep, Index b) { return sweep.imag.col(b).sum() >= 0 && !records::is_gone(sweep, b); }
+
+/// Poles of sampled models at z = 0 all along.
+std::string format_gone(const LinearSweep& sweep) {
+  std::size_t num_gone = 0;
+  for (Index b = 0; b < sweep.real.cols(); ++b) num_gone += records::is_gone(sweep, b) ? 1 : 0;
+  return num_gone > 0 ? fmt::format("and {} at z = 0: gone within a sample\n", count(num_gone, "pole")) : "";
+}
+
+/// Returns true if a branch is at z = 0 at one of the values k - 1 and k of a sampled sweep.
+bool is_gone_near(const LinearSweep& sweep, Index k, Index b) {
+  return sweep.models.front().sample_time > 0 &&
+         (records::calc_z(sweep, k, b) == 0.0 || records::calc_z(sweep, k - 1, b) == 0.0);
+}
 
 /// Whether another pole is the same: which vectors belong to such is chance.
 bool is_repeated(const LinearSweep& sweep, Index k, Index b) {
@@ -44,7 +57,7 @@ void warn_jumps(const LinearSweep& sweep, const std::string& file, Diagnostics& 
     for (Index b = 0; b < sweep.correlation.cols(); ++b) {
       // Poles at 0 and real poles that meet have no vectors of their own.
       if (sweep.correlation(k, b) > kRecognized || !(sweep.imag(k, b) > 0) || !(sweep.imag(k - 1, b) > 0)) continue;
-      if (is_repeated(sweep, k, b) || is_repeated(sweep, k - 1, b)) continue;
+      if (is_repeated(sweep, k, b) || is_repeated(sweep, k - 1, b) || is_gone_near(sweep, k, b)) continue;
       diagnostics.warning(
           "linear.sweep-jump", {file},
           fmt::format("from {} = {:g} to {:g} a motion of {} changes too much to be recognized (correlation {:.2f})",
@@ -96,10 +109,13 @@ LinearSweep make_sweep(const std::string& name, const std::vector<double>& value
   sweep.value = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Index>(values.size()));
   for (const double value : values) {
     sweep.models.push_back(linearize(value));
-    if (sweep.models.back().states.name != sweep.models.front().states.name)
-      throw ComputationError("linear.sweep-states", {file},
-                             fmt::format("the model at {} = {:g} has other states than the first", name, value),
-                             "sweep where the system stays the same");
+    const auto &first = sweep.models.front(), &last = sweep.models.back();
+    if (last.states.name != first.states.name || last.inputs.name != first.inputs.name ||
+        (last.sample_time > 0) != (first.sample_time > 0))
+      throw ComputationError(
+          "linear.sweep-states", {file},
+          fmt::format("the model at {} = {:g} has other states or inputs than the first", name, value),
+          "sweep where the system stays the same");
   }
   statespace::track_poles(sweep);
   warn_jumps(sweep, file, diagnostics);
@@ -112,16 +128,19 @@ nlohmann::json make_json(const LinearSweep& sweep) {
     for (Index i = 0; i < m.rows(); ++i) rows.push_back(std::vector<double>(m.row(i).begin(), m.row(i).end()));
     return rows;
   };
-  return {{"parameter", sweep.parameter},
-          {"value", std::vector<double>(sweep.value.begin(), sweep.value.end())},
-          {"states", sweep.models.front().states.name},
-          {"poles",
-           {{"real", to_rows(sweep.real)},
-            {"imag", to_rows(sweep.imag)},
-            {"frequency_hz", to_rows(sweep.frequency_hz)},
-            {"damping", to_rows(sweep.damping)},
-            {"correlation", to_rows(sweep.correlation)},
-            {"mode", sweep.mode}}}};
+  nlohmann::json json{{"parameter", sweep.parameter},
+                      {"value", std::vector<double>(sweep.value.begin(), sweep.value.end())},
+                      {"states", sweep.models.front().states.name},
+                      {"poles",
+                       {{"real", to_rows(sweep.real)},
+                        {"imag", to_rows(sweep.imag)},
+                        {"frequency_hz", to_rows(sweep.frequency_hz)},
+                        {"damping", to_rows(sweep.damping)},
+                        {"correlation", to_rows(sweep.correlation)},
+                        {"mode", sweep.mode}}}};
+  if (sweep.models.front().sample_time > 0)
+    for (const auto& model : sweep.models) json["sample_time"].push_back(model.sample_time);
+  return json;
 }
 
 std::string format_sweep(const LinearSweep& sweep) {
@@ -130,6 +149,10 @@ std::string format_sweep(const LinearSweep& sweep) {
       fmt::format("{} of {} from {:g} to {:g}: {} states, {} inputs, {} outputs\n\n",
                   count(sweep.models.size(), "model"), sweep.parameter, sweep.value[0],
                   sweep.value[sweep.value.size() - 1], first.states.size(), first.inputs.size(), last.outputs.size());
+  if (first.sample_time > 0)
+    text += fmt::format("from sample to sample, every {:g}{}: of a pole z there is ln z over that time\n\n",
+                        first.sample_time,
+                        last.sample_time != first.sample_time ? fmt::format(" to {:g}", last.sample_time) : "");
   Table table{{"branch", "from Hz", "to Hz", "damping from", "to", "largest real", "mode"}, {}};
   const Index end = sweep.value.size() - 1;
   for (Index b = 0; b < sweep.real.cols(); ++b) {
@@ -141,7 +164,7 @@ std::string format_sweep(const LinearSweep& sweep) {
                           fmt::format("{:.4g}", sweep.damping(end, b)),
                           fmt::format("{:.3g} at {:g}", most, sweep.value[worst]), name_branch(sweep, b)});
   }
-  return text + table.to_text();
+  return text + table.to_text() + format_gone(sweep);
 }
 
 std::string make_sweep_csv(const LinearSweep& sweep) {

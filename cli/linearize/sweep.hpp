@@ -19,7 +19,7 @@ struct SweepRange {
 SweepRange parse_sweep(const std::string& text);
 
 /// One model a value, their poles followed. Throws ComputationError("linear.sweep-states") where a model has other
-/// states than the first; reports "linear.sweep-jump" (warning) where a motion is not recognized in the next.
+/// states or inputs than the first; reports "linear.sweep-jump" (warning) where a motion is not recognized in the next.
 records::LinearSweep make_sweep(const std::string& name, const std::vector<double>& values,
                                 const std::function<records::LinearModel(double)>& linearize, const std::string& file,
                                 Diagnostics& diagnostics);

@@ -85,6 +85,23 @@ int find_conjugate(const records::LinearSweep& sweep, Index b, const std::vector
   return -1;
 }
 
+/// Points of the locus, values x branches: in the s plane, of sampled models in the z plane.
+struct Locus {
+  Eigen::MatrixXd x, y;
+};
+
+Locus make_locus(const records::LinearSweep& sweep) {
+  Locus locus{sweep.real, sweep.imag};
+  if (sweep.models.front().sample_time == 0) return locus;
+  for (Index k = 0; k < sweep.real.rows(); ++k)
+    for (Index b = 0; b < sweep.real.cols(); ++b) {
+      const auto z = records::calc_z(sweep, k, b);
+      locus.x(k, b) = z.real();
+      locus.y(k, b) = z.imag();
+    }
+  return locus;
+}
+
 void add_sweep(const records::LinearSweep& sweep, const std::string& kind, const std::string& prefix, Plot& plot) {
   if (kind == "campbell") plot.x_label = sweep.parameter;
   const double largest = sweep.frequency_hz.size() > 0 ? sweep.frequency_hz.maxCoeff() : 0;
@@ -96,13 +113,15 @@ void add_sweep(const records::LinearSweep& sweep, const std::string& kind, const
     const int number = ++count_of[name];
     return number > 1 ? fmt::format("{} ({})", name, number) : name;
   };
+  const Locus locus = make_locus(sweep);
   const auto draw = [&](Index b, const std::string& name, int style) {
     if (kind == "locus")
-      plot.curves.push_back({name, sweep.real.col(b), sweep.imag.col(b), false, style});
+      plot.curves.push_back({name, locus.x.col(b), locus.y.col(b), false, style});
     else
       plot.curves.push_back({name, sweep.value, sweep.frequency_hz.col(b), false, style});
   };
   const auto stands_at_zero = [&](Index b) {
+    if (records::is_gone(sweep, b)) return true;
     return kind == "campbell" && sweep.frequency_hz.col(b).maxCoeff() <= 1e-9 * largest;
   };
   std::vector<Index> upper, lower;
@@ -124,8 +143,9 @@ void add_sweep(const records::LinearSweep& sweep, const std::string& kind, const
     if (!is_drawn && !stands_at_zero(b)) draw(b, style >= 0 ? "" : make_name(b), style);
   }
   if (kind != "locus") return;
-  plot.curves.push_back({fmt::format("{}{} = {:g}", prefix, sweep.parameter, sweep.value[0]), sweep.real.row(0),
-                         sweep.imag.row(0), true});
+  plot.curves.push_back(
+      {fmt::format("{}{} = {:g}", prefix, sweep.parameter, sweep.value[0]), locus.x.row(0), locus.y.row(0), true});
+  if (sweep.models.front().sample_time > 0) report::make_z_plane(plot);
 }
 
 }  // namespace

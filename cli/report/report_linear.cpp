@@ -17,9 +17,8 @@ using report::Verdict;
 
 report::Chapter make_linear_chapter(const std::string& file) {
   const auto model = hdf5::read_linear_model(file);
-  report::LinearFindings findings{{}, {}, {}, model.inputs.size() == 1 && model.outputs.size() == 1};
+  report::LinearFindings findings{{}, {}, {}, records::is_cut_loop(model)};
   if (model.inputs.size() > 0 && model.outputs.size() > 0) {
-    findings.has_margins = findings.has_margins && model.outputs.name.front().ends_with(":return");
     statespace::FrequencyRange range{0, 0, 300, 2000};
     if (findings.has_margins) range = statespace::widen_for_loop(model, range);
     findings.response = statespace::calc_frequency_response(model, range);
@@ -67,11 +66,18 @@ report::Chapter make_sweep_chapter(const std::string& file) {
   chapter.facts.emplace_back("states", std::to_string(branches));
   const double largest = std::max(sweep.real.cwiseAbs().maxCoeff(), sweep.imag.cwiseAbs().maxCoeff());
   std::vector<bool> is_unstable;
-  for (Index k = 0; k < count; ++k) is_unstable.push_back(sweep.real.row(k).maxCoeff() > 1e-6 * largest);
+  for (Index k = 0; k < count; ++k) {
+    // Poles gone within a sample are the logarithm of round-off: of sampled models 1 / T is the scale.
+    const double sample_time = sweep.models[static_cast<std::size_t>(k)].sample_time;
+    const double scale = sample_time > 0 ? 1 / sample_time : largest;
+    is_unstable.push_back(sweep.real.row(k).maxCoeff() > 1e-6 * scale);
+  }
+  const bool is_sampled = sweep.models.front().sample_time > 0;
   const auto unstable = std::count(is_unstable.begin(), is_unstable.end(), true);
-  chapter.checks.push_back({"values with poles in the right half plane", std::to_string(unstable),
-                            unstable > 0 ? Verdict::Warning : Verdict::Good,
-                            unstable > 0 ? sweep.parameter + " = " + list_ranges(sweep.value, is_unstable) : ""});
+  chapter.checks.push_back(
+      {is_sampled ? "values with poles outside the unit circle" : "values with poles in the right half plane",
+       std::to_string(unstable), unstable > 0 ? Verdict::Warning : Verdict::Good,
+       unstable > 0 ? sweep.parameter + " = " + list_ranges(sweep.value, is_unstable) : ""});
   if (count > 1) {
     const double least = sweep.correlation.bottomRows(count - 1).minCoeff();
     chapter.checks.push_back(
@@ -93,7 +99,7 @@ report::Chapter make_sweep_chapter(const std::string& file) {
                                                                              {"least"},
                                                                              {"at " + sweep.parameter}});
   for (Index b = 0; b < branches; ++b) {
-    if (sweep.imag.col(b).sum() < 0) continue;  // of a pair one
+    if (sweep.imag.col(b).sum() < 0 || records::is_gone(sweep, b)) continue;  // of a pair one
     Index at = 0;
     const double least = sweep.damping.col(b).minCoeff(&at);
     const auto k = static_cast<std::size_t>(b);

@@ -53,20 +53,25 @@ void write_sweep(const records::LinearSweep& sweep, const std::string& path) {
   write_signals(file, "/states", first.states, "states: displacements of the freedoms, then their rates");
   write_signals(file, "/inputs", first.inputs, "inputs");
   write_signals(file, "/outputs", first.outputs, "outputs");
-  write_stack(file, "/A", sweep.models, &LinearModel::A, "x_dot = A x + B u");
-  write_stack(file, "/B", sweep.models, &LinearModel::B, "x_dot = A x + B u");
+  const bool is_sampled = first.sample_time > 0;
+  const std::string law = is_sampled ? "x+ = A x + B u" : "x_dot = A x + B u";
+  write_stack(file, "/A", sweep.models, &LinearModel::A, law);
+  write_stack(file, "/B", sweep.models, &LinearModel::B, law);
   write_stack(file, "/C", sweep.models, &LinearModel::C, "y = C x + D u");
   write_stack(file, "/D", sweep.models, &LinearModel::D, "y = C x + D u");
   const auto np = static_cast<Index>(sweep.models.size());
   MatrixXd q(np, first.q.size()), u(np, first.u.size());
-  Eigen::VectorXd time(np), residual(np);
+  Eigen::VectorXd time(np), residual(np), sample_time(np);
   for (Index k = 0; k < np; ++k) {
     const auto& model = sweep.models[static_cast<std::size_t>(k)];
     q.row(k) = model.q.transpose();
     u.row(k) = model.u.transpose();
     time[k] = model.time;
     residual[k] = model.residual;
+    sample_time[k] = model.sample_time;
   }
+  if (is_sampled)
+    file.write_vector("/sample_time", sample_time, {"x+ = A x + B u, y = C x + D u; poles are ln z over it", "T"});
   file.write_vector("/operating_point/time", time, {"time of each point", "T"});
   file.write_matrix("/operating_point/q", q, {"point, position (quaternions w, x, y, z)", "1 or L"});
   file.write_matrix("/operating_point/u", u, {"point, speed", "1/T or L/T"});
@@ -113,6 +118,11 @@ records::LinearSweep read_sweep(const std::string& path) {
   sweep.damping = file.read_matrix("/poles/damping", np, nx);
   sweep.correlation = file.read_matrix("/poles/correlation", np, nx);
   const auto start = file.read_strings("/poles/mode_first", nx), end = file.read_strings("/poles/mode_last", nx);
+  if (file.has("/sample_time")) {
+    const auto sample_time = file.read_vector("/sample_time", np);
+    for (long k = 0; k < sample_time.size(); ++k)
+      sweep.models[static_cast<std::size_t>(k)].sample_time = sample_time[k];
+  }
   file.throw_if_errors();
   sweep.mode.assign(static_cast<std::size_t>(np), start);
   if (np > 1) sweep.mode.back() = end;

@@ -1,16 +1,40 @@
-#include "formats/records/linear_model.hpp"
+#include "formats/records/linear_sweep.hpp"
 
 #include <algorithm>
 #include <numbers>
 
 namespace bough::records {
 
-std::complex<double> calc_z(const LinearModel& model, Eigen::Index i) {
-  const auto z = std::exp(std::complex<double>(model.poles.real[i], model.poles.imag[i]) * model.sample_time);
+namespace {
+
+std::complex<double> calc_z(double real, double imag, double sample_time) {
+  const auto z = std::exp(std::complex<double>(real, imag) * sample_time);
   return std::abs(z) < kGone ? 0.0 : z;
 }
 
+}  // namespace
+
+std::complex<double> calc_z(const LinearModel& model, Eigen::Index i) {
+  return calc_z(model.poles.real[i], model.poles.imag[i], model.sample_time);
+}
+
+std::complex<double> calc_z(const LinearSweep& sweep, Eigen::Index k, Eigen::Index b) {
+  return calc_z(sweep.real(k, b), sweep.imag(k, b), sweep.models[static_cast<std::size_t>(k)].sample_time);
+}
+
+bool is_gone(const LinearSweep& sweep, Eigen::Index b) {
+  for (Eigen::Index k = 0; k < sweep.value.size(); ++k)
+    if (sweep.models[static_cast<std::size_t>(k)].sample_time == 0 || calc_z(sweep, k, b) != 0.0) return false;
+  return true;
+}
+
 bool is_gone(const LinearModel& model, Eigen::Index i) { return model.sample_time > 0 && calc_z(model, i) == 0.0; }
+
+bool is_cut_loop(const LinearModel& model) {
+  const auto& names = model.outputs.name;
+  return !names.empty() && model.inputs.size() == model.outputs.size() &&
+         std::all_of(names.begin(), names.end(), [](const std::string& name) { return name.ends_with(":return"); });
+}
 
 double calc_origin_radius(const Poles& poles, Eigen::Index i) {
   constexpr double kRounding = 1e-12 * 2 * std::numbers::pi;

@@ -95,6 +95,9 @@ std::complex<double> calc_z(const LinearModel& model, Eigen::Index i);
 /// Returns true for poles at z = 0 of a sampled model: their λ is the logarithm of round-off.
 bool is_gone(const LinearModel& model, Eigen::Index i);
 
+/// Returns true for the loop transfer of a cut, one value or, of a lifted loop, several: outputs "NAME:return".
+bool is_cut_loop(const LinearModel& model);
+
 /// The same model of second order. Empty where the model has no mass matrix or is one from sample to sample.
 SecondOrder make_second_order(const LinearModel& model);
 

@@ -15,4 +15,9 @@ struct LinearSweep {
   std::vector<std::vector<std::string>> mode;  ///< np of nx: the coordinate that takes part most
 };
 
+/// z = exp(λ sample_time) of branch b at value k of a sampled sweep; 0 where it is gone.
+std::complex<double> calc_z(const LinearSweep& sweep, Eigen::Index k, Eigen::Index b);
+/// Returns true for branches of a sampled sweep at z = 0 all along: their λ is the logarithm of round-off.
+bool is_gone(const LinearSweep& sweep, Eigen::Index b);
+
 }  // namespace bough::records

@@ -116,11 +116,18 @@ records::Poles round_poles(const records::Poles& poles) {
   return rounded;
 }
 
+void make_z_plane(Plot& plot) {
+  plot.x_label = "real part of z";
+  plot.y_label = "imaginary part of z";
+  plot.is_equal = true;
+  add_z_grid(plot);
+  open_range(plot);
+}
+
 Plot make_pole_plot(const std::vector<std::pair<std::string, const LinearModel*>>& models) {
   const bool is_z =
       std::all_of(models.begin(), models.end(), [](const auto& named) { return named.second->sample_time > 0; });
-  Plot plot{"", is_z ? "real part of z" : "real part [1/T]", is_z ? "imaginary part of z" : "imaginary part [1/T]", {}};
-  plot.is_equal = is_z;
+  Plot plot{"", "real part [1/T]", "imaginary part [1/T]", {}};
   for (const auto& [name, model] : models) {
     const std::string prefix = name.empty() ? "" : name + " ";
     is_z ? add_z_poles(prefix, *model, plot) : add_s_poles(prefix, *model, plot);
@@ -135,12 +142,7 @@ Plot make_pole_plot(const std::vector<std::pair<std::string, const LinearModel*>
       add_count(poles, 0, 0, 1e-9 * largest, "at 0", plot);
     }
   }
-  if (is_z) {
-    add_z_grid(plot);
-    open_range(plot);
-  } else {
-    add_s_grid(plot);
-  }
+  is_z ? make_z_plane(plot) : add_s_grid(plot);
   return plot;
 }
 

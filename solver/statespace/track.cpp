@@ -99,7 +99,9 @@ void track_poles(records::LinearSweep& sweep) {
       Index best = -1;
       double least = 0;
       for (Index i = 0; i < nx; ++i) {
-        const double far = std::abs(rough - std::complex<double>(model.poles.real[i], model.poles.imag[i]));
+        const auto pole = model.sample_time > 0 ? records::calc_z(model, i)
+                                                : std::complex<double>(model.poles.real[i], model.poles.imag[i]);
+        const double far = std::abs(rough - pole);
         if (is_used[static_cast<std::size_t>(i)] || (best >= 0 && far >= least)) continue;
         best = i, least = far;
       }

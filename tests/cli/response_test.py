@@ -500,7 +500,6 @@ class SampledLoop(LinearTest):
         exact = np.array([self.calc(0.04, w) for w in omega])  # at the instants of the law it is the same angle
         self.assertLess(np.abs(L / exact - 1).max(), 1e-8)
         self.fails(1, "linearize", "axis.toml", "--break", "angle", says=["0.05", "0.1"], error="linear.slower-samples")
-        self.fails(1, "linearize", "axis.toml", "--break", "law", "--sweep", "kp=1:2:3", error="linear.sampled-sweep")
 
     def test_a_cut_that_moves_between_samples_is_told(self):
         self.write_axis()
