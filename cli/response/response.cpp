@@ -141,6 +141,7 @@ int run_response(const ResponseOptions& o) {
                      fmt::format("frequencies from {:g} to {:g} are none", o.range.from_hz, o.range.to_hz),
                      "give --to above --from");
   auto model = hdf5::read_linear_model(o.file);
+  const int num_cut = records::is_cut_loop(model) ? model.inputs.size() : 0;
   model = choose_channels(std::move(model), o.inputs, o.outputs, o.file);
   Diagnostics diagnostics;
   if (const double worst = std::max(model.error, model.difference); worst > kMaxUncertainty)
@@ -153,12 +154,13 @@ int run_response(const ResponseOptions& o) {
     throw InputError("linear.no-channels", {o.file}, "the model has no input or no output",
                      "name some with --inputs and --outputs of bough linearize");
   const bool is_single = model.inputs.size() == 1 && model.outputs.size() == 1;
-  if (o.is_loop && !is_single)
+  const bool is_cut = num_cut > 0 && model.inputs.size() == num_cut && model.outputs.size() == num_cut;
+  if (o.is_loop && !is_single && !is_cut)
     throw InputError("linear.no-loop", {o.file},
                      fmt::format("a loop has one input and one output, this model has {} and {}", model.inputs.size(),
                                  model.outputs.size()),
                      "choose them with --inputs and --outputs");
-  const bool is_loop = is_single && (o.is_loop || model.outputs.name.front().ends_with(":return"));
+  const bool is_loop = is_cut || (is_single && o.is_loop);
   auto response =
       statespace::calc_frequency_response(model, is_loop ? statespace::widen_for_loop(model, o.range) : o.range);
   response.source = calc_sources({o.file});

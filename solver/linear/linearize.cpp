@@ -134,19 +134,35 @@ MatrixXd take_rows(const MatrixXd& m, int first, const std::vector<int>& rows) {
   return taken;
 }
 
+/// Names of the N values at a cut within a period of all samples: "law@1" to "law@N"; the name itself of one.
+records::Signals name_values(const std::string& name, const std::string& dims, Eigen::Index count) {
+  records::Signals signals;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    signals.name.push_back(count == 1 ? name : name + "@" + std::to_string(i + 1));
+    signals.dims.push_back(dims);
+  }
+  return signals;
+}
+
 /// d behind the cut is u in place of what comes back, c = C x + D d: d = u, y = -c. What comes back at once would be
-/// an algebraic loop when closed, which no system has: D is rounding.
+/// an algebraic loop when closed, which no system has: the diagonal of D is rounding. Below it a lifted loop has what
+/// earlier values of the same period bring back: C and D by forward substitution.
 void open_cut(LinearModel& model, const std::string& name) {
-  const double back = 1 + model.D(0, 0);
-  const MatrixXd B = model.B / back, C = model.C / back;
+  const VectorXd back = 1 + model.D.diagonal().array();
+  const MatrixXd below = back.cwiseInverse().asDiagonal() * model.D;
+  const auto unit = below.triangularView<Eigen::UnitLower>();
+  const auto divide = [&back](const MatrixXd& m) -> MatrixXd { return m.array().colwise() / back.array(); };
+  const MatrixXd B = unit.solve<Eigen::OnTheRight>(model.B).array().rowwise() / back.transpose().array();
+  const MatrixXd C = unit.solve(divide(model.C)), D = unit.solve(divide(model.D));
   // What comes back is taken off the rows that it drives: rounding is left of what was there by the loop alone.
   const MatrixXd taken = B * model.C, sum = model.A.cwiseAbs() + taken.cwiseAbs();
   model.A -= taken;
   model.A = (model.A.array().abs() > 1e-13 * sum.array()).select(model.A, 0.0);
   model.B = B;
   model.C = -C;
-  model.D /= -back;
-  model.outputs.name = {name + ":return"};
+  model.D = -D;
+  model.outputs.name = name_values(name, "", model.outputs.size()).name;
+  for (auto& output : model.outputs.name) output += ":return";
 }
 
 /// At rest or in a steady motion u̇ is small beside what small displacements make of it.
@@ -347,6 +363,8 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
     model.aliased = find_aliased(statespace::calc_poles(model.A, model.states.name), loop.sample_time);
     model.states = loop.states;
     std::tie(model.A, model.B, model.C, model.D) = std::tie(loop.A, loop.B, loop.C, loop.D);
+    model.inputs = name_values(model.inputs.name.front(), model.inputs.dims.front(), model.B.cols());
+    model.outputs = name_values(model.outputs.name.front(), model.outputs.dims.front(), model.C.rows());
   }
   model.error = uncertainty.relative;
   warn_of_inaccurate(uncertainty, model.difference, at, diagnostics);

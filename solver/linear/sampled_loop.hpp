@@ -8,9 +8,10 @@ namespace bough::solver {
 /// From sample to sample of the signal behind the cut: ξ = [x; m; d], taken just before it changes, with d what is
 /// added to it from one change to the next, and y what comes back at the change, all loops closed. Between samples
 /// ẋ = A x + E m + b d by the matrix exponential, at samples by differences (sampled.hpp), their errors in
-/// `uncertainty`; queues are renumbered after each period, which makes the map the same for all. `A`, `b`: of the
-/// continuous model, m held. Throws InputError "linear.slower-samples" where other samples do not repeat within one of
-/// the cut's.
+/// `uncertainty`; queues are renumbered after each period, which makes the map the same for all. If other samples do
+/// not repeat within one of the cut's, the model is lifted: N inputs and outputs, the values at the cut within the
+/// period of all samples, N times its own; D is lower triangular. `A`, `b`: of the continuous model, m held.
+/// Throws InputError "linear.slower-samples" if there is no such period, or N exceeds 100.
 records::LinearModel calc_sampled_loop(Plant& plant, const OperatingPoint& point, const PlantInput& cut,
                                        const MatrixXd& A, const VectorXd& b, const SourceLocation& at,
                                        Uncertainty& uncertainty);

@@ -24,6 +24,8 @@ constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr int kBisections = 80;
 constexpr double kCertified = 1e-6;
 constexpr Index kMostStates = 300;
+/// Lowest frequency of the loci of a lifted loop over the highest.
+constexpr double kLowest = 1e-3;
 /// Two poles at 1 are found that far from it.
 constexpr double kOnCircle = 1e-7;
 /// A pole with a smaller damping ratio is undamped; L is taken that far from it, relative to its frequency.
@@ -94,6 +96,92 @@ double minimize(const std::function<double(double)>& f, double a, double b) {
   return f_left < f_right ? left : right;
 }
 
+Eigen::VectorXcd calc_eigenvalues(const MatrixXcd& value) {
+  return Eigen::ComplexEigenSolver<MatrixXcd>(value, false).eigenvalues();
+}
+
+/// Characteristic loci of a lifted loop: eigenvalues λ_i(ω) of L(exp(iωT)), N values at the cut in a period T.
+///
+/// A branch has the frequency ω + 2πm/T, -N/2 ≤ m < N/2, whose sine, taken at the N values, its eigenvector contains
+/// most of; where that is negative the branch is the conjugate one at the opposite frequency.
+class Loci {
+ public:
+  explicit Loci(const records::LinearModel& loop) : loop_(loop), num_values_(loop.B.cols()) {}
+  double period() const { return loop_.sample_time; }
+  double last() const { return std::numbers::pi / loop_.sample_time; }
+  /// Without balancing: delays make A nearly nilpotent, which scales without bound.
+  MatrixXcd calc_L(double omega) const {
+    MatrixXcd M = (-loop_.A).cast<Complex>();
+    M.diagonal().array() += calc_argument(loop_, omega);
+    return loop_.C * M.partialPivLu().solve(loop_.B.cast<Complex>()) + loop_.D;
+  }
+  Eigen::VectorXcd calc(double omega) const { return calc_eigenvalues(calc_L(omega)); }
+
+  /// m of the nearest eigenvalue to `value`.
+  Index find_alias(double omega, Complex value) const {
+    const Eigen::ComplexEigenSolver<MatrixXcd> solver(calc_L(omega));
+    return find_alias(omega, Eigen::VectorXcd(solver.eigenvectors().col(find_nearest(solver.eigenvalues(), value))));
+  }
+  Index find_alias(double omega, const Eigen::VectorXcd& vector) const {
+    Index best = 0;
+    double most = -1;
+    for (Index i = 0; i < num_values_; ++i) {  // 0, -1, 1, -2, 2, ...: of equal shares the slowest
+      const Index m = i % 2 == 1 ? -(i + 1) / 2 : i / 2;
+      const double step = calc_frequency(omega, m) * period() / static_cast<double>(num_values_);
+      Complex share = 0;
+      for (Index k = 0; k < num_values_; ++k) share += std::polar(1.0, -step * static_cast<double>(k)) * vector[k];
+      if (std::abs(share) > most * (1 + 1e-9)) best = m, most = std::abs(share);
+    }
+    return best;
+  }
+  double calc_frequency(double omega, Index m) const { return omega + kTwoPi * static_cast<double>(m) / period(); }
+
+  static Index find_nearest(const Eigen::VectorXcd& values, Complex value) {
+    Index best = 0;
+    (values.array() - value).abs().minCoeff(&best);
+    return best;
+  }
+
+ private:
+  const records::LinearModel& loop_;
+  Index num_values_;
+};
+
+/// `next` in the order of `before`: pairs from the nearest up. `is_clear`: each moves less than a third of its size, or
+/// of its distance from all others.
+Eigen::VectorXcd follow_values(const Eigen::VectorXcd& before, const Eigen::VectorXcd& next, bool& is_clear) {
+  const Index n = before.size();
+  struct Pair {
+    double distance;
+    Index from, to;
+  };
+  std::vector<Pair> pairs;
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j < n; ++j) pairs.push_back({std::abs(before[i] - next[j]), i, j});
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
+  Eigen::VectorXcd ordered(n);
+  Eigen::VectorXd moved = Eigen::VectorXd::Constant(n, -1), second = moved;
+  std::vector<bool> is_taken(static_cast<std::size_t>(n), false);
+  for (const auto& pair : pairs) {
+    if (moved[pair.from] >= 0) {
+      if (second[pair.from] < 0) second[pair.from] = pair.distance;
+      continue;
+    }
+    if (is_taken[static_cast<std::size_t>(pair.to)]) continue;
+    ordered[pair.from] = next[pair.to];
+    moved[pair.from] = pair.distance;
+    is_taken[static_cast<std::size_t>(pair.to)] = true;
+  }
+  const double floor = 1e-6;  // of a factor at -1: nothing that small matters
+  is_clear = true;
+  for (Index i = 0; i < n; ++i) {
+    const double size = std::max(std::abs(before[i]), std::abs(ordered[i]));
+    const bool is_apart = n == 1 || second[i] < 0 || moved[i] <= second[i] / 3;
+    if (size > floor && (moved[i] > size / 3 || !is_apart)) is_clear = false;
+  }
+  return ordered;
+}
+
 double calc_sigma(const MatrixXcd& value) {
   if (!value.allFinite()) return std::numeric_limits<double>::infinity();
   return value.size() == 0 ? 0 : Eigen::JacobiSVD<MatrixXcd>(value).singularValues()[0];
@@ -134,29 +222,136 @@ std::vector<double> find_level(const StateSpace& s, const MatrixXd& D, double ga
   return omegas;
 }
 
-}  // namespace
-
-FrequencyRange widen_for_loop(const records::LinearModel& loop, const FrequencyRange& range) {
-  constexpr int kDecades = 8;
-  FrequencyRange wide = range;
-  const auto ends = calc_frequency_response(loop, {range.from_hz, range.to_hz, 1, 2}).frequency_hz;
-  const TransferMatrix transfer(loop.A, loop.B, loop.C, loop.D);
-  const auto gain = [&](double hz) { return std::abs(transfer.calc(calc_argument(loop, kTwoPi * hz))(0, 0)); };
-  double low = ends[0], high = ends[ends.size() - 1];
-  for (int i = 0; range.to_hz == 0 && loop.sample_time == 0 && i < kDecades && gain(high) > 1; ++i)
-    wide.to_hz = high *= 10;
-  const bool has_rigid = loop.poles.size() > 0 && loop.poles.frequency_hz.minCoeff() <= 1e-6 * low;
-  for (int i = 0; range.from_hz == 0 && has_rigid && i < kDecades && gain(low) < 1; ++i) wide.from_hz = low /= 10;
-  return wide;
+/// A crossing of a branch, at the value it has there.
+void add_crossing(const Loci& loci, double omega, Complex value, bool is_phase, records::Margins& m) {
+  double at = loci.calc_frequency(omega, loci.find_alias(omega, value));
+  if (at < 0) at = -at, value = std::conj(value);
+  auto& list = is_phase ? m.phase : m.gain;
+  records::Crossing crossing{at / kTwoPi, -1 / value.real(), 0};
+  if (is_phase) {
+    const double lag = std::arg(value) + std::numbers::pi;  // in (0, 2π]
+    crossing = {at / kTwoPi, lag > std::numbers::pi ? lag - kTwoPi : lag, lag / at};
+  }
+  const auto is_same = [&](const records::Crossing& c) {
+    return std::abs(c.frequency_hz - crossing.frequency_hz) <= 1e-8 * crossing.frequency_hz &&
+           std::abs(c.margin - crossing.margin) <= 1e-8 * std::abs(crossing.margin);
+  };
+  if (std::none_of(list.begin(), list.end(), is_same)) list.push_back(crossing);
 }
 
-records::Margins calc_margins(const records::LinearModel& loop, const records::FrequencyResponse& response) {
-  BOUGH_DEMAND(loop.B.cols() == 1 && loop.C.rows() == 1);
-  records::Margins m;
-  const TransferMatrix transfer(loop.A, loop.B, loop.C, loop.D);
-  const auto L = [&](double omega) { return transfer.calc(calc_argument(loop, omega))(0, 0); };
-  if (response.value.empty()) return m;
-  const std::vector<LocusPoint> locus = collect_locus(loop, response, L);
+/// Crossings of all branches between a and b, by halves until no branch is mistaken for another.
+void find_crossings(const Loci& loci, double a, const Eigen::VectorXcd& here, double b, const Eigen::VectorXcd& next,
+                    records::Margins& m) {
+  bool is_clear = true;
+  const Eigen::VectorXcd there = follow_values(here, next, is_clear);
+  if (!is_clear && b - a > 1e-7 * loci.last()) {
+    const double middle = 0.5 * (a + b);
+    const Eigen::VectorXcd between = loci.calc(middle);
+    find_crossings(loci, a, here, middle, between, m);
+    find_crossings(loci, middle, between, b, next, m);
+    return;
+  }
+  const double rounding = 1e-12 * std::max(here.cwiseAbs().maxCoeff(), there.cwiseAbs().maxCoeff());
+  const auto locate = [&](Index i, const std::function<double(Complex)>& f, bool is_phase) {
+    double from = a, to = b;
+    Complex left = here[i], right = there[i];
+    for (int k = 0; k < kBisections; ++k) {
+      const double middle = 0.5 * (from + to);
+      if (middle == from || middle == to) break;
+      const auto values = loci.calc(middle);
+      const Complex value = values[Loci::find_nearest(values, 0.5 * (left + right))];
+      (f(value) > 0) == (f(left) > 0) ? (from = middle, left = value) : (to = middle, right = value);
+    }
+    const Complex value = 0.5 * (left + right);
+    if (is_phase || (value.real() < 0 && std::abs(value.imag()) < 1e-6 * std::abs(value)))
+      add_crossing(loci, 0.5 * (from + to), value, is_phase, m);
+  };
+  for (Index i = 0; i < here.size(); ++i) {
+    if ((std::abs(here[i]) > 1) != (std::abs(there[i]) > 1))
+      locate(
+          i, [](Complex v) { return std::abs(v) - 1; }, true);
+    const double imag = std::max(std::abs(here[i].imag()), std::abs(there[i].imag()));
+    const bool ends_real = b >= loci.last() * (1 - 1e-9) && std::abs(there[i].imag()) < 1e-9 * std::abs(there[i]);
+    if ((here[i].imag() > 0) != (there[i].imag() > 0) && (here[i].real() < 0 || there[i].real() < 0) &&
+        imag > rounding && !ends_real)
+      locate(
+          i, [](Complex v) { return v.imag(); }, false);
+  }
+}
+
+/// Branches that are real at the ends: at ω = π/T, and at ω = 0 if their own frequency is another one there.
+void find_real_ends(const Loci& loci, records::Margins& m) {
+  const auto values = loci.calc(loci.last());
+  for (const Complex& value : values)
+    if (value.real() < 0 && std::abs(value.imag()) < 1e-9 * std::abs(value))
+      add_crossing(loci, loci.last(), value.real(), false, m);
+  // At ω = 0 an integrator is infinite: the even real part and the odd imaginary part are extrapolated.
+  const double h = kLowest * loci.last();
+  bool is_clear = true;
+  const auto first = loci.calc(h);
+  const auto second = follow_values(first, loci.calc(2 * h), is_clear);
+  for (Index i = 0; i < first.size(); ++i) {
+    const double size = std::abs(first[i]), real = (4 * first[i].real() - second[i].real()) / 3;
+    const bool is_real = std::abs(2 * first[i].imag() - second[i].imag()) <= 1e-5 * size;
+    if (!(real < 0) || !is_real || size < 1e-9 || loci.find_alias(h, first[i]) == 0) continue;
+    const Index alias = std::abs(loci.find_alias(h, first[i]));
+    const double at = loci.calc_frequency(0, alias);
+    m.gain.push_back({at / kTwoPi, -1 / real, 0});
+    if (1 + real < m.distance) m.distance = std::abs(1 + real), m.distance_hz = at / kTwoPi;
+  }
+}
+
+/// Least singular value of 1 + L, from the nearest of the points on.
+void find_distance(const Loci& loci, const std::vector<LocusPoint>& locus, records::Margins& m) {
+  const Index n = loci.calc_L(loci.last()).rows();
+  const auto calc = [&](double omega) {
+    const MatrixXcd sum = MatrixXcd::Identity(n, n) + loci.calc_L(omega);
+    if (!sum.allFinite()) return std::numeric_limits<double>::infinity();
+    return Eigen::JacobiSVD<MatrixXcd>(sum).singularValues()[n - 1];
+  };
+  std::vector<double> values;
+  for (const auto& point : locus) values.push_back(calc(point.omega));
+  double at = locus.front().omega, least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < locus.size(); ++k) {  // about each local minimum
+    const std::size_t before = k > 0 ? k - 1 : 0, after = std::min(locus.size() - 1, k + 1);
+    if (values[k] > values[before] || values[k] > values[after] || values[k] > 1.5 * least) continue;
+    const double omega = minimize(calc, locus[before].omega, locus[after].omega), value = calc(omega);
+    if (value < least) at = omega, least = value;
+    if (values[k] < least) at = locus[k].omega, least = values[k];
+  }
+  m.distance = calc(at);
+  const MatrixXcd sum = MatrixXcd::Identity(n, n) + loci.calc_L(at);
+  const Eigen::JacobiSVD<MatrixXcd> svd(sum, Eigen::ComputeFullV);
+  m.distance_hz =
+      std::abs(loci.calc_frequency(at, loci.find_alias(at, Eigen::VectorXcd(svd.matrixV().col(n - 1))))) / kTwoPi;
+}
+
+/// Margins of a lifted loop, from the characteristic loci. `locus`: frequencies, and undamped poles between them.
+void find_lifted_margins(const Loci& loci, std::vector<LocusPoint> locus, records::Margins& m) {
+  // Faster branches have crossings near ω = 0 too.
+  const double low = kLowest * loci.last(), first = locus.front().omega;
+  constexpr int kMore = 40;
+  std::vector<LocusPoint> more;
+  for (int i = 0; i < kMore && first > low; ++i) more.push_back({low + (first - low) * i / kMore, {}, false});
+  locus.insert(locus.begin(), more.begin(), more.end());
+  find_distance(loci, locus, m);
+  Eigen::VectorXcd here = loci.calc(locus.front().omega);
+  for (std::size_t k = 1; k < locus.size(); ++k) {
+    Eigen::VectorXcd next = loci.calc(locus[k].omega);
+    if (!locus[k].is_after_pole) find_crossings(loci, locus[k - 1].omega, here, locus[k].omega, next, m);
+    here = std::move(next);
+  }
+  find_real_ends(loci, m);
+  const auto is_before = [](const records::Crossing& a, const records::Crossing& b) {
+    return a.frequency_hz < b.frequency_hz;
+  };
+  std::stable_sort(m.gain.begin(), m.gain.end(), is_before);
+  std::stable_sort(m.phase.begin(), m.phase.end(), is_before);
+}
+
+/// Crossings and distance of one L(ω).
+void find_margins(const records::LinearModel& loop, const std::vector<LocusPoint>& locus,
+                  const std::function<Complex(double)>& L, records::Margins& m) {
   const auto count = static_cast<Index>(locus.size());
   const auto get = [&](Index k) { return locus[static_cast<std::size_t>(k)].value; };
   const auto get_omega = [&](Index k) { return locus[static_cast<std::size_t>(k)].omega; };
@@ -191,20 +386,58 @@ records::Margins calc_margins(const records::LinearModel& loop, const records::F
     m.distance = std::min(std::abs(1.0 + L(omega)), std::abs(1.0 + get(nearest)));
     m.distance_hz = omega / kTwoPi;
   }
+}
+
+/// Poles with the loop closed: those of A - B (1 + D)⁻¹ C.
+void find_stability(const records::LinearModel& loop, records::Margins& m) {
+  const bool is_lifted = loop.B.cols() > 1;
   const double back = 1 + loop.D(0, 0);
-  if (back == 0) return m;
-  const auto poles = calc_poles(loop.A - loop.B * loop.C / back, loop.states.name);
+  if (!is_lifted && back == 0) return;
+  const MatrixXd sum = MatrixXd::Identity(loop.D.rows(), loop.D.cols()) + loop.D;
+  const MatrixXd A = is_lifted ? MatrixXd(loop.A - loop.B * sum.partialPivLu().solve(loop.C))
+                               : MatrixXd(loop.A - loop.B * loop.C / back);
+  const auto poles = calc_poles(A, loop.states.name);
   if (loop.sample_time > 0) {
     double most = 0;
     for (Index i = 0; i < poles.size(); ++i) most = std::max(most, std::hypot(poles.real[i], poles.imag[i]));
     m.largest_real = std::log(std::max(most, 1e-16)) / loop.sample_time;
     m.is_stable = most <= 1 + kOnCircle;
-    return m;
+    return;
   }
   double size = 0;
   for (Index i = 0; i < poles.size(); ++i) size = std::max(size, std::hypot(poles.real[i], poles.imag[i]));
   m.largest_real = poles.size() > 0 ? poles.real.maxCoeff() : 0;
   m.is_stable = m.largest_real <= 1e-9 * size;
+}
+
+}  // namespace
+
+FrequencyRange widen_for_loop(const records::LinearModel& loop, const FrequencyRange& range) {
+  constexpr int kDecades = 8;
+  FrequencyRange wide = range;
+  const auto ends = calc_frequency_response(loop, {range.from_hz, range.to_hz, 1, 2}).frequency_hz;
+  const TransferMatrix transfer(loop.A, loop.B, loop.C, loop.D);
+  const auto gain = [&](double hz) { return transfer.calc(calc_argument(loop, kTwoPi * hz)).cwiseAbs().maxCoeff(); };
+  double low = ends[0], high = ends[ends.size() - 1];
+  for (int i = 0; range.to_hz == 0 && loop.sample_time == 0 && i < kDecades && gain(high) > 1; ++i)
+    wide.to_hz = high *= 10;
+  const bool has_rigid = loop.poles.size() > 0 && loop.poles.frequency_hz.minCoeff() <= 1e-6 * low;
+  for (int i = 0; range.from_hz == 0 && has_rigid && i < kDecades && gain(low) < 1; ++i) wide.from_hz = low /= 10;
+  return wide;
+}
+
+records::Margins calc_margins(const records::LinearModel& loop, const records::FrequencyResponse& response) {
+  BOUGH_DEMAND(loop.B.cols() > 0 && loop.B.cols() == loop.C.rows());
+  records::Margins m;
+  const TransferMatrix transfer(loop.A, loop.B, loop.C, loop.D);
+  const auto L = [&](double omega) { return transfer.calc(calc_argument(loop, omega))(0, 0); };
+  if (response.value.empty()) return m;
+  const std::vector<LocusPoint> locus = collect_locus(loop, response, L);
+  if (loop.B.cols() > 1)
+    find_lifted_margins(Loci(loop), locus, m);
+  else
+    find_margins(loop, locus, L, m);
+  find_stability(loop, m);
   return m;
 }
 
